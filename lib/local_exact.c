@@ -1,0 +1,252 @@
+/*
+ * local_exact.c: the one-contact problem solved outright, case by case of the law.
+ *
+ *     take-off  b_n >= 0:                         r = 0
+ *     stick     W r = -b with r in the cone:      u = 0
+ *     slide     r = r_n (n + mu d), |d| = 1:      u_n = 0, u_t = -lambda d, lambda >= 0
+ *
+ * For balls W = diag(w_n, w_t, w_t) and the three are one closed form: r_n = max(0, -b_n/w_n) and
+ * r_t = -b_t/w_t clipped to mu r_n. The paper has no such method; it is also what stands in for a
+ * Newton that does not end.
+ *
+ * With a general W the sliding direction d is searched. With a = W_nn + mu W_nt.d, u_n = 0 gives
+ * r_n = -b_n/a, and the tangential velocity times a is
+ *
+ *     h = a u_t = p + Q d,     p = W_nn b_t - b_n W_tn,     Q = mu (b_t W_nt - b_n W_tt).
+ *
+ * Wanted are d with g(d) = d x h = 0, h.d <= 0 and a > 0. g is a trigonometric polynomial of degree
+ * 2 and has four roots at most.
+ */
+#include "local_newton.h"
+
+#include <complex.h>
+#include <gsl/gsl_linalg.h>
+
+struct slide {
+    double Wnn, mWnt[2]; /* a = Wnn + mWnt.d */
+    double p[2], Q[2][2];
+    double scale; /* of h */
+};
+
+static void slide_init(struct slide *k, const struct local *l)
+{
+    const double *W = l->W, *b = l->b, mu = l->mu;
+    k->Wnn = W[0], k->scale = 0;
+    for (int i = 0; i < 2; i++) {
+        k->mWnt[i] = mu * W[1 + i];
+        k->p[i] = W[0] * b[1 + i] - b[0] * W[3 + 3 * i];
+        k->scale += fabs(W[0] * b[1 + i]) + fabs(b[0] * W[3 + 3 * i]);
+        for (int j = 0; j < 2; j++) {
+            k->Q[i][j] = mu * (b[1 + i] * W[1 + j] - b[0] * W[4 + 3 * i + j]);
+            k->scale += mu * (fabs(b[1 + i] * W[1 + j]) + fabs(b[0] * W[4 + 3 * i + j]));
+        }
+    }
+}
+
+/* g(d) = d x h; also h.d and the derivative of g by the angle of d */
+static double slide_g(const struct slide *k, const double d[2], double *hd, double *dg)
+{
+    double h1 = k->p[0] + k->Q[0][0] * d[0] + k->Q[0][1] * d[1];
+    double h2 = k->p[1] + k->Q[1][0] * d[0] + k->Q[1][1] * d[1];
+    *hd = d[0] * h1 + d[1] * h2;
+    *dg = d[0] * (k->Q[1][1] * d[0] - k->Q[1][0] * d[1]) -
+          d[1] * (k->Q[0][1] * d[0] - k->Q[0][0] * d[1]) - *hd;
+    return d[0] * h2 - d[1] * h1;
+}
+
+static void turn(double d[2], double tangent)
+{
+    double x = d[0] - tangent * d[1], y = d[1] + tangent * d[0], s = 1 / sqrt(x * x + y * y);
+    d[0] = s * x, d[1] = s * y;
+}
+
+/* Newton on g from d, at most so many steps. */
+static void slide_polish(const struct slide *k, double d[2], int steps)
+{
+    for (double change = 1; steps > 0 && fabs(change) > 1e-9; steps--) {
+        double hd, dg, g = slide_g(k, d, &hd, &dg);
+        if (g == 0 || dg == 0) return;
+        change = fmax(-1, fmin(1, -g / dg));
+        turn(d, change);
+    }
+}
+
+/* Whether d is a solution to rounding, and its reaction. */
+static bool slide_accept(const struct local *l, const struct slide *k, const double d[2],
+                         double r[3])
+{
+    double hd, dg, g = slide_g(k, d, &hd, &dg), a = k->Wnn + k->mWnt[0] * d[0] + k->mWnt[1] * d[1];
+    if (!(fabs(g) <= 1e-12 * k->scale && hd <= 1e-12 * k->scale && a > 0)) return false;
+    r[0] = -l->b[0] / a, r[1] = l->mu * r[0] * d[0], r[2] = l->mu * r[0] * d[1];
+    return isfinite(r[0]) && isfinite(r[1] + r[2]);
+}
+
+/*
+ * Candidates for d, all roots of g among them. In x = tan(angle/2) (1 + x^2)^2 g is a quartic with
+ * g(pi) in front: the angle is counted from where the opposite |g| is the largest of eight, no root
+ * is then far off. Durand and Kerner's iteration finds all four; real parts will do, for they are
+ * polished. Where g = 0 everywhere any direction slides, and the eight are the candidates.
+ */
+static int slide_roots(const struct slide *k, double root[8][2])
+{
+    double most = -1, hd, dg, o[2] = { 1, 0 };
+    for (int i = 0; i < 8; i++) {
+        root[i][0] = 1, root[i][1] = 0;
+        for (int j = 0; j < i; j++) turn(root[i], 1);
+        double g = fabs(slide_g(k, (double[]){ -root[i][0], -root[i][1] }, &hd, &dg));
+        if (g > most) most = g, o[0] = root[i][0], o[1] = root[i][1];
+    }
+    if (!(most > 1e-12 * k->scale)) return 8;
+
+    // p and Q in the axes o and its normal m
+    double m[2] = { -o[1], o[0] }, Qo[2], Qm[2];
+    for (int i = 0; i < 2; i++) {
+        Qo[i] = k->Q[i][0] * o[0] + k->Q[i][1] * o[1];
+        Qm[i] = k->Q[i][0] * m[0] + k->Q[i][1] * m[1];
+    }
+    double p1 = k->p[0] * o[0] + k->p[1] * o[1], p2 = k->p[0] * m[0] + k->p[1] * m[1];
+    double Q11 = o[0] * Qo[0] + o[1] * Qo[1], Q12 = o[0] * Qm[0] + o[1] * Qm[1];
+    double Q21 = m[0] * Qo[0] + m[1] * Qo[1], Q22 = m[0] * Qm[0] + m[1] * Qm[1];
+    double c4 = Q21 - p2, c[4] = { (Q21 + p2) / c4, 2 * (Q22 - Q11 - p1) / c4,
+                                   -2 * (Q21 + 2 * Q12) / c4, 2 * (Q11 - Q22 - p1) / c4 };
+
+    double complex x[4] = { 1, 0.4 + 0.9 * I, -0.65 + 0.72 * I, -0.908 - 0.297 * I };
+    for (int step = 0; step < 60; step++)
+        for (int i = 0; i < 4; i++) {
+            double complex y = (((x[i] + c[3]) * x[i] + c[2]) * x[i] + c[1]) * x[i] + c[0];
+            for (int j = 0; j < 4; j++)
+                if (j != i && x[j] != x[i]) y /= x[i] - x[j];
+            x[i] -= y;
+        }
+    for (int i = 0; i < 4; i++) { // the angle 2 atan x from o
+        double t = creal(x[i]), s = 1 / (1 + t * t), co = s * (1 - t * t), si = s * 2 * t;
+        root[i][0] = isfinite(t) ? co * o[0] + si * m[0] : 1;
+        root[i][1] = isfinite(t) ? co * o[1] + si * m[1] : 0;
+        slide_polish(k, root[i], 60);
+    }
+    return 4;
+}
+
+/*
+ * First the root that Newton finds from the last sweep's direction; else, of all there are, the one
+ * whose reaction is nearest to the last (with large mu W_nt there may be several). In the plane d
+ * is t1 or -t1.
+ */
+static bool slide(struct local *l)
+{
+    struct slide k;
+    double root[8][2] = { { 1, 0 }, { -1, 0 } }, r[3], best[3] = { 0 }, nearest = INFINITY;
+    slide_init(&k, l);
+    if (l->d == 3) {
+        double t = norm2(l->r + 1), tb = norm2(l->b + 1), d[2] = { 1, 0 };
+        for (int i = 0; i < 2; i++) {
+            if (t > 0)
+                d[i] = l->r[1 + i] / t;
+            else if (tb > 0)
+                d[i] = -l->b[1 + i] / tb;
+        }
+        slide_polish(&k, d, 8);
+        if (slide_accept(l, &k, d, r)) {
+            for (int i = 0; i < 3; i++) l->r[i] = r[i];
+            return true;
+        }
+    }
+    for (int i = 0, n = l->d == 3 ? slide_roots(&k, root) : 2; i < n; i++) {
+        if (!slide_accept(l, &k, root[i], r)) continue;
+        double far = hypot(r[0] - l->r[0], hypot(r[1] - l->r[1], r[2] - l->r[2]));
+        if (!(far < nearest)) continue;
+        nearest = far;
+        for (int j = 0; j < 3; j++) best[j] = r[j];
+    }
+    if (!(nearest < INFINITY)) return false;
+    for (int j = 0; j < 3; j++) l->r[j] = best[j];
+    return true;
+}
+
+/* The shortest of the r that bring W r nearest to -b: for singular W. */
+static void shortest(const double *W, const double b[3], double r[3])
+{
+    double a[9], tq[3], tz[3], work[3], rest[3], y[3] = { -b[0], -b[1], -b[2] };
+    for (int i = 0; i < 9; i++) a[i] = W[i];
+    size_t order[3], rank;
+    gsl_permutation p = { 3, order };
+    gsl_matrix_view A = gsl_matrix_view_array(a, 3, 3);
+    gsl_vector_view Tq = gsl_vector_view_array(tq, 3), Tz = gsl_vector_view_array(tz, 3),
+                    R = gsl_vector_view_array(r, 3), Y = gsl_vector_view_array(y, 3),
+                    Rest = gsl_vector_view_array(rest, 3), Work = gsl_vector_view_array(work, 3);
+    double tol = 1e-12 * (norm3(W) + norm3(W + 3) + norm3(W + 6));
+    gsl_linalg_COD_decomp_e(&A.matrix, &Tq.vector, &Tz.vector, &p, tol, &rank, &Work.vector);
+    r[0] = r[1] = r[2] = 0;
+    if (rank > 0)
+        gsl_linalg_COD_lssolve(&A.matrix, &Tq.vector, &Tz.vector, &p, rank, &Y.vector, &R.vector,
+                               &Rest.vector);
+}
+
+/* u = W r + b; whether it is zero but for rounding */
+static bool stopped(const struct local *l, const double r[3], double u[3])
+{
+    for (int i = 0; i < 3; i++) u[i] = dot3(l->W + 3 * i, r) + l->b[i];
+    return dot3(u, u) <= 1e-20 * dot3(l->b, l->b);
+}
+
+/* W r = -b with r in the cone */
+static bool stick(struct local *l)
+{
+    double M[3][3], r[3], u[3], dr[3];
+    for (int i = 0; i < 9; i++) M[i / 3][i % 3] = l->W[i];
+    bool regular = solve3(M, l->b, r);
+    if (regular) { // and once more, for what the cofactors left
+        stopped(l, r, u);
+        solve3(M, u, dr);
+        for (int i = 0; i < 3; i++) r[i] += dr[i];
+    }
+    if (!regular || !stopped(l, r, u)) {
+        shortest(l->W, l->b, r);
+        if (!stopped(l, r, u)) return false;
+    }
+    if (l->d == 2) r[2] = 0;
+    if (!(norm2(r + 1) <= l->mu * r[0])) return false;
+    for (int i = 0; i < 3; i++) l->r[i] = r[i];
+    return true;
+}
+
+/* W = diag(w_n, w_t, w_t): the stick reaction, clipped */
+static bool balls(struct local *l)
+{
+    double rn = -l->b[0] / l->w[0], r1 = -l->b[1] / l->w[1], r2 = -l->b[2] / l->w[2];
+    double t = sqrt(r1 * r1 + r2 * r2), s = t > l->mu * rn ? l->mu * rn / t : 1;
+    l->r[0] = rn, l->r[1] = s * r1, l->r[2] = s * r2;
+    return l->w[0] > 0 && isfinite(rn + l->r[1] + l->r[2]);
+}
+
+static bool frictionless(struct local *l)
+{
+    l->r[0] = -l->b[0] / l->W[0], l->r[1] = l->r[2] = 0;
+    return l->W[0] > 0 && isfinite(l->r[0]);
+}
+
+static bool take_off(struct local *l)
+{
+    if (l->b[0] < 0) return false;
+    l->r[0] = l->r[1] = l->r[2] = 0;
+    return true;
+}
+
+/* Where nothing is on the law (W indefinite or singular), one projected step from the last r. */
+static void solve(struct local *l, const struct local_opt *opt)
+{
+    double r[3] = { l->r[0], l->r[1], l->r[2] };
+    bool found = take_off(l) || (!l->W        ? balls(l)
+                                 : l->mu == 0 ? frictionless(l)
+                                              : stick(l) || slide(l));
+    if (!found) {
+        for (int i = 0; i < 3; i++) l->r[i] = r[i];
+        local_sbp.solve(l, opt);
+        if (!isfinite(l->r[0] + l->r[1] + l->r[2])) l->r[0] = l->r[1] = l->r[2] = 0;
+    }
+    local_velocity(l);
+    l->steps = 0, l->trouble = found ? LOCAL_FINE : LOCAL_GAVE_UP;
+}
+
+const struct method local_exact = { "exact", "the one-contact problem solved outright", 1, true,
+                                    solve };
