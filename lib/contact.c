@@ -1,0 +1,53 @@
+#include "contact.h"
+
+#include <stdlib.h>
+
+void contacts_free(struct contacts *s)
+{
+    free(s->c);
+    *s = (struct contacts){ 0 };
+}
+
+struct contact *contacts_add(struct contacts *s, int32_t a, int32_t b)
+{
+    if (s->n == s->room) {
+        int64_t room = s->room ? s->room + s->room / 2 : 64;
+        struct contact *c = realloc(s->c, (size_t)room * sizeof *c);
+        if (!c) return NULL;
+        s->c = c, s->room = room;
+    }
+    struct contact *c = &s->c[s->n++];
+    *c = (struct contact){ .a = a, .b = b };
+    return c;
+}
+
+void contact_frame(struct contact *c, int dim, vec3 n)
+{
+    c->n = n;
+    if (dim == 2) {
+        c->t1 = v3(-n.y, n.x, 0);
+        c->t2 = v3(0, 0, 1);
+        return;
+    }
+    // without a branch that could flip between neighbouring normals [Duff et al. 2017]
+    double sign = copysign(1, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
+    c->t1 = v3(1 + sign * n.x * n.x * a, sign * b, -sign * n.x);
+    c->t2 = v3(b, sign + n.y * n.y * a, -n.y);
+}
+
+void contacts_match(struct contacts *new, const struct contacts *old)
+{
+    int64_t k = 0;
+    for (int64_t i = 0; i < new->n; i++) {
+        struct contact *c = &new->c[i];
+        c->r[0] = c->r[1] = c->r[2] = 0;
+        while (k < old->n && (old->c[k].a < c->a || (old->c[k].a == c->a && old->c[k].b < c->b)))
+            k++;
+        if (k == old->n) continue;
+        const struct contact *o = &old->c[k];
+        if (!old->solved || o->a != c->a || o->b != c->b) continue;
+        vec3 t = v3_axpy(v3_scale(o->r[1], o->t1), o->r[2], o->t2);
+        c->r[0] = o->r[0], c->r[1] = v3_dot(t, c->t1), c->r[2] = v3_dot(t, c->t2);
+    }
+    new->solved = old->solved; // the reactions mean something, as a start
+}

@@ -1,0 +1,39 @@
+/* contact.h: contacts as they are detected, stored and shown: fat cold records. */
+#ifndef NSD_CONTACT_H
+#define NSD_CONTACT_H
+
+#include "vec.h"
+#include "why.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct contact {
+    int32_t a, b;   /* bodies, the normal points from a to b; wall w is -1-w and always a */
+    vec3 x;         /* m: where it acts, in the predicted position */
+    vec3 n, t1, t2; /* frame, right-handed; in the plane t2 = z */
+    double gap;     /* m, predicted; < 0: overlap */
+    double mu, en, et;
+    double r[3];   /* N s: reaction on b, components (n, t1, t2) */
+    double u[3];   /* m/s: velocity of b relative to a as the law sees it, (u+ + e u-)/(1 + e) */
+    int8_t status; /* enum local_status */
+};
+
+/* Sorted by (a, b) with walls first, each pair once. */
+struct contacts {
+    int64_t n, room;
+    struct contact *c;
+    bool solved; /* r, u and status mean something */
+};
+
+void contacts_free(struct contacts *);
+/* One more, zeroed but for a and b; NULL when memory is short. */
+struct contact *contacts_add(struct contacts *, int32_t a, int32_t b);
+
+/* The frame (n, t1, t2) of a unit normal, continuous but at n = -z; in the plane t1 = z x n. */
+void contact_frame(struct contact *, int dim, vec3 n);
+
+/* Reactions of old, turned into the frames of new, for the pairs that are in both; 0 for others. */
+void contacts_match(struct contacts *new, const struct contacts *old);
+
+#endif
