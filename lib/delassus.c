@@ -1,0 +1,122 @@
+/* delassus.c: see delassus.h. */
+#include "delassus.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* order[] stably by the block that index[] lies in: a counting sort. tally [n + 1] and to [entries]. */
+static void sort_by_block(int64_t entries, const int32_t *index, int d, int64_t n,
+                          const int64_t *order, int64_t *to, int64_t *tally)
+{
+    memset(tally, 0, (size_t)(n + 1) * sizeof *tally);
+    for (int64_t k = 0; k < entries; k++) tally[index[k] / d + 1]++;
+    for (int64_t c = 0; c < n; c++) tally[c + 1] += tally[c];
+    for (int64_t k = 0; k < entries; k++) {
+        int64_t e = order ? order[k] : k;
+        to[tally[index[e] / d]++] = e;
+    }
+}
+
+/* A block of nothing but zeros is no block. */
+static bool nonzero(const double *B, int size)
+{
+    for (int k = 0; k < size; k++)
+        if (B[k] != 0) return true;
+    return false;
+}
+
+/* Row-major d x d, padded to 3 x 3 as local.h has it for d = 2 */
+static void pad(int d, const double *B, double out[9])
+{
+    for (int i = 0; i < d; i++)
+        for (int j = 0; j < d; j++) out[3 * i + j] = B[d * i + j];
+    if (d == 2) out[8] = out[4] > 0 ? out[4] : 1;
+}
+
+/* The entries, now sorted, block by block into W, whose arrays have room for each of them. */
+static void gather_blocks(struct delassus *W, int64_t entries, const int64_t *order,
+                          const int32_t *row, const int32_t *col, const double *x)
+{
+    int d = W->d, dd = d * d;
+    int64_t blocks = 0;
+    for (int64_t k = 0; k < entries;) {
+        int64_t c = row[order[k]] / d, b = col[order[k]] / d;
+        double B[9] = { 0 };
+        for (; k < entries && row[order[k]] / d == c && col[order[k]] / d == b; k++)
+            B[d * (row[order[k]] % d) + col[order[k]] % d] += x[order[k]];
+        if (b == c) {
+            pad(d, B, W->diag + 9 * c);
+        } else if (nonzero(B, dd)) {
+            memcpy(W->block + dd * blocks, B, (size_t)dd * sizeof *B);
+            W->col[blocks++] = (int32_t)b;
+            W->first[c + 1]++;
+        }
+    }
+    for (int64_t c = 0; c < W->n; c++) W->first[c + 1] += W->first[c];
+}
+
+static int64_t count_blocks(int64_t entries, const int64_t *order, const int32_t *row,
+                            const int32_t *col, int d)
+{
+    int64_t blocks = 0;
+    for (int64_t k = 0; k < entries; k++) {
+        int64_t e = order[k], f = k ? order[k - 1] : e;
+        blocks += k == 0 || row[e] / d != row[f] / d || col[e] / d != col[f] / d;
+    }
+    return blocks;
+}
+
+static double *copy(const double *x, int64_t n)
+{
+    double *y = malloc((size_t)(n + 1) * sizeof *y);
+    if (y && n) memcpy(y, x, (size_t)n * sizeof *y);
+    return y;
+}
+
+int delassus_init(struct delassus *W, int d, int64_t n, int64_t entries, const int32_t *row,
+                  const int32_t *col, const double *x, const double *q, const double *mu,
+                  struct why *why)
+{
+    *W = (struct delassus){ .d = d, .n = n };
+    int64_t *tally = malloc((size_t)(n + 1) * sizeof *tally);
+    int64_t *half = malloc((size_t)(entries + 1) * sizeof *half);
+    int64_t *order = malloc((size_t)(entries + 1) * sizeof *order);
+    bool good = tally && half && order;
+    if (good) { // by column, then stably by row
+        sort_by_block(entries, col, d, n, NULL, half, tally);
+        sort_by_block(entries, row, d, n, half, order, tally);
+        int64_t blocks = count_blocks(entries, order, row, col, d);
+        W->first = calloc((size_t)(n + 1), sizeof *W->first);
+        W->col = malloc((size_t)(blocks + 1) * sizeof *W->col);
+        W->block = malloc((size_t)(blocks + 1) * (size_t)(d * d) * sizeof *W->block);
+        W->diag = calloc((size_t)(n + 1) * 9, sizeof *W->diag);
+        W->r = calloc((size_t)(n * d + 1), sizeof *W->r);
+        W->q = copy(q, n * d);
+        W->mu = copy(mu, n);
+        good = W->first && W->col && W->block && W->diag && W->r && W->q && W->mu;
+    }
+    if (good) {
+        const double none[9] = { 0 };
+        for (int64_t c = 0; c < n; c++) pad(d, none, W->diag + 9 * c);
+        gather_blocks(W, entries, order, row, col, x);
+    }
+    free(tally);
+    free(half);
+    free(order);
+    if (good) return 0;
+    delassus_free(W);
+    return why_set(why, EX_SOFTWARE, "out of memory for a problem of %lld contacts", (long long)n);
+}
+
+void delassus_free(struct delassus *W)
+{
+    free(W->first);
+    free(W->col);
+    free(W->block);
+    free(W->diag);
+    free(W->q);
+    free(W->mu);
+    free(W->r);
+    *W = (struct delassus){ 0 };
+}

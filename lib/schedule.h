@@ -1,0 +1,31 @@
+/*
+ * schedule.h: the order of the sweep, and which of its contacts may be done at once.
+ *
+ * A sequence is cut into groups of contacts that have nothing to do with each other: no movable body
+ * in common, no block of W between them. Within a group any order, and any number of threads, gives
+ * the same bits.
+ *
+ * natural, reverse, random: the given sequence, regrouped by levels: a contact goes one level after
+ * the last one before it that it depends on. That is the sequence's own result, bit for bit.
+ * colour: contacts coloured greedily in their natural order; another sequence, in fewer groups.
+ */
+#ifndef NSD_SCHEDULE_H
+#define NSD_SCHEDULE_H
+
+#include "contact.h"
+#include "delassus.h"
+#include "packing.h"
+
+enum order { ORDER_NATURAL, ORDER_REVERSE, ORDER_RANDOM, ORDER_COLOUR };
+
+struct schedule {
+    int64_t *sequence; /* [n] contacts */
+    int64_t groups;
+    int64_t *group; /* [groups + 1] */
+};
+
+/* Return 0, or -1 when memory is short; the arrays are the caller's to free. */
+int schedule_bodies(struct schedule *, enum order, const struct contacts *, const struct packing *);
+int schedule_blocks(struct schedule *, enum order, const struct delassus *);
+
+#endif
