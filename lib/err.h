@@ -1,0 +1,42 @@
+/*
+ * err.h: how far (u, r) is from the law and from the motion.
+ *
+ * eps_glob [estimator, corrected]: the mean over the contacts of
+ *
+ *     eps_motion = |u~ - (u~_free + W~ r)|       u~: what the local method believes
+ *     eps_proj   = |r - proj(r, K_mu)|
+ *     eps_bc     = |u~.r + mu r_n |u~_t||
+ *     eps_pen    = -min(0, u~_n)
+ *
+ * r as a force, r/dt. It is 0 where there is no contact. A method that believes nothing of its own
+ * (SBP, SAL) is judged by the motion's u~, and eps_motion vanishes.
+ */
+#ifndef NSD_ERR_H
+#define NSD_ERR_H
+
+#include "problem.h"
+#include "report.h"
+
+enum err_part { ERR_TERMS = 1, ERR_NATURAL = 2, ERR_ALL = 3 };
+
+/* All of *e but max_overlap, or only a part of it (the rest 0). The same bits for any threads. */
+void err_eval(struct err *e, const struct problem *, bool believes, enum err_part, int threads);
+
+/* The number that a criterion compares with eps. */
+double err_of(const struct err *, enum criterion);
+enum err_part err_part_of(enum criterion);
+
+/* u~ of row i by the motion that r makes: from the bodies, or W r + q */
+static inline void err_velocity(const struct problem *p, int64_t i, double u[3])
+{
+    if (!p->W) {
+        body_velocity(p, &p->row[i], u);
+        return;
+    }
+    struct local l;
+    problem_gather(p, i, &l);
+    local_velocity(&l);
+    for (int k = 0; k < 3; k++) u[k] = l.u[k];
+}
+
+#endif
