@@ -1,0 +1,522 @@
+/* Scenes and the packings made from them. */
+#include "gen.h"
+#include "tap.h"
+
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_sort.h>
+#include <gsl/gsl_statistics.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static char folder[] = "/tmp/gen_test.XXXXXX"; // tables of the tests
+
+static char *slurp(const char *path, size_t *length)
+{
+    FILE *f = fopen(path, "r");
+    if (!f) return NULL;
+    char *text = malloc(1 << 20);
+    *length = fread(text, 1, 1 << 20, f);
+    fclose(f);
+    return text;
+}
+
+static int build(struct packing *p, const char *text, const char *dir, struct why *why)
+{
+    struct scene s;
+    *why = (struct why){ 0 };
+    if (scene_parse(&s, text, strlen(text), why)) return why->status;
+    gen_packing(p, &s, dir, why);
+    scene_free(&s);
+    return why->status;
+}
+
+static int build_file(struct packing *p, const char *path, struct why *why)
+{
+    size_t length;
+    char *text = slurp(path, &length);
+    *why = (struct why){ 0 };
+    if (!text) return why_set(why, EX_NOINPUT, "%s: not there", path);
+    text[length] = 0;
+    build(p, text, "scenes", why);
+    free(text);
+    return why->status;
+}
+
+static int build_paper(struct packing *p, int dim, int64_t n, uint64_t seed, struct why *why)
+{
+    struct scene s;
+    *why = (struct why){ 0 };
+    if (scene_paper(&s, dim, n, why)) return why->status;
+    if (seed) s.seed = seed;
+    gen_packing(p, &s, NULL, why);
+    scene_free(&s);
+    return why->status;
+}
+
+static bool same_bodies(const struct packing *a, const struct packing *b)
+{
+    size_t n = (size_t)a->n;
+    return a->n == b->n && !memcmp(a->x, b->x, n * sizeof *a->x) &&
+           !memcmp(a->v, b->v, n * sizeof *a->v) && !memcmp(a->w, b->w, n * sizeof *a->w) &&
+           !memcmp(a->radius, b->radius, n * sizeof *a->radius) &&
+           !memcmp(a->mass, b->mass, n * sizeof *a->mass) &&
+           !memcmp(a->inertia, b->inertia, n * sizeof *a->inertia);
+}
+
+static bool same_packing(const struct packing *a, const struct packing *b)
+{
+    return same_bodies(a, b) && a->dim == b->dim && a->dt == b->dt && a->theta == b->theta &&
+           !memcmp(&a->g, &b->g, sizeof a->g) && a->seed == b->seed && a->walls == b->walls &&
+           !memcmp(a->wall, b->wall, (size_t)a->walls * sizeof *a->wall) && a->mu[1] == b->mu[1] &&
+           !strcmp(a->scene, b->scene);
+}
+
+/* m: the least gap between two bodies; and between a body and a wall */
+static double least_gap(const struct packing *p)
+{
+    double least = INFINITY;
+    for (int64_t i = 0; i < p->n; i++)
+        for (int64_t j = 0; j < i; j++)
+            least = fmin(least, v3_norm(v3_sub(p->x[i], p->x[j])) - p->radius[i] - p->radius[j]);
+    return least;
+}
+
+static double least_wall_gap(const struct packing *p)
+{
+    double least = INFINITY;
+    for (int64_t i = 0; i < p->n; i++)
+        for (int32_t w = 0; w < p->walls; w++)
+            least = fmin(least, v3_dot(v3_sub(p->x[i], p->wall[w].x), p->wall[w].n) - p->radius[i]);
+    return least;
+}
+
+/* Kolmogorov's sqrt(n) sup |F_n - F| of radii uniform in [lo, hi]; 1.63 is exceeded once in 100. */
+static double distance_to_uniform(const struct packing *p, double lo, double hi)
+{
+    double *r = malloc((size_t)p->n * sizeof *r), worst = 0, n = (double)p->n;
+    memcpy(r, p->radius, (size_t)p->n * sizeof *r);
+    gsl_sort(r, 1, (size_t)p->n);
+    for (int64_t i = 0; i < p->n; i++) {
+        double F = (r[i] - lo) / (hi - lo);
+        worst = fmax(worst, fmax(fabs(F - (double)i / n), fabs(F - (double)(i + 1) / n)));
+    }
+    free(r);
+    return sqrt(n) * worst;
+}
+
+static void test_family(int dim, int64_t n, double lo, double hi)
+{
+    struct packing p;
+    struct why why;
+    const char *what = dim == 2 ? "discs" : "balls";
+    long long k = n;
+    if (!ok(!build_paper(&p, dim, n, 0, &why), "%lld %s are made %s", k, what, why.text)) return;
+    double min = INFINITY, max = 0;
+    for (int64_t i = 0; i < p.n; i++) min = fmin(min, p.radius[i]), max = fmax(max, p.radius[i]);
+    ok(p.n == n && p.walls == 2 * dim - 1, "%lld %s: a floor and its sides, no lid", k, what);
+    ok(!(least_gap(&p) <= 0), "%lld %s: none overlap, least gap %.3g m", k, what, least_gap(&p));
+    ok(!(least_wall_gap(&p) < 0), "%lld %s: all inside, least gap to a wall %.3g m", k, what,
+       least_wall_gap(&p));
+    ok(n == 0 || (min >= lo && max <= hi), "%lld %s: radii in [%g, %g] m", k, what, lo, hi);
+    if (n >= 100) ok(distance_to_uniform(&p, lo, hi) < 1.63, "%lld %s: radii are uniform", k, what);
+    packing_free(&p);
+}
+
+static void test_numbers(void)
+{
+    struct packing p;
+    struct why why;
+    build_paper(&p, 3, 500, 0, &why);
+    double r = 3e-4, density = 2500, top = 0;
+    ok(p.dt == 5e-5 && p.theta == 0.5 && p.g.z == -9.81 && p.mu[0] == 0.3 && p.mu[1] == 0.3 &&
+           p.en[0] == 0 && p.et[0] == 0 && p.seed == 1,
+       "500 balls: dt, theta, g, mu, e and seed are those of the scene");
+    r = p.radius[7];
+    double mass = density * 4 / 3 * M_PI * r * r * r;
+    ok(fabs(p.mass[7] / mass - 1) < 1e-14 && fabs(p.inertia[7] / (0.4 * mass * r * r) - 1) < 1e-14,
+       "500 balls: mass and inertia of solid balls of density 2500");
+    ok(p.wall[0].x.x == -0.00315 && p.wall[0].n.x == 1 && p.wall[1].x.x == 0.00315 &&
+           p.wall[1].n.x == -1 && p.wall[4].x.z == 0 && p.wall[4].n.z == 1 && p.wall[0].kind == 1,
+       "500 balls: the box of 6.3 mm, normals inwards");
+    for (int64_t i = 0; i < p.n; i++) top = fmax(top, p.x[i].z);
+    ok(top > 13.9e-3 && top < 14.5e-3, "500 balls: fourteen layers of 36, as on other codes");
+    packing_free(&p);
+}
+
+static void test_seed(void)
+{
+    struct packing a, b, c;
+    struct why why;
+    build_paper(&a, 3, 500, 0, &why), build_paper(&b, 3, 500, 1, &why);
+    build_paper(&c, 3, 500, 2, &why);
+    ok(same_packing(&a, &b), "same seed, same packing");
+    ok(!same_bodies(&a, &c), "another seed, another packing");
+    packing_free(&a), packing_free(&b), packing_free(&c);
+}
+
+static void test_paper_files(void)
+{
+    static const struct {
+        const char *path;
+        int dim;
+        int64_t n;
+    } row[] = { { "scenes/paper/example2.json", 3, 4 },
+                { "scenes/paper/example3.json", 3, 500 },
+                { "scenes/paper/example2-2d.json", 2, 4 },
+                { "scenes/paper/example3-2d.json", 2, 500 } };
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        struct packing a, b;
+        struct why why;
+        build_paper(&a, row[i].dim, row[i].n, 0, &why);
+        bool made = !build_file(&b, row[i].path, &why);
+        ok(made && same_packing(&a, &b), "%s is the paper's %d", row[i].path, (int)row[i].n);
+        packing_free(&a);
+        if (made) packing_free(&b);
+    }
+}
+
+static void test_scene_files(void)
+{
+    static const char *const path[] = {
+        "paper/example1", "paper/example1-2d", "column", "piston", "impact", "slope", "gas"
+    };
+    for (size_t i = 0; i < sizeof path / sizeof *path; i++) {
+        char full[100];
+        struct packing p;
+        struct why why;
+        snprintf(full, sizeof full, "scenes/%s.json", path[i]);
+        if (!ok(!build_file(&p, full, &why), "%s is made %s", full, why.text)) continue;
+        ok(!(fmin(least_gap(&p), least_wall_gap(&p)) < -1e-6 * p.radius[0]),
+           "%s: no overlap at the start", full);
+        packing_free(&p);
+    }
+}
+
+static void test_example1(void)
+{
+    struct packing p;
+    struct why why;
+    if (build_file(&p, "scenes/paper/example1.json", &why)) return;
+    ok(p.n == 1 && p.radius[0] == 5e-3 && p.v[0].x == 1.5 && p.mu[1] == 0.7 && p.dt == 1e-4,
+       "example 1 has the paper's numbers");
+    ok(least_wall_gap(&p) == 0, "example 1 touches the floor, gap 0");
+    packing_free(&p);
+}
+
+/* ---- sizes ---- */
+
+static void test_bells(void)
+{
+    struct packing p;
+    struct why why;
+    double min, max;
+    const char *box = "\"box\": {\"x\": [0, 0.1], \"y\": [0, 0.1], \"z\": [0, null]}";
+    char text[500];
+    snprintf(text, sizeof text,
+             "{\"dt\": 1e-4, \"bodies\": [{\"count\": 20000, %s, \"radius\": {\"gaussian\":"
+             "{\"mean\": 4e-4, \"sd\": 1e-4, \"min\": 3e-4, \"max\": 6e-4}}}]}",
+             box);
+    if (ok(!build(&p, text, NULL, &why), "gaussian radii %s", why.text)) {
+        gsl_stats_minmax(&min, &max, p.radius, 1, (size_t)p.n);
+        ok(min >= 3e-4 && max <= 6e-4, "gaussian radii keep to their cut-offs");
+        double z = gsl_cdf_ugaussian_P(2) - gsl_cdf_ugaussian_P(-1);
+        double mean = 4e-4 + 1e-4 * (exp(-0.5) - exp(-2)) / sqrt(2 * M_PI) / z;
+        ok(fabs(gsl_stats_mean(p.radius, 1, (size_t)p.n) / mean - 1) < 0.005,
+           "gaussian radii have the mean of the truncated law");
+        packing_free(&p);
+    }
+    snprintf(text, sizeof text,
+             "{\"dt\": 1, \"bodies\": [{\"count\": 1, %s, \"radius\": {\"lognormal\":"
+             "{\"median\": 3e-4, \"sigma\": 0, \"min\": 3e-4, \"max\": 3e-4}}}]}",
+             box);
+    if (ok(!build(&p, text, NULL, &why), "a lognormal law without width ends %s", why.text)) {
+        ok(p.radius[0] == 3e-4, "and gives its median");
+        packing_free(&p);
+    }
+    snprintf(text, sizeof text,
+             "{\"dt\": 1e-4, \"bodies\": [{\"count\": 20001, %s, \"radius\": {\"lognormal\":"
+             "{\"median\": 4e-4, \"sigma\": 0.3, \"min\": 2e-4, \"max\": 8e-4}}}]}",
+             box);
+    if (ok(!build(&p, text, NULL, &why), "lognormal radii %s", why.text)) {
+        gsl_stats_minmax(&min, &max, p.radius, 1, (size_t)p.n);
+        ok(min >= 2e-4 && max <= 8e-4, "lognormal radii keep to their cut-offs");
+        gsl_sort(p.radius, 1, (size_t)p.n);
+        ok(fabs(p.radius[10000] / 4e-4 - 1) < 0.01, "lognormal radii have their median");
+        packing_free(&p);
+    }
+}
+
+static void test_thermal(void)
+{
+    struct packing p;
+    struct why why;
+    double sum = 0, square = 0;
+    if (!ok(!build(
+                &p,
+                "{\"dt\": 1e-4, \"bodies\": [{\"count\": 10000, \"radius\": 1e-3, \"thermal\": 0.5,"
+                "\"v\": [0, 2, 0], \"box\": {\"x\": [0, 1], \"y\": [0, 1], \"z\": [0, 1]}}]}",
+                NULL, &why),
+            "thermal velocities %s", why.text))
+        return;
+    for (int64_t i = 0; i < p.n; i++) sum += p.v[i].y, square += p.v[i].x * p.v[i].x;
+    ok(fabs(sum / 1e4 - 2) < 0.02 && fabs(sqrt(square / 1e4) / 0.5 - 1) < 0.03,
+       "thermal velocities have their mean and deviation");
+    packing_free(&p);
+}
+
+/* ---- material ---- */
+
+static void test_material(void)
+{
+    struct packing p;
+    struct why why;
+    if (!ok(!build(&p,
+                   "{\"dt\": 1e-4, \"mu\": 0.3, \"e_n\": 0.2, \"kinds\": {\"steel\": {\"density\":"
+                   "7800}}, \"pairs\": [{\"pair\": [\"steel\", \"wall\"], \"mu\": 0.1}],"
+                   "\"bodies\": [{\"x\": [0, 0, 0], \"radius\": 1, \"kind\": \"steel\"},"
+                   "{\"x\": [3, 0, 0], \"radius\": 1, \"mass\": 5, \"w\": [1, 2, 3]},"
+                   "{\"x\": [6, 0, 0], \"radius\": 1, \"fixed\": true, \"v\": [0, 1, 0]}],"
+                   "\"walls\": [{\"point\": [0, 0, -2], \"normal\": [0, 3, 4],"
+                   "\"velocity\": [1, 0, 0]}]}",
+                   NULL, &why),
+            "materials %s", why.text))
+        return;
+    int32_t k = p.kinds;
+    ok(k == 3 && !strcmp(p.kind_name[0], "ball") && !strcmp(p.kind_name[2], "steel"),
+       "kinds: ball, wall, then one's own");
+    ok(p.mu[2 * k + 1] == 0.1 && p.mu[1 * k + 2] == 0.1 && p.mu[2 * k] == 0.3,
+       "a pair's mu stands in both places and nowhere else");
+    ok(p.en[2 * k + 1] == 0.2, "what a pair leaves out is the scene's");
+    ok(fabs(p.mass[0] / (7800 * 4 * M_PI / 3) - 1) < 1e-14, "a kind's density");
+    ok(p.mass[1] == 5 && p.inertia[1] == 2 && p.w[1].z == 3, "a mass of one's own, and a spin");
+    ok(p.mass[2] == 0 && p.inertia[2] == 0 && p.v[2].y == 1, "fixed: no mass, its velocity kept");
+    ok(fabs(p.wall[0].n.y - 0.6) < 1e-15 && fabs(p.wall[0].n.z - 0.8) < 1e-15 && p.wall[0].v.x == 1,
+       "a wall's normal is made a unit vector");
+    packing_free(&p);
+}
+
+/* ---- tables ---- */
+
+static void put(const char *name, const char *text)
+{
+    char path[200];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *f = fopen(path, "w");
+    fputs(text, f);
+    fclose(f);
+}
+
+static void test_table(void)
+{
+    struct packing p;
+    struct why why;
+    put("good", "# x y z r\n\n 0 0 0 1 # the first\r\n3\t0 0 1.5\n");
+    if (ok(!build(&p, "{\"dt\": 1, \"bodies\": [{\"file\": \"good\", \"v\": [0, 0, 1]}]}", folder,
+                  &why),
+           "a table %s", why.text)) {
+        ok(p.n == 2 && p.x[1].x == 3 && p.radius[1] == 1.5 && p.v[1].z == 1,
+           "a table's comments, blanks and rows");
+        packing_free(&p);
+    }
+    put("flat", "0 0 1\n5 1 2");
+    if (ok(!build(&p, "{\"dt\": 1, \"dim\": 2, \"bodies\": [{\"file\": \"flat\"}]}", folder, &why),
+           "a table in the plane %s", why.text)) {
+        ok(p.n == 2 && p.x[1].y == 1 && p.x[1].z == 0 && p.radius[1] == 2, "x y r in the plane");
+        packing_free(&p);
+    }
+    const char *others =
+        "{\"dt\": 5e-5, \"mu\": 0.3, \"bodies\": [{\"file\": \"example3-balls.txt\"}],"
+        "\"walls\": [{\"box\": {\"x\": [-3.15e-3, 3.15e-3],"
+        "\"y\": [-3.15e-3, 3.15e-3], \"z\": [0, null]}}]}";
+    if (access("../shared/problems/example3-balls.txt", R_OK)) {
+        diag("../shared/problems is not there: the packing of other codes was not read");
+        return;
+    }
+    if (!ok(!build(&p, others, "../shared/problems", &why), "other codes' packing %s", why.text))
+        return;
+    ok(p.n == 500 && least_gap(&p) > 0 && least_wall_gap(&p) > 0, "its 500 balls lie in the box");
+    packing_free(&p);
+}
+
+static void test_bad_tables(void)
+{
+    static const struct {
+        const char *text, *trouble;
+        int status;
+    } row[] = { { "0 0 0 1\n0 0 1\n", ":2: wants x y z r", EX_DATAERR },
+                { "0 0 0 1 2\n", ":1: wants x y z r", EX_DATAERR },
+                { "# one\n0 0 0 1x\n", ":2: wants x y z r", EX_DATAERR },
+                { "0 nan 0 1\n", ":1: not finite", EX_DATAERR },
+                { "0 0 0 -1\n", ":1: the radius must be positive", EX_DATAERR },
+                { "0 0 0 1e-200\n", "body 0: a radius of 1e-200 m gives no mass", EX_DATAERR },
+                { "0 0 0 1e200\n", "body 0: mass must not be negative", EX_DATAERR },
+                { NULL, ": No such file or directory", EX_NOINPUT } };
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        char wanted[300];
+        struct packing p;
+        struct why why;
+        if (row[i].text) put("bad", row[i].text);
+        bool named = row[i].trouble[0] == ':';
+        snprintf(wanted, sizeof wanted, "%s%s%s%s", named ? folder : "", named ? "/" : "",
+                 !named        ? ""
+                 : row[i].text ? "bad"
+                               : "none",
+                 row[i].trouble);
+        build(&p,
+              row[i].text ? "{\"dt\": 1, \"bodies\": [{\"file\": \"bad\"}]}"
+                          : "{\"dt\": 1, \"bodies\": [{\"file\": \"none\"}]}",
+              folder, &why);
+        if (!ok(why.status == row[i].status && !strcmp(why.text, wanted), "a bad table: %s",
+                row[i].trouble))
+            diag("%d %s", why.status, why.text);
+    }
+    struct packing p;
+    struct why why;
+    ok(build(&p, "{\"dt\": 1, \"bodies\": [{\"file\": \".\"}]}", folder, &why) == EX_NOINPUT,
+       "a folder is no table: %s", strrchr(why.text, ':'));
+}
+
+/* ---- bad scenes ---- */
+
+#define BODY(s)  "{\"dt\": 1,\n \"bodies\": [" s "]}"
+#define BOX      "\"box\": {\"x\": [0, 1], \"y\": [0, 1], \"z\": [0, null]}"
+#define COUNT(s) BODY("{\"count\": 9, " BOX ", \"radius\": " s "}")
+
+static void test_bad_scenes(void)
+{
+    static const struct {
+        const char *text, *trouble;
+    } row[] = {
+        { "", "1:0: '[' or '{' expected near end of file" },
+        { "{\"dt\": 1,\n \"dt\": 2}", "2:5: duplicate object key near '\"dt\"'" },
+        { "{\"dt\": 1,\n  oops}", "2:6: string or '}' expected near 'oops'" },
+        { "[1]", "1:1: wants an object {...}" },
+        { "{}", "1:1: dt: is missing" },
+        { "{\"dt\": 0}", "1:2: dt: must be positive" },
+        { "{\n \"dt\": \"1\"}", "2:2: dt: wants a number" },
+        { "{\"dt\": 1, \"mu\": -0.1}", "1:11: mu: must not be negative" },
+        { "{\"dt\": 1, \"e_n\": 1.5}", "1:11: e_n: must lie in [0, 1]" },
+        { "{\"dt\": 1, \"dim\": 4}", "1:11: dim: must lie in [2, 3]" },
+        { "{\"dt\": 1, \"seed\": 0.5}", "1:11: seed: wants an integer" },
+        { "{\"dt\": 1, \"title\": 5}", "1:11: title: wants a string" },
+        { "{\"dt\": 1, \"overlap\": 1}", "1:11: overlap: wants true or false" },
+        { "{\"dt\": 1, \"gravity\": [0, 1]}", "1:11: gravity: wants [x, y, z]" },
+        { "{\"dt\": 1, \"gravity\": [0, 1, null]}", "1:29: gravity[2]: wants a number" },
+        { "{\"dt\": 1, \"dim\": 2, \"gravity\": [0, 1, 2]}",
+          "1:21: gravity: wants [x, y], for dim is 2" },
+        { "{\"comment\": \"\\\"\xc3\xa9{[\", \"dt\": -1}", "1:22: dt: must be positive" },
+        { BODY("{\"x\": [0, 0, 0], \"radius\": 1},\n  {\"x\": [3, 0, 0],\n   \"radius\": -1}"),
+          "4:4: bodies[1].radius: must be positive" },
+        { BODY("{\"x\": [0, 0, 0]}"), "2:13: bodies[0].radius: is missing" },
+        { BODY("{\"x\": [0, 0, 0], \"count\": 3}"),
+          "2:13: bodies[0]: wants one of the keys x count file" },
+        { BODY("7"), "2:13: bodies[0]: wants an object with one of the keys x count file" },
+        { BODY("{\"x\": [0, 0, 0], \"raduis\": 1}"),
+          "2:30: bodies[0].raduis: unknown key; known here: x radius v w kind density mass fixed" },
+        { BODY("{\"x\": [0, 0, 0], \"radius\": 1, \"mass\": 1, \"density\": 1}"),
+          "2:43: bodies[0].mass: density is given too" },
+        { BODY("{\"x\": [0, 0, 0], \"radius\": 1, \"kind\": \"glass\"}"),
+          "2:43: bodies[0].kind: no kind \"glass\"; name it under \"kinds\"" },
+        { BODY("{\"count\": 3, \"radius\": 1}"), "2:13: bodies[0].box: is missing" },
+        { BODY("{\"count\": 3, \"radius\": 1, \"box\": {\"x\": [0, 1], \"z\": [0, 1]}}"),
+          "2:39: bodies[0].box: a lattice may be open above only, y is not closed" },
+        { BODY("{\"count\": 9, " BOX ", \"radius\": 1}"),
+          "2:26: bodies[0].box: x is narrower than a cell, 2.1 m" },
+        { BODY("{\"count\": 9, \"radius\": 0.2, \"box\": {\"x\": [0, 1], \"y\": [0, 1], \"z\": [0, "
+               "1]}}"),
+          "2:14: bodies[0].count: 9 bodies, but the box has cells for 8" },
+        { BODY("{\"count\": 1e10, " BOX ", \"radius\": 1}"),
+          "2:14: bodies[0].count: must lie in [0, 2147483647]" },
+        { BODY("{\"count\": 9, \"radius\": 1, \"box\": {\"x\": [1, 0]}}"),
+          "2:47: bodies[0].box.x: its end must lie above its beginning" },
+        { COUNT("{\"uniform\": [2, 1]}"), "2:88: bodies[0].radius.uniform: max is less than min" },
+        { COUNT("{\"uniform\": [0, 1]}"), "2:100: bodies[0].radius.uniform[0]: must be positive" },
+        { COUNT("{\"gaussian\": {\"mean\": 1, \"sd\": 0.1, \"min\": 2, \"max\": 3}}"),
+          "2:88: bodies[0].radius.gaussian: [min, max] keeps less than a thousandth of it" },
+        { COUNT("{\"lognormal\": {\"median\": 1, \"sigma\": 0, \"min\": 2, \"max\": 3}}"),
+          "2:88: bodies[0].radius.lognormal: [min, max] keeps less than a thousandth of it" },
+        { COUNT("{\"poisson\": 3}"),
+          "2:77: bodies[0].radius: wants one of the keys uniform gaussian lognormal" },
+        { "{\"dt\": 1, \"walls\": [{\"point\": [0, 0, 0], \"normal\": [0, 0, 0]}]}",
+          "1:42: walls[0].normal: must not be zero" },
+        { "{\"dt\": 1, \"pairs\": [{\"pair\": [\"ball\", \"wall\"]}, {\"pair\": [\"wall\", "
+          "\"ball\"]}]}",
+          "1:50: pairs[1].pair: this pair was given before" },
+        { "{\"dt\": 1, \"pairs\": [{\"pair\": [\"ball\", \"wal\"]}]}",
+          "1:39: pairs[0].pair[1]: no kind \"wal\"; name it under \"kinds\"" },
+        { "{\"dt\": 1, \"a\\nb\": 1}", NULL }, // one line, whatever the key
+        { "{\"dt\": 1e400}", NULL },
+        { "{\"dt\": NaN}", NULL },
+    };
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        struct packing p;
+        struct why why;
+        bool refused = build(&p, row[i].text, NULL, &why) == EX_DATAERR;
+        bool told = row[i].trouble ? !strcmp(why.text, row[i].trouble)
+                                   : *why.text && !strchr(why.text, '\n');
+        if (!ok(refused && told, "refused: %s", row[i].trouble ? row[i].trouble : why.text))
+            diag("%d %s", why.status, why.text);
+        if (!why.status) packing_free(&p);
+    }
+}
+
+/* Cut at every length and with every byte changed: good or EX_DATAERR, never a crash. */
+static void test_damage(void)
+{
+    size_t length;
+    char *text = slurp("scenes/impact.json", &length);
+    int cut = 0, odd = 0;
+    if (!text) return;
+    for (size_t i = 0; i < 2 * length; i++) {
+        struct scene s;
+        struct why why = { 0 };
+        char *damaged = malloc(length); // exactly, so that reading past the end is seen
+        memcpy(damaged, text, length);
+        if (i >= length) damaged[i - length] ^= (char)(1 << i % 8);
+        size_t n = i < length ? i : length;
+        char *copy = malloc(n ? n : 1);
+        memcpy(copy, damaged, n);
+        int status = scene_parse(&s, copy, n, &why);
+        cut += i < length && status == EX_DATAERR;
+        odd += status != 0 && status != EX_DATAERR;
+        if (!status) scene_free(&s);
+        free(copy), free(damaged);
+    }
+    ok(cut >= (int)length - 1, "a scene cut at any length is refused");
+    ok(odd == 0, "a scene with any byte changed is refused or read");
+    free(text);
+}
+
+static void test_million(void)
+{
+    struct packing p;
+    struct why why;
+    if (!ok(!build_paper(&p, 3, 1000000, 0, &why), "a million balls %s", why.text)) return;
+    ok(p.n == 1000000 && least_wall_gap(&p) >= 0, "a million balls, all inside");
+    packing_free(&p);
+}
+
+int main(void)
+{
+    if (!mkdtemp(folder)) return 1;
+    for (int dim = 2; dim <= 3; dim++) {
+        test_family(dim, 0, 0, 0), test_family(dim, 1, 2.5e-4, 5e-4);
+        test_family(dim, 4, 4e-4, 5e-4), test_family(dim, 500, 2.5e-4, 5e-4);
+        test_family(dim, 1999, 2.5e-4, 5e-4);
+    }
+    test_numbers(), test_seed();
+    test_paper_files(), test_scene_files(), test_example1();
+    test_bells(), test_thermal(), test_material();
+    test_table(), test_bad_tables(), test_bad_scenes(), test_damage();
+    test_million();
+    static const char *const name[] = { "good", "flat", "bad" };
+    for (int i = 0; i < 3; i++) {
+        char path[200];
+        snprintf(path, sizeof path, "%s/%s", folder, name[i]);
+        unlink(path);
+    }
+    rmdir(folder);
+    return tap_done();
+}
