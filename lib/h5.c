@@ -1,0 +1,327 @@
+/* h5.c: see h5.h. */
+#include "h5.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void h5_start(void)
+{
+    H5dont_atexit();
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+}
+
+/* H5Oexists_by_name stumbles where a link before the last is missing, so they are asked in turn. */
+bool h5_has(hid_t place, const char *path)
+{
+    char *part = strdup(path);
+    bool has = part != NULL;
+    for (char *c = part; has && *c; c++) {
+        if (*c != '/' || c == part) continue;
+        *c = 0;
+        has = H5Lexists(place, part, H5P_DEFAULT) > 0;
+        *c = '/';
+    }
+    free(part);
+    if (!has || strcmp(path, "/") == 0 || strcmp(path, ".") == 0) return has;
+    return H5Lexists(place, path, H5P_DEFAULT) > 0 &&
+           H5Oexists_by_name(place, path, H5P_DEFAULT) > 0;
+}
+
+int h5_shape(hid_t place, const char *path, hsize_t shape[4])
+{
+    hid_t set = h5_has(place, path) ? H5Dopen2(place, path, H5P_DEFAULT) : -1;
+    if (set < 0) return -1;
+    hid_t space = H5Dget_space(set);
+    int rank = H5Sget_simple_extent_ndims(space);
+    if (rank > 4 || H5Sget_simple_extent_dims(space, shape, NULL) != rank) rank = -1;
+    H5Sclose(space);
+    H5Dclose(set);
+    return rank;
+}
+
+/* Can values of this type on disk become `want` and stay what they are? Integers may become reals.
+   A damaged size of a type would have libhdf5 clear gigabytes to convert it. */
+static bool suits(hid_t disk, hid_t want)
+{
+    H5T_class_t class = H5Tget_class(disk);
+    if (H5Tget_size(disk) > 16) return false;
+    return class == H5T_INTEGER || (class == H5T_FLOAT && H5Tget_class(want) == H5T_FLOAT);
+}
+
+static const char *wanted(hid_t type)
+{
+    return H5Tget_class(type) == H5T_FLOAT ? "numbers" : "integers";
+}
+
+/*
+ * Can the file hold what the dataset's shape promises? gzip makes 1032 of 1 at best; what was never
+ * written takes no room, and a MiB of that is granted. Keeps a lying length from being allocated.
+ */
+static bool plausible(hid_t set, hsize_t count, size_t size)
+{
+    hsize_t length = 0, stored = H5Dget_storage_size(set);
+    hid_t file = H5Iget_file_id(set);
+    if (H5Fget_filesize(file, &length) >= 0 && stored > length) stored = length;
+    H5Fclose(file);
+    return count / 1100 <= (stored + 1024) / size;
+}
+
+/* The dataset, when it holds numbers that suit `type`; else -1. */
+static hid_t open_numbers(hid_t place, const char *path, hid_t type, hsize_t *count,
+                          struct why *why)
+{
+    hid_t set = h5_has(place, path) ? H5Dopen2(place, path, H5P_DEFAULT) : -1;
+    if (set < 0) return why_set(why, EX_DATAERR, "%s: no such dataset", path), -1;
+    hid_t disk = H5Dget_type(set), space = H5Dget_space(set);
+    hssize_t points = H5Sget_simple_extent_npoints(space);
+    bool good = suits(disk, type);
+    H5Sclose(space);
+    H5Tclose(disk);
+    *count = points < 0 ? 0 : (hsize_t)points;
+    if (good && points >= 0 && plausible(set, *count, H5Tget_size(type))) return set;
+    if (!good)
+        why_set(why, EX_DATAERR, "%s: %s are wanted, and it holds something else", path,
+                wanted(type));
+    else
+        why_set(why, EX_DATAERR,
+                "%s: %lld values are said to be there, more than the file can hold", path,
+                (long long)points);
+    H5Dclose(set);
+    return -1;
+}
+
+static int read_numbers(hid_t set, const char *path, hid_t type, hsize_t count, void *out,
+                        struct why *why)
+{
+    herr_t e = count ? H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out) : 0;
+    return e < 0 ? why_set(why, EX_DATAERR, "%s: cannot be read (damaged?)", path) : 0;
+}
+
+int h5_read(hid_t place, const char *path, hid_t type, hsize_t count, void *out, struct why *why)
+{
+    hsize_t found;
+    hid_t set = open_numbers(place, path, type, &found, why);
+    if (set < 0) return why->status;
+    int e = found == count ? read_numbers(set, path, type, count, out, why)
+                           : why_set(why, EX_DATAERR, "%s: %llu values, %llu are wanted", path,
+                                     (unsigned long long)found, (unsigned long long)count);
+    H5Dclose(set);
+    return e;
+}
+
+void *h5_read_all(hid_t place, const char *path, hid_t type, hsize_t *count, struct why *why)
+{
+    hid_t set = open_numbers(place, path, type, count, why);
+    if (set < 0) return NULL;
+    void *out = calloc(*count + 1, H5Tget_size(type));
+    if (!out) {
+        why_set(why, EX_SOFTWARE, "%s: out of memory for %llu values", path,
+                (unsigned long long)*count);
+    } else if (read_numbers(set, path, type, *count, out, why)) {
+        free(out);
+        out = NULL;
+    }
+    H5Dclose(set);
+    return out;
+}
+
+/* A fresh C string out of a scalar string, of fixed or variable length; either set or attr is one. */
+static char *text_of(hid_t set, hid_t attr)
+{
+    hid_t disk = set >= 0 ? H5Dget_type(set) : H5Aget_type(attr);
+    hid_t space = set >= 0 ? H5Dget_space(set) : H5Aget_space(attr);
+    char *out = NULL, *text = NULL;
+    bool single = H5Tget_class(disk) == H5T_STRING && H5Sget_simple_extent_npoints(space) == 1;
+    if (single && H5Tis_variable_str(disk) > 0) {
+        hid_t type = H5Tcopy(H5T_C_S1);
+        H5Tset_size(type, H5T_VARIABLE);
+        H5Tset_cset(type, H5Tget_cset(disk));
+        herr_t e = set >= 0 ? H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &text)
+                            : H5Aread(attr, type, &text);
+        if (e >= 0) out = strdup(text ? text : "");
+        H5free_memory(text);
+        H5Tclose(type);
+    } else if (single && (set < 0 ? H5Tget_size(disk) <= 1 << 20 // attributes are small
+                                  : plausible(set, 1, H5Tget_size(disk)))) {
+        out = calloc(H5Tget_size(disk) + 1, 1);
+        herr_t e = !out       ? 0
+                   : set >= 0 ? H5Dread(set, disk, H5S_ALL, H5S_ALL, H5P_DEFAULT, out)
+                              : H5Aread(attr, disk, out);
+        if (e < 0) free(out), out = NULL;
+    }
+    H5Sclose(space);
+    H5Tclose(disk);
+    return out;
+}
+
+char *h5_read_text(hid_t place, const char *path)
+{
+    const char *at = strrchr(path, '@');
+    if (!at) {
+        hid_t set = h5_has(place, path) ? H5Dopen2(place, path, H5P_DEFAULT) : -1;
+        char *text = set < 0 ? NULL : text_of(set, -1);
+        if (set >= 0) H5Dclose(set);
+        return text;
+    }
+    char *object = at == path ? strdup(".") : strndup(path, (size_t)(at - path));
+    hid_t attr = object && h5_has(place, object)
+                     ? H5Aopen_by_name(place, object, at + 1, H5P_DEFAULT, H5P_DEFAULT)
+                     : -1;
+    char *text = attr < 0 ? NULL : text_of(-1, attr);
+    if (attr >= 0) H5Aclose(attr);
+    free(object);
+    return text;
+}
+
+hid_t h5_dataset_plist(void)
+{
+    hid_t plist = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_obj_track_times(plist, false);
+    return plist;
+}
+
+static int make_group(hid_t place, const char *path)
+{
+    if (h5_has(place, path)) {
+        H5O_info_t info;
+        herr_t e = H5Oget_info_by_name2(place, path, &info, H5O_INFO_BASIC, H5P_DEFAULT);
+        return e >= 0 && info.type == H5O_TYPE_GROUP ? 0 : -1;
+    }
+    hid_t plist = H5Pcreate(H5P_GROUP_CREATE);
+    H5Pset_obj_track_times(plist, false);
+    hid_t group = H5Gcreate2(place, path, H5P_DEFAULT, plist, H5P_DEFAULT);
+    H5Pclose(plist);
+    return group < 0 ? -1 : H5Gclose(group);
+}
+
+int h5_group(hid_t place, const char *path, struct why *why)
+{
+    char *part = strdup(path);
+    int e = part ? 0 : -1;
+    for (char *c = part; !e && *c; c++) {
+        if (*c != '/' || c == part) continue;
+        *c = 0;
+        e = make_group(place, part);
+        *c = '/';
+    }
+    free(part);
+    if (!e) e = make_group(place, path);
+    return e ? why_set(why, EX_IOERR, "%s: cannot make the group", path) : 0;
+}
+
+/* The groups above a new dataset */
+static int make_parents(hid_t place, const char *path, struct why *why)
+{
+    const char *slash = strrchr(path, '/');
+    if (!slash || slash == path) return 0;
+    char *parent = strndup(path, (size_t)(slash - path));
+    int e = parent ? h5_group(place, parent, why) : why_set(why, EX_SOFTWARE, "out of memory");
+    free(parent);
+    return e;
+}
+
+static int write_data(hid_t place, const char *path, hid_t memory, hid_t disk, hid_t space,
+                      const void *data, struct why *why)
+{
+    int e = make_parents(place, path, why);
+    if (e) return e;
+    hid_t plist = h5_dataset_plist();
+    hid_t set = H5Dcreate2(place, path, disk, space, H5P_DEFAULT, plist, H5P_DEFAULT);
+    H5Pclose(plist);
+    bool bad = set < 0;
+    if (!bad && H5Sget_simple_extent_npoints(space) > 0)
+        bad = H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0;
+    if (set >= 0) bad |= H5Dclose(set) < 0;
+    return bad ? why_set(why, EX_IOERR, "%s: cannot be written", path) : 0;
+}
+
+/* A memory type as it lies on disk */
+static hid_t little_endian(hid_t type)
+{
+    hid_t disk = H5Tcopy(type);
+    H5Tset_order(disk, H5T_ORDER_LE);
+    return disk;
+}
+
+/* A C string of this very length, its zero included, as libfclib stores and expects it */
+static hid_t text_type(const char *text)
+{
+    hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, strlen(text) + 1);
+    H5Tset_cset(type, H5T_CSET_UTF8);
+    return type;
+}
+
+int h5_write(hid_t place, const char *path, hid_t type, int rank, const hsize_t *shape,
+             const void *data, const char *units, struct why *why)
+{
+    hid_t disk = little_endian(type);
+    hid_t space = rank ? H5Screate_simple(rank, shape, NULL) : H5Screate(H5S_SCALAR);
+    int e = write_data(place, path, type, disk, space, data, why);
+    H5Sclose(space);
+    H5Tclose(disk);
+    return e || !units ? e : h5_attr_text(place, path, "units", units, why);
+}
+
+int h5_write_text(hid_t place, const char *path, const char *text, struct why *why)
+{
+    hid_t type = text_type(text), space = H5Screate(H5S_SCALAR);
+    int e = write_data(place, path, type, type, space, text, why);
+    H5Sclose(space);
+    H5Tclose(type);
+    return e;
+}
+
+static int write_attr(hid_t place, const char *path, const char *name, hid_t memory, hid_t disk,
+                      int count, const void *data, struct why *why)
+{
+    hsize_t shape = count < 0 ? 1 : (hsize_t)count;
+    hid_t space = count < 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &shape, NULL);
+    if (H5Aexists_by_name(place, path, name, H5P_DEFAULT) > 0)
+        H5Adelete_by_name(place, path, name, H5P_DEFAULT);
+    hid_t attr =
+        H5Acreate_by_name(place, path, name, disk, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    bool bad = attr < 0 || (count != 0 && H5Awrite(attr, memory, data) < 0);
+    if (attr >= 0) bad |= H5Aclose(attr) < 0;
+    H5Sclose(space);
+    return bad ? why_set(why, EX_IOERR, "%s@%s: cannot be written", path, name) : 0;
+}
+
+int h5_attr(hid_t place, const char *path, const char *name, hid_t type, int count,
+            const void *data, struct why *why)
+{
+    hid_t disk = little_endian(type);
+    int e = write_attr(place, path, name, type, disk, count, data, why);
+    H5Tclose(disk);
+    return e;
+}
+
+int h5_attr_text(hid_t place, const char *path, const char *name, const char *text, struct why *why)
+{
+    hid_t type = text_type(text);
+    int e = write_attr(place, path, name, type, type, -1, text, why);
+    H5Tclose(type);
+    return e;
+}
+
+int h5_attr_read(hid_t place, const char *path, const char *name, hid_t type, int count, void *out,
+                 struct why *why)
+{
+    hid_t attr =
+        h5_has(place, path) ? H5Aopen_by_name(place, path, name, H5P_DEFAULT, H5P_DEFAULT) : -1;
+    if (attr < 0) return why_set(why, EX_DATAERR, "%s@%s: no such attribute", path, name);
+    hid_t disk = H5Aget_type(attr), space = H5Aget_space(attr);
+    hssize_t points = H5Sget_simple_extent_npoints(space), want = count < 0 ? 1 : count;
+    int e = 0;
+    if (!suits(disk, type))
+        e = why_set(why, EX_DATAERR, "%s@%s: %s are wanted", path, name, wanted(type));
+    else if (points != want)
+        e = why_set(why, EX_DATAERR, "%s@%s: %lld values, %lld are wanted", path, name,
+                    (long long)points, (long long)want);
+    else if (want && H5Aread(attr, type, out) < 0)
+        e = why_set(why, EX_DATAERR, "%s@%s: cannot be read", path, name);
+    H5Sclose(space);
+    H5Tclose(disk);
+    H5Aclose(attr);
+    return e;
+}
