@@ -1,0 +1,113 @@
+/*
+ * layout.h: where a document keeps what: one table a group, read by doc.c and written by sink.c.
+ * nsd-format(5) is the same in words.
+ */
+#ifndef NSD_LAYOUT_H
+#define NSD_LAYOUT_H
+
+#include "frame.h"
+
+#include <hdf5.h>
+#include <stddef.h>
+
+enum column_type { COLUMN_F64, COLUMN_I64, COLUMN_I32, COLUMN_I8 };
+
+static inline hid_t column_native(enum column_type t)
+{
+    return t == COLUMN_F64   ? H5T_NATIVE_DOUBLE
+           : t == COLUMN_I64 ? H5T_NATIVE_INT64
+           : t == COLUMN_I32 ? H5T_NATIVE_INT32
+                             : H5T_NATIVE_INT8;
+}
+
+static inline size_t column_size(enum column_type t)
+{
+    return t == COLUMN_I8 ? 1 : t == COLUMN_I32 ? 4 : 8;
+}
+
+struct column {
+    const char *name, *units;
+    enum column_type type;
+    int width;     /* numbers in a row; 9: a 3 x 3 matrix */
+    size_t offset; /* in its struct: of the numbers, or of the pointer to them */
+    bool solved;   /* of contacts: only when they are solved */
+};
+
+/* /particles/all/NAME/value [F][N][width]: pointers in struct packing */
+static const struct column layout_motion[] = {
+    { "position", "m", COLUMN_F64, 3, offsetof(struct packing, x), false },
+    { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct packing, v), false },
+    { "angular_velocity", "rad s-1", COLUMN_F64, 3, offsetof(struct packing, w), false },
+    { "orientation", "1", COLUMN_F64, 4, offsetof(struct packing, q), false },
+    { 0 },
+};
+
+/* /particles/all/NAME [N]: pointers in struct packing */
+static const struct column layout_bodies[] = {
+    { "radius", "m", COLUMN_F64, 1, offsetof(struct packing, radius), false },
+    { "mass", "kg", COLUMN_F64, 1, offsetof(struct packing, mass), false },
+    { "inertia", "kg m2", COLUMN_F64, 1, offsetof(struct packing, inertia), false },
+    { "id", "1", COLUMN_I32, 1, offsetof(struct packing, id), false },
+    { "species", "1", COLUMN_I32, 1, offsetof(struct packing, kind), false },
+    { 0 },
+};
+
+/* /walls/plane/NAME [walls][width]: members of struct wall */
+static const struct column layout_walls[] = {
+    { "point", "m", COLUMN_F64, 3, offsetof(struct wall, x), false },
+    { "normal", "1", COLUMN_F64, 3, offsetof(struct wall, n), false },
+    { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct wall, v), false },
+    { "species", "1", COLUMN_I32, 1, offsetof(struct wall, kind), false },
+    { 0 },
+};
+
+/* /nsd/material/NAME [kinds][kinds]: pointers in struct packing */
+static const struct column layout_material[] = {
+    { "mu", "1", COLUMN_F64, 1, offsetof(struct packing, mu), false },
+    { "en", "1", COLUMN_F64, 1, offsetof(struct packing, en), false },
+    { "et", "1", COLUMN_F64, 1, offsetof(struct packing, et), false },
+    { 0 },
+};
+
+/* /contacts/NAME [S][width]: members of struct contact */
+static const struct column layout_contacts[] = {
+    { "body", "1", COLUMN_I32, 2, offsetof(struct contact, a), false },
+    { "point", "m", COLUMN_F64, 3, offsetof(struct contact, x), false },
+    { "frame", "1", COLUMN_F64, 9, offsetof(struct contact, n), false },
+    { "gap", "m", COLUMN_F64, 1, offsetof(struct contact, gap), false },
+    { "mu", "1", COLUMN_F64, 1, offsetof(struct contact, mu), false },
+    { "en", "1", COLUMN_F64, 1, offsetof(struct contact, en), false },
+    { "et", "1", COLUMN_F64, 1, offsetof(struct contact, et), false },
+    { "reaction", "N s", COLUMN_F64, 3, offsetof(struct contact, r), true },
+    { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct contact, u), true },
+    { "status", "1", COLUMN_I8, 1, offsetof(struct contact, status), true },
+    { 0 },
+};
+
+/* /observables/solver/NAME/value [F][width]: members of struct report. eps: eps_glob, motion, proj,
+   bipotential, penetration. */
+static const struct column layout_report[] = {
+    { "contacts", "1", COLUMN_I64, 1, offsetof(struct report, err.contacts), false },
+    { "sweeps", "1", COLUMN_I32, 1, offsetof(struct report, sweeps), false },
+    { "converged", "1", COLUMN_I8, 1, offsetof(struct report, converged), false },
+    { "eps", "1", COLUMN_F64, 5, offsetof(struct report, err.paper), false },
+    { "eps_scaled", "1", COLUMN_F64, 5, offsetof(struct report, err.scaled), false },
+    { "natural", "1", COLUMN_F64, 1, offsetof(struct report, err.natural), false },
+    { "natural_siconos", "1", COLUMN_F64, 1, offsetof(struct report, err.natural_siconos), false },
+    { "natural_q", "1", COLUMN_F64, 1, offsetof(struct report, err.natural_q), false },
+    { "max_penetration", "m s-1", COLUMN_F64, 1, offsetof(struct report, err.max_penetration),
+      false },
+    { "max_penetration_true", "m s-1", COLUMN_F64, 1,
+      offsetof(struct report, err.max_penetration_true), false },
+    { "max_overlap", "m", COLUMN_F64, 1, offsetof(struct report, err.max_overlap), false },
+    { "newton", "1", COLUMN_I64, 1, offsetof(struct report, newton), false },
+    { "safeguarded", "1", COLUMN_I64, 1, offsetof(struct report, safeguarded), false },
+    { "gave_up", "1", COLUMN_I64, 1, offsetof(struct report, gave_up), false },
+    { 0 },
+};
+
+/* Numbers of a column out of, or into, an array of structs. */
+void column_gather(const struct column *, int64_t n, const void *structs, size_t stride, void *out);
+void column_scatter(const struct column *, int64_t n, const void *in, void *structs, size_t stride);
+
+#endif
