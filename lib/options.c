@@ -1,0 +1,172 @@
+#include "options.h"
+
+#include "json.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define METHODS  "sbp|sal|ebp|eal|exact"         /* in the order of methods[] */
+#define CRITERIA "glob|scaled|natural"           /* of enum criterion */
+#define ORDERS   "natural|reverse|random|colour" /* of enum order */
+#define MOST     1e300
+
+struct options options = { .method = 4,
+                           .criterion = -1,
+                           .eps = 1e-10,
+                           .newton = 1,
+                           .newton_eps = 1e-13,
+                           .newton_max = 100,
+                           .relax = 1,
+                           .theta = -1,
+                           .max_sweeps = 5000,
+                           .threads = 1 };
+
+const struct cli_option options_solve[] = {
+    { CLI_CHOICE, 'm', "method", &options.method, METHODS, "the local method [exact]", 0, 0, 0 },
+    { CLI_REAL, 0, "eps", &options.eps, "EPS", "stop when the criterion is at most this [1e-10]", 0,
+      MOST, 0 },
+    { CLI_CHOICE, 0, "criterion", &options.criterion, CRITERIA,
+      "what is compared with EPS [glob; natural for FCLIB]", 0, 0, 0 },
+    { CLI_INT, 0, "max-sweeps", &options.max_sweeps, "N", "give up after these [5000]", 0, 2e9, 0 },
+    { CLI_ABOVE, 0, "alpha", &options.alpha, "A",
+      "rho = A m_red [1.75 (sbp, sal) or 1 (ebp, eal) over lambda_max]", 0, MOST, 0 },
+    { CLI_CHOICE, 0, "newton", &options.newton, "plain|linesearch",
+      "steps of ebp and eal; plain is the paper's [linesearch]", 0, 0, 0 },
+    { CLI_ABOVE, 0, "newton-eps", &options.newton_eps, "EPS",
+      "their end, relative to |r| + rho |b| [1e-13]", 0, 1, 0 },
+    { CLI_ABOVE, 0, "newton-abs", &options.newton_abs, "EPS",
+      "their end as the paper has it, absolute, with r in N", 0, MOST, 0 },
+    { CLI_INT, 0, "newton-max", &options.newton_max, "N", "their number [100]", 1, 1e6, 0 },
+    { CLI_ABOVE, 0, "relax", &options.relax, "OMEGA", "over-relaxation, below 2 [1]", 0, 1.999999,
+      0 },
+    { CLI_CHOICE, 0, "order", &options.order, ORDERS,
+      "of the sweep; natural is the paper's [natural]", 0, 0, 0 },
+    { CLI_FLAG, 0, "every-sweep", &options.every_sweep, NULL,
+      "evaluate the criterion after every sweep", 0, 0, true },
+    { 0 },
+};
+
+const struct cli_option options_run[] = {
+    { CLI_INT, 'j', "threads", &options.threads, "N", "threads; they never change a result [1]", 1,
+      1024, true },
+    { CLI_TEXT, 0, "log", &options.log, "FILE", "one JSON line a solve, with its CPU seconds", 0, 0,
+      true },
+    { CLI_FLAG, 'e', "strict", &options.strict, NULL, "exit with 1 when a solve has not converged",
+      0, 0, true },
+    { 0 },
+};
+
+const struct cli_option options_detect[] = {
+    { CLI_REAL, 0, "gap", &options.gap, "G", "contacts have a predicted gap of at most G m [0]", 0,
+      MOST, 0 },
+    { CLI_REAL, 0, "theta", &options.theta, "T",
+      "predict q + (1 - T) dt qdot [the document's; 0.5]", 0, 1, 0 },
+    { 0 },
+};
+
+struct step_opt options_step(double dt, bool foreign)
+{
+    enum criterion usual = foreign ? CRITERION_NATURAL : CRITERION_GLOB;
+    const struct options *o = &options;
+    return (struct step_opt){
+        .gap = o->gap,
+        .alpha = o->alpha,
+        .order = (enum order)o->order,
+        .warm = o->warm,
+        .nlgs = { .method = methods[o->method],
+                  .local = { .plain = o->newton == 0,
+                             .newton_eps = o->newton_eps,
+                             .newton_abs = o->newton_abs * dt, // forces there, impulses here
+                             .newton_max = (int)o->newton_max },
+                  .criterion = o->criterion < 0 ? usual : (enum criterion)o->criterion,
+                  .eps = o->eps,
+                  .max_sweeps = (int32_t)o->max_sweeps,
+                  .relax = o->relax,
+                  .threads = (int)o->threads,
+                  .every_sweep = o->every_sweep,
+                  .history = o->history },
+    };
+}
+
+/* Word k of "a|b|c", in a buffer of its own. */
+static const char *word(const char *list, int k)
+{
+    static char buffer[40];
+    for (; k > 0; k--) list = strchr(list, '|') + 1;
+    snprintf(buffer, sizeof buffer, "%.*s", (int)strcspn(list, "|"), list);
+    return buffer;
+}
+
+char *options_json(const struct step_opt *o)
+{
+    const struct nlgs_opt *n = &o->nlgs;
+    json_t *j = json_object();
+    json_object_set_new(j, "method", json_string(n->method->name));
+    json_object_set_new(j, "eps", json_real(n->eps));
+    json_object_set_new(j, "criterion", json_string(word(CRITERIA, (int)n->criterion)));
+    json_object_set_new(j, "max_sweeps", json_integer(n->max_sweeps));
+    if (o->alpha > 0)
+        json_object_set_new(j, "alpha", json_real(o->alpha));
+    else
+        json_object_set_new(j, "rho_lambda_max", json_real(n->method->rho));
+    json_object_set_new(j, "newton", json_string(n->local.plain ? "plain" : "linesearch"));
+    if (n->local.newton_abs > 0)
+        json_object_set_new(j, "newton_abs", json_real(options.newton_abs));
+    else
+        json_object_set_new(j, "newton_eps", json_real(n->local.newton_eps));
+    json_object_set_new(j, "newton_max", json_integer(n->local.newton_max));
+    json_object_set_new(j, "relax", json_real(n->relax));
+    json_object_set_new(j, "order", json_string(word(ORDERS, (int)o->order)));
+    json_object_set_new(j, "warm", json_boolean(o->warm));
+    char *text = json_dumps(j, JSON_COMPACT);
+    json_decref(j);
+    return text;
+}
+
+void options_theta(struct packing *p, bool detected)
+{
+    if (options.theta < 0 || options.theta == p->theta) return;
+    if (detected)
+        die_usage("--theta: the contacts were detected with %g; give it to nsd-detect", p->theta);
+    p->theta = options.theta;
+}
+
+static FILE *log_file;
+
+void options_log_open(void)
+{
+    if (!options.log) return;
+    log_file = fopen(options.log, "w");
+    if (!log_file) die(EX_IOERR, "%s: %s", options.log, strerror(errno));
+}
+
+void options_log(const struct report *rep)
+{
+    if (!log_file) return;
+    json_t *j = json_report(rep);
+    json_object_set_new(j, "seconds", json_number(rep->seconds));
+    int failed =
+        json_dumpf(j, log_file, JSON_COMPACT) || fputc('\n', log_file) == EOF || fflush(log_file);
+    json_decref(j);
+    if (failed) die(EX_IOERR, "%s: %s", options.log, strerror(errno));
+}
+
+void options_log_close(void)
+{
+    if (log_file && fclose(log_file)) die(EX_IOERR, "%s: %s", options.log, strerror(errno));
+    log_file = NULL;
+}
+
+void options_summary(const char *where, const struct report *r)
+{
+    char trouble[120] = "";
+    if (r->safeguarded || r->gave_up)
+        snprintf(trouble, sizeof trouble, ", %lld local solves safeguarded, %lld given up",
+                 (long long)r->safeguarded, (long long)r->gave_up);
+    warn("%s: %lld contacts, %s: %d sweeps, %s %.3g%s, %.3g s%s", where, (long long)r->err.contacts,
+         r->method, r->sweeps,
+         r->criterion == CRITERION_GLOB ? "eps_glob" : word(CRITERIA, (int)r->criterion),
+         err_of(&r->err, r->criterion), trouble, r->seconds, r->converged ? "" : ": NOT CONVERGED");
+}
