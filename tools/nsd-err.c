@@ -1,0 +1,77 @@
+/* nsd-err: how good a solution is, recomputed from the problem. */
+#include "cli.h"
+#include "doc.h"
+#include "err.h"
+#include "json.h"
+#include "step.h"
+
+static const struct cli_option *const tables[] = { NULL };
+
+const struct cli_tool tool = {
+    "nsd-err", "[FILE ...]",
+    "Computes eps_glob and its four terms, the true penetration and the natural-map errors of\n"
+    "solutions, from the problem and the reactions alone. Reads documents, writes one line of\n"
+    "JSON for each solution.",
+    tables, "  nsd-err solved.h5 | jq .eps_glob\n  nsd-step --contacts -n 10 < a.h5 | nsd-err\n"
+};
+
+/* A packing's problem as its reactions were found, with them in it. */
+static int prepare_packing(struct problem *p, struct frame *f, struct why *why)
+{
+    if (f->moved && step_unmove(&f->packing, &f->contacts, why)) return why->status;
+    if (problem_prepare(p, &f->packing, &f->contacts, 0, 1, ORDER_NATURAL, why)) return why->status;
+    for (int64_t i = 0; i < f->contacts.n; i++)
+        f->report.err.max_overlap = fmax(f->report.err.max_overlap, -f->contacts.c[i].gap);
+    return 0;
+}
+
+static int prepare_foreign(struct problem *p, struct frame *f, struct why *why)
+{
+    struct delassus *W = &f->problem.W;
+    if (problem_prepare_delassus(p, W, 0, 1, ORDER_NATURAL, why)) return why->status;
+    for (int64_t i = 0; i < p->n; i++)
+        for (int k = 0; k < W->d; k++) p->row[i].u[k] = f->u[W->d * p->contact[i] + k];
+    return 0;
+}
+
+static void print(struct frame *f, struct why *why)
+{
+    struct problem p;
+    f->report.err.max_overlap = 0;
+    if ((f->foreign ? prepare_foreign : prepare_packing)(&p, f, why)) return;
+    double overlap = f->report.err.max_overlap;
+    struct err err;
+    err_eval(&err, &p, true, ERR_ALL, 1);
+    err.max_overlap = overlap;
+    problem_free(&p);
+    json_t *line = json_object(), *terms = json_err(&err);
+    if (f->packed) json_object_set_new(line, "step", json_integer(f->packing.step));
+    if (f->reported) json_object_set_new(line, "method", json_string(f->report.method));
+    json_object_update(line, terms);
+    json_decref(terms);
+    json_line(line);
+}
+
+int tool_main(int argc, char **argv)
+{
+    struct reader *in;
+    struct frame f = { 0 };
+    struct why why = { 0 };
+    bool more;
+    if (reader_open(&in, argc, argv, &why)) die_why(&why);
+    while (!reader_next(in, &f, &more, &why) && more) {
+        const char *where = reader_where(in);
+        if (f.foreign && !f.u) die(EX_DATAERR, "%s: no /solution: nsd-solve comes before", where);
+        if (f.packed && !f.detected)
+            die(EX_DATAERR, "%s: no group /contacts (nsd-step keeps them with --contacts)", where);
+        if (f.packed && !f.contacts.solved && f.contacts.n)
+            die(EX_DATAERR, "%s: the contacts are not solved: nsd-solve comes before", where);
+        print(&f, &why);
+        if (why.status) break;
+    }
+    if (why.status) die_why(&why);
+    frame_free(&f);
+    reader_close(in);
+    finish_stdout();
+    return 0;
+}

@@ -1,0 +1,91 @@
+/* nsd-gen: a packing from a number, or from a scene. */
+#include "cli.h"
+#include "gen.h"
+#include "sink.h"
+
+#include <errno.h>
+#include <libgen.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int64_t dim = 3;
+
+static const struct cli_option own[] = {
+    { CLI_INT, 'd', "dim", &dim, "2|3", "of the paper's N balls: 2 makes discs [3]", 2, 3, 0 },
+    { 0 },
+};
+static const struct cli_option *const tables[] = { own, NULL };
+
+const struct cli_tool tool = {
+    "nsd-gen", "N | SCENE.json | -",
+    "Builds a packing: N balls of the paper's sedimentation (500: its example 3, 4: its example "
+    "2),\n"
+    "or what a scene says. Reads JSON, writes a document.",
+    tables,
+    "  nsd-gen 500 > balls.h5\n"
+    "  nsd-gen scenes/column.json | nsd-step -n 1000 > out.h5\n"
+    "  jq '.mu = 0.5' scenes/paper/example3.json | nsd-gen - > rough.h5\n"
+};
+
+static char *slurp(FILE *f, size_t *n)
+{
+    size_t room = 1 << 16;
+    char *text = malloc(room);
+    for (*n = 0; text;) {
+        *n += fread(text + *n, 1, room - *n, f);
+        if (*n < room) break;
+        room *= 2;
+        char *more = realloc(text, room);
+        if (!more) free(text);
+        text = more;
+    }
+    return text;
+}
+
+/* The scene in a file, for its messages `name`, and the directory that its tables are sought in. */
+static void read_scene(struct scene *s, const char *path, char **dir)
+{
+    bool standard = !strcmp(path, "-");
+    const char *name = standard ? "standard input" : path;
+    struct why why = { 0 };
+    size_t n;
+    FILE *f = standard ? stdin : fopen(path, "r");
+    char *text = f ? slurp(f, &n) : NULL;
+    if (!f || ferror(f)) die(EX_NOINPUT, "%s: %s", name, strerror(errno));
+    if (!text) die(EX_SOFTWARE, "%s: no memory", name);
+    if (scene_parse(s, text, n, &why)) die(why.status, "%s:%s", name, why.text);
+    free(text);
+    if (standard) return;
+    fclose(f);
+    char *copy = strdup(path);
+    *dir = copy ? strdup(dirname(copy)) : NULL;
+    free(copy);
+}
+
+int tool_main(int argc, char **argv)
+{
+    struct scene scene;
+    struct frame frame = { .packed = true };
+    struct sink *sink;
+    struct why why = { 0 };
+    char *dir = NULL;
+    if (argc != 1) die_usage("one operand: a number of balls, or a scene");
+    if (sink_open(&sink, NULL, SINK_STREAM, &why)) die_why(&why);
+    if (argv[0][0] && strspn(argv[0], "0123456789") == strlen(argv[0])) {
+        errno = 0;
+        long long n = strtoll(argv[0], NULL, 10);
+        if (errno || n > INT32_MAX) die_usage("%s: at most %d balls", argv[0], INT32_MAX);
+        if (scene_paper(&scene, (int)dim, n, &why)) die_why(&why);
+    } else {
+        read_scene(&scene, argv[0], &dir);
+    }
+    if (gen_packing(&frame.packing, &scene, dir, &why)) die_why(&why);
+    if (frame_note(&frame, cli_history(), &why) || sink_frame(sink, &frame, &why) ||
+        sink_close(sink, &why))
+        die_why(&why);
+    free(dir);
+    scene_free(&scene);
+    frame_free(&frame);
+    return 0;
+}

@@ -1,0 +1,238 @@
+/* nsd-info: any part of a document as JSON lines, for jq and gnuplot. */
+#include "cli.h"
+#include "doc.h"
+#include "json.h"
+#include "range.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool last, particles, contacts, walls, history;
+static const char *steps;
+
+static const struct cli_option own[] = {
+    { CLI_FLAG, 'p', "particles", &particles, NULL, "a line a body and frame instead", 0, 0, 0 },
+    { CLI_FLAG, 'c', "contacts", &contacts, NULL, "a line a contact and frame", 0, 0, 0 },
+    { CLI_FLAG, 'w', "walls", &walls, NULL, "a line a wall and frame", 0, 0, 0 },
+    { CLI_FLAG, 0, "history", &history, NULL, "a line a sweep (nsd-solve --history)", 0, 0, 0 },
+    { CLI_FLAG, 'l', "last", &last, NULL, "of the very last frame only", 0, 0, 0 },
+    { CLI_TEXT, 's', "steps", &steps, "A:B:K", "of steps A to B, every K-th [all]", 0, 0, 0 },
+    { 0 },
+};
+static const struct cli_option *const tables[] = { own, NULL };
+
+const struct cli_tool tool = {
+    "nsd-info", "[FILE ...]",
+    "Shows what is in documents: a line of JSON for each document, then one for each frame.",
+    tables,
+    "  nsd-info out.h5 | jq -r 'select(.step != null) | [.step, .sweeps, .eps_glob] | @tsv'\n"
+    "  nsd-info --last -p out.h5 | jq -r '[.x[], .radius] | @tsv'\n"
+};
+
+static json_t *material(const struct packing *p)
+{
+    json_t *list = json_array();
+    for (int32_t a = 0; a < p->kinds; a++)
+        for (int32_t b = a; b < p->kinds; b++) {
+            int32_t k = a * p->kinds + b;
+            json_array_append_new(list, json_pack("{s:[s,s], s:f, s:f, s:f}", "pair",
+                                                  p->kind_name[a], p->kind_name[b], "mu", p->mu[k],
+                                                  "e_n", p->en[k], "e_t", p->et[k]));
+        }
+    return list;
+}
+
+/* The commands that made the document: its history's lines, as they are JSON. */
+static json_t *commands(const char *text)
+{
+    json_t *list = json_array();
+    for (const char *s = text; s && *s;) {
+        size_t n = strcspn(s, "\n");
+        json_t *line = json_loadb(s, n, 0, NULL);
+        json_array_append_new(list, line ? line : json_null());
+        s += n + (s[n] == '\n');
+    }
+    return list;
+}
+
+static void show_document(const struct frame *f, int64_t frames)
+{
+    json_t *j = json_object();
+    json_object_set_new(j, "kind", json_string(f->foreign ? "problem" : "packing"));
+    json_object_set_new(j, "frames", json_integer(frames));
+    if (f->foreign) {
+        const struct delassus *W = &f->problem.W;
+        json_object_set_new(j, "form", json_string(f->problem.global ? "global" : "local"));
+        json_object_set_new(j, "dim", json_integer(W->d));
+        json_object_set_new(j, "contacts", json_integer(W->n));
+        json_object_set_new(j, "blocks", json_integer(W->first[W->n] + W->n));
+    } else {
+        const struct packing *p = &f->packing;
+        json_object_set_new(j, "dim", json_integer(p->dim));
+        json_object_set_new(j, "bodies", json_integer(p->n));
+        json_object_set_new(j, "walls", json_integer(p->walls));
+        json_object_set_new(j, "dt", json_number(p->dt));
+        json_object_set_new(j, "theta", json_number(p->theta));
+        json_object_set_new(j, "gravity", json_vec(p->g));
+        json_object_set_new(j, "seed", json_integer((json_int_t)p->seed));
+        json_object_set_new(j, "material", material(p));
+    }
+    if (f->report.options)
+        json_object_set_new(j, "options", json_loads(f->report.options, 0, NULL));
+    json_object_set_new(j, "history", commands(f->history));
+    json_line(j);
+}
+
+static void show_moment(const struct frame *f)
+{
+    if (f->foreign && !f->reported) return;
+    json_t *j = json_object();
+    if (f->packed) {
+        const struct packing *p = &f->packing;
+        double kinetic = 0, potential = 0, fastest = 0;
+        for (int64_t i = 0; i < p->n; i++) {
+            double v2 = v3_dot(p->v[i], p->v[i]);
+            kinetic += 0.5 * (p->mass[i] * v2 + p->inertia[i] * v3_dot(p->w[i], p->w[i]));
+            potential -= p->mass[i] * v3_dot(p->g, p->x[i]);
+            fastest = fmax(fastest, sqrt(v2));
+        }
+        json_object_set_new(j, "step", json_integer(p->step));
+        json_object_set_new(j, "time", json_number(p->t));
+        json_object_set_new(j, "bodies", json_integer(p->n));
+        json_object_set_new(j, "contacts", f->detected ? json_integer(f->contacts.n) : json_null());
+        json_object_set_new(j, "kinetic_energy", json_number(kinetic));
+        json_object_set_new(j, "potential_energy", json_number(potential));
+        json_object_set_new(j, "max_speed", json_number(fastest));
+    }
+    if (f->reported) {
+        json_t *r = json_report(&f->report);
+        json_object_update(j, r);
+        json_decref(r);
+    }
+    json_line(j);
+}
+
+static void show_particles(const struct packing *p)
+{
+    for (int64_t i = 0; i < p->n; i++) {
+        const double q[4] = { p->q[i].w, p->q[i].x, p->q[i].y, p->q[i].z };
+        json_t *j = json_object();
+        json_object_set_new(j, "step", json_integer(p->step));
+        json_object_set_new(j, "id", json_integer(p->id[i]));
+        json_object_set_new(j, "kind", json_string(p->kind_name[p->kind[i]]));
+        json_object_set_new(j, "radius", json_number(p->radius[i]));
+        json_object_set_new(j, "mass", json_number(p->mass[i]));
+        json_object_set_new(j, "x", json_vec(p->x[i]));
+        json_object_set_new(j, "v", json_vec(p->v[i]));
+        json_object_set_new(j, "w", json_vec(p->w[i]));
+        json_object_set_new(j, "q", json_numbers(q, 4));
+        json_line(j);
+    }
+}
+
+static void show_walls(const struct packing *p)
+{
+    for (int32_t i = 0; i < p->walls; i++) {
+        const struct wall *w = &p->wall[i];
+        json_t *j = json_object();
+        json_object_set_new(j, "step", json_integer(p->step));
+        json_object_set_new(j, "wall", json_integer(i));
+        json_object_set_new(j, "kind", json_string(p->kind_name[w->kind]));
+        json_object_set_new(j, "point", json_vec(v3_axpy(w->x, p->t, w->v)));
+        json_object_set_new(j, "normal", json_vec(w->n));
+        json_object_set_new(j, "velocity", json_vec(w->v));
+        json_line(j);
+    }
+}
+
+static void show_contacts(const struct frame *f)
+{
+    static const char *const status[] = { "free", "stick", "slide" };
+    for (int64_t i = 0; i < f->contacts.n; i++) {
+        const struct contact *c = &f->contacts.c[i];
+        json_t *j = json_object();
+        json_object_set_new(j, "step", json_integer(f->packing.step));
+        json_object_set_new(j, "body", json_pack("[i,i]", c->a, c->b));
+        json_object_set_new(j, "point", json_vec(c->x));
+        json_object_set_new(j, "n", json_vec(c->n));
+        json_object_set_new(j, "t1", json_vec(c->t1));
+        json_object_set_new(j, "t2", json_vec(c->t2));
+        json_object_set_new(j, "gap", json_number(c->gap));
+        json_object_set_new(j, "mu", json_number(c->mu));
+        json_object_set_new(j, "e_n", json_number(c->en));
+        json_object_set_new(j, "e_t", json_number(c->et));
+        if (f->contacts.solved) {
+            json_object_set_new(j, "r", json_numbers(c->r, 3));
+            json_object_set_new(j, "u", json_numbers(c->u, 3));
+            json_object_set_new(j, "status", json_string(status[c->status % 3]));
+        }
+        json_line(j);
+    }
+}
+
+static void show_problem_contacts(const struct frame *f)
+{
+    const struct delassus *W = &f->problem.W;
+    for (int64_t c = 0; c < W->n; c++) {
+        json_t *j = json_object();
+        json_object_set_new(j, "contact", json_integer(c));
+        json_object_set_new(j, "mu", json_number(W->mu[c]));
+        json_object_set_new(j, "q", json_numbers(W->q + W->d * c, W->d));
+        if (f->u) {
+            json_object_set_new(j, "r", json_numbers(W->r + W->d * c, W->d));
+            json_object_set_new(j, "u", json_numbers(f->u + W->d * c, W->d));
+        }
+        json_line(j);
+    }
+}
+
+static void show_sweeps(const struct frame *f, const char *where)
+{
+    if (!f->report.history) die(EX_DATAERR, "%s: no history: nsd-solve --history keeps it", where);
+    for (int32_t i = 0; i < f->report.sweeps; i++) {
+        const struct terms *t = &f->report.history[i];
+        json_line(json_pack("{s:i, s:o, s:o, s:o, s:o, s:o}", "sweep", i + 1, "eps_glob",
+                            json_number(t->eps_glob), "motion", json_number(t->motion), "proj",
+                            json_number(t->proj), "bipotential", json_number(t->bipotential),
+                            "penetration", json_number(t->penetration)));
+    }
+}
+
+static void show(const struct frame *f, const char *where)
+{
+    if (particles && f->packed) show_particles(&f->packing);
+    if (walls && f->packed) show_walls(&f->packing);
+    if (contacts && f->foreign) show_problem_contacts(f);
+    if (contacts && f->packed && !f->detected) die(EX_DATAERR, "%s: no group /contacts", where);
+    if (contacts && f->packed) show_contacts(f);
+    if (history) show_sweeps(f, where);
+    if (!particles && !walls && !contacts && !history) show_moment(f);
+}
+
+int tool_main(int argc, char **argv)
+{
+    struct reader *in;
+    struct frame f = { 0 };
+    struct range range;
+    struct why why = { 0 };
+    bool more, part = particles || walls || contacts || history;
+    int64_t frames = 0;
+    if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
+    if (last && steps) die_usage("--last and --steps exclude each other");
+    if (reader_open(&in, argc, argv, &why)) die_why(&why);
+    if (last) {
+        if (reader_last(in, &f, &more, &why)) die_why(&why);
+        if (more) show(&f, reader_where(in));
+    }
+    while (!last && !reader_document(in, &frames, &why) && frames >= 0)
+        for (int64_t k = 0; k < frames && !reader_frame(in, k, &f, &why); k++) {
+            if (k == 0 && !part) show_document(&f, frames);
+            if (f.foreign || range_has(&range, f.packing.step)) show(&f, reader_where(in));
+        }
+    if (why.status) die_why(&why);
+    frame_free(&f);
+    reader_close(in);
+    finish_stdout();
+    return 0;
+}

@@ -1,0 +1,76 @@
+/* nsd-solve: one step's contact problem. */
+#include "cli.h"
+#include "doc.h"
+#include "options.h"
+#include "sink.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static const struct cli_option own[] = {
+    { CLI_REAL, 0, "theta", &options.theta, "T", "must be the contacts' own [the document's]", 0, 1,
+      0 },
+    { CLI_FLAG, 'w', "warm", &options.warm, NULL,
+      "start from the reactions in the document [from 0, as the paper]", 0, 0, 0 },
+    { CLI_FLAG, 0, "history", &options.history, NULL,
+      "keep the error terms of every sweep in the document", 0, 0, 0 },
+    { 0 },
+};
+static const struct cli_option *const tables[] = { options_solve, own, options_run, NULL };
+
+const struct cli_tool tool = {
+    "nsd-solve", "[FILE ...]",
+    "Solves the frictional contact problem by non-linear Gauss-Seidel.\n"
+    "Reads packings with contacts, or FCLIB problems (local or global); writes each with its\n"
+    "reactions and a report.",
+    tables,
+    "  nsd-gen 4 | nsd-detect | nsd-solve -m eal | nsd-err | jq .eps_glob\n"
+    "  nsd-solve -m exact --max-sweeps 20000 KaplasTower.hdf5 | nsd-err\n"
+};
+
+static void solve(struct frame *f, const char *where)
+{
+    struct why why = { 0 };
+    struct step_opt o = options_step(f->foreign ? 1 : f->packing.dt, f->foreign);
+    report_free(&f->report);
+    snprintf(f->report.method, sizeof f->report.method, "%s", o.nlgs.method->name);
+    f->report.options = options_json(&o);
+    if (!f->foreign) {
+        options_theta(&f->packing, true);
+        if (step_solve(&f->packing, &f->contacts, &o, &f->report, &why)) die_why(&why);
+    } else {
+        struct delassus *W = &f->problem.W;
+        free(f->u);
+        f->u = calloc((size_t)(W->d * W->n) + 1, sizeof *f->u);
+        if (!f->u) die(EX_SOFTWARE, "%s: no memory", where);
+        if (step_solve_delassus(W, f->u, &o, &f->report, &why)) die_why(&why);
+    }
+    f->reported = true;
+    options_log(&f->report);
+    options_summary(where, &f->report);
+}
+
+int tool_main(int argc, char **argv)
+{
+    struct reader *in;
+    struct sink *out;
+    struct frame f = { 0 };
+    struct why why = { 0 };
+    bool more, all = true;
+    if (sink_open(&out, NULL, SINK_STREAM, &why) || reader_open(&in, argc, argv, &why))
+        die_why(&why);
+    options_log_open();
+    while (!reader_next(in, &f, &more, &why) && more) {
+        const char *where = reader_where(in);
+        if (!f.foreign && !f.detected) die(EX_DATAERR, "%s: no group /contacts", where);
+        if (f.moved) die(EX_DATAERR, "%s: this step is made already; nsd-detect the next", where);
+        solve(&f, where);
+        all &= f.report.converged;
+        if (frame_note(&f, cli_history(), &why) || sink_frame(out, &f, &why)) break;
+    }
+    if (why.status || sink_close(out, &why)) die_why(&why);
+    options_log_close();
+    frame_free(&f);
+    reader_close(in);
+    return options.strict && !all;
+}
