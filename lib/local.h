@@ -74,19 +74,22 @@ static inline void local_velocity(struct local *l)
     }
 }
 
-/* r = proj(tau, K_mu), orthogonal, K_mu = { |r_t| <= mu r_n } [paper, first and second case] */
+/*
+ * r = proj(tau, K_mu), orthogonal, K_mu = { |r_t| <= mu r_n } [paper, first and second case]. The
+ * cases are told by squares: the root is slow, and wanted on the mantle only.
+ */
 static inline void cone_project(double mu, const double tau[3], double r[3])
 {
-    double t = sqrt(tau[1] * tau[1] + tau[2] * tau[2]);
-    if (mu * t <= -tau[0]) { // in the polar cone: its tip
+    double t2 = tau[1] * tau[1] + tau[2] * tau[2], n = tau[0];
+    if (n <= 0 && mu * mu * t2 <= n * n) { // in the polar cone: its tip
         r[0] = r[1] = r[2] = 0;
         return;
     }
-    if (t <= mu * tau[0]) { // inside: itself
-        r[0] = tau[0], r[1] = tau[1], r[2] = tau[2];
+    if (n >= 0 && t2 <= mu * mu * (n * n)) { // inside: itself
+        r[0] = n, r[1] = tau[1], r[2] = tau[2];
         return;
     }
-    double rn = (tau[0] + mu * t) / (1 + mu * mu), s = mu * rn / t;
+    double t = sqrt(t2), rn = (n + mu * t) / (1 + mu * mu), s = mu * rn / t;
     r[0] = rn, r[1] = s * tau[1], r[2] = s * tau[2];
 }
 

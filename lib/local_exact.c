@@ -210,11 +210,12 @@ static bool stick(struct local *l)
     return true;
 }
 
-/* W = diag(w_n, w_t, w_t): the stick reaction, clipped */
+/* W = diag(w_n, w_t, w_t): r_n = max(0, -b_n/w_n), and the stick reaction clipped to mu r_n */
 static bool balls(struct local *l)
 {
-    double rn = -l->b[0] / l->w[0], r1 = -l->b[1] / l->w[1], r2 = -l->b[2] / l->w[2];
-    double t = sqrt(r1 * r1 + r2 * r2), s = t > l->mu * rn ? l->mu * rn / t : 1;
+    double rn = -l->b[0] / l->w[0], r1 = -l->b[1] / l->w[1], r2 = -l->b[2] / l->w[1];
+    double most = l->mu * rn, t2 = r1 * r1 + r2 * r2, s = 1;
+    if (t2 > most * most) s = most / sqrt(t2); // the root only where it is wanted: it is slow
     l->r[0] = rn, l->r[1] = s * r1, l->r[2] = s * r2;
     return l->w[0] > 0 && isfinite(rn + l->r[1] + l->r[2]);
 }
@@ -235,7 +236,7 @@ static bool take_off(struct local *l)
 /* Where nothing is on the law (W indefinite or singular), one projected step from the last r. */
 static void solve(struct local *l, const struct local_opt *opt)
 {
-    double r[3] = { l->r[0], l->r[1], l->r[2] };
+    const double r[3] = { l->r[0], l->r[1], l->r[2] };
     bool found = take_off(l) || (!l->W        ? balls(l)
                                  : l->mu == 0 ? frictionless(l)
                                               : stick(l) || slide(l));

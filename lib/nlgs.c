@@ -29,15 +29,15 @@ static void relax(struct local *l, const double was[3], double omega)
 static inline void visit(struct problem *p, int64_t i, const struct nlgs_opt *o, struct tally *t)
 {
     struct local l;
+    const double *was = p->row[i].r;
     problem_gather(p, i, &l);
-    const double was[3] = { l.r[0], l.r[1], l.r[2] };
     o->method->solve(&l, &o->local);
     if (o->relax != 1) relax(&l, was, o->relax);
     double change = fabs(l.r[0] - was[0]) * l.w[0];
     t->change = change > t->change ? change : t->change;
     t->newton += l.steps;
-    t->safeguarded += l.trouble == LOCAL_SAFEGUARDED;
-    t->gave_up += l.trouble == LOCAL_GAVE_UP;
+    if (l.trouble)
+        t->safeguarded += l.trouble == LOCAL_SAFEGUARDED, t->gave_up += l.trouble == LOCAL_GAVE_UP;
     problem_scatter(p, i, &l);
 }
 

@@ -115,12 +115,16 @@ static inline void problem_gather(const struct problem *p, int64_t i, struct loc
 static inline void body_push(const struct problem *p, const struct row *c, const double dr[3])
 {
     struct body *a = &p->body[c->a], *b = &p->body[c->b];
+    double f[3], m[3]; // on b; m = -n x dr turns both
     for (int k = 0; k < 3; k++) {
-        double f = dr[0] * c->n[k] + dr[1] * c->t1[k] + dr[2] * c->t2[k];
-        double m = dr[2] * c->t1[k] - dr[1] * c->t2[k]; // -n x dr, on a's arm and on b's
-        if (a->im > 0) a->v[k] -= a->im * f, a->w[k] += a->ii * c->la * m;
-        if (b->im > 0) b->v[k] += b->im * f, b->w[k] += b->ii * c->lb * m;
+        f[k] = dr[0] * c->n[k] + dr[1] * c->t1[k] + dr[2] * c->t2[k];
+        m[k] = dr[2] * c->t1[k] - dr[1] * c->t2[k];
     }
+    double turn_a = a->ii * c->la, turn_b = b->ii * c->lb;
+    if (a->im > 0)
+        for (int k = 0; k < 3; k++) a->v[k] -= a->im * f[k], a->w[k] += turn_a * m[k];
+    if (b->im > 0)
+        for (int k = 0; k < 3; k++) b->v[k] += b->im * f[k], b->w[k] += turn_b * m[k];
 }
 
 /* The local solution into row i, its bodies or W's reactions. */
