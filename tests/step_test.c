@@ -1,0 +1,457 @@
+/* What must hold of whole steps: detection, momentum, energy, closed solutions, agreement. */
+#include "detect.h"
+#include "gen.h"
+#include "step.h"
+#include "tap.h"
+
+#include <gsl/gsl_rng.h>
+#include <stdlib.h>
+#include <string.h>
+
+static gsl_rng *rng;
+
+static double uniform(double a, double b)
+{
+    return a + (b - a) * gsl_rng_uniform(rng);
+}
+
+static void must(int failed, struct why *why)
+{
+    if (!failed) return;
+    printf("Bail out! %s\n", why->text);
+    exit(1);
+}
+
+static struct step_opt options(const struct method *m, double eps, int32_t sweeps)
+{
+    return (struct step_opt){ .nlgs = { .method = m,
+                                        .eps = eps,
+                                        .max_sweeps = sweeps,
+                                        .relax = 1,
+                                        .threads = 1,
+                                        .local = { .newton_eps = 1e-13, .newton_max = 100 } } };
+}
+
+static void scene_file(struct packing *p, const char *path)
+{
+    struct why why = { 0 };
+    struct scene s;
+    static char text[1 << 16];
+    FILE *f = fopen(path, "r");
+    size_t n = f ? fread(text, 1, sizeof text, f) : 0;
+    if (f) fclose(f);
+    must(scene_parse(&s, text, n, &why) || gen_packing(p, &s, NULL, &why), &why);
+    scene_free(&s);
+}
+
+static void paper(struct packing *p, int dim, int64_t n)
+{
+    struct why why = { 0 };
+    struct scene s;
+    must(scene_paper(&s, dim, n, &why) || gen_packing(p, &s, NULL, &why), &why);
+    scene_free(&s);
+}
+
+static void run(struct packing *p, struct contacts *c, const struct step_opt *o, int steps)
+{
+    struct why why = { 0 };
+    struct report rep = { 0 };
+    for (int k = 0; k < steps; k++) must(step_advance(p, c, o, &rep, &why), &why);
+    report_free(&rep);
+}
+
+/* ---- detection ---- */
+
+/* Balls of very different sizes anywhere, some in one place, some far away, some fixed. */
+static void cloud(struct packing *p, int dim, int64_t n, double ratio)
+{
+    struct why why = { 0 };
+    must(packing_init(p, dim, n, &why) || packing_walls(p, 3, &why), &why);
+    p->dt = 0.01;
+    for (int64_t i = 0; i < n; i++) {
+        p->radius[i] = 0.02 * pow(ratio, -gsl_rng_uniform(rng));
+        p->mass[i] = gsl_rng_uniform(rng) < 0.1 ? 0 : 1;
+        p->inertia[i] = 1;
+        p->x[i] = v3(uniform(0, 1), uniform(0, 1), dim == 2 ? 0 : uniform(0, 0.3));
+        p->v[i] = v3(uniform(-1, 1), uniform(-1, 1), dim == 2 ? 0 : uniform(-1, 1));
+        if (i % 97 == 1) p->x[i] = p->x[i - 1], p->v[i] = p->v[i - 1];
+        if (i % 201 == 2) p->x[i].x = i % 2 ? 1e12 : -1e150;
+    }
+    for (int w = 0; w < 3; w++) p->wall[w] = (struct wall){ .n = v3(w == 0, w == 1, w == 2) };
+    if (dim == 2) p->wall[2].n = v3(0, -1, 0), p->wall[2].x = v3(0, 1, 0);
+    p->wall[1].v = v3(0, 0.5, 0);
+    p->t = 0.02;
+}
+
+/* Every pair by brute force, in the order that detection promises; -1 at the first difference. */
+static int64_t same_contacts(const struct packing *p, const struct contacts *s, double gap)
+{
+    int64_t k = 0;
+    for (int32_t a = -p->walls; a < p->n; a++)
+        for (int32_t b = a < 0 ? 0 : a + 1; b < p->n; b++) {
+            vec3 xb = packing_predict(p, b);
+            double g;
+            bool moves = p->mass[b] > 0 || (a >= 0 && p->mass[a] > 0);
+            if (a < 0) {
+                const struct wall *w = &p->wall[-1 - a];
+                vec3 at = v3_axpy(w->x, p->t + 0.5 * p->dt, w->v);
+                g = v3_dot(v3_sub(xb, at), w->n) - p->radius[b];
+            } else {
+                g = v3_norm(v3_sub(xb, packing_predict(p, a))) - (p->radius[a] + p->radius[b]);
+            }
+            if (!moves || !(g <= gap)) continue;
+            if (k == s->n || s->c[k].a != a || s->c[k].b != b || s->c[k].gap != g) return -1;
+            k++;
+        }
+    return k == s->n ? k : -1;
+}
+
+static void test_detection(void)
+{
+    for (int dim = 2; dim <= 3; dim++)
+        for (int k = 0; k < 8; k++) {
+            const double ratios[4] = { 1, 3, 100, 1e4 };
+            double gap = k < 4 ? 0 : 0.003;
+            struct why why = { 0 };
+            struct packing p;
+            struct contacts s = { 0 };
+            cloud(&p, dim, 1500, ratios[k % 4]);
+            must(detect_contacts(&s, &p, gap, &why), &why);
+            int64_t n = same_contacts(&p, &s, gap);
+            ok(n > 20, "%dD, radii 1:%g, gap %g: the grid finds what brute force finds (%lld)", dim,
+               ratios[k % 4], gap, (long long)s.n);
+            double worst = 0;
+            for (int64_t i = 0; i < s.n; i++) {
+                const struct contact *c = &s.c[i];
+                vec3 d = v3_sub(v3_cross(c->n, c->t1), c->t2);
+                worst = fmax(worst, fmax(v3_norm(d), fabs(v3_norm(c->t1) - 1)));
+            }
+            ok(worst < 1e-15 * 4, "%dD: frames are right-handed and orthonormal (%.1e)", dim,
+               worst);
+            contacts_free(&s), packing_free(&p);
+        }
+}
+
+/* ---- one step ---- */
+
+/* The 500 balls when most have settled, and their contacts with reactions. */
+static void settled(struct packing *p, struct contacts *s, int dim, int steps)
+{
+    struct step_opt o = options(&local_exact, 1e-9, 200);
+    o.warm = true, o.nlgs.relax = 1.4;
+    paper(p, dim, 500);
+    run(p, s, &o, steps);
+}
+
+static void test_identity(const struct packing *p, const struct contacts *s)
+{
+    struct why why = { 0 };
+    struct problem q;
+    struct contacts copy = { .n = s->n, .room = s->n, .solved = true };
+    for (int order = ORDER_NATURAL; order <= ORDER_COLOUR; order++) {
+        copy.c = malloc((size_t)s->n * sizeof *copy.c);
+        memcpy(copy.c, s->c, (size_t)s->n * sizeof *copy.c);
+        must(problem_prepare(&q, p, &copy, 0, 1, (enum order)order, &why), &why);
+        for (int64_t i = 0; i < copy.n; i++) memset(copy.c[i].r, 7, sizeof copy.c[i].r);
+        problem_store(&q, &copy);
+        bool same = true, apart = true;
+        for (int64_t i = 0; i < s->n; i++)
+            same &= !memcmp(copy.c[i].r, s->c[i].r, sizeof s->c[i].r) &&
+                    !memcmp(copy.c[i].u, s->c[i].u, sizeof s->c[i].u);
+        ok(same, "order %d: prepare, then store, is the identity", order);
+        for (int64_t g = 0; g < q.groups; g++)
+            for (int64_t i = q.group[g]; i < q.group[g + 1]; i++)
+                for (int64_t k = q.group[g]; k < i; k++) {
+                    const struct row *a = &q.row[i], *b = &q.row[k];
+                    bool meet = (q.body[a->a].im > 0 && (a->a == b->a || a->a == b->b)) ||
+                                (q.body[a->b].im > 0 && (a->b == b->a || a->b == b->b));
+                    apart &= !meet;
+                }
+        ok(apart && q.group[q.groups] == q.n,
+           "order %d: no two contacts of a group share a movable body (%lld groups)", order,
+           (long long)q.groups);
+        problem_free(&q);
+        free(copy.c);
+    }
+}
+
+static vec3 momentum(const struct packing *p)
+{
+    vec3 sum = { 0 };
+    for (int64_t i = 0; i < p->n; i++) sum = v3_axpy(sum, p->mass[i], p->v[i]);
+    return sum;
+}
+
+/* About the origin, the bodies where they are predicted (there forces act in this step). */
+static vec3 spin(const struct packing *p, const vec3 *x)
+{
+    vec3 sum = { 0 };
+    for (int64_t i = 0; i < p->n; i++)
+        sum = v3_axpy(v3_axpy(sum, p->mass[i], v3_cross(x[i], p->v[i])), p->inertia[i], p->w[i]);
+    return sum;
+}
+
+/* A step's change of momentum is what gravity and the walls gave; balls take nothing from balls. */
+static void test_momentum(const struct packing *start, const struct method *m)
+{
+    struct why why = { 0 };
+    struct packing p;
+    struct contacts s = { 0 };
+    struct report rep = { 0 };
+    struct step_opt o = options(m, 1e-6, 30); // far from converged: it must hold all the same
+    must(packing_copy(&p, start, &why), &why);
+    vec3 *x = malloc((size_t)p.n * sizeof *x);
+    double mass = 0, size = 0;
+    vec3 force = { 0 }, moment = { 0 }, p0 = momentum(&p);
+    for (int64_t i = 0; i < p.n; i++) {
+        x[i] = packing_predict(&p, i);
+        mass += p.mass[i];
+        force = v3_axpy(force, p.mass[i] * p.dt, p.g);
+        moment = v3_add(moment, v3_cross(x[i], v3_scale(p.mass[i] * p.dt, p.g)));
+    }
+    vec3 l0 = spin(&p, x);
+    must(step_advance(&p, &s, &o, &rep, &why), &why);
+    for (int64_t i = 0; i < s.n; i++) {
+        const struct contact *c = &s.c[i];
+        vec3 r = v3_axpy(v3_axpy(v3_scale(c->r[0], c->n), c->r[1], c->t1), c->r[2], c->t2);
+        size += v3_norm(r);
+        if (c->a >= 0) continue;
+        force = v3_add(force, r);
+        moment = v3_add(moment, v3_cross(c->x, r));
+    }
+    double lost = v3_norm(v3_sub(v3_sub(momentum(&p), p0), force)) / size;
+    double turned = v3_norm(v3_sub(v3_sub(spin(&p, x), l0), moment)) / (size * 0.006);
+    ok(lost < 1e-14 && turned < 1e-13,
+       "%s: momentum and its moment are balanced to rounding (%.1e, %.1e of all impulses)", m->name,
+       lost, turned);
+    free(x);
+    contacts_free(&s), packing_free(&p), report_free(&rep);
+}
+
+static double largest_difference(const struct packing *a, const struct packing *b)
+{
+    double worst = 0;
+    for (int64_t i = 0; i < a->n; i++) worst = fmax(worst, v3_norm(v3_sub(a->v[i], b->v[i])));
+    return worst;
+}
+
+/* All five methods from the same packing: the same velocities, though the reactions may differ. */
+static void test_agreement(const struct packing *start, const char *what)
+{
+    struct why why = { 0 };
+    struct packing exact;
+    for (int m = 4; m >= 0; m--) {
+        struct packing p;
+        struct contacts s = { 0 };
+        struct report rep = { 0 };
+        struct step_opt o = options(methods[m], 1e-11, 100000);
+        o.nlgs.relax = m >= 2 ? 1.5 : 1; // no over-relaxation of what is itself a long step
+        must(packing_copy(&p, start, &why) || step_advance(&p, &s, &o, &rep, &why), &why);
+        if (m == 4) exact = p;
+        double d = largest_difference(&p, &exact);
+        ok(rep.converged && d < 1e-8,
+           "%s, %s: the same velocities as exact, to %.1e m/s (%d sweeps)", what, methods[m]->name,
+           d, rep.sweeps);
+        if (m != 4) packing_free(&p);
+        contacts_free(&s), report_free(&rep);
+    }
+    packing_free(&exact);
+}
+
+static bool same_motion(const struct packing *a, const struct packing *b)
+{
+    size_t n = (size_t)a->n;
+    return !memcmp(a->x, b->x, n * sizeof *a->x) && !memcmp(a->v, b->v, n * sizeof *a->v) &&
+           !memcmp(a->w, b->w, n * sizeof *a->w) && !memcmp(a->q, b->q, n * sizeof *a->q);
+}
+
+/* Threads, and the way the criterion is evaluated, leave every bit and every count as it is. */
+static void test_threads(const struct packing *start)
+{
+    struct why why = { 0 };
+    for (int order = ORDER_NATURAL; order <= ORDER_COLOUR; order++) {
+        struct packing one;
+        int32_t sweeps = 0;
+        for (int k = 0; k < 4; k++) { // 1, 2, 4 threads; every sweep
+            struct packing p;
+            struct contacts s = { 0 };
+            struct report rep = { 0 };
+            struct step_opt o = options(&local_exact, 1e-6, 20000);
+            o.order = (enum order)order;
+            o.nlgs.threads = k < 3 ? 1 << k : 1;
+            o.nlgs.every_sweep = k == 3;
+            must(packing_copy(&p, start, &why) || step_advance(&p, &s, &o, &rep, &why), &why);
+            if (k == 0)
+                one = p, sweeps = rep.sweeps;
+            else
+                ok(same_motion(&p, &one) && rep.sweeps == sweeps,
+                   "order %d: the same bits and the same %d sweeps %s", order, sweeps,
+                   k == 1   ? "with 2 threads"
+                   : k == 2 ? "with 4 threads"
+                            : "with the criterion evaluated after every one");
+            if (k) packing_free(&p);
+            contacts_free(&s), report_free(&rep);
+        }
+        packing_free(&one);
+    }
+}
+
+/* ---- many steps ---- */
+
+static double energy(const struct packing *p)
+{
+    double e = 0;
+    for (int64_t i = 0; i < p->n; i++)
+        e += 0.5 * (p->mass[i] * v3_dot(p->v[i], p->v[i]) +
+                    p->inertia[i] * v3_dot(p->w[i], p->w[i])) -
+             p->mass[i] * v3_dot(p->g, p->x[i]);
+    return e;
+}
+
+/*
+ * With e = 0 a step changes the energy by r.(u^- + u^+)/2 = r.u^+ - r.W r/2 - dt r.P*g/2, and the
+ * law makes r.u^+ <= 0. Without gravity it never grows. With gravity a body that was leaving, slower
+ * than g dt, may be caught: the midpoint rule then gains of the order of m (g dt)^2, which is 2e-8
+ * of what the pile has, and no more.
+ */
+static void test_energy(int dim, bool gravity)
+{
+    struct packing p;
+    struct contacts s = { 0 };
+    struct step_opt o = options(&local_exact, 1e-12, 1000);
+    double mass = 0;
+    o.warm = true, o.nlgs.relax = 1.5;
+    paper(&p, dim, 30);
+    if (!gravity) {
+        p.g = v3(0, 0, 0);
+        for (int64_t i = 0; i < p.n; i++)
+            p.v[i] = v3(uniform(-1, 1), uniform(-1, 1), dim == 2 ? 0 : uniform(-1, 1));
+    }
+    for (int64_t i = 0; i < p.n; i++) mass += p.mass[i];
+    double before = energy(&p), first = before, worst = -INFINITY;
+    for (int k = 0; k < 700; k++) {
+        run(&p, &s, &o, 1);
+        double now = energy(&p);
+        worst = fmax(worst, now - before);
+        before = now;
+    }
+    double gdt = v3_norm(p.g) * p.dt, most = 0.5 * mass * gdt * gdt + 1e-14 * first;
+    ok(worst <= most && before < 0.7 * first,
+       "%dD, %s gravity: energy never grows with e = 0 (%.1e of it, may be %.1e; %.2g of it left)",
+       dim, gravity ? "with" : "without", worst / first, most / first, before / first);
+    contacts_free(&s), packing_free(&p);
+}
+
+/*
+ * Example 1: v = v0 - mu g t and w = (5/2) mu g t/R until t = 2 v0/(7 mu g), then v = 5/7 v0 rolls;
+ * of a disc 2 becomes 3: w = 2 mu g t/R, t = v0/(3 mu g), v = 2/3 v0.
+ */
+static void test_rolling(int dim, const struct method *m)
+{
+    struct packing p;
+    struct contacts s = { 0 };
+    struct step_opt o = options(m, 1e-12, 5000);
+    scene_file(&p, dim == 3 ? "scenes/paper/example1.json" : "scenes/paper/example1-2d.json");
+    double v0 = 1.5, mu = 0.7, g = 9.81, R = 5e-3, worst = 0;
+    double share = dim == 3 ? 2.0 / 7 : 1.0 / 3, until = share * v0 / (mu * g);
+    for (int k = 1; k <= 2000; k++) {
+        run(&p, &s, &o, 1);
+        double t = k * p.dt, v = t < until ? v0 - mu * g * t : (1 - share) * v0;
+        double w = (dim == 3 ? 2.5 : 2) * mu * g * fmin(t, until) / R;
+        worst = fmax(worst, fabs(p.v[0].x - v) / v0);
+        worst = fmax(worst, fabs((dim == 3 ? p.w[0].y : -p.w[0].z) - w) * R / v0);
+    }
+    ok(worst <= mu * g * p.dt / v0,
+       "example 1 in %dD, %s: slides, then rolls at %s v0, all to one dt (%.1e of v0)", dim,
+       m->name, dim == 3 ? "5/7" : "2/3", worst);
+    contacts_free(&s), packing_free(&p);
+}
+
+/* A ball dropped on a floor with e_n leaves with e_n times the speed; e_t likewise, sticking. */
+static void test_restitution(double en, double et)
+{
+    struct why why = { 0 };
+    struct packing p;
+    struct contacts s = { 0 };
+    struct step_opt o = options(&local_exact, 1e-14, 1000);
+    must(packing_init(&p, 3, 1, &why) || packing_walls(&p, 1, &why), &why);
+    p.dt = 1e-3, p.radius[0] = 0.5;
+    packing_body(3, 0.5, 1000, &p.mass[0], &p.inertia[0]);
+    p.wall[0].n = v3(0, 0, 1);
+    p.x[0] = v3(0, 0, 0.5), p.v[0] = v3(0.3, -0.1, -2);
+    p.mu[0] = 5, p.en[0] = en, p.et[0] = et;
+    run(&p, &s, &o, 1);
+    vec3 arm = v3(0, 0, -(0.5 - 0.5 * p.dt * 2)); // of the predicted position
+    vec3 slip = v3_add(p.v[0], v3_cross(p.w[0], arm));
+    ok(fabs(p.v[0].z - 2 * en) < 1e-12 && fabs(slip.x + 0.3 * et) < 1e-12 &&
+           fabs(slip.y - 0.1 * et) < 1e-12,
+       "e_n %g, e_t %g: the ball rebounds, and so does its point of contact", en, et);
+    contacts_free(&s), packing_free(&p);
+}
+
+/* Balls that meet in the plane z = 0 of space do what the same in dim 2 does. */
+static void test_plane(void)
+{
+    struct why why = { 0 };
+    struct packing p[2];
+    struct contacts s[2] = { { 0 }, { 0 } };
+    struct step_opt o = options(&local_ebp, 1e-12, 20000);
+    for (int k = 0; k < 2; k++) {
+        paper(&p[k], 2, 30);
+        p[k].dim = 2 + k;
+        run(&p[k], &s[k], &o, 600);
+    }
+    double d = largest_difference(&p[0], &p[1]);
+    ok(d < 1e-9 && s[0].n > 20, "30 discs, 600 steps: dim 2 and dim 3 agree to %.1e m/s", d);
+    (void)why;
+    for (int k = 0; k < 2; k++) contacts_free(&s[k]), packing_free(&p[k]);
+}
+
+static void test_unmove(const struct packing *start)
+{
+    struct why why = { 0 };
+    struct packing p;
+    struct contacts s = { 0 };
+    struct step_opt o = options(&local_exact, 1e-8, 2000);
+    must(packing_copy(&p, start, &why), &why);
+    run(&p, &s, &o, 1);
+    must(step_unmove(&p, &s, &why), &why);
+    double dx = 0, dv = largest_difference(&p, start);
+    for (int64_t i = 0; i < p.n; i++) dx = fmax(dx, v3_norm(v3_sub(p.x[i], start->x[i])));
+    ok(dx < 1e-16 && dv < 1e-14 && p.step == start->step, "unmove undoes move (%.1e m, %.1e m/s)",
+       dx, dv);
+    contacts_free(&s), packing_free(&p);
+}
+
+int main(void)
+{
+    rng = gsl_rng_alloc(gsl_rng_mt19937);
+    test_detection();
+    for (int m = 0; methods[m]; m++) test_rolling(3, methods[m]), test_rolling(2, methods[m]);
+    for (int k = 0; k < 5; k++) test_restitution(0.25 * k, 1 - 0.25 * k);
+    test_plane();
+    for (int dim = 2; dim <= 3; dim++) {
+        struct packing p;
+        struct contacts s = { 0 };
+        settled(&p, &s, dim, 900);
+        diag("%dD: %lld contacts after 900 steps", dim, (long long)s.n);
+        test_identity(&p, &s);
+        for (int m = 0; methods[m]; m++) test_momentum(&p, methods[m]);
+        test_threads(&p);
+        test_unmove(&p);
+        contacts_free(&s), packing_free(&p);
+        test_energy(dim, true), test_energy(dim, false);
+    }
+    for (int dim = 2; dim <= 3; dim++) {
+        struct packing p;
+        struct contacts s = { 0 };
+        struct step_opt o = options(&local_exact, 1e-10, 20000);
+        o.warm = true;
+        paper(&p, dim, 20);
+        run(&p, &s, &o, 1200);
+        test_agreement(&p, dim == 2 ? "20 discs, settled" : "20 balls, settled");
+        contacts_free(&s), packing_free(&p);
+    }
+    gsl_rng_free(rng);
+    return tap_done();
+}
