@@ -93,7 +93,9 @@ static int count_frames(struct reader *r, struct why *why)
                            c->width);
         n = n < shape[0] ? n : shape[0];
     }
-    r->frames = (int64_t)n;
+    // a killed writer may have left room for a clock that it had not yet set
+    for (r->frames = n > 0; r->frames < (int64_t)n; r->frames++)
+        if (r->step[r->frames] <= r->step[r->frames - 1]) break;
     if (!h5_has(r->doc, "/observables/solver/step")) return 0;
     r->solved = h5_read_all(r->doc, "/observables/solver/step", H5T_NATIVE_INT64, &n, why);
     r->solves = (int64_t)n;
@@ -341,9 +343,10 @@ static int read_history(hid_t doc, struct report *rep, struct why *why)
                          rep->sweeps);
 }
 
+/* What the solve that led to this step says, or of a document of one moment, its only one. */
 static int read_report(struct reader *r, int64_t step, struct frame *f, struct why *why)
 {
-    int64_t at = -1;
+    int64_t at = r->frames == 1 && r->solves == 1 ? 0 : -1;
     for (int64_t i = 0; i < r->solves; i++)
         if (r->solved[i] == step) at = i;
     if (at < 0) return 0;
@@ -351,8 +354,9 @@ static int read_report(struct reader *r, int64_t step, struct frame *f, struct w
     const char *solver = "/observables/solver";
     if (read_columns(r->doc, solver, "/value", layout_report, true, at, 1, rep, sizeof *rep, why))
         return why->status;
-    rep->step = step;
-    rep->t = f->packing.t;
+    rep->step = r->solved[at];
+    if (read_rows(r->doc, "/observables/solver/time", H5T_NATIVE_DOUBLE, at, 1, 1, &rep->t, why))
+        return why->status;
     char *method = h5_read_text(r->doc, "/observables/solver@method");
     char *criterion = h5_read_text(r->doc, "/observables/solver@criterion");
     rep->options = h5_read_text(r->doc, "/observables/solver@options");
@@ -418,14 +422,19 @@ int reader_next(struct reader *r, struct frame *f, bool *more, struct why *why)
 int reader_last(struct reader *r, struct frame *f, bool *more, struct why *why)
 {
     int64_t frames;
+    hid_t held = -1; // the document of *f stays open, for what is copied from it
     *more = false;
     for (;;) {
-        if (reader_document(r, &frames, why)) return why->status;
-        if (frames < 0) {
-            f->origin = 0; // its file is closed
+        if (*more) held = r->doc, r->doc = -1;
+        int e = reader_document(r, &frames, why);
+        if (!e && frames < 0) {
+            r->doc = held;
             return 0;
         }
-        if (frames > 0 && reader_frame(r, frames - 1, f, why)) return why->status;
+        if (held >= 0) H5Fclose(held);
+        held = -1;
+        if (!e && frames > 0) e = reader_frame(r, frames - 1, f, why);
+        if (e) return e;
         *more |= frames > 0;
     }
 }

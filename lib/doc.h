@@ -23,7 +23,7 @@ int reader_frame(struct reader *, int64_t k, struct frame *f, struct why *);
 
 /* Both in one: every frame of every document; *more is false at the end. */
 int reader_next(struct reader *, struct frame *, bool *more, struct why *);
-/* The very last frame of all; *more is false where there is none. */
+/* The very last frame of all, its document left open; *more is false where there is none. */
 int reader_last(struct reader *, struct frame *, bool *more, struct why *);
 
 /* "a.h5" or "a.h5: document 3": for messages about the frame in hand */

@@ -24,10 +24,12 @@ struct sink {
     int fd;
     const char *name; /* of the output, for messages */
     bool growing;
-    int disk;       /* the growing document opened anew: > gives a descriptor only to write */
-    hid_t file;     /* the same as HDF5 sees it, -1 before its first frame */
-    int64_t bodies; /* of its first frame */
-    int64_t rows;   /* contacts so far */
+    int disk;             /* the growing document opened anew: > gives a descriptor only to write */
+    hid_t file;           /* the same as HDF5 sees it, -1 before its first frame */
+    struct packing first; /* of it: what the others must share */
+    bool contacts, solved; /* so far: are there any, and are they solved */
+    int64_t step;          /* of its last frame */
+    int64_t rows;          /* contacts so far */
     struct series series[SERIES];
     int open; /* series */
 };
@@ -235,14 +237,14 @@ static int put_material(hid_t file, const struct packing *p, struct why *why)
 }
 
 /* H5MD's box: nothing is periodic, so it has no edges. */
-static int put_box(hid_t file, int dim, struct why *why)
+static int put_box(hid_t file, struct why *why)
 {
+    const int dimension = 3; // positions have three components in the plane too
     const char none[3][5] = { "none", "none", "none" };
     const char *box = "/particles/all/box";
     if (h5_group(file, box, why) ||
-        h5_attr(file, box, "dimension", H5T_NATIVE_INT, -1, &(int){ 3 }, why))
+        h5_attr(file, box, "dimension", H5T_NATIVE_INT, -1, &dimension, why))
         return why->status;
-    (void)dim; // positions have three components in the plane too
     hid_t text = H5Tcopy(H5T_C_S1);
     H5Tset_size(text, sizeof none[0]);
     int e = h5_attr(file, box, "boundary", text, 3, none, why);
@@ -312,12 +314,9 @@ static int copy_unknown(hid_t file, const struct frame *f, struct why *why)
     const struct {
         const char *group;
         const char *const *known;
-    } where[] = { { "/", f->export || !f->detected ? exported : root },
-                  { "/particles", particles },
-                  { "/particles/all", all },
-                  { "/walls", walls },
-                  { "/observables", observables },
-                  { "/nsd", nsd } };
+    } where[] = { { "/", f->stale ? exported : root }, { "/particles", particles },
+                  { "/particles/all", all },           { "/walls", walls },
+                  { "/observables", observables },     { "/nsd", nsd } };
     hsize_t shape[4] = { 1 };
     if (!f->origin) return 0;
     h5_shape(f->origin, "/particles/all/position/step", shape);
@@ -387,16 +386,15 @@ static int put_clocks(struct sink *s, hid_t file, const struct frame *f, struct 
 {
     const hsize_t one = 1;
     const struct packing *p = &f->packing;
-    int64_t step = f->foreign ? 0 : p->step;
     const char *position = "/particles/all/position", *solver = "/observables/solver";
-    if (f->detected && !f->foreign &&
-        put(s, file, "/contacts/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &step, NULL, why))
+    if (f->packed && f->detected &&
+        put(s, file, "/contacts/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &p->step, NULL, why))
         return why->status;
-    if (f->reported && (put_clock(s, file, solver, step, f->report.t, why) ||
+    if (f->reported && (put_clock(s, file, solver, f->report.step, f->report.t, why) ||
                         link_clock(file, solver, solver, layout_report, why)))
         return why->status;
     if (!f->packed) return 0;
-    return put_clock(s, file, position, step, p->t, why) ||
+    return put_clock(s, file, position, p->step, p->t, why) ||
                    link_clock(file, position, "/particles/all", layout_motion, why)
                ? why->status
                : 0;
@@ -405,7 +403,7 @@ static int put_clocks(struct sink *s, hid_t file, const struct frame *f, struct 
 static int put_static(struct sink *s, hid_t file, const struct frame *f, struct why *why)
 {
     if (put_nsd(file, f, why)) return why->status;
-    if (f->packed && (put_material(file, &f->packing, why) || put_box(file, f->packing.dim, why) ||
+    if (f->packed && (put_material(file, &f->packing, why) || put_box(file, why) ||
                       put_bodies(s, file, &f->packing, why)))
         return why->status;
     return copy_unknown(file, f, why);
@@ -451,10 +449,11 @@ static int write_all(struct sink *s, const unsigned char *bytes, size_t size, st
 static int write_image(struct sink *s, hid_t file, struct why *why)
 {
     void **memory;
-    hsize_t size;
-    if (H5Fflush(file, H5F_SCOPE_GLOBAL) < 0 || H5Fget_filesize(file, &size) < 0 ||
-        H5Fget_vfd_handle(file, H5P_DEFAULT, (void **)&memory) < 0)
+    bool flushed = H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0;
+    ssize_t image = flushed ? H5Fget_file_image(file, NULL, 0) : -1; // what HDF5 uses of the memory
+    if (image < 0 || H5Fget_vfd_handle(file, H5P_DEFAULT, (void **)&memory) < 0)
         return why_set(why, EX_SOFTWARE, "no memory for the document");
+    size_t size = (size_t)image + DOCUMENT_USERBLOCK; // which it leaves out
     unsigned char *bytes = *memory;
     uint32_t crc = document_crc(0, bytes + DOCUMENT_USERBLOCK, size - DOCUMENT_USERBLOCK);
     document_header(bytes, size, crc);
@@ -495,25 +494,50 @@ static int flush(struct sink *s, struct why *why)
                                                    : 0;
 }
 
+/* What only the first frame says must hold of all. */
+static int check_same(const struct sink *s, const struct frame *f, struct why *why)
+{
+    const struct packing *p = &s->first, *q = &f->packing;
+    size_t n = (size_t)q->n;
+    if (p->n != q->n)
+        return why_set(why, EX_DATAERR, "%lld bodies, and the trajectory has %lld", (long long)q->n,
+                       (long long)p->n);
+    if (p->dim != q->dim || p->dt != q->dt || p->theta != q->theta)
+        return why_set(why, EX_DATAERR, "dim, dt or theta differ from the trajectory's");
+    if (memcmp(p->radius, q->radius, n * sizeof *p->radius) ||
+        memcmp(p->mass, q->mass, n * sizeof *p->mass))
+        return why_set(why, EX_DATAERR, "other bodies than the trajectory's");
+    if (q->step <= s->step)
+        return why_set(why, EX_DATAERR, "step %lld after step %lld: a trajectory's steps increase",
+                       (long long)q->step, (long long)s->step);
+    if (f->detected && s->contacts && f->contacts.solved != s->solved)
+        return why_set(why, EX_DATAERR, "contacts solved and unsolved in one trajectory");
+    return 0;
+}
+
+static int trajectory_begin(struct sink *s, const struct frame *f, struct why *why)
+{
+    char path[40];
+    snprintf(path, sizeof path, "/proc/self/fd/%d", s->disk);
+    s->file = create(path, H5P_DEFAULT);
+    if (s->file < 0) return io_trouble(s, why, "cannot be written");
+    if (packing_copy(&s->first, &f->packing, why)) return why->status;
+    s->step = f->packing.step - 1;
+    return write_header(s, 0, 0, why) || put_static(s, s->file, f, why) ? why->status : 0;
+}
+
 static int trajectory_frame(struct sink *s, const struct frame *f, struct why *why)
 {
     if (!f->packed)
         return why_set(why, EX_DATAERR, "an FCLIB problem does not go into a trajectory");
-    if (s->file < 0) {
-        char path[40];
-        snprintf(path, sizeof path, "/proc/self/fd/%d", s->disk);
-        s->file = create(path, H5P_DEFAULT);
-        if (s->file < 0) return io_trouble(s, why, "cannot be written");
-        s->bodies = f->packing.n;
-        if (write_header(s, 0, 0, why) || put_static(s, s->file, f, why)) return why->status;
-    }
-    if (f->packing.n != s->bodies)
-        return why_set(why, EX_DATAERR, "%lld bodies, and the trajectory's first frame has %lld",
-                       (long long)f->packing.n, (long long)s->bodies);
+    if (s->file < 0 && trajectory_begin(s, f, why)) return why->status;
+    if (check_same(s, f, why)) return why->status;
     // numbers first, on disk; then the clock that makes them a frame: a kill leaves whole frames
     if (put_moment(s, s->file, f, why) || flush(s, why) || put_clocks(s, s->file, f, why) ||
         flush(s, why))
         return why->status;
+    s->step = f->packing.step;
+    if (f->detected) s->contacts = true, s->solved = f->contacts.solved;
     return 0;
 }
 
@@ -538,6 +562,7 @@ static int trajectory_close(struct sink *s, struct why *why)
 
 int sink_frame(struct sink *s, const struct frame *f, struct why *why)
 {
+    if (!f->packed && s->file < 0) s->growing = false; // a problem is a document by itself
     return s->growing ? trajectory_frame(s, f, why) : stream_frame(s, f, why);
 }
 
@@ -545,6 +570,7 @@ int sink_close(struct sink *s, struct why *why)
 {
     int e = s->file >= 0 ? trajectory_close(s, why) : 0;
     if (s->disk >= 0) close(s->disk);
+    packing_free(&s->first);
     if (close(s->fd) && !e) e = io_trouble(s, why, strerror(errno));
     free(s);
     return e;

@@ -52,13 +52,15 @@ struct stream {
     int files, next; /* next: the file to open when the open one is done */
     char *const *file;
     const char *name;
-    int fd;                /* -1: none open */
-    int64_t number;        /* documents so far */
-    int64_t in_file;       /* of which in this file */
-    unsigned char *map;    /* a regular file, whole; NULL: a pipe */
-    size_t size, at;       /* of map */
-    unsigned char *buffer; /* a pipe's document */
-    size_t room;
+    int fd;                        /* -1: none open */
+    int64_t number;                /* documents so far */
+    int64_t in_file;               /* of which in this file */
+    unsigned char *map;            /* a regular file, whole; NULL: a pipe */
+    size_t size, at;               /* of map */
+    unsigned char *buffer, *spare; /* a pipe's document, and the one before it */
+    size_t room, spare_room;
+    unsigned char *old; /* the map of the file before */
+    size_t old_size;
 };
 
 int stream_open(struct stream **out, int files, char *const *file, struct why *why)
@@ -74,7 +76,8 @@ int stream_open(struct stream **out, int files, char *const *file, struct why *w
 
 static void file_close(struct stream *s)
 {
-    if (s->map) munmap(s->map, s->size);
+    if (s->old && s->map) munmap(s->old, s->old_size);
+    if (s->map) s->old = s->map, s->old_size = s->size;
     if (s->fd > 0) close(s->fd);
     s->map = NULL, s->size = s->at = 0, s->fd = -1;
 }
@@ -83,7 +86,8 @@ void stream_close(struct stream *s)
 {
     if (!s) return;
     file_close(s);
-    free(s->buffer);
+    if (s->old) munmap(s->old, s->old_size);
+    free(s->buffer), free(s->spare);
     free(s);
 }
 
@@ -170,7 +174,8 @@ static int own(struct stream *s, struct image *im, size_t have, struct why *why)
         return why_set(why, EX_DATAERR, "%s: document %lld: truncated, %zu of %zu bytes", s->name,
                        (long long)s->in_file + 1, have, want);
     if (document_crc(0, im->bytes + DOCUMENT_USERBLOCK, have - DOCUMENT_USERBLOCK) != crc)
-        return bad(s, why, "damaged (its checksum is wrong)");
+        return bad(s, why,
+                   "damaged: its checksum is wrong (changed on purpose? see nsd-format(5))");
     return 0;
 }
 
@@ -190,9 +195,19 @@ static bool is_hdf5(const unsigned char *b, size_t have)
     return false;
 }
 
+/* The buffer of the document before stays as it is; the next goes into the other one. */
+static void swap_buffers(struct stream *s)
+{
+    unsigned char *b = s->buffer;
+    size_t room = s->room;
+    s->buffer = s->spare, s->room = s->spare_room;
+    s->spare = b, s->spare_room = room;
+}
+
 int stream_next(struct stream *s, struct image *im, struct why *why)
 {
     *im = (struct image){ 0 };
+    swap_buffers(s);
     for (;;) {
         if (s->fd < 0) {
             im->bytes = NULL;

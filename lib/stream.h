@@ -24,7 +24,7 @@ enum {
 void document_header(unsigned char userblock[DOCUMENT_USERBLOCK], uint64_t length, uint32_t crc);
 uint32_t document_crc(uint32_t crc, const void *bytes, size_t size);
 
-/* One document, whole; its bytes belong to the stream, until the next. */
+/* One document, whole; its bytes belong to the stream, until the next but one. */
 struct image {
     const char *name;     /* of its file, "standard input" */
     int64_t number;       /* in the stream, from 1 */

@@ -48,6 +48,7 @@ int tool_main(int argc, char **argv)
         if (detect_contacts(&f.contacts, &f.packing, options.gap, &why)) break;
         f.detected = true, f.reported = f.moved = false;
         if (export >= 0) add_problem(&f, &problem);
+        f.stale = true;
         if (frame_note(&f, cli_history(), &why) || sink_frame(out, &f, &why)) break;
         if (export >= 0) problem_free(&problem);
     }

@@ -38,6 +38,7 @@ static void print(struct frame *f, struct why *why)
 {
     struct problem p;
     f->report.err.max_overlap = 0;
+    int64_t step = f->packing.step; // the frame's own, whichever step is looked back at
     if ((f->foreign ? prepare_foreign : prepare_packing)(&p, f, why)) return;
     double overlap = f->report.err.max_overlap;
     struct err err;
@@ -45,7 +46,7 @@ static void print(struct frame *f, struct why *why)
     err.max_overlap = overlap;
     problem_free(&p);
     json_t *line = json_object(), *terms = json_err(&err);
-    if (f->packed) json_object_set_new(line, "step", json_integer(f->packing.step));
+    if (f->packed) json_object_set_new(line, "step", json_integer(step));
     if (f->reported) json_object_set_new(line, "method", json_string(f->report.method));
     json_object_update(line, terms);
     json_decref(terms);

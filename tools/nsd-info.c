@@ -107,6 +107,7 @@ static void show_moment(const struct frame *f)
     }
     if (f->reported) {
         json_t *r = json_report(&f->report);
+        json_object_del(r, "step"), json_object_del(r, "time"); // the packing's own are there
         json_object_update(j, r);
         json_decref(r);
     }

@@ -31,6 +31,7 @@ int tool_main(int argc, char **argv)
             die(EX_DATAERR, "%s: the contacts are not solved: nsd-solve comes before", where);
         if (step_move(&f.packing, &f.contacts, &why)) break;
         f.detected = false;
+        f.stale = true;
         if (frame_note(&f, cli_history(), &why) || sink_frame(out, &f, &why)) break;
     }
     if (why.status || sink_close(out, &why)) die_why(&why);

@@ -78,10 +78,13 @@ static int64_t run(struct frame *f, struct sink *out)
 {
     struct why why = { 0 };
     struct step_opt o = options_step(f->packing.dt, false);
-    report_free(&f->report);
-    snprintf(f->report.method, sizeof f->report.method, "%s", o.nlgs.method->name);
-    f->report.options = options_json(&o);
-    f->detected = contacts;
+    if (steps) {
+        report_free(&f->report);
+        snprintf(f->report.method, sizeof f->report.method, "%s", o.nlgs.method->name);
+        f->report.options = options_json(&o);
+        f->detected = contacts;
+        f->stale = true;
+    }
     for (int64_t k = 1; k <= steps; k++) {
         if (!advance(f, &o)) {
             warn("step %lld: the solve diverged, the run ends before it",
