@@ -4,7 +4,11 @@
 #include <string.h>
 #include <time.h>
 
-enum { CHECK_EVERY = 25, PARALLEL_FROM = 32 /* rows of a group worth a second thread */ };
+enum {
+    CHECK_FIRST = 16, /* sweeps that are all judged */
+    CHECK_EVERY = 25,
+    PARALLEL_FROM = 128 /* rows of a group worth a second thread */
+};
 
 struct tally {
     double change; /* m/s: the largest change of a normal velocity in a sweep */
@@ -44,7 +48,7 @@ static inline void visit(struct problem *p, int64_t i, const struct nlgs_opt *o,
 static struct tally sweep(struct problem *p, const struct nlgs_opt *o)
 {
     struct tally all = { 0 };
-    if (o->threads == 1) {
+    if (o->threads == 1 || p->n < PARALLEL_FROM * p->groups) {
         for (int64_t i = 0; i < p->n; i++) visit(p, i, o, &all);
         return all;
     }
@@ -105,7 +109,7 @@ int nlgs_solve(struct problem *p, const struct nlgs_opt *o, struct report *rep)
         struct tally t = sweep(p, o);
         rep->sweeps++;
         rep->newton += t.newton, rep->safeguarded += t.safeguarded, rep->gave_up += t.gave_up;
-        if (!o->history && !o->every_sweep && !(t.change <= due) &&
+        if (!o->history && !o->every_sweep && !(t.change <= due) && rep->sweeps > CHECK_FIRST &&
             rep->sweeps - last < CHECK_EVERY)
             continue;
         struct err e;
@@ -114,8 +118,8 @@ int nlgs_solve(struct problem *p, const struct nlgs_opt *o, struct report *rep)
         double value = err_of(&e, o->criterion);
         rep->converged = value <= o->eps;
         if (!isfinite(value)) break; // diverged
-        // error and change shrink together: due with half as much again in hand
-        due = 1.5 * t.change * (o->eps / value);
+        // error and change shrink together: due with as much again in hand
+        due = 2 * t.change * (o->eps / value);
         last = rep->sweeps;
     }
     if (!believes) velocities(p);
