@@ -136,15 +136,14 @@ static void set_number(const struct cli_option *o, const char *text)
     char *end;
     errno = 0;
     double x = strtod(text, &end);
-    bool low = o->kind == CLI_ABOVE ? !(x > o->min) : !(x >= o->min);
     if (end == text || *end || !isfinite(x) || isspace((unsigned char)*text))
         die_usage("--%s: '%s' is not a number", o->name, text);
-    if (low || x > o->max) {
-        char most[40] = "";
-        if (o->max < 1e18) snprintf(most, sizeof most, " and at most %g", o->max);
-        die_usage("--%s: %s must be %s %g%s", o->name, text,
-                  o->kind == CLI_ABOVE ? "above" : "at least", o->min, most);
-    }
+    bool open = o->kind == CLI_ABOVE || o->kind == CLI_BETWEEN;
+    if (open ? !(x > o->min) : !(x >= o->min))
+        die_usage("--%s: %s must be %s %g", o->name, text, open ? "above" : "at least", o->min);
+    if (o->kind == CLI_BETWEEN ? !(x < o->max) : x > o->max)
+        die_usage("--%s: %s must be %s %g", o->name, text,
+                  o->kind == CLI_BETWEEN ? "below" : "at most", o->max);
     if (o->kind != CLI_INT) {
         *(double *)o->to = x;
         return;

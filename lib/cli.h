@@ -14,13 +14,14 @@
 
 enum cli_kind {
     CLI_END,
-    CLI_FLAG,   /* bool, set */
-    CLI_UNFLAG, /* bool, cleared */
-    CLI_INT,    /* int64_t in [min, max] */
-    CLI_REAL,   /* double in [min, max] */
-    CLI_ABOVE,  /* double in (min, max] */
-    CLI_CHOICE, /* int: the place of the word in choices, "a|b|c" */
-    CLI_TEXT    /* const char * */
+    CLI_FLAG,    /* bool, set */
+    CLI_UNFLAG,  /* bool, cleared */
+    CLI_INT,     /* int64_t in [min, max] */
+    CLI_REAL,    /* double in [min, max] */
+    CLI_ABOVE,   /* double in (min, max] */
+    CLI_BETWEEN, /* double in (min, max) */
+    CLI_CHOICE,  /* int: the place of the word in choices, "a|b|c" */
+    CLI_TEXT     /* const char * */
 };
 
 struct cli_option {

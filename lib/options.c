@@ -39,12 +39,12 @@ const struct cli_option options_solve[] = {
     { CLI_ABOVE, 0, "newton-abs", &options.newton_abs, "EPS",
       "their end as the paper has it, absolute, with r in N", 0, MOST, 0 },
     { CLI_INT, 0, "newton-max", &options.newton_max, "N", "their number [100]", 1, 1e6, 0 },
-    { CLI_ABOVE, 0, "relax", &options.relax, "OMEGA", "over-relaxation, below 2 [1]", 0, 1.999999,
-      0 },
+    { CLI_BETWEEN, 0, "relax", &options.relax, "OMEGA", "over-relaxation, between 0 and 2 [1]", 0,
+      2, 0 },
     { CLI_CHOICE, 0, "order", &options.order, ORDERS,
       "of the sweep; natural is the paper's [natural]", 0, 0, 0 },
     { CLI_FLAG, 0, "every-sweep", &options.every_sweep, NULL,
-      "evaluate the criterion after every sweep", 0, 0, true },
+      "evaluate the criterion after every sweep [when it may be met]", 0, 0, 0 },
     { 0 },
 };
 

@@ -29,7 +29,7 @@ struct packing {
     uint64_t seed;
 
     double *radius;  /* [n] m */
-    double *mass;    /* [n] kg (kg/m of a disc); 0: immovable or prescribed */
+    double *mass;    /* [n] kg; 0: immovable or prescribed */
     double *inertia; /* [n] kg m^2 */
     int32_t *id;     /* [n] a name that lasts */
     int32_t *kind;   /* [n] row of the material tables */

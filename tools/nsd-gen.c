@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <libgen.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,6 +64,14 @@ static void read_scene(struct scene *s, const char *path, char **dir)
     free(copy);
 }
 
+/* "500", "1e6", "-5": a number, right or wrong, and not the name of a file */
+static bool is_number(const char *text, double *x)
+{
+    char *end;
+    *x = strtod(text, &end);
+    return end != text && !*end;
+}
+
 int tool_main(int argc, char **argv)
 {
     struct scene scene;
@@ -70,13 +79,13 @@ int tool_main(int argc, char **argv)
     struct sink *sink;
     struct why why = { 0 };
     char *dir = NULL;
-    if (argc != 1) die_usage("one operand: a number of balls, or a scene");
+    if (argc != 1 || !*argv[0]) die_usage("one operand: a number of balls, or a scene");
     if (sink_open(&sink, NULL, SINK_STREAM, &why)) die_why(&why);
-    if (argv[0][0] && strspn(argv[0], "0123456789") == strlen(argv[0])) {
-        errno = 0;
-        long long n = strtoll(argv[0], NULL, 10);
-        if (errno || n > INT32_MAX) die_usage("%s: at most %d balls", argv[0], INT32_MAX);
-        if (scene_paper(&scene, (int)dim, n, &why)) die_why(&why);
+    double n;
+    if (is_number(argv[0], &n)) {
+        if (!(n >= 0 && n <= INT32_MAX && n == floor(n)))
+            die_usage("%s: not a number of balls (0 to %d)", argv[0], INT32_MAX);
+        if (scene_paper(&scene, (int)dim, (int64_t)n, &why)) die_why(&why);
     } else {
         read_scene(&scene, argv[0], &dir);
     }
