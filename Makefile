@@ -48,10 +48,84 @@ $B/tests/%: tests/%.c $B/libnsd.a Makefile
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -o $@ $< $B/libnsd.a $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS) $(TESTLIBS)
 
+tests: $(TOOLS) $(CTEST)
+
+# ---- set-up, checks, the demonstration ----
+
+setup-run setup-check:
+	scripts/setup.sh $(@:setup-%=%)
+
+PROVE := prove -j2 --timer
+
+test: tests
+	PATH="$(CURDIR)/$B:$$PATH" $(PROVE) $(CTEST) tests/*.t
+
+# The same again under ASan and UBSan first, loops thinned; the plain run, whole, has the last word.
+check: setup-check
+	$(MAKE) -j2 SAN=1 tests
+	NSD_QUICK=1 $(MAKE) SAN=1 test
+	$(MAKE) -j2 tests
+	$(MAKE) test
+
+demo: setup-run
+	$(MAKE) -j2 all
+	PATH="$(CURDIR)/build:$$PATH" scripts/demo.sh
+
+bench: all
+	PATH="$(CURDIR)/build:$$PATH" bench/run.sh
+	PATH="$(CURDIR)/build:$$PATH" bench/problems.sh
+
+# ---- style ----
+
+SOURCES := $(wildcard lib/*.[ch] tools/*.c tests/*.[ch])
+SCRIPTS := $(wildcard scripts/*.sh bench/*.sh tests/*.sh tests/*.t) .ci/run
+
+format:
+	clang-format -i $(SOURCES)
+
+lint: lint-format lint-manuals lint-scripts lint-cppcheck lint-tidy
+
+lint-format:
+	clang-format --dry-run --Werror $(SOURCES)
+
+lint-manuals:
+	mandoc -T lint -W warning man/*
+
+lint-scripts:
+	shellcheck $(SCRIPTS)
+
+lint-cppcheck:
+	cppcheck --quiet --error-exitcode=1 --std=c11 --enable=warning,performance,portability \
+	    --inline-suppr --suppress=missingIncludeSystem -Ilib lib tools
+
+TIDY := $(patsubst %.c,lint-tidy-%,$(notdir $(wildcard lib/*.c tools/*.c)))
+
+lint-tidy: $(TIDY)
+
+$(TIDY): lint-tidy-%:
+	clang-tidy --quiet $(wildcard lib/$*.c tools/$*.c) -- -std=gnu11 -DNSD_VERSION='"$(VERSION)"' \
+	    -Ilib $(PC) 2>/dev/null
+
+# ---- installation ----
+
+install: all
+	install -d $(DESTDIR)$(PREFIX)/bin $(addprefix $(DESTDIR)$(PREFIX)/share/man/man,1 5 7) \
+	    $(DESTDIR)$(PREFIX)/share/nsd/scenes/paper
+	install -m 755 $(TOOLS) $(DESTDIR)$(PREFIX)/bin
+	for m in man/*; do install -m 644 $$m $(DESTDIR)$(PREFIX)/share/man/man$${m##*.}; done
+	install -m 644 scenes/*.json $(DESTDIR)$(PREFIX)/share/nsd/scenes
+	install -m 644 scenes/paper/*.json $(DESTDIR)$(PREFIX)/share/nsd/scenes/paper
+
+uninstall:
+	cd $(DESTDIR)$(PREFIX)/bin && rm -f $(notdir $(TOOLS))
+	for m in man/*; do rm -f $(DESTDIR)$(PREFIX)/share/man/man$${m##*.}/$${m##*/}; done
+	rm -rf $(DESTDIR)$(PREFIX)/share/nsd
+
 clean:
-	rm -rf build
+	rm -rf build demo
 
 -include $(wildcard $B/lib/*.d $B/tools/*.d $B/tests/*.d)
 
-.PHONY: all clean
+PARTS := format manuals scripts cppcheck tidy
+.PHONY: all tests test check demo bench format lint $(PARTS:%=lint-%) $(TIDY) install uninstall clean setup-run setup-check
 .SECONDARY:

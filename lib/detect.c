@@ -184,7 +184,7 @@ static bool balls(struct pairs *out, const struct packing *p, double gap)
 static bool pairs_sort(struct pairs *s, int64_t bodies)
 {
     int64_t *first = calloc((size_t)bodies + 2, sizeof *first);
-    struct pair *sorted = malloc((size_t)(s->n ? s->n : 1) * sizeof *sorted);
+    struct pair *sorted = calloc((size_t)s->n + 1, sizeof *sorted);
     bool room = first && sorted;
     for (int64_t i = 0; room && i < s->n; i++) first[s->p[i].a + 2]++;
     for (int64_t a = 0; room && a < bodies; a++) first[a + 2] += first[a + 1];

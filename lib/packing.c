@@ -44,7 +44,7 @@ void packing_free(struct packing *p)
     free(p->x), free(p->q), free(p->v), free(p->w);
     free(p->wall), free(p->scene);
     kinds_free(p);
-    *p = (struct packing){ 0 };
+    memset(p, 0, sizeof *p);
 }
 
 int packing_walls(struct packing *p, int32_t k, struct why *why)

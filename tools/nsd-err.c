@@ -36,7 +36,7 @@ static int prepare_foreign(struct problem *p, struct frame *f, struct why *why)
 
 static void print(struct frame *f, struct why *why)
 {
-    struct problem p;
+    struct problem p = { 0 };
     f->report.err.max_overlap = 0;
     int64_t step = f->packing.step; // the frame's own, whichever step is looked back at
     if ((f->foreign ? prepare_foreign : prepare_packing)(&p, f, why)) return;

@@ -1,0 +1,46 @@
+# demo.gp: the picture of `make demo`: the balls before and after, and the solver on the way.
+# gnuplot -e "dir='demo'" scripts/demo.gp
+set terminal pngcairo size 1500, 900 enhanced font "sans,11"
+set output dir."/demo.png"
+set multiplot
+
+unset key
+set size ratio -1
+unset border
+unset tics
+set style fill solid noborder
+set xrange [-5.2:5.2]
+set yrange [-2:18]
+set origin 0, 0
+set size 0.27, 1
+set title "500 balls at the start"
+plot dir."/start.tsv" using 1:2:3:4 with circles lc rgb variable
+set origin 0.25, 0
+set title "after 1000 steps (50 ms)"
+plot dir."/end.tsv" using 1:2:3:4 with circles lc rgb variable
+
+set size noratio
+set border
+set tics
+set grid
+set xrange [0:1000]
+set xlabel "step"
+set key top left
+set origin 0.53, 0.5
+set size 0.47, 0.5
+set title "the error when each solve ended"
+set logscale y
+set format y "10^{%T}"
+set yrange [1e-16:1e-4]
+set ylabel "{/Symbol e}_{glob}"
+plot dir."/steps.tsv" using 1:($4 > 0 ? $4 : NaN) with points pt 7 ps 0.3 lc rgb 0x1b6ca8 \
+         title "{/Symbol e}_{glob}", \
+     dir."/steps.tsv" using 1:($5 > 0 ? $5 : NaN) with points pt 7 ps 0.3 lc rgb 0xd1495b \
+         title "largest true penetration, m/s"
+set origin 0.53, 0
+set title "contacts and sweeps"
+set yrange [1:10000]
+set ylabel "number"
+plot dir."/steps.tsv" using 1:2 with lines lw 2 lc rgb 0x3a7d44 title "contacts", \
+     dir."/steps.tsv" using 1:3 with points pt 7 ps 0.3 lc rgb 0xe09f3e title "sweeps"
+unset multiplot

@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# demo.sh [DIR]: the paper's third example, from one shell line to a picture.
+set -euo pipefail
+
+dir=${1:-demo}
+mkdir -p "$dir"
+steps=1000
+
+echo "500 balls, $steps steps of 5e-5 s (nsd-gen 500 | nsd-step ...)"
+nsd-gen 500 > "$dir/start.h5"
+nsd-step -m exact -n "$steps" --warm --relax 1.4 --eps 1e-8 -o "$dir/out.h5" "$dir/start.h5"
+
+for moment in start end; do
+    [ "$moment" = end ] && file=$dir/out.h5 || file=$dir/start.h5
+    nsd-info --last --particles "$file" |
+        jq -s -r --argjson n 500 -f scripts/balls.jq > "$dir/$moment.tsv"
+done
+nsd-info "$dir/out.h5" |
+    jq -r 'select(.step != null)
+           | [.step, .contacts, .sweeps, .eps_glob, .max_penetration_true] | @tsv' > "$dir/steps.tsv"
+gnuplot -e "dir='$dir'" scripts/demo.gp
+
+echo
+echo "the last steps:"
+printf 'step\tcontacts\tsweeps\teps_glob\tmax_penetration_true\n'
+tail -n 5 "$dir/steps.tsv"
+echo
+echo "look at    $dir/demo.png"
+echo "ask        build/nsd-info $dir/out.h5 | jq -c 'select(.step == 1000)'"
+echo "open       h5ls -r $dir/out.h5"

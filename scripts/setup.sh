@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# setup.sh run|check: see that what nsd needs is there; install it where that is allowed, else name
+# the line that does.
+set -euo pipefail
+
+run=(build-essential pkg-config libhdf5-dev hdf5-tools libgsl-dev libjansson-dev zlib1g-dev
+    libsuitesparse-dev jq gnuplot-nox)
+check=("${run[@]}" perl python3-h5py mandoc shellcheck cppcheck clang clang-tidy clang-format
+    libfclib-dev)
+
+case "${1:-run}" in
+run) packages=("${run[@]}") ;;
+check) packages=("${check[@]}") ;;
+*) echo "usage: setup.sh run|check" >&2; exit 64 ;;
+esac
+
+if ! command -v dpkg-query >/dev/null; then
+    echo "setup: not a Debian system; nsd needs what Debian calls: ${packages[*]}" >&2
+    exit 0
+fi
+
+missing=()
+for p in "${packages[@]}"; do
+    state=$(dpkg-query -W -f '${db:Status-Status}' "$p" 2>/dev/null || true)
+    [ "$state" = installed ] || missing+=("$p")
+done
+[ ${#missing[@]} -gt 0 ] || exit 0
+
+if [ "$(id -u)" -eq 0 ]; then
+    echo "setup: installing ${missing[*]}" >&2
+    export DEBIAN_FRONTEND=noninteractive
+    apt-get update -qq
+    apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+else
+    echo "setup: packages are missing; as root: apt-get install ${missing[*]}" >&2
+    exit 69
+fi
