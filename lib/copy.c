@@ -1,0 +1,67 @@
+#include "copy.h"
+
+#include "h5.h"
+
+#include <stdio.h>
+#include <string.h>
+
+struct copy {
+    hid_t to;
+    const char *group, *const *known;
+    bool whole; /* the origin holds one frame: what depends on time may come along */
+    struct why *why;
+};
+
+static herr_t copy_link(hid_t from, const char *name, const H5L_info_t *info, void *data)
+{
+    struct copy *c = data;
+    char path[400];
+    (void)info;
+    for (const char *const *k = c->known; *k; k++)
+        if (!strcmp(*k, name)) return 0;
+    snprintf(path, sizeof path, "%s/%s", name, "step");
+    if (!c->whole && h5_has(from, path)) return 0;
+    snprintf(path, sizeof path, "%s%s%s", c->group, c->group[1] ? "/" : "", name);
+    if (h5_has(c->to, path)) return 0;
+    hid_t link = H5Pcreate(H5P_LINK_CREATE);
+    H5Pset_create_intermediate_group(link, 1);
+    herr_t e = H5Ocopy(from, name, c->to, path, H5P_DEFAULT, link);
+    H5Pclose(link);
+    return e < 0 ? why_set(c->why, EX_DATAERR, "%s: cannot be copied", path), -1 : 0;
+}
+
+int copy_unknown(int64_t file, const struct frame *f, struct why *why)
+{
+    static const char *const root[] = { "h5md",     "nsd",         "particles", "walls",
+                                        "contacts", "observables", "solution",  NULL };
+    static const char *const exported[] = { "h5md",     "nsd",         "particles",
+                                            "walls",    "contacts",    "observables",
+                                            "solution", "fclib_local", "fclib_global",
+                                            NULL };
+    static const char *const all[] = { "box",         "position", "velocity", "angular_velocity",
+                                       "orientation", "radius",   "mass",     "inertia",
+                                       "id",          "species",  NULL };
+    static const char *const particles[] = { "all", NULL }, *const walls[] = { "plane", NULL };
+    static const char *const observables[] = { "solver", NULL };
+    static const char *const nsd[] = { "history", "scene", "material", NULL };
+    const struct {
+        const char *group;
+        const char *const *known;
+    } where[] = { { "/", f->stale ? exported : root }, { "/particles", particles },
+                  { "/particles/all", all },           { "/walls", walls },
+                  { "/observables", observables },     { "/nsd", nsd } };
+    hsize_t shape[4] = { 1 };
+    if (!f->origin) return 0;
+    h5_shape(f->origin, "/particles/all/position/step", shape);
+    for (size_t i = 0; i < sizeof where / sizeof where[0]; i++) {
+        if (!h5_has(f->origin, where[i].group)) continue;
+        struct copy c = { file, where[i].group, where[i].known, shape[0] <= 1, why };
+        // the problem itself is what a foreign document is
+        if (f->foreign && i == 0) c.known = root;
+        hid_t group = H5Gopen2(f->origin, where[i].group, H5P_DEFAULT);
+        H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, NULL, copy_link, &c);
+        H5Gclose(group);
+        if (why->status) return why->status;
+    }
+    return 0;
+}

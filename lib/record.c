@@ -1,0 +1,210 @@
+#include "record.h"
+
+#include "copy.h"
+#include "h5.h"
+#include "stream.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const void *pointer_in(const void *base, size_t offset)
+{
+    const void *p;
+    memcpy(&p, (const char *)base + offset, sizeof p);
+    return p;
+}
+
+/* WHERE/step and WHERE/time; and the same two under every element of the table, by hard links. */
+static int put_clock(struct series *s, const char *where, int64_t step, double t, struct why *why)
+{
+    const hsize_t one = 1;
+    char path[80];
+    snprintf(path, sizeof path, "%s/step", where);
+    if (series_put(s, path, COLUMN_I64, 1, &one, CHUNK_FRAMES, &step, NULL, why))
+        return why->status;
+    snprintf(path, sizeof path, "%s/time", where);
+    return series_put(s, path, COLUMN_F64, 1, &one, CHUNK_FRAMES, &t, "s", why);
+}
+
+static int link_clock(hid_t file, const char *from, const char *where, const struct column *c,
+                      struct why *why)
+{
+    for (; c->name; c++)
+        for (int k = 0; k < 2; k++) {
+            char old[80], new[80];
+            snprintf(old, sizeof old, "%s/%s", from, k ? "time" : "step");
+            snprintf(new, sizeof new, "%s/%s/%s", where, c->name, k ? "time" : "step");
+            if (h5_has(file, new)) continue;
+            if (H5Lcreate_hard(file, old, file, new, H5P_DEFAULT, H5P_DEFAULT) < 0)
+                return why_set(why, EX_IOERR, "%s: cannot be linked", new);
+        }
+    return 0;
+}
+
+/* ---- what does not change from frame to frame ---- */
+
+static int put_nsd(hid_t file, const struct frame *f, struct why *why)
+{
+    const struct packing *p = &f->packing;
+    const int h5md[2] = { 1, 1 };
+    int version = DOCUMENT_VERSION;
+    if (h5_group(file, "/h5md/author", why) || h5_group(file, "/h5md/creator", why) ||
+        h5_attr(file, "/h5md", "version", H5T_NATIVE_INT, 2, h5md, why) ||
+        h5_attr_text(file, "/h5md/author", "name", "", why) ||
+        h5_attr_text(file, "/h5md/creator", "name", "nsd", why) ||
+        h5_attr_text(file, "/h5md/creator", "version", NSD_VERSION, why) ||
+        h5_group(file, "/nsd", why) ||
+        h5_attr(file, "/nsd", "version", H5T_NATIVE_INT, -1, &version, why) ||
+        h5_attr_text(file, "/nsd", "kind", f->foreign ? "problem" : "packing", why) ||
+        h5_write_text(file, "/nsd/history", f->history ? f->history : "", why))
+        return why->status;
+    if (f->foreign) return 0;
+    const double g[3] = { p->g.x, p->g.y, p->g.z };
+    int64_t seed = (int64_t)p->seed;
+    if (h5_attr(file, "/nsd", "dim", H5T_NATIVE_INT, -1, &p->dim, why) ||
+        h5_attr(file, "/nsd", "dt", H5T_NATIVE_DOUBLE, -1, &p->dt, why) ||
+        h5_attr(file, "/nsd", "theta", H5T_NATIVE_DOUBLE, -1, &p->theta, why) ||
+        h5_attr(file, "/nsd", "gravity", H5T_NATIVE_DOUBLE, 3, g, why) ||
+        h5_attr(file, "/nsd", "seed", H5T_NATIVE_INT64, -1, &seed, why))
+        return why->status;
+    return p->scene ? h5_write_text(file, "/nsd/scene", p->scene, why) : 0;
+}
+
+static int put_material(hid_t file, const struct packing *p, struct why *why)
+{
+    const hsize_t square[2] = { (hsize_t)p->kinds, (hsize_t)p->kinds };
+    for (const struct column *c = layout_material; c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "/nsd/material/%s", c->name);
+        if (h5_write(file, path, H5T_NATIVE_DOUBLE, 2, square, pointer_in(p, c->offset), c->units,
+                     why))
+            return why->status;
+    }
+    size_t length = 1;
+    for (int32_t k = 0; k < p->kinds; k++) length += strlen(p->kind_name[k]) + 1;
+    char *names = calloc(length, 1);
+    if (!names) return why_set(why, EX_SOFTWARE, "no memory for the kinds");
+    for (int32_t k = 0; k < p->kinds; k++) strcat(strcat(names, p->kind_name[k]), "\n");
+    int e = h5_attr_text(file, "/nsd/material", "kinds", names, why);
+    free(names);
+    return e;
+}
+
+/* H5MD's box: nothing is periodic, so it has no edges. */
+static int put_box(hid_t file, struct why *why)
+{
+    const int dimension = 3; // positions have three components in the plane too
+    const char none[3][5] = { "none", "none", "none" };
+    const char *box = "/particles/all/box";
+    if (h5_group(file, box, why) ||
+        h5_attr(file, box, "dimension", H5T_NATIVE_INT, -1, &dimension, why))
+        return why->status;
+    hid_t text = H5Tcopy(H5T_C_S1);
+    H5Tset_size(text, sizeof none[0]);
+    int e = h5_attr(file, box, "boundary", text, 3, none, why);
+    H5Tclose(text);
+    return e;
+}
+
+static int put_bodies(struct series *s, const struct packing *p, struct why *why)
+{
+    const hsize_t n = (hsize_t)p->n;
+    for (const struct column *c = layout_bodies; c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "/particles/all/%s", c->name);
+        if (h5_write(s->file, path, column_native(c->type), 1, &n, pointer_in(p, c->offset),
+                     c->units, why))
+            return why->status;
+    }
+    bool growing = s->growing;
+    s->growing = false; // walls are the same in every frame
+    int e = series_put_columns(s, "/walls/plane", "", layout_walls, false, p->walls, p->wall,
+                               sizeof *p->wall, 0, why);
+    s->growing = growing;
+    return e;
+}
+
+/* ---- a frame ---- */
+
+static int put_motion(struct series *s, const struct packing *p, struct why *why)
+{
+    for (const struct column *c = layout_motion; c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
+        const hsize_t shape[3] = { 1, (hsize_t)p->n, (hsize_t)c->width };
+        if (series_put(s, path, c->type, 3, shape, 1, pointer_in(p, c->offset), c->units, why))
+            return why->status;
+    }
+    return 0;
+}
+
+static int put_contacts(struct series *s, const struct frame *f, struct why *why)
+{
+    const hsize_t one = 1;
+    const struct contacts *t = &f->contacts;
+    if (series_put(s, "/contacts/start", COLUMN_I64, 1, &one, CHUNK_FRAMES, &s->contacts, NULL,
+                   why) ||
+        series_put(s, "/contacts/count", COLUMN_I64, 1, &one, CHUNK_FRAMES, &t->n, NULL, why) ||
+        series_put_columns(s, "/contacts", "", layout_contacts, t->solved, t->n, t->c, sizeof *t->c,
+                           CHUNK_CONTACTS, why))
+        return why->status;
+    if (s->growing) s->contacts += t->n;
+    int moved = f->moved;
+    return h5_attr(s->file, "/contacts", "moved", H5T_NATIVE_INT, -1, &moved, why);
+}
+
+static const char *const criteria[] = { "glob", "scaled", "natural" };
+
+static int put_report(struct series *s, const struct report *rep, struct why *why)
+{
+    const char *solver = "/observables/solver";
+    bool first = !h5_has(s->file, solver);
+    if (series_put_columns(s, solver, "/value", layout_report, true, 1, rep, sizeof *rep,
+                           CHUNK_FRAMES, why))
+        return why->status;
+    if (first &&
+        (h5_attr_text(s->file, solver, "method", rep->method, why) ||
+         h5_attr_text(s->file, solver, "criterion", criteria[rep->criterion], why) ||
+         h5_attr(s->file, solver, "eps", H5T_NATIVE_DOUBLE, -1, &rep->eps, why) ||
+         h5_attr_text(s->file, solver, "options", rep->options ? rep->options : "{}", why)))
+        return why->status;
+    if (!rep->history || s->growing) return 0;
+    const hsize_t shape[2] = { (hsize_t)rep->sweeps, 5 };
+    return h5_write(s->file, "/observables/solver/history", H5T_NATIVE_DOUBLE, 2, shape,
+                    rep->history, "1", why);
+}
+
+int record_clocks(struct series *s, const struct frame *f, struct why *why)
+{
+    const hsize_t one = 1;
+    const struct packing *p = &f->packing;
+    const char *position = "/particles/all/position", *solver = "/observables/solver";
+    if (f->packed && f->detected &&
+        series_put(s, "/contacts/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &p->step, NULL, why))
+        return why->status;
+    if (f->reported && (put_clock(s, solver, f->report.step, f->report.t, why) ||
+                        link_clock(s->file, solver, solver, layout_report, why)))
+        return why->status;
+    if (!f->packed) return 0;
+    return put_clock(s, position, p->step, p->t, why) ||
+                   link_clock(s->file, position, "/particles/all", layout_motion, why)
+               ? why->status
+               : 0;
+}
+
+int record_static(struct series *s, const struct frame *f, struct why *why)
+{
+    if (put_nsd(s->file, f, why)) return why->status;
+    if (f->packed && (put_material(s->file, &f->packing, why) || put_box(s->file, why) ||
+                      put_bodies(s, &f->packing, why)))
+        return why->status;
+    return copy_unknown(s->file, f, why);
+}
+
+int record_moment(struct series *s, const struct frame *f, struct why *why)
+{
+    if (f->packed && put_motion(s, &f->packing, why)) return why->status;
+    if (f->packed && f->detected && put_contacts(s, f, why)) return why->status;
+    return f->reported ? put_report(s, &f->report, why) : 0;
+}
