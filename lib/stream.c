@@ -53,8 +53,7 @@ struct stream {
     char *const *file;
     const char *name;
     int fd;                        /* -1: none open */
-    int64_t number;                /* documents so far */
-    int64_t in_file;               /* of which in this file */
+    int64_t in_file;               /* documents of it so far */
     unsigned char *map;            /* a regular file, whole; NULL: a pipe */
     size_t size, at;               /* of map */
     unsigned char *buffer, *spare; /* a pipe's document, and the one before it */
@@ -228,7 +227,7 @@ int stream_next(struct stream *s, struct image *im, struct why *why)
                 status = bad(s, why, "neither an nsd document nor an HDF5 file");
             s->at += im->size;
             s->in_file++;
-            im->number = ++s->number;
+            im->number = s->in_file;
             return status;
         }
         file_close(s);

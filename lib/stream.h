@@ -27,7 +27,7 @@ uint32_t document_crc(uint32_t crc, const void *bytes, size_t size);
 /* One document, whole; its bytes belong to the stream, until the next but one. */
 struct image {
     const char *name;     /* of its file, "standard input" */
-    int64_t number;       /* in the stream, from 1 */
+    int64_t number;       /* in its file, from 1 */
     unsigned char *bytes; /* NULL: the end */
     size_t size;
     bool foreign;    /* an HDF5 file without our header */
