@@ -10,6 +10,7 @@ CC      ?= cc
 CFLAGS  ?= -O3 -g
 B       := build$(if $(SAN),/san)
 
+, := ,
 LIBS := hdf5 gsl jansson zlib
 PC   := $(shell pkg-config --cflags $(LIBS) 2>/dev/null)
 PL   := $(shell pkg-config --libs $(LIBS) 2>/dev/null)
@@ -19,8 +20,7 @@ NSD_CFLAGS  := -std=gnu11 -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes 
                -ffp-contract=off -fno-math-errno -fopenmp -DNSD_VERSION='"$(VERSION)"' -Ilib $(PC) \
                $(if $(SAN),-fsanitize=address$(,)undefined -fno-sanitize-recover=undefined -O1)
 NSD_LDFLAGS := -fopenmp $(if $(SAN),-fsanitize=address$(,)undefined)
-NSD_LDLIBS  := $(PL) -lhdf5_hl -lumfpack -lm
-, := ,
+NSD_LDLIBS  := $(PL) -lhdf5_hl -lklu -lm
 
 LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/main.c,$(wildcard lib/*.c)))
 TOOLS := $(patsubst tools/%.c,$B/%,$(wildcard tools/*.c))

@@ -6,26 +6,18 @@
 #ifndef NSD_FCLIB_H
 #define NSD_FCLIB_H
 
+#include "condense.h"
 #include "delassus.h"
 #include "problem.h"
 
 /*
  * local:   u = W r + q
- * global:  M v = H r + G lambda + f,  G^T v + b = 0,  u = H^T v + w; condensed to the local form:
- *
- *     K = [ M -G ; G^T 0 ],  (v, lambda) = K^-1 ((f, -b) + (H, 0) r) = v0 + V r,
- *     W = H^T V,  q = H^T v0 + w  (the upper rows of V and v0).
- *
- * K may be unsymmetric, not singular.
+ * global:  M v = H r + G lambda + f,  G^T v + b = 0,  u = H^T v + w; condensed to the local form
  */
 struct fclib {
     bool global;
     struct delassus W;
-    int64_t nv, nl;   /* global: unknowns v, multipliers lambda */
-    double *v0;       /* [nv + nl] */
-    int64_t vn;       /* V, (nv + nl) x (n d): */
-    int32_t *vi, *vj; /* [vn] row and column of its entries */
-    double *vx;       /* [vn] */
+    struct motion motion; /* global: (v, lambda) of r */
 };
 
 /* Is there a /fclib_local or /fclib_global? file is an hid_t of libhdf5. */
@@ -39,11 +31,7 @@ void fclib_free(struct fclib *);
 int fclib_store_solution(const struct fclib *, int64_t file, const double *u, const double *r,
                          struct why *);
 
-/*
- * A packing's contact problem as /fclib_local (W in CSR, q, mu) or /fclib_global (M, H, f, w, mu).
- * Coulomb's and Signorini's laws do not change when u_n and u_t are scaled, so what is written is
- * D u~ = W r + D u~_free with the symmetric W of the bodies, not D^-1 W.
- */
+/* A packing's contact problem as /fclib_local or /fclib_global, and info. What stood there goes. */
 int fclib_write_problem(const struct problem *, bool global, int64_t file, struct why *);
 
 #endif

@@ -1,7 +1,7 @@
 /*
- * h5.h: the few things that doc.c, sink.c and fclib.c ask of libhdf5, with failures as reasons.
- * Only these four files know HDF5. Object times are never stored, so that the same data are the
- * same bytes.
+ * h5.h: the few things that the documents (doc, record, series, copy, sink) and fclib ask of
+ * libhdf5, with failures as reasons; nobody else knows HDF5. Object times are never stored, so that
+ * the same data are the same bytes.
  */
 #ifndef NSD_H5_H
 #define NSD_H5_H
