@@ -1,0 +1,30 @@
+# shellcheck shell=bash
+# common.sh: what the benchmarks share. Sourced from bash -euo pipefail, in the project's root.
+
+PATH=$(cd "${NSD_BUILD:-build}" && pwd):$PATH # the tools
+results=bench/results
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export PATH work results
+
+# The machine line of every result: what it ran on, and no date.
+machine() {
+    local cpu
+    cpu=$(lscpu | awk -F': *' '/^Model name/ { print $2; exit }')
+    echo "$cpu, $(nproc) cores; $(${CC:-cc} --version | head -n 1)"
+}
+
+# median and spread of the numbers on standard input: "median<TAB>least<TAB>most"
+median() {
+    sort -g |
+        awk '{ x[NR] = $1 }
+             END { m = int((NR + 1) / 2)
+                   print (NR % 2 ? x[m] : (x[m] + x[m + 1]) / 2) "\t" x[1] "\t" x[NR] }'
+}
+
+# The TSV on standard input (comments begin with #) as a Markdown table
+markdown() {
+    awk -F'\t' '/^#/ { next }
+        { gsub(/[|]/, "\\|"); gsub(/\t/, " | "); print "| " $0 " |" }
+        !n++ { gsub(/[^|]+/, " --- ", $0); print "|" $0 "|" }'
+}
