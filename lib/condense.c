@@ -146,6 +146,7 @@ static bool join_columns(const struct sparse *H, const struct lists *of, int32_t
     for (int64_t k = of->first[j]; k < of->first[j + 1]; k++)
         if (owner[part[H->row[of->item[k]]]] >= 0) return false;
     for (int64_t k = of->first[j]; k < of->first[j + 1]; k++) {
+        assert(b);
         int32_t i = H->row[of->item[k]];
         owner[part[i]] = j;
         b[i] += H->x[of->item[k]];
