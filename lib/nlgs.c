@@ -117,6 +117,7 @@ int nlgs_solve(struct problem *p, const struct nlgs_opt *o, struct report *rep)
         if (o->history && keep(rep, rep->sweeps, &e.paper)) return -1;
         double value = err_of(&e, o->criterion);
         rep->converged = value <= o->eps;
+        if (o->progress) o->progress(rep->sweeps, value);
         if (!isfinite(value)) break; // diverged
         // error and change shrink together: due with as much again in hand
         due = 2 * t.change * (o->eps / value);

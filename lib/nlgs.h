@@ -17,6 +17,7 @@ struct nlgs_opt {
     int threads;
     bool every_sweep; /* evaluate the criterion after every sweep, not only when it may be met */
     bool history;     /* keep the terms of every sweep (implies every_sweep) */
+    void (*progress)(int32_t sweeps, double value); /* told of each evaluation; or NULL */
 };
 
 /*

@@ -100,6 +100,9 @@ static int file_open(struct stream *s, struct why *why)
     struct stat st;
     if (s->fd < 0 || fstat(s->fd, &st))
         return why_set(why, EX_NOINPUT, "%s: %s", s->name, strerror(errno));
+    if (isatty(s->fd))
+        return why_set(why, EX_USAGE,
+                       "%s is a terminal: give a FILE, or a pipe (--help tells more)", s->name);
     if (S_ISDIR(st.st_mode)) return why_set(why, EX_NOINPUT, "%s: is a directory", s->name);
     off_t at = S_ISREG(st.st_mode) ? lseek(s->fd, 0, SEEK_CUR) : -1;
     if (at < 0 || st.st_size <= at) return 0; // a pipe, or nothing there

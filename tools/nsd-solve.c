@@ -28,10 +28,16 @@ const struct cli_tool tool = {
     "  nsd-solve -m exact --max-sweeps 20000 KaplasTower.hdf5 | nsd-err\n"
 };
 
+static void show(int32_t sweeps, double value)
+{
+    progress("%d sweeps, %.2g", sweeps, value);
+}
+
 static void solve(struct frame *f, const char *where)
 {
     struct why why = { 0 };
     struct step_opt o = options_step(f->foreign ? 1 : f->packing.dt, f->foreign);
+    o.nlgs.progress = show;
     report_free(&f->report);
     snprintf(f->report.method, sizeof f->report.method, "%s", o.nlgs.method->name);
     f->report.options = options_json(&o);
