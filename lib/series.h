@@ -7,7 +7,7 @@
 
 #include "layout.h"
 
-enum { SERIES = 64, CHUNK_FRAMES = 64, CHUNK_CONTACTS = 1024, CHUNK_BODIES = 8192 };
+enum { SERIES = 64, CHUNK_FRAMES = 64, CHUNK_CONTACTS = 256, CHUNK_BODIES = 8192 };
 
 struct series {
     hid_t file;

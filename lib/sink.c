@@ -21,6 +21,7 @@ struct sink {
     struct packing first; /* of it: what the others must share */
     bool contacts, solved; /* so far: are there any, and are they solved */
     int64_t step;          /* of its last frame */
+    hsize_t reserved;      /* bytes that the disk has promised */
 };
 
 static int io_trouble(const struct sink *s, struct why *why, const char *trouble)
@@ -62,16 +63,17 @@ static hid_t create(const char *path, hid_t access)
 
 /* ---- a stream ---- */
 
-/* All of it, or a regular file without it: what is half written is taken back. */
+/* All of it, or a regular file as it was: what is half written is taken back. */
 static int write_all(struct sink *s, const unsigned char *bytes, size_t size, struct why *why)
 {
-    off_t start = lseek(s->fd, 0, SEEK_CUR);
+    bool append = fcntl(s->fd, F_GETFL) & O_APPEND;
+    off_t start = lseek(s->fd, 0, append ? SEEK_END : SEEK_CUR);
     for (size_t done = 0; done < size;) {
         ssize_t n = write(s->fd, bytes + done, size - done);
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) {
             io_trouble(s, why, strerror(errno));
-            if (start < 0 || ftruncate(s->fd, start)) return why->status;
+            if (start >= 0 && ftruncate(s->fd, start)) return why->status;
             return why->status;
         }
         done += (size_t)n;
@@ -122,6 +124,28 @@ static int write_header(struct sink *s, uint64_t length, uint32_t crc, struct wh
     return good ? 0 : io_trouble(s, why, strerror(errno));
 }
 
+/*
+ * Room on the disk for what a frame may take, before anything of it is written: HDF5 changes its
+ * tables in place, and a disk that is full in the midst of that would cost the frames before, too.
+ */
+static int reserve(struct sink *s, const struct frame *f, struct why *why)
+{
+    bool first = s->doc.file < 0;
+    hsize_t size = 0, n = (hsize_t)f->packing.n, rows = 0;
+    if (!first && H5Fget_filesize(s->doc.file, &size) < 0)
+        return io_trouble(s, why, "cannot be written");
+    if (n > CHUNK_BODIES) n += CHUNK_BODIES; // chunks are whole
+    if (f->detected) rows = (hsize_t)f->contacts.n + CHUNK_CONTACTS;
+    // 128 bytes a body's motion, 256 a contact, and the tables that a frame may make grow
+    hsize_t need = size + 128 * n + 256 * rows + (1 << 16);
+    if (first) need += 128 * n + (1 << 16);
+    if (need <= s->reserved) return 0;
+    int e = posix_fallocate(s->disk, (off_t)size, (off_t)(need - size));
+    if (e) return io_trouble(s, why, strerror(e));
+    s->reserved = need;
+    return 0;
+}
+
 static int flush(struct sink *s, struct why *why)
 {
     return H5Fflush(s->doc.file, H5F_SCOPE_GLOBAL) < 0
@@ -165,6 +189,7 @@ static int trajectory_frame(struct sink *s, const struct frame *f, struct why *w
 {
     if (!f->packed)
         return why_set(why, EX_DATAERR, "an FCLIB problem does not go into a trajectory");
+    if (reserve(s, f, why)) return why->status;
     if (s->doc.file < 0 && trajectory_begin(s, f, why)) return why->status;
     if (check_same(s, f, why)) return why->status;
     // numbers first, on disk; then the clock that makes them a frame: a kill leaves whole frames
@@ -178,8 +203,12 @@ static int trajectory_frame(struct sink *s, const struct frame *f, struct why *w
 
 static int trajectory_close(struct sink *s, struct why *why)
 {
-    int failed = series_close(&s->doc);
+    hsize_t size;
+    int failed = series_close(&s->doc) || H5Fget_filesize(s->doc.file, &size) < 0;
     if (H5Fclose(s->doc.file) < 0 || failed) return io_trouble(s, why, "cannot be written (full?)");
+    struct stat st; // what was reserved and not needed is given back
+    if (fstat(s->disk, &st) || (st.st_size > (off_t)size && ftruncate(s->disk, (off_t)size)))
+        return io_trouble(s, why, strerror(errno));
     static unsigned char buffer[1 << 18];
     uint32_t crc = 0;
     off_t at = DOCUMENT_USERBLOCK;

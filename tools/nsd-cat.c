@@ -42,7 +42,9 @@ int tool_main(int argc, char **argv)
         die_why(&why);
     while (!(last ? reader_last : reader_next)(in, &f, &more, &why) && more) {
         if (f.packed && !last && !range_has(&range, f.packing.step)) continue;
-        if (sink_frame(out, &f, &why)) die(why.status, "%s: %s", reader_where(in), why.text);
+        if (sink_frame(out, &f, &why) == EX_DATAERR)
+            die(EX_DATAERR, "%s: %s", reader_where(in), why.text);
+        if (why.status) break;
         copied++;
         progress("%lld frames", (long long)copied);
         if (last) break;

@@ -10,6 +10,7 @@
 
 static bool last, particles, contacts, walls, history;
 static const char *steps;
+static bool shown; /* something that not every frame has: contacts, a history */
 
 static const struct cli_option own[] = {
     { CLI_FLAG, 'p', "particles", &particles, NULL, "a line a body and frame instead", 0, 0, 0 },
@@ -150,6 +151,7 @@ static void show_walls(const struct packing *p)
 static void show_contacts(const struct frame *f)
 {
     static const char *const status[] = { "free", "stick", "slide" };
+    shown = true;
     for (int64_t i = 0; i < f->contacts.n; i++) {
         const struct contact *c = &f->contacts.c[i];
         json_t *j = json_object();
@@ -174,6 +176,7 @@ static void show_contacts(const struct frame *f)
 
 static void show_problem_contacts(const struct frame *f)
 {
+    shown = true;
     const struct delassus *W = &f->problem.W;
     for (int64_t c = 0; c < W->n; c++) {
         json_t *j = json_object();
@@ -188,9 +191,9 @@ static void show_problem_contacts(const struct frame *f)
     }
 }
 
-static void show_sweeps(const struct frame *f, const char *where)
+static void show_sweeps(const struct frame *f)
 {
-    if (!f->report.history) die(EX_DATAERR, "%s: no history: nsd-solve --history keeps it", where);
+    shown = true;
     for (int32_t i = 0; i < f->report.sweeps; i++) {
         const struct terms *t = &f->report.history[i];
         json_line(json_pack("{s:i, s:o, s:o, s:o, s:o, s:o}", "sweep", i + 1, "eps_glob",
@@ -200,14 +203,13 @@ static void show_sweeps(const struct frame *f, const char *where)
     }
 }
 
-static void show(const struct frame *f, const char *where)
+static void show(const struct frame *f)
 {
     if (particles && f->packed) show_particles(&f->packing);
     if (walls && f->packed) show_walls(&f->packing);
     if (contacts && f->foreign) show_problem_contacts(f);
-    if (contacts && f->packed && !f->detected) die(EX_DATAERR, "%s: no group /contacts", where);
-    if (contacts && f->packed) show_contacts(f);
-    if (history) show_sweeps(f, where);
+    if (contacts && f->detected) show_contacts(f);
+    if (history && f->report.history) show_sweeps(f);
     if (!particles && !walls && !contacts && !history) show_moment(f);
 }
 
@@ -224,14 +226,17 @@ int tool_main(int argc, char **argv)
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
     if (last) {
         if (reader_last(in, &f, &more, &why)) die_why(&why);
-        if (more) show(&f, reader_where(in));
+        if (more) show(&f);
     }
     while (!last && !reader_document(in, &frames, &why) && frames >= 0)
         for (int64_t k = 0; k < frames && !reader_frame(in, k, &f, &why); k++) {
             if (k == 0 && !part) show_document(&f, frames);
-            if (f.foreign || range_has(&range, f.packing.step)) show(&f, reader_where(in));
+            if (f.foreign || range_has(&range, f.packing.step)) show(&f);
         }
     if (why.status) die_why(&why);
+    if (contacts && !shown) die(EX_DATAERR, "%s: no group /contacts", reader_where(in));
+    if (history && !shown)
+        die(EX_DATAERR, "%s: no history: nsd-solve --history keeps it", reader_where(in));
     frame_free(&f);
     reader_close(in);
     finish_stdout();
