@@ -15,29 +15,24 @@ static const void *pointer_in(const void *base, size_t offset)
     return p;
 }
 
-/* WHERE/step and WHERE/time; and the same two under every element of the table, by hard links. */
-static int put_clock(struct series *s, const char *where, int64_t step, double t, struct why *why)
+/* HOME/step and HOME/time; and the same two under every element of the table, by hard links. */
+static int put_clock(struct series *s, const char *home, int64_t step, double t, const char *where,
+                     const struct column *c, struct why *why)
 {
     const hsize_t one = 1;
-    char path[80];
-    snprintf(path, sizeof path, "%s/step", where);
-    if (series_put(s, path, COLUMN_I64, 1, &one, CHUNK_FRAMES, &step, NULL, why))
+    char from[2][80], to[80];
+    for (int k = 0; k < 2; k++)
+        snprintf(from[k], sizeof from[k], "%s/%s", home, k ? "time" : "step");
+    bool linked = series_grows(s, from[0]);
+    if (series_put(s, from[0], COLUMN_I64, 1, &one, CHUNK_FRAMES, &step, NULL, why) ||
+        series_put(s, from[1], COLUMN_F64, 1, &one, CHUNK_FRAMES, &t, "s", why))
         return why->status;
-    snprintf(path, sizeof path, "%s/time", where);
-    return series_put(s, path, COLUMN_F64, 1, &one, CHUNK_FRAMES, &t, "s", why);
-}
-
-static int link_clock(hid_t file, const char *from, const char *where, const struct column *c,
-                      struct why *why)
-{
-    for (; c->name; c++)
+    for (; !linked && c->name; c++)
         for (int k = 0; k < 2; k++) {
-            char old[80], new[80];
-            snprintf(old, sizeof old, "%s/%s", from, k ? "time" : "step");
-            snprintf(new, sizeof new, "%s/%s/%s", where, c->name, k ? "time" : "step");
-            if (h5_has(file, new)) continue;
-            if (H5Lcreate_hard(file, old, file, new, H5P_DEFAULT, H5P_DEFAULT) < 0)
-                return why_set(why, EX_IOERR, "%s: cannot be linked", new);
+            snprintf(to, sizeof to, "%s/%s/%s", where, c->name, k ? "time" : "step");
+            if (h5_has(s->file, to)) continue; // it is the home
+            if (H5Lcreate_hard(s->file, from[k], s->file, to, H5P_DEFAULT, H5P_DEFAULT) < 0)
+                return why_set(why, EX_IOERR, "%s: cannot be linked", to);
         }
     return 0;
 }
@@ -141,6 +136,7 @@ static int put_motion(struct series *s, const struct packing *p, struct why *why
 
 static int put_contacts(struct series *s, const struct frame *f, struct why *why)
 {
+    bool first = !series_grows(s, "/contacts/start");
     const hsize_t one = 1;
     const struct contacts *t = &f->contacts;
     if (series_put(s, "/contacts/start", COLUMN_I64, 1, &one, CHUNK_FRAMES, &s->contacts, NULL,
@@ -151,7 +147,7 @@ static int put_contacts(struct series *s, const struct frame *f, struct why *why
         return why->status;
     if (s->growing) s->contacts += t->n;
     int moved = f->moved;
-    return h5_attr(s->file, "/contacts", "moved", H5T_NATIVE_INT, -1, &moved, why);
+    return !first ? 0 : h5_attr(s->file, "/contacts", "moved", H5T_NATIVE_INT, -1, &moved, why);
 }
 
 static const char *const criteria[] = { "glob", "scaled", "natural" };
@@ -159,7 +155,7 @@ static const char *const criteria[] = { "glob", "scaled", "natural" };
 static int put_report(struct series *s, const struct report *rep, struct why *why)
 {
     const char *solver = "/observables/solver";
-    bool first = !h5_has(s->file, solver);
+    bool first = !series_grows(s, "/observables/solver/eps/value");
     if (series_put_columns(s, solver, "/value", layout_report, true, 1, rep, sizeof *rep,
                            CHUNK_FRAMES, why))
         return why->status;
@@ -183,14 +179,11 @@ int record_clocks(struct series *s, const struct frame *f, struct why *why)
     if (f->packed && f->detected &&
         series_put(s, "/contacts/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &p->step, NULL, why))
         return why->status;
-    if (f->reported && (put_clock(s, solver, f->report.step, f->report.t, why) ||
-                        link_clock(s->file, solver, solver, layout_report, why)))
+    if (f->reported &&
+        put_clock(s, solver, f->report.step, f->report.t, solver, layout_report, why))
         return why->status;
     if (!f->packed) return 0;
-    return put_clock(s, position, p->step, p->t, why) ||
-                   link_clock(s->file, position, "/particles/all", layout_motion, why)
-               ? why->status
-               : 0;
+    return put_clock(s, position, p->step, p->t, "/particles/all", layout_motion, why);
 }
 
 int record_static(struct series *s, const struct frame *f, struct why *why)

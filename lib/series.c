@@ -36,6 +36,11 @@ static hid_t find(const struct series *s, const char *path)
     return -1;
 }
 
+bool series_grows(const struct series *s, const char *path)
+{
+    return find(s, path) >= 0;
+}
+
 static int append(hid_t set, enum column_type type, int rank, const hsize_t *shape,
                   const void *data)
 {

@@ -27,6 +27,9 @@ struct series {
 int series_put(struct series *, const char *path, enum column_type, int rank, const hsize_t *shape,
                hsize_t chunk_rows, const void *data, const char *units, struct why *);
 
+/* Does it grow already? Asked instead of the file, which would have to look the path up. */
+bool series_grows(const struct series *, const char *path);
+
 /* All of a table's columns out of n structs, `tail` behind their names, at `where`. */
 int series_put_columns(struct series *, const char *where, const char *tail, const struct column *,
                        bool solved, int64_t n, const void *structs, size_t stride,

@@ -19,9 +19,9 @@ struct sink {
     int disk;             /* the growing document opened anew: > gives a descriptor only to write */
     struct series doc;    /* its datasets; file -1 before its first frame */
     struct packing first; /* of it: what the others must share */
-    bool contacts, solved; /* so far: are there any, and are they solved */
-    int64_t step;          /* of its last frame */
-    hsize_t reserved;      /* bytes that the disk has promised */
+    bool contacts, solved, moved; /* so far: are there any, and what they are */
+    int64_t step;                 /* of its last frame */
+    hsize_t reserved;             /* bytes that the disk has promised */
 };
 
 static int io_trouble(const struct sink *s, struct why *why, const char *trouble)
@@ -169,7 +169,7 @@ static int check_same(const struct sink *s, const struct frame *f, struct why *w
     if (q->step <= s->step)
         return why_set(why, EX_DATAERR, "step %lld after step %lld: a trajectory's steps increase",
                        (long long)q->step, (long long)s->step);
-    if (f->detected && s->contacts && f->contacts.solved != s->solved)
+    if (f->detected && s->contacts && (f->contacts.solved != s->solved || f->moved != s->moved))
         return why_set(why, EX_DATAERR, "contacts solved and unsolved in one trajectory");
     return 0;
 }
@@ -197,7 +197,7 @@ static int trajectory_frame(struct sink *s, const struct frame *f, struct why *w
         flush(s, why))
         return why->status;
     s->step = f->packing.step;
-    if (f->detected) s->contacts = true, s->solved = f->contacts.solved;
+    if (f->detected) s->contacts = true, s->solved = f->contacts.solved, s->moved = f->moved;
     return 0;
 }
 
