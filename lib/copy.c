@@ -7,10 +7,32 @@
 
 struct copy {
     hid_t to;
-    const char *group, *const *known;
+    const char *group; /* of `to` */
+    const char *const *known;
     bool whole; /* the origin holds one frame: what depends on time may come along */
+    bool plain; /* no checksum vouches for the origin: by our own reading, not libhdf5's copying */
+    int depth;
     struct why *why;
 };
+
+static herr_t copy_link(hid_t from, const char *name, const H5L_info_t *info, void *data);
+
+/* A group, level by level, or a dataset, as plain numbers and texts. */
+static herr_t copy_plain(struct copy *c, hid_t from, const char *name, const char *path)
+{
+    static const char *const none[] = { NULL };
+    H5O_info_t info;
+    if (H5Oget_info_by_name2(from, name, &info, H5O_INFO_BASIC, H5P_DEFAULT) < 0) return -1;
+    if (info.type == H5O_TYPE_DATASET)
+        return h5_copy_plain(from, name, c->to, path, c->why) ? -1 : 0;
+    if (info.type != H5O_TYPE_GROUP || c->depth > 8) return 0; // deeper is a circle
+    struct copy in = { c->to, path, none, c->whole, true, c->depth + 1, c->why };
+    if (h5_group(c->to, path, c->why)) return -1;
+    hid_t group = H5Gopen2(from, name, H5P_DEFAULT);
+    herr_t e = group < 0 ? -1 : H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, NULL, copy_link, &in);
+    if (group >= 0) H5Gclose(group);
+    return e;
+}
 
 static herr_t copy_link(hid_t from, const char *name, const H5L_info_t *info, void *data)
 {
@@ -23,10 +45,15 @@ static herr_t copy_link(hid_t from, const char *name, const H5L_info_t *info, vo
     if (!c->whole && h5_has(from, path)) return 0;
     snprintf(path, sizeof path, "%s%s%s", c->group, c->group[1] ? "/" : "", name);
     if (h5_has(c->to, path)) return 0;
-    hid_t link = H5Pcreate(H5P_LINK_CREATE);
-    H5Pset_create_intermediate_group(link, 1);
-    herr_t e = H5Ocopy(from, name, c->to, path, H5P_DEFAULT, link);
-    H5Pclose(link);
+    herr_t e;
+    if (c->plain) {
+        e = copy_plain(c, from, name, path);
+    } else {
+        hid_t link = H5Pcreate(H5P_LINK_CREATE);
+        H5Pset_create_intermediate_group(link, 1);
+        e = H5Ocopy(from, name, c->to, path, H5P_DEFAULT, link);
+        H5Pclose(link);
+    }
     return e < 0 ? why_set(c->why, EX_DATAERR, "%s: cannot be copied", path), -1 : 0;
 }
 
@@ -55,7 +82,9 @@ int copy_unknown(int64_t file, const struct frame *f, struct why *why)
     h5_shape(f->origin, "/particles/all/position/step", shape);
     for (size_t i = 0; i < sizeof where / sizeof where[0]; i++) {
         if (!h5_has(f->origin, where[i].group)) continue;
-        struct copy c = { file, where[i].group, where[i].known, shape[0] <= 1, why };
+        struct copy c = {
+            file, where[i].group, where[i].known, shape[0] <= 1, f->unchecked, 0, why
+        };
         // the problem itself is what a foreign document is
         if (f->foreign && i == 0) c.known = root;
         hid_t group = H5Gopen2(f->origin, where[i].group, H5P_DEFAULT);

@@ -16,6 +16,7 @@ struct reader {
     int files;
     char *const *file;
     hid_t doc;       /* -1: none open */
+    bool unchecked;  /* no checksum vouches for it */
     int64_t frames;  /* of it */
     int64_t next;    /* frame of reader_next */
     int64_t *step;   /* [frames] of a packing's document, */
@@ -113,6 +114,7 @@ int reader_document(struct reader *r, int64_t *frames, struct why *why)
              (long long)im.number);
     r->doc = H5LTopen_file_image(im.bytes, im.size,
                                  H5LT_FILE_IMAGE_DONT_COPY | H5LT_FILE_IMAGE_DONT_RELEASE);
+    r->unchecked = im.foreign || im.unfinished;
     if (r->doc < 0) {
         why_set(why, EX_DATAERR, "not a readable HDF5 file (truncated or damaged)");
         return blame(r, why);
@@ -392,7 +394,7 @@ static int read_foreign(struct reader *r, struct frame *f, struct why *why)
 int reader_frame(struct reader *r, int64_t k, struct frame *f, struct why *why)
 {
     frame_free(f);
-    f->origin = r->doc;
+    f->origin = r->doc, f->unchecked = r->unchecked;
     f->history = h5_read_text(r->doc, "/nsd/history");
     if (!r->step) {
         if (read_foreign(r, f, why)) return blame(r, why);

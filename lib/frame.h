@@ -25,6 +25,7 @@ struct frame {
 
     char *history;  /* one JSON line a command, each ended by a newline; or NULL */
     int64_t origin; /* the HDF5 file it came from while that is open, for what we do not know */
+    bool unchecked; /* no checksum vouches for that file */
     bool stale;     /* the origin's FCLIB problem no longer belongs to this frame */
 };
 

@@ -325,3 +325,27 @@ int h5_attr_read(hid_t place, const char *path, const char *name, hid_t type, in
     H5Aclose(attr);
     return e;
 }
+
+int h5_copy_plain(hid_t from, const char *name, hid_t to, const char *path, struct why *why)
+{
+    char *text = h5_read_text(from, name);
+    if (text) {
+        int e = h5_write_text(to, path, text, why);
+        free(text);
+        return e;
+    }
+    hsize_t shape[4], count;
+    int rank = h5_shape(from, name, shape);
+    hid_t set = H5Dopen2(from, name, H5P_DEFAULT), disk = set < 0 ? -1 : H5Dget_type(set);
+    bool real = disk >= 0 && H5Tget_class(disk) == H5T_FLOAT;
+    bool whole = disk >= 0 && H5Tget_class(disk) == H5T_INTEGER,
+         wide = whole && H5Tget_size(disk) > 4;
+    if (disk >= 0) H5Tclose(disk);
+    if (set >= 0) H5Dclose(set);
+    if (rank < 0 || (!real && !whole)) return 0;
+    hid_t type = real ? H5T_NATIVE_DOUBLE : wide ? H5T_NATIVE_INT64 : H5T_NATIVE_INT32;
+    void *data = h5_read_all(from, name, type, &count, why);
+    int e = data ? h5_write(to, path, type, rank, shape, data, NULL, why) : why->status;
+    free(data);
+    return e;
+}

@@ -28,7 +28,7 @@ const struct cli_tool tool = {
 int tool_main(int argc, char **argv)
 {
     struct reader *in;
-    struct sink *out;
+    struct sink *out = NULL; // opened when there is something for it: a bad input costs no file
     struct frame f = { 0 };
     struct range range;
     struct why why = { 0 };
@@ -38,10 +38,10 @@ int tool_main(int argc, char **argv)
     if (last && steps) die_usage("--last and --steps exclude each other");
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
     if (output && reader_reads(in, output)) die_usage("%s: is also the input", output);
-    if (sink_open(&out, output, stream || last ? SINK_STREAM : SINK_TRAJECTORY, &why))
-        die_why(&why);
+    enum sink_kind kind = stream || last ? SINK_STREAM : SINK_TRAJECTORY;
     while (!(last ? reader_last : reader_next)(in, &f, &more, &why) && more) {
         if (f.packed && !last && !range_has(&range, f.packing.step)) continue;
+        if (!out && sink_open(&out, output, kind, &why)) break;
         if (sink_frame(out, &f, &why) == EX_DATAERR)
             die(EX_DATAERR, "%s: %s", reader_where(in), why.text);
         if (why.status) break;
