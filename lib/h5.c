@@ -1,6 +1,7 @@
 /* h5.c: see h5.h. */
 #include "h5.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -326,26 +327,71 @@ int h5_attr_read(hid_t place, const char *path, const char *name, hid_t type, in
     return e;
 }
 
-int h5_copy_plain(hid_t from, const char *name, hid_t to, const char *path, struct why *why)
+/* The native type that holds numbers of this type on disk; -1: they are no numbers. */
+static hid_t plain_type(hid_t disk)
 {
-    char *text = h5_read_text(from, name);
-    if (text) {
-        int e = h5_write_text(to, path, text, why);
-        free(text);
-        return e;
-    }
+    H5T_class_t class = H5Tget_class(disk);
+    if (class == H5T_FLOAT) return H5T_NATIVE_DOUBLE;
+    if (class != H5T_INTEGER) return -1;
+    return H5Tget_size(disk) > 4 ? H5T_NATIVE_INT64 : H5T_NATIVE_INT32;
+}
+
+struct target {
+    hid_t to;
+    const char *path;
+    struct why *why;
+};
+
+static herr_t copy_attr(hid_t from, const char *name, const H5A_info_t *info, void *data)
+{
+    const struct target *t = data;
+    enum { MOST = 1 << 16 }; /* bytes */
+    char at[200];
+    if (info->data_size > MOST) return 0;
+    snprintf(at, sizeof at, "@%s", name);
+    char *text = h5_read_text(from, at);
+    hid_t attr = H5Aopen(from, name, H5P_DEFAULT), disk = attr < 0 ? -1 : H5Aget_type(attr);
+    hid_t space = attr < 0 ? -1 : H5Aget_space(attr), type = disk < 0 ? -1 : plain_type(disk);
+    int rank = space < 0 ? 2 : H5Sget_simple_extent_ndims(space), e = 0;
+    hssize_t points = space < 0 ? 0 : H5Sget_simple_extent_npoints(space);
+    static double numbers[MOST];
+    if (text)
+        e = h5_attr_text(t->to, t->path, name, text, t->why);
+    else if (type >= 0 && rank >= 0 && rank < 2 && points <= MOST &&
+             H5Aread(attr, type, numbers) >= 0)
+        e = h5_attr(t->to, t->path, name, type, rank ? (int)points : -1, numbers, t->why);
+    if (space >= 0) H5Sclose(space);
+    if (disk >= 0) H5Tclose(disk);
+    if (attr >= 0) H5Aclose(attr);
+    free(text);
+    return e ? -1 : 0;
+}
+
+static int copy_numbers(hid_t set, hid_t from, const char *name, const struct target *t)
+{
     hsize_t shape[4], count;
     int rank = h5_shape(from, name, shape);
-    hid_t set = H5Dopen2(from, name, H5P_DEFAULT), disk = set < 0 ? -1 : H5Dget_type(set);
-    bool real = disk >= 0 && H5Tget_class(disk) == H5T_FLOAT;
-    bool whole = disk >= 0 && H5Tget_class(disk) == H5T_INTEGER,
-         wide = whole && H5Tget_size(disk) > 4;
-    if (disk >= 0) H5Tclose(disk);
-    if (set >= 0) H5Dclose(set);
-    if (rank < 0 || (!real && !whole)) return 0;
-    hid_t type = real ? H5T_NATIVE_DOUBLE : wide ? H5T_NATIVE_INT64 : H5T_NATIVE_INT32;
-    void *data = h5_read_all(from, name, type, &count, why);
-    int e = data ? h5_write(to, path, type, rank, shape, data, NULL, why) : why->status;
+    hid_t disk = H5Dget_type(set), type = plain_type(disk);
+    H5Tclose(disk);
+    if (rank < 0 || type < 0) return 0;
+    void *data = h5_read_all(from, name, type, &count, t->why);
+    if (!data) return t->why->status;
+    int e = h5_write(t->to, t->path, type, rank, shape, data, NULL, t->why);
     free(data);
+    return e;
+}
+
+int h5_copy_plain(hid_t from, const char *name, hid_t to, const char *path, struct why *why)
+{
+    struct target t = { to, path, why };
+    hid_t set = H5Dopen2(from, name, H5P_DEFAULT);
+    if (set < 0) return why_set(why, EX_DATAERR, "%s: cannot be opened (damaged?)", name);
+    char *text = h5_read_text(from, name);
+    int e = text ? h5_write_text(to, path, text, why) : copy_numbers(set, from, name, &t);
+    if (!e && h5_has(to, path) &&
+        H5Aiterate2(set, H5_INDEX_NAME, H5_ITER_INC, NULL, copy_attr, &t) < 0)
+        e = why_set(why, EX_DATAERR, "%s: attributes cannot be read (damaged?)", name);
+    free(text);
+    H5Dclose(set);
     return e;
 }

@@ -27,8 +27,8 @@ int h5_read(hid_t place, const char *path, hid_t type, hsize_t count, void *out,
 /* The same into fresh memory of any size; *count tells it. NULL on failure. */
 void *h5_read_all(hid_t place, const char *path, hid_t type, hsize_t *count, struct why *);
 /*
- * A dataset of numbers or a text, made again at `path` of `to`, its attributes left behind; what it
- * is else stays away. For files that no checksum vouches for: where one is damaged, H5Ocopy of
+ * A dataset of numbers or a text with attributes that are the same, made again at `path` of `to`;
+ * what is anything else stays away. For files that no checksum vouches for: where one is damaged, H5Ocopy of
  * libhdf5 1.10 crashes.
  */
 int h5_copy_plain(hid_t from, const char *name, hid_t to, const char *path, struct why *);

@@ -106,7 +106,8 @@ static const char *body_trouble(const struct packing *p, int64_t i)
 {
     if (!(p->radius[i] > 0 && isfinite(p->radius[i]))) return "radius must be positive and finite";
     if (!(p->mass[i] >= 0 && isfinite(p->mass[i]))) return "mass must be finite and not negative";
-    if (!(p->inertia[i] >= 0 && isfinite(p->inertia[i]))) return "inertia must be finite and not negative";
+    if (!(p->inertia[i] >= 0 && isfinite(p->inertia[i])))
+        return "inertia must be finite and not negative";
     if (p->mass[i] > 0 && !(p->inertia[i] > 0)) return "inertia must be positive where mass is";
     if (!v3_finite(p->x[i])) return "position is not finite";
     if (!v3_finite(p->v[i])) return "velocity is not finite";

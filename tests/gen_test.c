@@ -351,7 +351,7 @@ static void test_bad_tables(void)
                 { "0 nan 0 1\n", ":1: not finite", EX_DATAERR },
                 { "0 0 0 -1\n", ":1: the radius must be positive", EX_DATAERR },
                 { "0 0 0 1e-200\n", "body 0: a radius of 1e-200 m gives no mass", EX_DATAERR },
-                { "0 0 0 1e200\n", "body 0: mass must not be negative", EX_DATAERR },
+                { "0 0 0 1e200\n", "body 0: mass must be finite and not negative", EX_DATAERR },
                 { NULL, ": No such file or directory", EX_NOINPUT } };
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         char wanted[300];
