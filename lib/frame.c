@@ -9,7 +9,8 @@ void frame_free(struct frame *f)
     contacts_free(&f->contacts);
     report_free(&f->report);
     if (f->foreign) fclib_free(&f->problem);
-    free(f->u), free(f->history);
+    if (f->export) problem_free(f->export);
+    free(f->export), free(f->u), free(f->history);
     *f = (struct frame){ 0 };
 }
 

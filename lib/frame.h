@@ -20,7 +20,7 @@ struct frame {
     struct fclib problem;
     double *u; /* [n d] of its solution, NULL without one; r is problem.W.r */
 
-    const struct problem *export; /* borrowed: also written as an FCLIB problem */
+    struct problem *export; /* also written as an FCLIB problem; or NULL */
     bool export_global;
 
     char *history;  /* one JSON line a command, each ended by a newline; or NULL */

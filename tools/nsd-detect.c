@@ -1,9 +1,10 @@
 /* nsd-detect: the contacts of packings. */
 #include "cli.h"
 #include "detect.h"
-#include "doc.h"
+#include "filter.h"
 #include "options.h"
-#include "sink.h"
+
+#include <stdlib.h>
 
 static int export = -1;
 
@@ -23,37 +24,30 @@ const struct cli_tool tool = {
     "  nsd-detect --fclib=local < packing.h5 > problem.h5\n"
 };
 
-/* The contact problem that FCLIB shows; freed when the frame is written. */
-static void add_problem(struct frame *f, struct problem *p)
+/* The contact problem, for FCLIB. */
+static void add_problem(struct frame *f)
 {
     struct why why = { 0 };
-    if (problem_prepare(p, &f->packing, &f->contacts, 0, 1, ORDER_NATURAL, &why)) die_why(&why);
-    f->export = p;
+    f->export = calloc(1, sizeof *f->export);
+    if (!f->export) die(EX_SOFTWARE, "no memory for the contact problem");
+    if (problem_prepare(f->export, &f->packing, &f->contacts, 0, 1, ORDER_NATURAL, &why))
+        die_why(&why);
     f->export_global = export == 1;
+}
+
+static void detect(struct frame *f, const char *where)
+{
+    struct why why = { 0 };
+    filter_wants_packing(f, where);
+    options_theta(&f->packing, false);
+    if (detect_contacts(&f->contacts, &f->packing, options.gap, &why)) die_why(&why);
+    f->detected = true, f->reported = f->moved = false;
+    f->stale = true;
+    if (export >= 0) add_problem(f);
 }
 
 int tool_main(int argc, char **argv)
 {
-    struct reader *in;
-    struct sink *out;
-    struct frame f = { 0 };
-    struct why why = { 0 };
-    bool more;
-    if (sink_open(&out, NULL, SINK_STREAM, &why) || reader_open(&in, argc, argv, &why))
-        die_why(&why);
-    while (!reader_next(in, &f, &more, &why) && more) {
-        struct problem problem = { 0 };
-        if (f.foreign) die(EX_DATAERR, "%s: an FCLIB problem has no bodies", reader_where(in));
-        options_theta(&f.packing, false);
-        if (detect_contacts(&f.contacts, &f.packing, options.gap, &why)) break;
-        f.detected = true, f.reported = f.moved = false;
-        if (export >= 0) add_problem(&f, &problem);
-        f.stale = true;
-        if (frame_note(&f, cli_history(), &why) || sink_frame(out, &f, &why)) break;
-        if (export >= 0) problem_free(&problem);
-    }
-    if (why.status || sink_close(out, &why)) die_why(&why);
-    frame_free(&f);
-    reader_close(in);
+    filter_run(argc, argv, detect);
     return 0;
 }

@@ -1,8 +1,7 @@
 /* nsd-solve: one step's contact problem. */
 #include "cli.h"
-#include "doc.h"
+#include "filter.h"
 #include "options.h"
-#include "sink.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,6 +27,8 @@ const struct cli_tool tool = {
     "  nsd-solve -m exact --max-sweeps 20000 KaplasTower.hdf5 | nsd-err\n"
 };
 
+static bool all_converged = true;
+
 static void show(int32_t sweeps, double value)
 {
     progress("%d sweeps, %.2g", sweeps, value);
@@ -36,6 +37,7 @@ static void show(int32_t sweeps, double value)
 static void solve(struct frame *f, const char *where)
 {
     struct why why = { 0 };
+    if (!f->foreign) filter_wants_contacts(f, where);
     struct step_opt o = options_step(f->foreign ? 1 : f->packing.dt, f->foreign);
     o.nlgs.progress = show;
     report_free(&f->report);
@@ -54,31 +56,15 @@ static void solve(struct frame *f, const char *where)
         if (step_solve_delassus(W, f->u, &o, &f->report, &why)) die_why(&why);
     }
     f->reported = true;
+    all_converged &= f->report.converged;
     options_log(&f->report);
     options_summary(where, &f->report);
 }
 
 int tool_main(int argc, char **argv)
 {
-    struct reader *in;
-    struct sink *out;
-    struct frame f = { 0 };
-    struct why why = { 0 };
-    bool more, all = true;
-    if (sink_open(&out, NULL, SINK_STREAM, &why) || reader_open(&in, argc, argv, &why))
-        die_why(&why);
     options_log_open();
-    while (!reader_next(in, &f, &more, &why) && more) {
-        const char *where = reader_where(in);
-        if (!f.foreign && !f.detected) die(EX_DATAERR, "%s: no group /contacts", where);
-        if (f.moved) die(EX_DATAERR, "%s: this step is made already; nsd-detect the next", where);
-        solve(&f, where);
-        all &= f.report.converged;
-        if (frame_note(&f, cli_history(), &why) || sink_frame(out, &f, &why)) break;
-    }
-    if (why.status || sink_close(out, &why)) die_why(&why);
+    filter_run(argc, argv, solve);
     options_log_close();
-    frame_free(&f);
-    reader_close(in);
-    return options.strict && !all;
+    return options.strict && !all_converged;
 }

@@ -1,6 +1,7 @@
 /* nsd-step: many steps. */
 #include "cli.h"
 #include "doc.h"
+#include "filter.h"
 #include "options.h"
 #include "sink.h"
 
@@ -108,7 +109,7 @@ int tool_main(int argc, char **argv)
     if (output && reader_reads(in, output)) die_usage("%s: is also the input", output);
     if (reader_last(in, &f, &more, &why)) die_why(&why);
     if (!more) die(EX_DATAERR, "%s: no frame to start from", reader_where(in));
-    if (f.foreign) die(EX_DATAERR, "%s: an FCLIB problem has no bodies", reader_where(in));
+    filter_wants_packing(&f, reader_where(in));
     options_theta(&f.packing, false);
     if (sink_open(&out, output, SINK_TRAJECTORY, &why)) die_why(&why);
     options_log_open();
