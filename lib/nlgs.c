@@ -5,7 +5,7 @@
 #include <time.h>
 
 enum {
-    CHECK_FIRST = 16, /* sweeps that are all judged */
+    CHECK_FIRST = 40, /* sweeps that are all judged */
     CHECK_EVERY = 25,
     PARALLEL_FROM = 128 /* rows of a group worth a second thread */
 };
@@ -119,8 +119,9 @@ int nlgs_solve(struct problem *p, const struct nlgs_opt *o, struct report *rep)
         rep->converged = value <= o->eps;
         if (o->progress) o->progress(rep->sweeps, value);
         if (!isfinite(value)) break; // diverged
-        // error and change shrink together: due with as much again in hand
-        due = 2 * t.change * (o->eps / value);
+        // error and change shrink together, more or less: due after half the way, and all the time
+        // when it is near
+        due = value < 1.3 * o->eps ? INFINITY : t.change * sqrt(o->eps / value);
         last = rep->sweeps;
     }
     if (!believes) velocities(p);

@@ -25,7 +25,7 @@ struct nlgs_opt {
  * then hold r and u. Fills err (all of it but max_overlap), criterion, eps, sweeps, converged,
  * counts, seconds and history of the report. Returns 0, or -1 when memory is short.
  *
- * The criterion is evaluated after each of the first 16 sweeps, when the largest change of a sweep,
+ * The criterion is evaluated after each of the first 40 sweeps, when the largest change of a sweep,
  * gathered on the way, says that it may be met, and every 25 sweeps. What is reported is always its
  * true value.
  */
