@@ -133,5 +133,5 @@ int step_advance(struct packing *p, struct contacts *s, const struct step_opt *o
     contacts_free(s);
     *s = now;
     if (step_solve(p, s, o, rep, why)) return why->status;
-    return step_move(p, s, why);
+    return isfinite(rep->err.paper.eps_glob) ? step_move(p, s, why) : 0;
 }

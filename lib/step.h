@@ -32,7 +32,10 @@ int step_move(struct packing *, const struct contacts *, struct why *);
 /* Back to before step_move, to rounding: what a solution found in a trajectory is checked from. */
 int step_unmove(struct packing *, const struct contacts *, struct why *);
 
-/* One whole step. contacts: in, the last step's (empty at first), to start from; out, this one's. */
+/*
+ * One whole step. contacts: in, the last step's (empty at first), to start from; out, this one's.
+ * Where the solve diverged (its error is not finite) nothing has moved.
+ */
 int step_advance(struct packing *, struct contacts *, const struct step_opt *, struct report *,
                  struct why *);
 

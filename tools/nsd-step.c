@@ -74,6 +74,15 @@ static bool advance(struct frame *f, const struct step_opt *o)
     return isfinite(r->err.paper.eps_glob);
 }
 
+/* The packing alone, of the last step that could be made, unless it has been kept. */
+static void keep_last(struct frame *f, struct sink *out, int64_t k)
+{
+    struct why why = { 0 };
+    if (k && k % every == 0) return;
+    f->reported = f->detected = false;
+    if (sink_frame(out, f, &why)) die_why(&why);
+}
+
 /* N steps, those asked for into the sink; returns how many were made. */
 static int64_t run(struct frame *f, struct sink *out)
 {
@@ -90,6 +99,7 @@ static int64_t run(struct frame *f, struct sink *out)
         if (!advance(f, &o)) {
             warn("step %lld: the solve diverged, the run ends before it",
                  (long long)f->report.step);
+            keep_last(f, out, k - 1);
             return k - 1;
         }
         if ((k % every == 0 || k == steps) && sink_frame(out, f, &why)) die_why(&why);
