@@ -11,7 +11,7 @@ CFLAGS  ?= -O3 -g
 B       := build$(if $(SAN),/san)
 
 , := ,
-LIBS := hdf5 gsl jansson zlib
+LIBS := hdf5 gsl jansson zlib libpng
 PC   := $(shell pkg-config --cflags $(LIBS) 2>/dev/null)
 PL   := $(shell pkg-config --libs $(LIBS) 2>/dev/null)
 

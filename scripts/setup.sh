@@ -3,7 +3,7 @@
 # the line that does.
 set -euo pipefail
 
-run=(build-essential pkg-config libhdf5-dev hdf5-tools libgsl-dev libjansson-dev zlib1g-dev
+run=(build-essential pkg-config libhdf5-dev hdf5-tools libgsl-dev libjansson-dev zlib1g-dev libpng-dev
     libsuitesparse-dev jq gnuplot-nox)
 check=("${run[@]}" perl python3-h5py mandoc shellcheck cppcheck clang clang-tidy clang-format
     libfclib-dev)
