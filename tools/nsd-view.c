@@ -1,0 +1,226 @@
+/* nsd-view: a picture of the bodies, or a series of them, as PNG. */
+#include "cli.h"
+#include "doc.h"
+#include "filter.h"
+#include "view.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static int64_t step = -1, every, samples = 3, threads = 1;
+static int colour = COLOUR_RADIUS;
+static bool plain;
+static const char *output, *range, *size, *camera = "30,15", *box, *background = "ffffff";
+
+static const struct cli_option own[] = {
+    { CLI_INT, 's', "step", &step, "N", "the frame of step N [the very last frame]", 0, 1e15, 0 },
+    { CLI_INT, 0, "every", &every, "K",
+      "a series: every K-th frame, into files numbered from 0 by -o [one picture]", 1, 1e15, 0 },
+    { CLI_TEXT, 'o', "output", &output, "FILE",
+      "where to; of a series with one %0Nd, 'f%05d.png' [standard output]", 0, 0, true },
+    { CLI_CHOICE, 'c', "colour", &colour, COLOURS, "what colours show [radius]", 0, 0, 0 },
+    { CLI_TEXT, 0, "range", &range, "LO,HI",
+      "m or m/s at the ends of the palette [what there is; of speeds from 0]", 0, 0, 0 },
+    { CLI_FLAG, 0, "plain", &plain, NULL, "no marks on the bodies that show how they turn", 0, 0,
+      0 },
+    { CLI_TEXT, 0, "size", &size, "WxH", "pixels [the longer side 900, the other as it fits]", 0, 0,
+      0 },
+    { CLI_TEXT, 0, "camera", &camera, "AZ,EL",
+      "degrees about z and above the horizon, in space [30,15]", 0, 0, 0 },
+    { CLI_TEXT, 0, "box", &box, "X0,X1,Y0,Y1[,Z0,Z1]",
+      "only bodies with their centre in it, m; it fills the picture [all]", 0, 0, 0 },
+    { CLI_TEXT, 0, "background", &background, "RRGGBB", "its colour [ffffff]", 0, 0, 0 },
+    { CLI_INT, 0, "samples", &samples, "N", "a pixel is the mean of N x N [3]", 1, 8, 0 },
+    { CLI_INT, 'j', "threads", &threads, "N", "threads; they never change a picture [1]", 1, 1024,
+      true },
+    { 0 },
+};
+static const struct cli_option *const tables[] = { own, NULL };
+
+const struct cli_tool tool = { "nsd-view", "[FILE ...]",
+                               "Draws a packing as PNG: the last frame, another, or a series.",
+                               tables,
+                               "  nsd-gen 500 | nsd-view > balls.png\n"
+                               "  nsd-view -c speed --every 1 -o 'film%05d.png' out.h5\n" };
+
+/* ---- what options say ---- */
+
+/* n finite numbers with commas between; false where it is something else. */
+static bool numbers(const char *text, int n, double *x)
+{
+    for (int i = 0; i < n; i++) {
+        char *end;
+        x[i] = strtod(text, &end);
+        if (end == text || isspace((unsigned char)*text) || !isfinite(x[i])) return false;
+        if (*end != (i < n - 1 ? ',' : 0)) return false;
+        text = end + 1;
+    }
+    return true;
+}
+
+static bool pixels(const char **text, char stop, int *n)
+{
+    char *end;
+    if (!isdigit((unsigned char)**text)) return false;
+    long x = strtol(*text, &end, 10);
+    *n = (int)x;
+    bool good = x >= 16 && x <= 16384 && *end == stop;
+    *text = end + 1;
+    return good;
+}
+
+static void set_box(struct view *v)
+{
+    double x[6] = { 0 };
+    bool good = numbers(box, 6, x) || numbers(box, 4, x);
+    for (int i = 0; good && i < 6; i++) good = fabs(x[i]) < BACKDROP_FAR;
+    if (!good || !(x[0] < x[1] && x[2] < x[3] && x[4] <= x[5]))
+        die_usage("--box: '%s' is not X0,X1,Y0,Y1,Z0,Z1 (m), each first below the second", box);
+    v->boxed = true;
+    v->region = (struct region){ { x[0], x[2], x[4] }, { x[1], x[3], x[5] } };
+}
+
+static struct view view_of_options(void)
+{
+    struct view v = { .samples = (int)samples, .threads = (int)threads };
+    double x[2];
+    paint_init(&v.paint, (enum colour)colour, plain);
+    if (!numbers(camera, 2, x) || fabs(x[0]) > 360 || fabs(x[1]) > 90)
+        die_usage("--camera: '%s' is not AZ,EL, from -360 to 360 and from -90 to 90", camera);
+    v.azimuth = x[0], v.elevation = x[1];
+    const char *s = size;
+    if (size && !(pixels(&s, 'x', &v.width) && pixels(&s, 0, &v.height)))
+        die_usage("--size: '%s' is not WxH, each from 16 to 16384", size);
+    if (strlen(background) != 6 || strspn(background, "0123456789abcdefABCDEF") != 6)
+        die_usage("--background: '%s' is not RRGGBB", background);
+    v.background = rgb_of((unsigned)strtoul(background, NULL, 16));
+    if (range && (colour == COLOUR_KIND || colour == COLOUR_ID))
+        die_usage("--range: kind and id have none");
+    if (range && (!numbers(range, 2, x) || !(x[0] < x[1])))
+        die_usage("--range: '%s' is not LO,HI, the first below the second", range);
+    if (range) v.paint.lo = x[0], v.paint.hi = x[1];
+    v.paint.fixed = range;
+    if (box) set_box(&v);
+    return v;
+}
+
+/* One %0Nd, N from 1 to 9, and no other %: where it begins. */
+static const char *conversion(const char *name)
+{
+    const char *p = strchr(name, '%');
+    if (!p || p[1] != '0' || p[2] < '1' || p[2] > '9' || p[3] != 'd' || strchr(p + 1, '%'))
+        die_usage("--output: '%s' has not just one %%0Nd, N from 1 to 9, for --every", name);
+    return p;
+}
+
+/* ---- pictures ---- */
+
+static void draw(const struct view *v, const struct frame *f, const char *path)
+{
+    struct picture p;
+    struct why why = { 0 };
+    if (view_draw(v, &f->packing, &p, &why) || picture_write(&p, path, &why)) die_why(&why);
+    picture_free(&p);
+}
+
+static void extend(struct view *v, const struct frame *f, const char *where)
+{
+    struct why why = { 0 };
+    filter_wants_packing(f, where);
+    if (view_extend(v, &f->packing, &why)) die(why.status, "%s: %s", where, why.text);
+}
+
+/* The frame that is asked for; what comes behind it is read, or who sends it would notice. */
+static void find(struct reader *in, struct frame *found)
+{
+    struct frame f = { 0 };
+    struct why why = { 0 };
+    bool more = false, any = false;
+    if (step < 0) {
+        if (reader_last(in, found, &any, &why)) die_why(&why);
+    }
+    while (step >= 0 && !reader_next(in, &f, &more, &why) && more)
+        if (f.packed && f.packing.step == step) {
+            frame_free(found);
+            *found = f, f = (struct frame){ 0 }, any = true;
+        }
+    if (why.status) die_why(&why);
+    if (!any) die(EX_DATAERR, "%s: no such frame", reader_where(in));
+    frame_free(&f);
+}
+
+static void series(struct reader *in, struct view *v)
+{
+    struct frame f = { 0 };
+    struct why why = { 0 };
+    int64_t frames, before = 0, drawn = 0;
+    const char *number = conversion(output);
+    size_t room = strlen(output) + 32;
+    char *path = malloc(room);
+    if (!path) die(EX_SOFTWARE, "no memory");
+    while (!reader_document(in, &frames, &why) && frames >= 0) {
+        int64_t first = (every - before % every) % every; // frames count on through documents
+        bool fitted = v->started;
+        for (int64_t k = first; !fitted && k < frames; k += every) {
+            if (reader_frame(in, k, &f, &why)) die_why(&why);
+            extend(v, &f, reader_where(in));
+        }
+        for (int64_t k = first; k < frames; k += every, drawn++) {
+            if (reader_frame(in, k, &f, &why)) die_why(&why);
+            filter_wants_packing(&f, reader_where(in));
+            if (!fitted) view_fit(v, &f.packing);
+            fitted = true;
+            snprintf(path, room, "%.*s%0*lld%s", (int)(number - output), output, number[2] - '0',
+                     (long long)drawn, number + 4);
+            if (reader_reads(in, path)) die_usage("%s: is also the input", path);
+            draw(v, &f, path);
+            progress("%lld pictures", (long long)drawn + 1);
+        }
+        before += frames;
+    }
+    if (why.status) die_why(&why);
+    if (!drawn) die(EX_DATAERR, "%s: no such frame", reader_where(in));
+    progress_end();
+    free(path);
+    frame_free(&f);
+}
+
+/* A picture has no numbers in it: what the palette's ends mean is said here. */
+static void legend(const struct view *v)
+{
+    const struct paint *p = &v->paint;
+    if (p->fixed || !(p->hi > p->lo)) return;
+    bool speed = p->by == COLOUR_SPEED;
+    warn("%s %g (violet) to %g (yellow) %s", speed ? "speed" : "radius", p->lo, p->hi,
+         speed ? "m/s" : "m");
+}
+
+int tool_main(int argc, char **argv)
+{
+    struct reader *in;
+    struct frame f = { 0 };
+    struct why why = { 0 };
+    struct view v = view_of_options();
+    if (every && step >= 0) die_usage("--step and --every exclude each other");
+    if (every && !output) die_usage("--every wants --output 'name%%05d.png'");
+    if (!output && isatty(STDOUT_FILENO))
+        die(EX_USAGE, "standard output is a terminal: a picture is binary, use > FILE or a pipe");
+    if (reader_open(&in, argc, argv, &why)) die_why(&why);
+    if (every) {
+        series(in, &v);
+    } else {
+        if (output && reader_reads(in, output)) die_usage("%s: is also the input", output);
+        find(in, &f);
+        extend(&v, &f, reader_where(in));
+        view_fit(&v, &f.packing);
+        draw(&v, &f, output);
+        frame_free(&f);
+    }
+    legend(&v);
+    reader_close(in);
+    return 0;
+}
