@@ -49,7 +49,7 @@ struct rgb rgb_mix(struct rgb a, struct rgb b, float t)
 
 void paint_init(struct paint *p, enum colour by, bool plain)
 {
-    p->by = by, p->plain = plain, p->lo = INFINITY, p->hi = -INFINITY;
+    p->by = by, p->plain = plain, p->fixed = false, p->lo = INFINITY, p->hi = -INFINITY;
     for (int i = 0; i <= STEPS; i++)
         bytes[i] = (unsigned char)(255 * encoded(i / (double)STEPS) + 0.5);
     for (int i = 0; i < 256; i++) {

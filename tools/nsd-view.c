@@ -73,14 +73,14 @@ static bool pixels(const char **text, char stop, int *n)
     return good;
 }
 
+/* Four numbers in the plane, or six. */
 static void set_box(struct view *v)
 {
     double x[6] = { 0 };
-    bool good = numbers(box, 6, x) || numbers(box, 4, x);
-    for (int i = 0; good && i < 6; i++) good = fabs(x[i]) < BACKDROP_FAR;
-    if (!good || !(x[0] < x[1] && x[2] < x[3] && x[4] <= x[5]))
+    v->boxed = numbers(box, 6, x) || numbers(box, 4, x);
+    for (int i = 0; i < 6; i++) v->boxed &= fabs(x[i]) < BACKDROP_FAR;
+    if (!v->boxed || !(x[0] < x[1] && x[2] < x[3] && x[4] <= x[5]))
         die_usage("--box: '%s' is not X0,X1,Y0,Y1,Z0,Z1 (m), each first below the second", box);
-    v->boxed = true;
     v->region = (struct region){ { x[0], x[2], x[4] }, { x[1], x[3], x[5] } };
 }
 
@@ -131,6 +131,8 @@ static void extend(struct view *v, const struct frame *f, const char *where)
 {
     struct why why = { 0 };
     filter_wants_packing(f, where);
+    if (v->boxed && f->packing.dim == 3 && v->region.lo.z == v->region.hi.z)
+        die_usage("--box: wants Z0,Z1 too, for balls");
     if (view_extend(v, &f->packing, &why)) die(why.status, "%s: %s", where, why.text);
 }
 
