@@ -3,7 +3,7 @@
 # shellcheck source=tests/tap.sh
 . tests/tap.sh
 
-readers=(nsd-detect nsd-solve nsd-err nsd-info nsd-cat nsd-move nsd-step)
+readers=(nsd-detect nsd-solve nsd-err nsd-info nsd-cat nsd-move nsd-step nsd-view)
 thin=1
 [ -z "$quick" ] || thin=6
 
@@ -37,8 +37,9 @@ try()
 # Each tool gets the damages of the header; two, by turns, each of the others.
 some() # number all?
 {
+    local n=${#readers[@]}
     tools=("${readers[@]}")
-    [ "$2" = 1 ] || tools=("${readers[$1 % 7]}" "${readers[($1 + 3) % 7]}")
+    [ "$2" = 1 ] || tools=("${readers[$1 % n]}" "${readers[($1 + 3) % n]}")
 }
 
 # A status, nothing on stdout and one line on stderr, or a complaint
@@ -195,7 +196,7 @@ else
 fi
 cp "$tmp/good.h5" "$tmp/unfinished.h5"
 header "$tmp/unfinished.h5" 1 1 0
-fuzz_all "an unfinished document" "$tmp/unfinished.h5" 150 nsd-err nsd-step
+fuzz_all "an unfinished document" "$tmp/unfinished.h5" 150 nsd-err nsd-step nsd-view
 
 # ---- documents with numbers that cannot be ----
 

@@ -3,7 +3,7 @@
 # shellcheck source=tests/tap.sh disable=SC2317 # functions called by name
 . tests/tap.sh
 
-tools=(nsd-gen nsd-detect nsd-solve nsd-move nsd-step nsd-err nsd-info nsd-cat)
+tools=(nsd-gen nsd-detect nsd-solve nsd-move nsd-step nsd-err nsd-info nsd-cat nsd-view)
 step() { nsd-step "$@" 2>/dev/null; }
 
 nsd-gen 20 |
@@ -68,6 +68,11 @@ nsd-info --steps \[all\]
 nsd-info --last .
 nsd-cat --steps \[all\]
 nsd-cat --last .
+nsd-view --step \[the very last frame\]
+nsd-view --colour radius|speed|kind|id.*\[radius\]
+nsd-view --camera \[30,15\]
+nsd-view --samples \[3\]
+nsd-view --plain .
 END
 
 # ---- the command line ----
@@ -150,11 +155,12 @@ run()
     nsd-cat "$1.stream" >"$1.cat"
     nsd-info "$1.stream" >"$1.info"
     nsd-err "$1.stream" >"$1.err"
+    nsd-view "$1.stream" >"$1.view" 2>/dev/null
 }
 run "$tmp/now"
 sleep 1.1
 run "$tmp/later"
-for what in gen detect fclib solve move step stream cat info err; do
+for what in gen detect fclib solve move step stream cat info err view; do
     ok "$what: a second later the bytes are the same" cmp "$tmp/now.$what" "$tmp/later.$what"
 done
 ok "threads and logs are in no document" cmp "$tmp/now.cat" "$tmp/now.step"

@@ -18,7 +18,7 @@ nsd-gen 20 |
 nsd-detect "$tmp/heap.h5" >"$tmp/contacts.h5"
 nsd-solve "$tmp/contacts.h5" >"$tmp/solved.h5" 2>/dev/null
 commands=("nsd-gen 20" "nsd-detect $tmp/heap.h5" "nsd-solve $tmp/contacts.h5" "nsd-move $tmp/solved.h5"
-    "nsd-step -n 3 $tmp/heap.h5" "nsd-cat $tmp/heap.h5" "nsd-info $tmp/heap.h5" "nsd-err $tmp/solved.h5")
+    "nsd-step -n 3 $tmp/heap.h5" "nsd-cat $tmp/heap.h5" "nsd-view $tmp/heap.h5" "nsd-info $tmp/heap.h5" "nsd-err $tmp/solved.h5")
 short() { echo "${1//$tmp\//}"; }
 
 # ---- nobody reads, nothing fits, nothing is open ----
@@ -61,7 +61,7 @@ ok "closed stderr: the document is the same" quiet
 all_closed() { nsd-step -n 2 -o "$tmp/closed.h5" "$tmp/heap.h5" <&- >&- 2>&- && nsd-info "$tmp/closed.h5"; }
 ok "all three closed: -o FILE is a document" all_closed
 if command -v script >/dev/null; then
-    for command in "${commands[@]:0:6}"; do
+    for command in "${commands[@]:0:7}"; do
         into() { script -q -e -c "$command 2>$tmp/said" "$tmp/typed" </dev/null >/dev/null 2>&1; }
         status 64 "$(short "$command") does not write to a terminal" into
         like "says so" "$(cat "$tmp/said")" "^${command%% *}: standard output is a terminal"
