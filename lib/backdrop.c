@@ -1,7 +1,5 @@
 #include "backdrop.h"
 
-#include <float.h>
-
 static double *at(vec3 *a, int axis)
 {
     return axis == 0 ? &a->x : axis == 1 ? &a->y : &a->z;
@@ -57,7 +55,7 @@ static bool region_of_walls(struct region *r, const struct packing *p)
         if (isnan(lo[k]) && isnan(hi[k])) lo[k] = -0.5 * size;
         if (isnan(lo[k])) lo[k] = hi[k] - size;
         if (!(hi[k] > lo[k])) hi[k] = lo[k] + size;
-        *at(&r->lo, k) = lo[k] - 1e-6 * size, *at(&r->hi, k) = hi[k] + 1e-6 * size;
+        *at(&r->lo, k) = lo[k], *at(&r->hi, k) = hi[k];
     }
     if (p->dim == 2) r->lo.z = r->hi.z = 0;
     return any;
@@ -80,8 +78,8 @@ bool region_of(struct region *r, const struct packing *p)
         double margin = size * (k == p->dim - 1 ? 0.04 : 0.25);
         double *lo = at(&r->lo, k), *hi = at(&r->hi, k);
         double below = limit(p, k, 1), above = limit(p, k, -1);
-        *lo = *lo - below <= size ? fmin(*lo, below) - 1e-6 * size : *lo - margin;
-        *hi = above - *hi <= size ? fmax(*hi, above) + 1e-6 * size : *hi + margin;
+        *lo = *lo - below <= size ? fmin(*lo, below) : *lo - margin;
+        *hi = above - *hi <= size ? fmax(*hi, above) : *hi + margin;
     }
     return true;
 }
@@ -118,12 +116,15 @@ static void clip(struct polygon *g, vec3 n, double c, int who)
     *g = out;
 }
 
-static void clip_region(struct polygon *g, const struct region *r, vec3 middle, int dim)
+/* With some room, for walls often lie just in the region's sides. */
+static void clip_region(struct polygon *g, const struct region *r, vec3 middle, double size,
+                        int dim)
 {
+    double room = 1e-6 * size;
     vec3 lo = v3_sub(r->lo, middle), hi = v3_sub(r->hi, middle);
     for (int k = 0; k < dim; k++) {
-        clip(g, unit(k, 1), *at(&lo, k), -1);
-        clip(g, unit(k, -1), -*at(&hi, k), -1);
+        clip(g, unit(k, 1), *at(&lo, k) - room, -1);
+        clip(g, unit(k, -1), -*at(&hi, k) - room, -1);
     }
 }
 
@@ -168,7 +169,7 @@ void backdrop_build(struct backdrop *b, const struct packing *p, const struct re
     for (int i = 0; i < walls_of(p); i++) {
         if (!near(wall_now(p, i))) continue;
         struct polygon g = wall_whole(p, i, middle, size);
-        clip_region(&g, r, middle, p->dim);
+        clip_region(&g, r, middle, size, p->dim);
         for (int j = 0; j < walls_of(p) && g.count; j++) {
             vec3 n = p->wall[j].n, x = wall_now(p, j);
             if (j == i || !near(x)) continue;

@@ -2,7 +2,6 @@
 
 #include "shade.h"
 
-#include <omp.h>
 #include <stdlib.h>
 
 /* Samples of a band, about; a pixel's row at least. They fit into a core's cache. */

@@ -214,6 +214,18 @@ static void test_walls(void)
            i < 12 ? 15 : -35);
         picture_free(&a), picture_free(&b);
     }
+    const double sizes[] = { 1, 0.0065, 1e-3 / 3, 7e9 };
+    for (int i = 0; i < 4; i++) {
+        struct view v = view(200, 30, -35);
+        double a = sizes[i];
+        for (int k = 0; k < 6; k++) p.wall[k].x = v3_scale(a, box[k][0]);
+        v.region = (struct region){ { -a, -a, -a }, { a, a, a } }, p.x[0].z = 1e20;
+        struct picture pic = draw(v, &p);
+        ok(drawn(&pic) > 1000,
+           "walls of %g m in the sides of --box have their twelve edges (%d pixels)", a,
+           drawn(&pic));
+        picture_free(&pic);
+    }
     packing_free(&bare), packing_free(&p);
     p = balls(3, 1, (const double[][4]){ { 0, 0, 0.4, 0.4 } });
     walls(&p, 1, (const vec3[][2]){ { { 0, 0, 0 }, { 0, 0, 1 } } });

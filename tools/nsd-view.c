@@ -18,13 +18,13 @@ static const char *output, *range, *size, *camera = "30,15", *box, *background =
 
 static const struct cli_option own[] = {
     { CLI_INT, 's', "step", &step, "N", "the frame of step N [the very last frame]", 0, 1e15, 0 },
-    { CLI_INT, 0, "every", &every, "K",
-      "a series: every K-th frame, into files numbered from 0 by -o [one picture]", 1, 1e15, 0 },
+    { CLI_INT, 0, "every", &every, "K", "a series: every K-th frame, numbered from 0 [one picture]",
+      1, 1e15, 0 },
     { CLI_TEXT, 'o', "output", &output, "FILE",
-      "where to; of a series with one %0Nd, 'f%05d.png' [standard output]", 0, 0, true },
+      "where to; a series: 'f%05d.png' or so [standard output]", 0, 0, true },
     { CLI_CHOICE, 'c', "colour", &colour, COLOURS, "what colours show [radius]", 0, 0, 0 },
     { CLI_TEXT, 0, "range", &range, "LO,HI",
-      "m or m/s at the ends of the palette [what there is; of speeds from 0]", 0, 0, 0 },
+      "m or m/s at the palette's ends [what there is; speeds from 0]", 0, 0, 0 },
     { CLI_FLAG, 0, "plain", &plain, NULL, "no marks on the bodies that show how they turn", 0, 0,
       0 },
     { CLI_TEXT, 0, "size", &size, "WxH", "pixels [the longer side 900, the other as it fits]", 0, 0,
@@ -197,7 +197,7 @@ static void legend(const struct view *v)
     const struct paint *p = &v->paint;
     if (p->fixed || !(p->hi > p->lo)) return;
     bool speed = p->by == COLOUR_SPEED;
-    warn("%s %g (violet) to %g (yellow) %s", speed ? "speed" : "radius", p->lo, p->hi,
+    warn("%s %.3g (violet) to %.3g (yellow) %s", speed ? "speed" : "radius", p->lo, p->hi,
          speed ? "m/s" : "m");
 }
 
