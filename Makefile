@@ -1,5 +1,6 @@
 # make            build everything        make check      set up, then every test
 # make demo       set up, build, 500 balls, a picture     make install   PREFIX, DESTDIR
+# make paper      every table and figure of the paper     QUICK=1        the same in minutes
 #
 # Objects, tools and tests are under build/; SAN=1 makes the same with ASan and UBSan in build/san/.
 
@@ -52,7 +53,7 @@ tests: $(TOOLS) $(CTEST)
 
 # ---- set-up, checks, the demonstration ----
 
-setup-run setup-check:
+setup-run setup-paper setup-check:
 	scripts/setup.sh $(@:setup-%=%)
 
 PROVE := prove -j2 --timer
@@ -70,6 +71,11 @@ check: setup-check
 demo: setup-run
 	$(MAKE) -j2 all
 	PATH="$(CURDIR)/build:$$PATH" scripts/demo.sh
+
+# scripts/paper.mk says what is made; paper-keep puts it where readers find it, docs/paper.
+paper paper-keep: setup-paper
+	$(MAKE) -j2 all
+	$(MAKE) -f scripts/paper.mk $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc)) $(@:paper%=all%)
 
 bench: all
 	PATH="$(CURDIR)/build:$$PATH" bench/run.sh
@@ -127,5 +133,5 @@ clean:
 -include $(wildcard $B/lib/*.d $B/tools/*.d $B/tests/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo bench format lint $(PARTS:%=lint-%) $(TIDY) install uninstall clean setup-run setup-check
+.PHONY: all tests test check demo paper paper-keep bench format lint $(PARTS:%=lint-%) $(TIDY) install uninstall clean setup-run setup-paper setup-check
 .SECONDARY:

@@ -1,17 +1,19 @@
 #!/usr/bin/env bash
-# setup.sh run|check: see that what nsd needs is there; install it where that is allowed, else name
+# setup.sh run|paper|check: see that what nsd needs is there; install it where that is allowed, else name
 # the line that does.
 set -euo pipefail
 
 run=(build-essential pkg-config libhdf5-dev hdf5-tools libgsl-dev libjansson-dev zlib1g-dev libpng-dev
     libsuitesparse-dev jq gnuplot-nox)
-check=("${run[@]}" perl python3-h5py mandoc shellcheck cppcheck clang clang-tidy clang-format
+paper=("${run[@]}" pandoc)
+check=("${paper[@]}" perl python3-h5py mandoc shellcheck cppcheck clang clang-tidy clang-format
     libfclib-dev)
 
 case "${1:-run}" in
 run) packages=("${run[@]}") ;;
+paper) packages=("${paper[@]}") ;;
 check) packages=("${check[@]}") ;;
-*) echo "usage: setup.sh run|check" >&2; exit 64 ;;
+*) echo "usage: setup.sh run|paper|check" >&2; exit 64 ;;
 esac
 
 if ! command -v dpkg-query >/dev/null; then
