@@ -5,19 +5,16 @@ set output dir."/demo.png"
 set multiplot
 
 unset key
-set size ratio -1
 unset border
 unset tics
-set style fill solid noborder
-set xrange [-5.2:5.2]
-set yrange [-2:18]
-set origin 0, 0
-set size 0.27, 1
+set size ratio -1
+set origin -0.02, 0
+set size 0.28, 1
 set title "500 balls at the start"
-plot dir."/start.tsv" using 1:2:3:4 with circles lc rgb variable
-set origin 0.25, 0
+plot dir."/start.png" binary filetype=png with rgbimage
+set origin 0.24, 0
 set title "after 1000 steps (50 ms)"
-plot dir."/end.tsv" using 1:2:3:4 with circles lc rgb variable
+plot dir."/end.png" binary filetype=png with rgbimage
 
 set size noratio
 set border

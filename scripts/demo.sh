@@ -10,11 +10,9 @@ echo "500 balls, $steps steps of 5e-5 s (nsd-gen 500 | nsd-step ...)"
 nsd-gen 500 > "$dir/start.h5"
 nsd-step -m exact -n "$steps" --warm --relax 1.4 --eps 1e-8 -o "$dir/out.h5" "$dir/start.h5"
 
-for moment in start end; do
-    [ "$moment" = end ] && file=$dir/out.h5 || file=$dir/start.h5
-    nsd-info --last --particles "$file" |
-        jq -s -r --argjson n 500 -f scripts/balls.jq > "$dir/$moment.tsv"
-done
+view=(nsd-view --size 560x1300 --box=-0.0032,0.0032,-0.0032,0.0032,0,0.0155)
+"${view[@]}" "$dir/start.h5" > "$dir/start.png"
+"${view[@]}" "$dir/out.h5" > "$dir/end.png"
 nsd-info "$dir/out.h5" |
     jq -r 'select(.step != null)
            | [.step, .contacts, .sweeps, .eps_glob, .max_penetration_true] | @tsv' > "$dir/steps.tsv"
