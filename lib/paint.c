@@ -83,7 +83,8 @@ struct rgb paint_body(const struct paint *p, const struct packing *k, int64_t i)
 {
     if (p->by == COLOUR_KIND) return rgb_of(ten[k->kind[i] % 10]);
     if (p->by == COLOUR_ID) return rgb_of(ten[(uint32_t)k->id[i] % 10]);
-    double t = p->hi > p->lo ? (value(p, k, i) - p->lo) / (p->hi - p->lo) : 0.5;
+    double x = value(p, k, i), t = (x - p->lo) / (p->hi - p->lo);
+    if (!(p->hi > p->lo)) t = x < p->lo ? 0 : x > p->hi ? 1 : 0.5; // all were alike
     return p->palette[(int)(255 * fmin(fmax(t, 0), 1) + 0.5)];
 }
 

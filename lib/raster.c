@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-/* Samples of a band, about; a pixel's row at least. They fit into a core's cache. */
+/* Samples of a band, about, which take 40 bytes each; a row of pixels at least. */
 enum { BAND = 1 << 17 };
 
 static int clamp(double x, int lo, int hi)
@@ -76,7 +76,7 @@ static void draw_edge(struct band *b, const struct raster *s, const struct edge 
     int y0 = clamp(floor(fmin(e->a.y, e->b.y) - h), b->y0, b->y1);
     int y1 = clamp(ceil(fmax(e->a.y, e->b.y) + h), b->y0, b->y1);
     for (int y = y0; y < y1; y++) {
-        // the row meets the stroke's line over this many samples about `middle`
+        // of a slanting stroke the row has a short piece, `half` to each side of `middle`
         double py = y + 0.5 - e->a.y, half = h * sqrt(length2) / fabs(dy), middle = py * dx / dy;
         double lo = fmin(0, dx) - h, hi = fmax(0, dx) + h;
         if (fabs(dy) > 1e-9) lo = fmax(lo, middle - half), hi = fmin(hi, middle + half);

@@ -21,17 +21,17 @@ void shade_normals(struct band *b, const struct raster *s)
 
 /* ---- the sky ---- */
 
-/* Between which depths something is in the squares of SHADE_TILE samples; empty: -inf to inf turned. */
+/* Between which depths something is, square by square; lo > hi where nothing is. */
 static void find_ranges(struct band *b)
 {
     int across = (b->width + SHADE_TILE - 1) / SHADE_TILE;
     int down = (b->y1 - b->y0 + SHADE_TILE - 1) / SHADE_TILE;
-    for (int i = 0; i < across * down; i++) b->range[i] = (struct range2){ INFINITY, -INFINITY };
+    for (int i = 0; i < across * down; i++) b->range[i] = (struct span){ INFINITY, -INFINITY };
     for (int y = b->y0; y < b->y1; y++)
         for (int x = 0; x < b->width; x++) {
             size_t k = band_at(b, x, y);
             if (b->what[k] == NOTHING) continue;
-            struct range2 *r = &b->range[(y - b->y0) / SHADE_TILE * across + x / SHADE_TILE];
+            struct span *r = &b->range[(y - b->y0) / SHADE_TILE * across + x / SHADE_TILE];
             r->lo = fmin(r->lo, b->z[k]), r->hi = fmax(r->hi, b->z[k]);
         }
 }
@@ -73,7 +73,7 @@ void shade_near(struct band *b, const struct raster *s)
             int below = b->y0 + (line + 1) * SHADE_TILE, column = t.x0 / SHADE_TILE;
             for (int x = t.x0; x < t.x1; column++) {
                 int beside = (column + 1) * SHADE_TILE;
-                const struct range2 *r = &b->range[line * across + column];
+                const struct span *r = &b->range[line * across + column];
                 struct part here = { x, beside < t.x1 ? beside : t.x1, y,
                                      below < t.y1 ? below : t.y1 };
                 if (o->x.z + reach > r->lo && o->x.z - reach < r->hi) darken(b, o, i, here);

@@ -18,7 +18,7 @@ enum { NOTHING = -1, GROUND = -2 }; /* and GROUND - i: floor i; from 0 on a spot
 
 enum { SHADE_TILE = 8 };
 
-struct range2 {
+struct span {
     double lo, hi;
 };
 
@@ -27,13 +27,13 @@ struct normal {
 };
 
 struct band {
-    int width, y0, y1;    /* samples: all of these columns, rows y0 to y1 - 1 */
-    double *z;            /* [width (y1 - y0)] of what is in front, -INFINITY where nothing is */
-    int64_t *what;        /* [...] and what it is */
-    struct normal *n;     /* [...] and where it looks */
-    struct range2 *range; /* of squares of samples: between which depths something is in them */
-    float *dark;          /* [...] how much of the sky is hidden */
-    float *edge;          /* [...] how much of an edge is over it */
+    int width, y0, y1;  /* samples: all of these columns, rows y0 to y1 - 1 */
+    double *z;          /* [width (y1 - y0)] of what is in front, -INFINITY where nothing is */
+    int64_t *what;      /* [...] and what it is */
+    struct normal *n;   /* [...] and where it looks */
+    struct span *range; /* of squares of samples: between which depths something is in them */
+    float *dark;        /* [...] how much of the sky is hidden */
+    float *edge;        /* [...] how much of an edge is over it */
     int64_t spots;
     int64_t *spot; /* those near the band */
 };

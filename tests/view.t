@@ -157,6 +157,10 @@ status 0 "walls without bodies" nothing ', "walls": [{"box": {"x": [0, 1], "y": 
 is "are a picture" "$(head -c 4 "$tmp/out" | tail -c 3)" PNG
 refuses 65 "no input" nsd-view </dev/null
 refuses 66 "a missing file" nsd-view "$tmp/missing.h5"
+if ! grep -q __asan_init "$(command -v nsd-view)"; then # the sanitizer wants terabytes of addresses
+    large() { (ulimit -v 600000 && nsd-view --size 16384x16384 "$tmp/ball.h5"); }
+    refuses 70 "more pixels than memory" large
+fi
 if command -v script >/dev/null; then
     into() { script -q -e -c "nsd-view $tmp/keep.h5 2>$tmp/said" "$tmp/typed" </dev/null >/dev/null 2>&1; }
     status 64 "a picture does not go to a terminal" into

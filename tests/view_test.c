@@ -313,6 +313,11 @@ static void test_colours(void)
         double light = 0.2126 * q.r + 0.7152 * q.g + 0.0722 * q.b;
         rises &= light > last, last = light;
     }
+    paint.lo = paint.hi = 0.4;
+    for (int i = 0; i < 3; i++) c[0][i] = paint_body(&paint, &p, i);
+    ok(!memcmp(&c[0][0], &paint.palette[255], sizeof c[0][0]) &&
+           !memcmp(&c[0][2], &paint.palette[0], sizeof c[0][0]) && c[0][1].r < 0.1,
+       "where all were alike, the middle is theirs and the ends are for others");
     ok(rises, "the palette becomes lighter from end to end");
     packing_free(&p);
 }

@@ -5,7 +5,6 @@
 #include "view.h"
 
 #include <ctype.h>
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -142,9 +141,7 @@ static void find(struct reader *in, struct frame *found)
     struct frame f = { 0 };
     struct why why = { 0 };
     bool more = false, any = false;
-    if (step < 0) {
-        if (reader_last(in, found, &any, &why)) die_why(&why);
-    }
+    if (step < 0 && reader_last(in, found, &any, &why)) die_why(&why);
     while (step >= 0 && !reader_next(in, &f, &more, &why) && more)
         if (f.packed && f.packing.step == step) {
             frame_free(found);
