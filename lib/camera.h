@@ -2,7 +2,7 @@
  * camera.h: an orthographic camera, and the window of its plane that a picture shows.
  *
  * A point x is seen at (right . x, up . x), and toward . x is its height above the picture's plane:
- * the largest one hides the others. Distances are true in the picture, whatever the direction.
+ * the largest one hides the others. Lengths across the line of sight are true, near and far alike.
  */
 #ifndef NSD_CAMERA_H
 #define NSD_CAMERA_H
