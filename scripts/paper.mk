@@ -77,7 +77,7 @@ $(OUT)/runs/%.h5 $(OUT)/runs/%.log: | $(OUT)/runs
 	@echo "paper: $$(find $(@D) -name '*.log' | wc -l) of $(words $(RUNS)): $*: $$(tail -n 1 $(@D)/$*.err)" >&2
 
 $(OUT)/runs/%.json: $(OUT)/runs/%.h5 $(OUT)/runs/%.log $P/summary.jq
-	@jq -s -f $P/summary.jq --arg run $* --argjson steps $(steps) $(@D)/$*.log \
+	@jq -s -c -f $P/summary.jq --arg run $* --argjson steps $(steps) $(@D)/$*.log \
 	    --argjson frame "$$(nsd-info --last $(@D)/$*.h5 | tail -n 1)" > $@
 
 $(OUT)/runs.json: $(RUNS:%=$(OUT)/runs/%.json)

@@ -12,6 +12,7 @@ set yrange [1e-20:1e-1]
 set xlabel "sweep" offset 0, 0.5
 set grid ytics lc rgb "#dddddd"
 set key outside below horizontal samplen 1.5
+set rmargin 4
 set style line 1 lw 1.5 pt 7 ps 0.5 lc rgb "#1b6ca8"
 set style line 2 lw 1.5 pt 7 ps 0.5 lc rgb "#3a7d44"
 set style line 3 lw 1.5 pt 7 ps 0.5 lc rgb "#e09f3e"
