@@ -124,14 +124,15 @@ int step_unmove(struct packing *p, const struct contacts *s, struct why *why)
     return 0;
 }
 
-int step_advance(struct packing *p, struct contacts *s, const struct step_opt *o,
-                 struct report *rep, struct why *why)
+int step_advance(struct packing *p, struct contacts *s, struct neighbours *near,
+                 const struct step_opt *o, struct report *rep, struct why *why)
 {
-    struct contacts now = { 0 };
-    if (detect_contacts(&now, p, o->gap, why)) return why->status;
-    if (o->warm) contacts_match(&now, s);
-    contacts_free(s);
-    *s = now;
+    struct contacts before = { 0 };
+    if (o->warm) before = *s, *s = (struct contacts){ 0 };
+    int e = detect_contacts(s, p, o->gap, near, why);
+    if (!e && o->warm) contacts_match(s, &before);
+    contacts_free(&before);
+    if (e) return e;
     if (step_solve(p, s, o, rep, why)) return why->status;
     return isfinite(rep->err.paper.eps_glob) ? step_move(p, s, why) : 0;
 }

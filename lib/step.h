@@ -5,6 +5,7 @@
 #ifndef NSD_STEP_H
 #define NSD_STEP_H
 
+#include "neighbours.h"
 #include "nlgs.h"
 
 struct step_opt {
@@ -34,9 +35,10 @@ int step_unmove(struct packing *, const struct contacts *, struct why *);
 
 /*
  * One whole step. contacts: in, the last step's (empty at first), to start from; out, this one's.
+ * neighbours: of the steps before (empty at first), or NULL.
  * Where the solve diverged (its error is not finite) nothing has moved.
  */
-int step_advance(struct packing *, struct contacts *, const struct step_opt *, struct report *,
-                 struct why *);
+int step_advance(struct packing *, struct contacts *, struct neighbours *, const struct step_opt *,
+                 struct report *, struct why *);
 
 #endif

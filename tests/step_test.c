@@ -56,7 +56,7 @@ static void run(struct packing *p, struct contacts *c, const struct step_opt *o,
 {
     struct why why = { 0 };
     struct report rep = { 0 };
-    for (int k = 0; k < steps; k++) must(step_advance(p, c, o, &rep, &why), &why);
+    for (int k = 0; k < steps; k++) must(step_advance(p, c, NULL, o, &rep, &why), &why);
     report_free(&rep);
 }
 
@@ -106,6 +106,47 @@ static int64_t same_contacts(const struct packing *p, const struct contacts *s, 
     return k == s->n ? k : -1;
 }
 
+/* Do the neighbours of the steps before serve as well as a search anew? Returns how many steps had
+   to search, -1 if one found other contacts. */
+static int searches(struct packing *p, int steps, bool leaps)
+{
+    struct why why = { 0 };
+    struct report rep = { 0 };
+    struct neighbours near = { 0 };
+    struct contacts s = { 0 }, kept = { 0 }, anew = { 0 };
+    struct step_opt o = options(&local_exact, 1e-6, 200);
+    int searched = 0;
+    for (int k = 0; k < steps && searched >= 0; k++) {
+        vec3 was = near.listed ? near.listed[0] : v3(NAN, 0, 0);
+        must(detect_contacts(&kept, p, 0, &near, &why) || detect_contacts(&anew, p, 0, NULL, &why),
+             &why);
+        searched += memcmp(&was, &near.listed[0], sizeof was) != 0;
+        if (kept.n != anew.n || memcmp(kept.c, anew.c, (size_t)kept.n * sizeof *kept.c))
+            searched = -1;
+        must(step_advance(p, &s, NULL, &o, &rep, &why), &why);
+        if (leaps && k % 7 == 3)
+            p->x[k % p->n] = v3_axpy(p->x[(k + 1) % p->n], 1.5e-3, v3(1, 0, 0));
+    }
+    neighbours_free(&near), report_free(&rep);
+    contacts_free(&s), contacts_free(&kept), contacts_free(&anew);
+    return searched;
+}
+
+static void test_neighbours(void)
+{
+    for (int dim = 2; dim <= 3; dim++) {
+        struct packing p;
+        paper(&p, dim, 60);
+        int n = searches(&p, 400, false);
+        ok(n > 0 && n < 200, "%dD: 400 steps, %d searches: the same contacts as with 400", dim, n);
+        packing_free(&p);
+        paper(&p, dim, 60);
+        n = searches(&p, 200, true);
+        ok(n > 0, "%dD: bodies that leap are seen (%d searches)", dim, n);
+        packing_free(&p);
+    }
+}
+
 static void test_detection(void)
 {
     for (int dim = 2; dim <= 3; dim++)
@@ -116,7 +157,7 @@ static void test_detection(void)
             struct packing p;
             struct contacts s = { 0 };
             cloud(&p, dim, 1500, ratios[k % 4]);
-            must(detect_contacts(&s, &p, gap, &why), &why);
+            must(detect_contacts(&s, &p, gap, NULL, &why), &why);
             int64_t n = same_contacts(&p, &s, gap);
             ok(n > 20, "%dD, radii 1:%g, gap %g: the grid finds what brute force finds (%lld)", dim,
                ratios[k % 4], gap, (long long)s.n);
@@ -210,7 +251,7 @@ static void test_momentum(const struct packing *start, const struct method *m)
         moment = v3_add(moment, v3_cross(x[i], v3_scale(p.mass[i] * p.dt, p.g)));
     }
     vec3 l0 = spin(&p, x);
-    must(step_advance(&p, &s, &o, &rep, &why), &why);
+    must(step_advance(&p, &s, NULL, &o, &rep, &why), &why);
     for (int64_t i = 0; i < s.n; i++) {
         const struct contact *c = &s.c[i];
         vec3 r = v3_axpy(v3_axpy(v3_scale(c->r[0], c->n), c->r[1], c->t1), c->r[2], c->t2);
@@ -246,7 +287,7 @@ static void test_agreement(const struct packing *start, const char *what)
         struct report rep = { 0 };
         struct step_opt o = options(methods[m], 1e-11, 100000);
         o.nlgs.relax = m >= 2 ? 1.5 : 1; // no over-relaxation of what is itself a long step
-        must(packing_copy(&p, start, &why) || step_advance(&p, &s, &o, &rep, &why), &why);
+        must(packing_copy(&p, start, &why) || step_advance(&p, &s, NULL, &o, &rep, &why), &why);
         if (m == 4) exact = p;
         double d = largest_difference(&p, &exact);
         ok(rep.converged && d < 1e-8,
@@ -280,7 +321,7 @@ static void test_threads(const struct packing *start)
             o.order = (enum order)order;
             o.nlgs.threads = k < 3 ? 1 << k : 1;
             o.nlgs.every_sweep = k == 3;
-            must(packing_copy(&p, start, &why) || step_advance(&p, &s, &o, &rep, &why), &why);
+            must(packing_copy(&p, start, &why) || step_advance(&p, &s, NULL, &o, &rep, &why), &why);
             if (k == 0)
                 one = p, sweeps = rep.sweeps;
             else
@@ -427,6 +468,7 @@ int main(void)
 {
     rng = gsl_rng_alloc(gsl_rng_mt19937);
     test_detection();
+    test_neighbours();
     for (int m = 0; methods[m]; m++) test_rolling(3, methods[m]), test_rolling(2, methods[m]);
     for (int k = 0; k < 5; k++) test_restitution(0.25 * k, 1 - 0.25 * k);
     test_plane();

@@ -61,11 +61,11 @@ static void summary(int64_t made)
 }
 
 /* One step of f; false when its solve has diverged. */
-static bool advance(struct frame *f, const struct step_opt *o)
+static bool advance(struct frame *f, struct neighbours *near, const struct step_opt *o)
 {
     struct why why = { 0 };
     struct report *r = &f->report;
-    if (step_advance(&f->packing, &f->contacts, o, r, &why)) die_why(&why);
+    if (step_advance(&f->packing, &f->contacts, near, o, r, &why)) die_why(&why);
     f->reported = f->moved = true;
     count(r);
     options_log(r);
@@ -88,6 +88,7 @@ static int64_t run(struct frame *f, struct sink *out)
 {
     struct why why = { 0 };
     struct step_opt o = options_step(f->packing.dt, false);
+    struct neighbours near = { 0 };
     if (steps) {
         report_free(&f->report);
         snprintf(f->report.method, sizeof f->report.method, "%s", o.nlgs.method->name);
@@ -96,15 +97,17 @@ static int64_t run(struct frame *f, struct sink *out)
         f->stale = true;
     }
     for (int64_t k = 1; k <= steps; k++) {
-        if (!advance(f, &o)) {
+        if (!advance(f, &near, &o)) {
             warn("step %lld: the solve diverged, the run ends before it",
                  (long long)f->report.step);
             keep_last(f, out, k - 1);
+            neighbours_free(&near);
             return k - 1;
         }
         if ((k % every == 0 || k == steps) && sink_frame(out, f, &why)) die_why(&why);
     }
     if (!steps && sink_frame(out, f, &why)) die_why(&why);
+    neighbours_free(&near);
     return steps;
 }
 
