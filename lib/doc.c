@@ -403,6 +403,7 @@ int reader_frame(struct reader *r, int64_t k, struct frame *f, struct why *why)
     if (read_packing(r, k, &f->packing, why)) return blame(r, why);
     f->packed = true;
     if (read_contacts(r, k, f, why) || read_report(r, r->step[k], f, why)) return blame(r, why);
+    stream_rest(r->stream);
     return 0;
 }
 

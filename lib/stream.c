@@ -17,7 +17,8 @@ enum {
     AT_FLAGS = 12,
     AT_LENGTH = 16,
     AT_CRC = 24,
-    AT_HEADER_CRC = 28
+    AT_HEADER_CRC = 28,
+    LARGE = 1 << 26 /* bytes */
 };
 
 static void put(unsigned char *p, uint64_t x, int bytes)
@@ -88,6 +89,11 @@ void stream_close(struct stream *s)
     if (s->old) munmap(s->old, s->old_size);
     free(s->buffer), free(s->spare);
     free(s);
+}
+
+void stream_rest(struct stream *s)
+{
+    if (s->map && s->size > LARGE) madvise(s->map, s->size, MADV_DONTNEED); // nobody writes there
 }
 
 static int file_open(struct stream *s, struct why *why)
@@ -178,6 +184,7 @@ static int own(struct stream *s, struct image *im, size_t have, struct why *why)
     if (document_crc(0, im->bytes + DOCUMENT_USERBLOCK, have - DOCUMENT_USERBLOCK) != crc)
         return bad(s, why,
                    "damaged: its checksum is wrong (changed on purpose? see nsd-format(5))");
+    stream_rest(s);
     return 0;
 }
 

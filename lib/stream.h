@@ -43,6 +43,8 @@ int stream_open(struct stream **, int files, char *const *file, struct why *);
  * damaged, of a newer version, or nothing at all.
  */
 int stream_next(struct stream *, struct image *, struct why *);
+/* What has been read of a large file need not stay in memory; it is read again when wanted. */
+void stream_rest(struct stream *);
 void stream_close(struct stream *);
 
 #endif
