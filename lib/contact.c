@@ -11,7 +11,7 @@ void contacts_free(struct contacts *s)
 struct contact *contacts_add(struct contacts *s, int32_t a, int32_t b)
 {
     if (s->n == s->room) {
-        int64_t room = s->room ? s->room + s->room / 2 : 64;
+        int64_t room = s->room + s->room / 2 + 64;
         struct contact *c = realloc(s->c, (size_t)room * sizeof *c);
         if (!c) return NULL;
         s->c = c, s->room = room;

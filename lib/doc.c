@@ -55,13 +55,13 @@ const char *reader_where(const struct reader *r)
     return r->where;
 }
 
-bool reader_reads(const struct reader *r, const char *path)
+bool reader_reads(int files, char *const *file, const char *path)
 {
     struct stat out, in;
     if (stat(path, &out)) return false;
-    for (int i = 0; i < (r->files ? r->files : 1); i++) {
-        bool standard = !r->files || !strcmp(r->file[i], "-");
-        int failed = standard ? fstat(STDIN_FILENO, &in) : stat(r->file[i], &in);
+    for (int i = 0; i < (files ? files : 1); i++) {
+        bool standard = !files || !strcmp(file[i], "-");
+        int failed = standard ? fstat(STDIN_FILENO, &in) : stat(file[i], &in);
         if (!failed && in.st_dev == out.st_dev && in.st_ino == out.st_ino) return true;
     }
     return false;

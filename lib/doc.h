@@ -28,8 +28,8 @@ int reader_last(struct reader *, struct frame *, bool *more, struct why *);
 
 /* "a.h5" or "a.h5: document 3": for messages about the frame in hand */
 const char *reader_where(const struct reader *);
-/* Is this file among the inputs? */
-bool reader_reads(const struct reader *, const char *path);
+/* Is the file at `path` among these inputs? */
+bool reader_reads(int files, char *const *file, const char *path);
 void reader_close(struct reader *);
 
 #endif

@@ -77,7 +77,8 @@ static int read_table(struct table *t, int dim, const char *dir, const char *nam
     if (!f) return why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
     errno = 0;
     while (!why->status && getline(&line, &room, f) >= 0) read_line(t, dim, line, path, ++at, why);
-    if (ferror(f)) why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
+    if (!why->status && !feof(f))
+        why_set(why, errno == ENOMEM ? EX_SOFTWARE : EX_NOINPUT, "%s: %s", path, strerror(errno));
     free(line);
     fclose(f);
     return why->status;

@@ -1,11 +1,14 @@
 #include "options.h"
 
+#include "doc.h"
 #include "json.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #define METHODS  "sbp|sal|ebp|eal|exact"         /* in the order of methods[] */
 #define CRITERIA "glob|scaled|natural"           /* of enum criterion */
@@ -135,9 +138,17 @@ void options_theta(struct packing *p, bool detected)
 
 static FILE *log_file;
 
-void options_log_open(void)
+void options_log_open(int files, char *const *file, const char *output)
 {
+    struct stat log, out;
     if (!options.log) return;
+    if (!stat(options.log, &log) && S_ISREG(log.st_mode)) {
+        int failed = output ? stat(output, &out) : fstat(STDOUT_FILENO, &out);
+        if (!failed && out.st_dev == log.st_dev && out.st_ino == log.st_ino)
+            die_usage("--log: %s is also the output", options.log);
+        if (reader_reads(files, file, options.log))
+            die_usage("--log: %s is also the input", options.log);
+    }
     log_file = fopen(options.log, "w");
     if (!log_file) die(EX_IOERR, "%s: %s", options.log, strerror(errno));
 }

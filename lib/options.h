@@ -28,8 +28,9 @@ char *options_json(const struct step_opt *);
 /* --theta into the packing; EX_USAGE where it contradicts contacts that are already there. */
 void options_theta(struct packing *, bool detected);
 
-/* --log: opened at once, then one JSON line a solve. Ends the tool when it cannot be written. */
-void options_log_open(void);
+/* --log: opened at once, then one JSON line a solve. Ends the tool when it cannot be written, or is
+   one of the files that the tool reads or its output (NULL: the standard output). */
+void options_log_open(int files, char *const *file, const char *output);
 void options_log(const struct report *);
 void options_log_close(void);
 

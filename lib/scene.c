@@ -41,6 +41,9 @@ static int read_kind(jnode n, const struct scene *s, int32_t *kind)
 
 static int add_kind(jnode n, struct scene *s, const char *name, double density)
 {
+    bool printable = *name; // documents keep names line by line
+    for (const char *c = name; *c; c++) printable &= (unsigned char)*c >= ' ';
+    if (!printable) return jnode_fault(n, "a kind wants a name without control characters");
     s->kind[s->kinds] = (struct scene_kind){ strdup(name), density };
     if (!s->kind[s->kinds].name) return why_set(n.in->why, EX_SOFTWARE, "no memory for a kind");
     s->kinds++;

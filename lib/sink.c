@@ -225,6 +225,7 @@ static int trajectory_close(struct sink *s, struct why *why)
 
 int sink_frame(struct sink *s, const struct frame *f, struct why *why)
 {
+    if (f->packed && packing_check(&f->packing, why)) return why->status; // nobody would read it
     if (!f->packed && s->doc.file < 0) s->trajectory = false; // a problem is a document by itself
     return s->trajectory ? trajectory_frame(s, f, why) : stream_frame(s, f, why);
 }

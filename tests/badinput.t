@@ -431,4 +431,41 @@ for tool in nsd-cat nsd-info; do
 done
 refuses 64 "nsd-solve --theta other than the contacts'" nsd-solve --theta 0.9 "$tmp/contacts.h5"
 
+
+# ---- found by newcomers ----
+
+one_then_more() # a frame with a single contact is detected again, wider
+{
+    echo '{"dt": 1e-4, "walls": [{"point": [0, 0, 0], "normal": [0, 0, 1]}],
+           "bodies": [{"x": [0, 0, 1e-3], "radius": 1e-3}, {"x": [3e-3, 0, 2e-3], "radius": 1e-3},
+                      {"x": [6e-3, 0, 2e-3], "radius": 1e-3}, {"x": [9e-3, 0, 2e-3], "radius": 1e-3}]}' |
+        nsd-gen - | nsd-detect | nsd-detect --gap 0.01
+}
+status 0 "contacts detected again, more of them" one_then_more
+is "are all there" "$(nsd-info -c "$tmp/out" | wc -l)" 10
+
+cp "$tmp/packing.h5" "$tmp/kept.h5"
+ln -s kept.h5 "$tmp/link.h5"
+for log in kept link; do
+    refuses 64 "nsd-step --log $log.h5, which it reads" nsd-step --log "$tmp/$log.h5" -o "$tmp/other.h5" "$tmp/kept.h5"
+    into() { nsd-step --log "$tmp/$log.h5" <"$tmp/kept.h5"; }
+    refuses 64 "nsd-step --log $log.h5 < it" into
+done
+cp "$tmp/contacts.h5" "$tmp/kept2.h5"
+refuses 64 "nsd-solve --log of its input" nsd-solve --log "$tmp/kept2.h5" "$tmp/kept2.h5"
+ok "the input is what it was" cmp "$tmp/kept.h5" "$tmp/packing.h5"
+ok "here, too" cmp "$tmp/kept2.h5" "$tmp/contacts.h5"
+refuses 64 "nsd-step --log of its -o" nsd-step --log "$tmp/both.h5" -o "$tmp/both.h5" "$tmp/kept.h5"
+status 0 "nsd-solve --log /dev/null > /dev/null" bash -c "nsd-solve --log /dev/null '$tmp/contacts.h5' >/dev/null"
+
+kinds() { printf '{"dt": 1, "kinds": {"%s": {"density": 1}}, "bodies": []}' "$1" | nsd-gen -; }
+refuses 65 "nsd-gen: a kind's name of two lines" kinds 'a\nb'
+refuses 65 "nsd-gen: a kind without a name" kinds ''
+far() { echo '{"dt": 1, "bodies": [{"x": [1e308, 0, 0], "radius": 1, "v": [1e308, 0, 0]}]}' | nsd-gen - | nsd-step; }
+refuses 65 "nsd-step: what nobody could read is not written" far
+if ! grep -q __asan_init "$(command -v nsd-gen)"; then
+    endless() { (ulimit -v 1500000 && echo '{"dt": 1, "bodies": [{"file": "/dev/zero"}]}' | nsd-gen -); }
+    refuses 70 "nsd-gen: a line longer than memory" endless
+fi
+
 done_testing

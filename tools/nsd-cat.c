@@ -37,7 +37,7 @@ int tool_main(int argc, char **argv)
     if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
     if (last && steps) die_usage("--last and --steps exclude each other");
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
-    if (output && reader_reads(in, output)) die_usage("%s: is also the input", output);
+    if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
     enum sink_kind kind = stream || last ? SINK_STREAM : SINK_TRAJECTORY;
     while (!(last ? reader_last : reader_next)(in, &f, &more, &why) && more) {
         if (f.packed && !last && !range_has(&range, f.packing.step)) continue;

@@ -63,7 +63,7 @@ static void solve(struct frame *f, const char *where)
 
 int tool_main(int argc, char **argv)
 {
-    options_log_open();
+    options_log_open(argc, argv, NULL);
     filter_run(argc, argv, solve);
     options_log_close();
     return options.strict && !all_converged;

@@ -119,13 +119,13 @@ int tool_main(int argc, char **argv)
     struct why why = { 0 };
     bool more;
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
-    if (output && reader_reads(in, output)) die_usage("%s: is also the input", output);
+    if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
     if (reader_last(in, &f, &more, &why)) die_why(&why);
     if (!more) die(EX_DATAERR, "%s: no frame to start from", reader_where(in));
     filter_wants_packing(&f, reader_where(in));
     options_theta(&f.packing, false);
     if (sink_open(&out, output, SINK_TRAJECTORY, &why)) die_why(&why);
-    options_log_open();
+    options_log_open(argc, argv, output);
     if (frame_note(&f, cli_history(), &why)) die_why(&why);
     int64_t made = run(&f, out);
     if (sink_close(out, &why)) die_why(&why);

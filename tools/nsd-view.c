@@ -152,7 +152,7 @@ static void find(struct reader *in, struct frame *found)
     frame_free(&f);
 }
 
-static void series(struct reader *in, struct view *v)
+static void series(struct reader *in, int files, char *const *file, struct view *v)
 {
     struct frame f = { 0 };
     struct why why = { 0 };
@@ -175,7 +175,7 @@ static void series(struct reader *in, struct view *v)
             fitted = true;
             snprintf(path, room, "%.*s%0*lld%s", (int)(number - output), output, number[2] - '0',
                      (long long)drawn, number + 4);
-            if (reader_reads(in, path)) die_usage("%s: is also the input", path);
+            if (reader_reads(files, file, path)) die_usage("%s: is also the input", path);
             draw(v, &f, path);
             progress("%lld pictures", (long long)drawn + 1);
         }
@@ -210,9 +210,9 @@ int tool_main(int argc, char **argv)
         die(EX_USAGE, "standard output is a terminal: a picture is binary, use > FILE or a pipe");
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
     if (every) {
-        series(in, &v);
+        series(in, argc, argv, &v);
     } else {
-        if (output && reader_reads(in, output)) die_usage("%s: is also the input", output);
+        if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
         find(in, &f);
         extend(&v, &f, reader_where(in));
         view_fit(&v, &f.packing);
