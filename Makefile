@@ -23,7 +23,13 @@ NSD_CFLAGS  := -std=gnu11 -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes 
 NSD_LDFLAGS := -fopenmp $(if $(SAN),-fsanitize=address$(,)undefined)
 NSD_LDLIBS  := $(PL) -lhdf5_hl -lklu -lm
 
-LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/main.c,$(wildcard lib/*.c)))
+# The sweep once a width; without contraction, and with instructions that the others know nothing of.
+WIDTHS    := 2 $(if $(filter x86_64,$(shell uname -m)),4 8)
+WIDTH_4   := -mavx2
+WIDTH_8   := -mavx512f -mavx512dq -mavx512vl
+
+LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/main.c lib/sweep.c,$(wildcard lib/*.c))) \
+         $(WIDTHS:%=$B/lib/sweep_%.o)
 TOOLS := $(patsubst tools/%.c,$B/%,$(wildcard tools/*.c))
 CTEST := $(patsubst tests/%.c,$B/tests/%,$(wildcard tests/*_test.c))
 
@@ -37,6 +43,10 @@ $B/libnsd.a: $(LIB)
 $B/lib/%.o: lib/%.c Makefile
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -c -o $@ $<
+
+$B/lib/sweep_%.o: lib/sweep.c Makefile
+	@mkdir -p $(@D)
+	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -DLANES=$* $(WIDTH_$*) -MMD -c -o $@ $<
 
 $B/tools/%.o: tools/%.c Makefile
 	@mkdir -p $(@D)

@@ -21,37 +21,38 @@ void assembly_free(struct assembly *A)
     *A = (struct assembly){ 0 };
 }
 
-static const struct row *assembly_row(const struct assembly *A, int64_t c)
+static const struct bundle *assembly_bundle(const struct assembly *A, int64_t c)
 {
-    return &A->p->row[A->row[c]];
+    return row_bundle(A->p, A->row[c]);
 }
 
 /* out = D u~ of every contact with the bodies as they are here; D u~ = u + E u^- */
-static void assembly_velocity(const struct assembly *A, struct body *body, double *out)
+static void assembly_velocity(const struct assembly *A, const struct body *body, double *out)
 {
-    struct problem p = *A->p;
-    p.body = body;
-    assert(p.d == 2 || p.d == 3);
-    for (int64_t c = 0; c < p.n; c++) {
-        const struct row *row = assembly_row(A, c);
+    int d = A->p->d;
+    assert(d == 2 || d == 3);
+    for (int64_t c = 0; c < A->p->n; c++) {
+        const struct bundle *row = assembly_bundle(A, c);
+        int lane = row_lane(A->row[c]);
         double u[3];
-        body_velocity(&p, row, u);
-        for (int k = 0; k < p.d; k++) *out++ = u[k] / row->s[k > 0];
+        body_velocity(body, row, lane, u);
+        for (int k = 0; k < d; k++) *out++ = u[k] / row->s[k > 0][lane];
     }
 }
 
 /* q with the reactions taken out of the bodies, w with the rest of their motion too */
 static bool assembly_vectors(struct assembly *A)
 {
-    struct problem p = *A->p;
+    const struct problem *p = A->p;
     struct body *still = calloc((size_t)A->bodies + 1, sizeof *still);
     if (!still) return false;
-    if (A->bodies) memcpy(A->free, p.body, (size_t)A->bodies * sizeof *still);
-    p.body = A->free;
-    for (int64_t i = 0; i < p.n; i++) {
-        const struct row *c = &p.row[i];
-        const double back[3] = { -c->r[0], -c->r[1], -c->r[2] };
-        body_push(&p, c, back);
+    if (A->bodies) memcpy(A->free, p->body, (size_t)A->bodies * sizeof *still);
+    for (int64_t i = 0; i < p->rows; i++) {
+        double r[3], u[3];
+        if (p->contact[i] < 0) continue;
+        row_get(p, i, r, u);
+        const double back[3] = { -r[0], -r[1], -r[2] };
+        body_push(A->free, row_bundle(p, i), row_lane(i), back);
     }
     for (int64_t i = 0; i < A->bodies; i++) {
         still[i] = A->free[i];
@@ -68,9 +69,10 @@ int assembly_init(struct assembly *A, const struct problem *p, struct why *why)
 {
     *A = (struct assembly){ .p = p };
     size_t n = (size_t)p->n, nd = n * (size_t)p->d;
-    for (int64_t i = 0; i < p->n; i++)
+    for (int64_t i = 0; i < p->rows; i++)
         for (int s = 0; s < 2; s++) {
-            int64_t body = s ? p->row[i].b : p->row[i].a;
+            const struct bundle *row = row_bundle(p, i);
+            int64_t body = (s ? row->b : row->a)[row_lane(i)];
             if (body >= A->bodies) A->bodies = body + 1;
         }
     A->row = malloc((n + 1) * sizeof *A->row);
@@ -79,25 +81,28 @@ int assembly_init(struct assembly *A, const struct problem *p, struct why *why)
     A->w = malloc((nd + 1) * sizeof *A->w);
     A->free = calloc((size_t)A->bodies + 1, sizeof *A->free);
     bool good = A->row && A->end && A->q && A->w && A->free;
-    for (int64_t i = 0; good && i < p->n; i++) {
-        const struct row *row = &p->row[i];
+    for (int64_t i = 0; good && i < p->rows; i++) {
         int64_t c = p->contact[i];
+        if (c < 0) continue;
+        int32_t a = row_bundle(p, i)->a[row_lane(i)], b = row_bundle(p, i)->b[row_lane(i)];
         A->row[c] = i;
-        A->end[2 * c] = p->body[row->a].im > 0 ? row->a : -1;
-        A->end[2 * c + 1] = p->body[row->b].im > 0 ? row->b : -1;
+        A->end[2 * c] = p->body[a].im > 0 ? a : -1;
+        A->end[2 * c + 1] = p->body[b].im > 0 ? b : -1;
     }
     good = good && lists_init(&A->of, A->bodies, 2 * p->n, A->end) && assembly_vectors(A);
     return good ? 0 : short_of_memory(why);
 }
 
 /* u_c = J (v, w) of the body at this end of the contact; see body_velocity. */
-static void jacobian(const struct row *c, int end, double J[3][6])
+static void jacobian(const struct assembly *A, int64_t contact, int end, double J[3][6])
 {
-    double sign = end ? 1 : -1, l = end ? c->lb : c->la;
+    const struct bundle *c = assembly_bundle(A, contact);
+    int i = row_lane(A->row[contact]);
+    double sign = end ? 1 : -1, l = end ? c->lb[i] : c->la[i];
     for (int k = 0; k < 3; k++) {
-        J[0][k] = sign * c->n[k], J[0][3 + k] = 0;
-        J[1][k] = sign * c->t1[k], J[1][3 + k] = -l * c->t2[k];
-        J[2][k] = sign * c->t2[k], J[2][3 + k] = l * c->t1[k];
+        J[0][k] = sign * c->n[k][i], J[0][3 + k] = 0;
+        J[1][k] = sign * c->t1[k][i], J[1][3 + k] = -l * c->t2[k][i];
+        J[2][k] = sign * c->t2[k][i], J[2][3 + k] = l * c->t1[k][i];
     }
 }
 
@@ -109,8 +114,8 @@ static void assembly_block(const struct assembly *A, int64_t c, int64_t b, doubl
         int32_t body = A->end[2 * c + s / 2];
         if (body < 0 || body != A->end[2 * b + s % 2]) continue;
         double im = A->p->body[body].im, ii = A->p->body[body].ii, J[3][6], K[3][6];
-        jacobian(assembly_row(A, c), s / 2, J);
-        jacobian(assembly_row(A, b), s % 2, K);
+        jacobian(A, c, s / 2, J);
+        jacobian(A, b, s % 2, K);
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++)
                 B[i][j] += im * (J[i][0] * K[j][0] + J[i][1] * K[j][1] + J[i][2] * K[j][2]) +
@@ -201,7 +206,7 @@ static void fill_H(const struct assembly *A, const int32_t *first, struct stored
     int32_t count = 0;
     for (int64_t c = 0; c < A->p->n; c++) {
         double J[2][3][6];
-        for (int s = 0; s < 2; s++) jacobian(assembly_row(A, c), s, J[s]);
+        for (int s = 0; s < 2; s++) jacobian(A, c, s, J[s]);
         int before = A->end[2 * c] > A->end[2 * c + 1]; // rows ascend
         for (int i = 0; i < d; i++) {
             for (int s = 0; s < 2; s++) {

@@ -14,10 +14,8 @@
 #ifndef NSD_ERR_H
 #define NSD_ERR_H
 
-#include "problem.h"
 #include "report.h"
-
-enum err_part { ERR_TERMS = 1, ERR_NATURAL = 2, ERR_ALL = 3 };
+#include "sweep.h"
 
 /* All of *e but max_overlap, or only a part of it (the rest 0). The same bits for any threads. */
 void err_eval(struct err *e, const struct problem *, bool believes, enum err_part, int threads);
@@ -25,18 +23,5 @@ void err_eval(struct err *e, const struct problem *, bool believes, enum err_par
 /* The number that a criterion compares with eps. */
 double err_of(const struct err *, enum criterion);
 enum err_part err_part_of(enum criterion);
-
-/* u~ of row i by the motion that r makes: from the bodies, or W r + q */
-static inline void err_velocity(const struct problem *p, int64_t i, double u[3])
-{
-    if (!p->W) {
-        body_velocity(p, &p->row[i], u);
-        return;
-    }
-    struct local l;
-    problem_gather(p, i, &l);
-    local_velocity(&l);
-    for (int k = 0; k < 3; k++) u[k] = l.u[k];
-}
 
 #endif

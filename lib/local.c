@@ -1,9 +1,29 @@
-#include "local.h"
+/* local.c: the methods in one lane, and their table. */
+#include "local_eal.h"
+#include "local_ebp.h"
+#include "local_exact.h"
+#include "local_sal.h"
+#include "local_sbp.h"
+#include "method.h"
 
 #include <string.h>
 
-const struct method *const methods[] = { &local_sbp, &local_sal,   &local_ebp,
-                                         &local_eal, &local_exact, NULL };
+const struct method local_sbp = { METHOD_sbp, "sbp",
+                                  "standard bi-potential: one projected step of Uzawa", 1.75,
+                                  false };
+const struct method local_sal = { METHOD_sal, "sal",
+                                  "simple augmented Lagrangian: one projected step of the gradient",
+                                  1.75, false };
+const struct method local_ebp = { METHOD_ebp, "ebp",
+                                  "enhanced bi-potential: Newton on r = proj(tau, cone)", 1, true };
+const struct method local_eal = { METHOD_eal, "eal",
+                                  "enhanced augmented Lagrangian: Newton on r = proj(tau, disc)", 1,
+                                  true };
+const struct method local_exact = { METHOD_exact, "exact",
+                                    "the one-contact problem solved outright", 1, true };
+
+#define METHOD(name) &local_##name,
+const struct method *const methods[] = { EACH_METHOD(METHOD) NULL };
 
 const struct method *method_find(const char *name)
 {
@@ -12,6 +32,30 @@ const struct method *method_find(const char *name)
     return NULL;
 }
 
+void method_solve(const struct method *m, struct local *l, const struct local_opt *opt)
+{
+    switch (m->id) {
+#define CASE(name)                                                                                 \
+    case METHOD_##name:                                                                            \
+        name##_solve(l, opt);                                                                      \
+        break;
+        EACH_METHOD(CASE)
+    case METHOD_COUNT:
+        break;
+    }
+}
+
+enum local_status ebp_linearise(double mu, double rho, const double r[3], const double v[3],
+                                double Z[3], double A[3][3], double B[3][3])
+{
+    return newton_linearise(mu, rho, r, v, ebp_residual, ebp_tangent, Z, A, B);
+}
+
+enum local_status eal_linearise(double mu, double rho, const double r[3], const double v[3],
+                                double Z[3], double A[3][3], double B[3][3])
+{
+    return newton_linearise(mu, rho, r, v, eal_residual, eal_tangent, Z, A, B);
+}
 /* Jacobi's rotations; eight rounds are more than any 3 x 3 matrix wants. */
 double local_lambda_max(const double W[9])
 {

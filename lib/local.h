@@ -6,7 +6,8 @@
  *     u = W r + b,     (u, r) on Signorini's condition and Coulomb's law,
  *
  * components (n, t1, t2); u_n >= 0 separates, r_n >= 0 pushes. W, b and u already carry Newton's
- * impact law: they are the paper's W~_cc and u~ (newtonlaw). r is an impulse.
+ * impact law: they are the paper's W~_cc and u~ (newtonlaw). r is an impulse. A struct local is LANES
+ * such problems side by side, plain numbers where LANES is 1; a method is one text for all of them.
  *
  * In the plane (d = 2) component 2 of b, r and u is zero and W has a zero third row and column but
  * for a positive W[2][2]: the formulas of space then are those of the plane, and each method stands
@@ -15,30 +16,24 @@
 #ifndef NSD_LOCAL_H
 #define NSD_LOCAL_H
 
-#include <math.h>
-#include <stdbool.h>
+#include "lanes.h"
+
 #include <stddef.h>
-#include <stdint.h>
 
 enum local_status { LOCAL_FREE, LOCAL_STICK, LOCAL_SLIDE };
 
-enum local_trouble {
-    LOCAL_FINE,
-    LOCAL_SAFEGUARDED, /* the Newton did not end; the exact solution stands in */
-    LOCAL_GAVE_UP      /* (u, r) is not on the law; r is in the cone all the same */
-};
-
 struct local {
-    int d;           /* 2 or 3 */
-    const double *W; /* [9], row-major, kg^-1; NULL: diagonal, w[1] = w[2] */
-    double w[3];     /* the diagonal of W, kg^-1 */
-    double b[3];     /* m/s: velocity without this contact's own reaction */
-    double mu;
-    double rho;                 /* kg: step of the projection */
-    double r[3];                /* N s; in: the last sweep's, out: this one's */
-    double u[3];                /* m/s; out: W r + b, as the method believes it */
-    int32_t steps;              /* out: Newton steps taken, 0 where there is none */
-    enum local_trouble trouble; /* out */
+    int d;       /* 2 or 3 */
+    const vd *W; /* [9], row-major, kg^-1; NULL: diagonal, w[1] = w[2] */
+    vd w[3];     /* the diagonal of W, kg^-1 */
+    vd b[3];     /* m/s: velocity without this contact's own reaction */
+    vd mu;
+    vd rho;         /* kg: step of the projection */
+    vd r[3];        /* N s; in: the last sweep's, out: this one's */
+    vd u[3];        /* m/s; out: W r + b, as the method believes it */
+    vd steps;       /* out: Newton steps taken, 0 where there is none */
+    vm safeguarded; /* out: the Newton did not end; the exact solution stands in */
+    vm gave_up;     /* out: (u, r) is not on the law; r is in the cone all the same */
 };
 
 struct local_opt {
@@ -48,50 +43,6 @@ struct local_opt {
                           [er_newt of the paper: an impulse of newton_eps dt there] */
     int newton_max;    /* steps */
 };
-
-struct method {
-    const char *name, *help;
-    double rho;    /* default rho = this / lambda_max(W_cc) */
-    bool believes; /* u is the method's own; else the motion's (SBP, SAL), and it may stay unset */
-    void (*solve)(struct local *, const struct local_opt *);
-};
-
-/* sbp, sal, ebp, eal, exact; NULL ends it. */
-extern const struct method *const methods[];
-extern const struct method local_sbp, local_sal, local_ebp, local_eal, local_exact;
-const struct method *method_find(const char *name); /* NULL when there is none */
-
-/* u = W r + b */
-static inline void local_velocity(struct local *l)
-{
-    if (!l->W) {
-        for (int i = 0; i < 3; i++) l->u[i] = l->w[i] * l->r[i] + l->b[i];
-        return;
-    }
-    for (int i = 0; i < 3; i++) {
-        const double *W = l->W + 3 * i;
-        l->u[i] = W[0] * l->r[0] + W[1] * l->r[1] + W[2] * l->r[2] + l->b[i];
-    }
-}
-
-/*
- * r = proj(tau, K_mu), orthogonal, K_mu = { |r_t| <= mu r_n } [paper, first and second case]. The
- * cases are told by squares: the root is slow, and wanted on the mantle only.
- */
-static inline void cone_project(double mu, const double tau[3], double r[3])
-{
-    double t2 = tau[1] * tau[1] + tau[2] * tau[2], n = tau[0];
-    if (n <= 0 && mu * mu * t2 <= n * n) { // in the polar cone: its tip
-        r[0] = r[1] = r[2] = 0;
-        return;
-    }
-    if (n >= 0 && t2 <= mu * mu * (n * n)) { // inside: itself
-        r[0] = n, r[1] = tau[1], r[2] = tau[2];
-        return;
-    }
-    double t = sqrt(t2), rn = (n + mu * t) / (1 + mu * mu), s = mu * rn / t;
-    r[0] = rn, r[1] = s * tau[1], r[2] = s * tau[2];
-}
 
 /* Where r stands on its cone, for reports: FREE at r_n = 0, SLIDE on the mantle to 1e-9. */
 static inline enum local_status local_status(double mu, const double r[3])
@@ -104,13 +55,76 @@ static inline enum local_status local_status(double mu, const double r[3])
 /* The largest eigenvalue of the symmetric part of W[9]. */
 double local_lambda_max(const double W[9]);
 
+/* ---- what the methods share ---- */
+
+ALWAYS_INLINE vd dot2(const vd a[2], const vd b[2])
+{
+    return a[0] * b[0] + a[1] * b[1];
+}
+ALWAYS_INLINE vd norm2(const vd a[2])
+{
+    return root(dot2(a, a));
+}
+ALWAYS_INLINE vd dot3(const vd a[3], const vd b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+ALWAYS_INLINE vd norm3(const vd a[3])
+{
+    return root(dot3(a, a));
+}
+
+/* Nothing to report, unless it turns up. */
+ALWAYS_INLINE void local_begin(struct local *l)
+{
+    l->steps = splat(0), l->safeguarded = l->gave_up = NONE;
+}
+
+/* out = W r + b */
+ALWAYS_INLINE void local_velocity(const struct local *l, const vd r[3], vd out[3])
+{
+    for (int i = 0; i < 3; i++) out[i] = (l->W ? dot3(l->W + 3 * i, r) : l->w[i] * r[i]) + l->b[i];
+}
+
 /*
- * Z and its derivatives A = dZ/dr, B = dZ/dv at (r, v), for the Newton of EBP and EAL [errorpred,
- * predbipo; corrected]; returns the branch taken. Public so that the tests can differentiate them.
+ * r = proj(tau, K_mu), orthogonal, K_mu = { |r_t| <= mu r_n } [paper, first and second case]: the tip
+ * for tau in the polar cone, tau itself inside, else the nearest point of the mantle.
  */
-enum local_status ebp_linearise(double mu, double rho, const double r[3], const double v[3],
-                                double Z[3], double A[3][3], double B[3][3]);
-enum local_status eal_linearise(double mu, double rho, const double r[3], const double v[3],
-                                double Z[3], double A[3][3], double B[3][3]);
+ALWAYS_INLINE void cone_project(vd mu, const vd tau[3], vd r[3])
+{
+    vd n = tau[0], t2 = dot2(tau + 1, tau + 1), t = root(t2);
+    vm tip = le(n, splat(0)) & le(mu * mu * t2, n * n);
+    vm in = le(splat(0), n) & le(t2, mu * mu * (n * n));
+    vd rn = (n + mu * t) / (1.0 + mu * mu), s = mu * rn / t;
+    rn = pick(in, n, rn), s = pick(in, splat(1), s);
+    r[0] = pick(tip, splat(0), rn);
+    for (int k = 1; k < 3; k++) r[k] = pick(tip, splat(0), s * tau[k]);
+}
+
+/* tau = r - rho (u + mu |u_t| n), of the bi-potential [uzawa1]; returns |u_t| */
+ALWAYS_INLINE vd cone_predict(vd mu, vd rho, const vd r[3], const vd u[3], vd tau[3])
+{
+    vd ut = norm2(u + 1);
+    for (int i = 0; i < 3; i++) tau[i] = r[i] - rho * u[i];
+    tau[0] -= rho * mu * ut;
+    return ut;
+}
+
+/* tau = r - rho u, of the augmented Lagrangian [gradientAL] */
+ALWAYS_INLINE void disc_predict(vd rho, const vd r[3], const vd u[3], vd tau[3])
+{
+    for (int i = 0; i < 3; i++) tau[i] = r[i] - rho * u[i];
+}
+
+/*
+ * r = proj(tau, C), C = R+ x the disc of radius mu r_n. The paper prints r_t = mu r_n tau_t/|tau_t|
+ * for every tau_t, with which no contact could stick; what is within the disc stays.
+ */
+ALWAYS_INLINE void disc_project(vd mu, const vd tau[3], vd r[3])
+{
+    vd t = norm2(tau + 1), rn = larger(tau[0], splat(0));
+    vd s = pick(lt(mu * rn, t), mu * rn / t, splat(1));
+    r[0] = rn, r[1] = s * tau[1], r[2] = s * tau[2];
+}
 
 #endif

@@ -1,13 +1,5 @@
 /*
- * local_exact.c: the one-contact problem solved outright, case by case of the law.
- *
- *     take-off  b_n >= 0:                         r = 0
- *     stick     W r = -b with r in the cone:      u = 0
- *     slide     r = r_n (n + mu d), |d| = 1:      u_n = 0, u_t = -lambda d, lambda >= 0
- *
- * For balls W = diag(w_n, w_t, w_t) and the three are one closed form: r_n = max(0, -b_n/w_n) and
- * r_t = -b_t/w_t clipped to mu r_n. The paper has no such method; it is also what stands in for a
- * Newton that does not end.
+ * local_exact.c: the search for the exact solution of one contact with a general W, in one lane.
  *
  * With a general W the sliding direction d is searched. With a = W_nn + mu W_nt.d, u_n = 0 gives
  * r_n = -b_n/a, and the tangential velocity times a is
@@ -210,44 +202,17 @@ static bool stick(struct local *l)
     return true;
 }
 
-/* W = diag(w_n, w_t, w_t): r_n = max(0, -b_n/w_n), and the stick reaction clipped to mu r_n */
-static bool balls(struct local *l)
-{
-    double rn = -l->b[0] / l->w[0], r1 = -l->b[1] / l->w[1], r2 = -l->b[2] / l->w[1];
-    double most = l->mu * rn, t2 = r1 * r1 + r2 * r2, s = 1;
-    if (t2 > most * most) s = most / sqrt(t2); // the root only where it is wanted: it is slow
-    l->r[0] = rn, l->r[1] = s * r1, l->r[2] = s * r2;
-    return l->w[0] > 0 && isfinite(rn + l->r[1] + l->r[2]);
-}
-
 static bool frictionless(struct local *l)
 {
     l->r[0] = -l->b[0] / l->W[0], l->r[1] = l->r[2] = 0;
     return l->W[0] > 0 && isfinite(l->r[0]);
 }
 
-static bool take_off(struct local *l)
+bool exact_search(int d, const double W[9], const double b[3], double mu, double r[3])
 {
-    if (l->b[0] < 0) return false;
-    l->r[0] = l->r[1] = l->r[2] = 0;
-    return true;
+    struct local l = { .d = d, .W = W, .mu = mu };
+    for (int k = 0; k < 3; k++) l.b[k] = b[k], l.r[k] = r[k];
+    bool found = mu == 0 ? frictionless(&l) : stick(&l) || slide(&l);
+    for (int k = 0; k < 3; k++) r[k] = l.r[k];
+    return found;
 }
-
-/* Where nothing is on the law (W indefinite or singular), one projected step from the last r. */
-static void solve(struct local *l, const struct local_opt *opt)
-{
-    const double r[3] = { l->r[0], l->r[1], l->r[2] };
-    bool found = take_off(l) || (!l->W        ? balls(l)
-                                 : l->mu == 0 ? frictionless(l)
-                                              : stick(l) || slide(l));
-    if (!found) {
-        for (int i = 0; i < 3; i++) l->r[i] = r[i];
-        local_sbp.solve(l, opt);
-        if (!isfinite(l->r[0] + l->r[1] + l->r[2])) l->r[0] = l->r[1] = l->r[2] = 0;
-    }
-    local_velocity(l);
-    l->steps = 0, l->trouble = found ? LOCAL_FINE : LOCAL_GAVE_UP;
-}
-
-const struct method local_exact = { "exact", "the one-contact problem solved outright", 1, true,
-                                    solve };

@@ -1,11 +1,9 @@
 /*
- * local_newton.h: what the four methods of the paper share: prediction, correction, Newton.
- *
- * SBP and SAL take one step r = proj(tau(r, u)). EBP and EAL solve
+ * local_newton.h: the Newton of EBP and EAL. They solve
  *
  *     f = v - b - W r = 0,     Z = r - proj(tau(r, v)) = 0     [locprob2, errorpred, predbipo]
  *
- * by Newton, condensed [eqnewt]: with A = dZ/dr and B = dZ/dv,
+ * condensed [eqnewt]: with A = dZ/dr and B = dZ/dv,
  *
  *     (A + B W) dr = -Z + B f,     dv = -f + W dr.
  *
@@ -15,195 +13,166 @@
 #ifndef NSD_LOCAL_NEWTON_H
 #define NSD_LOCAL_NEWTON_H
 
-#include "local.h"
-
-#define ALWAYS_INLINE __attribute__((always_inline)) static inline
-
-static inline double norm2(const double a[2])
-{
-    return sqrt(a[0] * a[0] + a[1] * a[1]);
-}
-static inline double dot3(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-static inline double norm3(const double a[3])
-{
-    return sqrt(dot3(a, a));
-}
-
-/* tau = r - rho (u + mu |u_t| n), of the bi-potential [uzawa1]; returns |u_t| */
-static inline double cone_predict(double mu, double rho, const double r[3], const double u[3],
-                                  double tau[3])
-{
-    double ut = norm2(u + 1);
-    for (int i = 0; i < 3; i++) tau[i] = r[i] - rho * u[i];
-    tau[0] -= rho * mu * ut;
-    return ut;
-}
-
-/* tau = r - rho u, of the augmented Lagrangian [gradientAL] */
-static inline void disc_predict(double rho, const double r[3], const double u[3], double tau[3])
-{
-    for (int i = 0; i < 3; i++) tau[i] = r[i] - rho * u[i];
-}
-
-/*
- * r = proj(tau, C), C = R+ x the disc of radius mu r_n. The paper prints r_t = mu r_n tau_t/|tau_t|
- * for every tau_t, with which no contact could stick; what is within the disc stays.
- */
-static inline void disc_project(double mu, const double tau[3], double r[3])
-{
-    double t = norm2(tau + 1), rn = tau[0] > 0 ? tau[0] : 0;
-    double s = t > mu * rn ? mu * rn / t : 1;
-    r[0] = rn, r[1] = s * tau[1], r[2] = s * tau[2];
-}
+#include "local_exact.h"
 
 /* One iterate of the Newton, with what its derivatives will want again. */
 struct iterate {
-    double r[3], v[3];   /* N s, m/s */
-    double tau[3], p[3]; /* p = proj(tau) */
-    double Z[3];         /* r - p */
-    double t, vt;        /* |tau_t|, |v_t| */
-    enum local_status status;
+    vd r[3], v[3];   /* N s, m/s */
+    vd tau[3], p[3]; /* p = proj(tau) */
+    vd Z[3];         /* r - p */
+    vd t, vt;        /* |tau_t|, |v_t| */
+    vm free, stick;  /* else it slides */
 };
 
-typedef void newton_residual(double mu, double rho, struct iterate *);
-typedef void newton_tangent(double mu, double rho, const struct iterate *, double A[3][3],
-                            double B[3][3]);
+/* Z of (r, v) and the branch; the derivatives A and B there. */
+typedef void newton_residual(vd mu, vd rho, struct iterate *);
+typedef void newton_tangent(vd mu, vd rho, const struct iterate *, vd A[3][3], vd B[3][3]);
 
-/* Z, A, B and the branch at (r, v), for the tests [ebp_linearise, eal_linearise] */
-ALWAYS_INLINE enum local_status newton_linearise(double mu, double rho, const double r[3],
-                                                 const double v[3], newton_residual *residual,
-                                                 newton_tangent *tangent, double Z[3],
-                                                 double A[3][3], double B[3][3])
+/* A of sliding as it is given; without contact A = I, sticking 0 */
+ALWAYS_INLINE void newton_branch(const struct iterate *x, vd A[3][3])
 {
-    struct iterate x = { .r = { r[0], r[1], r[2] }, .v = { v[0], v[1], v[2] } };
-    residual(mu, rho, &x);
-    tangent(mu, rho, &x, A, B);
-    for (int i = 0; i < 3; i++) Z[i] = x.Z[i];
-    return x.status;
+    vd same = pick(x->free, splat(1), splat(0));
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            A[i][j] = pick(x->free | x->stick, i == j ? same : splat(0), A[i][j]);
 }
 
-/* M x = -y by cofactors; false when M is singular. */
-static inline bool solve3(double M[3][3], const double y[3], double x[3])
+/* M x = -y by cofactors; false where M is singular. */
+ALWAYS_INLINE vm solve3(vd M[3][3], const vd y[3], vd x[3])
 {
-    double c0 = M[1][1] * M[2][2] - M[1][2] * M[2][1];
-    double c1 = M[1][2] * M[2][0] - M[1][0] * M[2][2];
-    double c2 = M[1][0] * M[2][1] - M[1][1] * M[2][0];
-    double det = M[0][0] * c0 + M[0][1] * c1 + M[0][2] * c2;
-    if (!(fabs(det) > 0)) return false;
-    double s = -1 / det;
+    vd c0 = M[1][1] * M[2][2] - M[1][2] * M[2][1];
+    vd c1 = M[1][2] * M[2][0] - M[1][0] * M[2][2];
+    vd c2 = M[1][0] * M[2][1] - M[1][1] * M[2][0];
+    vd det = M[0][0] * c0 + M[0][1] * c1 + M[0][2] * c2, s = -1.0 / det;
     x[0] = s * (y[0] * c0 + y[1] * (M[0][2] * M[2][1] - M[0][1] * M[2][2]) +
                 y[2] * (M[0][1] * M[1][2] - M[0][2] * M[1][1]));
     x[1] = s * (y[0] * c1 + y[1] * (M[0][0] * M[2][2] - M[0][2] * M[2][0]) +
                 y[2] * (M[0][2] * M[1][0] - M[0][0] * M[1][2]));
     x[2] = s * (y[0] * c2 + y[1] * (M[0][1] * M[2][0] - M[0][0] * M[2][1]) +
                 y[2] * (M[0][0] * M[1][1] - M[0][1] * M[1][0]));
-    return true;
-}
-
-/* The Newton direction dr at x; false where the system is singular. */
-ALWAYS_INLINE bool newton_direction(const struct local *l, const struct iterate *x,
-                                    newton_tangent *tangent, bool diagonal, double dr[3])
-{
-    double A[3][3], B[3][3], M[3][3];
-    if (x->status == LOCAL_FREE) { // A = I, B = 0; so v becomes b, not the paper's v^k
-        for (int i = 0; i < 3; i++) dr[i] = -x->r[i];
-        return true;
-    }
-    if (x->status == LOCAL_STICK) { // A = 0 and Z = B v, B regular: W dr = -v
-        if (diagonal) {
-            for (int i = 0; i < 3; i++) dr[i] = -x->v[i] / l->w[i];
-            return true;
-        }
-        for (int i = 0; i < 9; i++) M[i / 3][i % 3] = l->W[i];
-        return solve3(M, x->v, dr);
-    }
-    tangent(l->mu, l->rho, x, A, B);
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            M[i][j] = diagonal ? A[i][j] + B[i][j] * l->w[j]
-                               : A[i][j] + B[i][0] * l->W[j] + B[i][1] * l->W[3 + j] +
-                                     B[i][2] * l->W[6 + j];
-    return solve3(M, x->Z, dr);
-}
-
-/* r = x->r + s dr, and all that hangs on it */
-ALWAYS_INLINE void newton_move(const struct local *l, const struct iterate *x, double s,
-                               const double dr[3], newton_residual *residual, bool diagonal,
-                               struct iterate *y)
-{
-    for (int i = 0; i < 3; i++) y->r[i] = x->r[i] + s * dr[i];
-    for (int i = 0; i < 3; i++)
-        y->v[i] = (diagonal ? l->w[i] * y->r[i] : dot3(l->W + 3 * i, y->r)) + l->b[i];
-    residual(l->mu, l->rho, y);
+    return lt(splat(0), absolute(det));
 }
 
 /*
- * The Newton itself, at least one step; true when it ended. x is the last iterate, finite.
+ * The Newton direction dr at x; false where the system is singular. Without contact A = I, B = 0, so
+ * dr = -r (and v becomes b, not the paper's v^k); sticking A = 0 and Z = B v, B regular: W dr = -v.
+ */
+ALWAYS_INLINE vm newton_direction(const struct local *l, const struct iterate *x,
+                                  newton_tangent *tangent, vd dr[3])
+{
+    vd A[3][3], B[3][3], M[3][3], stick[3], slip[3] = { 0 };
+    vm regular = x->free, slide = ~(x->free | x->stick);
+    if (l->W) {
+        for (int i = 0; i < 9; i++) M[i / 3][i % 3] = l->W[i];
+        regular |= x->stick & solve3(M, x->v, stick);
+    } else {
+        for (int i = 0; i < 3; i++) stick[i] = -x->v[i] / l->w[i];
+        regular |= x->stick;
+    }
+    if (any(slide)) {
+        tangent(l->mu, l->rho, x, A, B);
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                M[i][j] = l->W ? A[i][j] + B[i][0] * l->W[j] + B[i][1] * l->W[3 + j] +
+                                     B[i][2] * l->W[6 + j]
+                               : A[i][j] + B[i][j] * l->w[j];
+        regular |= slide & solve3(M, x->Z, slip);
+    }
+    for (int i = 0; i < 3; i++) dr[i] = pick(x->free, -x->r[i], pick(x->stick, stick[i], slip[i]));
+    return regular;
+}
+
+/* y at x->r + s dr, and all that hangs on it */
+ALWAYS_INLINE void newton_move(const struct local *l, const vd r[3], vd s, const vd dr[3],
+                               newton_residual *residual, struct iterate *y)
+{
+    for (int i = 0; i < 3; i++) y->r[i] = r[i] + s * dr[i];
+    local_velocity(l, y->r, y->v);
+    residual(l->mu, l->rho, y);
+}
+
+ALWAYS_INLINE void newton_take(struct iterate *x, const struct iterate *y, vm m)
+{
+    for (int i = 0; i < 3; i++) {
+        x->r[i] = pick(m, y->r[i], x->r[i]), x->v[i] = pick(m, y->v[i], x->v[i]);
+        x->tau[i] = pick(m, y->tau[i], x->tau[i]), x->p[i] = pick(m, y->p[i], x->p[i]);
+        x->Z[i] = pick(m, y->Z[i], x->Z[i]);
+    }
+    x->t = pick(m, y->t, x->t), x->vt = pick(m, y->vt, x->vt);
+    x->free = (m & y->free) | (~m & x->free), x->stick = (m & y->stick) | (~m & x->stick);
+}
+
+/*
+ * The Newton itself, at least one step; true where it ended. x is the last iterate, finite.
  *
  * The error is f's own [er_newt prints r - proj(r), which any r in the cone passes], and relative:
  * 1e-5 in the problem's own units, tested before the first step, freezes wrong contacts.
  *
  * Full steps, as the paper has it, cycle between stick and slide for some contacts and spoil the
  * sweep. Unless opt->plain the step is halved until |Z| shrinks; where it cannot, the Newton has
- * not ended.
+ * not ended. A lane that has ended, or cannot, keeps its x while the others go on.
  */
-ALWAYS_INLINE bool newton_run(struct local *l, const struct local_opt *opt,
-                              newton_residual *residual, newton_tangent *tangent, bool diagonal,
-                              struct iterate *x)
+ALWAYS_INLINE vm newton_run(struct local *l, const struct local_opt *opt, newton_residual *residual,
+                            newton_tangent *tangent, struct iterate *x)
 {
-    const double rho_b = l->rho * norm3(l->b);
-    struct iterate y;
-    for (int i = 0; i < 3; i++) x->r[i] = l->r[i];
-    newton_move(l, x, 0, l->r, residual, diagonal, x);
-    double z = norm3(x->Z);
-    for (l->steps = 0; l->steps < opt->newton_max || l->steps == 0;) {
-        double dr[3], s = 1;
-        if (!newton_direction(l, x, tangent, diagonal, dr)) return false;
-        l->steps++;
-        for (;; s *= 0.5) {
-            newton_move(l, x, s, dr, residual, diagonal, &y);
-            double zy = norm3(y.Z);
-            double end =
-                opt->newton_abs > 0 ? opt->newton_abs : opt->newton_eps * (norm3(y.r) + rho_b);
-            if (zy <= end) {
-                *x = y;
-                return true;
-            }
-            if (opt->plain ? isfinite(zy) : zy < z * (1 - 1e-4 * s)) {
-                z = zy;
-                break;
-            }
-            if (opt->plain || s < 1e-3) return false;
+    const vd rho_b = l->rho * norm3(l->b);
+    vm ended = NONE, run = ~ended;
+    newton_move(l, l->r, splat(0), l->r, residual, x);
+    vd z = norm3(x->Z);
+    for (int k = 0; any(run) && (k == 0 || k < opt->newton_max); k++) {
+        struct iterate y;
+        vd dr[3], s = splat(1);
+        run &= newton_direction(l, x, tangent, dr);
+        l->steps += pick(run, splat(1), splat(0));
+        for (vm search = run; any(search); s *= 0.5) {
+            newton_move(l, x->r, s, dr, residual, &y);
+            vd zy = norm3(y.Z), end = opt->newton_eps * (norm3(y.r) + rho_b);
+            if (opt->newton_abs > 0) end = splat(opt->newton_abs);
+            vm there = search & le(zy, end);
+            vm better =
+                search & ~there & (opt->plain ? is_finite(zy) : lt(zy, z * (1.0 - 1e-4 * s)));
+            newton_take(x, &y, there | better);
+            z = pick(better, zy, z);
+            search &= ~(there | better);
+            vm lost = opt->plain ? search : search & lt(s, splat(1e-3));
+            ended |= there, run &= ~(there | lost), search &= ~lost;
         }
-        *x = y;
     }
-    return false;
+    return ended;
 }
 
-/* Solve with W diagonal or not, each its own code of this one text. */
+/* Where it ended proj(tau) is r to within the tolerance, and it is in the cone. */
 ALWAYS_INLINE void newton_solve(struct local *l, const struct local_opt *opt,
                                 newton_residual *residual, newton_tangent *tangent)
 {
     struct iterate x;
-    bool ended = l->W ? newton_run(l, opt, residual, tangent, false, &x)
-                      : newton_run(l, opt, residual, tangent, true, &x);
-    l->trouble = LOCAL_FINE;
-    if (ended) { // proj(tau) is r to within the tolerance, and it is in the cone
-        for (int i = 0; i < 3; i++) l->r[i] = x.p[i];
-    } else if (opt->plain) {
-        l->trouble = LOCAL_GAVE_UP;
-        cone_project(l->mu, x.r, l->r);
-    } else { // from the r we were given, so that the answer does not hang on how we failed
-        int32_t steps = l->steps;
-        local_exact.solve(l, opt);
-        l->steps = steps;
-        if (l->trouble == LOCAL_FINE) l->trouble = LOCAL_SAFEGUARDED;
-        return;
+    local_begin(l);
+    struct local stand_in = *l; // from the r we were given: the answer hangs not on how we failed
+    vm ended = newton_run(l, opt, residual, tangent, &x);
+    for (int i = 0; i < 3; i++) l->r[i] = x.p[i];
+    if (any(~ended)) {
+        if (opt->plain) {
+            cone_project(l->mu, x.r, stand_in.r);
+            l->gave_up = ~ended;
+        } else {
+            exact_solve(&stand_in, opt);
+            l->gave_up = ~ended & stand_in.gave_up, l->safeguarded = ~ended & ~stand_in.gave_up;
+        }
+        for (int i = 0; i < 3; i++) l->r[i] = pick(ended, l->r[i], stand_in.r[i]);
     }
-    local_velocity(l);
+    local_velocity(l, l->r, l->u);
+}
+
+/* Z, A, B and the branch at (r, v), for the tests [ebp_linearise, eal_linearise] */
+ALWAYS_INLINE enum local_status newton_linearise(vd mu, vd rho, const vd r[3], const vd v[3],
+                                                 newton_residual *residual, newton_tangent *tangent,
+                                                 vd Z[3], vd A[3][3], vd B[3][3])
+{
+    struct iterate x = { .r = { r[0], r[1], r[2] }, .v = { v[0], v[1], v[2] } };
+    residual(mu, rho, &x);
+    tangent(mu, rho, &x, A, B);
+    for (int i = 0; i < 3; i++) Z[i] = x.Z[i];
+    return any(x.free) ? LOCAL_FREE : any(x.stick) ? LOCAL_STICK : LOCAL_SLIDE;
 }
 
 #endif

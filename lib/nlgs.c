@@ -1,18 +1,13 @@
 #include "nlgs.h"
 
+#include <omp.h>
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 enum {
     CHECK_FIRST = 40, /* sweeps that are all judged */
     CHECK_EVERY = 25,
-    PARALLEL_FROM = 128 /* rows of a group worth a second thread */
-};
-
-struct tally {
-    double change; /* m/s: the largest change of a normal velocity in a sweep */
-    int64_t newton, safeguarded, gave_up;
+    PARALLEL_FROM = 16 /* bundles of a group worth a second thread */
 };
 
 static void tally_add(struct tally *t, const struct tally *s)
@@ -21,60 +16,28 @@ static void tally_add(struct tally *t, const struct tally *s)
     t->newton += s->newton, t->safeguarded += s->safeguarded, t->gave_up += s->gave_up;
 }
 
-/* Over-relaxation: past the new reaction, and back onto the cone. */
-static void relax(struct local *l, const double was[3], double omega)
-{
-    double tau[3];
-    for (int k = 0; k < 3; k++) tau[k] = was[k] + omega * (l->r[k] - was[k]);
-    cone_project(l->mu, tau, l->r);
-    local_velocity(l);
-}
-
-static inline void visit(struct problem *p, int64_t i, const struct nlgs_opt *o, struct tally *t)
-{
-    struct local l;
-    const double *was = p->row[i].r;
-    problem_gather(p, i, &l);
-    o->method->solve(&l, &o->local);
-    if (o->relax != 1) relax(&l, was, o->relax);
-    double change = fabs(l.r[0] - was[0]) * l.w[0];
-    t->change = change > t->change ? change : t->change;
-    t->newton += l.steps;
-    if (l.trouble)
-        t->safeguarded += l.trouble == LOCAL_SAFEGUARDED, t->gave_up += l.trouble == LOCAL_GAVE_UP;
-    problem_scatter(p, i, &l);
-}
-
 static struct tally sweep(struct problem *p, const struct nlgs_opt *o)
 {
+    sweep_visit *visit = sweep_widest()->visit[o->method->id];
+    const struct sweep_opt opt = { o->local, o->relax };
     struct tally all = { 0 };
-    if (o->threads == 1 || p->n < PARALLEL_FROM * p->groups) {
-        for (int64_t i = 0; i < p->n; i++) visit(p, i, o, &all);
+    if (o->threads == 1 || p->bundles < PARALLEL_FROM * p->groups) {
+        visit(p, 0, p->bundles, &opt, &all);
         return all;
     }
 #pragma omp parallel num_threads(o->threads)
     {
         struct tally mine = { 0 };
+        int64_t me = omp_get_thread_num(), threads = omp_get_num_threads();
         for (int64_t g = 0; g < p->groups; g++) {
-            int64_t first = p->group[g], end = p->group[g + 1];
-            if (end - first < PARALLEL_FROM) {
-#pragma omp single
-                for (int64_t i = first; i < end; i++) visit(p, i, o, &mine);
-            } else {
-#pragma omp for schedule(static)
-                for (int64_t i = first; i < end; i++) visit(p, i, o, &mine);
-            }
+            int64_t first = p->group[g], n = p->group[g + 1] - first;
+            visit(p, first + n * me / threads, first + n * (me + 1) / threads, &opt, &mine);
+#pragma omp barrier
         }
 #pragma omp critical
         tally_add(&all, &mine);
     }
     return all;
-}
-
-/* Where the method has no u of its own the motion's stands. */
-static void velocities(struct problem *p)
-{
-    for (int64_t i = 0; i < p->n; i++) err_velocity(p, i, p->row[i].u);
 }
 
 static double seconds(void)
@@ -108,7 +71,8 @@ int nlgs_solve(struct problem *p, const struct nlgs_opt *o, struct report *rep)
     while (!rep->converged && rep->sweeps < o->max_sweeps) {
         struct tally t = sweep(p, o);
         rep->sweeps++;
-        rep->newton += t.newton, rep->safeguarded += t.safeguarded, rep->gave_up += t.gave_up;
+        rep->newton += (int64_t)t.newton;
+        rep->safeguarded += (int64_t)t.safeguarded, rep->gave_up += (int64_t)t.gave_up;
         if (!o->history && !o->every_sweep && !(t.change <= due) && rep->sweeps > CHECK_FIRST &&
             rep->sweeps - last < CHECK_EVERY)
             continue;
@@ -124,7 +88,7 @@ int nlgs_solve(struct problem *p, const struct nlgs_opt *o, struct report *rep)
         due = value < 1.3 * o->eps ? INFINITY : t.change * sqrt(o->eps / value);
         last = rep->sweeps;
     }
-    if (!believes) velocities(p);
+    if (!believes) sweep_widest()->velocities(p, 0, p->bundles);
     double overlap = rep->err.max_overlap;
     err_eval(&rep->err, p, believes, ERR_ALL, o->threads);
     rep->err.max_overlap = overlap;

@@ -6,6 +6,7 @@
 #define NSD_NLGS_H
 
 #include "err.h"
+#include "method.h"
 
 struct nlgs_opt {
     const struct method *method;

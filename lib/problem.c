@@ -7,6 +7,7 @@
 #include <string.h>
 
 static_assert(sizeof(struct body) == 64, "a body is a cache line");
+static_assert(sizeof(struct bundle) % 64 == 0, "lanes begin a cache line");
 
 /* Zeroed memory on a cache line's border; not NULL for want of rows. */
 static void *lines(int64_t n, size_t size)
@@ -25,25 +26,57 @@ static int no_memory(struct problem *p, struct why *why)
 
 void problem_free(struct problem *p)
 {
-    free(p->row), free(p->contact), free(p->group), free(p->body);
+    free(p->bundle), free(p->contact), free(p->group), free(p->body);
     *p = (struct problem){ 0 };
 }
 
-/* Bodies, then walls, with the velocities before the step. */
-static void bodies(struct problem *p, const struct packing *pack)
+/* The plan's groups as bundles; a group begins a new one. */
+static bool lay_out(struct problem *p, const struct schedule *plan)
+{
+    p->groups = plan->groups;
+    p->group = malloc((size_t)(plan->groups + 1) * sizeof *p->group);
+    for (int64_t g = 0; p->group && g < plan->groups; g++) {
+        p->group[g] = p->bundles;
+        p->bundles += (plan->group[g + 1] - plan->group[g] + BUNDLE - 1) / BUNDLE;
+    }
+    p->rows = p->bundles * BUNDLE;
+    p->bundle = lines(p->bundles, sizeof *p->bundle);
+    p->contact = malloc((size_t)(p->rows + 1) * sizeof *p->contact);
+    if (!p->group || !p->bundle || !p->contact) return false;
+    p->group[p->groups] = p->bundles;
+    for (int64_t i = 0; i < p->rows; i++) {
+        p->contact[i] = -1;
+        for (int k = 0; k < 2; k++) row_bundle(p, i)->w[k][row_lane(i)] = 1;
+    }
+    for (int64_t g = 0; g < p->groups; g++) {
+        int64_t first = plan->group[g], n = plan->group[g + 1] - first;
+        for (int64_t i = 0; i < n; i++)
+            p->contact[p->group[g] * BUNDLE + i] = plan->sequence[first + i];
+    }
+    return true;
+}
+
+/* The bodies with the velocities before the step. */
+static void movers(struct problem *p, const struct packing *pack)
 {
     for (int64_t i = 0; i < pack->n; i++) {
-        bool moves = pack->mass[i] > 0;
         vec3 v = pack->v[i], w = pack->w[i];
         p->body[i] = (struct body){ { v.x, v.y, v.z },
                                     { w.x, w.y, w.z },
-                                    moves ? 1 / pack->mass[i] : 0,
-                                    moves ? 1 / pack->inertia[i] : 0 };
+                                    pack->mass[i] > 0 ? 1 / pack->mass[i] : 0,
+                                    pack->mass[i] > 0 ? 1 / pack->inertia[i] : 0 };
     }
-    for (int32_t w = 0; w < pack->walls; w++) {
-        vec3 v = pack->wall[w].v;
-        p->body[pack->n + w] = (struct body){ .v = { v.x, v.y, v.z } };
-    }
+}
+
+/* Body i (wall w: -1-w) of a contact as a row of body[]: itself, or a copy when it does not move. */
+static int32_t seat(struct problem *p, const struct packing *pack, int32_t i, int64_t *next)
+{
+    if (i >= 0 && pack->mass[i] > 0) return i;
+    struct body *copy = &p->body[*next];
+    vec3 v = i < 0 ? pack->wall[-1 - i].v : pack->v[i];
+    *copy = (struct body){ .v = { v.x, v.y, v.z } };
+    if (i >= 0) *copy = p->body[i];
+    return (int32_t)(*next)++;
 }
 
 void problem_arms(const struct packing *p, const struct contact *c, double *la, double *lb)
@@ -53,26 +86,24 @@ void problem_arms(const struct packing *p, const struct contact *c, double *la, 
 }
 
 /* All of a row but the reaction; the bodies still have the velocities before the step. */
-static void row_init(struct row *r, const struct problem *p, const struct packing *pack,
+static void row_init(struct bundle *r, int k, const struct problem *p, const struct packing *pack,
                      const struct contact *c, double alpha, double factor)
 {
-    *r = (struct row){ .n = { c->n.x, c->n.y, c->n.z },
-                       .t1 = { c->t1.x, c->t1.y, c->t1.z },
-                       .t2 = { c->t2.x, c->t2.y, c->t2.z },
-                       .mu = c->mu,
-                       .a = (int32_t)(c->a < 0 ? pack->n - 1 - c->a : c->a),
-                       .b = c->b };
-    problem_arms(pack, c, &r->la, &r->lb);
-    const struct body *a = &p->body[r->a], *b = &p->body[r->b];
-    double im = a->im + b->im, e[3] = { c->en, c->et, c->et };
-    double it = im + r->la * r->la * a->ii + r->lb * r->lb * b->ii;
-    r->s[0] = r->s[1] = 1;
-    body_velocity(p, r, r->offset); // u^-
-    for (int k = 0; k < 3; k++) r->offset[k] *= e[k] / (1 + e[k]);
-    r->s[0] = 1 / (1 + c->en), r->s[1] = 1 / (1 + c->et);
-    r->w[0] = r->s[0] * im, r->w[1] = r->s[1] * it;
-    double lambda = row_lambda(r);
-    r->rho = lambda <= 0 ? 1 : alpha > 0 ? alpha / im : factor / lambda;
+    const double e[3] = { c->en, c->et, c->et }, n[3] = { c->n.x, c->n.y, c->n.z },
+                 t1[3] = { c->t1.x, c->t1.y, c->t1.z }, t2[3] = { c->t2.x, c->t2.y, c->t2.z };
+    for (int i = 0; i < 3; i++) r->n[i][k] = n[i], r->t1[i][k] = t1[i], r->t2[i][k] = t2[i];
+    r->mu[k] = c->mu;
+    problem_arms(pack, c, &r->la[k], &r->lb[k]);
+    const struct body *a = &p->body[r->a[k]], *b = &p->body[r->b[k]];
+    double u[3], im = a->im + b->im;
+    double it = im + r->la[k] * r->la[k] * a->ii + r->lb[k] * r->lb[k] * b->ii;
+    r->s[0][k] = r->s[1][k] = 1;
+    body_velocity(p->body, r, k, u); // u^-
+    for (int i = 0; i < 3; i++) r->offset[i][k] = u[i] * (e[i] / (1 + e[i]));
+    r->s[0][k] = 1 / (1 + c->en), r->s[1][k] = 1 / (1 + c->et);
+    r->w[0][k] = r->s[0][k] * im, r->w[1][k] = r->s[1][k] * it;
+    double lambda = bundle_lambda(r, k);
+    r->rho[k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / im : factor / lambda;
 }
 
 /* Mean mass of what moves, for the scaled errors. */
@@ -84,19 +115,37 @@ static double mean_mass(const struct packing *p)
     return n ? sum / (double)n : 1;
 }
 
+/* How many bodies[] there will be: those of the packing, copies, one for the lanes without a contact. */
+static int64_t seats(const struct packing *pack, const struct contacts *s)
+{
+    int64_t n = pack->n + 1;
+    for (int64_t i = 0; i < s->n; i++) {
+        const struct contact *c = &s->c[i];
+        n += (c->a < 0 || !(pack->mass[c->a] > 0)) + !(pack->mass[c->b] > 0);
+    }
+    return n;
+}
+
 int problem_prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
                     double alpha, double factor, enum order order, struct why *why)
 {
-    *p = (struct problem){ .d = pack->dim, .n = s->n, .dt = pack->dt };
-    p->row = lines(s->n, sizeof *p->row);
-    p->body = lines(pack->n + pack->walls, sizeof *p->body);
     struct schedule plan = { 0 };
-    if (!p->row || !p->body) return no_memory(p, why);
-    bodies(p, pack);
-    if (schedule_bodies(&plan, order, s, pack)) return no_memory(p, why);
-    p->contact = plan.sequence, p->group = plan.group, p->groups = plan.groups;
-    for (int64_t i = 0; i < p->n; i++)
-        row_init(&p->row[i], p, pack, &s->c[p->contact[i]], alpha, factor);
+    *p = (struct problem){ .d = pack->dim, .n = s->n, .dt = pack->dt };
+    p->body = lines(seats(pack, s), sizeof *p->body);
+    bool room = p->body && !schedule_bodies(&plan, order, s, pack) && lay_out(p, &plan);
+    schedule_free(&plan);
+    if (!room) return no_memory(p, why);
+    movers(p, pack);
+    int64_t nobody = pack->n, next = nobody + 1;
+    for (int64_t i = 0; i < p->rows; i++) {
+        struct bundle *r = row_bundle(p, i);
+        int k = row_lane(i);
+        r->a[k] = r->b[k] = (int32_t)nobody;
+        if (p->contact[i] < 0) continue;
+        const struct contact *c = &s->c[p->contact[i]];
+        r->a[k] = seat(p, pack, c->a, &next), r->b[k] = seat(p, pack, c->b, &next);
+        row_init(r, k, p, pack, c, alpha, factor);
+    }
 
     double g = v3_norm(pack->g);
     p->scale_v = (g > 0 ? g : 9.81) * pack->dt;
@@ -104,17 +153,18 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     const double dv[3] = { pack->dt * pack->g.x, pack->dt * pack->g.y, pack->dt * pack->g.z };
     for (int64_t i = 0; i < pack->n; i++)
         for (int k = 0; k < 3 && p->body[i].im > 0; k++) p->body[i].v[k] += dv[k];
-    for (int64_t i = 0; i < p->n; i++) {
+    for (int64_t i = 0; i < p->rows; i++) {
         double q[3];
-        body_velocity(p, &p->row[i], q);
+        if (p->contact[i] < 0) continue;
+        body_velocity(p->body, row_bundle(p, i), row_lane(i), q);
         p->norm_q += q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
     }
     p->norm_q = sqrt(p->norm_q);
-    for (int64_t i = 0; s->solved && i < p->n; i++) {
-        struct row *r = &p->row[i];
+    for (int64_t i = 0; s->solved && i < p->rows; i++) {
+        if (p->contact[i] < 0) continue;
         const struct contact *c = &s->c[p->contact[i]];
-        for (int k = 0; k < 3; k++) r->r[k] = c->r[k], r->u[k] = c->u[k];
-        body_push(p, r, r->r);
+        row_set(p, i, c->r, c->u);
+        body_push(p->body, row_bundle(p, i), row_lane(i), c->r);
     }
     return 0;
 }
@@ -122,24 +172,28 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
 int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha, double factor,
                              enum order order, struct why *why)
 {
-    *p = (struct problem){ .d = W->d, .n = W->n, .W = W, .dt = 1, .scale_v = 1, .scale_r = 1 };
-    p->row = lines(W->n, sizeof *p->row);
     struct schedule plan = { 0 };
-    if (!p->row || schedule_blocks(&plan, order, W)) return no_memory(p, why);
-    p->contact = plan.sequence, p->group = plan.group, p->groups = plan.groups;
+    *p = (struct problem){ .d = W->d, .n = W->n, .W = W, .dt = 1, .scale_v = 1, .scale_r = 1 };
+    bool room = !schedule_blocks(&plan, order, W) && lay_out(p, &plan);
+    schedule_free(&plan);
+    if (!room) return no_memory(p, why);
     double trace = 0;
-    for (int64_t i = 0; i < p->n; i++) {
+    for (int64_t i = 0; i < p->rows; i++) {
         int64_t c = p->contact[i];
+        struct bundle *r = row_bundle(p, i);
+        int k = row_lane(i);
+        r->a[k] = (int32_t)c;
+        for (int j = 0; j < 9; j++) r->W[j][k] = c < 0 ? j % 4 == 0 : W->diag[9 * c + j];
+        if (c < 0) continue;
         const double *D = W->diag + 9 * c, *q = W->q + W->d * c;
-        struct row *r = &p->row[i];
         double lambda = local_lambda_max(D);
-        r->mu = W->mu[c];
-        r->w[0] = r->w[1] = lambda;
-        r->rho = lambda <= 0 ? 1 : alpha > 0 && D[0] > 0 ? alpha / D[0] : factor / lambda;
-        for (int k = 0; k < W->d; k++) {
-            r->r[k] = W->r[W->d * c + k];
-            p->norm_q += q[k] * q[k];
-            trace += D[4 * k];
+        r->mu[k] = W->mu[c];
+        r->w[0][k] = r->w[1][k] = lambda;
+        r->rho[k] = lambda <= 0 ? 1 : alpha > 0 && D[0] > 0 ? alpha / D[0] : factor / lambda;
+        for (int j = 0; j < W->d; j++) {
+            r->r[j][k] = W->r[W->d * c + j];
+            p->norm_q += q[j] * q[j];
+            trace += D[4 * j];
         }
     }
     // no g, no m here: velocities in the root mean square of q, masses in the mean of 1/W_ii
@@ -149,13 +203,25 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
     return 0;
 }
 
+void row_get(const struct problem *p, int64_t i, double r[3], double u[3])
+{
+    const struct bundle *c = row_bundle(p, i);
+    for (int k = 0; k < 3; k++) r[k] = c->r[k][row_lane(i)], u[k] = c->u[k][row_lane(i)];
+}
+
+void row_set(struct problem *p, int64_t i, const double r[3], const double u[3])
+{
+    struct bundle *c = row_bundle(p, i);
+    for (int k = 0; k < 3; k++) c->r[k][row_lane(i)] = r[k], c->u[k][row_lane(i)] = u[k];
+}
+
 void problem_store(const struct problem *p, struct contacts *s)
 {
-    for (int64_t i = 0; i < p->n; i++) {
-        const struct row *r = &p->row[i];
+    for (int64_t i = 0; i < p->rows; i++) {
+        if (p->contact[i] < 0) continue;
         struct contact *c = &s->c[p->contact[i]];
-        for (int k = 0; k < 3; k++) c->r[k] = r->r[k], c->u[k] = r->u[k];
-        c->status = (int8_t)local_status(r->mu, r->r);
+        row_get(p, i, c->r, c->u);
+        c->status = (int8_t)local_status(row_bundle(p, i)->mu[row_lane(i)], c->r);
     }
     s->solved = true;
 }

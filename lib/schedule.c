@@ -130,9 +130,14 @@ static int schedule(struct schedule *s, enum order order, struct graph *g)
     }
     free(g->mark), free(g->place);
     if (!failed) return 0;
+    schedule_free(s);
+    return -1;
+}
+
+void schedule_free(struct schedule *s)
+{
     free(s->sequence), free(s->group);
     *s = (struct schedule){ 0 };
-    return -1;
 }
 
 int schedule_bodies(struct schedule *s, enum order order, const struct contacts *contacts,

@@ -24,8 +24,9 @@ struct schedule {
     int64_t *group; /* [groups + 1] */
 };
 
-/* Return 0, or -1 when memory is short; the arrays are the caller's to free. */
+/* Return 0, or -1 when memory is short. */
 int schedule_bodies(struct schedule *, enum order, const struct contacts *, const struct packing *);
 int schedule_blocks(struct schedule *, enum order, const struct delassus *);
+void schedule_free(struct schedule *);
 
 #endif

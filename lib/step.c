@@ -36,8 +36,12 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
     if (problem_prepare_delassus(&p, W, o->alpha, o->nlgs.method->rho, o->order, why))
         return why->status;
     int failed = nlgs_solve(&p, &o->nlgs, rep);
-    for (int64_t i = 0; i < p.n; i++)
-        for (int k = 0; k < W->d; k++) u[W->d * p.contact[i] + k] = p.row[i].u[k];
+    for (int64_t i = 0; i < p.rows; i++) {
+        double r[3], v[3];
+        if (p.contact[i] < 0) continue;
+        row_get(&p, i, r, v);
+        for (int k = 0; k < W->d; k++) u[W->d * p.contact[i] + k] = v[k];
+    }
     problem_free(&p);
     return failed ? why_set(why, EX_SOFTWARE, "no memory for the history") : 0;
 }

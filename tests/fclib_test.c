@@ -368,8 +368,8 @@ enum { BODIES = 12, CONTACTS = 30 };
 struct made {
     struct problem p;
     struct body body[BODIES], free[BODIES];
-    struct row row[CONTACTS];
-    int64_t contact[CONTACTS];
+    struct bundle bundle[(CONTACTS + BUNDLE - 1) / BUNDLE];
+    int64_t contact[CONTACTS + BUNDLE];
 };
 
 static void cross(const double a[3], const double b[3], double c[3])
@@ -378,17 +378,18 @@ static void cross(const double a[3], const double b[3], double c[3])
         c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-static void make_frame(int d, struct row *c)
+static void make_frame(int d, struct bundle *c, int i)
 {
     const double z[3] = { 0, 0, 1 };
-    double other[3] = { noise(), noise(), noise() };
-    for (int k = 0; k < 3; k++) c->n[k] = k < d ? noise() : 0;
-    double n = norm(3, c->n);
-    for (int k = 0; k < 3; k++) c->n[k] /= n;
-    cross(d == 2 ? z : other, c->n, c->t1);
-    double t = norm(3, c->t1);
-    for (int k = 0; k < 3; k++) c->t1[k] /= t;
-    cross(c->n, c->t1, c->t2);
+    double other[3] = { noise(), noise(), noise() }, n[3], t1[3], t2[3];
+    for (int k = 0; k < 3; k++) n[k] = k < d ? noise() : 0;
+    double size = norm(3, n);
+    for (int k = 0; k < 3; k++) n[k] /= size;
+    cross(d == 2 ? z : other, n, t1);
+    size = norm(3, t1);
+    for (int k = 0; k < 3; k++) t1[k] /= size;
+    cross(n, t1, t2);
+    for (int k = 0; k < 3; k++) c->n[k][i] = n[k], c->t1[k][i] = t1[k], c->t2[k][i] = t2[k];
 }
 
 /*
@@ -397,8 +398,10 @@ static void make_frame(int d, struct row *c)
  */
 static void make(struct made *m, int d, int64_t n)
 {
-    *m = (struct made){ .p = { .d = d, .n = n, .dt = 1 } };
-    m->p.row = m->row, m->p.contact = m->contact, m->p.body = m->body;
+    *m = (struct made){ .p = { .d = d, .n = n, .dt = 1, .bundles = (n + BUNDLE - 1) / BUNDLE } };
+    m->p.rows = m->p.bundles * BUNDLE;
+    m->p.bundle = m->bundle, m->p.contact = m->contact, m->p.body = m->body;
+    for (int64_t i = n; i < m->p.rows; i++) m->contact[i] = -1;
     for (int i = 0; i < BODIES; i++) {
         struct body *b = &m->body[i];
         for (int k = 0; k < d; k++) b->v[k] = i == 0 ? 0 : noise();
@@ -408,19 +411,24 @@ static void make(struct made *m, int d, int64_t n)
         m->free[i] = *b;
     }
     for (int64_t i = 0; i < n; i++) {
-        struct row *c = &m->row[i];
+        struct bundle *c = row_bundle(&m->p, i);
+        int k = row_lane(i);
         const double e[3] = { 0.5 + noise() / 2, 0.5 + noise() / 2 };
         m->contact[i] = (7 * i + 3) % n;
-        c->b = 4 + (int32_t)(4 * (1 + noise()));
-        do c->a = (int32_t)(BODIES * (1 + noise()) / 2);
-        while (c->a == c->b || c->a == 3);
-        if (i == 5) c->a = 0, c->b = 1;
-        make_frame(d, c);
-        c->la = noise(), c->lb = noise(), c->mu = fabs(noise());
-        for (int k = 0; k < 2; k++) c->s[k] = 1 / (1 + e[k]);
-        for (int k = 0; k < d; k++) c->offset[k] = noise(), c->r[k] = noise();
+        c->b[k] = 4 + (int32_t)(4 * (1 + noise()));
+        do c->a[k] = (int32_t)(BODIES * (1 + noise()) / 2);
+        while (c->a[k] == c->b[k] || c->a[k] == 3);
+        if (i == 5) c->a[k] = 0, c->b[k] = 1;
+        make_frame(d, c, k);
+        c->la[k] = noise(), c->lb[k] = noise(), c->mu[k] = fabs(noise());
+        for (int j = 0; j < 2; j++) c->s[j][k] = 1 / (1 + e[j]);
+        for (int j = 0; j < d; j++) c->offset[j][k] = noise(), c->r[j][k] = noise();
     }
-    for (int64_t i = 0; i < n; i++) body_push(&m->p, &m->row[i], m->row[i].r);
+    for (int64_t i = 0; i < n; i++) {
+        double r[3], u[3];
+        row_get(&m->p, i, r, u);
+        body_push(m->body, row_bundle(&m->p, i), row_lane(i), r);
+    }
 }
 
 /* D u~ of every contact, in the contacts' order, with reactions r instead of those in the rows */
@@ -429,18 +437,18 @@ static double *pushed(struct made *m, const double *r)
     struct problem p = m->p;
     struct body body[BODIES];
     memcpy(body, m->free, sizeof body);
-    p.body = body;
     double *u = calloc((size_t)(p.n * p.d) + 1, sizeof *u);
     for (int64_t i = 0; i < p.n; i++) {
         double full[3] = { 0 };
         memcpy(full, r + p.d * p.contact[i], (size_t)p.d * sizeof *r);
-        body_push(&p, &p.row[i], full);
+        body_push(body, row_bundle(&p, i), row_lane(i), full);
     }
     assert(p.d == 2 || p.d == 3);
     for (int64_t i = 0; i < p.n; i++) {
         double v[3];
-        body_velocity(&p, &p.row[i], v);
-        for (int k = 0; k < p.d; k++) u[p.d * p.contact[i] + k] = v[k] / p.row[i].s[k > 0];
+        body_velocity(body, row_bundle(&p, i), row_lane(i), v);
+        for (int k = 0; k < p.d; k++)
+            u[p.d * p.contact[i] + k] = v[k] / row_bundle(&p, i)->s[k > 0][row_lane(i)];
     }
     return u;
 }
@@ -483,7 +491,8 @@ static void test_libfclib_local(struct made *m, const char *scratch, const doubl
     bool sorted = true, mu = true;
     for (int l = 0; l < nd; l++)
         for (int k = L->W->p[l] + 1; k < L->W->p[l + 1]; k++) sorted &= L->W->i[k] > L->W->i[k - 1];
-    for (int64_t i = 0; i < m->p.n; i++) mu &= L->mu[m->p.contact[i]] == m->row[i].mu;
+    for (int64_t i = 0; i < m->p.n; i++)
+        mu &= L->mu[m->p.contact[i]] == row_bundle(&m->p, i)->mu[row_lane(i)];
     ok(sorted && mu, "its columns ascend, mu is in the contacts' order");
     fclib_delete_local(L);
     free(L), free(u), free(v), free(T);

@@ -2,7 +2,7 @@
  * The five local methods on random one-contact problems, judged by the law itself and not by their
  * own formulas.
  */
-#include "local.h"
+#include "method.h"
 #include "tap.h"
 
 #include <gsl/gsl_deriv.h>
@@ -271,16 +271,16 @@ static void test_law(const struct method *m, enum kind kind, int d)
     for (int n = 0; n < PROBLEMS; n++) {
         struct one o;
         random_problem(&o, kind, d, 4);
-        m->solve(&o.l, &fast);
-        gave_up += o.l.trouble == LOCAL_GAVE_UP;
-        safeguarded += o.l.trouble == LOCAL_SAFEGUARDED;
+        method_solve(m, &o.l, &fast);
+        gave_up += o.l.gave_up != 0;
+        safeguarded += o.l.safeguarded != 0;
         broken += !finite_in_cone(&o.l) || (m != &local_exact && o.l.steps < 1);
         broken += d == 2 && (o.l.r[2] != 0 || o.l.u[2] != 0);
-        if (o.l.trouble != LOCAL_GAVE_UP) worst = fmax(worst, law_error(&o));
+        if (!o.l.gave_up) worst = fmax(worst, law_error(&o));
         steps += o.l.steps;
         if (o.l.steps > most) most = o.l.steps;
         struct local again = o.l;
-        local_velocity(&again);
+        local_velocity(&again, again.r, again.u);
         for (int k = 0; k < 3; k++) belief = fmax(belief, fabs(again.u[k] - o.l.u[k]));
     }
     diag("%s, %s, %dD: worst %.1e, gave up %d, safeguarded %d, steps %.2f (most %d) of %d problems",
@@ -304,7 +304,7 @@ static void test_iterated(const struct method *m, enum kind kind, int d)
         random_problem(&o, kind, d, 1.5);
         o.l.rho *= flat(0.2, 0.95 * limit);
         int k = 0;
-        for (; k < 20000 && (k == 0 || law_error(&o) > 1e-10); k++) m->solve(&o.l, &fast);
+        for (; k < 20000 && (k == 0 || law_error(&o) > 1e-10); k++) method_solve(m, &o.l, &fast);
         slow += law_error(&o) > 1e-10;
         broken += !finite_in_cone(&o.l);
         if (law_error(&o) <= 1e-10) worst = fmax(worst, k);
@@ -334,11 +334,11 @@ static void test_hopeless(void)
             if (n % 50 == 1) o.l.W = NULL, memset(o.l.w, 0, sizeof o.l.w);
             if (n % 50 == 2) o.l.rho = INFINITY;
             if ((*m)->believes) {
-                (*m)->solve(&o.l, n % 3 ? &fast : &plain);
+                method_solve(*m, &o.l, n % 3 ? &fast : &plain);
                 broken += !finite_in_cone(&o.l);
-                gave_up += o.l.trouble == LOCAL_GAVE_UP;
+                gave_up += o.l.gave_up != 0;
                 if (!strcmp((*m)->name, "exact") && o.l.W && o.l.rho < INFINITY)
-                    wrong += o.l.trouble == LOCAL_FINE && law_error(&o) > 1e-9;
+                    wrong += !o.l.gave_up && law_error(&o) > 1e-9;
             }
         }
         if (!(*m)->believes) continue;
@@ -361,9 +361,9 @@ static void test_semidefinite(void)
         o.l = (struct local){ .d = 3, .W = o.W, .mu = flat(0, 1.5), .rho = 1 };
         for (int i = 0; i < 3; i++) x[i] = flat(-1, 1);
         for (int i = 0; i < 3; i++) o.l.b[i] = -dot(o.W + 3 * i, x);
-        local_exact.solve(&o.l, &fast);
-        gave_up += o.l.trouble != LOCAL_FINE;
-        if (o.l.trouble == LOCAL_FINE) worst = fmax(worst, law_error(&o));
+        method_solve(&local_exact, &o.l, &fast);
+        gave_up += o.l.gave_up != 0;
+        if (!o.l.gave_up) worst = fmax(worst, law_error(&o));
     }
     diag("exact, semidefinite W: gave up %d of %d, worst %.1e", gave_up, PROBLEMS, worst);
     ok(worst < 1e-9 && gave_up == 0, "exact: W singular, b in its range: the law holds");
@@ -380,8 +380,8 @@ static void test_planar(const struct method *m)
         s.l.d = 3;
         if (s.l.W) s.l.W = s.W;
         if (p.l.W) p.l.W = p.W;
-        m->solve(&p.l, &fast);
-        m->solve(&s.l, &fast);
+        method_solve(m, &p.l, &fast);
+        method_solve(m, &s.l, &fast);
         double e[3] = { p.l.r[0] - s.l.r[0], p.l.r[1] - s.l.r[1], s.l.r[2] };
         worst = fmax(worst, norm(e) / (norm(s.l.r) + p.l.rho * norm(p.l.b)));
     }
@@ -396,10 +396,10 @@ static void test_cycles(const struct method *m, double least, double most)
         struct local l = { .d = 3, .w = { 1, 3.5, 3.5 }, .mu = 0.7, .rho = 1 };
         l.b[0] = flat(-1, 1), l.b[1] = flat(-1.5, 1.5), l.b[2] = flat(-1.5, 1.5);
         struct local again = l;
-        m->solve(&l, &plain);
-        m->solve(&again, &fast);
-        plainly += l.trouble == LOCAL_GAVE_UP;
-        now += again.trouble != LOCAL_FINE;
+        method_solve(m, &l, &plain);
+        method_solve(m, &again, &fast);
+        plainly += l.gave_up != 0;
+        now += again.gave_up || again.safeguarded;
     }
     double share = 100.0 * plainly / n;
     diag("%s: plain Newton cycles on %.2f %%, line search fails on %d of %d", m->name, share, now,
@@ -423,8 +423,8 @@ static void test_absolute(const struct method *m)
         }
         o.l.rho = 1;
         p = o;
-        m->solve(&o.l, &loose);
-        m->solve(&p.l, &fast);
+        method_solve(m, &o.l, &loose);
+        method_solve(m, &p.l, &fast);
         wide += o.l.steps, tight += p.l.steps;
         for (int k = 0; k < 3; k++) r[k] = o.l.r[k] - p.l.r[k];
         worst = fmax(worst, norm(r));

@@ -29,8 +29,13 @@ static int prepare_foreign(struct problem *p, struct frame *f, struct why *why)
 {
     struct delassus *W = &f->problem.W;
     if (problem_prepare_delassus(p, W, 0, 1, ORDER_NATURAL, why)) return why->status;
-    for (int64_t i = 0; i < p->n; i++)
-        for (int k = 0; k < W->d; k++) p->row[i].u[k] = f->u[W->d * p->contact[i] + k];
+    for (int64_t i = 0; i < p->rows; i++) {
+        double r[3], u[3];
+        if (p->contact[i] < 0) continue;
+        row_get(p, i, r, u);
+        for (int k = 0; k < W->d; k++) u[k] = f->u[W->d * p->contact[i] + k];
+        row_set(p, i, r, u);
+    }
     return 0;
 }
 

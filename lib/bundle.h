@@ -1,0 +1,93 @@
+/*
+ * bundle.h: the rows of the sweep, eight side by side: up to eight contacts of one group, which have
+ * nothing to do with each other, so that any number of them may be done at once.
+ *
+ * Every number of a bundle is a cache line, lane k of it contact k's; those that a method does not
+ * want are never touched. Of LANES lanes at once, k is the first.
+ *
+ * A lane without a contact (the last of a group) has rho 0 and w 1: it takes off, and counts nothing.
+ */
+#ifndef NSD_BUNDLE_H
+#define NSD_BUNDLE_H
+
+#include "local.h"
+
+enum { BUNDLE = 8 };
+
+struct bundle {
+    union {
+        struct {
+            double n[3][BUNDLE], t1[3][BUNDLE], t2[3][BUNDLE];
+        };
+        double W[9][BUNDLE]; /* kg^-1: W_cc of a problem that is given by W */
+    };
+    double la[BUNDLE], lb[BUNDLE]; /* m: centre of a to the point along n, the point to that of b */
+    double w[2][BUNDLE]; /* kg^-1: W~_cc, normal and tangential; of a W both are lambda_max(W_cc) */
+    double s[2][BUNDLE]; /* 1/(1 + e_n), 1/(1 + e_t) */
+    double offset[3][BUNDLE];       /* m/s: D^-1 E u^- */
+    double mu[BUNDLE], rho[BUNDLE]; /* -, kg */
+    double r[3][BUNDLE];            /* N s */
+    double u[3][BUNDLE];            /* m/s: what the local method believes */
+    int32_t a[BUNDLE], b[BUNDLE];   /* rows of body[]; of a W a is the contact */
+};
+
+struct body {
+    double v[3], w[3]; /* m/s, rad/s */
+    double im, ii;     /* 1/kg, 1/(kg m^2); 0: immovable */
+};
+
+/* LANES bodies side by side */
+struct bodies {
+    vd v[3], w[3], im, ii;
+};
+
+ALWAYS_INLINE void bodies_load(struct bodies *m, const struct body *body, const int32_t *row)
+{
+    vd x[8];
+    for (int k = 0; k < 8; k += LANES) {
+        for (int i = 0; i < LANES; i++) x[k + i] = vload(body[row[i]].v + k);
+        transpose(x + k);
+    }
+    for (int k = 0; k < 3; k++) m->v[k] = x[k], m->w[k] = x[3 + k];
+    m->im = x[6], m->ii = x[7];
+}
+
+ALWAYS_INLINE void bodies_store(const struct bodies *m, struct body *body, const int32_t *row)
+{
+    vd x[8] = { m->v[0], m->v[1], m->v[2], m->w[0], m->w[1], m->w[2], m->im, m->ii };
+    for (int k = 0; k < 8; k += LANES) {
+        transpose(x + k);
+        for (int i = 0; i < LANES; i++) vstore(body[row[i]].v + k, x[k + i]);
+    }
+}
+
+/* u~ as the bodies move */
+ALWAYS_INLINE void bundle_velocity(const struct bundle *c, int k, const struct bodies *a,
+                                   const struct bodies *b, vd u[3])
+{
+    vd n[3], t1[3], t2[3], dv[3], m[3], la = vload(c->la + k), lb = vload(c->lb + k);
+    for (int i = 0; i < 3; i++) {
+        n[i] = vload(c->n[i] + k), t1[i] = vload(c->t1[i] + k), t2[i] = vload(c->t2[i] + k);
+        dv[i] = b->v[i] - a->v[i], m[i] = la * a->w[i] + lb * b->w[i];
+    }
+    // w x (l n) . t1 = l w . t2, and the arm of b is -lb n
+    vd un = dot3(n, dv), u1 = dot3(t1, dv) - dot3(t2, m), u2 = dot3(t2, dv) + dot3(t1, m);
+    u[0] = vload(c->s[0] + k) * un + vload(c->offset[0] + k);
+    u[1] = vload(c->s[1] + k) * u1 + vload(c->offset[1] + k);
+    u[2] = vload(c->s[1] + k) * u2 + vload(c->offset[2] + k);
+}
+
+/* Reactions changed by dr (n, t1, t2) move the bodies. */
+ALWAYS_INLINE void bundle_push(const struct bundle *c, int k, const vd dr[3], struct bodies *a,
+                               struct bodies *b)
+{
+    vd turn_a = a->ii * vload(c->la + k), turn_b = b->ii * vload(c->lb + k);
+    for (int i = 0; i < 3; i++) { // f on b; m = -n x dr turns both
+        vd n = vload(c->n[i] + k), t1 = vload(c->t1[i] + k), t2 = vload(c->t2[i] + k);
+        vd f = dr[0] * n + dr[1] * t1 + dr[2] * t2, m = dr[2] * t1 - dr[1] * t2;
+        a->v[i] -= a->im * f, a->w[i] += turn_a * m;
+        b->v[i] += b->im * f, b->w[i] += turn_b * m;
+    }
+}
+
+#endif

@@ -1,0 +1,195 @@
+/*
+ * lanes.h: LANES numbers at once. What is written over vd (numbers) and vm (masks) is one text for one
+ * lane and for many; it does to a lane what it would do to it alone, bit for bit, for there is no
+ * operation but of IEEE's own, lane by lane.
+ *
+ * LANES is 1, plain double, unless the Makefile compiles a file for a width: 2 any machine, 4 AVX2,
+ * 8 AVX-512. Branches become masks: both sides are computed, pick() takes one.
+ */
+#ifndef NSD_LANES_H
+#define NSD_LANES_H
+
+#ifndef LANES
+#define LANES 1
+#endif
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#if LANES > 1 && defined __x86_64__
+#include <immintrin.h>
+#endif
+
+#define ALWAYS_INLINE __attribute__((always_inline)) static inline
+
+#if LANES == 1
+typedef double vd, vd_anywhere;
+typedef int64_t vm; /* 0 or -1 */
+#else
+typedef double vd __attribute__((vector_size(8 * LANES)));
+typedef double vd_anywhere __attribute__((vector_size(8 * LANES), may_alias, aligned(8)));
+#if LANES == 8
+typedef __mmask8 vm;
+#else
+typedef int64_t vm __attribute__((vector_size(8 * LANES)));
+#endif
+#endif
+
+#define NONE ((vm){ 0 }) /* no lane */
+
+ALWAYS_INLINE vd vload(const double *x)
+{
+    return *(const vd_anywhere *)x;
+}
+ALWAYS_INLINE void vstore(double *x, vd a)
+{
+    *(vd_anywhere *)x = a;
+}
+ALWAYS_INLINE vd splat(double a)
+{
+#if LANES == 1
+    return a;
+#else
+    return a - (vd){ 0 };
+#endif
+}
+
+/* a < b, a <= b: false where either is not a number */
+ALWAYS_INLINE vm lt(vd a, vd b)
+{
+#if LANES == 8
+    return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ);
+#elif LANES == 1
+    return -(vm)(a < b);
+#else
+    return a < b;
+#endif
+}
+ALWAYS_INLINE vm le(vd a, vd b)
+{
+#if LANES == 8
+    return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ);
+#elif LANES == 1
+    return -(vm)(a <= b);
+#else
+    return a <= b;
+#endif
+}
+
+ALWAYS_INLINE bool any(vm m)
+{
+#if LANES == 8 || LANES == 1
+    return m != 0;
+#elif defined __AVX__ && LANES == 4
+    return _mm256_movemask_pd((__m256d)m);
+#elif defined __SSE2__ && LANES == 2
+    return _mm_movemask_pd((__m128d)m);
+#else
+    int64_t some = 0;
+    for (int i = 0; i < LANES; i++) some |= m[i];
+    return some;
+#endif
+}
+
+/* m ? a : b */
+ALWAYS_INLINE vd pick(vm m, vd a, vd b)
+{
+#if LANES == 8
+    return _mm512_mask_blend_pd(m, b, a);
+#elif LANES == 1
+    return m ? a : b;
+#elif defined __AVX__ && LANES == 4
+    return _mm256_blendv_pd(b, a, (__m256d)m);
+#else
+    return (vd)((m & (vm)a) | (~m & (vm)b));
+#endif
+}
+
+ALWAYS_INLINE vd root(vd a)
+{
+#if LANES == 8
+    return _mm512_sqrt_pd(a);
+#elif LANES == 1
+    return sqrt(a);
+#elif defined __AVX__ && LANES == 4
+    return _mm256_sqrt_pd(a);
+#elif defined __SSE2__ && LANES == 2
+    return _mm_sqrt_pd(a);
+#else
+    for (int i = 0; i < LANES; i++) a[i] = sqrt(a[i]);
+    return a;
+#endif
+}
+
+/* the larger; b where either is not a number */
+ALWAYS_INLINE vd larger(vd a, vd b)
+{
+#if LANES == 8
+    return _mm512_max_pd(a, b);
+#elif defined __AVX__ && LANES == 4
+    return _mm256_max_pd(a, b);
+#else
+    return pick(lt(b, a), a, b);
+#endif
+}
+
+ALWAYS_INLINE vd absolute(vd a)
+{
+#if LANES == 8
+    return _mm512_abs_pd(a);
+#elif LANES == 1
+    return fabs(a);
+#else
+    return (vd)((vm)a & INT64_MAX);
+#endif
+}
+
+ALWAYS_INLINE vm is_finite(vd a)
+{
+    return lt(absolute(a), splat(INFINITY));
+}
+
+/*
+ * x[i][j] and x[j][i] change places: blocks of 1, then of 2, then of 4 beside the diagonal do. LOWn
+ * and HIGHn name the lanes of two vectors, one after the other, that become the first and the second.
+ */
+#if LANES == 2
+#define LOW1  0, 2
+#define HIGH1 1, 3
+#elif LANES == 4
+#define LOW1  0, 4, 2, 6
+#define HIGH1 1, 5, 3, 7
+#define LOW2  0, 1, 4, 5
+#define HIGH2 2, 3, 6, 7
+#elif LANES == 8
+#define LOW1  0, 8, 2, 10, 4, 12, 6, 14
+#define HIGH1 1, 9, 3, 11, 5, 13, 7, 15
+#define LOW2  0, 1, 8, 9, 4, 5, 12, 13
+#define HIGH2 2, 3, 10, 11, 6, 7, 14, 15
+#define LOW4  0, 1, 2, 3, 8, 9, 10, 11
+#define HIGH4 4, 5, 6, 7, 12, 13, 14, 15
+#endif
+
+#define EXCHANGE(x, n)                                                                             \
+    for (int i = 0; i < LANES; i++) {                                                              \
+        if (i & n) continue;                                                                       \
+        vd a = x[i], b = x[i + n];                                                                 \
+        x[i] = __builtin_shufflevector(a, b, LOW##n);                                              \
+        x[i + n] = __builtin_shufflevector(a, b, HIGH##n);                                         \
+    }
+
+ALWAYS_INLINE void transpose(vd x[LANES])
+{
+#if LANES >= 2
+    EXCHANGE(x, 1)
+#endif
+#if LANES >= 4
+    EXCHANGE(x, 2)
+#endif
+#if LANES >= 8
+    EXCHANGE(x, 4)
+#endif
+    (void)x;
+}
+
+#endif

@@ -1,0 +1,60 @@
+/*
+ * local_ebp.h: the enhanced bi-potential method, Newton on
+ *
+ *     Z = r - proj(tau, K_mu),     tau = r - rho (v + mu |v_t| n)     [errorpred].
+ *
+ * The chain rule, with A = d(tau - proj(tau))/dtau, dtau = dr - rho G dv, G = I + mu n g^T and
+ * g = v_t/|v_t| (0 at v_t = 0, where the stick step is exact):
+ *
+ *     dZ = dr - (I - A) dtau = A dr + rho (I - A) G dv.
+ *
+ * Multiplied out these are the paper's columns; its 2D dZ/dv_t has a sign wrong, and is
+ * rho mu/(1+mu^2) ((th_v + th_r) n + mu (1 + th_r th_v) t).
+ */
+#ifndef NSD_LOCAL_EBP_H
+#define NSD_LOCAL_EBP_H
+
+#include "local_newton.h"
+
+ALWAYS_INLINE void ebp_residual(vd mu, vd rho, struct iterate *x)
+{
+    x->vt = cone_predict(mu, rho, x->r, x->v, x->tau);
+    x->t = norm2(x->tau + 1);
+    x->stick = lt(x->t, mu * x->tau[0]);
+    x->free = le(mu * x->t, -x->tau[0]) & ~x->stick;
+    cone_project(mu, x->tau, x->p);
+    for (int i = 0; i < 3; i++) x->Z[i] = x->r[i] - x->p[i];
+}
+
+/*
+ * Sliding, tau - proj = k (e - mu n) with k = (|tau_t| - mu tau_n)/(1+mu^2), e = tau_t/|tau_t|:
+ *
+ *     A = (e - mu n)(e - mu n)^T/(1+mu^2) + k/|tau_t| (I_t - e e^T).
+ *
+ * tau_t = 0 slides at mu = 0 only; e := 0 there.
+ */
+ALWAYS_INLINE void ebp_tangent(vd mu, vd rho, const struct iterate *x, vd A[3][3], vd B[3][3])
+{
+    vd c = 1.0 / (1.0 + mu * mu), s = pick(lt(splat(0), x->t), 1.0 / x->t, splat(0));
+    vd e1 = s * x->tau[1], e2 = s * x->tau[2], k = c * (1.0 - mu * x->tau[0] * s);
+    A[0][0] = c * mu * mu;
+    A[0][1] = A[1][0] = -c * mu * e1;
+    A[0][2] = A[2][0] = -c * mu * e2;
+    A[1][1] = c * e1 * e1 + k * (1.0 - e1 * e1);
+    A[2][2] = c * e2 * e2 + k * (1.0 - e2 * e2);
+    A[1][2] = A[2][1] = (c - k) * e1 * e2;
+    newton_branch(x, A);
+    vd g = pick(lt(splat(0), x->vt), mu / x->vt, splat(0)), g1 = g * x->v[1], g2 = g * x->v[2];
+    for (int i = 0; i < 3; i++) {
+        B[i][0] = rho * ((double)(i == 0) - A[i][0]);
+        B[i][1] = rho * ((double)(i == 1) - A[i][1]) + g1 * B[i][0];
+        B[i][2] = rho * ((double)(i == 2) - A[i][2]) + g2 * B[i][0];
+    }
+}
+
+ALWAYS_INLINE void ebp_solve(struct local *l, const struct local_opt *opt)
+{
+    newton_solve(l, opt, ebp_residual, ebp_tangent);
+}
+
+#endif

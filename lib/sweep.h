@@ -1,0 +1,46 @@
+/*
+ * sweep.h: the inner loops, over bundles, in three widths of one text (sweep.c). The width changes no
+ * bit; it is the widest that the machine has, or that the environment's NSD_LANES allows.
+ */
+#ifndef NSD_SWEEP_H
+#define NSD_SWEEP_H
+
+#include "method.h"
+#include "problem.h"
+
+struct sweep_opt {
+    struct local_opt local;
+    double relax; /* omega: r + omega (r_new - r), back onto the cone */
+};
+
+struct tally {
+    double change; /* m/s: the largest change of a normal velocity */
+    double newton, safeguarded, gave_up;
+};
+
+/* Sums over contacts, in eight slots: lane k of every bundle goes into slot k. */
+struct sums {
+    double motion[BUNDLE], proj[BUNDLE], bipotential[BUNDLE], penetration[BUNDLE];
+    double natural2[BUNDLE], siconos2[BUNDLE], velocity2[BUNDLE], r2[BUNDLE];
+    double max_pen[BUNDLE], max_true[BUNDLE];
+};
+
+enum err_part { ERR_TERMS = 1, ERR_NATURAL = 2, ERR_ALL = 3 };
+
+/* All of bundles first .. end-1 of a problem */
+typedef void sweep_visit(struct problem *, int64_t first, int64_t end, const struct sweep_opt *,
+                         struct tally *);
+
+struct sweep {
+    int lanes;
+    sweep_visit *visit[METHOD_COUNT]; /* one local solve each, r into bodies or W at once */
+    /* what err.h defines, added to the sums */
+    void (*judge)(const struct problem *, int64_t first, int64_t end, bool believes, enum err_part,
+                  struct sums *);
+    /* u = the motion's */
+    void (*velocities)(struct problem *, int64_t first, int64_t end);
+};
+
+const struct sweep *sweep_widest(void);
+
+#endif
