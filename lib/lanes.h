@@ -150,46 +150,38 @@ ALWAYS_INLINE vm is_finite(vd a)
 }
 
 /*
- * x[i][j] and x[j][i] change places: blocks of 1, then of 2, then of 4 beside the diagonal do. LOWn
- * and HIGHn name the lanes of two vectors, one after the other, that become the first and the second.
+ * x[i][j] and x[j][i] change places. A stage makes of two vectors, whose lanes are numbered one after
+ * the other, two others; the lists are those for which a machine has an instruction.
  */
-#if LANES == 2
-#define LOW1  0, 2
-#define HIGH1 1, 3
-#elif LANES == 4
-#define LOW1  0, 4, 2, 6
-#define HIGH1 1, 5, 3, 7
-#define LOW2  0, 1, 4, 5
-#define HIGH2 2, 3, 6, 7
-#elif LANES == 8
-#define LOW1  0, 8, 2, 10, 4, 12, 6, 14
-#define HIGH1 1, 9, 3, 11, 5, 13, 7, 15
-#define LOW2  0, 1, 8, 9, 4, 5, 12, 13
-#define HIGH2 2, 3, 10, 11, 6, 7, 14, 15
-#define LOW4  0, 1, 2, 3, 8, 9, 10, 11
-#define HIGH4 4, 5, 6, 7, 12, 13, 14, 15
-#endif
-
-#define EXCHANGE(x, n)                                                                             \
-    for (int i = 0; i < LANES; i++) {                                                              \
-        if (i & n) continue;                                                                       \
-        vd a = x[i], b = x[i + n];                                                                 \
-        x[i] = __builtin_shufflevector(a, b, LOW##n);                                              \
-        x[i + n] = __builtin_shufflevector(a, b, HIGH##n);                                         \
-    }
+#define EXCHANGE(x, i, j, low, high)                                                               \
+    do {                                                                                           \
+        vd a = (x)[i], b = (x)[j];                                                                 \
+        (x)[i] = __builtin_shufflevector(a, b, low);                                               \
+        (x)[j] = __builtin_shufflevector(a, b, high);                                              \
+    } while (0)
+#define LIST(...) __VA_ARGS__
 
 ALWAYS_INLINE void transpose(vd x[LANES])
 {
-#if LANES >= 2
-    EXCHANGE(x, 1)
-#endif
-#if LANES >= 4
-    EXCHANGE(x, 2)
-#endif
-#if LANES >= 8
-    EXCHANGE(x, 4)
-#endif
     (void)x;
+#if LANES == 2
+    EXCHANGE(x, 0, 1, LIST(0, 2), LIST(1, 3));
+#elif LANES == 4
+    for (int i = 0; i < 4; i += 2) EXCHANGE(x, i, i + 1, LIST(0, 4, 2, 6), LIST(1, 5, 3, 7));
+    for (int i = 0; i < 2; i++) EXCHANGE(x, i, i + 2, LIST(0, 1, 4, 5), LIST(2, 3, 6, 7));
+#elif LANES == 8
+    for (int i = 0; i < 8; i += 2)
+        EXCHANGE(x, i, i + 1, LIST(0, 8, 2, 10, 4, 12, 6, 14), LIST(1, 9, 3, 11, 5, 13, 7, 15));
+    for (int i = 0; i < 8; i += 4)
+        for (int j = i; j < i + 2; j++)
+            EXCHANGE(x, j, j + 2, LIST(0, 1, 2, 3, 8, 9, 10, 11), LIST(4, 5, 6, 7, 12, 13, 14, 15));
+    for (int i = 0; i < 4; i++)
+        EXCHANGE(x, i, i + 4, LIST(0, 1, 4, 5, 8, 9, 12, 13), LIST(2, 3, 6, 7, 10, 11, 14, 15));
+    for (int i = 2; i < 4; i++) {
+        vd a = x[i];
+        x[i] = x[i + 2], x[i + 2] = a;
+    }
+#endif
 }
 
 #endif

@@ -10,34 +10,40 @@ enum {
     PARALLEL_FROM = 16 /* bundles of a group worth a second thread */
 };
 
-static void tally_add(struct tally *t, const struct tally *s)
+static double most(const double x[BUNDLE])
 {
-    t->change = s->change > t->change ? s->change : t->change;
-    t->newton += s->newton, t->safeguarded += s->safeguarded, t->gave_up += s->gave_up;
+    double y = 0;
+    for (int k = 0; k < BUNDLE; k++) y = x[k] > y ? x[k] : y;
+    return y;
 }
 
-static struct tally sweep(struct problem *p, const struct nlgs_opt *o)
+static int64_t count(const double x[BUNDLE])
 {
-    sweep_visit *visit = sweep_widest()->visit[o->method->id];
+    double y = 0;
+    for (int k = 0; k < BUNDLE; k++) y += x[k];
+    return (int64_t)y;
+}
+
+/* One sweep into the report; returns the largest change of a normal velocity, m/s. */
+static double sweep(struct problem *p, const struct nlgs_opt *o, struct report *rep)
+{
+    sweep_text *text = sweep_widest()->sweep[o->method->id];
     const struct sweep_opt opt = { o->local, o->relax };
-    struct tally all = { 0 };
-    if (o->threads == 1 || p->bundles < PARALLEL_FROM * p->groups) {
-        visit(p, 0, p->bundles, &opt, &all);
-        return all;
-    }
-#pragma omp parallel num_threads(o->threads)
+    int threads = p->bundles < PARALLEL_FROM * p->groups ? 1 : o->threads;
+    double change = 0;
+#pragma omp parallel num_threads(threads) if (threads > 1)
     {
-        struct tally mine = { 0 };
-        int64_t me = omp_get_thread_num(), threads = omp_get_num_threads();
-        for (int64_t g = 0; g < p->groups; g++) {
-            int64_t first = p->group[g], n = p->group[g + 1] - first;
-            visit(p, first + n * me / threads, first + n * (me + 1) / threads, &opt, &mine);
-#pragma omp barrier
-        }
+        struct tally t = { 0 };
+        text(p, omp_get_thread_num(), omp_get_num_threads(), &opt, &t);
 #pragma omp critical
-        tally_add(&all, &mine);
+        {
+            change = fmax(change, most(t.change));
+            rep->newton += count(t.newton);
+            rep->safeguarded += count(t.safeguarded), rep->gave_up += count(t.gave_up);
+        }
     }
-    return all;
+    rep->sweeps++;
+    return change;
 }
 
 static double seconds(void)
@@ -69,11 +75,8 @@ int nlgs_solve(struct problem *p, const struct nlgs_opt *o, struct report *rep)
     rep->sweeps = 0, rep->converged = !p->n;
     rep->newton = rep->safeguarded = rep->gave_up = 0;
     while (!rep->converged && rep->sweeps < o->max_sweeps) {
-        struct tally t = sweep(p, o);
-        rep->sweeps++;
-        rep->newton += (int64_t)t.newton;
-        rep->safeguarded += (int64_t)t.safeguarded, rep->gave_up += (int64_t)t.gave_up;
-        if (!o->history && !o->every_sweep && !(t.change <= due) && rep->sweeps > CHECK_FIRST &&
+        double change = sweep(p, o, rep);
+        if (!o->history && !o->every_sweep && !(change <= due) && rep->sweeps > CHECK_FIRST &&
             rep->sweeps - last < CHECK_EVERY)
             continue;
         struct err e;
@@ -85,7 +88,7 @@ int nlgs_solve(struct problem *p, const struct nlgs_opt *o, struct report *rep)
         if (!isfinite(value)) break; // diverged
         // error and change shrink together, more or less: due after half the way, and all the time
         // when it is near
-        due = value < 1.3 * o->eps ? INFINITY : t.change * sqrt(o->eps / value);
+        due = value < 1.3 * o->eps ? INFINITY : change * sqrt(o->eps / value);
         last = rep->sweeps;
     }
     if (!believes) sweep_widest()->velocities(p, 0, p->bundles);

@@ -13,9 +13,10 @@ struct sweep_opt {
     double relax; /* omega: r + omega (r_new - r), back onto the cone */
 };
 
+/* Of a sweep, lane by lane */
 struct tally {
-    double change; /* m/s: the largest change of a normal velocity */
-    double newton, safeguarded, gave_up;
+    double change[BUNDLE]; /* m/s: the largest change of a normal velocity */
+    double newton[BUNDLE], safeguarded[BUNDLE], gave_up[BUNDLE];
 };
 
 /* Sums over contacts, in eight slots: lane k of every bundle goes into slot k. */
@@ -27,14 +28,14 @@ struct sums {
 
 enum err_part { ERR_TERMS = 1, ERR_NATURAL = 2, ERR_ALL = 3 };
 
-/* All of bundles first .. end-1 of a problem */
-typedef void sweep_visit(struct problem *, int64_t first, int64_t end, const struct sweep_opt *,
-                         struct tally *);
+/* Every row once, group after group: the part of thread `me` of so many, all of which must call it. */
+typedef void sweep_text(struct problem *, int me, int threads, const struct sweep_opt *,
+                        struct tally *);
 
 struct sweep {
     int lanes;
-    sweep_visit *visit[METHOD_COUNT]; /* one local solve each, r into bodies or W at once */
-    /* what err.h defines, added to the sums */
+    sweep_text *sweep[METHOD_COUNT]; /* one local solve a row, r into bodies or W at once */
+    /* bundles first .. end-1: what err.h defines, added to the sums */
     void (*judge)(const struct problem *, int64_t first, int64_t end, bool believes, enum err_part,
                   struct sums *);
     /* u = the motion's */
