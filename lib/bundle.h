@@ -23,7 +23,8 @@ struct bundle {
     };
     double la[BUNDLE], lb[BUNDLE]; /* m: centre of a to the point along n, the point to that of b */
     double w[2][BUNDLE]; /* kg^-1: W~_cc, normal and tangential; of a W both are lambda_max(W_cc) */
-    double s[2][BUNDLE]; /* 1/(1 + e_n), 1/(1 + e_t) */
+    double iw[2][BUNDLE];           /* kg: 1/w */
+    double s[2][BUNDLE];            /* 1/(1 + e_n), 1/(1 + e_t) */
     double offset[3][BUNDLE];       /* m/s: D^-1 E u^- */
     double mu[BUNDLE], rho[BUNDLE]; /* -, kg */
     double r[3][BUNDLE];            /* N s */

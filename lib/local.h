@@ -26,6 +26,7 @@ struct local {
     int d;       /* 2 or 3 */
     const vd *W; /* [9], row-major, kg^-1; NULL: diagonal, w[1] = w[2] */
     vd w[3];     /* the diagonal of W, kg^-1 */
+    vd iw[3];    /* kg: 1/w where W is NULL */
     vd b[3];     /* m/s: velocity without this contact's own reaction */
     vd mu;
     vd rho;         /* kg: step of the projection */
@@ -38,8 +39,8 @@ struct local {
 
 struct local_opt {
     bool plain;        /* full Newton steps, no line search and no stand-in, as the paper has it */
-    double newton_eps; /* stop at rho |f| + |Z| <= newton_eps (|r| + rho |b|) */
-    double newton_abs; /* > 0: stop at |f| + |Z| <= newton_abs instead, in the problem's own units
+    double newton_eps; /* stop at |Z|^2 <= newton_eps^2 (|r|^2 + rho^2 |b|^2) */
+    double newton_abs; /* > 0: stop at |Z| <= newton_abs instead, in the problem's own units
                           [er_newt of the paper: an impulse of newton_eps dt there] */
     int newton_max;    /* steps */
 };
@@ -95,7 +96,7 @@ ALWAYS_INLINE void cone_project(vd mu, const vd tau[3], vd r[3])
     vd n = tau[0], t2 = dot2(tau + 1, tau + 1), t = root(t2);
     vm tip = le(n, splat(0)) & le(mu * mu * t2, n * n);
     vm in = le(splat(0), n) & le(t2, mu * mu * (n * n));
-    vd rn = (n + mu * t) / (1.0 + mu * mu), s = mu * rn / t;
+    vd rn = (n + mu * t) * (1.0 / (1.0 + mu * mu)), s = mu * rn * (1.0 / t);
     rn = pick(in, n, rn), s = pick(in, splat(1), s);
     r[0] = pick(tip, splat(0), rn);
     for (int k = 1; k < 3; k++) r[k] = pick(tip, splat(0), s * tau[k]);
@@ -123,7 +124,7 @@ ALWAYS_INLINE void disc_predict(vd rho, const vd r[3], const vd u[3], vd tau[3])
 ALWAYS_INLINE void disc_project(vd mu, const vd tau[3], vd r[3])
 {
     vd t = norm2(tau + 1), rn = larger(tau[0], splat(0));
-    vd s = pick(lt(mu * rn, t), mu * rn / t, splat(1));
+    vd s = pick(lt(mu * rn, t), mu * rn * (1.0 / t), splat(1));
     r[0] = rn, r[1] = s * tau[1], r[2] = s * tau[2];
 }
 

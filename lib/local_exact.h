@@ -20,7 +20,7 @@ bool exact_search(int d, const double W[9], const double b[3], double mu, double
 /* r_n = -b_n/w_n, and the stick reaction clipped to mu r_n */
 ALWAYS_INLINE vm exact_balls(const struct local *l, vd r[3])
 {
-    vd rn = -l->b[0] / l->w[0], rt[2] = { -l->b[1] / l->w[1], -l->b[2] / l->w[1] };
+    vd rn = -l->b[0] * l->iw[0], rt[2] = { -l->b[1] * l->iw[1], -l->b[2] * l->iw[1] };
     vd most = l->mu * rn, t2 = dot2(rt, rt);
     vd s = pick(lt(most * most, t2), most / root(t2), splat(1));
     r[0] = rn, r[1] = s * rt[0], r[2] = s * rt[1];

@@ -8,7 +8,8 @@
  *     (A + B W) dr = -Z + B f,     dv = -f + W dr.
  *
  * The start is v = W r + b and f is linear, so f = 0 at every iterate, whatever the length of the
- * step: here v is W r + b from first to last, and the error rho |f| + |Z| is |Z|.
+ * step: here v is W r + b from first to last, and the error rho |f| + |Z| is |Z|. It is compared by
+ * squares: roots and quotients are what costs here.
  */
 #ifndef NSD_LOCAL_NEWTON_H
 #define NSD_LOCAL_NEWTON_H
@@ -20,7 +21,7 @@ struct iterate {
     vd r[3], v[3];   /* N s, m/s */
     vd tau[3], p[3]; /* p = proj(tau) */
     vd Z[3];         /* r - p */
-    vd t, vt;        /* |tau_t|, |v_t| */
+    vd it, ivt;      /* 1/|tau_t|, 1/|v_t|; 0 at 0 */
     vm free, stick;  /* else it slides */
 };
 
@@ -66,7 +67,7 @@ ALWAYS_INLINE vm newton_direction(const struct local *l, const struct iterate *x
         for (int i = 0; i < 9; i++) M[i / 3][i % 3] = l->W[i];
         regular |= x->stick & solve3(M, x->v, stick);
     } else {
-        for (int i = 0; i < 3; i++) stick[i] = -x->v[i] / l->w[i];
+        for (int i = 0; i < 3; i++) stick[i] = -x->v[i] * l->iw[i];
         regular |= x->stick;
     }
     if (any(slide)) {
@@ -98,7 +99,7 @@ ALWAYS_INLINE void newton_take(struct iterate *x, const struct iterate *y, vm m)
         x->tau[i] = pick(m, y->tau[i], x->tau[i]), x->p[i] = pick(m, y->p[i], x->p[i]);
         x->Z[i] = pick(m, y->Z[i], x->Z[i]);
     }
-    x->t = pick(m, y->t, x->t), x->vt = pick(m, y->vt, x->vt);
+    x->it = pick(m, y->it, x->it), x->ivt = pick(m, y->ivt, x->ivt);
     x->free = (m & y->free) | (~m & x->free), x->stick = (m & y->stick) | (~m & x->stick);
 }
 
@@ -115,10 +116,11 @@ ALWAYS_INLINE void newton_take(struct iterate *x, const struct iterate *y, vm m)
 ALWAYS_INLINE vm newton_run(struct local *l, const struct local_opt *opt, newton_residual *residual,
                             newton_tangent *tangent, struct iterate *x)
 {
-    const vd rho_b = l->rho * norm3(l->b);
+    const vd rho_b2 = l->rho * l->rho * dot3(l->b, l->b);
+    const double eps2 = opt->newton_eps * opt->newton_eps;
     vm ended = NONE, run = ~ended;
     newton_move(l, l->r, splat(0), l->r, residual, x);
-    vd z = norm3(x->Z);
+    vd z2 = dot3(x->Z, x->Z);
     for (int k = 0; any(run) && (k == 0 || k < opt->newton_max); k++) {
         struct iterate y;
         vd dr[3], s = splat(1);
@@ -126,13 +128,12 @@ ALWAYS_INLINE vm newton_run(struct local *l, const struct local_opt *opt, newton
         l->steps += pick(run, splat(1), splat(0));
         for (vm search = run; any(search); s *= 0.5) {
             newton_move(l, x->r, s, dr, residual, &y);
-            vd zy = norm3(y.Z), end = opt->newton_eps * (norm3(y.r) + rho_b);
-            if (opt->newton_abs > 0) end = splat(opt->newton_abs);
-            vm there = search & le(zy, end);
-            vm better =
-                search & ~there & (opt->plain ? is_finite(zy) : lt(zy, z * (1.0 - 1e-4 * s)));
+            vd y2 = dot3(y.Z, y.Z), end2 = eps2 * (dot3(y.r, y.r) + rho_b2), least = 1.0 - 1e-4 * s;
+            if (opt->newton_abs > 0) end2 = splat(opt->newton_abs * opt->newton_abs);
+            vm there = search & le(y2, end2);
+            vm better = search & ~there & (opt->plain ? is_finite(y2) : lt(y2, z2 * least * least));
             newton_take(x, &y, there | better);
-            z = pick(better, zy, z);
+            z2 = pick(better, y2, z2);
             search &= ~(there | better);
             vm lost = opt->plain ? search : search & lt(s, splat(1e-3));
             ended |= there, run &= ~(there | lost), search &= ~lost;

@@ -46,7 +46,8 @@ static bool lay_out(struct problem *p, const struct schedule *plan)
     p->group[p->groups] = p->bundles;
     for (int64_t i = 0; i < p->rows; i++) {
         p->contact[i] = -1;
-        for (int k = 0; k < 2; k++) row_bundle(p, i)->w[k][row_lane(i)] = 1;
+        struct bundle *c = row_bundle(p, i);
+        for (int k = 0; k < 2; k++) c->w[k][row_lane(i)] = c->iw[k][row_lane(i)] = 1;
     }
     for (int64_t g = 0; g < p->groups; g++) {
         int64_t first = plan->group[g], n = plan->group[g + 1] - first;
@@ -102,6 +103,7 @@ static void row_init(struct bundle *r, int k, const struct problem *p, const str
     for (int i = 0; i < 3; i++) r->offset[i][k] = u[i] * (e[i] / (1 + e[i]));
     r->s[0][k] = 1 / (1 + c->en), r->s[1][k] = 1 / (1 + c->et);
     r->w[0][k] = r->s[0][k] * im, r->w[1][k] = r->s[1][k] * it;
+    for (int i = 0; i < 2; i++) r->iw[i][k] = 1 / r->w[i][k];
     double lambda = bundle_lambda(r, k);
     r->rho[k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / im : factor / lambda;
 }

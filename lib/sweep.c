@@ -71,6 +71,7 @@ ALWAYS_INLINE void pose(const struct problem *p, const struct bundle *c, int k, 
     for (int i = 0; i < 9 && given_by_W; i++) W[i] = vload(c->W[i] + k);
     for (int i = 0; i < 3; i++) {
         l->w[i] = given_by_W ? W[4 * i] : vload(c->w[i > 0] + k);
+        l->iw[i] = given_by_W ? splat(0) : vload(c->iw[i > 0] + k);
         l->r[i] = vload(c->r[i] + k), l->b[i] = s->b_c[i];
     }
 }

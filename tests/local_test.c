@@ -207,7 +207,7 @@ static void random_problem(struct one *o, enum kind kind, int d, double decades)
     if (kind == BALLS) {
         l->w[0] = unit / (1 + en), l->w[1] = l->w[2] = 3.5 * unit / (1 + et);
         memset(o->W, 0, sizeof o->W);
-        for (int k = 0; k < 3; k++) o->W[4 * k] = l->w[k];
+        for (int k = 0; k < 3; k++) o->W[4 * k] = l->w[k], l->iw[k] = 1 / l->w[k];
     } else {
         double e[3] = { eigenvalue(decades), eigenvalue(decades), eigenvalue(decades) };
         double smallest = fmin(e[0], fmin(e[1], e[2]));
@@ -331,7 +331,8 @@ static void test_hopeless(void)
             random_W(o.W, d, e);
             o.l.W = o.W;
             if (n % 50 == 0) memset(o.W, 0, sizeof o.W);
-            if (n % 50 == 1) o.l.W = NULL, memset(o.l.w, 0, sizeof o.l.w);
+            if (n % 50 == 1)
+                o.l.W = NULL, memset(o.l.w, 0, sizeof o.l.w), o.l.iw[0] = o.l.iw[1] = INFINITY;
             if (n % 50 == 2) o.l.rho = INFINITY;
             if ((*m)->believes) {
                 method_solve(*m, &o.l, n % 3 ? &fast : &plain);
@@ -393,7 +394,9 @@ static void test_cycles(const struct method *m, double least, double most)
 {
     int n = 20000, plainly = 0, now = 0;
     for (int i = 0; i < n; i++) {
-        struct local l = { .d = 3, .w = { 1, 3.5, 3.5 }, .mu = 0.7, .rho = 1 };
+        struct local l = {
+            .d = 3, .w = { 1, 3.5, 3.5 }, .iw = { 1, 2 / 7.0, 2 / 7.0 }, .mu = 0.7, .rho = 1
+        };
         l.b[0] = flat(-1, 1), l.b[1] = flat(-1.5, 1.5), l.b[2] = flat(-1.5, 1.5);
         struct local again = l;
         method_solve(m, &l, &plain);
@@ -419,7 +422,7 @@ static void test_absolute(const struct method *m)
         random_problem(&o, BALLS, 3, 0);
         double unit = norm(o.l.b) * o.l.rho, r[3];
         for (int k = 0; k < 3; k++) { // scaled to |b| = rho = 1
-            o.l.w[k] *= o.l.rho, o.l.b[k] *= o.l.rho / unit, o.l.r[k] /= unit;
+            o.l.w[k] *= o.l.rho, o.l.iw[k] /= o.l.rho, o.l.b[k] *= o.l.rho / unit, o.l.r[k] /= unit;
         }
         o.l.rho = 1;
         p = o;
