@@ -5,7 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COLOURS = 64 }; /* the bits of a mark; contacts beyond them follow one after another */
+enum {
+    COLOURS = 64, /* the bits of a mark; contacts beyond them follow one after another */
+    BLOCK = 16384 /* contacts coloured by themselves: their bodies fit into a second-level cache */
+};
 
 /*
  * Who depends on whom, of either kind of problem. A node is a movable body or, where there is only
@@ -60,26 +63,82 @@ static void place_level(struct graph *g, int64_t c)
     g->place[c] = (int64_t)level;
 }
 
-/* c's colour, the first that its bodies or blocks have not seen. */
-static void place_colour(struct graph *g, int64_t c)
+/* c's colour, the first that its bodies or blocks have not seen; also where c is the first of all. */
+static int64_t colour(struct graph *g, int64_t c)
 {
     uint64_t seen = 0;
     if (!g->W) {
         int64_t node[2];
         int k = touches(g, c, node);
         for (int j = 0; j < k; j++) seen |= g->mark[node[j]];
-        g->place[c] = first_free(seen);
-        for (int j = 0; j < k && g->place[c] < COLOURS; j++)
-            g->mark[node[j]] |= 1ull << g->place[c];
-        return;
+        int64_t free = first_free(seen);
+        for (int j = 0; j < k && free < COLOURS; j++) g->mark[node[j]] |= 1ull << free;
+        return free;
     }
     const int32_t *col = g->W->col + g->W->first[c], *end = g->W->col + g->W->first[c + 1];
     seen = g->mark[c];
     for (const int32_t *j = col; j < end; j++)
         if (g->place[*j] >= 0 && g->place[*j] < COLOURS) seen |= 1ull << g->place[*j];
-    g->place[c] = first_free(seen);
-    for (const int32_t *j = col; j < end && g->place[c] < COLOURS; j++)
-        g->mark[*j] |= 1ull << g->place[c];
+    int64_t free = first_free(seen);
+    for (const int32_t *j = col; j < end && free < COLOURS; j++) g->mark[*j] |= 1ull << free;
+    return free;
+}
+
+/* Colours for n contacts of the sequence, numbered from `from`; returns the number after the last. */
+static int64_t place_colours(struct graph *g, const int64_t *sequence, int64_t n, int64_t from)
+{
+    int64_t most = from, extra = from + COLOURS, node[2];
+    for (int64_t i = 0; i < n && !g->W; i++)
+        for (int j = touches(g, sequence[i], node); j > 0; j--) g->mark[node[j - 1]] = 0;
+    for (int64_t i = 0; i < n; i++) {
+        int64_t c = colour(g, sequence[i]);
+        g->place[sequence[i]] = c < COLOURS ? from + c : extra++;
+        most = later(most, g->place[sequence[i]] + 1);
+    }
+    return most;
+}
+
+/* Bits 0, 3, 6 ... of x's ten */
+static uint32_t spread(uint32_t x)
+{
+    x = (x | x << 16) & 0x30000ff;
+    x = (x | x << 8) & 0x300f00f;
+    x = (x | x << 4) & 0x30c30c3;
+    return (x | x << 2) & 0x9249249;
+}
+
+/* Where contact c is along a curve that fills the box from lo with 1024 cells of size h a side */
+static uint32_t along_curve(vec3 x, vec3 lo, double h)
+{
+    vec3 i = v3_scale(1 / h, v3_sub(x, lo));
+    return spread((uint32_t)i.x) | spread((uint32_t)i.y) << 1 | spread((uint32_t)i.z) << 2;
+}
+
+/* The sequence sorted along the curve, by ten bits of the key at a time; -1 when memory is short. */
+static int sort_along_curve(const struct contacts *s, int64_t *sequence)
+{
+    vec3 lo = s->c[0].x, hi = lo;
+    for (int64_t i = 0; i < s->n; i++) {
+        vec3 x = s->c[i].x;
+        lo = v3(fmin(lo.x, x.x), fmin(lo.y, x.y), fmin(lo.z, x.z));
+        hi = v3(fmax(hi.x, x.x), fmax(hi.y, x.y), fmax(hi.z, x.z));
+    }
+    double h = fmax(hi.x - lo.x, fmax(hi.y - lo.y, hi.z - lo.z)) / 1023;
+    uint32_t *key = malloc((size_t)s->n * sizeof *key);
+    int64_t *from = sequence, *to = malloc((size_t)s->n * sizeof *to), *spare = to;
+    bool room = key && to && h > 0;
+    for (int64_t i = 0; room && i < s->n; i++) key[i] = along_curve(s->c[i].x, lo, h);
+    for (int shift = 0; room && shift < 30; shift += 10) {
+        int64_t tally[1025] = { 0 };
+        for (int64_t i = 0; i < s->n; i++) tally[(key[i] >> shift & 1023) + 1]++;
+        for (int k = 0; k < 1024; k++) tally[k + 1] += tally[k];
+        for (int64_t i = 0; i < s->n; i++) to[tally[key[from[i]] >> shift & 1023]++] = from[i];
+        int64_t *swap = from;
+        from = to, to = swap;
+    }
+    if (room) memcpy(sequence, spare, (size_t)s->n * sizeof *sequence); // three passes end there
+    free(key), free(spare);
+    return room || !(h > 0) ? 0 : -1;
 }
 
 static void sequence_init(int64_t *sequence, int64_t n, enum order order)
@@ -91,12 +150,10 @@ static void sequence_init(int64_t *sequence, int64_t n, enum order order)
     gsl_rng_free(rng);
 }
 
-/* The sequence sorted by place, stable; contacts beyond the colours get a group each. */
-static int regroup(struct schedule *s, const struct graph *g, bool colours)
+/* The sequence sorted by place, stable */
+static int regroup(struct schedule *s, const struct graph *g)
 {
-    int64_t places = 0, extra = 0;
-    for (int64_t c = 0; colours && c < g->n; c++)
-        if (g->place[c] >= COLOURS) g->place[c] = COLOURS + extra++;
+    int64_t places = 0;
     for (int64_t c = 0; c < g->n; c++) places = g->place[c] >= places ? g->place[c] + 1 : places;
     int64_t *sorted = malloc((size_t)(g->n + 1) * sizeof *sorted);
     s->groups = places;
@@ -122,11 +179,14 @@ static int schedule(struct schedule *s, enum order order, struct graph *g)
     g->place = malloc((size_t)(g->n + 1) * sizeof *g->place);
     int failed = !s->sequence || !g->mark || !g->place;
     if (!failed) {
+        int64_t block = g->W ? g->n : BLOCK, from = 0;
         sequence_init(s->sequence, g->n, order);
         for (int64_t i = 0; i < g->n; i++) g->place[i] = -1;
-        for (int64_t i = 0; i < g->n; i++)
-            (colours ? place_colour : place_level)(g, s->sequence[i]);
-        failed = regroup(s, g, colours);
+        for (int64_t i = 0; !colours && i < g->n; i++) place_level(g, s->sequence[i]);
+        if (colours && g->n > block) failed = sort_along_curve(g->contacts, s->sequence);
+        for (int64_t i = 0; colours && i < g->n; i += block)
+            from = place_colours(g, s->sequence + i, g->n - i < block ? g->n - i : block, from);
+        failed = failed || regroup(s, g);
     }
     free(g->mark), free(g->place);
     if (!failed) return 0;
