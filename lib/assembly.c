@@ -33,10 +33,11 @@ static void assembly_velocity(const struct assembly *A, const struct body *body,
     assert(d == 2 || d == 3);
     for (int64_t c = 0; c < A->p->n; c++) {
         const struct bundle *row = assembly_bundle(A, c);
+        const struct rebound *e = row_rebound(A->p, A->row[c]);
         int lane = row_lane(A->row[c]);
         double u[3];
-        body_velocity(body, row, lane, u);
-        for (int k = 0; k < d; k++) *out++ = u[k] / row->s[k > 0][lane];
+        body_velocity(body, row, e, lane, u);
+        for (int k = 0; k < d; k++) *out++ = e ? u[k] / e->s[k > 0][lane] : u[k];
     }
 }
 
@@ -98,11 +99,12 @@ static void jacobian(const struct assembly *A, int64_t contact, int end, double 
 {
     const struct bundle *c = assembly_bundle(A, contact);
     int i = row_lane(A->row[contact]);
-    double sign = end ? 1 : -1, l = end ? c->lb[i] : c->la[i];
+    double sign = end ? 1 : -1, l = end ? c->lb[i] : c->la[i], n[3], t1[3], t2[3];
+    bundle_frame(c, i, n, t1, t2);
     for (int k = 0; k < 3; k++) {
-        J[0][k] = sign * c->n[k][i], J[0][3 + k] = 0;
-        J[1][k] = sign * c->t1[k][i], J[1][3 + k] = -l * c->t2[k][i];
-        J[2][k] = sign * c->t2[k][i], J[2][3 + k] = l * c->t1[k][i];
+        J[0][k] = sign * n[k], J[0][3 + k] = 0;
+        J[1][k] = sign * t1[k], J[1][3 + k] = -l * t2[k];
+        J[2][k] = sign * t2[k], J[2][3 + k] = l * t1[k];
     }
 }
 

@@ -17,19 +17,23 @@ enum { BUNDLE = 8 };
 struct bundle {
     union {
         struct {
-            double n[3][BUNDLE], t1[3][BUNDLE], t2[3][BUNDLE];
+            double n[3][BUNDLE], t1[3][BUNDLE];
         };
         double W[9][BUNDLE]; /* kg^-1: W_cc of a problem that is given by W */
     };
     double la[BUNDLE], lb[BUNDLE]; /* m: centre of a to the point along n, the point to that of b */
     double w[2][BUNDLE]; /* kg^-1: W~_cc, normal and tangential; of a W both are lambda_max(W_cc) */
     double iw[2][BUNDLE];           /* kg: 1/w */
-    double s[2][BUNDLE];            /* 1/(1 + e_n), 1/(1 + e_t) */
-    double offset[3][BUNDLE];       /* m/s: D^-1 E u^- */
     double mu[BUNDLE], rho[BUNDLE]; /* -, kg */
     double r[3][BUNDLE];            /* N s */
     double u[3][BUNDLE];            /* m/s: what the local method believes */
     int32_t a[BUNDLE], b[BUNDLE];   /* rows of body[]; of a W a is the contact */
+};
+
+/* Of a bundle some of whose contacts rebound: u~ = s u + offset */
+struct rebound {
+    double s[2][BUNDLE];      /* 1/(1 + e_n), 1/(1 + e_t) */
+    double offset[3][BUNDLE]; /* m/s: D^-1 E u^- */
 };
 
 struct body {
@@ -62,20 +66,26 @@ ALWAYS_INLINE void bodies_store(const struct bodies *m, struct body *body, const
     }
 }
 
-/* u~ as the bodies move */
-ALWAYS_INLINE void bundle_velocity(const struct bundle *c, int k, const struct bodies *a,
-                                   const struct bodies *b, vd u[3])
+/* The frames; t2 = n x t1 is cheaper to compute than to fetch. */
+ALWAYS_INLINE void bundle_frame(const struct bundle *c, int k, vd n[3], vd t1[3], vd t2[3])
+{
+    for (int i = 0; i < 3; i++) n[i] = vload(c->n[i] + k), t1[i] = vload(c->t1[i] + k);
+    for (int i = 0, j = 1, l = 2; i < 3; j = l, l = i++) t2[i] = n[j] * t1[l] - n[l] * t1[j];
+}
+
+/* u~ as the bodies move; e NULL: u */
+ALWAYS_INLINE void bundle_velocity(const struct bundle *c, const struct rebound *e, int k,
+                                   const struct bodies *a, const struct bodies *b, vd u[3])
 {
     vd n[3], t1[3], t2[3], dv[3], m[3], la = vload(c->la + k), lb = vload(c->lb + k);
+    bundle_frame(c, k, n, t1, t2);
     for (int i = 0; i < 3; i++) {
-        n[i] = vload(c->n[i] + k), t1[i] = vload(c->t1[i] + k), t2[i] = vload(c->t2[i] + k);
         dv[i] = b->v[i] - a->v[i], m[i] = la * a->w[i] + lb * b->w[i];
     }
     // w x (l n) . t1 = l w . t2, and the arm of b is -lb n
     vd un = dot3(n, dv), u1 = dot3(t1, dv) - dot3(t2, m), u2 = dot3(t2, dv) + dot3(t1, m);
-    u[0] = vload(c->s[0] + k) * un + vload(c->offset[0] + k);
-    u[1] = vload(c->s[1] + k) * u1 + vload(c->offset[1] + k);
-    u[2] = vload(c->s[1] + k) * u2 + vload(c->offset[2] + k);
+    u[0] = un, u[1] = u1, u[2] = u2;
+    for (int i = 0; i < 3 && e; i++) u[i] = vload(e->s[i > 0] + k) * u[i] + vload(e->offset[i] + k);
 }
 
 /* Reactions changed by dr (n, t1, t2) move the bodies. */
@@ -83,9 +93,10 @@ ALWAYS_INLINE void bundle_push(const struct bundle *c, int k, const vd dr[3], st
                                struct bodies *b)
 {
     vd turn_a = a->ii * vload(c->la + k), turn_b = b->ii * vload(c->lb + k);
+    vd n[3], t1[3], t2[3];
+    bundle_frame(c, k, n, t1, t2);
     for (int i = 0; i < 3; i++) { // f on b; m = -n x dr turns both
-        vd n = vload(c->n[i] + k), t1 = vload(c->t1[i] + k), t2 = vload(c->t2[i] + k);
-        vd f = dr[0] * n + dr[1] * t1 + dr[2] * t2, m = dr[2] * t1 - dr[1] * t2;
+        vd f = dr[0] * n[i] + dr[1] * t1[i] + dr[2] * t2[i], m = dr[2] * t1[i] - dr[1] * t2[i];
         a->v[i] -= a->im * f, a->w[i] += turn_a * m;
         b->v[i] += b->im * f, b->w[i] += turn_b * m;
     }

@@ -26,11 +26,11 @@ static bool nonzero(const double *B, int size)
     return false;
 }
 
-/* Row-major d x d, padded to 3 x 3 as local.h has it for d = 2 */
+/* Column-major d x d to row-major, padded to 3 x 3 as local.h has it for d = 2 */
 static void pad(int d, const double *B, double out[9])
 {
     for (int i = 0; i < d; i++)
-        for (int j = 0; j < d; j++) out[3 * i + j] = B[d * i + j];
+        for (int j = 0; j < d; j++) out[3 * i + j] = B[i + d * j];
     if (d == 2) out[8] = out[4] > 0 ? out[4] : 1;
 }
 
@@ -44,7 +44,7 @@ static void gather_blocks(struct delassus *W, int64_t entries, const int64_t *or
         int64_t c = row[order[k]] / d, b = col[order[k]] / d;
         double B[9] = { 0 };
         for (; k < entries && row[order[k]] / d == c && col[order[k]] / d == b; k++)
-            B[d * (row[order[k]] % d) + col[order[k]] % d] += x[order[k]];
+            B[row[order[k]] % d + d * (col[order[k]] % d)] += x[order[k]];
         if (b == c) {
             pad(d, B, W->diag + 9 * c);
         } else if (nonzero(B, dd)) {
@@ -89,7 +89,7 @@ int delassus_init(struct delassus *W, int d, int64_t n, int64_t entries, const i
         int64_t blocks = count_blocks(entries, order, row, col, d);
         W->first = calloc((size_t)(n + 1), sizeof *W->first);
         W->col = malloc((size_t)(blocks + 1) * sizeof *W->col);
-        W->block = malloc((size_t)(blocks + 1) * (size_t)(d * d) * sizeof *W->block);
+        W->block = calloc((size_t)(blocks + 1) * (size_t)(d * d) + 4, sizeof *W->block);
         W->diag = calloc((size_t)(n + 1) * 9, sizeof *W->diag);
         W->r = calloc((size_t)(n * d + 1), sizeof *W->r);
         W->q = copy(q, n * d);

@@ -18,7 +18,7 @@ struct delassus {
     int64_t n;      /* contacts */
     int64_t *first; /* [n + 1] off-diagonal blocks of row c: first[c] .. first[c+1]-1 */
     int32_t *col;   /* [blocks] their columns, ascending */
-    double *block;  /* [blocks][d*d] row-major, kg^-1 */
+    double *block;  /* [blocks][d*d] column-major, kg^-1; four more may be read */
     double *diag;   /* [n][9] W_cc, padded to 3 x 3 as local.h has it for d = 2 */
     double *q;      /* [n*d] m/s */
     double *mu;     /* [n] */
@@ -35,28 +35,28 @@ int delassus_init(struct delassus *, int d, int64_t n, int64_t entries, const in
                   struct why *);
 void delassus_free(struct delassus *);
 
-/* b[3] = q_c + sum over the blocks beside the diagonal of W_cb r_b */
-static inline void delassus_gather(const struct delassus *W, int64_t c, double b[3])
+/* Four of a column, though only d are meant: what is beyond them ends in b[d..], which nobody reads. */
+typedef double column __attribute__((vector_size(32), may_alias, aligned(8)));
+
+/* b[d] = q_c + sum over the blocks beside the diagonal of W_cb r_b */
+static inline void delassus_gather(const struct delassus *W, int64_t c, double b[4])
 {
-    int64_t k = W->first[c], end = W->first[c + 1];
-    if (W->d == 2) {
-        double b0 = W->q[2 * c], b1 = W->q[2 * c + 1];
-        for (; k < end; k++) {
-            const double *B = W->block + 4 * k, *r = W->r + 2 * (int64_t)W->col[k];
-            b0 += B[0] * r[0] + B[1] * r[1];
-            b1 += B[2] * r[0] + B[3] * r[1];
+    int d = W->d;
+    const double *B = W->block + d * d * W->first[c], *q = W->q + d * c;
+    const int32_t *col = W->col + W->first[c], *end = W->col + W->first[c + 1];
+    column sum = { q[0], q[1], d == 3 ? q[2] : 0, 0 };
+    if (d == 2)
+        for (; col < end; col++, B += 4) {
+            const double *r = W->r + 2 * (int64_t)*col;
+            sum += *(const column *)B * r[0] + *(const column *)(B + 2) * r[1];
         }
-        b[0] = b0, b[1] = b1, b[2] = 0;
-        return;
-    }
-    double b0 = W->q[3 * c], b1 = W->q[3 * c + 1], b2 = W->q[3 * c + 2];
-    for (; k < end; k++) {
-        const double *B = W->block + 9 * k, *r = W->r + 3 * (int64_t)W->col[k];
-        b0 += B[0] * r[0] + B[1] * r[1] + B[2] * r[2];
-        b1 += B[3] * r[0] + B[4] * r[1] + B[5] * r[2];
-        b2 += B[6] * r[0] + B[7] * r[1] + B[8] * r[2];
-    }
-    b[0] = b0, b[1] = b1, b[2] = b2;
+    else
+        for (; col < end; col++, B += 9) {
+            const double *r = W->r + 3 * (int64_t)*col;
+            sum += *(const column *)B * r[0] + *(const column *)(B + 3) * r[1] +
+                   *(const column *)(B + 6) * r[2];
+        }
+    *(column *)b = sum;
 }
 
 #endif

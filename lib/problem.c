@@ -26,7 +26,7 @@ static int no_memory(struct problem *p, struct why *why)
 
 void problem_free(struct problem *p)
 {
-    free(p->bundle), free(p->contact), free(p->group), free(p->body);
+    free(p->bundle), free(p->rebound), free(p->contact), free(p->group), free(p->body);
     *p = (struct problem){ 0 };
 }
 
@@ -86,24 +86,26 @@ void problem_arms(const struct packing *p, const struct contact *c, double *la, 
     *lb = v3_dot(v3_sub(packing_predict(p, c->b), c->x), c->n);
 }
 
-/* All of a row but the reaction; the bodies still have the velocities before the step. */
-static void row_init(struct bundle *r, int k, const struct problem *p, const struct packing *pack,
+/* All of row i but the reaction; the bodies still have the velocities before the step. */
+static void row_init(struct problem *p, int64_t i, const struct packing *pack,
                      const struct contact *c, double alpha, double factor)
 {
-    const double e[3] = { c->en, c->et, c->et }, n[3] = { c->n.x, c->n.y, c->n.z },
-                 t1[3] = { c->t1.x, c->t1.y, c->t1.z }, t2[3] = { c->t2.x, c->t2.y, c->t2.z };
-    for (int i = 0; i < 3; i++) r->n[i][k] = n[i], r->t1[i][k] = t1[i], r->t2[i][k] = t2[i];
+    const double en[3] = { c->en, c->et, c->et }, n[3] = { c->n.x, c->n.y, c->n.z },
+                 t1[3] = { c->t1.x, c->t1.y, c->t1.z }, s[2] = { 1 / (1 + c->en), 1 / (1 + c->et) };
+    struct bundle *r = row_bundle(p, i);
+    struct rebound *e = row_rebound(p, i);
+    int k = row_lane(i);
+    for (int j = 0; j < 3; j++) r->n[j][k] = n[j], r->t1[j][k] = t1[j];
     r->mu[k] = c->mu;
     problem_arms(pack, c, &r->la[k], &r->lb[k]);
     const struct body *a = &p->body[r->a[k]], *b = &p->body[r->b[k]];
     double u[3], im = a->im + b->im;
     double it = im + r->la[k] * r->la[k] * a->ii + r->lb[k] * r->lb[k] * b->ii;
-    r->s[0][k] = r->s[1][k] = 1;
-    body_velocity(p->body, r, k, u); // u^-
-    for (int i = 0; i < 3; i++) r->offset[i][k] = u[i] * (e[i] / (1 + e[i]));
-    r->s[0][k] = 1 / (1 + c->en), r->s[1][k] = 1 / (1 + c->et);
-    r->w[0][k] = r->s[0][k] * im, r->w[1][k] = r->s[1][k] * it;
-    for (int i = 0; i < 2; i++) r->iw[i][k] = 1 / r->w[i][k];
+    body_velocity(p->body, r, NULL, k, u); // u^-
+    for (int j = 0; j < 3 && e; j++) e->offset[j][k] = u[j] * (en[j] / (1 + en[j]));
+    for (int j = 0; j < 2 && e; j++) e->s[j][k] = s[j];
+    r->w[0][k] = s[0] * im, r->w[1][k] = s[1] * it;
+    for (int j = 0; j < 2; j++) r->iw[j][k] = 1 / r->w[j][k];
     double lambda = bundle_lambda(r, k);
     r->rho[k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / im : factor / lambda;
 }
@@ -128,6 +130,13 @@ static int64_t seats(const struct packing *pack, const struct contacts *s)
     return n;
 }
 
+static bool rebounds(const struct contacts *s)
+{
+    for (int64_t i = 0; i < s->n; i++)
+        if (s->c[i].en > 0 || s->c[i].et > 0) return true;
+    return false;
+}
+
 int problem_prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
                     double alpha, double factor, enum order order, struct why *why)
 {
@@ -136,6 +145,7 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     p->body = lines(seats(pack, s), sizeof *p->body);
     bool room = p->body && !schedule_bodies(&plan, order, s, pack) && lay_out(p, &plan);
     schedule_free(&plan);
+    if (room && rebounds(s)) room = (p->rebound = lines(p->bundles, sizeof *p->rebound)) != NULL;
     if (!room) return no_memory(p, why);
     movers(p, pack);
     int64_t nobody = pack->n, next = nobody + 1;
@@ -146,7 +156,7 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
         if (p->contact[i] < 0) continue;
         const struct contact *c = &s->c[p->contact[i]];
         r->a[k] = seat(p, pack, c->a, &next), r->b[k] = seat(p, pack, c->b, &next);
-        row_init(r, k, p, pack, c, alpha, factor);
+        row_init(p, i, pack, c, alpha, factor);
     }
 
     double g = v3_norm(pack->g);
@@ -158,7 +168,7 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     for (int64_t i = 0; i < p->rows; i++) {
         double q[3];
         if (p->contact[i] < 0) continue;
-        body_velocity(p->body, row_bundle(p, i), row_lane(i), q);
+        body_velocity(p->body, row_bundle(p, i), row_rebound(p, i), row_lane(i), q);
         p->norm_q += q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
     }
     p->norm_q = sqrt(p->norm_q);

@@ -25,18 +25,19 @@
 
 struct problem {
     int d;
-    int64_t n;             /* contacts */
-    int64_t bundles, rows; /* 8 rows a bundle, some without a contact */
-    struct bundle *bundle; /* [bundles] in the order of the sweep */
-    int64_t *contact;      /* [rows] row i is contact[i] of the packing, of W; -1: none */
-    int64_t groups;        /* no two rows of a group share a body (a block of W): */
-    int64_t *group;        /* [groups + 1] bundles group[g] .. group[g+1]-1 may be done at once */
-    struct body *body;     /* [bodies, then copies of what does not move]; NULL: given by W */
-    struct delassus *W;    /* borrowed; NULL: given by bodies */
-    double dt;             /* s: the paper's forces are r / dt; 1 where there are no steps */
-    double scale_v;        /* m/s and */
-    double scale_r;        /* N s: what the scaled errors are measured in: g dt and m g dt */
-    double norm_q;         /* m/s: |u~_free| of all contacts, |q| */
+    int64_t n;               /* contacts */
+    int64_t bundles, rows;   /* 8 rows a bundle, some without a contact */
+    struct bundle *bundle;   /* [bundles] in the order of the sweep */
+    struct rebound *rebound; /* [bundles]; NULL: e_n = e_t = 0 everywhere */
+    int64_t *contact;        /* [rows] row i is contact[i] of the packing, of W; -1: none */
+    int64_t groups;          /* no two rows of a group share a body (a block of W): */
+    int64_t *group;          /* [groups + 1] bundles group[g] .. group[g+1]-1 may be done at once */
+    struct body *body;       /* [bodies, then copies of what does not move]; NULL: given by W */
+    struct delassus *W;      /* borrowed; NULL: given by bodies */
+    double dt;               /* s: the paper's forces are r / dt; 1 where there are no steps */
+    double scale_v;          /* m/s and */
+    double scale_r;          /* N s: what the scaled errors are measured in: g dt and m g dt */
+    double norm_q;           /* m/s: |u~_free| of all contacts, |q| */
 };
 
 /*
@@ -65,6 +66,10 @@ static inline int row_lane(int64_t i)
 {
     return (int)(i % BUNDLE);
 }
+static inline struct rebound *row_rebound(const struct problem *p, int64_t i)
+{
+    return p->rebound ? &p->rebound[i / BUNDLE] : NULL;
+}
 void row_get(const struct problem *, int64_t i, double r[3], double u[3]);
 void row_set(struct problem *, int64_t i, const double r[3], const double u[3]);
 
@@ -75,11 +80,12 @@ ALWAYS_INLINE vd bundle_lambda(const struct bundle *c, int k)
 }
 
 /* u~ of lanes k.. of c from these bodies' velocities */
-ALWAYS_INLINE void body_velocity(const struct body *body, const struct bundle *c, int k, vd u[3])
+ALWAYS_INLINE void body_velocity(const struct body *body, const struct bundle *c,
+                                 const struct rebound *e, int k, vd u[3])
 {
     struct bodies a, b;
     bodies_load(&a, body, c->a + k), bodies_load(&b, body, c->b + k);
-    bundle_velocity(c, k, &a, &b, u);
+    bundle_velocity(c, e, k, &a, &b, u);
 }
 
 /* Reactions changed by dr move these bodies. */

@@ -23,11 +23,10 @@ ALWAYS_INLINE void raise(double *slot, vd a)
 /* b_c of lanes k.. of a problem that is given by W: from everybody's r as it is now */
 ALWAYS_INLINE void blocks_gather(const struct problem *p, const struct bundle *c, int k, vd b[3])
 {
-    double sum[3][LANES], one[3];
-    for (int i = 0; i < LANES; i++) {
-        one[0] = one[1] = one[2] = 0;
-        if (c->a[k + i] >= 0) delassus_gather(p->W, c->a[k + i], one);
-        for (int j = 0; j < 3; j++) sum[j][i] = one[j];
+    double sum[3][LANES] = { 0 }, one[4];
+    for (int i = 0; i < LANES && c->a[k + i] >= 0; i++) {
+        delassus_gather(p->W, c->a[k + i], one);
+        for (int j = 0; j < p->d; j++) sum[j][i] = one[j];
     }
     for (int j = 0; j < 3; j++) b[j] = vload(sum[j]);
 }
@@ -37,6 +36,11 @@ ALWAYS_INLINE void blocks_scatter(struct problem *p, const struct bundle *c, int
     for (int i = 0; i < LANES; i++)
         for (int j = 0; j < p->d && c->a[k + i] >= 0; j++)
             p->W->r[p->d * c->a[k + i] + j] = c->r[j][k + i];
+}
+
+ALWAYS_INLINE const struct rebound *bundle_rebound(const struct problem *p, const struct bundle *c)
+{
+    return p->rebound ? p->rebound + (c - p->bundle) : NULL;
 }
 
 /* A tally in the making */
@@ -58,7 +62,7 @@ ALWAYS_INLINE void begin(const struct problem *p, const struct bundle *c, int k,
         return;
     }
     bodies_load(&s->a, p->body, c->a + k), bodies_load(&s->b, p->body, c->b + k);
-    bundle_velocity(c, k, &s->a, &s->b, s->b_c);
+    bundle_velocity(c, bundle_rebound(p, c), k, &s->a, &s->b, s->b_c);
     for (int i = 0; i < 3; i++) s->b_c[i] -= vload(c->w[i > 0] + k) * vload(c->r[i] + k);
 }
 
@@ -169,7 +173,7 @@ EACH_METHOD(VISIT)
 ALWAYS_INLINE void motion(const struct problem *p, const struct bundle *c, int k, vd u[3])
 {
     if (!p->W) {
-        body_velocity(p->body, c, k, u);
+        body_velocity(p->body, c, bundle_rebound(p, c), k, u);
         return;
     }
     struct local l = { 0 };

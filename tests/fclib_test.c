@@ -369,6 +369,7 @@ struct made {
     struct problem p;
     struct body body[BODIES], free[BODIES];
     struct bundle bundle[(CONTACTS + BUNDLE - 1) / BUNDLE];
+    struct rebound rebound[(CONTACTS + BUNDLE - 1) / BUNDLE];
     int64_t contact[CONTACTS + BUNDLE];
 };
 
@@ -381,15 +382,14 @@ static void cross(const double a[3], const double b[3], double c[3])
 static void make_frame(int d, struct bundle *c, int i)
 {
     const double z[3] = { 0, 0, 1 };
-    double other[3] = { noise(), noise(), noise() }, n[3], t1[3], t2[3];
+    double other[3] = { noise(), noise(), noise() }, n[3], t1[3];
     for (int k = 0; k < 3; k++) n[k] = k < d ? noise() : 0;
     double size = norm(3, n);
     for (int k = 0; k < 3; k++) n[k] /= size;
     cross(d == 2 ? z : other, n, t1);
     size = norm(3, t1);
     for (int k = 0; k < 3; k++) t1[k] /= size;
-    cross(n, t1, t2);
-    for (int k = 0; k < 3; k++) c->n[k][i] = n[k], c->t1[k][i] = t1[k], c->t2[k][i] = t2[k];
+    for (int k = 0; k < 3; k++) c->n[k][i] = n[k], c->t1[k][i] = t1[k];
 }
 
 /*
@@ -400,7 +400,8 @@ static void make(struct made *m, int d, int64_t n)
 {
     *m = (struct made){ .p = { .d = d, .n = n, .dt = 1, .bundles = (n + BUNDLE - 1) / BUNDLE } };
     m->p.rows = m->p.bundles * BUNDLE;
-    m->p.bundle = m->bundle, m->p.contact = m->contact, m->p.body = m->body;
+    m->p.bundle = m->bundle, m->p.rebound = m->rebound, m->p.contact = m->contact,
+    m->p.body = m->body;
     for (int64_t i = n; i < m->p.rows; i++) m->contact[i] = -1;
     for (int i = 0; i < BODIES; i++) {
         struct body *b = &m->body[i];
@@ -421,8 +422,11 @@ static void make(struct made *m, int d, int64_t n)
         if (i == 5) c->a[k] = 0, c->b[k] = 1;
         make_frame(d, c, k);
         c->la[k] = noise(), c->lb[k] = noise(), c->mu[k] = fabs(noise());
-        for (int j = 0; j < 2; j++) c->s[j][k] = 1 / (1 + e[j]);
-        for (int j = 0; j < d; j++) c->offset[j][k] = noise(), c->r[j][k] = noise();
+        for (int j = 0; j < 2; j++) row_rebound(&m->p, i)->s[j][k] = 1 / (1 + e[j]);
+        for (int j = 0; j < d; j++) {
+            row_rebound(&m->p, i)->offset[j][k] = noise();
+            c->r[j][k] = noise();
+        }
     }
     for (int64_t i = 0; i < n; i++) {
         double r[3], u[3];
@@ -446,9 +450,9 @@ static double *pushed(struct made *m, const double *r)
     assert(p.d == 2 || p.d == 3);
     for (int64_t i = 0; i < p.n; i++) {
         double v[3];
-        body_velocity(body, row_bundle(&p, i), row_lane(i), v);
+        body_velocity(body, row_bundle(&p, i), row_rebound(&p, i), row_lane(i), v);
         for (int k = 0; k < p.d; k++)
-            u[p.d * p.contact[i] + k] = v[k] / row_bundle(&p, i)->s[k > 0][row_lane(i)];
+            u[p.d * p.contact[i] + k] = v[k] / row_rebound(&p, i)->s[k > 0][row_lane(i)];
     }
     return u;
 }
