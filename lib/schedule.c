@@ -6,8 +6,9 @@
 #include <string.h>
 
 enum {
-    COLOURS = 64, /* the bits of a mark; contacts beyond them follow one after another */
-    BLOCK = 16384 /* contacts coloured by themselves: their bodies fit into a second-level cache */
+    COLOURS = 64,  /* the bits of a mark; contacts beyond them follow one after another */
+    WHOLE = 65536, /* so many contacts are coloured as one; */
+    BLOCK = 16384  /* of more, so many, whose bodies stay in a second-level cache */
 };
 
 /*
@@ -179,7 +180,7 @@ static int schedule(struct schedule *s, enum order order, struct graph *g)
     g->place = malloc((size_t)(g->n + 1) * sizeof *g->place);
     int failed = !s->sequence || !g->mark || !g->place;
     if (!failed) {
-        int64_t block = g->W ? g->n : BLOCK, from = 0;
+        int64_t block = g->W || g->n <= WHOLE ? g->n + 1 : BLOCK, from = 0;
         sequence_init(s->sequence, g->n, order);
         for (int64_t i = 0; i < g->n; i++) g->place[i] = -1;
         for (int64_t i = 0; !colours && i < g->n; i++) place_level(g, s->sequence[i]);

@@ -42,6 +42,9 @@ struct sweep {
     void (*velocities)(struct problem *, int64_t first, int64_t end);
 };
 
+/* The widest that there is, of at most NSD_LANES lanes. */
 const struct sweep *sweep_widest(void);
+/* From now on of at most so many; for the tests. Where there is no such width, the next narrower. */
+void sweep_narrow(int lanes);
 
 #endif

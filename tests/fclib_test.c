@@ -50,7 +50,7 @@ static double *velocity(const struct delassus *W, const double *r)
     double *u = calloc((size_t)(W->n * d) + 1, sizeof *u);
     memcpy(W->r, r, (size_t)(W->n * d) * sizeof *r);
     for (int64_t c = 0; c < W->n; c++) {
-        double b[3];
+        double b[4];
         delassus_gather(W, c, b);
         for (int i = 0; i < d; i++) {
             u[c * d + i] = b[i];

@@ -1,0 +1,133 @@
+/* The same bytes for every width and any number of threads, whatever the method, order and scene. */
+#include "detect.h"
+#include "gen.h"
+#include "step.h"
+#include "tap.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void must(int failed, struct why *why)
+{
+    if (!failed) return;
+    printf("Bail out! %s\n", why->text);
+    exit(1);
+}
+
+static struct step_opt options(int m, double relax)
+{
+    return (struct step_opt){ .nlgs = { .method = methods[m],
+                                        .eps = 0,
+                                        .max_sweeps = 8,
+                                        .relax = relax,
+                                        .threads = 1,
+                                        .every_sweep = true,
+                                        .local = { .newton_eps = 1e-13, .newton_max = 100 } } };
+}
+
+/* The paper's balls some steps on, close enough to touch, with restitution or without */
+static void fallen(struct packing *p, struct contacts *s, int dim, int64_t n, double e, int steps)
+{
+    struct why why = { 0 };
+    struct scene scene;
+    struct report rep = { 0 };
+    struct step_opt o = options(4, 1.4);
+    o.warm = true, o.order = ORDER_COLOUR;
+    must(scene_paper(&scene, dim, n, &why) || gen_packing(p, &scene, NULL, &why), &why);
+    scene_free(&scene);
+    for (int k = 0; k < p->kinds * p->kinds; k++) p->en[k] = e, p->et[k] = e / 2;
+    for (int k = 0; k < steps; k++) must(step_advance(p, s, &o, &rep, &why), &why);
+    report_free(&rep);
+}
+
+/* What a solve leaves behind: reactions and velocities of every contact, and the report's numbers */
+struct print {
+    int64_t n;
+    double *x;
+    struct err err;
+    int64_t newton;
+};
+
+static struct print solve(const struct packing *p, const struct contacts *s, struct step_opt *o)
+{
+    struct why why = { 0 };
+    struct report rep = { 0 };
+    struct contacts c = { .n = s->n, .room = s->n, .solved = s->solved };
+    c.c = malloc((size_t)(s->n + 1) * sizeof *c.c);
+    if (s->n) memcpy(c.c, s->c, (size_t)s->n * sizeof *c.c);
+    must(step_solve(p, &c, o, &rep, &why), &why);
+    struct print r = { 6 * s->n, malloc((size_t)(6 * s->n + 1) * sizeof(double)), rep.err,
+                       rep.newton };
+    for (int64_t i = 0; i < 6 * s->n; i++)
+        r.x[i] = i % 6 < 3 ? c.c[i / 6].r[i % 6] : c.c[i / 6].u[i % 6 - 3];
+    contacts_free(&c), report_free(&rep);
+    return r;
+}
+
+static bool same(const struct print *a, const struct print *b)
+{
+    return a->n == b->n && a->newton == b->newton && !memcmp(&a->err, &b->err, sizeof a->err) &&
+           !memcmp(a->x, b->x, (size_t)a->n * sizeof *a->x);
+}
+
+/* Ways to solve, all there are or a few, against two lanes and one thread */
+static void compare(const struct packing *p, const struct contacts *s, const char *what, bool all)
+{
+    static const int lanes[] = { 2, 4, 8 };
+    for (int m = 0; methods[m]; m++) {
+        bool good = true;
+        for (int way = 0; way < 8; way++) {
+            if (!all && way != 3) continue;
+            struct step_opt o = options(m, way & 1 ? 1.5 : 1);
+            o.order = way & 2 ? ORDER_COLOUR : ORDER_NATURAL, o.warm = way & 4;
+            o.nlgs.local.plain = way == 7;
+            sweep_narrow(2);
+            struct print first = solve(p, s, &o);
+            for (int k = 0; k < 9; k++) {
+                sweep_narrow(lanes[k % 3]);
+                o.nlgs.threads = 1 << k / 3;
+                struct print r = solve(p, s, &o);
+                good &= same(&first, &r);
+                free(r.x);
+            }
+            free(first.x);
+        }
+        ok(good, "%s, %s: the same bytes for 2, 4 and 8 lanes and 1, 2 and 4 threads", what,
+           methods[m]->name);
+    }
+}
+
+int main(void)
+{
+    static const struct {
+        const char *name;
+        int dim;
+        int64_t n;
+        double e;
+        int steps;
+    } scene[] = { { "no contact", 3, 4, 0, 0 },
+                  { "4 balls", 3, 4, 0.3, 700 },
+                  { "500 balls", 3, 500, 0, 800 },
+                  { "500 balls that rebound", 3, 500, 0.5, 300 },
+                  { "500 discs", 2, 500, 0, 500 } };
+    for (size_t k = 0; k < sizeof scene / sizeof *scene; k++) {
+        struct packing p;
+        struct contacts s = { 0 };
+        fallen(&p, &s, scene[k].dim, scene[k].n, scene[k].e, scene[k].steps);
+        diag("%s: %lld contacts", scene[k].name, (long long)s.n);
+        compare(&p, &s, scene[k].name, true);
+        contacts_free(&s), packing_free(&p);
+    }
+    // enough for threads, and for more blocks of colours than one: neighbours, as if they touched
+    for (int64_t n = 3000; n <= 30000; n *= 10) {
+        struct why why = { 0 };
+        struct packing p;
+        struct contacts s = { 0 };
+        fallen(&p, &s, 3, n, 0, 0);
+        must(detect_contacts(&s, &p, 4e-4, &why), &why);
+        diag("%lld balls: %lld contacts", (long long)n, (long long)s.n);
+        compare(&p, &s, n == 3000 ? "3000 balls" : "30 000 balls", false);
+        contacts_free(&s), packing_free(&p);
+    }
+    return tap_done();
+}
