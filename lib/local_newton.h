@@ -146,7 +146,7 @@ ALWAYS_INLINE vm newton_run(struct local *l, const struct local_opt *opt, newton
 ALWAYS_INLINE void newton_solve(struct local *l, const struct local_opt *opt,
                                 newton_residual *residual, newton_tangent *tangent)
 {
-    struct iterate x;
+    struct iterate x = { 0 };
     local_begin(l);
     struct local stand_in = *l; // from the r we were given: the answer hangs not on how we failed
     vm ended = newton_run(l, opt, residual, tangent, &x);
