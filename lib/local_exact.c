@@ -1,77 +1,12 @@
 /*
- * local_exact.c: the search for the exact solution of one contact with a general W, in one lane.
- *
- * With a general W the sliding direction d is searched. With a = W_nn + mu W_nt.d, u_n = 0 gives
- * r_n = -b_n/a, and the tangential velocity times a is
- *
- *     h = a u_t = p + Q d,     p = W_nn b_t - b_n W_tn,     Q = mu (b_t W_nt - b_n W_tt).
- *
- * Wanted are d with g(d) = d x h = 0, h.d <= 0 and a > 0. g is a trigonometric polynomial of degree
- * 2 and has four roots at most.
+ * local_exact.c: the search for the exact solution of one contact, where local_exact.h has not found
+ * it: all directions to slide in, and a singular W. g is a trigonometric polynomial of degree 2 in
+ * the angle of d and has four roots at most.
  */
-#include "local_newton.h"
+#include "local_exact.h"
 
 #include <complex.h>
 #include <gsl/gsl_linalg.h>
-
-struct slide {
-    double Wnn, mWnt[2]; /* a = Wnn + mWnt.d */
-    double p[2], Q[2][2];
-    double scale; /* of h */
-};
-
-static void slide_init(struct slide *k, const struct local *l)
-{
-    const double *W = l->W, *b = l->b, mu = l->mu;
-    k->Wnn = W[0], k->scale = 0;
-    for (int i = 0; i < 2; i++) {
-        k->mWnt[i] = mu * W[1 + i];
-        k->p[i] = W[0] * b[1 + i] - b[0] * W[3 + 3 * i];
-        k->scale += fabs(W[0] * b[1 + i]) + fabs(b[0] * W[3 + 3 * i]);
-        for (int j = 0; j < 2; j++) {
-            k->Q[i][j] = mu * (b[1 + i] * W[1 + j] - b[0] * W[4 + 3 * i + j]);
-            k->scale += mu * (fabs(b[1 + i] * W[1 + j]) + fabs(b[0] * W[4 + 3 * i + j]));
-        }
-    }
-}
-
-/* g(d) = d x h; also h.d and the derivative of g by the angle of d */
-static double slide_g(const struct slide *k, const double d[2], double *hd, double *dg)
-{
-    double h1 = k->p[0] + k->Q[0][0] * d[0] + k->Q[0][1] * d[1];
-    double h2 = k->p[1] + k->Q[1][0] * d[0] + k->Q[1][1] * d[1];
-    *hd = d[0] * h1 + d[1] * h2;
-    *dg = d[0] * (k->Q[1][1] * d[0] - k->Q[1][0] * d[1]) -
-          d[1] * (k->Q[0][1] * d[0] - k->Q[0][0] * d[1]) - *hd;
-    return d[0] * h2 - d[1] * h1;
-}
-
-static void turn(double d[2], double tangent)
-{
-    double x = d[0] - tangent * d[1], y = d[1] + tangent * d[0], s = 1 / sqrt(x * x + y * y);
-    d[0] = s * x, d[1] = s * y;
-}
-
-/* Newton on g from d, at most so many steps. */
-static void slide_polish(const struct slide *k, double d[2], int steps)
-{
-    for (double change = 1; steps > 0 && fabs(change) > 1e-9; steps--) {
-        double hd, dg, g = slide_g(k, d, &hd, &dg);
-        if (g == 0 || dg == 0) return;
-        change = fmax(-1, fmin(1, -g / dg));
-        turn(d, change);
-    }
-}
-
-/* Whether d is a solution to rounding, and its reaction. */
-static bool slide_accept(const struct local *l, const struct slide *k, const double d[2],
-                         double r[3])
-{
-    double hd, dg, g = slide_g(k, d, &hd, &dg), a = k->Wnn + k->mWnt[0] * d[0] + k->mWnt[1] * d[1];
-    if (!(fabs(g) <= 1e-12 * k->scale && hd <= 1e-12 * k->scale && a > 0)) return false;
-    r[0] = -l->b[0] / a, r[1] = l->mu * r[0] * d[0], r[2] = l->mu * r[0] * d[1];
-    return isfinite(r[0]) && isfinite(r[1] + r[2]);
-}
 
 /*
  * Candidates for d, all roots of g among them. In x = tan(angle/2) (1 + x^2)^2 g is a quartic with
@@ -84,7 +19,7 @@ static int slide_roots(const struct slide *k, double root[8][2])
     double most = -1, hd, dg, o[2] = { 1, 0 };
     for (int i = 0; i < 8; i++) {
         root[i][0] = 1, root[i][1] = 0;
-        for (int j = 0; j < i; j++) turn(root[i], 1);
+        for (int j = 0; j < i; j++) slide_turn(root[i], 1);
         double g = fabs(slide_g(k, (double[]){ -root[i][0], -root[i][1] }, &hd, &dg));
         if (g > most) most = g, o[0] = root[i][0], o[1] = root[i][1];
     }
@@ -114,35 +49,20 @@ static int slide_roots(const struct slide *k, double root[8][2])
         double t = creal(x[i]), s = 1 / (1 + t * t), co = s * (1 - t * t), si = s * 2 * t;
         root[i][0] = isfinite(t) ? co * o[0] + si * m[0] : 1;
         root[i][1] = isfinite(t) ? co * o[1] + si * m[1] : 0;
-        slide_polish(k, root[i], 60);
+        slide_polish(k, root[i], 60, ~NONE);
     }
     return 4;
 }
 
 /*
- * First the root that Newton finds from the last sweep's direction; else, of all there are, the one
- * whose reaction is nearest to the last (with large mu W_nt there may be several). In the plane d
- * is t1 or -t1.
+ * Of all directions that there are, the one whose reaction is nearest to the last (with large mu W_nt
+ * there may be several). In the plane d is t1 or -t1.
  */
 static bool slide(struct local *l)
 {
     struct slide k;
     double root[8][2] = { { 1, 0 }, { -1, 0 } }, r[3], best[3] = { 0 }, nearest = INFINITY;
     slide_init(&k, l);
-    if (l->d == 3) {
-        double t = norm2(l->r + 1), tb = norm2(l->b + 1), d[2] = { 1, 0 };
-        for (int i = 0; i < 2; i++) {
-            if (t > 0)
-                d[i] = l->r[1 + i] / t;
-            else if (tb > 0)
-                d[i] = -l->b[1 + i] / tb;
-        }
-        slide_polish(&k, d, 8);
-        if (slide_accept(l, &k, d, r)) {
-            for (int i = 0; i < 3; i++) l->r[i] = r[i];
-            return true;
-        }
-    }
     for (int i = 0, n = l->d == 3 ? slide_roots(&k, root) : 2; i < n; i++) {
         if (!slide_accept(l, &k, root[i], r)) continue;
         double far = hypot(r[0] - l->r[0], hypot(r[1] - l->r[1], r[2] - l->r[2]));
@@ -174,45 +94,30 @@ static void shortest(const double *W, const double b[3], double r[3])
                                &Rest.vector);
 }
 
-/* u = W r + b; whether it is zero but for rounding */
-static bool stopped(const struct local *l, const double r[3], double u[3])
-{
-    for (int i = 0; i < 3; i++) u[i] = dot3(l->W + 3 * i, r) + l->b[i];
-    return dot3(u, u) <= 1e-20 * dot3(l->b, l->b);
-}
-
-/* W r = -b with r in the cone */
+/* W r = -b of a singular W, with r in the cone */
 static bool stick(struct local *l)
 {
-    double M[3][3], r[3], u[3], dr[3];
-    for (int i = 0; i < 9; i++) M[i / 3][i % 3] = l->W[i];
-    bool regular = solve3(M, l->b, r);
-    if (regular) { // and once more, for what the cofactors left
-        stopped(l, r, u);
-        solve3(M, u, dr);
-        for (int i = 0; i < 3; i++) r[i] += dr[i];
-    }
-    if (!regular || !stopped(l, r, u)) {
-        shortest(l->W, l->b, r);
-        if (!stopped(l, r, u)) return false;
-    }
+    double r[3], u[3];
+    shortest(l->W, l->b, r);
+    if (!exact_stopped(l, r, u)) return false;
     if (l->d == 2) r[2] = 0;
     if (!(norm2(r + 1) <= l->mu * r[0])) return false;
     for (int i = 0; i < 3; i++) l->r[i] = r[i];
     return true;
 }
 
-static bool frictionless(struct local *l)
-{
-    l->r[0] = -l->b[0] / l->W[0], l->r[1] = l->r[2] = 0;
-    return l->W[0] > 0 && isfinite(l->r[0]);
-}
-
-bool exact_search(int d, const double W[9], const double b[3], double mu, double r[3])
+bool exact_search(int d, const double W[9], const double b[3], double mu, bool singular,
+                  double r[3])
 {
     struct local l = { .d = d, .W = W, .mu = mu };
+    double slid[3];
     for (int k = 0; k < 3; k++) l.b[k] = b[k], l.r[k] = r[k];
-    bool found = mu == 0 ? frictionless(&l) : stick(&l) || slide(&l);
+    bool found = singular && stick(&l);
+    if (!found && singular && exact_slide(&l, ~NONE, slid)) {
+        for (int k = 0; k < 3; k++) l.r[k] = slid[k];
+        found = true;
+    }
+    found = found || slide(&l);
     for (int k = 0; k < 3; k++) r[k] = l.r[k];
     return found;
 }

@@ -38,22 +38,6 @@ ALWAYS_INLINE void newton_branch(const struct iterate *x, vd A[3][3])
             A[i][j] = pick(x->free | x->stick, i == j ? same : splat(0), A[i][j]);
 }
 
-/* M x = -y by cofactors; false where M is singular. */
-ALWAYS_INLINE vm solve3(vd M[3][3], const vd y[3], vd x[3])
-{
-    vd c0 = M[1][1] * M[2][2] - M[1][2] * M[2][1];
-    vd c1 = M[1][2] * M[2][0] - M[1][0] * M[2][2];
-    vd c2 = M[1][0] * M[2][1] - M[1][1] * M[2][0];
-    vd det = M[0][0] * c0 + M[0][1] * c1 + M[0][2] * c2, s = -1.0 / det;
-    x[0] = s * (y[0] * c0 + y[1] * (M[0][2] * M[2][1] - M[0][1] * M[2][2]) +
-                y[2] * (M[0][1] * M[1][2] - M[0][2] * M[1][1]));
-    x[1] = s * (y[0] * c1 + y[1] * (M[0][0] * M[2][2] - M[0][2] * M[2][0]) +
-                y[2] * (M[0][2] * M[1][0] - M[0][0] * M[1][2]));
-    x[2] = s * (y[0] * c2 + y[1] * (M[0][1] * M[2][0] - M[0][0] * M[2][1]) +
-                y[2] * (M[0][0] * M[1][1] - M[0][1] * M[1][0]));
-    return lt(splat(0), absolute(det));
-}
-
 /*
  * The Newton direction dr at x; false where the system is singular. Without contact A = I, B = 0, so
  * dr = -r (and v becomes b, not the paper's v^k); sticking A = 0 and Z = B v, B regular: W dr = -v.
