@@ -56,14 +56,14 @@ static int slide_roots(const struct slide *k, double root[8][2])
 
 /*
  * Of all directions that there are, the one whose reaction is nearest to the last (with large mu W_nt
- * there may be several). In the plane d is t1 or -t1.
+ * there may be several).
  */
 static bool slide(struct local *l)
 {
     struct slide k;
-    double root[8][2] = { { 1, 0 }, { -1, 0 } }, r[3], best[3] = { 0 }, nearest = INFINITY;
+    double root[8][2] = { { 0 } }, r[3], best[3] = { 0 }, nearest = INFINITY;
     slide_init(&k, l);
-    for (int i = 0, n = l->d == 3 ? slide_roots(&k, root) : 2; i < n; i++) {
+    for (int i = 0, n = slide_roots(&k, root); i < n; i++) {
         if (!slide_accept(l, &k, root[i], r)) continue;
         double far = hypot(r[0] - l->r[0], hypot(r[1] - l->r[1], r[2] - l->r[2]));
         if (!(far < nearest)) continue;
@@ -117,7 +117,7 @@ bool exact_search(int d, const double W[9], const double b[3], double mu, bool s
         for (int k = 0; k < 3; k++) l.r[k] = slid[k];
         found = true;
     }
-    found = found || slide(&l);
+    found = found || (d == 3 && slide(&l));
     for (int k = 0; k < 3; k++) r[k] = l.r[k];
     return found;
 }

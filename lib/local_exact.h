@@ -140,13 +140,28 @@ ALWAYS_INLINE vm slide_accept(const struct local *l, const struct slide *k, cons
            is_finite(r[0]) & is_finite(r[1] + r[2]);
 }
 
-/* The root that Newton finds from the last sweep's direction, where m is; none in the plane. */
+/* In the plane d is t1 or -t1: of two solutions the nearer to the last r. */
+ALWAYS_INLINE vm exact_slide_plane(const struct local *l, const struct slide *k, vd r[3])
+{
+    const vd t1[2] = { splat(1), splat(0) }, back[2] = { splat(-1), splat(0) };
+    vd s[3], far[2] = { splat(0), splat(0) };
+    vm one = slide_accept(l, k, t1, r), other = slide_accept(l, k, back, s);
+    for (int j = 0; j < 3; j++) {
+        far[0] += (r[j] - l->r[j]) * (r[j] - l->r[j]);
+        far[1] += (s[j] - l->r[j]) * (s[j] - l->r[j]);
+    }
+    vm take = other & (~one | lt(far[1], far[0]));
+    for (int j = 0; j < 3; j++) r[j] = pick(take, s[j], r[j]);
+    return one | other;
+}
+
+/* The root that Newton finds from the last sweep's direction, where m is. */
 ALWAYS_INLINE vm exact_slide(const struct local *l, vm m, vd r[3])
 {
-    if (l->d == 2) return NONE;
     struct slide k;
     vd t = norm2(l->r + 1), tb = norm2(l->b + 1), d[2];
     slide_init(&k, l);
+    if (l->d == 2) return m & exact_slide_plane(l, &k, r);
     for (int i = 0; i < 2; i++)
         d[i] = pick(lt(splat(0), t), l->r[1 + i] / t,
                     pick(lt(splat(0), tb), -l->b[1 + i] / tb, splat(1 - i)));

@@ -102,11 +102,11 @@ ALWAYS_INLINE vm newton_run(struct local *l, const struct local_opt *opt, newton
 {
     const vd rho_b2 = l->rho * l->rho * dot3(l->b, l->b);
     const double eps2 = opt->newton_eps * opt->newton_eps;
+    struct iterate y = { 0 };
     vm ended = NONE, run = ~ended;
     newton_move(l, l->r, splat(0), l->r, residual, x);
     vd z2 = dot3(x->Z, x->Z);
     for (int k = 0; any(run) && (k == 0 || k < opt->newton_max); k++) {
-        struct iterate y;
         vd dr[3], s = splat(1);
         run &= newton_direction(l, x, tangent, dr);
         l->steps += pick(run, splat(1), splat(0));
