@@ -2,7 +2,6 @@
 
 #include <omp.h>
 #include <stdlib.h>
-#include <time.h>
 
 enum {
     CHECK_FIRST = 40, /* sweeps that are all judged */
@@ -46,13 +45,6 @@ static double sweep(struct problem *p, const struct nlgs_opt *o, struct report *
     return change;
 }
 
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static int keep(struct report *rep, int32_t sweeps, const struct terms *t)
 {
     if ((sweeps & (sweeps - 1)) == 0) { // room for the next power of two
@@ -66,7 +58,8 @@ static int keep(struct report *rep, int32_t sweeps, const struct terms *t)
 
 int nlgs_solve(struct problem *p, const struct nlgs_opt *o, struct report *rep)
 {
-    double start = seconds(), due = INFINITY; // a sweep's change below which to evaluate
+    double cpu = report_seconds(CLOCK_CPU), wall = report_seconds(CLOCK_WALL);
+    double due = INFINITY; // a sweep's change below which to evaluate
     bool believes = o->method->believes;
     enum err_part part =
         o->history ? ERR_TERMS | err_part_of(o->criterion) : err_part_of(o->criterion);
@@ -95,6 +88,7 @@ int nlgs_solve(struct problem *p, const struct nlgs_opt *o, struct report *rep)
     double overlap = rep->err.max_overlap;
     err_eval(&rep->err, p, believes, ERR_ALL, o->threads);
     rep->err.max_overlap = overlap;
-    rep->seconds = seconds() - start;
+    rep->seconds = report_seconds(CLOCK_CPU) - cpu,
+    rep->elapsed = report_seconds(CLOCK_WALL) - wall;
     return 0;
 }

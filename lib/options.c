@@ -54,7 +54,7 @@ const struct cli_option options_solve[] = {
 const struct cli_option options_run[] = {
     { CLI_INT, 'j', "threads", &options.threads, "N", "threads; they never change a result [1]", 1,
       1024, true },
-    { CLI_TEXT, 0, "log", &options.log, "FILE", "one JSON line a solve, with its CPU seconds", 0, 0,
+    { CLI_TEXT, 0, "log", &options.log, "FILE", "one JSON line a solve, with its seconds", 0, 0,
       true },
     { CLI_FLAG, 'e', "strict", &options.strict, NULL, "exit with 1 when a solve has not converged",
       0, 0, true },
@@ -158,6 +158,8 @@ void options_log(const struct report *rep)
     if (!log_file) return;
     json_t *j = json_report(rep);
     json_object_set_new(j, "seconds", json_number(rep->seconds));
+    json_object_set_new(j, "elapsed", json_number(rep->elapsed));
+    json_object_set_new(j, "detection", json_number(rep->detection));
     int failed =
         json_dumpf(j, log_file, JSON_COMPACT) || fputc('\n', log_file) == EOF || fflush(log_file);
     json_decref(j);

@@ -38,12 +38,18 @@ struct report {
     double eps; /* what was asked */
     int32_t sweeps;
     bool converged;
-    int64_t newton;        /* Newton steps in all */
-    int64_t safeguarded;   /* local solves that ended in the stand-in */
-    int64_t gave_up;       /* local solves that left the law unmet */
-    double seconds;        /* CPU clock: for the log and stderr only */
+    int64_t newton;      /* Newton steps in all */
+    int64_t safeguarded; /* local solves that ended in the stand-in */
+    int64_t gave_up;     /* local solves that left the law unmet */
+    double seconds;      /* s of CPU, of all threads, in the solve: for the log and stderr only, */
+    double elapsed;      /* as are s on the wall */
+    double detection;    /* and s of CPU for the contacts, where the step found them itself */
     struct terms *history; /* [sweeps] under --history, else NULL; to be freed */
 };
+
+/* s of the clocks that a report tells */
+enum report_clock { CLOCK_CPU, CLOCK_WALL };
+double report_seconds(enum report_clock);
 
 void report_free(struct report *);
 

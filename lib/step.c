@@ -133,7 +133,9 @@ int step_advance(struct packing *p, struct contacts *s, struct neighbours *near,
 {
     struct contacts before = { 0 };
     if (o->warm) before = *s, *s = (struct contacts){ 0 };
+    double cpu = report_seconds(CLOCK_CPU);
     int e = detect_contacts(s, p, o->gap, near, why);
+    rep->detection = report_seconds(CLOCK_CPU) - cpu;
     if (!e && o->warm) contacts_match(s, &before);
     contacts_free(&before);
     if (e) return e;

@@ -36,7 +36,7 @@ static void fallen(struct packing *p, struct contacts *s, int dim, int64_t n, do
     must(scene_paper(&scene, dim, n, &why) || gen_packing(p, &scene, NULL, &why), &why);
     scene_free(&scene);
     for (int k = 0; k < p->kinds * p->kinds; k++) p->en[k] = e, p->et[k] = e / 2;
-    for (int k = 0; k < steps; k++) must(step_advance(p, s, &o, &rep, &why), &why);
+    for (int k = 0; k < steps; k++) must(step_advance(p, s, NULL, &o, &rep, &why), &why);
     report_free(&rep);
 }
 
@@ -124,7 +124,7 @@ int main(void)
         struct packing p;
         struct contacts s = { 0 };
         fallen(&p, &s, 3, n, 0, 0);
-        must(detect_contacts(&s, &p, 4e-4, &why), &why);
+        must(detect_contacts(&s, &p, 4e-4, NULL, &why), &why);
         diag("%lld balls: %lld contacts", (long long)n, (long long)s.n);
         compare(&p, &s, n == 3000 ? "3000 balls" : "30 000 balls", false);
         contacts_free(&s), packing_free(&p);
