@@ -33,7 +33,7 @@ static double sweep(struct problem *p, const struct nlgs_opt *o, struct report *
 #pragma omp parallel num_threads(threads) if (threads > 1)
     {
         struct tally t = { 0 };
-        text(p, omp_get_thread_num(), omp_get_num_threads(), &opt, &t);
+        text(p, omp_get_thread_num(), threads > 1 ? omp_get_num_threads() : 1, &opt, &t);
 #pragma omp critical
         {
             change = fmax(change, most(t.change));
