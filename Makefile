@@ -1,5 +1,6 @@
 # make            build everything        make check      set up, then every test
 # make demo       set up, build, 500 balls, a picture     make install   PREFIX, DESTDIR
+# make bench      what it costs (bench/README.md)         make bench-compare   beside the last kept results
 # make paper      every table and figure of the paper     QUICK=1        the same in minutes
 #
 # Objects, tools and tests are under build/; SAN=1 makes the same with ASan and UBSan in build/san/.
@@ -88,8 +89,13 @@ paper paper-keep: setup-paper
 	$(MAKE) -f scripts/paper.mk $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc)) $(@:paper%=all%)
 
 bench: all
-	PATH="$(CURDIR)/build:$$PATH" bench/run.sh
-	PATH="$(CURDIR)/build:$$PATH" bench/problems.sh
+	bench/run.sh
+	bench/sweeps.sh
+	bench/problems.sh
+
+# What make bench left beside what was kept before
+bench-compare:
+	bench/compare.sh
 
 # ---- style ----
 
@@ -143,5 +149,5 @@ clean:
 -include $(wildcard $B/lib/*.d $B/tools/*.d $B/tests/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep bench format lint $(PARTS:%=lint-%) $(TIDY) install uninstall clean setup-run setup-paper setup-check
+.PHONY: all tests test check demo paper paper-keep bench bench-compare format lint $(PARTS:%=lint-%) $(TIDY) install uninstall clean setup-run setup-paper setup-check
 .SECONDARY:

@@ -38,7 +38,7 @@ const struct cli_option options_solve[] = {
     { CLI_CHOICE, 0, "newton", &options.newton, "plain|linesearch",
       "steps of ebp and eal; plain is the paper's [linesearch]", 0, 0, 0 },
     { CLI_ABOVE, 0, "newton-eps", &options.newton_eps, "EPS",
-      "their end, relative to |r| + rho |b| [1e-13]", 0, 1, 0 },
+      "their end, relative to |(r, rho b)| [1e-13]", 0, 1, 0 },
     { CLI_ABOVE, 0, "newton-abs", &options.newton_abs, "EPS",
       "their end as the paper has it, absolute, with r in N", 0, MOST, 0 },
     { CLI_INT, 0, "newton-max", &options.newton_max, "N", "their number [100]", 1, 1e6, 0 },

@@ -209,7 +209,7 @@ for ((k = 1; k <= kills; k++)); do
     : >"$tmp/killed.h5"
     # shellcheck disable=SC2086 # none or one
     nsd-step -n $long --eps 1e-6 --cold $option "$tmp/heap.h5" >"$tmp/killed.h5" 2>/dev/null &
-    for ((w = 0; w < 2000; w++)); do
+    for ((w = 0; w < 10000; w++)); do
         [ "$(stat -c %s "$tmp/killed.h5")" -lt 60000 ] || break
         sleep 0.002
     done
