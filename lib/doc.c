@@ -271,6 +271,7 @@ static const char *contact_trouble(const struct packing *p, const struct contact
           fabs(v3_dot(c->t2, c->t2) - 1) < 1e-6 && fabs(v3_dot(c->n, c->t1)) < 1e-6 &&
           fabs(v3_dot(c->n, c->t2)) < 1e-6 && fabs(v3_dot(c->t1, c->t2)) < 1e-6))
         return "frame is not orthonormal";
+    if (v3_dot(v3_cross(c->n, c->t1), c->t2) < 0) return "frame is not right-handed";
     if (!(c->mu >= 0 && isfinite(c->mu))) return "mu must not be negative";
     if (!(c->en >= 0 && c->en <= 1 && c->et >= 0 && c->et <= 1))
         return "restitution must lie in [0, 1]";

@@ -243,7 +243,7 @@ wrong_packings=(
 wrong_contacts=(
     "f[C + 'body'][0] = [99, 0]" "f[C + 'body'][0] = [-99, 0]" "f[C + 'body'][0] = [0, 99]" "f[C + 'body'][0] = [0, 0]"
     "f[C + 'body'][0] = [0, -1]" "f[C + 'gap'][0] = nan" "f[C + 'mu'][0] = -1" "f[C + 'en'][0] = 2" "f[C + 'et'][0] = nan"
-    "f[C + 'frame'][0] = np.ones((3, 3))" "f[C + 'point'][0, 0] = nan" "f[C + 'reaction'][0, 0] = nan"
+    "f[C + 'frame'][0] = np.ones((3, 3))" "f[C + 'frame'][0] = f[C + 'frame'][0] * [[1], [1], [-1]]" "f[C + 'point'][0, 0] = nan" "f[C + 'reaction'][0, 0] = nan"
     "f[C + 'velocity'][0, 0] = inf" "new(C + 'gap', np.zeros(1))" "new(C + 'frame', np.zeros((1, 9)))"
     "f[C + 'count'][0] = 999" "f[C + 'count'][0] = -1" "f[C + 'start'][0] = -1" "f[C + 'start'][0] = 2**62"
     "del f[C + 'mu']" "del f[C + 'start']"
