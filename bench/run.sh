@@ -1,9 +1,10 @@
 #!/bin/bash
 # run.sh [RUNS]: the figures that nsd is to reach, each the median of RUNS [3] with its least and most.
-# One thread throughout. Leaves bench/results/figures.{tsv,md}.
+# One thread where nothing is said. Leaves bench/results/figures.{tsv,md}, steps.{tsv,svg}.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source bench/common.sh
+source bench/heap.sh
 runs=${1:-3}
 TIMEFORMAT='%R %U %S' # seconds: on the wall, of user and of system
 steps=20               # of the settled pile, for the figures of a sweep
@@ -19,14 +20,14 @@ figure() {
     tail -n 1 "$work/rows" >&2
 }
 
-# sums of a --log: seconds, sweeps, sweeps x contacts
+# sums of a --log: seconds on the wall, sweeps, sweeps x contacts
 sums() {
-    jq -rs '[(map(.seconds) | add), (map(.sweeps) | add), (map(.sweeps * .contacts) | add)] | @tsv' "$1"
+    jq -rs '[(map(.elapsed) | add), (map(.sweeps) | add), (map(.sweeps * .contacts) | add)] | @tsv' "$1"
 }
 
 # Steps on from the settled pile, with a log. nsd-step's own output is of no interest.
 pile() {
-    nsd-step -n "$steps" --every "$steps" --log "$work/log" "$@" < "$work/pile.h5" \
+    nsd-step -n "$steps" --every "$steps" --order colour --log "$work/log" "$@" < "$work/pile.h5" \
         > /dev/null 2>&1
 }
 
@@ -36,40 +37,54 @@ cost() { sums "$work/log" | awk '{ print 1e9 * $1 / $3 }'; }
 a_sweep() {
     local method limit
     for method in exact sbp sal ebp eal; do
-        limit=60
-        case $method in e[ab]*) limit=150 ;; esac
+        limit=10
+        case $method in e[ab]*) limit=30 ;; esac
         for ((k = 0; k < runs; k++)); do
             pile -m "$method" --eps 1e-8
             cost
-        done | figure "a sweep, $method, $steps steps of the settled pile" "ns/contact" "$limit"
+        done | figure "a sweep with its share of the criterion, $method, $steps steps of the settled pile" ns/contact "$limit"
     done
 }
 
-# 1000 steps of what a command makes, from r = 0 and then with what helps
+# limit command ...: 1000 steps of $work/start.h5, the whole command on the wall
 thousand() {
-    local name=$1 limit how
+    local limit=$1
     shift
-    for limit in 12 6; do
-        how=(--cold)
-        [ "$limit" = 12 ] || how=(--warm --relax 1.5)
-        for ((k = 0; k < runs; k++)); do
-            { time "$@" |
-                nsd-step -m exact -n 1000 --eps 1e-8 "${how[@]}" > "$work/out.h5" 2> /dev/null; } 2>&1
-        done > "$work/times"
-        awk '{ print $1 }' "$work/times" |
-            figure "$name | nsd-step -m exact -n 1000 --eps 1e-8 ${how[*]}" s "$limit"
-        awk '{ print $2 + $3 }' "$work/times" | figure "the same" "s of CPU" ""
-    done
+    for ((k = 0; k < runs; k++)); do
+        { time nsd-step -m exact -n 1000 "$@" < "$work/start.h5" > "$work/out.h5" 2> /dev/null; } 2>&1 |
+            awk '{ print $1 }'
+    done | figure "$start | nsd-step -m exact -n 1000 $*" s "$limit"
 }
 
 # The paper's 500 balls as nsd-gen lays them, and those on which other codes were measured
 whole_runs() {
     local balls=../shared/problems/example3-balls.txt
-    thousand "nsd-gen 500" nsd-gen 500
+    start="nsd-gen 500"
+    nsd-gen 500 > "$work/start.h5"
+    thousand 25 --eps 0 --max-sweeps 5000 --order colour
+    thousand 15 --eps 0 --max-sweeps 5000 --order colour -j 2
+    thousand "" --eps 1e-8
+    thousand 1.5 --eps 1e-8 --order colour --relax 1.5
+    thousand 1.5 --eps 1e-8 --order colour --relax 1.5 --warm
     [ -f "$balls" ] || return 0
-    jq --arg file "$PWD/$balls" '.bodies = [{ file: $file }]' scenes/paper/example3.json \
-        > "$work/balls.json"
-    thousand "nsd-gen example3-balls" nsd-gen "$work/balls.json"
+    start="nsd-gen example3-balls"
+    jq --arg file "$PWD/$balls" '.bodies = [{ file: $file }]' scenes/paper/example3.json |
+        nsd-gen - > "$work/start.h5"
+    thousand "" --eps 1e-8
+    thousand 1.5 --eps 1e-8 --order colour --relax 1.5
+    thousand 1.5 --eps 1e-8 --order colour --relax 1.5 --warm
+}
+
+# Every frame or the last one only, in turn: what writing costs
+writing() {
+    local every
+    nsd-gen 500 > "$work/start.h5"
+    for ((k = 0; k < runs; k++)); do
+        for every in 1 1000; do
+            { time nsd-step -m exact -n 1000 --eps 0 --max-sweeps 5000 --order colour --every $every \
+                < "$work/start.h5" > "$work/out.h5" 2> /dev/null; } 2>&1 | awk '{ printf "%s ", $2 + $3 }'
+        done | awk '{ print 100 * ($1 - $2) / $1 }'
+    done | figure "writing 1000 frames of the run with 5000 sweeps a step" "% of its CPU" 5
 }
 
 # The criterion's share of a run. With the number of sweeps fixed (--eps 0 is never met) a sweep costs
@@ -94,33 +109,64 @@ criterion() {
     awk '{ print $2 }' "$work/share" | figure "one evaluation of the criterion" "ns/contact" ""
 }
 
+# Steps of heaps of 1000 to 1 000 000 balls, 100 sweeps each: what a step costs, and the search in it
+sizes() {
+    local tiles size
+    printf 'balls\tcontacts\tns a step and ball\tns a search and ball\n' > "$work/steps"
+    for tiles in 2 20 200 2000; do
+        size=$((500 * tiles))
+        say "$size balls"
+        heap $tiles > "$work/heap.h5"
+        for ((k = 0; k < runs; k++)); do
+            nsd-step -m exact -n 6 --every 6 --order colour --max-sweeps 100 --eps 0 --log "$work/log" \
+                < "$work/heap.h5" 2> /dev/null > "$work/out.h5"
+            # the first step makes the list of neighbours
+            jq -rs --argjson n $size '.[1:] | [(map(.contacts) | add / length),
+                1e9 * (map(.seconds + .detection) | add) / length / $n,
+                1e9 * (map(.detection) | add) / length / $n] | @tsv' "$work/log"
+        done > "$work/size"
+        cut -f 3 "$work/size" | figure "the search for contacts in a step, $size balls" ns/ball 150
+        printf '%s\t%s\t%s\t%s\n' $size "$(cut -f 1 "$work/size" | head -n 1)" \
+            "$(cut -f 2 "$work/size" | median | cut -f 1)" "$(cut -f 3 "$work/size" | median | cut -f 1)" \
+            | awk -F'\t' -v OFS='\t' '{ print $1, int($2), sprintf("%.0f", $3), sprintf("%.1f", $4) }' >> "$work/steps"
+    done
+    awk 'NR == 2 { least = $3 } END { print $3 / least }' "$work/steps" |
+        figure "a step a ball, 1 000 000 balls over 1000" times ""
+    { echo "# $(machine); 100 sweeps a step, exact, by colour"; cat "$work/steps"; } > "$results/steps.tsv"
+    gnuplot -e "data='$results/steps.tsv'; out='$results/steps.svg'" bench/steps.gp
+}
+
+# One step of the heap of a million by hand
 million() {
     local tool
     for ((k = 0; k < runs; k++)); do
-        /usr/bin/time -f '%e %M' -o "$work/nsd-gen" nsd-gen 1000000 |
-            /usr/bin/time -f '%e %M' -o "$work/nsd-detect" nsd-detect > "$work/million.h5"
-        paste -d ' ' "$work/nsd-gen" "$work/nsd-detect" >> "$work/million"
-        rm "$work/million.h5"
+        for tool in detect solve move; do
+            case $tool in
+            detect) command=(nsd-detect "$work/heap.h5") ;;
+            solve) command=(nsd-solve -m exact --order colour --max-sweeps 100 --eps 0 "$work/detect.h5") ;;
+            move) command=(nsd-move "$work/solve.h5") ;;
+            esac
+            /usr/bin/time -a -f '%e %M' -o "$work/million-$tool" "${command[@]}" > "$work/$tool.h5" 2> /dev/null
+        done
     done
-    # both started together: the slower is the pipe
-    awk '{ print ($1 > $3 ? $1 : $3) }' "$work/million" | figure "1 000 000 balls, gen | detect" s 20
-    for tool in gen detect; do
-        awk -v gen="$([ $tool = gen ] && echo 1 || echo 0)" '{ print (gen ? $2 : $4) / 1048576 }' \
-            "$work/million" | figure "1 000 000 balls, peak memory of nsd-$tool" GiB 1.5
+    for tool in detect solve move; do
+        awk 'NF == 2 { print $1 }' "$work/million-$tool" | figure "1 000 000 balls in a heap, nsd-$tool" s ""
+        awk 'NF == 2 { print $2 / 1e6 }' "$work/million-$tool" |
+            figure "1 000 000 balls in a heap, peak memory of nsd-$tool" "KiB/ball" 1
     done
 }
 
 : > "$work/rows"
+mkdir -p "$results"
 say "a settled pile: 1000 steps of 500 balls"
-nsd-gen 500 |
-    nsd-step -m exact -n 1000 --every 1000 --eps 1e-8 2> /dev/null |
-    nsd-cat --last > "$work/pile.h5"
+settle
 a_sweep
 whole_runs
+writing
 criterion
+sizes
 million
 
-mkdir -p "$results"
 {
     echo "# $(machine); median of $runs"
     printf 'figure\tunit\tat most\tmedian\tleast\tmost\treached\n'
@@ -129,7 +175,7 @@ mkdir -p "$results"
 {
     echo "# Figures"
     echo
-    echo "$(machine). One thread; the median of $runs runs, and the least and most."
+    echo "$(machine). The median of $runs runs, and the least and most."
     echo
     markdown < "$results/figures.tsv"
 } > "$results/figures.md"
