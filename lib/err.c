@@ -1,6 +1,9 @@
 #include "err.h"
 
-enum { BLOCK = 64 }; /* bundles summed one after another, whatever the threads */
+enum {
+    BLOCK = 64,       /* bundles summed one after another, whatever the threads */
+    PARALLEL_FROM = 8 /* blocks worth a second thread */
+};
 
 /* The eight slots into the first; NaN stays in the sums, not in the maxima. */
 static double sum(const double slot[BUNDLE])
@@ -58,7 +61,7 @@ void err_eval(struct err *e, const struct problem *p, bool believes, enum err_pa
     for (int64_t first = 0; first < blocks; first += STRIPE) {
         struct sums s[STRIPE] = { 0 };
         int64_t n = blocks - first < STRIPE ? blocks - first : STRIPE;
-#pragma omp parallel for num_threads(threads) if (threads > 1 && n > 1)
+#pragma omp parallel for num_threads(threads) if (threads > 1 && n >= PARALLEL_FROM)
         for (int64_t b = 0; b < n; b++) {
             int64_t from = (first + b) * BLOCK, to = from + BLOCK;
             sweep->judge(p, from, to < p->bundles ? to : p->bundles, believes, part, &s[b]);

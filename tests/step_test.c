@@ -121,7 +121,7 @@ static int searches(struct packing *p, int steps, bool leaps)
         must(detect_contacts(&kept, p, 0, &near, &why) || detect_contacts(&anew, p, 0, NULL, &why),
              &why);
         searched += memcmp(&was, &near.listed[0], sizeof was) != 0;
-        if (kept.n != anew.n || memcmp(kept.c, anew.c, (size_t)kept.n * sizeof *kept.c))
+        if (kept.n != anew.n || (kept.n && memcmp(kept.c, anew.c, (size_t)kept.n * sizeof *kept.c)))
             searched = -1;
         must(step_advance(p, &s, NULL, &o, &rep, &why), &why);
         if (leaps && k % 7 == 3)
