@@ -6,7 +6,7 @@
 enum {
     CHECK_FIRST = 40, /* sweeps that are all judged */
     CHECK_EVERY = 25,
-    PARALLEL_FROM = 16 /* bundles of a group worth a second thread */
+    PARALLEL_FROM = 64 /* bundles of a group worth a second thread */
 };
 
 static double most(const double x[BUNDLE])
