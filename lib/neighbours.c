@@ -209,7 +209,7 @@ static bool look_around(const struct seeker *s, const struct grid *g)
 static bool pairs_sort(struct neighbours *s)
 {
     int64_t *first = calloc((size_t)s->bodies + 2, sizeof *first);
-    struct pair *sorted = malloc((size_t)(s->n + 1) * sizeof *sorted);
+    struct pair *sorted = calloc((size_t)(s->n + 1), sizeof *sorted);
     bool room = first && sorted;
     for (int64_t i = 0; room && i < s->n; i++) first[s->pair[i].a + 2]++;
     for (int64_t a = 0; room && a < s->bodies; a++) first[a + 2] += first[a + 1];
@@ -276,14 +276,15 @@ int neighbours_find(struct neighbours *s, const struct packing *p, double gap, b
                     struct why *why)
 {
     size_t n = (size_t)p->n + 1;
-    if (!s->x || s->bodies != p->n) {
+    bool others = !s->x || s->bodies != p->n;
+    if (others) {
         neighbours_free(s);
         s->bodies = p->n;
         s->x = malloc(n * sizeof *s->x);
         if (!s->x) return why_set(why, EX_SOFTWARE, "no memory for the neighbours");
     }
     for (int64_t i = 0; i < p->n; i++) s->x[i] = packing_predict(p, i);
-    if (serves(s, gap)) return 0;
+    if (!others && serves(s, gap)) return 0;
     s->reach = gap + (keep ? spare(p) : 0);
     if (keep && !s->listed) s->listed = malloc(n * sizeof *s->listed);
     if ((keep && !s->listed) || !list(s, p))

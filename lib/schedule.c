@@ -184,7 +184,8 @@ static int schedule(struct schedule *s, enum order order, struct graph *g)
         sequence_init(s->sequence, g->n, order);
         for (int64_t i = 0; i < g->n; i++) g->place[i] = -1;
         for (int64_t i = 0; !colours && i < g->n; i++) place_level(g, s->sequence[i]);
-        if (colours && g->n > block) failed = sort_along_curve(g->contacts, s->sequence);
+        if (colours && g->contacts && g->n > block)
+            failed = sort_along_curve(g->contacts, s->sequence);
         for (int64_t i = 0; colours && i < g->n; i += block)
             from = place_colours(g, s->sequence + i, g->n - i < block ? g->n - i : block, from);
         failed = failed || regroup(s, g);
