@@ -1,6 +1,7 @@
 # make            build everything        make check      set up, then every test
 # make demo       set up, build, 500 balls, a picture     make install   PREFIX, DESTDIR
 # make bench      what it costs (bench/README.md)         make bench-compare   beside the last kept results
+# make bench-solvers   all solvers over a collection of problems, Siconos' beside them
 # make paper      every table and figure of the paper     QUICK=1        the same in minutes
 #
 # Objects, tools and tests are under build/; SAN=1 makes the same with ASan and UBSan in build/san/.
@@ -43,22 +44,22 @@ $B/libnsd.a: $(LIB)
 
 $B/lib/%.o: lib/%.c Makefile
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -c -o $@ $<
+	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
 $B/lib/sweep_%.o: lib/sweep.c Makefile
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -DLANES=$* $(WIDTH_$*) -MMD -c -o $@ $<
+	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -DLANES=$* $(WIDTH_$*) -MMD -MP -c -o $@ $<
 
 $B/tools/%.o: tools/%.c Makefile
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -c -o $@ $<
+	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
 $B/%: $B/tools/%.o $B/lib/main.o $B/libnsd.a
 	$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(NSD_LDLIBS)
 
 $B/tests/%: tests/%.c $B/libnsd.a Makefile
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -o $@ $< $B/libnsd.a $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS) $(TESTLIBS)
+	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -o $@ $< $B/libnsd.a $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS) $(TESTLIBS)
 
 tests: $(TOOLS) $(CTEST)
 
@@ -92,6 +93,10 @@ bench: all
 	bench/run.sh
 	bench/sweeps.sh
 	bench/problems.sh
+
+# Every solver over every FCLIB problem, Siconos' beside nsd's; ONLY=nsd: that half again
+bench-solvers: all
+	bench/solvers.sh
 
 # What make bench left beside what was kept before
 bench-compare:
@@ -149,5 +154,5 @@ clean:
 -include $(wildcard $B/lib/*.d $B/tools/*.d $B/tests/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep bench bench-compare format lint $(PARTS:%=lint-%) $(TIDY) install uninstall clean setup-run setup-paper setup-check
+.PHONY: all tests test check demo paper paper-keep bench bench-solvers bench-compare format lint $(PARTS:%=lint-%) $(TIDY) install uninstall clean setup-run setup-paper setup-check
 .SECONDARY:

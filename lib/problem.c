@@ -227,6 +227,17 @@ void row_set(struct problem *p, int64_t i, const double r[3], const double u[3])
     for (int k = 0; k < 3; k++) c->r[k][row_lane(i)] = r[k], c->u[k][row_lane(i)] = u[k];
 }
 
+void row_react(struct problem *p, int64_t i, const double r[3])
+{
+    struct bundle *c = row_bundle(p, i);
+    double dr[3];
+    for (int k = 0; k < 3; k++) dr[k] = r[k] - c->r[k][row_lane(i)], c->r[k][row_lane(i)] = r[k];
+    if (p->W)
+        for (int k = 0; k < p->d; k++) p->W->r[p->d * p->contact[i] + k] = r[k];
+    else
+        body_push(p->body, c, row_lane(i), dr);
+}
+
 void problem_store(const struct problem *p, struct contacts *s)
 {
     for (int64_t i = 0; i < p->rows; i++) {

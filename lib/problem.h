@@ -72,6 +72,8 @@ static inline struct rebound *row_rebound(const struct problem *p, int64_t i)
 }
 void row_get(const struct problem *, int64_t i, double r[3], double u[3]);
 void row_set(struct problem *, int64_t i, const double r[3], const double u[3]);
+/* r becomes row i's reaction, and the bodies move accordingly (W->r is set). */
+void row_react(struct problem *, int64_t i, const double r[3]);
 
 /* 1/rho_a of the natural map: the largest eigenvalue of the rows' W~_cc */
 ALWAYS_INLINE vd bundle_lambda(const struct bundle *c, int k)

@@ -32,8 +32,10 @@ void sparse_free(struct sparse *A)
 
 bool stored_init(struct stored *S, int64_t m, int64_t n, int32_t nz, int64_t count)
 {
-    *S = (struct stored){ .m = (int32_t)m, .n = (int32_t)n, .nz = nz };
-    S->p = calloc((size_t)(nz == -2 ? m : n) + 1, sizeof *S->p);
+    uint64_t lines = (uint64_t)(nz == -2 ? m : n) + 1;
+    *S = (struct stored){ (int32_t)m, (int32_t)n, nz, (int32_t)count, .np = lines };
+    S->ni = S->nx = (uint64_t)count;
+    S->p = calloc(lines, sizeof *S->p);
     S->i = malloc((size_t)(count + 1) * sizeof *S->i);
     S->x = malloc((size_t)(count + 1) * sizeof *S->x);
     return S->p && S->i && S->x;

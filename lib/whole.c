@@ -1,0 +1,200 @@
+/* whole.c: see whole.h. */
+#include "whole.h"
+
+#include "assembly.h"
+#include "sweep.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* D u~ = W r + q of a packing, as an FCLIB file would have it */
+static int assemble(struct delassus *W, const struct problem *p, struct why *why)
+{
+    struct assembly A = { 0 };
+    struct stored S = { 0 };
+    struct sparse entries = { 0 };
+    double *mu = calloc((size_t)p->n + 1, sizeof *mu);
+    if (!mu) return why_set(why, EX_SOFTWARE, "out of memory");
+    for (int64_t i = 0; i < p->rows; i++)
+        if (p->contact[i] >= 0) mu[p->contact[i]] = row_bundle(p, i)->mu[row_lane(i)];
+    int e = assembly_init(&A, p, why);
+    if (!e) e = assembly_W(&A, &S, why);
+    if (!e) e = sparse_unpack(&entries, &S, "W", why);
+    if (!e)
+        e = delassus_init(W, p->d, p->n, entries.count, entries.row, entries.col, entries.x, A.q,
+                          mu, why);
+    assembly_free(&A), sparse_free(&entries), stored_free(&S), free(mu);
+    return e;
+}
+
+static double *copy(const double *x, int64_t n)
+{
+    double *y = malloc((size_t)(n + 4) * sizeof *y);
+    if (y && n) memcpy(y, x, (size_t)n * sizeof *y);
+    return y;
+}
+
+/* A W of our own, whoever the other belongs to */
+static int borrow(struct delassus *W, const struct delassus *V, struct why *why)
+{
+    int64_t blocks = V->first[V->n], d = V->d, n = V->n;
+    *W = (struct delassus){ .d = V->d, .n = n };
+    W->first = calloc((size_t)n + 1, sizeof *W->first);
+    W->col = malloc((size_t)(blocks + 1) * sizeof *W->col);
+    W->block = copy(V->block, blocks * d * d), W->diag = copy(V->diag, 9 * n);
+    W->q = copy(V->q, n * d), W->mu = copy(V->mu, n), W->r = copy(V->r, n * d);
+    if (!W->first || !W->col || !W->block || !W->diag || !W->q || !W->mu || !W->r)
+        return why_set(why, EX_SOFTWARE, "out of memory");
+    memcpy(W->first, V->first, (size_t)(n + 1) * sizeof *W->first);
+    if (blocks) memcpy(W->col, V->col, (size_t)blocks * sizeof *W->col);
+    return 0;
+}
+
+static void scale(struct whole *w)
+{
+    struct delassus *W = &w->W;
+    int d = W->d, dd = d * d;
+    double trace = 0;
+    for (int64_t c = 0; c < W->n; c++) {
+        double lambda = local_lambda_max(W->diag + 9 * c);
+        w->s[c] = lambda > 0 ? 1 / sqrt(lambda) : 1;
+    }
+    for (int64_t c = 0; c < W->n; c++) {
+        for (int k = 0; k < 9; k++) W->diag[9 * c + k] *= w->s[c] * w->s[c];
+        for (int k = 0; k < d; k++) W->q[d * c + k] *= w->s[c], trace += W->diag[9 * c + 4 * k];
+        for (int64_t e = W->first[c]; e < W->first[c + 1]; e++)
+            for (int k = 0; k < dd; k++) W->block[dd * e + k] *= w->s[c] * w->s[W->col[e]];
+    }
+    w->mean = trace > 0 ? trace / w->size : 1;
+}
+
+/* The rows' columns: each block's, the diagonal among them, ascending. */
+static bool pattern(struct whole *w)
+{
+    const struct delassus *W = &w->W;
+    int d = W->d;
+    int64_t entries = (W->first[W->n] + W->n) * d * d, k = 0;
+    w->first = malloc((size_t)(w->size + 1) * sizeof *w->first);
+    w->col = malloc((size_t)(entries + 1) * sizeof *w->col);
+    w->a = malloc((size_t)(entries + 1) * sizeof *w->a);
+    if (!w->first || !w->col || !w->a) return false;
+    for (int64_t c = 0; c < W->n; c++)
+        for (int i = 0; i < d; i++) {
+            w->first[d * c + i] = (int32_t)k;
+            bool met = false;
+            for (int64_t e = W->first[c]; e <= W->first[c + 1]; e++) {
+                bool end = e == W->first[c + 1];
+                if (!met && (end || W->col[e] > c)) {
+                    for (int j = 0; j < d; j++) w->col[k++] = (int32_t)(d * c + j);
+                    met = true;
+                }
+                for (int j = 0; !end && j < d; j++) w->col[k++] = d * W->col[e] + j;
+            }
+        }
+    w->first[w->size] = (int32_t)k;
+    return true;
+}
+
+int whole_init(struct whole *w, const struct problem *p, struct why *why)
+{
+    *w = (struct whole){ 0 };
+    if (p->n > INT32_MAX / 3) return why_set(why, EX_DATAERR, "too many contacts");
+    int e = p->W ? borrow(&w->W, p->W, why) : assemble(&w->W, p, why);
+    if (e) return e;
+    struct delassus *W = &w->W;
+    if ((W->first[W->n] + W->n) * W->d * W->d > INT32_MAX)
+        return why_set(why, EX_DATAERR, "too many blocks");
+    w->size = (int32_t)(W->n * W->d);
+    w->s = malloc((size_t)(W->n + 1) * sizeof *w->s);
+    if (!w->s) return why_set(why, EX_SOFTWARE, "out of memory");
+    scale(w);
+    return pattern(w) ? 0 : why_set(why, EX_SOFTWARE, "out of memory");
+}
+
+void whole_free(struct whole *w)
+{
+    delassus_free(&w->W);
+    free(w->s), free(w->first), free(w->col), free(w->a);
+    *w = (struct whole){ 0 };
+}
+
+void whole_get(const struct whole *w, const struct problem *p, double *x)
+{
+    for (int64_t i = 0; i < p->rows; i++) {
+        double r[3], u[3];
+        int64_t c = p->contact[i];
+        if (c < 0) continue;
+        row_get(p, i, r, u);
+        for (int k = 0; k < p->d; k++) x[p->d * c + k] = r[k] / w->s[c];
+    }
+}
+
+void whole_put(const struct whole *w, struct problem *p, const double *x)
+{
+    for (int64_t i = 0; i < p->rows; i++) {
+        double r[3];
+        int64_t c = p->contact[i];
+        if (c < 0) continue;
+        whole_load(p->d, x + p->d * c, r);
+        for (int k = 0; k < 3; k++) r[k] *= w->s[c];
+        row_react(p, i, r);
+    }
+    sweep_widest()->velocities(p, 0, p->bundles);
+}
+
+void whole_velocity(struct whole *w, const double *x, double *v)
+{
+    struct delassus *W = &w->W;
+    int d = W->d;
+    memcpy(W->r, x, (size_t)w->size * sizeof *x);
+    for (int64_t c = 0; c < W->n; c++) {
+        double b[4];
+        delassus_gather(W, c, b);
+        for (int i = 0; i < d; i++) {
+            v[d * c + i] = b[i];
+            for (int j = 0; j < d; j++) v[d * c + i] += W->diag[9 * c + 3 * i + j] * x[d * c + j];
+        }
+    }
+}
+
+double whole_natural(const struct whole *w, const double *x, const double *v)
+{
+    double off = 0, size = 0;
+    int d = w->W.d;
+    for (int64_t c = 0; c < w->W.n; c++) {
+        double r[3], u[3], tau[3], p[3];
+        whole_load(d, x + d * c, r), whole_load(d, v + d * c, u);
+        cone_predict(w->W.mu[c], 1, r, u, tau);
+        cone_project(w->W.mu[c], tau, p);
+        for (int k = 0; k < 3; k++) off += (r[k] - p[k]) * (r[k] - p[k]), size += r[k] * r[k];
+    }
+    return size > 0 ? sqrt(off / size) : off > 0 ? 1 : 0;
+}
+
+void whole_matrix(struct whole *w, const double *L, const double *D)
+{
+    const struct delassus *W = &w->W;
+    int d = W->d;
+    for (int64_t c = 0; c < W->n; c++)
+        for (int i = 0; i < d; i++) {
+            const double *l = L + 9 * c + 3 * i;
+            double *a = w->a + w->first[d * c + i];
+            bool met = false;
+            for (int64_t e = W->first[c]; e <= W->first[c + 1]; e++) {
+                bool end = e == W->first[c + 1];
+                if (!met && (end || W->col[e] > c)) {
+                    for (int j = 0; j < d; j++) {
+                        *a = D[9 * c + 3 * i + j];
+                        for (int k = 0; k < d; k++) *a += l[k] * W->diag[9 * c + 3 * k + j];
+                        a++;
+                    }
+                    met = true;
+                }
+                const double *B = W->block + d * d * e;
+                for (int j = 0; !end && j < d; j++, a++) {
+                    *a = 0;
+                    for (int k = 0; k < d; k++) *a += l[k] * B[k + d * j];
+                }
+            }
+        }
+}

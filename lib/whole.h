@@ -1,0 +1,55 @@
+/*
+ * whole.h: all contacts at once: a contact problem as one scaled system, for the solvers that look at
+ * the whole of it.
+ *
+ *     v = W x + q,   r_c = s_c x_c,   s_c = 1/sqrt(lambda_max(W_cc)),
+ *
+ * so that every W_cc is of order 1 whatever the masses, and x and v are in units of one size,
+ * sqrt(J). (v, x) is on the law where (u, r) is. A packing's W is assembled [assembly.h].
+ */
+#ifndef NSD_WHOLE_H
+#define NSD_WHOLE_H
+
+#include "problem.h"
+
+struct whole {
+    struct delassus W; /* scaled: blocks, diagonal, q */
+    double *s;         /* [n] sqrt(kg) */
+    double mean;       /* of the diagonal of W */
+    int32_t size;      /* n d */
+    /* the pattern of W, by rows */
+    int32_t *first, *col; /* [size + 1], [entries] */
+    double *a;            /* [entries] room for a matrix of that pattern */
+};
+
+/* Returns 0 or EX_SOFTWARE; where it is too large for 32-bit indices, EX_DATAERR. */
+int whole_init(struct whole *, const struct problem *, struct why *);
+void whole_free(struct whole *);
+
+void whole_get(const struct whole *, const struct problem *, double *x);
+/* x into the rows, with the bodies and u that belong to it */
+void whole_put(const struct whole *, struct problem *, const double *x);
+
+/* v = W x + q */
+void whole_velocity(struct whole *, const double *x, double *v);
+
+/* |x - P(x - v^)| / |x|, v^ = v + mu |v_t| n, v = W x + q: the natural map's, scaled */
+double whole_natural(const struct whole *, const double *x, const double *v);
+
+/*
+ * a = the matrix of rows  L_c W + D_c  for each contact, L and D [n][9] row-major 3 x 3 of which
+ * d x d is read.
+ */
+void whole_matrix(struct whole *, const double *L, const double *D);
+
+/* Component-wise copies between d and 3 numbers */
+static inline void whole_load(int d, const double *x, double out[3])
+{
+    out[0] = x[0], out[1] = x[1], out[2] = d == 3 ? x[2] : 0;
+}
+static inline void whole_store(int d, const double in[3], double *x)
+{
+    for (int k = 0; k < d; k++) x[k] = in[k];
+}
+
+#endif
