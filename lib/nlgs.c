@@ -1,7 +1,10 @@
-#include "nlgs.h"
+/*
+ * nlgs.c: the non-linear Gauss-Seidel method [paper, 3.1]: sweep over the contacts, each solved by a
+ * local method with the others held still, until the criterion is met.
+ */
+#include "solver.h"
 
 #include <omp.h>
-#include <stdlib.h>
 
 enum {
     CHECK_FIRST = 40, /* sweeps that are all judged */
@@ -24,16 +27,18 @@ static int64_t count(const double x[BUNDLE])
 }
 
 /* One sweep into the report; returns the largest change of a normal velocity, m/s. */
-static double sweep(struct problem *p, const struct nlgs_opt *o, struct report *rep)
+static double sweep(struct solve *s, double omega)
 {
+    const struct solve_opt *o = s->o;
+    struct report *rep = s->rep;
     sweep_text *text = sweep_widest()->sweep[o->method->id];
-    const struct sweep_opt opt = { o->local, o->relax };
-    int threads = p->bundles < PARALLEL_FROM * p->groups ? 1 : o->threads;
+    const struct sweep_opt opt = { o->local, omega };
+    int threads = s->p->bundles < PARALLEL_FROM * s->p->groups ? 1 : o->threads;
     double change = 0;
 #pragma omp parallel num_threads(threads) if (threads > 1)
     {
         struct tally t = { 0 };
-        text(p, omp_get_thread_num(), threads > 1 ? omp_get_num_threads() : 1, &opt, &t);
+        text(s->p, omp_get_thread_num(), threads > 1 ? omp_get_num_threads() : 1, &opt, &t);
 #pragma omp critical
         {
             change = fmax(change, most(t.change));
@@ -45,50 +50,42 @@ static double sweep(struct problem *p, const struct nlgs_opt *o, struct report *
     return change;
 }
 
-static int keep(struct report *rep, int32_t sweeps, const struct terms *t)
+/*
+ * The criterion is evaluated after each of a solve's first 40 sweeps, when the largest change of a
+ * sweep, gathered on the way, says that it may be met, every 25 sweeps, and at the end.
+ */
+int nlgs_sweep(struct solve *s, double omega, bool last, struct watch *w)
 {
-    if ((sweeps & (sweeps - 1)) == 0) { // room for the next power of two
-        struct terms *h = realloc(rep->history, 2 * (size_t)sweeps * sizeof *h);
-        if (!h) return -1;
-        rep->history = h;
+    s->believes = s->o->method->believes;
+    double change = sweep(s, omega);
+    int32_t n = s->rep->sweeps;
+    w->looked = false;
+    if (solve_history(s)) return -1;
+    if (!s->o->history && !s->o->every_sweep && !(change <= w->due) && n > w->all &&
+        n - w->judged < CHECK_EVERY && n < s->o->max_sweeps && !last)
+        return 0;
+    solve_judge(s);
+    // error and change shrink together, more or less: due after half the way, and all the time
+    // when it is near
+    w->due = s->value < 1.3 * s->o->eps ? INFINITY : change * sqrt(s->o->eps / s->value);
+    w->judged = n, w->looked = true;
+    return solve_met(s) || solve_spent(s) || !isfinite(s->value);
+}
+
+int nlgs_sweeps(struct solve *s, int32_t sweeps, double omega)
+{
+    int32_t end = s->rep->sweeps + sweeps;
+    struct watch w = { INFINITY, s->rep->sweeps, CHECK_FIRST, false };
+    while (s->rep->sweeps < end) {
+        int over = nlgs_sweep(s, omega, s->rep->sweeps == end - 1, &w);
+        if (over) return over < 0 ? -1 : 0;
     }
-    rep->history[sweeps - 1] = *t;
     return 0;
 }
 
-int nlgs_solve(struct problem *p, const struct nlgs_opt *o, struct report *rep)
+static int run(struct solve *s)
 {
-    double cpu = report_seconds(CLOCK_CPU), wall = report_seconds(CLOCK_WALL);
-    double due = INFINITY; // a sweep's change below which to evaluate
-    bool believes = o->method->believes;
-    enum err_part part =
-        o->history ? ERR_TERMS | err_part_of(o->criterion) : err_part_of(o->criterion);
-    int32_t last = 0;
-    rep->criterion = o->criterion, rep->eps = o->eps;
-    rep->sweeps = 0, rep->converged = !p->n;
-    rep->newton = rep->safeguarded = rep->gave_up = 0;
-    while (!rep->converged && rep->sweeps < o->max_sweeps) {
-        double change = sweep(p, o, rep);
-        if (!o->history && !o->every_sweep && !(change <= due) && rep->sweeps > CHECK_FIRST &&
-            rep->sweeps - last < CHECK_EVERY)
-            continue;
-        struct err e;
-        err_eval(&e, p, believes, part, o->threads);
-        if (o->history && keep(rep, rep->sweeps, &e.paper)) return -1;
-        double value = err_of(&e, o->criterion);
-        rep->converged = value <= o->eps;
-        if (o->progress) o->progress(rep->sweeps, value);
-        if (!isfinite(value)) break; // diverged
-        // error and change shrink together, more or less: due after half the way, and all the time
-        // when it is near
-        due = value < 1.3 * o->eps ? INFINITY : change * sqrt(o->eps / value);
-        last = rep->sweeps;
-    }
-    if (!believes) sweep_widest()->velocities(p, 0, p->bundles);
-    double overlap = rep->err.max_overlap;
-    err_eval(&rep->err, p, believes, ERR_ALL, o->threads);
-    rep->err.max_overlap = overlap;
-    rep->seconds = report_seconds(CLOCK_CPU) - cpu,
-    rep->elapsed = report_seconds(CLOCK_WALL) - wall;
-    return 0;
+    return nlgs_sweeps(s, s->o->max_sweeps, s->o->relax);
 }
+
+const struct solver solver_nlgs = { "nlgs", 1, run };

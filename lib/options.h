@@ -6,8 +6,10 @@
 #include "step.h"
 
 struct options {
-    int method, criterion, order, newton; /* places in their lists; criterion -1: not given */
-    double eps, alpha, newton_eps, newton_abs, relax, gap;
+    int method, global, criterion, order, newton; /* places in their lists; -1: not given */
+    double eps, alpha, newton_eps, newton_abs, max_seconds;
+    double relax; /* 0: the solver's */
+    double gap;
     double theta; /* -1: the document's */
     int64_t max_sweeps, newton_max, threads;
     bool warm, every_sweep, history, strict;
@@ -21,6 +23,9 @@ extern const struct cli_option options_detect[]; /* --gap, --theta */
 
 /* What was asked, for a packing with this dt, or for an FCLIB problem (dt = 1). */
 struct step_opt options_step(double dt, bool foreign);
+
+/* What it goes by: the local method of Gauss-Seidel, else the solver */
+const char *options_solver(const struct step_opt *);
 
 /* The same as JSON, all of it, for the document; NULL when memory is short. To be freed. */
 char *options_json(const struct step_opt *);

@@ -16,12 +16,12 @@ int step_solve(const struct packing *pack, struct contacts *s, const struct step
 {
     struct problem p;
     s->solved = s->solved && o->warm;
-    if (problem_prepare(&p, pack, s, o->alpha, o->nlgs.method->rho, o->order, why))
+    if (problem_prepare(&p, pack, s, o->alpha, o->solve.method->rho, o->order, why))
         return why->status;
     rep->step = pack->step + 1;
     rep->t = pack->t + pack->dt;
     rep->err.max_overlap = max_overlap(s);
-    int failed = nlgs_solve(&p, &o->nlgs, rep);
+    int failed = solve_problem(&p, &o->solve, rep);
     if (!failed) problem_store(&p, s);
     problem_free(&p);
     return failed ? why_set(why, EX_SOFTWARE, "no memory for the history") : 0;
@@ -33,9 +33,9 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
     struct problem p;
     if (!o->warm)
         for (int64_t i = 0; i < W->d * W->n; i++) W->r[i] = 0;
-    if (problem_prepare_delassus(&p, W, o->alpha, o->nlgs.method->rho, o->order, why))
+    if (problem_prepare_delassus(&p, W, o->alpha, o->solve.method->rho, o->order, why))
         return why->status;
-    int failed = nlgs_solve(&p, &o->nlgs, rep);
+    int failed = solve_problem(&p, &o->solve, rep);
     for (int64_t i = 0; i < p.rows; i++) {
         double r[3], v[3];
         if (p.contact[i] < 0) continue;

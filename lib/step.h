@@ -6,14 +6,14 @@
 #define NSD_STEP_H
 
 #include "neighbours.h"
-#include "nlgs.h"
+#include "solver.h"
 
 struct step_opt {
     double gap;   /* m: what counts as a contact */
     double alpha; /* > 0: rho = alpha m_red; else the method's default */
     enum order order;
     bool warm; /* start from the reactions of the contacts given, else from 0 */
-    struct nlgs_opt nlgs;
+    struct solve_opt solve;
 };
 
 /* Solves the contacts (frames and gaps are there); r, u, status go into them. */

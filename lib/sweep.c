@@ -167,6 +167,34 @@ ALWAYS_INLINE void sweep(struct problem *p, int me, int threads, const struct sw
     }
 EACH_METHOD(VISIT)
 
+/* ---- what accelerates the sweeps ---- */
+
+static void mixing_measure(const struct problem *p, const struct mixing *m, int slot, int64_t first,
+                           int64_t end, struct mixing_sums *t)
+{
+    mixing_measure_text(p, m, slot, first, end, t);
+}
+
+/* Disc, not cone: the orthogonal projection on the cone would push contacts apart that slide. */
+static void mixing_react(struct problem *p, const struct mixing *m, double leap,
+                         const double gamma[MEMORY])
+{
+    for (int64_t i = 0; i < p->bundles; i++)
+        for (int k = 0; k < BUNDLE; k += LANES) {
+            struct bundle *c = &p->bundle[i];
+            vd x[3] = { splat(0), splat(0), splat(0) }, r[3] = { splat(0) }, dr[3];
+            mixing_point(p, m, leap, gamma, i, k, x);
+            disc_project(vload(c->mu + k), x, r);
+            for (int j = 0; j < 3; j++)
+                dr[j] = r[j] - vload(c->r[j] + k), vstore(c->r[j] + k, r[j]);
+            for (int j = 0; j < p->d; j++) vstore(m->x + (i * p->d + j) * BUNDLE + k, r[j]);
+            if (p->W)
+                blocks_scatter(p, c, k);
+            else
+                body_push(p->body, c, k, dr);
+        }
+}
+
 /* ---- the error ---- */
 
 /* u~ by the motion that r makes: from the bodies, or W r + q */
@@ -255,4 +283,5 @@ static void judge(const struct problem *p, int64_t first, int64_t end, bool beli
 #define SWEEP_(lanes)   sweep_##lanes
 #define SWEEP_OF(lanes) SWEEP_(lanes)
 extern const struct sweep SWEEP_OF(LANES);
-const struct sweep SWEEP_OF(LANES) = { LANES, { EACH_METHOD(VISITS) }, judge, velocities };
+const struct sweep SWEEP_OF(LANES) = { LANES,      { EACH_METHOD(VISITS) }, judge,
+                                       velocities, mixing_measure,          mixing_react };

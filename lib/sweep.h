@@ -6,6 +6,7 @@
 #define NSD_SWEEP_H
 
 #include "method.h"
+#include "mixing.h"
 #include "problem.h"
 
 struct sweep_opt {
@@ -40,6 +41,13 @@ struct sweep {
                   struct sums *);
     /* u = the motion's */
     void (*velocities)(struct problem *, int64_t first, int64_t end);
+    /* g, f = g - x, and how they differ from the last into dg[slot], df[slot]; adds f.f, and df[slot]
+       and f times df[], to the sums */
+    void (*mixing_measure)(const struct problem *, const struct mixing *, int slot, int64_t first,
+                           int64_t end, struct mixing_sums *);
+    /* r = x = g + leap f - sum_j gamma_j dg_j, back to what friction allows; bodies move accordingly */
+    void (*mixing_react)(struct problem *, const struct mixing *, double leap,
+                         const double gamma[MEMORY]);
 };
 
 /* The widest that there is, of at most NSD_LANES lanes. */

@@ -24,12 +24,13 @@ static void must(int failed, struct why *why)
 
 static struct step_opt options(const struct method *m, double eps, int32_t sweeps)
 {
-    return (struct step_opt){ .nlgs = { .method = m,
-                                        .eps = eps,
-                                        .max_sweeps = sweeps,
-                                        .relax = 1,
-                                        .threads = 1,
-                                        .local = { .newton_eps = 1e-13, .newton_max = 100 } } };
+    return (struct step_opt){ .solve = { .global = &solver_nlgs,
+                                         .method = m,
+                                         .eps = eps,
+                                         .max_sweeps = sweeps,
+                                         .relax = 1,
+                                         .threads = 1,
+                                         .local = { .newton_eps = 1e-13, .newton_max = 100 } } };
 }
 
 static void scene_file(struct packing *p, const char *path)
@@ -179,7 +180,7 @@ static void test_detection(void)
 static void settled(struct packing *p, struct contacts *s, int dim, int steps)
 {
     struct step_opt o = options(&local_exact, 1e-9, 200);
-    o.warm = true, o.nlgs.relax = 1.4;
+    o.warm = true, o.solve.relax = 1.4;
     paper(p, dim, 500);
     run(p, s, &o, steps);
 }
@@ -290,7 +291,7 @@ static void test_agreement(const struct packing *start, const char *what)
         struct contacts s = { 0 };
         struct report rep = { 0 };
         struct step_opt o = options(methods[m], 1e-11, 100000);
-        o.nlgs.relax = m >= 2 ? 1.5 : 1; // no over-relaxation of what is itself a long step
+        o.solve.relax = m >= 2 ? 1.5 : 1; // no over-relaxation of what is itself a long step
         must(packing_copy(&p, start, &why) || step_advance(&p, &s, NULL, &o, &rep, &why), &why);
         if (m == 4) exact = p;
         double d = largest_difference(&p, &exact);
@@ -323,8 +324,8 @@ static void test_threads(const struct packing *start)
             struct report rep = { 0 };
             struct step_opt o = options(&local_exact, 1e-6, 20000);
             o.order = (enum order)order;
-            o.nlgs.threads = k < 3 ? 1 << k : 1;
-            o.nlgs.every_sweep = k == 3;
+            o.solve.threads = k < 3 ? 1 << k : 1;
+            o.solve.every_sweep = k == 3;
             must(packing_copy(&p, start, &why) || step_advance(&p, &s, NULL, &o, &rep, &why), &why);
             if (k == 0)
                 one = p, sweeps = rep.sweeps;
@@ -365,7 +366,7 @@ static void test_energy(int dim, bool gravity)
     struct contacts s = { 0 };
     struct step_opt o = options(&local_exact, 1e-12, 1000);
     double mass = 0;
-    o.warm = true, o.nlgs.relax = 1.5;
+    o.warm = true, o.solve.relax = 1.5;
     paper(&p, dim, 30);
     if (!gravity) {
         p.g = v3(0, 0, 0);

@@ -16,13 +16,14 @@ static void must(int failed, struct why *why)
 
 static struct step_opt options(int m, double relax)
 {
-    return (struct step_opt){ .nlgs = { .method = methods[m],
-                                        .eps = 0,
-                                        .max_sweeps = 8,
-                                        .relax = relax,
-                                        .threads = 1,
-                                        .every_sweep = true,
-                                        .local = { .newton_eps = 1e-13, .newton_max = 100 } } };
+    return (struct step_opt){ .solve = { .global = &solver_nlgs,
+                                         .method = methods[m],
+                                         .eps = 0,
+                                         .max_sweeps = 8,
+                                         .relax = relax,
+                                         .threads = 1,
+                                         .every_sweep = true,
+                                         .local = { .newton_eps = 1e-13, .newton_max = 100 } } };
 }
 
 /* The paper's balls some steps on, close enough to touch, with restitution or without */
@@ -80,12 +81,12 @@ static void compare(const struct packing *p, const struct contacts *s, const cha
             if (!all && way != 3) continue;
             struct step_opt o = options(m, way & 1 ? 1.5 : 1);
             o.order = way & 2 ? ORDER_COLOUR : ORDER_NATURAL, o.warm = way & 4;
-            o.nlgs.local.plain = way == 7;
+            o.solve.local.plain = way == 7;
             sweep_narrow(2);
             struct print first = solve(p, s, &o);
             for (int k = 0; k < 9; k++) {
                 sweep_narrow(lanes[k % 3]);
-                o.nlgs.threads = 1 << k / 3;
+                o.solve.threads = 1 << k / 3;
                 struct print r = solve(p, s, &o);
                 good &= same(&first, &r);
                 free(r.x);

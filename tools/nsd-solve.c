@@ -19,7 +19,7 @@ static const struct cli_option *const tables[] = { options_solve, own, options_r
 
 const struct cli_tool tool = {
     "nsd-solve", "[FILE ...]",
-    "Solves the frictional contact problem by non-linear Gauss-Seidel.\n"
+    "Solves the frictional contact problem.\n"
     "Reads packings with contacts, or FCLIB problems (local or global); writes each with its\n"
     "reactions and a report.",
     tables,
@@ -39,9 +39,9 @@ static void solve(struct frame *f, const char *where)
     struct why why = { 0 };
     if (!f->foreign) filter_wants_contacts(f, where);
     struct step_opt o = options_step(f->foreign ? 1 : f->packing.dt, f->foreign);
-    o.nlgs.progress = show;
+    o.solve.progress = show;
     report_free(&f->report);
-    snprintf(f->report.method, sizeof f->report.method, "%s", o.nlgs.method->name);
+    snprintf(f->report.method, sizeof f->report.method, "%s", options_solver(&o));
     f->report.options = options_json(&o);
     if (!f->foreign) {
         options_theta(&f->packing, true);

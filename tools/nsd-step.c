@@ -91,7 +91,7 @@ static int64_t run(struct frame *f, struct sink *out)
     struct neighbours near = { 0 };
     if (steps) {
         report_free(&f->report);
-        snprintf(f->report.method, sizeof f->report.method, "%s", o.nlgs.method->name);
+        snprintf(f->report.method, sizeof f->report.method, "%s", options_solver(&o));
         f->report.options = options_json(&o);
         f->detected = contacts;
         f->stale = true;

@@ -1,0 +1,243 @@
+/*
+ * anderson.c: Gauss-Seidel accelerated by Anderson's mixing [Anderson 1965, Walker and Ni 2011].
+ *
+ * With G the sweeps, f(x) = G(x) - x, and the last differences of g = G(x) and f in the columns of dG
+ * and dF, the next point is
+ *
+ *     x = g - dG gamma,     gamma = argmin |f - dF gamma|,
+ *
+ * back to what friction allows. The law has corners, and the mixing may lead astray: what has made f
+ * larger is taken back, and a mixing that does not pay gives way. What then holds the sweeps up is
+ * often a chain of a few contacts whose reactions grow by the same amount in every sweep, thousands
+ * of them, until one slips or opens; f is constant and its differences are noise. There one leaps
+ * along f, twice as far each time. Last come sweeps alone, twice as many each time, so that in the
+ * end this is Gauss-Seidel.
+ */
+#include "solver.h"
+
+#include <gsl/gsl_linalg.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    PERIOD = 2,    /* sweeps to a mixing: a mixing costs about as much as one */
+    EPOCH = 10,    /* mixings in which |f|^2 must halve */
+    RESTS = 5,     /* sweeps before a leap: the last one's change is the leap's direction */
+    SHORT = 50,    /* sweeps of leaps, or alone, at first and */
+    LONG = 100000, /* at most */
+    BLOCK = 64     /* bundles whose lanes are summed one after another: they stay in the cache */
+};
+#define GROWTH 4.0   /* of |f|^2 that is not taken back */
+#define ASTRAY 2.0   /* the same of a leap */
+#define RIDGE  1e-14 /* on the scaled normal equations' diagonal of 1 */
+#define LEAP   8.0   /* in multiples of f, at first */
+
+struct anderson {
+    struct solve *s;
+    struct mixing m;
+    struct watch watch;
+    struct kept kept;
+    double *room;
+    double gram[MEMORY][MEMORY]; /* dF'dF */
+    double fd[MEMORY];           /* dF'f */
+    int slot, full;              /* the next of the memory, and how much of it is in use */
+    bool begun;                  /* g and f are of a time before */
+    double omega;
+    int rest;    /* sweeps of the next leaps, or alone */
+    bool leap;   /* leaps are next */
+    double best; /* |f|^2 after which the rests began anew */
+};
+
+static double sum(const double slot[BUNDLE])
+{
+    double s = 0;
+    for (int k = 0; k < BUNDLE; k++) s += slot[k];
+    return s;
+}
+
+void anderson_free(struct anderson *a)
+{
+    if (a) kept_free(&a->kept), free(a->room);
+    free(a);
+}
+
+struct anderson *anderson_new(struct solve *s)
+{
+    enum { VECTORS = 3 + 2 * MEMORY };
+    struct anderson *a = calloc(1, sizeof *a);
+    if (!a) return NULL;
+    *a = (struct anderson){ .s = s, .watch = { INFINITY, s->rep->sweeps, 0, false } };
+    a->rest = SHORT, a->leap = true, a->best = INFINITY;
+    size_t size = (size_t)(s->p->rows * s->p->d), bytes = VECTORS * size * sizeof(double);
+    a->omega = s->o->relax > 0 ? s->o->relax : 1;
+    a->room = aligned_alloc(64, bytes); // rows come in eights
+    if (!a->room || kept_init(&a->kept, s->p)) {
+        free(a->room), free(a);
+        return NULL;
+    }
+    memset(a->room, 0, bytes);
+    double **vector[VECTORS] = { &a->m.x, &a->m.g, &a->m.f };
+    for (int j = 0; j < MEMORY; j++)
+        vector[3 + 2 * j] = &a->m.dg[j], vector[4 + 2 * j] = &a->m.df[j];
+    for (int j = 0; j < VECTORS; j++) *vector[j] = a->room + (size_t)j * size;
+    return a;
+}
+
+/* So many sweeps; as nlgs_sweep() */
+static int sweeps(struct anderson *a, int n)
+{
+    for (int k = 0; k < n; k++) {
+        int over = nlgs_sweep(a->s, a->omega, false, &a->watch);
+        if (a->watch.looked) kept_offer(&a->kept, a->s);
+        if (over) return over;
+    }
+    return 0;
+}
+
+static void forget(struct anderson *a)
+{
+    a->slot = a->full = 0, a->begun = false;
+}
+
+/* x = the rows' r */
+static void look(struct anderson *a)
+{
+    const struct problem *p = a->s->p;
+    double *x = a->m.x;
+    for (int64_t i = 0; i < p->bundles; i++, x += p->d * BUNDLE)
+        memcpy(x, p->bundle[i].r, (size_t)(p->d * BUNDLE) * sizeof *x);
+}
+
+/* What the sweeps made of x; |f|^2. */
+static double measure(struct anderson *a)
+{
+    const struct problem *p = a->s->p;
+    struct mixing_sums t = { 0 };
+    int slot = a->slot;
+    for (int64_t i = 0; i < p->bundles; i += BLOCK)
+        sweep_widest()->mixing_measure(p, &a->m, slot, i,
+                                       i + BLOCK < p->bundles ? i + BLOCK : p->bundles, &t);
+    if (a->begun) {
+        a->full = a->full < MEMORY ? a->full + 1 : MEMORY;
+        a->slot = (slot + 1) % MEMORY;
+        for (int j = 0; j < a->full; j++)
+            a->gram[slot][j] = a->gram[j][slot] = sum(t.ff[j]), a->fd[j] = sum(t.fd[j]);
+    }
+    a->begun = true;
+    return sum(t.f2);
+}
+
+/*
+ * gamma by the normal equations, each difference scaled to length 1: pivoted, and with a ridge that
+ * is far above what rounding makes of a column that is none of its own.
+ */
+static void weigh(const struct anderson *a, double gamma[MEMORY])
+{
+    double A[MEMORY * MEMORY], b[MEMORY], s[MEMORY] = { 0 };
+    size_t n = (size_t)a->full, order[MEMORY];
+    for (size_t i = 0; i < n; i++) s[i] = a->gram[i][i] > 0 ? 1 / sqrt(a->gram[i][i]) : 0;
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j < n; j++) A[i * n + j] = a->gram[i][j] * s[i] * s[j];
+        A[i * n + i] = 1 + RIDGE, b[i] = a->fd[i] * s[i];
+    }
+    gsl_matrix_view M = gsl_matrix_view_array(A, n, n);
+    gsl_vector_view x = gsl_vector_view_array(b, n);
+    gsl_permutation pivots = { n, order };
+    gsl_linalg_pcholesky_decomp(&M.matrix, &pivots);
+    gsl_linalg_pcholesky_svx(&M.matrix, &pivots, &x.vector);
+    for (size_t i = 0; i < n; i++) gamma[i] = b[i] * s[i];
+}
+
+/* The rows go to the next point: by mixing, or by a leap. */
+static void go(struct anderson *a, double leap)
+{
+    double gamma[MEMORY] = { 0 };
+    if (leap == 0 && a->full) weigh(a, gamma);
+    sweep_widest()->mixing_react(a->s->p, &a->m, leap, gamma);
+}
+
+/* The rows return to where the last measure but one found them; nothing remembered. */
+static void take_back(struct anderson *a)
+{
+    double gamma[MEMORY] = { 0 };
+    gamma[(a->slot + MEMORY - 1) % MEMORY] = 1; // x = g - dg
+    sweep_widest()->mixing_react(a->s->p, &a->m, 0, gamma);
+    forget(a);
+}
+
+/* Mixes until that does not pay: then 0, and *least the least |f|^2 on the way. */
+static int mix(struct anderson *a, double *least)
+{
+    double start = INFINITY, was = INFINITY;
+    look(a), forget(a);
+    *least = INFINITY;
+    for (int k = 0;; k++) {
+        int over = sweeps(a, PERIOD);
+        if (over) return over;
+        double now = measure(a);
+        *least = fmin(*least, now);
+        if (k % EPOCH == 0) {
+            if (!(now <= start / 2)) return 0;
+            start = now;
+        }
+        if (!(now <= GROWTH * was)) {
+            take_back(a), was = INFINITY;
+            continue;
+        }
+        was = now;
+        go(a, 0);
+    }
+}
+
+/* Leaps along the change of a sweep, twice as far each time while that goes well; so many sweeps. */
+static int leaps(struct anderson *a, int n)
+{
+    double far = LEAP, was = INFINITY;
+    forget(a);
+    for (int k = 0; k < n; k += RESTS) {
+        int over = sweeps(a, RESTS - 1);
+        if (over) return over;
+        look(a);
+        if ((over = sweeps(a, 1))) return over;
+        double now = measure(a);
+        if (!(now <= ASTRAY * was)) {
+            take_back(a), was = INFINITY, far = fmax(far / 4, 2);
+            continue;
+        }
+        if (was < INFINITY) far *= 2;
+        was = now;
+        go(a, far);
+    }
+    return sweeps(a, RESTS);
+}
+
+int anderson_sweeps(struct anderson *a, int32_t sweeps_more)
+{
+    struct solve *s = a->s;
+    const struct solve_opt *all = s->o;
+    struct solve_opt o = *all;
+    if (sweeps_more < o.max_sweeps - s->rep->sweeps) o.max_sweeps = s->rep->sweeps + sweeps_more;
+    s->o = &o;
+    int over = 0;
+    double least;
+    for (; !over; a->leap = !a->leap) {
+        if ((over = mix(a, &least))) break;
+        if (least <= a->best / 2) a->rest = SHORT, a->best = least;
+        over = a->leap ? leaps(a, a->rest) : sweeps(a, a->rest);
+        a->rest = a->rest < LONG ? 2 * a->rest : LONG;
+    }
+    kept_back(&a->kept, s);
+    s->o = all;
+    return over < 0 ? -1 : 0;
+}
+
+static int run(struct solve *s)
+{
+    struct anderson *a = anderson_new(s);
+    if (!a) return nlgs_sweeps(s, s->o->max_sweeps, s->o->relax > 0 ? s->o->relax : 1);
+    int failed = anderson_sweeps(a, s->o->max_sweeps);
+    anderson_free(a);
+    return failed;
+}
+
+const struct solver solver_anderson = { "anderson", 1, run };

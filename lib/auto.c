@@ -1,0 +1,95 @@
+/*
+ * auto.c: the solver that chooses. Sweeps are cheap and find which contacts hold, slide and part;
+ * where they will not end soon Newton on all contacts does, if it starts near enough; where it does
+ * not, the interior point method brings it there.
+ *
+ * What is measured on the way is how fast the criterion falls; prices are counted, not timed, so that
+ * the same problem is solved the same way everywhere.
+ */
+#include "ipm.h"
+
+#include <stdlib.h>
+
+enum {
+    CHUNK = 100,        /* sweeps between two looks, at least; else half of all so far */
+    STEPS_TO_KNOW = 15, /* factorisations that sweeps must have cost before they are given up, */
+    SURE = 3,           /* or so many times less where there is no end to them */
+    STEPS_TO_END = 25,  /* factorisations that the end will take, or so */
+    APPROACH = 80,      /* steps of the interior point method, and */
+    AGAIN = 12,         /* for each tenth of the way that turns out to be wanted */
+    LAST_RESORT = 20000 /* sweeps, when nothing else led there */
+};
+
+#define AFFORD 3e10 /* ns: a factorisation dearer than this is not made */
+
+/*
+ * How many more sweeps, if the criterion goes on as a power of their number, as it does on the way from
+ * `before` after so many; infinite where it does not fall.
+ */
+static double to_go(const struct solve *s, double before, int32_t sweeps)
+{
+    double p = log(before / s->value) / log((double)s->rep->sweeps / sweeps);
+    return p > 0.1 ? s->rep->sweeps * (pow(s->value / s->o->eps, 1 / p) - 1) : INFINITY;
+}
+
+/* Newton and interior point in turns, each time nearer. */
+static void factorise(struct newton *w, struct solve *s)
+{
+    struct ipm *m = NULL;
+    newton_polish(w, s, 1e-4, 2);
+    if (!solve_met(s) && !solve_spent(s)) m = ipm_new(w, s);
+    bool more = m != NULL;
+    for (int k = 0; more && k < 3 && !solve_met(s) && !solve_spent(s); k++) {
+        more = ipm_approach(m, s, k ? IPM_NEAR / pow(10, k) : IPM_NEAR, k ? AGAIN : APPROACH);
+        if (!solve_met(s)) newton_polish(w, s, 1e-7, 6);
+    }
+    ipm_free(m);
+    if (solve_met(s) || solve_spent(s)) return;
+    newton_back(w, s);
+    newton_polish(w, s, 1e-4, 6);
+}
+
+static int run(struct solve *s)
+{
+    const struct report *rep = s->rep;
+    struct newton w = { 0 };
+    struct anderson *sweeps = anderson_new(s);
+    struct { // a chunk ago
+        double value;
+        int32_t sweeps;
+    } older = { INFINITY, 0 };
+    bool ready = false, tried = false;
+    int failed = 0;
+    int32_t end = s->o->max_sweeps;
+    if (!sweeps) return nlgs_sweeps(s, end, s->o->relax > 0 ? s->o->relax : 1);
+    while (!failed && rep->sweeps < end && !solve_met(s) && !solve_spent(s)) {
+        double before = s->value;
+        int32_t chunk = rep->sweeps / 2 > CHUNK ? rep->sweeps / 2 : CHUNK;
+        failed = anderson_sweeps(sweeps, chunk);
+        if (failed || !isfinite(s->value)) break;
+        double more = older.sweeps ? to_go(s, older.value, older.sweeps) : 0;
+        older.value = before, older.sweeps = rep->sweeps - chunk;
+        if (tried || more < 3 * CHUNK) continue;
+        if (!ready && newton_init(&w, s->p)) { // too large for it
+            tried = true;
+            continue;
+        }
+        ready = true;
+        // the longer the way, the less it takes to be sure of it
+        double gain = fmin(more * w.sweep_cost / (STEPS_TO_END * w.cost), SURE);
+        if (w.cost > AFFORD || gain < 1 ||
+            gain * rep->sweeps * w.sweep_cost < STEPS_TO_KNOW * w.cost)
+            continue;
+        factorise(&w, s);
+        tried = true;
+        if (end - rep->sweeps > LAST_RESORT) end = rep->sweeps + LAST_RESORT;
+    }
+    if (ready) {
+        newton_back(&w, s);
+        newton_free(&w);
+    }
+    anderson_free(sweeps);
+    return failed;
+}
+
+const struct solver solver_auto = { "auto", 0, run };

@@ -1,0 +1,349 @@
+/* ipm.c: see ipm.h. */
+#include "ipm.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define GAP_START 0.1  /* x.z that it starts from, of numbers of order 1: less, and it gets stuck */
+#define INTERIOR  0.99 /* of the way to the border */
+#define MU_LEAST  1e-4 /* a cone needs an inside */
+
+enum { SHORT_STEPS = 4 }; /* in a row, and it is stuck */
+
+/* One contact: x, z in K, and what the scaling needs of them; d numbers of each, the third 0 in the
+   plane. */
+struct side {
+    double mu;
+    double x[3], z[3], dx[3], dz[3];
+    double y[3];      /* z as the motion has it */
+    double e[2];      /* u_t/|u_t|, smoothed */
+    double v[3], eta; /* F = eta (2 v v' - J), F x = F^-1 z = l */
+    double l[3];
+    double c[3]; /* F dz + F^-1 dx wanted, scaled */
+};
+
+struct ipm {
+    struct newton *w;
+    struct side *side;
+    double *best; /* [n d] the reactions with the least natural map */
+    double unit;  /* of velocities: q is of order 1 after it */
+    double gap;   /* x.z, mean */
+    int fold;     /* which t served last */
+    int stuck;    /* steps in a row that led nowhere */
+};
+
+static double tangent(const double x[3])
+{
+    return sqrt(x[1] * x[1] + x[2] * x[2]);
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* x_0^2 - |x_t|^2 */
+static double det(const double x[3])
+{
+    double t = tangent(x);
+    return (x[0] - t) * (x[0] + t);
+}
+
+/* out = eta (2 v v' - J) a; its inverse is 1/eta (2 Jv Jv' - J) */
+static void apply(const double v[3], double eta, const double a[3], double out[3])
+{
+    double s = 2 * dot(v, a);
+    out[0] = eta * (s * v[0] - a[0]);
+    out[1] = eta * (s * v[1] + a[1]), out[2] = eta * (s * v[2] + a[2]);
+}
+
+static void apply_inverse(const double v[3], double eta, const double a[3], double out[3])
+{
+    const double jv[3] = { v[0], -v[1], -v[2] };
+    apply(jv, 1 / eta, a, out);
+}
+
+static void product(const double a[3], const double b[3], double out[3])
+{
+    out[0] = dot(a, b);
+    out[1] = a[0] * b[1] + b[0] * a[1], out[2] = a[0] * b[2] + b[0] * a[2];
+}
+
+/* out: l o out = c */
+static void quotient(const double l[3], const double c[3], double out[3])
+{
+    out[0] = (l[0] * c[0] - l[1] * c[1] - l[2] * c[2]) / det(l);
+    out[1] = (c[1] - l[1] * out[0]) / l[0], out[2] = (c[2] - l[2] * out[0]) / l[0];
+}
+
+/* The largest step along dx that stays in K */
+static double to_border(const double x[3], const double dx[3])
+{
+    double a = (dx[0] - tangent(dx)) * (dx[0] + tangent(dx));
+    double b = x[0] * dx[0] - x[1] * dx[1] - x[2] * dx[2], c = det(x);
+    double root = b * b - a * c, step = INFINITY;
+    if (root >= 0) {
+        double r = sqrt(root), first = c / (-b + r), second = c / (-b - r);
+        if (first > 0) step = fmin(step, first);
+        if (second > 0) step = fmin(step, second);
+    }
+    return dx[0] < 0 ? fmin(step, -x[0] / dx[0]) : step;
+}
+
+/* x o z = g e with x - z as it is: where the path begins near a given x and z */
+static void centre(struct side *s, double gap)
+{
+    double tau[3] = { s->x[0] - s->z[0], s->x[1] - s->z[1], s->x[2] - s->z[2] }, t = tangent(tau);
+    double f[2];
+    for (int k = 0; k < 2; k++) {
+        double l = k ? tau[0] - t : tau[0] + t, root = sqrt(l * l + 4 * gap);
+        f[k] = l > 0 ? (l + root) / 2 : 2 * gap / (root - l);
+    }
+    double x = (f[0] - f[1]) / 2, z = (gap / f[0] - gap / f[1]) / 2;
+    s->x[0] = (f[0] + f[1]) / 2, s->z[0] = (gap / f[0] + gap / f[1]) / 2;
+    for (int k = 1; k < 3; k++) {
+        s->x[k] = t > 0 ? x * tau[k] / t : 0;
+        s->z[k] = t > 0 ? z * tau[k] / t : 0;
+    }
+}
+
+/* y of all contacts at their x, |u_t| smoothed; the scaled natural map as the reactions stand */
+static double look(struct ipm *m)
+{
+    struct newton *w = m->w;
+    struct whole *a = &w->whole;
+    int d = a->W.d;
+    for (int64_t c = 0; c < a->W.n; c++) {
+        struct side *s = &m->side[c];
+        const double r[3] = { s->x[0] / s->mu, s->x[1], s->x[2] };
+        double in[3] = { 0 };
+        for (int k = 0; k < 3; k++) in[k] = r[k] * m->unit;
+        whole_store(d, in, w->x + d * c);
+    }
+    whole_velocity(a, w->x, w->v);
+    for (int64_t c = 0; c < a->W.n; c++) {
+        struct side *s = &m->side[c];
+        double u[3];
+        whole_load(d, w->v + d * c, u);
+        for (int k = 0; k < 3; k++) u[k] /= m->unit;
+        double smooth = sqrt(u[1] * u[1] + u[2] * u[2] + m->gap * m->gap);
+        s->y[0] = u[0] / s->mu + (smooth - m->gap), s->y[1] = u[1], s->y[2] = u[2];
+        s->e[0] = smooth > 0 ? u[1] / smooth : 0, s->e[1] = smooth > 0 ? u[2] / smooth : 0;
+    }
+    return whole_natural(a, w->x, w->v);
+}
+
+/* The scaling at (x, z); false where one of them has come too near the border. */
+static bool scaling(struct side *s)
+{
+    double dx = det(s->x), dz = det(s->z);
+    if (!(dx > 0) || !(dz > 0)) return false;
+    double rx = 1 / sqrt(dx), rz = 1 / sqrt(dz);
+    double g = sqrt((1 + dot(s->x, s->z) * rx * rz) / 2);
+    double wb[3] = { (s->z[0] * rz + s->x[0] * rx) / (2 * g),
+                     (s->z[1] * rz - s->x[1] * rx) / (2 * g),
+                     (s->z[2] * rz - s->x[2] * rx) / (2 * g) };
+    double n = 1 / sqrt(2 * (wb[0] + 1));
+    s->v[0] = (wb[0] + 1) * n, s->v[1] = wb[1] * n, s->v[2] = wb[2] * n;
+    s->eta = sqrt(sqrt(dz / dx));
+    apply(s->v, s->eta, s->x, s->l);
+    return isfinite(s->eta);
+}
+
+/* The matrix with this t: L = I + t E, D = D T D, T = F F. */
+static void matrix(struct ipm *m, double t)
+{
+    struct newton *w = m->w;
+    for (int64_t c = 0; c < w->whole.W.n; c++) {
+        const struct side *s = &m->side[c];
+        const double L[9] = { 1, t * s->mu * s->e[0], t * s->mu * s->e[1], 0, 1, 0, 0, 0, 1 };
+        memcpy(w->L + 9 * c, L, sizeof L);
+        for (int j = 0; j < 3; j++) {
+            double unit[3] = { 0 }, f[3], T[3];
+            unit[j] = 1;
+            apply(s->v, s->eta, unit, f);
+            apply(s->v, s->eta, f, T);
+            for (int i = 0; i < 3; i++)
+                w->D[9 * c + 3 * i + j] = (i ? 1 : s->mu) * T[i] * (j ? 1 : s->mu);
+        }
+    }
+    whole_matrix(&w->whole, w->L, w->D);
+}
+
+/* dx and dz of all contacts for F dx + F^-1 dz = c and z + dz = y + dy; false: the matrix is singular */
+static bool direction(struct ipm *m, bool factorised)
+{
+    struct newton *w = m->w;
+    int d = w->whole.W.d;
+    for (int64_t c = 0; c < w->whole.W.n; c++) {
+        const struct side *s = &m->side[c];
+        double b[3];
+        apply(s->v, s->eta, s->c, b);
+        for (int i = 0; i < 3; i++) b[i] = (b[i] - (s->y[i] - s->z[i])) * (i ? 1 : s->mu);
+        whole_store(d, b, w->z + d * c);
+    }
+    if (factorised ? !lu_again(w->lu, w->z) : !lu_solve(w->lu, w->whole.a, w->z)) return false;
+    for (int64_t c = 0; c < w->whole.W.n; c++) {
+        struct side *s = &m->side[c];
+        double f[3];
+        whole_load(d, w->z + d * c, s->dx);
+        s->dx[0] *= s->mu;
+        apply(s->v, s->eta, s->dx, f);
+        for (int i = 0; i < 3; i++) f[i] = s->c[i] - f[i];
+        apply(s->v, s->eta, f, s->dz);
+        if (d == 2) s->dx[2] = s->dz[2] = 0;
+    }
+    return true;
+}
+
+static double longest(const struct ipm *m)
+{
+    double step = INFINITY;
+    for (int64_t c = 0; c < m->w->whole.W.n; c++) {
+        const struct side *s = &m->side[c];
+        step = fmin(step, fmin(to_border(s->x, s->dx), to_border(s->z, s->dz)));
+    }
+    return step;
+}
+
+/* Mehrotra's two directions with this t; returns the length of the step to be made, 0 for none. */
+static double predict_and_correct(struct ipm *m, double t)
+{
+    int64_t n = m->w->whole.W.n;
+    matrix(m, t);
+    for (int64_t c = 0; c < n; c++)
+        for (int k = 0; k < 3; k++) m->side[c].c[k] = -m->side[c].l[k];
+    if (!direction(m, false)) return 0;
+    double a = fmin(1, longest(m)), gap = 0;
+    for (int64_t c = 0; c < n; c++) {
+        const struct side *s = &m->side[c];
+        for (int k = 0; k < 3; k++) gap += (s->x[k] + a * s->dx[k]) * (s->z[k] + a * s->dz[k]);
+    }
+    double sigma = fmin(1, fmax(0, gap / (double)n / m->gap));
+    sigma *= sigma * sigma;
+    for (int64_t c = 0; c < n; c++) {
+        struct side *s = &m->side[c];
+        double fx[3], fz[3], second[3], ll[3], want[3];
+        apply(s->v, s->eta, s->dx, fx);
+        apply_inverse(s->v, s->eta, s->dz, fz);
+        product(fx, fz, second), product(s->l, s->l, ll);
+        for (int k = 0; k < 3; k++) want[k] = (k ? 0 : sigma * m->gap) - ll[k] - second[k];
+        quotient(s->l, want, s->c);
+    }
+    return direction(m, true) ? fmin(1, INTERIOR * longest(m)) : 0;
+}
+
+static void move(struct ipm *m, double step)
+{
+    for (int64_t c = 0; c < m->w->whole.W.n; c++) {
+        struct side *s = &m->side[c];
+        for (int k = 0; k < 3; k++) s->x[k] += step * s->dx[k], s->z[k] += step * s->dz[k];
+    }
+}
+
+/* Where it starts: the rows' reactions and what they make, moved into the cones. */
+static void start(struct ipm *m)
+{
+    struct newton *w = m->w;
+    struct whole *a = &w->whole;
+    int d = a->W.d;
+    double q2 = 0;
+    for (int32_t i = 0; i < a->size; i++) q2 += a->W.q[i] * a->W.q[i];
+    m->unit = q2 > 0 ? sqrt(q2 / (double)a->W.n) : 1;
+    m->gap = 0;
+    for (int64_t c = 0; c < a->W.n; c++) {
+        struct side *s = &m->side[c];
+        s->mu = fmax(a->W.mu[c], MU_LEAST);
+        double r[3];
+        whole_load(d, w->x + d * c, r);
+        s->x[0] = s->mu * r[0] / m->unit;
+        for (int k = 1; k < 3; k++) s->x[k] = r[k] / m->unit;
+    }
+    look(m);
+    for (int64_t c = 0; c < a->W.n; c++) {
+        memcpy(m->side[c].z, m->side[c].y, sizeof m->side[c].z);
+        centre(&m->side[c], GAP_START);
+    }
+}
+
+/* The reactions, back in their cones, into the rows */
+static void settle(struct ipm *m, struct solve *s)
+{
+    struct newton *w = m->w;
+    int d = w->whole.W.d;
+    for (int64_t c = 0; c < w->whole.W.n; c++) {
+        double r[3], p[3] = { 0 };
+        whole_load(d, w->x + d * c, r);
+        cone_project(w->whole.W.mu[c], r, p);
+        whole_store(d, p, w->x + d * c);
+    }
+    newton_put(w, s);
+}
+
+void ipm_free(struct ipm *m)
+{
+    if (m) free(m->side), free(m->best);
+    free(m);
+}
+
+struct ipm *ipm_new(struct newton *w, struct solve *s)
+{
+    struct ipm *m = calloc(1, sizeof *m);
+    if (!m) return NULL;
+    m->w = w;
+    m->side = calloc((size_t)w->whole.W.n + 1, sizeof *m->side);
+    m->best = malloc(((size_t)w->whole.size + 1) * sizeof *m->best);
+    if (!m->side || !m->best) return ipm_free(m), NULL;
+    newton_get(w, s);
+    start(m);
+    return m;
+}
+
+static double mean_gap(const struct ipm *m)
+{
+    double gap = 0;
+    for (int64_t c = 0; c < m->w->whole.W.n; c++) gap += dot(m->side[c].x, m->side[c].z);
+    return gap / (double)m->w->whole.W.n;
+}
+
+/*
+ * One step; false where there is none. The t that served last comes first: where the path has folded
+ * it does so for a while.
+ */
+static bool ipm_step(struct ipm *m, struct report *rep)
+{
+    static const double ts[] = { 1, 0.7, 0.3 };
+    double step = 0, longest_step = 0;
+    int at = m->fold;
+    for (int i = m->fold; i < 3 && step < 0.1; i++) {
+        step = predict_and_correct(m, ts[i]);
+        rep->newton++;
+        if (step > longest_step) longest_step = step, at = i;
+    }
+    if (step < longest_step) step = predict_and_correct(m, ts[at]), rep->newton++;
+    m->fold = at > 0 && step > 0.3 ? at - 1 : at;
+    m->stuck = step < 1e-3 ? m->stuck + 1 : 0;
+    if (step > 0) move(m, step);
+    return m->stuck < SHORT_STEPS;
+}
+
+bool ipm_approach(struct ipm *m, struct solve *s, double natural, int steps)
+{
+    struct newton *w = m->w;
+    double least = INFINITY;
+    bool more = true;
+    for (int k = 0; more && k < steps; k++) {
+        m->gap = mean_gap(m);
+        double e = look(m);
+        if (e < least) least = e, memcpy(m->best, w->x, (size_t)w->whole.size * sizeof *w->x);
+        if (s->o->progress) s->o->progress(s->rep->sweeps, e);
+        if (e <= natural || !isfinite(e) || solve_spent(s)) break;
+        for (int64_t c = 0; more && c < w->whole.W.n; c++) more = scaling(&m->side[c]);
+        more = more && ipm_step(m, s->rep);
+    }
+    if (least < INFINITY) {
+        memcpy(w->x, m->best, (size_t)w->whole.size * sizeof *w->x);
+        settle(m, s);
+    }
+    return least <= natural;
+}

@@ -1,0 +1,68 @@
+/*
+ * mixing.h: the inner loops of Anderson's acceleration (anderson.c), one text for every width.
+ *
+ * A vector is [bundles][d][8]: the components of the reactions as the rows have them, N s. Where
+ * reactions of different contacts meet in a sum they are weighed by lambda_max(W~_cc), so that a sum
+ * of squares is an energy whatever the masses.
+ */
+#ifndef NSD_MIXING_H
+#define NSD_MIXING_H
+
+#include "problem.h"
+
+enum { MEMORY = 5 };
+
+struct mixing {
+    double *x, *g, *f;               /* where the sweeps began, where they ended, f = g - x */
+    double *dg[MEMORY], *df[MEMORY]; /* what these were more than the time before */
+};
+
+/* In eight slots each, lane k of every bundle in slot k */
+struct mixing_sums {
+    double f2[BUNDLE], ff[MEMORY][BUNDLE], fd[MEMORY][BUNDLE];
+};
+
+/* a.b of LANES contacts, weighed, into s */
+ALWAYS_INLINE void mixing_add(vd *s, vd a, const double *b)
+{
+    *s += a * vload(b);
+}
+
+/* Bundles first .. end-1: g, f, dg[slot], df[slot]; adds f.f, df[slot].df[], f.df[] to the sums. */
+ALWAYS_INLINE void mixing_measure_text(const struct problem *p, const struct mixing *m, int slot,
+                                       int64_t first, int64_t end, struct mixing_sums *t)
+{
+    for (int k = 0; k < BUNDLE; k += LANES) {
+        vd f2 = vload(t->f2 + k), ff[MEMORY], fd[MEMORY];
+        for (int j = 0; j < MEMORY; j++) ff[j] = vload(t->ff[j] + k), fd[j] = vload(t->fd[j] + k);
+        for (int64_t i = first; i < end; i++) {
+            const struct bundle *c = &p->bundle[i];
+            vd lambda = bundle_lambda(c, k);
+            for (int l = 0; l < p->d; l++) {
+                int64_t at = (i * p->d + l) * BUNDLE + k;
+                vd g = vload(c->r[l] + k), f = g - vload(m->x + at), df = f - vload(m->f + at);
+                vstore(m->dg[slot] + at, g - vload(m->g + at)), vstore(m->df[slot] + at, df);
+                vstore(m->g + at, g), vstore(m->f + at, f);
+                vd wf = lambda * f, wdf = lambda * df;
+                f2 += wf * f;
+                for (int j = 0; j < MEMORY; j++)
+                    mixing_add(&ff[j], wdf, m->df[j] + at), mixing_add(&fd[j], wf, m->df[j] + at);
+            }
+        }
+        vstore(t->f2 + k, f2);
+        for (int j = 0; j < MEMORY; j++) vstore(t->ff[j] + k, ff[j]), vstore(t->fd[j] + k, fd[j]);
+    }
+}
+
+/* x = g + leap f - sum_j gamma_j dg_j of lanes k.. of bundle i: d components of it */
+ALWAYS_INLINE void mixing_point(const struct problem *p, const struct mixing *m, double leap,
+                                const double gamma[MEMORY], int64_t i, int k, vd x[3])
+{
+    for (int l = 0; l < p->d; l++) {
+        int64_t at = (i * p->d + l) * BUNDLE + k;
+        x[l] = vload(m->g + at) + leap * vload(m->f + at);
+        for (int j = 0; j < MEMORY; j++) x[l] -= gamma[j] * vload(m->dg[j] + at);
+    }
+}
+
+#endif
