@@ -43,16 +43,18 @@ nsd-gen --dim \[3\]
 nsd-detect --gap \[0\]
 nsd-detect --theta 0\.5\]
 nsd-detect --fclib local|global
-nsd-solve --method sbp|sal|ebp|eal|exact.*\[exact\]
+nsd-solve --method auto|sbp|sal|ebp|eal|exact.*\[auto\]
+nsd-solve --global auto|nlgs|anderson|cg|prox|ipm.*\[nlgs with -m
+nsd-solve --max-seconds .
 nsd-solve --eps \[1e-10\]
 nsd-solve --criterion glob|scaled|natural.*\[glob; natural for FCLIB\]
-nsd-solve --max-sweeps \[5000\]
+nsd-solve --max-sweeps \[5000;
 nsd-solve --alpha \[1\.75
 nsd-solve --newton plain|linesearch.*\[linesearch\]
 nsd-solve --newton-eps \[1e-13\]
 nsd-solve --newton-max \[100\]
 nsd-solve --relax \[1\]
-nsd-solve --order \[natural\]
+nsd-solve --order \[natural for nlgs
 nsd-solve --theta \[
 nsd-solve --warm \[
 nsd-solve --history .
@@ -97,7 +99,7 @@ is "and the command before, and the one before that" \
 
 status 0 "a problem that converges: 0" nsd-solve -e "$tmp/contacts.h5"
 is "one line on stderr" "$(wc -l <"$tmp/err")" 1
-like "sums it up" "$(cat "$tmp/err")" '^nsd-solve: .*contacts.h5: [0-9]+ contacts, exact: [0-9]+ sweeps, eps_glob [0-9.e-]+, '
+like "sums it up" "$(cat "$tmp/err")" '^nsd-solve: .*contacts.h5: [0-9]+ contacts, auto: [0-9]+ sweeps, eps_glob [0-9.e-]+, '
 status 0 "one that does not: 0" nsd-solve --max-sweeps 1 "$tmp/contacts.h5"
 mv "$tmp/out" "$tmp/lenient.h5"
 like "with a warning" "$(cat "$tmp/err")" 'NOT CONVERGED'

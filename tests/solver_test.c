@@ -1,0 +1,171 @@
+/* The solvers of a whole problem end where Gauss-Seidel ends, and in the same bytes on any machine. */
+#include "detect.h"
+#include "gen.h"
+#include "step.h"
+#include "tap.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const struct solver *const tested[] = { &solver_anderson, &solver_cg };
+enum { TESTED = sizeof tested / sizeof *tested };
+
+static void must(int failed, struct why *why)
+{
+    if (!failed) return;
+    printf("Bail out! %s\n", why->text);
+    exit(1);
+}
+
+static struct step_opt options(const struct solver *global, double eps, int32_t sweeps)
+{
+    return (struct step_opt){ .order = ORDER_COLOUR,
+                              .solve = { .global = global,
+                                         .method = &local_exact,
+                                         .criterion = CRITERION_NATURAL,
+                                         .eps = eps,
+                                         .max_sweeps = sweeps,
+                                         .relax = 1,
+                                         .threads = 1,
+                                         .local = { .newton_eps = 1e-13, .newton_max = 100 } } };
+}
+
+/* The paper's balls some steps on, with their contacts */
+static void fallen(struct packing *p, struct contacts *s, int dim, int64_t n, double mu, double e,
+                   int steps)
+{
+    struct why why = { 0 };
+    struct scene scene;
+    struct report rep = { 0 };
+    struct step_opt o = options(&solver_nlgs, 1e-6, 200);
+    o.warm = true, o.solve.relax = 1.5;
+    must(scene_paper(&scene, dim, n, &why) || gen_packing(p, &scene, NULL, &why), &why);
+    scene_free(&scene);
+    for (int k = 0; k < p->kinds * p->kinds; k++) p->en[k] = e, p->et[k] = e / 2;
+    for (int k = 0; k < p->kinds * p->kinds && mu >= 0; k++) p->mu[k] = mu;
+    for (int k = 0; k < steps; k++) must(step_advance(p, s, NULL, &o, &rep, &why), &why);
+    must(detect_contacts(s, p, 0, NULL, &why), &why);
+    report_free(&rep);
+}
+
+/* The contacts solved, in a copy of their own */
+static struct contacts solve(const struct packing *p, const struct contacts *s,
+                             const struct step_opt *o, struct report *rep)
+{
+    struct why why = { 0 };
+    struct contacts c = { .n = s->n, .room = s->n, .solved = s->solved };
+    c.c = malloc((size_t)(s->n + 1) * sizeof *c.c);
+    if (s->n) memcpy(c.c, s->c, (size_t)s->n * sizeof *c.c);
+    must(step_solve(p, &c, o, rep, &why), &why);
+    return c;
+}
+
+/* The largest difference of velocities, over g dt */
+static double apart(const struct packing *p, const struct contacts *a, const struct contacts *b)
+{
+    double most = 0;
+    for (int64_t i = 0; i < a->n; i++)
+        for (int k = 0; k < 3; k++) most = fmax(most, fabs(a->c[i].u[k] - b->c[i].u[k]));
+    return most / (9.81 * p->dt);
+}
+
+static bool same(const struct contacts *a, const struct contacts *b)
+{
+    bool good = a->n == b->n;
+    for (int64_t i = 0; good && i < a->n; i++)
+        good = !memcmp(a->c[i].r, b->c[i].r, sizeof a->c[i].r) &&
+               !memcmp(a->c[i].u, b->c[i].u, sizeof a->c[i].u);
+    return good;
+}
+
+static void test_agreement(const struct packing *p, const struct contacts *s, const char *what)
+{
+    struct report rep = { 0 };
+    struct step_opt o = options(&solver_nlgs, 1e-12, 200000);
+    struct contacts by_sweeps = solve(p, s, &o, &rep);
+    double reached = rep.err.natural; // there are problems of few contacts on which it stalls
+    for (int k = 0; k < TESTED; k++) {
+        bool cg = tested[k] == &solver_cg;
+        o = options(tested[k], cg ? 1e-8 : 1e-10, 20000);
+        struct contacts c = solve(p, s, &o, &rep);
+        double u = apart(p, &c, &by_sweeps);
+        ok((rep.converged || rep.err.natural <= (cg ? 100 : 1.1) * reached) &&
+               u < (cg ? 1e-3 : 1e-6),
+           "%s, %s: the velocities are those of nlgs", what, tested[k]->name);
+        diag("%lld contacts, %d sweeps, natural %.1e, u %.1e g dt apart", (long long)s->n,
+             rep.sweeps, rep.err.natural, u);
+        contacts_free(&c);
+    }
+    contacts_free(&by_sweeps), report_free(&rep);
+}
+
+static void test_bytes(const struct packing *p, const struct contacts *s, const char *what)
+{
+    static const int lanes[] = { 2, 4, 8 };
+    struct report rep = { 0 };
+    for (int k = 0; k < TESTED; k++) {
+        struct step_opt o = options(tested[k], 1e-9, 300);
+        sweep_narrow(2);
+        struct contacts first = solve(p, s, &o, &rep);
+        bool good = true;
+        for (int way = 0; way < 9; way++) {
+            sweep_narrow(lanes[way % 3]);
+            o.solve.threads = 1 << way / 3;
+            struct contacts c = solve(p, s, &o, &rep);
+            good &= same(&first, &c);
+            contacts_free(&c);
+        }
+        ok(good, "%s, %s: the same bytes for 2, 4 and 8 lanes and 1, 2 and 4 threads", what,
+           tested[k]->name);
+        contacts_free(&first);
+    }
+    report_free(&rep);
+}
+
+/* What ends early leaves the best that was judged. */
+static void test_limits(const struct packing *p, const struct contacts *s, const char *what)
+{
+    struct report rep = { 0 };
+    for (int k = 0; k < TESTED; k++) {
+        double best = INFINITY, last = 0;
+        for (int32_t sweeps = 1; sweeps <= 512; sweeps *= 2) {
+            struct step_opt o = options(tested[k], 0, sweeps);
+            o.solve.every_sweep = true;
+            struct contacts c = solve(p, s, &o, &rep);
+            contacts_free(&c);
+            last = rep.err.natural;
+            if (!ok(rep.sweeps <= sweeps && last <= fmax(best * (1 + 1e-9), 1e-13),
+                    "%s, %s: %d sweeps, and none the worse for it", what, tested[k]->name, sweeps))
+                diag("%d sweeps, %.3g after %.3g", rep.sweeps, last, best);
+            best = last;
+        }
+    }
+    report_free(&rep);
+}
+
+int main(void)
+{
+    static const struct {
+        const char *name;
+        int dim;
+        int64_t n;
+        double mu, e;
+        int steps;
+    } scene[] = { { "no contact", 3, 4, -1, 0, 0 },
+                  { "one ball", 3, 1, -1, 0, 400 },
+                  { "4 balls that rebound", 3, 4, -1, 0.3, 700 },
+                  { "100 balls", 3, 100, -1, 0, 500 },
+                  { "100 balls without friction", 3, 100, 0, 0, 500 },
+                  { "100 discs", 2, 100, -1, 0, 500 },
+                  { "500 balls", 3, 500, -1, 0, 500 } };
+    for (size_t k = 0; k < sizeof scene / sizeof *scene; k++) {
+        struct packing p;
+        struct contacts s = { 0 };
+        fallen(&p, &s, scene[k].dim, scene[k].n, scene[k].mu, scene[k].e, scene[k].steps);
+        test_agreement(&p, &s, scene[k].name);
+        test_bytes(&p, &s, scene[k].name);
+        test_limits(&p, &s, scene[k].name);
+        contacts_free(&s), packing_free(&p);
+    }
+    return tap_done();
+}

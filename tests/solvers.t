@@ -1,0 +1,91 @@
+#!/bin/bash
+# The solvers of whole problems: real ones to the end, the criterion as nsd-err recomputes it, the same
+# bytes whatever the threads and the width, and an honest end where there is none.
+# shellcheck source=tests/tap.sh
+. tests/tap.sh
+
+solvers=(auto nlgs anderson cg prox ipm)
+
+# A settled heap, and what of it is to be solved
+nsd-gen 60 | nsd-step -m exact --relax 1.5 -n 900 --every 900 --eps 1e-8 2>/dev/null |
+    nsd-cat --last | nsd-detect --fclib=local >"$tmp/heap.h5"
+nsd-detect "$tmp/heap.h5" >"$tmp/contacts.h5"
+
+below() { jq -e --argjson most "$3" ".$2 <= \$most" <(nsd-err "$1") >/dev/null; }
+
+# ---- the paper's criterion, by bodies; W of the same packing ----
+
+nsd-solve -m exact --eps 1e-13 --max-sweeps 200000 "$tmp/contacts.h5" >"$tmp/truth.h5" 2>/dev/null
+velocities() { nsd-info --contacts "$1" | jq -r '.u | @tsv'; }
+for g in "${solvers[@]}"; do
+    eps=1e-12
+    [ "$g" != cg ] || eps=1e-9
+    status 0 "--global $g converges" nsd-solve -e --global "$g" --eps $eps --max-sweeps 100000 "$tmp/contacts.h5"
+    cp "$tmp/out" "$tmp/$g.h5"
+    ok "--global $g: the criterion, recomputed" below "$tmp/$g.h5" eps_glob "$eps"
+    nsd-solve --global "$g" --eps $eps --max-sweeps 100000 -j 4 "$tmp/contacts.h5" >"$tmp/four.h5" 2>/dev/null
+    ok "--global $g: the same bytes with four threads" cmp "$tmp/$g.h5" "$tmp/four.h5"
+    NSD_LANES=2 nsd-solve --global "$g" --eps $eps --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/two.h5" 2>/dev/null
+    ok "--global $g: and two lanes" cmp "$tmp/$g.h5" "$tmp/two.h5"
+done
+same() # two tables, to within the third number everywhere?
+{
+    paste "$1" "$2" | awk -v most="$3" '
+        { for (i = 1; i <= NF / 2; i++) { d = $i - $(i + NF / 2); if (d < 0) d = -d; if (d > worst) worst = d } }
+        END { exit worst > most }'
+}
+for g in auto anderson prox ipm; do
+    velocities "$tmp/truth.h5" >"$tmp/a"
+    velocities "$tmp/$g.h5" >"$tmp/b"
+    # there is more than one solution; the interior point method finds one in the middle
+    ok "--global $g: the velocities are Gauss-Seidel's" same "$tmp/a" "$tmp/b" "$([ $g = ipm ] && echo 1e-6 || echo 1e-8)"
+done
+
+# ---- real problems ----
+
+if [ -d "$problems" ]; then
+    tolerance=1e-12
+    [ -z "$quick" ] || tolerance=1e-8
+    for f in "$problems"/*.hdf5 "$problems"/global/*.hdf5; do
+        name=${f#"$problems/"}
+        [ -z "$quick" ] || [ "$(stat -c %s "$f")" -lt 300000 ] || continue
+        status 0 "$name: auto converges" nsd-solve -e --eps "$tolerance" "$f"
+        ok "$name: to $tolerance, recomputed" below "$tmp/out" natural "$tolerance"
+    done
+else
+    skip "problems of others" "no $problems"
+fi
+
+# ---- where there is no end ----
+
+hard=$tmp/heap.h5
+status 1 "-e and too few sweeps: status 1" nsd-solve -e --eps 0 --max-sweeps 7 "$hard"
+like "says NOT CONVERGED" "$(cat "$tmp/err")" "NOT CONVERGED"
+for g in "${solvers[@]}"; do
+    status 0 "--global $g, eps 0: ends" nsd-solve --global "$g" --eps 0 --max-seconds 0.5 "$tmp/contacts.h5"
+    ok "--global $g: what comes back is good all the same" below "$tmp/out" eps_glob 1e-6
+done
+status 0 "-m auto is --global auto" nsd-solve -m auto "$tmp/contacts.h5"
+cp "$tmp/out" "$tmp/a.h5"
+nsd-solve "$tmp/contacts.h5" >"$tmp/b.h5" 2>/dev/null
+ok "and the default" cmp <(nsd-info --contacts "$tmp/a.h5") <(nsd-info --contacts "$tmp/b.h5")
+like "the document says so" "$(nsd-info "$tmp/b.h5" | jq -r '.. | .global? // empty')" auto
+is "-m alone is Gauss-Seidel" "$(nsd-solve -m sbp "$tmp/contacts.h5" 2>/dev/null | nsd-info - |
+    jq -r '.. | .global? // empty')" nlgs
+
+status 0 "--max-seconds 0.001 is no error" nsd-solve --max-seconds 0.001 "$tmp/contacts.h5"
+refuses 64 "--max-seconds 0" nsd-solve --max-seconds 0 "$tmp/contacts.h5"
+refuses 64 "--global nothing" nsd-solve --global nothing "$tmp/contacts.h5"
+nsd-gen 0 | nsd-detect >"$tmp/none.h5"
+for g in "${solvers[@]}"; do
+    status 0 "--global $g of no contacts" nsd-solve -e --global "$g" "$tmp/none.h5"
+done
+for mu in 0 1e-9 2; do
+    jq ".mu = $mu | .bodies[0].count = 60" scenes/paper/example3.json | nsd-gen - |
+        nsd-step -m exact --relax 1.5 -n 700 --every 700 --eps 1e-6 2>/dev/null | nsd-cat --last |
+        nsd-detect >"$tmp/mu.h5"
+    for g in auto ipm prox; do
+        status 0 "--global $g, mu = $mu" nsd-solve -e --global "$g" --eps 1e-11 "$tmp/mu.h5"
+    done
+done
+done_testing
