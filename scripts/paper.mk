@@ -139,7 +139,7 @@ PNG  := $(foreach s,$(DIMS),$s-start $s-end)
 
 # The law: one-contact problems that nsd-solve solved, on the graphs.
 $(OUT)/data/%.tsv: $P/laws.jq | $(OUT)/data
-	@jq -n -f $P/laws.jq --arg law $* | nsd-gen - | nsd-detect --gap 1e-4 | nsd-solve 2> /dev/null | nsd-info --contacts | \
+	@jq -n -f $P/laws.jq --arg law $* | nsd-gen - | nsd-detect --gap 1e-4 | nsd-solve -m exact 2> /dev/null | nsd-info --contacts | \
 	    jq -r '[.u[], .r[]] | @tsv' > $@
 
 $(OUT)/figures/signorini.svg $(OUT)/figures/coulomb.svg $(OUT)/figures/coulombcone.svg: \
@@ -171,7 +171,7 @@ $(OUT)/figures/closed.svg: $(OUT)/tables/closed.tsv $P/closed.gp | $(OUT)/figure
 # The ball of example 1 every 20 ms: where it is and how far it has turned.
 $(OUT)/data/strobe.tsv: | $(OUT)/data
 	@{ nsd-gen scenes/paper/example1.json; \
-	   nsd-gen scenes/paper/example1.json | nsd-step -n 1200 --every 200 2> /dev/null; } | nsd-info --particles | \
+	   nsd-gen scenes/paper/example1.json | nsd-step -m exact -n 1200 --every 200 2> /dev/null; } | nsd-info --particles | \
 	    jq -r '[.x[0], .x[2], .radius, 2 * atan2(.q[2]; .q[0])] | @tsv' > $@
 
 $(OUT)/figures/strobe.svg: $(OUT)/data/strobe.tsv $P/strobe.gp | $(OUT)/figures
