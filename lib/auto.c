@@ -11,7 +11,8 @@
 #include <stdlib.h>
 
 enum {
-    CHUNK = 100,        /* sweeps between two looks, at least; else half of all so far */
+    CHUNK = 1000,       /* sweeps between two looks, at least; else half of all so far; */
+    CHUNK_W = 100,      /* with a given W, where a sweep is dear beside a factorisation */
     STEPS_TO_KNOW = 15, /* factorisations that sweeps must have cost before they are given up, */
     SURE = 3,           /* or so many times less where there is no end to them */
     STEPS_TO_END = 25,  /* factorisations that the end will take, or so */
@@ -60,16 +61,16 @@ static int run(struct solve *s)
     } older = { INFINITY, 0 };
     bool ready = false, tried = false;
     int failed = 0;
-    int32_t end = s->o->max_sweeps;
+    int32_t end = s->o->max_sweeps, least = s->p->W ? CHUNK_W : CHUNK;
     if (!sweeps) return nlgs_sweeps(s, end, s->o->relax > 0 ? s->o->relax : 1);
     while (!failed && rep->sweeps < end && !solve_met(s) && !solve_spent(s)) {
         double before = s->value;
-        int32_t chunk = rep->sweeps / 2 > CHUNK ? rep->sweeps / 2 : CHUNK;
+        int32_t chunk = rep->sweeps / 2 > least ? rep->sweeps / 2 : least;
         failed = anderson_sweeps(sweeps, chunk);
         if (failed || !isfinite(s->value)) break;
         double more = older.sweeps ? to_go(s, older.value, older.sweeps) : 0;
         older.value = before, older.sweeps = rep->sweeps - chunk;
-        if (tried || more < 3 * CHUNK) continue;
+        if (tried || more < 3 * least) continue;
         if (!ready && newton_init(&w, s->p)) { // too large for it
             tried = true;
             continue;
