@@ -19,7 +19,7 @@ struct side {
     double e[2];      /* u_t/|u_t|, smoothed */
     double v[3], eta; /* F = eta (2 v v' - J), F x = F^-1 z = l */
     double l[3];
-    double c[3]; /* F dz + F^-1 dx wanted, scaled */
+    double c[3]; /* what F dx + F^-1 dz is to be */
 };
 
 struct ipm {

@@ -1,11 +1,18 @@
-/* prox.c: the solvers that factorise, each alone: Newton within proximal steps, and interior point. */
+/* prox.c: the solvers that factorise, each alone: Newton within proximal steps, and interior point.
+   What is too large for factors gets sweeps. */
 #include "ipm.h"
+
+static double omega(const struct solve *s, double usual)
+{
+    return s->o->relax > 0 ? s->o->relax : usual;
+}
 
 static int prox(struct solve *s)
 {
     struct newton w;
-    if (nlgs_sweeps(s, 100, s->o->relax > 0 ? s->o->relax : 1)) return -1;
-    if (solve_met(s) || solve_spent(s) || newton_init(&w, s->p)) return 0;
+    if (nlgs_sweeps(s, 100, omega(s, 1))) return -1;
+    if (solve_met(s) || solve_spent(s)) return 0;
+    if (newton_init(&w, s->p)) return nlgs_sweeps(s, s->o->max_sweeps, omega(s, 1));
     newton_polish(&w, s, 1e-4, 200);
     newton_free(&w);
     return 0;
@@ -14,8 +21,9 @@ static int prox(struct solve *s)
 static int ipm(struct solve *s)
 {
     struct newton w;
-    if (nlgs_sweeps(s, 500, s->o->relax > 0 ? s->o->relax : 1.3)) return -1;
-    if (solve_met(s) || solve_spent(s) || newton_init(&w, s->p)) return 0;
+    if (nlgs_sweeps(s, 500, omega(s, 1.3))) return -1;
+    if (solve_met(s) || solve_spent(s)) return 0;
+    if (newton_init(&w, s->p)) return nlgs_sweeps(s, s->o->max_sweeps, omega(s, 1));
     struct ipm *m = ipm_new(&w, s);
     bool more = m != NULL;
     for (double near = IPM_NEAR; more && near > 1e-12 && !solve_met(s) && !solve_spent(s);
