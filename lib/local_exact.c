@@ -11,8 +11,8 @@
 /*
  * Candidates for d, all roots of g among them. In x = tan(angle/2) (1 + x^2)^2 g is a quartic with
  * g(pi) in front: the angle is counted from where the opposite |g| is the largest of eight, no root
- * is then far off. Durand and Kerner's iteration finds all four; real parts will do, for they are
- * polished. Where g = 0 everywhere any direction slides, and the eight are the candidates.
+ * is then far off. Durand and Kerner's iteration finds all four, roughly and in their real parts:
+ * they are polished. Where g = 0 everywhere any direction slides, and the eight are the candidates.
  */
 static int slide_roots(const struct slide *k, double root[8][2])
 {
@@ -38,13 +38,17 @@ static int slide_roots(const struct slide *k, double root[8][2])
                                    -2 * (Q21 + 2 * Q12) / c4, 2 * (Q11 - Q22 - p1) / c4 };
 
     double complex x[4] = { 1, 0.4 + 0.9 * I, -0.65 + 0.72 * I, -0.908 - 0.297 * I };
-    for (int step = 0; step < 60; step++)
+    for (double change = 1, step = 0; change > 1e-8 && step < 60; step++) {
+        change = 0;
         for (int i = 0; i < 4; i++) {
-            double complex y = (((x[i] + c[3]) * x[i] + c[2]) * x[i] + c[1]) * x[i] + c[0];
+            double complex y = (((x[i] + c[3]) * x[i] + c[2]) * x[i] + c[1]) * x[i] + c[0], w = 1;
             for (int j = 0; j < 4; j++)
-                if (j != i && x[j] != x[i]) y /= x[i] - x[j];
+                if (j != i && x[j] != x[i]) w *= x[i] - x[j];
+            y /= w;
             x[i] -= y;
+            change = fmax(change, cabs(y) / (1 + cabs(x[i])));
         }
+    }
     for (int i = 0; i < 4; i++) { // the angle 2 atan x from o
         double t = creal(x[i]), s = 1 / (1 + t * t), co = s * (1 - t * t), si = s * 2 * t;
         root[i][0] = isfinite(t) ? co * o[0] + si * m[0] : 1;
