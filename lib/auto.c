@@ -16,9 +16,7 @@ enum {
     STEPS_TO_KNOW = 15, /* factorisations that sweeps must have cost before they are given up, */
     SURE = 3,           /* or so many times less where there is no end to them */
     STEPS_TO_END = 25,  /* factorisations that the end will take, or so */
-    APPROACH = 80,      /* steps of the interior point method, and */
-    AGAIN = 12,         /* for each tenth of the way that turns out to be wanted */
-    LAST_RESORT = 20000 /* sweeps, when nothing else led there */
+    LAST_RESORT = 20000 /* sweeps at most, for what that cost, when nothing else led there */
 };
 
 #define AFFORD 3e10 /* ns: a factorisation dearer than this is not made */
@@ -33,18 +31,11 @@ static double to_go(const struct solve *s, double before, int32_t sweeps)
     return p > 0.1 ? s->rep->sweeps * (pow(s->value / s->o->eps, 1 / p) - 1) : INFINITY;
 }
 
-/* Newton and interior point in turns, each time nearer. */
+/* Newton, and where that is too far away the interior point method; what it left is Newton's again. */
 static void factorise(struct newton *w, struct solve *s)
 {
-    struct ipm *m = NULL;
     newton_polish(w, s, 1e-4, 2);
-    if (!solve_met(s) && !solve_spent(s)) m = ipm_new(w, s);
-    bool more = m != NULL;
-    for (int k = 0; more && k < 3 && !solve_met(s) && !solve_spent(s); k++) {
-        more = ipm_approach(m, s, k ? IPM_NEAR / pow(10, k) : IPM_NEAR, k ? AGAIN : APPROACH);
-        if (!solve_met(s)) newton_polish(w, s, 1e-7, 6);
-    }
-    ipm_free(m);
+    ipm_solve(w, s);
     if (solve_met(s) || solve_spent(s)) return;
     newton_back(w, s);
     newton_polish(w, s, 1e-4, 6);
@@ -83,7 +74,8 @@ static int run(struct solve *s)
             continue;
         factorise(&w, s);
         tried = true;
-        if (end - rep->sweeps > LAST_RESORT) end = rep->sweeps + LAST_RESORT;
+        double rest = fmin(fmax(rep->newton * w.cost / w.sweep_cost, rep->sweeps), LAST_RESORT);
+        if (end - rep->sweeps > rest) end = rep->sweeps + (int32_t)rest;
     }
     if (ready) {
         newton_back(&w, s);

@@ -4,11 +4,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define GAP_START 0.1  /* x.z that it starts from, of numbers of order 1: less, and it gets stuck */
-#define INTERIOR  0.99 /* of the way to the border */
-#define MU_LEAST  1e-4 /* a cone needs an inside */
+#define INTERIOR 0.99 /* of the way to the border */
+#define MU_LEAST 1e-4 /* a cone needs an inside */
+#define LONGER   0.3  /* by which a corrector is to lengthen the step, and */
+#define GAINED   0.03 /* what it has to, at least */
 
-enum { SHORT_STEPS = 4 }; /* in a row, and it is stuck */
+#define NEAR 2e-7 /* of the scaled natural map: from there on Newton sees the statuses */
+
+enum {
+    SHORT_STEPS = 4, /* in a row, and it is stuck */
+    CORRECTORS = 3,  /* a step */
+    ROUNDS = 3,      /* from a start, each ten times nearer; */
+    APPROACH = 80,   /* steps of the first, and */
+    AGAIN = 12       /* of the others */
+};
 
 /* One contact: x, z in K, and what the scaling needs of them; d numbers of each, the third 0 in the
    plane. */
@@ -19,7 +28,8 @@ struct side {
     double e[2];      /* u_t/|u_t|, smoothed */
     double v[3], eta; /* F = eta (2 v v' - J), F x = F^-1 z = l */
     double l[3];
-    double c[3]; /* what F dx + F^-1 dz is to be */
+    double c[3];      /* what F dx + F^-1 dz is to be */
+    double was[2][3]; /* dx and dz without the last corrector */
 };
 
 struct ipm {
@@ -167,7 +177,6 @@ static void matrix(struct ipm *m, double t)
                 w->D[9 * c + 3 * i + j] = (i ? 1 : s->mu) * T[i] * (j ? 1 : s->mu);
         }
     }
-    whole_matrix(&w->whole, w->L, w->D);
 }
 
 /* dx and dz of all contacts for F dx + F^-1 dz = c and z + dz = y + dy; false: the matrix is singular */
@@ -182,7 +191,8 @@ static bool direction(struct ipm *m, bool factorised)
         for (int i = 0; i < 3; i++) b[i] = (b[i] - (s->y[i] - s->z[i])) * (i ? 1 : s->mu);
         whole_store(d, b, w->z + d * c);
     }
-    if (factorised ? !lu_again(w->lu, w->z) : !lu_solve(w->lu, w->whole.a, w->z)) return false;
+    if (factorised ? !system_again(w->system, w->z) : !system_solve(w->system, w->L, w->D, w->z))
+        return false;
     for (int64_t c = 0; c < w->whole.W.n; c++) {
         struct side *s = &m->side[c];
         double f[3];
@@ -206,7 +216,53 @@ static double longest(const struct ipm *m)
     return step;
 }
 
-/* Mehrotra's two directions with this t; returns the length of the step to be made, 0 for none. */
+/*
+ * Gondzio's corrector: what x o z a little beyond the longest step would be, its eigenvalues brought to
+ * within a factor of 10 of the target, is asked for in c.
+ */
+static void recentre(struct side *s, double step, double target)
+{
+    double x[3], z[3], fx[3], fz[3], p[3], f[2], more[3];
+    for (int k = 0; k < 3; k++) x[k] = s->x[k] + step * s->dx[k], z[k] = s->z[k] + step * s->dz[k];
+    apply(s->v, s->eta, x, fx);
+    apply_inverse(s->v, s->eta, z, fz);
+    product(fx, fz, p);
+    double t = tangent(p);
+    for (int k = 0; k < 2; k++) {
+        double l = k ? p[0] - t : p[0] + t;
+        f[k] = fmax(fmin(fmax(l, target / 10), 10 * target) - l, -10 * target);
+    }
+    for (int k = 1; k < 3; k++) p[k] *= t > 0 ? (f[0] - f[1]) / 2 / t : 0;
+    p[0] = (f[0] + f[1]) / 2;
+    quotient(s->l, p, more);
+    for (int k = 0; k < 3; k++) s->c[k] += more[k];
+}
+
+/* Correctors for as long as they lengthen the step; a substitution each, and not a factorisation. */
+static double lengthen(struct ipm *m, double step, double target)
+{
+    int64_t n = m->w->whole.W.n;
+    for (int k = 0; k < CORRECTORS && INTERIOR * step < 0.95; k++) {
+        for (int64_t c = 0; c < n; c++) {
+            struct side *s = &m->side[c];
+            memcpy(s->was[0], s->dx, sizeof s->dx), memcpy(s->was[1], s->dz, sizeof s->dz);
+            recentre(s, fmin(1, INTERIOR * step + LONGER), target);
+        }
+        double before = step;
+        step = direction(m, true) ? longest(m) : 0;
+        if (step >= before + GAINED) continue;
+        if (step >= before) break;
+        for (int64_t c = 0; c < n; c++) {
+            struct side *s = &m->side[c];
+            memcpy(s->dx, s->was[0], sizeof s->dx), memcpy(s->dz, s->was[1], sizeof s->dz);
+        }
+        return before;
+    }
+    return step;
+}
+
+/* Mehrotra's two directions with this t, and correctors; returns the length of the step to be made, 0
+   for none. */
 static double predict_and_correct(struct ipm *m, double t)
 {
     int64_t n = m->w->whole.W.n;
@@ -219,18 +275,18 @@ static double predict_and_correct(struct ipm *m, double t)
         const struct side *s = &m->side[c];
         for (int k = 0; k < 3; k++) gap += (s->x[k] + a * s->dx[k]) * (s->z[k] + a * s->dz[k]);
     }
-    double sigma = fmin(1, fmax(0, gap / (double)n / m->gap));
-    sigma *= sigma * sigma;
+    double sigma = fmin(1, fmax(0, gap / (double)n / m->gap)),
+           target = sigma * sigma * sigma * m->gap;
     for (int64_t c = 0; c < n; c++) {
         struct side *s = &m->side[c];
         double fx[3], fz[3], second[3], ll[3], want[3];
         apply(s->v, s->eta, s->dx, fx);
         apply_inverse(s->v, s->eta, s->dz, fz);
         product(fx, fz, second), product(s->l, s->l, ll);
-        for (int k = 0; k < 3; k++) want[k] = (k ? 0 : sigma * m->gap) - ll[k] - second[k];
+        for (int k = 0; k < 3; k++) want[k] = (k ? 0 : target) - ll[k] - second[k];
         quotient(s->l, want, s->c);
     }
-    return direction(m, true) ? fmin(1, INTERIOR * longest(m)) : 0;
+    return direction(m, true) ? fmin(1, INTERIOR * lengthen(m, longest(m), target)) : 0;
 }
 
 static void move(struct ipm *m, double step)
@@ -241,8 +297,8 @@ static void move(struct ipm *m, double step)
     }
 }
 
-/* Where it starts: the rows' reactions and what they make, moved into the cones. */
-static void start(struct ipm *m)
+/* Where it starts: w's x and what it makes, moved into the cones. */
+static void start(struct ipm *m, double gap)
 {
     struct newton *w = m->w;
     struct whole *a = &w->whole;
@@ -262,7 +318,7 @@ static void start(struct ipm *m)
     look(m);
     for (int64_t c = 0; c < a->W.n; c++) {
         memcpy(m->side[c].z, m->side[c].y, sizeof m->side[c].z);
-        centre(&m->side[c], GAP_START);
+        centre(&m->side[c], gap);
     }
 }
 
@@ -280,23 +336,22 @@ static void settle(struct ipm *m, struct solve *s)
     newton_put(w, s);
 }
 
-void ipm_free(struct ipm *m)
+static void leave(struct ipm *m)
 {
-    if (m) free(m->side), free(m->best);
-    free(m);
+    free(m->side), free(m->best);
 }
 
-struct ipm *ipm_new(struct newton *w, struct solve *s)
+/* From the rows' reactions, or from none. */
+static bool begin(struct ipm *m, struct newton *w, struct solve *s, double gap, bool cold)
 {
-    struct ipm *m = calloc(1, sizeof *m);
-    if (!m) return NULL;
-    m->w = w;
+    *m = (struct ipm){ .w = w };
     m->side = calloc((size_t)w->whole.W.n + 1, sizeof *m->side);
     m->best = malloc(((size_t)w->whole.size + 1) * sizeof *m->best);
-    if (!m->side || !m->best) return ipm_free(m), NULL;
+    if (!m->side || !m->best) return leave(m), false;
     newton_get(w, s);
-    start(m);
-    return m;
+    if (cold) memset(w->x, 0, (size_t)w->whole.size * sizeof *w->x);
+    start(m, gap);
+    return true;
 }
 
 static double mean_gap(const struct ipm *m)
@@ -327,7 +382,11 @@ static bool ipm_step(struct ipm *m, struct report *rep)
     return m->stuck < SHORT_STEPS;
 }
 
-bool ipm_approach(struct ipm *m, struct solve *s, double natural, int steps)
+/*
+ * On to where the scaled natural map is at most `natural`; false where so many steps do not get it
+ * there. The best that it found is in the rows.
+ */
+static bool approach(struct ipm *m, struct solve *s, double natural, int steps)
 {
     struct newton *w = m->w;
     double least = INFINITY;
@@ -346,4 +405,25 @@ bool ipm_approach(struct ipm *m, struct solve *s, double natural, int steps)
         settle(m, s);
     }
     return least <= natural;
+}
+
+void ipm_solve(struct newton *w, struct solve *s)
+{
+    static const struct {
+        double gap;
+        bool cold;
+    } starts[] = { { 1e-3, false }, { 0.1, true } };
+    bool near = false;
+    for (int i = 0; i < 2 && !near && !solve_met(s) && !solve_spent(s); i++) {
+        struct ipm m;
+        newton_back(w, s);
+        if (!begin(&m, w, s, starts[i].gap, starts[i].cold)) return;
+        bool more = true;
+        for (int k = 0; more && k < ROUNDS && !solve_met(s) && !solve_spent(s); k++) {
+            more = approach(&m, s, NEAR / pow(10, k), k ? AGAIN : APPROACH);
+            near = near || more;
+            if (!solve_met(s)) newton_polish(w, s, 1e-7, 3);
+        }
+        leave(&m);
+    }
 }

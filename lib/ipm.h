@@ -19,18 +19,10 @@
 
 #include "newton.h"
 
-struct ipm;
-
-#define IPM_NEAR 2e-7 /* of the scaled natural map: from there on Newton sees the statuses */
-
-/* From the rows' reactions; NULL when memory is short. It uses w for its own while it runs. */
-struct ipm *ipm_new(struct newton *w, struct solve *);
-void ipm_free(struct ipm *);
-
 /*
- * On to where the scaled natural map is at most `natural`, within the reach of newton_polish(); false
- * where so many steps do not get it there. The best that it found is in the rows. May be called again for less.
+ * From the rows' reactions on to where newton_polish() ends; where that does not, from other starts.
+ * It uses w for its own. The best that it found is in the rows.
  */
-bool ipm_approach(struct ipm *, struct solve *, double natural, int steps);
+void ipm_solve(struct newton *w, struct solve *);
 
 #endif

@@ -1,7 +1,7 @@
 /*
- * lu.h: a sparse linear system solved by factorisation (SuiteSparse's KLU), for matrices of one
- * pattern one after another. The order of the unknowns is chosen once. Pivots are on the diagonal: what
- * is lost thereby is won back by refinement, or told by the residual.
+ * lu.h: sparse matrices of one pattern, one after another, factorised (SuiteSparse's KLU). The order
+ * of the unknowns is chosen once. Pivots are on the diagonal: what is lost thereby is the caller's to
+ * win back, by refinement.
  */
 #ifndef NSD_LU_H
 #define NSD_LU_H
@@ -21,9 +21,9 @@ void lu_free(struct lu *);
 /* The rough price of a factorisation, in multiplications. */
 double lu_cost(const struct lu *);
 
-/* x[n] := A^-1 x, A of entries a[]; false where that is not true to 1e-4. */
-bool lu_solve(struct lu *, double *a, double *x);
-/* The same with the A of the last lu_solve, factorised already. */
-bool lu_again(struct lu *, double *x);
+/* A, of entries a[], is factorised, or singular: false. */
+bool lu_factorise(struct lu *, double *a);
+/* x[n] := A^-1 x */
+bool lu_substitute(struct lu *, double *x);
 
 #endif

@@ -8,8 +8,8 @@ enum { INNER = 8 }; /* Newton steps of a careful proximal step */
 
 #define RHO       50.0 /* of the projection: large ones find the statuses, 1 does not */
 #define ALPHA_MIN 1e-9
-#define MEMORY    4e9   /* bytes that the factors may have */
-#define CONTACTS  30000 /* more are not even assembled */
+#define MEMORY    4e9    /* bytes that the factors may have */
+#define CONTACTS  100000 /* more are not even assembled */
 
 static double *numbers(int64_t n)
 {
@@ -18,7 +18,7 @@ static double *numbers(int64_t n)
 
 void newton_free(struct newton *w)
 {
-    lu_free(w->lu);
+    system_free(w->system);
     whole_free(&w->whole);
     free(w->x), free(w->v), free(w->z), free(w->L), free(w->D), free(w->best);
     free(w->from), free(w->start), free(w->trial), free(w->dx);
@@ -36,17 +36,17 @@ int newton_init(struct newton *w, const struct problem *p)
         w->from = numbers(size), w->start = numbers(size);
         w->trial = numbers(size), w->dx = numbers(size);
         w->L = numbers(9 * p->n), w->D = numbers(9 * p->n);
-        w->lu = lu_new(size, w->whole.first, w->whole.col, MEMORY);
+        w->system = system_new(&w->whole, MEMORY);
     }
     if (!good || !w->x || !w->v || !w->z || !w->best || !w->from || !w->start || !w->trial ||
-        !w->dx || !w->L || !w->D || !w->lu) {
+        !w->dx || !w->L || !w->D || !w->system) {
         newton_free(w);
         return -1;
     }
     // in ns: a sweep by bodies, or a block of W; a multiplication of the factors
     w->sweep_cost =
         p->W ? 30.0 * (double)p->n + 2.0 * (double)p->W->first[p->n] : 10.0 * (double)p->n;
-    w->cost = 2 * lu_cost(w->lu) + 15.0 * w->whole.first[size];
+    w->cost = 2 * system_cost(w->system);
     return 0;
 }
 
@@ -124,8 +124,7 @@ static bool newton_step(struct newton *w, struct report *rep, bool carefully)
     memcpy(w->from, w->x, size);
     double z = residual(w, w->x), start = z;
     for (int k = 0; k < (carefully ? INNER : 1); k++) {
-        whole_matrix(a, w->L, w->D);
-        if (!lu_solve(w->lu, a->a, w->z)) return false;
+        if (!system_solve(w->system, w->L, w->D, w->z)) return false;
         rep->newton++;
         if (!carefully) {
             for (int32_t i = 0; i < a->size; i++) w->x[i] += w->z[i];

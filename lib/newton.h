@@ -13,13 +13,12 @@
 #ifndef NSD_NEWTON_H
 #define NSD_NEWTON_H
 
-#include "lu.h"
 #include "solver.h"
-#include "whole.h"
+#include "system.h"
 
 struct newton {
     struct whole whole;
-    struct lu *lu;
+    struct system *system;
     double alpha;         /* a, in multiples of the mean diagonal of W */
     int omega;            /* which over-relaxation its sweeps are at */
     double *x, *v, *z;    /* [n d]: the iterate, its velocity, a right-hand side */

@@ -24,14 +24,8 @@ static int ipm(struct solve *s)
     if (nlgs_sweeps(s, 500, omega(s, 1.3))) return -1;
     if (solve_met(s) || solve_spent(s)) return 0;
     if (newton_init(&w, s->p)) return nlgs_sweeps(s, s->o->max_sweeps, omega(s, 1));
-    struct ipm *m = ipm_new(&w, s);
-    bool more = m != NULL;
-    for (double near = IPM_NEAR; more && near > 1e-12 && !solve_met(s) && !solve_spent(s);
-         near /= 10) {
-        more = ipm_approach(m, s, near, 120);
-        if (!solve_met(s)) newton_polish(&w, s, 1e-7, 6);
-    }
-    ipm_free(m);
+    ipm_solve(&w, s);
+    newton_back(&w, s);
     newton_free(&w);
     return 0;
 }

@@ -68,33 +68,6 @@ static void scale(struct whole *w)
     w->mean = trace > 0 ? trace / w->size : 1;
 }
 
-/* The rows' columns: each block's, the diagonal among them, ascending. */
-static bool pattern(struct whole *w)
-{
-    const struct delassus *W = &w->W;
-    int d = W->d;
-    int64_t entries = (W->first[W->n] + W->n) * d * d, k = 0;
-    w->first = malloc((size_t)(w->size + 1) * sizeof *w->first);
-    w->col = malloc((size_t)(entries + 1) * sizeof *w->col);
-    w->a = malloc((size_t)(entries + 1) * sizeof *w->a);
-    if (!w->first || !w->col || !w->a) return false;
-    for (int64_t c = 0; c < W->n; c++)
-        for (int i = 0; i < d; i++) {
-            w->first[d * c + i] = (int32_t)k;
-            bool met = false;
-            for (int64_t e = W->first[c]; e <= W->first[c + 1]; e++) {
-                bool end = e == W->first[c + 1];
-                if (!met && (end || W->col[e] > c)) {
-                    for (int j = 0; j < d; j++) w->col[k++] = (int32_t)(d * c + j);
-                    met = true;
-                }
-                for (int j = 0; !end && j < d; j++) w->col[k++] = d * W->col[e] + j;
-            }
-        }
-    w->first[w->size] = (int32_t)k;
-    return true;
-}
-
 int whole_init(struct whole *w, const struct problem *p, struct why *why)
 {
     *w = (struct whole){ 0 };
@@ -106,15 +79,16 @@ int whole_init(struct whole *w, const struct problem *p, struct why *why)
         return why_set(why, EX_DATAERR, "too many blocks");
     w->size = (int32_t)(W->n * W->d);
     w->s = malloc((size_t)(W->n + 1) * sizeof *w->s);
-    if (!w->s) return why_set(why, EX_SOFTWARE, "out of memory");
+    w->zero = calloc((size_t)w->size + 4, sizeof *w->zero);
+    if (!w->s || !w->zero) return why_set(why, EX_SOFTWARE, "out of memory");
     scale(w);
-    return pattern(w) ? 0 : why_set(why, EX_SOFTWARE, "out of memory");
+    return 0;
 }
 
 void whole_free(struct whole *w)
 {
     delassus_free(&w->W);
-    free(w->s), free(w->first), free(w->col), free(w->a);
+    free(w->s), free(w->zero);
     *w = (struct whole){ 0 };
 }
 
@@ -142,19 +116,29 @@ void whole_put(const struct whole *w, struct problem *p, const double *x)
     sweep_widest()->velocities(p, 0, p->bundles);
 }
 
-void whole_velocity(struct whole *w, const double *x, double *v)
+/* v = W x + q */
+static void multiply(struct delassus W, const double *x, double *q, double *v)
 {
-    struct delassus *W = &w->W;
-    int d = W->d;
-    memcpy(W->r, x, (size_t)w->size * sizeof *x);
-    for (int64_t c = 0; c < W->n; c++) {
+    int d = W.d;
+    W.r = (double *)x, W.q = q;
+    for (int64_t c = 0; c < W.n; c++) {
         double b[4];
-        delassus_gather(W, c, b);
+        delassus_gather(&W, c, b);
         for (int i = 0; i < d; i++) {
             v[d * c + i] = b[i];
-            for (int j = 0; j < d; j++) v[d * c + i] += W->diag[9 * c + 3 * i + j] * x[d * c + j];
+            for (int j = 0; j < d; j++) v[d * c + i] += W.diag[9 * c + 3 * i + j] * x[d * c + j];
         }
     }
+}
+
+void whole_velocity(const struct whole *w, const double *x, double *v)
+{
+    multiply(w->W, x, w->W.q, v);
+}
+
+void whole_product(const struct whole *w, const double *x, double *v)
+{
+    multiply(w->W, x, w->zero, v);
 }
 
 double whole_natural(const struct whole *w, const double *x, const double *v)
@@ -169,32 +153,4 @@ double whole_natural(const struct whole *w, const double *x, const double *v)
         for (int k = 0; k < 3; k++) off += (r[k] - p[k]) * (r[k] - p[k]), size += r[k] * r[k];
     }
     return size > 0 ? sqrt(off / size) : off > 0 ? 1 : 0;
-}
-
-void whole_matrix(struct whole *w, const double *L, const double *D)
-{
-    const struct delassus *W = &w->W;
-    int d = W->d;
-    for (int64_t c = 0; c < W->n; c++)
-        for (int i = 0; i < d; i++) {
-            const double *l = L + 9 * c + 3 * i;
-            double *a = w->a + w->first[d * c + i];
-            bool met = false;
-            for (int64_t e = W->first[c]; e <= W->first[c + 1]; e++) {
-                bool end = e == W->first[c + 1];
-                if (!met && (end || W->col[e] > c)) {
-                    for (int j = 0; j < d; j++) {
-                        *a = D[9 * c + 3 * i + j];
-                        for (int k = 0; k < d; k++) *a += l[k] * W->diag[9 * c + 3 * k + j];
-                        a++;
-                    }
-                    met = true;
-                }
-                const double *B = W->block + d * d * e;
-                for (int j = 0; !end && j < d; j++, a++) {
-                    *a = 0;
-                    for (int k = 0; k < d; k++) *a += l[k] * B[k + d * j];
-                }
-            }
-        }
 }

@@ -15,11 +15,9 @@
 struct whole {
     struct delassus W; /* scaled: blocks, diagonal, q */
     double *s;         /* [n] sqrt(kg) */
+    double *zero;      /* [size] */
     double mean;       /* of the diagonal of W */
     int32_t size;      /* n d */
-    /* the pattern of W, by rows */
-    int32_t *first, *col; /* [size + 1], [entries] */
-    double *a;            /* [entries] room for a matrix of that pattern */
 };
 
 /* Returns 0 or EX_SOFTWARE; where it is too large for 32-bit indices, EX_DATAERR. */
@@ -30,17 +28,12 @@ void whole_get(const struct whole *, const struct problem *, double *x);
 /* x into the rows, with the bodies and u that belong to it */
 void whole_put(const struct whole *, struct problem *, const double *x);
 
-/* v = W x + q */
-void whole_velocity(struct whole *, const double *x, double *v);
+/* v = W x + q, and v = W x */
+void whole_velocity(const struct whole *, const double *x, double *v);
+void whole_product(const struct whole *, const double *x, double *v);
 
 /* |x - P(x - v^)| / |x|, v^ = v + mu |v_t| n, v = W x + q: the natural map's, scaled */
 double whole_natural(const struct whole *, const double *x, const double *v);
-
-/*
- * a = the matrix of rows  L_c W + D_c  for each contact, L and D [n][9] row-major 3 x 3 of which
- * d x d is read.
- */
-void whole_matrix(struct whole *, const double *L, const double *D);
 
 /* Component-wise copies between d and 3 numbers */
 static inline void whole_load(int d, const double *x, double out[3])
