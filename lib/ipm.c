@@ -379,7 +379,7 @@ static bool ipm_step(struct ipm *m, struct report *rep)
     m->fold = at > 0 && step > 0.3 ? at - 1 : at;
     m->stuck = step < 1e-3 ? m->stuck + 1 : 0;
     if (step > 0) move(m, step);
-    return m->stuck < SHORT_STEPS;
+    return step > 0 && m->stuck < SHORT_STEPS;
 }
 
 /*
