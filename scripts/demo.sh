@@ -8,7 +8,7 @@ steps=1000
 
 echo "500 balls, $steps steps of 5e-5 s (nsd-gen 500 | nsd-step ...)"
 nsd-gen 500 > "$dir/start.h5"
-nsd-step -m exact -n "$steps" --warm --relax 1.4 --eps 1e-8 -o "$dir/out.h5" "$dir/start.h5"
+nsd-step -n "$steps" --eps 1e-8 -o "$dir/out.h5" "$dir/start.h5"
 
 view=(nsd-view --size 560x1300 '--box=-0.0032,0.0032,-0.0032,0.0032,0,0.0155')
 "${view[@]}" "$dir/start.h5" > "$dir/start.png"
