@@ -122,7 +122,6 @@ static void by_contacts(const struct system *s, const struct face *f, const doub
     }
 }
 
-/* A view of matrices as GSL has them */
 static gsl_matrix_view view(double *a, int rows, int columns)
 {
     return gsl_matrix_view_array(a, (size_t)rows, (size_t)columns);
@@ -175,17 +174,16 @@ static bool align(struct system *s, const struct face *f, const struct reduced *
     int rank = f->rank, sign;
     size_t order[3 * FACE_MOST];
     gsl_permutation P = { (size_t)rank, order };
-    gsl_matrix_view sum = view(s->t, rank, rank), F = view(q->inverse, rank, rank),
-                    old = view(s->t, rank, rank);
+    gsl_matrix_view t = view(s->t, rank, rank), F = view(q->inverse, rank, rank);
     for (int i = 0; i < rank * rank; i++) s->t[i] = l[i] + d[i];
-    gsl_linalg_LU_decomp(&sum.matrix, &P, &sign);
+    gsl_linalg_LU_decomp(&t.matrix, &P, &sign);
     for (int i = 0; i < rank; i++)
         if (s->t[i * rank + i] == 0) return false;
-    gsl_linalg_LU_invert(&sum.matrix, &P, &F.matrix);
+    gsl_linalg_LU_invert(&t.matrix, &P, &F.matrix);
     for (int k = 0; k < 2; k++) {
         gsl_matrix_view A = view(k ? d : l, rank, rank);
-        gsl_matrix_memcpy(&old.matrix, &A.matrix);
-        gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, &F.matrix, &old.matrix, 0, &A.matrix);
+        gsl_matrix_memcpy(&t.matrix, &A.matrix);
+        gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, &F.matrix, &t.matrix, 0, &A.matrix);
     }
     return true;
 }

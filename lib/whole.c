@@ -116,7 +116,7 @@ void whole_put(const struct whole *w, struct problem *p, const double *x)
     sweep_widest()->velocities(p, 0, p->bundles);
 }
 
-/* v = W x + q */
+/* v = W x + q; W by value, for its r and q are not its own here */
 static void multiply(struct delassus W, const double *x, double *q, double *v)
 {
     int d = W.d;
