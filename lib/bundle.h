@@ -22,7 +22,8 @@ struct bundle {
         double W[9][BUNDLE]; /* kg^-1: W_cc of a problem that is given by W */
     };
     double la[BUNDLE], lb[BUNDLE]; /* m: centre of a to the point along n, the point to that of b */
-    double w[2][BUNDLE]; /* kg^-1: W~_cc, normal and tangential; of a W both are lambda_max(W_cc) */
+    double w[2]
+            [BUNDLE]; /* kg^-1: W~_cc, normal and tangential; where it is full, lambda_max twice */
     double iw[2][BUNDLE];           /* kg: 1/w */
     double mu[BUNDLE], rho[BUNDLE]; /* -, kg */
     double r[3][BUNDLE];            /* N s */

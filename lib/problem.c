@@ -3,6 +3,7 @@
 #include "schedule.h"
 
 #include <assert.h>
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -181,6 +182,15 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     return 0;
 }
 
+/* Whether D[9] is diag(w_n, w_t, w_t) to rounding, as between balls. */
+static bool like_balls(const double D[9])
+{
+    double noise = 16 * DBL_EPSILON * fmin(D[0], D[4]), most = fabs(D[8] - D[4]);
+    for (int i = 0; i < 9; i++)
+        if (i % 4 > 0) most = fmax(most, fabs(D[i]));
+    return most < noise;
+}
+
 int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha, double factor,
                              enum order order, struct why *why)
 {
@@ -189,6 +199,7 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
     bool room = !schedule_blocks(&plan, order, W) && lay_out(p, &plan);
     schedule_free(&plan);
     if (!room) return no_memory(p, why);
+    for (int64_t c = 0; c < W->n; c++) p->full = p->full || !like_balls(W->diag + 9 * c);
     double trace = 0;
     for (int64_t i = 0; i < p->rows; i++) {
         int64_t c = p->contact[i];
@@ -200,7 +211,10 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
         const double *D = W->diag + 9 * c, *q = W->q + W->d * c;
         double lambda = local_lambda_max(D);
         r->mu[k] = W->mu[c];
-        r->w[0][k] = r->w[1][k] = lambda;
+        for (int j = 0; j < 2; j++) {
+            r->w[j][k] = p->full ? lambda : D[4 * j];
+            r->iw[j][k] = 1 / r->w[j][k];
+        }
         r->rho[k] = lambda <= 0 ? 1 : alpha > 0 && D[0] > 0 ? alpha / D[0] : factor / lambda;
         for (int j = 0; j < W->d; j++) {
             r->r[j][k] = W->r[W->d * c + j];

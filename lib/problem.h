@@ -34,6 +34,7 @@ struct problem {
     int64_t *group;          /* [groups + 1] bundles group[g] .. group[g+1]-1 may be done at once */
     struct body *body;       /* [bodies, then copies of what does not move]; NULL: given by W */
     struct delassus *W;      /* borrowed; NULL: given by bodies */
+    bool full;               /* some W_cc is more than diag(w_n, w_t, w_t); never given by bodies */
     double dt;               /* s: the paper's forces are r / dt; 1 where there are no steps */
     double scale_v;          /* m/s and */
     double scale_r;          /* N s: what the scaled errors are measured in: g dt and m g dt */

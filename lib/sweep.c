@@ -67,15 +67,15 @@ ALWAYS_INLINE void begin(const struct problem *p, const struct bundle *c, int k,
 }
 
 /* The local problem; W[9] is room for what l->W shows. */
-ALWAYS_INLINE void pose(const struct problem *p, const struct bundle *c, int k, bool given_by_W,
+ALWAYS_INLINE void pose(const struct problem *p, const struct bundle *c, int k, bool full,
                         const struct seat *s, vd W[9], struct local *l)
 {
-    l->d = p->d, l->W = given_by_W ? W : NULL;
+    l->d = p->d, l->W = full ? W : NULL;
     l->mu = vload(c->mu + k), l->rho = vload(c->rho + k);
-    for (int i = 0; i < 9 && given_by_W; i++) W[i] = vload(c->W[i] + k);
+    for (int i = 0; i < 9 && full; i++) W[i] = vload(c->W[i] + k);
     for (int i = 0; i < 3; i++) {
-        l->w[i] = given_by_W ? W[4 * i] : vload(c->w[i > 0] + k);
-        l->iw[i] = given_by_W ? splat(0) : vload(c->iw[i > 0] + k);
+        l->w[i] = full ? W[4 * i] : vload(c->w[i > 0] + k);
+        l->iw[i] = full ? splat(0) : vload(c->iw[i > 0] + k);
         l->r[i] = vload(c->r[i] + k), l->b[i] = s->b_c[i];
     }
 }
@@ -120,7 +120,7 @@ ALWAYS_INLINE void finish(struct problem *p, struct bundle *c, int k, bool given
  * quotients of these are on their way: that takes a quarter off the time.
  */
 ALWAYS_INLINE void visit(struct problem *p, int64_t first, int64_t end, const struct sweep_opt *o,
-                         method_text *solve, bool given_by_W, struct count *t)
+                         method_text *solve, bool given_by_W, bool full, struct count *t)
 {
     enum { PARTS = BUNDLE / LANES };
     struct seat s[2];
@@ -132,7 +132,7 @@ ALWAYS_INLINE void visit(struct problem *p, int64_t first, int64_t end, const st
         int64_t j = i + 1;
         struct bundle *c = &p->bundle[i / PARTS], *next = &p->bundle[j / PARTS];
         int k = LANES * (i % PARTS);
-        pose(p, c, k, given_by_W, &s[i % 2], W, &l);
+        pose(p, c, k, full, &s[i % 2], W, &l);
         solve(&l, &o->local);
         if (o->relax != 1) relax(&l, c, k, o->relax);
         if (j < last) begin(p, next, LANES * (j % PARTS), given_by_W, &s[j % 2]);
@@ -142,13 +142,13 @@ ALWAYS_INLINE void visit(struct problem *p, int64_t first, int64_t end, const st
 
 /* One sweep: a thread's part of every group */
 ALWAYS_INLINE void sweep(struct problem *p, int me, int threads, const struct sweep_opt *o,
-                         method_text *solve, bool given_by_W, struct tally *t)
+                         method_text *solve, bool given_by_W, bool full, struct tally *t)
 {
     struct count c = { splat(0), splat(0), splat(0), splat(0) };
     for (int64_t g = 0; g < p->groups; g++) {
         int64_t first = p->group[g], n = p->group[g + 1] - first;
         int64_t from = first + n * me / threads, to = first + n * (me + 1) / threads;
-        visit(p, from, to, o, solve, given_by_W, &c);
+        visit(p, from, to, o, solve, given_by_W, full, &c);
         if (threads == 1) continue;
 #pragma omp barrier
     }
@@ -160,10 +160,12 @@ ALWAYS_INLINE void sweep(struct problem *p, int me, int threads, const struct sw
     static void sweep_##name(struct problem *p, int me, int threads, const struct sweep_opt *o,    \
                              struct tally *t)                                                      \
     {                                                                                              \
-        if (p->W)                                                                                  \
-            sweep(p, me, threads, o, name##_solve, true, t);                                       \
+        if (p->full)                                                                               \
+            sweep(p, me, threads, o, name##_solve, true, true, t);                                 \
+        else if (p->W)                                                                             \
+            sweep(p, me, threads, o, name##_solve, true, false, t);                                \
         else                                                                                       \
-            sweep(p, me, threads, o, name##_solve, false, t);                                      \
+            sweep(p, me, threads, o, name##_solve, false, false, t);                               \
     }
 EACH_METHOD(VISIT)
 

@@ -1,4 +1,9 @@
-/* The same bytes for every width and any number of threads, whatever the method, order and scene. */
+/*
+ * The same bytes for every width and any number of threads, whatever the method, order and scene; and
+ * the same reactions whether a problem is given by bodies, by its W, or by a W whose diagonal blocks
+ * are not those of balls.
+ */
+#include "assembly.h"
 #include "detect.h"
 #include "gen.h"
 #include "step.h"
@@ -98,6 +103,65 @@ static void compare(const struct packing *p, const struct contacts *s, const cha
     }
 }
 
+/* W of a packing's problem; noise, relative to W_nn, in the coupling of n and t1 of every W_cc */
+static struct delassus operator(const struct packing *pack, const struct contacts *s, double noise)
+{
+    struct why why = { 0 };
+    struct problem p;
+    struct assembly A;
+    struct stored S;
+    struct delassus W;
+    must(problem_prepare(&p, pack, s, 0, 1, ORDER_NATURAL, &why) || assembly_init(&A, &p, &why) ||
+             assembly_W(&A, &S, &why),
+         &why);
+    int32_t *row = malloc((size_t)S.p[S.m] * sizeof *row);
+    double *mu = malloc((size_t)s->n * sizeof *mu);
+    for (int32_t i = 0; i < S.m; i++)
+        for (int32_t k = S.p[i]; k < S.p[i + 1]; k++) row[k] = i;
+    for (int64_t c = 0; c < s->n; c++) mu[c] = s->c[c].mu;
+    must(delassus_init(&W, pack->dim, s->n, S.p[S.m], row, S.i, S.x, A.q, mu, &why), &why);
+    for (int64_t c = 0; c < s->n; c++)
+        for (int k = 1; k < 4; k += 2) W.diag[9 * c + k] += noise * W.diag[9 * c];
+    free(row), free(mu), stored_free(&S), assembly_free(&A), problem_free(&p);
+    return W;
+}
+
+/* The largest component by which the reactions differ, over the largest of W's */
+static double apart(const struct delassus *W, const double *r)
+{
+    double most = 0, far = 0;
+    for (int64_t i = 0; i < W->d * W->n; i++)
+        most = fmax(most, fabs(W->r[i])), far = fmax(far, fabs(W->r[i] - r[i]));
+    return far / most;
+}
+
+static void test_given(const struct packing *p, const struct contacts *s, const char *what)
+{
+    static const double noise[] = { 0, 1e-13 };
+    double *u = malloc((size_t)(3 * s->n) * sizeof *u), *r = malloc((size_t)(3 * s->n) * sizeof *r);
+    for (int m = 0; methods[m]; m++) {
+        struct step_opt o = options(m, 1);
+        struct print of_bodies = solve(p, s, &o);
+        for (int64_t i = 0; i < s->n; i++)
+            for (int k = 0; k < p->dim; k++) r[p->dim * i + k] = of_bodies.x[6 * i + k];
+        for (int k = 0; k < 2; k++) {
+            struct why why = { 0 };
+            struct report rep = { 0 };
+            struct problem shape;
+            struct delassus W = operator(p, s, noise[k]);
+            must(problem_prepare_delassus(&shape, &W, 0, 1, ORDER_NATURAL, &why), &why);
+            must(step_solve_delassus(&W, u, &o, &rep, &why), &why);
+            double far = apart(&W, r);
+            ok(shape.full == (k == 1) && far < 1e-9,
+               "%s, %s: the reactions of %s W are those of the bodies: %.1e", what,
+               methods[m]->name, k ? "a full" : "the", far);
+            problem_free(&shape), delassus_free(&W), report_free(&rep);
+        }
+        free(of_bodies.x);
+    }
+    free(u), free(r);
+}
+
 int main(void)
 {
     static const struct {
@@ -117,6 +181,7 @@ int main(void)
         fallen(&p, &s, scene[k].dim, scene[k].n, scene[k].e, scene[k].steps);
         diag("%s: %lld contacts", scene[k].name, (long long)s.n);
         compare(&p, &s, scene[k].name, true);
+        if (s.n > 0 && scene[k].e == 0) test_given(&p, &s, scene[k].name);
         contacts_free(&s), packing_free(&p);
     }
     // enough for threads, and for more blocks of colours than one: neighbours, as if they touched
