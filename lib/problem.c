@@ -6,15 +6,25 @@
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+
+enum { HUGE_PAGE = 2 << 20 }; /* bytes */
 
 static_assert(sizeof(struct body) == 64, "a body is a cache line");
 static_assert(sizeof(struct bundle) % 64 == 0, "lanes begin a cache line");
 
-/* Zeroed memory on a cache line's border; not NULL for want of rows. */
+/*
+ * Zeroed memory on a cache line's border, in huge pages where it is large: a look at bodies here and
+ * there then does not wait for page tables. Not NULL for want of rows.
+ */
 static void *lines(int64_t n, size_t size)
 {
-    size_t bytes = ((size_t)(n > 0 ? n : 1) * size + 63) / 64 * 64;
-    void *p = aligned_alloc(64, bytes);
+    size_t bytes = (size_t)(n > 0 ? n : 1) * size, page = bytes < 2 * HUGE_PAGE ? 64 : HUGE_PAGE;
+    bytes = (bytes + page - 1) / page * page;
+    void *p = aligned_alloc(page, bytes);
+#ifdef MADV_HUGEPAGE
+    if (p && page == HUGE_PAGE) madvise(p, bytes, MADV_HUGEPAGE);
+#endif
     if (p) memset(p, 0, bytes);
     return p;
 }
@@ -58,26 +68,47 @@ static bool lay_out(struct problem *p, const struct schedule *plan)
     return true;
 }
 
+/*
+ * Where each body stands: by colours, in the order in which the sweep first meets them, or else as in
+ * the packing. NULL when memory is short.
+ */
+static int32_t *rows_of_bodies(const struct problem *p, const struct packing *pack,
+                               const struct contacts *s, enum order order)
+{
+    int32_t *row = malloc((size_t)(pack->n + 1) * sizeof *row), next = 0;
+    for (int64_t i = 0; row && i < pack->n; i++) row[i] = -1;
+    for (int64_t i = 0; row && order == ORDER_COLOUR && i < p->rows; i++) {
+        if (p->contact[i] < 0) continue;
+        const struct contact *c = &s->c[p->contact[i]];
+        if (c->a >= 0 && row[c->a] < 0) row[c->a] = next++;
+        if (row[c->b] < 0) row[c->b] = next++;
+    }
+    for (int64_t i = 0; row && i < pack->n; i++)
+        if (row[i] < 0) row[i] = next++;
+    return row;
+}
+
 /* The bodies with the velocities before the step. */
-static void movers(struct problem *p, const struct packing *pack)
+static void movers(struct problem *p, const struct packing *pack, const int32_t *row)
 {
     for (int64_t i = 0; i < pack->n; i++) {
         vec3 v = pack->v[i], w = pack->w[i];
-        p->body[i] = (struct body){ { v.x, v.y, v.z },
-                                    { w.x, w.y, w.z },
-                                    pack->mass[i] > 0 ? 1 / pack->mass[i] : 0,
-                                    pack->mass[i] > 0 ? 1 / pack->inertia[i] : 0 };
+        p->body[row[i]] = (struct body){ { v.x, v.y, v.z },
+                                         { w.x, w.y, w.z },
+                                         pack->mass[i] > 0 ? 1 / pack->mass[i] : 0,
+                                         pack->mass[i] > 0 ? 1 / pack->inertia[i] : 0 };
     }
 }
 
 /* Body i (wall w: -1-w) of a contact as a row of body[]: itself, or a copy when it does not move. */
-static int32_t seat(struct problem *p, const struct packing *pack, int32_t i, int64_t *next)
+static int32_t seat(struct problem *p, const struct packing *pack, const int32_t *row, int32_t i,
+                    int64_t *next)
 {
-    if (i >= 0 && pack->mass[i] > 0) return i;
+    if (i >= 0 && pack->mass[i] > 0) return row[i];
     struct body *copy = &p->body[*next];
     vec3 v = i < 0 ? pack->wall[-1 - i].v : pack->v[i];
     *copy = (struct body){ .v = { v.x, v.y, v.z } };
-    if (i >= 0) *copy = p->body[i];
+    if (i >= 0) *copy = p->body[row[i]];
     return (int32_t)(*next)++;
 }
 
@@ -147,8 +178,9 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     bool room = p->body && !schedule_bodies(&plan, order, s, pack) && lay_out(p, &plan);
     schedule_free(&plan);
     if (room && rebounds(s)) room = (p->rebound = lines(p->bundles, sizeof *p->rebound)) != NULL;
-    if (!room) return no_memory(p, why);
-    movers(p, pack);
+    int32_t *row = room ? rows_of_bodies(p, pack, s, order) : NULL;
+    if (!row) return no_memory(p, why);
+    movers(p, pack, row);
     int64_t nobody = pack->n, next = nobody + 1;
     for (int64_t i = 0; i < p->rows; i++) {
         struct bundle *r = row_bundle(p, i);
@@ -156,9 +188,10 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
         r->a[k] = r->b[k] = (int32_t)nobody;
         if (p->contact[i] < 0) continue;
         const struct contact *c = &s->c[p->contact[i]];
-        r->a[k] = seat(p, pack, c->a, &next), r->b[k] = seat(p, pack, c->b, &next);
+        r->a[k] = seat(p, pack, row, c->a, &next), r->b[k] = seat(p, pack, row, c->b, &next);
         row_init(p, i, pack, c, alpha, factor);
     }
+    free(row);
 
     double g = v3_norm(pack->g);
     p->scale_v = (g > 0 ? g : 9.81) * pack->dt;
