@@ -10,8 +10,8 @@
  *
  *     M v = H r + f,   D u~ = H^T v + w,   f = M v_free,
  *
- * are the velocities of the movable bodies that have a contact, in the problem's order: (vx, vy, vz, wx, wy,
- * wz), or (vx, vy, wz) in the plane.
+ * are the velocities of the movable bodies that have a contact, in the problem's order: (vx, vy, vz,
+ * wx, wy, wz), or (vx, vy, wz) in the plane.
  */
 #ifndef NSD_ASSEMBLY_H
 #define NSD_ASSEMBLY_H
