@@ -23,7 +23,7 @@ NSD_CFLAGS  := -std=gnu11 -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes 
                -ffp-contract=off -fno-math-errno -fopenmp -DNSD_VERSION='"$(VERSION)"' -Ilib $(PC) \
                $(if $(SAN),-fsanitize=address$(,)undefined -fno-sanitize-recover=undefined -O1)
 NSD_LDFLAGS := -fopenmp $(if $(SAN),-fsanitize=address$(,)undefined)
-NSD_LDLIBS  := $(PL) -lhdf5_hl -lklu -lm
+NSD_LDLIBS  := $(PL) -lhdf5_hl -lklu -lcholmod -lm
 
 # The sweep once a width; without contraction, and with instructions that the others know nothing of.
 WIDTHS    := 2 $(if $(filter x86_64,$(shell uname -m)),4 8)

@@ -2,10 +2,12 @@
 #include "lu.h"
 
 #include <stdlib.h>
+#include <suitesparse/cholmod.h>
 #include <suitesparse/klu.h>
 
 struct lu {
     int32_t n, *first, *col;
+    double entries, cost; /* of one factor, the other has as many; multiplications */
     klu_common common;
     klu_symbolic *order;
     klu_numeric *factors;
@@ -19,6 +21,39 @@ void lu_free(struct lu *lu)
     free(lu);
 }
 
+/*
+ * An order of the unknowns that makes little fill: the better of AMD and of nested dissection, which
+ * saves a third of the work and more where contacts fill space.
+ */
+static klu_symbolic *analyse(struct lu *lu)
+{
+    cholmod_common c;
+    cholmod_start(&c);
+    c.print = 0;
+    c.nmethods = 2;
+    c.method[0].ordering = CHOLMOD_AMD, c.method[1].ordering = CHOLMOD_NESDIS;
+    size_t n = (size_t)lu->n;
+    cholmod_sparse A = { .nrow = n,
+                         .ncol = n,
+                         .nzmax = (size_t)lu->first[n],
+                         .p = lu->first,
+                         .i = lu->col,
+                         .stype = -1,
+                         .itype = CHOLMOD_INT,
+                         .xtype = CHOLMOD_PATTERN,
+                         .packed = 1 };
+    cholmod_factor *L = cholmod_analyze(&A, &c);
+    klu_symbolic *order = NULL;
+    if (L) {
+        lu->entries = c.lnz, lu->cost = c.fl;
+        order = klu_analyze_given(lu->n, lu->first, lu->col, L->Perm, L->Perm, &lu->common);
+        if (order) order->Lnz[0] = order->lnz = order->unz = c.lnz;
+        cholmod_free_factor(&L, &c);
+    }
+    cholmod_finish(&c);
+    return order;
+}
+
 struct lu *lu_new(int32_t n, int32_t *first, int32_t *col, double bytes)
 {
     struct lu *lu = calloc(1, sizeof *lu);
@@ -27,17 +62,16 @@ struct lu *lu_new(int32_t n, int32_t *first, int32_t *col, double bytes)
     klu_defaults(&lu->common);
     lu->common.btf = 0; // one block: the pattern is a contact graph's
     lu->common.tol = 0; // pivots off the diagonal would fill without end
-    lu->order = klu_analyze(n, first, col, &lu->common);
+    lu->order = analyse(lu);
     // an entry of a factor has a number and an index; growing them copies them
-    if (lu->order && 24 * (lu->order->lnz + lu->order->unz) <= bytes) return lu;
+    if (lu->order && 48 * lu->entries <= bytes) return lu;
     lu_free(lu);
     return NULL;
 }
 
 double lu_cost(const struct lu *lu)
 {
-    // as if the fill were spread evenly over the columns
-    return lu->order->lnz * lu->order->unz / lu->n;
+    return lu->cost;
 }
 
 bool lu_factorise(struct lu *lu, double *a)

@@ -1,5 +1,5 @@
 /*
- * lu.h: sparse matrices of one pattern, one after another, factorised (SuiteSparse's KLU). The order
+ * lu.h: sparse matrices of one pattern, one after another, factorised (SuiteSparse's KLU, in an order of its CHOLMOD). The order
  * of the unknowns is chosen once. Pivots are on the diagonal: what is lost thereby is the caller's to
  * win back, by refinement.
  */

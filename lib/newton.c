@@ -46,7 +46,7 @@ int newton_init(struct newton *w, const struct problem *p)
     // in ns: a sweep by bodies, or a block of W; a multiplication of the factors
     w->sweep_cost =
         p->W ? 30.0 * (double)p->n + 2.0 * (double)p->W->first[p->n] : 10.0 * (double)p->n;
-    w->cost = 2 * system_cost(w->system);
+    w->cost = 1.5 * system_cost(w->system);
     return 0;
 }
 

@@ -104,7 +104,7 @@ struct system *system_new(const struct whole *w, double bytes)
 
 double system_cost(const struct system *s)
 {
-    return lu_cost(s->lu) + 7.0 * s->faces.first[s->faces.size];
+    return lu_cost(s->lu) + 14.0 * s->faces.first[s->faces.size];
 }
 
 /* out[rows][columns] = the face's blocks of B, L or D, times A */
