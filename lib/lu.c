@@ -23,7 +23,8 @@ void lu_free(struct lu *lu)
 
 /*
  * An order of the unknowns that makes little fill: the better of AMD and of nested dissection, which
- * saves a third of the work and more where contacts fill space.
+ * saves a third of the work and more where contacts fill space. It is sought for what is below the
+ * diagonal: the pattern above is the same but where a W is not symmetric, and there it serves as well.
  */
 static klu_symbolic *analyse(struct lu *lu)
 {

@@ -7,8 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* D u~ = W r + q of a packing, as an FCLIB file would have it */
-static int assemble(struct delassus *W, const struct problem *p, struct why *why)
+int whole_assemble(struct delassus *W, const struct problem *p, struct why *why)
 {
     struct assembly A = { 0 };
     struct stored S = { 0 };
@@ -72,7 +71,7 @@ int whole_init(struct whole *w, const struct problem *p, struct why *why)
 {
     *w = (struct whole){ 0 };
     if (p->n > INT32_MAX / 3) return why_set(why, EX_DATAERR, "too many contacts");
-    int e = p->W ? borrow(&w->W, p->W, why) : assemble(&w->W, p, why);
+    int e = p->W ? borrow(&w->W, p->W, why) : whole_assemble(&w->W, p, why);
     if (e) return e;
     struct delassus *W = &w->W;
     if ((W->first[W->n] + W->n) * W->d * W->d > INT32_MAX)

@@ -20,6 +20,10 @@ struct whole {
     int32_t size;      /* n d */
 };
 
+/* D u~ = W r + q of a packing, as an FCLIB file would have it, not scaled, r = 0. Returns 0, or
+   EX_SOFTWARE or EX_DATAERR with nothing to free. */
+int whole_assemble(struct delassus *, const struct problem *, struct why *);
+
 /* Returns 0 or EX_SOFTWARE; where it is too large for 32-bit indices, EX_DATAERR. */
 int whole_init(struct whole *, const struct problem *, struct why *);
 void whole_free(struct whole *);

@@ -3,11 +3,11 @@
  * the same reactions whether a problem is given by bodies, by its W, or by a W whose diagonal blocks
  * are not those of balls.
  */
-#include "assembly.h"
 #include "detect.h"
 #include "gen.h"
 #include "step.h"
 #include "tap.h"
+#include "whole.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -108,21 +108,12 @@ static struct delassus operator(const struct packing *pack, const struct contact
 {
     struct why why = { 0 };
     struct problem p;
-    struct assembly A;
-    struct stored S;
     struct delassus W;
-    must(problem_prepare(&p, pack, s, 0, 1, ORDER_NATURAL, &why) || assembly_init(&A, &p, &why) ||
-             assembly_W(&A, &S, &why),
+    must(problem_prepare(&p, pack, s, 0, 1, ORDER_NATURAL, &why) || whole_assemble(&W, &p, &why),
          &why);
-    int32_t *row = malloc((size_t)S.p[S.m] * sizeof *row);
-    double *mu = malloc((size_t)s->n * sizeof *mu);
-    for (int32_t i = 0; i < S.m; i++)
-        for (int32_t k = S.p[i]; k < S.p[i + 1]; k++) row[k] = i;
-    for (int64_t c = 0; c < s->n; c++) mu[c] = s->c[c].mu;
-    must(delassus_init(&W, pack->dim, s->n, S.p[S.m], row, S.i, S.x, A.q, mu, &why), &why);
     for (int64_t c = 0; c < s->n; c++)
         for (int k = 1; k < 4; k += 2) W.diag[9 * c + k] += noise * W.diag[9 * c];
-    free(row), free(mu), stored_free(&S), assembly_free(&A), problem_free(&p);
+    problem_free(&p);
     return W;
 }
 
