@@ -48,23 +48,32 @@ static double ratio(double a, double b)
     return b > 0 ? a / b : a > 0 ? 1 : 0;
 }
 
+/* The sums of one block */
+static void judge_block(const struct problem *p, bool believes, enum err_part part, int64_t block,
+                        struct sums *s)
+{
+    int64_t from = block * BLOCK, to = from + BLOCK;
+    *s = (struct sums){ 0 };
+    sweep_widest()->judge(p, from, to < p->bundles ? to : p->bundles, believes, part, s);
+}
+
 void err_eval(struct err *e, const struct problem *p, bool believes, enum err_part part,
               int threads)
 {
     *e = (struct err){ .contacts = p->n };
     if (!p->n) return;
-    const struct sweep *sweep = sweep_widest();
     int64_t blocks = (p->bundles + BLOCK - 1) / BLOCK;
     struct sums all = { 0 };
     // the partial sums of a stripe of blocks at a time, added in their order
     enum { STRIPE = 16 };
     for (int64_t first = 0; first < blocks; first += STRIPE) {
-        struct sums s[STRIPE] = { 0 };
+        struct sums s[STRIPE];
         int64_t n = blocks - first < STRIPE ? blocks - first : STRIPE;
-#pragma omp parallel for num_threads(threads) if (threads > 1 && n >= PARALLEL_FROM)
-        for (int64_t b = 0; b < n; b++) {
-            int64_t from = (first + b) * BLOCK, to = from + BLOCK;
-            sweep->judge(p, from, to < p->bundles ? to : p->bundles, believes, part, &s[b]);
+        if (threads == 1 || n < PARALLEL_FROM) { // no team: that costs
+            for (int64_t b = 0; b < n; b++) judge_block(p, believes, part, first + b, &s[b]);
+        } else {
+#pragma omp parallel for num_threads(threads)
+            for (int64_t b = 0; b < n; b++) judge_block(p, believes, part, first + b, &s[b]);
         }
         for (int64_t b = 0; b < n; b++) sums_add(&all, &s[b]);
     }

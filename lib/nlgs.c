@@ -26,27 +26,33 @@ static int64_t count(const double x[BUNDLE])
     return (int64_t)y;
 }
 
+static double add_tally(struct report *rep, const struct tally *t)
+{
+    rep->newton += count(t->newton);
+    rep->safeguarded += count(t->safeguarded), rep->gave_up += count(t->gave_up);
+    return most(t->change);
+}
+
 /* One sweep into the report; returns the largest change of a normal velocity, m/s. */
 static double sweep(struct solve *s, double omega)
 {
     const struct solve_opt *o = s->o;
-    struct report *rep = s->rep;
     sweep_text *text = sweep_widest()->sweep[o->method->id];
     const struct sweep_opt opt = { o->local, omega };
-    int threads = s->p->bundles < PARALLEL_FROM * s->p->groups ? 1 : o->threads;
     double change = 0;
-#pragma omp parallel num_threads(threads) if (threads > 1)
+    s->rep->sweeps++;
+    if (o->threads == 1 || s->p->bundles < PARALLEL_FROM * s->p->groups) { // no team: that costs
+        struct tally t = { 0 };
+        text(s->p, 0, 1, &opt, &t);
+        return add_tally(s->rep, &t);
+    }
+#pragma omp parallel num_threads(o->threads)
     {
         struct tally t = { 0 };
-        text(s->p, omp_get_thread_num(), threads > 1 ? omp_get_num_threads() : 1, &opt, &t);
+        text(s->p, omp_get_thread_num(), omp_get_num_threads(), &opt, &t);
 #pragma omp critical
-        {
-            change = fmax(change, most(t.change));
-            rep->newton += count(t.newton);
-            rep->safeguarded += count(t.safeguarded), rep->gave_up += count(t.gave_up);
-        }
+        change = fmax(change, add_tally(s->rep, &t));
     }
-    rep->sweeps++;
     return change;
 }
 
