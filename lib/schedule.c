@@ -1,5 +1,7 @@
 #include "schedule.h"
 
+#include "bundle.h"
+
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 #include <stdlib.h>
@@ -22,6 +24,8 @@ struct graph {
     const struct delassus *W; /* NULL: contacts and packing */
     uint64_t *mark;           /* [nodes] */
     int64_t *place;           /* [n] level or colour, -1: not yet */
+    uint64_t begun;           /* colours whose last bundle has room */
+    int64_t count[COLOURS];   /* contacts of each */
 };
 
 static int touches(const struct graph *g, int64_t c, int64_t node[2])
@@ -38,9 +42,14 @@ static uint64_t later(uint64_t a, uint64_t b)
     return a > b ? a : b;
 }
 
-static int64_t first_free(uint64_t colours)
+/* A colour that has not been seen; of those the first with a bundle to fill, else the first. */
+static int64_t pick_colour(struct graph *g, uint64_t seen)
 {
-    return ~colours ? __builtin_ctzll(~colours) : COLOURS;
+    uint64_t free = ~seen & g->begun ? ~seen & g->begun : ~seen;
+    if (!free) return COLOURS;
+    int64_t c = __builtin_ctzll(free);
+    g->begun = ++g->count[c] % BUNDLE ? g->begun | 1ull << c : g->begun & ~(1ull << c);
+    return c;
 }
 
 /* c's level, one after what its bodies or blocks have seen; leaves it marked there. */
@@ -72,7 +81,7 @@ static int64_t colour(struct graph *g, int64_t c)
         int64_t node[2];
         int k = touches(g, c, node);
         for (int j = 0; j < k; j++) seen |= g->mark[node[j]];
-        int64_t free = first_free(seen);
+        int64_t free = pick_colour(g, seen);
         for (int j = 0; j < k && free < COLOURS; j++) g->mark[node[j]] |= 1ull << free;
         return free;
     }
@@ -80,7 +89,7 @@ static int64_t colour(struct graph *g, int64_t c)
     seen = g->mark[c];
     for (const int32_t *j = col; j < end; j++)
         if (g->place[*j] >= 0 && g->place[*j] < COLOURS) seen |= 1ull << g->place[*j];
-    int64_t free = first_free(seen);
+    int64_t free = pick_colour(g, seen);
     for (const int32_t *j = col; j < end && free < COLOURS; j++) g->mark[*j] |= 1ull << free;
     return free;
 }
@@ -89,6 +98,8 @@ static int64_t colour(struct graph *g, int64_t c)
 static int64_t place_colours(struct graph *g, const int64_t *sequence, int64_t n, int64_t from)
 {
     int64_t most = from, extra = from + COLOURS, node[2];
+    g->begun = 0;
+    memset(g->count, 0, sizeof g->count);
     for (int64_t i = 0; i < n && !g->W; i++)
         for (int j = touches(g, sequence[i], node); j > 0; j--) g->mark[node[j - 1]] = 0;
     for (int64_t i = 0; i < n; i++) {
