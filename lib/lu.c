@@ -61,8 +61,9 @@ struct lu *lu_new(int32_t n, int32_t *first, int32_t *col, double bytes)
     if (!lu) return NULL;
     lu->n = n, lu->first = first, lu->col = col;
     klu_defaults(&lu->common);
-    lu->common.btf = 0; // one block: the pattern is a contact graph's
-    lu->common.tol = 0; // pivots off the diagonal would fill without end
+    lu->common.btf = 0;    // one block: the pattern is a contact graph's
+    lu->common.tol = 0;    // pivots off the diagonal would fill without end
+    lu->common.scale = -1; // the rows are of one size: whole.c
     lu->order = analyse(lu);
     // an entry of a factor has a number and an index; growing them copies them
     if (lu->order && 48 * lu->entries <= bytes) return lu;
