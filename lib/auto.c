@@ -19,7 +19,8 @@ enum {
     LAST_RESORT = 20000 /* sweeps at most, for what that cost, when nothing else led there */
 };
 
-#define AFFORD 3e10 /* ns: a factorisation dearer than this is not made */
+#define AFFORD 3e10 /* ns: a factorisation dearer than this is not made, */
+#define CHEAP  2e8  /* ns: and so much is always spent on the last resort */
 
 /*
  * How many more sweeps, if the criterion goes on as a power of their number, as it does on the way from
@@ -74,7 +75,8 @@ static int run(struct solve *s)
             continue;
         factorise(&w, s);
         tried = true;
-        double rest = fmin(fmax(rep->newton * w.cost / w.sweep_cost, rep->sweeps), LAST_RESORT);
+        double spent = fmax(fmax(rep->newton * w.cost, rep->sweeps * w.sweep_cost), CHEAP);
+        double rest = fmin(spent / w.sweep_cost, LAST_RESORT);
         if (end - rep->sweeps > rest) end = rep->sweeps + (int32_t)rest;
     }
     if (ready) {
