@@ -12,6 +12,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+enum { AHEAD = 16 }; /* frames for which a trajectory reserves room */
+
 struct sink {
     int fd;
     const char *name;     /* of the output, for messages */
@@ -137,13 +139,17 @@ static int reserve(struct sink *s, const struct frame *f, struct why *why)
     if (n > CHUNK_BODIES) n += CHUNK_BODIES; // chunks are whole
     if (f->detected) rows = (hsize_t)f->contacts.n + CHUNK_CONTACTS;
     // 128 bytes a body's motion, 256 a contact, and the tables that a frame may make grow
-    hsize_t need = size + 128 * n + 256 * rows + (1 << 16);
-    if (first) need += 128 * n + (1 << 16);
-    if (need <= s->reserved) return 0;
-    int e = posix_fallocate(s->disk, (off_t)size, (off_t)(need - size));
-    if (e) return io_trouble(s, why, strerror(e));
-    s->reserved = need;
-    return 0;
+    hsize_t frame = 128 * n + 256 * rows + (1 << 16);
+    if (first) frame += 128 * n + (1 << 16);
+    if (size + frame <= s->reserved) return 0;
+    // for some more frames where there is room: asking takes as long as writing a tenth of one
+    int e = posix_fallocate(s->disk, (off_t)size, (off_t)(AHEAD * frame));
+    s->reserved = size + AHEAD * frame;
+    if (e) {
+        e = posix_fallocate(s->disk, (off_t)size, (off_t)frame);
+        s->reserved = size + frame;
+    }
+    return e ? io_trouble(s, why, strerror(e)) : 0;
 }
 
 static int flush(struct sink *s, struct why *why)
