@@ -29,7 +29,8 @@ struct side {
     double v[3], eta; /* F = eta (2 v v' - J), F x = F^-1 z = l */
     double l[3];
     double c[3];      /* what F dx + F^-1 dz is to be */
-    double was[2][3]; /* dx and dz without the last corrector */
+    double was[2][3]; /* dx and dz without the last corrector, */
+    double far[2][3]; /* and of the t that has led farthest */
 };
 
 struct ipm {
@@ -289,6 +290,23 @@ static double predict_and_correct(struct ipm *m, double t)
     return direction(m, true) ? fmin(1, INTERIOR * lengthen(m, longest(m), target)) : 0;
 }
 
+/* dx and dz into far, or back */
+static void remember(struct ipm *m)
+{
+    for (int64_t c = 0; c < m->w->whole.W.n; c++) {
+        struct side *s = &m->side[c];
+        memcpy(s->far[0], s->dx, sizeof s->dx), memcpy(s->far[1], s->dz, sizeof s->dz);
+    }
+}
+
+static void recall(struct ipm *m)
+{
+    for (int64_t c = 0; c < m->w->whole.W.n; c++) {
+        struct side *s = &m->side[c];
+        memcpy(s->dx, s->far[0], sizeof s->dx), memcpy(s->dz, s->far[1], sizeof s->dz);
+    }
+}
+
 static void move(struct ipm *m, double step)
 {
     for (int64_t c = 0; c < m->w->whole.W.n; c++) {
@@ -368,14 +386,14 @@ static double mean_gap(const struct ipm *m)
 static bool ipm_step(struct ipm *m, struct report *rep)
 {
     static const double ts[] = { 1, 0.7, 0.3 };
-    double step = 0, longest_step = 0;
+    double step = 0;
     int at = m->fold;
     for (int i = m->fold; i < 3 && step < 0.1; i++) {
-        step = predict_and_correct(m, ts[i]);
+        double far = predict_and_correct(m, ts[i]);
         rep->newton++;
-        if (step > longest_step) longest_step = step, at = i;
+        if (far > step) step = far, at = i, remember(m);
     }
-    if (step < longest_step) step = predict_and_correct(m, ts[at]), rep->newton++;
+    recall(m);
     m->fold = at > 0 && step > 0.3 ? at - 1 : at;
     m->stuck = step < 1e-3 ? m->stuck + 1 : 0;
     if (step > 0) move(m, step);
