@@ -216,6 +216,10 @@ static void test_identity(const struct packing *p, const struct contacts *s)
         ok(apart && rows == s->n && q.group[q.groups] == q.bundles,
            "order %d: no two contacts of a group share a body (%lld groups)", order,
            (long long)q.groups);
+        if (order == ORDER_COLOUR)
+            ok(q.bundles <= (s->n + BUNDLE - 1) / BUNDLE + 1,
+               "by colours %lld contacts lie in %lld bundles: few are not full", (long long)s->n,
+               (long long)q.bundles);
         problem_free(&q);
         free(copy.c);
     }
