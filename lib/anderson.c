@@ -66,7 +66,7 @@ struct anderson *anderson_new(struct solve *s)
     enum { VECTORS = 3 + 2 * MEMORY };
     struct anderson *a = calloc(1, sizeof *a);
     if (!a) return NULL;
-    *a = (struct anderson){ .s = s, .watch = { INFINITY, s->rep->sweeps, 0, false } };
+    *a = (struct anderson){ .s = s, .watch = { .due = INFINITY, .judged = s->rep->sweeps } };
     a->rest = SHORT, a->leap = true, a->best = INFINITY;
     size_t size = (size_t)(s->p->rows * s->p->d), bytes = VECTORS * size * sizeof(double);
     a->omega = s->o->relax > 0 ? s->o->relax : 1;
@@ -87,6 +87,7 @@ struct anderson *anderson_new(struct solve *s)
 static int sweeps(struct anderson *a, int n)
 {
     for (int k = 0; k < n; k++) {
+        a->watch.change = 0; // after a mixing the last one's says nothing
         int over = nlgs_sweep(a->s, a->omega, false, &a->watch);
         if (a->watch.looked) kept_offer(&a->kept, a->s);
         if (over) return over;

@@ -2,8 +2,9 @@
  * bundle.h: the rows of the sweep, eight side by side: up to eight contacts of one group, which have
  * nothing to do with each other, so that any number of them may be done at once.
  *
- * Every number of a bundle is a cache line, lane k of it contact k's; those that a method does not
- * want are never touched. Of LANES lanes at once, k is the first.
+ * Every number of a bundle is a cache line, lane k of it contact k's. Of LANES lanes at once, k is
+ * the first. A sweep over many contacts takes as long as its rows are long, wanted or not: what is
+ * wanted now and then stands elsewhere (problem.h: u, rebound).
  *
  * A lane without a contact (the last of a group) has rho 0 and w 1: it takes off, and counts nothing.
  */
@@ -18,16 +19,14 @@ struct bundle {
     union {
         struct {
             double n[3][BUNDLE], t1[3][BUNDLE];
+            double la[BUNDLE], lb[BUNDLE]; /* m: centre of a to the point along n, that to b's */
         };
         double W[9][BUNDLE]; /* kg^-1: W_cc of a problem that is given by W */
     };
-    double la[BUNDLE], lb[BUNDLE]; /* m: centre of a to the point along n, the point to that of b */
-    double w[2]
-            [BUNDLE]; /* kg^-1: W~_cc, normal and tangential; where it is full, lambda_max twice */
-    double iw[2][BUNDLE];           /* kg: 1/w */
+    double w[2][BUNDLE];  /* kg^-1: W~_cc, normal and tangential; where full, lambda_max twice */
+    double iw[2][BUNDLE]; /* kg: 1/w */
     double mu[BUNDLE], rho[BUNDLE]; /* -, kg */
     double r[3][BUNDLE];            /* N s */
-    double u[3][BUNDLE];            /* m/s: what the local method believes */
     int32_t a[BUNDLE], b[BUNDLE];   /* rows of body[]; of a W a is the contact */
 };
 

@@ -9,6 +9,7 @@
 enum {
     CHECK_FIRST = 40, /* sweeps that are all judged */
     CHECK_EVERY = 25,
+    FORESIGHT = 4,     /* times less change than that of the sweep before is not expected */
     PARALLEL_FROM = 64 /* bundles of a group worth a second thread */
 };
 
@@ -34,11 +35,11 @@ static double add_tally(struct report *rep, const struct tally *t)
 }
 
 /* One sweep into the report; returns the largest change of a normal velocity, m/s. */
-static double sweep(struct solve *s, double omega)
+static double sweep(struct solve *s, double omega, bool keep)
 {
     const struct solve_opt *o = s->o;
     sweep_text *text = sweep_widest()->sweep[o->method->id];
-    const struct sweep_opt opt = { o->local, omega };
+    const struct sweep_opt opt = { o->local, omega, keep };
     double change = 0;
     s->rep->sweeps++;
     if (o->threads == 1 || s->p->bundles < PARALLEL_FROM * s->p->groups) { // no team: that costs
@@ -58,18 +59,20 @@ static double sweep(struct solve *s, double omega)
 
 /*
  * The criterion is evaluated after each of a solve's first 40 sweeps, when the largest change of a
- * sweep, gathered on the way, says that it may be met, every 25 sweeps, and at the end.
+ * sweep, gathered on the way, says that it may be met, every 25 sweeps, and at the end. What a sweep
+ * believes of u is only wanted then: those that will not be judged do not write it down.
  */
 int nlgs_sweep(struct solve *s, double omega, bool last, struct watch *w)
 {
     s->believes = s->o->method->believes;
-    double change = sweep(s, omega);
-    int32_t n = s->rep->sweeps;
+    int32_t n = s->rep->sweeps + 1;
+    bool sure = s->o->history || s->o->every_sweep || n <= w->all || n - w->judged >= CHECK_EVERY ||
+                n >= s->o->max_sweeps || last;
+    bool keep = sure || w->change <= FORESIGHT * w->due;
+    double change = w->change = sweep(s, omega, keep);
     w->looked = false;
     if (solve_history(s)) return -1;
-    if (!s->o->history && !s->o->every_sweep && !(change <= w->due) && n > w->all &&
-        n - w->judged < CHECK_EVERY && n < s->o->max_sweeps && !last)
-        return 0;
+    if (!sure && !(keep && change <= w->due)) return 0;
     solve_judge(s);
     // error and change shrink together, more or less: due after half the way, and all the time
     // when it is near
@@ -81,7 +84,7 @@ int nlgs_sweep(struct solve *s, double omega, bool last, struct watch *w)
 int nlgs_sweeps(struct solve *s, int32_t sweeps, double omega)
 {
     int32_t end = s->rep->sweeps + sweeps;
-    struct watch w = { INFINITY, s->rep->sweeps, CHECK_FIRST, false };
+    struct watch w = { .due = INFINITY, .judged = s->rep->sweeps, .all = CHECK_FIRST };
     while (s->rep->sweeps < end) {
         int over = nlgs_sweep(s, omega, s->rep->sweeps == end - 1, &w);
         if (over) return over < 0 ? -1 : 0;

@@ -37,7 +37,7 @@ static int no_memory(struct problem *p, struct why *why)
 
 void problem_free(struct problem *p)
 {
-    free(p->bundle), free(p->rebound), free(p->contact), free(p->group), free(p->body);
+    free(p->bundle), free(p->rebound), free(p->u), free(p->contact), free(p->group), free(p->body);
     *p = (struct problem){ 0 };
 }
 
@@ -52,8 +52,9 @@ static bool lay_out(struct problem *p, const struct schedule *plan)
     }
     p->rows = p->bundles * BUNDLE;
     p->bundle = lines(p->bundles, sizeof *p->bundle);
+    p->u = lines(p->bundles, sizeof *p->u);
     p->contact = malloc((size_t)(p->rows + 1) * sizeof *p->contact);
-    if (!p->group || !p->bundle || !p->contact) return false;
+    if (!p->group || !p->bundle || !p->u || !p->contact) return false;
     p->group[p->groups] = p->bundles;
     for (int64_t i = 0; i < p->rows; i++) {
         p->contact[i] = -1;
@@ -265,13 +266,15 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
 void row_get(const struct problem *p, int64_t i, double r[3], double u[3])
 {
     const struct bundle *c = row_bundle(p, i);
-    for (int k = 0; k < 3; k++) r[k] = c->r[k][row_lane(i)], u[k] = c->u[k][row_lane(i)];
+    for (int k = 0; k < 3; k++)
+        r[k] = c->r[k][row_lane(i)], u[k] = p->u[i / BUNDLE][k][row_lane(i)];
 }
 
 void row_set(struct problem *p, int64_t i, const double r[3], const double u[3])
 {
     struct bundle *c = row_bundle(p, i);
-    for (int k = 0; k < 3; k++) c->r[k][row_lane(i)] = r[k], c->u[k][row_lane(i)] = u[k];
+    for (int k = 0; k < 3; k++)
+        c->r[k][row_lane(i)] = r[k], p->u[i / BUNDLE][k][row_lane(i)] = u[k];
 }
 
 void row_react(struct problem *p, int64_t i, const double r[3])

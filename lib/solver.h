@@ -74,12 +74,13 @@ void kept_free(struct kept *);
 void kept_offer(struct kept *, const struct solve *); /* what the rows hold, just judged */
 void kept_back(const struct kept *, struct solve *);  /* into the rows, unless they hold better */
 
-/* When the criterion was last judged, and when it is due again; begins as { INFINITY, sweeps, all } */
+/* When the criterion was last judged, and when it is due again; begins with due INFINITY */
 struct watch {
     double due;     /* m/s: a sweep's largest change of a normal velocity at which to judge */
     int32_t judged; /* after so many sweeps */
     int32_t all;    /* so many of a solve's first sweeps are all judged */
     bool looked;    /* by the last nlgs_sweep() */
+    double change;  /* m/s: of that one */
 };
 /* One sweep, judged where that is due (`last`: in any case). Returns 0 to go on, 1 when the criterion
    is met, something is spent or not finite, -1 when memory is short. */

@@ -10,7 +10,7 @@
 typedef void method_text(struct local *, const struct local_opt *);
 
 enum {
-    FAR = 1024,      /* bundles, 1.4 MB: more are not near when a sweep comes back to them */
+    FAR = 1024,      /* bundles, 1.2 MB: more are not near when a sweep comes back to them */
     ROWS_AHEAD = 8,  /* bundles; theirs and */
     BODIES_AHEAD = 3 /* these bundles' bodies are then sent for. Without it, a third more time */
 };
@@ -42,6 +42,12 @@ ALWAYS_INLINE void blocks_scatter(struct problem *p, const struct bundle *c, int
     for (int i = 0; i < LANES; i++)
         for (int j = 0; j < p->d && c->a[k + i] >= 0; j++)
             p->W->r[p->d * c->a[k + i] + j] = c->r[j][k + i];
+}
+
+/* Where what is believed of c's u is kept */
+ALWAYS_INLINE double (*bundle_belief(const struct problem *p, const struct bundle *c))[BUNDLE]
+{
+    return p->u[c - p->bundle];
 }
 
 ALWAYS_INLINE const struct rebound *bundle_rebound(const struct problem *p, const struct bundle *c)
@@ -99,13 +105,14 @@ ALWAYS_INLINE void relax(struct local *l, const struct bundle *c, int k, double 
 }
 
 /* The solution into the rows, their bodies or W's reactions */
-ALWAYS_INLINE void finish(struct problem *p, struct bundle *c, int k, bool given_by_W,
+ALWAYS_INLINE void finish(struct problem *p, struct bundle *c, int k, bool keep, bool given_by_W,
                           struct seat *s, const struct local *l, struct count *t)
 {
     vd dr[3];
     for (int i = 0; i < 3; i++) {
         dr[i] = l->r[i] - vload(c->r[i] + k);
-        vstore(c->r[i] + k, l->r[i]), vstore(c->u[i] + k, l->u[i]);
+        vstore(c->r[i] + k, l->r[i]);
+        if (keep) vstore(bundle_belief(p, c)[i] + k, l->u[i]);
     }
     if (given_by_W) {
         blocks_scatter(p, c, k);
@@ -154,7 +161,7 @@ ALWAYS_INLINE void visit(struct problem *p, int64_t first, int64_t end, const st
         solve(&l, &o->local);
         if (o->relax != 1) relax(&l, c, k, o->relax);
         if (j < last) begin(p, next, LANES * (j % PARTS), given_by_W, &s[j % 2]);
-        finish(p, c, k, given_by_W, &s[i % 2], &l, t);
+        finish(p, c, k, o->keep, given_by_W, &s[i % 2], &l, t);
     }
 }
 
@@ -241,7 +248,7 @@ static void velocities(struct problem *p, int64_t first, int64_t end)
         for (int k = 0; k < BUNDLE; k += LANES) {
             vd u[3];
             motion(p, &p->bundle[i], k, u);
-            for (int j = 0; j < 3; j++) vstore(p->bundle[i].u[j] + k, u[j]);
+            for (int j = 0; j < 3; j++) vstore(p->u[i][j] + k, u[j]);
         }
 }
 
@@ -251,12 +258,12 @@ ALWAYS_INLINE vd distance(const vd a[3], const vd b[3])
     return norm3(d);
 }
 
-ALWAYS_INLINE void add_terms(struct sums *s, const struct bundle *c, int k, bool believes,
-                             const vd moves[3])
+ALWAYS_INLINE void add_terms(struct sums *s, const struct bundle *c, double (*belief)[BUNDLE],
+                             int k, bool believes, const vd moves[3])
 {
     vd mu = vload(c->mu + k), r[3], u[3], proj[3];
     for (int i = 0; i < 3; i++)
-        r[i] = vload(c->r[i] + k), u[i] = believes ? vload(c->u[i] + k) : moves[i];
+        r[i] = vload(c->r[i] + k), u[i] = believes ? vload(belief[i] + k) : moves[i];
     cone_project(mu, r, proj);
     if (believes) add(s->motion + k, distance(u, moves));
     add(s->proj + k, distance(r, proj));
@@ -295,7 +302,7 @@ static void judge(const struct problem *p, int64_t first, int64_t end, bool beli
         for (int k = 0; k < BUNDLE; k += LANES) {
             vd u[3];
             motion(p, &p->bundle[i], k, u);
-            if (part & ERR_TERMS) add_terms(s, &p->bundle[i], k, believes, u);
+            if (part & ERR_TERMS) add_terms(s, &p->bundle[i], p->u[i], k, believes, u);
             if (part & ERR_NATURAL) add_natural(s, &p->bundle[i], k, u);
         }
     }

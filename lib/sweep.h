@@ -12,6 +12,7 @@
 struct sweep_opt {
     struct local_opt local;
     double relax; /* omega: r + omega (r_new - r), back onto the cone */
+    bool keep;    /* what the method believes u to be: wanted where the sweep may be judged */
 };
 
 /* Of a sweep, lane by lane */
