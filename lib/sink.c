@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { AHEAD = 16 }; /* frames for which a trajectory reserves room */
+enum { AHEAD = 1 << 22 }; /* bytes that a trajectory reserves, at least, where there is room */
 
 struct sink {
     int fd;
@@ -142,13 +142,11 @@ static int reserve(struct sink *s, const struct frame *f, struct why *why)
     hsize_t frame = 128 * n + 256 * rows + (1 << 16);
     if (first) frame += 128 * n + (1 << 16);
     if (size + frame <= s->reserved) return 0;
-    // for some more frames where there is room: asking takes as long as writing a tenth of one
-    int e = posix_fallocate(s->disk, (off_t)size, (off_t)(AHEAD * frame));
-    s->reserved = size + AHEAD * frame;
-    if (e) {
-        e = posix_fallocate(s->disk, (off_t)size, (off_t)frame);
-        s->reserved = size + frame;
-    }
+    // for more frames where there is room: asking takes as long as writing a tenth of a small one
+    hsize_t much = frame < AHEAD ? AHEAD : frame;
+    int e = posix_fallocate(s->disk, (off_t)size, (off_t)much);
+    if (e) e = posix_fallocate(s->disk, (off_t)size, (off_t)(much = frame));
+    s->reserved = size + much;
     return e ? io_trouble(s, why, strerror(e)) : 0;
 }
 
