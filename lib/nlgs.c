@@ -9,7 +9,8 @@
 enum {
     CHECK_FIRST = 40, /* sweeps that are all judged */
     CHECK_EVERY = 25,
-    FORESIGHT = 4,     /* times less change than that of the sweep before is not expected */
+    FORESIGHT = 4,     /* times less change than that of the sweep before is not expected, */
+    SMALL = 1024,      /* bundles: where it is, fewer may as well keep u for it */
     PARALLEL_FROM = 64 /* bundles of a group worth a second thread */
 };
 
@@ -68,7 +69,7 @@ int nlgs_sweep(struct solve *s, double omega, bool last, struct watch *w)
     int32_t n = s->rep->sweeps + 1;
     bool sure = s->o->history || s->o->every_sweep || n <= w->all || n - w->judged >= CHECK_EVERY ||
                 n >= s->o->max_sweeps || last;
-    bool keep = sure || w->change <= FORESIGHT * w->due;
+    bool keep = sure || s->p->bundles < SMALL || w->change <= FORESIGHT * w->due;
     double change = w->change = sweep(s, omega, keep);
     w->looked = false;
     if (solve_history(s)) return -1;
