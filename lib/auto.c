@@ -20,7 +20,7 @@ enum {
 };
 
 #define AFFORD 3e10 /* ns: a factorisation dearer than this is not made, */
-#define CHEAP  2e8  /* ns: and so much is always spent on the last resort */
+#define CHEAP  2e8  /* ns: and so much the last resort may always take */
 
 /*
  * How many more sweeps, if the criterion goes on as a power of their number, as it does on the way from

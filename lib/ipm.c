@@ -239,6 +239,17 @@ static void recentre(struct side *s, double step, double target)
     for (int k = 0; k < 3; k++) s->c[k] += more[k];
 }
 
+/* dx and dz, to be had again */
+static void remember(const struct side *s, double to[2][3])
+{
+    memcpy(to[0], s->dx, sizeof s->dx), memcpy(to[1], s->dz, sizeof s->dz);
+}
+
+static void recall(struct side *s, double from[2][3])
+{
+    memcpy(s->dx, from[0], sizeof s->dx), memcpy(s->dz, from[1], sizeof s->dz);
+}
+
 /* Correctors for as long as they lengthen the step; a substitution each, and not a factorisation. */
 static double lengthen(struct ipm *m, double step, double target)
 {
@@ -246,17 +257,14 @@ static double lengthen(struct ipm *m, double step, double target)
     for (int k = 0; k < CORRECTORS && INTERIOR * step < 0.95; k++) {
         for (int64_t c = 0; c < n; c++) {
             struct side *s = &m->side[c];
-            memcpy(s->was[0], s->dx, sizeof s->dx), memcpy(s->was[1], s->dz, sizeof s->dz);
+            remember(s, s->was);
             recentre(s, fmin(1, INTERIOR * step + LONGER), target);
         }
         double before = step;
         step = direction(m, true) ? longest(m) : 0;
         if (step >= before + GAINED) continue;
         if (step >= before) break;
-        for (int64_t c = 0; c < n; c++) {
-            struct side *s = &m->side[c];
-            memcpy(s->dx, s->was[0], sizeof s->dx), memcpy(s->dz, s->was[1], sizeof s->dz);
-        }
+        for (int64_t c = 0; c < n; c++) recall(&m->side[c], m->side[c].was);
         return before;
     }
     return step;
@@ -288,23 +296,6 @@ static double predict_and_correct(struct ipm *m, double t)
         quotient(s->l, want, s->c);
     }
     return direction(m, true) ? fmin(1, INTERIOR * lengthen(m, longest(m), target)) : 0;
-}
-
-/* dx and dz into far, or back */
-static void remember(struct ipm *m)
-{
-    for (int64_t c = 0; c < m->w->whole.W.n; c++) {
-        struct side *s = &m->side[c];
-        memcpy(s->far[0], s->dx, sizeof s->dx), memcpy(s->far[1], s->dz, sizeof s->dz);
-    }
-}
-
-static void recall(struct ipm *m)
-{
-    for (int64_t c = 0; c < m->w->whole.W.n; c++) {
-        struct side *s = &m->side[c];
-        memcpy(s->dx, s->far[0], sizeof s->dx), memcpy(s->dz, s->far[1], sizeof s->dz);
-    }
 }
 
 static void move(struct ipm *m, double step)
@@ -386,14 +377,17 @@ static double mean_gap(const struct ipm *m)
 static bool ipm_step(struct ipm *m, struct report *rep)
 {
     static const double ts[] = { 1, 0.7, 0.3 };
+    int64_t n = m->w->whole.W.n;
     double step = 0;
     int at = m->fold;
     for (int i = m->fold; i < 3 && step < 0.1; i++) {
         double far = predict_and_correct(m, ts[i]);
         rep->newton++;
-        if (far > step) step = far, at = i, remember(m);
+        if (far <= step) continue;
+        step = far, at = i;
+        for (int64_t c = 0; c < n; c++) remember(&m->side[c], m->side[c].far);
     }
-    recall(m);
+    for (int64_t c = 0; c < n; c++) recall(&m->side[c], m->side[c].far);
     m->fold = at > 0 && step > 0.3 ? at - 1 : at;
     m->stuck = step < 1e-3 ? m->stuck + 1 : 0;
     if (step > 0) move(m, step);

@@ -9,8 +9,7 @@
 enum {
     CHECK_FIRST = 40, /* sweeps that are all judged */
     CHECK_EVERY = 25,
-    FORESIGHT = 4,     /* times less change than that of the sweep before is not expected, */
-    SMALL = 1024,      /* bundles: where it is, fewer may as well keep u for it */
+    FORESIGHT = 4,     /* times less change than that of the sweep before is not expected */
     PARALLEL_FROM = 64 /* bundles of a group worth a second thread */
 };
 
@@ -61,7 +60,8 @@ static double sweep(struct solve *s, double omega, bool keep)
 /*
  * The criterion is evaluated after each of a solve's first 40 sweeps, when the largest change of a
  * sweep, gathered on the way, says that it may be met, every 25 sweeps, and at the end. What a sweep
- * believes of u is only wanted then: those that will not be judged do not write it down.
+ * believes of u is only wanted then: where rows are far, those that will not be judged do not write
+ * it down, for memory's sake.
  */
 int nlgs_sweep(struct solve *s, double omega, bool last, struct watch *w)
 {
@@ -69,7 +69,7 @@ int nlgs_sweep(struct solve *s, double omega, bool last, struct watch *w)
     int32_t n = s->rep->sweeps + 1;
     bool sure = s->o->history || s->o->every_sweep || n <= w->all || n - w->judged >= CHECK_EVERY ||
                 n >= s->o->max_sweeps || last;
-    bool keep = sure || s->p->bundles < SMALL || w->change <= FORESIGHT * w->due;
+    bool keep = sure || s->p->bundles < SWEEP_FAR || w->change <= FORESIGHT * w->due;
     double change = w->change = sweep(s, omega, keep);
     w->looked = false;
     if (solve_history(s)) return -1;

@@ -10,7 +10,6 @@
 typedef void method_text(struct local *, const struct local_opt *);
 
 enum {
-    FAR = 1024,      /* bundles, 1.2 MB: more are not near when a sweep comes back to them */
     ROWS_AHEAD = 8,  /* bundles; theirs and */
     BODIES_AHEAD = 3 /* these bundles' bodies are then sent for. Without it, a third more time */
 };
@@ -131,7 +130,7 @@ ALWAYS_INLINE void finish(struct problem *p, struct bundle *c, int k, bool keep,
 /* What will be wanted while bundle i is at work */
 ALWAYS_INLINE void fetch(const struct problem *p, int64_t i)
 {
-    if (p->bundles < FAR || i + ROWS_AHEAD >= p->bundles) return;
+    if (p->bundles < SWEEP_FAR || i + ROWS_AHEAD >= p->bundles) return;
     const char *rows = (const char *)&p->bundle[i + ROWS_AHEAD];
     for (size_t k = 0; k < sizeof *p->bundle; k += 64) __builtin_prefetch(rows + k, 1);
     const struct bundle *c = &p->bundle[i + BODIES_AHEAD];

@@ -9,6 +9,8 @@
 #include "mixing.h"
 #include "problem.h"
 
+enum { SWEEP_FAR = 1024 }; /* bundles, 1.2 MB: more are not near when a sweep comes back to them */
+
 struct sweep_opt {
     struct local_opt local;
     double relax; /* omega: r + omega (r_new - r), back onto the cone */
