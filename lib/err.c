@@ -69,7 +69,7 @@ void err_eval(struct err *e, const struct problem *p, bool believes, enum err_pa
     for (int64_t first = 0; first < blocks; first += STRIPE) {
         struct sums s[STRIPE];
         int64_t n = blocks - first < STRIPE ? blocks - first : STRIPE;
-        if (threads == 1 || n < PARALLEL_FROM) { // no team: that costs
+        if (threads == 1 || (n < PARALLEL_FROM && !p->halves)) { // no team: that costs
             for (int64_t b = 0; b < n; b++) judge_block(p, believes, part, first + b, &s[b]);
         } else {
 #pragma omp parallel for num_threads(threads)

@@ -5,6 +5,7 @@
 #include "solver.h"
 
 #include <omp.h>
+#include <string.h>
 
 enum {
     CHECK_FIRST = 40, /* sweeps that are all judged */
@@ -34,23 +35,39 @@ static double add_tally(struct report *rep, const struct tally *t)
     return most(t->change);
 }
 
-/* One sweep into the report; returns the largest change of a normal velocity, m/s. */
-static double sweep(struct solve *s, double omega, bool keep)
+/* How many threads share a sweep: all, or where groups are too small for that one, or one a half. */
+static int team(const struct solve *s)
+{
+    int threads = s->o->threads;
+    if (s->p->bundles >= PARALLEL_FROM * s->p->groups) return threads;
+    return s->p->halves && threads > 1 ? 2 : 1;
+}
+
+/* Unjudged sweeps and one more into the report; returns that one's largest change of a normal velocity,
+   m/s. */
+static double sweep(struct solve *s, double omega, int32_t unjudged, bool keep)
 {
     const struct solve_opt *o = s->o;
     sweep_text *text = sweep_widest()->sweep[o->method->id];
-    const struct sweep_opt opt = { o->local, omega, keep };
+    const struct sweep_opt quiet = { o->local, omega, false }, opt = { o->local, omega, keep };
     double change = 0;
-    s->rep->sweeps++;
-    if (o->threads == 1 || s->p->bundles < PARALLEL_FROM * s->p->groups) { // no team: that costs
+    int threads = team(s);
+    s->rep->sweeps += unjudged + 1;
+    if (threads == 1) { // no team: that costs
         struct tally t = { 0 };
-        text(s->p, 0, 1, &opt, &t);
+        for (int32_t k = unjudged; k >= 0; k--) {
+            memset(t.change, 0, sizeof t.change);
+            text(s->p, 0, 1, k ? &quiet : &opt, &t);
+        }
         return add_tally(s->rep, &t);
     }
-#pragma omp parallel num_threads(o->threads)
+#pragma omp parallel num_threads(threads)
     {
         struct tally t = { 0 };
-        text(s->p, omp_get_thread_num(), omp_get_num_threads(), &opt, &t);
+        for (int32_t k = unjudged; k >= 0; k--) {
+            memset(t.change, 0, sizeof t.change);
+            text(s->p, omp_get_thread_num(), omp_get_num_threads(), k ? &quiet : &opt, &t);
+        }
 #pragma omp critical
         change = fmax(change, add_tally(s->rep, &t));
     }
@@ -63,14 +80,14 @@ static double sweep(struct solve *s, double omega, bool keep)
  * believes of u is only wanted then: where rows are far, those that will not be judged do not write
  * it down, for memory's sake.
  */
-int nlgs_sweep(struct solve *s, double omega, bool last, struct watch *w)
+static int judged_sweep(struct solve *s, double omega, int32_t unjudged, bool last, struct watch *w)
 {
     s->believes = s->o->method->believes;
-    int32_t n = s->rep->sweeps + 1;
+    int32_t n = s->rep->sweeps + unjudged + 1;
     bool sure = s->o->history || s->o->every_sweep || n <= w->all || n - w->judged >= CHECK_EVERY ||
                 n >= s->o->max_sweeps || last;
     bool keep = sure || s->p->bundles < SWEEP_FAR || w->change <= FORESIGHT * w->due;
-    double change = w->change = sweep(s, omega, keep);
+    double change = w->change = sweep(s, omega, unjudged, keep);
     w->looked = false;
     if (solve_history(s)) return -1;
     if (!sure && !(keep && change <= w->due)) return 0;
@@ -82,12 +99,32 @@ int nlgs_sweep(struct solve *s, double omega, bool last, struct watch *w)
     return solve_met(s) || solve_spent(s) || !isfinite(s->value);
 }
 
+int nlgs_sweep(struct solve *s, double omega, bool last, struct watch *w)
+{
+    return judged_sweep(s, omega, 0, last, w);
+}
+
+/*
+ * How many sweeps surely are not judged, of halves, whose threads had rather not meet after each: as
+ * many as no change less than FORESIGHT times that of the sweep before makes small enough.
+ */
+static int32_t foresee(const struct solve *s, const struct watch *w, int32_t end)
+{
+    int32_t n = s->rep->sweeps, next = w->judged + CHECK_EVERY;
+    if (!s->p->halves || s->o->history || s->o->every_sweep || n < w->all || !(w->change > w->due))
+        return 0;
+    if (next > end) next = end;
+    if (next > s->o->max_sweeps) next = s->o->max_sweeps;
+    return (int32_t)fmin(log(w->change / w->due) / log(FORESIGHT), next - 1 - n);
+}
+
 int nlgs_sweeps(struct solve *s, int32_t sweeps, double omega)
 {
     int32_t end = s->rep->sweeps + sweeps;
     struct watch w = { .due = INFINITY, .judged = s->rep->sweeps, .all = CHECK_FIRST };
     while (s->rep->sweeps < end) {
-        int over = nlgs_sweep(s, omega, s->rep->sweeps == end - 1, &w);
+        int32_t unjudged = foresee(s, &w, end);
+        int over = judged_sweep(s, omega, unjudged, s->rep->sweeps + unjudged == end - 1, &w);
         if (over) return over < 0 ? -1 : 0;
     }
     return 0;

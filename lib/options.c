@@ -10,10 +10,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define METHODS  "auto|sbp|sal|ebp|eal|exact"     /* auto, then in the order of methods[] */
-#define SOLVERS  "auto|nlgs|anderson|cg|prox|ipm" /* in the order of solvers[] */
-#define CRITERIA "glob|scaled|natural"            /* of enum criterion */
-#define ORDERS   "natural|reverse|random|colour"  /* of enum order */
+#define METHODS  "auto|sbp|sal|ebp|eal|exact"           /* auto, then in the order of methods[] */
+#define SOLVERS  "auto|nlgs|anderson|cg|prox|ipm"       /* in the order of solvers[] */
+#define CRITERIA "glob|scaled|natural"                  /* of enum criterion */
+#define ORDERS   "natural|reverse|random|colour|halves" /* of enum order */
 #define MOST     1e300
 
 struct options options = { .global = -1,

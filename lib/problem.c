@@ -38,6 +38,7 @@ static int no_memory(struct problem *p, struct why *why)
 void problem_free(struct problem *p)
 {
     free(p->bundle), free(p->rebound), free(p->u), free(p->contact), free(p->group), free(p->body);
+    free(p->halves);
     *p = (struct problem){ 0 };
 }
 
@@ -56,6 +57,9 @@ static bool lay_out(struct problem *p, const struct schedule *plan)
     p->contact = malloc((size_t)(p->rows + 1) * sizeof *p->contact);
     if (!p->group || !p->bundle || !p->u || !p->contact) return false;
     p->group[p->groups] = p->bundles;
+    if (plan->rest && !(p->halves = lines(1, sizeof *p->halves))) return false;
+    if (p->halves)
+        *p->halves = (struct halves){ plan->beyond, plan->inside, plan->rim, plan->rest, 0, 0 };
     for (int64_t i = 0; i < p->rows; i++) {
         p->contact[i] = -1;
         struct bundle *c = row_bundle(p, i);
@@ -78,7 +82,7 @@ static int32_t *rows_of_bodies(const struct problem *p, const struct packing *pa
 {
     int32_t *row = malloc((size_t)(pack->n + 1) * sizeof *row), next = 0;
     for (int64_t i = 0; row && i < pack->n; i++) row[i] = -1;
-    for (int64_t i = 0; row && order == ORDER_COLOUR && i < p->rows; i++) {
+    for (int64_t i = 0; row && order >= ORDER_COLOUR && i < p->rows; i++) {
         if (p->contact[i] < 0) continue;
         const struct contact *c = &s->c[p->contact[i]];
         if (c->a >= 0 && row[c->a] < 0) row[c->a] = next++;
@@ -152,10 +156,11 @@ static double mean_mass(const struct packing *p)
     return n ? sum / (double)n : 1;
 }
 
-/* How many bodies[] there will be: those of the packing, copies, one for the lanes without a contact. */
+/* How many bodies[] there will be: those of the packing, copies, and nobody for the lanes without a
+   contact, one a half. */
 static int64_t seats(const struct packing *pack, const struct contacts *s)
 {
-    int64_t n = pack->n + 1;
+    int64_t n = pack->n + 2;
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
         n += (c->a < 0 || !(pack->mass[c->a] > 0)) + !(pack->mass[c->b] > 0);
@@ -182,11 +187,12 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     int32_t *row = room ? rows_of_bodies(p, pack, s, order) : NULL;
     if (!row) return no_memory(p, why);
     movers(p, pack, row);
-    int64_t nobody = pack->n, next = nobody + 1;
+    int64_t nobody = pack->n, next = nobody + 2;
+    int64_t other = p->halves ? BUNDLE * p->group[p->halves->inside] : p->rows;
     for (int64_t i = 0; i < p->rows; i++) {
         struct bundle *r = row_bundle(p, i);
         int k = row_lane(i);
-        r->a[k] = r->b[k] = (int32_t)nobody;
+        r->a[k] = r->b[k] = (int32_t)(nobody + (i >= other));
         if (p->contact[i] < 0) continue;
         const struct contact *c = &s->c[p->contact[i]];
         r->a[k] = seat(p, pack, row, c->a, &next), r->b[k] = seat(p, pack, row, c->b, &next);

@@ -33,6 +33,7 @@ struct problem {
     int64_t *contact;        /* [rows] row i is contact[i] of the packing, of W; -1: none */
     int64_t groups;          /* no two rows of a group share a body (a block of W): */
     int64_t *group;          /* [groups + 1] bundles group[g] .. group[g+1]-1 may be done at once */
+    struct halves *halves;   /* NULL: the order knows none */
     struct body *body;  /* [bodies, then copies of what does not move]: as the packing has them,
                            by colours as the sweep first meets them; NULL: given by W */
     struct delassus *W; /* borrowed; NULL: given by bodies */

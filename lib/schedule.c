@@ -8,9 +8,11 @@
 #include <string.h>
 
 enum {
-    COLOURS = 64,  /* the bits of a mark; contacts beyond them follow one after another */
-    WHOLE = 65536, /* so many contacts are coloured as one; */
-    BLOCK = 16384  /* of more, so many, whose bodies stay in a second-level cache */
+    COLOURS = 64,   /* the bits of a mark; contacts beyond them follow one after another */
+    WORTH_IT = 384, /* contacts, for halves, and so many that */
+    FREE = 8192,    /* bundles that are not full cost one thread nothing */
+    WHOLE = 65536,  /* so many contacts are coloured as one; */
+    BLOCK = 16384   /* of more, so many, whose bodies stay in a second-level cache */
 };
 
 /*
@@ -162,6 +164,53 @@ static void sequence_init(int64_t *sequence, int64_t n, enum order order)
     gsl_rng_free(rng);
 }
 
+/* The sequence by parts, each in its own order; count[] of each. -1 when memory is short. */
+static int sort_by_parts(int64_t *sequence, int64_t n, const int8_t *part,
+                         int64_t count[PART_COUNT])
+{
+    int64_t *from = malloc((size_t)(n + 1) * sizeof *from), next = 0;
+    if (!from) return -1;
+    memcpy(from, sequence, (size_t)n * sizeof *from);
+    for (int k = 0; k < PART_COUNT; k++) {
+        count[k] = -next;
+        for (int64_t i = 0; i < n; i++)
+            if (part[from[i]] == k) sequence[next++] = from[i];
+        count[k] += next;
+    }
+    free(from);
+    return 0;
+}
+
+/* Colours for so many contacts, block by block where there are many. */
+static int64_t place_blocks(struct graph *g, const int64_t *sequence, int64_t n, int64_t from)
+{
+    int64_t block = g->W || g->n <= WHOLE ? g->n + 1 : BLOCK;
+    for (int64_t i = 0; i < n; i += block)
+        from = place_colours(g, sequence + i, n - i < block ? n - i : block, from);
+    return from;
+}
+
+/* Part by part; the rim's groups come between those of the inside. -1 when memory is short. */
+static int place_halves(struct schedule *s, struct graph *g)
+{
+    int8_t *part = malloc((size_t)g->n + 1);
+    int64_t count[PART_COUNT], first[PART_COUNT + 1] = { 0 }, begin = 0;
+    if (!part || halves_divide(g->contacts, g->packing, part) ||
+        sort_by_parts(s->sequence, g->n, part, count))
+        return free(part), -1;
+    for (int k = 0; k < PART_COUNT; begin += count[k++])
+        first[k + 1] = place_blocks(g, s->sequence + begin, count[k], first[k]);
+    s->beyond = first[PART_BEYOND], s->inside = first[PART_INSIDE];
+    int64_t inside = first[PART_RIM] - s->inside, rim = first[PART_COUNT] - first[PART_RIM];
+    s->rim = s->inside + inside / 3, s->rest = s->rim + rim; // the first colours are the largest
+    for (int64_t c = 0; c < g->n; c++) {
+        if (part[c] == PART_RIM) g->place[c] -= first[PART_RIM] - s->rim;
+        if (part[c] == PART_INSIDE && g->place[c] >= s->rim) g->place[c] += rim;
+    }
+    free(part);
+    return 0;
+}
+
 /* The sequence sorted by place, stable */
 static int regroup(struct schedule *s, const struct graph *g)
 {
@@ -185,20 +234,23 @@ static int regroup(struct schedule *s, const struct graph *g)
 
 static int schedule(struct schedule *s, enum order order, struct graph *g)
 {
-    bool colours = order == ORDER_COLOUR;
+    bool colours = order >= ORDER_COLOUR;
+    bool halves = !g->W && g->n >= (order == ORDER_HALVES ? WORTH_IT : FREE);
     *s = (struct schedule){ .sequence = malloc((size_t)(g->n + 1) * sizeof *s->sequence) };
     g->mark = calloc((size_t)g->nodes + 1, sizeof *g->mark);
     g->place = malloc((size_t)(g->n + 1) * sizeof *g->place);
     int failed = !s->sequence || !g->mark || !g->place;
     if (!failed) {
-        int64_t block = g->W || g->n <= WHOLE ? g->n + 1 : BLOCK, from = 0;
         sequence_init(s->sequence, g->n, order);
         for (int64_t i = 0; i < g->n; i++) g->place[i] = -1;
-        for (int64_t i = 0; !colours && i < g->n; i++) place_level(g, s->sequence[i]);
-        if (colours && g->contacts && g->n > block)
+        if (colours && g->contacts && g->n > WHOLE)
             failed = sort_along_curve(g->contacts, s->sequence);
-        for (int64_t i = 0; colours && i < g->n; i += block)
-            from = place_colours(g, s->sequence + i, g->n - i < block ? g->n - i : block, from);
+        if (colours && halves)
+            failed = failed || place_halves(s, g);
+        else if (colours)
+            place_blocks(g, s->sequence, g->n, 0);
+        else
+            for (int64_t i = 0; i < g->n; i++) place_level(g, s->sequence[i]);
         failed = failed || regroup(s, g);
     }
     free(g->mark), free(g->place);

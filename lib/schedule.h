@@ -8,20 +8,24 @@
  * natural, reverse, random: the given sequence, regrouped by levels: a contact goes one level after
  * the last one before it that it depends on. That is the sequence's own result, bit for bit.
  * colour: contacts coloured greedily in their natural order; another sequence, in fewer groups.
+ * halves: the parts of two halves one after another [halves.h], each coloured; colour where there are
+ * no bodies, too few contacts to be worth it (384), or more than are coloured as one (65 536).
  */
 #ifndef NSD_SCHEDULE_H
 #define NSD_SCHEDULE_H
 
 #include "contact.h"
 #include "delassus.h"
+#include "halves.h"
 #include "packing.h"
 
-enum order { ORDER_NATURAL, ORDER_REVERSE, ORDER_RANDOM, ORDER_COLOUR };
+enum order { ORDER_NATURAL, ORDER_REVERSE, ORDER_RANDOM, ORDER_COLOUR, ORDER_HALVES };
 
 struct schedule {
     int64_t *sequence; /* [n] contacts */
     int64_t groups;
-    int64_t *group; /* [groups + 1] */
+    int64_t *group;                    /* [groups + 1] */
+    int64_t beyond, inside, rim, rest; /* the first groups of the parts, by halves; else 0 */
 };
 
 /* Return 0, or -1 when memory is short. */

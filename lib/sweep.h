@@ -32,7 +32,8 @@ struct sums {
 
 enum err_part { ERR_TERMS = 1, ERR_NATURAL = 2, ERR_ALL = 3 };
 
-/* Every row once, group after group: the part of thread `me` of so many, all of which must call it. */
+/* Every row once, group after group: the part of thread `me` of so many, all of which must call it.
+   Two threads take a half each where there are halves. */
 typedef void sweep_text(struct problem *, int me, int threads, const struct sweep_opt *,
                         struct tally *);
 

@@ -4,7 +4,7 @@
 . tests/tap.sh
 
 methods=(sbp sal ebp eal exact)
-orders=(natural reverse random colour)
+orders=(natural reverse random colour halves)
 frames=300
 [ -z "$quick" ] || frames=60
 

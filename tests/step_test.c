@@ -185,12 +185,39 @@ static void settled(struct packing *p, struct contacts *s, int dim, int steps)
     run(p, s, &o, steps);
 }
 
+/* Bodies by the parts that their contacts lie in: a thread's own, or the border's and the rim's */
+static void test_halves(const struct problem *q, const struct packing *p)
+{
+    const struct halves *h = q->halves;
+    enum { BORDER = 1, BEYOND = 2, INSIDE = 4, RIM = 8 };
+    int *parts = calloc((size_t)p->n, sizeof *parts), wrong = 0;
+    int64_t ours = 0, theirs = 0;
+    for (int64_t i = 0; h && i < q->bundles; i++) {
+        int64_t g = 0;
+        while (q->group[g + 1] <= i) g++;
+        int part = g < h->beyond ? BORDER : g < h->inside ? BEYOND : INSIDE;
+        if (g >= h->rim && g < h->rest) part = RIM;
+        *(part < INSIDE ? &ours : &theirs) += 1;
+        const int32_t *both[2] = { q->bundle[i].a, q->bundle[i].b };
+        for (int k = 0; k < 2 * BUNDLE; k++)
+            if (both[k % 2][k / 2] < p->n) parts[both[k % 2][k / 2]] |= part;
+    }
+    for (int64_t i = 0; i < p->n; i++) {
+        wrong += parts[i] & BEYOND && parts[i] & (INSIDE | RIM);
+        wrong += parts[i] & BORDER && parts[i] & INSIDE;
+    }
+    free(parts);
+    ok(h && !wrong, "halves: threads share no body but between border and rim (%d do)", wrong);
+    ok(llabs(ours - theirs) <= 4, "halves: %lld and %lld bundles", (long long)ours,
+       (long long)theirs);
+}
+
 static void test_identity(const struct packing *p, const struct contacts *s)
 {
     struct why why = { 0 };
     struct problem q;
     struct contacts copy = { .n = s->n, .room = s->n, .solved = true };
-    for (int order = ORDER_NATURAL; order <= ORDER_COLOUR; order++) {
+    for (int order = ORDER_NATURAL; order <= ORDER_HALVES; order++) {
         copy.c = malloc((size_t)s->n * sizeof *copy.c);
         memcpy(copy.c, s->c, (size_t)s->n * sizeof *copy.c);
         must(problem_prepare(&q, p, &copy, 0, 1, (enum order)order, &why), &why);
@@ -220,6 +247,7 @@ static void test_identity(const struct packing *p, const struct contacts *s)
             ok(q.bundles <= (s->n + BUNDLE - 1) / BUNDLE + 1,
                "by colours %lld contacts lie in %lld bundles: few are not full", (long long)s->n,
                (long long)q.bundles);
+        if (order == ORDER_HALVES) test_halves(&q, p);
         problem_free(&q);
         free(copy.c);
     }
@@ -319,7 +347,7 @@ static bool same_motion(const struct packing *a, const struct packing *b)
 static void test_threads(const struct packing *start)
 {
     struct why why = { 0 };
-    for (int order = ORDER_NATURAL; order <= ORDER_COLOUR; order++) {
+    for (int order = ORDER_NATURAL; order <= ORDER_HALVES; order++) {
         struct packing one;
         int32_t sweeps = 0;
         for (int k = 0; k < 4; k++) { // 1, 2, 4 threads; every sweep

@@ -80,12 +80,13 @@ static bool same(const struct print *a, const struct print *b)
 static void compare(const struct packing *p, const struct contacts *s, const char *what, bool all)
 {
     static const int lanes[] = { 2, 4, 8 };
+    static const enum order orders[] = { ORDER_NATURAL, ORDER_COLOUR, ORDER_NATURAL, ORDER_HALVES };
     for (int m = 0; methods[m]; m++) {
         bool good = true;
         for (int way = 0; way < 8; way++) {
             if (!all && way != 3) continue;
             struct step_opt o = options(m, way & 1 ? 1.5 : 1);
-            o.order = way & 2 ? ORDER_COLOUR : ORDER_NATURAL, o.warm = way & 4;
+            o.order = orders[way / 2], o.warm = way & 4;
             o.solve.local.plain = way == 7;
             sweep_narrow(2);
             struct print first = solve(p, s, &o);
