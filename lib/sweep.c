@@ -164,63 +164,71 @@ ALWAYS_INLINE void visit(struct problem *p, int64_t first, int64_t end, const st
     }
 }
 
-/* A thread's part of groups first .. end-1 */
-ALWAYS_INLINE void stretch(struct problem *p, int64_t first, int64_t end, int me, int threads,
-                           const struct sweep_opt *o, method_text *solve, bool given_by_W,
-                           bool full, struct count *t)
+/* Groups that a thread sweeps: `after` a number that another counts up, counting itself when `done` */
+struct leg {
+    int64_t first, end;
+    _Atomic int64_t *after, *done;
+};
+
+/* One thread's legs of a sweep; returns their number. All groups are one leg, but by halves. */
+ALWAYS_INLINE int route(const struct problem *p, int me, bool by_halves, struct leg leg[3])
 {
-    for (int64_t g = first; g < end; g++) {
-        int64_t from = p->group[g], n = p->group[g + 1] - from;
-        visit(p, from + n * me / threads, from + n * (me + 1) / threads, o, solve, given_by_W, full,
-              t);
-        if (threads == 1) continue;
-#pragma omp barrier
+    struct halves *h = p->halves;
+    if (!by_halves) {
+        leg[0] = (struct leg){ 0, p->groups, NULL, NULL };
+        return 1;
     }
+    if (me == 0) {
+        leg[0] = (struct leg){ 0, h->beyond, &h->rims, &h->borders };
+        leg[1] = (struct leg){ h->beyond, h->inside, NULL, NULL };
+        return 2;
+    }
+    leg[0] = (struct leg){ h->inside, h->rim, NULL, NULL };
+    leg[1] = (struct leg){ h->rim, h->rest, &h->borders, &h->rims };
+    leg[2] = (struct leg){ h->rest, p->groups, NULL, NULL };
+    return 3;
 }
 
-/* The bodies of these groups' contacts, from the other thread's cache: all at once takes less time */
-ALWAYS_INLINE void pull(const struct problem *p, int64_t first, int64_t end)
+/* Waits until the leg's bodies are ours, and asks for all at once: that takes less than one by one. */
+ALWAYS_INLINE void set_out(const struct problem *p, const struct leg *leg, int me)
 {
-    for (int64_t i = p->group[first]; i < p->group[end]; i++)
+    if (!leg->done) return;
+    halves_wait(leg->after, atomic_load_explicit(leg->done, memory_order_relaxed) + me);
+    for (int64_t i = p->group[leg->first]; i < p->group[leg->end]; i++)
         for (int k = 0; k < BUNDLE; k++) {
             __builtin_prefetch(&p->body[p->bundle[i].a[k]], 1);
             __builtin_prefetch(&p->body[p->bundle[i].b[k]], 1);
         }
 }
 
-/* One of two threads' half of a sweep [halves.h] */
-ALWAYS_INLINE void half(struct problem *p, int me, const struct sweep_opt *o, method_text *solve,
-                        struct count *t)
+/* The count is this thread's alone: no need for an addition that waits for what was stored before. */
+ALWAYS_INLINE void arrive(const struct leg *leg)
 {
-    struct halves *h = p->halves;
-    const struct {
-        int64_t first, end;
-        _Atomic int64_t *after, *done;
-    } all[2][3] = { { { 0, h->beyond, &h->rims, &h->borders },
-                      { h->beyond, h->inside, NULL, NULL } },
-                    { { h->inside, h->rim, NULL, NULL },
-                      { h->rim, h->rest, &h->borders, &h->rims },
-                      { h->rest, p->groups, NULL, NULL } } };
-    for (int k = 0; k < 3; k++) {
-        int64_t first = all[me][k].first, end = all[me][k].end;
-        _Atomic int64_t *done = all[me][k].done;
-        int64_t so_far = done ? atomic_load_explicit(done, memory_order_relaxed) : 0;
-        if (done) halves_wait(all[me][k].after, so_far + me), pull(p, first, end);
-        stretch(p, first, end, 0, 1, o, solve, false, false, t);
-        // it alone counts this: no need for an addition that waits for what was stored before
-        if (done) atomic_store_explicit(done, so_far + 1, memory_order_release);
-    }
+    if (!leg->done) return;
+    int64_t n = atomic_load_explicit(leg->done, memory_order_relaxed);
+    atomic_store_explicit(leg->done, n + 1, memory_order_release);
 }
 
-/* One sweep: a thread's part of it */
+/* One sweep: a thread's part of every group, or its half */
 ALWAYS_INLINE void sweep(struct problem *p, int me, int threads, const struct sweep_opt *o,
                          method_text *solve, bool given_by_W, bool full, struct tally *t)
 {
     struct count c = { splat(0), splat(0), splat(0), splat(0) };
-    if (p->halves && threads == 2)
-        half(p, me, o, solve, &c);
-    else
-        stretch(p, 0, p->groups, me, threads, o, solve, given_by_W, full, &c);
+    struct leg leg[3];
+    bool by_halves = p->halves && threads == 2;
+    int legs = route(p, me, by_halves, leg), share = by_halves ? 1 : threads,
+        mine = by_halves ? 0 : me;
+    for (int k = 0; k < legs; k++) {
+        set_out(p, &leg[k], me);
+        for (int64_t g = leg[k].first; g < leg[k].end; g++) {
+            int64_t first = p->group[g], n = p->group[g + 1] - first;
+            int64_t from = first + n * mine / share, to = first + n * (mine + 1) / share;
+            visit(p, from, to, o, solve, given_by_W, full, &c);
+            if (share == 1) continue;
+#pragma omp barrier
+        }
+        arrive(&leg[k]);
+    }
     raise(t->change, c.change), add(t->newton, c.newton);
     add(t->safeguarded, c.safeguarded), add(t->gave_up, c.gave_up);
 }
