@@ -11,14 +11,6 @@ enum {
     SPINS = 10000   /* looks before another process may have the core */
 };
 
-static int movable(const struct packing *p, const struct contact *c, int32_t body[2])
-{
-    int k = 0;
-    if (c->a >= 0 && p->mass[c->a] > 0) body[k++] = c->a;
-    if (p->mass[c->b] > 0) body[k++] = c->b;
-    return k;
-}
-
 static double along(const struct packing *p, int32_t body, int axis)
 {
     vec3 x = p->x[body];
@@ -30,7 +22,7 @@ static void reach(const struct packing *p, const struct contact *c, int axis, do
                   double *hi)
 {
     int32_t body[2];
-    int k = movable(p, c, body);
+    int k = packing_movable(p, c->a, c->b, body);
     *lo = INFINITY, *hi = -INFINITY;
     for (int j = 0; j < k; j++) {
         double x = along(p, body[j], axis);
@@ -67,14 +59,17 @@ int halves_divide(const struct contacts *s, const struct packing *p, int8_t *par
     int32_t body[2];
     if (room) cut(p, s, top, &axis, &at);
     for (int64_t c = 0; room && c < s->n; c++) {
-        reach(p, &s->c[c], axis, &lo, &hi);
+        const struct contact *t = &s->c[c];
+        reach(p, t, axis, &lo, &hi);
         part[c] = hi < at ? PART_INSIDE : lo < at ? PART_BORDER : PART_BEYOND;
-        for (int k = movable(p, &s->c[c], body); part[c] == PART_BORDER && k > 0; k--)
+        for (int k = packing_movable(p, t->a, t->b, body); part[c] == PART_BORDER && k > 0; k--)
             shared[body[k - 1]] = true;
     }
-    for (int64_t c = 0; room && c < s->n; c++)
-        for (int k = movable(p, &s->c[c], body); part[c] == PART_INSIDE && k > 0; k--)
+    for (int64_t c = 0; room && c < s->n; c++) {
+        const struct contact *t = &s->c[c];
+        for (int k = packing_movable(p, t->a, t->b, body); part[c] == PART_INSIDE && k > 0; k--)
             if (shared[body[k - 1]]) part[c] = PART_RIM;
+    }
     free(top), free(shared);
     return room ? 0 : -1;
 }

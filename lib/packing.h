@@ -71,6 +71,15 @@ static inline vec3 packing_predict(const struct packing *p, int64_t i)
     return v3_axpy(p->x[i], (1 - p->theta) * p->dt, p->v[i]);
 }
 
+/* Which of bodies a and b (a may be a wall, < 0) can move; how many. */
+static inline int packing_movable(const struct packing *p, int32_t a, int32_t b, int32_t body[2])
+{
+    int k = 0;
+    if (a >= 0 && p->mass[a] > 0) body[k++] = a;
+    if (p->mass[b] > 0) body[k++] = b;
+    return k;
+}
+
 /* Mass and inertia of a solid ball (disc) of this radius (m) and density (kg m^-3, kg m^-2). */
 void packing_body(int dim, double radius, double density, double *mass, double *inertia);
 

@@ -161,9 +161,10 @@ static double mean_mass(const struct packing *p)
 static int64_t seats(const struct packing *pack, const struct contacts *s)
 {
     int64_t n = pack->n + 2;
+    int32_t moves[2];
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
-        n += (c->a < 0 || !(pack->mass[c->a] > 0)) + !(pack->mass[c->b] > 0);
+        n += 2 - packing_movable(pack, c->a, c->b, moves);
     }
     return n;
 }

@@ -30,13 +30,10 @@ struct graph {
     int64_t count[COLOURS];   /* contacts of each */
 };
 
-static int touches(const struct graph *g, int64_t c, int64_t node[2])
+static int touches(const struct graph *g, int64_t c, int32_t node[2])
 {
-    int k = 0;
     const struct contact *t = &g->contacts->c[c];
-    if (t->a >= 0 && g->packing->mass[t->a] > 0) node[k++] = t->a;
-    if (g->packing->mass[t->b] > 0) node[k++] = t->b;
-    return k;
+    return packing_movable(g->packing, t->a, t->b, node);
 }
 
 static uint64_t later(uint64_t a, uint64_t b)
@@ -59,7 +56,7 @@ static void place_level(struct graph *g, int64_t c)
 {
     uint64_t level = 0;
     if (!g->W) {
-        int64_t node[2];
+        int32_t node[2];
         int k = touches(g, c, node);
         for (int j = 0; j < k; j++) level = later(level, g->mark[node[j]]);
         for (int j = 0; j < k; j++) g->mark[node[j]] = level + 1;
@@ -80,7 +77,7 @@ static int64_t colour(struct graph *g, int64_t c)
 {
     uint64_t seen = 0;
     if (!g->W) {
-        int64_t node[2];
+        int32_t node[2];
         int k = touches(g, c, node);
         for (int j = 0; j < k; j++) seen |= g->mark[node[j]];
         int64_t free = pick_colour(g, seen);
@@ -99,7 +96,8 @@ static int64_t colour(struct graph *g, int64_t c)
 /* Colours for n contacts of the sequence, numbered from `from`; returns the number after the last. */
 static int64_t place_colours(struct graph *g, const int64_t *sequence, int64_t n, int64_t from)
 {
-    int64_t most = from, extra = from + COLOURS, node[2];
+    int64_t most = from, extra = from + COLOURS;
+    int32_t node[2];
     g->begun = 0;
     memset(g->count, 0, sizeof g->count);
     for (int64_t i = 0; i < n && !g->W; i++)
