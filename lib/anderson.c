@@ -6,12 +6,13 @@
  *
  *     x = g - dG gamma,     gamma = argmin |f - dF gamma|,
  *
- * back to what friction allows. The law has corners, and the mixing may lead astray: what has made f
- * larger is taken back, and a mixing that does not pay gives way. What then holds the sweeps up is
- * often a chain of a few contacts whose reactions grow by the same amount in every sweep, thousands
- * of them, until one slips or opens; f is constant and its differences are noise. There one leaps
- * along f, twice as far each time. Last come sweeps alone, twice as many each time, so that in the
- * end this is Gauss-Seidel.
+ * back to what friction allows. G is two sweeps, the first of them over-relaxed between balls: fewer
+ * are needed, and the plain one leaves u and r on the law. The law has corners, and the mixing may
+ * lead astray: what has made f larger is taken back, and a mixing that does not pay gives way. What
+ * then holds the sweeps up is often a chain of a few contacts whose reactions grow by the same amount
+ * in every sweep, thousands of them, until one slips or opens; f is constant and its differences are
+ * noise. There one leaps along f, twice as far each time. Last come sweeps alone, twice as many each
+ * time, so that in the end this is Gauss-Seidel.
  */
 #include "solver.h"
 
@@ -31,6 +32,7 @@ enum {
 #define ASTRAY 2.0   /* the same of a leap */
 #define RIDGE  1e-14 /* on the scaled normal equations' diagonal of 1 */
 #define LEAP   8.0   /* in multiples of f, at first */
+#define BEYOND 1.6   /* omega of every other sweep of balls, where none is asked for */
 
 struct anderson {
     struct solve *s;
@@ -42,10 +44,10 @@ struct anderson {
     double fd[MEMORY];           /* dF'f */
     int slot, full;              /* the next of the memory, and how much of it is in use */
     bool begun;                  /* g and f are of a time before */
-    double omega;
-    int rest;    /* sweeps of the next leaps, or alone */
-    bool leap;   /* leaps are next */
-    double best; /* |f|^2 after which the rests began anew */
+    double omega[2];             /* of the first sweep after a mixing, and of the second */
+    int rest;                    /* sweeps of the next leaps, or alone */
+    bool leap;                   /* leaps are next */
+    double best;                 /* |f|^2 after which the rests began anew */
 };
 
 static double sum(const double slot[BUNDLE])
@@ -69,7 +71,8 @@ struct anderson *anderson_new(struct solve *s)
     *a = (struct anderson){ .s = s, .watch = { .due = INFINITY, .judged = s->rep->sweeps } };
     a->rest = SHORT, a->leap = true, a->best = INFINITY;
     size_t size = (size_t)(s->p->rows * s->p->d), bytes = VECTORS * size * sizeof(double);
-    a->omega = s->o->relax > 0 ? s->o->relax : 1;
+    for (int k = 0; k < 2; k++)
+        a->omega[k] = s->o->relax > 0 ? s->o->relax : k || s->p->full ? 1 : BEYOND;
     a->room = aligned_alloc(64, bytes); // rows come in eights
     if (!a->room || kept_init(&a->kept, s->p)) {
         free(a->room), free(a);
@@ -88,7 +91,7 @@ static int sweeps(struct anderson *a, int n)
 {
     for (int k = 0; k < n; k++) {
         a->watch.change = 0; // after a mixing the last one's says nothing
-        int over = nlgs_sweep(a->s, a->omega, false, &a->watch);
+        int over = nlgs_sweep(a->s, a->omega[k % 2], false, &a->watch);
         if (a->watch.looked) kept_offer(&a->kept, a->s);
         if (over) return over;
     }
@@ -241,4 +244,4 @@ static int run(struct solve *s)
     return failed;
 }
 
-const struct solver solver_anderson = { "anderson", 1, run };
+const struct solver solver_anderson = { "anderson", 0, run };

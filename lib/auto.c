@@ -58,7 +58,7 @@ static int run(struct solve *s)
     while (!failed && rep->sweeps < end && !solve_met(s) && !solve_spent(s)) {
         double before = s->value;
         int32_t chunk = rep->sweeps / 2 > least ? rep->sweeps / 2 : least;
-        failed = anderson_sweeps(sweeps, chunk);
+        failed = anderson_sweeps(sweeps, chunk < end - rep->sweeps ? chunk : end - rep->sweeps);
         if (failed || !isfinite(s->value)) break;
         double more = older.sweeps ? to_go(s, older.value, older.sweeps) : 0;
         older.value = before, older.sweeps = rep->sweeps - chunk;
