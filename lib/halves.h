@@ -1,6 +1,6 @@
 /*
- * halves.h: a packing's contacts in two halves that two threads sweep side by side, for piles whose
- * colours are too small to be shared.
+ * halves.h: a packing's contacts in two halves that two threads sweep side by side: for piles whose
+ * colours are too small to be shared, and so that of large ones each has bodies of its own at hand.
  *
  * A plane cuts the bodies in two. The contacts between the halves are the border, which belongs to
  * one thread together with the contacts beyond; the other has those that share a body with the

@@ -8,8 +8,8 @@
  * natural, reverse, random: the given sequence, regrouped by levels: a contact goes one level after
  * the last one before it that it depends on. That is the sequence's own result, bit for bit.
  * colour: contacts coloured greedily in their natural order; another sequence, in fewer groups.
- * halves: the parts of two halves one after another [halves.h], each coloured; colour where there are
- * no bodies, too few contacts to be worth it (384), or more than are coloured as one (65 536).
+ * halves: the parts of two halves one after another [halves.h], each coloured. So is colour of 8192
+ * contacts and more, and halves of fewer than 384, or given by W, is as colour.
  */
 #ifndef NSD_SCHEDULE_H
 #define NSD_SCHEDULE_H
