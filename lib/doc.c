@@ -94,7 +94,7 @@ static int count_frames(struct reader *r, struct why *why)
                            c->width);
         n = n < shape[0] ? n : shape[0];
     }
-    // a killed writer may have left room for a clock that it had not yet set
+    // a killed writer may have left room for a step that it had not yet set
     for (r->frames = n > 0; r->frames < (int64_t)n; r->frames++)
         if (r->step[r->frames] <= r->step[r->frames - 1]) break;
     if (!h5_has(r->doc, "/observables/solver/step")) return 0;

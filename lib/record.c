@@ -15,25 +15,25 @@ static const void *pointer_in(const void *base, size_t offset)
     return p;
 }
 
-/* HOME/step and HOME/time; and the same two under every element of the table, by hard links. */
-static int put_clock(struct series *s, const char *home, int64_t step, double t, const char *where,
-                     const struct column *c, struct why *why)
+/* A value of HOME/step (i64) or HOME/time (f64, s), which the elements of the table share, by hard
+   links. */
+static int put_clock(struct series *s, const char *home, bool step, const void *value,
+                     const char *where, const struct column *c, struct why *why)
 {
     const hsize_t one = 1;
-    char from[2][80], to[80];
-    for (int k = 0; k < 2; k++)
-        snprintf(from[k], sizeof from[k], "%s/%s", home, k ? "time" : "step");
-    bool linked = series_grows(s, from[0]);
-    if (series_put(s, from[0], COLUMN_I64, 1, &one, CHUNK_FRAMES, &step, NULL, why) ||
-        series_put(s, from[1], COLUMN_F64, 1, &one, CHUNK_FRAMES, &t, "s", why))
+    const char *name = step ? "step" : "time";
+    char from[80], to[80];
+    snprintf(from, sizeof from, "%s/%s", home, name);
+    bool linked = series_grows(s, from);
+    if (series_put(s, from, step ? COLUMN_I64 : COLUMN_F64, 1, &one, CHUNK_FRAMES, value,
+                   step ? NULL : "s", why))
         return why->status;
-    for (; !linked && c->name; c++)
-        for (int k = 0; k < 2; k++) {
-            snprintf(to, sizeof to, "%s/%s/%s", where, c->name, k ? "time" : "step");
-            if (h5_has(s->file, to)) continue; // it is the home
-            if (H5Lcreate_hard(s->file, from[k], s->file, to, H5P_DEFAULT, H5P_DEFAULT) < 0)
-                return why_set(why, EX_IOERR, "%s: cannot be linked", to);
-        }
+    for (; !linked && c->name; c++) {
+        snprintf(to, sizeof to, "%s/%s/%s", where, c->name, name);
+        if (h5_has(s->file, to)) continue; // it is the home
+        if (H5Lcreate_hard(s->file, from, s->file, to, H5P_DEFAULT, H5P_DEFAULT) < 0)
+            return why_set(why, EX_IOERR, "%s: cannot be linked", to);
+    }
     return 0;
 }
 
@@ -143,7 +143,9 @@ static int put_contacts(struct series *s, const struct frame *f, struct why *why
                    why) ||
         series_put(s, "/contacts/count", COLUMN_I64, 1, &one, CHUNK_FRAMES, &t->n, NULL, why) ||
         series_put_columns(s, "/contacts", "", layout_contacts, t->solved, t->n, t->c, sizeof *t->c,
-                           CHUNK_CONTACTS, why))
+                           CHUNK_CONTACTS, why) ||
+        series_put(s, "/contacts/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &f->packing.step, NULL,
+                   why))
         return why->status;
     if (s->growing) s->contacts += t->n;
     int moved = f->moved;
@@ -157,7 +159,9 @@ static int put_report(struct series *s, const struct report *rep, struct why *wh
     const char *solver = "/observables/solver";
     bool first = !series_grows(s, "/observables/solver/eps/value");
     if (series_put_columns(s, solver, "/value", layout_report, true, 1, rep, sizeof *rep,
-                           CHUNK_FRAMES, why))
+                           CHUNK_FRAMES, why) ||
+        put_clock(s, solver, true, &rep->step, solver, layout_report, why) ||
+        put_clock(s, solver, false, &rep->t, solver, layout_report, why))
         return why->status;
     if (first &&
         (h5_attr_text(s->file, solver, "method", rep->method, why) ||
@@ -171,21 +175,6 @@ static int put_report(struct series *s, const struct report *rep, struct why *wh
                     rep->history, "1", why);
 }
 
-int record_clocks(struct series *s, const struct frame *f, struct why *why)
-{
-    const hsize_t one = 1;
-    const struct packing *p = &f->packing;
-    const char *position = "/particles/all/position", *solver = "/observables/solver";
-    if (f->packed && f->detected &&
-        series_put(s, "/contacts/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &p->step, NULL, why))
-        return why->status;
-    if (f->reported &&
-        put_clock(s, solver, f->report.step, f->report.t, solver, layout_report, why))
-        return why->status;
-    if (!f->packed) return 0;
-    return put_clock(s, position, p->step, p->t, "/particles/all", layout_motion, why);
-}
-
 int record_static(struct series *s, const struct frame *f, struct why *why)
 {
     if (put_nsd(s->file, f, why)) return why->status;
@@ -195,9 +184,19 @@ int record_static(struct series *s, const struct frame *f, struct why *why)
     return copy_unknown(s->file, f, why);
 }
 
+static const char particles[] = "/particles/all", position[] = "/particles/all/position";
+
 int record_moment(struct series *s, const struct frame *f, struct why *why)
 {
-    if (f->packed && put_motion(s, &f->packing, why)) return why->status;
+    if (f->packed && (put_motion(s, &f->packing, why) ||
+                      put_clock(s, position, false, &f->packing.t, particles, layout_motion, why)))
+        return why->status;
     if (f->packed && f->detected && put_contacts(s, f, why)) return why->status;
     return f->reported ? put_report(s, &f->report, why) : 0;
+}
+
+int record_step(struct series *s, const struct frame *f, struct why *why)
+{
+    if (!f->packed) return 0;
+    return put_clock(s, position, true, &f->packing.step, particles, layout_motion, why);
 }

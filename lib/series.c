@@ -21,8 +21,10 @@ static hid_t create(hid_t file, const char *path, enum column_type type, int ran
     hid_t disk = H5Tcopy(column_native(type));
     H5Tset_order(disk, H5T_ORDER_LE);
     H5Pset_chunk(plist, rank, chunk);
-    hid_t set = H5Dcreate2(file, path, disk, space, H5P_DEFAULT, plist, H5P_DEFAULT);
-    H5Tclose(disk), H5Pclose(plist), H5Sclose(space);
+    hid_t uncached = H5Pcreate(H5P_DATASET_ACCESS); // a value goes to the disk before its dimension
+    H5Pset_chunk_cache(uncached, 0, 0, 0);
+    hid_t set = H5Dcreate2(file, path, disk, space, H5P_DEFAULT, plist, uncached);
+    H5Tclose(disk), H5Pclose(plist), H5Pclose(uncached), H5Sclose(space);
     if (set < 0) return why_set(why, EX_IOERR, "%s: cannot be made", path), -1;
     if (!units || !h5_attr_text(file, path, "units", units, why)) return set;
     H5Dclose(set);

@@ -23,7 +23,6 @@ struct sink {
     struct packing first; /* of it: what the others must share */
     bool contacts, solved, moved; /* so far: are there any, and what they are */
     int64_t step;                 /* of its last frame */
-    hsize_t reserved;             /* bytes that the disk has promised */
 };
 
 static int io_trouble(const struct sink *s, struct why *why, const char *trouble)
@@ -107,7 +106,7 @@ static int stream_frame(struct sink *s, const struct frame *f, struct why *why)
     H5Pclose(access);
     if (doc.file < 0) return why_set(why, EX_SOFTWARE, "no memory for the document");
     int e = record_static(&doc, f, why) || record_moment(&doc, f, why) ||
-            record_clocks(&doc, f, why) ||
+            record_step(&doc, f, why) ||
             (f->export && fclib_write_problem(f->export, f->export_global, doc.file, why)) ||
             (f->foreign && f->u &&
              fclib_store_solution(&f->problem, doc.file, f->u, f->problem.W.r, why)) ||
@@ -116,7 +115,14 @@ static int stream_frame(struct sink *s, const struct frame *f, struct why *why)
     return e ? why->status : 0;
 }
 
-/* ---- a trajectory ---- */
+/*
+ * ---- a trajectory ----
+ *
+ * A reader finds the frames that are finished at every moment, so also when the writer is killed:
+ * numbers go straight to the disk (series.c) and their shapes and places with a flush, a frame's step
+ * after all else; places are kept in the index of HDF5 1.10, of which no entry ever moves (the B-tree
+ * before it is cut in two now and then); and a flush begins with where the file will end.
+ */
 
 static int write_header(struct sink *s, uint64_t length, uint32_t crc, struct why *why)
 {
@@ -132,29 +138,36 @@ static int write_header(struct sink *s, uint64_t length, uint32_t crc, struct wh
  */
 static int reserve(struct sink *s, const struct frame *f, struct why *why)
 {
-    bool first = s->doc.file < 0;
     hsize_t size = 0, n = (hsize_t)f->packing.n, rows = 0;
-    if (!first && H5Fget_filesize(s->doc.file, &size) < 0)
+    if (s->doc.file >= 0 && H5Fget_filesize(s->doc.file, &size) < 0)
         return io_trouble(s, why, "cannot be written");
     if (n > CHUNK_BODIES) n += CHUNK_BODIES; // chunks are whole
     if (f->detected) rows = (hsize_t)f->contacts.n + CHUNK_CONTACTS;
-    // 128 bytes a body's motion, 256 a contact, and the tables that a frame may make grow
-    hsize_t frame = 128 * n + 256 * rows + (1 << 16);
-    if (first) frame += 128 * n + (1 << 16);
-    if (size + frame <= s->reserved) return 0;
+    // 128 bytes a body, and as many of its motion, 256 a contact, and the tables that may grow
+    hsize_t frame = 256 * n + 256 * rows + (1 << 17);
+    struct stat st; // HDF5 now and then cuts off what is reserved
+    if (!fstat(s->disk, &st) && size + frame <= (hsize_t)st.st_size) return 0;
     // for more frames where there is room: asking takes as long as writing a tenth of a small one
-    hsize_t much = frame < AHEAD ? AHEAD : frame;
-    int e = posix_fallocate(s->disk, (off_t)size, (off_t)much);
-    if (e) e = posix_fallocate(s->disk, (off_t)size, (off_t)(much = frame));
-    s->reserved = size + much;
+    int e = posix_fallocate(s->disk, (off_t)size, (off_t)(frame < AHEAD ? AHEAD : frame));
+    if (e) e = posix_fallocate(s->disk, (off_t)size, (off_t)frame);
     return e ? io_trouble(s, why, strerror(e)) : 0;
 }
 
+/* The end-of-file address of the superblock, its byte 40: beyond it a reader takes all for damage. */
+static bool set_end(const struct sink *s, hsize_t end)
+{
+    unsigned char bytes[8];
+    for (int k = 0; k < 8; k++) bytes[k] = (unsigned char)(end >> 8 * k);
+    return pwrite(s->disk, bytes, sizeof bytes, DOCUMENT_USERBLOCK + 40) == (ssize_t)sizeof bytes;
+}
+
+/* HDF5 itself would tell last where the file ends. */
 static int flush(struct sink *s, struct why *why)
 {
-    return H5Fflush(s->doc.file, H5F_SCOPE_GLOBAL) < 0
-               ? io_trouble(s, why, "cannot be written (full?)")
-               : 0;
+    hsize_t size;
+    bool good = H5Fget_filesize(s->doc.file, &size) >= 0 && set_end(s, size) &&
+                H5Fflush(s->doc.file, H5F_SCOPE_GLOBAL) >= 0;
+    return good ? 0 : io_trouble(s, why, "cannot be written (full?)");
 }
 
 /* What only the first frame says must hold of all. */
@@ -182,8 +195,14 @@ static int trajectory_begin(struct sink *s, const struct frame *f, struct why *w
 {
     char path[40];
     snprintf(path, sizeof path, "/proc/self/fd/%d", s->disk);
-    s->doc = (struct series){ .file = create(path, H5P_DEFAULT), .growing = true };
+    hid_t access = H5Pcreate(H5P_FILE_ACCESS); // the file ends where its last number does
+    H5Pset_meta_block_size(access, 0), H5Pset_small_data_block_size(access, 0);
+    s->doc = (struct series){ .file = create(path, access), .growing = true };
+    H5Pclose(access);
     if (s->doc.file < 0) return io_trouble(s, why, "cannot be written");
+    if (H5Fset_libver_bounds(s->doc.file, H5F_LIBVER_V110, H5F_LIBVER_V110) < 0)
+        return io_trouble(s, why, "cannot be written");
+    if (reserve(s, f, why)) return why->status; // again: HDF5 began by emptying the file
     if (packing_copy(&s->first, &f->packing, why)) return why->status;
     s->step = f->packing.step - 1;
     return write_header(s, 0, 0, why) || record_static(&s->doc, f, why) ? why->status : 0;
@@ -196,8 +215,7 @@ static int trajectory_frame(struct sink *s, const struct frame *f, struct why *w
     if (reserve(s, f, why)) return why->status;
     if (s->doc.file < 0 && trajectory_begin(s, f, why)) return why->status;
     if (check_same(s, f, why)) return why->status;
-    // numbers first, on disk; then the clock that makes them a frame: a kill leaves whole frames
-    if (record_moment(&s->doc, f, why) || flush(s, why) || record_clocks(&s->doc, f, why) ||
+    if (record_moment(&s->doc, f, why) || flush(s, why) || record_step(&s->doc, f, why) ||
         flush(s, why))
         return why->status;
     s->step = f->packing.step;

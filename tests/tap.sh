@@ -38,7 +38,8 @@ tap_result() # good? name
     fi
 }
 
-diag() { printf '%s\n' "$@" | sed 's/^/# /'; }
+# to stderr, which prove does not hide
+diag() { printf '%s\n' "$@" | sed 's/^/# /' >&2; }
 
 skip() # name reason
 {

@@ -1,0 +1,131 @@
+/*
+ * A trajectory whose writer is killed: after each of its writes to the disk, a reader finds every
+ * frame that the sink had finished before, whole, and no other.
+ */
+#include "doc.h"
+#include "sink.h"
+#include "tap.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+enum { BODIES = 4, FRAMES = 260, ROOM = 1 << 16 };
+
+static struct {
+    off_t at;
+    size_t size;
+    void *bytes;
+    off_t length;   // of the file, then
+    int64_t frames; // finished before
+} made[ROOM];
+static int writes;
+static int64_t finished;
+
+/* HDF5's writes, and the sink's, come here first. */
+ssize_t pwrite(int fd, const void *bytes, size_t size, off_t at)
+{
+    ssize_t n = syscall(SYS_pwrite64, fd, bytes, size, at);
+    struct stat st;
+    void *copy = malloc(size);
+    if (n == (ssize_t)size && copy && writes < ROOM && !fstat(fd, &st)) {
+        memcpy(copy, bytes, size);
+        made[writes].at = at, made[writes].size = size, made[writes].bytes = copy;
+        made[writes].length = st.st_size, made[writes++].frames = finished;
+    }
+    return n;
+}
+
+/* Frame k: every number that is looked at tells it. */
+static int change(struct frame *f, int64_t k, struct why *why)
+{
+    struct packing *p = &f->packing;
+    p->step = f->report.step = k;
+    p->t = f->report.t = (double)k * p->dt;
+    for (int i = 0; i < BODIES; i++) p->x[i] = (vec3){ (double)k, i, 1 };
+    contacts_free(&f->contacts);
+    for (int i = 0; i < 2 + k % 3; i++) {
+        struct contact *c = contacts_add(&f->contacts, -1, i);
+        if (!c) return why_set(why, EX_SOFTWARE, "no memory");
+        c->gap = -(double)k;
+        contact_frame(c, 3, (vec3){ 0, 0, 1 });
+    }
+    return 0;
+}
+
+static int write_all(const char *path, struct why *why)
+{
+    struct sink *s;
+    struct frame f = { .packed = true, .detected = true, .reported = true };
+    snprintf(f.report.method, sizeof f.report.method, "exact");
+    if (packing_init(&f.packing, 3, BODIES, why) || packing_walls(&f.packing, 1, why))
+        return why->status;
+    f.packing.dt = 0.001;
+    f.packing.wall[0].n = (vec3){ 0, 0, 1 };
+    for (int i = 0; i < BODIES; i++)
+        f.packing.radius[i] = f.packing.mass[i] = f.packing.inertia[i] = 1;
+    if (sink_open(&s, path, SINK_TRAJECTORY, why)) return why->status;
+    for (int64_t k = 1; k <= FRAMES && !why->status; k++)
+        if (!change(&f, k, why) && !sink_frame(s, &f, why)) finished = k;
+    frame_free(&f);
+    if (!why->status) sink_close(s, why);
+    finished = FRAMES;
+    return why->status;
+}
+
+/* Is the reader's frame k (from 0) the writer's? */
+static bool is_whole(struct reader *r, int64_t k, struct frame *f, struct why *why)
+{
+    if (reader_frame(r, k, f, why)) return false;
+    bool good = f->packing.step == k + 1 && f->packing.t == (double)(k + 1) * f->packing.dt &&
+                f->reported && f->report.step == k + 1 && f->detected &&
+                f->contacts.n == 2 + (k + 1) % 3;
+    for (int i = 0; i < BODIES; i++) good &= f->packing.x[i].x == (double)(k + 1);
+    for (int i = 0; i < f->contacts.n; i++) good &= f->contacts.c[i].gap == -(double)(k + 1);
+    return good;
+}
+
+/* Does the file at `path`, which holds the first writes, have at least those frames? */
+static bool holds(char *path, int64_t frames, struct why *why)
+{
+    struct reader *r;
+    struct frame f = { 0 };
+    int64_t n = 0;
+    bool good = !reader_open(&r, 1, &path, why) && !reader_document(r, &n, why) && n >= frames &&
+                is_whole(r, n - 1, &f, why) && is_whole(r, frames - 1, &f, why);
+    frame_free(&f);
+    reader_close(r);
+    return good;
+}
+
+int main(void)
+{
+    char path[] = "/tmp/kill_test.XXXXXX";
+    struct why why = { 0 };
+    int fd = mkstemp(path), seen = 0, bad = 0;
+    bool written = fd >= 0 && !write_all(path, &why);
+    ok(written && writes > 20 * FRAMES && writes < ROOM, "%d frames are written in %d writes",
+       FRAMES, writes);
+    if (ftruncate(fd, 0)) return 1;
+    for (int k = 0; k < writes; k++) {
+        if (syscall(SYS_pwrite64, fd, made[k].bytes, made[k].size, made[k].at) < 0 ||
+            ftruncate(fd, made[k].length))
+            return 1;
+        free(made[k].bytes);
+        // indices of chunks grow at multiples of 16
+        if (!made[k].frames || (made[k].frames + 1) % 16 > 1) continue;
+        seen++;
+        why = (struct why){ 0 };
+        if (holds(path, made[k].frames, &why)) continue;
+        if (bad++ < 8)
+            diag("write %d, of %zu bytes at %lld, after frame %lld: %s", k + 1, made[k].size,
+                 (long long)made[k].at, (long long)made[k].frames, why.text);
+    }
+    ok(!bad && seen > writes / 10, "after any of %d the frames before it are there and whole",
+       seen);
+    close(fd);
+    unlink(path);
+    return tap_done();
+}
