@@ -18,10 +18,9 @@
 ALWAYS_INLINE void eal_residual(vd mu, vd rho, struct iterate *x)
 {
     disc_predict(rho, x->r, x->v, x->tau);
-    vd t = norm2(x->tau + 1);
-    x->it = pick(lt(splat(0), t), 1.0 / t, splat(0)), x->ivt = splat(0);
+    x->t = norm2(x->tau + 1), x->vt = splat(0);
     x->free = le(x->tau[0], splat(0));
-    x->stick = lt(t, mu * x->tau[0]) & ~x->free;
+    x->stick = lt(x->t, mu * x->tau[0]) & ~x->free;
     disc_project(mu, x->tau, x->p);
     for (int i = 0; i < 3; i++) x->Z[i] = x->r[i] - x->p[i];
 }
@@ -35,7 +34,7 @@ ALWAYS_INLINE void eal_residual(vd mu, vd rho, struct iterate *x)
  */
 ALWAYS_INLINE void eal_tangent(vd mu, vd rho, const struct iterate *x, vd A[3][3], vd B[3][3])
 {
-    vd s = x->it, e1 = s * x->tau[1], e2 = s * x->tau[2], k = mu * x->tau[0] * s;
+    vd s = newton_inverse(x->t), e1 = s * x->tau[1], e2 = s * x->tau[2], k = mu * x->tau[0] * s;
     A[0][0] = A[0][1] = A[0][2] = splat(0);
     A[1][0] = -mu * e1;
     A[2][0] = -mu * e2;

@@ -18,11 +18,9 @@
 
 ALWAYS_INLINE void ebp_residual(vd mu, vd rho, struct iterate *x)
 {
-    vd vt = cone_predict(mu, rho, x->r, x->v, x->tau), t = norm2(x->tau + 1);
-    x->ivt = pick(lt(splat(0), vt), 1.0 / vt, splat(0));
-    x->it = pick(lt(splat(0), t), 1.0 / t, splat(0));
-    x->stick = lt(t, mu * x->tau[0]);
-    x->free = le(mu * t, -x->tau[0]) & ~x->stick;
+    x->vt = cone_predict(mu, rho, x->r, x->v, x->tau), x->t = norm2(x->tau + 1);
+    x->stick = lt(x->t, mu * x->tau[0]);
+    x->free = le(mu * x->t, -x->tau[0]) & ~x->stick;
     cone_project(mu, x->tau, x->p);
     for (int i = 0; i < 3; i++) x->Z[i] = x->r[i] - x->p[i];
 }
@@ -36,7 +34,7 @@ ALWAYS_INLINE void ebp_residual(vd mu, vd rho, struct iterate *x)
  */
 ALWAYS_INLINE void ebp_tangent(vd mu, vd rho, const struct iterate *x, vd A[3][3], vd B[3][3])
 {
-    vd c = 1.0 / (1.0 + mu * mu), s = x->it;
+    vd c = 1.0 / (1.0 + mu * mu), s = newton_inverse(x->t);
     vd e1 = s * x->tau[1], e2 = s * x->tau[2], k = c * (1.0 - mu * x->tau[0] * s);
     A[0][0] = c * mu * mu;
     A[0][1] = A[1][0] = -c * mu * e1;
@@ -45,7 +43,7 @@ ALWAYS_INLINE void ebp_tangent(vd mu, vd rho, const struct iterate *x, vd A[3][3
     A[2][2] = c * e2 * e2 + k * (1.0 - e2 * e2);
     A[1][2] = A[2][1] = (c - k) * e1 * e2;
     newton_branch(x, A);
-    vd g = mu * x->ivt, g1 = g * x->v[1], g2 = g * x->v[2];
+    vd g = mu * newton_inverse(x->vt), g1 = g * x->v[1], g2 = g * x->v[2];
     for (int i = 0; i < 3; i++) {
         B[i][0] = rho * ((double)(i == 0) - A[i][0]);
         B[i][1] = rho * ((double)(i == 1) - A[i][1]) + g1 * B[i][0];

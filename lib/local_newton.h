@@ -21,13 +21,19 @@ struct iterate {
     vd r[3], v[3];   /* N s, m/s */
     vd tau[3], p[3]; /* p = proj(tau) */
     vd Z[3];         /* r - p */
-    vd it, ivt;      /* 1/|tau_t|, 1/|v_t|; 0 at 0 */
+    vd t, vt;        /* |tau_t|, |v_t| */
     vm free, stick;  /* else it slides */
 };
 
 /* Z of (r, v) and the branch; the derivatives A and B there. */
 typedef void newton_residual(vd mu, vd rho, struct iterate *);
 typedef void newton_tangent(vd mu, vd rho, const struct iterate *, vd A[3][3], vd B[3][3]);
+
+/* 1/x, 0 at 0: the quotients are the tangent's alone, for most contacts stick or are free */
+ALWAYS_INLINE vd newton_inverse(vd x)
+{
+    return pick(lt(splat(0), x), 1.0 / x, splat(0));
+}
 
 /* A of sliding as it is given; without contact A = I, sticking 0 */
 ALWAYS_INLINE void newton_branch(const struct iterate *x, vd A[3][3])
@@ -83,7 +89,7 @@ ALWAYS_INLINE void newton_take(struct iterate *x, const struct iterate *y, vm m)
         x->tau[i] = pick(m, y->tau[i], x->tau[i]), x->p[i] = pick(m, y->p[i], x->p[i]);
         x->Z[i] = pick(m, y->Z[i], x->Z[i]);
     }
-    x->it = pick(m, y->it, x->it), x->ivt = pick(m, y->ivt, x->ivt);
+    x->t = pick(m, y->t, x->t), x->vt = pick(m, y->vt, x->vt);
     x->free = (m & y->free) | (~m & x->free), x->stick = (m & y->stick) | (~m & x->stick);
 }
 
