@@ -6,7 +6,7 @@
 #include <string.h>
 
 struct copy {
-    hid_t to;
+    hid_t to;          /* -1: it is only asked whether there is anything */
     const char *group; /* of `to` */
     const char *const *known;
     bool whole; /* the origin holds one frame: what depends on time may come along */
@@ -43,6 +43,7 @@ static herr_t copy_link(hid_t from, const char *name, const H5L_info_t *info, vo
         if (!strcmp(*k, name)) return 0;
     snprintf(path, sizeof path, "%s/%s", name, "step");
     if (!c->whole && h5_has(from, path)) return 0;
+    if (c->to < 0) return 1;
     snprintf(path, sizeof path, "%s%s%s", c->group, c->group[1] ? "/" : "", name);
     if (h5_has(c->to, path)) return 0;
     herr_t e;
@@ -57,7 +58,8 @@ static herr_t copy_link(hid_t from, const char *name, const H5L_info_t *info, vo
     return e < 0 ? why_set(c->why, EX_DATAERR, "%s: cannot be copied", path), -1 : 0;
 }
 
-int copy_unknown(int64_t file, const struct frame *f, struct why *why)
+/* 1: with to < 0, there is something */
+static int walk(hid_t to, const struct frame *f, struct why *why)
 {
     static const char *const root[] = { "h5md",     "nsd",         "particles", "walls",
                                         "contacts", "observables", "solution",  NULL };
@@ -82,15 +84,25 @@ int copy_unknown(int64_t file, const struct frame *f, struct why *why)
     h5_shape(f->origin, "/particles/all/position/step", shape);
     for (size_t i = 0; i < sizeof where / sizeof where[0]; i++) {
         if (!h5_has(f->origin, where[i].group)) continue;
-        struct copy c = {
-            file, where[i].group, where[i].known, shape[0] <= 1, f->unchecked, 0, why
-        };
+        struct copy c = { to, where[i].group, where[i].known, shape[0] <= 1, f->unchecked, 0, why };
         // the problem itself is what a foreign document is
         if (f->foreign && i == 0) c.known = root;
         hid_t group = H5Gopen2(f->origin, where[i].group, H5P_DEFAULT);
-        H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, NULL, copy_link, &c);
+        herr_t found = H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, NULL, copy_link, &c);
         H5Gclose(group);
-        if (why->status) return why->status;
+        if (why->status || found > 0) return found > 0;
     }
     return 0;
+}
+
+int copy_unknown(int64_t file, const struct frame *f, struct why *why)
+{
+    walk(file, f, why);
+    return why->status;
+}
+
+bool copy_wanted(const struct frame *f)
+{
+    struct why why = { 0 };
+    return walk(-1, f, &why) || why.status;
 }

@@ -10,5 +10,7 @@
  * only what does not depend on time. FCLIB problems come along unless frame->stale.
  */
 int copy_unknown(int64_t file, const struct frame *, struct why *);
+/* Is there anything that it would copy? */
+bool copy_wanted(const struct frame *);
 
 #endif

@@ -1,5 +1,6 @@
 #include "doc.h"
 
+#include "copy.h"
 #include "h5.h"
 #include "layout.h"
 #include "stream.h"
@@ -408,6 +409,15 @@ int reader_frame(struct reader *r, int64_t k, struct frame *f, struct why *why)
     return 0;
 }
 
+/* A document of one moment, all of which is in *f, is closed: a large one's memory is wanted. */
+static void let_go(struct reader *r, struct frame *f)
+{
+    if (r->frames != 1 || !f->packed || copy_wanted(f)) return;
+    f->origin = 0;
+    doc_close(r);
+    stream_drop(r->stream);
+}
+
 int reader_next(struct reader *r, struct frame *f, bool *more, struct why *why)
 {
     int64_t frames = r->frames;
@@ -420,7 +430,9 @@ int reader_next(struct reader *r, struct frame *f, bool *more, struct why *why)
         }
     }
     *more = true;
-    return reader_frame(r, r->next++, f, why);
+    if (reader_frame(r, r->next++, f, why)) return why->status;
+    let_go(r, f);
+    return 0;
 }
 
 int reader_last(struct reader *r, struct frame *f, bool *more, struct why *why)
@@ -439,6 +451,6 @@ int reader_last(struct reader *r, struct frame *f, bool *more, struct why *why)
         held = -1;
         if (!e && frames > 0) e = reader_frame(r, frames - 1, f, why);
         if (e) return e;
-        *more |= frames > 0;
+        if (frames > 0) *more = true, let_go(r, f);
     }
 }

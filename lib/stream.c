@@ -96,6 +96,14 @@ void stream_rest(struct stream *s)
     if (s->map && s->size > LARGE) madvise(s->map, s->size, MADV_DONTNEED); // nobody writes there
 }
 
+void stream_drop(struct stream *s)
+{
+    stream_rest(s);
+    if (s->room <= LARGE) return; // the next one will want it
+    free(s->buffer);
+    s->buffer = NULL, s->room = 0;
+}
+
 static int file_open(struct stream *s, struct why *why)
 {
     const char *path = s->file[s->next++];

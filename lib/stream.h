@@ -45,6 +45,8 @@ int stream_open(struct stream **, int files, char *const *file, struct why *);
 int stream_next(struct stream *, struct image *, struct why *);
 /* What has been read of a large file need not stay in memory; it is read again when wanted. */
 void stream_rest(struct stream *);
+/* The document in hand is done with: a pipe's takes no memory any longer. */
+void stream_drop(struct stream *);
 void stream_close(struct stream *);
 
 #endif
