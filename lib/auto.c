@@ -57,8 +57,9 @@ static int run(struct solve *s)
     if (!sweeps) return nlgs_sweeps(s, end, s->o->relax > 0 ? s->o->relax : 1);
     while (!failed && rep->sweeps < end && !solve_met(s) && !solve_spent(s)) {
         double before = s->value;
-        int32_t chunk = rep->sweeps / 2 > least ? rep->sweeps / 2 : least;
-        failed = anderson_sweeps(sweeps, chunk < end - rep->sweeps ? chunk : end - rep->sweeps);
+        int32_t chunk = rep->sweeps / 2 > least ? rep->sweeps / 2 : least, left = end - rep->sweeps;
+        if (chunk > left) chunk = left;
+        failed = anderson_sweeps(sweeps, chunk);
         if (failed || !isfinite(s->value)) break;
         double more = older.sweeps ? to_go(s, older.value, older.sweeps) : 0;
         older.value = before, older.sweeps = rep->sweeps - chunk;
