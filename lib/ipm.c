@@ -19,6 +19,9 @@ enum {
     AGAIN = 12       /* of the others */
 };
 
+/* The t that are tried in turn: between balls, and where the W_cc are full (columns, walls) */
+static const double ts[2][3] = { { 1, 0.9, 0.5 }, { 1, 0.7, 0.3 } };
+
 /* One contact: x, z in K, and what the scaling needs of them; d numbers of each, the third 0 in the
    plane. */
 struct side {
@@ -39,6 +42,7 @@ struct ipm {
     double *best; /* [n d] the reactions with the least natural map */
     double unit;  /* of velocities: q is of order 1 after it */
     double gap;   /* x.z, mean */
+    bool full;    /* the W_cc are */
     int fold;     /* which t served last */
     int stuck;    /* steps in a row that led nowhere */
 };
@@ -353,7 +357,7 @@ static void leave(struct ipm *m)
 /* From the rows' reactions, or from none. */
 static bool begin(struct ipm *m, struct newton *w, struct solve *s, double gap, bool cold)
 {
-    *m = (struct ipm){ .w = w };
+    *m = (struct ipm){ .w = w, .full = s->p->full };
     m->side = calloc((size_t)w->whole.W.n + 1, sizeof *m->side);
     m->best = malloc(((size_t)w->whole.size + 1) * sizeof *m->best);
     if (!m->side || !m->best) return leave(m), false;
@@ -376,12 +380,12 @@ static double mean_gap(const struct ipm *m)
  */
 static bool ipm_step(struct ipm *m, struct report *rep)
 {
-    static const double ts[] = { 1, 0.7, 0.3 };
+    const double *t = ts[m->full];
     int64_t n = m->w->whole.W.n;
     double step = 0;
     int at = m->fold;
     for (int i = m->fold; i < 3 && step < 0.1; i++) {
-        double far = predict_and_correct(m, ts[i]);
+        double far = predict_and_correct(m, t[i]);
         rep->newton++;
         if (far <= step) continue;
         step = far, at = i;
