@@ -139,8 +139,7 @@ static int write_header(struct sink *s, uint64_t length, uint32_t crc, struct wh
 static int reserve(struct sink *s, const struct frame *f, struct why *why)
 {
     hsize_t size = 0, n = (hsize_t)f->packing.n, rows = 0;
-    if (s->doc.file >= 0 && H5Fget_filesize(s->doc.file, &size) < 0)
-        return io_trouble(s, why, "cannot be written");
+    if (H5Fget_filesize(s->doc.file, &size) < 0) return io_trouble(s, why, "cannot be written");
     if (n > CHUNK_BODIES) n += CHUNK_BODIES; // chunks are whole
     if (f->detected) rows = (hsize_t)f->contacts.n + CHUNK_CONTACTS;
     // 128 bytes a body, and as many of its motion, 256 a contact, and the tables that may grow
@@ -202,7 +201,10 @@ static int trajectory_begin(struct sink *s, const struct frame *f, struct why *w
     if (s->doc.file < 0) return io_trouble(s, why, "cannot be written");
     if (H5Fset_libver_bounds(s->doc.file, H5F_LIBVER_V110, H5F_LIBVER_V110) < 0)
         return io_trouble(s, why, "cannot be written");
-    if (reserve(s, f, why)) return why->status; // again: HDF5 began by emptying the file
+    if (reserve(s, f, why)) {
+        if (ftruncate(s->disk, 0)) return why->status; // nothing rather than a half
+        return why->status;
+    }
     if (packing_copy(&s->first, &f->packing, why)) return why->status;
     s->step = f->packing.step - 1;
     return write_header(s, 0, 0, why) || record_static(&s->doc, f, why) ? why->status : 0;
@@ -212,8 +214,8 @@ static int trajectory_frame(struct sink *s, const struct frame *f, struct why *w
 {
     if (!f->packed)
         return why_set(why, EX_DATAERR, "an FCLIB problem does not go into a trajectory");
-    if (reserve(s, f, why)) return why->status;
-    if (s->doc.file < 0 && trajectory_begin(s, f, why)) return why->status;
+    bool first = s->doc.file < 0;
+    if (first ? trajectory_begin(s, f, why) : reserve(s, f, why)) return why->status;
     if (check_same(s, f, why)) return why->status;
     if (record_moment(&s->doc, f, why) || flush(s, why) || record_step(&s->doc, f, why) ||
         flush(s, why))

@@ -210,7 +210,8 @@ for ((k = 1; k <= kills; k++)); do
     # shellcheck disable=SC2086 # none or one
     nsd-step -n $long --eps 1e-6 --cold $option "$tmp/heap.h5" >"$tmp/killed.h5" 2>/dev/null &
     for ((w = 0; w < 5000; w++)); do # there is nothing to be found before a first frame
-        if nsd-info -p "$tmp/killed.h5" >"$tmp/left" 2>&1; then break; fi
+        cp "$tmp/killed.h5" "$tmp/left.h5"
+        if nsd-info -p "$tmp/left.h5" >"$tmp/left" 2>&1; then break; fi
         sleep 0.002
     done
     sleep "0.$(printf %03d $((RANDOM % 200)))"
