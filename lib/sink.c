@@ -200,7 +200,7 @@ static int trajectory_begin(struct sink *s, const struct frame *f, struct why *w
     H5Pclose(access);
     if (s->doc.file < 0) return io_trouble(s, why, "cannot be written");
     if (H5Fset_libver_bounds(s->doc.file, H5F_LIBVER_V110, H5F_LIBVER_V110) < 0)
-        return io_trouble(s, why, "cannot be written");
+        return io_trouble(s, why, "cannot be written (full?)");
     if (reserve(s, f, why)) {
         if (ftruncate(s->disk, 0)) return why->status; // nothing rather than a half
         return why->status;
