@@ -84,6 +84,15 @@ bool lu_factorise(struct lu *lu, double *a)
     return lu->factors != NULL;
 }
 
+/* Rows and columns are ordered alike and L has a diagonal of ones. */
+int lu_sign(const struct lu *lu)
+{
+    const double *u = lu->factors->Udiag;
+    int sign = 1;
+    for (int32_t i = 0; i < lu->n; i++) sign = u[i] < 0 ? -sign : sign;
+    return sign;
+}
+
 bool lu_substitute(struct lu *lu, double *x)
 {
     return lu->factors && klu_tsolve(lu->order, lu->factors, lu->n, 1, x, &lu->common);

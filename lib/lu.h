@@ -23,6 +23,8 @@ double lu_cost(const struct lu *);
 
 /* A, of entries a[], is factorised, or singular: false. */
 bool lu_factorise(struct lu *, double *a);
+/* The sign of det(A), +-1 */
+int lu_sign(const struct lu *);
 /* x[n] := A^-1 x */
 bool lu_substitute(struct lu *, double *x);
 

@@ -34,6 +34,7 @@ struct system {
     double *room;            /* theirs, */
     size_t *columns;
     int *order;
+    int sign;          /* of the determinants that the faces' transformations take out */
     double *l, *d, *t; /* and [rows][rows] of one face: Q' L T, Q' D M, and for any use */
 };
 
@@ -144,7 +145,7 @@ static double largest(const double *x, int n)
 }
 
 /* scale[] and order[], of DN[rows][rows - rank] */
-static void rank_rows(const struct system *s, const struct face *f, const struct reduced *q,
+static void rank_rows(struct system *s, const struct face *f, const struct reduced *q,
                       const double *DN)
 {
     int d = s->whole->W.d, left = f->rows - f->rank;
@@ -158,7 +159,7 @@ static void rank_rows(const struct system *s, const struct face *f, const struct
             if (q->scale[o] * largest(DN + o * left, left) >=
                 q->scale[i] * largest(DN + i * left, left))
                 break;
-            q->order[k] = o;
+            q->order[k] = o, s->sign = -s->sign;
         }
         q->order[k] = i;
     }
@@ -177,8 +178,9 @@ static bool align(struct system *s, const struct face *f, const struct reduced *
     gsl_matrix_view t = view(s->t, rank, rank), F = view(q->inverse, rank, rank);
     for (int i = 0; i < rank * rank; i++) s->t[i] = l[i] + d[i];
     gsl_linalg_LU_decomp(&t.matrix, &P, &sign);
-    for (int i = 0; i < rank; i++)
-        if (s->t[i * rank + i] == 0) return false;
+    sign = gsl_linalg_LU_sgndet(&t.matrix, sign);
+    if (!sign) return false;
+    s->sign *= sign;
     gsl_linalg_LU_invert(&t.matrix, &P, &F.matrix);
     for (int k = 0; k < 2; k++) {
         gsl_matrix_view A = view(k ? d : l, rank, rank);
@@ -216,6 +218,8 @@ static bool reduce(struct system *s, const struct face *f, const struct reduced 
     gsl_permutation P = { (size_t)left, q->columns };
     int sign;
     gsl_linalg_QRPT_decomp(&QR.matrix, &tau.vector, &P, &sign, &norm.vector);
+    s->sign *= sign;
+    for (int i = 0; i < left; i++) s->sign *= q->QR[i * left + i] < 0 ? -1 : 1;
     gsl_linalg_QR_QTmat(&QR.matrix, &tau.vector, &l0.matrix);
     gsl_linalg_QR_QTmat(&QR.matrix, &tau.vector, &d0.matrix);
     *l = s->l + left * rank, *d = s->d + left * rank;
@@ -226,6 +230,7 @@ static bool reduce(struct system *s, const struct face *f, const struct reduced 
 static bool assemble(struct system *s)
 {
     const struct faces *F = &s->faces;
+    s->sign = 1;
     for (int32_t c = 0; c < F->n; c++) {
         const struct face *f = F->face + c;
         const double *l, *d;
@@ -376,4 +381,9 @@ bool system_solve(struct system *s, const double *L, const double *D, double *x)
 {
     s->L = L, s->D = D;
     return assemble(s) && lu_factorise(s->lu, s->a) && system_again(s, x);
+}
+
+int system_sign(const struct system *s)
+{
+    return s->sign * lu_sign(s->lu);
 }

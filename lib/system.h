@@ -34,4 +34,10 @@ bool system_solve(struct system *, const double *L, const double *D, double *x);
 /* The same with the L and D of the last time, which are still there, factorised already. */
 bool system_again(struct system *, double *x);
 
+/*
+ * The sign of det(L W + D), +-1, of the last time; but for a factor that is the system's, so that it
+ * tells when the sign changes.
+ */
+int system_sign(const struct system *);
+
 #endif

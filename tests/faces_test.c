@@ -4,6 +4,7 @@
 #include "system.h"
 #include "tap.h"
 
+#include <gsl/gsl_linalg.h>
 #include <gsl/gsl_rng.h>
 #include <stdlib.h>
 #include <string.h>
@@ -251,6 +252,50 @@ static void test_system(int d, int each, double least)
     free(a), free(x), free(b), free(L), free(D);
 }
 
+/* The sign of the determinant, against that of the dense matrix */
+static void test_sign(int d, int each)
+{
+    struct bricks w = lay(d, each);
+    struct delassus W = delassus(&w);
+    struct problem p;
+    struct whole all = scaled(&W, &p);
+    struct system *s = system_new(&all, 1e9);
+    size_t n = (size_t)all.size;
+    double *a = dense(&all), *x = calloc(n, sizeof *x);
+    double *L = calloc(9 * (size_t)w.n, sizeof *L), *D = calloc(9 * (size_t)w.n, sizeof *D);
+    gsl_matrix *A = gsl_matrix_alloc(n, n);
+    gsl_permutation *P = gsl_permutation_alloc(n);
+    int agree = 0, negative = 0;
+    enum { ROUNDS = 40 };
+    for (int round = 0; round < ROUNDS; round++) {
+        for (int c = 0; c < w.n; c++)
+            for (int i = 0; i < 9; i++) {
+                L[9 * c + i] = i % 4 ? 0.3 * number(-1, 1) : 1;
+                D[9 * c + i] = i % 4 ? number(-1, 1) : number(-1, 2);
+            }
+        for (size_t i = 0; i < n; i++)
+            for (size_t j = 0; j < n; j++) {
+                size_t c = i / (size_t)d, row = i % (size_t)d;
+                double sum = j / (size_t)d == c ? D[9 * c + 3 * row + j % (size_t)d] : 0;
+                for (size_t k = 0; k < (size_t)d; k++)
+                    sum += L[9 * c + 3 * row + k] * a[((size_t)d * c + k) * n + j];
+                gsl_matrix_set(A, i, j, sum);
+            }
+        int sign;
+        gsl_linalg_LU_decomp(A, P, &sign);
+        sign = gsl_linalg_LU_sgndet(A, sign);
+        for (size_t i = 0; i < n; i++) x[i] = number(-1, 1);
+        system_solve(s, L, D, x);
+        agree += sign == system_sign(s), negative += sign < 0;
+    }
+    ok((agree == 0 || agree == ROUNDS) && negative > 0 && negative < ROUNDS,
+       "%dD, %d points: the sign of %d determinants, %d negative, is right %d times", d, each,
+       ROUNDS, negative, agree);
+    gsl_matrix_free(A), gsl_permutation_free(P);
+    system_free(s), whole_free(&all), problem_free(&p), delassus_free(&W), bricks_free(&w);
+    free(a), free(x), free(L), free(D);
+}
+
 /* A wall, whose W has no inverse, by each solver that factorises */
 static void test_wall(int d, int each, const struct solver *global)
 {
@@ -288,6 +333,7 @@ int main(void)
         double least = k ? k == 1 ? 1e-4 : 1e-9 : 1;
         test_system(3, 4, least), test_system(3, 1, least), test_system(2, 2, least);
     }
+    test_sign(3, 1), test_sign(3, 4), test_sign(2, 2);
     static const struct solver *const tested[] = { &solver_prox, &solver_ipm, &solver_auto };
     for (int k = 0; k < 3; k++)
         test_wall(3, 4, tested[k]), test_wall(3, 8, tested[k]), test_wall(2, 2, tested[k]);
