@@ -1,6 +1,7 @@
 /* The solvers of a whole problem end where Gauss-Seidel ends, and in the same bytes on any machine. */
 #include "detect.h"
 #include "gen.h"
+#include "path.h"
 #include "step.h"
 #include "tap.h"
 
@@ -143,6 +144,34 @@ static void test_limits(const struct packing *p, const struct contacts *s, const
     report_free(&rep);
 }
 
+/* The central path by its arc length alone, from r = 0 */
+static int follow(struct solve *s)
+{
+    struct newton w;
+    struct central m;
+    if (newton_init(&w, s->p)) return -1;
+    if (central_begin(&m, &w, s, 0.1, true)) {
+        path_follow(&m, s, 1e-9, 200);
+        central_end(&m);
+    }
+    newton_free(&w);
+    return 0;
+}
+
+static void test_path(const struct packing *p, const struct contacts *s, const char *what)
+{
+    static const struct solver path = { "path", 0, follow };
+    struct report exact = { 0 }, rep = { 0 };
+    struct step_opt o = options(&solver_nlgs, 1e-12, 100000);
+    struct contacts a = solve(p, s, &o, &exact);
+    o = options(&path, 2e-6, 100000); // where what is left is lost in rounding it ends
+    struct contacts b = solve(p, s, &o, &rep);
+    ok(rep.converged && apart(p, &a, &b) < 1e-3,
+       "%s: the central path leads there in %d steps, natural %.1e, velocities to %.1e", what,
+       (int)rep.newton, rep.err.natural, apart(p, &a, &b));
+    contacts_free(&a), contacts_free(&b), report_free(&exact), report_free(&rep);
+}
+
 int main(void)
 {
     static const struct {
@@ -165,6 +194,7 @@ int main(void)
         test_agreement(&p, &s, scene[k].name);
         test_bytes(&p, &s, scene[k].name);
         test_limits(&p, &s, scene[k].name);
+        if (s.n && scene[k].mu != 0) test_path(&p, &s, scene[k].name);
         contacts_free(&s), packing_free(&p);
     }
     return tap_done();
