@@ -13,7 +13,7 @@
 enum {
     CHUNK = 1000,       /* sweeps between two looks, at least; else half of all so far; */
     CHUNK_W = 100,      /* with a given W, where a sweep is dear beside a factorisation */
-    STEPS_TO_KNOW = 5,  /* factorisations that sweeps must have cost before they are given up, */
+    STEPS_TO_KNOW = 15, /* factorisations that sweeps must have cost before they are given up, */
     SURE = 3,           /* or so many times less where there is no end to them */
     STEPS_TO_END = 25,  /* factorisations that the end will take, or so */
     LAST_RESORT = 20000 /* sweeps at most, for what that cost, when nothing else led there */
