@@ -13,13 +13,15 @@
 enum {
     CHUNK = 1000,       /* sweeps between two looks, at least; else half of all so far; */
     CHUNK_W = 100,      /* with a given W, where a sweep is dear beside a factorisation */
-    STEPS_TO_KNOW = 15, /* factorisations that sweeps must have cost before they are given up, */
+    STEPS_TO_KNOW = 15, /* factorisations that sweeps must have cost before they are given up; */
+    STEPS_IF_FAR = 5,   /* this many while the criterion is FAR times eps, */
     SURE = 3,           /* or so many times less where there is no end to them */
     STEPS_TO_END = 25,  /* factorisations that the end will take, or so */
     LAST_RESORT = 20000 /* sweeps at most, for what that cost, when nothing else led there */
 };
 
 #define AFFORD 3e10 /* ns: a factorisation dearer than this is not made, */
+#define FAR    30   /* of eps: sweeps that have come nearer mostly end soon */
 #define CHEAP  2e8  /* ns: and so much the last resort may always take */
 
 /*
@@ -71,8 +73,8 @@ static int run(struct solve *s)
         ready = true;
         // the longer the way, the less it takes to be sure of it
         double gain = fmin(more * w.sweep_cost / (STEPS_TO_END * w.cost), SURE);
-        if (w.cost > AFFORD || gain < 1 ||
-            gain * rep->sweeps * w.sweep_cost < STEPS_TO_KNOW * w.cost)
+        int steps = s->value > FAR * s->o->eps ? STEPS_IF_FAR : STEPS_TO_KNOW;
+        if (w.cost > AFFORD || gain < 1 || gain * rep->sweeps * w.sweep_cost < steps * w.cost)
             continue;
         factorise(&w, s);
         tried = true;
