@@ -21,8 +21,8 @@ enum {
 };
 
 #define AFFORD 3e10 /* ns: a factorisation dearer than this is not made, */
-#define FAR    30   /* of eps: sweeps that have come nearer mostly end soon */
 #define CHEAP  2e8  /* ns: and so much the last resort may always take */
+#define FAR    30   /* of eps: sweeps that have come nearer mostly end soon */
 
 /*
  * How many more sweeps, if the criterion goes on as a power of their number, as it does on the way from

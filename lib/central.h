@@ -31,6 +31,16 @@ struct side {
     double c[3], p[3];
 };
 
+/* dx and dz of a contact, to be had again */
+static inline void side_keep(const struct side *s, double to[2][3])
+{
+    for (int k = 0; k < 3; k++) to[0][k] = s->dx[k], to[1][k] = s->dz[k];
+}
+static inline void side_recall(struct side *s, double from[2][3])
+{
+    for (int k = 0; k < 3; k++) s->dx[k] = from[0][k], s->dz[k] = from[1][k];
+}
+
 struct central {
     struct newton *w;
     struct side *side; /* [n] */

@@ -4,7 +4,6 @@
 #include "path.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #define INTERIOR 0.99 /* of the way to the border */
 #define LONGER   0.3  /* by which a corrector is to lengthen the step, and */
@@ -75,16 +74,6 @@ static void recentre(struct side *s, double step, double target)
     for (int k = 0; k < 3; k++) s->c[k] += more[k];
 }
 
-static void keep(const struct side *s, double to[2][3])
-{
-    memcpy(to[0], s->dx, sizeof s->dx), memcpy(to[1], s->dz, sizeof s->dz);
-}
-
-static void recall(struct side *s, double from[2][3])
-{
-    memcpy(s->dx, from[0], sizeof s->dx), memcpy(s->dz, from[1], sizeof s->dz);
-}
-
 /* Correctors for as long as they lengthen the step; a substitution each, and not a factorisation. */
 static double lengthen(struct ipm *m, double step, double target)
 {
@@ -92,14 +81,14 @@ static double lengthen(struct ipm *m, double step, double target)
     for (int k = 0; k < CORRECTORS && INTERIOR * step < 0.95; k++) {
         for (int64_t c = 0; c < n; c++) {
             struct side *s = &m->c.side[c];
-            keep(s, m->kept[c].last);
+            side_keep(s, m->kept[c].last);
             recentre(s, fmin(1, INTERIOR * step + LONGER), target);
         }
         double before = step;
         step = central_direction(&m->c, true) ? longest(&m->c) : 0;
         if (step >= before + GAINED) continue;
         if (step >= before) break;
-        for (int64_t c = 0; c < n; c++) recall(&m->c.side[c], m->kept[c].last);
+        for (int64_t c = 0; c < n; c++) side_recall(&m->c.side[c], m->kept[c].last);
         return before;
     }
     return step;
@@ -157,10 +146,10 @@ static bool ipm_step(struct ipm *m, struct report *rep)
         rep->newton++;
         if (far <= step) continue;
         step = far, at = i;
-        for (int64_t c = 0; c < n; c++) keep(&m->c.side[c], m->kept[c].far);
+        for (int64_t c = 0; c < n; c++) side_keep(&m->c.side[c], m->kept[c].far);
     }
     if (follow && step < SHORT) return false;
-    for (int64_t c = 0; c < n; c++) recall(&m->c.side[c], m->kept[c].far);
+    for (int64_t c = 0; c < n; c++) side_recall(&m->c.side[c], m->kept[c].far);
     m->fold = at > 0 && step > 0.3 ? at - 1 : at;
     m->stuck = step < 1e-3 ? m->stuck + 1 : 0;
     if (step > 0) move(&m->c, step);
@@ -219,7 +208,7 @@ static void along(struct newton *w, struct solve *s, bool cold)
     leave(&m);
 }
 
-/* Long steps with whatever t leads on */
+/* Long steps with whatever t leads on, from afar: what discs and capsules want, whose paths fold often */
 static void about(struct newton *w, struct solve *s)
 {
     struct ipm m;

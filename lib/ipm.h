@@ -3,7 +3,8 @@
  * its end by long steps, Mehrotra's two directions and Gondzio's correctors.
  *
  * t = 1 is Newton's method on the problem, which is nobody's minimum, so that the path may fold and the
- * step leads nowhere: then it is followed by its arc length [path.h]; from r = 0, smaller t are tried.
+ * step leads nowhere: then it is followed by its arc length [path.h]. At the start, and from r = 0,
+ * smaller t are tried.
  */
 #ifndef NSD_IPM_H
 #define NSD_IPM_H

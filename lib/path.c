@@ -76,10 +76,7 @@ static bool tangent(struct path *p)
         s->p[0] += p->g0 * (m->gap / smooth - 1);
     }
     if (!central_direction(m, false)) return false;
-    for (int64_t c = 0; c < n; c++) {
-        memcpy(p->at[c].tangent[0], m->side[c].dx, sizeof m->side[c].dx);
-        memcpy(p->at[c].tangent[1], m->side[c].dz, sizeof m->side[c].dz);
-    }
+    for (int64_t c = 0; c < n; c++) side_keep(&m->side[c], p->at[c].tangent);
     return true;
 }
 
@@ -99,9 +96,7 @@ static bool correction(struct path *p)
     bool seen = central_direction(m, true);
     for (int64_t c = 0; c < n; c++) {
         memset(p->at[c].correction, 0, sizeof p->at[c].correction);
-        if (!seen) continue;
-        memcpy(p->at[c].correction[0], m->side[c].dx, sizeof m->side[c].dx);
-        memcpy(p->at[c].correction[1], m->side[c].dz, sizeof m->side[c].dz);
+        if (seen) side_keep(&m->side[c], p->at[c].correction);
     }
     return seen;
 }

@@ -30,11 +30,11 @@ struct system {
     double *a;               /* L' S + D', S's pattern */
     double *w, *y;           /* [faces.size] T' x; S w */
     double *b, *r, *x;       /* [n d] */
+    int sign;                /* of the determinants that the faces' transformations take out */
     struct reduced *reduced; /* [faces.n] */
     double *room;            /* theirs, */
     size_t *columns;
     int *order;
-    int sign;          /* of the determinants that the faces' transformations take out */
     double *l, *d, *t; /* and [rows][rows] of one face: Q' L T, Q' D M, and for any use */
 };
 
