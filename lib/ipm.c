@@ -223,7 +223,7 @@ static void about(struct newton *w, struct solve *s)
 
 void ipm_solve(struct newton *w, struct solve *s)
 {
-    along(w, s, false);
+    if (!over(s)) along(w, s, false);
     if (!over(s)) about(w, s);
     if (!over(s)) along(w, s, true);
 }

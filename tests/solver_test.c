@@ -1,6 +1,7 @@
 /* The solvers of a whole problem end where Gauss-Seidel ends, and in the same bytes on any machine. */
 #include "detect.h"
 #include "gen.h"
+#include "ipm.h"
 #include "path.h"
 #include "step.h"
 #include "tap.h"
@@ -172,6 +173,27 @@ static void test_path(const struct packing *p, const struct contacts *s, const c
     contacts_free(&a), contacts_free(&b), report_free(&exact), report_free(&rep);
 }
 
+/* What sweeps have solved costs the interior point method nothing. */
+static int after_sweeps(struct solve *s)
+{
+    struct newton w;
+    if (nlgs_sweeps(s, 100000, 1) || newton_init(&w, s->p)) return -1;
+    ipm_solve(&w, s);
+    newton_free(&w);
+    return 0;
+}
+
+static void test_nothing_left(const struct packing *p, const struct contacts *s, const char *what)
+{
+    static const struct solver sweeps_first = { "sweeps, ipm", 0, after_sweeps };
+    struct report rep = { 0 };
+    struct step_opt o = options(&sweeps_first, 1e-6, 100000);
+    struct contacts c = solve(p, s, &o, &rep);
+    ok(rep.converged && rep.newton == 0, "%s: solved already, and not factorised: %d", what,
+       (int)rep.newton);
+    contacts_free(&c), report_free(&rep);
+}
+
 int main(void)
 {
     static const struct {
@@ -195,6 +217,7 @@ int main(void)
         test_bytes(&p, &s, scene[k].name);
         test_limits(&p, &s, scene[k].name);
         if (s.n && scene[k].mu != 0) test_path(&p, &s, scene[k].name);
+        if (s.n) test_nothing_left(&p, &s, scene[k].name);
         contacts_free(&s), packing_free(&p);
     }
     return tap_done();
