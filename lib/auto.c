@@ -11,7 +11,7 @@
 #include <stdlib.h>
 
 enum {
-    CHUNK = 1000,       /* sweeps between two looks, at least; else half of all so far; */
+    CHUNK = 300,        /* sweeps between two looks, at least; else half of all so far; */
     CHUNK_W = 100,      /* with a given W, where a sweep is dear beside a factorisation */
     STEPS_TO_KNOW = 15, /* factorisations that sweeps must have cost before they are given up; */
     STEPS_IF_FAR = 5,   /* this many while the criterion is FAR times eps, */
@@ -34,10 +34,14 @@ static double to_go(const struct solve *s, double before, int32_t sweeps)
     return p > 0.1 ? s->rep->sweeps * (pow(s->value / s->o->eps, 1 / p) - 1) : INFINITY;
 }
 
-/* Newton, and where that is too far away the interior point method; what it left is Newton's again. */
+/*
+ * Newton, and where that is too far away the interior point method; what it left is Newton's again.
+ * Between balls Newton seldom arrives by itself, and the sweeps that it wants between its steps cost as
+ * much as the interior point method.
+ */
 static void factorise(struct newton *w, struct solve *s)
 {
-    newton_polish(w, s, 1e-4, 2);
+    if (s->p->full) newton_polish(w, s, 1e-4, 2);
     ipm_solve(w, s);
     if (solve_met(s) || solve_spent(s)) return;
     newton_back(w, s);
