@@ -6,8 +6,8 @@
 
 /* Corrections, the largest of all contacts, relative to what is corrected: */
 #define AIM  0.3 /* what a step is to leave to be corrected, */
-#define NEAR 0.5 /* with how much it may go on, and */
-#define FAR  1.0 /* what is too much: it was too long */
+#define NEAR 0.7 /* with how much it may go on, and */
+#define FAR  1.5 /* what is too much: it was too long */
 
 #define FALL     0.01 /* of s, at most, in a step */
 #define ROUNDING 2e-6 /* natural maps below which a correction may be lost */
@@ -15,17 +15,20 @@
 
 enum { BACKWARDS = 10 }; /* steps in which s grows, at most */
 
+/* Directions: the derivatives by s, the second of them at a right angle to the first, and Newton's */
+enum { TANGENT, BEND, CORRECTION, DIRECTIONS };
+
 struct along {
     double p0[3];
-    double tangent[2][3], correction[2][3]; /* dx and dz, by s and as such */
-    double base[3], ahead[3];               /* tau where the step begins, corrected, and its own */
+    double to[DIRECTIONS][2][3]; /* x and z */
+    double tau[3][3];            /* x - z in the last step, tau[0] + h tau[1] + h^2/2 tau[2] */
 };
 
 struct path {
     struct central *m;
     struct along *at; /* [n] */
     double g0, s;
-    double base, ahead;    /* s, as tau */
+    double h, last[3];     /* the last step, and s in it as tau is */
     double reach, ceiling; /* how long a step is to be, and may be after one that was too long */
 };
 
@@ -39,13 +42,22 @@ static double inner(const struct central *m, const struct side *s, double a[2][3
     return (sum + jordan_dot(fa, fb)) / m->gap;
 }
 
-/* tau = base + ahead, and s likewise */
+static double after(const double part[3], double h)
+{
+    return part[0] + h * (part[1] + h / 2 * part[2]);
+}
+
+/* To where the last step leads */
 static void place(struct path *p)
 {
-    p->s = p->base + p->ahead;
+    p->s = after(p->last, p->h);
     for (int64_t c = 0; c < p->m->w->whole.W.n; c++) {
         struct side *s = &p->m->side[c];
-        for (int k = 0; k < 3; k++) s->x[k] = p->at[c].base[k] + p->at[c].ahead[k], s->z[k] = 0;
+        const struct along *a = &p->at[c];
+        for (int k = 0; k < 3; k++) {
+            const double part[3] = { a->tau[0][k], a->tau[1][k], a->tau[2][k] };
+            s->x[k] = after(part, p->h), s->z[k] = 0;
+        }
         jordan_centre(s->x, s->z, p->s * p->g0);
     }
 }
@@ -53,12 +65,15 @@ static void place(struct path *p)
 /* The last step again, so much shorter; false where that has come to nothing. */
 static bool shorten(struct path *p, double by)
 {
-    p->reach *= by, p->ahead *= by;
-    if (p->ahead == 0 || p->reach < STANDING) return false;
-    for (int64_t c = 0; c < p->m->w->whole.W.n; c++)
-        for (int k = 0; k < 3; k++) p->at[c].ahead[k] *= by;
+    p->reach *= by, p->h *= by;
+    if (p->h == 0 || p->reach < STANDING) return false;
     place(p);
     return true;
+}
+
+static double smooth_tail(const struct path *p, const struct side *s)
+{
+    return hypot(jordan_tail(s->y), p->m->gap);
 }
 
 /* dx/ds and dz/ds; false where the matrix is singular. */
@@ -71,21 +86,51 @@ static bool tangent(struct path *p)
         struct side *s = &m->side[c];
         const double more[3] = { p->g0, 0, 0 };
         jordan_quotient(s->l, more, s->c);
-        double t = jordan_tail(s->y), smooth = sqrt(t * t + m->gap * m->gap);
         for (int k = 0; k < 3; k++) s->p[k] = p->at[c].p0[k] - (s->y[k] - s->z[k]);
-        s->p[0] += p->g0 * (m->gap / smooth - 1);
+        s->p[0] += p->g0 * (m->gap / smooth_tail(p, s) - 1);
     }
     if (!central_direction(m, false)) return false;
-    for (int64_t c = 0; c < n; c++) side_keep(&m->side[c], p->at[c].tangent);
+    for (int64_t c = 0; c < n; c++) side_keep(&m->side[c], p->at[c].to[TANGENT]);
     return true;
 }
 
-/* Newton's correction at this s, or none: false where it is lost in rounding. */
+/* What is not the tangent's, with its matrix; no direction where that is lost in rounding: false. */
+static bool direction(struct path *p, int which)
+{
+    struct central *m = p->m;
+    bool seen = central_direction(m, true);
+    for (int64_t c = 0; c < m->w->whole.W.n; c++) {
+        memset(p->at[c].to[which], 0, sizeof p->at[c].to[which]);
+        if (seen) side_keep(&m->side[c], p->at[c].to[which]);
+    }
+    return seen;
+}
+
+/* d2x/ds2 and d2z/ds2: twice the product of the tangent's x and z, and how |u_t| bends */
+static void bend(struct path *p)
+{
+    struct central *m = p->m;
+    for (int64_t c = 0; c < m->w->whole.W.n; c++) {
+        struct side *s = &m->side[c];
+        const struct along *a = &p->at[c];
+        const double *dx = a->to[TANGENT][0], *dz = a->to[TANGENT][1];
+        double fx[3], fz[3], want[3];
+        scaling_apply(&s->F, dx, fx), scaling_inverse(&s->F, dz, fz);
+        jordan_product(fx, fz, want);
+        for (int k = 0; k < 3; k++) want[k] *= -2, s->p[k] = -(s->y[k] - s->z[k]);
+        jordan_quotient(s->l, want, s->c);
+        double u1 = dz[1] - a->p0[1], u2 = dz[2] - a->p0[2], smooth = smooth_tail(p, s),
+               along = (s->y[1] * u1 + s->y[2] * u2 + m->gap * p->g0) / smooth;
+        s->p[0] += (u1 * u1 + u2 * u2 + p->g0 * p->g0 - along * along) / smooth;
+    }
+    direction(p, BEND);
+}
+
+/* Newton's correction at this s; false where it is lost in rounding. */
 static bool correction(struct path *p)
 {
     struct central *m = p->m;
-    int64_t n = m->w->whole.W.n;
-    for (int64_t c = 0; c < n; c++) {
+    for (int64_t c = 0; c < m->w->whole.W.n; c++) {
         struct side *s = &m->side[c];
         double ll[3], want[3];
         jordan_product(s->l, s->l, ll);
@@ -93,48 +138,52 @@ static bool correction(struct path *p)
             want[k] = (k ? 0 : m->gap) - ll[k], s->p[k] = p->s * p->at[c].p0[k];
         jordan_quotient(s->l, want, s->c);
     }
-    bool seen = central_direction(m, true);
-    for (int64_t c = 0; c < n; c++) {
-        memset(p->at[c].correction, 0, sizeof p->at[c].correction);
-        if (seen) side_keep(&m->side[c], p->at[c].correction);
-    }
-    return seen;
+    return direction(p, CORRECTION);
 }
 
-/* The correction is made orthogonal to the tangent; returns what it adds to s, and the largest of the
-   corrections and of the tangents. */
-static double straighten(struct path *p, double *most, double *steepest)
+/* The largest of all contacts */
+static double largest(const struct path *p, int which)
+{
+    double most = 0;
+    for (int64_t c = 0; c < p->m->w->whole.W.n; c++) {
+        double(*d)[3] = p->at[c].to[which];
+        most = fmax(most, inner(p->m, &p->m->side[c], d, d));
+    }
+    return sqrt(most);
+}
+
+/* A direction that leaves s alone is put at a right angle to the tangent; returns what it adds to s. */
+static double straighten(struct path *p, int which)
 {
     struct central *m = p->m;
     int64_t n = m->w->whole.W.n;
-    double tt = 1 / (p->s * p->s), tc = 0;
+    double tt = 1 / (p->s * p->s), td = 0;
     for (int64_t c = 0; c < n; c++) {
         struct along *a = &p->at[c];
-        tt += inner(m, &m->side[c], a->tangent, a->tangent);
-        tc += inner(m, &m->side[c], a->tangent, a->correction);
+        tt += inner(m, &m->side[c], a->to[TANGENT], a->to[TANGENT]);
+        td += inner(m, &m->side[c], a->to[TANGENT], a->to[which]);
     }
-    *most = *steepest = 0;
     for (int64_t c = 0; c < n; c++) {
         struct along *a = &p->at[c];
         for (int j = 0; j < 2; j++)
-            for (int k = 0; k < 3; k++) a->correction[j][k] -= tc / tt * a->tangent[j][k];
-        *most = fmax(*most, sqrt(inner(m, &m->side[c], a->correction, a->correction)));
-        *steepest = fmax(*steepest, sqrt(inner(m, &m->side[c], a->tangent, a->tangent)));
+            for (int k = 0; k < 3; k++) a->to[which][j][k] -= td / tt * a->to[TANGENT][j][k];
     }
-    double s = p->s - tc / tt;
-    return s < FALL * p->s || s > 2 * p->s ? 0 : -tc / tt;
+    return -td / tt;
 }
 
-/* Corrects, and goes on by ds along the tangent. */
-static void step(struct path *p, double corrected, double ds)
+/* Corrects, and goes on by h along the tangent and the bend, which adds `turn` to s'' */
+static void step(struct path *p, double corrected, double h, double turn)
 {
-    p->base = p->s + corrected, p->ahead = ds;
+    double from = p->s + corrected;
+    p->last[0] = from, p->last[1] = 1, p->last[2] = turn, p->h = h;
+    while (after(p->last, p->h) < FALL * from) p->h *= 0.8;
     for (int64_t c = 0; c < p->m->w->whole.W.n; c++) {
         const struct side *s = &p->m->side[c];
         struct along *a = &p->at[c];
         for (int k = 0; k < 3; k++) {
-            a->base[k] = s->x[k] - s->z[k] + a->correction[0][k] - a->correction[1][k];
-            a->ahead[k] = ds * (a->tangent[0][k] - a->tangent[1][k]);
+            a->tau[0][k] = s->x[k] - s->z[k] + a->to[CORRECTION][0][k] - a->to[CORRECTION][1][k];
+            a->tau[1][k] = a->to[TANGENT][0][k] - a->to[TANGENT][1][k];
+            a->tau[2][k] = a->to[BEND][0][k] - a->to[BEND][1][k];
         }
     }
     place(p);
@@ -146,8 +195,8 @@ static void correct(struct path *p, double corrected)
     p->s += corrected;
     for (int64_t c = 0; c < p->m->w->whole.W.n; c++) {
         struct side *s = &p->m->side[c];
-        const struct along *a = &p->at[c];
-        for (int k = 0; k < 3; k++) s->x[k] += a->correction[0][k], s->z[k] += a->correction[1][k];
+        double(*d)[3] = p->at[c].to[CORRECTION];
+        for (int k = 0; k < 3; k++) s->x[k] += d[0][k], s->z[k] += d[1][k];
         jordan_centre(s->x, s->z, p->s * p->g0);
     }
 }
@@ -183,7 +232,7 @@ bool path_follow(struct central *m, struct solve *s, double natural, int steps)
     bool there = false;
     for (int k = 0; k < steps && backwards <= BACKWARDS; k++) {
         m->gap = p.s * p.g0;
-        double e = central_look(m, s), most, steepest;
+        double e = central_look(m, s);
         there = e <= natural || solve_met(s);
         if (there || !isfinite(e) || solve_spent(s) || !central_scale(m)) break;
         s->rep->newton++;
@@ -193,23 +242,26 @@ bool path_follow(struct central *m, struct solve *s, double natural, int steps)
             continue;
         }
         if (!correction(&p) && e < ROUNDING) break;
+        bend(&p);
         if (!sign) sign = system_sign(m->w->system);
-        double corrected = straighten(&p, &most, &steepest);
+        double corrected = straighten(&p, CORRECTION), turn = straighten(&p, BEND),
+               most = largest(&p, CORRECTION);
+        if (p.s + corrected < FALL * p.s || corrected > p.s) corrected = 0;
         bool down = system_sign(m->w->system) == sign;
         backwards += !down;
         if (before > 0 ? most > NEAR && most > 0.7 * before : k > 0 && most > FAR) {
             p.ceiling = 0.8 * p.reach;
-            if (!shorten(&p, fmin(0.5, fmax(0.25, 0.7 * sqrt(AIM / most))))) break;
+            if (!shorten(&p, fmin(0.5, fmax(0.25, 0.7 * cbrt(AIM / most))))) break;
             before = 0;
             continue;
         }
         if (k > 0 && !(before > 0)) {
-            p.reach = fmin(p.reach * fmin(3, fmax(0.5, sqrt(AIM / most))), p.ceiling);
+            p.reach = fmin(p.reach * fmin(3, fmax(0.5, cbrt(AIM / most))), p.ceiling);
             p.ceiling *= 1.2;
         }
         before = most < NEAR ? 0 : most;
         if (most < NEAR)
-            step(&p, corrected, stride(&p, p.s + corrected, steepest, down));
+            step(&p, corrected, stride(&p, p.s + corrected, largest(&p, TANGENT), down), turn);
         else
             correct(&p, corrected);
     }
