@@ -18,7 +18,7 @@ enum {
     SHORT_STEPS = 4, /* in a row, and it is stuck */
     CORRECTORS = 3,  /* a step */
     ROUNDS = 3,      /* from r = 0, each ten times nearer; */
-    APPROACH = 80,   /* steps of the first, and */
+    APPROACH = 200,  /* steps of the first, and */
     AGAIN = 12,      /* of the others */
     NEARBY = 25,     /* steps from the sweeps' reactions; */
     BENDS = 60       /* along the path */
