@@ -418,18 +418,24 @@ static void let_go(struct reader *r, struct frame *f)
     stream_drop(r->stream);
 }
 
-int reader_next(struct reader *r, struct frame *f, bool *more, struct why *why)
+bool reader_has(const struct reader *r, int64_t k, const struct range *steps)
 {
-    int64_t frames = r->frames;
-    while (r->doc < 0 || r->next == frames) {
+    return !r->step || range_has(steps, r->step[k]);
+}
+
+int reader_next(struct reader *r, const struct range *steps, struct frame *f, bool *more,
+                struct why *why)
+{
+    for (;;) {
+        while (steps && r->next < r->frames && !reader_has(r, r->next, steps)) r->next++;
+        *more = r->next < r->frames;
+        if (*more) break;
+        int64_t frames;
         if (reader_document(r, &frames, why)) return why->status;
-        *more = frames >= 0;
-        if (!*more) {
-            frame_free(f);
-            return 0;
-        }
+        if (frames >= 0) continue;
+        frame_free(f);
+        return 0;
     }
-    *more = true;
     if (reader_frame(r, r->next++, f, why)) return why->status;
     let_go(r, f);
     return 0;

@@ -7,6 +7,7 @@
 #define NSD_DOC_H
 
 #include "frame.h"
+#include "range.h"
 
 struct reader;
 
@@ -21,8 +22,12 @@ int reader_document(struct reader *, int64_t *frames, struct why *);
 /* Moment k of that document; *f is freed first, and is the caller's to free. */
 int reader_frame(struct reader *, int64_t k, struct frame *f, struct why *);
 
-/* Both in one: every frame of every document; *more is false at the end. */
-int reader_next(struct reader *, struct frame *, bool *more, struct why *);
+/* Is moment k of that document one of these steps? Told without reading it; an FCLIB problem, which has
+   no steps, always is. */
+bool reader_has(const struct reader *, int64_t k, const struct range *);
+
+/* All in one: every frame of every document of these steps, or NULL for all; *more is false at the end. */
+int reader_next(struct reader *, const struct range *, struct frame *, bool *more, struct why *);
 /* The very last frame of all, its document left open; *more is false where there is none. */
 int reader_last(struct reader *, struct frame *, bool *more, struct why *);
 

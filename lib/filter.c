@@ -13,7 +13,7 @@ void filter_run(int files, char *const *file, void (*each)(struct frame *, const
     bool more;
     if (sink_open(&out, NULL, SINK_STREAM, &why) || reader_open(&in, files, file, &why))
         die_why(&why);
-    while (!reader_next(in, &f, &more, &why) && more) {
+    while (!reader_next(in, NULL, &f, &more, &why) && more) {
         each(&f, reader_where(in));
         if (frame_note(&f, cli_history(), &why) || sink_frame(out, &f, &why)) break;
     }

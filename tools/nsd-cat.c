@@ -1,7 +1,6 @@
 /* nsd-cat: join, cut and thin streams and trajectories; stream a stream into a trajectory. */
 #include "cli.h"
 #include "doc.h"
-#include "range.h"
 #include "sink.h"
 
 static bool last, stream;
@@ -39,8 +38,8 @@ int tool_main(int argc, char **argv)
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
     if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
     enum sink_kind kind = stream || last ? SINK_STREAM : SINK_TRAJECTORY;
-    while (!(last ? reader_last : reader_next)(in, &f, &more, &why) && more) {
-        if (f.packed && !last && !range_has(&range, f.packing.step)) continue;
+    while (!(last ? reader_last(in, &f, &more, &why) : reader_next(in, &range, &f, &more, &why)) &&
+           more) {
         if (!out && sink_open(&out, output, kind, &why)) break;
         if (sink_frame(out, &f, &why) == EX_DATAERR)
             die(EX_DATAERR, "%s: %s", reader_where(in), why.text);

@@ -65,7 +65,7 @@ int tool_main(int argc, char **argv)
     struct why why = { 0 };
     bool more;
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
-    while (!reader_next(in, &f, &more, &why) && more) {
+    while (!reader_next(in, NULL, &f, &more, &why) && more) {
         const char *where = reader_where(in);
         if (f.foreign && !f.u) die(EX_DATAERR, "%s: no /solution: nsd-solve comes before", where);
         if (f.packed && !f.detected)

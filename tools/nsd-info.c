@@ -2,7 +2,6 @@
 #include "cli.h"
 #include "doc.h"
 #include "json.h"
-#include "range.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -229,9 +228,12 @@ int tool_main(int argc, char **argv)
         if (more) show(&f);
     }
     while (!last && !reader_document(in, &frames, &why) && frames >= 0)
-        for (int64_t k = 0; k < frames && !reader_frame(in, k, &f, &why); k++) {
-            if (k == 0 && !part) show_document(&f, frames);
-            if (f.foreign || range_has(&range, f.packing.step)) show(&f);
+        for (int64_t k = 0; k < frames; k++) {
+            bool wanted = reader_has(in, k, &range), first = k == 0 && !part;
+            if (!wanted && !first) continue;
+            if (reader_frame(in, k, &f, &why)) break;
+            if (first) show_document(&f, frames);
+            if (wanted) show(&f);
         }
     if (why.status) die_why(&why);
     if (contacts && !shown) die(EX_DATAERR, "%s: no group /contacts", reader_where(in));

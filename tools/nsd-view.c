@@ -141,9 +141,10 @@ static void find(struct reader *in, struct frame *found)
     struct frame f = { 0 };
     struct why why = { 0 };
     bool more = false, any = false;
+    const struct range only = { step, step, 1 };
     if (step < 0 && reader_last(in, found, &any, &why)) die_why(&why);
-    while (step >= 0 && !reader_next(in, &f, &more, &why) && more)
-        if (f.packed && f.packing.step == step) {
+    while (step >= 0 && !reader_next(in, &only, &f, &more, &why) && more)
+        if (f.packed) {
             frame_free(found);
             *found = f, f = (struct frame){ 0 }, any = true;
         }
