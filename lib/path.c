@@ -71,9 +71,11 @@ static bool shorten(struct path *p, double by)
     return true;
 }
 
+/* |u_t|, smoothed */
 static double smooth_tail(const struct path *p, const struct side *s)
 {
-    return hypot(jordan_tail(s->y), p->m->gap);
+    double t = jordan_tail(s->y), gap = p->m->gap;
+    return sqrt(t * t + gap * gap);
 }
 
 /* dx/ds and dz/ds; false where the matrix is singular. */
@@ -205,7 +207,9 @@ static void correct(struct path *p, double corrected)
 static double stride(const struct path *p, double s, double steepest, bool down)
 {
     double relative = p->reach / (steepest * p->s);
-    if (down) return -fmax(0, fmin(s * (1 - exp(-relative)), s - FALL * p->s));
+    // 1 - exp(-relative) or so, but of the same bits everywhere
+    double fall = 1 - 1 / (1 + relative * (1 + relative / 2));
+    if (down) return -fmax(0, fmin(s * fall, s - FALL * p->s));
     return fmin(2, relative) * p->s;
 }
 

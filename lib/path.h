@@ -6,8 +6,8 @@
  *
  *     z - y(x) = s p_0,   x o z = s g_0 (1, 0, 0),                p_0, g_0 those of the start
  *
- * is a curve in (x, z, s). A step corrects at a right angle to its tangent and goes on along it; what
- * becomes of s is the curve's affair, which turns where the determinant of Newton's matrix changes
+ * is a curve in (x, z, s). A step corrects at a right angle to its tangent and goes on along it as it
+ * bends, to second order; what becomes of s is the curve's affair, which turns where the determinant of Newton's matrix changes
  * its sign. Steps are made in tau = x - z, from which x and z with x o z = s g_0 follow exactly, so
  * that no border stops them; their length is such that the next correction is small in F's measure.
  */
