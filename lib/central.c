@@ -159,7 +159,10 @@ bool central_direction(struct central *m, bool factorised)
 void central_settle(struct central *m, struct solve *s)
 {
     struct newton *w = m->w;
-    if (!(m->least < INFINITY)) return;
+    if (!(m->least < INFINITY)) { // nothing was, or nothing finite
+        newton_back(w, s);
+        return;
+    }
     memcpy(w->x, m->best, (size_t)w->whole.size * sizeof *w->x);
     newton_put(w, s);
     m->least = INFINITY;
