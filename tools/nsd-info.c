@@ -227,7 +227,7 @@ int tool_main(int argc, char **argv)
         if (reader_last(in, &f, &more, &why)) die_why(&why);
         if (more) show(&f);
     }
-    while (!last && !reader_document(in, &frames, &why) && frames >= 0)
+    while (!last && !why.status && !reader_document(in, &frames, &why) && frames >= 0)
         for (int64_t k = 0; k < frames; k++) {
             bool wanted = reader_has(in, k, &range), first = k == 0 && !part;
             if (!wanted && !first) continue;
