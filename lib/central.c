@@ -29,12 +29,12 @@ static void start(struct central *m, double gap)
         s->x[0] = s->mu * r[0] / m->unit;
         for (int k = 1; k < 3; k++) s->x[k] = r[k] / m->unit;
     }
-    central_motion(m);
+    central_look(m);
     for (int64_t c = 0; c < a->W.n; c++) {
         memcpy(m->side[c].z, m->side[c].y, sizeof m->side[c].z);
         jordan_centre(m->side[c].x, m->side[c].z, gap);
     }
-    m->gap = gap;
+    m->gap = gap, m->least = INFINITY;
 }
 
 bool central_begin(struct central *m, struct newton *w, struct solve *s, double gap, bool cold)
@@ -56,26 +56,18 @@ double central_mean(const struct central *m)
     return gap / (double)m->w->whole.W.n;
 }
 
-/* The reactions, back in their cones or as they are, into w->x */
-static void reactions(struct central *m, bool back)
-{
-    struct newton *w = m->w;
-    int d = w->whole.W.d;
-    for (int64_t c = 0; c < w->whole.W.n; c++) {
-        const struct side *s = &m->side[c];
-        double r[3] = { s->x[0] / s->mu, s->x[1], s->x[2] }, p[3] = { 0 };
-        for (int k = 0; k < 3; k++) r[k] *= m->unit;
-        if (back) cone_project(w->whole.W.mu[c], r, p);
-        whole_store(d, back ? p : r, w->x + d * c);
-    }
-}
-
-void central_motion(struct central *m)
+double central_look(struct central *m)
 {
     struct newton *w = m->w;
     struct whole *a = &w->whole;
     int d = a->W.d;
-    reactions(m, false);
+    for (int64_t c = 0; c < a->W.n; c++) {
+        struct side *s = &m->side[c];
+        const double r[3] = { s->x[0] / s->mu, s->x[1], s->x[2] };
+        double in[3] = { 0 };
+        for (int k = 0; k < 3; k++) in[k] = r[k] * m->unit;
+        whole_store(d, in, w->x + d * c);
+    }
     whole_velocity(a, w->x, w->v);
     for (int64_t c = 0; c < a->W.n; c++) {
         struct side *s = &m->side[c];
@@ -86,18 +78,8 @@ void central_motion(struct central *m)
         s->y[0] = u[0] / s->mu + (smooth - m->gap), s->y[1] = u[1], s->y[2] = u[2];
         s->e[0] = smooth > 0 ? u[1] / smooth : 0, s->e[1] = smooth > 0 ? u[2] / smooth : 0;
     }
-}
-
-double central_look(struct central *m, struct solve *s)
-{
-    struct newton *w = m->w;
-    central_motion(m);
-    double map = whole_natural(&w->whole, w->x, w->v);
-    reactions(m, true);
-    newton_put(w, s);
-    if (!(s->value < m->least)) return map;
-    m->least = s->value;
-    memcpy(m->best, w->x, (size_t)w->whole.size * sizeof *w->x);
+    double map = whole_natural(a, w->x, w->v);
+    if (map < m->least) m->least = map, memcpy(m->best, w->x, (size_t)a->size * sizeof *w->x);
     return map;
 }
 
@@ -159,11 +141,14 @@ bool central_direction(struct central *m, bool factorised)
 void central_settle(struct central *m, struct solve *s)
 {
     struct newton *w = m->w;
-    if (!(m->least < INFINITY)) { // nothing was, or nothing finite
-        newton_back(w, s);
-        return;
+    int d = w->whole.W.d;
+    if (!(m->least < INFINITY)) return;
+    for (int64_t c = 0; c < w->whole.W.n; c++) {
+        double r[3], p[3] = { 0 };
+        whole_load(d, m->best + d * c, r);
+        cone_project(w->whole.W.mu[c], r, p);
+        whole_store(d, p, w->x + d * c);
     }
-    memcpy(w->x, m->best, (size_t)w->whole.size * sizeof *w->x);
     newton_put(w, s);
     m->least = INFINITY;
 }

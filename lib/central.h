@@ -44,8 +44,8 @@ static inline void side_recall(struct side *s, double from[2][3])
 struct central {
     struct newton *w;
     struct side *side; /* [n] */
-    double *best;      /* [n d] the best reactions that were looked at */
-    double least;      /* their criterion */
+    double *best;      /* [n d] the reactions with the least natural map */
+    double least;      /* that map */
     double unit;       /* of velocities: q is of order 1 after it */
     double gap;        /* g */
 };
@@ -60,11 +60,9 @@ void central_end(struct central *);
 /* The mean of x.z */
 double central_mean(const struct central *);
 
-/* y and e of all contacts at their x, smoothed over the gap */
-void central_motion(struct central *);
-/* The same, and the reactions, back in their cones, go into the rows and are judged: they may be good
-   enough long before x o z is small. Returns the scaled natural map of x as it stands. */
-double central_look(struct central *, struct solve *);
+/* y of all contacts at their x, smoothed over the gap; the scaled natural map as the reactions stand,
+   the best of which are kept. */
+double central_look(struct central *);
 
 /* F and l of all contacts; false where one of them has come too near the border. */
 bool central_scale(struct central *);
@@ -74,7 +72,7 @@ void central_matrix(struct central *, double t);
 /* dx and dz of all contacts, by c and p; false where the matrix is singular. */
 bool central_direction(struct central *, bool factorised);
 
-/* The best of what was looked at into the rows; what comes is compared with none. */
+/* The best reactions, back in their cones, into the rows; what comes is compared with none. */
 void central_settle(struct central *, struct solve *);
 
 #endif

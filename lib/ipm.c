@@ -165,8 +165,9 @@ static bool approach(struct ipm *m, struct solve *s, double natural, int steps)
     bool more = true, there = false;
     for (int k = 0; more && k < steps; k++) {
         m->c.gap = central_mean(&m->c);
-        double e = central_look(&m->c, s);
-        there = e <= natural || solve_met(s);
+        double e = central_look(&m->c);
+        if (s->o->progress) s->o->progress(s->rep->sweeps, e);
+        there = e <= natural;
         if (there || !isfinite(e) || solve_spent(s)) break;
         more = central_scale(&m->c) && ipm_step(m, s->rep);
     }

@@ -221,7 +221,7 @@ static bool begin(struct path *p, struct central *m)
     if (!p->at) return false;
     for (int64_t c = 0; c < n; c++) jordan_centre(m->side[c].x, m->side[c].z, p->g0);
     m->gap = p->g0;
-    central_motion(m);
+    central_look(m);
     for (int64_t c = 0; c < n; c++)
         for (int k = 0; k < 3; k++) p->at[c].p0[k] = m->side[c].z[k] - m->side[c].y[k];
     return true;
@@ -236,12 +236,13 @@ bool path_follow(struct central *m, struct solve *s, double natural, int steps)
     bool there = false;
     for (int k = 0; k < steps && backwards <= BACKWARDS; k++) {
         m->gap = p.s * p.g0;
-        double e = central_look(m, s);
-        there = e <= natural || solve_met(s);
+        double e = central_look(m);
+        if (s->o->progress) s->o->progress(s->rep->sweeps, e);
+        there = e <= natural;
         if (there || !isfinite(e) || solve_spent(s) || !central_scale(m)) break;
         s->rep->newton++;
-        if (!tangent(&p)) { // as near a fold
-            if (!shorten(&p, 0.7)) break;
+        if (!tangent(&p)) { // as near a fold, or in rounding
+            if (e < ROUNDING || !shorten(&p, 0.7)) break;
             before = 0;
             continue;
         }
