@@ -6,6 +6,9 @@
 
 #define MU_LEAST 1e-4 /* a cone needs an inside */
 
+#define NEAR  1.5e-6 /* the natural map at which Newton's steps lead on in one of two cases, and */
+#define AGAIN 0.4    /* how much less it is to be before they are tried again */
+
 void central_end(struct central *m)
 {
     free(m->side), free(m->best);
@@ -39,7 +42,7 @@ static void start(struct central *m, double gap)
 
 bool central_begin(struct central *m, struct newton *w, struct solve *s, double gap, bool cold)
 {
-    *m = (struct central){ .w = w, .least = INFINITY };
+    *m = (struct central){ .w = w, .least = INFINITY, .tried = INFINITY };
     m->side = calloc((size_t)w->whole.W.n + 1, sizeof *m->side);
     m->best = malloc(((size_t)w->whole.size + 1) * sizeof *m->best);
     if (!m->side || !m->best) return central_end(m), false;
@@ -135,6 +138,17 @@ bool central_direction(struct central *m, bool factorised)
         scaling_apply(&s->F, f, s->dz);
         if (d == 2) s->dx[2] = s->dz[2] = 0;
     }
+    return true;
+}
+
+bool central_finish(struct central *m, struct solve *s, double map)
+{
+    // where one takes a contact that hardly slides for one that holds, another may not
+    static const double rhos[] = { 7, 50, 1 };
+    if (!(map <= NEAR) || map > AGAIN * m->tried) return false;
+    m->tried = map;
+    if (!newton_finish(m->w, s, rhos[m->tries++ % 3])) return false;
+    m->least = INFINITY;
     return true;
 }
 

@@ -48,6 +48,8 @@ struct central {
     double least;      /* that map */
     double unit;       /* of velocities: q is of order 1 after it */
     double gap;        /* g */
+    double tried;      /* the natural map at which Newton's steps were tried last, */
+    int tries;         /* and how often */
 };
 
 /*
@@ -71,6 +73,13 @@ bool central_scale(struct central *);
 void central_matrix(struct central *, double t);
 /* dx and dz of all contacts, by c and p; false where the matrix is singular. */
 bool central_direction(struct central *, bool factorised);
+
+/*
+ * Newton's steps on the law itself from here, where `map` says that it is near enough; each contact's
+ * status is clear there. It costs a step of the path, and ends a thousand times nearer than ten of
+ * them. False where it was too early.
+ */
+bool central_finish(struct central *, struct solve *, double map);
 
 /* The best reactions, back in their cones, into the rows; what comes is compared with none. */
 void central_settle(struct central *, struct solve *);

@@ -10,7 +10,7 @@
 #define GAINED   0.03 /* what it has to, at least */
 #define SHORT    0.1  /* a step that leads nowhere */
 
-#define NEAR 2e-7 /* of the scaled natural map: from there on Newton sees the statuses; */
+#define NEAR 2e-7 /* of the scaled natural map: near enough if nothing ends it sooner; */
 #define END  1e-9 /* what the path is followed to, which costs a few steps more */
 #define LATE 1e-4 /* the gap from which on smaller t would only lead about */
 
@@ -167,7 +167,7 @@ static bool approach(struct ipm *m, struct solve *s, double natural, int steps)
         m->c.gap = central_mean(&m->c);
         double e = central_look(&m->c);
         if (s->o->progress) s->o->progress(s->rep->sweeps, e);
-        there = e <= natural;
+        there = central_finish(&m->c, s, e) || e <= natural;
         if (there || !isfinite(e) || solve_spent(s)) break;
         more = central_scale(&m->c) && ipm_step(m, s->rep);
     }
@@ -196,6 +196,17 @@ static bool over(const struct solve *s)
     return solve_met(s) || solve_spent(s);
 }
 
+/*
+ * Spent, or met near the solution: where u' = u, eps_glob is a product of two errors, and as small for
+ * reactions inside their cones that are far from it.
+ */
+static bool arrived(struct newton *w, struct solve *s)
+{
+    if (!solve_met(s)) return solve_spent(s);
+    newton_get(w, s);
+    return newton_map(w) <= NEAR || solve_spent(s);
+}
+
 /* Long steps, and by arc length where they end */
 static void along(struct newton *w, struct solve *s, bool cold)
 {
@@ -203,7 +214,7 @@ static void along(struct newton *w, struct solve *s, bool cold)
     if (!begin(&m, w, s, cold, cold ? INFINITY : LATE)) return;
     bool near = approach(&m, s, NEAR, cold ? APPROACH : NEARBY);
     if (near && !over(s)) newton_polish(w, s, 1e-7, 3);
-    if (!over(s)) near = path_follow(&m.c, s, END, BENDS);
+    if (!arrived(w, s)) near = path_follow(&m.c, s, END, BENDS);
     if (!over(s)) newton_polish(w, s, 1e-7, near ? 3 : 1);
     leave(&m);
 }

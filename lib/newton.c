@@ -8,6 +8,8 @@ enum { INNER = 8 }; /* Newton steps of a careful proximal step */
 
 #define RHO       50.0 /* of the projection: large ones find the statuses, 1 does not */
 #define ALPHA_MIN 1e-9
+#define ALPHA_END 1e-7 /* of steps that are to end, at a map of */
+#define END       1e-9
 #define MEMORY    4e9    /* bytes that the factors may have */
 #define CONTACTS  100000 /* more are not even assembled */
 
@@ -28,7 +30,7 @@ void newton_free(struct newton *w)
 int newton_init(struct newton *w, const struct problem *p)
 {
     struct why why = { 0 };
-    *w = (struct newton){ .value = INFINITY };
+    *w = (struct newton){ .value = INFINITY, .rho = RHO };
     bool good = p->n <= CONTACTS && !whole_init(&w->whole, p, &why);
     int32_t size = w->whole.size;
     if (good) {
@@ -87,7 +89,7 @@ static double residual(struct newton *w, const double *x)
     for (int64_t c = 0; c < a->W.n; c++) {
         double r[3], u[3], Z[3], A[3][3], B[3][3];
         whole_load(d, x + d * c, r), whole_load(d, w->v + d * c, u);
-        eal_linearise(a->W.mu[c], RHO, r, u, Z, A, B);
+        eal_linearise(a->W.mu[c], w->rho, r, u, Z, A, B);
         for (int i = 0; i < d; i++) w->z[d * c + i] = -Z[i], sum += Z[i] * Z[i];
         for (int i = 0; i < 9; i++) {
             w->L[9 * c + i] = B[i / 3][i % 3];
@@ -141,10 +143,33 @@ static bool newton_step(struct newton *w, struct report *rep, bool carefully)
         int d = a->W.d;
         double r[3] = { 0 }, u[3], tau[3];
         whole_load(d, w->x + d * c, r), whole_load(d, w->v + d * c, u);
-        disc_predict(RHO, r, u, tau);
+        disc_predict(w->rho, r, u, tau);
         disc_project(a->W.mu[c], tau, r);
         whole_store(d, r, w->x + d * c);
     }
+    return true;
+}
+
+double newton_map(struct newton *w)
+{
+    whole_velocity(&w->whole, w->x, w->v);
+    return whole_natural(&w->whole, w->x, w->v);
+}
+
+bool newton_finish(struct newton *w, struct solve *s, double rho)
+{
+    size_t size = (size_t)w->whole.size * sizeof *w->x;
+    double map = newton_map(w), before;
+    memcpy(w->start, w->x, size);
+    w->rho = rho, w->alpha = ALPHA_END;
+    do {
+        before = map;
+        map = newton_step(w, s->rep, false) ? newton_map(w) : INFINITY;
+    } while (map > END && map < before / 3);
+    w->rho = RHO;
+    if (!(map <= END)) return memcpy(w->x, w->start, size), false;
+    w->value = INFINITY; // the best, whatever the criterion says of others
+    newton_put(w, s);
     return true;
 }
 

@@ -8,7 +8,7 @@
  *     (A + B (W + a I)) dx = -Z.
  *
  * a > 0 makes a W regular that is not (a packing in which more contacts stick than its bodies can
- * tell apart); rho is large, 50 where the diagonal of W is 1.
+ * tell apart); rho is large, 50 where the diagonal of W is 1, but for the last steps.
  */
 #ifndef NSD_NEWTON_H
 #define NSD_NEWTON_H
@@ -19,6 +19,7 @@
 struct newton {
     struct whole whole;
     struct system *system;
+    double rho;           /* of the projection, in units in which W's diagonal is 1 */
     double alpha;         /* a, in multiples of the mean diagonal of W */
     int omega;            /* which over-relaxation its sweeps are at */
     double *x, *v, *z;    /* [n d]: the iterate, its velocity, a right-hand side */
@@ -40,6 +41,15 @@ void newton_get(struct newton *, struct solve *);
 void newton_put(struct newton *, struct solve *);
 /* The best iterate into the rows. */
 void newton_back(struct newton *, struct solve *);
+
+/* The natural map at x, scaled; v is x's. */
+double newton_map(struct newton *);
+
+/*
+ * Full steps with this rho, from an x that knows what each contact does, to the solution, into the
+ * rows. False where they do not lead there, which the first one tells: x is as it was.
+ */
+bool newton_finish(struct newton *, struct solve *, double rho);
 
 /*
  * Steps from the rows' x, with sweeps between them that cost as much, until the criterion is met,

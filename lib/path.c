@@ -238,7 +238,7 @@ bool path_follow(struct central *m, struct solve *s, double natural, int steps)
         m->gap = p.s * p.g0;
         double e = central_look(m);
         if (s->o->progress) s->o->progress(s->rep->sweeps, e);
-        there = e <= natural;
+        there = central_finish(m, s, e) || e <= natural;
         if (there || !isfinite(e) || solve_spent(s) || !central_scale(m)) break;
         s->rep->newton++;
         if (!tangent(&p)) { // as near a fold, or in rounding

@@ -173,19 +173,45 @@ static void test_path(const struct packing *p, const struct contacts *s, const c
     contacts_free(&a), contacts_free(&b), report_free(&exact), report_free(&rep);
 }
 
-/* What sweeps have solved costs the interior point method nothing. */
-static int after_sweeps(struct solve *s)
+/* The interior point method after so many sweeps */
+static int after(struct solve *s, int32_t sweeps)
 {
     struct newton w;
-    if (nlgs_sweeps(s, 100000, 1) || newton_init(&w, s->p)) return -1;
+    if (nlgs_sweeps(s, sweeps, 1) || newton_init(&w, s->p)) return -1;
     ipm_solve(&w, s);
     newton_free(&w);
     return 0;
 }
 
+static int after_few(struct solve *s)
+{
+    return after(s, 20);
+}
+
+static int after_all(struct solve *s)
+{
+    return after(s, 100000);
+}
+
+/* eps_glob is met far from the solution too, inside the cones, where the method comes from. */
+static void test_arrival(const struct packing *p, const struct contacts *s, const char *what)
+{
+    static const struct solver few_first = { "20 sweeps, ipm", 0, after_few };
+    struct report rep = { 0 };
+    struct step_opt o = options(&few_first, 1e-12, 100000);
+    o.solve.criterion = CRITERION_GLOB;
+    struct contacts c = solve(p, s, &o, &rep);
+    // of 4 balls each may be between two statuses; then it ends at a map of 2e-7
+    ok(rep.converged && rep.err.natural < (s->n < 10 ? 3e-7 : 2e-9),
+       "%s: what ends by eps_glob is a solution, after %d factorisations, natural %.1e", what,
+       (int)rep.newton, rep.err.natural);
+    contacts_free(&c), report_free(&rep);
+}
+
+/* What sweeps have solved costs it nothing. */
 static void test_nothing_left(const struct packing *p, const struct contacts *s, const char *what)
 {
-    static const struct solver sweeps_first = { "sweeps, ipm", 0, after_sweeps };
+    static const struct solver sweeps_first = { "sweeps, ipm", 0, after_all };
     struct report rep = { 0 };
     struct step_opt o = options(&sweeps_first, 1e-6, 100000);
     struct contacts c = solve(p, s, &o, &rep);
@@ -217,6 +243,7 @@ int main(void)
         test_bytes(&p, &s, scene[k].name);
         test_limits(&p, &s, scene[k].name);
         if (s.n && scene[k].mu != 0) test_path(&p, &s, scene[k].name);
+        if (s.n && scene[k].mu != 0) test_arrival(&p, &s, scene[k].name);
         if (s.n) test_nothing_left(&p, &s, scene[k].name);
         contacts_free(&s), packing_free(&p);
     }
