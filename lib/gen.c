@@ -102,13 +102,20 @@ static int set_body(struct packing *p, int64_t i, const struct scene_bodies *b, 
     return 0;
 }
 
+/* A normal deviate to 7 digits, and no more: libm's logarithm and exponential, by which it is made, have
+   other last bits on machines without FMA. */
+static double draw_normal(gsl_rng *rng, double sd)
+{
+    return (float)gsl_ran_gaussian(rng, sd);
+}
+
 static double draw_radius(const struct scene_size *z, gsl_rng *rng)
 {
     double r;
     if (z->law == SIZE_UNIFORM) return z->min < z->max ? gsl_ran_flat(rng, z->min, z->max) : z->min;
     do {
-        double z1 = gsl_ran_gaussian(rng, z->spread);
-        r = z->law == SIZE_GAUSSIAN ? z->mid + z1 : z->mid * exp(z1);
+        double z1 = draw_normal(rng, z->spread);
+        r = z->law == SIZE_GAUSSIAN ? z->mid + z1 : z->mid * (float)exp(z1);
     } while (r < z->min || r > z->max); // ends: the scene has seen to it
     return r;
 }
@@ -132,7 +139,7 @@ static vec3 draw_place(const struct scene_bodies *b, const struct scene_lattice 
 static vec3 draw_velocity(double sd, int dim, gsl_rng *rng)
 {
     double v[3] = { 0 };
-    for (int i = 0; i < dim; i++) v[i] = gsl_ran_gaussian(rng, sd);
+    for (int i = 0; i < dim; i++) v[i] = draw_normal(rng, sd);
     return v3(v[0], v[1], v[2]);
 }
 

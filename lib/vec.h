@@ -58,12 +58,21 @@ static inline quat quat_mul(quat a, quat b)
                    a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w };
 }
 
-/* The rotation by the vector a (rad): exponential map. */
+/*
+ * The rotation by the vector a (rad): exponential map, by its series up to an angle of 1 and by twice
+ * half of it beyond. libm's sine and cosine have other last bits on machines without FMA.
+ */
 static inline quat quat_rotation(vec3 a)
 {
-    double angle = v3_norm(a);
-    double s = angle > 0 ? sin(0.5 * angle) / angle : 0.5;
-    return (quat){ cos(0.5 * angle), s * a.x, s * a.y, s * a.z };
+    double h = v3_dot(a, a) / 4, s = 0.5; // the square of half the angle
+    int halvings = 0;
+    for (; h > 0.25 && halvings < 64; halvings++) h /= 4, s /= 2;
+    s *= 1 - h / 6 * (1 - h / 20 * (1 - h / 42 * (1 - h / 72 * (1 - h / 110 * (1 - h / 156)))));
+    double c = 1 - h / 132 * (1 - h / 182);
+    c = 1 - h / 2 * (1 - h / 12 * (1 - h / 30 * (1 - h / 56 * (1 - h / 90 * c))));
+    quat q = { c, s * a.x, s * a.y, s * a.z };
+    for (; halvings > 0; halvings--) q = quat_mul(q, q);
+    return q;
 }
 
 static inline quat quat_unit(quat q)
