@@ -11,26 +11,14 @@ void h5_start(void)
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 
-/* H5Oexists_by_name stumbles where a link before the last is missing, so they are asked in turn. */
 bool h5_has(hid_t place, const char *path)
 {
-    char *part = strdup(path);
-    bool has = part != NULL;
-    for (char *c = part; has && *c; c++) {
-        if (*c != '/' || c == part) continue;
-        *c = 0;
-        has = H5Lexists(place, part, H5P_DEFAULT) > 0;
-        *c = '/';
-    }
-    free(part);
-    if (!has || strcmp(path, "/") == 0 || strcmp(path, ".") == 0) return has;
-    return H5Lexists(place, path, H5P_DEFAULT) > 0 &&
-           H5Oexists_by_name(place, path, H5P_DEFAULT) > 0;
+    return H5Oexists_by_name(place, path, H5P_DEFAULT) > 0;
 }
 
 int h5_shape(hid_t place, const char *path, hsize_t shape[4])
 {
-    hid_t set = h5_has(place, path) ? H5Dopen2(place, path, H5P_DEFAULT) : -1;
+    hid_t set = H5Dopen2(place, path, H5P_DEFAULT);
     if (set < 0) return -1;
     hid_t space = H5Dget_space(set);
     int rank = H5Sget_simple_extent_ndims(space);
@@ -71,7 +59,7 @@ static bool plausible(hid_t set, hsize_t count, size_t size)
 static hid_t open_numbers(hid_t place, const char *path, hid_t type, hsize_t *count,
                           struct why *why)
 {
-    hid_t set = h5_has(place, path) ? H5Dopen2(place, path, H5P_DEFAULT) : -1;
+    hid_t set = H5Dopen2(place, path, H5P_DEFAULT);
     if (set < 0) return why_set(why, EX_DATAERR, "%s: no such dataset", path), -1;
     hid_t disk = H5Dget_type(set), space = H5Dget_space(set);
     hssize_t points = H5Sget_simple_extent_npoints(space);
@@ -159,15 +147,13 @@ char *h5_read_text(hid_t place, const char *path)
 {
     const char *at = strrchr(path, '@');
     if (!at) {
-        hid_t set = h5_has(place, path) ? H5Dopen2(place, path, H5P_DEFAULT) : -1;
+        hid_t set = H5Dopen2(place, path, H5P_DEFAULT);
         char *text = set < 0 ? NULL : text_of(set, -1);
         if (set >= 0) H5Dclose(set);
         return text;
     }
     char *object = at == path ? strdup(".") : strndup(path, (size_t)(at - path));
-    hid_t attr = object && h5_has(place, object)
-                     ? H5Aopen_by_name(place, object, at + 1, H5P_DEFAULT, H5P_DEFAULT)
-                     : -1;
+    hid_t attr = object ? H5Aopen_by_name(place, object, at + 1, H5P_DEFAULT, H5P_DEFAULT) : -1;
     char *text = attr < 0 ? NULL : text_of(-1, attr);
     if (attr >= 0) H5Aclose(attr);
     free(object);
@@ -181,36 +167,7 @@ hid_t h5_dataset_plist(void)
     return plist;
 }
 
-static int make_group(hid_t place, const char *path)
-{
-    if (h5_has(place, path)) {
-        H5O_info_t info;
-        herr_t e = H5Oget_info_by_name2(place, path, &info, H5O_INFO_BASIC, H5P_DEFAULT);
-        return e >= 0 && info.type == H5O_TYPE_GROUP ? 0 : -1;
-    }
-    hid_t plist = H5Pcreate(H5P_GROUP_CREATE);
-    H5Pset_obj_track_times(plist, false);
-    hid_t group = H5Gcreate2(place, path, H5P_DEFAULT, plist, H5P_DEFAULT);
-    H5Pclose(plist);
-    return group < 0 ? -1 : H5Gclose(group);
-}
-
-int h5_group(hid_t place, const char *path, struct why *why)
-{
-    char *part = strdup(path);
-    int e = part ? 0 : -1;
-    for (char *c = part; !e && *c; c++) {
-        if (*c != '/' || c == part) continue;
-        *c = 0;
-        e = make_group(place, part);
-        *c = '/';
-    }
-    free(part);
-    if (!e) e = make_group(place, path);
-    return e ? why_set(why, EX_IOERR, "%s: cannot make the group", path) : 0;
-}
-
-/* The groups above a new dataset */
+/* The groups above what is to be made */
 static int make_parents(hid_t place, const char *path, struct why *why)
 {
     const char *slash = strrchr(path, '/');
@@ -221,17 +178,33 @@ static int make_parents(hid_t place, const char *path, struct why *why)
     return e;
 }
 
-static int write_data(hid_t place, const char *path, hid_t memory, hid_t disk, hid_t space,
-                      const void *data, struct why *why)
+int h5_group(hid_t place, const char *path, struct why *why)
 {
-    int e = make_parents(place, path, why);
-    if (e) return e;
+    H5O_info_t info;
+    hid_t group = -1;
+    bool there = H5Oget_info_by_name2(place, path, &info, H5O_INFO_BASIC, H5P_DEFAULT) >= 0;
+    if (!there) {
+        if (make_parents(place, path, why)) return why->status;
+        hid_t plist = H5Pcreate(H5P_GROUP_CREATE);
+        H5Pset_obj_track_times(plist, false);
+        group = H5Gcreate2(place, path, H5P_DEFAULT, plist, H5P_DEFAULT);
+        H5Pclose(plist);
+    }
+    bool good = there ? info.type == H5O_TYPE_GROUP : group >= 0 && H5Gclose(group) >= 0;
+    return good ? 0 : why_set(why, EX_IOERR, "%s: cannot make the group", path);
+}
+
+static int write_data(hid_t place, const char *path, hid_t memory, hid_t disk, hid_t space,
+                      const void *data, const char *units, struct why *why)
+{
+    if (make_parents(place, path, why)) return why->status;
     hid_t plist = h5_dataset_plist();
     hid_t set = H5Dcreate2(place, path, disk, space, H5P_DEFAULT, plist, H5P_DEFAULT);
     H5Pclose(plist);
     bool bad = set < 0;
     if (!bad && H5Sget_simple_extent_npoints(space) > 0)
         bad = H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0;
+    if (!bad && units) bad = h5_attr_text(set, ".", "units", units, why);
     if (set >= 0) bad |= H5Dclose(set) < 0;
     return bad ? why_set(why, EX_IOERR, "%s: cannot be written", path) : 0;
 }
@@ -258,19 +231,24 @@ int h5_write(hid_t place, const char *path, hid_t type, int rank, const hsize_t 
 {
     hid_t disk = little_endian(type);
     hid_t space = rank ? H5Screate_simple(rank, shape, NULL) : H5Screate(H5S_SCALAR);
-    int e = write_data(place, path, type, disk, space, data, why);
+    int e = write_data(place, path, type, disk, space, data, units, why);
     H5Sclose(space);
     H5Tclose(disk);
-    return e || !units ? e : h5_attr_text(place, path, "units", units, why);
+    return e;
 }
 
 int h5_write_text(hid_t place, const char *path, const char *text, struct why *why)
 {
     hid_t type = text_type(text), space = H5Screate(H5S_SCALAR);
-    int e = write_data(place, path, type, type, space, text, why);
+    int e = write_data(place, path, type, type, space, text, NULL, why);
     H5Sclose(space);
     H5Tclose(type);
     return e;
+}
+
+static hid_t make_attr(hid_t place, const char *path, const char *name, hid_t disk, hid_t space)
+{
+    return H5Acreate_by_name(place, path, name, disk, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
 }
 
 static int write_attr(hid_t place, const char *path, const char *name, hid_t memory, hid_t disk,
@@ -278,10 +256,9 @@ static int write_attr(hid_t place, const char *path, const char *name, hid_t mem
 {
     hsize_t shape = count < 0 ? 1 : (hsize_t)count;
     hid_t space = count < 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &shape, NULL);
-    if (H5Aexists_by_name(place, path, name, H5P_DEFAULT) > 0)
-        H5Adelete_by_name(place, path, name, H5P_DEFAULT);
-    hid_t attr =
-        H5Acreate_by_name(place, path, name, disk, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    hid_t attr = make_attr(place, path, name, disk, space);
+    if (attr < 0 && H5Adelete_by_name(place, path, name, H5P_DEFAULT) >= 0)
+        attr = make_attr(place, path, name, disk, space);
     bool bad = attr < 0 || (count != 0 && H5Awrite(attr, memory, data) < 0);
     if (attr >= 0) bad |= H5Aclose(attr) < 0;
     H5Sclose(space);
@@ -308,8 +285,7 @@ int h5_attr_text(hid_t place, const char *path, const char *name, const char *te
 int h5_attr_read(hid_t place, const char *path, const char *name, hid_t type, int count, void *out,
                  struct why *why)
 {
-    hid_t attr =
-        h5_has(place, path) ? H5Aopen_by_name(place, path, name, H5P_DEFAULT, H5P_DEFAULT) : -1;
+    hid_t attr = H5Aopen_by_name(place, path, name, H5P_DEFAULT, H5P_DEFAULT);
     if (attr < 0) return why_set(why, EX_DATAERR, "%s@%s: no such attribute", path, name);
     hid_t disk = H5Aget_type(attr), space = H5Aget_space(attr);
     hssize_t points = H5Sget_simple_extent_npoints(space), want = count < 0 ? 1 : count;

@@ -14,7 +14,7 @@
 /* Once, before anything else of libhdf5: silence its error stack, leave closing to us. */
 void h5_start(void);
 
-bool h5_has(hid_t place, const char *path); /* every link of a relative path exists */
+bool h5_has(hid_t place, const char *path);
 
 /* The dataset's shape, at most 4 deep. Returns its rank or -1. */
 int h5_shape(hid_t place, const char *path, hsize_t shape[4]);
