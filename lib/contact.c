@@ -51,3 +51,30 @@ void contacts_match(struct contacts *new, const struct contacts *old)
     }
     new->solved = old->solved; // the reactions mean something, as a start
 }
+
+static const char *trouble(const struct contact *c, int64_t bodies, int32_t walls)
+{
+    if (c->b < 0 || c->b >= bodies || c->a >= bodies || c->a < -walls || c->a == c->b)
+        return "no such bodies";
+    if (!v3_finite(c->x) || !isfinite(c->gap)) return "point or gap is not finite";
+    if (!(fabs(v3_dot(c->n, c->n) - 1) < 1e-6 && fabs(v3_dot(c->t1, c->t1) - 1) < 1e-6 &&
+          fabs(v3_dot(c->t2, c->t2) - 1) < 1e-6 && fabs(v3_dot(c->n, c->t1)) < 1e-6 &&
+          fabs(v3_dot(c->n, c->t2)) < 1e-6 && fabs(v3_dot(c->t1, c->t2)) < 1e-6))
+        return "frame is not orthonormal";
+    if (v3_dot(v3_cross(c->n, c->t1), c->t2) < 0) return "frame is not right-handed";
+    if (!(c->mu >= 0 && isfinite(c->mu))) return "mu must not be negative";
+    if (!(c->en >= 0 && c->en <= 1 && c->et >= 0 && c->et <= 1))
+        return "restitution must lie in [0, 1]";
+    for (int k = 0; k < 3; k++)
+        if (!isfinite(c->r[k]) || !isfinite(c->u[k])) return "reaction or velocity is not finite";
+    return NULL;
+}
+
+int contacts_check(const struct contacts *s, int64_t bodies, int32_t walls, struct why *why)
+{
+    for (int64_t i = 0; i < s->n; i++) {
+        const char *what = trouble(&s->c[i], bodies, walls);
+        if (what) return why_set(why, EX_DATAERR, "contact %lld: %s", (long long)i, what);
+    }
+    return 0;
+}

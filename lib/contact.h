@@ -30,6 +30,10 @@ void contacts_free(struct contacts *);
 /* One more, zeroed but for a and b; NULL when memory is short. */
 struct contact *contacts_add(struct contacts *, int32_t a, int32_t b);
 
+/* Are the bodies there, all numbers finite and the frames orthonormal? Returns 0 or EX_DATAERR, naming
+   the first contact that is not so. */
+int contacts_check(const struct contacts *, int64_t bodies, int32_t walls, struct why *);
+
 /* The frame (n, t1, t2) of a unit normal, continuous but at n = -z; in the plane t1 = z x n. */
 void contact_frame(struct contact *, int dim, vec3 n);
 

@@ -1,5 +1,5 @@
 /*
- * h5.h: the few things that the documents (doc, record, series, copy, sink) and fclib ask of
+ * h5.h: the few things that the documents (doc, recall, rows, record, series, copy, sink) and fclib ask of
  * libhdf5, with failures as reasons; nobody else knows HDF5. Object times are never stored, so that
  * the same data are the same bytes.
  */

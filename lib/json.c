@@ -54,13 +54,12 @@ json_t *json_err(const struct err *e)
 
 json_t *json_report(const struct report *r)
 {
-    static const char *const criteria[] = { "glob", "scaled", "natural" };
     json_t *j = json_object();
     json_object_set_new(j, "step", json_integer(r->step));
     json_object_set_new(j, "time", json_number(r->t));
     json_object_set_new(j, "method", json_string(r->method));
     set_err(j, &r->err);
-    json_object_set_new(j, "criterion", json_string(criteria[r->criterion]));
+    json_object_set_new(j, "criterion", json_string(criterion_name[r->criterion]));
     json_object_set_new(j, "eps", json_number(r->eps));
     json_object_set_new(j, "sweeps", json_integer(r->sweeps));
     json_object_set_new(j, "converged", json_boolean(r->converged));

@@ -2,6 +2,13 @@
 
 #include <string.h>
 
+void *column_array(const struct column *c, const void *structure)
+{
+    void *array;
+    memcpy(&array, (const char *)structure + c->offset, sizeof array);
+    return array;
+}
+
 void column_gather(const struct column *c, int64_t n, const void *structs, size_t stride, void *out)
 {
     size_t bytes = (size_t)c->width * column_size(c->type);

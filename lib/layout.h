@@ -1,5 +1,5 @@
 /*
- * layout.h: where a document keeps what: one table a group, read by doc.c and written by sink.c.
+ * layout.h: where a document keeps what: one table a group, read by recall.c and written by record.c.
  * nsd-format(5) is the same in words.
  */
 #ifndef NSD_LAYOUT_H
@@ -106,6 +106,8 @@ static const struct column layout_report[] = {
     { 0 },
 };
 
+/* The array that a struct has a pointer to in this column */
+void *column_array(const struct column *, const void *structure);
 /* Numbers of a column out of, or into, an array of structs. */
 void column_gather(const struct column *, int64_t n, const void *structs, size_t stride, void *out);
 void column_scatter(const struct column *, int64_t n, const void *in, void *structs, size_t stride);

@@ -137,7 +137,7 @@ char *options_json(const struct step_opt *o)
     json_object_set_new(j, "method", json_string(n->method->name));
     json_object_set_new(j, "global", json_string(n->global->name));
     json_object_set_new(j, "eps", json_real(n->eps));
-    json_object_set_new(j, "criterion", json_string(word(CRITERIA, (int)n->criterion)));
+    json_object_set_new(j, "criterion", json_string(criterion_name[n->criterion]));
     json_object_set_new(j, "max_sweeps", json_integer(n->max_sweeps));
     if (n->max_seconds > 0) json_object_set_new(j, "max_seconds", json_real(n->max_seconds));
     if (o->alpha > 0)
@@ -211,6 +211,6 @@ void options_summary(const char *where, const struct report *r)
                  (long long)r->safeguarded, (long long)r->gave_up);
     warn("%s: %lld contacts, %s: %d sweeps%s, %s %.3g%s, %.3g s%s", where,
          (long long)r->err.contacts, r->method, r->sweeps, newton,
-         r->criterion == CRITERION_GLOB ? "eps_glob" : word(CRITERIA, (int)r->criterion),
+         r->criterion == CRITERION_GLOB ? "eps_glob" : criterion_name[r->criterion],
          err_of(&r->err, r->criterion), trouble, r->seconds, r->converged ? "" : ": NOT CONVERGED");
 }

@@ -8,13 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const void *pointer_in(const void *base, size_t offset)
-{
-    const void *p;
-    memcpy(&p, (const char *)base + offset, sizeof p);
-    return p;
-}
-
 /* A value of HOME/step (i64) or HOME/time (f64, s), which the elements of the table share, by hard
    links. */
 static int put_clock(struct series *s, const char *home, bool step, const void *value,
@@ -72,8 +65,7 @@ static int put_material(hid_t file, const struct packing *p, struct why *why)
     for (const struct column *c = layout_material; c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "/nsd/material/%s", c->name);
-        if (h5_write(file, path, H5T_NATIVE_DOUBLE, 2, square, pointer_in(p, c->offset), c->units,
-                     why))
+        if (h5_write(file, path, H5T_NATIVE_DOUBLE, 2, square, column_array(c, p), c->units, why))
             return why->status;
     }
     size_t length = 1;
@@ -108,8 +100,8 @@ static int put_bodies(struct series *s, const struct packing *p, struct why *why
     for (const struct column *c = layout_bodies; c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "/particles/all/%s", c->name);
-        if (h5_write(s->file, path, column_native(c->type), 1, &n, pointer_in(p, c->offset),
-                     c->units, why))
+        if (h5_write(s->file, path, column_native(c->type), 1, &n, column_array(c, p), c->units,
+                     why))
             return why->status;
     }
     bool growing = s->growing;
@@ -128,7 +120,7 @@ static int put_motion(struct series *s, const struct packing *p, struct why *why
         char path[80];
         snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
         const hsize_t shape[3] = { 1, (hsize_t)p->n, (hsize_t)c->width };
-        if (series_put(s, path, c->type, 3, shape, 1, pointer_in(p, c->offset), c->units, why))
+        if (series_put(s, path, c->type, 3, shape, 1, column_array(c, p), c->units, why))
             return why->status;
     }
     return 0;
@@ -152,8 +144,6 @@ static int put_contacts(struct series *s, const struct frame *f, struct why *why
     return !first ? 0 : h5_attr(s->file, "/contacts", "moved", H5T_NATIVE_INT, -1, &moved, why);
 }
 
-static const char *const criteria[] = { "glob", "scaled", "natural" };
-
 static int put_report(struct series *s, const struct report *rep, struct why *why)
 {
     const char *solver = "/observables/solver";
@@ -165,7 +155,7 @@ static int put_report(struct series *s, const struct report *rep, struct why *wh
         return why->status;
     if (first &&
         (h5_attr_text(s->file, solver, "method", rep->method, why) ||
-         h5_attr_text(s->file, solver, "criterion", criteria[rep->criterion], why) ||
+         h5_attr_text(s->file, solver, "criterion", criterion_name[rep->criterion], why) ||
          h5_attr(s->file, solver, "eps", H5T_NATIVE_DOUBLE, -1, &rep->eps, why) ||
          h5_attr_text(s->file, solver, "options", rep->options ? rep->options : "{}", why)))
         return why->status;

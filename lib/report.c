@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <time.h>
 
+const char *const criterion_name[] = { "glob", "scaled", "natural" };
+
 double report_seconds(enum report_clock clock)
 {
     struct timespec t;

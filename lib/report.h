@@ -5,7 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum criterion { CRITERION_GLOB, CRITERION_SCALED, CRITERION_NATURAL };
+enum criterion { CRITERION_GLOB, CRITERION_SCALED, CRITERION_NATURAL, CRITERION_COUNT };
+extern const char *const criterion_name[CRITERION_COUNT]; /* as documents and logs have them */
 
 /* The paper's error and its four terms, each the mean over the contacts [estimator, corrected]. */
 struct terms {
