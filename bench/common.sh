@@ -2,15 +2,15 @@
 # common.sh: what the benchmarks share. Sourced from bash -euo pipefail, in the project's root.
 
 PATH=$(cd "${NSD_BUILD:-build}" && pwd):$PATH # the tools
-results=bench/results
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+cpu=$(lscpu | awk -F': *' '/^Model name/ { print $2; exit }')
+# each machine's by themselves: "Intel(R) Xeon(R) Processor" is intel-xeon-processor
+results=bench/results/$(sed 's/([A-Za-z]*)//g; s/[^A-Za-z0-9]\+/-/g; s/-$//' <<< "$cpu" | tr '[:upper:]' '[:lower:]')
 export PATH work results
 
 # The machine line of every result: what it ran on, and no date.
 machine() {
-    local cpu
-    cpu=$(lscpu | awk -F': *' '/^Model name/ { print $2; exit }')
     echo "$cpu, $(nproc) cores; $(${CC:-cc} --version | head -n 1)"
 }
 

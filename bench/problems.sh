@@ -1,7 +1,7 @@
 #!/bin/bash
 # problems.sh: every FCLIB problem of ../shared/problems by Gauss-Seidel with the exact local method,
 # to 1e-4, 1e-8 and 1e-12 of the scale-free natural map. The errors are nsd-err's, from the problem
-# and r alone; the solver's word is not taken. Leaves bench/results/problems-exact.{tsv,md}.
+# and r alone; the solver's word is not taken. Leaves bench/results/MACHINE/problems-exact.{tsv,md}.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 problems=../shared/problems

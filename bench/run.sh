@@ -1,6 +1,6 @@
 #!/bin/bash
 # run.sh [RUNS]: the figures that nsd is to reach, each the median of RUNS [3] with its least and most.
-# One thread where nothing is said. Leaves bench/results/figures.{tsv,md}, steps.{tsv,svg}.
+# One thread where nothing is said. Leaves bench/results/MACHINE/figures.{tsv,md}, steps.{tsv,svg}.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source bench/common.sh
@@ -68,6 +68,7 @@ whole_runs() {
     thousand 1.5 --eps 1e-8 --order colour --relax 1.5 --warm
     thousand 1.5 --eps 1e-8 --global auto
     thousand 10 --eps 1e-12 --global auto
+    thousand 10 --eps 1e-12 --global auto --warm
     [ -f "$balls" ] || return 0
     start="nsd-gen example3-balls"
     jq --arg file "$PWD/$balls" '.bodies = [{ file: $file }]' scenes/paper/example3.json |
@@ -77,6 +78,7 @@ whole_runs() {
     thousand 1.5 --eps 1e-8 --order colour --relax 1.5 --warm
     thousand 1.5 --eps 1e-8 --global auto
     thousand 10 --eps 1e-12 --global auto
+    thousand 10 --eps 1e-12 --global auto --warm
 }
 
 # Every frame or the last one only, in turn: what writing costs

@@ -1,7 +1,7 @@
 #!/bin/bash
 # solvers.sh: every solver over every FCLIB problem, to 1e-4, 1e-8 and 1e-12 of the scale-free natural map:
 # nsd's, and Siconos' where it is installed (solvers.py); performance profiles of Dolan and Moré. The errors
-# are nsd-err's, from the problem and r alone. Leaves bench/results/solvers.{tsv,md,svg}.
+# are nsd-err's, from the problem and r alone. Leaves bench/results/MACHINE/solvers.{tsv,md,svg}.
 #
 #   PROBLEMS=DIR            another folder of problems; leaves solvers-DIR.{tsv,md,svg}
 #   ONLY=nsd|siconos        that half; the other as the results have it

@@ -1,7 +1,7 @@
 #!/bin/bash
 # sweeps.sh [RUNS]: what a contact costs in a sweep, ns on the wall: method x vector width x threads x size,
 # each the median of RUNS [5] in turn, with the least and most. Siconos' NSGS beside it where it is
-# installed. Leaves bench/results/sweeps.{tsv,md,svg}.
+# installed. Leaves bench/results/MACHINE/sweeps.{tsv,md,svg}.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source bench/common.sh
