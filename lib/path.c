@@ -30,6 +30,7 @@ struct path {
     double g0, s;
     double h, last[3];     /* the last step, and s in it as tau is */
     double reach, ceiling; /* how long a step is to be, and may be after one that was too long */
+    double before;         /* the last correction, where that was all of the last step; else 0 */
 };
 
 /* The product of two directions, in F's measure: that of relative changes */
@@ -65,7 +66,7 @@ static void place(struct path *p)
 /* The last step again, so much shorter; false where that has come to nothing. */
 static bool shorten(struct path *p, double by)
 {
-    p->reach *= by, p->h *= by;
+    p->reach *= by, p->h *= by, p->before = 0;
     if (p->h == 0 || p->reach < STANDING) return false;
     place(p);
     return true;
@@ -213,6 +214,27 @@ static double stride(const struct path *p, double s, double steepest, bool down)
     return fmin(2, relative) * p->s;
 }
 
+/* Was the last step too long, or a correction in vain, by what there is to be corrected now? */
+static bool too_much(const struct path *p, double most)
+{
+    if (p->before > 0) return most > NEAR && most > 0.7 * p->before;
+    return p->h != 0 && most > FAR;
+}
+
+static bool retreat(struct path *p, double most)
+{
+    p->ceiling = 0.8 * p->reach;
+    return shorten(p, fmin(0.5, fmax(0.25, 0.7 * cbrt(AIM / most))));
+}
+
+/* How long the next step is to be, by what the last has left: that goes with its cube. */
+static void pace(struct path *p, double most)
+{
+    if (p->h == 0 || p->before > 0) return;
+    p->reach = fmin(p->reach * fmin(3, fmax(0.5, cbrt(AIM / most))), p->ceiling);
+    p->ceiling *= 1.2;
+}
+
 static bool begin(struct path *p, struct central *m)
 {
     int64_t n = m->w->whole.W.n;
@@ -231,7 +253,6 @@ bool path_follow(struct central *m, struct solve *s, double natural, int steps)
 {
     struct path p;
     if (!begin(&p, m)) return false;
-    double before = 0; // the last correction, where that was all of the last step
     int sign = 0, backwards = 0;
     bool there = false;
     for (int k = 0; k < steps && backwards <= BACKWARDS; k++) {
@@ -243,32 +264,26 @@ bool path_follow(struct central *m, struct solve *s, double natural, int steps)
         s->rep->newton++;
         if (!tangent(&p)) { // as near a fold, or in rounding
             if (e < ROUNDING || !shorten(&p, 0.7)) break;
-            before = 0;
             continue;
         }
         if (!correction(&p) && e < ROUNDING) break;
         bend(&p);
         if (!sign) sign = system_sign(m->w->system);
+        bool down = system_sign(m->w->system) == sign;
+        backwards += !down;
         double corrected = straighten(&p, CORRECTION), turn = straighten(&p, BEND),
                most = largest(&p, CORRECTION);
         if (p.s + corrected < FALL * p.s || corrected > p.s) corrected = 0;
-        bool down = system_sign(m->w->system) == sign;
-        backwards += !down;
-        if (before > 0 ? most > NEAR && most > 0.7 * before : k > 0 && most > FAR) {
-            p.ceiling = 0.8 * p.reach;
-            if (!shorten(&p, fmin(0.5, fmax(0.25, 0.7 * cbrt(AIM / most))))) break;
-            before = 0;
+        if (too_much(&p, most)) {
+            if (!retreat(&p, most)) break;
             continue;
         }
-        if (k > 0 && !(before > 0)) {
-            p.reach = fmin(p.reach * fmin(3, fmax(0.5, cbrt(AIM / most))), p.ceiling);
-            p.ceiling *= 1.2;
-        }
-        before = most < NEAR ? 0 : most;
-        if (most < NEAR)
-            step(&p, corrected, stride(&p, p.s + corrected, largest(&p, TANGENT), down), turn);
-        else
+        pace(&p, most);
+        p.before = most < NEAR ? 0 : most;
+        if (p.before > 0)
             correct(&p, corrected);
+        else
+            step(&p, corrected, stride(&p, p.s + corrected, largest(&p, TANGENT), down), turn);
     }
     for (int64_t c = 0; c < m->w->whole.W.n; c++) memset(m->side[c].p, 0, sizeof m->side[c].p);
     free(p.at);
