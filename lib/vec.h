@@ -58,6 +58,12 @@ static inline quat quat_mul(quat a, quat b)
                    a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w };
 }
 
+static inline quat quat_unit(quat q)
+{
+    double s = 1 / sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+    return (quat){ s * q.w, s * q.x, s * q.y, s * q.z };
+}
+
 /*
  * The rotation by the vector a (rad): exponential map, by its series up to an angle of 1 and by twice
  * half of it beyond. libm's sine and cosine have other last bits on machines without FMA.
@@ -66,19 +72,13 @@ static inline quat quat_rotation(vec3 a)
 {
     double h = v3_dot(a, a) / 4, s = 0.5; // the square of half the angle
     int halvings = 0;
-    for (; h > 0.25 && halvings < 64; halvings++) h /= 4, s /= 2;
+    for (; h > 0.25 && h < INFINITY; halvings++) h /= 4, s /= 2;
     s *= 1 - h / 6 * (1 - h / 20 * (1 - h / 42 * (1 - h / 72 * (1 - h / 110 * (1 - h / 156)))));
     double c = 1 - h / 132 * (1 - h / 182);
     c = 1 - h / 2 * (1 - h / 12 * (1 - h / 30 * (1 - h / 56 * (1 - h / 90 * c))));
     quat q = { c, s * a.x, s * a.y, s * a.z };
-    for (; halvings > 0; halvings--) q = quat_mul(q, q);
+    for (; halvings > 0; halvings--) q = quat_unit(quat_mul(q, q));
     return q;
-}
-
-static inline quat quat_unit(quat q)
-{
-    double s = 1 / sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-    return (quat){ s * q.w, s * q.x, s * q.y, s * q.z };
 }
 
 #endif

@@ -501,9 +501,25 @@ static void test_unmove(const struct packing *start)
     contacts_free(&s), packing_free(&p);
 }
 
+/* Beside libm's sine and cosine as far as an angle has a meaning; of length 1 also beyond, for solves
+   that diverge. */
+static void test_rotation(void)
+{
+    double worst = 0, length = 0;
+    for (double angle = 1e-9; angle < 1e150; angle *= 1.7) {
+        quat q = quat_rotation(v3(0.6 * angle, 0, 0.8 * angle));
+        double sine = sin(angle / 2), d = fmax(fabs(q.x - 0.6 * sine), fabs(q.z - 0.8 * sine));
+        if (angle < 1e3) worst = fmax(worst, fmax(d, fabs(q.w - cos(angle / 2))));
+        length = fmax(length, fabs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1));
+    }
+    ok(worst < 1e-12 && length < 1e-14, "rotations: libm's to %.1e, of length 1 to %.1e", worst,
+       length);
+}
+
 int main(void)
 {
     rng = gsl_rng_alloc(gsl_rng_mt19937);
+    test_rotation();
     test_detection();
     test_neighbours();
     for (int m = 0; methods[m]; m++) test_rolling(3, methods[m]), test_rolling(2, methods[m]);
