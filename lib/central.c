@@ -6,8 +6,10 @@
 
 #define MU_LEAST 1e-4 /* a cone needs an inside */
 
-#define NEAR  1.5e-6 /* the natural map at which Newton's steps lead on in one of two cases, and */
-#define AGAIN 0.4    /* how much less it is to be before they are tried again */
+/* Natural maps: at which Newton sees all statuses, in one of two or three cases, and how much less before
+   that is tried again */
+#define CLEAR 1.5e-6
+#define AGAIN 0.4
 
 void central_end(struct central *m)
 {
@@ -145,7 +147,7 @@ bool central_finish(struct central *m, struct solve *s, double map)
 {
     // where one takes a contact that hardly slides for one that holds, another may not
     static const double rhos[] = { 7, 50, 1 };
-    if (!(map <= NEAR) || map > AGAIN * m->tried) return false;
+    if (!(map <= CLEAR) || map > AGAIN * m->tried) return false;
     m->tried = map;
     if (!newton_finish(m->w, s, rhos[m->tries++ % 3])) return false;
     m->least = INFINITY;

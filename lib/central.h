@@ -75,9 +75,9 @@ void central_matrix(struct central *, double t);
 bool central_direction(struct central *, bool factorised);
 
 /*
- * Newton's steps on the law itself from here, where `map` says that it is near enough; each contact's
- * status is clear there. It costs a step of the path, and ends a thousand times nearer than ten of
- * them. False where it was too early.
+ * Newton's steps on the law itself from here, where the natural map is so small that each contact's
+ * status may be clear. A try costs as much as a step of the path, and where it arrives it is nearer
+ * than ten of them lead. False where it was too early.
  */
 bool central_finish(struct central *, struct solve *, double map);
 

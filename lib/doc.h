@@ -26,7 +26,7 @@ int reader_frame(struct reader *, int64_t k, struct frame *f, struct why *);
    no steps, always is. */
 bool reader_has(const struct reader *, int64_t k, const struct range *);
 
-/* All in one: every frame of every document of these steps, or NULL for all; *more is false at the end. */
+/* All in one: every frame of these steps (NULL: of all) in every document; *more is false at the end. */
 int reader_next(struct reader *, const struct range *, struct frame *, bool *more, struct why *);
 /* The very last frame of all, its document left open; *more is false where there is none. */
 int reader_last(struct reader *, struct frame *, bool *more, struct why *);

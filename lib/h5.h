@@ -1,7 +1,7 @@
 /*
- * h5.h: the few things that the documents (doc, recall, rows, record, series, copy, sink) and fclib ask of
- * libhdf5, with failures as reasons; nobody else knows HDF5. Object times are never stored, so that
- * the same data are the same bytes.
+ * h5.h: the few things that the documents (doc, recall, rows, record, series, copy, sink) and fclib
+ * ask of libhdf5, with failures as reasons; nobody else knows HDF5. Object times are never stored, so
+ * that the same data are the same bytes.
  */
 #ifndef NSD_H5_H
 #define NSD_H5_H
@@ -28,8 +28,8 @@ int h5_read(hid_t place, const char *path, hid_t type, hsize_t count, void *out,
 void *h5_read_all(hid_t place, const char *path, hid_t type, hsize_t *count, struct why *);
 /*
  * A dataset of numbers or a text with attributes that are the same, made again at `path` of `to`;
- * what is anything else stays away. For files that no checksum vouches for: where one is damaged, H5Ocopy of
- * libhdf5 1.10 crashes.
+ * what is anything else stays away. For files that no checksum vouches for: where one is damaged,
+ * H5Ocopy of libhdf5 1.10 crashes.
  */
 int h5_copy_plain(hid_t from, const char *name, hid_t to, const char *path, struct why *);
 /* A scalar string dataset, or the attribute "path@name" ("@name"); NULL without it. To be freed. */

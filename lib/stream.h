@@ -39,8 +39,8 @@ struct stream;
 /* files, one after another; none or "-": standard input. Opened when their turn comes. */
 int stream_open(struct stream **, int files, char *const *file, struct why *);
 /*
- * The next document. EX_NOINPUT: a file cannot be opened; EX_USAGE: it is a terminal; EX_DATAERR: not a document, truncated,
- * damaged, of a newer version, or nothing at all.
+ * The next document. EX_NOINPUT: a file cannot be opened; EX_USAGE: it is a terminal; EX_DATAERR: not a
+ * document, truncated, damaged, of a newer version, or nothing at all.
  */
 int stream_next(struct stream *, struct image *, struct why *);
 /* What has been read of a large file need not stay in memory; it is read again when wanted. */
