@@ -27,7 +27,7 @@ static const struct bundle *assembly_bundle(const struct assembly *A, int64_t c)
 }
 
 /* out = D u~ of every contact with the bodies as they are here; D u~ = u + E u^- */
-static void assembly_velocity(const struct assembly *A, const struct body *body, double *out)
+static void assembly_velocity(const struct assembly *A, struct body *body, double *out)
 {
     int d = A->p->d;
     assert(d == 2 || d == 3);

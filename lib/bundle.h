@@ -41,28 +41,30 @@ struct body {
     double im, ii;     /* 1/kg, 1/(kg m^2); 0: immovable */
 };
 
-/* LANES bodies side by side */
+/* LANES bodies side by side, and where they are kept */
 struct bodies {
     vd v[3], w[3], im, ii;
+    struct body *at[LANES];
 };
 
-ALWAYS_INLINE void bodies_load(struct bodies *m, const struct body *body, const int32_t *row)
+ALWAYS_INLINE void bodies_load(struct bodies *m, struct body *body, const int32_t *row)
 {
     vd x[8];
+    for (int i = 0; i < LANES; i++) m->at[i] = body + row[i];
     for (int k = 0; k < 8; k += LANES) {
-        for (int i = 0; i < LANES; i++) x[k + i] = vload(body[row[i]].v + k);
+        for (int i = 0; i < LANES; i++) x[k + i] = vload(m->at[i]->v + k);
         transpose(x + k);
     }
     for (int k = 0; k < 3; k++) m->v[k] = x[k], m->w[k] = x[3 + k];
     m->im = x[6], m->ii = x[7];
 }
 
-ALWAYS_INLINE void bodies_store(const struct bodies *m, struct body *body, const int32_t *row)
+ALWAYS_INLINE void bodies_store(const struct bodies *m)
 {
     vd x[8] = { m->v[0], m->v[1], m->v[2], m->w[0], m->w[1], m->w[2], m->im, m->ii };
     for (int k = 0; k < 8; k += LANES) {
         transpose(x + k);
-        for (int i = 0; i < LANES; i++) vstore(body[row[i]].v + k, x[k + i]);
+        for (int i = 0; i < LANES; i++) vstore(m->at[i]->v + k, x[k + i]);
     }
 }
 

@@ -28,25 +28,27 @@ ALWAYS_INLINE void mixing_add(vd *s, vd a, const double *b)
     *s += a * vload(b);
 }
 
-/* Bundles first .. end-1: g, f, dg[slot], df[slot]; adds f.f, df[slot].df[], f.df[] to the sums. */
-ALWAYS_INLINE void mixing_measure_text(const struct problem *p, const struct mixing *m, int slot,
-                                       int64_t first, int64_t end, struct mixing_sums *t)
+/* Bundles first .. end-1: g, f, dg[slot], df[slot]; adds f.f, df[slot].df[], f.df[] to the sums. m and d
+   come by value, so that what is stored cannot change them. */
+ALWAYS_INLINE void mixing_measure_text(const struct problem *p, const struct mixing m, int d,
+                                       int slot, int64_t first, int64_t end, struct mixing_sums *t)
 {
+    double *dg = m.dg[slot], *df = m.df[slot];
     for (int k = 0; k < BUNDLE; k += LANES) {
         vd f2 = vload(t->f2 + k), ff[MEMORY], fd[MEMORY];
         for (int j = 0; j < MEMORY; j++) ff[j] = vload(t->ff[j] + k), fd[j] = vload(t->fd[j] + k);
         for (int64_t i = first; i < end; i++) {
             const struct bundle *c = &p->bundle[i];
             vd lambda = bundle_lambda(c, k);
-            for (int l = 0; l < p->d; l++) {
-                int64_t at = (i * p->d + l) * BUNDLE + k;
-                vd g = vload(c->r[l] + k), f = g - vload(m->x + at), df = f - vload(m->f + at);
-                vstore(m->dg[slot] + at, g - vload(m->g + at)), vstore(m->df[slot] + at, df);
-                vstore(m->g + at, g), vstore(m->f + at, f);
-                vd wf = lambda * f, wdf = lambda * df;
+            for (int l = 0; l < d; l++) {
+                int64_t at = (i * d + l) * BUNDLE + k;
+                vd g = vload(c->r[l] + k), f = g - vload(m.x + at), change = f - vload(m.f + at);
+                vstore(dg + at, g - vload(m.g + at)), vstore(df + at, change);
+                vstore(m.g + at, g), vstore(m.f + at, f);
+                vd wf = lambda * f, wdf = lambda * change;
                 f2 += wf * f;
                 for (int j = 0; j < MEMORY; j++)
-                    mixing_add(&ff[j], wdf, m->df[j] + at), mixing_add(&fd[j], wf, m->df[j] + at);
+                    mixing_add(&ff[j], wdf, m.df[j] + at), mixing_add(&fd[j], wf, m.df[j] + at);
             }
         }
         vstore(t->f2 + k, f2);
@@ -55,11 +57,11 @@ ALWAYS_INLINE void mixing_measure_text(const struct problem *p, const struct mix
 }
 
 /* x = g + leap f - sum_j gamma_j dg_j of lanes k.. of bundle i: d components of it */
-ALWAYS_INLINE void mixing_point(const struct problem *p, const struct mixing *m, double leap,
+ALWAYS_INLINE void mixing_point(const struct mixing *m, int d, double leap,
                                 const double gamma[MEMORY], int64_t i, int k, vd x[3])
 {
-    for (int l = 0; l < p->d; l++) {
-        int64_t at = (i * p->d + l) * BUNDLE + k;
+    for (int l = 0; l < d; l++) {
+        int64_t at = (i * d + l) * BUNDLE + k;
         x[l] = vload(m->g + at) + leap * vload(m->f + at);
         for (int j = 0; j < MEMORY; j++) x[l] -= gamma[j] * vload(m->dg[j] + at);
     }

@@ -86,8 +86,8 @@ ALWAYS_INLINE vd bundle_lambda(const struct bundle *c, int k)
 }
 
 /* u~ of lanes k.. of c from these bodies' velocities */
-ALWAYS_INLINE void body_velocity(const struct body *body, const struct bundle *c,
-                                 const struct rebound *e, int k, vd u[3])
+ALWAYS_INLINE void body_velocity(struct body *body, const struct bundle *c, const struct rebound *e,
+                                 int k, vd u[3])
 {
     struct bodies a, b;
     bodies_load(&a, body, c->a + k), bodies_load(&b, body, c->b + k);
@@ -100,7 +100,7 @@ ALWAYS_INLINE void body_push(struct body *body, const struct bundle *c, int k, c
     struct bodies a, b;
     bodies_load(&a, body, c->a + k), bodies_load(&b, body, c->b + k);
     bundle_push(c, k, dr, &a, &b);
-    bodies_store(&a, body, c->a + k), bodies_store(&b, body, c->b + k);
+    bodies_store(&a), bodies_store(&b);
 }
 
 #endif
