@@ -48,13 +48,13 @@ void method_solve(const struct method *m, struct local *l, const struct local_op
 enum local_status ebp_linearise(double mu, double rho, const double r[3], const double v[3],
                                 double Z[3], double A[3][3], double B[3][3])
 {
-    return newton_linearise(mu, rho, r, v, ebp_residual, ebp_tangent, Z, A, B);
+    return newton_linearise(mu, rho, r, v, EBP, Z, A, B);
 }
 
 enum local_status eal_linearise(double mu, double rho, const double r[3], const double v[3],
                                 double Z[3], double A[3][3], double B[3][3])
 {
-    return newton_linearise(mu, rho, r, v, eal_residual, eal_tangent, Z, A, B);
+    return newton_linearise(mu, rho, r, v, EAL, Z, A, B);
 }
 /* Jacobi's rotations; eight rounds are more than any 3 x 3 matrix wants. */
 double local_lambda_max(const double W[9])

@@ -32,7 +32,7 @@ ALWAYS_INLINE void eal_residual(vd mu, vd rho, struct iterate *x)
  *
  * tau_t = 0 slides at mu = 0 only; e := 0 there.
  */
-ALWAYS_INLINE void eal_tangent(vd mu, vd rho, const struct iterate *x, vd A[3][3], vd B[3][3])
+ALWAYS_INLINE void eal_slide(vd mu, const struct iterate *x, vd A[3][3])
 {
     vd s = newton_inverse(x->t), e1 = s * x->tau[1], e2 = s * x->tau[2], k = mu * x->tau[0] * s;
     A[0][0] = A[0][1] = A[0][2] = splat(0);
@@ -41,14 +41,20 @@ ALWAYS_INLINE void eal_tangent(vd mu, vd rho, const struct iterate *x, vd A[3][3
     A[1][1] = 1.0 - k * (1.0 - e1 * e1);
     A[2][2] = 1.0 - k * (1.0 - e2 * e2);
     A[1][2] = A[2][1] = k * e1 * e2;
-    newton_branch(x, A);
+}
+
+ALWAYS_INLINE void eal_chain(vd mu, vd rho, const struct iterate *x, vd A[3][3], vd B[3][3])
+{
+    (void)mu, (void)x;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) B[i][j] = rho * ((double)(i == j) - A[i][j]);
 }
 
+#define EAL ((struct newton_text){ eal_residual, eal_slide, eal_chain })
+
 ALWAYS_INLINE void eal_solve(struct local *l, const struct local_opt *opt)
 {
-    newton_solve(l, opt, eal_residual, eal_tangent);
+    newton_solve(l, opt, EAL);
 }
 
 #endif

@@ -32,7 +32,7 @@ ALWAYS_INLINE void ebp_residual(vd mu, vd rho, struct iterate *x)
  *
  * tau_t = 0 slides at mu = 0 only; e := 0 there.
  */
-ALWAYS_INLINE void ebp_tangent(vd mu, vd rho, const struct iterate *x, vd A[3][3], vd B[3][3])
+ALWAYS_INLINE void ebp_slide(vd mu, const struct iterate *x, vd A[3][3])
 {
     vd c = 1.0 / (1.0 + mu * mu), s = newton_inverse(x->t);
     vd e1 = s * x->tau[1], e2 = s * x->tau[2], k = c * (1.0 - mu * x->tau[0] * s);
@@ -42,7 +42,10 @@ ALWAYS_INLINE void ebp_tangent(vd mu, vd rho, const struct iterate *x, vd A[3][3
     A[1][1] = c * e1 * e1 + k * (1.0 - e1 * e1);
     A[2][2] = c * e2 * e2 + k * (1.0 - e2 * e2);
     A[1][2] = A[2][1] = (c - k) * e1 * e2;
-    newton_branch(x, A);
+}
+
+ALWAYS_INLINE void ebp_chain(vd mu, vd rho, const struct iterate *x, vd A[3][3], vd B[3][3])
+{
     vd g = mu * newton_inverse(x->vt), g1 = g * x->v[1], g2 = g * x->v[2];
     for (int i = 0; i < 3; i++) {
         B[i][0] = rho * ((double)(i == 0) - A[i][0]);
@@ -51,9 +54,11 @@ ALWAYS_INLINE void ebp_tangent(vd mu, vd rho, const struct iterate *x, vd A[3][3
     }
 }
 
+#define EBP ((struct newton_text){ ebp_residual, ebp_slide, ebp_chain })
+
 ALWAYS_INLINE void ebp_solve(struct local *l, const struct local_opt *opt)
 {
-    newton_solve(l, opt, ebp_residual, ebp_tangent);
+    newton_solve(l, opt, EBP);
 }
 
 #endif

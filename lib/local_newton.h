@@ -25,9 +25,17 @@ struct iterate {
     vm free, stick;  /* else it slides */
 };
 
-/* Z of (r, v) and the branch; the derivatives A and B there. */
+/* Z of (r, v) and the branch; A where it slides; B, of any A. */
 typedef void newton_residual(vd mu, vd rho, struct iterate *);
-typedef void newton_tangent(vd mu, vd rho, const struct iterate *, vd A[3][3], vd B[3][3]);
+typedef void newton_slide(vd mu, const struct iterate *, vd A[3][3]);
+typedef void newton_chain(vd mu, vd rho, const struct iterate *, vd A[3][3], vd B[3][3]);
+
+/* One of the two formulations */
+struct newton_text {
+    newton_residual *residual;
+    newton_slide *slide;
+    newton_chain *chain;
+};
 
 /* 1/x, 0 at 0: the quotients are the tangent's alone, for most contacts stick or are free */
 ALWAYS_INLINE vd newton_inverse(vd x)
@@ -35,21 +43,12 @@ ALWAYS_INLINE vd newton_inverse(vd x)
     return pick(lt(splat(0), x), 1.0 / x, splat(0));
 }
 
-/* A of sliding as it is given; without contact A = I, sticking 0 */
-ALWAYS_INLINE void newton_branch(const struct iterate *x, vd A[3][3])
-{
-    vd same = pick(x->free, splat(1), splat(0));
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            A[i][j] = pick(x->free | x->stick, i == j ? same : splat(0), A[i][j]);
-}
-
 /*
  * The Newton direction dr at x; false where the system is singular. Without contact A = I, B = 0, so
  * dr = -r (and v becomes b, not the paper's v^k); sticking A = 0 and Z = B v, B regular: W dr = -v.
  */
 ALWAYS_INLINE vm newton_direction(const struct local *l, const struct iterate *x,
-                                  newton_tangent *tangent, vd dr[3])
+                                  struct newton_text text, vd dr[3])
 {
     vd A[3][3], B[3][3], M[3][3], stick[3], slip[3] = { 0 };
     vm regular = x->free, slide = ~(x->free | x->stick);
@@ -61,7 +60,7 @@ ALWAYS_INLINE vm newton_direction(const struct local *l, const struct iterate *x
         regular |= x->stick;
     }
     if (any(slide)) {
-        tangent(l->mu, l->rho, x, A, B);
+        text.slide(l->mu, x, A), text.chain(l->mu, l->rho, x, A, B);
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++)
                 M[i][j] = l->W ? A[i][j] + B[i][0] * l->W[j] + B[i][1] * l->W[3 + j] +
@@ -103,26 +102,28 @@ ALWAYS_INLINE void newton_take(struct iterate *x, const struct iterate *y, vm m)
  * sweep. Unless opt->plain the step is halved until |Z| shrinks; where it cannot, the Newton has
  * not ended. A lane that has ended, or cannot, keeps its x while the others go on.
  */
-ALWAYS_INLINE vm newton_run(struct local *l, const struct local_opt *opt, newton_residual *residual,
-                            newton_tangent *tangent, struct iterate *x)
+ALWAYS_INLINE vm newton_run(struct local *l, const struct local_opt *opt, struct newton_text text,
+                            struct iterate *x)
 {
     const vd rho_b2 = l->rho * l->rho * dot3(l->b, l->b);
     const double eps2 = opt->newton_eps * opt->newton_eps;
     struct iterate y = { 0 };
     vm ended = NONE, run = ~ended;
-    newton_move(l, l->r, splat(0), l->r, residual, x);
+    newton_move(l, l->r, splat(0), l->r, text.residual, x);
     vd z2 = dot3(x->Z, x->Z);
     for (int k = 0; any(run) && (k == 0 || k < opt->newton_max); k++) {
         vd dr[3], s = splat(1);
-        run &= newton_direction(l, x, tangent, dr);
+        run &= newton_direction(l, x, text, dr);
         l->steps += pick(run, splat(1), splat(0));
         for (vm search = run; any(search); s *= 0.5) {
-            newton_move(l, x->r, s, dr, residual, &y);
+            newton_move(l, x->r, s, dr, text.residual, &y);
             vd y2 = dot3(y.Z, y.Z), end2 = eps2 * (dot3(y.r, y.r) + rho_b2), least = 1.0 - 1e-4 * s;
             if (opt->newton_abs > 0) end2 = splat(opt->newton_abs * opt->newton_abs);
             vm there = search & le(y2, end2);
             vm better = search & ~there & (opt->plain ? is_finite(y2) : lt(y2, z2 * least * least));
-            newton_take(x, &y, there | better);
+            for (int i = 0; i < 3; i++)
+                x->p[i] = pick(there, y.p[i], x->p[i]); // all that is wanted
+            if (any(better)) newton_take(x, &y, better);
             z2 = pick(better, y2, z2);
             search &= ~(there | better);
             vm lost = opt->plain ? search : search & lt(s, splat(1e-3));
@@ -134,14 +135,14 @@ ALWAYS_INLINE vm newton_run(struct local *l, const struct local_opt *opt, newton
 
 /* Where it ended proj(tau) is r to within the tolerance, and it is in the cone. */
 ALWAYS_INLINE void newton_solve(struct local *l, const struct local_opt *opt,
-                                newton_residual *residual, newton_tangent *tangent)
+                                struct newton_text text)
 {
     struct iterate x = { 0 };
     local_begin(l);
-    struct local stand_in = *l; // from the r we were given: the answer hangs not on how we failed
-    vm ended = newton_run(l, opt, residual, tangent, &x);
-    for (int i = 0; i < 3; i++) l->r[i] = x.p[i];
+    vm ended = newton_run(l, opt, text, &x);
     if (any(~ended)) {
+        struct local stand_in =
+            *l; // from the r we were given: the answer hangs not on how we failed
         if (opt->plain) {
             cone_project(l->mu, x.r, stand_in.r);
             l->gave_up = ~ended;
@@ -149,20 +150,24 @@ ALWAYS_INLINE void newton_solve(struct local *l, const struct local_opt *opt,
             exact_solve(&stand_in, opt);
             l->gave_up = ~ended & stand_in.gave_up, l->safeguarded = ~ended & ~stand_in.gave_up;
         }
-        for (int i = 0; i < 3; i++) l->r[i] = pick(ended, l->r[i], stand_in.r[i]);
+        for (int i = 0; i < 3; i++) x.p[i] = pick(ended, x.p[i], stand_in.r[i]);
     }
+    for (int i = 0; i < 3; i++) l->r[i] = x.p[i];
     local_velocity(l, l->r, l->u);
 }
 
-/* Z, A, B and the branch at (r, v), for the tests [ebp_linearise, eal_linearise] */
+/* Z, A, B and the branch at (r, v) [ebp_linearise, eal_linearise]: without contact A = I, sticking 0 */
 ALWAYS_INLINE enum local_status newton_linearise(vd mu, vd rho, const vd r[3], const vd v[3],
-                                                 newton_residual *residual, newton_tangent *tangent,
-                                                 vd Z[3], vd A[3][3], vd B[3][3])
+                                                 struct newton_text text, vd Z[3], vd A[3][3],
+                                                 vd B[3][3])
 {
     struct iterate x = { .r = { r[0], r[1], r[2] }, .v = { v[0], v[1], v[2] } };
-    residual(mu, rho, &x);
-    tangent(mu, rho, &x, A, B);
+    text.residual(mu, rho, &x);
+    text.slide(mu, &x, A);
     for (int i = 0; i < 3; i++) Z[i] = x.Z[i];
+    for (int i = 0; i < 9; i++)
+        A[i / 3][i % 3] = pick(x.free, splat(i % 4 == 0), pick(x.stick, splat(0), A[i / 3][i % 3]));
+    text.chain(mu, rho, &x, A, B);
     return any(x.free) ? LOCAL_FREE : any(x.stick) ? LOCAL_STICK : LOCAL_SLIDE;
 }
 
