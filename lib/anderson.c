@@ -17,6 +17,7 @@
 #include "solver.h"
 
 #include <gsl/gsl_linalg.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,7 +27,8 @@ enum {
     RESTS = 5,     /* sweeps before a leap: the last one's change is the leap's direction */
     SHORT = 50,    /* sweeps of leaps, or alone, at first and */
     LONG = 100000, /* at most */
-    BLOCK = 64     /* bundles whose lanes are summed one after another: they stay in the cache */
+    BLOCK = 64,    /* bundles whose lanes are summed one after another: they stay in the cache */
+    PART = 1024 /* bundles whose sums a thread makes, added in their order whatever the threads */
 };
 #define GROWTH 4.0   /* of |f|^2 that is not taken back */
 #define ASTRAY 2.0   /* the same of a leap */
@@ -40,6 +42,7 @@ struct anderson {
     struct watch watch;
     struct kept kept;
     double *room;
+    struct mixing_sums *sums;    /* [parts] */
     double gram[MEMORY][MEMORY]; /* dF'dF */
     double fd[MEMORY];           /* dF'f */
     int slot, full;              /* the next of the memory, and how much of it is in use */
@@ -57,9 +60,14 @@ static double sum(const double slot[BUNDLE])
     return s;
 }
 
+static int64_t parts(const struct problem *p)
+{
+    return (p->bundles + PART - 1) / PART;
+}
+
 void anderson_free(struct anderson *a)
 {
-    if (a) kept_free(&a->kept), free(a->room);
+    if (a) kept_free(&a->kept), free(a->room), free(a->sums);
     free(a);
 }
 
@@ -74,8 +82,9 @@ struct anderson *anderson_new(struct solve *s)
     for (int k = 0; k < 2; k++)
         a->omega[k] = s->o->relax > 0 ? s->o->relax : k || s->p->full ? 1 : BEYOND;
     a->room = aligned_alloc(64, bytes); // rows come in eights
-    if (!a->room || kept_init(&a->kept, s->p)) {
-        free(a->room), free(a);
+    a->sums = malloc((size_t)(parts(s->p) + 1) * sizeof *a->sums);
+    if (!a->room || !a->sums || kept_init(&a->kept, s->p)) {
+        anderson_free(a);
         return NULL;
     }
     memset(a->room, 0, bytes);
@@ -112,15 +121,31 @@ static void look(struct anderson *a)
         memcpy(x, p->bundle[i].r, (size_t)(p->d * BUNDLE) * sizeof *x);
 }
 
+/* The sums of one part */
+static void measure_part(const struct anderson *a, int64_t part)
+{
+    const struct problem *p = a->s->p;
+    int64_t end = (part + 1) * PART < p->bundles ? (part + 1) * PART : p->bundles;
+    struct mixing_sums *t = &a->sums[part];
+    *t = (struct mixing_sums){ 0 };
+    for (int64_t i = part * PART; i < end; i += BLOCK)
+        sweep_widest()->mixing_measure(p, &a->m, a->slot, i, i + BLOCK < end ? i + BLOCK : end, t);
+}
+
 /* What the sweeps made of x; |f|^2. */
 static double measure(struct anderson *a)
 {
     const struct problem *p = a->s->p;
     struct mixing_sums t = { 0 };
+    int64_t n = parts(p);
     int slot = a->slot;
-    for (int64_t i = 0; i < p->bundles; i += BLOCK)
-        sweep_widest()->mixing_measure(p, &a->m, slot, i,
-                                       i + BLOCK < p->bundles ? i + BLOCK : p->bundles, &t);
+    if (n == 1 || a->s->o->threads == 1) { // no team: that costs
+        for (int64_t k = 0; k < n; k++) measure_part(a, k);
+    } else {
+#pragma omp parallel for num_threads(a->s->o->threads)
+        for (int64_t k = 0; k < n; k++) measure_part(a, k);
+    }
+    for (int64_t k = 0; k < n; k++) mixing_sums_add(&t, &a->sums[k]);
     if (a->begun) {
         a->full = a->full < MEMORY ? a->full + 1 : MEMORY;
         a->slot = (slot + 1) % MEMORY;
@@ -152,12 +177,25 @@ static void weigh(const struct anderson *a, double gamma[MEMORY])
     for (size_t i = 0; i < n; i++) gamma[i] = b[i] * s[i];
 }
 
+static void react(struct anderson *a, double leap, const double gamma[MEMORY])
+{
+    struct problem *p = a->s->p;
+    int threads = nlgs_team(a->s);
+    if (threads == 1) {
+        sweep_widest()->mixing_react(p, 0, 1, &a->m, leap, gamma);
+        return;
+    }
+#pragma omp parallel num_threads(threads)
+    sweep_widest()->mixing_react(p, omp_get_thread_num(), omp_get_num_threads(), &a->m, leap,
+                                 gamma);
+}
+
 /* The rows go to the next point: by mixing, or by a leap. */
 static void go(struct anderson *a, double leap)
 {
     double gamma[MEMORY] = { 0 };
     if (leap == 0 && a->full) weigh(a, gamma);
-    sweep_widest()->mixing_react(a->s->p, &a->m, leap, gamma);
+    react(a, leap, gamma);
 }
 
 /* The rows return to where the last measure but one found them; nothing remembered. */
@@ -165,7 +203,7 @@ static void take_back(struct anderson *a)
 {
     double gamma[MEMORY] = { 0 };
     gamma[(a->slot + MEMORY - 1) % MEMORY] = 1; // x = g - dg
-    sweep_widest()->mixing_react(a->s->p, &a->m, 0, gamma);
+    react(a, 0, gamma);
     forget(a);
 }
 

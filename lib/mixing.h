@@ -22,6 +22,13 @@ struct mixing_sums {
     double f2[BUNDLE], ff[MEMORY][BUNDLE], fd[MEMORY][BUNDLE];
 };
 
+static inline void mixing_sums_add(struct mixing_sums *t, const struct mixing_sums *s)
+{
+    for (int k = 0; k < BUNDLE; k++) t->f2[k] += s->f2[k];
+    for (int j = 0; j < MEMORY; j++)
+        for (int k = 0; k < BUNDLE; k++) t->ff[j][k] += s->ff[j][k], t->fd[j][k] += s->fd[j][k];
+}
+
 /* a.b of LANES contacts, weighed, into s */
 ALWAYS_INLINE void mixing_add(vd *s, vd a, const double *b)
 {

@@ -35,8 +35,8 @@ static double add_tally(struct report *rep, const struct tally *t)
     return most(t->change);
 }
 
-/* How many threads share a sweep: all, or where groups are too small for that one, or one a half. */
-static int team(const struct solve *s)
+/* All, or where groups are too small for that one, or one a half */
+int nlgs_team(const struct solve *s)
 {
     int threads = s->o->threads;
     if (s->p->bundles >= PARALLEL_FROM * s->p->groups) return threads;
@@ -51,7 +51,7 @@ static double sweep(struct solve *s, double omega, int32_t unjudged, bool keep)
     sweep_text *text = sweep_widest()->sweep[o->method->id];
     const struct sweep_opt quiet = { o->local, omega, false }, opt = { o->local, omega, keep };
     double change = 0;
-    int threads = team(s);
+    int threads = nlgs_team(s);
     s->rep->sweeps += unjudged + 1;
     if (threads == 1) { // no team: that costs
         struct tally t = { 0 };

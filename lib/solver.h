@@ -82,6 +82,8 @@ struct watch {
     bool looked;    /* by the last nlgs_sweep() */
     double change;  /* m/s: of that one */
 };
+/* How many threads share a sweep. */
+int nlgs_team(const struct solve *);
 /* One sweep, judged where that is due (`last`: in any case). Returns 0 to go on, 1 when the criterion
    is met, something is spent or not finite, -1 when memory is short. */
 int nlgs_sweep(struct solve *, double omega, bool last, struct watch *);

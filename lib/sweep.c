@@ -165,6 +165,43 @@ ALWAYS_INLINE void visit(struct problem *p, int64_t first, int64_t end, const st
     }
 }
 
+/* Where the mixing goes, of all contacts at once */
+struct jump {
+    struct mixing m;
+    double leap, gamma[MEMORY];
+};
+
+/* Disc, not cone: the orthogonal projection on the cone would push contacts apart that slide. */
+ALWAYS_INLINE void move_text(struct problem *p, int d, int64_t first, int64_t end,
+                             const struct jump *jump)
+{
+    for (int64_t i = first; i < end; i++) {
+        fetch(p, i);
+        for (int k = 0; k < BUNDLE; k += LANES) {
+            struct bundle *c = &p->bundle[i];
+            vd x[3] = { splat(0), splat(0), splat(0) }, r[3], dr[3];
+            mixing_point(&jump->m, d, jump->leap, jump->gamma, i, k, x);
+            disc_project(vload(c->mu + k), x, r);
+            for (int j = 0; j < 3; j++)
+                dr[j] = r[j] - vload(c->r[j] + k), vstore(c->r[j] + k, r[j]);
+            for (int j = 0; j < d; j++) vstore(jump->m.x + (i * d + j) * BUNDLE + k, r[j]);
+            if (p->W)
+                blocks_scatter(p, c, k);
+            else
+                body_push(p->body, c, k, dr);
+        }
+    }
+}
+
+/* Bundles first .. end-1, of one group */
+ALWAYS_INLINE void move(struct problem *p, int64_t first, int64_t end, const struct jump *jump)
+{
+    if (p->d == 3)
+        move_text(p, 3, first, end, jump);
+    else
+        move_text(p, 2, first, end, jump);
+}
+
 /* Groups that a thread sweeps: `after` a number that another counts up, counting itself when `done` */
 struct leg {
     int64_t first, end;
@@ -210,11 +247,18 @@ ALWAYS_INLINE void arrive(const struct leg *leg)
     atomic_store_explicit(leg->done, n + 1, memory_order_release);
 }
 
-/* One sweep: a thread's part of every group, or its half */
-ALWAYS_INLINE void sweep(struct problem *p, int me, int threads, const struct sweep_opt *o,
-                         method_text *solve, bool given_by_W, bool full, struct tally *t)
+/* What is done with the contacts of a group: they are moved by a jump, or solved where there is none. */
+struct task {
+    const struct jump *jump;
+    const struct sweep_opt *o;
+    method_text *solve;
+    bool given_by_W, full;
+    struct count *count;
+};
+
+/* A thread's part of every group, or its half */
+ALWAYS_INLINE void walk(struct problem *p, int me, int threads, const struct task t)
 {
-    struct count c = { splat(0), splat(0), splat(0), splat(0) };
     struct leg leg[3];
     bool by_halves = p->halves && threads == 2;
     int legs = route(p, me, by_halves, leg), share = by_halves ? 1 : threads,
@@ -224,12 +268,22 @@ ALWAYS_INLINE void sweep(struct problem *p, int me, int threads, const struct sw
         for (int64_t g = leg[k].first; g < leg[k].end; g++) {
             int64_t first = p->group[g], n = p->group[g + 1] - first;
             int64_t from = first + n * mine / share, to = first + n * (mine + 1) / share;
-            visit(p, from, to, o, solve, given_by_W, full, &c);
+            if (t.jump)
+                move(p, from, to, t.jump);
+            else
+                visit(p, from, to, t.o, t.solve, t.given_by_W, t.full, t.count);
             if (share == 1) continue;
 #pragma omp barrier
         }
         arrive(&leg[k]);
     }
+}
+
+ALWAYS_INLINE void sweep(struct problem *p, int me, int threads, const struct sweep_opt *o,
+                         method_text *solve, bool given_by_W, bool full, struct tally *t)
+{
+    struct count c = { splat(0), splat(0), splat(0), splat(0) };
+    walk(p, me, threads, (struct task){ NULL, o, solve, given_by_W, full, &c });
     raise(t->change, c.change), add(t->newton, c.newton);
     add(t->safeguarded, c.safeguarded), add(t->gave_up, c.gave_up);
 }
@@ -258,35 +312,12 @@ static void mixing_measure(const struct problem *p, const struct mixing *m, int 
         mixing_measure_text(p, *m, 2, slot, first, end, t);
 }
 
-/* Disc, not cone: the orthogonal projection on the cone would push contacts apart that slide. */
-ALWAYS_INLINE void react(struct problem *p, const struct mixing m, int d, double leap,
-                         const double gamma[MEMORY])
+static void mixing_react(struct problem *p, int me, int threads, const struct mixing *m,
+                         double leap, const double gamma[MEMORY])
 {
-    for (int64_t i = 0; i < p->bundles; i++) {
-        fetch(p, i);
-        for (int k = 0; k < BUNDLE; k += LANES) {
-            struct bundle *c = &p->bundle[i];
-            vd x[3] = { splat(0), splat(0), splat(0) }, r[3], dr[3];
-            mixing_point(&m, d, leap, gamma, i, k, x);
-            disc_project(vload(c->mu + k), x, r);
-            for (int j = 0; j < 3; j++)
-                dr[j] = r[j] - vload(c->r[j] + k), vstore(c->r[j] + k, r[j]);
-            for (int j = 0; j < d; j++) vstore(m.x + (i * d + j) * BUNDLE + k, r[j]);
-            if (p->W)
-                blocks_scatter(p, c, k);
-            else
-                body_push(p->body, c, k, dr);
-        }
-    }
-}
-
-static void mixing_react(struct problem *p, const struct mixing *m, double leap,
-                         const double gamma[MEMORY])
-{
-    if (p->d == 3)
-        react(p, *m, 3, leap, gamma);
-    else
-        react(p, *m, 2, leap, gamma);
+    struct jump jump = { *m, leap, { 0 } };
+    for (int j = 0; j < MEMORY; j++) jump.gamma[j] = gamma[j];
+    walk(p, me, threads, (struct task){ .jump = &jump });
 }
 
 /* ---- the error ---- */

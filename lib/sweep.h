@@ -49,8 +49,9 @@ struct sweep {
        and f times df[], to the sums */
     void (*mixing_measure)(const struct problem *, const struct mixing *, int slot, int64_t first,
                            int64_t end, struct mixing_sums *);
-    /* r = x = g + leap f - sum_j gamma_j dg_j, back to what friction allows; bodies move accordingly */
-    void (*mixing_react)(struct problem *, const struct mixing *, double leap,
+    /* r = x = g + leap f - sum_j gamma_j dg_j, back to what friction allows; bodies move accordingly.
+       Shared by threads as a sweep. */
+    void (*mixing_react)(struct problem *, int me, int threads, const struct mixing *, double leap,
                          const double gamma[MEMORY]);
 };
 

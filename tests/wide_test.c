@@ -76,10 +76,27 @@ static bool same(const struct print *a, const struct print *b)
            !memcmp(a->x, b->x, (size_t)a->n * sizeof *a->x);
 }
 
-/* Ways to solve, all there are or a few, against two lanes and one thread */
-static void compare(const struct packing *p, const struct contacts *s, const char *what, bool all)
+/* With 2, 4 and 8 lanes and 1, 2 and 4 threads, against two lanes and one thread */
+static bool same_everywhere(const struct packing *p, const struct contacts *s, struct step_opt o)
 {
     static const int lanes[] = { 2, 4, 8 };
+    bool good = true;
+    sweep_narrow(2);
+    struct print first = solve(p, s, &o);
+    for (int k = 0; k < 9; k++) {
+        sweep_narrow(lanes[k % 3]);
+        o.solve.threads = 1 << k / 3;
+        struct print r = solve(p, s, &o);
+        good &= same(&first, &r);
+        free(r.x);
+    }
+    free(first.x);
+    return good;
+}
+
+/* Ways to solve, all there are or a few */
+static void compare(const struct packing *p, const struct contacts *s, const char *what, bool all)
+{
     static const enum order orders[] = { ORDER_NATURAL, ORDER_COLOUR, ORDER_NATURAL, ORDER_HALVES };
     for (int m = 0; methods[m]; m++) {
         bool good = true;
@@ -88,20 +105,15 @@ static void compare(const struct packing *p, const struct contacts *s, const cha
             struct step_opt o = options(m, way & 1 ? 1.5 : 1);
             o.order = orders[way / 2], o.warm = way & 4;
             o.solve.local.plain = way == 7;
-            sweep_narrow(2);
-            struct print first = solve(p, s, &o);
-            for (int k = 0; k < 9; k++) {
-                sweep_narrow(lanes[k % 3]);
-                o.solve.threads = 1 << k / 3;
-                struct print r = solve(p, s, &o);
-                good &= same(&first, &r);
-                free(r.x);
-            }
-            free(first.x);
+            good &= same_everywhere(p, s, o);
         }
         ok(good, "%s, %s: the same bytes for 2, 4 and 8 lanes and 1, 2 and 4 threads", what,
            methods[m]->name);
     }
+    struct step_opt o = options(4, 0);
+    o.order = ORDER_COLOUR, o.solve.global = &solver_anderson;
+    o.solve.max_sweeps = 16; // enough to mix and gain by it
+    ok(same_everywhere(p, s, o), "%s, anderson: the same", what);
 }
 
 /* W of a packing's problem; noise, relative to W_nn, in the coupling of n and t1 of every W_cc */
