@@ -101,10 +101,7 @@ static double apply(struct cg *a)
 {
     struct problem *p = a->s->p;
     double sum = 0;
-    struct delassus V = { 0 };
-    if (p->W)
-        V = *p->W, V.q = a->q, V.r = a->given;
-    else
+    if (!p->W)
         for (int64_t i = 0, n = bodies(p); i < n; i++)
             memset(a->body[i].v, 0, sizeof a->body[i].v),
                 memset(a->body[i].w, 0, sizeof a->body[i].w);
@@ -122,11 +119,11 @@ static double apply(struct cg *a)
         int64_t c = p->contact[i];
         if (c < 0) continue;
         if (p->W) {
-            delassus_gather(&V, c, u);
+            delassus_gather(p->W, c, a->q, a->given, u);
             if (p->d == 2) u[2] = 0;
             for (int j = 0; j < p->d; j++)
                 for (int k = 0; k < p->d; k++)
-                    u[j] += V.diag[9 * c + 3 * j + k] * a->given[p->d * c + k];
+                    u[j] += p->W->diag[9 * c + 3 * j + k] * a->given[p->d * c + k];
         } else {
             const struct rebound *e = row_rebound(p, i);
             body_velocity(a->body, row_bundle(p, i), NULL, row_lane(i), u);

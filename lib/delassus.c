@@ -120,3 +120,29 @@ void delassus_free(struct delassus *W)
     free(W->r);
     *W = (struct delassus){ 0 };
 }
+
+int delassus_sort(struct delassus *to, const struct delassus *W, int64_t rows, const int64_t *row,
+                  struct why *why)
+{
+    int d = W->d, dd = d * d;
+    size_t blocks = (size_t)W->first[W->n];
+    *to = (struct delassus){ .d = d, .n = rows };
+    to->first = calloc((size_t)rows + 1, sizeof *to->first);
+    to->col = malloc((blocks + 1) * sizeof *to->col);
+    to->block = calloc((size_t)dd * blocks + 4, sizeof *to->block);
+    to->q = calloc((size_t)(d * rows) + 1, sizeof *to->q);
+    if (!to->first || !to->col || !to->block || !to->q) {
+        delassus_free(to);
+        return why_set(why, EX_SOFTWARE, "no memory for the blocks of W");
+    }
+    for (int64_t i = 0; i < rows; i++) {
+        int64_t at = to->first[i + 1] = to->first[i], c = row[i];
+        if (c < 0) continue;
+        size_t n = (size_t)(W->first[c + 1] - W->first[c]);
+        memcpy(to->col + at, W->col + W->first[c], n * sizeof *to->col);
+        memcpy(to->block + dd * at, W->block + dd * W->first[c], n * (size_t)dd * sizeof(double));
+        memcpy(to->q + d * i, W->q + d * c, (size_t)d * sizeof *to->q);
+        to->first[i + 1] += (int64_t)n;
+    }
+    return 0;
+}

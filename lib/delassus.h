@@ -35,26 +35,34 @@ int delassus_init(struct delassus *, int d, int64_t n, int64_t entries, const in
                   struct why *);
 void delassus_free(struct delassus *);
 
+/*
+ * Row i of `to` is W's row[i], without blocks where that is -1, so that rows which are read one after
+ * another lie so, too: its blocks and q, and no more. The columns are W's contacts. 0 or EX_SOFTWARE.
+ */
+int delassus_sort(struct delassus *to, const struct delassus *W, int64_t rows, const int64_t *row,
+                  struct why *);
+
 /* Four of a column, though only d are meant: what is beyond them ends in b[d..], which nobody reads. */
 typedef double column __attribute__((vector_size(32), may_alias, aligned(8)));
 
 /* b[d] = q_c + sum over the blocks beside the diagonal of W_cb r_b */
-static inline void delassus_gather(const struct delassus *W, int64_t c, double b[4])
+static inline void delassus_gather(const struct delassus *W, int64_t c, const double *q,
+                                   const double *r, double b[4])
 {
     int d = W->d;
-    const double *B = W->block + d * d * W->first[c], *q = W->q + d * c;
+    const double *B = W->block + d * d * W->first[c], *qc = q + d * c;
     const int32_t *col = W->col + W->first[c], *end = W->col + W->first[c + 1];
-    column sum = { q[0], q[1], d == 3 ? q[2] : 0, 0 };
+    column sum = { qc[0], qc[1], d == 3 ? qc[2] : 0, 0 };
     if (d == 2)
         for (; col < end; col++, B += 4) {
-            const double *r = W->r + 2 * (int64_t)*col;
-            sum += *(const column *)B * r[0] + *(const column *)(B + 2) * r[1];
+            const double *x = r + 2 * (int64_t)*col;
+            sum += *(const column *)B * x[0] + *(const column *)(B + 2) * x[1];
         }
     else
         for (; col < end; col++, B += 9) {
-            const double *r = W->r + 3 * (int64_t)*col;
-            sum += *(const column *)B * r[0] + *(const column *)(B + 3) * r[1] +
-                   *(const column *)(B + 6) * r[2];
+            const double *x = r + 3 * (int64_t)*col;
+            sum += *(const column *)B * x[0] + *(const column *)(B + 3) * x[1] +
+                   *(const column *)(B + 6) * x[2];
         }
     *(column *)b = sum;
 }

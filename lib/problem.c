@@ -39,6 +39,7 @@ void problem_free(struct problem *p)
 {
     free(p->bundle), free(p->rebound), free(p->u), free(p->contact), free(p->group), free(p->body);
     free(p->halves);
+    delassus_free(&p->sorted);
     *p = (struct problem){ 0 };
 }
 
@@ -239,7 +240,7 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
     *p = (struct problem){ .d = W->d, .n = W->n, .W = W, .dt = 1, .scale_v = 1, .scale_r = 1 };
     bool room = !schedule_blocks(&plan, order, W) && lay_out(p, &plan);
     schedule_free(&plan);
-    if (!room) return no_memory(p, why);
+    if (!room || delassus_sort(&p->sorted, W, p->rows, p->contact, why)) return no_memory(p, why);
     for (int64_t c = 0; c < W->n; c++) p->full = p->full || !like_balls(W->diag + 9 * c);
     double trace = 0;
     for (int64_t i = 0; i < p->rows; i++) {

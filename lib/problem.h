@@ -34,14 +34,15 @@ struct problem {
     int64_t groups;          /* no two rows of a group share a body (a block of W): */
     int64_t *group;          /* [groups + 1] bundles group[g] .. group[g+1]-1 may be done at once */
     struct halves *halves;   /* NULL: the order knows none */
-    struct body *body;  /* [bodies, then copies of what does not move]: as the packing has them,
+    struct body *body;      /* [bodies, then copies of what does not move]: as the packing has them,
                            by colours as the sweep first meets them; NULL: given by W */
-    struct delassus *W; /* borrowed; NULL: given by bodies */
-    bool full;          /* given by W, and some W_cc is more than diag(w_n, w_t, w_t) */
-    double dt;          /* s: the paper's forces are r / dt; 1 where there are no steps */
-    double scale_v;     /* m/s and */
-    double scale_r;     /* N s: what the scaled errors are measured in: g dt and m g dt */
-    double norm_q;      /* m/s: |u~_free| of all contacts, |q| */
+    struct delassus *W;     /* borrowed; NULL: given by bodies */
+    struct delassus sorted; /* given by W: its rows as they are here */
+    bool full;              /* given by W, and some W_cc is more than diag(w_n, w_t, w_t) */
+    double dt;              /* s: the paper's forces are r / dt; 1 where there are no steps */
+    double scale_v;         /* m/s and */
+    double scale_r;         /* N s: what the scaled errors are measured in: g dt and m g dt */
+    double norm_q;          /* m/s: |u~_free| of all contacts, |q| */
 };
 
 /*

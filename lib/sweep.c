@@ -29,8 +29,9 @@ ALWAYS_INLINE void raise(double *slot, vd a)
 ALWAYS_INLINE void blocks_gather(const struct problem *p, const struct bundle *c, int k, vd b[3])
 {
     double sum[3][LANES] = { 0 }, one[4];
+    int64_t row = (c - p->bundle) * BUNDLE + k;
     for (int i = 0; i < LANES && c->a[k + i] >= 0; i++) {
-        delassus_gather(p->W, c->a[k + i], one);
+        delassus_gather(&p->sorted, row + i, p->sorted.q, p->W->r, one);
         for (int j = 0; j < p->d; j++) sum[j][i] = one[j];
     }
     for (int j = 0; j < 3; j++) b[j] = vload(sum[j]);

@@ -115,29 +115,28 @@ void whole_put(const struct whole *w, struct problem *p, const double *x)
     sweep_widest()->velocities(p, 0, p->bundles);
 }
 
-/* v = W x + q; W by value, for its r and q are not its own here */
-static void multiply(struct delassus W, const double *x, double *q, double *v)
+/* v = W x + q */
+static void multiply(const struct delassus *W, const double *x, const double *q, double *v)
 {
-    int d = W.d;
-    W.r = (double *)x, W.q = q;
-    for (int64_t c = 0; c < W.n; c++) {
+    int d = W->d;
+    for (int64_t c = 0; c < W->n; c++) {
         double b[4];
-        delassus_gather(&W, c, b);
+        delassus_gather(W, c, q, x, b);
         for (int i = 0; i < d; i++) {
             v[d * c + i] = b[i];
-            for (int j = 0; j < d; j++) v[d * c + i] += W.diag[9 * c + 3 * i + j] * x[d * c + j];
+            for (int j = 0; j < d; j++) v[d * c + i] += W->diag[9 * c + 3 * i + j] * x[d * c + j];
         }
     }
 }
 
 void whole_velocity(const struct whole *w, const double *x, double *v)
 {
-    multiply(w->W, x, w->W.q, v);
+    multiply(&w->W, x, w->W.q, v);
 }
 
 void whole_product(const struct whole *w, const double *x, double *v)
 {
-    multiply(w->W, x, w->zero, v);
+    multiply(&w->W, x, w->zero, v);
 }
 
 double whole_natural(const struct whole *w, const double *x, const double *v)

@@ -48,10 +48,9 @@ static double *velocity(const struct delassus *W, const double *r)
 {
     int d = W->d;
     double *u = calloc((size_t)(W->n * d) + 1, sizeof *u);
-    memcpy(W->r, r, (size_t)(W->n * d) * sizeof *r);
     for (int64_t c = 0; c < W->n; c++) {
         double b[4];
-        delassus_gather(W, c, b);
+        delassus_gather(W, c, W->q, r, b);
         for (int i = 0; i < d; i++) {
             u[c * d + i] = b[i];
             for (int j = 0; j < d; j++) u[c * d + i] += W->diag[9 * c + 3 * i + j] * r[c * d + j];
