@@ -7,7 +7,7 @@ source bench/common.sh
 source bench/heap.sh
 runs=${1:-3}
 TIMEFORMAT='%R %U %S' # seconds: on the wall, of user and of system
-steps=20               # of the settled pile, for the figures of a sweep
+steps=200              # of the settled pile, for the figures of a sweep: a process's first 30 ms are dear
 say() { echo "run.sh: $*" >&2; }
 
 # name, unit, what it is to be at most, and its values on standard input: a line of the TSV
@@ -117,14 +117,15 @@ criterion() {
 
 # Steps of heaps of 1000 to 1 000 000 balls, 100 sweeps each: what a step costs, and the search in it
 sizes() {
-    local tiles size
+    local tiles size some
     printf 'balls\tcontacts\tns a step and ball\tns a search and ball\n' > "$work/steps"
     for tiles in 2 20 200 2000; do
         size=$((500 * tiles))
         say "$size balls"
         heap $tiles > "$work/heap.h5"
+        some=$((size < 100000 ? 500000 / size + 1 : 6)) # enough of them for a second
         for ((k = 0; k < runs; k++)); do
-            nsd-step -m exact -n 6 --every 6 --order colour --max-sweeps 100 --eps 0 --log "$work/log" \
+            nsd-step -m exact -n $some --every $some --order colour --max-sweeps 100 --eps 0 --log "$work/log" \
                 < "$work/heap.h5" 2> /dev/null > "$work/out.h5"
             # the first step makes the list of neighbours
             jq -rs --argjson n $size '.[1:] | [(map(.contacts) | add / length),
