@@ -28,7 +28,8 @@ enum {
     SHORT = 50,    /* sweeps of leaps, or alone, at first and */
     LONG = 100000, /* at most */
     BLOCK = 64,    /* bundles whose lanes are summed one after another: they stay in the cache */
-    PART = 1024 /* bundles whose sums a thread makes, added in their order whatever the threads */
+    PART = 1024,  /* bundles whose sums a thread makes, added in their order whatever the threads */
+    MANY = 100000 /* contacts: of more few differences, for their room */
 };
 #define GROWTH 4.0   /* of |f|^2 that is not taken back */
 #define ASTRAY 2.0   /* the same of a leap */
@@ -45,8 +46,8 @@ struct anderson {
     struct mixing_sums *sums;    /* [parts] */
     double gram[MEMORY][MEMORY]; /* dF'dF */
     double fd[MEMORY];           /* dF'f */
-    int slot, full;              /* the next of the memory, and how much of it is in use */
-    bool begun;                  /* g and f are of a time before */
+    int full;                    /* how many differences there are */
+    bool begun;                  /* f, and g in the next slot's room, are of a time before */
     double omega[2];             /* of the first sweep after a mixing, and of the second */
     int rest;                    /* sweeps of the next leaps, or alone */
     bool leap;                   /* leaps are next */
@@ -58,6 +59,11 @@ static double sum(const double slot[BUNDLE])
     double s = 0;
     for (int k = 0; k < BUNDLE; k++) s += slot[k];
     return s;
+}
+
+static int memory(const struct anderson *a)
+{
+    return a->m.few ? MEMORY_FEW : MEMORY;
 }
 
 static int64_t parts(const struct problem *p)
@@ -73,12 +79,13 @@ void anderson_free(struct anderson *a)
 
 struct anderson *anderson_new(struct solve *s)
 {
-    enum { VECTORS = 3 + 2 * MEMORY };
     struct anderson *a = calloc(1, sizeof *a);
     if (!a) return NULL;
     *a = (struct anderson){ .s = s, .watch = { .due = INFINITY, .judged = s->rep->sweeps } };
     a->rest = SHORT, a->leap = true, a->best = INFINITY;
-    size_t size = (size_t)(s->p->rows * s->p->d), bytes = VECTORS * size * sizeof(double);
+    a->m.few = s->p->n > MANY;
+    size_t size = (size_t)(s->p->rows * s->p->d),
+           bytes = (size_t)(1 + 2 * memory(a)) * size * sizeof(double);
     for (int k = 0; k < 2; k++)
         a->omega[k] = s->o->relax > 0 ? s->o->relax : k || s->p->full ? 1 : BEYOND;
     a->room = aligned_alloc(64, bytes); // rows come in eights
@@ -88,10 +95,8 @@ struct anderson *anderson_new(struct solve *s)
         return NULL;
     }
     memset(a->room, 0, bytes);
-    double **vector[VECTORS] = { &a->m.x, &a->m.g, &a->m.f };
-    for (int j = 0; j < MEMORY; j++)
-        vector[3 + 2 * j] = &a->m.dg[j], vector[4 + 2 * j] = &a->m.df[j];
-    for (int j = 0; j < VECTORS; j++) *vector[j] = a->room + (size_t)j * size;
+    double *next = a->m.f = a->room;
+    for (int j = 0; j < memory(a); j++) a->m.dg[j] = next += size, a->m.df[j] = next += size;
     return a;
 }
 
@@ -109,14 +114,14 @@ static int sweeps(struct anderson *a, int n)
 
 static void forget(struct anderson *a)
 {
-    a->slot = a->full = 0, a->begun = false;
+    a->m.slot = a->full = 0, a->begun = false;
 }
 
-/* x = the rows' r */
+/* x is the rows' r. */
 static void look(struct anderson *a)
 {
     const struct problem *p = a->s->p;
-    double *x = a->m.x;
+    double *x = a->m.df[a->m.slot];
     for (int64_t i = 0; i < p->bundles; i++, x += p->d * BUNDLE)
         memcpy(x, p->bundle[i].r, (size_t)(p->d * BUNDLE) * sizeof *x);
 }
@@ -129,7 +134,7 @@ static void measure_part(const struct anderson *a, int64_t part)
     struct mixing_sums *t = &a->sums[part];
     *t = (struct mixing_sums){ 0 };
     for (int64_t i = part * PART; i < end; i += BLOCK)
-        sweep_widest()->mixing_measure(p, &a->m, a->slot, i, i + BLOCK < end ? i + BLOCK : end, t);
+        sweep_widest()->mixing_measure(p, &a->m, i, i + BLOCK < end ? i + BLOCK : end, t);
 }
 
 /* What the sweeps made of x; |f|^2. */
@@ -138,7 +143,7 @@ static double measure(struct anderson *a)
     const struct problem *p = a->s->p;
     struct mixing_sums t = { 0 };
     int64_t n = parts(p);
-    int slot = a->slot;
+    int slot = a->m.slot;
     if (n == 1 || a->s->o->threads == 1) { // no team: that costs
         for (int64_t k = 0; k < n; k++) measure_part(a, k);
     } else {
@@ -147,8 +152,8 @@ static double measure(struct anderson *a)
     }
     for (int64_t k = 0; k < n; k++) mixing_sums_add(&t, &a->sums[k]);
     if (a->begun) {
-        a->full = a->full < MEMORY ? a->full + 1 : MEMORY;
-        a->slot = (slot + 1) % MEMORY;
+        a->full = a->full < memory(a) ? a->full + 1 : memory(a);
+        a->m.slot = (slot + 1) % memory(a);
         for (int j = 0; j < a->full; j++)
             a->gram[slot][j] = a->gram[j][slot] = sum(t.ff[j]), a->fd[j] = sum(t.fd[j]);
     }
@@ -202,16 +207,16 @@ static void go(struct anderson *a, double leap)
 static void take_back(struct anderson *a)
 {
     double gamma[MEMORY] = { 0 };
-    gamma[(a->slot + MEMORY - 1) % MEMORY] = 1; // x = g - dg
-    react(a, 0, gamma);
+    gamma[(a->m.slot + memory(a) - 1) % memory(a)] = 1; // x = g - dg
     forget(a);
+    react(a, 0, gamma);
 }
 
 /* Mixes until that does not pay: then 0, and *least the least |f|^2 on the way. */
 static int mix(struct anderson *a, double *least)
 {
     double start = INFINITY, was = INFINITY;
-    look(a), forget(a);
+    forget(a), look(a);
     *least = INFINITY;
     for (int k = 0;; k++) {
         int over = sweeps(a, PERIOD);

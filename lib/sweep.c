@@ -173,19 +173,23 @@ struct jump {
 };
 
 /* Disc, not cone: the orthogonal projection on the cone would push contacts apart that slide. */
-ALWAYS_INLINE void move_text(struct problem *p, int d, int64_t first, int64_t end,
+ALWAYS_INLINE void move_text(struct problem *p, int d, int memory, int64_t first, int64_t end,
                              const struct jump *jump)
 {
+    double *g = jump->m.dg[jump->m.slot], *from = jump->m.df[jump->m.slot];
     for (int64_t i = first; i < end; i++) {
         fetch(p, i);
         for (int k = 0; k < BUNDLE; k += LANES) {
             struct bundle *c = &p->bundle[i];
             vd x[3] = { splat(0), splat(0), splat(0) }, r[3], dr[3];
-            mixing_point(&jump->m, d, jump->leap, jump->gamma, i, k, x);
+            mixing_point(&jump->m, c, d, memory, jump->leap, jump->gamma, i, k, x);
             disc_project(vload(c->mu + k), x, r);
-            for (int j = 0; j < 3; j++)
-                dr[j] = r[j] - vload(c->r[j] + k), vstore(c->r[j] + k, r[j]);
-            for (int j = 0; j < d; j++) vstore(jump->m.x + (i * d + j) * BUNDLE + k, r[j]);
+            for (int j = 0; j < 3; j++) {
+                vd was = vload(c->r[j] + k);
+                int64_t at = (i * d + j) * BUNDLE + k;
+                dr[j] = r[j] - was, vstore(c->r[j] + k, r[j]);
+                if (j < d) vstore(g + at, was), vstore(from + at, r[j]);
+            }
             if (p->W)
                 blocks_scatter(p, c, k);
             else
@@ -197,10 +201,14 @@ ALWAYS_INLINE void move_text(struct problem *p, int d, int64_t first, int64_t en
 /* Bundles first .. end-1, of one group */
 ALWAYS_INLINE void move(struct problem *p, int64_t first, int64_t end, const struct jump *jump)
 {
-    if (p->d == 3)
-        move_text(p, 3, first, end, jump);
+    if (p->d == 3 && !jump->m.few)
+        move_text(p, 3, MEMORY, first, end, jump);
+    else if (p->d == 3)
+        move_text(p, 3, MEMORY_FEW, first, end, jump);
+    else if (!jump->m.few)
+        move_text(p, 2, MEMORY, first, end, jump);
     else
-        move_text(p, 2, first, end, jump);
+        move_text(p, 2, MEMORY_FEW, first, end, jump);
 }
 
 /* Groups that a thread sweeps: `after` a number that another counts up, counting itself when `done` */
@@ -304,13 +312,17 @@ EACH_METHOD(VISIT)
 
 /* ---- what accelerates the sweeps ---- */
 
-static void mixing_measure(const struct problem *p, const struct mixing *m, int slot, int64_t first,
+static void mixing_measure(const struct problem *p, const struct mixing *m, int64_t first,
                            int64_t end, struct mixing_sums *t)
 {
-    if (p->d == 3)
-        mixing_measure_text(p, *m, 3, slot, first, end, t);
+    if (p->d == 3 && !m->few)
+        mixing_measure_text(p, *m, 3, MEMORY, first, end, t);
+    else if (p->d == 3)
+        mixing_measure_text(p, *m, 3, MEMORY_FEW, first, end, t);
+    else if (!m->few)
+        mixing_measure_text(p, *m, 2, MEMORY, first, end, t);
     else
-        mixing_measure_text(p, *m, 2, slot, first, end, t);
+        mixing_measure_text(p, *m, 2, MEMORY_FEW, first, end, t);
 }
 
 static void mixing_react(struct problem *p, int me, int threads, const struct mixing *m,

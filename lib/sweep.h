@@ -45,9 +45,9 @@ struct sweep {
                   struct sums *);
     /* u = the motion's */
     void (*velocities)(struct problem *, int64_t first, int64_t end);
-    /* g, f = g - x, and how they differ from the last into dg[slot], df[slot]; adds f.f, and df[slot]
-       and f times df[], to the sums */
-    void (*mixing_measure)(const struct problem *, const struct mixing *, int slot, int64_t first,
+    /* f, and how g and f differ from the last, into the next slot; adds f.f, and df[slot] and f
+       times df[], to the sums */
+    void (*mixing_measure)(const struct problem *, const struct mixing *, int64_t first,
                            int64_t end, struct mixing_sums *);
     /* r = x = g + leap f - sum_j gamma_j dg_j, back to what friction allows; bodies move accordingly.
        Shared by threads as a sweep. */
