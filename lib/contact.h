@@ -14,6 +14,10 @@ struct contact {
     vec3 n, t1, t2; /* frame, right-handed; in the plane t2 = z */
     double gap;     /* m, predicted; < 0: overlap */
     double mu, en, et;
+};
+
+/* What a solve finds of a contact. Apart, for it takes room only when that is over. */
+struct found {
     double r[3];   /* N s: reaction on b, components (n, t1, t2) */
     double u[3];   /* m/s: velocity of b relative to a as the law sees it, (u+ + e u-)/(1 + e) */
     int8_t status; /* enum local_status */
@@ -23,10 +27,16 @@ struct contact {
 struct contacts {
     int64_t n, room;
     struct contact *c;
-    bool solved; /* r, u and status mean something */
+    struct found *found; /* [n]; NULL: not solved */
 };
 
 void contacts_free(struct contacts *);
+/* Room for what will be found, zero; -1 when memory is short. */
+int contacts_expect(struct contacts *);
+/* Not solved, again */
+void contacts_forget(struct contacts *);
+/* to = a deep copy of from; to need not be initialised; -1 when memory is short. */
+int contacts_copy(struct contacts *to, const struct contacts *from);
 /* One more, zeroed but for a and b; NULL when memory is short. */
 struct contact *contacts_add(struct contacts *, int32_t a, int32_t b);
 
@@ -37,7 +47,8 @@ int contacts_check(const struct contacts *, int64_t bodies, int32_t walls, struc
 /* The frame (n, t1, t2) of a unit normal, continuous but at n = -z; in the plane t1 = z x n. */
 void contact_frame(struct contact *, int dim, vec3 n);
 
-/* Reactions of old, turned into the frames of new, for the pairs that are in both; 0 for others. */
-void contacts_match(struct contacts *new, const struct contacts *old);
+/* Reactions of old, turned into the frames of new, for the pairs that are in both; 0 for others. -1
+   when memory is short. */
+int contacts_match(struct contacts *new, const struct contacts *old);
 
 #endif

@@ -45,7 +45,7 @@ int detect_contacts(struct contacts *out, const struct packing *p, double gap,
                     struct neighbours *kept, struct why *why)
 {
     struct neighbours once = { 0 }, *near = kept ? kept : &once;
-    out->n = 0, out->solved = false;
+    out->n = 0, contacts_forget(out);
     if (neighbours_find(near, p, gap, kept, why)) return why->status;
     bool room = true;
     for (int32_t w = p->walls - 1; room && w >= 0; w--)

@@ -39,6 +39,6 @@ void filter_wants_contacts(const struct frame *f, const char *where)
 void filter_wants_solution(const struct frame *f, const char *where)
 {
     filter_wants_contacts(f, where);
-    if (!f->contacts.solved && f->contacts.n)
+    if (!f->contacts.found && f->contacts.n)
         die(EX_DATAERR, "%s: the contacts are not solved: nsd-solve comes before", where);
 }

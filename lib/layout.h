@@ -30,79 +30,82 @@ struct column {
     enum column_type type;
     int width;     /* numbers in a row; 9: a 3 x 3 matrix */
     size_t offset; /* in its struct: of the numbers, or of the pointer to them */
-    bool solved;   /* of contacts: only when they are solved */
 };
 
 /* /particles/all/NAME/value [F][N][width]: pointers in struct packing */
 static const struct column layout_motion[] = {
-    { "position", "m", COLUMN_F64, 3, offsetof(struct packing, x), false },
-    { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct packing, v), false },
-    { "angular_velocity", "rad s-1", COLUMN_F64, 3, offsetof(struct packing, w), false },
-    { "orientation", "1", COLUMN_F64, 4, offsetof(struct packing, q), false },
+    { "position", "m", COLUMN_F64, 3, offsetof(struct packing, x) },
+    { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct packing, v) },
+    { "angular_velocity", "rad s-1", COLUMN_F64, 3, offsetof(struct packing, w) },
+    { "orientation", "1", COLUMN_F64, 4, offsetof(struct packing, q) },
     { 0 },
 };
 
 /* /particles/all/NAME [N]: pointers in struct packing */
 static const struct column layout_bodies[] = {
-    { "radius", "m", COLUMN_F64, 1, offsetof(struct packing, radius), false },
-    { "mass", "kg", COLUMN_F64, 1, offsetof(struct packing, mass), false },
-    { "inertia", "kg m2", COLUMN_F64, 1, offsetof(struct packing, inertia), false },
-    { "id", "1", COLUMN_I32, 1, offsetof(struct packing, id), false },
-    { "species", "1", COLUMN_I32, 1, offsetof(struct packing, kind), false },
+    { "radius", "m", COLUMN_F64, 1, offsetof(struct packing, radius) },
+    { "mass", "kg", COLUMN_F64, 1, offsetof(struct packing, mass) },
+    { "inertia", "kg m2", COLUMN_F64, 1, offsetof(struct packing, inertia) },
+    { "id", "1", COLUMN_I32, 1, offsetof(struct packing, id) },
+    { "species", "1", COLUMN_I32, 1, offsetof(struct packing, kind) },
     { 0 },
 };
 
 /* /walls/plane/NAME [walls][width]: members of struct wall */
 static const struct column layout_walls[] = {
-    { "point", "m", COLUMN_F64, 3, offsetof(struct wall, x), false },
-    { "normal", "1", COLUMN_F64, 3, offsetof(struct wall, n), false },
-    { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct wall, v), false },
-    { "species", "1", COLUMN_I32, 1, offsetof(struct wall, kind), false },
+    { "point", "m", COLUMN_F64, 3, offsetof(struct wall, x) },
+    { "normal", "1", COLUMN_F64, 3, offsetof(struct wall, n) },
+    { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct wall, v) },
+    { "species", "1", COLUMN_I32, 1, offsetof(struct wall, kind) },
     { 0 },
 };
 
 /* /nsd/material/NAME [kinds][kinds]: pointers in struct packing */
 static const struct column layout_material[] = {
-    { "mu", "1", COLUMN_F64, 1, offsetof(struct packing, mu), false },
-    { "en", "1", COLUMN_F64, 1, offsetof(struct packing, en), false },
-    { "et", "1", COLUMN_F64, 1, offsetof(struct packing, et), false },
+    { "mu", "1", COLUMN_F64, 1, offsetof(struct packing, mu) },
+    { "en", "1", COLUMN_F64, 1, offsetof(struct packing, en) },
+    { "et", "1", COLUMN_F64, 1, offsetof(struct packing, et) },
     { 0 },
 };
 
 /* /contacts/NAME [S][width]: members of struct contact */
 static const struct column layout_contacts[] = {
-    { "body", "1", COLUMN_I32, 2, offsetof(struct contact, a), false },
-    { "point", "m", COLUMN_F64, 3, offsetof(struct contact, x), false },
-    { "frame", "1", COLUMN_F64, 9, offsetof(struct contact, n), false },
-    { "gap", "m", COLUMN_F64, 1, offsetof(struct contact, gap), false },
-    { "mu", "1", COLUMN_F64, 1, offsetof(struct contact, mu), false },
-    { "en", "1", COLUMN_F64, 1, offsetof(struct contact, en), false },
-    { "et", "1", COLUMN_F64, 1, offsetof(struct contact, et), false },
-    { "reaction", "N s", COLUMN_F64, 3, offsetof(struct contact, r), true },
-    { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct contact, u), true },
-    { "status", "1", COLUMN_I8, 1, offsetof(struct contact, status), true },
+    { "body", "1", COLUMN_I32, 2, offsetof(struct contact, a) },
+    { "point", "m", COLUMN_F64, 3, offsetof(struct contact, x) },
+    { "frame", "1", COLUMN_F64, 9, offsetof(struct contact, n) },
+    { "gap", "m", COLUMN_F64, 1, offsetof(struct contact, gap) },
+    { "mu", "1", COLUMN_F64, 1, offsetof(struct contact, mu) },
+    { "en", "1", COLUMN_F64, 1, offsetof(struct contact, en) },
+    { "et", "1", COLUMN_F64, 1, offsetof(struct contact, et) },
+    { 0 },
+};
+
+/* /contacts/NAME [S][width] where they are solved: members of struct found */
+static const struct column layout_found[] = {
+    { "reaction", "N s", COLUMN_F64, 3, offsetof(struct found, r) },
+    { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct found, u) },
+    { "status", "1", COLUMN_I8, 1, offsetof(struct found, status) },
     { 0 },
 };
 
 /* /observables/solver/NAME/value [F][width]: members of struct report. eps: eps_glob, motion, proj,
    bipotential, penetration. */
 static const struct column layout_report[] = {
-    { "contacts", "1", COLUMN_I64, 1, offsetof(struct report, err.contacts), false },
-    { "sweeps", "1", COLUMN_I32, 1, offsetof(struct report, sweeps), false },
-    { "converged", "1", COLUMN_I8, 1, offsetof(struct report, converged), false },
-    { "eps", "1", COLUMN_F64, 5, offsetof(struct report, err.paper), false },
-    { "eps_scaled", "1", COLUMN_F64, 5, offsetof(struct report, err.scaled), false },
-    { "natural", "1", COLUMN_F64, 1, offsetof(struct report, err.natural), false },
-    { "natural_siconos", "1", COLUMN_F64, 1, offsetof(struct report, err.natural_siconos), false },
-    { "natural_q", "1", COLUMN_F64, 1, offsetof(struct report, err.natural_q), false },
-    { "max_penetration", "m s-1", COLUMN_F64, 1, offsetof(struct report, err.max_penetration),
-      false },
+    { "contacts", "1", COLUMN_I64, 1, offsetof(struct report, err.contacts) },
+    { "sweeps", "1", COLUMN_I32, 1, offsetof(struct report, sweeps) },
+    { "converged", "1", COLUMN_I8, 1, offsetof(struct report, converged) },
+    { "eps", "1", COLUMN_F64, 5, offsetof(struct report, err.paper) },
+    { "eps_scaled", "1", COLUMN_F64, 5, offsetof(struct report, err.scaled) },
+    { "natural", "1", COLUMN_F64, 1, offsetof(struct report, err.natural) },
+    { "natural_siconos", "1", COLUMN_F64, 1, offsetof(struct report, err.natural_siconos) },
+    { "natural_q", "1", COLUMN_F64, 1, offsetof(struct report, err.natural_q) },
+    { "max_penetration", "m s-1", COLUMN_F64, 1, offsetof(struct report, err.max_penetration) },
     { "max_penetration_true", "m s-1", COLUMN_F64, 1,
-      offsetof(struct report, err.max_penetration_true), false },
-    { "max_overlap", "m", COLUMN_F64, 1, offsetof(struct report, err.max_overlap), false },
-    { "newton", "1", COLUMN_I64, 1, offsetof(struct report, newton), false },
-    { "safeguarded", "1", COLUMN_I64, 1, offsetof(struct report, safeguarded), false },
-    { "gave_up", "1", COLUMN_I64, 1, offsetof(struct report, gave_up), false },
+      offsetof(struct report, err.max_penetration_true) },
+    { "max_overlap", "m", COLUMN_F64, 1, offsetof(struct report, err.max_overlap) },
+    { "newton", "1", COLUMN_I64, 1, offsetof(struct report, newton) },
+    { "safeguarded", "1", COLUMN_I64, 1, offsetof(struct report, safeguarded) },
+    { "gave_up", "1", COLUMN_I64, 1, offsetof(struct report, gave_up) },
     { 0 },
 };
 

@@ -215,9 +215,9 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
         p->norm_q += q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
     }
     p->norm_q = sqrt(p->norm_q);
-    for (int64_t i = 0; s->solved && i < p->rows; i++) {
+    for (int64_t i = 0; s->found && i < p->rows; i++) {
         if (p->contact[i] < 0) continue;
-        const struct contact *c = &s->c[p->contact[i]];
+        const struct found *c = &s->found[p->contact[i]];
         row_set(p, i, c->r, c->u);
         body_push(p->body, row_bundle(p, i), row_lane(i), c->r);
     }
@@ -296,13 +296,14 @@ void row_react(struct problem *p, int64_t i, const double r[3])
         body_push(p->body, c, row_lane(i), dr);
 }
 
-void problem_store(const struct problem *p, struct contacts *s)
+int problem_store(const struct problem *p, struct contacts *s)
 {
+    if (contacts_expect(s)) return -1;
     for (int64_t i = 0; i < p->rows; i++) {
         if (p->contact[i] < 0) continue;
-        struct contact *c = &s->c[p->contact[i]];
+        struct found *c = &s->found[p->contact[i]];
         row_get(p, i, c->r, c->u);
         c->status = (int8_t)local_status(row_bundle(p, i)->mu[row_lane(i)], c->r);
     }
-    s->solved = true;
+    return 0;
 }

@@ -56,8 +56,8 @@ int problem_prepare_delassus(struct problem *, struct delassus *, double alpha, 
                              enum order, struct why *);
 void problem_free(struct problem *);
 
-/* r, u and status of every row into its contact. */
-void problem_store(const struct problem *, struct contacts *);
+/* What was found, row by row, into the contacts; -1 when memory is short. */
+int problem_store(const struct problem *, struct contacts *);
 
 /* The lever arms la, lb of a contact (0 for a wall), as the rows have them. */
 void problem_arms(const struct packing *, const struct contact *, double *la, double *lb);

@@ -107,7 +107,7 @@ static int read_walls(struct rows *r, struct packing *p, struct why *why)
     if (h5_shape(r->file, "/walls/plane/point", shape) != 2 || shape[0] > 1 << 24)
         return why_set(why, EX_DATAERR, "/walls/plane/point: not of shape walls x 3");
     if (packing_walls(p, (int32_t)shape[0], why)) return why->status;
-    return rows_read_columns(r, "/walls/plane", "", layout_walls, false, 0, p->walls, p->wall,
+    return rows_read_columns(r, "/walls/plane", "", layout_walls, 0, p->walls, p->wall,
                              sizeof *p->wall, why);
 }
 
@@ -179,9 +179,12 @@ static int read_contacts(struct recall *r, int64_t k, struct frame *f, struct wh
     s->room = s->n ? s->n : 1;
     s->c = calloc((size_t)s->room, sizeof *s->c);
     if (!s->c) return why_set(why, EX_SOFTWARE, "no memory for the contacts");
-    s->solved = h5_has(r->rows.file, "/contacts/reaction");
-    if (rows_read_columns(&r->rows, "/contacts", "", layout_contacts, s->solved, first, s->n, s->c,
-                          sizeof *s->c, why))
+    bool solved = h5_has(r->rows.file, "/contacts/reaction");
+    if (solved && contacts_expect(s)) return why_set(why, EX_SOFTWARE, "no memory for reactions");
+    if (rows_read_columns(&r->rows, "/contacts", "", layout_contacts, first, s->n, s->c,
+                          sizeof *s->c, why) ||
+        (solved && rows_read_columns(&r->rows, "/contacts", "", layout_found, first, s->n, s->found,
+                                     sizeof *s->found, why)))
         return why->status;
     if (contacts_check(s, f->packing.n, f->packing.walls, why)) return why->status;
     int moved;
@@ -214,8 +217,7 @@ static int read_report(struct recall *r, int64_t step, struct frame *f, struct w
     if (at < 0) return 0;
     struct report *rep = &f->report;
     const char *solver = "/observables/solver";
-    if (rows_read_columns(&r->rows, solver, "/value", layout_report, true, at, 1, rep, sizeof *rep,
-                          why))
+    if (rows_read_columns(&r->rows, solver, "/value", layout_report, at, 1, rep, sizeof *rep, why))
         return why->status;
     rep->step = r->solved[at];
     if (rows_read(&r->rows, "/observables/solver/time", COLUMN_F64, at, 1, 1, &rep->t, why))

@@ -106,7 +106,7 @@ static int put_bodies(struct series *s, const struct packing *p, struct why *why
     }
     bool growing = s->growing;
     s->growing = false; // walls are the same in every frame
-    int e = series_put_columns(s, "/walls/plane", "", layout_walls, false, p->walls, p->wall,
+    int e = series_put_columns(s, "/walls/plane", "", layout_walls, p->walls, p->wall,
                                sizeof *p->wall, 0, why);
     s->growing = growing;
     return e;
@@ -134,8 +134,10 @@ static int put_contacts(struct series *s, const struct frame *f, struct why *why
     if (series_put(s, "/contacts/start", COLUMN_I64, 1, &one, CHUNK_FRAMES, &s->contacts, NULL,
                    why) ||
         series_put(s, "/contacts/count", COLUMN_I64, 1, &one, CHUNK_FRAMES, &t->n, NULL, why) ||
-        series_put_columns(s, "/contacts", "", layout_contacts, t->solved, t->n, t->c, sizeof *t->c,
+        series_put_columns(s, "/contacts", "", layout_contacts, t->n, t->c, sizeof *t->c,
                            CHUNK_CONTACTS, why) ||
+        (t->found && series_put_columns(s, "/contacts", "", layout_found, t->n, t->found,
+                                        sizeof *t->found, CHUNK_CONTACTS, why)) ||
         series_put(s, "/contacts/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &f->packing.step, NULL,
                    why))
         return why->status;
@@ -148,8 +150,8 @@ static int put_report(struct series *s, const struct report *rep, struct why *wh
 {
     const char *solver = "/observables/solver";
     bool first = !series_grows(s, "/observables/solver/eps/value");
-    if (series_put_columns(s, solver, "/value", layout_report, true, 1, rep, sizeof *rep,
-                           CHUNK_FRAMES, why) ||
+    if (series_put_columns(s, solver, "/value", layout_report, 1, rep, sizeof *rep, CHUNK_FRAMES,
+                           why) ||
         put_clock(s, solver, true, &rep->step, solver, layout_report, why) ||
         put_clock(s, solver, false, &rep->t, solver, layout_report, why))
         return why->status;

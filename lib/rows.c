@@ -42,11 +42,9 @@ int rows_read(struct rows *r, const char *path, enum column_type type, int64_t s
 }
 
 int rows_read_columns(struct rows *r, const char *where, const char *tail, const struct column *c,
-                      bool solved, int64_t start, int64_t n, void *structs, size_t stride,
-                      struct why *why)
+                      int64_t start, int64_t n, void *structs, size_t stride, struct why *why)
 {
     for (; c->name; c++) {
-        if (c->solved && !solved) continue;
         char path[80];
         snprintf(path, sizeof path, "%s/%s%s", where, c->name, tail);
         char *data = calloc((size_t)n + 1, (size_t)c->width * column_size(c->type));

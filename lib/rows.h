@@ -29,8 +29,7 @@ int rows_read(struct rows *, const char *path, enum column_type, int64_t start, 
 
 /* The same of all of a table's columns at `where`, `tail` behind their names, into n structs. */
 int rows_read_columns(struct rows *, const char *where, const char *tail, const struct column *,
-                      bool solved, int64_t start, int64_t n, void *structs, size_t stride,
-                      struct why *);
+                      int64_t start, int64_t n, void *structs, size_t stride, struct why *);
 
 /* The file stays open. */
 void rows_close(struct rows *);

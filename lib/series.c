@@ -81,11 +81,10 @@ int series_put(struct series *s, const char *path, enum column_type type, int ra
 }
 
 int series_put_columns(struct series *s, const char *where, const char *tail,
-                       const struct column *c, bool solved, int64_t n, const void *structs,
-                       size_t stride, hsize_t chunk_rows, struct why *why)
+                       const struct column *c, int64_t n, const void *structs, size_t stride,
+                       hsize_t chunk_rows, struct why *why)
 {
     for (; c->name; c++) {
-        if (c->solved && !solved) continue;
         char path[80];
         snprintf(path, sizeof path, "%s/%s%s", where, c->name, tail);
         void *data = malloc((size_t)(n + 1) * (size_t)c->width * column_size(c->type));

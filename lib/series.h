@@ -32,8 +32,8 @@ bool series_grows(const struct series *, const char *path);
 
 /* All of a table's columns out of n structs, `tail` behind their names, at `where`. */
 int series_put_columns(struct series *, const char *where, const char *tail, const struct column *,
-                       bool solved, int64_t n, const void *structs, size_t stride,
-                       hsize_t chunk_rows, struct why *);
+                       int64_t n, const void *structs, size_t stride, hsize_t chunk_rows,
+                       struct why *);
 
 /* Returns 0, or -1 where something could not be written. The file stays open. */
 int series_close(struct series *);

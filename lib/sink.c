@@ -185,7 +185,7 @@ static int check_same(const struct sink *s, const struct frame *f, struct why *w
     if (q->step <= s->step)
         return why_set(why, EX_DATAERR, "step %lld after step %lld: a trajectory's steps increase",
                        (long long)q->step, (long long)s->step);
-    if (f->detected && s->contacts && (f->contacts.solved != s->solved || f->moved != s->moved))
+    if (f->detected && s->contacts && (!f->contacts.found == s->solved || f->moved != s->moved))
         return why_set(why, EX_DATAERR, "contacts solved and unsolved in one trajectory");
     return 0;
 }
@@ -221,7 +221,7 @@ static int trajectory_frame(struct sink *s, const struct frame *f, struct why *w
         flush(s, why))
         return why->status;
     s->step = f->packing.step;
-    if (f->detected) s->contacts = true, s->solved = f->contacts.solved, s->moved = f->moved;
+    if (f->detected) s->contacts = true, s->solved = f->contacts.found, s->moved = f->moved;
     return 0;
 }
 

@@ -15,16 +15,19 @@ int step_solve(const struct packing *pack, struct contacts *s, const struct step
                struct report *rep, struct why *why)
 {
     struct problem p;
-    s->solved = s->solved && o->warm;
+    if (!o->warm) contacts_forget(s);
     if (problem_prepare(&p, pack, s, o->alpha, o->solve.method->rho, o->order, why))
         return why->status;
     rep->step = pack->step + 1;
     rep->t = pack->t + pack->dt;
     rep->err.max_overlap = max_overlap(s);
     int failed = solve_problem(&p, &o->solve, rep);
-    if (!failed) problem_store(&p, s);
+    if (failed)
+        why_set(why, EX_SOFTWARE, "no memory for the history");
+    else if ((failed = problem_store(&p, s)))
+        why_set(why, EX_SOFTWARE, "no memory for the solution");
     problem_free(&p);
-    return failed ? why_set(why, EX_SOFTWARE, "no memory for the history") : 0;
+    return failed ? why->status : 0;
 }
 
 int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o, struct report *rep,
@@ -53,8 +56,9 @@ static void impulses(const struct packing *p, const struct contacts *s, vec3 *fo
         const struct contact *c = &s->c[i];
         double la, lb;
         problem_arms(p, c, &la, &lb);
-        vec3 f = v3_axpy(v3_axpy(v3_scale(c->r[0], c->n), c->r[1], c->t1), c->r[2], c->t2);
-        vec3 m = v3_axpy(v3_scale(c->r[2], c->t1), -c->r[1], c->t2); // -n x r
+        const double *r = s->found[i].r;
+        vec3 f = v3_axpy(v3_axpy(v3_scale(r[0], c->n), r[1], c->t1), r[2], c->t2);
+        vec3 m = v3_axpy(v3_scale(r[2], c->t1), -r[1], c->t2); // -n x r
         force[c->b] = v3_add(force[c->b], f);
         moment[c->b] = v3_axpy(moment[c->b], lb, m);
         if (c->a < 0) continue;
@@ -136,7 +140,8 @@ int step_advance(struct packing *p, struct contacts *s, struct neighbours *near,
     double cpu = report_seconds(CLOCK_CPU);
     int e = detect_contacts(s, p, o->gap, near, why);
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
-    if (!e && o->warm) contacts_match(s, &before);
+    if (!e && o->warm && contacts_match(s, &before))
+        e = why_set(why, EX_SOFTWARE, "no memory for the last reactions");
     contacts_free(&before);
     if (e) return e;
     if (step_solve(p, s, o, rep, why)) return why->status;

@@ -55,10 +55,8 @@ static struct contacts solve(const struct packing *p, const struct contacts *s,
                              const struct step_opt *o, struct report *rep)
 {
     struct why why = { 0 };
-    struct contacts c = { .n = s->n, .room = s->n, .solved = s->solved };
-    c.c = malloc((size_t)(s->n + 1) * sizeof *c.c);
-    if (s->n) memcpy(c.c, s->c, (size_t)s->n * sizeof *c.c);
-    must(step_solve(p, &c, o, rep, &why), &why);
+    struct contacts c;
+    must(contacts_copy(&c, s) || step_solve(p, &c, o, rep, &why), &why);
     return c;
 }
 
@@ -67,7 +65,7 @@ static double apart(const struct packing *p, const struct contacts *a, const str
 {
     double most = 0;
     for (int64_t i = 0; i < a->n; i++)
-        for (int k = 0; k < 3; k++) most = fmax(most, fabs(a->c[i].u[k] - b->c[i].u[k]));
+        for (int k = 0; k < 3; k++) most = fmax(most, fabs(a->found[i].u[k] - b->found[i].u[k]));
     return most / (9.81 * p->dt);
 }
 
@@ -75,8 +73,8 @@ static bool same(const struct contacts *a, const struct contacts *b)
 {
     bool good = a->n == b->n;
     for (int64_t i = 0; good && i < a->n; i++)
-        good = !memcmp(a->c[i].r, b->c[i].r, sizeof a->c[i].r) &&
-               !memcmp(a->c[i].u, b->c[i].u, sizeof a->c[i].u);
+        good = !memcmp(a->found[i].r, b->found[i].r, sizeof a->found[i].r) &&
+               !memcmp(a->found[i].u, b->found[i].u, sizeof a->found[i].u);
     return good;
 }
 

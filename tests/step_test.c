@@ -216,17 +216,15 @@ static void test_identity(const struct packing *p, const struct contacts *s)
 {
     struct why why = { 0 };
     struct problem q;
-    struct contacts copy = { .n = s->n, .room = s->n, .solved = true };
+    struct contacts copy;
     for (int order = ORDER_NATURAL; order <= ORDER_HALVES; order++) {
-        copy.c = malloc((size_t)s->n * sizeof *copy.c);
-        memcpy(copy.c, s->c, (size_t)s->n * sizeof *copy.c);
+        must(contacts_copy(&copy, s), &why);
         must(problem_prepare(&q, p, &copy, 0, 1, (enum order)order, &why), &why);
-        for (int64_t i = 0; i < copy.n; i++) memset(copy.c[i].r, 7, sizeof copy.c[i].r);
-        problem_store(&q, &copy);
+        must(problem_store(&q, &copy), &why);
         bool same = true, apart = true;
         for (int64_t i = 0; i < s->n; i++)
-            same &= !memcmp(copy.c[i].r, s->c[i].r, sizeof s->c[i].r) &&
-                    !memcmp(copy.c[i].u, s->c[i].u, sizeof s->c[i].u);
+            same &= !memcmp(copy.found[i].r, s->found[i].r, sizeof s->found[i].r) &&
+                    !memcmp(copy.found[i].u, s->found[i].u, sizeof s->found[i].u);
         ok(same, "order %d: prepare, then store, is the identity", order);
         int64_t rows = 0;
         for (int64_t i = 0; i < q.rows; i++) rows += q.contact[i] >= 0;
@@ -249,7 +247,7 @@ static void test_identity(const struct packing *p, const struct contacts *s)
                (long long)q.bundles);
         if (order == ORDER_HALVES) test_halves(&q, p);
         problem_free(&q);
-        free(copy.c);
+        contacts_free(&copy);
     }
 }
 
@@ -291,7 +289,8 @@ static void test_momentum(const struct packing *start, const struct method *m)
     must(step_advance(&p, &s, NULL, &o, &rep, &why), &why);
     for (int64_t i = 0; i < s.n; i++) {
         const struct contact *c = &s.c[i];
-        vec3 r = v3_axpy(v3_axpy(v3_scale(c->r[0], c->n), c->r[1], c->t1), c->r[2], c->t2);
+        const double *f = s.found[i].r;
+        vec3 r = v3_axpy(v3_axpy(v3_scale(f[0], c->n), f[1], c->t1), f[2], c->t2);
         size += v3_norm(r);
         if (c->a >= 0) continue;
         force = v3_add(force, r);

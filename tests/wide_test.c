@@ -58,14 +58,12 @@ static struct print solve(const struct packing *p, const struct contacts *s, str
 {
     struct why why = { 0 };
     struct report rep = { 0 };
-    struct contacts c = { .n = s->n, .room = s->n, .solved = s->solved };
-    c.c = malloc((size_t)(s->n + 1) * sizeof *c.c);
-    if (s->n) memcpy(c.c, s->c, (size_t)s->n * sizeof *c.c);
-    must(step_solve(p, &c, o, &rep, &why), &why);
+    struct contacts c;
+    must(contacts_copy(&c, s) || step_solve(p, &c, o, &rep, &why), &why);
     struct print r = { 6 * s->n, malloc((size_t)(6 * s->n + 1) * sizeof(double)), rep.err,
                        rep.newton };
     for (int64_t i = 0; i < 6 * s->n; i++)
-        r.x[i] = i % 6 < 3 ? c.c[i / 6].r[i % 6] : c.c[i / 6].u[i % 6 - 3];
+        r.x[i] = i % 6 < 3 ? c.found[i / 6].r[i % 6] : c.found[i / 6].u[i % 6 - 3];
     contacts_free(&c), report_free(&rep);
     return r;
 }

@@ -70,7 +70,7 @@ int tool_main(int argc, char **argv)
         if (f.foreign && !f.u) die(EX_DATAERR, "%s: no /solution: nsd-solve comes before", where);
         if (f.packed && !f.detected)
             die(EX_DATAERR, "%s: no group /contacts (nsd-step keeps them with --contacts)", where);
-        if (f.packed && !f.contacts.solved && f.contacts.n)
+        if (f.packed && !f.contacts.found && f.contacts.n)
             die(EX_DATAERR, "%s: the contacts are not solved: nsd-solve comes before", where);
         print(&f, &why);
         if (why.status) break;

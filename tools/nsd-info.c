@@ -164,10 +164,11 @@ static void show_contacts(const struct frame *f)
         json_object_set_new(j, "mu", json_number(c->mu));
         json_object_set_new(j, "e_n", json_number(c->en));
         json_object_set_new(j, "e_t", json_number(c->et));
-        if (f->contacts.solved) {
-            json_object_set_new(j, "r", json_numbers(c->r, 3));
-            json_object_set_new(j, "u", json_numbers(c->u, 3));
-            json_object_set_new(j, "status", json_string(status[c->status % 3]));
+        const struct found *found = f->contacts.found ? &f->contacts.found[i] : NULL;
+        if (found) {
+            json_object_set_new(j, "r", json_numbers(found->r, 3));
+            json_object_set_new(j, "u", json_numbers(found->u, 3));
+            json_object_set_new(j, "status", json_string(status[found->status % 3]));
         }
         json_line(j);
     }
