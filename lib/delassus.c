@@ -121,7 +121,7 @@ void delassus_free(struct delassus *W)
     *W = (struct delassus){ 0 };
 }
 
-int delassus_sort(struct delassus *to, const struct delassus *W, int64_t rows, const int64_t *row,
+int delassus_sort(struct delassus *to, const struct delassus *W, int64_t rows, const int32_t *row,
                   struct why *why)
 {
     int d = W->d, dd = d * d;

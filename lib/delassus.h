@@ -39,7 +39,7 @@ void delassus_free(struct delassus *);
  * Row i of `to` is W's row[i], without blocks where that is -1, so that rows which are read one after
  * another lie so, too: its blocks and q, and no more. The columns are W's contacts. 0 or EX_SOFTWARE.
  */
-int delassus_sort(struct delassus *to, const struct delassus *W, int64_t rows, const int64_t *row,
+int delassus_sort(struct delassus *to, const struct delassus *W, int64_t rows, const int32_t *row,
                   struct why *);
 
 /* Four of a column, though only d are meant: what is beyond them ends in b[d..], which nobody reads. */

@@ -69,7 +69,7 @@ static bool lay_out(struct problem *p, const struct schedule *plan)
     for (int64_t g = 0; g < p->groups; g++) {
         int64_t first = plan->group[g], n = plan->group[g + 1] - first;
         for (int64_t i = 0; i < n; i++)
-            p->contact[p->group[g] * BUNDLE + i] = plan->sequence[first + i];
+            p->contact[p->group[g] * BUNDLE + i] = (int32_t)plan->sequence[first + i];
     }
     return true;
 }

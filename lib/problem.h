@@ -30,7 +30,7 @@ struct problem {
     struct bundle *bundle;   /* [bundles] in the order of the sweep */
     struct rebound *rebound; /* [bundles]; NULL: e_n = e_t = 0 everywhere */
     double (*u)[3][BUNDLE];  /* [bundles] m/s: what the local method believes */
-    int64_t *contact;        /* [rows] row i is contact[i] of the packing, of W; -1: none */
+    int32_t *contact;        /* [rows] row i is contact[i] of the packing, of W; -1: none */
     int64_t groups;          /* no two rows of a group share a body (a block of W): */
     int64_t *group;          /* [groups + 1] bundles group[g] .. group[g+1]-1 may be done at once */
     struct halves *halves;   /* NULL: the order knows none */

@@ -370,7 +370,7 @@ struct made {
     struct bundle bundle[(CONTACTS + BUNDLE - 1) / BUNDLE];
     struct rebound rebound[(CONTACTS + BUNDLE - 1) / BUNDLE];
     double u[(CONTACTS + BUNDLE - 1) / BUNDLE][3][BUNDLE];
-    int64_t contact[CONTACTS + BUNDLE];
+    int32_t contact[CONTACTS + BUNDLE];
 };
 
 static void cross(const double a[3], const double b[3], double c[3])
