@@ -145,21 +145,22 @@ sizes() {
 
 # One step of the heap of a million by hand
 million() {
-    local tool
+    local tool tools=("nsd-detect" "nsd-solve" "nsd-solve by auto" "nsd-move")
     for ((k = 0; k < runs; k++)); do
-        for tool in detect solve move; do
+        for tool in "${tools[@]}"; do
             case $tool in
-            detect) command=(nsd-detect "$work/heap.h5") ;;
-            solve) command=(nsd-solve -m exact --order colour --max-sweeps 100 --eps 0 "$work/detect.h5") ;;
-            move) command=(nsd-move "$work/solve.h5") ;;
+            nsd-detect) command=(nsd-detect "$work/heap.h5") ;;
+            nsd-solve) command=(nsd-solve -m exact --order colour --max-sweeps 100 --eps 0 "$work/nsd-detect") ;;
+            *auto) command=(nsd-solve --max-sweeps 100 --eps 0 "$work/nsd-detect") ;;
+            nsd-move) command=(nsd-move "$work/nsd-solve") ;;
             esac
-            /usr/bin/time -a -f '%e %M' -o "$work/million-$tool" "${command[@]}" > "$work/$tool.h5" 2> /dev/null
+            /usr/bin/time -a -f '%e %M' -o "$work/$tool.time" "${command[@]}" > "$work/$tool" 2> /dev/null
         done
     done
-    for tool in detect solve move; do
-        awk 'NF == 2 { print $1 }' "$work/million-$tool" | figure "1 000 000 balls in a heap, nsd-$tool" s ""
-        awk 'NF == 2 { print $2 / 1e6 }' "$work/million-$tool" |
-            figure "1 000 000 balls in a heap, peak memory of nsd-$tool" "KiB/ball" 1
+    for tool in "${tools[@]}"; do
+        awk 'NF == 2 { print $1 }' "$work/$tool.time" | figure "1 000 000 balls in a heap, $tool" s ""
+        awk 'NF == 2 { print $2 / 1e6 }' "$work/$tool.time" |
+            figure "1 000 000 balls in a heap, peak memory of $tool" "KiB/ball" 1
     done
 }
 
