@@ -12,7 +12,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { AHEAD = 1 << 22 }; /* bytes that a trajectory reserves, at least, where there is room */
+enum {
+    AHEAD = 1 << 22,  /* bytes that a trajectory reserves, at least, where there is room */
+    LEAST_TABLE = 64, /* bytes: the head of an index of chunks has 72 */
+};
 
 struct sink {
     int fd;
@@ -121,7 +124,9 @@ static int stream_frame(struct sink *s, const struct frame *f, struct why *why)
  * A reader finds the frames that are finished at every moment, so also when the writer is killed:
  * numbers go straight to the disk (series.c) and their shapes and places with a flush, a frame's step
  * after all else; places are kept in the index of HDF5 1.10, of which no entry ever moves (the B-tree
- * before it is cut in two now and then); and a flush begins with where the file will end.
+ * before it is cut in two now and then); and a flush begins with where the file will end. A kill
+ * also ends a write between two pages of the file, and a checksum would then be another state's:
+ * what HDF5 rewrites in place begins at a multiple of 512 bytes and, up to that length, crosses none.
  */
 
 static int write_header(struct sink *s, uint64_t length, uint32_t crc, struct why *why)
@@ -196,6 +201,7 @@ static int trajectory_begin(struct sink *s, const struct frame *f, struct why *w
     snprintf(path, sizeof path, "/proc/self/fd/%d", s->disk);
     hid_t access = H5Pcreate(H5P_FILE_ACCESS); // the file ends where its last number does
     H5Pset_meta_block_size(access, 0), H5Pset_small_data_block_size(access, 0);
+    H5Pset_alignment(access, LEAST_TABLE, DOCUMENT_USERBLOCK); // the most that HDF5 lets it be
     s->doc = (struct series){ .file = create(path, access), .growing = true };
     H5Pclose(access);
     if (s->doc.file < 0) return io_trouble(s, why, "cannot be written");

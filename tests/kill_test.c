@@ -1,6 +1,7 @@
 /*
- * A trajectory whose writer is killed: after each of its writes to the disk, a reader finds every
- * frame that the sink had finished before, whole, and no other.
+ * A trajectory whose writer is killed: after each of its writes to the disk, and in the midst of one
+ * that crosses two pages of the file, a reader finds every frame that the sink had finished before,
+ * whole, and no other.
  */
 #include "doc.h"
 #include "sink.h"
@@ -12,7 +13,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-enum { BODIES = 4, FRAMES = 260, ROOM = 1 << 16 };
+enum { BODIES = 4, FRAMES = 260, ROOM = 1 << 16, PAGE = 4096 };
 
 static struct {
     off_t at;
@@ -106,31 +107,47 @@ static bool holds(char *path, int64_t frames, struct why *why)
     return good;
 }
 
+static char path[] = "/tmp/kill_test.XXXXXX";
+static int fd, bad;
+
+static bool put(int k, size_t size)
+{
+    return syscall(SYS_pwrite64, fd, made[k].bytes, size, made[k].at) == (ssize_t)size;
+}
+
+/* Write k is on the disk, up to `size`. */
+static void look(int k, size_t size)
+{
+    struct why why = { 0 };
+    if (holds(path, made[k].frames, &why) || bad++ >= 8) return;
+    diag("write %d, %zu of %zu bytes at %lld, after frame %lld: %s", k + 1, size, made[k].size,
+         (long long)made[k].at, (long long)made[k].frames, why.text);
+}
+
 int main(void)
 {
-    char path[] = "/tmp/kill_test.XXXXXX";
     struct why why = { 0 };
-    int fd = mkstemp(path), seen = 0, bad = 0;
+    fd = mkstemp(path);
     bool written = fd >= 0 && !write_all(path, &why);
     ok(written && writes > 20 * FRAMES && writes < ROOM, "%d frames are written in %d writes",
        FRAMES, writes);
     if (ftruncate(fd, 0)) return 1;
+    int seen = 0, torn = 0;
     for (int k = 0; k < writes; k++) {
-        if (syscall(SYS_pwrite64, fd, made[k].bytes, made[k].size, made[k].at) < 0 ||
-            ftruncate(fd, made[k].length))
-            return 1;
-        free(made[k].bytes);
+        size_t part = (size_t)(PAGE - made[k].at % PAGE);
+        // blocks of an index longer than 512 bytes do cross pages: nsd-format(5)
+        if (made[k].frames && part < made[k].size && made[k].size <= 512) {
+            if (!put(k, part)) return 1;
+            torn++, look(k, part);
+        }
+        if (!put(k, made[k].size) || ftruncate(fd, made[k].length)) return 1;
         // indices of chunks grow at multiples of 16
-        if (!made[k].frames || (made[k].frames + 1) % 16 > 1) continue;
-        seen++;
-        why = (struct why){ 0 };
-        if (holds(path, made[k].frames, &why)) continue;
-        if (bad++ < 8)
-            diag("write %d, of %zu bytes at %lld, after frame %lld: %s", k + 1, made[k].size,
-                 (long long)made[k].at, (long long)made[k].frames, why.text);
+        if (made[k].frames && (made[k].frames + 1) % 16 <= 1) seen++, look(k, made[k].size);
+        free(made[k].bytes);
     }
-    ok(!bad && seen > writes / 10, "after any of %d the frames before it are there and whole",
-       seen);
+    ok(!bad && seen > writes / 10 && torn > 8,
+       "after any of %d, and in the midst of %d, the frames before it are there and whole", seen,
+       torn);
     close(fd);
     unlink(path);
     return tap_done();
