@@ -28,8 +28,7 @@ enum {
     SHORT = 50,    /* sweeps of leaps, or alone, at first and */
     LONG = 100000, /* at most */
     BLOCK = 64,    /* bundles whose lanes are summed one after another: they stay in the cache */
-    PART = 1024,  /* bundles whose sums a thread makes, added in their order whatever the threads */
-    MANY = 100000 /* contacts: of more few differences, for their room */
+    PART = 1024 /* bundles whose sums a thread makes, added in their order whatever the threads */
 };
 #define GROWTH 4.0   /* of |f|^2 that is not taken back */
 #define ASTRAY 2.0   /* the same of a leap */

@@ -47,20 +47,24 @@ int solve_history(struct solve *s)
 
 int kept_init(struct kept *k, const struct problem *p)
 {
-    *k = (struct kept){ INFINITY, malloc((size_t)(6 * p->rows + 1) * sizeof *k->x) };
-    return k->x ? 0 : -1;
+    size_t size = (size_t)(p->rows + 1) * sizeof *k->r;
+    bool many = p->n > MANY;
+    *k = (struct kept){ INFINITY, malloc(size), many ? NULL : malloc(size) };
+    return k->r && (many || k->u) ? 0 : -1;
 }
 
 void kept_free(struct kept *k)
 {
-    free(k->x), k->x = NULL;
+    free(k->r), free(k->u);
+    k->r = k->u = NULL;
 }
 
 void kept_offer(struct kept *k, const struct solve *s)
 {
+    double unwanted[3] = { 0 };
     if (!(s->value < k->value)) return;
     k->value = s->value;
-    for (int64_t i = 0; i < s->p->rows; i++) row_get(s->p, i, k->x + 6 * i, k->x + 6 * i + 3);
+    for (int64_t i = 0; i < s->p->rows; i++) row_get(s->p, i, k->r[i], k->u ? k->u[i] : unwanted);
 }
 
 void kept_back(const struct kept *k, struct solve *s)
@@ -68,9 +72,10 @@ void kept_back(const struct kept *k, struct solve *s)
     if (!(k->value < INFINITY) || s->value <= k->value) return;
     for (int64_t i = 0; i < s->p->rows; i++) {
         if (s->p->contact[i] < 0) continue;
-        row_react(s->p, i, k->x + 6 * i);
-        row_set(s->p, i, k->x + 6 * i, k->x + 6 * i + 3);
+        row_react(s->p, i, k->r[i]);
+        if (k->u) row_set(s->p, i, k->r[i], k->u[i]);
     }
+    s->believes &= k->u != NULL;
     s->value = k->value;
 }
 

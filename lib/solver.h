@@ -64,10 +64,14 @@ bool solve_spent(const struct solve *);
 /* The sweep's terms into the report, where a history is asked for; -1 when memory is short. */
 int solve_history(struct solve *);
 
+/* contacts: of more, less is kept */
+enum { MANY = 100000 };
+
 /* The best (r, u) that was judged, for solvers whose way is not straight */
 struct kept {
-    double value; /* of the criterion */
-    double *x;    /* [rows][6]: r, u */
+    double value;   /* of the criterion */
+    double (*r)[3]; /* [rows] */
+    double (*u)[3]; /* [rows]; NULL, of MANY: u is then what the motion makes */
 };
 int kept_init(struct kept *, const struct problem *); /* 0, or -1 */
 void kept_free(struct kept *);
