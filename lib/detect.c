@@ -1,5 +1,7 @@
 #include "detect.h"
 
+#include <stdlib.h>
+
 static void law(struct contact *c, const struct packing *p, int32_t one, int32_t other)
 {
     int32_t k = one * p->kinds + other;
@@ -41,17 +43,27 @@ static bool with_ball(struct contacts *out, const struct packing *p, int32_t a, 
     return true;
 }
 
+/* The predicted position q + (1 - theta) dt qdot of every body [globalmapapp1]; NULL: no memory */
+static vec3 *predict(const struct packing *p)
+{
+    vec3 *x = malloc(((size_t)p->n + 1) * sizeof *x);
+    for (int64_t i = 0; x && i < p->n; i++) x[i] = packing_predict(p, i);
+    return x;
+}
+
 int detect_contacts(struct contacts *out, const struct packing *p, double gap,
                     struct neighbours *kept, struct why *why)
 {
     struct neighbours once = { 0 }, *near = kept ? kept : &once;
+    vec3 *x = predict(p);
+    bool room = x;
     out->n = 0, contacts_forget(out);
-    if (neighbours_find(near, p, gap, kept, why)) return why->status;
-    bool room = true;
-    for (int32_t w = p->walls - 1; room && w >= 0; w--)
-        for (int64_t i = 0; room && i < p->n; i++) room = with_wall(out, p, w, i, near->x[i], gap);
-    for (int64_t i = 0; room && i < near->n; i++)
-        room = with_ball(out, p, near->pair[i].a, near->pair[i].b, near->x, gap);
-    neighbours_free(&once);
+    int e = room ? neighbours_find(near, p, x, gap, kept, why) : 0;
+    for (int32_t w = p->walls - 1; !e && room && w >= 0; w--)
+        for (int64_t i = 0; room && i < p->n; i++) room = with_wall(out, p, w, i, x[i], gap);
+    for (int64_t i = 0; !e && room && i < near->n; i++)
+        room = with_ball(out, p, near->pair[i].a, near->pair[i].b, x, gap);
+    free(x), neighbours_free(&once);
+    if (e) return e;
     return room ? 0 : why_set(why, EX_SOFTWARE, "no memory for the contacts");
 }

@@ -28,7 +28,7 @@ struct grid {
 
 void neighbours_free(struct neighbours *s)
 {
-    free(s->x), free(s->listed), free(s->pair);
+    free(s->listed), free(s->pair);
     *s = (struct neighbours){ 0 };
 }
 
@@ -231,11 +231,11 @@ static bool pairs_sort(struct neighbours *s)
     return true;
 }
 
-static bool list(struct neighbours *s, const struct packing *p)
+static bool list(struct neighbours *s, const struct packing *p, const vec3 *x)
 {
     struct grid g[LEVELS];
     memset(g, 0, sizeof g);
-    bool room = grids_build(g, p, s->x, s->reach);
+    bool room = grids_build(g, p, x, s->reach);
     s->n = 0;
     for (int l = 0; room && l < LEVELS; l++)
         for (int64_t m = 0; room && m < g[l].n; m++) {
@@ -251,12 +251,12 @@ static bool list(struct neighbours *s, const struct packing *p)
 /* ---- from step to step ---- */
 
 /* Can no pair that is not listed have a gap of `gap`? None has moved half of what was to spare. */
-static bool serves(const struct neighbours *s, double gap)
+static bool serves(const struct neighbours *s, const vec3 *x, double gap)
 {
     double most = 0.49 * (s->reach - gap); // rounding has the rest
     if (!s->listed || most < 0) return false;
     for (int64_t i = 0; i < s->bodies; i++) {
-        vec3 d = v3_sub(s->x[i], s->listed[i]);
+        vec3 d = v3_sub(x[i], s->listed[i]);
         if (!(v3_dot(d, d) <= most * most)) return false;
     }
     return true;
@@ -272,23 +272,15 @@ static double spare(const struct packing *p)
     return s <= 0.5 * r ? s : 0;
 }
 
-int neighbours_find(struct neighbours *s, const struct packing *p, double gap, bool keep,
-                    struct why *why)
+int neighbours_find(struct neighbours *s, const struct packing *p, const vec3 *x, double gap,
+                    bool keep, struct why *why)
 {
-    size_t n = (size_t)p->n + 1;
-    bool others = !s->x || s->bodies != p->n;
-    if (others) {
-        neighbours_free(s);
-        s->bodies = p->n;
-        s->x = malloc(n * sizeof *s->x);
-        if (!s->x) return why_set(why, EX_SOFTWARE, "no memory for the neighbours");
-    }
-    for (int64_t i = 0; i < p->n; i++) s->x[i] = packing_predict(p, i);
-    if (!others && serves(s, gap)) return 0;
-    s->reach = gap + (keep ? spare(p) : 0);
-    if (keep && !s->listed) s->listed = malloc(n * sizeof *s->listed);
-    if ((keep && !s->listed) || !list(s, p))
-        return why_set(why, EX_SOFTWARE, "no memory for the neighbours");
-    if (keep) memcpy(s->listed, s->x, (size_t)p->n * sizeof *s->x);
+    size_t size = (size_t)p->n * sizeof *x;
+    if (s->bodies == p->n && serves(s, x, gap)) return 0;
+    vec3 *listed = keep ? realloc(s->listed, size + sizeof *x) : s->listed;
+    if (keep && !listed) return why_set(why, EX_SOFTWARE, "no memory for the neighbours");
+    s->listed = listed, s->bodies = p->n, s->reach = gap + (keep ? spare(p) : 0);
+    if (!list(s, p, x)) return why_set(why, EX_SOFTWARE, "no memory for the neighbours");
+    if (keep && p->n) memcpy(s->listed, x, size);
     return 0;
 }

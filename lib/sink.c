@@ -17,13 +17,21 @@ enum {
     LEAST_TABLE = 64, /* bytes: the head of an index of chunks has 72 */
 };
 
+/* What every frame of a trajectory shares */
+struct shared {
+    int dim;
+    int64_t n;
+    double dt, theta;
+    uint32_t crc; /* of their radii and masses */
+};
+
 struct sink {
     int fd;
-    const char *name;     /* of the output, for messages */
-    bool trajectory;      /* else a stream */
-    int disk;             /* the growing document opened anew: > gives a descriptor only to write */
-    struct series doc;    /* its datasets; file -1 before its first frame */
-    struct packing first; /* of it: what the others must share */
+    const char *name;    /* of the output, for messages */
+    bool trajectory;     /* else a stream */
+    int disk;            /* the growing document opened anew: > gives a descriptor only to write */
+    struct series doc;   /* its datasets; file -1 before its first frame */
+    struct shared first; /* of its first frame */
     bool contacts, solved, moved; /* so far: are there any, and what they are */
     int64_t step;                 /* of its last frame */
 };
@@ -174,22 +182,26 @@ static int flush(struct sink *s, struct why *why)
     return good ? 0 : io_trouble(s, why, "cannot be written (full?)");
 }
 
+static struct shared shared_of(const struct packing *p)
+{
+    uint32_t crc = document_crc(0, p->radius, (size_t)p->n * sizeof *p->radius);
+    crc = document_crc(crc, p->mass, (size_t)p->n * sizeof *p->mass);
+    return (struct shared){ p->dim, p->n, p->dt, p->theta, crc };
+}
+
 /* What only the first frame says must hold of all. */
 static int check_same(const struct sink *s, const struct frame *f, struct why *why)
 {
-    const struct packing *p = &s->first, *q = &f->packing;
-    size_t n = (size_t)q->n;
-    if (p->n != q->n)
-        return why_set(why, EX_DATAERR, "%lld bodies, and the trajectory has %lld", (long long)q->n,
-                       (long long)p->n);
-    if (p->dim != q->dim || p->dt != q->dt || p->theta != q->theta)
+    const struct shared p = s->first, q = shared_of(&f->packing);
+    if (p.n != q.n)
+        return why_set(why, EX_DATAERR, "%lld bodies, and the trajectory has %lld", (long long)q.n,
+                       (long long)p.n);
+    if (p.dim != q.dim || p.dt != q.dt || p.theta != q.theta)
         return why_set(why, EX_DATAERR, "dim, dt or theta differ from the trajectory's");
-    if (memcmp(p->radius, q->radius, n * sizeof *p->radius) ||
-        memcmp(p->mass, q->mass, n * sizeof *p->mass))
-        return why_set(why, EX_DATAERR, "other bodies than the trajectory's");
-    if (q->step <= s->step)
+    if (p.crc != q.crc) return why_set(why, EX_DATAERR, "other bodies than the trajectory's");
+    if (f->packing.step <= s->step)
         return why_set(why, EX_DATAERR, "step %lld after step %lld: a trajectory's steps increase",
-                       (long long)q->step, (long long)s->step);
+                       (long long)f->packing.step, (long long)s->step);
     if (f->detected && s->contacts && (!f->contacts.found == s->solved || f->moved != s->moved))
         return why_set(why, EX_DATAERR, "contacts solved and unsolved in one trajectory");
     return 0;
@@ -211,7 +223,7 @@ static int trajectory_begin(struct sink *s, const struct frame *f, struct why *w
         if (ftruncate(s->disk, 0)) return why->status; // nothing rather than a half
         return why->status;
     }
-    if (packing_copy(&s->first, &f->packing, why)) return why->status;
+    s->first = shared_of(&f->packing);
     s->step = f->packing.step - 1;
     return write_header(s, 0, 0, why) || record_static(&s->doc, f, why) ? why->status : 0;
 }
@@ -264,7 +276,6 @@ int sink_close(struct sink *s, struct why *why)
 {
     int e = s->doc.file >= 0 ? trajectory_close(s, why) : 0;
     if (s->disk >= 0) close(s->disk);
-    packing_free(&s->first);
     if (close(s->fd) && !e) e = io_trouble(s, why, strerror(errno));
     free(s);
     return e;
