@@ -54,13 +54,11 @@ void contact_frame(struct contact *c, int dim, vec3 n)
     c->n = n;
     if (dim == 2) {
         c->t1 = v3(-n.y, n.x, 0);
-        c->t2 = v3(0, 0, 1);
         return;
     }
     // without a branch that could flip between neighbouring normals [Duff et al. 2017]
-    double sign = copysign(1, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
-    c->t1 = v3(1 + sign * n.x * n.x * a, sign * b, -sign * n.x);
-    c->t2 = v3(b, sign + n.y * n.y * a, -n.y);
+    double sign = copysign(1, n.z), a = -sign / (sign + n.z);
+    c->t1 = v3(1 + n.x * n.x * a, n.x * n.y * a, -sign * n.x);
 }
 
 int contacts_match(struct contacts *new, const struct contacts *old)
@@ -77,8 +75,8 @@ int contacts_match(struct contacts *new, const struct contacts *old)
         const struct contact *o = &old->c[k];
         if (o->a != c->a || o->b != c->b) continue;
         const double *was = old->found[k].r;
-        vec3 t = v3_axpy(v3_scale(was[1], o->t1), was[2], o->t2);
-        r[0] = was[0], r[1] = v3_dot(t, c->t1), r[2] = v3_dot(t, c->t2);
+        vec3 t = v3_axpy(v3_scale(was[1], o->t1), was[2], contact_t2(o));
+        r[0] = was[0], r[1] = v3_dot(t, c->t1), r[2] = v3_dot(t, contact_t2(c));
     }
     return 0;
 }
@@ -90,10 +88,8 @@ static const char *trouble(const struct contact *c, const struct found *found, i
         return "no such bodies";
     if (!v3_finite(c->x) || !isfinite(c->gap)) return "point or gap is not finite";
     if (!(fabs(v3_dot(c->n, c->n) - 1) < 1e-6 && fabs(v3_dot(c->t1, c->t1) - 1) < 1e-6 &&
-          fabs(v3_dot(c->t2, c->t2) - 1) < 1e-6 && fabs(v3_dot(c->n, c->t1)) < 1e-6 &&
-          fabs(v3_dot(c->n, c->t2)) < 1e-6 && fabs(v3_dot(c->t1, c->t2)) < 1e-6))
+          fabs(v3_dot(c->n, c->t1)) < 1e-6))
         return "frame is not orthonormal";
-    if (v3_dot(v3_cross(c->n, c->t1), c->t2) < 0) return "frame is not right-handed";
     if (!(c->mu >= 0 && isfinite(c->mu))) return "mu must not be negative";
     if (!(c->en >= 0 && c->en <= 1 && c->et >= 0 && c->et <= 1))
         return "restitution must lie in [0, 1]";

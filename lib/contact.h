@@ -9,10 +9,10 @@
 #include <stdint.h>
 
 struct contact {
-    int32_t a, b;   /* bodies, the normal points from a to b; wall w is -1-w and always a */
-    vec3 x;         /* m: where it acts, in the predicted position */
-    vec3 n, t1, t2; /* frame, right-handed; in the plane t2 = z */
-    double gap;     /* m, predicted; < 0: overlap */
+    int32_t a, b; /* bodies, the normal points from a to b; wall w is -1-w and always a */
+    vec3 x;       /* m: where it acts, in the predicted position */
+    vec3 n, t1;   /* of the frame (n, t1, t2), right-handed; in the plane t1 = z x n, t2 = z */
+    double gap;   /* m, predicted; < 0: overlap */
     double mu, en, et;
 };
 
@@ -44,8 +44,12 @@ struct contact *contacts_add(struct contacts *, int32_t a, int32_t b);
    the first contact that is not so. */
 int contacts_check(const struct contacts *, int64_t bodies, int32_t walls, struct why *);
 
-/* The frame (n, t1, t2) of a unit normal, continuous but at n = -z; in the plane t1 = z x n. */
+/* The frame of a unit normal, continuous but at n = -z. */
 void contact_frame(struct contact *, int dim, vec3 n);
+static inline vec3 contact_t2(const struct contact *c)
+{
+    return v3_cross(c->n, c->t1);
+}
 
 /* Reactions of old, turned into the frames of new, for the pairs that are in both; 0 for others. -1
    when memory is short. */

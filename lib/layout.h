@@ -28,7 +28,7 @@ static inline size_t column_size(enum column_type t)
 struct column {
     const char *name, *units;
     enum column_type type;
-    int width;     /* numbers in a row; 9: a 3 x 3 matrix */
+    int width;     /* numbers in a row */
     size_t offset; /* in its struct: of the numbers, or of the pointer to them */
 };
 
@@ -68,11 +68,10 @@ static const struct column layout_material[] = {
     { 0 },
 };
 
-/* /contacts/NAME [S][width]: members of struct contact */
+/* /contacts/NAME [S][width]: members of struct contact; its frame goes by itself */
 static const struct column layout_contacts[] = {
     { "body", "1", COLUMN_I32, 2, offsetof(struct contact, a) },
     { "point", "m", COLUMN_F64, 3, offsetof(struct contact, x) },
-    { "frame", "1", COLUMN_F64, 9, offsetof(struct contact, n) },
     { "gap", "m", COLUMN_F64, 1, offsetof(struct contact, gap) },
     { "mu", "1", COLUMN_F64, 1, offsetof(struct contact, mu) },
     { "en", "1", COLUMN_F64, 1, offsetof(struct contact, en) },

@@ -161,6 +161,23 @@ static int read_packing(struct recall *r, int64_t k, struct packing *p, struct w
     return packing_check(p, why);
 }
 
+/* The frames of contacts first ..; t2 has to be n x t1. */
+static int read_frames(struct rows *r, int64_t first, struct contacts *s, struct why *why)
+{
+    vec3(*frame)[3] = malloc((size_t)(s->n + 1) * sizeof *frame);
+    if (!frame) return why_set(why, EX_SOFTWARE, "no memory for /contacts/frame");
+    int e = rows_read(r, "/contacts/frame", COLUMN_F64, first, s->n, 9, frame, why);
+    for (int64_t i = 0; !e && i < s->n; i++) {
+        struct contact *c = &s->c[i];
+        c->n = frame[i][0], c->t1 = frame[i][1];
+        if (!(v3_norm(v3_sub(contact_t2(c), frame[i][2])) < 1e-6))
+            e = why_set(why, EX_DATAERR, "contact %lld: frame is not right-handed and orthonormal",
+                        (long long)i);
+    }
+    free(frame);
+    return e;
+}
+
 /* The contacts of the frame's step, when the document has them. */
 static int read_contacts(struct recall *r, int64_t k, struct frame *f, struct why *why)
 {
@@ -183,6 +200,7 @@ static int read_contacts(struct recall *r, int64_t k, struct frame *f, struct wh
     if (solved && contacts_expect(s)) return why_set(why, EX_SOFTWARE, "no memory for reactions");
     if (rows_read_columns(&r->rows, "/contacts", "", layout_contacts, first, s->n, s->c,
                           sizeof *s->c, why) ||
+        read_frames(&r->rows, first, s, why) ||
         (solved && rows_read_columns(&r->rows, "/contacts", "", layout_found, first, s->n, s->found,
                                      sizeof *s->found, why)))
         return why->status;

@@ -126,6 +126,20 @@ static int put_motion(struct series *s, const struct packing *p, struct why *why
     return 0;
 }
 
+static int put_frames(struct series *s, const struct contacts *t, struct why *why)
+{
+    const hsize_t shape[3] = { (hsize_t)t->n, 3, 3 };
+    vec3(*frame)[3] = malloc((size_t)(t->n + 1) * sizeof *frame);
+    if (!frame) return why_set(why, EX_SOFTWARE, "no memory for /contacts/frame");
+    for (int64_t i = 0; i < t->n; i++) {
+        const struct contact *c = &t->c[i];
+        frame[i][0] = c->n, frame[i][1] = c->t1, frame[i][2] = contact_t2(c);
+    }
+    int e = series_put(s, "/contacts/frame", COLUMN_F64, 3, shape, CHUNK_CONTACTS, frame, "1", why);
+    free(frame);
+    return e;
+}
+
 static int put_contacts(struct series *s, const struct frame *f, struct why *why)
 {
     bool first = !series_grows(s, "/contacts/start");
@@ -136,6 +150,7 @@ static int put_contacts(struct series *s, const struct frame *f, struct why *why
         series_put(s, "/contacts/count", COLUMN_I64, 1, &one, CHUNK_FRAMES, &t->n, NULL, why) ||
         series_put_columns(s, "/contacts", "", layout_contacts, t->n, t->c, sizeof *t->c,
                            CHUNK_CONTACTS, why) ||
+        put_frames(s, t, why) ||
         (t->found && series_put_columns(s, "/contacts", "", layout_found, t->n, t->found,
                                         sizeof *t->found, CHUNK_CONTACTS, why)) ||
         series_put(s, "/contacts/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &f->packing.step, NULL,

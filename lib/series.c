@@ -90,9 +90,9 @@ int series_put_columns(struct series *s, const char *where, const char *tail,
         void *data = malloc((size_t)(n + 1) * (size_t)c->width * column_size(c->type));
         if (!data) return why_set(why, EX_SOFTWARE, "no memory for %s", path);
         column_gather(c, n, structs, stride, data);
-        hsize_t shape[3] = { (hsize_t)n, c->width == 9 ? 3 : (hsize_t)c->width, 3 };
-        int rank = c->width == 1 ? 1 : c->width == 9 ? 3 : 2;
-        int e = series_put(s, path, c->type, rank, shape, chunk_rows, data, c->units, why);
+        hsize_t shape[2] = { (hsize_t)n, (hsize_t)c->width };
+        int e = series_put(s, path, c->type, c->width == 1 ? 1 : 2, shape, chunk_rows, data,
+                           c->units, why);
         free(data);
         if (e) return e;
     }

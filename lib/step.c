@@ -57,8 +57,8 @@ static void impulses(const struct packing *p, const struct contacts *s, vec3 *fo
         double la, lb;
         problem_arms(p, c, &la, &lb);
         const double *r = s->found[i].r;
-        vec3 f = v3_axpy(v3_axpy(v3_scale(r[0], c->n), r[1], c->t1), r[2], c->t2);
-        vec3 m = v3_axpy(v3_scale(r[2], c->t1), -r[1], c->t2); // -n x r
+        vec3 t2 = contact_t2(c), f = v3_axpy(v3_axpy(v3_scale(r[0], c->n), r[1], c->t1), r[2], t2);
+        vec3 m = v3_axpy(v3_scale(r[2], c->t1), -r[1], t2); // -n x r
         force[c->b] = v3_add(force[c->b], f);
         moment[c->b] = v3_axpy(moment[c->b], lb, m);
         if (c->a < 0) continue;

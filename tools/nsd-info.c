@@ -159,7 +159,7 @@ static void show_contacts(const struct frame *f)
         json_object_set_new(j, "point", json_vec(c->x));
         json_object_set_new(j, "n", json_vec(c->n));
         json_object_set_new(j, "t1", json_vec(c->t1));
-        json_object_set_new(j, "t2", json_vec(c->t2));
+        json_object_set_new(j, "t2", json_vec(contact_t2(c)));
         json_object_set_new(j, "gap", json_number(c->gap));
         json_object_set_new(j, "mu", json_number(c->mu));
         json_object_set_new(j, "e_n", json_number(c->en));
