@@ -50,7 +50,14 @@ ALWAYS_INLINE void eal_chain(vd mu, vd rho, const struct iterate *x, vd A[3][3],
         for (int j = 0; j < 3; j++) B[i][j] = rho * ((double)(i == j) - A[i][j]);
 }
 
-#define EAL ((struct newton_text){ eal_residual, eal_slide, eal_chain })
+/* Along n A is 0 and Z_n = rho v_n. */
+ALWAYS_INLINE void eal_slip(const struct local *l, const struct iterate *x, struct slip *s)
+{
+    s->dq = slip_across(l, s, 1.0 - l->mu * x->tau[0] * newton_inverse(x->t));
+    s->dn = -x->v[0] * l->iw[0];
+}
+
+#define EAL ((struct newton_text){ eal_residual, eal_slide, eal_chain, eal_slip })
 
 ALWAYS_INLINE void eal_solve(struct local *l, const struct local_opt *opt)
 {

@@ -54,7 +54,23 @@ ALWAYS_INLINE void ebp_chain(vd mu, vd rho, const struct iterate *x, vd A[3][3],
     }
 }
 
-#define EBP ((struct newton_text){ ebp_residual, ebp_slide, ebp_chain })
+/*
+ * Along n + mu e, where A is 0, and with h = mu g and dr_e put in:
+ *
+ *     (w_n + mu p) dr_n = p lag - w_t h_q dr_q - (Z_n + mu Z_e)/rho,     p = w_t (mu + h_e).
+ */
+ALWAYS_INLINE void ebp_slip(const struct local *l, const struct iterate *x, struct slip *s)
+{
+    vd k = (1.0 - l->mu * x->tau[0] * newton_inverse(x->t)) * (1.0 / (1.0 + l->mu * l->mu));
+    vd wh = l->w[1] * (l->mu * newton_inverse(x->vt));
+    vd whe = wh * (s->e[0] * x->v[1] + s->e[1] * x->v[2]);
+    vd whq = wh * (s->e[0] * x->v[2] - s->e[1] * x->v[1]), p = l->w[1] * l->mu + whe;
+    s->dq = slip_across(l, s, k);
+    s->dn = (l->rho * (p * s->lag - whq * s->dq) - (s->Z[0] + l->mu * s->Z[1])) /
+            (l->rho * (l->w[0] + l->mu * p));
+}
+
+#define EBP ((struct newton_text){ ebp_residual, ebp_slide, ebp_chain, ebp_slip })
 
 ALWAYS_INLINE void ebp_solve(struct local *l, const struct local_opt *opt)
 {

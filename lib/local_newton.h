@@ -30,17 +30,56 @@ typedef void newton_residual(vd mu, vd rho, struct iterate *);
 typedef void newton_slide(vd mu, const struct iterate *, vd A[3][3]);
 typedef void newton_chain(vd mu, vd rho, const struct iterate *, vd A[3][3], vd B[3][3]);
 
+/*
+ * The step of balls where they slide, in closed form: along n, e = tau_t/|tau_t| and q = n x e the
+ * system with W = diag(w_n, w_t, w_t) falls apart into
+ *
+ *     (k + rho (1 - k) w_t) dr_q = -Z_q, where A q = k q,
+ *     dr_e = mu dr_n - lag,     lag = Z_e - mu Z_n,
+ *
+ * and an equation for dr_n, which differs between the formulations as k does.
+ */
+struct slip {
+    vd e[2], Z[3]; /* Z along n, e, q */
+    vd lag, dn, dq;
+};
+
+/* dq and dn */
+typedef void newton_slip(const struct local *, const struct iterate *, struct slip *);
+
 /* One of the two formulations */
 struct newton_text {
     newton_residual *residual;
     newton_slide *slide;
     newton_chain *chain;
+    newton_slip *slip;
 };
 
 /* 1/x, 0 at 0: the quotients are the tangent's alone, for most contacts stick or are free */
 ALWAYS_INLINE vd newton_inverse(vd x)
 {
     return pick(lt(splat(0), x), 1.0 / x, splat(0));
+}
+
+ALWAYS_INLINE vd slip_across(const struct local *l, const struct slip *s, vd k)
+{
+    return -s->Z[2] / (k + l->rho * (1.0 - k) * l->w[1]);
+}
+
+/* tau_t = 0 slides at mu = 0 only, when any e is as good. */
+ALWAYS_INLINE vm slip_direction(const struct local *l, const struct iterate *x, newton_slip *slip,
+                                vd dr[3])
+{
+    struct slip s;
+    vd inverse = newton_inverse(x->t);
+    s.e[0] = pick(lt(splat(0), x->t), inverse * x->tau[1], splat(1)), s.e[1] = inverse * x->tau[2];
+    s.Z[0] = x->Z[0];
+    s.Z[1] = s.e[0] * x->Z[1] + s.e[1] * x->Z[2], s.Z[2] = s.e[0] * x->Z[2] - s.e[1] * x->Z[1];
+    s.lag = s.Z[1] - l->mu * s.Z[0];
+    slip(l, x, &s);
+    vd de = l->mu * s.dn - s.lag;
+    dr[0] = s.dn, dr[1] = s.e[0] * de - s.e[1] * s.dq, dr[2] = s.e[1] * de + s.e[0] * s.dq;
+    return is_finite(s.dn + s.dq);
 }
 
 /*
@@ -59,13 +98,14 @@ ALWAYS_INLINE vm newton_direction(const struct local *l, const struct iterate *x
         for (int i = 0; i < 3; i++) stick[i] = -x->v[i] * l->iw[i];
         regular |= x->stick;
     }
-    if (any(slide)) {
+    if (any(slide) && !l->W) {
+        regular |= slide & slip_direction(l, x, text.slip, slip);
+    } else if (any(slide)) {
         text.slide(l->mu, x, A), text.chain(l->mu, l->rho, x, A, B);
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++)
-                M[i][j] = l->W ? A[i][j] + B[i][0] * l->W[j] + B[i][1] * l->W[3 + j] +
-                                     B[i][2] * l->W[6 + j]
-                               : A[i][j] + B[i][j] * l->w[j];
+                M[i][j] =
+                    A[i][j] + B[i][0] * l->W[j] + B[i][1] * l->W[3 + j] + B[i][2] * l->W[6 + j];
         regular |= slide & solve3(M, x->Z, slip);
     }
     for (int i = 0; i < 3; i++) dr[i] = pick(x->free, -x->r[i], pick(x->stick, stick[i], slip[i]));
@@ -85,8 +125,7 @@ ALWAYS_INLINE void newton_take(struct iterate *x, const struct iterate *y, vm m)
 {
     for (int i = 0; i < 3; i++) {
         x->r[i] = pick(m, y->r[i], x->r[i]), x->v[i] = pick(m, y->v[i], x->v[i]);
-        x->tau[i] = pick(m, y->tau[i], x->tau[i]), x->p[i] = pick(m, y->p[i], x->p[i]);
-        x->Z[i] = pick(m, y->Z[i], x->Z[i]);
+        x->tau[i] = pick(m, y->tau[i], x->tau[i]), x->Z[i] = pick(m, y->Z[i], x->Z[i]);
     }
     x->t = pick(m, y->t, x->t), x->vt = pick(m, y->vt, x->vt);
     x->free = (m & y->free) | (~m & x->free), x->stick = (m & y->stick) | (~m & x->stick);

@@ -2,6 +2,8 @@
  * The five local methods on random one-contact problems, judged by the law itself and not by their
  * own formulas.
  */
+#include "local_eal.h"
+#include "local_ebp.h"
 #include "method.h"
 #include "tap.h"
 
@@ -122,6 +124,32 @@ static void test_planar_formulas(const char *name, linearise *f, bool bipotentia
 }
 
 /* ---- cone ----------------------------------------------------------------------------------- */
+
+/* Where balls slide the step is in closed form: that of the whole system, of W = diag(w_n, w_t, w_t). */
+static void test_slip(const char *name, linearise *f, struct newton_text text)
+{
+    double worst = 0;
+    int slid = 0;
+    for (int n = 0; n < PROBLEMS; n++) {
+        struct state s = { .f = f };
+        double w[3] = { flat(0.1, 1), flat(1, 3) }, iw[3], W[9] = { 0 }, dr[2][3], big = 0;
+        w[2] = w[1];
+        if (random_state(&s, 2 + n % 2) != LOCAL_SLIDE) continue;
+        for (int i = 0; i < 3; i++) W[4 * i] = w[i], iw[i] = 1 / w[i];
+        for (int k = 0; k < 2; k++) {
+            struct local l = { .W = k ? W : NULL, .mu = s.mu, .rho = s.rho };
+            struct iterate x = { .r = { s.x[0], s.x[1], s.x[2] }, .v = { s.x[3], s.x[4], s.x[5] } };
+            for (int i = 0; i < 3; i++) l.w[i] = w[i], l.iw[i] = iw[i];
+            text.residual(l.mu, l.rho, &x);
+            newton_direction(&l, &x, text, dr[k]);
+        }
+        for (int i = 0; i < 3; i++) big = fmax(big, fabs(dr[1][i]));
+        for (int i = 0; i < 3; i++) worst = fmax(worst, fabs(dr[0][i] - dr[1][i]) / big);
+        slid++;
+    }
+    ok(slid > 500 && worst < 1e-10,
+       "%s: the step of balls that slide is that of their W, to %.1e of %d", name, worst, slid);
+}
 
 static void test_cone(void)
 {
@@ -463,6 +491,8 @@ int main(void)
     test_derivatives("eal", eal_linearise);
     test_planar_formulas("ebp", ebp_linearise, true);
     test_planar_formulas("eal", eal_linearise, false);
+    test_slip("ebp", ebp_linearise, EBP);
+    test_slip("eal", eal_linearise, EAL);
     test_cone();
     test_lambda_max();
     for (const struct method *const *m = methods; *m; m++) {
