@@ -27,7 +27,8 @@ struct local {
     const vd *W; /* [9], row-major, kg^-1; NULL: diagonal, w[1] = w[2] */
     vd w[3];     /* the diagonal of W, kg^-1 */
     vd iw[3];    /* kg: 1/w where W is NULL */
-    vd b[3];     /* m/s: velocity without this contact's own reaction */
+    vd b[3];     /* m/s: velocity without this contact's own reaction, and */
+    vd v[3];     /* m/s: with the last sweep's, W r + b */
     vd mu;
     vd rho;         /* kg: step of the projection */
     vd r[3];        /* N s; in: the last sweep's, out: this one's */
@@ -123,8 +124,8 @@ ALWAYS_INLINE void disc_predict(vd rho, const vd r[3], const vd u[3], vd tau[3])
  */
 ALWAYS_INLINE void disc_project(vd mu, const vd tau[3], vd r[3])
 {
-    vd t = norm2(tau + 1), rn = larger(tau[0], splat(0));
-    vd s = pick(lt(mu * rn, t), mu * rn * (1.0 / t), splat(1));
+    vd rn = larger(tau[0], splat(0)), most = mu * rn, t2 = dot2(tau + 1, tau + 1);
+    vd s = pick(lt(most * most, t2), most / root(t2), splat(1));
     r[0] = rn, r[1] = s * tau[1], r[2] = s * tau[2];
 }
 

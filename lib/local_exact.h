@@ -5,8 +5,8 @@
  *     stick     W r = -b with r in the cone:      u = 0
  *     slide     r = r_n (n + mu d), |d| = 1:      u_n = 0, u_t = -lambda d, lambda >= 0
  *
- * For balls W = diag(w_n, w_t, w_t) and the three are one closed form: r_n = max(0, -b_n/w_n) and
- * r_t = -b_t/w_t clipped to mu r_n.
+ * For balls W = diag(w_n, w_t, w_t) and the three are one closed form: the projection on the disc of
+ * tau = -W^-1 b = r - W^-1 v.
  *
  * With a general W the sliding direction d is searched. With a = W_nn + mu W_nt.d, u_n = 0 gives
  * r_n = -b_n/a, and the tangential velocity times a is
@@ -46,14 +46,13 @@ ALWAYS_INLINE vm solve3(vd M[3][3], const vd y[3], vd x[3])
     return lt(splat(0), absolute(det));
 }
 
-/* r_n = -b_n/w_n, and the stick reaction clipped to mu r_n */
+/* What stops the contact, onto the disc */
 ALWAYS_INLINE vm exact_balls(const struct local *l, vd r[3])
 {
-    vd rn = -l->b[0] * l->iw[0], rt[2] = { -l->b[1] * l->iw[1], -l->b[2] * l->iw[1] };
-    vd most = l->mu * rn, t2 = dot2(rt, rt);
-    vd s = pick(lt(most * most, t2), most / root(t2), splat(1));
-    r[0] = rn, r[1] = s * rt[0], r[2] = s * rt[1];
-    return lt(splat(0), l->w[0]) & is_finite(rn + r[1] + r[2]);
+    vd tau[3];
+    for (int i = 0; i < 3; i++) tau[i] = l->r[i] - l->v[i] * l->iw[i];
+    disc_project(l->mu, tau, r);
+    return is_finite(tau[0] + tau[1] + tau[2]);
 }
 
 /* ---- a general W ---- */
@@ -196,10 +195,11 @@ ALWAYS_INLINE vm exact_rest(const struct local *l, vm m, vm singular, vd r[3])
     return lt(splat(0), vload(good));
 }
 
-/* Without friction, stick, slide; else the search. m: where b_n < 0 */
-ALWAYS_INLINE vm exact_general(const struct local *l, vm m, vd r[3])
+/* Take-off, without friction, stick, slide; else the search */
+ALWAYS_INLINE vm exact_general(const struct local *l, vd r[3])
 {
     vd rn = -l->b[0] / l->W[0], slid[3] = { 0 };
+    vm open = ~lt(l->b[0], splat(0)), m = ~open;
     vm smooth = le(l->mu, splat(0)), regular = exact_stick(l, r);
     vm stuck = regular & le(norm2(r + 1), l->mu * r[0]) & ~smooth;
     vm slides = m & ~smooth & ~stuck & regular;
@@ -210,16 +210,16 @@ ALWAYS_INLINE vm exact_general(const struct local *l, vm m, vd r[3])
     }
     vm found = stuck | slides | (smooth & lt(splat(0), l->W[0]) & is_finite(rn));
     vm rest = m & ~found & ~smooth;
-    return any(rest) ? found | exact_rest(l, rest, ~regular, r) : found;
+    if (any(rest)) found |= exact_rest(l, rest, ~regular, r);
+    for (int j = 0; j < 3; j++) r[j] = pick(open, splat(0), r[j]);
+    return found | open;
 }
 
 /* Where nothing is on the law (W indefinite or singular), one projected step from the last r. */
 ALWAYS_INLINE void exact_solve(struct local *l, const struct local_opt *opt)
 {
     vd r[3];
-    vm open = ~lt(l->b[0], splat(0)), found = l->W ? exact_general(l, ~open, r) : exact_balls(l, r);
-    for (int k = 0; k < 3; k++) r[k] = pick(open, splat(0), r[k]);
-    found |= open;
+    vm found = l->W ? exact_general(l, r) : exact_balls(l, r);
     if (any(~found)) {
         struct local step = *l;
         sbp_solve(&step, opt);

@@ -148,7 +148,8 @@ ALWAYS_INLINE vm newton_run(struct local *l, const struct local_opt *opt, struct
     const double eps2 = opt->newton_eps * opt->newton_eps;
     struct iterate y = { 0 };
     vm ended = NONE, run = ~ended;
-    newton_move(l, l->r, splat(0), l->r, text.residual, x);
+    for (int i = 0; i < 3; i++) x->r[i] = l->r[i], x->v[i] = l->v[i];
+    text.residual(l->mu, l->rho, x);
     vd z2 = dot3(x->Z, x->Z);
     for (int k = 0; any(run) && (k == 0 || k < opt->newton_max); k++) {
         vd dr[3], s = splat(1);

@@ -57,24 +57,23 @@ struct count {
 /* What is known of LANES rows before they are solved */
 struct seat {
     struct bodies a, b;
-    vd b_c[3]; /* m/s */
+    vd v[3]; /* m/s: as r is; given by W: b_c */
 };
 
 ALWAYS_INLINE void begin(const struct problem *p, const struct bundle *c, int k, bool given_by_W,
                          struct seat *s)
 {
     if (given_by_W) {
-        blocks_gather(p, c, k, s->b_c);
+        blocks_gather(p, c, k, s->v);
         return;
     }
     bodies_load(&s->a, p->body, c->a + k), bodies_load(&s->b, p->body, c->b + k);
-    bundle_velocity(c, bundle_rebound(p, c), k, &s->a, &s->b, s->b_c);
-    for (int i = 0; i < 3; i++) s->b_c[i] -= vload(c->w[i > 0] + k) * vload(c->r[i] + k);
+    bundle_velocity(c, bundle_rebound(p, c), k, &s->a, &s->b, s->v);
 }
 
 /* The local problem; W[9] is room for what l->W shows. */
-ALWAYS_INLINE void pose(const struct problem *p, const struct bundle *c, int k, bool full,
-                        const struct seat *s, vd W[9], struct local *l)
+ALWAYS_INLINE void pose(const struct problem *p, const struct bundle *c, int k, bool given_by_W,
+                        bool full, const struct seat *s, vd W[9], struct local *l)
 {
     l->d = p->d, l->W = full ? W : NULL;
     l->mu = vload(c->mu + k), l->rho = vload(c->rho + k);
@@ -82,8 +81,10 @@ ALWAYS_INLINE void pose(const struct problem *p, const struct bundle *c, int k, 
     for (int i = 0; i < 3; i++) {
         l->w[i] = full ? W[4 * i] : vload(c->w[i > 0] + k);
         l->iw[i] = full ? splat(0) : vload(c->iw[i > 0] + k);
-        l->r[i] = vload(c->r[i] + k), l->b[i] = s->b_c[i];
+        l->r[i] = vload(c->r[i] + k), l->v[i] = s->v[i];
+        l->b[i] = given_by_W ? s->v[i] : l->v[i] - l->w[i] * l->r[i];
     }
+    if (given_by_W) local_velocity(l, l->r, l->v);
 }
 
 /* Over-relaxation: past the new reaction, and back onto the cone. */
@@ -154,7 +155,7 @@ ALWAYS_INLINE void visit(struct problem *p, int64_t first, int64_t end, const st
             int j = (LANES < BUNDLE ? k / LANES : (int)(i - first)) % 2;
             struct local l;
             vd W[9];
-            pose(p, c, k, full, &s[j], W, &l);
+            pose(p, c, k, given_by_W, full, &s[j], W, &l);
             solve(&l, &o->local);
             if (o->relax != 1) relax(&l, c, k, o->relax);
             if (k + LANES < BUNDLE)
