@@ -41,13 +41,18 @@ struct body {
     double im, ii;     /* 1/kg, 1/(kg m^2); 0: immovable */
 };
 
-/* LANES bodies side by side, and where they are kept */
+/* LANES bodies side by side: where they are kept, */
 struct bodies {
-    vd v[3], w[3], im, ii;
     struct body *at[LANES];
+    vd im, ii;
+};
+/* and how they move, or how that changes */
+struct twist {
+    vd v[3], w[3];
 };
 
-ALWAYS_INLINE void bodies_load(struct bodies *m, struct body *body, const int32_t *row)
+ALWAYS_INLINE void bodies_load(struct bodies *m, struct body *body, const int32_t *row,
+                               struct twist *moves)
 {
     vd x[8];
     for (int i = 0; i < LANES; i++) m->at[i] = body + row[i];
@@ -55,16 +60,19 @@ ALWAYS_INLINE void bodies_load(struct bodies *m, struct body *body, const int32_
         for (int i = 0; i < LANES; i++) x[k + i] = vload(m->at[i]->v + k);
         transpose(x + k);
     }
-    for (int k = 0; k < 3; k++) m->v[k] = x[k], m->w[k] = x[3 + k];
+    for (int k = 0; k < 3; k++) moves->v[k] = x[k], moves->w[k] = x[3 + k];
     m->im = x[6], m->ii = x[7];
 }
 
-ALWAYS_INLINE void bodies_store(const struct bodies *m)
+ALWAYS_INLINE void bodies_add(const struct bodies *m, const struct twist *d)
 {
-    vd x[8] = { m->v[0], m->v[1], m->v[2], m->w[0], m->w[1], m->w[2], m->im, m->ii };
+    vd x[8] = { d->v[0], d->v[1], d->v[2], d->w[0], d->w[1], d->w[2], splat(0), splat(0) };
     for (int k = 0; k < 8; k += LANES) {
         transpose(x + k);
-        for (int i = 0; i < LANES; i++) vstore(m->at[i]->v + k, x[k + i]);
+        for (int i = 0; i < LANES; i++) {
+            double *to = m->at[i]->v + k;
+            vstore(to, vload(to) + x[k + i]);
+        }
     }
 }
 
@@ -77,7 +85,7 @@ ALWAYS_INLINE void bundle_frame(const struct bundle *c, int k, vd n[3], vd t1[3]
 
 /* u~ as the bodies move; e NULL: u */
 ALWAYS_INLINE void bundle_velocity(const struct bundle *c, const struct rebound *e, int k,
-                                   const struct bodies *a, const struct bodies *b, vd u[3])
+                                   const struct twist *a, const struct twist *b, vd u[3])
 {
     vd n[3], t1[3], t2[3], dv[3], m[3], la = vload(c->la + k), lb = vload(c->lb + k);
     bundle_frame(c, k, n, t1, t2);
@@ -91,17 +99,19 @@ ALWAYS_INLINE void bundle_velocity(const struct bundle *c, const struct rebound 
 }
 
 /* Reactions changed by dr (n, t1, t2) move the bodies. */
-ALWAYS_INLINE void bundle_push(const struct bundle *c, int k, const vd dr[3], struct bodies *a,
-                               struct bodies *b)
+ALWAYS_INLINE void bundle_push(const struct bundle *c, int k, const vd dr[3],
+                               const struct bodies *a, const struct bodies *b)
 {
-    vd turn_a = a->ii * vload(c->la + k), turn_b = b->ii * vload(c->lb + k);
+    vd turn_a = a->ii * vload(c->la + k), turn_b = b->ii * vload(c->lb + k), im = -a->im;
     vd n[3], t1[3], t2[3];
+    struct twist da, db;
     bundle_frame(c, k, n, t1, t2);
     for (int i = 0; i < 3; i++) { // f on b; m = -n x dr turns both
         vd f = dr[0] * n[i] + dr[1] * t1[i] + dr[2] * t2[i], m = dr[2] * t1[i] - dr[1] * t2[i];
-        a->v[i] -= a->im * f, a->w[i] += turn_a * m;
-        b->v[i] += b->im * f, b->w[i] += turn_b * m;
+        da.v[i] = im * f, da.w[i] = turn_a * m;
+        db.v[i] = b->im * f, db.w[i] = turn_b * m;
     }
+    bodies_add(a, &da), bodies_add(b, &db);
 }
 
 #endif

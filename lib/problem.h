@@ -91,17 +91,18 @@ ALWAYS_INLINE void body_velocity(struct body *body, const struct bundle *c, cons
                                  int k, vd u[3])
 {
     struct bodies a, b;
-    bodies_load(&a, body, c->a + k), bodies_load(&b, body, c->b + k);
-    bundle_velocity(c, e, k, &a, &b, u);
+    struct twist ma, mb;
+    bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
+    bundle_velocity(c, e, k, &ma, &mb, u);
 }
 
 /* Reactions changed by dr move these bodies. */
 ALWAYS_INLINE void body_push(struct body *body, const struct bundle *c, int k, const vd dr[3])
 {
     struct bodies a, b;
-    bodies_load(&a, body, c->a + k), bodies_load(&b, body, c->b + k);
+    struct twist ma, mb;
+    bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
     bundle_push(c, k, dr, &a, &b);
-    bodies_store(&a), bodies_store(&b);
 }
 
 #endif

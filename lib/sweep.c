@@ -67,8 +67,9 @@ ALWAYS_INLINE void begin(const struct problem *p, const struct bundle *c, int k,
         blocks_gather(p, c, k, s->v);
         return;
     }
-    bodies_load(&s->a, p->body, c->a + k), bodies_load(&s->b, p->body, c->b + k);
-    bundle_velocity(c, bundle_rebound(p, c), k, &s->a, &s->b, s->v);
+    struct twist a, b;
+    bodies_load(&s->a, p->body, c->a + k, &a), bodies_load(&s->b, p->body, c->b + k, &b);
+    bundle_velocity(c, bundle_rebound(p, c), k, &a, &b, s->v);
 }
 
 /* The local problem; W[9] is room for what l->W shows. */
@@ -113,9 +114,7 @@ ALWAYS_INLINE void finish(struct problem *p, struct bundle *c, int k, double (*b
     if (given_by_W) {
         blocks_scatter(p, c, k);
     } else {
-        struct bodies a = s->a, b = s->b;
-        bundle_push(c, k, dr, &a, &b);
-        bodies_store(&a), bodies_store(&b);
+        bundle_push(c, k, dr, &s->a, &s->b);
     }
     t->change = larger(absolute(dr[0]) * l->w[0], t->change);
     t->newton += pick(lt(splat(0), l->rho), l->steps, splat(0));
