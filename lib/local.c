@@ -35,6 +35,7 @@ const struct method *method_find(const char *name)
 void method_solve(const struct method *m, struct local *l, const struct local_opt *opt)
 {
     local_velocity(l, l->r, l->v);
+    l->relax = 1;
     switch (m->id) {
 #define CASE(name)                                                                                 \
     case METHOD_##name:                                                                            \

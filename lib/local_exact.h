@@ -46,13 +46,13 @@ ALWAYS_INLINE vm solve3(vd M[3][3], const vd y[3], vd x[3])
     return lt(splat(0), absolute(det));
 }
 
-/* What stops the contact, onto the disc */
+/* What stops the contact, or omega times as much, onto the disc */
 ALWAYS_INLINE vm exact_balls(const struct local *l, vd r[3])
 {
     vd tau[3];
-    for (int i = 0; i < 3; i++) tau[i] = l->r[i] - l->v[i] * l->iw[i];
+    for (int i = 0; i < 3; i++) tau[i] = l->r[i] - l->v[i] * (l->relax * l->iw[i]);
     disc_project(l->mu, tau, r);
-    return is_finite(tau[0] + tau[1] + tau[2]);
+    return lt(splat(0), l->w[0]) & is_finite(tau[0] + tau[1] + tau[2]);
 }
 
 /* ---- a general W ---- */
@@ -223,8 +223,10 @@ ALWAYS_INLINE void exact_solve(struct local *l, const struct local_opt *opt)
     if (any(~found)) {
         struct local step = *l;
         sbp_solve(&step, opt);
-        vm sound = is_finite(step.r[0] + step.r[1] + step.r[2]);
-        for (int k = 0; k < 3; k++) r[k] = pick(found, r[k], pick(sound, step.r[k], splat(0)));
+        vm open = ~lt(l->b[0], splat(0)), sound = is_finite(step.r[0] + step.r[1] + step.r[2]);
+        for (int k = 0; k < 3; k++)
+            r[k] = pick(found, r[k], pick(sound & ~open, step.r[k], splat(0)));
+        found |= open;
     }
     local_begin(l);
     l->gave_up = ~found;

@@ -22,7 +22,7 @@ extern const struct method *const methods[];
 extern const struct method local_sbp, local_sal, local_ebp, local_eal, local_exact;
 const struct method *method_find(const char *name); /* NULL when there is none */
 
-/* One contact alone, in one lane; its v follows from r and b. */
+/* One contact alone, in one lane, not relaxed; its v follows from r and b. */
 #if LANES == 1
 void method_solve(const struct method *, struct local *, const struct local_opt *);
 

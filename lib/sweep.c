@@ -88,13 +88,21 @@ ALWAYS_INLINE void pose(const struct problem *p, const struct bundle *c, int k, 
     if (given_by_W) local_velocity(l, l->r, l->v);
 }
 
-/* Over-relaxation: past the new reaction, and back onto the cone. */
-ALWAYS_INLINE void relax(struct local *l, const struct bundle *c, int k, double omega)
+/*
+ * The solution, over-relaxed. Exact between balls goes past what stops the contact, and then onto the
+ * disc [projected SOR], which costs nothing; others past the new reaction, and back onto the cone.
+ */
+ALWAYS_INLINE void relaxed(struct local *l, const struct bundle *c, int k, method_text *solve,
+                           bool full, const struct sweep_opt *o)
 {
+    bool within = solve == exact_solve && !full;
+    l->relax = within ? o->relax : 1;
+    solve(l, &o->local);
+    if (within || o->relax == 1) return;
     vd tau[3];
     for (int i = 0; i < 3; i++) {
         vd was = vload(c->r[i] + k);
-        tau[i] = was + omega * (l->r[i] - was);
+        tau[i] = was + o->relax * (l->r[i] - was);
     }
     cone_project(l->mu, tau, l->r);
     local_velocity(l, l->r, l->u);
@@ -155,8 +163,7 @@ ALWAYS_INLINE void visit(struct problem *p, int64_t first, int64_t end, const st
             struct local l;
             vd W[9];
             pose(p, c, k, given_by_W, full, &s[j], W, &l);
-            solve(&l, &o->local);
-            if (o->relax != 1) relax(&l, c, k, o->relax);
+            relaxed(&l, c, k, solve, full, o);
             if (k + LANES < BUNDLE)
                 begin(p, c, k + LANES, given_by_W, &s[1 - j]);
             else if (i + 1 < end)

@@ -228,8 +228,8 @@ int main(void)
         int steps;
     } scene[] = { { "no contact", 3, 4, -1, 0, 0 },
                   { "one ball", 3, 1, -1, 0, 400 },
-                  { "4 balls that rebound", 3, 4, -1, 0.3, 700 },
-                  { "100 balls", 3, 100, -1, 0, 516 },
+                  { "4 balls that rebound", 3, 4, -1, 0.3, 680 },
+                  { "100 balls", 3, 100, -1, 0, 508 },
                   { "100 balls without friction", 3, 100, 0, 0, 500 },
                   { "100 discs", 2, 100, -1, 0, 500 },
                   { "500 balls", 3, 500, -1, 0, 500 } };
