@@ -1,8 +1,8 @@
 # The paper's table N, ours beside the paper's, as TSV. Slurped: the runs. --arg table N;
 # --rawfile times; --slurpfile paper. The times come last, since they alone differ from run to run.
 
-($times / "\n" | map(select(. != "") / "\t" | { key: .[0], value: { once: .[1], median: .[2] } }) | from_entries) as $cpu
-| def seconds: $cpu[.run] | if $table == "1" or $table == "2" then .median else .once end | tonumber;
+($times / "\n" | map(select(. != "") / "\t" | { key: .[0], value: { once: .[1], least: .[2] } }) | from_entries) as $cpu
+| def seconds: $cpu[.run] | if $table == "1" or $table == "2" then .least else .once end | tonumber;
   def rank: { nsd: 0, paper: 1, plain: 1, line: 0 }[.settings] * 100 - (.alpha // "0" | tonumber)
       + { sbp: 10, sal: 20, ebp: 30, eal: 40, exact: 50 }[.method];
   def state: if .diverged then "diverged at step \(.steps)" elif .blew_up then "blew up"
