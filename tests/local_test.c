@@ -123,8 +123,6 @@ static void test_planar_formulas(const char *name, linearise *f, bool bipotentia
     ok(worst < 1e-12, "%s: sliding in the plane, A and B are the paper's as corrected", name);
 }
 
-/* ---- cone ----------------------------------------------------------------------------------- */
-
 /* Where balls slide the step is in closed form: that of the whole system, of W = diag(w_n, w_t, w_t). */
 static void test_slip(const char *name, linearise *f, struct newton_text text)
 {
@@ -150,6 +148,8 @@ static void test_slip(const char *name, linearise *f, struct newton_text text)
     ok(slid > 500 && worst < 1e-10,
        "%s: the step of balls that slide is that of their W, to %.1e of %d", name, worst, slid);
 }
+
+/* ---- cone ----------------------------------------------------------------------------------- */
 
 static void test_cone(void)
 {
