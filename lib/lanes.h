@@ -91,6 +91,17 @@ ALWAYS_INLINE bool any(vm m)
 #endif
 }
 
+ALWAYS_INLINE bool all(vm m)
+{
+#if LANES == 8
+    return m == 0xff;
+#elif defined __AVX__ && LANES == 4
+    return _mm256_movemask_pd((__m256d)m) == 15;
+#else
+    return !any(~m);
+#endif
+}
+
 /* m ? a : b */
 ALWAYS_INLINE vd pick(vm m, vd a, vd b)
 {

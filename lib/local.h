@@ -31,12 +31,11 @@ struct local {
     vd v[3];     /* m/s: with the last sweep's, W r + b */
     vd mu;
     vd rho;         /* kg: step of the projection */
-    vd r[3];        /* N s; in: the last sweep's, out: this one's */
-    vd u[3];        /* m/s; out: W r + b, as the method believes it */
+    vd r[3];        /* N s; in: the last sweep's, out: this one's, and u follows: W r + b */
     double relax;   /* in: omega of exact where W is NULL */
     vd steps;       /* out: Newton steps taken, 0 where there is none */
     vm safeguarded; /* out: the Newton did not end; the exact solution stands in */
-    vm gave_up;     /* out: (u, r) is not on the law; r is in the cone all the same */
+    vm gave_up;     /* out: r is not on the law; r is in the cone all the same */
 };
 
 struct local_opt {

@@ -220,18 +220,16 @@ ALWAYS_INLINE void exact_solve(struct local *l, const struct local_opt *opt)
 {
     vd r[3];
     vm found = l->W ? exact_general(l, r) : exact_balls(l, r);
-    if (any(~found)) {
+    local_begin(l);
+    if (!all(found)) {
         struct local step = *l;
         sbp_solve(&step, opt);
         vm open = ~lt(l->b[0], splat(0)), sound = is_finite(step.r[0] + step.r[1] + step.r[2]);
         for (int k = 0; k < 3; k++)
             r[k] = pick(found, r[k], pick(sound & ~open, step.r[k], splat(0)));
-        found |= open;
+        l->gave_up = ~(found | open);
     }
-    local_begin(l);
-    l->gave_up = ~found;
     for (int k = 0; k < 3; k++) l->r[k] = r[k];
-    local_velocity(l, l->r, l->u);
 }
 
 #endif

@@ -193,7 +193,6 @@ ALWAYS_INLINE void newton_solve(struct local *l, const struct local_opt *opt,
         for (int i = 0; i < 3; i++) x.p[i] = pick(ended, x.p[i], stand_in.r[i]);
     }
     for (int i = 0; i < 3; i++) l->r[i] = x.p[i];
-    local_velocity(l, l->r, l->u);
 }
 
 /* Z, A, B and the branch at (r, v) [ebp_linearise, eal_linearise]: without contact A = I, sticking 0 */

@@ -15,8 +15,7 @@ ALWAYS_INLINE void sal_solve(struct local *l, const struct local_opt *opt)
     (void)opt;
     vd tau[3];
     local_begin(l);
-    for (int i = 0; i < 3; i++) l->u[i] = l->v[i];
-    disc_predict(l->rho, l->r, l->u, tau);
+    disc_predict(l->rho, l->r, l->v, tau);
     disc_project(l->mu, tau, l->r);
 }
 

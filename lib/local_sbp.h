@@ -16,8 +16,7 @@ ALWAYS_INLINE void sbp_solve(struct local *l, const struct local_opt *opt)
     (void)opt;
     vd tau[3];
     local_begin(l);
-    for (int i = 0; i < 3; i++) l->u[i] = l->v[i];
-    cone_predict(l->mu, l->rho, l->r, l->u, tau);
+    cone_predict(l->mu, l->rho, l->r, l->v, tau);
     cone_project(l->mu, tau, l->r);
 }
 

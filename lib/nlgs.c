@@ -10,7 +10,8 @@
 enum {
     CHECK_FIRST = 40, /* sweeps that are all judged */
     CHECK_EVERY = 25,
-    FORESIGHT = 4,     /* times less change than that of the sweep before is not expected */
+    FORESIGHT = 4,     /* times less change than that of the sweep before is not expected, */
+    NEAR = 1000,       /* or so many times, where it costs little to be surer */
     PARALLEL_FROM = 64 /* bundles of a group worth a second thread */
 };
 
@@ -77,8 +78,7 @@ static double sweep(struct solve *s, double omega, int32_t unjudged, bool keep)
 /*
  * The criterion is evaluated after each of a solve's first 40 sweeps, when the largest change of a
  * sweep, gathered on the way, says that it may be met, every 25 sweeps, and at the end. What a sweep
- * believes of u is only wanted then: where rows are far, those that will not be judged do not write
- * it down, for memory's sake.
+ * believes of u is only wanted then: those that will hardly be judged do not write it down.
  */
 static int judged_sweep(struct solve *s, double omega, int32_t unjudged, bool last, struct watch *w)
 {
@@ -86,8 +86,8 @@ static int judged_sweep(struct solve *s, double omega, int32_t unjudged, bool la
     int32_t n = s->rep->sweeps + unjudged + 1;
     bool sure = s->o->history || s->o->every_sweep || n <= w->all || n - w->judged >= CHECK_EVERY ||
                 n >= s->o->max_sweeps || last;
-    bool keep = sure || s->p->bundles < SWEEP_FAR || w->change <= FORESIGHT * w->due;
-    double change = w->change = sweep(s, omega, unjudged, keep);
+    bool keep = sure || w->change <= (s->p->bundles < SWEEP_FAR ? NEAR : FORESIGHT) * w->due;
+    double change = w->change = sweep(s, omega, unjudged, keep && s->believes);
     w->looked = false;
     if (solve_history(s)) return -1;
     if (!sure && !(keep && change <= w->due)) return 0;
