@@ -73,7 +73,7 @@ int assembly_init(struct assembly *A, const struct problem *p, struct why *why)
     for (int64_t i = 0; i < p->rows; i++)
         for (int s = 0; s < 2; s++) {
             const struct bundle *row = row_bundle(p, i);
-            int64_t body = (s ? row->b : row->a)[row_lane(i)];
+            int64_t body = body_row((s ? row->b : row->a)[row_lane(i)]);
             if (body >= A->bodies) A->bodies = body + 1;
         }
     A->row = malloc((n + 1) * sizeof *A->row);
@@ -85,10 +85,11 @@ int assembly_init(struct assembly *A, const struct problem *p, struct why *why)
     for (int64_t i = 0; good && i < p->rows; i++) {
         int64_t c = p->contact[i];
         if (c < 0) continue;
-        int32_t a = row_bundle(p, i)->a[row_lane(i)], b = row_bundle(p, i)->b[row_lane(i)];
+        int64_t a = body_row(row_bundle(p, i)->a[row_lane(i)]),
+                b = body_row(row_bundle(p, i)->b[row_lane(i)]);
         A->row[c] = i;
-        A->end[2 * c] = p->body[a].im > 0 ? a : -1;
-        A->end[2 * c + 1] = p->body[b].im > 0 ? b : -1;
+        A->end[2 * c] = p->body[a].im > 0 ? (int32_t)a : -1;
+        A->end[2 * c + 1] = p->body[b].im > 0 ? (int32_t)b : -1;
     }
     good = good && lists_init(&A->of, A->bodies, 2 * p->n, A->end) && assembly_vectors(A);
     return good ? 0 : short_of_memory(why);

@@ -27,7 +27,7 @@ struct bundle {
     double iw[2][BUNDLE]; /* kg: 1/w */
     double mu[BUNDLE], rho[BUNDLE]; /* -, kg */
     double r[3][BUNDLE];            /* N s */
-    int32_t a[BUNDLE], b[BUNDLE];   /* rows of body[]; of a W a is the contact */
+    int32_t a[BUNDLE], b[BUNDLE];   /* places of bodies; of a W a is the contact */
 };
 
 /* Of a bundle some of whose contacts rebound: u~ = s u + offset */
@@ -41,9 +41,25 @@ struct body {
     double im, ii;     /* 1/kg, 1/(kg m^2); 0: immovable */
 };
 
-/* LANES bodies side by side: where they are kept, */
+/*
+ * The place of body[row], as bundles have it: a multiple of 8, the doubles of a body, so that an
+ * instruction finds it without multiplying.
+ */
+static inline int32_t body_place(int64_t row)
+{
+    return (int32_t)(8 * row);
+}
+static inline int64_t body_row(int32_t place)
+{
+    return place / 8;
+}
+ALWAYS_INLINE double *body_at(struct body *body, int32_t place)
+{
+    return body->v + place;
+}
+
+/* LANES bodies side by side: what they are, */
 struct bodies {
-    struct body *at[LANES];
     vd im, ii;
 };
 /* and how they move, or how that changes */
@@ -51,28 +67,26 @@ struct twist {
     vd v[3], w[3];
 };
 
-ALWAYS_INLINE void bodies_load(struct bodies *m, struct body *body, const int32_t *row,
+ALWAYS_INLINE void bodies_load(struct bodies *m, struct body *body, const int32_t *place,
                                struct twist *moves)
 {
     vd x[8];
-    for (int i = 0; i < LANES; i++) m->at[i] = body + row[i];
     for (int k = 0; k < 8; k += LANES) {
-        for (int i = 0; i < LANES; i++) x[k + i] = vload(m->at[i]->v + k);
+        for (int i = 0; i < LANES; i++) x[k + i] = vload(body_at(body, place[i]) + k);
         transpose(x + k);
     }
     for (int k = 0; k < 3; k++) moves->v[k] = x[k], moves->w[k] = x[3 + k];
     m->im = x[6], m->ii = x[7];
 }
 
-ALWAYS_INLINE void bodies_add(const struct bodies *m, const struct twist *d)
+ALWAYS_INLINE void bodies_add(struct body *body, const int32_t *place, const struct twist *d)
 {
     vd x[8] = { d->v[0], d->v[1], d->v[2], d->w[0], d->w[1], d->w[2], splat(0), splat(0) };
+    double *at[LANES];
+    for (int i = 0; i < LANES; i++) at[i] = body_at(body, place[i]);
     for (int k = 0; k < 8; k += LANES) {
         transpose(x + k);
-        for (int i = 0; i < LANES; i++) {
-            double *to = m->at[i]->v + k;
-            vstore(to, vload(to) + x[k + i]);
-        }
+        for (int i = 0; i < LANES; i++) vstore(at[i] + k, vload(at[i] + k) + x[k + i]);
     }
 }
 
@@ -83,11 +97,11 @@ ALWAYS_INLINE void bundle_frame(const struct bundle *c, int k, vd n[3], vd t1[3]
     for (int i = 0, j = 1, l = 2; i < 3; j = l, l = i++) t2[i] = n[j] * t1[l] - n[l] * t1[j];
 }
 
-/* u~ as the bodies move; e NULL: u */
+/* u~ as the bodies move, and t2, which bundle_push() wants again; e NULL: u */
 ALWAYS_INLINE void bundle_velocity(const struct bundle *c, const struct rebound *e, int k,
-                                   const struct twist *a, const struct twist *b, vd u[3])
+                                   const struct twist *a, const struct twist *b, vd u[3], vd t2[3])
 {
-    vd n[3], t1[3], t2[3], dv[3], m[3], la = vload(c->la + k), lb = vload(c->lb + k);
+    vd n[3], t1[3], dv[3], m[3], la = vload(c->la + k), lb = vload(c->lb + k);
     bundle_frame(c, k, n, t1, t2);
     for (int i = 0; i < 3; i++) {
         dv[i] = b->v[i] - a->v[i], m[i] = la * a->w[i] + lb * b->w[i];
@@ -99,19 +113,18 @@ ALWAYS_INLINE void bundle_velocity(const struct bundle *c, const struct rebound 
 }
 
 /* Reactions changed by dr (n, t1, t2) move the bodies. */
-ALWAYS_INLINE void bundle_push(const struct bundle *c, int k, const vd dr[3],
-                               const struct bodies *a, const struct bodies *b)
+ALWAYS_INLINE void bundle_push(const struct bundle *c, int k, const vd t2[3], const vd dr[3],
+                               struct body *body, const struct bodies *a, const struct bodies *b)
 {
     vd turn_a = a->ii * vload(c->la + k), turn_b = b->ii * vload(c->lb + k), im = -a->im;
-    vd n[3], t1[3], t2[3];
     struct twist da, db;
-    bundle_frame(c, k, n, t1, t2);
     for (int i = 0; i < 3; i++) { // f on b; m = -n x dr turns both
-        vd f = dr[0] * n[i] + dr[1] * t1[i] + dr[2] * t2[i], m = dr[2] * t1[i] - dr[1] * t2[i];
+        vd n = vload(c->n[i] + k), t1 = vload(c->t1[i] + k);
+        vd f = dr[0] * n + dr[1] * t1 + dr[2] * t2[i], m = dr[2] * t1 - dr[1] * t2[i];
         da.v[i] = im * f, da.w[i] = turn_a * m;
         db.v[i] = b->im * f, db.w[i] = turn_b * m;
     }
-    bodies_add(a, &da), bodies_add(b, &db);
+    bodies_add(body, c->a + k, &da), bodies_add(body, c->b + k, &db);
 }
 
 #endif

@@ -61,7 +61,7 @@ static int64_t bodies(const struct problem *p)
     int64_t most = 0;
     for (int64_t i = 0; i < p->rows; i++) {
         const struct bundle *c = row_bundle(p, i);
-        int64_t a = c->a[row_lane(i)], b = c->b[row_lane(i)];
+        int64_t a = body_row(c->a[row_lane(i)]), b = body_row(c->b[row_lane(i)]);
         most = a > most ? a : most, most = b > most ? b : most;
     }
     return most + 1;

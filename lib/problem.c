@@ -106,16 +106,16 @@ static void movers(struct problem *p, const struct packing *pack, const int32_t 
     }
 }
 
-/* Body i (wall w: -1-w) of a contact as a row of body[]: itself, or a copy when it does not move. */
+/* The place of body i (wall w: -1-w) of a contact: its own, or a copy's when it does not move. */
 static int32_t seat(struct problem *p, const struct packing *pack, const int32_t *row, int32_t i,
                     int64_t *next)
 {
-    if (i >= 0 && pack->mass[i] > 0) return row[i];
+    if (i >= 0 && pack->mass[i] > 0) return body_place(row[i]);
     struct body *copy = &p->body[*next];
     vec3 v = i < 0 ? pack->wall[-1 - i].v : pack->v[i];
     *copy = (struct body){ .v = { v.x, v.y, v.z } };
     if (i >= 0) *copy = p->body[row[i]];
-    return (int32_t)(*next)++;
+    return body_place((*next)++);
 }
 
 void problem_arms(const struct packing *p, const struct contact *c, double *la, double *lb)
@@ -136,7 +136,7 @@ static void row_init(struct problem *p, int64_t i, const struct packing *pack,
     for (int j = 0; j < 3; j++) r->n[j][k] = n[j], r->t1[j][k] = t1[j];
     r->mu[k] = c->mu;
     problem_arms(pack, c, &r->la[k], &r->lb[k]);
-    const struct body *a = &p->body[r->a[k]], *b = &p->body[r->b[k]];
+    const struct body *a = &p->body[body_row(r->a[k])], *b = &p->body[body_row(r->b[k])];
     double u[3], im = a->im + b->im;
     double it = im + r->la[k] * r->la[k] * a->ii + r->lb[k] * r->lb[k] * b->ii;
     body_velocity(p->body, r, NULL, k, u); // u^-
@@ -194,7 +194,7 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     for (int64_t i = 0; i < p->rows; i++) {
         struct bundle *r = row_bundle(p, i);
         int k = row_lane(i);
-        r->a[k] = r->b[k] = (int32_t)(nobody + (i >= other));
+        r->a[k] = r->b[k] = body_place(nobody + (i >= other));
         if (p->contact[i] < 0) continue;
         const struct contact *c = &s->c[p->contact[i]];
         r->a[k] = seat(p, pack, row, c->a, &next), r->b[k] = seat(p, pack, row, c->b, &next);

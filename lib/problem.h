@@ -92,8 +92,9 @@ ALWAYS_INLINE void body_velocity(struct body *body, const struct bundle *c, cons
 {
     struct bodies a, b;
     struct twist ma, mb;
+    vd t2[3];
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
-    bundle_velocity(c, e, k, &ma, &mb, u);
+    bundle_velocity(c, e, k, &ma, &mb, u, t2);
 }
 
 /* Reactions changed by dr move these bodies. */
@@ -101,8 +102,10 @@ ALWAYS_INLINE void body_push(struct body *body, const struct bundle *c, int k, c
 {
     struct bodies a, b;
     struct twist ma, mb;
+    vd n[3], t1[3], t2[3];
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
-    bundle_push(c, k, dr, &a, &b);
+    bundle_frame(c, k, n, t1, t2);
+    bundle_push(c, k, t2, dr, body, &a, &b);
 }
 
 #endif

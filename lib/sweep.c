@@ -57,7 +57,8 @@ struct count {
 /* What is known of LANES rows before they are solved */
 struct seat {
     struct bodies a, b;
-    vd v[3]; /* m/s: as r is; given by W: b_c */
+    vd t2[3]; /* of the frames */
+    vd v[3];  /* m/s: as r is; given by W: b_c */
 };
 
 ALWAYS_INLINE void begin(const struct problem *p, const struct bundle *c, int k, bool given_by_W,
@@ -69,7 +70,7 @@ ALWAYS_INLINE void begin(const struct problem *p, const struct bundle *c, int k,
     }
     struct twist a, b;
     bodies_load(&s->a, p->body, c->a + k, &a), bodies_load(&s->b, p->body, c->b + k, &b);
-    bundle_velocity(c, bundle_rebound(p, c), k, &a, &b, s->v);
+    bundle_velocity(c, bundle_rebound(p, c), k, &a, &b, s->v, s->t2);
 }
 
 /* The local problem; W[9] is room for what l->W shows. */
@@ -105,24 +106,20 @@ ALWAYS_INLINE void relaxed(struct local *l, const struct bundle *c, int k, metho
         tau[i] = was + o->relax * (l->r[i] - was);
     }
     cone_project(l->mu, tau, l->r);
-    local_velocity(l, l->r, l->u);
 }
 
-/* The solution into the rows, their bodies or W's reactions */
-ALWAYS_INLINE void finish(struct problem *p, struct bundle *c, int k, double (*belief)[BUNDLE],
-                          bool given_by_W, const struct seat *s, const struct local *l,
-                          struct count *t)
+/* The solution into the rows; dr: by how much it changes them */
+ALWAYS_INLINE void take(struct bundle *c, int k, double (*belief)[BUNDLE], const struct local *l,
+                        vd dr[3], struct count *t)
 {
-    vd dr[3];
     for (int i = 0; i < 3; i++) {
         dr[i] = l->r[i] - vload(c->r[i] + k);
         vstore(c->r[i] + k, l->r[i]);
     }
-    for (int i = 0; i < 3 && belief; i++) vstore(belief[i] + k, l->u[i]);
-    if (given_by_W) {
-        blocks_scatter(p, c, k);
-    } else {
-        bundle_push(c, k, dr, &s->a, &s->b);
+    if (__builtin_expect(belief != NULL, 0)) {
+        vd u[3];
+        local_velocity(l, l->r, u);
+        for (int i = 0; i < 3; i++) vstore(belief[i] + k, u[i]);
     }
     t->change = larger(absolute(dr[0]) * l->w[0], t->change);
     t->newton += pick(lt(splat(0), l->rho), l->steps, splat(0));
@@ -132,43 +129,60 @@ ALWAYS_INLINE void finish(struct problem *p, struct bundle *c, int k, double (*b
     }
 }
 
+/* and into their bodies, or W's reactions */
+ALWAYS_INLINE void pass_on(struct problem *p, const struct bundle *c, int k, bool given_by_W,
+                           const struct seat *s, const vd dr[3])
+{
+    if (given_by_W)
+        blocks_scatter(p, c, k);
+    else
+        bundle_push(c, k, s->t2, dr, p->body, &s->a, &s->b);
+}
+
+ALWAYS_INLINE void fetch_bodies(const struct problem *p, const struct bundle *c)
+{
+    for (int k = 0; k < BUNDLE; k++) {
+        __builtin_prefetch(body_at(p->body, c->a[k]), 1);
+        __builtin_prefetch(body_at(p->body, c->b[k]), 1);
+    }
+}
+
 /* What will be wanted while bundle i is at work */
 ALWAYS_INLINE void fetch(const struct problem *p, int64_t i)
 {
     if (p->bundles < SWEEP_FAR || i + ROWS_AHEAD >= p->bundles) return;
     const char *rows = (const char *)&p->bundle[i + ROWS_AHEAD];
     for (size_t k = 0; k < sizeof *p->bundle; k += 64) __builtin_prefetch(rows + k, 1);
-    const struct bundle *c = &p->bundle[i + BODIES_AHEAD];
-    for (int k = 0; k < BUNDLE && p->body; k++)
-        __builtin_prefetch(&p->body[c->a[k]], 1), __builtin_prefetch(&p->body[c->b[k]], 1);
+    if (p->body) fetch_bodies(p, &p->bundle[i + BODIES_AHEAD]);
 }
 
 /*
  * Bundles first .. end-1, of one group. The bodies of the next rows are fetched while the roots and
- * quotients of these are on their way: that takes a quarter off the time. Their seats change with
- * every LANES rows, by numbers that the compiler knows where it can: another fifth.
+ * quotients of these are on their way: that takes a quarter off the time.
  */
 ALWAYS_INLINE void visit(struct problem *p, int64_t first, int64_t end, const struct sweep_opt *o,
                          method_text *solve, bool given_by_W, bool full, struct count *t)
 {
     if (first == end) return;
-    struct seat s[2];
-    begin(p, &p->bundle[first], 0, given_by_W, &s[0]);
+    struct seat s[2], *now = &s[0], *next = &s[1];
+    begin(p, &p->bundle[first], 0, given_by_W, now);
     for (int64_t i = first; i < end; i++) {
         struct bundle *c = &p->bundle[i];
         double(*belief)[BUNDLE] = o->keep ? p->u[i] : NULL;
         fetch(p, i);
         for (int k = 0; k < BUNDLE; k += LANES) {
-            int j = (LANES < BUNDLE ? k / LANES : (int)(i - first)) % 2;
             struct local l;
-            vd W[9];
-            pose(p, c, k, given_by_W, full, &s[j], W, &l);
+            vd W[9], dr[3];
+            pose(p, c, k, given_by_W, full, now, W, &l);
             relaxed(&l, c, k, solve, full, o);
+            take(c, k, belief, &l, dr, t);
             if (k + LANES < BUNDLE)
-                begin(p, c, k + LANES, given_by_W, &s[1 - j]);
+                begin(p, c, k + LANES, given_by_W, next);
             else if (i + 1 < end)
-                begin(p, c + 1, 0, given_by_W, &s[1 - j]);
-            finish(p, c, k, belief, given_by_W, &s[j], &l, t);
+                begin(p, c + 1, 0, given_by_W, next);
+            pass_on(p, c, k, given_by_W, now, dr);
+            struct seat *was = now;
+            now = next, next = was;
         }
     }
 }
@@ -249,10 +263,7 @@ ALWAYS_INLINE void set_out(const struct problem *p, const struct leg *leg, int m
     if (!leg->done) return;
     halves_wait(leg->after, atomic_load_explicit(leg->done, memory_order_relaxed) + me);
     for (int64_t i = p->group[leg->first]; i < p->group[leg->end]; i++)
-        for (int k = 0; k < BUNDLE; k++) {
-            __builtin_prefetch(&p->body[p->bundle[i].a[k]], 1);
-            __builtin_prefetch(&p->body[p->bundle[i].b[k]], 1);
-        }
+        fetch_bodies(p, &p->bundle[i]);
 }
 
 /* The count is this thread's alone: no need for an addition that waits for what was stored before. */

@@ -416,10 +416,11 @@ static void make(struct made *m, int d, int64_t n)
         int k = row_lane(i);
         const double e[3] = { 0.5 + noise() / 2, 0.5 + noise() / 2 };
         m->contact[i] = (7 * i + 3) % n;
-        c->b[k] = 4 + (int32_t)(4 * (1 + noise()));
-        do c->a[k] = (int32_t)(BODIES * (1 + noise()) / 2);
-        while (c->a[k] == c->b[k] || c->a[k] == 3);
-        if (i == 5) c->a[k] = 0, c->b[k] = 1;
+        int a, b = 4 + (int)(4 * (1 + noise()));
+        do a = (int)(BODIES * (1 + noise()) / 2);
+        while (a == b || a == 3);
+        if (i == 5) a = 0, b = 1;
+        c->a[k] = body_place(a), c->b[k] = body_place(b);
         make_frame(d, c, k);
         c->la[k] = noise(), c->lb[k] = noise(), c->mu[k] = fabs(noise());
         for (int j = 0; j < 2; j++) row_rebound(&m->p, i)->s[j][k] = 1 / (1 + e[j]);
