@@ -45,6 +45,7 @@ struct body {
  * The place of body[row], as bundles have it: a multiple of 8, the doubles of a body, so that an
  * instruction finds it without multiplying.
  */
+enum { BODIES_MOST = INT32_MAX / 8 };
 static inline int32_t body_place(int64_t row)
 {
     return (int32_t)(8 * row);
@@ -55,7 +56,7 @@ static inline int64_t body_row(int32_t place)
 }
 ALWAYS_INLINE double *body_at(struct body *body, int32_t place)
 {
-    return body->v + place;
+    return (double *)body + place;
 }
 
 /* LANES bodies side by side: what they are, */
