@@ -82,7 +82,7 @@ for g in "${solvers[@]}"; do
 done
 for mu in 0 1e-9 2; do
     jq ".mu = $mu | .bodies[0].count = 60" scenes/paper/example3.json | nsd-gen - |
-        nsd-step -m exact --relax 1.5 -n 700 --every 700 --eps 1e-6 2>/dev/null | nsd-cat --last |
+        nsd-step -m exact --relax 1.5 -n 700 --every 700 --eps 1e-6 --max-sweeps 200 2>/dev/null | nsd-cat --last |
         nsd-detect >"$tmp/mu.h5"
     for g in auto ipm prox; do
         status 0 "--global $g, mu = $mu" nsd-solve -e --global "$g" --eps 1e-11 "$tmp/mu.h5"

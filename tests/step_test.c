@@ -179,7 +179,7 @@ static void test_detection(void)
 /* The 500 balls when most have settled, and their contacts with reactions. */
 static void settled(struct packing *p, struct contacts *s, int dim, int steps)
 {
-    struct step_opt o = options(&local_exact, 1e-9, 200);
+    struct step_opt o = options(&local_exact, 1e-9, 50);
     o.warm = true, o.solve.relax = 1.4;
     paper(p, dim, 500);
     run(p, s, &o, steps);
@@ -354,7 +354,7 @@ static void test_threads(const struct packing *start)
             struct packing p;
             struct contacts s = { 0 };
             struct report rep = { 0 };
-            struct step_opt o = options(&local_exact, 1e-6, 20000);
+            struct step_opt o = options(&local_exact, 1e-5, 20000);
             o.order = (enum order)order;
             o.solve.threads = k < 3 ? 1 << k : 1;
             o.solve.every_sweep = k == 3;
@@ -540,7 +540,7 @@ int main(void)
     for (int dim = 2; dim <= 3; dim++) {
         struct packing p;
         struct contacts s = { 0 };
-        struct step_opt o = options(&local_exact, 1e-10, 20000);
+        struct step_opt o = options(&local_exact, 1e-10, 1000);
         o.warm = true;
         paper(&p, dim, 20);
         run(&p, &s, &o, 1200);
