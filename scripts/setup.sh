@@ -6,8 +6,8 @@ set -euo pipefail
 run=(build-essential pkg-config libhdf5-dev hdf5-tools libgsl-dev libjansson-dev zlib1g-dev libpng-dev
     libsuitesparse-dev jq gnuplot-nox)
 paper=("${run[@]}" pandoc)
-check=("${paper[@]}" perl python3-h5py mandoc shellcheck cppcheck clang clang-tidy clang-format
-    libfclib-dev)
+check=("${paper[@]}" perl python3-h5py mandoc shellcheck cppcheck clang libomp-dev libclang-rt-dev
+    clang-tidy clang-format libfclib-dev)
 
 case "${1:-run}" in
 run) packages=("${run[@]}") ;;
