@@ -9,6 +9,7 @@
 #include "ipm.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum {
     CHUNK = 300,        /* sweeps between two looks, at least; else half of all so far; */
@@ -16,6 +17,8 @@ enum {
     STEPS_TO_KNOW = 15, /* factorisations that sweeps must have cost before they are given up; */
     STEPS_IF_FAR = 5,   /* this many while the criterion is FAR times eps, */
     SURE = 3,           /* or so many times less where there is no end to them */
+    TRIES = 8,          /* from other sweeps, where the first have led nowhere; and */
+    MORE = 3,           /* times what had been spent then is what all may cost */
     STEPS_TO_END = 25,  /* factorisations that the end will take, or so */
     LAST_RESORT = 20000 /* sweeps at most, for what that cost, when nothing else led there */
 };
@@ -34,6 +37,30 @@ static double to_go(const struct solve *s, double before, int32_t sweeps)
     return p > 0.1 ? s->rep->sweeps * (pow(s->value / s->o->eps, 1 / p) - 1) : INFINITY;
 }
 
+/* What a solve has cost so far, ns or so */
+static double effort(const struct newton *w, const struct report *rep)
+{
+    return (double)rep->newton * w->cost + rep->sweeps * w->sweep_cost;
+}
+
+/*
+ * From r = 0, by other sweeps each time: whether the path from their reactions arrives is chance, and
+ * one in five does where the first has not.
+ */
+static void again(struct newton *w, struct solve *s)
+{
+    static const double omegas[] = { 1.3, 1.5, 1 };
+    double most = MORE * effort(w, s->rep);
+    for (int k = 0; k < TRIES && effort(w, s->rep) < most; k++) {
+        if (solve_met(s) || solve_spent(s)) return;
+        memset(w->x, 0, (size_t)w->whole.size * sizeof *w->x);
+        newton_put(w, s);
+        nlgs_sweeps(s, newton_share(w) * (k + 2) / 2,
+                    s->o->relax > 0 ? s->o->relax : omegas[k % 3]);
+        ipm_from(w, s, k % 2 ? 1e-4 : 1e-3);
+    }
+}
+
 /*
  * Newton, and where that is too far away the interior point method; what it left is Newton's again.
  * Between balls Newton seldom arrives by itself, and the sweeps that it wants between its steps cost as
@@ -46,6 +73,7 @@ static void factorise(struct newton *w, struct solve *s)
     if (solve_met(s) || solve_spent(s)) return;
     newton_back(w, s);
     newton_polish(w, s, 1e-4, 6);
+    again(w, s);
 }
 
 static int run(struct solve *s)
@@ -82,7 +110,7 @@ static int run(struct solve *s)
             continue;
         factorise(&w, s);
         tried = true;
-        double spent = fmax(fmax(rep->newton * w.cost, rep->sweeps * w.sweep_cost), CHEAP);
+        double spent = fmax(effort(&w, rep), CHEAP);
         double rest = fmin(spent / w.sweep_cost, LAST_RESORT);
         if (end - rep->sweeps > rest) end = rep->sweeps + (int32_t)rest;
     }

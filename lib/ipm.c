@@ -13,6 +13,7 @@
 #define NEAR 2e-7 /* of the scaled natural map: near enough if nothing ends it sooner; */
 #define END  1e-9 /* what the path is followed to, which costs a few steps more */
 #define LATE 1e-4 /* the gap from which on smaller t would only lead about */
+#define COLD 0.1  /* the gap at which one begins from r = 0 */
 
 enum {
     SHORT_STEPS = 4, /* in a row, and it is stuck */
@@ -181,11 +182,10 @@ static void leave(struct ipm *m)
     central_end(&m->c);
 }
 
-static bool begin(struct ipm *m, struct newton *w, struct solve *s, bool cold, double folds)
+static bool begin(struct ipm *m, struct newton *w, struct solve *s, double gap, double folds)
 {
     *m = (struct ipm){ .full = s->p->full, .folds = folds };
-    newton_back(w, s);
-    if (!central_begin(&m->c, w, s, cold ? 0.1 : 1e-3, cold)) return false;
+    if (!central_begin(&m->c, w, s, gap, gap == COLD)) return false;
     m->kept = calloc((size_t)w->whole.W.n + 1, sizeof *m->kept);
     if (!m->kept) leave(m);
     return m->kept;
@@ -208,10 +208,11 @@ static bool arrived(struct newton *w, struct solve *s)
 }
 
 /* Long steps, and by arc length where they end */
-static void along(struct newton *w, struct solve *s, bool cold)
+static void along(struct newton *w, struct solve *s, double gap)
 {
+    bool cold = gap == COLD;
     struct ipm m;
-    if (!begin(&m, w, s, cold, cold ? INFINITY : LATE)) return;
+    if (!begin(&m, w, s, gap, cold ? INFINITY : LATE)) return;
     bool near = approach(&m, s, NEAR, cold ? APPROACH : NEARBY);
     if (near && !over(s)) newton_polish(w, s, 1e-7, 3);
     if (!arrived(w, s)) near = path_follow(&m.c, s, END, BENDS);
@@ -223,7 +224,7 @@ static void along(struct newton *w, struct solve *s, bool cold)
 static void about(struct newton *w, struct solve *s)
 {
     struct ipm m;
-    if (!begin(&m, w, s, true, 0)) return;
+    if (!begin(&m, w, s, COLD, 0)) return;
     bool more = true;
     for (int k = 0; more && k < ROUNDS && !over(s); k++) {
         more = approach(&m, s, NEAR / pow(10, k), k ? AGAIN : APPROACH);
@@ -232,9 +233,14 @@ static void about(struct newton *w, struct solve *s)
     leave(&m);
 }
 
+void ipm_from(struct newton *w, struct solve *s, double gap)
+{
+    if (!over(s)) along(w, s, gap);
+}
+
 void ipm_solve(struct newton *w, struct solve *s)
 {
-    if (!over(s)) along(w, s, false);
+    ipm_from(w, s, 1e-3);
     if (!over(s)) about(w, s);
-    if (!over(s)) along(w, s, true);
+    if (!over(s)) along(w, s, COLD);
 }

@@ -17,4 +17,7 @@
  */
 void ipm_solve(struct newton *w, struct solve *);
 
+/* The first of that alone: from the rows' reactions, moved into the cones as far as this gap */
+void ipm_from(struct newton *w, struct solve *, double gap);
+
 #endif

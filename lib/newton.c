@@ -53,6 +53,11 @@ int newton_init(struct newton *w, const struct problem *p)
     return 0;
 }
 
+int32_t newton_share(const struct newton *w)
+{
+    return (int32_t)fmin(fmax(w->cost / w->sweep_cost, 200), 2000);
+}
+
 void newton_get(struct newton *w, struct solve *s)
 {
     whole_get(&w->whole, s->p, w->x);
@@ -183,7 +188,7 @@ void newton_polish(struct newton *w, struct solve *s, double alpha, int patience
     size_t size = (size_t)w->whole.size * sizeof *w->x;
     double mark = s->value, least = s->value; // what is to be halved
     bool carefully = false;
-    int32_t share = (int32_t)fmin(fmax(w->cost / w->sweep_cost, 200), 2000);
+    int32_t share = newton_share(w);
     w->alpha = alpha;
     newton_get(w, s);
     for (int vain = 0, harms = 0; !solve_met(s) && !solve_spent(s) && vain < patience;) {

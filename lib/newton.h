@@ -36,6 +36,9 @@ struct newton {
 int newton_init(struct newton *, const struct problem *);
 void newton_free(struct newton *);
 
+/* Sweeps that cost as much as a Newton step, or so */
+int32_t newton_share(const struct newton *);
+
 /* The rows' reactions become x; x goes into the rows and is judged, and kept when it is the best. */
 void newton_get(struct newton *, struct solve *);
 void newton_put(struct newton *, struct solve *);
