@@ -45,9 +45,9 @@ static void assembly_velocity(const struct assembly *A, struct body *body, doubl
 static bool assembly_vectors(struct assembly *A)
 {
     const struct problem *p = A->p;
-    struct body *still = calloc((size_t)A->bodies + 1, sizeof *still);
+    struct body *still = calloc((size_t)p->bodies + 1, sizeof *still);
     if (!still) return false;
-    if (A->bodies) memcpy(A->free, p->body, (size_t)A->bodies * sizeof *still);
+    if (p->bodies) memcpy(A->free, p->body, (size_t)p->bodies * sizeof *still);
     for (int64_t i = 0; i < p->rows; i++) {
         double r[3], u[3];
         if (p->contact[i] < 0) continue;
@@ -55,7 +55,7 @@ static bool assembly_vectors(struct assembly *A)
         const double back[3] = { -r[0], -r[1], -r[2] };
         body_push(A->free, row_bundle(p, i), row_lane(i), back);
     }
-    for (int64_t i = 0; i < A->bodies; i++) {
+    for (int64_t i = 0; i < p->bodies; i++) {
         still[i] = A->free[i];
         if (still[i].im > 0) memset(still[i].v, 0, sizeof still[i].v);
         if (still[i].im > 0 && still[i].ii > 0) memset(still[i].w, 0, sizeof still[i].w);
@@ -70,17 +70,11 @@ int assembly_init(struct assembly *A, const struct problem *p, struct why *why)
 {
     *A = (struct assembly){ .p = p };
     size_t n = (size_t)p->n, nd = n * (size_t)p->d;
-    for (int64_t i = 0; i < p->rows; i++)
-        for (int s = 0; s < 2; s++) {
-            const struct bundle *row = row_bundle(p, i);
-            int64_t body = body_row((s ? row->b : row->a)[row_lane(i)]);
-            if (body >= A->bodies) A->bodies = body + 1;
-        }
     A->row = malloc((n + 1) * sizeof *A->row);
     A->end = calloc(2 * n + 1, sizeof *A->end);
     A->q = malloc((nd + 1) * sizeof *A->q);
     A->w = malloc((nd + 1) * sizeof *A->w);
-    A->free = calloc((size_t)A->bodies + 1, sizeof *A->free);
+    A->free = calloc((size_t)p->bodies + 1, sizeof *A->free);
     bool good = A->row && A->end && A->q && A->w && A->free;
     for (int64_t i = 0; good && i < p->rows; i++) {
         int64_t c = p->contact[i];
@@ -91,7 +85,7 @@ int assembly_init(struct assembly *A, const struct problem *p, struct why *why)
         A->end[2 * c] = p->body[a].im > 0 ? (int32_t)a : -1;
         A->end[2 * c + 1] = p->body[b].im > 0 ? (int32_t)b : -1;
     }
-    good = good && lists_init(&A->of, A->bodies, 2 * p->n, A->end) && assembly_vectors(A);
+    good = good && lists_init(&A->of, p->bodies, 2 * p->n, A->end) && assembly_vectors(A);
     return good ? 0 : short_of_memory(why);
 }
 
@@ -189,7 +183,7 @@ static void fill_M(const struct assembly *A, const int32_t *first, struct stored
 {
     int dofs = A->p->d == 2 ? 3 : 6;
     const int *dof = A->p->d == 2 ? dof_plane : dof_space;
-    for (int64_t i = 0; i < A->bodies; i++) {
+    for (int64_t i = 0; i < A->p->bodies; i++) {
         const struct body *b = &A->free[i];
         for (int k = 0; first[i] >= 0 && k < dofs; k++) {
             int32_t row = first[i] + k;
@@ -229,7 +223,7 @@ static void fill_H(const struct assembly *A, const int32_t *first, struct stored
 static int64_t assembly_unknowns(const struct assembly *A, int32_t *first)
 {
     int64_t nv = 0;
-    for (int64_t i = 0; i < A->bodies; i++) {
+    for (int64_t i = 0; i < A->p->bodies; i++) {
         bool in = A->of.first[i] < A->of.first[i + 1];
         first[i] = in ? (int32_t)nv : -1;
         if (in) nv += A->p->d == 2 ? 3 : 6;
@@ -242,10 +236,10 @@ int assembly_MH(const struct assembly *A, struct stored *M, struct stored *H, do
 {
     int64_t nd = A->p->n * A->p->d;
     *M = *H = (struct stored){ 0 }, *f = NULL;
-    if (A->bodies > INT32_MAX / 6 || nd > INT32_MAX / 12)
+    if (A->p->bodies > INT32_MAX / 6 || nd > INT32_MAX / 12)
         return why_set(why, EX_DATAERR,
                        "/fclib_global/H: too large for the 32-bit indices of FCLIB");
-    int32_t *first = malloc((size_t)(A->bodies + 1) * sizeof *first);
+    int32_t *first = malloc((size_t)(A->p->bodies + 1) * sizeof *first);
     if (!first) return short_of_memory(why);
     int64_t nv = assembly_unknowns(A, first);
     *f = malloc((size_t)(nv + 1) * sizeof **f);

@@ -21,12 +21,11 @@
 
 struct assembly {
     const struct problem *p;
-    int64_t bodies;    /* 1 + the highest that is mentioned */
     int64_t *row;      /* [n] contact c is row[c] of p */
     int32_t *end;      /* [2 n] bodies a and b of contact c at 2 c, 2 c + 1; -1: immovable */
     struct lists of;   /* the ends of each body */
     double *q, *w;     /* [n d] D u~ at v_free, and with the movable bodies at rest, m/s */
-    struct body *free; /* [bodies] at v_free */
+    struct body *free; /* [p->bodies] at v_free */
 };
 
 /* All return 0, EX_SOFTWARE, or EX_DATAERR where FCLIB's 32-bit indices do not reach. What they

@@ -55,18 +55,6 @@ static void leave(struct cg *a)
     free(a->room), free(a->status), free(a->body), free(a->q);
 }
 
-/* The bodies that the rows name, and one more */
-static int64_t bodies(const struct problem *p)
-{
-    int64_t most = 0;
-    for (int64_t i = 0; i < p->rows; i++) {
-        const struct bundle *c = row_bundle(p, i);
-        int64_t a = body_row(c->a[row_lane(i)]), b = body_row(c->b[row_lane(i)]);
-        most = a > most ? a : most, most = b > most ? b : most;
-    }
-    return most + 1;
-}
-
 static int begin(struct cg *a, struct solve *s)
 {
     struct problem *p = s->p;
@@ -77,7 +65,7 @@ static int begin(struct cg *a, struct solve *s)
     if (p->W)
         a->q = calloc(2 * size, sizeof *a->q), a->given = a->q + size;
     else
-        a->body = aligned_alloc(64, (size_t)bodies(p) * sizeof *a->body);
+        a->body = aligned_alloc(64, (size_t)p->bodies * sizeof *a->body);
     if (kept_init(&a->kept, p) || !a->room || !a->status || (p->W ? !a->q : !a->body)) {
         leave(a);
         return -1;
@@ -85,7 +73,7 @@ static int begin(struct cg *a, struct solve *s)
     a->r = a->room, a->w = a->r + 3 * rows, a->p = a->w + 3 * rows, a->Wp = a->p + 3 * rows;
     a->u = a->Wp + 3 * rows, a->scale = a->u + 3 * rows, a->bound = a->scale + rows;
     a->was = a->bound + rows, a->back = a->was + 3 * rows;
-    if (!p->W) memcpy(a->body, p->body, (size_t)bodies(p) * sizeof *a->body);
+    if (!p->W) memcpy(a->body, p->body, (size_t)p->bodies * sizeof *a->body);
     for (int64_t i = 0; i < p->rows; i++) {
         double u[3], lambda = bundle_lambda(row_bundle(p, i), row_lane(i));
         if (p->contact[i] < 0) continue;
@@ -102,7 +90,7 @@ static double apply(struct cg *a)
     struct problem *p = a->s->p;
     double sum = 0;
     if (!p->W)
-        for (int64_t i = 0, n = bodies(p); i < n; i++)
+        for (int64_t i = 0; i < p->bodies; i++)
             memset(a->body[i].v, 0, sizeof a->body[i].v),
                 memset(a->body[i].w, 0, sizeof a->body[i].w);
     for (int64_t i = 0; i < p->rows; i++) {

@@ -181,10 +181,10 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
                     double alpha, double factor, enum order order, struct why *why)
 {
     struct schedule plan = { 0 };
-    int64_t bodies = seats(pack, s);
-    *p = (struct problem){ .d = pack->dim, .n = s->n, .dt = pack->dt };
-    if (bodies > BODIES_MOST) return why_set(why, EX_DATAERR, "more than %d bodies", BODIES_MOST);
-    p->body = lines(bodies, sizeof *p->body);
+    *p = (struct problem){ .d = pack->dim, .n = s->n, .dt = pack->dt, .bodies = seats(pack, s) };
+    if (p->bodies > BODIES_MOST)
+        return why_set(why, EX_DATAERR, "more than %d bodies", BODIES_MOST);
+    p->body = lines(p->bodies, sizeof *p->body);
     bool room = p->body && !schedule_bodies(&plan, order, s, pack) && lay_out(p, &plan);
     schedule_free(&plan);
     if (room && rebounds(s)) room = (p->rebound = lines(p->bundles, sizeof *p->rebound)) != NULL;

@@ -34,8 +34,9 @@ struct problem {
     int64_t groups;          /* no two rows of a group share a body (a block of W): */
     int64_t *group;          /* [groups + 1] bundles group[g] .. group[g+1]-1 may be done at once */
     struct halves *halves;   /* NULL: the order knows none */
-    struct body *body;      /* [bodies, then copies of what does not move]: as the packing has them,
-                           by colours as the sweep first meets them; NULL: given by W */
+    int64_t bodies;          /* 0: given by W */
+    struct body *body;      /* [bodies] the packing's, by colours as the sweep first meets them, and
+                           copies of what does not move; NULL: given by W */
     struct delassus *W;     /* borrowed; NULL: given by bodies */
     struct delassus sorted; /* given by W: its rows as they are here */
     bool full;              /* given by W, and some W_cc is more than diag(w_n, w_t, w_t) */
