@@ -42,10 +42,12 @@ static struct terms terms(const struct sums *s, int64_t n, double v, double r)
     return t;
 }
 
-/* a / b, and 0 / 0 = 0: nothing is wrong with nothing; 1 when all of a is wrong */
+/* a / b, and 0 / 0 = 0: nothing is wrong with nothing; 1 when all of a is wrong. What is NaN, or too large
+   to be measured against, makes NaN. */
 static double ratio(double a, double b)
 {
-    return b > 0 ? a / b : a > 0 ? 1 : 0;
+    if (b == 0) return a > 0 ? 1 : a;
+    return isfinite(b) ? a / b : NAN;
 }
 
 /* The sums of one block */
