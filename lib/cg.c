@@ -274,11 +274,12 @@ static int run(struct solve *s)
     double fall = FALL, last = INFINITY;
     while (!over) {
         double start = follow(&a), now = start;
+        int k = 0;
         if (start > last / 2) fall = fmax(fall / 10, 1e-10); // the bounds want better answers
         last = start;
         turn(&a, 0);
-        for (int k = 0; k < INNER && now > fall * start && !over; k++) over = step(&a, &now);
-        if (!over && !(start > 0)) over = (follow(&a), look(&a, true), 1);
+        for (; k < INNER && now > fall * start && !over; k++) over = step(&a, &now);
+        if (!over && !k) over = (follow(&a), look(&a, true), 1);
     }
     kept_back(&a.kept, s);
     leave(&a);
