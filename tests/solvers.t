@@ -73,6 +73,27 @@ like "the document says so" "$(nsd-info "$tmp/b.h5" | jq -r '.. | .global? // em
 is "-m alone is Gauss-Seidel" "$(nsd-solve -m sbp "$tmp/contacts.h5" 2>/dev/null | nsd-info - |
     jq -r '.. | .global? // empty')" nlgs
 
+# An operator that no bodies have, and numbers whose squares are none
+spoilt() # NAME PYTHON: of the group g
+{
+    foreign "$tmp/heap.h5" "$tmp/heap.hdf5"
+    h5copy -i "$tmp/heap.hdf5" -o "$tmp/$1.h5" -s /fclib_local -d /fclib_local
+    /usr/bin/python3 -c "import h5py; g = h5py.File('$tmp/$1.h5', 'r+')['fclib_local']; $2"
+}
+if have_h5py; then
+    spoilt negative 'g["W/x"][...] *= -1'
+    spoilt hole 'g["W/x"][0] = -0.1'
+    spoilt huge 'g["vectors/q"][...] *= 1e200'
+    for g in "${solvers[@]}"; do
+        status 1 "--global $g, -W: NOT CONVERGED" timeout 30 nsd-solve -e --global "$g" --max-seconds 1 "$tmp/negative.h5"
+        ok "--global $g, -W: nsd-err reads it" nsd-err "$tmp/out"
+        status 1 "--global $g, one entry of W negative" timeout 30 nsd-solve -e --global "$g" --max-seconds 1 "$tmp/hole.h5"
+        ok "--global $g, huge q: ends" timeout 30 nsd-solve --global "$g" --max-seconds 1 "$tmp/huge.h5"
+    done
+else
+    skip "operators of no bodies" "no h5py"
+fi
+
 status 0 "--max-seconds 0.001 is no error" nsd-solve --max-seconds 0.001 "$tmp/contacts.h5"
 refuses 64 "--max-seconds 0" nsd-solve --max-seconds 0 "$tmp/contacts.h5"
 refuses 64 "--global nothing" nsd-solve --global nothing "$tmp/contacts.h5"
