@@ -27,17 +27,16 @@ builds() # directory compiler level
     make -j2 SAN= "B=$1" "CC=$2" "CFLAGS=$3" "$1/nsd-gen" "$1/nsd-step"
 }
 
+# The tools under test are gcc's at -O3, as a rule.
 steps "$(dirname "$(command -v nsd-step)")" >"$tmp/tested"
-for compiler in gcc clang; do
-    for level in -O1 -O3; do
-        name="$compiler $level"
-        if ! command -v "$compiler" >/dev/null; then
-            skip "$name" "there is no $compiler"
-            continue
-        fi
-        ok "$name builds the tools" builds "build/$compiler$level" "$compiler" "$level"
-        steps "build/$compiler$level" >"$tmp/steps"
-        ok "$name: the same bytes as the tools under test" cmp "$tmp/tested" "$tmp/steps"
-    done
+for name in "gcc -O1" "clang -O1" "clang -O3"; do
+    read -r compiler level <<<"$name"
+    if ! command -v "$compiler" >/dev/null; then
+        skip "$name" "there is no $compiler"
+        continue
+    fi
+    ok "$name builds the tools" builds "build/$compiler$level" "$compiler" "$level"
+    steps "build/$compiler$level" >"$tmp/steps"
+    ok "$name: the same bytes as the tools under test" cmp "$tmp/tested" "$tmp/steps"
 done
 done_testing

@@ -85,10 +85,10 @@ if have_h5py; then
     spoilt hole 'g["W/x"][0] = -0.1'
     spoilt huge 'g["vectors/q"][...] *= 1e200'
     for g in "${solvers[@]}"; do
-        status 1 "--global $g, -W: NOT CONVERGED" timeout 30 nsd-solve -e --global "$g" --max-seconds 1 "$tmp/negative.h5"
+        status 1 "--global $g, -W: NOT CONVERGED" timeout 30 nsd-solve -e --global "$g" --max-sweeps 2000 "$tmp/negative.h5"
         ok "--global $g, -W: nsd-err reads it" nsd-err "$tmp/out"
-        status 1 "--global $g, one entry of W negative" timeout 30 nsd-solve -e --global "$g" --max-seconds 1 "$tmp/hole.h5"
-        ok "--global $g, huge q: ends" timeout 30 nsd-solve --global "$g" --max-seconds 1 "$tmp/huge.h5"
+        status 1 "--global $g, one entry of W negative" timeout 30 nsd-solve -e --global "$g" --max-sweeps 2000 "$tmp/hole.h5"
+        ok "--global $g, huge q: ends" timeout 30 nsd-solve --global "$g" --max-sweeps 2000 "$tmp/huge.h5"
     done
 else
     skip "operators of no bodies" "no h5py"
