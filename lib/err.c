@@ -42,8 +42,8 @@ static struct terms terms(const struct sums *s, int64_t n, double v, double r)
     return t;
 }
 
-/* a / b, and 0 / 0 = 0: nothing is wrong with nothing; 1 when all of a is wrong. What is NaN, or too large
-   to be measured against, makes NaN. */
+/* a / b, and 0 / 0 = 0: nothing is wrong with nothing; 1 when all of a is wrong. What is NaN makes
+   NaN, and so does a b that is too large to measure against. */
 static double ratio(double a, double b)
 {
     if (b == 0) return a > 0 ? 1 : a;
