@@ -76,12 +76,18 @@ void anderson_free(struct anderson *a)
     free(a);
 }
 
+void anderson_anew(struct anderson *a)
+{
+    a->watch = (struct watch){ .due = INFINITY, .judged = a->s->rep->sweeps };
+    a->rest = SHORT, a->leap = true, a->best = INFINITY;
+    a->kept.value = INFINITY;
+}
+
 struct anderson *anderson_new(struct solve *s)
 {
     struct anderson *a = calloc(1, sizeof *a);
     if (!a) return NULL;
-    *a = (struct anderson){ .s = s, .watch = { .due = INFINITY, .judged = s->rep->sweeps } };
-    a->rest = SHORT, a->leap = true, a->best = INFINITY;
+    a->s = s;
     a->m.few = s->p->n > MANY;
     size_t size = (size_t)(s->p->rows * s->p->d),
            bytes = (size_t)(1 + 2 * memory(a)) * size * sizeof(double);
@@ -93,6 +99,7 @@ struct anderson *anderson_new(struct solve *s)
         anderson_free(a);
         return NULL;
     }
+    anderson_anew(a);
     memset(a->room, 0, bytes);
     double *next = a->m.f = a->room;
     for (int j = 0; j < memory(a); j++) a->m.dg[j] = next += size, a->m.df[j] = next += size;

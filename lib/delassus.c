@@ -67,11 +67,24 @@ static int64_t count_blocks(int64_t entries, const int64_t *order, const int32_t
     return blocks;
 }
 
-static double *copy(const double *x, int64_t n)
+/* With room for so many blocks; nothing but zeros. False when memory is short. */
+static bool make(struct delassus *W, int d, int64_t n, int64_t blocks)
 {
-    double *y = malloc((size_t)(n + 1) * sizeof *y);
-    if (y && n) memcpy(y, x, (size_t)n * sizeof *y);
-    return y;
+    *W = (struct delassus){ .d = d, .n = n };
+    W->first = calloc((size_t)(n + 1), sizeof *W->first);
+    W->col = malloc((size_t)(blocks + 1) * sizeof *W->col);
+    W->block = calloc((size_t)(blocks + 1) * (size_t)(d * d) + 4, sizeof *W->block);
+    W->diag = calloc((size_t)(n + 1) * 9, sizeof *W->diag);
+    W->q = calloc((size_t)(n * d + 1), sizeof *W->q);
+    W->mu = calloc((size_t)(n + 1), sizeof *W->mu);
+    W->r = calloc((size_t)(n * d + 1), sizeof *W->r);
+    return W->first && W->col && W->block && W->diag && W->q && W->mu && W->r;
+}
+
+static int no_memory(struct delassus *W, int64_t n, struct why *why)
+{
+    delassus_free(W);
+    return why_set(why, EX_SOFTWARE, "out of memory for a problem of %lld contacts", (long long)n);
 }
 
 int delassus_init(struct delassus *W, int d, int64_t n, int64_t entries, const int32_t *row,
@@ -87,26 +100,19 @@ int delassus_init(struct delassus *W, int d, int64_t n, int64_t entries, const i
         sort_by_block(entries, col, d, n, NULL, half, tally);
         sort_by_block(entries, row, d, n, half, order, tally);
         int64_t blocks = count_blocks(entries, order, row, col, d);
-        W->first = calloc((size_t)(n + 1), sizeof *W->first);
-        W->col = malloc((size_t)(blocks + 1) * sizeof *W->col);
-        W->block = calloc((size_t)(blocks + 1) * (size_t)(d * d) + 4, sizeof *W->block);
-        W->diag = calloc((size_t)(n + 1) * 9, sizeof *W->diag);
-        W->r = calloc((size_t)(n * d + 1), sizeof *W->r);
-        W->q = copy(q, n * d);
-        W->mu = copy(mu, n);
-        good = W->first && W->col && W->block && W->diag && W->r && W->q && W->mu;
+        good = make(W, d, n, blocks);
     }
     if (good) {
         const double none[9] = { 0 };
+        if (n)
+            memcpy(W->q, q, (size_t)(n * d) * sizeof *q), memcpy(W->mu, mu, (size_t)n * sizeof *mu);
         for (int64_t c = 0; c < n; c++) pad(d, none, W->diag + 9 * c);
         gather_blocks(W, entries, order, row, col, x);
     }
     free(tally);
     free(half);
     free(order);
-    if (good) return 0;
-    delassus_free(W);
-    return why_set(why, EX_SOFTWARE, "out of memory for a problem of %lld contacts", (long long)n);
+    return good ? 0 : no_memory(W, n, why);
 }
 
 void delassus_free(struct delassus *W)
@@ -143,6 +149,41 @@ int delassus_sort(struct delassus *to, const struct delassus *W, int64_t rows, c
         memcpy(to->block + dd * at, W->block + dd * W->first[c], n * (size_t)dd * sizeof(double));
         memcpy(to->q + d * i, W->q + d * c, (size_t)d * sizeof *to->q);
         to->first[i + 1] += (int64_t)n;
+    }
+    return 0;
+}
+
+/* y[d] -= B x, the block by columns */
+static void take(int d, const double *B, const double *x, double *y)
+{
+    for (int j = 0; j < d; j++)
+        for (int i = 0; i < d; i++) y[i] -= B[d * j + i] * x[j];
+}
+
+int delassus_part(struct delassus *to, const struct delassus *W, int64_t n, const int32_t *contact,
+                  const int32_t *of, const double *r, const double *v, struct why *why)
+{
+    int d = W->d, dd = d * d;
+    int64_t blocks = 0;
+    for (int64_t i = 0; i < n; i++) blocks += W->first[contact[i] + 1] - W->first[contact[i]];
+    if (!make(to, d, n, blocks)) return no_memory(to, n, why);
+    for (int64_t i = 0; i < n; i++) {
+        int64_t c = contact[i], at = to->first[i];
+        double *q = to->q + d * i;
+        memcpy(q, v + d * c, (size_t)d * sizeof *q);
+        memcpy(to->r + d * i, r + d * c, (size_t)d * sizeof *r);
+        memcpy(to->diag + 9 * i, W->diag + 9 * c, 9 * sizeof *W->diag);
+        to->mu[i] = W->mu[c];
+        for (int k = 0; k < d; k++)
+            for (int j = 0; j < d; j++) q[k] -= W->diag[9 * c + 3 * k + j] * r[d * c + j];
+        for (int64_t e = W->first[c]; e < W->first[c + 1]; e++) {
+            int32_t b = W->col[e];
+            if (of[b] < 0) continue;
+            take(d, W->block + dd * e, r + d * b, q);
+            to->col[at] = of[b];
+            memcpy(to->block + dd * at++, W->block + dd * e, (size_t)dd * sizeof(double));
+        }
+        to->first[i + 1] = at;
     }
     return 0;
 }

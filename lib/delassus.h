@@ -42,6 +42,14 @@ void delassus_free(struct delassus *);
 int delassus_sort(struct delassus *to, const struct delassus *W, int64_t rows, const int32_t *row,
                   struct why *);
 
+/*
+ * The contacts contact[n] of W by themselves, the others' reactions as r[n d of W] has them; v = W r + q.
+ * contact[] ascends, of[] of W's contacts is where they are in it, else -1. to->r is of r. 0 or
+ * EX_SOFTWARE.
+ */
+int delassus_part(struct delassus *to, const struct delassus *W, int64_t n, const int32_t *contact,
+                  const int32_t *of, const double *r, const double *v, struct why *why);
+
 /* Four of a column, though only d are meant: what is beyond them ends in b[d..], which nobody reads. */
 typedef double column __attribute__((vector_size(32), may_alias, aligned(8)));
 

@@ -27,7 +27,7 @@ void newton_free(struct newton *w)
     *w = (struct newton){ 0 };
 }
 
-int newton_init(struct newton *w, const struct problem *p)
+int newton_assemble(struct newton *w, const struct problem *p)
 {
     struct why why = { 0 };
     *w = (struct newton){ .value = INFINITY, .rho = RHO };
@@ -38,19 +38,34 @@ int newton_init(struct newton *w, const struct problem *p)
         w->from = numbers(size), w->start = numbers(size);
         w->trial = numbers(size), w->dx = numbers(size);
         w->L = numbers(9 * p->n), w->D = numbers(9 * p->n);
-        w->system = system_new(&w->whole, MEMORY);
     }
     if (!good || !w->x || !w->v || !w->z || !w->best || !w->from || !w->start || !w->trial ||
-        !w->dx || !w->L || !w->D || !w->system) {
+        !w->dx || !w->L || !w->D) {
         newton_free(w);
         return -1;
     }
-    // in ns: a sweep by bodies, or a block of W; a multiplication of the factors, and half as much
-    // for all else in a step (with none or as much again more of 54 problems end unsolved)
+    // in ns: a sweep by bodies, or a block of W
     w->sweep_cost =
         p->W ? 30.0 * (double)p->n + 2.0 * (double)p->W->first[p->n] : 10.0 * (double)p->n;
+    return 0;
+}
+
+int newton_factors(struct newton *w)
+{
+    w->system = system_new(&w->whole, MEMORY);
+    if (!w->system) return -1;
+    // in ns: a multiplication of the factors, and half as much for all else in a step (with none or as
+    // much again more of 54 problems end unsolved)
     w->cost = 1.5 * system_cost(w->system);
     return 0;
+}
+
+int newton_init(struct newton *w, const struct problem *p)
+{
+    if (newton_assemble(w, p)) return -1;
+    if (!newton_factors(w)) return 0;
+    newton_free(w);
+    return -1;
 }
 
 int32_t newton_share(const struct newton *w)

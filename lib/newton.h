@@ -18,22 +18,27 @@
 
 struct newton {
     struct whole whole;
-    struct system *system;
-    double rho;           /* of the projection, in units in which W's diagonal is 1 */
-    double alpha;         /* a, in multiples of the mean diagonal of W */
-    int omega;            /* which over-relaxation its sweeps are at */
-    double *x, *v, *z;    /* [n d]: the iterate, its velocity, a right-hand side */
-    double *from, *start; /* [n d]: x_0; the x to go back to */
-    double *trial, *dx;   /* [n d] */
-    double *L, *D;        /* [n][9] */
-    double *best;         /* [n d] the best iterate that was judged, and */
-    double value;         /* its criterion */
-    double sweep_cost;    /* of a sweep and */
-    double cost;          /* of a Newton step, in one unit */
+    struct system *system; /* NULL before newton_factors() */
+    double rho;            /* of the projection, in units in which W's diagonal is 1 */
+    double alpha;          /* a, in multiples of the mean diagonal of W */
+    int omega;             /* which over-relaxation its sweeps are at */
+    double *x, *v, *z;     /* [n d]: the iterate, its velocity, a right-hand side */
+    double *from, *start;  /* [n d]: x_0; the x to go back to */
+    double *trial, *dx;    /* [n d] */
+    double *L, *D;         /* [n][9] */
+    double *best;          /* [n d] the best iterate that was judged, and */
+    double value;          /* its criterion */
+    double sweep_cost;     /* of a sweep and */
+    double cost;           /* of a Newton step, in one unit */
+    int64_t aside;         /* Newton steps of parts [part.h], which cost next to nothing */
 };
 
 /* 0, or -1 where the problem is too large for it: then there is nothing to free. */
 int newton_init(struct newton *, const struct problem *);
+/* The same in two: all but what factorises, without which there are no steps, and then that, which may
+   be too large by itself. */
+int newton_assemble(struct newton *, const struct problem *);
+int newton_factors(struct newton *);
 void newton_free(struct newton *);
 
 /* Sweeps that cost as much as a Newton step, or so */

@@ -99,6 +99,7 @@ int nlgs_sweeps(struct solve *, int32_t sweeps, double omega);
 struct anderson;
 struct anderson *anderson_new(struct solve *);
 int anderson_sweeps(struct anderson *, int32_t sweeps);
+void anderson_anew(struct anderson *); /* from other reactions, whose like it has not judged */
 void anderson_free(struct anderson *);
 
 #endif
