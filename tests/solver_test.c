@@ -2,6 +2,7 @@
 #include "detect.h"
 #include "gen.h"
 #include "ipm.h"
+#include "part.h"
 #include "path.h"
 #include "step.h"
 #include "tap.h"
@@ -218,6 +219,68 @@ static void test_nothing_left(const struct packing *p, const struct contacts *s,
     contacts_free(&c), report_free(&rep);
 }
 
+/* How far each contact of w's x is from its law, and which have moved from x */
+static int64_t off_law(struct newton *w, const double *before, double *moved, double *largest)
+{
+    int d = w->whole.W.d;
+    int64_t count = 0;
+    *moved = *largest = 0;
+    whole_velocity(&w->whole, w->x, w->v);
+    for (int64_t c = 0; c < w->whole.W.n; c++) {
+        const double *x = w->x + d * c;
+        double r[3], u[3], tau[3], p[3], e = 0;
+        whole_load(d, x, r), whole_load(d, w->v + d * c, u);
+        cone_predict(w->whole.W.mu[c], 1, r, u, tau);
+        cone_project(w->whole.W.mu[c], tau, p);
+        for (int k = 0; k < 3; k++) e = fmax(e, fabs(r[k] - p[k]));
+        *largest = fmax(*largest, e);
+        if (!memcmp(x, before + d * c, (size_t)d * sizeof *x)) continue;
+        *moved = fmax(*moved, e), count++;
+    }
+    return count;
+}
+
+static struct {
+    int64_t all, few, most;    /* contacts that were solved: asked for all, for 30, for half */
+    int64_t moved;             /* contacts whose reactions are not the same to the bit, of the 30 */
+    double before, after, law; /* |x - P|: the largest, before and after; of those that moved */
+} parted;
+
+/* 40 sweeps, and then a part */
+static int in_part(struct solve *s)
+{
+    struct newton w;
+    double unused;
+    if (nlgs_sweeps(s, 40, 1) || newton_assemble(&w, s->p)) return -1;
+    double *x = malloc(((size_t)w.whole.size + 1) * sizeof *x);
+    newton_get(&w, s);
+    memcpy(x, w.x, (size_t)w.whole.size * sizeof *x);
+    off_law(&w, x, &unused, &parted.before);
+    parted.all = part_solve(&w, s, s->p->n, true);
+    parted.few = part_solve(&w, s, 30, true);
+    newton_get(&w, s);
+    parted.moved = off_law(&w, x, &parted.law, &parted.after);
+    parted.most = part_solve(&w, s, s->p->n / 2, true);
+    free(x), newton_free(&w);
+    return 0;
+}
+
+/* A part's contacts are on the law, with the others as they are; and they are those farthest from it. */
+static void test_part(const struct packing *p, const struct contacts *s, const char *what)
+{
+    static const struct solver part = { "part", 0, in_part };
+    struct report rep = { 0 };
+    struct step_opt o = options(&part, 0, 100000);
+    struct contacts c = solve(p, s, &o, &rep);
+    ok(parted.all == 0, "%s: all contacts are no part", what);
+    ok(parted.few >= 30 && parted.few <= s->n / 2 && parted.most == s->n / 2,
+       "%s: parts of 30 contacts or more, %d, and of half", what, (int)parted.few);
+    ok(parted.moved > 0 && parted.moved <= parted.few && parted.law < 1e-9 * parted.before,
+       "%s: %d have moved, by their law to %.1e after %.1e", what, (int)parted.moved, parted.law,
+       parted.before);
+    contacts_free(&c), report_free(&rep);
+}
+
 int main(void)
 {
     static const struct {
@@ -243,6 +306,7 @@ int main(void)
         if (s.n && scene[k].mu != 0) test_path(&p, &s, scene[k].name);
         if (s.n && scene[k].mu != 0) test_arrival(&p, &s, scene[k].name);
         if (s.n) test_nothing_left(&p, &s, scene[k].name);
+        if (s.n > 200) test_part(&p, &s, scene[k].name);
         contacts_free(&s), packing_free(&p);
     }
     return tap_done();
