@@ -83,7 +83,7 @@ static int in_parts(struct newton *w, struct solve *s, struct anderson *sweeps)
 
 /*
  * From r = 0, by other sweeps each time: whether parts suffice, or the path from their reactions
- * arrives, is chance, and one in five does where the first has not.
+ * arrives, is chance.
  */
 static void again(struct newton *w, struct solve *s, struct anderson *sweeps)
 {

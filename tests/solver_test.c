@@ -241,9 +241,9 @@ static int64_t off_law(struct newton *w, const double *before, double *moved, do
 }
 
 static struct {
-    int64_t all, few, most;    /* contacts that were solved: asked for all, for 30, for half */
-    int64_t moved;             /* contacts whose reactions are not the same to the bit, of the 30 */
-    double before, after, law; /* |x - P|: the largest, before and after; of those that moved */
+    int64_t all, few, most; /* contacts that were solved: asked for all, for 30, for half */
+    int64_t moved;          /* contacts whose reactions are not the same to the bit, of the 30 */
+    double before, law;     /* |x - P|: the largest before; of those that moved, after */
 } parted;
 
 /* 40 sweeps, and then a part */
@@ -259,13 +259,13 @@ static int in_part(struct solve *s)
     parted.all = part_solve(&w, s, s->p->n, true);
     parted.few = part_solve(&w, s, 30, true);
     newton_get(&w, s);
-    parted.moved = off_law(&w, x, &parted.law, &parted.after);
+    parted.moved = off_law(&w, x, &parted.law, &unused);
     parted.most = part_solve(&w, s, s->p->n / 2, true);
     free(x), newton_free(&w);
     return 0;
 }
 
-/* A part's contacts are on the law, with the others as they are; and they are those farthest from it. */
+/* A part's contacts are on the law, with the others as they are. */
 static void test_part(const struct packing *p, const struct contacts *s, const char *what)
 {
     static const struct solver part = { "part", 0, in_part };
