@@ -42,15 +42,21 @@ struct anderson {
     struct watch watch;
     struct kept kept;
     double *room;
-    struct mixing_sums *sums;    /* [parts] */
-    double gram[MEMORY][MEMORY]; /* dF'dF */
-    double fd[MEMORY];           /* dF'f */
-    int full;                    /* how many differences there are */
-    bool begun;                  /* f, and g in the next slot's room, are of a time before */
-    double omega[2];             /* of the first sweep after a mixing, and of the second */
-    int rest;                    /* sweeps of the next leaps, or alone */
-    bool leap;                   /* leaps are next */
-    double best;                 /* |f|^2 after which the rests began anew */
+    struct mixing_sums *sums;         /* [parts] */
+    double gram[MEMORY][MEMORY];      /* dF'dF */
+    double fd[MEMORY];                /* dF'f */
+    int full;                         /* how many differences there are */
+    bool begun;                       /* f, and g in the next slot's room, are of a time before */
+    double omega[2];                  /* of the first sweep after a mixing, and of the second */
+    int (*phase)(struct anderson *);  /* mix, leap or alone: a turn of it; */
+    void (*begin)(struct anderson *); /* what the next turn does first; or NULL */
+    int turns, left;                  /* turns that a mixing had; sweeps that are left of another */
+    double was;                       /* |f|^2 the turn before, */
+    double start, least;              /* at the epoch's start, the least of a mixing, */
+    double best;                      /* and after which the rests began anew */
+    double far;                       /* the next leap */
+    int rest;                         /* sweeps of the next leaps, or alone */
+    bool leaps;                       /* leaps are next */
 };
 
 static double sum(const double slot[BUNDLE])
@@ -70,48 +76,12 @@ static int64_t parts(const struct problem *p)
     return (p->bundles + PART - 1) / PART;
 }
 
-void anderson_free(struct anderson *a)
-{
-    if (a) kept_free(&a->kept), free(a->room), free(a->sums);
-    free(a);
-}
-
-void anderson_anew(struct anderson *a)
-{
-    a->watch = (struct watch){ .due = INFINITY, .judged = a->s->rep->sweeps };
-    a->rest = SHORT, a->leap = true, a->best = INFINITY;
-    a->kept.value = INFINITY;
-}
-
-struct anderson *anderson_new(struct solve *s)
-{
-    struct anderson *a = calloc(1, sizeof *a);
-    if (!a) return NULL;
-    a->s = s;
-    a->m.few = s->p->n > MANY;
-    size_t size = (size_t)(s->p->rows * s->p->d),
-           bytes = (size_t)(1 + 2 * memory(a)) * size * sizeof(double);
-    for (int k = 0; k < 2; k++)
-        a->omega[k] = s->o->relax > 0 ? s->o->relax : k || s->p->full ? 1 : BEYOND;
-    a->room = aligned_alloc(64, bytes); // rows come in eights
-    a->sums = malloc((size_t)(parts(s->p) + 1) * sizeof *a->sums);
-    if (!a->room || !a->sums || kept_init(&a->kept, s->p)) {
-        anderson_free(a);
-        return NULL;
-    }
-    anderson_anew(a);
-    memset(a->room, 0, bytes);
-    double *next = a->m.f = a->room;
-    for (int j = 0; j < memory(a); j++) a->m.dg[j] = next += size, a->m.df[j] = next += size;
-    return a;
-}
-
 /* So many sweeps; as nlgs_sweep() */
 static int sweeps(struct anderson *a, int n)
 {
     for (int k = 0; k < n; k++) {
         a->watch.change = 0; // after a mixing the last one's says nothing
-        int over = nlgs_sweep(a->s, a->omega[k % 2], false, &a->watch);
+        int over = nlgs_sweep(a->s, a->omega[k % 2], &a->watch);
         if (a->watch.looked) kept_offer(&a->kept, a->s);
         if (over) return over;
     }
@@ -201,16 +171,29 @@ static void react(struct anderson *a, double leap, const double gamma[MEMORY])
                                  gamma);
 }
 
-/* The rows go to the next point: by mixing, or by a leap. */
-static void go(struct anderson *a, double leap)
+/* ---- what a turn begins with: the rows go to the next point ---- */
+
+/* To none; nothing is remembered. */
+static void anew(struct anderson *a)
 {
-    double gamma[MEMORY] = { 0 };
-    if (leap == 0 && a->full) weigh(a, gamma);
-    react(a, leap, gamma);
+    forget(a), look(a);
 }
 
-/* The rows return to where the last measure but one found them; nothing remembered. */
-static void take_back(struct anderson *a)
+static void mixed(struct anderson *a)
+{
+    double gamma[MEMORY] = { 0 };
+    if (a->full) weigh(a, gamma);
+    react(a, 0, gamma);
+}
+
+static void leapt(struct anderson *a)
+{
+    const double gamma[MEMORY] = { 0 };
+    react(a, a->far, gamma);
+}
+
+/* Where the last measure but one found them; nothing is remembered. */
+static void taken_back(struct anderson *a)
 {
     double gamma[MEMORY] = { 0 };
     gamma[(a->m.slot + memory(a) - 1) % memory(a)] = 1; // x = g - dg
@@ -218,70 +201,126 @@ static void take_back(struct anderson *a)
     react(a, 0, gamma);
 }
 
-/* Mixes until that does not pay: then 0, and *least the least |f|^2 on the way. */
-static int mix(struct anderson *a, double *least)
+/* ---- the phases, a turn of each: sweeps, and what comes next. 0 to go on, as nlgs_sweep() ---- */
+
+static int mix(struct anderson *a), leap(struct anderson *a), alone(struct anderson *a);
+
+static void begin_mixing(struct anderson *a)
 {
-    double start = INFINITY, was = INFINITY;
-    forget(a), look(a);
-    *least = INFINITY;
-    for (int k = 0;; k++) {
-        int over = sweeps(a, PERIOD);
-        if (over) return over;
-        double now = measure(a);
-        *least = fmin(*least, now);
-        if (k % EPOCH == 0) {
-            if (!(now <= start / 2)) return 0;
-            start = now;
-        }
-        if (!(now <= GROWTH * was)) {
-            take_back(a), was = INFINITY;
-            continue;
-        }
-        was = now;
-        go(a, 0);
-    }
+    a->phase = mix, a->begin = anew, a->turns = 0;
+    a->start = a->was = a->least = INFINITY;
 }
 
-/* Leaps along the change of a sweep, twice as far each time while that goes well; so many sweeps. */
-static int leaps(struct anderson *a, int n)
+/* Mixing gives way to leaps and to sweeps alone in turn. */
+static void give_way(struct anderson *a)
 {
-    double far = LEAP, was = INFINITY;
-    forget(a);
-    for (int k = 0; k < n; k += RESTS) {
-        int over = sweeps(a, RESTS - 1);
-        if (over) return over;
-        look(a);
-        if ((over = sweeps(a, 1))) return over;
-        double now = measure(a);
-        if (!(now <= ASTRAY * was)) {
-            take_back(a), was = INFINITY, far = fmax(far / 4, 2);
-            continue;
-        }
-        if (was < INFINITY) far *= 2;
-        was = now;
-        go(a, far);
-    }
-    return sweeps(a, RESTS);
+    if (a->least <= a->best / 2) a->rest = SHORT, a->best = a->least;
+    a->phase = a->leaps ? leap : alone, a->begin = anew, a->was = INFINITY;
+    a->left = a->rest, a->far = LEAP;
+    a->leaps = !a->leaps;
+    a->rest = a->rest < LONG ? 2 * a->rest : LONG;
 }
 
-int anderson_sweeps(struct anderson *a, int32_t sweeps_more)
+/* Mixes until that does not pay. */
+static int mix(struct anderson *a)
+{
+    int over = sweeps(a, PERIOD);
+    if (over) return over;
+    double now = measure(a);
+    bool well = now <= GROWTH * a->was, pays = a->turns % EPOCH || now <= a->start / 2;
+    if (a->turns++ % EPOCH == 0) a->start = now;
+    a->least = fmin(a->least, now);
+    a->begin = well ? mixed : taken_back, a->was = well ? now : INFINITY;
+    if (!pays) give_way(a);
+    return 0;
+}
+
+/* Leaps along the change of a sweep, twice as far each time while that goes well. */
+static int leap(struct anderson *a)
+{
+    int over = sweeps(a, RESTS - 1);
+    if (over) return over;
+    look(a);
+    if ((over = sweeps(a, 1))) return over;
+    double now = measure(a);
+    bool well = now <= ASTRAY * a->was;
+    if (!well) a->far = fmax(a->far / 4, 2);
+    if (well && a->was < INFINITY) a->far *= 2;
+    a->begin = well ? leapt : taken_back, a->was = well ? now : INFINITY;
+    if (a->left <= 0) begin_mixing(a);
+    a->left -= RESTS;
+    return 0;
+}
+
+static int alone(struct anderson *a)
+{
+    int over = sweeps(a, PERIOD);
+    a->left -= PERIOD;
+    if (a->left <= 0) begin_mixing(a);
+    return over;
+}
+
+void anderson_free(struct anderson *a)
+{
+    if (a) kept_free(&a->kept), free(a->room), free(a->sums);
+    free(a);
+}
+
+void anderson_anew(struct anderson *a)
+{
+    a->watch = (struct watch){ .due = INFINITY, .judged = a->s->rep->sweeps };
+    a->rest = SHORT, a->leaps = true, a->best = INFINITY;
+    a->kept.value = INFINITY;
+    begin_mixing(a);
+}
+
+struct anderson *anderson_new(struct solve *s)
+{
+    struct anderson *a = calloc(1, sizeof *a);
+    if (!a) return NULL;
+    a->s = s;
+    a->m.few = s->p->n > MANY;
+    size_t size = (size_t)(s->p->rows * s->p->d),
+           bytes = (size_t)(1 + 2 * memory(a)) * size * sizeof(double);
+    for (int k = 0; k < 2; k++)
+        a->omega[k] = s->o->relax > 0 ? s->o->relax : k || s->p->full ? 1 : BEYOND;
+    a->room = aligned_alloc(64, bytes); // rows come in eights
+    a->sums = malloc((size_t)(parts(s->p) + 1) * sizeof *a->sums);
+    if (!a->room || !a->sums || kept_init(&a->kept, s->p)) {
+        anderson_free(a);
+        return NULL;
+    }
+    anderson_anew(a);
+    memset(a->room, 0, bytes);
+    double *next = a->m.f = a->room;
+    for (int j = 0; j < memory(a); j++) a->m.dg[j] = next += size, a->m.df[j] = next += size;
+    return a;
+}
+
+int anderson_sweeps(struct anderson *a, int32_t more)
 {
     struct solve *s = a->s;
-    const struct solve_opt *all = s->o;
-    struct solve_opt o = *all;
-    if (sweeps_more < o.max_sweeps - s->rep->sweeps) o.max_sweeps = s->rep->sweeps + sweeps_more;
-    s->o = &o;
+    int32_t had = s->rep->sweeps;
     int over = 0;
-    double least;
-    for (; !over; a->leap = !a->leap) {
-        if ((over = mix(a, &least))) break;
-        if (least <= a->best / 2) a->rest = SHORT, a->best = least;
-        over = a->leap ? leaps(a, a->rest) : sweeps(a, a->rest);
-        a->rest = a->rest < LONG ? 2 * a->rest : LONG;
+    while (!over && s->rep->sweeps - had < more) {
+        void (*begin)(struct anderson *) = a->begin;
+        a->begin = NULL;
+        if (begin) begin(a);
+        over = a->phase(a);
     }
-    kept_back(&a->kept, s);
-    s->o = all;
+    if (!over && !a->watch.looked) solve_judge(s), kept_offer(&a->kept, s);
     return over < 0 ? -1 : 0;
+}
+
+double anderson_best(const struct anderson *a)
+{
+    return a->kept.value;
+}
+
+void anderson_back(struct anderson *a)
+{
+    kept_back(&a->kept, a->s);
+    begin_mixing(a);
 }
 
 static int run(struct solve *s)
@@ -289,6 +328,7 @@ static int run(struct solve *s)
     struct anderson *a = anderson_new(s);
     if (!a) return nlgs_sweeps(s, s->o->max_sweeps, s->o->relax > 0 ? s->o->relax : 1);
     int failed = anderson_sweeps(a, s->o->max_sweeps);
+    anderson_back(a);
     anderson_free(a);
     return failed;
 }

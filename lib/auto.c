@@ -14,10 +14,9 @@
 #include <string.h>
 
 enum {
-    CHUNK = 150,        /* sweeps between two looks, at least; else half of all so far; */
-    CHUNK_W = 100,      /* with a given W, where a sweep is dear beside a factorisation */
-    SLOW = 3,           /* of the least chunks to go, and something else is tried */
+    CHUNK = 150,        /* sweeps between two looks, at least; else half of all so far */
     PART = 50,          /* contacts of the first part, */
+    ALL_PARTS = 250,    /* of all together, mostly, */
     PARTS = 25,         /* parts at most, */
     SETTLE = 50,        /* and sweeps after each, at least */
     STEPS_TO_KNOW = 15, /* factorisations that sweeps must have cost before they are given up; */
@@ -35,13 +34,13 @@ enum {
 #define FAR     30   /* of eps: sweeps that have come nearer mostly end soon */
 
 /*
- * How many more sweeps, if the criterion goes on as a power of their number, as it does on the way from
- * `before` after so many; infinite where it does not fall.
+ * How many more sweeps from this value, if it goes on as a power of their number, as it does on the way
+ * from `before` after so many; infinite where it does not fall.
  */
-static double to_go(const struct solve *s, double before, int32_t sweeps)
+static double to_go(const struct solve *s, double value, double before, int32_t sweeps)
 {
-    double p = log(before / s->value) / log((double)s->rep->sweeps / sweeps);
-    return p > 0.1 ? s->rep->sweeps * (pow(s->value / s->o->eps, 1 / p) - 1) : INFINITY;
+    double p = log(before / value) / log((double)s->rep->sweeps / sweeps);
+    return p > 0.1 ? s->rep->sweeps * (pow(value / s->o->eps, 1 / p) - 1) : INFINITY;
 }
 
 static bool over(const struct solve *s)
@@ -70,11 +69,14 @@ static int in_parts(struct newton *w, struct solve *s, struct anderson *sweeps)
         double more;
         if (!(solved = part_solve(w, s, contacts, parts > 0))) break;
         anderson_anew(sweeps);
+        double now = s->value;
         do {
-            double before = s->value;
+            double before = now;
             if (anderson_sweeps(sweeps, SETTLE)) return -1;
-            more = SETTLE * log(s->value / s->o->eps) / log(before / s->value);
+            now = anderson_best(sweeps);
+            more = SETTLE * log(now / s->o->eps) / log(before / now);
         } while (!over(s) && more > 0 && more * w->sweep_cost < (double)solved * CONTACT);
+        anderson_back(sweeps);
         if (!(s->value < best / 4)) vain += solved, contacts += contacts / 5;
         best = fmin(best, s->value);
     }
@@ -126,17 +128,19 @@ static int run(struct solve *s)
     } older = { INFINITY, 0 };
     bool ready = false, parted = false, tried = false;
     int failed = 0;
-    int32_t end = s->o->max_sweeps, least = s->p->W ? CHUNK_W : CHUNK;
+    int32_t end = s->o->max_sweeps;
+    // Sweeps go on by themselves until they have cost, and will, what the parts would.
+    double price = newton_sweep_cost(s->p), dear = fmin((double)s->p->n, ALL_PARTS) * CONTACT;
     if (!sweeps) return nlgs_sweeps(s, end, s->o->relax > 0 ? s->o->relax : 1);
     while (!failed && rep->sweeps < end && !over(s)) {
-        double before = s->value;
-        int32_t chunk = rep->sweeps / 2 > least ? rep->sweeps / 2 : least, left = end - rep->sweeps;
-        if (chunk > left) chunk = left;
-        failed = anderson_sweeps(sweeps, chunk);
+        int32_t had = rep->sweeps, chunk = had / 2 > CHUNK ? had / 2 : CHUNK;
+        double before = anderson_best(sweeps);
+        failed = anderson_sweeps(sweeps, chunk < end - had ? chunk : end - had);
         if (failed || !isfinite(s->value)) break;
-        double more = older.sweeps ? to_go(s, older.value, older.sweeps) : 0;
-        older.value = before, older.sweeps = rep->sweeps - chunk;
-        if (tried || more < SLOW * least) continue;
+        double more = older.sweeps ? to_go(s, anderson_best(sweeps), older.value, older.sweeps) : 0;
+        older.value = before, older.sweeps = had;
+        if (tried || fmin(more, rep->sweeps) * price < dear) continue;
+        anderson_back(sweeps);
         if (!ready && newton_assemble(&w, s->p)) { // too large for it
             tried = true;
             continue;
@@ -154,16 +158,16 @@ static int run(struct solve *s)
             continue;
         }
         // the longer the way, the less it takes to be sure of it
-        double gain = fmin(more * w.sweep_cost / (STEPS_TO_END * w.cost), SURE);
+        double gain = fmin(more * price / (STEPS_TO_END * w.cost), SURE);
         int steps = s->value > FAR * s->o->eps ? STEPS_IF_FAR : STEPS_TO_KNOW;
-        if (w.cost > AFFORD || gain < 1 || gain * rep->sweeps * w.sweep_cost < steps * w.cost)
-            continue;
+        if (w.cost > AFFORD || gain < 1 || gain * rep->sweeps * price < steps * w.cost) continue;
         factorise(&w, s, sweeps);
         tried = true;
         double spent = fmax(effort(&w, rep), CHEAP);
-        double rest = fmin(spent / w.sweep_cost, LAST_RESORT);
+        double rest = fmin(spent / price, LAST_RESORT);
         if (end - rep->sweeps > rest) end = rep->sweeps + (int32_t)rest;
     }
+    anderson_back(sweeps);
     if (ready) {
         newton_back(&w, s);
         newton_free(&w);

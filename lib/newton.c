@@ -27,6 +27,12 @@ void newton_free(struct newton *w)
     *w = (struct newton){ 0 };
 }
 
+double newton_sweep_cost(const struct problem *p)
+{
+    double n = (double)p->n; // by bodies, or by blocks of W
+    return p->W ? 30 * n + 2 * (double)p->W->first[p->n] : 10 * n;
+}
+
 int newton_assemble(struct newton *w, const struct problem *p)
 {
     struct why why = { 0 };
@@ -44,9 +50,7 @@ int newton_assemble(struct newton *w, const struct problem *p)
         newton_free(w);
         return -1;
     }
-    // in ns: a sweep by bodies, or a block of W
-    w->sweep_cost =
-        p->W ? 30.0 * (double)p->n + 2.0 * (double)p->W->first[p->n] : 10.0 * (double)p->n;
+    w->sweep_cost = newton_sweep_cost(p);
     return 0;
 }
 

@@ -41,6 +41,8 @@ int newton_assemble(struct newton *, const struct problem *);
 int newton_factors(struct newton *);
 void newton_free(struct newton *);
 
+/* ns, or so, of a sweep */
+double newton_sweep_cost(const struct problem *);
 /* Sweeps that cost as much as a Newton step, or so */
 int32_t newton_share(const struct newton *);
 

@@ -99,9 +99,9 @@ static int judged_sweep(struct solve *s, double omega, int32_t unjudged, bool la
     return solve_met(s) || solve_spent(s) || !isfinite(s->value);
 }
 
-int nlgs_sweep(struct solve *s, double omega, bool last, struct watch *w)
+int nlgs_sweep(struct solve *s, double omega, struct watch *w)
 {
-    return judged_sweep(s, omega, 0, last, w);
+    return judged_sweep(s, omega, 0, false, w);
 }
 
 /*

@@ -88,18 +88,24 @@ struct watch {
 };
 /* How many threads share a sweep. */
 int nlgs_team(const struct solve *);
-/* One sweep, judged where that is due (`last`: in any case). Returns 0 to go on, 1 when the criterion
-   is met, something is spent or not finite, -1 when memory is short. */
-int nlgs_sweep(struct solve *, double omega, bool last, struct watch *);
+/* One sweep, judged where that is due. Returns 0 to go on, 1 when the criterion is met, something is
+   spent or not finite, -1 when memory is short. */
+int nlgs_sweep(struct solve *, double omega, struct watch *);
 /* At most so many sweeps with this omega, until the criterion is met or something is spent. */
 int nlgs_sweeps(struct solve *, int32_t sweeps, double omega);
 
-/* The same accelerated, at the pace that it has reached; what it leaves in the rows is the best that
-   it has judged. NULL when memory is short. */
+/*
+ * The same accelerated. After so many sweeps or a few more it pauses where it is, judged, and goes on
+ * from there the next time as if it had not paused. anderson_back() returns to the best that it has
+ * judged, of value anderson_best(); anderson_anew() says that the reactions are others, whose like it
+ * has not judged. NULL, or -1, when memory is short.
+ */
 struct anderson;
 struct anderson *anderson_new(struct solve *);
 int anderson_sweeps(struct anderson *, int32_t sweeps);
-void anderson_anew(struct anderson *); /* from other reactions, whose like it has not judged */
+double anderson_best(const struct anderson *);
+void anderson_back(struct anderson *);
+void anderson_anew(struct anderson *);
 void anderson_free(struct anderson *);
 
 #endif
