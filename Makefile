@@ -32,8 +32,8 @@ WIDTHS    := 2 $(if $(filter x86_64,$(shell uname -m)),4 8)
 WIDTH_4   := -mavx2
 WIDTH_8   := -mavx512f -mavx512dq -mavx512vl
 
-LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/main.c lib/sweep.c,$(wildcard lib/*.c))) \
-         $(WIDTHS:%=$B/lib/sweep_%.o)
+LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/cli/main.c lib/problem/sweep.c,$(wildcard lib/*/*.c))) \
+         $(WIDTHS:%=$B/lib/problem/sweep-%.o)
 TOOLS := $(patsubst tools/%.c,$B/%,$(wildcard tools/*.c))
 CTEST := $(patsubst tests/%.c,$B/tests/%,$(wildcard tests/*_test.c))
 
@@ -48,7 +48,7 @@ $B/lib/%.o: lib/%.c Makefile
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
-$B/lib/sweep_%.o: lib/sweep.c Makefile
+$B/lib/problem/sweep-%.o: lib/problem/sweep.c Makefile
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS:-O2=-O3) -DLANES=$* $(WIDTH_$*) -MMD -MP -c -o $@ $<
 
@@ -56,7 +56,7 @@ $B/tools/%.o: tools/%.c Makefile
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
-$B/%: $B/tools/%.o $B/lib/main.o $B/libnsd.a
+$B/%: $B/tools/%.o $B/lib/cli/main.o $B/libnsd.a
 	$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(NSD_LDLIBS)
 
 $B/tests/%: tests/%.c $B/libnsd.a Makefile
@@ -106,7 +106,7 @@ bench-compare:
 
 # ---- style ----
 
-SOURCES := $(wildcard lib/*.[ch] tools/*.c tests/*.[ch])
+SOURCES := $(wildcard lib/*/*.[ch] tools/*.c tests/*.[ch])
 SCRIPTS := $(wildcard scripts/*.sh bench/*.sh tests/*.sh tests/*.t) .ci/run
 
 format:
@@ -127,12 +127,12 @@ lint-cppcheck:
 	cppcheck --quiet --error-exitcode=1 --std=c11 --enable=warning,performance,portability \
 	    --inline-suppr --suppress=missingIncludeSystem -Ilib lib tools
 
-TIDY := $(patsubst %.c,lint-tidy-%,$(notdir $(wildcard lib/*.c tools/*.c)))
+TIDY := $(patsubst %.c,lint-tidy-%,$(notdir $(wildcard lib/*/*.c tools/*.c)))
 
 lint-tidy: $(TIDY)
 
 $(TIDY): lint-tidy-%:
-	clang-tidy --quiet $(wildcard lib/$*.c tools/$*.c) -- -std=gnu11 -DNSD_VERSION='"$(VERSION)"' \
+	clang-tidy --quiet $(wildcard lib/*/$*.c tools/$*.c) -- -std=gnu11 -DNSD_VERSION='"$(VERSION)"' \
 	    -Ilib $(PC) 2>/dev/null
 
 # ---- installation ----
@@ -153,7 +153,7 @@ uninstall:
 clean:
 	rm -rf build demo
 
--include $(wildcard $B/lib/*.d $B/tools/*.d $B/tests/*.d)
+-include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
 .PHONY: all tests test check demo paper paper-keep bench bench-solvers bench-compare format lint $(PARTS:%=lint-%) $(TIDY) install uninstall clean setup-run setup-paper setup-check

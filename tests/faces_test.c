@@ -1,7 +1,7 @@
 /* Contacts that repeat one another are found in W, and the system solved without them is the same. */
-#include "faces.h"
-#include "step.h"
-#include "system.h"
+#include "solve/faces.h"
+#include "solve/step.h"
+#include "solve/system.h"
 #include "tap.h"
 
 #include <gsl/gsl_linalg.h>
@@ -126,11 +126,11 @@ static struct delassus delassus(const struct bricks *w)
     return W;
 }
 
-static struct whole scaled(struct delassus *W, struct problem *p)
+static struct scaled scaled(struct delassus *W, struct problem *p)
 {
-    struct whole w;
+    struct scaled w;
     struct why why = { 0 };
-    if (problem_prepare_delassus(p, W, 0, 1, ORDER_NATURAL, &why) || whole_init(&w, p, &why)) {
+    if (problem_prepare_delassus(p, W, 0, 1, ORDER_NATURAL, &why) || scaled_init(&w, p, &why)) {
         printf("Bail out! %s\n", why.text);
         exit(1);
     }
@@ -138,13 +138,13 @@ static struct whole scaled(struct delassus *W, struct problem *p)
 }
 
 /* W x of a basis vector: entry (i, j) of the scaled W, by a way that knows no faces */
-static double *dense(const struct whole *w)
+static double *dense(const struct scaled *w)
 {
     double *a = malloc((size_t)w->size * (size_t)w->size * sizeof *a);
     double *e = calloc((size_t)w->size + 4, sizeof *e), *v = calloc((size_t)w->size + 4, sizeof *v);
     for (int j = 0; j < w->size; j++) {
         e[j] = 1;
-        whole_product(w, e, v);
+        scaled_product(w, e, v);
         for (int i = 0; i < w->size; i++) a[i * w->size + j] = v[i];
         e[j] = 0;
     }
@@ -183,18 +183,18 @@ static void test_faces(int d, int each, int rank)
     struct bricks w = lay(d, each);
     struct delassus W = delassus(&w);
     struct problem p;
-    struct whole all = scaled(&W, &p);
+    struct scaled all = scaled(&W, &p);
     struct faces f;
     double *a = dense(&all);
     ok(faces_init(&f, &all.W), "%dD, %d points a face: looked for", d, each);
-    int whole_faces = 0;
+    int scaled_faces = 0;
     for (int32_t k = 0; k < f.n; k++)
-        whole_faces += f.face[k].count == each && f.face[k].rank == rank;
-    ok(whole_faces * each == w.n && f.size == whole_faces * rank,
-       "%d contacts are %d faces of rank %d", w.n, whole_faces, rank);
+        scaled_faces += f.face[k].count == each && f.face[k].rank == rank;
+    ok(scaled_faces * each == w.n && f.size == scaled_faces * rank,
+       "%d contacts are %d faces of rank %d", w.n, scaled_faces, rank);
     double off = apart(&f, a, d, all.size);
     ok(off < 1e-9, "W = T S T' (%.1e)", off);
-    faces_free(&f), whole_free(&all), problem_free(&p), delassus_free(&W);
+    faces_free(&f), scaled_free(&all), problem_free(&p), delassus_free(&W);
 
     // one in 1e4 of noise, and nothing repeats
     for (int i = 0; i < w.size; i++)
@@ -202,7 +202,7 @@ static void test_faces(int d, int each, int rank)
             w.W[i * w.size + j] = w.W[j * w.size + i] *= 1 + 1e-4 * number(-1, 1);
     W = delassus(&w), all = scaled(&W, &p);
     ok(faces_init(&f, &all.W) && f.size == all.size, "with noise nothing repeats");
-    faces_free(&f), whole_free(&all), problem_free(&p), delassus_free(&W);
+    faces_free(&f), scaled_free(&all), problem_free(&p), delassus_free(&W);
     free(a), bricks_free(&w);
 }
 
@@ -212,7 +212,7 @@ static void test_system(int d, int each, double least)
     struct bricks w = lay(d, each);
     struct delassus W = delassus(&w);
     struct problem p;
-    struct whole all = scaled(&W, &p);
+    struct scaled all = scaled(&W, &p);
     struct system *s = system_new(&all, 1e9);
     int n = all.size;
     double *a = dense(&all), *x = calloc((size_t)n, sizeof *x), *b = calloc((size_t)n, sizeof *b);
@@ -248,7 +248,7 @@ static void test_system(int d, int each, double least)
         for (int i = 0; i < n; i++) x[i] = b[i] = number(-1, 1);
         if (!round) again = system_again(s, x);
     }
-    system_free(s), whole_free(&all), problem_free(&p), delassus_free(&W), bricks_free(&w);
+    system_free(s), scaled_free(&all), problem_free(&p), delassus_free(&W), bricks_free(&w);
     free(a), free(x), free(b), free(L), free(D);
 }
 
@@ -258,7 +258,7 @@ static void test_sign(int d, int each)
     struct bricks w = lay(d, each);
     struct delassus W = delassus(&w);
     struct problem p;
-    struct whole all = scaled(&W, &p);
+    struct scaled all = scaled(&W, &p);
     struct system *s = system_new(&all, 1e9);
     size_t n = (size_t)all.size;
     double *a = dense(&all), *x = calloc(n, sizeof *x);
@@ -292,7 +292,7 @@ static void test_sign(int d, int each)
        "%dD, %d points: the sign of %d determinants, %d negative, is right %d times", d, each,
        ROUNDS, negative, agree);
     gsl_matrix_free(A), gsl_permutation_free(P);
-    system_free(s), whole_free(&all), problem_free(&p), delassus_free(&W), bricks_free(&w);
+    system_free(s), scaled_free(&all), problem_free(&p), delassus_free(&W), bricks_free(&w);
     free(a), free(x), free(L), free(D);
 }
 

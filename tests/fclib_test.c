@@ -1,7 +1,7 @@
 /* FCLIB problems: every stored one is read, what is written is what libfclib reads, and nothing
    wrong in a file is believed. */
-#include "fclib.h"
-#include "h5.h"
+#include "io/fclib.h"
+#include "io/h5.h"
 #include "tap.h"
 
 #include </usr/include/fclib.h> // libfclib's own; ours stands before it in the path
@@ -399,10 +399,10 @@ static void make_frame(int d, struct bundle *c, int i)
 static void make(struct made *m, int d, int64_t n)
 {
     *m = (struct made){ .p = { .d = d, .n = n, .dt = 1, .bundles = (n + BUNDLE - 1) / BUNDLE } };
-    m->p.rows = m->p.bundles * BUNDLE;
+    m->p.slots = m->p.bundles * BUNDLE;
     m->p.bundle = m->bundle, m->p.rebound = m->rebound, m->p.contact = m->contact,
     m->p.bodies = BODIES, m->p.body = m->body, m->p.u = m->u;
-    for (int64_t i = n; i < m->p.rows; i++) m->contact[i] = -1;
+    for (int64_t i = n; i < m->p.slots; i++) m->contact[i] = -1;
     for (int i = 0; i < BODIES; i++) {
         struct body *b = &m->body[i];
         for (int k = 0; k < d; k++) b->v[k] = i == 0 ? 0 : noise();
@@ -412,8 +412,8 @@ static void make(struct made *m, int d, int64_t n)
         m->free[i] = *b;
     }
     for (int64_t i = 0; i < n; i++) {
-        struct bundle *c = row_bundle(&m->p, i);
-        int k = row_lane(i);
+        struct bundle *c = slot_bundle(&m->p, i);
+        int k = slot_lane(i);
         const double e[3] = { 0.5 + noise() / 2, 0.5 + noise() / 2 };
         m->contact[i] = (7 * i + 3) % n;
         int a, b = 4 + (int)(4 * (1 + noise()));
@@ -423,16 +423,16 @@ static void make(struct made *m, int d, int64_t n)
         c->a[k] = body_place(a), c->b[k] = body_place(b);
         make_frame(d, c, k);
         c->la[k] = noise(), c->lb[k] = noise(), c->mu[k] = fabs(noise());
-        for (int j = 0; j < 2; j++) row_rebound(&m->p, i)->s[j][k] = 1 / (1 + e[j]);
+        for (int j = 0; j < 2; j++) slot_rebound(&m->p, i)->s[j][k] = 1 / (1 + e[j]);
         for (int j = 0; j < d; j++) {
-            row_rebound(&m->p, i)->offset[j][k] = noise();
+            slot_rebound(&m->p, i)->offset[j][k] = noise();
             c->r[j][k] = noise();
         }
     }
     for (int64_t i = 0; i < n; i++) {
         double r[3], u[3];
-        row_get(&m->p, i, r, u);
-        body_push(m->body, row_bundle(&m->p, i), row_lane(i), r);
+        slot_get(&m->p, i, r, u);
+        body_push(m->body, slot_bundle(&m->p, i), slot_lane(i), r);
     }
 }
 
@@ -446,14 +446,14 @@ static double *pushed(struct made *m, const double *r)
     for (int64_t i = 0; i < p.n; i++) {
         double full[3] = { 0 };
         memcpy(full, r + p.d * p.contact[i], (size_t)p.d * sizeof *r);
-        body_push(body, row_bundle(&p, i), row_lane(i), full);
+        body_push(body, slot_bundle(&p, i), slot_lane(i), full);
     }
     assert(p.d == 2 || p.d == 3);
     for (int64_t i = 0; i < p.n; i++) {
         double v[3];
-        body_velocity(body, row_bundle(&p, i), row_rebound(&p, i), row_lane(i), v);
+        body_velocity(body, slot_bundle(&p, i), slot_rebound(&p, i), slot_lane(i), v);
         for (int k = 0; k < p.d; k++)
-            u[p.d * p.contact[i] + k] = v[k] / row_rebound(&p, i)->s[k > 0][row_lane(i)];
+            u[p.d * p.contact[i] + k] = v[k] / slot_rebound(&p, i)->s[k > 0][slot_lane(i)];
     }
     return u;
 }
@@ -497,7 +497,7 @@ static void test_libfclib_local(struct made *m, const char *scratch, const doubl
     for (int l = 0; l < nd; l++)
         for (int k = L->W->p[l] + 1; k < L->W->p[l + 1]; k++) sorted &= L->W->i[k] > L->W->i[k - 1];
     for (int64_t i = 0; i < m->p.n; i++)
-        mu &= L->mu[m->p.contact[i]] == row_bundle(&m->p, i)->mu[row_lane(i)];
+        mu &= L->mu[m->p.contact[i]] == slot_bundle(&m->p, i)->mu[slot_lane(i)];
     ok(sorted && mu, "its columns ascend, mu is in the contacts' order");
     fclib_delete_local(L);
     free(L), free(u), free(v), free(T);

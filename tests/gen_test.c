@@ -1,5 +1,5 @@
 /* Scenes and the packings made from them. */
-#include "gen.h"
+#include "scene/scene_build.h"
 #include "tap.h"
 
 #include <gsl/gsl_cdf.h>
@@ -27,7 +27,7 @@ static int build(struct packing *p, const char *text, const char *dir, struct wh
     struct scene s;
     *why = (struct why){ 0 };
     if (scene_parse(&s, text, strlen(text), why)) return why->status;
-    gen_packing(p, &s, dir, why);
+    scene_build(p, &s, dir, why);
     scene_free(&s);
     return why->status;
 }
@@ -50,7 +50,7 @@ static int build_paper(struct packing *p, int dim, int64_t n, uint64_t seed, str
     *why = (struct why){ 0 };
     if (scene_paper(&s, dim, n, why)) return why->status;
     if (seed) s.seed = seed;
-    gen_packing(p, &s, NULL, why);
+    scene_build(p, &s, NULL, why);
     scene_free(&s);
     return why->status;
 }

@@ -1,5 +1,5 @@
 /* The algebra of the second-order cone, against what defines it. */
-#include "jordan.h"
+#include "base/jordan.h"
 
 #include "tap.h"
 

@@ -3,8 +3,8 @@
  * that crosses two pages of the file, a reader finds every frame that the sink had finished before,
  * whole, and no other.
  */
-#include "doc.h"
-#include "sink.h"
+#include "io/reader.h"
+#include "io/writer.h"
 #include "tap.h"
 
 #include <stdlib.h>
@@ -57,14 +57,14 @@ static int change(struct frame *f, int64_t k, struct why *why)
         struct contact *c = contacts_add(&f->contacts, -1, i);
         if (!c) return why_set(why, EX_SOFTWARE, "no memory");
         c->gap = -(double)k;
-        contact_frame(c, 3, (vec3){ 0, 0, 1 });
+        contact_basis(c, 3, (vec3){ 0, 0, 1 });
     }
     return 0;
 }
 
 static int write_all(const char *path, struct why *why)
 {
-    struct sink *s;
+    struct writer *s;
     struct frame f = { .packed = true, .detected = true, .reported = true };
     snprintf(f.report.method, sizeof f.report.method, "exact");
     if (packing_init(&f.packing, 3, BODIES, why) || packing_walls(&f.packing, 1, why))
@@ -73,11 +73,11 @@ static int write_all(const char *path, struct why *why)
     f.packing.wall[0].n = (vec3){ 0, 0, 1 };
     for (int i = 0; i < BODIES; i++)
         f.packing.radius[i] = f.packing.mass[i] = f.packing.inertia[i] = 1;
-    if (sink_open(&s, path, SINK_TRAJECTORY, why)) return why->status;
+    if (writer_open(&s, path, WRITER_TRAJECTORY, why)) return why->status;
     for (int64_t k = 1; k <= FRAMES && !why->status; k++)
-        if (!change(&f, k, why) && !sink_frame(s, &f, why)) finished = k;
+        if (!change(&f, k, why) && !writer_frame(s, &f, why)) finished = k;
     frame_free(&f);
-    if (!why->status) sink_close(s, why);
+    if (!why->status) writer_close(s, why);
     finished = FRAMES;
     return why->status;
 }

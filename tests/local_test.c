@@ -2,9 +2,9 @@
  * The five local methods on random one-contact problems, judged by the law itself and not by their
  * own formulas.
  */
-#include "local_eal.h"
-#include "local_ebp.h"
-#include "method.h"
+#include "law/local_eal.h"
+#include "law/local_ebp.h"
+#include "law/method.h"
 #include "tap.h"
 
 #include <gsl/gsl_deriv.h>

@@ -1,10 +1,10 @@
 /* The solvers of a whole problem end where Gauss-Seidel ends, and in the same bytes on any machine. */
-#include "detect.h"
-#include "gen.h"
-#include "ipm.h"
-#include "part.h"
-#include "path.h"
-#include "step.h"
+#include "bodies/detect.h"
+#include "scene/scene_build.h"
+#include "solve/arc.h"
+#include "solve/ipm.h"
+#include "solve/step.h"
+#include "solve/subset.h"
 #include "tap.h"
 
 #include <stdlib.h>
@@ -42,7 +42,7 @@ static void fallen(struct packing *p, struct contacts *s, int dim, int64_t n, do
     struct report rep = { 0 };
     struct step_opt o = options(&solver_nlgs, 1e-6, 200);
     o.warm = true, o.solve.relax = 1.5;
-    must(scene_paper(&scene, dim, n, &why) || gen_packing(p, &scene, NULL, &why), &why);
+    must(scene_paper(&scene, dim, n, &why) || scene_build(p, &scene, NULL, &why), &why);
     scene_free(&scene);
     for (int k = 0; k < p->kinds * p->kinds; k++) p->en[k] = e, p->et[k] = e / 2;
     for (int k = 0; k < p->kinds * p->kinds && mu >= 0; k++) p->mu[k] = mu;
@@ -151,7 +151,7 @@ static int follow(struct solve *s)
     struct central m;
     if (newton_init(&w, s->p)) return -1;
     if (central_begin(&m, &w, s, 0.1, true)) {
-        path_follow(&m, s, 1e-9, 200);
+        arc_follow(&m, s, 1e-9, 200);
         central_end(&m);
     }
     newton_free(&w);
@@ -225,11 +225,11 @@ static int64_t off_law(struct newton *w, const double *before, double *moved, do
     int d = w->whole.W.d;
     int64_t count = 0;
     *moved = *largest = 0;
-    whole_velocity(&w->whole, w->x, w->v);
+    scaled_velocity(&w->whole, w->x, w->v);
     for (int64_t c = 0; c < w->whole.W.n; c++) {
         const double *x = w->x + d * c;
         double r[3], u[3], tau[3], p[3], e = 0;
-        whole_load(d, x, r), whole_load(d, w->v + d * c, u);
+        scaled_load(d, x, r), scaled_load(d, w->v + d * c, u);
         cone_predict(w->whole.W.mu[c], 1, r, u, tau);
         cone_project(w->whole.W.mu[c], tau, p);
         for (int k = 0; k < 3; k++) e = fmax(e, fabs(r[k] - p[k]));
@@ -256,11 +256,11 @@ static int in_part(struct solve *s)
     newton_get(&w, s);
     memcpy(x, w.x, (size_t)w.whole.size * sizeof *x);
     off_law(&w, x, &unused, &parted.before);
-    parted.all = part_solve(&w, s, s->p->n, true);
-    parted.few = part_solve(&w, s, 30, true);
+    parted.all = subset_solve(&w, s, s->p->n, true);
+    parted.few = subset_solve(&w, s, 30, true);
     newton_get(&w, s);
     parted.moved = off_law(&w, x, &parted.law, &unused);
-    parted.most = part_solve(&w, s, s->p->n / 2, true);
+    parted.most = subset_solve(&w, s, s->p->n / 2, true);
     free(x), newton_free(&w);
     return 0;
 }

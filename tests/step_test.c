@@ -1,7 +1,7 @@
 /* What must hold of whole steps: detection, momentum, energy, closed solutions, agreement. */
-#include "detect.h"
-#include "gen.h"
-#include "step.h"
+#include "bodies/detect.h"
+#include "scene/scene_build.h"
+#include "solve/step.h"
 #include "tap.h"
 
 #include <gsl/gsl_rng.h>
@@ -41,7 +41,7 @@ static void scene_file(struct packing *p, const char *path)
     FILE *f = fopen(path, "r");
     size_t n = f ? fread(text, 1, sizeof text, f) : 0;
     if (f) fclose(f);
-    must(scene_parse(&s, text, n, &why) || gen_packing(p, &s, NULL, &why), &why);
+    must(scene_parse(&s, text, n, &why) || scene_build(p, &s, NULL, &why), &why);
     scene_free(&s);
 }
 
@@ -49,7 +49,7 @@ static void paper(struct packing *p, int dim, int64_t n)
 {
     struct why why = { 0 };
     struct scene s;
-    must(scene_paper(&s, dim, n, &why) || gen_packing(p, &s, NULL, &why), &why);
+    must(scene_paper(&s, dim, n, &why) || scene_build(p, &s, NULL, &why), &why);
     scene_free(&s);
 }
 
@@ -188,7 +188,7 @@ static void settled(struct packing *p, struct contacts *s, int dim, int steps)
 /* Bodies by the parts that their contacts lie in: a thread's own, or the border's and the rim's */
 static void test_halves(const struct problem *q, const struct packing *p)
 {
-    const struct halves *h = q->halves;
+    const struct two_thread_split *h = q->split;
     enum { BORDER = 1, BEYOND = 2, INSIDE = 4, RIM = 8 };
     int *parts = calloc((size_t)p->n, sizeof *parts), wrong = 0;
     int64_t ours = 0, theirs = 0;
@@ -227,15 +227,15 @@ static void test_identity(const struct packing *p, const struct contacts *s)
                     !memcmp(copy.found[i].u, s->found[i].u, sizeof s->found[i].u);
         ok(same, "order %d: prepare, then store, is the identity", order);
         int64_t rows = 0;
-        for (int64_t i = 0; i < q.rows; i++) rows += q.contact[i] >= 0;
+        for (int64_t i = 0; i < q.slots; i++) rows += q.contact[i] >= 0;
         for (int64_t g = 0; g < q.groups; g++)
             for (int64_t i = BUNDLE * q.group[g]; i < BUNDLE * q.group[g + 1]; i++)
                 for (int64_t k = BUNDLE * q.group[g]; k < i; k++) {
                     if (q.contact[i] < 0 || q.contact[k] < 0) continue;
-                    int32_t a[2] = { row_bundle(&q, i)->a[row_lane(i)],
-                                     row_bundle(&q, i)->b[row_lane(i)] };
-                    int32_t b[2] = { row_bundle(&q, k)->a[row_lane(k)],
-                                     row_bundle(&q, k)->b[row_lane(k)] };
+                    int32_t a[2] = { slot_bundle(&q, i)->a[slot_lane(i)],
+                                     slot_bundle(&q, i)->b[slot_lane(i)] };
+                    int32_t b[2] = { slot_bundle(&q, k)->a[slot_lane(k)],
+                                     slot_bundle(&q, k)->b[slot_lane(k)] };
                     apart &= a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1];
                 }
         ok(apart && rows == s->n && q.group[q.groups] == q.bundles,

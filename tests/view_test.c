@@ -1,6 +1,6 @@
 /* Pictures: what is in front, where, how large, which way round. */
+#include "draw/view.h"
 #include "tap.h"
-#include "view.h"
 
 #include <float.h>
 #include <stdlib.h>

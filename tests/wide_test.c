@@ -3,11 +3,11 @@
  * the same reactions whether a problem is given by bodies, by its W, or by a W whose diagonal blocks
  * are not those of balls.
  */
-#include "detect.h"
-#include "gen.h"
-#include "step.h"
+#include "bodies/detect.h"
+#include "scene/scene_build.h"
+#include "solve/scaled.h"
+#include "solve/step.h"
 #include "tap.h"
-#include "whole.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -39,7 +39,7 @@ static void fallen(struct packing *p, struct contacts *s, int dim, int64_t n, do
     struct report rep = { 0 };
     struct step_opt o = options(4, 1.4);
     o.warm = true, o.order = ORDER_COLOUR;
-    must(scene_paper(&scene, dim, n, &why) || gen_packing(p, &scene, NULL, &why), &why);
+    must(scene_paper(&scene, dim, n, &why) || scene_build(p, &scene, NULL, &why), &why);
     scene_free(&scene);
     for (int k = 0; k < p->kinds * p->kinds; k++) p->en[k] = e, p->et[k] = e / 2;
     for (int k = 0; k < steps; k++) must(step_advance(p, s, NULL, &o, &rep, &why), &why);
@@ -121,7 +121,7 @@ static struct delassus operator(const struct packing *pack, const struct contact
     struct why why = { 0 };
     struct problem p;
     struct delassus W;
-    must(problem_prepare(&p, pack, s, 0, 1, ORDER_NATURAL, &why) || whole_assemble(&W, &p, &why),
+    must(problem_prepare(&p, pack, s, 0, 1, ORDER_NATURAL, &why) || scaled_assemble(&W, &p, &why),
          &why);
     for (int64_t c = 0; c < s->n; c++)
         for (int k = 1; k < 4; k += 2) W.diag[9 * c + k] += noise * W.diag[9 * c];

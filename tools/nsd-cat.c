@@ -1,7 +1,7 @@
 /* nsd-cat: join, cut and thin streams and trajectories; stream a stream into a trajectory. */
-#include "cli.h"
-#include "doc.h"
-#include "sink.h"
+#include "cli/cli.h"
+#include "io/reader.h"
+#include "io/writer.h"
 
 static bool last, stream;
 static const char *steps, *output;
@@ -27,7 +27,7 @@ const struct cli_tool tool = {
 int tool_main(int argc, char **argv)
 {
     struct reader *in;
-    struct sink *out = NULL; // opened when there is something for it: a bad input costs no file
+    struct writer *out = NULL; // opened when there is something for it: a bad input costs no file
     struct frame f = { 0 };
     struct range range;
     struct why why = { 0 };
@@ -37,11 +37,11 @@ int tool_main(int argc, char **argv)
     if (last && steps) die_usage("--last and --steps exclude each other");
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
     if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
-    enum sink_kind kind = stream || last ? SINK_STREAM : SINK_TRAJECTORY;
+    enum writer_kind kind = stream || last ? WRITER_STREAM : WRITER_TRAJECTORY;
     while (!(last ? reader_last(in, &f, &more, &why) : reader_next(in, &range, &f, &more, &why)) &&
            more) {
-        if (!out && sink_open(&out, output, kind, &why)) break;
-        if (sink_frame(out, &f, &why) == EX_DATAERR)
+        if (!out && writer_open(&out, output, kind, &why)) break;
+        if (writer_frame(out, &f, &why) == EX_DATAERR)
             die(EX_DATAERR, "%s: %s", reader_where(in), why.text);
         if (why.status) break;
         copied++;
@@ -50,7 +50,7 @@ int tool_main(int argc, char **argv)
     }
     if (why.status ||
         (!copied && why_set(&why, EX_DATAERR, "%s: no such frame", reader_where(in))) ||
-        sink_close(out, &why))
+        writer_close(out, &why))
         die_why(&why);
     frame_free(&f);
     reader_close(in);

@@ -1,8 +1,8 @@
 /* nsd-detect: the contacts of packings. */
-#include "cli.h"
-#include "detect.h"
-#include "filter.h"
-#include "options.h"
+#include "bodies/detect.h"
+#include "cli/cli.h"
+#include "cli/options.h"
+#include "cli/tool_filter.h"
 
 #include <stdlib.h>
 
@@ -38,7 +38,7 @@ static void add_problem(struct frame *f)
 static void detect(struct frame *f, const char *where)
 {
     struct why why = { 0 };
-    filter_wants_packing(f, where);
+    tool_wants_packing(f, where);
     options_theta(&f->packing, false);
     if (detect_contacts(&f->contacts, &f->packing, options.gap, NULL, &why)) die_why(&why);
     f->detected = true, f->reported = f->moved = false;
@@ -48,6 +48,6 @@ static void detect(struct frame *f, const char *where)
 
 int tool_main(int argc, char **argv)
 {
-    filter_run(argc, argv, detect);
+    tool_filter(argc, argv, detect);
     return 0;
 }

@@ -1,9 +1,9 @@
 /* nsd-err: how good a solution is, recomputed from the problem. */
-#include "cli.h"
-#include "doc.h"
-#include "err.h"
-#include "json.h"
-#include "step.h"
+#include "cli/cli.h"
+#include "io/reader.h"
+#include "io/report_json.h"
+#include "problem/err.h"
+#include "solve/step.h"
 
 static const struct cli_option *const tables[] = { NULL };
 
@@ -29,12 +29,12 @@ static int prepare_foreign(struct problem *p, struct frame *f, struct why *why)
 {
     struct delassus *W = &f->problem.W;
     if (problem_prepare_delassus(p, W, 0, 1, ORDER_NATURAL, why)) return why->status;
-    for (int64_t i = 0; i < p->rows; i++) {
+    for (int64_t i = 0; i < p->slots; i++) {
         double r[3], u[3];
         if (p->contact[i] < 0) continue;
-        row_get(p, i, r, u);
+        slot_get(p, i, r, u);
         for (int k = 0; k < W->d; k++) u[k] = f->u[W->d * p->contact[i] + k];
-        row_set(p, i, r, u);
+        slot_set(p, i, r, u);
     }
     return 0;
 }

@@ -1,7 +1,7 @@
 /* nsd-gen: a packing from a number, or from a scene. */
-#include "cli.h"
-#include "gen.h"
-#include "sink.h"
+#include "cli/cli.h"
+#include "io/writer.h"
+#include "scene/scene_build.h"
 
 #include <errno.h>
 #include <libgen.h>
@@ -76,11 +76,11 @@ int tool_main(int argc, char **argv)
 {
     struct scene scene;
     struct frame frame = { .packed = true };
-    struct sink *sink;
+    struct writer *sink;
     struct why why = { 0 };
     char *dir = NULL;
     if (argc != 1 || !*argv[0]) die_usage("one operand: a number of balls, or a scene");
-    if (sink_open(&sink, NULL, SINK_STREAM, &why)) die_why(&why);
+    if (writer_open(&sink, NULL, WRITER_STREAM, &why)) die_why(&why);
     double n;
     if (is_number(argv[0], &n)) {
         if (!(n >= 0 && n <= INT32_MAX && n == floor(n)))
@@ -89,9 +89,9 @@ int tool_main(int argc, char **argv)
     } else {
         read_scene(&scene, argv[0], &dir);
     }
-    if (gen_packing(&frame.packing, &scene, dir, &why)) die_why(&why);
-    if (frame_note(&frame, cli_history(), &why) || sink_frame(sink, &frame, &why) ||
-        sink_close(sink, &why))
+    if (scene_build(&frame.packing, &scene, dir, &why)) die_why(&why);
+    if (frame_note(&frame, cli_history(), &why) || writer_frame(sink, &frame, &why) ||
+        writer_close(sink, &why))
         die_why(&why);
     free(dir);
     scene_free(&scene);

@@ -1,7 +1,7 @@
 /* nsd-info: any part of a document as JSON lines, for jq and gnuplot. */
-#include "cli.h"
-#include "doc.h"
-#include "json.h"
+#include "cli/cli.h"
+#include "io/reader.h"
+#include "io/report_json.h"
 
 #include <math.h>
 #include <stdlib.h>

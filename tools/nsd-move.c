@@ -1,7 +1,7 @@
 /* nsd-move: the second half of the step. */
-#include "cli.h"
-#include "filter.h"
-#include "step.h"
+#include "cli/cli.h"
+#include "cli/tool_filter.h"
+#include "solve/step.h"
 
 static const struct cli_option *const tables[] = { NULL };
 
@@ -15,13 +15,13 @@ const struct cli_tool tool = {
 static void move(struct frame *f, const char *where)
 {
     struct why why = { 0 };
-    filter_wants_solution(f, where);
+    tool_wants_solution(f, where);
     if (step_move(&f->packing, &f->contacts, &why)) die_why(&why);
     f->detected = false, f->stale = true;
 }
 
 int tool_main(int argc, char **argv)
 {
-    filter_run(argc, argv, move);
+    tool_filter(argc, argv, move);
     return 0;
 }

@@ -1,7 +1,7 @@
 /* nsd-solve: one step's contact problem. */
-#include "cli.h"
-#include "filter.h"
-#include "options.h"
+#include "cli/cli.h"
+#include "cli/options.h"
+#include "cli/tool_filter.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -37,7 +37,7 @@ static void show(int32_t sweeps, double value)
 static void solve(struct frame *f, const char *where)
 {
     struct why why = { 0 };
-    if (!f->foreign) filter_wants_contacts(f, where);
+    if (!f->foreign) tool_wants_contacts(f, where);
     struct step_opt o = options_step(f->foreign ? 1 : f->packing.dt, f->foreign);
     o.solve.progress = show;
     report_free(&f->report);
@@ -64,7 +64,7 @@ static void solve(struct frame *f, const char *where)
 int tool_main(int argc, char **argv)
 {
     options_log_open(argc, argv, NULL);
-    filter_run(argc, argv, solve);
+    tool_filter(argc, argv, solve);
     options_log_close();
     return options.strict && !all_converged;
 }

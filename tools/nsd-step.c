@@ -1,9 +1,9 @@
 /* nsd-step: many steps. */
-#include "cli.h"
-#include "doc.h"
-#include "filter.h"
-#include "options.h"
-#include "sink.h"
+#include "cli/cli.h"
+#include "cli/options.h"
+#include "cli/tool_filter.h"
+#include "io/reader.h"
+#include "io/writer.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -75,16 +75,16 @@ static bool advance(struct frame *f, struct neighbours *near, const struct step_
 }
 
 /* The packing alone, of the last step that could be made, unless it has been kept. */
-static void keep_last(struct frame *f, struct sink *out, int64_t k)
+static void keep_last(struct frame *f, struct writer *out, int64_t k)
 {
     struct why why = { 0 };
     if (k && k % every == 0) return;
     f->reported = f->detected = false;
-    if (sink_frame(out, f, &why)) die_why(&why);
+    if (writer_frame(out, f, &why)) die_why(&why);
 }
 
 /* N steps, those asked for into the sink; returns how many were made. */
-static int64_t run(struct frame *f, struct sink *out)
+static int64_t run(struct frame *f, struct writer *out)
 {
     struct why why = { 0 };
     struct step_opt o = options_step(f->packing.dt, false);
@@ -104,9 +104,9 @@ static int64_t run(struct frame *f, struct sink *out)
             neighbours_free(&near);
             return k - 1;
         }
-        if ((k % every == 0 || k == steps) && sink_frame(out, f, &why)) die_why(&why);
+        if ((k % every == 0 || k == steps) && writer_frame(out, f, &why)) die_why(&why);
     }
-    if (!steps && sink_frame(out, f, &why)) die_why(&why);
+    if (!steps && writer_frame(out, f, &why)) die_why(&why);
     neighbours_free(&near);
     return steps;
 }
@@ -114,7 +114,7 @@ static int64_t run(struct frame *f, struct sink *out)
 int tool_main(int argc, char **argv)
 {
     struct reader *in;
-    struct sink *out;
+    struct writer *out;
     struct frame f = { 0 };
     struct why why = { 0 };
     bool more;
@@ -122,13 +122,13 @@ int tool_main(int argc, char **argv)
     if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
     if (reader_last(in, &f, &more, &why)) die_why(&why);
     if (!more) die(EX_DATAERR, "%s: no frame to start from", reader_where(in));
-    filter_wants_packing(&f, reader_where(in));
+    tool_wants_packing(&f, reader_where(in));
     options_theta(&f.packing, false);
-    if (sink_open(&out, output, SINK_TRAJECTORY, &why)) die_why(&why);
+    if (writer_open(&out, output, WRITER_TRAJECTORY, &why)) die_why(&why);
     options_log_open(argc, argv, output);
     if (frame_note(&f, cli_history(), &why)) die_why(&why);
     int64_t made = run(&f, out);
-    if (sink_close(out, &why)) die_why(&why);
+    if (writer_close(out, &why)) die_why(&why);
     options_log_close();
     summary(made);
     frame_free(&f);

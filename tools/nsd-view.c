@@ -1,8 +1,8 @@
 /* nsd-view: a picture of the bodies, or a series of them, as PNG. */
-#include "cli.h"
-#include "doc.h"
-#include "filter.h"
-#include "view.h"
+#include "cli/cli.h"
+#include "cli/tool_filter.h"
+#include "draw/view.h"
+#include "io/reader.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -21,7 +21,7 @@ static const struct cli_option own[] = {
       1, 1e15, 0 },
     { CLI_TEXT, 'o', "output", &output, "FILE",
       "where to; a series: 'f%05d.png' or so [standard output]", 0, 0, true },
-    { CLI_CHOICE, 'c', "colour", &colour, COLOURS, "what colours show [radius]", 0, 0, 0 },
+    { CLI_CHOICE, 'c', "colour", &colour, PAINT_COLOURS, "what colours show [radius]", 0, 0, 0 },
     { CLI_TEXT, 0, "range", &range, "LO,HI",
       "m or m/s at the palette's ends [what there is; speeds from 0]", 0, 0, 0 },
     { CLI_FLAG, 0, "plain", &plain, NULL, "no marks on the bodies that show how they turn", 0, 0,
@@ -77,7 +77,7 @@ static void set_box(struct view *v)
 {
     double x[6] = { 0 };
     v->boxed = numbers(box, 6, x) || numbers(box, 4, x);
-    for (int i = 0; i < 6; i++) v->boxed &= fabs(x[i]) < BACKDROP_FAR;
+    for (int i = 0; i < 6; i++) v->boxed &= fabs(x[i]) < WALLS_FAR;
     if (!v->boxed || !(x[0] < x[1] && x[2] < x[3] && x[4] <= x[5]))
         die_usage("--box: '%s' is not X0,X1,Y0,Y1,Z0,Z1 (m), each first below the second", box);
     v->region = (struct region){ { x[0], x[2], x[4] }, { x[1], x[3], x[5] } };
@@ -129,7 +129,7 @@ static void draw(const struct view *v, const struct frame *f, const char *path)
 static void extend(struct view *v, const struct frame *f, const char *where)
 {
     struct why why = { 0 };
-    filter_wants_packing(f, where);
+    tool_wants_packing(f, where);
     if (v->boxed && f->packing.dim == 3 && v->region.lo.z == v->region.hi.z)
         die_usage("--box: wants Z0,Z1 too, for balls");
     if (view_extend(v, &f->packing, &why)) die(why.status, "%s: %s", where, why.text);
@@ -171,7 +171,7 @@ static void series(struct reader *in, int files, char *const *file, struct view 
         }
         for (int64_t k = first; k < frames; k += every, drawn++) {
             if (reader_frame(in, k, &f, &why)) die_why(&why);
-            filter_wants_packing(&f, reader_where(in));
+            tool_wants_packing(&f, reader_where(in));
             if (!fitted) view_fit(v, &f.packing);
             fitted = true;
             snprintf(path, room, "%.*s%0*lld%s", (int)(number - output), output, number[2] - '0',

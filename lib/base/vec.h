@@ -1,0 +1,84 @@
+/* base/vec.h: vectors and rotations of space, by value. */
+#ifndef NSD_VEC_H
+#define NSD_VEC_H
+
+#include <math.h>
+
+typedef struct {
+    double x, y, z;
+} vec3;
+
+typedef struct {
+    double w, x, y, z; /* unit quaternion: w + xi + yj + zk */
+} quat;
+
+static inline vec3 v3(double x, double y, double z)
+{
+    return (vec3){ x, y, z };
+}
+static inline vec3 v3_add(vec3 a, vec3 b)
+{
+    return v3(a.x + b.x, a.y + b.y, a.z + b.z);
+}
+static inline vec3 v3_sub(vec3 a, vec3 b)
+{
+    return v3(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+static inline vec3 v3_scale(double s, vec3 a)
+{
+    return v3(s * a.x, s * a.y, s * a.z);
+}
+/* a + s b */
+static inline vec3 v3_axpy(vec3 a, double s, vec3 b)
+{
+    return v3(a.x + s * b.x, a.y + s * b.y, a.z + s * b.z);
+}
+static inline double v3_dot(vec3 a, vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+static inline double v3_norm(vec3 a)
+{
+    return sqrt(v3_dot(a, a));
+}
+static inline vec3 v3_cross(vec3 a, vec3 b)
+{
+    return v3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+static inline int v3_finite(vec3 a)
+{
+    return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);
+}
+
+static inline quat quat_mul(quat a, quat b)
+{
+    return (quat){ a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
+                   a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+                   a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+                   a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w };
+}
+
+static inline quat quat_unit(quat q)
+{
+    double s = 1 / sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+    return (quat){ s * q.w, s * q.x, s * q.y, s * q.z };
+}
+
+/*
+ * The rotation by the vector a (rad): exponential map, by its series up to an angle of 1 and by twice
+ * half of it beyond. libm's sine and cosine have other last bits on machines without FMA.
+ */
+static inline quat quat_rotation(vec3 a)
+{
+    double h = v3_dot(a, a) / 4, s = 0.5; // the square of half the angle
+    int halvings = 0;
+    for (; h > 0.25 && h < INFINITY; halvings++) h /= 4, s /= 2;
+    s *= 1 - h / 6 * (1 - h / 20 * (1 - h / 42 * (1 - h / 72 * (1 - h / 110 * (1 - h / 156)))));
+    double c = 1 - h / 132 * (1 - h / 182);
+    c = 1 - h / 2 * (1 - h / 12 * (1 - h / 30 * (1 - h / 56 * (1 - h / 90 * c))));
+    quat q = { c, s * a.x, s * a.y, s * a.z };
+    for (; halvings > 0; halvings--) q = quat_unit(quat_mul(q, q));
+    return q;
+}
+
+#endif

@@ -1,0 +1,109 @@
+#include "bodies/contact.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void contacts_free(struct contacts *s)
+{
+    free(s->c), free(s->found);
+    *s = (struct contacts){ 0 };
+}
+
+void contacts_forget(struct contacts *s)
+{
+    free(s->found);
+    s->found = NULL;
+}
+
+int contacts_expect(struct contacts *s)
+{
+    contacts_forget(s);
+    s->found = calloc((size_t)s->n + 1, sizeof *s->found);
+    return s->found ? 0 : -1;
+}
+
+int contacts_copy(struct contacts *to, const struct contacts *from)
+{
+    *to = (struct contacts){ .n = from->n, .room = from->n };
+    size_t n = (size_t)from->n;
+    to->c = malloc((n + 1) * sizeof *to->c);
+    if (!to->c || (from->found && contacts_expect(to))) {
+        contacts_free(to);
+        return -1;
+    }
+    if (n) memcpy(to->c, from->c, n * sizeof *to->c);
+    if (n && from->found) memcpy(to->found, from->found, n * sizeof *to->found);
+    return 0;
+}
+
+struct contact *contacts_add(struct contacts *s, int32_t a, int32_t b)
+{
+    if (s->n == s->room) {
+        int64_t room = s->room + s->room / 2 + 64;
+        struct contact *c = realloc(s->c, (size_t)room * sizeof *c);
+        if (!c) return NULL;
+        s->c = c, s->room = room;
+    }
+    struct contact *c = &s->c[s->n++];
+    *c = (struct contact){ .a = a, .b = b };
+    return c;
+}
+
+void contact_basis(struct contact *c, int dim, vec3 n)
+{
+    c->n = n;
+    if (dim == 2) {
+        c->t1 = v3(-n.y, n.x, 0);
+        return;
+    }
+    // without a branch that could flip between neighbouring normals [Duff et al. 2017]
+    double sign = copysign(1, n.z), a = -sign / (sign + n.z);
+    c->t1 = v3(1 + n.x * n.x * a, n.x * n.y * a, -sign * n.x);
+}
+
+int contacts_match(struct contacts *new, const struct contacts *old)
+{
+    int64_t k = 0;
+    if (!old->found) return 0;
+    if (contacts_expect(new)) return -1;
+    for (int64_t i = 0; i < new->n; i++) {
+        const struct contact *c = &new->c[i];
+        double *r = new->found[i].r;
+        while (k < old->n && (old->c[k].a < c->a || (old->c[k].a == c->a && old->c[k].b < c->b)))
+            k++;
+        if (k == old->n) continue;
+        const struct contact *o = &old->c[k];
+        if (o->a != c->a || o->b != c->b) continue;
+        const double *was = old->found[k].r;
+        vec3 t = v3_axpy(v3_scale(was[1], o->t1), was[2], contact_t2(o));
+        r[0] = was[0], r[1] = v3_dot(t, c->t1), r[2] = v3_dot(t, contact_t2(c));
+    }
+    return 0;
+}
+
+static const char *trouble(const struct contact *c, const struct found *found, int64_t bodies,
+                           int32_t walls)
+{
+    if (c->b < 0 || c->b >= bodies || c->a >= bodies || c->a < -walls || c->a == c->b)
+        return "no such bodies";
+    if (!v3_finite(c->x) || !isfinite(c->gap)) return "point or gap is not finite";
+    if (!(fabs(v3_dot(c->n, c->n) - 1) < 1e-6 && fabs(v3_dot(c->t1, c->t1) - 1) < 1e-6 &&
+          fabs(v3_dot(c->n, c->t1)) < 1e-6))
+        return "frame is not orthonormal";
+    if (!(c->mu >= 0 && isfinite(c->mu))) return "mu must not be negative";
+    if (!(c->en >= 0 && c->en <= 1 && c->et >= 0 && c->et <= 1))
+        return "restitution must lie in [0, 1]";
+    for (int k = 0; found && k < 3; k++)
+        if (!isfinite(found->r[k]) || !isfinite(found->u[k]))
+            return "reaction or velocity is not finite";
+    return NULL;
+}
+
+int contacts_check(const struct contacts *s, int64_t bodies, int32_t walls, struct why *why)
+{
+    for (int64_t i = 0; i < s->n; i++) {
+        const char *what = trouble(&s->c[i], s->found ? &s->found[i] : NULL, bodies, walls);
+        if (what) return why_set(why, EX_DATAERR, "contact %lld: %s", (long long)i, what);
+    }
+    return 0;
+}

@@ -1,0 +1,173 @@
+#include "bodies/packing.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void *array(int64_t n, size_t size)
+{
+    return calloc(n > 0 ? (size_t)n : 1, size);
+}
+
+int packing_init(struct packing *p, int dim, int64_t n, struct why *why)
+{
+    *p = (struct packing){ .dim = dim, .n = n, .theta = 0.5 };
+    p->radius = array(n, sizeof *p->radius);
+    p->mass = array(n, sizeof *p->mass);
+    p->inertia = array(n, sizeof *p->inertia);
+    p->id = array(n, sizeof *p->id);
+    p->kind = array(n, sizeof *p->kind);
+    p->x = array(n, sizeof *p->x);
+    p->q = array(n, sizeof *p->q);
+    p->v = array(n, sizeof *p->v);
+    p->w = array(n, sizeof *p->w);
+    bool room =
+        p->radius && p->mass && p->inertia && p->id && p->kind && p->x && p->q && p->v && p->w;
+    if (!room || packing_walls(p, 0, why) || packing_kinds(p, 1, why)) {
+        packing_free(p);
+        return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
+    }
+    for (int64_t i = 0; i < n; i++) p->id[i] = (int32_t)i, p->q[i].w = 1;
+    return 0;
+}
+
+static void kinds_free(struct packing *p)
+{
+    for (int32_t k = 0; p->kind_name && k < p->kinds; k++) free(p->kind_name[k]);
+    free(p->kind_name), free(p->mu), free(p->en), free(p->et);
+    p->kind_name = NULL, p->mu = p->en = p->et = NULL, p->kinds = 0;
+}
+
+void packing_free(struct packing *p)
+{
+    free(p->radius), free(p->mass), free(p->inertia), free(p->id), free(p->kind);
+    free(p->x), free(p->q), free(p->v), free(p->w);
+    free(p->wall), free(p->scene);
+    kinds_free(p);
+    memset(p, 0, sizeof *p);
+}
+
+int packing_walls(struct packing *p, int32_t k, struct why *why)
+{
+    free(p->wall);
+    p->walls = k;
+    p->wall = array(k, sizeof *p->wall);
+    return p->wall ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d walls", k);
+}
+
+int packing_kinds(struct packing *p, int32_t k, struct why *why)
+{
+    kinds_free(p);
+    p->kind_name = array(k, sizeof *p->kind_name);
+    p->mu = array((int64_t)k * k, sizeof *p->mu);
+    p->en = array((int64_t)k * k, sizeof *p->en);
+    p->et = array((int64_t)k * k, sizeof *p->et);
+    bool room = p->kind_name && p->mu && p->en && p->et;
+    for (p->kinds = 0; room && p->kinds < k; p->kinds++) {
+        char name[16];
+        snprintf(name, sizeof name, "%d", p->kinds);
+        room = (p->kind_name[p->kinds] = strdup(name));
+    }
+    return room ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d kinds", k);
+}
+
+int packing_copy(struct packing *to, const struct packing *p, struct why *why)
+{
+    if (packing_init(to, p->dim, p->n, why)) return why->status;
+    if (packing_walls(to, p->walls, why) || packing_kinds(to, p->kinds, why)) goto fail;
+    size_t n = (size_t)p->n, k2 = (size_t)p->kinds * (size_t)p->kinds;
+    to->step = p->step, to->t = p->t, to->dt = p->dt, to->theta = p->theta, to->g = p->g;
+    to->seed = p->seed;
+    memcpy(to->radius, p->radius, n * sizeof *p->radius);
+    memcpy(to->mass, p->mass, n * sizeof *p->mass);
+    memcpy(to->inertia, p->inertia, n * sizeof *p->inertia);
+    memcpy(to->id, p->id, n * sizeof *p->id);
+    memcpy(to->kind, p->kind, n * sizeof *p->kind);
+    memcpy(to->x, p->x, n * sizeof *p->x);
+    memcpy(to->q, p->q, n * sizeof *p->q);
+    memcpy(to->v, p->v, n * sizeof *p->v);
+    memcpy(to->w, p->w, n * sizeof *p->w);
+    memcpy(to->wall, p->wall, (size_t)p->walls * sizeof *p->wall);
+    memcpy(to->mu, p->mu, k2 * sizeof *p->mu);
+    memcpy(to->en, p->en, k2 * sizeof *p->en);
+    memcpy(to->et, p->et, k2 * sizeof *p->et);
+    for (int32_t i = 0; i < p->kinds; i++) {
+        free(to->kind_name[i]);
+        if (!(to->kind_name[i] = strdup(p->kind_name[i]))) goto fail;
+    }
+    if (p->scene && !(to->scene = strdup(p->scene))) goto fail;
+    return 0;
+fail:
+    packing_free(to);
+    return why_set(why, EX_SOFTWARE, "no memory for a copy of the packing");
+}
+
+static const char *body_trouble(const struct packing *p, int64_t i)
+{
+    if (!(p->radius[i] > 0 && isfinite(p->radius[i]))) return "radius must be positive and finite";
+    if (!(p->mass[i] >= 0 && isfinite(p->mass[i]))) return "mass must be finite and not negative";
+    if (!(p->inertia[i] >= 0 && isfinite(p->inertia[i])))
+        return "inertia must be finite and not negative";
+    if (p->mass[i] > 0 && !(p->inertia[i] > 0)) return "inertia must be positive where mass is";
+    if (!v3_finite(p->x[i])) return "position is not finite";
+    if (!v3_finite(p->v[i])) return "velocity is not finite";
+    if (!v3_finite(p->w[i])) return "angular velocity is not finite";
+    quat q = p->q[i];
+    if (!(fabs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1) < 1e-6))
+        return "orientation is not a unit quaternion";
+    if (p->dim == 2 && (p->x[i].z != 0 || p->v[i].z != 0 || p->w[i].x != 0 || p->w[i].y != 0))
+        return "leaves the plane z = 0, and dim is 2";
+    if (p->kind[i] < 0 || p->kind[i] >= p->kinds) return "kind has no material";
+    return NULL;
+}
+
+static const char *wall_trouble(const struct packing *p, const struct wall *w)
+{
+    if (!v3_finite(w->x) || !v3_finite(w->v)) return "point or velocity is not finite";
+    if (!(fabs(v3_dot(w->n, w->n) - 1) < 1e-6)) return "normal is not a unit vector";
+    if (p->dim == 2 && (w->n.z != 0 || w->v.z != 0)) return "leaves the plane, and dim is 2";
+    if (w->kind < 0 || w->kind >= p->kinds) return "kind has no material";
+    return NULL;
+}
+
+int packing_check(const struct packing *p, struct why *why)
+{
+    if (p->dim != 2 && p->dim != 3)
+        return why_set(why, EX_DATAERR, "dim is %d, not 2 or 3", p->dim);
+    if (!(p->dt > 0 && isfinite(p->dt))) return why_set(why, EX_DATAERR, "dt must be positive");
+    if (!isfinite(p->t)) return why_set(why, EX_DATAERR, "time is not finite");
+    if (!(p->theta >= 0 && p->theta <= 1))
+        return why_set(why, EX_DATAERR, "theta must lie in [0, 1]");
+    if (!v3_finite(p->g)) return why_set(why, EX_DATAERR, "gravity is not finite");
+    if (p->dim == 2 && p->g.z != 0)
+        return why_set(why, EX_DATAERR, "gravity leaves the plane, and dim is 2");
+    for (int32_t i = 0; i < p->kinds * p->kinds; i++) {
+        const char *pair = "the material of kinds %s and %s: %s";
+        const char *a = p->kind_name[i / p->kinds], *b = p->kind_name[i % p->kinds];
+        if (!(p->mu[i] >= 0 && isfinite(p->mu[i])))
+            return why_set(why, EX_DATAERR, pair, a, b, "mu must not be negative");
+        if (!(p->en[i] >= 0 && p->en[i] <= 1 && p->et[i] >= 0 && p->et[i] <= 1))
+            return why_set(why, EX_DATAERR, pair, a, b, "restitution must lie in [0, 1]");
+    }
+    for (int64_t i = 0; i < p->n; i++) {
+        const char *trouble = body_trouble(p, i);
+        if (trouble) return why_set(why, EX_DATAERR, "body %lld: %s", (long long)i, trouble);
+    }
+    for (int32_t i = 0; i < p->walls; i++) {
+        const char *trouble = wall_trouble(p, &p->wall[i]);
+        if (trouble) return why_set(why, EX_DATAERR, "wall %d: %s", i, trouble);
+    }
+    return 0;
+}
+
+void packing_body(int dim, double radius, double density, double *mass, double *inertia)
+{
+    double r2 = radius * radius;
+    if (dim == 2) {
+        *mass = density * M_PI * r2;
+        *inertia = 0.5 * *mass * r2;
+        return;
+    }
+    *mass = density * 4.0 / 3 * M_PI * r2 * radius;
+    *inertia = 0.4 * *mass * r2;
+}

@@ -1,0 +1,222 @@
+#include "cli/cli.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <getopt.h>
+#include <jansson.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { OPTIONS = 64, HELP = 1000, VERSION, FIRST_LONG };
+
+static char *history;
+
+static void message(const char *prefix, const char *format, va_list ap)
+{
+    progress_end();
+    if (prefix) fprintf(stderr, "%s: ", prefix);
+    vfprintf(stderr, format, ap);
+    fputc('\n', stderr);
+}
+
+void die(int status, const char *format, ...)
+{
+    va_list ap;
+    va_start(ap, format);
+    message(tool.name, format, ap);
+    va_end(ap);
+    exit(status);
+}
+
+void die_usage(const char *format, ...)
+{
+    va_list ap;
+    va_start(ap, format);
+    message(tool.name, format, ap);
+    va_end(ap);
+    fprintf(stderr, "usage: %s [OPTION ...] %s (--help tells more)\n", tool.name, tool.operands);
+    exit(EX_USAGE);
+}
+
+void die_why(const struct why *why)
+{
+    die(why->status, "%s", why->text);
+}
+
+void warn(const char *format, ...)
+{
+    va_list ap;
+    va_start(ap, format);
+    message(tool.name, format, ap);
+    va_end(ap);
+}
+
+void say(const char *format, ...)
+{
+    va_list ap;
+    va_start(ap, format);
+    message(NULL, format, ap);
+    va_end(ap);
+}
+
+static bool progress_shown;
+
+void progress(const char *format, ...)
+{
+    static double last;
+    struct timespec t;
+    if (!isatty(STDERR_FILENO)) return;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    double now = (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+    if (now - last < 0.1) return;
+    last = now;
+    va_list ap;
+    va_start(ap, format);
+    fprintf(stderr, "\r\033[K%s: ", tool.name);
+    vfprintf(stderr, format, ap);
+    va_end(ap);
+    progress_shown = true;
+}
+
+void progress_end(void)
+{
+    if (progress_shown) fprintf(stderr, "\r\033[K");
+    progress_shown = false;
+}
+
+void finish_stdout(void)
+{
+    if (ferror(stdout) || fflush(stdout) || (fclose(stdout) && errno != EBADF))
+        die(EX_IOERR, "standard output: %s", strerror(errno));
+}
+
+const char *cli_history(void)
+{
+    return history;
+}
+
+static void help(void)
+{
+    printf("usage: %s [OPTION ...] %s\n\n%s\n", tool.name, tool.operands, tool.about);
+    for (const struct cli_option *const *t = tool.tables; *t; t++) {
+        if ((*t)->kind != CLI_END) printf("\n");
+        for (const struct cli_option *o = *t; o->kind; o++) {
+            char left[80];
+            snprintf(left, sizeof left, "%c%c%s --%s%s%s", o->letter ? '-' : ' ',
+                     o->letter ? o->letter : ' ', o->letter ? "," : " ", o->name, o->arg ? " " : "",
+                     o->arg ? o->arg : "");
+            printf(strlen(left) > 27 ? "  %s\n%32s%s\n" : "  %-28s  %.0s%s\n", left, "", o->help);
+        }
+    }
+    printf("\n  %-28s  this text\n  %-28s  the version\n", "    --help", "    --version");
+    if (tool.more) printf("\n%s", tool.more);
+    printf("\nThe manual: man %s, man 7 nsd\n", tool.name);
+    finish_stdout();
+    exit(0);
+}
+
+static int choice(const char *choices, const char *word)
+{
+    size_t n = strlen(word);
+    for (int k = 0; *choices; k++) {
+        size_t length = strcspn(choices, "|");
+        if (length == n && !strncmp(choices, word, n)) return k;
+        choices += length + (choices[length] == '|');
+    }
+    return -1;
+}
+
+static void set_number(const struct cli_option *o, const char *text)
+{
+    char *end;
+    errno = 0;
+    double x = strtod(text, &end);
+    if (end == text || *end || !isfinite(x) || isspace((unsigned char)*text))
+        die_usage("--%s: '%s' is not a number", o->name, text);
+    bool open = o->kind == CLI_ABOVE || o->kind == CLI_BETWEEN;
+    if (open ? !(x > o->min) : !(x >= o->min))
+        die_usage("--%s: %s must be %s %g", o->name, text, open ? "above" : "at least", o->min);
+    if (o->kind == CLI_BETWEEN ? !(x < o->max) : x > o->max)
+        die_usage("--%s: %s must be %s %g", o->name, text,
+                  o->kind == CLI_BETWEEN ? "below" : "at most", o->max);
+    if (o->kind != CLI_INT) {
+        *(double *)o->to = x;
+        return;
+    }
+    if (x != floor(x)) die_usage("--%s: '%s' is not a whole number", o->name, text);
+    *(int64_t *)o->to = (int64_t)x;
+}
+
+/* Sets the option and returns its value for the history. */
+static json_t *set(const struct cli_option *o, const char *text)
+{
+    switch (o->kind) {
+    case CLI_FLAG:
+    case CLI_UNFLAG:
+        *(bool *)o->to = o->kind == CLI_FLAG;
+        return json_true();
+    case CLI_TEXT:
+        *(const char **)o->to = text;
+        return json_string(text);
+    case CLI_CHOICE:
+        *(int *)o->to = choice(o->arg, text);
+        if (*(int *)o->to < 0) die_usage("--%s: '%s' is none of %s", o->name, text, o->arg);
+        return json_string(text);
+    case CLI_INT:
+        set_number(o, text);
+        return json_integer(*(int64_t *)o->to);
+    default:
+        set_number(o, text);
+        return json_real(*(double *)o->to);
+    }
+}
+
+int cli_parse(int argc, char **argv)
+{
+    struct option lng[OPTIONS + 3] = { { "help", 0, NULL, HELP }, { "version", 0, NULL, VERSION } };
+    const struct cli_option *at[OPTIONS];
+    char letters[2 * OPTIONS + 2] = ":";
+    int n = 0;
+    for (const struct cli_option *const *t = tool.tables; *t; t++)
+        for (const struct cli_option *o = *t; o->kind && n < OPTIONS; o++, n++) {
+            at[n] = o;
+            int wants = o->arg ? required_argument : no_argument;
+            lng[n + 2] = (struct option){ o->name, wants, NULL, FIRST_LONG + n };
+            if (o->letter) sprintf(letters + strlen(letters), o->arg ? "%c:" : "%c", o->letter);
+        }
+    json_t *value[OPTIONS] = { NULL };
+    int c;
+    opterr = 0;
+    while ((c = getopt_long(argc, argv, letters, lng, NULL)) != -1) {
+        if (c == HELP) help();
+        if (c == VERSION) {
+            printf("%s (nsd) %s\n", tool.name, NSD_VERSION);
+            finish_stdout();
+            exit(0);
+        }
+        if (c == ':') die_usage("%s: an argument is wanted", argv[optind - 1]);
+        if (c == '?' && optopt && optopt < 256) die_usage("-%c: no such option", optopt);
+        if (c == '?') die_usage("%s: no such option", argv[optind - 1]);
+        int k = c - FIRST_LONG;
+        for (int i = 0; c < HELP && i < n; i++)
+            if (at[i]->letter == c) k = i;
+        json_decref(value[k]);
+        value[k] = set(at[k], optarg);
+    }
+    json_t *options = json_object();
+    for (int i = 0; i < n; i++) {
+        if (value[i] && !at[i]->silent) json_object_set(options, at[i]->name, value[i]);
+        json_decref(value[i]);
+    }
+    json_t *line = json_pack("{s:s, s:s, s:o}", "command", tool.name, "version", NSD_VERSION,
+                             "options", options);
+    history = json_dumps(line, JSON_COMPACT);
+    json_decref(line);
+    if (!history) die(EX_SOFTWARE, "no memory");
+    return optind;
+}

@@ -1,0 +1,27 @@
+/* main.c: the only main(); a tool is its table and tool_main(). */
+#include "cli/cli.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <unistd.h>
+
+/*
+ * A descriptor closed by the caller must not become some file that we open: a closed stdin reads as
+ * an error, a closed stdout fails at the first write.
+ */
+static void guard_standard_descriptors(void)
+{
+    const int mode[3] = { O_WRONLY, O_RDONLY, O_RDWR };
+    for (int fd = 0; fd < 3; fd++)
+        if (fcntl(fd, F_GETFD) == -1 && errno == EBADF && open("/dev/null", mode[fd]) != fd)
+            _exit(70);
+}
+
+int main(int argc, char **argv)
+{
+    guard_standard_descriptors();
+    signal(SIGPIPE, SIG_DFL);
+    int first = cli_parse(argc, argv);
+    return tool_main(argc - first, argv + first);
+}

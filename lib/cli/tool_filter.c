@@ -1,0 +1,44 @@
+#include "cli/tool_filter.h"
+
+#include "cli/cli.h"
+#include "io/reader.h"
+#include "io/writer.h"
+
+void tool_filter(int files, char *const *file, void (*each)(struct frame *, const char *where))
+{
+    struct reader *in;
+    struct writer *out;
+    struct frame f = { 0 };
+    struct why why = { 0 };
+    bool more;
+    if (writer_open(&out, NULL, WRITER_STREAM, &why) || reader_open(&in, files, file, &why))
+        die_why(&why);
+    while (!reader_next(in, NULL, &f, &more, &why) && more) {
+        each(&f, reader_where(in));
+        if (frame_note(&f, cli_history(), &why) || writer_frame(out, &f, &why)) break;
+    }
+    if (why.status || writer_close(out, &why)) die_why(&why);
+    frame_free(&f);
+    reader_close(in);
+}
+
+void tool_wants_packing(const struct frame *f, const char *where)
+{
+    if (!f->packed) die(EX_DATAERR, "%s: an FCLIB problem has no bodies", where);
+}
+
+void tool_wants_contacts(const struct frame *f, const char *where)
+{
+    tool_wants_packing(f, where);
+    if (!f->detected) die(EX_DATAERR, "%s: no group /contacts: nsd-detect comes before", where);
+    if (f->moved)
+        die(EX_DATAERR,
+            "%s: its contacts have moved the bodies already; nsd-detect the next step's", where);
+}
+
+void tool_wants_solution(const struct frame *f, const char *where)
+{
+    tool_wants_contacts(f, where);
+    if (!f->contacts.found && f->contacts.n)
+        die(EX_DATAERR, "%s: the contacts are not solved: nsd-solve comes before", where);
+}

@@ -1,0 +1,40 @@
+#include "draw/camera.h"
+
+void camera_turn(struct camera *c, int dim, double azimuth, double elevation)
+{
+    if (dim == 2) {
+        c->right = v3(1, 0, 0), c->up = v3(0, 1, 0), c->toward = v3(0, 0, 1);
+        return;
+    }
+    double a = azimuth * M_PI / 180, e = elevation * M_PI / 180;
+    c->right = v3(cos(a), sin(a), 0);
+    c->toward = v3(sin(a) * cos(e), -cos(a) * cos(e), sin(e));
+    c->up = v3_cross(c->toward, c->right);
+}
+
+void window_add(struct window *w, const struct camera *c, vec3 x, double r)
+{
+    vec3 s = camera_sees(c, x);
+    w->u0 = fmin(w->u0, s.x - r), w->u1 = fmax(w->u1, s.x + r);
+    w->v0 = fmin(w->v0, s.y - r), w->v1 = fmax(w->v1, s.y + r);
+}
+
+/* Even, for the encoders of films. */
+static int even(double x)
+{
+    return 2 * (int)floor(0.5 * x + 0.5);
+}
+
+void camera_fit(struct camera *c, const struct window *w, double margin, int width, int height)
+{
+    // a window without a size, or with one whose square is nothing, is still looked at
+    double du = fmax(w->u1 - w->u0, 1e-150), dv = fmax(w->v1 - w->v0, 1e-150);
+    if (!width || !height) {
+        double shape = fmin(fmax(du / dv, 1.0 / 3), 3);
+        width = shape > 1 ? CAMERA_SIDE : even(CAMERA_SIDE * shape);
+        height = shape > 1 ? even(CAMERA_SIDE / shape) : CAMERA_SIDE;
+    }
+    c->width = width, c->height = height;
+    c->u = 0.5 * w->u0 + 0.5 * w->u1, c->v = 0.5 * w->v0 + 0.5 * w->v1;
+    c->scale = (1 - 2 * margin) * fmin(width / du, height / dv);
+}

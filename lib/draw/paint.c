@@ -1,0 +1,112 @@
+#include "draw/paint.h"
+
+#include <float.h>
+
+/* Ten colours that are told apart [Tableau 10]. */
+static const unsigned ten[10] = { 0x4e79a7, 0xf28e2b, 0xe15759, 0x76b7b2, 0x59a14f,
+                                  0xedc948, 0xb07aa1, 0xff9da7, 0x9c755f, 0xbab0ac };
+
+/* The map viridis as polynomials in t, coefficients from t^0 on; within 0.01 of its table. */
+static const double viridis[7][3] = {
+    { 0.2777273272, 0.0054073445, 0.3340998053 },
+    { 0.1050930431, 1.4046135299, 1.3845901626 },
+    { -0.3308618287, 0.2148475595, 0.0950951630 },
+    { -4.6342304990, -5.7991009734, -19.3324409563 },
+    { 6.2282699363, 14.1799333668, 56.6905526007 },
+    { 4.7763849977, -13.7451453777, -65.3530326334 },
+    { -5.4354558559, 4.6458526122, 26.3124352496 },
+};
+
+/* sRGB and linear light, each in [0, 1] [IEC 61966-2-1]. */
+static double linear(double s)
+{
+    return s <= 0.04045 ? s / 12.92 : pow((s + 0.055) / 1.055, 2.4);
+}
+static double encoded(double l)
+{
+    return l <= 0.0031308 ? 12.92 * l : 1.055 * pow(l, 1 / 2.4) - 0.055;
+}
+
+enum { STEPS = 4096 };
+static unsigned char bytes[STEPS + 1];
+
+unsigned char rgb_byte(float light)
+{
+    return bytes[(int)(fminf(fmaxf(light, 0), 1) * STEPS + 0.5f)];
+}
+
+struct rgb rgb_of(unsigned code)
+{
+    return (struct rgb){ (float)linear((code >> 16 & 255) / 255.0),
+                         (float)linear((code >> 8 & 255) / 255.0),
+                         (float)linear((code & 255) / 255.0) };
+}
+
+struct rgb rgb_mix(struct rgb a, struct rgb b, float t)
+{
+    return (struct rgb){ a.r + t * (b.r - a.r), a.g + t * (b.g - a.g), a.b + t * (b.b - a.b) };
+}
+
+void paint_init(struct paint *p, enum colour by, bool plain)
+{
+    p->by = by, p->plain = plain, p->fixed = false, p->lo = INFINITY, p->hi = -INFINITY;
+    for (int i = 0; i <= STEPS; i++)
+        bytes[i] = (unsigned char)(255 * encoded(i / (double)STEPS) + 0.5);
+    for (int i = 0; i < 256; i++) {
+        double c[3], t = i / 255.0;
+        for (int k = 0; k < 3; k++) {
+            c[k] = 0;
+            for (int power = 6; power >= 0; power--) c[k] = c[k] * t + viridis[power][k];
+            c[k] = linear(fmin(fmax(c[k], 0), 1));
+        }
+        p->palette[i] = (struct rgb){ (float)c[0], (float)c[1], (float)c[2] };
+    }
+}
+
+/* The number that the palette shows. */
+static double value(const struct paint *p, const struct packing *k, int64_t i)
+{
+    if (p->by == COLOUR_RADIUS) return k->radius[i];
+    return fmin(hypot(hypot(k->v[i].x, k->v[i].y), k->v[i].z), DBL_MAX);
+}
+
+void paint_range(struct paint *p, const struct packing *k)
+{
+    if (p->fixed || p->by == COLOUR_KIND || p->by == COLOUR_ID) return;
+    for (int64_t i = 0; i < k->n; i++) {
+        double x = value(p, k, i);
+        p->lo = fmin(p->lo, p->by == COLOUR_SPEED ? 0 : x), p->hi = fmax(p->hi, x);
+    }
+}
+
+struct rgb paint_body(const struct paint *p, const struct packing *k, int64_t i)
+{
+    if (p->by == COLOUR_KIND) return rgb_of(ten[k->kind[i] % 10]);
+    if (p->by == COLOUR_ID) return rgb_of(ten[(uint32_t)k->id[i] % 10]);
+    double x = value(p, k, i), t = (x - p->lo) / (p->hi - p->lo);
+    if (!(p->hi > p->lo)) t = x < p->lo ? 0 : x > p->hi ? 1 : 0.5; // all were alike
+    return p->palette[(int)(255 * fmin(fmax(t, 0), 1) + 0.5)];
+}
+
+static const struct rgb black = { 0, 0, 0 };
+
+/* Paler as the eye has it, so that dark colours stay what they are on the palette. */
+static struct rgb pale(struct rgb c)
+{
+    const float t = 0.42F;
+    float r = (1 - t) * sqrtf(c.r) + t, g = (1 - t) * sqrtf(c.g) + t, b = (1 - t) * sqrtf(c.b) + t;
+    return (struct rgb){ r * r, g * g, b * b };
+}
+
+struct rgb paint_ball(const struct paint *p, struct rgb own, vec3 b)
+{
+    if (p->plain) return own;
+    if (fabs(b.z) > 0.94) return rgb_mix(own, black, 0.6F); // a cap at each pole
+    return b.x * b.y > 0 ? pale(own) : own;                 // and four sectors between
+}
+
+struct rgb paint_disc(const struct paint *p, struct rgb own, vec3 b)
+{
+    if (p->plain) return own;
+    return b.y > 0 ? pale(own) : own; // the half that was up at first
+}

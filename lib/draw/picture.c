@@ -1,0 +1,146 @@
+#include "draw/picture.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <png.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+int picture_init(struct picture *p, int width, int height, struct why *why)
+{
+    *p = (struct picture){ .width = width, .height = height };
+    p->rgb = malloc((size_t)width * (size_t)height * 3);
+    return p->rgb ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d x %d pixels", width, height);
+}
+
+void picture_free(struct picture *p)
+{
+    free(p->rgb);
+    p->rgb = NULL;
+}
+
+/* ---- PNG ---- */
+
+struct bytes {
+    unsigned char *at;
+    size_t size, room;
+};
+
+static void append(png_structp png, png_bytep data, size_t n)
+{
+    struct bytes *b = png_get_io_ptr(png);
+    if (b->size + n > b->room) {
+        size_t room = 2 * (b->size + n);
+        unsigned char *more = realloc(b->at, room);
+        if (!more) png_error(png, "no memory");
+        b->at = more, b->room = room;
+    }
+    memcpy(b->at + b->size, data, n);
+    b->size += n;
+}
+
+static void nothing(png_structp png)
+{
+    (void)png;
+}
+
+static void silent(png_structp png, png_const_charp text)
+{
+    (void)text;
+    png_longjmp(png, 1);
+}
+
+/* No date and no name in it: the same picture gives the same bytes. */
+static int encode(const struct picture *p, struct bytes *b, struct why *why)
+{
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, silent, NULL);
+    png_infop info = png ? png_create_info_struct(png) : NULL;
+    if (!info || setjmp(png_jmpbuf(png))) {
+        png_destroy_write_struct(&png, &info);
+        return why_set(why, EX_SOFTWARE, "no memory for the PNG");
+    }
+    png_set_write_fn(png, b, append, nothing);
+    png_set_IHDR(png, info, (png_uint_32)p->width, (png_uint_32)p->height, 8, PNG_COLOR_TYPE_RGB,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+    png_write_info(png, info);
+    for (int y = 0; y < p->height; y++)
+        png_write_row(png, p->rgb + 3 * (size_t)p->width * (size_t)y);
+    png_write_end(png, info);
+    png_destroy_write_struct(&png, &info);
+    return 0;
+}
+
+/* ---- out ---- */
+
+static bool write_all(int fd, const struct bytes *b)
+{
+    for (size_t done = 0; done < b->size;) {
+        ssize_t n = write(fd, b->at + done, b->size - done);
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) return false;
+        done += (size_t)n;
+    }
+    return true;
+}
+
+/* What is half written into a regular file is taken back. */
+static int write_there(int fd, const struct bytes *b, const char *name, struct why *why)
+{
+    off_t start = lseek(fd, 0, fcntl(fd, F_GETFL) & O_APPEND ? SEEK_END : SEEK_CUR);
+    if (!write_all(fd, b)) {
+        why_set(why, EX_IOERR, "%s: %s", name, strerror(errno));
+        if (start >= 0 && ftruncate(fd, start)) errno = 0; // nothing more can be done
+    }
+    if (close(fd)) why_set(why, EX_IOERR, "%s: %s", name, strerror(errno));
+    return why->status;
+}
+
+/* Under another name first; the right one comes last, with all the bytes behind it. */
+static int write_beside(const char *path, const char *name, const struct bytes *b, struct why *why)
+{
+    const char *slash = strrchr(path, '/');
+    int folder = slash ? (int)(slash - path) + 1 : 0;
+    size_t room = (size_t)folder + sizeof ".nsd-XXXXXX";
+    char *other = malloc(room);
+    if (!other) return why_set(why, EX_SOFTWARE, "no memory");
+    snprintf(other, room, "%.*s.nsd-XXXXXX", folder, path);
+    int fd = mkstemp(other);
+    bool made = fd >= 0, good = made && write_all(fd, b);
+    mode_t mask = umask(0); // mkstemp is for secrets, a picture is as readable as other files
+    umask(mask);
+    good = good && !fchmod(fd, 0666 & ~mask);
+    int trouble = errno;
+    if (made && close(fd) && good) good = false, trouble = errno;
+    if (good && rename(other, path)) good = false, trouble = errno;
+    if (!good) why_set(why, EX_IOERR, "%s: %s", name, strerror(trouble));
+    if (!good && made) unlink(other);
+    free(other);
+    return why->status;
+}
+
+int picture_write(const struct picture *p, const char *path, struct why *why)
+{
+    struct bytes b = { 0 };
+    struct stat st;
+    if (encode(p, &b, why)) {
+        free(b.at);
+        return why->status;
+    }
+    char *real = path ? realpath(path, NULL) : NULL; // a link stays one
+    bool special = real && !stat(real, &st) && !S_ISREG(st.st_mode);
+    int fd = !path ? STDOUT_FILENO : special ? open(real, O_WRONLY | O_CLOEXEC) : -1;
+    if (special && fd < 0)
+        why_set(why, EX_IOERR, "%s: %s", path, strerror(errno));
+    else if (fd >= 0)
+        write_there(fd, &b, path ? path : "standard output", why);
+    else
+        write_beside(real ? real : path, path, &b, why);
+    free(real);
+    free(b.at);
+    return why->status;
+}

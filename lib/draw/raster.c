@@ -1,0 +1,129 @@
+#include "draw/raster.h"
+
+#include "draw/shade.h"
+
+#include <stdlib.h>
+
+/* Samples of a band, about, which take 40 bytes each; a row of pixels at least. */
+enum { BAND = 1 << 17 };
+
+/* ---- what is in front ---- */
+
+static void draw_spot(struct band *b, const struct raster *s, int64_t i)
+{
+    const struct spot *o = &s->spot[i];
+    struct patch t = band_patch(b, o->x.x, o->x.y, o->r);
+    double r2 = o->r * o->r;
+    for (int y = t.y0; y < t.y1; y++) {
+        double dy = y + 0.5 - o->x.y, left = r2 - dy * dy;
+        size_t row = band_at(b, 0, y);
+        for (int x = t.x0; x < t.x1; x++) {
+            double dx = x + 0.5 - o->x.x, h2 = left - dx * dx;
+            if (h2 < 0) continue;
+            double z = s->flat ? o->x.z : o->x.z + sqrt(h2);
+            if (z > b->z[row + (size_t)x]) b->z[row + (size_t)x] = z, b->what[row + (size_t)x] = i;
+        }
+    }
+}
+
+static void draw_ground(struct band *b, const struct raster *s, int i)
+{
+    const struct ground *g = &s->ground[i];
+    for (int y = b->y0; y < b->y1; y++) {
+        double x0 = INFINITY, x1 = -INFINITY, at = y + 0.5;
+        for (int k = 0; k < g->corners; k++) { // where its sides cross this row
+            int l = (k + 1) % g->corners;
+            if ((g->y[k] <= at) == (g->y[l] <= at)) continue;
+            double x = g->x[k] + (at - g->y[k]) / (g->y[l] - g->y[k]) * (g->x[l] - g->x[k]);
+            x0 = fmin(x0, x), x1 = fmax(x1, x);
+        }
+        int end = band_clamp(ceil(x1 - 0.5), 0, b->width);
+        for (int x = band_clamp(ceil(x0 - 0.5), 0, b->width); x < end; x++) {
+            size_t k = band_at(b, x, y);
+            double z = g->plane[0] + g->plane[1] * (x + 0.5) + g->plane[2] * at;
+            if (z > b->z[k]) b->z[k] = z, b->what[k] = GROUND - i;
+        }
+    }
+}
+
+/* The depth of what is seen at k, continued to (-x, -y) from there where it is a steep floor. */
+static double depth_beside(const struct band *b, const struct raster *s, size_t k, double x,
+                           double y)
+{
+    if (b->what[k] > GROUND) return b->z[k];
+    const double *plane = s->ground[GROUND - b->what[k]].plane;
+    return b->z[k] - plane[1] * x - plane[2] * y;
+}
+
+/* An edge hides behind what is in front of it, and only shimmers over bodies behind it. */
+static void draw_edge(struct band *b, const struct raster *s, const struct edge *e)
+{
+    double dx = e->b.x - e->a.x, dy = e->b.y - e->a.y, length2 = dx * dx + dy * dy;
+    double h = s->thick + 0.5 * s->samples; // with its soft border
+    int y0 = band_clamp(floor(fmin(e->a.y, e->b.y) - h), b->y0, b->y1);
+    int y1 = band_clamp(ceil(fmax(e->a.y, e->b.y) + h), b->y0, b->y1);
+    for (int y = y0; y < y1; y++) {
+        // of a slanting stroke the row has a short piece, `half` to each side of `middle`
+        double py = y + 0.5 - e->a.y, half = h * sqrt(length2) / fabs(dy), middle = py * dx / dy;
+        double lo = fmin(0, dx) - h, hi = fmax(0, dx) + h;
+        if (fabs(dy) > 1e-9) lo = fmax(lo, middle - half), hi = fmin(hi, middle + half);
+        int end = band_clamp(ceil(e->a.x + hi), 0, b->width);
+        for (int x = band_clamp(floor(e->a.x + lo), 0, b->width); x < end; x++) {
+            double px = x + 0.5 - e->a.x, t = length2 > 0 ? (px * dx + py * dy) / length2 : 0;
+            t = fmin(fmax(t, 0), 1);
+            double ox = px - t * dx, oy = py - t * dy;
+            double d = sqrt(ox * ox + oy * oy);
+            if (d >= h) continue;
+            size_t k = band_at(b, x, y);
+            if (e->a.z + t * (e->b.z - e->a.z) < depth_beside(b, s, k, ox, oy) - 3 * h) continue;
+            float full = b->what[k] >= 0 ? 0.3F : 1;
+            b->edge[k] = fmaxf(b->edge[k], full * fminf((float)(h - d) / (float)s->samples, 1));
+        }
+    }
+}
+
+/* ---- a band ---- */
+
+static void band_draw(struct band *b, const struct raster *s, struct picture *p)
+{
+    size_t n = (size_t)(b->y1 - b->y0) * (size_t)b->width;
+    for (size_t k = 0; k < n; k++)
+        b->z[k] = -INFINITY, b->what[k] = NOTHING, b->dark[k] = b->edge[k] = 0;
+    b->spots = 0;
+    for (int64_t i = 0; i < s->spots; i++) { // those in it, and those that darken something in it
+        const struct spot *o = &s->spot[i];
+        double reach = SHADE_REACH * o->r;
+        if (o->x.y + reach > b->y0 && o->x.y - reach < b->y1) b->spot[b->spots++] = i;
+    }
+    for (int i = 0; i < s->grounds; i++) draw_ground(b, s, i);
+    for (int64_t i = 0; i < b->spots; i++) draw_spot(b, s, b->spot[i]);
+    for (int i = 0; i < s->edges; i++) draw_edge(b, s, &s->edge[i]);
+    shade_normals(b, s);
+    shade_near(b, s);
+    shade_pixels(b, s, p);
+}
+
+int raster_draw(const struct raster *s, struct picture *p, struct why *why)
+{
+    int rows = BAND / (s->width * s->samples);
+    rows = rows < 1 ? 1 : rows > p->height ? p->height : rows; // of pixels
+    int bands = (p->height + rows - 1) / rows;
+    bool failed = false;
+#pragma omp parallel num_threads(s->threads)
+    {
+        struct band b;
+        bool room = band_init(&b, s, rows * s->samples);
+        if (!room) {
+#pragma omp atomic write
+            failed = true;
+        }
+#pragma omp for schedule(dynamic)
+        for (int i = 0; i < bands; i++) {
+            int end = (i + 1) * rows < p->height ? (i + 1) * rows : p->height;
+            b.y0 = i * rows * s->samples, b.y1 = end * s->samples;
+            if (room) band_draw(&b, s, p);
+        }
+        band_free(&b);
+    }
+    return failed ? why_set(why, EX_SOFTWARE, "no memory for the picture") : 0;
+}

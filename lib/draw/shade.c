@@ -1,0 +1,194 @@
+#include "draw/shade.h"
+
+void shade_normals(struct band *b, const struct raster *s)
+{
+    for (int y = b->y0; y < b->y1; y++)
+        for (int x = 0; x < b->width; x++) {
+            size_t k = band_at(b, x, y);
+            struct normal *n = &b->n[k];
+            if (b->what[k] == NOTHING) continue;
+            if (b->what[k] <= GROUND) {
+                vec3 g = s->ground[GROUND - b->what[k]].n;
+                *n = (struct normal){ (float)g.x, (float)g.y, (float)g.z };
+                continue;
+            }
+            const struct spot *o = &s->spot[b->what[k]];
+            double i = 1 / o->r;
+            *n = (struct normal){ (float)(i * (x + 0.5 - o->x.x)), (float)(i * (y + 0.5 - o->x.y)),
+                                  (float)(i * (b->z[k] - o->x.z)) };
+        }
+}
+
+/* ---- the sky ---- */
+
+/* Between which depths something is, square by square; lo > hi where nothing is. */
+static void find_ranges(struct band *b)
+{
+    int across = (b->width + SHADE_TILE - 1) / SHADE_TILE;
+    int down = (b->y1 - b->y0 + SHADE_TILE - 1) / SHADE_TILE;
+    for (int i = 0; i < across * down; i++) b->range[i] = (struct span){ INFINITY, -INFINITY };
+    for (int y = b->y0; y < b->y1; y++)
+        for (int x = 0; x < b->width; x++) {
+            size_t k = band_at(b, x, y);
+            if (b->what[k] == NOTHING) continue;
+            struct span *r = &b->range[(y - b->y0) / SHADE_TILE * across + x / SHADE_TILE];
+            r->lo = fmin(r->lo, b->z[k]), r->hi = fmax(r->hi, b->z[k]);
+        }
+}
+
+/* What ball i hides of the sky over the samples of one square. */
+static void darken(struct band *b, const struct spot *o, int64_t i, struct patch t)
+{
+    double far2 = SHADE_REACH * SHADE_REACH * o->r * o->r;
+    for (int y = t.y0; y < t.y1; y++) {
+        double dy = o->x.y - (y + 0.5);
+        size_t row = band_at(b, 0, y);
+        for (int x = t.x0; x < t.x1; x++) {
+            size_t k = row + (size_t)x;
+            double dx = o->x.x - (x + 0.5), dz = o->x.z - b->z[k];
+            double d2 = dx * dx + dy * dy + dz * dz;
+            if (!(d2 < far2) || b->what[k] == i || b->what[k] == NOTHING) continue;
+            double toward = b->n[k].x * dx + b->n[k].y * dy + b->n[k].z * dz;
+            if (toward <= 0) continue;
+            // (r/d)^2, less what it is at the reach, so that nothing ends abruptly
+            double part = o->r * o->r * (1 / d2 - 1 / far2);
+            b->dark[k] += (float)(toward / sqrt(d2) * fmin(part, 1));
+        }
+    }
+}
+
+void shade_near(struct band *b, const struct raster *s)
+{
+    if (s->flat) return;
+    find_ranges(b);
+    int across = (b->width + SHADE_TILE - 1) / SHADE_TILE;
+    for (int64_t k = 0; k < b->spots; k++) {
+        int64_t i = b->spot[k];
+        const struct spot *o = &s->spot[i];
+        double reach = SHADE_REACH * o->r;
+        if (o->r < 1) continue; // less than what a sample tells of it
+        struct patch t = band_patch(b, o->x.x, o->x.y, reach);
+        int line = (t.y0 - b->y0) / SHADE_TILE;
+        for (int y = t.y0; y < t.y1; line++) {
+            int below = b->y0 + (line + 1) * SHADE_TILE, column = t.x0 / SHADE_TILE;
+            for (int x = t.x0; x < t.x1; column++) {
+                int beside = (column + 1) * SHADE_TILE;
+                const struct span *r = &b->range[line * across + column];
+                struct patch here = { x, beside < t.x1 ? beside : t.x1, y,
+                                      below < t.y1 ? below : t.y1 };
+                if (o->x.z + reach > r->lo && o->x.z - reach < r->hi) darken(b, o, i, here);
+                x = beside;
+            }
+            y = below;
+        }
+    }
+}
+
+/* ---- light ---- */
+
+static const vec3 lamp = { -0.38, -0.52, 0.765 }; // y goes down here
+
+/* Floors and edges are faint, whatever they are drawn on. */
+static bool bright(const struct raster *s)
+{
+    return s->background.r + s->background.g + s->background.b > 0.6F;
+}
+
+static struct rgb scaled(struct rgb a, float t, float plus)
+{
+    return (struct rgb){ a.r * t + plus, a.g * t + plus, a.b * t + plus };
+}
+
+/* The columns are where the camera's axes lie in the body's frame. */
+struct turn {
+    int64_t body;
+    vec3 x, y, z;
+};
+
+static vec3 into_body(quat q, vec3 a)
+{
+    quat c = { q.w, -q.x, -q.y, -q.z }, r = quat_mul(quat_mul(c, (quat){ 0, a.x, a.y, a.z }), q);
+    return v3(r.x, r.y, r.z);
+}
+
+static vec3 turned(struct turn *t, const struct raster *s, int64_t body, double x, double y,
+                   double z)
+{
+    if (t->body != body) { // neighbours mostly show the same body
+        quat q = s->q[body];
+        t->body = body;
+        t->x = into_body(q, s->right), t->y = into_body(q, s->up), t->z = into_body(q, s->toward);
+    }
+    return v3_axpy(v3_axpy(v3_scale(x, t->x), y, t->y), z, t->z);
+}
+
+static struct rgb ball_light(const struct band *b, const struct raster *s, size_t k, struct turn *t)
+{
+    const struct spot *o = &s->spot[b->what[k]];
+    struct normal n = b->n[k];
+    struct rgb own = paint_ball(s->paint, o->own, turned(t, s, o->body, n.x, -n.y, n.z));
+    double lambert = fmax(0, n.x * lamp.x + n.y * lamp.y + n.z * lamp.z);
+    double open = 1 / (1 + 2 * b->dark[k]);
+    // half way between the lamp and the viewer
+    double hz = lamp.z + 1, h = 1 / sqrt(lamp.x * lamp.x + lamp.y * lamp.y + hz * hz);
+    double shine = fmax(0, h * (n.x * lamp.x + n.y * lamp.y + n.z * hz));
+    for (int i = 0; i < 5; i++) shine *= shine; // to the 32nd
+    double light = open * (0.34 + 0.16 * fmax(0, -n.y)) + sqrt(open) * 0.72 * lambert;
+    return scaled(own, (float)light, (float)(0.16 * shine * open));
+}
+
+static struct rgb disc_light(const struct raster *s, const struct spot *o, double x, double y,
+                             struct turn *t)
+{
+    double dx = (x - o->x.x) / o->r, dy = (o->x.y - y) / o->r, d2 = dx * dx + dy * dy;
+    struct rgb own = paint_disc(s->paint, o->own, turned(t, s, o->body, dx, dy, 0));
+    double rim = 1 - fmax(0.08, s->samples * 0.7 / o->r); // a line of a pixel at least
+    return scaled(own, rim > 0 && d2 > rim * rim ? 0.25F : 0.95F - 0.2F * (float)d2, 0);
+}
+
+static struct rgb ground_shown(const struct band *b, const struct raster *s, size_t k, double x,
+                               double y)
+{
+    const struct ground *g = &s->ground[GROUND - b->what[k]];
+    double sum = 0;
+    for (int i = 0; i < 2; i++)
+        sum += floor(g->square[i][0] + g->square[i][1] * x + g->square[i][2] * y);
+    bool odd = sum - 2 * floor(0.5 * sum) > 0.5;
+    float light = bright(s) ? (odd ? 0.73F : 0.86F) : (odd ? 0.05F : 0.08F);
+    light /= 1 + 1.3F * b->dark[k];
+    return (struct rgb){ light, light, light };
+}
+
+static struct rgb sample(const struct band *b, const struct raster *s, int x, int y, struct turn *t)
+{
+    size_t k = band_at(b, x, y);
+    int64_t what = b->what[k];
+    struct rgb c = what == NOTHING  ? s->background
+                   : what <= GROUND ? ground_shown(b, s, k, x + 0.5, y + 0.5)
+                   : s->flat        ? disc_light(s, &s->spot[what], x + 0.5, y + 0.5, t)
+                                    : ball_light(b, s, k, t);
+    if (!(b->edge[k] > 0)) return c;
+    float line = bright(s) ? 0.08F : 0.4F;
+    return rgb_mix(c, (struct rgb){ line, line, line }, b->edge[k]);
+}
+
+void shade_pixels(const struct band *b, const struct raster *s, struct picture *p)
+{
+    struct turn t = { .body = -1 };
+    const int n = s->samples;
+    const float mean = 1.0F / (float)(n * n);
+    for (int row = b->y0 / n; row < b->y1 / n; row++)
+        for (int column = 0; column < p->width; column++) {
+            struct rgb sum = { 0, 0, 0 };
+            for (int y = 0; y < n; y++)
+                for (int x = 0; x < n; x++) {
+                    struct rgb c = sample(b, s, column * n + x, row * n + y, &t);
+                    // what is brighter than white counts as white, or edges would be ragged
+                    sum.r += fminf(c.r, 1), sum.g += fminf(c.g, 1), sum.b += fminf(c.b, 1);
+                }
+            unsigned char *out = p->rgb + 3 * ((size_t)row * (size_t)p->width + (size_t)column);
+            out[0] = rgb_byte(sum.r * mean);
+            out[1] = rgb_byte(sum.g * mean);
+            out[2] = rgb_byte(sum.b * mean);
+        }
+}

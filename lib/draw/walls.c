@@ -1,0 +1,180 @@
+#include "draw/walls.h"
+
+static double *at(vec3 *a, int axis)
+{
+    return axis == 0 ? &a->x : axis == 1 ? &a->y : &a->z;
+}
+
+static vec3 unit(int axis, double sign)
+{
+    return v3(axis == 0 ? sign : 0, axis == 1 ? sign : 0, axis == 2 ? sign : 0);
+}
+
+static vec3 wall_now(const struct packing *p, int i)
+{
+    return v3_axpy(p->wall[i].x, p->t, p->wall[i].v);
+}
+
+static bool near(vec3 x)
+{
+    return fabs(x.x) < WALLS_FAR && fabs(x.y) < WALLS_FAR && fabs(x.z) < WALLS_FAR;
+}
+
+static int walls_of(const struct packing *p)
+{
+    return p->walls < WALLS_PANELS ? p->walls : WALLS_PANELS;
+}
+
+/* ---- the region ---- */
+
+/* Where walls across the axis stop the bodies, below (sign 1) or above (-1); NAN: nowhere. */
+static double limit(const struct packing *p, int axis, double sign)
+{
+    double found = NAN;
+    for (int i = 0; i < walls_of(p); i++) {
+        vec3 x = wall_now(p, i);
+        if (v3_dot(p->wall[i].n, unit(axis, sign)) < 0.999 || !near(x)) continue;
+        double c = *at(&x, axis);
+        if (isnan(found) || sign * c > sign * found) found = c;
+    }
+    return found;
+}
+
+/* Between the walls; where they leave an axis open, as wide as elsewhere. */
+static bool region_of_walls(struct region *r, const struct packing *p)
+{
+    double lo[3], hi[3], size = 0;
+    bool any = false;
+    for (int k = 0; k < 3; k++) {
+        lo[k] = limit(p, k, 1), hi[k] = limit(p, k, -1);
+        if (hi[k] > lo[k]) size = fmax(size, hi[k] - lo[k]);
+        any |= !isnan(lo[k]) || !isnan(hi[k]);
+    }
+    if (!(size > 0)) size = 1;
+    for (int k = 0; k < 3; k++) {
+        if (isnan(lo[k]) && isnan(hi[k])) lo[k] = -0.5 * size;
+        if (isnan(lo[k])) lo[k] = hi[k] - size;
+        if (!(hi[k] > lo[k])) hi[k] = lo[k] + size;
+        *at(&r->lo, k) = lo[k], *at(&r->hi, k) = hi[k];
+    }
+    if (p->dim == 2) r->lo.z = r->hi.z = 0;
+    return any;
+}
+
+bool region_of(struct region *r, const struct packing *p)
+{
+    const double far = 2 * WALLS_FAR;
+    r->lo = v3(far, far, far), r->hi = v3(-far, -far, -far);
+    for (int64_t i = 0; i < p->n; i++)
+        for (int k = 0; near(p->x[i]) && p->radius[i] < WALLS_FAR && k < 3; k++) {
+            double c = *at(&p->x[i], k), b = k < p->dim ? p->radius[i] : 0;
+            *at(&r->lo, k) = fmin(*at(&r->lo, k), c - b);
+            *at(&r->hi, k) = fmax(*at(&r->hi, k), c + b);
+        }
+    if (r->lo.x > r->hi.x) return region_of_walls(r, p);
+    double size = fmax(r->hi.x - r->lo.x, fmax(r->hi.y - r->lo.y, r->hi.z - r->lo.z));
+    for (int k = 0; k < p->dim; k++) {
+        // a floor goes on beside the bodies; above them there is little to see
+        double margin = size * (k == p->dim - 1 ? 0.04 : 0.25);
+        double *lo = at(&r->lo, k), *hi = at(&r->hi, k);
+        double below = limit(p, k, 1), above = limit(p, k, -1);
+        *lo = *lo - below <= size ? fmin(*lo, below) : *lo - margin;
+        *hi = above - *hi <= size ? fmax(*hi, above) : *hi + margin;
+    }
+    return true;
+}
+
+struct region region_join(struct region a, struct region b)
+{
+    return (struct region){
+        { fmin(a.lo.x, b.lo.x), fmin(a.lo.y, b.lo.y), fmin(a.lo.z, b.lo.z) },
+        { fmax(a.hi.x, b.hi.x), fmax(a.hi.y, b.hi.y), fmax(a.hi.z, b.hi.z) },
+    };
+}
+
+/* ---- walls in it ---- */
+
+/* A convex polygon; which wall cut its side from corner k to the next, or -1: the region. */
+struct polygon {
+    int count;
+    vec3 p[WALLS_CORNERS];
+    int cut[WALLS_CORNERS];
+};
+
+/* Keeps what has n . x >= c [Sutherland and Hodgman]. */
+static void clip(struct polygon *g, vec3 n, double c, int who)
+{
+    struct polygon out = { .count = 0 };
+    for (int k = 0; k < g->count; k++) {
+        vec3 a = g->p[k], b = g->p[(k + 1) % g->count];
+        double da = v3_dot(n, a) - c, db = v3_dot(n, b) - c;
+        if (da >= 0) out.p[out.count] = a, out.cut[out.count++] = g->cut[k];
+        if ((da >= 0) == (db >= 0) || out.count + 2 > WALLS_CORNERS) continue;
+        out.p[out.count] = v3_axpy(a, da / (da - db), v3_sub(b, a));
+        out.cut[out.count++] = da >= 0 ? who : g->cut[k];
+    }
+    *g = out;
+}
+
+/* With some room, for walls often lie just in the region's sides. */
+static void clip_region(struct polygon *g, const struct region *r, vec3 middle, double size,
+                        int dim)
+{
+    double room = 1e-6 * size;
+    vec3 lo = v3_sub(r->lo, middle), hi = v3_sub(r->hi, middle);
+    for (int k = 0; k < dim; k++) {
+        clip(g, unit(k, 1), *at(&lo, k) - room, -1);
+        clip(g, unit(k, -1), -*at(&hi, k) - room, -1);
+    }
+}
+
+/* A square, or in the plane a stroke, of wall i that reaches beyond the region; m from its middle. */
+static struct polygon wall_whole(const struct packing *p, int i, vec3 middle, double size)
+{
+    vec3 n = p->wall[i].n, x = v3_sub(wall_now(p, i), middle);
+    vec3 foot = v3_scale(v3_dot(n, x), n);
+    vec3 s = p->dim == 2       ? v3(0, 0, 1)
+             : fabs(n.x) < 0.7 ? v3_cross(n, v3(1, 0, 0))
+                               : v3_cross(n, v3(0, 1, 0));
+    s = v3_scale(size / v3_norm(s), s);
+    vec3 t = v3_cross(n, s);
+    if (p->dim == 2) return (struct polygon){ 2, { v3_sub(foot, t), v3_add(foot, t) }, { -1, -1 } };
+    struct polygon g = { .count = 4, .cut = { -1, -1, -1, -1 } };
+    g.p[0] = v3_sub(v3_sub(foot, s), t), g.p[1] = v3_sub(v3_add(foot, s), t);
+    g.p[2] = v3_add(v3_add(foot, s), t), g.p[3] = v3_add(v3_sub(foot, s), t);
+    return g;
+}
+
+static void keep(struct walls *b, const struct packing *p, int i, const struct polygon *g,
+                 vec3 middle)
+{
+    bool stroke = p->dim == 2;
+    for (int k = 0; k < (stroke ? 1 : g->count); k++) {
+        // an edge of two walls is a side of both: the first one has it
+        if ((!stroke && g->cut[k] < i) || b->edges == WALLS_EDGES) continue;
+        b->edge[b->edges++] =
+            (struct edge){ v3_add(g->p[k], middle), v3_add(g->p[(k + 1) % g->count], middle) };
+    }
+    if (stroke || g->count < 3 || p->wall[i].n.z < 0.5) return;
+    struct panel *f = &b->panel[b->panels++];
+    *f = (struct panel){ .n = p->wall[i].n, .origin = wall_now(p, i), .corners = g->count };
+    for (int k = 0; k < g->count; k++) f->corner[k] = v3_add(g->p[k], middle);
+}
+
+void walls_build(struct walls *b, const struct packing *p, const struct region *r)
+{
+    b->panels = b->edges = 0;
+    vec3 middle = v3_scale(0.5, v3_add(r->lo, r->hi));
+    double size = v3_norm(v3_sub(r->hi, r->lo));
+    for (int i = 0; i < walls_of(p); i++) {
+        if (!near(wall_now(p, i))) continue;
+        struct polygon g = wall_whole(p, i, middle, size);
+        clip_region(&g, r, middle, size, p->dim);
+        for (int j = 0; j < walls_of(p) && g.count; j++) {
+            vec3 n = p->wall[j].n, x = wall_now(p, j);
+            if (j == i || !near(x)) continue;
+            clip(&g, n, v3_dot(n, v3_sub(x, middle)) - 1e-9 * size, j);
+        }
+        if (g.count > 1) keep(b, p, i, &g, middle);
+    }
+}

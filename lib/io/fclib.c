@@ -1,0 +1,167 @@
+/* io/fclib.c: see io/fclib.h. What is read; what is written is in io/fclib_write.c. */
+#include "io/fclib.h"
+#include "io/h5.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A problem as its file has it: local W, q; global M, H, G, f, w, b. */
+struct raw {
+    int d;
+    int64_t n; /* contacts */
+    struct sparse W;
+    struct global global;
+    double *mu, *q; /* [n], [n d] (w of a global one) */
+};
+
+/* group/name */
+static const char *join(char path[64], const char *group, const char *name)
+{
+    snprintf(path, 64, "%s/%s", group, name);
+    return path;
+}
+
+/* count finite numbers; count < 0: however many there are, told in *found. To be freed. */
+static double *read_vector(hid_t file, const char *group, const char *name, int64_t count,
+                           int64_t *found, struct why *why)
+{
+    char path[64];
+    hsize_t length;
+    double *x = h5_read_all(file, join(path, group, name), H5T_NATIVE_DOUBLE, &length, why);
+    if (!x) return NULL;
+    if (count >= 0 && length != (hsize_t)count)
+        why_set(why, EX_DATAERR, "%s: %llu values, %lld are wanted", path,
+                (unsigned long long)length, (long long)count);
+    for (hsize_t k = 0; k < length && !why->status; k++)
+        if (!isfinite(x[k]))
+            why_set(why, EX_DATAERR, "%s: entry %llu is %g", path, (unsigned long long)k, x[k]);
+    if (found) *found = (int64_t)length;
+    if (!why->status) return x;
+    free(x);
+    return NULL;
+}
+
+static int stored_read(struct stored *S, hid_t file, const char *group, struct why *why)
+{
+    char path[64];
+    int32_t *const number[] = { &S->m, &S->n, &S->nz, &S->nzmax };
+    const char *const name[] = { "m", "n", "nz", "nzmax" };
+    for (int k = 0; k < 4; k++)
+        if (h5_read(file, join(path, group, name[k]), H5T_NATIVE_INT32, 1, number[k], why))
+            return why->status;
+    hsize_t np = 0, ni = 0, nx = 0;
+    S->p = h5_read_all(file, join(path, group, "p"), H5T_NATIVE_INT32, &np, why);
+    if (S->p) S->i = h5_read_all(file, join(path, group, "i"), H5T_NATIVE_INT32, &ni, why);
+    if (S->i) S->x = h5_read_all(file, join(path, group, "x"), H5T_NATIVE_DOUBLE, &nx, why);
+    S->np = np, S->ni = ni, S->nx = nx;
+    return S->x ? 0 : why->status;
+}
+
+/* An m x n matrix */
+static int read_matrix(struct sparse *A, hid_t file, const char *group, int64_t m, int64_t n,
+                       struct why *why)
+{
+    struct stored S = { 0 };
+    int e = stored_read(&S, file, group, why);
+    if (!e && (S.m != m || S.n != n))
+        e = why_set(why, EX_DATAERR, "%s: is %d x %d, the vectors want %lld x %lld", group, S.m,
+                    S.n, (long long)m, (long long)n);
+    if (!e) e = sparse_unpack(A, &S, group, why);
+    stored_free(&S);
+    return e;
+}
+
+/* spacedim and mu, which every problem has */
+static int read_law(struct raw *R, hid_t file, const char *group, struct why *why)
+{
+    char path[64];
+    int32_t d;
+    if (h5_read(file, join(path, group, "spacedim"), H5T_NATIVE_INT32, 1, &d, why))
+        return why->status;
+    if (d != 2 && d != 3) return why_set(why, EX_DATAERR, "%s: is %d, not 2 or 3", path, d);
+    R->d = d;
+    if (!(R->mu = read_vector(file, group, "vectors/mu", -1, &R->n, why))) return why->status;
+    if (R->n > INT32_MAX / d)
+        return why_set(why, EX_DATAERR, "%s/vectors/mu: too many contacts", group);
+    for (int64_t c = 0; c < R->n; c++)
+        if (R->mu[c] < 0)
+            return why_set(why, EX_DATAERR, "%s/vectors/mu: entry %lld is %g", group, (long long)c,
+                           R->mu[c]);
+    return 0;
+}
+
+static int read_local(struct raw *R, hid_t file, struct why *why)
+{
+    const char *group = "/fclib_local";
+    if (h5_has(file, "/fclib_local/V") || h5_has(file, "/fclib_local/R"))
+        return why_set(why, EX_DATAERR, "%s: a mixed problem (V, R, s), which is not solved here",
+                       group);
+    if (read_law(R, file, group, why)) return why->status;
+    int64_t nd = R->n * R->d;
+    if (!(R->q = read_vector(file, group, "vectors/q", nd, NULL, why))) return why->status;
+    return read_matrix(&R->W, file, "/fclib_local/W", nd, nd, why);
+}
+
+static int read_global(struct raw *R, hid_t file, struct why *why)
+{
+    const char *group = "/fclib_global";
+    struct global *P = &R->global;
+    if (read_law(R, file, group, why)) return why->status;
+    int64_t nd = R->n * R->d;
+    if (!(R->q = read_vector(file, group, "vectors/w", nd, NULL, why))) return why->status;
+    if (!(P->f = read_vector(file, group, "vectors/f", -1, &P->nv, why))) return why->status;
+    if (read_matrix(&P->M, file, "/fclib_global/M", P->nv, P->nv, why)) return why->status;
+    if (read_matrix(&P->H, file, "/fclib_global/H", P->nv, nd, why)) return why->status;
+    if (!h5_has(file, "/fclib_global/G")) return 0;
+    if (!(P->b = read_vector(file, group, "vectors/b", -1, &P->nl, why))) return why->status;
+    if (P->nl > INT32_MAX - P->nv)
+        return why_set(why, EX_DATAERR, "%s/vectors/b: too many unknowns", group);
+    return read_matrix(&P->G, file, "/fclib_global/G", P->nv, P->nl, why);
+}
+
+static void raw_free(struct raw *R)
+{
+    sparse_free(&R->W);
+    global_free(&R->global);
+    free(R->mu);
+    free(R->q);
+}
+
+bool fclib_in(int64_t file)
+{
+    return h5_has(file, "/fclib_global") || h5_has(file, "/fclib_local");
+}
+
+int fclib_read(struct fclib *F, int64_t file, struct why *why)
+{
+    struct raw R = { 0 };
+    *F = (struct fclib){ .global = h5_has(file, "/fclib_global") }; // libfclib asks in this order
+    if (!fclib_in(file))
+        return why_set(why, EX_DATAERR, "/fclib_local: there is none, and no /fclib_global");
+    int e = F->global ? read_global(&R, file, why) : read_local(&R, file, why);
+    if (!e && F->global) e = condense(&R.global, &F->motion, &R.W, R.q, why);
+    if (!e) e = delassus_init(&F->W, R.d, R.n, R.W.count, R.W.row, R.W.col, R.W.x, R.q, R.mu, why);
+    raw_free(&R);
+    if (e) fclib_free(F);
+    return e;
+}
+
+int fclib_load_solution(const struct fclib *F, int64_t file, double *r, struct why *why)
+{
+    int64_t nd = F->W.n * F->W.d;
+    memset(r, 0, (size_t)nd * sizeof *r);
+    if (!h5_has(file, "/solution/r")) return 0;
+    double *stored = read_vector(file, "/solution", "r", nd, NULL, why);
+    if (!stored) return why->status;
+    memcpy(r, stored, (size_t)nd * sizeof *r);
+    free(stored);
+    return 0;
+}
+
+void fclib_free(struct fclib *F)
+{
+    delassus_free(&F->W);
+    motion_free(&F->motion);
+    *F = (struct fclib){ 0 };
+}

@@ -1,0 +1,147 @@
+/* io/fclib_write.c: see io/fclib.h. Solutions, and the problem of a packing, written. */
+#include "io/fclib.h"
+#include "io/h5.h"
+#include "problem/assembly.h"
+
+#include <stdlib.h>
+
+static int short_of_memory(struct why *why)
+{
+    return why_set(why, EX_SOFTWARE, "out of memory for an FCLIB problem");
+}
+
+/* group/name, `count` values of a native type */
+static int write_array(hid_t file, const char *group, const char *name, hid_t type, int64_t count,
+                       const void *x, struct why *why)
+{
+    char path[64];
+    hsize_t length = (hsize_t)count;
+    snprintf(path, sizeof path, "%s/%s", group, name);
+    return h5_write(file, path, type, 1, &length, x, NULL, why);
+}
+
+static int write_ints(hid_t file, const char *group, const char *name, int64_t count,
+                      const int32_t *x, struct why *why)
+{
+    return write_array(file, group, name, H5T_NATIVE_INT32, count, x, why);
+}
+
+static int write_vector(hid_t file, const char *group, const char *name, int64_t count,
+                        const double *x, struct why *why)
+{
+    return write_array(file, group, name, H5T_NATIVE_DOUBLE, count, x, why);
+}
+
+static int drop(hid_t file, const char *path, struct why *why)
+{
+    if (!h5_has(file, path) || H5Ldelete(file, path, H5P_DEFAULT) >= 0) return 0;
+    return why_set(why, EX_IOERR, "%s: cannot be replaced", path);
+}
+
+int fclib_store_solution(const struct fclib *F, int64_t file, const double *u, const double *r,
+                         struct why *why)
+{
+    const char *group = "/solution";
+    int64_t nd = F->W.n * F->W.d;
+    double *v = NULL;
+    if (drop(file, group, why)) return why->status;
+    int64_t nv = F->motion.nv, nl = F->motion.nl;
+    if (F->global) {
+        if (!(v = malloc((size_t)(nv + nl + 1) * sizeof *v))) return short_of_memory(why);
+        motion_of(&F->motion, r, v);
+    }
+    int e = write_vector(file, group, "u", nd, u, why);
+    if (!e) e = write_vector(file, group, "r", nd, r, why);
+    if (!e && nv) e = write_vector(file, group, "v", nv, v, why);
+    if (!e && nl) e = write_vector(file, group, "l", nl, v + nv, why);
+    free(v);
+    return e;
+}
+
+/* A compressed matrix, with libfclib's fields */
+static int stored_write(const struct stored *A, hid_t file, const char *group, struct why *why)
+{
+    int32_t lines = A->nz == -2 ? A->m : A->n, count = A->p[lines];
+    int e = write_ints(file, group, "m", 1, &A->m, why);
+    if (!e) e = write_ints(file, group, "n", 1, &A->n, why);
+    if (!e) e = write_ints(file, group, "nz", 1, &A->nz, why);
+    if (!e) e = write_ints(file, group, "nzmax", 1, &count, why);
+    if (!e) e = write_ints(file, group, "p", lines + 1LL, A->p, why);
+    if (!e) e = write_ints(file, group, "i", count, A->i, why);
+    if (!e) e = write_vector(file, group, "x", count, A->x, why);
+    return e;
+}
+
+static int write_W(const struct assembly *A, hid_t file, struct why *why)
+{
+    struct stored W;
+    int e = assembly_W(A, &W, why);
+    if (!e) e = stored_write(&W, file, "/fclib_local/W", why);
+    stored_free(&W);
+    return e;
+}
+
+static int write_MH(const struct assembly *A, hid_t file, struct why *why)
+{
+    struct stored M, H;
+    double *f;
+    int e = assembly_MH(A, &M, &H, &f, why);
+    if (!e) e = stored_write(&M, file, "/fclib_global/M", why);
+    if (!e) e = stored_write(&H, file, "/fclib_global/H", why);
+    if (!e) e = write_vector(file, "/fclib_global/vectors", "f", M.n, f, why);
+    stored_free(&M);
+    stored_free(&H);
+    free(f);
+    return e;
+}
+
+static int write_info(hid_t file, const char *group, struct why *why)
+{
+    static const char *const text[][2] = {
+        { "title", "nsd: one time step of a packing" },
+        { "description",
+          "Contact by contact (n, t1, t2), in the plane (n, t); SI units, reactions are "
+          "impulses in N s. Velocities are u + E u^-, E the coefficients of "
+          "restitution: Newton's impact law, and Coulomb's, as the law sees them." },
+        { "math_info", "W symmetric, positive semi-definite" },
+    };
+    char path[64];
+    int e = 0;
+    for (int k = 0; !e && k < 3; k++) {
+        snprintf(path, sizeof path, "%s/%s", group, text[k][0]);
+        e = h5_write_text(file, path, text[k][1], why);
+    }
+    return e;
+}
+
+/* Everything but the matrices; what stood there of an older problem goes. */
+static int write_vectors(const struct assembly *A, bool global, hid_t file, struct why *why)
+{
+    static const char *const old[] = { "/fclib_local", "/fclib_global", "/solution", "/guesses" };
+    const char *group = global ? "/fclib_global" : "/fclib_local";
+    const int32_t d = A->p->d;
+    int64_t n = A->p->n;
+    int e = 0;
+    for (int k = 0; !e && k < 4; k++) e = drop(file, old[k], why);
+    if (!e) e = write_info(file, global ? "/fclib_global/info" : "/fclib_local/info", why);
+    if (!e) e = write_ints(file, group, "spacedim", 1, &d, why);
+    double *mu = malloc((size_t)(n + 1) * sizeof *mu);
+    if (!mu) return short_of_memory(why);
+    for (int64_t c = 0; c < n; c++) mu[c] = slot_bundle(A->p, A->row[c])->mu[slot_lane(A->row[c])];
+    if (!e) e = write_vector(file, group, "vectors/mu", n, mu, why);
+    if (!e && global) e = write_vector(file, group, "vectors/w", n * d, A->w, why);
+    if (!e && !global) e = write_vector(file, group, "vectors/q", n * d, A->q, why);
+    free(mu);
+    return e;
+}
+
+int fclib_write_problem(const struct problem *p, bool global, int64_t file, struct why *why)
+{
+    if (!p->body) return why_set(why, EX_SOFTWARE, "a problem given by W has no bodies to write");
+    struct assembly A;
+    int e = assembly_init(&A, p, why);
+    if (!e) e = write_vectors(&A, global, file, why);
+    if (!e) e = global ? write_MH(&A, file, why) : write_W(&A, file, why);
+    assembly_free(&A);
+    return e;
+}

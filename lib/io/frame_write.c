@@ -1,0 +1,211 @@
+#include "io/frame_write.h"
+
+#include "io/copy.h"
+#include "io/h5.h"
+#include "io/stream.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A value of HOME/step (i64) or HOME/time (f64, s), which the elements of the table share, by hard
+   links. */
+static int put_clock(struct table_write *s, const char *home, bool step, const void *value,
+                     const char *where, const struct column *c, struct why *why)
+{
+    const hsize_t one = 1;
+    const char *name = step ? "step" : "time";
+    char from[80], to[80];
+    snprintf(from, sizeof from, "%s/%s", home, name);
+    bool linked = table_write_grows(s, from);
+    if (table_write_rows(s, from, step ? COLUMN_I64 : COLUMN_F64, 1, &one, CHUNK_FRAMES, value,
+                         step ? NULL : "s", why))
+        return why->status;
+    for (; !linked && c->name; c++) {
+        snprintf(to, sizeof to, "%s/%s/%s", where, c->name, name);
+        if (h5_has(s->file, to)) continue; // it is the home
+        if (H5Lcreate_hard(s->file, from, s->file, to, H5P_DEFAULT, H5P_DEFAULT) < 0)
+            return why_set(why, EX_IOERR, "%s: cannot be linked", to);
+    }
+    return 0;
+}
+
+/* ---- what does not change from frame to frame ---- */
+
+static int put_nsd(hid_t file, const struct frame *f, struct why *why)
+{
+    const struct packing *p = &f->packing;
+    const int h5md[2] = { 1, 1 };
+    int version = DOCUMENT_VERSION;
+    if (h5_group(file, "/h5md/author", why) || h5_group(file, "/h5md/creator", why) ||
+        h5_attr(file, "/h5md", "version", H5T_NATIVE_INT, 2, h5md, why) ||
+        h5_attr_text(file, "/h5md/author", "name", "", why) ||
+        h5_attr_text(file, "/h5md/creator", "name", "nsd", why) ||
+        h5_attr_text(file, "/h5md/creator", "version", NSD_VERSION, why) ||
+        h5_group(file, "/nsd", why) ||
+        h5_attr(file, "/nsd", "version", H5T_NATIVE_INT, -1, &version, why) ||
+        h5_attr_text(file, "/nsd", "kind", f->foreign ? "problem" : "packing", why) ||
+        h5_write_text(file, "/nsd/history", f->history ? f->history : "", why))
+        return why->status;
+    if (f->foreign) return 0;
+    const double g[3] = { p->g.x, p->g.y, p->g.z };
+    int64_t seed = (int64_t)p->seed;
+    if (h5_attr(file, "/nsd", "dim", H5T_NATIVE_INT, -1, &p->dim, why) ||
+        h5_attr(file, "/nsd", "dt", H5T_NATIVE_DOUBLE, -1, &p->dt, why) ||
+        h5_attr(file, "/nsd", "theta", H5T_NATIVE_DOUBLE, -1, &p->theta, why) ||
+        h5_attr(file, "/nsd", "gravity", H5T_NATIVE_DOUBLE, 3, g, why) ||
+        h5_attr(file, "/nsd", "seed", H5T_NATIVE_INT64, -1, &seed, why))
+        return why->status;
+    return p->scene ? h5_write_text(file, "/nsd/scene", p->scene, why) : 0;
+}
+
+static int put_material(hid_t file, const struct packing *p, struct why *why)
+{
+    const hsize_t square[2] = { (hsize_t)p->kinds, (hsize_t)p->kinds };
+    for (const struct column *c = layout_material; c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "/nsd/material/%s", c->name);
+        if (h5_write(file, path, H5T_NATIVE_DOUBLE, 2, square, column_array(c, p), c->units, why))
+            return why->status;
+    }
+    size_t length = 1;
+    for (int32_t k = 0; k < p->kinds; k++) length += strlen(p->kind_name[k]) + 1;
+    char *names = calloc(length, 1);
+    if (!names) return why_set(why, EX_SOFTWARE, "no memory for the kinds");
+    for (int32_t k = 0; k < p->kinds; k++) strcat(strcat(names, p->kind_name[k]), "\n");
+    int e = h5_attr_text(file, "/nsd/material", "kinds", names, why);
+    free(names);
+    return e;
+}
+
+/* H5MD's box: nothing is periodic, so it has no edges. */
+static int put_box(hid_t file, struct why *why)
+{
+    const int dimension = 3; // positions have three components in the plane too
+    const char none[3][5] = { "none", "none", "none" };
+    const char *box = "/particles/all/box";
+    if (h5_group(file, box, why) ||
+        h5_attr(file, box, "dimension", H5T_NATIVE_INT, -1, &dimension, why))
+        return why->status;
+    hid_t text = H5Tcopy(H5T_C_S1);
+    H5Tset_size(text, sizeof none[0]);
+    int e = h5_attr(file, box, "boundary", text, 3, none, why);
+    H5Tclose(text);
+    return e;
+}
+
+static int put_bodies(struct table_write *s, const struct packing *p, struct why *why)
+{
+    const hsize_t n = (hsize_t)p->n;
+    for (const struct column *c = layout_bodies; c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "/particles/all/%s", c->name);
+        if (h5_write(s->file, path, column_native(c->type), 1, &n, column_array(c, p), c->units,
+                     why))
+            return why->status;
+    }
+    bool growing = s->growing;
+    s->growing = false; // walls are the same in every frame
+    int e = table_write_columns(s, "/walls/plane", "", layout_walls, p->walls, p->wall,
+                                sizeof *p->wall, 0, why);
+    s->growing = growing;
+    return e;
+}
+
+/* ---- a frame ---- */
+
+static int put_motion(struct table_write *s, const struct packing *p, struct why *why)
+{
+    for (const struct column *c = layout_motion; c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
+        const hsize_t shape[3] = { 1, (hsize_t)p->n, (hsize_t)c->width };
+        if (table_write_rows(s, path, c->type, 3, shape, 1, column_array(c, p), c->units, why))
+            return why->status;
+    }
+    return 0;
+}
+
+static int put_frames(struct table_write *s, const struct contacts *t, struct why *why)
+{
+    const hsize_t shape[3] = { (hsize_t)t->n, 3, 3 };
+    vec3(*frame)[3] = malloc((size_t)(t->n + 1) * sizeof *frame);
+    if (!frame) return why_set(why, EX_SOFTWARE, "no memory for /contacts/frame");
+    for (int64_t i = 0; i < t->n; i++) {
+        const struct contact *c = &t->c[i];
+        frame[i][0] = c->n, frame[i][1] = c->t1, frame[i][2] = contact_t2(c);
+    }
+    int e = table_write_rows(s, "/contacts/frame", COLUMN_F64, 3, shape, CHUNK_CONTACTS, frame, "1",
+                             why);
+    free(frame);
+    return e;
+}
+
+static int put_contacts(struct table_write *s, const struct frame *f, struct why *why)
+{
+    bool first = !table_write_grows(s, "/contacts/start");
+    const hsize_t one = 1;
+    const struct contacts *t = &f->contacts;
+    if (table_write_rows(s, "/contacts/start", COLUMN_I64, 1, &one, CHUNK_FRAMES, &s->contacts,
+                         NULL, why) ||
+        table_write_rows(s, "/contacts/count", COLUMN_I64, 1, &one, CHUNK_FRAMES, &t->n, NULL,
+                         why) ||
+        table_write_columns(s, "/contacts", "", layout_contacts, t->n, t->c, sizeof *t->c,
+                            CHUNK_CONTACTS, why) ||
+        put_frames(s, t, why) ||
+        (t->found && table_write_columns(s, "/contacts", "", layout_found, t->n, t->found,
+                                         sizeof *t->found, CHUNK_CONTACTS, why)) ||
+        table_write_rows(s, "/contacts/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &f->packing.step,
+                         NULL, why))
+        return why->status;
+    if (s->growing) s->contacts += t->n;
+    int moved = f->moved;
+    return !first ? 0 : h5_attr(s->file, "/contacts", "moved", H5T_NATIVE_INT, -1, &moved, why);
+}
+
+static int put_report(struct table_write *s, const struct report *rep, struct why *why)
+{
+    const char *solver = "/observables/solver";
+    bool first = !table_write_grows(s, "/observables/solver/eps/value");
+    if (table_write_columns(s, solver, "/value", layout_report, 1, rep, sizeof *rep, CHUNK_FRAMES,
+                            why) ||
+        put_clock(s, solver, true, &rep->step, solver, layout_report, why) ||
+        put_clock(s, solver, false, &rep->t, solver, layout_report, why))
+        return why->status;
+    if (first &&
+        (h5_attr_text(s->file, solver, "method", rep->method, why) ||
+         h5_attr_text(s->file, solver, "criterion", criterion_name[rep->criterion], why) ||
+         h5_attr(s->file, solver, "eps", H5T_NATIVE_DOUBLE, -1, &rep->eps, why) ||
+         h5_attr_text(s->file, solver, "options", rep->options ? rep->options : "{}", why)))
+        return why->status;
+    if (!rep->history || s->growing) return 0;
+    const hsize_t shape[2] = { (hsize_t)rep->sweeps, 5 };
+    return h5_write(s->file, "/observables/solver/history", H5T_NATIVE_DOUBLE, 2, shape,
+                    rep->history, "1", why);
+}
+
+int frame_write_static(struct table_write *s, const struct frame *f, struct why *why)
+{
+    if (put_nsd(s->file, f, why)) return why->status;
+    if (f->packed && (put_material(s->file, &f->packing, why) || put_box(s->file, why) ||
+                      put_bodies(s, &f->packing, why)))
+        return why->status;
+    return copy_unknown(s->file, f, why);
+}
+
+static const char particles[] = "/particles/all", position[] = "/particles/all/position";
+
+int frame_write_moment(struct table_write *s, const struct frame *f, struct why *why)
+{
+    if (f->packed && (put_motion(s, &f->packing, why) ||
+                      put_clock(s, position, false, &f->packing.t, particles, layout_motion, why)))
+        return why->status;
+    if (f->packed && f->detected && put_contacts(s, f, why)) return why->status;
+    return f->reported ? put_report(s, &f->report, why) : 0;
+}
+
+int frame_write_step(struct table_write *s, const struct frame *f, struct why *why)
+{
+    if (!f->packed) return 0;
+    return put_clock(s, position, true, &f->packing.step, particles, layout_motion, why);
+}

@@ -1,0 +1,117 @@
+/*
+ * io/layout.h: where a document keeps what: one table a group, read by io/frame_read.c and written by io/frame_write.c.
+ * nsd-format(5) is the same in words.
+ */
+#ifndef NSD_LAYOUT_H
+#define NSD_LAYOUT_H
+
+#include "io/frame.h"
+
+#include <hdf5.h>
+#include <stddef.h>
+
+enum column_type { COLUMN_F64, COLUMN_I64, COLUMN_I32, COLUMN_I8 };
+
+static inline hid_t column_native(enum column_type t)
+{
+    return t == COLUMN_F64   ? H5T_NATIVE_DOUBLE
+           : t == COLUMN_I64 ? H5T_NATIVE_INT64
+           : t == COLUMN_I32 ? H5T_NATIVE_INT32
+                             : H5T_NATIVE_INT8;
+}
+
+static inline size_t column_size(enum column_type t)
+{
+    return t == COLUMN_I8 ? 1 : t == COLUMN_I32 ? 4 : 8;
+}
+
+struct column {
+    const char *name, *units;
+    enum column_type type;
+    int width;     /* numbers in a row */
+    size_t offset; /* in its struct: of the numbers, or of the pointer to them */
+};
+
+/* /particles/all/NAME/value [F][N][width]: pointers in struct packing */
+static const struct column layout_motion[] = {
+    { "position", "m", COLUMN_F64, 3, offsetof(struct packing, x) },
+    { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct packing, v) },
+    { "angular_velocity", "rad s-1", COLUMN_F64, 3, offsetof(struct packing, w) },
+    { "orientation", "1", COLUMN_F64, 4, offsetof(struct packing, q) },
+    { 0 },
+};
+
+/* /particles/all/NAME [N]: pointers in struct packing */
+static const struct column layout_bodies[] = {
+    { "radius", "m", COLUMN_F64, 1, offsetof(struct packing, radius) },
+    { "mass", "kg", COLUMN_F64, 1, offsetof(struct packing, mass) },
+    { "inertia", "kg m2", COLUMN_F64, 1, offsetof(struct packing, inertia) },
+    { "id", "1", COLUMN_I32, 1, offsetof(struct packing, id) },
+    { "species", "1", COLUMN_I32, 1, offsetof(struct packing, kind) },
+    { 0 },
+};
+
+/* /walls/plane/NAME [walls][width]: members of struct wall */
+static const struct column layout_walls[] = {
+    { "point", "m", COLUMN_F64, 3, offsetof(struct wall, x) },
+    { "normal", "1", COLUMN_F64, 3, offsetof(struct wall, n) },
+    { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct wall, v) },
+    { "species", "1", COLUMN_I32, 1, offsetof(struct wall, kind) },
+    { 0 },
+};
+
+/* /nsd/material/NAME [kinds][kinds]: pointers in struct packing */
+static const struct column layout_material[] = {
+    { "mu", "1", COLUMN_F64, 1, offsetof(struct packing, mu) },
+    { "en", "1", COLUMN_F64, 1, offsetof(struct packing, en) },
+    { "et", "1", COLUMN_F64, 1, offsetof(struct packing, et) },
+    { 0 },
+};
+
+/* /contacts/NAME [S][width]: members of struct contact; its frame goes by itself */
+static const struct column layout_contacts[] = {
+    { "body", "1", COLUMN_I32, 2, offsetof(struct contact, a) },
+    { "point", "m", COLUMN_F64, 3, offsetof(struct contact, x) },
+    { "gap", "m", COLUMN_F64, 1, offsetof(struct contact, gap) },
+    { "mu", "1", COLUMN_F64, 1, offsetof(struct contact, mu) },
+    { "en", "1", COLUMN_F64, 1, offsetof(struct contact, en) },
+    { "et", "1", COLUMN_F64, 1, offsetof(struct contact, et) },
+    { 0 },
+};
+
+/* /contacts/NAME [S][width] where they are solved: members of struct found */
+static const struct column layout_found[] = {
+    { "reaction", "N s", COLUMN_F64, 3, offsetof(struct found, r) },
+    { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct found, u) },
+    { "status", "1", COLUMN_I8, 1, offsetof(struct found, status) },
+    { 0 },
+};
+
+/* /observables/solver/NAME/value [F][width]: members of struct report. eps: eps_glob, motion, proj,
+   bipotential, penetration. */
+static const struct column layout_report[] = {
+    { "contacts", "1", COLUMN_I64, 1, offsetof(struct report, err.contacts) },
+    { "sweeps", "1", COLUMN_I32, 1, offsetof(struct report, sweeps) },
+    { "converged", "1", COLUMN_I8, 1, offsetof(struct report, converged) },
+    { "eps", "1", COLUMN_F64, 5, offsetof(struct report, err.paper) },
+    { "eps_scaled", "1", COLUMN_F64, 5, offsetof(struct report, err.scaled) },
+    { "natural", "1", COLUMN_F64, 1, offsetof(struct report, err.natural) },
+    { "natural_siconos", "1", COLUMN_F64, 1, offsetof(struct report, err.natural_siconos) },
+    { "natural_q", "1", COLUMN_F64, 1, offsetof(struct report, err.natural_q) },
+    { "max_penetration", "m s-1", COLUMN_F64, 1, offsetof(struct report, err.max_penetration) },
+    { "max_penetration_true", "m s-1", COLUMN_F64, 1,
+      offsetof(struct report, err.max_penetration_true) },
+    { "max_overlap", "m", COLUMN_F64, 1, offsetof(struct report, err.max_overlap) },
+    { "newton", "1", COLUMN_I64, 1, offsetof(struct report, newton) },
+    { "safeguarded", "1", COLUMN_I64, 1, offsetof(struct report, safeguarded) },
+    { "gave_up", "1", COLUMN_I64, 1, offsetof(struct report, gave_up) },
+    { 0 },
+};
+
+/* The array that a struct has a pointer to in this column */
+void *column_array(const struct column *, const void *structure);
+/* Numbers of a column out of, or into, an array of structs. */
+void column_gather(const struct column *, int64_t n, const void *structs, size_t stride, void *out);
+void column_scatter(const struct column *, int64_t n, const void *in, void *structs, size_t stride);
+
+#endif

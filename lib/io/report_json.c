@@ -1,0 +1,77 @@
+#include "io/report_json.h"
+
+#include <math.h>
+#include <stdio.h>
+
+json_t *json_number(double x)
+{
+    return isfinite(x) ? json_real(x) : json_null();
+}
+
+json_t *json_numbers(const double *x, int64_t n)
+{
+    json_t *a = json_array();
+    for (int64_t i = 0; i < n; i++) json_array_append_new(a, json_number(x[i]));
+    return a;
+}
+
+json_t *json_vec(vec3 v)
+{
+    const double x[3] = { v.x, v.y, v.z };
+    return json_numbers(x, 3);
+}
+
+static void set_terms(json_t *j, const struct terms *t)
+{
+    json_object_set_new(j, "eps_glob", json_number(t->eps_glob));
+    json_object_set_new(j, "motion", json_number(t->motion));
+    json_object_set_new(j, "proj", json_number(t->proj));
+    json_object_set_new(j, "bipotential", json_number(t->bipotential));
+    json_object_set_new(j, "penetration", json_number(t->penetration));
+}
+
+static void set_err(json_t *j, const struct err *e)
+{
+    json_t *scaled = json_object();
+    json_object_set_new(j, "contacts", json_integer(e->contacts));
+    set_terms(j, &e->paper);
+    set_terms(scaled, &e->scaled);
+    json_object_set_new(j, "scaled", scaled);
+    json_object_set_new(j, "max_penetration", json_number(e->max_penetration));
+    json_object_set_new(j, "max_penetration_true", json_number(e->max_penetration_true));
+    json_object_set_new(j, "max_overlap", json_number(e->max_overlap));
+    json_object_set_new(j, "natural", json_number(e->natural));
+    json_object_set_new(j, "natural_siconos", json_number(e->natural_siconos));
+    json_object_set_new(j, "natural_q", json_number(e->natural_q));
+}
+
+json_t *json_err(const struct err *e)
+{
+    json_t *j = json_object();
+    set_err(j, e);
+    return j;
+}
+
+json_t *json_report(const struct report *r)
+{
+    json_t *j = json_object();
+    json_object_set_new(j, "step", json_integer(r->step));
+    json_object_set_new(j, "time", json_number(r->t));
+    json_object_set_new(j, "method", json_string(r->method));
+    set_err(j, &r->err);
+    json_object_set_new(j, "criterion", json_string(criterion_name[r->criterion]));
+    json_object_set_new(j, "eps", json_number(r->eps));
+    json_object_set_new(j, "sweeps", json_integer(r->sweeps));
+    json_object_set_new(j, "converged", json_boolean(r->converged));
+    json_object_set_new(j, "newton", json_integer(r->newton));
+    json_object_set_new(j, "safeguarded", json_integer(r->safeguarded));
+    json_object_set_new(j, "gave_up", json_integer(r->gave_up));
+    return j;
+}
+
+void json_line(json_t *j)
+{
+    json_dumpf(j, stdout, JSON_COMPACT);
+    putchar('\n');
+    json_decref(j);
+}

@@ -1,0 +1,253 @@
+#include "io/stream.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+static const unsigned char MAGIC[8] = "\x89NSD\r\n\x1a\n", HDF5[8] = "\x89HDF\r\n\x1a\n";
+
+enum {
+    HEADER = 64,
+    AT_VERSION = 8,
+    AT_FLAGS = 12,
+    AT_LENGTH = 16,
+    AT_CRC = 24,
+    AT_HEADER_CRC = 28,
+    LARGE = 1 << 26 /* bytes */
+};
+
+static void put(unsigned char *p, uint64_t x, int bytes)
+{
+    for (int k = 0; k < bytes; k++) p[k] = (unsigned char)(x >> (8 * k));
+}
+
+static uint64_t get(const unsigned char *p, int bytes)
+{
+    uint64_t x = 0;
+    for (int k = 0; k < bytes; k++) x |= (uint64_t)p[k] << (8 * k);
+    return x;
+}
+
+uint32_t document_crc(uint32_t crc, const void *bytes, size_t size)
+{
+    return (uint32_t)crc32_z(crc, bytes, size);
+}
+
+void document_header(unsigned char u[DOCUMENT_USERBLOCK], uint64_t length, uint32_t crc)
+{
+    memset(u, 0, DOCUMENT_USERBLOCK);
+    memcpy(u, MAGIC, sizeof MAGIC);
+    put(u + AT_VERSION, DOCUMENT_VERSION, 4);
+    put(u + AT_FLAGS, length ? 0 : DOCUMENT_UNFINISHED, 4);
+    put(u + AT_LENGTH, length, 8);
+    put(u + AT_CRC, crc, 4);
+    put(u + AT_HEADER_CRC, document_crc(0, u, AT_HEADER_CRC), 4);
+}
+
+struct stream {
+    int files, next; /* next: the file to open when the open one is done */
+    char *const *file;
+    const char *name;
+    int fd;                        /* -1: none open */
+    int64_t in_file;               /* documents of it so far */
+    unsigned char *map;            /* a regular file, whole; NULL: a pipe */
+    size_t size, at;               /* of map */
+    unsigned char *buffer, *spare; /* a pipe's document, and the one before it */
+    size_t room, spare_room;
+    unsigned char *old; /* the map of the file before */
+    size_t old_size;
+};
+
+int stream_open(struct stream **out, int files, char *const *file, struct why *why)
+{
+    struct stream *s = *out = calloc(1, sizeof *s);
+    if (!s) return why_set(why, EX_SOFTWARE, "no memory");
+    static char *const standard[] = { "-" };
+    s->files = files ? files : 1;
+    s->file = files ? file : standard;
+    s->fd = -1;
+    return 0;
+}
+
+static void file_close(struct stream *s)
+{
+    if (s->old && s->map) munmap(s->old, s->old_size);
+    if (s->map) s->old = s->map, s->old_size = s->size;
+    if (s->fd > 0) close(s->fd);
+    s->map = NULL, s->size = s->at = 0, s->fd = -1;
+}
+
+void stream_close(struct stream *s)
+{
+    if (!s) return;
+    file_close(s);
+    if (s->old) munmap(s->old, s->old_size);
+    free(s->buffer), free(s->spare);
+    free(s);
+}
+
+void stream_rest(struct stream *s)
+{
+    if (s->map && s->size > LARGE) madvise(s->map, s->size, MADV_DONTNEED); // nobody writes there
+}
+
+void stream_drop(struct stream *s)
+{
+    stream_rest(s);
+    if (s->room <= LARGE) return; // the next one will want it
+    free(s->buffer);
+    s->buffer = NULL, s->room = 0;
+}
+
+static int file_open(struct stream *s, struct why *why)
+{
+    const char *path = s->file[s->next++];
+    bool standard = !strcmp(path, "-");
+    s->name = standard ? "standard input" : path;
+    s->fd = standard ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC);
+    s->in_file = 0;
+    struct stat st;
+    if (s->fd < 0 || fstat(s->fd, &st))
+        return why_set(why, EX_NOINPUT, "%s: %s", s->name, strerror(errno));
+    if (isatty(s->fd))
+        return why_set(why, EX_USAGE,
+                       "%s is a terminal: give a FILE, or a pipe (--help tells more)", s->name);
+    if (S_ISDIR(st.st_mode)) return why_set(why, EX_NOINPUT, "%s: is a directory", s->name);
+    off_t at = S_ISREG(st.st_mode) ? lseek(s->fd, 0, SEEK_CUR) : -1;
+    if (at < 0 || st.st_size <= at) return 0; // a pipe, or nothing there
+    s->size = (size_t)st.st_size, s->at = (size_t)at;
+    s->map = mmap(NULL, s->size, PROT_READ | PROT_WRITE, MAP_PRIVATE, s->fd, 0);
+    if (s->map != MAP_FAILED) return 0;
+    s->map = NULL;
+    return why_set(why, EX_NOINPUT, "%s: %s", s->name, strerror(errno));
+}
+
+/* A pipe's next bytes, up to `want` in the buffer in all; *have < want at its end. */
+static int fill(struct stream *s, size_t *have, size_t want, struct why *why)
+{
+    while (*have < want) {
+        if (*have == s->room) { // grown as bytes come: a header's length is not believed
+            size_t room = s->room ? 2 * s->room : 1 << 16;
+            unsigned char *b = realloc(s->buffer, room);
+            if (!b) return why_set(why, EX_SOFTWARE, "%s: no memory for the document", s->name);
+            s->buffer = b, s->room = room;
+        }
+        size_t most = (want < s->room ? want : s->room) - *have;
+        ssize_t n = read(s->fd, s->buffer + *have, most);
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) return why_set(why, EX_NOINPUT, "%s: %s", s->name, strerror(errno));
+        if (n == 0) return 0;
+        *have += (size_t)n;
+    }
+    return 0;
+}
+
+/* Bytes of the document in hand: *have of those wanted are at *bytes. */
+static int peek(struct stream *s, unsigned char **bytes, size_t *have, size_t want, struct why *why)
+{
+    if (s->map) {
+        *bytes = s->map + s->at;
+        *have = s->size - s->at < want ? s->size - s->at : want;
+        return 0;
+    }
+    int status = fill(s, have, want, why);
+    *bytes = s->buffer;
+    return status;
+}
+
+static int bad(const struct stream *s, struct why *why, const char *trouble)
+{
+    if (s->in_file)
+        return why_set(why, EX_DATAERR, "%s: document %lld: %s", s->name, (long long)s->in_file + 1,
+                       trouble);
+    return why_set(why, EX_DATAERR, "%s: %s", s->name, trouble);
+}
+
+/* The document that begins with a header; its size. */
+static int own(struct stream *s, struct image *im, size_t have, struct why *why)
+{
+    const unsigned char *h = im->bytes;
+    if (have < DOCUMENT_USERBLOCK) return bad(s, why, "truncated in its header");
+    if (get(h + AT_HEADER_CRC, 4) != document_crc(0, h, AT_HEADER_CRC))
+        return bad(s, why, "damaged header (its checksum is wrong)");
+    uint64_t version = get(h + AT_VERSION, 4), length = get(h + AT_LENGTH, 8);
+    uint32_t crc = (uint32_t)get(h + AT_CRC, 4);
+    if (version > DOCUMENT_VERSION)
+        return why_set(why, EX_DATAERR, "%s: document format %llu, this nsd reads up to %d",
+                       s->name, (unsigned long long)version, DOCUMENT_VERSION);
+    im->unfinished = get(h + AT_FLAGS, 4) & DOCUMENT_UNFINISHED;
+    if (!im->unfinished && length <= DOCUMENT_USERBLOCK) return bad(s, why, "damaged header");
+    size_t want = im->unfinished ? SIZE_MAX : length;
+    if (peek(s, &im->bytes, &have, want, why)) return why->status;
+    im->size = have;
+    if (im->unfinished) return 0;
+    if (have < want)
+        return why_set(why, EX_DATAERR, "%s: document %lld: truncated, %zu of %zu bytes", s->name,
+                       (long long)s->in_file + 1, have, want);
+    if (document_crc(0, im->bytes + DOCUMENT_USERBLOCK, have - DOCUMENT_USERBLOCK) != crc)
+        return bad(s, why,
+                   "damaged: its checksum is wrong (changed on purpose? see nsd-format(5))");
+    stream_rest(s);
+    return 0;
+}
+
+/* A foreign HDF5 file: all that there is. */
+static int foreign(struct stream *s, struct image *im, size_t have, struct why *why)
+{
+    im->foreign = true;
+    if (peek(s, &im->bytes, &have, SIZE_MAX, why)) return why->status;
+    im->size = have;
+    return 0;
+}
+
+static bool is_hdf5(const unsigned char *b, size_t have)
+{
+    for (size_t at = 0; at + sizeof HDF5 <= have; at = at ? 2 * at : 512)
+        if (!memcmp(b + at, HDF5, sizeof HDF5)) return true;
+    return false;
+}
+
+/* The buffer of the document before stays as it is; the next goes into the other one. */
+static void swap_buffers(struct stream *s)
+{
+    unsigned char *b = s->buffer;
+    size_t room = s->room;
+    s->buffer = s->spare, s->room = s->spare_room;
+    s->spare = b, s->spare_room = room;
+}
+
+int stream_next(struct stream *s, struct image *im, struct why *why)
+{
+    *im = (struct image){ 0 };
+    swap_buffers(s);
+    for (;;) {
+        if (s->fd < 0) {
+            im->bytes = NULL;
+            if (s->next == s->files) return 0;
+            if (file_open(s, why)) return why->status;
+        }
+        size_t have = 0;
+        if (peek(s, &im->bytes, &have, DOCUMENT_USERBLOCK, why)) return why->status;
+        if (!have && !s->in_file) return bad(s, why, "empty, not an nsd document");
+        if (have) {
+            im->name = s->name;
+            int status;
+            if (have >= sizeof MAGIC && !memcmp(im->bytes, MAGIC, sizeof MAGIC))
+                status = own(s, im, have, why);
+            else if (!s->in_file && is_hdf5(im->bytes, have))
+                status = foreign(s, im, have, why);
+            else
+                status = bad(s, why, "neither an nsd document nor an HDF5 file");
+            s->at += im->size;
+            s->in_file++;
+            im->number = s->in_file;
+            return status;
+        }
+        file_close(s);
+    }
+}

@@ -1,0 +1,108 @@
+#include "io/table_write.h"
+
+#include "io/h5.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static hid_t create(hid_t file, const char *path, enum column_type type, int rank,
+                    const hsize_t *shape, hsize_t chunk_rows, const char *units, struct why *why)
+{
+    hsize_t empty[4] = { 0 }, most[4] = { H5S_UNLIMITED }, chunk[4] = { chunk_rows };
+    for (int k = 1; k < rank; k++) {
+        empty[k] = most[k] = shape[k];
+        chunk[k] = shape[k] < 1 ? 1 : shape[k] > CHUNK_BODIES ? CHUNK_BODIES : shape[k];
+    }
+    char parent[80];
+    snprintf(parent, sizeof parent, "%.*s", (int)(strrchr(path, '/') - path), path);
+    if (h5_group(file, parent, why)) return -1;
+    hid_t space = H5Screate_simple(rank, empty, most), plist = h5_dataset_plist();
+    hid_t disk = H5Tcopy(column_native(type));
+    H5Tset_order(disk, H5T_ORDER_LE);
+    H5Pset_chunk(plist, rank, chunk);
+    hid_t uncached = H5Pcreate(H5P_DATASET_ACCESS); // a value goes to the disk before its dimension
+    H5Pset_chunk_cache(uncached, 0, 0, 0);
+    hid_t set = H5Dcreate2(file, path, disk, space, H5P_DEFAULT, plist, uncached);
+    H5Tclose(disk), H5Pclose(plist), H5Pclose(uncached), H5Sclose(space);
+    if (set < 0) return why_set(why, EX_IOERR, "%s: cannot be made", path), -1;
+    if (!units || !h5_attr_text(file, path, "units", units, why)) return set;
+    H5Dclose(set);
+    return -1;
+}
+
+static hid_t find(const struct table_write *s, const char *path)
+{
+    for (int i = 0; i < s->count; i++)
+        if (!strcmp(s->open[i].path, path)) return s->open[i].set;
+    return -1;
+}
+
+bool table_write_grows(const struct table_write *s, const char *path)
+{
+    return find(s, path) >= 0;
+}
+
+static int append(hid_t set, enum column_type type, int rank, const hsize_t *shape,
+                  const void *data)
+{
+    hsize_t size[4], start[4] = { 0 };
+    hid_t space = H5Dget_space(set);
+    H5Sget_simple_extent_dims(space, size, NULL);
+    H5Sclose(space);
+    start[0] = size[0];
+    size[0] += shape[0];
+    if (H5Dset_extent(set, size) < 0) return -1;
+    hid_t disk = H5Dget_space(set), memory = H5Screate_simple(rank, shape, NULL);
+    H5Sselect_hyperslab(disk, H5S_SELECT_SET, start, NULL, shape, NULL);
+    bool some = H5Sget_simple_extent_npoints(memory) > 0;
+    herr_t e = some ? H5Dwrite(set, column_native(type), memory, disk, H5P_DEFAULT, data) : 0;
+    H5Sclose(memory), H5Sclose(disk);
+    return e < 0 ? -1 : 0;
+}
+
+int table_write_rows(struct table_write *s, const char *path, enum column_type type, int rank,
+                     const hsize_t *shape, hsize_t chunk_rows, const void *data, const char *units,
+                     struct why *why)
+{
+    if (!s->growing)
+        return h5_write(s->file, path, column_native(type), rank, shape, data, units, why);
+    hid_t set = find(s, path);
+    if (set < 0) {
+        if (s->count == SERIES) return why_set(why, EX_SOFTWARE, "%s: too many datasets", path);
+        set = create(s->file, path, type, rank, shape, chunk_rows, units, why);
+        if (set < 0) return why->status;
+        snprintf(s->open[s->count].path, sizeof s->open[0].path, "%s", path);
+        s->open[s->count++].set = set;
+    }
+    return append(set, type, rank, shape, data)
+               ? why_set(why, EX_IOERR, "%s: cannot be written (disk full?)", path)
+               : 0;
+}
+
+int table_write_columns(struct table_write *s, const char *where, const char *tail,
+                        const struct column *c, int64_t n, const void *structs, size_t stride,
+                        hsize_t chunk_rows, struct why *why)
+{
+    for (; c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "%s/%s%s", where, c->name, tail);
+        void *data = malloc((size_t)(n + 1) * (size_t)c->width * column_size(c->type));
+        if (!data) return why_set(why, EX_SOFTWARE, "no memory for %s", path);
+        column_gather(c, n, structs, stride, data);
+        hsize_t shape[2] = { (hsize_t)n, (hsize_t)c->width };
+        int e = table_write_rows(s, path, c->type, c->width == 1 ? 1 : 2, shape, chunk_rows, data,
+                                 c->units, why);
+        free(data);
+        if (e) return e;
+    }
+    return 0;
+}
+
+int table_write_close(struct table_write *s)
+{
+    herr_t e = 0;
+    for (int i = 0; i < s->count; i++) e |= H5Dclose(s->open[i].set);
+    s->count = 0;
+    return e < 0 ? -1 : 0;
+}

@@ -1,0 +1,282 @@
+#include "io/writer.h"
+
+#include "io/frame_write.h"
+#include "io/h5.h"
+#include "io/stream.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum {
+    AHEAD = 1 << 22,  /* bytes that a trajectory reserves, at least, where there is room */
+    LEAST_TABLE = 64, /* bytes: the head of an index of chunks has 72 */
+};
+
+/* What every frame of a trajectory shares */
+struct shared {
+    int dim;
+    int64_t n;
+    double dt, theta;
+    uint32_t crc; /* of their radii and masses */
+};
+
+struct writer {
+    int fd;
+    const char *name; /* of the output, for messages */
+    bool trajectory;  /* else a stream */
+    int disk;         /* the growing document opened anew: > gives a descriptor only to write */
+    struct table_write doc;       /* its datasets; file -1 before its first frame */
+    struct shared first;          /* of its first frame */
+    bool contacts, solved, moved; /* so far: are there any, and what they are */
+    int64_t step;                 /* of its last frame */
+};
+
+static int io_trouble(const struct writer *s, struct why *why, const char *trouble)
+{
+    return why_set(why, EX_IOERR, "%s: %s", s->name, trouble);
+}
+
+int writer_open(struct writer **out, const char *path, enum writer_kind kind, struct why *why)
+{
+    struct writer *s = *out = calloc(1, sizeof *s);
+    if (!s) return why_set(why, EX_SOFTWARE, "no memory");
+    h5_start();
+    s->doc.file = s->disk = -1;
+    s->name = path ? path : "standard output";
+    s->fd = path ? open(path, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666) : STDOUT_FILENO;
+    if (s->fd < 0) return io_trouble(s, why, strerror(errno));
+    if (isatty(s->fd))
+        return why_set(why, EX_USAGE,
+                       "%s is a terminal: documents are binary, use > FILE or a pipe", s->name);
+    struct stat st;
+    bool own = !fstat(s->fd, &st) && S_ISREG(st.st_mode) && !st.st_size &&
+               !(fcntl(s->fd, F_GETFL) & O_APPEND);
+    char again[40];
+    snprintf(again, sizeof again, "/proc/self/fd/%d", s->fd);
+    if (own && kind == WRITER_TRAJECTORY) s->disk = open(again, O_RDWR | O_CLOEXEC);
+    s->trajectory = s->disk >= 0;
+    return 0;
+}
+
+static hid_t create(const char *path, hid_t access)
+{
+    hid_t plist = H5Pcreate(H5P_FILE_CREATE);
+    H5Pset_userblock(plist, DOCUMENT_USERBLOCK);
+    H5Pset_obj_track_times(plist, false);
+    hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, plist, access);
+    H5Pclose(plist);
+    return file;
+}
+
+/* ---- a stream ---- */
+
+/* All of it, or a regular file as it was: what is half written is taken back. */
+static int write_all(struct writer *s, const unsigned char *bytes, size_t size, struct why *why)
+{
+    bool append = fcntl(s->fd, F_GETFL) & O_APPEND;
+    off_t start = lseek(s->fd, 0, append ? SEEK_END : SEEK_CUR);
+    for (size_t done = 0; done < size;) {
+        ssize_t n = write(s->fd, bytes + done, size - done);
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) {
+            io_trouble(s, why, strerror(errno));
+            if (start >= 0 && ftruncate(s->fd, start)) return why->status;
+            return why->status;
+        }
+        done += (size_t)n;
+    }
+    return 0;
+}
+
+/* The memory of a flushed document of the core driver gets its header and goes out as it is. */
+static int write_image(struct writer *s, hid_t file, struct why *why)
+{
+    void **memory;
+    bool flushed = H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0;
+    ssize_t image = flushed ? H5Fget_file_image(file, NULL, 0) : -1; // what HDF5 uses of the memory
+    if (image < 0 || H5Fget_vfd_handle(file, H5P_DEFAULT, (void **)&memory) < 0)
+        return why_set(why, EX_SOFTWARE, "no memory for the document");
+    size_t size = (size_t)image + DOCUMENT_USERBLOCK; // which it leaves out
+    unsigned char *bytes = *memory;
+    uint32_t crc = document_crc(0, bytes + DOCUMENT_USERBLOCK, size - DOCUMENT_USERBLOCK);
+    document_header(bytes, size, crc);
+    return write_all(s, bytes, size, why);
+}
+
+static int stream_frame(struct writer *s, const struct frame *f, struct why *why)
+{
+    hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    size_t step = (size_t)f->packing.n * 32;
+    H5Pset_fapl_core(access, step < 1 << 16 ? 1 << 16 : step, false);
+    struct table_write doc = { .file = create("document", access) };
+    H5Pclose(access);
+    if (doc.file < 0) return why_set(why, EX_SOFTWARE, "no memory for the document");
+    int e = frame_write_static(&doc, f, why) || frame_write_moment(&doc, f, why) ||
+            frame_write_step(&doc, f, why) ||
+            (f->export && fclib_write_problem(f->export, f->export_global, doc.file, why)) ||
+            (f->foreign && f->u &&
+             fclib_store_solution(&f->problem, doc.file, f->u, f->problem.W.r, why)) ||
+            write_image(s, doc.file, why);
+    H5Fclose(doc.file);
+    return e ? why->status : 0;
+}
+
+/*
+ * ---- a trajectory ----
+ *
+ * A reader finds the frames that are finished at every moment, so also when the writer is killed:
+ * numbers go straight to the disk (io/table_write.c) and their shapes and places with a flush, a frame's step
+ * after all else; places are kept in the index of HDF5 1.10, of which no entry ever moves (the B-tree
+ * before it is cut in two now and then); and a flush begins with where the file will end. A kill
+ * also ends a write between two pages of the file, and a checksum would then be another state's:
+ * what HDF5 rewrites in place begins at a multiple of 512 bytes and, up to that length, crosses none.
+ */
+
+static int write_header(struct writer *s, uint64_t length, uint32_t crc, struct why *why)
+{
+    unsigned char header[DOCUMENT_USERBLOCK];
+    document_header(header, length, crc);
+    bool good = pwrite(s->disk, header, sizeof header, 0) == (ssize_t)sizeof header;
+    return good ? 0 : io_trouble(s, why, strerror(errno));
+}
+
+/*
+ * Room on the disk for what a frame may take, before anything of it is written: HDF5 changes its
+ * tables in place, and a disk that is full in the midst of that would cost the frames before, too.
+ */
+static int reserve(struct writer *s, const struct frame *f, struct why *why)
+{
+    hsize_t size = 0, n = (hsize_t)f->packing.n, rows = 0;
+    if (H5Fget_filesize(s->doc.file, &size) < 0) return io_trouble(s, why, "cannot be written");
+    if (n > CHUNK_BODIES) n += CHUNK_BODIES; // chunks are whole
+    if (f->detected) rows = (hsize_t)f->contacts.n + CHUNK_CONTACTS;
+    // 128 bytes a body, and as many of its motion, 256 a contact, and the tables that may grow
+    hsize_t frame = 256 * n + 256 * rows + (1 << 17);
+    struct stat st; // HDF5 now and then cuts off what is reserved
+    if (!fstat(s->disk, &st) && size + frame <= (hsize_t)st.st_size) return 0;
+    // for more frames where there is room: asking takes as long as writing a tenth of a small one
+    int e = posix_fallocate(s->disk, (off_t)size, (off_t)(frame < AHEAD ? AHEAD : frame));
+    if (e) e = posix_fallocate(s->disk, (off_t)size, (off_t)frame);
+    return e ? io_trouble(s, why, strerror(e)) : 0;
+}
+
+/* The end-of-file address of the superblock, its byte 40: beyond it a reader takes all for damage. */
+static bool set_end(const struct writer *s, hsize_t end)
+{
+    unsigned char bytes[8];
+    for (int k = 0; k < 8; k++) bytes[k] = (unsigned char)(end >> 8 * k);
+    return pwrite(s->disk, bytes, sizeof bytes, DOCUMENT_USERBLOCK + 40) == (ssize_t)sizeof bytes;
+}
+
+/* HDF5 itself would tell last where the file ends. */
+static int flush(struct writer *s, struct why *why)
+{
+    hsize_t size;
+    bool good = H5Fget_filesize(s->doc.file, &size) >= 0 && set_end(s, size) &&
+                H5Fflush(s->doc.file, H5F_SCOPE_GLOBAL) >= 0;
+    return good ? 0 : io_trouble(s, why, "cannot be written (full?)");
+}
+
+static struct shared shared_of(const struct packing *p)
+{
+    uint32_t crc = document_crc(0, p->radius, (size_t)p->n * sizeof *p->radius);
+    crc = document_crc(crc, p->mass, (size_t)p->n * sizeof *p->mass);
+    return (struct shared){ p->dim, p->n, p->dt, p->theta, crc };
+}
+
+/* What only the first frame says must hold of all. */
+static int check_same(const struct writer *s, const struct frame *f, struct why *why)
+{
+    const struct shared p = s->first, q = shared_of(&f->packing);
+    if (p.n != q.n)
+        return why_set(why, EX_DATAERR, "%lld bodies, and the trajectory has %lld", (long long)q.n,
+                       (long long)p.n);
+    if (p.dim != q.dim || p.dt != q.dt || p.theta != q.theta)
+        return why_set(why, EX_DATAERR, "dim, dt or theta differ from the trajectory's");
+    if (p.crc != q.crc) return why_set(why, EX_DATAERR, "other bodies than the trajectory's");
+    if (f->packing.step <= s->step)
+        return why_set(why, EX_DATAERR, "step %lld after step %lld: a trajectory's steps increase",
+                       (long long)f->packing.step, (long long)s->step);
+    if (f->detected && s->contacts && (!f->contacts.found == s->solved || f->moved != s->moved))
+        return why_set(why, EX_DATAERR, "contacts solved and unsolved in one trajectory");
+    return 0;
+}
+
+static int trajectory_begin(struct writer *s, const struct frame *f, struct why *why)
+{
+    char path[40];
+    snprintf(path, sizeof path, "/proc/self/fd/%d", s->disk);
+    hid_t access = H5Pcreate(H5P_FILE_ACCESS); // the file ends where its last number does
+    H5Pset_meta_block_size(access, 0), H5Pset_small_data_block_size(access, 0);
+    H5Pset_alignment(access, LEAST_TABLE, DOCUMENT_USERBLOCK); // the most that HDF5 lets it be
+    s->doc = (struct table_write){ .file = create(path, access), .growing = true };
+    H5Pclose(access);
+    if (s->doc.file < 0) return io_trouble(s, why, "cannot be written");
+    if (H5Fset_libver_bounds(s->doc.file, H5F_LIBVER_V110, H5F_LIBVER_V110) < 0)
+        return io_trouble(s, why, "cannot be written (full?)");
+    if (reserve(s, f, why)) {
+        if (ftruncate(s->disk, 0)) return why->status; // nothing rather than a half
+        return why->status;
+    }
+    s->first = shared_of(&f->packing);
+    s->step = f->packing.step - 1;
+    return write_header(s, 0, 0, why) || frame_write_static(&s->doc, f, why) ? why->status : 0;
+}
+
+static int trajectory_frame(struct writer *s, const struct frame *f, struct why *why)
+{
+    if (!f->packed)
+        return why_set(why, EX_DATAERR, "an FCLIB problem does not go into a trajectory");
+    bool first = s->doc.file < 0;
+    if (first ? trajectory_begin(s, f, why) : reserve(s, f, why)) return why->status;
+    if (check_same(s, f, why)) return why->status;
+    if (frame_write_moment(&s->doc, f, why) || flush(s, why) || frame_write_step(&s->doc, f, why) ||
+        flush(s, why))
+        return why->status;
+    s->step = f->packing.step;
+    if (f->detected) s->contacts = true, s->solved = f->contacts.found, s->moved = f->moved;
+    return 0;
+}
+
+static int trajectory_close(struct writer *s, struct why *why)
+{
+    hsize_t size;
+    int failed = table_write_close(&s->doc) || H5Fget_filesize(s->doc.file, &size) < 0;
+    if (H5Fclose(s->doc.file) < 0 || failed) return io_trouble(s, why, "cannot be written (full?)");
+    struct stat st; // what was reserved and not needed is given back
+    if (fstat(s->disk, &st) || (st.st_size > (off_t)size && ftruncate(s->disk, (off_t)size)))
+        return io_trouble(s, why, strerror(errno));
+    static unsigned char buffer[1 << 18];
+    uint32_t crc = 0;
+    off_t at = DOCUMENT_USERBLOCK;
+    ssize_t n;
+    while ((n = pread(s->disk, buffer, sizeof buffer, at)) > 0) {
+        crc = document_crc(crc, buffer, (size_t)n);
+        at += n;
+    }
+    if (n < 0) return io_trouble(s, why, strerror(errno));
+    if (write_header(s, (uint64_t)at, crc, why)) return why->status;
+    lseek(s->fd, at, SEEK_SET); // who writes there next, writes behind us
+    return 0;
+}
+
+int writer_frame(struct writer *s, const struct frame *f, struct why *why)
+{
+    if (f->packed && packing_check(&f->packing, why)) return why->status; // nobody would read it
+    if (!f->packed && s->doc.file < 0) s->trajectory = false; // a problem is a document by itself
+    return s->trajectory ? trajectory_frame(s, f, why) : stream_frame(s, f, why);
+}
+
+int writer_close(struct writer *s, struct why *why)
+{
+    int e = s->doc.file >= 0 ? trajectory_close(s, why) : 0;
+    if (s->disk >= 0) close(s->disk);
+    if (close(s->fd) && !e) e = io_trouble(s, why, strerror(errno));
+    free(s);
+    return e;
+}

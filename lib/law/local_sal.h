@@ -1,0 +1,22 @@
+/*
+ * law/local_sal.h: the simple augmented Lagrangian, one step of the projected gradient [gradientAL]
+ *
+ *     tau = r - rho u,     r_n = max(0, tau_n),     r_t = min(1, mu r_n/|tau_t|) tau_t.
+ *
+ * Its rho is bounded as that of SBP.
+ */
+#ifndef NSD_LOCAL_SAL_H
+#define NSD_LOCAL_SAL_H
+
+#include "law/local.h"
+
+ALWAYS_INLINE void sal_solve(struct local *l, const struct local_opt *opt)
+{
+    (void)opt;
+    vd tau[3];
+    local_begin(l);
+    disc_predict(l->rho, l->r, l->v, tau);
+    disc_project(l->mu, tau, l->r);
+}
+
+#endif

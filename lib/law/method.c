@@ -1,0 +1,78 @@
+/* law/method.c: the methods in one lane, and their table. */
+#include "law/method.h"
+#include "law/local_eal.h"
+#include "law/local_ebp.h"
+#include "law/local_exact.h"
+#include "law/local_sal.h"
+#include "law/local_sbp.h"
+
+#include <string.h>
+
+const struct method local_sbp = { METHOD_sbp, "sbp",
+                                  "standard bi-potential: one projected step of Uzawa", 1.75,
+                                  false };
+const struct method local_sal = { METHOD_sal, "sal",
+                                  "simple augmented Lagrangian: one projected step of the gradient",
+                                  1.75, false };
+const struct method local_ebp = { METHOD_ebp, "ebp",
+                                  "enhanced bi-potential: Newton on r = proj(tau, cone)", 1, true };
+const struct method local_eal = { METHOD_eal, "eal",
+                                  "enhanced augmented Lagrangian: Newton on r = proj(tau, disc)", 1,
+                                  true };
+const struct method local_exact = { METHOD_exact, "exact",
+                                    "the one-contact problem solved outright", 1, true };
+
+#define METHOD(name) &local_##name,
+const struct method *const methods[] = { EACH_METHOD(METHOD) NULL };
+
+const struct method *method_find(const char *name)
+{
+    for (const struct method *const *m = methods; *m; m++)
+        if (!strcmp((*m)->name, name)) return *m;
+    return NULL;
+}
+
+void method_solve(const struct method *m, struct local *l, const struct local_opt *opt)
+{
+    local_velocity(l, l->r, l->v);
+    l->relax = 1;
+    switch (m->id) {
+#define CASE(name)                                                                                 \
+    case METHOD_##name:                                                                            \
+        name##_solve(l, opt);                                                                      \
+        break;
+        EACH_METHOD(CASE)
+    case METHOD_COUNT:
+        break;
+    }
+}
+
+enum local_status ebp_linearise(double mu, double rho, const double r[3], const double v[3],
+                                double Z[3], double A[3][3], double B[3][3])
+{
+    return newton_linearise(mu, rho, r, v, EBP, Z, A, B);
+}
+
+enum local_status eal_linearise(double mu, double rho, const double r[3], const double v[3],
+                                double Z[3], double A[3][3], double B[3][3])
+{
+    return newton_linearise(mu, rho, r, v, EAL, Z, A, B);
+}
+/* Jacobi's rotations; eight rounds are more than any 3 x 3 matrix wants. */
+double local_lambda_max(const double W[9])
+{
+    double S[3][3];
+    for (int i = 0; i < 9; i++) S[i / 3][i % 3] = 0.5 * (W[i] + W[3 * (i % 3) + i / 3]);
+    for (int i = 0; i < 24; i++) {
+        int k = i % 3, p = (k + 1) % 3, q = (k + 2) % 3;
+        if (S[p][q] == 0) continue;
+        double h = 0.5 * (S[q][q] - S[p][p]) / S[p][q];
+        double t = copysign(1 / (fabs(h) + hypot(1, h)), h), c = 1 / sqrt(1 + t * t), s = t * c;
+        double a = S[k][p], b = S[k][q];
+        S[p][p] -= t * S[p][q], S[q][q] += t * S[p][q];
+        S[p][q] = S[q][p] = 0;
+        S[k][p] = S[p][k] = c * a - s * b;
+        S[k][q] = S[q][k] = s * a + c * b;
+    }
+    return fmax(S[0][0], fmax(S[1][1], S[2][2]));
+}

@@ -1,0 +1,253 @@
+/* problem/assembly.c: see problem/assembly.h. */
+#include "problem/assembly.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int short_of_memory(struct why *why)
+{
+    return why_set(why, EX_SOFTWARE, "out of memory for an FCLIB problem");
+}
+
+void assembly_free(struct assembly *A)
+{
+    free(A->row);
+    free(A->end);
+    free(A->q);
+    free(A->w);
+    free(A->free);
+    lists_free(&A->of);
+    *A = (struct assembly){ 0 };
+}
+
+static const struct bundle *assembly_bundle(const struct assembly *A, int64_t c)
+{
+    return slot_bundle(A->p, A->row[c]);
+}
+
+/* out = D u~ of every contact with the bodies as they are here; D u~ = u + E u^- */
+static void assembly_velocity(const struct assembly *A, struct body *body, double *out)
+{
+    int d = A->p->d;
+    assert(d == 2 || d == 3);
+    for (int64_t c = 0; c < A->p->n; c++) {
+        const struct bundle *row = assembly_bundle(A, c);
+        const struct rebound *e = slot_rebound(A->p, A->row[c]);
+        int lane = slot_lane(A->row[c]);
+        double u[3];
+        body_velocity(body, row, e, lane, u);
+        for (int k = 0; k < d; k++) *out++ = e ? u[k] / e->s[k > 0][lane] : u[k];
+    }
+}
+
+/* q with the reactions taken out of the bodies, w with the rest of their motion too */
+static bool assembly_vectors(struct assembly *A)
+{
+    const struct problem *p = A->p;
+    struct body *still = calloc((size_t)p->bodies + 1, sizeof *still);
+    if (!still) return false;
+    if (p->bodies) memcpy(A->free, p->body, (size_t)p->bodies * sizeof *still);
+    for (int64_t i = 0; i < p->slots; i++) {
+        double r[3], u[3];
+        if (p->contact[i] < 0) continue;
+        slot_get(p, i, r, u);
+        const double back[3] = { -r[0], -r[1], -r[2] };
+        body_push(A->free, slot_bundle(p, i), slot_lane(i), back);
+    }
+    for (int64_t i = 0; i < p->bodies; i++) {
+        still[i] = A->free[i];
+        if (still[i].im > 0) memset(still[i].v, 0, sizeof still[i].v);
+        if (still[i].im > 0 && still[i].ii > 0) memset(still[i].w, 0, sizeof still[i].w);
+    }
+    assembly_velocity(A, A->free, A->q);
+    assembly_velocity(A, still, A->w);
+    free(still);
+    return true;
+}
+
+int assembly_init(struct assembly *A, const struct problem *p, struct why *why)
+{
+    *A = (struct assembly){ .p = p };
+    size_t n = (size_t)p->n, nd = n * (size_t)p->d;
+    A->row = malloc((n + 1) * sizeof *A->row);
+    A->end = calloc(2 * n + 1, sizeof *A->end);
+    A->q = malloc((nd + 1) * sizeof *A->q);
+    A->w = malloc((nd + 1) * sizeof *A->w);
+    A->free = calloc((size_t)p->bodies + 1, sizeof *A->free);
+    bool good = A->row && A->end && A->q && A->w && A->free;
+    for (int64_t i = 0; good && i < p->slots; i++) {
+        int64_t c = p->contact[i];
+        if (c < 0) continue;
+        int64_t a = body_index(slot_bundle(p, i)->a[slot_lane(i)]),
+                b = body_index(slot_bundle(p, i)->b[slot_lane(i)]);
+        A->row[c] = i;
+        A->end[2 * c] = p->body[a].im > 0 ? (int32_t)a : -1;
+        A->end[2 * c + 1] = p->body[b].im > 0 ? (int32_t)b : -1;
+    }
+    good = good && lists_init(&A->of, p->bodies, 2 * p->n, A->end) && assembly_vectors(A);
+    return good ? 0 : short_of_memory(why);
+}
+
+/* u_c = J (v, w) of the body at this end of the contact; see body_velocity. */
+static void jacobian(const struct assembly *A, int64_t contact, int end, double J[3][6])
+{
+    const struct bundle *c = assembly_bundle(A, contact);
+    int i = slot_lane(A->row[contact]);
+    double sign = end ? 1 : -1, l = end ? c->lb[i] : c->la[i], n[3], t1[3], t2[3];
+    bundle_basis(c, i, n, t1, t2);
+    for (int k = 0; k < 3; k++) {
+        J[0][k] = sign * n[k], J[0][3 + k] = 0;
+        J[1][k] = sign * t1[k], J[1][3 + k] = -l * t2[k];
+        J[2][k] = sign * t2[k], J[2][3 + k] = l * t1[k];
+    }
+}
+
+/* W_cb = sum over the bodies they share of J_c M^-1 J_b^T */
+static void assembly_block(const struct assembly *A, int64_t c, int64_t b, double B[3][3])
+{
+    memset(B, 0, 9 * sizeof **B);
+    for (int s = 0; s < 4; s++) {
+        int32_t body = A->end[2 * c + s / 2];
+        if (body < 0 || body != A->end[2 * b + s % 2]) continue;
+        double im = A->p->body[body].im, ii = A->p->body[body].ii, J[3][6], K[3][6];
+        jacobian(A, c, s / 2, J);
+        jacobian(A, b, s % 2, K);
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                B[i][j] += im * (J[i][0] * K[j][0] + J[i][1] * K[j][1] + J[i][2] * K[j][2]) +
+                           ii * (J[i][3] * K[j][3] + J[i][4] * K[j][4] + J[i][5] * K[j][5]);
+    }
+}
+
+/* The contacts that share a movable body with c, itself among them, ascending; how many. */
+static int64_t assembly_neighbours(const struct assembly *A, int64_t c, int64_t *met)
+{
+    int64_t at[2] = { 0 }, end[2] = { 0 }, count = 0;
+    for (int s = 0; s < 2; s++) {
+        int32_t body = A->end[2 * c + s];
+        if (body >= 0) at[s] = A->of.first[body], end[s] = A->of.first[body + 1];
+    }
+    while (at[0] < end[0] || at[1] < end[1]) {
+        int64_t a = at[0] < end[0] ? A->of.item[at[0]] / 2 : INT64_MAX;
+        int64_t b = at[1] < end[1] ? A->of.item[at[1]] / 2 : INT64_MAX;
+        met[count++] = a < b ? a : b;
+        at[0] += a <= b, at[1] += b <= a;
+    }
+    return count;
+}
+
+static void fill_W(const struct assembly *A, struct stored *W, int64_t *met)
+{
+    int d = A->p->d;
+    int64_t k = 0;
+    for (int64_t c = 0; c < A->p->n; c++) {
+        int64_t count = assembly_neighbours(A, c, met);
+        for (int64_t b = 0; b < count; b++) {
+            double B[3][3];
+            assembly_block(A, c, met[b], B);
+            for (int i = 0; i < d; i++)
+                for (int j = 0; j < d; j++) {
+                    int64_t e = k + (i * count + b) * d + j;
+                    W->i[e] = (int32_t)(d * met[b] + j), W->x[e] = B[i][j];
+                }
+        }
+        for (int i = 0; i < d; i++) W->p[d * c + i + 1] = (int32_t)(k += count * d);
+    }
+}
+
+int assembly_W(const struct assembly *A, struct stored *W, struct why *why)
+{
+    int64_t n = A->p->n, d = A->p->d, blocks = 0;
+    *W = (struct stored){ 0 };
+    int64_t *met = malloc((size_t)(n + 1) * sizeof *met);
+    if (!met) return short_of_memory(why);
+    for (int64_t c = 0; c < n; c++) blocks += assembly_neighbours(A, c, met);
+    int e = 0;
+    if (n * d > INT32_MAX || blocks * d * d > INT32_MAX)
+        e = why_set(why, EX_DATAERR, "/fclib_local/W: too large for the 32-bit indices of FCLIB");
+    else if (!stored_init(W, n * d, n * d, -2, blocks * d * d))
+        e = short_of_memory(why);
+    else
+        fill_W(A, W, met);
+    free(met);
+    return e;
+}
+
+/* The unknowns of a body are dof[0 .. dofs-1] of its (v, w). */
+static const int dof_plane[] = { 0, 1, 5 }, dof_space[] = { 0, 1, 2, 3, 4, 5 };
+
+/* M diagonal, f = M v_free; first[body] is its first unknown. A body that cannot turn has unknowns
+   that nothing drives, and its w stays in the vector w. */
+static void fill_M(const struct assembly *A, const int32_t *first, struct stored *M, double *f)
+{
+    int dofs = A->p->d == 2 ? 3 : 6;
+    const int *dof = A->p->d == 2 ? dof_plane : dof_space;
+    for (int64_t i = 0; i < A->p->bodies; i++) {
+        const struct body *b = &A->free[i];
+        for (int k = 0; first[i] >= 0 && k < dofs; k++) {
+            int32_t row = first[i] + k;
+            bool turns = dof[k] > 2;
+            M->p[row + 1] = row + 1, M->i[row] = row;
+            M->x[row] = !turns ? 1 / b->im : b->ii > 0 ? 1 / b->ii : 1;
+            f[row] = M->x[row] * (turns ? b->w[dof[k] - 3] : b->v[dof[k]]);
+        }
+    }
+}
+
+/* H = J^T by columns */
+static void fill_H(const struct assembly *A, const int32_t *first, struct stored *H)
+{
+    int d = A->p->d, dofs = d == 2 ? 3 : 6;
+    const int *dof = d == 2 ? dof_plane : dof_space;
+    int32_t count = 0;
+    for (int64_t c = 0; c < A->p->n; c++) {
+        double J[2][3][6];
+        for (int s = 0; s < 2; s++) jacobian(A, c, s, J[s]);
+        int before = A->end[2 * c] > A->end[2 * c + 1]; // rows ascend
+        for (int i = 0; i < d; i++) {
+            for (int s = 0; s < 2; s++) {
+                int32_t body = A->end[2 * c + (s ^ before)];
+                for (int k = 0; body >= 0 && k < dofs; k++) {
+                    double x = J[s ^ before][i][dof[k]];
+                    if (x == 0 || (dof[k] > 2 && A->free[body].ii == 0)) continue;
+                    H->i[count] = first[body] + k, H->x[count++] = x;
+                }
+            }
+            H->p[d * c + i + 1] = count;
+        }
+    }
+}
+
+/* first[body], -1 for those that do not move or have no contact; returns the number of unknowns. */
+static int64_t assembly_unknowns(const struct assembly *A, int32_t *first)
+{
+    int64_t nv = 0;
+    for (int64_t i = 0; i < A->p->bodies; i++) {
+        bool in = A->of.first[i] < A->of.first[i + 1];
+        first[i] = in ? (int32_t)nv : -1;
+        if (in) nv += A->p->d == 2 ? 3 : 6;
+    }
+    return nv;
+}
+
+int assembly_MH(const struct assembly *A, struct stored *M, struct stored *H, double **f,
+                struct why *why)
+{
+    int64_t nd = A->p->n * A->p->d;
+    *M = *H = (struct stored){ 0 }, *f = NULL;
+    if (A->p->bodies > INT32_MAX / 6 || nd > INT32_MAX / 12)
+        return why_set(why, EX_DATAERR,
+                       "/fclib_global/H: too large for the 32-bit indices of FCLIB");
+    int32_t *first = malloc((size_t)(A->p->bodies + 1) * sizeof *first);
+    if (!first) return short_of_memory(why);
+    int64_t nv = assembly_unknowns(A, first);
+    *f = malloc((size_t)(nv + 1) * sizeof **f);
+    bool good = *f && stored_init(M, nv, nv, -1, nv) && stored_init(H, nv, nd, -1, 12 * nd);
+    if (good) {
+        fill_M(A, first, M, *f);
+        fill_H(A, first, H);
+    }
+    free(first);
+    return good ? 0 : short_of_memory(why);
+}

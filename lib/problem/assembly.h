@@ -1,0 +1,40 @@
+/*
+ * problem/assembly.h: the matrices of a packing's contact problem, as FCLIB wants them.
+ *
+ * Contact by contact in the packing's order. Coulomb's and Signorini's laws do not change when u_n
+ * and u_t are scaled, so what is assembled is
+ *
+ *     D u~ = W r + q,   q = D u~_free,   D = diag(1 + e_n, 1 + e_t, 1 + e_t),
+ *
+ * with the symmetric W of the bodies, not D^-1 W. The unknowns of the global form,
+ *
+ *     M v = H r + f,   D u~ = H^T v + w,   f = M v_free,
+ *
+ * are the velocities of the movable bodies that have a contact, in the problem's order: (vx, vy, vz,
+ * wx, wy, wz), or (vx, vy, wz) in the plane.
+ */
+#ifndef NSD_ASSEMBLY_H
+#define NSD_ASSEMBLY_H
+
+#include "base/sparse.h"
+#include "problem/problem.h"
+
+struct assembly {
+    const struct problem *p;
+    int64_t *row;      /* [n] contact c is row[c] of p */
+    int32_t *end;      /* [2 n] bodies a and b of contact c at 2 c, 2 c + 1; -1: immovable */
+    struct lists of;   /* the ends of each body */
+    double *q, *w;     /* [n d] D u~ at v_free, and with the movable bodies at rest, m/s */
+    struct body *free; /* [p->bodies] at v_free */
+};
+
+/* All return 0, EX_SOFTWARE, or EX_DATAERR where FCLIB's 32-bit indices do not reach. What they
+   fill is to be freed in any case. */
+int assembly_init(struct assembly *, const struct problem *, struct why *);
+int assembly_W(const struct assembly *, struct stored *W, struct why *); /* by rows */
+/* By columns, and f[M->n]. */
+int assembly_MH(const struct assembly *, struct stored *M, struct stored *H, double **f,
+                struct why *);
+void assembly_free(struct assembly *);
+
+#endif

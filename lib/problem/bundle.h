@@ -1,0 +1,131 @@
+/*
+ * problem/bundle.h: the rows of the sweep, eight side by side: up to eight contacts of one group, which have
+ * nothing to do with each other, so that any number of them may be done at once.
+ *
+ * Every number of a bundle is a cache line, lane k of it contact k's. Of LANES lanes at once, k is
+ * the first. A sweep over many contacts takes as long as its rows are long, wanted or not: what is
+ * wanted now and then stands elsewhere (problem/problem.h: u, rebound).
+ *
+ * A lane without a contact (the last of a group) has rho 0 and w 1: it takes off, and counts nothing.
+ */
+#ifndef NSD_BUNDLE_H
+#define NSD_BUNDLE_H
+
+#include "law/local.h"
+
+enum { BUNDLE = 8 };
+
+struct bundle {
+    union {
+        struct {
+            double n[3][BUNDLE], t1[3][BUNDLE];
+            double la[BUNDLE], lb[BUNDLE]; /* m: centre of a to the point along n, that to b's */
+        };
+        double W[9][BUNDLE]; /* kg^-1: W_cc of a problem that is given by W */
+    };
+    double w[2][BUNDLE];  /* kg^-1: W~_cc, normal and tangential; where full, lambda_max twice */
+    double iw[2][BUNDLE]; /* kg: 1/w */
+    double mu[BUNDLE], rho[BUNDLE]; /* -, kg */
+    double r[3][BUNDLE];            /* N s */
+    int32_t a[BUNDLE], b[BUNDLE];   /* places of bodies; of a W a is the contact */
+};
+
+/* Of a bundle some of whose contacts rebound: u~ = s u + offset */
+struct rebound {
+    double s[2][BUNDLE];      /* 1/(1 + e_n), 1/(1 + e_t) */
+    double offset[3][BUNDLE]; /* m/s: D^-1 E u^- */
+};
+
+struct body {
+    double v[3], w[3]; /* m/s, rad/s */
+    double im, ii;     /* 1/kg, 1/(kg m^2); 0: immovable */
+};
+
+/*
+ * The place of body[row], as bundles have it: a multiple of 8, the doubles of a body, so that an
+ * instruction finds it without multiplying.
+ */
+enum { BODIES_MOST = INT32_MAX / 8 };
+static inline int32_t body_place(int64_t row)
+{
+    return (int32_t)(8 * row);
+}
+static inline int64_t body_index(int32_t place)
+{
+    return place / 8;
+}
+ALWAYS_INLINE double *body_at(struct body *body, int32_t place)
+{
+    return (double *)body + place;
+}
+
+/* LANES bodies side by side: what they are, */
+struct bodies {
+    vd im, ii;
+};
+/* and how they move, or how that changes */
+struct twist {
+    vd v[3], w[3];
+};
+
+ALWAYS_INLINE void bodies_load(struct bodies *m, struct body *body, const int32_t *place,
+                               struct twist *moves)
+{
+    vd x[8];
+    for (int k = 0; k < 8; k += LANES) {
+        for (int i = 0; i < LANES; i++) x[k + i] = vload(body_at(body, place[i]) + k);
+        transpose(x + k);
+    }
+    for (int k = 0; k < 3; k++) moves->v[k] = x[k], moves->w[k] = x[3 + k];
+    m->im = x[6], m->ii = x[7];
+}
+
+ALWAYS_INLINE void bodies_add(struct body *body, const int32_t *place, const struct twist *d)
+{
+    vd x[8] = { d->v[0], d->v[1], d->v[2], d->w[0], d->w[1], d->w[2], splat(0), splat(0) };
+    double *at[LANES];
+    for (int i = 0; i < LANES; i++) at[i] = body_at(body, place[i]);
+    for (int k = 0; k < 8; k += LANES) {
+        transpose(x + k);
+        for (int i = 0; i < LANES; i++) vstore(at[i] + k, vload(at[i] + k) + x[k + i]);
+    }
+}
+
+/* The frames; t2 = n x t1 is cheaper to compute than to fetch. */
+ALWAYS_INLINE void bundle_basis(const struct bundle *c, int k, vd n[3], vd t1[3], vd t2[3])
+{
+    for (int i = 0; i < 3; i++) n[i] = vload(c->n[i] + k), t1[i] = vload(c->t1[i] + k);
+    for (int i = 0, j = 1, l = 2; i < 3; j = l, l = i++) t2[i] = n[j] * t1[l] - n[l] * t1[j];
+}
+
+/* u~ as the bodies move, and t2, which bundle_push() wants again; e NULL: u */
+ALWAYS_INLINE void bundle_velocity(const struct bundle *c, const struct rebound *e, int k,
+                                   const struct twist *a, const struct twist *b, vd u[3], vd t2[3])
+{
+    vd n[3], t1[3], dv[3], m[3], la = vload(c->la + k), lb = vload(c->lb + k);
+    bundle_basis(c, k, n, t1, t2);
+    for (int i = 0; i < 3; i++) {
+        dv[i] = b->v[i] - a->v[i], m[i] = la * a->w[i] + lb * b->w[i];
+    }
+    // w x (l n) . t1 = l w . t2, and the arm of b is -lb n
+    vd un = dot3(n, dv), u1 = dot3(t1, dv) - dot3(t2, m), u2 = dot3(t2, dv) + dot3(t1, m);
+    u[0] = un, u[1] = u1, u[2] = u2;
+    for (int i = 0; i < 3 && e; i++) u[i] = vload(e->s[i > 0] + k) * u[i] + vload(e->offset[i] + k);
+}
+
+/* Reactions changed by dr (n, t1, t2) move the bodies. */
+ALWAYS_INLINE void bundle_push(const struct bundle *c, int k, const vd t2[3], const vd dr[3],
+                               struct body *body, const struct bodies *a, const struct bodies *b)
+{
+    vd turn_a = a->ii * vload(c->la + k), turn_b = b->ii * vload(c->lb + k), im = -a->im;
+    struct twist da, db;
+    for (int i = 0; i < 3; i++) { // f on b; m = -n x dr turns both
+        vd n = vload(c->n[i] + k), t1 = vload(c->t1[i] + k);
+        vd f = dr[0] * n + dr[1] * t1 + dr[2] * t2[i], m = dr[2] * t1 - dr[1] * t2[i];
+        da.v[i] = im * f, da.w[i] = turn_a * m;
+        db.v[i] = b->im * f, db.w[i] = turn_b * m;
+    }
+    bodies_add(body, c->a + k, &da), bodies_add(body, c->b + k, &db);
+}
+
+#endif

@@ -1,0 +1,189 @@
+/* problem/delassus.c: see problem/delassus.h. */
+#include "problem/delassus.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* order[] stably by the block that index[] lies in: a counting sort. tally [n + 1] and to [entries]. */
+static void sort_by_block(int64_t entries, const int32_t *index, int d, int64_t n,
+                          const int64_t *order, int64_t *to, int64_t *tally)
+{
+    memset(tally, 0, (size_t)(n + 1) * sizeof *tally);
+    for (int64_t k = 0; k < entries; k++) tally[index[k] / d + 1]++;
+    for (int64_t c = 0; c < n; c++) tally[c + 1] += tally[c];
+    for (int64_t k = 0; k < entries; k++) {
+        int64_t e = order ? order[k] : k;
+        to[tally[index[e] / d]++] = e;
+    }
+}
+
+/* A block of nothing but zeros is no block. */
+static bool nonzero(const double *B, int size)
+{
+    for (int k = 0; k < size; k++)
+        if (B[k] != 0) return true;
+    return false;
+}
+
+/* Column-major d x d to row-major, padded to 3 x 3 as law/local.h has it for d = 2 */
+static void pad(int d, const double *B, double out[9])
+{
+    for (int i = 0; i < d; i++)
+        for (int j = 0; j < d; j++) out[3 * i + j] = B[i + d * j];
+    if (d == 2) out[8] = out[4] > 0 ? out[4] : 1;
+}
+
+/* The entries, now sorted, block by block into W, whose arrays have room for each of them. */
+static void gather_blocks(struct delassus *W, int64_t entries, const int64_t *order,
+                          const int32_t *row, const int32_t *col, const double *x)
+{
+    int d = W->d, dd = d * d;
+    int64_t blocks = 0;
+    for (int64_t k = 0; k < entries;) {
+        int64_t c = row[order[k]] / d, b = col[order[k]] / d;
+        double B[9] = { 0 };
+        for (; k < entries && row[order[k]] / d == c && col[order[k]] / d == b; k++)
+            B[row[order[k]] % d + d * (col[order[k]] % d)] += x[order[k]];
+        if (b == c) {
+            pad(d, B, W->diag + 9 * c);
+        } else if (nonzero(B, dd)) {
+            memcpy(W->block + dd * blocks, B, (size_t)dd * sizeof *B);
+            W->col[blocks++] = (int32_t)b;
+            W->first[c + 1]++;
+        }
+    }
+    for (int64_t c = 0; c < W->n; c++) W->first[c + 1] += W->first[c];
+}
+
+static int64_t count_blocks(int64_t entries, const int64_t *order, const int32_t *row,
+                            const int32_t *col, int d)
+{
+    int64_t blocks = 0;
+    for (int64_t k = 0; k < entries; k++) {
+        int64_t e = order[k], f = k ? order[k - 1] : e;
+        blocks += k == 0 || row[e] / d != row[f] / d || col[e] / d != col[f] / d;
+    }
+    return blocks;
+}
+
+/* With room for so many blocks; nothing but zeros. False when memory is short. */
+static bool make(struct delassus *W, int d, int64_t n, int64_t blocks)
+{
+    *W = (struct delassus){ .d = d, .n = n };
+    W->first = calloc((size_t)(n + 1), sizeof *W->first);
+    W->col = malloc((size_t)(blocks + 1) * sizeof *W->col);
+    W->block = calloc((size_t)(blocks + 1) * (size_t)(d * d) + 4, sizeof *W->block);
+    W->diag = calloc((size_t)(n + 1) * 9, sizeof *W->diag);
+    W->q = calloc((size_t)(n * d + 1), sizeof *W->q);
+    W->mu = calloc((size_t)(n + 1), sizeof *W->mu);
+    W->r = calloc((size_t)(n * d + 1), sizeof *W->r);
+    return W->first && W->col && W->block && W->diag && W->q && W->mu && W->r;
+}
+
+static int no_memory(struct delassus *W, int64_t n, struct why *why)
+{
+    delassus_free(W);
+    return why_set(why, EX_SOFTWARE, "out of memory for a problem of %lld contacts", (long long)n);
+}
+
+int delassus_init(struct delassus *W, int d, int64_t n, int64_t entries, const int32_t *row,
+                  const int32_t *col, const double *x, const double *q, const double *mu,
+                  struct why *why)
+{
+    *W = (struct delassus){ .d = d, .n = n };
+    int64_t *tally = malloc((size_t)(n + 1) * sizeof *tally);
+    int64_t *half = malloc((size_t)(entries + 1) * sizeof *half);
+    int64_t *order = malloc((size_t)(entries + 1) * sizeof *order);
+    bool good = tally && half && order;
+    if (good) { // by column, then stably by row
+        sort_by_block(entries, col, d, n, NULL, half, tally);
+        sort_by_block(entries, row, d, n, half, order, tally);
+        int64_t blocks = count_blocks(entries, order, row, col, d);
+        good = make(W, d, n, blocks);
+    }
+    if (good) {
+        const double none[9] = { 0 };
+        if (n)
+            memcpy(W->q, q, (size_t)(n * d) * sizeof *q), memcpy(W->mu, mu, (size_t)n * sizeof *mu);
+        for (int64_t c = 0; c < n; c++) pad(d, none, W->diag + 9 * c);
+        gather_blocks(W, entries, order, row, col, x);
+    }
+    free(tally);
+    free(half);
+    free(order);
+    return good ? 0 : no_memory(W, n, why);
+}
+
+void delassus_free(struct delassus *W)
+{
+    free(W->first);
+    free(W->col);
+    free(W->block);
+    free(W->diag);
+    free(W->q);
+    free(W->mu);
+    free(W->r);
+    *W = (struct delassus){ 0 };
+}
+
+int delassus_sort(struct delassus *to, const struct delassus *W, int64_t rows, const int32_t *row,
+                  struct why *why)
+{
+    int d = W->d, dd = d * d;
+    size_t blocks = (size_t)W->first[W->n];
+    *to = (struct delassus){ .d = d, .n = rows };
+    to->first = calloc((size_t)rows + 1, sizeof *to->first);
+    to->col = malloc((blocks + 1) * sizeof *to->col);
+    to->block = calloc((size_t)dd * blocks + 4, sizeof *to->block);
+    to->q = calloc((size_t)(d * rows) + 1, sizeof *to->q);
+    if (!to->first || !to->col || !to->block || !to->q) {
+        delassus_free(to);
+        return why_set(why, EX_SOFTWARE, "no memory for the blocks of W");
+    }
+    for (int64_t i = 0; i < rows; i++) {
+        int64_t at = to->first[i + 1] = to->first[i], c = row[i];
+        if (c < 0) continue;
+        size_t n = (size_t)(W->first[c + 1] - W->first[c]);
+        memcpy(to->col + at, W->col + W->first[c], n * sizeof *to->col);
+        memcpy(to->block + dd * at, W->block + dd * W->first[c], n * (size_t)dd * sizeof(double));
+        memcpy(to->q + d * i, W->q + d * c, (size_t)d * sizeof *to->q);
+        to->first[i + 1] += (int64_t)n;
+    }
+    return 0;
+}
+
+/* y[d] -= B x, the block by columns */
+static void take(int d, const double *B, const double *x, double *y)
+{
+    for (int j = 0; j < d; j++)
+        for (int i = 0; i < d; i++) y[i] -= B[d * j + i] * x[j];
+}
+
+int delassus_part(struct delassus *to, const struct delassus *W, int64_t n, const int32_t *contact,
+                  const int32_t *of, const double *r, const double *v, struct why *why)
+{
+    int d = W->d, dd = d * d;
+    int64_t blocks = 0;
+    for (int64_t i = 0; i < n; i++) blocks += W->first[contact[i] + 1] - W->first[contact[i]];
+    if (!make(to, d, n, blocks)) return no_memory(to, n, why);
+    for (int64_t i = 0; i < n; i++) {
+        int64_t c = contact[i], at = to->first[i];
+        double *q = to->q + d * i;
+        memcpy(q, v + d * c, (size_t)d * sizeof *q);
+        memcpy(to->r + d * i, r + d * c, (size_t)d * sizeof *r);
+        memcpy(to->diag + 9 * i, W->diag + 9 * c, 9 * sizeof *W->diag);
+        to->mu[i] = W->mu[c];
+        for (int k = 0; k < d; k++)
+            for (int j = 0; j < d; j++) q[k] -= W->diag[9 * c + 3 * k + j] * r[d * c + j];
+        for (int64_t e = W->first[c]; e < W->first[c + 1]; e++) {
+            int32_t b = W->col[e];
+            if (of[b] < 0) continue;
+            take(d, W->block + dd * e, r + d * b, q);
+            to->col[at] = of[b];
+            memcpy(to->block + dd * at++, W->block + dd * e, (size_t)dd * sizeof(double));
+        }
+        to->first[i + 1] = at;
+    }
+    return 0;
+}

@@ -1,0 +1,106 @@
+#include "problem/err.h"
+
+enum {
+    BLOCK = 64,       /* bundles summed one after another, whatever the threads */
+    PARALLEL_FROM = 8 /* blocks worth a second thread */
+};
+
+/* The eight slots into the first; NaN stays in the sums, not in the maxima. */
+static double sum(const double slot[BUNDLE])
+{
+    double s = 0;
+    for (int k = 0; k < BUNDLE; k++) s += slot[k];
+    return s;
+}
+
+static double most(const double slot[BUNDLE])
+{
+    double s = 0;
+    for (int k = 0; k < BUNDLE; k++) s = s < slot[k] ? slot[k] : s;
+    return s;
+}
+
+static void sums_add(struct sums *t, const struct sums *s)
+{
+    for (int k = 0; k < BUNDLE; k++) {
+        t->motion[k] += s->motion[k], t->proj[k] += s->proj[k];
+        t->bipotential[k] += s->bipotential[k], t->penetration[k] += s->penetration[k];
+        t->natural2[k] += s->natural2[k], t->siconos2[k] += s->siconos2[k];
+        t->velocity2[k] += s->velocity2[k], t->r2[k] += s->r2[k];
+        t->max_pen[k] = fmax(t->max_pen[k], s->max_pen[k]);
+        t->max_true[k] = fmax(t->max_true[k], s->max_true[k]);
+    }
+}
+
+static struct terms terms(const struct sums *s, int64_t n, double v, double r)
+{
+    struct terms t = { .motion = sum(s->motion) / v / (double)n,
+                       .proj = sum(s->proj) / r / (double)n,
+                       .bipotential = sum(s->bipotential) / (v * r) / (double)n,
+                       .penetration = sum(s->penetration) / v / (double)n };
+    t.eps_glob = t.motion + t.proj + t.bipotential + t.penetration;
+    return t;
+}
+
+/* a / b, and 0 / 0 = 0: nothing is wrong with nothing; 1 when all of a is wrong. What is NaN makes
+   NaN, and so does a b that is too large to measure against. */
+static double ratio(double a, double b)
+{
+    if (b == 0) return a > 0 ? 1 : a;
+    return isfinite(b) ? a / b : NAN;
+}
+
+/* The sums of one block */
+static void judge_block(const struct problem *p, bool believes, enum err_terms part, int64_t block,
+                        struct sums *s)
+{
+    int64_t from = block * BLOCK, to = from + BLOCK;
+    *s = (struct sums){ 0 };
+    sweep_widest()->judge(p, from, to < p->bundles ? to : p->bundles, believes, part, s);
+}
+
+void err_eval(struct err *e, const struct problem *p, bool believes, enum err_terms part,
+              int threads)
+{
+    *e = (struct err){ .contacts = p->n };
+    if (!p->n) return;
+    int64_t blocks = (p->bundles + BLOCK - 1) / BLOCK;
+    struct sums all = { 0 };
+    // the partial sums of a stripe of blocks at a time, added in their order
+    enum { STRIPE = 16 };
+    for (int64_t first = 0; first < blocks; first += STRIPE) {
+        struct sums s[STRIPE];
+        int64_t n = blocks - first < STRIPE ? blocks - first : STRIPE;
+        if (threads == 1 || (n < PARALLEL_FROM && !p->split)) { // no team: that costs
+            for (int64_t b = 0; b < n; b++) judge_block(p, believes, part, first + b, &s[b]);
+        } else {
+#pragma omp parallel for num_threads(threads)
+            for (int64_t b = 0; b < n; b++) judge_block(p, believes, part, first + b, &s[b]);
+        }
+        for (int64_t b = 0; b < n; b++) sums_add(&all, &s[b]);
+    }
+    if (part & ERR_TERMS) {
+        e->paper = terms(&all, p->n, 1, p->dt);
+        e->scaled = terms(&all, p->n, p->scale_v, p->scale_r);
+        e->max_penetration = most(all.max_pen);
+        e->max_penetration_true = most(all.max_true);
+    }
+    if (part & ERR_NATURAL) {
+        double siconos = sqrt(sum(all.siconos2));
+        e->natural = ratio(sqrt(sum(all.natural2)), sqrt(sum(all.r2)));
+        e->natural_siconos = p->norm_q > 0 ? siconos / p->norm_q : siconos;
+        e->natural_q = ratio(sqrt(sum(all.velocity2)), p->norm_q);
+    }
+}
+
+double err_of(const struct err *e, enum criterion c)
+{
+    return c == CRITERION_GLOB     ? e->paper.eps_glob
+           : c == CRITERION_SCALED ? e->scaled.eps_glob
+                                   : e->natural;
+}
+
+enum err_terms err_terms_of(enum criterion c)
+{
+    return c == CRITERION_NATURAL ? ERR_NATURAL : ERR_TERMS;
+}

@@ -1,0 +1,312 @@
+#include "problem/problem.h"
+
+#include "problem/schedule.h"
+
+#include <assert.h>
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+
+enum { HUGE_PAGE = 2 << 20 }; /* bytes */
+
+static_assert(sizeof(struct body) == 64, "a body is a cache line");
+static_assert(sizeof(struct bundle) % 64 == 0, "lanes begin a cache line");
+
+/*
+ * Zeroed memory on a cache line's border, in huge pages where it is large: a look at bodies here and
+ * there then does not wait for page tables. Not NULL for want of rows.
+ */
+static void *lines(int64_t n, size_t size)
+{
+    size_t bytes = (size_t)(n > 0 ? n : 1) * size, page = bytes < 2 * HUGE_PAGE ? 64 : HUGE_PAGE;
+    bytes = (bytes + page - 1) / page * page;
+    void *p = aligned_alloc(page, bytes);
+#ifdef MADV_HUGEPAGE
+    if (p && page == HUGE_PAGE) madvise(p, bytes, MADV_HUGEPAGE);
+#endif
+    if (p) memset(p, 0, bytes);
+    return p;
+}
+
+static int no_memory(struct problem *p, struct why *why)
+{
+    problem_free(p);
+    return why_set(why, EX_SOFTWARE, "no memory for the contact problem");
+}
+
+void problem_free(struct problem *p)
+{
+    free(p->bundle), free(p->rebound), free(p->u), free(p->contact), free(p->group), free(p->body);
+    free(p->split);
+    delassus_free(&p->sorted);
+    *p = (struct problem){ 0 };
+}
+
+/* The plan's groups as bundles; a group begins a new one. */
+static bool lay_out(struct problem *p, const struct schedule *plan)
+{
+    p->groups = plan->groups;
+    p->group = malloc((size_t)(plan->groups + 1) * sizeof *p->group);
+    for (int64_t g = 0; p->group && g < plan->groups; g++) {
+        p->group[g] = p->bundles;
+        p->bundles += (plan->group[g + 1] - plan->group[g] + BUNDLE - 1) / BUNDLE;
+    }
+    p->slots = p->bundles * BUNDLE;
+    p->bundle = lines(p->bundles, sizeof *p->bundle);
+    p->u = lines(p->bundles, sizeof *p->u);
+    p->contact = malloc((size_t)(p->slots + 1) * sizeof *p->contact);
+    if (!p->group || !p->bundle || !p->u || !p->contact) return false;
+    p->group[p->groups] = p->bundles;
+    if (plan->rest && !(p->split = lines(1, sizeof *p->split))) return false;
+    if (p->split)
+        *p->split =
+            (struct two_thread_split){ plan->beyond, plan->inside, plan->rim, plan->rest, 0, 0 };
+    for (int64_t i = 0; i < p->slots; i++) {
+        p->contact[i] = -1;
+        struct bundle *c = slot_bundle(p, i);
+        for (int k = 0; k < 2; k++) c->w[k][slot_lane(i)] = c->iw[k][slot_lane(i)] = 1;
+    }
+    for (int64_t g = 0; g < p->groups; g++) {
+        int64_t first = plan->group[g], n = plan->group[g + 1] - first;
+        for (int64_t i = 0; i < n; i++)
+            p->contact[p->group[g] * BUNDLE + i] = (int32_t)plan->sequence[first + i];
+    }
+    return true;
+}
+
+/*
+ * Where each body stands: by colours, in the order in which the sweep first meets them, or else as in
+ * the packing. NULL when memory is short.
+ */
+static int32_t *seats_of_bodies(const struct problem *p, const struct packing *pack,
+                                const struct contacts *s, enum order order)
+{
+    int32_t *row = malloc((size_t)(pack->n + 1) * sizeof *row), next = 0;
+    for (int64_t i = 0; row && i < pack->n; i++) row[i] = -1;
+    for (int64_t i = 0; row && order >= ORDER_COLOUR && i < p->slots; i++) {
+        if (p->contact[i] < 0) continue;
+        const struct contact *c = &s->c[p->contact[i]];
+        if (c->a >= 0 && row[c->a] < 0) row[c->a] = next++;
+        if (row[c->b] < 0) row[c->b] = next++;
+    }
+    for (int64_t i = 0; row && i < pack->n; i++)
+        if (row[i] < 0) row[i] = next++;
+    return row;
+}
+
+/* The bodies with the velocities before the step. */
+static void movers(struct problem *p, const struct packing *pack, const int32_t *row)
+{
+    for (int64_t i = 0; i < pack->n; i++) {
+        vec3 v = pack->v[i], w = pack->w[i];
+        p->body[row[i]] = (struct body){ { v.x, v.y, v.z },
+                                         { w.x, w.y, w.z },
+                                         pack->mass[i] > 0 ? 1 / pack->mass[i] : 0,
+                                         pack->mass[i] > 0 ? 1 / pack->inertia[i] : 0 };
+    }
+}
+
+/* The place of body i (wall w: -1-w) of a contact: its own, or a copy's when it does not move. */
+static int32_t seat(struct problem *p, const struct packing *pack, const int32_t *row, int32_t i,
+                    int64_t *next)
+{
+    if (i >= 0 && pack->mass[i] > 0) return body_place(row[i]);
+    struct body *copy = &p->body[*next];
+    vec3 v = i < 0 ? pack->wall[-1 - i].v : pack->v[i];
+    *copy = (struct body){ .v = { v.x, v.y, v.z } };
+    if (i >= 0) *copy = p->body[row[i]];
+    return body_place((*next)++);
+}
+
+void problem_arms(const struct packing *p, const struct contact *c, double *la, double *lb)
+{
+    *la = c->a < 0 ? 0 : v3_dot(v3_sub(c->x, packing_predict(p, c->a)), c->n);
+    *lb = v3_dot(v3_sub(packing_predict(p, c->b), c->x), c->n);
+}
+
+/* All of row i but the reaction; the bodies still have the velocities before the step. */
+static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
+                      const struct contact *c, double alpha, double factor)
+{
+    const double en[3] = { c->en, c->et, c->et }, n[3] = { c->n.x, c->n.y, c->n.z },
+                 t1[3] = { c->t1.x, c->t1.y, c->t1.z }, s[2] = { 1 / (1 + c->en), 1 / (1 + c->et) };
+    struct bundle *r = slot_bundle(p, i);
+    struct rebound *e = slot_rebound(p, i);
+    int k = slot_lane(i);
+    for (int j = 0; j < 3; j++) r->n[j][k] = n[j], r->t1[j][k] = t1[j];
+    r->mu[k] = c->mu;
+    problem_arms(pack, c, &r->la[k], &r->lb[k]);
+    const struct body *a = &p->body[body_index(r->a[k])], *b = &p->body[body_index(r->b[k])];
+    double u[3], im = a->im + b->im;
+    double it = im + r->la[k] * r->la[k] * a->ii + r->lb[k] * r->lb[k] * b->ii;
+    body_velocity(p->body, r, NULL, k, u); // u^-
+    for (int j = 0; j < 3 && e; j++) e->offset[j][k] = u[j] * (en[j] / (1 + en[j]));
+    for (int j = 0; j < 2 && e; j++) e->s[j][k] = s[j];
+    r->w[0][k] = s[0] * im, r->w[1][k] = s[1] * it;
+    for (int j = 0; j < 2; j++) r->iw[j][k] = 1 / r->w[j][k];
+    double lambda = bundle_lambda(r, k);
+    r->rho[k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / im : factor / lambda;
+}
+
+/* Mean mass of what moves, for the scaled errors. */
+static double mean_mass(const struct packing *p)
+{
+    double sum = 0;
+    int64_t n = 0;
+    for (int64_t i = 0; i < p->n; i++) sum += p->mass[i], n += p->mass[i] > 0;
+    return n ? sum / (double)n : 1;
+}
+
+/* How many bodies[] there will be: those of the packing, copies, and nobody for the lanes without a
+   contact, one a half. */
+static int64_t seats(const struct packing *pack, const struct contacts *s)
+{
+    int64_t n = pack->n + 2;
+    int32_t moves[2];
+    for (int64_t i = 0; i < s->n; i++) {
+        const struct contact *c = &s->c[i];
+        n += 2 - packing_movable(pack, c->a, c->b, moves);
+    }
+    return n;
+}
+
+static bool rebounds(const struct contacts *s)
+{
+    for (int64_t i = 0; i < s->n; i++)
+        if (s->c[i].en > 0 || s->c[i].et > 0) return true;
+    return false;
+}
+
+int problem_prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
+                    double alpha, double factor, enum order order, struct why *why)
+{
+    struct schedule plan = { 0 };
+    *p = (struct problem){ .d = pack->dim, .n = s->n, .dt = pack->dt, .bodies = seats(pack, s) };
+    if (p->bodies > BODIES_MOST)
+        return why_set(why, EX_DATAERR, "more than %d bodies", BODIES_MOST);
+    p->body = lines(p->bodies, sizeof *p->body);
+    bool room = p->body && !schedule_bodies(&plan, order, s, pack) && lay_out(p, &plan);
+    schedule_free(&plan);
+    if (room && rebounds(s)) room = (p->rebound = lines(p->bundles, sizeof *p->rebound)) != NULL;
+    int32_t *row = room ? seats_of_bodies(p, pack, s, order) : NULL;
+    if (!row) return no_memory(p, why);
+    movers(p, pack, row);
+    int64_t nobody = pack->n, next = nobody + 2;
+    int64_t other = p->split ? BUNDLE * p->group[p->split->inside] : p->slots;
+    for (int64_t i = 0; i < p->slots; i++) {
+        struct bundle *r = slot_bundle(p, i);
+        int k = slot_lane(i);
+        r->a[k] = r->b[k] = body_place(nobody + (i >= other));
+        if (p->contact[i] < 0) continue;
+        const struct contact *c = &s->c[p->contact[i]];
+        r->a[k] = seat(p, pack, row, c->a, &next), r->b[k] = seat(p, pack, row, c->b, &next);
+        slot_init(p, i, pack, c, alpha, factor);
+    }
+    free(row);
+
+    double g = v3_norm(pack->g);
+    p->scale_v = (g > 0 ? g : 9.81) * pack->dt;
+    p->scale_r = p->scale_v * mean_mass(pack);
+    const double dv[3] = { pack->dt * pack->g.x, pack->dt * pack->g.y, pack->dt * pack->g.z };
+    for (int64_t i = 0; i < pack->n; i++)
+        for (int k = 0; k < 3 && p->body[i].im > 0; k++) p->body[i].v[k] += dv[k];
+    for (int64_t i = 0; i < p->slots; i++) {
+        double q[3];
+        if (p->contact[i] < 0) continue;
+        body_velocity(p->body, slot_bundle(p, i), slot_rebound(p, i), slot_lane(i), q);
+        p->norm_q += q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
+    }
+    p->norm_q = sqrt(p->norm_q);
+    for (int64_t i = 0; s->found && i < p->slots; i++) {
+        if (p->contact[i] < 0) continue;
+        const struct found *c = &s->found[p->contact[i]];
+        slot_set(p, i, c->r, c->u);
+        body_push(p->body, slot_bundle(p, i), slot_lane(i), c->r);
+    }
+    return 0;
+}
+
+/* Whether D[9] is diag(w_n, w_t, w_t) to rounding, as between balls. */
+static bool like_balls(const double D[9])
+{
+    double noise = 16 * DBL_EPSILON * fmin(D[0], D[4]), most = fabs(D[8] - D[4]);
+    for (int i = 0; i < 9; i++)
+        if (i % 4 > 0) most = fmax(most, fabs(D[i]));
+    return most < noise;
+}
+
+int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha, double factor,
+                             enum order order, struct why *why)
+{
+    struct schedule plan = { 0 };
+    *p = (struct problem){ .d = W->d, .n = W->n, .W = W, .dt = 1, .scale_v = 1, .scale_r = 1 };
+    bool room = !schedule_blocks(&plan, order, W) && lay_out(p, &plan);
+    schedule_free(&plan);
+    if (!room || delassus_sort(&p->sorted, W, p->slots, p->contact, why)) return no_memory(p, why);
+    for (int64_t c = 0; c < W->n; c++) p->full = p->full || !like_balls(W->diag + 9 * c);
+    double trace = 0;
+    for (int64_t i = 0; i < p->slots; i++) {
+        int64_t c = p->contact[i];
+        struct bundle *r = slot_bundle(p, i);
+        int k = slot_lane(i);
+        r->a[k] = (int32_t)c;
+        for (int j = 0; j < 9; j++) r->W[j][k] = c < 0 ? j % 4 == 0 : W->diag[9 * c + j];
+        if (c < 0) continue;
+        const double *D = W->diag + 9 * c, *q = W->q + W->d * c;
+        double lambda = local_lambda_max(D);
+        r->mu[k] = W->mu[c];
+        for (int j = 0; j < 2; j++) {
+            r->w[j][k] = p->full ? lambda : D[4 * j];
+            r->iw[j][k] = 1 / r->w[j][k];
+        }
+        r->rho[k] = lambda <= 0 ? 1 : alpha > 0 && D[0] > 0 ? alpha / D[0] : factor / lambda;
+        for (int j = 0; j < W->d; j++) {
+            r->r[j][k] = W->r[W->d * c + j];
+            p->norm_q += q[j] * q[j];
+            trace += D[4 * j];
+        }
+    }
+    // no g, no m here: velocities in the root mean square of q, masses in the mean of 1/W_ii
+    p->norm_q = sqrt(p->norm_q);
+    if (p->norm_q > 0) p->scale_v = p->norm_q / sqrt((double)(W->d * W->n));
+    p->scale_r = trace > 0 ? p->scale_v * (double)(W->d * W->n) / trace : p->scale_v;
+    return 0;
+}
+
+void slot_get(const struct problem *p, int64_t i, double r[3], double u[3])
+{
+    const struct bundle *c = slot_bundle(p, i);
+    for (int k = 0; k < 3; k++)
+        r[k] = c->r[k][slot_lane(i)], u[k] = p->u[i / BUNDLE][k][slot_lane(i)];
+}
+
+void slot_set(struct problem *p, int64_t i, const double r[3], const double u[3])
+{
+    struct bundle *c = slot_bundle(p, i);
+    for (int k = 0; k < 3; k++)
+        c->r[k][slot_lane(i)] = r[k], p->u[i / BUNDLE][k][slot_lane(i)] = u[k];
+}
+
+void slot_react(struct problem *p, int64_t i, const double r[3])
+{
+    struct bundle *c = slot_bundle(p, i);
+    double dr[3];
+    for (int k = 0; k < 3; k++) dr[k] = r[k] - c->r[k][slot_lane(i)], c->r[k][slot_lane(i)] = r[k];
+    if (p->W)
+        for (int k = 0; k < p->d; k++) p->W->r[p->d * p->contact[i] + k] = r[k];
+    else
+        body_push(p->body, c, slot_lane(i), dr);
+}
+
+int problem_store(const struct problem *p, struct contacts *s)
+{
+    if (contacts_expect(s)) return -1;
+    for (int64_t i = 0; i < p->slots; i++) {
+        if (p->contact[i] < 0) continue;
+        struct found *c = &s->found[p->contact[i]];
+        slot_get(p, i, c->r, c->u);
+        c->status = (int8_t)local_status(slot_bundle(p, i)->mu[slot_lane(i)], c->r);
+    }
+    return 0;
+}

@@ -1,0 +1,57 @@
+/* problem/report.h: what a solve tells of itself; no clock in it but `seconds`, which no document gets. */
+#ifndef NSD_REPORT_H
+#define NSD_REPORT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum criterion { CRITERION_GLOB, CRITERION_SCALED, CRITERION_NATURAL, CRITERION_COUNT };
+extern const char *const criterion_name[CRITERION_COUNT]; /* as documents and logs have them */
+
+/* The paper's error and its four terms, each the mean over the contacts [estimator, corrected]. */
+struct terms {
+    double eps_glob;    /* the sum of the four */
+    double motion;      /* |u~ - u~_free - W~ r|, m/s: how far the local u is from the motion's */
+    double proj;        /* |r - proj(r, K_mu)|, N */
+    double bipotential; /* |u~.r + mu r_n |u~_t||, W */
+    double penetration; /* -min(0, u~_n), m/s */
+};
+
+struct err {
+    int64_t contacts;
+    struct terms paper;          /* reactions as forces, r/dt */
+    struct terms scaled;         /* u over g dt, r over m g dt: no units */
+    double max_penetration;      /* m/s: max -u~_n of the local u, as the paper's tables have it */
+    double max_penetration_true; /* m/s: max -u~_n of the motion that r makes */
+    double max_overlap;          /* m: max -gap; 0 where there are no gaps (FCLIB) */
+    double natural;              /* |r - P(r - rho_a u^)| / |r|, rho_a = 1/lambda_max(W_aa) */
+    double natural_siconos;      /* |r - P(r - u^)| / |q|, step 1: not scale-free */
+    double natural_q;            /* |(r - P(r - rho_a u^))/rho_a| / |q| */
+};
+
+struct report {
+    char method[16];
+    char *options; /* JSON object: every option that shaped the result; to be freed, may be NULL */
+    int64_t step;
+    double t; /* s, after the step */
+    struct err err;
+    enum criterion criterion;
+    double eps; /* what was asked */
+    int32_t sweeps;
+    bool converged;
+    int64_t newton;      /* Newton steps in all */
+    int64_t safeguarded; /* local solves that ended in the stand-in */
+    int64_t gave_up;     /* local solves that left the law unmet */
+    double seconds;      /* s of CPU, of all threads, in the solve: for the log and stderr only, */
+    double elapsed;      /* as are s on the wall */
+    double detection;    /* and s of CPU for the contacts, where the step found them itself */
+    struct terms *history; /* [sweeps] under --history, else NULL; to be freed */
+};
+
+/* s of the clocks that a report tells */
+enum report_clock { CLOCK_CPU, CLOCK_WALL };
+double report_seconds(enum report_clock);
+
+void report_free(struct report *);
+
+#endif

@@ -1,0 +1,270 @@
+#include "scene/json_node.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* One line of it, whatever the keys and strings of the text hold. */
+static void plain(char *s)
+{
+    for (; *s; s++)
+        if ((unsigned char)*s < ' ' || *s == 0x7f) *s = '?';
+}
+
+int jtext_parse(struct jtext *t, const char *text, size_t length, struct why *why)
+{
+    json_error_t e;
+    *t = (struct jtext){ .why = why };
+    t->root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &e);
+    if (!t->root) {
+        plain(e.text);
+        return why_set(why, EX_DATAERR, "%d:%d: %s", e.line, e.column, e.text);
+    }
+    t->text = malloc(length + 1);
+    if (!t->text) {
+        jtext_free(t);
+        return why_set(why, EX_SOFTWARE, "no memory for a text of %zu bytes", length);
+    }
+    memcpy(t->text, text, length);
+    t->text[length] = 0;
+    return 0;
+}
+
+void jtext_free(struct jtext *t)
+{
+    json_decref(t->root);
+    free(t->text);
+    *t = (struct jtext){ 0 };
+}
+
+jnode jtext_root(struct jtext *t)
+{
+    return (jnode){ .json = t->root, .in = t };
+}
+
+jnode json_node_key(const jnode *up, const char *key)
+{
+    return (jnode){ .up = up, .key = key, .json = json_object_get(up->json, key), .in = up->in };
+}
+
+jnode json_node_item(const jnode *up, size_t i)
+{
+    return (jnode){ .up = up, .index = i, .json = json_array_get(up->json, i), .in = up->in };
+}
+
+/* ---- where a node stands in the text, which jansson has found to be good JSON ---- */
+
+static const char *skip_space(const char *s)
+{
+    return s + strspn(s, " \t\r\n");
+}
+
+static const char *skip_string(const char *s)
+{
+    for (s++; *s != '"'; s++)
+        if (*s == '\\') s++;
+    return s + 1;
+}
+
+static const char *skip_value(const char *s)
+{
+    int depth = 0;
+    do {
+        if (*s == '"')
+            s = skip_string(s);
+        else if (*s == '{' || *s == '[')
+            depth++, s++;
+        else if (*s == '}' || *s == ']')
+            depth--, s++;
+        else if (depth)
+            s++;
+        else
+            s += strcspn(s, ",]} \t\r\n");
+    } while (depth);
+    return s;
+}
+
+static bool key_is(const char *s, const char *key)
+{
+    size_t n = strlen(key);
+    return !strncmp(s + 1, key, n) && s[1 + n] == '"';
+}
+
+/* The node's key or item, or its nearest ancestor's; *value is NULL when it is an ancestor's. */
+static const char *find(const jnode *n, const char **value)
+{
+    if (!n->up) return *value = skip_space(n->in->text);
+    const char *inside, *above = find(n->up, &inside);
+    *value = NULL;
+    if (!inside || *inside != (n->key ? '{' : '[')) return above;
+    const char *s = skip_space(inside + 1);
+    for (size_t i = 0; *s != '}' && *s != ']'; i++) {
+        const char *here = s;
+        bool found = n->key ? key_is(s, n->key) : i == n->index;
+        if (n->key) s = skip_space(skip_space(skip_string(s)) + 1); // behind the colon
+        if (found) {
+            *value = s;
+            return here;
+        }
+        s = skip_space(skip_value(s));
+        if (*s == ',') s = skip_space(s + 1);
+    }
+    return above;
+}
+
+static void place(const jnode *n, int *line, int *column)
+{
+    const char *value, *here = find(n, &value);
+    *line = *column = 1;
+    for (const char *s = n->in->text; s < here; s++) {
+        if (*s == '\n')
+            ++*line, *column = 1;
+        else if ((*s & 0xc0) != 0x80) // not inside a UTF-8 character
+            ++*column;
+    }
+}
+
+static size_t path(const jnode *n, char *out, size_t room)
+{
+    if (!n->up) return 0;
+    size_t k = path(n->up, out, room);
+    int more = n->key ? snprintf(out + k, room - k, "%s%s", k ? "." : "", n->key)
+                      : snprintf(out + k, room - k, "[%zu]", n->index);
+    k += (size_t)more;
+    return k < room ? k : room - 1;
+}
+
+int json_node_fault(jnode n, const char *format, ...)
+{
+    char way[200] = "", trouble[200];
+    int line, column;
+    va_list ap;
+    va_start(ap, format);
+    vsnprintf(trouble, sizeof trouble, format, ap);
+    va_end(ap);
+    size_t length = path(&n, way, sizeof way);
+    plain(way), plain(trouble);
+    place(&n, &line, &column);
+    return why_set(n.in->why, EX_DATAERR, "%d:%d: %s%s%s", line, column, way, length ? ": " : "",
+                   trouble);
+}
+
+/* ---- keys ---- */
+
+/* The next of the names, its length in *n; NULL at their end. */
+static const char *next_name(const char *s, size_t *n)
+{
+    s += strspn(s, " ");
+    *n = strcspn(s, " ");
+    return *n ? s : NULL;
+}
+
+static bool among(const char *names, const char *key)
+{
+    size_t n;
+    for (const char *s = names; (s = next_name(s, &n)); s += n)
+        if (strlen(key) == n && !memcmp(s, key, n)) return true;
+    return false;
+}
+
+int json_node_only(jnode o, const char *names)
+{
+    const char *key;
+    json_t *value;
+    if (!json_is_object(o.json)) return json_node_fault(o, "wants an object {...}");
+    json_object_foreach(
+        o.json, key,
+        value) if (strcmp(key, "comment") &&
+                   !among(names, key)) return json_node_fault(json_node_key(&o, key),
+                                                              "unknown key; known here: %s", names);
+    return 0;
+}
+
+int json_node_need(const jnode *o, const char *names)
+{
+    size_t n;
+    for (const char *s = names; (s = next_name(s, &n)); s += n) {
+        char key[32];
+        snprintf(key, sizeof key, "%.*s", (int)n, s);
+        if (!json_object_get(o->json, key))
+            return json_node_fault(json_node_key(o, key), "is missing");
+    }
+    return 0;
+}
+
+int json_node_choice(jnode o, const char *names)
+{
+    size_t n;
+    int i = 0, which = -1, found = 0;
+    for (const char *s = names; (s = next_name(s, &n)); s += n, i++) {
+        char key[32];
+        snprintf(key, sizeof key, "%.*s", (int)n, s);
+        if (json_object_get(o.json, key)) which = i, found++;
+    }
+    if (found == 1) return which;
+    json_node_fault(o,
+                    json_is_object(o.json) ? "wants one of the keys %s"
+                                           : "wants an object with one of the keys %s",
+                    names);
+    return -1;
+}
+
+/* ---- values ---- */
+
+int json_node_number(jnode n, enum jrange range, double *out)
+{
+    if (!n.json) return 0;
+    if (!json_is_number(n.json)) return json_node_fault(n, "wants a number");
+    double x = json_number_value(n.json);
+    if (range == J_POSITIVE && !(x > 0)) return json_node_fault(n, "must be positive");
+    if (range == J_NOT_NEGATIVE && !(x >= 0)) return json_node_fault(n, "must not be negative");
+    if (range == J_UNIT && !(x >= 0 && x <= 1)) return json_node_fault(n, "must lie in [0, 1]");
+    *out = x;
+    return 0;
+}
+
+int json_node_integer(jnode n, int64_t least, int64_t most, int64_t *out)
+{
+    if (!n.json) return 0;
+    double x = json_number_value(n.json); // exact: the ranges asked for end far below 2^53
+    if (!json_is_number(n.json) || x != floor(x)) return json_node_fault(n, "wants an integer");
+    if (!(x >= (double)least && x <= (double)most))
+        return json_node_fault(n, "must lie in [%lld, %lld]", (long long)least, (long long)most);
+    *out = (int64_t)x;
+    return 0;
+}
+
+int json_node_bool(jnode n, bool *out)
+{
+    if (!n.json) return 0;
+    if (!json_is_boolean(n.json)) return json_node_fault(n, "wants true or false");
+    *out = json_is_true(n.json);
+    return 0;
+}
+
+int json_node_text(jnode n, const char **out)
+{
+    if (!n.json) return 0;
+    if (!json_is_string(n.json)) return json_node_fault(n, "wants a string");
+    *out = json_string_value(n.json);
+    return 0;
+}
+
+int json_node_array(jnode n, size_t *length)
+{
+    *length = json_array_size(n.json);
+    return !n.json || json_is_array(n.json) ? 0 : json_node_fault(n, "wants an array [...]");
+}
+
+int json_node_vector(jnode n, int dim, vec3 *out)
+{
+    double x[3] = { 0 };
+    if (!n.json) return 0;
+    if (!json_is_array(n.json) || json_array_size(n.json) != (size_t)dim)
+        return json_node_fault(n, "wants %s", dim == 2 ? "[x, y], for dim is 2" : "[x, y, z]");
+    for (int i = 0; i < dim; i++)
+        if (json_node_number(json_node_item(&n, (size_t)i), J_ANY, &x[i])) return n.in->why->status;
+    *out = v3(x[0], x[1], x[2]);
+    return 0;
+}

@@ -1,0 +1,25 @@
+/* scene.c: see scene/scene.h. */
+#include "scene/scene.h"
+
+#include <stdlib.h>
+
+void scene_free(struct scene *s)
+{
+    for (int32_t k = 0; k < s->kinds; k++) free(s->kind[k].name);
+    for (int64_t i = 0; i < s->groups; i++) free(s->bodies[i].file);
+    free(s->kind), free(s->law), free(s->bodies), free(s->wall), free(s->text);
+    *s = (struct scene){ 0 };
+}
+
+/* In x (and y) the cells fill the box; along the last axis they are as low as they can be. */
+struct scene_lattice scene_lattice(const struct scene_bodies *b, int dim)
+{
+    struct scene_lattice l = { .cells = { 1, 1, 1 } };
+    double least = 2 * b->spacing * b->size.max;
+    for (int i = 0; i < dim; i++) {
+        double width = b->box.hi[i] - b->box.lo[i];
+        l.cells[i] = floor(width / least * (1 + 1e-12)); // 6.3 mm holds six cells of 1.05 mm
+        l.edge[i] = i < dim - 1 ? width / l.cells[i] : least;
+    }
+    return l;
+}

@@ -1,0 +1,91 @@
+#include "scene/scene_read.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+int scene_read_law(const jnode *o, struct scene_law *l)
+{
+    return json_node_number(json_node_key(o, "mu"), J_NOT_NEGATIVE, &l->mu) ||
+           json_node_number(json_node_key(o, "e_n"), J_UNIT, &l->en) ||
+           json_node_number(json_node_key(o, "e_t"), J_UNIT, &l->et);
+}
+
+static int32_t find_kind(const struct scene *s, const char *name)
+{
+    for (int32_t k = 0; k < s->kinds; k++)
+        if (!strcmp(s->kind[k].name, name)) return k;
+    return -1;
+}
+
+int scene_read_kind(jnode n, const struct scene *s, int32_t *kind)
+{
+    const char *name = NULL;
+    if (json_node_text(n, &name)) return 1;
+    if (!name) return 0;
+    *kind = find_kind(s, name);
+    return *kind < 0 ? json_node_fault(n, "no kind \"%s\"; name it under \"kinds\"", name) : 0;
+}
+
+static int add_kind(jnode n, struct scene *s, const char *name, double density)
+{
+    bool printable = *name; // documents keep names line by line
+    for (const char *c = name; *c; c++) printable &= (unsigned char)*c >= ' ';
+    if (!printable) return json_node_fault(n, "a kind wants a name without control characters");
+    s->kind[s->kinds] = (struct scene_kind){ strdup(name), density };
+    if (!s->kind[s->kinds].name) return why_set(n.in->why, EX_SOFTWARE, "no memory for a kind");
+    s->kinds++;
+    return 0;
+}
+
+int scene_read_kinds(jnode o, struct scene *s, double density)
+{
+    const char *name;
+    json_t *value;
+    size_t most = 1000, count = json_object_size(o.json);
+    if (o.json && !json_is_object(o.json)) return json_node_fault(o, "wants an object {...}");
+    if (count > most) return json_node_fault(o, "more than %zu kinds", most);
+    if (!(s->kind = scene_room(o, count + 2, sizeof *s->kind))) return 1;
+    if (add_kind(o, s, "ball", density) || add_kind(o, s, "wall", density)) return 1;
+    json_object_foreach(o.json, name, value)
+    {
+        jnode n = json_node_key(&o, name);
+        if (!strcmp(name, "comment")) continue;
+        if (json_node_only(n, "density")) return 1;
+        if (find_kind(s, name) < 0 && add_kind(o, s, name, density)) return 1;
+        double *d = &s->kind[find_kind(s, name)].density;
+        if (json_node_number(json_node_key(&n, "density"), J_POSITIVE, d)) return 1;
+    }
+    return 0;
+}
+
+static int read_pair(jnode o, struct scene *s, bool *given)
+{
+    size_t n;
+    int32_t k[2] = { 0 };
+    if (json_node_only(o, "pair mu e_n e_t") || json_node_need(&o, "pair")) return 1;
+    jnode pair = json_node_key(&o, "pair");
+    if (json_node_array(pair, &n)) return 1;
+    if (n != 2) return json_node_fault(pair, "wants two kinds");
+    for (size_t i = 0; i < 2; i++) {
+        jnode name = json_node_item(&pair, i);
+        if (scene_read_kind(name, s, &k[i])) return 1;
+    }
+    int32_t ab = k[0] * s->kinds + k[1], ba = k[1] * s->kinds + k[0];
+    if (given[ab]) return json_node_fault(pair, "this pair was given before");
+    given[ab] = given[ba] = true;
+    if (scene_read_law(&o, &s->law[ab])) return 1;
+    s->law[ba] = s->law[ab];
+    return 0;
+}
+
+int scene_read_pairs(jnode a, struct scene *s, struct scene_law law)
+{
+    size_t n, k2 = (size_t)s->kinds * (size_t)s->kinds;
+    if (json_node_array(a, &n) || !(s->law = scene_room(a, k2, sizeof *s->law))) return 1;
+    for (size_t i = 0; i < k2; i++) s->law[i] = law;
+    bool *given = scene_room(a, k2, sizeof *given);
+    int bad = !given;
+    for (size_t i = 0; i < n && !bad; i++) bad = read_pair(json_node_item(&a, i), s, given);
+    free(given);
+    return bad;
+}

@@ -1,0 +1,69 @@
+/* scene_parse.c: a scene from its JSON text; see scene/scene.h. */
+#include "scene/scene_read.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void *scene_room(jnode n, size_t count, size_t size)
+{
+    void *p = calloc(count ? count : 1, size);
+    if (!p) why_set(n.in->why, EX_SOFTWARE, "no memory for the scene");
+    return p;
+}
+
+/* The text without the blanks outside its strings. */
+static char *compact(const char *text)
+{
+    char *out = malloc(strlen(text) + 1), *o = out;
+    bool inside = false;
+    for (const char *s = text; out && *s; s++) {
+        if (!inside && strchr(" \t\r\n", *s)) continue;
+        if (inside && *s == '\\')
+            *o++ = *s++;
+        else if (*s == '"')
+            inside = !inside;
+        *o++ = *s;
+    }
+    if (out) *o = 0;
+    return out;
+}
+
+static int read_scene(jnode o, struct scene *s)
+{
+    int64_t dim = 3, seed = 1;
+    double density = 2500;
+    bool boxed = false;
+    const char *title;
+    struct scene_law law = { 0 };
+    struct scene_box box = { 0 };
+    if (json_node_only(o, "title dim dt theta gravity seed density mu e_n e_t kinds pairs overlap "
+                          "bodies walls") ||
+        json_node_need(&o, "dt") || json_node_text(json_node_key(&o, "title"), &title) ||
+        json_node_integer(json_node_key(&o, "dim"), 2, 3, &dim) ||
+        json_node_integer(json_node_key(&o, "seed"), 0, UINT32_MAX, &seed) ||
+        json_node_number(json_node_key(&o, "dt"), J_POSITIVE, &s->dt) ||
+        json_node_number(json_node_key(&o, "theta"), J_UNIT, &s->theta) ||
+        json_node_number(json_node_key(&o, "density"), J_POSITIVE, &density) ||
+        scene_read_law(&o, &law) || json_node_bool(json_node_key(&o, "overlap"), &s->overlap))
+        return 1;
+    s->dim = (int)dim, s->seed = (uint64_t)seed;
+    s->g = dim == 2 ? v3(0, -9.81, 0) : v3(0, 0, -9.81);
+    return json_node_vector(json_node_key(&o, "gravity"), s->dim, &s->g) ||
+           scene_read_kinds(json_node_key(&o, "kinds"), s, density) ||
+           scene_read_pairs(json_node_key(&o, "pairs"), s, law) ||
+           scene_read_walls(json_node_key(&o, "walls"), s, &box, &boxed) ||
+           scene_read_bodies(json_node_key(&o, "bodies"), s, boxed ? &box : NULL);
+}
+
+int scene_parse(struct scene *s, const char *text, size_t length, struct why *why)
+{
+    struct jtext t;
+    *s = (struct scene){ .theta = 0.5 };
+    if (jtext_parse(&t, text, length, why)) return why->status;
+    int bad = read_scene(jtext_root(&t), s);
+    if (!bad && !(s->text = compact(t.text)))
+        bad = why_set(why, EX_SOFTWARE, "no memory for the scene's text");
+    jtext_free(&t);
+    if (bad) scene_free(s);
+    return why->status;
+}

@@ -1,0 +1,292 @@
+/* solve/arc.c: see solve/arc.h. */
+#include "solve/arc.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Corrections, the largest of all contacts, relative to what is corrected: */
+#define AIM   0.3 /* what a step is to leave to be corrected, */
+#define SMALL 0.7 /* with how much it may go on, and */
+#define FAR   1.5 /* what is too much: it was too long */
+
+#define FALL     0.01 /* of s, at most, in a step */
+#define ROUNDING 2e-6 /* natural maps below which a correction may be lost */
+#define STANDING 1e-6 /* the reach of one that leads nowhere */
+
+enum { BACKWARDS = 10 }; /* steps in which s grows, at most */
+
+/* Directions: the derivatives by s, the second of them at a right angle to the first, and Newton's */
+enum { TANGENT, BEND, CORRECTION, DIRECTIONS };
+
+struct along {
+    double p0[3];
+    double to[DIRECTIONS][2][3]; /* x and z */
+    double tau[3][3];            /* x - z in the last step, tau[0] + h tau[1] + h^2/2 tau[2] */
+};
+
+struct arc {
+    struct central *m;
+    struct along *at; /* [n] */
+    double g0, s;
+    double h, last[3];     /* the last step, and s in it as tau is */
+    double reach, ceiling; /* how long a step is to be, and may be after one that was too long */
+    double before;         /* the last correction, where that was all of the last step; else 0 */
+};
+
+/* The product of two directions, in F's measure: that of relative changes */
+static double inner(const struct central *m, const struct side *s, double a[2][3], double b[2][3])
+{
+    double fa[3], fb[3], sum;
+    scaling_apply(&s->F, a[0], fa), scaling_apply(&s->F, b[0], fb);
+    sum = jordan_dot(fa, fb);
+    scaling_inverse(&s->F, a[1], fa), scaling_inverse(&s->F, b[1], fb);
+    return (sum + jordan_dot(fa, fb)) / m->gap;
+}
+
+static double after(const double part[3], double h)
+{
+    return part[0] + h * (part[1] + h / 2 * part[2]);
+}
+
+/* To where the last step leads */
+static void place(struct arc *p)
+{
+    p->s = after(p->last, p->h);
+    for (int64_t c = 0; c < p->m->w->whole.W.n; c++) {
+        struct side *s = &p->m->side[c];
+        const struct along *a = &p->at[c];
+        for (int k = 0; k < 3; k++) {
+            const double part[3] = { a->tau[0][k], a->tau[1][k], a->tau[2][k] };
+            s->x[k] = after(part, p->h), s->z[k] = 0;
+        }
+        jordan_centre(s->x, s->z, p->s * p->g0);
+    }
+}
+
+/* The last step again, so much shorter; false where that has come to nothing. */
+static bool shorten(struct arc *p, double by)
+{
+    p->reach *= by, p->h *= by, p->before = 0;
+    if (p->h == 0 || p->reach < STANDING) return false;
+    place(p);
+    return true;
+}
+
+/* |u_t|, smoothed */
+static double smooth_tail(const struct arc *p, const struct side *s)
+{
+    double t = jordan_tail(s->y), gap = p->m->gap;
+    return sqrt(t * t + gap * gap);
+}
+
+/* dx/ds and dz/ds; false where the matrix is singular. */
+static bool tangent(struct arc *p)
+{
+    struct central *m = p->m;
+    int64_t n = m->w->whole.W.n;
+    central_matrix(m, 1);
+    for (int64_t c = 0; c < n; c++) {
+        struct side *s = &m->side[c];
+        const double more[3] = { p->g0, 0, 0 };
+        jordan_quotient(s->l, more, s->c);
+        for (int k = 0; k < 3; k++) s->p[k] = p->at[c].p0[k] - (s->y[k] - s->z[k]);
+        s->p[0] += p->g0 * (m->gap / smooth_tail(p, s) - 1);
+    }
+    if (!central_direction(m, false)) return false;
+    for (int64_t c = 0; c < n; c++) side_keep(&m->side[c], p->at[c].to[TANGENT]);
+    return true;
+}
+
+/* What is not the tangent's, with its matrix; no direction where that is lost in rounding: false. */
+static bool direction(struct arc *p, int which)
+{
+    struct central *m = p->m;
+    bool seen = central_direction(m, true);
+    for (int64_t c = 0; c < m->w->whole.W.n; c++) {
+        memset(p->at[c].to[which], 0, sizeof p->at[c].to[which]);
+        if (seen) side_keep(&m->side[c], p->at[c].to[which]);
+    }
+    return seen;
+}
+
+/* d2x/ds2 and d2z/ds2: twice the product of the tangent's x and z, and how |u_t| bends */
+static void bend(struct arc *p)
+{
+    struct central *m = p->m;
+    for (int64_t c = 0; c < m->w->whole.W.n; c++) {
+        struct side *s = &m->side[c];
+        const struct along *a = &p->at[c];
+        const double *dx = a->to[TANGENT][0], *dz = a->to[TANGENT][1];
+        double fx[3], fz[3], want[3];
+        scaling_apply(&s->F, dx, fx), scaling_inverse(&s->F, dz, fz);
+        jordan_product(fx, fz, want);
+        for (int k = 0; k < 3; k++) want[k] *= -2, s->p[k] = -(s->y[k] - s->z[k]);
+        jordan_quotient(s->l, want, s->c);
+        double u1 = dz[1] - a->p0[1], u2 = dz[2] - a->p0[2], smooth = smooth_tail(p, s),
+               along = (s->y[1] * u1 + s->y[2] * u2 + m->gap * p->g0) / smooth;
+        s->p[0] += (u1 * u1 + u2 * u2 + p->g0 * p->g0 - along * along) / smooth;
+    }
+    direction(p, BEND);
+}
+
+/* Newton's correction at this s; false where it is lost in rounding. */
+static bool correction(struct arc *p)
+{
+    struct central *m = p->m;
+    for (int64_t c = 0; c < m->w->whole.W.n; c++) {
+        struct side *s = &m->side[c];
+        double ll[3], want[3];
+        jordan_product(s->l, s->l, ll);
+        for (int k = 0; k < 3; k++)
+            want[k] = (k ? 0 : m->gap) - ll[k], s->p[k] = p->s * p->at[c].p0[k];
+        jordan_quotient(s->l, want, s->c);
+    }
+    return direction(p, CORRECTION);
+}
+
+/* The largest of all contacts */
+static double largest(const struct arc *p, int which)
+{
+    double most = 0;
+    for (int64_t c = 0; c < p->m->w->whole.W.n; c++) {
+        double(*d)[3] = p->at[c].to[which];
+        most = fmax(most, inner(p->m, &p->m->side[c], d, d));
+    }
+    return sqrt(most);
+}
+
+/* A direction that leaves s alone is put at a right angle to the tangent; returns what it adds to s. */
+static double straighten(struct arc *p, int which)
+{
+    struct central *m = p->m;
+    int64_t n = m->w->whole.W.n;
+    double tt = 1 / (p->s * p->s), td = 0;
+    for (int64_t c = 0; c < n; c++) {
+        struct along *a = &p->at[c];
+        tt += inner(m, &m->side[c], a->to[TANGENT], a->to[TANGENT]);
+        td += inner(m, &m->side[c], a->to[TANGENT], a->to[which]);
+    }
+    for (int64_t c = 0; c < n; c++) {
+        struct along *a = &p->at[c];
+        for (int j = 0; j < 2; j++)
+            for (int k = 0; k < 3; k++) a->to[which][j][k] -= td / tt * a->to[TANGENT][j][k];
+    }
+    return -td / tt;
+}
+
+/* Corrects, and goes on by h along the tangent and the bend, which adds `turn` to s'' */
+static void step(struct arc *p, double corrected, double h, double turn)
+{
+    double from = p->s + corrected;
+    p->last[0] = from, p->last[1] = 1, p->last[2] = turn, p->h = h;
+    while (after(p->last, p->h) < FALL * from) p->h *= 0.8;
+    for (int64_t c = 0; c < p->m->w->whole.W.n; c++) {
+        const struct side *s = &p->m->side[c];
+        struct along *a = &p->at[c];
+        for (int k = 0; k < 3; k++) {
+            a->tau[0][k] = s->x[k] - s->z[k] + a->to[CORRECTION][0][k] - a->to[CORRECTION][1][k];
+            a->tau[1][k] = a->to[TANGENT][0][k] - a->to[TANGENT][1][k];
+            a->tau[2][k] = a->to[BEND][0][k] - a->to[BEND][1][k];
+        }
+    }
+    place(p);
+}
+
+/* Corrects alone: the step that it belongs to may still turn out too long. */
+static void correct(struct arc *p, double corrected)
+{
+    p->s += corrected;
+    for (int64_t c = 0; c < p->m->w->whole.W.n; c++) {
+        struct side *s = &p->m->side[c];
+        double(*d)[3] = p->at[c].to[CORRECTION];
+        for (int k = 0; k < 3; k++) s->x[k] += d[0][k], s->z[k] += d[1][k];
+        jordan_centre(s->x, s->z, p->s * p->g0);
+    }
+}
+
+/* How far s goes in a step of the reach from `s`, downwards or not */
+static double stride(const struct arc *p, double s, double steepest, bool down)
+{
+    double relative = p->reach / (steepest * p->s);
+    // 1 - exp(-relative) or so, but of the same bits everywhere
+    double fall = 1 - 1 / (1 + relative * (1 + relative / 2));
+    if (down) return -fmax(0, fmin(s * fall, s - FALL * p->s));
+    return fmin(2, relative) * p->s;
+}
+
+/* Was the last step too long, or a correction in vain, by what there is to be corrected now? */
+static bool too_much(const struct arc *p, double most)
+{
+    if (p->before > 0) return most > SMALL && most > 0.7 * p->before;
+    return p->h != 0 && most > FAR;
+}
+
+static bool retreat(struct arc *p, double most)
+{
+    p->ceiling = 0.8 * p->reach;
+    return shorten(p, fmin(0.5, fmax(0.25, 0.7 * cbrt(AIM / most))));
+}
+
+/* How long the next step is to be, by what the last has left: that goes with its cube. */
+static void pace(struct arc *p, double most)
+{
+    if (p->h == 0 || p->before > 0) return;
+    p->reach = fmin(p->reach * fmin(3, fmax(0.5, cbrt(AIM / most))), p->ceiling);
+    p->ceiling *= 1.2;
+}
+
+static bool begin(struct arc *p, struct central *m)
+{
+    int64_t n = m->w->whole.W.n;
+    *p = (struct arc){ .m = m, .g0 = central_mean(m), .s = 1, .reach = 1, .ceiling = INFINITY };
+    p->at = calloc((size_t)n + 1, sizeof *p->at);
+    if (!p->at) return false;
+    for (int64_t c = 0; c < n; c++) jordan_centre(m->side[c].x, m->side[c].z, p->g0);
+    m->gap = p->g0;
+    central_look(m);
+    for (int64_t c = 0; c < n; c++)
+        for (int k = 0; k < 3; k++) p->at[c].p0[k] = m->side[c].z[k] - m->side[c].y[k];
+    return true;
+}
+
+bool arc_follow(struct central *m, struct solve *s, double natural, int steps)
+{
+    struct arc p;
+    if (!begin(&p, m)) return false;
+    int sign = 0, backwards = 0;
+    bool there = false;
+    for (int k = 0; k < steps && backwards <= BACKWARDS; k++) {
+        m->gap = p.s * p.g0;
+        double e = central_look(m);
+        if (s->o->progress) s->o->progress(s->rep->sweeps, e);
+        there = central_finish(m, s, e) || e <= natural;
+        if (there || !isfinite(e) || solve_spent(s) || !central_scale(m)) break;
+        s->rep->newton++;
+        if (!tangent(&p)) { // as near a fold, or in rounding
+            if (e < ROUNDING || !shorten(&p, 0.7)) break;
+            continue;
+        }
+        if (!correction(&p) && e < ROUNDING) break;
+        bend(&p);
+        if (!sign) sign = system_sign(m->w->system);
+        bool down = system_sign(m->w->system) == sign;
+        backwards += !down;
+        double corrected = straighten(&p, CORRECTION), turn = straighten(&p, BEND),
+               most = largest(&p, CORRECTION);
+        if (p.s + corrected < FALL * p.s || corrected > p.s) corrected = 0;
+        if (too_much(&p, most)) {
+            if (!retreat(&p, most)) break;
+            continue;
+        }
+        pace(&p, most);
+        p.before = most < SMALL ? 0 : most;
+        if (p.before > 0)
+            correct(&p, corrected);
+        else
+            step(&p, corrected, stride(&p, p.s + corrected, largest(&p, TANGENT), down), turn);
+    }
+    for (int64_t c = 0; c < m->w->whole.W.n; c++) memset(m->side[c].p, 0, sizeof m->side[c].p);
+    free(p.at);
+    central_settle(m, s);
+    return there;
+}

@@ -1,0 +1,139 @@
+/*
+ * solve/nlgs.c: the non-linear Gauss-Seidel method [paper, 3.1]: sweep over the contacts, each solved by a
+ * local method with the others held still, until the criterion is met.
+ */
+#include "solve/solver.h"
+
+#include <omp.h>
+#include <string.h>
+
+enum {
+    CHECK_FIRST = 40, /* sweeps that are all judged */
+    CHECK_EVERY = 25,
+    FORESIGHT = 4,          /* times less change than that of the sweep before is not expected, */
+    CHEAP_FORESIGHT = 1000, /* or so many times, where it costs little to be surer */
+    PARALLEL_FROM = 64      /* bundles of a group worth a second thread */
+};
+
+static double most(const double x[BUNDLE])
+{
+    double y = 0;
+    for (int k = 0; k < BUNDLE; k++) y = x[k] > y ? x[k] : y;
+    return y;
+}
+
+static int64_t count(const double x[BUNDLE])
+{
+    double y = 0;
+    for (int k = 0; k < BUNDLE; k++) y += x[k];
+    return (int64_t)y;
+}
+
+static double add_tally(struct report *rep, const struct tally *t)
+{
+    rep->newton += count(t->newton);
+    rep->safeguarded += count(t->safeguarded), rep->gave_up += count(t->gave_up);
+    return most(t->change);
+}
+
+/* All, or where groups are too small for that one, or one a half */
+int nlgs_team(const struct solve *s)
+{
+    int threads = s->o->threads;
+    if (s->p->bundles >= PARALLEL_FROM * s->p->groups) return threads;
+    return s->p->split && threads > 1 ? 2 : 1;
+}
+
+/* Unjudged sweeps and one more into the report; returns that one's largest change of a normal velocity,
+   m/s. */
+static double sweep(struct solve *s, double omega, int32_t unjudged, bool keep)
+{
+    const struct solve_opt *o = s->o;
+    sweep_text *text = sweep_widest()->sweep[o->method->id];
+    const struct sweep_opt quiet = { o->local, omega, false }, opt = { o->local, omega, keep };
+    double change = 0;
+    int threads = nlgs_team(s);
+    s->rep->sweeps += unjudged + 1;
+    if (threads == 1) { // no team: that costs
+        struct tally t = { 0 };
+        for (int32_t k = unjudged; k >= 0; k--) {
+            memset(t.change, 0, sizeof t.change);
+            text(s->p, 0, 1, k ? &quiet : &opt, &t);
+        }
+        return add_tally(s->rep, &t);
+    }
+#pragma omp parallel num_threads(threads)
+    {
+        struct tally t = { 0 };
+        for (int32_t k = unjudged; k >= 0; k--) {
+            memset(t.change, 0, sizeof t.change);
+            text(s->p, omp_get_thread_num(), omp_get_num_threads(), k ? &quiet : &opt, &t);
+        }
+#pragma omp critical
+        change = fmax(change, add_tally(s->rep, &t));
+    }
+    return change;
+}
+
+/*
+ * The criterion is evaluated after each of a solve's first 40 sweeps, when the largest change of a
+ * sweep, gathered on the way, says that it may be met, every 25 sweeps, and at the end. What a sweep
+ * believes of u is only wanted then: those that will hardly be judged do not write it down.
+ */
+static int judged_sweep(struct solve *s, double omega, int32_t unjudged, bool last, struct watch *w)
+{
+    s->believes = s->o->method->believes;
+    int32_t n = s->rep->sweeps + unjudged + 1;
+    bool sure = s->o->history || s->o->every_sweep || n <= w->all || n - w->judged >= CHECK_EVERY ||
+                n >= s->o->max_sweeps || last;
+    bool keep =
+        sure || w->change <= (s->p->bundles < SWEEP_FAR ? CHEAP_FORESIGHT : FORESIGHT) * w->due;
+    double change = w->change = sweep(s, omega, unjudged, keep && s->believes);
+    w->looked = false;
+    if (solve_history(s)) return -1;
+    if (!sure && !(keep && change <= w->due)) return 0;
+    solve_judge(s);
+    // error and change shrink together, more or less: due after half the way, and all the time
+    // when it is near
+    w->due = s->value < 1.3 * s->o->eps ? INFINITY : change * sqrt(s->o->eps / s->value);
+    w->judged = n, w->looked = true;
+    return solve_met(s) || solve_spent(s) || !isfinite(s->value);
+}
+
+int nlgs_sweep(struct solve *s, double omega, struct watch *w)
+{
+    return judged_sweep(s, omega, 0, false, w);
+}
+
+/*
+ * How many sweeps surely are not judged, of halves, whose threads had rather not meet after each: as
+ * many as no change less than FORESIGHT times that of the sweep before makes small enough.
+ */
+static int32_t foresee(const struct solve *s, const struct watch *w, int32_t end)
+{
+    int32_t n = s->rep->sweeps, next = w->judged + CHECK_EVERY;
+    if (!s->p->split || s->o->history || s->o->every_sweep || n < w->all || !(w->change > w->due))
+        return 0;
+    if (next > end) next = end;
+    if (next > s->o->max_sweeps) next = s->o->max_sweeps;
+    return (int32_t)fmin(log(w->change / w->due) / log(FORESIGHT), next - 1 - n);
+}
+
+int nlgs_sweeps(struct solve *s, int32_t sweeps, double omega)
+{
+    int32_t end = s->rep->sweeps + sweeps;
+    struct watch w = { .due = INFINITY, .judged = s->rep->sweeps, .all = CHECK_FIRST };
+    while (s->rep->sweeps < end) {
+        int32_t unjudged = foresee(s, &w, end);
+        int over = judged_sweep(s, omega, unjudged, s->rep->sweeps + unjudged == end - 1, &w);
+        if (over) return over < 0 ? -1 : 0;
+    }
+    return 0;
+}
+
+static int run(struct solve *s)
+{
+    return nlgs_sweeps(s, s->o->max_sweeps, s->o->relax);
+}
+
+const struct solver solver_nlgs = { "nlgs", 1, run };

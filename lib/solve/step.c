@@ -1,0 +1,149 @@
+#include "solve/step.h"
+
+#include "bodies/detect.h"
+
+#include <stdlib.h>
+
+static double max_overlap(const struct contacts *s)
+{
+    double depth = 0;
+    for (int64_t i = 0; i < s->n; i++) depth = fmax(depth, -s->c[i].gap);
+    return depth;
+}
+
+int step_solve(const struct packing *pack, struct contacts *s, const struct step_opt *o,
+               struct report *rep, struct why *why)
+{
+    struct problem p;
+    if (!o->warm) contacts_forget(s);
+    if (problem_prepare(&p, pack, s, o->alpha, o->solve.method->rho, o->order, why))
+        return why->status;
+    rep->step = pack->step + 1;
+    rep->t = pack->t + pack->dt;
+    rep->err.max_overlap = max_overlap(s);
+    int failed = solve_problem(&p, &o->solve, rep);
+    if (failed)
+        why_set(why, EX_SOFTWARE, "no memory for the history");
+    else if ((failed = problem_store(&p, s)))
+        why_set(why, EX_SOFTWARE, "no memory for the solution");
+    problem_free(&p);
+    return failed ? why->status : 0;
+}
+
+int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o, struct report *rep,
+                        struct why *why)
+{
+    struct problem p;
+    if (!o->warm)
+        for (int64_t i = 0; i < W->d * W->n; i++) W->r[i] = 0;
+    if (problem_prepare_delassus(&p, W, o->alpha, o->solve.method->rho, o->order, why))
+        return why->status;
+    int failed = solve_problem(&p, &o->solve, rep);
+    for (int64_t i = 0; i < p.slots; i++) {
+        double r[3], v[3];
+        if (p.contact[i] < 0) continue;
+        slot_get(&p, i, r, v);
+        for (int k = 0; k < W->d; k++) u[W->d * p.contact[i] + k] = v[k];
+    }
+    problem_free(&p);
+    return failed ? why_set(why, EX_SOFTWARE, "no memory for the history") : 0;
+}
+
+/* The reactions' impulses and their moments about the centres, summed in the contacts' order. */
+static void impulses(const struct packing *p, const struct contacts *s, vec3 *force, vec3 *moment)
+{
+    for (int64_t i = 0; i < s->n; i++) {
+        const struct contact *c = &s->c[i];
+        double la, lb;
+        problem_arms(p, c, &la, &lb);
+        const double *r = s->found[i].r;
+        vec3 t2 = contact_t2(c), f = v3_axpy(v3_axpy(v3_scale(r[0], c->n), r[1], c->t1), r[2], t2);
+        vec3 m = v3_axpy(v3_scale(r[2], c->t1), -r[1], t2); // -n x r
+        force[c->b] = v3_add(force[c->b], f);
+        moment[c->b] = v3_axpy(moment[c->b], lb, m);
+        if (c->a < 0) continue;
+        force[c->a] = v3_sub(force[c->a], f);
+        moment[c->a] = v3_axpy(moment[c->a], la, m);
+    }
+}
+
+static quat turn(quat q, double dt, vec3 w)
+{
+    return quat_mul(quat_rotation(v3_scale(dt, w)), q);
+}
+
+/* Body i through the second half of the step, with its impulse and moment. */
+static void body_move(struct packing *p, int64_t i, vec3 force, vec3 moment)
+{
+    double before = (1 - p->theta) * p->dt, after = p->theta * p->dt;
+    p->x[i] = packing_predict(p, i);
+    p->q[i] = turn(p->q[i], before, p->w[i]);
+    if (p->mass[i] > 0) {
+        p->v[i] = v3_axpy(v3_axpy(p->v[i], p->dt, p->g), 1 / p->mass[i], force);
+        p->w[i] = v3_axpy(p->w[i], 1 / p->inertia[i], moment);
+    }
+    p->x[i] = v3_axpy(p->x[i], after, p->v[i]);
+    p->q[i] = quat_unit(turn(p->q[i], after, p->w[i]));
+}
+
+/* The inverse. */
+static void body_unmove(struct packing *p, int64_t i, vec3 force, vec3 moment)
+{
+    double before = (1 - p->theta) * p->dt, after = p->theta * p->dt;
+    p->x[i] = v3_axpy(p->x[i], -after, p->v[i]);
+    p->q[i] = turn(p->q[i], -after, p->w[i]);
+    if (p->mass[i] > 0) {
+        p->v[i] = v3_axpy(v3_axpy(p->v[i], -p->dt, p->g), -1 / p->mass[i], force);
+        p->w[i] = v3_axpy(p->w[i], -1 / p->inertia[i], moment);
+    }
+    p->x[i] = v3_axpy(p->x[i], -before, p->v[i]);
+    p->q[i] = quat_unit(turn(p->q[i], -before, p->w[i]));
+}
+
+/* body() on each, with its impulse and moment; `there` is p with the predicted position that counts. */
+static int move(struct packing *p, const struct packing *there, const struct contacts *s,
+                void (*body)(struct packing *, int64_t, vec3, vec3), struct why *why)
+{
+    size_t n = (size_t)p->n + 1;
+    vec3 *force = calloc(n, sizeof *force), *moment = calloc(n, sizeof *moment);
+    bool room = force && moment;
+    if (room) impulses(there, s, force, moment);
+    for (int64_t i = 0; room && i < p->n; i++) body(p, i, force[i], moment[i]);
+    free(force), free(moment);
+    return room ? 0 : why_set(why, EX_SOFTWARE, "no memory to move the bodies");
+}
+
+int step_move(struct packing *p, const struct contacts *s, struct why *why)
+{
+    if (move(p, p, s, body_move, why)) return why->status;
+    p->step++;
+    p->t += p->dt;
+    return 0;
+}
+
+int step_unmove(struct packing *p, const struct contacts *s, struct why *why)
+{
+    struct packing there = *p;
+    there.theta =
+        1 + p->theta; // packing_predict() of it: q_{k+1} - theta dt qdot_{k+1} = q_{k+1/2}
+    if (move(p, &there, s, body_unmove, why)) return why->status;
+    p->step--;
+    p->t -= p->dt;
+    return 0;
+}
+
+int step_advance(struct packing *p, struct contacts *s, struct neighbours *near,
+                 const struct step_opt *o, struct report *rep, struct why *why)
+{
+    struct contacts before = { 0 };
+    if (o->warm) before = *s, *s = (struct contacts){ 0 };
+    double cpu = report_seconds(CLOCK_CPU);
+    int e = detect_contacts(s, p, o->gap, near, why);
+    rep->detection = report_seconds(CLOCK_CPU) - cpu;
+    if (!e && o->warm && contacts_match(s, &before))
+        e = why_set(why, EX_SOFTWARE, "no memory for the last reactions");
+    contacts_free(&before);
+    if (e) return e;
+    if (step_solve(p, s, o, rep, why)) return why->status;
+    return isfinite(rep->err.paper.eps_glob) ? step_move(p, s, why) : 0;
+}

@@ -1,0 +1,389 @@
+/* solve/system.c: see solve/system.h. */
+#include "solve/system.h"
+
+#include "base/lu.h"
+#include "solve/faces.h"
+
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_linalg.h>
+#include <stdlib.h>
+#include <string.h>
+
+/*
+ * Of a face that repeats something: D N P = Q (R over 0), as gsl_linalg_QRPT_decomp() leaves it. D is
+ * of all sizes, large where a contact is open, small where it sticks, so that the rows are scaled
+ * and ordered, the largest first, lest the small ones drown.
+ */
+struct reduced {
+    double *QR, *tau; /* [rows][rows - rank], [rows - rank] */
+    double *inverse;  /* [rank][rank] (L' + D')^-1 before it was multiplied by this */
+    double *scale;    /* [rows] of the face's rows, */
+    int *order;       /* [rows] and in which order they come here */
+    size_t *columns;  /* [rows - rank] P */
+};
+
+struct system {
+    const struct scaled *whole;
+    const double *L, *D; /* of the last time */
+    struct faces faces;
+    struct lu *lu;
+    double *a;               /* L' S + D', S's pattern */
+    double *w, *y;           /* [faces.size] T' x; S w */
+    double *b, *r, *x;       /* [n d] */
+    int sign;                /* of the determinants that the faces' transformations take out */
+    struct reduced *reduced; /* [faces.n] */
+    double *room;            /* theirs, */
+    size_t *columns;
+    int *order;
+    double *l, *d, *t; /* and [rows][rows] of one face: Q' L T, Q' D M, and for any use */
+};
+
+void system_free(struct system *s)
+{
+    if (!s) return;
+    faces_free(&s->faces), lu_free(s->lu);
+    free(s->a), free(s->w), free(s->y), free(s->b), free(s->r), free(s->x);
+    free(s->reduced), free(s->room), free(s->columns), free(s->order);
+    free(s->l), free(s->d), free(s->t), free(s);
+}
+
+static double *numbers(int64_t n)
+{
+    return malloc(((size_t)n + 1) * sizeof(double));
+}
+
+/* The faces' parts of the room */
+static void share(struct system *s)
+{
+    double *at = s->room;
+    int *order = s->order;
+    size_t *columns = s->columns;
+    for (int32_t i = 0; i < s->faces.n; i++) {
+        int64_t rows = s->faces.face[i].rows, rank = s->faces.face[i].rank, left = rows - rank;
+        struct reduced *q = s->reduced + i;
+        if (!left) continue;
+        q->QR = at, at += rows * left;
+        q->tau = at, at += left;
+        q->inverse = at, at += rank * rank;
+        q->scale = at, at += rows;
+        q->order = order, order += rows;
+        q->columns = columns, columns += left;
+    }
+}
+
+struct system *system_new(const struct scaled *w, double bytes)
+{
+    struct system *s = calloc(1, sizeof *s);
+    struct faces *f = s ? &s->faces : NULL;
+    if (!s || !faces_init(f, &w->W)) {
+        free(s);
+        return NULL;
+    }
+    s->whole = w;
+    int64_t rows = 0, columns = 0, squares = 0, most = 0;
+    for (int32_t i = 0; i < f->n; i++) {
+        int64_t n = f->face[i].rows, left = n - f->face[i].rank;
+        most = n > most ? n : most;
+        if (left) rows += n, columns += left, squares += n * left + (n - left) * (n - left);
+    }
+    s->a = numbers(f->first[f->size]), s->w = numbers(f->size), s->y = numbers(f->size);
+    s->b = numbers(w->size), s->r = numbers(w->size), s->x = numbers(w->size);
+    s->room = numbers(squares + columns + rows);
+    s->order = malloc(((size_t)rows + 1) * sizeof *s->order);
+    s->columns = malloc(((size_t)columns + 1) * sizeof *s->columns);
+    s->l = numbers(most * most), s->d = numbers(most * most), s->t = numbers(most * most);
+    s->reduced = calloc((size_t)f->n + 1, sizeof *s->reduced);
+    s->lu = lu_new(f->size, f->first, f->col, bytes);
+    if (!s->a || !s->w || !s->y || !s->b || !s->r || !s->x || !s->room || !s->order ||
+        !s->columns || !s->l || !s->d || !s->t || !s->reduced || !s->lu) {
+        system_free(s);
+        return NULL;
+    }
+    share(s);
+    return s;
+}
+
+double system_cost(const struct system *s)
+{
+    return lu_cost(s->lu) + 14.0 * s->faces.first[s->faces.size];
+}
+
+/* out[rows][columns] = the face's blocks of B, L or D, times A */
+static void by_contacts(const struct system *s, const struct face *f, const double *B,
+                        const double *A, int columns, double *out)
+{
+    int d = s->whole->W.d;
+    for (int i = 0; i < f->rows; i++) {
+        const double *b = B + 9 * (int64_t)f->contact[i / d] + 3 * (i % d);
+        const double *a = A + i / d * d * columns;
+        for (int j = 0; j < columns; j++) {
+            out[i * columns + j] = 0;
+            for (int k = 0; k < d; k++) out[i * columns + j] += b[k] * a[k * columns + j];
+        }
+    }
+}
+
+static gsl_matrix_view view(double *a, int rows, int columns)
+{
+    return gsl_matrix_view_array(a, (size_t)rows, (size_t)columns);
+}
+
+/* A face's rows as they come in its QR: out[rows][columns] of in[rows][columns] */
+static void arrange(const struct face *f, const struct reduced *q, const double *in, int columns,
+                    double *out)
+{
+    for (int i = 0; i < f->rows; i++)
+        for (int j = 0; j < columns; j++)
+            out[i * columns + j] = q->scale[q->order[i]] * in[q->order[i] * columns + j];
+}
+
+static double largest(const double *x, int n)
+{
+    double most = 0;
+    for (int i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
+    return most;
+}
+
+/* scale[] and order[], of DN[rows][rows - rank] */
+static void rank_rows(struct system *s, const struct face *f, const struct reduced *q,
+                      const double *DN)
+{
+    int d = s->whole->W.d, left = f->rows - f->rank;
+    for (int i = 0; i < f->rows; i++) {
+        int64_t at = 9 * (int64_t)f->contact[i / d] + 3 * (i % d);
+        double size = largest(s->L + at, d) + largest(s->D + at, d);
+        q->scale[i] = size > 0 ? 1 / size : 1;
+        int k = i;
+        for (; k > 0; k--) {
+            int o = q->order[k - 1];
+            if (q->scale[o] * largest(DN + o * left, left) >=
+                q->scale[i] * largest(DN + i * left, left))
+                break;
+            q->order[k] = o, s->sign = -s->sign;
+        }
+        q->order[k] = i;
+    }
+}
+
+/*
+ * The rows' last transformation, to L' + D' = 1: rows as mixed as Q' leaves them have pivots of any
+ * size, and those of L' S + D' are to be on the diagonal. False where L' + D' is singular.
+ */
+static bool align(struct system *s, const struct face *f, const struct reduced *q, double *l,
+                  double *d)
+{
+    int rank = f->rank, sign;
+    size_t order[3 * FACE_MOST];
+    gsl_permutation P = { (size_t)rank, order };
+    gsl_matrix_view t = view(s->t, rank, rank), F = view(q->inverse, rank, rank);
+    for (int i = 0; i < rank * rank; i++) s->t[i] = l[i] + d[i];
+    gsl_linalg_LU_decomp(&t.matrix, &P, &sign);
+    sign = gsl_linalg_LU_sgndet(&t.matrix, sign);
+    if (!sign) return false;
+    s->sign *= sign;
+    gsl_linalg_LU_invert(&t.matrix, &P, &F.matrix);
+    for (int k = 0; k < 2; k++) {
+        gsl_matrix_view A = view(k ? d : l, rank, rank);
+        gsl_matrix_memcpy(&t.matrix, &A.matrix);
+        gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, &F.matrix, &t.matrix, 0, &A.matrix);
+    }
+    return true;
+}
+
+/* L' and D' [rank][rank] of one face */
+static bool reduce(struct system *s, const struct face *f, const struct reduced *q,
+                   const double **l, const double **d)
+{
+    int left = f->rows - f->rank, rows = f->rows, rank = f->rank;
+    if (!left) {
+        for (int i = 0; i < rank; i++)
+            for (int j = 0; j < rank; j++) {
+                int64_t at = 9 * (int64_t)f->contact[0] + 3 * i + j;
+                s->l[rank * i + j] = s->L[at], s->d[rank * i + j] = s->D[at];
+            }
+        *l = s->l, *d = s->d;
+        return true;
+    }
+    by_contacts(s, f, s->D, f->N, left, s->t);
+    rank_rows(s, f, q, s->t);
+    arrange(f, q, s->t, left, q->QR);
+    by_contacts(s, f, s->L, f->T, rank, s->t);
+    arrange(f, q, s->t, rank, s->l);
+    by_contacts(s, f, s->D, f->M, rank, s->t);
+    arrange(f, q, s->t, rank, s->d);
+    gsl_matrix_view QR = view(q->QR, rows, left), l0 = view(s->l, rows, rank),
+                    d0 = view(s->d, rows, rank);
+    gsl_vector_view tau = gsl_vector_view_array(q->tau, (size_t)left),
+                    norm = gsl_vector_view_array(s->t, (size_t)left);
+    gsl_permutation P = { (size_t)left, q->columns };
+    int sign;
+    gsl_linalg_QRPT_decomp(&QR.matrix, &tau.vector, &P, &sign, &norm.vector);
+    s->sign *= sign;
+    for (int i = 0; i < left; i++) s->sign *= q->QR[i * left + i] < 0 ? -1 : 1;
+    gsl_linalg_QR_QTmat(&QR.matrix, &tau.vector, &l0.matrix);
+    gsl_linalg_QR_QTmat(&QR.matrix, &tau.vector, &d0.matrix);
+    *l = s->l + left * rank, *d = s->d + left * rank;
+    return align(s, f, q, s->l + left * rank, s->d + left * rank);
+}
+
+/* a = L' S + D'; false where that is singular for sure */
+static bool assemble(struct system *s)
+{
+    const struct faces *F = &s->faces;
+    s->sign = 1;
+    for (int32_t c = 0; c < F->n; c++) {
+        const struct face *f = F->face + c;
+        const double *l, *d;
+        if (!reduce(s, f, s->reduced + c, &l, &d)) return false;
+        int32_t first = F->first[f->at], length = F->first[f->at + 1] - first;
+        for (int i = 0; i < f->rank; i++) {
+            double *a = s->a + first + (int64_t)i * length;
+            memset(a, 0, (size_t)length * sizeof *a);
+            for (int k = 0; k < f->rank; k++) {
+                const double *S = F->S + first + (int64_t)k * length;
+                double lik = l[i * f->rank + k];
+                for (int32_t e = 0; e < length; e++) a[e] += lik * S[e];
+            }
+            for (int32_t e = 0; e < length; e++)
+                if (F->col[first + e] == f->at)
+                    for (int k = 0; k < f->rank; k++) a[e + k] += d[i * f->rank + k];
+        }
+    }
+    return true;
+}
+
+/* Numbers of a face's rows, out of x[n d] and into it */
+static void load(const struct system *s, const struct face *f, const double *x, double *out)
+{
+    int d = s->whole->W.d;
+    for (int i = 0; i < f->rows; i++) out[i] = x[d * (int64_t)f->contact[i / d] + i % d];
+}
+static void store(const struct system *s, const struct face *f, const double *in, double *x)
+{
+    int d = s->whole->W.d;
+    for (int i = 0; i < f->rows; i++) x[d * (int64_t)f->contact[i / d] + i % d] = in[i];
+}
+
+/* The face's rows of a right-hand side: out = Q' in */
+static void turn(const struct face *f, const struct reduced *q, const double *in, double *out)
+{
+    gsl_matrix_view QR = view(q->QR, f->rows, f->rows - f->rank);
+    gsl_vector_view tau = gsl_vector_view_array(q->tau, QR.matrix.size2),
+                    v = gsl_vector_view_array(out, (size_t)f->rows);
+    arrange(f, q, in, 1, out);
+    gsl_linalg_QR_QTvec(&QR.matrix, &tau.vector, &v.vector);
+}
+
+/* out[rows] = A[rows][columns] z */
+static void times(const double *A, int rows, int columns, const double *z, double *out)
+{
+    for (int i = 0; i < rows; i++) {
+        out[i] = 0;
+        for (int j = 0; j < columns; j++) out[i] += A[i * columns + j] * z[j];
+    }
+}
+
+/* The face's x of w and y = S w */
+static void recover(struct system *s, const struct face *f, const struct reduced *q,
+                    const double *b, double *x)
+{
+    int rows = f->rows, rank = f->rank, left = rows - rank;
+    double *e = s->l, *v = s->d, *xf = s->t;
+    // e = b - L T y - D M w, and R n = the first of Q' e
+    load(s, f, b, e);
+    times(f->T, rows, rank, s->y + f->at, xf);
+    by_contacts(s, f, s->L, xf, 1, v);
+    for (int i = 0; i < rows; i++) e[i] -= v[i];
+    times(f->M, rows, rank, s->w + f->at, xf);
+    by_contacts(s, f, s->D, xf, 1, v);
+    for (int i = 0; i < rows; i++) e[i] -= v[i];
+    turn(f, q, e, v);
+    gsl_matrix_view QR = view(q->QR, rows, left),
+                    R = gsl_matrix_submatrix(&QR.matrix, 0, 0, (size_t)left, (size_t)left);
+    gsl_vector_view n = gsl_vector_view_array(v, (size_t)left);
+    gsl_blas_dtrsv(CblasUpper, CblasNoTrans, CblasNonUnit, &R.matrix, &n.vector);
+    for (int i = 0; i < rows; i++)
+        for (int j = 0; j < left; j++) xf[i] += f->N[i * left + (int)q->columns[j]] * v[j];
+    store(s, f, xf, x);
+}
+
+/* x = (L W + D)^-1 b, as well as the factors have it */
+static bool substitute(struct system *s, const double *b, double *x)
+{
+    const struct faces *F = &s->faces;
+    bool reduced = F->size < s->whole->size;
+    for (int32_t c = 0; c < F->n; c++) {
+        const struct face *f = F->face + c;
+        int left = f->rows - f->rank;
+        load(s, f, b, left ? s->t : s->w + f->at);
+        if (!left) continue;
+        turn(f, s->reduced + c, s->t, s->l);
+        times(s->reduced[c].inverse, f->rank, f->rank, s->l + left, s->w + f->at);
+    }
+    if (!lu_substitute(s->lu, s->w)) return false;
+    for (int32_t i = 0; reduced && i < F->size; i++) {
+        s->y[i] = 0;
+        for (int32_t k = F->first[i]; k < F->first[i + 1]; k++)
+            s->y[i] += F->S[k] * s->w[F->col[k]];
+    }
+    for (int32_t c = 0; c < F->n; c++) {
+        const struct face *f = F->face + c;
+        if (f->rank < f->rows)
+            recover(s, f, s->reduced + c, b, x);
+        else
+            store(s, f, s->w + f->at, x);
+    }
+    return true;
+}
+
+/* r = b - (L W + D) x; returns |r| / |b|, the largest entries */
+static double residual(struct system *s, const double *x)
+{
+    int d = s->whole->W.d == 3 ? 3 : 2;
+    double worst = 0, size = 0;
+    scaled_product(s->whole, x, s->r);
+    for (int64_t c = 0; c < s->whole->W.n; c++) {
+        const double *L = s->L + 9 * c, *D = s->D + 9 * c;
+        double v[3], e[3], z[3];
+        scaled_load(d, s->r + d * c, v), scaled_load(d, x + d * c, z);
+        for (int i = 0; i < d; i++) {
+            e[i] = s->b[d * c + i];
+            for (int j = 0; j < d; j++) e[i] -= L[3 * i + j] * v[j] + D[3 * i + j] * z[j];
+            if (isnan(e[i])) return NAN;
+            worst = fmax(worst, fabs(e[i])), size = fmax(size, fabs(s->b[d * c + i]));
+        }
+        scaled_store(d, e, s->r + d * c);
+    }
+    return size > 0 ? worst / size : 0;
+}
+
+bool system_again(struct system *s, double *x)
+{
+    int32_t size = s->whole->size;
+    memcpy(s->b, x, (size_t)size * sizeof *x);
+    if (!substitute(s, s->b, x)) return false;
+    double e = residual(s, x);
+    for (int k = 0; k < 3 && e > 1e-10; k++) {
+        if (!substitute(s, s->r, s->x)) return false;
+        for (int32_t i = 0; i < size; i++) x[i] += s->x[i];
+        double before = e;
+        e = residual(s, x);
+        if (e < before / 4) continue;
+        if (e < before) break;
+        for (int32_t i = 0; i < size; i++) x[i] -= s->x[i];
+        e = before;
+        break;
+    }
+    return e < 1e-4;
+}
+
+bool system_solve(struct system *s, const double *L, const double *D, double *x)
+{
+    s->L = L, s->D = D;
+    return assemble(s) && lu_factorise(s->lu, s->a) && system_again(s, x);
+}
+
+int system_sign(const struct system *s)
+{
+    return s->sign * lu_sign(s->lu);
+}
