@@ -26,14 +26,15 @@ NSD_CFLAGS  := -std=gnu11 -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes 
 NSD_LDFLAGS := -fopenmp $(if $(SAN),-fsanitize=address$(,)undefined)
 NSD_LDLIBS  := $(PL) -lhdf5_hl -lklu -lcholmod -lm
 
-# The sweep once a width; without contraction, and with instructions that the others know nothing of.
+# The inner loops once a width; without contraction, and with instructions that the others know nothing of.
 # Distributions build with -O2, at which gcc leaves loops over three components loops: three times the time.
+WIDE      := sweep mixing
 WIDTHS    := 2 $(if $(filter x86_64,$(shell uname -m)),4 8)
 WIDTH_4   := -mavx2
 WIDTH_8   := -mavx512f -mavx512dq -mavx512vl
 
-LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/cli/main.c lib/problem/sweep.c,$(wildcard lib/*/*.c))) \
-         $(WIDTHS:%=$B/lib/problem/sweep-%.o)
+LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/cli/main.c $(WIDE:%=lib/problem/%.c),$(wildcard lib/*/*.c))) \
+         $(foreach w,$(WIDE),$(WIDTHS:%=$B/lib/problem/$w-%.o))
 TOOLS := $(patsubst tools/%.c,$B/%,$(wildcard tools/*.c))
 CTEST := $(patsubst tests/%.c,$B/tests/%,$(wildcard tests/*_test.c))
 
@@ -48,9 +49,12 @@ $B/lib/%.o: lib/%.c Makefile
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
-$B/lib/problem/sweep-%.o: lib/problem/sweep.c Makefile
-	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS:-O2=-O3) -DLANES=$* $(WIDTH_$*) -MMD -MP -c -o $@ $<
+define compile_wide
+$B/lib/problem/$1-%.o: lib/problem/$1.c Makefile
+	@mkdir -p $$(@D)
+	$$(CC) $$(CPPFLAGS) $$(NSD_CFLAGS) $$(CFLAGS:-O2=-O3) -DLANES=$$* $$(WIDTH_$$*) -MMD -MP -c -o $$@ $$<
+endef
+$(foreach w,$(WIDE),$(eval $(call compile_wide,$w)))
 
 $B/tools/%.o: tools/%.c Makefile
 	@mkdir -p $(@D)

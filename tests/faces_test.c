@@ -213,7 +213,8 @@ static void test_system(int d, int each, double least)
     struct delassus W = delassus(&w);
     struct problem p;
     struct scaled all = scaled(&W, &p);
-    struct system *s = system_new(&all, 1e9);
+    bool large;
+    struct system *s = system_new(&all, 1e9, &large);
     int n = all.size;
     double *a = dense(&all), *x = calloc((size_t)n, sizeof *x), *b = calloc((size_t)n, sizeof *b);
     double *L = calloc(9 * (size_t)w.n, sizeof *L), *D = calloc(9 * (size_t)w.n, sizeof *D);
@@ -259,7 +260,8 @@ static void test_sign(int d, int each)
     struct delassus W = delassus(&w);
     struct problem p;
     struct scaled all = scaled(&W, &p);
-    struct system *s = system_new(&all, 1e9);
+    bool large;
+    struct system *s = system_new(&all, 1e9, &large);
     size_t n = (size_t)all.size;
     double *a = dense(&all), *x = calloc(n, sizeof *x);
     double *L = calloc(9 * (size_t)w.n, sizeof *L), *D = calloc(9 * (size_t)w.n, sizeof *D);

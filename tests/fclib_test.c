@@ -53,7 +53,7 @@ static double *velocity(const struct delassus *W, const double *r)
         delassus_gather(W, c, W->q, r, b);
         for (int i = 0; i < d; i++) {
             u[c * d + i] = b[i];
-            for (int j = 0; j < d; j++) u[c * d + i] += W->diag[9 * c + 3 * i + j] * r[c * d + j];
+            for (int j = 0; j < d; j++) u[c * d + i] += W->diag[9 * c + i + 3 * j] * r[c * d + j];
         }
     }
     return u;

@@ -55,8 +55,9 @@ static klu_symbolic *analyse(struct lu *lu)
     return order;
 }
 
-struct lu *lu_new(int32_t n, int32_t *first, int32_t *col, double bytes)
+struct lu *lu_new(int32_t n, int32_t *first, int32_t *col, double bytes, bool *too_large)
 {
+    *too_large = false;
     struct lu *lu = calloc(1, sizeof *lu);
     if (!lu) return NULL;
     lu->n = n, lu->first = first, lu->col = col;
@@ -66,7 +67,8 @@ struct lu *lu_new(int32_t n, int32_t *first, int32_t *col, double bytes)
     lu->common.scale = -1; // the rows are of one size: solve/scaled.c
     lu->order = analyse(lu);
     // an entry of a factor has a number and an index; growing them copies them
-    if (lu->order && 48 * lu->entries <= bytes) return lu;
+    *too_large = lu->order && 48 * lu->entries > bytes;
+    if (lu->order && !*too_large) return lu;
     lu_free(lu);
     return NULL;
 }

@@ -13,9 +13,10 @@ struct lu;
 
 /*
  * For n x n matrices by rows: entry k of row i is in column col[k], first[i] <= k < first[i+1], of
- * either array borrowed. NULL where memory is short or the factors would need more than `bytes`.
+ * either array borrowed. NULL where memory is short or, *too_large, the factors would need more than
+ * `bytes`.
  */
-struct lu *lu_new(int32_t n, int32_t *first, int32_t *col, double bytes);
+struct lu *lu_new(int32_t n, int32_t *first, int32_t *col, double bytes, bool *too_large);
 void lu_free(struct lu *);
 
 /* The rough price of a factorisation, in multiplications. */

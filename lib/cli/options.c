@@ -190,6 +190,7 @@ void options_log(const struct report *rep)
     json_object_set_new(j, "seconds", json_number(rep->seconds));
     json_object_set_new(j, "elapsed", json_number(rep->elapsed));
     json_object_set_new(j, "detection", json_number(rep->detection));
+    json_object_set_new(j, "work", json_number(rep->work));
     int failed =
         json_dumpf(j, log_file, JSON_COMPACT) || fputc('\n', log_file) == EOF || fflush(log_file);
     json_decref(j);

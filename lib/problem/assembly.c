@@ -174,6 +174,37 @@ int assembly_W(const struct assembly *A, struct stored *W, struct why *why)
     return e;
 }
 
+int assembly_blocks(const struct assembly *A, struct delassus *W, struct why *why)
+{
+    int d = A->p->d;
+    int64_t n = A->p->n, blocks = 0;
+    int64_t *met = malloc((size_t)(n + 1) * sizeof *met);
+    if (!met) return short_of_memory(why);
+    for (int64_t c = 0; c < n; c++) blocks += assembly_neighbours(A, c, met);
+    if (!delassus_room(W, d, n, blocks, why)) {
+        blocks = 0;
+        for (int64_t c = 0; c < n; c++) {
+            W->mu[c] = assembly_bundle(A, c)->mu[slot_lane(A->row[c])];
+            for (int k = 0; k < d; k++) W->q[d * c + k] = A->q[d * c + k];
+            int64_t count = assembly_neighbours(A, c, met);
+            for (int64_t b = 0; b < count; b++) {
+                double rows[3][3], B[9];
+                assembly_block(A, c, met[b], rows);
+                for (int k = 0; k < d * d; k++) B[k] = rows[k % d][k / d];
+                if (met[b] == c) {
+                    delassus_set_diag(W, c, B);
+                } else if (delassus_block_counts(d, B)) {
+                    memcpy(W->block + d * d * blocks, B, (size_t)(d * d) * sizeof *B);
+                    W->col[blocks++] = (int32_t)met[b];
+                }
+            }
+            W->first[c + 1] = blocks;
+        }
+    }
+    free(met);
+    return why->status;
+}
+
 /* The unknowns of a body are dof[0 .. dofs-1] of its (v, w). */
 static const int dof_plane[] = { 0, 1, 5 }, dof_space[] = { 0, 1, 2, 3, 4, 5 };
 

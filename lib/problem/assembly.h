@@ -31,7 +31,9 @@ struct assembly {
 /* All return 0, EX_SOFTWARE, or EX_DATAERR where FCLIB's 32-bit indices do not reach. What they
    fill is to be freed in any case. */
 int assembly_init(struct assembly *, const struct problem *, struct why *);
-int assembly_W(const struct assembly *, struct stored *W, struct why *); /* by rows */
+int assembly_W(const struct assembly *A, struct stored *W, struct why *why); /* by rows */
+/* W block by block, with q, mu and r = 0. There is nothing to free where it fails. */
+int assembly_blocks(const struct assembly *A, struct delassus *W, struct why *why);
 /* By columns, and f[M->n]. */
 int assembly_MH(const struct assembly *, struct stored *M, struct stored *H, double **f,
                 struct why *);

@@ -1,7 +1,6 @@
 /* problem/delassus.c: see problem/delassus.h. */
 #include "problem/delassus.h"
 
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,20 +17,20 @@ static void sort_by_block(int64_t entries, const int32_t *index, int d, int64_t 
     }
 }
 
-/* A block of nothing but zeros is no block. */
-static bool nonzero(const double *B, int size)
+bool delassus_block_counts(int d, const double *B)
 {
-    for (int k = 0; k < size; k++)
+    for (int k = 0; k < d * d; k++)
         if (B[k] != 0) return true;
     return false;
 }
 
-/* Column-major d x d to row-major, padded to 3 x 3 as law/local.h has it for d = 2 */
-static void pad(int d, const double *B, double out[9])
+void delassus_set_diag(struct delassus *W, int64_t c, const double *B)
 {
-    for (int i = 0; i < d; i++)
-        for (int j = 0; j < d; j++) out[3 * i + j] = B[i + d * j];
-    if (d == 2) out[8] = out[4] > 0 ? out[4] : 1;
+    int d = W->d;
+    double *D = W->diag + 9 * c;
+    for (int j = 0; j < d; j++)
+        for (int i = 0; i < d; i++) D[i + 3 * j] = B[i + d * j];
+    if (d == 2) D[8] = D[4] > 0 ? D[4] : 1;
 }
 
 /* The entries, now sorted, block by block into W, whose arrays have room for each of them. */
@@ -46,8 +45,8 @@ static void gather_blocks(struct delassus *W, int64_t entries, const int64_t *or
         for (; k < entries && row[order[k]] / d == c && col[order[k]] / d == b; k++)
             B[row[order[k]] % d + d * (col[order[k]] % d)] += x[order[k]];
         if (b == c) {
-            pad(d, B, W->diag + 9 * c);
-        } else if (nonzero(B, dd)) {
+            delassus_set_diag(W, c, B);
+        } else if (delassus_block_counts(d, B)) {
             memcpy(W->block + dd * blocks, B, (size_t)dd * sizeof *B);
             W->col[blocks++] = (int32_t)b;
             W->first[c + 1]++;
@@ -67,8 +66,13 @@ static int64_t count_blocks(int64_t entries, const int64_t *order, const int32_t
     return blocks;
 }
 
-/* With room for so many blocks; nothing but zeros. False when memory is short. */
-static bool make(struct delassus *W, int d, int64_t n, int64_t blocks)
+static int no_memory(struct delassus *W, int64_t n, struct why *why)
+{
+    delassus_free(W);
+    return why_set(why, EX_SOFTWARE, "out of memory for a problem of %lld contacts", (long long)n);
+}
+
+int delassus_room(struct delassus *W, int d, int64_t n, int64_t blocks, struct why *why)
 {
     *W = (struct delassus){ .d = d, .n = n };
     W->first = calloc((size_t)(n + 1), sizeof *W->first);
@@ -78,13 +82,8 @@ static bool make(struct delassus *W, int d, int64_t n, int64_t blocks)
     W->q = calloc((size_t)(n * d + 1), sizeof *W->q);
     W->mu = calloc((size_t)(n + 1), sizeof *W->mu);
     W->r = calloc((size_t)(n * d + 1), sizeof *W->r);
-    return W->first && W->col && W->block && W->diag && W->q && W->mu && W->r;
-}
-
-static int no_memory(struct delassus *W, int64_t n, struct why *why)
-{
-    delassus_free(W);
-    return why_set(why, EX_SOFTWARE, "out of memory for a problem of %lld contacts", (long long)n);
+    bool room = W->first && W->col && W->block && W->diag && W->q && W->mu && W->r;
+    return room ? 0 : no_memory(W, n, why);
 }
 
 int delassus_init(struct delassus *W, int d, int64_t n, int64_t entries, const int32_t *row,
@@ -95,24 +94,23 @@ int delassus_init(struct delassus *W, int d, int64_t n, int64_t entries, const i
     int64_t *tally = malloc((size_t)(n + 1) * sizeof *tally);
     int64_t *half = malloc((size_t)(entries + 1) * sizeof *half);
     int64_t *order = malloc((size_t)(entries + 1) * sizeof *order);
-    bool good = tally && half && order;
-    if (good) { // by column, then stably by row
+    int e = tally && half && order ? 0 : no_memory(W, n, why);
+    if (!e) { // by column, then stably by row
         sort_by_block(entries, col, d, n, NULL, half, tally);
         sort_by_block(entries, row, d, n, half, order, tally);
-        int64_t blocks = count_blocks(entries, order, row, col, d);
-        good = make(W, d, n, blocks);
+        e = delassus_room(W, d, n, count_blocks(entries, order, row, col, d), why);
     }
-    if (good) {
+    if (!e) {
         const double none[9] = { 0 };
         if (n)
             memcpy(W->q, q, (size_t)(n * d) * sizeof *q), memcpy(W->mu, mu, (size_t)n * sizeof *mu);
-        for (int64_t c = 0; c < n; c++) pad(d, none, W->diag + 9 * c);
+        for (int64_t c = 0; c < n; c++) delassus_set_diag(W, c, none);
         gather_blocks(W, entries, order, row, col, x);
     }
     free(tally);
     free(half);
     free(order);
-    return good ? 0 : no_memory(W, n, why);
+    return e;
 }
 
 void delassus_free(struct delassus *W)
@@ -166,7 +164,7 @@ int delassus_part(struct delassus *to, const struct delassus *W, int64_t n, cons
     int d = W->d, dd = d * d;
     int64_t blocks = 0;
     for (int64_t i = 0; i < n; i++) blocks += W->first[contact[i] + 1] - W->first[contact[i]];
-    if (!make(to, d, n, blocks)) return no_memory(to, n, why);
+    if (delassus_room(to, d, n, blocks, why)) return why->status;
     for (int64_t i = 0; i < n; i++) {
         int64_t c = contact[i], at = to->first[i];
         double *q = to->q + d * i;
@@ -175,7 +173,7 @@ int delassus_part(struct delassus *to, const struct delassus *W, int64_t n, cons
         memcpy(to->diag + 9 * i, W->diag + 9 * c, 9 * sizeof *W->diag);
         to->mu[i] = W->mu[c];
         for (int k = 0; k < d; k++)
-            for (int j = 0; j < d; j++) q[k] -= W->diag[9 * c + 3 * k + j] * r[d * c + j];
+            for (int j = 0; j < d; j++) q[k] -= W->diag[9 * c + k + 3 * j] * r[d * c + j];
         for (int64_t e = W->first[c]; e < W->first[c + 1]; e++) {
             int32_t b = W->col[e];
             if (of[b] < 0) continue;
@@ -186,4 +184,18 @@ int delassus_part(struct delassus *to, const struct delassus *W, int64_t n, cons
         to->first[i + 1] = at;
     }
     return 0;
+}
+
+void delassus_apply(const struct delassus *W, const double *x, const double *q, double *v)
+{
+    int d = W->d;
+    for (int64_t c = 0; c < W->n; c++) {
+        const double *D = W->diag + 9 * c;
+        double b[4];
+        delassus_gather(W, c, q, x, b);
+        for (int i = 0; i < d; i++) {
+            v[d * c + i] = b[i];
+            for (int j = 0; j < d; j++) v[d * c + i] += D[i + 3 * j] * x[d * c + j];
+        }
+    }
 }

@@ -11,6 +11,7 @@
 
 #include "base/why.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 struct delassus {
@@ -19,11 +20,21 @@ struct delassus {
     int64_t *first; /* [n + 1] off-diagonal blocks of row c: first[c] .. first[c+1]-1 */
     int32_t *col;   /* [blocks] their columns, ascending */
     double *block;  /* [blocks][d*d] column-major, kg^-1; four more may be read */
-    double *diag;   /* [n][9] W_cc, padded to 3 x 3 as law/local.h has it for d = 2 */
-    double *q;      /* [n*d] m/s */
-    double *mu;     /* [n] */
-    double *r;      /* [n*d] N s: the reactions that the sweep reads */
+    double
+        *diag;  /* [n][9] W_cc, column-major too, padded to 3 x 3 as law/local.h has it for d = 2 */
+    double *q;  /* [n*d] m/s */
+    double *mu; /* [n] */
+    double *r;  /* [n*d] N s: the reactions that the sweep reads */
 };
+
+/* Room for the blocks, all of it zero; no rows begun. Returns 0 or EX_SOFTWARE with nothing to free. */
+int delassus_room(struct delassus *W, int d, int64_t n, int64_t blocks, struct why *why);
+
+/* W_cc := B, d x d by columns; in the plane with law/local.h's third row and column. */
+void delassus_set_diag(struct delassus *W, int64_t c, const double *B);
+
+/* Whether a block B[d*d] has anything but zeros in it: only such ones are kept. */
+bool delassus_block_counts(int d, const double *B);
 
 /*
  * From the entries (row, col, x), [entries] of each, of an (n d) x (n d) matrix in any order; entries
@@ -49,6 +60,15 @@ int delassus_sort(struct delassus *to, const struct delassus *W, int64_t rows, c
  */
 int delassus_part(struct delassus *to, const struct delassus *W, int64_t n, const int32_t *contact,
                   const int32_t *of, const double *r, const double *v, struct why *why);
+
+/* How many numbers W's blocks have */
+static inline double delassus_entries(const struct delassus *W)
+{
+    return (double)((W->first[W->n] + W->n) * W->d * W->d);
+}
+
+/* v = W x + q, of [n*d] numbers each; x is followed by one more number that may be read. */
+void delassus_apply(const struct delassus *W, const double *x, const double *q, double *v);
 
 /* Four of a column, though only d are meant: what is beyond them ends in b[d..], which nobody reads. */
 typedef double column __attribute__((vector_size(32), may_alias, aligned(8)));

@@ -8,7 +8,10 @@
 #include <string.h>
 #include <sys/mman.h>
 
-enum { HUGE_PAGE = 2 << 20 }; /* bytes */
+enum {
+    HUGE_PAGE = 2 << 20, /* bytes */
+    PARALLEL_FROM = 64   /* bundles of a group that are worth a second thread */
+};
 
 static_assert(sizeof(struct body) == 64, "a body is a cache line");
 static_assert(sizeof(struct bundle) % 64 == 0, "lanes begin a cache line");
@@ -38,7 +41,7 @@ static int no_memory(struct problem *p, struct why *why)
 void problem_free(struct problem *p)
 {
     free(p->bundle), free(p->rebound), free(p->u), free(p->contact), free(p->group), free(p->body);
-    free(p->split);
+    free(p->split), free(p->seat);
     delassus_free(&p->sorted);
     *p = (struct problem){ 0 };
 }
@@ -82,50 +85,63 @@ static bool lay_out(struct problem *p, const struct schedule *plan)
 static int32_t *seats_of_bodies(const struct problem *p, const struct packing *pack,
                                 const struct contacts *s, enum order order)
 {
-    int32_t *row = malloc((size_t)(pack->n + 1) * sizeof *row), next = 0;
-    for (int64_t i = 0; row && i < pack->n; i++) row[i] = -1;
-    for (int64_t i = 0; row && order >= ORDER_COLOUR && i < p->slots; i++) {
+    int32_t *seat = malloc((size_t)(pack->n + 1) * sizeof *seat), next = 0;
+    for (int64_t i = 0; seat && i < pack->n; i++) seat[i] = -1;
+    for (int64_t i = 0; seat && order >= ORDER_COLOUR && i < p->slots; i++) {
         if (p->contact[i] < 0) continue;
         const struct contact *c = &s->c[p->contact[i]];
-        if (c->a >= 0 && row[c->a] < 0) row[c->a] = next++;
-        if (row[c->b] < 0) row[c->b] = next++;
+        if (c->a >= 0 && seat[c->a] < 0) seat[c->a] = next++;
+        if (seat[c->b] < 0) seat[c->b] = next++;
     }
-    for (int64_t i = 0; row && i < pack->n; i++)
-        if (row[i] < 0) row[i] = next++;
-    return row;
+    for (int64_t i = 0; seat && i < pack->n; i++)
+        if (seat[i] < 0) seat[i] = next++;
+    return seat;
 }
 
-/* The bodies with the velocities before the step. */
-static void movers(struct problem *p, const struct packing *pack, const int32_t *row)
+/* The bodies with the velocities before the step */
+static void movers(struct problem *p)
 {
+    const struct packing *pack = p->packing;
     for (int64_t i = 0; i < pack->n; i++) {
         vec3 v = pack->v[i], w = pack->w[i];
-        p->body[row[i]] = (struct body){ { v.x, v.y, v.z },
-                                         { w.x, w.y, w.z },
-                                         pack->mass[i] > 0 ? 1 / pack->mass[i] : 0,
-                                         pack->mass[i] > 0 ? 1 / pack->inertia[i] : 0 };
+        p->body[p->seat[i]] = (struct body){ { v.x, v.y, v.z },
+                                             { w.x, w.y, w.z },
+                                             pack->mass[i] > 0 ? 1 / pack->mass[i] : 0,
+                                             pack->mass[i] > 0 ? 1 / pack->inertia[i] : 0 };
+    }
+}
+
+void problem_free_motion(struct problem *p)
+{
+    const struct packing *pack = p->packing;
+    const vec3 dv = v3_scale(pack->dt, pack->g);
+    for (int64_t i = 0; i < pack->n; i++) {
+        struct body *b = &p->body[p->seat[i]];
+        if (!(b->im > 0)) continue;
+        b->v[0] = pack->v[i].x + dv.x, b->v[1] = pack->v[i].y + dv.y, b->v[2] = pack->v[i].z + dv.z;
+        b->w[0] = pack->w[i].x, b->w[1] = pack->w[i].y, b->w[2] = pack->w[i].z;
     }
 }
 
 /* The place of body i (wall w: -1-w) of a contact: its own, or a copy's when it does not move. */
-static int32_t seat(struct problem *p, const struct packing *pack, const int32_t *row, int32_t i,
-                    int64_t *next)
+static int32_t seat(struct problem *p, int32_t i, int64_t *next)
 {
-    if (i >= 0 && pack->mass[i] > 0) return body_place(row[i]);
+    const struct packing *pack = p->packing;
+    if (i >= 0 && pack->mass[i] > 0) return body_place(p->seat[i]);
     struct body *copy = &p->body[*next];
     vec3 v = i < 0 ? pack->wall[-1 - i].v : pack->v[i];
     *copy = (struct body){ .v = { v.x, v.y, v.z } };
-    if (i >= 0) *copy = p->body[row[i]];
+    if (i >= 0) *copy = p->body[p->seat[i]];
     return body_place((*next)++);
 }
 
-void problem_arms(const struct packing *p, const struct contact *c, double *la, double *lb)
+void problem_arms(const struct contact *c, vec3 xa, vec3 xb, double *la, double *lb)
 {
-    *la = c->a < 0 ? 0 : v3_dot(v3_sub(c->x, packing_predict(p, c->a)), c->n);
-    *lb = v3_dot(v3_sub(packing_predict(p, c->b), c->x), c->n);
+    *la = c->a < 0 ? 0 : v3_dot(v3_sub(c->x, xa), c->n);
+    *lb = v3_dot(v3_sub(xb, c->x), c->n);
 }
 
-/* All of row i but the reaction; the bodies still have the velocities before the step. */
+/* All of slot i but the reaction; the bodies still have the velocities before the step. */
 static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
                       const struct contact *c, double alpha, double factor)
 {
@@ -136,7 +152,8 @@ static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
     int k = slot_lane(i);
     for (int j = 0; j < 3; j++) r->n[j][k] = n[j], r->t1[j][k] = t1[j];
     r->mu[k] = c->mu;
-    problem_arms(pack, c, &r->la[k], &r->lb[k]);
+    vec3 xa = c->a < 0 ? c->x : packing_predict(pack, c->a), xb = packing_predict(pack, c->b);
+    problem_arms(c, xa, xb, &r->la[k], &r->lb[k]);
     const struct body *a = &p->body[body_index(r->a[k])], *b = &p->body[body_index(r->b[k])];
     double u[3], im = a->im + b->im;
     double it = im + r->la[k] * r->la[k] * a->ii + r->lb[k] * r->lb[k] * b->ii;
@@ -182,16 +199,17 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
                     double alpha, double factor, enum order order, struct why *why)
 {
     struct schedule plan = { 0 };
-    *p = (struct problem){ .d = pack->dim, .n = s->n, .dt = pack->dt, .bodies = seats(pack, s) };
+    *p = (struct problem){
+        .d = pack->dim, .n = s->n, .dt = pack->dt, .packing = pack, .bodies = seats(pack, s)
+    };
     if (p->bodies > BODIES_MOST)
         return why_set(why, EX_DATAERR, "more than %d bodies", BODIES_MOST);
     p->body = lines(p->bodies, sizeof *p->body);
     bool room = p->body && !schedule_bodies(&plan, order, s, pack) && lay_out(p, &plan);
     schedule_free(&plan);
     if (room && rebounds(s)) room = (p->rebound = lines(p->bundles, sizeof *p->rebound)) != NULL;
-    int32_t *row = room ? seats_of_bodies(p, pack, s, order) : NULL;
-    if (!row) return no_memory(p, why);
-    movers(p, pack, row);
+    if (!room || !(p->seat = seats_of_bodies(p, pack, s, order))) return no_memory(p, why);
+    movers(p);
     int64_t nobody = pack->n, next = nobody + 2;
     int64_t other = p->split ? BUNDLE * p->group[p->split->inside] : p->slots;
     for (int64_t i = 0; i < p->slots; i++) {
@@ -200,17 +218,14 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
         r->a[k] = r->b[k] = body_place(nobody + (i >= other));
         if (p->contact[i] < 0) continue;
         const struct contact *c = &s->c[p->contact[i]];
-        r->a[k] = seat(p, pack, row, c->a, &next), r->b[k] = seat(p, pack, row, c->b, &next);
+        r->a[k] = seat(p, c->a, &next), r->b[k] = seat(p, c->b, &next);
         slot_init(p, i, pack, c, alpha, factor);
     }
-    free(row);
 
     double g = v3_norm(pack->g);
     p->scale_v = (g > 0 ? g : 9.81) * pack->dt;
     p->scale_r = p->scale_v * mean_mass(pack);
-    const double dv[3] = { pack->dt * pack->g.x, pack->dt * pack->g.y, pack->dt * pack->g.z };
-    for (int64_t i = 0; i < pack->n; i++)
-        for (int k = 0; k < 3 && p->body[i].im > 0; k++) p->body[i].v[k] += dv[k];
+    problem_free_motion(p);
     for (int64_t i = 0; i < p->slots; i++) {
         double q[3];
         if (p->contact[i] < 0) continue;
@@ -251,7 +266,8 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
         struct bundle *r = slot_bundle(p, i);
         int k = slot_lane(i);
         r->a[k] = (int32_t)c;
-        for (int j = 0; j < 9; j++) r->W[j][k] = c < 0 ? j % 4 == 0 : W->diag[9 * c + j];
+        for (int j = 0; j < 9; j++)
+            r->W[j][k] = c < 0 ? j % 4 == 0 : W->diag[9 * c + j / 3 + 3 * (j % 3)];
         if (c < 0) continue;
         const double *D = W->diag + 9 * c, *q = W->q + W->d * c;
         double lambda = local_lambda_max(D);
@@ -288,15 +304,10 @@ void slot_set(struct problem *p, int64_t i, const double r[3], const double u[3]
         c->r[k][slot_lane(i)] = r[k], p->u[i / BUNDLE][k][slot_lane(i)] = u[k];
 }
 
-void slot_react(struct problem *p, int64_t i, const double r[3])
+int problem_team(const struct problem *p, int threads)
 {
-    struct bundle *c = slot_bundle(p, i);
-    double dr[3];
-    for (int k = 0; k < 3; k++) dr[k] = r[k] - c->r[k][slot_lane(i)], c->r[k][slot_lane(i)] = r[k];
-    if (p->W)
-        for (int k = 0; k < p->d; k++) p->W->r[p->d * p->contact[i] + k] = r[k];
-    else
-        body_push(p->body, c, slot_lane(i), dr);
+    if (p->bundles >= PARALLEL_FROM * p->groups) return threads;
+    return p->split && threads > 1 ? 2 : 1;
 }
 
 int problem_store(const struct problem *p, struct contacts *s)

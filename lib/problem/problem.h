@@ -23,6 +23,9 @@
 #include "problem/delassus.h"
 #include "problem/schedule.h"
 
+/* Bundles of 1.2 MB: of more, none is in a near cache when a sweep comes back to it. */
+enum { FAR_BUNDLES = 1024 };
+
 struct problem {
     int d;
     int64_t n;               /* contacts */
@@ -35,19 +38,21 @@ struct problem {
     int64_t *group;          /* [groups + 1] bundles group[g] .. group[g+1]-1 may be done at once */
     struct two_thread_split *split; /* NULL: the order knows none */
     int64_t bodies;                 /* 0: given by W */
-    struct body *body;      /* [bodies] the packing's, by colours as the sweep first meets them, and
+    struct body *body; /* [bodies] the packing's, by colours as the sweep first meets them, and
                            copies of what does not move; NULL: given by W */
-    struct delassus *W;     /* borrowed; NULL: given by bodies */
-    struct delassus sorted; /* given by W: its rows as they are here */
-    bool full;              /* given by W, and some W_cc is more than diag(w_n, w_t, w_t) */
-    double dt;              /* s: the paper's forces are r / dt; 1 where there are no steps */
-    double scale_v;         /* m/s and */
-    double scale_r;         /* N s: what the scaled errors are measured in: g dt and m g dt */
-    double norm_q;          /* m/s: |u~_free| of all contacts, |q| */
+    const struct packing *packing; /* borrowed: its velocities are those before the step */
+    int32_t *seat;                 /* [packing->n] body i of the packing is body[seat[i]] */
+    struct delassus *W;            /* borrowed; NULL: given by bodies */
+    struct delassus sorted;        /* given by W: its rows as they are here */
+    bool full;                     /* given by W, and some W_cc is more than diag(w_n, w_t, w_t) */
+    double dt;      /* s: the paper's forces are r / dt; 1 where there are no steps */
+    double scale_v; /* m/s and */
+    double scale_r; /* N s: what the scaled errors are measured in: g dt and m g dt */
+    double norm_q;  /* m/s: |u~_free| of all contacts, |q| */
 };
 
 /*
- * The rows of a packing's contacts; r from the contacts when they are solved, else 0, with the
+ * The slots of a packing's contacts; r from the contacts when they are solved, else 0, with the
  * bodies at v_free + M^-1 P r. rho = alpha m_red when alpha > 0, else factor/lambda_max(W~_cc).
  */
 int problem_prepare(struct problem *, const struct packing *, const struct contacts *, double alpha,
@@ -55,13 +60,21 @@ int problem_prepare(struct problem *, const struct packing *, const struct conta
 /* The same of a problem given by W; r from W->r. */
 int problem_prepare_delassus(struct problem *, struct delassus *, double alpha, double rho_factor,
                              enum order, struct why *);
-void problem_free(struct problem *);
+void problem_free(struct problem *p);
 
-/* What was found, row by row, into the contacts; -1 when memory is short. */
+/* Of a packing: the bodies get their velocities before the step and dt g, as without any reaction. */
+void problem_free_motion(struct problem *p);
+
+/* How many of these threads share a sweep: all, or where the groups are too small for that, one, or one a
+   half. */
+int problem_team(const struct problem *p, int threads);
+
+/* What was found, slot by slot, into the contacts; -1 when memory is short. */
 int problem_store(const struct problem *, struct contacts *);
 
-/* The lever arms la, lb of a contact (0 for a wall), as the rows have them. */
-void problem_arms(const struct packing *, const struct contact *, double *la, double *lb);
+/* The lever arms la, lb (m) of a contact between bodies whose centres are at xa and xb (m), along its
+   normal; a wall has none: la = 0, whatever xa. */
+void problem_arms(const struct contact *c, vec3 xa, vec3 xb, double *la, double *lb);
 
 /* Row i: its bundle and lane; its r and u. */
 static inline struct bundle *slot_bundle(const struct problem *p, int64_t i)
@@ -78,8 +91,6 @@ static inline struct rebound *slot_rebound(const struct problem *p, int64_t i)
 }
 void slot_get(const struct problem *, int64_t i, double r[3], double u[3]);
 void slot_set(struct problem *, int64_t i, const double r[3], const double u[3]);
-/* r becomes row i's reaction, and the bodies move accordingly (W->r is set). */
-void slot_react(struct problem *, int64_t i, const double r[3]);
 
 /* 1/rho_a of the natural map: the largest eigenvalue of the rows' W~_cc */
 ALWAYS_INLINE vd bundle_lambda(const struct bundle *c, int k)

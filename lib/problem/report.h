@@ -42,9 +42,12 @@ struct report {
     int64_t newton;      /* Newton steps in all */
     int64_t safeguarded; /* local solves that ended in the stand-in */
     int64_t gave_up;     /* local solves that left the law unmet */
-    double seconds;      /* s of CPU, of all threads, in the solve: for the log and stderr only, */
-    double elapsed;      /* as are s on the wall */
-    double detection;    /* and s of CPU for the contacts, where the step found them itself */
+    double work;         /* ns, counted and not timed, of all that the solve did [solve/prices.h] */
+    const char
+        *fallback;    /* why the solver that was asked for could not, and swept instead; or NULL */
+    double seconds;   /* s of CPU, of all threads, in the solve: for the log and stderr only, */
+    double elapsed;   /* as are s on the wall */
+    double detection; /* and s of CPU for the contacts, where the step found them itself */
     struct terms *history; /* [sweeps] under --history, else NULL; to be freed */
 };
 

@@ -6,14 +6,9 @@
 #include "law/local_exact.h"
 #include "law/local_sal.h"
 #include "law/local_sbp.h"
+#include "problem/walk.h"
 
 typedef void method_text(struct local *, const struct local_opt *);
-
-/*
- * How many bundles ahead rows and bodies are sent for: as far as the second-level cache, for the first
- * waits for a dozen lines at a time at most; then the bodies all the way.
- */
-enum { ROWS_AHEAD = 10, BODIES_AHEAD = 6, BODIES_NEXT = 2 };
 
 /* Of LANES slots */
 ALWAYS_INLINE void add(double *slot, vd a)
@@ -24,30 +19,6 @@ ALWAYS_INLINE void add(double *slot, vd a)
 ALWAYS_INLINE void raise(double *slot, vd a)
 {
     vstore(slot, larger(a, vload(slot)));
-}
-
-/* b_c of lanes k.. of a problem that is given by W: from everybody's r as it is now */
-ALWAYS_INLINE void blocks_gather(const struct problem *p, const struct bundle *c, int k, vd b[3])
-{
-    double sum[3][LANES] = { 0 }, one[4];
-    int64_t row = (c - p->bundle) * BUNDLE + k;
-    for (int i = 0; i < LANES && c->a[k + i] >= 0; i++) {
-        delassus_gather(&p->sorted, row + i, p->sorted.q, p->W->r, one);
-        for (int j = 0; j < p->d; j++) sum[j][i] = one[j];
-    }
-    for (int j = 0; j < 3; j++) b[j] = vload(sum[j]);
-}
-
-ALWAYS_INLINE void blocks_scatter(struct problem *p, const struct bundle *c, int k)
-{
-    for (int i = 0; i < LANES; i++)
-        for (int j = 0; j < p->d && c->a[k + i] >= 0; j++)
-            p->W->r[p->d * c->a[k + i] + j] = c->r[j][k + i];
-}
-
-ALWAYS_INLINE const struct rebound *bundle_rebound(const struct problem *p, const struct bundle *c)
-{
-    return p->rebound ? p->rebound + (c - p->bundle) : NULL;
 }
 
 /* A tally in the making */
@@ -140,33 +111,6 @@ ALWAYS_INLINE void pass_on(struct problem *p, const struct bundle *c, int k, boo
         bundle_push(c, k, s->t2, dr, p->body, &s->a, &s->b);
 }
 
-ALWAYS_INLINE void fetch_bodies(const struct problem *p, const struct bundle *c)
-{
-    for (int k = 0; k < BUNDLE; k++) {
-        __builtin_prefetch(body_at(p->body, c->a[k]), 1);
-        __builtin_prefetch(body_at(p->body, c->b[k]), 1);
-    }
-}
-
-ALWAYS_INLINE void bring_bodies_nearer(const struct problem *p, const struct bundle *c)
-{
-    for (int k = 0; k < BUNDLE; k++) {
-        __builtin_prefetch(body_at(p->body, c->a[k]), 0, 2);
-        __builtin_prefetch(body_at(p->body, c->b[k]), 0, 2);
-    }
-}
-
-/* What will be wanted while bundle i is at work */
-ALWAYS_INLINE void fetch(const struct problem *p, int64_t i)
-{
-    if (p->bundles < SWEEP_FAR || i + ROWS_AHEAD >= p->bundles) return;
-    const char *rows = (const char *)&p->bundle[i + ROWS_AHEAD];
-    for (size_t k = 0; k < sizeof *p->bundle; k += 64) __builtin_prefetch(rows + k, 0, 2);
-    if (!p->body) return;
-    bring_bodies_nearer(p, &p->bundle[i + BODIES_AHEAD]);
-    fetch_bodies(p, &p->bundle[i + BODIES_NEXT]);
-}
-
 /*
  * Bundles first .. end-1, of one group. The bodies of the next rows are fetched while the roots and
  * quotients of these are on their way: that takes a quarter off the time.
@@ -198,130 +142,26 @@ ALWAYS_INLINE void visit(struct problem *p, int64_t first, int64_t end, const st
     }
 }
 
-/* Where the mixing goes, of all contacts at once */
-struct jump {
-    struct mixing m;
-    double leap, gamma[MIXING_DEPTH];
-};
-
-/* Disc, not cone: the orthogonal projection on the cone would push contacts apart that slide. */
-ALWAYS_INLINE void move_text(struct problem *p, int d, int memory, int64_t first, int64_t end,
-                             const struct jump *jump)
-{
-    double *g = jump->m.dg[jump->m.slot], *from = jump->m.df[jump->m.slot];
-    for (int64_t i = first; i < end; i++) {
-        fetch(p, i);
-        for (int k = 0; k < BUNDLE; k += LANES) {
-            struct bundle *c = &p->bundle[i];
-            vd x[3] = { splat(0), splat(0), splat(0) }, r[3], dr[3];
-            mixing_point(&jump->m, c, d, memory, jump->leap, jump->gamma, i, k, x);
-            disc_project(vload(c->mu + k), x, r);
-            for (int j = 0; j < 3; j++) {
-                vd was = vload(c->r[j] + k);
-                int64_t at = (i * d + j) * BUNDLE + k;
-                dr[j] = r[j] - was, vstore(c->r[j] + k, r[j]);
-                if (j < d) vstore(g + at, was), vstore(from + at, r[j]);
-            }
-            if (p->W)
-                blocks_scatter(p, c, k);
-            else
-                body_push(p->body, c, k, dr);
-        }
-    }
-}
-
-/* Bundles first .. end-1, of one group */
-ALWAYS_INLINE void move(struct problem *p, int64_t first, int64_t end, const struct jump *jump)
-{
-    if (p->d == 3 && !jump->m.few)
-        move_text(p, 3, MIXING_DEPTH, first, end, jump);
-    else if (p->d == 3)
-        move_text(p, 3, MIXING_DEPTH_MANY, first, end, jump);
-    else if (!jump->m.few)
-        move_text(p, 2, MIXING_DEPTH, first, end, jump);
-    else
-        move_text(p, 2, MIXING_DEPTH_MANY, first, end, jump);
-}
-
-/* Groups that a thread sweeps: `after` a number that another counts up, counting itself when `done` */
-struct leg {
-    int64_t first, end;
-    _Atomic int64_t *after, *done;
-};
-
-/* One thread's legs of a sweep; returns their number. All groups are one leg, but by halves. */
-ALWAYS_INLINE int route(const struct problem *p, int me, bool by_halves, struct leg leg[3])
-{
-    struct two_thread_split *h = p->split;
-    if (!by_halves) {
-        leg[0] = (struct leg){ 0, p->groups, NULL, NULL };
-        return 1;
-    }
-    if (me == 0) {
-        leg[0] = (struct leg){ 0, h->beyond, &h->rims, &h->borders };
-        leg[1] = (struct leg){ h->beyond, h->inside, NULL, NULL };
-        return 2;
-    }
-    leg[0] = (struct leg){ h->inside, h->rim, NULL, NULL };
-    leg[1] = (struct leg){ h->rim, h->rest, &h->borders, &h->rims };
-    leg[2] = (struct leg){ h->rest, p->groups, NULL, NULL };
-    return 3;
-}
-
-/* Waits until the leg's bodies are ours, and asks for all at once: that takes less than one by one. */
-ALWAYS_INLINE void set_out(const struct problem *p, const struct leg *leg, int me)
-{
-    if (!leg->done) return;
-    two_thread_split_wait(leg->after, atomic_load_explicit(leg->done, memory_order_relaxed) + me);
-    for (int64_t i = p->group[leg->first]; i < p->group[leg->end]; i++)
-        fetch_bodies(p, &p->bundle[i]);
-}
-
-/* The count is this thread's alone: no need for an addition that waits for what was stored before. */
-ALWAYS_INLINE void arrive(const struct leg *leg)
-{
-    if (!leg->done) return;
-    int64_t n = atomic_load_explicit(leg->done, memory_order_relaxed);
-    atomic_store_explicit(leg->done, n + 1, memory_order_release);
-}
-
-/* What is done with the contacts of a group: they are moved by a jump, or solved where there is none. */
+/* A sweep of a method over its contacts */
 struct task {
-    const struct jump *jump;
     const struct sweep_opt *o;
     method_text *solve;
     bool given_by_W, full;
     struct count *count;
 };
 
-/* A thread's part of every group, or its half */
-ALWAYS_INLINE void walk(struct problem *p, int me, int threads, const struct task t)
+ALWAYS_INLINE void visit_group(struct problem *p, int64_t first, int64_t end, void *task)
 {
-    struct leg leg[3];
-    bool by_halves = p->split && threads == 2;
-    int legs = route(p, me, by_halves, leg), share = by_halves ? 1 : threads,
-        mine = by_halves ? 0 : me;
-    for (int k = 0; k < legs; k++) {
-        set_out(p, &leg[k], me);
-        for (int64_t g = leg[k].first; g < leg[k].end; g++) {
-            int64_t first = p->group[g], n = p->group[g + 1] - first;
-            int64_t from = first + n * mine / share, to = first + n * (mine + 1) / share;
-            if (t.jump)
-                move(p, from, to, t.jump);
-            else
-                visit(p, from, to, t.o, t.solve, t.given_by_W, t.full, t.count);
-            if (share == 1) continue;
-#pragma omp barrier
-        }
-        arrive(&leg[k]);
-    }
+    const struct task *t = task;
+    visit(p, first, end, t->o, t->solve, t->given_by_W, t->full, t->count);
 }
 
 ALWAYS_INLINE void sweep(struct problem *p, int me, int threads, const struct sweep_opt *o,
                          method_text *solve, bool given_by_W, bool full, struct tally *t)
 {
     struct count c = { splat(0), splat(0), splat(0), splat(0) };
-    walk(p, me, threads, (struct task){ NULL, o, solve, given_by_W, full, &c });
+    struct task task = { o, solve, given_by_W, full, &c };
+    walk(p, me, threads, visit_group, &task);
     raise(t->change, c.change), add(t->newton, c.newton);
     add(t->safeguarded, c.safeguarded), add(t->gave_up, c.gave_up);
 }
@@ -339,27 +179,24 @@ ALWAYS_INLINE void sweep(struct problem *p, int me, int threads, const struct sw
     }
 EACH_METHOD(VISIT)
 
-/* ---- what accelerates the sweeps ---- */
+/* ---- velocities from the reactions ---- */
 
-static void mixing_measure(const struct problem *p, const struct mixing *m, int64_t first,
-                           int64_t end, struct mixing_sums *t)
+ALWAYS_INLINE void push_group(struct problem *p, int64_t first, int64_t end, void *task)
 {
-    if (p->d == 3 && !m->few)
-        mixing_measure_text(p, *m, 3, MIXING_DEPTH, first, end, t);
-    else if (p->d == 3)
-        mixing_measure_text(p, *m, 3, MIXING_DEPTH_MANY, first, end, t);
-    else if (!m->few)
-        mixing_measure_text(p, *m, 2, MIXING_DEPTH, first, end, t);
-    else
-        mixing_measure_text(p, *m, 2, MIXING_DEPTH_MANY, first, end, t);
+    (void)task;
+    for (int64_t i = first; i < end; i++) {
+        fetch(p, i);
+        for (int k = 0; k < BUNDLE; k += LANES) {
+            const struct bundle *c = &p->bundle[i];
+            const vd r[3] = { vload(c->r[0] + k), vload(c->r[1] + k), vload(c->r[2] + k) };
+            body_push(p->body, c, k, r);
+        }
+    }
 }
 
-static void mixing_react(struct problem *p, int me, int threads, const struct mixing *m,
-                         double leap, const double gamma[MIXING_DEPTH])
+static void push(struct problem *p, int me, int threads)
 {
-    struct jump jump = { *m, leap, { 0 } };
-    for (int j = 0; j < MIXING_DEPTH; j++) jump.gamma[j] = gamma[j];
-    walk(p, me, threads, (struct task){ .jump = &jump });
+    walk(p, me, threads, push_group, NULL);
 }
 
 /* ---- the error ---- */
@@ -452,5 +289,4 @@ static void judge(const struct problem *p, int64_t first, int64_t end, bool beli
 #define SWEEP_(lanes)   sweep_##lanes
 #define SWEEP_OF(lanes) SWEEP_(lanes)
 extern const struct sweep SWEEP_OF(LANES);
-const struct sweep SWEEP_OF(LANES) = { LANES,      { EACH_METHOD(VISITS) }, judge,
-                                       velocities, mixing_measure,          mixing_react };
+const struct sweep SWEEP_OF(LANES) = { LANES, { EACH_METHOD(VISITS) }, judge, velocities, push };

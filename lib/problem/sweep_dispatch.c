@@ -1,25 +1,45 @@
-/* problem/sweep_dispatch.c: which of the sweep's widths; see problem/sweep.h. */
+/*
+ * sweep_dispatch.c: the inner loops of the widest vectors that the machine has; see problem/sweep.h and
+ * problem/mixing.h. A file that is compiled once a width has its table here.
+ */
+#include "problem/mixing.h"
 #include "problem/sweep.h"
 
 #include <stdlib.h>
 
 extern const struct sweep sweep_2, sweep_4, sweep_8;
+extern const struct mixing_loops mixing_2, mixing_4, mixing_8;
 
-static const struct sweep *widest;
+static struct {
+    const struct sweep *sweep;
+    const struct mixing_loops *mixing;
+} widest;
 
 void sweep_narrow(int lanes)
 {
-    widest = &sweep_2;
+    widest.sweep = &sweep_2, widest.mixing = &mixing_2;
 #ifdef __x86_64__
-    if (lanes >= 4 && __builtin_cpu_supports("avx2")) widest = &sweep_4;
+    if (lanes >= 4 && __builtin_cpu_supports("avx2"))
+        widest.sweep = &sweep_4, widest.mixing = &mixing_4;
     if (lanes >= 8 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq"))
-        widest = &sweep_8;
+        widest.sweep = &sweep_8, widest.mixing = &mixing_8;
 #endif
+}
+
+static void choose(void)
+{
+    const char *most = widest.sweep ? NULL : getenv("NSD_LANES");
+    if (!widest.sweep) sweep_narrow(most ? atoi(most) : BUNDLE);
 }
 
 const struct sweep *sweep_widest(void)
 {
-    const char *most = widest ? NULL : getenv("NSD_LANES");
-    if (!widest) sweep_narrow(most ? atoi(most) : BUNDLE);
-    return widest;
+    choose();
+    return widest.sweep;
+}
+
+const struct mixing_loops *mixing_widest(void)
+{
+    choose();
+    return widest.mixing;
 }

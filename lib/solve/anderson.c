@@ -14,7 +14,11 @@
  * noise. There one leaps along f, twice as far each time. Last come sweeps alone, twice as many each
  * time, so that in the end this is Gauss-Seidel.
  */
-#include "solve/solver.h"
+#include "solve/anderson.h"
+
+#include "problem/mixing.h"
+#include "solve/nlgs.h"
+#include "solve/prices.h"
 
 #include <gsl/gsl_linalg.h>
 #include <omp.h>
@@ -24,31 +28,31 @@
 enum {
     PERIOD = 2,    /* sweeps to a mixing: a mixing costs about as much as one */
     EPOCH = 10,    /* mixings in which |f|^2 must halve */
-    RESTS = 5,     /* sweeps before a leap: the last one's change is the leap's direction */
-    SHORT = 50,    /* sweeps of leaps, or alone, at first and */
-    LONG = 100000, /* at most */
+    RESTS = 5,     /* sweeps before a leap: the change of the last is the leap's direction */
+    SHORT = 50,    /* sweeps of leaps, or alone, at first, */
+    LONG = 100000, /* and at most */
     BLOCK = 64,    /* bundles whose lanes are summed one after another: they stay in the cache */
     SUM_BUNDLES =
-        1024 /* bundles whose sums a thread makes, added in their order whatever the threads */
+        1024 /* bundles whose sums one thread makes; added in order, whatever the threads */
 };
-#define GROWTH 4.0   /* of |f|^2 that is not taken back */
-#define ASTRAY 2.0   /* the same of a leap */
-#define RIDGE  1e-14 /* on the scaled normal equations' diagonal of 1 */
-#define LEAP   8.0   /* in multiples of f, at first */
+#define GROWTH 4.0   /* |f|^2 may grow by this factor in a turn, or it is taken back; */
+#define ASTRAY 2.0   /* in a leap, by this one */
+#define RIDGE  1e-14 /* added to the scaled normal equations' diagonal of 1 */
+#define LEAP   8.0   /* the first leap, in multiples of f */
 #define BEYOND 1.6   /* omega of every other sweep of balls, where none is asked for */
 
 struct anderson {
     struct solve *s;
     struct mixing m;
     struct watch watch;
-    struct kept kept;
+    struct best since; /* the best iterate since it began anew */
     double *room;
     struct mixing_sums *sums;                /* [parts] */
     double gram[MIXING_DEPTH][MIXING_DEPTH]; /* dF'dF */
     double fd[MIXING_DEPTH];                 /* dF'f */
     int full;                                /* how many differences there are */
-    bool begun;                       /* f, and g in the next slot's room, are of a time before */
-    double omega[2];                  /* of the first sweep after a mixing, and of the second */
+    bool begun;      /* f, and g in the room of the next change, are of a time before */
+    double omega[2]; /* of the first sweep after a mixing, and of the second */
     int (*phase)(struct anderson *);  /* mix, leap or alone: a turn of it; */
     void (*begin)(struct anderson *); /* what the next turn does first; or NULL */
     int turns, left;                  /* turns that a mixing had; sweeps that are left of another */
@@ -60,16 +64,16 @@ struct anderson {
     bool leaps;                       /* leaps are next */
 };
 
-static double sum(const double slot[BUNDLE])
+static double sum(const double lane[BUNDLE])
 {
     double s = 0;
-    for (int k = 0; k < BUNDLE; k++) s += slot[k];
+    for (int k = 0; k < BUNDLE; k++) s += lane[k];
     return s;
 }
 
-static int memory(const struct anderson *a)
+static int depth(const struct anderson *a)
 {
-    return a->m.few ? MIXING_DEPTH_MANY : MIXING_DEPTH;
+    return a->m.depth;
 }
 
 static int64_t chunks(const struct problem *p)
@@ -83,7 +87,7 @@ static int sweeps(struct anderson *a, int n)
     for (int k = 0; k < n; k++) {
         a->watch.change = 0; // after a mixing the last one's says nothing
         int over = nlgs_sweep(a->s, a->omega[k % 2], &a->watch);
-        if (a->watch.looked) kept_offer(&a->kept, a->s);
+        if (a->watch.looked) solve_offer(a->s, &a->since);
         if (over) return over;
     }
     return 0;
@@ -91,14 +95,14 @@ static int sweeps(struct anderson *a, int n)
 
 static void forget(struct anderson *a)
 {
-    a->m.slot = a->full = 0, a->begun = false;
+    a->m.next = a->full = 0, a->begun = false;
 }
 
-/* x is the rows' r. */
+/* x is the iterate's r. */
 static void look(struct anderson *a)
 {
     const struct problem *p = a->s->p;
-    double *x = a->m.df[a->m.slot];
+    double *x = a->m.df[a->m.next];
     for (int64_t i = 0; i < p->bundles; i++, x += p->d * BUNDLE)
         memcpy(x, p->bundle[i].r, (size_t)(p->d * BUNDLE) * sizeof *x);
 }
@@ -111,7 +115,7 @@ static void measure_chunk(const struct anderson *a, int64_t chunk)
     struct mixing_sums *t = &a->sums[chunk];
     *t = (struct mixing_sums){ 0 };
     for (int64_t i = chunk * SUM_BUNDLES; i < end; i += BLOCK)
-        sweep_widest()->mixing_measure(p, &a->m, i, i + BLOCK < end ? i + BLOCK : end, t);
+        mixing_widest()->measure(p, &a->m, i, i + BLOCK < end ? i + BLOCK : end, t);
 }
 
 /* What the sweeps made of x; |f|^2. */
@@ -120,7 +124,8 @@ static double measure(struct anderson *a)
     const struct problem *p = a->s->p;
     struct mixing_sums t = { 0 };
     int64_t n = chunks(p);
-    int slot = a->m.slot;
+    a->s->rep->work += price_sweep(p); // with the mixing that follows
+    int now = a->m.next;
     if (n == 1 || a->s->o->threads == 1) { // no team: that costs
         for (int64_t k = 0; k < n; k++) measure_chunk(a, k);
     } else {
@@ -129,10 +134,10 @@ static double measure(struct anderson *a)
     }
     for (int64_t k = 0; k < n; k++) mixing_sums_add(&t, &a->sums[k]);
     if (a->begun) {
-        a->full = a->full < memory(a) ? a->full + 1 : memory(a);
-        a->m.slot = (slot + 1) % memory(a);
+        a->full = a->full < depth(a) ? a->full + 1 : depth(a);
+        a->m.next = (now + 1) % depth(a);
         for (int j = 0; j < a->full; j++)
-            a->gram[slot][j] = a->gram[j][slot] = sum(t.ff[j]), a->fd[j] = sum(t.fd[j]);
+            a->gram[now][j] = a->gram[j][now] = sum(t.ff[j]), a->fd[j] = sum(t.fd[j]);
     }
     a->begun = true;
     return sum(t.f2);
@@ -162,14 +167,14 @@ static void weigh(const struct anderson *a, double gamma[MIXING_DEPTH])
 static void react(struct anderson *a, double leap, const double gamma[MIXING_DEPTH])
 {
     struct problem *p = a->s->p;
-    int threads = nlgs_team(a->s);
+    int threads = problem_team(p, a->s->o->threads);
+    a->s->renewed = false;
     if (threads == 1) {
-        sweep_widest()->mixing_react(p, 0, 1, &a->m, leap, gamma);
+        mixing_widest()->react(p, 0, 1, &a->m, leap, gamma);
         return;
     }
 #pragma omp parallel num_threads(threads)
-    sweep_widest()->mixing_react(p, omp_get_thread_num(), omp_get_num_threads(), &a->m, leap,
-                                 gamma);
+    mixing_widest()->react(p, omp_get_thread_num(), omp_get_num_threads(), &a->m, leap, gamma);
 }
 
 /* ---- what a turn begins with: the rows go to the next point ---- */
@@ -197,7 +202,7 @@ static void leapt(struct anderson *a)
 static void taken_back(struct anderson *a)
 {
     double gamma[MIXING_DEPTH] = { 0 };
-    gamma[(a->m.slot + memory(a) - 1) % memory(a)] = 1; // x = g - dg
+    gamma[(a->m.next + depth(a) - 1) % depth(a)] = 1; // x = g - dg
     forget(a);
     react(a, 0, gamma);
 }
@@ -263,7 +268,7 @@ static int alone(struct anderson *a)
 
 void anderson_free(struct anderson *a)
 {
-    if (a) kept_free(&a->kept), free(a->room), free(a->sums);
+    if (a) best_free(&a->since), free(a->room), free(a->sums);
     free(a);
 }
 
@@ -271,7 +276,7 @@ void anderson_anew(struct anderson *a)
 {
     a->watch = (struct watch){ .due = INFINITY, .judged = a->s->rep->sweeps };
     a->rest = SHORT, a->leaps = true, a->best = INFINITY;
-    a->kept.value = INFINITY;
+    best_forget(&a->since);
     begin_mixing(a);
 }
 
@@ -280,21 +285,21 @@ struct anderson *anderson_new(struct solve *s)
     struct anderson *a = calloc(1, sizeof *a);
     if (!a) return NULL;
     a->s = s;
-    a->m.few = s->p->n > MANY;
+    a->m.depth = s->p->n > MANY ? MIXING_DEPTH_MANY : MIXING_DEPTH;
     size_t size = (size_t)(s->p->slots * s->p->d),
-           bytes = (size_t)(1 + 2 * memory(a)) * size * sizeof(double);
+           bytes = (size_t)(1 + 2 * depth(a)) * size * sizeof(double);
     for (int k = 0; k < 2; k++)
         a->omega[k] = s->o->relax > 0 ? s->o->relax : k || s->p->full ? 1 : BEYOND;
     a->room = aligned_alloc(64, bytes); // rows come in eights
     a->sums = malloc((size_t)(chunks(s->p) + 1) * sizeof *a->sums);
-    if (!a->room || !a->sums || kept_init(&a->kept, s->p)) {
+    if (!a->room || !a->sums || solve_keeper(&a->since, s->p)) {
         anderson_free(a);
         return NULL;
     }
     anderson_anew(a);
     memset(a->room, 0, bytes);
     double *next = a->m.f = a->room;
-    for (int j = 0; j < memory(a); j++) a->m.dg[j] = next += size, a->m.df[j] = next += size;
+    for (int j = 0; j < depth(a); j++) a->m.dg[j] = next += size, a->m.df[j] = next += size;
     return a;
 }
 
@@ -309,29 +314,30 @@ int anderson_sweeps(struct anderson *a, int32_t more)
         if (begin) begin(a);
         over = a->phase(a);
     }
-    if (!over && !a->watch.looked) solve_judge(s), kept_offer(&a->kept, s);
+    if (!over && !a->watch.looked) solve_judge(s), solve_offer(s, &a->since);
     return over < 0 ? -1 : 0;
 }
 
 double anderson_best(const struct anderson *a)
 {
-    return a->kept.value;
+    return a->since.value;
 }
 
 void anderson_back(struct anderson *a)
 {
-    kept_back(&a->kept, a->s);
+    solve_return(a->s, &a->since);
     begin_mixing(a);
 }
 
 static int run(struct solve *s)
 {
     struct anderson *a = anderson_new(s);
-    if (!a) return nlgs_sweeps(s, s->o->max_sweeps, s->o->relax > 0 ? s->o->relax : 1);
+    if (!a) return -1;
     int failed = anderson_sweeps(a, s->o->max_sweeps);
     anderson_back(a);
     anderson_free(a);
     return failed;
 }
 
-const struct solver solver_anderson = { "anderson", 0, run };
+const struct solver solver_anderson = { "anderson", "sweeps accelerated by Anderson's mixing", 0,
+                                        run };

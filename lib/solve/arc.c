@@ -4,14 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Corrections, the largest of all contacts, relative to what is corrected: */
-#define AIM   0.3 /* what a step is to leave to be corrected, */
-#define SMALL 0.7 /* with how much it may go on, and */
-#define FAR   1.5 /* what is too much: it was too long */
+/* The largest correction of a contact, relative to what is corrected: */
+#define AIM   0.3 /* a step is to leave this much to be corrected, */
+#define SMALL 0.7 /* may go on with this much, */
+#define LARGE 1.5 /* and was too long with more than this */
 
-#define FALL     0.01 /* of s, at most, in a step */
+#define FALL     0.01 /* s falls at most to this part of itself in a step */
 #define ROUNDING 2e-6 /* natural maps below which a correction may be lost */
-#define STANDING 1e-6 /* the reach of one that leads nowhere */
+#define STANDING 1e-6 /* the reach of a step that leads nowhere */
 
 enum { BACKWARDS = 10 }; /* steps in which s grows, at most */
 
@@ -52,7 +52,7 @@ static double after(const double part[3], double h)
 static void place(struct arc *p)
 {
     p->s = after(p->last, p->h);
-    for (int64_t c = 0; c < p->m->w->whole.W.n; c++) {
+    for (int64_t c = 0; c < p->m->newton->a.W.n; c++) {
         struct side *s = &p->m->side[c];
         const struct along *a = &p->at[c];
         for (int k = 0; k < 3; k++) {
@@ -80,10 +80,10 @@ static double smooth_tail(const struct arc *p, const struct side *s)
 }
 
 /* dx/ds and dz/ds; false where the matrix is singular. */
-static bool tangent(struct arc *p)
+static bool tangent(struct arc *p, struct solve *solve)
 {
     struct central *m = p->m;
-    int64_t n = m->w->whole.W.n;
+    int64_t n = m->newton->a.W.n;
     central_matrix(m, 1);
     for (int64_t c = 0; c < n; c++) {
         struct side *s = &m->side[c];
@@ -92,7 +92,7 @@ static bool tangent(struct arc *p)
         for (int k = 0; k < 3; k++) s->p[k] = p->at[c].p0[k] - (s->y[k] - s->z[k]);
         s->p[0] += p->g0 * (m->gap / smooth_tail(p, s) - 1);
     }
-    if (!central_direction(m, false)) return false;
+    if (!central_direction(m, solve, false)) return false;
     for (int64_t c = 0; c < n; c++) side_keep(&m->side[c], p->at[c].to[TANGENT]);
     return true;
 }
@@ -101,8 +101,8 @@ static bool tangent(struct arc *p)
 static bool direction(struct arc *p, int which)
 {
     struct central *m = p->m;
-    bool seen = central_direction(m, true);
-    for (int64_t c = 0; c < m->w->whole.W.n; c++) {
+    bool seen = central_direction(m, NULL, true);
+    for (int64_t c = 0; c < m->newton->a.W.n; c++) {
         memset(p->at[c].to[which], 0, sizeof p->at[c].to[which]);
         if (seen) side_keep(&m->side[c], p->at[c].to[which]);
     }
@@ -113,7 +113,7 @@ static bool direction(struct arc *p, int which)
 static void bend(struct arc *p)
 {
     struct central *m = p->m;
-    for (int64_t c = 0; c < m->w->whole.W.n; c++) {
+    for (int64_t c = 0; c < m->newton->a.W.n; c++) {
         struct side *s = &m->side[c];
         const struct along *a = &p->at[c];
         const double *dx = a->to[TANGENT][0], *dz = a->to[TANGENT][1];
@@ -133,7 +133,7 @@ static void bend(struct arc *p)
 static bool correction(struct arc *p)
 {
     struct central *m = p->m;
-    for (int64_t c = 0; c < m->w->whole.W.n; c++) {
+    for (int64_t c = 0; c < m->newton->a.W.n; c++) {
         struct side *s = &m->side[c];
         double ll[3], want[3];
         jordan_product(s->l, s->l, ll);
@@ -148,7 +148,7 @@ static bool correction(struct arc *p)
 static double largest(const struct arc *p, int which)
 {
     double most = 0;
-    for (int64_t c = 0; c < p->m->w->whole.W.n; c++) {
+    for (int64_t c = 0; c < p->m->newton->a.W.n; c++) {
         double(*d)[3] = p->at[c].to[which];
         most = fmax(most, inner(p->m, &p->m->side[c], d, d));
     }
@@ -159,7 +159,7 @@ static double largest(const struct arc *p, int which)
 static double straighten(struct arc *p, int which)
 {
     struct central *m = p->m;
-    int64_t n = m->w->whole.W.n;
+    int64_t n = m->newton->a.W.n;
     double tt = 1 / (p->s * p->s), td = 0;
     for (int64_t c = 0; c < n; c++) {
         struct along *a = &p->at[c];
@@ -180,7 +180,7 @@ static void step(struct arc *p, double corrected, double h, double turn)
     double from = p->s + corrected;
     p->last[0] = from, p->last[1] = 1, p->last[2] = turn, p->h = h;
     while (after(p->last, p->h) < FALL * from) p->h *= 0.8;
-    for (int64_t c = 0; c < p->m->w->whole.W.n; c++) {
+    for (int64_t c = 0; c < p->m->newton->a.W.n; c++) {
         const struct side *s = &p->m->side[c];
         struct along *a = &p->at[c];
         for (int k = 0; k < 3; k++) {
@@ -196,7 +196,7 @@ static void step(struct arc *p, double corrected, double h, double turn)
 static void correct(struct arc *p, double corrected)
 {
     p->s += corrected;
-    for (int64_t c = 0; c < p->m->w->whole.W.n; c++) {
+    for (int64_t c = 0; c < p->m->newton->a.W.n; c++) {
         struct side *s = &p->m->side[c];
         double(*d)[3] = p->at[c].to[CORRECTION];
         for (int k = 0; k < 3; k++) s->x[k] += d[0][k], s->z[k] += d[1][k];
@@ -218,7 +218,7 @@ static double stride(const struct arc *p, double s, double steepest, bool down)
 static bool too_much(const struct arc *p, double most)
 {
     if (p->before > 0) return most > SMALL && most > 0.7 * p->before;
-    return p->h != 0 && most > FAR;
+    return p->h != 0 && most > LARGE;
 }
 
 static bool retreat(struct arc *p, double most)
@@ -237,7 +237,7 @@ static void pace(struct arc *p, double most)
 
 static bool begin(struct arc *p, struct central *m)
 {
-    int64_t n = m->w->whole.W.n;
+    int64_t n = m->newton->a.W.n;
     *p = (struct arc){ .m = m, .g0 = central_mean(m), .s = 1, .reach = 1, .ceiling = INFINITY };
     p->at = calloc((size_t)n + 1, sizeof *p->at);
     if (!p->at) return false;
@@ -261,15 +261,14 @@ bool arc_follow(struct central *m, struct solve *s, double natural, int steps)
         if (s->o->progress) s->o->progress(s->rep->sweeps, e);
         there = central_finish(m, s, e) || e <= natural;
         if (there || !isfinite(e) || solve_spent(s) || !central_scale(m)) break;
-        s->rep->newton++;
-        if (!tangent(&p)) { // as near a fold, or in rounding
+        if (!tangent(&p, s)) { // as near a fold, or in rounding
             if (e < ROUNDING || !shorten(&p, 0.7)) break;
             continue;
         }
         if (!correction(&p) && e < ROUNDING) break;
         bend(&p);
-        if (!sign) sign = system_sign(m->w->system);
-        bool down = system_sign(m->w->system) == sign;
+        if (!sign) sign = system_sign(m->newton->system);
+        bool down = system_sign(m->newton->system) == sign;
         backwards += !down;
         double corrected = straighten(&p, CORRECTION), turn = straighten(&p, BEND),
                most = largest(&p, CORRECTION);
@@ -285,7 +284,7 @@ bool arc_follow(struct central *m, struct solve *s, double natural, int steps)
         else
             step(&p, corrected, stride(&p, p.s + corrected, largest(&p, TANGENT), down), turn);
     }
-    for (int64_t c = 0; c < m->w->whole.W.n; c++) memset(m->side[c].p, 0, sizeof m->side[c].p);
+    for (int64_t c = 0; c < m->newton->a.W.n; c++) memset(m->side[c].p, 0, sizeof m->side[c].p);
     free(p.at);
     central_settle(m, s);
     return there;

@@ -18,9 +18,9 @@
 #include "solve/central_path.h"
 
 /*
- * From x and z as they are, centred first, on to where the scaled natural map is at most `natural`;
- * false where so many steps, or so many folds, do not lead there. The best that it found is in the rows.
+ * From x and z as they are, centred first, on to where the scaled natural map is at most `natural`. False
+ * where neither `steps` of them nor a few folds lead there. The best that it found becomes the iterate.
  */
-bool arc_follow(struct central *, struct solve *, double natural, int steps);
+bool arc_follow(struct central *m, struct solve *s, double natural, int steps);
 
 #endif

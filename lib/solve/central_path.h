@@ -42,46 +42,50 @@ static inline void side_recall(struct side *s, double from[2][3])
 }
 
 struct central {
-    struct newton *w;
-    struct side *side; /* [n] */
-    double *best;      /* [n d] the reactions with the least natural map */
-    double least;      /* that map */
-    double unit;       /* of velocities: q is of order 1 after it */
-    double gap;        /* g */
-    double tried;      /* the natural map at which Newton's steps were tried last, */
-    int tries;         /* and how often */
+    struct newton *newton; /* borrowed: the problem, its factors, and the last steps */
+    struct side *side;     /* [n] */
+    double *room;          /* of x, v, b [n d] and L, D [n][9]: */
+    double *x, *v, *b;     /* reactions, what they make of velocities, a right-hand side */
+    double *L, *D;
+    struct best best; /* the reactions of the least natural map */
+    double unit;      /* of velocities: q is of order 1 after it */
+    double gap;       /* g */
+    double tried;     /* the natural map at which Newton's steps were tried last, */
+    int tries;        /* and how often */
 };
 
 /*
- * From the rows' reactions, or from none, with x o z = gap exactly. False where memory is short; then
+ * From the iterate's reactions, or from none, with x o z = gap exactly. False where memory is short; then
  * there is nothing to end.
  */
-bool central_begin(struct central *, struct newton *, struct solve *, double gap, bool cold);
-void central_end(struct central *);
+bool central_begin(struct central *m, struct newton *newton, struct solve *s, double gap,
+                   bool cold);
+void central_end(struct central *m);
 
 /* The mean of x.z */
-double central_mean(const struct central *);
+double central_mean(const struct central *m);
 
 /* y of all contacts at their x, smoothed over the gap; the scaled natural map as the reactions stand,
    the best of which are kept. */
-double central_look(struct central *);
+double central_look(struct central *m);
 
 /* F and l of all contacts; false where one of them has come too near the border. */
-bool central_scale(struct central *);
+bool central_scale(struct central *m);
 
-/* The matrix with this t */
-void central_matrix(struct central *, double t);
-/* dx and dz of all contacts, by c and p; false where the matrix is singular. */
-bool central_direction(struct central *, bool factorised);
+/* The matrix with this t, for the directions that follow */
+void central_matrix(struct central *m, double t);
+/* dx and dz of all contacts, by c and p; false where the matrix is singular or there is no time left for
+   it. The first after central_matrix() factorises it: a Newton step. */
+bool central_direction(struct central *m, struct solve *s, bool factorised);
 
 /*
  * Newton's steps on the law itself from here, where the natural map is so small that each contact's
  * status may be clear. A try costs as much as a step of the path, and where it arrives it is nearer
  * than ten of them lead. False where it was too early.
  */
-bool central_finish(struct central *, struct solve *, double map);
+bool central_finish(struct central *m, struct solve *s, double map);
 
-/* The best reactions, back in their cones, into the rows; what comes is compared with none. */
-void central_settle(struct central *, struct solve *);
+/* The best reactions, brought back into their cones, become the iterate, and are forgotten. */
+void central_settle(struct central *m, struct solve *s);
 
 #endif

@@ -19,61 +19,59 @@
  * W p has the discs' curvature in it; a step that makes the energy larger than it was in the last ten
  * is shortened; and the bounds are held for up to a hundred steps, not for one.
  */
+#include "problem/apply.h"
+#include "problem/sweep.h"
+#include "solve/prices.h"
 #include "solve/solver.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum {
-    LOOK_EVERY = 10,
-    PAST = 10,  /* steps whose worst energy is good enough */
-    INNER = 100 /* steps for which the bounds are held at most */
+    LOOK_EVERY = 10, /* steps between two judgements */
+    PAST = 10,       /* steps; a step may end at the worst energy of these */
+    INNER = 100      /* steps for which the bounds are held at most */
 };
-#define FALL 1e-4 /* of |w|^2, at which the bounds follow */
+#define FALL       1e-4 /* of |w|^2, at which the bounds follow: at first, and at the least */
+#define FALL_LEAST 1e-10
 
 enum hold { OPEN = 1, BORDER = 2 };
 
 struct cg {
     struct solve *s;
-    struct kept kept;
     double *room;
-    double *r, *u;             /* [rows][3] scaled reactions and velocities */
-    double *w, *p, *Wp;        /* [rows][3] directions, and what p makes of u */
-    double *was, *back;        /* [rows][3] r before the last step, and the way there */
-    double *scale, *bound;     /* [rows] s; b, scaled */
-    int8_t *status;            /* [rows] what holds r: enum hold */
+    double *r, *u;             /* [slots][3] scaled reactions and velocities */
+    double *w, *p, *Wp;        /* [slots][3] directions, and what p makes of u */
+    double *was, *back;        /* [slots][3] r before the last step, and the way there */
+    double *x, *y;             /* [slots][3] unscaled: reactions, and what W makes of a direction */
+    double *scale, *bound;     /* [slots] s; b, scaled */
+    int8_t *status;            /* [slots] what holds r: enum hold */
     bool conjugate;            /* this step may be one of conjugate gradients */
     double spectral;           /* |dr|^2 / dr.du of the last step */
     double energy, past[PAST]; /* since the bounds last changed; after the last steps */
-    struct body *body;         /* a copy whose velocities are those of p alone; or */
-    double *q, *given;         /* [n d] zeros and p, of a problem given by W */
+    struct apply apply;        /* room for W p */
 };
 
 static void leave(struct cg *a)
 {
-    kept_free(&a->kept);
-    free(a->room), free(a->status), free(a->body), free(a->q);
+    free(a->room), free(a->status), apply_free(&a->apply);
 }
 
 static int begin(struct cg *a, struct solve *s)
 {
     struct problem *p = s->p;
-    size_t rows = (size_t)p->slots, size = (size_t)(p->n * p->d) + 4;
+    size_t slots = (size_t)p->slots;
     *a = (struct cg){ .s = s, .spectral = 1 };
-    a->room = calloc(23 * rows + 1, sizeof *a->room);
-    a->status = calloc(rows + 1, sizeof *a->status);
-    if (p->W)
-        a->q = calloc(2 * size, sizeof *a->q), a->given = a->q + size;
-    else
-        a->body = aligned_alloc(64, (size_t)p->bodies * sizeof *a->body);
-    if (kept_init(&a->kept, p) || !a->room || !a->status || (p->W ? !a->q : !a->body)) {
+    a->room = calloc(29 * slots + 1, sizeof *a->room);
+    a->status = calloc(slots + 1, sizeof *a->status);
+    if (!a->room || !a->status || apply_init(&a->apply, p)) {
         leave(a);
         return -1;
     }
-    a->r = a->room, a->w = a->r + 3 * rows, a->p = a->w + 3 * rows, a->Wp = a->p + 3 * rows;
-    a->u = a->Wp + 3 * rows, a->scale = a->u + 3 * rows, a->bound = a->scale + rows;
-    a->was = a->bound + rows, a->back = a->was + 3 * rows;
-    if (!p->W) memcpy(a->body, p->body, (size_t)p->bodies * sizeof *a->body);
+    a->r = a->room, a->w = a->r + 3 * slots, a->p = a->w + 3 * slots, a->Wp = a->p + 3 * slots;
+    a->u = a->Wp + 3 * slots, a->scale = a->u + 3 * slots, a->bound = a->scale + slots;
+    a->was = a->bound + slots, a->back = a->was + 3 * slots;
+    a->x = a->back + 3 * slots, a->y = a->x + 3 * slots;
     for (int64_t i = 0; i < p->slots; i++) {
         double u[3], lambda = bundle_lambda(slot_bundle(p, i), slot_lane(i));
         if (p->contact[i] < 0) continue;
@@ -87,41 +85,17 @@ static int begin(struct cg *a, struct solve *s)
 /* Wp = s W s p, and what the border of the disc bends on the way; returns p.W p */
 static double apply(struct cg *a)
 {
-    struct problem *p = a->s->p;
+    const struct problem *p = a->s->p;
     double sum = 0;
-    if (!p->W)
-        for (int64_t i = 0; i < p->bodies; i++)
-            memset(a->body[i].v, 0, sizeof a->body[i].v),
-                memset(a->body[i].w, 0, sizeof a->body[i].w);
+    for (int64_t i = 0; i < 3 * p->slots; i++) a->x[i] = a->scale[i / 3] * a->p[i];
+    problem_apply(p, &a->apply, a->x, a->y);
     for (int64_t i = 0; i < p->slots; i++) {
-        double x[3] = { 0 };
         if (p->contact[i] < 0) continue;
-        for (int k = 0; k < 3; k++) x[k] = a->scale[i] * a->p[3 * i + k];
-        if (p->W)
-            for (int k = 0; k < p->d; k++) a->given[p->d * p->contact[i] + k] = x[k];
-        else
-            body_push(a->body, slot_bundle(p, i), slot_lane(i), x);
-    }
-    for (int64_t i = 0; i < p->slots; i++) {
-        double u[4] = { 0 };
-        int64_t c = p->contact[i];
-        if (c < 0) continue;
-        if (p->W) {
-            delassus_gather(p->W, c, a->q, a->given, u);
-            if (p->d == 2) u[2] = 0;
-            for (int j = 0; j < p->d; j++)
-                for (int k = 0; k < p->d; k++)
-                    u[j] += p->W->diag[9 * c + 3 * j + k] * a->given[p->d * c + k];
-        } else {
-            const struct rebound *e = slot_rebound(p, i);
-            body_velocity(a->body, slot_bundle(p, i), NULL, slot_lane(i), u);
-            for (int k = 0; e && k < 3; k++) u[k] *= e->s[k > 0][slot_lane(i)];
-        }
         const double *v = a->u + 3 * i, *r = a->r + 3 * i;
         double b2 = a->bound[i] * a->bound[i], bend = -(v[1] * r[1] + v[2] * r[2]);
         bend = a->status[i] & BORDER && b2 > 0 && bend > 0 ? bend / b2 : 0;
         for (int k = 0; k < 3; k++) {
-            a->Wp[3 * i + k] = a->scale[i] * u[k] + (k ? bend * a->p[3 * i + k] : 0);
+            a->Wp[3 * i + k] = a->scale[i] * a->y[3 * i + k] + (k ? bend * a->p[3 * i + k] : 0);
             sum += a->p[3 * i + k] * a->Wp[3 * i + k];
         }
     }
@@ -141,18 +115,17 @@ static void admit(const struct cg *a, int64_t i, double x[3])
 }
 
 /*
- * r = what the bounds allow of from + step p, into rows and bodies, and u there. *fall: what the
+ * r = what the bounds allow of r + step p, into the iterate, and u there. *fall: what the
  * energy has fallen by, -(u + u').(r' - r)/2. Returns whether a contact is held otherwise.
  */
 static bool advance(struct cg *a, const double *p, double step, double *fall)
 {
     struct problem *prob = a->s->p;
-    const struct sweep *text = sweep_widest();
     bool changed = false;
     double dr2 = 0, drdu = 0;
     *fall = 0;
     for (int64_t i = 0; i < prob->slots; i++) {
-        double x[3], *r = a->r + 3 * i, *was = a->was + 3 * i;
+        double *r = a->r + 3 * i, *was = a->was + 3 * i;
         if (prob->contact[i] < 0) continue;
         for (int k = 0; k < 3; k++) was[k] = r[k], r[k] += step * p[3 * i + k];
         double t = sqrt(r[1] * r[1] + r[2] * r[2]), b = a->bound[i];
@@ -160,10 +133,10 @@ static bool advance(struct cg *a, const double *p, double step, double *fall)
         if (r[0] <= 0) r[0] = 0;
         if (t > b) r[1] *= b / t, r[2] *= b / t;
         changed |= hold != a->status[i], a->status[i] = (int8_t)hold;
-        for (int k = 0; k < 3; k++) x[k] = a->scale[i] * r[k];
-        slot_react(prob, i, x);
+        for (int k = 0; k < 3; k++) a->x[3 * i + k] = a->scale[i] * r[k];
     }
-    text->velocities(prob, 0, prob->bundles);
+    solve_react(a->s, a->x);
+    sweep_widest()->velocities(prob, 0, prob->bundles);
     for (int64_t i = 0; i < prob->slots; i++) {
         double r[3], u[3];
         if (prob->contact[i] < 0) continue;
@@ -232,8 +205,7 @@ static bool look(struct cg *a, bool due)
         !s->o->every_sweep)
         return false;
     solve_judge(s);
-    kept_offer(&a->kept, s);
-    return solve_met(s) || solve_spent(s) || !isfinite(s->value);
+    return solve_over(s) || !isfinite(s->value);
 }
 
 /* One step; returns 1 at the end, -1 when memory is short. *w2: |w|^2 there */
@@ -260,7 +232,7 @@ static int step(struct cg *a, double *w2)
     double beta = a->conjugate && !changed ? fmax(-wWp / curve, 0) : 0;
     a->conjugate = !changed;
     if (!(turn(a, beta) > 0)) turn(a, 0);
-    a->s->rep->sweeps++;
+    a->s->rep->sweeps++, a->s->rep->work += price_sweep(a->s->p);
     if (solve_history(a->s)) return -1;
     return look(a, false);
 }
@@ -268,22 +240,21 @@ static int step(struct cg *a, double *w2)
 static int run(struct solve *s)
 {
     struct cg a;
-    if (begin(&a, s)) return -1;
     s->believes = false;
+    if (solve_keep(s) || begin(&a, s)) return -1;
     int over = 0;
     double fall = FALL, last = INFINITY;
     while (!over) {
         double start = follow(&a), now = start;
         int k = 0;
-        if (start > last / 2) fall = fmax(fall / 10, 1e-10); // the bounds want better answers
+        if (start > last / 2) fall = fmax(fall / 10, FALL_LEAST); // the bounds want better answers
         last = start;
         turn(&a, 0);
         for (; k < INNER && now > fall * start && !over; k++) over = step(&a, &now);
         if (!over && !k) over = (follow(&a), look(&a, true), 1);
     }
-    kept_back(&a.kept, s);
     leave(&a);
     return over < 0 ? -1 : 0;
 }
 
-const struct solver solver_cg = { "cg", 0, run };
+const struct solver solver_cg = { "cg", "conjugate gradients, with nothing assembled", 0, run };

@@ -45,7 +45,7 @@ static const double *block(const struct delassus *W, int32_t a, int32_t b)
 
 static double entry(const struct delassus *W, int32_t a, int i, int32_t b, int j)
 {
-    if (a == b) return W->diag[9 * (int64_t)a + 3 * i + j];
+    if (a == b) return W->diag[9 * (int64_t)a + i + 3 * j];
     const double *B = block(W, a, b);
     return B ? B[i + W->d * j] : 0;
 }

@@ -2,27 +2,29 @@
 #include "solve/ipm.h"
 
 #include "solve/arc.h"
+#include "solve/nlgs.h"
 
 #include <stdlib.h>
 
-#define INTERIOR 0.99 /* of the way to the border */
-#define LONGER   0.3  /* by which a corrector is to lengthen the step, and */
-#define GAINED   0.03 /* what it has to, at least */
-#define SHORT    0.1  /* a step that leads nowhere */
+#define INTERIOR 0.99 /* of the way to the border, a step goes at most */
+#define LONGER   0.3  /* a corrector is to lengthen the step by this, */
+#define GAINED   0.03 /* and has to by this */
+#define SHORT    0.1  /* a step of this length leads nowhere */
 
-#define CLOSE 2e-7 /* of the scaled natural map: near enough if nothing ends it sooner; */
-#define END   1e-9 /* what the path is followed to, which costs a few steps more */
+#define CLOSE 2e-7 /* of the scaled natural map: close enough if nothing ends it sooner; */
+#define END   1e-9 /* what the path by arc length is followed to, which costs a few steps more */
 #define LATE  1e-4 /* the gap from which on smaller t would only lead about */
 #define COLD  0.1  /* the gap at which one begins from r = 0 */
 
 enum {
-    SHORT_STEPS = 4, /* in a row, and it is stuck */
-    CORRECTORS = 3,  /* a step */
-    ROUNDS = 3,      /* from r = 0, each ten times nearer; */
-    APPROACH = 200,  /* steps of the first, and */
-    AGAIN = 12,      /* of the others */
-    NEARBY = 25,     /* steps from the sweeps' reactions; */
-    BENDS = 60       /* along the path */
+    SHORT_STEPS = 4, /* short steps in a row: it is stuck */
+    CORRECTORS = 3,  /* a step, at most */
+    ROUNDS = 3,      /* from r = 0, each ten times nearer */
+    APPROACH = 200,  /* steps of the first round, at most, */
+    AGAIN = 12,      /* and of the others */
+    NEARBY = 25,     /* steps from the sweeps' reactions, at most */
+    BENDS = 60,      /* steps along the path by its arc length, at most */
+    SWEEPS = 500     /* of the solver before it begins: most contacts know by then what they do */
 };
 
 /* The t that are tried in turn: between balls, and where the W_cc are full (columns, walls) */
@@ -46,7 +48,7 @@ struct ipm {
 static double longest(const struct central *m)
 {
     double step = INFINITY;
-    for (int64_t c = 0; c < m->w->whole.W.n; c++) {
+    for (int64_t c = 0; c < m->newton->a.W.n; c++) {
         const struct side *s = &m->side[c];
         step = fmin(step, fmin(jordan_to_border(s->x, s->dx), jordan_to_border(s->z, s->dz)));
     }
@@ -78,7 +80,7 @@ static void recentre(struct side *s, double step, double target)
 /* Correctors for as long as they lengthen the step; a substitution each, and not a factorisation. */
 static double lengthen(struct ipm *m, double step, double target)
 {
-    int64_t n = m->c.w->whole.W.n;
+    int64_t n = m->c.newton->a.W.n;
     for (int k = 0; k < CORRECTORS && INTERIOR * step < 0.95; k++) {
         for (int64_t c = 0; c < n; c++) {
             struct side *s = &m->c.side[c];
@@ -86,7 +88,7 @@ static double lengthen(struct ipm *m, double step, double target)
             recentre(s, fmin(1, INTERIOR * step + LONGER), target);
         }
         double before = step;
-        step = central_direction(&m->c, true) ? longest(&m->c) : 0;
+        step = central_direction(&m->c, NULL, true) ? longest(&m->c) : 0;
         if (step >= before + GAINED) continue;
         if (step >= before) break;
         for (int64_t c = 0; c < n; c++) side_recall(&m->c.side[c], m->kept[c].last);
@@ -97,13 +99,13 @@ static double lengthen(struct ipm *m, double step, double target)
 
 /* Mehrotra's two directions with this t, and correctors; returns the length of the step to be made, 0
    for none. */
-static double predict_and_correct(struct ipm *m, double t)
+static double predict_and_correct(struct ipm *m, struct solve *solve, double t)
 {
-    int64_t n = m->c.w->whole.W.n;
+    int64_t n = m->c.newton->a.W.n;
     central_matrix(&m->c, t);
     for (int64_t c = 0; c < n; c++)
         for (int k = 0; k < 3; k++) m->c.side[c].c[k] = -m->c.side[c].l[k];
-    if (!central_direction(&m->c, false)) return 0;
+    if (!central_direction(&m->c, solve, false)) return 0;
     double a = fmin(1, longest(&m->c)), gap = 0;
     for (int64_t c = 0; c < n; c++) {
         const struct side *s = &m->c.side[c];
@@ -120,13 +122,13 @@ static double predict_and_correct(struct ipm *m, double t)
         for (int k = 0; k < 3; k++) want[k] = (k ? 0 : target) - ll[k] - second[k];
         jordan_quotient(s->l, want, s->c);
     }
-    if (!central_direction(&m->c, true)) return 0;
+    if (!central_direction(&m->c, NULL, true)) return 0;
     return fmin(1, INTERIOR * lengthen(m, longest(&m->c), target));
 }
 
 static void move(struct central *m, double step)
 {
-    for (int64_t c = 0; c < m->w->whole.W.n; c++) {
+    for (int64_t c = 0; c < m->newton->a.W.n; c++) {
         struct side *s = &m->side[c];
         for (int k = 0; k < 3; k++) s->x[k] += step * s->dx[k], s->z[k] += step * s->dz[k];
     }
@@ -136,15 +138,14 @@ static void move(struct central *m, double step)
  * One step; false where there is none. The t that served last comes first: where the path has folded
  * it does so for a while.
  */
-static bool ipm_step(struct ipm *m, struct report *rep)
+static bool ipm_step(struct ipm *m, struct solve *s)
 {
-    int64_t n = m->c.w->whole.W.n;
+    int64_t n = m->c.newton->a.W.n;
     double step = 0;
     bool follow = m->c.gap < m->folds;
     int at = follow ? 0 : m->fold;
     for (int i = at; i < (follow ? 1 : 3) && step < SHORT; i++) {
-        double far = predict_and_correct(m, ts[m->full][i]);
-        rep->newton++;
+        double far = predict_and_correct(m, s, ts[m->full][i]);
         if (far <= step) continue;
         step = far, at = i;
         for (int64_t c = 0; c < n; c++) side_keep(&m->c.side[c], m->kept[c].far);
@@ -158,8 +159,8 @@ static bool ipm_step(struct ipm *m, struct report *rep)
 }
 
 /*
- * On to where the scaled natural map is at most `natural`; false where so many steps do not get it
- * there. The best that it found is in the rows.
+ * On to where the scaled natural map is at most `natural`; false where `steps` do not get it there. The best
+ * that it found becomes the iterate.
  */
 static bool approach(struct ipm *m, struct solve *s, double natural, int steps)
 {
@@ -170,7 +171,7 @@ static bool approach(struct ipm *m, struct solve *s, double natural, int steps)
         if (s->o->progress) s->o->progress(s->rep->sweeps, e);
         there = central_finish(&m->c, s, e) || e <= natural;
         if (there || !isfinite(e) || solve_spent(s)) break;
-        more = central_scale(&m->c) && ipm_step(m, s->rep);
+        more = central_scale(&m->c) && ipm_step(m, s);
     }
     central_settle(&m->c, s);
     return there;
@@ -186,25 +187,22 @@ static bool begin(struct ipm *m, struct newton *w, struct solve *s, double gap, 
 {
     *m = (struct ipm){ .full = s->p->full, .folds = folds };
     if (!central_begin(&m->c, w, s, gap, gap == COLD)) return false;
-    m->kept = calloc((size_t)w->whole.W.n + 1, sizeof *m->kept);
+    m->kept = calloc((size_t)w->a.W.n + 1, sizeof *m->kept);
     if (!m->kept) leave(m);
     return m->kept;
-}
-
-static bool over(const struct solve *s)
-{
-    return solve_met(s) || solve_spent(s);
 }
 
 /*
  * Spent, or met near the solution: where u' = u, eps_glob is a product of two errors, and as small for
  * reactions inside their cones that are far from it.
  */
-static bool arrived(struct newton *w, struct solve *s)
+static bool arrived(struct ipm *m, struct solve *s)
 {
+    struct scaled *a = &m->c.newton->a;
     if (!solve_met(s)) return solve_spent(s);
-    newton_get(w, s);
-    return newton_map(w) <= CLOSE || solve_spent(s);
+    scaled_get(a, s->p, m->c.x);
+    scaled_velocity(a, m->c.x, m->c.v);
+    return scaled_natural(a, m->c.x, m->c.v) <= CLOSE || solve_spent(s);
 }
 
 /* Long steps, and by arc length where they end */
@@ -214,9 +212,9 @@ static void along(struct newton *w, struct solve *s, double gap)
     struct ipm m;
     if (!begin(&m, w, s, gap, cold ? INFINITY : LATE)) return;
     bool near = approach(&m, s, CLOSE, cold ? APPROACH : NEARBY);
-    if (near && !over(s)) newton_polish(w, s, 1e-7, 3);
-    if (!arrived(w, s)) near = arc_follow(&m.c, s, END, BENDS);
-    if (!over(s)) newton_polish(w, s, 1e-7, near ? 3 : 1);
+    if (near && !solve_over(s)) newton_polish(w, s, 1e-7, 3);
+    if (!arrived(&m, s)) near = arc_follow(&m.c, s, END, BENDS);
+    if (!solve_over(s)) newton_polish(w, s, 1e-7, near ? 3 : 1);
     leave(&m);
 }
 
@@ -226,21 +224,37 @@ static void about(struct newton *w, struct solve *s)
     struct ipm m;
     if (!begin(&m, w, s, COLD, 0)) return;
     bool more = true;
-    for (int k = 0; more && k < ROUNDS && !over(s); k++) {
+    for (int k = 0; more && k < ROUNDS && !solve_over(s); k++) {
         more = approach(&m, s, CLOSE / pow(10, k), k ? AGAIN : APPROACH);
-        if (!over(s)) newton_polish(w, s, 1e-7, 3);
+        if (!solve_over(s)) newton_polish(w, s, 1e-7, 3);
     }
     leave(&m);
 }
 
 void ipm_from(struct newton *w, struct solve *s, double gap)
 {
-    if (!over(s)) along(w, s, gap);
+    if (!solve_over(s)) along(w, s, gap);
 }
 
 void ipm_solve(struct newton *w, struct solve *s)
 {
     ipm_from(w, s, 1e-3);
-    if (!over(s)) about(w, s);
-    if (!over(s)) along(w, s, COLD);
+    if (!solve_over(s)) about(w, s);
+    if (!solve_over(s)) along(w, s, COLD);
 }
+
+static int run(struct solve *s)
+{
+    struct newton w;
+    const char *reason;
+    if (nlgs_sweeps(s, SWEEPS, s->o->relax > 0 ? s->o->relax : 1.3)) return -1;
+    if (solve_over(s)) return 0;
+    int e = newton_init(&w, s, &reason);
+    if (e) return e < 0 ? -1 : nlgs_instead(s, reason);
+    e = solve_keep(s);
+    if (!e) ipm_solve(&w, s);
+    newton_free(&w);
+    return e;
+}
+
+const struct solver solver_ipm = { "ipm", "interior point method on all contacts at once", 0, run };

@@ -12,12 +12,12 @@
 #include "solve/newton.h"
 
 /*
- * From the rows' reactions on to where newton_polish() ends; where that does not, from none. It uses w
- * for its own. The best that it found is in the rows.
+ * From the iterate on to where newton_polish() ends; where that does not, from r = 0. w has the problem and
+ * its factors, and makes the last steps.
  */
-void ipm_solve(struct newton *w, struct solve *);
+void ipm_solve(struct newton *w, struct solve *s);
 
-/* The first of that alone: from the rows' reactions, moved into the cones as far as this gap */
-void ipm_from(struct newton *w, struct solve *, double gap);
+/* The first of that alone: from the iterate's reactions, moved into the cones as far as this gap */
+void ipm_from(struct newton *w, struct solve *s, double gap);
 
 #endif

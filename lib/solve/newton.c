@@ -1,111 +1,93 @@
-/* solve/newton.c: see solve/newton.h. */
+/* newton.c: see solve/newton.h. */
 #include "solve/newton.h"
+
+#include "law/method.h"
+#include "solve/nlgs.h"
+#include "solve/prices.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { INNER = 8 }; /* Newton steps of a careful proximal step */
+enum {
+    INNER = 8,         /* Newton steps of a careful proximal step, at most */
+    SHARE_LEAST = 200, /* sweeps between two steps, at least */
+    SHARE_MOST = 2000  /* and at most */
+};
 
-#define RHO          50.0 /* of the projection: large ones find the statuses, 1 does not */
-#define ALPHA_MIN    1e-9
-#define ALPHA_END    1e-7 /* of steps that are to end, at a map of */
-#define END          1e-9
+#define RHO          50.0   /* of the projection: large ones find the statuses, 1 does not */
+#define ALPHA_MIN    1e-9   /* multiples of W's mean diagonal, at least; */
+#define ALPHA_END    1e-7   /* of the steps that are to end, */
+#define END          1e-9   /* at a scaled natural map of this */
 #define FACTOR_BYTES 4e9    /* bytes that the factors may have */
 #define CONTACTS     100000 /* more are not even assembled */
 
-static double *numbers(int64_t n)
-{
-    return calloc((size_t)n + 4, sizeof(double));
-}
+static const char too_many[] = "more than 100000 contacts are not factorised",
+                  too_dense[] = "the factors would take more than 4 GB",
+                  too_slow[] = "no time for a factorisation within --max-seconds";
 
 void newton_free(struct newton *w)
 {
     system_free(w->system);
-    scaled_free(&w->whole);
-    free(w->x), free(w->v), free(w->z), free(w->L), free(w->D), free(w->best);
-    free(w->from), free(w->start), free(w->trial), free(w->dx);
+    scaled_free(&w->a);
+    free(w->room);
     *w = (struct newton){ 0 };
 }
 
-double newton_sweep_cost(const struct problem *p)
+/* What is a failure of: there is nothing to free after it. */
+static int give_up(struct newton *w, int status)
 {
-    double n = (double)p->n; // by bodies, or by blocks of W
-    return p->W ? 30 * n + 2 * (double)p->W->first[p->n] : 10 * n;
+    newton_free(w);
+    return status;
 }
 
-int newton_assemble(struct newton *w, const struct problem *p)
+int newton_assemble(struct newton *w, struct solve *s, const char **reason)
 {
     struct why why = { 0 };
-    *w = (struct newton){ .value = INFINITY, .rho = RHO };
-    bool good = p->n <= CONTACTS && !scaled_init(&w->whole, p, &why);
-    int32_t size = w->whole.size;
-    if (good) {
-        w->x = numbers(size), w->v = numbers(size), w->z = numbers(size), w->best = numbers(size);
-        w->from = numbers(size), w->start = numbers(size);
-        w->trial = numbers(size), w->dx = numbers(size);
-        w->L = numbers(9 * p->n), w->D = numbers(9 * p->n);
-    }
-    if (!good || !w->x || !w->v || !w->z || !w->best || !w->from || !w->start || !w->trial ||
-        !w->dx || !w->L || !w->D) {
-        newton_free(w);
-        return -1;
-    }
-    w->sweep_cost = newton_sweep_cost(p);
+    *w = (struct newton){ .rho = RHO };
+    *reason = too_many;
+    if (s->p->n > CONTACTS) return 1;
+    int e = scaled_init(&w->a, s->p, &why);
+    if (e) return give_up(w, e == EX_DATAERR ? 1 : -1);
+    s->rep->work += price_assembly(delassus_entries(&w->a.W));
+    size_t size = (size_t)w->a.size + 4, blocks = 9 * (size_t)s->p->n;
+    if (!(w->room = calloc(7 * size + 2 * blocks, sizeof *w->room))) return give_up(w, -1);
+    w->x = w->room, w->v = w->x + size, w->z = w->v + size, w->from = w->z + size;
+    w->start = w->from + size, w->trial = w->start + size, w->dx = w->trial + size;
+    w->L = w->dx + size, w->D = w->L + blocks;
     return 0;
 }
 
-int newton_factors(struct newton *w)
+int newton_factors(struct newton *w, struct solve *s, const char **reason)
 {
-    w->system = system_new(&w->whole, FACTOR_BYTES);
-    if (!w->system) return -1;
-    // in ns: a multiplication of the factors, and half as much for all else in a step (with none or as
-    // much again more of 54 problems end unsolved)
-    w->cost = 1.5 * system_cost(w->system);
-    return 0;
+    bool too_large;
+    *reason = too_slow;
+    if (!solve_affords(s, system_price_new(&w->a))) return 1;
+    s->rep->work += system_price_new(&w->a);
+    w->system = system_new(&w->a, FACTOR_BYTES, &too_large);
+    if (!w->system && !too_large) return -1;
+    if (too_large) return *reason = too_dense, 1;
+    w->price = system_price(w->system);
+    if (solve_affords(s, w->price)) return 0;
+    system_free(w->system), w->system = NULL;
+    return 1;
 }
 
-int newton_init(struct newton *w, const struct problem *p)
+int newton_init(struct newton *w, struct solve *s, const char **reason)
 {
-    if (newton_assemble(w, p)) return -1;
-    if (!newton_factors(w)) return 0;
-    newton_free(w);
-    return -1;
+    int e = newton_assemble(w, s, reason);
+    if (!e && (e = newton_factors(w, s, reason))) newton_free(w);
+    return e;
 }
 
-int32_t newton_share(const struct newton *w)
+int32_t newton_share(const struct newton *w, const struct problem *p)
 {
-    return (int32_t)fmin(fmax(w->cost / w->sweep_cost, 200), 2000);
-}
-
-void newton_get(struct newton *w, struct solve *s)
-{
-    scaled_get(&w->whole, s->p, w->x);
-    if (s->value < w->value) {
-        w->value = s->value;
-        memcpy(w->best, w->x, (size_t)w->whole.size * sizeof *w->x);
-    }
-}
-
-void newton_put(struct newton *w, struct solve *s)
-{
-    scaled_put(&w->whole, s->p, w->x);
-    s->believes = false;
-    if (!(solve_judge(s) < w->value)) return;
-    w->value = s->value;
-    memcpy(w->best, w->x, (size_t)w->whole.size * sizeof *w->x);
-}
-
-void newton_back(struct newton *w, struct solve *s)
-{
-    if (s->value <= w->value) return;
-    memcpy(w->x, w->best, (size_t)w->whole.size * sizeof *w->x);
-    newton_put(w, s);
+    return (int32_t)fmin(fmax(w->price / price_sweep(p), SHARE_LEAST), SHARE_MOST);
 }
 
 /* Z at x, negated, into z, and the matrix' parts; v is the velocity with the proximal term. |Z| */
 static double residual(struct newton *w, const double *x)
 {
-    struct scaled *a = &w->whole;
+    struct scaled *a = &w->a;
     int d = a->W.d;
     double prox = w->alpha * a->mean, sum = 0;
     scaled_velocity(a, x, w->v);
@@ -124,13 +106,13 @@ static double residual(struct newton *w, const double *x)
 }
 
 /* x moves along dx (in z) as far as |Z| falls; false where it does not. */
-static bool search(struct newton *w, double *at, double *dx)
+static bool search(struct newton *w, double *at)
 {
-    double before = *at;
-    memcpy(dx, w->z, (size_t)w->whole.size * sizeof *dx);
+    double before = *at, *dx = w->dx;
+    memcpy(dx, w->z, (size_t)w->a.size * sizeof *dx);
     for (int halvings = 0; halvings < 9; halvings++) {
         double step = ldexp(1, -halvings);
-        for (int32_t i = 0; i < w->whole.size; i++) w->trial[i] = w->x[i] + step * dx[i];
+        for (int32_t i = 0; i < w->a.size; i++) w->trial[i] = w->x[i] + step * dx[i];
         *at = residual(w, w->trial);
         if (!(*at < (1 - 0.01 * step) * before)) continue;
         double *x = w->x;
@@ -144,19 +126,22 @@ static bool search(struct newton *w, double *at, double *dx)
  * From x, which is x_0 too, one full step, or as many as the proximal step wants with a line search;
  * x becomes the projection at its end. False where it leads nowhere.
  */
-static bool newton_step(struct newton *w, struct report *rep, bool carefully)
+static bool newton_step(struct newton *w, struct solve *s, bool carefully)
 {
-    struct scaled *a = &w->whole;
+    struct scaled *a = &w->a;
     size_t size = (size_t)a->size * sizeof *w->x;
     memcpy(w->from, w->x, size);
     double z = residual(w, w->x), start = z;
     for (int k = 0; k < (carefully ? INNER : 1); k++) {
-        if (!system_solve(w->system, w->L, w->D, w->z)) return false;
-        rep->newton++;
+        if (!solve_affords(s, w->price)) return false;
+        double since = report_seconds(CLOCK_WALL);
+        bool solved = system_solve(w->system, w->L, w->D, w->z);
+        solve_count_newton(s, w->price, since);
+        if (!solved) return false;
         if (!carefully) {
             for (int32_t i = 0; i < a->size; i++) w->x[i] += w->z[i];
             residual(w, w->x);
-        } else if (!search(w, &z, w->dx)) {
+        } else if (!search(w, &z)) {
             residual(w, w->x);
             break;
         } else if (z < 0.01 * start) {
@@ -174,26 +159,26 @@ static bool newton_step(struct newton *w, struct report *rep, bool carefully)
     return true;
 }
 
-double newton_map(struct newton *w)
+/* The natural map at x; v is its velocity then. */
+static double map_at(struct newton *w)
 {
-    scaled_velocity(&w->whole, w->x, w->v);
-    return scaled_natural(&w->whole, w->x, w->v);
+    scaled_velocity(&w->a, w->x, w->v);
+    return scaled_natural(&w->a, w->x, w->v);
 }
 
-bool newton_finish(struct newton *w, struct solve *s, double rho)
+bool newton_finish(struct newton *w, struct solve *s, const double *x, double rho)
 {
-    size_t size = (size_t)w->whole.size * sizeof *w->x;
-    double map = newton_map(w), before;
-    memcpy(w->start, w->x, size);
+    memcpy(w->x, x, (size_t)w->a.size * sizeof *x);
+    double map = map_at(w), before;
     w->rho = rho, w->alpha = ALPHA_END;
     do {
         before = map;
-        map = newton_step(w, s->rep, false) ? newton_map(w) : INFINITY;
+        map = newton_step(w, s, false) ? map_at(w) : INFINITY;
     } while (map > END && map < before / 3);
     w->rho = RHO;
-    if (!(map <= END)) return memcpy(w->x, w->start, size), false;
-    w->value = INFINITY; // the best, whatever the criterion says of others
-    newton_put(w, s);
+    if (!(map <= END)) return false;
+    best_forget(&s->best); // this is the best, whatever the criterion says of others
+    scaled_put(&w->a, s, w->x);
     return true;
 }
 
@@ -204,43 +189,44 @@ bool newton_finish(struct newton *w, struct solve *s, double rho)
 void newton_polish(struct newton *w, struct solve *s, double alpha, int patience)
 {
     static const double omegas[] = { 1.5, 1, 0.7 };
-    size_t size = (size_t)w->whole.size * sizeof *w->x;
+    size_t size = (size_t)w->a.size * sizeof *w->x;
     double mark = s->value, least = s->value; // what is to be halved
     bool carefully = false;
-    int32_t share = newton_share(w);
+    int32_t share = newton_share(w, s->p);
     w->alpha = alpha;
-    newton_get(w, s);
-    for (int vain = 0, harms = 0; !solve_met(s) && !solve_spent(s) && vain < patience;) {
+    scaled_get(&w->a, s->p, w->x);
+    for (int vain = 0, harms = 0; vain < patience;) {
+        if (solve_over(s) || !solve_affords(s, w->price)) break;
         double before = s->value;
         memcpy(w->start, w->x, size);
-        if (!newton_step(w, s->rep, carefully)) {
+        if (!newton_step(w, s, carefully)) {
             w->alpha = fmax(10 * w->alpha, 1e-8);
             memcpy(w->x, w->start, size);
             vain++;
             continue;
         }
-        newton_put(w, s);
+        scaled_put(&w->a, s, w->x);
         double after = s->value;
         bool good = after < 0.5 * before;
         if (!good && !solve_met(s)) {
             memcpy(w->trial, w->x, size);
             nlgs_sweeps(s, share, s->o->relax > 0 ? s->o->relax : omegas[w->omega]);
-            newton_get(w, s);
+            scaled_get(&w->a, s->p, w->x);
             // sweeps that do harm are over-relaxed
             bool harm = !(s->value < 0.99 * before) || s->value > after;
             harms = harm ? harms + 1 : 0;
             if (harms == 2) harms = 0, w->omega = (w->omega + 1) % 3;
-            if (s->value > after) memcpy(w->x, w->trial, size), newton_put(w, s);
+            if (s->value > after) memcpy(w->x, w->trial, size), scaled_put(&w->a, s, w->x);
         }
         carefully = !carefully && !(s->value < 0.9 * before);
         if (s->value < before)
             w->alpha = fmax(w->alpha * (good ? 0.2 : 0.5), ALPHA_MIN);
         else
             w->alpha = fmin(w->alpha * (after > 1e3 * before ? 10 : 3), 1);
-        if (!(s->value < 2 * before)) memcpy(w->x, w->start, size), newton_put(w, s);
+        if (!(s->value < 2 * before)) memcpy(w->x, w->start, size), scaled_put(&w->a, s, w->x);
         least = fmin(least, s->value);
         vain = least < 0.5 * mark ? 0 : vain + 1;
         if (!vain) mark = least;
     }
-    newton_back(w, s);
+    solve_back(s);
 }

@@ -13,58 +13,47 @@
 #ifndef NSD_NEWTON_H
 #define NSD_NEWTON_H
 
-#include "solve/solver.h"
 #include "solve/system.h"
 
 struct newton {
-    struct scaled whole;
-    struct system *system; /* NULL before newton_factors() */
+    struct scaled a;       /* the problem, */
+    struct system *system; /* and what factorises it; NULL before newton_factors() */
+    double price;          /* of a step [solve/prices.h] */
     double rho;            /* of the projection, in units in which W's diagonal is 1 */
     double alpha;          /* a, in multiples of the mean diagonal of W */
     int omega;             /* which over-relaxation its sweeps are at */
+    double *room;          /* of all these: */
     double *x, *v, *z;     /* [n d]: the iterate, its velocity, a right-hand side */
     double *from, *start;  /* [n d]: x_0; the x to go back to */
     double *trial, *dx;    /* [n d] */
     double *L, *D;         /* [n][9] */
-    double *best;          /* [n d] the best iterate that was judged, and */
-    double value;          /* its criterion */
-    double sweep_cost;     /* of a sweep and */
-    double cost;           /* of a Newton step, in one unit */
-    int64_t aside;         /* Newton steps of parts [solve/subset.h], which cost next to nothing */
 };
 
-/* 0, or -1 where the problem is too large for it: then there is nothing to free. */
-int newton_init(struct newton *, const struct problem *);
-/* The same in two: all but what factorises, without which there are no steps, and then that, which may
-   be too large by itself. */
-int newton_assemble(struct newton *, const struct problem *);
-int newton_factors(struct newton *);
-void newton_free(struct newton *);
+/*
+ * Of a solve's problem. 0; -1 when memory is short; else 1, with *reason (a literal), where the problem is
+ * too large for it. Only after 0 is there something to free.
+ */
+int newton_init(struct newton *w, struct solve *s, const char **reason);
+/* The same in two: all but what factorises, without which there are no steps; and that, which may be too
+   large by itself: then the first part stays. */
+int newton_assemble(struct newton *w, struct solve *s, const char **reason);
+int newton_factors(struct newton *w, struct solve *s, const char **reason);
+void newton_free(struct newton *w);
 
-/* ns, or so, of a sweep */
-double newton_sweep_cost(const struct problem *);
-/* Sweeps that cost as much as a Newton step, or so */
-int32_t newton_share(const struct newton *);
-
-/* The rows' reactions become x; x goes into the rows and is judged, and kept when it is the best. */
-void newton_get(struct newton *, struct solve *);
-void newton_put(struct newton *, struct solve *);
-/* The best iterate into the rows. */
-void newton_back(struct newton *, struct solve *);
-
-/* The natural map at x, scaled; v is x's. */
-double newton_map(struct newton *);
+/* Sweeps that cost as much as a Newton step, within limits that serve */
+int32_t newton_share(const struct newton *w, const struct problem *p);
 
 /*
- * Full steps with this rho, from an x that knows what each contact does, to the solution, into the
- * rows. False where they do not lead there, which the first one tells: x is as it was.
+ * Full steps with this rho from x[n d], which knows what each contact does, to the solution, which becomes
+ * the iterate, judged. False where they do not lead there, which the first one tells.
  */
-bool newton_finish(struct newton *, struct solve *, double rho);
+bool newton_finish(struct newton *w, struct solve *s, const double *x, double rho);
 
 /*
- * Steps from the rows' x, with sweeps between them that cost as much, until the criterion is met,
- * something is spent, or so many steps have not halved it. alpha is where it begins.
+ * Steps from the iterate, with sweeps between them that cost as much, until the criterion is met,
+ * something is spent, or `patience` steps in a row have not halved it. alpha is where it begins. The best
+ * iterate is back in the end.
  */
-void newton_polish(struct newton *, struct solve *, double alpha, int patience);
+void newton_polish(struct newton *w, struct solve *s, double alpha, int patience);
 
 #endif

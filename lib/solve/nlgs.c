@@ -2,17 +2,20 @@
  * solve/nlgs.c: the non-linear Gauss-Seidel method [paper, 3.1]: sweep over the contacts, each solved by a
  * local method with the others held still, until the criterion is met.
  */
-#include "solve/solver.h"
+#include "solve/nlgs.h"
+
+#include "problem/sweep.h"
+#include "solve/prices.h"
 
 #include <omp.h>
+#include <stdio.h>
 #include <string.h>
 
 enum {
-    CHECK_FIRST = 40, /* sweeps that are all judged */
-    CHECK_EVERY = 25,
-    FORESIGHT = 4,          /* times less change than that of the sweep before is not expected, */
-    CHEAP_FORESIGHT = 1000, /* or so many times, where it costs little to be surer */
-    PARALLEL_FROM = 64      /* bundles of a group worth a second thread */
+    CHECK_FIRST = 40,      /* sweeps of a solve that are all judged: easy problems end there */
+    CHECK_EVERY = 25,      /* sweeps without a judgement, at most */
+    FORESIGHT = 4,         /* what a sweep's change is divided by at most, from one to the next; */
+    CHEAP_FORESIGHT = 1000 /* the same in a near cache, where it costs little to be surer */
 };
 
 static double most(const double x[BUNDLE])
@@ -36,24 +39,17 @@ static double add_tally(struct report *rep, const struct tally *t)
     return most(t->change);
 }
 
-/* All, or where groups are too small for that one, or one a half */
-int nlgs_team(const struct solve *s)
-{
-    int threads = s->o->threads;
-    if (s->p->bundles >= PARALLEL_FROM * s->p->groups) return threads;
-    return s->p->split && threads > 1 ? 2 : 1;
-}
-
-/* Unjudged sweeps and one more into the report; returns that one's largest change of a normal velocity,
-   m/s. */
+/* `unjudged` sweeps and one more, counted in the report; returns the last one's largest change of a normal
+   velocity, m/s. */
 static double sweep(struct solve *s, double omega, int32_t unjudged, bool keep)
 {
     const struct solve_opt *o = s->o;
     sweep_text *text = sweep_widest()->sweep[o->method->id];
     const struct sweep_opt quiet = { o->local, omega, false }, opt = { o->local, omega, keep };
     double change = 0;
-    int threads = nlgs_team(s);
-    s->rep->sweeps += unjudged + 1;
+    int threads = problem_team(s->p, s->o->threads);
+    s->rep->sweeps += unjudged + 1, s->rep->work += (unjudged + 1) * price_sweep(s->p);
+    s->renewed = false;
     if (threads == 1) { // no team: that costs
         struct tally t = { 0 };
         for (int32_t k = unjudged; k >= 0; k--) {
@@ -87,7 +83,7 @@ static int judged_sweep(struct solve *s, double omega, int32_t unjudged, bool la
     bool sure = s->o->history || s->o->every_sweep || n <= w->all || n - w->judged >= CHECK_EVERY ||
                 n >= s->o->max_sweeps || last;
     bool keep =
-        sure || w->change <= (s->p->bundles < SWEEP_FAR ? CHEAP_FORESIGHT : FORESIGHT) * w->due;
+        sure || w->change <= (s->p->bundles < FAR_BUNDLES ? CHEAP_FORESIGHT : FORESIGHT) * w->due;
     double change = w->change = sweep(s, omega, unjudged, keep && s->believes);
     w->looked = false;
     if (solve_history(s)) return -1;
@@ -106,8 +102,9 @@ int nlgs_sweep(struct solve *s, double omega, struct watch *w)
 }
 
 /*
- * How many sweeps surely are not judged, of halves, whose threads had rather not meet after each: as
- * many as no change less than FORESIGHT times that of the sweep before makes small enough.
+ * The number of sweeps that will surely not be judged. It is asked of halves only, whose threads are
+ * slowed down by a meeting after every sweep: as many as leave the change too large for a judgement even
+ * if each divides it by FORESIGHT.
  */
 static int32_t foresee(const struct solve *s, const struct watch *w, int32_t end)
 {
@@ -131,9 +128,16 @@ int nlgs_sweeps(struct solve *s, int32_t sweeps, double omega)
     return 0;
 }
 
+int nlgs_instead(struct solve *s, const char *reason)
+{
+    s->rep->fallback = reason;
+    snprintf(s->rep->method, sizeof s->rep->method, "%s", s->o->method->name);
+    return nlgs_sweeps(s, s->o->max_sweeps, s->o->relax > 0 ? s->o->relax : 1);
+}
+
 static int run(struct solve *s)
 {
     return nlgs_sweeps(s, s->o->max_sweeps, s->o->relax);
 }
 
-const struct solver solver_nlgs = { "nlgs", 1, run };
+const struct solver solver_nlgs = { "nlgs", "Gauss-Seidel: sweeps of a local method", 1, run };

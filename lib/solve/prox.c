@@ -1,34 +1,29 @@
-/* solve/prox.c: the solvers that factorise, each alone: Newton within proximal steps, and interior point.
-   What is too large for factors gets sweeps. */
-#include "solve/ipm.h"
+/*
+ * prox.c: Newton's steps on all contacts at once within proximal steps [solve/newton.h], with sweeps before
+ * and between them.
+ */
+#include "solve/newton.h"
+#include "solve/nlgs.h"
 
-static double omega(const struct solve *s, double usual)
-{
-    return s->o->relax > 0 ? s->o->relax : usual;
-}
+enum {
+    SWEEPS = 100,  /* before the first step: most contacts know by then what they do */
+    PATIENCE = 200 /* steps in a row that do not halve the error */
+};
+#define ALPHA 1e-4 /* multiples of W's mean diagonal, at first */
 
-static int prox(struct solve *s)
-{
-    struct newton w;
-    if (nlgs_sweeps(s, 100, omega(s, 1))) return -1;
-    if (solve_met(s) || solve_spent(s)) return 0;
-    if (newton_init(&w, s->p)) return nlgs_sweeps(s, s->o->max_sweeps, omega(s, 1));
-    newton_polish(&w, s, 1e-4, 200);
-    newton_free(&w);
-    return 0;
-}
-
-static int ipm(struct solve *s)
+static int run(struct solve *s)
 {
     struct newton w;
-    if (nlgs_sweeps(s, 500, omega(s, 1.3))) return -1;
-    if (solve_met(s) || solve_spent(s)) return 0;
-    if (newton_init(&w, s->p)) return nlgs_sweeps(s, s->o->max_sweeps, omega(s, 1));
-    ipm_solve(&w, s);
-    newton_back(&w, s);
+    const char *reason;
+    if (nlgs_sweeps(s, SWEEPS, s->o->relax > 0 ? s->o->relax : 1)) return -1;
+    if (solve_over(s)) return 0;
+    int e = newton_init(&w, s, &reason);
+    if (e) return e < 0 ? -1 : nlgs_instead(s, reason);
+    e = solve_keep(s);
+    if (!e) newton_polish(&w, s, ALPHA, PATIENCE);
     newton_free(&w);
-    return 0;
+    return e;
 }
 
-const struct solver solver_prox = { "prox", 0, prox };
-const struct solver solver_ipm = { "ipm", 0, ipm };
+const struct solver solver_prox = { "prox", "Newton within proximal steps on all contacts at once",
+                                    0, run };

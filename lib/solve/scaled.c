@@ -2,7 +2,6 @@
 #include "solve/scaled.h"
 
 #include "problem/assembly.h"
-#include "problem/sweep.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -10,19 +9,9 @@
 int scaled_assemble(struct delassus *W, const struct problem *p, struct why *why)
 {
     struct assembly A = { 0 };
-    struct stored S = { 0 };
-    struct sparse entries = { 0 };
-    double *mu = calloc((size_t)p->n + 1, sizeof *mu);
-    if (!mu) return why_set(why, EX_SOFTWARE, "out of memory");
-    for (int64_t i = 0; i < p->slots; i++)
-        if (p->contact[i] >= 0) mu[p->contact[i]] = slot_bundle(p, i)->mu[slot_lane(i)];
     int e = assembly_init(&A, p, why);
-    if (!e) e = assembly_W(&A, &S, why);
-    if (!e) e = sparse_unpack(&entries, &S, "W", why);
-    if (!e)
-        e = delassus_init(W, p->d, p->n, entries.count, entries.row, entries.col, entries.x, A.q,
-                          mu, why);
-    assembly_free(&A), sparse_free(&entries), stored_free(&S), free(mu);
+    if (!e) e = assembly_blocks(&A, W, why);
+    assembly_free(&A);
     return e;
 }
 
@@ -49,106 +38,107 @@ static int borrow(struct delassus *W, const struct delassus *V, struct why *why)
     return 0;
 }
 
-static void scale(struct scaled *w)
+static void scale(struct scaled *a)
 {
-    struct delassus *W = &w->W;
+    struct delassus *W = &a->W;
     int d = W->d, dd = d * d;
     double trace = 0;
     for (int64_t c = 0; c < W->n; c++) {
         double lambda = local_lambda_max(W->diag + 9 * c);
-        w->s[c] = lambda > 0 ? 1 / sqrt(lambda) : 1;
+        a->s[c] = lambda > 0 ? 1 / sqrt(lambda) : 1;
     }
     for (int64_t c = 0; c < W->n; c++) {
-        for (int k = 0; k < 9; k++) W->diag[9 * c + k] *= w->s[c] * w->s[c];
-        for (int k = 0; k < d; k++) W->q[d * c + k] *= w->s[c], trace += W->diag[9 * c + 4 * k];
+        for (int k = 0; k < 9; k++) W->diag[9 * c + k] *= a->s[c] * a->s[c];
+        for (int k = 0; k < d; k++) W->q[d * c + k] *= a->s[c], trace += W->diag[9 * c + 4 * k];
         for (int64_t e = W->first[c]; e < W->first[c + 1]; e++)
-            for (int k = 0; k < dd; k++) W->block[dd * e + k] *= w->s[c] * w->s[W->col[e]];
+            for (int k = 0; k < dd; k++) W->block[dd * e + k] *= a->s[c] * a->s[W->col[e]];
     }
-    w->mean = trace > 0 ? trace / w->size : 1;
+    a->mean = trace > 0 ? trace / a->size : 1;
 }
 
-int scaled_init(struct scaled *w, const struct problem *p, struct why *why)
+int scaled_init(struct scaled *a, const struct problem *p, struct why *why)
 {
-    *w = (struct scaled){ 0 };
+    *a = (struct scaled){ 0 };
     if (p->n > INT32_MAX / 3) return why_set(why, EX_DATAERR, "too many contacts");
-    int e = p->W ? borrow(&w->W, p->W, why) : scaled_assemble(&w->W, p, why);
+    int e = p->W ? borrow(&a->W, p->W, why) : scaled_assemble(&a->W, p, why);
     if (e) return e;
-    struct delassus *W = &w->W;
+    struct delassus *W = &a->W;
     if ((W->first[W->n] + W->n) * W->d * W->d > INT32_MAX)
         return why_set(why, EX_DATAERR, "too many blocks");
-    w->size = (int32_t)(W->n * W->d);
-    w->s = malloc((size_t)(W->n + 1) * sizeof *w->s);
-    w->zero = calloc((size_t)w->size + 4, sizeof *w->zero);
-    if (!w->s || !w->zero) return why_set(why, EX_SOFTWARE, "out of memory");
-    scale(w);
+    a->size = (int32_t)(W->n * W->d);
+    a->s = malloc((size_t)(W->n + 1) * sizeof *a->s);
+    a->zero = calloc((size_t)a->size + 4, sizeof *a->zero);
+    a->r = calloc(3 * (size_t)p->slots + 1, sizeof *a->r);
+    if (!a->s || !a->zero || !a->r) return why_set(why, EX_SOFTWARE, "out of memory");
+    scale(a);
     return 0;
 }
 
-void scaled_free(struct scaled *w)
+void scaled_free(struct scaled *a)
 {
-    delassus_free(&w->W);
-    free(w->s), free(w->zero);
-    *w = (struct scaled){ 0 };
+    delassus_free(&a->W);
+    free(a->s), free(a->zero), free(a->r);
+    *a = (struct scaled){ 0 };
 }
 
-void scaled_get(const struct scaled *w, const struct problem *p, double *x)
+void scaled_get(const struct scaled *a, const struct problem *p, double *x)
 {
     for (int64_t i = 0; i < p->slots; i++) {
         double r[3], u[3];
         int64_t c = p->contact[i];
         if (c < 0) continue;
         slot_get(p, i, r, u);
-        for (int k = 0; k < p->d; k++) x[p->d * c + k] = r[k] / w->s[c];
+        for (int k = 0; k < p->d; k++) x[p->d * c + k] = r[k] / a->s[c];
     }
 }
 
-void scaled_put(const struct scaled *w, struct problem *p, const double *x)
+double scaled_put(struct scaled *a, struct solve *s, const double *x)
 {
+    const struct problem *p = s->p;
     for (int64_t i = 0; i < p->slots; i++) {
         double r[3];
         int64_t c = p->contact[i];
         if (c < 0) continue;
         scaled_load(p->d, x + p->d * c, r);
-        for (int k = 0; k < 3; k++) r[k] *= w->s[c];
-        slot_react(p, i, r);
+        for (int k = 0; k < 3; k++) a->r[3 * i + k] = r[k] * a->s[c];
     }
-    sweep_widest()->velocities(p, 0, p->bundles);
+    solve_react(s, a->r);
+    return solve_judge(s);
 }
 
-/* v = W x + q */
-static void multiply(const struct delassus *W, const double *x, const double *q, double *v)
+void scaled_velocity(const struct scaled *a, const double *x, double *v)
 {
-    int d = W->d;
-    for (int64_t c = 0; c < W->n; c++) {
-        double b[4];
-        delassus_gather(W, c, q, x, b);
-        for (int i = 0; i < d; i++) {
-            v[d * c + i] = b[i];
-            for (int j = 0; j < d; j++) v[d * c + i] += W->diag[9 * c + 3 * i + j] * x[d * c + j];
-        }
-    }
+    delassus_apply(&a->W, x, a->W.q, v);
 }
 
-void scaled_velocity(const struct scaled *w, const double *x, double *v)
+void scaled_product(const struct scaled *a, const double *x, double *v)
 {
-    multiply(&w->W, x, w->W.q, v);
+    delassus_apply(&a->W, x, a->zero, v);
 }
 
-void scaled_product(const struct scaled *w, const double *x, double *v)
+/* The square of a contact's map, and of its x in *size */
+static double map2(const struct scaled *a, int64_t c, const double *x, const double *v,
+                   double *size)
 {
-    multiply(&w->W, x, w->zero, v);
+    int d = a->W.d;
+    double r[3], u[3], tau[3], p[3], off = 0;
+    scaled_load(d, x + d * c, r), scaled_load(d, v + d * c, u);
+    cone_predict(a->W.mu[c], 1, r, u, tau);
+    cone_project(a->W.mu[c], tau, p);
+    *size = 0;
+    for (int k = 0; k < 3; k++) off += (r[k] - p[k]) * (r[k] - p[k]), *size += r[k] * r[k];
+    return off;
 }
 
-double scaled_natural(const struct scaled *w, const double *x, const double *v)
+double scaled_natural_of(const struct scaled *a, int64_t c, const double *x, const double *v)
 {
-    double off = 0, size = 0;
-    int d = w->W.d;
-    for (int64_t c = 0; c < w->W.n; c++) {
-        double r[3], u[3], tau[3], p[3];
-        scaled_load(d, x + d * c, r), scaled_load(d, v + d * c, u);
-        cone_predict(w->W.mu[c], 1, r, u, tau);
-        cone_project(w->W.mu[c], tau, p);
-        for (int k = 0; k < 3; k++) off += (r[k] - p[k]) * (r[k] - p[k]), size += r[k] * r[k];
-    }
+    double size;
+    return sqrt(map2(a, c, x, v, &size));
+}
+
+double scaled_natural(const struct scaled *a, const double *x, const double *v)
+{
+    double off = 0, size = 0, one;
+    for (int64_t c = 0; c < a->W.n; c++) off += map2(a, c, x, v, &one), size += one;
     return size > 0 ? sqrt(off / size) : off > 0 ? 1 : 0;
 }

@@ -1,6 +1,6 @@
 /*
- * solve/scaled.h: all contacts at once: a contact problem as one scaled system, for the solvers that look at
- * the whole of it.
+ * solve/scaled.h: all contacts at once: a contact problem as one scaled system, for the solvers that look
+ * at the whole of it.
  *
  *     v = W x + q,   r_c = s_c x_c,   s_c = 1/sqrt(lambda_max(W_cc)),
  *
@@ -10,34 +10,38 @@
 #ifndef NSD_SCALED_H
 #define NSD_SCALED_H
 
-#include "problem/problem.h"
+#include "solve/solver.h"
 
 struct scaled {
     struct delassus W; /* scaled: blocks, diagonal, q */
     double *s;         /* [n] sqrt(kg) */
     double *zero;      /* [size] */
+    double *r;         /* [slots][3] room for an iterate on its way */
     double mean;       /* of the diagonal of W */
     int32_t size;      /* n d */
 };
 
 /* D u~ = W r + q of a packing, as an FCLIB file would have it, not scaled, r = 0. Returns 0, or
-   EX_SOFTWARE or EX_DATAERR with nothing to free. */
-int scaled_assemble(struct delassus *, const struct problem *, struct why *);
+   EX_SOFTWARE with nothing to free. */
+int scaled_assemble(struct delassus *W, const struct problem *p, struct why *why);
 
-/* Returns 0 or EX_SOFTWARE; where it is too large for 32-bit indices, EX_DATAERR. */
-int scaled_init(struct scaled *, const struct problem *, struct why *);
-void scaled_free(struct scaled *);
+/* Returns 0 or EX_SOFTWARE; where it is too large for 32-bit indices, EX_DATAERR. To be freed in any
+   case. */
+int scaled_init(struct scaled *a, const struct problem *p, struct why *why);
+void scaled_free(struct scaled *a);
 
-void scaled_get(const struct scaled *, const struct problem *, double *x);
-/* x into the rows, with the bodies and u that belong to it */
-void scaled_put(const struct scaled *, struct problem *, const double *x);
+/* x[size] of the iterate; and x as the iterate, judged: returns the criterion. */
+void scaled_get(const struct scaled *a, const struct problem *p, double *x);
+double scaled_put(struct scaled *a, struct solve *s, const double *x);
 
-/* v = W x + q, and v = W x */
-void scaled_velocity(const struct scaled *, const double *x, double *v);
-void scaled_product(const struct scaled *, const double *x, double *v);
+/* v = W x + q, and v = W x; x has four numbers behind it that may be read. */
+void scaled_velocity(const struct scaled *a, const double *x, double *v);
+void scaled_product(const struct scaled *a, const double *x, double *v);
 
 /* |x - P(x - v^)| / |x|, v^ = v + mu |v_t| n, v = W x + q: the natural map's, scaled */
-double scaled_natural(const struct scaled *, const double *x, const double *v);
+double scaled_natural(const struct scaled *a, const double *x, const double *v);
+/* |x_c - P(x_c - v^_c)| of one contact */
+double scaled_natural_of(const struct scaled *a, int64_t c, const double *x, const double *v);
 
 /* Component-wise copies between d and 3 numbers */
 static inline void scaled_load(int d, const double *x, double out[3])

@@ -1,19 +1,43 @@
-/* solve/solver.c: see solve/solver.h. */
+/* solver.c: see solve/solver.h. */
 #include "solve/solver.h"
 
+#include "problem/apply.h"
 #include "problem/sweep.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+/* s of a priced ns, before any was timed */
+#define PACE 1e-9
 
 const struct solver *const solvers[] = { &solver_auto, &solver_nlgs, &solver_anderson,
                                          &solver_cg,   &solver_prox, &solver_ipm,
                                          NULL };
 
-double solve_judge(struct solve *s)
+enum { RENEW_EVERY = 1000 }; /* sweeps: their rounding stays below 1e-13 of the velocities */
+
+static void evaluate(struct solve *s)
 {
     struct err e;
     err_eval(&e, s->p, s->believes, err_terms_of(s->o->criterion), s->o->threads);
     s->value = err_of(&e, s->o->criterion);
+}
+
+static void renew(struct solve *s)
+{
+    if (s->renewed) return;
+    problem_renew(s->p, problem_team(s->p, s->o->threads));
+    s->renewed = true, s->renewed_at = s->rep->sweeps;
+}
+
+double solve_judge(struct solve *s)
+{
+    if (s->rep->sweeps - s->renewed_at >= RENEW_EVERY) renew(s);
+    evaluate(s);
+    if (solve_met(s) && !s->renewed) renew(s), evaluate(s);
+    solve_offer(s, &s->best);
     if (s->o->progress) s->o->progress(s->rep->sweeps, s->value);
     return s->value;
 }
@@ -23,10 +47,20 @@ bool solve_met(const struct solve *s)
     return s->value <= s->o->eps;
 }
 
+double solve_seconds_left(const struct solve *s)
+{
+    if (!(s->o->max_seconds > 0)) return INFINITY;
+    return s->o->max_seconds - (report_seconds(CLOCK_WALL) - s->start);
+}
+
 bool solve_spent(const struct solve *s)
 {
-    if (s->rep->sweeps >= s->o->max_sweeps) return true;
-    return s->o->max_seconds > 0 && report_seconds(CLOCK_WALL) - s->start >= s->o->max_seconds;
+    return s->rep->sweeps >= s->o->max_sweeps || solve_seconds_left(s) <= 0;
+}
+
+bool solve_over(const struct solve *s)
+{
+    return solve_met(s) || solve_spent(s);
 }
 
 int solve_history(struct solve *s)
@@ -45,47 +79,86 @@ int solve_history(struct solve *s)
     return 0;
 }
 
-int kept_init(struct kept *k, const struct problem *p)
+bool solve_affords(const struct solve *s, double price)
 {
-    size_t size = (size_t)(p->slots + 1) * sizeof *k->r;
-    bool many = p->n > MANY;
-    *k = (struct kept){ INFINITY, malloc(size), many ? NULL : malloc(size) };
-    return k->r && (many || k->u) ? 0 : -1;
+    return price * s->pace <= solve_seconds_left(s);
 }
 
-void kept_free(struct kept *k)
+void solve_count_newton(struct solve *s, double price, double since)
 {
-    free(k->r), free(k->u);
-    k->r = k->u = NULL;
+    s->rep->newton++, s->rep->work += price;
+    s->pace = fmax(s->pace, (report_seconds(CLOCK_WALL) - since) / price);
 }
 
-void kept_offer(struct kept *k, const struct solve *s)
+/* ---- keeping ---- */
+
+/* What is kept of an iterate: r[slots][3] and, where the contacts are not MANY, u[slots][3] and whether
+   that is a local method's own. */
+static bool with_u(const struct problem *p)
 {
-    double unwanted[3] = { 0 };
-    if (!(s->value < k->value)) return;
-    k->value = s->value;
-    for (int64_t i = 0; i < s->p->slots; i++) slot_get(s->p, i, k->r[i], k->u ? k->u[i] : unwanted);
+    return p->n <= MANY;
 }
 
-void kept_back(const struct kept *k, struct solve *s)
+int solve_keeper(struct best *b, const struct problem *p)
 {
-    if (!(k->value < INFINITY) || s->value <= k->value) return;
-    for (int64_t i = 0; i < s->p->slots; i++) {
-        if (s->p->contact[i] < 0) continue;
-        slot_react(s->p, i, k->r[i]);
-        if (k->u) slot_set(s->p, i, k->r[i], k->u[i]);
-    }
-    s->believes &= k->u != NULL;
-    s->value = k->value;
+    return best_init(b, with_u(p) ? 6 * p->slots + 1 : 3 * p->slots);
 }
+
+void solve_offer(const struct solve *s, struct best *b)
+{
+    const struct problem *p = s->p;
+    double *r = best_offer(b, s->value), *u = r ? r + 3 * p->slots : NULL, unwanted[3];
+    for (int64_t i = 0; r && i < p->slots; i++)
+        slot_get(p, i, r + 3 * i, with_u(p) ? u + 3 * i : unwanted);
+    if (r && with_u(p)) u[3 * p->slots] = s->believes;
+}
+
+void solve_react(struct solve *s, const double *r)
+{
+    problem_react(s->p, r, problem_team(s->p, s->o->threads));
+    s->believes = false, s->renewed = true, s->renewed_at = s->rep->sweeps;
+}
+
+void solve_return(struct solve *s, const struct best *b)
+{
+    struct problem *p = s->p;
+    const double *r = b->x, *u = r + 3 * p->slots;
+    if (!(b->value < INFINITY) || s->value <= b->value) return;
+    solve_react(s, r);
+    s->value = b->value, s->believes = with_u(p) && u[3 * p->slots] != 0;
+    for (int64_t i = 0; s->believes && i < p->slots; i++) slot_set(p, i, r + 3 * i, u + 3 * i);
+}
+
+int solve_keep(struct solve *s)
+{
+    if (solve_keeper(&s->best, s->p)) return -1;
+    solve_offer(s, &s->best);
+    return 0;
+}
+
+void solve_back(struct solve *s)
+{
+    solve_return(s, &s->best);
+}
+
+/* ---- a whole solve ---- */
 
 int solve_problem(struct problem *p, const struct solve_opt *o, struct report *rep)
 {
     double cpu = report_seconds(CLOCK_CPU), wall = report_seconds(CLOCK_WALL);
-    struct solve s = { p, o, rep, o->method->believes, INFINITY, wall };
+    struct solve s = { .p = p, .o = o, .rep = rep, .start = wall };
+    s.believes = o->method->believes, s.value = INFINITY, s.renewed = true;
+    s.best.value = INFINITY, s.pace = PACE;
     rep->criterion = o->criterion, rep->eps = o->eps;
     rep->sweeps = 0, rep->newton = rep->safeguarded = rep->gave_up = 0;
-    if (p->n && o->global->run(&s)) return -1;
+    rep->work = 0, rep->fallback = NULL;
+    snprintf(rep->method, sizeof rep->method, "%s",
+             o->global == &solver_nlgs ? o->method->name : o->global->name);
+    int failed = p->n ? o->global->run(&s) : 0;
+    solve_back(&s);
+    best_free(&s.best);
+    if (failed) return -1;
+    renew(&s);
     if (!s.believes) sweep_widest()->velocities(p, 0, p->bundles);
     double overlap = rep->err.max_overlap;
     err_eval(&rep->err, p, s.believes, ERR_ALL, o->threads);

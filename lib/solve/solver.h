@@ -1,12 +1,17 @@
 /*
  * solve/solver.h: the solvers of a whole contact problem, siblings behind one table; each stands in a file
- * of its own. All end at the same criterion, recomputed from the reactions and the problem alone.
+ * of its own. All end at the same criterion, and it counts as met only when it holds for the velocities
+ * that the reactions make, computed anew from the problem and the reactions alone.
+ *
+ * A solver is a row of turns over one iterate: the reactions in the problem's slots, the velocities that
+ * they make (of bodies, or by W), what a local method believes u to be, and their error.
  */
 #ifndef NSD_SOLVER_H
 #define NSD_SOLVER_H
 
 #include "law/method.h"
 #include "problem/err.h"
+#include "solve/best.h"
 
 struct solver;
 
@@ -27,85 +32,77 @@ struct solve_opt {
 
 /* A solve on its way */
 struct solve {
-    struct problem *p;
+    struct problem *p;  /* the iterate's r, u, and velocities */
+    bool believes;      /* u of the slots is a local method's own, else the motion's */
+    bool renewed;       /* the velocities were made anew and nothing was added to them since */
+    int32_t renewed_at; /* the number of the sweep at which they were last */
+    double value;       /* the criterion of the iterate as it was judged last */
+
     const struct solve_opt *o;
     struct report *rep;
-    bool believes; /* u of the rows is a local method's own */
-    double value;  /* of the criterion, of what the rows hold */
-    double start;  /* s on the wall */
+    double start;     /* s on the wall */
+    double pace;      /* s that a priced ns has taken, of the slowest Newton step so far */
+    struct best best; /* the best iterate that was judged since solve_keep() */
 };
 
-/* run: from the r that the rows have to the criterion, or to where it sees no way on. Returns 0, or
-   -1 when memory is short: then the rows are as good as before. */
+/* run: from the iterate given to the criterion, or to where it sees no way on. Returns 0, or -1 when
+   memory is short: then the iterate is as good as before. */
 struct solver {
     const char *name;
-    double relax; /* omega where none is asked for */
-    int (*run)(struct solve *);
+    const char *help;
+    double relax; /* omega where none is asked for; 0: it varies */
+    int (*run)(struct solve *s);
 };
 
-extern const struct solver *const solvers[]; /* NULL ends it; the first is the default */
+/* NULL ends it; the first is the default. */
+extern const struct solver *const solvers[];
 extern const struct solver solver_auto, solver_nlgs, solver_anderson, solver_cg, solver_prox,
     solver_ipm;
 
 /*
- * Solves problem from the r that it has. The rows then hold r and u. Fills err (all of it but
- * max_overlap), criterion, eps, sweeps, converged, counts, seconds and history of the report.
- * Returns 0, or -1 when memory is short for the history, the only thing that cannot be left out.
+ * Solves a problem from the r that it has. Its slots then hold r and u. Fills method, err (all of it but
+ * max_overlap), criterion, eps, sweeps, converged, counts, work, fallback, seconds and history of the
+ * report. Returns 0, or -1 when memory is short for what cannot be left out.
  */
-int solve_problem(struct problem *, const struct solve_opt *, struct report *);
+int solve_problem(struct problem *p, const struct solve_opt *o, struct report *rep);
 
 /* ---- for the solvers ---- */
 
-/* The criterion of what the rows hold, into value; tells the progress. */
-double solve_judge(struct solve *);
+/*
+ * The criterion of the iterate, into value. Where it seems met, the velocities are made anew and it is
+ * judged again. The best iterate is kept; progress is told.
+ */
+double solve_judge(struct solve *s);
 /* value is at most eps; or there are no sweeps or seconds left. */
-bool solve_met(const struct solve *);
-bool solve_spent(const struct solve *);
-/* The sweep's terms into the report, where a history is asked for; -1 when memory is short. */
-int solve_history(struct solve *);
+bool solve_met(const struct solve *s);
+bool solve_spent(const struct solve *s);
+/* Either: nothing more is to be done. */
+bool solve_over(const struct solve *s);
+/* s on the wall that are left; INFINITY where any are */
+double solve_seconds_left(const struct solve *s);
 
-/* contacts: of more, less is kept */
-enum { MANY = 100000 };
-
-/* The best (r, u) that was judged, for solvers whose way is not straight */
-struct kept {
-    double value;   /* of the criterion */
-    double (*r)[3]; /* [rows] */
-    double (*u)[3]; /* [rows]; NULL, of MANY: u is then what the motion makes */
-};
-int kept_init(struct kept *, const struct problem *); /* 0, or -1 */
-void kept_free(struct kept *);
-void kept_offer(struct kept *, const struct solve *); /* what the rows hold, just judged */
-void kept_back(const struct kept *, struct solve *);  /* into the rows, unless they hold better */
-
-/* When the criterion was last judged, and when it is due again; begins with due INFINITY */
-struct watch {
-    double due;     /* m/s: a sweep's largest change of a normal velocity at which to judge */
-    int32_t judged; /* after so many sweeps */
-    int32_t all;    /* so many of a solve's first sweeps are all judged */
-    bool looked;    /* by the last nlgs_sweep() */
-    double change;  /* m/s: of that one */
-};
-/* How many threads share a sweep. */
-int nlgs_team(const struct solve *);
-/* One sweep, judged where that is due. Returns 0 to go on, 1 when the criterion is met, something is
-   spent or not finite, -1 when memory is short. */
-int nlgs_sweep(struct solve *, double omega, struct watch *);
-/* At most so many sweeps with this omega, until the criterion is met or something is spent. */
-int nlgs_sweeps(struct solve *, int32_t sweeps, double omega);
+/* r[slots][3] become the iterate's reactions, with the velocities that they make; not yet judged. */
+void solve_react(struct solve *s, const double *r);
 
 /*
- * The same accelerated. After so many sweeps or a few more it pauses where it is, judged, and goes on
- * from there the next time as if it had not paused. anderson_back() returns to the best that it has
- * judged, of value anderson_best(); anderson_anew() says that the reactions are others, whose like it
- * has not judged. NULL, or -1, when memory is short.
+ * From now on the best iterate is kept, this one the first, which has been judged; and back to it, unless
+ * the iterate is as good: so a solve ends. 0, or -1 when memory is short.
  */
-struct anderson;
-struct anderson *anderson_new(struct solve *);
-int anderson_sweeps(struct anderson *, int32_t sweeps);
-double anderson_best(const struct anderson *);
-void anderson_back(struct anderson *);
-void anderson_anew(struct anderson *);
-void anderson_free(struct anderson *);
+int solve_keep(struct solve *s);
+void solve_back(struct solve *s);
+/* The same with a keeper of the solver's own: room for iterates; what was just judged offered; back. */
+int solve_keeper(struct best *b, const struct problem *p);
+void solve_offer(const struct solve *s, struct best *b);
+void solve_return(struct solve *s, const struct best *b);
+
+/* The sweep's terms into the report, where a history is asked for; -1 when memory is short. */
+int solve_history(struct solve *s);
+/* Whether the seconds that are left, where they are limited, are enough for something of this price: by
+   the pace of the Newton steps so far. */
+bool solve_affords(const struct solve *s, double price);
+/* A Newton step of this price, begun at `since` (s on the wall), into the report */
+void solve_count_newton(struct solve *s, double price, double since);
+/* contacts: of more, a keeper has no room for u */
+enum { MANY = 100000 };
 
 #endif

@@ -23,7 +23,7 @@ int step_solve(const struct packing *pack, struct contacts *s, const struct step
     rep->err.max_overlap = max_overlap(s);
     int failed = solve_problem(&p, &o->solve, rep);
     if (failed)
-        why_set(why, EX_SOFTWARE, "no memory for the history");
+        why_set(why, EX_SOFTWARE, "no memory to solve the contacts");
     else if ((failed = problem_store(&p, s)))
         why_set(why, EX_SOFTWARE, "no memory for the solution");
     problem_free(&p);
@@ -46,16 +46,19 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
         for (int k = 0; k < W->d; k++) u[W->d * p.contact[i] + k] = v[k];
     }
     problem_free(&p);
-    return failed ? why_set(why, EX_SOFTWARE, "no memory for the history") : 0;
+    return failed ? why_set(why, EX_SOFTWARE, "no memory to solve the contacts") : 0;
 }
 
-/* The reactions' impulses and their moments about the centres, summed in the contacts' order. */
-static void impulses(const struct packing *p, const struct contacts *s, vec3 *force, vec3 *moment)
+/* The reactions' impulses and their moments about the centres, which are at x + ahead v when the contacts
+   act; summed in the contacts' order. */
+static void impulses(const struct packing *p, double ahead, const struct contacts *s, vec3 *force,
+                     vec3 *moment)
 {
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
         double la, lb;
-        problem_arms(p, c, &la, &lb);
+        vec3 xa = c->a < 0 ? c->x : v3_axpy(p->x[c->a], ahead, p->v[c->a]);
+        problem_arms(c, xa, v3_axpy(p->x[c->b], ahead, p->v[c->b]), &la, &lb);
         const double *r = s->found[i].r;
         vec3 t2 = contact_t2(c), f = v3_axpy(v3_axpy(v3_scale(r[0], c->n), r[1], c->t1), r[2], t2);
         vec3 m = v3_axpy(v3_scale(r[2], c->t1), -r[1], t2); // -n x r
@@ -100,14 +103,14 @@ static void body_unmove(struct packing *p, int64_t i, vec3 force, vec3 moment)
     p->q[i] = quat_unit(turn(p->q[i], -before, p->w[i]));
 }
 
-/* body() on each, with its impulse and moment; `there` is p with the predicted position that counts. */
-static int move(struct packing *p, const struct packing *there, const struct contacts *s,
+/* body() on each, with its impulse and moment; the contacts act where the bodies are `ahead` (s) from here. */
+static int move(struct packing *p, double ahead, const struct contacts *s,
                 void (*body)(struct packing *, int64_t, vec3, vec3), struct why *why)
 {
     size_t n = (size_t)p->n + 1;
     vec3 *force = calloc(n, sizeof *force), *moment = calloc(n, sizeof *moment);
     bool room = force && moment;
-    if (room) impulses(there, s, force, moment);
+    if (room) impulses(p, ahead, s, force, moment);
     for (int64_t i = 0; room && i < p->n; i++) body(p, i, force[i], moment[i]);
     free(force), free(moment);
     return room ? 0 : why_set(why, EX_SOFTWARE, "no memory to move the bodies");
@@ -115,7 +118,7 @@ static int move(struct packing *p, const struct packing *there, const struct con
 
 int step_move(struct packing *p, const struct contacts *s, struct why *why)
 {
-    if (move(p, p, s, body_move, why)) return why->status;
+    if (move(p, (1 - p->theta) * p->dt, s, body_move, why)) return why->status;
     p->step++;
     p->t += p->dt;
     return 0;
@@ -123,10 +126,7 @@ int step_move(struct packing *p, const struct contacts *s, struct why *why)
 
 int step_unmove(struct packing *p, const struct contacts *s, struct why *why)
 {
-    struct packing there = *p;
-    there.theta =
-        1 + p->theta; // packing_predict() of it: q_{k+1} - theta dt qdot_{k+1} = q_{k+1/2}
-    if (move(p, &there, s, body_unmove, why)) return why->status;
+    if (move(p, -p->theta * p->dt, s, body_unmove, why)) return why->status;
     p->step--;
     p->t -= p->dt;
     return 0;

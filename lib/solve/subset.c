@@ -1,35 +1,35 @@
-/* solve/subset.c: see solve/subset.h. */
+/* subset.c: see solve/subset.h. */
 #include "solve/subset.h"
 
 #include "solve/ipm.h"
+#include "solve/nlgs.h"
+#include "solve/prices.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define LARGE 0.1   /* of the largest natural map of a contact */
-#define EXACT 1e-13 /* the natural map of a part's solution */
+#define LARGE 0.1   /* of the largest natural map of a contact: such contacts are chosen */
+#define EXACT 1e-13 /* the natural map of a subset's solution */
+#define GAP   1e-3  /* at which its interior point method begins */
+#define OMEGA 1.3   /* of its sweeps */
 
-enum { SWEEPS = 100 }; /* of a part, before its interior point */
+enum {
+    SWEEPS = 100, /* of a subset, before its interior point method */
+    STEPS = 15    /* Newton steps that its solution takes, mostly */
+};
 
 struct chosen {
     int64_t n;
-    int32_t *contact; /* [n] ascending: contact i of the part is contact[i] of all, */
+    int32_t *contact; /* [n] ascending: contact i of the subset is contact[i] of all, */
     int32_t *of;      /* [all] and of[] tells which it is; -1: none */
 };
 
-/* |x_c - P(x_c - v^_c)| of each contact, of the rows' reactions; the largest */
-static double maps(struct newton *w, double *map)
+/* The natural map of each contact at x, whose velocity is v; the largest */
+static double maps(const struct scaled *a, const double *x, const double *v, double *map)
 {
-    const struct delassus *W = &w->whole.W;
     double largest = 0;
-    scaled_velocity(&w->whole, w->x, w->v);
-    for (int64_t c = 0; c < W->n; c++) {
-        double r[3], u[3], tau[3], p[3], off = 0;
-        scaled_load(W->d, w->x + W->d * c, r), scaled_load(W->d, w->v + W->d * c, u);
-        cone_predict(W->mu[c], 1, r, u, tau);
-        cone_project(W->mu[c], tau, p);
-        for (int k = 0; k < 3; k++) off += (r[k] - p[k]) * (r[k] - p[k]);
-        map[c] = sqrt(off);
+    for (int64_t c = 0; c < a->W.n; c++) {
+        map[c] = scaled_natural_of(a, c, x, v);
         largest = fmax(largest, map[c]);
     }
     return largest;
@@ -43,11 +43,13 @@ static int64_t count(const double *map, int64_t n, double large)
     return k;
 }
 
-/* At least so many contacts: those where the map is large, as many around them, or more. */
-static bool choose(struct newton *w, int64_t least, bool anyhow, struct chosen *p)
+/* At least `least` contacts: those where the map is large, as many around them, or more. False where they
+   would be too many. */
+static bool choose(const struct scaled *a, const double *map, double largest, int64_t least,
+                   bool anyhow, struct chosen *p)
 {
-    const struct delassus *W = &w->whole.W;
-    double *map = w->z, largest = maps(w, map), large = LARGE * largest;
+    const struct delassus *W = &a->W;
+    double large = LARGE * largest;
     while (anyhow && large < largest / 2 && count(map, W->n, large) > W->n / 4) large *= 2;
     int64_t most = 2 * count(map, W->n, large);
     if (most < least) most = least;
@@ -67,55 +69,76 @@ static bool choose(struct newton *w, int64_t least, bool anyhow, struct chosen *
     return true;
 }
 
-/* A few sweeps and the first way of the interior point: what they do not solve is better asked of a
-   larger part than of more ways. */
+/* The solver of a subset */
+struct inner {
+    struct solver solver; /* first: a solve knows its solver only */
+    double budget;
+};
+
+/* A few sweeps and the first way of the interior point method: what they do not solve is better asked of a
+   larger subset than of more ways. */
 static int run(struct solve *s)
 {
+    const struct inner *inner = (const struct inner *)s->o->global;
     struct newton w;
-    if (nlgs_sweeps(s, SWEEPS, 1.3)) return -1;
-    if (solve_met(s) || solve_spent(s) || newton_init(&w, s->p)) return 0;
-    ipm_from(&w, s, 1e-3);
-    newton_back(&w, s);
+    const char *reason;
+    if (nlgs_sweeps(s, SWEEPS, OMEGA)) return -1;
+    if (solve_over(s)) return 0;
+    int e = newton_init(&w, s, &reason);
+    if (e) return e < 0 ? -1 : 0;
+    if (STEPS * w.price <= inner->budget && !(e = solve_keep(s))) ipm_from(&w, s, GAP);
     newton_free(&w);
-    return 0;
+    return e;
 }
 
-/* V's solution, from its r, into w's x and the report. False when memory is short. */
-static bool solve(struct newton *w, const struct solve *s, const struct chosen *p,
-                  struct delassus *V)
+/* V's solution, from its r, into x of all contacts and the report. Returns 0 where it is solved, 1 where not,
+   -1 when memory is short. */
+static int solve(struct solve *s, const struct chosen *p, struct delassus *V, double budget,
+                 double *x)
 {
-    static const struct solver inner = { "part", 0, run };
+    // the least that its Newton steps can cost, before anything is spent on it
+    double entries = delassus_entries(V);
+    if (price_analysis(entries) + STEPS * price_newton_step(0, entries) > budget) return 1;
+    const struct inner inner = { { "subset", "", 0, run }, budget };
     struct problem q;
     struct why why = { 0 };
     struct report rep = { 0 };
     struct solve_opt o = *s->o;
-    o.global = &inner, o.criterion = CRITERION_NATURAL, o.eps = EXACT, o.max_sweeps = INT32_MAX;
-    o.every_sweep = o.history = false, o.threads = 1, o.progress = NULL;
-    if (o.max_seconds > 0)
-        o.max_seconds = fmax(o.max_seconds - (report_seconds(CLOCK_WALL) - s->start), 1e-9);
-    if (problem_prepare_delassus(&q, V, 0, s->o->method->rho, ORDER_NATURAL, &why)) return false;
-    bool good = !solve_problem(&q, &o, &rep);
+    o.global = &inner.solver, o.criterion = CRITERION_NATURAL, o.eps = EXACT;
+    o.max_sweeps = INT32_MAX, o.every_sweep = o.history = false, o.threads = 1, o.progress = NULL;
+    if (o.max_seconds > 0) o.max_seconds = fmax(solve_seconds_left(s), 1e-9);
+    if (problem_prepare_delassus(&q, V, 0, s->o->method->rho, ORDER_NATURAL, &why)) return -1;
+    int e = solve_problem(&q, &o, &rep);
     problem_free(&q);
-    for (int64_t i = 0; good && i < p->n; i++)
-        memcpy(w->x + V->d * p->contact[i], V->r + V->d * i, (size_t)V->d * sizeof *w->x);
-    s->rep->newton += rep.newton, w->aside += rep.newton;
+    for (int64_t i = 0; !e && rep.newton && i < p->n; i++)
+        memcpy(x + V->d * p->contact[i], V->r + V->d * i, (size_t)V->d * sizeof *x);
+    s->rep->newton += rep.newton, s->rep->work += rep.work;
     s->rep->safeguarded += rep.safeguarded, s->rep->gave_up += rep.gave_up;
-    return good;
+    return e ? -1 : !rep.newton && !rep.converged;
 }
 
-int64_t subset_solve(struct newton *w, struct solve *s, int64_t contacts, bool anyhow)
+int64_t subset_solve(struct scaled *a, struct solve *s, int64_t contacts, bool anyhow,
+                     double budget)
 {
-    const struct delassus *W = &w->whole.W;
-    struct chosen p = { 0 };
+    size_t n = (size_t)a->W.n, size = (size_t)a->size + 4;
+    struct chosen p = { 0, malloc((n + 1) * sizeof *p.contact), malloc((n + 1) * sizeof *p.of) };
     struct delassus V = { 0 };
     struct why why = { 0 };
-    size_t bytes = ((size_t)W->n + 1) * sizeof(int32_t);
-    p.contact = malloc(bytes), p.of = malloc(bytes);
-    newton_get(w, s);
-    bool good = p.contact && p.of && choose(w, contacts, anyhow, &p) &&
-                !delassus_part(&V, W, p.n, p.contact, p.of, w->x, w->v, &why);
-    good = good && solve(w, s, &p, &V);
-    if (good) newton_put(w, s);
-    delassus_free(&V), free(p.contact), free(p.of);
-    return good ? p.n : 0;
+    double *x = calloc(2 * size + n, sizeof *x), *v = x + size, *map = v + size;
+    int64_t solved = -1;
+    if (p.contact && p.of && x) {
+        scaled_get(a, s->p, x);
+        scaled_velocity(a, x, v);
+        double largest = maps(a, x, v, map);
+        bool chosen = choose(a, map, largest, contacts, anyhow, &p);
+        if (!chosen) {
+            solved = 0;
+        } else if (!delassus_part(&V, &a->W, p.n, p.contact, p.of, x, v, &why)) {
+            int e = solve(s, &p, &V, budget, x);
+            solved = e < 0 ? -1 : e ? 0 : p.n;
+        }
+    }
+    if (solved > 0) scaled_put(a, s, x);
+    delassus_free(&V), free(p.contact), free(p.of), free(x);
+    return solved;
 }

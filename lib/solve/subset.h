@@ -1,5 +1,6 @@
 /*
- * solve/subset.h: the contacts that hold the sweeps up, solved by themselves while the others' reactions stand.
+ * solve/subset.h: the contacts that hold the sweeps up, solved by themselves while the others' reactions
+ * stand.
  *
  * After some hundred sweeps the natural map is mostly large in some dozens of contacts only, whose
  * reactions hang on one another in a way that sweeps hardly see; all others follow them. Of these and
@@ -13,14 +14,17 @@
 #ifndef NSD_SUBSET_H
 #define NSD_SUBSET_H
 
-#include "solve/newton.h"
+#include "solve/scaled.h"
 
 /*
- * Solves so many contacts, or more where the natural map is large in more, from the rows' reactions;
- * what came of it is in the rows, where the criterion may well be larger than before: the others were
- * not asked. Returns how many it were; 0 where it would have been more than a fifth of all (`anyhow`:
- * half, and fewer then count as large), or memory is short: the rows are as they were.
+ * Solves `contacts` of them, or more where the natural map is large in more, from the iterate, which has
+ * their new reactions afterwards, judged: the criterion may well be larger than before, for the others were
+ * not asked. Not tried: more than a fifth of all contacts (`anyhow`: half, and fewer count as large), and
+ * factors whose fill makes a solution dearer than `budget` [solve/prices.h]: then the iterate is as it was.
+ *
+ * Returns the number of contacts that were solved; 0 for none, -1 when memory is short.
  */
-int64_t subset_solve(struct newton *w, struct solve *, int64_t contacts, bool anyhow);
+int64_t subset_solve(struct scaled *a, struct solve *s, int64_t contacts, bool anyhow,
+                     double budget);
 
 #endif

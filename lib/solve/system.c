@@ -3,6 +3,7 @@
 
 #include "base/lu.h"
 #include "solve/faces.h"
+#include "solve/prices.h"
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
@@ -23,11 +24,11 @@ struct reduced {
 };
 
 struct system {
-    const struct scaled *whole;
+    const struct scaled *a;
     const double *L, *D; /* of the last time */
     struct faces faces;
     struct lu *lu;
-    double *a;               /* L' S + D', S's pattern */
+    double *entries;         /* of L' S + D', S's pattern */
     double *w, *y;           /* [faces.size] T' x; S w */
     double *b, *r, *x;       /* [n d] */
     int sign;                /* of the determinants that the faces' transformations take out */
@@ -42,7 +43,7 @@ void system_free(struct system *s)
 {
     if (!s) return;
     faces_free(&s->faces), lu_free(s->lu);
-    free(s->a), free(s->w), free(s->y), free(s->b), free(s->r), free(s->x);
+    free(s->entries), free(s->w), free(s->y), free(s->b), free(s->r), free(s->x);
     free(s->reduced), free(s->room), free(s->columns), free(s->order);
     free(s->l), free(s->d), free(s->t), free(s);
 }
@@ -71,30 +72,31 @@ static void share(struct system *s)
     }
 }
 
-struct system *system_new(const struct scaled *w, double bytes)
+struct system *system_new(const struct scaled *w, double bytes, bool *too_large)
 {
+    *too_large = false;
     struct system *s = calloc(1, sizeof *s);
     struct faces *f = s ? &s->faces : NULL;
     if (!s || !faces_init(f, &w->W)) {
         free(s);
         return NULL;
     }
-    s->whole = w;
+    s->a = w;
     int64_t rows = 0, columns = 0, squares = 0, most = 0;
     for (int32_t i = 0; i < f->n; i++) {
         int64_t n = f->face[i].rows, left = n - f->face[i].rank;
         most = n > most ? n : most;
         if (left) rows += n, columns += left, squares += n * left + (n - left) * (n - left);
     }
-    s->a = numbers(f->first[f->size]), s->w = numbers(f->size), s->y = numbers(f->size);
+    s->entries = numbers(f->first[f->size]), s->w = numbers(f->size), s->y = numbers(f->size);
     s->b = numbers(w->size), s->r = numbers(w->size), s->x = numbers(w->size);
     s->room = numbers(squares + columns + rows);
     s->order = malloc(((size_t)rows + 1) * sizeof *s->order);
     s->columns = malloc(((size_t)columns + 1) * sizeof *s->columns);
     s->l = numbers(most * most), s->d = numbers(most * most), s->t = numbers(most * most);
     s->reduced = calloc((size_t)f->n + 1, sizeof *s->reduced);
-    s->lu = lu_new(f->size, f->first, f->col, bytes);
-    if (!s->a || !s->w || !s->y || !s->b || !s->r || !s->x || !s->room || !s->order ||
+    s->lu = lu_new(f->size, f->first, f->col, bytes, too_large);
+    if (!s->entries || !s->w || !s->y || !s->b || !s->r || !s->x || !s->room || !s->order ||
         !s->columns || !s->l || !s->d || !s->t || !s->reduced || !s->lu) {
         system_free(s);
         return NULL;
@@ -103,16 +105,26 @@ struct system *system_new(const struct scaled *w, double bytes)
     return s;
 }
 
-double system_cost(const struct system *s)
+double system_price(const struct system *s)
 {
-    return lu_cost(s->lu) + 14.0 * s->faces.first[s->faces.size];
+    return price_newton_step(lu_cost(s->lu), s->faces.first[s->faces.size]);
+}
+
+double system_price_new(const struct scaled *a)
+{
+    return price_analysis(delassus_entries(&a->W));
+}
+
+double system_price_least(const struct scaled *a)
+{
+    return price_newton_step(0, delassus_entries(&a->W));
 }
 
 /* out[rows][columns] = the face's blocks of B, L or D, times A */
 static void by_contacts(const struct system *s, const struct face *f, const double *B,
                         const double *A, int columns, double *out)
 {
-    int d = s->whole->W.d;
+    int d = s->a->W.d;
     for (int i = 0; i < f->rows; i++) {
         const double *b = B + 9 * (int64_t)f->contact[i / d] + 3 * (i % d);
         const double *a = A + i / d * d * columns;
@@ -148,7 +160,7 @@ static double largest(const double *x, int n)
 static void rank_rows(struct system *s, const struct face *f, const struct reduced *q,
                       const double *DN)
 {
-    int d = s->whole->W.d, left = f->rows - f->rank;
+    int d = s->a->W.d, left = f->rows - f->rank;
     for (int i = 0; i < f->rows; i++) {
         int64_t at = 9 * (int64_t)f->contact[i / d] + 3 * (i % d);
         double size = largest(s->L + at, d) + largest(s->D + at, d);
@@ -237,7 +249,7 @@ static bool assemble(struct system *s)
         if (!reduce(s, f, s->reduced + c, &l, &d)) return false;
         int32_t first = F->first[f->at], length = F->first[f->at + 1] - first;
         for (int i = 0; i < f->rank; i++) {
-            double *a = s->a + first + (int64_t)i * length;
+            double *a = s->entries + first + (int64_t)i * length;
             memset(a, 0, (size_t)length * sizeof *a);
             for (int k = 0; k < f->rank; k++) {
                 const double *S = F->S + first + (int64_t)k * length;
@@ -255,12 +267,12 @@ static bool assemble(struct system *s)
 /* Numbers of a face's rows, out of x[n d] and into it */
 static void load(const struct system *s, const struct face *f, const double *x, double *out)
 {
-    int d = s->whole->W.d;
+    int d = s->a->W.d;
     for (int i = 0; i < f->rows; i++) out[i] = x[d * (int64_t)f->contact[i / d] + i % d];
 }
 static void store(const struct system *s, const struct face *f, const double *in, double *x)
 {
-    int d = s->whole->W.d;
+    int d = s->a->W.d;
     for (int i = 0; i < f->rows; i++) x[d * (int64_t)f->contact[i / d] + i % d] = in[i];
 }
 
@@ -311,7 +323,7 @@ static void recover(struct system *s, const struct face *f, const struct reduced
 static bool substitute(struct system *s, const double *b, double *x)
 {
     const struct faces *F = &s->faces;
-    bool reduced = F->size < s->whole->size;
+    bool reduced = F->size < s->a->size;
     for (int32_t c = 0; c < F->n; c++) {
         const struct face *f = F->face + c;
         int left = f->rows - f->rank;
@@ -339,10 +351,10 @@ static bool substitute(struct system *s, const double *b, double *x)
 /* r = b - (L W + D) x; returns |r| / |b|, the largest entries */
 static double residual(struct system *s, const double *x)
 {
-    int d = s->whole->W.d == 3 ? 3 : 2;
+    int d = s->a->W.d == 3 ? 3 : 2;
     double worst = 0, size = 0;
-    scaled_product(s->whole, x, s->r);
-    for (int64_t c = 0; c < s->whole->W.n; c++) {
+    scaled_product(s->a, x, s->r);
+    for (int64_t c = 0; c < s->a->W.n; c++) {
         const double *L = s->L + 9 * c, *D = s->D + 9 * c;
         double v[3], e[3], z[3];
         scaled_load(d, s->r + d * c, v), scaled_load(d, x + d * c, z);
@@ -359,7 +371,7 @@ static double residual(struct system *s, const double *x)
 
 bool system_again(struct system *s, double *x)
 {
-    int32_t size = s->whole->size;
+    int32_t size = s->a->size;
     memcpy(s->b, x, (size_t)size * sizeof *x);
     if (!substitute(s, s->b, x)) return false;
     double e = residual(s, x);
@@ -380,7 +392,7 @@ bool system_again(struct system *s, double *x)
 bool system_solve(struct system *s, const double *L, const double *D, double *x)
 {
     s->L = L, s->D = D;
-    return assemble(s) && lu_factorise(s->lu, s->a) && system_again(s, x);
+    return assemble(s) && lu_factorise(s->lu, s->entries) && system_again(s, x);
 }
 
 int system_sign(const struct system *s)

@@ -19,25 +19,28 @@
 
 struct system;
 
-/* Borrows w. NULL where memory is short or the factors would need more than `bytes`. */
-struct system *system_new(const struct scaled *w, double bytes);
-void system_free(struct system *);
+/* Borrows a. NULL where memory is short or, *too_large, the factors would need more than `bytes`. */
+struct system *system_new(const struct scaled *a, double bytes, bool *too_large);
+void system_free(struct system *s);
 
-/* The rough price of a solution, in multiplications. */
-double system_cost(const struct system *);
+/* Of a Newton step with it [solve/prices.h] */
+double system_price(const struct system *s);
+/* What it costs to make one, at most; and what a Newton step with it will cost, at least */
+double system_price_new(const struct scaled *a);
+double system_price_least(const struct scaled *a);
 
 /*
  * x[n d], b before and the solution after; L and D [n][9], row-major 3 x 3 of which d x d is read.
  * False where the solution is not true to 1e-4.
  */
-bool system_solve(struct system *, const double *L, const double *D, double *x);
+bool system_solve(struct system *s, const double *L, const double *D, double *x);
 /* The same with the L and D of the last time, which are still there, factorised already. */
-bool system_again(struct system *, double *x);
+bool system_again(struct system *s, double *x);
 
 /*
  * The sign of det(L W + D), +-1, of the last time; but for a factor that is the system's, so that it
  * tells when the sign changes.
  */
-int system_sign(const struct system *);
+int system_sign(const struct system *s);
 
 #endif
