@@ -153,7 +153,7 @@ static int follow(struct solve *s)
     const char *reason;
     if (newton_init(&w, s, &reason) || solve_keep(s)) return -1;
     if (central_begin(&m, &w, s, 0.1, true)) {
-        arc_follow(&m, s, 1e-9, 200);
+        arc_follow(&m, 1e-9, 200);
         central_end(&m);
     }
     newton_free(&w);

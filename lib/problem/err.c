@@ -1,11 +1,16 @@
 #include "problem/err.h"
 
+#include <float.h>
+
 enum {
     BLOCK = 64,       /* bundles summed one after another, whatever the threads */
     PARALLEL_FROM = 8 /* blocks worth a second thread */
 };
 
-/* The eight slots into the first; NaN stays in the sums, not in the maxima. */
+#define ROUNDING (16 * DBL_EPSILON) /* of the top speed: errors of velocities that are none */
+#define STRAY    0.1 /* err.stray: good steps are at 0.025 at most, false ones at 2 and more */
+
+/* The eight partial sums in one; NaN stays in the sums, not in the maxima. */
 static double sum(const double slot[BUNDLE])
 {
     double s = 0;
@@ -86,10 +91,14 @@ void err_eval(struct err *e, const struct problem *p, bool believes, enum err_te
         e->max_penetration_true = most(all.max_true);
     }
     if (part & ERR_NATURAL) {
-        double siconos = sqrt(sum(all.siconos2));
+        double siconos = sqrt(sum(all.siconos2)), off = sqrt(sum(all.velocity2));
+        double contacts = sqrt((double)p->n);
         e->natural = ratio(sqrt(sum(all.natural2)), sqrt(sum(all.r2)));
+        // where the contacts need no reactions, they and their map are rounding, and so is their ratio
+        if (off <= ROUNDING * contacts * p->speed) e->natural = 0;
+        if (p->body) e->stray = ratio(off, fmax(p->norm_q, contacts * p->fall));
         e->natural_siconos = p->norm_q > 0 ? siconos / p->norm_q : siconos;
-        e->natural_q = ratio(sqrt(sum(all.velocity2)), p->norm_q);
+        e->natural_q = ratio(off, p->norm_q);
     }
 }
 
@@ -98,6 +107,13 @@ double err_of(const struct err *e, enum criterion c)
     return c == CRITERION_GLOB     ? e->paper.eps_glob
            : c == CRITERION_SCALED ? e->scaled.eps_glob
                                    : e->natural;
+}
+
+double err_value(const struct err *e, enum criterion c, double eps)
+{
+    double value = err_of(e, c);
+    if (c != CRITERION_NATURAL || !(e->stray > STRAY)) return value;
+    return fmax(value, eps * e->stray / STRAY);
 }
 
 enum err_terms err_terms_of(enum criterion c)

@@ -18,10 +18,17 @@
 #include "problem/sweep.h"
 
 /* All of *e but max_overlap, or only a part of it (the rest 0). The same bits for any threads. */
-void err_eval(struct err *e, const struct problem *, bool believes, enum err_terms, int threads);
+void err_eval(struct err *e, const struct problem *p, bool believes, enum err_terms terms,
+              int threads);
 
-/* The number that a criterion compares with eps. */
-double err_of(const struct err *, enum criterion);
-enum err_terms err_terms_of(enum criterion);
+/* The number that a criterion is about */
+double err_of(const struct err *e, enum criterion c);
+/*
+ * The number that a solve compares with eps. It is err_of(), but that a natural map is not believed where
+ * what is wrong with the velocities is as large as what the contacts have to change (err.stray): the map is
+ * relative to |r|, and reactions that grow without end make it small.
+ */
+double err_value(const struct err *e, enum criterion c, double eps);
+enum err_terms err_terms_of(enum criterion c);
 
 #endif

@@ -175,6 +175,17 @@ static double mean_mass(const struct packing *p)
     return n ? sum / (double)n : 1;
 }
 
+/* The fastest that a point of a body or of a wall moves, a step of gravity included: what the velocities at
+   contacts are differences of, and have their rounding from. */
+static double top_speed(const struct packing *p)
+{
+    double most = 0;
+    for (int64_t i = 0; i < p->n; i++)
+        most = fmax(most, v3_norm(p->v[i]) + p->radius[i] * v3_norm(p->w[i]));
+    for (int32_t k = 0; k < p->walls; k++) most = fmax(most, v3_norm(p->wall[k].v));
+    return most + p->dt * v3_norm(p->g);
+}
+
 /* How many bodies[] there will be: those of the packing, copies, and nobody for the lanes without a
    contact, one a half. */
 static int64_t seats(const struct packing *pack, const struct contacts *s)
@@ -223,8 +234,10 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     }
 
     double g = v3_norm(pack->g);
+    p->fall = g * pack->dt;
     p->scale_v = (g > 0 ? g : 9.81) * pack->dt;
     p->scale_r = p->scale_v * mean_mass(pack);
+    p->speed = top_speed(pack);
     problem_free_motion(p);
     for (int64_t i = 0; i < p->slots; i++) {
         double q[3];
@@ -279,7 +292,7 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
         r->rho[k] = lambda <= 0 ? 1 : alpha > 0 && D[0] > 0 ? alpha / D[0] : factor / lambda;
         for (int j = 0; j < W->d; j++) {
             r->r[j][k] = W->r[W->d * c + j];
-            p->norm_q += q[j] * q[j];
+            p->norm_q += q[j] * q[j], p->speed = fmax(p->speed, fabs(q[j]));
             trace += D[4 * j];
         }
     }

@@ -48,7 +48,9 @@ struct problem {
     double dt;      /* s: the paper's forces are r / dt; 1 where there are no steps */
     double scale_v; /* m/s and */
     double scale_r; /* N s: what the scaled errors are measured in: g dt and m g dt */
+    double fall;    /* m/s: |g| dt */
     double norm_q;  /* m/s: |u~_free| of all contacts, |q| */
+    double speed; /* m/s: the fastest that anything is before the step; of a W, the largest |q_i| */
 };
 
 /*

@@ -27,6 +27,7 @@ struct err {
     double natural;              /* |r - P(r - rho_a u^)| / |r|, rho_a = 1/lambda_max(W_aa) */
     double natural_siconos;      /* |r - P(r - u^)| / |q|, step 1: not scale-free */
     double natural_q;            /* |(r - P(r - rho_a u^))/rho_a| / |q| */
+    double stray; /* the same over max(|q|, sqrt(n) g dt); 0 of a problem given by W */
 };
 
 struct report {

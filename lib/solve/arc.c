@@ -80,7 +80,7 @@ static double smooth_tail(const struct arc *p, const struct side *s)
 }
 
 /* dx/ds and dz/ds; false where the matrix is singular. */
-static bool tangent(struct arc *p, struct solve *solve)
+static bool tangent(struct arc *p)
 {
     struct central *m = p->m;
     int64_t n = m->newton->a.W.n;
@@ -92,7 +92,7 @@ static bool tangent(struct arc *p, struct solve *solve)
         for (int k = 0; k < 3; k++) s->p[k] = p->at[c].p0[k] - (s->y[k] - s->z[k]);
         s->p[0] += p->g0 * (m->gap / smooth_tail(p, s) - 1);
     }
-    if (!central_direction(m, solve, false)) return false;
+    if (!central_direction(m, false)) return false;
     for (int64_t c = 0; c < n; c++) side_keep(&m->side[c], p->at[c].to[TANGENT]);
     return true;
 }
@@ -101,7 +101,7 @@ static bool tangent(struct arc *p, struct solve *solve)
 static bool direction(struct arc *p, int which)
 {
     struct central *m = p->m;
-    bool seen = central_direction(m, NULL, true);
+    bool seen = central_direction(m, true);
     for (int64_t c = 0; c < m->newton->a.W.n; c++) {
         memset(p->at[c].to[which], 0, sizeof p->at[c].to[which]);
         if (seen) side_keep(&m->side[c], p->at[c].to[which]);
@@ -249,8 +249,9 @@ static bool begin(struct arc *p, struct central *m)
     return true;
 }
 
-bool arc_follow(struct central *m, struct solve *s, double natural, int steps)
+bool arc_follow(struct central *m, double natural, int steps)
 {
+    struct solve *s = m->solve;
     struct arc p;
     if (!begin(&p, m)) return false;
     int sign = 0, backwards = 0;
@@ -259,9 +260,9 @@ bool arc_follow(struct central *m, struct solve *s, double natural, int steps)
         m->gap = p.s * p.g0;
         double e = central_look(m);
         if (s->o->progress) s->o->progress(s->rep->sweeps, e);
-        there = central_finish(m, s, e) || e <= natural;
+        there = central_finish(m, e) || e <= natural;
         if (there || !isfinite(e) || solve_spent(s) || !central_scale(m)) break;
-        if (!tangent(&p, s)) { // as near a fold, or in rounding
+        if (!tangent(&p)) { // as near a fold, or in rounding
             if (e < ROUNDING || !shorten(&p, 0.7)) break;
             continue;
         }
@@ -286,6 +287,6 @@ bool arc_follow(struct central *m, struct solve *s, double natural, int steps)
     }
     for (int64_t c = 0; c < m->newton->a.W.n; c++) memset(m->side[c].p, 0, sizeof m->side[c].p);
     free(p.at);
-    central_settle(m, s);
+    central_settle(m);
     return there;
 }

@@ -21,6 +21,6 @@
  * From x and z as they are, centred first, on to where the scaled natural map is at most `natural`. False
  * where neither `steps` of them nor a few folds lead there. The best that it found becomes the iterate.
  */
-bool arc_follow(struct central *m, struct solve *s, double natural, int steps);
+bool arc_follow(struct central *m, double natural, int steps);
 
 #endif

@@ -42,7 +42,7 @@ static void start(struct central *m, double gap)
 
 bool central_begin(struct central *m, struct newton *newton, struct solve *s, double gap, bool cold)
 {
-    *m = (struct central){ .newton = newton, .tried = INFINITY };
+    *m = (struct central){ .solve = s, .newton = newton, .tried = INFINITY };
     size_t size = (size_t)newton->a.size + 4, blocks = 9 * (size_t)newton->a.W.n;
     m->side = calloc((size_t)newton->a.W.n + 1, sizeof *m->side);
     m->room = calloc(3 * size + 2 * blocks, sizeof *m->room);
@@ -116,7 +116,7 @@ void central_matrix(struct central *m, double t)
     }
 }
 
-bool central_direction(struct central *m, struct solve *solve, bool factorised)
+bool central_direction(struct central *m, bool factorised)
 {
     struct newton *w = m->newton;
     int d = w->a.W.d;
@@ -130,10 +130,10 @@ bool central_direction(struct central *m, struct solve *solve, bool factorised)
     if (factorised) {
         if (!system_again(w->system, m->b)) return false;
     } else {
-        if (!solve_affords(solve, w->price)) return false;
+        if (!solve_affords(m->solve, w->price)) return false;
         double since = report_seconds(CLOCK_WALL);
         bool solved = system_solve(w->system, m->L, m->D, m->b);
-        solve_count_newton(solve, w->price, since);
+        solve_count_newton(m->solve, w->price, since);
         if (!solved) return false;
     }
     for (int64_t c = 0; c < w->a.W.n; c++) {
@@ -149,18 +149,18 @@ bool central_direction(struct central *m, struct solve *solve, bool factorised)
     return true;
 }
 
-bool central_finish(struct central *m, struct solve *s, double map)
+bool central_finish(struct central *m, double map)
 {
     // where one takes a contact that hardly slides for one that holds, another may not
     static const double rhos[] = { 7, 50, 1 };
     if (!(map <= CLEAR) || map > AGAIN * m->tried) return false;
     m->tried = map;
-    if (!newton_finish(m->newton, s, m->x, rhos[m->tries++ % 3])) return false;
+    if (!newton_finish(m->newton, m->solve, m->x, rhos[m->tries++ % 3])) return false;
     best_forget(&m->best);
     return true;
 }
 
-void central_settle(struct central *m, struct solve *s)
+void central_settle(struct central *m)
 {
     struct scaled *a = &m->newton->a;
     if (!(m->best.value < INFINITY)) return;
@@ -170,6 +170,6 @@ void central_settle(struct central *m, struct solve *s)
         cone_project(a->W.mu[c], r, p);
         scaled_store(a->W.d, p, m->v + a->W.d * c);
     }
-    scaled_put(a, s, m->v);
+    scaled_put(a, m->solve, m->v);
     best_forget(&m->best);
 }

@@ -42,6 +42,7 @@ static inline void side_recall(struct side *s, double from[2][3])
 }
 
 struct central {
+    struct solve *solve;   /* borrowed */
     struct newton *newton; /* borrowed: the problem, its factors, and the last steps */
     struct side *side;     /* [n] */
     double *room;          /* of x, v, b [n d] and L, D [n][9]: */
@@ -76,16 +77,16 @@ bool central_scale(struct central *m);
 void central_matrix(struct central *m, double t);
 /* dx and dz of all contacts, by c and p; false where the matrix is singular or there is no time left for
    it. The first after central_matrix() factorises it: a Newton step. */
-bool central_direction(struct central *m, struct solve *s, bool factorised);
+bool central_direction(struct central *m, bool factorised);
 
 /*
  * Newton's steps on the law itself from here, where the natural map is so small that each contact's
  * status may be clear. A try costs as much as a step of the path, and where it arrives it is nearer
  * than ten of them lead. False where it was too early.
  */
-bool central_finish(struct central *m, struct solve *s, double map);
+bool central_finish(struct central *m, double map);
 
 /* The best reactions, brought back into their cones, become the iterate, and are forgotten. */
-void central_settle(struct central *m, struct solve *s);
+void central_settle(struct central *m);
 
 #endif

@@ -88,7 +88,7 @@ static double lengthen(struct ipm *m, double step, double target)
             recentre(s, fmin(1, INTERIOR * step + LONGER), target);
         }
         double before = step;
-        step = central_direction(&m->c, NULL, true) ? longest(&m->c) : 0;
+        step = central_direction(&m->c, true) ? longest(&m->c) : 0;
         if (step >= before + GAINED) continue;
         if (step >= before) break;
         for (int64_t c = 0; c < n; c++) side_recall(&m->c.side[c], m->kept[c].last);
@@ -99,13 +99,13 @@ static double lengthen(struct ipm *m, double step, double target)
 
 /* Mehrotra's two directions with this t, and correctors; returns the length of the step to be made, 0
    for none. */
-static double predict_and_correct(struct ipm *m, struct solve *solve, double t)
+static double predict_and_correct(struct ipm *m, double t)
 {
     int64_t n = m->c.newton->a.W.n;
     central_matrix(&m->c, t);
     for (int64_t c = 0; c < n; c++)
         for (int k = 0; k < 3; k++) m->c.side[c].c[k] = -m->c.side[c].l[k];
-    if (!central_direction(&m->c, solve, false)) return 0;
+    if (!central_direction(&m->c, false)) return 0;
     double a = fmin(1, longest(&m->c)), gap = 0;
     for (int64_t c = 0; c < n; c++) {
         const struct side *s = &m->c.side[c];
@@ -122,7 +122,7 @@ static double predict_and_correct(struct ipm *m, struct solve *solve, double t)
         for (int k = 0; k < 3; k++) want[k] = (k ? 0 : target) - ll[k] - second[k];
         jordan_quotient(s->l, want, s->c);
     }
-    if (!central_direction(&m->c, NULL, true)) return 0;
+    if (!central_direction(&m->c, true)) return 0;
     return fmin(1, INTERIOR * lengthen(m, longest(&m->c), target));
 }
 
@@ -138,14 +138,14 @@ static void move(struct central *m, double step)
  * One step; false where there is none. The t that served last comes first: where the path has folded
  * it does so for a while.
  */
-static bool ipm_step(struct ipm *m, struct solve *s)
+static bool ipm_step(struct ipm *m)
 {
     int64_t n = m->c.newton->a.W.n;
     double step = 0;
     bool follow = m->c.gap < m->folds;
     int at = follow ? 0 : m->fold;
     for (int i = at; i < (follow ? 1 : 3) && step < SHORT; i++) {
-        double far = predict_and_correct(m, s, ts[m->full][i]);
+        double far = predict_and_correct(m, ts[m->full][i]);
         if (far <= step) continue;
         step = far, at = i;
         for (int64_t c = 0; c < n; c++) side_keep(&m->c.side[c], m->kept[c].far);
@@ -162,18 +162,19 @@ static bool ipm_step(struct ipm *m, struct solve *s)
  * On to where the scaled natural map is at most `natural`; false where `steps` do not get it there. The best
  * that it found becomes the iterate.
  */
-static bool approach(struct ipm *m, struct solve *s, double natural, int steps)
+static bool approach(struct ipm *m, double natural, int steps)
 {
+    const struct solve *s = m->c.solve;
     bool more = true, there = false;
     for (int k = 0; more && k < steps; k++) {
         m->c.gap = central_mean(&m->c);
         double e = central_look(&m->c);
         if (s->o->progress) s->o->progress(s->rep->sweeps, e);
-        there = central_finish(&m->c, s, e) || e <= natural;
+        there = central_finish(&m->c, e) || e <= natural;
         if (there || !isfinite(e) || solve_spent(s)) break;
-        more = central_scale(&m->c) && ipm_step(m, s);
+        more = central_scale(&m->c) && ipm_step(m);
     }
-    central_settle(&m->c, s);
+    central_settle(&m->c);
     return there;
 }
 
@@ -211,9 +212,9 @@ static void along(struct newton *w, struct solve *s, double gap)
     bool cold = gap == COLD;
     struct ipm m;
     if (!begin(&m, w, s, gap, cold ? INFINITY : LATE)) return;
-    bool near = approach(&m, s, CLOSE, cold ? APPROACH : NEARBY);
+    bool near = approach(&m, CLOSE, cold ? APPROACH : NEARBY);
     if (near && !solve_over(s)) newton_polish(w, s, 1e-7, 3);
-    if (!arrived(&m, s)) near = arc_follow(&m.c, s, END, BENDS);
+    if (!arrived(&m, s)) near = arc_follow(&m.c, END, BENDS);
     if (!solve_over(s)) newton_polish(w, s, 1e-7, near ? 3 : 1);
     leave(&m);
 }
@@ -225,7 +226,7 @@ static void about(struct newton *w, struct solve *s)
     if (!begin(&m, w, s, COLD, 0)) return;
     bool more = true;
     for (int k = 0; more && k < ROUNDS && !solve_over(s); k++) {
-        more = approach(&m, s, CLOSE / pow(10, k), k ? AGAIN : APPROACH);
+        more = approach(&m, CLOSE / pow(10, k), k ? AGAIN : APPROACH);
         if (!solve_over(s)) newton_polish(w, s, 1e-7, 3);
     }
     leave(&m);

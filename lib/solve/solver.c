@@ -22,7 +22,7 @@ static void evaluate(struct solve *s)
 {
     struct err e;
     err_eval(&e, s->p, s->believes, err_terms_of(s->o->criterion), s->o->threads);
-    s->value = err_of(&e, s->o->criterion);
+    s->value = err_value(&e, s->o->criterion, s->o->eps);
 }
 
 static void renew(struct solve *s)
@@ -107,7 +107,7 @@ int solve_keeper(struct best *b, const struct problem *p)
 void solve_offer(const struct solve *s, struct best *b)
 {
     const struct problem *p = s->p;
-    double *r = best_offer(b, s->value), *u = r ? r + 3 * p->slots : NULL, unwanted[3];
+    double *r = best_offer(b, s->value), *u = r ? r + 3 * p->slots : NULL, unwanted[3] = { 0 };
     for (int64_t i = 0; r && i < p->slots; i++)
         slot_get(p, i, r + 3 * i, with_u(p) ? u + 3 * i : unwanted);
     if (r && with_u(p)) u[3 * p->slots] = s->believes;
@@ -163,7 +163,7 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
     double overlap = rep->err.max_overlap;
     err_eval(&rep->err, p, s.believes, ERR_ALL, o->threads);
     rep->err.max_overlap = overlap;
-    rep->converged = !p->n || err_of(&rep->err, o->criterion) <= o->eps;
+    rep->converged = !p->n || err_value(&rep->err, o->criterion, o->eps) <= o->eps;
     rep->seconds = report_seconds(CLOCK_CPU) - cpu;
     rep->elapsed = report_seconds(CLOCK_WALL) - wall;
     return 0;

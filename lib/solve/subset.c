@@ -124,9 +124,10 @@ int64_t subset_solve(struct scaled *a, struct solve *s, int64_t contacts, bool a
     struct chosen p = { 0, malloc((n + 1) * sizeof *p.contact), malloc((n + 1) * sizeof *p.of) };
     struct delassus V = { 0 };
     struct why why = { 0 };
-    double *x = calloc(2 * size + n, sizeof *x), *v = x + size, *map = v + size;
+    double *x = calloc(size, sizeof *x), *v = calloc(size, sizeof *v),
+           *map = calloc(n + 1, sizeof *map);
     int64_t solved = -1;
-    if (p.contact && p.of && x) {
+    if (p.contact && p.of && x && v && map) {
         scaled_get(a, s->p, x);
         scaled_velocity(a, x, v);
         double largest = maps(a, x, v, map);
@@ -139,6 +140,7 @@ int64_t subset_solve(struct scaled *a, struct solve *s, int64_t contacts, bool a
         }
     }
     if (solved > 0) scaled_put(a, s, x);
-    delassus_free(&V), free(p.contact), free(p.of), free(x);
+    delassus_free(&V), free(p.contact), free(p.of);
+    free(x), free(v), free(map);
     return solved;
 }
