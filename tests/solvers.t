@@ -94,6 +94,96 @@ else
     skip "operators of no bodies" "no h5py"
 fi
 
+# ---- the report is the truth: what nsd-err finds in the written file ----
+
+agree() # NAME FILE: the report's natural map and nsd-err's, within a factor of 2 or both at rounding
+{
+    # shellcheck disable=SC2016 # jq's variables
+    ok "$1: the report is what nsd-err finds" jq -en --argjson said "$(nsd-info "$2" | jq '.natural // empty')" \
+        --argjson found "$(nsd-err "$2" | jq .natural)" \
+        '($said < 1e-13 and $found < 1e-13) or ($said <= 2 * $found and $found <= 2 * $said)'
+}
+sweeps=1000000
+[ -z "$quick" ] || sweeps=20000
+for m in exact sbp; do
+    nsd-solve -m $m --criterion natural --eps 0 --max-sweeps $sweeps "$tmp/contacts.h5" >"$tmp/long.h5" 2>/dev/null
+    agree "$m, $sweeps sweeps" "$tmp/long.h5"
+    ok "$m, $sweeps sweeps: their additions are not in it" below "$tmp/long.h5" natural 1e-13
+done
+for g in "${solvers[@]}"; do agree "--global $g" "$tmp/$g.h5"; done
+
+# ---- what cannot be done is said ----
+
+many=$tmp/many.h5
+jq -n '{ dt: 1e-3, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
+         bodies: [range(102400) | { radius: 0.5, x: [. % 32, (. / 32 | floor) % 32, 0.5 + (. / 1024 | floor)] }] }' |
+    nsd-gen - | nsd-detect --gap 1e-6 >"$many"
+for g in ipm prox; do
+    status 0 "--global $g of very many contacts sweeps" nsd-solve --global $g --criterion natural --eps 0 \
+        --max-sweeps 600 --log "$tmp/log" "$many"
+    like "and says so" "$(cat "$tmp/err")" "more than 100000 contacts are not factorised"
+    is "the document names what swept" "$(nsd-info "$tmp/out" | jq -r '.method // empty')" exact
+done
+
+# A limit of seconds holds in a factorisation too: none is begun that would pass it.
+if [ -d "$problems/piles" ] && [ -z "$quick" ]; then
+    nsd-detect "$problems/piles/pile8000.h5" >"$tmp/pile8000.h5"
+    for g in ipm prox; do
+        nsd-solve --global $g --criterion natural --eps 1e-9 --max-seconds 4 --log "$tmp/log" \
+            "$tmp/pile8000.h5" >"$tmp/out" 2>/dev/null
+        ok "--global $g ends within its seconds" jq -e '.elapsed < 8' "$tmp/log"
+    done
+fi
+
+# ---- auto is as good as what it is made of: counted work, not time ----
+
+work() # GLOBAL FILE EPS: what a solve that converges has cost, ns; null where it does not
+{
+    nsd-solve -m exact --global "$1" --criterion natural --eps "$3" --max-sweeps 50000 --log "$tmp/work" "$2" \
+        >"$tmp/out" 2>/dev/null
+    jq 'if .converged then .work else null end' "$tmp/work"
+}
+# A quarter more than the best of its ingredients at most, or 10 ms
+never_worse() # FILE EPS INGREDIENT ...
+{
+    local file=$1 eps=$2 auto least=null g w
+    shift 2
+    auto=$(work auto "$file" "$eps")
+    for g in "$@"; do
+        w=$(work "$g" "$file" "$eps")
+        least=$(jq -n "[$least, $w] | map(values) | min")
+    done
+    jq -en --argjson auto "$auto" --argjson least "$least" \
+        'if $least == null then true elif $auto == null then false else $auto <= 1.25 * $least + 1e7 end' ||
+        { echo "auto $auto, the best of $* $least"; return 1; }
+}
+if [ -d "$problems" ] && [ -z "$quick" ]; then
+    for f in "$problems"/*.hdf5; do
+        # where the interior point method arrives in 23 steps or in 55 by chance
+        [ "${f##*/}" != Spheres500-p1700.hdf5 ] || continue
+        ok "${f#"$problems/"}: auto is as good as anderson, prox and ipm" never_worse "$f" 1e-8 anderson prox ipm
+    done
+    nsd-gen 500 | nsd-step -n 900 --every 900 --criterion natural --eps 1e-4 2>/dev/null | nsd-cat --last |
+        nsd-detect >"$tmp/pile500.h5"
+    ok "500 balls: auto is as good as anderson, prox and ipm" never_worse "$tmp/pile500.h5" 1e-6 anderson prox ipm
+    nsd-detect "$problems/piles/pile2000.h5" >"$tmp/pile2000.h5"
+    for eps in 1e-4 1e-5; do
+        ok "2000 balls to $eps: auto is as good as anderson and prox" never_worse "$tmp/pile2000.h5" $eps anderson prox
+        ok "8000 balls to $eps: auto is as good as anderson" never_worse "$tmp/pile8000.h5" $eps anderson
+    done
+fi
+
+# ---- a map that is relative to reactions ----
+
+jq '.e_n = 0 | .e_t = 0 | .mu = 0.3 | .bodies[0].spacing = 1.2' scenes/gas.json | nsd-gen - >"$tmp/gas.h5"
+status 0 "a gas that cools: where no reactions are needed, rounding is no error" \
+    nsd-step -e --criterion natural --eps 1e-6 -n 300 --every 300 --max-sweeps 3000 "$tmp/gas.h5"
+jq '.seed = 7' scenes/paper/example2.json | nsd-gen - >"$tmp/jam.h5"
+status 0 "a jam: 400 steps of example 2, seed 7" \
+    nsd-step -e --criterion natural --eps 1e-4 -n 400 --every 400 --log "$tmp/log" "$tmp/jam.h5"
+ok "and no small map of reactions that grow passes for a solution" \
+    jq -se 'map(.natural_q) | max < 0.3' "$tmp/log"
+
 status 0 "--max-seconds 0.001 is no error" nsd-solve --max-seconds 0.001 "$tmp/contacts.h5"
 refuses 64 "--max-seconds 0" nsd-solve --max-seconds 0 "$tmp/contacts.h5"
 refuses 64 "--global nothing" nsd-solve --global nothing "$tmp/contacts.h5"

@@ -31,7 +31,7 @@ enum {
 };
 
 #define SUBSET_CONTACT 4e4  /* ns: what a contact of a small subset costs, mostly */
-#define IN_VAIN        0.15 /* of all that a solve costs: what may be spent in vain beside sweeps */
+#define IN_VAIN        0.25 /* of all that a solve costs: what may be spent in vain beside sweeps */
 #define AFFORD         3e10 /* ns: a factorisation dearer than this is not made */
 #define CHEAP          2e8  /* ns: what the last resort may always take */
 #define FAR            30   /* times eps: sweeps that have come nearer mostly end soon */
@@ -69,12 +69,12 @@ static double gain_of(const struct strategy *a, double more, double price)
     return gain < 1 ? 0 : fmin(gain, SURE);
 }
 
-/* ns: what may be spent in vain: a part of what was, and, as long as it is no more than SURE times that, of
-   what the sweeps to come would cost */
+/* ns: what may be spent in vain: a part of what was, and of what the sweeps to come would cost as long as that
+   is no more */
 static double allowance(const struct strategy *a, double more)
 {
     double spent = a->s->rep->work;
-    return IN_VAIN * (spent + fmin(more * a->price, SURE * spent));
+    return IN_VAIN * (spent + fmin(more * a->price, spent));
 }
 
 /*
@@ -163,37 +163,40 @@ static int make_ready(struct strategy *a)
 static bool pays(const struct strategy *a, double more, double price)
 {
     const struct solve *s = a->s;
-    int steps = s->value > FAR * s->o->eps ? STEPS_IF_FAR : STEPS_TO_KNOW;
+    int steps = anderson_best(a->sweeps) > FAR * s->o->eps ? STEPS_IF_FAR : STEPS_TO_KNOW;
     return price <= AFFORD &&
            gain_of(a, more, STEPS_TO_END * price) * s->rep->sweeps * a->price >= steps * price;
 }
 
-/* The factors of all contacts, where they pay: first by the least that they can cost, for to find their fill
-   has a price itself. 1 where there are any, 0 where not, -1 when memory is short. */
-static int make_factors(struct strategy *a, double more)
+/* Whether the factors of all contacts may pay: by the least that they can cost, for to find their fill has a
+   price itself. */
+static bool may_pay(const struct strategy *a, double more)
 {
-    const char *reason;
-    if (!a->w.system) {
-        if (!pays(a, more, system_price_least(&a->w.a))) return 0;
-        if (system_price_new(&a->w.a) > allowance(a, more)) return 0;
-        int e = newton_factors(&a->w, a->s, &reason);
-        if (e) return a->tried = true, e < 0 ? -1 : 0;
-    }
-    return pays(a, more, a->w.price);
+    if (a->w.system) return pays(a, more, a->w.price);
+    return pays(a, more, system_price_least(&a->w.a)) &&
+           system_price_new(&a->w.a) <= allowance(a, more);
 }
 
-/* What may be done instead of sweeps, `more` of which are to come: 0, or -1 when memory is short */
+/* What may be done instead of sweeps, `more` of which are to come: 0, or -1 when memory is short. Where
+   nothing is, the sweeps do not notice. */
 static int look_for_better(struct strategy *a, double more)
 {
     struct solve *s = a->s;
-    anderson_back(a->sweeps);
+    const char *reason;
     int e = make_ready(a);
     if (e) return a->tried = true, e < 0 ? -1 : 0;
+    int fits = subset_fits(&a->w.a, s, a->contacts, false, allowance(a, more) - a->vain);
+    if (fits < 0) return -1;
+    if (!fits && !may_pay(a, more)) return 0;
+    anderson_back(a->sweeps);
     int subsets = in_subsets(a, allowance(a, more));
     if (subsets < 0) return -1;
     if (solve_over(s)) return 0;
     if (subsets) a->older.sweeps = 0; // what these sweeps gained says nothing of the next
-    if ((e = make_factors(a, more)) <= 0) return e;
+    if (!may_pay(a, more)) return 0;
+    if (!a->w.system && (e = newton_factors(&a->w, s, &reason)))
+        return a->tried = true, e < 0 ? -1 : 0;
+    if (!pays(a, more, a->w.price)) return 0;
     if (factorise(a)) return -1;
     a->tried = true;
     double rest = fmin(fmax(s->rep->work, CHEAP) / a->price, LAST_RESORT);

@@ -91,15 +91,47 @@ static int run(struct solve *s)
     return e;
 }
 
-/* V's solution, from its r, into x of all contacts and the report. Returns 0 where it is solved, 1 where not,
-   -1 when memory is short. */
-static int solve(struct solve *s, const struct chosen *p, struct delassus *V, double budget,
-                 double *x)
+/* A subset on its way */
+struct subset {
+    struct chosen chosen;
+    double *x, *v, *map; /* of all contacts: x and v [n d], the natural map [n] */
+    struct delassus V;   /* of those chosen */
+};
+
+static void leave(struct subset *p)
 {
-    // the least that its Newton steps can cost, before anything is spent on it
-    double entries = delassus_entries(V);
-    if (price_analysis(entries) + STEPS * price_newton_step(0, entries) > budget) return 1;
+    free(p->chosen.contact), free(p->chosen.of), free(p->x), free(p->v), free(p->map);
+    delassus_free(&p->V);
+}
+
+/* The contacts chosen and their problem. 1; 0 where they are too many, or the least that their Newton steps
+   can cost is more than the budget; -1 when memory is short. */
+static int prepare(struct subset *p, const struct scaled *a, const struct solve *s,
+                   int64_t contacts, bool anyhow, double budget)
+{
+    size_t n = (size_t)a->W.n, size = (size_t)a->size + 4;
+    struct why why = { 0 };
+    *p = (struct subset){ .x = calloc(size, sizeof *p->x), .v = calloc(size, sizeof *p->v) };
+    p->map = calloc(n + 1, sizeof *p->map);
+    p->chosen.contact = malloc((n + 1) * sizeof *p->chosen.contact);
+    p->chosen.of = malloc((n + 1) * sizeof *p->chosen.of);
+    if (!p->x || !p->v || !p->map || !p->chosen.contact || !p->chosen.of) return -1;
+    scaled_get(a, s->p, p->x);
+    scaled_velocity(a, p->x, p->v);
+    double largest = maps(a, p->x, p->v, p->map);
+    if (!choose(a, p->map, largest, contacts, anyhow, &p->chosen)) return 0;
+    if (delassus_part(&p->V, &a->W, p->chosen.n, p->chosen.contact, p->chosen.of, p->x, p->v, &why))
+        return -1;
+    double entries = delassus_entries(&p->V);
+    return price_analysis(entries) + STEPS * price_newton_step(0, entries) <= budget;
+}
+
+/* The solution of V, from its r, into x of all contacts and the report. 1 where it is solved, 0 where not,
+   -1 when memory is short. */
+static int solve(struct subset *p, struct solve *s, double budget)
+{
     const struct inner inner = { { "subset", "", 0, run }, budget };
+    struct delassus *V = &p->V;
     struct problem q;
     struct why why = { 0 };
     struct report rep = { 0 };
@@ -110,37 +142,31 @@ static int solve(struct solve *s, const struct chosen *p, struct delassus *V, do
     if (problem_prepare_delassus(&q, V, 0, s->o->method->rho, ORDER_NATURAL, &why)) return -1;
     int e = solve_problem(&q, &o, &rep);
     problem_free(&q);
-    for (int64_t i = 0; !e && rep.newton && i < p->n; i++)
-        memcpy(x + V->d * p->contact[i], V->r + V->d * i, (size_t)V->d * sizeof *x);
     s->rep->newton += rep.newton, s->rep->work += rep.work;
     s->rep->safeguarded += rep.safeguarded, s->rep->gave_up += rep.gave_up;
-    return e ? -1 : !rep.newton && !rep.converged;
+    if (e || (!rep.newton && !rep.converged)) return e ? -1 : 0;
+    for (int64_t i = 0; i < p->chosen.n; i++)
+        memcpy(p->x + V->d * p->chosen.contact[i], V->r + V->d * i, (size_t)V->d * sizeof *p->x);
+    return 1;
 }
 
 int64_t subset_solve(struct scaled *a, struct solve *s, int64_t contacts, bool anyhow,
                      double budget)
 {
-    size_t n = (size_t)a->W.n, size = (size_t)a->size + 4;
-    struct chosen p = { 0, malloc((n + 1) * sizeof *p.contact), malloc((n + 1) * sizeof *p.of) };
-    struct delassus V = { 0 };
-    struct why why = { 0 };
-    double *x = calloc(size, sizeof *x), *v = calloc(size, sizeof *v),
-           *map = calloc(n + 1, sizeof *map);
-    int64_t solved = -1;
-    if (p.contact && p.of && x && v && map) {
-        scaled_get(a, s->p, x);
-        scaled_velocity(a, x, v);
-        double largest = maps(a, x, v, map);
-        bool chosen = choose(a, map, largest, contacts, anyhow, &p);
-        if (!chosen) {
-            solved = 0;
-        } else if (!delassus_part(&V, &a->W, p.n, p.contact, p.of, x, v, &why)) {
-            int e = solve(s, &p, &V, budget, x);
-            solved = e < 0 ? -1 : e ? 0 : p.n;
-        }
-    }
-    if (solved > 0) scaled_put(a, s, x);
-    delassus_free(&V), free(p.contact), free(p.of);
-    free(x), free(v), free(map);
-    return solved;
+    struct subset p;
+    int e = prepare(&p, a, s, contacts, anyhow, budget);
+    if (e > 0) e = solve(&p, s, budget);
+    if (e > 0) scaled_put(a, s, p.x);
+    int64_t n = p.chosen.n;
+    leave(&p);
+    return e > 0 ? n : e;
+}
+
+int subset_fits(const struct scaled *a, const struct solve *s, int64_t contacts, bool anyhow,
+                double budget)
+{
+    struct subset p;
+    int e = prepare(&p, a, s, contacts, anyhow, budget);
+    leave(&p);
+    return e;
 }

@@ -27,4 +27,8 @@
 int64_t subset_solve(struct scaled *a, struct solve *s, int64_t contacts, bool anyhow,
                      double budget);
 
+/* Whether subset_solve() would try, as the iterate is: 1, 0, or -1 when memory is short */
+int subset_fits(const struct scaled *a, const struct solve *s, int64_t contacts, bool anyhow,
+                double budget);
+
 #endif
