@@ -9,15 +9,15 @@ void contacts_free(struct contacts *s)
     *s = (struct contacts){ 0 };
 }
 
-void contacts_forget(struct contacts *s)
+void contacts_free_found(struct contacts *s)
 {
     free(s->found);
     s->found = NULL;
 }
 
-int contacts_expect(struct contacts *s)
+int contacts_alloc_found(struct contacts *s)
 {
-    contacts_forget(s);
+    contacts_free_found(s);
     s->found = calloc((size_t)s->n + 1, sizeof *s->found);
     return s->found ? 0 : -1;
 }
@@ -27,7 +27,7 @@ int contacts_copy(struct contacts *to, const struct contacts *from)
     *to = (struct contacts){ .n = from->n, .room = from->n };
     size_t n = (size_t)from->n;
     to->c = malloc((n + 1) * sizeof *to->c);
-    if (!to->c || (from->found && contacts_expect(to))) {
+    if (!to->c || (from->found && contacts_alloc_found(to))) {
         contacts_free(to);
         return -1;
     }
@@ -65,7 +65,7 @@ int contacts_match(struct contacts *new, const struct contacts *old)
 {
     int64_t k = 0;
     if (!old->found) return 0;
-    if (contacts_expect(new)) return -1;
+    if (contacts_alloc_found(new)) return -1;
     for (int64_t i = 0; i < new->n; i++) {
         const struct contact *c = &new->c[i];
         double *r = new->found[i].r;

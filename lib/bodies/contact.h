@@ -32,9 +32,9 @@ struct contacts {
 
 void contacts_free(struct contacts *);
 /* Room for what will be found, zero; -1 when memory is short. */
-int contacts_expect(struct contacts *);
+int contacts_alloc_found(struct contacts *);
 /* Not solved, again */
-void contacts_forget(struct contacts *);
+void contacts_free_found(struct contacts *);
 /* to = a deep copy of from; to need not be initialised; -1 when memory is short. */
 int contacts_copy(struct contacts *to, const struct contacts *from);
 /* One more, zeroed but for a and b; NULL when memory is short. */

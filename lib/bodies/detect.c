@@ -57,7 +57,7 @@ int detect_contacts(struct contacts *out, const struct packing *p, double gap,
     struct neighbours once = { 0 }, *near = kept ? kept : &once;
     vec3 *x = predict(p);
     bool room = x;
-    out->n = 0, contacts_forget(out);
+    out->n = 0, contacts_free_found(out);
     int e = room ? neighbours_find(near, p, x, gap, kept, why) : 0;
     for (int32_t w = p->walls - 1; !e && room && w >= 0; w--)
         for (int64_t i = 0; room && i < p->n; i++) room = with_wall(out, p, w, i, x[i], gap);

@@ -54,8 +54,8 @@ int packing_init(struct packing *, int dim, int64_t n, struct why *);
 void packing_free(struct packing *);
 
 /* Room for k walls, k kinds; what was there is lost. Kinds get the names "0", "1" ... */
-int packing_walls(struct packing *, int32_t k, struct why *);
-int packing_kinds(struct packing *, int32_t k, struct why *);
+int packing_alloc_walls(struct packing *, int32_t k, struct why *);
+int packing_alloc_kinds(struct packing *, int32_t k, struct why *);
 
 /* to = a deep copy of from; to need not be initialised. */
 int packing_copy(struct packing *to, const struct packing *from, struct why *);
@@ -81,6 +81,6 @@ static inline int packing_movable(const struct packing *p, int32_t a, int32_t b,
 }
 
 /* Mass and inertia of a solid ball (disc) of this radius (m) and density (kg m^-3, kg m^-2). */
-void packing_body(int dim, double radius, double density, double *mass, double *inertia);
+void packing_solid(int dim, double radius, double density, double *mass, double *inertia);
 
 #endif

@@ -301,7 +301,7 @@ void slot_react(struct problem *p, int64_t i, const double r[3])
 
 int problem_store(const struct problem *p, struct contacts *s)
 {
-    if (contacts_expect(s)) return -1;
+    if (contacts_alloc_found(s)) return -1;
     for (int64_t i = 0; i < p->slots; i++) {
         if (p->contact[i] < 0) continue;
         struct found *c = &s->found[p->contact[i]];

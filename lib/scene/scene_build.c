@@ -90,7 +90,7 @@ static int set_body(struct packing *p, int64_t i, const struct scene_bodies *b, 
                     struct why *why)
 {
     double mass, inertia;
-    packing_body(p->dim, r, b->density, &mass, &inertia);
+    packing_solid(p->dim, r, b->density, &mass, &inertia);
     if (b->mass > 0) inertia *= b->mass / mass, mass = b->mass;
     if (!b->fixed && !(mass > 0 && inertia > 0))
         return why_set(why, EX_DATAERR, "body %lld: a radius of %g m gives no mass", (long long)i,
@@ -187,7 +187,8 @@ static int fill(struct packing *p, const struct scene *s, const struct table *ta
 static int set_parameters(struct packing *p, const struct scene *s, struct why *why)
 {
     p->dt = s->dt, p->theta = s->theta, p->g = s->g, p->seed = s->seed;
-    if (packing_walls(p, s->walls, why) || packing_kinds(p, s->kinds, why)) return why->status;
+    if (packing_alloc_walls(p, s->walls, why) || packing_alloc_kinds(p, s->kinds, why))
+        return why->status;
     for (int32_t i = 0; i < s->walls; i++) p->wall[i] = s->wall[i];
     for (int32_t k = 0; k < s->kinds; k++) {
         free(p->kind_name[k]);
