@@ -1,3 +1,4 @@
+/* bodies/packing.c: memory for a packing, and the check of its numbers. */
 #include "bodies/packing.h"
 
 #include <stdio.h>
@@ -21,9 +22,9 @@ int packing_init(struct packing *p, int dim, int64_t n, struct why *why)
     p->q = array(n, sizeof *p->q);
     p->v = array(n, sizeof *p->v);
     p->w = array(n, sizeof *p->w);
-    bool room =
+    bool allocated =
         p->radius && p->mass && p->inertia && p->id && p->kind && p->x && p->q && p->v && p->w;
-    if (!room || packing_alloc_walls(p, 0, why) || packing_alloc_kinds(p, 1, why)) {
+    if (!allocated || packing_alloc_walls(p, 0, why) || packing_alloc_kinds(p, 1, why)) {
         packing_free(p);
         return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
     }
@@ -62,13 +63,13 @@ int packing_alloc_kinds(struct packing *p, int32_t k, struct why *why)
     p->mu = array((int64_t)k * k, sizeof *p->mu);
     p->en = array((int64_t)k * k, sizeof *p->en);
     p->et = array((int64_t)k * k, sizeof *p->et);
-    bool room = p->kind_name && p->mu && p->en && p->et;
-    for (p->kinds = 0; room && p->kinds < k; p->kinds++) {
+    bool allocated = p->kind_name && p->mu && p->en && p->et;
+    for (p->kinds = 0; allocated && p->kinds < k; p->kinds++) {
         char name[16];
         snprintf(name, sizeof name, "%d", p->kinds);
-        room = (p->kind_name[p->kinds] = strdup(name));
+        allocated = (p->kind_name[p->kinds] = strdup(name));
     }
-    return room ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d kinds", k);
+    return allocated ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d kinds", k);
 }
 
 int packing_copy(struct packing *to, const struct packing *p, struct why *why)

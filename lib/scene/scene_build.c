@@ -204,9 +204,7 @@ fail:
 static int check_overlap(const struct packing *p, struct why *why)
 {
     struct contacts found = { 0 };
-    struct packing here = *p;
-    here.theta = 1; // where the bodies are, not where they will be
-    int e = detect_contacts(&found, &here, 0, NULL, why);
+    int e = detect_contacts_at(&found, p, p->x, p->t, 0, NULL, why);
     for (int64_t i = 0; !e && i < found.n; i++) {
         const struct contact *c = &found.c[i];
         double r = p->radius[c->b];
