@@ -48,8 +48,8 @@ struct lists {
     int64_t *item;
 };
 
-/* Lists the items 0 .. count-1, each list ascending; owner[k] < n, negative: none. False when memory
-   is short; nothing needs freeing then. */
+/* Lists the items 0 .. count-1, each list ascending; owner[k] < n, negative: none. False when
+   memory is short; nothing needs freeing then. */
 bool lists_init(struct lists *L, int64_t n, int64_t count, const int32_t *owner);
 void lists_free(struct lists *L);
 

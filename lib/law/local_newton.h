@@ -137,7 +137,8 @@ ALWAYS_INLINE void newton_accept(struct newton_point *x, const struct newton_poi
  * The Newton itself, at least one step; true where it converged. x is the last iterate, finite.
  *
  * The error is |Z| [er_newt prints r - proj(r), which is 0 for any r in the cone], relative unless
- * opt->newton_abs, and not tested before the first step: an absolute 1e-5 tested there freezes wrong contacts.
+ * opt->newton_abs, and not tested before the first step: an absolute 1e-5 tested there freezes
+ * wrong contacts.
  *
  * Full steps, as in the paper, cycle between stick and slide at some contacts, and the sweep then
  * suffers. Unless opt->plain, a step is halved until |Z| shrinks; where it does not, the Newton has
