@@ -1,5 +1,4 @@
-/* base/lu.c: sparse LU by KLU. KLU takes columns, so that our rows make it factorise the transpose.
-   */
+/* base/lu.c: sparse LU by KLU, which takes columns: from our rows it factorises the transpose. */
 #include "base/lu.h"
 
 #include <stdlib.h>

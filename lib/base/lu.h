@@ -22,8 +22,7 @@ void lu_free(struct lu *lu);
 /* Multiplications of a factorisation, roughly */
 double lu_cost(const struct lu *lu);
 
-/* Factorises A with the entries a[], in the order of col[]; false if A is singular or memory short.
-   */
+/* Factorises A, entries a[] in the order of col[]; false if A is singular or memory is short. */
 bool lu_factorise(struct lu *lu, double *a);
 /* The sign of det(A), +-1, of the last factorisation */
 int lu_sign(const struct lu *lu);

@@ -1,5 +1,4 @@
-/* base/range.h: ranges of steps, "A:B:K": every K-th step from A to B. Each number may be left out.
-   */
+/* base/range.h: ranges of steps, "A:B:K": every K-th step from A to B. Any may be left out. */
 #ifndef NSD_RANGE_H
 #define NSD_RANGE_H
 

@@ -84,8 +84,7 @@ struct patch band_patch(const struct band *b, double x, double y, double r);
 /* x as an integer, not below lo (also where x is not a number) and not above hi */
 int band_clamp(double x, int lo, int hi);
 
-/* Memory for `rows` rows of samples; false when it is short, and the band must be freed then, too.
-   */
+/* Memory for `rows` rows of samples; false when it is short. To be freed in both cases. */
 bool band_init(struct band *b, const struct raster *s, int rows);
 void band_free(struct band *b);
 /* The index of a sample */

@@ -1,5 +1,4 @@
-/* draw/picture.h: a picture in memory, written as a PNG file that is complete or not there at all.
-   */
+/* draw/picture.h: a picture in memory, written as a PNG file that is complete or not there. */
 #ifndef NSD_PICTURE_H
 #define NSD_PICTURE_H
 

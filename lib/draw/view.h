@@ -39,8 +39,7 @@ struct view {
 int view_extend(struct view *v, const struct packing *p, struct why *why);
 /* Fits the camera to all packings given to view_extend, and to the walls of this one. */
 void view_fit(struct view *v, const struct packing *p);
-/* pic = the picture, to be freed by the caller after 0. Returns 0, EX_DATAERR (dim) or EX_SOFTWARE.
-   */
+/* pic = the picture, which the caller frees. Returns 0, EX_DATAERR (dim) or EX_SOFTWARE. */
 int view_draw(const struct view *v, const struct packing *p, struct picture *pic, struct why *why);
 
 #endif

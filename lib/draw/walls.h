@@ -45,8 +45,7 @@ bool region_of(struct region *r, const struct packing *p);
 /* The smallest region that holds both */
 struct region region_join(struct region a, struct region b);
 
-/* b = the walls inside the region at the packing's time. In the plane walls are edges themselves.
-   */
+/* b = the walls inside the region at the packing's time. In the plane walls are edges. */
 void walls_build(struct walls *b, const struct packing *p, const struct region *r);
 
 #endif

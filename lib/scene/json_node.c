@@ -92,8 +92,7 @@ static bool key_is(const char *s, const char *key)
     return !strncmp(s + 1, key, n) && s[1 + n] == '"';
 }
 
-/* The node's key or item in the text and its *value, or the nearest ancestor's and *value = NULL.
-   */
+/* The node's key or item in the text and its *value; or its nearest ancestor's, *value NULL. */
 static const char *find_node(const jnode *n, const char **value)
 {
     if (!n->up) return *value = skip_space(n->in->text);

@@ -43,12 +43,10 @@ jnode json_doc_root(struct json_doc *t);
 jnode json_node_key(const jnode *object, const char *key);
 jnode json_node_item(const jnode *array, size_t index);
 
-/* Returns EX_DATAERR; the reason has the place of the node or of its nearest ancestor in the text.
-   */
+/* Returns EX_DATAERR; the reason has the place of the node or of its nearest ancestor. */
 int json_node_fault(jnode node, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Checks of an object's keys; names: separated by blanks. Each returns 0 or the status of a fault.
-   */
+/* Checks of an object's keys; names has blanks between. Each returns 0 or a fault's status. */
 int json_node_only(jnode object, const char *names);        /* these and "comment" are allowed */
 int json_node_need(const jnode *object, const char *names); /* all of these are needed */
 /* Exactly one of these is needed: returns which, from 0; -1: a fault. */

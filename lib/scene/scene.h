@@ -113,8 +113,7 @@ struct scene {
     char *text; /* the JSON, without blanks outside strings */
 };
 
-/* The number of cells of a lattice along each axis, and their edges (m). Filled along x, then y, z.
-   */
+/* Cells of a lattice along each axis, filled along x, then y, then z; and their edges (m). */
 struct scene_lattice {
     double cells[3], edge[3];
 };

@@ -122,8 +122,7 @@ static double draw_radius(const struct scene_size *z, gsl_rng *rng)
     return r;
 }
 
-/* The middle of cell k of the lattice, moved at random so far that the body stays inside the cell.
-   */
+/* The middle of cell k of the lattice, moved at random as far as the body stays in the cell. */
 static vec3 draw_place(const struct scene_bodies *b, const struct scene_lattice *l, int dim,
                        int64_t k, double r, gsl_rng *rng)
 {
