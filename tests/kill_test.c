@@ -67,7 +67,7 @@ static int write_all(const char *path, struct why *why)
     struct writer *s;
     struct frame f = { .packed = true, .detected = true, .reported = true };
     snprintf(f.report.method, sizeof f.report.method, "exact");
-    if (packing_init(&f.packing, 3, BODIES, why) || packing_walls(&f.packing, 1, why))
+    if (packing_init(&f.packing, 3, BODIES, why) || packing_alloc_walls(&f.packing, 1, why))
         return why->status;
     f.packing.dt = 0.001;
     f.packing.wall[0].n = (vec3){ 0, 0, 1 };

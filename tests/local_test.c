@@ -124,7 +124,7 @@ static void test_planar_formulas(const char *name, linearise *f, bool bipotentia
 }
 
 /* Where balls slide the step is in closed form: that of the whole system, of W = diag(w_n, w_t, w_t). */
-static void test_slip(const char *name, linearise *f, struct newton_text text)
+static void test_slip(const char *name, linearise *f, struct newton_formulation text)
 {
     double worst = 0;
     int slid = 0;
@@ -136,7 +136,8 @@ static void test_slip(const char *name, linearise *f, struct newton_text text)
         for (int i = 0; i < 3; i++) W[4 * i] = w[i], iw[i] = 1 / w[i];
         for (int k = 0; k < 2; k++) {
             struct local l = { .W = k ? W : NULL, .mu = s.mu, .rho = s.rho };
-            struct iterate x = { .r = { s.x[0], s.x[1], s.x[2] }, .v = { s.x[3], s.x[4], s.x[5] } };
+            struct newton_point x = { .r = { s.x[0], s.x[1], s.x[2] },
+                                      .v = { s.x[3], s.x[4], s.x[5] } };
             for (int i = 0; i < 3; i++) l.w[i] = w[i], l.iw[i] = iw[i];
             text.residual(l.mu, l.rho, &x);
             newton_direction(&l, &x, text, dr[k]);

@@ -67,7 +67,7 @@ static void run(struct packing *p, struct contacts *c, const struct step_opt *o,
 static void cloud(struct packing *p, int dim, int64_t n, double ratio)
 {
     struct why why = { 0 };
-    must(packing_init(p, dim, n, &why) || packing_walls(p, 3, &why), &why);
+    must(packing_init(p, dim, n, &why) || packing_alloc_walls(p, 3, &why), &why);
     p->dt = 0.01;
     for (int64_t i = 0; i < n; i++) {
         p->radius[i] = 0.02 * pow(ratio, -gsl_rng_uniform(rng));
@@ -452,9 +452,9 @@ static void test_restitution(double en, double et)
     struct packing p;
     struct contacts s = { 0 };
     struct step_opt o = options(&local_exact, 1e-14, 1000);
-    must(packing_init(&p, 3, 1, &why) || packing_walls(&p, 1, &why), &why);
+    must(packing_init(&p, 3, 1, &why) || packing_alloc_walls(&p, 1, &why), &why);
     p.dt = 1e-3, p.radius[0] = 0.5;
-    packing_body(3, 0.5, 1000, &p.mass[0], &p.inertia[0]);
+    packing_solid(3, 0.5, 1000, &p.mass[0], &p.inertia[0]);
     p.wall[0].n = v3(0, 0, 1);
     p.x[0] = v3(0, 0, 0.5), p.v[0] = v3(0.3, -0.1, -2);
     p.mu[0] = 5, p.en[0] = en, p.et[0] = et;

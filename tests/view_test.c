@@ -36,7 +36,7 @@ static struct packing balls(int dim, int n, const double (*x)[4]) /* x y z radiu
 {
     struct packing p;
     struct why why = { 0 };
-    if (packing_init(&p, dim, n, &why) || packing_kinds(&p, 3, &why)) exit(1);
+    if (packing_init(&p, dim, n, &why) || packing_alloc_kinds(&p, 3, &why)) exit(1);
     p.dt = 1;
     for (int i = 0; i < n; i++) p.x[i] = v3(x[i][0], x[i][1], x[i][2]), p.radius[i] = x[i][3];
     return p;
@@ -45,7 +45,7 @@ static struct packing balls(int dim, int n, const double (*x)[4]) /* x y z radiu
 static void walls(struct packing *p, int n, const vec3 (*w)[2]) /* point, normal */
 {
     struct why why = { 0 };
-    if (packing_walls(p, n, &why)) exit(1);
+    if (packing_alloc_walls(p, n, &why)) exit(1);
     for (int i = 0; i < n; i++) p->wall[i] = (struct wall){ .x = w[i][0], .n = w[i][1] };
 }
 
@@ -391,7 +391,7 @@ static void test_extremes(void)
                              { { 5, 0, 0 }, { 1, 0, 0 } },
                              { { -5, 0, 0 }, { -1, 0, 0 } } });
     extreme("walls twice, far away, and with nothing between them", &p, false);
-    if (packing_walls(&p, 500, &(struct why){ 0 })) exit(1);
+    if (packing_alloc_walls(&p, 500, &(struct why){ 0 })) exit(1);
     for (int i = 0; i < 500; i++) {
         double a = 2 * M_PI * i / 500;
         p.wall[i] = (struct wall){ .x = v3(-cos(a), -sin(a), 0), .n = v3(cos(a), sin(a), 0) };

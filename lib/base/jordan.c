@@ -1,4 +1,4 @@
-/* base/jordan.c: see base/jordan.h. */
+/* base/jordan.c: products, steps, centring and scaling of one second-order cone. */
 #include "base/jordan.h"
 
 void jordan_product(const double a[3], const double b[3], double out[3])

@@ -1,10 +1,11 @@
 /*
- * base/jordan.h: the second-order cone K = { |x_t| <= x_0 } of three numbers and its Jordan algebra,
+ * base/jordan.h: the second-order cone K = { |x_t| <= x_0 } of three numbers and its Jordan
+ * algebra,
  *
  *     x o z = (x.z, x_0 z_t + z_0 x_t),
  *
- * whose eigenvalues are x_0 +- |x_t|; and Nesterov's and Todd's scaling, which takes x and z of the
- * inside of K to one point l = F x = F^-1 z.
+ * whose eigenvalues are x_0 +- |x_t|; and the scaling of Nesterov and Todd, a symmetric F that maps
+ * x and z, both inside K, to one point l = F x = F^-1 z.
  */
 #ifndef NSD_JORDAN_H
 #define NSD_JORDAN_H
@@ -32,24 +33,24 @@ static inline double jordan_det(const double x[3])
 
 /* out = a o b */
 void jordan_product(const double a[3], const double b[3], double out[3]);
-/* out: l o out = c */
+/* out such that l o out = c; l inside K */
 void jordan_quotient(const double l[3], const double c[3], double out[3]);
 
-/* The largest step along dx that stays in K; INFINITY where all do. */
+/* The largest a for which x + a dx is in K, x inside K; INFINITY if there is none. */
 double jordan_to_border(const double x[3], const double dx[3]);
 
-/* x o z = gap (1, 0, 0) with x - z as it is: the point of the central path that belongs to it */
+/* Moves x and z to the point of the central path, x o z = gap (1, 0, 0), with the same x - z. */
 void jordan_centre(double x[3], double z[3], double gap);
 
-/* F = eta (2 v v' - J), J = diag(1, -1, -1), symmetric */
+/* F = eta (2 v v' - J), J = diag(1, -1, -1) */
 struct scaling {
     double v[3], eta;
 };
 
-/* That of x and z; false where one of them is too near the border for it. */
-bool scaling_of(struct scaling *, const double x[3], const double z[3]);
+/* F = that of x and z; false where one of them is too near the border of K. */
+bool scaling_of(struct scaling *F, const double x[3], const double z[3]);
 /* out = F a; out = F^-1 a */
-void scaling_apply(const struct scaling *, const double a[3], double out[3]);
-void scaling_inverse(const struct scaling *, const double a[3], double out[3]);
+void scaling_apply(const struct scaling *F, const double a[3], double out[3]);
+void scaling_inverse(const struct scaling *F, const double a[3], double out[3]);
 
 #endif

@@ -1,7 +1,7 @@
 /*
- * base/lanes.h: LANES numbers at once. What is written over vd (numbers) and vm (masks) is one text for one
- * lane and for many; it does to a lane what it would do to it alone, bit for bit, for there is no
- * operation but of IEEE's own, lane by lane.
+ * base/lanes.h: arithmetic on LANES numbers at once. Code written with vd (numbers) and vm (masks)
+ * is one text for one lane and for many. Each lane gets the same bits as it would alone, because
+ * only IEEE operations are used, lane by lane.
  *
  * LANES is 1, plain double, unless the Makefile compiles a file for a width: 2 any machine, 4 AVX2,
  * 8 AVX-512. Branches become masks: both sides are computed, pick() takes one.
@@ -132,7 +132,7 @@ ALWAYS_INLINE vd root(vd a)
 #endif
 }
 
-/* the larger; b where either is not a number */
+/* The larger; b where either is not a number */
 ALWAYS_INLINE vd larger(vd a, vd b)
 {
 #if LANES == 8
@@ -161,8 +161,8 @@ ALWAYS_INLINE vm is_finite(vd a)
 }
 
 /*
- * x[i][j] and x[j][i] change places. A stage makes of two vectors, whose lanes are numbered one after
- * the other, two others; the lists are those for which a machine has an instruction.
+ * transpose() exchanges x[i][j] and x[j][i] in stages of EXCHANGE, which makes two vectors of two:
+ * low and high list their lanes, counted through both. Machines have instructions for these lists.
  */
 #define EXCHANGE(x, i, j, low, high)                                                               \
     do {                                                                                           \

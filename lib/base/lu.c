@@ -1,4 +1,4 @@
-/* base/lu.c: see base/lu.h. KLU wants columns: it factorises the transpose of what it is given by rows. */
+/* base/lu.c: sparse LU by KLU, which takes columns: from our rows it factorises the transpose. */
 #include "base/lu.h"
 
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 
 struct lu {
     int32_t n, *first, *col;
-    double entries, cost; /* of one factor, the other has as many; multiplications */
+    double entries, cost; /* entries of either factor; multiplications */
     klu_common common;
     klu_symbolic *order;
     klu_numeric *factors;
@@ -22,9 +22,10 @@ void lu_free(struct lu *lu)
 }
 
 /*
- * An order of the unknowns that makes little fill: the better of AMD and of nested dissection, which
- * saves a third of the work and more where contacts fill space. It is sought for what is below the
- * diagonal: the pattern above is the same but where a W is not symmetric, and there it serves as well.
+ * An order of the unknowns with little fill: the better of AMD and nested dissection, which saves a
+ * third of the work or more where contacts fill space. It is chosen for the pattern below the
+ * diagonal, which is that above it except when W is not symmetric; the order is then valid all the
+ * same.
  */
 static klu_symbolic *analyse(struct lu *lu)
 {
@@ -63,10 +64,10 @@ struct lu *lu_new(int32_t n, int32_t *first, int32_t *col, double bytes, bool *t
     lu->n = n, lu->first = first, lu->col = col;
     klu_defaults(&lu->common);
     lu->common.btf = 0;    // one block: the pattern is a contact graph's
-    lu->common.tol = 0;    // pivots off the diagonal would fill without end
-    lu->common.scale = -1; // the rows are of one size: solve/scaled.c
+    lu->common.tol = 0;    // no pivots off the diagonal: their fill would not be bounded
+    lu->common.scale = -1; // solve/scaled.c has scaled the rows
     lu->order = analyse(lu);
-    // an entry of a factor has a number and an index; growing them copies them
+    // 48 bytes: an entry of both factors, a number and an index each, and copies when they grow
     *too_large = lu->order && 48 * lu->entries > bytes;
     if (lu->order && !*too_large) return lu;
     lu_free(lu);
@@ -86,7 +87,7 @@ bool lu_factorise(struct lu *lu, double *a)
     return lu->factors != NULL;
 }
 
-/* Rows and columns are ordered alike and L has a diagonal of ones. */
+/* The product of U's diagonal: rows and columns have one order, and L has ones on its diagonal. */
 int lu_sign(const struct lu *lu)
 {
     const double *u = lu->factors->Udiag;

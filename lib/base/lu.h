@@ -1,7 +1,7 @@
 /*
- * base/lu.h: sparse matrices of one pattern, one after another, factorised (SuiteSparse's KLU, in an order of its CHOLMOD). The order
- * of the unknowns is chosen once. Pivots are on the diagonal: what is lost thereby is the caller's to
- * win back, by refinement.
+ * base/lu.h: A = L U of sparse matrices that share one pattern, by SuiteSparse's KLU in an order of
+ * the unknowns that its CHOLMOD chooses once. Pivots are taken on the diagonal; if that loses
+ * accuracy, the caller has to refine the solution.
  */
 #ifndef NSD_LU_H
 #define NSD_LU_H
@@ -12,21 +12,21 @@
 struct lu;
 
 /*
- * For n x n matrices by rows: entry k of row i is in column col[k], first[i] <= k < first[i+1], of
- * either array borrowed. NULL where memory is short or, *too_large, the factors would need more than
- * `bytes`.
+ * For n x n matrices by rows: entries first[i] .. first[i+1]-1 are row i, in columns col[]. Both
+ * arrays are borrowed until lu_free. NULL if memory is short or, with *too_large set, the factors would
+ * need more than `bytes` bytes.
  */
 struct lu *lu_new(int32_t n, int32_t *first, int32_t *col, double bytes, bool *too_large);
-void lu_free(struct lu *);
+void lu_free(struct lu *lu);
 
-/* The rough price of a factorisation, in multiplications. */
-double lu_cost(const struct lu *);
+/* Multiplications of a factorisation, roughly */
+double lu_cost(const struct lu *lu);
 
-/* A, of entries a[], is factorised, or singular: false. */
-bool lu_factorise(struct lu *, double *a);
-/* The sign of det(A), +-1 */
-int lu_sign(const struct lu *);
-/* x[n] := A^-1 x */
-bool lu_substitute(struct lu *, double *x);
+/* Factorises A, entries a[] in the order of col[]; false if A is singular or memory is short. */
+bool lu_factorise(struct lu *lu, double *a);
+/* The sign of det(A), +-1, of the last factorisation */
+int lu_sign(const struct lu *lu);
+/* x[n] = A^-1 x; false if that fails */
+bool lu_substitute(struct lu *lu, double *x);
 
 #endif

@@ -1,10 +1,11 @@
+/* base/range.c: reads a range of steps. */
 #include "base/range.h"
 
 #include <errno.h>
 #include <stdlib.h>
 
-/* A number, or nothing, up to a colon or the end. */
-static bool part(const char **s, int64_t *x)
+/* Reads a number, or nothing, up to a colon or the end, and moves *s there. */
+static bool parse_part(const char **s, int64_t *x)
 {
     char *end;
     errno = 0;
@@ -19,14 +20,14 @@ static bool part(const char **s, int64_t *x)
 bool range_parse(struct range *r, const char *s)
 {
     *r = (struct range){ 0, INT64_MAX, 1 };
-    if (!*s || !part(&s, &r->from)) return false;
+    if (!*s || !parse_part(&s, &r->from)) return false;
     if (!*s) { // one step alone
         r->to = r->from;
         return true;
     }
     s++;
-    if (!part(&s, &r->to)) return false;
+    if (!parse_part(&s, &r->to)) return false;
     if (!*s) return r->from <= r->to;
     s++;
-    return part(&s, &r->by) && !*s && r->by > 0 && r->from <= r->to;
+    return parse_part(&s, &r->by) && !*s && r->by > 0 && r->from <= r->to;
 }

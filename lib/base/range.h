@@ -1,4 +1,4 @@
-/* base/range.h: A:B:K, the steps from A to B of which every K-th counts; any of them may be left out. */
+/* base/range.h: ranges of steps, "A:B:K": every K-th step from A to B. Any may be left out. */
 #ifndef NSD_RANGE_H
 #define NSD_RANGE_H
 
@@ -6,11 +6,11 @@
 #include <stdint.h>
 
 struct range {
-    int64_t from, to, by;
+    int64_t from, to, by; /* from, from + by ... up to and with to */
 };
 
-/* "7", "100:", ":50", "0:1000:10", "::10"; false where it is none. */
-bool range_parse(struct range *, const char *);
+/* Parses "7", "100:", ":50", "0:1000:10", "::10" ...; false where text is no range. */
+bool range_parse(struct range *r, const char *text);
 static inline bool range_has(const struct range *r, int64_t step)
 {
     return step >= r->from && step <= r->to && (step - r->from) % r->by == 0;

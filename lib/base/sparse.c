@@ -1,4 +1,4 @@
-/* base/sparse.c: see base/sparse.h. */
+/* base/sparse.c: entries, the checks of stored matrices, and lists by owner. */
 #include "base/sparse.h"
 
 #include <math.h>
@@ -49,7 +49,7 @@ void stored_free(struct stored *S)
     *S = (struct stored){ 0 };
 }
 
-/* p of a compressed matrix: from 0, never falling, `lines` + 1 long */
+/* p of a compressed matrix begins at 0, never decreases and has lines + 1 values. */
 static int check_pointers(const struct stored *S, const char *name, int32_t lines, struct why *why)
 {
     if (S->np != (uint64_t)lines + 1)
@@ -63,7 +63,7 @@ static int check_pointers(const struct stored *S, const char *name, int32_t line
     return 0;
 }
 
-/* p, i and x hold `count` entries or up to nzmax. */
+/* i, x and, of triplets, p have at least count and at most nzmax values. */
 static int check_lengths(const struct stored *S, const char *name, int64_t count, struct why *why)
 {
     if (S->nzmax < count)
@@ -98,8 +98,8 @@ static int check_entries(const struct sparse *A, bool by_rows, const char *name,
     return 0;
 }
 
-/* p of a compressed matrix spelled out: the line of every entry */
-static int32_t *spell_out(const int32_t *p, int32_t lines)
+/* The line (row or column) of every entry, from p of a compressed matrix; NULL: no memory */
+static int32_t *lines_of_entries(const int32_t *p, int32_t lines)
 {
     int32_t *line = calloc((size_t)p[lines] + 1, sizeof *line);
     for (int32_t l = 0; line && l < lines; l++)
@@ -115,8 +115,8 @@ int sparse_unpack(struct sparse *A, struct stored *S, const char *name, struct w
     if (S->nz < 0 && check_pointers(S, name, lines, why)) return why->status;
     int64_t count = S->nz < 0 ? S->p[lines] : S->nz;
     if (check_lengths(S, name, count, why)) return why->status;
-    if (S->nz < 0) { // the same as triplets once p is spelled out
-        int32_t *line = spell_out(S->p, lines);
+    if (S->nz < 0) { // triplets, once p has the line of every entry
+        int32_t *line = lines_of_entries(S->p, lines);
         if (!line) return why_set(why, EX_SOFTWARE, "%s: out of memory", name);
         free(S->p);
         S->p = line;

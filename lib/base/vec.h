@@ -1,4 +1,4 @@
-/* base/vec.h: vectors and rotations of space, by value. */
+/* base/vec.h: vectors and rotations of space, passed by value. */
 #ifndef NSD_VEC_H
 #define NSD_VEC_H
 
@@ -9,7 +9,7 @@ typedef struct {
 } vec3;
 
 typedef struct {
-    double w, x, y, z; /* unit quaternion: w + xi + yj + zk */
+    double w, x, y, z; /* unit quaternion w + xi + yj + zk: a rotation */
 } quat;
 
 static inline vec3 v3(double x, double y, double z)
@@ -65,8 +65,9 @@ static inline quat quat_unit(quat q)
 }
 
 /*
- * The rotation by the vector a (rad): exponential map, by its series up to an angle of 1 and by twice
- * half of it beyond. libm's sine and cosine have other last bits on machines without FMA.
+ * The rotation by the vector a (rad), the exponential map: by its series up to an angle of 1,
+ * beyond by halving the angle and squaring. Not by libm: its last bits differ on machines without
+ * FMA.
  */
 static inline quat quat_rotation(vec3 a)
 {

@@ -1,14 +1,15 @@
+/* base/why.c: the first reason of a failure is kept. */
 #include "base/why.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 
-int why_set(struct why *w, int status, const char *format, ...)
+int why_set(struct why *why, int status, const char *format, ...)
 {
-    if (w->status) return w->status;
+    if (why->status) return why->status;
     va_list ap;
     va_start(ap, format);
-    vsnprintf(w->text, sizeof w->text, format, ap);
+    vsnprintf(why->text, sizeof why->text, format, ap);
     va_end(ap);
-    return w->status = status;
+    return why->status = status;
 }

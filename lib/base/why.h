@@ -1,9 +1,9 @@
 /*
- * base/why.h: the reason of a failure, carried from where it happened to the tool that says it.
+ * base/why.h: the reason of a failure, carried from where it happened to the tool that reports it.
  *
- * A function of lib/ that can fail takes a struct why, prints nothing and returns 0 for good or the
- * exit status of sysexits.h that fits: EX_DATAERR (65) the input is wrong, EX_NOINPUT (66) it cannot
- * be opened, EX_SOFTWARE (70) we are wrong or out of memory, EX_IOERR (74) it cannot be written.
+ * A function of lib/ that can fail with a reason takes a struct why, prints nothing and returns 0,
+ * or an exit status of sysexits.h: EX_DATAERR (65) the input is wrong, EX_NOINPUT (66) it cannot be
+ * opened, EX_SOFTWARE (70) out of memory or a bug, EX_IOERR (74) it cannot be written.
  */
 #ifndef NSD_WHY_H
 #define NSD_WHY_H
@@ -11,12 +11,13 @@
 #include <sysexits.h>
 
 struct why {
-    int status;
+    int status;     /* 0: no failure */
     char text[400]; /* "thing: trouble", one line */
 };
 
-/* Keep the first reason given; returns its status, so that `return why_set(...)` reads well. */
-int why_set(struct why *, int status, const char *format, ...)
+/* Sets the reason unless there is one already; returns the status of the first, never 0, for use as
+   `return why_set(...)`. */
+int why_set(struct why *why, int status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 #endif

@@ -1,3 +1,4 @@
+/* bodies/contact.c: lists of contacts, their bases, and reactions carried from step to step. */
 #include "bodies/contact.h"
 
 #include <stdlib.h>
@@ -9,15 +10,15 @@ void contacts_free(struct contacts *s)
     *s = (struct contacts){ 0 };
 }
 
-void contacts_forget(struct contacts *s)
+void contacts_free_found(struct contacts *s)
 {
     free(s->found);
     s->found = NULL;
 }
 
-int contacts_expect(struct contacts *s)
+int contacts_alloc_found(struct contacts *s)
 {
-    contacts_forget(s);
+    contacts_free_found(s);
     s->found = calloc((size_t)s->n + 1, sizeof *s->found);
     return s->found ? 0 : -1;
 }
@@ -27,7 +28,7 @@ int contacts_copy(struct contacts *to, const struct contacts *from)
     *to = (struct contacts){ .n = from->n, .room = from->n };
     size_t n = (size_t)from->n;
     to->c = malloc((n + 1) * sizeof *to->c);
-    if (!to->c || (from->found && contacts_expect(to))) {
+    if (!to->c || (from->found && contacts_alloc_found(to))) {
         contacts_free(to);
         return -1;
     }
@@ -56,7 +57,7 @@ void contact_basis(struct contact *c, int dim, vec3 n)
         c->t1 = v3(-n.y, n.x, 0);
         return;
     }
-    // without a branch that could flip between neighbouring normals [Duff et al. 2017]
+    // [Duff et al. 2017]: without a branch, and |sign + n_z| >= 1
     double sign = copysign(1, n.z), a = -sign / (sign + n.z);
     c->t1 = v3(1 + n.x * n.x * a, n.x * n.y * a, -sign * n.x);
 }
@@ -65,7 +66,7 @@ int contacts_match(struct contacts *new, const struct contacts *old)
 {
     int64_t k = 0;
     if (!old->found) return 0;
-    if (contacts_expect(new)) return -1;
+    if (contacts_alloc_found(new)) return -1;
     for (int64_t i = 0; i < new->n; i++) {
         const struct contact *c = &new->c[i];
         double *r = new->found[i].r;
@@ -81,8 +82,8 @@ int contacts_match(struct contacts *new, const struct contacts *old)
     return 0;
 }
 
-static const char *trouble(const struct contact *c, const struct found *found, int64_t bodies,
-                           int32_t walls)
+static const char *contact_trouble(const struct contact *c, const struct found *found,
+                                   int64_t bodies, int32_t walls)
 {
     if (c->b < 0 || c->b >= bodies || c->a >= bodies || c->a < -walls || c->a == c->b)
         return "no such bodies";
@@ -102,7 +103,7 @@ static const char *trouble(const struct contact *c, const struct found *found, i
 int contacts_check(const struct contacts *s, int64_t bodies, int32_t walls, struct why *why)
 {
     for (int64_t i = 0; i < s->n; i++) {
-        const char *what = trouble(&s->c[i], s->found ? &s->found[i] : NULL, bodies, walls);
+        const char *what = contact_trouble(&s->c[i], s->found ? &s->found[i] : NULL, bodies, walls);
         if (what) return why_set(why, EX_DATAERR, "contact %lld: %s", (long long)i, what);
     }
     return 0;

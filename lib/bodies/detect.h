@@ -1,6 +1,6 @@
 /*
- * bodies/detect.h: which bodies touch in the predicted position q + (1 - theta) dt qdot [globalmapapp1],
- * and the local frames there.
+ * bodies/detect.h: which bodies touch, where, and the local basis there. A time step looks at the
+ * predicted positions q + (1 - theta) dt qdot [globalmapapp1].
  */
 #ifndef NSD_DETECT_H
 #define NSD_DETECT_H
@@ -9,13 +9,18 @@
 #include "bodies/neighbours.h"
 
 /*
- * Every pair of bodies, and of a body and a wall, whose predicted gap is at most `gap` (m) and of
- * which one can move. Ball-ball and ball-plane; in the plane disc-disc and disc-line.
+ * out = a contact for every pair of bodies, and of a body and a wall, whose gap at the predicted
+ * positions is at most `gap` (m) and of which one can move. Gaps: ball-ball and ball-plane; in the
+ * plane disc-disc and disc-line.
  *
- * neighbours: kept from one step of these bodies to the next, to save the search; or NULL. The
- * contacts are the same.
+ * kept: neighbours of these bodies, kept from one step to the next to save the search; or NULL. The
+ * contacts are the same. Returns 0 or EX_SOFTWARE.
  */
-int detect_contacts(struct contacts *, const struct packing *, double gap, struct neighbours *,
-                    struct why *);
+int detect_contacts(struct contacts *out, const struct packing *p, double gap,
+                    struct neighbours *kept, struct why *why);
+
+/* The same with the bodies at x[n] (m) and the walls where they are at time t (s). */
+int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3 *x, double t,
+                       double gap, struct neighbours *kept, struct why *why);
 
 #endif

@@ -1,3 +1,6 @@
+/*
+ * bodies/neighbours.c: a hashed grid for each size of body, and how long a list of pairs serves.
+ */
 #include "bodies/neighbours.h"
 
 #include <math.h>
@@ -5,25 +8,28 @@
 #include <string.h>
 
 enum {
-    LEVELS = 40,    /* a ratio of 2^40 between radii; smaller ones share the last */
-    KEEP_STEPS = 8, /* steps that a list is meant to serve */
+    LEVELS = 40,    /* grids, so radii down to 2^-40 of the largest; smaller ones share the last */
+    KEEP_STEPS = 8, /* steps that a list is meant to serve, all at the speed of the fastest body */
 };
+/* What a list may reach further than was asked, in mean radii: */
+static const double MIN_SPARE = 0.02, /* when (nearly) nothing moves */
+    MAX_SPARE = 0.5;                  /* beyond it a list would be crowded: it serves one step */
 
 struct entry {
-    vec3 x;
-    double r;
-    int32_t cell[3];
+    vec3 x;          /* m: of the body */
+    double r;        /* m: its radius */
+    int32_t cell[3]; /* its cell along x, y, z */
     int32_t body;
 };
 
-/* The bodies with radii within a factor of two, by cells. */
+/* The bodies of one level, radii within a factor of two, hashed by cell. */
 struct grid {
-    double h;            /* m: cell; two bodies of the level that touch are in adjacent ones */
-    int64_t n;           /* bodies */
-    uint64_t mask;       /* buckets - 1 */
+    double h;      /* m: a cell's edge: bodies within reach are in the same or adjacent cells */
+    int64_t n;     /* bodies */
+    uint64_t mask; /* buckets - 1 */
     uint64_t stride[2];  /* of the hash, along y and z; along x it is 1, for locality */
-    int64_t *first;      /* [buckets + 1] */
-    struct entry *entry; /* [n] by bucket */
+    int64_t *first;      /* [buckets + 1] of bucket b: entry[first[b]] .. entry[first[b + 1] - 1] */
+    struct entry *entry; /* [n] sorted by bucket */
 };
 
 void neighbours_free(struct neighbours *s)
@@ -63,7 +69,7 @@ static int level_of(double r, double rmax)
     return level < LEVELS ? level : LEVELS - 1;
 }
 
-/* Strides that make the hash exact when the bodies fill a box, and harmless when they do not. */
+/* Strides that number the cells of the bodies' bounding box one by one. */
 static void grid_strides(struct grid *g, const int32_t lo[3], const int32_t hi[3])
 {
     uint64_t nx = (uint64_t)((int64_t)hi[0] - lo[0] + 3);
@@ -72,7 +78,7 @@ static void grid_strides(struct grid *g, const int32_t lo[3], const int32_t hi[3
     g->stride[1] = nx * ny;
 }
 
-/* Entries (already in g->entry, cells set) sorted by bucket: a counting sort. */
+/* Sorts g->entry, cells set, by bucket: a counting sort. */
 static bool grid_sort(struct grid *g)
 {
     uint64_t buckets = 4;
@@ -84,7 +90,7 @@ static bool grid_sort(struct grid *g)
         free(sorted);
         return false;
     }
-    for (int64_t i = 0; i < g->n; i++) { // counted two ahead: after the fill first[b] starts b
+    for (int64_t i = 0; i < g->n; i++) { // counts two ahead: after the fill, b starts at first[b]
         const int32_t *c = g->entry[i].cell;
         g->first[bucket(g, c[0], c[1], c[2]) + 2]++;
     }
@@ -140,13 +146,13 @@ static bool grids_build(struct grid g[LEVELS], const struct packing *p, const ve
     return true;
 }
 
-/* ---- who is near ---- */
+/* ---- the search ---- */
 
-/* A body that looks for others, and what it brings along */
+/* A body that looks for others near it */
 struct seeker {
     const struct packing *p;
-    const struct entry *e;
-    double reach;
+    const struct entry *e; /* the body */
+    double reach;          /* m: the largest gap of a pair to list */
     struct neighbours *out;
 };
 
@@ -157,9 +163,10 @@ static bool near(const struct seeker *s, const struct entry *f)
     return v3_dot(d, d) <= most * most * (1 + 1e-12);
 }
 
-/* Entries first .. end-1 that are in the cells i0 .. i1 of row (j, k) */
-static bool look(const struct seeker *s, const struct grid *g, int64_t first, int64_t end,
-                 int64_t i0, int64_t i1, int64_t j, int64_t k)
+/* Lists those of entries first .. end-1 that are in cells i0 .. i1 of line (j, k) along x. Returns
+   false, as all that look do, when memory is short. */
+static bool look_at(const struct seeker *s, const struct grid *g, int64_t first, int64_t end,
+                    int64_t i0, int64_t i1, int64_t j, int64_t k)
 {
     for (const struct entry *f = g->entry + first; f < g->entry + end; f++) {
         if (f->cell[0] < i0 || f->cell[0] > i1 || f->cell[1] != j || f->cell[2] != k) continue;
@@ -170,30 +177,30 @@ static bool look(const struct seeker *s, const struct grid *g, int64_t first, in
     return true;
 }
 
-/* Cells i0 .. i1 of a row: their buckets follow one another, around the end of the table */
-static bool look_row(const struct seeker *s, const struct grid *g, int64_t i0, int64_t i1,
-                     int64_t j, int64_t k)
+/* The cells i0 .. i1 of line (j, k): their buckets are consecutive, the first after the last. */
+static bool look_along(const struct seeker *s, const struct grid *g, int64_t i0, int64_t i1,
+                       int64_t j, int64_t k)
 {
     uint64_t b0 = bucket(g, i0, j, k), b1 = bucket(g, i1, j, k);
-    if (b0 <= b1) return look(s, g, g->first[b0], g->first[b1 + 1], i0, i1, j, k);
-    return look(s, g, g->first[b0], g->n, i0, i1, j, k) &&
-           look(s, g, 0, g->first[b1 + 1], i0, i1, j, k);
+    if (b0 <= b1) return look_at(s, g, g->first[b0], g->first[b1 + 1], i0, i1, j, k);
+    return look_at(s, g, g->first[b0], g->n, i0, i1, j, k) &&
+           look_at(s, g, 0, g->first[b1 + 1], i0, i1, j, k);
 }
 
-/* Whom entry m of g is near to in g itself: each pair once, so half of the cells around */
+/* Bodies near entry m of g in g itself: half of the cells around, so that a pair is found once. */
 static bool look_here(const struct seeker *s, const struct grid *g, int64_t m)
 {
     int64_t i = s->e->cell[0], j = s->e->cell[1], k = s->e->cell[2];
     int64_t end = g->first[bucket(g, i, j, k) + 1];
-    if (!look(s, g, m + 1, end, i, i, j, k) || !look_row(s, g, i + 1, i + 1, j, k) ||
-        !look_row(s, g, i - 1, i + 1, j + 1, k))
+    if (!look_at(s, g, m + 1, end, i, i, j, k) || !look_along(s, g, i + 1, i + 1, j, k) ||
+        !look_along(s, g, i - 1, i + 1, j + 1, k))
         return false;
     for (int64_t l = j - 1; l <= j + 1 && s->p->dim == 3; l++)
-        if (!look_row(s, g, i - 1, i + 1, l, k + 1)) return false;
+        if (!look_along(s, g, i - 1, i + 1, l, k + 1)) return false;
     return true;
 }
 
-/* And in a grid of larger bodies: all around */
+/* Bodies near it in g, a grid of larger bodies: all cells around it. */
 static bool look_around(const struct seeker *s, const struct grid *g)
 {
     const vec3 x = s->e->x;
@@ -201,20 +208,20 @@ static bool look_around(const struct seeker *s, const struct grid *g)
     int64_t up = s->p->dim == 3;
     for (int64_t m = k - up; m <= k + up; m++)
         for (int64_t l = j - 1; l <= j + 1; l++)
-            if (!look_row(s, g, i - 1, i + 1, l, m)) return false;
+            if (!look_along(s, g, i - 1, i + 1, l, m)) return false;
     return true;
 }
 
-/* By (a, b): a counting sort on a, then each a's few by b. */
+/* Sorts by (a, b): a counting sort by a, then the few pairs of each a by b. */
 static bool pairs_sort(struct neighbours *s)
 {
     int64_t *first = calloc((size_t)s->bodies + 2, sizeof *first);
     struct pair *sorted = calloc((size_t)(s->n + 1), sizeof *sorted);
-    bool room = first && sorted;
-    for (int64_t i = 0; room && i < s->n; i++) first[s->pair[i].a + 2]++;
-    for (int64_t a = 0; room && a < s->bodies; a++) first[a + 2] += first[a + 1];
-    for (int64_t i = 0; room && i < s->n; i++) sorted[first[s->pair[i].a + 1]++] = s->pair[i];
-    for (int64_t a = 0; room && a < s->bodies; a++)
+    bool allocated = first && sorted;
+    for (int64_t i = 0; allocated && i < s->n; i++) first[s->pair[i].a + 2]++;
+    for (int64_t a = 0; allocated && a < s->bodies; a++) first[a + 2] += first[a + 1];
+    for (int64_t i = 0; allocated && i < s->n; i++) sorted[first[s->pair[i].a + 1]++] = s->pair[i];
+    for (int64_t a = 0; allocated && a < s->bodies; a++)
         for (int64_t i = first[a] + 1; i < first[a + 1]; i++) {
             struct pair x = sorted[i];
             int64_t k = i;
@@ -222,7 +229,7 @@ static bool pairs_sort(struct neighbours *s)
             sorted[k] = x;
         }
     free(first);
-    if (!room) {
+    if (!allocated) {
         free(sorted);
         return false;
     }
@@ -231,29 +238,30 @@ static bool pairs_sort(struct neighbours *s)
     return true;
 }
 
-static bool list(struct neighbours *s, const struct packing *p, const vec3 *x)
+static bool make_list(struct neighbours *s, const struct packing *p, const vec3 *x)
 {
     struct grid g[LEVELS];
     memset(g, 0, sizeof g);
-    bool room = grids_build(g, p, x, s->reach);
+    bool allocated = grids_build(g, p, x, s->reach);
     s->n = 0;
-    for (int l = 0; room && l < LEVELS; l++)
-        for (int64_t m = 0; room && m < g[l].n; m++) {
+    for (int l = 0; allocated && l < LEVELS; l++)
+        for (int64_t m = 0; allocated && m < g[l].n; m++) {
             const struct seeker k = { p, &g[l].entry[m], s->reach, s };
-            for (int b = 0; room && b < l; b++)
-                if (g[b].n) room = look_around(&k, &g[b]);
-            room = room && look_here(&k, &g[l], m);
+            for (int b = 0; allocated && b < l; b++)
+                if (g[b].n) allocated = look_around(&k, &g[b]);
+            allocated = allocated && look_here(&k, &g[l], m);
         }
     grids_free(g);
-    return room && pairs_sort(s);
+    return allocated && pairs_sort(s);
 }
 
 /* ---- from step to step ---- */
 
-/* Can no pair that is not listed have a gap of `gap`? None has moved half of what was to spare. */
-static bool serves(const struct neighbours *s, const vec3 *x, double gap)
+/* Has the list still every pair with at most this gap (m)? Yes if no body has moved by half of what
+   the list reaches further. */
+static bool list_serves(const struct neighbours *s, const vec3 *x, double gap)
 {
-    double most = 0.49 * (s->reach - gap); // rounding has the rest
+    double most = 0.49 * (s->reach - gap); // not 0.5: a margin for rounding
     if (!s->listed || most < 0) return false;
     for (int64_t i = 0; i < s->bodies; i++) {
         vec3 d = v3_sub(x[i], s->listed[i]);
@@ -262,25 +270,25 @@ static bool serves(const struct neighbours *s, const vec3 *x, double gap)
     return true;
 }
 
-/* m to spare for KEEP_STEPS more steps as fast as the fastest body; none if that takes in crowds. */
-static double spare(const struct packing *p)
+/* m: what a list shall reach further. Twice the way of KEEP_STEPS steps: both bodies may move. */
+static double spare_reach(const struct packing *p)
 {
     double v2 = 0, r = 0;
     for (int64_t i = 0; i < p->n; i++) v2 = fmax(v2, v3_dot(p->v[i], p->v[i])), r += p->radius[i];
     r /= (double)(p->n ? p->n : 1);
-    double s = fmax(2 * KEEP_STEPS * p->dt * sqrt(v2), 0.02 * r);
-    return s <= 0.5 * r ? s : 0;
+    double s = fmax(2 * KEEP_STEPS * p->dt * sqrt(v2), MIN_SPARE * r);
+    return s <= MAX_SPARE * r ? s : 0;
 }
 
 int neighbours_find(struct neighbours *s, const struct packing *p, const vec3 *x, double gap,
                     bool keep, struct why *why)
 {
     size_t size = (size_t)p->n * sizeof *x;
-    if (s->bodies == p->n && serves(s, x, gap)) return 0;
+    if (s->bodies == p->n && list_serves(s, x, gap)) return 0;
     vec3 *listed = keep ? realloc(s->listed, size + sizeof *x) : s->listed;
     if (keep && !listed) return why_set(why, EX_SOFTWARE, "no memory for the neighbours");
-    s->listed = listed, s->bodies = p->n, s->reach = gap + (keep ? spare(p) : 0);
-    if (!list(s, p, x)) return why_set(why, EX_SOFTWARE, "no memory for the neighbours");
+    s->listed = listed, s->bodies = p->n, s->reach = gap + (keep ? spare_reach(p) : 0);
+    if (!make_list(s, p, x)) return why_set(why, EX_SOFTWARE, "no memory for the neighbours");
     if (keep && p->n) memcpy(s->listed, x, size);
     return 0;
 }

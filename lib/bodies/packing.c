@@ -1,3 +1,4 @@
+/* bodies/packing.c: memory for a packing, and the check of its numbers. */
 #include "bodies/packing.h"
 
 #include <stdio.h>
@@ -21,9 +22,9 @@ int packing_init(struct packing *p, int dim, int64_t n, struct why *why)
     p->q = array(n, sizeof *p->q);
     p->v = array(n, sizeof *p->v);
     p->w = array(n, sizeof *p->w);
-    bool room =
+    bool allocated =
         p->radius && p->mass && p->inertia && p->id && p->kind && p->x && p->q && p->v && p->w;
-    if (!room || packing_walls(p, 0, why) || packing_kinds(p, 1, why)) {
+    if (!allocated || packing_alloc_walls(p, 0, why) || packing_alloc_kinds(p, 1, why)) {
         packing_free(p);
         return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
     }
@@ -47,7 +48,7 @@ void packing_free(struct packing *p)
     memset(p, 0, sizeof *p);
 }
 
-int packing_walls(struct packing *p, int32_t k, struct why *why)
+int packing_alloc_walls(struct packing *p, int32_t k, struct why *why)
 {
     free(p->wall);
     p->walls = k;
@@ -55,26 +56,26 @@ int packing_walls(struct packing *p, int32_t k, struct why *why)
     return p->wall ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d walls", k);
 }
 
-int packing_kinds(struct packing *p, int32_t k, struct why *why)
+int packing_alloc_kinds(struct packing *p, int32_t k, struct why *why)
 {
     kinds_free(p);
     p->kind_name = array(k, sizeof *p->kind_name);
     p->mu = array((int64_t)k * k, sizeof *p->mu);
     p->en = array((int64_t)k * k, sizeof *p->en);
     p->et = array((int64_t)k * k, sizeof *p->et);
-    bool room = p->kind_name && p->mu && p->en && p->et;
-    for (p->kinds = 0; room && p->kinds < k; p->kinds++) {
+    bool allocated = p->kind_name && p->mu && p->en && p->et;
+    for (p->kinds = 0; allocated && p->kinds < k; p->kinds++) {
         char name[16];
         snprintf(name, sizeof name, "%d", p->kinds);
-        room = (p->kind_name[p->kinds] = strdup(name));
+        allocated = (p->kind_name[p->kinds] = strdup(name));
     }
-    return room ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d kinds", k);
+    return allocated ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d kinds", k);
 }
 
 int packing_copy(struct packing *to, const struct packing *p, struct why *why)
 {
     if (packing_init(to, p->dim, p->n, why)) return why->status;
-    if (packing_walls(to, p->walls, why) || packing_kinds(to, p->kinds, why)) goto fail;
+    if (packing_alloc_walls(to, p->walls, why) || packing_alloc_kinds(to, p->kinds, why)) goto fail;
     size_t n = (size_t)p->n, k2 = (size_t)p->kinds * (size_t)p->kinds;
     to->step = p->step, to->t = p->t, to->dt = p->dt, to->theta = p->theta, to->g = p->g;
     to->seed = p->seed;
@@ -160,7 +161,7 @@ int packing_check(const struct packing *p, struct why *why)
     return 0;
 }
 
-void packing_body(int dim, double radius, double density, double *mass, double *inertia)
+void packing_solid(int dim, double radius, double density, double *mass, double *inertia)
 {
     double r2 = radius * radius;
     if (dim == 2) {

@@ -1,5 +1,6 @@
 /*
- * bodies/packing.h: bodies, walls and the parameters of the motion: arrays, because they are the datasets.
+ * bodies/packing.h: bodies, walls and materials, and the parameters of the motion. The bodies are
+ * arrays because documents store them so, a dataset each.
  *
  * In the plane (dim 2) the bodies are discs in z = 0 that turn about z.
  */
@@ -12,10 +13,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* A half-space's border: bodies stay on the side that the normal points to. */
+/* A plane, in the plane a line: bodies stay on the side that the normal points to. */
 struct wall {
-    vec3 x, n;    /* m: a point of it at t = 0; unit normal */
-    vec3 v;       /* m/s: it travels at x + v t */
+    vec3 x, n;    /* m: a point on it at t = 0; unit normal */
+    vec3 v;       /* m/s: at time t the point is at x + v t */
     int32_t kind; /* row of the material tables */
 };
 
@@ -31,7 +32,7 @@ struct packing {
     double *radius;  /* [n] m */
     double *mass;    /* [n] kg; 0: immovable or prescribed */
     double *inertia; /* [n] kg m^2 */
-    int32_t *id;     /* [n] a name that lasts */
+    int32_t *id;     /* [n] a number that stays with the body */
     int32_t *kind;   /* [n] row of the material tables */
     vec3 *x;         /* [n] m */
     quat *q;         /* [n] orientation */
@@ -42,36 +43,36 @@ struct packing {
 
     int32_t kinds;
     char **kind_name; /* [kinds] */
-    double *mu, *en,
-        *et; /* [kinds * kinds], symmetric: friction; restitution, normal, tangential */
+    double *mu;       /* [kinds * kinds], symmetric: friction */
+    double *en, *et;  /* [kinds * kinds], symmetric: normal and tangential restitution */
 
     char *scene; /* the JSON it was built from, or NULL */
 };
 
-/* All zero, arrays of n bodies (identity orientation, id = index), one kind "ball" with mu = en =
-   et = 0, dt = 0, theta 1/2. Returns 0 or EX_SOFTWARE when memory is short. */
-int packing_init(struct packing *, int dim, int64_t n, struct why *);
-void packing_free(struct packing *);
+/* n bodies (orientation 1, id = index), no wall and one kind "0"; theta = 1/2; all else is zero, dt
+   too. Returns 0 or EX_SOFTWARE. */
+int packing_init(struct packing *p, int dim, int64_t n, struct why *why);
+void packing_free(struct packing *p);
 
-/* Room for k walls, k kinds; what was there is lost. Kinds get the names "0", "1" ... */
-int packing_walls(struct packing *, int32_t k, struct why *);
-int packing_kinds(struct packing *, int32_t k, struct why *);
+/* k walls, k kinds, in place of the old ones; their numbers are 0 and kinds are named "0", "1" ...
+   Each returns 0 or EX_SOFTWARE. */
+int packing_alloc_walls(struct packing *p, int32_t k, struct why *why);
+int packing_alloc_kinds(struct packing *p, int32_t k, struct why *why);
 
-/* to = a deep copy of from; to need not be initialised. */
-int packing_copy(struct packing *to, const struct packing *from, struct why *);
+/* to = a deep copy of from; to need not be initialised. Returns 0 or EX_SOFTWARE. */
+int packing_copy(struct packing *to, const struct packing *from, struct why *why);
 
 /* Is every number finite and in its range (radius > 0, mass >= 0, mu >= 0, 0 <= e <= 1, dt > 0,
-   unit normals ...)? Returns 0 or EX_DATAERR, naming the first body or wall that is not. */
-int packing_check(const struct packing *, struct why *);
+   unit normals ...)? Returns 0, or EX_DATAERR with the first body or wall that fails. */
+int packing_check(const struct packing *p, struct why *why);
 
-/* The position in which contacts are sought and frames taken: q + (1 - theta) dt qdot
-   [globalmapapp1]. */
+/* m: the position at which contacts are detected, q + (1 - theta) dt qdot [globalmapapp1]. */
 static inline vec3 packing_predict(const struct packing *p, int64_t i)
 {
     return v3_axpy(p->x[i], (1 - p->theta) * p->dt, p->v[i]);
 }
 
-/* Which of bodies a and b (a may be a wall, < 0) can move; how many. */
+/* body[] = those of bodies a and b that can move (mass > 0; a < 0 is a wall); returns how many. */
 static inline int packing_movable(const struct packing *p, int32_t a, int32_t b, int32_t body[2])
 {
     int k = 0;
@@ -80,7 +81,8 @@ static inline int packing_movable(const struct packing *p, int32_t a, int32_t b,
     return k;
 }
 
-/* Mass and inertia of a solid ball (disc) of this radius (m) and density (kg m^-3, kg m^-2). */
-void packing_body(int dim, double radius, double density, double *mass, double *inertia);
+/* Mass (kg) and inertia (kg m^2) of a solid ball or disc: radius in m, density in kg m^-3, of a
+   disc in kg m^-2. */
+void packing_solid(int dim, double radius, double density, double *mass, double *inertia);
 
 #endif

@@ -1,3 +1,4 @@
+/* draw/band.c: the memory of a band, and the samples near a point. */
 #include "draw/band.h"
 
 #include <stdlib.h>

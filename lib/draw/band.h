@@ -1,6 +1,6 @@
 /*
- * draw/band.h: a band of a picture at work: the things placed among its samples, and what is known of
- * each sample so far.
+ * draw/band.h: what raster and shade share: struct raster, the things placed among the samples of a
+ * picture, and struct band, some rows of samples with what has been found at each.
  *
  * Lengths are in samples here: x to the right, y down, z towards the viewer; sample (i, j) lies at
  * (i + 1/2, j + 1/2).
@@ -14,43 +14,45 @@
 
 #include <stddef.h>
 
+/* A ball or disc */
 struct spot {
-    vec3 x;
-    double r;
+    vec3 x;   /* its centre */
+    double r; /* its radius */
     int64_t body;
-    struct rgb own;
+    struct rgb own; /* the body's colour */
 };
 
-/* A floor: the plane z = plane[0] + plane[1] x + plane[2] y inside of a convex polygon. Where it is
-   seen at (x, y), square[k] says in the same way, in squares of its pattern. */
+/* A floor: the plane z = plane[0] + plane[1] x + plane[2] y inside a convex polygon. square[k], in
+   the same form, is the coordinate along side k of its pattern, in squares, of what is seen at (x,
+   y). */
 struct ground {
     vec3 n;
     double plane[3], square[2][3];
     int corners;
-    double x[WALLS_CORNERS], y[WALLS_CORNERS];
+    double x[WALLS_CORNERS], y[WALLS_CORNERS]; /* of the corners */
 };
 
 struct raster {
-    int width, height, samples; /* samples of the picture, and of a pixel, on a side */
+    int width, height, samples; /* of the picture, in samples; samples a pixel along a side */
     int threads;
     bool flat; /* discs, not balls */
     struct rgb background;
     const struct paint *paint;
-    const quat *q;          /* [bodies] orientations, */
-    vec3 right, up, toward; /* and how the camera stands */
+    const quat *q;          /* [bodies] orientations */
+    vec3 right, up, toward; /* of the camera */
     int64_t spots;
     struct spot *spot;
     int grounds, edges;
     struct ground *ground;
     struct edge *edge;
-    double thick; /* half of an edge */
+    double thick; /* half the width of an edge */
 };
 
-#define SHADE_REACH 2.2 /* radii from its centre a ball darkens what is there */
+#define SHADE_REACH 2.2 /* radii: how far from its centre a ball darkens other things */
 
-enum { NOTHING = -1, GROUND = -2 }; /* and GROUND - i: floor i; from 0 on a spot */
+enum { NOTHING = -1, GROUND = -2 }; /* what is seen; GROUND - i: floor i; i >= 0: spot i */
 
-enum { SHADE_TILE = 8 };
+enum { SHADE_TILE = 8 }; /* samples: side of the squares of which shade_near knows the depths */
 
 struct span {
     double lo, hi;
@@ -62,29 +64,30 @@ struct normal {
 
 struct band {
     int width, y0, y1;  /* samples: all of these columns, rows y0 to y1 - 1 */
-    double *z;          /* [width (y1 - y0)] of what is in front, -INFINITY where nothing is */
-    int64_t *what;      /* [...] and what it is */
-    struct normal *n;   /* [...] and where it looks */
-    struct span *range; /* of squares of samples: between which depths something is in them */
-    float *dark;        /* [...] how much of the sky is hidden */
-    float *edge;        /* [...] how much of an edge is over it */
+    double *z;          /* [width (y1 - y0)] depth of what is in front; -INFINITY: nothing */
+    int64_t *what;      /* [width (y1 - y0)] what is in front */
+    struct normal *n;   /* [width (y1 - y0)] its unit normal */
+    struct span *range; /* [squares] least and largest depth of what is in front */
+    float *dark;        /* [width (y1 - y0)] share of the sky that is hidden */
+    float *edge;        /* [width (y1 - y0)] opacity of an edge over it, 0 to 1 */
     int64_t spots;
-    int64_t *spot; /* those near the band */
+    int64_t *spot; /* [spots] those near the band */
 };
 
-/* The samples of the band that lie in [x - r, x + r] x [y - r, y + r]. */
+/* Samples x0 <= x < x1, y0 <= y < y1 */
 struct patch {
     int x0, x1, y0, y1;
 };
-struct patch band_patch(const struct band *, double x, double y, double r);
+/* The samples of the band in [x - r, x + r] x [y - r, y + r] */
+struct patch band_patch(const struct band *b, double x, double y, double r);
 
-/* x as an index from lo to hi */
+/* x as an integer, not below lo (also where x is not a number) and not above hi */
 int band_clamp(double x, int lo, int hi);
 
-/* Room for a band of `rows` rows of samples; false when memory is short. Free in any case. */
-bool band_init(struct band *, const struct raster *, int rows);
-void band_free(struct band *);
-
+/* Memory for `rows` rows of samples; false when it is short. To be freed in both cases. */
+bool band_init(struct band *b, const struct raster *s, int rows);
+void band_free(struct band *b);
+/* The index of a sample */
 static inline size_t band_at(const struct band *b, int x, int y)
 {
     return (size_t)(y - b->y0) * (size_t)b->width + (size_t)x;

@@ -1,3 +1,4 @@
+/* draw/camera.c: the camera turned, and fitted to a window. */
 #include "draw/camera.h"
 
 void camera_turn(struct camera *c, int dim, double azimuth, double elevation)
@@ -19,20 +20,20 @@ void window_add(struct window *w, const struct camera *c, vec3 x, double r)
     w->v0 = fmin(w->v0, s.y - r), w->v1 = fmax(w->v1, s.y + r);
 }
 
-/* Even, for the encoders of films. */
-static int even(double x)
+/* The nearest even number: encoders of films want even sides. */
+static int round_even(double x)
 {
     return 2 * (int)floor(0.5 * x + 0.5);
 }
 
 void camera_fit(struct camera *c, const struct window *w, double margin, int width, int height)
 {
-    // a window without a size, or with one whose square is nothing, is still looked at
+    // at least 1e-150 m, so that a window without a size is shown and squares do not vanish
     double du = fmax(w->u1 - w->u0, 1e-150), dv = fmax(w->v1 - w->v0, 1e-150);
     if (!width || !height) {
         double shape = fmin(fmax(du / dv, 1.0 / 3), 3);
-        width = shape > 1 ? CAMERA_SIDE : even(CAMERA_SIDE * shape);
-        height = shape > 1 ? even(CAMERA_SIDE / shape) : CAMERA_SIDE;
+        width = shape > 1 ? CAMERA_SIDE : round_even(CAMERA_SIDE * shape);
+        height = shape > 1 ? round_even(CAMERA_SIDE / shape) : CAMERA_SIDE;
     }
     c->width = width, c->height = height;
     c->u = 0.5 * w->u0 + 0.5 * w->u1, c->v = 0.5 * w->v0 + 0.5 * w->v1;

@@ -1,8 +1,9 @@
+/* draw/paint.c: palettes, sRGB, and the marks. */
 #include "draw/paint.h"
 
 #include <float.h>
 
-/* Ten colours that are told apart [Tableau 10]. */
+/* Ten colours that are easy to tell apart [Tableau 10] */
 static const unsigned ten[10] = { 0x4e79a7, 0xf28e2b, 0xe15759, 0x76b7b2, 0x59a14f,
                                   0xedc948, 0xb07aa1, 0xff9da7, 0x9c755f, 0xbab0ac };
 
@@ -27,7 +28,7 @@ static double encoded(double l)
     return l <= 0.0031308 ? 12.92 * l : 1.055 * pow(l, 1 / 2.4) - 0.055;
 }
 
-enum { STEPS = 4096 };
+enum { STEPS = 4096 }; /* of linear light in the table of bytes */
 static unsigned char bytes[STEPS + 1];
 
 unsigned char rgb_byte(float light)
@@ -63,8 +64,8 @@ void paint_init(struct paint *p, enum colour by, bool plain)
     }
 }
 
-/* The number that the palette shows. */
-static double value(const struct paint *p, const struct packing *k, int64_t i)
+/* The number that the palette shows: radius (m) or speed (m/s) */
+static double palette_value(const struct paint *p, const struct packing *k, int64_t i)
 {
     if (p->by == COLOUR_RADIUS) return k->radius[i];
     return fmin(hypot(hypot(k->v[i].x, k->v[i].y), k->v[i].z), DBL_MAX);
@@ -74,7 +75,7 @@ void paint_range(struct paint *p, const struct packing *k)
 {
     if (p->fixed || p->by == COLOUR_KIND || p->by == COLOUR_ID) return;
     for (int64_t i = 0; i < k->n; i++) {
-        double x = value(p, k, i);
+        double x = palette_value(p, k, i);
         p->lo = fmin(p->lo, p->by == COLOUR_SPEED ? 0 : x), p->hi = fmax(p->hi, x);
     }
 }
@@ -83,14 +84,14 @@ struct rgb paint_body(const struct paint *p, const struct packing *k, int64_t i)
 {
     if (p->by == COLOUR_KIND) return rgb_of(ten[k->kind[i] % 10]);
     if (p->by == COLOUR_ID) return rgb_of(ten[(uint32_t)k->id[i] % 10]);
-    double x = value(p, k, i), t = (x - p->lo) / (p->hi - p->lo);
-    if (!(p->hi > p->lo)) t = x < p->lo ? 0 : x > p->hi ? 1 : 0.5; // all were alike
+    double x = palette_value(p, k, i), t = (x - p->lo) / (p->hi - p->lo);
+    if (!(p->hi > p->lo)) t = x < p->lo ? 0 : x > p->hi ? 1 : 0.5; // all have one value
     return p->palette[(int)(255 * fmin(fmax(t, 0), 1) + 0.5)];
 }
 
 static const struct rgb black = { 0, 0, 0 };
 
-/* Paler as the eye has it, so that dark colours stay what they are on the palette. */
+/* Mixed with white on square roots of light, near to what the eye sees as even steps */
 static struct rgb pale(struct rgb c)
 {
     const float t = 0.42F;
@@ -108,5 +109,5 @@ struct rgb paint_ball(const struct paint *p, struct rgb own, vec3 b)
 struct rgb paint_disc(const struct paint *p, struct rgb own, vec3 b)
 {
     if (p->plain) return own;
-    return b.y > 0 ? pale(own) : own; // the half that was up at first
+    return b.y > 0 ? pale(own) : own; // the half that is up when the disc is not turned
 }

@@ -1,4 +1,4 @@
-/* draw/paint.h: which colour a body has, and the mark by which one sees it turn. */
+/* draw/paint.h: the colour of a body, and the marks that show how it turns. */
 #ifndef NSD_PAINT_H
 #define NSD_PAINT_H
 
@@ -7,14 +7,14 @@
 #define PAINT_COLOURS "radius|speed|kind|id"
 enum colour { COLOUR_RADIUS, COLOUR_SPEED, COLOUR_KIND, COLOUR_ID };
 
-/* Light, linear, 0 to 1: what can be added and averaged. */
+/* Linear light, 0 to 1, which can be added and averaged */
 struct rgb {
     float r, g, b;
 };
 
 struct rgb rgb_mix(struct rgb a, struct rgb b, float t); /* (1 - t) a + t b */
-struct rgb rgb_of(unsigned code);                        /* 0xRRGGBB, sRGB */
-/* The sRGB byte for linear light, with its table made by paint_init. */
+struct rgb rgb_of(unsigned code);                        /* of 0xRRGGBB, sRGB */
+/* The sRGB byte for linear light; paint_init must have made its table. */
 unsigned char rgb_byte(float light);
 
 struct paint {
@@ -25,14 +25,14 @@ struct paint {
     struct rgb palette[256];
 };
 
-void paint_init(struct paint *, enum colour, bool plain);
-/* lo and hi come to include this packing; speeds begin at 0. */
-void paint_range(struct paint *, const struct packing *);
-/* A body's own colour. */
-struct rgb paint_body(const struct paint *, const struct packing *, int64_t i);
-/* The same where the point (unit vector, body frame) of a ball is; and of a disc, inside of the
-   unit circle. */
-struct rgb paint_ball(const struct paint *, struct rgb own, vec3 point);
-struct rgb paint_disc(const struct paint *, struct rgb own, vec3 point);
+void paint_init(struct paint *p, enum colour by, bool plain);
+/* Widens [lo, hi] to the values of this packing, unless fixed; speeds begin at 0. */
+void paint_range(struct paint *p, const struct packing *packing);
+/* The colour of body i, without marks */
+struct rgb paint_body(const struct paint *p, const struct packing *packing, int64_t i);
+/* The colour with marks, at a point in the body's axes: of a ball a unit vector, of a disc within
+   the unit circle. own: paint_body() of it. */
+struct rgb paint_ball(const struct paint *p, struct rgb own, vec3 point);
+struct rgb paint_disc(const struct paint *p, struct rgb own, vec3 point);
 
 #endif

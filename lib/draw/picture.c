@@ -1,3 +1,4 @@
+/* draw/picture.c: PNG by libpng, and its way into a file. */
 #include "draw/picture.h"
 
 #include <errno.h>
@@ -43,27 +44,27 @@ static void append(png_structp png, png_bytep data, size_t n)
     b->size += n;
 }
 
-static void nothing(png_structp png)
+static void flush_nothing(png_structp png)
 {
     (void)png;
 }
 
-static void silent(png_structp png, png_const_charp text)
+static void fail_silently(png_structp png, png_const_charp text)
 {
     (void)text;
     png_longjmp(png, 1);
 }
 
-/* No date and no name in it: the same picture gives the same bytes. */
+/* Without a date or a name, so that the same picture gives the same bytes. */
 static int encode(const struct picture *p, struct bytes *b, struct why *why)
 {
-    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, silent, NULL);
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, fail_silently, NULL);
     png_infop info = png ? png_create_info_struct(png) : NULL;
     if (!info || setjmp(png_jmpbuf(png))) {
         png_destroy_write_struct(&png, &info);
         return why_set(why, EX_SOFTWARE, "no memory for the PNG");
     }
-    png_set_write_fn(png, b, append, nothing);
+    png_set_write_fn(png, b, append, flush_nothing);
     png_set_IHDR(png, info, (png_uint_32)p->width, (png_uint_32)p->height, 8, PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
@@ -88,20 +89,20 @@ static bool write_all(int fd, const struct bytes *b)
     return true;
 }
 
-/* What is half written into a regular file is taken back. */
-static int write_there(int fd, const struct bytes *b, const char *name, struct why *why)
+/* Writes to an open file; when that fails, a regular file is cut to the length that it had. */
+static int write_open(int fd, const struct bytes *b, const char *name, struct why *why)
 {
     off_t start = lseek(fd, 0, fcntl(fd, F_GETFL) & O_APPEND ? SEEK_END : SEEK_CUR);
     if (!write_all(fd, b)) {
         why_set(why, EX_IOERR, "%s: %s", name, strerror(errno));
-        if (start >= 0 && ftruncate(fd, start)) errno = 0; // nothing more can be done
+        if (start >= 0 && ftruncate(fd, start)) errno = 0; // there is nothing more that can be done
     }
     if (close(fd)) why_set(why, EX_IOERR, "%s: %s", name, strerror(errno));
     return why->status;
 }
 
-/* Under another name first; the right one comes last, with all the bytes behind it. */
-static int write_beside(const char *path, const char *name, const struct bytes *b, struct why *why)
+/* Writes under another name in the same folder, then renames. */
+static int write_renamed(const char *path, const char *name, const struct bytes *b, struct why *why)
 {
     const char *slash = strrchr(path, '/');
     int folder = slash ? (int)(slash - path) + 1 : 0;
@@ -111,7 +112,8 @@ static int write_beside(const char *path, const char *name, const struct bytes *
     snprintf(other, room, "%.*s.nsd-XXXXXX", folder, path);
     int fd = mkstemp(other);
     bool made = fd >= 0, good = made && write_all(fd, b);
-    mode_t mask = umask(0); // mkstemp is for secrets, a picture is as readable as other files
+    mode_t mask =
+        umask(0); // mkstemp lets only the owner read; a picture is as readable as other files
     umask(mask);
     good = good && !fchmod(fd, 0666 & ~mask);
     int trouble = errno;
@@ -131,15 +133,15 @@ int picture_write(const struct picture *p, const char *path, struct why *why)
         free(b.at);
         return why->status;
     }
-    char *real = path ? realpath(path, NULL) : NULL; // a link stays one
+    char *real = path ? realpath(path, NULL) : NULL; // a symbolic link is followed, not replaced
     bool special = real && !stat(real, &st) && !S_ISREG(st.st_mode);
     int fd = !path ? STDOUT_FILENO : special ? open(real, O_WRONLY | O_CLOEXEC) : -1;
     if (special && fd < 0)
         why_set(why, EX_IOERR, "%s: %s", path, strerror(errno));
     else if (fd >= 0)
-        write_there(fd, &b, path ? path : "standard output", why);
+        write_open(fd, &b, path ? path : "standard output", why);
     else
-        write_beside(real ? real : path, path, &b, why);
+        write_renamed(real ? real : path, path, &b, why);
     free(real);
     free(b.at);
     return why->status;

@@ -1,23 +1,23 @@
-/* draw/picture.h: a picture in memory, as PNG, and into a file that is whole or not there. */
+/* draw/picture.h: a picture in memory, written as a PNG file that is complete or not there. */
 #ifndef NSD_PICTURE_H
 #define NSD_PICTURE_H
 
 #include "base/why.h"
 
 struct picture {
-    int width, height;
-    unsigned char *rgb; /* [3 width height] sRGB, the uppermost row first */
+    int width, height;  /* pixels */
+    unsigned char *rgb; /* [3 width height] sRGB, the top row first */
 };
 
 /* Returns 0 or EX_SOFTWARE when memory is short. */
-int picture_init(struct picture *, int width, int height, struct why *);
-void picture_free(struct picture *);
+int picture_init(struct picture *p, int width, int height, struct why *why);
+void picture_free(struct picture *p);
 
 /*
- * As PNG to `path`, or to standard output when it is NULL. A file gets its name when all of it is
- * on the disk; what had the name before stays until then, and where it fails (EX_IOERR). A device
- * or a pipe is written as it is.
+ * Writes a PNG to `path`, or to standard output when that is NULL. A file is written under another
+ * name and renamed when complete; a file that had the name before stays until then, and if writing
+ * fails. A device or a pipe is written directly. Returns 0, EX_IOERR or EX_SOFTWARE.
  */
-int picture_write(const struct picture *, const char *path, struct why *);
+int picture_write(const struct picture *p, const char *path, struct why *why);
 
 #endif

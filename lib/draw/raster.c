@@ -1,11 +1,12 @@
+/* draw/raster.c: what is in front at each sample, band by band. */
 #include "draw/raster.h"
 
 #include "draw/shade.h"
 
 #include <stdlib.h>
 
-/* Samples of a band, about, which take 40 bytes each; a row of pixels at least. */
-enum { BAND = 1 << 17 };
+/* Samples of a band, about 40 bytes each. A band has at least one row of pixels. */
+enum { BAND_SAMPLES = 1 << 17 };
 
 /* ---- what is in front ---- */
 
@@ -46,7 +47,7 @@ static void draw_ground(struct band *b, const struct raster *s, int i)
     }
 }
 
-/* The depth of what is seen at k, continued to (-x, -y) from there where it is a steep floor. */
+/* The depth of what is seen at k; of a floor that of its plane at (-x, -y) from there. */
 static double depth_beside(const struct band *b, const struct raster *s, size_t k, double x,
                            double y)
 {
@@ -55,7 +56,7 @@ static double depth_beside(const struct band *b, const struct raster *s, size_t 
     return b->z[k] - plane[1] * x - plane[2] * y;
 }
 
-/* An edge hides behind what is in front of it, and only shimmers over bodies behind it. */
+/* An edge is hidden by what is in front of it, and faint over bodies behind it. */
 static void draw_edge(struct band *b, const struct raster *s, const struct edge *e)
 {
     double dx = e->b.x - e->a.x, dy = e->b.y - e->a.y, length2 = dx * dx + dy * dy;
@@ -63,7 +64,7 @@ static void draw_edge(struct band *b, const struct raster *s, const struct edge 
     int y0 = band_clamp(floor(fmin(e->a.y, e->b.y) - h), b->y0, b->y1);
     int y1 = band_clamp(ceil(fmax(e->a.y, e->b.y) + h), b->y0, b->y1);
     for (int y = y0; y < y1; y++) {
-        // of a slanting stroke the row has a short piece, `half` to each side of `middle`
+        // the row crosses a slanting edge in a short piece, `half` to each side of `middle`
         double py = y + 0.5 - e->a.y, half = h * sqrt(length2) / fabs(dy), middle = py * dx / dy;
         double lo = fmin(0, dx) - h, hi = fmax(0, dx) + h;
         if (fabs(dy) > 1e-9) lo = fmax(lo, middle - half), hi = fmin(hi, middle + half);
@@ -90,7 +91,7 @@ static void band_draw(struct band *b, const struct raster *s, struct picture *p)
     for (size_t k = 0; k < n; k++)
         b->z[k] = -INFINITY, b->what[k] = NOTHING, b->dark[k] = b->edge[k] = 0;
     b->spots = 0;
-    for (int64_t i = 0; i < s->spots; i++) { // those in it, and those that darken something in it
+    for (int64_t i = 0; i < s->spots; i++) { // those that are seen in it or darken it
         const struct spot *o = &s->spot[i];
         double reach = SHADE_REACH * o->r;
         if (o->x.y + reach > b->y0 && o->x.y - reach < b->y1) b->spot[b->spots++] = i;
@@ -105,15 +106,15 @@ static void band_draw(struct band *b, const struct raster *s, struct picture *p)
 
 int raster_draw(const struct raster *s, struct picture *p, struct why *why)
 {
-    int rows = BAND / (s->width * s->samples);
+    int rows = BAND_SAMPLES / (s->width * s->samples);
     rows = rows < 1 ? 1 : rows > p->height ? p->height : rows; // of pixels
     int bands = (p->height + rows - 1) / rows;
     bool failed = false;
 #pragma omp parallel num_threads(s->threads)
     {
         struct band b;
-        bool room = band_init(&b, s, rows * s->samples);
-        if (!room) {
+        bool allocated = band_init(&b, s, rows * s->samples);
+        if (!allocated) {
 #pragma omp atomic write
             failed = true;
         }
@@ -121,7 +122,7 @@ int raster_draw(const struct raster *s, struct picture *p, struct why *why)
         for (int i = 0; i < bands; i++) {
             int end = (i + 1) * rows < p->height ? (i + 1) * rows : p->height;
             b.y0 = i * rows * s->samples, b.y1 = end * s->samples;
-            if (room) band_draw(&b, s, p);
+            if (allocated) band_draw(&b, s, p);
         }
         band_free(&b);
     }

@@ -1,3 +1,4 @@
+/* draw/shade.c: normals, the hidden part of the sky, and the light of balls, discs and floors. */
 #include "draw/shade.h"
 
 void shade_normals(struct band *b, const struct raster *s)
@@ -21,7 +22,7 @@ void shade_normals(struct band *b, const struct raster *s)
 
 /* ---- the sky ---- */
 
-/* Between which depths something is, square by square; lo > hi where nothing is. */
+/* The least and largest depth in each square; lo > hi where there is nothing. */
 static void find_ranges(struct band *b)
 {
     int across = (b->width + SHADE_TILE - 1) / SHADE_TILE;
@@ -36,7 +37,7 @@ static void find_ranges(struct band *b)
         }
 }
 
-/* What ball i hides of the sky over the samples of one square. */
+/* Adds what ball i hides of the sky over the samples t. */
 static void darken(struct band *b, const struct spot *o, int64_t i, struct patch t)
 {
     double far2 = SHADE_REACH * SHADE_REACH * o->r * o->r;
@@ -50,7 +51,7 @@ static void darken(struct band *b, const struct spot *o, int64_t i, struct patch
             if (!(d2 < far2) || b->what[k] == i || b->what[k] == NOTHING) continue;
             double toward = b->n[k].x * dx + b->n[k].y * dy + b->n[k].z * dz;
             if (toward <= 0) continue;
-            // (r/d)^2, less what it is at the reach, so that nothing ends abruptly
+            // (r/d)^2 less its value at the reach, so that the shadow ends smoothly
             double part = o->r * o->r * (1 / d2 - 1 / far2);
             b->dark[k] += (float)(toward / sqrt(d2) * fmin(part, 1));
         }
@@ -66,7 +67,7 @@ void shade_near(struct band *b, const struct raster *s)
         int64_t i = b->spot[k];
         const struct spot *o = &s->spot[i];
         double reach = SHADE_REACH * o->r;
-        if (o->r < 1) continue; // less than what a sample tells of it
+        if (o->r < 1) continue; // smaller than a sample can show
         struct patch t = band_patch(b, o->x.x, o->x.y, reach);
         int line = (t.y0 - b->y0) / SHADE_TILE;
         for (int y = t.y0; y < t.y1; line++) {
@@ -86,10 +87,10 @@ void shade_near(struct band *b, const struct raster *s)
 
 /* ---- light ---- */
 
-static const vec3 lamp = { -0.38, -0.52, 0.765 }; // y goes down here
+static const vec3 lamp = { -0.38, -0.52, 0.765 }; // unit vector to the lamp; y points down
 
-/* Floors and edges are faint, whatever they are drawn on. */
-static bool bright(const struct raster *s)
+/* Floors and edges are drawn faint, so their grey depends on the background. */
+static bool bright_background(const struct raster *s)
 {
     return s->background.r + s->background.g + s->background.b > 0.6F;
 }
@@ -99,22 +100,24 @@ static struct rgb scaled(struct rgb a, float t, float plus)
     return (struct rgb){ a.r * t + plus, a.g * t + plus, a.b * t + plus };
 }
 
-/* The columns are where the camera's axes lie in the body's frame. */
+/* The camera's axes right, up, toward in the axes of a body: a rotation kept for its next sample */
 struct turn {
     int64_t body;
     vec3 x, y, z;
 };
 
+/* a, turned from space into the axes of a body with orientation q */
 static vec3 into_body(quat q, vec3 a)
 {
     quat c = { q.w, -q.x, -q.y, -q.z }, r = quat_mul(quat_mul(c, (quat){ 0, a.x, a.y, a.z }), q);
     return v3(r.x, r.y, r.z);
 }
 
-static vec3 turned(struct turn *t, const struct raster *s, int64_t body, double x, double y,
-                   double z)
+/* (x, y, z) of the camera, in the axes of the body */
+static vec3 camera_to_body(struct turn *t, const struct raster *s, int64_t body, double x, double y,
+                           double z)
 {
-    if (t->body != body) { // neighbours mostly show the same body
+    if (t->body != body) { // neighbouring samples mostly show the same body
         quat q = s->q[body];
         t->body = body;
         t->x = into_body(q, s->right), t->y = into_body(q, s->up), t->z = into_body(q, s->toward);
@@ -126,13 +129,13 @@ static struct rgb ball_light(const struct band *b, const struct raster *s, size_
 {
     const struct spot *o = &s->spot[b->what[k]];
     struct normal n = b->n[k];
-    struct rgb own = paint_ball(s->paint, o->own, turned(t, s, o->body, n.x, -n.y, n.z));
+    struct rgb own = paint_ball(s->paint, o->own, camera_to_body(t, s, o->body, n.x, -n.y, n.z));
     double lambert = fmax(0, n.x * lamp.x + n.y * lamp.y + n.z * lamp.z);
     double open = 1 / (1 + 2 * b->dark[k]);
-    // half way between the lamp and the viewer
+    // Blinn: h is half way between the lamp and the viewer
     double hz = lamp.z + 1, h = 1 / sqrt(lamp.x * lamp.x + lamp.y * lamp.y + hz * hz);
     double shine = fmax(0, h * (n.x * lamp.x + n.y * lamp.y + n.z * hz));
-    for (int i = 0; i < 5; i++) shine *= shine; // to the 32nd
+    for (int i = 0; i < 5; i++) shine *= shine; // to the 32nd power
     double light = open * (0.34 + 0.16 * fmax(0, -n.y)) + sqrt(open) * 0.72 * lambert;
     return scaled(own, (float)light, (float)(0.16 * shine * open));
 }
@@ -141,8 +144,8 @@ static struct rgb disc_light(const struct raster *s, const struct spot *o, doubl
                              struct turn *t)
 {
     double dx = (x - o->x.x) / o->r, dy = (o->x.y - y) / o->r, d2 = dx * dx + dy * dy;
-    struct rgb own = paint_disc(s->paint, o->own, turned(t, s, o->body, dx, dy, 0));
-    double rim = 1 - fmax(0.08, s->samples * 0.7 / o->r); // a line of a pixel at least
+    struct rgb own = paint_disc(s->paint, o->own, camera_to_body(t, s, o->body, dx, dy, 0));
+    double rim = 1 - fmax(0.08, s->samples * 0.7 / o->r); // at least 0.7 pixels
     return scaled(own, rim > 0 && d2 > rim * rim ? 0.25F : 0.95F - 0.2F * (float)d2, 0);
 }
 
@@ -154,7 +157,7 @@ static struct rgb ground_shown(const struct band *b, const struct raster *s, siz
     for (int i = 0; i < 2; i++)
         sum += floor(g->square[i][0] + g->square[i][1] * x + g->square[i][2] * y);
     bool odd = sum - 2 * floor(0.5 * sum) > 0.5;
-    float light = bright(s) ? (odd ? 0.73F : 0.86F) : (odd ? 0.05F : 0.08F);
+    float light = bright_background(s) ? (odd ? 0.73F : 0.86F) : (odd ? 0.05F : 0.08F);
     light /= 1 + 1.3F * b->dark[k];
     return (struct rgb){ light, light, light };
 }
@@ -168,7 +171,7 @@ static struct rgb sample(const struct band *b, const struct raster *s, int x, in
                    : s->flat        ? disc_light(s, &s->spot[what], x + 0.5, y + 0.5, t)
                                     : ball_light(b, s, k, t);
     if (!(b->edge[k] > 0)) return c;
-    float line = bright(s) ? 0.08F : 0.4F;
+    float line = bright_background(s) ? 0.08F : 0.4F;
     return rgb_mix(c, (struct rgb){ line, line, line }, b->edge[k]);
 }
 
@@ -183,7 +186,7 @@ void shade_pixels(const struct band *b, const struct raster *s, struct picture *
             for (int y = 0; y < n; y++)
                 for (int x = 0; x < n; x++) {
                     struct rgb c = sample(b, s, column * n + x, row * n + y, &t);
-                    // what is brighter than white counts as white, or edges would be ragged
+                    // brighter than white counts as white, or outlines would be ragged
                     sum.r += fminf(c.r, 1), sum.g += fminf(c.g, 1), sum.b += fminf(c.b, 1);
                 }
             unsigned char *out = p->rgb + 3 * ((size_t)row * (size_t)p->width + (size_t)column);

@@ -1,10 +1,11 @@
+/* draw/view.c: the window of a series, and its bodies and walls placed among the samples. */
 #include "draw/view.h"
 
 #include "draw/raster.h"
 
 #include <stdlib.h>
 
-static bool seen(const struct view *v, const struct packing *p, int64_t i)
+static bool is_shown(const struct view *v, const struct packing *p, int64_t i)
 {
     vec3 x = p->x[i];
     if (!(v3_dot(x, x) < WALLS_FAR * WALLS_FAR) || !(p->radius[i] < WALLS_FAR)) return false;
@@ -29,7 +30,7 @@ int view_extend(struct view *v, const struct packing *p, struct why *why)
             return why_set(why, EX_DATAERR, "neither bodies nor walls: nothing to see");
         v->region = v->started ? region_join(v->region, r) : r;
         for (int64_t i = 0; i < p->n; i++)
-            if (seen(v, p, i)) window_add(&v->window, &v->camera, p->x[i], p->radius[i]);
+            if (is_shown(v, p, i)) window_add(&v->window, &v->camera, p->x[i], p->radius[i]);
     }
     v->started = true;
     return 0;
@@ -46,7 +47,7 @@ void view_fit(struct view *v, const struct packing *p)
                 0);
     }
     struct walls *b = v->boxed ? NULL : malloc(sizeof *b);
-    if (b) { // without memory for it the margin must do
+    if (b) { // without memory for the walls, the window has the bodies only
         walls_build(b, p, &v->region);
         for (int i = 0; i < b->panels; i++)
             for (int k = 0; k < b->panel[i].corners; k++)
@@ -62,6 +63,7 @@ void view_fit(struct view *v, const struct packing *p)
 
 /* ---- from space to samples ---- */
 
+/* Samples: where x (m) is seen */
 static vec3 sample_of(const struct view *v, vec3 x)
 {
     const struct camera *c = &v->camera;
@@ -71,7 +73,7 @@ static vec3 sample_of(const struct view *v, vec3 x)
               k * see.z);
 }
 
-/* m: back again */
+/* The inverse, in m */
 static vec3 place_of(const struct view *v, vec3 at)
 {
     const struct camera *c = &v->camera;
@@ -81,16 +83,16 @@ static vec3 place_of(const struct view *v, vec3 at)
     return v3_axpy(x, k * at.z, c->toward);
 }
 
-/* The bodies that may be in the picture, in their order. */
+/* Places the bodies that may be in the picture, in their order; -1: no memory. */
 static int place_spots(struct raster *s, const struct view *v, const struct packing *p)
 {
     s->spot = malloc((size_t)(p->n + 1) * sizeof *s->spot);
     if (!s->spot) return -1;
-    const double k = v->camera.scale * v->samples, far = 1e100; // squares are numbers
+    const double k = v->camera.scale * v->samples, far = 1e100; // squares stay finite
     for (int64_t i = 0; i < p->n; i++) {
-        if (!seen(v, p, i)) continue;
+        if (!is_shown(v, p, i)) continue;
         vec3 x = sample_of(v, p->x[i]);
-        double r = fmax(k * p->radius[i], M_SQRT1_2); // no body falls between the samples
+        double r = fmax(k * p->radius[i], M_SQRT1_2); // so large that every body has a sample
         if (!(fabs(x.z) < far && r < far)) continue;
         if (!(x.x + r > 0 && x.x - r < s->width && x.y + r > 0 && x.y - r < s->height)) continue;
         s->spot[s->spots++] = (struct spot){ x, r, i, paint_body(&v->paint, p, i) };
@@ -122,7 +124,7 @@ static void place_ground(struct ground *g, const struct view *v, const struct pa
     vec3 along[2] = { v3_axpy(e, -v3_dot(e, f->n), f->n) };
     along[0] = v3_scale(1 / (round_length(size / 6) * v3_norm(along[0])), along[0]);
     along[1] = v3_cross(f->n, along[0]);
-    // an affine map of the picture is known from three points
+    // square[] is affine, so three points determine it
     vec3 at[3] = { { 0, 0, g->plane[0] },
                    { 1, 0, g->plane[0] + g->plane[1] },
                    { 0, 1, g->plane[0] + g->plane[2] } };
@@ -134,22 +136,22 @@ static void place_ground(struct ground *g, const struct view *v, const struct pa
     }
 }
 
-/* Floors that are seen from above; from below they would hide the bodies. */
-static int place_backdrop(struct raster *s, const struct view *v, const struct packing *p)
+/* Places edges, and floors seen from above (from below they would hide bodies); -1: no memory. */
+static int place_walls(struct raster *s, const struct view *v, const struct packing *p)
 {
     struct walls *b = malloc(sizeof *b);
     s->ground = malloc(WALLS_PANELS * sizeof *s->ground);
     s->edge = malloc(WALLS_EDGES * sizeof *s->edge);
-    bool room = b && s->ground && s->edge;
-    if (room) walls_build(b, p, &v->region);
-    for (int i = 0; room && i < b->panels; i++)
+    bool allocated = b && s->ground && s->edge;
+    if (allocated) walls_build(b, p, &v->region);
+    for (int i = 0; allocated && i < b->panels; i++)
         if (v3_dot(b->panel[i].n, v->camera.toward) > 1e-3)
             place_ground(&s->ground[s->grounds++], v, &b->panel[i]);
-    for (int i = 0; room && i < b->edges; i++)
+    for (int i = 0; allocated && i < b->edges; i++)
         s->edge[s->edges++] =
             (struct edge){ sample_of(v, b->edge[i].a), sample_of(v, b->edge[i].b) };
     free(b);
-    return room ? 0 : -1;
+    return allocated ? 0 : -1;
 }
 
 int view_draw(const struct view *v, const struct packing *p, struct picture *pic, struct why *why)
@@ -173,7 +175,7 @@ int view_draw(const struct view *v, const struct packing *p, struct picture *pic
     *pic = (struct picture){ 0 };
     if (v->dim != p->dim)
         why_set(why, EX_DATAERR, "dim %d after dim %d in one series", p->dim, v->dim);
-    else if (place_spots(&s, v, p) || place_backdrop(&s, v, p))
+    else if (place_spots(&s, v, p) || place_walls(&s, v, p))
         why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)p->n);
     else if (!picture_init(pic, c->width, c->height, why) && raster_draw(&s, pic, why))
         picture_free(pic);

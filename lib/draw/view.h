@@ -1,7 +1,7 @@
 /*
- * draw/view.h: a packing drawn. Balls are ray-cast: of every sample of the picture the ball in front is
- * known with the exact point and normal that are seen there. Floors lie under them, the edges of
- * the walls are lines, and what is near darkens what it is near to.
+ * draw/view.h: draws a packing. Balls are ray-cast: at each sample of the picture the ball in front
+ * is found, with the exact point and normal seen there. Floors are panels, the edges of the walls
+ * are lines, and balls darken what is near to them.
  *
  * The pictures of a series share one window and one scale of colours:
  *
@@ -19,26 +19,27 @@ struct view {
     double azimuth, elevation; /* degrees */
     int width, height;         /* pixels; 0: chosen */
     int samples;               /* a pixel is the mean of samples x samples */
-    int threads;               /* they never change the picture */
+    int threads;               /* the picture does not depend on them */
     struct rgb background;
     struct paint paint;
-    bool boxed; /* only the bodies whose centre is in the region, which fills the picture */
+    bool
+        boxed; /* region is given: it fills the picture; bodies with centres outside are left out */
     struct region region;
 
-    bool started; /* what view_extend has seen so far: */
+    bool started; /* from here on set by view_extend and view_fit */
     int dim;
     struct window window; /* of the bodies */
     struct camera camera;
 };
 
 /*
- * Room for this packing. EX_DATAERR: it has another dim than those before, or there is nothing to
- * see, neither bodies nor walls.
+ * Extends the window and the scale of colours to this packing. Returns 0, or EX_DATAERR when its
+ * dim differs from that of those before or when it has neither bodies nor walls.
  */
-int view_extend(struct view *, const struct packing *, struct why *);
-/* The camera looks at all that view_extend was shown, and at this packing's walls. */
-void view_fit(struct view *, const struct packing *);
-/* The picture, which is freed by the caller. */
-int view_draw(const struct view *, const struct packing *, struct picture *, struct why *);
+int view_extend(struct view *v, const struct packing *p, struct why *why);
+/* Fits the camera to all packings given to view_extend, and to the walls of this one. */
+void view_fit(struct view *v, const struct packing *p);
+/* pic = the picture, which the caller frees. Returns 0, EX_DATAERR (dim) or EX_SOFTWARE. */
+int view_draw(const struct view *v, const struct packing *p, struct picture *pic, struct why *why);
 
 #endif

@@ -1,6 +1,7 @@
+/* draw/walls.c: the region of a packing, and its walls cut by the region and by each other. */
 #include "draw/walls.h"
 
-static double *at(vec3 *a, int axis)
+static double *component(vec3 *a, int axis)
 {
     return axis == 0 ? &a->x : axis == 1 ? &a->y : &a->z;
 }
@@ -15,7 +16,7 @@ static vec3 wall_now(const struct packing *p, int i)
     return v3_axpy(p->wall[i].x, p->t, p->wall[i].v);
 }
 
-static bool near(vec3 x)
+static bool is_drawn(vec3 x)
 {
     return fabs(x.x) < WALLS_FAR && fabs(x.y) < WALLS_FAR && fabs(x.z) < WALLS_FAR;
 }
@@ -27,20 +28,20 @@ static int walls_of(const struct packing *p)
 
 /* ---- the region ---- */
 
-/* Where walls across the axis stop the bodies, below (sign 1) or above (-1); NAN: nowhere. */
+/* m: the innermost wall across the axis, below (sign 1) or above (-1) the bodies; NAN: none */
 static double limit(const struct packing *p, int axis, double sign)
 {
     double found = NAN;
     for (int i = 0; i < walls_of(p); i++) {
         vec3 x = wall_now(p, i);
-        if (v3_dot(p->wall[i].n, unit(axis, sign)) < 0.999 || !near(x)) continue;
-        double c = *at(&x, axis);
+        if (v3_dot(p->wall[i].n, unit(axis, sign)) < 0.999 || !is_drawn(x)) continue;
+        double c = *component(&x, axis);
         if (isnan(found) || sign * c > sign * found) found = c;
     }
     return found;
 }
 
-/* Between the walls; where they leave an axis open, as wide as elsewhere. */
+/* The space between the walls; along an axis that they leave open, as wide as the widest other. */
 static bool region_of_walls(struct region *r, const struct packing *p)
 {
     double lo[3], hi[3], size = 0;
@@ -55,7 +56,7 @@ static bool region_of_walls(struct region *r, const struct packing *p)
         if (isnan(lo[k]) && isnan(hi[k])) lo[k] = -0.5 * size;
         if (isnan(lo[k])) lo[k] = hi[k] - size;
         if (!(hi[k] > lo[k])) hi[k] = lo[k] + size;
-        *at(&r->lo, k) = lo[k], *at(&r->hi, k) = hi[k];
+        *component(&r->lo, k) = lo[k], *component(&r->hi, k) = hi[k];
     }
     if (p->dim == 2) r->lo.z = r->hi.z = 0;
     return any;
@@ -66,17 +67,17 @@ bool region_of(struct region *r, const struct packing *p)
     const double far = 2 * WALLS_FAR;
     r->lo = v3(far, far, far), r->hi = v3(-far, -far, -far);
     for (int64_t i = 0; i < p->n; i++)
-        for (int k = 0; near(p->x[i]) && p->radius[i] < WALLS_FAR && k < 3; k++) {
-            double c = *at(&p->x[i], k), b = k < p->dim ? p->radius[i] : 0;
-            *at(&r->lo, k) = fmin(*at(&r->lo, k), c - b);
-            *at(&r->hi, k) = fmax(*at(&r->hi, k), c + b);
+        for (int k = 0; is_drawn(p->x[i]) && p->radius[i] < WALLS_FAR && k < 3; k++) {
+            double c = *component(&p->x[i], k), b = k < p->dim ? p->radius[i] : 0;
+            *component(&r->lo, k) = fmin(*component(&r->lo, k), c - b);
+            *component(&r->hi, k) = fmax(*component(&r->hi, k), c + b);
         }
     if (r->lo.x > r->hi.x) return region_of_walls(r, p);
     double size = fmax(r->hi.x - r->lo.x, fmax(r->hi.y - r->lo.y, r->hi.z - r->lo.z));
     for (int k = 0; k < p->dim; k++) {
-        // a floor goes on beside the bodies; above them there is little to see
+        // wide beside the bodies, where the floor is seen; narrow above them
         double margin = size * (k == p->dim - 1 ? 0.04 : 0.25);
-        double *lo = at(&r->lo, k), *hi = at(&r->hi, k);
+        double *lo = component(&r->lo, k), *hi = component(&r->hi, k);
         double below = limit(p, k, 1), above = limit(p, k, -1);
         *lo = *lo - below <= size ? fmin(*lo, below) : *lo - margin;
         *hi = above - *hi <= size ? fmax(*hi, above) : *hi + margin;
@@ -94,14 +95,14 @@ struct region region_join(struct region a, struct region b)
 
 /* ---- walls in it ---- */
 
-/* A convex polygon; which wall cut its side from corner k to the next, or -1: the region. */
+/* A convex polygon; cut[k]: the wall that cut its side from corner k to the next, -1: the region */
 struct polygon {
     int count;
     vec3 p[WALLS_CORNERS];
     int cut[WALLS_CORNERS];
 };
 
-/* Keeps what has n . x >= c [Sutherland and Hodgman]. */
+/* Keeps the part with n . x >= c [Sutherland and Hodgman]; who cuts: a wall or -1. */
 static void clip(struct polygon *g, vec3 n, double c, int who)
 {
     struct polygon out = { .count = 0 };
@@ -116,20 +117,20 @@ static void clip(struct polygon *g, vec3 n, double c, int who)
     *g = out;
 }
 
-/* With some room, for walls often lie just in the region's sides. */
+/* With a tolerance, because walls often lie exactly in the sides of the region */
 static void clip_region(struct polygon *g, const struct region *r, vec3 middle, double size,
                         int dim)
 {
-    double room = 1e-6 * size;
+    double tolerance = 1e-6 * size;
     vec3 lo = v3_sub(r->lo, middle), hi = v3_sub(r->hi, middle);
     for (int k = 0; k < dim; k++) {
-        clip(g, unit(k, 1), *at(&lo, k) - room, -1);
-        clip(g, unit(k, -1), -*at(&hi, k) - room, -1);
+        clip(g, unit(k, 1), *component(&lo, k) - tolerance, -1);
+        clip(g, unit(k, -1), -*component(&hi, k) - tolerance, -1);
     }
 }
 
-/* A square, or in the plane a stroke, of wall i that reaches beyond the region; m from its middle. */
-static struct polygon wall_whole(const struct packing *p, int i, vec3 middle, double size)
+/* A square, or in the plane a line, of wall i that extends beyond the region; m from its middle */
+static struct polygon wall_uncut(const struct packing *p, int i, vec3 middle, double size)
 {
     vec3 n = p->wall[i].n, x = v3_sub(wall_now(p, i), middle);
     vec3 foot = v3_scale(v3_dot(n, x), n);
@@ -145,12 +146,12 @@ static struct polygon wall_whole(const struct packing *p, int i, vec3 middle, do
     return g;
 }
 
-static void keep(struct walls *b, const struct packing *p, int i, const struct polygon *g,
-                 vec3 middle)
+static void keep_polygon(struct walls *b, const struct packing *p, int i, const struct polygon *g,
+                         vec3 middle)
 {
     bool stroke = p->dim == 2;
     for (int k = 0; k < (stroke ? 1 : g->count); k++) {
-        // an edge of two walls is a side of both: the first one has it
+        // an edge between two walls is a side of both polygons: that of the second is left out
         if ((!stroke && g->cut[k] < i) || b->edges == WALLS_EDGES) continue;
         b->edge[b->edges++] =
             (struct edge){ v3_add(g->p[k], middle), v3_add(g->p[(k + 1) % g->count], middle) };
@@ -167,14 +168,14 @@ void walls_build(struct walls *b, const struct packing *p, const struct region *
     vec3 middle = v3_scale(0.5, v3_add(r->lo, r->hi));
     double size = v3_norm(v3_sub(r->hi, r->lo));
     for (int i = 0; i < walls_of(p); i++) {
-        if (!near(wall_now(p, i))) continue;
-        struct polygon g = wall_whole(p, i, middle, size);
+        if (!is_drawn(wall_now(p, i))) continue;
+        struct polygon g = wall_uncut(p, i, middle, size);
         clip_region(&g, r, middle, size, p->dim);
         for (int j = 0; j < walls_of(p) && g.count; j++) {
             vec3 n = p->wall[j].n, x = wall_now(p, j);
-            if (j == i || !near(x)) continue;
+            if (j == i || !is_drawn(x)) continue;
             clip(&g, n, v3_dot(n, v3_sub(x, middle)) - 1e-9 * size, j);
         }
-        if (g.count > 1) keep(b, p, i, &g, middle);
+        if (g.count > 1) keep_polygon(b, p, i, &g, middle);
     }
 }

@@ -1,6 +1,6 @@
 /*
- * draw/walls.h: what a picture shows of the walls: floors as panels, and of all of them the edges where
- * they meet. Walls are endless planes; a region of space makes ends of them.
+ * draw/walls.h: what a picture shows of the walls: floors as panels, and for all walls the edges
+ * where they meet. Walls are infinite planes; they are cut off at a region of space.
  */
 #ifndef NSD_WALLS_H
 #define NSD_WALLS_H
@@ -12,23 +12,23 @@ struct region {
     vec3 lo, hi;
 };
 
-/* Bodies and walls farther out are in no picture: their squares must be numbers. */
+/* m: bodies and walls farther out than this are not drawn, so that squares stay finite. */
 #define WALLS_FAR 1e150
 
 enum {
-    WALLS_PANELS = 64, /* of more walls the others are left out */
-    WALLS_CORNERS = 4 + 6 + WALLS_PANELS,
-    WALLS_EDGES = 2048
+    WALLS_PANELS = 64,                    /* walls beyond this number are not drawn */
+    WALLS_CORNERS = 4 + 6 + WALLS_PANELS, /* a square, cut by the region and by every wall */
+    WALLS_EDGES = 2048                    /* edges beyond this number are not drawn */
 };
 
 struct panel {
-    vec3 n, origin; /* into the bodies' side; a point that travels with the wall */
+    vec3 n, origin; /* normal, towards the bodies; m: a point that moves with the wall */
     int corners;
-    vec3 corner[WALLS_CORNERS];
+    vec3 corner[WALLS_CORNERS]; /* m */
 };
 
 struct edge {
-    vec3 a, b;
+    vec3 a, b; /* its ends, m; in a raster samples */
 };
 
 struct walls {
@@ -38,15 +38,14 @@ struct walls {
 };
 
 /*
- * What is worth seeing of a packing: its bodies, with the walls beside them where these are near and
- * across an axis, else with a margin. Without bodies, the space between the walls. Returns false
- * where there is neither.
+ * r = the region to draw: that of the bodies, extended to walls across an axis where these are
+ * near, else by a margin; without bodies, the space between the walls. False if there are neither.
  */
-bool region_of(struct region *, const struct packing *);
-/* The smallest region that holds both. */
-struct region region_join(struct region, struct region);
+bool region_of(struct region *r, const struct packing *p);
+/* The smallest region that holds both */
+struct region region_join(struct region a, struct region b);
 
-/* The walls inside of the region at the packing's time. In the plane they are edges themselves. */
-void walls_build(struct walls *, const struct packing *, const struct region *);
+/* b = the walls inside the region at the packing's time. In the plane walls are edges. */
+void walls_build(struct walls *b, const struct packing *p, const struct region *r);
 
 #endif

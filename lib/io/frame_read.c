@@ -81,7 +81,7 @@ static int read_material(hid_t doc, struct packing *p, struct why *why)
         free(names);
         return why_set(why, EX_DATAERR, "/nsd/material@kinds: no kinds of material");
     }
-    int e = packing_kinds(p, kinds, why);
+    int e = packing_alloc_kinds(p, kinds, why);
     char *name = names;
     for (int32_t k = 0; !e && k < kinds; k++) {
         char *end = strchr(name, '\n');
@@ -106,7 +106,7 @@ static int read_walls(struct table_read *r, struct packing *p, struct why *why)
     if (!h5_has(r->file, "/walls/plane")) return 0;
     if (h5_shape(r->file, "/walls/plane/point", shape) != 2 || shape[0] > 1 << 24)
         return why_set(why, EX_DATAERR, "/walls/plane/point: not of shape walls x 3");
-    if (packing_walls(p, (int32_t)shape[0], why)) return why->status;
+    if (packing_alloc_walls(p, (int32_t)shape[0], why)) return why->status;
     return table_read_columns(r, "/walls/plane", "", layout_walls, 0, p->walls, p->wall,
                               sizeof *p->wall, why);
 }
@@ -197,7 +197,8 @@ static int read_contacts(struct frame_read *r, int64_t k, struct frame *f, struc
     s->c = calloc((size_t)s->room, sizeof *s->c);
     if (!s->c) return why_set(why, EX_SOFTWARE, "no memory for the contacts");
     bool solved = h5_has(r->rows.file, "/contacts/reaction");
-    if (solved && contacts_expect(s)) return why_set(why, EX_SOFTWARE, "no memory for reactions");
+    if (solved && contacts_alloc_found(s))
+        return why_set(why, EX_SOFTWARE, "no memory for reactions");
     if (table_read_columns(&r->rows, "/contacts", "", layout_contacts, first, s->n, s->c,
                            sizeof *s->c, why) ||
         read_frames(&r->rows, first, s, why) ||

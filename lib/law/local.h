@@ -5,13 +5,14 @@
  *
  *     u = W r + b,     (u, r) on Signorini's condition and Coulomb's law,
  *
- * components (n, t1, t2); u_n >= 0 separates, r_n >= 0 pushes. W, b and u already carry Newton's
- * impact law: they are the paper's W~_cc and u~ (newtonlaw). r is an impulse. A struct local is LANES
- * such problems side by side, plain numbers where LANES is 1; a method is one text for all of them.
+ * components (n, t1, t2); u_n >= 0 separates, r_n >= 0 pushes. W, b and u already contain Newton's
+ * impact law: they are the paper's W~_cc and u~ [newtonlaw]. r is an impulse. A struct local is
+ * LANES such problems side by side, plain numbers where LANES is 1; one text of a method serves
+ * both.
  *
- * In the plane (d = 2) component 2 of b, r and u is zero and W has a zero third row and column but
- * for a positive W[2][2]: the formulas of space then are those of the plane, and each method stands
- * once. Only the exact solution, which searches directions, looks at d.
+ * In the plane (d = 2) component 2 of b, r and u is zero, and the third row and column of W are
+ * zero but for a positive W[2][2]. The formulas of space then give those of the plane, so each
+ * method is written once. Only the exact solution, which searches directions, looks at d.
  */
 #ifndef NSD_LOCAL_H
 #define NSD_LOCAL_H
@@ -27,26 +28,26 @@ struct local {
     const vd *W; /* [9], row-major, kg^-1; NULL: diagonal, w[1] = w[2] */
     vd w[3];     /* the diagonal of W, kg^-1 */
     vd iw[3];    /* kg: 1/w where W is NULL */
-    vd b[3];     /* m/s: velocity without this contact's own reaction, and */
-    vd v[3];     /* m/s: with the last sweep's, W r + b */
+    vd b[3];     /* m/s: velocity without this contact's own reaction */
+    vd v[3];     /* m/s: velocity with the reaction of the last sweep, W r + b */
     vd mu;
     vd rho;         /* kg: step of the projection */
-    vd r[3];        /* N s; in: the last sweep's, out: this one's, and u follows: W r + b */
+    vd r[3];        /* N s; in: of the last sweep, out: of this one; u = W r + b follows */
     double relax;   /* in: omega of exact where W is NULL */
-    vd steps;       /* out: Newton steps taken, 0 where there is none */
-    vm safeguarded; /* out: the Newton did not end; the exact solution stands in */
-    vm gave_up;     /* out: r is not on the law; r is in the cone all the same */
+    vd steps;       /* out: Newton steps taken; 0 for methods without a Newton */
+    vm safeguarded; /* out: Newton did not converge; r is the exact solution instead */
+    vm gave_up;     /* out: (u, r) does not satisfy the law; r is in the cone all the same */
 };
 
 struct local_opt {
-    bool plain;        /* full Newton steps, no line search and no stand-in, as the paper has it */
+    bool plain; /* as the paper: full Newton steps, no line search, no exact solution instead */
     double newton_eps; /* stop at |Z|^2 <= newton_eps^2 (|r|^2 + rho^2 |b|^2) */
-    double newton_abs; /* > 0: stop at |Z| <= newton_abs instead, in the problem's own units
-                          [er_newt of the paper: an impulse of newton_eps dt there] */
-    int newton_max;    /* steps */
+    double newton_abs; /* N s; > 0: stop at |Z| <= newton_abs instead [er_newt of the paper, which
+                          is an impulse of newton_eps dt] */
+    int newton_max;    /* steps at most */
 };
 
-/* Where r stands on its cone, for reports: FREE at r_n = 0, SLIDE on the mantle to 1e-9. */
+/* Where r is in its cone, for reports: FREE at r_n <= 0, SLIDE on the mantle to 1e-9, relative. */
 static inline enum local_status local_status(double mu, const double r[3])
 {
     if (r[0] <= 0) return LOCAL_FREE;
@@ -54,7 +55,7 @@ static inline enum local_status local_status(double mu, const double r[3])
     return t < mu * r[0] * (1 - 1e-9) ? LOCAL_STICK : LOCAL_SLIDE;
 }
 
-/* The largest eigenvalue of the symmetric part of W[9]. */
+/* The largest eigenvalue of the symmetric part of W[9] (row-major; kg^-1). */
 double local_lambda_max(const double W[9]);
 
 /* ---- what the methods share ---- */
@@ -76,8 +77,8 @@ ALWAYS_INLINE vd norm3(const vd a[3])
     return root(dot3(a, a));
 }
 
-/* Nothing to report, unless it turns up. */
-ALWAYS_INLINE void local_begin(struct local *l)
+/* Nothing to report yet. */
+ALWAYS_INLINE void local_clear_report(struct local *l)
 {
     l->steps = splat(0), l->safeguarded = l->gave_up = NONE;
 }
@@ -89,8 +90,9 @@ ALWAYS_INLINE void local_velocity(const struct local *l, const vd r[3], vd out[3
 }
 
 /*
- * r = proj(tau, K_mu), orthogonal, K_mu = { |r_t| <= mu r_n } [paper, first and second case]: the tip
- * for tau in the polar cone, tau itself inside, else the nearest point of the mantle.
+ * r = the orthogonal projection of tau on K_mu = { |r_t| <= mu r_n } [paper, first and second
+ * case]: the tip where tau is in the polar cone, tau where it is inside, else the nearest mantle
+ * point.
  */
 ALWAYS_INLINE void cone_project(vd mu, const vd tau[3], vd r[3])
 {
@@ -103,7 +105,7 @@ ALWAYS_INLINE void cone_project(vd mu, const vd tau[3], vd r[3])
     for (int k = 1; k < 3; k++) r[k] = pick(tip, splat(0), s * tau[k]);
 }
 
-/* tau = r - rho (u + mu |u_t| n), of the bi-potential [uzawa1]; returns |u_t| */
+/* tau = r - rho (u + mu |u_t| n), the prediction of the bi-potential [uzawa1]; returns |u_t|. */
 ALWAYS_INLINE vd cone_predict(vd mu, vd rho, const vd r[3], const vd u[3], vd tau[3])
 {
     vd ut = norm2(u + 1);
@@ -112,15 +114,16 @@ ALWAYS_INLINE vd cone_predict(vd mu, vd rho, const vd r[3], const vd u[3], vd ta
     return ut;
 }
 
-/* tau = r - rho u, of the augmented Lagrangian [gradientAL] */
+/* tau = r - rho u, the prediction of the augmented Lagrangian [gradientAL] */
 ALWAYS_INLINE void disc_predict(vd rho, const vd r[3], const vd u[3], vd tau[3])
 {
     for (int i = 0; i < 3; i++) tau[i] = r[i] - rho * u[i];
 }
 
 /*
- * r = proj(tau, C), C = R+ x the disc of radius mu r_n. The paper prints r_t = mu r_n tau_t/|tau_t|
- * for every tau_t, with which no contact could stick; what is within the disc stays.
+ * r = proj(tau, C), C = R+ x the disc of radius mu r_n. Against the paper, which prints
+ * r_t = mu r_n tau_t/|tau_t| for every tau_t: tau_t within the disc is kept, else nothing could
+ * stick.
  */
 ALWAYS_INLINE void disc_project(vd mu, const vd tau[3], vd r[3])
 {

@@ -7,15 +7,15 @@
  *
  *     dZ = dr - (I - A) dtau = A dr + rho (I - A) dv.
  *
- * Against the paper: dZ/dv_tk of sliding has a plus, rho mu tau_n (t_k - tau_tk tau_t/|tau_t|^2)/
- * |tau_t|, and B_c of the plane wants the factor rho.
+ * Two corrections to the paper: dZ/dv_tk of sliding has a plus sign, + rho mu tau_n
+ * (t_k - tau_tk tau_t/|tau_t|^2)/|tau_t|, and B_c of the plane has the factor rho.
  */
 #ifndef NSD_LOCAL_EAL_H
 #define NSD_LOCAL_EAL_H
 
 #include "law/local_newton.h"
 
-ALWAYS_INLINE void eal_residual(vd mu, vd rho, struct iterate *x)
+ALWAYS_INLINE void eal_residual(vd mu, vd rho, struct newton_point *x)
 {
     disc_predict(rho, x->r, x->v, x->tau);
     x->t = norm2(x->tau + 1), x->vt = splat(0);
@@ -30,9 +30,9 @@ ALWAYS_INLINE void eal_residual(vd mu, vd rho, struct iterate *x)
  *
  *     A = I_t - mu e n^T - mu tau_n/|tau_t| (I_t - e e^T).
  *
- * tau_t = 0 slides at mu = 0 only; e := 0 there.
+ * tau_t = 0 slides only when mu = 0; e := 0 there.
  */
-ALWAYS_INLINE void eal_slide(vd mu, const struct iterate *x, vd A[3][3])
+ALWAYS_INLINE void eal_slide(vd mu, const struct newton_point *x, vd A[3][3])
 {
     vd s = newton_inverse(x->t), e1 = s * x->tau[1], e2 = s * x->tau[2], k = mu * x->tau[0] * s;
     A[0][0] = A[0][1] = A[0][2] = splat(0);
@@ -43,7 +43,7 @@ ALWAYS_INLINE void eal_slide(vd mu, const struct iterate *x, vd A[3][3])
     A[1][2] = A[2][1] = k * e1 * e2;
 }
 
-ALWAYS_INLINE void eal_chain(vd mu, vd rho, const struct iterate *x, vd A[3][3], vd B[3][3])
+ALWAYS_INLINE void eal_chain(vd mu, vd rho, const struct newton_point *x, vd A[3][3], vd B[3][3])
 {
     (void)mu, (void)x;
     for (int i = 0; i < 3; i++)
@@ -51,13 +51,13 @@ ALWAYS_INLINE void eal_chain(vd mu, vd rho, const struct iterate *x, vd A[3][3],
 }
 
 /* Along n A is 0 and Z_n = rho v_n. */
-ALWAYS_INLINE void eal_slip(const struct local *l, const struct iterate *x, struct slip *s)
+ALWAYS_INLINE void eal_slip(const struct local *l, const struct newton_point *x, struct slip *s)
 {
     s->dq = slip_across(l, s, 1.0 - l->mu * x->tau[0] * newton_inverse(x->t));
     s->dn = -x->v[0] * l->iw[0];
 }
 
-#define EAL ((struct newton_text){ eal_residual, eal_slide, eal_chain, eal_slip })
+#define EAL ((struct newton_formulation){ eal_residual, eal_slide, eal_chain, eal_slip })
 
 ALWAYS_INLINE void eal_solve(struct local *l, const struct local_opt *opt)
 {

@@ -8,7 +8,7 @@
  *
  *     dZ = dr - (I - A) dtau = A dr + rho (I - A) G dv.
  *
- * Multiplied out these are the paper's columns; its 2D dZ/dv_t has a sign wrong, and is
+ * Multiplied out these are the paper's columns, but for a wrong sign in its dZ/dv_t of 2D, which is
  * rho mu/(1+mu^2) ((th_v + th_r) n + mu (1 + th_r th_v) t).
  */
 #ifndef NSD_LOCAL_EBP_H
@@ -16,7 +16,7 @@
 
 #include "law/local_newton.h"
 
-ALWAYS_INLINE void ebp_residual(vd mu, vd rho, struct iterate *x)
+ALWAYS_INLINE void ebp_residual(vd mu, vd rho, struct newton_point *x)
 {
     x->vt = cone_predict(mu, rho, x->r, x->v, x->tau), x->t = norm2(x->tau + 1);
     x->stick = lt(x->t, mu * x->tau[0]);
@@ -30,9 +30,9 @@ ALWAYS_INLINE void ebp_residual(vd mu, vd rho, struct iterate *x)
  *
  *     A = (e - mu n)(e - mu n)^T/(1+mu^2) + k/|tau_t| (I_t - e e^T).
  *
- * tau_t = 0 slides at mu = 0 only; e := 0 there.
+ * tau_t = 0 slides only when mu = 0; e := 0 there.
  */
-ALWAYS_INLINE void ebp_slide(vd mu, const struct iterate *x, vd A[3][3])
+ALWAYS_INLINE void ebp_slide(vd mu, const struct newton_point *x, vd A[3][3])
 {
     vd c = 1.0 / (1.0 + mu * mu), s = newton_inverse(x->t);
     vd e1 = s * x->tau[1], e2 = s * x->tau[2], k = c * (1.0 - mu * x->tau[0] * s);
@@ -44,7 +44,7 @@ ALWAYS_INLINE void ebp_slide(vd mu, const struct iterate *x, vd A[3][3])
     A[1][2] = A[2][1] = (c - k) * e1 * e2;
 }
 
-ALWAYS_INLINE void ebp_chain(vd mu, vd rho, const struct iterate *x, vd A[3][3], vd B[3][3])
+ALWAYS_INLINE void ebp_chain(vd mu, vd rho, const struct newton_point *x, vd A[3][3], vd B[3][3])
 {
     vd g = mu * newton_inverse(x->vt), g1 = g * x->v[1], g2 = g * x->v[2];
     for (int i = 0; i < 3; i++) {
@@ -55,11 +55,11 @@ ALWAYS_INLINE void ebp_chain(vd mu, vd rho, const struct iterate *x, vd A[3][3],
 }
 
 /*
- * Along n + mu e, where A is 0, and with h = mu g and dr_e put in:
+ * The equation along n + mu e, where A is 0, with h = mu g and dr_e substituted:
  *
  *     (w_n + mu p) dr_n = p lag - w_t h_q dr_q - (Z_n + mu Z_e)/rho,     p = w_t (mu + h_e).
  */
-ALWAYS_INLINE void ebp_slip(const struct local *l, const struct iterate *x, struct slip *s)
+ALWAYS_INLINE void ebp_slip(const struct local *l, const struct newton_point *x, struct slip *s)
 {
     vd k = (1.0 - l->mu * x->tau[0] * newton_inverse(x->t)) * (1.0 / (1.0 + l->mu * l->mu));
     vd wh = l->w[1] * (l->mu * newton_inverse(x->vt));
@@ -70,7 +70,7 @@ ALWAYS_INLINE void ebp_slip(const struct local *l, const struct iterate *x, stru
             (l->rho * (l->w[0] + l->mu * p));
 }
 
-#define EBP ((struct newton_text){ ebp_residual, ebp_slide, ebp_chain, ebp_slip })
+#define EBP ((struct newton_formulation){ ebp_residual, ebp_slide, ebp_chain, ebp_slip })
 
 ALWAYS_INLINE void ebp_solve(struct local *l, const struct local_opt *opt)
 {

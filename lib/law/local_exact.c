@@ -1,7 +1,7 @@
 /*
- * law/local_exact.c: the search for the exact solution of one contact, where law/local_exact.h has not found
- * it: all directions to slide in, and a singular W. g is a trigonometric polynomial of degree 2 in
- * the angle of d and has four roots at most.
+ * law/local_exact.c: the search for the exact solution of one contact where law/local_exact.h has
+ * not found it: all directions to slide in, and a singular W. g is a trigonometric polynomial of
+ * degree 2 in the angle of d and has at most four roots.
  */
 #include "law/local_exact.h"
 
@@ -9,10 +9,11 @@
 #include <gsl/gsl_linalg.h>
 
 /*
- * Candidates for d, all roots of g among them. In x = tan(angle/2) (1 + x^2)^2 g is a quartic with
- * g(pi) in front: the angle is counted from where the opposite |g| is the largest of eight, no root
- * is then far off. Durand and Kerner's iteration finds all four, roughly and in their real parts:
- * they are polished. Where g = 0 everywhere any direction slides, and the eight are the candidates.
+ * Candidates for d, all roots of g among them; returns how many. In x = tan(angle/2), (1 + x^2)^2 g
+ * is a quartic with leading coefficient g(pi). To keep it from zero, and the roots from infinity,
+ * the angle is counted from the one of eight directions o for which |g(-o)| is largest. The
+ * iteration of Durand and Kerner finds all four roots roughly; their real parts are refined by
+ * Newton. Where g = 0 everywhere any direction slides, and the eight are the candidates.
  */
 static int slide_roots(const struct slide *k, double root[8][2])
 {
@@ -59,10 +60,10 @@ static int slide_roots(const struct slide *k, double root[8][2])
 }
 
 /*
- * Of all directions that there are, the one whose reaction is nearest to the last (with large mu W_nt
- * there may be several).
+ * Of all sliding solutions (with large mu W_nt there may be several) the one whose reaction is
+ * nearest to that of the last sweep.
  */
-static bool slide(struct local *l)
+static bool slide_nearest(struct local *l)
 {
     struct slide k;
     double root[8][2] = { { 0 } }, r[3], best[3] = { 0 }, nearest = INFINITY;
@@ -79,8 +80,8 @@ static bool slide(struct local *l)
     return true;
 }
 
-/* The shortest of the r that bring W r nearest to -b: for singular W. */
-static void shortest(const double *W, const double b[3], double r[3])
+/* The shortest r among those that minimise |W r + b|: for singular W. */
+static void least_squares(const double *W, const double b[3], double r[3])
 {
     double a[9], tq[3], tz[3], work[3], rest[3], y[3] = { -b[0], -b[1], -b[2] };
     for (int i = 0; i < 9; i++) a[i] = W[i];
@@ -98,11 +99,11 @@ static void shortest(const double *W, const double b[3], double r[3])
                                &Rest.vector);
 }
 
-/* W r = -b of a singular W, with r in the cone */
-static bool stick(struct local *l)
+/* Solves W r = -b of a singular W; is r in the cone? */
+static bool stick_singular(struct local *l)
 {
     double r[3], u[3];
-    shortest(l->W, l->b, r);
+    least_squares(l->W, l->b, r);
     if (!exact_stopped(l, r, u)) return false;
     if (l->d == 2) r[2] = 0;
     if (!(norm2(r + 1) <= l->mu * r[0])) return false;
@@ -116,12 +117,12 @@ bool exact_search(int d, const double W[9], const double b[3], double mu, bool s
     struct local l = { .d = d, .W = W, .mu = mu };
     double slid[3];
     for (int k = 0; k < 3; k++) l.b[k] = b[k], l.r[k] = r[k];
-    bool found = singular && stick(&l);
+    bool found = singular && stick_singular(&l);
     if (!found && singular && exact_slide(&l, ~NONE, slid)) {
         for (int k = 0; k < 3; k++) l.r[k] = slid[k];
         found = true;
     }
-    found = found || (d == 3 && slide(&l));
+    found = found || (d == 3 && slide_nearest(&l));
     for (int k = 0; k < 3; k++) r[k] = l.r[k];
     return found;
 }

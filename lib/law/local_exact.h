@@ -1,22 +1,21 @@
 /*
- * law/local_exact.h: the one-contact problem solved outright, case by case of the law.
+ * law/local_exact.h: the one-contact problem solved directly, case by case of the law.
  *
  *     take-off  b_n >= 0:                         r = 0
  *     stick     W r = -b with r in the cone:      u = 0
  *     slide     r = r_n (n + mu d), |d| = 1:      u_n = 0, u_t = -lambda d, lambda >= 0
  *
- * For balls W = diag(w_n, w_t, w_t) and the three are one closed form: the projection on the disc of
- * tau = -W^-1 b = r - W^-1 v.
+ * For balls W = diag(w_n, w_t, w_t) and the three are one closed form: the projection on the disc
+ * of tau = -W^-1 b = r - W^-1 v.
  *
- * With a general W the sliding direction d is searched. With a = W_nn + mu W_nt.d, u_n = 0 gives
- * r_n = -b_n/a, and the tangential velocity times a is
+ * With a general W the sliding direction d is searched for. With a = W_nn + mu W_nt.d, u_n = 0
+ * gives r_n = -b_n/a, and the tangential velocity times a is
  *
  *     h = a u_t = p + Q d,     p = W_nn b_t - b_n W_tn,     Q = mu (b_t W_nt - b_n W_tt).
  *
- * Wanted are d with g(d) = d x h = 0, h.d <= 0 and a > 0.
+ * The solutions are the d with g(d) = d x h = 0, h.d <= 0 and a > 0.
  *
- * The paper has no such method; it is also what stands in for a
- * Newton that does not end.
+ * The paper has no such method. It also replaces a Newton that does not converge [local_newton.h].
  */
 #ifndef NSD_LOCAL_EXACT_H
 #define NSD_LOCAL_EXACT_H
@@ -24,8 +23,9 @@
 #include "law/local_sbp.h"
 
 /*
- * What is left when neither a regular W's stick nor the first slide is the solution: of one lane, W
- * singular or several directions to slide in. false where nothing is on the law.
+ * One lane for which exact_stick() and exact_slide() give no solution: W is singular, or there are
+ * several directions to slide in. r[3] in: of the last sweep; out: the solution. False where there
+ * is none.
  */
 bool exact_search(int d, const double W[9], const double b[3], double mu, bool singular,
                   double r[3]);
@@ -46,7 +46,7 @@ ALWAYS_INLINE vm solve3(vd M[3][3], const vd y[3], vd x[3])
     return lt(splat(0), absolute(det));
 }
 
-/* What stops the contact, or omega times as much, onto the disc */
+/* The projection of r - omega W^-1 v, which stops the contact when omega = 1; where it is finite */
 ALWAYS_INLINE vm exact_balls(const struct local *l, vd r[3])
 {
     vd tau[3];
@@ -57,14 +57,14 @@ ALWAYS_INLINE vm exact_balls(const struct local *l, vd r[3])
 
 /* ---- a general W ---- */
 
-/* u = W r + b; whether it is zero but for rounding */
+/* u = W r + b; where it is zero to rounding */
 ALWAYS_INLINE vm exact_stopped(const struct local *l, const vd r[3], vd u[3])
 {
     local_velocity(l, r, u);
     return le(dot3(u, u), 1e-20 * dot3(l->b, l->b));
 }
 
-/* W r = -b of a regular W, and once more, for what the cofactors left */
+/* Solves W r = -b and refines r once, as cofactors leave an error; where W is regular */
 ALWAYS_INLINE vm exact_stick(const struct local *l, vd r[3])
 {
     vd M[3][3], u[3], dr[3];
@@ -82,7 +82,7 @@ ALWAYS_INLINE vm exact_stick(const struct local *l, vd r[3])
 struct slide {
     vd Wnn, mWnt[2]; /* a = Wnn + mWnt.d */
     vd p[2], Q[2][2];
-    vd scale; /* of h */
+    vd scale; /* of h, for tolerances */
 };
 
 ALWAYS_INLINE void slide_init(struct slide *k, const struct local *l)
@@ -117,7 +117,7 @@ ALWAYS_INLINE void slide_turn(vd d[2], vd tangent)
     d[0] = s * x, d[1] = s * y;
 }
 
-/* Newton on g from d, at most so many steps, where m is. */
+/* Newton on the angle of d for g = 0, at most `steps` steps, in the lanes m. */
 ALWAYS_INLINE void slide_polish(const struct slide *k, vd d[2], int steps, vm m)
 {
     for (; steps > 0 && any(m); steps--) {
@@ -130,7 +130,7 @@ ALWAYS_INLINE void slide_polish(const struct slide *k, vd d[2], int steps, vm m)
     }
 }
 
-/* Whether d is a solution to rounding, and its reaction. */
+/* Where d is a solution to rounding; r = its reaction */
 ALWAYS_INLINE vm slide_accept(const struct local *l, const struct slide *k, const vd d[2], vd r[3])
 {
     vd hd, dg, g = slide_g(k, d, &hd, &dg), a = k->Wnn + k->mWnt[0] * d[0] + k->mWnt[1] * d[1];
@@ -139,7 +139,7 @@ ALWAYS_INLINE vm slide_accept(const struct local *l, const struct slide *k, cons
            is_finite(r[0]) & is_finite(r[1] + r[2]);
 }
 
-/* In the plane d is t1 or -t1: of two solutions the nearer to the last r. */
+/* In the plane d is t1 or -t1; of two solutions the one nearer to the last sweep's r. */
 ALWAYS_INLINE vm exact_slide_plane(const struct local *l, const struct slide *k, vd r[3])
 {
     const vd t1[2] = { splat(1), splat(0) }, back[2] = { splat(-1), splat(0) };
@@ -149,12 +149,12 @@ ALWAYS_INLINE vm exact_slide_plane(const struct local *l, const struct slide *k,
         far[0] += (r[j] - l->r[j]) * (r[j] - l->r[j]);
         far[1] += (s[j] - l->r[j]) * (s[j] - l->r[j]);
     }
-    vm take = other & (~one | lt(far[1], far[0]));
-    for (int j = 0; j < 3; j++) r[j] = pick(take, s[j], r[j]);
+    vm second = other & (~one | lt(far[1], far[0]));
+    for (int j = 0; j < 3; j++) r[j] = pick(second, s[j], r[j]);
     return one | other;
 }
 
-/* The root that Newton finds from the last sweep's direction, where m is. */
+/* The root that Newton finds from the last sweep's direction, in the lanes m. */
 ALWAYS_INLINE vm exact_slide(const struct local *l, vm m, vd r[3])
 {
     struct slide k;
@@ -176,26 +176,26 @@ ALWAYS_INLINE double lane(vd x, int i)
     return all[i];
 }
 
-/* What has to be searched, lane after lane; good: where something is found */
-ALWAYS_INLINE vm exact_rest(const struct local *l, vm m, vm singular, vd r[3])
+/* exact_search() lane by lane, in the lanes m; where it finds a solution */
+ALWAYS_INLINE vm exact_search_lanes(const struct local *l, vm m, vm singular, vd r[3])
 {
-    double good[LANES], x[3][LANES];
+    double found[LANES], x[3][LANES];
     for (int j = 0; j < 3; j++) vstore(x[j], r[j]);
     for (int i = 0; i < LANES; i++) {
-        good[i] = 0;
+        found[i] = 0;
         if (lane(pick(m, splat(1), splat(0)), i) == 0) continue;
         double W[9], b[3], s[3];
         for (int j = 0; j < 9; j++) W[j] = lane(l->W[j], i);
         for (int j = 0; j < 3; j++) b[j] = lane(l->b[j], i), s[j] = lane(l->r[j], i);
-        bool single = lane(pick(singular, splat(1), splat(0)), i) != 0;
-        good[i] = exact_search(l->d, W, b, lane(l->mu, i), single, s);
+        bool is_singular = lane(pick(singular, splat(1), splat(0)), i) != 0;
+        found[i] = exact_search(l->d, W, b, lane(l->mu, i), is_singular, s);
         for (int j = 0; j < 3; j++) x[j][i] = s[j];
     }
     for (int j = 0; j < 3; j++) r[j] = vload(x[j]);
-    return lt(splat(0), vload(good));
+    return lt(splat(0), vload(found));
 }
 
-/* Take-off, without friction, stick, slide; else the search */
+/* Take-off, no friction, stick, slide, else the search; where there is a solution */
 ALWAYS_INLINE vm exact_general(const struct local *l, vd r[3])
 {
     vd rn = -l->b[0] / l->W[0], slid[3] = { 0 };
@@ -210,17 +210,17 @@ ALWAYS_INLINE vm exact_general(const struct local *l, vd r[3])
     }
     vm found = stuck | slides | (smooth & lt(splat(0), l->W[0]) & is_finite(rn));
     vm rest = m & ~found & ~smooth;
-    if (any(rest)) found |= exact_rest(l, rest, ~regular, r);
+    if (any(rest)) found |= exact_search_lanes(l, rest, ~regular, r);
     for (int j = 0; j < 3; j++) r[j] = pick(open, splat(0), r[j]);
     return found | open;
 }
 
-/* Where nothing is on the law (W indefinite or singular), one projected step from the last r. */
+/* Where there is no solution (W indefinite or singular): one SBP step from the last sweep's r. */
 ALWAYS_INLINE void exact_solve(struct local *l, const struct local_opt *opt)
 {
     vd r[3];
     vm found = l->W ? exact_general(l, r) : exact_balls(l, r);
-    local_begin(l);
+    local_clear_report(l);
     if (!all(found)) {
         struct local step = *l;
         sbp_solve(&step, opt);

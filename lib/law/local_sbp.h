@@ -3,7 +3,7 @@
  *
  *     tau = r - rho (u + mu |u_t| n),     r = proj(tau, K_mu).
  *
- * It contracts when rho lambda_max(W_cc) < 2; the paper's rho < 2 m_red is enough for n alone: the
+ * It contracts when rho lambda_max(W_cc) < 2. The paper's rho < 2 m_red suffices along n only: the
  * tangential eigenvalue of a ball is 3.5/m_red.
  */
 #ifndef NSD_LOCAL_SBP_H
@@ -15,7 +15,7 @@ ALWAYS_INLINE void sbp_solve(struct local *l, const struct local_opt *opt)
 {
     (void)opt;
     vd tau[3];
-    local_begin(l);
+    local_clear_report(l);
     cone_predict(l->mu, l->rho, l->r, l->v, tau);
     cone_project(l->mu, tau, l->r);
 }

@@ -1,4 +1,4 @@
-/* law/method.c: the methods in one lane, and their table. */
+/* law/method.c: the table of the local methods, and each of them in one lane. */
 #include "law/method.h"
 #include "law/local_eal.h"
 #include "law/local_ebp.h"
@@ -58,7 +58,8 @@ enum local_status eal_linearise(double mu, double rho, const double r[3], const 
 {
     return newton_linearise(mu, rho, r, v, EAL, Z, A, B);
 }
-/* Jacobi's rotations; eight rounds are more than any 3 x 3 matrix wants. */
+
+/* By Jacobi rotations: 24 are eight rounds over the three off-diagonal entries, more than enough */
 double local_lambda_max(const double W[9])
 {
     double S[3][3];

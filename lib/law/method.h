@@ -1,4 +1,4 @@
-/* law/method.h: the five local methods as a table; the texts are in local_NAME.h. */
+/* law/method.h: the table of the five local methods, which are in local_NAME.h. */
 #ifndef NSD_METHOD_H
 #define NSD_METHOD_H
 
@@ -13,22 +13,22 @@ enum method_id { EACH_METHOD(METHOD_ID) METHOD_COUNT };
 struct method {
     enum method_id id;
     const char *name, *help;
-    double rho;    /* default rho = this / lambda_max(W_cc) */
-    bool believes; /* u is the method's own; else the motion's (SBP, SAL) */
+    double rho;    /* the default step is this over lambda_max(W_cc) */
+    bool believes; /* has a u of its own that can be judged; else (SBP, SAL) it is the motion's */
 };
 
-/* In the order of their ids; NULL ends it. */
+/* In the order of their ids, NULL at the end */
 extern const struct method *const methods[];
 extern const struct method local_sbp, local_sal, local_ebp, local_eal, local_exact;
 const struct method *method_find(const char *name); /* NULL when there is none */
 
-/* One contact alone, in one lane, not relaxed; its v follows from r and b. */
+/* Solves one contact alone, in one lane, without relaxation; sets l->v = W r + b first. */
 #if LANES == 1
-void method_solve(const struct method *, struct local *, const struct local_opt *);
+void method_solve(const struct method *m, struct local *l, const struct local_opt *opt);
 
 /*
- * Z and its derivatives A = dZ/dr, B = dZ/dv at (r, v), for the Newton of EBP and EAL [errorpred,
- * predbipo; corrected]; returns the branch taken. Public so that the tests can differentiate them.
+ * Z and its derivatives A = dZ/dr, B = dZ/dv at (r, v), as the Newton of EBP and EAL has them
+ * [errorpred, predbipo; corrected]; returns the branch. For the tests, which check the derivatives.
  */
 enum local_status ebp_linearise(double mu, double rho, const double r[3], const double v[3],
                                 double Z[3], double A[3][3], double B[3][3]);

@@ -325,7 +325,7 @@ int problem_team(const struct problem *p, int threads)
 
 int problem_store(const struct problem *p, struct contacts *s)
 {
-    if (contacts_expect(s)) return -1;
+    if (contacts_alloc_found(s)) return -1;
     for (int64_t i = 0; i < p->slots; i++) {
         if (p->contact[i] < 0) continue;
         struct found *c = &s->found[p->contact[i]];

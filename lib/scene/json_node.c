@@ -1,3 +1,4 @@
+/* scene/json_node.c: nodes, their places in the text, and the checks of keys and values. */
 #include "scene/json_node.h"
 
 #include <stdarg.h>
@@ -5,25 +6,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One line of it, whatever the keys and strings of the text hold. */
-static void plain(char *s)
+/* Control characters of keys and strings become '?', so that a fault is one line. */
+static void make_printable(char *s)
 {
     for (; *s; s++)
         if ((unsigned char)*s < ' ' || *s == 0x7f) *s = '?';
 }
 
-int jtext_parse(struct jtext *t, const char *text, size_t length, struct why *why)
+int json_doc_parse(struct json_doc *t, const char *text, size_t length, struct why *why)
 {
     json_error_t e;
-    *t = (struct jtext){ .why = why };
+    *t = (struct json_doc){ .why = why };
     t->root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &e);
     if (!t->root) {
-        plain(e.text);
+        make_printable(e.text);
         return why_set(why, EX_DATAERR, "%d:%d: %s", e.line, e.column, e.text);
     }
     t->text = malloc(length + 1);
     if (!t->text) {
-        jtext_free(t);
+        json_doc_free(t);
         return why_set(why, EX_SOFTWARE, "no memory for a text of %zu bytes", length);
     }
     memcpy(t->text, text, length);
@@ -31,14 +32,14 @@ int jtext_parse(struct jtext *t, const char *text, size_t length, struct why *wh
     return 0;
 }
 
-void jtext_free(struct jtext *t)
+void json_doc_free(struct json_doc *t)
 {
     json_decref(t->root);
     free(t->text);
-    *t = (struct jtext){ 0 };
+    *t = (struct json_doc){ 0 };
 }
 
-jnode jtext_root(struct jtext *t)
+jnode json_doc_root(struct json_doc *t)
 {
     return (jnode){ .json = t->root, .in = t };
 }
@@ -53,7 +54,7 @@ jnode json_node_item(const jnode *up, size_t i)
     return (jnode){ .up = up, .index = i, .json = json_array_get(up->json, i), .in = up->in };
 }
 
-/* ---- where a node stands in the text, which jansson has found to be good JSON ---- */
+/* ---- the place of a node in the text, which is valid JSON: jansson has parsed it ---- */
 
 static const char *skip_space(const char *s)
 {
@@ -91,11 +92,11 @@ static bool key_is(const char *s, const char *key)
     return !strncmp(s + 1, key, n) && s[1 + n] == '"';
 }
 
-/* The node's key or item, or its nearest ancestor's; *value is NULL when it is an ancestor's. */
-static const char *find(const jnode *n, const char **value)
+/* The node's key or item in the text and its *value; or its nearest ancestor's, *value NULL. */
+static const char *find_node(const jnode *n, const char **value)
 {
     if (!n->up) return *value = skip_space(n->in->text);
-    const char *inside, *above = find(n->up, &inside);
+    const char *inside, *above = find_node(n->up, &inside);
     *value = NULL;
     if (!inside || *inside != (n->key ? '{' : '[')) return above;
     const char *s = skip_space(inside + 1);
@@ -113,9 +114,9 @@ static const char *find(const jnode *n, const char **value)
     return above;
 }
 
-static void place(const jnode *n, int *line, int *column)
+static void line_and_column(const jnode *n, int *line, int *column)
 {
-    const char *value, *here = find(n, &value);
+    const char *value, *here = find_node(n, &value);
     *line = *column = 1;
     for (const char *s = n->in->text; s < here; s++) {
         if (*s == '\n')
@@ -125,10 +126,11 @@ static void place(const jnode *n, int *line, int *column)
     }
 }
 
-static size_t path(const jnode *n, char *out, size_t room)
+/* Writes the path of n from the root; returns its length. */
+static size_t write_path(const jnode *n, char *out, size_t room)
 {
     if (!n->up) return 0;
-    size_t k = path(n->up, out, room);
+    size_t k = write_path(n->up, out, room);
     int more = n->key ? snprintf(out + k, room - k, "%s%s", k ? "." : "", n->key)
                       : snprintf(out + k, room - k, "[%zu]", n->index);
     k += (size_t)more;
@@ -143,16 +145,16 @@ int json_node_fault(jnode n, const char *format, ...)
     va_start(ap, format);
     vsnprintf(trouble, sizeof trouble, format, ap);
     va_end(ap);
-    size_t length = path(&n, way, sizeof way);
-    plain(way), plain(trouble);
-    place(&n, &line, &column);
+    size_t length = write_path(&n, way, sizeof way);
+    make_printable(way), make_printable(trouble);
+    line_and_column(&n, &line, &column);
     return why_set(n.in->why, EX_DATAERR, "%d:%d: %s%s%s", line, column, way, length ? ": " : "",
                    trouble);
 }
 
 /* ---- keys ---- */
 
-/* The next of the names, its length in *n; NULL at their end. */
+/* The next of the names, its length in *n; NULL after the last */
 static const char *next_name(const char *s, size_t *n)
 {
     s += strspn(s, " ");
@@ -160,7 +162,7 @@ static const char *next_name(const char *s, size_t *n)
     return *n ? s : NULL;
 }
 
-static bool among(const char *names, const char *key)
+static bool is_among(const char *names, const char *key)
 {
     size_t n;
     for (const char *s = names; (s = next_name(s, &n)); s += n)
@@ -176,8 +178,9 @@ int json_node_only(jnode o, const char *names)
     json_object_foreach(
         o.json, key,
         value) if (strcmp(key, "comment") &&
-                   !among(names, key)) return json_node_fault(json_node_key(&o, key),
-                                                              "unknown key; known here: %s", names);
+                   !is_among(names, key)) return json_node_fault(json_node_key(&o, key),
+                                                                 "unknown key; known here: %s",
+                                                                 names);
     return 0;
 }
 
@@ -212,7 +215,7 @@ int json_node_choice(jnode o, const char *names)
 
 /* ---- values ---- */
 
-int json_node_number(jnode n, enum jrange range, double *out)
+int json_node_number(jnode n, enum json_range range, double *out)
 {
     if (!n.json) return 0;
     if (!json_is_number(n.json)) return json_node_fault(n, "wants a number");

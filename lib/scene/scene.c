@@ -1,4 +1,4 @@
-/* scene.c: see scene/scene.h. */
+/* scene/scene.c: the memory of a scene, and the cells of a lattice. */
 #include "scene/scene.h"
 
 #include <stdlib.h>
@@ -11,7 +11,7 @@ void scene_free(struct scene *s)
     *s = (struct scene){ 0 };
 }
 
-/* In x (and y) the cells fill the box; along the last axis they are as low as they can be. */
+/* In x (and y) the cells fill the box; along the last axis they have the least edge. */
 struct scene_lattice scene_lattice(const struct scene_bodies *b, int dim)
 {
     struct scene_lattice l = { .cells = { 1, 1, 1 } };

@@ -1,9 +1,9 @@
 /*
- * scene/scene.h: what a packing is made from: a JSON object, checked, as a plain struct.
+ * scene/scene.h: a scene, what a packing is built from: a JSON object, checked, as a plain struct.
  *
  * SI units. A vector is [x, y, z], or [x, y] where dim is 2. Any object may have a
- * "comment". Unknown keys, keys given twice, wrong types and numbers out of range are errors,
- * told as "line:column: path: trouble".
+ * "comment". Unknown and repeated keys, wrong types and numbers out of range are errors, reported
+ * as "line:column: path: trouble".
  *
  *   title     string
  *   dim       3 | 2                    [3] balls in space, or discs in the plane z = 0
@@ -30,9 +30,9 @@
  *   density [its kind's] or mass, kg; fixed true | false [false]: moves with v and w whatever
  *   happens, so that its mass does not matter
  * and for a lattice
- *   box      [the box of the walls]    open at most above (the last axis)
- *   spacing  number >= 1 [1.05]        least cell, in largest diameters
- *   jitter   0..1 [1]                  of the room that a body has in its cell: never an overlap
+ *   box      [that of the first wall that is a BOX]    may be open only above (the last axis)
+ *   spacing  number >= 1 [1.05]        least edge of a cell, in largest diameters
+ *   jitter   0..1 [1]                  share of the free room in its cell that is used; no overlap
  *   thermal  number >= 0 [0]           m/s, standard deviation added to each component of v
  *
  * SIZE, the radius in m: a number, or one of
@@ -45,8 +45,8 @@
  * WALL { point: vector, normal: vector } or { box: BOX }, with velocity vector [0], kind ["wall"].
  *   Bodies stay on the side that the normal, of any length, points to; in a box they stay inside.
  *
- * The paper's examples. It gives radii, mu, dt and (example 1) the first velocity. Ours: density
- * 2500 kg/m^3, g 9.81 m/s^2, e_n = e_t = 0, and
+ * The paper's examples. The paper gives radii, mu, dt and (example 1) the initial velocity. Our
+ * choices: density 2500 kg/m^3, g 9.81 m/s^2, e_n = e_t = 0, and
  *   example 1  the ball touches the floor at the start (gap 0);
  *   example 2  a box of 1.6 mm, no lid, the balls one above the other in cells of 1.05 mm; seed 9,
  *              with which every solve converges, as the paper says (with 1 some steps jam);
@@ -71,7 +71,7 @@ struct scene_law {
 
 struct scene_size {
     enum { SIZE_UNIFORM, SIZE_GAUSSIAN, SIZE_LOGNORMAL } law;
-    double mid, spread; /* mean and sd, m; or median, m, and sigma */
+    double mid, spread; /* gaussian: mean and sd, m; lognormal: median, m, and sigma */
     double min, max;    /* m; a single radius is min = max */
 };
 
@@ -81,14 +81,14 @@ struct scene_box {
 
 struct scene_bodies {
     enum scene_source { SCENE_ONE, SCENE_LATTICE, SCENE_TABLE } from;
-    int64_t count; /* of a table: 0, not yet known */
+    int64_t count; /* bodies; 0 for a table, which is read only by scene_build */
     vec3 x;        /* m, SCENE_ONE */
     char *file;    /* SCENE_TABLE */
     struct scene_size size;
     struct scene_box box;
-    double spacing, jitter, thermal;
-    vec3 v, w;            /* m/s, rad/s */
-    double density, mass; /* of each; mass 0: from the density */
+    double spacing, jitter, thermal; /* of a lattice, as above */
+    vec3 v, w;                       /* m/s, rad/s */
+    double density, mass;            /* kg/m^3 or kg/m^2; kg a body, 0: from the density */
     bool fixed;
     int32_t kind;
 };
@@ -110,25 +110,25 @@ struct scene {
     int32_t walls;
     struct wall *wall; /* [walls] */
 
-    char *text; /* the JSON, without the blanks */
+    char *text; /* the JSON, without blanks outside strings */
 };
 
-/* Of a lattice: cells an axis, filled along x, then y, then z; and their edges, m. */
+/* Cells of a lattice along each axis, filled along x, then y, then z; and their edges (m). */
 struct scene_lattice {
     double cells[3], edge[3];
 };
-struct scene_lattice scene_lattice(const struct scene_bodies *, int dim);
+struct scene_lattice scene_lattice(const struct scene_bodies *b, int dim);
 
-/* Returns 0, EX_DATAERR or EX_SOFTWARE; there is something to free only after 0. */
-int scene_parse(struct scene *, const char *text, size_t length, struct why *);
-void scene_free(struct scene *);
+/* Returns 0, EX_DATAERR or EX_SOFTWARE; *s needs to be freed only after 0. */
+int scene_parse(struct scene *s, const char *text, size_t length, struct why *why);
+void scene_free(struct scene *s);
 
 /*
  * The paper's sedimentation of n balls (dim 3) or discs (dim 2): example 3 for n = 500, example 2
- * for n = 4; every other n is example 3 in a box of 6 (n/500)^(1/3) columns of cells along either
- * side, rounded and at least 1 (in the plane 25 (n/500)^(1/2)), so that all heaps have the same
+ * for n = 4; every other n is example 3 in a box whose sides are 6 (n/500)^(1/3) cells long,
+ * rounded and at least 1 (in the plane 25 (n/500)^(1/2)), so that all heaps have the same
  * proportions. n = 0 is an empty box. Parsed from its JSON text like any other scene.
  */
-int scene_paper(struct scene *, int dim, int64_t n, struct why *);
+int scene_paper(struct scene *s, int dim, int64_t n, struct why *why);
 
 #endif

@@ -1,3 +1,4 @@
+/* scene/scene_bodies.c: groups of bodies from their JSON. */
 #include "scene/scene_read.h"
 
 #include <stdlib.h>
@@ -14,11 +15,14 @@ static int read_uniform(jnode a, struct scene_size *z)
     return z->min <= z->max ? 0 : json_node_fault(a, "max is less than min");
 }
 
+/* Probability that a standard normal deviate is below z */
 static double normal_below(double z)
 {
     return 0.5 * erfc(-z * M_SQRT1_2);
 }
 
+/* A gaussian or lognormal distribution cut to [min, max], which must hold 1e-3 of it at least:
+   radii are drawn again until they lie in it. */
 static int read_bell(jnode o, struct scene_size *z)
 {
     bool gauss = z->law == SIZE_GAUSSIAN;
@@ -119,7 +123,7 @@ static int read_spin(jnode n, int dim, vec3 *w)
     return dim == 2 ? json_node_number(n, J_ANY, &w->z) : json_node_vector(n, 3, w);
 }
 
-/* What every body of a group has in common. */
+/* What the bodies of a group have in common */
 static int read_common(jnode o, const struct scene *s, struct scene_bodies *b)
 {
     if (json_node_vector(json_node_key(&o, "v"), s->dim, &b->v) ||
@@ -152,7 +156,7 @@ int scene_read_bodies(jnode a, struct scene *s, const struct scene_box *box)
 {
     size_t n;
     int64_t total = 0;
-    if (json_node_array(a, &n) || !(s->bodies = scene_room(a, n, sizeof *s->bodies))) return 1;
+    if (json_node_array(a, &n) || !(s->bodies = scene_alloc(a, n, sizeof *s->bodies))) return 1;
     for (size_t i = 0; i < n; i++) {
         jnode group = json_node_item(&a, i);
         s->groups++;

@@ -1,3 +1,4 @@
+/* scene/scene_build.c: tables, random lattices, the check for overlaps: a packing from a scene. */
 #include "scene/scene_build.h"
 
 #include "bodies/detect.h"
@@ -21,8 +22,9 @@ struct table {
     struct row *row;
 };
 
-/* Numbers of a line up to its end or a '#': how many, -1 if anything else stands there. */
-static int numbers(const char *s, double out[4])
+/* Reads the numbers of a line up to its end or a '#'; returns how many, -1 if there is anything
+   else. */
+static int parse_numbers(const char *s, double out[4])
 {
     for (int n = 0;; n++) {
         char *end;
@@ -50,7 +52,7 @@ static int read_line(struct table *t, int dim, const char *line, const char *nam
                      struct why *why)
 {
     struct row row = { 0 };
-    int n = numbers(line, row.x);
+    int n = parse_numbers(line, row.x);
     if (n == 0) return 0;
     if (n != dim + 1)
         return why_set(why, EX_DATAERR, "%s:%lld: wants %s", name, (long long)at,
@@ -90,7 +92,7 @@ static int set_body(struct packing *p, int64_t i, const struct scene_bodies *b, 
                     struct why *why)
 {
     double mass, inertia;
-    packing_body(p->dim, r, b->density, &mass, &inertia);
+    packing_solid(p->dim, r, b->density, &mass, &inertia);
     if (b->mass > 0) inertia *= b->mass / mass, mass = b->mass;
     if (!b->fixed && !(mass > 0 && inertia > 0))
         return why_set(why, EX_DATAERR, "body %lld: a radius of %g m gives no mass", (long long)i,
@@ -102,8 +104,8 @@ static int set_body(struct packing *p, int64_t i, const struct scene_bodies *b, 
     return 0;
 }
 
-/* A normal deviate to 7 digits, and no more: libm's logarithm and exponential, by which it is made, have
-   other last bits on machines without FMA. */
+/* A normal deviate rounded to float: the last bits of libm's logarithm and exponential, from which
+   it is made, differ on machines without FMA. */
 static double draw_normal(gsl_rng *rng, double sd)
 {
     return (float)gsl_ran_gaussian(rng, sd);
@@ -116,17 +118,17 @@ static double draw_radius(const struct scene_size *z, gsl_rng *rng)
     do {
         double z1 = draw_normal(rng, z->spread);
         r = z->law == SIZE_GAUSSIAN ? z->mid + z1 : z->mid * (float)exp(z1);
-    } while (r < z->min || r > z->max); // ends: the scene has seen to it
+    } while (r < z->min || r > z->max); // ends: [min, max] has a share of 1e-3 at least (read_bell)
     return r;
 }
 
-/* The middle of cell k of the lattice, moved by as much as leaves the body inside the cell. */
+/* The middle of cell k of the lattice, moved at random as far as the body stays in the cell. */
 static vec3 draw_place(const struct scene_bodies *b, const struct scene_lattice *l, int dim,
                        int64_t k, double r, gsl_rng *rng)
 {
     double x[3] = { 0 }, rest = (double)k;
     for (int i = 0; i < dim; i++) {
-        bool last = i == dim - 1; // its cells may be without number
+        bool last = i == dim - 1; // the box may be open here: no end of cells
         double above = last ? 0 : floor(rest / l->cells[i]);
         double cell = last ? rest : rest - above * l->cells[i];
         double slack = b->jitter * (0.5 * l->edge[i] - r);
@@ -167,8 +169,8 @@ static int fill_table(struct packing *p, int64_t first, const struct scene_bodie
     return 0;
 }
 
-static int fill(struct packing *p, const struct scene *s, const struct table *table, gsl_rng *rng,
-                struct why *why)
+static int fill_groups(struct packing *p, const struct scene *s, const struct table *table,
+                       gsl_rng *rng, struct why *why)
 {
     int64_t first = 0;
     for (int64_t g = 0; g < s->groups; g++) {
@@ -182,12 +184,13 @@ static int fill(struct packing *p, const struct scene *s, const struct table *ta
     return 0;
 }
 
-/* ---- the whole ---- */
+/* ---- the packing ---- */
 
 static int set_parameters(struct packing *p, const struct scene *s, struct why *why)
 {
     p->dt = s->dt, p->theta = s->theta, p->g = s->g, p->seed = s->seed;
-    if (packing_walls(p, s->walls, why) || packing_kinds(p, s->kinds, why)) return why->status;
+    if (packing_alloc_walls(p, s->walls, why) || packing_alloc_kinds(p, s->kinds, why))
+        return why->status;
     for (int32_t i = 0; i < s->walls; i++) p->wall[i] = s->wall[i];
     for (int32_t k = 0; k < s->kinds; k++) {
         free(p->kind_name[k]);
@@ -203,15 +206,13 @@ fail:
 static int check_overlap(const struct packing *p, struct why *why)
 {
     struct contacts found = { 0 };
-    struct packing here = *p;
-    here.theta = 1; // where the bodies are, not where they will be
-    int e = detect_contacts(&found, &here, 0, NULL, why);
+    int e = detect_contacts_at(&found, p, p->x, p->t, 0, NULL, why);
     for (int64_t i = 0; !e && i < found.n; i++) {
         const struct contact *c = &found.c[i];
         double r = p->radius[c->b];
         if (c->a >= 0) r = fmin(r, p->radius[c->a]);
         if (c->gap >= -1e-6 * r)
-            continue; // balls that are meant to touch may, by rounding, overlap
+            continue; // rounding: bodies that just touch may overlap by this much
         e = c->a < 0 ? why_set(why, EX_DATAERR, "body %d is %.3g m deep in wall %d", c->b, -c->gap,
                                -1 - c->a)
                      : why_set(why, EX_DATAERR, "bodies %d and %d overlap by %.3g m", c->a, c->b,
@@ -221,15 +222,15 @@ static int check_overlap(const struct packing *p, struct why *why)
     return e;
 }
 
-/* A packing whose numbers are in their ranges, and whose bodies do not overlap unless they may. */
-static int check(const struct packing *p, const struct scene *s, struct why *why)
+/* Are the numbers in range, and do no bodies overlap, unless the scene allows it? */
+static int check_packing(const struct packing *p, const struct scene *s, struct why *why)
 {
     if (packing_check(p, why)) return why->status;
     return s->overlap ? 0 : check_overlap(p, why);
 }
 
-static int build(struct packing *p, const struct scene *s, const struct table *table,
-                 struct why *why)
+static int build_packing(struct packing *p, const struct scene *s, const struct table *table,
+                         struct why *why)
 {
     int64_t n = 0;
     for (int64_t g = 0; g < s->groups; g++) n += s->bodies[g].count + table[g].n;
@@ -238,7 +239,8 @@ static int build(struct packing *p, const struct scene *s, const struct table *t
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     if (!rng) why_set(why, EX_SOFTWARE, "no memory for random numbers");
     if (rng) gsl_rng_set(rng, s->seed);
-    if (rng && !set_parameters(p, s, why) && !fill(p, s, table, rng, why)) check(p, s, why);
+    if (rng && !set_parameters(p, s, why) && !fill_groups(p, s, table, rng, why))
+        check_packing(p, s, why);
     gsl_rng_free(rng);
     if (why->status) packing_free(p);
     return why->status;
@@ -251,7 +253,7 @@ int scene_build(struct packing *p, const struct scene *s, const char *dir, struc
     for (int64_t g = 0; g < s->groups && !why->status; g++)
         if (s->bodies[g].from == SCENE_TABLE)
             read_table(&table[g], s->dim, dir, s->bodies[g].file, why);
-    if (!why->status) build(p, s, table, why);
+    if (!why->status) build_packing(p, s, table, why);
     for (int64_t g = 0; g < s->groups; g++) free(table[g].row);
     free(table);
     return why->status;

@@ -1,4 +1,4 @@
-/* scene/scene_build.h: a packing from a scene. The same scene gives the same bytes. */
+/* scene/scene_build.h: builds a packing from a scene. The same scene gives the same bytes. */
 #ifndef NSD_SCENE_BUILD_H
 #define NSD_SCENE_BUILD_H
 
@@ -7,9 +7,9 @@
 
 /*
  * Bodies in the order of the scene's groups; p->scene is the scene's text. Tables with a relative
- * name are sought in dir (NULL: here). Returns 0, EX_DATAERR, EX_NOINPUT (a table cannot be read)
- * or EX_SOFTWARE; there is something to free only after 0.
+ * name are looked for in dir (NULL: the working directory). Returns 0, EX_DATAERR (also for bodies
+ * that overlap), EX_NOINPUT (a table cannot be read) or EX_SOFTWARE; p needs freeing only after 0.
  */
-int scene_build(struct packing *, const struct scene *, const char *dir, struct why *);
+int scene_build(struct packing *p, const struct scene *s, const char *dir, struct why *why);
 
 #endif

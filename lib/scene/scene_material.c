@@ -1,3 +1,4 @@
+/* scene/scene_material.c: materials: kinds, and the law of each pair of them, from their JSON. */
 #include "scene/scene_read.h"
 
 #include <stdlib.h>
@@ -44,7 +45,7 @@ int scene_read_kinds(jnode o, struct scene *s, double density)
     size_t most = 1000, count = json_object_size(o.json);
     if (o.json && !json_is_object(o.json)) return json_node_fault(o, "wants an object {...}");
     if (count > most) return json_node_fault(o, "more than %zu kinds", most);
-    if (!(s->kind = scene_room(o, count + 2, sizeof *s->kind))) return 1;
+    if (!(s->kind = scene_alloc(o, count + 2, sizeof *s->kind))) return 1;
     if (add_kind(o, s, "ball", density) || add_kind(o, s, "wall", density)) return 1;
     json_object_foreach(o.json, name, value)
     {
@@ -81,9 +82,9 @@ static int read_pair(jnode o, struct scene *s, bool *given)
 int scene_read_pairs(jnode a, struct scene *s, struct scene_law law)
 {
     size_t n, k2 = (size_t)s->kinds * (size_t)s->kinds;
-    if (json_node_array(a, &n) || !(s->law = scene_room(a, k2, sizeof *s->law))) return 1;
+    if (json_node_array(a, &n) || !(s->law = scene_alloc(a, k2, sizeof *s->law))) return 1;
     for (size_t i = 0; i < k2; i++) s->law[i] = law;
-    bool *given = scene_room(a, k2, sizeof *given);
+    bool *given = scene_alloc(a, k2, sizeof *given);
     int bad = !given;
     for (size_t i = 0; i < n && !bad; i++) bad = read_pair(json_node_item(&a, i), s, given);
     free(given);

@@ -1,10 +1,10 @@
-/* scene_parse.c: a scene from its JSON text; see scene/scene.h. */
+/* scene/scene_parse.c: a scene from its JSON text; see scene/scene.h. */
 #include "scene/scene_read.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-void *scene_room(jnode n, size_t count, size_t size)
+void *scene_alloc(jnode n, size_t count, size_t size)
 {
     void *p = calloc(count ? count : 1, size);
     if (!p) why_set(n.in->why, EX_SOFTWARE, "no memory for the scene");
@@ -57,13 +57,13 @@ static int read_scene(jnode o, struct scene *s)
 
 int scene_parse(struct scene *s, const char *text, size_t length, struct why *why)
 {
-    struct jtext t;
+    struct json_doc t;
     *s = (struct scene){ .theta = 0.5 };
-    if (jtext_parse(&t, text, length, why)) return why->status;
-    int bad = read_scene(jtext_root(&t), s);
+    if (json_doc_parse(&t, text, length, why)) return why->status;
+    int bad = read_scene(json_doc_root(&t), s);
     if (!bad && !(s->text = compact(t.text)))
         bad = why_set(why, EX_SOFTWARE, "no memory for the scene's text");
-    jtext_free(&t);
+    json_doc_free(&t);
     if (bad) scene_free(s);
     return why->status;
 }

@@ -1,6 +1,6 @@
 /*
- * scene/scene_read.h: the parts of a scene [scene/scene.h] out of its JSON [scene/json_node.h], a file
- * each; for scene_parse.c. Each returns 0, or another number where a fault has been told.
+ * scene/scene_read.h: reads the parts of a scene [scene/scene.h] from its JSON [scene/json_node.h]
+ * for scene_parse.c, a file for each. Each returns 0, or not 0 after a fault has been reported.
  */
 #ifndef NSD_SCENE_READ_H
 #define NSD_SCENE_READ_H
@@ -10,20 +10,23 @@
 
 static const char axis_name[3][2] = { "x", "y", "z" };
 
-/* Zeroed; the fault is told where there is none. */
-void *scene_room(jnode, size_t count, size_t size);
+/* Zeroed memory; NULL, and the fault reported, when it is short. */
+void *scene_alloc(jnode node, size_t count, size_t size);
 
-/* scene/scene_material.c: kinds and their pairs; a NAME among them */
-int scene_read_law(const jnode *, struct scene_law *);
-int scene_read_kinds(jnode, struct scene *, double density);
-int scene_read_pairs(jnode, struct scene *, struct scene_law);
-int scene_read_kind(jnode, const struct scene *, int32_t *kind);
+/* scene/scene_material.c: mu, e_n, e_t; "kinds" and "pairs", with density and law for those that
+   give none; the NAME of a kind */
+int scene_read_law(const jnode *object, struct scene_law *law);
+int scene_read_kinds(jnode kinds, struct scene *s, double density);
+int scene_read_pairs(jnode pairs, struct scene *s, struct scene_law law);
+int scene_read_kind(jnode name, const struct scene *s, int32_t *kind);
 
-/* scene/scene_walls.c: *box is that of the first boxed wall, the default place of a lattice. */
-int scene_read_walls(jnode, struct scene *, struct scene_box *box, bool *boxed);
-int scene_read_box(jnode, int dim, struct scene_box *);
+/* scene/scene_walls.c: "walls", where *box = that of the first wall that is a box, the default of a
+   lattice, and *boxed whether there is one; a BOX */
+int scene_read_walls(jnode walls, struct scene *s, struct scene_box *box, bool *boxed);
+int scene_read_box(jnode object, int dim, struct scene_box *box);
 
-/* scene/scene_bodies.c: box, or NULL: where a lattice without one goes */
-int scene_read_bodies(jnode, struct scene *, const struct scene_box *box);
+/* scene/scene_bodies.c: "bodies"; a lattice without a box fills this one (NULL: must have its
+   own). */
+int scene_read_bodies(jnode bodies, struct scene *s, const struct scene_box *box);
 
 #endif

@@ -1,3 +1,4 @@
+/* scene/scene_walls.c: walls and boxes from their JSON. */
 #include "scene/scene_read.h"
 
 static int read_side(jnode n, double lo_hi[2])
@@ -30,7 +31,7 @@ static void add_wall(struct scene *s, struct wall w, vec3 point, vec3 normal)
     s->wall[s->walls++] = w;
 }
 
-/* x from below, x from above, y ...: where the box is not open. */
+/* Walls at the lower x, the upper x, the lower y ..., where the box is not open */
 static void add_box(struct scene *s, struct wall w, const struct scene_box *b)
 {
     for (int i = 0; i < 3; i++) {
@@ -48,7 +49,8 @@ static int read_plane(jnode o, struct scene *s, struct wall w)
         json_node_vector(json_node_key(&o, "point"), s->dim, &x) ||
         json_node_vector(json_node_key(&o, "normal"), s->dim, &n))
         return 1;
-    double most = fmax(fabs(n.x), fmax(fabs(n.y), fabs(n.z))); // so that no square overflows
+    double most =
+        fmax(fabs(n.x), fmax(fabs(n.y), fabs(n.z))); // scaled by it so that no square overflows
     if (!(most > 0)) return json_node_fault(json_node_key(&o, "normal"), "must not be zero");
     n = v3(n.x / most, n.y / most, n.z / most);
     double length = v3_norm(n);
@@ -56,7 +58,6 @@ static int read_plane(jnode o, struct scene *s, struct wall w)
     return 0;
 }
 
-/* *box: that of the first boxed wall, the default place of a lattice. */
 static int read_wall(jnode o, struct scene *s, struct scene_box *box, bool *boxed)
 {
     struct wall w = { .kind = 1 };
@@ -77,7 +78,7 @@ static int read_wall(jnode o, struct scene *s, struct scene_box *box, bool *boxe
 int scene_read_walls(jnode a, struct scene *s, struct scene_box *box, bool *boxed)
 {
     size_t n;
-    if (json_node_array(a, &n) || !(s->wall = scene_room(a, 6 * n, sizeof *s->wall))) return 1;
+    if (json_node_array(a, &n) || !(s->wall = scene_alloc(a, 6 * n, sizeof *s->wall))) return 1;
     for (size_t i = 0; i < n; i++)
         if (read_wall(json_node_item(&a, i), s, box, boxed)) return 1;
     return 0;

@@ -15,7 +15,7 @@ int step_solve(const struct packing *pack, struct contacts *s, const struct step
                struct report *rep, struct why *why)
 {
     struct problem p;
-    if (!o->warm) contacts_forget(s);
+    if (!o->warm) contacts_free_found(s);
     if (problem_prepare(&p, pack, s, o->alpha, o->solve.method->rho, o->order, why))
         return why->status;
     rep->step = pack->step + 1;
