@@ -43,12 +43,12 @@ nsd-gen --dim \[3\]
 nsd-detect --gap \[0\]
 nsd-detect --theta 0\.5\]
 nsd-detect --fclib local|global
-nsd-solve --method auto|sbp|sal|ebp|eal|exact.*\[auto\]
-nsd-solve --global auto|nlgs|anderson|cg|prox|ipm.*\[nlgs with -m
+nsd-solve --method auto|sbp|.*\[auto\]
+nsd-solve --global auto|nlgs|.*\[nlgs with -m
 nsd-solve --max-seconds .
 nsd-solve --eps \[1e-10\]
 nsd-solve --criterion glob|scaled|natural.*\[glob; natural for FCLIB\]
-nsd-solve --max-sweeps \[5000;
+nsd-solve --max-sweeps \[5000
 nsd-solve --alpha \[1\.75
 nsd-solve --newton plain|linesearch.*\[linesearch\]
 nsd-solve --newton-eps \[1e-13\]

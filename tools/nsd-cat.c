@@ -7,10 +7,11 @@ static bool last, stream;
 static const char *steps, *output;
 
 static const struct cli_option own[] = {
-    { CLI_FLAG, 'l', "last", &last, NULL, "only the very last frame", 0, 0, 0 },
-    { CLI_TEXT, 's', "steps", &steps, "A:B:K", "only steps A to B, every K-th [all]", 0, 0, 0 },
-    { CLI_FLAG, 0, "stream", &stream, NULL, "one document a frame, into a file too", 0, 0, 0 },
-    { CLI_TEXT, 'o', "output", &output, "FILE", "where to [standard output]", 0, 0, true },
+    { CLI_FLAG, 'l', "last", &last, .help = "only the very last frame" },
+    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
+    { CLI_FLAG, 0, "stream", &stream, .help = "one document a frame, also into a file" },
+    { CLI_TEXT, 'o', "output", &output, "FILE", .help = "write to FILE [standard output]",
+      .silent = true },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };

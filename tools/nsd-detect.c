@@ -6,11 +6,20 @@
 
 #include <stdlib.h>
 
-static int export = -1;
+/* The two forms of a problem in FCLIB */
+enum form { FORM_LOCAL, FORM_GLOBAL, FORM_COUNT };
+static const char *const form_name[FORM_COUNT] = { "local", "global" };
+
+static struct cli_choice form_choice(int k)
+{
+    return (struct cli_choice){ k < FORM_COUNT ? form_name[k] : NULL, NULL };
+}
+
+static int form;
 
 static const struct cli_option own[] = {
-    { CLI_CHOICE, 0, "fclib", &export, "local|global",
-      "write the contact problem in the FCLIB format too", 0, 0, 0 },
+    { CLI_CHOICE, 0, "fclib", &form, .choice = form_choice,
+      .help = "write the contact problem in the FCLIB format too" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { options_detect, own, NULL };
@@ -32,7 +41,7 @@ static void add_problem(struct frame *f)
     if (!f->export) die(EX_SOFTWARE, "no memory for the contact problem");
     if (problem_prepare(f->export, &f->packing, &f->contacts, 0, 1, ORDER_NATURAL, &why))
         die_why(&why);
-    f->export_global = export == 1;
+    f->export_global = form == FORM_GLOBAL;
 }
 
 static void detect(struct frame *f, const char *where)
@@ -43,7 +52,7 @@ static void detect(struct frame *f, const char *where)
     if (detect_contacts(&f->contacts, &f->packing, options.gap, NULL, &why)) die_why(&why);
     f->detected = true, f->reported = f->moved = false;
     f->stale = true;
-    if (export >= 0) add_problem(f);
+    if (cli_given(&form)) add_problem(f);
 }
 
 int tool_main(int argc, char **argv)

@@ -13,7 +13,8 @@
 static int64_t dim = 3;
 
 static const struct cli_option own[] = {
-    { CLI_INT, 'd', "dim", &dim, "2|3", "of the paper's N balls: 2 makes discs [3]", 2, 3, 0 },
+    { CLI_INT, 'd', "dim", &dim, "2|3", .min = 2, .max = 3,
+      .help = "with N: 3 makes balls, 2 discs in the plane [3]" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };

@@ -7,12 +7,12 @@
 #include <stdlib.h>
 
 static const struct cli_option own[] = {
-    { CLI_REAL, 0, "theta", &options.theta, "T", "must be the contacts' own [the document's]", 0, 1,
-      0 },
-    { CLI_FLAG, 'w', "warm", &options.warm, NULL,
-      "start from the reactions in the document [from 0, as the paper]", 0, 0, 0 },
-    { CLI_FLAG, 0, "history", &options.history, NULL,
-      "keep the error terms of every sweep in the document", 0, 0, 0 },
+    { CLI_REAL, 0, "theta", &options.theta, "T", .max = 1,
+      .help = "must be what the contacts were detected with [the document's]" },
+    { CLI_FLAG, 'w', "warm", &options.warm,
+      .help = "start from the reactions in the document [from 0, as the paper]" },
+    { CLI_FLAG, 0, "history", &options.history,
+      .help = "keep the error terms of every sweep in the document" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { options_solve, own, options_run, NULL };

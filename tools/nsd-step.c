@@ -13,14 +13,15 @@ static bool contacts;
 static const char *output;
 
 static const struct cli_option own[] = {
-    { CLI_INT, 'n', "steps", &steps, "N", "steps to make [1]", 0, 1e15, 0 },
-    { CLI_INT, 0, "every", &every, "K", "keep every K-th step, and the last [1]", 1, 1e15, 0 },
-    { CLI_FLAG, 0, "contacts", &contacts, NULL, "keep the contacts of each frame", 0, 0, 0 },
-    { CLI_FLAG, 'w', "warm", &options.warm, NULL, "start each solve from the last step's reactions",
-      0, 0, 0 },
-    { CLI_UNFLAG, 0, "cold", &options.warm, NULL, "start each solve from 0, as the paper [cold]", 0,
-      0, 0 },
-    { CLI_TEXT, 'o', "output", &output, "FILE", "where to [standard output]", 0, 0, true },
+    { CLI_INT, 'n', "steps", &steps, "N", "steps to make [1]", .max = 1e15 },
+    { CLI_INT, 0, "every", &every, "K", "keep every K-th step, and the last [1]", .min = 1,
+      .max = 1e15 },
+    { CLI_FLAG, 0, "contacts", &contacts, .help = "keep each frame's contacts too" },
+    { CLI_FLAG, 'w', "warm", &options.warm,
+      .help = "start each solve from the last step's reactions" },
+    { CLI_UNFLAG, 0, "cold", &options.warm,
+      .help = "start each solve from 0, as the paper [cold]" },
+    { CLI_TEXT, 'o', "output", &output, "FILE", "write to FILE [standard output]", .silent = true },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, options_solve, options_detect, options_run,

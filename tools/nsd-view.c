@@ -15,27 +15,33 @@ static int colour = COLOUR_RADIUS;
 static bool plain;
 static const char *output, *range, *size, *camera = "30,15", *box, *background = "ffffff";
 
+static struct cli_choice colour_choice(int k)
+{
+    return (struct cli_choice){ k < COLOUR_COUNT ? colour_name[k] : NULL, NULL };
+}
+
 static const struct cli_option own[] = {
-    { CLI_INT, 's', "step", &step, "N", "the frame of step N [the very last frame]", 0, 1e15, 0 },
-    { CLI_INT, 0, "every", &every, "K", "a series: every K-th frame, numbered from 0 [one picture]",
-      1, 1e15, 0 },
-    { CLI_TEXT, 'o', "output", &output, "FILE",
-      "where to; a series: 'f%05d.png' or so [standard output]", 0, 0, true },
-    { CLI_CHOICE, 'c', "colour", &colour, PAINT_COLOURS, "what colours show [radius]", 0, 0, 0 },
+    { CLI_INT, 's', "step", &step, "N", .max = 1e15,
+      .help = "the frame of step N [the very last frame]" },
+    { CLI_INT, 0, "every", &every, "K", .min = 1, .max = 1e15,
+      .help = "a series: every K-th frame, numbered from 0 [one picture]" },
+    { CLI_TEXT, 'o', "output", &output, "FILE", .silent = true,
+      .help = "write to FILE; a series: 'f%05d.png' or so [standard output]" },
+    { CLI_CHOICE, 'c', "colour", &colour, .choice = colour_choice,
+      .help = "what a body's colour shows [radius]" },
     { CLI_TEXT, 0, "range", &range, "LO,HI",
-      "m or m/s at the palette's ends [what there is; speeds from 0]", 0, 0, 0 },
-    { CLI_FLAG, 0, "plain", &plain, NULL, "no marks on the bodies that show how they turn", 0, 0,
-      0 },
-    { CLI_TEXT, 0, "size", &size, "WxH", "pixels [the longer side 900, the other as it fits]", 0, 0,
-      0 },
+      .help = "m or m/s at the ends of the palette [what there is; speeds from 0]" },
+    { CLI_FLAG, 0, "plain", &plain, .help = "without the marks that show how bodies turn" },
+    { CLI_TEXT, 0, "size", &size, "WxH", .help = "pixels [the longer side 900, the other to fit]" },
     { CLI_TEXT, 0, "camera", &camera, "AZ,EL",
-      "degrees about z and above the horizon, in space [30,15]", 0, 0, 0 },
+      .help = "of balls: degrees about z and above the horizon [30,15]" },
     { CLI_TEXT, 0, "box", &box, "X0,X1,Y0,Y1[,Z0,Z1]",
-      "only bodies with their centre in it, m; it fills the picture [all]", 0, 0, 0 },
-    { CLI_TEXT, 0, "background", &background, "RRGGBB", "its colour [ffffff]", 0, 0, 0 },
-    { CLI_INT, 0, "samples", &samples, "N", "a pixel is the mean of N x N [3]", 1, 8, 0 },
-    { CLI_INT, 'j', "threads", &threads, "N", "threads; they never change a picture [1]", 1, 1024,
-      true },
+      .help = "only bodies with their centre in this box (m) [all]" },
+    { CLI_TEXT, 0, "background", &background, "RRGGBB", .help = "its colour [ffffff]" },
+    { CLI_INT, 0, "samples", &samples, "N", .min = 1, .max = 8,
+      .help = "a pixel is the mean of N x N samples [3]" },
+    { CLI_INT, 'j', "threads", &threads, "N", .min = 1, .max = 1024, .silent = true,
+      .help = "threads; they never change a picture [1]" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };

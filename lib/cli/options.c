@@ -10,16 +10,46 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define METHODS  "auto|sbp|sal|ebp|eal|exact"           /* auto, then in the order of methods[] */
-#define SOLVERS  "auto|nlgs|anderson|cg|prox|ipm"       /* in the order of solvers[] */
-#define CRITERIA "glob|scaled|natural"                  /* of enum criterion */
-#define ORDERS   "natural|reverse|random|colour|halves" /* of enum order */
-#define MOST     1e300
+#define MOST 1e300
+
+/* ---- the words that options take, from the tables of what there is ---- */
+
+static struct cli_choice method_choice(int k)
+{
+    if (k == 0) return (struct cli_choice){ "auto", "no method of its own: as --global auto" };
+    const struct method *m = methods[k - 1];
+    return m ? (struct cli_choice){ m->name, m->help } : (struct cli_choice){ NULL, NULL };
+}
+
+static struct cli_choice solver_choice(int k)
+{
+    return (struct cli_choice){ solvers[k] ? solvers[k]->name : NULL, NULL };
+}
+
+static struct cli_choice criterion_choice(int k)
+{
+    return (struct cli_choice){ k < CRITERION_COUNT ? criterion_name[k] : NULL, NULL };
+}
+
+static struct cli_choice order_choice(int k)
+{
+    return (struct cli_choice){ k < ORDER_COUNT ? order_name[k] : NULL, NULL };
+}
+
+enum newton_steps { NEWTON_PLAIN, NEWTON_LINESEARCH, NEWTON_COUNT };
+static const char *const newton_name[NEWTON_COUNT] = { "plain", "linesearch" };
+
+static struct cli_choice newton_choice(int k)
+{
+    return (struct cli_choice){ k < NEWTON_COUNT ? newton_name[k] : NULL, NULL };
+}
+
+/* ---- the options ---- */
 
 struct options options = { .global = -1,
                            .criterion = -1,
                            .eps = 1e-10,
-                           .newton = 1,
+                           .newton = NEWTON_LINESEARCH,
                            .newton_eps = 1e-13,
                            .newton_max = 100,
                            .theta = -1,
@@ -28,51 +58,52 @@ struct options options = { .global = -1,
                            .threads = 1 };
 
 const struct cli_option options_solve[] = {
-    { CLI_CHOICE, 'm', "method", &options.method, METHODS,
-      "the local method of Gauss-Seidel; auto: --global auto [auto]", 0, 0, 0 },
-    { CLI_CHOICE, 0, "global", &options.global, SOLVERS,
-      "how all contacts together are solved [nlgs with -m, else auto]", 0, 0, 0 },
-    { CLI_REAL, 0, "eps", &options.eps, "EPS", "stop when the criterion is at most this [1e-10]", 0,
-      MOST, 0 },
-    { CLI_CHOICE, 0, "criterion", &options.criterion, CRITERIA,
-      "what is compared with EPS [glob; natural for FCLIB]", 0, 0, 0 },
-    { CLI_INT, 0, "max-sweeps", &options.max_sweeps, "N",
-      "give up after these [5000; 1000000 but for nlgs]", 0, 2e9, 0 },
-    { CLI_ABOVE, 0, "max-seconds", &options.max_seconds, "S",
-      "give up after so long, the best so far kept", 0, MOST, 0 },
-    { CLI_ABOVE, 0, "alpha", &options.alpha, "A",
-      "rho = A m_red [1.75 (sbp, sal) or 1 (ebp, eal) over lambda_max]", 0, MOST, 0 },
-    { CLI_CHOICE, 0, "newton", &options.newton, "plain|linesearch",
-      "steps of ebp and eal; plain is the paper's [linesearch]", 0, 0, 0 },
-    { CLI_ABOVE, 0, "newton-eps", &options.newton_eps, "EPS",
-      "their end, relative to |(r, rho b)| [1e-13]", 0, 1, 0 },
-    { CLI_ABOVE, 0, "newton-abs", &options.newton_abs, "EPS",
-      "their end as the paper has it, absolute, with r in N", 0, MOST, 0 },
-    { CLI_INT, 0, "newton-max", &options.newton_max, "N", "their number [100]", 1, 1e6, 0 },
-    { CLI_BETWEEN, 0, "relax", &options.relax, "OMEGA",
-      "over-relaxation, between 0 and 2 [1; the solver's]", 0, 2, 0 },
-    { CLI_CHOICE, 0, "order", &options.order, ORDERS,
-      "of the sweep; natural is the paper's [natural for nlgs, else colour]", 0, 0, 0 },
-    { CLI_FLAG, 0, "every-sweep", &options.every_sweep, NULL,
-      "evaluate the criterion after every sweep [when it may be met]", 0, 0, 0 },
+    { CLI_CHOICE, 'm', "method", &options.method, .choice = method_choice,
+      .help = "the local method of Gauss-Seidel, which then solves [auto]" },
+    { CLI_CHOICE, 0, "global", &options.global, .choice = solver_choice,
+      .help = "the solver of all contacts together [nlgs with -m, else auto]" },
+    { CLI_REAL, 0, "eps", &options.eps, "EPS", .max = MOST,
+      .help = "stop when the criterion is at most this [1e-10]" },
+    { CLI_CHOICE, 0, "criterion", &options.criterion, .choice = criterion_choice,
+      .help = "what is compared with EPS [glob; natural for FCLIB]" },
+    { CLI_INT, 0, "max-sweeps", &options.max_sweeps, "N", .max = 2e9,
+      .help = "give up after N sweeps [5000 for nlgs, else 1000000]" },
+    { CLI_ABOVE, 0, "max-seconds", &options.max_seconds, "S", .max = MOST,
+      .help = "give up after S seconds, with the best so far" },
+    { CLI_ABOVE, 0, "alpha", &options.alpha, "A", .max = MOST,
+      .help = "rho = A m_red [1.75 (sbp, sal) or 1 (ebp, eal) over lambda_max]" },
+    { CLI_CHOICE, 0, "newton", &options.newton, .choice = newton_choice,
+      .help = "Newton's steps in ebp and eal; plain is the paper's [linesearch]" },
+    { CLI_ABOVE, 0, "newton-eps", &options.newton_eps, "EPS", .max = 1,
+      .help = "stop them when |Z| is at most EPS |(r, rho b)| [1e-13]" },
+    { CLI_ABOVE, 0, "newton-abs", &options.newton_abs, "EPS", .max = MOST,
+      .help = "stop them as the paper does, when |Z| is at most EPS, with r in N" },
+    { CLI_INT, 0, "newton-max", &options.newton_max, "N", .min = 1, .max = 1e6,
+      .help = "make at most N of them for a contact in a sweep [100]" },
+    { CLI_BETWEEN, 0, "relax", &options.relax, "OMEGA", .max = 2,
+      .help = "relaxation, between 0 and 2 [1 for nlgs, else the solver's]" },
+    { CLI_CHOICE, 0, "order", &options.order, .choice = order_choice,
+      .help = "of the sweep; natural is the paper's [natural for nlgs, else colour]" },
+    { CLI_FLAG, 0, "every-sweep", &options.every_sweep,
+      .help = "evaluate the criterion after every sweep [when it may be met]" },
     { 0 },
 };
 
 const struct cli_option options_run[] = {
-    { CLI_INT, 'j', "threads", &options.threads, "N", "threads; they never change a result [1]", 1,
-      1024, true },
-    { CLI_TEXT, 0, "log", &options.log, "FILE", "one JSON line a solve, with its seconds", 0, 0,
-      true },
-    { CLI_FLAG, 'e', "strict", &options.strict, NULL, "exit with 1 when a solve has not converged",
-      0, 0, true },
+    { CLI_INT, 'j', "threads", &options.threads, "N", .min = 1, .max = 1024, .silent = true,
+      .help = "threads; they never change a result [1]" },
+    { CLI_TEXT, 0, "log", &options.log, "FILE", .silent = true,
+      .help = "write one JSON line for each solve, with its seconds" },
+    { CLI_FLAG, 'e', "strict", &options.strict, .silent = true,
+      .help = "exit with 1 when a solve has not converged" },
     { 0 },
 };
 
 const struct cli_option options_detect[] = {
-    { CLI_REAL, 0, "gap", &options.gap, "G", "contacts have a predicted gap of at most G m [0]", 0,
-      MOST, 0 },
-    { CLI_REAL, 0, "theta", &options.theta, "T",
-      "predict q + (1 - T) dt qdot [the document's; 0.5]", 0, 1, 0 },
+    { CLI_REAL, 0, "gap", &options.gap, "G", .max = MOST,
+      .help = "a contact is a pair with a predicted gap of at most G m [0]" },
+    { CLI_REAL, 0, "theta", &options.theta, "T", .max = 1,
+      .help = "predict the position q + (1 - T) dt qdot [the document's; 0.5]" },
     { 0 },
 };
 
@@ -98,7 +129,7 @@ struct step_opt options_step(double dt, bool foreign)
         .warm = o->warm,
         .solve = { .global = solver,
                    .method = o->method ? methods[o->method - 1] : &local_exact,
-                   .local = { .plain = o->newton == 0,
+                   .local = { .plain = o->newton == NEWTON_PLAIN,
                               .newton_eps = o->newton_eps,
                               .newton_abs = o->newton_abs * dt, // forces there, impulses here
                               .newton_max = (int)o->newton_max },
@@ -113,15 +144,6 @@ struct step_opt options_step(double dt, bool foreign)
                    .every_sweep = o->every_sweep,
                    .history = o->history },
     };
-}
-
-/* Word k of "a|b|c", in a buffer of its own. */
-static const char *word(const char *list, int k)
-{
-    static char buffer[40];
-    for (; k > 0; k--) list = strchr(list, '|') + 1;
-    snprintf(buffer, sizeof buffer, "%.*s", (int)strcspn(list, "|"), list);
-    return buffer;
 }
 
 const char *options_solver(const struct step_opt *o)
@@ -144,14 +166,15 @@ char *options_json(const struct step_opt *o)
         json_object_set_new(j, "alpha", json_real(o->alpha));
     else
         json_object_set_new(j, "rho_lambda_max", json_real(n->method->rho));
-    json_object_set_new(j, "newton", json_string(n->local.plain ? "plain" : "linesearch"));
+    json_object_set_new(
+        j, "newton", json_string(newton_name[n->local.plain ? NEWTON_PLAIN : NEWTON_LINESEARCH]));
     if (n->local.newton_abs > 0)
         json_object_set_new(j, "newton_abs", json_real(options.newton_abs));
     else
         json_object_set_new(j, "newton_eps", json_real(n->local.newton_eps));
     json_object_set_new(j, "newton_max", json_integer(n->local.newton_max));
     if (n->relax > 0) json_object_set_new(j, "relax", json_real(n->relax));
-    json_object_set_new(j, "order", json_string(word(ORDERS, (int)o->order)));
+    json_object_set_new(j, "order", json_string(order_name[o->order]));
     json_object_set_new(j, "warm", json_boolean(o->warm));
     char *text = json_dumps(j, JSON_COMPACT);
     json_decref(j);
