@@ -9,8 +9,9 @@
 static const struct cli_option own[] = {
     { CLI_REAL, 0, "theta", &options.theta, "T", .max = 1,
       .help = "must be what the contacts were detected with [the document's]" },
-    { CLI_FLAG, 'w', "warm", &options.warm,
-      .help = "start from the reactions in the document [from 0, as the paper]" },
+    { CLI_FLAG, 'w', "warm", &options.warm, .help = "start from the reactions in the document" },
+    { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start from 0, as the paper",
+      .usual = options_usual },
     { CLI_FLAG, 0, "history", &options.history,
       .help = "keep the error terms of every sweep in the document" },
     { 0 },
@@ -63,6 +64,7 @@ static void solve(struct frame *f, const char *where)
 
 int tool_main(int argc, char **argv)
 {
+    options_check();
     options_log_open(argc, argv, NULL);
     tool_filter(argc, argv, solve);
     options_log_close();

@@ -19,8 +19,8 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 0, "contacts", &contacts, .help = "keep each frame's contacts too" },
     { CLI_FLAG, 'w', "warm", &options.warm,
       .help = "start each solve from the last step's reactions" },
-    { CLI_UNFLAG, 0, "cold", &options.warm,
-      .help = "start each solve from 0, as the paper [cold]" },
+    { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start each solve from 0, as the paper",
+      .usual = options_usual },
     { CLI_TEXT, 'o', "output", &output, "FILE", "write to FILE [standard output]", .silent = true },
     { 0 },
 };
@@ -36,7 +36,11 @@ const struct cli_tool tool = { "nsd-step", "[FILE ...]",
                                "  nsd-step -n 1000 -o more.h5 out.h5\n" };
 
 static struct {
-    int64_t sweeps, failed, first_failed, safeguarded, gave_up;
+    int64_t sweeps, safeguarded, gave_up;
+    int64_t missed, first_missed; /* steps that have not converged, and the first's number */
+    double worst;                 /* the largest error of those */
+    enum criterion criterion;     /* which error that is */
+    double eps;                   /* and what was asked of it */
     double seconds;
 } total;
 
@@ -46,7 +50,10 @@ static void count(const struct report *r)
     total.safeguarded += r->safeguarded, total.gave_up += r->gave_up;
     total.seconds += r->seconds;
     if (r->converged) return;
-    if (!total.failed++) total.first_failed = r->step;
+    if (!total.missed++) total.first_missed = r->step;
+    double error = err_of(&r->err, r->criterion);
+    if (!(error <= total.worst)) total.worst = error; // also where it is not a number
+    total.criterion = r->criterion, total.eps = r->eps;
 }
 
 static void summary(int64_t made)
@@ -56,9 +63,10 @@ static void summary(int64_t made)
     if (total.safeguarded || total.gave_up)
         warn("%lld local solves safeguarded, %lld given up", (long long)total.safeguarded,
              (long long)total.gave_up);
-    if (total.failed)
-        warn("%lld steps NOT CONVERGED, the first is step %lld", (long long)total.failed,
-             (long long)total.first_failed);
+    if (total.missed)
+        warn("%lld steps NOT CONVERGED, the first is step %lld; the largest %s is %.3g, not %g",
+             (long long)total.missed, (long long)total.first_missed, options_error(total.criterion),
+             total.worst, total.eps);
 }
 
 /* One step of f; false when its solve has diverged. */
@@ -119,6 +127,7 @@ int tool_main(int argc, char **argv)
     struct frame f = { 0 };
     struct why why = { 0 };
     bool more;
+    options_check();
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
     if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
     if (reader_last(in, &f, &more, &why)) die_why(&why);
@@ -134,5 +143,5 @@ int tool_main(int argc, char **argv)
     summary(made);
     frame_free(&f);
     reader_close(in);
-    return made < steps || (options.strict && total.failed);
+    return made < steps || (options.strict && total.missed);
 }
