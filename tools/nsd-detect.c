@@ -1,4 +1,4 @@
-/* nsd-detect: the contacts of packings. */
+/* nsd-detect: finds the contacts of packings. */
 #include "bodies/detect.h"
 #include "cli/cli.h"
 #include "cli/options.h"
@@ -26,14 +26,14 @@ static const struct cli_option *const tables[] = { options_detect, own, NULL };
 
 const struct cli_tool tool = {
     "nsd-detect", "[FILE ...]",
-    "Finds the contacts in the predicted position q + dt/2 qdot, with their frames and gaps.\n"
+    "Finds the contacts in the predicted position q + dt/2 qdot, with bases and gaps.\n"
     "Reads packings (every frame of a trajectory), writes each with its contacts.",
     tables,
     "  nsd-gen 500 | nsd-step -n 900 | nsd-cat --last | nsd-detect > contacts.h5\n"
     "  nsd-detect --fclib=local < packing.h5 > problem.h5\n"
 };
 
-/* The contact problem, for FCLIB. */
+/* The contact problem, which the writer then adds in the FCLIB format. */
 static void add_problem(struct frame *f)
 {
     struct why why = { 0 };

@@ -1,4 +1,4 @@
-/* nsd-info: any part of a document as JSON lines, for jq and gnuplot. */
+/* nsd-info: shows any part of a document as JSON lines, for jq and gnuplot. */
 #include "cli/cli.h"
 #include "io/reader.h"
 #include "io/report_json.h"
@@ -9,7 +9,7 @@
 
 static bool last, particles, contacts, walls, history;
 static const char *steps;
-static bool shown; /* something that not every frame has: contacts, a history */
+static bool shown; /* whether any frame had what was asked for: contacts, a history */
 
 static const struct cli_option own[] = {
     { CLI_FLAG, 'p', "particles", &particles, .help = "instead, a line for each body" },
@@ -44,7 +44,7 @@ static json_t *material(const struct packing *p)
     return list;
 }
 
-/* The commands that made the document: its history's lines, as they are JSON. */
+/* The commands that made the document; each line of its history is JSON already. */
 static json_t *commands(const char *text)
 {
     json_t *list = json_array();

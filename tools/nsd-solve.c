@@ -1,4 +1,4 @@
-/* nsd-solve: one step's contact problem. */
+/* nsd-solve: solves the contact problem of one step, or one in the FCLIB format. */
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/tool_filter.h"
@@ -24,12 +24,13 @@ const struct cli_tool tool = {
     "Reads packings with contacts, or FCLIB problems (local or global); writes each with its\n"
     "reactions and a report.",
     tables,
-    "  nsd-gen 4 | nsd-detect | nsd-solve -m eal | nsd-err | jq .eps_glob\n"
-    "  nsd-solve -m exact --max-sweeps 20000 KaplasTower.hdf5 | nsd-err\n"
+    "  nsd-cat --last out.h5 | nsd-detect | nsd-solve | nsd-err | jq .eps_glob\n"
+    "  nsd-solve KaplasTower-i1061-4.hdf5 | nsd-err | jq .natural\n"
 };
 
 static bool all_converged = true;
 
+/* The solver calls it at every evaluation of the criterion. */
 static void show(int32_t sweeps, double value)
 {
     progress("%d sweeps, %.2g", sweeps, value);

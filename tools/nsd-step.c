@@ -1,4 +1,4 @@
-/* nsd-step: many steps. */
+/* nsd-step: makes many steps: detects, solves and moves in a loop. */
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/tool_filter.h"
@@ -32,8 +32,8 @@ const struct cli_tool tool = { "nsd-step", "[FILE ...]",
                                "one trajectory, each frame on\n"
                                "disk as soon as it is made; to a pipe: one document a frame.",
                                tables,
-                               "  nsd-gen 500 | nsd-step -m ebp -n 1000 > out.h5\n"
-                               "  nsd-step -n 1000 -o more.h5 out.h5\n" };
+                               "  nsd-gen 500 | nsd-step -n 1000 > out.h5\n"
+                               "  nsd-step -n 100 --eps 1e-8 -o more.h5 out.h5\n" };
 
 static struct {
     int64_t sweeps, safeguarded, gave_up;
@@ -69,7 +69,7 @@ static void summary(int64_t made)
              total.worst, total.eps);
 }
 
-/* One step of f; false when its solve has diverged. */
+/* Makes one step of f; false where its solve has diverged, and f has not moved. */
 static bool advance(struct frame *f, struct neighbours *near, const struct step_opt *o)
 {
     struct why why = { 0 };
@@ -83,7 +83,7 @@ static bool advance(struct frame *f, struct neighbours *near, const struct step_
     return isfinite(r->err.paper.eps_glob);
 }
 
-/* The packing alone, of the last step that could be made, unless it has been kept. */
+/* Writes the last step that could be made, the k-th, without its contacts, unless it is written. */
 static void keep_last(struct frame *f, struct writer *out, int64_t k)
 {
     struct why why = { 0 };
@@ -92,7 +92,7 @@ static void keep_last(struct frame *f, struct writer *out, int64_t k)
     if (writer_frame(out, f, &why)) die_why(&why);
 }
 
-/* N steps, those asked for into the sink; returns how many were made. */
+/* Makes the steps, writes every K-th and the last, and returns how many were made. */
 static int64_t run(struct frame *f, struct writer *out)
 {
     struct why why = { 0 };

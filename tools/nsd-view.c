@@ -1,4 +1,4 @@
-/* nsd-view: a picture of the bodies, or a series of them, as PNG. */
+/* nsd-view: draws the bodies, one picture or a series, as PNG. */
 #include "cli/cli.h"
 #include "cli/tool_filter.h"
 #include "draw/view.h"
@@ -50,11 +50,11 @@ const struct cli_tool tool = { "nsd-view", "[FILE ...]",
                                "Draws a packing as PNG: the last frame, another, or a series.",
                                tables,
                                "  nsd-gen 500 | nsd-view > balls.png\n"
-                               "  nsd-view -c speed --every 1 -o 'film%05d.png' out.h5\n" };
+                               "  nsd-view -c speed --every 10 -o 'film%05d.png' out.h5\n" };
 
 /* ---- what options say ---- */
 
-/* n finite numbers with commas between; false where it is something else. */
+/* Reads n finite numbers with commas between; false where text is anything else. */
 static bool numbers(const char *text, int n, double *x)
 {
     for (int i = 0; i < n; i++) {
@@ -67,6 +67,7 @@ static bool numbers(const char *text, int n, double *x)
     return true;
 }
 
+/* Reads a number of pixels that ends with `stop`, and moves text behind that. */
 static bool pixels(const char **text, char stop, int *n)
 {
     char *end;
@@ -78,7 +79,7 @@ static bool pixels(const char **text, char stop, int *n)
     return good;
 }
 
-/* Four numbers in the plane, or six. */
+/* --box: four numbers in the plane, else six. */
 static void set_box(struct view *v)
 {
     double x[6] = { 0 };
@@ -113,7 +114,7 @@ static struct view view_of_options(void)
     return v;
 }
 
-/* One %0Nd, N from 1 to 9, and no other %: where it begins. */
+/* Where the %0Nd (N from 1 to 9) of a series' name begins; there must be no other percent sign. */
 static const char *conversion(const char *name)
 {
     const char *p = strchr(name, '%');
@@ -124,6 +125,7 @@ static const char *conversion(const char *name)
 
 /* ---- pictures ---- */
 
+/* Draws a frame into a file; NULL is standard output. */
 static void draw(const struct view *v, const struct frame *f, const char *path)
 {
     struct picture p;
@@ -132,6 +134,7 @@ static void draw(const struct view *v, const struct frame *f, const char *path)
     picture_free(&p);
 }
 
+/* Makes what is shown include this frame. */
 static void extend(struct view *v, const struct frame *f, const char *where)
 {
     struct why why = { 0 };
@@ -141,7 +144,7 @@ static void extend(struct view *v, const struct frame *f, const char *where)
     if (view_extend(v, &f->packing, &why)) die(why.status, "%s: %s", where, why.text);
 }
 
-/* The frame that is asked for; what comes behind it is read, or who sends it would notice. */
+/* Finds the frame asked for; reads to the end, for the writer in the pipe must not be cut off. */
 static void find(struct reader *in, struct frame *found)
 {
     struct frame f = { 0 };
@@ -159,6 +162,7 @@ static void find(struct reader *in, struct frame *found)
     frame_free(&f);
 }
 
+/* Draws every K-th frame; the first document's decide about the view of all. */
 static void series(struct reader *in, int files, char *const *file, struct view *v)
 {
     struct frame f = { 0 };
@@ -195,7 +199,7 @@ static void series(struct reader *in, int files, char *const *file, struct view 
     frame_free(&f);
 }
 
-/* A picture has no numbers in it: what the palette's ends mean is said here. */
+/* A picture has no numbers in it, so stderr says what the ends of the palette mean. */
 static void legend(const struct view *v)
 {
     const struct paint *p = &v->paint;

@@ -1,6 +1,6 @@
 /*
- * cli/options.h: the options of the solver and of the contacts, the same in every tool that has them;
- * what they are when they are not given; and what is said of a solve.
+ * cli/options.h: the options of the solver and of the contacts, the same in every tool that has
+ * them; what they are when they are not given; and what is said of a solve.
  */
 #ifndef NSD_OPTIONS_H
 #define NSD_OPTIONS_H
@@ -32,7 +32,7 @@ const char *options_usual(const void *to);
 /* Ends the tool with EX_USAGE where options contradict each other; to be called first. */
 void options_check(void);
 
-/* The options and defaults for a packing with this dt, or for an FCLIB problem (foreign, dt = 1). */
+/* Options and defaults for a packing with this dt, or for an FCLIB problem (foreign, dt = 1). */
 struct step_opt options_step(double dt, bool foreign);
 
 /* What a report calls the method: Gauss-Seidel's local method, or else the solver. */
@@ -45,9 +45,9 @@ char *options_json(const struct step_opt *step);
 void options_theta(struct packing *packing, bool detected);
 
 /*
- * --log: opens the file at once; then a line of JSON for each solve, with the clock's seconds, which
- * no document has. Ends the tool where it cannot be written, and where it is one of the files that
- * the tool reads or its output (NULL: standard output).
+ * --log: opens the file at once; then a line of JSON for each solve, with the clock's seconds,
+ * which no document has. Ends the tool where it cannot be written, and where it is one of the files
+ * that the tool reads or its output (NULL: standard output).
  */
 void options_log_open(int files, char *const *file, const char *output);
 void options_log(const struct report *report);
