@@ -43,12 +43,12 @@ nsd-gen --dim \[3\]
 nsd-detect --gap \[0\]
 nsd-detect --theta 0\.5\]
 nsd-detect --fclib local|global
-nsd-solve --method auto|sbp|sal|ebp|eal|exact.*\[auto\]
-nsd-solve --global auto|nlgs|anderson|cg|prox|ipm.*\[nlgs with -m
+nsd-solve --method auto|sbp|.*\[auto\]
+nsd-solve --global auto|nlgs|.*\[nlgs with -m
 nsd-solve --max-seconds .
 nsd-solve --eps \[1e-10\]
 nsd-solve --criterion glob|scaled|natural.*\[glob; natural for FCLIB\]
-nsd-solve --max-sweeps \[5000;
+nsd-solve --max-sweeps \[5000
 nsd-solve --alpha \[1\.75
 nsd-solve --newton plain|linesearch.*\[linesearch\]
 nsd-solve --newton-eps \[1e-13\]
@@ -102,7 +102,7 @@ is "one line on stderr" "$(wc -l <"$tmp/err")" 1
 like "sums it up" "$(cat "$tmp/err")" '^nsd-solve: .*contacts.h5: [0-9]+ contacts, auto: [0-9]+ sweeps, eps_glob [0-9.e-]+, '
 status 0 "one that does not: 0" nsd-solve --max-sweeps 1 "$tmp/contacts.h5"
 mv "$tmp/out" "$tmp/lenient.h5"
-like "with a warning" "$(cat "$tmp/err")" 'NOT CONVERGED'
+like "with a warning" "$(cat "$tmp/err")" 'eps_glob [0-9.e-]+, [0-9.e-]+ s: NOT CONVERGED to 1e-10$'
 for e in -e --strict; do
     status 1 "and 1 under $e" nsd-solve $e --max-sweeps 1 "$tmp/contacts.h5"
     like "with a warning" "$(cat "$tmp/err")" 'NOT CONVERGED'
@@ -110,7 +110,7 @@ for e in -e --strict; do
 done
 ok "the report has it" jq -e -s '.[-1].converged == false' <(nsd-info "$tmp/lenient.h5")
 status 0 "nsd-step that does not converge: 0" nsd-step -n 3 --max-sweeps 1 "$tmp/heap.h5"
-like "with a warning" "$(cat "$tmp/err")" '3 steps NOT CONVERGED, the first is step 601'
+like "with a warning" "$(cat "$tmp/err")" '3 steps NOT CONVERGED, the first is step 601; the largest eps_glob is [0-9.e-]+, not 1e-10'
 status 1 "and 1 under -e" nsd-step -e -n 3 --max-sweeps 1 "$tmp/heap.h5"
 is "and all frames are written" "$(nsd-info "$tmp/out" | jq -c -n '[inputs | select(.step != null).step]')" "[601,602,603]"
 cat "$tmp/contacts.h5" "$tmp/contacts.h5" >"$tmp/two.h5"
@@ -118,6 +118,39 @@ status 0 "nsd-solve -e of two problems" nsd-solve -e "$tmp/two.h5"
 is "a line each" "$(wc -l <"$tmp/err")" 2
 status 1 "nsd-solve -e of two problems not converged" nsd-solve -e --max-sweeps 1 "$tmp/two.h5"
 is "both are written" "$(nsd-info "$tmp/out" | jq -s '[.[] | select(.frames)] | length')" 2
+
+# ---- defaults, and the paper's ----
+
+asked() { nsd-info "$1" | jq -c 'select(.options).options | [.global, .local, .criterion, .eps, .max_sweeps, .order, .relax, .warm]'; }
+paper='["nlgs","sbp","glob",1e-10,5000,"natural",1,false]'
+solve --paper -m sbp "$tmp/contacts.h5" >"$tmp/paper.h5"
+is "--paper is the paper's protocol" "$(asked "$tmp/paper.h5")" "$paper"
+is "the report has the method" "$(nsd-info --last "$tmp/paper.h5" | jq -r .method)" sbp
+step -n 1 -m sbp --paper "$tmp/heap.h5" >"$tmp/paper.h5"
+is "of nsd-step too" "$(asked "$tmp/paper.h5")" "$paper"
+while read -r want options; do
+    for line in "--paper -m sbp $options" "$options -m sbp --paper"; do
+        # shellcheck disable=SC2086 # words
+        is "nsd-solve $line: what is given wins" "$(solve $line "$tmp/contacts.h5" | asked -)" "$want"
+    done
+done <<'END'
+["nlgs","sbp","natural",1e-09,7,"colour",1.5,true] --criterion natural --eps 1e-9 --max-sweeps 7 --order colour --relax 1.5 --warm
+["auto","sbp","glob",1e-10,5000,"natural",1,false] --global auto
+END
+for line in "" "-m auto" "--global nlgs"; do
+    # shellcheck disable=SC2086 # words
+    refuses 64 "nsd-solve --paper $line" nsd-solve --paper $line --log "$tmp/solve.log" "$tmp/contacts.h5"
+    like "wants a method" "$(cat "$tmp/err")" '^nsd-solve: --paper: wants a local method, -m sbp\|sal\|ebp\|eal\|exact'
+    ok "and leaves the log alone" [ ! -e "$tmp/solve.log" ]
+done
+refuses 64 "nsd-step --paper" nsd-step --paper "$tmp/heap.h5"
+# What --help has in brackets is what goes: nsd's choice for a packing
+bracket() { nsd-solve --help | tr '\n' ' ' | grep -o -e "--$1 [^]]*\]" | sed 's/.*\[//; s/[];,].*//; s/ for nlgs//'; }
+solve -m sbp "$tmp/contacts.h5" >"$tmp/usual.h5"
+for key in criterion eps max-sweeps order relax newton newton-eps newton-max; do
+    is "the default in --help's brackets goes: --$key" "$(nsd-info "$tmp/usual.h5" |
+        jq -r "select(.options).options.\"${key/-/_}\"")" "$(bracket $key)"
+done
 
 # ---- the log ----
 

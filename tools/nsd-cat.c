@@ -1,4 +1,4 @@
-/* nsd-cat: join, cut and thin streams and trajectories; stream a stream into a trajectory. */
+/* nsd-cat: joins, cuts and thins streams and trajectories, and turns one into the other. */
 #include "cli/cli.h"
 #include "io/reader.h"
 #include "io/writer.h"
@@ -7,10 +7,11 @@ static bool last, stream;
 static const char *steps, *output;
 
 static const struct cli_option own[] = {
-    { CLI_FLAG, 'l', "last", &last, NULL, "only the very last frame", 0, 0, 0 },
-    { CLI_TEXT, 's', "steps", &steps, "A:B:K", "only steps A to B, every K-th [all]", 0, 0, 0 },
-    { CLI_FLAG, 0, "stream", &stream, NULL, "one document a frame, into a file too", 0, 0, 0 },
-    { CLI_TEXT, 'o', "output", &output, "FILE", "where to [standard output]", 0, 0, true },
+    { CLI_FLAG, 'l', "last", &last, .help = "only the very last frame" },
+    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
+    { CLI_FLAG, 0, "stream", &stream, .help = "one document a frame, also into a file" },
+    { CLI_TEXT, 'o', "output", &output, "FILE", .help = "write to FILE [standard output]",
+      .silent = true },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
@@ -20,14 +21,14 @@ const struct cli_tool tool = {
     "Copies frames. To a file they become one trajectory, the same as nsd-step would have written\n"
     "there; to a pipe, one document a frame.",
     tables,
-    "  nsd-step -n 900 < a.h5 | nsd-cat --last | nsd-detect > contacts.h5\n"
+    "  nsd-cat --last out.h5 | nsd-detect > contacts.h5\n"
     "  nsd-cat --steps 0:1000:100 out.h5 > thin.h5\n"
 };
 
 int tool_main(int argc, char **argv)
 {
     struct reader *in;
-    struct writer *out = NULL; // opened when there is something for it: a bad input costs no file
+    struct writer *out = NULL; // opened with the first frame: a bad input must not empty the output
     struct frame f = { 0 };
     struct range range;
     struct why why = { 0 };

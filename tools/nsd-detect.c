@@ -1,4 +1,4 @@
-/* nsd-detect: the contacts of packings. */
+/* nsd-detect: finds the contacts of packings. */
 #include "bodies/detect.h"
 #include "cli/cli.h"
 #include "cli/options.h"
@@ -6,25 +6,34 @@
 
 #include <stdlib.h>
 
-static int export = -1;
+/* The two forms of a problem in FCLIB */
+enum form { FORM_LOCAL, FORM_GLOBAL, FORM_COUNT };
+static const char *const form_name[FORM_COUNT] = { "local", "global" };
+
+static struct cli_choice form_choice(int k)
+{
+    return (struct cli_choice){ k < FORM_COUNT ? form_name[k] : NULL, NULL };
+}
+
+static int form;
 
 static const struct cli_option own[] = {
-    { CLI_CHOICE, 0, "fclib", &export, "local|global",
-      "write the contact problem in the FCLIB format too", 0, 0, 0 },
+    { CLI_CHOICE, 0, "fclib", &form, .choice = form_choice,
+      .help = "write the contact problem in the FCLIB format too" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { options_detect, own, NULL };
 
 const struct cli_tool tool = {
     "nsd-detect", "[FILE ...]",
-    "Finds the contacts in the predicted position q + dt/2 qdot, with their frames and gaps.\n"
+    "Finds the contacts in the predicted position q + dt/2 qdot, with bases and gaps.\n"
     "Reads packings (every frame of a trajectory), writes each with its contacts.",
     tables,
     "  nsd-gen 500 | nsd-step -n 900 | nsd-cat --last | nsd-detect > contacts.h5\n"
     "  nsd-detect --fclib=local < packing.h5 > problem.h5\n"
 };
 
-/* The contact problem, for FCLIB. */
+/* The contact problem, which the writer then adds in the FCLIB format. */
 static void add_problem(struct frame *f)
 {
     struct why why = { 0 };
@@ -32,7 +41,7 @@ static void add_problem(struct frame *f)
     if (!f->export) die(EX_SOFTWARE, "no memory for the contact problem");
     if (problem_prepare(f->export, &f->packing, &f->contacts, 0, 1, ORDER_NATURAL, &why))
         die_why(&why);
-    f->export_global = export == 1;
+    f->export_global = form == FORM_GLOBAL;
 }
 
 static void detect(struct frame *f, const char *where)
@@ -43,7 +52,7 @@ static void detect(struct frame *f, const char *where)
     if (detect_contacts(&f->contacts, &f->packing, options.gap, NULL, &why)) die_why(&why);
     f->detected = true, f->reported = f->moved = false;
     f->stale = true;
-    if (export >= 0) add_problem(f);
+    if (cli_given(&form)) add_problem(f);
 }
 
 int tool_main(int argc, char **argv)

@@ -1,4 +1,4 @@
-/* nsd-err: how good a solution is, recomputed from the problem. */
+/* nsd-err: says how good a solution is, recomputed from the problem and the reactions. */
 #include "cli/cli.h"
 #include "io/reader.h"
 #include "io/report_json.h"
@@ -12,10 +12,10 @@ const struct cli_tool tool = {
     "Computes eps_glob and its four terms, the true penetration and the natural-map errors of\n"
     "solutions, from the problem and the reactions alone. Reads documents, writes one line of\n"
     "JSON for each solution.",
-    tables, "  nsd-err solved.h5 | jq .eps_glob\n  nsd-step --contacts -n 10 < a.h5 | nsd-err\n"
+    tables, "  nsd-err solved.h5 | jq .eps_glob\n  nsd-step --contacts -n 10 out.h5 | nsd-err\n"
 };
 
-/* A packing's problem as its reactions were found, with them in it. */
+/* The problem that the reactions of a packing solve, with the reactions in it. */
 static int prepare_packing(struct problem *p, struct frame *f, struct why *why)
 {
     if (f->moved && step_unmove(&f->packing, &f->contacts, why)) return why->status;
@@ -25,6 +25,7 @@ static int prepare_packing(struct problem *p, struct frame *f, struct why *why)
     return 0;
 }
 
+/* The same of an FCLIB problem, whose velocities are the ones in the document. */
 static int prepare_foreign(struct problem *p, struct frame *f, struct why *why)
 {
     struct delassus *W = &f->problem.W;
@@ -43,7 +44,7 @@ static void print(struct frame *f, struct why *why)
 {
     struct problem p = { 0 };
     f->report.err.max_overlap = 0;
-    int64_t step = f->packing.step; // the frame's own, whichever step is looked back at
+    int64_t step = f->packing.step; // the frame's own, not that of the step before, which is judged
     if ((f->foreign ? prepare_foreign : prepare_packing)(&p, f, why)) return;
     double overlap = f->report.err.max_overlap;
     struct err err;

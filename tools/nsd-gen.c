@@ -1,4 +1,4 @@
-/* nsd-gen: a packing from a number, or from a scene. */
+/* nsd-gen: builds a packing, the paper's N balls or what a scene says. */
 #include "cli/cli.h"
 #include "io/writer.h"
 #include "scene/scene_build.h"
@@ -13,7 +13,8 @@
 static int64_t dim = 3;
 
 static const struct cli_option own[] = {
-    { CLI_INT, 'd', "dim", &dim, "2|3", "of the paper's N balls: 2 makes discs [3]", 2, 3, 0 },
+    { CLI_INT, 'd', "dim", &dim, "2|3", .min = 2, .max = 3,
+      .help = "with N: 3 makes balls, 2 discs in the plane [3]" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
@@ -29,6 +30,7 @@ const struct cli_tool tool = {
     "  jq '.mu = 0.5' scenes/paper/example3.json | nsd-gen - > rough.h5\n"
 };
 
+/* All of a file, n bytes, to be freed; NULL when memory is short. */
 static char *slurp(FILE *f, size_t *n)
 {
     size_t room = 1 << 16;
@@ -44,7 +46,7 @@ static char *slurp(FILE *f, size_t *n)
     return text;
 }
 
-/* The scene in a file, for its messages `name`, and the directory that its tables are sought in. */
+/* Reads the scene in a file, or in standard input (-), and sets the directory of its tables. */
 static void read_scene(struct scene *s, const char *path, char **dir)
 {
     bool standard = !strcmp(path, "-");
@@ -64,7 +66,7 @@ static void read_scene(struct scene *s, const char *path, char **dir)
     free(copy);
 }
 
-/* "500", "1e6", "-5": a number, right or wrong, and not the name of a file */
+/* "500", "1e6" and also "-5" are numbers, in range or not; all else is the name of a file. */
 static bool is_number(const char *text, double *x)
 {
     char *end;
@@ -76,11 +78,11 @@ int tool_main(int argc, char **argv)
 {
     struct scene scene;
     struct frame frame = { .packed = true };
-    struct writer *sink;
+    struct writer *out;
     struct why why = { 0 };
     char *dir = NULL;
     if (argc != 1 || !*argv[0]) die_usage("one operand: a number of balls, or a scene");
-    if (writer_open(&sink, NULL, WRITER_STREAM, &why)) die_why(&why);
+    if (writer_open(&out, NULL, WRITER_STREAM, &why)) die_why(&why);
     double n;
     if (is_number(argv[0], &n)) {
         if (!(n >= 0 && n <= INT32_MAX && n == floor(n)))
@@ -90,8 +92,8 @@ int tool_main(int argc, char **argv)
         read_scene(&scene, argv[0], &dir);
     }
     if (scene_build(&frame.packing, &scene, dir, &why)) die_why(&why);
-    if (frame_note(&frame, cli_history(), &why) || writer_frame(sink, &frame, &why) ||
-        writer_close(sink, &why))
+    if (frame_note(&frame, cli_history(), &why) || writer_frame(out, &frame, &why) ||
+        writer_close(out, &why))
         die_why(&why);
     free(dir);
     scene_free(&scene);

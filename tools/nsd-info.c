@@ -1,4 +1,4 @@
-/* nsd-info: any part of a document as JSON lines, for jq and gnuplot. */
+/* nsd-info: shows any part of a document as JSON lines, for jq and gnuplot. */
 #include "cli/cli.h"
 #include "io/reader.h"
 #include "io/report_json.h"
@@ -9,15 +9,16 @@
 
 static bool last, particles, contacts, walls, history;
 static const char *steps;
-static bool shown; /* something that not every frame has: contacts, a history */
+static bool shown; /* whether any frame had what was asked for: contacts, a history */
 
 static const struct cli_option own[] = {
-    { CLI_FLAG, 'p', "particles", &particles, NULL, "a line a body and frame instead", 0, 0, 0 },
-    { CLI_FLAG, 'c', "contacts", &contacts, NULL, "a line a contact and frame", 0, 0, 0 },
-    { CLI_FLAG, 'w', "walls", &walls, NULL, "a line a wall and frame", 0, 0, 0 },
-    { CLI_FLAG, 0, "history", &history, NULL, "a line a sweep (nsd-solve --history)", 0, 0, 0 },
-    { CLI_FLAG, 'l', "last", &last, NULL, "of the very last frame only", 0, 0, 0 },
-    { CLI_TEXT, 's', "steps", &steps, "A:B:K", "of steps A to B, every K-th [all]", 0, 0, 0 },
+    { CLI_FLAG, 'p', "particles", &particles, .help = "instead, a line for each body" },
+    { CLI_FLAG, 'c', "contacts", &contacts, .help = "instead, a line for each contact" },
+    { CLI_FLAG, 'w', "walls", &walls, .help = "instead, a line for each wall" },
+    { CLI_FLAG, 0, "history", &history,
+      .help = "instead, a line for each sweep that nsd-solve --history has kept" },
+    { CLI_FLAG, 'l', "last", &last, .help = "only the very last frame" },
+    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
@@ -43,7 +44,7 @@ static json_t *material(const struct packing *p)
     return list;
 }
 
-/* The commands that made the document: its history's lines, as they are JSON. */
+/* The commands that made the document; each line of its history is JSON already. */
 static json_t *commands(const char *text)
 {
     json_t *list = json_array();

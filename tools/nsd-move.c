@@ -1,4 +1,4 @@
-/* nsd-move: the second half of the step. */
+/* nsd-move: makes the second half of a step: moves the bodies by the reactions. */
 #include "cli/cli.h"
 #include "cli/tool_filter.h"
 #include "solve/step.h"
@@ -9,7 +9,7 @@ const struct cli_tool tool = {
     "nsd-move", "[FILE ...]",
     "Moves the bodies by the reactions: velocities, then positions. One step is\n"
     "nsd-detect | nsd-solve | nsd-move. Reads solved contacts, writes packings.",
-    tables, "  nsd-gen 4 | nsd-detect | nsd-solve -m sal | nsd-move > one.h5\n"
+    tables, "  nsd-detect packing.h5 | nsd-solve | nsd-move > next.h5\n"
 };
 
 static void move(struct frame *f, const char *where)

@@ -1,4 +1,4 @@
-/* nsd-solve: one step's contact problem. */
+/* nsd-solve: solves the contact problem of one step, or one in the FCLIB format. */
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/tool_filter.h"
@@ -7,12 +7,13 @@
 #include <stdlib.h>
 
 static const struct cli_option own[] = {
-    { CLI_REAL, 0, "theta", &options.theta, "T", "must be the contacts' own [the document's]", 0, 1,
-      0 },
-    { CLI_FLAG, 'w', "warm", &options.warm, NULL,
-      "start from the reactions in the document [from 0, as the paper]", 0, 0, 0 },
-    { CLI_FLAG, 0, "history", &options.history, NULL,
-      "keep the error terms of every sweep in the document", 0, 0, 0 },
+    { CLI_REAL, 0, "theta", &options.theta, "T", .max = 1,
+      .help = "must be what the contacts were detected with [the document's]" },
+    { CLI_FLAG, 'w', "warm", &options.warm, .help = "start from the reactions in the document" },
+    { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start from 0, as the paper",
+      .usual = options_usual },
+    { CLI_FLAG, 0, "history", &options.history,
+      .help = "keep the error terms of every sweep in the document" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { options_solve, own, options_run, NULL };
@@ -23,12 +24,13 @@ const struct cli_tool tool = {
     "Reads packings with contacts, or FCLIB problems (local or global); writes each with its\n"
     "reactions and a report.",
     tables,
-    "  nsd-gen 4 | nsd-detect | nsd-solve -m eal | nsd-err | jq .eps_glob\n"
-    "  nsd-solve -m exact --max-sweeps 20000 KaplasTower.hdf5 | nsd-err\n"
+    "  nsd-cat --last out.h5 | nsd-detect | nsd-solve | nsd-err | jq .eps_glob\n"
+    "  nsd-solve KaplasTower-i1061-4.hdf5 | nsd-err | jq .natural\n"
 };
 
 static bool all_converged = true;
 
+/* The solver calls it at every evaluation of the criterion. */
 static void show(int32_t sweeps, double value)
 {
     progress("%d sweeps, %.2g", sweeps, value);
@@ -63,6 +65,7 @@ static void solve(struct frame *f, const char *where)
 
 int tool_main(int argc, char **argv)
 {
+    options_check();
     options_log_open(argc, argv, NULL);
     tool_filter(argc, argv, solve);
     options_log_close();

@@ -1,4 +1,4 @@
-/* nsd-step: many steps. */
+/* nsd-step: makes many steps: detects, solves and moves in a loop. */
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/tool_filter.h"
@@ -13,14 +13,15 @@ static bool contacts;
 static const char *output;
 
 static const struct cli_option own[] = {
-    { CLI_INT, 'n', "steps", &steps, "N", "steps to make [1]", 0, 1e15, 0 },
-    { CLI_INT, 0, "every", &every, "K", "keep every K-th step, and the last [1]", 1, 1e15, 0 },
-    { CLI_FLAG, 0, "contacts", &contacts, NULL, "keep the contacts of each frame", 0, 0, 0 },
-    { CLI_FLAG, 'w', "warm", &options.warm, NULL, "start each solve from the last step's reactions",
-      0, 0, 0 },
-    { CLI_UNFLAG, 0, "cold", &options.warm, NULL, "start each solve from 0, as the paper [cold]", 0,
-      0, 0 },
-    { CLI_TEXT, 'o', "output", &output, "FILE", "where to [standard output]", 0, 0, true },
+    { CLI_INT, 'n', "steps", &steps, "N", "steps to make [1]", .max = 1e15 },
+    { CLI_INT, 0, "every", &every, "K", "keep every K-th step, and the last [1]", .min = 1,
+      .max = 1e15 },
+    { CLI_FLAG, 0, "contacts", &contacts, .help = "keep each frame's contacts too" },
+    { CLI_FLAG, 'w', "warm", &options.warm,
+      .help = "start each solve from the last step's reactions" },
+    { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start each solve from 0, as the paper",
+      .usual = options_usual },
+    { CLI_TEXT, 'o', "output", &output, "FILE", "write to FILE [standard output]", .silent = true },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, options_solve, options_detect, options_run,
@@ -31,11 +32,15 @@ const struct cli_tool tool = { "nsd-step", "[FILE ...]",
                                "one trajectory, each frame on\n"
                                "disk as soon as it is made; to a pipe: one document a frame.",
                                tables,
-                               "  nsd-gen 500 | nsd-step -m ebp -n 1000 > out.h5\n"
-                               "  nsd-step -n 1000 -o more.h5 out.h5\n" };
+                               "  nsd-gen 500 | nsd-step -n 1000 > out.h5\n"
+                               "  nsd-step -n 100 --eps 1e-8 -o more.h5 out.h5\n" };
 
 static struct {
-    int64_t sweeps, failed, first_failed, safeguarded, gave_up;
+    int64_t sweeps, safeguarded, gave_up;
+    int64_t missed, first_missed; /* steps that have not converged, and the first's number */
+    double worst;                 /* the largest error of those */
+    enum criterion criterion;     /* which error that is */
+    double eps;                   /* and what was asked of it */
     double seconds;
 } total;
 
@@ -45,7 +50,10 @@ static void count(const struct report *r)
     total.safeguarded += r->safeguarded, total.gave_up += r->gave_up;
     total.seconds += r->seconds;
     if (r->converged) return;
-    if (!total.failed++) total.first_failed = r->step;
+    if (!total.missed++) total.first_missed = r->step;
+    double error = err_of(&r->err, r->criterion);
+    if (!(error <= total.worst)) total.worst = error; // also where it is not a number
+    total.criterion = r->criterion, total.eps = r->eps;
 }
 
 static void summary(int64_t made)
@@ -55,12 +63,13 @@ static void summary(int64_t made)
     if (total.safeguarded || total.gave_up)
         warn("%lld local solves safeguarded, %lld given up", (long long)total.safeguarded,
              (long long)total.gave_up);
-    if (total.failed)
-        warn("%lld steps NOT CONVERGED, the first is step %lld", (long long)total.failed,
-             (long long)total.first_failed);
+    if (total.missed)
+        warn("%lld steps NOT CONVERGED, the first is step %lld; the largest %s is %.3g, not %g",
+             (long long)total.missed, (long long)total.first_missed, options_error(total.criterion),
+             total.worst, total.eps);
 }
 
-/* One step of f; false when its solve has diverged. */
+/* Makes one step of f; false where its solve has diverged, and f has not moved. */
 static bool advance(struct frame *f, struct neighbours *near, const struct step_opt *o)
 {
     struct why why = { 0 };
@@ -74,7 +83,7 @@ static bool advance(struct frame *f, struct neighbours *near, const struct step_
     return isfinite(r->err.paper.eps_glob);
 }
 
-/* The packing alone, of the last step that could be made, unless it has been kept. */
+/* Writes the last step that could be made, the k-th, without its contacts, unless it is written. */
 static void keep_last(struct frame *f, struct writer *out, int64_t k)
 {
     struct why why = { 0 };
@@ -83,7 +92,7 @@ static void keep_last(struct frame *f, struct writer *out, int64_t k)
     if (writer_frame(out, f, &why)) die_why(&why);
 }
 
-/* N steps, those asked for into the sink; returns how many were made. */
+/* Makes the steps, writes every K-th and the last, and returns how many were made. */
 static int64_t run(struct frame *f, struct writer *out)
 {
     struct why why = { 0 };
@@ -118,6 +127,7 @@ int tool_main(int argc, char **argv)
     struct frame f = { 0 };
     struct why why = { 0 };
     bool more;
+    options_check();
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
     if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
     if (reader_last(in, &f, &more, &why)) die_why(&why);
@@ -133,5 +143,5 @@ int tool_main(int argc, char **argv)
     summary(made);
     frame_free(&f);
     reader_close(in);
-    return made < steps || (options.strict && total.failed);
+    return made < steps || (options.strict && total.missed);
 }

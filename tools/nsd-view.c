@@ -1,4 +1,4 @@
-/* nsd-view: a picture of the bodies, or a series of them, as PNG. */
+/* nsd-view: draws the bodies, one picture or a series, as PNG. */
 #include "cli/cli.h"
 #include "cli/tool_filter.h"
 #include "draw/view.h"
@@ -15,27 +15,33 @@ static int colour = COLOUR_RADIUS;
 static bool plain;
 static const char *output, *range, *size, *camera = "30,15", *box, *background = "ffffff";
 
+static struct cli_choice colour_choice(int k)
+{
+    return (struct cli_choice){ k < COLOUR_COUNT ? colour_name[k] : NULL, NULL };
+}
+
 static const struct cli_option own[] = {
-    { CLI_INT, 's', "step", &step, "N", "the frame of step N [the very last frame]", 0, 1e15, 0 },
-    { CLI_INT, 0, "every", &every, "K", "a series: every K-th frame, numbered from 0 [one picture]",
-      1, 1e15, 0 },
-    { CLI_TEXT, 'o', "output", &output, "FILE",
-      "where to; a series: 'f%05d.png' or so [standard output]", 0, 0, true },
-    { CLI_CHOICE, 'c', "colour", &colour, PAINT_COLOURS, "what colours show [radius]", 0, 0, 0 },
+    { CLI_INT, 's', "step", &step, "N", .max = 1e15,
+      .help = "the frame of step N [the very last frame]" },
+    { CLI_INT, 0, "every", &every, "K", .min = 1, .max = 1e15,
+      .help = "a series: every K-th frame, numbered from 0 [one picture]" },
+    { CLI_TEXT, 'o', "output", &output, "FILE", .silent = true,
+      .help = "write to FILE; a series: 'f%05d.png' or so [standard output]" },
+    { CLI_CHOICE, 'c', "colour", &colour, .choice = colour_choice,
+      .help = "what a body's colour shows [radius]" },
     { CLI_TEXT, 0, "range", &range, "LO,HI",
-      "m or m/s at the palette's ends [what there is; speeds from 0]", 0, 0, 0 },
-    { CLI_FLAG, 0, "plain", &plain, NULL, "no marks on the bodies that show how they turn", 0, 0,
-      0 },
-    { CLI_TEXT, 0, "size", &size, "WxH", "pixels [the longer side 900, the other as it fits]", 0, 0,
-      0 },
+      .help = "m or m/s at the ends of the palette [what there is; speeds from 0]" },
+    { CLI_FLAG, 0, "plain", &plain, .help = "without the marks that show how bodies turn" },
+    { CLI_TEXT, 0, "size", &size, "WxH", .help = "pixels [the longer side 900, the other to fit]" },
     { CLI_TEXT, 0, "camera", &camera, "AZ,EL",
-      "degrees about z and above the horizon, in space [30,15]", 0, 0, 0 },
+      .help = "of balls: degrees about z and above the horizon [30,15]" },
     { CLI_TEXT, 0, "box", &box, "X0,X1,Y0,Y1[,Z0,Z1]",
-      "only bodies with their centre in it, m; it fills the picture [all]", 0, 0, 0 },
-    { CLI_TEXT, 0, "background", &background, "RRGGBB", "its colour [ffffff]", 0, 0, 0 },
-    { CLI_INT, 0, "samples", &samples, "N", "a pixel is the mean of N x N [3]", 1, 8, 0 },
-    { CLI_INT, 'j', "threads", &threads, "N", "threads; they never change a picture [1]", 1, 1024,
-      true },
+      .help = "only bodies with their centre in this box (m) [all]" },
+    { CLI_TEXT, 0, "background", &background, "RRGGBB", .help = "its colour [ffffff]" },
+    { CLI_INT, 0, "samples", &samples, "N", .min = 1, .max = 8,
+      .help = "a pixel is the mean of N x N samples [3]" },
+    { CLI_INT, 'j', "threads", &threads, "N", .min = 1, .max = 1024, .silent = true,
+      .help = "threads; they never change a picture [1]" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
@@ -44,11 +50,11 @@ const struct cli_tool tool = { "nsd-view", "[FILE ...]",
                                "Draws a packing as PNG: the last frame, another, or a series.",
                                tables,
                                "  nsd-gen 500 | nsd-view > balls.png\n"
-                               "  nsd-view -c speed --every 1 -o 'film%05d.png' out.h5\n" };
+                               "  nsd-view -c speed --every 10 -o 'film%05d.png' out.h5\n" };
 
 /* ---- what options say ---- */
 
-/* n finite numbers with commas between; false where it is something else. */
+/* Reads n finite numbers with commas between; false where text is anything else. */
 static bool numbers(const char *text, int n, double *x)
 {
     for (int i = 0; i < n; i++) {
@@ -61,6 +67,7 @@ static bool numbers(const char *text, int n, double *x)
     return true;
 }
 
+/* Reads a number of pixels that ends with `stop`, and moves text behind that. */
 static bool pixels(const char **text, char stop, int *n)
 {
     char *end;
@@ -72,7 +79,7 @@ static bool pixels(const char **text, char stop, int *n)
     return good;
 }
 
-/* Four numbers in the plane, or six. */
+/* --box: four numbers in the plane, else six. */
 static void set_box(struct view *v)
 {
     double x[6] = { 0 };
@@ -107,7 +114,7 @@ static struct view view_of_options(void)
     return v;
 }
 
-/* One %0Nd, N from 1 to 9, and no other %: where it begins. */
+/* Where the %0Nd (N from 1 to 9) of a series' name begins; there must be no other percent sign. */
 static const char *conversion(const char *name)
 {
     const char *p = strchr(name, '%');
@@ -118,6 +125,7 @@ static const char *conversion(const char *name)
 
 /* ---- pictures ---- */
 
+/* Draws a frame into a file; NULL is standard output. */
 static void draw(const struct view *v, const struct frame *f, const char *path)
 {
     struct picture p;
@@ -126,6 +134,7 @@ static void draw(const struct view *v, const struct frame *f, const char *path)
     picture_free(&p);
 }
 
+/* Makes what is shown include this frame. */
 static void extend(struct view *v, const struct frame *f, const char *where)
 {
     struct why why = { 0 };
@@ -135,7 +144,7 @@ static void extend(struct view *v, const struct frame *f, const char *where)
     if (view_extend(v, &f->packing, &why)) die(why.status, "%s: %s", where, why.text);
 }
 
-/* The frame that is asked for; what comes behind it is read, or who sends it would notice. */
+/* Finds the frame asked for; reads to the end, for the writer in the pipe must not be cut off. */
 static void find(struct reader *in, struct frame *found)
 {
     struct frame f = { 0 };
@@ -153,6 +162,7 @@ static void find(struct reader *in, struct frame *found)
     frame_free(&f);
 }
 
+/* Draws every K-th frame; the first document's decide about the view of all. */
 static void series(struct reader *in, int files, char *const *file, struct view *v)
 {
     struct frame f = { 0 };
@@ -189,7 +199,7 @@ static void series(struct reader *in, int files, char *const *file, struct view 
     frame_free(&f);
 }
 
-/* A picture has no numbers in it: what the palette's ends mean is said here. */
+/* A picture has no numbers in it, so stderr says what the ends of the palette mean. */
 static void legend(const struct view *v)
 {
     const struct paint *p = &v->paint;

@@ -12,14 +12,21 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { OPTIONS = 64, HELP = 1000, VERSION, FIRST_LONG };
+enum {
+    OPTIONS = 64, /* room for a tool's options */
+    LEFT = 28,    /* characters of --help's left column */
+    HELP = 1000,  /* what getopt_long returns: beyond all letters */
+    VERSION,
+    FIRST_LONG /* + the option's index */
+};
 
 static char *history;
+static const void *given[OPTIONS]; /* the variables that were set, NULL between */
 
-static void message(const char *prefix, const char *format, va_list ap)
+static void message(const char *format, va_list ap)
 {
     progress_end();
-    if (prefix) fprintf(stderr, "%s: ", prefix);
+    fprintf(stderr, "%s: ", tool.name);
     vfprintf(stderr, format, ap);
     fputc('\n', stderr);
 }
@@ -28,7 +35,7 @@ void die(int status, const char *format, ...)
 {
     va_list ap;
     va_start(ap, format);
-    message(tool.name, format, ap);
+    message(format, ap);
     va_end(ap);
     exit(status);
 }
@@ -37,7 +44,7 @@ void die_usage(const char *format, ...)
 {
     va_list ap;
     va_start(ap, format);
-    message(tool.name, format, ap);
+    message(format, ap);
     va_end(ap);
     fprintf(stderr, "usage: %s [OPTION ...] %s (--help tells more)\n", tool.name, tool.operands);
     exit(EX_USAGE);
@@ -52,15 +59,7 @@ void warn(const char *format, ...)
 {
     va_list ap;
     va_start(ap, format);
-    message(tool.name, format, ap);
-    va_end(ap);
-}
-
-void say(const char *format, ...)
-{
-    va_list ap;
-    va_start(ap, format);
-    message(NULL, format, ap);
+    message(format, ap);
     va_end(ap);
 }
 
@@ -100,34 +99,59 @@ const char *cli_history(void)
     return history;
 }
 
+bool cli_given(const void *to)
+{
+    for (int k = 0; k < OPTIONS; k++)
+        if (given[k] == to) return true;
+    return false;
+}
+
+/* The words of a choice, "a|b|c", for --help and for messages. */
+static const char *words(const struct cli_option *o)
+{
+    static char text[200];
+    size_t n = 0;
+    text[0] = 0;
+    for (int k = 0; o->choice(k).name && n < sizeof text; k++)
+        n += (size_t)snprintf(text + n, sizeof text - n, "%s%s", k ? "|" : "", o->choice(k).name);
+    return text;
+}
+
+/* "  -m, --method a|b|c      help [default]", and a line for each choice that explains itself */
+static void help_option(const struct cli_option *o)
+{
+    char left[240], letter[5] = "    ";
+    if (o->letter) snprintf(letter, sizeof letter, "-%c, ", o->letter);
+    const char *arg = o->choice ? words(o) : o->arg ? o->arg : "";
+    snprintf(left, sizeof left, "%s--%s%s%s", letter, o->name, *arg ? " " : "", arg);
+    if (strlen(left) > LEFT - 1)
+        printf("  %s\n%*s", left, LEFT + 4, "");
+    else
+        printf("  %-*s  ", LEFT, left);
+    printf(o->usual ? "%s [%s]\n" : "%s\n", o->help, o->usual ? o->usual(o->to) : "");
+    for (int k = 0; o->choice && o->choice(k).name; k++)
+        if (o->choice(k).help) printf("%8s%-8s  %s\n", "", o->choice(k).name, o->choice(k).help);
+}
+
 static void help(void)
 {
     printf("usage: %s [OPTION ...] %s\n\n%s\n", tool.name, tool.operands, tool.about);
     for (const struct cli_option *const *t = tool.tables; *t; t++) {
         if ((*t)->kind != CLI_END) printf("\n");
-        for (const struct cli_option *o = *t; o->kind; o++) {
-            char left[80];
-            snprintf(left, sizeof left, "%c%c%s --%s%s%s", o->letter ? '-' : ' ',
-                     o->letter ? o->letter : ' ', o->letter ? "," : " ", o->name, o->arg ? " " : "",
-                     o->arg ? o->arg : "");
-            printf(strlen(left) > 27 ? "  %s\n%32s%s\n" : "  %-28s  %.0s%s\n", left, "", o->help);
-        }
+        for (const struct cli_option *o = *t; o->kind; o++) help_option(o);
     }
-    printf("\n  %-28s  this text\n  %-28s  the version\n", "    --help", "    --version");
+    printf("\n  %-*s  this text\n  %-*s  the version\n", LEFT, "    --help", LEFT, "    --version");
     if (tool.more) printf("\n%s", tool.more);
     printf("\nThe manual: man %s, man 7 nsd\n", tool.name);
     finish_stdout();
     exit(0);
 }
 
-static int choice(const char *choices, const char *word)
+/* The index of a word among the choices; -1 where there is none. */
+static int index_of(const struct cli_option *o, const char *word)
 {
-    size_t n = strlen(word);
-    for (int k = 0; *choices; k++) {
-        size_t length = strcspn(choices, "|");
-        if (length == n && !strncmp(choices, word, n)) return k;
-        choices += length + (choices[length] == '|');
-    }
+    for (int k = 0; o->choice(k).name; k++)
+        if (!strcmp(o->choice(k).name, word)) return k;
     return -1;
 }
 
@@ -164,8 +188,8 @@ static json_t *set(const struct cli_option *o, const char *text)
         *(const char **)o->to = text;
         return json_string(text);
     case CLI_CHOICE:
-        *(int *)o->to = choice(o->arg, text);
-        if (*(int *)o->to < 0) die_usage("--%s: '%s' is none of %s", o->name, text, o->arg);
+        *(int *)o->to = index_of(o, text);
+        if (*(int *)o->to < 0) die_usage("--%s: '%s' is none of %s", o->name, text, words(o));
         return json_string(text);
     case CLI_INT:
         set_number(o, text);
@@ -185,9 +209,10 @@ int cli_parse(int argc, char **argv)
     for (const struct cli_option *const *t = tool.tables; *t; t++)
         for (const struct cli_option *o = *t; o->kind && n < OPTIONS; o++, n++) {
             at[n] = o;
-            int wants = o->arg ? required_argument : no_argument;
+            bool flag = o->kind == CLI_FLAG || o->kind == CLI_UNFLAG;
+            int wants = flag ? no_argument : required_argument;
             lng[n + 2] = (struct option){ o->name, wants, NULL, FIRST_LONG + n };
-            if (o->letter) sprintf(letters + strlen(letters), o->arg ? "%c:" : "%c", o->letter);
+            if (o->letter) sprintf(letters + strlen(letters), flag ? "%c" : "%c:", o->letter);
         }
     json_t *value[OPTIONS] = { NULL };
     int c;
@@ -207,6 +232,7 @@ int cli_parse(int argc, char **argv)
             if (at[i]->letter == c) k = i;
         json_decref(value[k]);
         value[k] = set(at[k], optarg);
+        given[k] = at[k]->to;
     }
     json_t *options = json_object();
     for (int i = 0; i < n; i++) {

@@ -1,6 +1,6 @@
 /*
- * cli/cli.h: what every tool's command line has in common: options with --help and --version made from
- * one table, errors as `tool: thing: trouble`, exit statuses, progress on a terminal.
+ * cli/cli.h: what every tool's command line has in common: options with --help and --version made
+ * from one table, errors as `tool: thing: trouble`, exit statuses, progress on a terminal.
  *
  * A tool defines `tool` and tool_main(); the only main() is in main.c.
  */
@@ -20,53 +20,64 @@ enum cli_kind {
     CLI_REAL,    /* double in [min, max] */
     CLI_ABOVE,   /* double in (min, max] */
     CLI_BETWEEN, /* double in (min, max) */
-    CLI_CHOICE,  /* int: the place of the word in choices, "a|b|c" */
+    CLI_CHOICE,  /* int: the index of the word among its choices */
     CLI_TEXT     /* const char * */
+};
+
+/* A word that an option takes, and what it means; help may be NULL. */
+struct cli_choice {
+    const char *name, *help;
 };
 
 struct cli_option {
     enum cli_kind kind;
-    char letter;      /* or 0 */
+    char letter;      /* -letter, or 0 */
     const char *name; /* --name */
-    void *to;
-    const char *arg;  /* EPS, FILE ...; the choices of a CLI_CHOICE */
-    const char *help; /* with its default in brackets */
+    void *to;         /* the variable that it sets */
+    const char *arg;  /* EPS, FILE ...; NULL for flags and choices */
+    const char *help; /* one line */
     double min, max;
+    struct cli_choice (*choice)(int index); /* of a CLI_CHOICE; past the last, a name of NULL */
+    const char *(*usual)(const void *to);   /* its default for --help; NULL: help has it in [] */
     bool silent; /* leaves the result as it is (-j, --log): not in a document's history */
 };
 
 struct cli_tool {
     const char *name, *operands;            /* "nsd-detect", "[FILE ...]" */
-    const char *about;                      /* one line, what it reads and writes */
+    const char *about;                      /* a few lines: what it does, reads and writes */
     const struct cli_option *const *tables; /* NULL ends */
     const char *more;                       /* after the options: examples; or NULL */
 };
 
 extern const struct cli_tool tool;
-int tool_main(int argc, char **argv); /* the operands, after cli_parse */
+int tool_main(int operands, char **operand); /* called after cli_parse; returns the exit status */
 
 /*
- * Sets the options, answers --help and --version, ends with EX_USAGE where something is off.
- * Returns the place of the first operand. Afterwards cli_history() is the line for the document's
- * history: {"command":"nsd-step","version":"0.1","options":{...}}, the options given that are not
- * silent, in the table's order.
+ * Sets the options, answers --help and --version, and ends with EX_USAGE at the first error.
+ * Returns the index of the first operand.
  */
 int cli_parse(int argc, char **argv);
+
+/* Was an option given that sets this variable? Then its value is the user's, else the default. */
+bool cli_given(const void *to);
+
+/*
+ * The line for the document's history: {"command":"nsd-step","version":"0.1","options":{...}}, with
+ * the options that were given and are not silent, in the table's order.
+ */
 const char *cli_history(void);
 
-/* All of these to stderr; die ends. */
+/* Messages to stderr, after the tool's name. Those called die end the tool. */
 void die(int status, const char *format, ...) __attribute__((noreturn, format(printf, 2, 3)));
 void die_usage(const char *format, ...) __attribute__((noreturn, format(printf, 1, 2)));
-void die_why(const struct why *) __attribute__((noreturn));
+void die_why(const struct why *why) __attribute__((noreturn));
 void warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
-void say(const char *format, ...)
-    __attribute__((format(printf, 1, 2))); /* without the tool's name */
 
-/* One line that is written over, at most ten times a second, only when stderr is a terminal. */
+/* One line that is overwritten, at most ten times a second, only when stderr is a terminal. */
 void progress(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void progress_end(void);
 
-/* stdout as text: flushed and closed with its errors heeded (EX_IOERR). */
+/* Flushes and closes stdout, where it is text; ends with EX_IOERR if any of it was not written. */
 void finish_stdout(void);
 
 #endif

@@ -1,4 +1,4 @@
-/* main.c: the only main(); a tool is its table and tool_main(). */
+/* cli/main.c: the only main(), of every tool; the tool itself is in tool_main(). */
 #include "cli/cli.h"
 
 #include <errno.h>
@@ -7,8 +7,8 @@
 #include <unistd.h>
 
 /*
- * A descriptor closed by the caller must not become some file that we open: a closed stdin reads as
- * an error, a closed stdout fails at the first write.
+ * A standard descriptor that the caller has closed must not become the next file that we open. It
+ * is /dev/null instead, opened the wrong way round: reading stdin and writing to stdout then fail.
  */
 static void guard_standard_descriptors(void)
 {

@@ -10,118 +10,228 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define METHODS  "auto|sbp|sal|ebp|eal|exact"           /* auto, then in the order of methods[] */
-#define SOLVERS  "auto|nlgs|anderson|cg|prox|ipm"       /* in the order of solvers[] */
-#define CRITERIA "glob|scaled|natural"                  /* of enum criterion */
-#define ORDERS   "natural|reverse|random|colour|halves" /* of enum order */
-#define MOST     1e300
+#define MOST 1e300 /* of a number without a bound: larger than any that is meant */
 
-struct options options = { .global = -1,
-                           .criterion = -1,
-                           .eps = 1e-10,
-                           .newton = 1,
-                           .newton_eps = 1e-13,
-                           .newton_max = 100,
-                           .theta = -1,
-                           .max_sweeps = -1,
-                           .order = -1,
-                           .threads = 1 };
+/* How Newton goes in a contact: the paper's way, or with its steps halved where they do harm. */
+enum newton_steps { NEWTON_PLAIN, NEWTON_LINESEARCH, NEWTON_COUNT };
+static const char *const newton_name[NEWTON_COUNT] = { "plain", "linesearch" };
+
+/* ---- what an option is when it is not given ---- */
+
+struct usual {
+    enum criterion packing, fclib; /* the criterion of packings, and of FCLIB problems */
+    double eps[CRITERION_COUNT];   /* in each criterion's own units */
+    int32_t nlgs_sweeps, sweeps;   /* the limit of nlgs, and of every other solver */
+    enum order nlgs_order, order;  /* the sweep's, likewise */
+    double relax;                  /* 0: the solver's own, in its entry of solvers[] */
+    bool warm;                     /* start from the reactions at hand, else from 0 */
+    enum newton_steps newton;
+    double newton_eps; /* of |(r, rho b)| */
+    int newton_max;    /* steps for a contact in a sweep */
+};
+
+/* nsd's own choice. --help shows it from here; nsd-solve(1) and nsd-step(1) repeat it. */
+static const struct usual usual = {
+    .packing = CRITERION_GLOB,    // the paper's
+    .fclib = CRITERION_NATURAL,   // scale-free: nobody knows the units of such a file
+    .eps[CRITERION_GLOB] = 1e-10, // a sum of m/s, m/s, N and W: the paper's
+    .eps[CRITERION_SCALED] = 1e-10,
+    .eps[CRITERION_NATURAL] = 1e-10,
+    .nlgs_sweeps = 5000,         // the paper's
+    .sweeps = 1000000,           // so many that EPS ends a solve, not the limit
+    .nlgs_order = ORDER_NATURAL, // the paper's
+    .order = ORDER_COLOUR,       // eight contacts at once, on any number of threads
+    .relax = 0,                  // each solver has measured its own
+    .warm = false,               // as the paper: a step does not depend on the one before
+    .newton = NEWTON_LINESEARCH, // plain steps run in circles at some contacts
+    .newton_eps = 1e-13,         // about a thousand roundings: as if it were exact
+    .newton_max = 100,           // after which the exact solution stands in
+};
+
+/* --paper: the protocol of the paper's tables, which does not change with nsd's choice. */
+static const struct usual paper = {
+    .packing = CRITERION_GLOB,
+    .fclib = CRITERION_GLOB,
+    .eps = { 1e-10, 1e-10, 1e-10 },
+    .nlgs_sweeps = 5000,
+    .sweeps = 5000,
+    .nlgs_order = ORDER_NATURAL,
+    .order = ORDER_NATURAL,
+    .relax = 1,
+    .warm = false,
+    .newton = NEWTON_LINESEARCH, // the paper's own Newton is asked for with --newton, --newton-abs
+    .newton_eps = 1e-13,
+    .newton_max = 100,
+};
+
+struct options options = { .threads = 1 };
+
+static const char *usual_eps(char *text, size_t room)
+{
+    const double *eps = usual.eps;
+    bool same = true;
+    for (int k = 1; k < CRITERION_COUNT; k++) same &= eps[k] == eps[0];
+    size_t n = (size_t)snprintf(text, room, same ? "%g" : "%g %s", eps[0], criterion_name[0]);
+    for (int k = 1; !same && k < CRITERION_COUNT && n < room; k++)
+        n += (size_t)snprintf(text + n, room - n, ", %g %s", eps[k], criterion_name[k]);
+    return text;
+}
+
+const char *options_usual(const void *to)
+{
+    static char text[100];
+    const struct usual *u = &usual;
+    const size_t room = sizeof text;
+    if (to == &options.eps) return usual_eps(text, room);
+    if (to == &options.newton) return newton_name[u->newton];
+    if (to == &options.warm) return u->warm ? "warm" : "cold";
+    if (to == &options.criterion)
+        snprintf(text, room, u->packing == u->fclib ? "%s" : "%s; %s for FCLIB",
+                 criterion_name[u->packing], criterion_name[u->fclib]);
+    if (to == &options.max_sweeps)
+        snprintf(text, room, u->nlgs_sweeps == u->sweeps ? "%d" : "%d for nlgs, else %d",
+                 u->nlgs_sweeps, u->sweeps);
+    if (to == &options.order)
+        snprintf(text, room, u->nlgs_order == u->order ? "%s" : "%s for nlgs, else %s",
+                 order_name[u->nlgs_order], order_name[u->order]);
+    if (to == &options.relax)
+        snprintf(text, room, u->relax > 0 ? "%g" : "%g for nlgs, else the solver's",
+                 u->relax > 0 ? u->relax : solver_nlgs.relax);
+    if (to == &options.newton_eps) snprintf(text, room, "%g", u->newton_eps);
+    if (to == &options.newton_max) snprintf(text, room, "%d", u->newton_max);
+    return text;
+}
+
+/* ---- the words that options take, from the tables of what there is ---- */
+
+static struct cli_choice method_choice(int k)
+{
+    if (k == 0) return (struct cli_choice){ "auto", "no method of its own: as --global auto" };
+    const struct method *m = methods[k - 1];
+    return m ? (struct cli_choice){ m->name, m->help } : (struct cli_choice){ NULL, NULL };
+}
+
+static struct cli_choice solver_choice(int k)
+{
+    return (struct cli_choice){ solvers[k] ? solvers[k]->name : NULL, NULL };
+}
+
+static struct cli_choice criterion_choice(int k)
+{
+    return (struct cli_choice){ k < CRITERION_COUNT ? criterion_name[k] : NULL, NULL };
+}
+
+static struct cli_choice order_choice(int k)
+{
+    return (struct cli_choice){ k < ORDER_COUNT ? order_name[k] : NULL, NULL };
+}
+
+static struct cli_choice newton_choice(int k)
+{
+    return (struct cli_choice){ k < NEWTON_COUNT ? newton_name[k] : NULL, NULL };
+}
+
+/* ---- the options ---- */
 
 const struct cli_option options_solve[] = {
-    { CLI_CHOICE, 'm', "method", &options.method, METHODS,
-      "the local method of Gauss-Seidel; auto: --global auto [auto]", 0, 0, 0 },
-    { CLI_CHOICE, 0, "global", &options.global, SOLVERS,
-      "how all contacts together are solved [nlgs with -m, else auto]", 0, 0, 0 },
-    { CLI_REAL, 0, "eps", &options.eps, "EPS", "stop when the criterion is at most this [1e-10]", 0,
-      MOST, 0 },
-    { CLI_CHOICE, 0, "criterion", &options.criterion, CRITERIA,
-      "what is compared with EPS [glob; natural for FCLIB]", 0, 0, 0 },
-    { CLI_INT, 0, "max-sweeps", &options.max_sweeps, "N",
-      "give up after these [5000; 1000000 but for nlgs]", 0, 2e9, 0 },
-    { CLI_ABOVE, 0, "max-seconds", &options.max_seconds, "S",
-      "give up after so long, the best so far kept", 0, MOST, 0 },
-    { CLI_ABOVE, 0, "alpha", &options.alpha, "A",
-      "rho = A m_red [1.75 (sbp, sal) or 1 (ebp, eal) over lambda_max]", 0, MOST, 0 },
-    { CLI_CHOICE, 0, "newton", &options.newton, "plain|linesearch",
-      "steps of ebp and eal; plain is the paper's [linesearch]", 0, 0, 0 },
-    { CLI_ABOVE, 0, "newton-eps", &options.newton_eps, "EPS",
-      "their end, relative to |(r, rho b)| [1e-13]", 0, 1, 0 },
-    { CLI_ABOVE, 0, "newton-abs", &options.newton_abs, "EPS",
-      "their end as the paper has it, absolute, with r in N", 0, MOST, 0 },
-    { CLI_INT, 0, "newton-max", &options.newton_max, "N", "their number [100]", 1, 1e6, 0 },
-    { CLI_BETWEEN, 0, "relax", &options.relax, "OMEGA",
-      "over-relaxation, between 0 and 2 [1; the solver's]", 0, 2, 0 },
-    { CLI_CHOICE, 0, "order", &options.order, ORDERS,
-      "of the sweep; natural is the paper's [natural for nlgs, else colour]", 0, 0, 0 },
-    { CLI_FLAG, 0, "every-sweep", &options.every_sweep, NULL,
-      "evaluate the criterion after every sweep [when it may be met]", 0, 0, 0 },
+    { CLI_FLAG, 0, "paper", &options.paper,
+      .help = "the paper's protocol instead of what is in brackets; wants -m" },
+    { CLI_CHOICE, 'm', "method", &options.method, .choice = method_choice,
+      .help = "the local method of Gauss-Seidel, which then solves [auto]" },
+    { CLI_CHOICE, 0, "global", &options.global, .choice = solver_choice,
+      .help = "the solver of all contacts together [nlgs with -m, else auto]" },
+    { CLI_REAL, 0, "eps", &options.eps, "EPS", .max = MOST,
+      .help = "stop when the criterion is at most this", .usual = options_usual },
+    { CLI_CHOICE, 0, "criterion", &options.criterion, .choice = criterion_choice,
+      .help = "what is compared with EPS", .usual = options_usual },
+    { CLI_INT, 0, "max-sweeps", &options.max_sweeps, "N", .max = 2e9,
+      .help = "give up after N sweeps", .usual = options_usual },
+    { CLI_ABOVE, 0, "max-seconds", &options.max_seconds, "S", .max = MOST,
+      .help = "give up after S seconds, with the best so far" },
+    { CLI_ABOVE, 0, "alpha", &options.alpha, "A", .max = MOST,
+      .help = "rho = A m_red [1.75 (sbp, sal) or 1 (ebp, eal) over lambda_max]" },
+    { CLI_CHOICE, 0, "newton", &options.newton, .choice = newton_choice,
+      .help = "Newton's steps in ebp and eal; plain is the paper's", .usual = options_usual },
+    { CLI_ABOVE, 0, "newton-eps", &options.newton_eps, "EPS", .max = 1,
+      .help = "stop them when |Z| is at most EPS |(r, rho b)|", .usual = options_usual },
+    { CLI_ABOVE, 0, "newton-abs", &options.newton_abs, "EPS", .max = MOST,
+      .help = "stop them as the paper does, when |Z| is at most EPS, with r in N" },
+    { CLI_INT, 0, "newton-max", &options.newton_max, "N", .min = 1, .max = 1e6,
+      .help = "make at most N of them for a contact in a sweep", .usual = options_usual },
+    { CLI_BETWEEN, 0, "relax", &options.relax, "OMEGA", .max = 2,
+      .help = "relaxation, between 0 and 2", .usual = options_usual },
+    { CLI_CHOICE, 0, "order", &options.order, .choice = order_choice,
+      .help = "of the sweep; natural is the paper's", .usual = options_usual },
+    { CLI_FLAG, 0, "every-sweep", &options.every_sweep,
+      .help = "evaluate the criterion after every sweep [when it may be met]" },
     { 0 },
 };
 
 const struct cli_option options_run[] = {
-    { CLI_INT, 'j', "threads", &options.threads, "N", "threads; they never change a result [1]", 1,
-      1024, true },
-    { CLI_TEXT, 0, "log", &options.log, "FILE", "one JSON line a solve, with its seconds", 0, 0,
-      true },
-    { CLI_FLAG, 'e', "strict", &options.strict, NULL, "exit with 1 when a solve has not converged",
-      0, 0, true },
+    { CLI_INT, 'j', "threads", &options.threads, "N", .min = 1, .max = 1024, .silent = true,
+      .help = "threads; they never change a result [1]" },
+    { CLI_TEXT, 0, "log", &options.log, "FILE", .silent = true,
+      .help = "write one JSON line for each solve, with its seconds" },
+    { CLI_FLAG, 'e', "strict", &options.strict, .silent = true,
+      .help = "exit with 1 when a solve has not converged" },
     { 0 },
 };
 
 const struct cli_option options_detect[] = {
-    { CLI_REAL, 0, "gap", &options.gap, "G", "contacts have a predicted gap of at most G m [0]", 0,
-      MOST, 0 },
-    { CLI_REAL, 0, "theta", &options.theta, "T",
-      "predict q + (1 - T) dt qdot [the document's; 0.5]", 0, 1, 0 },
+    { CLI_REAL, 0, "gap", &options.gap, "G", .max = MOST,
+      .help = "a contact is a pair with a predicted gap of at most G m [0]" },
+    { CLI_REAL, 0, "theta", &options.theta, "T", .max = 1,
+      .help = "predict the position q + (1 - T) dt qdot [the document's; 0.5]" },
     { 0 },
 };
 
 /* A method that is named stands for the paper's Gauss-Seidel with it. */
 static const struct solver *global(void)
 {
-    int named = options.method ? 1 : 0;
-    return solvers[options.global < 0 ? named : options.global];
+    if (cli_given(&options.global)) return solvers[options.global];
+    return options.method ? &solver_nlgs : &solver_auto;
+}
+
+/* The option where it is given, else what stands for it */
+#define OPTION(name, otherwise) (cli_given(&options.name) ? options.name : (otherwise))
+
+void options_check(void)
+{
+    char names[100] = "";
+    size_t n = 0;
+    if (!options.paper || options.method) return;
+    for (int k = 0; methods[k] && n < sizeof names; k++)
+        n += (size_t)snprintf(names + n, sizeof names - n, "%s%s", k ? "|" : "", methods[k]->name);
+    die_usage("--paper: wants a local method, -m %s", names);
 }
 
 struct step_opt options_step(double dt, bool foreign)
 {
+    const struct options *o = &options;
+    const struct usual *u = o->paper ? &paper : &usual;
     const struct solver *solver = global();
     bool nlgs = solver == &solver_nlgs;
-    enum criterion usual = foreign ? CRITERION_NATURAL : CRITERION_GLOB;
-    const struct options *o = &options;
+    int criterion = OPTION(criterion, (int)(foreign ? u->fclib : u->packing));
     return (struct step_opt){
         .gap = o->gap,
         .alpha = o->alpha,
-        .order = o->order >= 0 ? (enum order)o->order
-                 : nlgs        ? ORDER_NATURAL
-                               : ORDER_COLOUR,
-        .warm = o->warm,
+        .order = (enum order)OPTION(order, (int)(nlgs ? u->nlgs_order : u->order)),
+        .warm = OPTION(warm, u->warm),
         .solve = { .global = solver,
                    .method = o->method ? methods[o->method - 1] : &local_exact,
-                   .local = { .plain = o->newton == 0,
-                              .newton_eps = o->newton_eps,
+                   .local = { .plain = OPTION(newton, (int)u->newton) == NEWTON_PLAIN,
+                              .newton_eps = OPTION(newton_eps, u->newton_eps),
                               .newton_abs = o->newton_abs * dt, // forces there, impulses here
-                              .newton_max = (int)o->newton_max },
-                   .criterion = o->criterion < 0 ? usual : (enum criterion)o->criterion,
-                   .eps = o->eps,
-                   .max_sweeps = (int32_t)(o->max_sweeps >= 0 ? o->max_sweeps
-                                           : nlgs             ? 5000
-                                                              : 1000000),
+                              .newton_max = (int)OPTION(newton_max, u->newton_max) },
+                   .criterion = (enum criterion)criterion,
+                   .eps = OPTION(eps, u->eps[criterion]),
+                   .max_sweeps = (int32_t)OPTION(max_sweeps, nlgs ? u->nlgs_sweeps : u->sweeps),
                    .max_seconds = o->max_seconds,
-                   .relax = o->relax > 0 ? o->relax : solver->relax,
+                   .relax = OPTION(relax, u->relax > 0 ? u->relax : solver->relax),
                    .threads = (int)o->threads,
                    .every_sweep = o->every_sweep,
                    .history = o->history },
     };
-}
-
-/* Word k of "a|b|c", in a buffer of its own. */
-static const char *word(const char *list, int k)
-{
-    static char buffer[40];
-    for (; k > 0; k--) list = strchr(list, '|') + 1;
-    snprintf(buffer, sizeof buffer, "%.*s", (int)strcspn(list, "|"), list);
-    return buffer;
 }
 
 const char *options_solver(const struct step_opt *o)
@@ -134,8 +244,8 @@ char *options_json(const struct step_opt *o)
 {
     const struct solve_opt *n = &o->solve;
     json_t *j = json_object();
-    json_object_set_new(j, "method", json_string(n->method->name));
     json_object_set_new(j, "global", json_string(n->global->name));
+    json_object_set_new(j, "local", json_string(n->method->name));
     json_object_set_new(j, "eps", json_real(n->eps));
     json_object_set_new(j, "criterion", json_string(criterion_name[n->criterion]));
     json_object_set_new(j, "max_sweeps", json_integer(n->max_sweeps));
@@ -144,14 +254,15 @@ char *options_json(const struct step_opt *o)
         json_object_set_new(j, "alpha", json_real(o->alpha));
     else
         json_object_set_new(j, "rho_lambda_max", json_real(n->method->rho));
-    json_object_set_new(j, "newton", json_string(n->local.plain ? "plain" : "linesearch"));
+    json_object_set_new(
+        j, "newton", json_string(newton_name[n->local.plain ? NEWTON_PLAIN : NEWTON_LINESEARCH]));
     if (n->local.newton_abs > 0)
         json_object_set_new(j, "newton_abs", json_real(options.newton_abs));
     else
         json_object_set_new(j, "newton_eps", json_real(n->local.newton_eps));
     json_object_set_new(j, "newton_max", json_integer(n->local.newton_max));
     if (n->relax > 0) json_object_set_new(j, "relax", json_real(n->relax));
-    json_object_set_new(j, "order", json_string(word(ORDERS, (int)o->order)));
+    json_object_set_new(j, "order", json_string(order_name[o->order]));
     json_object_set_new(j, "warm", json_boolean(o->warm));
     char *text = json_dumps(j, JSON_COMPACT);
     json_decref(j);
@@ -160,7 +271,7 @@ char *options_json(const struct step_opt *o)
 
 void options_theta(struct packing *p, bool detected)
 {
-    if (options.theta < 0 || options.theta == p->theta) return;
+    if (!cli_given(&options.theta) || options.theta == p->theta) return;
     if (detected)
         die_usage("--theta: the contacts were detected with %g; give it to nsd-detect", p->theta);
     p->theta = options.theta;
@@ -203,15 +314,20 @@ void options_log_close(void)
     log_file = NULL;
 }
 
+const char *options_error(enum criterion criterion)
+{
+    return criterion == CRITERION_GLOB ? "eps_glob" : criterion_name[criterion];
+}
+
 void options_summary(const char *where, const struct report *r)
 {
-    char trouble[120] = "", newton[40] = "";
+    char trouble[120] = "", newton[40] = "", missed[60] = "";
     if (r->newton) snprintf(newton, sizeof newton, ", %lld Newton steps", (long long)r->newton);
     if (r->safeguarded || r->gave_up)
         snprintf(trouble, sizeof trouble, ", %lld local solves safeguarded, %lld given up",
                  (long long)r->safeguarded, (long long)r->gave_up);
+    if (!r->converged) snprintf(missed, sizeof missed, ": NOT CONVERGED to %g", r->eps);
     warn("%s: %lld contacts, %s: %d sweeps%s, %s %.3g%s, %.3g s%s", where,
-         (long long)r->err.contacts, r->method, r->sweeps, newton,
-         r->criterion == CRITERION_GLOB ? "eps_glob" : criterion_name[r->criterion],
-         err_of(&r->err, r->criterion), trouble, r->seconds, r->converged ? "" : ": NOT CONVERGED");
+         (long long)r->err.contacts, r->method, r->sweeps, newton, options_error(r->criterion),
+         err_of(&r->err, r->criterion), trouble, r->seconds, missed);
 }

@@ -1,45 +1,62 @@
-/* cli/options.h: the solver's options, the same for nsd-solve and nsd-step. */
+/*
+ * cli/options.h: the options of the solver and of the contacts, the same in every tool that has
+ * them; what they are when they are not given; and what is said of a solve.
+ */
 #ifndef NSD_OPTIONS_H
 #define NSD_OPTIONS_H
 
 #include "cli/cli.h"
 #include "solve/step.h"
 
+/* What was given; cli_given() says which of them were. */
 struct options {
-    int method, global, criterion, order, newton; /* places in their lists; -1: not given */
-    double eps, alpha, newton_eps, newton_abs, max_seconds;
-    double relax; /* 0: the solver's */
-    double gap;
-    double theta; /* -1: the document's */
+    bool paper;
+    int method;                           /* 0: auto; else 1 + the index in methods[] */
+    int global, criterion, order, newton; /* indices among their choices */
+    double eps, alpha, newton_eps, newton_abs, max_seconds, relax;
+    double gap; /* m */
+    double theta;
     int64_t max_sweeps, newton_max, threads;
     bool warm, every_sweep, history, strict;
     const char *log; /* or NULL */
 };
 
-extern struct options options;                   /* with the defaults in it */
+extern struct options options;
 extern const struct cli_option options_solve[];  /* the solver's own */
 extern const struct cli_option options_run[];    /* -j, --log, -e */
 extern const struct cli_option options_detect[]; /* --gap, --theta */
 
-/* What was asked, for a packing with this dt, or for an FCLIB problem (dt = 1). */
+/* The default of the member of `options` that `to` points to, as --help shows it. */
+const char *options_usual(const void *to);
+
+/* Ends the tool with EX_USAGE where options contradict each other; to be called first. */
+void options_check(void);
+
+/* Options and defaults for a packing with this dt, or for an FCLIB problem (foreign, dt = 1). */
 struct step_opt options_step(double dt, bool foreign);
 
-/* What it goes by: the local method of Gauss-Seidel, else the solver */
-const char *options_solver(const struct step_opt *);
+/* What a report calls the method: Gauss-Seidel's local method, or else the solver. */
+const char *options_solver(const struct step_opt *step);
 
-/* The same as JSON, all of it, for the document; NULL when memory is short. To be freed. */
-char *options_json(const struct step_opt *);
+/* All that shapes the result, as JSON for the document; NULL when memory is short. To be freed. */
+char *options_json(const struct step_opt *step);
 
-/* --theta into the packing; EX_USAGE where it contradicts contacts that are already there. */
-void options_theta(struct packing *, bool detected);
+/* Puts --theta into the packing; EX_USAGE where contacts were detected with another. */
+void options_theta(struct packing *packing, bool detected);
 
-/* --log: opened at once, then one JSON line a solve. Ends the tool when it cannot be written, or is
-   one of the files that the tool reads or its output (NULL: the standard output). */
+/*
+ * --log: opens the file at once; then a line of JSON for each solve, with the clock's seconds,
+ * which no document has. Ends the tool where it cannot be written, and where it is one of the files
+ * that the tool reads or its output (NULL: standard output).
+ */
 void options_log_open(int files, char *const *file, const char *output);
-void options_log(const struct report *);
+void options_log(const struct report *report);
 void options_log_close(void);
 
-/* A word about a solve, for people: "1135 contacts, exact: 812 sweeps, eps_glob 9.9e-11, 0.04 s" */
-void options_summary(const char *where, const struct report *);
+/* What a report's criterion is called: eps_glob, scaled or natural. */
+const char *options_error(enum criterion criterion);
+
+/* Says on stderr how a solve went: "1135 contacts, exact: 812 sweeps, eps_glob 9.9e-11, 0.04 s" */
+void options_summary(const char *where, const struct report *report);
 
 #endif

@@ -1,20 +1,24 @@
-/* cli/tool_filter.h: what the tools that turn frames into frames have in common. */
+/*
+ * cli/tool_filter.h: what the tools share that read frames and write each of them, changed:
+ * nsd-detect, nsd-solve, nsd-move.
+ */
 #ifndef NSD_TOOL_FILTER_H
 #define NSD_TOOL_FILTER_H
 
 #include "io/frame.h"
 
 /*
- * Every frame of every document of the files (none: standard input) through each(), with the
- * command's line in its history, out to standard output as it is done. `where` names the document
- * for messages. Ends the tool where something cannot be read or written.
+ * Reads every frame of every document of the files (of standard input where there are none), passes
+ * it through each(), adds the command to its history and writes it to standard output at once.
+ * `where` names the document, for messages. Ends the tool where a frame cannot be read or written.
  */
 void tool_filter(int files, char *const *file, void (*each)(struct frame *, const char *where));
 
-/* Ends the tool with EX_DATAERR unless f is a packing; with its contacts detected and not yet used
-   to move it; solved. */
-void tool_wants_packing(const struct frame *, const char *where);
-void tool_wants_contacts(const struct frame *, const char *where);
-void tool_wants_solution(const struct frame *, const char *where);
+/* Each ends the tool with EX_DATAERR unless the frame is a packing; */
+void tool_wants_packing(const struct frame *f, const char *where);
+/* a packing with contacts that have not moved it yet; */
+void tool_wants_contacts(const struct frame *f, const char *where);
+/* and these solved. */
+void tool_wants_solution(const struct frame *f, const char *where);
 
 #endif

@@ -3,6 +3,8 @@
 
 #include <float.h>
 
+const char *const colour_name[COLOUR_COUNT] = { "radius", "speed", "kind", "id" };
+
 /* Ten colours that are easy to tell apart [Tableau 10] */
 static const unsigned ten[10] = { 0x4e79a7, 0xf28e2b, 0xe15759, 0x76b7b2, 0x59a14f,
                                   0xedc948, 0xb07aa1, 0xff9da7, 0x9c755f, 0xbab0ac };

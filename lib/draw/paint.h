@@ -4,8 +4,8 @@
 
 #include "bodies/packing.h"
 
-#define PAINT_COLOURS "radius|speed|kind|id"
-enum colour { COLOUR_RADIUS, COLOUR_SPEED, COLOUR_KIND, COLOUR_ID };
+enum colour { COLOUR_RADIUS, COLOUR_SPEED, COLOUR_KIND, COLOUR_ID, COLOUR_COUNT };
+extern const char *const colour_name[COLOUR_COUNT]; /* as the command line has them */
 
 /* Linear light, 0 to 1, which can be added and averaged */
 struct rgb {

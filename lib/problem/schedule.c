@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+const char *const order_name[ORDER_COUNT] = { "natural", "reverse", "random", "colour", "halves" };
+
 enum {
     MARK_COLOURS = 64, /* the bits of a mark; contacts beyond them follow one after another */
     WORTH_IT = 384,    /* contacts, for halves, and so many that */
