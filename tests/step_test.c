@@ -1,5 +1,6 @@
 /* What must hold of whole steps: detection, momentum, energy, closed solutions, agreement. */
 #include "bodies/detect.h"
+#include "bodies/move.h"
 #include "scene/scene_build.h"
 #include "solve/step.h"
 #include "tap.h"
@@ -493,7 +494,7 @@ static void test_unmove(const struct packing *start)
     struct step_opt o = options(&local_exact, 1e-8, 2000);
     must(packing_copy(&p, start, &why), &why);
     run(&p, &s, &o, 1);
-    must(step_unmove(&p, &s, &why), &why);
+    must(move_back(&p, &s, &why), &why);
     double dx = 0, dv = largest_difference(&p, start);
     for (int64_t i = 0; i < p.n; i++) dx = fmax(dx, v3_norm(v3_sub(p.x[i], start->x[i])));
     ok(dx < 1e-16 && dv < 1e-14 && p.step == start->step, "unmove undoes move (%.1e m, %.1e m/s)",

@@ -1,9 +1,9 @@
 /* nsd-err: says how good a solution is, recomputed from the problem and the reactions. */
+#include "bodies/move.h"
 #include "cli/cli.h"
 #include "io/reader.h"
 #include "io/report_json.h"
 #include "problem/err.h"
-#include "solve/step.h"
 
 static const struct cli_option *const tables[] = { NULL };
 
@@ -18,7 +18,7 @@ const struct cli_tool tool = {
 /* The problem that the reactions of a packing solve, with the reactions in it. */
 static int prepare_packing(struct problem *p, struct frame *f, struct why *why)
 {
-    if (f->moved && step_unmove(&f->packing, &f->contacts, why)) return why->status;
+    if (f->moved && move_back(&f->packing, &f->contacts, why)) return why->status;
     if (problem_prepare(p, &f->packing, &f->contacts, 0, 1, ORDER_NATURAL, why)) return why->status;
     for (int64_t i = 0; i < f->contacts.n; i++)
         f->report.err.max_overlap = fmax(f->report.err.max_overlap, -f->contacts.c[i].gap);

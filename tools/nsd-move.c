@@ -1,7 +1,7 @@
 /* nsd-move: makes the second half of a step: moves the bodies by the reactions. */
+#include "bodies/move.h"
 #include "cli/cli.h"
 #include "cli/tool_filter.h"
-#include "solve/step.h"
 
 static const struct cli_option *const tables[] = { NULL };
 
@@ -16,7 +16,7 @@ static void move(struct frame *f, const char *where)
 {
     struct why why = { 0 };
     tool_wants_solution(f, where);
-    if (step_move(&f->packing, &f->contacts, &why)) die_why(&why);
+    if (move_step(&f->packing, &f->contacts, &why)) die_why(&why);
     f->detected = false, f->stale = true;
 }
 

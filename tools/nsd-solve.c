@@ -43,7 +43,6 @@ static void solve(struct frame *f, const char *where)
     struct step_opt o = options_step(f->foreign ? 1 : f->packing.dt, f->foreign);
     o.solve.progress = show;
     report_free(&f->report);
-    snprintf(f->report.method, sizeof f->report.method, "%s", options_solver(&o));
     f->report.options = options_json(&o);
     if (!f->foreign) {
         options_theta(&f->packing, true);

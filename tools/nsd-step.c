@@ -41,11 +41,15 @@ static struct {
     double worst;                 /* the largest error of those */
     enum criterion criterion;     /* which error that is */
     double eps;                   /* and what was asked of it */
+    int64_t fell_back;            /* steps that were solved otherwise than asked */
     double seconds;
 } total;
 
 static void count(const struct report *r)
 {
+    char where[40];
+    snprintf(where, sizeof where, "step %lld", (long long)r->step);
+    if (r->fallback && !total.fell_back++) options_warn(where, r); // of all steps, mostly
     total.sweeps += r->sweeps;
     total.safeguarded += r->safeguarded, total.gave_up += r->gave_up;
     total.seconds += r->seconds;
@@ -63,6 +67,8 @@ static void summary(int64_t made)
     if (total.safeguarded || total.gave_up)
         warn("%lld local solves safeguarded, %lld given up", (long long)total.safeguarded,
              (long long)total.gave_up);
+    if (total.fell_back)
+        warn("%lld steps were solved by sweeps alone, not as asked", (long long)total.fell_back);
     if (total.missed)
         warn("%lld steps NOT CONVERGED, the first is step %lld; the largest %s is %.3g, not %g",
              (long long)total.missed, (long long)total.first_missed, options_error(total.criterion),
@@ -78,8 +84,9 @@ static bool advance(struct frame *f, struct neighbours *near, const struct step_
     f->reported = f->moved = true;
     count(r);
     options_log(r);
-    progress("step %lld: %lld contacts, %d sweeps, eps_glob %.2g", (long long)r->step,
-             (long long)r->err.contacts, r->sweeps, r->err.paper.eps_glob);
+    double error = err_of(&r->err, r->criterion);
+    progress("step %lld: %lld contacts, %d sweeps, %s %.2g", (long long)r->step,
+             (long long)r->err.contacts, r->sweeps, options_error(r->criterion), error);
     return isfinite(r->err.paper.eps_glob);
 }
 
@@ -100,7 +107,6 @@ static int64_t run(struct frame *f, struct writer *out)
     struct neighbours near = { 0 };
     if (steps) {
         report_free(&f->report);
-        snprintf(f->report.method, sizeof f->report.method, "%s", options_solver(&o));
         f->report.options = options_json(&o);
         f->detected = contacts;
         f->stale = true;

@@ -108,3 +108,9 @@ int contacts_check(const struct contacts *s, int64_t bodies, int32_t walls, stru
     }
     return 0;
 }
+
+void contact_arms(const struct contact *c, vec3 xa, vec3 xb, double *la, double *lb)
+{
+    *la = c->a < 0 ? 0 : v3_dot(v3_sub(c->x, xa), c->n);
+    *lb = v3_dot(v3_sub(xb, c->x), c->n);
+}

@@ -20,11 +20,14 @@ static const char *const newton_name[NEWTON_COUNT] = { "plain", "linesearch" };
 
 struct usual {
     enum criterion packing, fclib; /* the criterion of packings, and of FCLIB problems */
-    double eps[CRITERION_COUNT];   /* in each criterion's own units */
-    int32_t nlgs_sweeps, sweeps;   /* the limit of nlgs, and of every other solver */
-    enum order nlgs_order, order;  /* the sweep's, likewise */
-    double relax;                  /* 0: the solver's own, in its entry of solvers[] */
-    bool warm;                     /* start from the reactions at hand, else from 0 */
+    double eps[CRITERION_COUNT];   /* of packings, in each criterion's own units */
+    double fclib_eps;              /* of FCLIB problems, whatever the criterion */
+    int32_t nlgs_sweeps, sweeps;   /* the limit of nlgs, and of every other solver: */
+    int32_t tight_sweeps;          /* this one where eps is below */
+    double tight;
+    enum order nlgs_order, order; /* the sweep's, likewise */
+    double relax;                 /* 0: the solver's own, in its entry of solvers[] */
+    bool warm;                    /* start from the reactions at hand, else from 0 */
     enum newton_steps newton;
     double newton_eps; /* of |(r, rho b)| */
     int newton_max;    /* steps for a contact in a sweep */
@@ -32,13 +35,16 @@ struct usual {
 
 /* nsd's own choice. --help shows it from here; nsd-solve(1) and nsd-step(1) repeat it. */
 static const struct usual usual = {
-    .packing = CRITERION_GLOB,    // the paper's
-    .fclib = CRITERION_NATURAL,   // scale-free: nobody knows the units of such a file
-    .eps[CRITERION_GLOB] = 1e-10, // a sum of m/s, m/s, N and W: the paper's
-    .eps[CRITERION_SCALED] = 1e-10,
-    .eps[CRITERION_NATURAL] = 1e-10,
-    .nlgs_sweeps = 5000,         // the paper's
-    .sweeps = 1000000,           // so many that EPS ends a solve, not the limit
+    .packing = CRITERION_NATURAL, // scale-free: the same sweeps for balls of 10 um and of 1 m
+    .fclib = CRITERION_NATURAL,
+    .eps[CRITERION_GLOB] = 1e-10,   // a sum of m/s, m/s, N and W: the paper's
+    .eps[CRITERION_SCALED] = 1e-3,  // costs as much as the next, or more
+    .eps[CRITERION_NATURAL] = 1e-4, // the loosest with which overlaps do not grow [nsd-methods(7)]
+    .fclib_eps = 1e-10,     // one problem deserves its solution: all that we have take a second
+    .nlgs_sweeps = 5000,    // the paper's
+    .sweeps = 20000,        // which one step in ten thousand does not end with
+    .tight_sweeps = 100000, // twice what the slowest of good steps took
+    .tight = 1e-6,
     .nlgs_order = ORDER_NATURAL, // the paper's
     .order = ORDER_COLOUR,       // eight contacts at once, on any number of threads
     .relax = 0,                  // each solver has measured its own
@@ -53,8 +59,10 @@ static const struct usual paper = {
     .packing = CRITERION_GLOB,
     .fclib = CRITERION_GLOB,
     .eps = { 1e-10, 1e-10, 1e-10 },
+    .fclib_eps = 1e-10,
     .nlgs_sweeps = 5000,
     .sweeps = 5000,
+    .tight_sweeps = 5000,
     .nlgs_order = ORDER_NATURAL,
     .order = ORDER_NATURAL,
     .relax = 1,
@@ -74,6 +82,7 @@ static const char *usual_eps(char *text, size_t room)
     size_t n = (size_t)snprintf(text, room, same ? "%g" : "%g %s", eps[0], criterion_name[0]);
     for (int k = 1; !same && k < CRITERION_COUNT && n < room; k++)
         n += (size_t)snprintf(text + n, room - n, ", %g %s", eps[k], criterion_name[k]);
+    if (n < room) snprintf(text + n, room - n, "; %g for FCLIB", usual.fclib_eps);
     return text;
 }
 
@@ -89,8 +98,8 @@ const char *options_usual(const void *to)
         snprintf(text, room, u->packing == u->fclib ? "%s" : "%s; %s for FCLIB",
                  criterion_name[u->packing], criterion_name[u->fclib]);
     if (to == &options.max_sweeps)
-        snprintf(text, room, u->nlgs_sweeps == u->sweeps ? "%d" : "%d for nlgs, else %d",
-                 u->nlgs_sweeps, u->sweeps);
+        snprintf(text, room, "%d for nlgs, else %d, or %d where EPS < %g", u->nlgs_sweeps,
+                 u->sweeps, u->tight_sweeps, u->tight);
     if (to == &options.order)
         snprintf(text, room, u->nlgs_order == u->order ? "%s" : "%s for nlgs, else %s",
                  order_name[u->nlgs_order], order_name[u->order]);
@@ -212,6 +221,8 @@ struct step_opt options_step(double dt, bool foreign)
     const struct solver *solver = global();
     bool nlgs = solver == &solver_nlgs;
     int criterion = OPTION(criterion, (int)(foreign ? u->fclib : u->packing));
+    double eps = OPTION(eps, foreign ? u->fclib_eps : u->eps[criterion]);
+    int32_t sweeps = nlgs ? u->nlgs_sweeps : eps < u->tight ? u->tight_sweeps : u->sweeps;
     return (struct step_opt){
         .gap = o->gap,
         .alpha = o->alpha,
@@ -224,20 +235,14 @@ struct step_opt options_step(double dt, bool foreign)
                               .newton_abs = o->newton_abs * dt, // forces there, impulses here
                               .newton_max = (int)OPTION(newton_max, u->newton_max) },
                    .criterion = (enum criterion)criterion,
-                   .eps = OPTION(eps, u->eps[criterion]),
-                   .max_sweeps = (int32_t)OPTION(max_sweeps, nlgs ? u->nlgs_sweeps : u->sweeps),
+                   .eps = eps,
+                   .max_sweeps = (int32_t)OPTION(max_sweeps, sweeps),
                    .max_seconds = o->max_seconds,
                    .relax = OPTION(relax, u->relax > 0 ? u->relax : solver->relax),
                    .threads = (int)o->threads,
                    .every_sweep = o->every_sweep,
                    .history = o->history },
     };
-}
-
-const char *options_solver(const struct step_opt *o)
-{
-    const struct solve_opt *s = &o->solve;
-    return s->global == &solver_nlgs ? s->method->name : s->global->name;
 }
 
 char *options_json(const struct step_opt *o)
@@ -319,9 +324,15 @@ const char *options_error(enum criterion criterion)
     return criterion == CRITERION_GLOB ? "eps_glob" : criterion_name[criterion];
 }
 
+void options_warn(const char *where, const struct report *r)
+{
+    if (r->fallback) warn("%s: %s: %s sweeps instead", where, r->fallback, r->method);
+}
+
 void options_summary(const char *where, const struct report *r)
 {
     char trouble[120] = "", newton[40] = "", missed[60] = "";
+    options_warn(where, r);
     if (r->newton) snprintf(newton, sizeof newton, ", %lld Newton steps", (long long)r->newton);
     if (r->safeguarded || r->gave_up)
         snprintf(trouble, sizeof trouble, ", %lld local solves safeguarded, %lld given up",

@@ -35,9 +35,6 @@ void options_check(void);
 /* Options and defaults for a packing with this dt, or for an FCLIB problem (foreign, dt = 1). */
 struct step_opt options_step(double dt, bool foreign);
 
-/* What a report calls the method: Gauss-Seidel's local method, or else the solver. */
-const char *options_solver(const struct step_opt *step);
-
 /* All that shapes the result, as JSON for the document; NULL when memory is short. To be freed. */
 char *options_json(const struct step_opt *step);
 
@@ -55,6 +52,9 @@ void options_log_close(void);
 
 /* What a report's criterion is called: eps_glob, scaled or natural. */
 const char *options_error(enum criterion criterion);
+
+/* To stderr: that a solver could not do what was asked, and why; nothing where it could. */
+void options_warn(const char *where, const struct report *r);
 
 /* Says on stderr how a solve went: "1135 contacts, exact: 812 sweeps, eps_glob 9.9e-11, 0.04 s" */
 void options_summary(const char *where, const struct report *report);

@@ -135,12 +135,6 @@ static int32_t seat(struct problem *p, int32_t i, int64_t *next)
     return body_place((*next)++);
 }
 
-void problem_arms(const struct contact *c, vec3 xa, vec3 xb, double *la, double *lb)
-{
-    *la = c->a < 0 ? 0 : v3_dot(v3_sub(c->x, xa), c->n);
-    *lb = v3_dot(v3_sub(xb, c->x), c->n);
-}
-
 /* All of slot i but the reaction; the bodies still have the velocities before the step. */
 static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
                       const struct contact *c, double alpha, double factor)
@@ -153,7 +147,7 @@ static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
     for (int j = 0; j < 3; j++) r->n[j][k] = n[j], r->t1[j][k] = t1[j];
     r->mu[k] = c->mu;
     vec3 xa = c->a < 0 ? c->x : packing_predict(pack, c->a), xb = packing_predict(pack, c->b);
-    problem_arms(c, xa, xb, &r->la[k], &r->lb[k]);
+    contact_arms(c, xa, xb, &r->la[k], &r->lb[k]);
     const struct body *a = &p->body[body_index(r->a[k])], *b = &p->body[body_index(r->b[k])];
     double u[3], im = a->im + b->im;
     double it = im + r->la[k] * r->la[k] * a->ii + r->lb[k] * r->lb[k] * b->ii;

@@ -74,10 +74,6 @@ int problem_team(const struct problem *p, int threads);
 /* What was found, slot by slot, into the contacts; -1 when memory is short. */
 int problem_store(const struct problem *, struct contacts *);
 
-/* The lever arms la, lb (m) of a contact between bodies whose centres are at xa and xb (m), along its
-   normal; a wall has none: la = 0, whatever xa. */
-void problem_arms(const struct contact *c, vec3 xa, vec3 xb, double *la, double *lb);
-
 /* Row i: its bundle and lane; its r and u. */
 static inline struct bundle *slot_bundle(const struct problem *p, int64_t i)
 {

@@ -25,15 +25,6 @@ int step_solve_delassus(struct delassus *, double *u, const struct step_opt *, s
                         struct why *);
 
 /*
- * qdot_{k+1} = qdot_free + M^-1 P r, then q_{k+1} = q_{k+1/2} + theta dt qdot_{k+1} [uzawa3 and the
- * line after it]; step and t advance.
- */
-int step_move(struct packing *, const struct contacts *, struct why *);
-
-/* Back to before step_move, to rounding: what a solution found in a trajectory is checked from. */
-int step_unmove(struct packing *, const struct contacts *, struct why *);
-
-/*
  * One whole step. contacts: in, the last step's (empty at first), to start from; out, this one's.
  * neighbours: of the steps before (empty at first), or NULL.
  * Where the solve diverged (its error is not finite) nothing has moved.
