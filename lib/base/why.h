@@ -1,9 +1,10 @@
 /*
- * base/why.h: the reason of a failure, carried from where it happened to the tool that says it.
+ * base/why.h: the reason of a failure, carried from where it happened to the tool that reports it.
  *
- * A function of lib/ that can fail takes a struct why, prints nothing and returns 0 for good or the
- * exit status of sysexits.h that fits: EX_DATAERR (65) the input is wrong, EX_NOINPUT (66) it cannot
- * be opened, EX_SOFTWARE (70) we are wrong or out of memory, EX_IOERR (74) it cannot be written.
+ * A function of lib/ that can fail takes a struct why and prints nothing. It returns 0 for success,
+ * else the exit status of sysexits.h that fits: EX_DATAERR (65) the input is wrong, EX_NOINPUT (66)
+ * the input cannot be opened, EX_SOFTWARE (70) a fault of our own or no memory, EX_IOERR (74) the
+ * output cannot be written.
  */
 #ifndef NSD_WHY_H
 #define NSD_WHY_H
@@ -11,12 +12,15 @@
 #include <sysexits.h>
 
 struct why {
-    int status;
-    char text[400]; /* "thing: trouble", one line */
+    int status;     /* 0: nothing has failed */
+    char text[400]; /* one line, "thing: trouble" */
 };
 
-/* Keep the first reason given; returns its status, so that `return why_set(...)` reads well. */
-int why_set(struct why *, int status, const char *format, ...)
+/*
+ * Records a reason, unless there is one already: the first is the one that counts. Returns the
+ * status on record, so that `return why_set(...)` reads well.
+ */
+int why_set(struct why *why, int status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 #endif

@@ -6,18 +6,18 @@
 #include <string.h>
 
 struct copy {
-    hid_t to;          /* -1: it is only asked whether there is anything */
-    const char *group; /* of `to` */
+    hid_t to;          /* -1: nothing is copied, only looked for */
+    const char *group; /* where in `to` */
     const char *const *known;
-    bool whole; /* the origin holds one frame: what depends on time may come along */
-    bool plain; /* no checksum vouches for the origin: by our own reading, not libhdf5's copying */
+    bool whole; /* the origin has one frame: what depends on time is copied too */
+    bool plain; /* no checksum vouches for the origin: not by H5Ocopy */
     int depth;
     struct why *why;
 };
 
 static herr_t copy_link(hid_t from, const char *name, const H5L_info_t *info, void *data);
 
-/* A group, level by level, or a dataset, as plain numbers and texts. */
+/* Copies a group, level by level, or a dataset: numbers and texts only. */
 static herr_t copy_plain(struct copy *c, hid_t from, const char *name, const char *path)
 {
     static const char *const none[] = { NULL };
@@ -25,7 +25,7 @@ static herr_t copy_plain(struct copy *c, hid_t from, const char *name, const cha
     if (H5Oget_info_by_name2(from, name, &info, H5O_INFO_BASIC, H5P_DEFAULT) < 0) return -1;
     if (info.type == H5O_TYPE_DATASET)
         return h5_copy_plain(from, name, c->to, path, c->why) ? -1 : 0;
-    if (info.type != H5O_TYPE_GROUP || c->depth > 8) return 0; // deeper is a circle
+    if (info.type != H5O_TYPE_GROUP || c->depth > 8) return 0; // a group in itself
     struct copy in = { c->to, path, none, c->whole, true, c->depth + 1, c->why };
     if (h5_group(c->to, path, c->why)) return -1;
     hid_t group = H5Gopen2(from, name, H5P_DEFAULT);
@@ -58,8 +58,8 @@ static herr_t copy_link(hid_t from, const char *name, const H5L_info_t *info, vo
     return e < 0 ? why_set(c->why, EX_DATAERR, "%s: cannot be copied", path), -1 : 0;
 }
 
-/* 1: with to < 0, there is something */
-static int walk(hid_t to, const struct frame *f, struct why *why)
+/* Copies what is unknown; with to < 0, returns 1 where there is something. */
+static int visit(hid_t to, const struct frame *f, struct why *why)
 {
     static const char *const root[] = { "h5md",     "nsd",         "particles", "walls",
                                         "contacts", "observables", "solution",  NULL };
@@ -85,7 +85,7 @@ static int walk(hid_t to, const struct frame *f, struct why *why)
     for (size_t i = 0; i < sizeof where / sizeof where[0]; i++) {
         if (!h5_has(f->origin, where[i].group)) continue;
         struct copy c = { to, where[i].group, where[i].known, shape[0] <= 1, f->unchecked, 0, why };
-        // the problem itself is what a foreign document is
+        // a foreign document is its problem
         if (f->foreign && i == 0) c.known = root;
         hid_t group = H5Gopen2(f->origin, where[i].group, H5P_DEFAULT);
         herr_t found = H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, NULL, copy_link, &c);
@@ -97,12 +97,12 @@ static int walk(hid_t to, const struct frame *f, struct why *why)
 
 int copy_unknown(int64_t file, const struct frame *f, struct why *why)
 {
-    walk(file, f, why);
+    visit(file, f, why);
     return why->status;
 }
 
 bool copy_wanted(const struct frame *f)
 {
     struct why why = { 0 };
-    return walk(-1, f, &why) || why.status;
+    return visit(-1, f, &why) || why.status;
 }

@@ -1,4 +1,4 @@
-/* io/fclib.c: see io/fclib.h. What is read; what is written is in io/fclib_write.c. */
+/* io/fclib.c: the reading half of io/fclib.h; io/fclib_write.c is the other. */
 #include "io/fclib.h"
 #include "io/h5.h"
 
@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A problem as its file has it: local W, q; global M, H, G, f, w, b. */
+/* A problem as the file stores it: W and q, or M, H, G, f, w, b. */
 struct raw {
     int d;
     int64_t n; /* contacts */
@@ -22,7 +22,7 @@ static const char *join(char path[64], const char *group, const char *name)
     return path;
 }
 
-/* count finite numbers; count < 0: however many there are, told in *found. To be freed. */
+/* `count` finite numbers; count < 0: any number of them, told in *found. To be freed. */
 static double *read_vector(hid_t file, const char *group, const char *name, int64_t count,
                            int64_t *found, struct why *why)
 {
@@ -136,7 +136,9 @@ bool fclib_in(int64_t file)
 int fclib_read(struct fclib *F, int64_t file, struct why *why)
 {
     struct raw R = { 0 };
-    *F = (struct fclib){ .global = h5_has(file, "/fclib_global") }; // libfclib asks in this order
+    *F = (struct fclib){
+        .global = h5_has(file, "/fclib_global")
+    }; // libfclib, too, looks for the global one first
     if (!fclib_in(file))
         return why_set(why, EX_DATAERR, "/fclib_local: there is none, and no /fclib_global");
     int e = F->global ? read_global(&R, file, why) : read_local(&R, file, why);

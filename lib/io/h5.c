@@ -1,4 +1,3 @@
-/* io/h5.c: see io/h5.h. */
 #include "io/h5.h"
 
 #include <stdio.h>
@@ -28,8 +27,10 @@ int h5_shape(hid_t place, const char *path, hsize_t shape[4])
     return rank;
 }
 
-/* Can values of this type on disk become `want` and stay what they are? Integers may become reals.
-   A damaged size of a type would have libhdf5 clear gigabytes to convert it. */
+/*
+ * Do numbers of this type on disk keep their values in type `want`? Integers may become reals, not
+ * the reverse. A type of a damaged, huge size would make libhdf5 clear gigabytes to convert it.
+ */
 static bool suits(hid_t disk, hid_t want)
 {
     H5T_class_t class = H5Tget_class(disk);
@@ -43,8 +44,8 @@ static const char *wanted(hid_t type)
 }
 
 /*
- * Can the file hold what the dataset's shape promises? gzip makes 1032 of 1 at best; what was never
- * written takes no room, and a MiB of that is granted. Keeps a lying length from being allocated.
+ * Can the file hold as much as the dataset's shape says? If not, nothing is allocated for it. gzip
+ * packs at most 1032 to 1. Data that were never written take no room; 1 MiB of those is allowed.
  */
 static bool plausible(hid_t set, hsize_t count, size_t size)
 {
@@ -55,7 +56,7 @@ static bool plausible(hid_t set, hsize_t count, size_t size)
     return count / 1100 <= (stored + 1024) / size;
 }
 
-/* The dataset, when it holds numbers that suit `type`; else -1. */
+/* Opens the dataset if it holds numbers that suit `type`; else returns -1. */
 static hid_t open_numbers(hid_t place, const char *path, hid_t type, hsize_t *count,
                           struct why *why)
 {
@@ -114,7 +115,7 @@ void *h5_read_all(hid_t place, const char *path, hid_t type, hsize_t *count, str
     return out;
 }
 
-/* A fresh C string out of a scalar string, of fixed or variable length; either set or attr is one. */
+/* A scalar string of fixed or variable length as a new C string; of set and attr, one is -1. */
 static char *text_of(hid_t set, hid_t attr)
 {
     hid_t disk = set >= 0 ? H5Dget_type(set) : H5Aget_type(attr);
@@ -167,7 +168,7 @@ hid_t h5_dataset_plist(void)
     return plist;
 }
 
-/* The groups above what is to be made */
+/* Makes the groups above an object. */
 static int make_parents(hid_t place, const char *path, struct why *why)
 {
     const char *slash = strrchr(path, '/');
@@ -209,7 +210,7 @@ static int write_data(hid_t place, const char *path, hid_t memory, hid_t disk, h
     return bad ? why_set(why, EX_IOERR, "%s: cannot be written", path) : 0;
 }
 
-/* A memory type as it lies on disk */
+/* The type on disk for this type of memory. To be closed. */
 static hid_t little_endian(hid_t type)
 {
     hid_t disk = H5Tcopy(type);
@@ -217,7 +218,7 @@ static hid_t little_endian(hid_t type)
     return disk;
 }
 
-/* A C string of this very length, its zero included, as libfclib stores and expects it */
+/* A C string of just this length with its zero, as libfclib stores and expects it. To be closed. */
 static hid_t text_type(const char *text)
 {
     hid_t type = H5Tcopy(H5T_C_S1);
@@ -303,7 +304,7 @@ int h5_attr_read(hid_t place, const char *path, const char *name, hid_t type, in
     return e;
 }
 
-/* The native type that holds numbers of this type on disk; -1: they are no numbers. */
+/* The type of memory for numbers of this type on disk; -1: these are not numbers. */
 static hid_t plain_type(hid_t disk)
 {
     H5T_class_t class = H5Tget_class(disk);
@@ -321,7 +322,7 @@ struct target {
 static herr_t copy_attr(hid_t from, const char *name, const H5A_info_t *info, void *data)
 {
     const struct target *t = data;
-    enum { MOST = 1 << 16 }; /* bytes */
+    enum { MOST = 1 << 16 }; /* bytes, HDF5's own limit for attributes in object headers */
     char at[200];
     if (info->data_size > MOST) return 0;
     snprintf(at, sizeof at, "@%s", name);

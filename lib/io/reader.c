@@ -17,8 +17,8 @@ struct reader {
     int files;
     char *const *file;
     struct frame_read doc;
-    bool unchecked; /* no checksum vouches for it */
-    int64_t next;   /* frame of reader_next */
+    bool unchecked; /* no checksum vouches for the open document */
+    int64_t next;   /* the frame that reader_next reads next */
     char where[300];
 };
 
@@ -27,7 +27,7 @@ int reader_open(struct reader **out, int files, char *const *file, struct why *w
     struct reader *r = *out = calloc(1, sizeof *r);
     if (!r) return why_set(why, EX_SOFTWARE, "no memory");
     h5_start();
-    r->files = files, r->file = file, r->doc.rows.file = -1;
+    r->files = files, r->file = file, r->doc.tables.file = -1;
     return stream_open(&r->stream, files, file, why);
 }
 
@@ -56,8 +56,8 @@ bool reader_reads(int files, char *const *file, const char *path)
     return false;
 }
 
-/* The reason, with the document that it is about in front. */
-static int blame(const struct reader *r, struct why *why)
+/* Puts the document's name in front of the reason. */
+static int name_document(const struct reader *r, struct why *why)
 {
     char text[sizeof why->text];
     memcpy(text, why->text, sizeof text);
@@ -81,7 +81,7 @@ int reader_document(struct reader *r, int64_t *frames, struct why *why)
         why_set(why, EX_DATAERR, "not a readable HDF5 file (truncated or damaged)");
     else
         frame_read_open(&r->doc, file, why);
-    if (why->status) return blame(r, why);
+    if (why->status) return name_document(r, why);
     *frames = r->doc.frames;
     return 0;
 }
@@ -90,18 +90,18 @@ int reader_frame(struct reader *r, int64_t k, struct frame *f, struct why *why)
 {
     frame_free(f);
     f->unchecked = r->unchecked;
-    if (frame_read_moment(&r->doc, k, f, why)) return blame(r, why);
-    if (f->packed) stream_rest(r->stream);
+    if (frame_read_moment(&r->doc, k, f, why)) return name_document(r, why);
+    if (f->packed) stream_unload(r->stream);
     return 0;
 }
 
-/* A document of one moment, all of which is in *f, is closed: a large one's memory is wanted. */
-static void let_go(struct reader *r, struct frame *f)
+/* Closes a document once its only frame has been read: the memory may be needed. */
+static void release(struct reader *r, struct frame *f)
 {
     if (r->doc.frames != 1 || !f->packed || copy_wanted(f)) return;
     f->origin = 0;
     frame_read_close(&r->doc);
-    stream_drop(r->stream);
+    stream_release(r->stream);
 }
 
 bool reader_has(const struct reader *r, int64_t k, const struct range *steps)
@@ -123,17 +123,17 @@ int reader_next(struct reader *r, const struct range *steps, struct frame *f, bo
         return 0;
     }
     if (reader_frame(r, r->next++, f, why)) return why->status;
-    let_go(r, f);
+    release(r, f);
     return 0;
 }
 
 int reader_last(struct reader *r, struct frame *f, bool *more, struct why *why)
 {
     int64_t frames;
-    struct frame_read held = { .rows.file = -1 }; // the document of *f: what is copied is in it
+    struct frame_read held = { .tables.file = -1 }; // the document of *f, for its unknown objects
     *more = false;
     for (;;) {
-        if (*more) held = r->doc, r->doc = (struct frame_read){ .rows.file = -1 };
+        if (*more) held = r->doc, r->doc = (struct frame_read){ .tables.file = -1 };
         int e = reader_document(r, &frames, why);
         if (!e && frames < 0) {
             r->doc = held;
@@ -142,6 +142,6 @@ int reader_last(struct reader *r, struct frame *f, bool *more, struct why *why)
         frame_read_close(&held);
         if (!e && frames > 0) e = reader_frame(r, frames - 1, f, why);
         if (e) return e;
-        if (frames > 0) *more = true, let_go(r, f);
+        if (frames > 0) *more = true, release(r, f);
     }
 }

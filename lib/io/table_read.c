@@ -6,13 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Which of the open datasets it is; -1 with the reason. */
+/* The dataset's place among the open ones, where it is put if need be; -1 on failure. */
 static int find(struct table_read *r, const char *path, struct why *why)
 {
     int i = 0;
     while (i < r->count && strcmp(r->open[i].path, path) != 0) i++;
     if (i < r->count) return i;
-    if (i == ROWS) return why_set(why, EX_SOFTWARE, "%s: too many datasets", path), -1;
+    if (i == OPEN_DATASETS) return why_set(why, EX_SOFTWARE, "%s: too many datasets", path), -1;
     hid_t set = H5Dopen2(r->file, path, H5P_DEFAULT);
     if (set < 0) return why_set(why, EX_DATAERR, "%s: no such dataset", path), -1;
     snprintf(r->open[i].path, sizeof r->open[i].path, "%s", path);
