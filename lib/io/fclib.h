@@ -2,7 +2,8 @@
  * io/fclib.h: frictional contact problems in the FCLIB format, in and out: local and global, in two
  * and three dimensions, as libfclib 3 reads and writes them. No file is trusted: every length,
  * index and number is checked. The names here differ from libfclib's own, so that one program may
- * link both. A `file` is an hid_t of libhdf5.
+ * link both. Problems are read from a source (io/source.h) and written to a `file`, an hid_t of
+ * libhdf5.
  */
 #ifndef NSD_FCLIB_H
 #define NSD_FCLIB_H
@@ -21,11 +22,14 @@ struct fclib {
     struct motion motion; /* of a global one: (v, lambda) as a function of r */
 };
 
-/* Does the file hold a problem, /fclib_local or /fclib_global? */
-bool fclib_in(int64_t file);
-int fclib_read(struct fclib *problem, int64_t file, struct why *why);
+struct source;
+
+/* Does the document hold a problem, /fclib_local or /fclib_global? */
+bool fclib_in(const struct source *source);
+int fclib_read(struct fclib *problem, struct source *source, struct why *why);
 /* r[n d] of the stored /solution; zeros where there is none. */
-int fclib_load_solution(const struct fclib *problem, int64_t file, double *r, struct why *why);
+int fclib_load_solution(const struct fclib *problem, struct source *source, double *r,
+                        struct why *why);
 void fclib_free(struct fclib *problem);
 
 /* Writes /solution: u and r [n d], of a global problem also v and l. Replaces what is there. */

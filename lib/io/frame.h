@@ -7,6 +7,7 @@
 #define NSD_FRAME_H
 
 #include "io/fclib.h"
+#include "io/unknown.h"
 #include "problem/report.h"
 
 struct frame {
@@ -25,10 +26,9 @@ struct frame {
     struct problem *export; /* to be written as an FCLIB problem too; or NULL */
     bool export_global;     /* in global form */
 
-    char *history;  /* a JSON line for each command, each ended by a newline; or NULL */
-    int64_t origin; /* the HDF5 file it came from while that is open, for unknown objects; or 0 */
-    bool unchecked; /* no checksum vouches for that file */
-    bool stale;     /* the origin's FCLIB problem no longer belongs to this frame */
+    char *history;           /* a JSON line for each command, each ended by a newline; or NULL */
+    struct unknown *unknown; /* what nsd does not know in the document it came from; or NULL */
+    bool stale;              /* an FCLIB problem among it no longer belongs to this frame */
 };
 
 /* Frees what the frame owns and leaves it empty. */

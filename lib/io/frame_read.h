@@ -9,11 +9,11 @@
 
 /* An open document, and what it holds of each moment */
 struct frame_read {
-    struct table_read tables; /* file -1: no document is open */
-    int64_t frames;           /* 1 for an FCLIB problem */
-    int64_t *step;            /* [frames] of a document with a packing; else NULL */
-    double *time;             /* [frames] s; else NULL */
-    int64_t *solved;          /* [solves] the steps that /observables/solver reports on */
+    struct source *source;
+    int64_t frames;  /* 1 for an FCLIB problem */
+    int64_t *step;   /* [frames] of a document with a packing; else NULL */
+    double *time;    /* [frames] s; else NULL */
+    int64_t *solved; /* [solves] the steps that /observables/solver reports on */
     int64_t solves;
     struct {
         int64_t *step;  /* [blocks] of the frames whose contacts are kept, */
@@ -23,8 +23,8 @@ struct frame_read {
     } contacts;
 };
 
-/* Takes the file over: frame_read_close closes it, also after a failure here (EX_DATAERR). */
-int frame_read_open(struct frame_read *document, hid_t file, struct why *why);
+/* The source's document; it stays the source's. EX_DATAERR: there are no frames in it. */
+int frame_read_open(struct frame_read *document, struct source *source, struct why *why);
 /* Reads frame k into an empty frame. Everything read is checked (EX_DATAERR). */
 int frame_read_moment(struct frame_read *document, int64_t k, struct frame *frame, struct why *why);
 void frame_read_close(struct frame_read *document);

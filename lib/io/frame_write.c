@@ -1,8 +1,8 @@
 #include "io/frame_write.h"
 
-#include "io/copy.h"
 #include "io/h5.h"
 #include "io/stream.h"
+#include "io/unknown.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -192,7 +192,7 @@ int frame_write_static(struct table_write *s, const struct frame *f, struct why 
     if (f->packed && (write_material(s->file, &f->packing, why) || write_box(s->file, why) ||
                       write_bodies_and_walls(s, &f->packing, why)))
         return why->status;
-    return copy_unknown(s->file, f, why);
+    return unknown_write(f->unknown, s->file, f->stale && !f->foreign, why);
 }
 
 static const char particles[] = "/particles/all", position[] = "/particles/all/position";

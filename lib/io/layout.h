@@ -6,24 +6,9 @@
 #define NSD_LAYOUT_H
 
 #include "io/frame.h"
+#include "io/h5.h"
 
-#include <hdf5.h>
 #include <stddef.h>
-
-enum column_type { COLUMN_F64, COLUMN_I64, COLUMN_I32, COLUMN_I8 };
-
-static inline hid_t column_native(enum column_type t)
-{
-    return t == COLUMN_F64   ? H5T_NATIVE_DOUBLE
-           : t == COLUMN_I64 ? H5T_NATIVE_INT64
-           : t == COLUMN_I32 ? H5T_NATIVE_INT32
-                             : H5T_NATIVE_INT8;
-}
-
-static inline size_t column_size(enum column_type t)
-{
-    return t == COLUMN_I8 ? 1 : t == COLUMN_I32 ? 4 : 8;
-}
 
 struct column {
     const char *name, *units;

@@ -13,6 +13,9 @@ struct reader;
 /* The files are read one after another; no file, or the name "-", means standard input. */
 int reader_open(struct reader **reader, int files, char *const *file, struct why *why);
 
+/* Frames shall bring along what nsd does not know in their documents, for a writer to copy. */
+void reader_copies(struct reader *reader);
+
 /*
  * Opens the next document and tells in *frames how many it holds: 1 for an FCLIB problem, -1 when
  * there is no further document. All that is read from a file is checked first (EX_DATAERR).
