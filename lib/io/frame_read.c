@@ -1,5 +1,7 @@
 #include "io/frame_read.h"
 
+#include "law/local.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -68,6 +70,20 @@ void frame_read_close(struct frame_read *r)
     *r = (struct frame_read){ 0 };
 }
 
+/* Both halves of the tables say the same. */
+static int check_symmetric(const struct packing *p, struct why *why)
+{
+    for (const struct column *c = layout_material; c->name; c++) {
+        const double *table = column_array(c, p);
+        for (int32_t a = 0; a < p->kinds; a++)
+            for (int32_t b = 0; b < a; b++)
+                if (!(table[a * p->kinds + b] == table[b * p->kinds + a]))
+                    return why_set(why, EX_DATAERR, "/nsd/material/%s: %s and %s have two values",
+                                   c->name, p->kind_name[b], p->kind_name[a]);
+    }
+    return 0;
+}
+
 static int read_material(struct source *doc, struct packing *p, struct why *why)
 {
     char *names = source_text(doc, "/nsd/material", "kinds", why);
@@ -94,7 +110,7 @@ static int read_material(struct source *doc, struct packing *p, struct why *why)
                         column_array(c, p), why);
     }
     free(names);
-    return e;
+    return e ? e : check_symmetric(p, why);
 }
 
 static int read_walls(struct source *r, struct packing *p, struct why *why)
@@ -157,6 +173,24 @@ static int read_packing(struct frame_read *r, int64_t k, struct packing *p, stru
     return packing_check(p, why);
 }
 
+/* What contacts_check leaves: they are sorted, each pair once, and their states are states. */
+static int check_order(const struct contacts *s, struct why *why)
+{
+    for (int64_t i = 1; i < s->n; i++) {
+        const struct contact *c = &s->c[i - 1], *next = &s->c[i];
+        if (c->a == next->a && c->b == next->b)
+            return why_set(why, EX_DATAERR, "contact %lld: of bodies %d and %d, as the one before",
+                           (long long)i, next->a, next->b);
+        if (c->a > next->a || (c->a == next->a && c->b > next->b))
+            return why_set(why, EX_DATAERR, "contact %lld: not sorted by its bodies", (long long)i);
+    }
+    for (int64_t i = 0; s->found && i < s->n; i++)
+        if (s->found[i].status < LOCAL_FREE || s->found[i].status > LOCAL_SLIDE)
+            return why_set(why, EX_DATAERR, "contact %lld: status is %d", (long long)i,
+                           s->found[i].status);
+    return 0;
+}
+
 /* The bases of the contacts from row `first` on; t2 has to be n x t1. */
 static int read_bases(struct source *r, int64_t first, struct contacts *s, struct why *why)
 {
@@ -201,12 +235,26 @@ static int read_contacts(struct frame_read *r, int64_t k, struct frame *f, struc
         (solved && table_read_columns(r->source, "/contacts", "", layout_found, first, s->n,
                                       s->found, sizeof *s->found, why)))
         return why->status;
-    if (contacts_check(s, f->packing.n, f->packing.walls, why)) return why->status;
+    if (contacts_check(s, f->packing.n, f->packing.walls, why) || check_order(s, why))
+        return why->status;
     int moved;
     if (source_attribute(r->source, "/contacts", "moved", COLUMN_I32, -1, &moved, why))
         return why->status;
     f->moved = moved;
     f->detected = true;
+    return 0;
+}
+
+/* Counts that are counts, a flag that is one: looked at as a byte, for a bool may not be 5. */
+static int check_report(const struct report *rep, struct why *why)
+{
+    uint8_t converged;
+    memcpy(&converged, &rep->converged, 1);
+    if (rep->sweeps < 0 || rep->err.contacts < 0 || rep->newton < 0 || rep->safeguarded < 0 ||
+        rep->gave_up < 0)
+        return why_set(why, EX_DATAERR, "/observables/solver: a number of things is negative");
+    if (converged > 1)
+        return why_set(why, EX_DATAERR, "/observables/solver/converged: is %d", converged);
     return 0;
 }
 
@@ -236,7 +284,8 @@ static int read_report(struct frame_read *r, int64_t step, struct frame *f, stru
     struct report *rep = &f->report;
     const char *solver = "/observables/solver";
     if (table_read_columns(r->source, solver, "/value", layout_report, at, 1, rep, sizeof *rep,
-                           why))
+                           why) ||
+        check_report(rep, why))
         return why->status;
     rep->step = r->solved[at];
     if (source_rows(r->source, "/observables/solver/time", COLUMN_F64, at, 1, 1, &rep->t, why))

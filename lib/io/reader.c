@@ -23,6 +23,11 @@ int reader_open(struct reader **out, int files, char *const *file, struct why *w
     return source_open(&r->source, files, file, why);
 }
 
+void reader_unpack(double bytes)
+{
+    source_limit(bytes < 1e18 ? (uint64_t)bytes : UINT64_MAX / 2);
+}
+
 void reader_copies(struct reader *r)
 {
     r->copies = true;

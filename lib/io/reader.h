@@ -13,6 +13,11 @@ struct reader;
 /* The files are read one after another; no file, or the name "-", means standard input. */
 int reader_open(struct reader **reader, int files, char *const *file, struct why *why);
 
+/*
+ * All readers from now on take documents whose datasets hold so many bytes when unpacked; 0: 64
+ * times their size, at least 64 MiB.
+ */
+void reader_unpack(double bytes);
 /* Frames shall bring along what nsd does not know in their documents, for a writer to copy. */
 void reader_copies(struct reader *reader);
 

@@ -5,14 +5,15 @@
 #include <string.h>
 
 enum {
-    MOST_OBJECTS = 100000,   /* in a document; a group within itself would have endless ones */
-    MOST_DEPTH = 32,         /* groups within groups */
-    OPEN_SETS = 256,         /* datasets that stay open once they were looked at */
-    LEAST_LIMIT = 1 << 26,   /* bytes: 64 MiB that any document may unpack to */
-    LIMIT_RATIO = 64,        /* or so many times its own size: packed tables rarely reach 20 */
-    FREE_FILL = 1 << 20,     /* bytes of a dataset that need not be stored: h5py leaves zeros out */
-    MOST_TEXT = 1 << 28,     /* bytes of a string */
-    MOST_ATTRIBUTE = 1 << 20 /* bytes of an attribute */
+    MOST_OBJECTS = 100000, /* in a document; a group within itself would have endless ones */
+    MOST_DEPTH = 32,       /* groups within groups */
+    OPEN_SETS = 256,       /* datasets that stay open once they were looked at */
+    LEAST_LIMIT = 1 << 26, /* bytes: 64 MiB that any document may unpack to */
+    LIMIT_RATIO = 64,      /* or so many times its own size: packed tables rarely reach 20 */
+    FREE_FILL = 1 << 20,   /* bytes of a dataset that need not be stored: h5py leaves zeros out */
+    UNPACKED_CACHE = 1 << 25, /* bytes of unpacked chunks that are kept: a row of them of a table */
+    MOST_TEXT = 1 << 28,      /* bytes of a string */
+    MOST_ATTRIBUTE = 1 << 20  /* bytes of an attribute */
 };
 
 /* What a walk has found under one name. */
@@ -128,9 +129,10 @@ static hid_t open_again(hid_t set, hid_t plist, const struct entry *e)
     hsize_t chunk[H5S_MAX_RANK], bytes = e->object.size ? e->object.size : 16;
     int rank = H5Pget_layout(plist) == H5D_CHUNKED ? H5Pget_chunk(plist, H5S_MAX_RANK, chunk) : 0;
     for (int k = 0; k < rank; k++) bytes *= chunk[k];
-    if (!e->packed || bytes <= 1 << 20) return set;
+    if (!e->packed) return set;
+    bytes = 2 * bytes > UNPACKED_CACHE ? 2 * bytes : UNPACKED_CACHE;
     hid_t file = H5Iget_file_id(set), access = H5Pcreate(H5P_DATASET_ACCESS);
-    H5Pset_chunk_cache(access, 521, 2 * bytes, 1);
+    H5Pset_chunk_cache(access, 521, bytes, 1);
     H5Dclose(set);
     set = H5Dopen2(file, e->path, access);
     H5Pclose(access), H5Fclose(file);
