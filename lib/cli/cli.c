@@ -1,5 +1,7 @@
 #include "cli/cli.h"
 
+#include "io/reader.h"
+
 #include <ctype.h>
 #include <errno.h>
 #include <getopt.h>
@@ -12,7 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { OPTIONS = 64, HELP = 1000, VERSION, FIRST_LONG };
+enum { OPTIONS = 64, HELP = 1000, VERSION, UNPACK, FIRST_LONG };
 
 static char *history;
 
@@ -113,7 +115,9 @@ static void help(void)
             printf(strlen(left) > 27 ? "  %s\n%32s%s\n" : "  %-28s  %.0s%s\n", left, "", o->help);
         }
     }
-    printf("\n  %-28s  this text\n  %-28s  the version\n", "    --help", "    --version");
+    printf("\n  %-28s  documents may unpack to GB [64 times their size, or 0.064]\n",
+           "    --unpack GB");
+    printf("  %-28s  this text\n  %-28s  the version\n", "    --help", "    --version");
     if (tool.more) printf("\n%s", tool.more);
     printf("\nThe manual: man %s, man 7 nsd\n", tool.name);
     finish_stdout();
@@ -176,9 +180,17 @@ static json_t *set(const struct cli_option *o, const char *text)
     }
 }
 
+/* Of every tool, for it is every reader's: how much a packed document may hold */
+static double gigabytes;
+static const struct cli_option unpack = {
+    CLI_REAL, 0, "unpack", &gigabytes, "GB", NULL, 0, 1e6, true
+};
+
 int cli_parse(int argc, char **argv)
 {
-    struct option lng[OPTIONS + 3] = { { "help", 0, NULL, HELP }, { "version", 0, NULL, VERSION } };
+    struct option lng[OPTIONS + 4] = { { "help", 0, NULL, HELP },
+                                       { "version", 0, NULL, VERSION },
+                                       { "unpack", 1, NULL, UNPACK } };
     const struct cli_option *at[OPTIONS];
     char letters[2 * OPTIONS + 2] = ":";
     int n = 0;
@@ -186,7 +198,7 @@ int cli_parse(int argc, char **argv)
         for (const struct cli_option *o = *t; o->kind && n < OPTIONS; o++, n++) {
             at[n] = o;
             int wants = o->arg ? required_argument : no_argument;
-            lng[n + 2] = (struct option){ o->name, wants, NULL, FIRST_LONG + n };
+            lng[n + 3] = (struct option){ o->name, wants, NULL, FIRST_LONG + n };
             if (o->letter) sprintf(letters + strlen(letters), o->arg ? "%c:" : "%c", o->letter);
         }
     json_t *value[OPTIONS] = { NULL };
@@ -194,6 +206,11 @@ int cli_parse(int argc, char **argv)
     opterr = 0;
     while ((c = getopt_long(argc, argv, letters, lng, NULL)) != -1) {
         if (c == HELP) help();
+        if (c == UNPACK) {
+            set_number(&unpack, optarg);
+            reader_unpack(1e9 * gigabytes);
+            continue;
+        }
         if (c == VERSION) {
             printf("%s (nsd) %s\n", tool.name, NSD_VERSION);
             finish_stdout();
