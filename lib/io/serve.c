@@ -5,12 +5,15 @@
 #include <string.h>
 
 enum {
-    MOST_OBJECTS = 100000, /* in a document; a group within itself would have endless ones */
-    MOST_DEPTH = 32,       /* groups within groups */
-    OPEN_SETS = 256,       /* datasets that stay open once they were looked at */
-    LEAST_LIMIT = 1 << 26, /* bytes: 64 MiB that any document may unpack to */
-    LIMIT_RATIO = 64,      /* or so many times its own size: packed tables rarely reach 20 */
-    FREE_FILL = 1 << 20,   /* bytes of a dataset that need not be stored: h5py leaves zeros out */
+    MOST_OBJECTS = 100000,  /* in a document; a group within itself would have endless ones */
+    MOST_DEPTH = 32,        /* groups within groups */
+    OPEN_SETS = 256,        /* datasets that stay open once they were looked at */
+    LEAST_LIMIT = 1 << 26,  /* bytes: 64 MiB that any document may unpack to */
+    LIMIT_RATIO = 64,       /* or so many times its own size: packed tables rarely reach 20 */
+    FREE_FILL = 1 << 20,    /* bytes of a dataset that need not be stored: h5py leaves zeros out */
+    SMALL_DATA = 1 << 16,   /* bytes of a dataset that are sent with the list of objects; */
+    SMALL_LINKED = 1 << 12, /* of one under a second name, for step and time have forty; */
+    MOST_SENT = 1 << 20,    /* and in all */
     UNPACKED_CACHE = 1 << 25, /* bytes of unpacked chunks that are kept: a row of them of a table */
     MOST_TEXT = 1 << 28,      /* bytes of a string */
     MOST_ATTRIBUTE = 1 << 20  /* bytes of an attribute */
@@ -300,20 +303,6 @@ static size_t object_size(const struct object *o)
            padded(o->name);
 }
 
-void *serve_objects(const struct served *s, size_t *size, struct why *why)
-{
-    *size = 0;
-    for (int64_t k = 0; k < s->count; k++) {
-        s->entry[k].object.name = (uint32_t)strlen(s->entry[k].path) + 1;
-        *size += object_size(&s->entry[k].object);
-    }
-    char *bytes = calloc(*size + 1, 1), *at = bytes;
-    if (!bytes) why_set(why, EX_SOFTWARE, "no memory for a list of objects");
-    for (int64_t k = 0; bytes && k < s->count; k++)
-        at = put_object(at, &s->entry[k].object, s->entry[k].shape, s->entry[k].path);
-    return bytes;
-}
-
 /* ---- answers ---- */
 
 int serve_bytes(struct sink *sink, struct reply *reply, const void *bytes, size_t size)
@@ -369,7 +358,8 @@ static int put_block(hid_t set, hid_t type, int rank, const hsize_t *first, cons
             points = inner * n[k];
             e = H5Sselect_hyperslab(space, H5S_SELECT_SET, from, NULL, n, NULL);
         }
-        hid_t memory = H5Screate_simple(1, &points, NULL);
+        hid_t memory =
+            rank ? H5Screate_simple(rank, n, NULL) : H5Screate(H5S_SCALAR); // same shape: quick
         if (e >= 0) e = H5Dread(set, type, memory, space, strict_transfer(), to);
         H5Sclose(memory);
         if (e >= 0 && sink->put(sink, (size_t)points * element)) e = -1;
@@ -553,12 +543,32 @@ static int answer_raw(struct served *s, const struct request *q, struct sink *si
     return bad ? why_set(why, EX_DATAERR, "%s: cannot be read (damaged?)", q->path) : 0;
 }
 
+/* A sequence of objects that grows */
 struct gathered {
     char *bytes;
-    size_t size;
-    const char *path;
+    size_t size, room;
+    const char *path; /* of the object whose attributes they are */
+    bool group;       /* they go under "path@name" */
     struct why *why;
 };
+
+/* One more object at the end of the sequence */
+static int append(struct gathered *g, const struct object *o, const hsize_t *shape,
+                  const char *name, const void *data)
+{
+    size_t size = object_size(o) + padded(o->data);
+    if (g->size + size > g->room) {
+        size_t room = 2 * g->room + size + 4096;
+        char *more = realloc(g->bytes, room);
+        if (!more) return why_set(g->why, EX_SOFTWARE, "no memory for a list of objects");
+        g->bytes = more, g->room = room;
+    }
+    memset(g->bytes + g->size, 0, size);
+    char *to = put_object(g->bytes + g->size, o, shape, name);
+    if (o->data) memcpy(to, data, o->data);
+    g->size += size;
+    return 0;
+}
 
 /* One attribute: what it is, and its data. */
 static int gather(struct gathered *g, const char *name, hid_t attr)
@@ -599,16 +609,13 @@ static int gather(struct gathered *g, const char *name, hid_t attr)
                    ? why_set(g->why, EX_SOFTWARE, "no memory for attributes")
                    : why_set(g->why, EX_DATAERR, "%s@%s: cannot be read (damaged?)", g->path, name);
     }
-    o.name = (uint32_t)strlen(name) + 1;
-    char *more = realloc(g->bytes, g->size + object_size(&o) + padded(o.data));
-    if (more) {
-        memset(more + g->size, 0, object_size(&o) + padded(o.data));
-        char *to = put_object(more + g->size, &o, shape, name);
-        if (from) memcpy(to, from, o.data);
-        g->bytes = more, g->size += object_size(&o) + padded(o.data);
-    }
+    char under[SERVE_PATH + SERVE_NAME];
+    snprintf(under, sizeof under, "%s@%s", g->path, name);
+    if (g->group) name = under;
+    o.name = (uint32_t)strlen(name) + 1, o.attribute = g->group;
+    append(g, &o, shape, name, from);
     free(text), free(data);
-    return more ? 0 : why_set(g->why, EX_SOFTWARE, "no memory for attributes");
+    return g->why->status;
 }
 
 static herr_t gather_attribute(hid_t from, const char *name, const H5A_info_t *info, void *data)
@@ -637,6 +644,73 @@ static int answer_attributes(struct served *s, const struct request *q, struct s
         why_set(why, EX_SOFTWARE, "%s: not sent", g.path);
     free(g.bytes);
     return why->status;
+}
+
+/* ---- the list of objects ---- */
+
+/* The data of a small dataset, so that nobody needs to ask; NULL where that does not work out. */
+static void *small_data(const struct served *s, const struct entry *e, struct object *o,
+                        size_t most)
+{
+    struct why none = { 0 };
+    hsize_t points = 1;
+    size_t length = 0;
+    bool no_memory;
+    for (uint32_t k = 0; k < o->rank && o->rank <= SERVE_RANK; k++) points *= e->shape[k];
+    if (o->rank > SERVE_RANK || (o->kind != OBJECT_NUMBERS && o->kind != OBJECT_TEXT) || e->set < 0)
+        return NULL;
+    if (!points || points > most || points * o->size > most ||
+        (o->kind == OBJECT_TEXT && (o->rank || !o->size)) ||
+        check_stored(e, points * o->size, &none))
+        return NULL;
+    if (o->kind == OBJECT_TEXT) {
+        char *text = text_of(e->set, -1, &length, &no_memory);
+        o->data = text ? length : 0;
+        return text;
+    }
+    void *data = malloc(points * o->size + 1);
+    if (!data ||
+        H5Dread(e->set, h5_plain(o->class, o->size), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) {
+        free(data);
+        return NULL;
+    }
+    (void)s;
+    o->data = points * o->size;
+    return data;
+}
+
+static int add_group_attributes(struct served *s, const char *path, struct gathered *g)
+{
+    hid_t group = H5Gopen2(s->file, *path ? path : "/", H5P_DEFAULT);
+    g->path = path, g->group = true;
+    if (group < 0 || H5Aiterate2(group, H5_INDEX_NAME, H5_ITER_INC, NULL, gather_attribute, g) < 0)
+        why_set(g->why, EX_DATAERR, "%s: attributes cannot be read (damaged?)", path);
+    if (group >= 0) H5Gclose(group);
+    return g->why->status;
+}
+
+void *serve_objects(struct served *s, size_t *size, struct why *why)
+{
+    struct gathered g = { .why = why };
+    size_t sent = 0;
+    for (int64_t k = 0; k < s->count && !why->status; k++) {
+        const struct entry *e = &s->entry[k];
+        struct object o = e->object;
+        size_t most = e->owner ? SMALL_DATA : SMALL_LINKED;
+        o.name = (uint32_t)strlen(e->path) + 1;
+        void *data = sent < MOST_SENT ? small_data(s, e, &o, most) : NULL;
+        append(&g, &o, e->shape, e->path, data);
+        free(data);
+        sent += o.data;
+        if (o.kind == OBJECT_GROUP && !why->status && sent < MOST_SENT)
+            add_group_attributes(s, e->path, &g);
+    }
+    *size = g.size;
+    if (!why->status && !g.bytes) g.bytes = calloc(1, 1); // there is nothing in it
+    if (!why->status && g.bytes) return g.bytes;
+    why_set(why, EX_SOFTWARE, "no memory for a list of objects");
+    free(g.bytes);
+    return NULL;
 }
 
 int serve_answer(struct served *s, const struct request *q, struct sink *sink, struct why *why)

@@ -45,21 +45,23 @@ struct reply {
     uint64_t size; /* bytes of data in all */
     uint64_t here; /* of them in this piece */
     bool foreign, unfinished;
-    int64_t number; /* of the document in its file */
-    char text[400]; /* status 0, REQUEST_NEXT: the name of its file; else the reason */
+    int64_t number;    /* of the document in its file */
+    uint64_t document; /* its bytes */
+    char text[400];    /* status 0, REQUEST_NEXT: the name of its file; else the reason */
 };
 
 /*
  * An object or an attribute, in a sequence of bytes: this, shape[rank], the name with its zero, and
- * of an attribute its data; each padded to 8 bytes.
+ * data; each padded to 8 bytes.
  */
 struct object {
     enum { OBJECT_GROUP, OBJECT_NUMBERS, OBJECT_TEXT, OBJECT_OTHER } kind;
-    char class;    /* 'i' signed, 'u' unsigned, 'f' real, 's' string */
-    uint32_t size; /* bytes of an element */
-    uint32_t rank; /* 0: a scalar; SERVE_RANK + 1: more than can be copied */
-    uint32_t name; /* bytes of the name, zero included */
-    uint64_t data; /* bytes of data behind it */
+    char class;     /* 'i' signed, 'u' unsigned, 'f' real, 's' string */
+    uint32_t size;  /* bytes of an element */
+    uint32_t rank;  /* 0: a scalar; SERVE_RANK + 1: more than can be copied */
+    uint32_t name;  /* bytes of the name, zero included */
+    bool attribute; /* of a group, under the name "group@name" */
+    uint64_t data;  /* bytes of data behind it; 0 where they are to be asked for */
 };
 
 /* Where answers go. */
@@ -89,8 +91,11 @@ void serve_start(void);
  * is in it. limit 0: the usual one. EX_DATAERR: it is more than one file, or holds too much.
  */
 int serve_open(struct served *served, hid_t file, uint64_t size, uint64_t limit, struct why *why);
-/* The objects of the document, as bytes; to be freed. */
-void *serve_objects(const struct served *served, size_t *size, struct why *why);
+/*
+ * The objects of the document, as bytes; to be freed. Small ones come with their data, and groups with
+ * their attributes: most documents are small, and a question takes longer than its answer.
+ */
+void *serve_objects(struct served *served, size_t *size, struct why *why);
 /* Answers any request but those of the stream. */
 int serve_answer(struct served *served, const struct request *request, struct sink *sink,
                  struct why *why);

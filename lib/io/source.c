@@ -27,6 +27,7 @@ enum {
     SPARE_MEMORY = 1 << 28, /* bytes: libhdf5, its caches, and a packed chunk */
     MEMORY_RATIO = 4,       /* and so many times the document */
     SPARE_SECONDS = 10,     /* of the processor, for an answer: a good one takes milliseconds, */
+    LARGE = 1 << 26,        /* bytes of a document worth giving back early, as in io/stream.c */
     RATE = 10000000,        /* and bytes a second: a tenth of what gzip unpacks */
     SLOWER = SANITIZED ? 10 : 1
 };
@@ -48,8 +49,10 @@ struct source {
         struct object object;
         const char *path;
         const uint64_t *shape;
+        const void *data; /* object.data bytes, where the child has sent them along */
     } * object;
     int64_t objects;
+    bool large; /* the document takes memory that is worth giving back */
 };
 
 static uint64_t limit;
@@ -168,6 +171,7 @@ static int answer_next(struct server *s, struct why *why)
         return why->status;
     }
     reply.foreign = im.foreign, reply.unfinished = im.unfinished, reply.number = im.number;
+    reply.document = im.size;
     snprintf(reply.text, sizeof reply.text, "%s", im.name);
     int e = serve_bytes(&s->sink, &reply, objects, size);
     free(objects);
@@ -427,7 +431,6 @@ bool source_unpack(const unsigned char *bytes, uint64_t size, uint64_t *at, stru
 static int list_objects(struct source *s, uint64_t size, struct why *why)
 {
     int64_t room = 0;
-    const void *data;
     struct listed l;
     for (uint64_t at = 0; at < size; s->objects++) {
         if (s->objects == room) {
@@ -436,7 +439,7 @@ static int list_objects(struct source *s, uint64_t size, struct why *why)
             if (!more) return why_set(why, EX_SOFTWARE, "no memory for a list of objects");
             s->object = more;
         }
-        if (!source_unpack(s->catalogue, size, &at, &l.object, &l.shape, &l.path, &data))
+        if (!source_unpack(s->catalogue, size, &at, &l.object, &l.shape, &l.path, &l.data))
             return why_set(why, EX_DATAERR, "%.250s: no list of objects", s->where);
         s->object[s->objects] = l;
     }
@@ -471,14 +474,74 @@ int source_next(struct source *s, struct source_document *d, bool *more, struct 
              s->name, (long long)t.reply.number);
     *d = (struct source_document){ s->name, t.reply.number, t.reply.foreign, t.reply.unfinished };
     *more = true;
+    s->large = t.reply.document > LARGE;
     return list_objects(s, t.size, why);
 }
 
 static const struct listed *find(const struct source *s, const char *path)
 {
     for (int64_t k = 0; k < s->objects; k++)
-        if (!strcmp(s->object[k].path, path)) return &s->object[k];
+        if (!s->object[k].object.attribute && !strcmp(s->object[k].path, path))
+            return &s->object[k];
     return NULL;
+}
+
+/* An attribute that came with the list; NULL: it has to be asked for. */
+static const struct listed *find_attribute(const struct source *s, const char *path,
+                                           const char *name)
+{
+    size_t n = strlen(path);
+    for (int64_t k = 0; k < s->objects; k++) {
+        const struct listed *l = &s->object[k];
+        if (l->object.attribute && l->object.data && !strncmp(l->path, path, n) &&
+            l->path[n] == '@' && !strcmp(l->path + n + 1, name))
+            return l;
+    }
+    return NULL;
+}
+
+/* Number k of what came with the list, as an integer and as a real. */
+static void plain_number(const struct listed *l, uint64_t k, int64_t *i, double *x)
+{
+    const char *at = (const char *)l->data + k * l->object.size;
+    bool minus = l->object.class == 'i' && (at[l->object.size - 1] & 0x80);
+    *i = minus ? -1 : 0;
+    if (l->object.class == 'f') {
+        float f;
+        memcpy(l->object.size == 4 ? (void *)&f : (void *)x, at, l->object.size);
+        if (l->object.size == 4) *x = (double)f;
+        return;
+    }
+    memcpy(i, at, l->object.size); // little-endian, as column_native is in the file
+    *x = l->object.class == 'u' ? (double)(uint64_t)*i : (double)*i;
+}
+
+/* Numbers first .. first+n-1 of it, converted; false where they do not fit, which has to be told. */
+static bool convert(const struct listed *l, uint64_t first, uint64_t n, enum column_type type,
+                    void *out)
+{
+    const struct object *o = &l->object;
+    if (o->kind != OBJECT_NUMBERS || (o->class == 'f' && type != COLUMN_F64)) return false;
+    if (n > UINT64_MAX / 16 || first > UINT64_MAX / 16 || (first + n) * o->size > o->data)
+        return false;
+    if ((o->class == 'f' && o->size == 8) ||
+        (o->class == 'i' && type != COLUMN_F64 && column_size(type) == o->size)) {
+        memcpy(out, (const char *)l->data + first * o->size, n * o->size);
+        return true;
+    }
+    for (uint64_t k = 0; k < n; k++) {
+        int64_t i;
+        double x;
+        plain_number(l, first + k, &i, &x);
+        if (type == COLUMN_F64) ((double *)out)[k] = x;
+        if (type == COLUMN_F64) continue;
+        bool fits = !(o->class == 'u' && i < 0);
+        if (type == COLUMN_I32) fits = fits && i >= INT32_MIN && i <= INT32_MAX;
+        if (type == COLUMN_I8) fits = fits && i >= INT8_MIN && i <= INT8_MAX;
+        if (!fits) return false;
+        memcpy((char *)out + k * column_size(type), &i, column_size(type));
+    }
+    return true;
 }
 
 bool source_has(const struct source *s, const char *path)
@@ -508,7 +571,7 @@ int source_unload(struct source *s, struct why *why)
 {
     struct request q = request(REQUEST_UNLOAD, "");
     struct taker t = { .out = &q };
-    return s->child ? ask(s, &q, &t, why) : 0;
+    return s->child && s->large ? ask(s, &q, &t, why) : 0;
 }
 
 int source_release(struct source *s, struct why *why)
@@ -516,7 +579,7 @@ int source_release(struct source *s, struct why *why)
     struct request q = request(REQUEST_RELEASE, "");
     struct taker t = { .out = &q };
     forget_objects(s);
-    return s->child ? ask(s, &q, &t, why) : 0;
+    return s->child && s->large ? ask(s, &q, &t, why) : 0;
 }
 
 int source_rows(struct source *s, const char *path, enum column_type type, int64_t start, int64_t n,
@@ -525,6 +588,14 @@ int source_rows(struct source *s, const char *path, enum column_type type, int64
     struct request q = request(REQUEST_ROWS, path);
     struct taker t = { .out = out, .size = (uint64_t)(n * width) * column_size(type) };
     if (!t.size) t.out = &q; // nothing is written there
+    const struct listed *l = find(s, path);
+    if (l && l->object.data && l->object.rank && start >= 0 && n >= 0 && width > 0) {
+        uint64_t row = 1;
+        for (uint32_t k = 1; k < l->object.rank; k++) row *= l->shape[k];
+        if (row == (uint64_t)width && (uint64_t)start + (uint64_t)n <= l->shape[0] &&
+            convert(l, (uint64_t)(start * width), (uint64_t)(n * width), type, out))
+            return 0;
+    }
     q.type = type, q.start = start, q.n = n, q.width = width;
     return ask(s, &q, &t, why);
 }
@@ -536,6 +607,16 @@ void *source_read_all(struct source *s, const char *path, enum column_type type,
     struct taker t = { 0 };
     q.type = type, q.n = -1;
     *count = 0;
+    const struct listed *l = find(s, path);
+    if (l && l->object.data && l->object.size) {
+        uint64_t n = l->object.data / l->object.size;
+        void *out = calloc(n + 1, 8);
+        if (!out) return why_set(why, EX_SOFTWARE, "%s: no memory", path), NULL;
+        *count = n;
+        if (convert(l, 0, n, type, out)) return out;
+        free(out);
+        *count = 0;
+    }
     if (ask(s, &q, &t, why)) return NULL;
     *count = t.size / column_size(type);
     return t.out;
@@ -560,7 +641,13 @@ char *source_text(struct source *s, const char *path, const char *name, struct w
 {
     struct request q = request(REQUEST_TEXT, path);
     struct taker t = { 0 };
-    if (!name && !source_has(s, path)) return NULL;
+    const struct listed *l = name ? find_attribute(s, path, name) : find(s, path);
+    if (!name && !l) return NULL;
+    if (l && l->object.kind == OBJECT_TEXT && !l->object.rank && l->object.data) {
+        char *text = strndup(l->data, l->object.data);
+        if (!text) why_set(why, EX_SOFTWARE, "%s: no memory", path);
+        return text;
+    }
     if (name) snprintf(q.name, sizeof q.name, "%s", name);
     if (ask(s, &q, &t, why)) return NULL;
     if (!t.reply.there) free(t.out), t.out = NULL;
@@ -573,6 +660,10 @@ int source_attribute(struct source *s, const char *path, const char *name, enum 
     struct request q = request(REQUEST_ATTRIBUTE, path);
     struct taker t = { .out = out, .size = (count < 0 ? 1 : (uint64_t)count) * column_size(type) };
     q.type = type, q.n = count;
+    const struct listed *l = find_attribute(s, path, name);
+    uint64_t n = count < 0 ? 1 : (uint64_t)count;
+    if (l && l->object.size && l->object.data / l->object.size == n && convert(l, 0, n, type, out))
+        return 0;
     snprintf(q.name, sizeof q.name, "%s", name);
     return ask(s, &q, &t, why);
 }

@@ -104,6 +104,7 @@ static int64_t add_tree(struct unknown *u, struct source *s, int64_t k, struct w
     size_t n = strlen(path);
     if (add(u, o, path, shape, s, why)) return k;
     for (k++; (o = source_object(s, k, &inner, &shape)); k++) {
+        if (o->attribute) continue;
         if (strncmp(inner, path, n) != 0 || inner[n] != '/') break;
         if (add(u, o, inner, shape, s, why)) break;
     }
@@ -118,8 +119,9 @@ int unknown_read(struct unknown **out, struct source *s, bool whole, bool unchec
     const uint64_t *shape;
     for (int64_t k = 0; !why->status && source_object(s, k, &path, &shape);) {
         char step[SERVE_PATH + 8];
+        const struct object *o = source_object(s, k, &path, &shape);
         snprintf(step, sizeof step, "%s/step", path);
-        if (!is_unknown(path) || (!whole && source_has(s, step))) {
+        if (o->attribute || !is_unknown(path) || (!whole && source_has(s, step))) {
             k++;
             continue;
         }
