@@ -1,3 +1,4 @@
+#define _GNU_SOURCE // F_OFD_SETLK
 #include "io/writer.h"
 
 #include "io/frame_write.h"
@@ -30,16 +31,42 @@ struct writer {
     int fd;
     const char *name;       /* the output's, for messages */
     bool trajectory;        /* else a stream */
+    bool append;            /* opened by >>: others may append as well */
     int disk;               /* a trajectory's file, opened again: > opens it for writing only */
     struct table_write doc; /* a trajectory's datasets; file -1 before the first frame */
     struct shared first;    /* what its first frame has set */
     bool contacts, solved, moved; /* does it have contacts yet, and which kind */
     int64_t step;                 /* of the last frame */
+    int64_t frames;               /* that are finished */
+    off_t end;                    /* of the file, at the last flush */
 };
 
 static int output_failed(const struct writer *s, struct why *why, const char *trouble)
 {
     return why_set(why, EX_IOERR, "%s: %s", s->name, trouble);
+}
+
+/*
+ * A regular file has one writer: the second is refused, or has to wait where it only appends. The lock
+ * belongs to what the shell opened, so that { a; b; } > f is one writer. HDF5's own, of flock, is
+ * not taken: it would keep readers out, too (h5py of a growing trajectory).
+ */
+static int take_hold(struct writer *s, int how, struct why *why)
+{
+    struct flock lock = { .l_type = F_WRLCK, .l_whence = SEEK_SET };
+    while (fcntl(s->fd, how, &lock)) {
+        if (errno == EINTR) continue;
+        if (errno == EACCES || errno == EAGAIN)
+            return output_failed(s, why, "another program is writing it");
+        return 0; // no file that can be locked
+    }
+    return 0;
+}
+
+static void let_go(const struct writer *s)
+{
+    struct flock lock = { .l_type = F_UNLCK, .l_whence = SEEK_SET };
+    fcntl(s->fd, F_OFD_SETLK, &lock);
 }
 
 int writer_open(struct writer **out, const char *path, enum writer_kind kind, struct why *why)
@@ -49,14 +76,17 @@ int writer_open(struct writer **out, const char *path, enum writer_kind kind, st
     h5_start();
     s->doc.file = s->disk = -1;
     s->name = path ? path : "standard output";
-    s->fd = path ? open(path, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666) : STDOUT_FILENO;
+    s->fd = path ? open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666) : STDOUT_FILENO;
     if (s->fd < 0) return output_failed(s, why, strerror(errno));
+    s->append = fcntl(s->fd, F_GETFL) & O_APPEND;
+    if (!s->append && take_hold(s, F_OFD_SETLK, why)) return why->status;
+    struct stat st;
+    if (path && !fstat(s->fd, &st) && S_ISREG(st.st_mode) && ftruncate(s->fd, 0))
+        return output_failed(s, why, strerror(errno));
     if (isatty(s->fd))
         return why_set(why, EX_USAGE,
                        "%s is a terminal: documents are binary, use > FILE or a pipe", s->name);
-    struct stat st;
-    bool own = !fstat(s->fd, &st) && S_ISREG(st.st_mode) && !st.st_size &&
-               !(fcntl(s->fd, F_GETFL) & O_APPEND);
+    bool own = !fstat(s->fd, &st) && S_ISREG(st.st_mode) && !st.st_size && !s->append;
     char again[40];
     snprintf(again, sizeof again, "/proc/self/fd/%d", s->fd);
     if (own && kind == WRITER_TRAJECTORY) s->disk = open(again, O_RDWR | O_CLOEXEC);
@@ -79,8 +109,8 @@ static hid_t create(const char *path, hid_t access)
 /* Writes all bytes. On failure a regular file is cut back to what it was. */
 static int write_all(struct writer *s, const unsigned char *bytes, size_t size, struct why *why)
 {
-    bool append = fcntl(s->fd, F_GETFL) & O_APPEND;
-    off_t start = lseek(s->fd, 0, append ? SEEK_END : SEEK_CUR);
+    if (s->append && take_hold(s, F_OFD_SETLKW, why)) return why->status; // documents stay whole
+    off_t start = lseek(s->fd, 0, s->append ? SEEK_END : SEEK_CUR);
     for (size_t done = 0; done < size;) {
         ssize_t n = write(s->fd, bytes + done, size - done);
         if (n < 0 && errno == EINTR) continue;
@@ -91,6 +121,10 @@ static int write_all(struct writer *s, const unsigned char *bytes, size_t size, 
         }
         done += (size_t)n;
     }
+    if (s->append) let_go(s);
+    struct stat st;
+    if (start >= 0 && !fstat(s->fd, &st) && S_ISREG(st.st_mode) && st.st_size < start + (off_t)size)
+        return output_failed(s, why, "has been cut off by another program");
     return 0;
 }
 
@@ -141,12 +175,23 @@ static int stream_frame(struct writer *s, const struct frame *f, struct why *why
  *   that length, lies within one page.
  */
 
+/* All of it, however often the system stops half-way */
+static bool write_at(const struct writer *s, const unsigned char *bytes, size_t size, off_t at)
+{
+    for (size_t done = 0; done < size;) {
+        ssize_t n = pwrite(s->disk, bytes + done, size - done, at + (off_t)done);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return false;
+        done += (size_t)n;
+    }
+    return true;
+}
+
 static int write_header(struct writer *s, uint64_t length, uint32_t crc, struct why *why)
 {
     unsigned char header[DOCUMENT_USERBLOCK];
     document_header(header, length, crc);
-    bool good = pwrite(s->disk, header, sizeof header, 0) == (ssize_t)sizeof header;
-    return good ? 0 : output_failed(s, why, strerror(errno));
+    return write_at(s, header, sizeof header, 0) ? 0 : output_failed(s, why, strerror(errno));
 }
 
 /*
@@ -175,7 +220,7 @@ static bool set_end(const struct writer *s, hsize_t end)
 {
     unsigned char bytes[8];
     for (int k = 0; k < 8; k++) bytes[k] = (unsigned char)(end >> 8 * k);
-    return pwrite(s->disk, bytes, sizeof bytes, DOCUMENT_USERBLOCK + 40) == (ssize_t)sizeof bytes;
+    return write_at(s, bytes, sizeof bytes, DOCUMENT_USERBLOCK + 40);
 }
 
 /* HDF5 by itself would write the end-of-file address last. */
@@ -184,6 +229,7 @@ static int flush(struct writer *s, struct why *why)
     hsize_t size;
     bool good = H5Fget_filesize(s->doc.file, &size) >= 0 && set_end(s, size) &&
                 H5Fflush(s->doc.file, H5F_SCOPE_GLOBAL) >= 0;
+    s->end = (off_t)size;
     return good ? 0 : output_failed(s, why, "cannot be written (full?)");
 }
 
@@ -217,6 +263,7 @@ static int trajectory_begin(struct writer *s, const struct frame *f, struct why 
     char path[40];
     snprintf(path, sizeof path, "/proc/self/fd/%d", s->disk);
     hid_t access = H5Pcreate(H5P_FILE_ACCESS); // no padding at the file's end
+    H5Pset_file_locking(access, false, true);  // take_hold has seen to it
     H5Pset_meta_block_size(access, 0), H5Pset_small_data_block_size(access, 0);
     H5Pset_alignment(access, ALIGN_FROM, DOCUMENT_USERBLOCK); // the most that HDF5 allows
     s->doc = (struct table_write){ .file = create(path, access), .growing = true };
@@ -224,10 +271,7 @@ static int trajectory_begin(struct writer *s, const struct frame *f, struct why 
     if (s->doc.file < 0) return output_failed(s, why, "cannot be written");
     if (H5Fset_libver_bounds(s->doc.file, H5F_LIBVER_V110, H5F_LIBVER_V110) < 0)
         return output_failed(s, why, "cannot be written (full?)");
-    if (reserve(s, f, why)) {
-        if (ftruncate(s->disk, 0)) return why->status; // an empty file rather than half a document
-        return why->status;
-    }
+    if (reserve(s, f, why)) return why->status;
     s->first = shared_of(&f->packing);
     s->step = f->packing.step - 1;
     return write_header(s, 0, 0, why) || frame_write_static(&s->doc, f, why) ? why->status : 0;
@@ -238,12 +282,15 @@ static int trajectory_frame(struct writer *s, const struct frame *f, struct why 
     if (!f->packed)
         return why_set(why, EX_DATAERR, "an FCLIB problem does not go into a trajectory");
     bool first = s->doc.file < 0;
+    struct stat st;
+    if (!first && !fstat(s->disk, &st) && st.st_size < s->end)
+        return output_failed(s, why, "has been cut off by another program");
     if (first ? trajectory_begin(s, f, why) : reserve(s, f, why)) return why->status;
     if (check_same(s, f, why)) return why->status;
     if (frame_write_moment(&s->doc, f, why) || flush(s, why) || frame_write_step(&s->doc, f, why) ||
         flush(s, why))
         return why->status;
-    s->step = f->packing.step;
+    s->step = f->packing.step, s->frames++;
     if (f->detected) s->contacts = true, s->solved = f->contacts.found, s->moved = f->moved;
     return 0;
 }
@@ -255,13 +302,16 @@ static int trajectory_close(struct writer *s, struct why *why)
     if (H5Fclose(s->doc.file) < 0 || failed)
         return output_failed(s, why, "cannot be written (full?)");
     struct stat st; // the reserve that was not needed is given back
+    if (!fstat(s->disk, &st) && st.st_size < (off_t)size)
+        return output_failed(s, why, "has been cut off by another program");
     if (fstat(s->disk, &st) || (st.st_size > (off_t)size && ftruncate(s->disk, (off_t)size)))
         return output_failed(s, why, strerror(errno));
     static unsigned char buffer[1 << 18];
     uint32_t crc = 0;
     off_t at = DOCUMENT_USERBLOCK;
     ssize_t n;
-    while ((n = pread(s->disk, buffer, sizeof buffer, at)) > 0) {
+    while ((n = pread(s->disk, buffer, sizeof buffer, at)) > 0 || (n < 0 && errno == EINTR)) {
+        if (n < 0) continue;
         crc = document_crc(crc, buffer, (size_t)n);
         at += n;
     }
@@ -277,7 +327,11 @@ int writer_frame(struct writer *s, const struct frame *f, struct why *why)
         return why->status; // no reader would accept it
     if (!f->packed && s->doc.file < 0)
         s->trajectory = false; // an FCLIB problem is a document of its own
-    return s->trajectory ? trajectory_frame(s, f, why) : stream_frame(s, f, why);
+    if (!s->trajectory) return stream_frame(s, f, why);
+    if (!trajectory_frame(s, f, why)) return 0;
+    // half a first frame is nothing; HDF5 writes no more, for h5_start has told it so
+    if (!s->frames && ftruncate(s->disk, 0)) return why->status;
+    return why->status;
 }
 
 int writer_close(struct writer *s, struct why *why)
