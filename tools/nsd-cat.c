@@ -37,6 +37,7 @@ int tool_main(int argc, char **argv)
     if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
     if (last && steps) die_usage("--last and --steps exclude each other");
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
+    reader_copies(in);
     if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
     enum writer_kind kind = stream || last ? WRITER_STREAM : WRITER_TRAJECTORY;
     while (!(last ? reader_last(in, &f, &more, &why) : reader_next(in, &range, &f, &more, &why)) &&

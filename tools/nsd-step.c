@@ -135,6 +135,7 @@ int tool_main(int argc, char **argv)
     bool more;
     options_check();
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
+    reader_copies(in);
     if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
     if (reader_last(in, &f, &more, &why)) die_why(&why);
     if (!more) die(EX_DATAERR, "%s: no frame to start from", reader_where(in));

@@ -38,8 +38,20 @@ void neighbours_free(struct neighbours *s)
     *s = (struct neighbours){ 0 };
 }
 
+/* Balls in one place are all each other's neighbours: no heap has so many, whatever its sizes. */
+enum {
+    CROWD_BODY = 256,     /* pairs a body: a heap has 6, with the widest spare 30 */
+    CROWD_LEAST = 1 << 18 /* and pairs that any packing may have: seconds of work */
+};
+
+static int64_t crowd(const struct neighbours *s)
+{
+    return CROWD_LEAST + CROWD_BODY * s->bodies;
+}
+
 static bool pairs_add(struct neighbours *s, int32_t a, int32_t b)
 {
+    if (s->n >= crowd(s)) return false;
     if (s->n == s->room) {
         int64_t room = s->room ? 2 * s->room : 1024;
         struct pair *p = realloc(s->pair, (size_t)room * sizeof *p);
@@ -288,7 +300,13 @@ int neighbours_find(struct neighbours *s, const struct packing *p, const vec3 *x
     vec3 *listed = keep ? realloc(s->listed, size + sizeof *x) : s->listed;
     if (keep && !listed) return why_set(why, EX_SOFTWARE, "no memory for the neighbours");
     s->listed = listed, s->bodies = p->n, s->reach = gap + (keep ? spare_reach(p) : 0);
-    if (!make_list(s, p, x)) return why_set(why, EX_SOFTWARE, "no memory for the neighbours");
+    if (!make_list(s, p, x))
+        return s->n < crowd(s)
+                   ? why_set(why, EX_SOFTWARE, "no memory for the neighbours")
+                   : why_set(
+                         why, EX_DATAERR,
+                         "more than %lld pairs of neighbours: bodies in one place, or a wide gap",
+                         (long long)crowd(s));
     if (keep && p->n) memcpy(s->listed, x, size);
     return 0;
 }

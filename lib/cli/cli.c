@@ -1,5 +1,7 @@
 #include "cli/cli.h"
 
+#include "io/reader.h"
+
 #include <ctype.h>
 #include <errno.h>
 #include <getopt.h>
@@ -17,6 +19,7 @@ enum {
     LEFT = 28,    /* characters of --help's left column */
     HELP = 1000,  /* what getopt_long returns: beyond all letters */
     VERSION,
+    UNPACK,
     FIRST_LONG /* + the option's index */
 };
 
@@ -140,7 +143,9 @@ static void help(void)
         if ((*t)->kind != CLI_END) printf("\n");
         for (const struct cli_option *o = *t; o->kind; o++) help_option(o);
     }
-    printf("\n  %-*s  this text\n  %-*s  the version\n", LEFT, "    --help", LEFT, "    --version");
+    printf("\n  %-*s  documents may unpack to GB [64 times their size, or 0.064]\n", LEFT,
+           "    --unpack GB");
+    printf("  %-*s  this text\n  %-*s  the version\n", LEFT, "    --help", LEFT, "    --version");
     if (tool.more) printf("\n%s", tool.more);
     printf("\nThe manual: man %s, man 7 nsd\n", tool.name);
     finish_stdout();
@@ -200,9 +205,16 @@ static json_t *set(const struct cli_option *o, const char *text)
     }
 }
 
+/* Of every tool, for it is every reader's: how much a packed document may hold */
+static double gigabytes;
+static const struct cli_option unpack = { CLI_REAL, 0,          "unpack",      &gigabytes,
+                                          "GB",     .max = 1e6, .silent = true };
+
 int cli_parse(int argc, char **argv)
 {
-    struct option lng[OPTIONS + 3] = { { "help", 0, NULL, HELP }, { "version", 0, NULL, VERSION } };
+    struct option lng[OPTIONS + 4] = { { "help", 0, NULL, HELP },
+                                       { "version", 0, NULL, VERSION },
+                                       { "unpack", 1, NULL, UNPACK } };
     const struct cli_option *at[OPTIONS];
     char letters[2 * OPTIONS + 2] = ":";
     int n = 0;
@@ -211,7 +223,7 @@ int cli_parse(int argc, char **argv)
             at[n] = o;
             bool flag = o->kind == CLI_FLAG || o->kind == CLI_UNFLAG;
             int wants = flag ? no_argument : required_argument;
-            lng[n + 2] = (struct option){ o->name, wants, NULL, FIRST_LONG + n };
+            lng[n + 3] = (struct option){ o->name, wants, NULL, FIRST_LONG + n };
             if (o->letter) sprintf(letters + strlen(letters), flag ? "%c" : "%c:", o->letter);
         }
     json_t *value[OPTIONS] = { NULL };
@@ -219,6 +231,11 @@ int cli_parse(int argc, char **argv)
     opterr = 0;
     while ((c = getopt_long(argc, argv, letters, lng, NULL)) != -1) {
         if (c == HELP) help();
+        if (c == UNPACK) {
+            set_number(&unpack, optarg);
+            reader_unpack(1e9 * gigabytes);
+            continue;
+        }
         if (c == VERSION) {
             printf("%s (nsd) %s\n", tool.name, NSD_VERSION);
             finish_stdout();

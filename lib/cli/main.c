@@ -3,7 +3,9 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <jansson.h>
 #include <signal.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 /*
@@ -18,10 +20,19 @@ static void guard_standard_descriptors(void)
             _exit(70);
 }
 
+/* jansson leaves out what it has no memory for, and hardly anybody looks: the tool ends instead. */
+static void *json_memory(size_t size)
+{
+    void *memory = malloc(size);
+    if (!memory) die(EX_SOFTWARE, "no memory");
+    return memory;
+}
+
 int main(int argc, char **argv)
 {
     guard_standard_descriptors();
     signal(SIGPIPE, SIG_DFL);
+    json_set_alloc_funcs(json_memory, free);
     int first = cli_parse(argc, argv);
     return tool_main(argc - first, argv + first);
 }

@@ -13,6 +13,7 @@ void tool_filter(int files, char *const *file, void (*each)(struct frame *, cons
     bool more;
     if (writer_open(&out, NULL, WRITER_STREAM, &why) || reader_open(&in, files, file, &why))
         die_why(&why);
+    reader_copies(in);
     while (!reader_next(in, NULL, &f, &more, &why) && more) {
         each(&f, reader_where(in));
         if (frame_note(&f, cli_history(), &why) || writer_frame(out, &f, &why)) break;

@@ -1,12 +1,12 @@
-/* io/fclib.c: see io/fclib.h. What is read; what is written is in io/fclib_write.c. */
+/* io/fclib.c: the reading half of io/fclib.h; io/fclib_write.c is the other. */
 #include "io/fclib.h"
-#include "io/h5.h"
+#include "io/source.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A problem as its file has it: local W, q; global M, H, G, f, w, b. */
+/* A problem as the file stores it: W and q, or M, H, G, f, w, b. */
 struct raw {
     int d;
     int64_t n; /* contacts */
@@ -22,18 +22,18 @@ static const char *join(char path[64], const char *group, const char *name)
     return path;
 }
 
-/* count finite numbers; count < 0: however many there are, told in *found. To be freed. */
-static double *read_vector(hid_t file, const char *group, const char *name, int64_t count,
-                           int64_t *found, struct why *why)
+/* `count` finite numbers; count < 0: any number of them, told in *found. To be freed. */
+static double *read_vector(struct source *source, const char *group, const char *name,
+                           int64_t count, int64_t *found, struct why *why)
 {
     char path[64];
-    hsize_t length;
-    double *x = h5_read_all(file, join(path, group, name), H5T_NATIVE_DOUBLE, &length, why);
+    uint64_t length;
+    double *x = source_read_all(source, join(path, group, name), COLUMN_F64, &length, why);
     if (!x) return NULL;
-    if (count >= 0 && length != (hsize_t)count)
+    if (count >= 0 && length != (uint64_t)count)
         why_set(why, EX_DATAERR, "%s: %llu values, %lld are wanted", path,
                 (unsigned long long)length, (long long)count);
-    for (hsize_t k = 0; k < length && !why->status; k++)
+    for (uint64_t k = 0; k < length && !why->status; k++)
         if (!isfinite(x[k]))
             why_set(why, EX_DATAERR, "%s: entry %llu is %g", path, (unsigned long long)k, x[k]);
     if (found) *found = (int64_t)length;
@@ -42,28 +42,28 @@ static double *read_vector(hid_t file, const char *group, const char *name, int6
     return NULL;
 }
 
-static int stored_read(struct stored *S, hid_t file, const char *group, struct why *why)
+static int stored_read(struct stored *S, struct source *source, const char *group, struct why *why)
 {
     char path[64];
     int32_t *const number[] = { &S->m, &S->n, &S->nz, &S->nzmax };
     const char *const name[] = { "m", "n", "nz", "nzmax" };
     for (int k = 0; k < 4; k++)
-        if (h5_read(file, join(path, group, name[k]), H5T_NATIVE_INT32, 1, number[k], why))
+        if (source_read(source, join(path, group, name[k]), COLUMN_I32, 1, number[k], why))
             return why->status;
-    hsize_t np = 0, ni = 0, nx = 0;
-    S->p = h5_read_all(file, join(path, group, "p"), H5T_NATIVE_INT32, &np, why);
-    if (S->p) S->i = h5_read_all(file, join(path, group, "i"), H5T_NATIVE_INT32, &ni, why);
-    if (S->i) S->x = h5_read_all(file, join(path, group, "x"), H5T_NATIVE_DOUBLE, &nx, why);
+    uint64_t np = 0, ni = 0, nx = 0;
+    S->p = source_read_all(source, join(path, group, "p"), COLUMN_I32, &np, why);
+    if (S->p) S->i = source_read_all(source, join(path, group, "i"), COLUMN_I32, &ni, why);
+    if (S->i) S->x = source_read_all(source, join(path, group, "x"), COLUMN_F64, &nx, why);
     S->np = np, S->ni = ni, S->nx = nx;
     return S->x ? 0 : why->status;
 }
 
 /* An m x n matrix */
-static int read_matrix(struct sparse *A, hid_t file, const char *group, int64_t m, int64_t n,
-                       struct why *why)
+static int read_matrix(struct sparse *A, struct source *source, const char *group, int64_t m,
+                       int64_t n, struct why *why)
 {
     struct stored S = { 0 };
-    int e = stored_read(&S, file, group, why);
+    int e = stored_read(&S, source, group, why);
     if (!e && (S.m != m || S.n != n))
         e = why_set(why, EX_DATAERR, "%s: is %d x %d, the vectors want %lld x %lld", group, S.m,
                     S.n, (long long)m, (long long)n);
@@ -73,15 +73,15 @@ static int read_matrix(struct sparse *A, hid_t file, const char *group, int64_t 
 }
 
 /* spacedim and mu, which every problem has */
-static int read_law(struct raw *R, hid_t file, const char *group, struct why *why)
+static int read_law(struct raw *R, struct source *source, const char *group, struct why *why)
 {
     char path[64];
     int32_t d;
-    if (h5_read(file, join(path, group, "spacedim"), H5T_NATIVE_INT32, 1, &d, why))
+    if (source_read(source, join(path, group, "spacedim"), COLUMN_I32, 1, &d, why))
         return why->status;
     if (d != 2 && d != 3) return why_set(why, EX_DATAERR, "%s: is %d, not 2 or 3", path, d);
     R->d = d;
-    if (!(R->mu = read_vector(file, group, "vectors/mu", -1, &R->n, why))) return why->status;
+    if (!(R->mu = read_vector(source, group, "vectors/mu", -1, &R->n, why))) return why->status;
     if (R->n > INT32_MAX / d)
         return why_set(why, EX_DATAERR, "%s/vectors/mu: too many contacts", group);
     for (int64_t c = 0; c < R->n; c++)
@@ -91,33 +91,33 @@ static int read_law(struct raw *R, hid_t file, const char *group, struct why *wh
     return 0;
 }
 
-static int read_local(struct raw *R, hid_t file, struct why *why)
+static int read_local(struct raw *R, struct source *source, struct why *why)
 {
     const char *group = "/fclib_local";
-    if (h5_has(file, "/fclib_local/V") || h5_has(file, "/fclib_local/R"))
+    if (source_has(source, "/fclib_local/V") || source_has(source, "/fclib_local/R"))
         return why_set(why, EX_DATAERR, "%s: a mixed problem (V, R, s), which is not solved here",
                        group);
-    if (read_law(R, file, group, why)) return why->status;
+    if (read_law(R, source, group, why)) return why->status;
     int64_t nd = R->n * R->d;
-    if (!(R->q = read_vector(file, group, "vectors/q", nd, NULL, why))) return why->status;
-    return read_matrix(&R->W, file, "/fclib_local/W", nd, nd, why);
+    if (!(R->q = read_vector(source, group, "vectors/q", nd, NULL, why))) return why->status;
+    return read_matrix(&R->W, source, "/fclib_local/W", nd, nd, why);
 }
 
-static int read_global(struct raw *R, hid_t file, struct why *why)
+static int read_global(struct raw *R, struct source *source, struct why *why)
 {
     const char *group = "/fclib_global";
     struct global *P = &R->global;
-    if (read_law(R, file, group, why)) return why->status;
+    if (read_law(R, source, group, why)) return why->status;
     int64_t nd = R->n * R->d;
-    if (!(R->q = read_vector(file, group, "vectors/w", nd, NULL, why))) return why->status;
-    if (!(P->f = read_vector(file, group, "vectors/f", -1, &P->nv, why))) return why->status;
-    if (read_matrix(&P->M, file, "/fclib_global/M", P->nv, P->nv, why)) return why->status;
-    if (read_matrix(&P->H, file, "/fclib_global/H", P->nv, nd, why)) return why->status;
-    if (!h5_has(file, "/fclib_global/G")) return 0;
-    if (!(P->b = read_vector(file, group, "vectors/b", -1, &P->nl, why))) return why->status;
+    if (!(R->q = read_vector(source, group, "vectors/w", nd, NULL, why))) return why->status;
+    if (!(P->f = read_vector(source, group, "vectors/f", -1, &P->nv, why))) return why->status;
+    if (read_matrix(&P->M, source, "/fclib_global/M", P->nv, P->nv, why)) return why->status;
+    if (read_matrix(&P->H, source, "/fclib_global/H", P->nv, nd, why)) return why->status;
+    if (!source_has(source, "/fclib_global/G")) return 0;
+    if (!(P->b = read_vector(source, group, "vectors/b", -1, &P->nl, why))) return why->status;
     if (P->nl > INT32_MAX - P->nv)
         return why_set(why, EX_DATAERR, "%s/vectors/b: too many unknowns", group);
-    return read_matrix(&P->G, file, "/fclib_global/G", P->nv, P->nl, why);
+    return read_matrix(&P->G, source, "/fclib_global/G", P->nv, P->nl, why);
 }
 
 static void raw_free(struct raw *R)
@@ -128,18 +128,20 @@ static void raw_free(struct raw *R)
     free(R->q);
 }
 
-bool fclib_in(int64_t file)
+bool fclib_in(const struct source *source)
 {
-    return h5_has(file, "/fclib_global") || h5_has(file, "/fclib_local");
+    return source_has(source, "/fclib_global") || source_has(source, "/fclib_local");
 }
 
-int fclib_read(struct fclib *F, int64_t file, struct why *why)
+int fclib_read(struct fclib *F, struct source *source, struct why *why)
 {
     struct raw R = { 0 };
-    *F = (struct fclib){ .global = h5_has(file, "/fclib_global") }; // libfclib asks in this order
-    if (!fclib_in(file))
+    *F = (struct fclib){
+        .global = source_has(source, "/fclib_global")
+    }; // libfclib, too, looks for the global one first
+    if (!fclib_in(source))
         return why_set(why, EX_DATAERR, "/fclib_local: there is none, and no /fclib_global");
-    int e = F->global ? read_global(&R, file, why) : read_local(&R, file, why);
+    int e = F->global ? read_global(&R, source, why) : read_local(&R, source, why);
     if (!e && F->global) e = condense(&R.global, &F->motion, &R.W, R.q, why);
     if (!e) e = delassus_init(&F->W, R.d, R.n, R.W.count, R.W.row, R.W.col, R.W.x, R.q, R.mu, why);
     raw_free(&R);
@@ -147,12 +149,12 @@ int fclib_read(struct fclib *F, int64_t file, struct why *why)
     return e;
 }
 
-int fclib_load_solution(const struct fclib *F, int64_t file, double *r, struct why *why)
+int fclib_load_solution(const struct fclib *F, struct source *source, double *r, struct why *why)
 {
     int64_t nd = F->W.n * F->W.d;
     memset(r, 0, (size_t)nd * sizeof *r);
-    if (!h5_has(file, "/solution/r")) return 0;
-    double *stored = read_vector(file, "/solution", "r", nd, NULL, why);
+    if (!source_has(source, "/solution/r")) return 0;
+    double *stored = read_vector(source, "/solution", "r", nd, NULL, why);
     if (!stored) return why->status;
     memcpy(r, stored, (size_t)nd * sizeof *r);
     free(stored);

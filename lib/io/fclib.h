@@ -1,7 +1,9 @@
 /*
- * io/fclib.h: frictional contact problems in the FCLIB format, in and out (local and global, 2D and
- * 3D), as libfclib 3 reads and writes them. Nothing is believed: every length, index and number of a
- * file is checked. The names keep clear of libfclib's own, so that a program may link both.
+ * io/fclib.h: frictional contact problems in the FCLIB format, in and out: local and global, in two
+ * and three dimensions, as libfclib 3 reads and writes them. No file is trusted: every length,
+ * index and number is checked. The names here differ from libfclib's own, so that one program may
+ * link both. Problems are read from a source (io/source.h) and written to a `file`, an hid_t of
+ * libhdf5.
  */
 #ifndef NSD_FCLIB_H
 #define NSD_FCLIB_H
@@ -17,21 +19,24 @@
 struct fclib {
     bool global;
     struct delassus W;
-    struct motion motion; /* global: (v, lambda) of r */
+    struct motion motion; /* of a global one: (v, lambda) as a function of r */
 };
 
-/* Is there a /fclib_local or /fclib_global? file is an hid_t of libhdf5. */
-bool fclib_in(int64_t file);
-int fclib_read(struct fclib *, int64_t file, struct why *);
-/* r[n d] of the stored /solution, 0 where there is none. */
-int fclib_load_solution(const struct fclib *, int64_t file, double *r, struct why *);
-void fclib_free(struct fclib *);
+struct source;
 
-/* /solution: u, r (and v, l of a global one); u, r [n d]. What stood there is replaced. */
-int fclib_store_solution(const struct fclib *, int64_t file, const double *u, const double *r,
-                         struct why *);
+/* Does the document hold a problem, /fclib_local or /fclib_global? */
+bool fclib_in(const struct source *source);
+int fclib_read(struct fclib *problem, struct source *source, struct why *why);
+/* r[n d] of the stored /solution; zeros where there is none. */
+int fclib_load_solution(const struct fclib *problem, struct source *source, double *r,
+                        struct why *why);
+void fclib_free(struct fclib *problem);
 
-/* A packing's contact problem as /fclib_local or /fclib_global, and info. What stood there goes. */
-int fclib_write_problem(const struct problem *, bool global, int64_t file, struct why *);
+/* Writes /solution: u and r [n d], of a global problem also v and l. Replaces what is there. */
+int fclib_store_solution(const struct fclib *problem, int64_t file, const double *u,
+                         const double *r, struct why *why);
+
+/* Writes a packing's contact problem with its info. Replaces any problem and solution there. */
+int fclib_write_problem(const struct problem *problem, bool global, int64_t file, struct why *why);
 
 #endif

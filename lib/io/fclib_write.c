@@ -1,4 +1,4 @@
-/* io/fclib_write.c: see io/fclib.h. Solutions, and the problem of a packing, written. */
+/* io/fclib_write.c: the writing half of io/fclib.h: solutions, and the problem of a packing. */
 #include "io/fclib.h"
 #include "io/h5.h"
 #include "problem/assembly.h"
@@ -10,7 +10,7 @@ static int short_of_memory(struct why *why)
     return why_set(why, EX_SOFTWARE, "out of memory for an FCLIB problem");
 }
 
-/* group/name, `count` values of a native type */
+/* Writes group/name: `count` values of a native type. */
 static int write_array(hid_t file, const char *group, const char *name, hid_t type, int64_t count,
                        const void *x, struct why *why)
 {
@@ -32,7 +32,7 @@ static int write_vector(hid_t file, const char *group, const char *name, int64_t
     return write_array(file, group, name, H5T_NATIVE_DOUBLE, count, x, why);
 }
 
-static int drop(hid_t file, const char *path, struct why *why)
+static int remove_old(hid_t file, const char *path, struct why *why)
 {
     if (!h5_has(file, path) || H5Ldelete(file, path, H5P_DEFAULT) >= 0) return 0;
     return why_set(why, EX_IOERR, "%s: cannot be replaced", path);
@@ -44,7 +44,7 @@ int fclib_store_solution(const struct fclib *F, int64_t file, const double *u, c
     const char *group = "/solution";
     int64_t nd = F->W.n * F->W.d;
     double *v = NULL;
-    if (drop(file, group, why)) return why->status;
+    if (remove_old(file, group, why)) return why->status;
     int64_t nv = F->motion.nv, nl = F->motion.nl;
     if (F->global) {
         if (!(v = malloc((size_t)(nv + nl + 1) * sizeof *v))) return short_of_memory(why);
@@ -114,15 +114,16 @@ static int write_info(hid_t file, const char *group, struct why *why)
     return e;
 }
 
-/* Everything but the matrices; what stood there of an older problem goes. */
+/* Writes everything but the matrices, after removing what an older problem has left. */
 static int write_vectors(const struct assembly *A, bool global, hid_t file, struct why *why)
 {
-    static const char *const old[] = { "/fclib_local", "/fclib_global", "/solution", "/guesses" };
+    static const char *const outdated[] = { "/fclib_local", "/fclib_global", "/solution",
+                                            "/guesses" };
     const char *group = global ? "/fclib_global" : "/fclib_local";
     const int32_t d = A->p->d;
     int64_t n = A->p->n;
     int e = 0;
-    for (int k = 0; !e && k < 4; k++) e = drop(file, old[k], why);
+    for (int k = 0; !e && k < 4; k++) e = remove_old(file, outdated[k], why);
     if (!e) e = write_info(file, global ? "/fclib_global/info" : "/fclib_local/info", why);
     if (!e) e = write_ints(file, group, "spacedim", 1, &d, why);
     double *mu = malloc((size_t)(n + 1) * sizeof *mu);

@@ -1,36 +1,39 @@
 /*
- * io/frame.h: what a document says of one moment: a packing, its contacts, their solution, and what the
- * solve reported; or a contact problem from elsewhere (FCLIB) and its solution. Tools are functions
- * from frames to frames.
+ * io/frame.h: a frame is what a document says of one moment: a packing, its contacts, their
+ * solution, and the report of the solve; or else a contact problem from elsewhere (FCLIB) and its
+ * solution. Tools are functions from frames to frames.
  */
 #ifndef NSD_FRAME_H
 #define NSD_FRAME_H
 
 #include "io/fclib.h"
+#include "io/unknown.h"
 #include "problem/report.h"
 
 struct frame {
-    bool packed, detected, reported; /* packing, contacts, report mean something */
-    bool moved; /* the contacts' reactions have already moved the packing: they led to it */
+    bool packed;   /* packing is valid, */
+    bool detected; /* contacts are, */
+    bool reported; /* report is */
+    bool moved;    /* the contacts' reactions have led to this packing, not from it */
     struct packing packing;
     struct contacts contacts;
     struct report report;
 
-    bool foreign; /* problem means something, and there is no packing */
+    bool foreign; /* problem is valid, and there is no packing */
     struct fclib problem;
-    double *u; /* [n d] of its solution, NULL without one; r is problem.W.r */
+    double *u; /* [n d] m/s, of the problem's solution; NULL: not solved. r is problem.W.r */
 
-    struct problem *export; /* also written as an FCLIB problem; or NULL */
-    bool export_global;
+    struct problem *export; /* to be written as an FCLIB problem too; or NULL */
+    bool export_global;     /* in global form */
 
-    char *history;  /* one JSON line a command, each ended by a newline; or NULL */
-    int64_t origin; /* the HDF5 file it came from while that is open, for what we do not know */
-    bool unchecked; /* no checksum vouches for that file */
-    bool stale;     /* the origin's FCLIB problem no longer belongs to this frame */
+    char *history;           /* a JSON line for each command, each ended by a newline; or NULL */
+    struct unknown *unknown; /* what nsd does not know in the document it came from; or NULL */
+    bool stale;              /* an FCLIB problem among it no longer belongs to this frame */
 };
 
-void frame_free(struct frame *);
-/* The history grows by a command's line. */
-int frame_note(struct frame *, const char *line, struct why *);
+/* Frees what the frame owns and leaves it empty. */
+void frame_free(struct frame *frame);
+/* Adds a command's line to the history. */
+int frame_note(struct frame *frame, const char *line, struct why *why);
 
 #endif

@@ -1,6 +1,6 @@
 #include "io/frame_read.h"
 
-#include "io/h5.h"
+#include "law/local.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,36 +8,36 @@
 
 static void *steps_of(const struct frame_read *r, const char *path, int64_t *n, struct why *why)
 {
-    hsize_t count = 0;
-    void *steps = h5_read_all(r->rows.file, path, H5T_NATIVE_INT64, &count, why);
+    uint64_t count = 0;
+    void *steps = source_read_all(r->source, path, COLUMN_I64, &count, why);
     *n = (int64_t)count;
     return steps;
 }
 
-/* Steps and times of the frames; a frame counts when every element has it. */
+/* Steps and times of the frames. A frame counts when all of its motion is there. */
 static int count_frames(struct frame_read *r, struct why *why)
 {
-    hsize_t m, shape[4];
+    uint64_t m, shape[4];
     int64_t n;
     r->step = steps_of(r, "/particles/all/position/step", &n, why);
-    r->time = h5_read_all(r->rows.file, "/particles/all/position/time", H5T_NATIVE_DOUBLE, &m, why);
+    r->time = source_read_all(r->source, "/particles/all/position/time", COLUMN_F64, &m, why);
     if (!r->step || !r->time) return why->status;
     n = n < (int64_t)m ? n : (int64_t)m;
     for (const struct column *c = layout_motion; c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
-        if (h5_shape(r->rows.file, path, shape) != 3)
+        if (source_shape(r->source, path, shape) != 3)
             return why_set(why, EX_DATAERR, "%s: no dataset of shape frames x bodies x %d", path,
                            c->width);
         n = n < (int64_t)shape[0] ? n : (int64_t)shape[0];
     }
-    // a killed writer may have left room for a step that it had not yet set
+    // a killed writer may have made room for a step without setting it
     for (r->frames = n > 0; r->frames < n; r->frames++)
         if (r->step[r->frames] <= r->step[r->frames - 1]) break;
     return 0;
 }
 
-/* Whose contacts there are; a killed writer may have got no further than some of the columns. */
+/* The frames whose contacts are kept. A killed writer may have extended only some columns. */
 static int count_contacts(struct frame_read *r, struct why *why)
 {
     int64_t n, m, l;
@@ -49,34 +49,47 @@ static int count_contacts(struct frame_read *r, struct why *why)
     return why->status;
 }
 
-int frame_read_open(struct frame_read *r, hid_t file, struct why *why)
+int frame_read_open(struct frame_read *r, struct source *source, struct why *why)
 {
-    *r = (struct frame_read){ .rows.file = file, .frames = 1 };
-    if (h5_has(file, "/particles/all")) {
+    *r = (struct frame_read){ .source = source, .frames = 1 };
+    if (source_has(source, "/particles/all")) {
         if (count_frames(r, why)) return why->status;
-        if (h5_has(file, "/contacts") && count_contacts(r, why)) return why->status;
-    } else if (!fclib_in(file)) {
+        if (source_has(source, "/contacts") && count_contacts(r, why)) return why->status;
+    } else if (!fclib_in(source)) {
         return why_set(why, EX_DATAERR, "holds neither particles nor an FCLIB problem");
     }
-    if (!h5_has(file, "/observables/solver/step")) return 0;
+    if (!source_has(source, "/observables/solver/step")) return 0;
     r->solved = steps_of(r, "/observables/solver/step", &r->solves, why);
     return why->status;
 }
 
 void frame_read_close(struct frame_read *r)
 {
-    table_read_close(&r->rows);
-    if (r->rows.file >= 0) H5Fclose(r->rows.file);
     free(r->step), free(r->time), free(r->solved);
     free(r->contacts.step), free(r->contacts.start), free(r->contacts.count);
-    *r = (struct frame_read){ .rows.file = -1 };
+    *r = (struct frame_read){ 0 };
 }
 
-static int read_material(hid_t doc, struct packing *p, struct why *why)
+/* Both halves of the tables say the same. */
+static int check_symmetric(const struct packing *p, struct why *why)
 {
-    char *names = h5_read_text(doc, "/nsd/material@kinds");
+    for (const struct column *c = layout_material; c->name; c++) {
+        const double *table = column_array(c, p);
+        for (int32_t a = 0; a < p->kinds; a++)
+            for (int32_t b = 0; b < a; b++)
+                if (!(table[a * p->kinds + b] == table[b * p->kinds + a]))
+                    return why_set(why, EX_DATAERR, "/nsd/material/%s: %s and %s have two values",
+                                   c->name, p->kind_name[b], p->kind_name[a]);
+    }
+    return 0;
+}
+
+static int read_material(struct source *doc, struct packing *p, struct why *why)
+{
+    char *names = source_text(doc, "/nsd/material", "kinds", why);
     int32_t kinds = 0;
     for (const char *c = names; c && *c; c++) kinds += *c == '\n';
+    if (why->status) return why->status;
     if (!kinds) {
         free(names);
         return why_set(why, EX_DATAERR, "/nsd/material@kinds: no kinds of material");
@@ -93,92 +106,109 @@ static int read_material(hid_t doc, struct packing *p, struct why *why)
     for (const struct column *c = layout_material; !e && c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "/nsd/material/%s", c->name);
-        e = h5_read(doc, path, H5T_NATIVE_DOUBLE, (hsize_t)kinds * (hsize_t)kinds,
-                    column_array(c, p), why);
+        e = source_read(doc, path, COLUMN_F64, (uint64_t)kinds * (uint64_t)kinds,
+                        column_array(c, p), why);
     }
     free(names);
-    return e;
+    return e ? e : check_symmetric(p, why);
 }
 
-static int read_walls(struct table_read *r, struct packing *p, struct why *why)
+static int read_walls(struct source *r, struct packing *p, struct why *why)
 {
-    hsize_t shape[4];
-    if (!h5_has(r->file, "/walls/plane")) return 0;
-    if (h5_shape(r->file, "/walls/plane/point", shape) != 2 || shape[0] > 1 << 24)
+    uint64_t shape[4];
+    if (!source_has(r, "/walls/plane")) return 0;
+    if (source_shape(r, "/walls/plane/point", shape) != 2 || shape[0] > 1 << 24)
         return why_set(why, EX_DATAERR, "/walls/plane/point: not of shape walls x 3");
     if (packing_alloc_walls(p, (int32_t)shape[0], why)) return why->status;
     return table_read_columns(r, "/walls/plane", "", layout_walls, 0, p->walls, p->wall,
                               sizeof *p->wall, why);
 }
 
-static int read_parameters(hid_t doc, struct packing *p, struct why *why)
+static int read_parameters(struct source *doc, struct packing *p, struct why *why)
 {
     double g[3];
     int64_t seed;
-    if (h5_attr_read(doc, "/nsd", "dt", H5T_NATIVE_DOUBLE, -1, &p->dt, why) ||
-        h5_attr_read(doc, "/nsd", "theta", H5T_NATIVE_DOUBLE, -1, &p->theta, why) ||
-        h5_attr_read(doc, "/nsd", "gravity", H5T_NATIVE_DOUBLE, 3, g, why) ||
-        h5_attr_read(doc, "/nsd", "seed", H5T_NATIVE_INT64, -1, &seed, why))
+    if (source_attribute(doc, "/nsd", "dt", COLUMN_F64, -1, &p->dt, why) ||
+        source_attribute(doc, "/nsd", "theta", COLUMN_F64, -1, &p->theta, why) ||
+        source_attribute(doc, "/nsd", "gravity", COLUMN_F64, 3, g, why) ||
+        source_attribute(doc, "/nsd", "seed", COLUMN_I64, -1, &seed, why))
         return why->status;
     p->g = v3(g[0], g[1], g[2]);
     p->seed = (uint64_t)seed;
-    p->scene = h5_read_text(doc, "/nsd/scene");
-    return 0;
+    p->scene = source_text(doc, "/nsd/scene", NULL, why);
+    return why->status;
 }
 
 static int read_packing(struct frame_read *r, int64_t k, struct packing *p, struct why *why)
 {
-    hsize_t shape[4];
+    uint64_t shape[4];
     int dim;
-    if (h5_shape(r->rows.file, "/particles/all/radius", shape) != 1 || shape[0] > INT32_MAX)
+    if (source_shape(r->source, "/particles/all/radius", shape) != 1 || shape[0] > INT32_MAX)
         return why_set(why, EX_DATAERR, "/particles/all/radius: not a list of numbers");
     int64_t n = (int64_t)shape[0];
-    if (h5_attr_read(r->rows.file, "/nsd", "dim", H5T_NATIVE_INT, -1, &dim, why))
-        return why->status;
-    // nothing is allocated for bodies whose positions are not there
-    if (h5_shape(r->rows.file, "/particles/all/position/value", shape) != 3 ||
+    if (source_attribute(r->source, "/nsd", "dim", COLUMN_I32, -1, &dim, why)) return why->status;
+    // no memory is allocated for bodies without positions
+    if (source_shape(r->source, "/particles/all/position/value", shape) != 3 ||
         (int64_t)shape[1] != n)
         return why_set(why, EX_DATAERR,
                        "/particles/all/position/value: not of shape frames x %lld x 3",
                        (long long)n);
     if (packing_init(p, dim, n, why)) return why->status;
-    if (read_parameters(r->rows.file, p, why) || read_material(r->rows.file, p, why) ||
-        read_walls(&r->rows, p, why))
+    if (read_parameters(r->source, p, why) || read_material(r->source, p, why) ||
+        read_walls(r->source, p, why))
         return why->status;
     for (const struct column *c = layout_bodies; c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "/particles/all/%s", c->name);
-        if (table_read_rows(&r->rows, path, c->type, 0, n, c->width, column_array(c, p), why))
+        if (source_rows(r->source, path, c->type, 0, n, c->width, column_array(c, p), why))
             return why->status;
     }
     for (const struct column *c = layout_motion; c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
-        if (table_read_rows(&r->rows, path, c->type, k, 1, n * c->width, column_array(c, p), why))
+        if (source_rows(r->source, path, c->type, k, 1, n * c->width, column_array(c, p), why))
             return why->status;
     }
     p->step = r->step[k], p->t = r->time[k];
     return packing_check(p, why);
 }
 
-/* The frames of contacts first ..; t2 has to be n x t1. */
-static int read_frames(struct table_read *r, int64_t first, struct contacts *s, struct why *why)
+/* What contacts_check leaves: they are sorted, each pair once, and their states are states. */
+static int check_order(const struct contacts *s, struct why *why)
 {
-    vec3(*frame)[3] = malloc((size_t)(s->n + 1) * sizeof *frame);
-    if (!frame) return why_set(why, EX_SOFTWARE, "no memory for /contacts/frame");
-    int e = table_read_rows(r, "/contacts/frame", COLUMN_F64, first, s->n, 9, frame, why);
+    for (int64_t i = 1; i < s->n; i++) {
+        const struct contact *c = &s->c[i - 1], *next = &s->c[i];
+        if (c->a == next->a && c->b == next->b)
+            return why_set(why, EX_DATAERR, "contact %lld: of bodies %d and %d, as the one before",
+                           (long long)i, next->a, next->b);
+        if (c->a > next->a || (c->a == next->a && c->b > next->b))
+            return why_set(why, EX_DATAERR, "contact %lld: not sorted by its bodies", (long long)i);
+    }
+    for (int64_t i = 0; s->found && i < s->n; i++)
+        if (s->found[i].status < LOCAL_FREE || s->found[i].status > LOCAL_SLIDE)
+            return why_set(why, EX_DATAERR, "contact %lld: status is %d", (long long)i,
+                           s->found[i].status);
+    return 0;
+}
+
+/* The bases of the contacts from row `first` on; t2 has to be n x t1. */
+static int read_bases(struct source *r, int64_t first, struct contacts *s, struct why *why)
+{
+    vec3(*basis)[3] = malloc((size_t)(s->n + 1) * sizeof *basis);
+    if (!basis) return why_set(why, EX_SOFTWARE, "no memory for /contacts/frame");
+    int e = source_rows(r, "/contacts/frame", COLUMN_F64, first, s->n, 9, basis, why);
     for (int64_t i = 0; !e && i < s->n; i++) {
         struct contact *c = &s->c[i];
-        c->n = frame[i][0], c->t1 = frame[i][1];
-        if (!(v3_norm(v3_sub(contact_t2(c), frame[i][2])) < 1e-6))
+        c->n = basis[i][0], c->t1 = basis[i][1];
+        if (!(v3_norm(v3_sub(contact_t2(c), basis[i][2])) < 1e-6))
             e = why_set(why, EX_DATAERR, "contact %lld: frame is not right-handed and orthonormal",
                         (long long)i);
     }
-    free(frame);
+    free(basis);
     return e;
 }
 
-/* The contacts of the frame's step, when the document has them. */
+/* The contacts of frame k, if the document keeps them. */
 static int read_contacts(struct frame_read *r, int64_t k, struct frame *f, struct why *why)
 {
     int64_t at = r->contacts.blocks - 1, first;
@@ -188,46 +218,64 @@ static int read_contacts(struct frame_read *r, int64_t k, struct frame *f, struc
     first = r->contacts.start[at], s->n = r->contacts.count[at];
     if (first < 0 || s->n < 0 || first > INT32_MAX || s->n > INT32_MAX)
         return why_set(why, EX_DATAERR, "/contacts: start or count is out of range");
-    hsize_t shape[4];
-    if (h5_shape(r->rows.file, "/contacts/body", shape) != 2 || (hsize_t)(first + s->n) > shape[0])
+    uint64_t shape[4];
+    if (source_shape(r->source, "/contacts/body", shape) != 2 ||
+        (uint64_t)(first + s->n) > shape[0])
         return why_set(why, EX_DATAERR,
                        "/contacts/body: fewer than the %lld contacts of its frames",
                        (long long)(first + s->n));
     s->room = s->n ? s->n : 1;
     s->c = calloc((size_t)s->room, sizeof *s->c);
     if (!s->c) return why_set(why, EX_SOFTWARE, "no memory for the contacts");
-    bool solved = h5_has(r->rows.file, "/contacts/reaction");
+    bool solved = source_has(r->source, "/contacts/reaction");
     if (solved && contacts_alloc_found(s))
         return why_set(why, EX_SOFTWARE, "no memory for reactions");
-    if (table_read_columns(&r->rows, "/contacts", "", layout_contacts, first, s->n, s->c,
+    if (table_read_columns(r->source, "/contacts", "", layout_contacts, first, s->n, s->c,
                            sizeof *s->c, why) ||
-        read_frames(&r->rows, first, s, why) ||
-        (solved && table_read_columns(&r->rows, "/contacts", "", layout_found, first, s->n,
+        read_bases(r->source, first, s, why) ||
+        (solved && table_read_columns(r->source, "/contacts", "", layout_found, first, s->n,
                                       s->found, sizeof *s->found, why)))
         return why->status;
-    if (contacts_check(s, f->packing.n, f->packing.walls, why)) return why->status;
+    if (contacts_check(s, f->packing.n, f->packing.walls, why) || check_order(s, why))
+        return why->status;
     int moved;
-    if (h5_attr_read(r->rows.file, "/contacts", "moved", H5T_NATIVE_INT, -1, &moved, why))
+    if (source_attribute(r->source, "/contacts", "moved", COLUMN_I32, -1, &moved, why))
         return why->status;
     f->moved = moved;
     f->detected = true;
     return 0;
 }
 
-static int read_history(hid_t doc, struct report *rep, struct why *why)
+/* Counts that are counts, a flag that is one: looked at as a byte, for a bool may not be 5. */
+static int check_report(const struct report *rep, struct why *why)
 {
-    hsize_t n;
-    if (!h5_has(doc, "/observables/solver/history")) return 0;
-    double *h = h5_read_all(doc, "/observables/solver/history", H5T_NATIVE_DOUBLE, &n, why);
+    uint8_t converged;
+    memcpy(&converged, &rep->converged, 1);
+    if (rep->sweeps < 0 || rep->err.contacts < 0 || rep->newton < 0 || rep->safeguarded < 0 ||
+        rep->gave_up < 0)
+        return why_set(why, EX_DATAERR, "/observables/solver: a number of things is negative");
+    if (converged > 1)
+        return why_set(why, EX_DATAERR, "/observables/solver/converged: is %d", converged);
+    return 0;
+}
+
+static int read_history(struct source *doc, struct report *rep, struct why *why)
+{
+    uint64_t n;
+    if (!source_has(doc, "/observables/solver/history")) return 0;
+    double *h = source_read_all(doc, "/observables/solver/history", COLUMN_F64, &n, why);
     if (!h) return why->status;
     rep->history = (struct terms *)h;
-    return n == 5 * (hsize_t)rep->sweeps
+    return n == 5 * (uint64_t)rep->sweeps
                ? 0
                : why_set(why, EX_DATAERR, "/observables/solver/history: not of shape %d x 5",
                          rep->sweeps);
 }
 
-/* What the solve that led to this step says, or of a document of one moment, its only one. */
+/*
+ * The report on the solve that led to this step. A document of one frame with one report has just
+ * that: nsd-solve reports on the step that is still to be made.
+ */
 static int read_report(struct frame_read *r, int64_t step, struct frame *f, struct why *why)
 {
     int64_t at = r->frames == 1 && r->solves == 1 ? 0 : -1;
@@ -236,20 +284,22 @@ static int read_report(struct frame_read *r, int64_t step, struct frame *f, stru
     if (at < 0) return 0;
     struct report *rep = &f->report;
     const char *solver = "/observables/solver";
-    if (table_read_columns(&r->rows, solver, "/value", layout_report, at, 1, rep, sizeof *rep, why))
+    if (table_read_columns(r->source, solver, "/value", layout_report, at, 1, rep, sizeof *rep,
+                           why) ||
+        check_report(rep, why))
         return why->status;
     rep->step = r->solved[at];
-    if (table_read_rows(&r->rows, "/observables/solver/time", COLUMN_F64, at, 1, 1, &rep->t, why))
+    if (source_rows(r->source, "/observables/solver/time", COLUMN_F64, at, 1, 1, &rep->t, why))
         return why->status;
-    char *method = h5_read_text(r->rows.file, "/observables/solver@method");
-    char *criterion = h5_read_text(r->rows.file, "/observables/solver@criterion");
-    rep->options = h5_read_text(r->rows.file, "/observables/solver@options");
+    char *method = source_text(r->source, solver, "method", why);
+    char *criterion = source_text(r->source, solver, "criterion", why);
+    rep->options = source_text(r->source, solver, "options", why);
     snprintf(rep->method, sizeof rep->method, "%s", method ? method : "");
     for (int c = 0; criterion && c < CRITERION_COUNT; c++)
         if (!strcmp(criterion, criterion_name[c])) rep->criterion = c;
     free(method), free(criterion);
-    if (h5_attr_read(r->rows.file, solver, "eps", H5T_NATIVE_DOUBLE, -1, &rep->eps, why) ||
-        read_history(r->rows.file, rep, why))
+    if (why->status || source_attribute(r->source, solver, "eps", COLUMN_F64, -1, &rep->eps, why) ||
+        read_history(r->source, rep, why))
         return why->status;
     f->reported = true;
     return 0;
@@ -257,24 +307,24 @@ static int read_report(struct frame_read *r, int64_t step, struct frame *f, stru
 
 static int read_foreign(struct frame_read *r, struct frame *f, struct why *why)
 {
-    hid_t file = r->rows.file;
-    if (fclib_read(&f->problem, file, why)) return why->status;
+    struct source *source = r->source;
+    if (fclib_read(&f->problem, source, why)) return why->status;
     f->foreign = true;
     struct delassus *W = &f->problem.W;
-    if (fclib_load_solution(&f->problem, file, W->r, why)) return why->status;
-    if (h5_has(file, "/solution/u")) {
-        hsize_t n = (hsize_t)(W->d * W->n);
+    if (fclib_load_solution(&f->problem, source, W->r, why)) return why->status;
+    if (source_has(source, "/solution/u")) {
+        uint64_t n = (uint64_t)(W->d * W->n);
         f->u = calloc(n + 1, sizeof *f->u);
         if (!f->u) return why_set(why, EX_SOFTWARE, "no memory for the solution");
-        if (h5_read(file, "/solution/u", H5T_NATIVE_DOUBLE, n, f->u, why)) return why->status;
+        if (source_read(source, "/solution/u", COLUMN_F64, n, f->u, why)) return why->status;
     }
     return read_report(r, 0, f, why);
 }
 
 int frame_read_moment(struct frame_read *r, int64_t k, struct frame *f, struct why *why)
 {
-    f->origin = r->rows.file;
-    f->history = h5_read_text(r->rows.file, "/nsd/history");
+    f->history = source_text(r->source, "/nsd/history", NULL, why);
+    if (why->status) return why->status;
     if (!r->step) return read_foreign(r, f, why);
     if (read_packing(r, k, &f->packing, why)) return why->status;
     f->packed = true;

@@ -1,29 +1,32 @@
 /*
- * io/frame_read.h: frames out of the datasets of a document [nsd-format(5), io/layout.h]: the inverse of io/frame_write.h.
+ * io/frame_read.h: frames out of the datasets of a document [nsd-format(5), io/layout.h]. The
+ * inverse of io/frame_write.h.
  */
 #ifndef NSD_FRAME_READ_H
 #define NSD_FRAME_READ_H
 
 #include "io/table_read.h"
 
-/* A document that is open, and what there is of each moment */
+/* An open document, and what it holds of each moment */
 struct frame_read {
-    struct table_read rows; /* file -1: none is open */
-    int64_t frames;         /* 1 of an FCLIB problem */
-    int64_t *step;          /* [frames] of a packing's document, else NULL, */
-    double *time;           /* [frames] */
-    int64_t *solved;        /* [solves] steps that /observables/solver tells of */
+    struct source *source;
+    int64_t frames;  /* 1 for an FCLIB problem */
+    int64_t *step;   /* [frames] of a document with a packing; else NULL */
+    double *time;    /* [frames] s; else NULL */
+    int64_t *solved; /* [solves] the steps that /observables/solver reports on */
     int64_t solves;
     struct {
-        int64_t *step, *start, *count; /* [blocks] whose contacts /contacts has, and where */
+        int64_t *step;  /* [blocks] of the frames whose contacts are kept, */
+        int64_t *start; /* [blocks] the first row of each, */
+        int64_t *count; /* [blocks] and the number of rows */
         int64_t blocks;
     } contacts;
 };
 
-/* Takes the file over, to be closed even where this fails (EX_DATAERR). */
-int frame_read_open(struct frame_read *, hid_t file, struct why *);
-/* Moment k into a frame that is empty. All that is read is checked (EX_DATAERR). */
-int frame_read_moment(struct frame_read *, int64_t k, struct frame *, struct why *);
-void frame_read_close(struct frame_read *);
+/* The source's document; it stays the source's. EX_DATAERR: there are no frames in it. */
+int frame_read_open(struct frame_read *document, struct source *source, struct why *why);
+/* Reads frame k into an empty frame. Everything read is checked (EX_DATAERR). */
+int frame_read_moment(struct frame_read *document, int64_t k, struct frame *frame, struct why *why);
+void frame_read_close(struct frame_read *document);
 
 #endif

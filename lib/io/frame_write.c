@@ -1,17 +1,19 @@
 #include "io/frame_write.h"
 
-#include "io/copy.h"
 #include "io/h5.h"
 #include "io/stream.h"
+#include "io/unknown.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A value of HOME/step (i64) or HOME/time (f64, s), which the elements of the table share, by hard
-   links. */
-static int put_clock(struct table_write *s, const char *home, bool step, const void *value,
-                     const char *where, const struct column *c, struct why *why)
+/*
+ * Writes HOME/step (i64) or HOME/time (f64, s), and hard links to it in the groups of all columns,
+ * which share it.
+ */
+static int write_clock(struct table_write *s, const char *home, bool step, const void *value,
+                       const char *where, const struct column *c, struct why *why)
 {
     const hsize_t one = 1;
     const char *name = step ? "step" : "time";
@@ -23,16 +25,16 @@ static int put_clock(struct table_write *s, const char *home, bool step, const v
         return why->status;
     for (; !linked && c->name; c++) {
         snprintf(to, sizeof to, "%s/%s/%s", where, c->name, name);
-        if (h5_has(s->file, to)) continue; // it is the home
+        if (h5_has(s->file, to)) continue; // this is HOME
         if (H5Lcreate_hard(s->file, from, s->file, to, H5P_DEFAULT, H5P_DEFAULT) < 0)
             return why_set(why, EX_IOERR, "%s: cannot be linked", to);
     }
     return 0;
 }
 
-/* ---- what does not change from frame to frame ---- */
+/* ---- what is the same in all frames ---- */
 
-static int put_nsd(hid_t file, const struct frame *f, struct why *why)
+static int write_parameters(hid_t file, const struct frame *f, struct why *why)
 {
     const struct packing *p = &f->packing;
     const int h5md[2] = { 1, 1 };
@@ -59,7 +61,7 @@ static int put_nsd(hid_t file, const struct frame *f, struct why *why)
     return p->scene ? h5_write_text(file, "/nsd/scene", p->scene, why) : 0;
 }
 
-static int put_material(hid_t file, const struct packing *p, struct why *why)
+static int write_material(hid_t file, const struct packing *p, struct why *why)
 {
     const hsize_t square[2] = { (hsize_t)p->kinds, (hsize_t)p->kinds };
     for (const struct column *c = layout_material; c->name; c++) {
@@ -79,7 +81,7 @@ static int put_material(hid_t file, const struct packing *p, struct why *why)
 }
 
 /* H5MD's box: nothing is periodic, so it has no edges. */
-static int put_box(hid_t file, struct why *why)
+static int write_box(hid_t file, struct why *why)
 {
     const int dimension = 3; // positions have three components in the plane too
     const char none[3][5] = { "none", "none", "none" };
@@ -94,7 +96,7 @@ static int put_box(hid_t file, struct why *why)
     return e;
 }
 
-static int put_bodies(struct table_write *s, const struct packing *p, struct why *why)
+static int write_bodies_and_walls(struct table_write *s, const struct packing *p, struct why *why)
 {
     const hsize_t n = (hsize_t)p->n;
     for (const struct column *c = layout_bodies; c->name; c++) {
@@ -105,16 +107,16 @@ static int put_bodies(struct table_write *s, const struct packing *p, struct why
             return why->status;
     }
     bool growing = s->growing;
-    s->growing = false; // walls are the same in every frame
+    s->growing = false; // walls do not grow with the frames
     int e = table_write_columns(s, "/walls/plane", "", layout_walls, p->walls, p->wall,
                                 sizeof *p->wall, 0, why);
     s->growing = growing;
     return e;
 }
 
-/* ---- a frame ---- */
+/* ---- what belongs to one frame ---- */
 
-static int put_motion(struct table_write *s, const struct packing *p, struct why *why)
+static int write_motion(struct table_write *s, const struct packing *p, struct why *why)
 {
     for (const struct column *c = layout_motion; c->name; c++) {
         char path[80];
@@ -126,22 +128,22 @@ static int put_motion(struct table_write *s, const struct packing *p, struct why
     return 0;
 }
 
-static int put_frames(struct table_write *s, const struct contacts *t, struct why *why)
+static int write_bases(struct table_write *s, const struct contacts *t, struct why *why)
 {
     const hsize_t shape[3] = { (hsize_t)t->n, 3, 3 };
-    vec3(*frame)[3] = malloc((size_t)(t->n + 1) * sizeof *frame);
-    if (!frame) return why_set(why, EX_SOFTWARE, "no memory for /contacts/frame");
+    vec3(*basis)[3] = malloc((size_t)(t->n + 1) * sizeof *basis);
+    if (!basis) return why_set(why, EX_SOFTWARE, "no memory for /contacts/frame");
     for (int64_t i = 0; i < t->n; i++) {
         const struct contact *c = &t->c[i];
-        frame[i][0] = c->n, frame[i][1] = c->t1, frame[i][2] = contact_t2(c);
+        basis[i][0] = c->n, basis[i][1] = c->t1, basis[i][2] = contact_t2(c);
     }
-    int e = table_write_rows(s, "/contacts/frame", COLUMN_F64, 3, shape, CHUNK_CONTACTS, frame, "1",
+    int e = table_write_rows(s, "/contacts/frame", COLUMN_F64, 3, shape, CHUNK_CONTACTS, basis, "1",
                              why);
-    free(frame);
+    free(basis);
     return e;
 }
 
-static int put_contacts(struct table_write *s, const struct frame *f, struct why *why)
+static int write_contacts(struct table_write *s, const struct frame *f, struct why *why)
 {
     bool first = !table_write_grows(s, "/contacts/start");
     const hsize_t one = 1;
@@ -152,7 +154,7 @@ static int put_contacts(struct table_write *s, const struct frame *f, struct why
                          why) ||
         table_write_columns(s, "/contacts", "", layout_contacts, t->n, t->c, sizeof *t->c,
                             CHUNK_CONTACTS, why) ||
-        put_frames(s, t, why) ||
+        write_bases(s, t, why) ||
         (t->found && table_write_columns(s, "/contacts", "", layout_found, t->n, t->found,
                                          sizeof *t->found, CHUNK_CONTACTS, why)) ||
         table_write_rows(s, "/contacts/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &f->packing.step,
@@ -163,14 +165,14 @@ static int put_contacts(struct table_write *s, const struct frame *f, struct why
     return !first ? 0 : h5_attr(s->file, "/contacts", "moved", H5T_NATIVE_INT, -1, &moved, why);
 }
 
-static int put_report(struct table_write *s, const struct report *rep, struct why *why)
+static int write_report(struct table_write *s, const struct report *rep, struct why *why)
 {
     const char *solver = "/observables/solver";
     bool first = !table_write_grows(s, "/observables/solver/eps/value");
     if (table_write_columns(s, solver, "/value", layout_report, 1, rep, sizeof *rep, CHUNK_FRAMES,
                             why) ||
-        put_clock(s, solver, true, &rep->step, solver, layout_report, why) ||
-        put_clock(s, solver, false, &rep->t, solver, layout_report, why))
+        write_clock(s, solver, true, &rep->step, solver, layout_report, why) ||
+        write_clock(s, solver, false, &rep->t, solver, layout_report, why))
         return why->status;
     if (first &&
         (h5_attr_text(s->file, solver, "method", rep->method, why) ||
@@ -186,26 +188,27 @@ static int put_report(struct table_write *s, const struct report *rep, struct wh
 
 int frame_write_static(struct table_write *s, const struct frame *f, struct why *why)
 {
-    if (put_nsd(s->file, f, why)) return why->status;
-    if (f->packed && (put_material(s->file, &f->packing, why) || put_box(s->file, why) ||
-                      put_bodies(s, &f->packing, why)))
+    if (write_parameters(s->file, f, why)) return why->status;
+    if (f->packed && (write_material(s->file, &f->packing, why) || write_box(s->file, why) ||
+                      write_bodies_and_walls(s, &f->packing, why)))
         return why->status;
-    return copy_unknown(s->file, f, why);
+    return unknown_write(f->unknown, s->file, f->stale && !f->foreign, why);
 }
 
 static const char particles[] = "/particles/all", position[] = "/particles/all/position";
 
 int frame_write_moment(struct table_write *s, const struct frame *f, struct why *why)
 {
-    if (f->packed && (put_motion(s, &f->packing, why) ||
-                      put_clock(s, position, false, &f->packing.t, particles, layout_motion, why)))
+    if (f->packed &&
+        (write_motion(s, &f->packing, why) ||
+         write_clock(s, position, false, &f->packing.t, particles, layout_motion, why)))
         return why->status;
-    if (f->packed && f->detected && put_contacts(s, f, why)) return why->status;
-    return f->reported ? put_report(s, &f->report, why) : 0;
+    if (f->packed && f->detected && write_contacts(s, f, why)) return why->status;
+    return f->reported ? write_report(s, &f->report, why) : 0;
 }
 
 int frame_write_step(struct table_write *s, const struct frame *f, struct why *why)
 {
     if (!f->packed) return 0;
-    return put_clock(s, position, true, &f->packing.step, particles, layout_motion, why);
+    return write_clock(s, position, true, &f->packing.step, particles, layout_motion, why);
 }

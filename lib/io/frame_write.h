@@ -1,15 +1,15 @@
 /*
- * io/frame_write.h: a frame as the datasets of a document [nsd-format(5), io/layout.h], in three parts: what
- * all frames share, what belongs to this one, and the step that makes it count.
+ * io/frame_write.h: a frame as the datasets of a document [nsd-format(5), io/layout.h], in three
+ * parts: what all frames share, what belongs to this one, and the step that makes it count.
  */
 #ifndef NSD_FRAME_WRITE_H
 #define NSD_FRAME_WRITE_H
 
 #include "io/table_write.h"
 
-int frame_write_static(struct table_write *, const struct frame *, struct why *);
-int frame_write_moment(struct table_write *, const struct frame *, struct why *);
-/* /particles/all/position/step: last, for a reader takes a frame as there when its step is. */
-int frame_write_step(struct table_write *, const struct frame *, struct why *);
+int frame_write_static(struct table_write *tables, const struct frame *frame, struct why *why);
+int frame_write_moment(struct table_write *tables, const struct frame *frame, struct why *why);
+/* /particles/all/position/step, to be written last: with its step a frame counts as there. */
+int frame_write_step(struct table_write *tables, const struct frame *frame, struct why *why);
 
 #endif

@@ -1,4 +1,3 @@
-/* io/h5.c: see io/h5.h. */
 #include "io/h5.h"
 
 #include <stdio.h>
@@ -16,148 +15,18 @@ bool h5_has(hid_t place, const char *path)
     return H5Oexists_by_name(place, path, H5P_DEFAULT) > 0;
 }
 
-int h5_shape(hid_t place, const char *path, hsize_t shape[4])
+hid_t h5_plain(char class, size_t size)
 {
-    hid_t set = H5Dopen2(place, path, H5P_DEFAULT);
-    if (set < 0) return -1;
-    hid_t space = H5Dget_space(set);
-    int rank = H5Sget_simple_extent_ndims(space);
-    if (rank > 4 || H5Sget_simple_extent_dims(space, shape, NULL) != rank) rank = -1;
-    H5Sclose(space);
-    H5Dclose(set);
-    return rank;
-}
-
-/* Can values of this type on disk become `want` and stay what they are? Integers may become reals.
-   A damaged size of a type would have libhdf5 clear gigabytes to convert it. */
-static bool suits(hid_t disk, hid_t want)
-{
-    H5T_class_t class = H5Tget_class(disk);
-    if (H5Tget_size(disk) > 16) return false;
-    return class == H5T_INTEGER || (class == H5T_FLOAT && H5Tget_class(want) == H5T_FLOAT);
-}
-
-static const char *wanted(hid_t type)
-{
-    return H5Tget_class(type) == H5T_FLOAT ? "numbers" : "integers";
-}
-
-/*
- * Can the file hold what the dataset's shape promises? gzip makes 1032 of 1 at best; what was never
- * written takes no room, and a MiB of that is granted. Keeps a lying length from being allocated.
- */
-static bool plausible(hid_t set, hsize_t count, size_t size)
-{
-    hsize_t length = 0, stored = H5Dget_storage_size(set);
-    hid_t file = H5Iget_file_id(set);
-    if (H5Fget_filesize(file, &length) >= 0 && stored > length) stored = length;
-    H5Fclose(file);
-    return count / 1100 <= (stored + 1024) / size;
-}
-
-/* The dataset, when it holds numbers that suit `type`; else -1. */
-static hid_t open_numbers(hid_t place, const char *path, hid_t type, hsize_t *count,
-                          struct why *why)
-{
-    hid_t set = H5Dopen2(place, path, H5P_DEFAULT);
-    if (set < 0) return why_set(why, EX_DATAERR, "%s: no such dataset", path), -1;
-    hid_t disk = H5Dget_type(set), space = H5Dget_space(set);
-    hssize_t points = H5Sget_simple_extent_npoints(space);
-    bool good = suits(disk, type);
-    H5Sclose(space);
-    H5Tclose(disk);
-    *count = points < 0 ? 0 : (hsize_t)points;
-    if (good && points >= 0 && plausible(set, *count, H5Tget_size(type))) return set;
-    if (!good)
-        why_set(why, EX_DATAERR, "%s: %s are wanted, and it holds something else", path,
-                wanted(type));
-    else
-        why_set(why, EX_DATAERR,
-                "%s: %lld values are said to be there, more than the file can hold", path,
-                (long long)points);
-    H5Dclose(set);
-    return -1;
-}
-
-static int read_numbers(hid_t set, const char *path, hid_t type, hsize_t count, void *out,
-                        struct why *why)
-{
-    herr_t e = count ? H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out) : 0;
-    return e < 0 ? why_set(why, EX_DATAERR, "%s: cannot be read (damaged?)", path) : 0;
-}
-
-int h5_read(hid_t place, const char *path, hid_t type, hsize_t count, void *out, struct why *why)
-{
-    hsize_t found;
-    hid_t set = open_numbers(place, path, type, &found, why);
-    if (set < 0) return why->status;
-    int e = found == count ? read_numbers(set, path, type, count, out, why)
-                           : why_set(why, EX_DATAERR, "%s: %llu values, %llu are wanted", path,
-                                     (unsigned long long)found, (unsigned long long)count);
-    H5Dclose(set);
-    return e;
-}
-
-void *h5_read_all(hid_t place, const char *path, hid_t type, hsize_t *count, struct why *why)
-{
-    hid_t set = open_numbers(place, path, type, count, why);
-    if (set < 0) return NULL;
-    void *out = calloc(*count + 1, H5Tget_size(type));
-    if (!out) {
-        why_set(why, EX_SOFTWARE, "%s: out of memory for %llu values", path,
-                (unsigned long long)*count);
-    } else if (read_numbers(set, path, type, *count, out, why)) {
-        free(out);
-        out = NULL;
-    }
-    H5Dclose(set);
-    return out;
-}
-
-/* A fresh C string out of a scalar string, of fixed or variable length; either set or attr is one. */
-static char *text_of(hid_t set, hid_t attr)
-{
-    hid_t disk = set >= 0 ? H5Dget_type(set) : H5Aget_type(attr);
-    hid_t space = set >= 0 ? H5Dget_space(set) : H5Aget_space(attr);
-    char *out = NULL, *text = NULL;
-    bool single = H5Tget_class(disk) == H5T_STRING && H5Sget_simple_extent_npoints(space) == 1;
-    if (single && H5Tis_variable_str(disk) > 0) {
-        hid_t type = H5Tcopy(H5T_C_S1);
-        H5Tset_size(type, H5T_VARIABLE);
-        H5Tset_cset(type, H5Tget_cset(disk));
-        herr_t e = set >= 0 ? H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &text)
-                            : H5Aread(attr, type, &text);
-        if (e >= 0) out = strdup(text ? text : "");
-        H5free_memory(text);
-        H5Tclose(type);
-    } else if (single && (set < 0 ? H5Tget_size(disk) <= 1 << 20 // attributes are small
-                                  : plausible(set, 1, H5Tget_size(disk)))) {
-        out = calloc(H5Tget_size(disk) + 1, 1);
-        herr_t e = !out       ? 0
-                   : set >= 0 ? H5Dread(set, disk, H5S_ALL, H5S_ALL, H5P_DEFAULT, out)
-                              : H5Aread(attr, disk, out);
-        if (e < 0) free(out), out = NULL;
-    }
-    H5Sclose(space);
-    H5Tclose(disk);
-    return out;
-}
-
-char *h5_read_text(hid_t place, const char *path)
-{
-    const char *at = strrchr(path, '@');
-    if (!at) {
-        hid_t set = H5Dopen2(place, path, H5P_DEFAULT);
-        char *text = set < 0 ? NULL : text_of(set, -1);
-        if (set >= 0) H5Dclose(set);
-        return text;
-    }
-    char *object = at == path ? strdup(".") : strndup(path, (size_t)(at - path));
-    hid_t attr = object ? H5Aopen_by_name(place, object, at + 1, H5P_DEFAULT, H5P_DEFAULT) : -1;
-    char *text = attr < 0 ? NULL : text_of(-1, attr);
-    if (attr >= 0) H5Aclose(attr);
-    free(object);
-    return text;
+    if (class == 'f') return size == 4 ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE;
+    if (class == 'i')
+        return size == 1   ? H5T_NATIVE_INT8
+               : size == 2 ? H5T_NATIVE_INT16
+               : size == 4 ? H5T_NATIVE_INT32
+                           : H5T_NATIVE_INT64;
+    return size == 1   ? H5T_NATIVE_UINT8
+           : size == 2 ? H5T_NATIVE_UINT16
+           : size == 4 ? H5T_NATIVE_UINT32
+                       : H5T_NATIVE_UINT64;
 }
 
 hid_t h5_dataset_plist(void)
@@ -167,7 +36,7 @@ hid_t h5_dataset_plist(void)
     return plist;
 }
 
-/* The groups above what is to be made */
+/* Makes the groups above an object. */
 static int make_parents(hid_t place, const char *path, struct why *why)
 {
     const char *slash = strrchr(path, '/');
@@ -209,7 +78,7 @@ static int write_data(hid_t place, const char *path, hid_t memory, hid_t disk, h
     return bad ? why_set(why, EX_IOERR, "%s: cannot be written", path) : 0;
 }
 
-/* A memory type as it lies on disk */
+/* The type on disk for this type of memory. To be closed. */
 static hid_t little_endian(hid_t type)
 {
     hid_t disk = H5Tcopy(type);
@@ -217,7 +86,7 @@ static hid_t little_endian(hid_t type)
     return disk;
 }
 
-/* A C string of this very length, its zero included, as libfclib stores and expects it */
+/* A C string of just this length with its zero, as libfclib stores and expects it. To be closed. */
 static hid_t text_type(const char *text)
 {
     hid_t type = H5Tcopy(H5T_C_S1);
@@ -252,10 +121,10 @@ static hid_t make_attr(hid_t place, const char *path, const char *name, hid_t di
 }
 
 static int write_attr(hid_t place, const char *path, const char *name, hid_t memory, hid_t disk,
-                      int count, const void *data, struct why *why)
+                      int rank, const hsize_t *shape, const void *data, struct why *why)
 {
-    hsize_t shape = count < 0 ? 1 : (hsize_t)count;
-    hid_t space = count < 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &shape, NULL);
+    hid_t space = rank ? H5Screate_simple(rank, shape, NULL) : H5Screate(H5S_SCALAR);
+    hsize_t count = (hsize_t)H5Sget_simple_extent_npoints(space);
     hid_t attr = make_attr(place, path, name, disk, space);
     if (attr < 0 && H5Adelete_by_name(place, path, name, H5P_DEFAULT) >= 0)
         attr = make_attr(place, path, name, disk, space);
@@ -265,109 +134,26 @@ static int write_attr(hid_t place, const char *path, const char *name, hid_t mem
     return bad ? why_set(why, EX_IOERR, "%s@%s: cannot be written", path, name) : 0;
 }
 
+int h5_attr_shaped(hid_t place, const char *path, const char *name, hid_t type, int rank,
+                   const hsize_t *shape, const void *data, struct why *why)
+{
+    hid_t disk = little_endian(type);
+    int e = write_attr(place, path, name, type, disk, rank, shape, data, why);
+    H5Tclose(disk);
+    return e;
+}
+
 int h5_attr(hid_t place, const char *path, const char *name, hid_t type, int count,
             const void *data, struct why *why)
 {
-    hid_t disk = little_endian(type);
-    int e = write_attr(place, path, name, type, disk, count, data, why);
-    H5Tclose(disk);
-    return e;
+    hsize_t shape = (hsize_t)count;
+    return h5_attr_shaped(place, path, name, type, count < 0 ? 0 : 1, &shape, data, why);
 }
 
 int h5_attr_text(hid_t place, const char *path, const char *name, const char *text, struct why *why)
 {
     hid_t type = text_type(text);
-    int e = write_attr(place, path, name, type, type, -1, text, why);
+    int e = write_attr(place, path, name, type, type, 0, NULL, text, why);
     H5Tclose(type);
-    return e;
-}
-
-int h5_attr_read(hid_t place, const char *path, const char *name, hid_t type, int count, void *out,
-                 struct why *why)
-{
-    hid_t attr = H5Aopen_by_name(place, path, name, H5P_DEFAULT, H5P_DEFAULT);
-    if (attr < 0) return why_set(why, EX_DATAERR, "%s@%s: no such attribute", path, name);
-    hid_t disk = H5Aget_type(attr), space = H5Aget_space(attr);
-    hssize_t points = H5Sget_simple_extent_npoints(space), want = count < 0 ? 1 : count;
-    int e = 0;
-    if (!suits(disk, type))
-        e = why_set(why, EX_DATAERR, "%s@%s: %s are wanted", path, name, wanted(type));
-    else if (points != want)
-        e = why_set(why, EX_DATAERR, "%s@%s: %lld values, %lld are wanted", path, name,
-                    (long long)points, (long long)want);
-    else if (want && H5Aread(attr, type, out) < 0)
-        e = why_set(why, EX_DATAERR, "%s@%s: cannot be read", path, name);
-    H5Sclose(space);
-    H5Tclose(disk);
-    H5Aclose(attr);
-    return e;
-}
-
-/* The native type that holds numbers of this type on disk; -1: they are no numbers. */
-static hid_t plain_type(hid_t disk)
-{
-    H5T_class_t class = H5Tget_class(disk);
-    if (class == H5T_FLOAT) return H5T_NATIVE_DOUBLE;
-    if (class != H5T_INTEGER) return -1;
-    return H5Tget_size(disk) > 4 ? H5T_NATIVE_INT64 : H5T_NATIVE_INT32;
-}
-
-struct target {
-    hid_t to;
-    const char *path;
-    struct why *why;
-};
-
-static herr_t copy_attr(hid_t from, const char *name, const H5A_info_t *info, void *data)
-{
-    const struct target *t = data;
-    enum { MOST = 1 << 16 }; /* bytes */
-    char at[200];
-    if (info->data_size > MOST) return 0;
-    snprintf(at, sizeof at, "@%s", name);
-    char *text = h5_read_text(from, at);
-    hid_t attr = H5Aopen(from, name, H5P_DEFAULT), disk = attr < 0 ? -1 : H5Aget_type(attr);
-    hid_t space = attr < 0 ? -1 : H5Aget_space(attr), type = disk < 0 ? -1 : plain_type(disk);
-    int rank = space < 0 ? 2 : H5Sget_simple_extent_ndims(space), e = 0;
-    hssize_t points = space < 0 ? 0 : H5Sget_simple_extent_npoints(space);
-    static double numbers[MOST];
-    if (text)
-        e = h5_attr_text(t->to, t->path, name, text, t->why);
-    else if (type >= 0 && rank >= 0 && rank < 2 && points <= MOST &&
-             H5Aread(attr, type, numbers) >= 0)
-        e = h5_attr(t->to, t->path, name, type, rank ? (int)points : -1, numbers, t->why);
-    if (space >= 0) H5Sclose(space);
-    if (disk >= 0) H5Tclose(disk);
-    if (attr >= 0) H5Aclose(attr);
-    free(text);
-    return e ? -1 : 0;
-}
-
-static int copy_numbers(hid_t set, hid_t from, const char *name, const struct target *t)
-{
-    hsize_t shape[4], count;
-    int rank = h5_shape(from, name, shape);
-    hid_t disk = H5Dget_type(set), type = plain_type(disk);
-    H5Tclose(disk);
-    if (rank < 0 || type < 0) return 0;
-    void *data = h5_read_all(from, name, type, &count, t->why);
-    if (!data) return t->why->status;
-    int e = h5_write(t->to, t->path, type, rank, shape, data, NULL, t->why);
-    free(data);
-    return e;
-}
-
-int h5_copy_plain(hid_t from, const char *name, hid_t to, const char *path, struct why *why)
-{
-    struct target t = { to, path, why };
-    hid_t set = H5Dopen2(from, name, H5P_DEFAULT);
-    if (set < 0) return why_set(why, EX_DATAERR, "%s: cannot be opened (damaged?)", name);
-    char *text = h5_read_text(from, name);
-    int e = text ? h5_write_text(to, path, text, why) : copy_numbers(set, from, name, &t);
-    if (!e && h5_has(to, path) &&
-        H5Aiterate2(set, H5_INDEX_NAME, H5_ITER_INC, NULL, copy_attr, &t) < 0)
-        e = why_set(why, EX_DATAERR, "%s: attributes cannot be read (damaged?)", name);
-    free(text);
-    H5Dclose(set);
     return e;
 }

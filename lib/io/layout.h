@@ -1,35 +1,20 @@
 /*
- * io/layout.h: where a document keeps what: one table a group, read by io/frame_read.c and written by io/frame_write.c.
- * nsd-format(5) is the same in words.
+ * io/layout.h: which dataset holds which member of which struct: one table for each group, by which
+ * io/frame_read.c reads and io/frame_write.c writes. nsd-format(5) says the same in words.
  */
 #ifndef NSD_LAYOUT_H
 #define NSD_LAYOUT_H
 
 #include "io/frame.h"
+#include "io/h5.h"
 
-#include <hdf5.h>
 #include <stddef.h>
-
-enum column_type { COLUMN_F64, COLUMN_I64, COLUMN_I32, COLUMN_I8 };
-
-static inline hid_t column_native(enum column_type t)
-{
-    return t == COLUMN_F64   ? H5T_NATIVE_DOUBLE
-           : t == COLUMN_I64 ? H5T_NATIVE_INT64
-           : t == COLUMN_I32 ? H5T_NATIVE_INT32
-                             : H5T_NATIVE_INT8;
-}
-
-static inline size_t column_size(enum column_type t)
-{
-    return t == COLUMN_I8 ? 1 : t == COLUMN_I32 ? 4 : 8;
-}
 
 struct column {
     const char *name, *units;
     enum column_type type;
-    int width;     /* numbers in a row */
-    size_t offset; /* in its struct: of the numbers, or of the pointer to them */
+    int width;     /* numbers in a row of the dataset */
+    size_t offset; /* in the struct: of the numbers, or of the pointer to them */
 };
 
 /* /particles/all/NAME/value [F][N][width]: pointers in struct packing */
@@ -68,7 +53,8 @@ static const struct column layout_material[] = {
     { 0 },
 };
 
-/* /contacts/NAME [S][width]: members of struct contact; its frame goes by itself */
+/* /contacts/NAME [S][width]: members of struct contact; /contacts/frame, its
+   basis, is handled apart */
 static const struct column layout_contacts[] = {
     { "body", "1", COLUMN_I32, 2, offsetof(struct contact, a) },
     { "point", "m", COLUMN_F64, 3, offsetof(struct contact, x) },
@@ -79,7 +65,7 @@ static const struct column layout_contacts[] = {
     { 0 },
 };
 
-/* /contacts/NAME [S][width] where they are solved: members of struct found */
+/* /contacts/NAME [S][width] of solved contacts: members of struct found */
 static const struct column layout_found[] = {
     { "reaction", "N s", COLUMN_F64, 3, offsetof(struct found, r) },
     { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct found, u) },
@@ -87,8 +73,10 @@ static const struct column layout_found[] = {
     { 0 },
 };
 
-/* /observables/solver/NAME/value [F][width]: members of struct report. eps: eps_glob, motion, proj,
-   bipotential, penetration. */
+/*
+ * /observables/solver/NAME/value [F][width]: members of struct report. The five numbers of eps are
+ * eps_glob, motion, proj, bipotential, penetration.
+ */
 static const struct column layout_report[] = {
     { "contacts", "1", COLUMN_I64, 1, offsetof(struct report, err.contacts) },
     { "sweeps", "1", COLUMN_I32, 1, offsetof(struct report, sweeps) },
@@ -108,10 +96,12 @@ static const struct column layout_report[] = {
     { 0 },
 };
 
-/* The array that a struct has a pointer to in this column */
-void *column_array(const struct column *, const void *structure);
-/* Numbers of a column out of, or into, an array of structs. */
-void column_gather(const struct column *, int64_t n, const void *structs, size_t stride, void *out);
-void column_scatter(const struct column *, int64_t n, const void *in, void *structs, size_t stride);
+/* The array that the struct's member of this column points to */
+void *column_array(const struct column *column, const void *structure);
+/* A column's numbers out of an array of n structs, and back into one. */
+void column_gather(const struct column *column, int64_t n, const void *structs, size_t stride,
+                   void *out);
+void column_scatter(const struct column *column, int64_t n, const void *in, void *structs,
+                    size_t stride);
 
 #endif

@@ -1,11 +1,7 @@
 #include "io/reader.h"
 
-#include "io/copy.h"
 #include "io/frame_read.h"
-#include "io/h5.h"
-#include "io/stream.h"
 
-#include <hdf5_hl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,35 +9,42 @@
 #include <unistd.h>
 
 struct reader {
-    struct stream *stream;
-    int files;
-    char *const *file;
+    struct source *source;
     struct frame_read doc;
-    bool unchecked; /* no checksum vouches for it */
-    int64_t next;   /* frame of reader_next */
-    char where[300];
+    struct unknown *unknown; /* of the open document, where it is wanted */
+    bool copies;             /* it is */
+    int64_t next;            /* the frame that reader_next reads next */
 };
 
 int reader_open(struct reader **out, int files, char *const *file, struct why *why)
 {
     struct reader *r = *out = calloc(1, sizeof *r);
     if (!r) return why_set(why, EX_SOFTWARE, "no memory");
-    h5_start();
-    r->files = files, r->file = file, r->doc.rows.file = -1;
-    return stream_open(&r->stream, files, file, why);
+    return source_open(&r->source, files, file, why);
+}
+
+void reader_unpack(double bytes)
+{
+    source_limit(bytes < 1e18 ? (uint64_t)bytes : UINT64_MAX / 2);
+}
+
+void reader_copies(struct reader *r)
+{
+    r->copies = true;
 }
 
 void reader_close(struct reader *r)
 {
     if (!r) return;
     frame_read_close(&r->doc);
-    stream_close(r->stream);
+    unknown_free(r->unknown);
+    source_close(r->source);
     free(r);
 }
 
 const char *reader_where(const struct reader *r)
 {
-    return r->where;
+    return source_where(r->source);
 }
 
 bool reader_reads(int files, char *const *file, const char *path)
@@ -56,32 +59,32 @@ bool reader_reads(int files, char *const *file, const char *path)
     return false;
 }
 
-/* The reason, with the document that it is about in front. */
-static int blame(const struct reader *r, struct why *why)
+/* Puts the document's name in front of the reason, unless it is there. */
+static int name_document(const struct reader *r, struct why *why)
 {
     char text[sizeof why->text];
+    const char *where = reader_where(r);
+    size_t n = strlen(where);
+    if (n > 120) n = 120;
+    if (!strncmp(why->text, where, n)) return why->status;
     memcpy(text, why->text, sizeof text);
-    snprintf(why->text, sizeof why->text, "%.120s: %.270s", r->where, text);
+    snprintf(why->text, sizeof why->text, "%.120s: %.270s", where, text);
     return why->status;
 }
 
 int reader_document(struct reader *r, int64_t *frames, struct why *why)
 {
-    struct image im;
+    struct source_document d;
+    bool more;
     frame_read_close(&r->doc);
-    r->next = 0, *frames = -1;
-    if (stream_next(r->stream, &im, why)) return why->status;
-    if (!im.bytes) return 0;
-    snprintf(r->where, sizeof r->where, im.number > 1 ? "%s: document %lld" : "%s", im.name,
-             (long long)im.number);
-    hid_t file = H5LTopen_file_image(im.bytes, im.size,
-                                     H5LT_FILE_IMAGE_DONT_COPY | H5LT_FILE_IMAGE_DONT_RELEASE);
-    r->unchecked = im.foreign || im.unfinished;
-    if (file < 0)
-        why_set(why, EX_DATAERR, "not a readable HDF5 file (truncated or damaged)");
-    else
-        frame_read_open(&r->doc, file, why);
-    if (why->status) return blame(r, why);
+    unknown_free(r->unknown);
+    r->unknown = NULL, r->next = 0, *frames = -1;
+    if (source_next(r->source, &d, &more, why)) return why->status;
+    if (!more) return 0;
+    if (frame_read_open(&r->doc, r->source, why)) return name_document(r, why);
+    if (r->copies &&
+        unknown_read(&r->unknown, r->source, r->doc.frames <= 1, d.foreign || d.unfinished, why))
+        return name_document(r, why);
     *frames = r->doc.frames;
     return 0;
 }
@@ -89,19 +92,17 @@ int reader_document(struct reader *r, int64_t *frames, struct why *why)
 int reader_frame(struct reader *r, int64_t k, struct frame *f, struct why *why)
 {
     frame_free(f);
-    f->unchecked = r->unchecked;
-    if (frame_read_moment(&r->doc, k, f, why)) return blame(r, why);
-    if (f->packed) stream_rest(r->stream);
-    return 0;
+    if (frame_read_moment(&r->doc, k, f, why)) return name_document(r, why);
+    f->unknown = unknown_share(r->unknown);
+    return f->packed ? source_unload(r->source, why) : 0;
 }
 
-/* A document of one moment, all of which is in *f, is closed: a large one's memory is wanted. */
-static void let_go(struct reader *r, struct frame *f)
+/* Gives a document back once its only frame has been read: the memory may be needed. */
+static int release(struct reader *r, const struct frame *f, struct why *why)
 {
-    if (r->doc.frames != 1 || !f->packed || copy_wanted(f)) return;
-    f->origin = 0;
+    if (r->doc.frames != 1 || !f->packed) return 0;
     frame_read_close(&r->doc);
-    stream_drop(r->stream);
+    return source_release(r->source, why);
 }
 
 bool reader_has(const struct reader *r, int64_t k, const struct range *steps)
@@ -122,26 +123,18 @@ int reader_next(struct reader *r, const struct range *steps, struct frame *f, bo
         frame_free(f);
         return 0;
     }
-    if (reader_frame(r, r->next++, f, why)) return why->status;
-    let_go(r, f);
-    return 0;
+    return reader_frame(r, r->next++, f, why) ? why->status : release(r, f, why);
 }
 
 int reader_last(struct reader *r, struct frame *f, bool *more, struct why *why)
 {
-    int64_t frames;
-    struct frame_read held = { .rows.file = -1 }; // the document of *f: what is copied is in it
     *more = false;
     for (;;) {
-        if (*more) held = r->doc, r->doc = (struct frame_read){ .rows.file = -1 };
-        int e = reader_document(r, &frames, why);
-        if (!e && frames < 0) {
-            r->doc = held;
-            return 0;
-        }
-        frame_read_close(&held);
-        if (!e && frames > 0) e = reader_frame(r, frames - 1, f, why);
-        if (e) return e;
-        if (frames > 0) *more = true, let_go(r, f);
+        int64_t frames;
+        if (reader_document(r, &frames, why)) return why->status;
+        if (frames < 0) return 0;
+        if (!frames) continue;
+        if (reader_frame(r, frames - 1, f, why) || release(r, f, why)) return why->status;
+        *more = true;
     }
 }

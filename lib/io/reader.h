@@ -1,7 +1,6 @@
 /*
- * io/reader.h: documents in: streams and trajectories, one frame at a time [nsd-format(5)].
- *
- * A trajectory is a packed stream: reading either gives the same frames.
+ * io/reader.h: documents in [nsd-format(5)]: streams and trajectories, one frame at a time. A
+ * trajectory is a packed stream, so that reading either gives the same frames.
  */
 #ifndef NSD_READER_H
 #define NSD_READER_H
@@ -11,30 +10,44 @@
 
 struct reader;
 
-/* files, one after another; none or "-": standard input. */
-int reader_open(struct reader **, int files, char *const *file, struct why *);
+/* The files are read one after another; no file, or the name "-", means standard input. */
+int reader_open(struct reader **reader, int files, char *const *file, struct why *why);
 
 /*
- * The next document: *frames moments are in it (1 for an FCLIB problem); -1 at the end. Everything
- * read from a file is checked before it is given out (EX_DATAERR).
+ * All readers from now on take documents whose datasets hold so many bytes when unpacked; 0: 64
+ * times their size, at least 64 MiB.
  */
-int reader_document(struct reader *, int64_t *frames, struct why *);
-/* Moment k of that document; *f is freed first, and is the caller's to free. */
-int reader_frame(struct reader *, int64_t k, struct frame *f, struct why *);
+void reader_unpack(double bytes);
+/* Frames shall bring along what nsd does not know in their documents, for a writer to copy. */
+void reader_copies(struct reader *reader);
 
-/* Is moment k of that document one of these steps? Told without reading it; an FCLIB problem, which has
-   no steps, always is. */
-bool reader_has(const struct reader *, int64_t k, const struct range *);
+/*
+ * Opens the next document and tells in *frames how many it holds: 1 for an FCLIB problem, -1 when
+ * there is no further document. All that is read from a file is checked first (EX_DATAERR).
+ */
+int reader_document(struct reader *reader, int64_t *frames, struct why *why);
+/* Reads frame k of the open document. *frame is freed first; the caller frees it in the end. */
+int reader_frame(struct reader *reader, int64_t k, struct frame *frame, struct why *why);
 
-/* All in one: every frame of these steps (NULL: of all) in every document; *more is false at the end. */
-int reader_next(struct reader *, const struct range *, struct frame *, bool *more, struct why *);
-/* The very last frame of all, its document left open; *more is false where there is none. */
-int reader_last(struct reader *, struct frame *, bool *more, struct why *);
+/*
+ * Is frame k of the open document one of these steps? Answered without reading the frame. An FCLIB
+ * problem has no step and is always one.
+ */
+bool reader_has(const struct reader *reader, int64_t k, const struct range *steps);
 
-/* "a.h5" or "a.h5: document 3": for messages about the frame in hand */
-const char *reader_where(const struct reader *);
-/* Is the file at `path` among these inputs? */
+/*
+ * The next frame of these steps (NULL: of all), across documents. *more becomes false when there
+ * is none.
+ */
+int reader_next(struct reader *reader, const struct range *steps, struct frame *frame, bool *more,
+                struct why *why);
+/* The very last frame of all documents; *more becomes false when there is no frame at all. */
+int reader_last(struct reader *reader, struct frame *frame, bool *more, struct why *why);
+
+/* "a.h5" or "a.h5: document 3": where the current frame comes from, for messages. */
+const char *reader_where(const struct reader *reader);
+/* Is the file at `path` one of these inputs? */
 bool reader_reads(int files, char *const *file, const char *path);
-void reader_close(struct reader *);
+void reader_close(struct reader *reader);
 
 #endif

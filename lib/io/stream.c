@@ -11,22 +11,19 @@
 
 static const unsigned char MAGIC[8] = "\x89NSD\r\n\x1a\n", HDF5[8] = "\x89HDF\r\n\x1a\n";
 
+/* Where the fields of the header begin, in bytes */
+enum { AT_VERSION = 8, AT_FLAGS = 12, AT_LENGTH = 16, AT_CRC = 24, AT_HEADER_CRC = 28 };
+
 enum {
-    HEADER = 64,
-    AT_VERSION = 8,
-    AT_FLAGS = 12,
-    AT_LENGTH = 16,
-    AT_CRC = 24,
-    AT_HEADER_CRC = 28,
-    LARGE = 1 << 26 /* bytes */
+    LARGE = 1 << 26 /* bytes: a document from here on outweighs the tool, and is not kept */
 };
 
-static void put(unsigned char *p, uint64_t x, int bytes)
+static void store(unsigned char *p, uint64_t x, int bytes)
 {
     for (int k = 0; k < bytes; k++) p[k] = (unsigned char)(x >> (8 * k));
 }
 
-static uint64_t get(const unsigned char *p, int bytes)
+static uint64_t load(const unsigned char *p, int bytes)
 {
     uint64_t x = 0;
     for (int k = 0; k < bytes; k++) x |= (uint64_t)p[k] << (8 * k);
@@ -42,21 +39,21 @@ void document_header(unsigned char u[DOCUMENT_USERBLOCK], uint64_t length, uint3
 {
     memset(u, 0, DOCUMENT_USERBLOCK);
     memcpy(u, MAGIC, sizeof MAGIC);
-    put(u + AT_VERSION, DOCUMENT_VERSION, 4);
-    put(u + AT_FLAGS, length ? 0 : DOCUMENT_UNFINISHED, 4);
-    put(u + AT_LENGTH, length, 8);
-    put(u + AT_CRC, crc, 4);
-    put(u + AT_HEADER_CRC, document_crc(0, u, AT_HEADER_CRC), 4);
+    store(u + AT_VERSION, DOCUMENT_VERSION, 4);
+    store(u + AT_FLAGS, length ? 0 : DOCUMENT_UNFINISHED, 4);
+    store(u + AT_LENGTH, length, 8);
+    store(u + AT_CRC, crc, 4);
+    store(u + AT_HEADER_CRC, document_crc(0, u, AT_HEADER_CRC), 4);
 }
 
 struct stream {
-    int files, next; /* next: the file to open when the open one is done */
+    int files, next; /* next: the file to open after the current one */
     char *const *file;
     const char *name;
     int fd;                        /* -1: none open */
-    int64_t in_file;               /* documents of it so far */
-    unsigned char *map;            /* a regular file, whole; NULL: a pipe */
-    size_t size, at;               /* of map */
+    int64_t in_file;               /* documents found in it so far */
+    unsigned char *map;            /* a whole regular file; NULL: a pipe */
+    size_t size, at;               /* of the map, and how much of it is read */
     unsigned char *buffer, *spare; /* a pipe's document, and the one before it */
     size_t room, spare_room;
     unsigned char *old; /* the map of the file before */
@@ -91,15 +88,15 @@ void stream_close(struct stream *s)
     free(s);
 }
 
-void stream_rest(struct stream *s)
+void stream_unload(struct stream *s)
 {
-    if (s->map && s->size > LARGE) madvise(s->map, s->size, MADV_DONTNEED); // nobody writes there
+    if (s->map && s->size > LARGE) madvise(s->map, s->size, MADV_DONTNEED); // the pages are clean
 }
 
-void stream_drop(struct stream *s)
+void stream_release(struct stream *s)
 {
-    stream_rest(s);
-    if (s->room <= LARGE) return; // the next one will want it
+    stream_unload(s);
+    if (s->room <= LARGE) return; // kept for the next document
     free(s->buffer);
     s->buffer = NULL, s->room = 0;
 }
@@ -119,7 +116,7 @@ static int file_open(struct stream *s, struct why *why)
                        "%s is a terminal: give a FILE, or a pipe (--help tells more)", s->name);
     if (S_ISDIR(st.st_mode)) return why_set(why, EX_NOINPUT, "%s: is a directory", s->name);
     off_t at = S_ISREG(st.st_mode) ? lseek(s->fd, 0, SEEK_CUR) : -1;
-    if (at < 0 || st.st_size <= at) return 0; // a pipe, or nothing there
+    if (at < 0 || st.st_size <= at) return 0; // a pipe, or an empty file
     s->size = (size_t)st.st_size, s->at = (size_t)at;
     s->map = mmap(NULL, s->size, PROT_READ | PROT_WRITE, MAP_PRIVATE, s->fd, 0);
     if (s->map != MAP_FAILED) return 0;
@@ -127,11 +124,11 @@ static int file_open(struct stream *s, struct why *why)
     return why_set(why, EX_NOINPUT, "%s: %s", s->name, strerror(errno));
 }
 
-/* A pipe's next bytes, up to `want` in the buffer in all; *have < want at its end. */
+/* Reads from a pipe until the buffer holds `want` bytes; where it ends early, *have < want. */
 static int fill(struct stream *s, size_t *have, size_t want, struct why *why)
 {
     while (*have < want) {
-        if (*have == s->room) { // grown as bytes come: a header's length is not believed
+        if (*have == s->room) { // grows with what arrives: the header's length is not trusted
             size_t room = s->room ? 2 * s->room : 1 << 16;
             unsigned char *b = realloc(s->buffer, room);
             if (!b) return why_set(why, EX_SOFTWARE, "%s: no memory for the document", s->name);
@@ -147,7 +144,7 @@ static int fill(struct stream *s, size_t *have, size_t want, struct why *why)
     return 0;
 }
 
-/* Bytes of the document in hand: *have of those wanted are at *bytes. */
+/* The current document's first bytes: *have of the `want` that are asked for, at *bytes. */
 static int peek(struct stream *s, unsigned char **bytes, size_t *have, size_t want, struct why *why)
 {
     if (s->map) {
@@ -160,7 +157,7 @@ static int peek(struct stream *s, unsigned char **bytes, size_t *have, size_t wa
     return status;
 }
 
-static int bad(const struct stream *s, struct why *why, const char *trouble)
+static int refuse(const struct stream *s, struct why *why, const char *trouble)
 {
     if (s->in_file)
         return why_set(why, EX_DATAERR, "%s: document %lld: %s", s->name, (long long)s->in_file + 1,
@@ -168,20 +165,20 @@ static int bad(const struct stream *s, struct why *why, const char *trouble)
     return why_set(why, EX_DATAERR, "%s: %s", s->name, trouble);
 }
 
-/* The document that begins with a header; its size. */
-static int own(struct stream *s, struct image *im, size_t have, struct why *why)
+/* A document with our header: checks that and finds its size. */
+static int read_own(struct stream *s, struct image *im, size_t have, struct why *why)
 {
     const unsigned char *h = im->bytes;
-    if (have < DOCUMENT_USERBLOCK) return bad(s, why, "truncated in its header");
-    if (get(h + AT_HEADER_CRC, 4) != document_crc(0, h, AT_HEADER_CRC))
-        return bad(s, why, "damaged header (its checksum is wrong)");
-    uint64_t version = get(h + AT_VERSION, 4), length = get(h + AT_LENGTH, 8);
-    uint32_t crc = (uint32_t)get(h + AT_CRC, 4);
+    if (have < DOCUMENT_USERBLOCK) return refuse(s, why, "truncated in its header");
+    if (load(h + AT_HEADER_CRC, 4) != document_crc(0, h, AT_HEADER_CRC))
+        return refuse(s, why, "damaged header (its checksum is wrong)");
+    uint64_t version = load(h + AT_VERSION, 4), length = load(h + AT_LENGTH, 8);
+    uint32_t crc = (uint32_t)load(h + AT_CRC, 4);
     if (version > DOCUMENT_VERSION)
         return why_set(why, EX_DATAERR, "%s: document format %llu, this nsd reads up to %d",
                        s->name, (unsigned long long)version, DOCUMENT_VERSION);
-    im->unfinished = get(h + AT_FLAGS, 4) & DOCUMENT_UNFINISHED;
-    if (!im->unfinished && length <= DOCUMENT_USERBLOCK) return bad(s, why, "damaged header");
+    im->unfinished = load(h + AT_FLAGS, 4) & DOCUMENT_UNFINISHED;
+    if (!im->unfinished && length <= DOCUMENT_USERBLOCK) return refuse(s, why, "damaged header");
     size_t want = im->unfinished ? SIZE_MAX : length;
     if (peek(s, &im->bytes, &have, want, why)) return why->status;
     im->size = have;
@@ -190,14 +187,14 @@ static int own(struct stream *s, struct image *im, size_t have, struct why *why)
         return why_set(why, EX_DATAERR, "%s: document %lld: truncated, %zu of %zu bytes", s->name,
                        (long long)s->in_file + 1, have, want);
     if (document_crc(0, im->bytes + DOCUMENT_USERBLOCK, have - DOCUMENT_USERBLOCK) != crc)
-        return bad(s, why,
-                   "damaged: its checksum is wrong (changed on purpose? see nsd-format(5))");
-    stream_rest(s);
+        return refuse(s, why,
+                      "damaged: its checksum is wrong (changed on purpose? see nsd-format(5))");
+    stream_unload(s);
     return 0;
 }
 
-/* A foreign HDF5 file: all that there is. */
-static int foreign(struct stream *s, struct image *im, size_t have, struct why *why)
+/* A foreign HDF5 file: all that the file or pipe still holds. */
+static int read_foreign(struct stream *s, struct image *im, size_t have, struct why *why)
 {
     im->foreign = true;
     if (peek(s, &im->bytes, &have, SIZE_MAX, why)) return why->status;
@@ -212,7 +209,7 @@ static bool is_hdf5(const unsigned char *b, size_t have)
     return false;
 }
 
-/* The buffer of the document before stays as it is; the next goes into the other one. */
+/* The last document keeps its buffer; the next one goes into the other. */
 static void swap_buffers(struct stream *s)
 {
     unsigned char *b = s->buffer;
@@ -233,16 +230,16 @@ int stream_next(struct stream *s, struct image *im, struct why *why)
         }
         size_t have = 0;
         if (peek(s, &im->bytes, &have, DOCUMENT_USERBLOCK, why)) return why->status;
-        if (!have && !s->in_file) return bad(s, why, "empty, not an nsd document");
+        if (!have && !s->in_file) return refuse(s, why, "empty, not an nsd document");
         if (have) {
             im->name = s->name;
             int status;
             if (have >= sizeof MAGIC && !memcmp(im->bytes, MAGIC, sizeof MAGIC))
-                status = own(s, im, have, why);
+                status = read_own(s, im, have, why);
             else if (!s->in_file && is_hdf5(im->bytes, have))
-                status = foreign(s, im, have, why);
+                status = read_foreign(s, im, have, why);
             else
-                status = bad(s, why, "neither an nsd document nor an HDF5 file");
+                status = refuse(s, why, "neither an nsd document nor an HDF5 file");
             s->at += im->size;
             s->in_file++;
             im->number = s->in_file;

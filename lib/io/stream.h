@@ -1,6 +1,6 @@
 /*
- * io/stream.h: documents as bytes: the 64-byte header in front of each, and the stream that they make
- * back to back [nsd-format(5)]. Knows nothing of HDF5.
+ * io/stream.h: documents as bytes [nsd-format(5)]: the 64-byte header in front of each, and the
+ * stream that they form when they follow one another. This module knows nothing of HDF5.
  */
 #ifndef NSD_STREAM_H
 #define NSD_STREAM_H
@@ -13,40 +13,45 @@
 
 enum {
     DOCUMENT_VERSION = 1,
-    DOCUMENT_USERBLOCK = 512, /* bytes before HDF5's own */
-    DOCUMENT_UNFINISHED = 1   /* flag: still being written, to the end of its file */
+    DOCUMENT_USERBLOCK = 512, /* bytes in front of HDF5's own; HDF5 allows no fewer */
+    DOCUMENT_UNFINISHED = 1   /* flag: still being written, and reaches to the end of its file */
 };
 
 /*
- * The header of a finished document (length bytes, user block included, crc that of the bytes after
- * the user block) or, with length 0, of one that is still being written. The rest is zeroed.
+ * Makes the header of a finished document of `length` bytes, user block included, where crc is the
+ * checksum of the bytes after the user block. Length 0 makes the header of a document that is still
+ * being written. The rest of the user block becomes zero.
  */
 void document_header(unsigned char userblock[DOCUMENT_USERBLOCK], uint64_t length, uint32_t crc);
+/* The checksum so far (0 to begin with), continued over more bytes. */
 uint32_t document_crc(uint32_t crc, const void *bytes, size_t size);
 
-/* One document, whole; its bytes belong to the stream, until the next but one. */
+/* One whole document. Its bytes belong to the stream and last until the next call but one. */
 struct image {
-    const char *name;     /* of its file, "standard input" */
-    int64_t number;       /* in its file, from 1 */
-    unsigned char *bytes; /* NULL: the end */
-    size_t size;
-    bool foreign;    /* an HDF5 file without our header */
-    bool unfinished; /* no checksum vouches for it */
+    const char *name;     /* of its file, or "standard input" */
+    int64_t number;       /* its place in that file, from 1 */
+    unsigned char *bytes; /* NULL: the stream has ended */
+    size_t size;          /* bytes */
+    bool foreign;         /* an HDF5 file without our header */
+    bool unfinished;      /* no checksum vouches for it */
 };
 
 struct stream;
 
-/* files, one after another; none or "-": standard input. Opened when their turn comes. */
-int stream_open(struct stream **, int files, char *const *file, struct why *);
 /*
- * The next document. EX_NOINPUT: a file cannot be opened; EX_USAGE: it is a terminal; EX_DATAERR: not a
- * document, truncated, damaged, of a newer version, or nothing at all.
+ * The documents of these files, one file after another. No file, or the name "-", means standard
+ * input. A file is opened when its turn comes.
  */
-int stream_next(struct stream *, struct image *, struct why *);
-/* What has been read of a large file need not stay in memory; it is read again when wanted. */
-void stream_rest(struct stream *);
-/* The document in hand is done with: a pipe's takes no memory any longer. */
-void stream_drop(struct stream *);
-void stream_close(struct stream *);
+int stream_open(struct stream **stream, int files, char *const *file, struct why *why);
+/*
+ * Finds the next document. EX_NOINPUT: a file cannot be opened; EX_USAGE: it is a terminal;
+ * EX_DATAERR: it is empty or not a document, truncated, damaged or of a newer version.
+ */
+int stream_next(struct stream *stream, struct image *image, struct why *why);
+/* Pages of a large file that have been read leave memory; when wanted they are read again. */
+void stream_unload(struct stream *stream);
+/* The current document is no longer needed: the memory of a large one from a pipe is freed. */
+void stream_release(struct stream *stream);
+void stream_close(struct stream *stream);
 
 #endif

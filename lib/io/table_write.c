@@ -21,7 +21,8 @@ static hid_t create(hid_t file, const char *path, enum column_type type, int ran
     hid_t disk = H5Tcopy(column_native(type));
     H5Tset_order(disk, H5T_ORDER_LE);
     H5Pset_chunk(plist, rank, chunk);
-    hid_t uncached = H5Pcreate(H5P_DATASET_ACCESS); // a value goes to the disk before its dimension
+    hid_t uncached =
+        H5Pcreate(H5P_DATASET_ACCESS); // so that numbers reach the disk before the shape does
     H5Pset_chunk_cache(uncached, 0, 0, 0);
     hid_t set = H5Dcreate2(file, path, disk, space, H5P_DEFAULT, plist, uncached);
     H5Tclose(disk), H5Pclose(plist), H5Pclose(uncached), H5Sclose(space);
@@ -69,7 +70,8 @@ int table_write_rows(struct table_write *s, const char *path, enum column_type t
         return h5_write(s->file, path, column_native(type), rank, shape, data, units, why);
     hid_t set = find(s, path);
     if (set < 0) {
-        if (s->count == SERIES) return why_set(why, EX_SOFTWARE, "%s: too many datasets", path);
+        if (s->count == GROWING_DATASETS)
+            return why_set(why, EX_SOFTWARE, "%s: too many datasets", path);
         set = create(s->file, path, type, rank, shape, chunk_rows, units, why);
         if (set < 0) return why->status;
         snprintf(s->open[s->count].path, sizeof s->open[0].path, "%s", path);

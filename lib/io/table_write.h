@@ -1,42 +1,47 @@
 /*
- * io/table_write.h: the datasets of a document that is written: those of one frame, each whole at once, or
- * those that grow frame by frame.
+ * io/table_write.h: the datasets of a document that is being written: in a stream each dataset is
+ * written whole, in a trajectory it grows frame by frame.
  */
 #ifndef NSD_TABLE_WRITE_H
 #define NSD_TABLE_WRITE_H
 
 #include "io/layout.h"
 
-enum { SERIES = 64, CHUNK_FRAMES = 64, CHUNK_CONTACTS = 256, CHUNK_BODIES = 8192 };
+enum {
+    GROWING_DATASETS = 64, /* at once; the tables of io/layout.h have fewer columns than that */
+    CHUNK_FRAMES = 64,     /* rows a chunk of one number a frame: half a KiB of reals */
+    CHUNK_CONTACTS = 256,  /* rows a chunk of contacts: 2 KiB of reals; few are left empty */
+    CHUNK_BODIES = 8192    /* at most, a chunk of one frame of bodies: 192 KiB of positions */
+};
 
 struct table_write {
     hid_t file;
-    bool growing;
+    bool growing; /* a trajectory */
     struct {
         char path[80];
         hid_t set;
-    } open[SERIES]; /* those that grow are kept open */
-    int count;
-    int64_t contacts; /* rows of /contacts so far */
+    } open[GROWING_DATASETS]; /* datasets that grow stay open */
+    int count;                /* of open datasets */
+    int64_t contacts;         /* rows of /contacts so far */
 };
 
 /*
- * shape[0] rows of data: a dataset of their own or, where the file grows, at the end of what is
- * there, in chunks of chunk_rows.
+ * Writes shape[0] rows of data: as a dataset of their own or, in a trajectory, at the end of the
+ * dataset that grows there, in chunks of chunk_rows.
  */
-int table_write_rows(struct table_write *, const char *path, enum column_type, int rank,
+int table_write_rows(struct table_write *tables, const char *path, enum column_type type, int rank,
                      const hsize_t *shape, hsize_t chunk_rows, const void *data, const char *units,
-                     struct why *);
+                     struct why *why);
 
-/* Does it grow already? Asked instead of the file, which would have to look the path up. */
-bool table_write_grows(const struct table_write *, const char *path);
+/* Does the dataset grow already? Answered without libhdf5, which would have to look the path up. */
+bool table_write_grows(const struct table_write *tables, const char *path);
 
-/* All of a table's columns out of n structs, `tail` behind their names, at `where`. */
-int table_write_columns(struct table_write *, const char *where, const char *tail,
-                        const struct column *, int64_t n, const void *structs, size_t stride,
-                        hsize_t chunk_rows, struct why *);
+/* All columns of a table, out of n structs, into the datasets group/NAMEtail. */
+int table_write_columns(struct table_write *tables, const char *group, const char *tail,
+                        const struct column *column, int64_t n, const void *structs, size_t stride,
+                        hsize_t chunk_rows, struct why *why);
 
-/* Returns 0, or -1 where something could not be written. The file stays open. */
-int table_write_close(struct table_write *);
+/* Closes the datasets; the file stays open. Returns -1 where something could not be written. */
+int table_write_close(struct table_write *tables);
 
 #endif

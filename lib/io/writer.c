@@ -1,3 +1,4 @@
+#define _GNU_SOURCE // F_OFD_SETLK
 #include "io/writer.h"
 
 #include "io/frame_write.h"
@@ -13,8 +14,9 @@
 #include <unistd.h>
 
 enum {
-    AHEAD = 1 << 22,  /* bytes that a trajectory reserves, at least, where there is room */
-    LEAST_TABLE = 64, /* bytes: the head of an index of chunks has 72 */
+    RESERVE_LEAST =
+        1 << 22,     /* bytes reserved at a time: posix_fallocate costs a tenth of a frame */
+    ALIGN_FROM = 64, /* bytes: the smallest thing aligned; an index's head has 72 */
 };
 
 /* What every frame of a trajectory shares */
@@ -27,18 +29,44 @@ struct shared {
 
 struct writer {
     int fd;
-    const char *name; /* of the output, for messages */
-    bool trajectory;  /* else a stream */
-    int disk;         /* the growing document opened anew: > gives a descriptor only to write */
-    struct table_write doc;       /* its datasets; file -1 before its first frame */
-    struct shared first;          /* of its first frame */
-    bool contacts, solved, moved; /* so far: are there any, and what they are */
-    int64_t step;                 /* of its last frame */
+    const char *name;       /* the output's, for messages */
+    bool trajectory;        /* else a stream */
+    bool append;            /* opened by >>: others may append as well */
+    int disk;               /* a trajectory's file, opened again: > opens it for writing only */
+    struct table_write doc; /* a trajectory's datasets; file -1 before the first frame */
+    struct shared first;    /* what its first frame has set */
+    bool contacts, solved, moved; /* does it have contacts yet, and which kind */
+    int64_t step;                 /* of the last frame */
+    int64_t frames;               /* that are finished */
+    off_t end;                    /* of the file, at the last flush */
 };
 
-static int io_trouble(const struct writer *s, struct why *why, const char *trouble)
+static int output_failed(const struct writer *s, struct why *why, const char *trouble)
 {
     return why_set(why, EX_IOERR, "%s: %s", s->name, trouble);
+}
+
+/*
+ * A regular file has one writer: the second is refused, or has to wait where it only appends. The lock
+ * belongs to what the shell opened, so that { a; b; } > f is one writer. HDF5's own, of flock, is
+ * not taken: it would keep readers out, too (h5py of a growing trajectory).
+ */
+static int take_hold(struct writer *s, int how, struct why *why)
+{
+    struct flock lock = { .l_type = F_WRLCK, .l_whence = SEEK_SET };
+    while (fcntl(s->fd, how, &lock)) {
+        if (errno == EINTR) continue;
+        if (errno == EACCES || errno == EAGAIN)
+            return output_failed(s, why, "another program is writing it");
+        return 0; // no file that can be locked
+    }
+    return 0;
+}
+
+static void let_go(const struct writer *s)
+{
+    struct flock lock = { .l_type = F_UNLCK, .l_whence = SEEK_SET };
+    fcntl(s->fd, F_OFD_SETLK, &lock);
 }
 
 int writer_open(struct writer **out, const char *path, enum writer_kind kind, struct why *why)
@@ -48,14 +76,17 @@ int writer_open(struct writer **out, const char *path, enum writer_kind kind, st
     h5_start();
     s->doc.file = s->disk = -1;
     s->name = path ? path : "standard output";
-    s->fd = path ? open(path, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666) : STDOUT_FILENO;
-    if (s->fd < 0) return io_trouble(s, why, strerror(errno));
+    s->fd = path ? open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666) : STDOUT_FILENO;
+    if (s->fd < 0) return output_failed(s, why, strerror(errno));
+    s->append = fcntl(s->fd, F_GETFL) & O_APPEND;
+    if (!s->append && take_hold(s, F_OFD_SETLK, why)) return why->status;
+    struct stat st;
+    if (path && !fstat(s->fd, &st) && S_ISREG(st.st_mode) && ftruncate(s->fd, 0))
+        return output_failed(s, why, strerror(errno));
     if (isatty(s->fd))
         return why_set(why, EX_USAGE,
                        "%s is a terminal: documents are binary, use > FILE or a pipe", s->name);
-    struct stat st;
-    bool own = !fstat(s->fd, &st) && S_ISREG(st.st_mode) && !st.st_size &&
-               !(fcntl(s->fd, F_GETFL) & O_APPEND);
+    bool own = !fstat(s->fd, &st) && S_ISREG(st.st_mode) && !st.st_size && !s->append;
     char again[40];
     snprintf(again, sizeof again, "/proc/self/fd/%d", s->fd);
     if (own && kind == WRITER_TRAJECTORY) s->disk = open(again, O_RDWR | O_CLOEXEC);
@@ -75,33 +106,37 @@ static hid_t create(const char *path, hid_t access)
 
 /* ---- a stream ---- */
 
-/* All of it, or a regular file as it was: what is half written is taken back. */
+/* Writes all bytes. On failure a regular file is cut back to what it was. */
 static int write_all(struct writer *s, const unsigned char *bytes, size_t size, struct why *why)
 {
-    bool append = fcntl(s->fd, F_GETFL) & O_APPEND;
-    off_t start = lseek(s->fd, 0, append ? SEEK_END : SEEK_CUR);
+    if (s->append && take_hold(s, F_OFD_SETLKW, why)) return why->status; // documents stay whole
+    off_t start = lseek(s->fd, 0, s->append ? SEEK_END : SEEK_CUR);
     for (size_t done = 0; done < size;) {
         ssize_t n = write(s->fd, bytes + done, size - done);
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) {
-            io_trouble(s, why, strerror(errno));
+            output_failed(s, why, strerror(errno));
             if (start >= 0 && ftruncate(s->fd, start)) return why->status;
             return why->status;
         }
         done += (size_t)n;
     }
+    if (s->append) let_go(s);
+    struct stat st;
+    if (start >= 0 && !fstat(s->fd, &st) && S_ISREG(st.st_mode) && st.st_size < start + (off_t)size)
+        return output_failed(s, why, "has been cut off by another program");
     return 0;
 }
 
-/* The memory of a flushed document of the core driver gets its header and goes out as it is. */
+/* Writes a document of the core driver straight from libhdf5's memory, with its header. */
 static int write_image(struct writer *s, hid_t file, struct why *why)
 {
     void **memory;
     bool flushed = H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0;
-    ssize_t image = flushed ? H5Fget_file_image(file, NULL, 0) : -1; // what HDF5 uses of the memory
+    ssize_t image = flushed ? H5Fget_file_image(file, NULL, 0) : -1; // without the user block
     if (image < 0 || H5Fget_vfd_handle(file, H5P_DEFAULT, (void **)&memory) < 0)
         return why_set(why, EX_SOFTWARE, "no memory for the document");
-    size_t size = (size_t)image + DOCUMENT_USERBLOCK; // which it leaves out
+    size_t size = (size_t)image + DOCUMENT_USERBLOCK;
     unsigned char *bytes = *memory;
     uint32_t crc = document_crc(0, bytes + DOCUMENT_USERBLOCK, size - DOCUMENT_USERBLOCK);
     document_header(bytes, size, crc);
@@ -129,57 +164,73 @@ static int stream_frame(struct writer *s, const struct frame *f, struct why *why
 /*
  * ---- a trajectory ----
  *
- * A reader finds the frames that are finished at every moment, so also when the writer is killed:
- * numbers go straight to the disk (io/table_write.c) and their shapes and places with a flush, a frame's step
- * after all else; places are kept in the index of HDF5 1.10, of which no entry ever moves (the B-tree
- * before it is cut in two now and then); and a flush begins with where the file will end. A kill
- * also ends a write between two pages of the file, and a checksum would then be another state's:
- * what HDF5 rewrites in place begins at a multiple of 512 bytes and, up to that length, crosses none.
+ * At every moment a reader finds the finished frames, so also after the writer was killed:
+ * - numbers go straight to the disk (io/table_write.c); a flush writes their shapes and places, and
+ *   a frame's step is flushed after everything else;
+ * - places are kept in the chunk index of HDF5 1.10, in which no entry ever moves (the older B-tree
+ *   is split now and then);
+ * - every flush first writes where the file will end;
+ * - a kill can end a write between two pages of the file and leave a block that contradicts its
+ *   checksum. What HDF5 rewrites in place therefore begins at a multiple of 512 bytes and, up to
+ *   that length, lies within one page.
  */
+
+/* All of it, however often the system stops half-way */
+static bool write_at(const struct writer *s, const unsigned char *bytes, size_t size, off_t at)
+{
+    for (size_t done = 0; done < size;) {
+        ssize_t n = pwrite(s->disk, bytes + done, size - done, at + (off_t)done);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return false;
+        done += (size_t)n;
+    }
+    return true;
+}
 
 static int write_header(struct writer *s, uint64_t length, uint32_t crc, struct why *why)
 {
     unsigned char header[DOCUMENT_USERBLOCK];
     document_header(header, length, crc);
-    bool good = pwrite(s->disk, header, sizeof header, 0) == (ssize_t)sizeof header;
-    return good ? 0 : io_trouble(s, why, strerror(errno));
+    return write_at(s, header, sizeof header, 0) ? 0 : output_failed(s, why, strerror(errno));
 }
 
 /*
- * Room on the disk for what a frame may take, before anything of it is written: HDF5 changes its
- * tables in place, and a disk that is full in the midst of that would cost the frames before, too.
+ * Reserves what a frame may need on the disk before anything of it is written. HDF5 changes its
+ * tables in place, so that a disk filling up half-way would cost the earlier frames too.
  */
 static int reserve(struct writer *s, const struct frame *f, struct why *why)
 {
     hsize_t size = 0, n = (hsize_t)f->packing.n, rows = 0;
-    if (H5Fget_filesize(s->doc.file, &size) < 0) return io_trouble(s, why, "cannot be written");
+    if (H5Fget_filesize(s->doc.file, &size) < 0) return output_failed(s, why, "cannot be written");
     if (n > CHUNK_BODIES) n += CHUNK_BODIES; // chunks are whole
     if (f->detected) rows = (hsize_t)f->contacts.n + CHUNK_CONTACTS;
     // 128 bytes a body, and as many of its motion, 256 a contact, and the tables that may grow
     hsize_t frame = 256 * n + 256 * rows + (1 << 17);
-    struct stat st; // HDF5 now and then cuts off what is reserved
+    struct stat st; // HDF5 sometimes cuts the reserve off
     if (!fstat(s->disk, &st) && size + frame <= (hsize_t)st.st_size) return 0;
-    // for more frames where there is room: asking takes as long as writing a tenth of a small one
-    int e = posix_fallocate(s->disk, (off_t)size, (off_t)(frame < AHEAD ? AHEAD : frame));
+    // for several frames at once, where the disk has that much
+    int e = posix_fallocate(s->disk, (off_t)size,
+                            (off_t)(frame < RESERVE_LEAST ? RESERVE_LEAST : frame));
     if (e) e = posix_fallocate(s->disk, (off_t)size, (off_t)frame);
-    return e ? io_trouble(s, why, strerror(e)) : 0;
+    return e ? output_failed(s, why, strerror(e)) : 0;
 }
 
-/* The end-of-file address of the superblock, its byte 40: beyond it a reader takes all for damage. */
+/* Sets the superblock's end-of-file address, at its byte 40: readers refuse what lies beyond. */
 static bool set_end(const struct writer *s, hsize_t end)
 {
     unsigned char bytes[8];
     for (int k = 0; k < 8; k++) bytes[k] = (unsigned char)(end >> 8 * k);
-    return pwrite(s->disk, bytes, sizeof bytes, DOCUMENT_USERBLOCK + 40) == (ssize_t)sizeof bytes;
+    return write_at(s, bytes, sizeof bytes, DOCUMENT_USERBLOCK + 40);
 }
 
-/* HDF5 itself would tell last where the file ends. */
+/* HDF5 by itself would write the end-of-file address last. */
 static int flush(struct writer *s, struct why *why)
 {
     hsize_t size;
     bool good = H5Fget_filesize(s->doc.file, &size) >= 0 && set_end(s, size) &&
                 H5Fflush(s->doc.file, H5F_SCOPE_GLOBAL) >= 0;
-    return good ? 0 : io_trouble(s, why, "cannot be written (full?)");
+    s->end = (off_t)size;
+    return good ? 0 : output_failed(s, why, "cannot be written (full?)");
 }
 
 static struct shared shared_of(const struct packing *p)
@@ -189,7 +240,7 @@ static struct shared shared_of(const struct packing *p)
     return (struct shared){ p->dim, p->n, p->dt, p->theta, crc };
 }
 
-/* What only the first frame says must hold of all. */
+/* What is stored only with the first frame has to be true of all. */
 static int check_same(const struct writer *s, const struct frame *f, struct why *why)
 {
     const struct shared p = s->first, q = shared_of(&f->packing);
@@ -211,18 +262,16 @@ static int trajectory_begin(struct writer *s, const struct frame *f, struct why 
 {
     char path[40];
     snprintf(path, sizeof path, "/proc/self/fd/%d", s->disk);
-    hid_t access = H5Pcreate(H5P_FILE_ACCESS); // the file ends where its last number does
+    hid_t access = H5Pcreate(H5P_FILE_ACCESS); // no padding at the file's end
+    H5Pset_file_locking(access, false, true);  // take_hold has seen to it
     H5Pset_meta_block_size(access, 0), H5Pset_small_data_block_size(access, 0);
-    H5Pset_alignment(access, LEAST_TABLE, DOCUMENT_USERBLOCK); // the most that HDF5 lets it be
+    H5Pset_alignment(access, ALIGN_FROM, DOCUMENT_USERBLOCK); // the most that HDF5 allows
     s->doc = (struct table_write){ .file = create(path, access), .growing = true };
     H5Pclose(access);
-    if (s->doc.file < 0) return io_trouble(s, why, "cannot be written");
+    if (s->doc.file < 0) return output_failed(s, why, "cannot be written");
     if (H5Fset_libver_bounds(s->doc.file, H5F_LIBVER_V110, H5F_LIBVER_V110) < 0)
-        return io_trouble(s, why, "cannot be written (full?)");
-    if (reserve(s, f, why)) {
-        if (ftruncate(s->disk, 0)) return why->status; // nothing rather than a half
-        return why->status;
-    }
+        return output_failed(s, why, "cannot be written (full?)");
+    if (reserve(s, f, why)) return why->status;
     s->first = shared_of(&f->packing);
     s->step = f->packing.step - 1;
     return write_header(s, 0, 0, why) || frame_write_static(&s->doc, f, why) ? why->status : 0;
@@ -233,12 +282,15 @@ static int trajectory_frame(struct writer *s, const struct frame *f, struct why 
     if (!f->packed)
         return why_set(why, EX_DATAERR, "an FCLIB problem does not go into a trajectory");
     bool first = s->doc.file < 0;
+    struct stat st;
+    if (!first && !fstat(s->disk, &st) && st.st_size < s->end)
+        return output_failed(s, why, "has been cut off by another program");
     if (first ? trajectory_begin(s, f, why) : reserve(s, f, why)) return why->status;
     if (check_same(s, f, why)) return why->status;
     if (frame_write_moment(&s->doc, f, why) || flush(s, why) || frame_write_step(&s->doc, f, why) ||
         flush(s, why))
         return why->status;
-    s->step = f->packing.step;
+    s->step = f->packing.step, s->frames++;
     if (f->detected) s->contacts = true, s->solved = f->contacts.found, s->moved = f->moved;
     return 0;
 }
@@ -247,36 +299,46 @@ static int trajectory_close(struct writer *s, struct why *why)
 {
     hsize_t size;
     int failed = table_write_close(&s->doc) || H5Fget_filesize(s->doc.file, &size) < 0;
-    if (H5Fclose(s->doc.file) < 0 || failed) return io_trouble(s, why, "cannot be written (full?)");
-    struct stat st; // what was reserved and not needed is given back
+    if (H5Fclose(s->doc.file) < 0 || failed)
+        return output_failed(s, why, "cannot be written (full?)");
+    struct stat st; // the reserve that was not needed is given back
+    if (!fstat(s->disk, &st) && st.st_size < (off_t)size)
+        return output_failed(s, why, "has been cut off by another program");
     if (fstat(s->disk, &st) || (st.st_size > (off_t)size && ftruncate(s->disk, (off_t)size)))
-        return io_trouble(s, why, strerror(errno));
+        return output_failed(s, why, strerror(errno));
     static unsigned char buffer[1 << 18];
     uint32_t crc = 0;
     off_t at = DOCUMENT_USERBLOCK;
     ssize_t n;
-    while ((n = pread(s->disk, buffer, sizeof buffer, at)) > 0) {
+    while ((n = pread(s->disk, buffer, sizeof buffer, at)) > 0 || (n < 0 && errno == EINTR)) {
+        if (n < 0) continue;
         crc = document_crc(crc, buffer, (size_t)n);
         at += n;
     }
-    if (n < 0) return io_trouble(s, why, strerror(errno));
+    if (n < 0) return output_failed(s, why, strerror(errno));
     if (write_header(s, (uint64_t)at, crc, why)) return why->status;
-    lseek(s->fd, at, SEEK_SET); // who writes there next, writes behind us
+    lseek(s->fd, at, SEEK_SET); // the next writer continues behind us
     return 0;
 }
 
 int writer_frame(struct writer *s, const struct frame *f, struct why *why)
 {
-    if (f->packed && packing_check(&f->packing, why)) return why->status; // nobody would read it
-    if (!f->packed && s->doc.file < 0) s->trajectory = false; // a problem is a document by itself
-    return s->trajectory ? trajectory_frame(s, f, why) : stream_frame(s, f, why);
+    if (f->packed && packing_check(&f->packing, why))
+        return why->status; // no reader would accept it
+    if (!f->packed && s->doc.file < 0)
+        s->trajectory = false; // an FCLIB problem is a document of its own
+    if (!s->trajectory) return stream_frame(s, f, why);
+    if (!trajectory_frame(s, f, why)) return 0;
+    // half a first frame is nothing; HDF5 writes no more, for h5_start has told it so
+    if (!s->frames && ftruncate(s->disk, 0)) return why->status;
+    return why->status;
 }
 
 int writer_close(struct writer *s, struct why *why)
 {
     int e = s->doc.file >= 0 ? trajectory_close(s, why) : 0;
     if (s->disk >= 0) close(s->disk);
-    if (close(s->fd) && !e) e = io_trouble(s, why, strerror(errno));
+    if (close(s->fd) && !e) e = output_failed(s, why, strerror(errno));
     free(s);
     return e;
 }

@@ -1,6 +1,6 @@
 /*
- * io/writer.h: documents out [nsd-format(5)]: a stream of one document a frame, or a trajectory that
- * grows frame by frame in a regular file.
+ * io/writer.h: documents out [nsd-format(5)]: a stream of one document for each frame, or a
+ * trajectory that grows frame by frame in a regular file.
  */
 #ifndef NSD_WRITER_H
 #define NSD_WRITER_H
@@ -10,26 +10,26 @@
 struct writer;
 
 enum writer_kind {
-    WRITER_STREAM,    /* one document a frame, each written when it is whole */
-    WRITER_TRAJECTORY /* one growing document where the output is a file that it may have for itself */
+    WRITER_STREAM,    /* one document for each frame, written when it is whole */
+    WRITER_TRAJECTORY /* one growing document, where the output is a regular file of its own */
 };
 
 /*
- * To `path`, or to standard output when it is NULL. A trajectory on standard output needs an empty
- * regular file there; elsewhere, and under >>, it becomes a stream. EX_USAGE: standard output is a
- * terminal; EX_IOERR: it cannot be written.
+ * Opens `path`, or standard output when that is NULL. A trajectory on standard output needs an
+ * empty regular file there; elsewhere, and under >>, it becomes a stream. EX_USAGE: standard
+ * output is a terminal; EX_IOERR: the output cannot be written.
  */
-int writer_open(struct writer **, const char *path, enum writer_kind, struct why *);
+int writer_open(struct writer **writer, const char *path, enum writer_kind kind, struct why *why);
 
 /*
- * One more frame. A trajectory keeps the bodies, walls and parameters of its first frame, and wants
- * the same number of bodies of every other; each frame is on disk when this returns, and a reader
- * of the unfinished file sees whole frames only. Objects of frame->origin that nsd does not know
- * are copied. An FCLIB problem goes into a stream only.
+ * Writes one more frame. A trajectory keeps the bodies, walls and parameters of its first frame and
+ * demands the same bodies of every other. Its frame is on disk when this returns, and whoever reads
+ * the unfinished file sees whole frames only. Objects of frame->origin that nsd does not know are
+ * copied. FCLIB problems go into streams only.
  */
-int writer_frame(struct writer *, const struct frame *, struct why *);
+int writer_frame(struct writer *writer, const struct frame *frame, struct why *why);
 
-/* Ends the document: lengths, checksum, and every error that the file system held back. */
-int writer_close(struct writer *, struct why *);
+/* Completes the document (lengths, checksum) and reports what the file system had held back. */
+int writer_close(struct writer *writer, struct why *why);
 
 #endif

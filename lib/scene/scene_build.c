@@ -10,8 +10,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /* ---- tables ---- */
+
+enum {
+    LINE = 4096,         /* bytes of a line, a comment's too */
+    MOST_ROWS = 1 << 27, /* bodies of a table: 4 GiB of rows, 100 GiB of packing */
+};
 
 struct row {
     double x[4]; /* m: x y z r; in the plane x y r */
@@ -38,10 +44,12 @@ static int parse_numbers(const char *s, double out[4])
 
 static int add_row(struct table *t, const struct row *row, struct why *why)
 {
+    if (t->n == MOST_ROWS)
+        return why_set(why, EX_DATAERR, "a table of more than %d bodies (endless?)", MOST_ROWS);
     if (t->n == t->room) {
         int64_t more = t->room ? 2 * t->room : 256;
         struct row *wider = realloc(t->row, (size_t)more * sizeof *wider);
-        if (!wider || more > INT32_MAX) return why_set(why, EX_SOFTWARE, "no memory for a table");
+        if (!wider) return why_set(why, EX_SOFTWARE, "no memory for a table");
         t->row = wider, t->room = more;
     }
     t->row[t->n++] = *row;
@@ -66,10 +74,24 @@ static int read_line(struct table *t, int dim, const char *line, const char *nam
     return add_row(t, &row, why);
 }
 
+/* A line of a table without its newline; false at the end, and where it is too long. */
+static bool next_line(FILE *f, char line[LINE], const char *path, int64_t at, struct why *why)
+{
+    size_t n = 0;
+    int c = 0;
+    while (n < LINE - 1 && (c = getc(f)) != EOF && c != '\n') line[n++] = (char)c;
+    line[n] = 0;
+    if (n == LINE - 1)
+        return why_set(why, EX_DATAERR, "%s:%lld: a line of more than %d bytes", path,
+                       (long long)at, LINE - 2),
+               false;
+    return n || c != EOF;
+}
+
 static int read_table(struct table *t, int dim, const char *dir, const char *name, struct why *why)
 {
-    char path[4096], *line = NULL;
-    size_t room = 0;
+    char path[4096], line[LINE];
+    struct stat st;
     int64_t at = 0;
     bool whole = *name == '/' || !dir;
     if ((size_t)snprintf(path, sizeof path, "%s%s%s", whole ? "" : dir, whole ? "" : "/", name) >=
@@ -77,11 +99,11 @@ static int read_table(struct table *t, int dim, const char *dir, const char *nam
         return why_set(why, EX_NOINPUT, "%.100s...: name too long", name);
     FILE *f = fopen(path, "r");
     if (!f) return why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
-    errno = 0;
-    while (!why->status && getline(&line, &room, f) >= 0) read_line(t, dim, line, path, ++at, why);
-    if (!why->status && !feof(f))
-        why_set(why, errno == ENOMEM ? EX_SOFTWARE : EX_NOINPUT, "%s: %s", path, strerror(errno));
-    free(line);
+    if (!fstat(fileno(f), &st) && (S_ISCHR(st.st_mode) || S_ISBLK(st.st_mode)))
+        why_set(why, EX_NOINPUT, "%s: a device is no table", path);
+    while (!why->status && next_line(f, line, path, ++at, why))
+        read_line(t, dim, line, path, at, why);
+    if (!why->status && ferror(f)) why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
     fclose(f);
     return why->status;
 }

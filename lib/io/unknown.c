@@ -1,0 +1,219 @@
+#include "io/unknown.h"
+
+#include "io/source.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A group, or a dataset and its data; with attributes */
+struct item {
+    struct object object;
+    hsize_t shape[SERVE_RANK];
+    char *path;
+    char *text; /* of a scalar text, else NULL */
+    void *data; /* of any other dataset, else NULL */
+    unsigned char *attributes;
+    uint64_t attributes_size;
+};
+
+struct unknown {
+    int owners;
+    bool unchecked; /* attributes of groups are left out */
+    int64_t count, room;
+    struct item *item;
+};
+
+/* Groups whose members are looked through, and the names in them that nsd uses */
+static const struct {
+    const char *group;
+    const char *known[12];
+} looked_through[] = {
+    { "", { "h5md", "nsd", "particles", "walls", "contacts", "observables", "solution" } },
+    { "/nsd", { "history", "scene", "material" } },
+    { "/particles", { "all" } },
+    { "/particles/all",
+      { "box", "position", "velocity", "angular_velocity", "orientation", "radius", "mass",
+        "inertia", "id", "species" } },
+    { "/walls", { "plane" } },
+    { "/observables", { "solver" } },
+};
+
+enum { GROUPS = sizeof looked_through / sizeof looked_through[0] };
+
+/* Is `path` one of the group's own members? Its name, or NULL. */
+static const char *member(const char *group, const char *path)
+{
+    size_t n = strlen(group);
+    if (strncmp(group, path, n) != 0 || path[n] != '/') return NULL;
+    return strchr(path + n + 1, '/') ? NULL : path + n + 1;
+}
+
+/* Is this object unknown, and not merely inside of one that is? */
+static bool is_unknown(const char *path)
+{
+    for (int g = 0; g < GROUPS; g++) {
+        const char *name = member(looked_through[g].group, path);
+        if (!name) continue;
+        for (const char *const *k = looked_through[g].known; *k; k++)
+            if (!strcmp(*k, name)) return false;
+        return true;
+    }
+    return false;
+}
+
+static int read_item(struct item *i, bool unchecked, struct source *s, struct why *why)
+{
+    const struct object *o = &i->object;
+    uint64_t size;
+    if (o->kind == OBJECT_OTHER || o->rank > SERVE_RANK ||
+        (o->rank && o->kind != OBJECT_GROUP && !o->size))
+        return why_set(why, EX_DATAERR, "%s: neither numbers nor texts: it cannot be copied",
+                       i->path);
+    if (o->kind != OBJECT_GROUP || !unchecked)
+        i->attributes = source_attributes(s, i->path, &i->attributes_size, why);
+    if (o->kind == OBJECT_TEXT && !o->rank)
+        i->text = source_text(s, i->path, NULL, why);
+    else if (o->kind != OBJECT_GROUP && !why->status)
+        i->data = source_raw(s, i->path, &size, why);
+    return why->status;
+}
+
+static int add(struct unknown *u, const struct object *o, const char *path, const uint64_t *shape,
+               struct source *s, struct why *why)
+{
+    if (u->count == u->room) {
+        int64_t room = u->room ? 2 * u->room : 16;
+        struct item *more = realloc(u->item, (size_t)room * sizeof *more);
+        if (!more) return why_set(why, EX_SOFTWARE, "no memory for a copy of %s", path);
+        u->item = more, u->room = room;
+    }
+    struct item *i = &u->item[u->count++];
+    *i = (struct item){ .object = *o, .path = strdup(path) };
+    if (!i->path) return why_set(why, EX_SOFTWARE, "no memory for a copy of %s", path);
+    for (uint32_t k = 0; k < o->rank && o->rank <= SERVE_RANK; k++) i->shape[k] = shape[k];
+    return read_item(i, u->unchecked, s, why);
+}
+
+/* An object and all that is in it, which follows it in the walk; the first that does not. */
+static int64_t add_tree(struct unknown *u, struct source *s, int64_t k, struct why *why)
+{
+    const char *path, *inner;
+    const uint64_t *shape;
+    const struct object *o = source_object(s, k, &path, &shape);
+    size_t n = strlen(path);
+    if (add(u, o, path, shape, s, why)) return k;
+    for (k++; (o = source_object(s, k, &inner, &shape)); k++) {
+        if (o->attribute) continue;
+        if (strncmp(inner, path, n) != 0 || inner[n] != '/') break;
+        if (add(u, o, inner, shape, s, why)) break;
+    }
+    return k;
+}
+
+int unknown_read(struct unknown **out, struct source *s, bool whole, bool unchecked,
+                 struct why *why)
+{
+    struct unknown *u = *out = NULL;
+    const char *path;
+    const uint64_t *shape;
+    for (int64_t k = 0; !why->status && source_object(s, k, &path, &shape);) {
+        char step[SERVE_PATH + 8];
+        const struct object *o = source_object(s, k, &path, &shape);
+        snprintf(step, sizeof step, "%s/step", path);
+        if (o->attribute || !is_unknown(path) || (!whole && source_has(s, step))) {
+            k++;
+            continue;
+        }
+        if (!u) *out = u = calloc(1, sizeof *u);
+        if (!u) return why_set(why, EX_SOFTWARE, "no memory for a copy of %s", path);
+        u->owners = 1, u->unchecked = unchecked;
+        k = add_tree(u, s, k, why);
+    }
+    return why->status;
+}
+
+struct unknown *unknown_share(struct unknown *u)
+{
+    if (u) u->owners++;
+    return u;
+}
+
+void unknown_free(struct unknown *u)
+{
+    if (!u || --u->owners) return;
+    for (int64_t k = 0; k < u->count; k++) {
+        struct item *i = &u->item[k];
+        free(i->path), free(i->text), free(i->data), free(i->attributes);
+    }
+    free(u->item);
+    free(u);
+}
+
+/* The memory type of an item's elements. To be closed when it is a string. */
+static hid_t element_type(const struct object *o)
+{
+    if (o->class != 's') return h5_plain(o->class, o->size);
+    hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, o->size);
+    H5Tset_strpad(type, H5T_STR_NULLPAD);
+    H5Tset_cset(type, H5T_CSET_UTF8);
+    return type;
+}
+
+static int write_attributes(const struct item *i, hid_t file, struct why *why)
+{
+    uint64_t at = 0;
+    struct object o;
+    const uint64_t *shape;
+    const char *name;
+    const void *data;
+    while (!why->status &&
+           source_unpack(i->attributes, i->attributes_size, &at, &o, &shape, &name, &data)) {
+        if (o.kind == OBJECT_OTHER || !o.size)
+            return why_set(why, EX_DATAERR, "%s@%s: neither numbers nor texts: it cannot be copied",
+                           i->path, name);
+        hsize_t dims[SERVE_RANK], points = 1;
+        for (uint32_t k = 0; k < o.rank; k++) points *= dims[k] = shape[k];
+        if (points * o.size != o.data)
+            return why_set(why, EX_DATAERR, "%s@%s: of another size", i->path, name);
+        if (o.kind == OBJECT_TEXT && !o.rank) {
+            h5_attr_text(file, i->path, name, data, why);
+            continue;
+        }
+        hid_t type = element_type(&o);
+        h5_attr_shaped(file, i->path, name, type, (int)o.rank, dims, data, why);
+        if (o.class == 's') H5Tclose(type);
+    }
+    return why->status;
+}
+
+static int write_item(const struct item *i, hid_t file, struct why *why)
+{
+    const struct object *o = &i->object;
+    if (o->kind == OBJECT_GROUP) {
+        if (h5_group(file, i->path, why)) return why->status;
+    } else if (i->text) {
+        if (h5_write_text(file, i->path, i->text, why)) return why->status;
+    } else {
+        hid_t type = element_type(o);
+        h5_write(file, i->path, type, (int)o->rank, i->shape, i->data, NULL, why);
+        if (o->class == 's') H5Tclose(type);
+    }
+    return why->status ? why->status : write_attributes(i, file, why);
+}
+
+static bool is_problem(const char *path)
+{
+    return !strncmp(path, "/fclib_local", 12) || !strncmp(path, "/fclib_global", 13);
+}
+
+int unknown_write(const struct unknown *u, int64_t file, bool stale, struct why *why)
+{
+    for (int64_t k = 0; u && k < u->count && !why->status; k++) {
+        const struct item *i = &u->item[k];
+        if ((stale && is_problem(i->path)) || h5_has(file, i->path)) continue;
+        write_item(i, file, why);
+    }
+    return why->status;
+}
