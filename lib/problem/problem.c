@@ -286,7 +286,7 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
         r->rho[k] = lambda <= 0 ? 1 : alpha > 0 && D[0] > 0 ? alpha / D[0] : factor / lambda;
         for (int j = 0; j < W->d; j++) {
             r->r[j][k] = W->r[W->d * c + j];
-            p->norm_q += q[j] * q[j], p->speed = fmax(p->speed, fabs(q[j]));
+            p->norm_q += q[j] * q[j];
             trace += D[4 * j];
         }
     }
