@@ -3,13 +3,14 @@
 # penetration eps_glob, of the paper: m/s, N, W, m/s
 stats balls using 1 name "balls" nooutput
 stats discs using 1 name "discs" nooutput
-set terminal svg size 900, 360 background "white" enhanced font "sans,12"
+set terminal svg size 960, 390 background "white" enhanced font "sans,12"
 set output out
 set encoding utf8
 set logscale y
 set format y "10^{%T}"
 set yrange [1e-20:1e-1]
 set xlabel "sweep" offset 0, 0.5
+set ylabel "mean over the contacts" offset 0.5, 0
 set grid ytics lc rgb "#dddddd"
 set key outside below horizontal samplen 1.5
 set rmargin 4
@@ -28,10 +29,10 @@ do for [k = 1:2] {
               method eq "exact" ? method.", discs" : method.", discs, the paper's settings"
     set xrange [0:(sweeps > 1 ? sweeps : 2)]
     if (sweeps > 30) { set style data lines } else { set style data linespoints }
-    plot file using 1:(positive($2)) ls 1 title "motion", \
-         ''   using 1:(positive($3)) ls 2 title "projection", \
-         ''   using 1:(positive($4)) ls 3 title "bi-potential", \
-         ''   using 1:(positive($5)) ls 4 title "penetration", \
-         ''   using 1:(positive($6)) ls 5 title "{/Symbol e}_{glob}"
+    plot file using 1:(positive($2)) ls 1 title "motion, m/s", \
+         ''   using 1:(positive($3)) ls 2 title "projection, N", \
+         ''   using 1:(positive($4)) ls 3 title "bi-potential, W", \
+         ''   using 1:(positive($5)) ls 4 title "penetration, m/s", \
+         ''   using 1:(positive($6)) ls 5 title "ε_{glob}, their sum"
 }
 unset multiplot

@@ -1,13 +1,14 @@
-# The log of a run (nsd-step --log), slurped, as one object. --arg run SCENE_SETTINGS_METHOD,
+# The log of a run (nsd-step --log), slurped, as one object. --arg run SCENE_SETTINGS_METHOD[_SEED[_BOX]],
 # --argjson steps: how many were asked for, --argjson frame: its last frame (nsd-info).
 
 def total(f): map(f) | add;
 
-($run / "_") as [$scene, $settings, $method]
+($run / "_") as [$scene, $settings, $method, $seed, $box]
 | ($settings / "-") as [$newton, $alpha]
 | .[-1] as $last
 | { run: $run, scene: $scene, example: $scene[7:8], dim: (if $scene | endswith("-2d") then 2 else 3 end),
     settings: $newton, alpha: ($alpha // null), method: $method,
+    seed: ($seed // null | if . then tonumber else null end), box: ($box // null | if . then tonumber else null end),
     steps: length, asked: $steps, diverged: ($last.eps_glob == null), # the last logged solve
     # without restitution nothing gets faster than it was thrown or fell
     blew_up: ($frame.max_speed > 1.5 + 9.81 * $frame.time), max_speed: $frame.max_speed }
