@@ -27,7 +27,7 @@ sums() {
 
 # Steps on from the settled pile, with a log. nsd-step's own output is of no interest.
 pile() {
-    nsd-step -n "$steps" --every "$steps" --order colour --log "$work/log" "$@" < "$work/pile.h5" \
+    nsd-step -n "$steps" --every "$steps" --criterion glob --order colour --log "$work/log" "$@" < "$work/pile.h5" \
         > /dev/null 2>&1
 }
 
@@ -51,7 +51,7 @@ thousand() {
     local limit=$1
     shift
     for ((k = 0; k < runs; k++)); do
-        { time nsd-step -m exact -n 1000 "$@" < "$work/start.h5" > "$work/out.h5" 2> /dev/null; } 2>&1 |
+        { time nsd-step -m exact -n 1000 --criterion glob "$@" < "$work/start.h5" > "$work/out.h5" 2> /dev/null; } 2>&1 |
             awk '{ print $1 }'
     done | figure "$start | nsd-step -m exact -n 1000 $*" s "$limit"
 }
@@ -87,7 +87,7 @@ writing() {
     nsd-gen 500 > "$work/start.h5"
     for ((k = 0; k < runs; k++)); do
         for every in 1 1000; do
-            { time nsd-step -m exact -n 1000 --eps 0 --max-sweeps 5000 --order colour --every $every \
+            { time nsd-step -m exact -n 1000 --criterion glob --eps 0 --max-sweeps 5000 --order colour --every $every \
                 < "$work/start.h5" > "$work/out.h5" 2> /dev/null; } 2>&1 | awk '{ printf "%s ", $2 + $3 }'
         done | awk '{ print 100 * ($1 - $2) / $1 }'
     done | figure "writing 1000 frames of the run with 5000 sweeps a step" "% of its CPU" 5
@@ -125,7 +125,7 @@ sizes() {
         heap $tiles > "$work/heap.h5"
         some=$((size < 100000 ? 500000 / size + 1 : 6)) # enough of them for a second
         for ((k = 0; k < runs; k++)); do
-            nsd-step -m exact -n $some --every $some --order colour --max-sweeps 100 --eps 0 --log "$work/log" \
+            nsd-step -m exact -n $some --every $some --order colour --max-sweeps 100 --criterion glob --eps 0 --log "$work/log" \
                 < "$work/heap.h5" 2> /dev/null > "$work/out.h5"
             # the first step makes the list of neighbours
             jq -rs --argjson n $size '.[1:] | [(map(.contacts) | add / length),
@@ -150,8 +150,8 @@ million() {
         for tool in "${tools[@]}"; do
             case $tool in
             nsd-detect) command=(nsd-detect "$work/heap.h5") ;;
-            nsd-solve) command=(nsd-solve -m exact --order colour --max-sweeps 100 --eps 0 "$work/nsd-detect") ;;
-            *auto) command=(nsd-solve --max-sweeps 100 --eps 0 "$work/nsd-detect") ;;
+            nsd-solve) command=(nsd-solve -m exact --order colour --max-sweeps 100 --criterion glob --eps 0 "$work/nsd-detect") ;;
+            *auto) command=(nsd-solve --max-sweeps 100 --criterion glob --eps 0 "$work/nsd-detect") ;;
             nsd-move) command=(nsd-move "$work/nsd-solve") ;;
             esac
             /usr/bin/time -a -f '%e %M' -o "$work/$tool.time" "${command[@]}" > "$work/$tool" 2> /dev/null

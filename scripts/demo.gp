@@ -28,10 +28,10 @@ set size 0.47, 0.5
 set title "the error when each solve ended"
 set logscale y
 set format y "10^{%T}"
-set yrange [1e-16:1e-4]
-set ylabel "{/Symbol e}_{glob}"
+set yrange [1e-10:1e-1]
+set ylabel "natural map, penetration"
 plot dir."/steps.tsv" using 1:($4 > 0 ? $4 : NaN) with points pt 7 ps 0.3 lc rgb 0x1b6ca8 \
-         title "{/Symbol e}_{glob}", \
+         title "natural map", \
      dir."/steps.tsv" using 1:($5 > 0 ? $5 : NaN) with points pt 7 ps 0.3 lc rgb 0xd1495b \
          title "largest true penetration, m/s"
 set origin 0.53, 0

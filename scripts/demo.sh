@@ -8,19 +8,19 @@ steps=1000
 
 echo "500 balls, $steps steps of 5e-5 s (nsd-gen 500 | nsd-step ...)"
 nsd-gen 500 > "$dir/start.h5"
-nsd-step -n "$steps" --eps 1e-8 -o "$dir/out.h5" "$dir/start.h5"
+nsd-step -n "$steps" -o "$dir/out.h5" "$dir/start.h5"
 
 view=(nsd-view --size 560x1300 '--box=-0.0032,0.0032,-0.0032,0.0032,0,0.0155')
 "${view[@]}" "$dir/start.h5" > "$dir/start.png"
 "${view[@]}" "$dir/out.h5" > "$dir/end.png"
 nsd-info "$dir/out.h5" |
     jq -r 'select(.step != null)
-           | [.step, .contacts, .sweeps, .eps_glob, .max_penetration_true] | @tsv' > "$dir/steps.tsv"
+           | [.step, .contacts, .sweeps, .natural, .max_penetration_true] | @tsv' > "$dir/steps.tsv"
 gnuplot -e "dir='$dir'" scripts/demo.gp
 
 echo
 echo "the last steps:"
-printf 'step\tcontacts\tsweeps\teps_glob\tmax_penetration_true\n'
+printf 'step\tcontacts\tsweeps\tnatural map\tmax_penetration_true\n'
 tail -n 5 "$dir/steps.tsv"
 echo
 echo "look at    $dir/demo.png"
