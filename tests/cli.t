@@ -46,8 +46,8 @@ nsd-detect --fclib local|global
 nsd-solve --method auto|sbp|.*\[auto\]
 nsd-solve --global auto|nlgs|.*\[nlgs with -m
 nsd-solve --max-seconds .
-nsd-solve --eps \[1e-10\]
-nsd-solve --criterion glob|scaled|natural.*\[glob; natural for FCLIB\]
+nsd-solve --eps \[0.0001; 1e-10 for FCLIB\]
+nsd-solve --criterion glob|scaled|natural.*\[natural\]
 nsd-solve --max-sweeps \[5000
 nsd-solve --alpha \[1\.75
 nsd-solve --newton plain|linesearch.*\[linesearch\]
@@ -99,10 +99,10 @@ is "and the command before, and the one before that" \
 
 status 0 "a problem that converges: 0" nsd-solve -e "$tmp/contacts.h5"
 is "one line on stderr" "$(wc -l <"$tmp/err")" 1
-like "sums it up" "$(cat "$tmp/err")" '^nsd-solve: .*contacts.h5: [0-9]+ contacts, auto: [0-9]+ sweeps, eps_glob [0-9.e-]+, '
+like "sums it up" "$(cat "$tmp/err")" '^nsd-solve: .*contacts.h5: [0-9]+ contacts, auto: [0-9]+ sweeps, natural [0-9.e-]+, '
 status 0 "one that does not: 0" nsd-solve --max-sweeps 1 "$tmp/contacts.h5"
 mv "$tmp/out" "$tmp/lenient.h5"
-like "with a warning" "$(cat "$tmp/err")" 'eps_glob [0-9.e-]+, [0-9.e-]+ s: NOT CONVERGED to 1e-10$'
+like "with a warning" "$(cat "$tmp/err")" 'natural [0-9.e-]+, [0-9.e-]+ s: NOT CONVERGED to 0.0001$'
 for e in -e --strict; do
     status 1 "and 1 under $e" nsd-solve $e --max-sweeps 1 "$tmp/contacts.h5"
     like "with a warning" "$(cat "$tmp/err")" 'NOT CONVERGED'
@@ -110,7 +110,7 @@ for e in -e --strict; do
 done
 ok "the report has it" jq -e -s '.[-1].converged == false' <(nsd-info "$tmp/lenient.h5")
 status 0 "nsd-step that does not converge: 0" nsd-step -n 3 --max-sweeps 1 "$tmp/heap.h5"
-like "with a warning" "$(cat "$tmp/err")" '3 steps NOT CONVERGED, the first is step 601; the largest eps_glob is [0-9.e-]+, not 1e-10'
+like "with a warning" "$(cat "$tmp/err")" '3 steps NOT CONVERGED, the first is step 601; the largest natural is [0-9.e-]+, not 0.0001'
 status 1 "and 1 under -e" nsd-step -e -n 3 --max-sweeps 1 "$tmp/heap.h5"
 is "and all frames are written" "$(nsd-info "$tmp/out" | jq -c -n '[inputs | select(.step != null).step]')" "[601,602,603]"
 cat "$tmp/contacts.h5" "$tmp/contacts.h5" >"$tmp/two.h5"
@@ -145,7 +145,7 @@ for line in "" "-m auto" "--global nlgs"; do
 done
 refuses 64 "nsd-step --paper" nsd-step --paper "$tmp/heap.h5"
 # What --help has in brackets is what goes: nsd's choice for a packing
-bracket() { nsd-solve --help | tr '\n' ' ' | grep -o -e "--$1 [^]]*\]" | sed 's/.*\[//; s/[];,].*//; s/ for nlgs//'; }
+bracket() { nsd-solve --help | tr '\n' ' ' | grep -o -e "--$1 [^]]*\]" | sed 's/.*\[//; s/[];,].*//; s/ nlgs//'; }
 solve -m sbp "$tmp/contacts.h5" >"$tmp/usual.h5"
 for key in criterion eps max-sweeps order relax newton newton-eps newton-max; do
     is "the default in --help's brackets goes: --$key" "$(nsd-info "$tmp/usual.h5" |

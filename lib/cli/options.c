@@ -74,32 +74,21 @@ static const struct usual paper = {
 
 struct options options = { .threads = 1 };
 
-static const char *usual_eps(char *text, size_t room)
-{
-    const double *eps = usual.eps;
-    bool same = true;
-    for (int k = 1; k < CRITERION_COUNT; k++) same &= eps[k] == eps[0];
-    size_t n = (size_t)snprintf(text, room, same ? "%g" : "%g %s", eps[0], criterion_name[0]);
-    for (int k = 1; !same && k < CRITERION_COUNT && n < room; k++)
-        n += (size_t)snprintf(text + n, room - n, ", %g %s", eps[k], criterion_name[k]);
-    if (n < room) snprintf(text + n, room - n, "; %g for FCLIB", usual.fclib_eps);
-    return text;
-}
-
 const char *options_usual(const void *to)
 {
     static char text[100];
     const struct usual *u = &usual;
     const size_t room = sizeof text;
-    if (to == &options.eps) return usual_eps(text, room);
+    if (to == &options.eps)
+        snprintf(text, room, "%g; %g for FCLIB", u->eps[u->packing], u->fclib_eps);
     if (to == &options.newton) return newton_name[u->newton];
     if (to == &options.warm) return u->warm ? "warm" : "cold";
     if (to == &options.criterion)
         snprintf(text, room, u->packing == u->fclib ? "%s" : "%s; %s for FCLIB",
                  criterion_name[u->packing], criterion_name[u->fclib]);
     if (to == &options.max_sweeps)
-        snprintf(text, room, "%d for nlgs, else %d, or %d where EPS < %g", u->nlgs_sweeps,
-                 u->sweeps, u->tight_sweeps, u->tight);
+        snprintf(text, room, "%d nlgs, else %d; %d below %g", u->nlgs_sweeps, u->sweeps,
+                 u->tight_sweeps, u->tight);
     if (to == &options.order)
         snprintf(text, room, u->nlgs_order == u->order ? "%s" : "%s for nlgs, else %s",
                  order_name[u->nlgs_order], order_name[u->order]);

@@ -50,7 +50,7 @@ struct problem {
     double scale_r; /* N s: what the scaled errors are measured in: g dt and m g dt */
     double fall;    /* m/s: |g| dt */
     double norm_q;  /* m/s: |u~_free| of all contacts, |q| */
-    double speed; /* m/s: the fastest that anything is before the step; given by W 0 */
+    double speed;   /* m/s: the fastest that anything is before the step; given by W 0 */
 };
 
 /*

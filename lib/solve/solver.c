@@ -163,6 +163,7 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
     double overlap = rep->err.max_overlap;
     err_eval(&rep->err, p, s.believes, ERR_ALL, o->threads);
     rep->err.max_overlap = overlap;
+    if (rep->history && rep->sweeps) rep->history[rep->sweeps - 1] = rep->err.paper;
     rep->converged = !p->n || err_value(&rep->err, o->criterion, o->eps) <= o->eps;
     rep->seconds = report_seconds(CLOCK_CPU) - cpu;
     rep->elapsed = report_seconds(CLOCK_WALL) - wall;
