@@ -27,7 +27,7 @@ const struct cli_tool tool = {
     "nsd-info", "[FILE ...]",
     "Shows what is in documents: a line of JSON for each document, then one for each frame.",
     tables,
-    "  nsd-info out.h5 | jq -r 'select(.step != null) | [.step, .sweeps, .eps_glob] | @tsv'\n"
+    "  nsd-info out.h5 | jq -r 'select(.step != null) | [.step, .sweeps, .natural] | @tsv'\n"
     "  nsd-info --last -p out.h5 | jq -r '[.x[], .radius] | @tsv'\n"
 };
 

@@ -24,7 +24,7 @@ const struct cli_tool tool = {
     "Reads packings with contacts, or FCLIB problems (local or global); writes each with its\n"
     "reactions and a report.",
     tables,
-    "  nsd-cat --last out.h5 | nsd-detect | nsd-solve | nsd-err | jq .eps_glob\n"
+    "  nsd-cat --last out.h5 | nsd-detect | nsd-solve | nsd-err | jq .natural\n"
     "  nsd-solve KaplasTower-i1061-4.hdf5 | nsd-err | jq .natural\n"
 };
 
