@@ -45,7 +45,7 @@ struct body {
  * The place of body[row], as bundles have it: a multiple of 8, the doubles of a body, so that an
  * instruction finds it without multiplying.
  */
-enum { BODIES_MOST = INT32_MAX / 8 };
+enum { BODIES_MAX = INT32_MAX / 8 };
 static inline int32_t body_place(int64_t row)
 {
     return (int32_t)(8 * row);

@@ -28,7 +28,7 @@ struct delassus {
 };
 
 /* Room for the blocks, all of it zero; no rows begun. Returns 0 or EX_SOFTWARE with nothing to free. */
-int delassus_room(struct delassus *W, int d, int64_t n, int64_t blocks, struct why *why);
+int delassus_alloc(struct delassus *W, int d, int64_t n, int64_t blocks, struct why *why);
 
 /* W_cc := B, d x d by columns; in the plane with law/local.h's third row and column. */
 void delassus_set_diag(struct delassus *W, int64_t c, const double *B);
@@ -58,8 +58,9 @@ int delassus_sort(struct delassus *to, const struct delassus *W, int64_t rows, c
  * contact[] ascends, of[] of W's contacts is where they are in it, else -1. to->r is of r. 0 or
  * EX_SOFTWARE.
  */
-int delassus_part(struct delassus *to, const struct delassus *W, int64_t n, const int32_t *contact,
-                  const int32_t *of, const double *r, const double *v, struct why *why);
+int delassus_subset(struct delassus *to, const struct delassus *W, int64_t n,
+                    const int32_t *contact, const int32_t *of, const double *r, const double *v,
+                    struct why *why);
 
 /* How many numbers W's blocks have */
 static inline double delassus_entries(const struct delassus *W)

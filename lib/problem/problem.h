@@ -50,7 +50,7 @@ struct problem {
     double scale_r; /* N s: what the scaled errors are measured in: g dt and m g dt */
     double fall;    /* m/s: |g| dt */
     double norm_q;  /* m/s: |u~_free| of all contacts, |q| */
-    double speed; /* m/s: the fastest that anything is before the step; given by W 0 */
+    double speed;   /* m/s: the fastest that anything is before the step; given by W 0 */
 };
 
 /*
@@ -65,7 +65,7 @@ int problem_prepare_delassus(struct problem *, struct delassus *, double alpha, 
 void problem_free(struct problem *p);
 
 /* Of a packing: the bodies get their velocities before the step and dt g, as without any reaction. */
-void problem_free_motion(struct problem *p);
+void problem_set_free_motion(struct problem *p);
 
 /* How many of these threads share a sweep: all, or where the groups are too small for that, one, or one a
    half. */

@@ -32,11 +32,11 @@ struct side {
 };
 
 /* dx and dz of a contact, to be had again */
-static inline void side_keep(const struct side *s, double to[2][3])
+static inline void side_save(const struct side *s, double to[2][3])
 {
     for (int k = 0; k < 3; k++) to[0][k] = s->dx[k], to[1][k] = s->dz[k];
 }
-static inline void side_recall(struct side *s, double from[2][3])
+static inline void side_restore(struct side *s, double from[2][3])
 {
     for (int k = 0; k < 3; k++) s->dx[k] = from[0][k], s->dz[k] = from[1][k];
 }
@@ -59,16 +59,15 @@ struct central {
  * From the iterate's reactions, or from none, with x o z = gap exactly. False where memory is short; then
  * there is nothing to end.
  */
-bool central_begin(struct central *m, struct newton *newton, struct solve *s, double gap,
-                   bool cold);
-void central_end(struct central *m);
+bool central_init(struct central *m, struct newton *newton, struct solve *s, double gap, bool cold);
+void central_free(struct central *m);
 
 /* The mean of x.z */
-double central_mean(const struct central *m);
+double central_mean_gap(const struct central *m);
 
 /* y of all contacts at their x, smoothed over the gap; the scaled natural map as the reactions stand,
    the best of which are kept. */
-double central_look(struct central *m);
+double central_evaluate(struct central *m);
 
 /* F and l of all contacts; false where one of them has come too near the border. */
 bool central_scale(struct central *m);
@@ -87,6 +86,6 @@ bool central_direction(struct central *m, bool factorised);
 bool central_finish(struct central *m, double map);
 
 /* The best reactions, brought back into their cones, become the iterate, and are forgotten. */
-void central_settle(struct central *m);
+void central_restore_best(struct central *m);
 
 #endif

@@ -16,7 +16,7 @@
 
 #include <stdbool.h>
 
-enum { FACE_MOST = 16 }; /* contacts; more are several faces */
+enum { FACE_CONTACTS_MAX = 16 }; /* contacts; more are several faces */
 
 struct face {
     int32_t *contact;  /* [count] */

@@ -41,7 +41,7 @@ int newton_factors(struct newton *w, struct solve *s, const char **reason);
 void newton_free(struct newton *w);
 
 /* Sweeps that cost as much as a Newton step, within limits that serve */
-int32_t newton_share(const struct newton *w, const struct problem *p);
+int32_t newton_sweeps_per_step(const struct newton *w, const struct problem *p);
 
 /*
  * Full steps with this rho from x[n d], which knows what each contact does, to the solution, which becomes

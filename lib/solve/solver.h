@@ -42,7 +42,7 @@ struct solve {
     struct report *rep;
     double start;     /* s on the wall */
     double pace;      /* s that a priced ns has taken, of the slowest Newton step so far */
-    struct best best; /* the best iterate that was judged since solve_keep() */
+    struct best best; /* the best iterate that was judged since solve_keep_best() */
 };
 
 /* run: from the iterate given to the criterion, or to where it sees no way on. Returns 0, or -1 when
@@ -88,12 +88,12 @@ void solve_react(struct solve *s, const double *r);
  * From now on the best iterate is kept, this one the first, which has been judged; and back to it, unless
  * the iterate is as good: so a solve ends. 0, or -1 when memory is short.
  */
-int solve_keep(struct solve *s);
-void solve_back(struct solve *s);
+int solve_keep_best(struct solve *s);
+void solve_restore_best(struct solve *s);
 /* The same with a keeper of the solver's own: room for iterates; what was just judged offered; back. */
-int solve_keeper(struct best *b, const struct problem *p);
-void solve_offer(const struct solve *s, struct best *b);
-void solve_return(struct solve *s, const struct best *b);
+int solve_best_init(struct best *b, const struct problem *p);
+void solve_best_offer(const struct solve *s, struct best *b);
+void solve_best_restore(struct solve *s, const struct best *b);
 
 /* The sweep's terms into the report, where a history is asked for; -1 when memory is short. */
 int solve_history(struct solve *s);
@@ -103,6 +103,6 @@ bool solve_affords(const struct solve *s, double price);
 /* A Newton step of this price, begun at `since` (s on the wall), into the report */
 void solve_count_newton(struct solve *s, double price, double since);
 /* contacts: of more, a keeper has no room for u */
-enum { MANY = 100000 };
+enum { MANY_CONTACTS = 100000 };
 
 #endif

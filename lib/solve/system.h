@@ -35,7 +35,7 @@ double system_price_least(const struct scaled *a);
  */
 bool system_solve(struct system *s, const double *L, const double *D, double *x);
 /* The same with the L and D of the last time, which are still there, factorised already. */
-bool system_again(struct system *s, double *x);
+bool system_solve_again(struct system *s, double *x);
 
 /*
  * The sign of det(L W + D), +-1, of the last time; but for a factor that is the system's, so that it
