@@ -92,8 +92,7 @@ void solve_react(struct solve *s, const double *r);
 /* From now on keeps the best iterate, beginning with this one, which must have been judged. 0, or
    -1 when memory is short. */
 int solve_keep_best(struct solve *s);
-/* Goes back to the best iterate kept, unless the present one is as good. Every solve ends with it.
-   */
+/* Goes back to the best iterate kept, unless the present one is as good. Every solve ends so. */
 void solve_restore_best(struct solve *s);
 /* The same three steps with a `struct best` of the solver's own: room for an iterate; the iterate
    just judged is kept if it is better; back to the one kept */
