@@ -247,7 +247,7 @@ static void test_system(int d, int each, double least)
            "%dD, %d points, D from %.0e to %.0e, %s: residual %.1e", d, each, least, 1 / least,
            round ? "again" : "solved", worst);
         for (int i = 0; i < n; i++) x[i] = b[i] = number(-1, 1);
-        if (!round) again = system_again(s, x);
+        if (!round) again = system_solve_again(s, x);
     }
     system_free(s), scaled_free(&all), problem_free(&p), delassus_free(&W), bricks_free(&w);
     free(a), free(x), free(b), free(L), free(D);

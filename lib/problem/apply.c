@@ -63,7 +63,7 @@ void problem_apply(const struct problem *p, struct apply *a, const double *x, do
 void problem_renew(struct problem *p, int threads)
 {
     if (!p->body) return;
-    problem_free_motion(p);
+    problem_set_free_motion(p);
     if (threads == 1) { // a team has its price
         sweep_widest()->push(p, 0, 1);
         return;

@@ -181,7 +181,7 @@ int assembly_blocks(const struct assembly *A, struct delassus *W, struct why *wh
     int64_t *met = malloc((size_t)(n + 1) * sizeof *met);
     if (!met) return short_of_memory(why);
     for (int64_t c = 0; c < n; c++) blocks += assembly_neighbours(A, c, met);
-    if (!delassus_room(W, d, n, blocks, why)) {
+    if (!delassus_alloc(W, d, n, blocks, why)) {
         blocks = 0;
         for (int64_t c = 0; c < n; c++) {
             W->mu[c] = assembly_bundle(A, c)->mu[slot_lane(A->row[c])];

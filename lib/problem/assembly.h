@@ -10,8 +10,8 @@
  *
  *     M v = H r + f,   D u~ = H^T v + w,   f = M v_free,
  *
- * are the velocities of the movable bodies that have a contact, in the problem's order: (vx, vy, vz,
- * wx, wy, wz), or (vx, vy, wz) in the plane.
+ * are the velocities of the movable bodies that have a contact, in the problem's order: (vx, vy,
+ * vz, wx, wy, wz), or (vx, vy, wz) in the plane.
  */
 #ifndef NSD_ASSEMBLY_H
 #define NSD_ASSEMBLY_H
@@ -21,22 +21,23 @@
 
 struct assembly {
     const struct problem *p;
-    int64_t *row;      /* [n] contact c is row[c] of p */
+    int64_t *row;      /* [n] contact c is in slot row[c] of p */
     int32_t *end;      /* [2 n] bodies a and b of contact c at 2 c, 2 c + 1; -1: immovable */
-    struct lists of;   /* the ends of each body */
+    struct lists of;   /* of each body: its places in end[] */
     double *q, *w;     /* [n d] D u~ at v_free, and with the movable bodies at rest, m/s */
     struct body *free; /* [p->bodies] at v_free */
 };
 
-/* All return 0, EX_SOFTWARE, or EX_DATAERR where FCLIB's 32-bit indices do not reach. What they
-   fill is to be freed in any case. */
-int assembly_init(struct assembly *, const struct problem *, struct why *);
-int assembly_W(const struct assembly *A, struct stored *W, struct why *why); /* by rows */
-/* W block by block, with q, mu and r = 0. There is nothing to free where it fails. */
+/* All return 0, EX_SOFTWARE, or EX_DATAERR where the problem is too large for FCLIB's 32-bit
+   indices. What they fill is to be freed in any case. */
+int assembly_init(struct assembly *A, const struct problem *p, struct why *why);
+/* W by rows */
+int assembly_W(const struct assembly *A, struct stored *W, struct why *why);
+/* W block by block, with q, mu and r = 0; nothing to free where it fails */
 int assembly_blocks(const struct assembly *A, struct delassus *W, struct why *why);
-/* By columns, and f[M->n]. */
-int assembly_MH(const struct assembly *, struct stored *M, struct stored *H, double **f,
+/* M and H by columns, and f[M->n] */
+int assembly_MH(const struct assembly *A, struct stored *M, struct stored *H, double **f,
                 struct why *);
-void assembly_free(struct assembly *);
+void assembly_free(struct assembly *A);
 
 #endif

@@ -1,12 +1,14 @@
 /*
- * problem/bundle.h: the rows of the sweep, eight side by side: up to eight contacts of one group, which have
- * nothing to do with each other, so that any number of them may be done at once.
+ * problem/bundle.h: what the sweep reads of its contacts, in bundles of eight side by side. The
+ * contacts of a bundle belong to one group: they do not depend on each other, so all may be solved
+ * at once.
  *
- * Every number of a bundle is a cache line, lane k of it contact k's. Of LANES lanes at once, k is
- * the first. A sweep over many contacts takes as long as its rows are long, wanted or not: what is
- * wanted now and then stands elsewhere (problem/problem.h: u, rebound).
+ * Each quantity of a bundle fills a cache line; lane k belongs to contact k. Functions that work on
+ * LANES lanes at once are given the first, k. A sweep over many contacts takes as long as it takes
+ * to read their bundles, so what is seldom needed stands elsewhere (problem/problem.h: u, rebound).
  *
- * A lane without a contact (the last of a group) has rho 0 and w 1: it takes off, and counts nothing.
+ * A lane without a contact (at the end of a group) has rho = 0 and w = 1: its contact separates,
+ * and is not counted.
  */
 #ifndef NSD_BUNDLE_H
 #define NSD_BUNDLE_H
@@ -19,22 +21,36 @@ struct bundle {
     union {
         struct {
             double n[3][BUNDLE], t1[3][BUNDLE];
-            double la[BUNDLE], lb[BUNDLE]; /* m: centre of a to the point along n, that to b's */
+            double la[BUNDLE], lb[BUNDLE]; /* m: lever arms along n, from a's centre and to b's */
         };
         double W[9][BUNDLE]; /* kg^-1: W_cc of a problem that is given by W */
     };
-    double w[2][BUNDLE];  /* kg^-1: W~_cc, normal and tangential; where full, lambda_max twice */
-    double iw[2][BUNDLE]; /* kg: 1/w */
+    double w[2][BUNDLE]; /* kg^-1: W~_cc, normal and tangential; of a full W_cc, lambda_max twice */
+    double iw[2][BUNDLE];           /* kg: 1/w */
     double mu[BUNDLE], rho[BUNDLE]; /* -, kg */
     double r[3][BUNDLE];            /* N s */
-    int32_t a[BUNDLE], b[BUNDLE];   /* places of bodies; of a W a is the contact */
+    int32_t a[BUNDLE], b[BUNDLE];   /* places of bodies; given by W: a is the contact, -1: none */
 };
 
-/* Of a bundle some of whose contacts rebound: u~ = s u + offset */
+/* Newton's impact law in a bundle: u~ = s u + offset */
 struct rebound {
     double s[2][BUNDLE];      /* 1/(1 + e_n), 1/(1 + e_t) */
     double offset[3][BUNDLE]; /* m/s: D^-1 E u^- */
 };
+
+/* Of eight partial results, one a lane: their sum; the largest, at least 0 and never NaN */
+static inline double bundle_sum(const double lane[BUNDLE])
+{
+    double sum = 0;
+    for (int k = 0; k < BUNDLE; k++) sum += lane[k];
+    return sum;
+}
+static inline double bundle_max(const double lane[BUNDLE])
+{
+    double max = 0;
+    for (int k = 0; k < BUNDLE; k++) max = lane[k] > max ? lane[k] : max;
+    return max;
+}
 
 struct body {
     double v[3], w[3]; /* m/s, rad/s */
@@ -42,13 +58,13 @@ struct body {
 };
 
 /*
- * The place of body[row], as bundles have it: a multiple of 8, the doubles of a body, so that an
- * instruction finds it without multiplying.
+ * The place of body[index], as bundles store it: its offset in doubles, of which a body has 8, so
+ * that an instruction finds it without multiplying.
  */
-enum { BODIES_MOST = INT32_MAX / 8 };
-static inline int32_t body_place(int64_t row)
+enum { BODIES_MAX = INT32_MAX / 8 }; /* whose places are 32-bit */
+static inline int32_t body_place(int64_t index)
 {
-    return (int32_t)(8 * row);
+    return (int32_t)(8 * index);
 }
 static inline int64_t body_index(int32_t place)
 {
@@ -59,11 +75,11 @@ ALWAYS_INLINE double *body_at(struct body *body, int32_t place)
     return (double *)body + place;
 }
 
-/* LANES bodies side by side: what they are, */
+/* LANES bodies side by side: their 1/mass and 1/inertia */
 struct bodies {
     vd im, ii;
 };
-/* and how they move, or how that changes */
+/* and their velocities, or changes of these */
 struct twist {
     vd v[3], w[3];
 };
@@ -91,14 +107,14 @@ ALWAYS_INLINE void bodies_add(struct body *body, const int32_t *place, const str
     }
 }
 
-/* The frames; t2 = n x t1 is cheaper to compute than to fetch. */
+/* The bases; t2 = n x t1 is cheaper to compute than to load. */
 ALWAYS_INLINE void bundle_basis(const struct bundle *c, int k, vd n[3], vd t1[3], vd t2[3])
 {
     for (int i = 0; i < 3; i++) n[i] = vload(c->n[i] + k), t1[i] = vload(c->t1[i] + k);
     for (int i = 0, j = 1, l = 2; i < 3; j = l, l = i++) t2[i] = n[j] * t1[l] - n[l] * t1[j];
 }
 
-/* u~ as the bodies move, and t2, which bundle_push() wants again; e NULL: u */
+/* u~ from the bodies' velocities, or u where e is NULL; and t2, which bundle_push() needs again */
 ALWAYS_INLINE void bundle_velocity(const struct bundle *c, const struct rebound *e, int k,
                                    const struct twist *a, const struct twist *b, vd u[3], vd t2[3])
 {
@@ -113,7 +129,7 @@ ALWAYS_INLINE void bundle_velocity(const struct bundle *c, const struct rebound 
     for (int i = 0; i < 3 && e; i++) u[i] = vload(e->s[i > 0] + k) * u[i] + vload(e->offset[i] + k);
 }
 
-/* Reactions changed by dr (n, t1, t2) move the bodies. */
+/* Adds to the bodies' velocities what a change dr (n, t1, t2) of the reactions makes of them. */
 ALWAYS_INLINE void bundle_push(const struct bundle *c, int k, const vd t2[3], const vd dr[3],
                                struct body *body, const struct bodies *a, const struct bodies *b)
 {

@@ -8,7 +8,7 @@
  *     (v, lambda) = K^-1 ((f, -b) + (H, 0) r) = v0 + V r,
  *     u = W r + q,  W = H^T V,  q = H^T v0 + w  (the upper rows of V and v0).
  *
- * K may be unsymmetric, not singular; KLU factorises it.
+ * K may be unsymmetric but not singular; KLU factorises it.
  */
 #ifndef NSD_CONDENSE_H
 #define NSD_CONDENSE_H
@@ -21,9 +21,9 @@ struct global {
     double *f, *b;         /* [nv], [nl] */
 };
 
-void global_free(struct global *);
+void global_free(struct global *P);
 
-/* v0 + V r: what the condensation keeps, so that r gives v and lambda back. */
+/* (v, lambda) = v0 + V r: kept of the condensation, to compute v and lambda from a solution r. */
 struct motion {
     int64_t nv, nl;
     double *v0;      /* [nv + nl] */
@@ -31,12 +31,14 @@ struct motion {
 };
 
 /*
- * W, and what q is more than w: H^T v0 is added to q[n d]. Returns 0, EX_DATAERR where K is singular,
+ * Fills W, and adds H^T v0 to q[n d], which holds w. Returns 0, EX_DATAERR where K is singular,
  * or EX_SOFTWARE; motion and W are to be freed in any case.
  */
-int condense(const struct global *, struct motion *, struct sparse *W, double *q, struct why *);
+int condense(const struct global *P, struct motion *U, struct sparse *W, double *q,
+             struct why *why);
 
-void motion_of(const struct motion *, const double *r, double *v); /* v[nv + nl] */
-void motion_free(struct motion *);
+/* v[nv + nl] = v0 + V r */
+void motion_of(const struct motion *U, const double *r, double *v);
+void motion_free(struct motion *U);
 
 #endif

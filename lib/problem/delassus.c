@@ -72,7 +72,7 @@ static int no_memory(struct delassus *W, int64_t n, struct why *why)
     return why_set(why, EX_SOFTWARE, "out of memory for a problem of %lld contacts", (long long)n);
 }
 
-int delassus_room(struct delassus *W, int d, int64_t n, int64_t blocks, struct why *why)
+int delassus_alloc(struct delassus *W, int d, int64_t n, int64_t blocks, struct why *why)
 {
     *W = (struct delassus){ .d = d, .n = n };
     W->first = calloc((size_t)(n + 1), sizeof *W->first);
@@ -98,7 +98,7 @@ int delassus_init(struct delassus *W, int d, int64_t n, int64_t entries, const i
     if (!e) { // by column, then stably by row
         sort_by_block(entries, col, d, n, NULL, half, tally);
         sort_by_block(entries, row, d, n, half, order, tally);
-        e = delassus_room(W, d, n, count_blocks(entries, order, row, col, d), why);
+        e = delassus_alloc(W, d, n, count_blocks(entries, order, row, col, d), why);
     }
     if (!e) {
         const double none[9] = { 0 };
@@ -158,13 +158,14 @@ static void take(int d, const double *B, const double *x, double *y)
         for (int i = 0; i < d; i++) y[i] -= B[d * j + i] * x[j];
 }
 
-int delassus_part(struct delassus *to, const struct delassus *W, int64_t n, const int32_t *contact,
-                  const int32_t *of, const double *r, const double *v, struct why *why)
+int delassus_subset(struct delassus *to, const struct delassus *W, int64_t n,
+                    const int32_t *contact, const int32_t *of, const double *r, const double *v,
+                    struct why *why)
 {
     int d = W->d, dd = d * d;
     int64_t blocks = 0;
     for (int64_t i = 0; i < n; i++) blocks += W->first[contact[i] + 1] - W->first[contact[i]];
-    if (delassus_room(to, d, n, blocks, why)) return why->status;
+    if (delassus_alloc(to, d, n, blocks, why)) return why->status;
     for (int64_t i = 0; i < n; i++) {
         int64_t c = contact[i], at = to->first[i];
         double *q = to->q + d * i;

@@ -1,5 +1,5 @@
 /*
- * problem/err.h: how far (u, r) is from the law and from the motion.
+ * problem/err.h: how far (u, r) is from satisfying the law and the motion.
  *
  * eps_glob [estimator, corrected]: the mean over the contacts of
  *
@@ -8,8 +8,8 @@
  *     eps_bc     = |u~.r + mu r_n |u~_t||
  *     eps_pen    = -min(0, u~_n)
  *
- * r as a force, r/dt. It is 0 where there is no contact. A method that believes nothing of its own
- * (SBP, SAL) is judged by the motion's u~, and eps_motion vanishes.
+ * with r as a force, r/dt. It is 0 where there is no contact. A method that has no u~ of its own
+ * (SBP, SAL) is judged by the motion's u~, and eps_motion is 0.
  */
 #ifndef NSD_ERR_H
 #define NSD_ERR_H
@@ -17,16 +17,17 @@
 #include "problem/report.h"
 #include "problem/sweep.h"
 
-/* All of *e but max_overlap, or only a part of it (the rest 0). The same bits for any threads. */
+/* Computes the terms asked for, of all contacts but without max_overlap; the rest is 0. believes: u
+   is the local method's own. The same bits for any number of threads. */
 void err_eval(struct err *e, const struct problem *p, bool believes, enum err_terms terms,
               int threads);
 
-/* The number that a criterion is about */
+/* The number that a criterion is about: eps_glob, its scaled form, or the natural map */
 double err_of(const struct err *e, enum criterion c);
 /*
- * The number that a solve compares with eps. It is err_of(), but that a natural map is not believed where
- * what is wrong with the velocities is as large as what the contacts have to change (err.stray): the map is
- * relative to |r|, and reactions that grow without end make it small.
+ * The number that a solve compares with eps: err_of(), except that a natural map does not count
+ * where the error of the velocities is as large as the velocities that the contacts have to change
+ * (err.stray). The map is relative to |r|, so reactions that grow without end make it small.
  */
 double err_value(const struct err *e, enum criterion c, double eps);
 enum err_terms err_terms_of(enum criterion c);

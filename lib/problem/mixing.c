@@ -64,7 +64,7 @@ ALWAYS_INLINE void react_text(int d, int depth, struct problem *p, const struct 
 {
     double *g = m.dg[m.next], *from = m.df[m.next];
     for (int64_t i = first; i < end; i++) {
-        fetch(p, i);
+        fetch_ahead(p, i);
         for (int k = 0; k < BUNDLE; k += LANES) {
             struct bundle *c = &p->bundle[i];
             vd x[3] = { splat(0), splat(0), splat(0) }, r[3], dr[3];

@@ -111,7 +111,7 @@ static void movers(struct problem *p)
     }
 }
 
-void problem_free_motion(struct problem *p)
+void problem_set_free_motion(struct problem *p)
 {
     const struct packing *pack = p->packing;
     const vec3 dv = v3_scale(pack->dt, pack->g);
@@ -207,8 +207,7 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     *p = (struct problem){
         .d = pack->dim, .n = s->n, .dt = pack->dt, .packing = pack, .bodies = seats(pack, s)
     };
-    if (p->bodies > BODIES_MOST)
-        return why_set(why, EX_DATAERR, "more than %d bodies", BODIES_MOST);
+    if (p->bodies > BODIES_MAX) return why_set(why, EX_DATAERR, "more than %d bodies", BODIES_MAX);
     p->body = lines(p->bodies, sizeof *p->body);
     bool room = p->body && !schedule_bodies(&plan, order, s, pack) && lay_out(p, &plan);
     schedule_free(&plan);
@@ -232,7 +231,7 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     p->scale_v = (g > 0 ? g : 9.81) * pack->dt;
     p->scale_r = p->scale_v * mean_mass(pack);
     p->speed = top_speed(pack);
-    problem_free_motion(p);
+    problem_set_free_motion(p);
     for (int64_t i = 0; i < p->slots; i++) {
         double q[3];
         if (p->contact[i] < 0) continue;

@@ -1,18 +1,18 @@
 /*
- * problem/problem.h: one step's contact problem in the form that the sweep reads: hot rows, in bundles.
+ * problem/problem.h: one step's contact problem in the form that the sweep reads, in bundles.
  *
- * Of a packing W is never assembled: u_c comes from the bodies' velocities, and a change of r_c goes
- * into them. Of an FCLIB problem there is only W. The sweep is one text over these two ways of
- * gathering b_c and scattering r_c.
+ * For a packing W is never assembled: u_c is computed from the bodies' velocities, and a change of
+ * r_c is added to them. For an FCLIB problem there is only W. The sweep is written once over these
+ * two ways of computing b_c and passing on r_c.
  *
- * Newton's impact law [newtonlaw, corrected] is in the rows: the law sees
+ * Newton's impact law [newtonlaw, corrected] is part of the bundles: the local methods see
  *
  *     u~ = D^-1 (u + E u^-),  W~ = D^-1 W,  D = 1 + E,  E = diag(e_n, e_t, e_t).
  *
  * For balls and discs the lever arms lie along n, hence W~_cc = diag(w_n, w_t, w_t).
  *
- * Row i is lane i % 8 of bundle i / 8. What does not move has a copy of its own in every contact: two
- * contacts of a group then share no body at all, and all are written alike.
+ * Slot i is lane i % 8 of bundle i / 8. Each contact has a copy of its own of a body that does not
+ * move: the contacts of a group then share no body at all, and all bodies are written back alike.
  */
 #ifndef NSD_PROBLEM_H
 #define NSD_PROBLEM_H
@@ -23,58 +23,61 @@
 #include "problem/delassus.h"
 #include "problem/schedule.h"
 
-/* Bundles of 1.2 MB: of more, none is in a near cache when a sweep comes back to it. */
-enum { FAR_BUNDLES = 1024 };
+enum {
+    FAR_BUNDLES = 1024 /* bundles, 1.2 MB: more do not stay in a near cache from sweep to sweep */
+};
 
 struct problem {
     int d;
     int64_t n;               /* contacts */
-    int64_t bundles, slots;  /* 8 slots a bundle, some without a contact */
+    int64_t bundles, slots;  /* slots: 8 a bundle, some without a contact */
     struct bundle *bundle;   /* [bundles] in the order of the sweep */
     struct rebound *rebound; /* [bundles]; NULL: e_n = e_t = 0 everywhere */
     double (*u)[3][BUNDLE];  /* [bundles] m/s: what the local method believes */
-    int32_t *contact;        /* [rows] row i is contact[i] of the packing, of W; -1: none */
-    int64_t groups;          /* no two rows of a group share a body (a block of W): */
+    int32_t *contact;        /* [slots] slot i is contact[i] of the packing or of W; -1: none */
+    int64_t groups;          /* no two contacts of a group share a body (a block of W): */
     int64_t *group;          /* [groups + 1] bundles group[g] .. group[g+1]-1 may be done at once */
-    struct two_thread_split *split; /* NULL: the order knows none */
-    int64_t bodies;                 /* 0: given by W */
-    struct body *body; /* [bodies] the packing's, by colours as the sweep first meets them, and
-                           copies of what does not move; NULL: given by W */
+    struct two_thread_split *split; /* NULL: the order has no halves */
+    int64_t bodies;                 /* of body[]; 0: given by W */
+    struct body *body; /* [bodies] the packing's, by colours in the order in which the sweep first
+                          meets them, and copies of what does not move; NULL: given by W */
     const struct packing *packing; /* borrowed: its velocities are those before the step */
     int32_t *seat;                 /* [packing->n] body i of the packing is body[seat[i]] */
     struct delassus *W;            /* borrowed; NULL: given by bodies */
-    struct delassus sorted;        /* given by W: its rows as they are here */
+    struct delassus sorted;        /* given by W: its block rows in the order of the slots */
     bool full;                     /* given by W, and some W_cc is more than diag(w_n, w_t, w_t) */
     double dt;      /* s: the paper's forces are r / dt; 1 where there are no steps */
-    double scale_v; /* m/s and */
-    double scale_r; /* N s: what the scaled errors are measured in: g dt and m g dt */
+    double scale_v; /* m/s: the unit of velocities in scaled errors, g dt */
+    double scale_r; /* N s: that of reactions, m g dt */
     double fall;    /* m/s: |g| dt */
     double norm_q;  /* m/s: |u~_free| of all contacts, |q| */
-    double speed;   /* m/s: the fastest that anything is before the step; given by W 0 */
+    double speed;   /* m/s: the fastest point before the step, plus g dt; 0: given by W */
 };
 
 /*
- * The slots of a packing's contacts; r from the contacts when they are solved, else 0, with the
- * bodies at v_free + M^-1 P r. rho = alpha m_red when alpha > 0, else factor/lambda_max(W~_cc).
+ * The problem of a packing's contacts; r from the contacts where they are solved, else 0, and the
+ * bodies at v_free + M^-1 P r. rho = alpha m_red where alpha > 0, else
+ * rho_factor/lambda_max(W~_cc). Borrows pack. Returns 0, EX_SOFTWARE, or EX_DATAERR where there are
+ * too many bodies, with nothing to free.
  */
-int problem_prepare(struct problem *, const struct packing *, const struct contacts *, double alpha,
-                    double rho_factor, enum order, struct why *);
-/* The same of a problem given by W; r from W->r. */
-int problem_prepare_delassus(struct problem *, struct delassus *, double alpha, double rho_factor,
-                             enum order, struct why *);
+int problem_prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
+                    double alpha, double rho_factor, enum order order, struct why *why);
+/* The same for a problem given by W, which it borrows; r from W->r. */
+int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha, double rho_factor,
+                             enum order order, struct why *why);
 void problem_free(struct problem *p);
 
-/* Of a packing: the bodies get their velocities before the step and dt g, as without any reaction. */
-void problem_free_motion(struct problem *p);
+/* Sets the bodies of a packing to v_free, their velocities before the step plus dt g. */
+void problem_set_free_motion(struct problem *p);
 
-/* How many of these threads share a sweep: all, or where the groups are too small for that, one, or one a
-   half. */
+/* How many of these threads are to share a sweep: all where the groups are large enough, else two
+   where the order has halves, else one */
 int problem_team(const struct problem *p, int threads);
 
-/* What was found, slot by slot, into the contacts; -1 when memory is short. */
-int problem_store(const struct problem *, struct contacts *);
+/* Stores r, u and the status of each contact in s->found; -1 when memory is short. */
+int problem_store(const struct problem *p, struct contacts *s);
 
-/* Row i: its bundle and lane; its r and u. */
+/* The bundle and the lane of slot i, its impact law (NULL: none), its r (N s) and u (m/s) */
 static inline struct bundle *slot_bundle(const struct problem *p, int64_t i)
 {
     return &p->bundle[i / BUNDLE];
@@ -87,16 +90,16 @@ static inline struct rebound *slot_rebound(const struct problem *p, int64_t i)
 {
     return p->rebound ? &p->rebound[i / BUNDLE] : NULL;
 }
-void slot_get(const struct problem *, int64_t i, double r[3], double u[3]);
-void slot_set(struct problem *, int64_t i, const double r[3], const double u[3]);
+void slot_get(const struct problem *p, int64_t i, double r[3], double u[3]);
+void slot_set(struct problem *p, int64_t i, const double r[3], const double u[3]);
 
-/* 1/rho_a of the natural map: the largest eigenvalue of the rows' W~_cc */
+/* The largest eigenvalue of W~_cc: 1/rho_a of the natural map */
 ALWAYS_INLINE vd bundle_lambda(const struct bundle *c, int k)
 {
     return larger(vload(c->w[0] + k), vload(c->w[1] + k));
 }
 
-/* u~ of lanes k.. of c from these bodies' velocities */
+/* u~ of lanes k.. of c from the velocities of body[], or u where e is NULL */
 ALWAYS_INLINE void body_velocity(struct body *body, const struct bundle *c, const struct rebound *e,
                                  int k, vd u[3])
 {
@@ -107,7 +110,7 @@ ALWAYS_INLINE void body_velocity(struct body *body, const struct bundle *c, cons
     bundle_velocity(c, e, k, &ma, &mb, u, t2);
 }
 
-/* Reactions changed by dr move these bodies. */
+/* Adds to the velocities of body[] what a change dr of the reactions makes of them. */
 ALWAYS_INLINE void body_push(struct body *body, const struct bundle *c, int k, const vd dr[3])
 {
     struct bodies a, b;

@@ -1,4 +1,7 @@
-/* problem/report.h: what a solve tells of itself; no clock in it but `seconds`, which no document gets. */
+/*
+ * problem/report.h: what a solve reports. Only seconds, elapsed and detection come from a clock,
+ * and no document gets these.
+ */
 #ifndef NSD_REPORT_H
 #define NSD_REPORT_H
 
@@ -27,7 +30,7 @@ struct err {
     double natural;              /* |r - P(r - rho_a u^)| / |r|, rho_a = 1/lambda_max(W_aa) */
     double natural_siconos;      /* |r - P(r - u^)| / |q|, step 1: not scale-free */
     double natural_q;            /* |(r - P(r - rho_a u^))/rho_a| / |q| */
-    double stray; /* the same over max(|q|, sqrt(n) g dt); 0 of a problem given by W */
+    double stray; /* the same over max(|q|, sqrt(n) g dt); 0 for a problem given by W */
 };
 
 struct report {
@@ -37,25 +40,24 @@ struct report {
     double t; /* s, after the step */
     struct err err;
     enum criterion criterion;
-    double eps; /* what was asked */
-    int32_t sweeps;
+    double eps;     /* what was asked */
+    int32_t sweeps; /* or steps of cg */
     bool converged;
-    int64_t newton;      /* Newton steps in all */
-    int64_t safeguarded; /* local solves that ended in the stand-in */
-    int64_t gave_up;     /* local solves that left the law unmet */
-    double work;         /* ns, counted and not timed, of all that the solve did [solve/prices.h] */
-    const char
-        *fallback;    /* why the solver that was asked for could not, and swept instead; or NULL */
-    double seconds;   /* s of CPU, of all threads, in the solve: for the log and stderr only, */
-    double elapsed;   /* as are s on the wall */
-    double detection; /* and s of CPU for the contacts, where the step found them itself */
+    int64_t newton;       /* Newton steps in all */
+    int64_t safeguarded;  /* local solves that ended with the exact solution instead */
+    int64_t gave_up;      /* local solves that did not satisfy the law */
+    double work;          /* ns, counted and not timed, of the whole solve [solve/prices.h] */
+    const char *fallback; /* why the solver asked for could not go on, and swept instead; or NULL */
+    double seconds;       /* s of CPU, of all threads, in the solve */
+    double elapsed;       /* s on the wall, in the solve */
+    double detection;     /* s of CPU to find the contacts, where the step did so itself */
     struct terms *history; /* [sweeps] under --history, else NULL; to be freed */
 };
 
-/* s of the clocks that a report tells */
+/* s on the clock: of CPU in all threads of this process; on the wall */
 enum report_clock { CLOCK_CPU, CLOCK_WALL };
-double report_seconds(enum report_clock);
+double report_seconds(enum report_clock clock);
 
-void report_free(struct report *);
+void report_free(struct report *r);
 
 #endif

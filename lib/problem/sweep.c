@@ -124,7 +124,7 @@ ALWAYS_INLINE void visit(struct problem *p, int64_t first, int64_t end, const st
     for (int64_t i = first; i < end; i++) {
         struct bundle *c = &p->bundle[i];
         double(*belief)[BUNDLE] = o->keep ? p->u[i] : NULL;
-        fetch(p, i);
+        fetch_ahead(p, i);
         for (int k = 0; k < BUNDLE; k += LANES) {
             struct local l;
             vd W[9], dr[3];
@@ -185,7 +185,7 @@ ALWAYS_INLINE void push_group(struct problem *p, int64_t first, int64_t end, voi
 {
     (void)task;
     for (int64_t i = first; i < end; i++) {
-        fetch(p, i);
+        fetch_ahead(p, i);
         for (int k = 0; k < BUNDLE; k += LANES) {
             const struct bundle *c = &p->bundle[i];
             const vd r[3] = { vload(c->r[0] + k), vload(c->r[1] + k), vload(c->r[2] + k) };
@@ -273,7 +273,7 @@ static void judge(const struct problem *p, int64_t first, int64_t end, bool beli
                   enum err_terms part, struct sums *s)
 {
     for (int64_t i = first; i < end; i++) {
-        fetch(p, i);
+        fetch_ahead(p, i);
         for (int k = 0; k < BUNDLE; k += LANES) {
             vd u[3];
             motion(p, &p->bundle[i], k, u);

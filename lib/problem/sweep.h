@@ -1,7 +1,7 @@
 /*
- * problem/sweep.h: the inner loops over bundles: local solves, velocities, errors. One text (sweep.c) in
- * three widths; the width changes no bit. It is the widest that the machine has, or that the
- * environment's NSD_LANES allows.
+ * problem/sweep.h: the inner loops over bundles: local solves, velocities, errors. sweep.c is
+ * compiled for three vector widths; the width changes no bit of a result. The one used is the
+ * widest that the machine has and the environment's NSD_LANES allows.
  */
 #ifndef NSD_SWEEP_H
 #define NSD_SWEEP_H
@@ -12,16 +12,16 @@
 struct sweep_opt {
     struct local_opt local;
     double relax; /* omega: r + omega (r_new - r), back onto the cone */
-    bool keep;    /* write down what the method believes u to be: only wanted before a judgement */
+    bool keep;    /* store u as the method believes it to be: needed only before a judgement */
 };
 
-/* Counts of a sweep, lane by lane */
+/* Counts of a sweep, lane by lane [law/local.h] */
 struct tally {
     double change[BUNDLE]; /* m/s: the largest change of a normal velocity */
     double newton[BUNDLE], safeguarded[BUNDLE], gave_up[BUNDLE];
 };
 
-/* Sums over contacts, in eight partial sums: lane k of every bundle goes into sum k. */
+/* Sums and maxima over contacts, each in eight parts: lane k of every bundle goes into part k. */
 struct sums {
     double motion[BUNDLE], proj[BUNDLE], bipotential[BUNDLE], penetration[BUNDLE];
     double natural2[BUNDLE], siconos2[BUNDLE], velocity2[BUNDLE], r2[BUNDLE];
@@ -30,27 +30,29 @@ struct sums {
 
 enum err_terms { ERR_TERMS = 1, ERR_NATURAL = 2, ERR_ALL = 3 };
 
-/* Every slot once, group after group: the share of thread `me` of `threads`, all of which must call
-   it. Two threads take a half each where there are halves. */
+/* A sweep visits every slot once, group after group. This is the share of thread `me` of `threads`,
+   all of which must call it. Two threads take a half each where the order has halves. */
 typedef void sweep_text(struct problem *p, int me, int threads, const struct sweep_opt *o,
                         struct tally *t);
 
-/* The loops of one width */
+/* The loops for one vector width */
 struct sweep {
     int lanes;
-    sweep_text *sweep[METHOD_COUNT]; /* one local solve a slot, r into bodies or W at once */
-    /* Bundles first .. end-1: what problem/err.h defines, added to the sums */
+    sweep_text
+        *sweep[METHOD_COUNT]; /* one local solve a slot, r passed on at once to bodies or W */
+    /* Bundles first .. end-1: adds to the sums what problem/err.h defines. */
     void (*judge)(const struct problem *p, int64_t first, int64_t end, bool believes,
                   enum err_terms terms, struct sums *s);
-    /* Bundles first .. end-1: u becomes the motion's. */
+    /* Bundles first .. end-1: u of the slots becomes the motion's. */
     void (*velocities)(struct problem *p, int64_t first, int64_t end);
-    /* All reactions move the bodies. Shared by threads as a sweep. */
+    /* Adds to the bodies' velocities what all reactions make of them. Shared by threads as a sweep
+       is. */
     void (*push)(struct problem *p, int me, int threads);
 };
 
-/* The widest that there is, of at most NSD_LANES lanes */
+/* The loops for the widest vectors that the machine has, of at most NSD_LANES lanes */
 const struct sweep *sweep_widest(void);
-/* From now on of at most so many lanes; for the tests. Where there is no such width, the next narrower. */
+/* From now on at most this many lanes, or the next smaller number that there is; for the tests */
 void sweep_narrow(int lanes);
 
 #endif

@@ -1,17 +1,18 @@
 /*
- * problem/two_thread_split.h: a packing's contacts in two halves that two threads sweep side by side: for piles whose
- * colours are too small to be shared, and so that of large ones each has bodies of its own at hand.
+ * problem/two_thread_split.h: a packing's contacts in two halves that two threads sweep side by
+ * side. It serves piles whose colours are too small to be shared, and large ones, where each thread
+ * then keeps bodies of its own in its cache.
  *
- * A plane cuts the bodies in two. The contacts between the halves are the border, which belongs to
- * one thread together with the contacts beyond; the other has those that share a body with the
- * border, the rim, and those inside. In a sweep the rim comes after the border and before the next
- * sweep's border, and each thread has other work while it waits for that:
+ * A plane cuts the bodies in two. The contacts across it are the border zone, which belongs to one
+ * thread together with the contacts beyond; the other thread has the rim, the contacts that share a
+ * body with the border, and those inside. In a sweep the rim comes after the border and before the
+ * next sweep's border; each thread has other zones to sweep in the meantime:
  *
- *     one       border      beyond
- *     the other inside, 1st half    rim    inside, 2nd half
+ *     one thread  border              beyond
+ *     the other   inside, 1st part    rim    inside, 2nd part
  *
- * No other two contacts of both threads share a movable body: the bits are those of one thread that
- * sweeps border, beyond, inside, rim, inside.
+ * Contacts of the two threads share a movable body only if one is in the border and the other in
+ * the rim. So the bits are those of one thread that sweeps border, beyond, inside, rim, inside.
  */
 #ifndef NSD_TWO_THREAD_SPLIT_H
 #define NSD_TWO_THREAD_SPLIT_H
@@ -24,17 +25,17 @@
 
 enum zone { ZONE_BORDER, ZONE_BEYOND, ZONE_INSIDE, ZONE_RIM, ZONE_COUNT };
 
-/* zone[n] of each contact. Returns 0, or -1 when memory is short. */
-int two_thread_split_divide(const struct contacts *, const struct packing *, int8_t *zone);
+/* zone[n]: the enum zone of each contact. Returns 0, or -1 when memory is short. */
+int two_thread_split_divide(const struct contacts *s, const struct packing *p, int8_t *zone);
 
-/* Where the two threads of a sweep are */
+/* Where each zone begins, and how far the two threads have come */
 struct two_thread_split {
-    int64_t beyond, inside, rim, rest;   /* the first groups of each; rest: inside's second half */
-    alignas(64) _Atomic int64_t borders; /* that have been swept, */
-    alignas(64) _Atomic int64_t rims;    /* and rims */
+    int64_t beyond, inside, rim, rest;   /* first groups; rest: inside's second part */
+    alignas(64) _Atomic int64_t borders; /* how often the border has been swept */
+    alignas(64) _Atomic int64_t rims;    /* how often the rim has */
 };
 
-/* Until `done`, which the other thread counts up, is at least n. */
+/* Waits until `done`, which the other thread counts up, is at least n. */
 void two_thread_split_wait(const _Atomic int64_t *done, int64_t n);
 
 #endif

@@ -1,7 +1,7 @@
 /*
- * problem/walk.h: how the threads of a sweep share its bundles: group after group, each thread its part of
- * every group, or, where there are two halves, a half each (problem/two_thread_split.h). For the files
- * that are compiled once a width.
+ * problem/walk.h: how the threads of a sweep share its bundles: group after group, each thread a
+ * share of every group, or, where there are two halves, a half each [problem/two_thread_split.h].
+ * For the files that are compiled once for each vector width.
  */
 #ifndef NSD_WALK_H
 #define NSD_WALK_H
@@ -9,10 +9,14 @@
 #include "problem/problem.h"
 
 /*
- * How many bundles ahead rows and bodies are sent for: as far as the second-level cache, for the first
- * waits for a dozen lines at a time at most; then the bodies all the way.
+ * How many bundles ahead data are fetched: first into the second-level cache, since the first-level
+ * cache waits for a dozen lines at a time at most; then bodies all the way.
  */
-enum { ROWS_AHEAD = 10, BODIES_AHEAD = 6, BODIES_NEXT = 2 };
+enum {
+    BUNDLES_AHEAD = 10, /* bundles ahead: a bundle, into the second level */
+    BODIES_AHEAD = 6,   /* bundles ahead: its bodies, into the second level */
+    BODIES_NEXT = 2     /* bundles ahead: its bodies, into the first level */
+};
 
 ALWAYS_INLINE void fetch_bodies(const struct problem *p, const struct bundle *c)
 {
@@ -22,7 +26,7 @@ ALWAYS_INLINE void fetch_bodies(const struct problem *p, const struct bundle *c)
     }
 }
 
-ALWAYS_INLINE void bring_bodies_nearer(const struct problem *p, const struct bundle *c)
+ALWAYS_INLINE void fetch_bodies_to_second_level(const struct problem *p, const struct bundle *c)
 {
     for (int k = 0; k < BUNDLE; k++) {
         __builtin_prefetch(body_at(p->body, c->a[k]), 0, 2);
@@ -30,29 +34,30 @@ ALWAYS_INLINE void bring_bodies_nearer(const struct problem *p, const struct bun
     }
 }
 
-/* What will be wanted while bundle i is at work */
-ALWAYS_INLINE void fetch(const struct problem *p, int64_t i)
+/* Fetches what will be needed soon, while bundle i is worked on. */
+ALWAYS_INLINE void fetch_ahead(const struct problem *p, int64_t i)
 {
-    if (p->bundles < FAR_BUNDLES || i + ROWS_AHEAD >= p->bundles) return;
-    const char *rows = (const char *)&p->bundle[i + ROWS_AHEAD];
-    for (size_t k = 0; k < sizeof *p->bundle; k += 64) __builtin_prefetch(rows + k, 0, 2);
+    if (p->bundles < FAR_BUNDLES || i + BUNDLES_AHEAD >= p->bundles) return;
+    const char *line = (const char *)&p->bundle[i + BUNDLES_AHEAD];
+    for (size_t k = 0; k < sizeof *p->bundle; k += 64) __builtin_prefetch(line + k, 0, 2);
     if (!p->body) return;
-    bring_bodies_nearer(p, &p->bundle[i + BODIES_AHEAD]);
+    fetch_bodies_to_second_level(p, &p->bundle[i + BODIES_AHEAD]);
     fetch_bodies(p, &p->bundle[i + BODIES_NEXT]);
 }
 
-/* b_c of lanes k.. of a problem that is given by W: from everybody's r as it is now */
+/* b_c of lanes k.. of a problem given by W, from the present r of all others */
 ALWAYS_INLINE void blocks_gather(const struct problem *p, const struct bundle *c, int k, vd b[3])
 {
     double sum[3][LANES] = { 0 }, one[4];
-    int64_t row = (c - p->bundle) * BUNDLE + k;
+    int64_t slot = (c - p->bundle) * BUNDLE + k;
     for (int i = 0; i < LANES && c->a[k + i] >= 0; i++) {
-        delassus_gather(&p->sorted, row + i, p->sorted.q, p->W->r, one);
+        delassus_gather(&p->sorted, slot + i, p->sorted.q, p->W->r, one);
         for (int j = 0; j < p->d; j++) sum[j][i] = one[j];
     }
     for (int j = 0; j < 3; j++) b[j] = vload(sum[j]);
 }
 
+/* r of lanes k.. into W->r, where the other contacts will read it */
 ALWAYS_INLINE void blocks_scatter(struct problem *p, const struct bundle *c, int k)
 {
     for (int i = 0; i < LANES; i++)
@@ -65,14 +70,15 @@ ALWAYS_INLINE const struct rebound *bundle_rebound(const struct problem *p, cons
     return p->rebound ? p->rebound + (c - p->bundle) : NULL;
 }
 
-/* Groups that a thread sweeps: `after` a number that another counts up, counting itself when `done` */
+/* Groups that a thread sweeps without waiting in between */
 struct leg {
-    int64_t first, end;
-    _Atomic int64_t *after, *done;
+    int64_t first, end;     /* groups first .. end-1 */
+    _Atomic int64_t *after; /* counted up by the other thread: to be waited for before; or NULL */
+    _Atomic int64_t *done;  /* counted up by this thread at the end; or NULL */
 };
 
-/* One thread's legs of a sweep; returns their number. All groups are one leg, but by halves. */
-ALWAYS_INLINE int route(const struct problem *p, int me, bool by_halves, struct leg leg[3])
+/* The legs of a thread's sweep; returns their number. Unless by halves, all groups are one leg. */
+ALWAYS_INLINE int legs_of_thread(const struct problem *p, int me, bool by_halves, struct leg leg[3])
 {
     struct two_thread_split *h = p->split;
     if (!by_halves) {
@@ -90,8 +96,9 @@ ALWAYS_INLINE int route(const struct problem *p, int me, bool by_halves, struct 
     return 3;
 }
 
-/* Waits until the leg's bodies are ours, and asks for all at once: that takes less than one by one. */
-ALWAYS_INLINE void set_out(const struct problem *p, const struct leg *leg, int me)
+/* Waits until the other thread has done with the leg's bodies, then fetches them all together,
+   which takes less time than one by one. */
+ALWAYS_INLINE void begin_leg(const struct problem *p, const struct leg *leg, int me)
 {
     if (!leg->done) return;
     two_thread_split_wait(leg->after, atomic_load_explicit(leg->done, memory_order_relaxed) + me);
@@ -99,36 +106,35 @@ ALWAYS_INLINE void set_out(const struct problem *p, const struct leg *leg, int m
         fetch_bodies(p, &p->bundle[i]);
 }
 
-/* The count is this thread's alone: no need for an addition that waits for what was stored before. */
-ALWAYS_INLINE void arrive(const struct leg *leg)
+/* Only this thread writes the count, so that a store does; an atomic addition would wait for all
+   stores before it. */
+ALWAYS_INLINE void end_leg(const struct leg *leg)
 {
     if (!leg->done) return;
     int64_t n = atomic_load_explicit(leg->done, memory_order_relaxed);
     atomic_store_explicit(leg->done, n + 1, memory_order_release);
 }
 
-/* What is done with bundles first .. end-1 of one group, of task's kind */
+/* What is to be done with bundles first .. end-1 of one group */
 typedef void walk_text(struct problem *p, int64_t first, int64_t end, void *task);
 
-/*
- * The part of thread `me` of all groups, or its half: each() on every stretch of bundles. All threads
- * must call it.
- */
+/* Calls each() on the share of every group that thread `me` of `threads` has, or on its half. All
+   threads must call it. */
 ALWAYS_INLINE void walk(struct problem *p, int me, int threads, walk_text *each, void *task)
 {
     struct leg leg[3];
     bool by_halves = p->split && threads == 2;
-    int legs = route(p, me, by_halves, leg), share = by_halves ? 1 : threads,
+    int legs = legs_of_thread(p, me, by_halves, leg), share = by_halves ? 1 : threads,
         mine = by_halves ? 0 : me;
     for (int k = 0; k < legs; k++) {
-        set_out(p, &leg[k], me);
+        begin_leg(p, &leg[k], me);
         for (int64_t g = leg[k].first; g < leg[k].end; g++) {
             int64_t first = p->group[g], n = p->group[g + 1] - first;
             each(p, first + n * mine / share, first + n * (mine + 1) / share, task);
             if (share == 1) continue;
 #pragma omp barrier
         }
-        arrive(&leg[k]);
+        end_leg(&leg[k]);
     }
 }
 

@@ -87,7 +87,7 @@ static int sweeps(struct anderson *a, int n)
     for (int k = 0; k < n; k++) {
         a->watch.change = 0; // after a mixing the last one's says nothing
         int over = nlgs_sweep(a->s, a->omega[k % 2], &a->watch);
-        if (a->watch.looked) solve_offer(a->s, &a->since);
+        if (a->watch.just_judged) solve_best_offer(a->s, &a->since);
         if (over) return over;
     }
     return 0;
@@ -272,9 +272,9 @@ void anderson_free(struct anderson *a)
     free(a);
 }
 
-void anderson_anew(struct anderson *a)
+void anderson_restart(struct anderson *a)
 {
-    a->watch = (struct watch){ .due = INFINITY, .judged = a->s->rep->sweeps };
+    a->watch = (struct watch){ .due = INFINITY, .last_judged = a->s->rep->sweeps };
     a->rest = SHORT, a->leaps = true, a->best = INFINITY;
     best_forget(&a->since);
     begin_mixing(a);
@@ -285,18 +285,18 @@ struct anderson *anderson_new(struct solve *s)
     struct anderson *a = calloc(1, sizeof *a);
     if (!a) return NULL;
     a->s = s;
-    a->m.depth = s->p->n > MANY ? MIXING_DEPTH_MANY : MIXING_DEPTH;
+    a->m.depth = s->p->n > MANY_CONTACTS ? MIXING_DEPTH_MANY : MIXING_DEPTH;
     size_t size = (size_t)(s->p->slots * s->p->d),
            bytes = (size_t)(1 + 2 * depth(a)) * size * sizeof(double);
     for (int k = 0; k < 2; k++)
         a->omega[k] = s->o->relax > 0 ? s->o->relax : k || s->p->full ? 1 : BEYOND;
     a->room = aligned_alloc(64, bytes); // rows come in eights
     a->sums = malloc((size_t)(chunks(s->p) + 1) * sizeof *a->sums);
-    if (!a->room || !a->sums || solve_keeper(&a->since, s->p)) {
+    if (!a->room || !a->sums || solve_best_init(&a->since, s->p)) {
         anderson_free(a);
         return NULL;
     }
-    anderson_anew(a);
+    anderson_restart(a);
     memset(a->room, 0, bytes);
     double *next = a->m.f = a->room;
     for (int j = 0; j < depth(a); j++) a->m.dg[j] = next += size, a->m.df[j] = next += size;
@@ -314,18 +314,18 @@ int anderson_sweeps(struct anderson *a, int32_t more)
         if (begin) begin(a);
         over = a->phase(a);
     }
-    if (!over && !a->watch.looked) solve_judge(s), solve_offer(s, &a->since);
+    if (!over && !a->watch.just_judged) solve_judge(s), solve_best_offer(s, &a->since);
     return over < 0 ? -1 : 0;
 }
 
-double anderson_best(const struct anderson *a)
+double anderson_best_value(const struct anderson *a)
 {
     return a->since.value;
 }
 
-void anderson_back(struct anderson *a)
+void anderson_restore_best(struct anderson *a)
 {
-    solve_return(a->s, &a->since);
+    solve_best_restore(a->s, &a->since);
     begin_mixing(a);
 }
 
@@ -334,7 +334,7 @@ static int run(struct solve *s)
     struct anderson *a = anderson_new(s);
     if (!a) return -1;
     int failed = anderson_sweeps(a, s->o->max_sweeps);
-    anderson_back(a);
+    anderson_restore_best(a);
     anderson_free(a);
     return failed;
 }

@@ -1,6 +1,7 @@
 /*
- * solve/anderson.h: Gauss-Seidel accelerated by Anderson's mixing, for itself and for auto, which lets it
- * pause: it goes on later as if it had not paused.
+ * solve/anderson.h: Gauss-Seidel accelerated by Anderson's mixing [solve/anderson.c], as a solver
+ * and for auto, which interrupts it to look at the iterate; the sweeps then go on as if
+ * uninterrupted.
  */
 #ifndef NSD_ANDERSON_H
 #define NSD_ANDERSON_H
@@ -9,17 +10,18 @@
 
 struct anderson;
 
-/* NULL when memory is short */
+/* Borrows s. NULL when memory is short. */
 struct anderson *anderson_new(struct solve *s);
 void anderson_free(struct anderson *a);
 
-/* `sweeps` more, or a few beyond; the iterate is judged then. 0, or -1 when memory is short. */
+/* `sweeps` more sweeps, or a few beyond, unless the solve is over before. The iterate is judged
+   after the last. 0, or -1 when memory is short. */
 int anderson_sweeps(struct anderson *a, int32_t sweeps);
-/* The criterion of the best iterate since the beginning, or since anderson_anew() */
-double anderson_best(const struct anderson *a);
-/* Back to that iterate; the mixing begins anew from there. */
-void anderson_back(struct anderson *a);
-/* The iterate has been changed from outside: everything begins anew from it. */
-void anderson_anew(struct anderson *a);
+/* The criterion of the best iterate since anderson_new() or anderson_restart() */
+double anderson_best_value(const struct anderson *a);
+/* Goes back to that iterate; mixing begins again from there. */
+void anderson_restore_best(struct anderson *a);
+/* To be called when something else has changed the iterate: everything begins again from it. */
+void anderson_restart(struct anderson *a);
 
 #endif

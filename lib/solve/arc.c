@@ -93,7 +93,7 @@ static bool tangent(struct arc *p)
         s->p[0] += p->g0 * (m->gap / smooth_tail(p, s) - 1);
     }
     if (!central_direction(m, false)) return false;
-    for (int64_t c = 0; c < n; c++) side_keep(&m->side[c], p->at[c].to[TANGENT]);
+    for (int64_t c = 0; c < n; c++) side_save(&m->side[c], p->at[c].to[TANGENT]);
     return true;
 }
 
@@ -104,7 +104,7 @@ static bool direction(struct arc *p, int which)
     bool seen = central_direction(m, true);
     for (int64_t c = 0; c < m->newton->a.W.n; c++) {
         memset(p->at[c].to[which], 0, sizeof p->at[c].to[which]);
-        if (seen) side_keep(&m->side[c], p->at[c].to[which]);
+        if (seen) side_save(&m->side[c], p->at[c].to[which]);
     }
     return seen;
 }
@@ -238,12 +238,12 @@ static void pace(struct arc *p, double most)
 static bool begin(struct arc *p, struct central *m)
 {
     int64_t n = m->newton->a.W.n;
-    *p = (struct arc){ .m = m, .g0 = central_mean(m), .s = 1, .reach = 1, .ceiling = INFINITY };
+    *p = (struct arc){ .m = m, .g0 = central_mean_gap(m), .s = 1, .reach = 1, .ceiling = INFINITY };
     p->at = calloc((size_t)n + 1, sizeof *p->at);
     if (!p->at) return false;
     for (int64_t c = 0; c < n; c++) jordan_centre(m->side[c].x, m->side[c].z, p->g0);
     m->gap = p->g0;
-    central_look(m);
+    central_evaluate(m);
     for (int64_t c = 0; c < n; c++)
         for (int k = 0; k < 3; k++) p->at[c].p0[k] = m->side[c].z[k] - m->side[c].y[k];
     return true;
@@ -258,7 +258,7 @@ bool arc_follow(struct central *m, double natural, int steps)
     bool there = false;
     for (int k = 0; k < steps && backwards <= BACKWARDS; k++) {
         m->gap = p.s * p.g0;
-        double e = central_look(m);
+        double e = central_evaluate(m);
         if (s->o->progress) s->o->progress(s->rep->sweeps, e);
         there = central_finish(m, e) || e <= natural;
         if (there || !isfinite(e) || solve_spent(s) || !central_scale(m)) break;
@@ -287,6 +287,6 @@ bool arc_follow(struct central *m, double natural, int steps)
     }
     for (int64_t c = 0; c < m->newton->a.W.n; c++) memset(m->side[c].p, 0, sizeof m->side[c].p);
     free(p.at);
-    central_settle(m);
+    central_restore_best(m);
     return there;
 }

@@ -93,15 +93,15 @@ static int in_subsets(struct strategy *a, double vain)
         if (solved < 0) return -1;
         double cost = s->rep->work - before_all;
         if (!solved) return a->vain += cost, subsets;
-        anderson_anew(a->sweeps);
+        anderson_restart(a->sweeps);
         double now = s->value;
         do {
             double before = now;
             if (anderson_sweeps(a->sweeps, SETTLE)) return -1;
-            now = anderson_best(a->sweeps);
+            now = anderson_best_value(a->sweeps);
             more = SETTLE * log(now / s->o->eps) / log(before / now);
         } while (!solve_over(s) && more > 0 && more * a->price < cost);
-        anderson_back(a->sweeps);
+        anderson_restore_best(a->sweeps);
         if (!(s->value < best / 4)) a->vain += cost, a->contacts += a->contacts / 5;
         best = fmin(best, s->value);
     }
@@ -123,7 +123,7 @@ static int again(struct strategy *a)
         if (!none) return -1;
         scaled_put(&a->w.a, s, none);
         free(none);
-        int32_t sweeps = newton_share(&a->w, s->p) * (k + 2) / 2;
+        int32_t sweeps = newton_sweeps_per_step(&a->w, s->p) * (k + 2) / 2;
         if (nlgs_sweeps(s, sweeps, s->o->relax > 0 ? s->o->relax : omegas[k % 3]) ||
             in_subsets(a, a->vain + most - s->rep->work) < 0)
             return -1;
@@ -143,7 +143,7 @@ static int factorise(struct strategy *a)
     if (s->p->full) newton_polish(&a->w, s, 1e-4, 2);
     ipm_solve(&a->w, s);
     if (solve_over(s)) return 0;
-    solve_back(s);
+    solve_restore_best(s);
     newton_polish(&a->w, s, 1e-4, 6);
     return again(a);
 }
@@ -156,14 +156,14 @@ static int make_ready(struct strategy *a)
     int e = newton_assemble(&a->w, a->s, &reason);
     if (e) return e;
     a->ready = true;
-    return solve_keep(a->s);
+    return solve_keep_best(a->s);
 }
 
 /* Is all of it factorised, where that costs `price`? The longer the way, the less it takes to be sure. */
 static bool pays(const struct strategy *a, double more, double price)
 {
     const struct solve *s = a->s;
-    int steps = anderson_best(a->sweeps) > FAR * s->o->eps ? STEPS_IF_FAR : STEPS_TO_KNOW;
+    int steps = anderson_best_value(a->sweeps) > FAR * s->o->eps ? STEPS_IF_FAR : STEPS_TO_KNOW;
     return price <= AFFORD &&
            gain_of(a, more, STEPS_TO_END * price) * s->rep->sweeps * a->price >= steps * price;
 }
@@ -188,7 +188,7 @@ static int look_for_better(struct strategy *a, double more)
     int fits = subset_fits(&a->w.a, s, a->contacts, false, allowance(a, more) - a->vain);
     if (fits < 0) return -1;
     if (!fits && !may_pay(a, more)) return 0;
-    anderson_back(a->sweeps);
+    anderson_restore_best(a->sweeps);
     int subsets = in_subsets(a, allowance(a, more));
     if (subsets < 0) return -1;
     if (solve_over(s)) return 0;
@@ -212,15 +212,15 @@ static int choose(struct strategy *a)
     double least = fmin((double)s->p->n, SUBSET_MOST) * SUBSET_CONTACT;
     while (rep->sweeps < a->end && !solve_over(s)) {
         int32_t had = rep->sweeps, chunk = had / 2 > CHUNK ? had / 2 : CHUNK;
-        double before = anderson_best(a->sweeps);
+        double before = anderson_best_value(a->sweeps);
         if (anderson_sweeps(a->sweeps, chunk < a->end - had ? chunk : a->end - had)) return -1;
         if (!isfinite(s->value)) break;
-        double more = a->older.sweeps ? to_go(a, anderson_best(a->sweeps)) : 0;
+        double more = a->older.sweeps ? to_go(a, anderson_best_value(a->sweeps)) : 0;
         a->older.value = before, a->older.sweeps = had;
         if (a->tried || gain_of(a, more, least) * rep->sweeps * a->price < least) continue;
         if (look_for_better(a, more)) return -1;
     }
-    anderson_back(a->sweeps);
+    anderson_restore_best(a->sweeps);
     return 0;
 }
 

@@ -9,7 +9,7 @@
     1.5e-6 /* the natural map at which Newton sees all statuses, every second or third time */
 #define AGAIN 0.4 /* of the map of the last try: when it is tried again */
 
-void central_end(struct central *m)
+void central_free(struct central *m)
 {
     free(m->side), free(m->room), best_free(&m->best);
 }
@@ -31,7 +31,7 @@ static void start(struct central *m, double gap)
         s->x[0] = s->mu * r[0] / m->unit;
         for (int k = 1; k < 3; k++) s->x[k] = r[k] / m->unit;
     }
-    central_look(m);
+    central_evaluate(m);
     for (int64_t c = 0; c < a->W.n; c++) {
         memcpy(m->side[c].z, m->side[c].y, sizeof m->side[c].z);
         jordan_centre(m->side[c].x, m->side[c].z, gap);
@@ -40,13 +40,13 @@ static void start(struct central *m, double gap)
     best_forget(&m->best);
 }
 
-bool central_begin(struct central *m, struct newton *newton, struct solve *s, double gap, bool cold)
+bool central_init(struct central *m, struct newton *newton, struct solve *s, double gap, bool cold)
 {
     *m = (struct central){ .solve = s, .newton = newton, .tried = INFINITY };
     size_t size = (size_t)newton->a.size + 4, blocks = 9 * (size_t)newton->a.W.n;
     m->side = calloc((size_t)newton->a.W.n + 1, sizeof *m->side);
     m->room = calloc(3 * size + 2 * blocks, sizeof *m->room);
-    if (best_init(&m->best, newton->a.size) || !m->side || !m->room) return central_end(m), false;
+    if (best_init(&m->best, newton->a.size) || !m->side || !m->room) return central_free(m), false;
     m->x = m->room, m->v = m->x + size, m->b = m->v + size, m->L = m->b + size;
     m->D = m->L + blocks;
     if (!cold) scaled_get(&newton->a, s->p, m->x);
@@ -54,14 +54,14 @@ bool central_begin(struct central *m, struct newton *newton, struct solve *s, do
     return true;
 }
 
-double central_mean(const struct central *m)
+double central_mean_gap(const struct central *m)
 {
     double gap = 0;
     for (int64_t c = 0; c < m->newton->a.W.n; c++) gap += jordan_dot(m->side[c].x, m->side[c].z);
     return gap / (double)m->newton->a.W.n;
 }
 
-double central_look(struct central *m)
+double central_evaluate(struct central *m)
 {
     struct scaled *a = &m->newton->a;
     int d = a->W.d;
@@ -128,7 +128,7 @@ bool central_direction(struct central *m, bool factorised)
         scaled_store(d, b, m->b + d * c);
     }
     if (factorised) {
-        if (!system_again(w->system, m->b)) return false;
+        if (!system_solve_again(w->system, m->b)) return false;
     } else {
         if (!solve_affords(m->solve, w->price)) return false;
         double since = report_seconds(CLOCK_WALL);
@@ -160,7 +160,7 @@ bool central_finish(struct central *m, double map)
     return true;
 }
 
-void central_settle(struct central *m)
+void central_restore_best(struct central *m)
 {
     struct scaled *a = &m->newton->a;
     if (!(m->best.value < INFINITY)) return;

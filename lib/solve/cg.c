@@ -241,7 +241,7 @@ static int run(struct solve *s)
 {
     struct cg a;
     s->believes = false;
-    if (solve_keep(s) || begin(&a, s)) return -1;
+    if (solve_keep_best(s) || begin(&a, s)) return -1;
     int over = 0;
     double fall = FALL, last = INFINITY;
     while (!over) {

@@ -59,8 +59,9 @@ static double entry(const struct delassus *W, int32_t a, int i, int32_t b, int j
 static int pivots(const gsl_matrix *Wgg, int *pivot, gsl_matrix *T)
 {
     int n = (int)Wgg->size1, rank = 0, sign;
-    double a[9 * FACE_MOST * FACE_MOST], tau[3 * FACE_MOST], norm[3 * FACE_MOST];
-    size_t order[3 * FACE_MOST];
+    double a[9 * FACE_CONTACTS_MAX * FACE_CONTACTS_MAX], tau[3 * FACE_CONTACTS_MAX],
+        norm[3 * FACE_CONTACTS_MAX];
+    size_t order[3 * FACE_CONTACTS_MAX];
     gsl_permutation P = { (size_t)n, order };
     gsl_matrix_view A = gsl_matrix_view_array(a, (size_t)n, (size_t)n);
     gsl_vector_view Tau = gsl_vector_view_array(tau, (size_t)n),
@@ -70,7 +71,7 @@ static int pivots(const gsl_matrix *Wgg, int *pivot, gsl_matrix *T)
     while (rank < n && fabs(a[rank * n + rank]) > SAME) rank++;
     gsl_matrix_set_zero(T);
     for (int j = 0; j < n; j++) { // column order[j] is the sum of z_i times the pivots' columns
-        double z[3 * FACE_MOST];
+        double z[3 * FACE_CONTACTS_MAX];
         for (int i = 0; i < rank; i++) z[i] = j == i;
         for (int i = rank - 1; j >= rank && i >= 0; i--) {
             z[i] = a[i * n + j];
@@ -103,7 +104,8 @@ static bool follows(const struct delassus *W, const struct face *f, int32_t b, c
 static void split(struct face *f, const gsl_matrix *T)
 {
     size_t n = (size_t)f->rows, r = (size_t)f->rank;
-    double a[9 * FACE_MOST * FACE_MOST], q[9 * FACE_MOST * FACE_MOST], tau[3 * FACE_MOST];
+    double a[9 * FACE_CONTACTS_MAX * FACE_CONTACTS_MAX],
+        q[9 * FACE_CONTACTS_MAX * FACE_CONTACTS_MAX], tau[3 * FACE_CONTACTS_MAX];
     gsl_matrix_view A = gsl_matrix_view_array(a, n, r), Q = gsl_matrix_view_array(q, n, n),
                     M = gsl_matrix_view_array(f->M, n, r);
     gsl_vector_view Tau = gsl_vector_view_array(tau, r);
@@ -127,7 +129,8 @@ static bool repeats(const struct delassus *W, struct face *f, int *pivot, double
 {
     int d = W->d;
     size_t n = (size_t)f->rows;
-    double wgg[9 * FACE_MOST * FACE_MOST], t[9 * FACE_MOST * FACE_MOST];
+    double wgg[9 * FACE_CONTACTS_MAX * FACE_CONTACTS_MAX],
+        t[9 * FACE_CONTACTS_MAX * FACE_CONTACTS_MAX];
     gsl_matrix_view Wgg = gsl_matrix_view_array(wgg, n, n), All = gsl_matrix_view_array(t, n, n);
     for (int i = 0; i < f->rows; i++)
         for (int j = 0; j < f->rows; j++)
@@ -170,7 +173,7 @@ static void add(struct faces *f, int d, struct face g, const int *pivot)
 static double *gather(struct faces *f, const struct delassus *W, int32_t *contact, int count,
                       double *room)
 {
-    int pivot[3 * FACE_MOST] = { 0 }, d = W->d;
+    int pivot[3 * FACE_CONTACTS_MAX] = { 0 }, d = W->d;
     struct face g = { .contact = contact, .count = count, .rows = d * count };
     if (count > 1 && repeats(W, &g, pivot, room)) {
         add(f, d, g, pivot);
@@ -192,7 +195,8 @@ static bool find(struct faces *f, const struct delassus *W)
     for (int pass = 0; pass < 2; pass++) { // how much room, then what is in it
         double *free_room = f->room;
         for (size_t i = 0, j; i < n; i = j) {
-            for (j = i + 1; j < n && j < i + FACE_MOST && m[j].sum == m[i].sum; j++) continue;
+            for (j = i + 1; j < n && j < i + FACE_CONTACTS_MAX && m[j].sum == m[i].sum; j++)
+                continue;
             size_t rows = (j - i) * (size_t)W->d;
             if (!pass) {
                 room += j > i + 1 ? 2 * rows * rows : 0;

@@ -1,13 +1,14 @@
 /*
  * solve/faces.h: contacts that repeat one another, found in W alone.
  *
- * The k contacts of one pair of rigid bodies, a face, move with 6 numbers (3 in the plane), and not
- * with 3 k (2 k): their rows of W are combinations of as many of them, the pivots,
+ * The k contacts of one pair of rigid bodies, a face, have 3 k velocities (2 k in the plane), but
+ * the bodies move relative to each other in 6 ways only (3). So a face's rows of W are linear
+ * combinations of as many of them, the pivots:
  *
  *     W = T S T',     S = W of the pivots' rows and columns,  T block-diagonal, by faces.
  *
- * They have the same neighbours in W, by which they are found. A contact that repeats nothing is a
- * face of its own, T = 1.
+ * The contacts of a face are recognised by their having the same neighbours in W. A contact that
+ * repeats no other is a face of its own, with T = 1.
  */
 #ifndef NSD_FACES_H
 #define NSD_FACES_H
@@ -16,30 +17,32 @@
 
 #include <stdbool.h>
 
-enum { FACE_MOST = 16 }; /* contacts; more are several faces */
+enum { FACE_CONTACTS_MAX = 16 }; /* contacts of a face; a pair with more has several faces */
 
 struct face {
-    int32_t *contact;  /* [count] */
-    int32_t count, at; /* its contacts; its first row of S */
-    int rows, rank;    /* d count; and how many of them are pivots. Where these are fewer: */
-    double *T;         /* [rows][rank] */
-    double *M, *N; /* [rows][rank], [rows][rows - rank]: x = M w + N n has T' x = w, whatever n */
+    int32_t *contact; /* [count] */
+    int32_t count;    /* contacts */
+    int32_t at;       /* its first row of S */
+    int rows, rank;   /* d count; how many of them are pivots */
+    /* Only where rank < rows: all x with T' x = w are x = M w + N n, for any n. */
+    double *T, *M; /* [rows][rank] */
+    double *N;     /* [rows][rows - rank] */
 };
 
 struct faces {
     int32_t n;    /* faces */
-    int32_t size; /* of S */
+    int32_t size; /* rows of S */
     struct face *face;
-    int32_t *row; /* [size] which rows of W they are */
+    int32_t *row; /* [size] row i of S is row[i] of W */
     /* S by rows: entry k of row i is S[k] in column col[k], first[i] <= k < first[i+1] */
     int32_t *first, *col;
     double *S;
-    int32_t *contact; /* the faces' */
-    double *room;     /* their matrices' */
+    int32_t *contact; /* holds the faces' contacts */
+    double *room;     /* holds their matrices */
 };
 
-/* Of a W with blocks of order 1; false when memory is short. */
-bool faces_init(struct faces *, const struct delassus *);
-void faces_free(struct faces *);
+/* W's blocks must be of order 1 (solve/scaled.h). False when memory is short: nothing to free. */
+bool faces_init(struct faces *f, const struct delassus *W);
+void faces_free(struct faces *f);
 
 #endif

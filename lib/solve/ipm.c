@@ -84,14 +84,14 @@ static double lengthen(struct ipm *m, double step, double target)
     for (int k = 0; k < CORRECTORS && INTERIOR * step < 0.95; k++) {
         for (int64_t c = 0; c < n; c++) {
             struct side *s = &m->c.side[c];
-            side_keep(s, m->kept[c].last);
+            side_save(s, m->kept[c].last);
             recentre(s, fmin(1, INTERIOR * step + LONGER), target);
         }
         double before = step;
         step = central_direction(&m->c, true) ? longest(&m->c) : 0;
         if (step >= before + GAINED) continue;
         if (step >= before) break;
-        for (int64_t c = 0; c < n; c++) side_recall(&m->c.side[c], m->kept[c].last);
+        for (int64_t c = 0; c < n; c++) side_restore(&m->c.side[c], m->kept[c].last);
         return before;
     }
     return step;
@@ -148,10 +148,10 @@ static bool ipm_step(struct ipm *m)
         double far = predict_and_correct(m, ts[m->full][i]);
         if (far <= step) continue;
         step = far, at = i;
-        for (int64_t c = 0; c < n; c++) side_keep(&m->c.side[c], m->kept[c].far);
+        for (int64_t c = 0; c < n; c++) side_save(&m->c.side[c], m->kept[c].far);
     }
     if (follow && step < SHORT) return false;
-    for (int64_t c = 0; c < n; c++) side_recall(&m->c.side[c], m->kept[c].far);
+    for (int64_t c = 0; c < n; c++) side_restore(&m->c.side[c], m->kept[c].far);
     m->fold = at > 0 && step > 0.3 ? at - 1 : at;
     m->stuck = step < 1e-3 ? m->stuck + 1 : 0;
     if (step > 0) move(&m->c, step);
@@ -167,27 +167,27 @@ static bool approach(struct ipm *m, double natural, int steps)
     const struct solve *s = m->c.solve;
     bool more = true, there = false;
     for (int k = 0; more && k < steps; k++) {
-        m->c.gap = central_mean(&m->c);
-        double e = central_look(&m->c);
+        m->c.gap = central_mean_gap(&m->c);
+        double e = central_evaluate(&m->c);
         if (s->o->progress) s->o->progress(s->rep->sweeps, e);
         there = central_finish(&m->c, e) || e <= natural;
         if (there || !isfinite(e) || solve_spent(s)) break;
         more = central_scale(&m->c) && ipm_step(m);
     }
-    central_settle(&m->c);
+    central_restore_best(&m->c);
     return there;
 }
 
 static void leave(struct ipm *m)
 {
     free(m->kept);
-    central_end(&m->c);
+    central_free(&m->c);
 }
 
 static bool begin(struct ipm *m, struct newton *w, struct solve *s, double gap, double folds)
 {
     *m = (struct ipm){ .full = s->p->full, .folds = folds };
-    if (!central_begin(&m->c, w, s, gap, gap == COLD)) return false;
+    if (!central_init(&m->c, w, s, gap, gap == COLD)) return false;
     m->kept = calloc((size_t)w->a.W.n + 1, sizeof *m->kept);
     if (!m->kept) leave(m);
     return m->kept;
@@ -251,8 +251,8 @@ static int run(struct solve *s)
     if (nlgs_sweeps(s, SWEEPS, s->o->relax > 0 ? s->o->relax : 1.3)) return -1;
     if (solve_over(s)) return 0;
     int e = newton_init(&w, s, &reason);
-    if (e) return e < 0 ? -1 : nlgs_instead(s, reason);
-    e = solve_keep(s);
+    if (e) return e < 0 ? -1 : nlgs_fall_back(s, reason);
+    e = solve_keep_best(s);
     if (!e) ipm_solve(&w, s);
     newton_free(&w);
     return e;

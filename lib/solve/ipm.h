@@ -1,10 +1,11 @@
 /*
- * solve/ipm.h: a primal-dual interior point method for all contacts at once: the central path [solve/central_path.h] to
- * its end by long steps, Mehrotra's two directions and Gondzio's correctors.
+ * solve/ipm.h: a primal-dual interior point method for all contacts at once: it follows the central
+ * path [solve/central_path.h] to its end by long steps, with Mehrotra's two directions and
+ * Gondzio's correctors.
  *
- * t = 1 is Newton's method on the problem, which is nobody's minimum, so that the path may fold and the
- * step leads nowhere: then it is followed by its arc length [solve/arc.h]. At the start, and from r = 0,
- * smaller t are tried.
+ * t = 1 is Newton's method. The problem is not that of a minimum, so the path may fold, and steps
+ * become very short there: then it is followed by its arc length [solve/arc.h]. At the start, and
+ * from r = 0, smaller t are tried first.
  */
 #ifndef NSD_IPM_H
 #define NSD_IPM_H
@@ -12,12 +13,13 @@
 #include "solve/newton.h"
 
 /*
- * From the iterate on to where newton_polish() ends; where that does not, from r = 0. w has the problem and
- * its factors, and makes the last steps.
+ * Starts from the iterate and ends with newton_polish(); where that does not meet the criterion,
+ * tries again from r = 0. w has the problem and its factors, and makes the last steps.
  */
 void ipm_solve(struct newton *w, struct solve *s);
 
-/* The first of that alone: from the iterate's reactions, moved into the cones as far as this gap */
+/* The first attempt of ipm_solve() only: from the iterate's reactions, moved into the cones to
+   where x o z = gap (1, 0, 0). */
 void ipm_from(struct newton *w, struct solve *s, double gap);
 
 #endif

@@ -79,7 +79,7 @@ int newton_init(struct newton *w, struct solve *s, const char **reason)
     return e;
 }
 
-int32_t newton_share(const struct newton *w, const struct problem *p)
+int32_t newton_sweeps_per_step(const struct newton *w, const struct problem *p)
 {
     return (int32_t)fmin(fmax(w->price / price_sweep(p), SHARE_LEAST), SHARE_MOST);
 }
@@ -192,7 +192,7 @@ void newton_polish(struct newton *w, struct solve *s, double alpha, int patience
     size_t size = (size_t)w->a.size * sizeof *w->x;
     double mark = s->value, least = s->value; // what is to be halved
     bool carefully = false;
-    int32_t share = newton_share(w, s->p);
+    int32_t share = newton_sweeps_per_step(w, s->p);
     w->alpha = alpha;
     scaled_get(&w->a, s->p, w->x);
     for (int vain = 0, harms = 0; vain < patience;) {
@@ -228,5 +228,5 @@ void newton_polish(struct newton *w, struct solve *s, double alpha, int patience
         vain = least < 0.5 * mark ? 0 : vain + 1;
         if (!vain) mark = least;
     }
-    solve_back(s);
+    solve_restore_best(s);
 }

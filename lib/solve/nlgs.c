@@ -80,19 +80,19 @@ static int judged_sweep(struct solve *s, double omega, int32_t unjudged, bool la
 {
     s->believes = s->o->method->believes;
     int32_t n = s->rep->sweeps + unjudged + 1;
-    bool sure = s->o->history || s->o->every_sweep || n <= w->all || n - w->judged >= CHECK_EVERY ||
-                n >= s->o->max_sweeps || last;
+    bool sure = s->o->history || s->o->every_sweep || n <= w->judge_all_until ||
+                n - w->last_judged >= CHECK_EVERY || n >= s->o->max_sweeps || last;
     bool keep =
         sure || w->change <= (s->p->bundles < FAR_BUNDLES ? CHEAP_FORESIGHT : FORESIGHT) * w->due;
     double change = w->change = sweep(s, omega, unjudged, keep && s->believes);
-    w->looked = false;
+    w->just_judged = false;
     if (solve_history(s)) return -1;
     if (!sure && !(keep && change <= w->due)) return 0;
     solve_judge(s);
     // error and change shrink together, more or less: due after half the way, and all the time
     // when it is near
     w->due = s->value < 1.3 * s->o->eps ? INFINITY : change * sqrt(s->o->eps / s->value);
-    w->judged = n, w->looked = true;
+    w->last_judged = n, w->just_judged = true;
     return solve_met(s) || solve_spent(s) || !isfinite(s->value);
 }
 
@@ -108,8 +108,9 @@ int nlgs_sweep(struct solve *s, double omega, struct watch *w)
  */
 static int32_t foresee(const struct solve *s, const struct watch *w, int32_t end)
 {
-    int32_t n = s->rep->sweeps, next = w->judged + CHECK_EVERY;
-    if (!s->p->split || s->o->history || s->o->every_sweep || n < w->all || !(w->change > w->due))
+    int32_t n = s->rep->sweeps, next = w->last_judged + CHECK_EVERY;
+    if (!s->p->split || s->o->history || s->o->every_sweep || n < w->judge_all_until ||
+        !(w->change > w->due))
         return 0;
     if (next > end) next = end;
     if (next > s->o->max_sweeps) next = s->o->max_sweeps;
@@ -119,7 +120,9 @@ static int32_t foresee(const struct solve *s, const struct watch *w, int32_t end
 int nlgs_sweeps(struct solve *s, int32_t sweeps, double omega)
 {
     int32_t end = s->rep->sweeps + sweeps;
-    struct watch w = { .due = INFINITY, .judged = s->rep->sweeps, .all = CHECK_FIRST };
+    struct watch w = { .due = INFINITY,
+                       .last_judged = s->rep->sweeps,
+                       .judge_all_until = CHECK_FIRST };
     while (s->rep->sweeps < end) {
         int32_t unjudged = foresee(s, &w, end);
         int over = judged_sweep(s, omega, unjudged, s->rep->sweeps + unjudged == end - 1, &w);
@@ -128,7 +131,7 @@ int nlgs_sweeps(struct solve *s, int32_t sweeps, double omega)
     return 0;
 }
 
-int nlgs_instead(struct solve *s, const char *reason)
+int nlgs_fall_back(struct solve *s, const char *reason)
 {
     s->rep->fallback = reason;
     snprintf(s->rep->method, sizeof s->rep->method, "%s", s->o->method->name);

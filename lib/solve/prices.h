@@ -1,8 +1,8 @@
 /*
- * solve/prices.h: what a solve's parts cost, for the strategies that choose between them.
+ * solve/prices.h: what the parts of a solve cost, for the strategies that choose between them.
  *
- * Prices are ns of an ordinary core, but they are counted and not timed, so that the same problem is
- * solved in the same way everywhere. What all of a solve has cost is its report's `work`.
+ * Prices are ns of an ordinary core, but they are counted and not timed, so that the same problem
+ * is solved in the same way everywhere. Their sum over a solve is its report's `work`.
  */
 #ifndef NSD_PRICES_H
 #define NSD_PRICES_H
@@ -12,12 +12,12 @@
 /* A sweep over all contacts */
 double price_sweep(const struct problem *p);
 
-/* A matrix with this many multiplications in its factorisation (known from its fill) and entries in its
-   pattern: one factorisation with all else that a Newton step wants; and what it costs to find its fill,
-   before the first. */
+/* A Newton step with its one factorisation: `multiplications` of the factorisation (known from its
+   fill), `entries` of the matrix's pattern */
 double price_newton_step(double multiplications, double entries);
+/* Finding the fill of a pattern with this many entries, before its first factorisation */
 double price_analysis(double entries);
-/* To make the blocks of W, of so many entries, from the bodies or from another W */
+/* Making W's blocks, with this many entries, from the bodies or from another W */
 double price_assembly(double entries);
 
 #endif

@@ -18,8 +18,8 @@ static int run(struct solve *s)
     if (nlgs_sweeps(s, SWEEPS, s->o->relax > 0 ? s->o->relax : 1)) return -1;
     if (solve_over(s)) return 0;
     int e = newton_init(&w, s, &reason);
-    if (e) return e < 0 ? -1 : nlgs_instead(s, reason);
-    e = solve_keep(s);
+    if (e) return e < 0 ? -1 : nlgs_fall_back(s, reason);
+    e = solve_keep_best(s);
     if (!e) newton_polish(&w, s, ALPHA, PATIENCE);
     newton_free(&w);
     return e;

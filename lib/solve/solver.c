@@ -37,7 +37,7 @@ double solve_judge(struct solve *s)
     if (s->rep->sweeps - s->renewed_at >= RENEW_EVERY) renew(s);
     evaluate(s);
     if (solve_met(s) && !s->renewed) renew(s), evaluate(s);
-    solve_offer(s, &s->best);
+    solve_best_offer(s, &s->best);
     if (s->o->progress) s->o->progress(s->rep->sweeps, s->value);
     return s->value;
 }
@@ -92,19 +92,19 @@ void solve_count_newton(struct solve *s, double price, double since)
 
 /* ---- keeping ---- */
 
-/* What is kept of an iterate: r[slots][3] and, where the contacts are not MANY, u[slots][3] and whether
+/* What is kept of an iterate: r[slots][3] and, where the contacts are not MANY_CONTACTS, u[slots][3] and whether
    that is a local method's own. */
 static bool with_u(const struct problem *p)
 {
-    return p->n <= MANY;
+    return p->n <= MANY_CONTACTS;
 }
 
-int solve_keeper(struct best *b, const struct problem *p)
+int solve_best_init(struct best *b, const struct problem *p)
 {
     return best_init(b, with_u(p) ? 6 * p->slots + 1 : 3 * p->slots);
 }
 
-void solve_offer(const struct solve *s, struct best *b)
+void solve_best_offer(const struct solve *s, struct best *b)
 {
     const struct problem *p = s->p;
     double *r = best_offer(b, s->value), *u = r ? r + 3 * p->slots : NULL, unwanted[3] = { 0 };
@@ -119,7 +119,7 @@ void solve_react(struct solve *s, const double *r)
     s->believes = false, s->renewed = true, s->renewed_at = s->rep->sweeps;
 }
 
-void solve_return(struct solve *s, const struct best *b)
+void solve_best_restore(struct solve *s, const struct best *b)
 {
     struct problem *p = s->p;
     const double *r = b->x, *u = r + 3 * p->slots;
@@ -129,16 +129,16 @@ void solve_return(struct solve *s, const struct best *b)
     for (int64_t i = 0; s->believes && i < p->slots; i++) slot_set(p, i, r + 3 * i, u + 3 * i);
 }
 
-int solve_keep(struct solve *s)
+int solve_keep_best(struct solve *s)
 {
-    if (solve_keeper(&s->best, s->p)) return -1;
-    solve_offer(s, &s->best);
+    if (solve_best_init(&s->best, s->p)) return -1;
+    solve_best_offer(s, &s->best);
     return 0;
 }
 
-void solve_back(struct solve *s)
+void solve_restore_best(struct solve *s)
 {
-    solve_return(s, &s->best);
+    solve_best_restore(s, &s->best);
 }
 
 /* ---- a whole solve ---- */
@@ -155,7 +155,7 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
     snprintf(rep->method, sizeof rep->method, "%s",
              o->global == &solver_nlgs ? o->method->name : o->global->name);
     int failed = p->n ? o->global->run(&s) : 0;
-    solve_back(&s);
+    solve_restore_best(&s);
     best_free(&s.best);
     if (failed) return -1;
     renew(&s);

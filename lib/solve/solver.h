@@ -1,10 +1,11 @@
 /*
- * solve/solver.h: the solvers of a whole contact problem, siblings behind one table; each stands in a file
- * of its own. All end at the same criterion, and it counts as met only when it holds for the velocities
- * that the reactions make, computed anew from the problem and the reactions alone.
+ * solve/solver.h: the solvers of a whole contact problem, in one table; each has a file of its own.
+ * All end at the same criterion. It counts as met only when it holds for the velocities computed
+ * anew from the problem and the reactions alone.
  *
- * A solver is a row of turns over one iterate: the reactions in the problem's slots, the velocities that
- * they make (of bodies, or by W), what a local method believes u to be, and their error.
+ * The solvers share one iterate, which they change in place: the reactions in the problem's slots,
+ * the velocities that they make (of the bodies, or by W), u as a local method believes it to be,
+ * and the value of the criterion.
  */
 #ifndef NSD_SOLVER_H
 #define NSD_SOLVER_H
@@ -16,41 +17,41 @@
 struct solver;
 
 struct solve_opt {
-    const struct solver *global;
-    const struct method *method; /* the local one, of the sweeps */
+    const struct solver *global; /* the solver of all contacts */
+    const struct method *method; /* the local method of its sweeps */
     struct local_opt local;
     enum criterion criterion;
-    double eps;
-    int32_t max_sweeps;
-    double max_seconds; /* s on the wall; 0: any */
+    double eps;         /* the criterion is met at this value or below */
+    int32_t max_sweeps; /* sweeps, or steps of cg, at most */
+    double max_seconds; /* s on the wall; 0: no limit */
     double relax; /* omega: r + omega (r_new - r), back onto the cone; 0: the solver's choice */
     int threads;
     bool every_sweep; /* evaluate the criterion after every sweep, not only when it may be met */
     bool history;     /* keep the terms of every sweep (implies every_sweep) */
-    void (*progress)(int32_t sweeps, double value); /* told of each evaluation; or NULL */
+    void (*progress)(int32_t sweeps, double value); /* called at each evaluation; or NULL */
 };
 
-/* A solve on its way */
+/* A solve in progress */
 struct solve {
     struct problem *p;  /* the iterate's r, u, and velocities */
     bool believes;      /* u of the slots is a local method's own, else the motion's */
-    bool renewed;       /* the velocities were made anew and nothing was added to them since */
-    int32_t renewed_at; /* the number of the sweep at which they were last */
-    double value;       /* the criterion of the iterate as it was judged last */
+    bool renewed;       /* nothing was added to the velocities since they were last made anew */
+    int32_t renewed_at; /* sweeps made when they were */
+    double value;       /* the criterion of the iterate when it was last judged */
 
     const struct solve_opt *o;
     struct report *rep;
     double start;     /* s on the wall */
-    double pace;      /* s that a priced ns has taken, of the slowest Newton step so far */
-    struct best best; /* the best iterate that was judged since solve_keep() */
+    double pace;      /* s on the wall per priced ns, of the slowest Newton step so far */
+    struct best best; /* the best iterate judged since solve_keep_best() */
 };
 
-/* run: from the iterate given to the criterion, or to where it sees no way on. Returns 0, or -1 when
-   memory is short: then the iterate is as good as before. */
 struct solver {
     const char *name;
     const char *help;
     double relax; /* omega where none is asked for; 0: it varies */
+    /* Improves the iterate until the criterion is met, sweeps or seconds are spent, or it knows no
+       further way. Returns 0, or -1 when memory is short. */
     int (*run)(struct solve *s);
 };
 
@@ -60,49 +61,54 @@ extern const struct solver solver_auto, solver_nlgs, solver_anderson, solver_cg,
     solver_ipm;
 
 /*
- * Solves a problem from the r that it has. Its slots then hold r and u. Fills method, err (all of it but
- * max_overlap), criterion, eps, sweeps, converged, counts, work, fallback, seconds and history of the
- * report. Returns 0, or -1 when memory is short for what cannot be left out.
+ * Solves a problem, starting from the r in its slots; afterwards they hold r and u. Fills method,
+ * err (all but max_overlap), criterion, eps, sweeps, converged, counts, work, fallback, seconds and
+ * history of the report. Returns 0, or -1 when memory is short for what the solver cannot do
+ * without.
  */
 int solve_problem(struct problem *p, const struct solve_opt *o, struct report *rep);
 
 /* ---- for the solvers ---- */
 
 /*
- * The criterion of the iterate, into value. Where it seems met, the velocities are made anew and it is
- * judged again. The best iterate is kept; progress is told.
+ * Judges the iterate: puts the criterion into value and returns it. Where it seems met, the
+ * velocities are made anew and it is evaluated again. Keeps the iterate if it is the best, and
+ * calls progress.
  */
 double solve_judge(struct solve *s);
-/* value is at most eps; or there are no sweeps or seconds left. */
+/* The value is at most eps. */
 bool solve_met(const struct solve *s);
+/* No sweeps or no seconds are left. */
 bool solve_spent(const struct solve *s);
-/* Either: nothing more is to be done. */
+/* Either: the solver is to return. */
 bool solve_over(const struct solve *s);
-/* s on the wall that are left; INFINITY where any are */
+/* s left on the wall; INFINITY without a limit */
 double solve_seconds_left(const struct solve *s);
 
-/* r[slots][3] become the iterate's reactions, with the velocities that they make; not yet judged. */
+/* r[slots][3] (N s) become the iterate's reactions, with the velocities that they make; not yet
+   judged. */
 void solve_react(struct solve *s, const double *r);
 
-/*
- * From now on the best iterate is kept, this one the first, which has been judged; and back to it, unless
- * the iterate is as good: so a solve ends. 0, or -1 when memory is short.
- */
-int solve_keep(struct solve *s);
-void solve_back(struct solve *s);
-/* The same with a keeper of the solver's own: room for iterates; what was just judged offered; back. */
-int solve_keeper(struct best *b, const struct problem *p);
-void solve_offer(const struct solve *s, struct best *b);
-void solve_return(struct solve *s, const struct best *b);
+/* From now on keeps the best iterate, beginning with this one, which must have been judged. 0, or
+   -1 when memory is short. */
+int solve_keep_best(struct solve *s);
+/* Goes back to the best iterate kept, unless the present one is as good. Every solve ends so. */
+void solve_restore_best(struct solve *s);
+/* The same three steps with a `struct best` of the solver's own: room for an iterate; the iterate
+   just judged is kept if it is better; back to the one kept */
+int solve_best_init(struct best *b, const struct problem *p);
+void solve_best_offer(const struct solve *s, struct best *b);
+void solve_best_restore(struct solve *s, const struct best *b);
 
-/* The sweep's terms into the report, where a history is asked for; -1 when memory is short. */
+/* Appends the sweep's terms to the report where a history is asked for; -1 when memory is short. */
 int solve_history(struct solve *s);
-/* Whether the seconds that are left, where they are limited, are enough for something of this price: by
-   the pace of the Newton steps so far. */
+/* Whether the seconds left suffice for something of this price (ns), by the pace of the Newton
+   steps so far */
 bool solve_affords(const struct solve *s, double price);
-/* A Newton step of this price, begun at `since` (s on the wall), into the report */
+/* Adds to the report a Newton step of this price (ns), begun at `since` (s on the wall). */
 void solve_count_newton(struct solve *s, double price, double since);
-/* contacts: of more, a keeper has no room for u */
-enum { MANY = 100000 };
+
+/* contacts: with more, memory matters: no u is kept with the best iterate, and less for mixing */
+enum { MANY_CONTACTS = 100000 };
 
 #endif

@@ -1,6 +1,6 @@
 /*
- * solve/step.h: one time step: detect, solve, move. The pipeline nsd-detect | nsd-solve | nsd-move makes
- * the same three calls.
+ * solve/step.h: one time step: detect, solve, move. The pipeline nsd-detect | nsd-solve | nsd-move
+ * makes the same three calls.
  */
 #ifndef NSD_STEP_H
 #define NSD_STEP_H
@@ -9,27 +9,29 @@
 #include "solve/solver.h"
 
 struct step_opt {
-    double gap;   /* m: what counts as a contact */
+    double gap;   /* m: a contact is a pair with at most this gap */
     double alpha; /* > 0: rho = alpha m_red; else the method's default */
     enum order order;
     bool warm; /* start from the reactions of the contacts given, else from 0 */
     struct solve_opt solve;
 };
 
-/* Solves the contacts (frames and gaps are there); r, u, status go into them. */
-int step_solve(const struct packing *, struct contacts *, const struct step_opt *, struct report *,
-               struct why *);
+/* All return 0, or EX_SOFTWARE or EX_DATAERR with the reason in why. */
 
-/* The same for a problem given by W: r in W->r, u[n d]. */
-int step_solve_delassus(struct delassus *, double *u, const struct step_opt *, struct report *,
-                        struct why *);
+/* Solves the contacts, whose bases and gaps are known; their found[] gets r, u and status. */
+int step_solve(const struct packing *pack, struct contacts *s, const struct step_opt *o,
+               struct report *rep, struct why *why);
+
+/* The same for a problem given by W: r (N s) in W->r, u[n d] (m/s). */
+int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o, struct report *rep,
+                        struct why *why);
 
 /*
- * One whole step. contacts: in, the last step's (empty at first), to start from; out, this one's.
- * neighbours: of the steps before (empty at first), or NULL.
- * Where the solve diverged (its error is not finite) nothing has moved.
+ * One whole step. s: in, the contacts of the last step (none at first), to start from if warm; out,
+ * those of this one. near: neighbours kept from the steps before (empty at first), or NULL. Where
+ * the solve diverged (its error is not finite) nothing moves.
  */
-int step_advance(struct packing *, struct contacts *, struct neighbours *, const struct step_opt *,
-                 struct report *, struct why *);
+int step_advance(struct packing *p, struct contacts *s, struct neighbours *near,
+                 const struct step_opt *o, struct report *rep, struct why *why);
 
 #endif

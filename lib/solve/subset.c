@@ -86,7 +86,7 @@ static int run(struct solve *s)
     if (solve_over(s)) return 0;
     int e = newton_init(&w, s, &reason);
     if (e) return e < 0 ? -1 : 0;
-    if (STEPS * w.price <= inner->budget && !(e = solve_keep(s))) ipm_from(&w, s, GAP);
+    if (STEPS * w.price <= inner->budget && !(e = solve_keep_best(s))) ipm_from(&w, s, GAP);
     newton_free(&w);
     return e;
 }
@@ -120,7 +120,8 @@ static int prepare(struct subset *p, const struct scaled *a, const struct solve 
     scaled_velocity(a, p->x, p->v);
     double largest = maps(a, p->x, p->v, p->map);
     if (!choose(a, p->map, largest, contacts, anyhow, &p->chosen)) return 0;
-    if (delassus_part(&p->V, &a->W, p->chosen.n, p->chosen.contact, p->chosen.of, p->x, p->v, &why))
+    if (delassus_subset(&p->V, &a->W, p->chosen.n, p->chosen.contact, p->chosen.of, p->x, p->v,
+                        &why))
         return -1;
     double entries = delassus_entries(&p->V);
     return price_analysis(entries) + STEPS * price_newton_step(0, entries) <= budget;

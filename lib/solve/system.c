@@ -185,7 +185,7 @@ static bool align(struct system *s, const struct face *f, const struct reduced *
                   double *d)
 {
     int rank = f->rank, sign;
-    size_t order[3 * FACE_MOST];
+    size_t order[3 * FACE_CONTACTS_MAX];
     gsl_permutation P = { (size_t)rank, order };
     gsl_matrix_view t = view(s->t, rank, rank), F = view(q->inverse, rank, rank);
     for (int i = 0; i < rank * rank; i++) s->t[i] = l[i] + d[i];
@@ -369,7 +369,7 @@ static double residual(struct system *s, const double *x)
     return size > 0 ? worst / size : 0;
 }
 
-bool system_again(struct system *s, double *x)
+bool system_solve_again(struct system *s, double *x)
 {
     int32_t size = s->a->size;
     memcpy(s->b, x, (size_t)size * sizeof *x);
@@ -392,7 +392,7 @@ bool system_again(struct system *s, double *x)
 bool system_solve(struct system *s, const double *L, const double *D, double *x)
 {
     s->L = L, s->D = D;
-    return assemble(s) && lu_factorise(s->lu, s->entries) && system_again(s, x);
+    return assemble(s) && lu_factorise(s->lu, s->entries) && system_solve_again(s, x);
 }
 
 int system_sign(const struct system *s)
