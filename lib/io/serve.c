@@ -240,6 +240,8 @@ static herr_t look_at_link(hid_t from, const char *name, const H5L_info_t *info,
     if (info->type != H5L_TYPE_HARD && info->type != H5L_TYPE_SOFT)
         return why_set(w->why, EX_DATAERR, "%s/%.200s: a link into another file", w->path, name),
                -1;
+    if (!*name || strchr(name, '/') || !strcmp(name, ".") || !strcmp(name, ".."))
+        return why_set(w->why, EX_DATAERR, "%s/%.200s: not a name", w->path, name), -1;
     struct entry *e = add_entry(w, name);
     if (!e) return -1;
     if (info->type == H5L_TYPE_HARD) e->address = info->u.address;
