@@ -182,9 +182,8 @@ static json_t *set(const struct cli_option *o, const char *text)
 
 /* Of every tool, for it is every reader's: how much a packed document may hold */
 static double gigabytes;
-static const struct cli_option unpack = {
-    CLI_REAL, 0, "unpack", &gigabytes, "GB", NULL, 0, 1e6, true
-};
+static const struct cli_option unpack = { CLI_REAL, 0, "unpack", &gigabytes, "GB",
+                                          NULL,     0, 1e6,      true };
 
 int cli_parse(int argc, char **argv)
 {
