@@ -342,8 +342,8 @@ static int put_block(hid_t set, hid_t type, int rank, const hsize_t *first, cons
                      struct sink *sink)
 {
     size_t most, element = H5Tget_size(type);
-    hsize_t at[SERVE_RANK], n[SERVE_RANK], inner = 1, total = 1;
-    for (int k = 0; k < rank; k++) at[k] = 0, n[k] = 1, total *= count[k];
+    hsize_t at[SERVE_RANK] = { 0 }, n[SERVE_RANK] = { 0 }, inner = 1, total = 1;
+    for (int k = 0; k < rank; k++) n[k] = 1, total *= count[k];
     if (!total) return 0;
     void *to = sink->room(sink, &most);
     int k = rank - 1; // the dimension that is cut
