@@ -85,6 +85,7 @@ check: setup-check
 	$(MAKE) -j2 SAN=1 tests
 	NSD_QUICK=1 $(MAKE) SAN=1 test
 	$(MAKE) -j2 tests
+	$(MAKE) fuzz-corpus
 	$(MAKE) test
 
 demo: setup-run
@@ -108,6 +109,49 @@ bench-solvers: all
 # What make bench left beside what was kept before
 bench-compare:
 	bench/compare.sh
+
+# ---- hostile input ----
+
+# Targets of clang's libFuzzer, SECONDS each; what they find new stays in build/fuzz/corpus.
+SECONDS := 600
+FUZZ    := document problem scene
+FUZZCC  := clang
+FUZZSAN := -fsanitize=address,undefined -fno-sanitize-recover=undefined
+F       := build/fuzz
+FLIB    := $(patsubst $B/%,$F/%,$(filter-out $B/lib/cli/%,$(LIB)))
+
+$F/lib/%.o: lib/%.c Makefile
+	@mkdir -p $(@D)
+	$(FUZZCC) $(CPPFLAGS) $(NSD_CFLAGS) -O1 -g1 $(FUZZSAN) -fsanitize=fuzzer-no-link -MMD -MP -c -o $@ $<
+
+define fuzz_wide
+$F/lib/problem/$1-%.o: lib/problem/$1.c Makefile
+	@mkdir -p $$(@D)
+	$$(FUZZCC) $$(CPPFLAGS) $$(NSD_CFLAGS) -O1 -g1 $$(FUZZSAN) -DLANES=$$* $$(WIDTH_$$*) -MMD -MP -c -o $$@ $$<
+endef
+$(foreach w,$(WIDE),$(eval $(call fuzz_wide,$w)))
+
+$F/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/child.c $(FLIB) Makefile
+	@mkdir -p $(@D)
+	$(FUZZCC) $(CPPFLAGS) $(NSD_CFLAGS) -O1 -g1 $(FUZZSAN) -fsanitize=fuzzer -Itests/fuzz -o $@ \
+	    $< tests/fuzz/child.c $(FLIB) $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS)
+
+fuzz: $(FUZZ:%=$F/fuzz_%)
+	tests/fuzz/run.sh $(SECONDS) $(FUZZ)
+
+# The kept corpus once, as a test: $F/fuzz_TARGET runs files that it is given and ends.
+fuzz-corpus: $(FUZZ:%=$F/fuzz_%)
+	for t in $(FUZZ); do ASAN_OPTIONS=detect_leaks=0:handle_segv=0 $F/fuzz_$$t tests/fuzz/corpus/$$t/* >/dev/null 2>&1 || exit 1; done
+
+# Branches that the tests take, by folder (gcovr); below the bounds it fails. COVERAGE_TESTS: which tests.
+COVERAGE_TESTS := $(wildcard tests/*.t)
+coverage:
+	$(MAKE) -j2 CFLAGS="-O1 -g --coverage -DNSD_COVERAGE -fprofile-update=atomic" B=build/coverage tests
+	-PATH="$(CURDIR)/build/coverage:$$PATH" NSD_QUICK=1 prove -j2 build/coverage/tests/*_test $(COVERAGE_TESTS)
+	scripts/coverage.sh build/coverage
+
+-include $(wildcard $F/lib/*/*.d)
+.PHONY: fuzz fuzz-corpus coverage
 
 # ---- style ----
 

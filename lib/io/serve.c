@@ -240,6 +240,8 @@ static herr_t look_at_link(hid_t from, const char *name, const H5L_info_t *info,
     if (info->type != H5L_TYPE_HARD && info->type != H5L_TYPE_SOFT)
         return why_set(w->why, EX_DATAERR, "%s/%.200s: a link into another file", w->path, name),
                -1;
+    if (!*name || strchr(name, '/') || !strcmp(name, ".") || !strcmp(name, ".."))
+        return why_set(w->why, EX_DATAERR, "%s/%.200s: not a name", w->path, name), -1;
     struct entry *e = add_entry(w, name);
     if (!e) return -1;
     if (info->type == H5L_TYPE_HARD) e->address = info->u.address;
@@ -340,8 +342,8 @@ static int put_block(hid_t set, hid_t type, int rank, const hsize_t *first, cons
                      struct sink *sink)
 {
     size_t most, element = H5Tget_size(type);
-    hsize_t at[SERVE_RANK], n[SERVE_RANK], inner = 1, total = 1;
-    for (int k = 0; k < rank; k++) at[k] = 0, n[k] = 1, total *= count[k];
+    hsize_t at[SERVE_RANK] = { 0 }, n[SERVE_RANK] = { 0 }, inner = 1, total = 1;
+    for (int k = 0; k < rank; k++) n[k] = 1, total *= count[k];
     if (!total) return 0;
     void *to = sink->room(sink, &most);
     int k = rank - 1; // the dimension that is cut

@@ -213,7 +213,10 @@ int unknown_write(const struct unknown *u, int64_t file, bool stale, struct why 
     for (int64_t k = 0; u && k < u->count && !why->status; k++) {
         const struct item *i = &u->item[k];
         if ((stale && is_problem(i->path)) || h5_has(file, i->path)) continue;
-        write_item(i, file, why);
+        struct why trouble = { 0 };
+        if (write_item(i, file, &trouble)) // HDF5 writes not all that it reads
+            why_set(why, trouble.status == EX_IOERR ? EX_DATAERR : trouble.status,
+                    "%.200s: cannot be copied: %.150s", i->path, trouble.text);
     }
     return why->status;
 }

@@ -19,6 +19,8 @@ enum {
     ALIGN_FROM = 64, /* bytes: the smallest thing aligned; an index's head has 72 */
 };
 
+static const char CUT_OFF[] = "has been cut off by another program";
+
 /* What every frame of a trajectory shares */
 struct shared {
     int dim;
@@ -124,7 +126,7 @@ static int write_all(struct writer *s, const unsigned char *bytes, size_t size, 
     if (s->append) let_go(s);
     struct stat st;
     if (start >= 0 && !fstat(s->fd, &st) && S_ISREG(st.st_mode) && st.st_size < start + (off_t)size)
-        return output_failed(s, why, "has been cut off by another program");
+        return output_failed(s, why, CUT_OFF);
     return 0;
 }
 
@@ -185,6 +187,17 @@ static bool write_at(const struct writer *s, const unsigned char *bytes, size_t 
         done += (size_t)n;
     }
     return true;
+}
+
+/* Is what was written still there? A shell's > f cuts f off, and what HDF5 writes then leaves holes. */
+static bool still_there(const struct writer *s)
+{
+    unsigned char header[DOCUMENT_USERBLOCK], now[DOCUMENT_USERBLOCK];
+    struct stat st;
+    document_header(header, 0, 0);
+    return !fstat(s->disk, &st) && st.st_size >= s->end &&
+           pread(s->disk, now, sizeof now, 0) == (ssize_t)sizeof now &&
+           !memcmp(header, now, sizeof now);
 }
 
 static int write_header(struct writer *s, uint64_t length, uint32_t crc, struct why *why)
@@ -282,9 +295,7 @@ static int trajectory_frame(struct writer *s, const struct frame *f, struct why 
     if (!f->packed)
         return why_set(why, EX_DATAERR, "an FCLIB problem does not go into a trajectory");
     bool first = s->doc.file < 0;
-    struct stat st;
-    if (!first && !fstat(s->disk, &st) && st.st_size < s->end)
-        return output_failed(s, why, "has been cut off by another program");
+    if (!first && !still_there(s)) return output_failed(s, why, CUT_OFF);
     if (first ? trajectory_begin(s, f, why) : reserve(s, f, why)) return why->status;
     if (check_same(s, f, why)) return why->status;
     if (frame_write_moment(&s->doc, f, why) || flush(s, why) || frame_write_step(&s->doc, f, why) ||
@@ -301,9 +312,8 @@ static int trajectory_close(struct writer *s, struct why *why)
     int failed = table_write_close(&s->doc) || H5Fget_filesize(s->doc.file, &size) < 0;
     if (H5Fclose(s->doc.file) < 0 || failed)
         return output_failed(s, why, "cannot be written (full?)");
+    if (!still_there(s)) return output_failed(s, why, CUT_OFF);
     struct stat st; // the reserve that was not needed is given back
-    if (!fstat(s->disk, &st) && st.st_size < (off_t)size)
-        return output_failed(s, why, "has been cut off by another program");
     if (fstat(s->disk, &st) || (st.st_size > (off_t)size && ftruncate(s->disk, (off_t)size)))
         return output_failed(s, why, strerror(errno));
     static unsigned char buffer[1 << 18];

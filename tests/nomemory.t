@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# No memory: whichever allocation fails, in a tool or in its libraries, nothing is lost silently.
+# shellcheck source=tests/tap.sh disable=SC2154,SC2317 # tap.sh sets tmp; functions called by name
+. tests/tap.sh
+
+if grep -q __asan_init "$(command -v nsd-gen)"; then
+    skip "allocations that fail" "a sanitizer has its own"
+    done_testing
+    exit
+fi
+cc -O1 -shared -fPIC -o "$tmp/nomemory.so" tests/preload/nomemory.c
+
+nsd-gen 4 |
+    nsd-step -n 400 --every 400 2>/dev/null |
+    nsd-cat --last |
+    nsd-detect |
+    nsd-solve 2>/dev/null >"$tmp/solved.h5"
+commands=("nsd-gen 20" "nsd-info $tmp/solved.h5" "nsd-cat $tmp/solved.h5" "nsd-err $tmp/solved.h5" "nsd-move $tmp/solved.h5"
+    "nsd-detect --fclib=local $tmp/solved.h5" "nsd-view --size 32x32 $tmp/solved.h5" "nsd-solve -m sbp --max-sweeps 3 $tmp/solved.h5"
+    "nsd-step -m sbp -n 2 $tmp/solved.h5") # the default goes on without Anderson where that finds no memory: other bytes
+runs=14 # a command, spread over its allocations
+[ -z "$quick" ] || runs=4
+
+# In the tool ("tool") or its libraries one allocation fails; of theirs, libhdf5 may die.
+failing() # index of the run
+{
+    local at=$((1 + $1 * total / runs)) s=0 out=$tmp/out.$BASHPID err=$tmp/err.$BASHPID
+    # shellcheck disable=SC2086 # words
+    { timeout 20 env NSD_FAIL_IN=$where NSD_FAIL_AT=$at LD_PRELOAD="$tmp/nomemory.so" $command >"$out" 2>"$err"; } 2>/dev/null || s=$?
+    if [ $s = 0 ]; then
+        cmp -s "$out" "$tmp/want" || echo "allocation $at: status 0, and another output"
+    elif [ "$where" = tool ]; then
+        { [ $s = 70 ] || [ $s = 65 ]; } && grep -q "^${command%% *}: " "$err" || echo "allocation $at: status $s, $(tail -n 1 "$err")"
+    fi
+}
+for command in "${commands[@]}"; do
+    # shellcheck disable=SC2086 # words
+    $command >"$tmp/want" 2>/dev/null
+    for where in tool library; do
+        # shellcheck disable=SC2086 # words
+        NSD_FAIL_IN=$where NSD_COUNT=$tmp/count LD_PRELOAD="$tmp/nomemory.so" $command >/dev/null 2>&1
+        total=$(cat "$tmp/count")
+        ok_each "${command//$tmp\//}: of $total allocations in the $where one fails: an error, or the same bytes" failing $runs
+    done
+done
+done_testing
