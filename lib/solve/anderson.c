@@ -41,8 +41,7 @@ enum {
 #define LEAP_GROWTH 2.0   /* the same in a leap */
 #define RIDGE       1e-14 /* added to the scaled normal equations' diagonal of 1 */
 #define LEAP_FIRST  8.0   /* the first leap, in multiples of f */
-#define OMEGA_BALLS                                                                                \
-    1.6 /* omega of every other sweep of balls, if none is asked for; 1.7 is slower */
+#define OMEGA_BALLS 1.6   /* omega of every other sweep of balls by default; 1.7 is slower */
 
 struct anderson {
     struct solve *s;

@@ -255,7 +255,9 @@ static int run(struct solve *s)
         last = start;
         choose_direction(&a, 0);
         for (; k < INNER && now > fall * start && !over; k++) over = step(&a, &now);
-        if (!over && !k) over = (renew_bounds(&a), judge_if_due(&a, true), 1);
+        if (over || k) continue;
+        renew_bounds(&a), judge_if_due(&a, true); // no direction leads on
+        over = 1;
     }
     cg_free(&a);
     return over < 0 ? -1 : 0;

@@ -100,8 +100,7 @@ static bool rows_follow(const struct delassus *W, const struct face *f, int32_t 
     return true;
 }
 
-/* T = Q R, Q = (Q_1 Q_2): all x with T' x = w are Q_1 R^-T w + Q_2 n, so that M = Q_1 R^-T, N =
-   Q_2. */
+/* M = Q_1 R^-T and N = Q_2, where T = Q R and Q = (Q_1 Q_2) */
 static void null_space(struct face *f, const gsl_matrix *T)
 {
     size_t n = (size_t)f->rows, r = (size_t)f->rank;
@@ -226,13 +225,13 @@ static int ascending(const void *a, const void *b)
 static int32_t neighbour_faces(const struct faces *f, const struct delassus *W,
                                const struct face *g, const int32_t *of, int32_t *near)
 {
-    int32_t count = 0, count_once = 0, c = f->row[g->at] / W->d;
+    int32_t count = 0, distinct = 0, c = f->row[g->at] / W->d;
     near[count++] = of[c];
     for (int64_t e = W->first[c]; e < W->first[c + 1]; e++) near[count++] = of[W->col[e]];
     qsort(near, (size_t)count, sizeof *near, ascending);
     for (int32_t i = 0; i < count; i++)
-        if (!i || near[i] != near[i - 1]) near[count_once++] = near[i];
-    return count_once;
+        if (!i || near[i] != near[i - 1]) near[distinct++] = near[i];
+    return distinct;
 }
 
 /* S by rows; near[n] is work space. */
@@ -242,10 +241,10 @@ static void fill_S(struct faces *f, const struct delassus *W, const int32_t *of,
     int32_t k = 0;
     for (int32_t i = 0; i < f->n; i++) {
         const struct face *g = f->face + i;
-        int32_t count_once = neighbour_faces(f, W, g, of, near);
+        int32_t distinct = neighbour_faces(f, W, g, of, near);
         for (int32_t row = g->at; row < g->at + g->rank; row++) {
             f->first[row] = k;
-            for (int32_t h = 0; h < count_once; h++)
+            for (int32_t h = 0; h < distinct; h++)
                 for (int j = 0; j < f->face[near[h]].rank; j++, k++) {
                     f->col[k] = f->face[near[h]].at + j;
                     int32_t a = f->row[row], b = f->row[f->col[k]];

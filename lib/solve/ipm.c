@@ -42,7 +42,7 @@ struct ipm {
     struct directions *kept; /* [n] */
     bool full;               /* some W_cc are more than diag(w_n, w_t, w_t) */
     double fold_gap; /* below this gap only t = 1 is tried, and a short step ends the path */
-    int last_t;      /* which of the t was used last */
+    int last_t;      /* which of the t the next step tries first */
     int stuck;       /* steps below 1e-3 in a row */
 };
 
