@@ -9,7 +9,7 @@
 #include <string.h>
 
 #define LARGE 0.1   /* of the largest natural map of a contact: with more a contact is chosen */
-#define EXACT 1e-13 /* natural map to which a subset is solved; 1e-11 is slower in all */
+#define EXACT 1e-13 /* natural map to which a subset is solved; 1e-11 is no faster */
 #define GAP   1e-3  /* gap at which a subset's interior point method begins */
 #define OMEGA 1.3   /* omega of a subset's sweeps */
 
