@@ -128,7 +128,8 @@ static int write_vectors(const struct assembly *A, bool global, hid_t file, stru
     if (!e) e = write_ints(file, group, "spacedim", 1, &d, why);
     double *mu = malloc((size_t)(n + 1) * sizeof *mu);
     if (!mu) return short_of_memory(why);
-    for (int64_t c = 0; c < n; c++) mu[c] = slot_bundle(A->p, A->row[c])->mu[slot_lane(A->row[c])];
+    for (int64_t c = 0; c < n; c++)
+        mu[c] = slot_bundle(A->p, A->slot[c])->mu[slot_lane(A->slot[c])];
     if (!e) e = write_vector(file, group, "vectors/mu", n, mu, why);
     if (!e && global) e = write_vector(file, group, "vectors/w", n * d, A->w, why);
     if (!e && !global) e = write_vector(file, group, "vectors/q", n * d, A->q, why);

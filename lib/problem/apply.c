@@ -1,4 +1,4 @@
-/* apply.c: see problem/apply.h. */
+/* problem/apply.c: W r by the bodies or by the blocks of W [problem/apply.h]. */
 #include "problem/apply.h"
 
 #include "problem/sweep.h"
@@ -64,7 +64,7 @@ void problem_renew(struct problem *p, int threads)
 {
     if (!p->body) return;
     problem_set_free_motion(p);
-    if (threads == 1) { // a team has its price
+    if (threads == 1) { // starting a parallel region costs time
         sweep_widest()->push(p, 0, 1);
         return;
     }

@@ -1,4 +1,4 @@
-/* problem/assembly.c: see problem/assembly.h. */
+/* problem/assembly.c: Jacobians, and the matrices made of them [problem/assembly.h]. */
 #include "problem/assembly.h"
 
 #include <assert.h>
@@ -12,36 +12,32 @@ static int short_of_memory(struct why *why)
 
 void assembly_free(struct assembly *A)
 {
-    free(A->row);
-    free(A->end);
-    free(A->q);
-    free(A->w);
-    free(A->free);
+    free(A->slot), free(A->end), free(A->q), free(A->w), free(A->free);
     lists_free(&A->of);
     *A = (struct assembly){ 0 };
 }
 
 static const struct bundle *assembly_bundle(const struct assembly *A, int64_t c)
 {
-    return slot_bundle(A->p, A->row[c]);
+    return slot_bundle(A->p, A->slot[c]);
 }
 
-/* out = D u~ of every contact with the bodies as they are here; D u~ = u + E u^- */
+/* out[n d] = D u~ = u + E u^- of every contact, with the velocities of body[] */
 static void assembly_velocity(const struct assembly *A, struct body *body, double *out)
 {
     int d = A->p->d;
     assert(d == 2 || d == 3);
     for (int64_t c = 0; c < A->p->n; c++) {
-        const struct bundle *row = assembly_bundle(A, c);
-        const struct rebound *e = slot_rebound(A->p, A->row[c]);
-        int lane = slot_lane(A->row[c]);
+        const struct bundle *bundle = assembly_bundle(A, c);
+        const struct rebound *e = slot_rebound(A->p, A->slot[c]);
+        int lane = slot_lane(A->slot[c]);
         double u[3];
-        body_velocity(body, row, e, lane, u);
+        body_velocity(body, bundle, e, lane, u);
         for (int k = 0; k < d; k++) *out++ = e ? u[k] / e->s[k > 0][lane] : u[k];
     }
 }
 
-/* q with the reactions taken out of the bodies, w with the rest of their motion too */
+/* q from the bodies without the reactions; w with the movable bodies at rest as well */
 static bool assembly_vectors(struct assembly *A)
 {
     const struct problem *p = A->p;
@@ -70,18 +66,18 @@ int assembly_init(struct assembly *A, const struct problem *p, struct why *why)
 {
     *A = (struct assembly){ .p = p };
     size_t n = (size_t)p->n, nd = n * (size_t)p->d;
-    A->row = malloc((n + 1) * sizeof *A->row);
+    A->slot = malloc((n + 1) * sizeof *A->slot);
     A->end = calloc(2 * n + 1, sizeof *A->end);
     A->q = malloc((nd + 1) * sizeof *A->q);
     A->w = malloc((nd + 1) * sizeof *A->w);
     A->free = calloc((size_t)p->bodies + 1, sizeof *A->free);
-    bool good = A->row && A->end && A->q && A->w && A->free;
+    bool good = A->slot && A->end && A->q && A->w && A->free;
     for (int64_t i = 0; good && i < p->slots; i++) {
         int64_t c = p->contact[i];
         if (c < 0) continue;
         int64_t a = body_index(slot_bundle(p, i)->a[slot_lane(i)]),
                 b = body_index(slot_bundle(p, i)->b[slot_lane(i)]);
-        A->row[c] = i;
+        A->slot[c] = i;
         A->end[2 * c] = p->body[a].im > 0 ? (int32_t)a : -1;
         A->end[2 * c + 1] = p->body[b].im > 0 ? (int32_t)b : -1;
     }
@@ -89,11 +85,11 @@ int assembly_init(struct assembly *A, const struct problem *p, struct why *why)
     return good ? 0 : short_of_memory(why);
 }
 
-/* u_c = J (v, w) of the body at this end of the contact; see body_velocity. */
+/* J: u_c = J (v, w) for the body at this end of the contact, as in bundle_velocity() */
 static void jacobian(const struct assembly *A, int64_t contact, int end, double J[3][6])
 {
     const struct bundle *c = assembly_bundle(A, contact);
-    int i = slot_lane(A->row[contact]);
+    int i = slot_lane(A->slot[contact]);
     double sign = end ? 1 : -1, l = end ? c->lb[i] : c->la[i], n[3], t1[3], t2[3];
     bundle_basis(c, i, n, t1, t2);
     for (int k = 0; k < 3; k++) {
@@ -103,7 +99,7 @@ static void jacobian(const struct assembly *A, int64_t contact, int end, double 
     }
 }
 
-/* W_cb = sum over the bodies they share of J_c M^-1 J_b^T */
+/* B = W_cb, the sum of J_c M^-1 J_b^T over the movable bodies that c and b share */
 static void assembly_block(const struct assembly *A, int64_t c, int64_t b, double B[3][3])
 {
     memset(B, 0, 9 * sizeof **B);
@@ -120,8 +116,9 @@ static void assembly_block(const struct assembly *A, int64_t c, int64_t b, doubl
     }
 }
 
-/* The contacts that share a movable body with c, itself among them, ascending; how many. */
-static int64_t assembly_neighbours(const struct assembly *A, int64_t c, int64_t *met)
+/* near[] = the contacts that share a movable body with c, c among them, ascending; returns their
+   number. */
+static int64_t assembly_neighbours(const struct assembly *A, int64_t c, int64_t *near)
 {
     int64_t at[2] = { 0 }, end[2] = { 0 }, count = 0;
     for (int s = 0; s < 2; s++) {
@@ -131,25 +128,25 @@ static int64_t assembly_neighbours(const struct assembly *A, int64_t c, int64_t 
     while (at[0] < end[0] || at[1] < end[1]) {
         int64_t a = at[0] < end[0] ? A->of.item[at[0]] / 2 : INT64_MAX;
         int64_t b = at[1] < end[1] ? A->of.item[at[1]] / 2 : INT64_MAX;
-        met[count++] = a < b ? a : b;
+        near[count++] = a < b ? a : b;
         at[0] += a <= b, at[1] += b <= a;
     }
     return count;
 }
 
-static void fill_W(const struct assembly *A, struct stored *W, int64_t *met)
+static void fill_W(const struct assembly *A, struct stored *W, int64_t *near)
 {
     int d = A->p->d;
     int64_t k = 0;
     for (int64_t c = 0; c < A->p->n; c++) {
-        int64_t count = assembly_neighbours(A, c, met);
+        int64_t count = assembly_neighbours(A, c, near);
         for (int64_t b = 0; b < count; b++) {
             double B[3][3];
-            assembly_block(A, c, met[b], B);
+            assembly_block(A, c, near[b], B);
             for (int i = 0; i < d; i++)
                 for (int j = 0; j < d; j++) {
                     int64_t e = k + (i * count + b) * d + j;
-                    W->i[e] = (int32_t)(d * met[b] + j), W->x[e] = B[i][j];
+                    W->i[e] = (int32_t)(d * near[b] + j), W->x[e] = B[i][j];
                 }
         }
         for (int i = 0; i < d; i++) W->p[d * c + i + 1] = (int32_t)(k += count * d);
@@ -160,17 +157,17 @@ int assembly_W(const struct assembly *A, struct stored *W, struct why *why)
 {
     int64_t n = A->p->n, d = A->p->d, blocks = 0;
     *W = (struct stored){ 0 };
-    int64_t *met = malloc((size_t)(n + 1) * sizeof *met);
-    if (!met) return short_of_memory(why);
-    for (int64_t c = 0; c < n; c++) blocks += assembly_neighbours(A, c, met);
+    int64_t *near = malloc((size_t)(n + 1) * sizeof *near);
+    if (!near) return short_of_memory(why);
+    for (int64_t c = 0; c < n; c++) blocks += assembly_neighbours(A, c, near);
     int e = 0;
     if (n * d > INT32_MAX || blocks * d * d > INT32_MAX)
         e = why_set(why, EX_DATAERR, "/fclib_local/W: too large for the 32-bit indices of FCLIB");
     else if (!stored_init(W, n * d, n * d, -2, blocks * d * d))
         e = short_of_memory(why);
     else
-        fill_W(A, W, met);
-    free(met);
+        fill_W(A, W, near);
+    free(near);
     return e;
 }
 
@@ -178,38 +175,38 @@ int assembly_blocks(const struct assembly *A, struct delassus *W, struct why *wh
 {
     int d = A->p->d;
     int64_t n = A->p->n, blocks = 0;
-    int64_t *met = malloc((size_t)(n + 1) * sizeof *met);
-    if (!met) return short_of_memory(why);
-    for (int64_t c = 0; c < n; c++) blocks += assembly_neighbours(A, c, met);
+    int64_t *near = malloc((size_t)(n + 1) * sizeof *near);
+    if (!near) return short_of_memory(why);
+    for (int64_t c = 0; c < n; c++) blocks += assembly_neighbours(A, c, near);
     if (!delassus_alloc(W, d, n, blocks, why)) {
         blocks = 0;
         for (int64_t c = 0; c < n; c++) {
-            W->mu[c] = assembly_bundle(A, c)->mu[slot_lane(A->row[c])];
+            W->mu[c] = assembly_bundle(A, c)->mu[slot_lane(A->slot[c])];
             for (int k = 0; k < d; k++) W->q[d * c + k] = A->q[d * c + k];
-            int64_t count = assembly_neighbours(A, c, met);
+            int64_t count = assembly_neighbours(A, c, near);
             for (int64_t b = 0; b < count; b++) {
                 double rows[3][3], B[9];
-                assembly_block(A, c, met[b], rows);
+                assembly_block(A, c, near[b], rows);
                 for (int k = 0; k < d * d; k++) B[k] = rows[k % d][k / d];
-                if (met[b] == c) {
+                if (near[b] == c) {
                     delassus_set_diag(W, c, B);
                 } else if (delassus_block_counts(d, B)) {
                     memcpy(W->block + d * d * blocks, B, (size_t)(d * d) * sizeof *B);
-                    W->col[blocks++] = (int32_t)met[b];
+                    W->col[blocks++] = (int32_t)near[b];
                 }
             }
             W->first[c + 1] = blocks;
         }
     }
-    free(met);
+    free(near);
     return why->status;
 }
 
 /* The unknowns of a body are dof[0 .. dofs-1] of its (v, w). */
 static const int dof_plane[] = { 0, 1, 5 }, dof_space[] = { 0, 1, 2, 3, 4, 5 };
 
-/* M diagonal, f = M v_free; first[body] is its first unknown. A body that cannot turn has unknowns
-   that nothing drives, and its w stays in the vector w. */
+/* M diagonal, f = M v_free; first[body] is the body's first unknown. The w of a body that cannot
+   turn stays in the vector w; its unknowns are in no equation of a contact. */
 static void fill_M(const struct assembly *A, const int32_t *first, struct stored *M, double *f)
 {
     int dofs = A->p->d == 2 ? 3 : 6;

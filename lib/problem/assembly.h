@@ -21,7 +21,7 @@
 
 struct assembly {
     const struct problem *p;
-    int64_t *row;      /* [n] contact c is in slot row[c] of p */
+    int64_t *slot;     /* [n] contact c is in slot[c] of p */
     int32_t *end;      /* [2 n] bodies a and b of contact c at 2 c, 2 c + 1; -1: immovable */
     struct lists of;   /* of each body: its places in end[] */
     double *q, *w;     /* [n d] D u~ at v_free, and with the movable bodies at rest, m/s */

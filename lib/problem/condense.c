@@ -1,4 +1,4 @@
-/* problem/condense.c: see problem/condense.h. */
+/* problem/condense.c: the factors of K, V column by column, and W [problem/condense.h]. */
 #include "problem/condense.h"
 
 #include <assert.h>
@@ -28,13 +28,10 @@ static void factor_free(struct factor *K)
 {
     if (K->numeric) klu_l_free_numeric(&K->numeric, &K->common);
     if (K->symbolic) klu_l_free_symbolic(&K->symbolic, &K->common);
-    free(K->p);
-    free(K->i);
-    free(K->x);
-    free(K->dense);
+    free(K->p), free(K->i), free(K->x), free(K->dense);
 }
 
-/* The entries of K, those of one place not yet added */
+/* The entries of K; those at the same place are not yet added. */
 static bool factor_entries(struct sparse *K, const struct global *P)
 {
     bool good = true;
@@ -46,7 +43,8 @@ static bool factor_entries(struct sparse *K, const struct global *P)
     return good;
 }
 
-/* The columns of K, entries of one place added: at[row] is where a column has it. */
+/* The columns of K, entries at the same place added. at[row]: where the present column has that
+   row */
 static bool factor_columns(struct factor *K, const struct sparse *A, int64_t *at)
 {
     struct lists of = { 0 };
@@ -126,8 +124,8 @@ static int32_t component_of(int32_t *component, int32_t i)
     return i;
 }
 
-/* K falls into components that have nothing to do with each other, as bodies do: component[i] is the lowest
-   unknown of the component that i is in. */
+/* K consists of components with no entry between them, as separate bodies are. component[i]: the
+   lowest unknown of i's component */
 static void find_components(const struct factor *K, int32_t *component)
 {
     for (int64_t i = 0; i < K->n; i++) component[i] = (int32_t)i;
@@ -140,7 +138,8 @@ static void find_components(const struct factor *K, int32_t *component)
     for (int64_t i = 0; i < K->n; i++) component[i] = component_of(component, (int32_t)i);
 }
 
-/* Column j of H into the right-hand side, unless a component that it meets has an owner already */
+/* Adds column j of H to the right-hand side b, unless a component that it has entries in belongs to
+   another column already. */
 static bool join_columns(const struct sparse *H, const struct lists *of, int32_t j,
                          const int32_t *component, int32_t *owner, double *b)
 {
@@ -156,8 +155,9 @@ static bool join_columns(const struct sparse *H, const struct lists *of, int32_t
 }
 
 /*
- * (V, L) = K^-1 (H, 0), what is not zero of it. Columns that meet different components of K share one
- * right-hand side: of a packing it takes as many solutions as a ball has neighbours, times d.
+ * V = K^-1 (H, 0), without its zeros. Columns with entries in different components of K share one
+ * right-hand side: for a packing that takes about as many solutions as a ball has neighbours, times
+ * d.
  */
 static int solve_columns(struct sparse *V, const struct sparse *H, struct factor *K,
                          const struct lists *of, int32_t *component, int32_t *todo, double *y,
@@ -191,13 +191,11 @@ static int condense_columns(struct motion *U, const struct global *P, struct fac
     int e =
         room ? solve_columns(&U->V, &P->H, K, &of, component, todo, y, why) : short_of_memory(why);
     lists_free(&of);
-    free(todo);
-    free(component);
-    free(y);
+    free(todo), free(component), free(y);
     return e;
 }
 
-/* W = H^T V, column by column, from the rows of H that V's column meets */
+/* W = H^T V, column by column, from the rows of H in which V's column has entries */
 static bool condense_W(struct sparse *W, const struct sparse *H, const struct sparse *V)
 {
     struct lists rows = { 0 }, columns = { 0 };
@@ -210,7 +208,7 @@ static bool condense_W(struct sparse *W, const struct sparse *H, const struct sp
     for (int32_t j = 0; good && j < H->n; j++) {
         int64_t mets = 0;
         for (int64_t k = columns.first[j]; k < columns.first[j + 1]; k++) {
-            int64_t v = columns.item[k], i = V->row[v]; // rows of multipliers meet nothing
+            int64_t v = columns.item[k], i = V->row[v]; // none of H in the rows of multipliers
             for (int64_t l = rows.first[i]; l < rows.first[i + 1]; l++) {
                 int32_t a = H->col[rows.item[l]];
                 if (last[a] != j) last[a] = j, sum[a] = 0, met[mets++] = a;
@@ -221,9 +219,7 @@ static bool condense_W(struct sparse *W, const struct sparse *H, const struct sp
     }
     lists_free(&columns);
     lists_free(&rows);
-    free(last);
-    free(met);
-    free(sum);
+    free(last), free(met), free(sum);
     return good;
 }
 
@@ -259,7 +255,6 @@ void global_free(struct global *P)
 {
     struct sparse *const matrix[] = { &P->M, &P->H, &P->G };
     for (int k = 0; k < 3; k++) sparse_free(matrix[k]);
-    free(P->f);
-    free(P->b);
+    free(P->f), free(P->b);
     *P = (struct global){ 0 };
 }

@@ -1,10 +1,12 @@
-/* problem/delassus.c: see problem/delassus.h. */
+/* problem/delassus.c: W from entries, its rows reordered, subsets of it, W x
+   [problem/delassus.h]. */
 #include "problem/delassus.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* order[] stably by the block that index[] lies in: a counting sort. tally [n + 1] and to [entries]. */
+/* to[entries] = order[] (NULL: 0, 1, 2 ...), sorted stably by the block that index[] lies in: a
+   counting sort, with work space tally[n + 1] */
 static void sort_by_block(int64_t entries, const int32_t *index, int d, int64_t n,
                           const int64_t *order, int64_t *to, int64_t *tally)
 {
@@ -33,7 +35,7 @@ void delassus_set_diag(struct delassus *W, int64_t c, const double *B)
     if (d == 2) D[8] = D[4] > 0 ? D[4] : 1;
 }
 
-/* The entries, now sorted, block by block into W, whose arrays have room for each of them. */
+/* Puts the entries, taken in this order, into W block by block; its arrays have room for all. */
 static void gather_blocks(struct delassus *W, int64_t entries, const int64_t *order,
                           const int32_t *row, const int32_t *col, const double *x)
 {
@@ -107,21 +109,14 @@ int delassus_init(struct delassus *W, int d, int64_t n, int64_t entries, const i
         for (int64_t c = 0; c < n; c++) delassus_set_diag(W, c, none);
         gather_blocks(W, entries, order, row, col, x);
     }
-    free(tally);
-    free(half);
-    free(order);
+    free(tally), free(half), free(order);
     return e;
 }
 
 void delassus_free(struct delassus *W)
 {
-    free(W->first);
-    free(W->col);
-    free(W->block);
-    free(W->diag);
-    free(W->q);
-    free(W->mu);
-    free(W->r);
+    free(W->first), free(W->col), free(W->block), free(W->diag);
+    free(W->q), free(W->mu), free(W->r);
     *W = (struct delassus){ 0 };
 }
 
@@ -151,8 +146,8 @@ int delassus_sort(struct delassus *to, const struct delassus *W, int64_t rows, c
     return 0;
 }
 
-/* y[d] -= B x, the block by columns */
-static void take(int d, const double *B, const double *x, double *y)
+/* y[d] -= B x[d], B by columns */
+static void subtract_product(int d, const double *B, const double *x, double *y)
 {
     for (int j = 0; j < d; j++)
         for (int i = 0; i < d; i++) y[i] -= B[d * j + i] * x[j];
@@ -178,7 +173,7 @@ int delassus_subset(struct delassus *to, const struct delassus *W, int64_t n,
         for (int64_t e = W->first[c]; e < W->first[c + 1]; e++) {
             int32_t b = W->col[e];
             if (of[b] < 0) continue;
-            take(d, W->block + dd * e, r + d * b, q);
+            subtract_product(d, W->block + dd * e, r + d * b, q);
             to->col[at] = of[b];
             memcpy(to->block + dd * at++, W->block + dd * e, (size_t)dd * sizeof(double));
         }

@@ -1,30 +1,19 @@
+/* problem/err.c: the sums over the contacts, and the errors made of them [problem/err.h]. */
 #include "problem/err.h"
 
 #include <float.h>
 
 enum {
-    BLOCK = 64,       /* bundles summed one after another, whatever the threads */
-    PARALLEL_FROM = 8 /* blocks worth a second thread */
+    BLOCK = 64,        /* bundles of one partial sum: the bits do not depend on the threads */
+    PARALLEL_FROM = 8, /* blocks that are worth a second thread */
+    STRIPE = 16        /* blocks whose partial sums are held at a time */
 };
 
-#define ROUNDING (16 * DBL_EPSILON) /* of the top speed: errors of velocities that are none */
-#define STRAY    0.1 /* err.stray: good steps are at 0.025 at most, false ones at 2 and more */
+#define ROUNDING                                                                                   \
+    (16 * DBL_EPSILON) /* of the top speed: smaller errors of velocities are rounding */
+#define STRAY 0.1      /* err.stray: good steps have 0.025 at most, false ones 2 and more */
 
-/* The eight partial sums in one; NaN stays in the sums, not in the maxima. */
-static double sum(const double slot[BUNDLE])
-{
-    double s = 0;
-    for (int k = 0; k < BUNDLE; k++) s += slot[k];
-    return s;
-}
-
-static double most(const double slot[BUNDLE])
-{
-    double s = 0;
-    for (int k = 0; k < BUNDLE; k++) s = s < slot[k] ? slot[k] : s;
-    return s;
-}
-
+/* t += s; a NaN stays in the sums but not in the maxima. */
 static void sums_add(struct sums *t, const struct sums *s)
 {
     for (int k = 0; k < BUNDLE; k++) {
@@ -37,18 +26,17 @@ static void sums_add(struct sums *t, const struct sums *s)
     }
 }
 
-static struct terms terms(const struct sums *s, int64_t n, double v, double r)
+static struct terms mean_terms(const struct sums *s, int64_t n, double v, double r)
 {
-    struct terms t = { .motion = sum(s->motion) / v / (double)n,
-                       .proj = sum(s->proj) / r / (double)n,
-                       .bipotential = sum(s->bipotential) / (v * r) / (double)n,
-                       .penetration = sum(s->penetration) / v / (double)n };
+    struct terms t = { .motion = bundle_sum(s->motion) / v / (double)n,
+                       .proj = bundle_sum(s->proj) / r / (double)n,
+                       .bipotential = bundle_sum(s->bipotential) / (v * r) / (double)n,
+                       .penetration = bundle_sum(s->penetration) / v / (double)n };
     t.eps_glob = t.motion + t.proj + t.bipotential + t.penetration;
     return t;
 }
 
-/* a / b, and 0 / 0 = 0: nothing is wrong with nothing; 1 when all of a is wrong. What is NaN makes
-   NaN, and so does a b that is too large to measure against. */
+/* a / b; 0 / 0 = 0, and a / 0 = 1. NaN where a or b is NaN or b is infinite */
 static double ratio(double a, double b)
 {
     if (b == 0) return a > 0 ? 1 : a;
@@ -56,45 +44,45 @@ static double ratio(double a, double b)
 }
 
 /* The sums of one block */
-static void judge_block(const struct problem *p, bool believes, enum err_terms part, int64_t block,
+static void judge_block(const struct problem *p, bool believes, enum err_terms which, int64_t block,
                         struct sums *s)
 {
     int64_t from = block * BLOCK, to = from + BLOCK;
     *s = (struct sums){ 0 };
-    sweep_widest()->judge(p, from, to < p->bundles ? to : p->bundles, believes, part, s);
+    sweep_widest()->judge(p, from, to < p->bundles ? to : p->bundles, believes, which, s);
 }
 
-void err_eval(struct err *e, const struct problem *p, bool believes, enum err_terms part,
+void err_eval(struct err *e, const struct problem *p, bool believes, enum err_terms which,
               int threads)
 {
     *e = (struct err){ .contacts = p->n };
     if (!p->n) return;
     int64_t blocks = (p->bundles + BLOCK - 1) / BLOCK;
     struct sums all = { 0 };
-    // the partial sums of a stripe of blocks at a time, added in their order
-    enum { STRIPE = 16 };
+    // the partial sums of a stripe of blocks, always added in the same order
     for (int64_t first = 0; first < blocks; first += STRIPE) {
         struct sums s[STRIPE];
         int64_t n = blocks - first < STRIPE ? blocks - first : STRIPE;
-        if (threads == 1 || (n < PARALLEL_FROM && !p->split)) { // no team: that costs
-            for (int64_t b = 0; b < n; b++) judge_block(p, believes, part, first + b, &s[b]);
+        if (threads == 1 ||
+            (n < PARALLEL_FROM && !p->split)) { // starting a parallel region costs time
+            for (int64_t b = 0; b < n; b++) judge_block(p, believes, which, first + b, &s[b]);
         } else {
 #pragma omp parallel for num_threads(threads)
-            for (int64_t b = 0; b < n; b++) judge_block(p, believes, part, first + b, &s[b]);
+            for (int64_t b = 0; b < n; b++) judge_block(p, believes, which, first + b, &s[b]);
         }
         for (int64_t b = 0; b < n; b++) sums_add(&all, &s[b]);
     }
-    if (part & ERR_TERMS) {
-        e->paper = terms(&all, p->n, 1, p->dt);
-        e->scaled = terms(&all, p->n, p->scale_v, p->scale_r);
-        e->max_penetration = most(all.max_pen);
-        e->max_penetration_true = most(all.max_true);
+    if (which & ERR_TERMS) {
+        e->paper = mean_terms(&all, p->n, 1, p->dt);
+        e->scaled = mean_terms(&all, p->n, p->scale_v, p->scale_r);
+        e->max_penetration = bundle_max(all.max_pen);
+        e->max_penetration_true = bundle_max(all.max_true);
     }
-    if (part & ERR_NATURAL) {
-        double siconos = sqrt(sum(all.siconos2)), off = sqrt(sum(all.velocity2));
+    if (which & ERR_NATURAL) {
+        double siconos = sqrt(bundle_sum(all.siconos2)), off = sqrt(bundle_sum(all.velocity2));
         double contacts = sqrt((double)p->n);
-        e->natural = ratio(sqrt(sum(all.natural2)), sqrt(sum(all.r2)));
-        // where the contacts need no reactions, they and their map are rounding, and so is their ratio
+        e->natural = ratio(sqrt(bundle_sum(all.natural2)), sqrt(bundle_sum(all.r2)));
+        // where no reactions are needed, r and its map are rounding, and their ratio is meaningless
         if (off <= ROUNDING * contacts * p->speed) e->natural = 0;
         if (p->body) e->stray = ratio(off, fmax(p->norm_q, contacts * p->fall));
         e->natural_siconos = p->norm_q > 0 ? siconos / p->norm_q : siconos;

@@ -1,4 +1,4 @@
-/* mixing.c: see problem/mixing.h. Compiled once a width, LANES = 2, 4, 8. */
+/* problem/mixing.c: measuring and mixing [problem/mixing.h]. Compiled with LANES = 2, 4 and 8. */
 #include "problem/mixing.h"
 
 #include "problem/walk.h"
@@ -17,7 +17,7 @@
             text(2, MIXING_DEPTH_MANY, __VA_ARGS__);                                               \
     } while (0)
 
-/* m comes by value, so that no store can change it. */
+/* m is passed by value, so that the compiler knows that no store changes it. */
 ALWAYS_INLINE void measure_text(int d, int depth, const struct problem *p, const struct mixing m,
                                 int64_t first, int64_t end, struct mixing_sums *t)
 {
@@ -50,15 +50,15 @@ static void measure(const struct problem *p, const struct mixing *m, int64_t fir
     BY_SHAPE(p, m, measure_text, p, *m, first, end, t);
 }
 
-/* Where all contacts go at once */
+/* One mixing of all contacts */
 struct jump {
     const struct mixing *m;
     double leap;
     const double *gamma;
 };
 
-/* Back onto the disc, not onto the cone: the orthogonal projection on the cone would push contacts apart
-   that slide. */
+/* Projects onto the disc, not onto the cone: the orthogonal projection on the cone would change r_n
+   of contacts that slide. */
 ALWAYS_INLINE void react_text(int d, int depth, struct problem *p, const struct mixing m,
                               const struct jump j, int64_t first, int64_t end)
 {

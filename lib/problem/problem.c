@@ -1,3 +1,4 @@
+/* problem/problem.c: the bundles of a packing and of a given W [problem/problem.h]. */
 #include "problem/problem.h"
 
 #include "problem/schedule.h"
@@ -10,17 +11,17 @@
 
 enum {
     HUGE_PAGE = 2 << 20, /* bytes */
-    PARALLEL_FROM = 64   /* bundles of a group that are worth a second thread */
+    PARALLEL_FROM = 64   /* bundles a group, on average, that are worth more than one thread */
 };
 
 static_assert(sizeof(struct body) == 64, "a body is a cache line");
 static_assert(sizeof(struct bundle) % 64 == 0, "lanes begin a cache line");
 
 /*
- * Zeroed memory on a cache line's border, in huge pages where it is large: a look at bodies here and
- * there then does not wait for page tables. Not NULL for want of rows.
+ * Zeroed memory aligned to cache lines, in huge pages where it is large: bodies read in any order
+ * then do not wait for page tables. NULL only when memory is short, also for n = 0.
  */
-static void *lines(int64_t n, size_t size)
+static void *alloc_lines(int64_t n, size_t size)
 {
     size_t bytes = (size_t)(n > 0 ? n : 1) * size, page = bytes < 2 * HUGE_PAGE ? 64 : HUGE_PAGE;
     bytes = (bytes + page - 1) / page * page;
@@ -46,8 +47,8 @@ void problem_free(struct problem *p)
     *p = (struct problem){ 0 };
 }
 
-/* The plan's groups as bundles; a group begins a new one. */
-static bool lay_out(struct problem *p, const struct schedule *plan)
+/* Makes bundles of the plan's groups; each group begins a new one. */
+static bool lay_out_bundles(struct problem *p, const struct schedule *plan)
 {
     p->groups = plan->groups;
     p->group = malloc((size_t)(plan->groups + 1) * sizeof *p->group);
@@ -56,12 +57,12 @@ static bool lay_out(struct problem *p, const struct schedule *plan)
         p->bundles += (plan->group[g + 1] - plan->group[g] + BUNDLE - 1) / BUNDLE;
     }
     p->slots = p->bundles * BUNDLE;
-    p->bundle = lines(p->bundles, sizeof *p->bundle);
-    p->u = lines(p->bundles, sizeof *p->u);
+    p->bundle = alloc_lines(p->bundles, sizeof *p->bundle);
+    p->u = alloc_lines(p->bundles, sizeof *p->u);
     p->contact = malloc((size_t)(p->slots + 1) * sizeof *p->contact);
     if (!p->group || !p->bundle || !p->u || !p->contact) return false;
     p->group[p->groups] = p->bundles;
-    if (plan->rest && !(p->split = lines(1, sizeof *p->split))) return false;
+    if (plan->rest && !(p->split = alloc_lines(1, sizeof *p->split))) return false;
     if (p->split)
         *p->split =
             (struct two_thread_split){ plan->beyond, plan->inside, plan->rim, plan->rest, 0, 0 };
@@ -79,11 +80,11 @@ static bool lay_out(struct problem *p, const struct schedule *plan)
 }
 
 /*
- * Where each body stands: by colours, in the order in which the sweep first meets them, or else as in
- * the packing. NULL when memory is short.
+ * The place of each body in body[]: by colours in the order in which the sweep first meets them,
+ * else as in the packing. NULL when memory is short.
  */
-static int32_t *seats_of_bodies(const struct problem *p, const struct packing *pack,
-                                const struct contacts *s, enum order order)
+static int32_t *seat_bodies(const struct problem *p, const struct packing *pack,
+                            const struct contacts *s, enum order order)
 {
     int32_t *seat = malloc((size_t)(pack->n + 1) * sizeof *seat), next = 0;
     for (int64_t i = 0; seat && i < pack->n; i++) seat[i] = -1;
@@ -98,8 +99,8 @@ static int32_t *seats_of_bodies(const struct problem *p, const struct packing *p
     return seat;
 }
 
-/* The bodies with the velocities before the step */
-static void movers(struct problem *p)
+/* Sets the bodies, with their velocities before the step. */
+static void set_bodies(struct problem *p)
 {
     const struct packing *pack = p->packing;
     for (int64_t i = 0; i < pack->n; i++) {
@@ -123,8 +124,9 @@ void problem_set_free_motion(struct problem *p)
     }
 }
 
-/* The place of body i (wall w: -1-w) of a contact: its own, or a copy's when it does not move. */
-static int32_t seat(struct problem *p, int32_t i, int64_t *next)
+/* The place of body i of a contact (wall w: -1-w): its own, or if it does not move that of a new
+   copy */
+static int32_t place_of(struct problem *p, int32_t i, int64_t *next)
 {
     const struct packing *pack = p->packing;
     if (i >= 0 && pack->mass[i] > 0) return body_place(p->seat[i]);
@@ -135,9 +137,9 @@ static int32_t seat(struct problem *p, int32_t i, int64_t *next)
     return body_place((*next)++);
 }
 
-/* All of slot i but the reaction; the bodies still have the velocities before the step. */
+/* Fills slot i except for the reaction. The bodies still have their velocities before the step. */
 static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
-                      const struct contact *c, double alpha, double factor)
+                      const struct contact *c, double alpha, double rho_factor)
 {
     const double en[3] = { c->en, c->et, c->et }, n[3] = { c->n.x, c->n.y, c->n.z },
                  t1[3] = { c->t1.x, c->t1.y, c->t1.z }, s[2] = { 1 / (1 + c->en), 1 / (1 + c->et) };
@@ -157,10 +159,10 @@ static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
     r->w[0][k] = s[0] * im, r->w[1][k] = s[1] * it;
     for (int j = 0; j < 2; j++) r->iw[j][k] = 1 / r->w[j][k];
     double lambda = bundle_lambda(r, k);
-    r->rho[k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / im : factor / lambda;
+    r->rho[k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / im : rho_factor / lambda;
 }
 
-/* Mean mass of what moves, for the scaled errors. */
+/* kg: the mean mass of the bodies that move, for the scaled errors */
 static double mean_mass(const struct packing *p)
 {
     double sum = 0;
@@ -169,8 +171,8 @@ static double mean_mass(const struct packing *p)
     return n ? sum / (double)n : 1;
 }
 
-/* The fastest that a point of a body or of a wall moves, a step of gravity included: what the velocities at
-   contacts are differences of, and have their rounding from. */
+/* m/s: the speed of the fastest point of a body or wall, plus g dt. The velocities at contacts are
+   differences of such speeds, and have their rounding. */
 static double top_speed(const struct packing *p)
 {
     double most = 0;
@@ -180,9 +182,9 @@ static double top_speed(const struct packing *p)
     return most + p->dt * v3_norm(p->g);
 }
 
-/* How many bodies[] there will be: those of the packing, copies, and nobody for the lanes without a
-   contact, one a half. */
-static int64_t seats(const struct packing *pack, const struct contacts *s)
+/* The size of body[]: those of the packing, the copies, and for the lanes without a contact one
+   `nobody` in each half */
+static int64_t count_bodies(const struct packing *pack, const struct contacts *s)
 {
     int64_t n = pack->n + 2;
     int32_t moves[2];
@@ -201,19 +203,20 @@ static bool rebounds(const struct contacts *s)
 }
 
 int problem_prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
-                    double alpha, double factor, enum order order, struct why *why)
+                    double alpha, double rho_factor, enum order order, struct why *why)
 {
     struct schedule plan = { 0 };
     *p = (struct problem){
-        .d = pack->dim, .n = s->n, .dt = pack->dt, .packing = pack, .bodies = seats(pack, s)
+        .d = pack->dim, .n = s->n, .dt = pack->dt, .packing = pack, .bodies = count_bodies(pack, s)
     };
     if (p->bodies > BODIES_MAX) return why_set(why, EX_DATAERR, "more than %d bodies", BODIES_MAX);
-    p->body = lines(p->bodies, sizeof *p->body);
-    bool room = p->body && !schedule_bodies(&plan, order, s, pack) && lay_out(p, &plan);
+    p->body = alloc_lines(p->bodies, sizeof *p->body);
+    bool room = p->body && !schedule_bodies(&plan, order, s, pack) && lay_out_bundles(p, &plan);
     schedule_free(&plan);
-    if (room && rebounds(s)) room = (p->rebound = lines(p->bundles, sizeof *p->rebound)) != NULL;
-    if (!room || !(p->seat = seats_of_bodies(p, pack, s, order))) return no_memory(p, why);
-    movers(p);
+    if (room && rebounds(s))
+        room = (p->rebound = alloc_lines(p->bundles, sizeof *p->rebound)) != NULL;
+    if (!room || !(p->seat = seat_bodies(p, pack, s, order))) return no_memory(p, why);
+    set_bodies(p);
     int64_t nobody = pack->n, next = nobody + 2;
     int64_t other = p->split ? BUNDLE * p->group[p->split->inside] : p->slots;
     for (int64_t i = 0; i < p->slots; i++) {
@@ -222,8 +225,8 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
         r->a[k] = r->b[k] = body_place(nobody + (i >= other));
         if (p->contact[i] < 0) continue;
         const struct contact *c = &s->c[p->contact[i]];
-        r->a[k] = seat(p, c->a, &next), r->b[k] = seat(p, c->b, &next);
-        slot_init(p, i, pack, c, alpha, factor);
+        r->a[k] = place_of(p, c->a, &next), r->b[k] = place_of(p, c->b, &next);
+        slot_init(p, i, pack, c, alpha, rho_factor);
     }
 
     double g = v3_norm(pack->g);
@@ -257,12 +260,12 @@ static bool like_balls(const double D[9])
     return most < noise;
 }
 
-int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha, double factor,
+int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha, double rho_factor,
                              enum order order, struct why *why)
 {
     struct schedule plan = { 0 };
     *p = (struct problem){ .d = W->d, .n = W->n, .W = W, .dt = 1, .scale_v = 1, .scale_r = 1 };
-    bool room = !schedule_blocks(&plan, order, W) && lay_out(p, &plan);
+    bool room = !schedule_blocks(&plan, order, W) && lay_out_bundles(p, &plan);
     schedule_free(&plan);
     if (!room || delassus_sort(&p->sorted, W, p->slots, p->contact, why)) return no_memory(p, why);
     for (int64_t c = 0; c < W->n; c++) p->full = p->full || !like_balls(W->diag + 9 * c);
@@ -282,14 +285,15 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
             r->w[j][k] = p->full ? lambda : D[4 * j];
             r->iw[j][k] = 1 / r->w[j][k];
         }
-        r->rho[k] = lambda <= 0 ? 1 : alpha > 0 && D[0] > 0 ? alpha / D[0] : factor / lambda;
+        r->rho[k] = lambda <= 0 ? 1 : alpha > 0 && D[0] > 0 ? alpha / D[0] : rho_factor / lambda;
         for (int j = 0; j < W->d; j++) {
             r->r[j][k] = W->r[W->d * c + j];
             p->norm_q += q[j] * q[j];
             trace += D[4 * j];
         }
     }
-    // no g, no m here: velocities in the root mean square of q, masses in the mean of 1/W_ii
+    // there is no g and no m: velocities are scaled by the root mean square of q, masses by the
+    // mean of W_ii
     p->norm_q = sqrt(p->norm_q);
     if (p->norm_q > 0) p->scale_v = p->norm_q / sqrt((double)(W->d * W->n));
     p->scale_r = trace > 0 ? p->scale_v * (double)(W->d * W->n) / trace : p->scale_v;

@@ -1,3 +1,4 @@
+/* problem/report.c: names, clocks [problem/report.h]. */
 #include "problem/report.h"
 
 #include <stdlib.h>

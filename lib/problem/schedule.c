@@ -1,3 +1,5 @@
+/* problem/schedule.c: levels, colours, and sequences cut into groups by them
+   [problem/schedule.h]. */
 #include "problem/schedule.h"
 
 #include "problem/bundle.h"
@@ -10,16 +12,18 @@
 const char *const order_name[ORDER_COUNT] = { "natural", "reverse", "random", "colour", "halves" };
 
 enum {
-    MARK_COLOURS = 64, /* the bits of a mark; contacts beyond them follow one after another */
-    WORTH_IT = 384,    /* contacts, for halves, and so many that */
-    FREE = 8192,       /* bundles that are not full cost one thread nothing */
-    WHOLE = 65536,     /* so many contacts are coloured as one; */
-    BLOCK = 16384      /* of more, so many, whose bodies stay in a second-level cache */
+    MARK_COLOURS = 64, /* colours, the bits of a mark; other contacts get groups of their own */
+    HALVES_FROM = 384, /* contacts from which halves are worth it */
+    COLOUR_HALVES_FROM = 8192, /* contacts from which halves cost one thread nothing */
+    ONE_BLOCK_MAX = 65536,     /* contacts that are coloured as one block, at most */
+    BLOCK = 16384              /* contacts of a block, whose bodies stay in a second-level cache */
+
 };
 
 /*
- * Who depends on whom, of either kind of problem. A node is a movable body or, where there is only
- * W, a contact; it carries a mark that the contacts before have left: a level, or a set of colours.
+ * Which contacts depend on each other, for either kind of problem. A node is a movable body or,
+ * where there is only W, a contact. Its mark is what the contacts before have left: a level, or a
+ * set of colours.
  */
 struct graph {
     int64_t n, nodes;
@@ -28,22 +32,24 @@ struct graph {
     const struct delassus *W;    /* NULL: contacts and packing */
     uint64_t *mark;              /* [nodes] */
     int64_t *place;              /* [n] level or colour, -1: not yet */
-    uint64_t begun;              /* colours whose last bundle has room */
-    int64_t count[MARK_COLOURS]; /* contacts of each */
+    uint64_t begun;              /* set of the colours whose last bundle has room */
+    int64_t count[MARK_COLOURS]; /* contacts of each colour */
 };
 
-static int touches(const struct graph *g, int64_t c, int32_t node[2])
+/* node[] = the movable bodies of contact c; returns their number. */
+static int movable_nodes(const struct graph *g, int64_t c, int32_t node[2])
 {
     const struct contact *t = &g->contacts->c[c];
     return packing_movable(g->packing, t->a, t->b, node);
 }
 
-static uint64_t later(uint64_t a, uint64_t b)
+static uint64_t larger_of(uint64_t a, uint64_t b)
 {
     return a > b ? a : b;
 }
 
-/* A colour that has not been seen; of those the first with a bundle to fill, else the first. */
+/* A colour not in `seen`: the first with room in its last bundle, else the first; MARK_COLOURS if
+   none */
 static int64_t pick_colour(struct graph *g, uint64_t seen)
 {
     uint64_t free = ~seen & g->begun ? ~seen & g->begun : ~seen;
@@ -53,34 +59,36 @@ static int64_t pick_colour(struct graph *g, uint64_t seen)
     return c;
 }
 
-/* c's level, one after what its bodies or blocks have seen; leaves it marked there. */
+/* Places c one level after all that its bodies or blocks are marked with, and marks them with
+   it. */
 static void place_level(struct graph *g, int64_t c)
 {
     uint64_t level = 0;
     if (!g->W) {
         int32_t node[2];
-        int k = touches(g, c, node);
-        for (int j = 0; j < k; j++) level = later(level, g->mark[node[j]]);
+        int k = movable_nodes(g, c, node);
+        for (int j = 0; j < k; j++) level = larger_of(level, g->mark[node[j]]);
         for (int j = 0; j < k; j++) g->mark[node[j]] = level + 1;
         g->place[c] = (int64_t)level;
         return;
     }
-    // a block may stand on one side of the diagonal only: look at c's row, and leave a mark there
+    // a block may stand on one side of the diagonal only: read the places in c's row, and mark them
     const int32_t *col = g->W->col + g->W->first[c], *end = g->W->col + g->W->first[c + 1];
     level = g->mark[c];
     for (const int32_t *j = col; j < end; j++)
-        if (g->place[*j] >= 0) level = later(level, (uint64_t)g->place[*j] + 1);
-    for (const int32_t *j = col; j < end; j++) g->mark[*j] = later(g->mark[*j], level + 1);
+        if (g->place[*j] >= 0) level = larger_of(level, (uint64_t)g->place[*j] + 1);
+    for (const int32_t *j = col; j < end; j++) g->mark[*j] = larger_of(g->mark[*j], level + 1);
     g->place[c] = (int64_t)level;
 }
 
-/* c's colour, the first that its bodies or blocks have not seen; also where c is the first of all. */
-static int64_t colour(struct graph *g, int64_t c)
+/* Chooses a colour for c that none of its bodies or blocks is marked with, and marks them with
+   it. */
+static int64_t choose_colour(struct graph *g, int64_t c)
 {
     uint64_t seen = 0;
     if (!g->W) {
         int32_t node[2];
-        int k = touches(g, c, node);
+        int k = movable_nodes(g, c, node);
         for (int j = 0; j < k; j++) seen |= g->mark[node[j]];
         int64_t free = pick_colour(g, seen);
         for (int j = 0; j < k && free < MARK_COLOURS; j++) g->mark[node[j]] |= 1ull << free;
@@ -95,7 +103,8 @@ static int64_t colour(struct graph *g, int64_t c)
     return free;
 }
 
-/* Colours for n contacts of the sequence, numbered from `from`; returns the number after the last. */
+/* Colours n contacts of the sequence, with places from `from` on; returns the place after the
+   last. */
 static int64_t place_colours(struct graph *g, const int64_t *sequence, int64_t n, int64_t from)
 {
     int64_t most = from, extra = from + MARK_COLOURS;
@@ -103,17 +112,17 @@ static int64_t place_colours(struct graph *g, const int64_t *sequence, int64_t n
     g->begun = 0;
     memset(g->count, 0, sizeof g->count);
     for (int64_t i = 0; i < n && !g->W; i++)
-        for (int j = touches(g, sequence[i], node); j > 0; j--) g->mark[node[j - 1]] = 0;
+        for (int j = movable_nodes(g, sequence[i], node); j > 0; j--) g->mark[node[j - 1]] = 0;
     for (int64_t i = 0; i < n; i++) {
-        int64_t c = colour(g, sequence[i]);
+        int64_t c = choose_colour(g, sequence[i]);
         g->place[sequence[i]] = c < MARK_COLOURS ? from + c : extra++;
-        most = later(most, g->place[sequence[i]] + 1);
+        most = larger_of(most, g->place[sequence[i]] + 1);
     }
     return most;
 }
 
-/* Bits 0, 3, 6 ... of x's ten */
-static uint32_t spread(uint32_t x)
+/* The ten bits of x as bits 0, 3, 6 ... */
+static uint32_t spread_bits(uint32_t x)
 {
     x = (x | x << 16) & 0x30000ff;
     x = (x | x << 8) & 0x300f00f;
@@ -121,14 +130,16 @@ static uint32_t spread(uint32_t x)
     return (x | x << 2) & 0x9249249;
 }
 
-/* Where contact c is along a curve that fills the box from lo with 1024 cells of size h a side */
+/* The place of x on a curve through all cells of a cube: 1024 cells of size h (m) a side, from lo
+   on */
 static uint32_t along_curve(vec3 x, vec3 lo, double h)
 {
     vec3 i = v3_scale(1 / h, v3_sub(x, lo));
-    return spread((uint32_t)i.x) | spread((uint32_t)i.y) << 1 | spread((uint32_t)i.z) << 2;
+    return spread_bits((uint32_t)i.x) | spread_bits((uint32_t)i.y) << 1 |
+           spread_bits((uint32_t)i.z) << 2;
 }
 
-/* The sequence sorted along the curve, by ten bits of the key at a time; -1 when memory is short. */
+/* Sorts the sequence along the curve, by ten bits of the key at a time; -1 when memory is short. */
 static int sort_along_curve(const struct contacts *s, int64_t *sequence)
 {
     vec3 lo = s->c[0].x, hi = lo;
@@ -164,7 +175,7 @@ static void sequence_init(int64_t *sequence, int64_t n, enum order order)
     gsl_rng_free(rng);
 }
 
-/* The sequence by zones, each in its own order; count[] of each. -1 when memory is short. */
+/* Sorts the sequence by zones, stably; count[] = contacts of each. -1 when memory is short. */
 static int sort_by_zone(int64_t *sequence, int64_t n, const int8_t *zone, int64_t count[ZONE_COUNT])
 {
     int64_t *from = malloc((size_t)(n + 1) * sizeof *from), next = 0;
@@ -180,16 +191,17 @@ static int sort_by_zone(int64_t *sequence, int64_t n, const int8_t *zone, int64_
     return 0;
 }
 
-/* Colours for so many contacts, block by block where there are many. */
+/* The same, block by block where there are many contacts */
 static int64_t place_blocks(struct graph *g, const int64_t *sequence, int64_t n, int64_t from)
 {
-    int64_t block = g->W || g->n <= WHOLE ? g->n + 1 : BLOCK;
+    int64_t block = g->W || g->n <= ONE_BLOCK_MAX ? g->n + 1 : BLOCK;
     for (int64_t i = 0; i < n; i += block)
         from = place_colours(g, sequence + i, n - i < block ? n - i : block, from);
     return from;
 }
 
-/* Part by zone; the rim's groups come between those of the inside. -1 when memory is short. */
+/* Colours zone by zone; the rim's groups then go between those of the inside. -1 when memory is
+   short. */
 static int place_halves(struct schedule *s, struct graph *g)
 {
     int8_t *zone = malloc((size_t)g->n + 1);
@@ -210,7 +222,7 @@ static int place_halves(struct schedule *s, struct graph *g)
     return 0;
 }
 
-/* The sequence sorted by place, stable */
+/* Sorts the sequence by place, stably, and makes the groups. -1 when memory is short. */
 static int regroup(struct schedule *s, const struct graph *g)
 {
     int64_t places = 0;
@@ -234,7 +246,7 @@ static int regroup(struct schedule *s, const struct graph *g)
 static int schedule(struct schedule *s, enum order order, struct graph *g)
 {
     bool colours = order >= ORDER_COLOUR;
-    bool halves = !g->W && g->n >= (order == ORDER_HALVES ? WORTH_IT : FREE);
+    bool halves = !g->W && g->n >= (order == ORDER_HALVES ? HALVES_FROM : COLOUR_HALVES_FROM);
     *s = (struct schedule){ .sequence = malloc((size_t)(g->n + 1) * sizeof *s->sequence) };
     g->mark = calloc((size_t)g->nodes + 1, sizeof *g->mark);
     g->place = malloc((size_t)(g->n + 1) * sizeof *g->place);
@@ -242,7 +254,7 @@ static int schedule(struct schedule *s, enum order order, struct graph *g)
     if (!failed) {
         sequence_init(s->sequence, g->n, order);
         for (int64_t i = 0; i < g->n; i++) g->place[i] = -1;
-        if (colours && g->contacts && g->n > WHOLE)
+        if (colours && g->contacts && g->n > ONE_BLOCK_MAX)
             failed = sort_along_curve(g->contacts, s->sequence);
         if (colours && halves)
             failed = failed || place_halves(s, g);

@@ -1,4 +1,5 @@
-/* problem/sweep.c: see problem/sweep.h. Compiled once a width, LANES = 2, 4, 8. */
+/* problem/sweep.c: the sweep, and the errors [problem/sweep.h]. Compiled with LANES = 2, 4 and
+   8. */
 #include "problem/sweep.h"
 
 #include "law/local_eal.h"
@@ -10,31 +11,31 @@
 
 typedef void method_text(struct local *, const struct local_opt *);
 
-/* Of LANES slots */
-ALWAYS_INLINE void add(double *slot, vd a)
+/* Sum and maximum of LANES partial results, in place */
+ALWAYS_INLINE void add_to(double *slot, vd a)
 {
     vstore(slot, vload(slot) + a);
 }
 
-ALWAYS_INLINE void raise(double *slot, vd a)
+ALWAYS_INLINE void raise_to(double *slot, vd a)
 {
     vstore(slot, larger(a, vload(slot)));
 }
 
-/* A tally in the making */
-struct count {
+/* A tally in registers */
+struct counts {
     vd change, newton, safeguarded, gave_up;
 };
 
-/* What is known of LANES rows before they are solved */
-struct seat {
+/* What is loaded of LANES slots before they are solved */
+struct loaded {
     struct bodies a, b;
-    vd t2[3]; /* of the frames */
-    vd v[3];  /* m/s: as r is; given by W: b_c */
+    vd t2[3]; /* of the bases */
+    vd v[3];  /* m/s: u~ with the present r; given by W: b_c */
 };
 
-ALWAYS_INLINE void begin(const struct problem *p, const struct bundle *c, int k, bool given_by_W,
-                         struct seat *s)
+ALWAYS_INLINE void load_slots(const struct problem *p, const struct bundle *c, int k,
+                              bool given_by_W, struct loaded *s)
 {
     if (given_by_W) {
         blocks_gather(p, c, k, s->v);
@@ -45,9 +46,10 @@ ALWAYS_INLINE void begin(const struct problem *p, const struct bundle *c, int k,
     bundle_velocity(c, bundle_rebound(p, c), k, &a, &b, s->v, s->t2);
 }
 
-/* The local problem; W[9] is room for what l->W shows. */
-ALWAYS_INLINE void pose(const struct problem *p, const struct bundle *c, int k, bool given_by_W,
-                        bool full, const struct seat *s, vd W[9], struct local *l)
+/* The local problems of LANES slots; l->W points to W[9]. */
+ALWAYS_INLINE void make_local(const struct problem *p, const struct bundle *c, int k,
+                              bool given_by_W, bool full, const struct loaded *s, vd W[9],
+                              struct local *l)
 {
     l->d = p->d, l->W = full ? W : NULL;
     l->mu = vload(c->mu + k), l->rho = vload(c->rho + k);
@@ -62,11 +64,11 @@ ALWAYS_INLINE void pose(const struct problem *p, const struct bundle *c, int k, 
 }
 
 /*
- * The solution, over-relaxed. Exact between balls goes past what stops the contact, and then onto the
- * disc [projected SOR], which costs nothing; others past the new reaction, and back onto the cone.
+ * The solution, over-relaxed. exact between balls relaxes its own step and projects onto the disc
+ * [projected SOR], at no cost; other methods go past their new reaction, and back onto the cone.
  */
-ALWAYS_INLINE void relaxed(struct local *l, const struct bundle *c, int k, method_text *solve,
-                           bool full, const struct sweep_opt *o)
+ALWAYS_INLINE void solve_relaxed(struct local *l, const struct bundle *c, int k, method_text *solve,
+                                 bool full, const struct sweep_opt *o)
 {
     bool within = solve == exact_solve && !full;
     l->relax = within ? o->relax : 1;
@@ -80,9 +82,9 @@ ALWAYS_INLINE void relaxed(struct local *l, const struct bundle *c, int k, metho
     cone_project(l->mu, tau, l->r);
 }
 
-/* The solution into the rows; dr: by how much it changes them */
-ALWAYS_INLINE void take(struct bundle *c, int k, double (*belief)[BUNDLE], const struct local *l,
-                        vd dr[3], struct count *t)
+/* Stores r, and u where belief is not NULL; dr: the change of r */
+ALWAYS_INLINE void store_solution(struct bundle *c, int k, double (*belief)[BUNDLE],
+                                  const struct local *l, vd dr[3], struct counts *t)
 {
     for (int i = 0; i < 3; i++) {
         dr[i] = l->r[i] - vload(c->r[i] + k);
@@ -101,9 +103,9 @@ ALWAYS_INLINE void take(struct bundle *c, int k, double (*belief)[BUNDLE], const
     }
 }
 
-/* and into their bodies, or W's reactions */
+/* Passes the change on to the bodies, or r to W->r. */
 ALWAYS_INLINE void pass_on(struct problem *p, const struct bundle *c, int k, bool given_by_W,
-                           const struct seat *s, const vd dr[3])
+                           const struct loaded *s, const vd dr[3])
 {
     if (given_by_W)
         blocks_scatter(p, c, k);
@@ -112,15 +114,16 @@ ALWAYS_INLINE void pass_on(struct problem *p, const struct bundle *c, int k, boo
 }
 
 /*
- * Bundles first .. end-1, of one group. The bodies of the next rows are fetched while the roots and
- * quotients of these are on their way: that takes a quarter off the time.
+ * Solves bundles first .. end-1, of one group. The next slots' bodies are loaded while the roots
+ * and quotients of these are being computed, which saves a quarter of the time.
  */
-ALWAYS_INLINE void visit(struct problem *p, int64_t first, int64_t end, const struct sweep_opt *o,
-                         method_text *solve, bool given_by_W, bool full, struct count *t)
+ALWAYS_INLINE void solve_bundles(struct problem *p, int64_t first, int64_t end,
+                                 const struct sweep_opt *o, method_text *solve, bool given_by_W,
+                                 bool full, struct counts *t)
 {
     if (first == end) return;
-    struct seat s[2], *now = &s[0], *next = &s[1];
-    begin(p, &p->bundle[first], 0, given_by_W, now);
+    struct loaded s[2], *now = &s[0], *next = &s[1];
+    load_slots(p, &p->bundle[first], 0, given_by_W, now);
     for (int64_t i = first; i < end; i++) {
         struct bundle *c = &p->bundle[i];
         double(*belief)[BUNDLE] = o->keep ? p->u[i] : NULL;
@@ -128,45 +131,45 @@ ALWAYS_INLINE void visit(struct problem *p, int64_t first, int64_t end, const st
         for (int k = 0; k < BUNDLE; k += LANES) {
             struct local l;
             vd W[9], dr[3];
-            pose(p, c, k, given_by_W, full, now, W, &l);
-            relaxed(&l, c, k, solve, full, o);
-            take(c, k, belief, &l, dr, t);
+            make_local(p, c, k, given_by_W, full, now, W, &l);
+            solve_relaxed(&l, c, k, solve, full, o);
+            store_solution(c, k, belief, &l, dr, t);
             if (k + LANES < BUNDLE)
-                begin(p, c, k + LANES, given_by_W, next);
+                load_slots(p, c, k + LANES, given_by_W, next);
             else if (i + 1 < end)
-                begin(p, c + 1, 0, given_by_W, next);
+                load_slots(p, c + 1, 0, given_by_W, next);
             pass_on(p, c, k, given_by_W, now, dr);
-            struct seat *was = now;
+            struct loaded *was = now;
             now = next, next = was;
         }
     }
 }
 
-/* A sweep of a method over its contacts */
+/* What solve_group() needs to know */
 struct task {
     const struct sweep_opt *o;
     method_text *solve;
     bool given_by_W, full;
-    struct count *count;
+    struct counts *count;
 };
 
-ALWAYS_INLINE void visit_group(struct problem *p, int64_t first, int64_t end, void *task)
+ALWAYS_INLINE void solve_group(struct problem *p, int64_t first, int64_t end, void *task)
 {
     const struct task *t = task;
-    visit(p, first, end, t->o, t->solve, t->given_by_W, t->full, t->count);
+    solve_bundles(p, first, end, t->o, t->solve, t->given_by_W, t->full, t->count);
 }
 
 ALWAYS_INLINE void sweep(struct problem *p, int me, int threads, const struct sweep_opt *o,
                          method_text *solve, bool given_by_W, bool full, struct tally *t)
 {
-    struct count c = { splat(0), splat(0), splat(0), splat(0) };
+    struct counts c = { splat(0), splat(0), splat(0), splat(0) };
     struct task task = { o, solve, given_by_W, full, &c };
-    walk(p, me, threads, visit_group, &task);
-    raise(t->change, c.change), add(t->newton, c.newton);
-    add(t->safeguarded, c.safeguarded), add(t->gave_up, c.gave_up);
+    walk(p, me, threads, solve_group, &task);
+    raise_to(t->change, c.change), add_to(t->newton, c.newton);
+    add_to(t->safeguarded, c.safeguarded), add_to(t->gave_up, c.gave_up);
 }
 
-#define VISIT(name)                                                                                \
+#define DEFINE_SWEEP(name)                                                                         \
     static void sweep_##name(struct problem *p, int me, int threads, const struct sweep_opt *o,    \
                              struct tally *t)                                                      \
     {                                                                                              \
@@ -177,7 +180,7 @@ ALWAYS_INLINE void sweep(struct problem *p, int me, int threads, const struct sw
         else                                                                                       \
             sweep(p, me, threads, o, name##_solve, false, false, t);                               \
     }
-EACH_METHOD(VISIT)
+EACH_METHOD(DEFINE_SWEEP)
 
 /* ---- velocities from the reactions ---- */
 
@@ -201,8 +204,8 @@ static void push(struct problem *p, int me, int threads)
 
 /* ---- the error ---- */
 
-/* u~ by the motion that r makes: from the bodies, or W r + q */
-ALWAYS_INLINE void motion(const struct problem *p, const struct bundle *c, int k, vd u[3])
+/* u~ of the motion that r makes: from the bodies, or W r + q */
+ALWAYS_INLINE void motion_velocity(const struct problem *p, const struct bundle *c, int k, vd u[3])
 {
     if (!p->W) {
         body_velocity(p->body, c, bundle_rebound(p, c), k, u);
@@ -222,7 +225,7 @@ static void velocities(struct problem *p, int64_t first, int64_t end)
     for (int64_t i = first; i < end; i++)
         for (int k = 0; k < BUNDLE; k += LANES) {
             vd u[3];
-            motion(p, &p->bundle[i], k, u);
+            motion_velocity(p, &p->bundle[i], k, u);
             for (int j = 0; j < 3; j++) vstore(p->u[i][j] + k, u[j]);
         }
 }
@@ -240,11 +243,11 @@ ALWAYS_INLINE void add_terms(struct sums *s, const struct bundle *c, double (*be
     for (int i = 0; i < 3; i++)
         r[i] = vload(c->r[i] + k), u[i] = believes ? vload(belief[i] + k) : moves[i];
     cone_project(mu, r, proj);
-    if (believes) add(s->motion + k, distance(u, moves));
-    add(s->proj + k, distance(r, proj));
-    add(s->bipotential + k, absolute(dot3(u, r) + mu * r[0] * norm2(u + 1)));
-    add(s->penetration + k, larger(-u[0], splat(0)));
-    raise(s->max_pen + k, -u[0]), raise(s->max_true + k, -moves[0]);
+    if (believes) add_to(s->motion + k, distance(u, moves));
+    add_to(s->proj + k, distance(r, proj));
+    add_to(s->bipotential + k, absolute(dot3(u, r) + mu * r[0] * norm2(u + 1)));
+    add_to(s->penetration + k, larger(-u[0], splat(0)));
+    raise_to(s->max_pen + k, -u[0]), raise_to(s->max_true + k, -moves[0]);
 }
 
 /* |r - P(r - rho u^)|^2, u^ = u + mu |u_t| n */
@@ -263,30 +266,30 @@ ALWAYS_INLINE void add_natural(struct sums *s, const struct bundle *c, int k, co
     vd rho = pick(lt(splat(0), lambda), 1.0 / lambda, splat(1));
     for (int i = 0; i < 3; i++) r[i] = vload(c->r[i] + k);
     vd n2 = natural2(mu, r, rho, u);
-    add(s->natural2 + k, n2);
-    add(s->velocity2 + k, n2 / (rho * rho));
-    add(s->siconos2 + k, natural2(mu, r, splat(1), u));
-    add(s->r2 + k, dot3(r, r));
+    add_to(s->natural2 + k, n2);
+    add_to(s->velocity2 + k, n2 / (rho * rho));
+    add_to(s->siconos2 + k, natural2(mu, r, splat(1), u));
+    add_to(s->r2 + k, dot3(r, r));
 }
 
 static void judge(const struct problem *p, int64_t first, int64_t end, bool believes,
-                  enum err_terms part, struct sums *s)
+                  enum err_terms which, struct sums *s)
 {
     for (int64_t i = first; i < end; i++) {
         fetch_ahead(p, i);
         for (int k = 0; k < BUNDLE; k += LANES) {
             vd u[3];
-            motion(p, &p->bundle[i], k, u);
-            if (part & ERR_TERMS) add_terms(s, &p->bundle[i], p->u[i], k, believes, u);
-            if (part & ERR_NATURAL) add_natural(s, &p->bundle[i], k, u);
+            motion_velocity(p, &p->bundle[i], k, u);
+            if (which & ERR_TERMS) add_terms(s, &p->bundle[i], p->u[i], k, believes, u);
+            if (which & ERR_NATURAL) add_natural(s, &p->bundle[i], k, u);
         }
     }
 }
 
 /* ---- the table ---- */
 
-#define VISITS(name)    sweep_##name,
+#define ENTRY_OF(name)  sweep_##name,
 #define SWEEP_(lanes)   sweep_##lanes
 #define SWEEP_OF(lanes) SWEEP_(lanes)
 extern const struct sweep SWEEP_OF(LANES);
-const struct sweep SWEEP_OF(LANES) = { LANES, { EACH_METHOD(VISITS) }, judge, velocities, push };
+const struct sweep SWEEP_OF(LANES) = { LANES, { EACH_METHOD(ENTRY_OF) }, judge, velocities, push };

@@ -1,6 +1,6 @@
 /*
- * sweep_dispatch.c: the inner loops of the widest vectors that the machine has; see problem/sweep.h and
- * problem/mixing.h. A file that is compiled once a width has its table here.
+ * problem/sweep_dispatch.c: chooses the inner loops of problem/sweep.h and problem/mixing.h for the
+ * widest vectors that the machine has. A file compiled once for each width has its table here.
  */
 #include "problem/mixing.h"
 #include "problem/sweep.h"

@@ -1,4 +1,4 @@
-/* problem/two_thread_split.c: see problem/two_thread_split.h. */
+/* problem/two_thread_split.c: the cut, the zones, the wait [problem/two_thread_split.h]. */
 #include "problem/two_thread_split.h"
 
 #include <gsl/gsl_statistics_double.h>
@@ -7,44 +7,44 @@
 #include <stdlib.h>
 
 enum {
-    SAMPLE = 16384, /* contacts that say where to cut */
-    SPINS = 10000   /* looks before another process may have the core */
+    SAMPLE = 16384, /* contacts that decide where to cut, at most */
+    SPINS = 10000   /* reads of the count before another process may have the core */
 };
 
-static double along(const struct packing *p, int32_t body, int axis)
+static double coordinate(const struct packing *p, int32_t body, int axis)
 {
     vec3 x = p->x[body];
     return axis == 0 ? x.x : axis == 1 ? x.y : x.z;
 }
 
-/* How far contact c reaches up the axis, and down */
-static void reach(const struct packing *p, const struct contact *c, int axis, double *lo,
-                  double *hi)
+/* From where to where contact c's movable bodies are along the axis, by their centres */
+static void extent(const struct packing *p, const struct contact *c, int axis, double *lo,
+                   double *hi)
 {
     int32_t body[2];
     int k = packing_movable(p, c->a, c->b, body);
     *lo = INFINITY, *hi = -INFINITY;
     for (int j = 0; j < k; j++) {
-        double x = along(p, body[j], axis);
+        double x = coordinate(p, body[j], axis);
         *lo = fmin(*lo, x), *hi = fmax(*hi, x);
     }
 }
 
 /*
- * The axis and the place of the cut: half of the contacts are below, and as few as may be across. Of
- * many contacts some are looked at; top has room for SAMPLE.
+ * Chooses the axis and the place of the cut: half of the contacts are below, and as few as possible
+ * across. Of many contacts a sample decides; top[SAMPLE] is work space.
  */
-static void cut(const struct packing *p, const struct contacts *s, double *top, int *axis,
-                double *at)
+static void choose_cut(const struct packing *p, const struct contacts *s, double *top, int *axis,
+                       double *at)
 {
     int64_t stride = (s->n + SAMPLE - 1) / SAMPLE, least = s->n;
     for (int k = 0; k < p->dim; k++) {
         double lo, hi;
         int64_t n = 0, across = 0;
-        for (int64_t c = 0; c < s->n; c += stride) reach(p, &s->c[c], k, &lo, &top[n++]);
+        for (int64_t c = 0; c < s->n; c += stride) extent(p, &s->c[c], k, &lo, &top[n++]);
         double middle = gsl_stats_select(top, 1, (size_t)n, (size_t)n / 2);
         for (int64_t c = 0; c < s->n; c += stride) {
-            reach(p, &s->c[c], k, &lo, &hi);
+            extent(p, &s->c[c], k, &lo, &hi);
             across += lo < middle && hi >= middle;
         }
         if (across < least) least = across, *axis = k, *at = middle;
@@ -57,10 +57,10 @@ int two_thread_split_divide(const struct contacts *s, const struct packing *p, i
     bool *shared = calloc((size_t)p->n + 1, sizeof *shared), room = top && shared;
     int axis = 0;
     int32_t body[2];
-    if (room) cut(p, s, top, &axis, &at);
+    if (room) choose_cut(p, s, top, &axis, &at);
     for (int64_t c = 0; room && c < s->n; c++) {
         const struct contact *t = &s->c[c];
-        reach(p, t, axis, &lo, &hi);
+        extent(p, t, axis, &lo, &hi);
         zone[c] = hi < at ? ZONE_INSIDE : lo < at ? ZONE_BORDER : ZONE_BEYOND;
         for (int k = packing_movable(p, t->a, t->b, body); zone[c] == ZONE_BORDER && k > 0; k--)
             shared[body[k - 1]] = true;

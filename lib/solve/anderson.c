@@ -1,18 +1,21 @@
 /*
- * solve/anderson.c: Gauss-Seidel accelerated by Anderson's mixing [Anderson 1965, Walker and Ni 2011].
+ * solve/anderson.c: Gauss-Seidel accelerated by Anderson's mixing [Anderson 1965, Walker and Ni
+ * 2011].
  *
- * With G the sweeps, f(x) = G(x) - x, and the last differences of g = G(x) and f in the columns of dG
- * and dF, the next point is
+ * With G the sweeps, f(x) = G(x) - x, and the last differences of g = G(x) and f in the columns of
+ * dG and dF, the next point is
  *
  *     x = g - dG gamma,     gamma = argmin |f - dF gamma|,
  *
- * back to what friction allows. G is two sweeps, the first of them over-relaxed between balls: fewer
- * are needed, and the plain one leaves u and r on the law. The law has corners, and the mixing may
- * lead astray: what has made f larger is taken back, and a mixing that does not pay gives way. What
- * then holds the sweeps up is often a chain of a few contacts whose reactions grow by the same amount
- * in every sweep, thousands of them, until one slips or opens; f is constant and its differences are
- * noise. There one leaps along f, twice as far each time. Last come sweeps alone, twice as many each
- * time, so that in the end this is Gauss-Seidel.
+ * projected onto the discs of friction. G is two sweeps. Between balls the first is over-relaxed,
+ * which saves sweeps, and the plain second one leaves u and r on the law. The law has corners, so
+ * mixing may fail: a step that makes f much larger is taken back, and mixing that gains too little
+ * is given up for a while. What holds up the sweeps then is often a chain of a few contacts whose
+ * reactions grow by the same amount in every sweep, for thousands of sweeps, until one slips or
+ * opens: f is constant and its differences are noise. So the next phase is leaps along f, each
+ * twice as long as the last. When mixing fails again, plain sweeps follow; while |f| does not
+ * halve, each such phase is twice as long as the one before, so that in the end this is
+ * Gauss-Seidel.
  */
 #include "solve/anderson.h"
 
@@ -26,50 +29,42 @@
 #include <string.h>
 
 enum {
-    PERIOD = 2,    /* sweeps to a mixing: a mixing costs about as much as one */
-    EPOCH = 10,    /* mixings in which |f|^2 must halve */
-    RESTS = 5,     /* sweeps before a leap: the change of the last is the leap's direction */
-    SHORT = 50,    /* sweeps of leaps, or alone, at first, */
-    LONG = 100000, /* and at most */
-    BLOCK = 64,    /* bundles whose lanes are summed one after another: they stay in the cache */
-    SUM_BUNDLES =
-        1024 /* bundles whose sums one thread makes; added in order, whatever the threads */
+    PERIOD = 2,          /* sweeps before a mixing, which costs about as much as one */
+    EPOCH = 10,          /* mixings within which |f|^2 must halve */
+    LEAP_SWEEPS = 5,     /* sweeps before a leap: the change of the last is the leap's direction */
+    RUN_FIRST = 50,      /* sweeps of a phase of leaps or of plain sweeps, at first */
+    RUN_MAX = 100000,    /* sweeps from which on such a phase is made no longer */
+    CACHED_BUNDLES = 64, /* bundles summed lane after lane: few enough to stay in the cache */
+    CHUNK_BUNDLES = 1024 /* bundles of one partial sum: the bits do not depend on the threads */
 };
-#define GROWTH 4.0   /* |f|^2 may grow by this factor in a turn, or it is taken back; */
-#define ASTRAY 2.0   /* in a leap, by this one */
-#define RIDGE  1e-14 /* added to the scaled normal equations' diagonal of 1 */
-#define LEAP   8.0   /* the first leap, in multiples of f */
-#define BEYOND 1.6   /* omega of every other sweep of balls, where none is asked for */
+#define MIX_GROWTH  4.0   /* |f|^2 may grow by this factor in a mixing, else it is taken back */
+#define LEAP_GROWTH 2.0   /* the same in a leap */
+#define RIDGE       1e-14 /* added to the scaled normal equations' diagonal of 1 */
+#define LEAP_FIRST  8.0   /* the first leap, in multiples of f */
+#define OMEGA_BALLS 1.6   /* omega of every other sweep of balls by default; 1.7 is slower */
 
 struct anderson {
     struct solve *s;
     struct mixing m;
     struct watch watch;
-    struct best since; /* the best iterate since it began anew */
+    struct best since; /* the best iterate since anderson_restart() */
     double *room;
-    struct mixing_sums *sums;                /* [parts] */
+    struct mixing_sums *sums;                /* [chunks] */
     double gram[MIXING_DEPTH][MIXING_DEPTH]; /* dF'dF */
     double fd[MIXING_DEPTH];                 /* dF'f */
-    int full;                                /* how many differences there are */
-    bool begun;      /* f, and g in the room of the next change, are of a time before */
+    int count;                               /* differences stored */
+    bool begun;      /* m.f, and g where the next change will be stored, are of the mixing before */
     double omega[2]; /* of the first sweep after a mixing, and of the second */
-    int (*phase)(struct anderson *);  /* mix, leap or alone: a turn of it; */
-    void (*begin)(struct anderson *); /* what the next turn does first; or NULL */
-    int turns, left;                  /* turns that a mixing had; sweeps that are left of another */
-    double was;                       /* |f|^2 the turn before, */
-    double start, least;              /* at the epoch's start, the least of a mixing, */
-    double best;                      /* and after which the rests began anew */
-    double far;                       /* the next leap */
-    int rest;                         /* sweeps of the next leaps, or alone */
-    bool leaps;                       /* leaps are next */
+    int (*phase)(struct anderson *a);  /* one turn of the phase: mix, leap or alone */
+    void (*begin)(struct anderson *a); /* how the next turn changes the iterate first; or NULL */
+    int turns, left;                   /* turns that mixing had; sweeps left of another phase */
+    double before;                     /* |f|^2 in the turn before */
+    double epoch_f2, least_f2; /* |f|^2 at the epoch's start; the least since mixing began */
+    double run_f2;             /* least_f2 when `run` was last set to RUN_FIRST */
+    double reach;              /* of the next leap, in multiples of f */
+    int run;                   /* sweeps of the next phase of leaps or plain sweeps */
+    bool leap_next;            /* that phase has leaps */
 };
-
-static double sum(const double lane[BUNDLE])
-{
-    double s = 0;
-    for (int k = 0; k < BUNDLE; k++) s += lane[k];
-    return s;
-}
 
 static int depth(const struct anderson *a)
 {
@@ -78,14 +73,14 @@ static int depth(const struct anderson *a)
 
 static int64_t chunks(const struct problem *p)
 {
-    return (p->bundles + SUM_BUNDLES - 1) / SUM_BUNDLES;
+    return (p->bundles + CHUNK_BUNDLES - 1) / CHUNK_BUNDLES;
 }
 
-/* So many sweeps; as nlgs_sweep() */
+/* n sweeps; returns as nlgs_sweep() */
 static int sweeps(struct anderson *a, int n)
 {
     for (int k = 0; k < n; k++) {
-        a->watch.change = 0; // after a mixing the last one's says nothing
+        a->watch.change = 0; // what it was before the mixing says nothing of this sweep
         int over = nlgs_sweep(a->s, a->omega[k % 2], &a->watch);
         if (a->watch.just_judged) solve_best_offer(a->s, &a->since);
         if (over) return over;
@@ -93,13 +88,13 @@ static int sweeps(struct anderson *a, int n)
     return 0;
 }
 
-static void forget(struct anderson *a)
+static void forget_differences(struct anderson *a)
 {
-    a->m.next = a->full = 0, a->begun = false;
+    a->m.next = a->count = 0, a->begun = false;
 }
 
-/* x is the iterate's r. */
-static void look(struct anderson *a)
+/* The sweeps to come start at x, the iterate's r. */
+static void remember_start(struct anderson *a)
 {
     const struct problem *p = a->s->p;
     double *x = a->m.df[a->m.next];
@@ -107,18 +102,20 @@ static void look(struct anderson *a)
         memcpy(x, p->bundle[i].r, (size_t)(p->d * BUNDLE) * sizeof *x);
 }
 
-/* The sums of one part */
+/* The sums of one chunk */
 static void measure_chunk(const struct anderson *a, int64_t chunk)
 {
     const struct problem *p = a->s->p;
-    int64_t end = (chunk + 1) * SUM_BUNDLES < p->bundles ? (chunk + 1) * SUM_BUNDLES : p->bundles;
+    int64_t end =
+        (chunk + 1) * CHUNK_BUNDLES < p->bundles ? (chunk + 1) * CHUNK_BUNDLES : p->bundles;
     struct mixing_sums *t = &a->sums[chunk];
     *t = (struct mixing_sums){ 0 };
-    for (int64_t i = chunk * SUM_BUNDLES; i < end; i += BLOCK)
-        mixing_widest()->measure(p, &a->m, i, i + BLOCK < end ? i + BLOCK : end, t);
+    for (int64_t i = chunk * CHUNK_BUNDLES; i < end; i += CACHED_BUNDLES)
+        mixing_widest()->measure(p, &a->m, i, i + CACHED_BUNDLES < end ? i + CACHED_BUNDLES : end,
+                                 t);
 }
 
-/* What the sweeps made of x; |f|^2. */
+/* After the sweeps: f, the differences and their products; returns |f|^2. */
 static double measure(struct anderson *a)
 {
     const struct problem *p = a->s->p;
@@ -126,7 +123,7 @@ static double measure(struct anderson *a)
     int64_t n = chunks(p);
     a->s->rep->work += price_sweep(p); // with the mixing that follows
     int now = a->m.next;
-    if (n == 1 || a->s->o->threads == 1) { // no team: that costs
+    if (n == 1 || a->s->o->threads == 1) { // starting a parallel region costs time
         for (int64_t k = 0; k < n; k++) measure_chunk(a, k);
     } else {
 #pragma omp parallel for num_threads(a->s->o->threads)
@@ -134,23 +131,24 @@ static double measure(struct anderson *a)
     }
     for (int64_t k = 0; k < n; k++) mixing_sums_add(&t, &a->sums[k]);
     if (a->begun) {
-        a->full = a->full < depth(a) ? a->full + 1 : depth(a);
+        a->count = a->count < depth(a) ? a->count + 1 : depth(a);
         a->m.next = (now + 1) % depth(a);
-        for (int j = 0; j < a->full; j++)
-            a->gram[now][j] = a->gram[j][now] = sum(t.ff[j]), a->fd[j] = sum(t.fd[j]);
+        for (int j = 0; j < a->count; j++)
+            a->gram[now][j] = a->gram[j][now] = bundle_sum(t.ff[j]), a->fd[j] = bundle_sum(t.fd[j]);
     }
     a->begun = true;
-    return sum(t.f2);
+    return bundle_sum(t.f2);
 }
 
 /*
- * gamma by the normal equations, each difference scaled to length 1: pivoted, and with a ridge that
- * is far above what rounding makes of a column that is none of its own.
+ * gamma from the normal equations, each difference scaled to length 1. They are solved with
+ * pivoting, and with a ridge far larger than the rounding that is left of a column which depends on
+ * the others.
  */
-static void weigh(const struct anderson *a, double gamma[MIXING_DEPTH])
+static void solve_gamma(const struct anderson *a, double gamma[MIXING_DEPTH])
 {
     double A[MIXING_DEPTH * MIXING_DEPTH], b[MIXING_DEPTH], s[MIXING_DEPTH] = { 0 };
-    size_t n = (size_t)a->full, order[MIXING_DEPTH];
+    size_t n = (size_t)a->count, order[MIXING_DEPTH];
     for (size_t i = 0; i < n; i++) s[i] = a->gram[i][i] > 0 ? 1 / sqrt(a->gram[i][i]) : 0;
     for (size_t i = 0; i < n; i++) {
         for (size_t j = 0; j < n; j++) A[i * n + j] = a->gram[i][j] * s[i] * s[j];
@@ -177,84 +175,83 @@ static void react(struct anderson *a, double leap, const double gamma[MIXING_DEP
     mixing_widest()->react(p, omp_get_thread_num(), omp_get_num_threads(), &a->m, leap, gamma);
 }
 
-/* ---- what a turn begins with: the rows go to the next point ---- */
+/* ---- how a turn begins: by a step from the iterate to the next point ---- */
 
-/* To none; nothing is remembered. */
-static void anew(struct anderson *a)
+/* No step; the differences are forgotten. */
+static void begin_plain(struct anderson *a)
 {
-    forget(a), look(a);
+    forget_differences(a), remember_start(a);
 }
 
-static void mixed(struct anderson *a)
+static void begin_mixed(struct anderson *a)
 {
     double gamma[MIXING_DEPTH] = { 0 };
-    if (a->full) weigh(a, gamma);
+    if (a->count) solve_gamma(a, gamma);
     react(a, 0, gamma);
 }
 
-static void leapt(struct anderson *a)
+static void begin_leap(struct anderson *a)
 {
     const double gamma[MIXING_DEPTH] = { 0 };
-    react(a, a->far, gamma);
+    react(a, a->reach, gamma);
 }
 
-/* Where the last measure but one found them; nothing is remembered. */
-static void taken_back(struct anderson *a)
+/* Back to the g of the turn before; the differences are forgotten. */
+static void begin_taken_back(struct anderson *a)
 {
     double gamma[MIXING_DEPTH] = { 0 };
     gamma[(a->m.next + depth(a) - 1) % depth(a)] = 1; // x = g - dg
-    forget(a);
+    forget_differences(a);
     react(a, 0, gamma);
 }
 
-/* ---- the phases, a turn of each: sweeps, and what comes next. 0 to go on, as nlgs_sweep() ---- */
+/* ---- a turn of each phase: sweeps, and what comes next; returns as nlgs_sweep() ---- */
 
 static int mix(struct anderson *a), leap(struct anderson *a), alone(struct anderson *a);
 
-static void begin_mixing(struct anderson *a)
+static void start_mixing(struct anderson *a)
 {
-    a->phase = mix, a->begin = anew, a->turns = 0;
-    a->start = a->was = a->least = INFINITY;
+    a->phase = mix, a->begin = begin_plain, a->turns = 0;
+    a->epoch_f2 = a->before = a->least_f2 = INFINITY;
 }
 
-/* Mixing gives way to leaps and to sweeps alone in turn. */
-static void give_way(struct anderson *a)
+/* Mixing is followed by leaps and by plain sweeps in turn. */
+static void stop_mixing(struct anderson *a)
 {
-    if (a->least <= a->best / 2) a->rest = SHORT, a->best = a->least;
-    a->phase = a->leaps ? leap : alone, a->begin = anew, a->was = INFINITY;
-    a->left = a->rest, a->far = LEAP;
-    a->leaps = !a->leaps;
-    a->rest = a->rest < LONG ? 2 * a->rest : LONG;
+    if (a->least_f2 <= a->run_f2 / 2) a->run = RUN_FIRST, a->run_f2 = a->least_f2;
+    a->phase = a->leap_next ? leap : alone, a->begin = begin_plain, a->before = INFINITY;
+    a->left = a->run, a->reach = LEAP_FIRST;
+    a->leap_next = !a->leap_next;
+    a->run = a->run < RUN_MAX ? 2 * a->run : RUN_MAX;
 }
 
-/* Mixes until that does not pay. */
 static int mix(struct anderson *a)
 {
     int over = sweeps(a, PERIOD);
     if (over) return over;
     double now = measure(a);
-    bool well = now <= GROWTH * a->was, pays = a->turns % EPOCH || now <= a->start / 2;
-    if (a->turns++ % EPOCH == 0) a->start = now;
-    a->least = fmin(a->least, now);
-    a->begin = well ? mixed : taken_back, a->was = well ? now : INFINITY;
-    if (!pays) give_way(a);
+    bool well = now <= MIX_GROWTH * a->before, pays = a->turns % EPOCH || now <= a->epoch_f2 / 2;
+    if (a->turns++ % EPOCH == 0) a->epoch_f2 = now;
+    a->least_f2 = fmin(a->least_f2, now);
+    a->begin = well ? begin_mixed : begin_taken_back, a->before = well ? now : INFINITY;
+    if (!pays) stop_mixing(a);
     return 0;
 }
 
 /* Leaps along the change of a sweep, twice as far each time while that goes well. */
 static int leap(struct anderson *a)
 {
-    int over = sweeps(a, RESTS - 1);
+    int over = sweeps(a, LEAP_SWEEPS - 1);
     if (over) return over;
-    look(a);
+    remember_start(a);
     if ((over = sweeps(a, 1))) return over;
     double now = measure(a);
-    bool well = now <= ASTRAY * a->was;
-    if (!well) a->far = fmax(a->far / 4, 2);
-    if (well && a->was < INFINITY) a->far *= 2;
-    a->begin = well ? leapt : taken_back, a->was = well ? now : INFINITY;
-    if (a->left <= 0) begin_mixing(a);
-    a->left -= RESTS;
+    bool well = now <= LEAP_GROWTH * a->before;
+    if (!well) a->reach = fmax(a->reach / 4, 2);
+    if (well && a->before < INFINITY) a->reach *= 2;
+    a->begin = well ? begin_leap : begin_taken_back, a->before = well ? now : INFINITY;
+    if (a->left <= 0) start_mixing(a);
+    a->left -= LEAP_SWEEPS;
     return 0;
 }
 
@@ -262,7 +259,7 @@ static int alone(struct anderson *a)
 {
     int over = sweeps(a, PERIOD);
     a->left -= PERIOD;
-    if (a->left <= 0) begin_mixing(a);
+    if (a->left <= 0) start_mixing(a);
     return over;
 }
 
@@ -275,9 +272,9 @@ void anderson_free(struct anderson *a)
 void anderson_restart(struct anderson *a)
 {
     a->watch = (struct watch){ .due = INFINITY, .last_judged = a->s->rep->sweeps };
-    a->rest = SHORT, a->leaps = true, a->best = INFINITY;
+    a->run = RUN_FIRST, a->leap_next = true, a->run_f2 = INFINITY;
     best_forget(&a->since);
-    begin_mixing(a);
+    start_mixing(a);
 }
 
 struct anderson *anderson_new(struct solve *s)
@@ -289,8 +286,8 @@ struct anderson *anderson_new(struct solve *s)
     size_t size = (size_t)(s->p->slots * s->p->d),
            bytes = (size_t)(1 + 2 * depth(a)) * size * sizeof(double);
     for (int k = 0; k < 2; k++)
-        a->omega[k] = s->o->relax > 0 ? s->o->relax : k || s->p->full ? 1 : BEYOND;
-    a->room = aligned_alloc(64, bytes); // rows come in eights
+        a->omega[k] = s->o->relax > 0 ? s->o->relax : k || s->p->full ? 1 : OMEGA_BALLS;
+    a->room = aligned_alloc(64, bytes); // each vector is whole cache lines
     a->sums = malloc((size_t)(chunks(s->p) + 1) * sizeof *a->sums);
     if (!a->room || !a->sums || solve_best_init(&a->since, s->p)) {
         anderson_free(a);
@@ -326,7 +323,7 @@ double anderson_best_value(const struct anderson *a)
 void anderson_restore_best(struct anderson *a)
 {
     solve_best_restore(a->s, &a->since);
-    begin_mixing(a);
+    start_mixing(a);
 }
 
 static int run(struct solve *s)

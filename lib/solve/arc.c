@@ -1,39 +1,41 @@
-/* solve/arc.c: see solve/arc.h. */
+/* solve/arc.c: the steps along the central path by its arc length [solve/arc.h]. */
 #include "solve/arc.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* The largest correction of a contact, relative to what is corrected: */
-#define AIM   0.3 /* a step is to leave this much to be corrected, */
-#define SMALL 0.7 /* may go on with this much, */
-#define LARGE 1.5 /* and was too long with more than this */
+/* Sizes of the largest correction of a contact after a step, relative to what is corrected */
+#define AIM   0.3 /* what a step is to leave */
+#define SMALL 0.7 /* with no more than this the next step follows at once */
+#define LARGE 1.5 /* with more than this the step was too long */
 
-#define FALL     0.01 /* s falls at most to this part of itself in a step */
-#define ROUNDING 2e-6 /* natural maps below which a correction may be lost */
-#define STANDING 1e-6 /* the reach of a step that leads nowhere */
+#define FALL        0.01 /* s falls in a step to this fraction of itself, at most */
+#define ROUNDING    2e-6 /* natural map: below it a correction may be lost in rounding */
+#define REACH_LEAST 1e-6 /* reach of a step: a shorter one gains nothing */
 
-enum { BACKWARDS = 10 }; /* steps in which s grows, at most */
+enum {
+    BACKWARDS = 10 /* steps in which s grows, at most */
+};
 
-/* Directions: the derivatives by s, the second of them at a right angle to the first, and Newton's */
+/* Directions: the first and second derivatives by s, and Newton's correction */
 enum { TANGENT, BEND, CORRECTION, DIRECTIONS };
 
-struct along {
+struct course {
     double p0[3];
-    double to[DIRECTIONS][2][3]; /* x and z */
-    double tau[3][3];            /* x - z in the last step, tau[0] + h tau[1] + h^2/2 tau[2] */
+    double to[DIRECTIONS][2][3]; /* in x and in z */
+    double tau[3][3];            /* x - z on the last step: tau[0] + h tau[1] + h^2/2 tau[2] */
 };
 
 struct arc {
     struct central *m;
-    struct along *at; /* [n] */
+    struct course *at; /* [n] */
     double g0, s;
-    double h, last[3];     /* the last step, and s in it as tau is */
-    double reach, ceiling; /* how long a step is to be, and may be after one that was too long */
-    double before;         /* the last correction, where that was all of the last step; else 0 */
+    double h, last[3];     /* the length of the last step in s; s on it, as tau */
+    double reach, ceiling; /* the length of the next step in F's measure, and the longest allowed */
+    double before;         /* where the last step only corrected: by how much; else 0 */
 };
 
-/* The product of two directions, in F's measure: that of relative changes */
+/* The inner product of two directions in F's measure, that of changes relative to x and z */
 static double inner(const struct central *m, const struct side *s, double a[2][3], double b[2][3])
 {
     double fa[3], fb[3], sum;
@@ -43,32 +45,32 @@ static double inner(const struct central *m, const struct side *s, double a[2][3
     return (sum + jordan_dot(fa, fb)) / m->gap;
 }
 
-static double after(const double part[3], double h)
+static double parabola(const double part[3], double h)
 {
     return part[0] + h * (part[1] + h / 2 * part[2]);
 }
 
-/* To where the last step leads */
-static void place(struct arc *p)
+/* Moves s, x and z to where the last step leads. */
+static void move_to(struct arc *p)
 {
-    p->s = after(p->last, p->h);
+    p->s = parabola(p->last, p->h);
     for (int64_t c = 0; c < p->m->newton->a.W.n; c++) {
         struct side *s = &p->m->side[c];
-        const struct along *a = &p->at[c];
+        const struct course *a = &p->at[c];
         for (int k = 0; k < 3; k++) {
             const double part[3] = { a->tau[0][k], a->tau[1][k], a->tau[2][k] };
-            s->x[k] = after(part, p->h), s->z[k] = 0;
+            s->x[k] = parabola(part, p->h), s->z[k] = 0;
         }
         jordan_centre(s->x, s->z, p->s * p->g0);
     }
 }
 
-/* The last step again, so much shorter; false where that has come to nothing. */
+/* Makes the last step again, shorter by this factor; false where it gets too short. */
 static bool shorten(struct arc *p, double by)
 {
     p->reach *= by, p->h *= by, p->before = 0;
-    if (p->h == 0 || p->reach < STANDING) return false;
-    place(p);
+    if (p->h == 0 || p->reach < REACH_LEAST) return false;
+    move_to(p);
     return true;
 }
 
@@ -80,7 +82,7 @@ static double smooth_tail(const struct arc *p, const struct side *s)
 }
 
 /* dx/ds and dz/ds; false where the matrix is singular. */
-static bool tangent(struct arc *p)
+static bool find_tangent(struct arc *p)
 {
     struct central *m = p->m;
     int64_t n = m->newton->a.W.n;
@@ -97,25 +99,27 @@ static bool tangent(struct arc *p)
     return true;
 }
 
-/* What is not the tangent's, with its matrix; no direction where that is lost in rounding: false. */
-static bool direction(struct arc *p, int which)
+/* A direction other than the tangent, with the tangent's matrix. Where it is lost in rounding:
+   none, and false */
+static bool find_direction(struct arc *p, int which)
 {
     struct central *m = p->m;
-    bool seen = central_direction(m, true);
+    bool found = central_direction(m, true);
     for (int64_t c = 0; c < m->newton->a.W.n; c++) {
         memset(p->at[c].to[which], 0, sizeof p->at[c].to[which]);
-        if (seen) side_save(&m->side[c], p->at[c].to[which]);
+        if (found) side_save(&m->side[c], p->at[c].to[which]);
     }
-    return seen;
+    return found;
 }
 
-/* d2x/ds2 and d2z/ds2: twice the product of the tangent's x and z, and how |u_t| bends */
-static void bend(struct arc *p)
+/* d2x/ds2 and d2z/ds2, from twice the product of the tangent's x and z and the second derivative of
+   |u_t| */
+static void find_bend(struct arc *p)
 {
     struct central *m = p->m;
     for (int64_t c = 0; c < m->newton->a.W.n; c++) {
         struct side *s = &m->side[c];
-        const struct along *a = &p->at[c];
+        const struct course *a = &p->at[c];
         const double *dx = a->to[TANGENT][0], *dz = a->to[TANGENT][1];
         double fx[3], fz[3], want[3];
         scaling_apply(&s->F, dx, fx), scaling_inverse(&s->F, dz, fz);
@@ -126,11 +130,11 @@ static void bend(struct arc *p)
                along = (s->y[1] * u1 + s->y[2] * u2 + m->gap * p->g0) / smooth;
         s->p[0] += (u1 * u1 + u2 * u2 + p->g0 * p->g0 - along * along) / smooth;
     }
-    direction(p, BEND);
+    find_direction(p, BEND);
 }
 
 /* Newton's correction at this s; false where it is lost in rounding. */
-static bool correction(struct arc *p)
+static bool find_correction(struct arc *p)
 {
     struct central *m = p->m;
     for (int64_t c = 0; c < m->newton->a.W.n; c++) {
@@ -141,58 +145,60 @@ static bool correction(struct arc *p)
             want[k] = (k ? 0 : m->gap) - ll[k], s->p[k] = p->s * p->at[c].p0[k];
         jordan_quotient(s->l, want, s->c);
     }
-    return direction(p, CORRECTION);
+    return find_direction(p, CORRECTION);
 }
 
-/* The largest of all contacts */
-static double largest(const struct arc *p, int which)
+/* The largest length of this direction in any contact */
+static double longest(const struct arc *p, int which)
 {
-    double most = 0;
+    double max2 = 0;
     for (int64_t c = 0; c < p->m->newton->a.W.n; c++) {
         double(*d)[3] = p->at[c].to[which];
-        most = fmax(most, inner(p->m, &p->m->side[c], d, d));
+        max2 = fmax(max2, inner(p->m, &p->m->side[c], d, d));
     }
-    return sqrt(most);
+    return sqrt(max2);
 }
 
-/* A direction that leaves s alone is put at a right angle to the tangent; returns what it adds to s. */
-static double straighten(struct arc *p, int which)
+/* Turns a direction at constant s to a right angle to the tangent; returns what it then adds to
+   s. */
+static double orthogonalise(struct arc *p, int which)
 {
     struct central *m = p->m;
     int64_t n = m->newton->a.W.n;
     double tt = 1 / (p->s * p->s), td = 0;
     for (int64_t c = 0; c < n; c++) {
-        struct along *a = &p->at[c];
+        struct course *a = &p->at[c];
         tt += inner(m, &m->side[c], a->to[TANGENT], a->to[TANGENT]);
         td += inner(m, &m->side[c], a->to[TANGENT], a->to[which]);
     }
     for (int64_t c = 0; c < n; c++) {
-        struct along *a = &p->at[c];
+        struct course *a = &p->at[c];
         for (int j = 0; j < 2; j++)
             for (int k = 0; k < 3; k++) a->to[which][j][k] -= td / tt * a->to[TANGENT][j][k];
     }
     return -td / tt;
 }
 
-/* Corrects, and goes on by h along the tangent and the bend, which adds `turn` to s'' */
+/* Corrects, and goes on by h along the tangent and the bend. It adds
+   `corrected` to s, and s'' is `turn`. */
 static void step(struct arc *p, double corrected, double h, double turn)
 {
     double from = p->s + corrected;
     p->last[0] = from, p->last[1] = 1, p->last[2] = turn, p->h = h;
-    while (after(p->last, p->h) < FALL * from) p->h *= 0.8;
+    while (parabola(p->last, p->h) < FALL * from) p->h *= 0.8;
     for (int64_t c = 0; c < p->m->newton->a.W.n; c++) {
         const struct side *s = &p->m->side[c];
-        struct along *a = &p->at[c];
+        struct course *a = &p->at[c];
         for (int k = 0; k < 3; k++) {
             a->tau[0][k] = s->x[k] - s->z[k] + a->to[CORRECTION][0][k] - a->to[CORRECTION][1][k];
             a->tau[1][k] = a->to[TANGENT][0][k] - a->to[TANGENT][1][k];
             a->tau[2][k] = a->to[BEND][0][k] - a->to[BEND][1][k];
         }
     }
-    place(p);
+    move_to(p);
 }
 
-/* Corrects alone: the step that it belongs to may still turn out too long. */
+/* Only corrects: the step before may still turn out to have been too long. */
 static void correct(struct arc *p, double corrected)
 {
     p->s += corrected;
@@ -204,31 +210,34 @@ static void correct(struct arc *p, double corrected)
     }
 }
 
-/* How far s goes in a step of the reach from `s`, downwards or not */
+/* The change of s in a step of length p->reach from `s`, downwards or not */
 static double stride(const struct arc *p, double s, double steepest, bool down)
 {
     double relative = p->reach / (steepest * p->s);
-    // 1 - exp(-relative) or so, but of the same bits everywhere
+    // about 1 - exp(-relative), but with the same bits on every machine
     double fall = 1 - 1 / (1 + relative * (1 + relative / 2));
     if (down) return -fmax(0, fmin(s * fall, s - FALL * p->s));
     return fmin(2, relative) * p->s;
 }
 
-/* Was the last step too long, or a correction in vain, by what there is to be corrected now? */
-static bool too_much(const struct arc *p, double most)
+/* Whether the last step was too long, or its correction gained too little: `most` is the correction
+   now. */
+static bool was_too_long(const struct arc *p, double most)
 {
     if (p->before > 0) return most > SMALL && most > 0.7 * p->before;
     return p->h != 0 && most > LARGE;
 }
 
+/* The last step again, shorter; longer ones come back slowly. */
 static bool retreat(struct arc *p, double most)
 {
     p->ceiling = 0.8 * p->reach;
     return shorten(p, fmin(0.5, fmax(0.25, 0.7 * cbrt(AIM / most))));
 }
 
-/* How long the next step is to be, by what the last has left: that goes with its cube. */
-static void pace(struct arc *p, double most)
+/* The length of the next step, from the correction `most` after the last: that goes with its
+   cube. */
+static void choose_reach(struct arc *p, double most)
 {
     if (p->h == 0 || p->before > 0) return;
     p->reach = fmin(p->reach * fmin(3, fmax(0.5, cbrt(AIM / most))), p->ceiling);
@@ -262,28 +271,28 @@ bool arc_follow(struct central *m, double natural, int steps)
         if (s->o->progress) s->o->progress(s->rep->sweeps, e);
         there = central_finish(m, e) || e <= natural;
         if (there || !isfinite(e) || solve_spent(s) || !central_scale(m)) break;
-        if (!tangent(&p)) { // as near a fold, or in rounding
+        if (!find_tangent(&p)) { // as near a fold, or in rounding
             if (e < ROUNDING || !shorten(&p, 0.7)) break;
             continue;
         }
-        if (!correction(&p) && e < ROUNDING) break;
-        bend(&p);
+        if (!find_correction(&p) && e < ROUNDING) break;
+        find_bend(&p);
         if (!sign) sign = system_sign(m->newton->system);
         bool down = system_sign(m->newton->system) == sign;
         backwards += !down;
-        double corrected = straighten(&p, CORRECTION), turn = straighten(&p, BEND),
-               most = largest(&p, CORRECTION);
+        double corrected = orthogonalise(&p, CORRECTION), turn = orthogonalise(&p, BEND),
+               most = longest(&p, CORRECTION);
         if (p.s + corrected < FALL * p.s || corrected > p.s) corrected = 0;
-        if (too_much(&p, most)) {
+        if (was_too_long(&p, most)) {
             if (!retreat(&p, most)) break;
             continue;
         }
-        pace(&p, most);
+        choose_reach(&p, most);
         p.before = most < SMALL ? 0 : most;
         if (p.before > 0)
             correct(&p, corrected);
         else
-            step(&p, corrected, stride(&p, p.s + corrected, largest(&p, TANGENT), down), turn);
+            step(&p, corrected, stride(&p, p.s + corrected, longest(&p, TANGENT), down), turn);
     }
     for (int64_t c = 0; c < m->newton->a.W.n; c++) memset(m->side[c].p, 0, sizeof m->side[c].p);
     free(p.at);

@@ -1,10 +1,11 @@
 /*
- * auto.c: the solver that chooses. Sweeps are cheap and find which contacts hold, slide and part; where
- * they will not end soon a few contacts mostly hold them up, and those are solved by themselves. Where
- * that is not enough Newton on all contacts is, if it starts near enough, and where it does not, the
- * interior point method brings it there.
+ * solve/auto.c: the solver that chooses between the others. Sweeps are cheap and find which
+ * contacts stick, slide and open. Where they will not end soon, mostly a few contacts hold them up,
+ * and these are solved by themselves. Where that is not enough, Newton's method on all contacts
+ * finishes if it starts near enough, and else the interior point method brings it near.
  *
- * What is measured on the way is how fast the criterion falls; prices are counted [solve/prices.h].
+ * The choice rests on how fast the criterion falls, and on prices that are counted
+ * [solve/prices.h].
  */
 #include "solve/anderson.h"
 #include "solve/ipm.h"
@@ -16,61 +17,63 @@
 #include <string.h>
 
 enum {
-    CHUNK = 150,        /* sweeps between two looks, at least; else half of all so far */
-    FIRST_SUBSET = 50,  /* contacts of the first subset */
-    SUBSET_MOST = 250,  /* contacts of most first subsets */
-    SUBSETS = 25,       /* subsets, at most */
+    CHUNK = 150,        /* sweeps before each choice, at least; else half of all so far */
+    FIRST_SUBSET = 50,  /* contacts of the first subset, at least; 100 are slower */
+    SUBSET_USUAL = 250, /* contacts that a first subset seldom exceeds: for its price */
+    SUBSETS = 25,       /* subsets in a row, at most */
     SETTLE = 50,        /* sweeps after each subset, at least */
-    STEPS_TO_KNOW = 15, /* factorisations that sweeps must have cost before they are given up; */
-    STEPS_IF_FAR = 5,   /* this many while the criterion is more than FAR times eps */
-    SURE = 3,           /* times less of either where what is to come is as many times more */
-    STEPS_TO_END = 25,  /* factorisations that the end will take, mostly */
-    TRIES = 8,          /* from other sweeps, where the first have led nowhere, at most */
-    MORE = 3,           /* times what had been spent then is what all tries may cost */
-    LAST_RESORT = 20000 /* sweeps at most after that, when nothing else led there */
+    STEPS_TO_KNOW = 15, /* factorisations that sweeps have cost before all is factorised */
+    STEPS_IF_FAR = 5,   /* the same while the criterion is more than FAR times eps */
+    SURE = 3, /* factor by which sweeps may have cost less where there is much to gain, at most */
+    STEPS_TO_END = 25, /* factorisations that it takes to the end, mostly */
+    RETRIES = 8,       /* attempts from other sweeps where the first has failed, at most */
+    RETRY_COST = 3,    /* cost of all retries, at most, in multiples of all that was spent before */
+    LAST_SWEEPS = 20000 /* sweeps at most after that */
 };
 
-#define SUBSET_CONTACT 4e4  /* ns: what a contact of a small subset costs, mostly */
-#define IN_VAIN        0.25 /* of all that a solve costs: what may be spent in vain beside sweeps */
-#define AFFORD         3e10 /* ns: a factorisation dearer than this is not made */
-#define CHEAP          2e8  /* ns: what the last resort may always take */
+#define SUBSET_CONTACT 4e4  /* ns a contact of a small subset, mostly */
+#define IN_VAIN        0.25 /* of all that a solve costs: may be spent without gain beside sweeps */
+#define AFFORD         3e10 /* ns: a factorisation that costs more is not made */
+#define CHEAP          2e8  /* ns that the last sweeps may always take */
 #define FAR            30   /* times eps: sweeps that have come nearer mostly end soon */
 
 struct strategy {
     struct solve *s;
     struct anderson *sweeps;
-    struct newton w; /* ready: assembled; its system is NULL before factors are made */
-    double price;    /* of a sweep */
-    bool ready, tried;
-    double vain;      /* ns: what subsets that gained little have cost, */
-    int64_t contacts; /* and how many contacts the next is to have */
-    struct {          /* a chunk ago */
+    struct newton w;  /* its system is NULL before the factors are made */
+    double price;     /* ns of a sweep */
+    bool ready;       /* w is assembled */
+    bool tried;       /* all contacts were factorised, or cannot be: only sweeps remain */
+    double vain;      /* ns that subsets have cost which gained little */
+    int64_t contacts; /* contacts of the next subset, at least */
+    struct {          /* a chunk ago: the best criterion, and the sweeps made */
         double value;
         int32_t sweeps;
     } older;
-    int32_t end; /* sweeps at most */
+    int32_t sweeps_max; /* of the whole solve */
 };
 
 /*
- * How many more sweeps from this value, if it goes on as a power of their number, as it does on the way
- * from older.value; infinite where it does not fall.
+ * How many more sweeps it takes from this value of the criterion to eps, if the criterion falls as
+ * a power of their number, with the exponent since older.value; INFINITY where it does not fall.
  */
-static double to_go(const struct strategy *a, double value)
+static double sweeps_to_come(const struct strategy *a, double value)
 {
     int32_t now = a->s->rep->sweeps;
     double p = log(a->older.value / value) / log((double)now / a->older.sweeps);
     return p > 0.1 ? now * (pow(value / a->s->o->eps, 1 / p) - 1) : INFINITY;
 }
 
-/* How many times the sweeps to come, `more`, are worth this price: at most SURE, and 0 below once. */
-static double gain_of(const struct strategy *a, double more, double price)
+/* How many times this price (ns) the sweeps to come, `more`, would cost: at most SURE, and 0 below
+   1 */
+static double gain(const struct strategy *a, double more, double price)
 {
-    double gain = more * a->price / price;
-    return gain < 1 ? 0 : fmin(gain, SURE);
+    double ratio = more * a->price / price;
+    return ratio < 1 ? 0 : fmin(ratio, SURE);
 }
 
-/* ns: what may be spent in vain: a part of what was, and of what the sweeps to come would cost as long as that
-   is no more */
+/* ns that may be spent without gain: a fraction of what was spent so far, and of what the sweeps
+   to come would cost, counted as no more than that */
 static double allowance(const struct strategy *a, double more)
 {
     double spent = a->s->rep->work;
@@ -78,9 +81,10 @@ static double allowance(const struct strategy *a, double more)
 }
 
 /*
- * Subsets in turn with sweeps, for as long as the next costs less than what is left to sweep. After one
- * that gained little comes a larger one: a few contacts more often decide. Those that gained little may
- * have cost `vain` all together. Returns how many subsets there were; -1 when memory is short.
+ * Solves subsets in turn with sweeps; sweeps go on after a subset while what is left to sweep costs
+ * less than the subset did. After a subset that gained little comes a larger one: a few more
+ * contacts often decide. Subsets that gained little may cost `vain` ns in all. Returns the number
+ * of subsets, -1 when memory is short.
  */
 static int in_subsets(struct strategy *a, double vain)
 {
@@ -109,23 +113,23 @@ static int in_subsets(struct strategy *a, double vain)
 }
 
 /*
- * From r = 0, by other sweeps each time: whether subsets suffice, or the path from their reactions
- * arrives, is chance.
+ * New attempts from r = 0 with other sweeps each time: whether subsets suffice, or the path from
+ * their reactions reaches the solution, is chance.
  */
-static int again(struct strategy *a)
+static int try_again(struct strategy *a)
 {
     static const double omegas[] = { 1.3, 1.5, 1 };
     struct solve *s = a->s;
-    double most = (1 + MORE) * s->rep->work;
+    double work_max = (1 + RETRY_COST) * s->rep->work;
     a->contacts = FIRST_SUBSET;
-    for (int k = 0; k < TRIES && s->rep->work < most && !solve_over(s); k++) {
+    for (int k = 0; k < RETRIES && s->rep->work < work_max && !solve_over(s); k++) {
         double *none = calloc((size_t)a->w.a.size + 4, sizeof *none);
         if (!none) return -1;
         scaled_put(&a->w.a, s, none);
         free(none);
         int32_t sweeps = newton_sweeps_per_step(&a->w, s->p) * (k + 2) / 2;
         if (nlgs_sweeps(s, sweeps, s->o->relax > 0 ? s->o->relax : omegas[k % 3]) ||
-            in_subsets(a, a->vain + most - s->rep->work) < 0)
+            in_subsets(a, a->vain + work_max - s->rep->work) < 0)
             return -1;
         ipm_from(&a->w, s, k % 2 ? 1e-4 : 1e-3);
     }
@@ -133,9 +137,10 @@ static int again(struct strategy *a)
 }
 
 /*
- * Newton, and where that is too far away the interior point method; what it left is Newton's again.
- * Between balls Newton seldom arrives by itself, and the sweeps that it wants between its steps cost as
- * much as the interior point method.
+ * All contacts by Newton's method, by the interior point method where that is too far from the
+ * solution, and by Newton again from what the latter has reached. Between balls Newton seldom
+ * succeeds at first, and the sweeps between its steps cost as much as the interior point method, so
+ * there it is not tried.
  */
 static int factorise(struct strategy *a)
 {
@@ -145,10 +150,11 @@ static int factorise(struct strategy *a)
     if (solve_over(s)) return 0;
     solve_restore_best(s);
     newton_polish(&a->w, s, 1e-4, 6);
-    return again(a);
+    return try_again(a);
 }
 
-/* All contacts assembled, and the best iterate kept from now on. False where it is too large. */
+/* Assembles all contacts, and keeps the best iterate from now on. Returns 0; 1 where the problem is
+   too large, -1 when memory is short. */
 static int make_ready(struct strategy *a)
 {
     const char *reason;
@@ -159,17 +165,18 @@ static int make_ready(struct strategy *a)
     return solve_keep_best(a->s);
 }
 
-/* Is all of it factorised, where that costs `price`? The longer the way, the less it takes to be sure. */
+/* Whether all contacts are to be factorised, where a Newton step costs `price` ns. The more sweeps
+   are to come, the fewer must have been made. */
 static bool pays(const struct strategy *a, double more, double price)
 {
     const struct solve *s = a->s;
     int steps = anderson_best_value(a->sweeps) > FAR * s->o->eps ? STEPS_IF_FAR : STEPS_TO_KNOW;
     return price <= AFFORD &&
-           gain_of(a, more, STEPS_TO_END * price) * s->rep->sweeps * a->price >= steps * price;
+           gain(a, more, STEPS_TO_END * price) * s->rep->sweeps * a->price >= steps * price;
 }
 
-/* Whether the factors of all contacts may pay: by the least that they can cost, for to find their fill has a
-   price itself. */
+/* Whether the factors of all contacts may pay. Before their fill is known, which has a price
+   itself, judged by the least that they can cost */
 static bool may_pay(const struct strategy *a, double more)
 {
     if (a->w.system) return pays(a, more, a->w.price);
@@ -177,8 +184,8 @@ static bool may_pay(const struct strategy *a, double more)
            system_price_new(&a->w.a) <= allowance(a, more);
 }
 
-/* What may be done instead of sweeps, `more` of which are to come: 0, or -1 when memory is short. Where
-   nothing is, the sweeps do not notice. */
+/* Tries what may be better than the `more` sweeps to come. Where nothing is, the sweeps are not
+   disturbed. Returns 0, or -1 when memory is short. */
 static int look_for_better(struct strategy *a, double more)
 {
     struct solve *s = a->s;
@@ -192,32 +199,34 @@ static int look_for_better(struct strategy *a, double more)
     int subsets = in_subsets(a, allowance(a, more));
     if (subsets < 0) return -1;
     if (solve_over(s)) return 0;
-    if (subsets) a->older.sweeps = 0; // what these sweeps gained says nothing of the next
+    if (subsets) a->older.sweeps = 0; // the gain so far says nothing about the next sweeps
     if (!may_pay(a, more)) return 0;
     if (!a->w.system && (e = newton_factors(&a->w, s, &reason)))
         return a->tried = true, e < 0 ? -1 : 0;
     if (!pays(a, more, a->w.price)) return 0;
     if (factorise(a)) return -1;
     a->tried = true;
-    double rest = fmin(fmax(s->rep->work, CHEAP) / a->price, LAST_RESORT);
-    if (a->end - s->rep->sweeps > rest) a->end = s->rep->sweeps + (int32_t)rest;
+    double rest = fmin(fmax(s->rep->work, CHEAP) / a->price, LAST_SWEEPS);
+    if (a->sweeps_max - s->rep->sweeps > rest) a->sweeps_max = s->rep->sweeps + (int32_t)rest;
     return 0;
 }
 
-static int choose(struct strategy *a)
+/* Sweeps in chunks, with a look for something better after each. 0, or -1 when memory is short */
+static int sweep_and_choose(struct strategy *a)
 {
     struct solve *s = a->s;
     const struct report *rep = s->rep;
-    // what a subset costs, mostly: sweeps go on by themselves until they have cost that
-    double least = fmin((double)s->p->n, SUBSET_MOST) * SUBSET_CONTACT;
-    while (rep->sweeps < a->end && !solve_over(s)) {
+    // what a subset costs, mostly: until the sweeps have cost as much nothing else is tried
+    double least = fmin((double)s->p->n, SUBSET_USUAL) * SUBSET_CONTACT;
+    while (rep->sweeps < a->sweeps_max && !solve_over(s)) {
         int32_t had = rep->sweeps, chunk = had / 2 > CHUNK ? had / 2 : CHUNK;
         double before = anderson_best_value(a->sweeps);
-        if (anderson_sweeps(a->sweeps, chunk < a->end - had ? chunk : a->end - had)) return -1;
+        if (anderson_sweeps(a->sweeps, chunk < a->sweeps_max - had ? chunk : a->sweeps_max - had))
+            return -1;
         if (!isfinite(s->value)) break;
-        double more = a->older.sweeps ? to_go(a, anderson_best_value(a->sweeps)) : 0;
+        double more = a->older.sweeps ? sweeps_to_come(a, anderson_best_value(a->sweeps)) : 0;
         a->older.value = before, a->older.sweeps = had;
-        if (a->tried || gain_of(a, more, least) * rep->sweeps * a->price < least) continue;
+        if (a->tried || gain(a, more, least) * rep->sweeps * a->price < least) continue;
         if (look_for_better(a, more)) return -1;
     }
     anderson_restore_best(a->sweeps);
@@ -231,9 +240,9 @@ static int run(struct solve *s)
                           .price = price_sweep(s->p),
                           .contacts = FIRST_SUBSET,
                           .older.value = INFINITY,
-                          .end = s->o->max_sweeps };
+                          .sweeps_max = s->o->max_sweeps };
     if (!a.sweeps) return -1;
-    int failed = choose(&a);
+    int failed = sweep_and_choose(&a);
     if (a.ready) newton_free(&a.w);
     anderson_free(a.sweeps);
     return failed;

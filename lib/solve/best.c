@@ -1,4 +1,4 @@
-/* best.c: see solve/best.h. */
+/* solve/best.c: one point and its value [solve/best.h]. */
 #include "solve/best.h"
 
 #include <math.h>

@@ -1,21 +1,21 @@
-/* solve/central_path.c: see solve/central_path.h. */
+/* solve/central_path.c: points, scalings and directions of the central path
+   [solve/central_path.h]. */
 #include "solve/central_path.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define MU_LEAST 1e-4 /* a cone needs an inside */
-#define CLEAR                                                                                      \
-    1.5e-6 /* the natural map at which Newton sees all statuses, every second or third time */
-#define AGAIN 0.4 /* of the map of the last try: when it is tried again */
+#define MU_LEAST 1e-4   /* friction is taken to be at least this: a cone needs an inside */
+#define CLEAR    1.5e-6 /* natural map: from it Newton finishes every second or third time */
+#define AGAIN    0.4    /* Newton is tried again when the map has fallen to this fraction */
 
 void central_free(struct central *m)
 {
     free(m->side), free(m->room), best_free(&m->best);
 }
 
-/* The reactions and what they make, moved into the cones */
-static void start(struct central *m, double gap)
+/* x and z from the reactions in m->x and their velocities, moved into the cones */
+static void start_inside(struct central *m, double gap)
 {
     struct scaled *a = &m->newton->a;
     int d = a->W.d;
@@ -50,7 +50,7 @@ bool central_init(struct central *m, struct newton *newton, struct solve *s, dou
     m->x = m->room, m->v = m->x + size, m->b = m->v + size, m->L = m->b + size;
     m->D = m->L + blocks;
     if (!cold) scaled_get(&newton->a, s->p, m->x);
-    start(m, gap);
+    start_inside(m, gap);
     return true;
 }
 
@@ -151,7 +151,7 @@ bool central_direction(struct central *m, bool factorised)
 
 bool central_finish(struct central *m, double map)
 {
-    // where one takes a contact that hardly slides for one that holds, another may not
+    // where one rho takes a contact that hardly slides for a sticking one, another may not
     static const double rhos[] = { 7, 50, 1 };
     if (!(map <= CLEAR) || map > AGAIN * m->tried) return false;
     m->tried = map;

@@ -5,19 +5,20 @@
  *
  *     min 1/2 r.W r + q.r,     r_n >= 0,  |r_t| <= b,
  *
- * gradient u; the bounds follow r when that is solved to a part (the quasi-optimisation). A step goes
- * along p to the minimum on that line, and r is brought back to what is allowed. The new direction is
+ * with gradient u; when this is solved well enough the bounds are computed anew from r (the
+ * quasi-optimisation). A step goes along p to the minimum on that line, and r is projected onto the
+ * bounds. The new direction is
  *
  *     w = proj(-u),   z = proj(p),   p = w + beta z,   beta = -w.W p / p.W p,
  *
- * proj onto the directions in which r may go: not into a contact that is open, not outwards where it
- * slides. Reactions are scaled by s = 1/sqrt(lambda_max(W_cc)), which stands for a preconditioner.
+ * with proj onto the directions in which r may go: r_n not below 0, r_t not out of its disc.
+ * Reactions are scaled by s = 1/sqrt(lambda_max(W_cc)), which serves as a preconditioner.
  *
- * Departures from the paper, without which packings do not get below 1e-2: where a contact has changed
- * its status, the next step goes along -u itself, as far as the last step's r and u suggest (the
- * spectral length), for on small discs it is the part of -u that points outwards that turns r_t;
- * W p has the discs' curvature in it; a step that makes the energy larger than it was in the last ten
- * is shortened; and the bounds are held for up to a hundred steps, not for one.
+ * Departures from the paper, without which packings do not get below 1e-2: after a step in which a
+ * contact has changed its status, the next goes along -u itself, as far as the last changes of r
+ * and u suggest (the spectral length), since on small discs it is the outward part of -u that turns
+ * r_t; W p includes the curvature of the discs; a step that makes the energy larger than in all of
+ * the last ten is shortened; and the bounds are held for up to a hundred steps, not for one.
  */
 #include "problem/apply.h"
 #include "problem/sweep.h"
@@ -28,36 +29,36 @@
 #include <string.h>
 
 enum {
-    LOOK_EVERY = 10, /* steps between two judgements */
-    PAST = 10,       /* steps; a step may end at the worst energy of these */
-    INNER = 100      /* steps for which the bounds are held at most */
+    JUDGE_EVERY = 10, /* steps from one judgement to the next */
+    PAST = 10,        /* steps: the energy may rise to the largest after these */
+    INNER = 100       /* steps for which the bounds are held, at most */
 };
-#define FALL       1e-4 /* of |w|^2, at which the bounds follow: at first, and at the least */
-#define FALL_LEAST 1e-10
+#define FALL       1e-4  /* at first: a fall of |w|^2 after which the bounds are renewed */
+#define FALL_LEAST 1e-10 /* the smallest such fraction */
 
-enum hold { OPEN = 1, BORDER = 2 };
+enum hold { OPEN = 1, BORDER = 2 }; /* r_n = 0; r_t on the border of its disc */
 
 struct cg {
     struct solve *s;
     double *room;
-    double *r, *u;             /* [slots][3] scaled reactions and velocities */
-    double *w, *p, *Wp;        /* [slots][3] directions, and what p makes of u */
-    double *was, *back;        /* [slots][3] r before the last step, and the way there */
-    double *x, *y;             /* [slots][3] unscaled: reactions, and what W makes of a direction */
-    double *scale, *bound;     /* [slots] s; b, scaled */
-    int8_t *status;            /* [slots] what holds r: enum hold */
-    bool conjugate;            /* this step may be one of conjugate gradients */
-    double spectral;           /* |dr|^2 / dr.du of the last step */
+    double *r, *u;               /* [slots][3] scaled reactions and velocities */
+    double *w, *p, *Wp;          /* [slots][3] directions; the change of u along p */
+    double *r_before, *way_back; /* [slots][3] r before the last step, and the way back there */
+    double *x, *y;         /* [slots][3] unscaled: reactions, and what W makes of a direction */
+    double *scale, *bound; /* [slots] s; b, scaled */
+    int8_t *status;        /* [slots] which bounds r has reached: enum hold */
+    bool conjugate;  /* the next step is one of conjugate gradients, not of the spectral length */
+    double spectral; /* |dr|^2 / dr.du of the last step */
     double energy, past[PAST]; /* since the bounds last changed; after the last steps */
     struct apply apply;        /* room for W p */
 };
 
-static void leave(struct cg *a)
+static void cg_free(struct cg *a)
 {
     free(a->room), free(a->status), apply_free(&a->apply);
 }
 
-static int begin(struct cg *a, struct solve *s)
+static int cg_init(struct cg *a, struct solve *s)
 {
     struct problem *p = s->p;
     size_t slots = (size_t)p->slots;
@@ -65,13 +66,13 @@ static int begin(struct cg *a, struct solve *s)
     a->room = calloc(29 * slots + 1, sizeof *a->room);
     a->status = calloc(slots + 1, sizeof *a->status);
     if (!a->room || !a->status || apply_init(&a->apply, p)) {
-        leave(a);
+        cg_free(a);
         return -1;
     }
     a->r = a->room, a->w = a->r + 3 * slots, a->p = a->w + 3 * slots, a->Wp = a->p + 3 * slots;
     a->u = a->Wp + 3 * slots, a->scale = a->u + 3 * slots, a->bound = a->scale + slots;
-    a->was = a->bound + slots, a->back = a->was + 3 * slots;
-    a->x = a->back + 3 * slots, a->y = a->x + 3 * slots;
+    a->r_before = a->bound + slots, a->way_back = a->r_before + 3 * slots;
+    a->x = a->way_back + 3 * slots, a->y = a->x + 3 * slots;
     for (int64_t i = 0; i < p->slots; i++) {
         double u[3], lambda = bundle_lambda(slot_bundle(p, i), slot_lane(i));
         if (p->contact[i] < 0) continue;
@@ -82,7 +83,7 @@ static int begin(struct cg *a, struct solve *s)
     return 0;
 }
 
-/* Wp = s W s p, and what the border of the disc bends on the way; returns p.W p */
+/* Wp = s W s p, plus the curvature of the discs' borders; returns p.W p */
 static double apply(struct cg *a)
 {
     const struct problem *p = a->s->p;
@@ -102,8 +103,8 @@ static double apply(struct cg *a)
     return sum;
 }
 
-/* x into a direction that does not leave what is allowed. */
-static void admit(const struct cg *a, int64_t i, double x[3])
+/* Takes out of x, at slot i, what leads out of the bounds. */
+static void keep_admissible(const struct cg *a, int64_t i, double x[3])
 {
     const double *r = a->r + 3 * i;
     if (a->status[i] & OPEN && x[0] < 0) x[0] = 0;
@@ -115,8 +116,9 @@ static void admit(const struct cg *a, int64_t i, double x[3])
 }
 
 /*
- * r = what the bounds allow of r + step p, into the iterate, and u there. *fall: what the
- * energy has fallen by, -(u + u').(r' - r)/2. Returns whether a contact is held otherwise.
+ * r = r + step p, projected onto the bounds; it becomes the iterate, with its u. *fall: the
+ * decrease of the energy, -(u + u').(r' - r)/2. Returns whether the status of a contact has
+ * changed.
  */
 static bool advance(struct cg *a, const double *p, double step, double *fall)
 {
@@ -125,7 +127,7 @@ static bool advance(struct cg *a, const double *p, double step, double *fall)
     double dr2 = 0, drdu = 0;
     *fall = 0;
     for (int64_t i = 0; i < prob->slots; i++) {
-        double *r = a->r + 3 * i, *was = a->was + 3 * i;
+        double *r = a->r + 3 * i, *was = a->r_before + 3 * i;
         if (prob->contact[i] < 0) continue;
         for (int k = 0; k < 3; k++) was[k] = r[k], r[k] += step * p[3 * i + k];
         double t = sqrt(r[1] * r[1] + r[2] * r[2]), b = a->bound[i];
@@ -143,7 +145,7 @@ static bool advance(struct cg *a, const double *p, double step, double *fall)
         slot_get(prob, i, r, u);
         for (int k = 0; k < 3; k++) {
             double v = a->scale[i] * u[k], *old = a->u + 3 * i + k;
-            double dr = a->r[3 * i + k] - a->was[3 * i + k];
+            double dr = a->r[3 * i + k] - a->r_before[3 * i + k];
             *fall -= 0.5 * (v + *old) * dr;
             dr2 += dr * dr, drdu += dr * (v - *old);
             *old = v;
@@ -154,7 +156,7 @@ static bool advance(struct cg *a, const double *p, double step, double *fall)
 }
 
 /* w = proj(-u); returns |w|^2, and w.W p */
-static double descend(struct cg *a, double *wWp)
+static double find_descent(struct cg *a, double *wWp)
 {
     double w2 = 0;
     *wWp = 0;
@@ -162,20 +164,20 @@ static double descend(struct cg *a, double *wWp)
         double *w = a->w + 3 * i;
         if (a->s->p->contact[i] < 0) continue;
         for (int k = 0; k < 3; k++) w[k] = -a->u[3 * i + k];
-        admit(a, i, w);
+        keep_admissible(a, i, w);
         for (int k = 0; k < 3; k++) w2 += w[k] * w[k], *wWp += w[k] * a->Wp[3 * i + k];
     }
     return w2;
 }
 
-/* p = w + beta proj(p); returns p.w, its descent */
-static double turn(struct cg *a, double beta)
+/* p = w + beta proj(p), or -u; returns p.w, the rate of descent */
+static double choose_direction(struct cg *a, double beta)
 {
     double sum = 0;
     for (int64_t i = 0; i < a->s->p->slots; i++) {
         double *x = a->p + 3 * i;
         if (a->s->p->contact[i] < 0) continue;
-        if (a->conjugate) admit(a, i, x);
+        if (a->conjugate) keep_admissible(a, i, x);
         for (int k = 0; k < 3; k++) {
             x[k] = a->conjugate ? a->w[3 * i + k] + beta * x[k] : -a->u[3 * i + k];
             sum += x[k] * a->w[3 * i + k];
@@ -184,8 +186,9 @@ static double turn(struct cg *a, double beta)
     return sum;
 }
 
-/* The bounds follow r, and r_t them; a new beginning. Returns |w|^2. */
-static double follow(struct cg *a)
+/* Computes the bounds anew from r, projects r_t onto them, and starts the minimisation again.
+   Returns |w|^2. */
+static double renew_bounds(struct cg *a)
 {
     const struct problem *p = a->s->p;
     double fall, wWp;
@@ -194,66 +197,69 @@ static double follow(struct cg *a)
     advance(a, a->p, 0, &fall);
     a->energy = 0, a->conjugate = false;
     for (int k = 0; k < PAST; k++) a->past[k] = 0;
-    return descend(a, &wWp);
+    return find_descent(a, &wWp);
 }
 
-/* Judged, where that is due; true at the end. */
-static bool look(struct cg *a, bool due)
+/* Judges the iterate if that is due; true when the solve is over. */
+static bool judge_if_due(struct cg *a, bool due)
 {
     struct solve *s = a->s;
-    if (!due && s->rep->sweeps % LOOK_EVERY && s->rep->sweeps < s->o->max_sweeps &&
+    if (!due && s->rep->sweeps % JUDGE_EVERY && s->rep->sweeps < s->o->max_sweeps &&
         !s->o->every_sweep)
         return false;
     solve_judge(s);
     return solve_over(s) || !isfinite(s->value);
 }
 
-/* One step; returns 1 at the end, -1 when memory is short. *w2: |w|^2 there */
+/* One step; returns 1 when the solve is over, -1 when memory is short. *w2: |w|^2 after it */
 static int step(struct cg *a, double *w2)
 {
-    double slope = 0, curve = 1, fall, wWp, length = a->spectral, most = a->past[0];
-    for (int k = 1; k < PAST; k++) most = fmax(most, a->past[k]);
+    double slope = 0, curve = 1, fall, wWp, length = a->spectral, worst = a->past[0];
+    for (int k = 1; k < PAST; k++) worst = fmax(worst, a->past[k]);
     if (a->conjugate) curve = apply(a);
     for (int64_t i = 0; i < 3 * a->s->p->slots; i++) slope += a->p[i] * a->w[i];
     if (a->conjugate && curve > 0) length = slope / curve;
     if (!(length > 0)) length = 1;
     bool changed = advance(a, a->p, length, &fall);
-    for (int k = 0; !(a->energy - fall <= most) && k < 30; k++) {
-        // what was cut off made it worse: back, and less far along w
+    for (int k = 0; !(a->energy - fall <= worst) && k < 30; k++) {
+        // the projection made it worse: back, and less far along -u
         double none;
-        for (int64_t i = 0; i < 3 * a->s->p->slots; i++) a->back[i] = a->was[i] - a->r[i];
-        advance(a, a->back, 1, &none);
+        for (int64_t i = 0; i < 3 * a->s->p->slots; i++) a->way_back[i] = a->r_before[i] - a->r[i];
+        advance(a, a->way_back, 1, &none);
         length /= 4;
         for (int64_t i = 0; i < 3 * a->s->p->slots; i++) a->p[i] = -a->u[i];
         advance(a, a->p, length, &fall), changed = true;
     }
     a->energy -= fall, a->past[a->s->rep->sweeps % PAST] = a->energy;
-    *w2 = descend(a, &wWp);
+    *w2 = find_descent(a, &wWp);
     double beta = a->conjugate && !changed ? fmax(-wWp / curve, 0) : 0;
     a->conjugate = !changed;
-    if (!(turn(a, beta) > 0)) turn(a, 0);
+    if (!(choose_direction(a, beta) > 0)) choose_direction(a, 0);
     a->s->rep->sweeps++, a->s->rep->work += price_sweep(a->s->p);
     if (solve_history(a->s)) return -1;
-    return look(a, false);
+    return judge_if_due(a, false);
 }
 
 static int run(struct solve *s)
 {
     struct cg a;
     s->believes = false;
-    if (solve_keep_best(s) || begin(&a, s)) return -1;
+    if (solve_keep_best(s) || cg_init(&a, s)) return -1;
     int over = 0;
     double fall = FALL, last = INFINITY;
     while (!over) {
-        double start = follow(&a), now = start;
+        double start = renew_bounds(&a), now = start;
         int k = 0;
-        if (start > last / 2) fall = fmax(fall / 10, FALL_LEAST); // the bounds want better answers
+        if (start > last / 2)
+            fall = fmax(fall / 10, FALL_LEAST); // solve more exactly between bounds
         last = start;
-        turn(&a, 0);
+        choose_direction(&a, 0);
         for (; k < INNER && now > fall * start && !over; k++) over = step(&a, &now);
-        if (!over && !k) over = (follow(&a), look(&a, true), 1);
+        if (over || k) continue;
+        renew_bounds(&a), judge_if_due(&a, true); // no direction leads on
+        over = 1;
     }
-    leave(&a);
+    cg_free(&a);
     return over < 0 ? -1 : 0;
 }
 

@@ -1,4 +1,4 @@
-/* solve/faces.c: see solve/faces.h. */
+/* solve/faces.c: the search for faces, their matrices, and S [solve/faces.h]. */
 #include "solve/faces.h"
 
 #include <gsl/gsl_linalg.h>
@@ -6,12 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SAME 1e-9 /* of numbers of order 1 */
+#define SAME 1e-9 /* entries of order 1 that differ by less are equal */
 
 /* ---- which contacts have the same neighbours ---- */
 
 struct mark {
-    uint64_t sum; /* of its neighbours' and its own */
+    uint64_t sum; /* of the hashes of its neighbours and its own */
     int32_t contact;
 };
 
@@ -53,10 +53,10 @@ static double entry(const struct delassus *W, int32_t a, int i, int32_t b, int j
 /* ---- one face ---- */
 
 /*
- * The rows of W_gg that the others follow from, by QR with column pivoting: pivot[rank], and
- * T[rows][rank]. Returns the rank.
+ * Finds rows of W_gg of which all others are combinations, by QR with column pivoting: pivot[rank],
+ * and the combinations T[rows][rank]. Returns the rank.
  */
-static int pivots(const gsl_matrix *Wgg, int *pivot, gsl_matrix *T)
+static int find_pivots(const gsl_matrix *Wgg, int *pivot, gsl_matrix *T)
 {
     int n = (int)Wgg->size1, rank = 0, sign;
     double a[9 * FACE_CONTACTS_MAX * FACE_CONTACTS_MAX], tau[3 * FACE_CONTACTS_MAX],
@@ -70,7 +70,7 @@ static int pivots(const gsl_matrix *Wgg, int *pivot, gsl_matrix *T)
     gsl_linalg_QRPT_decomp(&A.matrix, &Tau.vector, &P, &sign, &Norm.vector);
     while (rank < n && fabs(a[rank * n + rank]) > SAME) rank++;
     gsl_matrix_set_zero(T);
-    for (int j = 0; j < n; j++) { // column order[j] is the sum of z_i times the pivots' columns
+    for (int j = 0; j < n; j++) { // column order[j] is the sum of z_i times pivot column i
         double z[3 * FACE_CONTACTS_MAX];
         for (int i = 0; i < rank; i++) z[i] = j == i;
         for (int i = rank - 1; j >= rank && i >= 0; i--) {
@@ -84,9 +84,9 @@ static int pivots(const gsl_matrix *Wgg, int *pivot, gsl_matrix *T)
     return rank;
 }
 
-/* Whether the rows of W_gb follow from the pivots' too */
-static bool follows(const struct delassus *W, const struct face *f, int32_t b, const int *pivot,
-                    const gsl_matrix *T)
+/* Whether the rows of W_gb are the same combinations of the pivots' rows */
+static bool rows_follow(const struct delassus *W, const struct face *f, int32_t b, const int *pivot,
+                        const gsl_matrix *T)
 {
     int d = W->d;
     for (int j = 0; j < d; j++)
@@ -100,8 +100,8 @@ static bool follows(const struct delassus *W, const struct face *f, int32_t b, c
     return true;
 }
 
-/* T = Q R, so that with Q = (Q_1 Q_2) all x of T' x = w are Q_1 R^-T w + Q_2 n */
-static void split(struct face *f, const gsl_matrix *T)
+/* M = Q_1 R^-T and N = Q_2, where T = Q R and Q = (Q_1 Q_2) */
+static void null_space(struct face *f, const gsl_matrix *T)
 {
     size_t n = (size_t)f->rows, r = (size_t)f->rank;
     double a[9 * FACE_CONTACTS_MAX * FACE_CONTACTS_MAX],
@@ -124,8 +124,9 @@ static void split(struct face *f, const gsl_matrix *T)
     gsl_blas_dtrsm(CblasRight, CblasUpper, CblasTrans, CblasNonUnit, 1, &R.matrix, &M.matrix);
 }
 
-/* f's matrices, its contacts known, into room[2 rows^2]; pivot[rows]. False where it repeats nothing. */
-static bool repeats(const struct delassus *W, struct face *f, int *pivot, double *room)
+/* Fills rank and matrices of f, whose contacts are known, into room[2 rows^2]; and pivot[rows].
+   False where no contact repeats another. */
+static bool face_init(const struct delassus *W, struct face *f, int *pivot, double *room)
 {
     int d = W->d;
     size_t n = (size_t)f->rows;
@@ -135,23 +136,23 @@ static bool repeats(const struct delassus *W, struct face *f, int *pivot, double
     for (int i = 0; i < f->rows; i++)
         for (int j = 0; j < f->rows; j++)
             wgg[(int)n * i + j] = entry(W, f->contact[i / d], i % d, f->contact[j / d], j % d);
-    f->rank = pivots(&Wgg.matrix, pivot, &All.matrix);
+    f->rank = find_pivots(&Wgg.matrix, pivot, &All.matrix);
     if (!f->rank || f->rank == f->rows) return false;
     size_t r = (size_t)f->rank;
     gsl_matrix_view T = gsl_matrix_submatrix(&All.matrix, 0, 0, n, r);
     for (int64_t e = W->first[f->contact[0]]; e < W->first[f->contact[0] + 1]; e++)
-        if (!follows(W, f, W->col[e], pivot, &T.matrix)) return false;
+        if (!rows_follow(W, f, W->col[e], pivot, &T.matrix)) return false;
     f->T = room, f->M = room + n * r, f->N = room + 2 * n * r;
     gsl_matrix_view kept = gsl_matrix_view_array(f->T, n, r);
     gsl_matrix_memcpy(&kept.matrix, &T.matrix);
-    split(f, &T.matrix);
+    null_space(f, &T.matrix);
     return true;
 }
 
-/* ---- all of them ---- */
+/* ---- all faces ---- */
 
-/* The contacts, ordered by what they have for neighbours */
-static void sort(const struct delassus *W, struct mark *m)
+/* The contacts sorted by the hash of their neighbours: those of a face are then side by side */
+static void sort_by_neighbours(const struct delassus *W, struct mark *m)
 {
     for (int64_t c = 0; c < W->n; c++) {
         m[c] = (struct mark){ hash((uint64_t)c), (int32_t)c };
@@ -161,38 +162,40 @@ static void sort(const struct delassus *W, struct mark *m)
     qsort(m, (size_t)W->n, sizeof *m, by_sum);
 }
 
-/* One more face: `count` contacts from contact[0] on, whose pivots are pivot[rank] */
-static void add(struct faces *f, int d, struct face g, const int *pivot)
+/* One more face g, with its pivots pivot[rank] */
+static void add_face(struct faces *f, int d, struct face g, const int *pivot)
 {
     g.at = f->size;
     for (int i = 0; i < g.rank; i++) f->row[f->size++] = d * g.contact[pivot[i] / d] + pivot[i] % d;
     f->face[f->n++] = g;
 }
 
-/* Contacts of the same neighbours: as one face, or each for itself. Returns what is left of the room. */
-static double *gather(struct faces *f, const struct delassus *W, int32_t *contact, int count,
-                      double *room)
+/* Contacts with the same neighbours: one face, or each a face of its own. Returns the rest of the
+   room. */
+static double *add_faces(struct faces *f, const struct delassus *W, int32_t *contact, int count,
+                         double *room)
 {
     int pivot[3 * FACE_CONTACTS_MAX] = { 0 }, d = W->d;
     struct face g = { .contact = contact, .count = count, .rows = d * count };
-    if (count > 1 && repeats(W, &g, pivot, room)) {
-        add(f, d, g, pivot);
+    if (count > 1 && face_init(W, &g, pivot, room)) {
+        add_face(f, d, g, pivot);
         return room + 2 * g.rows * g.rows;
     }
     for (int i = 0; i < d; i++) pivot[i] = i;
     for (int k = 0; k < count; k++)
-        add(f, d, (struct face){ .contact = contact + k, .count = 1, .rows = d, .rank = d }, pivot);
+        add_face(f, d, (struct face){ .contact = contact + k, .count = 1, .rows = d, .rank = d },
+                 pivot);
     return room;
 }
 
-static bool find(struct faces *f, const struct delassus *W)
+static bool find_faces(struct faces *f, const struct delassus *W)
 {
     size_t n = (size_t)W->n;
     struct mark *m = malloc((n + 1) * sizeof *m);
     if (!m) return false;
-    sort(W, m);
+    sort_by_neighbours(W, m);
     size_t room = 1;
-    for (int pass = 0; pass < 2; pass++) { // how much room, then what is in it
+    for (int pass = 0; pass < 2; pass++) { // first the size of the room, then its contents
         double *free_room = f->room;
         for (size_t i = 0, j; i < n; i = j) {
             for (j = i + 1; j < n && j < i + FACE_CONTACTS_MAX && m[j].sum == m[i].sum; j++)
@@ -203,7 +206,7 @@ static bool find(struct faces *f, const struct delassus *W)
                 continue;
             }
             for (size_t k = i; k < j; k++) f->contact[k] = m[k].contact;
-            free_room = gather(f, W, f->contact + i, (int)(j - i), free_room);
+            free_room = add_faces(f, W, f->contact + i, (int)(j - i), free_room);
         }
         if (!pass && !(f->room = malloc(room * sizeof *f->room))) break;
     }
@@ -217,30 +220,31 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The faces that face g sees, itself among them, ascending; of[] says whose each contact is. */
-static int32_t sees(const struct faces *f, const struct delassus *W, const struct face *g,
-                    const int32_t *of, int32_t *near)
+/* near[]: the faces that face g has blocks of W with, itself among them, ascending; returns their
+   number. of[c] is the face of contact c. */
+static int32_t neighbour_faces(const struct faces *f, const struct delassus *W,
+                               const struct face *g, const int32_t *of, int32_t *near)
 {
-    int32_t count = 0, seen = 0, c = f->row[g->at] / W->d;
+    int32_t count = 0, distinct = 0, c = f->row[g->at] / W->d;
     near[count++] = of[c];
     for (int64_t e = W->first[c]; e < W->first[c + 1]; e++) near[count++] = of[W->col[e]];
     qsort(near, (size_t)count, sizeof *near, ascending);
     for (int32_t i = 0; i < count; i++)
-        if (!i || near[i] != near[i - 1]) near[seen++] = near[i];
-    return seen;
+        if (!i || near[i] != near[i - 1]) near[distinct++] = near[i];
+    return distinct;
 }
 
-/* S by rows; near[n] is for its own use. */
-static void extract(struct faces *f, const struct delassus *W, const int32_t *of, int32_t *near)
+/* S by rows; near[n] is work space. */
+static void fill_S(struct faces *f, const struct delassus *W, const int32_t *of, int32_t *near)
 {
     int d = W->d;
     int32_t k = 0;
     for (int32_t i = 0; i < f->n; i++) {
         const struct face *g = f->face + i;
-        int32_t seen = sees(f, W, g, of, near);
+        int32_t distinct = neighbour_faces(f, W, g, of, near);
         for (int32_t row = g->at; row < g->at + g->rank; row++) {
             f->first[row] = k;
-            for (int32_t h = 0; h < seen; h++)
+            for (int32_t h = 0; h < distinct; h++)
                 for (int j = 0; j < f->face[near[h]].rank; j++, k++) {
                     f->col[k] = f->face[near[h]].at + j;
                     int32_t a = f->row[row], b = f->row[f->col[k]];
@@ -251,7 +255,7 @@ static void extract(struct faces *f, const struct delassus *W, const int32_t *of
     f->first[f->size] = k;
 }
 
-static bool reduce(struct faces *f, const struct delassus *W)
+static bool build_S(struct faces *f, const struct delassus *W)
 {
     size_t n = (size_t)W->n, most = (size_t)(W->first[n] + W->n) * (size_t)(W->d * W->d);
     int32_t *of = calloc(n + 1, sizeof *of), *near = calloc(n + 1, sizeof *near);
@@ -261,7 +265,7 @@ static bool reduce(struct faces *f, const struct delassus *W)
     if (good) {
         for (int32_t i = 0; i < f->n; i++)
             for (int32_t c = 0; c < f->face[i].count; c++) of[f->face[i].contact[c]] = i;
-        extract(f, W, of, near);
+        fill_S(f, W, of, near);
     }
     free(of), free(near);
     return good;
@@ -281,7 +285,7 @@ bool faces_init(struct faces *f, const struct delassus *W)
     f->face = calloc(n + 1, sizeof *f->face);
     f->contact = calloc(n + 1, sizeof *f->contact);
     f->row = calloc(3 * n + 1, sizeof *f->row);
-    if (f->face && f->contact && f->row && find(f, W) && reduce(f, W)) return true;
+    if (f->face && f->contact && f->row && find_faces(f, W) && build_S(f, W)) return true;
     faces_free(f);
     return false;
 }

@@ -1,4 +1,5 @@
-/* solve/ipm.c: see solve/ipm.h. */
+/* solve/ipm.c: long steps along the central path, and the attempts of a whole solve
+   [solve/ipm.h]. */
 #include "solve/ipm.h"
 
 #include "solve/arc.h"
@@ -6,45 +7,46 @@
 
 #include <stdlib.h>
 
-#define INTERIOR 0.99 /* of the way to the border, a step goes at most */
-#define LONGER   0.3  /* a corrector is to lengthen the step by this, */
-#define GAINED   0.03 /* and has to by this */
-#define SHORT    0.1  /* a step of this length leads nowhere */
+#define INTERIOR   0.99 /* a step goes at most this fraction of the way to the border */
+#define LENGTHEN   0.3  /* a corrector aims at a step longer by this */
+#define LENGTHENED 0.03 /* a corrector that gains less than this is the last */
+#define STEP_SHORT 0.1  /* a step shorter than this gains too little: the next t is tried */
 
-#define CLOSE 2e-7 /* of the scaled natural map: close enough if nothing ends it sooner; */
-#define END   1e-9 /* what the path by arc length is followed to, which costs a few steps more */
-#define LATE  1e-4 /* the gap from which on smaller t would only lead about */
-#define COLD  0.1  /* the gap at which one begins from r = 0 */
+#define MAP_CLOSE 2e-7 /* scaled natural map to which long steps follow the path */
+#define MAP_END   1e-9 /* the same by arc length, which costs only a few steps more */
+#define GAP_LATE  1e-4 /* gap below which smaller t do not lead on */
+#define GAP_COLD  0.1  /* gap at the start from r = 0 */
 
 enum {
-    SHORT_STEPS = 4, /* short steps in a row: it is stuck */
-    CORRECTORS = 3,  /* a step, at most */
-    ROUNDS = 3,      /* from r = 0, each ten times nearer */
-    APPROACH = 200,  /* steps of the first round, at most, */
-    AGAIN = 12,      /* and of the others */
-    NEARBY = 25,     /* steps from the sweeps' reactions, at most */
-    BENDS = 60,      /* steps along the path by its arc length, at most */
-    SWEEPS = 500     /* of the solver before it begins: most contacts know by then what they do */
+    STUCK_STEPS = 4,  /* steps below 1e-3 in a row: the method is stuck */
+    CORRECTORS = 3,   /* correctors a step, at most; six save nothing */
+    ROUNDS = 3,       /* rounds from r = 0, each to a map ten times smaller */
+    COLD_STEPS = 200, /* steps of the first round, at most */
+    NEXT_STEPS = 12,  /* steps of each later round, at most */
+    WARM_STEPS = 25,  /* steps from the sweeps' reactions, at most */
+    ARC_STEPS = 60,   /* steps by arc length, at most */
+    SWEEPS = 500      /* sweeps before the method begins: most statuses are right by then */
 };
 
-/* The t that are tried in turn: between balls, and where the W_cc are full (columns, walls) */
+/* The t tried in turn: between balls, and where the W_cc are full (columns, walls) */
 static const double ts[2][3] = { { 1, 0.9, 0.5 }, { 1, 0.7, 0.3 } };
 
-/* Directions of one contact, to be had again */
+/* Saved directions of one contact */
 struct directions {
-    double last[2][3]; /* dx and dz without the last corrector, */
-    double far[2][3];  /* and of the t that has led farthest */
+    double last[2][3]; /* dx and dz without the last corrector */
+    double far[2][3];  /* dx and dz of the t with the longest step */
 };
 
 struct ipm {
     struct central c;
     struct directions *kept; /* [n] */
-    bool full;               /* the W_cc are */
-    double folds;            /* at which gap folds of the path are followed, and no other t tried */
-    int fold;                /* which t served last */
-    int stuck;               /* steps in a row that led nowhere */
+    bool full;               /* some W_cc are more than diag(w_n, w_t, w_t) */
+    double fold_gap; /* below this gap only t = 1 is tried, and a short step ends the path */
+    int last_t;      /* which of the t the next step tries first */
+    int stuck;       /* steps below 1e-3 in a row */
 };
 
+/* The longest step that keeps x and z of all contacts in K */
 static double longest(const struct central *m)
 {
     double step = INFINITY;
@@ -56,8 +58,8 @@ static double longest(const struct central *m)
 }
 
 /*
- * Gondzio's corrector: what x o z a little beyond the longest step would be, its eigenvalues brought to
- * within a factor of 10 of the target, is asked for in c.
+ * Gondzio's corrector [Gondzio 1996]: changes c so that x o z, a little beyond the longest step,
+ * has its eigenvalues within a factor of 10 of the target.
  */
 static void recentre(struct side *s, double step, double target)
 {
@@ -77,7 +79,8 @@ static void recentre(struct side *s, double step, double target)
     for (int k = 0; k < 3; k++) s->c[k] += more[k];
 }
 
-/* Correctors for as long as they lengthen the step; a substitution each, and not a factorisation. */
+/* Correctors as long as they lengthen the step; each takes a substitution but no factorisation.
+   Returns the longest step. */
 static double lengthen(struct ipm *m, double step, double target)
 {
     int64_t n = m->c.newton->a.W.n;
@@ -85,11 +88,11 @@ static double lengthen(struct ipm *m, double step, double target)
         for (int64_t c = 0; c < n; c++) {
             struct side *s = &m->c.side[c];
             side_save(s, m->kept[c].last);
-            recentre(s, fmin(1, INTERIOR * step + LONGER), target);
+            recentre(s, fmin(1, INTERIOR * step + LENGTHEN), target);
         }
         double before = step;
         step = central_direction(&m->c, true) ? longest(&m->c) : 0;
-        if (step >= before + GAINED) continue;
+        if (step >= before + LENGTHENED) continue;
         if (step >= before) break;
         for (int64_t c = 0; c < n; c++) side_restore(&m->c.side[c], m->kept[c].last);
         return before;
@@ -97,8 +100,8 @@ static double lengthen(struct ipm *m, double step, double target)
     return step;
 }
 
-/* Mehrotra's two directions with this t, and correctors; returns the length of the step to be made, 0
-   for none. */
+/* Mehrotra's two directions with this t, and correctors; returns the length of the step, 0 for
+   none. */
 static double predict_and_correct(struct ipm *m, double t)
 {
     int64_t n = m->c.newton->a.W.n;
@@ -135,34 +138,34 @@ static void move(struct central *m, double step)
 }
 
 /*
- * One step; false where there is none. The t that served last comes first: where the path has folded
- * it does so for a while.
+ * One step; false where there is none. The t used last is tried first, since a fold of the path
+ * lasts for some steps.
  */
 static bool ipm_step(struct ipm *m)
 {
     int64_t n = m->c.newton->a.W.n;
     double step = 0;
-    bool follow = m->c.gap < m->folds;
-    int at = follow ? 0 : m->fold;
-    for (int i = at; i < (follow ? 1 : 3) && step < SHORT; i++) {
+    bool follow = m->c.gap < m->fold_gap;
+    int at = follow ? 0 : m->last_t;
+    for (int i = at; i < (follow ? 1 : 3) && step < STEP_SHORT; i++) {
         double far = predict_and_correct(m, ts[m->full][i]);
         if (far <= step) continue;
         step = far, at = i;
         for (int64_t c = 0; c < n; c++) side_save(&m->c.side[c], m->kept[c].far);
     }
-    if (follow && step < SHORT) return false;
+    if (follow && step < STEP_SHORT) return false;
     for (int64_t c = 0; c < n; c++) side_restore(&m->c.side[c], m->kept[c].far);
-    m->fold = at > 0 && step > 0.3 ? at - 1 : at;
+    m->last_t = at > 0 && step > 0.3 ? at - 1 : at;
     m->stuck = step < 1e-3 ? m->stuck + 1 : 0;
     if (step > 0) move(&m->c, step);
-    return step > 0 && m->stuck < SHORT_STEPS;
+    return step > 0 && m->stuck < STUCK_STEPS;
 }
 
 /*
- * On to where the scaled natural map is at most `natural`; false where `steps` do not get it there. The best
- * that it found becomes the iterate.
+ * Follows the path to where the scaled natural map is at most `natural`; false where `steps` steps
+ * do not reach it. The best point found becomes the iterate.
  */
-static bool approach(struct ipm *m, double natural, int steps)
+static bool follow_path(struct ipm *m, double natural, int steps)
 {
     const struct solve *s = m->c.solve;
     bool more = true, there = false;
@@ -178,24 +181,24 @@ static bool approach(struct ipm *m, double natural, int steps)
     return there;
 }
 
-static void leave(struct ipm *m)
+static void ipm_free(struct ipm *m)
 {
     free(m->kept);
     central_free(&m->c);
 }
 
-static bool begin(struct ipm *m, struct newton *w, struct solve *s, double gap, double folds)
+static bool ipm_init(struct ipm *m, struct newton *w, struct solve *s, double gap, double fold_gap)
 {
-    *m = (struct ipm){ .full = s->p->full, .folds = folds };
-    if (!central_init(&m->c, w, s, gap, gap == COLD)) return false;
+    *m = (struct ipm){ .full = s->p->full, .fold_gap = fold_gap };
+    if (!central_init(&m->c, w, s, gap, gap == GAP_COLD)) return false;
     m->kept = calloc((size_t)w->a.W.n + 1, sizeof *m->kept);
-    if (!m->kept) leave(m);
+    if (!m->kept) ipm_free(m);
     return m->kept;
 }
 
 /*
- * Spent, or met near the solution: where u' = u, eps_glob is a product of two errors, and as small for
- * reactions inside their cones that are far from it.
+ * Whether the solve is over: spent, or met near the solution. Where u' = u, eps_glob is a product
+ * of the errors of r and of u, and small inside the cones even far from the solution.
  */
 static bool arrived(struct ipm *m, struct solve *s)
 {
@@ -203,45 +206,45 @@ static bool arrived(struct ipm *m, struct solve *s)
     if (!solve_met(s)) return solve_spent(s);
     scaled_get(a, s->p, m->c.x);
     scaled_velocity(a, m->c.x, m->c.v);
-    return scaled_natural(a, m->c.x, m->c.v) <= CLOSE || solve_spent(s);
+    return scaled_natural(a, m->c.x, m->c.v) <= MAP_CLOSE || solve_spent(s);
 }
 
-/* Long steps, and by arc length where they end */
-static void along(struct newton *w, struct solve *s, double gap)
+/* Long steps, and steps by arc length where these end */
+static void path_then_arc(struct newton *w, struct solve *s, double gap)
 {
-    bool cold = gap == COLD;
+    bool cold = gap == GAP_COLD;
     struct ipm m;
-    if (!begin(&m, w, s, gap, cold ? INFINITY : LATE)) return;
-    bool near = approach(&m, CLOSE, cold ? APPROACH : NEARBY);
+    if (!ipm_init(&m, w, s, gap, cold ? INFINITY : GAP_LATE)) return;
+    bool near = follow_path(&m, MAP_CLOSE, cold ? COLD_STEPS : WARM_STEPS);
     if (near && !solve_over(s)) newton_polish(w, s, 1e-7, 3);
-    if (!arrived(&m, s)) near = arc_follow(&m.c, END, BENDS);
+    if (!arrived(&m, s)) near = arc_follow(&m.c, MAP_END, ARC_STEPS);
     if (!solve_over(s)) newton_polish(w, s, 1e-7, near ? 3 : 1);
-    leave(&m);
+    ipm_free(&m);
 }
 
-/* Long steps with whatever t leads on, from afar: what discs and capsules want, whose paths fold often */
-static void about(struct newton *w, struct solve *s)
+/* From r = 0, long steps with any of the t: for discs and capsules, whose paths fold often */
+static void path_with_small_t(struct newton *w, struct solve *s)
 {
     struct ipm m;
-    if (!begin(&m, w, s, COLD, 0)) return;
+    if (!ipm_init(&m, w, s, GAP_COLD, 0)) return;
     bool more = true;
     for (int k = 0; more && k < ROUNDS && !solve_over(s); k++) {
-        more = approach(&m, CLOSE / pow(10, k), k ? AGAIN : APPROACH);
+        more = follow_path(&m, MAP_CLOSE / pow(10, k), k ? NEXT_STEPS : COLD_STEPS);
         if (!solve_over(s)) newton_polish(w, s, 1e-7, 3);
     }
-    leave(&m);
+    ipm_free(&m);
 }
 
 void ipm_from(struct newton *w, struct solve *s, double gap)
 {
-    if (!solve_over(s)) along(w, s, gap);
+    if (!solve_over(s)) path_then_arc(w, s, gap);
 }
 
 void ipm_solve(struct newton *w, struct solve *s)
 {
     ipm_from(w, s, 1e-3);
-    if (!solve_over(s)) about(w, s);
-    if (!solve_over(s)) along(w, s, COLD);
+    if (!solve_over(s)) path_with_small_t(w, s);
+    if (!solve_over(s)) path_then_arc(w, s, GAP_COLD);
 }
 
 static int run(struct solve *s)

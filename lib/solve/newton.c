@@ -1,4 +1,4 @@
-/* newton.c: see solve/newton.h. */
+/* solve/newton.c: the steps, and the strategy of steps and sweeps in turn [solve/newton.h]. */
 #include "solve/newton.h"
 
 #include "law/method.h"
@@ -9,17 +9,17 @@
 #include <string.h>
 
 enum {
-    INNER = 8,         /* Newton steps of a careful proximal step, at most */
-    SHARE_LEAST = 200, /* sweeps between two steps, at least */
-    SHARE_MOST = 2000  /* and at most */
+    INNER = 8,        /* Newton steps of a careful proximal step, at most */
+    SWEEPS_MIN = 200, /* sweeps between two steps, at least */
+    SWEEPS_MAX = 2000 /* sweeps between two steps, at most */
 };
 
-#define RHO          50.0   /* of the projection: large ones find the statuses, 1 does not */
-#define ALPHA_MIN    1e-9   /* multiples of W's mean diagonal, at least; */
-#define ALPHA_END    1e-7   /* of the steps that are to end, */
-#define END          1e-9   /* at a scaled natural map of this */
-#define FACTOR_BYTES 4e9    /* bytes that the factors may have */
-#define CONTACTS     100000 /* more are not even assembled */
+#define RHO          50.0   /* of the projection: a large one finds the statuses, 1 does not */
+#define ALPHA_MIN    1e-9   /* a in multiples of W's mean diagonal, at least */
+#define ALPHA_END    1e-7   /* the same in newton_finish() */
+#define MAP_END      1e-9   /* scaled natural map at which newton_finish() has succeeded */
+#define FACTOR_BYTES 4e9    /* bytes of the factors, at most */
+#define CONTACTS_MAX 100000 /* contacts: more are not even assembled */
 
 static const char too_many[] = "more than 100000 contacts are not factorised",
                   too_dense[] = "the factors would take more than 4 GB",
@@ -33,8 +33,7 @@ void newton_free(struct newton *w)
     *w = (struct newton){ 0 };
 }
 
-/* What is a failure of: there is nothing to free after it. */
-static int give_up(struct newton *w, int status)
+static int free_and_return(struct newton *w, int status)
 {
     newton_free(w);
     return status;
@@ -45,12 +44,12 @@ int newton_assemble(struct newton *w, struct solve *s, const char **reason)
     struct why why = { 0 };
     *w = (struct newton){ .rho = RHO };
     *reason = too_many;
-    if (s->p->n > CONTACTS) return 1;
+    if (s->p->n > CONTACTS_MAX) return 1;
     int e = scaled_init(&w->a, s->p, &why);
-    if (e) return give_up(w, e == EX_DATAERR ? 1 : -1);
+    if (e) return free_and_return(w, e == EX_DATAERR ? 1 : -1);
     s->rep->work += price_assembly(delassus_entries(&w->a.W));
     size_t size = (size_t)w->a.size + 4, blocks = 9 * (size_t)s->p->n;
-    if (!(w->room = calloc(7 * size + 2 * blocks, sizeof *w->room))) return give_up(w, -1);
+    if (!(w->room = calloc(7 * size + 2 * blocks, sizeof *w->room))) return free_and_return(w, -1);
     w->x = w->room, w->v = w->x + size, w->z = w->v + size, w->from = w->z + size;
     w->start = w->from + size, w->trial = w->start + size, w->dx = w->trial + size;
     w->L = w->dx + size, w->D = w->L + blocks;
@@ -81,10 +80,10 @@ int newton_init(struct newton *w, struct solve *s, const char **reason)
 
 int32_t newton_sweeps_per_step(const struct newton *w, const struct problem *p)
 {
-    return (int32_t)fmin(fmax(w->price / price_sweep(p), SHARE_LEAST), SHARE_MOST);
+    return (int32_t)fmin(fmax(w->price / price_sweep(p), SWEEPS_MIN), SWEEPS_MAX);
 }
 
-/* Z at x, negated, into z, and the matrix' parts; v is the velocity with the proximal term. |Z| */
+/* z = -Z at x, L and D of the matrix there, and v with its proximal term; returns |Z|. */
 static double residual(struct newton *w, const double *x)
 {
     struct scaled *a = &w->a;
@@ -105,8 +104,9 @@ static double residual(struct newton *w, const double *x)
     return sqrt(sum);
 }
 
-/* x moves along dx (in z) as far as |Z| falls; false where it does not. */
-static bool search(struct newton *w, double *at)
+/* Moves x along dx (given in z), by the longest of 1, 1/2, 1/4 ... with which |Z| falls; false
+   where there is none. *at: |Z| */
+static bool line_search(struct newton *w, double *at)
 {
     double before = *at, *dx = w->dx;
     memcpy(dx, w->z, (size_t)w->a.size * sizeof *dx);
@@ -123,8 +123,9 @@ static bool search(struct newton *w, double *at)
 }
 
 /*
- * From x, which is x_0 too, one full step, or as many as the proximal step wants with a line search;
- * x becomes the projection at its end. False where it leads nowhere.
+ * From x, which is also x_0: one full step, or if `carefully` steps with a line search until the
+ * proximal step is solved. Then x is projected onto its disc. False where a system cannot be solved
+ * or time is short.
  */
 static bool newton_step(struct newton *w, struct solve *s, bool carefully)
 {
@@ -141,7 +142,7 @@ static bool newton_step(struct newton *w, struct solve *s, bool carefully)
         if (!carefully) {
             for (int32_t i = 0; i < a->size; i++) w->x[i] += w->z[i];
             residual(w, w->x);
-        } else if (!search(w, &z)) {
+        } else if (!line_search(w, &z)) {
             residual(w, w->x);
             break;
         } else if (z < 0.01 * start) {
@@ -159,7 +160,7 @@ static bool newton_step(struct newton *w, struct solve *s, bool carefully)
     return true;
 }
 
-/* The natural map at x; v is its velocity then. */
+/* The scaled natural map at x; leaves the velocity of x in v. */
 static double map_at(struct newton *w)
 {
     scaled_velocity(&w->a, w->x, w->v);
@@ -174,35 +175,35 @@ bool newton_finish(struct newton *w, struct solve *s, const double *x, double rh
     do {
         before = map;
         map = newton_step(w, s, false) ? map_at(w) : INFINITY;
-    } while (map > END && map < before / 3);
+    } while (map > MAP_END && map < before / 3);
     w->rho = RHO;
-    if (!(map <= END)) return false;
-    best_forget(&s->best); // this is the best, whatever the criterion says of others
+    if (!(map <= MAP_END)) return false;
+    best_forget(&s->best); // this solution is the best, whatever the criterion says of others
     scaled_put(&w->a, s, w->x);
     return true;
 }
 
 /*
- * A step alone makes the many contacts that it does not see rightly much worse, and a sweep mends
- * just those: hence the sweeps after a step that has not halved the error by itself.
+ * A step gets a few contacts very wrong, those whose status it misjudges, and sweeps mend just
+ * these: hence the sweeps after a step that has not halved the criterion by itself.
  */
 void newton_polish(struct newton *w, struct solve *s, double alpha, int patience)
 {
     static const double omegas[] = { 1.5, 1, 0.7 };
     size_t size = (size_t)w->a.size * sizeof *w->x;
-    double mark = s->value, least = s->value; // what is to be halved
+    double mark = s->value, least = s->value; // patience lasts while least falls to half of mark
     bool carefully = false;
     int32_t share = newton_sweeps_per_step(w, s->p);
     w->alpha = alpha;
     scaled_get(&w->a, s->p, w->x);
-    for (int vain = 0, harms = 0; vain < patience;) {
+    for (int in_vain = 0, harmed = 0; in_vain < patience;) {
         if (solve_over(s) || !solve_affords(s, w->price)) break;
         double before = s->value;
         memcpy(w->start, w->x, size);
         if (!newton_step(w, s, carefully)) {
             w->alpha = fmax(10 * w->alpha, 1e-8);
             memcpy(w->x, w->start, size);
-            vain++;
+            in_vain++;
             continue;
         }
         scaled_put(&w->a, s, w->x);
@@ -212,10 +213,10 @@ void newton_polish(struct newton *w, struct solve *s, double alpha, int patience
             memcpy(w->trial, w->x, size);
             nlgs_sweeps(s, share, s->o->relax > 0 ? s->o->relax : omegas[w->omega]);
             scaled_get(&w->a, s->p, w->x);
-            // sweeps that do harm are over-relaxed
+            // sweeps that make it worse twice in a row may be over-relaxed: the next omega
             bool harm = !(s->value < 0.99 * before) || s->value > after;
-            harms = harm ? harms + 1 : 0;
-            if (harms == 2) harms = 0, w->omega = (w->omega + 1) % 3;
+            harmed = harm ? harmed + 1 : 0;
+            if (harmed == 2) harmed = 0, w->omega = (w->omega + 1) % 3;
             if (s->value > after) memcpy(w->x, w->trial, size), scaled_put(&w->a, s, w->x);
         }
         carefully = !carefully && !(s->value < 0.9 * before);
@@ -225,8 +226,8 @@ void newton_polish(struct newton *w, struct solve *s, double alpha, int patience
             w->alpha = fmin(w->alpha * (after > 1e3 * before ? 10 : 3), 1);
         if (!(s->value < 2 * before)) memcpy(w->x, w->start, size), scaled_put(&w->a, s, w->x);
         least = fmin(least, s->value);
-        vain = least < 0.5 * mark ? 0 : vain + 1;
-        if (!vain) mark = least;
+        in_vain = least < 0.5 * mark ? 0 : in_vain + 1;
+        if (!in_vain) mark = least;
     }
     solve_restore_best(s);
 }

@@ -1,6 +1,6 @@
 /*
- * solve/nlgs.c: the non-linear Gauss-Seidel method [paper, 3.1]: sweep over the contacts, each solved by a
- * local method with the others held still, until the criterion is met.
+ * solve/nlgs.c: the non-linear Gauss-Seidel method [paper, 3.1]: sweep over the contacts, each
+ * solved by a local method with the others held still, until the criterion is met.
  */
 #include "solve/nlgs.h"
 
@@ -12,35 +12,23 @@
 #include <string.h>
 
 enum {
-    CHECK_FIRST = 40,      /* sweeps of a solve that are all judged: easy problems end there */
-    CHECK_EVERY = 25,      /* sweeps without a judgement, at most */
-    FORESIGHT = 4,         /* what a sweep's change is divided by at most, from one to the next; */
-    CHEAP_FORESIGHT = 1000 /* the same in a near cache, where it costs little to be surer */
+    CHECK_FIRST = 40,      /* first sweeps of a solve, all judged: easy problems end there */
+    CHECK_EVERY = 25,      /* sweeps from one judgement to the next, at most */
+    FORESIGHT = 4,         /* factor by which the change is taken to fall in a sweep, at most */
+    CHEAP_FORESIGHT = 1000 /* the same for problems in a near cache, where storing u costs little */
 };
 
-static double most(const double x[BUNDLE])
-{
-    double y = 0;
-    for (int k = 0; k < BUNDLE; k++) y = x[k] > y ? x[k] : y;
-    return y;
-}
-
-static int64_t count(const double x[BUNDLE])
-{
-    double y = 0;
-    for (int k = 0; k < BUNDLE; k++) y += x[k];
-    return (int64_t)y;
-}
-
+/* Adds one thread's counts to the report; returns its largest change of a normal velocity, m/s. */
 static double add_tally(struct report *rep, const struct tally *t)
 {
-    rep->newton += count(t->newton);
-    rep->safeguarded += count(t->safeguarded), rep->gave_up += count(t->gave_up);
-    return most(t->change);
+    rep->newton += (int64_t)bundle_sum(t->newton);
+    rep->safeguarded += (int64_t)bundle_sum(t->safeguarded);
+    rep->gave_up += (int64_t)bundle_sum(t->gave_up);
+    return bundle_max(t->change);
 }
 
-/* `unjudged` sweeps and one more, counted in the report; returns the last one's largest change of a normal
-   velocity, m/s. */
+/* `unjudged` sweeps and one more, which stores u if `keep`. Counts them in the report; returns the
+   largest change of a normal velocity in the last one, m/s. */
 static double sweep(struct solve *s, double omega, int32_t unjudged, bool keep)
 {
     const struct solve_opt *o = s->o;
@@ -50,7 +38,7 @@ static double sweep(struct solve *s, double omega, int32_t unjudged, bool keep)
     int threads = problem_team(s->p, s->o->threads);
     s->rep->sweeps += unjudged + 1, s->rep->work += (unjudged + 1) * price_sweep(s->p);
     s->renewed = false;
-    if (threads == 1) { // no team: that costs
+    if (threads == 1) { // starting a parallel region costs time
         struct tally t = { 0 };
         for (int32_t k = unjudged; k >= 0; k--) {
             memset(t.change, 0, sizeof t.change);
@@ -72,9 +60,10 @@ static double sweep(struct solve *s, double omega, int32_t unjudged, bool keep)
 }
 
 /*
- * The criterion is evaluated after each of a solve's first 40 sweeps, when the largest change of a
- * sweep, gathered on the way, says that it may be met, every 25 sweeps, and at the end. What a sweep
- * believes of u is only wanted then: those that will hardly be judged do not write it down.
+ * `unjudged` sweeps and one that may be judged: if it is one of a solve's first 40, if its largest
+ * change says that the criterion may be met, after 25 sweeps without, or if it is the last. Only
+ * then is the local method's u needed, so sweeps that will hardly be judged do not store it.
+ * Returns as nlgs_sweep().
  */
 static int judged_sweep(struct solve *s, double omega, int32_t unjudged, bool last, struct watch *w)
 {
@@ -89,8 +78,8 @@ static int judged_sweep(struct solve *s, double omega, int32_t unjudged, bool la
     if (solve_history(s)) return -1;
     if (!sure && !(keep && change <= w->due)) return 0;
     solve_judge(s);
-    // error and change shrink together, more or less: due after half the way, and all the time
-    // when it is near
+    // criterion and change fall together, roughly: judge again half way to eps (on a logarithmic
+    // scale), and after every sweep when near
     w->due = s->value < 1.3 * s->o->eps ? INFINITY : change * sqrt(s->o->eps / s->value);
     w->last_judged = n, w->just_judged = true;
     return solve_met(s) || solve_spent(s) || !isfinite(s->value);
@@ -102,9 +91,9 @@ int nlgs_sweep(struct solve *s, double omega, struct watch *w)
 }
 
 /*
- * The number of sweeps that will surely not be judged. It is asked of halves only, whose threads are
- * slowed down by a meeting after every sweep: as many as leave the change too large for a judgement even
- * if each divides it by FORESIGHT.
+ * The number of sweeps that need no judgement: as many as leave the change too large for one even
+ * if each divides it by FORESIGHT. Only by halves, whose two threads then run on without meeting
+ * after every sweep; else 0
  */
 static int32_t foresee(const struct solve *s, const struct watch *w, int32_t end)
 {

@@ -1,23 +1,17 @@
-/* prices.c: see solve/prices.h. */
+/* solve/prices.c: the prices that were measured, and the formulas over them [solve/prices.h]. */
 #include "solve/prices.h"
 
-/* ns a contact and sweep, of balls [bench/results: 6 to 15] */
-#define SWEEP_CONTACT 10.0
-/* The same where W is given: a contact, and each of its blocks beside the diagonal */
-#define SWEEP_CONTACT_W 30.0
-#define SWEEP_BLOCK     2.0
+#define SWEEP_CONTACT   10.0  /* ns a contact and sweep, of balls [bench/results: 6 to 15] */
+#define SWEEP_CONTACT_W 30.0  /* ns a contact and sweep where W is given, */
+#define SWEEP_BLOCK     2.0   /* and ns for each of its blocks beside the diagonal */
+#define ENTRY           14.0  /* ns an entry of the pattern, to assemble it and to multiply by it */
+#define ASSEMBLY_ENTRY  15.0  /* ns an entry of W, to make its blocks and scale them */
+#define ANALYSIS_ENTRY  150.0 /* ns an entry, for the two orders that base/lu.c tries */
 
-/* ns an entry of the pattern, to assemble it and to multiply by it */
-#define ENTRY 14.0
-/* Of a step's multiplications and entries, 1 ns each: substitutions and refinement are half as much again.
-   With none of that, or twice as much, more of 54 problems ended unsolved. */
+/* A Newton step over its factorisation at 1 ns a multiplication: substitutions and refinement take
+   half as much again. With a factor of 1, or with twice the addition, more of 54 problems ended
+   unsolved. */
 #define STEP 1.5
-
-/* ns an entry of W, to make its blocks and scale them */
-#define ASSEMBLY_ENTRY 15.0
-
-/* ns an entry, for the two orders of the unknowns that are tried (base/lu.c) */
-#define ANALYSIS_ENTRY 150.0
 
 double price_sweep(const struct problem *p)
 {

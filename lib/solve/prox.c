@@ -1,15 +1,15 @@
 /*
- * prox.c: Newton's steps on all contacts at once within proximal steps [solve/newton.h], with sweeps before
- * and between them.
+ * solve/prox.c: Newton's steps on all contacts at once, within proximal steps [solve/newton.h],
+ * with sweeps before and between them.
  */
 #include "solve/newton.h"
 #include "solve/nlgs.h"
 
 enum {
-    SWEEPS = 100,  /* before the first step: most contacts know by then what they do */
-    PATIENCE = 200 /* steps in a row that do not halve the error */
+    SWEEPS = 100,  /* sweeps before the first step: most statuses are right by then */
+    PATIENCE = 200 /* steps in a row that do not halve the criterion: it gives up */
 };
-#define ALPHA 1e-4 /* multiples of W's mean diagonal, at first */
+#define ALPHA 1e-4 /* a at first, in multiples of W's mean diagonal */
 
 static int run(struct solve *s)
 {

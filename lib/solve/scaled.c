@@ -1,4 +1,4 @@
-/* solve/scaled.c: see solve/scaled.h. */
+/* solve/scaled.c: the scaled W, vectors in its units, and the natural map [solve/scaled.h]. */
 #include "solve/scaled.h"
 
 #include "problem/assembly.h"
@@ -22,8 +22,8 @@ static double *copy(const double *x, int64_t n)
     return y;
 }
 
-/* A W of our own, whoever the other belongs to */
-static int borrow(struct delassus *W, const struct delassus *V, struct why *why)
+/* W = a deep copy of V; to be freed in any case */
+static int copy_W(struct delassus *W, const struct delassus *V, struct why *why)
 {
     int64_t blocks = V->first[V->n], d = V->d, n = V->n;
     *W = (struct delassus){ .d = V->d, .n = n };
@@ -60,7 +60,7 @@ int scaled_init(struct scaled *a, const struct problem *p, struct why *why)
 {
     *a = (struct scaled){ 0 };
     if (p->n > INT32_MAX / 3) return why_set(why, EX_DATAERR, "too many contacts");
-    int e = p->W ? borrow(&a->W, p->W, why) : scaled_assemble(&a->W, p, why);
+    int e = p->W ? copy_W(&a->W, p->W, why) : scaled_assemble(&a->W, p, why);
     if (e) return e;
     struct delassus *W = &a->W;
     if ((W->first[W->n] + W->n) * W->d * W->d > INT32_MAX)
@@ -116,9 +116,9 @@ void scaled_product(const struct scaled *a, const double *x, double *v)
     delassus_apply(&a->W, x, a->zero, v);
 }
 
-/* The square of a contact's map, and of its x in *size */
-static double map2(const struct scaled *a, int64_t c, const double *x, const double *v,
-                   double *size)
+/* |x_c - P(x_c - v^_c)|^2, and in *size |x_c|^2 */
+static double natural2(const struct scaled *a, int64_t c, const double *x, const double *v,
+                       double *size)
 {
     int d = a->W.d;
     double r[3], u[3], tau[3], p[3], off = 0;
@@ -133,12 +133,12 @@ static double map2(const struct scaled *a, int64_t c, const double *x, const dou
 double scaled_natural_of(const struct scaled *a, int64_t c, const double *x, const double *v)
 {
     double size;
-    return sqrt(map2(a, c, x, v, &size));
+    return sqrt(natural2(a, c, x, v, &size));
 }
 
 double scaled_natural(const struct scaled *a, const double *x, const double *v)
 {
     double off = 0, size = 0, one;
-    for (int64_t c = 0; c < a->W.n; c++) off += map2(a, c, x, v, &one), size += one;
+    for (int64_t c = 0; c < a->W.n; c++) off += natural2(a, c, x, v, &one), size += one;
     return size > 0 ? sqrt(off / size) : off > 0 ? 1 : 0;
 }

@@ -1,4 +1,5 @@
-/* solver.c: see solve/solver.h. */
+/* solve/solver.c: the table of solvers, judging, the best iterate, and a whole solve
+   [solve/solver.h]. */
 #include "solve/solver.h"
 
 #include "problem/apply.h"
@@ -9,14 +10,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* s of a priced ns, before any was timed */
-#define PACE 1e-9
+#define PACE 1e-9 /* s on the wall per priced ns, before any Newton step was timed */
 
 const struct solver *const solvers[] = { &solver_auto, &solver_nlgs, &solver_anderson,
                                          &solver_cg,   &solver_prox, &solver_ipm,
                                          NULL };
 
-enum { RENEW_EVERY = 1000 }; /* sweeps: their rounding stays below 1e-13 of the velocities */
+enum {
+    RENEW_EVERY = 1000 /* sweeps: their rounding stays below 1e-13 of the velocities */
+};
 
 static void evaluate(struct solve *s)
 {
@@ -90,10 +92,10 @@ void solve_count_newton(struct solve *s, double price, double since)
     s->pace = fmax(s->pace, (report_seconds(CLOCK_WALL) - since) / price);
 }
 
-/* ---- keeping ---- */
+/* ---- the best iterate ---- */
 
-/* What is kept of an iterate: r[slots][3] and, where the contacts are not MANY_CONTACTS, u[slots][3] and whether
-   that is a local method's own. */
+/* An iterate is kept as r[slots][3] and, unless the contacts are more than MANY_CONTACTS,
+   u[slots][3] and whether u is a local method's own. */
 static bool with_u(const struct problem *p)
 {
     return p->n <= MANY_CONTACTS;

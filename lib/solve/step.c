@@ -1,3 +1,4 @@
+/* solve/step.c: a step from one state of a packing to the next [solve/step.h]. */
 #include "solve/step.h"
 
 #include "bodies/detect.h"

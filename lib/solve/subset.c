@@ -1,4 +1,4 @@
-/* subset.c: see solve/subset.h. */
+/* solve/subset.c: the choice of a subset, its problem and its solution [solve/subset.h]. */
 #include "solve/subset.h"
 
 #include "solve/ipm.h"
@@ -8,24 +8,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LARGE 0.1   /* of the largest natural map of a contact: such contacts are chosen */
-#define EXACT 1e-13 /* the natural map of a subset's solution */
-#define GAP   1e-3  /* at which its interior point method begins */
-#define OMEGA 1.3   /* of its sweeps */
+#define LARGE 0.1   /* of the largest natural map of a contact: with more a contact is chosen */
+#define EXACT 1e-13 /* natural map to which a subset is solved; 1e-11 is no faster */
+#define GAP   1e-3  /* gap at which a subset's interior point method begins */
+#define OMEGA 1.3   /* omega of a subset's sweeps */
 
 enum {
-    SWEEPS = 100, /* of a subset, before its interior point method */
-    STEPS = 15    /* Newton steps that its solution takes, mostly */
+    SWEEPS = 100, /* sweeps of a subset before the interior point; 30, 300: no faster */
+    STEPS = 15    /* Newton steps that a subset takes, mostly: for its price */
 };
 
 struct chosen {
     int64_t n;
-    int32_t *contact; /* [n] ascending: contact i of the subset is contact[i] of all, */
-    int32_t *of;      /* [all] and of[] tells which it is; -1: none */
+    int32_t *contact; /* [n] ascending: contact i of the subset is contact[i] of all */
+    int32_t *of;      /* [all contacts] the inverse of contact[]; -1: not chosen */
 };
 
-/* The natural map of each contact at x, whose velocity is v; the largest */
-static double maps(const struct scaled *a, const double *x, const double *v, double *map)
+/* map[] = the natural map of each contact at x, whose velocity is v; returns the largest. */
+static double fill_maps(const struct scaled *a, const double *x, const double *v, double *map)
 {
     double largest = 0;
     for (int64_t c = 0; c < a->W.n; c++) {
@@ -35,23 +35,22 @@ static double maps(const struct scaled *a, const double *x, const double *v, dou
     return largest;
 }
 
-/* How many maps are large */
-static int64_t count(const double *map, int64_t n, double large)
+static int64_t count_large(const double *map, int64_t n, double large)
 {
     int64_t k = 0;
     for (int64_t c = 0; c < n; c++) k += map[c] > large;
     return k;
 }
 
-/* At least `least` contacts: those where the map is large, as many around them, or more. False where they
-   would be too many. */
+/* Chooses the contacts with a large map and as many of their neighbours, or more of these up to
+   `least` in all. False where they would be too many. */
 static bool choose(const struct scaled *a, const double *map, double largest, int64_t least,
                    bool anyhow, struct chosen *p)
 {
     const struct delassus *W = &a->W;
     double large = LARGE * largest;
-    while (anyhow && large < largest / 2 && count(map, W->n, large) > W->n / 4) large *= 2;
-    int64_t most = 2 * count(map, W->n, large);
+    while (anyhow && large < largest / 2 && count_large(map, W->n, large) > W->n / 4) large *= 2;
+    int64_t most = 2 * count_large(map, W->n, large);
     if (most < least) most = least;
     if (most > W->n / (anyhow ? 2 : 5)) return false;
     for (int64_t c = 0; c < W->n; c++) p->of[c] = -1;
@@ -69,14 +68,14 @@ static bool choose(const struct scaled *a, const double *map, double largest, in
     return true;
 }
 
-/* The solver of a subset */
+/* The solver of a subset, with the budget that its run() needs */
 struct inner {
-    struct solver solver; /* first: a solve knows its solver only */
+    struct solver solver; /* first, so that run() gets from its solver to this struct */
     double budget;
 };
 
-/* A few sweeps and the first way of the interior point method: what they do not solve is better asked of a
-   larger subset than of more ways. */
+/* Some sweeps and the first attempt of the interior point method. Where these fail a larger subset
+   is more promising than further attempts. */
 static int run(struct solve *s)
 {
     const struct inner *inner = (const struct inner *)s->o->global;
@@ -91,23 +90,24 @@ static int run(struct solve *s)
     return e;
 }
 
-/* A subset on its way */
+/* A subset while it is solved */
 struct subset {
     struct chosen chosen;
     double *x, *v, *map; /* of all contacts: x and v [n d], the natural map [n] */
     struct delassus V;   /* of those chosen */
 };
 
-static void leave(struct subset *p)
+static void subset_free(struct subset *p)
 {
     free(p->chosen.contact), free(p->chosen.of), free(p->x), free(p->v), free(p->map);
     delassus_free(&p->V);
 }
 
-/* The contacts chosen and their problem. 1; 0 where they are too many, or the least that their Newton steps
-   can cost is more than the budget; -1 when memory is short. */
-static int prepare(struct subset *p, const struct scaled *a, const struct solve *s,
-                   int64_t contacts, bool anyhow, double budget)
+/* Chooses the contacts and extracts their problem. Returns 1; 0 where there are too many, or the
+   least that their Newton steps can cost is above the budget; -1 when memory is short. To be freed
+   in any case. */
+static int subset_init(struct subset *p, const struct scaled *a, const struct solve *s,
+                       int64_t contacts, bool anyhow, double budget)
 {
     size_t n = (size_t)a->W.n, size = (size_t)a->size + 4;
     struct why why = { 0 };
@@ -118,7 +118,7 @@ static int prepare(struct subset *p, const struct scaled *a, const struct solve 
     if (!p->x || !p->v || !p->map || !p->chosen.contact || !p->chosen.of) return -1;
     scaled_get(a, s->p, p->x);
     scaled_velocity(a, p->x, p->v);
-    double largest = maps(a, p->x, p->v, p->map);
+    double largest = fill_maps(a, p->x, p->v, p->map);
     if (!choose(a, p->map, largest, contacts, anyhow, &p->chosen)) return 0;
     if (delassus_subset(&p->V, &a->W, p->chosen.n, p->chosen.contact, p->chosen.of, p->x, p->v,
                         &why))
@@ -127,8 +127,9 @@ static int prepare(struct subset *p, const struct scaled *a, const struct solve 
     return price_analysis(entries) + STEPS * price_newton_step(0, entries) <= budget;
 }
 
-/* The solution of V, from its r, into x of all contacts and the report. 1 where it is solved, 0 where not,
-   -1 when memory is short. */
+/* Solves V, starting from its r; its reactions go into x of all contacts, its counts into the
+   report. Returns 1; 0 where neither a Newton step was made nor the problem solved; -1 when memory
+   is short. */
 static int solve(struct subset *p, struct solve *s, double budget)
 {
     const struct inner inner = { { "subset", "", 0, run }, budget };
@@ -155,11 +156,11 @@ int64_t subset_solve(struct scaled *a, struct solve *s, int64_t contacts, bool a
                      double budget)
 {
     struct subset p;
-    int e = prepare(&p, a, s, contacts, anyhow, budget);
+    int e = subset_init(&p, a, s, contacts, anyhow, budget);
     if (e > 0) e = solve(&p, s, budget);
     if (e > 0) scaled_put(a, s, p.x);
     int64_t n = p.chosen.n;
-    leave(&p);
+    subset_free(&p);
     return e > 0 ? n : e;
 }
 
@@ -167,7 +168,7 @@ int subset_fits(const struct scaled *a, const struct solve *s, int64_t contacts,
                 double budget)
 {
     struct subset p;
-    int e = prepare(&p, a, s, contacts, anyhow, budget);
-    leave(&p);
+    int e = subset_init(&p, a, s, contacts, anyhow, budget);
+    subset_free(&p);
     return e;
 }

@@ -1,4 +1,5 @@
-/* solve/system.c: see solve/system.h. */
+/* solve/system.c: the reduction of each face, the factors, substitution and refinement
+   [solve/system.h]. */
 #include "solve/system.h"
 
 #include "base/lu.h"
@@ -11,32 +12,32 @@
 #include <string.h>
 
 /*
- * Of a face that repeats something: D N P = Q (R over 0), as gsl_linalg_QRPT_decomp() leaves it. D is
- * of all sizes, large where a contact is open, small where it sticks, so that the rows are scaled
- * and ordered, the largest first, lest the small ones drown.
+ * The reduction of a face with rank < rows: D N P = Q (R over 0), as gsl_linalg_QRPT_decomp()
+ * stores it. D is large where a contact is open and small where it sticks, so the rows are first
+ * scaled and sorted, the largest first, lest the small ones be lost in rounding.
  */
 struct reduced {
     double *QR, *tau; /* [rows][rows - rank], [rows - rank] */
-    double *inverse;  /* [rank][rank] (L' + D')^-1 before it was multiplied by this */
-    double *scale;    /* [rows] of the face's rows, */
-    int *order;       /* [rows] and in which order they come here */
+    double *inverse;  /* [rank][rank] (L' + D')^-1, by which L' and D' were then multiplied */
+    double *scale;    /* [rows] factors of the face's rows */
+    int *order;       /* [rows] their order: row i here is the face's row order[i] */
     size_t *columns;  /* [rows - rank] P */
 };
 
 struct system {
     const struct scaled *a;
-    const double *L, *D; /* of the last time */
+    const double *L, *D; /* of the last system_solve(), borrowed */
     struct faces faces;
     struct lu *lu;
     double *entries;         /* of L' S + D', S's pattern */
     double *w, *y;           /* [faces.size] T' x; S w */
     double *b, *r, *x;       /* [n d] */
-    int sign;                /* of the determinants that the faces' transformations take out */
+    int sign;                /* of the determinants of the faces' transformations */
     struct reduced *reduced; /* [faces.n] */
-    double *room;            /* theirs, */
-    size_t *columns;
-    int *order;
-    double *l, *d, *t; /* and [rows][rows] of one face: Q' L T, Q' D M, and for any use */
+    double *room;            /* holds the matrices of reduced[] */
+    size_t *columns;         /* holds their columns[] */
+    int *order;              /* holds their order[] */
+    double *l, *d, *t;       /* [rows][rows] of one face: Q' L T, Q' D M, work space */
 };
 
 void system_free(struct system *s)
@@ -48,13 +49,13 @@ void system_free(struct system *s)
     free(s->l), free(s->d), free(s->t), free(s);
 }
 
-static double *numbers(int64_t n)
+static double *doubles(int64_t n)
 {
     return malloc(((size_t)n + 1) * sizeof(double));
 }
 
-/* The faces' parts of the room */
-static void share(struct system *s)
+/* Gives each face its share of room, columns and order. */
+static void share_room(struct system *s)
 {
     double *at = s->room;
     int *order = s->order;
@@ -82,18 +83,19 @@ struct system *system_new(const struct scaled *w, double bytes, bool *too_large)
         return NULL;
     }
     s->a = w;
-    int64_t rows = 0, columns = 0, squares = 0, most = 0;
+    int64_t rows = 0, columns = 0, squares = 0, rows_max = 0;
     for (int32_t i = 0; i < f->n; i++) {
         int64_t n = f->face[i].rows, left = n - f->face[i].rank;
-        most = n > most ? n : most;
+        rows_max = n > rows_max ? n : rows_max;
         if (left) rows += n, columns += left, squares += n * left + (n - left) * (n - left);
     }
-    s->entries = numbers(f->first[f->size]), s->w = numbers(f->size), s->y = numbers(f->size);
-    s->b = numbers(w->size), s->r = numbers(w->size), s->x = numbers(w->size);
-    s->room = numbers(squares + columns + rows);
+    s->entries = doubles(f->first[f->size]), s->w = doubles(f->size), s->y = doubles(f->size);
+    s->b = doubles(w->size), s->r = doubles(w->size), s->x = doubles(w->size);
+    s->room = doubles(squares + columns + rows);
     s->order = malloc(((size_t)rows + 1) * sizeof *s->order);
     s->columns = malloc(((size_t)columns + 1) * sizeof *s->columns);
-    s->l = numbers(most * most), s->d = numbers(most * most), s->t = numbers(most * most);
+    s->l = doubles(rows_max * rows_max), s->d = doubles(rows_max * rows_max),
+    s->t = doubles(rows_max * rows_max);
     s->reduced = calloc((size_t)f->n + 1, sizeof *s->reduced);
     s->lu = lu_new(f->size, f->first, f->col, bytes, too_large);
     if (!s->entries || !s->w || !s->y || !s->b || !s->r || !s->x || !s->room || !s->order ||
@@ -101,7 +103,7 @@ struct system *system_new(const struct scaled *w, double bytes, bool *too_large)
         system_free(s);
         return NULL;
     }
-    share(s);
+    share_room(s);
     return s;
 }
 
@@ -120,9 +122,9 @@ double system_price_least(const struct scaled *a)
     return price_newton_step(0, delassus_entries(&a->W));
 }
 
-/* out[rows][columns] = the face's blocks of B, L or D, times A */
-static void by_contacts(const struct system *s, const struct face *f, const double *B,
-                        const double *A, int columns, double *out)
+/* out[rows][columns] = B A for one face: B is L or D, A[rows][columns] */
+static void multiply_blocks(const struct system *s, const struct face *f, const double *B,
+                            const double *A, int columns, double *out)
 {
     int d = s->a->W.d;
     for (int i = 0; i < f->rows; i++) {
@@ -140,9 +142,9 @@ static gsl_matrix_view view(double *a, int rows, int columns)
     return gsl_matrix_view_array(a, (size_t)rows, (size_t)columns);
 }
 
-/* A face's rows as they come in its QR: out[rows][columns] of in[rows][columns] */
-static void arrange(const struct face *f, const struct reduced *q, const double *in, int columns,
-                    double *out)
+/* out[rows][columns] = the rows of in[rows][columns], scaled and sorted as in the face's QR */
+static void sort_rows(const struct face *f, const struct reduced *q, const double *in, int columns,
+                      double *out)
 {
     for (int i = 0; i < f->rows; i++)
         for (int j = 0; j < columns; j++)
@@ -151,14 +153,14 @@ static void arrange(const struct face *f, const struct reduced *q, const double 
 
 static double largest(const double *x, int n)
 {
-    double most = 0;
-    for (int i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
-    return most;
+    double max = 0;
+    for (int i = 0; i < n; i++) max = fmax(max, fabs(x[i]));
+    return max;
 }
 
-/* scale[] and order[], of DN[rows][rows - rank] */
-static void rank_rows(struct system *s, const struct face *f, const struct reduced *q,
-                      const double *DN)
+/* scale[] and order[], from DN[rows][rows - rank], by insertion */
+static void order_rows(struct system *s, const struct face *f, const struct reduced *q,
+                       const double *DN)
 {
     int d = s->a->W.d, left = f->rows - f->rank;
     for (int i = 0; i < f->rows; i++) {
@@ -178,11 +180,12 @@ static void rank_rows(struct system *s, const struct face *f, const struct reduc
 }
 
 /*
- * The rows' last transformation, to L' + D' = 1: rows as mixed as Q' leaves them have pivots of any
- * size, and those of L' S + D' are to be on the diagonal. False where L' + D' is singular.
+ * Multiplies L' and D' by (L' + D')^-1, so that their sum is 1: KLU takes its pivots from the
+ * diagonal of L' S + D', and the rows that Q' leaves have diagonals of any size. False where L' +
+ * D' is singular.
  */
-static bool align(struct system *s, const struct face *f, const struct reduced *q, double *l,
-                  double *d)
+static bool normalise(struct system *s, const struct face *f, const struct reduced *q, double *l,
+                      double *d)
 {
     int rank = f->rank, sign;
     size_t order[3 * FACE_CONTACTS_MAX];
@@ -202,7 +205,7 @@ static bool align(struct system *s, const struct face *f, const struct reduced *
     return true;
 }
 
-/* L' and D' [rank][rank] of one face */
+/* L' and D' [rank][rank] of one face; false where it is singular */
 static bool reduce(struct system *s, const struct face *f, const struct reduced *q,
                    const double **l, const double **d)
 {
@@ -216,13 +219,13 @@ static bool reduce(struct system *s, const struct face *f, const struct reduced 
         *l = s->l, *d = s->d;
         return true;
     }
-    by_contacts(s, f, s->D, f->N, left, s->t);
-    rank_rows(s, f, q, s->t);
-    arrange(f, q, s->t, left, q->QR);
-    by_contacts(s, f, s->L, f->T, rank, s->t);
-    arrange(f, q, s->t, rank, s->l);
-    by_contacts(s, f, s->D, f->M, rank, s->t);
-    arrange(f, q, s->t, rank, s->d);
+    multiply_blocks(s, f, s->D, f->N, left, s->t);
+    order_rows(s, f, q, s->t);
+    sort_rows(f, q, s->t, left, q->QR);
+    multiply_blocks(s, f, s->L, f->T, rank, s->t);
+    sort_rows(f, q, s->t, rank, s->l);
+    multiply_blocks(s, f, s->D, f->M, rank, s->t);
+    sort_rows(f, q, s->t, rank, s->d);
     gsl_matrix_view QR = view(q->QR, rows, left), l0 = view(s->l, rows, rank),
                     d0 = view(s->d, rows, rank);
     gsl_vector_view tau = gsl_vector_view_array(q->tau, (size_t)left),
@@ -235,10 +238,10 @@ static bool reduce(struct system *s, const struct face *f, const struct reduced 
     gsl_linalg_QR_QTmat(&QR.matrix, &tau.vector, &l0.matrix);
     gsl_linalg_QR_QTmat(&QR.matrix, &tau.vector, &d0.matrix);
     *l = s->l + left * rank, *d = s->d + left * rank;
-    return align(s, f, q, s->l + left * rank, s->d + left * rank);
+    return normalise(s, f, q, s->l + left * rank, s->d + left * rank);
 }
 
-/* a = L' S + D'; false where that is singular for sure */
+/* entries = L' S + D'; false where a face shows that this is singular */
 static bool assemble(struct system *s)
 {
     const struct faces *F = &s->faces;
@@ -264,7 +267,7 @@ static bool assemble(struct system *s)
     return true;
 }
 
-/* Numbers of a face's rows, out of x[n d] and into it */
+/* Copies of the numbers of a face's rows, from x[n d] and into it */
 static void load(const struct system *s, const struct face *f, const double *x, double *out)
 {
     int d = s->a->W.d;
@@ -276,18 +279,18 @@ static void store(const struct system *s, const struct face *f, const double *in
     for (int i = 0; i < f->rows; i++) x[d * (int64_t)f->contact[i / d] + i % d] = in[i];
 }
 
-/* The face's rows of a right-hand side: out = Q' in */
-static void turn(const struct face *f, const struct reduced *q, const double *in, double *out)
+/* out = Q' in, a face's rows of a right-hand side */
+static void apply_Q(const struct face *f, const struct reduced *q, const double *in, double *out)
 {
     gsl_matrix_view QR = view(q->QR, f->rows, f->rows - f->rank);
     gsl_vector_view tau = gsl_vector_view_array(q->tau, QR.matrix.size2),
                     v = gsl_vector_view_array(out, (size_t)f->rows);
-    arrange(f, q, in, 1, out);
+    sort_rows(f, q, in, 1, out);
     gsl_linalg_QR_QTvec(&QR.matrix, &tau.vector, &v.vector);
 }
 
 /* out[rows] = A[rows][columns] z */
-static void times(const double *A, int rows, int columns, const double *z, double *out)
+static void multiply(const double *A, int rows, int columns, const double *z, double *out)
 {
     for (int i = 0; i < rows; i++) {
         out[i] = 0;
@@ -295,21 +298,21 @@ static void times(const double *A, int rows, int columns, const double *z, doubl
     }
 }
 
-/* The face's x of w and y = S w */
+/* A face's x = M w + N n, from w and y = S w */
 static void recover(struct system *s, const struct face *f, const struct reduced *q,
                     const double *b, double *x)
 {
     int rows = f->rows, rank = f->rank, left = rows - rank;
     double *e = s->l, *v = s->d, *xf = s->t;
-    // e = b - L T y - D M w, and R n = the first of Q' e
+    // e = b - L T y - D M w, and R n = the first rows of Q' e
     load(s, f, b, e);
-    times(f->T, rows, rank, s->y + f->at, xf);
-    by_contacts(s, f, s->L, xf, 1, v);
+    multiply(f->T, rows, rank, s->y + f->at, xf);
+    multiply_blocks(s, f, s->L, xf, 1, v);
     for (int i = 0; i < rows; i++) e[i] -= v[i];
-    times(f->M, rows, rank, s->w + f->at, xf);
-    by_contacts(s, f, s->D, xf, 1, v);
+    multiply(f->M, rows, rank, s->w + f->at, xf);
+    multiply_blocks(s, f, s->D, xf, 1, v);
     for (int i = 0; i < rows; i++) e[i] -= v[i];
-    turn(f, q, e, v);
+    apply_Q(f, q, e, v);
     gsl_matrix_view QR = view(q->QR, rows, left),
                     R = gsl_matrix_submatrix(&QR.matrix, 0, 0, (size_t)left, (size_t)left);
     gsl_vector_view n = gsl_vector_view_array(v, (size_t)left);
@@ -319,7 +322,7 @@ static void recover(struct system *s, const struct face *f, const struct reduced
     store(s, f, xf, x);
 }
 
-/* x = (L W + D)^-1 b, as well as the factors have it */
+/* x = (L W + D)^-1 b, to the accuracy of the factors */
 static bool substitute(struct system *s, const double *b, double *x)
 {
     const struct faces *F = &s->faces;
@@ -329,8 +332,8 @@ static bool substitute(struct system *s, const double *b, double *x)
         int left = f->rows - f->rank;
         load(s, f, b, left ? s->t : s->w + f->at);
         if (!left) continue;
-        turn(f, s->reduced + c, s->t, s->l);
-        times(s->reduced[c].inverse, f->rank, f->rank, s->l + left, s->w + f->at);
+        apply_Q(f, s->reduced + c, s->t, s->l);
+        multiply(s->reduced[c].inverse, f->rank, f->rank, s->l + left, s->w + f->at);
     }
     if (!lu_substitute(s->lu, s->w)) return false;
     for (int32_t i = 0; reduced && i < F->size; i++) {
@@ -348,7 +351,7 @@ static bool substitute(struct system *s, const double *b, double *x)
     return true;
 }
 
-/* r = b - (L W + D) x; returns |r| / |b|, the largest entries */
+/* r = b - (L W + D) x; returns the largest |r| over the largest |b|. */
 static double residual(struct system *s, const double *x)
 {
     int d = s->a->W.d == 3 ? 3 : 2;
