@@ -17,8 +17,9 @@ struct why {
 };
 
 /*
- * Records a reason, unless there is one already: the first is the one that counts. Returns the
- * status on record, so that `return why_set(...)` reads well.
+ * Records a reason, unless there is one already: the first is the one that counts. Control characters
+ * become '?', for names out of files are in it. Returns the status on record, so that
+ * `return why_set(...)` reads well.
  */
 int why_set(struct why *why, int status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
