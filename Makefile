@@ -120,7 +120,7 @@ FUZZSAN := -fsanitize=address,undefined -fno-sanitize-recover=undefined
 F       := build/fuzz
 FLIB    := $(patsubst $B/%,$F/%,$(filter-out $B/lib/cli/%,$(LIB)))
 
-$F/lib/%.o: lib/%.c Makefile
+$F/lib/%.o: lib/%.c
 	@mkdir -p $(@D)
 	$(FUZZCC) $(CPPFLAGS) $(NSD_CFLAGS) -O1 -g1 $(FUZZSAN) -fsanitize=fuzzer-no-link -MMD -MP -c -o $@ $<
 

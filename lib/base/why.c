@@ -11,5 +11,8 @@ int why_set(struct why *why, int status, const char *format, ...)
     va_start(ap, format);
     vsnprintf(why->text, sizeof why->text, format, ap);
     va_end(ap);
+    for (char *c = why->text; *c;
+         c++) // names out of files are in it: nothing that moves a terminal
+        if ((unsigned char)*c < ' ' || *c == 127) *c = '?';
     return why->status = status;
 }

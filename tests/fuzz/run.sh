@@ -14,8 +14,9 @@ for target in "$@"; do
     "build/fuzz/fuzz_$target" -max_total_time="$seconds" -timeout=30 -rss_limit_mb=3000 -use_value_profile=1 \
         -print_final_stats=1 -artifact_prefix="build/fuzz/$target-" -dict="tests/fuzz/$target.dict" \
         "$corpus" "tests/fuzz/corpus/$target" >"$log" 2>&1 || found=1
-    echo "$target: $(sed -n 's/^stat::number_of_executed_units: */executions /p' "$log") in $seconds s," \
-        "$(find build/fuzz -name "$target-crash-*" | wc -l) crashes," \
-        "$(find build/fuzz -name "$target-timeout-*" | wc -l) hangs" | tee -a build/fuzz/figures
+    ran=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
+    [ -n "$ran" ] || { echo "$target: did not run to its end, see $log" >&2; found=1; }
+    echo "$target: ${ran:-unknown} executions, $(find build/fuzz -name "$target-crash-*" | wc -l) crashes," \
+        "$(find build/fuzz -name "$target-timeout-*" | wc -l) hangs, $seconds s asked for" | tee -a build/fuzz/figures
 done
 exit $found
