@@ -145,7 +145,7 @@ for line in "" "-m auto" "--global nlgs"; do
 done
 refuses 64 "nsd-step --paper" nsd-step --paper "$tmp/heap.h5"
 # What --help has in brackets is what goes: nsd's choice for a packing
-bracket() { nsd-solve --help | tr '\n' ' ' | grep -o -e "--$1 [^]]*\]" | sed 's/.*\[//; s/[];,].*//; s/ nlgs//'; }
+bracket() { nsd-solve --help | tr '\n' ' ' | grep -o -e "--$1 [^]]*\]" | sed 's/.*\[//; s/[];,].*//; s/ for nlgs//; s/ nlgs//'; }
 solve -m sbp "$tmp/contacts.h5" >"$tmp/usual.h5"
 for key in criterion eps max-sweeps order relax newton newton-eps newton-max; do
     is "the default in --help's brackets goes: --$key" "$(nsd-info "$tmp/usual.h5" |
