@@ -292,8 +292,8 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
             trace += D[4 * j];
         }
     }
-    // there is no g and no m: velocities are scaled by the root mean square of q, masses by the
-    // mean of W_ii
+    // there is no g and no m: the unit of velocity is the root mean square of q, that of mass 1
+    // over the mean of W_ii
     p->norm_q = sqrt(p->norm_q);
     if (p->norm_q > 0) p->scale_v = p->norm_q / sqrt((double)(W->d * W->n));
     p->scale_r = trace > 0 ? p->scale_v * (double)(W->d * W->n) / trace : p->scale_v;

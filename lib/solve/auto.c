@@ -55,7 +55,7 @@ struct strategy {
 
 /*
  * How many more sweeps it takes from this value of the criterion to eps, if the criterion falls as
- * a power of their number, with the exponent since older.value; INFINITY where it does not fall.
+ * a power of their number, with the exponent since older.value; INFINITY where it hardly falls.
  */
 static double sweeps_to_come(const struct strategy *a, double value)
 {
