@@ -124,8 +124,7 @@ void problem_set_free_motion(struct problem *p)
     }
 }
 
-/* The place of body i of a contact (wall w: -1-w): its own, or if it does not move that of a new
-   copy */
+/* The place of a contact's body i (wall w: -1-w): its own, or of a new copy if it does not move */
 static int32_t place_of(struct problem *p, int32_t i, int64_t *next)
 {
     const struct packing *pack = p->packing;

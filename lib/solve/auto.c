@@ -64,8 +64,7 @@ static double sweeps_to_come(const struct strategy *a, double value)
     return p > 0.1 ? now * (pow(value / a->s->o->eps, 1 / p) - 1) : INFINITY;
 }
 
-/* How many times this price (ns) the sweeps to come, `more`, would cost: at most SURE, and 0 below
-   1 */
+/* The price of the sweeps to come, `more`, over this price (ns): at most SURE, and 0 below 1 */
 static double gain(const struct strategy *a, double more, double price)
 {
     double ratio = more * a->price / price;
