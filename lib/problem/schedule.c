@@ -47,7 +47,7 @@ static uint64_t larger_of(uint64_t a, uint64_t b)
     return a > b ? a : b;
 }
 
-/* A colour not in `seen`: the first with room in its last bundle, else the first; or MARK_COLOURS */
+/* A colour not in `seen`: the first with room in its last bundle, else any; MARK_COLOURS if none */
 static int64_t pick_colour(struct graph *g, uint64_t seen)
 {
     uint64_t free = ~seen & g->begun ? ~seen & g->begun : ~seen;
