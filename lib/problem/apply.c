@@ -64,7 +64,7 @@ void problem_renew(struct problem *p, int threads)
 {
     if (!p->body) return;
     problem_set_free_motion(p);
-    if (threads == 1) { // starting a parallel region costs time
+    if (threads == 1) { // a parallel region costs time
         sweep_widest()->push(p, 0, 1);
         return;
     }

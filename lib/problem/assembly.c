@@ -116,8 +116,7 @@ static void assembly_block(const struct assembly *A, int64_t c, int64_t b, doubl
     }
 }
 
-/* near[] = the contacts that share a movable body with c, c among them, ascending; returns their
-   number. */
+/* near[] = the contacts that share a movable body with c, c too, ascending; returns how many. */
 static int64_t assembly_neighbours(const struct assembly *A, int64_t c, int64_t *near)
 {
     int64_t at[2] = { 0 }, end[2] = { 0 }, count = 0;

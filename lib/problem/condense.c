@@ -43,8 +43,7 @@ static bool factor_entries(struct sparse *K, const struct global *P)
     return good;
 }
 
-/* The columns of K, entries at the same place added. at[row]: where the present column has that
-   row */
+/* The columns of K, entries at the same place added. at[row]: where the column has that row */
 static bool factor_columns(struct factor *K, const struct sparse *A, int64_t *at)
 {
     struct lists of = { 0 };

@@ -1,5 +1,4 @@
-/* problem/delassus.c: W from entries, its rows reordered, subsets of it, W x
-   [problem/delassus.h]. */
+/* problem/delassus.c: W made, its rows reordered, subsets of it, W x [problem/delassus.h]. */
 #include "problem/delassus.h"
 
 #include <stdlib.h>

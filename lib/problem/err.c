@@ -9,9 +9,8 @@ enum {
     STRIPE = 16        /* blocks whose partial sums are held at a time */
 };
 
-#define ROUNDING                                                                                   \
-    (16 * DBL_EPSILON) /* of the top speed: smaller errors of velocities are rounding */
-#define STRAY 0.1      /* err.stray: good steps have 0.025 at most, false ones 2 and more */
+#define ROUNDING (16 * DBL_EPSILON) /* of the top speed: smaller errors are rounding */
+#define STRAY    0.1 /* err.stray: good steps have 0.025 at most, false ones 2 and more */
 
 /* t += s; a NaN stays in the sums but not in the maxima. */
 static void sums_add(struct sums *t, const struct sums *s)
@@ -63,8 +62,7 @@ void err_eval(struct err *e, const struct problem *p, bool believes, enum err_te
     for (int64_t first = 0; first < blocks; first += STRIPE) {
         struct sums s[STRIPE];
         int64_t n = blocks - first < STRIPE ? blocks - first : STRIPE;
-        if (threads == 1 ||
-            (n < PARALLEL_FROM && !p->split)) { // starting a parallel region costs time
+        if (threads == 1 || (n < PARALLEL_FROM && !p->split)) { // a parallel region costs time
             for (int64_t b = 0; b < n; b++) judge_block(p, believes, which, first + b, &s[b]);
         } else {
 #pragma omp parallel for num_threads(threads)

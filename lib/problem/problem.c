@@ -124,8 +124,7 @@ void problem_set_free_motion(struct problem *p)
     }
 }
 
-/* The place of body i of a contact (wall w: -1-w): its own, or if it does not move that of a new
-   copy */
+/* The place of a contact's body i (wall w: -1-w): its own, or of a new copy if it does not move */
 static int32_t place_of(struct problem *p, int32_t i, int64_t *next)
 {
     const struct packing *pack = p->packing;
@@ -292,8 +291,8 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
             trace += D[4 * j];
         }
     }
-    // there is no g and no m: velocities are scaled by the root mean square of q, masses by the
-    // mean of W_ii
+    // there is no g and no m: the unit of velocity is the root mean square of q, that of mass 1
+    // over the mean of W_ii
     p->norm_q = sqrt(p->norm_q);
     if (p->norm_q > 0) p->scale_v = p->norm_q / sqrt((double)(W->d * W->n));
     p->scale_r = trace > 0 ? p->scale_v * (double)(W->d * W->n) / trace : p->scale_v;

@@ -1,5 +1,4 @@
-/* problem/schedule.c: levels, colours, and sequences cut into groups by them
-   [problem/schedule.h]. */
+/* problem/schedule.c: levels, colours, and the groups that they make [problem/schedule.h]. */
 #include "problem/schedule.h"
 
 #include "problem/bundle.h"
@@ -48,8 +47,7 @@ static uint64_t larger_of(uint64_t a, uint64_t b)
     return a > b ? a : b;
 }
 
-/* A colour not in `seen`: the first with room in its last bundle, else the first; MARK_COLOURS if
-   none */
+/* A colour not in `seen`: the first with room in its last bundle, else any; MARK_COLOURS if none */
 static int64_t pick_colour(struct graph *g, uint64_t seen)
 {
     uint64_t free = ~seen & g->begun ? ~seen & g->begun : ~seen;
@@ -59,8 +57,7 @@ static int64_t pick_colour(struct graph *g, uint64_t seen)
     return c;
 }
 
-/* Places c one level after all that its bodies or blocks are marked with, and marks them with
-   it. */
+/* Places c one level after the marks of its bodies or blocks, and marks them with its level. */
 static void place_level(struct graph *g, int64_t c)
 {
     uint64_t level = 0;
@@ -81,8 +78,7 @@ static void place_level(struct graph *g, int64_t c)
     g->place[c] = (int64_t)level;
 }
 
-/* Chooses a colour for c that none of its bodies or blocks is marked with, and marks them with
-   it. */
+/* Chooses a colour for c that no mark of its bodies or blocks has, and adds it to these. */
 static int64_t choose_colour(struct graph *g, int64_t c)
 {
     uint64_t seen = 0;
@@ -103,8 +99,7 @@ static int64_t choose_colour(struct graph *g, int64_t c)
     return free;
 }
 
-/* Colours n contacts of the sequence, with places from `from` on; returns the place after the
-   last. */
+/* Colours n contacts, with places from `from` on; returns the place after the last. */
 static int64_t place_colours(struct graph *g, const int64_t *sequence, int64_t n, int64_t from)
 {
     int64_t most = from, extra = from + MARK_COLOURS;
@@ -130,8 +125,7 @@ static uint32_t spread_bits(uint32_t x)
     return (x | x << 2) & 0x9249249;
 }
 
-/* The place of x on a curve through all cells of a cube: 1024 cells of size h (m) a side, from lo
-   on */
+/* The place of x on a curve through all cells of a cube from lo on, 1024 of size h (m) a side */
 static uint32_t along_curve(vec3 x, vec3 lo, double h)
 {
     vec3 i = v3_scale(1 / h, v3_sub(x, lo));
@@ -200,8 +194,7 @@ static int64_t place_blocks(struct graph *g, const int64_t *sequence, int64_t n,
     return from;
 }
 
-/* Colours zone by zone; the rim's groups then go between those of the inside. -1 when memory is
-   short. */
+/* Colours by zones; the rim's groups go between those of the inside. -1 when memory is short. */
 static int place_halves(struct schedule *s, struct graph *g)
 {
     int8_t *zone = malloc((size_t)g->n + 1);

@@ -1,5 +1,4 @@
-/* problem/sweep.c: the sweep, and the errors [problem/sweep.h]. Compiled with LANES = 2, 4 and
-   8. */
+/* problem/sweep.c: the sweep, and the errors [problem/sweep.h]. Compiled with LANES = 2, 4, 8. */
 #include "problem/sweep.h"
 
 #include "law/local_eal.h"

@@ -106,8 +106,7 @@ ALWAYS_INLINE void begin_leg(const struct problem *p, const struct leg *leg, int
         fetch_bodies(p, &p->bundle[i]);
 }
 
-/* Only this thread writes the count, so that a store does; an atomic addition would wait for all
-   stores before it. */
+/* Only this thread writes the count; an atomic addition would wait for all stores before it. */
 ALWAYS_INLINE void end_leg(const struct leg *leg)
 {
     if (!leg->done) return;

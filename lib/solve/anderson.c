@@ -123,7 +123,7 @@ static double measure(struct anderson *a)
     int64_t n = chunks(p);
     a->s->rep->work += price_sweep(p); // with the mixing that follows
     int now = a->m.next;
-    if (n == 1 || a->s->o->threads == 1) { // starting a parallel region costs time
+    if (n == 1 || a->s->o->threads == 1) { // a parallel region costs time
         for (int64_t k = 0; k < n; k++) measure_chunk(a, k);
     } else {
 #pragma omp parallel for num_threads(a->s->o->threads)

@@ -99,8 +99,7 @@ static bool find_tangent(struct arc *p)
     return true;
 }
 
-/* A direction other than the tangent, with the tangent's matrix. Where it is lost in rounding:
-   none, and false */
+/* A direction other than the tangent, with its matrix; 0 and false where it is lost in rounding. */
 static bool find_direction(struct arc *p, int which)
 {
     struct central *m = p->m;
@@ -112,8 +111,7 @@ static bool find_direction(struct arc *p, int which)
     return found;
 }
 
-/* d2x/ds2 and d2z/ds2, from twice the product of the tangent's x and z and the second derivative of
-   |u_t| */
+/* d2x/ds2 and d2z/ds2, from the product of the tangent's x and z and the curvature of |u_t| */
 static void find_bend(struct arc *p)
 {
     struct central *m = p->m;
@@ -159,8 +157,7 @@ static double longest(const struct arc *p, int which)
     return sqrt(max2);
 }
 
-/* Turns a direction at constant s to a right angle to the tangent; returns what it then adds to
-   s. */
+/* Makes a direction at constant s orthogonal to the tangent; returns what it then adds to s. */
 static double orthogonalise(struct arc *p, int which)
 {
     struct central *m = p->m;
@@ -220,8 +217,7 @@ static double stride(const struct arc *p, double s, double steepest, bool down)
     return fmin(2, relative) * p->s;
 }
 
-/* Whether the last step was too long, or its correction gained too little: `most` is the correction
-   now. */
+/* Whether the last step was too long, or only corrected too little; `most`: the correction now */
 static bool was_too_long(const struct arc *p, double most)
 {
     if (p->before > 0) return most > SMALL && most > 0.7 * p->before;
@@ -235,8 +231,7 @@ static bool retreat(struct arc *p, double most)
     return shorten(p, fmin(0.5, fmax(0.25, 0.7 * cbrt(AIM / most))));
 }
 
-/* The length of the next step, from the correction `most` after the last: that goes with its
-   cube. */
+/* The length of the next step, from the correction `most`, which grows with the cube of it */
 static void choose_reach(struct arc *p, double most)
 {
     if (p->h == 0 || p->before > 0) return;

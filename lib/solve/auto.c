@@ -55,7 +55,7 @@ struct strategy {
 
 /*
  * How many more sweeps it takes from this value of the criterion to eps, if the criterion falls as
- * a power of their number, with the exponent since older.value; INFINITY where it does not fall.
+ * a power of their number, with the exponent since older.value; INFINITY where it hardly falls.
  */
 static double sweeps_to_come(const struct strategy *a, double value)
 {
@@ -64,8 +64,7 @@ static double sweeps_to_come(const struct strategy *a, double value)
     return p > 0.1 ? now * (pow(value / a->s->o->eps, 1 / p) - 1) : INFINITY;
 }
 
-/* How many times this price (ns) the sweeps to come, `more`, would cost: at most SURE, and 0 below
-   1 */
+/* The price of the sweeps to come, `more`, over this price (ns): at most SURE, and 0 below 1 */
 static double gain(const struct strategy *a, double more, double price)
 {
     double ratio = more * a->price / price;

@@ -14,8 +14,7 @@ struct best {
 int best_init(struct best *b, int64_t size);
 void best_free(struct best *b);
 
-/* Where the caller is to write a point of this value, if it is better than the one kept; else
-   NULL */
+/* Where to write a point of this value, if it is better than the one kept; else NULL */
 double *best_offer(struct best *b, double value);
 /* Forgets the point kept; the next one offered with a finite value is kept. */
 void best_forget(struct best *b);

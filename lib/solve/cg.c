@@ -186,8 +186,7 @@ static double choose_direction(struct cg *a, double beta)
     return sum;
 }
 
-/* Computes the bounds anew from r, projects r_t onto them, and starts the minimisation again.
-   Returns |w|^2. */
+/* Renews the bounds from r, projects r_t, and starts the minimisation again; returns |w|^2. */
 static double renew_bounds(struct cg *a)
 {
     const struct problem *p = a->s->p;

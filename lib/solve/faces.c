@@ -170,8 +170,7 @@ static void add_face(struct faces *f, int d, struct face g, const int *pivot)
     f->face[f->n++] = g;
 }
 
-/* Contacts with the same neighbours: one face, or each a face of its own. Returns the rest of the
-   room. */
+/* Contacts with the same neighbours, as one face or one each. Returns the rest of the room. */
 static double *add_faces(struct faces *f, const struct delassus *W, int32_t *contact, int count,
                          double *room)
 {

@@ -1,5 +1,4 @@
-/* solve/ipm.c: long steps along the central path, and the attempts of a whole solve
-   [solve/ipm.h]. */
+/* solve/ipm.c: long steps along the central path, and the attempts of a solve [solve/ipm.h]. */
 #include "solve/ipm.h"
 
 #include "solve/arc.h"
@@ -100,8 +99,7 @@ static double lengthen(struct ipm *m, double step, double target)
     return step;
 }
 
-/* Mehrotra's two directions with this t, and correctors; returns the length of the step, 0 for
-   none. */
+/* Mehrotra's two directions with this t, and correctors; returns the step's length, 0 for none. */
 static double predict_and_correct(struct ipm *m, double t)
 {
     int64_t n = m->c.newton->a.W.n;

@@ -38,7 +38,7 @@ static double sweep(struct solve *s, double omega, int32_t unjudged, bool keep)
     int threads = problem_team(s->p, s->o->threads);
     s->rep->sweeps += unjudged + 1, s->rep->work += (unjudged + 1) * price_sweep(s->p);
     s->renewed = false;
-    if (threads == 1) { // starting a parallel region costs time
+    if (threads == 1) { // a parallel region costs time
         struct tally t = { 0 };
         for (int32_t k = unjudged; k >= 0; k--) {
             memset(t.change, 0, sizeof t.change);

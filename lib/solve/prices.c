@@ -9,8 +9,7 @@
 #define ANALYSIS_ENTRY  150.0 /* ns an entry, for the two orders that base/lu.c tries */
 
 /* A Newton step over its factorisation at 1 ns a multiplication: substitutions and refinement take
-   half as much again. With a factor of 1, or with twice the addition, more of 54 problems ended
-   unsolved. */
+   half as much again. With 1 or with 2 here, more of 54 problems ended unsolved. */
 #define STEP 1.5
 
 double price_sweep(const struct problem *p)

@@ -1,5 +1,4 @@
-/* solve/solver.c: the table of solvers, judging, the best iterate, and a whole solve
-   [solve/solver.h]. */
+/* solve/solver.c: the table of solvers, and what they share [solve/solver.h]. */
 #include "solve/solver.h"
 
 #include "problem/apply.h"

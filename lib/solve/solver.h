@@ -85,8 +85,7 @@ bool solve_over(const struct solve *s);
 /* s left on the wall; INFINITY without a limit */
 double solve_seconds_left(const struct solve *s);
 
-/* r[slots][3] (N s) become the iterate's reactions, with the velocities that they make; not yet
-   judged. */
+/* r[slots][3] (N s) become the iterate's reactions, with their velocities; not yet judged. */
 void solve_react(struct solve *s, const double *r);
 
 /* From now on keeps the best iterate, beginning with this one, which must have been judged. 0, or
@@ -102,8 +101,7 @@ void solve_best_restore(struct solve *s, const struct best *b);
 
 /* Appends the sweep's terms to the report where a history is asked for; -1 when memory is short. */
 int solve_history(struct solve *s);
-/* Whether the seconds left suffice for something of this price (ns), by the pace of the Newton
-   steps so far */
+/* Whether the seconds left suffice for this price (ns), at the pace of the Newton steps so far */
 bool solve_affords(const struct solve *s, double price);
 /* Adds to the report a Newton step of this price (ns), begun at `since` (s on the wall). */
 void solve_count_newton(struct solve *s, double price, double since);

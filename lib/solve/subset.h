@@ -28,8 +28,7 @@
 int64_t subset_solve(struct scaled *a, struct solve *s, int64_t contacts, bool anyhow,
                      double budget);
 
-/* Whether subset_solve() would begin, by what is known before any factors are analysed: 1, 0, or -1
-   when memory is short */
+/* Whether subset_solve() would get as far as analysing factors: 1, 0; -1 when memory is short */
 int subset_fits(const struct scaled *a, const struct solve *s, int64_t contacts, bool anyhow,
                 double budget);
 

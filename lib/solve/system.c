@@ -1,5 +1,4 @@
-/* solve/system.c: the reduction of each face, the factors, substitution and refinement
-   [solve/system.h]. */
+/* solve/system.c: the reduction of faces, the factors, and refinement [solve/system.h]. */
 #include "solve/system.h"
 
 #include "base/lu.h"
