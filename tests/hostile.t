@@ -202,10 +202,21 @@ appended()
 }
 ok "eight that append at once: eight documents" appended
 
+nowhere() # two at a time
+{
+    local pid
+    nsd-step -n 300 --max-sweeps 3 four.h5 >/dev/null 2>&1 &
+    pid=$!
+    nsd-step -n 300 --max-sweeps 3 four.h5 >/dev/null && wait $pid
+}
+cd "$tmp"
+ok "two into /dev/null" nowhere
+cd - >/dev/null
+
 # ---- what ends ----
 
 crowd() { echo '{"dt": 1e-3, "overlap": true, "bodies": [{"file": "crowd"}]}' >"$tmp/crowd.json" && nsd-gen "$tmp/crowd.json" | nsd-step; }
-yes "0 0 0 1" | head -n 3000 >"$tmp/crowd"
+awk 'BEGIN { for (i = 0; i < 3000; i++) print "0 0 0 1" }' >"$tmp/crowd"
 status 65 "3000 balls in one place" timeout 20 bash -c "$(declare -f crowd); tmp=$tmp; set -o pipefail; crowd"
 like "says so" "$(cat "$tmp/err")" 'in one place'
 table() { echo "{\"dt\": 1, \"bodies\": [{\"file\": \"$1\"}]}" | timeout 20 nsd-gen -; }

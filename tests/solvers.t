@@ -7,7 +7,7 @@
 solvers=(auto nlgs anderson cg prox ipm)
 
 # A settled heap, and what of it is to be solved
-nsd-gen 60 | nsd-step -m exact --relax 1.5 -n 900 --every 900 --eps 1e-8 2>/dev/null |
+nsd-gen 60 | nsd-step -m exact --relax 1.5 -n 900 --every 900 --criterion glob --eps 1e-8 2>/dev/null |
     nsd-cat --last | nsd-detect --fclib=local >"$tmp/heap.h5"
 nsd-detect "$tmp/heap.h5" >"$tmp/contacts.h5"
 
@@ -15,17 +15,17 @@ below() { jq -e --argjson most "$3" ".$2 <= \$most" <(nsd-err "$1") >/dev/null; 
 
 # ---- the paper's criterion, by bodies; W of the same packing ----
 
-nsd-solve -m exact --eps 1e-13 --max-sweeps 200000 "$tmp/contacts.h5" >"$tmp/truth.h5" 2>/dev/null
+nsd-solve -m exact --criterion glob --eps 1e-13 --max-sweeps 200000 "$tmp/contacts.h5" >"$tmp/truth.h5" 2>/dev/null
 velocities() { nsd-info --contacts "$1" | jq -r '.u | @tsv'; }
 for g in "${solvers[@]}"; do
     eps=1e-12
     [ "$g" != cg ] || eps=1e-9
-    status 0 "--global $g converges" nsd-solve -e --global "$g" --eps $eps --max-sweeps 100000 "$tmp/contacts.h5"
+    status 0 "--global $g converges" nsd-solve -e --global "$g" --criterion glob --eps $eps --max-sweeps 100000 "$tmp/contacts.h5"
     cp "$tmp/out" "$tmp/$g.h5"
     ok "--global $g: the criterion, recomputed" below "$tmp/$g.h5" eps_glob "$eps"
-    nsd-solve --global "$g" --eps $eps --max-sweeps 100000 -j 4 "$tmp/contacts.h5" >"$tmp/four.h5" 2>/dev/null
+    nsd-solve --global "$g" --criterion glob --eps $eps --max-sweeps 100000 -j 4 "$tmp/contacts.h5" >"$tmp/four.h5" 2>/dev/null
     ok "--global $g: the same bytes with four threads" cmp "$tmp/$g.h5" "$tmp/four.h5"
-    NSD_LANES=2 nsd-solve --global "$g" --eps $eps --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/two.h5" 2>/dev/null
+    NSD_LANES=2 nsd-solve --global "$g" --criterion glob --eps $eps --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/two.h5" 2>/dev/null
     ok "--global $g: and two lanes" cmp "$tmp/$g.h5" "$tmp/two.h5"
 done
 same() # two tables, to within the third number everywhere?
@@ -195,15 +195,15 @@ done
 # ---- a settled pile, where a few contacts hold the sweeps up and are solved by themselves ----
 
 jq ".mu = 0.8" scenes/paper/example3.json | nsd-gen - |
-    nsd-step -m exact --relax 1.5 -n 955 --every 955 --eps 1e-5 2>/dev/null | nsd-cat --last >"$tmp/pile.h5"
-status 0 "steps of a settled pile to 1e-12" nsd-step -e --eps 1e-12 -n 12 --contacts --log "$tmp/log" "$tmp/pile.h5"
+    nsd-step -m exact --relax 1.5 -n 955 --every 955 --criterion glob --eps 1e-5 2>/dev/null | nsd-cat --last >"$tmp/pile.h5"
+status 0 "steps of a settled pile to 1e-12" nsd-step -e --criterion glob --eps 1e-12 -n 12 --contacts --log "$tmp/log" "$tmp/pile.h5"
 cp "$tmp/out" "$tmp/one.h5"
 ok "three of them or more by one or two thousand sweeps and Newton's steps" \
     jq -se 'map(select(.newton > 0 and .sweeps < 2500)) | length >= 3' "$tmp/log"
 ok "the criterion, recomputed" jq -se 'map(.eps_glob) | max <= 1e-12' <(nsd-err "$tmp/one.h5")
-nsd-step --eps 1e-12 -n 12 --contacts -j 4 "$tmp/pile.h5" >"$tmp/four.h5" 2>/dev/null
+nsd-step --criterion glob --eps 1e-12 -n 12 --contacts -j 4 "$tmp/pile.h5" >"$tmp/four.h5" 2>/dev/null
 ok "the same bytes with four threads" cmp "$tmp/one.h5" "$tmp/four.h5"
-NSD_LANES=2 nsd-step --eps 1e-12 -n 12 --contacts "$tmp/pile.h5" >"$tmp/two.h5" 2>/dev/null
+NSD_LANES=2 nsd-step --criterion glob --eps 1e-12 -n 12 --contacts "$tmp/pile.h5" >"$tmp/two.h5" 2>/dev/null
 ok "and two lanes" cmp "$tmp/one.h5" "$tmp/two.h5"
 
 for mu in 0 1e-9 2; do
@@ -211,7 +211,7 @@ for mu in 0 1e-9 2; do
         nsd-step -m exact --relax 1.5 -n 700 --every 700 --eps 1e-6 --max-sweeps 200 2>/dev/null | nsd-cat --last |
         nsd-detect >"$tmp/mu.h5"
     for g in auto ipm prox; do
-        status 0 "--global $g, mu = $mu" nsd-solve -e --global "$g" --eps 1e-11 "$tmp/mu.h5"
+        status 0 "--global $g, mu = $mu" nsd-solve -e --global "$g" --criterion glob --eps 1e-11 "$tmp/mu.h5"
     done
 done
 done_testing

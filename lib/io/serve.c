@@ -471,8 +471,8 @@ static int answer_text(struct served *s, const struct request *q, struct sink *s
         if (set >= 0) text = text_of(set, -1, &length, &no_memory);
         if (set >= 0 && set != e->set) H5Dclose(set);
     }
-    if (why->status) return why->status;
-    if (no_memory) return why_set(why, EX_SOFTWARE, "%s: no memory", path);
+    if (no_memory) why_set(why, EX_SOFTWARE, "%s: no memory", path);
+    if (why->status) return free(text), why->status;
     if (!text)
         return why_set(why, EX_DATAERR, "%s%s%s: %s", path, q->name[0] ? "@" : "", q->name,
                        is_text ? "cannot be read as a text (damaged?)" : "a text is wanted");
@@ -565,6 +565,7 @@ static int append(struct gathered *g, const struct object *o, const hsize_t *sha
         if (!more) return why_set(g->why, EX_SOFTWARE, "no memory for a list of objects");
         g->bytes = more, g->room = room;
     }
+    if (!g->bytes) return 0; // nothing to add to nothing
     memset(g->bytes + g->size, 0, size);
     char *to = put_object(g->bytes + g->size, o, shape, name);
     if (o->data) memcpy(to, data, o->data);

@@ -367,7 +367,8 @@ static int take(struct source *s, struct taker *t, struct why *why)
         begun = true;
         if (r.here > SERVE_PIECE || r.here > t->size - t->done || (!r.here && t->done < t->size))
             return why_set(why, EX_DATAERR, "%.250s: an answer of another size", s->shared->where);
-        if (r.here) memcpy((char *)t->out + t->done, s->shared->piece[pieces % 2], (size_t)r.here);
+        if (r.here && t->out)
+            memcpy((char *)t->out + t->done, s->shared->piece[pieces % 2], (size_t)r.here);
         t->done += r.here;
         if (t->done == t->size) return 0;
         if (send(s->line, "", 1, MSG_NOSIGNAL) != 1) return child_gone(s, why);

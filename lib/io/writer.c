@@ -1,4 +1,4 @@
-#define _GNU_SOURCE // F_OFD_SETLK
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): F_OFD_SETLK
 #include "io/writer.h"
 
 #include "io/frame_write.h"
@@ -56,6 +56,8 @@ static int output_failed(const struct writer *s, struct why *why, const char *tr
 static int take_hold(struct writer *s, int how, struct why *why)
 {
     struct flock lock = { .l_type = F_WRLCK, .l_whence = SEEK_SET };
+    struct stat st;
+    if (fstat(s->fd, &st) || !S_ISREG(st.st_mode)) return 0; // /dev/null has any number
     while (fcntl(s->fd, how, &lock)) {
         if (errno == EINTR) continue;
         if (errno == EACCES || errno == EAGAIN)

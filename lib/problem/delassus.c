@@ -70,7 +70,8 @@ static int64_t count_blocks(int64_t entries, const int64_t *order, const int32_t
 static int no_memory(struct delassus *W, int64_t n, struct why *why)
 {
     delassus_free(W);
-    return why_set(why, EX_SOFTWARE, "out of memory for a problem of %lld contacts", (long long)n);
+    why_set(why, EX_SOFTWARE, "out of memory for a problem of %lld contacts", (long long)n);
+    return EX_SOFTWARE;
 }
 
 int delassus_alloc(struct delassus *W, int d, int64_t n, int64_t blocks, struct why *why)

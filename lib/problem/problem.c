@@ -86,7 +86,7 @@ static bool lay_out_bundles(struct problem *p, const struct schedule *plan)
 static int32_t *seat_bodies(const struct problem *p, const struct packing *pack,
                             const struct contacts *s, enum order order)
 {
-    int32_t *seat = malloc((size_t)(pack->n + 1) * sizeof *seat), next = 0;
+    int32_t *seat = calloc((size_t)pack->n + 1, sizeof *seat), next = 0;
     for (int64_t i = 0; seat && i < pack->n; i++) seat[i] = -1;
     for (int64_t i = 0; seat && order >= ORDER_COLOUR && i < p->slots; i++) {
         if (p->contact[i] < 0) continue;

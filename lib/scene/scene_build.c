@@ -90,7 +90,7 @@ static bool next_line(FILE *f, char line[LINE], const char *path, int64_t at, st
 
 static int read_table(struct table *t, int dim, const char *dir, const char *name, struct why *why)
 {
-    char path[4096], line[LINE];
+    char path[4096], line[LINE] = "";
     struct stat st;
     int64_t at = 0;
     bool whole = *name == '/' || !dir;

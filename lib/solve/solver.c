@@ -108,10 +108,12 @@ int solve_best_init(struct best *b, const struct problem *p)
 void solve_best_offer(const struct solve *s, struct best *b)
 {
     const struct problem *p = s->p;
-    double *r = best_offer(b, s->value), *u = r ? r + 3 * p->slots : NULL, unwanted[3] = { 0 };
-    for (int64_t i = 0; r && i < p->slots; i++)
+    double *r = best_offer(b, s->value), unwanted[3] = { 0 };
+    if (!r) return;
+    double *u = r + 3 * p->slots;
+    for (int64_t i = 0; i < p->slots; i++)
         slot_get(p, i, r + 3 * i, with_u(p) ? u + 3 * i : unwanted);
-    if (r && with_u(p)) u[3 * p->slots] = s->believes;
+    if (with_u(p)) u[3 * p->slots] = s->believes;
 }
 
 void solve_react(struct solve *s, const double *r)
@@ -123,8 +125,8 @@ void solve_react(struct solve *s, const double *r)
 void solve_best_restore(struct solve *s, const struct best *b)
 {
     struct problem *p = s->p;
+    if (!b->x || !(b->value < INFINITY) || s->value <= b->value) return;
     const double *r = b->x, *u = r + 3 * p->slots;
-    if (!(b->value < INFINITY) || s->value <= b->value) return;
     solve_react(s, r);
     s->value = b->value, s->believes = with_u(p) && u[3 * p->slots] != 0;
     for (int64_t i = 0; s->believes && i < p->slots; i++) slot_set(p, i, r + 3 * i, u + 3 * i);

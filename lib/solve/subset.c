@@ -111,7 +111,8 @@ static int subset_init(struct subset *p, const struct scaled *a, const struct so
 {
     size_t n = (size_t)a->W.n, size = (size_t)a->size + 4;
     struct why why = { 0 };
-    *p = (struct subset){ .x = calloc(size, sizeof *p->x), .v = calloc(size, sizeof *p->v) };
+    *p = (struct subset){ 0 };
+    p->x = calloc(size, sizeof *p->x), p->v = calloc(size, sizeof *p->v);
     p->map = calloc(n + 1, sizeof *p->map);
     p->chosen.contact = malloc((n + 1) * sizeof *p->chosen.contact);
     p->chosen.of = malloc((n + 1) * sizeof *p->chosen.of);
