@@ -13,8 +13,8 @@ struct lu;
 
 /*
  * For n x n matrices by rows: entries first[i] .. first[i+1]-1 are row i, in columns col[]. Both
- * arrays are borrowed until lu_free. NULL if memory is short or, with *too_large set, the factors would
- * need more than `bytes` bytes.
+ * arrays are borrowed until lu_free. NULL if memory is short or, with *too_large set, if the factors
+ * would need more than `bytes` bytes.
  */
 struct lu *lu_new(int32_t n, int32_t *first, int32_t *col, double bytes, bool *too_large);
 void lu_free(struct lu *lu);

@@ -15,8 +15,8 @@ struct why {
     char text[400]; /* "thing: trouble", one line */
 };
 
-/* Sets the reason unless there is one already. Control characters become '?', for names out of files are
-   in it. Returns the status of the first, never 0, for use as `return why_set(...)`. */
+/* Sets the reason unless there is one already. Control characters become '?', for names out of
+   files are in it. Returns the status of the first, never 0, for use as `return why_set(...)`. */
 int why_set(struct why *why, int status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

@@ -3,8 +3,8 @@
 
 #include <stdlib.h>
 
-/* The reactions' impulses and their moments about the centres, which are at x + ahead v when the contacts
-   act; summed in the contacts' order. */
+/* The reactions' impulses and their moments about the centres, which are at x + ahead v when the
+   contacts act; summed in the contacts' order. */
 static void impulses(const struct packing *p, double ahead, const struct contacts *s, vec3 *force,
                      vec3 *moment)
 {
@@ -57,7 +57,8 @@ static void body_unmove(struct packing *p, int64_t i, vec3 force, vec3 moment)
     p->q[i] = quat_unit(turn(p->q[i], -before, p->w[i]));
 }
 
-/* body() on each, with its impulse and moment; the contacts act where the bodies are `ahead` (s) from here. */
+/* body() on each, with its impulse and moment; the contacts act where the bodies are `ahead` (s)
+   from here. */
 static int move(struct packing *p, double ahead, const struct contacts *s,
                 void (*body)(struct packing *, int64_t, vec3, vec3), struct why *why)
 {

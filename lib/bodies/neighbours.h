@@ -27,7 +27,8 @@ struct neighbours {
  *
  * Cost is linear: bodies are sorted by size into levels of a factor of two, each level into the
  * cells of its own grid, and a body looks into the grids of its own and of larger sizes only.
- * Cells are hashed, so that a body far away costs nothing. Returns 0, EX_SOFTWARE or, where bodies crowd, EX_DATAERR.
+ * Cells are hashed, so that a body far away costs nothing. Returns 0, EX_SOFTWARE or, where bodies
+ * crowd, EX_DATAERR.
  */
 int neighbours_find(struct neighbours *s, const struct packing *p, const vec3 *x, double gap,
                     bool keep, struct why *why);

@@ -568,7 +568,7 @@ static int append(struct gathered *g, const struct object *o, const hsize_t *sha
     if (!g->bytes) return 0; // nothing to add to nothing
     memset(g->bytes + g->size, 0, size);
     char *to = put_object(g->bytes + g->size, o, shape, name);
-    if (o->data) memcpy(to, data, o->data);
+    if (o->data && data) memcpy(to, data, o->data);
     g->size += size;
     return 0;
 }

@@ -124,7 +124,7 @@ static int subset_init(struct subset *p, const struct scaled *a, const struct so
     if (delassus_subset(&p->V, &a->W, p->chosen.n, p->chosen.contact, p->chosen.of, p->x, p->v,
                         &why))
         return -1;
-    double entries = delassus_entries(&p->V);
+    double entries = delassus_entries(&p->V); // NOLINT(clang-analyzer-unix.Malloc): subset_free()
     return price_analysis(entries) + STEPS * price_newton_step(0, entries) <= budget;
 }
 
