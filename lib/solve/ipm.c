@@ -2,7 +2,6 @@
 #include "solve/ipm.h"
 
 #include "solve/arc.h"
-#include "solve/nlgs.h"
 
 #include <stdlib.h>
 
@@ -247,16 +246,7 @@ void ipm_solve(struct newton *w, struct solve *s)
 
 static int run(struct solve *s)
 {
-    struct newton w;
-    const char *reason;
-    if (nlgs_sweeps(s, SWEEPS, s->o->relax > 0 ? s->o->relax : 1.3)) return -1;
-    if (solve_over(s)) return 0;
-    int e = newton_init(&w, s, &reason);
-    if (e) return e < 0 ? -1 : nlgs_fall_back(s, reason);
-    e = solve_keep_best(s);
-    if (!e) ipm_solve(&w, s);
-    newton_free(&w);
-    return e;
+    return newton_after_sweeps(s, SWEEPS, 1.3, ipm_solve);
 }
 
 const struct solver solver_ipm = { "ipm", "interior point method on all contacts at once", 0, run };

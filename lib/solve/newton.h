@@ -58,4 +58,12 @@ bool newton_finish(struct newton *w, struct solve *s, const double *x, double rh
  */
 void newton_polish(struct newton *w, struct solve *s, double alpha, int patience);
 
+/*
+ * A whole solver: sweeps, with this omega where none is asked for, then solve() with the best
+ * iterate kept. Where the problem is too large to factorise it sweeps to the end, and the report
+ * says so. Returns 0, or -1 when memory is short.
+ */
+int newton_after_sweeps(struct solve *s, int32_t sweeps, double omega,
+                        void (*solve)(struct newton *w, struct solve *s));
+
 #endif
