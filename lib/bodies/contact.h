@@ -9,10 +9,13 @@
 #include <stdint.h>
 
 struct contact {
-    int32_t a, b; /* bodies; the normal points from a to b. Wall w is -1-w and always a. */
-    vec3 x;       /* m: the point of contact, between the bodies at their predicted positions */
-    vec3 n, t1;   /* of the right-handed basis (n, t1, t2); in the plane t1 = z x n, t2 = z */
-    double gap;   /* m, predicted; < 0: overlap */
+    int32_t a, b;    /* bodies; the normal points from a to b. Boundary w is -1-w and always a. */
+    int32_t feature; /* tells apart the contacts of one pair, and lasts from step to step: a
+                        triangle of a mesh; 0 where a pair has one contact */
+    int8_t shift[3]; /* of the cell: b is met at x_b + sum of shift[k] edge[k] */
+    vec3 x;          /* m: the point of contact, between the bodies at their predicted positions */
+    vec3 n, t1;      /* of the right-handed basis (n, t1, t2); in the plane t1 = z x n, t2 = z */
+    double gap;      /* m, predicted; < 0: overlap */
     double mu, en, et; /* friction; normal and tangential restitution */
 };
 
@@ -23,7 +26,7 @@ struct found {
     int8_t status; /* enum local_status */
 };
 
-/* Sorted by (a, b) with walls first; each pair occurs once. */
+/* Sorted by (a, b, feature, shift) with boundaries first; each key occurs once. */
 struct contacts {
     int64_t n, room;     /* contacts; how many c has memory for */
     struct contact *c;   /* [n] */

@@ -78,7 +78,7 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     if (packing_alloc_walls(to, p->walls, why) || packing_alloc_kinds(to, p->kinds, why)) goto fail;
     size_t n = (size_t)p->n, k2 = (size_t)p->kinds * (size_t)p->kinds;
     to->step = p->step, to->t = p->t, to->dt = p->dt, to->theta = p->theta, to->g = p->g;
-    to->seed = p->seed;
+    to->seed = p->seed, to->cell = p->cell;
     memcpy(to->radius, p->radius, n * sizeof *p->radius);
     memcpy(to->mass, p->mass, n * sizeof *p->mass);
     memcpy(to->inertia, p->inertia, n * sizeof *p->inertia);

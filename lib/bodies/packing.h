@@ -9,6 +9,7 @@
 
 #include "base/vec.h"
 #include "base/why.h"
+#include "bodies/cell.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -40,6 +41,7 @@ struct packing {
 
     int32_t walls;
     struct wall *wall; /* [walls] */
+    struct cell cell;
 
     int32_t kinds;
     char **kind_name; /* [kinds] */
