@@ -50,6 +50,9 @@ $B/lib/%.o: lib/%.c Makefile
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
+# The page of nsd-web is part of the program.
+$B/lib/draw/page_parts.o: $(wildcard lib/draw/page/*)
+
 define compile_wide
 $B/lib/problem/$1-%.o: lib/problem/$1.c Makefile
 	@mkdir -p $$(@D)

@@ -90,6 +90,10 @@ statuses() { awk '$1 > 0 && $2 ~ /^(free|stick|slide)$/ { n++ } END { exit !(n >
 series() { [ $(($# - 1)) = "$1" ]; } # N FILE ...
 
 # claim COMMAND N: runs what shows that it did what it says; N is its -n. 99: nothing is claimed.
+page() # FILE N: an HTML page of N frames
+{
+    sed -n 's/.*id="meta">\(.*\)<\/script>/\1/p' "$1" | jq -e ".frames | length == $2" && grep -q '</html>' "$1"
+}
 claim()
 {
     case $1 in
@@ -164,6 +168,9 @@ claim()
     'nsd-'*'nsd-view'*'.png' | 'nsd-view '*'> '*.png) png "${1##* }" ;;
     'nsd-view '*"'film%04d.png' out.h5") png film0000.png 360x640 && series "$(frames out.h5 length)" film*.png ;;
     'nsd-view '*"'film%05d.png' out.h5") png film00000.png && series 10 film*.png ;;
+    'nsd-step'*'| nsd-web > run.html') page run.html "$2" ;;
+    'nsd-web out.h5 > out.html') page out.html "$(frames out.h5 length)" ;;
+    'nsd-web --every 10 '*' -o heap.html out.h5') page heap.html 10 && grep -q '<title>A heap' heap.html ;;
     'ffmpeg '*) [ -s film.mp4 ] ;;
     'gnuplot '*) ;;
     # without a prompt: a scene, and Python

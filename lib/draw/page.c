@@ -1,0 +1,468 @@
+/*
+ * draw/page.c: what the page's program reads, draw/page/page.js.
+ *
+ * A chunk is a script element of base64, of zlib, of little-endian numbers one array after another:
+ *
+ *   fK, frame K    u16[n][4] position and |spin|; i16[n][4] velocity, 0; i8[n][4] orientation;
+ *                  i32[c] a; i32[c] b; u16[c] normal force; u16[c] tangential; i8[c][4] normal, status
+ *   gK, grains     f32[n] radius; f32[n] mass; i32[n] id; i32[n] kind
+ *   bK, walls      u32 triangles, u32 lines; f32 corners [9] each; f32 ends [6] each
+ *
+ * The JSON element "meta" has for each frame what its numbers are relative to: x = lo + step k,
+ * v = vmax k / 32767, |w| = wmax k / 65535, f = fmax k / 65535.
+ */
+#include "draw/page.h"
+
+#include "draw/page_parts.h"
+
+#include <jansson.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+struct page_moment {
+    int64_t step, n, contacts, grains, walls;
+    double t, lo[3], quantum[3], vmax, wmax, fmax;
+};
+
+enum { U16 = 65535, I16 = 32767, I8 = 127 };
+
+/* ---- chunks ---- */
+
+struct bytes {
+    unsigned char *at;
+    size_t n;
+};
+
+static void put(struct bytes *b, const void *from, size_t size)
+{
+    memcpy(b->at + b->n, from, size), b->n += size;
+}
+
+static void put_float(struct bytes *b, double x)
+{
+    float single = (float)x;
+    put(b, &single, sizeof single);
+}
+
+static void put_u16(struct bytes *b, int x)
+{
+    uint16_t number = (uint16_t)x;
+    put(b, &number, sizeof number);
+}
+
+static int no_memory(struct why *why)
+{
+    return why_set(why, EX_SOFTWARE, "no memory for the page");
+}
+
+static int not_written(const struct page *p, struct why *why)
+{
+    return ferror(p->out) ? why_set(why, EX_IOERR, "standard output: not written") : 0;
+}
+
+static void write_base64(FILE *out, const unsigned char *x, size_t n)
+{
+    static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (size_t i = 0; i < n; i += 3) {
+        unsigned b = (unsigned)x[i] << 16 | (i + 1 < n ? (unsigned)x[i + 1] << 8 : 0) |
+                     (i + 2 < n ? x[i + 2] : 0);
+        char four[4] = { digit[b >> 18], digit[b >> 12 & 63], i + 1 < n ? digit[b >> 6 & 63] : '=',
+                         i + 2 < n ? digit[b & 63] : '=' };
+        fwrite(four, 1, 4, out);
+    }
+}
+
+static int write_chunk(struct page *p, char letter, int64_t number, const struct bytes *b,
+                       struct why *why)
+{
+    uLongf size = compressBound(b->n);
+    unsigned char *packed = malloc(size);
+    if (!packed || compress2(packed, &size, b->at, b->n, 6) != Z_OK) {
+        free(packed);
+        return no_memory(why);
+    }
+    fprintf(p->out, "<script type=\"text/plain\" id=\"%c%lld\">", letter, (long long)number);
+    write_base64(p->out, packed, size);
+    fputs("</script>\n", p->out);
+    free(packed);
+    return not_written(p, why);
+}
+
+/* Writes a chunk unless it is the same as the last of its kind; frees b or keeps it. */
+static int write_changed(struct page *p, char letter, int64_t *count, void **last,
+                         size_t *last_size, struct bytes *b, struct why *why)
+{
+    if (*count && *last_size == b->n && !memcmp(*last, b->at, b->n)) {
+        free(b->at);
+        return 0;
+    }
+    free(*last);
+    *last = b->at, *last_size = b->n;
+    return write_chunk(p, letter, (*count)++, b, why);
+}
+
+/* ---- what does not change in every frame ---- */
+
+static int write_grains(struct page *p, const struct packing *k, struct why *why)
+{
+    struct bytes b = { malloc(16 * (size_t)k->n + 1), 0 };
+    if (!b.at) return no_memory(why);
+    for (int64_t i = 0; i < k->n; i++) put_float(&b, k->radius[i]);
+    for (int64_t i = 0; i < k->n; i++) put_float(&b, k->mass[i]);
+    put(&b, k->id, 4 * (size_t)k->n);
+    put(&b, k->kind, 4 * (size_t)k->n);
+    return write_changed(p, 'g', &p->grains, &p->grains_last, &p->grains_size, &b, why);
+}
+
+static void put_point(struct bytes *b, vec3 x)
+{
+    put_float(b, x.x), put_float(b, x.y), put_float(b, x.z);
+}
+
+static int write_walls(struct page *p, const struct packing *k, const struct region *r,
+                       struct why *why)
+{
+    struct walls *w = malloc(sizeof *w);
+    struct bytes b = { malloc(8 + 36 * (size_t)WALLS_PANELS * WALLS_CORNERS + 24 * WALLS_EDGES),
+                       0 };
+    if (!w || !b.at) {
+        free(w), free(b.at);
+        return no_memory(why);
+    }
+    walls_build(w, k, r);
+    uint32_t counts[2] = { 0, (uint32_t)w->edges };
+    for (int i = 0; i < w->panels; i++)
+        if (w->panel[i].corners > 2) counts[0] += (uint32_t)w->panel[i].corners - 2;
+    put(&b, counts, sizeof counts);
+    for (int i = 0; i < w->panels; i++)
+        for (int c = 2; c < w->panel[i].corners; c++)
+            put_point(&b, w->panel[i].corner[0]), put_point(&b, w->panel[i].corner[c - 1]),
+                put_point(&b, w->panel[i].corner[c]);
+    for (int i = 0; i < w->edges; i++) put_point(&b, w->edge[i].a), put_point(&b, w->edge[i].b);
+    free(w);
+    return write_changed(p, 'b', &p->walls, &p->walls_last, &p->walls_size, &b, why);
+}
+
+/* ---- a frame ---- */
+
+/* x in [-most, most] as a whole number; 0 where it is no number */
+static int quantise(double x, double most, int steps)
+{
+    double k = most > 0 ? x / most * steps : 0;
+    return isfinite(k) ? (int)lround(fmin(fmax(k, -steps), steps)) : 0;
+}
+
+/* What the numbers of the grains are relative to; grains that have flown off do not count. */
+static void measure(struct page_moment *m, const struct packing *k)
+{
+    double hi[3] = { -INFINITY, -INFINITY, -INFINITY };
+    for (int j = 0; j < 3; j++) m->lo[j] = INFINITY;
+    for (int64_t i = 0; i < k->n; i++) {
+        const double x[3] = { k->x[i].x, k->x[i].y, k->x[i].z };
+        double v = v3_norm(k->v[i]), w = v3_norm(k->w[i]);
+        for (int j = 0; j < 3; j++)
+            if (fabs(x[j]) < WALLS_FAR) m->lo[j] = fmin(m->lo[j], x[j]), hi[j] = fmax(hi[j], x[j]);
+        if (isfinite(v)) m->vmax = fmax(m->vmax, v);
+        if (isfinite(w)) m->wmax = fmax(m->wmax, w);
+    }
+    for (int j = 0; j < 3; j++) {
+        if (!(hi[j] >= m->lo[j])) m->lo[j] = hi[j] = 0;
+        m->quantum[j] = (hi[j] - m->lo[j]) / U16;
+    }
+}
+
+static void put_motion(struct bytes *b, const struct page_moment *m, const struct packing *k)
+{
+    for (int64_t i = 0; i < k->n; i++) {
+        const double x[3] = { k->x[i].x, k->x[i].y, k->x[i].z };
+        uint16_t four[4];
+        for (int j = 0; j < 3; j++) {
+            int at = quantise(x[j] - m->lo[j], m->quantum[j] * U16, U16);
+            four[j] = (uint16_t)(at > 0 ? at : 0);
+        }
+        four[3] = (uint16_t)quantise(v3_norm(k->w[i]), m->wmax, U16);
+        put(b, four, sizeof four);
+    }
+    for (int64_t i = 0; i < k->n; i++) {
+        const double v[4] = { k->v[i].x, k->v[i].y, k->v[i].z, 0 };
+        int16_t four[4];
+        for (int j = 0; j < 4; j++) four[j] = (int16_t)quantise(v[j], m->vmax, I16);
+        put(b, four, sizeof four);
+    }
+    for (int64_t i = 0; i < k->n; i++) {
+        const double q[4] = { k->q[i].w, k->q[i].x, k->q[i].y, k->q[i].z };
+        int8_t four[4];
+        for (int j = 0; j < 4; j++) four[j] = (int8_t)quantise(q[j], 1, I8);
+        put(b, four, sizeof four);
+    }
+}
+
+static double tangential(const struct found *f)
+{
+    return hypot(f->r[1], f->r[2]);
+}
+
+static void put_contacts(struct bytes *b, const struct page_moment *m, const struct packing *k,
+                         const struct contacts *s)
+{
+    for (int64_t i = 0; i < s->n; i++) put(b, &s->c[i].a, 4);
+    for (int64_t i = 0; i < s->n; i++) put(b, &s->c[i].b, 4);
+    for (int t = 0; t < 2; t++)
+        for (int64_t i = 0; i < s->n; i++) {
+            double r = t ? tangential(&s->found[i]) : fmax(s->found[i].r[0], 0);
+            put_u16(b, quantise(r / k->dt, m->fmax, U16));
+        }
+    for (int64_t i = 0; i < s->n; i++) {
+        vec3 n = s->c[i].n;
+        int8_t four[4] = { (int8_t)quantise(n.x, 1, I8), (int8_t)quantise(n.y, 1, I8),
+                           (int8_t)quantise(n.z, 1, I8), s->found[i].status };
+        put(b, four, sizeof four);
+    }
+}
+
+/* The ranges of the whole trajectory that colours are scaled by */
+static int widen(struct page *p, const struct page_moment *m, const struct packing *k,
+                 const struct contacts *s, struct why *why)
+{
+    double *push = calloc((size_t)k->n + 1, sizeof *push);
+    int *count = calloc((size_t)k->n + 1, sizeof *count);
+    if (!push || !count) {
+        free(push), free(count);
+        return no_memory(why);
+    }
+    p->fastest = fmax(p->fastest, m->vmax), p->spin = fmax(p->spin, m->wmax);
+    p->force = fmax(p->force, m->fmax);
+    for (int64_t i = 0; i < s->n; i++) {
+        double f = s->found[i].r[0] / k->dt;
+        if (!quantise(f, m->fmax, U16)) continue;
+        push[s->c[i].b] += f, count[s->c[i].b]++;
+        if (s->c[i].a >= 0) push[s->c[i].a] += f, count[s->c[i].a]++;
+    }
+    for (int64_t i = 0; i < k->n; i++) {
+        p->radius[0] = fmin(p->radius[0], k->radius[i]);
+        p->radius[1] = fmax(p->radius[1], k->radius[i]);
+        p->push = fmax(p->push, push[i]), p->most = count[i] > p->most ? count[i] : p->most;
+    }
+    free(push), free(count);
+    return 0;
+}
+
+static int write_frame(struct page *p, const struct page_moment *m, const struct packing *k,
+                       const struct contacts *s, struct why *why)
+{
+    struct bytes b = { malloc(20 * (size_t)k->n + 16 * (size_t)m->contacts + 1), 0 };
+    if (!b.at) return no_memory(why);
+    put_motion(&b, m, k);
+    if (m->contacts) put_contacts(&b, m, k, s);
+    int e = write_chunk(p, 'f', p->frames, &b, why);
+    free(b.at);
+    return e;
+}
+
+static struct page_moment *add_moment(struct page *p)
+{
+    if (p->frames == p->room) {
+        int64_t room = p->room ? 2 * p->room : 64;
+        void *more = realloc(p->moment, (size_t)room * sizeof *p->moment);
+        if (!more) return NULL;
+        p->moment = more, p->room = room;
+        for (int c = 0; c < p->curves; c++) {
+            double *value = realloc(p->curve[c].value, (size_t)room * sizeof *value);
+            if (!value) return NULL;
+            p->curve[c].value = value;
+        }
+    }
+    for (int c = 0; c < p->curves; c++) p->curve[c].value[p->frames] = NAN;
+    return &p->moment[p->frames];
+}
+
+/* The first frame's kinds and dimension are the page's. */
+static int adopt(struct page *p, const struct packing *k, struct why *why)
+{
+    p->dim = k->dim;
+    p->radius[0] = INFINITY;
+    p->kind_name = calloc((size_t)k->kinds + 1, sizeof *p->kind_name);
+    for (; p->kind_name && p->kinds < k->kinds; p->kinds++)
+        if (!(p->kind_name[p->kinds] = strdup(k->kind_name[p->kinds]))) break;
+    return p->kind_name && p->kinds == k->kinds ? 0 : no_memory(why);
+}
+
+int page_frame(struct page *p, const struct packing *k, const struct contacts *s, struct why *why)
+{
+    struct region r = { 0 };
+    const struct contacts none = { 0 };
+    if (!s || !s->found) s = &none;
+    if (k->n > INT32_MAX || s->n > INT32_MAX)
+        return why_set(why, EX_DATAERR, "too many grains or contacts for a page");
+    if (p->frames && k->dim != p->dim)
+        return why_set(why, EX_DATAERR, "dim is %d, that of the first frame %d", k->dim, p->dim);
+    if (!p->frames && adopt(p, k, why)) return why->status;
+    struct page_moment *m = add_moment(p);
+    if (!m) return no_memory(why);
+    *m = (struct page_moment){
+        .step = k->step, .t = k->t, .n = k->n, .contacts = s->n, .walls = -1
+    };
+    p->solved |= s->found != NULL;
+    measure(m, k);
+    for (int64_t i = 0; i < s->n; i++) {
+        double f = fmax(s->found[i].r[0], tangential(&s->found[i])) / k->dt;
+        if (isfinite(f)) m->fmax = fmax(m->fmax, f);
+    }
+    bool any = region_of(&r, k);
+    if (any) p->seen = p->frames ? region_join(p->seen, r) : r;
+    if (any && k->walls && write_walls(p, k, &r, why)) return why->status;
+    if (write_grains(p, k, why) || widen(p, m, k, s, why) || write_frame(p, m, k, s, why))
+        return why->status;
+    m->grains = p->grains - 1;
+    if (any && k->walls) m->walls = p->walls - 1;
+    p->frames++;
+    return 0;
+}
+
+int page_value(struct page *p, const char *name, const char *unit, double value, struct why *why)
+{
+    int c = 0;
+    while (c < p->curves && strcmp(p->curve[c].name, name) != 0) c++;
+    if (c == p->curves) {
+        struct page_curve *more = realloc(p->curve, (size_t)(c + 1) * sizeof *more), new;
+        if (!more) return no_memory(why);
+        p->curve = more;
+        new = (struct page_curve){ strdup(name), strdup(unit),
+                                   malloc((size_t)(p->room + 1) * sizeof(double)) };
+        p->curve[p->curves++] = new;
+        if (!new.name || !new.unit || !new.value) return no_memory(why);
+        for (int64_t k = 0; k < p->frames; k++) new.value[k] = NAN;
+    }
+    p->curve[c].value[p->frames - 1] = value;
+    return 0;
+}
+
+/* ---- the whole file ---- */
+
+static void write_text(FILE *out, const char *text) // as HTML
+{
+    for (; *text; text++)
+        if (*text == '<')
+            fputs("&lt;", out);
+        else if (*text == '&')
+            fputs("&amp;", out);
+        else
+            fputc(*text, out);
+}
+
+int page_begin(struct page *p, FILE *out, const char *title, struct why *why)
+{
+    *p = (struct page){ .out = out };
+    fputs("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>",
+          out);
+    write_text(out, title);
+    fprintf(out, "</title>\n<style>\n%s</style>\n</head>\n<body>\n%s", page_part(PAGE_CSS),
+            page_part(PAGE_HTML));
+    return not_written(p, why);
+}
+
+static json_t *number(double x)
+{
+    return isfinite(x) ? json_real(x) : json_null();
+}
+
+static json_t *numbers(const double *x, int64_t n)
+{
+    json_t *a = json_array();
+    for (int64_t i = 0; i < n; i++) json_array_append_new(a, number(x[i]));
+    return a;
+}
+
+static json_t *moment_json(const struct page_moment *m)
+{
+    json_t *j =
+        json_pack("{s:I, s:I, s:I, s:I, s:o}", "s", (json_int_t)m->step, "n", (json_int_t)m->n, "c",
+                  (json_int_t)m->contacts, "g", (json_int_t)m->grains, "t", number(m->t));
+    if (m->walls >= 0) json_object_set_new(j, "b", json_integer(m->walls));
+    json_object_set_new(j, "lo", numbers(m->lo, 3));
+    json_object_set_new(j, "step", numbers(m->quantum, 3));
+    json_object_set_new(j, "vmax", number(m->vmax));
+    json_object_set_new(j, "wmax", number(m->wmax));
+    json_object_set_new(j, "fmax", number(m->fmax));
+    return j;
+}
+
+static json_t *range_json(const struct page *p)
+{
+    const double lo[3] = { p->seen.lo.x, p->seen.lo.y, p->seen.lo.z },
+                 hi[3] = { p->seen.hi.x, p->seen.hi.y, p->seen.hi.z };
+    json_t *j = json_pack("{s:o, s:o, s:o, s:o, s:i}", "lo", numbers(lo, 3), "hi", numbers(hi, 3),
+                          "speed", number(p->fastest), "spin", number(p->spin), "z", p->most);
+    json_object_set_new(j, "radius", numbers(p->radius, 2));
+    json_object_set_new(j, "force", number(p->force));
+    json_object_set_new(j, "push", number(p->push));
+    return j;
+}
+
+/* What a reader has to know of the numbers: they are rounded. */
+static json_t *said(const struct page *p)
+{
+    double most = 0, speed = 0;
+    for (int64_t k = 0; k < p->frames; k++) {
+        for (int j = 0; j < 3; j++) most = fmax(most, p->moment[k].quantum[j]);
+        speed = fmax(speed, p->moment[k].vmax / I16);
+    }
+    char text[300];
+    snprintf(text, sizeof text,
+             "Numbers here are rounded: positions to %.2g m, velocities to %.2g m/s, orientations "
+             "to 1/127, forces to 1/65535 of a frame's largest. The document has them whole.",
+             most / 2, speed / 2);
+    return json_string(text);
+}
+
+static json_t *meta_json(const struct page *p)
+{
+    json_t *j = json_pack("{s:i, s:b}", "dim", p->dim, "solved", p->solved), *list = json_array();
+    for (int32_t k = 0; k < p->kinds; k++) {
+        json_t *name = json_string(p->kind_name[k]);
+        json_array_append_new(list, name ? name : json_string("?"));
+    }
+    json_object_set_new(j, "kinds", list);
+    json_object_set_new(j, "frames", list = json_array());
+    for (int64_t k = 0; k < p->frames; k++) json_array_append_new(list, moment_json(&p->moment[k]));
+    json_object_set_new(j, "range", range_json(p));
+    json_object_set_new(j, "curves", list = json_object());
+    for (int c = 0; c < p->curves; c++)
+        json_object_set_new(list, p->curve[c].name,
+                            json_pack("{s:s, s:o}", "unit", p->curve[c].unit, "value",
+                                      numbers(p->curve[c].value, p->frames)));
+    json_object_set_new(j, "said", said(p));
+    return j;
+}
+
+int page_end(struct page *p, struct why *why)
+{
+    json_t *meta = meta_json(p);
+    char *text = json_dumps(meta, JSON_COMPACT | JSON_REAL_PRECISION(9));
+    json_decref(meta);
+    if (!text) return no_memory(why);
+    fputs("<script type=\"application/json\" id=\"meta\">", p->out);
+    for (const char *s = text; *s; s++) // "</script" in a name must not end it
+        if (*s == '<')
+            fputs("\\u003c", p->out);
+        else
+            fputc(*s, p->out);
+    free(text);
+    fprintf(
+        p->out,
+        "</script>\n<!-- three.js\n%s-->\n<script type=\"text/plain\" id=\"three\">%s</script>\n"
+        "<script type=\"module\">\n%s</script>\n</body>\n</html>\n",
+        page_part(PAGE_LICENCE), page_part(PAGE_THREE), page_part(PAGE_JS));
+    return not_written(p, why);
+}
+
+void page_free(struct page *p)
+{
+    for (int c = 0; c < p->curves; c++)
+        free(p->curve[c].name), free(p->curve[c].unit), free(p->curve[c].value);
+    for (int32_t k = 0; p->kind_name && k < p->kinds; k++) free(p->kind_name[k]);
+    free(p->curve), free(p->kind_name), free(p->moment), free(p->grains_last), free(p->walls_last);
+    *p = (struct page){ 0 };
+}

@@ -1,0 +1,53 @@
+/*
+ * draw/page.h: a trajectory as one HTML file that plays it in a browser, without a network.
+ *
+ * The file holds the page's program (draw/page/, with three.js) and the frames: numbers of 8 and 16
+ * bits relative to each frame's extent, packed by zlib, in base64. page_begin(), page_frame() for
+ * each frame, page_end(). What is written is said in draw/page.c, beside what packs it.
+ */
+#ifndef NSD_PAGE_H
+#define NSD_PAGE_H
+
+#include "bodies/contact.h"
+#include "draw/walls.h"
+
+#include <stdio.h>
+
+/* A number for each frame, shown as a curve over time */
+struct page_curve {
+    char *name, *unit;
+    double *value; /* [frames]; NAN: none */
+};
+
+struct page_moment; /* what a frame's numbers are relative to */
+
+/* All zero to begin with. */
+struct page {
+    FILE *out;
+    int dim;
+    int64_t frames, room;
+    struct page_moment *moment; /* [frames] */
+    int curves;
+    struct page_curve *curve; /* [curves] */
+    int32_t kinds;
+    char **kind_name;      /* [kinds] of the first frame */
+    bool solved;           /* some frame has contacts with reactions */
+    int64_t grains, walls; /* chunks of what does not change in every frame */
+    size_t grains_size, walls_size;
+    void *grains_last, *walls_last;               /* the last of each, to see whether it changes */
+    struct region seen;                           /* m: of all grains and finite walls */
+    double fastest, spin, radius[2], force, push; /* m/s, rad/s, m, N, N: of all frames */
+    int most;                                     /* contacts of a grain that push */
+};
+
+/* Each returns 0, EX_SOFTWARE, EX_IOERR or EX_DATAERR (more than INT32_MAX grains or contacts). */
+int page_begin(struct page *p, FILE *out, const char *title, struct why *why);
+/* contacts: NULL, or those of this moment; only solved ones are kept. */
+int page_frame(struct page *p, const struct packing *k, const struct contacts *contacts,
+               struct why *why);
+/* Adds the number of the last frame written to the curve of that name. */
+int page_value(struct page *p, const char *name, const char *unit, double value, struct why *why);
+int page_end(struct page *p, struct why *why);
+void page_free(struct page *p);
+
+#endif

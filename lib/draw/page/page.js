@@ -1,0 +1,628 @@
+/*
+ * The page that nsd-web writes: it plays the frames that stand beside it.
+ *
+ * A chunk is a script element of base64: zlib around little-endian numbers, as draw/page.c packs
+ * them. `meta` has what the numbers are relative to. Grains are drawn as exact balls: a square each,
+ * in which the fragment shader finds where the ray of sight meets the ball.
+ */
+'use strict';
+
+const by_id = id => document.getElementById(id);
+const meta = JSON.parse(by_id('meta').textContent);
+const flat = meta.dim === 2;
+
+function trouble(text) {
+  by_id('trouble').textContent = text;
+  by_id('trouble').hidden = false;
+}
+
+/* ---- chunks ---- */
+
+const kept = new Map(); // the chunks unpacked last
+const KEPT = 64;        // chunks; a frame of 100 000 grains takes 2 MB
+
+async function inflate(id) {
+  const text = by_id(id).textContent;
+  const bytes = Uint8Array.from(atob(text), c => c.charCodeAt(0));
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
+  return new Response(stream).arrayBuffer();
+}
+
+function chunk(id) {
+  let found = kept.get(id);
+  if (found) kept.delete(id); // to the end: used last
+  else found = inflate(id);
+  kept.set(id, found);
+  if (kept.size > KEPT) kept.delete(kept.keys().next().value);
+  return found;
+}
+
+async function load(k) {
+  const m = meta.frames[k], n = m.n, c = m.c;
+  const [frame, grains] = await Promise.all([chunk('f' + k), chunk('g' + m.g)]);
+  let at = 0;
+  const take = (buffer, Type, count) => {
+    const a = new Type(buffer, at, count);
+    at += a.byteLength;
+    return a;
+  };
+  const f = { k, m, n, c };
+  f.x = take(frame, Uint16Array, 4 * n);
+  f.v = take(frame, Int16Array, 4 * n);
+  f.q = take(frame, Int8Array, 4 * n);
+  f.a = take(frame, Int32Array, c);
+  f.b = take(frame, Int32Array, c);
+  f.fn = take(frame, Uint16Array, c);
+  f.ft = take(frame, Uint16Array, c);
+  f.normal = take(frame, Int8Array, 4 * c); // and the status
+  at = 0;
+  f.radius = take(grains, Float32Array, n);
+  f.mass = take(grains, Float32Array, n);
+  f.id = take(grains, Int32Array, n);
+  f.kind = take(grains, Int32Array, n);
+  return f;
+}
+
+const place = (f, i) => [0, 1, 2].map(j => f.m.lo[j] + f.m.step[j] * f.x[4 * i + j]);
+const velocity = (f, i) => [0, 1, 2].map(j => f.m.vmax * f.v[4 * i + j] / 32767);
+const spin = (f, i) => f.m.wmax * f.x[4 * i + 3] / 65535;
+const norm = v => Math.hypot(...v);
+function digits(x) {
+  if (!isFinite(x)) return '-';
+  const size = Math.abs(x);
+  return size !== 0 && (size < 1e-3 || size >= 1e6) ? x.toExponential(2).replace('e+', 'e')
+                                                    : Number(x.toPrecision(4)).toString();
+}
+
+/* ---- what colours show ---- */
+
+function counts(f) {
+  const z = new Float32Array(f.n);
+  for (let i = 0; i < f.c; i++) {
+    if (!f.fn[i]) continue;
+    z[f.b[i]]++;
+    if (f.a[i] >= 0) z[f.a[i]]++;
+  }
+  return z;
+}
+function forces(f) {
+  const s = new Float32Array(f.n);
+  for (let i = 0; i < f.c; i++) {
+    const x = f.m.fmax * f.fn[i] / 65535;
+    s[f.b[i]] += x;
+    if (f.a[i] >= 0) s[f.a[i]] += x;
+  }
+  return s;
+}
+const each = value => f => Float32Array.from({ length: f.n }, (_, i) => value(f, i));
+const up = flat ? 1 : 2;
+const R = meta.range;
+const colours = {
+  speed: { unit: 'm/s', range: [0, R.speed], of: each((f, i) => norm(velocity(f, i))) },
+  radius: { unit: 'm', range: R.radius, of: each((f, i) => f.radius[i]) },
+  height: { unit: 'm', range: [R.lo[up], R.hi[up]], of: each((f, i) => place(f, i)[up]) },
+  spin: { unit: 'rad/s', range: [0, R.spin], of: each(spin) },
+  kind: { classes: meta.kinds, of: each((f, i) => f.kind[i]) },
+  id: { classes: [], of: each((f, i) => f.id[i]) },
+};
+if (meta.solved) {
+  colours['contacts that push'] = { unit: '', range: [0, R.z], of: counts };
+  colours['sum of normal forces'] = { unit: 'N', range: value => [0, value.reduce((a, b) => Math.max(a, b), 0)], of: forces };
+}
+for (const name in colours) by_id('colour').add(new Option(name));
+
+/* Viridis as a polynomial in t, within 0.01 of its table; ten classes [Tableau 10] */
+const viridis = [[.2777, .0054, .3341], [.1051, 1.4046, 1.3846], [-.3309, .2148, .0951],
+  [-4.6342, -5.7991, -19.3324], [6.2283, 14.1799, 56.6906], [4.7764, -13.7451, -65.353],
+  [-5.4355, 4.6459, 26.3124]];
+const ten = [0x4e79a7, 0xf28e2b, 0xe15759, 0x76b7b2, 0x59a14f, 0xedc948, 0xb07aa1, 0xff9da7, 0x9c755f,
+  0xbab0ac];
+const palette = t => [0, 1, 2].map(j => {
+  let c = 0;
+  for (let p = 6; p >= 0; p--) c = c * t + viridis[p][j];
+  return Math.round(255 * Math.min(Math.max(c, 0), 1));
+});
+
+/* Of the whole trajectory; of forces, where one impact would make all others dark, of the frame */
+const range_of = (show, value) => typeof show.range === 'function' ? show.range(value) : show.range;
+
+function draw_bar(show, range) {
+  const bar = by_id('bar').getContext('2d');
+  const classes = show.classes && show.classes.length;
+  for (let i = 0; i < 256; i++) {
+    const k = Math.floor(i * (classes || 10) / 256) % 10;
+    bar.fillStyle = show.classes ? '#' + ten[k].toString(16).padStart(6, '0')
+                                 : 'rgb(' + palette(i / 255) + ')';
+    bar.fillRect(i, 0, 1, 14);
+  }
+  by_id('low').textContent = range ? digits(range[0]) : '';
+  by_id('high').textContent = range ? digits(range[1]) : '';
+  by_id('unit').textContent = range ? show.unit : show.classes.join(', ');
+}
+
+/* ---- shaders ---- */
+
+const ball_vertex = `
+precision highp float;
+uniform mat4 viewMatrix, projectionMatrix;
+uniform vec3 origin, quantum;
+uniform float scale, cutoff;
+uniform bool ortho, classes;
+uniform sampler2D palette;
+in vec3 position;
+in vec4 x, q;
+in float radius, value, chosen;
+out vec3 at, centre, colour;
+out vec4 turn;
+flat out float r;
+void main() {
+  vec3 world = (origin + quantum * x.xyz) * scale;
+  centre = (viewMatrix * vec4(world, 1.)).xyz;
+  r = radius * scale;
+  float d = length(centre), wide = r;
+  vec3 u = vec3(1, 0, 0), v = vec3(0, 1, 0);
+  if (!ortho) {
+    vec3 w = centre / d;
+    u = normalize(cross(w, abs(w.y) < .9 ? v : u));
+    v = cross(u, w);
+    wide = r * d / sqrt(max(d * d - r * r, 1e-3 * r * r));
+  }
+  at = centre + wide * (position.x * u + position.y * v);
+  turn = q;
+  colour = texture(palette, vec2(classes ? (mod(value, 10.) + .5) / 10. : (value * 255. + .5) / 256.,
+                                 classes ? .75 : .25)).rgb;
+  if (chosen > .5) colour = vec3(1., .25, .8);
+  gl_Position = projectionMatrix * vec4(at, 1.);
+  if (-centre.z < cutoff) gl_Position = vec4(2., 2., 2., 1.);
+}`;
+const ball_fragment = `
+precision highp float;
+uniform mat4 viewMatrix, projectionMatrix;
+uniform bool ortho, marks, plane;
+in vec3 at, centre, colour;
+in vec4 turn;
+flat in float r;
+out vec4 pixel;
+void main() {
+  vec3 from = ortho ? vec3(at.xy, 0.) : vec3(0.), along = ortho ? vec3(0., 0., -1.) : normalize(at);
+  vec3 n, hit;
+  if (plane) {
+    hit = from + along * (centre.z - from.z) / along.z;
+    n = (hit - centre) / r;
+    if (dot(n, n) > 1.) discard;
+  } else {
+    vec3 c = centre - from;
+    float b = dot(c, along), h = r * r - dot(c, c) + b * b;
+    if (h < 0.) discard;
+    hit = from + along * (b - sqrt(h));
+    n = (hit - centre) / r;
+  }
+  vec4 clip = projectionMatrix * vec4(hit, 1.);
+  gl_FragDepth = .5 * clip.z / clip.w + .5;
+  vec3 w = transpose(mat3(viewMatrix)) * n, own = colour;
+  vec3 t = 2. * cross(-turn.yzw, w), body = w + turn.x * t + cross(-turn.yzw, t);
+  if (marks && plane && body.y > 0.) own = mix(own, vec3(1.), .42);
+  if (marks && !plane) {
+    if (abs(body.z) > .94) own *= .4;
+    else if (body.x * body.y > 0.) own = mix(own, vec3(1.), .42);
+  }
+  float light = plane ? 1. - .35 * smoothstep(.9, 1., length(n))
+                      : .3 + .55 * max(dot(n, normalize(vec3(-.4, .7, .6))), 0.) + .15 * n.z;
+  pixel = vec4(own * light, 1.);
+}`;
+const line_vertex = `
+precision highp float;
+uniform mat4 viewMatrix, projectionMatrix;
+uniform vec2 pixels;
+in vec3 position, from, to, colour;
+in float wide;
+out vec3 own;
+void main() {
+  vec4 a = projectionMatrix * viewMatrix * vec4(from, 1.), b = projectionMatrix * viewMatrix * vec4(to, 1.);
+  vec2 d = (b.xy / b.w - a.xy / a.w) * pixels;
+  d = length(d) > 0. ? normalize(d) : vec2(1, 0);
+  vec4 end = position.x > 0. ? b : a;
+  end.xy += end.w * vec2(-d.y, d.x) * position.y * max(wide, 1.) / pixels;
+  own = colour;
+  gl_Position = end;
+}`;
+const line_fragment = `
+precision highp float;
+in vec3 own;
+out vec4 pixel;
+void main() { pixel = vec4(own, 1.); }`;
+
+/* ---- the scene ---- */
+
+const T = await import(URL.createObjectURL(
+  new Blob([by_id('three').textContent], { type: 'text/javascript' })));
+const canvas = by_id('view');
+const gl = new T.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+gl.setClearColor(0xffffff);
+const scene = new T.Scene(), overlay = new T.Scene();
+const size = Math.max(...[0, 1, 2].map(j => R.hi[j] - R.lo[j])) || 1;
+const scale = 2 / size; // of metres: the scene is about 2 wide, whatever its grains
+const middle = new T.Vector3(...[0, 1, 2].map(j => scale * (R.lo[j] + R.hi[j]) / 2));
+const perspective = new T.PerspectiveCamera(35, 1, 0.01, 100);
+const straight = new T.OrthographicCamera(-1, 1, 1, -1, -100, 100);
+const eye = { azimuth: flat ? 0 : 30, elevation: flat ? 0 : 20, away: 4.2, to: middle.clone() };
+
+function colour_table() {
+  const bytes = new Uint8Array(256 * 2 * 4);
+  for (let i = 0; i < 256; i++) {
+    bytes.set([...palette(i / 255), 255], 4 * i);
+    const c = ten[Math.min(Math.floor(i * 10 / 256), 9)];
+    bytes.set([c >> 16, c >> 8 & 255, c & 255, 255], 4 * (256 + i));
+  }
+  const t = new T.DataTexture(bytes, 256, 2);
+  t.needsUpdate = true;
+  return t;
+}
+
+const uniforms = {
+  origin: { value: new T.Vector3() }, quantum: { value: new T.Vector3() }, scale: { value: scale },
+  cutoff: { value: 0 }, ortho: { value: false }, classes: { value: false }, marks: { value: true },
+  plane: { value: flat }, palette: { value: colour_table() },
+};
+const shader = (vertex, fragment, uniforms) => new T.RawShaderMaterial({
+  glslVersion: T.GLSL3, vertexShader: vertex, fragmentShader: fragment, uniforms, side: T.DoubleSide });
+function square() {
+  const g = new T.InstancedBufferGeometry();
+  g.setAttribute('position', new T.BufferAttribute(
+    new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3));
+  g.setIndex([0, 1, 2, 0, 2, 3]);
+  return g;
+}
+const balls = new T.Mesh(square(), shader(ball_vertex, ball_fragment, uniforms));
+balls.frustumCulled = false;
+scene.add(balls);
+const line_uniforms = { pixels: { value: new T.Vector2() } };
+const network = new T.Mesh(square(), shader(line_vertex, line_fragment, line_uniforms));
+network.frustumCulled = false;
+overlay.add(network); // seen through the grains
+const panels = new T.Mesh(new T.BufferGeometry(), new T.MeshBasicMaterial({
+  color: 0x6f7f95, transparent: true, opacity: 0.16, side: T.DoubleSide, depthWrite: false }));
+const edges = new T.LineSegments(new T.BufferGeometry(), new T.LineBasicMaterial({ color: 0x55606f }));
+panels.frustumCulled = edges.frustumCulled = false;
+scene.add(panels, edges);
+
+function instanced(g, name, array, width, normalised) {
+  const old = g.getAttribute(name);
+  if (old && old.array.length === array.length) {
+    old.array = array;
+    old.needsUpdate = true;
+    return;
+  }
+  g.setAttribute(name, new T.InstancedBufferAttribute(array, width, normalised));
+}
+
+/* ---- a frame into the scene ---- */
+
+let now = null, chosen = null; // the frame shown; the id of the grain picked
+
+function show_grains(f) {
+  const g = balls.geometry, show = colours[by_id('colour').value];
+  if (f.n !== g.instanceCount) for (const a of ['x', 'q', 'radius', 'value', 'chosen']) g.deleteAttribute(a);
+  const value = show.of(f), range = range_of(show, value);
+  draw_bar(show, range);
+  if (range) {
+    const [lo, hi] = range;
+    for (let i = 0; i < f.n; i++)
+      value[i] = hi > lo ? Math.min(Math.max((value[i] - lo) / (hi - lo), 0), 1) : 0.5;
+  }
+  instanced(g, 'x', f.x, 4, false);
+  instanced(g, 'q', f.q, 4, true);
+  instanced(g, 'radius', f.radius, 1, false);
+  instanced(g, 'value', value, 1, false);
+  instanced(g, 'chosen', Float32Array.from(f.id, id => id === chosen ? 1 : 0), 1, false);
+  g.instanceCount = f.n;
+  uniforms.origin.value.set(...f.m.lo);
+  uniforms.quantum.value.set(...f.m.step);
+  uniforms.classes.value = !!show.classes;
+}
+
+function show_network(f) {
+  network.visible = by_id('network').checked && f.c > 0;
+  if (!network.visible) return;
+  const push = [];
+  for (let i = 0; i < f.c; i++) if (f.fn[i]) push.push(i);
+  const n = push.length, from = new Float32Array(3 * n), to = new Float32Array(3 * n),
+    colour = new Float32Array(3 * n), wide = new Float32Array(n);
+  push.forEach((i, k) => {
+    const b = place(f, f.b[i]), normal = [0, 1, 2].map(j => f.normal[4 * i + j] / 127);
+    const a = f.a[i] >= 0 ? place(f, f.a[i]) : b.map((x, j) => x - f.radius[f.b[i]] * normal[j]);
+    for (let j = 0; j < 3; j++) from[3 * k + j] = scale * a[j], to[3 * k + j] = scale * b[j];
+    colour.set(f.normal[4 * i + 3] === 2 ? [.82, .24, .17] : [.12, .31, .61], 3 * k);
+    wide[k] = 8 * devicePixelRatio * f.fn[i] / 65535; // pixels, half of it; the frame's largest has 16
+  });
+  const g = network.geometry;
+  for (const a of ['from', 'to', 'colour', 'wide']) g.deleteAttribute(a);
+  instanced(g, 'from', from, 3);
+  instanced(g, 'to', to, 3);
+  instanced(g, 'colour', colour, 3);
+  instanced(g, 'wide', wide, 1);
+  g.instanceCount = n;
+}
+
+let walls_shown = -1;
+async function show_walls(f) {
+  panels.visible = edges.visible = by_id('walls').checked;
+  if (f.m.b === walls_shown || f.m.b === undefined) return;
+  walls_shown = f.m.b;
+  const buffer = await chunk('b' + f.m.b), [triangles, lines] = new Uint32Array(buffer, 0, 2);
+  const corners = new Float32Array(buffer, 8, 9 * triangles).map(x => x * scale);
+  const ends = new Float32Array(buffer, 8 + 36 * triangles, 6 * lines).map(x => x * scale);
+  panels.geometry.dispose();
+  edges.geometry.dispose();
+  panels.geometry = new T.BufferGeometry().setAttribute('position', new T.BufferAttribute(corners, 3));
+  edges.geometry = new T.BufferGeometry().setAttribute('position', new T.BufferAttribute(ends, 3));
+}
+
+function row(table, name, text) {
+  const r = table.insertRow();
+  r.insertCell().textContent = name;
+  r.insertCell().textContent = text;
+}
+function show_picked(f) {
+  const box = by_id('picked'), i = chosen === null ? -1 : f.id.indexOf(chosen);
+  box.replaceChildren(Object.assign(document.createElement('h2'), { textContent: 'Grain' }));
+  if (i < 0) {
+    const hint = chosen === null ? 'Click a grain to read its numbers.'
+                                 : 'Grain ' + chosen + ' is not in this frame.';
+    box.append(Object.assign(document.createElement('p'), { className: 'hint', textContent: hint }));
+    return;
+  }
+  const table = document.createElement('table'), v = velocity(f, i);
+  row(table, 'id', f.id[i]);
+  row(table, 'kind', meta.kinds[f.kind[i]]);
+  row(table, 'radius', digits(f.radius[i]) + ' m');
+  row(table, 'mass', digits(f.mass[i]) + ' kg');
+  row(table, 'position', place(f, i).slice(0, meta.dim).map(digits).join(', ') + ' m');
+  row(table, 'velocity', v.slice(0, meta.dim).map(digits).join(', ') + ' m/s');
+  row(table, 'speed', digits(norm(v)) + ' m/s');
+  row(table, 'spin', digits(spin(f, i)) + ' rad/s');
+  if (meta.solved) {
+    row(table, 'contacts that push', counts(f)[i]);
+    row(table, 'sum of normal forces', digits(forces(f)[i]) + ' N');
+  }
+  box.append(table);
+}
+
+function show(f) {
+  now = f;
+  by_id('frame').value = f.k;
+  by_id('now').textContent = 't = ' + digits(f.m.t) + ' s, step ' + f.m.s;
+  show_grains(f);
+  show_network(f);
+  show_picked(f);
+  plot();
+  show_walls(f).then(draw);
+}
+
+/* ---- curves ---- */
+
+const curves = meta.curves;
+for (const name in curves) by_id('curve').add(new Option(name + (curves[name].unit ? ', ' + curves[name].unit : ''), name));
+by_id('curves').hidden = meta.frames.length < 2;
+
+function plot() {
+  const curve = curves[by_id('curve').value], c = by_id('plot').getContext('2d');
+  if (!curve || !now) return;
+  const { width, height } = by_id('plot'), left = 84, bottom = 34, top = 10, right = 10;
+  const t = meta.frames.map(f => f.t), y = curve.value, real = y.filter(x => x !== null);
+  let lo = Math.min(...real), hi = Math.max(...real);
+  if (lo > 0 && lo < 0.5 * hi) lo = 0;
+  if (!(hi > lo)) hi = lo + (Math.abs(lo) || 1);
+  const X = s => left + (width - left - right) * (s - t[0]) / ((t[t.length - 1] - t[0]) || 1);
+  const Y = s => height - bottom - (height - bottom - top) * (s - lo) / (hi - lo);
+  c.clearRect(0, 0, width, height);
+  c.font = '20px system-ui, sans-serif';
+  c.strokeStyle = '#c3c9d4';
+  c.strokeRect(left, top, width - left - right, height - top - bottom);
+  c.fillStyle = '#556';
+  c.textAlign = 'right';
+  c.fillText(digits(hi), left - 6, top + 18);
+  c.fillText(digits(lo), left - 6, height - bottom);
+  c.fillText(digits(t[t.length - 1]) + ' s', width - right, height - 8);
+  c.textAlign = 'left';
+  c.fillText(digits(t[0]), left, height - 8);
+  c.strokeStyle = '#1f4e9c';
+  c.lineWidth = 2.5;
+  c.beginPath();
+  let drawing = false;
+  y.forEach((v, k) => {
+    if (v === null) drawing = false;
+    else if (drawing) c.lineTo(X(t[k]), Y(v));
+    else c.moveTo(X(t[k]), Y(v)), drawing = true;
+  });
+  c.stroke();
+  c.strokeStyle = '#d03c2b';
+  c.lineWidth = 1.5;
+  c.beginPath();
+  c.moveTo(X(now.m.t), top);
+  c.lineTo(X(now.m.t), height - bottom);
+  c.stroke();
+}
+
+/* ---- the eye ---- */
+
+function camera() {
+  const d = Math.PI / 180, ce = Math.cos(eye.elevation * d), se = Math.sin(eye.elevation * d);
+  const toward = flat ? new T.Vector3(Math.sin(eye.azimuth * d) * ce, se, Math.cos(eye.azimuth * d) * ce)
+                      : new T.Vector3(Math.sin(eye.azimuth * d) * ce, -Math.cos(eye.azimuth * d) * ce, se);
+  const cam = by_id('perspective').checked && !flat ? perspective : straight;
+  const aspect = canvas.clientWidth / Math.max(canvas.clientHeight, 1), half = eye.away * Math.tan(17.5 * d);
+  uniforms.ortho.value = cam === straight;
+  cam.up.set(0, flat ? 1 : 0, flat ? 0 : 1);
+  cam.position.copy(eye.to).addScaledVector(toward, eye.away);
+  cam.lookAt(eye.to);
+  if (cam === perspective) {
+    cam.aspect = aspect;
+    cam.near = eye.away / 1000;
+    cam.far = eye.away + 50;
+  } else {
+    cam.left = -half * aspect, cam.right = half * aspect, cam.top = half, cam.bottom = -half;
+  }
+  cam.updateProjectionMatrix();
+  cam.updateMatrixWorld();
+  const cut = Number(by_id('cut').value) / 1000;
+  uniforms.cutoff.value = cut ? eye.away + 1.8 * (2 * cut - 1) : -1e9;
+  return cam;
+}
+
+function axes(cam) {
+  const c = by_id('axes').getContext('2d'), names = ['x', 'y', 'z'], m = cam.matrixWorldInverse.elements;
+  c.clearRect(0, 0, 90, 90);
+  c.font = '12px system-ui, sans-serif';
+  c.strokeStyle = c.fillStyle = '#445';
+  for (let j = 0; j < meta.dim; j++) {
+    const x = 45 + 30 * m[4 * j], y = 45 - 30 * m[4 * j + 1];
+    c.beginPath();
+    c.moveTo(45, 45);
+    c.lineTo(x, y);
+    c.stroke();
+    c.fillText(names[j], x + (x > 45 ? 3 : -9), y + (y > 45 ? 10 : -3));
+  }
+}
+
+function draw() {
+  const w = canvas.parentElement.clientWidth, h = canvas.parentElement.clientHeight;
+  gl.setPixelRatio(Math.min(devicePixelRatio, 2));
+  gl.setSize(w, h, false);
+  gl.getDrawingBufferSize(line_uniforms.pixels.value);
+  const cam = camera();
+  gl.autoClear = true;
+  gl.render(scene, cam);
+  if (network.visible) {
+    gl.autoClear = false;
+    gl.clearDepth();
+    gl.render(overlay, cam);
+  }
+  axes(cam);
+}
+
+/* The grain under a point of the canvas: the row of the nearest ball that the ray meets; -1: none */
+function pick(px, py) {
+  if (!now) return -1;
+  const cam = camera(), box = canvas.getBoundingClientRect();
+  const ray = new T.Raycaster();
+  ray.setFromCamera(new T.Vector2(2 * (px - box.left) / box.width - 1, 1 - 2 * (py - box.top) / box.height), cam);
+  const { origin, direction } = ray.ray;
+  const ahead = cam.getWorldDirection(new T.Vector3());
+  let best = -1, nearest = Infinity;
+  for (let i = 0; i < now.n; i++) {
+    const c = new T.Vector3(...place(now, i)).multiplyScalar(scale), r = scale * now.radius[i];
+    if (c.clone().sub(cam.position).dot(ahead) < uniforms.cutoff.value) continue;
+    c.sub(origin);
+    const b = c.dot(direction), h = r * r - c.lengthSq() + b * b;
+    if (h < 0) continue;
+    const t = flat ? b : b - Math.sqrt(h);
+    if (t < nearest) nearest = t, best = i;
+  }
+  return best;
+}
+
+/* ---- hands ---- */
+
+let held = null;
+canvas.addEventListener('pointerdown', e => {
+  held = { x: e.clientX, y: e.clientY, far: 0, slide: flat || e.button !== 0 || e.shiftKey };
+  canvas.setPointerCapture(e.pointerId);
+});
+canvas.addEventListener('pointermove', e => {
+  if (!held) return;
+  const dx = e.clientX - held.x, dy = e.clientY - held.y;
+  held.x = e.clientX, held.y = e.clientY, held.far += Math.abs(dx) + Math.abs(dy);
+  if (held.far < 4) return;
+  if (held.slide) {
+    const cam = camera(), m = cam.matrixWorld.elements;
+    const k = 2 * eye.away * Math.tan(17.5 * Math.PI / 180) / canvas.clientHeight;
+    eye.to.addScaledVector(new T.Vector3(m[0], m[1], m[2]), -k * dx);
+    eye.to.addScaledVector(new T.Vector3(m[4], m[5], m[6]), k * dy);
+  } else {
+    eye.azimuth -= 0.4 * dx;
+    eye.elevation = Math.min(Math.max(eye.elevation + 0.4 * dy, -89), 89);
+  }
+  draw();
+});
+canvas.addEventListener('pointerup', e => {
+  if (held && held.far < 4) {
+    const i = pick(e.clientX, e.clientY);
+    chosen = i < 0 ? null : now.id[i];
+    show(now);
+  }
+  held = null;
+});
+canvas.addEventListener('contextmenu', e => e.preventDefault());
+canvas.addEventListener('wheel', e => {
+  e.preventDefault();
+  eye.away = Math.min(Math.max(eye.away * Math.exp(0.001 * e.deltaY), 0.01), 40);
+  draw();
+}, { passive: false });
+
+let playing = false, wanted = 0, loading = false;
+
+async function go(k) {
+  wanted = Math.min(Math.max(k, 0), meta.frames.length - 1);
+  if (loading) return;
+  loading = true;
+  try {
+    while (!now || now.k !== wanted) show(await load(wanted));
+  } catch (e) {
+    trouble('This frame cannot be read: ' + e.message);
+    playing = false;
+  }
+  loading = false;
+}
+let last = 0;
+function tick(time) {
+  if (playing && !loading && time - last >= 1000 / Number(by_id('rate').value || 25)) {
+    last = time;
+    go(now.k + 1 < meta.frames.length ? now.k + 1 : 0);
+  }
+  requestAnimationFrame(tick);
+}
+function toggle() {
+  playing = !playing;
+  by_id('play').innerHTML = playing ? '&#10074;&#10074;' : '&#9654;';
+}
+by_id('play').addEventListener('click', toggle);
+by_id('frame').max = meta.frames.length - 1;
+by_id('frame').addEventListener('input', e => go(Number(e.target.value)));
+by_id('plot').addEventListener('click', e => {
+  const box = e.target.getBoundingClientRect(), t = meta.frames.map(f => f.t);
+  const s = ((e.clientX - box.left) / box.width * 560 - 84) / 466;
+  const at = t[0] + s * (t[t.length - 1] - t[0]);
+  go(t.reduce((best, x, k) => Math.abs(x - at) < Math.abs(t[best] - at) ? k : best, 0));
+});
+by_id('colour').addEventListener('change', () => show(now));
+by_id('curve').addEventListener('change', plot);
+by_id('marks').addEventListener('change', e => {
+  uniforms.marks.value = e.target.checked;
+  draw();
+});
+for (const id of ['network', 'walls']) by_id(id).addEventListener('change', () => show(now));
+for (const id of ['perspective', 'cut']) by_id(id).addEventListener('input', draw);
+addEventListener('resize', draw);
+addEventListener('keydown', e => {
+  if (/^(INPUT|SELECT)$/.test(e.target.tagName) && e.target.type !== 'checkbox') return;
+  if (e.key === ' ') e.preventDefault(), toggle();
+  if (e.key === 'ArrowRight') go(now.k + 1);
+  if (e.key === 'ArrowLeft') go(now.k - 1);
+});
+
+by_id('title').textContent = document.title;
+by_id('said').textContent = meta.said;
+by_id('network_line').hidden = !meta.solved;
+if (flat) by_id('perspective').parentElement.hidden = by_id('cut').parentElement.hidden = true;
+if (flat) eye.away = 3.6;
+await go(0);
+requestAnimationFrame(tick);
+
+/* For those who drive the page by a program: go(k), pick(x, y) -> row, what is shown. */
+window.nsd = { meta, go, pick, draw, get frame() { return now; }, get chosen() { return chosen; },
+  seen(i) {
+    const v = new T.Vector3(...place(now, i)).multiplyScalar(scale).project(camera());
+    const box = canvas.getBoundingClientRect();
+    return [box.left + (v.x + 1) / 2 * box.width, box.top + (1 - v.y) / 2 * box.height];
+  } };

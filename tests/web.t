@@ -1,0 +1,97 @@
+#!/usr/bin/env bash
+# nsd-web's page in a browser: it plays, a click reads the right grain, nothing is asked of a network.
+# shellcheck source=tests/tap.sh disable=SC2317 # functions called by name
+. tests/tap.sh
+
+nsd-gen 60 | nsd-step -n 900 --every 30 --contacts >"$tmp/out.h5" 2>/dev/null
+nsd-web -o "$tmp/out.html" "$tmp/out.h5" 2>/dev/null
+
+ok "the same file, the same page" cmp "$tmp/out.html" <(nsd-web "$tmp/out.h5" 2>/dev/null)
+ok "a stream, the same page" cmp "$tmp/out.html" <(nsd-cat "$tmp/out.h5" | nsd-web 2>/dev/null)
+is "the scene's title is its title" "$(grep -o '<title>[^<]*' "$tmp/out.html")" "<title>Sedimentation of 60 balls"
+title() { nsd-web --title 'a <b> & "c"' "$tmp/out.h5" 2>/dev/null | grep -o '<title>.*</title>'; }
+is "a title is text, not HTML" "$(title)" '<title>a &lt;b> &amp; "c"</title>'
+meta() { sed -n 's/.*id="meta">\(.*\)<\/script>/\1/p' "$1" | jq -r "$2"; }
+is "a frame for each" "$(meta "$tmp/out.html" '.frames | length')" 30
+nsd-web --every 10 "$tmp/out.h5" >"$tmp/few.html" 2>/dev/null
+is "--every" "$(meta "$tmp/few.html" '[.frames[].s] | @csv')" 30,330,630
+nsd-web --steps 600: "$tmp/out.h5" >"$tmp/few.html" 2>/dev/null
+is "--steps" "$(meta "$tmp/few.html" '.frames[0].s')" 600
+is "it says that numbers are rounded" "$(meta "$tmp/out.html" '.said | test("rounded: positions to [0-9.e-]+ m")')" true
+energy() { nsd-info "$tmp/out.h5" | jq -s "$1"; }
+is "curves are of the document" "$(meta "$tmp/out.html" '.curves["kinetic energy"].value[29] * 1e9 | round')" \
+    "$(energy 'last.kinetic_energy * 1e9 | round')"
+printf '{"step": 30, "z": {"mean": 4.5}}\n{"step": 90, "z": {"mean": 5}}\n' >"$tmp/stat"
+nsd-web --stat "$tmp/stat" "$tmp/out.h5" >"$tmp/few.html" 2>/dev/null
+is "curves of nsd-stat, by their steps" "$(meta "$tmp/few.html" '.curves["z.mean"].value[:4] | tojson')" '[4.5,null,5,null]'
+
+# what a chunk says is what the document says, to the rounding that the page states
+chunks()
+{
+    /usr/bin/python3 - "$tmp/out.html" "$tmp/out.h5" <<'PYTHON'
+import base64, json, re, sys, zlib
+import h5py, numpy as np
+page = open(sys.argv[1]).read()
+meta = json.loads(re.search(r'id="meta">(.*?)</script>', page).group(1))
+file = h5py.File(sys.argv[2])
+for k, m in enumerate(meta['frames']):
+    data = zlib.decompress(base64.b64decode(re.search(r'id="f%d">(.*?)</script>' % k, page).group(1)))
+    n, c = m['n'], m['c']
+    x = np.frombuffer(data, '<u2', 4 * n).reshape(n, 4)
+    v = np.frombuffer(data, '<i2', 4 * n, 8 * n).reshape(n, 4)
+    q = np.frombuffer(data, 'i1', 4 * n, 16 * n).reshape(n, 4)
+    a = np.frombuffer(data, '<i4', c, 20 * n)
+    b = np.frombuffer(data, '<i4', c, 20 * n + 4 * c)
+    f = np.frombuffer(data, '<u2', c, 20 * n + 8 * c)
+    assert len(data) == 20 * n + 16 * c
+    p = file['particles/all']
+    assert np.all(abs(m['lo'] + m['step'] * x[:, :3] - p['position/value'][k]) <= 0.51 * np.array(m['step']) + 1e-12)
+    assert np.all(abs(v[:, :3] / 32767 * m['vmax'] - p['velocity/value'][k]) <= 0.51 / 32767 * m['vmax'])
+    assert np.all(abs(x[:, 3] / 65535 * m['wmax'] - np.linalg.norm(p['angular_velocity/value'][k], axis=1)) <= 0.51 / 65535 * m['wmax'])
+    assert np.all(abs(q / 127 - p['orientation/value'][k]) <= 0.51 / 127)
+    s, dt = int(file['contacts/start'][k]), file['nsd'].attrs['dt']
+    assert c == file['contacts/count'][k]
+    assert np.array_equal(np.stack([a, b], 1), file['contacts/body'][s:s + c])
+    assert np.all(abs(f / 65535 * m['fmax'] - file['contacts/reaction'][s:s + c, 0] / dt) <= 0.51 / 65535 * m['fmax'] + 1e-15)
+PYTHON
+}
+ok "a frame's numbers are the document's, to the rounding that it states" chunks
+
+nsd-gen 20 | nsd-detect --fclib=local | tail -c +513 >"$tmp/both.hdf5"
+h5copy -i "$tmp/both.hdf5" -o "$tmp/problem.hdf5" -s /fclib_local -d /fclib_local
+refuses 65 "an FCLIB problem has no grains" nsd-web "$tmp/problem.hdf5"
+status 66 "a file that is not there" nsd-web "$tmp/none.h5"
+refuses 64 "a range that is none" nsd-web --steps 1:x "$tmp/out.h5"
+refuses 66 "curves that are not there" nsd-web --stat "$tmp/none" "$tmp/out.h5"
+
+# ---- in a browser ----
+
+browse() { timeout 300 /usr/bin/python3 tests/web.py "$1" "$tmp/shot.png" >"$tmp/seen" 2>"$tmp/why" || { cat "$tmp/why"; return 1; }; }
+seen() { jq -r "$1" "$tmp/seen"; }
+plays() # FILE NAME SOLVED
+{
+    ok "$2: a browser shows it" browse "$1"
+    [ -s "$tmp/seen" ] || return 0
+    is "$2: no error on the console, no trouble said" "$(seen '(.console | length | tostring) + .trouble')" 0
+    is "$2: nothing is asked of a network" "$(seen '.requests | length')" 0
+    is "$2: frames change, and come back" "$(seen '[.changes, .back, .plays] | tojson')" '[true,true,true]'
+    is "$2: a click reads the grain under it" "$(seen '.chosen == .id and .row >= 0')" true
+    is "$2: the network is there where forces are, and is seen" "$(seen '.solved, .network // false' | paste -sd' ')" "$3 $3"
+    row=$(seen .row)
+    truth=$(nsd-info --last -p "$4" | sed -n "$((row + 1))p")
+    is "$2: its numbers are the document's" "$(seen ".id == ($truth | .id) and
+        ([.position, ($truth | .x)] | transpose | all((.[0] - .[1] | fabs) < 1e-6))
+        and (.text | contains(\"radius\"))")" true
+}
+plays "$tmp/out.html" "balls" true "$tmp/out.h5"
+
+if [ -z "$quick" ]; then
+    nsd-gen -d 2 50 | nsd-step -n 40 --every 4 >"$tmp/discs.h5" 2>/dev/null
+    nsd-web "$tmp/discs.h5" >"$tmp/discs.html" 2>/dev/null
+    plays "$tmp/discs.html" "discs, without contacts" false "$tmp/discs.h5"
+
+    nsd-gen 500 | nsd-step -n 1000 --contacts >"$tmp/long.h5" 2>/dev/null
+    nsd-web "$tmp/long.h5" >"$tmp/long.html" 2>/dev/null
+    ok "500 balls, 1000 frames with their contacts: below 30 MB" [ "$(stat -c %s "$tmp/long.html")" -lt 30000000 ]
+fi
+done_testing

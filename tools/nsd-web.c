@@ -1,0 +1,172 @@
+/* nsd-web: a trajectory as one page that plays it in a browser. */
+#include "cli/cli.h"
+#include "cli/tool_filter.h"
+#include "draw/page.h"
+#include "io/reader.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static int64_t every = 1;
+static const char *output, *title, *stat, *steps;
+
+static const struct cli_option own[] = {
+    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
+    { CLI_INT, 0, "every", &every, "K", .min = 1, .max = 1e15, .help = "every K-th frame [1]" },
+    { CLI_TEXT, 'o', "output", &output, "FILE", .silent = true,
+      .help = "write to FILE [standard output]" },
+    { CLI_TEXT, 0, "title", &title, "TEXT", .help = "its title [the scene's, or nsd]" },
+    { CLI_TEXT, 0, "stat", &stat, "FILE",
+      .help = "curves of nsd-stat's JSON lines too, by their steps" },
+    { 0 },
+};
+static const struct cli_option *const tables[] = { own, NULL };
+
+const struct cli_tool tool = { "nsd-web", "[FILE ...]",
+                               "Makes one HTML page, which needs no network, that plays a "
+                               "trajectory: turn it, pick a grain,\n"
+                               "see the forces. Any browser of these years with WebGL 2 shows it.",
+                               tables,
+                               "  nsd-web out.h5 > out.html\n"
+                               "  nsd-web --every 10 --title 'A heap' -o heap.html out.h5\n" };
+
+/* The scene's title, if there is one; else "nsd" */
+static char *title_of(const struct packing *p)
+{
+    json_t *scene = p->scene ? json_loads(p->scene, 0, NULL) : NULL;
+    const char *text = json_string_value(json_object_get(scene, "title"));
+    char *copy = strdup(text ? text : "nsd");
+    json_decref(scene);
+    if (!copy) die(EX_SOFTWARE, "no memory");
+    return copy;
+}
+
+/* ---- curves ---- */
+
+static void add(struct page *p, const char *name, const char *unit, double value)
+{
+    struct why why = { 0 };
+    if (page_value(p, name, unit, value, &why)) die_why(&why);
+}
+
+static void add_energy(struct page *page, const struct packing *p)
+{
+    double kinetic = 0, potential = 0, fastest = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        double v2 = v3_dot(p->v[i], p->v[i]);
+        kinetic += 0.5 * (p->mass[i] * v2 + p->inertia[i] * v3_dot(p->w[i], p->w[i]));
+        potential -= p->mass[i] * v3_dot(p->g, p->x[i]);
+        fastest = fmax(fastest, sqrt(v2));
+    }
+    add(page, "kinetic energy", "J", kinetic);
+    add(page, "potential energy", "J", potential);
+    add(page, "largest speed", "m/s", fastest);
+}
+
+static void add_contacts(struct page *page, const struct frame *f)
+{
+    double push = 0, most = 0;
+    for (int64_t i = 0; f->contacts.found && i < f->contacts.n; i++) {
+        double r = f->contacts.found[i].r[0];
+        push += r > 0, most = fmax(most, r / f->packing.dt);
+    }
+    if (f->detected) add(page, "contacts", "", (double)f->contacts.n);
+    if (f->contacts.found) {
+        add(page, "contacts that push", "", push);
+        add(page, "largest normal force", "N", most);
+    }
+    if (f->reported) add(page, "overlap", "m", f->report.err.max_overlap);
+}
+
+/* Every number of a line of nsd-stat's, named by the keys that lead to it */
+static void add_numbers(struct page *page, json_t *j, const char *name)
+{
+    const char *key;
+    json_t *value;
+    if (json_is_number(j)) add(page, name, "", json_number_value(j));
+    if (!json_is_object(j)) return;
+    json_object_foreach(j, key, value)
+    {
+        char longer[200];
+        if (!*name && (!strcmp(key, "step") || !strcmp(key, "time"))) continue;
+        snprintf(longer, sizeof longer, "%s%s%s", name, *name ? "." : "", key);
+        add_numbers(page, value, longer);
+    }
+}
+
+/* The line of nsd-stat's with this step; lines come in the frames' order. NULL: none */
+static json_t *stat_line(FILE *lines, int64_t step)
+{
+    static json_t *next;
+    static long number;
+    while (lines && (!next || json_integer_value(json_object_get(next, "step")) < step)) {
+        json_error_t error;
+        json_decref(next);
+        next = json_loadf(lines, JSON_DISABLE_EOF_CHECK, &error);
+        number++;
+        if (!next && feof(lines)) return NULL;
+        if (!next) die(EX_DATAERR, "%s: line %ld: %s", stat, number, error.text);
+    }
+    return next && json_integer_value(json_object_get(next, "step")) == step ? next : NULL;
+}
+
+/* ---- frames ---- */
+
+static void add_frame(struct page *page, const struct frame *f, FILE *lines, const char *where)
+{
+    struct why why = { 0 };
+    if (page_frame(page, &f->packing, f->detected ? &f->contacts : NULL, &why))
+        die(why.status, "%s: %s", where, why.text);
+    add_energy(page, &f->packing);
+    add_contacts(page, f);
+    json_t *j = stat_line(lines, f->packing.step);
+    if (j) add_numbers(page, j, "");
+}
+
+static void run(struct reader *in, struct page *page, FILE *out, FILE *lines)
+{
+    struct frame f = { 0 };
+    struct why why = { 0 };
+    struct range range = { 0, INT64_MAX, 1 };
+    bool more = false;
+    if (steps && !range_parse(&range, steps)) die_usage("--steps: '%s' is not A:B:K", steps);
+    for (int64_t k = 0; !reader_next(in, steps ? &range : NULL, &f, &more, &why) && more; k++) {
+        if (k % every) continue;
+        tool_wants_packing(&f, reader_where(in));
+        if (!page->out) {
+            char *name = title ? strdup(title) : title_of(&f.packing);
+            if (page_begin(page, out, name ? name : "nsd", &why)) die_why(&why);
+            free(name);
+        }
+        add_frame(page, &f, lines, reader_where(in));
+        progress("%lld frames", (long long)page->frames);
+    }
+    if (why.status) die_why(&why);
+    if (!page->out) die(EX_DATAERR, "%s: no such frame", reader_where(in));
+    if (page_end(page, &why)) die_why(&why);
+    progress_end();
+    frame_free(&f);
+}
+
+int tool_main(int argc, char **argv)
+{
+    struct reader *in;
+    struct page page = { 0 };
+    struct why why = { 0 };
+    FILE *out = stdout, *lines = stat ? fopen(stat, "r") : NULL;
+    if (stat && !lines) die(EX_NOINPUT, "%s: cannot be opened", stat);
+    if (reader_open(&in, argc, argv, &why)) die_why(&why);
+    if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
+    if (output && !(out = fopen(output, "w"))) die(EX_IOERR, "%s: cannot be written", output);
+    run(in, &page, out, lines);
+    if (output && fclose(out)) die(EX_IOERR, "%s: not written", output);
+    if (!output) finish_stdout();
+    page_free(&page);
+    if (lines) fclose(lines);
+    reader_close(in);
+    return 0;
+}
