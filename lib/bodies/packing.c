@@ -5,6 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+const char *const overlap_name[OVERLAP_COUNT] = { "",     "keep",    "gap",
+                                                  "push", "project", "gap-project" };
+
 static void *array(int64_t n, size_t size)
 {
     return calloc(n > 0 ? (size_t)n : 1, size);
@@ -78,6 +81,7 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     if (packing_alloc_walls(to, p->walls, why) || packing_alloc_kinds(to, p->kinds, why)) goto fail;
     size_t n = (size_t)p->n, k2 = (size_t)p->kinds * (size_t)p->kinds;
     to->step = p->step, to->t = p->t, to->dt = p->dt, to->theta = p->theta, to->g = p->g;
+    to->overlap = p->overlap;
     to->seed = p->seed, to->cell = p->cell;
     memcpy(to->radius, p->radius, n * sizeof *p->radius);
     memcpy(to->mass, p->mass, n * sizeof *p->mass);

@@ -10,6 +10,7 @@
 #include "base/vec.h"
 #include "base/why.h"
 #include "bodies/cell.h"
+#include "bodies/overlap.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -29,6 +30,7 @@ struct packing {
     double theta; /* of the theta-method; 1/2 is the paper's midpoint */
     vec3 g;       /* m/s^2 */
     uint64_t seed;
+    enum overlap overlap;
 
     double *radius;  /* [n] m */
     double *mass;    /* [n] kg; 0: immovable or prescribed */
@@ -72,6 +74,12 @@ int packing_check(const struct packing *p, struct why *why);
 static inline vec3 packing_predict(const struct packing *p, int64_t i)
 {
     return v3_axpy(p->x[i], (1 - p->theta) * p->dt, p->v[i]);
+}
+
+/* m/s: no contact at rest approaches faster, whatever gravity did to both bodies in a step. */
+static inline double packing_calm(const struct packing *p)
+{
+    return 2 * p->dt * v3_norm(p->g);
 }
 
 /* body[] = those of bodies a and b that can move (mass > 0; a < 0 is a wall); returns how many. */
