@@ -49,6 +49,7 @@ static void detect(struct frame *f, const char *where)
     struct why why = { 0 };
     tool_wants_packing(f, where);
     options_theta(&f->packing, false);
+    options_overlap(&f->packing, false);
     if (detect_contacts(&f->contacts, &f->packing, options.gap, NULL, &why)) die_why(&why);
     f->detected = true, f->reported = f->moved = false;
     f->stale = true;

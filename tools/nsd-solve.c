@@ -46,6 +46,7 @@ static void solve(struct frame *f, const char *where)
     f->report.options = options_json(&o);
     if (!f->foreign) {
         options_theta(&f->packing, true);
+        options_overlap(&f->packing, true);
         if (options.warm && !f->contacts.found && f->contacts.n)
             warn("%s: no reactions to start from, starting from 0", where);
         if (step_solve(&f->packing, &f->contacts, &o, &f->report, &why)) die_why(&why);

@@ -141,6 +141,7 @@ int tool_main(int argc, char **argv)
     if (!more) die(EX_DATAERR, "%s: no frame to start from", reader_where(in));
     tool_wants_packing(&f, reader_where(in));
     options_theta(&f.packing, false);
+    options_overlap(&f.packing, false);
     if (writer_open(&out, output, WRITER_TRAJECTORY, &why)) die_why(&why);
     options_log_open(argc, argv, output);
     if (frame_note(&f, cli_history(), &why)) die_why(&why);

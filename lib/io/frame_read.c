@@ -124,6 +124,17 @@ static int read_walls(struct source *r, struct packing *p, struct why *why)
                               sizeof *p->wall, why);
 }
 
+/* What is done about overlap; a document need not say it. */
+static int read_overlap(struct source *doc, struct packing *p, struct why *why)
+{
+    char *name = source_text(doc, "/nsd", "overlap", why);
+    if (!name) return why->status;
+    for (int k = OVERLAP_KEEP; k < OVERLAP_COUNT; k++)
+        if (!strcmp(name, overlap_name[k])) p->overlap = (enum overlap)k;
+    free(name);
+    return p->overlap ? 0 : why_set(why, EX_DATAERR, "/nsd@overlap: no such way against overlap");
+}
+
 static int read_parameters(struct source *doc, struct packing *p, struct why *why)
 {
     double g[3];
@@ -135,6 +146,7 @@ static int read_parameters(struct source *doc, struct packing *p, struct why *wh
         return why->status;
     p->g = v3(g[0], g[1], g[2]);
     p->seed = (uint64_t)seed;
+    if (read_overlap(doc, p, why)) return why->status;
     p->scene = source_text(doc, "/nsd/scene", NULL, why);
     return why->status;
 }

@@ -56,7 +56,8 @@ static int write_parameters(hid_t file, const struct frame *f, struct why *why)
         h5_attr(file, "/nsd", "dt", H5T_NATIVE_DOUBLE, -1, &p->dt, why) ||
         h5_attr(file, "/nsd", "theta", H5T_NATIVE_DOUBLE, -1, &p->theta, why) ||
         h5_attr(file, "/nsd", "gravity", H5T_NATIVE_DOUBLE, 3, g, why) ||
-        h5_attr(file, "/nsd", "seed", H5T_NATIVE_INT64, -1, &seed, why))
+        h5_attr(file, "/nsd", "seed", H5T_NATIVE_INT64, -1, &seed, why) ||
+        (p->overlap && h5_attr_text(file, "/nsd", "overlap", overlap_name[p->overlap], why)))
         return why->status;
     return p->scene ? h5_write_text(file, "/nsd/scene", p->scene, why) : 0;
 }

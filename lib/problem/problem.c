@@ -1,6 +1,7 @@
 /* problem/problem.c: the bundles of a packing and of a given W [problem/problem.h]. */
 #include "problem/problem.h"
 
+#include "bodies/arms.h"
 #include "problem/offset.h"
 #include "problem/schedule.h"
 
@@ -159,8 +160,7 @@ static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
     int k = slot_lane(i);
     for (int j = 0; j < 3; j++) r->n[j][k] = n[j], r->t1[j][k] = t1[j];
     r->mu[k] = c->mu;
-    vec3 xa = c->a < 0 ? c->x : packing_predict(pack, c->a), xb = packing_predict(pack, c->b);
-    contact_arms(c, xa, xb, &r->la[k], &r->lb[k]);
+    arms_of(pack, c, (1 - pack->theta) * pack->dt, &r->la[k], &r->lb[k]);
     const struct body *a = &p->body[body_index(r->a[k])], *b = &p->body[body_index(r->b[k])];
     double u[3], im = a->im + b->im;
     double it = im + r->la[k] * r->la[k] * a->ii + r->lb[k] * r->lb[k] * b->ii;

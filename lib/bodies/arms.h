@@ -1,0 +1,28 @@
+/*
+ * bodies/arms.h: the lever arms of a contact, along its normal.
+ *
+ * The paper's reach to the point of contact as it is predicted, midway in the overlap. An impact
+ * finds an overlap of up to v dt/2, and the arms shorter by that. Against a wall the true arm is the
+ * radius. Between two bodies half the overlap stays with each: only la + lb = the distance of the
+ * centres keeps the angular momentum.
+ */
+#ifndef NSD_ARMS_H
+#define NSD_ARMS_H
+
+#include "bodies/contact.h"
+#include "bodies/packing.h"
+
+/* la, lb (m), with the bodies `ahead` (s) from where they are when the contact acts */
+static inline void arms_of(const struct packing *p, const struct contact *c, double ahead,
+                           double *la, double *lb)
+{
+    if (p->overlap <= OVERLAP_KEEP) {
+        vec3 xa = c->a < 0 ? c->x : v3_axpy(p->x[c->a], ahead, p->v[c->a]);
+        contact_arms(c, xa, v3_axpy(p->x[c->b], ahead, p->v[c->b]), la, lb);
+        return;
+    }
+    *la = c->a < 0 ? 0 : p->radius[c->a] + 0.5 * c->gap;
+    *lb = p->radius[c->b] + (c->a < 0 ? 0 : 0.5 * c->gap);
+}
+
+#endif
