@@ -75,6 +75,7 @@ static void show_document(const struct frame *f, int64_t frames)
         json_object_set_new(j, "walls", json_integer(p->walls));
         json_object_set_new(j, "dt", json_number(p->dt));
         json_object_set_new(j, "theta", json_number(p->theta));
+        if (p->overlap) json_object_set_new(j, "overlap", json_string(overlap_name[p->overlap]));
         json_object_set_new(j, "gravity", json_vec(p->g));
         json_object_set_new(j, "seed", json_integer((json_int_t)p->seed));
         json_object_set_new(j, "material", material(p));

@@ -9,6 +9,8 @@
 static const struct cli_option own[] = {
     { CLI_REAL, 0, "theta", &options.theta, "T", .max = 1,
       .help = "must be what the contacts were detected with [the document's]" },
+    { CLI_CHOICE, 0, "overlap", &options.overlap, .choice = options_overlap_choice,
+      .help = "what nsd-move will do about overlap [the document's]" },
     { CLI_FLAG, 'w', "warm", &options.warm, .help = "start from the reactions in the document" },
     { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start from 0, as the paper",
       .usual = options_usual },

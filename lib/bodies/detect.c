@@ -1,6 +1,8 @@
 /* bodies/detect.c: gaps and points of contact of balls and planes. */
 #include "bodies/detect.h"
 
+#include "bodies/kinematics.h"
+
 #include <stdlib.h>
 
 /* The law of a pair of kinds of material */
@@ -80,8 +82,7 @@ static double meeting_reach(const struct packing *p)
    the bodies to touch. */
 static bool meets(const struct packing *p, const struct contact *c)
 {
-    vec3 va = c->a < 0 ? p->wall[-1 - c->a].v : p->v[c->a];
-    double approach = -v3_dot(v3_sub(p->v[c->b], va), c->n), calm = packing_calm(p);
+    double approach = -opening_of(p, c), calm = packing_calm(p);
     return c->gap <= p->dt * (approach + calm) && (c->en == 0 || approach <= calm);
 }
 

@@ -1,7 +1,7 @@
 /* move.c: see bodies/move.h. */
 #include "bodies/move.h"
 
-#include "bodies/arms.h"
+#include "bodies/kinematics.h"
 #include "bodies/project.h"
 
 #include <stdlib.h>

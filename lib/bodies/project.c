@@ -1,6 +1,8 @@
 /* bodies/project.c: overlaps taken out of positions [bodies/project.h]. */
 #include "bodies/project.h"
 
+#include "bodies/kinematics.h"
+
 #include <stdlib.h>
 
 enum {
@@ -34,12 +36,10 @@ static struct part part_of(const struct packing *p, const struct contact *c)
 {
     double small = c->a < 0 ? p->radius[c->b] : fmin(p->radius[c->a], p->radius[c->b]);
     double slop = SLOP * small + v3_norm(p->g) * p->dt * p->dt;
-    vec3 va = c->a < 0 ? p->wall[-1 - c->a].v : p->v[c->a];
-    double un = v3_dot(v3_sub(p->v[c->b], va), c->n);
     return (struct part){ .a = c->a,
                           .b = c->b,
                           .n = c->n,
-                          .gap = fmax(c->gap + p->dt * un + slop, -MOST * small),
+                          .gap = fmax(c->gap + p->dt * opening_of(p, c) + slop, -MOST * small),
                           .w = inverse_mass(p, c->a) + inverse_mass(p, c->b),
                           .slop = slop };
 }

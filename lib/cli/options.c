@@ -53,7 +53,7 @@ static const struct usual usual = {
     .newton = NEWTON_LINESEARCH, // plain steps run in circles at some contacts
     .newton_eps = 1e-13,         // about a thousand roundings: as if it were exact
     .newton_max = 100,           // after which the exact solution stands in
-    .overlap = OVERLAP_KEEP,
+    .overlap = OVERLAP_PROJECT,  // bounds overlap, adds no velocity, costs nothing [nsd-methods(7)]
 };
 
 /* --paper: the protocol of the paper's tables, which does not change with nsd's choice. */
@@ -134,7 +134,7 @@ static struct cli_choice newton_choice(int k)
     return (struct cli_choice){ k < NEWTON_COUNT ? newton_name[k] : NULL, NULL };
 }
 
-static struct cli_choice overlap_choice(int k)
+struct cli_choice options_overlap_choice(int k)
 {
     return (struct cli_choice){ k + 1 < OVERLAP_COUNT ? overlap_name[k + 1] : NULL, NULL };
 }
@@ -190,8 +190,8 @@ const struct cli_option options_detect[] = {
       .help = "a contact is a pair with a predicted gap of at most G m [0]" },
     { CLI_REAL, 0, "theta", &options.theta, "T", .max = 1,
       .help = "predict the position q + (1 - T) dt qdot [the document's; 0.5]" },
-    { CLI_CHOICE, 0, "overlap", &options.overlap, .choice = overlap_choice,
-      .help = "what is done about overlap; keep is the paper's", .usual = options_usual },
+    { CLI_CHOICE, 0, "overlap", &options.overlap, .choice = options_overlap_choice,
+      .help = "against overlap; keep is the paper's", .usual = options_usual },
     { 0 },
 };
 

@@ -26,6 +26,9 @@ extern const struct cli_option options_solve[];  /* the solver's own */
 extern const struct cli_option options_run[];    /* -j, --log, -e */
 extern const struct cli_option options_detect[]; /* --gap, --theta, --overlap */
 
+/* The words that --overlap takes */
+struct cli_choice options_overlap_choice(int index);
+
 /* The default of the member of `options` that `to` points to, as --help shows it. */
 const char *options_usual(const void *to);
 

@@ -26,6 +26,7 @@ struct shared {
     int dim;
     int64_t n;
     double dt, theta;
+    enum overlap overlap;
     uint32_t crc; /* of their radii and masses */
 };
 
@@ -252,7 +253,7 @@ static struct shared shared_of(const struct packing *p)
 {
     uint32_t crc = document_crc(0, p->radius, (size_t)p->n * sizeof *p->radius);
     crc = document_crc(crc, p->mass, (size_t)p->n * sizeof *p->mass);
-    return (struct shared){ p->dim, p->n, p->dt, p->theta, crc };
+    return (struct shared){ p->dim, p->n, p->dt, p->theta, p->overlap, crc };
 }
 
 /* What is stored only with the first frame has to be true of all. */
@@ -264,6 +265,8 @@ static int check_same(const struct writer *s, const struct frame *f, struct why 
                        (long long)p.n);
     if (p.dim != q.dim || p.dt != q.dt || p.theta != q.theta)
         return why_set(why, EX_DATAERR, "dim, dt or theta differ from the trajectory's");
+    if (p.overlap && q.overlap && p.overlap != q.overlap) // that of a scene is not said yet
+        return why_set(why, EX_DATAERR, "overlap differs from the trajectory's");
     if (p.crc != q.crc) return why_set(why, EX_DATAERR, "other bodies than the trajectory's");
     if (f->packing.step <= s->step)
         return why_set(why, EX_DATAERR, "step %lld after step %lld: a trajectory's steps increase",

@@ -1,7 +1,7 @@
 /* problem/problem.c: the bundles of a packing and of a given W [problem/problem.h]. */
 #include "problem/problem.h"
 
-#include "bodies/arms.h"
+#include "bodies/kinematics.h"
 #include "problem/offset.h"
 #include "problem/schedule.h"
 

@@ -1,13 +1,13 @@
 /*
- * bodies/arms.h: the lever arms of a contact, along its normal.
+ * bodies/kinematics.h: what the motion of two bodies means at their contact.
  *
- * The paper's reach to the point of contact as it is predicted, midway in the overlap. An impact
+ * The lever arms lie along the normal. The paper's reach to the point of contact as it is predicted, midway in the overlap. An impact
  * finds an overlap of up to v dt/2, and the arms shorter by that. Against a wall the true arm is the
  * radius. Between two bodies half the overlap stays with each: only la + lb = the distance of the
  * centres keeps the angular momentum.
  */
-#ifndef NSD_ARMS_H
-#define NSD_ARMS_H
+#ifndef NSD_KINEMATICS_H
+#define NSD_KINEMATICS_H
 
 #include "bodies/contact.h"
 #include "bodies/packing.h"
@@ -23,6 +23,13 @@ static inline void arms_of(const struct packing *p, const struct contact *c, dou
     }
     *la = c->a < 0 ? 0 : p->radius[c->a] + 0.5 * c->gap;
     *lb = p->radius[c->b] + (c->a < 0 ? 0 : 0.5 * c->gap);
+}
+
+/* m/s: n . (v_b - v_a), with the velocities that the bodies have now; for balls that is u_n */
+static inline double opening_of(const struct packing *p, const struct contact *c)
+{
+    vec3 va = c->a < 0 ? p->wall[-1 - c->a].v : p->v[c->a];
+    return v3_dot(v3_sub(p->v[c->b], va), c->n);
 }
 
 #endif
