@@ -2,6 +2,7 @@
 # make demo       set up, build, 500 balls, a picture     make install   PREFIX, DESTDIR
 # make bench      what it costs (bench/README.md)         make bench-compare   beside the last kept results
 # make bench-solvers   all solvers over a collection of problems, Siconos' beside them
+# make rest       what is done about overlap: columns and piles that rest (nsd-methods(7))
 # make paper      every table and figure of the paper     QUICK=1        the same in minutes
 #
 # Objects, tools and tests are under build/; SAN=1 makes the same with ASan and UBSan in build/san/,
@@ -109,6 +110,10 @@ bench: all
 bench-solvers: all
 	bench/solvers.sh
 
+# What each way against overlap does to what rests
+rest: all
+	bench/rest.sh
+
 # What make bench left beside what was kept before
 bench-compare:
 	bench/compare.sh
@@ -209,5 +214,5 @@ clean:
 -include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep bench bench-solvers bench-compare format lint $(PARTS:%=lint-%) $(TIDY) install uninstall clean setup-run setup-paper setup-check
+.PHONY: all tests test check demo paper paper-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) install uninstall clean setup-run setup-paper setup-check
 .SECONDARY:

@@ -22,7 +22,7 @@ for mode in "${modes[@]}"; do
     mapfile -t overlap < <(moments "$tmp/column-$mode.h5" | jq .max_overlap)
     case $mode in
     keep | gap) ok "$mode: the overlap of a column grows with the steps" \
-        holds "${overlap[1]} > 1.5 * ${overlap[0]} and ${overlap[1]} > 2e-5 * $radius" ;;
+        holds "${overlap[1]} > 1.3 * ${overlap[0]} and ${overlap[1]} > 2e-5 * $radius" ;;
     push) ok "push: that of a column stays below 1e-6 r" holds "${overlap[1]} <= 1e-6 * $radius" ;;
     *) ok "$mode: that of a column stays within the slop" holds "${overlap[1]} <= 1.05 * $slop" ;;
     esac
@@ -90,8 +90,8 @@ done
 tops() # MODE E: heights of the first three bounces over those of the closed form, 1 m e^(2 n)
 {
     jq -n --argjson e "$2" --argjson r $radius '{ dt: 1e-4, e_n: $e, bodies: [{ x: [0, 0, 1 + $r], radius: $r }],
-        walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }] }' | nsd-gen - | step --overlap "$1" -n 24000 --every 5 |
-        nsd-info -p - |
+        walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }] }' | nsd-gen - | step --overlap "$1" -n 24000 --every 5 >"$tmp/bounces.h5"
+    nsd-info -p "$tmp/bounces.h5" |
         jq -r 'select(.x) | .x[2] - 0.005' |
         awk -v e="$2" 'NR > 2 && b > a && b >= $1 && n < 3 { n++; print b / e ^ (2 * n) } { a = b; b = $1 }'
 }
@@ -123,19 +123,24 @@ done
 
 # ---- energy ----
 
-rises() # SCENE MODE [OPTION ...]: the steps' rises of energy, added up, over the first energy
+rises() # SCENE MODE: the steps' rises of energy, added up, over the first energy
 {
-    step --overlap "$2" -n 600 "${@:3}" "$tmp/$1.h5" | nsd-info - |
+    step --overlap "$2" -n 600 "$tmp/$1.h5" >"$tmp/rises.h5"
+    nsd-info "$tmp/rises.h5" |
         jq -n '[inputs | select(.step != null) | .kinetic_energy + .potential_energy] |
             . as $e | [range(1; length) | $e[.] - $e[. - 1] | select(. > 0)] | add / $e[0]'
 }
 jq -n '{ dt: 5e-5, mu: 0.3, e_n: 0.7, bodies: [{ count: 20, radius: { uniform: [2.5e-4, 5e-4] } }],
     walls: [{ box: { x: [-1e-3, 1e-3], y: [-1e-3, 1e-3], z: [0, null] } }] }' | scene bouncing
+# A projection lifts what an impact has let sink below the surface: m g v dt/2 each.
+declare -A most=([keep]=1e-6 [gap]=1e-5 [push]=1e-5 [project]=1e-4 [gap-project]=1e-4)
 for mode in "${modes[@]}"; do
-    ok "$mode: 20 balls that fall gain at most 1e-5 of their energy in all" holds "$(rises twenty "$mode") <= 1e-5"
+    ok "$mode: 20 balls that fall gain at most ${most[$mode]} of their energy in all" \
+        holds "$(rises twenty "$mode") <= ${most[$mode]}"
 done
-ok "keep: so do balls that bounce" holds "$(rises bouncing keep) <= 1e-5"
-ok "project: so do balls that bounce" holds "$(rises bouncing project) <= 1e-5"
+for mode in keep project; do
+    ok "$mode: so do balls that bounce" holds "$(rises bouncing "$mode") <= ${most[$mode]}"
+done
 echo '{ "dt": 1e-4, "gravity": [0, 0, 0], "overlap": true, "bodies": [{ "x": [0, 0, 0], "radius": 0.01, "mass": 1 },
     { "x": [0.019, 0, 0], "radius": 0.01, "mass": 3 }] }' | scene pair
 step -n 3 "$tmp/pair.h5" | nsd-cat --last >"$tmp/apart.h5"
