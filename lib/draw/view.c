@@ -65,7 +65,8 @@ static int gather_crowd(struct packing *crowd, const struct packing *p, struct w
     crowd->radius = malloc((size_t)(p->n + 1) * sizeof *crowd->radius);
     if (!crowd->x || !crowd->radius) {
         free(crowd->x), free(crowd->radius);
-        return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)p->n);
+        why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)p->n);
+        return EX_SOFTWARE;
     }
     bool some = find_crowd(&r, p);
     crowd->n = 0;
