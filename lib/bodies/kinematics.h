@@ -1,10 +1,10 @@
 /*
  * bodies/kinematics.h: what the motion of two bodies means at their contact.
  *
- * The lever arms lie along the normal. The paper's reach to the point of contact as it is predicted, midway in the overlap. An impact
- * finds an overlap of up to v dt/2, and the arms shorter by that. Against a wall the true arm is the
- * radius. Between two bodies half the overlap stays with each: only la + lb = the distance of the
- * centres keeps the angular momentum.
+ * The lever arms lie along the normal. The paper's reach to the point of contact as it is
+ * predicted, midway in the overlap. An impact finds an overlap of up to v dt/2, and the arms shorter
+ * by that. Against a wall the true arm is the radius. Between two bodies half the overlap is taken
+ * off each: only la + lb = the distance of the centres keeps the angular momentum.
  */
 #ifndef NSD_KINEMATICS_H
 #define NSD_KINEMATICS_H
