@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool last, particles, contacts, walls, history;
+static bool last, particles, contacts, walls, history, scene;
 static const char *steps;
 static bool shown; /* whether any frame had what was asked for: contacts, a history */
 
@@ -17,6 +17,8 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 'w', "walls", &walls, .help = "instead, a line for each wall" },
     { CLI_FLAG, 0, "history", &history,
       .help = "instead, a line for each sweep that nsd-solve --history has kept" },
+    { CLI_FLAG, 0, "scene", &scene,
+      .help = "instead, the scene that goes on from FILE's last frame, for jq and nsd-gen" },
     { CLI_FLAG, 'l', "last", &last, .help = "only the very last frame" },
     { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
     { 0 },
@@ -214,6 +216,34 @@ static void show(const struct frame *f)
     if (!particles && !walls && !contacts && !history) show_moment(f);
 }
 
+/* ---- --scene ---- */
+
+/* A scene of the same parameters, of a packing that keeps none */
+static json_t *scene_of_parameters(const struct packing *p)
+{
+    json_t *j =
+        json_pack("{s:i, s:f, s:I}", "dim", p->dim, "dt", p->dt, "seed", (json_int_t)p->seed);
+    const double g[3] = { p->g.x, p->g.y, p->g.z };
+    json_t *kinds = json_object();
+    for (int32_t k = 0; k < p->kinds; k++)
+        json_object_set_new(kinds, p->kind_name[k], json_object());
+    json_object_set_new(j, "gravity", json_numbers(g, p->dim));
+    json_object_set_new(j, "kinds", kinds);
+    json_object_set_new(j, "pairs", material(p));
+    return j;
+}
+
+/* The scene with the last frame's bodies, at its time */
+static void show_scene(const struct packing *p, const char *path)
+{
+    json_t *j = p->scene ? json_loads(p->scene, 0, NULL) : scene_of_parameters(p);
+    if (!json_is_object(j)) die(EX_DATAERR, "%s: /nsd/scene is no scene", path);
+    json_object_set_new(j, "theta", json_real(p->theta));
+    json_object_set_new(j, "time", json_real(p->t));
+    json_object_set_new(j, "bodies", json_pack("[{s:s}]", "document", path));
+    json_line(j);
+}
+
 int tool_main(int argc, char **argv)
 {
     struct reader *in;
@@ -224,10 +254,17 @@ int tool_main(int argc, char **argv)
     int64_t frames = 0;
     if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
     if (last && steps) die_usage("--last and --steps exclude each other");
+    if (scene && (argc != 1 || !strcmp(argv[0], "-")))
+        die_usage("--scene: one FILE, which the scene names");
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
+    if (scene) last = true;
     if (last) {
         if (reader_last(in, &f, &more, &why)) die_why(&why);
-        if (more) show(&f);
+        if (scene && (!more || !f.packed)) die(EX_DATAERR, "%s: no bodies", reader_where(in));
+        if (scene)
+            show_scene(&f.packing, argv[0]);
+        else if (more)
+            show(&f);
     }
     while (!last && !why.status && !reader_document(in, &frames, &why) && frames >= 0)
         for (int64_t k = 0; k < frames; k++) {

@@ -212,7 +212,8 @@ static int64_t run(struct run *r)
 static void count_steps(const struct packing *p)
 {
     if (!cli_given(&until)) return;
-    double n = ceil((until - p->t) / p->dt - 1e-6); // a time that is a sum of dt is reached, not passed
+    double n =
+        ceil((until - p->t) / p->dt - 1e-6); // a time that is a sum of dt is reached, not passed
     if (n > 1e15) die_usage("--until %g: more than 1e15 steps of %g s", until, p->dt);
     steps = n > 0 ? (int64_t)n : 0;
 }

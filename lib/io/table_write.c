@@ -9,8 +9,8 @@
 
 /* Room for bodies to come, in datasets of [frames][bodies]; in frames before they came, their rows
    say so: their id is -1, their numbers are no numbers. */
-static void make_room(const struct table_write *s, const char *path, enum column_type type, int rank,
-                      hsize_t most[4], hsize_t chunk[4], hid_t plist)
+static void make_room(const struct table_write *s, const char *path, enum column_type type,
+                      int rank, hsize_t most[4], hsize_t chunk[4], hid_t plist)
 {
     const double none = NAN;
     const int32_t nobody = -1;

@@ -62,7 +62,7 @@
  *   Bodies stay on the side that the normal, of any length, points to; in a box they stay inside.
  *
  * POUR { rate: bodies/s | mass_rate: kg/s, opening: { box: BOX } or { disc: { center, normal,
- *   radius } }, radius: SIZE, v, w, kind, density or mass, from [0] s, until s, count }
+ *   radius } }, radius: SIZE, v, w, kind, density or mass, from [time] s, until s, count }
  *   [scene/flow.h]; in the plane the disc is a segment.
  *
  * REMOVAL { outside: BOX } or { inside: BOX } or { below: { point, normal } }, with kind [any]: bodies

@@ -60,6 +60,7 @@ static int read_pour(jnode o, const struct scene *s, struct scene_pour *p)
         json_node_integer(json_node_key(&o, "count"), 0, INT32_MAX, &count))
         return 1;
     if (count >= 0) p->count = (double)count;
+    p->from = fmax(p->from, s->t); // nothing is due from before the scene begins
     p->density = s->kind[p->kind].density;
     return scene_read_mass(&o, &p->density, &p->mass);
 }
