@@ -8,13 +8,13 @@
 enum {
     LEVELS = 24,     /* grids of cells, for radii down to 2^-24 of the largest */
     TRIES = 20000,   /* places tried for a grain: at these densities it takes a dozen */
-    SWEEPS = 300,    /* over the pairs at most, after a growth */
+    SWEEPS = 100,    /* over the pairs at most, after a growth */
     LAST = 20000,    /* and in the end */
-    LEAST_STEPS = 12 /* growths from loose to dense at least */
+    STEPS = 24      /* growths from loose to dense */
 };
 static const double LOOSE[4] = { 0, 0, 0.4, 0.28 }; /* [dim] share of the box */
 static const double FURTHER = 1e-4; /* radii: what pairs are pushed beyond touching */
-static const double BETWEEN = 2e-3; /* smaller radii: overlap that may remain between growths */
+static const double BETWEEN = 0.02; /* smaller radii: overlap that may remain between growths */
 static const double REACH = 0.5;    /* mean radii: pairs this near are kept in the list */
 
 /* The grains in work, sorted: the largest first */
@@ -228,11 +228,10 @@ static int worst(const struct start *s, struct neighbours *near, double *left, s
 static int grow(struct start *s, double phi, struct why *why)
 {
     struct neighbours near = { 0 };
-    double step = pow(s->scale, -1.0 / LEAST_STEPS), left = 0;
+    double step = pow(s->scale, -1.0 / STEPS), left = 0;
     while (s->scale < 1 && !why->status) {
         s->scale = fmin(1, s->scale * step);
         push_apart(s, &near, BETWEEN, SWEEPS, &left, why);
-        step = fmax(sqrt(step), 1.002); // smaller and smaller, the denser it is
     }
     for (int k = 0; k < 50 && !why->status; k++) { // the last sweep moves grains, too
         push_apart(s, &near, 0, LAST / 50, &left, why);
