@@ -412,7 +412,8 @@ static void test_bad_scenes(void)
         { BODY("{\"x\": [0, 0, 0]}"), "2:13: bodies[0].radius: is missing" },
         { BODY("{\"x\": [0, 0, 0], \"count\": 3}"),
           "2:13: bodies[0]: wants one of the keys x count file document random" },
-        { BODY("7"), "2:13: bodies[0]: wants an object with one of the keys x count file document random" },
+        { BODY("7"),
+          "2:13: bodies[0]: wants an object with one of the keys x count file document random" },
         { BODY("{\"x\": [0, 0, 0], \"raduis\": 1}"),
           "2:30: bodies[0].raduis: unknown key; known here: x radius v w kind density mass fixed" },
         { BODY("{\"x\": [0, 0, 0], \"radius\": 1, \"mass\": 1, \"density\": 1}"),
@@ -439,7 +440,7 @@ static void test_bad_scenes(void)
           "2:88: bodies[0].radius.lognormal: [min, max] keeps less than a thousandth of it" },
         { COUNT("{\"poisson\": 3}"),
           "2:77: bodies[0].radius: wants one of the keys uniform gaussian lognormal "
-      "uniform_by_mass power sieve" },
+          "uniform_by_mass power sieve" },
         { "{\"dt\": 1, \"walls\": [{\"point\": [0, 0, 0], \"normal\": [0, 0, 0]}]}",
           "1:42: walls[0].normal: must not be zero" },
         { "{\"dt\": 1, \"pairs\": [{\"pair\": [\"ball\", \"wall\"]}, {\"pair\": [\"wall\", "
