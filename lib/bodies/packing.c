@@ -92,7 +92,7 @@ static bool resize(void *at, int64_t had, int64_t n, size_t size)
     if (!more) return false;
     if (n > had) memset(more + (size_t)had * size, 0, (size_t)(n - had) * size);
     memcpy(at, &more, sizeof more);
-    return true;
+    return true; // cppcheck-suppress memleak ; it is *at now
 }
 
 int packing_resize(struct packing *p, int64_t n, struct why *why)

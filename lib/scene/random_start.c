@@ -6,11 +6,11 @@
 #include <string.h>
 
 enum {
-    LEVELS = 24,     /* grids of cells, for radii down to 2^-24 of the largest */
-    TRIES = 20000,   /* places tried for a grain: at these densities it takes a dozen */
-    SWEEPS = 100,    /* over the pairs at most, after a growth */
-    LAST = 20000,    /* and in the end */
-    STEPS = 24      /* growths from loose to dense */
+    LEVELS = 24,   /* grids of cells, for radii down to 2^-24 of the largest */
+    TRIES = 20000, /* places tried for a grain: at these densities it takes a dozen */
+    SWEEPS = 100,  /* over the pairs at most, after a growth */
+    LAST = 20000,  /* and in the end */
+    STEPS = 24     /* growths from loose to dense */
 };
 static const double LOOSE[4] = { 0, 0, 0.4, 0.28 }; /* [dim] share of the box */
 static const double FURTHER = 1e-4; /* radii: what pairs are pushed beyond touching */

@@ -25,7 +25,7 @@ int scene_read_kind(jnode name, const struct scene *s, int32_t *kind);
 int scene_read_walls(jnode walls, struct scene *s, struct scene_box *box, bool *boxed);
 int scene_read_box(jnode object, int dim, struct scene_box *box);
 
-/* scene/scene_size.c: a SIZE */
+/* scene/scene_radii.c: a SIZE */
 int scene_read_size(jnode size, int dim, struct scene_size *z);
 
 /* scene/scene_flow.c: "pour" and "remove" */
