@@ -32,7 +32,7 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 'i', "in-place", &in_place, .silent = true,
       .help = "append to FILE; also where standard output is a terminal" },
     { CLI_ABOVE, 0, "progress", &lines, "S", .max = 1e9, .silent = true,
-      .help = "say every S seconds how far it is, also where nobody looks on [terminal only]" },
+      .help = "say how far it is every S seconds, on no terminal too [terminal]" },
     { CLI_TEXT, 'o', "output", &output, "FILE", "write to FILE [standard output]", .silent = true },
     { 0 },
 };

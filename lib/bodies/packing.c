@@ -83,7 +83,8 @@ int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals, s
     return p->poured && p->removed ? 0 : why_set(why, EX_SOFTWARE, "no memory for passages");
 }
 
-/* The array that *at points to has n elements of `size` bytes, those from `had` on zero; false: it is as it was. */
+/* The array that *at points to has n elements of `size` bytes, those from `had` on zero; false: it
+   is as it was. */
 static bool resize(void *at, int64_t had, int64_t n, size_t size)
 {
     void *old;
