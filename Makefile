@@ -15,7 +15,7 @@ CFLAGS  ?= $(if $(SAN),-O1 -g1,-O3 -g)
 B       := build$(if $(SAN),/san)
 
 , := ,
-LIBS := hdf5 gsl jansson zlib libpng
+LIBS := hdf5 gsl jansson zlib libpng cairo
 PC   := $(shell pkg-config --cflags $(LIBS) 2>/dev/null)
 PL   := $(shell pkg-config --libs $(LIBS) 2>/dev/null)
 

@@ -4,11 +4,11 @@
 set -euo pipefail
 
 run=(build-essential pkg-config libhdf5-dev hdf5-tools libgsl-dev libjansson-dev zlib1g-dev libpng-dev
-    libsuitesparse-dev jq gnuplot-nox)
+    libcairo2-dev libsuitesparse-dev jq gnuplot-nox)
 paper=("${run[@]}" pandoc)
 check=("${paper[@]}" perl python3-h5py mandoc shellcheck cppcheck clang libomp-dev libclang-rt-dev
     clang-tidy clang-format libfclib-dev gcovr
-    chromium chromium-driver python3-selenium)
+    ffmpeg chromium chromium-driver python3-selenium)
 
 case "${1:-run}" in
 run) packages=("${run[@]}") ;;

@@ -176,7 +176,8 @@ claim()
     'nsd-step'*'| nsd-web > run.html') page run.html "$2" ;;
     'nsd-web out.h5 > out.html') page out.html "$(frames out.h5 length)" ;;
     'nsd-web --every 10 '*' -o heap.html out.h5') page heap.html 10 && grep -q '<title>A heap' heap.html ;;
-    'ffmpeg '*) [ -s film.mp4 ] ;;
+    'nsd-view '*'-o film.mp4 out.h5') [ -s film.mp4 ] || [ -s film-00000.png ] ;;
+    *'nsd-view --network --svg > forces.svg') [ "$(grep -c '<path' forces.svg)" -gt 800 ] ;;
     'gnuplot '*) ;;
     # without a prompt: a scene, and Python
     '{ "title": "A steel ball'*) bodies stdout 801 && nsd-info -p stdout | jq -s -e 'map(.kind) | unique == ["ball", "steel"]' ;;

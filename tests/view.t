@@ -64,7 +64,7 @@ picture "other programs read it, without a date in it" "$tmp/ball.png" \
 picture "the ball is in the middle, the background in the corners" "$tmp/ball.png" \
     "at(100, 80) != [255] * 3 and at(0, 0) == at(199, 0) == at(0, 159) == [255] * 3"
 # 50 000 pixels a metre, r = 5 mm
-status 0 "a ball without a soft border" nsd-view --samples 1 --size 1000x800 "${box[@]:2}" "$tmp/ball.h5"
+status 0 "a ball without a soft border" nsd-view --bare --samples 1 --size 1000x800 "${box[@]:2}" "$tmp/ball.h5"
 mv "$tmp/out" "$tmp/large.png"
 picture "has the area pi r^2 within 1 %" "$tmp/large.png" \
     "abs(sum(at(x, y) != [255] * 3 for x in range(w) for y in range(h)) / (3.14159 * 250**2) - 1) < 0.01"
@@ -95,10 +95,86 @@ for option in '-c speed' '-c kind' '-c id' --plain '--camera 10,20' '--range 0,1
     # shellcheck disable=SC2086 # words
     ok "$option changes the picture" differs "$tmp/last.png" <(view $option "$tmp/out.h5")
 done
-status 0 "colours of radii" nsd-view "$tmp/out.h5"
+status 0 "colours of radii, without words in the picture" nsd-view --bare "$tmp/out.h5"
 like "are explained" "$(cat "$tmp/err")" '^nsd-view: radius 0\.[0-9]+ \(violet\) to 0\.[0-9]+ \(yellow\) m$'
-status 0 "colours of kinds" nsd-view -c kind "$tmp/out.h5"
+status 0 "colours of kinds" nsd-view --bare -c kind "$tmp/out.h5"
 is "need no word" "$(cat "$tmp/err")" ""
+
+# ---- over the bodies ----
+
+nsd-gen -d 2 60 | nsd-step -n 1200 --every 100 --contacts -o "$tmp/forces.h5" 2>/dev/null
+for option in --network --contacts '--network --force 1e9' '-c force' '-c contacts' '-c spin' '-c height' '-c mass' --bare '--pale 0.5' \
+    '--cut 1,0,0,0.001'; do
+    # shellcheck disable=SC2086 # words
+    ok "$option changes the picture" differs <(view "$tmp/forces.h5") <(view $option "$tmp/forces.h5")
+    # shellcheck disable=SC2086 # words
+    ok "$option: the same for any number of threads" cmp <(view -j 1 $option "$tmp/forces.h5") <(view -j 3 $option "$tmp/forces.h5")
+done
+for option in '--perspective 40' '--cut 1,0,0,0.001' '--perspective 40 --cut 0,-1,0.3,0'; do
+    # shellcheck disable=SC2086 # words
+    ok "balls: $option changes the picture" differs "$tmp/last.png" <(view $option "$tmp/out.h5")
+done
+ok "a plane beyond all cuts nothing" cmp <(view --bare "$tmp/out.h5") <(view --bare --cut 1,0,0,9 "$tmp/out.h5")
+ok "the normal may have any length" cmp <(view --cut 1,0,0,0.001 "$tmp/out.h5") <(view --cut 2,0,0,0.002 "$tmp/out.h5")
+refuses 65 "forces that were not kept" nsd-view --network "$tmp/out.h5"
+like "says what keeps them" "$(cat "$tmp/err")" 'nsd-step --contacts keeps them'
+nsd-detect "$tmp/out.h5" >"$tmp/touch.h5"
+refuses 65 "contacts that are not solved" nsd-view --network "$tmp/touch.h5"
+status 0 "have places all the same" nsd-view --contacts "$tmp/touch.h5"
+
+nsd-info --last -p "$tmp/forces.h5" | jq -r '[.id, .radius] | @tsv' | sed '1i # id size' >"$tmp/size.tsv"
+ok "a table's numbers are colours: of radii, the radii's" cmp \
+    <(view --bare --values "$tmp/size.tsv" "$tmp/forces.h5") <(view --bare -c radius "$tmp/forces.h5")
+{ echo 'step id other speed'; nsd-info -p "$tmp/forces.h5" | jq -r '[.step, .id, 7, (.v | map(. * .) | add | sqrt)] | @tsv'; } >"$tmp/speed.tsv"
+ok "rows of a step are of that step" cmp <(view --bare --range 0,0.1 -s 500 --values "$tmp/speed.tsv" "$tmp/forces.h5") \
+    <(view --bare --range 0,0.1 -s 500 -c speed "$tmp/forces.h5")
+ok "--column chooses" differs <(view --values "$tmp/speed.tsv" "$tmp/forces.h5") <(view --values "$tmp/speed.tsv" --column other "$tmp/forces.h5")
+for bad in 'x y\n1 2' 'id a\n1 x' 'id a\n1' 'id a\nnan 2' ''; do
+    printf '%b' "$bad" >"$tmp/bad.tsv"
+    refuses 65 "a table of '$bad'" nsd-view --values "$tmp/bad.tsv" "$tmp/forces.h5"
+done
+refuses 65 "a column that is not there" nsd-view --values "$tmp/size.tsv" --column b "$tmp/forces.h5"
+refuses 66 "a table that is not there" nsd-view --values "$tmp/none.tsv" "$tmp/forces.h5"
+
+# ---- SVG ----
+
+svg() { /usr/bin/python3 -c 'import sys, xml.dom.minidom as m; m.parse(sys.argv[1])' "$1"; }
+nsd-view --svg --network -o "$tmp/a.svg" "$tmp/forces.h5" 2>/dev/null
+ok "an SVG is XML" svg "$tmp/a.svg"
+ok "the same twice" cmp "$tmp/a.svg" <(view --svg --network "$tmp/forces.h5")
+ok "more forces are more lines" [ "$(grep -c '<path' "$tmp/a.svg")" -gt "$(view --svg "$tmp/forces.h5" | grep -c '<path')" ]
+refuses 65 "balls have none" nsd-view --svg "$tmp/out.h5"
+
+# ---- stray bodies, and one that is followed ----
+
+stray() { echo '{"dt": 1e-4, "bodies": [{"count": 40, "radius": 1e-3, "box": {"x": [0, 0.01], "y": [0, 0.01], "z": [0, null]}}'"$1"']}' | nsd-gen -; }
+stray '' >"$tmp/crowd.h5"
+stray ', {"x": [3, 3, 3], "radius": 1e-3}' >"$tmp/stray.h5"
+ok "one far from all others does not shrink them" cmp <(view --bare "$tmp/crowd.h5") <(view --bare "$tmp/stray.h5")
+ok "but with --strays" differs <(view --bare "$tmp/crowd.h5") <(view --bare --strays "$tmp/stray.h5")
+nsd-step -n 300 --every 100 -o "$tmp/roll2.h5" "$tmp/ball.h5" 2>/dev/null
+view --bare --every 1 --plain --follow 0 --size 300x100 --camera 0,10 --box 0.005,0.025,-0.01,0.01,-0.003,0.013 -o "$tmp/q%02d.png" "$tmp/roll2.h5"
+picture "a ball that is followed stays where it is" "$tmp/q02.png" \
+    "at(150, 50) != [255] * 3 and max(at(140, 50)[1], at(140, 50)[2]) - at(140, 50)[0] > 40"
+refuses 65 "a body that is not there" nsd-view --follow 7 "$tmp/ball.h5"
+
+# ---- films ----
+
+if command -v ffmpeg >/dev/null; then
+    for film in mp4 webm; do
+        status 0 "a $film" nsd-view --every 1 --size 128x96 -o "$tmp/film.$film" "$tmp/roll2.h5" "$tmp/roll2.h5"
+        is "of every frame" "$(ffprobe -v error -count_frames -select_streams v -show_entries stream=nb_read_frames -of csv=p=0 "$tmp/film.$film")" 6
+        is "and nothing beside it" "$(find "$tmp" -name '*.part*')" ''
+    done
+    refuses 74 "a film in a directory that is missing" nsd-view --every 1 -o "$tmp/missing/a.mp4" "$tmp/roll2.h5"
+else
+    skip "films" "no ffmpeg"
+fi
+alone() { (cd "$tmp" && PATH=$(dirname "$(command -v nsd-view)") nsd-view --every 1 --size 64x64 -o alone.mp4 roll2.h5); }
+status 0 "without ffmpeg" alone
+is "there are pictures" "$(cd "$tmp" && echo alone*)" "alone-00000.png alone-00001.png alone-00002.png"
+like "and how to join them" "$(tail -n 1 "$tmp/err")" "ffmpeg -framerate 25 -i 'alone-%05d.png' .* 'alone.mp4'"
+refuses 64 "a film wants --every" nsd-view -o "$tmp/b.mp4" "$tmp/roll2.h5"
 
 # ---- series ----
 
@@ -181,7 +257,8 @@ for option in '--every 0' '--every -1' '--every 1.5' '-s -1' '-s x' '--every 1' 
     '--background fff' '--background #ffffff' '--background gggggg' '--background=' '--range 1' '--range 1,1' \
     '--range 2,1' '--range inf,inf' '--range 0,1 -c kind' '--box 0,1' '--box 0,1,0,1,0' '--box 0,1,0,1,1,0' \
     '--box 1,0,0,1,0,1' '--box 0,0,0,1,0,1' '--box 0,1e200,0,1,0,1' '--box 0,1,0,1,0,1,' '--samples 0' \
-    '--samples 9' '-j 0' '-j x' '--perspective'; do
+    '--samples 9' '-j 0' '-j x' '--perspective' '--perspective 130' '--cut 0,0,0,1' '--cut 1,0,0' '--cut x' '--pale 2' \
+    '--follow x' '--force 0' '-c value' '--column a' '--rate 0'; do
     # shellcheck disable=SC2086 # words
     refuses 64 "nsd-view $option" nsd-view $option "$tmp/keep.h5"
 done

@@ -1,23 +1,35 @@
-/* nsd-view: draws the bodies, one picture or a series, as PNG. */
+/* nsd-view: draws the bodies, one picture, a series or a film. */
 #include "cli/cli.h"
 #include "cli/tool_filter.h"
-#include "draw/view.h"
+#include "draw/film.h"
+#include "draw/overlay.h"
+#include "draw/svg.h"
+#include "draw/values.h"
 #include "io/reader.h"
 
 #include <ctype.h>
+#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-static int64_t step = -1, every, samples = 3, threads = 1;
+static int64_t step = -1, every, samples = 3, threads, follow = -1, rate = 25;
 static int colour = COLOUR_RADIUS;
-static bool plain;
-static const char *output, *range, *size, *camera = "30,15", *box, *background = "ffffff";
+static bool plain, bare, svg, strays;
+static double perspective, pale;
+static struct overlay over;
+static const char *output, *range, *size, *camera = "30,15", *box, *background = "ffffff", *cut,
+                                          *table, *wanted;
 
 static struct cli_choice colour_choice(int k)
 {
-    return (struct cli_choice){ k < COLOUR_COUNT ? colour_name[k] : NULL, NULL };
+    if (k == COLOUR_COUNT) return (struct cli_choice){ NULL, NULL };
+    const char *about = k == COLOUR_CONTACTS ? "how many contacts push it"
+                        : k == COLOUR_FORCE  ? "the sum of its normal forces, N"
+                        : k == COLOUR_VALUE  ? "a column of --values"
+                                             : NULL;
+    return (struct cli_choice){ colour_meaning[k].name, about };
 }
 
 static const struct cli_option own[] = {
@@ -26,31 +38,58 @@ static const struct cli_option own[] = {
     { CLI_INT, 0, "every", &every, "K", .min = 1, .max = 1e15,
       .help = "a series: every K-th frame, numbered from 0 [one picture]" },
     { CLI_TEXT, 'o', "output", &output, "FILE", .silent = true,
-      .help = "write to FILE; a series: 'f%05d.png' or so [standard output]" },
+      .help =
+          "write to FILE; a series: 'f%05d.png' or so, or film.mp4, film.webm [standard output]" },
+    { CLI_INT, 0, "rate", &rate, "N", .min = 1, .max = 240,
+      .help = "pictures a second of a film [25]" },
+    { CLI_FLAG, 0, "svg", &svg, .help = "of discs: an SVG in place of a PNG" },
     { CLI_CHOICE, 'c', "colour", &colour, .choice = colour_choice,
       .help = "what a body's colour shows [radius]" },
     { CLI_TEXT, 0, "range", &range, "LO,HI",
-      .help = "m or m/s at the ends of the palette [what there is; speeds from 0]" },
+      .help = "numbers at the ends of the palette [what there is; speeds from 0]" },
+    { CLI_TEXT, 0, "values", &table, "FILE",
+      .help = "a table with the columns id, perhaps step, and numbers" },
+    { CLI_TEXT, 0, "column", &wanted, "NAME",
+      .help = "the column of --values that is shown [the last]" },
+    { CLI_FLAG, 0, "network", &over.network,
+      .help = "forces: a line for each contact that pushes, as wide as its force" },
+    { CLI_FLAG, 0, "contacts", &over.contacts,
+      .help = "a dot at each contact, coloured by its status" },
+    { CLI_ABOVE, 0, "force", &over.force, "N", .min = 0, .max = 1e300,
+      .help = "the force of the widest line [the frame's largest]" },
+    { CLI_REAL, 0, "pale", &pale, "P", .min = 0, .max = 1,
+      .help = "bodies are mixed with the background, 0 to 1 [0; with --network 0.6]" },
+    { CLI_FLAG, 0, "bare", &bare,
+      .help = "without the strip that explains colours, size and time" },
     { CLI_FLAG, 0, "plain", &plain, .help = "without the marks that show how bodies turn" },
     { CLI_TEXT, 0, "size", &size, "WxH", .help = "pixels [the longer side 900, the other to fit]" },
     { CLI_TEXT, 0, "camera", &camera, "AZ,EL",
       .help = "of balls: degrees about z and above the horizon [30,15]" },
+    { CLI_REAL, 0, "perspective", &perspective, "DEG", .min = 0, .max = 120,
+      .help = "of balls: angle of sight, 0 for none [0]" },
+    { CLI_TEXT, 0, "cut", &cut, "NX,NY,NZ,D",
+      .help = "cut away what lies beyond NX x + NY y + NZ z = D (m)" },
+    { CLI_INT, 0, "follow", &follow, "ID", .min = 0, .max = INT32_MAX,
+      .help = "a series in which the body with this id stays in its place" },
+    { CLI_FLAG, 0, "strays", &strays, .help = "make room for bodies far from all others too" },
     { CLI_TEXT, 0, "box", &box, "X0,X1,Y0,Y1[,Z0,Z1]",
       .help = "only bodies with their centre in this box (m) [all]" },
     { CLI_TEXT, 0, "background", &background, "RRGGBB", .help = "its colour [ffffff]" },
     { CLI_INT, 0, "samples", &samples, "N", .min = 1, .max = 8,
       .help = "a pixel is the mean of N x N samples [3]" },
     { CLI_INT, 'j', "threads", &threads, "N", .min = 1, .max = 1024, .silent = true,
-      .help = "threads; they never change a picture [1]" },
+      .help = "threads; they never change a picture [all]" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
 
-const struct cli_tool tool = { "nsd-view", "[FILE ...]",
-                               "Draws a packing as PNG: the last frame, another, or a series.",
-                               tables,
-                               "  nsd-gen 500 | nsd-view > balls.png\n"
-                               "  nsd-view -c speed --every 10 -o 'film%05d.png' out.h5\n" };
+const struct cli_tool tool = {
+    "nsd-view", "[FILE ...]",
+    "Draws a packing as PNG: the last frame, another, a series or a film.", tables,
+    "  nsd-gen 500 | nsd-view > balls.png\n"
+    "  nsd-view -c speed --every 10 -o 'film%05d.png' out.h5\n"
+    "  nsd-view --every 1 -o film.mp4 out.h5\n"
+};
 
 /* ---- what options say ---- */
 
@@ -90,10 +129,35 @@ static void set_box(struct view *v)
     v->region = (struct region){ { x[0], x[2], x[4] }, { x[1], x[3], x[5] } };
 }
 
+/* --cut: the plane's normal of any length, and the distance that goes with it. */
+static void set_cut(struct view *v)
+{
+    double x[4];
+    vec3 n;
+    if (!numbers(cut, 4, x) || !((n = v3(x[0], x[1], x[2])), v3_norm(n) > 1e-150))
+        die_usage("--cut: '%s' is not NX,NY,NZ,D with a normal that is not zero", cut);
+    double length = v3_norm(n);
+    v->cuts = true, v->cut = v3_scale(1 / length, n), v->cut_at = x[3] / length;
+}
+
 static struct view view_of_options(void)
 {
-    struct view v = { .samples = (int)samples, .threads = (int)threads };
+    struct view v = { .samples = (int)samples,
+                      .threads = threads ? (int)threads : omp_get_num_procs(),
+                      .angle = perspective,
+                      .strays = strays,
+                      .follows = follow >= 0,
+                      .follow = (int32_t)follow,
+                      .pale = (float)(cli_given(&pale)                ? pale
+                                      : over.network || over.contacts ? 0.6
+                                                                      : 0) };
     double x[2];
+    over.legend = !bare;
+    if (table && !cli_given(&colour)) colour = COLOUR_VALUE;
+    if ((colour == COLOUR_VALUE) != (table != NULL)) die_usage("-c value and --values go together");
+    if (wanted && !table) die_usage("--column is of --values");
+    if (svg && perspective > 0) die_usage("--svg is of discs, and these have no perspective");
+    if (cut) set_cut(&v);
     paint_init(&v.paint, (enum colour)colour, plain);
     if (!numbers(camera, 2, x) || fabs(x[0]) > 360 || fabs(x[1]) > 90)
         die_usage("--camera: '%s' is not AZ,EL, from -360 to 360 and from -90 to 90", camera);
@@ -104,8 +168,7 @@ static struct view view_of_options(void)
     if (strlen(background) != 6 || strspn(background, "0123456789abcdefABCDEF") != 6)
         die_usage("--background: '%s' is not RRGGBB", background);
     v.background = rgb_of((unsigned)strtoul(background, NULL, 16));
-    if (range && (colour == COLOUR_KIND || colour == COLOUR_ID))
-        die_usage("--range: kind and id have none");
+    if (range && colour_meaning[colour].classes) die_usage("--range: kind and id have none");
     if (range && (!numbers(range, 2, x) || !(x[0] < x[1])))
         die_usage("--range: '%s' is not LO,HI, the first below the second", range);
     if (range) v.paint.lo = x[0], v.paint.hi = x[1];
@@ -123,14 +186,56 @@ static const char *conversion(const char *name)
     return p;
 }
 
+/* ---- what colours show ---- */
+
+static struct values values;
+static double *shown; /* [bodies] of the frame at hand, where the colour is not of the body alone */
+
+/* Before a frame is seen or drawn: the numbers of its bodies */
+static void set_values(struct view *v, const struct frame *f, const char *where)
+{
+    tool_wants_packing(f, where);
+    if (!colour_meaning[colour].given) return;
+    const struct contacts *s = f->detected ? &f->contacts : NULL;
+    if (colour != COLOUR_VALUE && (!s || !s->found))
+        die(EX_DATAERR, "%s: no forces of contacts (nsd-step --contacts keeps them)", where);
+    free(shown);
+    shown = malloc((size_t)(f->packing.n + 1) * sizeof *shown);
+    if (!shown) die(EX_SOFTWARE, "no memory for %lld bodies", (long long)f->packing.n);
+    values_of(shown, (enum colour)colour, &f->packing, s, &values);
+    v->paint.value = shown;
+}
+
+static void read_values(struct view *v)
+{
+    struct why why = { 0 };
+    if (table && values_read(&values, table, wanted, &why)) die_why(&why);
+    v->paint.name = values.name;
+}
+
 /* ---- pictures ---- */
 
+static const struct contacts *contacts_of(const struct frame *f, const char *where)
+{
+    if (!over.network && !over.contacts) return NULL;
+    if (!f->detected) die(EX_DATAERR, "%s: no contacts (nsd-step --contacts keeps them)", where);
+    if (over.network && !f->contacts.found)
+        die(EX_DATAERR, "%s: contacts without forces (nsd-solve finds them)", where);
+    return &f->contacts;
+}
+
 /* Draws a frame into a file; NULL is standard output. */
-static void draw(const struct view *v, const struct frame *f, const char *path)
+static void draw(const struct view *v, const struct frame *f, const char *path, const char *where)
 {
     struct picture p;
     struct why why = { 0 };
-    if (view_draw(v, &f->packing, &p, &why) || picture_write(&p, path, &why)) die_why(&why);
+    const struct contacts *s = contacts_of(f, where);
+    if (svg) {
+        if (svg_draw(&over, v, &f->packing, s, path, &why)) die_why(&why);
+        return;
+    }
+    if (overlay_draw(&over, v, &f->packing, s, &p, &why) || picture_write(&p, path, &why))
+        die_why(&why);
     picture_free(&p);
 }
 
@@ -138,10 +243,23 @@ static void draw(const struct view *v, const struct frame *f, const char *path)
 static void extend(struct view *v, const struct frame *f, const char *where)
 {
     struct why why = { 0 };
-    tool_wants_packing(f, where);
+    set_values(v, f, where);
     if (v->boxed && f->packing.dim == 3 && v->region.lo.z == v->region.hi.z)
         die_usage("--box: wants Z0,Z1 too, for balls");
     if (view_extend(v, &f->packing, &why)) die(why.status, "%s: %s", where, why.text);
+}
+
+enum { SMALL = 240 }; /* pixels: lower pictures have no room for words */
+
+/* Fits the view to what it has been extended to; what the legend takes is not the view's. */
+static void fit(struct view *v, const struct frame *f)
+{
+    int strip = overlay_strip(&over, v->width ? v->width : CAMERA_SIDE);
+    if (v->height && v->height < SMALL)
+        over.legend = false;
+    else if (v->height)
+        v->height -= strip;
+    view_fit(v, &f->packing);
 }
 
 /* Finds the frame asked for; reads to the end, for the writer in the pipe must not be cut off. */
@@ -162,16 +280,73 @@ static void find(struct reader *in, struct frame *found)
     frame_free(&f);
 }
 
+/* ---- series ---- */
+
+/* Where the pictures of a series go: into files whose names count, or into a film */
+static struct {
+    char *pattern, *path; /* of names; room for one of them */
+    size_t room;
+    const char *number; /* where the %0Nd of the pattern begins */
+    struct film *film;
+} series_out;
+
+static void series_open(void)
+{
+    struct why why = { 0 };
+    size_t room = strlen(output) + 40;
+    bool film = film_name(output);
+    series_out.room = room;
+    series_out.pattern = malloc(room), series_out.path = malloc(room);
+    if (!series_out.pattern || !series_out.path) die(EX_SOFTWARE, "no memory");
+    strcpy(series_out.pattern, output);
+    if (film && film_possible()) {
+        if (film_open(&series_out.film, output, (int)rate, &why)) die_why(&why);
+        return;
+    }
+    if (film) { // the pictures, and how to join them
+        snprintf(series_out.pattern, room, "%.*s-%%05d.png", (int)(strrchr(output, '.') - output),
+                 output);
+        warn("no ffmpeg: pictures instead, which this joins where there is one:");
+        warn("ffmpeg -framerate %lld -i '%s' -pix_fmt yuv420p '%s'", (long long)rate,
+             series_out.pattern, output);
+    }
+    series_out.number = conversion(series_out.pattern);
+}
+
+static void series_add(const struct view *v, const struct frame *f, int64_t k, int files,
+                       char *const *file, const char *where)
+{
+    struct why why = { 0 };
+    if (series_out.film) {
+        struct picture p;
+        if (overlay_draw(&over, v, &f->packing, contacts_of(f, where), &p, &why) ||
+            film_add(series_out.film, &p, &why))
+            die_why(&why);
+        picture_free(&p);
+        return;
+    }
+    const char *number = series_out.number;
+    snprintf(series_out.path, series_out.room, "%.*s%0*lld%s", (int)(number - series_out.pattern),
+             series_out.pattern, number[2] - '0', (long long)k, number + 4);
+    if (reader_reads(files, file, series_out.path))
+        die_usage("%s: is also the input", series_out.path);
+    draw(v, f, series_out.path, where);
+}
+
+static void series_close(void)
+{
+    struct why why = { 0 };
+    if (series_out.film && film_close(series_out.film, &why)) die_why(&why);
+    free(series_out.pattern), free(series_out.path);
+}
+
 /* Draws every K-th frame; the first document's decide about the view of all. */
 static void series(struct reader *in, int files, char *const *file, struct view *v)
 {
     struct frame f = { 0 };
     struct why why = { 0 };
     int64_t frames, before = 0, drawn = 0;
-    const char *number = conversion(output);
-    size_t room = strlen(output) + 32;
-    char *path = malloc(room);
-    if (!path) die(EX_SOFTWARE, "no memory");
+    series_open();
     while (!reader_document(in, &frames, &why) && frames >= 0) {
         int64_t first = (every - before % every) % every; // frames count on through documents
         bool fitted = v->started;
@@ -181,13 +356,11 @@ static void series(struct reader *in, int files, char *const *file, struct view 
         }
         for (int64_t k = first; k < frames; k += every, drawn++) {
             if (reader_frame(in, k, &f, &why)) die_why(&why);
-            tool_wants_packing(&f, reader_where(in));
-            if (!fitted) view_fit(v, &f.packing);
+            set_values(v, &f, reader_where(in));
+            view_follow(v, &f.packing);
+            if (!fitted) fit(v, &f);
             fitted = true;
-            snprintf(path, room, "%.*s%0*lld%s", (int)(number - output), output, number[2] - '0',
-                     (long long)drawn, number + 4);
-            if (reader_reads(files, file, path)) die_usage("%s: is also the input", path);
-            draw(v, &f, path);
+            series_add(v, &f, drawn, files, file, reader_where(in));
             progress("%lld pictures", (long long)drawn + 1);
         }
         before += frames;
@@ -195,18 +368,18 @@ static void series(struct reader *in, int files, char *const *file, struct view 
     if (why.status) die_why(&why);
     if (!drawn) die(EX_DATAERR, "%s: no such frame", reader_where(in));
     progress_end();
-    free(path);
+    series_close();
     frame_free(&f);
 }
 
-/* A picture has no numbers in it, so stderr says what the ends of the palette mean. */
-static void legend(const struct view *v)
+/* A picture without a legend has no numbers in it, so stderr says what the ends of the palette mean. */
+static void explain(const struct view *v)
 {
     const struct paint *p = &v->paint;
-    if (p->fixed || !(p->hi > p->lo)) return;
-    bool speed = p->by == COLOUR_SPEED;
-    warn("%s %.3g (violet) to %.3g (yellow) %s", speed ? "speed" : "radius", p->lo, p->hi,
-         speed ? "m/s" : "m");
+    const struct colour_meaning *m = &colour_meaning[p->by];
+    if (over.legend || p->fixed || !(p->hi > p->lo)) return;
+    warn("%s %.3g (violet) to %.3g (yellow)%s%s", p->name ? p->name : m->name, p->lo, p->hi,
+         *m->unit ? " " : "", m->unit);
 }
 
 int tool_main(int argc, char **argv)
@@ -217,20 +390,25 @@ int tool_main(int argc, char **argv)
     struct view v = view_of_options();
     if (every && step >= 0) die_usage("--step and --every exclude each other");
     if (every && !output) die_usage("--every wants --output 'name%%05d.png'");
+    if (svg && every && film_name(output)) die_usage("--svg: a film is of PNGs");
+    if (!every && output && film_name(output)) die_usage("%s: a film wants --every", output);
     if (!output && isatty(STDOUT_FILENO))
         die(EX_USAGE, "standard output is a terminal: a picture is binary, use > FILE or a pipe");
+    read_values(&v);
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
+    if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
     if (every) {
+        if (!film_name(output)) conversion(output);
         series(in, argc, argv, &v);
     } else {
-        if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
         find(in, &f);
         extend(&v, &f, reader_where(in));
-        view_fit(&v, &f.packing);
-        draw(&v, &f, output);
+        fit(&v, &f);
+        draw(&v, &f, output, reader_where(in));
         frame_free(&f);
     }
-    legend(&v);
+    explain(&v);
+    values_free(&values), free(shown);
     reader_close(in);
     return 0;
 }

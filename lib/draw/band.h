@@ -22,14 +22,26 @@ struct spot {
     struct rgb own; /* the body's colour */
 };
 
-/* A floor: the plane z = plane[0] + plane[1] x + plane[2] y inside a convex polygon. square[k], in
-   the same form, is the coordinate along side k of its pattern, in squares, of what is seen at (x,
-   y). */
+/* A floor: the plane z = plane[0] + plane[1] x + plane[2] y inside a convex polygon. square[k] /
+   over, both in the same form, is the coordinate along side k of its pattern, in squares, of what
+   is seen at (x, y). */
 struct ground {
     vec3 n;
-    double plane[3], square[2][3];
+    double plane[3], square[2][3], over[3];
     int corners;
     double x[WALLS_CORNERS], y[WALLS_CORNERS]; /* of the corners */
+};
+
+/* A triangle of a boundary that is half transparent */
+struct glass {
+    vec3 corner[3];
+};
+
+/* What is cut away: where side[0] x + side[1] y + side[2] z + side[3] > 0 */
+struct cutting {
+    bool cuts;
+    double side[4];
+    vec3 n; /* the plane's normal, as the viewer sees it: y down */
 };
 
 struct raster {
@@ -45,6 +57,10 @@ struct raster {
     int grounds, edges;
     struct ground *ground;
     struct edge *edge;
+    int64_t glasses;
+    struct glass *glass;
+    struct cutting cutting;
+    float pale;   /* 0 to 1: how much the bodies are mixed with the background */
     double thick; /* half the width of an edge */
 };
 
@@ -70,6 +86,7 @@ struct band {
     struct span *range; /* [squares] least and largest depth of what is in front */
     float *dark;        /* [width (y1 - y0)] share of the sky that is hidden */
     float *edge;        /* [width (y1 - y0)] opacity of an edge over it, 0 to 1 */
+    float *clear; /* [width (y1 - y0)] share of the light that comes through glass before it */
     int64_t spots;
     int64_t *spot; /* [spots] those near the band */
 };

@@ -18,6 +18,15 @@ void window_add(struct window *w, const struct camera *c, vec3 x, double r)
     vec3 s = camera_sees(c, x);
     w->u0 = fmin(w->u0, s.x - r), w->u1 = fmax(w->u1, s.x + r);
     w->v0 = fmin(w->v0, s.y - r), w->v1 = fmax(w->v1, s.y + r);
+    w->front = fmax(w->front, s.z + r);
+}
+
+void camera_perspective(struct camera *c, const struct window *w, double angle)
+{
+    c->eye = INFINITY, c->front = w->front;
+    if (!(angle > 0) || !isfinite(w->front)) return;
+    double longer = fmax(w->u1 - w->u0, w->v1 - w->v0);
+    c->eye = 0.5 * longer / tan(0.5 * angle * M_PI / 180);
 }
 
 /* The nearest even number: encoders of films want even sides. */

@@ -3,7 +3,18 @@
 
 #include <float.h>
 
-const char *const colour_name[COLOUR_COUNT] = { "radius", "speed", "kind", "id" };
+const struct colour_meaning colour_meaning[COLOUR_COUNT] = {
+    [COLOUR_RADIUS] = { .name = "radius", .unit = "m" },
+    [COLOUR_SPEED] = { .name = "speed", .unit = "m/s", .from_zero = true },
+    [COLOUR_KIND] = { .name = "kind", .unit = "", .classes = true },
+    [COLOUR_ID] = { .name = "id", .unit = "", .classes = true },
+    [COLOUR_SPIN] = { .name = "spin", .unit = "rad/s", .from_zero = true },
+    [COLOUR_HEIGHT] = { .name = "height", .unit = "m" },
+    [COLOUR_MASS] = { .name = "mass", .unit = "kg" },
+    [COLOUR_CONTACTS] = { .name = "contacts", .unit = "", .from_zero = true, .given = true },
+    [COLOUR_FORCE] = { .name = "force", .unit = "N", .from_zero = true, .given = true },
+    [COLOUR_VALUE] = { .name = "value", .unit = "", .given = true },
+};
 
 /* Ten colours that are easy to tell apart [Tableau 10] */
 static const unsigned ten[10] = { 0x4e79a7, 0xf28e2b, 0xe15759, 0x76b7b2, 0x59a14f,
@@ -66,19 +77,39 @@ void paint_init(struct paint *p, enum colour by, bool plain)
     }
 }
 
-/* The number that the palette shows: radius (m) or speed (m/s) */
+static double length(vec3 a)
+{
+    return fmin(hypot(hypot(a.x, a.y), a.z), DBL_MAX);
+}
+
+/* The number that the palette shows */
 static double palette_value(const struct paint *p, const struct packing *k, int64_t i)
 {
-    if (p->by == COLOUR_RADIUS) return k->radius[i];
-    return fmin(hypot(hypot(k->v[i].x, k->v[i].y), k->v[i].z), DBL_MAX);
+    switch (p->by) {
+    case COLOUR_SPEED:
+        return length(k->v[i]);
+    case COLOUR_SPIN:
+        return length(k->w[i]);
+    case COLOUR_HEIGHT:
+        return k->dim == 2 ? k->x[i].y : k->x[i].z;
+    case COLOUR_MASS:
+        return k->mass[i];
+    case COLOUR_CONTACTS:
+    case COLOUR_FORCE:
+    case COLOUR_VALUE:
+        return p->value[i];
+    default:
+        return k->radius[i];
+    }
 }
 
 void paint_range(struct paint *p, const struct packing *k)
 {
-    if (p->fixed || p->by == COLOUR_KIND || p->by == COLOUR_ID) return;
+    const struct colour_meaning *m = &colour_meaning[p->by];
+    if (p->fixed || m->classes) return;
     for (int64_t i = 0; i < k->n; i++) {
         double x = palette_value(p, k, i);
-        p->lo = fmin(p->lo, p->by == COLOUR_SPEED ? 0 : x), p->hi = fmax(p->hi, x);
+        if (isfinite(x)) p->lo = fmin(p->lo, m->from_zero ? fmin(0, x) : x), p->hi = fmax(p->hi, x);
     }
 }
 
@@ -87,6 +118,7 @@ struct rgb paint_body(const struct paint *p, const struct packing *k, int64_t i)
     if (p->by == COLOUR_KIND) return rgb_of(ten[k->kind[i] % 10]);
     if (p->by == COLOUR_ID) return rgb_of(ten[(uint32_t)k->id[i] % 10]);
     double x = palette_value(p, k, i), t = (x - p->lo) / (p->hi - p->lo);
+    if (isnan(x)) return rgb_of(0xb8b8b8);
     if (!(p->hi > p->lo)) t = x < p->lo ? 0 : x > p->hi ? 1 : 0.5; // all have one value
     return p->palette[(int)(255 * fmin(fmax(t, 0), 1) + 0.5)];
 }

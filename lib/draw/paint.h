@@ -4,8 +4,28 @@
 
 #include "bodies/packing.h"
 
-enum colour { COLOUR_RADIUS, COLOUR_SPEED, COLOUR_KIND, COLOUR_ID, COLOUR_COUNT };
-extern const char *const colour_name[COLOUR_COUNT]; /* as the command line has them */
+enum colour {
+    COLOUR_RADIUS,
+    COLOUR_SPEED,
+    COLOUR_KIND,
+    COLOUR_ID,
+    COLOUR_SPIN,
+    COLOUR_HEIGHT,
+    COLOUR_MASS,
+    COLOUR_CONTACTS, /* that push it */
+    COLOUR_FORCE,    /* the sum of its normal forces */
+    COLOUR_VALUE,    /* a number for each body, from elsewhere */
+    COLOUR_COUNT
+};
+
+/* What a colour shows; a table in paint.c */
+struct colour_meaning {
+    const char *name, *unit; /* as the command line and the legend have them */
+    bool classes;            /* a few colours that differ, not a palette */
+    bool from_zero;          /* the palette begins at 0 */
+    bool given;              /* the numbers are in paint->value */
+};
+extern const struct colour_meaning colour_meaning[COLOUR_COUNT];
 
 /* Linear light, 0 to 1, which can be added and averaged */
 struct rgb {
@@ -19,9 +39,11 @@ unsigned char rgb_byte(float light);
 
 struct paint {
     enum colour by;
-    bool plain;    /* no marks */
-    bool fixed;    /* lo and hi are given */
-    double lo, hi; /* m or m/s at the palette's ends; lo > hi: nothing seen yet */
+    bool plain;          /* no marks */
+    bool fixed;          /* lo and hi are given */
+    double lo, hi;       /* at the palette's ends; lo > hi: nothing seen yet */
+    const char *name;    /* of COLOUR_VALUE's numbers; or NULL */
+    const double *value; /* [bodies] of this packing, where the meaning says so; NAN: none */
     struct rgb palette[256];
 };
 

@@ -26,22 +26,22 @@ void picture_free(struct picture *p)
 
 /* ---- PNG ---- */
 
-struct bytes {
-    unsigned char *at;
-    size_t size, room;
-};
-
-static void append(png_structp png, png_bytep data, size_t n)
+int bytes_append(struct bytes_out *b, const unsigned char *data, size_t n)
 {
-    struct bytes *b = png_get_io_ptr(png);
     if (b->size + n > b->room) {
         size_t room = 2 * (b->size + n);
         unsigned char *more = realloc(b->at, room);
-        if (!more) png_error(png, "no memory");
+        if (!more) return -1;
         b->at = more, b->room = room;
     }
     memcpy(b->at + b->size, data, n);
     b->size += n;
+    return 0;
+}
+
+static void append(png_structp png, png_bytep data, size_t n)
+{
+    if (bytes_append(png_get_io_ptr(png), data, n)) png_error(png, "no memory");
 }
 
 static void flush_nothing(png_structp png)
@@ -56,7 +56,7 @@ static void fail_silently(png_structp png, png_const_charp text)
 }
 
 /* Without a date or a name, so that the same picture gives the same bytes. */
-static int encode(const struct picture *p, struct bytes *b, struct why *why)
+static int encode(const struct picture *p, struct bytes_out *b, struct why *why)
 {
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, fail_silently, NULL);
     png_infop info = png ? png_create_info_struct(png) : NULL;
@@ -78,7 +78,7 @@ static int encode(const struct picture *p, struct bytes *b, struct why *why)
 
 /* ---- out ---- */
 
-static bool write_all(int fd, const struct bytes *b)
+static bool write_all(int fd, const struct bytes_out *b)
 {
     for (size_t done = 0; done < b->size;) {
         ssize_t n = write(fd, b->at + done, b->size - done);
@@ -90,7 +90,7 @@ static bool write_all(int fd, const struct bytes *b)
 }
 
 /* Writes to an open file; when that fails, a regular file is cut to the length that it had. */
-static int write_open(int fd, const struct bytes *b, const char *name, struct why *why)
+static int write_open(int fd, const struct bytes_out *b, const char *name, struct why *why)
 {
     off_t start = lseek(fd, 0, fcntl(fd, F_GETFL) & O_APPEND ? SEEK_END : SEEK_CUR);
     if (!write_all(fd, b)) {
@@ -102,7 +102,8 @@ static int write_open(int fd, const struct bytes *b, const char *name, struct wh
 }
 
 /* Writes under another name in the same folder, then renames. */
-static int write_renamed(const char *path, const char *name, const struct bytes *b, struct why *why)
+static int write_renamed(const char *path, const char *name, const struct bytes_out *b,
+                         struct why *why)
 {
     const char *slash = strrchr(path, '/');
     int folder = slash ? (int)(slash - path) + 1 : 0;
@@ -125,24 +126,26 @@ static int write_renamed(const char *path, const char *name, const struct bytes 
     return why->status;
 }
 
-int picture_write(const struct picture *p, const char *path, struct why *why)
+int bytes_write(const struct bytes_out *b, const char *path, struct why *why)
 {
-    struct bytes b = { 0 };
     struct stat st;
-    if (encode(p, &b, why)) {
-        free(b.at);
-        return why->status;
-    }
     char *real = path ? realpath(path, NULL) : NULL; // a symbolic link is followed, not replaced
     bool special = real && !stat(real, &st) && !S_ISREG(st.st_mode);
     int fd = !path ? STDOUT_FILENO : special ? open(real, O_WRONLY | O_CLOEXEC) : -1;
     if (special && fd < 0)
         why_set(why, EX_IOERR, "%s: %s", path, strerror(errno));
     else if (fd >= 0)
-        write_open(fd, &b, path ? path : "standard output", why);
+        write_open(fd, b, path ? path : "standard output", why);
     else
-        write_renamed(real ? real : path, path, &b, why);
+        write_renamed(real ? real : path, path, b, why);
     free(real);
+    return why->status;
+}
+
+int picture_write(const struct picture *p, const char *path, struct why *why)
+{
+    struct bytes_out b = { 0 };
+    if (!encode(p, &b, why)) bytes_write(&b, path, why);
     free(b.at);
     return why->status;
 }

@@ -4,6 +4,8 @@
 
 #include "base/why.h"
 
+#include <stddef.h>
+
 struct picture {
     int width, height;  /* pixels */
     unsigned char *rgb; /* [3 width height] sRGB, the top row first */
@@ -12,6 +14,16 @@ struct picture {
 /* Returns 0 or EX_SOFTWARE when memory is short. */
 int picture_init(struct picture *p, int width, int height, struct why *why);
 void picture_free(struct picture *p);
+
+/* The bytes of a file to be. All zero to begin with; `at` is to be freed. */
+struct bytes_out {
+    unsigned char *at;
+    size_t size, room;
+};
+/* -1 when memory is short */
+int bytes_append(struct bytes_out *b, const unsigned char *data, size_t n);
+/* Writes them as picture_write() does. */
+int bytes_write(const struct bytes_out *b, const char *path, struct why *why);
 
 /*
  * Writes a PNG to `path`, or to standard output when that is NULL. A file is written under another

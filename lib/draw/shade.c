@@ -17,6 +17,11 @@ void shade_normals(struct band *b, const struct raster *s)
             double i = 1 / o->r;
             *n = (struct normal){ (float)(i * (x + 0.5 - o->x.x)), (float)(i * (y + 0.5 - o->x.y)),
                                   (float)(i * (b->z[k] - o->x.z)) };
+            float length2 = n->x * n->x + n->y * n->y + n->z * n->z;
+            if (s->cutting.cuts && length2 < 0.999F) { // inside the ball: the face of the cut
+                vec3 g = s->cutting.n;
+                *n = (struct normal){ (float)g.x, (float)g.y, (float)g.z };
+            }
         }
 }
 
@@ -154,13 +159,16 @@ static struct rgb ground_shown(const struct band *b, const struct raster *s, siz
 {
     const struct ground *g = &s->ground[GROUND - b->what[k]];
     double sum = 0;
+    double over = g->over[0] + g->over[1] * x + g->over[2] * y;
     for (int i = 0; i < 2; i++)
-        sum += floor(g->square[i][0] + g->square[i][1] * x + g->square[i][2] * y);
+        sum += floor((g->square[i][0] + g->square[i][1] * x + g->square[i][2] * y) / over);
     bool odd = sum - 2 * floor(0.5 * sum) > 0.5;
     float light = bright_background(s) ? (odd ? 0.73F : 0.86F) : (odd ? 0.05F : 0.08F);
     light /= 1 + 1.3F * b->dark[k];
     return (struct rgb){ light, light, light };
 }
+
+static const struct rgb glass = { 0.26F, 0.33F, 0.43F };
 
 static struct rgb sample(const struct band *b, const struct raster *s, int x, int y, struct turn *t)
 {
@@ -170,6 +178,8 @@ static struct rgb sample(const struct band *b, const struct raster *s, int x, in
                    : what <= GROUND ? ground_shown(b, s, k, x + 0.5, y + 0.5)
                    : s->flat        ? disc_light(s, &s->spot[what], x + 0.5, y + 0.5, t)
                                     : ball_light(b, s, k, t);
+    if (what >= 0 && s->pale > 0) c = rgb_mix(c, s->background, s->pale);
+    if (b->clear[k] < 1) c = rgb_mix(glass, c, b->clear[k]);
     if (!(b->edge[k] > 0)) return c;
     float line = bright_background(s) ? 0.08F : 0.4F;
     return rgb_mix(c, (struct rgb){ line, line, line }, b->edge[k]);

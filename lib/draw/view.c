@@ -5,33 +5,130 @@
 
 #include <stdlib.h>
 
-static bool is_shown(const struct view *v, const struct packing *p, int64_t i)
+bool view_shows(const struct view *v, const struct packing *p, int64_t i)
 {
-    vec3 x = p->x[i];
+    vec3 x = v3_sub(p->x[i], v->moved);
     if (!(v3_dot(x, x) < WALLS_FAR * WALLS_FAR) || !(p->radius[i] < WALLS_FAR)) return false;
     const struct region *r = &v->region;
     return !v->boxed || (x.x >= r->lo.x && x.x <= r->hi.x && x.y >= r->lo.y && x.y <= r->hi.y &&
                          (p->dim == 2 || (x.z >= r->lo.z && x.z <= r->hi.z)));
 }
 
-int view_extend(struct view *v, const struct packing *p, struct why *why)
+/* ---- stray bodies ---- */
+
+static int compare(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+enum { CROWD = 20 }; /* fewer bodies have no stray one */
+
+/*
+ * Bodies that have flown off must not shrink all others. Along each axis, those count that are no
+ * farther outside the middle 96 % than these extend, twice. r = where bodies count.
+ */
+static bool find_crowd(struct region *r, const struct packing *p)
+{
+    double *x = malloc((size_t)(p->n + 1) * sizeof *x), lo[3], hi[3];
+    if (!x || p->n < CROWD) {
+        free(x);
+        return false;
+    }
+    for (int k = 0; k < 3; k++) {
+        for (int64_t i = 0; i < p->n; i++)
+            x[i] = k == 0 ? p->x[i].x : k == 1 ? p->x[i].y : p->x[i].z;
+        qsort(x, (size_t)p->n, sizeof *x, compare);
+        int64_t out = p->n / 50 + 1;
+        double from = x[out], to = x[p->n - 1 - out];
+        lo[k] = from, hi[k] = to;
+    }
+    free(x);
+    double size = 2 * fmax(hi[0] - lo[0], fmax(hi[1] - lo[1], hi[2] - lo[2]));
+    r->lo = v3(lo[0] - size, lo[1] - size, lo[2] - size);
+    r->hi = v3(hi[0] + size, hi[1] + size, hi[2] + size);
+    return true;
+}
+
+static bool within(const struct region *r, vec3 x)
+{
+    return x.x >= r->lo.x && x.x <= r->hi.x && x.y >= r->lo.y && x.y <= r->hi.y && x.z >= r->lo.z &&
+           x.z <= r->hi.z;
+}
+
+/* The bodies that count, as a packing that borrows the walls and parameters of p. */
+static int gather_crowd(struct packing *crowd, const struct packing *p, struct why *why)
 {
     struct region r;
+    *crowd = *p;
+    crowd->x = malloc((size_t)(p->n + 1) * sizeof *crowd->x);
+    crowd->radius = malloc((size_t)(p->n + 1) * sizeof *crowd->radius);
+    if (!crowd->x || !crowd->radius) {
+        free(crowd->x), free(crowd->radius);
+        why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)p->n);
+        return EX_SOFTWARE;
+    }
+    bool some = find_crowd(&r, p);
+    crowd->n = 0;
+    for (int64_t i = 0; i < p->n; i++)
+        if (!some || within(&r, p->x[i]))
+            crowd->x[crowd->n] = p->x[i], crowd->radius[crowd->n++] = p->radius[i];
+    return 0;
+}
+
+void view_follow(struct view *v, const struct packing *p)
+{
+    v->moved = v3(0, 0, 0);
+    for (int64_t i = 0; v->follows && i < p->n; i++)
+        if (p->id[i] == v->follow) v->moved = v3_sub(p->x[i], v->followed);
+}
+
+static int follow_first(struct view *v, const struct packing *p, struct why *why)
+{
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->id[i] == v->follow) {
+            v->followed = p->x[i];
+            return 0;
+        }
+    return why_set(why, EX_DATAERR, "no body has the id %d", v->follow);
+}
+
+/* Extends the region and the window to the bodies of this packing. */
+static int extend_window(struct view *v, const struct packing *p, struct why *why)
+{
+    struct region r;
+    if (!region_of(&r, p))
+        return why_set(why, EX_DATAERR, "neither bodies nor walls: nothing to see");
+    v->region = v->started ? region_join(v->region, r) : r;
+    for (int64_t i = 0; i < p->n; i++)
+        if (view_shows(v, p, i)) window_add(&v->window, &v->camera, p->x[i], p->radius[i]);
+    return 0;
+}
+
+/* The same, of the bodies that count. */
+static int extend_crowd(struct view *v, const struct packing *p, struct why *why)
+{
+    struct packing crowd;
+    if (v->strays) return extend_window(v, p, why);
+    if (gather_crowd(&crowd, p, why)) return why->status;
+    extend_window(v, &crowd, why);
+    free(crowd.x), free(crowd.radius);
+    return why->status;
+}
+
+int view_extend(struct view *v, const struct packing *p, struct why *why)
+{
     if (v->started && v->dim != p->dim)
         return why_set(why, EX_DATAERR, "dim %d after dim %d in one series", p->dim, v->dim);
     if (!v->started) {
         v->dim = p->dim, v->window = window_empty;
         camera_turn(&v->camera, p->dim, v->azimuth, v->elevation);
         if (v->boxed && p->dim == 2) v->region.lo.z = v->region.hi.z = 0;
+        if (v->follows && follow_first(v, p, why)) return why->status;
     }
     paint_range(&v->paint, p);
-    if (!v->boxed) {
-        if (!region_of(&r, p))
-            return why_set(why, EX_DATAERR, "neither bodies nor walls: nothing to see");
-        v->region = v->started ? region_join(v->region, r) : r;
-        for (int64_t i = 0; i < p->n; i++)
-            if (is_shown(v, p, i)) window_add(&v->window, &v->camera, p->x[i], p->radius[i]);
-    }
+    bool whole = v->boxed || (v->started && v->follows); // a window that is given
+    if (!whole && extend_crowd(v, p, why)) return why->status;
     v->started = true;
     return 0;
 }
@@ -58,29 +155,60 @@ void view_fit(struct view *v, const struct packing *p)
         }
     }
     free(b);
+    camera_perspective(&v->camera, &v->window, v->dim == 2 ? 0 : v->angle);
     camera_fit(&v->camera, &v->window, v->boxed ? 0 : 0.03, v->width, v->height);
 }
 
 /* ---- from space to samples ---- */
 
-/* Samples: where x (m) is seen */
-static vec3 sample_of(const struct view *v, vec3 x)
+/* Samples: where x (m) is seen, and in *near how much smaller than in the plane in front (0: not) */
+static vec3 sample_near(const struct view *v, vec3 x, double *near)
 {
     const struct camera *c = &v->camera;
     double s = v->samples, k = c->scale * s;
     vec3 see = camera_sees(c, x);
+    *near = camera_shrinks(c, see.z);
+    if (*near != 1) {
+        see.x = c->u + *near * (see.x - c->u), see.y = c->v + *near * (see.y - c->v);
+        see.z = c->front + *near * (see.z - c->front);
+    }
     return v3(0.5 * s * c->width + k * (see.x - c->u), 0.5 * s * c->height - k * (see.y - c->v),
               k * see.z);
 }
 
-/* The inverse, in m */
-static vec3 place_of(const struct view *v, vec3 at)
+static vec3 sample_of(const struct view *v, vec3 x)
+{
+    double near;
+    return sample_near(v, x, &near);
+}
+
+/*
+ * The inverse, in m, is (x_0 + x_1 at) / over with affine functions of `at`: x = what is above the
+ * bar, less origin over. Without perspective over = 1.
+ */
+static vec3 place_over(const struct view *v, vec3 at, vec3 origin, double *over)
 {
     const struct camera *c = &v->camera;
-    double s = v->samples, k = 1 / (c->scale * s);
-    vec3 x = v3_scale(c->u + k * (at.x - 0.5 * s * c->width), c->right);
-    x = v3_axpy(x, c->v - k * (at.y - 0.5 * s * c->height), c->up);
-    return v3_axpy(x, k * at.z, c->toward);
+    double s = v->samples, k = 1 / (c->scale * s), a = k * (at.x - 0.5 * s * c->width),
+           b = -k * (at.y - 0.5 * s * c->height);
+    if (isinf(c->eye)) {
+        *over = 1;
+        vec3 x = v3_axpy(v3_scale(c->u + a, c->right), c->v + b, c->up);
+        return v3_sub(v3_axpy(x, k * at.z, c->toward), origin);
+    }
+    double below = k * at.z - c->front;
+    *over = 1 + below / c->eye;
+    vec3 middle = v3_axpy(v3_axpy(v3_scale(c->u, c->right), c->v, c->up), c->front, c->toward);
+    vec3 x = v3_axpy(v3_axpy(v3_scale(a, c->right), b, c->up), below, c->toward);
+    return v3_axpy(x, *over, v3_sub(middle, origin));
+}
+
+vec3 view_sees(const struct view *v, vec3 x, double *size)
+{
+    double near, s = v->samples;
+    vec3 at = sample_near(v, v3_sub(x, v->moved), &near);
+    *size = near * v->camera.scale;
+    return v3_scale(1 / s, at);
 }
 
 /* Places the bodies that may be in the picture, in their order; -1: no memory. */
@@ -90,10 +218,12 @@ static int place_spots(struct raster *s, const struct view *v, const struct pack
     if (!s->spot) return -1;
     const double k = v->camera.scale * v->samples, far = 1e100; // squares stay finite
     for (int64_t i = 0; i < p->n; i++) {
-        if (!is_shown(v, p, i)) continue;
-        vec3 x = sample_of(v, p->x[i]);
-        double r = fmax(k * p->radius[i], M_SQRT1_2); // so large that every body has a sample
-        if (!(fabs(x.z) < far && r < far)) continue;
+        if (!view_shows(v, p, i)) continue;
+        if (v->cuts && v3_dot(v->cut, p->x[i]) - p->radius[i] > v->cut_at) continue;
+        double near;
+        vec3 x = sample_near(v, v3_sub(p->x[i], v->moved), &near);
+        double r = fmax(k * near * p->radius[i], M_SQRT1_2); // so large that each has a sample
+        if (!(near > 0 && fabs(x.z) < far && r < far)) continue;
         if (!(x.x + r > 0 && x.x - r < s->width && x.y + r > 0 && x.y - r < s->height)) continue;
         s->spot[s->spots++] = (struct spot){ x, r, i, paint_body(&v->paint, p, i) };
     }
@@ -107,15 +237,39 @@ static double round_length(double x)
     return power * (m < 2 ? 1 : m < 5 ? 2 : 5);
 }
 
+/* f = the affine function of a sample that is (n . x - d) over, x what is seen there */
+static void affine_of(const struct view *v, vec3 n, vec3 origin, double f[4], double over[4])
+{
+    static const vec3 at[4] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+    for (int k = 0; k < 4; k++) {
+        f[k] = v3_dot(n, place_over(v, at[k], origin, &over[k]));
+        if (k) f[k] -= f[0], over[k] -= over[0];
+    }
+}
+
+static void place_cutting(struct cutting *c, const struct view *v)
+{
+    double side[4], over[4];
+    vec3 n = camera_sees(&v->camera, v->cut);
+    affine_of(v, v->cut, v3_sub(v3_scale(v->cut_at, v->cut), v->moved), side, over);
+    *c = (struct cutting){ true, { side[1], side[2], side[3], side[0] }, { n.x, -n.y, n.z } };
+}
+
 static void place_ground(struct ground *g, const struct view *v, const struct panel *f)
 {
-    vec3 n = camera_sees(&v->camera, f->n), foot = sample_of(v, f->corner[0]);
+    vec3 n = camera_sees(&v->camera, f->n), foot = sample_of(v, v3_sub(f->corner[0], v->moved));
     g->n = v3(n.x, -n.y, n.z);
-    g->plane[1] = -g->n.x / g->n.z, g->plane[2] = -g->n.y / g->n.z;
-    g->plane[0] = foot.z - g->plane[1] * foot.x - g->plane[2] * foot.y;
+    if (isinf(v->camera.eye)) {
+        g->plane[1] = -g->n.x / g->n.z, g->plane[2] = -g->n.y / g->n.z;
+        g->plane[0] = foot.z - g->plane[1] * foot.x - g->plane[2] * foot.y;
+    } else {
+        double side[4], over[4];
+        affine_of(v, f->n, v3_sub(f->corner[0], v->moved), side, over);
+        for (int k = 0; k < 3; k++) g->plane[k] = -side[k] / side[3];
+    }
     g->corners = f->corners;
     for (int k = 0; k < f->corners; k++) {
-        vec3 at = sample_of(v, f->corner[k]);
+        vec3 at = sample_of(v, v3_sub(f->corner[k], v->moved));
         g->x[k] = at.x, g->y[k] = at.y;
     }
     const struct region *r = &v->region;
@@ -124,11 +278,13 @@ static void place_ground(struct ground *g, const struct view *v, const struct pa
     vec3 along[2] = { v3_axpy(e, -v3_dot(e, f->n), f->n) };
     along[0] = v3_scale(1 / (round_length(size / 6) * v3_norm(along[0])), along[0]);
     along[1] = v3_cross(f->n, along[0]);
-    // square[] is affine, so three points determine it
+    // square[] and over are affine, so three points determine them
     vec3 at[3] = { { 0, 0, g->plane[0] },
                    { 1, 0, g->plane[0] + g->plane[1] },
                    { 0, 1, g->plane[0] + g->plane[2] } };
-    for (int k = 0; k < 3; k++) at[k] = v3_sub(place_of(v, at[k]), f->origin);
+    for (int k = 0; k < 3; k++)
+        at[k] = place_over(v, at[k], v3_sub(f->origin, v->moved), &g->over[k]);
+    g->over[1] -= g->over[0], g->over[2] -= g->over[0];
     for (int i = 0; i < 2; i++) {
         g->square[i][0] = v3_dot(along[i], at[0]);
         g->square[i][1] = v3_dot(along[i], v3_sub(at[1], at[0]));
@@ -143,13 +299,14 @@ static int place_walls(struct raster *s, const struct view *v, const struct pack
     s->ground = malloc(WALLS_PANELS * sizeof *s->ground);
     s->edge = malloc(WALLS_EDGES * sizeof *s->edge);
     bool allocated = b && s->ground && s->edge;
-    if (allocated) walls_build(b, p, &v->region);
+    const struct region r = { v3_add(v->region.lo, v->moved), v3_add(v->region.hi, v->moved) };
+    if (allocated) walls_build(b, p, &r);
     for (int i = 0; allocated && i < b->panels; i++)
         if (v3_dot(b->panel[i].n, v->camera.toward) > 1e-3)
             place_ground(&s->ground[s->grounds++], v, &b->panel[i]);
     for (int i = 0; allocated && i < b->edges; i++)
-        s->edge[s->edges++] =
-            (struct edge){ sample_of(v, b->edge[i].a), sample_of(v, b->edge[i].b) };
+        s->edge[s->edges++] = (struct edge){ sample_of(v, v3_sub(b->edge[i].a, v->moved)),
+                                             sample_of(v, v3_sub(b->edge[i].b, v->moved)) };
     free(b);
     return allocated ? 0 : -1;
 }
@@ -170,8 +327,10 @@ int view_draw(const struct view *v, const struct packing *p, struct picture *pic
         .right = c->right,
         .up = c->up,
         .toward = c->toward,
+        .pale = v->pale,
         .thick = v->samples * fmax(0.5, longer / 1200.0),
     };
+    if (v->cuts) place_cutting(&s.cutting, v);
     *pic = (struct picture){ 0 };
     if (v->dim != p->dim)
         why_set(why, EX_DATAERR, "dim %d after dim %d in one series", p->dim, v->dim);

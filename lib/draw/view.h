@@ -5,7 +5,7 @@
  *
  * The pictures of a series share one window and one scale of colours:
  *
- *     view_extend() for each packing, view_fit(), view_draw() for each packing
+ *     view_extend() for each packing, view_fit(); view_follow(), view_draw() for each packing
  */
 #ifndef NSD_VIEW_H
 #define NSD_VIEW_H
@@ -17,9 +17,17 @@
 
 struct view {
     double azimuth, elevation; /* degrees */
-    int width, height;         /* pixels; 0: chosen */
-    int samples;               /* a pixel is the mean of samples x samples */
-    int threads;               /* the picture does not depend on them */
+    double angle;              /* degrees, of perspective; 0: none */
+    bool cuts;                 /* what lies beyond cut . x = cut_at (m) is cut away */
+    vec3 cut;                  /* unit vector */
+    double cut_at;
+    bool strays;       /* bodies far from all others count too in what the picture shows */
+    bool follows;      /* a body stays where it is in the picture: */
+    int32_t follow;    /* its id */
+    float pale;        /* 0 to 1: how much bodies are mixed with the background */
+    int width, height; /* pixels; 0: chosen */
+    int samples;       /* a pixel is the mean of samples x samples */
+    int threads;       /* the picture does not depend on them */
     struct rgb background;
     struct paint paint;
     bool
@@ -30,7 +38,17 @@ struct view {
     int dim;
     struct window window; /* of the bodies */
     struct camera camera;
+    vec3 followed; /* m: where the body was in the first packing */
+    vec3 moved;    /* m: how far it has come since, set by view_follow() */
 };
+
+/* Whether body i has a place in the picture's region */
+bool view_shows(const struct view *v, const struct packing *p, int64_t i);
+/* Moves what is shown along with the body that is followed. */
+void view_follow(struct view *v, const struct packing *p);
+/* Pixels: where a point (m) of the packing is seen; x to the right, y down, z the height. `size` is
+   what a length of 1 m has there, in pixels; 0 where the point is behind the eye. */
+vec3 view_sees(const struct view *v, vec3 x, double *size);
 
 /*
  * Extends the window and the scale of colours to this packing. Returns 0, or EX_DATAERR when its

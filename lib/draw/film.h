@@ -1,0 +1,24 @@
+/* draw/film.h: pictures joined to a film by ffmpeg, where that is installed. */
+#ifndef NSD_FILM_H
+#define NSD_FILM_H
+
+#include "draw/picture.h"
+
+#include <stdbool.h>
+
+struct film;
+
+/* Is this a name that a film has, .mp4 or .webm? */
+bool film_name(const char *path);
+/* Can ffmpeg be run? */
+bool film_possible(void);
+
+/*
+ * A film of so many pictures a second, all of the first one's size. It is written under another name
+ * and renamed by film_close(). EX_IOERR where ffmpeg cannot be started or fails, EX_SOFTWARE.
+ */
+int film_open(struct film **film, const char *path, int rate, struct why *why);
+int film_add(struct film *film, const struct picture *p, struct why *why);
+int film_close(struct film *film, struct why *why);
+
+#endif

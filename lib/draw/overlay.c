@@ -1,0 +1,293 @@
+/* draw/overlay.c: what cairo draws over a picture [draw/overlay.h]. */
+#include "draw/overlay.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WIDEST 0.011 /* of the longer side: the width of the line of the largest force */
+#define FINEST 0.6   /* pixels: thinner lines are not drawn, they would be a grey veil */
+
+static double longer_side(const struct view *v)
+{
+    return v->camera.width > v->camera.height ? v->camera.width : v->camera.height;
+}
+
+/* ---- contacts ---- */
+
+static const double status_colour[3][3] = { { 0.55, 0.58, 0.63 },   // apart
+                                            { 0.10, 0.27, 0.58 },   // sticks
+                                            { 0.84, 0.20, 0.14 } }; // slides
+
+static void set_status(cairo_t *cr, int status)
+{
+    const double *c = status_colour[status < 0 || status > 2 ? 0 : status];
+    cairo_set_source_rgb(cr, c[0], c[1], c[2]);
+}
+
+static bool is_cut(const struct view *v, vec3 x)
+{
+    return v->cuts && v3_dot(v->cut, x) > v->cut_at;
+}
+
+static double largest_force(const struct packing *p, const struct contacts *s)
+{
+    double most = 0;
+    for (int64_t i = 0; i < s->n; i++) most = fmax(most, s->found[i].r[0] / p->dt);
+    return most;
+}
+
+/* A line from centre to centre, of a boundary from the contact; its width is the normal force. */
+static void draw_push(cairo_t *cr, const struct view *v, const struct packing *p,
+                      const struct contact *c, const struct found *f, double share)
+{
+    double size;
+    vec3 b = p->x[c->b], a = c->a >= 0 ? p->x[c->a] : c->x;
+    if (c->a >= 0) a = v3_sub(b, v3_scale(p->radius[c->a] + p->radius[c->b] + c->gap, c->n));
+    if (is_cut(v, a) || is_cut(v, b)) return;
+    double width = share * WIDEST * longer_side(v);
+    vec3 from = view_sees(v, a, &size), to = view_sees(v, b, &size);
+    if (!(size > 0) || width < FINEST) return;
+    set_status(cr, f->status);
+    cairo_set_line_width(cr, width);
+    cairo_move_to(cr, from.x, from.y);
+    cairo_line_to(cr, to.x, to.y);
+    cairo_stroke(cr);
+}
+
+static void draw_network(cairo_t *cr, const struct overlay *o, const struct view *v,
+                         const struct packing *p, const struct contacts *s)
+{
+    double most = o->force > 0 ? o->force : largest_force(p, s);
+    cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
+    for (int64_t i = 0; most > 0 && i < s->n; i++)
+        if (s->found[i].r[0] > 0)
+            draw_push(cr, v, p, &s->c[i], &s->found[i], fmin(s->found[i].r[0] / p->dt / most, 1));
+}
+
+static void draw_contacts(cairo_t *cr, const struct view *v, const struct packing *p,
+                          const struct contacts *s)
+{
+    for (int64_t i = 0; i < s->n; i++) {
+        const struct contact *c = &s->c[i];
+        double size, r = fmax(0.12 * p->radius[c->b] * v->camera.scale, 1.2);
+        vec3 at = view_sees(v, c->x, &size);
+        if (is_cut(v, c->x) || !(size > 0)) continue;
+        set_status(cr, s->found ? s->found[i].status : 0);
+        cairo_arc(cr, at.x, at.y, r, 0, 2 * M_PI);
+        cairo_fill(cr);
+    }
+}
+
+void overlay_bodies(cairo_t *cr, const struct overlay *o, const struct view *v,
+                    const struct packing *p, const struct contacts *s)
+{
+    if (!s) return;
+    cairo_save(cr);
+    cairo_rectangle(cr, 0, 0, v->camera.width, v->camera.height);
+    cairo_clip(cr);
+    if (o->network && s->found) draw_network(cr, o, v, p, s);
+    if (o->contacts) draw_contacts(cr, v, p, s);
+    cairo_restore(cr);
+}
+
+/* ---- the legend ---- */
+
+int overlay_strip(const struct overlay *o, int width)
+{
+    if (!o->legend) return 0;
+    int strip = 2 * (int)(0.5 * 0.085 * width);
+    return strip < 44 ? 44 : strip > 110 ? 110 : strip;
+}
+
+/* 1, 2 or 5 times a power of ten, not above x */
+static double round_length(double x)
+{
+    double power = pow(10, floor(log10(x))), m = x / power;
+    return power * (m < 2 ? 1 : m < 5 ? 2 : 5);
+}
+
+/* A length in m as one reads it */
+static void say_length(double m, char *text, size_t room)
+{
+    static const struct {
+        double size;
+        const char *unit;
+    } unit[] = { { 1e3, "km" }, { 1, "m" }, { 1e-2, "cm" }, { 1e-3, "mm" }, { 1e-6, "um" } };
+    for (int k = 0; k < 5; k++)
+        if (m >= 0.999 * unit[k].size && m < 1e6) {
+            snprintf(text, room, "%g %s", m / unit[k].size, unit[k].unit);
+            return;
+        }
+    snprintf(text, room, "%g m", m);
+}
+
+enum side { LEFT, MIDDLE, RIGHT };
+
+/* Words on the line y; returns their width. */
+static double write_words(cairo_t *cr, double x, double y, enum side side, const char *text)
+{
+    cairo_text_extents_t e;
+    cairo_text_extents(cr, text, &e);
+    double before = side == LEFT ? 0 : side == RIGHT ? e.x_advance : 0.5 * e.x_advance;
+    cairo_move_to(cr, x - before, y);
+    cairo_show_text(cr, text);
+    return e.x_advance;
+}
+
+static double font_height(cairo_t *cr)
+{
+    cairo_font_extents_t e;
+    cairo_font_extents(cr, &e);
+    return e.ascent;
+}
+
+static void set_rgb(cairo_t *cr, struct rgb c)
+{
+    cairo_set_source_rgb(cr, rgb_byte(c.r) / 255.0, rgb_byte(c.g) / 255.0, rgb_byte(c.b) / 255.0);
+}
+
+/* The palette with its name, unit and ends; where there is one value, that */
+static void draw_palette(cairo_t *cr, const struct paint *p, double x, double y, double w, double h)
+{
+    const struct colour_meaning *m = &colour_meaning[p->by];
+    char text[100];
+    snprintf(text, sizeof text, "%s%s%s", p->name ? p->name : m->name, *m->unit ? ", " : "",
+             m->unit);
+    if (m->classes || !isfinite(p->lo) || !isfinite(p->hi)) {
+        write_words(cr, x, y + h, LEFT, m->classes ? m->name : "");
+        return;
+    }
+    cairo_save(cr);
+    cairo_set_antialias(cr, CAIRO_ANTIALIAS_NONE); // no seams between the steps
+    for (int i = 0; i < 256; i++) {
+        set_rgb(cr, p->palette[i]);
+        cairo_rectangle(cr, x + w * i / 256, y, w / 256 + 0.5, h);
+        cairo_fill(cr);
+    }
+    cairo_restore(cr);
+    double size = font_height(cr);
+    write_words(cr, x + 0.5 * w, y - 0.35 * size, MIDDLE, text);
+    snprintf(text, sizeof text, "%.3g", p->lo);
+    write_words(cr, x, y + h + size, LEFT, text);
+    snprintf(text, sizeof text, "%.3g", p->hi);
+    write_words(cr, x + w, y + h + size, RIGHT, text);
+}
+
+static void draw_scale(cairo_t *cr, const struct view *v, double x, double y, double most)
+{
+    double length = round_length(most / v->camera.scale), w = length * v->camera.scale;
+    char text[40];
+    say_length(length, text, sizeof text);
+    cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);
+    cairo_move_to(cr, x - 0.5 * w, y - 4);
+    cairo_line_to(cr, x - 0.5 * w, y + 4);
+    cairo_move_to(cr, x - 0.5 * w, y);
+    cairo_line_to(cr, x + 0.5 * w, y);
+    cairo_move_to(cr, x + 0.5 * w, y - 4);
+    cairo_line_to(cr, x + 0.5 * w, y + 4);
+    cairo_stroke(cr);
+    write_words(cr, x, y + 6 + 0.9 * font_height(cr), MIDDLE, text);
+}
+
+/* What the colours of lines and dots say */
+static void draw_status(cairo_t *cr, double x, double y, double size)
+{
+    static const char *const word[] = { NULL, "stick", "slide" };
+    for (int k = 1; k <= 2; k++) {
+        cairo_save(cr);
+        set_status(cr, k);
+        cairo_rectangle(cr, x, y - 0.5 * size, 1.4 * size, 0.3 * size);
+        cairo_fill(cr);
+        cairo_restore(cr);
+        x += 1.7 * size;
+        x += write_words(cr, x, y, LEFT, word[k]) + size;
+    }
+}
+
+void overlay_legend(cairo_t *cr, const struct overlay *o, const struct view *v,
+                    const struct packing *p, int top)
+{
+    double w = v->camera.width, strip = overlay_strip(o, v->camera.width), size = 0.25 * strip;
+    bool bright = v->background.r + v->background.g + v->background.b > 0.6F;
+    double ink = bright ? 0.12 : 0.9;
+    char text[60];
+    cairo_set_source_rgb(cr, ink, ink, ink);
+    cairo_select_font_face(cr, "@cairo:sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(cr, size);
+    cairo_set_line_width(cr, fmax(1.2, 0.0016 * w));
+    draw_palette(cr, &v->paint, 0.03 * w, top + 0.36 * strip, 0.34 * w, 0.22 * strip);
+    if (isinf(v->camera.eye)) draw_scale(cr, v, 0.54 * w, top + 0.42 * strip, 0.2 * w);
+    bool keys = o->network || o->contacts;
+    snprintf(text, sizeof text, "t = %.4g s", p->t);
+    write_words(cr, 0.97 * w, top + 0.36 * strip + (keys ? 0 : 0.6 * size), RIGHT, text);
+    if (keys) draw_status(cr, 0.97 * w - 8.6 * size, top + 0.58 * strip + size, size);
+}
+
+/* ---- over pixels ---- */
+
+/* The picture with a strip of background below it */
+static int add_strip(struct picture *pic, const struct view *v, int strip, struct why *why)
+{
+    struct picture whole;
+    if (!strip) return 0;
+    if (picture_init(&whole, pic->width, pic->height + strip, why)) return why->status;
+    size_t n = 3 * (size_t)pic->width * (size_t)pic->height;
+    memcpy(whole.rgb, pic->rgb, n);
+    for (size_t i = n; i < n + 3 * (size_t)pic->width * (size_t)strip; i += 3) {
+        whole.rgb[i] = rgb_byte(v->background.r);
+        whole.rgb[i + 1] = rgb_byte(v->background.g);
+        whole.rgb[i + 2] = rgb_byte(v->background.b);
+    }
+    picture_free(pic);
+    *pic = whole;
+    return 0;
+}
+
+/* Between the picture's bytes and cairo's words, 0xXXRRGGBB */
+static void copy_pixels(struct picture *pic, unsigned char *data, int stride, bool back)
+{
+    for (int y = 0; y < pic->height; y++)
+        for (int x = 0; x < pic->width; x++) {
+            unsigned char *rgb = pic->rgb + 3 * ((size_t)y * (size_t)pic->width + (size_t)x);
+            uint32_t word;
+            unsigned char *at = data + (size_t)y * (size_t)stride + 4 * (size_t)x;
+            if (back) {
+                memcpy(&word, at, 4);
+                rgb[0] = word >> 16 & 255, rgb[1] = word >> 8 & 255, rgb[2] = word & 255;
+            } else {
+                word = (uint32_t)rgb[0] << 16 | (uint32_t)rgb[1] << 8 | rgb[2];
+                memcpy(at, &word, 4);
+            }
+        }
+}
+
+int overlay_draw(const struct overlay *o, const struct view *v, const struct packing *p,
+                 const struct contacts *s, struct picture *pic, struct why *why)
+{
+    int top = v->camera.height;
+    if (view_draw(v, p, pic, why)) return why->status;
+    if (!o->network && !o->contacts && !o->legend) return 0;
+    if (add_strip(pic, v, overlay_strip(o, pic->width), why)) {
+        picture_free(pic);
+        return why->status;
+    }
+    cairo_surface_t *surface =
+        cairo_image_surface_create(CAIRO_FORMAT_RGB24, pic->width, pic->height);
+    unsigned char *data = cairo_image_surface_get_data(surface);
+    if (!data) {
+        cairo_surface_destroy(surface);
+        picture_free(pic);
+        return why_set(why, EX_SOFTWARE, "no memory for %d x %d pixels", pic->width, pic->height);
+    }
+    copy_pixels(pic, data, cairo_image_surface_get_stride(surface), false);
+    cairo_surface_mark_dirty(surface);
+    cairo_t *cr = cairo_create(surface);
+    overlay_bodies(cr, o, v, p, s);
+    if (o->legend) overlay_legend(cr, o, v, p, top);
+    cairo_destroy(cr);
+    cairo_surface_flush(surface);
+    copy_pixels(pic, data, cairo_image_surface_get_stride(surface), true);
+    cairo_surface_destroy(surface);
+    return 0;
+}

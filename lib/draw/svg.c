@@ -1,0 +1,98 @@
+/* draw/svg.c: discs, walls and what lies over them, by cairo's SVG surface. */
+#include "draw/svg.h"
+
+#include <cairo-svg.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void set_colour(cairo_t *cr, struct rgb c)
+{
+    cairo_set_source_rgb(cr, rgb_byte(c.r) / 255.0, rgb_byte(c.g) / 255.0, rgb_byte(c.b) / 255.0);
+}
+
+/* The disc, its half that was up when it was made paler, and its rim */
+static void draw_disc(cairo_t *cr, const struct view *v, const struct packing *p, int64_t i)
+{
+    double scale;
+    vec3 at = view_sees(v, p->x[i], &scale);
+    double r = p->radius[i] * scale, angle = 2 * atan2(p->q[i].z, p->q[i].w);
+    if (at.x + r < 0 || at.x - r > v->camera.width || at.y + r < 0 || at.y - r > v->camera.height)
+        return;
+    struct rgb own = paint_body(&v->paint, p, i);
+    own = rgb_mix(own, v->background, v->pale);
+    set_colour(cr, own);
+    cairo_arc(cr, at.x, at.y, r, 0, 2 * M_PI);
+    cairo_fill(cr);
+    if (!v->paint.plain) {
+        struct rgb half = rgb_mix(paint_disc(&v->paint, own, v3(0, 1, 0)), v->background, v->pale);
+        set_colour(cr, half);
+        cairo_arc(cr, at.x, at.y, r, M_PI - angle, 2 * M_PI - angle);
+        cairo_fill(cr);
+    }
+    set_colour(cr, (struct rgb){ 0.06F, 0.06F, 0.06F });
+    cairo_set_line_width(cr, fmin(0.08 * r, 0.8));
+    cairo_arc(cr, at.x, at.y, r, 0, 2 * M_PI);
+    cairo_stroke(cr);
+}
+
+static void draw_walls(cairo_t *cr, const struct view *v, const struct packing *p)
+{
+    struct walls *b = malloc(sizeof *b);
+    if (!b) return;
+    const struct region r = { v3_add(v->region.lo, v->moved), v3_add(v->region.hi, v->moved) };
+    walls_build(b, p, &r);
+    cairo_set_source_rgb(cr, 0.2, 0.2, 0.2);
+    cairo_set_line_width(cr, 1.2);
+    for (int i = 0; i < b->edges; i++) {
+        double scale;
+        vec3 from = view_sees(v, b->edge[i].a, &scale), to = view_sees(v, b->edge[i].b, &scale);
+        cairo_move_to(cr, from.x, from.y);
+        cairo_line_to(cr, to.x, to.y);
+        cairo_stroke(cr);
+    }
+    free(b);
+}
+
+static cairo_status_t keep(void *picture, const unsigned char *data, unsigned n)
+{
+    struct bytes_out *b = picture;
+    return bytes_append(b, data, n) ? CAIRO_STATUS_NO_MEMORY : CAIRO_STATUS_SUCCESS;
+}
+
+static void draw_all(cairo_t *cr, const struct overlay *o, const struct view *v,
+                     const struct packing *p, const struct contacts *contacts)
+{
+    set_colour(cr, v->background);
+    cairo_paint(cr);
+    cairo_save(cr);
+    cairo_rectangle(cr, 0, 0, v->camera.width, v->camera.height);
+    cairo_clip(cr);
+    for (int64_t i = 0; i < p->n; i++)
+        if (view_shows(v, p, i)) draw_disc(cr, v, p, i);
+    draw_walls(cr, v, p);
+    cairo_restore(cr);
+    overlay_bodies(cr, o, v, p, contacts);
+    if (o->legend) overlay_legend(cr, o, v, p, v->camera.height);
+}
+
+int svg_draw(const struct overlay *o, const struct view *v, const struct packing *p,
+             const struct contacts *contacts, const char *path, struct why *why)
+{
+    const struct camera *c = &v->camera;
+    struct bytes_out b = { 0 };
+    if (p->dim != 2) return why_set(why, EX_DATAERR, "an SVG is of discs, and dim is %d", p->dim);
+    cairo_surface_t *surface = cairo_svg_surface_create_for_stream(
+        keep, &b, c->width, c->height + overlay_strip(o, c->width));
+    cairo_t *cr = cairo_create(surface);
+    draw_all(cr, o, v, p, contacts);
+    cairo_destroy(cr);
+    cairo_surface_finish(surface);
+    bool good = cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS;
+    cairo_surface_destroy(surface);
+    if (!good)
+        why_set(why, EX_SOFTWARE, "no memory for the SVG");
+    else
+        bytes_write(&b, path, why);
+    free(b.at);
+    return why->status;
+}
