@@ -33,6 +33,11 @@ void reader_copies(struct reader *r)
     r->copies = true;
 }
 
+const char *reader_loses(const struct reader *r)
+{
+    return r->doc.frames > 1 ? unknown_timed(r->source) : NULL;
+}
+
 void reader_close(struct reader *r)
 {
     if (!r) return;

@@ -376,7 +376,7 @@ static int put_block(hid_t set, hid_t type, int rank, const hsize_t *first, cons
     return e < 0 ? -1 : 0;
 }
 
-/* Is as much stored as is wanted of the dataset's first bytes? What filters packed is not counted. */
+/* Is as much stored as is wanted of the dataset? What filters packed is not counted. */
 static int check_stored(const struct entry *e, uint64_t bytes, struct why *why)
 {
     if (bytes <= FREE_FILL || bytes - FREE_FILL <= e->stored) return 0;
@@ -405,7 +405,7 @@ static int answer_rows(struct served *s, const struct request *q, struct sink *s
         return why_set(why, EX_DATAERR, "%s: not of %lld rows of %lld numbers", q->path,
                        (long long)(q->start + q->n), (long long)q->width);
     if (!all) first[0] = (hsize_t)q->start, count[0] = (hsize_t)q->n, rows = first[0] + count[0];
-    if (check_stored(e, rows * row * o->size, why)) return why->status;
+    if (check_stored(e, (all ? rows : count[0]) * row * o->size, why)) return why->status;
     hid_t set = open_set(s, e, why);
     if (set < 0) return why->status;
     struct reply reply = { .there = true };

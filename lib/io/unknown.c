@@ -36,7 +36,7 @@ static const struct {
       { "box", "position", "velocity", "angular_velocity", "orientation", "radius", "mass",
         "inertia", "id", "species" } },
     { "/walls", { "plane" } },
-    { "/observables", { "solver" } },
+    { "/observables", { "solver", "flow" } },
 };
 
 enum { GROUPS = sizeof looked_through / sizeof looked_through[0] };
@@ -131,6 +131,19 @@ int unknown_read(struct unknown **out, struct source *s, bool whole, bool unchec
         k = add_tree(u, s, k, why);
     }
     return why->status;
+}
+
+const char *unknown_timed(struct source *s)
+{
+    const char *path;
+    const uint64_t *shape;
+    for (int64_t k = 0; source_object(s, k, &path, &shape); k++) {
+        char step[SERVE_PATH + 8];
+        const struct object *o = source_object(s, k, &path, &shape);
+        snprintf(step, sizeof step, "%s/step", path);
+        if (!o->attribute && is_unknown(path) && source_has(s, step)) return path;
+    }
+    return NULL;
 }
 
 struct unknown *unknown_share(struct unknown *u)

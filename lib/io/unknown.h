@@ -22,6 +22,8 @@ struct unknown;
  */
 int unknown_read(struct unknown **unknown, struct source *source, bool whole, bool unchecked,
                  struct why *why);
+/* The path of the first object that unknown_read leaves out unless `whole`, or NULL. */
+const char *unknown_timed(struct source *source);
 /* One more owner, who frees it too. */
 struct unknown *unknown_share(struct unknown *unknown);
 void unknown_free(struct unknown *unknown);
