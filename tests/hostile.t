@@ -219,11 +219,34 @@ crowd() { echo '{"dt": 1e-3, "overlap": true, "bodies": [{"file": "crowd"}]}' >"
 awk 'BEGIN { for (i = 0; i < 3000; i++) print "0 0 0 1" }' >"$tmp/crowd"
 status 65 "3000 balls in one place" timeout 20 bash -c "$(declare -f crowd); tmp=$tmp; set -o pipefail; crowd"
 like "says so" "$(cat "$tmp/err")" 'in one place'
+crowd_to() { nsd-gen "$tmp/crowd.json" | nsd-step -o "$tmp/none.h5"; }
+refuses 65 "the same into a file" timeout 20 bash -c "$(declare -f crowd_to); tmp=$tmp; crowd_to"
+ok "which is not left behind empty" [ ! -e "$tmp/none.h5" ]
+ln -s none.h5 "$tmp/none.link"
+crowd_to() { nsd-gen "$tmp/crowd.json" | nsd-step -o "$tmp/none.link"; }
+refuses 65 "the same through a link" timeout 20 bash -c "$(declare -f crowd_to); tmp=$tmp; crowd_to"
+ok "which stays" [ -L "$tmp/none.link" ]
 table() { echo "{\"dt\": 1, \"bodies\": [{\"file\": \"$1\"}]}" | timeout 20 nsd-gen -; }
 refuses 66 "a device for a table" table /dev/zero
 mkfifo "$tmp/endless"
 { yes "$(printf '%05000d' 0)" >"$tmp/endless" || true; } 2>/dev/null &
 refuses 65 "a table with lines without end" table "$tmp/endless"
+
+alone() # the tool ends, whichever way, and no process of its is left to whoever inherits orphans
+{
+    /usr/bin/python3 - "$@" <<'PYTHON'
+import ctypes, os, subprocess, sys
+ctypes.CDLL(None).prctl(36, 1, 0, 0, 0)  # PR_SET_CHILD_SUBREAPER: orphans become ours
+s = subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode
+try:
+    sys.exit("an orphan: %s" % (os.waitpid(-1, 0),))
+except ChildProcessError:
+    sys.exit(s)
+PYTHON
+}
+status 0 "a tool that is done leaves no process behind" alone nsd-info "$tmp/four.h5"
+status 65 "nor one that refuses its input" alone nsd-step -n 1 "$tmp/crowd"
+status 64 "nor one that is told nonsense" alone nsd-view --every 1 -o film "$tmp/four.h5"
 
 # ---- copies ----
 
