@@ -150,7 +150,7 @@ fuzz-corpus: $(FUZZ:%=$F/fuzz_%)
 # Branches that the tests take, by folder (gcovr); below the bounds it fails. COVERAGE_TESTS: which tests.
 COVERAGE_TESTS := $(wildcard tests/*.t)
 coverage:
-	$(MAKE) -j2 CFLAGS="-O1 -g --coverage -DNSD_COVERAGE -fprofile-update=atomic" B=build/coverage tests
+	$(MAKE) -j2 CFLAGS="-O1 -g --coverage -DNSD_COVERAGE -fprofile-update=atomic" LDFLAGS=--coverage B=build/coverage tests
 	-PATH="$(CURDIR)/build/coverage:$$PATH" NSD_QUICK=1 prove -j2 build/coverage/tests/*_test $(COVERAGE_TESTS)
 	scripts/coverage.sh build/coverage
 

@@ -265,6 +265,14 @@ assert a['/text'][()] == b['/text'][()] and np.array_equal(a['/g/x'].attrs['k'],
 PYTHON
 }
 ok "numbers and texts that nsd does not know are copied" kept
+labelled()
+{
+    nsd-detect --fclib=local "$tmp/solved.h5" | tail -c +513 >"$tmp/problem.h5" &&
+        /usr/bin/python3 -c "import h5py; f = h5py.File('$tmp/problem.h5', 'r+'); f['fclib_local'].attrs['by'] = 'hand'; f['fclib_local/W'].attrs['k'] = [1, 2]" &&
+        nsd-solve "$tmp/problem.h5" 2>/dev/null | nsd-cat >"$tmp/copy.h5" &&
+        /usr/bin/python3 -c "import h5py; f = h5py.File('$tmp/copy.h5'); assert f['fclib_local'].attrs['by'] == b'hand' or f['fclib_local'].attrs['by'] == 'hand'; assert list(f['fclib_local/W'].attrs['k']) == [1, 2]"
+}
+ok "and attributes of the groups of an FCLIB problem from elsewhere" labelled
 make compound.h5 four.h5 "f['/mine'] = np.zeros(3, [('a', 'i4'), ('b', 'f8')])"
 refuses 65 "a compound would be lost: refused" nsd-cat "$tmp/compound.h5"
 like "says which" "$(cat "$tmp/err")" '/mine: neither numbers nor texts'

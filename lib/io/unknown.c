@@ -20,7 +20,6 @@ struct item {
 
 struct unknown {
     int owners;
-    bool unchecked; /* attributes of groups are left out */
     int64_t count, room;
     struct item *item;
 };
@@ -63,7 +62,7 @@ static bool is_unknown(const char *path)
     return false;
 }
 
-static int read_item(struct item *i, bool unchecked, struct source *s, struct why *why)
+static int read_item(struct item *i, struct source *s, struct why *why)
 {
     const struct object *o = &i->object;
     uint64_t size;
@@ -71,8 +70,7 @@ static int read_item(struct item *i, bool unchecked, struct source *s, struct wh
         (o->rank && o->kind != OBJECT_GROUP && !o->size))
         return why_set(why, EX_DATAERR, "%s: neither numbers nor texts: it cannot be copied",
                        i->path);
-    if (o->kind != OBJECT_GROUP || !unchecked)
-        i->attributes = source_attributes(s, i->path, &i->attributes_size, why);
+    i->attributes = source_attributes(s, i->path, &i->attributes_size, why);
     if (o->kind == OBJECT_TEXT && !o->rank)
         i->text = source_text(s, i->path, NULL, why);
     else if (o->kind != OBJECT_GROUP && !why->status)
@@ -93,7 +91,7 @@ static int add(struct unknown *u, const struct object *o, const char *path, cons
     *i = (struct item){ .object = *o, .path = strdup(path) };
     if (!i->path) return why_set(why, EX_SOFTWARE, "no memory for a copy of %s", path);
     for (uint32_t k = 0; k < o->rank && o->rank <= OBJECT_RANK; k++) i->shape[k] = shape[k];
-    return read_item(i, u->unchecked, s, why);
+    return read_item(i, s, why);
 }
 
 /* An object and all that is in it, which follows it in the walk; the first that does not. */
@@ -112,8 +110,7 @@ static int64_t add_tree(struct unknown *u, struct source *s, int64_t k, struct w
     return k;
 }
 
-int unknown_read(struct unknown **out, struct source *s, bool whole, bool unchecked,
-                 struct why *why)
+int unknown_read(struct unknown **out, struct source *s, bool whole, struct why *why)
 {
     struct unknown *u = *out = NULL;
     const char *path;
@@ -128,7 +125,7 @@ int unknown_read(struct unknown **out, struct source *s, bool whole, bool unchec
         }
         if (!u) *out = u = calloc(1, sizeof *u);
         if (!u) return why_set(why, EX_SOFTWARE, "no memory for a copy of %s", path);
-        u->owners = 1, u->unchecked = unchecked;
+        u->owners = 1;
         k = add_tree(u, s, k, why);
     }
     return why->status;
