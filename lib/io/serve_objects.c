@@ -157,9 +157,10 @@ void *serve_objects(struct served *s, size_t *size, struct why *why)
             add_group_attributes(s, e->path, &g);
     }
     *size = g.objects.size;
-    if (!why->status && !g.objects.bytes) g.objects.bytes = calloc(1, 1); // there is nothing in it
-    if (!why->status && g.objects.bytes) return g.objects.bytes;
+    void *bytes = g.objects.bytes;
+    if (!why->status && !bytes) bytes = calloc(1, 1); // there is nothing in it
+    if (!why->status && bytes) return bytes;
     why_set(why, EX_SOFTWARE, "no memory for a list of objects");
-    free(g.objects.bytes);
+    free(bytes);
     return NULL;
 }
