@@ -38,7 +38,9 @@ others=('$f nsd-err $solved >$o'
     '$f nsd-info $tmp/run.h5 >$o'
     'cat $tmp/run.h5 | $f nsd-info | cat >$o'
     '$f nsd-view --size 32x32 $heap >$o'
-    '$f nsd-view --size 32x32 -o $o $heap')
+    '$f nsd-view --size 32x32 -o $o $heap'
+    '$f nsd-web $tmp/run.h5 >$o'
+    '$f nsd-web -o $o $tmp/run.h5')
 calls=("read EIO" "read EINTR" "read short" "write EIO" "write ENOSPC" "write EINTR" "write short"
     "sync EIO" "rename EIO" "rename ENOSPC" "close EIO" "close EINTR" "resize EIO" "resize EINTR" "reserve EIO"
     "reserve ENOSPC" "reserve EINTR")
@@ -51,8 +53,8 @@ output_holds()
     [ -e "$o" ] || return 0
     [ -s "$o" ] || [[ $command != *">\$o"* ]] || return 0
     case $command in
-    *nsd-view*-o*) return 1 ;;
-    *nsd-view* | *nsd-info* | *nsd-err*) cmp -s -n "$(wc -c <"$o")" "$o" "$tmp/want" ;; # it ends early
+    *nsd-view*-o* | *nsd-web*-o*) return 1 ;;
+    *nsd-view* | *nsd-web* | *nsd-info* | *nsd-err*) cmp -s -n "$(wc -c <"$o")" "$o" "$tmp/want" ;; # it ends early
     *"| cat"*) ! nsd-info "$o" >/dev/null 2>&1 || cmp -s -n "$(wc -c <"$o")" "$o" "$tmp/want" ;; # nobody can cut it back
     *) nsd-info "$o" >/dev/null 2>&1 ;;
     esac
