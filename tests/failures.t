@@ -46,6 +46,7 @@ calls=("read EIO" "read EINTR" "read short" "write EIO" "write ENOSPC" "write EI
     "reserve ENOSPC" "reserve EINTR")
 runs=12 # of a command and a way to fail, spread over its calls
 [ -z "$quick" ] || runs=4
+runs=${NSD_RUNS-$runs} # make coverage wants more
 
 # The output of a failed run: no file, an empty one that the shell made, or what reads as what it is.
 output_holds()
