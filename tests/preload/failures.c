@@ -50,7 +50,6 @@ static atomic_long *count; /* shared with children */
 static long fail_at;
 static int fail_with; /* 0: short */
 static pid_t first;   /* the process that was started */
-static bool over;     /* it has ended, but for what the compiler adds (gcov's counts) */
 
 static long call(const long *a, long number)
 {
@@ -67,7 +66,7 @@ static long half(long *a, long number)
     return call(a, number);
 }
 
-/* gcov's counts are not the tool's. */
+/* What the compiler adds at the end, gcov's counts, is not the tool's. */
 static bool counts(long fd)
 {
     char link[40], path[400];
@@ -76,14 +75,9 @@ static bool counts(long fd)
     return n > 5 && !memcmp(path + n - 5, ".gcda", 5);
 }
 
-static void end(void)
-{
-    over = true;
-}
-
 static long decide(long *a, long number)
 {
-    if (over || (a[0] == STDERR_FILENO && number != SYS_renameat2)) return call(a, number);
+    if (a[0] == STDERR_FILENO && number != SYS_renameat2) return call(a, number);
     long k = atomic_fetch_add(count, 1) + 1;
     bool fails = fail_at && (fail_with == ENOSPC ? k >= fail_at : k == fail_at);
     if (!fails || counts(a[0])) return call(a, number);
@@ -139,7 +133,6 @@ __attribute__((constructor)) static void start(void)
     count = mmap(NULL, sizeof *count, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (count == MAP_FAILED || !which) _exit(99);
     first = getpid();
-    atexit(end); // what the tool registers comes before it
     fail_at = at ? atol(at) : 0;
     if (with && strcmp(with, "short") != 0)
         fail_with = !strcmp(with, "EINTR") ? EINTR : !strcmp(with, "ENOSPC") ? ENOSPC : EIO;

@@ -35,12 +35,6 @@ static int look_at(struct dl_phdr_info *info, size_t size, void *data)
     return 1; // the first is the program itself
 }
 
-/* What the compiler adds at the end (gcov's counts) is not the tool's. */
-static void end(void)
-{
-    on = false;
-}
-
 __attribute__((constructor)) static void start(void)
 {
     const char *at = getenv("NSD_FAIL_AT");
@@ -48,13 +42,21 @@ __attribute__((constructor)) static void start(void)
     const char *in = getenv("NSD_FAIL_IN");
     in_tool = in && !strcmp(in, "tool");
     dl_iterate_phdr(look_at, NULL);
-    atexit(end); // what the tool registers comes before it
     on = true;
+}
+
+/* What the compiler adds at the end (gcov's counts) is not the tool's. */
+static void end(void)
+{
+    on = false;
 }
 
 static bool fails(const void *caller)
 {
     uintptr_t at = (uintptr_t)caller;
+    static atomic_flag begun = ATOMIC_FLAG_INIT;
+    if (on && at >= tool_first && at < tool_end && !atomic_flag_test_and_set(&begun))
+        atexit(end); // before the destructors, for main() has begun
     if (!on || (at >= tool_first && at < tool_end) != in_tool) return false;
     if (atomic_fetch_add(&count, 1) + 1 != fail_at) return false;
     errno = ENOMEM;
