@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdio_ext.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -40,6 +41,7 @@ void die(int status, const char *format, ...)
     va_start(ap, format);
     message(format, ap);
     va_end(ap);
+    if (status == EX_IOERR) __fpurge(stdout); // what comes after a piece that is missing
     exit(status);
 }
 

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): F_OFD_SETLK
 #include "io/writer.h"
 
+#include "base/unfinished.h"
 #include "io/frame_write.h"
 #include "io/h5.h"
 #include "io/roster.h"
@@ -50,6 +51,7 @@ struct writer {
     /* a trajectory that takes a file's place, until it has: */
     int old;                 /* the file, open and locked; else -1 */
     char *place, *elsewhere; /* its path, and that of the new one */
+    struct unfinished unfinished; /* the file, before there is anything in it */
 };
 
 static int output_failed(const struct writer *s, struct why *why, const char *trouble)
@@ -93,6 +95,7 @@ int writer_open(struct writer **out, const char *path, enum writer_kind kind, st
     if (s->fd < 0) return output_failed(s, why, strerror(errno));
     s->append = fcntl(s->fd, F_GETFL) & O_APPEND;
     if (!s->append && take_hold(s, F_OFD_SETLK, why)) return why->status;
+    if (path) unfinished_begin(&s->unfinished, path, s->fd);
     struct stat st;
     if (path && !fstat(s->fd, &st) && S_ISREG(st.st_mode) && ftruncate(s->fd, 0))
         return output_failed(s, why, strerror(errno));
@@ -262,14 +265,25 @@ static bool write_at(const struct writer *s, const unsigned char *bytes, size_t 
     return true;
 }
 
+/* The other way round; false also where the file ends before. */
+static bool read_at(const struct writer *s, unsigned char *bytes, size_t size, off_t at)
+{
+    for (size_t done = 0; done < size;) {
+        ssize_t n = pread(s->disk, bytes + done, size - done, at + (off_t)done);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return false;
+        done += (size_t)n;
+    }
+    return true;
+}
+
 /* Is what was written still there? A shell's > f cuts f off, and what HDF5 writes then leaves holes. */
 static bool still_there(const struct writer *s)
 {
     unsigned char header[DOCUMENT_USERBLOCK], now[DOCUMENT_USERBLOCK];
     struct stat st;
     document_header(header, 0, 0);
-    return !fstat(s->disk, &st) && st.st_size >= s->end &&
-           pread(s->disk, now, sizeof now, 0) == (ssize_t)sizeof now &&
+    return !fstat(s->disk, &st) && st.st_size >= s->end && read_at(s, now, sizeof now, 0) &&
            !memcmp(header, now, sizeof now);
 }
 
@@ -426,8 +440,9 @@ int writer_frame(struct writer *s, const struct frame *f, struct why *why)
         return why->status; // no reader would accept it
     if (!f->packed && s->doc.file < 0)
         s->trajectory = false; // an FCLIB problem is a document of its own
-    if (!s->trajectory) return stream_frame(s, f, why);
-    if (!trajectory_frame(s, f, why)) return 0;
+    int e = s->trajectory ? trajectory_frame(s, f, why) : stream_frame(s, f, why);
+    if (!e) unfinished_done(&s->unfinished);
+    if (!e || !s->trajectory) return e;
     // half a first frame is nothing; HDF5 writes no more, for h5_start has told it so
     if (!s->frames && ftruncate(s->disk, 0)) return why->status;
     return why->status;
@@ -436,6 +451,7 @@ int writer_frame(struct writer *s, const struct frame *f, struct why *why)
 int writer_close(struct writer *s, struct why *why)
 {
     int e = s->doc.file >= 0 ? trajectory_close(s, why) : 0;
+    unfinished_done(&s->unfinished);
     if (s->disk >= 0) close(s->disk);
     if (s->old >= 0) close(s->old);
     if (beside && beside == s->elsewhere) unlink(beside), beside = NULL;
