@@ -1,5 +1,6 @@
 /*
  * export/lammps.c: the text of LAMMPS' dumps, for OVITO and what else reads them: grains in SI units.
+ * Only what every reader takes: neither UNITS nor TIME, with which MDAnalysis' cannot go on.
  * Types are kinds, counted from 1. The box is the cell where it repeats; else it goes as far as the
  * grains reach.
  */
@@ -47,10 +48,9 @@ static void put_box(FILE *out, const struct packing *p)
 static int dump(FILE *out, const struct moment *m, enum part part, bool first, struct why *why)
 {
     const struct packing *p = m->packing;
-    (void)part, (void)why;
-    if (first) fprintf(out, "ITEM: UNITS\nsi\n");
-    fprintf(out, "ITEM: TIME\n%.17g\nITEM: TIMESTEP\n%" PRId64 "\n", p->t, p->step);
-    fprintf(out, "ITEM: NUMBER OF ATOMS\n%" PRId64 "\n", p->n);
+    (void)part, (void)first, (void)why;
+    fprintf(out, "ITEM: TIMESTEP\n%" PRId64 "\nITEM: NUMBER OF ATOMS\n%" PRId64 "\n", p->step,
+            p->n);
     put_box(out, p);
     fprintf(out, "ITEM: ATOMS id type x y z vx vy vz omegax omegay omegaz radius mass "
                  "quati quatj quatk quatw\n");

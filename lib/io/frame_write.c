@@ -167,8 +167,8 @@ static int write_contacts(struct table_write *s, const struct frame *f, struct w
 
 static int write_report(struct table_write *s, const struct report *rep, struct why *why)
 {
-    const char *solver = "/observables/solver";
-    bool first = !table_write_grows(s, "/observables/solver/eps/value");
+    const char *solver = LAYOUT_REPORT;
+    bool first = !table_write_grows(s, LAYOUT_REPORT "/eps/value");
     if (table_write_columns(s, solver, "/value", layout_report, 1, rep, sizeof *rep, CHUNK_FRAMES,
                             why) ||
         write_clock(s, solver, true, &rep->step, solver, layout_report, why) ||
@@ -182,8 +182,8 @@ static int write_report(struct table_write *s, const struct report *rep, struct 
         return why->status;
     if (!rep->history || s->growing) return 0;
     const hsize_t shape[2] = { (hsize_t)rep->sweeps, 5 };
-    return h5_write(s->file, "/observables/solver/history", H5T_NATIVE_DOUBLE, 2, shape,
-                    rep->history, "1", why);
+    return h5_write(s->file, LAYOUT_REPORT "/history", H5T_NATIVE_DOUBLE, 2, shape, rep->history,
+                    "1", why);
 }
 
 int frame_write_static(struct table_write *s, const struct frame *f, struct why *why)

@@ -30,7 +30,7 @@ static const struct {
     const char *known[12];
 } looked_through[] = {
     { "", { "h5md", "nsd", "particles", "walls", "contacts", "observables", "solution" } },
-    { "/nsd", { "history", "scene", "material" } },
+    { "/nsd", { "history", "scene", "material", "solver" } },
     { "/particles", { "all" } },
     { "/particles/all",
       { "box", "position", "velocity", "angular_velocity", "orientation", "radius", "mass",
