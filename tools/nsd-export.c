@@ -207,7 +207,7 @@ static void export(const struct format *format, enum target target, const struct
         }
         return;
     }
-    if (!has_part(f, part) && part == PART_CONTACTS) return;
+    if (!has_part(f, part)) return;
     shown = true;
     if (target == TARGET_FILE) {
         sheaf_add(&single, format, part, f);

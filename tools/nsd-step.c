@@ -9,7 +9,7 @@
 #include <stdio.h>
 
 static int64_t steps = 1, every = 1;
-static bool contacts;
+static bool contacts, forces;
 static const char *output;
 
 static const struct cli_option own[] = {
@@ -17,6 +17,8 @@ static const struct cli_option own[] = {
     { CLI_INT, 0, "every", &every, "K", "keep every K-th step, and the last [1]", .min = 1,
       .max = 1e15 },
     { CLI_FLAG, 0, "contacts", &contacts, .help = "keep each frame's contacts too" },
+    { CLI_FLAG, 0, "forces", &forces,
+      .help = "and with them their forces, in N and in space; means --contacts" },
     { CLI_FLAG, 'w', "warm", &options.warm,
       .help = "start each solve from the last step's reactions" },
     { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start each solve from 0, as the paper",
@@ -108,7 +110,8 @@ static int64_t run(struct frame *f, struct writer *out)
     if (steps) {
         report_free(&f->report);
         f->report.options = options_json(&o);
-        f->detected = contacts;
+        f->detected = contacts || forces;
+        f->forces = forces;
         f->stale = true;
     }
     for (int64_t k = 1; k <= steps; k++) {

@@ -268,6 +268,7 @@ static int read_contacts(struct frame_read *r, int64_t k, struct frame *f, struc
     if (source_attribute(r->source, "/contacts", "moved", COLUMN_I32, -1, &moved, why))
         return why->status;
     f->moved = moved;
+    f->forces = source_has(r->source, LAYOUT_FORCE);
     f->detected = true;
     return 0;
 }

@@ -143,11 +143,26 @@ static int write_bases(struct table_write *s, const struct contacts *t, struct w
     return e;
 }
 
+static int write_forces(struct table_write *s, const struct contacts *t, double dt, struct why *why)
+{
+    const hsize_t shape[2] = { (hsize_t)t->n, 3 };
+    vec3 *force = malloc((size_t)(t->n + 1) * sizeof *force);
+    if (!force) return why_set(why, EX_SOFTWARE, "no memory for %s", LAYOUT_FORCE);
+    for (int64_t i = 0; i < t->n; i++)
+        force[i] = v3_scale(1 / dt, contact_in_space(&t->c[i], t->found[i].r));
+    int e =
+        table_write_rows(s, LAYOUT_FORCE, COLUMN_F64, 2, shape, CHUNK_CONTACTS, force, "N", why);
+    free(force);
+    return e;
+}
+
 static int write_contacts(struct table_write *s, const struct frame *f, struct why *why)
 {
     bool first = !table_write_grows(s, "/contacts/start");
     const hsize_t one = 1;
     const struct contacts *t = &f->contacts;
+    // a column of a trajectory is one of all its contacts, or of none
+    bool forces = t->found && (first ? f->forces : table_write_grows(s, LAYOUT_FORCE));
     if (table_write_rows(s, "/contacts/start", COLUMN_I64, 1, &one, CHUNK_FRAMES, &s->contacts,
                          NULL, why) ||
         table_write_rows(s, "/contacts/count", COLUMN_I64, 1, &one, CHUNK_FRAMES, &t->n, NULL,
@@ -157,6 +172,7 @@ static int write_contacts(struct table_write *s, const struct frame *f, struct w
         write_bases(s, t, why) ||
         (t->found && table_write_columns(s, "/contacts", "", layout_found, t->n, t->found,
                                          sizeof *t->found, CHUNK_CONTACTS, why)) ||
+        (forces && write_forces(s, t, f->packing.dt, why)) ||
         table_write_rows(s, "/contacts/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &f->packing.step,
                          NULL, why))
         return why->status;

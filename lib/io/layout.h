@@ -73,6 +73,9 @@ static const struct column layout_found[] = {
     { 0 },
 };
 
+/* [S][3] N: the reactions of solved contacts as forces on b, in space; written where asked, not read */
+#define LAYOUT_FORCE "/contacts/force"
+
 /*
  * The group of the solver's reports. Not among H5MD's /observables: readers take each member of that
  * for an element with a value in every frame. LAYOUT_REPORT_0_1: where it was until nsd 0.1.
