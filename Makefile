@@ -4,11 +4,12 @@
 # make bench-solvers   all solvers over a collection of problems, Siconos' beside them
 # make rest       what is done about overlap: columns and piles that rest (nsd-methods(7))
 # make paper      every table and figure of the paper     QUICK=1        the same in minutes
+# make docs       the manuals as HTML, in docs/man        make deb       Debian packages, in build/deb
 #
 # Objects, tools and tests are under build/; SAN=1 makes the same with ASan and UBSan in build/san/,
 # at -O1: the sanitizers treble the code, and -O3 of that takes minutes.
 
-VERSION := 0.1
+VERSION := 1.0
 PREFIX  ?= /usr/local
 DESTDIR ?=
 CC      ?= cc
@@ -197,20 +198,80 @@ $(TIDY): lint-tidy-%:
 	clang-tidy --quiet $(wildcard lib/*/$*.c tools/$*.c) -- -std=gnu11 -DNSD_VERSION='"$(VERSION)"' \
 	    -Ilib $(PC) 2>/dev/null
 
+# ---- what is made for others ----
+
+# The manuals as HTML, kept in the repository; tests/docs.t asks whether they are current.
+DOCS := $(patsubst man/%,docs/man/%.html,$(wildcard man/*))
+
+# Links to manuals that are not ours become plain text.
+BAR   := $(subst $() ,|,$(notdir $(wildcard man/*)))
+LINKS := 's/(class="Xr") href="(($(BAR))[.]html)/\1 HREF="\2/g; s|<a class="Xr" href="[^"]*">([^<]*)</a>|\1|g; s| HREF=| href=|g'
+
+docs: $(DOCS) docs/man/index.html
+
+docs/man/%.html: man/% docs/man/style.css
+	mandoc -T html -O style=style.css,man=%N.%S.html $< | sed -E $(LINKS) > $@
+
+docs/man/index.html: scripts/man-index.sh $(wildcard man/*)
+	scripts/man-index.sh man/* > $@
+
+# Completion in bash and zsh, out of each tool's table of options
+COMPLETIONS := $(foreach t,$(notdir $(TOOLS)),$B/completion/bash/$t $B/completion/zsh/_$t)
+
+completions: $(COMPLETIONS)
+
+$B/completion/bash/%: $B/%
+	@mkdir -p $(@D)
+	$< --completion bash > $@
+
+$B/completion/zsh/_%: $B/%
+	@mkdir -p $(@D)
+	$< --completion zsh > $@
+
+$B/nsd.pc: nsd.pc.in Makefile
+	@mkdir -p $(@D)
+	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|' $< > $@
+
 # ---- installation ----
 
-install: all
-	install -d $(DESTDIR)$(PREFIX)/bin $(addprefix $(DESTDIR)$(PREFIX)/share/man/man,1 5 7) \
-	    $(DESTDIR)$(PREFIX)/share/nsd/scenes/paper
-	install -m 755 $(TOOLS) $(DESTDIR)$(PREFIX)/bin
-	for m in man/*; do install -m 644 $$m $(DESTDIR)$(PREFIX)/share/man/man$${m##*.}; done
-	install -m 644 scenes/*.json $(DESTDIR)$(PREFIX)/share/nsd/scenes
-	install -m 644 scenes/paper/*.json $(DESTDIR)$(PREFIX)/share/nsd/scenes/paper
+LIBDIR ?= $(PREFIX)/lib
+TO     := $(DESTDIR)$(PREFIX)
+
+install: install-tools install-dev
+
+install-tools: all completions
+	install -d $(TO)/bin $(addprefix $(TO)/share/man/man,1 5 7) $(TO)/share/nsd/scenes/paper \
+	    $(TO)/share/bash-completion/completions $(TO)/share/zsh/site-functions
+	install -m 755 $(TOOLS) $(TO)/bin
+	for m in man/*; do install -m 644 $$m $(TO)/share/man/man$${m##*.}; done
+	install -m 644 scenes/*.json $(TO)/share/nsd/scenes
+	install -m 644 scenes/paper/*.json $(TO)/share/nsd/scenes/paper
+	install -m 644 scripts/nsd.py $(TO)/share/nsd
+	install -m 644 $B/completion/bash/* $(TO)/share/bash-completion/completions
+	install -m 644 $B/completion/zsh/* $(TO)/share/zsh/site-functions
+
+# The library's headers lie in the folders by which they include each other.
+install-dev: $B/libnsd.a $B/nsd.pc
+	install -d $(DESTDIR)$(LIBDIR)/pkgconfig
+	for d in lib/*/; do \
+	    install -d $(TO)/include/nsd/$$(basename $$d); \
+	    ! ls $$d*.h >/dev/null 2>&1 || install -m 644 $$d*.h $(TO)/include/nsd/$$(basename $$d); \
+	done
+	install -m 644 $B/libnsd.a $(DESTDIR)$(LIBDIR)
+	install -m 644 $B/nsd.pc $(DESTDIR)$(LIBDIR)/pkgconfig
 
 uninstall:
-	cd $(DESTDIR)$(PREFIX)/bin && rm -f $(notdir $(TOOLS))
-	for m in man/*; do rm -f $(DESTDIR)$(PREFIX)/share/man/man$${m##*.}/$${m##*/}; done
-	rm -rf $(DESTDIR)$(PREFIX)/share/nsd
+	cd $(TO)/bin && rm -f $(notdir $(TOOLS))
+	for m in man/*; do rm -f $(TO)/share/man/man$${m##*.}/$${m##*/}; done
+	for t in $(notdir $(TOOLS)); do \
+	    rm -f $(TO)/share/bash-completion/completions/$$t $(TO)/share/zsh/site-functions/_$$t; \
+	done
+	rm -rf $(TO)/share/nsd $(TO)/include/nsd
+	rm -f $(DESTDIR)$(LIBDIR)/libnsd.a $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc
+
+# Debian packages in build/deb, of a copy of the sources: nsd-tools, and libnsd-dev for programs
+deb:
+	scripts/deb.sh
 
 clean:
 	rm -rf build demo
@@ -218,5 +279,5 @@ clean:
 -include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) install uninstall clean setup-run setup-paper setup-check
+.PHONY: all tests test check demo paper paper-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs completions install install-tools install-dev uninstall deb clean setup-run setup-paper setup-check
 .SECONDARY:

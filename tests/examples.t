@@ -87,6 +87,7 @@ png() # FILE [WxH]
 }
 fclib() { h5ls "$1/fclib_local/vectors/mu" | grep -q '{[1-9]'; }
 statuses() { awk '$1 > 0 && $2 ~ /^(free|stick|slide)$/ { n++ } END { exit !(n > 0 && n == NR) }' stdout; }
+listed() { [ "$(grep -c '<DataSet ' "$1/grains.pvd")" = "$2" ]; } # DIRECTORY N: of nsd-export, of N frames
 series() { [ $(($# - 1)) = "$1" ]; } # N FILE ...
 
 # claim COMMAND N: runs what shows that it did what it says; N is its -n. 99: nothing is claimed.
@@ -179,10 +180,19 @@ claim()
     'nsd-web --every 10 '*' -o heap.html out.h5') page heap.html 10 && grep -q '<title>A heap' heap.html ;;
     'nsd-view '*'-o film.mp4 out.h5') [ -s film.mp4 ] || [ -s film-00000.png ] ;;
     *'nsd-view --network --svg > forces.svg') [ "$(grep -c '<path' forces.svg)" -gt 800 ] ;;
+    # files of other programs
+    'nsd-'*'nsd-export -o live/') listed live "$2" ;;
+    'nsd-export -o paraview/ out.h5') listed paraview "$(frames out.h5 length)" && [ -s paraview/contacts-00099.vtp ] ;;
+    'nsd-export --part contacts -o '*'.vtp'*) series "$(frames out.h5 length)" forces*.vtp ;;
+    'nsd-export '*'> grains.csv') [ "$(wc -l <grains.csv)" = 501 ] ;;
+    'nsd-export -o out.lammpstrj out.h5') [ "$(grep -c '^ITEM: ATOMS id type x y z ' out.lammpstrj)" = "$(frames out.h5 length)" ] ;;
+    'nsd-export -o out.xyz out.h5') [ "$(grep -c 'Properties=species:S:1:pos:R:3:' out.xyz)" = "$(frames out.h5 length)" ] ;;
+    *'> forces.txt') table 1 "$(nsd-info --last out.h5 | jq .contacts)" forces.txt && awk '$1 < 0 { exit 1 }' forces.txt ;;
     'gnuplot '*) ;;
     # without a prompt: a scene, and Python
     '{ "title": "A steel ball'*) bodies stdout 801 && nsd-info -p stdout | jq -s -e 'map(.kind) | unique == ["ball", "steel"]' ;;
     *'with h5py.File("out.h5")'*) grep -q '^100 frames, the last is step 1000' stdout && grep -q '^[1-9][0-9]* contacts, at most [0-9.]* N' stdout ;;
+    *'MDAnalysis.Universe.empty'*) table 3 100 <(tr ' ' '\t' <stdout) ;;
     *'sys.stdin.buffer.read(512)'*) table 2 2 <(tr ' ' '\t' <stdout) ;;
     *) return 99 ;;
     esac
@@ -206,6 +216,7 @@ example() # SOURCE COMMAND SHOWN: in $tmp/run
     name="$1: ${name//  / }"
     case $command in
     'gnuplot '* | 'ffmpeg '*) command -v "${command%% *}" >/dev/null || { skip "$name" "no ${command%% *}"; return; } ;;
+    *import*MDAnalysis*) /usr/bin/python3 -c 'import MDAnalysis' 2>/dev/null || { skip "$name" "no MDAnalysis"; return; } ;;
     *import*h5py*) have_h5py || { skip "$name" "no h5py"; return; } ;;
     esac
     cd "$tmp/run" || return

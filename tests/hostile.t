@@ -116,8 +116,8 @@ for change in "new(f, P + 'species', data=np.full(4, 0.9))" "new(f, P + 'id', da
     refuses 65 "$change" nsd-step "$tmp/bad.h5"
 done
 for change in "f[C + 'status'][0] = 99" "f[C + 'status'][0] = -1" "f[C + 'body'][1] = f[C + 'body'][0]" \
-    "f[C + 'body'][...] = f[C + 'body'][()][::-1]" "f['/observables/solver/sweeps/value'][0] = -5" \
-    "f['/observables/solver/contacts/value'][0] = -1" "f['/observables/solver/converged/value'][0] = 5"; do
+    "f[C + 'body'][...] = f[C + 'body'][()][::-1]" "f['/nsd/solver/sweeps/value'][0] = -5" \
+    "f['/nsd/solver/contacts/value'][0] = -1" "f['/nsd/solver/converged/value'][0] = 5"; do
     make bad.h5 solved.h5 "$change"
     refuses 65 "$change" nsd-err "$tmp/bad.h5"
     refuses 65 "$change: nsd-move" nsd-move "$tmp/bad.h5"

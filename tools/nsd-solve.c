@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+static bool forces;
+
 static const struct cli_option own[] = {
     { CLI_REAL, 0, "theta", &options.theta, "T", .max = 1,
       .help = "must be what the contacts were detected with [the document's]" },
@@ -16,6 +18,7 @@ static const struct cli_option own[] = {
       .usual = options_usual },
     { CLI_FLAG, 0, "history", &options.history,
       .help = "keep the error terms of every sweep in the document" },
+    { CLI_FLAG, 0, "forces", &forces, .help = "add the contacts' forces, in N and in space" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { options_solve, own, options_run, NULL };
@@ -60,6 +63,7 @@ static void solve(struct frame *f, const char *where)
         if (step_solve_delassus(W, f->u, &o, &f->report, &why)) die_why(&why);
     }
     f->reported = true;
+    f->forces |= forces;
     all_converged &= f->report.converged;
     options_log(&f->report);
     options_summary(where, &f->report);

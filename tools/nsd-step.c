@@ -15,7 +15,7 @@
 static int64_t steps = 1;
 static struct cli_every every = { 1, 0 };
 static double until, lines; /* s: of the motion; of real time */
-static bool contacts, in_place;
+static bool contacts, forces, in_place;
 static const char *output;
 
 static const struct cli_option own[] = {
@@ -25,6 +25,8 @@ static const struct cli_option own[] = {
     { CLI_EVERY, 0, "every", &every, "K|Ts",
       "keep every K-th step, or one every T s of its time, and the last [1]", .max = 1e15 },
     { CLI_FLAG, 0, "contacts", &contacts, .help = "keep each frame's contacts too" },
+    { CLI_FLAG, 0, "forces", &forces,
+      .help = "and with them their forces, in N and in space; means --contacts" },
     { CLI_FLAG, 'w', "warm", &options.warm,
       .help = "start each solve from the last step's reactions" },
     { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start each solve from 0, as the paper",
@@ -182,7 +184,8 @@ static void begin(struct run *r)
     f->packing.events.n = 0; // they belong to the frame that was read
     report_free(&f->report);
     f->report.options = options_json(&r->o);
-    f->detected = contacts;
+    f->detected = contacts || forces;
+    f->forces = forces;
     f->stale = true;
 }
 

@@ -54,6 +54,13 @@ static inline vec3 contact_t2(const struct contact *c)
     return v3_cross(c->n, c->t1);
 }
 
+/* A vector (n, t1, t2) of the contact's basis, in space */
+static inline vec3 contact_in_space(const struct contact *c, const double r[3])
+{
+    vec3 normal = v3_scale(r[0], c->n);
+    return v3_axpy(v3_axpy(normal, r[1], c->t1), r[2], contact_t2(c));
+}
+
 /* new->found[].r = the reactions of old, turned into the bases of new, for pairs that are in both,
    and 0 for others. Leaves new as it is when old is not solved. -1 when memory is short. */
 int contacts_match(struct contacts *new, const struct contacts *old);

@@ -1,4 +1,5 @@
 #include "cli/cli.h"
+#include "cli/completion.h"
 
 #include "io/reader.h"
 
@@ -17,6 +18,7 @@
 
 enum {
     OPTIONS = 64, /* room for a tool's options */
+    OF_ALL = 3,   /* options of every tool */
     LEFT = 28,    /* characters of --help's left column */
     HELP = 1000,  /* what getopt_long returns: beyond all letters */
     VERSION,
@@ -238,11 +240,20 @@ static double gigabytes;
 static const struct cli_option unpack = { CLI_REAL, 0,          "unpack",      &gigabytes,
                                           "GB",     .max = 1e6, .silent = true };
 
+/* --completion SHELL, for make install: not among the options, whose abbreviations it would change */
+static void completion(const char *shell)
+{
+    if (!completion_print(shell)) die_usage("--completion: bash or zsh");
+    finish_stdout();
+    exit(0);
+}
+
 int cli_parse(int argc, char **argv)
 {
-    struct option lng[OPTIONS + 4] = { { "help", 0, NULL, HELP },
-                                       { "version", 0, NULL, VERSION },
-                                       { "unpack", 1, NULL, UNPACK } };
+    if (argc == 3 && !strcmp(argv[1], "--completion")) completion(argv[2]);
+    struct option lng[OPTIONS + OF_ALL + 1] = { { "help", 0, NULL, HELP },
+                                                { "version", 0, NULL, VERSION },
+                                                { "unpack", 1, NULL, UNPACK } };
     const struct cli_option *at[OPTIONS];
     char letters[2 * OPTIONS + 2] = ":";
     int n = 0;
@@ -251,7 +262,7 @@ int cli_parse(int argc, char **argv)
             at[n] = o;
             bool flag = o->kind == CLI_FLAG || o->kind == CLI_UNFLAG;
             int wants = flag ? no_argument : required_argument;
-            lng[n + 3] = (struct option){ o->name, wants, NULL, FIRST_LONG + n };
+            lng[n + OF_ALL] = (struct option){ o->name, wants, NULL, FIRST_LONG + n };
             if (o->letter) sprintf(letters + strlen(letters), flag ? "%c" : "%c:", o->letter);
         }
     json_t *value[OPTIONS] = { NULL };

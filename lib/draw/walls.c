@@ -162,20 +162,35 @@ static void keep_polygon(struct walls *b, const struct packing *p, int i, const 
     for (int k = 0; k < g->count; k++) f->corner[k] = v3_add(g->p[k], middle);
 }
 
+/* Wall i cut by the region and by all other walls; corners from the middle */
+static struct polygon wall_cut(const struct packing *p, int i, const struct region *r, vec3 middle)
+{
+    double size = v3_norm(v3_sub(r->hi, r->lo));
+    if (!is_drawn(wall_now(p, i))) return (struct polygon){ .count = 0 };
+    struct polygon g = wall_uncut(p, i, middle, size);
+    clip_region(&g, r, middle, size, p->dim);
+    for (int j = 0; j < walls_of(p) && g.count; j++) {
+        vec3 n = p->wall[j].n, x = wall_now(p, j);
+        if (j == i || !is_drawn(x)) continue;
+        clip(&g, n, v3_dot(n, v3_sub(x, middle)) - 1e-9 * size, j);
+    }
+    return g;
+}
+
 void walls_build(struct walls *b, const struct packing *p, const struct region *r)
 {
     b->panels = b->edges = 0;
     vec3 middle = v3_scale(0.5, v3_add(r->lo, r->hi));
-    double size = v3_norm(v3_sub(r->hi, r->lo));
     for (int i = 0; i < walls_of(p); i++) {
-        if (!is_drawn(wall_now(p, i))) continue;
-        struct polygon g = wall_uncut(p, i, middle, size);
-        clip_region(&g, r, middle, size, p->dim);
-        for (int j = 0; j < walls_of(p) && g.count; j++) {
-            vec3 n = p->wall[j].n, x = wall_now(p, j);
-            if (j == i || !is_drawn(x)) continue;
-            clip(&g, n, v3_dot(n, v3_sub(x, middle)) - 1e-9 * size, j);
-        }
+        struct polygon g = wall_cut(p, i, r, middle);
         if (g.count > 1) keep_polygon(b, p, i, &g, middle);
     }
+}
+
+int walls_polygon(const struct packing *p, int i, const struct region *r, vec3 *corner)
+{
+    vec3 middle = v3_scale(0.5, v3_add(r->lo, r->hi));
+    struct polygon g = wall_cut(p, i, r, middle);
+    for (int k = 0; k < g.count; k++) corner[k] = v3_add(g.p[k], middle);
+    return g.count;
 }

@@ -48,4 +48,8 @@ struct region region_join(struct region a, struct region b);
 /* b = the walls inside the region at the packing's time. In the plane walls are edges. */
 void walls_build(struct walls *b, const struct packing *p, const struct region *r);
 
+/* corner[] = the corners (m) of wall i inside the region and before all other walls, at most
+   WALLS_CORNERS, two in the plane; returns how many. i < WALLS_PANELS. */
+int walls_polygon(const struct packing *p, int i, const struct region *r, vec3 *corner);
+
 #endif

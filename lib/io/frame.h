@@ -15,6 +15,7 @@ struct frame {
     bool detected; /* contacts are, */
     bool reported; /* report is */
     bool moved;    /* the contacts' reactions have led to this packing, not from it */
+    bool forces;   /* reactions are written as forces in space, too */
     struct packing packing;
     struct contacts contacts;
     struct report report;

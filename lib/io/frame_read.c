@@ -7,6 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { AHEAD = 256 }; /* reports read at once: 64 KiB */
+
+/* The row of a step; looked for at `guess`, where it mostly is, then from the end on; -1: none */
+static int64_t row_of(const int64_t *steps, int64_t n, int64_t step, int64_t guess)
+{
+    if (guess < n && steps[guess] == step) return guess;
+    while (--n >= 0 && steps[n] != step) continue;
+    return n;
+}
+
 static void *steps_of(const struct frame_read *r, const char *path, int64_t *n, struct why *why)
 {
     uint64_t count = 0;
@@ -52,24 +62,39 @@ static int count_contacts(struct frame_read *r, struct why *why)
     return why->status;
 }
 
+static int count_reports(struct frame_read *r, struct why *why)
+{
+    char path[80];
+    r->reports = source_has(r->source, LAYOUT_REPORT) ? LAYOUT_REPORT : LAYOUT_REPORT_0_1;
+    snprintf(path, sizeof path, "%s/step", r->reports);
+    if (source_has(r->source, path)) r->solved = steps_of(r, path, &r->solves, why);
+    for (const struct column *c = layout_report; c->name; c++) { // a killed writer's may differ
+        uint64_t shape[4];
+        snprintf(path, sizeof path, "%s/%s/value", r->reports, c->name);
+        if (source_shape(r->source, path, shape) > 0 && shape[0] < (uint64_t)r->solves)
+            r->solves = (int64_t)shape[0];
+    }
+    return why->status;
+}
+
 int frame_read_open(struct frame_read *r, struct source *source, struct why *why)
 {
     *r = (struct frame_read){ .source = source, .frames = 1 };
+    r->ahead.last = r->contacts.last = -1;
     if (source_has(source, "/particles/all")) {
         if (count_frames(r, why)) return why->status;
         if (source_has(source, "/contacts") && count_contacts(r, why)) return why->status;
     } else if (!fclib_in(source)) {
         return why_set(why, EX_DATAERR, "holds neither particles nor an FCLIB problem");
     }
-    if (!source_has(source, "/observables/solver/step")) return 0;
-    r->solved = steps_of(r, "/observables/solver/step", &r->solves, why);
-    return why->status;
+    return count_reports(r, why);
 }
 
 void frame_read_close(struct frame_read *r)
 {
     free(r->step), free(r->time), free(r->solved);
     free(r->contacts.step), free(r->contacts.start), free(r->contacts.count);
+    free(r->ahead.row), free(r->ahead.time);
     *r = (struct frame_read){ 0 };
 }
 
@@ -302,10 +327,11 @@ static int read_bases(struct source *r, int64_t first, struct contacts *s, struc
 /* The contacts of frame k, if the document keeps them. */
 static int read_contacts(struct frame_read *r, int64_t k, struct frame *f, struct why *why)
 {
-    int64_t at = r->contacts.blocks - 1, first;
+    int64_t at = row_of(r->contacts.step, r->contacts.blocks, r->step[k], r->contacts.last + 1),
+            first;
     struct contacts *s = &f->contacts;
-    while (at >= 0 && r->contacts.step[at] != r->step[k]) at--;
     if (at < 0) return 0;
+    r->contacts.last = at;
     first = r->contacts.start[at], s->n = r->contacts.count[at];
     if (first < 0 || s->n < 0 || first > INT32_MAX || s->n > INT32_MAX)
         return why_set(why, EX_DATAERR, "/contacts: start or count is out of range");
@@ -333,34 +359,55 @@ static int read_contacts(struct frame_read *r, int64_t k, struct frame *f, struc
     if (source_attribute(r->source, "/contacts", "moved", COLUMN_I32, -1, &moved, why))
         return why->status;
     f->moved = moved;
+    f->forces = source_has(r->source, LAYOUT_FORCE);
     f->detected = true;
     return 0;
 }
 
 /* Counts that are counts, a flag that is one: looked at as a byte, for a bool may not be 5. */
-static int check_report(const struct report *rep, struct why *why)
+static int check_report(const struct report *rep, const char *group, struct why *why)
 {
     uint8_t converged;
     memcpy(&converged, &rep->converged, 1);
     if (rep->sweeps < 0 || rep->err.contacts < 0 || rep->newton < 0 || rep->safeguarded < 0 ||
         rep->gave_up < 0)
-        return why_set(why, EX_DATAERR, "/observables/solver: a number of things is negative");
-    if (converged > 1)
-        return why_set(why, EX_DATAERR, "/observables/solver/converged: is %d", converged);
+        return why_set(why, EX_DATAERR, "%s: a number of things is negative", group);
+    if (converged > 1) return why_set(why, EX_DATAERR, "%s/converged: is %d", group, converged);
     return 0;
 }
 
-static int read_history(struct source *doc, struct report *rep, struct why *why)
+static int read_history(struct source *doc, const char *group, struct report *rep, struct why *why)
 {
     uint64_t n;
-    if (!source_has(doc, "/observables/solver/history")) return 0;
-    double *h = source_read_all(doc, "/observables/solver/history", COLUMN_F64, &n, why);
+    char path[80];
+    snprintf(path, sizeof path, "%s/history", group);
+    if (!source_has(doc, path)) return 0;
+    double *h = source_read_all(doc, path, COLUMN_F64, &n, why);
     if (!h) return why->status;
     rep->history = (struct terms *)h;
     return n == 5 * (uint64_t)rep->sweeps
                ? 0
-               : why_set(why, EX_DATAERR, "/observables/solver/history: not of shape %d x 5",
-                         rep->sweeps);
+               : why_set(why, EX_DATAERR, "%s: not of shape %d x 5", path, rep->sweeps);
+}
+
+/* Reports from `at` on, as many as there are up to AHEAD, but for their texts. */
+static int read_ahead(struct frame_read *r, int64_t at, struct why *why)
+{
+    char time[80];
+    free(r->ahead.row), free(r->ahead.time);
+    int64_t n = r->solves - at < AHEAD ? r->solves - at : AHEAD;
+    r->ahead.first = at, r->ahead.n = 0;
+    r->ahead.row = calloc((size_t)n, sizeof *r->ahead.row);
+    r->ahead.time = calloc((size_t)n, sizeof *r->ahead.time);
+    if (!r->ahead.row || !r->ahead.time)
+        return why_set(why, EX_SOFTWARE, "no memory for %s", r->reports);
+    snprintf(time, sizeof time, "%s/time", r->reports);
+    if (table_read_columns(r->source, r->reports, "/value", layout_report, at, n, r->ahead.row,
+                           sizeof *r->ahead.row, why) ||
+        source_rows(r->source, time, COLUMN_F64, at, n, 1, r->ahead.time, why))
+        return why->status;
+    r->ahead.n = n;
+    return 0;
 }
 
 /*
@@ -369,19 +416,17 @@ static int read_history(struct source *doc, struct report *rep, struct why *why)
  */
 static int read_report(struct frame_read *r, int64_t step, struct frame *f, struct why *why)
 {
-    int64_t at = r->frames == 1 && r->solves == 1 ? 0 : -1;
-    for (int64_t i = 0; i < r->solves; i++)
-        if (r->solved[i] == step) at = i;
+    bool alone = r->frames == 1 && r->solves == 1;
+    int64_t at = alone ? 0 : row_of(r->solved, r->solves, step, r->ahead.last + 1);
     if (at < 0) return 0;
     struct report *rep = &f->report;
-    const char *solver = "/observables/solver";
-    if (table_read_columns(r->source, solver, "/value", layout_report, at, 1, rep, sizeof *rep,
-                           why) ||
-        check_report(rep, why))
-        return why->status;
-    rep->step = r->solved[at];
-    if (source_rows(r->source, "/observables/solver/time", COLUMN_F64, at, 1, 1, &rep->t, why))
-        return why->status;
+    const char *solver = r->reports;
+    bool there = at >= r->ahead.first && at < r->ahead.first + r->ahead.n;
+    if (!there && read_ahead(r, at, why)) return why->status;
+    *rep = r->ahead.row[at - r->ahead.first];
+    if (check_report(rep, solver, why)) return why->status;
+    rep->step = r->solved[at], rep->t = r->ahead.time[at - r->ahead.first];
+    r->ahead.last = at;
     char *method = source_text(r->source, solver, "method", why);
     char *criterion = source_text(r->source, solver, "criterion", why);
     rep->options = source_text(r->source, solver, "options", why);
@@ -390,7 +435,7 @@ static int read_report(struct frame_read *r, int64_t step, struct frame *f, stru
         if (!strcmp(criterion, criterion_name[c])) rep->criterion = c;
     free(method), free(criterion);
     if (why->status || source_attribute(r->source, solver, "eps", COLUMN_F64, -1, &rep->eps, why) ||
-        read_history(r->source, rep, why))
+        read_history(r->source, solver, rep, why))
         return why->status;
     f->reported = true;
     return 0;

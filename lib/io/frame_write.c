@@ -156,11 +156,26 @@ static int write_bases(struct table_write *s, const struct contacts *t, struct w
     return e;
 }
 
+static int write_forces(struct table_write *s, const struct contacts *t, double dt, struct why *why)
+{
+    const hsize_t shape[2] = { (hsize_t)t->n, 3 };
+    vec3 *force = malloc((size_t)(t->n + 1) * sizeof *force);
+    if (!force) return why_set(why, EX_SOFTWARE, "no memory for %s", LAYOUT_FORCE);
+    for (int64_t i = 0; i < t->n; i++)
+        force[i] = v3_scale(1 / dt, contact_in_space(&t->c[i], t->found[i].r));
+    int e =
+        table_write_rows(s, LAYOUT_FORCE, COLUMN_F64, 2, shape, CHUNK_CONTACTS, force, "N", why);
+    free(force);
+    return e;
+}
+
 static int write_contacts(struct table_write *s, const struct frame *f, struct why *why)
 {
     bool first = !table_write_grows(s, "/contacts/start");
     const hsize_t one = 1;
     const struct contacts *t = &f->contacts;
+    // a column of a trajectory is one of all its contacts, or of none
+    bool forces = t->found && (first ? f->forces : table_write_grows(s, LAYOUT_FORCE));
     if (table_write_rows(s, "/contacts/start", COLUMN_I64, 1, &one, CHUNK_FRAMES, &s->contacts,
                          NULL, why) ||
         table_write_rows(s, "/contacts/count", COLUMN_I64, 1, &one, CHUNK_FRAMES, &t->n, NULL,
@@ -170,6 +185,7 @@ static int write_contacts(struct table_write *s, const struct frame *f, struct w
         write_bases(s, t, why) ||
         (t->found && table_write_columns(s, "/contacts", "", layout_found, t->n, t->found,
                                          sizeof *t->found, CHUNK_CONTACTS, why)) ||
+        (forces && write_forces(s, t, f->packing.dt, why)) ||
         table_write_rows(s, "/contacts/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &f->packing.step,
                          NULL, why))
         return why->status;
@@ -180,8 +196,8 @@ static int write_contacts(struct table_write *s, const struct frame *f, struct w
 
 static int write_report(struct table_write *s, const struct report *rep, struct why *why)
 {
-    const char *solver = "/observables/solver";
-    bool first = !table_write_grows(s, "/observables/solver/eps/value");
+    const char *solver = LAYOUT_REPORT;
+    bool first = !table_write_grows(s, LAYOUT_REPORT "/eps/value");
     if (table_write_columns(s, solver, "/value", layout_report, 1, rep, sizeof *rep, CHUNK_FRAMES,
                             why) ||
         write_clock(s, solver, true, &rep->step, solver, layout_report, why) ||
@@ -195,8 +211,8 @@ static int write_report(struct table_write *s, const struct report *rep, struct 
         return why->status;
     if (!rep->history || s->growing) return 0;
     const hsize_t shape[2] = { (hsize_t)rep->sweeps, 5 };
-    return h5_write(s->file, "/observables/solver/history", H5T_NATIVE_DOUBLE, 2, shape,
-                    rep->history, "1", why);
+    return h5_write(s->file, LAYOUT_REPORT "/history", H5T_NATIVE_DOUBLE, 2, shape, rep->history,
+                    "1", why);
 }
 
 int frame_write_static(struct table_write *s, const struct frame *f, struct why *why)

@@ -73,8 +73,18 @@ static const struct column layout_found[] = {
     { 0 },
 };
 
+/* [S][3] N: the reactions of solved contacts as forces on b, in space; written where asked, not read */
+#define LAYOUT_FORCE "/contacts/force"
+
 /*
- * /observables/solver/NAME/value [F][width]: members of struct report. The five numbers of eps are
+ * The group of the solver's reports. Not among H5MD's /observables: readers take each member of that
+ * for an element with a value in every frame. LAYOUT_REPORT_0_1: where it was until nsd 0.1.
+ */
+#define LAYOUT_REPORT     "/nsd/solver"
+#define LAYOUT_REPORT_0_1 "/observables/solver"
+
+/*
+ * LAYOUT_REPORT/NAME/value [F][width]: members of struct report. The five numbers of eps are
  * eps_glob, motion, proj, bipotential, penetration.
  */
 static const struct column layout_report[] = {

@@ -30,7 +30,7 @@ static const struct {
     const char *known[12];
 } looked_through[] = {
     { "", { "h5md", "nsd", "particles", "walls", "contacts", "observables", "solution" } },
-    { "/nsd", { "history", "scene", "material" } },
+    { "/nsd", { "history", "scene", "material", "solver" } },
     { "/particles", { "all" } },
     { "/particles/all",
       { "box", "position", "velocity", "angular_velocity", "orientation", "radius", "mass",
@@ -136,7 +136,7 @@ const char *unknown_timed(struct source *s)
     const char *path;
     const uint64_t *shape;
     for (int64_t k = 0; source_object(s, k, &path, &shape); k++) {
-        char step[SERVE_PATH + 8];
+        char step[OBJECT_PATH + 8];
         const struct object *o = source_object(s, k, &path, &shape);
         snprintf(step, sizeof step, "%s/step", path);
         if (!o->attribute && is_unknown(path) && source_has(s, step)) return path;

@@ -49,8 +49,8 @@ struct writer {
     int64_t frames;               /* that are finished */
     off_t end;                    /* of the file, at the last flush */
     /* a trajectory that takes a file's place, until it has: */
-    int old;                 /* the file, open and locked; else -1 */
-    char *place, *elsewhere; /* its path, and that of the new one */
+    int old;                      /* the file, open and locked; else -1 */
+    char *place, *elsewhere;      /* its path, and that of the new one */
     struct unfinished unfinished; /* the file, before there is anything in it */
 };
 
@@ -339,8 +339,7 @@ static int flush(struct writer *s, struct why *why)
 static struct shared shared_of(const struct packing *p)
 {
     if (packing_varies(p))
-        return (struct shared){ p->dim,     0, p->dt,    p->theta,
-                                p->overlap, 0, p->pours, p->removals };
+        return (struct shared){ p->dim, 0, p->dt, p->theta, p->overlap, 0, p->pours, p->removals };
     uint32_t crc = document_crc(0, p->radius, (size_t)p->n * sizeof *p->radius);
     crc = document_crc(crc, p->mass, (size_t)p->n * sizeof *p->mass);
     return (struct shared){ p->dim, p->n, p->dt, p->theta, p->overlap, crc, 0, 0 };

@@ -1,0 +1,48 @@
+/* export/sheet_grains.c: grains as points, with all that a document says of each. */
+#include "export/sheet.h"
+
+#include <string.h>
+
+/* contacts[i], force[i] = how many contacts of grain i push, and the sum of their forces (N) */
+static int add_contacts(struct sheet *s, const struct moment *m, struct why *why)
+{
+    const struct packing *p = m->packing;
+    const struct contacts *t = m->contacts;
+    int32_t *count = sheet_whole(s, "contacts", "", why);
+    double *force = sheet_real(s, "contact_force", "xyz", why);
+    if (why->status) return why->status;
+    for (int64_t i = 0; i < t->n; i++) {
+        const struct contact *c = &t->c[i];
+        vec3 f = v3_scale(1 / p->dt, contact_in_space(c, t->found[i].r));
+        for (int side = 0; side < 2; side++) {
+            int32_t body = side ? c->b : c->a;
+            if (body < 0) continue;
+            count[body] += t->found[i].r[0] > 0;
+            double sign = side ? 1 : -1, *to = force + 3 * (size_t)body;
+            to[0] += sign * f.x, to[1] += sign * f.y, to[2] += sign * f.z;
+        }
+    }
+    return 0;
+}
+
+int sheet_grains(struct sheet *s, const struct moment *m, struct why *why)
+{
+    const struct packing *p = m->packing;
+    const size_t n = (size_t)p->n;
+    s->shape = SHEET_POINT, s->of_points = true;
+    for (int64_t i = 0; i < p->n; i++)
+        if (sheet_add(s, 1, &p->x[i], why)) return why->status;
+    int32_t *id = sheet_whole(s, "id", "", why), *kind = sheet_whole(s, "kind", "", why);
+    double *radius = sheet_real(s, "radius", "", why), *mass = sheet_real(s, "mass", "", why);
+    double *v = sheet_real(s, "velocity", "xyz", why);
+    double *w = sheet_real(s, "angular_velocity", "xyz", why);
+    double *q = sheet_real(s, "orientation", "wxyz", why);
+    if (why->status) return why->status;
+    if (n) {
+        memcpy(id, p->id, n * sizeof *id), memcpy(kind, p->kind, n * sizeof *kind);
+        memcpy(radius, p->radius, n * sizeof *radius), memcpy(mass, p->mass, n * sizeof *mass);
+        memcpy(v, p->v, n * sizeof *p->v), memcpy(w, p->w, n * sizeof *p->w);
+        memcpy(q, p->q, n * sizeof *p->q);
+    }
+    return m->contacts && m->contacts->found ? add_contacts(s, m, why) : 0;
+}

@@ -1,0 +1,239 @@
+"""Documents of nsd [nsd-format(5)] in Python, by h5py and numpy; SI units throughout.
+
+    import nsd
+    for frame in nsd.frames("out.h5"):          # a trajectory, documents back to back, or "-"
+        print(frame.step, frame.time, frame.x[:, 2].max())
+    contacts = nsd.last("out.h5").contacts      # None: the document keeps none
+    print(contacts.force[:3])                   # N, on b, in space
+    problem = nsd.fclib("problem.hdf5")         # W, q, mu ...
+
+Arrays are read when they are asked for. What a frame's document does not have is None.
+"""
+import io
+import os
+import struct
+import sys
+from functools import cached_property
+
+import h5py
+import numpy as np
+
+MAGIC = b"\x89NSD\r\n\x1a\n"
+HEADER = 512  # bytes in front of a document
+UNFINISHED = 1  # flag: still being written, and as long as its file
+
+
+class Contacts:
+    """A frame's contacts, a row each; a is -1-w where it is boundary w."""
+
+    def __init__(self, group, rows, dt):
+        self._group, self._rows, self._dt = group, rows, dt
+
+    def __len__(self):
+        return self._rows.stop - self._rows.start
+
+    def _column(self, name):
+        return self._group[name][self._rows] if name in self._group else None
+
+    @cached_property
+    def a(self):
+        return self._column("body")[:, 0]
+
+    @cached_property
+    def b(self):
+        return self._column("body")[:, 1]
+
+    point = cached_property(lambda self: self._column("point"))  # m
+    basis = cached_property(lambda self: self._column("frame"))  # [n][3][3]: rows n, t1, t2
+    gap = cached_property(lambda self: self._column("gap"))  # m; negative: overlap
+    mu = cached_property(lambda self: self._column("mu"))
+    reaction = cached_property(lambda self: self._column("reaction"))  # N s, in the basis
+    velocity = cached_property(lambda self: self._column("velocity"))  # m/s, in the basis
+    status = cached_property(lambda self: self._column("status"))  # 0 free, 1 stick, 2 slide
+
+    @cached_property
+    def normal(self):
+        """Unit vectors from a to b."""
+        return self.basis[:, 0]
+
+    @cached_property
+    def force(self):
+        """N: [n][3] the force on b, in space; None where the contacts are not solved."""
+        if self.reaction is None:
+            return None
+        return np.einsum("ni,nij->nj", self.reaction, self.basis) / self._dt
+
+    @cached_property
+    def normal_force(self):
+        """N: the part of the force along the normal; it never pulls."""
+        return None if self.reaction is None else self.reaction[:, 0] / self._dt
+
+    @cached_property
+    def tangential_force(self):
+        """N: how large the part across the normal is."""
+        return None if self.reaction is None else np.hypot(*self.reaction[:, 1:].T) / self._dt
+
+
+class Frame:
+    """What a document says of one moment."""
+
+    def __init__(self, file, row):
+        self.file, self.row = file, row
+        self._all = file["particles/all"]
+        self.step = int(self._all["position/step"][row])
+        self.time = float(self._all["position/time"][row])  # s
+        self.dt = float(file["nsd"].attrs["dt"])  # s
+        self.gravity = np.array(file["nsd"].attrs["gravity"])  # m/s^2
+
+    def __repr__(self):
+        return f"<nsd frame of step {self.step}: {self._all['position/value'].shape[1]} bodies>"
+
+    def _moving(self, name):
+        return self._all[name]["value"][self.row]
+
+    def _fixed(self, name):
+        return self._all[name][()]
+
+    x = cached_property(lambda self: self._moving("position"))  # m
+    v = cached_property(lambda self: self._moving("velocity"))  # m/s
+    w = cached_property(lambda self: self._moving("angular_velocity"))  # rad/s
+    q = cached_property(lambda self: self._moving("orientation"))  # unit quaternions (w, x, y, z)
+    radius = cached_property(lambda self: self._fixed("radius"))  # m
+    mass = cached_property(lambda self: self._fixed("mass"))  # kg
+    inertia = cached_property(lambda self: self._fixed("inertia"))  # kg m^2
+    id = cached_property(lambda self: self._fixed("id"))
+    kind = cached_property(lambda self: self._fixed("species"))
+
+    @cached_property
+    def contacts(self):
+        """The frame's contacts; None where the document does not keep them."""
+        if "contacts" not in self.file:
+            return None
+        group = self.file["contacts"]
+        at = np.flatnonzero(group["step"][()] == self.step)
+        if not len(at):
+            return None
+        start, count = (int(group[name][at[-1]]) for name in ("start", "count"))
+        return Contacts(group, slice(start, start + count), self.dt)
+
+    @cached_property
+    def report(self):
+        """What the solver said: {"sweeps": ..., "natural": ...}; None: nothing."""
+        for place in "nsd/solver", "observables/solver":  # the second until nsd 0.1
+            if place in self.file:
+                break
+        else:
+            return None
+        group = self.file[place]
+        steps = group["step"][()]
+        at = np.flatnonzero(steps == self.step)
+        if len(steps) == 1 and self._all["position/step"].shape[0] == 1:
+            at = [0]
+        if not len(at):
+            return None
+        return {name: group[name]["value"][at[-1]] for name in group
+                if isinstance(group[name], h5py.Group)}
+
+
+def _whole(stream, size):
+    data = stream.read(size)
+    if len(data) != size:
+        raise EOFError("a document is cut off")
+    return data
+
+
+def documents(source="-"):
+    """The documents of a file, an open binary stream, or standard input ("-"), as h5py.File."""
+    path = source if isinstance(source, (str, os.PathLike)) and source != "-" else None
+    if path is None:
+        stream = sys.stdin.buffer if source == "-" else source
+    else:
+        stream = open(path, "rb")
+    try:
+        while head := stream.read(HEADER):
+            if head[:8] != MAGIC:  # no header of ours: an HDF5 file by itself
+                yield h5py.File(path or io.BytesIO(head + stream.read()), "r")
+                return
+            flags, length = struct.unpack("<IQ", head[12:24])
+            if path and flags & UNFINISHED:  # anew each time: by its name HDF5 would give what it knew
+                yield h5py.File(open(path, "rb"), "r")
+                return
+            if path and length == os.path.getsize(path):
+                yield h5py.File(path, "r")
+                return
+            rest = stream.read() if flags & UNFINISHED else _whole(stream, length - HEADER)
+            yield h5py.File(io.BytesIO(head + rest), "r")
+    finally:
+        if path is not None:
+            stream.close()
+
+
+def _count(file):
+    """Frames that are whole: a trajectory may be growing."""
+    group = file["particles/all"]
+    names = "position", "velocity", "angular_velocity", "orientation"
+    count = min(group[name]["value"].shape[0] for name in names)
+    steps = group["position/step"][:min(count, group["position/time"].shape[0])]
+    back = np.flatnonzero(np.diff(steps) <= 0)  # room for a step that is not written yet
+    return int(back[0]) + 1 if len(back) else len(steps)
+
+
+def frames(source="-"):
+    """The frames of all documents of the source, one after another."""
+    for file in documents(source):
+        for row in range(_count(file)):
+            yield Frame(file, row)
+
+
+def last(source="-"):
+    """The very last frame; None: there is none."""
+    frame = None
+    for file in documents(source):
+        count = _count(file)
+        frame = Frame(file, count - 1) if count else frame
+    return frame
+
+
+class Problem:
+    """A contact problem in the FCLIB format: u = W r + q, or M v = H r + G l + f, u = H* v + w."""
+
+    def __init__(self, file):
+        self.is_global = "fclib_global" in file
+        group = file["fclib_global" if self.is_global else "fclib_local"]
+        vectors = group["vectors"]
+        self.dim = int(group["spacedim"][0])
+        for name in ("M", "H", "G") if self.is_global else ("W",):
+            setattr(self, name, _matrix(group[name]) if name in group else None)
+        for name in "mu", "q", "f", "w", "b":
+            setattr(self, name, vectors[name][()] if name in vectors else None)
+        solution = file["solution"] if "solution" in file else {}
+        for name in "u", "r", "v", "l":
+            setattr(self, name, solution[name][()] if name in solution else None)
+
+
+def _matrix(group):
+    """A sparse matrix of FCLIB: scipy's where it is there, else a dense array. Entries add up."""
+    m, n, kind = (int(group[name][0]) for name in ("m", "n", "nz"))
+    p, i, x = (group[name][()] for name in ("p", "i", "x"))
+    if kind >= 0:
+        rows, columns, x = i[:kind], p[:kind], x[:kind]
+    else:
+        lines = m if kind == -2 else n
+        outer = np.repeat(np.arange(lines), np.diff(p[:lines + 1]))
+        inner, x = i[:len(outer)], x[:len(outer)]
+        rows, columns = (outer, inner) if kind == -2 else (inner, outer)
+    try:
+        from scipy.sparse import coo_matrix
+        return coo_matrix((x, (rows, columns)), shape=(m, n)).tocsr()
+    except ImportError:
+        dense = np.zeros((m, n))
+        np.add.at(dense, (rows, columns), x)
+        return dense
+
+
+def fclib(source="-"):
+    """The first contact problem in the FCLIB format among the documents of the source."""
+    for file in documents(source):
+        if "fclib_local" in file or "fclib_global" in file:
+            return Problem(file)
+    raise ValueError("no problem in the FCLIB format")

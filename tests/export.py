@@ -1,0 +1,281 @@
+"""export.py WHAT ...: what export.t asks of other programs' readers; an assertion that fails says what."""
+import glob
+import os
+import resource
+import subprocess
+import sys
+import time
+import warnings
+
+import numpy as np
+
+sys.path.insert(0, "scripts")
+import nsd  # noqa: E402
+
+warnings.simplefilter("ignore")
+
+
+def vtk_read(path):
+    import vtk
+    from vtk.util.numpy_support import vtk_to_numpy
+    reader = (vtk.vtkXMLPolyDataReader if path.endswith("vtp") else vtk.vtkXMLUnstructuredGridReader)()
+    reader.SetFileName(path)
+    reader.Update()
+    out = reader.GetOutput()
+    assert reader.GetErrorCode() == 0
+
+    def arrays(data):
+        return {data.GetArrayName(k): vtk_to_numpy(data.GetArray(k)) for k in range(data.GetNumberOfArrays())}
+    x = vtk_to_numpy(out.GetPoints().GetData()) if out.GetNumberOfPoints() else np.zeros((0, 3))
+    cells = []
+    for k in range(out.GetNumberOfCells()):
+        ids = out.GetCell(k).GetPointIds()
+        cells.append([ids.GetId(i) for i in range(ids.GetNumberOfIds())])
+    return x, cells, arrays(out.GetPointData()), arrays(out.GetCellData()), arrays(out.GetFieldData())
+
+
+def same(a, b):
+    assert np.array_equal(np.asarray(a), np.asarray(b)), (a, b)
+
+
+def check_grains(path, frame):
+    x, cells, data, _, field = vtk_read(path)
+    same(x, frame.x), same(cells, np.arange(len(x))[:, None])
+    for name, value in dict(id=frame.id, kind=frame.kind, radius=frame.radius, mass=frame.mass,
+                            velocity=frame.v, angular_velocity=frame.w, orientation=frame.q).items():
+        same(data[name], value)
+    same(field["step"], [frame.step]), same(field["TimeValue"], [frame.time])
+    return data
+
+
+def check_contacts(path, frame):
+    x, cells, _, data, _ = vtk_read(path)
+    c = frame.contacts
+    same(len(cells), len(c))
+    if not len(c):
+        return
+    ends = x[np.array(cells)]
+    same(ends[:, 1], frame.x[c.b])
+    same(ends[:, 0], np.where(c.a[:, None] >= 0, frame.x[c.a], c.point))
+    same(data["body"], np.stack([c.a, c.b], 1)), same(data["gap"], c.gap), same(data["status"], c.status)
+    same(data["normal"], c.normal), same(data["point"], c.point)
+    largest = abs(c.force).max()
+    assert abs(data["force"] - c.force).max() <= 1e-14 * largest
+    # the parts of that vector, seen by the normal
+    normal = (data["force"] * data["normal"]).sum(1)
+    assert abs(normal - data["normal_force"]).max() <= 1e-12 * largest
+    across = np.linalg.norm(data["force"] - normal[:, None] * data["normal"], axis=1)
+    assert abs(across - data["tangential_force"]).max() <= 1e-12 * largest
+
+
+def check_boundary(path, frame):
+    x, cells, _, data, _ = vtk_read(path)
+    same(sorted(data["boundary"]), range(5))
+    for k, corners in enumerate(cells):
+        assert len(corners) >= 3
+        off = (x[corners] - data["point"][k]) @ data["normal"][k]
+        assert abs(off).max() < 1e-9
+        inside = ((frame.x - data["point"][k]) @ data["normal"][k])
+        assert inside.min() > 0  # the grains are on the side of the normal
+
+
+def directory(document, folder, ending):
+    frames = list(nsd.frames(document))
+    for k, frame in enumerate(frames):
+        check_grains(f"{folder}/grains-{k:05}.{ending}", frame)
+        check_contacts(f"{folder}/contacts-{k:05}.{ending}", frame)
+        check_boundary(f"{folder}/boundary-{k:05}.{ending}", frame)
+    assert not glob.glob(folder + "/cell*")  # nothing repeats
+
+
+def pvd(document, folder):
+    import xml.etree.ElementTree as tree
+    frames = list(nsd.frames(document))
+    for part in "grains", "contacts", "boundary":
+        sets = list(tree.parse(f"{folder}/{part}.pvd").getroot().iter("DataSet"))
+        same([float(s.get("timestep")) for s in sets], [f.time for f in frames])
+        assert all(os.path.exists(f"{folder}/{s.get('file')}") for s in sets)
+
+
+def growing(folder):
+    """Every list that is there while the run goes on is whole, and names files that are."""
+    import xml.etree.ElementTree as tree
+    seen = set()
+    for _ in range(2000):
+        try:
+            with open(folder + "/grains.pvd") as f:
+                text = f.read()
+        except FileNotFoundError:
+            time.sleep(0.005)
+            continue
+        if text:
+            sets = list(tree.fromstring(text).iter("DataSet"))
+            assert all(os.path.exists(f"{folder}/{s.get('file')}") for s in sets)
+            seen.add(len(sets))
+        if len(seen) > 3:
+            return
+        time.sleep(0.005)
+    raise AssertionError(seen)
+
+
+def stl(path, document, detail):
+    import vtk
+    from vtk.util.numpy_support import vtk_to_numpy
+    frame = nsd.last(document)
+    reader = vtk.vtkSTLReader()
+    reader.SetFileName(path)
+    reader.MergingOff()
+    reader.Update()
+    out = reader.GetOutput()
+    x = vtk_to_numpy(out.GetPoints().GetData()).astype(float).reshape(-1, 3, 3)
+    each = 20 * 4 ** detail
+    balls = x[:each * len(frame.x)].reshape(len(frame.x), each, 3, 3)
+    # by the divergence theorem: positive where triangles are seen from outside
+    off = balls - frame.x[:, None, None]
+    volume = np.einsum("bti,bti->b", off[:, :, 0], np.cross(off[:, :, 1], off[:, :, 2])) / 6
+    share = volume / (4 / 3 * np.pi * frame.radius ** 3)
+    # the icosahedron in a unit ball has 2.53615 m^3 of 4.18879
+    expected = {0: 2.536150 / 4.188790}.get(detail, 1 - 0.394 / 3.6 ** detail)
+    assert np.ptp(share) < 1e-3 and abs(share.mean() - expected) < 0.03, (share.mean(), expected)
+    reach = np.linalg.norm(off, axis=-1) / frame.radius[:, None, None]
+    assert abs(reach - 1).max() < 1e-3  # corners are on the ball
+    assert len(x) - each * len(frame.x) >= 10  # five walls
+
+
+def xyz(path, document):
+    import ase.io
+    read = ase.io.read(path, index=":", format="extxyz")
+    frames = list(nsd.frames(document))
+    same(len(read), len(frames))
+    for a, f in zip(read, frames):
+        same(a.positions, f.x), same(a.arrays["radius"], f.radius), same(a.arrays["id"], f.id)
+        same(a.arrays["velo"], f.v), same(a.arrays["orientation"], np.roll(f.q, -1, 1))
+        same(a.info["Step"], f.step), same(a.info["Time"], f.time), same(a.pbc, [False] * 3)
+
+
+def lammps(path, document):
+    import ase.io
+    import MDAnalysis
+    frames = list(nsd.frames(document))
+    read = ase.io.read(path, index=":", format="lammps-dump-text")
+    same(len(read), len(frames))
+    for a, f in zip(read, frames):
+        same(a.positions, f.x[np.argsort(f.id, kind="stable")])
+    u = MDAnalysis.Universe(path, format="LAMMPSDUMP", topology_format="LAMMPSDUMP")
+    same(len(u.trajectory), len(frames))
+    x, mine = u.trajectory[-1].positions, frames[-1].x  # it begins at the box's corner
+    assert abs((x - x[0]) - (mine - mine[0])).max() < 1e-8
+
+
+def table(path, document, part, by):
+    frames = [f for f in nsd.frames(document) if part == "grains" or f.contacts is not None]
+    read = np.genfromtxt(path, delimiter=by.replace("\\t", "\t"), names=True)
+    same(read["step"], np.concatenate([[f.step] * len(f.x if part == "grains" else f.contacts) for f in frames]))
+    xyz_of = lambda name: np.stack([read[name + k] for k in ("_x", "_y", "_z")], 1)  # noqa: E731
+    if part == "grains":
+        same(np.stack([read[k] for k in "xyz"], 1), np.concatenate([f.x for f in frames]))
+        same(xyz_of("velocity"), np.concatenate([f.v for f in frames]))
+        return
+    force = np.concatenate([f.contacts.force for f in frames])
+    assert abs(xyz_of("force") - force).max() <= 1e-14 * abs(force).max()
+    same(read["normal_force"], np.concatenate([f.contacts.normal_force for f in frames]))
+
+
+def newton(document, folder):
+    """m dv = (m g + all contact forces) dt over each step, for the forces that were exported."""
+    frames = list(nsd.frames(document))
+    worst = 0
+    for k in range(1, len(frames)):
+        old, new = frames[k - 1], frames[k]
+        assert new.step == old.step + 1
+        data = vtk_read(f"{folder}/grains-{k:05}.vtp")[2]
+        left = new.mass[:, None] * (new.v - old.v) / new.dt
+        right = new.mass[:, None] * new.gravity + data["contact_force"]
+        worst = max(worst, abs(left - right).max() / abs(data["contact_force"]).max())
+        same(data["contacts"].sum(), sum((new.contacts.normal_force > 0) * (1 + (new.contacts.a >= 0))))
+    assert worst < 1e-9, worst
+
+
+def forces(document):
+    """/contacts/force is what nsd.py makes of reaction and frame."""
+    import h5py
+    kept = h5py.File(document, "r")["contacts/force"]
+    assert kept.attrs["units"] in (b"N", "N")
+    made = np.concatenate([f.contacts.force for f in nsd.frames(document)])
+    assert kept.shape == made.shape and abs(kept[()] - made).max() <= 1e-14 * abs(made).max()
+
+
+def mdanalysis(document):
+    import h5py
+    import MDAnalysis
+    frames = list(nsd.frames(document))
+    n = len(h5py.File(document, "r")["particles/all/id"])
+    u = MDAnalysis.Universe.empty(n, trajectory=True)
+    u.load_new(document, format="H5MD", convert_units=False)
+    same(len(u.trajectory), len(frames))
+    for ts, f in zip(u.trajectory, frames):
+        same(ts.data["step"], f.step), same(ts.time, f.time)
+        same(ts.positions, f.x.astype("f4"))
+
+
+def looks_on(document):
+    """h5py and nsd.py read a trajectory that grows: the frames that they see are whole, and more and more."""
+    seen = []
+    for _ in range(2000):
+        try:
+            frame = nsd.last(document)
+        except OSError:
+            frame = None  # the very first frame is being made
+        if frame and np.isfinite(frame.x).all() and (not seen or frame.step > seen[-1]):
+            seen.append(frame.step)
+        if len(seen) > 3:
+            return
+        time.sleep(0.005)
+    raise AssertionError(seen)
+
+
+def stream(document):
+    """nsd.py reads documents back to back out of a pipe, the same frames."""
+    with subprocess.Popen(["nsd-cat", document], stdout=subprocess.PIPE) as cat:
+        pipe = subprocess.run(["cat"], stdin=cat.stdout, stdout=subprocess.PIPE, check=True).stdout
+    import io
+    few = list(nsd.frames(document))
+    many = list(nsd.frames(io.BytesIO(pipe)))
+    same(len(many), len(few))
+    for a, b in zip(many, few):
+        same(a.x, b.x), same(a.step, b.step), same(a.contacts.force, b.contacts.force)
+        same(a.report["sweeps"], b.report["sweeps"])
+
+
+def fclib(document):
+    """W of nsd.py solves what nsd-solve has solved: u = W r + q, and u, r obey the law."""
+    p = nsd.fclib(document)
+    W = p.W.toarray() if hasattr(p.W, "toarray") else p.W
+    same(W, W.T)
+    u = W @ p.r + p.q
+    assert abs(u - p.u).max() <= 1e-9 * abs(p.u).max()
+    r = p.r.reshape(-1, p.dim)
+    assert (r[:, 0] >= 0).all() and (np.linalg.norm(r[:, 1:], axis=1) <= p.mu * r[:, 0] * (1 + 1e-9)).all()
+
+
+def memory(few, many, *command):
+    """The most memory that a command takes of a stream, MB: as much for many frames as for few."""
+    most = []
+    for name in few, many:  # in this order: the children's maximum only rises
+        with open(name, "rb") as f:
+            subprocess.run(command, stdin=f, stdout=subprocess.DEVNULL, check=True)
+        most.append(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)
+    assert most[1] < 1.25 * most[0], most
+
+
+def cost(document, most):
+    """nsd-info takes at most so many ms of the processor a frame."""
+    with open(os.devnull, "w") as null:
+        subprocess.run(["nsd-info", document], stdout=null, check=True)
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    frames = sum(1 for _ in nsd.frames(document))
+    each = 1e3 * (used.ru_utime + used.ru_stime) / frames
+    assert each <= float(most), f"{each} ms"
+
+
+globals()[sys.argv[1]](*[int(a) if a.isdigit() else a for a in sys.argv[2:]])

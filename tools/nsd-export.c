@@ -1,0 +1,276 @@
+/* nsd-export: frames as files of other programs: ParaView, OVITO, ASE, tables, triangles. */
+#include "cli/cli.h"
+#include "cli/tool_filter.h"
+#include "export/format.h"
+#include "export/pvd.h"
+#include "io/reader.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static int to, part = PART_GRAINS;
+static const char *output, *steps;
+static bool last;
+static int64_t detail = 2;
+
+static struct cli_choice to_choice(int k)
+{
+    const struct format *f = format_at(k);
+    return f ? (struct cli_choice){ f->name, f->help } : (struct cli_choice){ 0 };
+}
+
+static struct cli_choice part_choice(int k)
+{
+    return (struct cli_choice){ k < PART_COUNT ? part_name[k] : NULL, NULL };
+}
+
+static const struct cli_option own[] = {
+    { CLI_CHOICE, 't', "to", &to, .choice = to_choice,
+      .help = "the format [by the ending of -o; vtp in a directory]" },
+    { CLI_CHOICE, 'p', "part", &part, .choice = part_choice,
+      .help = "what of a frame [grains; in a directory all]" },
+    { CLI_TEXT, 'o', "output", &output, "FILE",
+      .help = "FILE, a series 'f%05d.vtp', or a directory 'DIR/' [standard output]" },
+    { CLI_FLAG, 'l', "last", &last, .help = "only the very last frame" },
+    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
+    { CLI_INT, 0, "detail", &detail, "N", .help = "balls of STL have 20 * 4^N triangles [2]",
+      .max = 6 },
+    { 0 },
+};
+static const struct cli_option *const tables[] = { own, NULL };
+
+const struct cli_tool tool = { "nsd-export", "[FILE ...]",
+                               "Writes frames as files of other programs: one file, a file a "
+                               "frame, or a directory with lists\n"
+                               "(.pvd) that ParaView plays. Units are SI, forces in N.",
+                               tables,
+                               "  nsd-export -o paraview/ out.h5\n"
+                               "  nsd-export --part contacts -o 'forces%05d.vtp' out.h5\n"
+                               "  nsd-export --to csv --last out.h5 > grains.csv\n" };
+
+/* ---- one file ---- */
+
+/* A file that is written: moments in it so far, and what its first had */
+struct sheaf {
+    FILE *out;
+    const char *name;
+    int64_t moments;
+    bool contacts, solved;
+};
+
+static void sheaf_open(struct sheaf *s, const char *name)
+{
+    *s = (struct sheaf){ name ? fopen(name, "w") : stdout, name ? name : "standard output",
+                         .moments = 0 };
+    if (!s->out) die(EX_IOERR, "%s: %s", name, strerror(errno));
+}
+
+static void sheaf_close(struct sheaf *s)
+{
+    if (s->out == stdout)
+        finish_stdout();
+    else if (ferror(s->out) | fclose(s->out))
+        die(EX_IOERR, "%s: not written (disk full?)", s->name);
+    s->out = NULL;
+}
+
+static void sheaf_add(struct sheaf *s, const struct format *format, enum part what,
+                      const struct frame *f)
+{
+    struct why why = { 0 };
+    struct moment m = { &f->packing, f->detected ? &f->contacts : NULL, (int)detail };
+    bool solved = m.contacts && m.contacts->found;
+    if (s->moments && !format->joins)
+        die_usage("a %s file holds one frame: --last, --steps, or a series -o 'f%%05d.%s'",
+                  format->name, format->ending);
+    // the columns of a table are those of its first frame
+    if (s->moments && what == PART_GRAINS && s->solved && !solved)
+        die(EX_DATAERR, "step %lld: no solved contacts, and frames before it have them",
+            (long long)f->packing.step);
+    if (s->moments && what == PART_GRAINS && !s->solved) m.contacts = NULL;
+    if (s->moments && what == PART_CONTACTS && s->solved != solved)
+        die(EX_DATAERR, "step %lld: contacts solved and unsolved in one table",
+            (long long)f->packing.step);
+    if (!s->moments) s->solved = solved;
+    if (format->write(s->out, &m, what, !s->moments, &why))
+        die(why.status, "step %lld: %s", (long long)f->packing.step, why.text);
+    s->moments++;
+}
+
+/* ---- a file a frame ---- */
+
+/* Where the %0Nd (N from 1 to 9) of a series' name is; NULL: the name has no percent sign. */
+static const char *number_in(const char *name)
+{
+    const char *at = strchr(name, '%');
+    if (!at) return NULL;
+    if (at[1] != '0' || at[2] < '1' || at[2] > '9' || at[3] != 'd' || strchr(at + 1, '%'))
+        die_usage("--output: '%s' has not just one %%0Nd, N from 1 to 9", name);
+    return at;
+}
+
+static void *memory_of(size_t size)
+{
+    void *memory = calloc(size, 1);
+    if (!memory) die(EX_SOFTWARE, "no memory");
+    return memory;
+}
+
+/* The series' k-th name. To be freed. */
+static char *name_at(const char *series, int64_t k)
+{
+    const char *at = number_in(series);
+    size_t room = strlen(series) + 32;
+    char *name = memory_of(room);
+    snprintf(name, room, "%.*s%0*lld%s", (int)(at - series), series, at[2] - '0', (long long)k,
+             at + 4);
+    return name;
+}
+
+static void write_file(const char *name, const struct format *format, enum part what,
+                       const struct frame *f)
+{
+    struct sheaf s;
+    sheaf_open(&s, name);
+    sheaf_add(&s, format, what, f);
+    sheaf_close(&s);
+}
+
+/* ---- a directory: all parts, and for ParaView a list of each ---- */
+
+static struct {
+    struct pvd list[PART_COUNT];
+} directory;
+
+static bool is_directory(const char *name)
+{
+    struct stat st;
+    size_t n = strlen(name);
+    return (n && name[n - 1] == '/') || (!stat(name, &st) && S_ISDIR(st.st_mode));
+}
+
+static void directory_make(const char *name)
+{
+    if (mkdir(name, 0777) && errno != EEXIST) die(EX_IOERR, "%s: %s", name, strerror(errno));
+}
+
+/* Is there anything of this part? A packing has a cell, boundaries or contacts, or it has not. */
+static bool has_part(const struct frame *f, enum part what)
+{
+    const bool has[PART_COUNT] = { true, f->detected, f->packing.walls > 0,
+                                   cell_repeats(&f->packing.cell) };
+    return has[what];
+}
+
+static void directory_add(const struct format *format, enum part what, const struct frame *f,
+                          int64_t k)
+{
+    struct why why = { 0 };
+    size_t room = strlen(output) + 64;
+    char *path = memory_of(room), name[64];
+    struct pvd *list = &directory.list[what];
+    if (format->collected && !list->out) {
+        snprintf(path, room, "%s/%s.pvd", output, part_name[what]);
+        if (pvd_begin(list, path, &why)) die_why(&why);
+    }
+    snprintf(name, sizeof name, "%s-%05lld.%s", part_name[what], (long long)k, format->ending);
+    snprintf(path, room, "%s/%s", output, name);
+    write_file(path, format, what, f);
+    if (format->collected && pvd_add(list, name, f->packing.t, &why)) die_why(&why);
+    free(path);
+}
+
+/* ---- all of it ---- */
+
+/* What is made of the frames: one file, a series of files, or a directory of them */
+enum target { TARGET_FILE, TARGET_SERIES, TARGET_DIRECTORY };
+
+static struct sheaf single;
+static bool shown; /* whether any frame had the part that was asked for */
+
+static void export(const struct format *format, enum target target, const struct frame *f,
+                   const char *where, int64_t k)
+{
+    tool_wants_packing(f, where);
+    if (target == TARGET_DIRECTORY) {
+        for (int what = 0; what < PART_COUNT; what++) {
+            bool wanted = cli_given(&part) ? what == part : format->parts || what == PART_GRAINS;
+            if (!wanted || !has_part(f, what)) continue;
+            if (!strcmp(format->name, "stl") && what != PART_GRAINS && what != PART_BOUNDARY)
+                continue;
+            directory_add(format, what, f, k);
+            shown = true;
+        }
+        return;
+    }
+    if (!has_part(f, part)) return;
+    shown = true;
+    if (target == TARGET_FILE) {
+        sheaf_add(&single, format, part, f);
+        return;
+    }
+    char *name = name_at(output, k);
+    write_file(name, format, part, f);
+    free(name);
+}
+
+static enum target target_of(const struct format **format)
+{
+    bool in_directory = output && is_directory(output);
+    bool given = cli_given(&to);
+    *format = given ? format_at(to) : output && !in_directory ? format_of_name(output) : NULL;
+    if (in_directory && !given) *format = format_at(0);
+    if (!*format) die_usage("--to FORMAT, or an --output whose ending says it, is wanted");
+    if (!(*format)->parts && part != PART_GRAINS)
+        die_usage("--part: %s has grains only", (*format)->name);
+    if (in_directory) return TARGET_DIRECTORY;
+    if (output && number_in(output)) return TARGET_SERIES;
+    if (!output && (*format)->binary && isatty(STDOUT_FILENO))
+        die_usage("standard output is a terminal: %s is binary, use -o or a pipe", (*format)->name);
+    return TARGET_FILE;
+}
+
+static void run(struct reader *in, const struct format *format, enum target target)
+{
+    struct frame f = { 0 };
+    struct why why = { 0 };
+    struct range range;
+    bool more;
+    if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
+    if (last && steps) die_usage("--last and --steps exclude each other");
+    if (target == TARGET_DIRECTORY) directory_make(output);
+    if (target == TARGET_FILE) sheaf_open(&single, output);
+    int64_t k = 0;
+    if (last && !reader_last(in, &f, &more, &why) && more)
+        export(format, target, &f, reader_where(in), k++);
+    while (!last && !reader_next(in, steps ? &range : NULL, &f, &more, &why) && more) {
+        export(format, target, &f, reader_where(in), k++);
+        progress("%lld frames", (long long)k);
+    }
+    if (why.status) die_why(&why);
+    if (!k) die(EX_DATAERR, "%s: no such frame", reader_where(in));
+    if (!shown)
+        die(EX_DATAERR, "%s: no %s in any frame", reader_where(in),
+            part == PART_CONTACTS ? "group /contacts" : part_name[part]);
+    for (int what = 0; what < PART_COUNT; what++)
+        if (pvd_end(&directory.list[what], &why)) die_why(&why);
+    if (target == TARGET_FILE) sheaf_close(&single);
+    frame_free(&f);
+}
+
+int tool_main(int argc, char **argv)
+{
+    struct reader *in;
+    struct why why = { 0 };
+    const struct format *format;
+    enum target target = target_of(&format);
+    if (reader_open(&in, argc, argv, &why)) die_why(&why);
+    if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
+    run(in, format, target);
+    reader_close(in);
+    return 0;
+}
