@@ -141,7 +141,7 @@ static void show_walls(const struct packing *p)
         json_object_set_new(j, "step", json_integer(p->step));
         json_object_set_new(j, "wall", json_integer(i));
         json_object_set_new(j, "kind", json_string(p->kind_name[w->kind]));
-        json_object_set_new(j, "point", json_vec(v3_axpy(w->x, p->t, w->v)));
+        json_object_set_new(j, "point", json_vec(wall_at(p, w, p->t)));
         json_object_set_new(j, "normal", json_vec(w->n));
         json_object_set_new(j, "velocity", json_vec(w->v));
         json_line(j);

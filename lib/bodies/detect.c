@@ -15,7 +15,7 @@ static bool add_wall_contact(struct contacts *out, const struct packing *p, int3
                              int64_t i, vec3 x, double gap)
 {
     const struct wall *wall = &p->wall[w];
-    vec3 at = v3_axpy(wall->x, t, wall->v);
+    vec3 at = wall_at(p, wall, t);
     double distance = v3_dot(v3_sub(x, at), wall->n), g = distance - p->radius[i];
     if (!(g <= gap) || p->mass[i] == 0) return true;
     struct contact *c = contacts_add(out, -1 - w, (int32_t)i);

@@ -1,28 +1,9 @@
 /* move.c: see bodies/move.h. */
 #include "bodies/move.h"
 
-#include <stdlib.h>
+#include "bodies/impulse.h"
 
-/* The reactions' impulses and their moments about the centres, which are at x + ahead v when the
-   contacts act; summed in the contacts' order. */
-static void impulses(const struct packing *p, double ahead, const struct contacts *s, vec3 *force,
-                     vec3 *moment)
-{
-    for (int64_t i = 0; i < s->n; i++) {
-        const struct contact *c = &s->c[i];
-        double la, lb;
-        vec3 xa = c->a < 0 ? c->x : v3_axpy(p->x[c->a], ahead, p->v[c->a]);
-        contact_arms(c, xa, v3_axpy(p->x[c->b], ahead, p->v[c->b]), &la, &lb);
-        const double *r = s->found[i].r;
-        vec3 t2 = contact_t2(c), f = v3_axpy(v3_axpy(v3_scale(r[0], c->n), r[1], c->t1), r[2], t2);
-        vec3 m = v3_axpy(v3_scale(r[2], c->t1), -r[1], t2); // -n x r
-        force[c->b] = v3_add(force[c->b], f);
-        moment[c->b] = v3_axpy(moment[c->b], lb, m);
-        if (c->a < 0) continue;
-        force[c->a] = v3_sub(force[c->a], f);
-        moment[c->a] = v3_axpy(moment[c->a], la, m);
-    }
-}
+#include <stdlib.h>
 
 static quat turn(quat q, double dt, vec3 w)
 {
@@ -57,18 +38,19 @@ static void body_unmove(struct packing *p, int64_t i, vec3 force, vec3 moment)
     p->q[i] = quat_unit(turn(p->q[i], -before, p->w[i]));
 }
 
-/* body() on each, with its impulse and moment; the contacts act where the bodies are `ahead` (s)
-   from here. */
+/* body() on each with its impulse and moment, and the freedoms with theirs; the contacts act where
+   the bodies are `ahead` (s) from here. */
 static int move(struct packing *p, double ahead, const struct contacts *s,
                 void (*body)(struct packing *, int64_t, vec3, vec3), struct why *why)
 {
-    size_t n = (size_t)p->n + 1;
-    vec3 *force = calloc(n, sizeof *force), *moment = calloc(n, sizeof *moment);
-    bool room = force && moment;
-    if (room) impulses(p, ahead, s, force, moment);
-    for (int64_t i = 0; room && i < p->n; i++) body(p, i, force[i], moment[i]);
-    free(force), free(moment);
-    return room ? 0 : why_set(why, EX_SOFTWARE, "no memory to move the bodies");
+    struct impulses sum;
+    if (!impulses_init(&sum, p, ahead, s, why)) {
+        for (int64_t i = 0; i < p->n; i++) body(p, i, sum.force[i], sum.moment[i]);
+        for (int32_t k = 0; k < sum.freedoms.n; k++) sum.yield[k] = impulses_change(&sum, p, k);
+        freedoms_move(&sum.freedoms, p, sum.yield, body == body_unmove);
+    }
+    impulses_free(&sum);
+    return why->status;
 }
 
 int move_step(struct packing *p, const struct contacts *s, struct why *why)

@@ -10,6 +10,7 @@
 #include "base/vec.h"
 #include "base/why.h"
 #include "bodies/cell.h"
+#include "bodies/load.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -19,6 +20,7 @@ struct wall {
     vec3 x, n;    /* m: a point on it at t = 0; unit normal */
     vec3 v;       /* m/s: at time t the point is at x + v t */
     int32_t kind; /* row of the material tables */
+    struct load load; /* that it yields to; LOAD_NONE: it does not */
 };
 
 struct packing {
@@ -67,6 +69,29 @@ int packing_copy(struct packing *to, const struct packing *from, struct why *why
 /* Is every number finite and in its range (radius > 0, mass >= 0, mu >= 0, 0 <= e <= 1, dt > 0,
    unit normals ...)? Returns 0, or EX_DATAERR with the first body or wall that fails. */
 int packing_check(const struct packing *p, struct why *why);
+
+/* m: a point of the wall at time t (s), which is not before the packing's */
+static inline vec3 wall_at(const struct packing *p, const struct wall *w, double t)
+{
+    vec3 x = v3_axpy(w->x, t, w->v);
+    if (w->load.way != LOAD_GLIDES) return x;
+    return v3_axpy(x, w->load.travel + (t - p->t) * w->load.speed, w->load.axis);
+}
+
+/* m/s: of the wall's material at point x (m): what is prescribed, and with what its load makes of it */
+static inline vec3 wall_held(const struct wall *w, vec3 x)
+{
+    (void)x;
+    return w->v;
+}
+static inline vec3 wall_velocity(const struct wall *w, vec3 x)
+{
+    const struct load *l = &w->load;
+    vec3 v = wall_held(w, x);
+    if (l->way == LOAD_GLIDES) return v3_axpy(v, l->speed, l->axis);
+    if (l->way != LOAD_TURNS) return v;
+    return v3_axpy(v, l->speed, v3_cross(l->axis, v3_sub(x, l->point)));
+}
 
 /* m: the position at which contacts are detected, q + (1 - theta) dt qdot [globalmapapp1]. */
 static inline vec3 packing_predict(const struct packing *p, int64_t i)

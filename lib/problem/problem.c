@@ -44,6 +44,9 @@ void problem_free(struct problem *p)
     free(p->bundle), free(p->rebound), free(p->u), free(p->contact), free(p->group), free(p->body);
     free(p->split), free(p->seat);
     delassus_free(&p->sorted);
+    if (p->own) delassus_free(p->own);
+    if (p->coupling) couplings_free(p->coupling);
+    free(p->own), free(p->coupling);
     *p = (struct problem){ 0 };
 }
 
@@ -124,13 +127,14 @@ void problem_set_free_motion(struct problem *p)
     }
 }
 
-/* The place of a contact's body i (wall w: -1-w): its own, or of a new copy if it does not move */
-static int32_t place_of(struct problem *p, int32_t i, int64_t *next)
+/* The place of a body i (wall w: -1-w) of a contact at x (m): its own, or of a new copy if it does
+   not move. A load's speed is prescribed here [problem/coupling.h]. */
+static int32_t place_of(struct problem *p, int32_t i, vec3 x, int64_t *next)
 {
     const struct packing *pack = p->packing;
     if (i >= 0 && pack->mass[i] > 0) return body_place(p->seat[i]);
     struct body *copy = &p->body[*next];
-    vec3 v = i < 0 ? pack->wall[-1 - i].v : pack->v[i];
+    vec3 v = i < 0 ? wall_velocity(&pack->wall[-1 - i], x) : pack->v[i];
     *copy = (struct body){ .v = { v.x, v.y, v.z } };
     if (i >= 0) *copy = p->body[p->seat[i]];
     return body_place((*next)++);
@@ -177,7 +181,8 @@ static double top_speed(const struct packing *p)
     double most = 0;
     for (int64_t i = 0; i < p->n; i++)
         most = fmax(most, v3_norm(p->v[i]) + p->radius[i] * v3_norm(p->w[i]));
-    for (int32_t k = 0; k < p->walls; k++) most = fmax(most, v3_norm(p->wall[k].v));
+    for (int32_t k = 0; k < p->walls; k++)
+        most = fmax(most, v3_norm(p->wall[k].v) + fabs(p->wall[k].load.speed));
     return most + p->dt * v3_norm(p->g);
 }
 
@@ -215,6 +220,10 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     if (room && rebounds(s))
         room = (p->rebound = alloc_lines(p->bundles, sizeof *p->rebound)) != NULL;
     if (!room || !(p->seat = seat_bodies(p, pack, s, order))) return no_memory(p, why);
+    if (freedoms_in(pack)) {
+        if (!(p->coupling = calloc(1, sizeof *p->coupling))) return no_memory(p, why);
+        if (couplings_init(p->coupling, pack, s, why)) return problem_free(p), why->status;
+    }
     set_bodies(p);
     int64_t nobody = pack->n, next = nobody + 2;
     int64_t other = p->split ? BUNDLE * p->group[p->split->inside] : p->slots;
@@ -224,7 +233,7 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
         r->a[k] = r->b[k] = body_place(nobody + (i >= other));
         if (p->contact[i] < 0) continue;
         const struct contact *c = &s->c[p->contact[i]];
-        r->a[k] = place_of(p, c->a, &next), r->b[k] = place_of(p, c->b, &next);
+        r->a[k] = place_of(p, c->a, c->x, &next), r->b[k] = place_of(p, c->b, c->x, &next);
         slot_init(p, i, pack, c, alpha, rho_factor);
     }
 
@@ -326,6 +335,8 @@ int problem_store(const struct problem *p, struct contacts *s)
         if (p->contact[i] < 0) continue;
         struct found *c = &s->found[p->contact[i]];
         slot_get(p, i, c->r, c->u);
+        const struct contact *law = &s->c[p->contact[i]];
+        for (int k = 0; k < 3 && p->W; k++) c->u[k] /= 1 + (k ? law->et : law->en); // it is D u~
         c->status = (int8_t)local_status(slot_bundle(p, i)->mu[slot_lane(i)], c->r);
     }
     return 0;

@@ -3,6 +3,7 @@
 
 #include "bodies/detect.h"
 #include "bodies/move.h"
+#include "problem/prepare.h"
 
 #include <stdlib.h>
 
@@ -18,7 +19,7 @@ int step_solve(const struct packing *pack, struct contacts *s, const struct step
 {
     struct problem p;
     if (!o->warm) contacts_free_found(s);
-    if (problem_prepare(&p, pack, s, o->alpha, o->solve.method->rho, o->order, why))
+    if (prepare_packing(&p, pack, s, o->alpha, o->solve.method->rho, o->order, why))
         return why->status;
     rep->step = pack->step + 1;
     rep->t = pack->t + pack->dt;
@@ -28,6 +29,8 @@ int step_solve(const struct packing *pack, struct contacts *s, const struct step
         why_set(why, EX_SOFTWARE, "no memory to solve the contacts");
     else if ((failed = problem_store(&p, s)))
         why_set(why, EX_SOFTWARE, "no memory for the solution");
+    else if (!(failed = balance_step(&rep->balance, pack, s, why)))
+        rep->balanced = true;
     problem_free(&p);
     return failed ? why->status : 0;
 }
@@ -40,6 +43,7 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
         for (int64_t i = 0; i < W->d * W->n; i++) W->r[i] = 0;
     if (problem_prepare_delassus(&p, W, o->alpha, o->solve.method->rho, o->order, why))
         return why->status;
+    rep->balanced = false;
     int failed = solve_problem(&p, &o->solve, rep);
     for (int64_t i = 0; i < p.slots; i++) {
         double r[3], v[3];

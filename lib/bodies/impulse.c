@@ -1,0 +1,50 @@
+/* bodies/impulse.c: the reactions' impulses and moments [bodies/impulse.h]. */
+#include "bodies/impulse.h"
+
+#include <stdlib.h>
+
+struct push push_of(const struct packing *p, double ahead, const struct contact *c,
+                    const double r[3])
+{
+    struct push o;
+    vec3 xa = c->a < 0 ? c->x : v3_axpy(p->x[c->a], ahead, p->v[c->a]), t2 = contact_t2(c);
+    contact_arms(c, xa, v3_axpy(p->x[c->b], ahead, p->v[c->b]), &o.la, &o.lb);
+    o.f = v3_axpy(v3_axpy(v3_scale(r[0], c->n), r[1], c->t1), r[2], t2);
+    o.m = v3_axpy(v3_scale(r[2], c->t1), -r[1], t2); // -n x r
+    return o;
+}
+
+static void add(struct impulses *sum, const struct contact *c, const struct push *o)
+{
+    sum->force[c->b] = v3_add(sum->force[c->b], o->f);
+    sum->moment[c->b] = v3_axpy(sum->moment[c->b], o->lb, o->m);
+    for (int32_t k = 0; k < sum->freedoms.n; k++)
+        sum->yield[k] += v3_dot(freedom_direction(&sum->freedoms.f[k], c), o->f);
+    if (c->a < 0) return;
+    sum->force[c->a] = v3_sub(sum->force[c->a], o->f);
+    sum->moment[c->a] = v3_axpy(sum->moment[c->a], o->la, o->m);
+}
+
+int impulses_init(struct impulses *sum, const struct packing *p, double ahead,
+                  const struct contacts *s, struct why *why)
+{
+    size_t n = (size_t)p->n + 1;
+    *sum = (struct impulses){ 0 };
+    if (freedoms_init(&sum->freedoms, p, why)) return why->status;
+    sum->force = calloc(n, sizeof *sum->force), sum->moment = calloc(n, sizeof *sum->moment);
+    sum->yield = calloc((size_t)sum->freedoms.n + 1, sizeof *sum->yield);
+    if (!sum->force || !sum->moment || !sum->yield)
+        return why_set(why, EX_SOFTWARE, "no memory to move the bodies");
+    for (int64_t i = 0; i < s->n; i++) {
+        struct push o = push_of(p, ahead, &s->c[i], s->found[i].r);
+        add(sum, &s->c[i], &o);
+    }
+    return 0;
+}
+
+void impulses_free(struct impulses *sum)
+{
+    free(sum->force), free(sum->moment), free(sum->yield);
+    freedoms_free(&sum->freedoms);
+    *sum = (struct impulses){ 0 };
+}

@@ -1,0 +1,38 @@
+/*
+ * bodies/impulse.h: what the reactions of a step give to the bodies and to the freedoms beyond
+ * theirs, P r and J^T r, summed in the contacts' order.
+ */
+#ifndef NSD_IMPULSE_H
+#define NSD_IMPULSE_H
+
+#include "bodies/freedom.h"
+
+/* One contact, while its bodies are where it acts */
+struct push {
+    vec3 f, m;     /* N s: on b; N s: -n x f, which turns a by la and b by lb */
+    double la, lb; /* m: lever arms along n */
+};
+
+struct impulses {
+    vec3 *force, *moment;     /* [n] N s, N m s */
+    struct freedoms freedoms; /* of the step */
+    double *yield;            /* [freedoms.n] N s, N m s */
+};
+
+/* The bodies are `ahead` (s) from where the contact acts. */
+struct push push_of(const struct packing *p, double ahead, const struct contact *c,
+                    const double r[3]);
+
+/* Of all contacts. Returns 0 or EX_SOFTWARE; to be freed in any case. */
+int impulses_init(struct impulses *sum, const struct packing *p, double ahead,
+                  const struct contacts *s, struct why *why);
+void impulses_free(struct impulses *sum);
+
+/* m/s, rad/s: what the step makes of the speed of freedom k */
+static inline double impulses_change(const struct impulses *sum, const struct packing *p, int32_t k)
+{
+    const struct freedom *f = &sum->freedoms.f[k];
+    return (p->dt * f->force + sum->yield[k]) / f->mass;
+}
+
+#endif
