@@ -1,40 +1,35 @@
 /* bodies/balance.c: energy and momentum, summed over bodies and contacts [bodies/balance.h]. */
 #include "bodies/balance.h"
 
-#include "bodies/impulse.h"
+#include <stdlib.h>
 
-/* Twice the mean velocities of a body over the step; of one that does not move, of what it does */
+/* The mean velocities of a body over the step */
 struct mean {
     vec3 v, w; /* m/s, rad/s */
-    bool moves;
 };
-
-static struct mean mean_of(const struct packing *p, const struct impulses *sum, int32_t i)
-{
-    struct mean m = { v3_scale(2, p->v[i]), v3_scale(2, p->w[i]), p->mass[i] > 0 };
-    if (!m.moves) return m;
-    m.v = v3_axpy(v3_axpy(m.v, p->dt, p->g), 1 / p->mass[i], sum->force[i]);
-    m.w = v3_axpy(m.w, 1 / p->inertia[i], sum->moment[i]);
-    return m;
-}
 
 static void add_to(double t[3], double s, vec3 a)
 {
     t[0] += s * a.x, t[1] += s * a.y, t[2] += s * a.z;
 }
 
-static void add_bodies(struct balance *b, const struct packing *p, const struct impulses *sum)
+/* The sums over bodies, and mean[n] */
+static void add_bodies(struct balance *b, const struct packing *p, const struct impulses *sum,
+                       struct mean *mean)
 {
     double before = (1 - p->theta) * p->dt, after = p->theta * p->dt;
     for (int64_t i = 0; i < p->n; i++) {
         double m = p->mass[i];
+        mean[i] = (struct mean){ p->v[i], p->w[i] };
         if (!(m > 0)) continue;
-        struct mean twice = mean_of(p, sum, (int32_t)i);
-        vec3 v = v3_sub(twice.v, p->v[i]), w = v3_sub(twice.w, p->w[i]);
+        vec3 dv = v3_axpy(v3_scale(p->dt, p->g), 1 / m, sum->force[i]);
+        vec3 dw = v3_scale(1 / p->inertia[i], sum->moment[i]);
+        vec3 v = v3_add(p->v[i], dv), w = v3_add(p->w[i], dw);
         vec3 x = v3_axpy(v3_axpy(p->x[i], before, p->v[i]), after, v);
+        mean[i] = (struct mean){ v3_axpy(p->v[i], 0.5, dv), v3_axpy(p->w[i], 0.5, dw) };
         b->kinetic += 0.5 * (m * v3_dot(v, v) + p->inertia[i] * v3_dot(w, w));
         b->potential -= m * v3_dot(p->g, x);
-        b->gravity += 0.5 * p->dt * m * v3_dot(p->g, twice.v);
+        b->gravity += p->dt * m * v3_dot(p->g, mean[i].v);
         add_to(b->momentum, m, v);
     }
 }
@@ -49,56 +44,59 @@ static void add_freedoms(struct balance *b, const struct packing *p, const struc
     }
 }
 
-/* J: r . u of the prescribed part of the velocities at contact c; and in *free that of the rest,
-   their means over the step */
-static double powers(const struct packing *p, const struct impulses *sum, const struct contact *c,
-                     const struct push *o, double *free)
+/* J: r . u of what is prescribed of the velocity at a contact, and of the rest, with the mean over
+   the step */
+struct work {
+    double held, free;
+};
+
+/* What freedoms and the cell add to it: an edge that yields has its speed in the cell's rate. */
+static void add_beyond(struct work *w, const struct packing *p, const struct impulses *sum,
+                       const struct contact *c, vec3 f)
 {
-    double held = 0;
-    *free = 0;
-    for (int end = c->a < 0; end < 2; end++) {
-        struct mean m = mean_of(p, sum, end ? c->b : c->a);
-        double along = v3_dot(o->f, m.v), about = v3_dot(o->m, m.w);
-        *(m.moves ? free : &held) += end ? 0.5 * (along + o->lb * about) : 0.5 * (o->la * about - along);
-    }
-    if (c->a < 0) held -= v3_dot(o->f, wall_held(&p->wall[-1 - c->a], c->x));
-    vec3 across = cell_shift(p->cell.rate, c->shift);
+    w->held += v3_dot(f, cell_shift(p->cell.rate, c->shift));
     for (int32_t k = 0; k < sum->freedoms.n; k++) {
-        const struct freedom *f = &sum->freedoms.f[k];
-        vec3 g = freedom_direction(f, c);
-        *free += v3_dot(o->f, g) * (f->speed + 0.5 * impulses_change(sum, p, k));
-        if (f->boundary < 0) across = v3_axpy(across, -f->speed, g); // its speed is in the rate
+        const struct freedom *freedom = &sum->freedoms.f[k];
+        double along = v3_dot(f, freedom_direction(freedom, c));
+        w->free += along * (freedom->speed + 0.5 * impulses_change(sum, p, k));
+        if (freedom->boundary < 0) w->held -= along * freedom->speed;
     }
-    held += v3_dot(o->f, across);
-    return held;
 }
 
 static void add_contacts(struct balance *b, const struct packing *p, const struct contacts *s,
-                         const struct impulses *sum)
+                         const struct impulses *sum, const struct mean *mean)
 {
     double ahead = (1 - p->theta) * p->dt;
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
-        struct push o = push_of(p, ahead, c, s->found[i].r);
-        double free, held = powers(p, sum, c, &o, &free);
-        b->drives -= held;
-        b->dissipation -= held + free;
+        const struct push o = push_of(p, ahead, c, s->found[i].r);
+        const struct mean *mb = &mean[c->b];
+        struct work w = { 0 };
         bool a_moves = c->a >= 0 && p->mass[c->a] > 0, b_moves = p->mass[c->b] > 0;
+        *(b_moves ? &w.free : &w.held) += v3_dot(o.f, mb->v) + o.lb * v3_dot(o.m, mb->w);
+        if (c->a >= 0) {
+            const struct mean *ma = &mean[c->a];
+            *(a_moves ? &w.free : &w.held) += o.la * v3_dot(o.m, ma->w) - v3_dot(o.f, ma->v);
+        } else {
+            w.held -= v3_dot(o.f, wall_held(&p->wall[-1 - c->a], c->x));
+        }
+        add_beyond(&w, p, sum, c, o.f);
+        b->drives -= w.held;
+        b->dissipation -= w.held + w.free;
         if (!a_moves && b_moves) add_to(b->impulse, 1, o.f);
         if (a_moves && !b_moves) add_to(b->impulse, -1, o.f);
     }
 }
 
 int balance_step(struct balance *b, const struct packing *p, const struct contacts *s,
-                 struct why *why)
+                 const struct impulses *sum, struct why *why)
 {
-    struct impulses sum;
+    struct mean *mean = malloc(((size_t)p->n + 1) * sizeof *mean);
     *b = (struct balance){ 0 };
-    if (!impulses_init(&sum, p, (1 - p->theta) * p->dt, s, why)) {
-        add_bodies(b, p, &sum);
-        add_freedoms(b, p, &sum);
-        add_contacts(b, p, s, &sum);
-    }
-    impulses_free(&sum);
-    return why->status;
+    if (!mean) return why_set(why, EX_SOFTWARE, "no memory for the balances");
+    add_bodies(b, p, sum, mean);
+    add_freedoms(b, p, sum);
+    add_contacts(b, p, s, sum, mean);
+    free(mean);
+    return 0;
 }

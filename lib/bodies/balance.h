@@ -22,20 +22,19 @@
 #ifndef NSD_BALANCE_H
 #define NSD_BALANCE_H
 
-#include "bodies/contact.h"
-#include "bodies/packing.h"
+#include "bodies/impulse.h"
 
 struct balance {
     double kinetic;   /* J: after the step; of the bodies and of what loads move */
     double potential; /* J: - sum m g . x, after the step, of the bodies */
     double gravity, drives, loads, dissipation; /* J: in the step */
-    double momentum[3]; /* N s: of the bodies, after the step */
-    double impulse[3];  /* N s: of boundaries and fixed bodies on the others, in the step */
+    double momentum[3];                         /* N s: of the bodies, after the step */
+    double impulse[3]; /* N s: of boundaries and fixed bodies on the others, in the step */
 };
 
-/* Of the step that begins where the packing is, with the reactions of its contacts. Returns 0 or
-   EX_SOFTWARE. */
+/* Of the step that begins where the packing is, by the reactions of its contacts, whose sums are
+   given, too. Returns 0 or EX_SOFTWARE. */
 int balance_step(struct balance *b, const struct packing *p, const struct contacts *s,
-                 struct why *why);
+                 const struct impulses *sum, struct why *why);
 
 #endif

@@ -16,9 +16,9 @@
 
 struct cell {
     bool repeats[3];
-    vec3 origin;  /* m: the corner from which the edges start */
-    vec3 edge[3]; /* m, at the packing's time */
-    vec3 rate[3]; /* m/s: d edge / dt */
+    vec3 origin;         /* m: the corner from which the edges start */
+    vec3 edge[3];        /* m, at the packing's time */
+    vec3 rate[3];        /* m/s: d edge / dt */
     struct load load[3]; /* of an edge that yields to a stress along an axis; LOAD_NONE: does not */
 };
 

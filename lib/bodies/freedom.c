@@ -85,13 +85,10 @@ static void edge_move(struct packing *p, const struct freedom *f, double change,
     *rate = v3_axpy(*rate, sign * change, f->axis);
 }
 
-void freedoms_move(const struct freedoms *list, struct packing *p, const double *change, bool back)
+void freedom_move(const struct freedom *f, struct packing *p, double change, bool back)
 {
-    for (int32_t k = 0; k < list->n; k++) {
-        const struct freedom *f = &list->f[k];
-        if (f->boundary < 0)
-            edge_move(p, f, change[k], back);
-        else
-            wall_move(p, &p->wall[f->boundary].load, change[k], back);
-    }
+    if (f->boundary < 0)
+        edge_move(p, f, change, back);
+    else
+        wall_move(p, &p->wall[f->boundary].load, change, back);
 }

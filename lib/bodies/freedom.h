@@ -44,10 +44,10 @@ void freedoms_free(struct freedoms *list);
 vec3 freedom_direction(const struct freedom *f, const struct contact *c);
 
 /*
- * The speeds change by change[n] where the contacts act, at the predicted position. A boundary also
- * makes its way along or about the axis, dt s + theta dt change, while an edge gets theta dt change
- * alone: the rest, dt rate, is the motion of the cell. back: the inverse.
+ * The speed changes where the contacts act, at the predicted position. A boundary also makes its way
+ * along or about the axis, dt s + theta dt change, while an edge gets theta dt change alone: the rest,
+ * dt rate, is the motion of the cell. back: the inverse.
  */
-void freedoms_move(const struct freedoms *list, struct packing *p, const double *change, bool back);
+void freedom_move(const struct freedom *f, struct packing *p, double change, bool back);
 
 #endif

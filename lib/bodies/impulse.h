@@ -20,8 +20,16 @@ struct impulses {
 };
 
 /* The bodies are `ahead` (s) from where the contact acts. */
-struct push push_of(const struct packing *p, double ahead, const struct contact *c,
-                    const double r[3]);
+static inline struct push push_of(const struct packing *p, double ahead, const struct contact *c,
+                                  const double r[3])
+{
+    struct push o;
+    vec3 xa = c->a < 0 ? c->x : v3_axpy(p->x[c->a], ahead, p->v[c->a]), t2 = contact_t2(c);
+    contact_arms(c, xa, v3_axpy(p->x[c->b], ahead, p->v[c->b]), &o.la, &o.lb);
+    o.f = v3_axpy(v3_axpy(v3_scale(r[0], c->n), r[1], c->t1), r[2], t2);
+    o.m = v3_axpy(v3_scale(r[2], c->t1), -r[1], t2); // -n x r
+    return o;
+}
 
 /* Of all contacts. Returns 0 or EX_SOFTWARE; to be freed in any case. */
 int impulses_init(struct impulses *sum, const struct packing *p, double ahead,

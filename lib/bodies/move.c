@@ -1,8 +1,6 @@
 /* move.c: see bodies/move.h. */
 #include "bodies/move.h"
 
-#include "bodies/impulse.h"
-
 #include <stdlib.h>
 
 static quat turn(quat q, double dt, vec3 w)
@@ -38,33 +36,37 @@ static void body_unmove(struct packing *p, int64_t i, vec3 force, vec3 moment)
     p->q[i] = quat_unit(turn(p->q[i], -before, p->w[i]));
 }
 
-/* body() on each with its impulse and moment, and the freedoms with theirs; the contacts act where
-   the bodies are `ahead` (s) from here. */
-static int move(struct packing *p, double ahead, const struct contacts *s,
-                void (*body)(struct packing *, int64_t, vec3, vec3), struct why *why)
+static void move_freedoms(struct packing *p, const struct impulses *sum, bool back)
 {
-    struct impulses sum;
-    if (!impulses_init(&sum, p, ahead, s, why)) {
-        for (int64_t i = 0; i < p->n; i++) body(p, i, sum.force[i], sum.moment[i]);
-        for (int32_t k = 0; k < sum.freedoms.n; k++) sum.yield[k] = impulses_change(&sum, p, k);
-        freedoms_move(&sum.freedoms, p, sum.yield, body == body_unmove);
-    }
-    impulses_free(&sum);
-    return why->status;
+    for (int32_t k = 0; k < sum->freedoms.n; k++)
+        freedom_move(&sum->freedoms.f[k], p, impulses_change(sum, p, k), back);
+}
+
+void move_by(struct packing *p, const struct impulses *sum)
+{
+    for (int64_t i = 0; i < p->n; i++) body_move(p, i, sum->force[i], sum->moment[i]);
+    move_freedoms(p, sum, false);
+    p->step++;
+    p->t += p->dt;
 }
 
 int move_step(struct packing *p, const struct contacts *s, struct why *why)
 {
-    if (move(p, (1 - p->theta) * p->dt, s, body_move, why)) return why->status;
-    p->step++;
-    p->t += p->dt;
-    return 0;
+    struct impulses sum;
+    if (!impulses_init(&sum, p, (1 - p->theta) * p->dt, s, why)) move_by(p, &sum);
+    impulses_free(&sum);
+    return why->status;
 }
 
 int move_back(struct packing *p, const struct contacts *s, struct why *why)
 {
-    if (move(p, -p->theta * p->dt, s, body_unmove, why)) return why->status;
-    p->step--;
-    p->t -= p->dt;
-    return 0;
+    struct impulses sum;
+    if (!impulses_init(&sum, p, -p->theta * p->dt, s, why)) {
+        for (int64_t i = 0; i < p->n; i++) body_unmove(p, i, sum.force[i], sum.moment[i]);
+        move_freedoms(p, &sum, true);
+        p->step--;
+        p->t -= p->dt;
+    }
+    impulses_free(&sum);
+    return why->status;
 }

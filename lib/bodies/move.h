@@ -8,11 +8,13 @@
 #ifndef NSD_MOVE_H
 #define NSD_MOVE_H
 
-#include "bodies/contact.h"
-#include "bodies/packing.h"
+#include "bodies/impulse.h"
 
-/* The bodies move, by the contacts' reactions; step and t advance. Returns 0 or EX_SOFTWARE. */
+/* The bodies and the freedoms move, by the contacts' reactions; step and t advance. Returns 0 or EX_SOFTWARE. */
 int move_step(struct packing *p, const struct contacts *s, struct why *why);
+
+/* The same by the sums of the reactions, taken (1 - theta) dt ahead. */
+void move_by(struct packing *p, const struct impulses *sum);
 
 /* Back to before move_step(), to rounding: what a solution in a trajectory is checked from. */
 int move_back(struct packing *p, const struct contacts *s, struct why *why);

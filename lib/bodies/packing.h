@@ -17,9 +17,9 @@
 
 /* A plane, in the plane a line: bodies stay on the side that the normal points to. */
 struct wall {
-    vec3 x, n;    /* m: a point on it at t = 0; unit normal */
-    vec3 v;       /* m/s: at time t the point is at x + v t */
-    int32_t kind; /* row of the material tables */
+    vec3 x, n;        /* m: a point on it at t = 0; unit normal */
+    vec3 v;           /* m/s: at time t the point is at x + v t */
+    int32_t kind;     /* row of the material tables */
     struct load load; /* that it yields to; LOAD_NONE: it does not */
 };
 

@@ -288,6 +288,10 @@ static int read_report(struct frame_read *r, int64_t step, struct frame *f, stru
                            why) ||
         check_report(rep, why))
         return why->status;
+    rep->balanced = !f->foreign && source_has(r->source, "/observables/solver/dissipation/value");
+    if (rep->balanced && table_read_columns(r->source, solver, "/value", layout_balance, at, 1, rep,
+                                            sizeof *rep, why))
+        return why->status;
     rep->step = r->solved[at];
     if (source_rows(r->source, "/observables/solver/time", COLUMN_F64, at, 1, 1, &rep->t, why))
         return why->status;

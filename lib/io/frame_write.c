@@ -8,28 +8,34 @@
 #include <stdlib.h>
 #include <string.h>
 
-/*
- * Writes HOME/step (i64) or HOME/time (f64, s), and hard links to it in the groups of all columns,
- * which share it.
- */
-static int write_clock(struct table_write *s, const char *home, bool step, const void *value,
-                       const char *where, const struct column *c, struct why *why)
+/* Hard links to HOME/NAME, a clock, in the groups of all columns, which share it */
+static int link_clock(struct table_write *s, const char *home, const char *name, const char *where,
+                      const struct column *c, struct why *why)
 {
-    const hsize_t one = 1;
-    const char *name = step ? "step" : "time";
     char from[80], to[80];
     snprintf(from, sizeof from, "%s/%s", home, name);
-    bool linked = table_write_grows(s, from);
-    if (table_write_rows(s, from, step ? COLUMN_I64 : COLUMN_F64, 1, &one, CHUNK_FRAMES, value,
-                         step ? NULL : "s", why))
-        return why->status;
-    for (; !linked && c->name; c++) {
+    for (; c->name; c++) {
         snprintf(to, sizeof to, "%s/%s/%s", where, c->name, name);
         if (h5_has(s->file, to)) continue; // this is HOME
         if (H5Lcreate_hard(s->file, from, s->file, to, H5P_DEFAULT, H5P_DEFAULT) < 0)
             return why_set(why, EX_IOERR, "%s: cannot be linked", to);
     }
     return 0;
+}
+
+/* Writes HOME/step (i64) or HOME/time (f64, s), and links it to all columns. */
+static int write_clock(struct table_write *s, const char *home, bool step, const void *value,
+                       const char *where, const struct column *c, struct why *why)
+{
+    const hsize_t one = 1;
+    const char *name = step ? "step" : "time";
+    char path[80];
+    snprintf(path, sizeof path, "%s/%s", home, name);
+    bool linked = table_write_grows(s, path);
+    if (table_write_rows(s, path, step ? COLUMN_I64 : COLUMN_F64, 1, &one, CHUNK_FRAMES, value,
+                         step ? NULL : "s", why))
+        return why->status;
+    return linked ? 0 : link_clock(s, home, name, where, c, why);
 }
 
 /* ---- what is the same in all frames ---- */
@@ -165,6 +171,20 @@ static int write_contacts(struct table_write *s, const struct frame *f, struct w
     return !first ? 0 : h5_attr(s->file, "/contacts", "moved", H5T_NATIVE_INT, -1, &moved, why);
 }
 
+/* The balances, beside the report, whose clocks they share */
+static int write_balance(struct table_write *s, const struct report *rep, bool first,
+                         struct why *why)
+{
+    const char *solver = "/observables/solver";
+    if (table_write_columns(s, solver, "/value", layout_balance, 1, rep, sizeof *rep, CHUNK_FRAMES,
+                            why))
+        return why->status;
+    if (first && (link_clock(s, solver, "step", solver, layout_balance, why) ||
+                  link_clock(s, solver, "time", solver, layout_balance, why)))
+        return why->status;
+    return 0;
+}
+
 static int write_report(struct table_write *s, const struct report *rep, struct why *why)
 {
     const char *solver = "/observables/solver";
@@ -172,7 +192,8 @@ static int write_report(struct table_write *s, const struct report *rep, struct 
     if (table_write_columns(s, solver, "/value", layout_report, 1, rep, sizeof *rep, CHUNK_FRAMES,
                             why) ||
         write_clock(s, solver, true, &rep->step, solver, layout_report, why) ||
-        write_clock(s, solver, false, &rep->t, solver, layout_report, why))
+        write_clock(s, solver, false, &rep->t, solver, layout_report, why) ||
+        (rep->balanced && write_balance(s, rep, first, why)))
         return why->status;
     if (first &&
         (h5_attr_text(s->file, solver, "method", rep->method, why) ||

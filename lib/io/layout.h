@@ -96,6 +96,19 @@ static const struct column layout_report[] = {
     { 0 },
 };
 
+/* /observables/solver/NAME/value [F][width] where there are bodies: members of struct report */
+static const struct column layout_balance[] = {
+    { "kinetic_energy", "J", COLUMN_F64, 1, offsetof(struct report, balance.kinetic) },
+    { "potential_energy", "J", COLUMN_F64, 1, offsetof(struct report, balance.potential) },
+    { "work_gravity", "J", COLUMN_F64, 1, offsetof(struct report, balance.gravity) },
+    { "work_drives", "J", COLUMN_F64, 1, offsetof(struct report, balance.drives) },
+    { "work_loads", "J", COLUMN_F64, 1, offsetof(struct report, balance.loads) },
+    { "dissipation", "J", COLUMN_F64, 1, offsetof(struct report, balance.dissipation) },
+    { "momentum", "N s", COLUMN_F64, 3, offsetof(struct report, balance.momentum) },
+    { "boundary_impulse", "N s", COLUMN_F64, 3, offsetof(struct report, balance.impulse) },
+    { 0 },
+};
+
 /* The array that the struct's member of this column points to */
 void *column_array(const struct column *column, const void *structure);
 /* A column's numbers out of an array of n structs, and back into one. */

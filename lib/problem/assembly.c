@@ -371,8 +371,8 @@ int assembly_MH(const struct assembly *A, struct stored *M, struct stored *H, do
     if (!first) return short_of_memory(why);
     int64_t nv = assembly_unknowns(A, first);
     *f = malloc((size_t)(nv + 1) * sizeof **f);
-    bool good = *f && stored_init(M, nv, nv, -1, nv) &&
-                stored_init(H, nv, nd, -1, 12 * nd + 3 * couplings);
+    bool good =
+        *f && stored_init(M, nv, nv, -1, nv) && stored_init(H, nv, nd, -1, 12 * nd + 3 * couplings);
     if (good) {
         fill_M(A, first, M, *f);
         fill_H(A, first, H);

@@ -22,12 +22,12 @@
 
 struct assembly {
     const struct problem *p;
-    int64_t *slot;     /* [n] contact c is in slot[c] of p */
-    int32_t *end;      /* [2 n] bodies a and b of contact c at 2 c, 2 c + 1; -1: immovable */
-    struct lists of;   /* of each body: its places in end[] */
+    int64_t *slot;      /* [n] contact c is in slot[c] of p */
+    int32_t *end;       /* [2 n] bodies a and b of contact c at 2 c, 2 c + 1; -1: immovable */
+    struct lists of;    /* of each body: its places in end[] */
     struct lists yield; /* of each freedom: its places in p->coupling->of[] */
-    double *q, *w;     /* [n d] D u~ at v_free, and with all unknowns at rest, m/s */
-    struct body *free; /* [p->bodies] at v_free */
+    double *q, *w;      /* [n d] D u~ at v_free, and with all unknowns at rest, m/s */
+    struct body *free;  /* [p->bodies] at v_free */
 };
 
 /* All return 0, EX_SOFTWARE, or EX_DATAERR where the problem is too large for FCLIB's 32-bit

@@ -28,10 +28,9 @@ static bool add_contact(struct couplings *c, int64_t *room, const struct contact
     for (int32_t k = 0; k < c->freedoms.n; k++) {
         vec3 g = freedom_direction(&c->freedoms.f[k], t);
         if (v3_dot(g, g) == 0) continue;
-        const struct coupling one = { k,
-                                      (int32_t)i,
-                                      { v3_dot(t->n, g), v3_dot(t->t1, g),
-                                        v3_dot(contact_t2(t), g) } };
+        const struct coupling one = {
+            k, (int32_t)i, { v3_dot(t->n, g), v3_dot(t->t1, g), v3_dot(contact_t2(t), g) }
+        };
         if (!add(c, room, &one)) return false;
     }
     return true;

@@ -14,8 +14,19 @@ static double max_overlap(const struct contacts *s)
     return depth;
 }
 
-int step_solve(const struct packing *pack, struct contacts *s, const struct step_opt *o,
-               struct report *rep, struct why *why)
+/* The reactions' sums and the balances they make; sum is to be freed in any case. */
+static int sum_up(const struct packing *pack, const struct contacts *s, struct report *rep,
+                  struct impulses *sum, struct why *why)
+{
+    if (impulses_init(sum, pack, (1 - pack->theta) * pack->dt, s, why) ||
+        balance_step(&rep->balance, pack, s, sum, why))
+        return why->status;
+    rep->balanced = true;
+    return 0;
+}
+
+static int solve_contacts(const struct packing *pack, struct contacts *s, const struct step_opt *o,
+                          struct report *rep, struct why *why)
 {
     struct problem p;
     if (!o->warm) contacts_free_found(s);
@@ -29,10 +40,17 @@ int step_solve(const struct packing *pack, struct contacts *s, const struct step
         why_set(why, EX_SOFTWARE, "no memory to solve the contacts");
     else if ((failed = problem_store(&p, s)))
         why_set(why, EX_SOFTWARE, "no memory for the solution");
-    else if (!(failed = balance_step(&rep->balance, pack, s, why)))
-        rep->balanced = true;
     problem_free(&p);
     return failed ? why->status : 0;
+}
+
+int step_solve(const struct packing *pack, struct contacts *s, const struct step_opt *o,
+               struct report *rep, struct why *why)
+{
+    struct impulses sum = { 0 };
+    if (!solve_contacts(pack, s, o, rep, why)) sum_up(pack, s, rep, &sum, why);
+    impulses_free(&sum);
+    return why->status;
 }
 
 int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o, struct report *rep,
@@ -67,6 +85,10 @@ int step_advance(struct packing *p, struct contacts *s, struct neighbours *near,
         e = why_set(why, EX_SOFTWARE, "no memory for the last reactions");
     contacts_free(&before);
     if (e) return e;
-    if (step_solve(p, s, o, rep, why)) return why->status;
-    return isfinite(rep->err.paper.eps_glob) ? move_step(p, s, why) : 0;
+    struct impulses sum = { 0 };
+    if (!solve_contacts(p, s, o, rep, why) && !sum_up(p, s, rep, &sum, why) &&
+        isfinite(rep->err.paper.eps_glob))
+        move_by(p, &sum);
+    impulses_free(&sum);
+    return why->status;
 }
