@@ -9,17 +9,15 @@
 #define NSD_CELL_H
 
 #include "base/vec.h"
-#include "bodies/load.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
 struct cell {
     bool repeats[3];
-    vec3 origin;         /* m: the corner from which the edges start */
-    vec3 edge[3];        /* m, at the packing's time */
-    vec3 rate[3];        /* m/s: d edge / dt */
-    struct load load[3]; /* of an edge that yields to a stress along an axis; LOAD_NONE: does not */
+    vec3 origin;  /* m: the corner from which the edges start */
+    vec3 edge[3]; /* m, at the packing's time */
+    vec3 rate[3]; /* m/s: d edge / dt */
 };
 
 static inline bool cell_repeats(const struct cell *c)

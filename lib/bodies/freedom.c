@@ -5,19 +5,9 @@
 
 bool freedoms_in(const struct packing *p)
 {
-    for (int k = 0; k < 3; k++)
-        if (p->cell.load[k].way) return true;
     for (int32_t w = 0; w < p->walls; w++)
         if (p->wall[w].load.way) return true;
     return false;
-}
-
-/* m^2, in the plane m: the face of the cell that the edges other than k span */
-static double face_area(const struct packing *p, int k)
-{
-    const vec3 *e = p->cell.edge;
-    if (p->dim == 2) return v3_norm(e[1 - k]);
-    return v3_norm(v3_cross(e[(k + 1) % 3], e[(k + 2) % 3]));
 }
 
 static struct freedom wall_freedom(const struct packing *p, int32_t w)
@@ -32,25 +22,12 @@ static struct freedom wall_freedom(const struct packing *p, int32_t w)
                              .speed = l->speed };
 }
 
-static struct freedom edge_freedom(const struct packing *p, int k)
-{
-    const struct load *l = &p->cell.load[k];
-    return (struct freedom){ .boundary = -1,
-                             .edge = k,
-                             .axis = l->axis,
-                             .mass = l->mass,
-                             .force = l->force * face_area(p, k),
-                             .speed = v3_dot(p->cell.rate[k], l->axis) };
-}
-
 int freedoms_init(struct freedoms *list, const struct packing *p, struct why *why)
 {
     *list = (struct freedoms){ .f = calloc((size_t)p->walls + 3, sizeof *list->f) };
     if (!list->f) return why_set(why, EX_SOFTWARE, "no memory for the loads");
     for (int32_t w = 0; w < p->walls; w++)
         if (p->wall[w].load.way) list->f[list->n++] = wall_freedom(p, w);
-    for (int k = 0; k < 3; k++)
-        if (p->cell.load[k].way) list->f[list->n++] = edge_freedom(p, k);
     return 0;
 }
 
