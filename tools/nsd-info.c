@@ -133,6 +133,19 @@ static void show_particles(const struct packing *p)
     }
 }
 
+static json_t *load(const struct load *l)
+{
+    json_t *j = json_object();
+    bool turns = l->way == LOAD_TURNS;
+    json_object_set_new(j, turns ? "about" : "along", json_vec(l->axis));
+    if (turns) json_object_set_new(j, "point", json_vec(l->point));
+    json_object_set_new(j, "mass", json_number(l->mass));
+    json_object_set_new(j, turns ? "torque" : "force", json_number(l->force));
+    json_object_set_new(j, "speed", json_number(l->speed));
+    json_object_set_new(j, "travel", json_number(l->travel));
+    return j;
+}
+
 static void show_walls(const struct packing *p)
 {
     for (int32_t i = 0; i < p->walls; i++) {
@@ -144,6 +157,7 @@ static void show_walls(const struct packing *p)
         json_object_set_new(j, "point", json_vec(wall_at(p, w, p->t)));
         json_object_set_new(j, "normal", json_vec(w->n));
         json_object_set_new(j, "velocity", json_vec(w->v));
+        if (w->load.way) json_object_set_new(j, "load", load(&w->load));
         json_line(j);
     }
 }

@@ -1,6 +1,6 @@
 /*
- * bodies/load.h: a boundary, or an edge of the cell, that is free along or about one axis and yields
- * to a force there: a piston at constant pressure, a plate under torque, a cell under stress.
+ * bodies/load.h: what a boundary yields to that is free along or about one axis: a force, as a piston
+ * at constant pressure, or a torque.
  *
  * How it moves besides is prescribed: the load's speed adds to the boundary's own velocity.
  */
@@ -11,6 +11,7 @@
 
 #include <stdint.h>
 
+/* A plane turns about its normal, in which it stays the plane that it is. */
 enum load_way { LOAD_NONE, LOAD_GLIDES, LOAD_TURNS, LOAD_WAYS };
 
 struct load {
@@ -18,10 +19,9 @@ struct load {
     vec3 axis;     /* unit vector */
     vec3 point;    /* m: a point on the axis, of one that turns */
     double mass;   /* kg that move along the axis; kg m^2 about it */
-    double force;  /* N along the axis; N m about it; of the cell's edge k Pa (in the plane N/m) on
-                      the face that the other edges span, positive where it draws the edge out */
-    double speed;  /* m/s, rad/s; not of an edge, whose rate it is */
-    double travel; /* m, rad: how far it has come; not of an edge */
+    double force;  /* N along the axis, N m about it; its weight is in it */
+    double speed;  /* m/s, rad/s */
+    double travel; /* m, rad: how far it has come */
 };
 
 #endif

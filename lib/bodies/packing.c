@@ -122,13 +122,29 @@ static const char *body_trouble(const struct packing *p, int64_t i)
     return NULL;
 }
 
+static const char *load_trouble(const struct packing *p, const struct wall *w)
+{
+    const struct load *l = &w->load;
+    if (l->way == LOAD_NONE) return NULL;
+    if (l->way < 0 || l->way >= LOAD_WAYS) return "its load neither glides nor turns";
+    if (!(l->mass > 0 && isfinite(l->mass))) return "the mass of its load must be positive";
+    if (!isfinite(l->force) || !isfinite(l->speed) || !isfinite(l->travel) || !v3_finite(l->point))
+        return "its load is not finite";
+    if (!(fabs(v3_dot(l->axis, l->axis) - 1) < 1e-6)) return "its load's axis is not a unit vector";
+    if (p->dim == 2 && (l->axis.z != 0 || l->point.z != 0 || l->way == LOAD_TURNS))
+        return "its load leaves the plane, and dim is 2";
+    if (l->way == LOAD_TURNS && !(v3_norm(v3_cross(l->axis, w->n)) < 1e-6))
+        return "it turns about another axis than its normal";
+    return NULL;
+}
+
 static const char *wall_trouble(const struct packing *p, const struct wall *w)
 {
     if (!v3_finite(w->x) || !v3_finite(w->v)) return "point or velocity is not finite";
     if (!(fabs(v3_dot(w->n, w->n) - 1) < 1e-6)) return "normal is not a unit vector";
     if (p->dim == 2 && (w->n.z != 0 || w->v.z != 0)) return "leaves the plane, and dim is 2";
     if (w->kind < 0 || w->kind >= p->kinds) return "kind has no material";
-    return NULL;
+    return load_trouble(p, w);
 }
 
 int packing_check(const struct packing *p, struct why *why)

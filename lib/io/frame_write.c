@@ -1,5 +1,6 @@
 #include "io/frame_write.h"
 
+#include "bodies/freedom.h"
 #include "io/h5.h"
 #include "io/stream.h"
 #include "io/unknown.h"
@@ -116,6 +117,9 @@ static int write_bodies_and_walls(struct table_write *s, const struct packing *p
     s->growing = false; // walls do not grow with the frames
     int e = table_write_columns(s, "/walls/plane", "", layout_walls, p->walls, p->wall,
                                 sizeof *p->wall, 0, why);
+    if (!e && freedoms_in(p))
+        e = table_write_columns(s, "/walls/load", "", layout_loads, p->walls, p->wall,
+                                sizeof *p->wall, 0, why);
     s->growing = growing;
     return e;
 }
@@ -132,6 +136,25 @@ static int write_motion(struct table_write *s, const struct packing *p, struct w
             return why->status;
     }
     return 0;
+}
+
+/* The speeds and travels of the walls' loads, with clocks of their own */
+static int write_yield(struct table_write *s, const struct packing *p, struct why *why)
+{
+    const char *loads = "/walls/load";
+    double *row = malloc(((size_t)p->walls + 1) * sizeof *row);
+    if (!row) return why_set(why, EX_SOFTWARE, "no memory for the loads");
+    const hsize_t shape[2] = { 1, (hsize_t)p->walls };
+    int e = 0;
+    for (const struct column *c = layout_yield; !e && c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "%s/%s/value", loads, c->name);
+        column_gather(c, p->walls, p->wall, sizeof *p->wall, row);
+        e = table_write_rows(s, path, c->type, 2, shape, CHUNK_FRAMES, row, c->units, why);
+    }
+    free(row);
+    if (!e) e = write_clock(s, loads, true, &p->step, loads, layout_yield, why);
+    return e ? e : write_clock(s, loads, false, &p->t, loads, layout_yield, why);
 }
 
 static int write_bases(struct table_write *s, const struct contacts *t, struct why *why)
@@ -223,6 +246,8 @@ int frame_write_moment(struct table_write *s, const struct frame *f, struct why 
     if (f->packed &&
         (write_motion(s, &f->packing, why) ||
          write_clock(s, position, false, &f->packing.t, particles, layout_motion, why)))
+        return why->status;
+    if (f->packed && freedoms_in(&f->packing) && write_yield(s, &f->packing, why))
         return why->status;
     if (f->packed && f->detected && write_contacts(s, f, why)) return why->status;
     return f->reported ? write_report(s, &f->report, why) : 0;

@@ -45,6 +45,23 @@ static const struct column layout_walls[] = {
     { 0 },
 };
 
+/* /walls/load/NAME [walls][width] where any wall yields: members of struct wall */
+static const struct column layout_loads[] = {
+    { "way", "1", COLUMN_I32, 1, offsetof(struct wall, load.way) },
+    { "axis", "1", COLUMN_F64, 3, offsetof(struct wall, load.axis) },
+    { "point", "m", COLUMN_F64, 3, offsetof(struct wall, load.point) },
+    { "mass", "kg, kg m2", COLUMN_F64, 1, offsetof(struct wall, load.mass) },
+    { "force", "N, N m", COLUMN_F64, 1, offsetof(struct wall, load.force) },
+    { 0 },
+};
+
+/* /walls/load/NAME/value [F][walls], the same */
+static const struct column layout_yield[] = {
+    { "speed", "m s-1, rad s-1", COLUMN_F64, 1, offsetof(struct wall, load.speed) },
+    { "travel", "m, rad", COLUMN_F64, 1, offsetof(struct wall, load.travel) },
+    { 0 },
+};
+
 /* /nsd/material/NAME [kinds][kinds]: pointers in struct packing */
 static const struct column layout_material[] = {
     { "mu", "1", COLUMN_F64, 1, offsetof(struct packing, mu) },

@@ -8,7 +8,7 @@
 #include "io/layout.h"
 
 enum {
-    GROWING_DATASETS = 64, /* at once; the tables of io/layout.h have fewer columns than that */
+    GROWING_DATASETS = 96, /* at once; the tables of io/layout.h have fewer columns than that */
     CHUNK_FRAMES = 64,     /* rows a chunk of one number a frame: half a KiB of reals */
     CHUNK_CONTACTS = 256,  /* rows a chunk of contacts: 2 KiB of reals; few are left empty */
     CHUNK_BODIES = 8192    /* at most, a chunk of one frame of bodies: 192 KiB of positions */

@@ -35,7 +35,7 @@ static const struct {
     { "/particles/all",
       { "box", "position", "velocity", "angular_velocity", "orientation", "radius", "mass",
         "inertia", "id", "species" } },
-    { "/walls", { "plane" } },
+    { "/walls", { "plane", "load" } },
     { "/observables", { "solver" } },
 };
 

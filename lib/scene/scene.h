@@ -42,8 +42,12 @@
  *
  * BOX { x: [from, to], y: [from, to], z: [from, to] }: null is open, and so is an axis left out.
  *
- * WALL { point: vector, normal: vector } or { box: BOX }, with velocity vector [0], kind ["wall"].
+ * WALL { point: vector, normal: vector } or { box: BOX }, with velocity vector [0], kind ["wall"], load.
  *   Bodies stay on the side that the normal, of any length, points to; in a box they stay inside.
+ *   A wall by point and normal may yield to a load, on top of its velocity:
+ *   { along: vector, mass: kg, force: N [0], speed: m/s [0] }              free along the vector
+ *   { about: vector, mass: kg m^2, torque: N m [0], speed: rad/s [0] }     about its normal there
+ *   Its weight is a force like others: gravity does not pull at walls.
  *
  * The paper's examples. The paper gives radii, mu, dt and (example 1) the initial velocity. Our
  * choices: density 2500 kg/m^3, g 9.81 m/s^2, e_n = e_t = 0, and
