@@ -59,7 +59,8 @@ static int read_load(jnode o, int dim, vec3 normal, struct load *l)
 {
     if (!o.json) return 0;
     int which = json_node_choice(o, "along about");
-    if (which < 0 || json_node_only(o, which ? "about mass torque speed" : "along mass force speed") ||
+    if (which < 0 ||
+        json_node_only(o, which ? "about mass torque speed" : "along mass force speed") ||
         json_node_need(&o, "mass") ||
         json_node_number(json_node_key(&o, "mass"), J_POSITIVE, &l->mass) ||
         json_node_number(json_node_key(&o, which ? "torque" : "force"), J_ANY, &l->force) ||
@@ -79,7 +80,8 @@ static int read_load(jnode o, int dim, vec3 normal, struct load *l)
 static int read_plane(jnode o, struct scene *s, struct wall w)
 {
     vec3 x = v3(0, 0, 0), n = x;
-    if (json_node_only(o, "point normal velocity kind load") || json_node_need(&o, "point normal") ||
+    if (json_node_only(o, "point normal velocity kind load") ||
+        json_node_need(&o, "point normal") ||
         json_node_vector(json_node_key(&o, "point"), s->dim, &x) ||
         json_node_vector(json_node_key(&o, "normal"), s->dim, &n))
         return 1;
