@@ -19,6 +19,7 @@
  *   overlap   true | false             [false] bodies may overlap at the start
  *   bodies    [ GROUP ]                [none]
  *   walls     [ WALL ]                 [none]
+ *   cell      CELL                     [none] the box that repeats
  *
  * GROUP, one of
  *   { x: vector, radius: number }      one body
@@ -44,6 +45,19 @@
  *
  * WALL { point: vector, normal: vector } or { box: BOX }, with velocity vector [0], kind ["wall"].
  *   Bodies stay on the side that the normal, of any length, points to; in a box they stay inside.
+ *
+ * CELL { edges: [vector, ...] or lengths: vector, repeats, origin, gradient, affine, stress }
+ *   edges    dim of them, the cell's from its origin; lengths: along x, y, z
+ *   repeats  [true | false, ...] [all true]   along which edges
+ *   origin   vector [0]
+ *   gradient MATRIX, 1/s, or [ { t: s, L: MATRIX } ], linear between and constant outside [0]: of
+ *            velocity; the edges move with it, d edge/dt = L edge. MATRIX [[L_xx, L_xy], ...]
+ *   affine   true | false [false]: at the start bodies have the velocity L (x - the cell's centre)
+ *            as well
+ *   stress   { pressure: Pa, mass: kg } or { target: MATRIX, mass: kg }: what edges yield to, as
+ *            bodies of this mass; compression is positive, N/m in the plane. Number [i][j]: component
+ *            i of edge j yields; null: it moves by the gradient. A pressure is one on the diagonal,
+ *            of edges that repeat. mass may be a MATRIX of masses, of the same shape
  *
  * The paper's examples. The paper gives radii, mu, dt and (example 1) the initial velocity. Our
  * choices: density 2500 kg/m^3, g 9.81 m/s^2, e_n = e_t = 0, and
@@ -93,6 +107,11 @@ struct scene_bodies {
     int32_t kind;
 };
 
+struct scene_cell {
+    bool given, affine;
+    struct cell cell; /* rates are those at the start */
+};
+
 struct scene {
     int dim;
     double dt, theta;
@@ -109,6 +128,7 @@ struct scene {
 
     int32_t walls;
     struct wall *wall; /* [walls] */
+    struct scene_cell cell;
 
     char *text; /* the JSON, without blanks outside strings */
 };
