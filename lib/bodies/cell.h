@@ -10,8 +10,8 @@
  * to rounding. What rate_{k+1} is, a velocity gradient L says, rate_{k+1} = L(t_{k+1}) q_{k+1}; or,
  * for the components of an edge that yield to a stress, the contacts do (bodies/freedom.h).
  *
- * The body's place among its own images is arbitrary, and so are the edges among those of the same
- * lattice: cell_tidy() chooses them anew at the beginning of a step.
+ * Which of a body's images is the body is arbitrary, and so is which edges span the lattice:
+ * bodies/tidy.h chooses both anew at the beginning of a step.
  */
 #ifndef NSD_CELL_H
 #define NSD_CELL_H

@@ -8,11 +8,14 @@
 static void impulses(const struct packing *p, double ahead, const struct contacts *s, vec3 *force,
                      vec3 *moment)
 {
+    vec3 edge[3];
+    cell_predict(&p->cell, ahead, edge);
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
         double la, lb;
         vec3 xa = c->a < 0 ? c->x : v3_axpy(p->x[c->a], ahead, p->v[c->a]);
-        contact_arms(c, xa, v3_axpy(p->x[c->b], ahead, p->v[c->b]), &la, &lb);
+        vec3 xb = v3_axpy(p->x[c->b], ahead, p->v[c->b]);
+        contact_arms(c, xa, v3_add(xb, cell_shift(edge, c->shift)), &la, &lb);
         const double *r = s->found[i].r;
         vec3 t2 = contact_t2(c), f = v3_axpy(v3_axpy(v3_scale(r[0], c->n), r[1], c->t1), r[2], t2);
         vec3 m = v3_axpy(v3_scale(r[2], c->t1), -r[1], t2); // -n x r
@@ -73,7 +76,10 @@ static int move(struct packing *p, double ahead, const struct contacts *s,
 
 int move_step(struct packing *p, const struct contacts *s, struct why *why)
 {
+    vec3 rate[3];
+    cell_next_rate(&p->cell, p->t, p->dt, p->theta, rate);
     if (move(p, (1 - p->theta) * p->dt, s, body_move, why)) return why->status;
+    cell_move(&p->cell, p->dt, p->theta, rate);
     p->step++;
     p->t += p->dt;
     return 0;
@@ -84,5 +90,6 @@ int move_back(struct packing *p, const struct contacts *s, struct why *why)
     if (move(p, -p->theta * p->dt, s, body_unmove, why)) return why->status;
     p->step--;
     p->t -= p->dt;
+    cell_unmove(&p->cell, p->t, p->dt, p->theta);
     return 0;
 }

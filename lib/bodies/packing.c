@@ -145,7 +145,7 @@ static const char *wall_trouble(const struct packing *p, const struct wall *w)
 static int check_cell(const struct packing *p, struct why *why)
 {
     double most = 0;
-    for (int64_t i = 0; i < p->n; i++) most = fmax(most, p->radius[i]);
+    for (int64_t i = 0; cell_repeats(&p->cell) && i < p->n; i++) most = fmax(most, p->radius[i]);
     if (cell_check(&p->cell, p->dim, 2 * most, why)) return why->status;
     if (cell_repeats(&p->cell) != (p->image != NULL))
         return why_set(why, EX_DATAERR, "images without a cell that repeats, or the reverse");

@@ -26,6 +26,14 @@ static const struct column layout_motion[] = {
     { 0 },
 };
 
+/* The same where the cell repeats: a pointer in struct packing; members of struct cell, [F][3][3] */
+static const struct column layout_cell[] = {
+    { "image", "1", COLUMN_I32, 3, offsetof(struct packing, image) },
+    { "box/edges", "m", COLUMN_F64, 9, offsetof(struct cell, edge) },
+    { "box/rate", "m s-1", COLUMN_F64, 9, offsetof(struct cell, rate) },
+    { 0 },
+};
+
 /* /particles/all/NAME [N]: pointers in struct packing */
 static const struct column layout_bodies[] = {
     { "radius", "m", COLUMN_F64, 1, offsetof(struct packing, radius) },
@@ -62,6 +70,12 @@ static const struct column layout_contacts[] = {
     { "mu", "1", COLUMN_F64, 1, offsetof(struct contact, mu) },
     { "en", "1", COLUMN_F64, 1, offsetof(struct contact, en) },
     { "et", "1", COLUMN_F64, 1, offsetof(struct contact, et) },
+    { 0 },
+};
+
+/* The same where the cell repeats */
+static const struct column layout_shifts[] = {
+    { "shift", "1", COLUMN_I8, 3, offsetof(struct contact, shift) },
     { 0 },
 };
 

@@ -3,6 +3,7 @@
 
 #include "bodies/detect.h"
 #include "bodies/move.h"
+#include "bodies/tidy.h"
 
 #include <stdlib.h>
 
@@ -57,6 +58,7 @@ int step_advance(struct packing *p, struct contacts *s, struct neighbours *near,
     struct contacts before = { 0 };
     if (o->warm) before = *s, *s = (struct contacts){ 0 };
     double cpu = report_seconds(CLOCK_CPU);
+    packing_tidy(p, &before);
     int e = detect_contacts(s, p, o->gap, near, why);
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
     if (!e && o->warm && contacts_match(s, &before))
