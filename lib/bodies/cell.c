@@ -195,6 +195,17 @@ void cell_set_rate(struct cell *c, double t)
     keep_yielding(&still, c->rate);
 }
 
+void cell_flow_init(struct cell_flow *f, const struct cell *c, const vec3 half[3],
+                    const vec3 gain[3])
+{
+    *f = (struct cell_flow){ .origin = c->origin };
+    for (int k = 0; k < 3; k++) {
+        f->gain[k] = gain[k];
+        f->changes = f->changes || (c->repeats[k] && v3_norm(gain[k]) > 0);
+    }
+    if (f->changes) cell_inverse(half, f->inverse);
+}
+
 void cell_move(struct cell *c, double dt, double theta, const vec3 next[3])
 {
     for (int k = 0; k < 3; k++) {

@@ -10,6 +10,11 @@
  * to rounding. What rate_{k+1} is, a velocity gradient L says, rate_{k+1} = L(t_{k+1}) q_{k+1}; or,
  * for the components of an edge that yield to a stress, the contacts do (bodies/freedom.h).
  *
+ * Where rates change, bodies are accelerated as the flow v = L (x - origin) is that the edges make,
+ * by sum of u_k (rate_{k+1} - rate_k)_k for a body u edges from the origin. Without it a body and its
+ * image would differ in what they do, and a lattice that is compressed would not stay one. In simple
+ * shear at a constant rate it is 0. (Yade does so for homoDeform 3.)
+ *
  * Which of a body's images is the body is arbitrary, and so is which edges span the lattice:
  * bodies/tidy.h chooses both anew at the beginning of a step.
  */
@@ -93,6 +98,24 @@ void cell_next_rate(const struct cell *c, double t, double dt, double theta, vec
    where what yields had the rates that it has. */
 void cell_move(struct cell *c, double dt, double theta, const vec3 next[3]);
 void cell_unmove(struct cell *c, double t, double dt, double theta);
+
+/* The acceleration of the flow in the step from time t */
+struct cell_flow {
+    bool changes;    /* else there is none */
+    vec3 origin;     /* m */
+    vec3 inverse[3]; /* 1/m: of the edges where the contacts act */
+    vec3 gain[3];    /* m/s: of the edges' rates in the step */
+};
+/* half, gain: the edges where the contacts act, and what their rates gain in the step */
+void cell_flow_init(struct cell_flow *f, const struct cell *c, const vec3 half[3],
+                    const vec3 gain[3]);
+/* m/s: what a body gains whose position where contacts act is x */
+static inline vec3 cell_flow_gain(const struct cell_flow *f, vec3 x)
+{
+    vec3 d = v3_sub(x, f->origin), v = v3(0, 0, 0);
+    for (int k = 0; k < 3; k++) v = v3_axpy(v, v3_dot(f->inverse[k], d), f->gain[k]);
+    return v;
+}
 
 /* How many edges to take off x (m) for it to lie in the cell */
 void cell_wraps(const struct cell *c, const vec3 inverse[3], vec3 x, int32_t wraps[3]);

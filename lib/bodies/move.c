@@ -33,13 +33,15 @@ static quat turn(quat q, double dt, vec3 w)
 }
 
 /* Body i through the second half of the step, with its impulse and moment. */
-static void body_move(struct packing *p, int64_t i, vec3 force, vec3 moment)
+static void body_move(struct packing *p, const struct cell_flow *flow, int64_t i, vec3 force,
+                      vec3 moment)
 {
     double before = (1 - p->theta) * p->dt, after = p->theta * p->dt;
     p->x[i] = packing_predict(p, i);
     p->q[i] = turn(p->q[i], before, p->w[i]);
     if (p->mass[i] > 0) {
         p->v[i] = v3_axpy(v3_axpy(p->v[i], p->dt, p->g), 1 / p->mass[i], force);
+        if (flow->changes) p->v[i] = v3_add(p->v[i], cell_flow_gain(flow, p->x[i]));
         p->w[i] = v3_axpy(p->w[i], 1 / p->inertia[i], moment);
     }
     p->x[i] = v3_axpy(p->x[i], after, p->v[i]);
@@ -47,13 +49,15 @@ static void body_move(struct packing *p, int64_t i, vec3 force, vec3 moment)
 }
 
 /* The inverse. */
-static void body_unmove(struct packing *p, int64_t i, vec3 force, vec3 moment)
+static void body_unmove(struct packing *p, const struct cell_flow *flow, int64_t i, vec3 force,
+                        vec3 moment)
 {
     double before = (1 - p->theta) * p->dt, after = p->theta * p->dt;
     p->x[i] = v3_axpy(p->x[i], -after, p->v[i]);
     p->q[i] = turn(p->q[i], -after, p->w[i]);
     if (p->mass[i] > 0) {
         p->v[i] = v3_axpy(v3_axpy(p->v[i], -p->dt, p->g), -1 / p->mass[i], force);
+        if (flow->changes) p->v[i] = v3_sub(p->v[i], cell_flow_gain(flow, p->x[i]));
         p->w[i] = v3_axpy(p->w[i], -1 / p->inertia[i], moment);
     }
     p->x[i] = v3_axpy(p->x[i], -before, p->v[i]);
@@ -63,13 +67,15 @@ static void body_unmove(struct packing *p, int64_t i, vec3 force, vec3 moment)
 /* body() on each, with its impulse and moment; the contacts act where the bodies are `ahead` (s)
    from here. */
 static int move(struct packing *p, double ahead, const struct contacts *s,
-                void (*body)(struct packing *, int64_t, vec3, vec3), struct why *why)
+                const struct cell_flow *flow,
+                void (*body)(struct packing *, const struct cell_flow *, int64_t, vec3, vec3),
+                struct why *why)
 {
     size_t n = (size_t)p->n + 1;
     vec3 *force = calloc(n, sizeof *force), *moment = calloc(n, sizeof *moment);
     bool room = force && moment;
     if (room) impulses(p, ahead, s, force, moment);
-    for (int64_t i = 0; room && i < p->n; i++) body(p, i, force[i], moment[i]);
+    for (int64_t i = 0; room && i < p->n; i++) body(p, flow, i, force[i], moment[i]);
     free(force), free(moment);
     return room ? 0 : why_set(why, EX_SOFTWARE, "no memory to move the bodies");
 }
@@ -77,8 +83,9 @@ static int move(struct packing *p, double ahead, const struct contacts *s,
 int move_step(struct packing *p, const struct contacts *s, struct why *why)
 {
     vec3 rate[3];
+    const struct cell_flow flow = packing_flow(p);
     cell_next_rate(&p->cell, p->t, p->dt, p->theta, rate);
-    if (move(p, (1 - p->theta) * p->dt, s, body_move, why)) return why->status;
+    if (move(p, (1 - p->theta) * p->dt, s, &flow, body_move, why)) return why->status;
     cell_move(&p->cell, p->dt, p->theta, rate);
     p->step++;
     p->t += p->dt;
@@ -87,9 +94,16 @@ int move_step(struct packing *p, const struct contacts *s, struct why *why)
 
 int move_back(struct packing *p, const struct contacts *s, struct why *why)
 {
-    if (move(p, -p->theta * p->dt, s, body_unmove, why)) return why->status;
+    struct cell before = p->cell; // its gradient is only read
+    struct cell_flow flow;
+    vec3 half[3], gain[3];
+    cell_unmove(&before, p->t - p->dt, p->dt, p->theta);
+    cell_predict(&p->cell, -p->theta * p->dt, half);
+    for (int k = 0; k < 3; k++) gain[k] = v3_sub(p->cell.rate[k], before.rate[k]);
+    cell_flow_init(&flow, &p->cell, half, gain);
+    if (move(p, -p->theta * p->dt, s, &flow, body_unmove, why)) return why->status;
     p->step--;
     p->t -= p->dt;
-    cell_unmove(&p->cell, p->t, p->dt, p->theta);
+    p->cell = before;
     return 0;
 }

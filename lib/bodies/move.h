@@ -3,6 +3,8 @@
  *
  *     qdot_{k+1} = qdot_free + M^-1 P r,   q_{k+1} = q_{k+1/2} + theta dt qdot_{k+1}
  *
+ * and the cell's edges by their rates (bodies/cell.h)
+ *
  * [uzawa3 and the line after it]; q_{k+1/2} is the predicted position, in which the contacts act.
  */
 #ifndef NSD_MOVE_H

@@ -193,6 +193,17 @@ int packing_check(const struct packing *p, struct why *why)
     return check_cell(p, why);
 }
 
+struct cell_flow packing_flow(const struct packing *p)
+{
+    struct cell_flow f;
+    vec3 half[3], gain[3];
+    cell_predict(&p->cell, (1 - p->theta) * p->dt, half);
+    cell_next_rate(&p->cell, p->t, p->dt, p->theta, gain);
+    for (int k = 0; k < 3; k++) gain[k] = v3_sub(gain[k], p->cell.rate[k]);
+    cell_flow_init(&f, &p->cell, half, gain);
+    return f;
+}
+
 void packing_solid(int dim, double radius, double density, double *mass, double *inertia)
 {
     double r2 = radius * radius;

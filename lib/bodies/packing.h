@@ -78,6 +78,9 @@ static inline vec3 packing_predict(const struct packing *p, int64_t i)
     return v3_axpy(p->x[i], (1 - p->theta) * p->dt, p->v[i]);
 }
 
+/* The acceleration of the flow that the cell's edges make, in the step to come */
+struct cell_flow packing_flow(const struct packing *p);
+
 /* body[] = those of bodies a and b that can move (mass > 0; a < 0 is a wall); returns how many. */
 static inline int packing_movable(const struct packing *p, int32_t a, int32_t b, int32_t body[2])
 {

@@ -120,10 +120,13 @@ static void set_bodies(struct problem *p)
 void problem_set_free_motion(struct problem *p)
 {
     const struct packing *pack = p->packing;
-    const vec3 dv = v3_scale(pack->dt, pack->g);
+    const vec3 fall = v3_scale(pack->dt, pack->g);
+    const struct cell_flow flow = packing_flow(pack);
     for (int64_t i = 0; i < pack->n; i++) {
         struct body *b = &p->body[p->seat[i]];
+        vec3 dv = fall;
         if (!(b->im > 0)) continue;
+        if (flow.changes) dv = v3_add(dv, cell_flow_gain(&flow, packing_predict(pack, i)));
         b->v[0] = pack->v[i].x + dv.x, b->v[1] = pack->v[i].y + dv.y, b->v[2] = pack->v[i].z + dv.z;
         b->w[0] = pack->w[i].x, b->w[1] = pack->w[i].y, b->w[2] = pack->w[i].z;
     }

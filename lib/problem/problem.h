@@ -68,7 +68,8 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
                              enum order order, struct why *why);
 void problem_free(struct problem *p);
 
-/* Sets the bodies of a packing to v_free, their velocities before the step plus dt g. */
+/* Sets the bodies of a packing to v_free, their velocities before the step plus dt g, and what the flow
+   of the cell's edges gains. */
 void problem_set_free_motion(struct problem *p);
 
 /* How many of these threads are to share a sweep: all where the groups are large enough, else two

@@ -247,19 +247,13 @@ static int check_overlap(const struct packing *p, struct why *why)
     return e;
 }
 
-/* The flow that the cell's edges make, at rest in its middle, for the bodies that can move */
+/* The flow that the cell's edges make, for the bodies that can move */
 static void add_affine_flow(struct packing *p)
 {
-    const struct cell *c = &p->cell;
-    vec3 inverse[3], middle = c->origin;
-    cell_inverse(c->edge, inverse);
-    for (int k = 0; k < 3; k++) middle = v3_axpy(middle, 0.5, c->edge[k]);
-    if (p->dim == 2) middle.z = 0;
-    for (int64_t i = 0; i < p->n; i++)
-        for (int k = 0; k < 3 && p->mass[i] > 0; k++) {
-            double edges = v3_dot(inverse[k], v3_sub(p->x[i], middle));
-            p->v[i] = v3_axpy(p->v[i], edges, c->rate[k]);
-        }
+    struct cell_flow f;
+    cell_flow_init(&f, &p->cell, p->cell.edge, p->cell.rate);
+    for (int64_t i = 0; f.changes && i < p->n; i++)
+        if (p->mass[i] > 0) p->v[i] = v3_add(p->v[i], cell_flow_gain(&f, p->x[i]));
 }
 
 /* Are the numbers in range, and do no bodies overlap, unless the scene allows it? */
