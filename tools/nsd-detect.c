@@ -1,5 +1,6 @@
 /* nsd-detect: finds the contacts of packings. */
 #include "bodies/detect.h"
+#include "bodies/tidy.h"
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/tool_filter.h"
@@ -49,6 +50,7 @@ static void detect(struct frame *f, const char *where)
     struct why why = { 0 };
     tool_wants_packing(f, where);
     options_theta(&f->packing, false);
+    packing_tidy(&f->packing, NULL);
     if (detect_contacts(&f->contacts, &f->packing, options.gap, NULL, &why)) die_why(&why);
     f->detected = true, f->reported = f->moved = false;
     f->stale = true;

@@ -13,6 +13,16 @@ static void add_to(double t[3], double s, vec3 a)
     t[0] += s * a.x, t[1] += s * a.y, t[2] += s * a.z;
 }
 
+/* The cell's flow accelerates body i, whose velocity the rest of the step changes by *dv. */
+static void add_flow(struct balance *b, const struct packing *p, const struct impulses *sum,
+                     int64_t i, vec3 *dv)
+{
+    vec3 gain = cell_flow_gain(&sum->flow, packing_predict(p, i));
+    *dv = v3_add(*dv, gain);
+    b->drives += p->mass[i] * v3_dot(gain, v3_axpy(p->v[i], 0.5, *dv));
+    add_to(b->impulse, p->mass[i], gain);
+}
+
 /* The sums over bodies, and mean[n] */
 static void add_bodies(struct balance *b, const struct packing *p, const struct impulses *sum,
                        struct mean *mean)
@@ -23,12 +33,15 @@ static void add_bodies(struct balance *b, const struct packing *p, const struct 
         mean[i] = (struct mean){ p->v[i], p->w[i] };
         if (!(m > 0)) continue;
         vec3 dv = v3_axpy(v3_scale(p->dt, p->g), 1 / m, sum->force[i]);
+        if (sum->flow.changes) add_flow(b, p, sum, i, &dv);
         vec3 dw = v3_scale(1 / p->inertia[i], sum->moment[i]);
         vec3 v = v3_add(p->v[i], dv), w = v3_add(p->w[i], dw);
         vec3 x = v3_axpy(v3_axpy(p->x[i], before, p->v[i]), after, v);
         mean[i] = (struct mean){ v3_axpy(p->v[i], 0.5, dv), v3_axpy(p->w[i], 0.5, dw) };
         b->kinetic += 0.5 * (m * v3_dot(v, v) + p->inertia[i] * v3_dot(w, w));
         b->potential -= m * v3_dot(p->g, x);
+        b->change += 0.5 * m * (v3_dot(v, v) - v3_dot(p->v[i], p->v[i]));
+        b->change += 0.5 * p->inertia[i] * (v3_dot(w, w) - v3_dot(p->w[i], p->w[i]));
         b->gravity += p->dt * m * v3_dot(p->g, mean[i].v);
         add_to(b->momentum, m, v);
     }
@@ -40,6 +53,7 @@ static void add_freedoms(struct balance *b, const struct packing *p, const struc
         const struct freedom *f = &sum->freedoms.f[k];
         double change = impulses_change(sum, p, k), s = f->speed + change;
         b->kinetic += 0.5 * f->mass * s * s;
+        b->change += 0.5 * f->mass * (s * s - f->speed * f->speed);
         b->loads += p->dt * f->force * (f->speed + 0.5 * change);
     }
 }
@@ -54,7 +68,8 @@ struct work {
 static void add_beyond(struct work *w, const struct packing *p, const struct impulses *sum,
                        const struct contact *c, vec3 f)
 {
-    w->held += v3_dot(f, cell_shift(p->cell.rate, c->shift));
+    vec3 twice = v3_add(cell_shift(p->cell.rate, c->shift), cell_shift(sum->next, c->shift));
+    w->held += 0.5 * v3_dot(f, twice);
     for (int32_t k = 0; k < sum->freedoms.n; k++) {
         const struct freedom *freedom = &sum->freedoms.f[k];
         double along = v3_dot(f, freedom_direction(freedom, c));
@@ -66,10 +81,9 @@ static void add_beyond(struct work *w, const struct packing *p, const struct imp
 static void add_contacts(struct balance *b, const struct packing *p, const struct contacts *s,
                          const struct impulses *sum, const struct mean *mean)
 {
-    double ahead = (1 - p->theta) * p->dt;
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
-        const struct push o = push_of(p, ahead, c, s->found[i].r);
+        const struct push o = push_of(p, sum->ahead, sum->edge, c, s->found[i].r);
         const struct mean *mb = &mean[c->b];
         struct work w = { 0 };
         bool a_moves = c->a >= 0 && p->mass[c->a] > 0, b_moves = p->mass[c->b] > 0;

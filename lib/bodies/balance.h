@@ -10,11 +10,13 @@
  *     gravity      dt sum m g . (v+ + v-)/2
  *     loads        dt sum f (s+ + s-)/2, of the freedoms [bodies/freedom.h]
  *     drives       - sum r . w: w is what the motions that are prescribed (boundaries, fixed bodies,
- *                  the cell) are in the velocity of the contact
+ *                  the cell) are in the velocity of the contact, their mean over the step; and
+ *                  what the flow of the cell does to bodies
  *     dissipation  - sum r . (u+ + u-)/2
  *
  * Each of the four is a sum of its own, none a difference of the others. Momentum changes by the
- * weight, dt sum m g, and by the impulse of boundaries and fixed bodies.
+ * weight, dt sum m g, and by the impulse of boundaries, fixed bodies and the cell's flow. Where the cell
+ * repeats, T- is not T+ of the step before: a body that is replaced by its image has another velocity.
  *
  * Without restitution a contact that holds has u+ = 0 and dissipates -r . u-/2, which is negative
  * where the step has begun with separating bodies; over an impact it is what the law takes.
@@ -26,6 +28,7 @@
 
 struct balance {
     double kinetic;   /* J: after the step; of the bodies and of what loads move */
+    double change;    /* J: of kinetic, in the step */
     double potential; /* J: - sum m g . x, after the step, of the bodies */
     double gravity, drives, loads, dissipation; /* J: in the step */
     double momentum[3];                         /* N s: of the bodies, after the step */

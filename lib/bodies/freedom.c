@@ -5,6 +5,7 @@
 
 bool freedoms_in(const struct packing *p)
 {
+    if (cell_yields(&p->cell)) return true;
     for (int32_t w = 0; w < p->walls; w++)
         if (p->wall[w].load.way) return true;
     return false;
@@ -22,12 +23,41 @@ static struct freedom wall_freedom(const struct packing *p, int32_t w)
                              .speed = l->speed };
 }
 
-int freedoms_init(struct freedoms *list, const struct packing *p, struct why *why)
+/* Component i of edge k, where the face across is area[k] */
+static struct freedom edge_freedom(const struct cell *c, int k, int i, const vec3 area[3])
 {
-    *list = (struct freedoms){ .f = calloc((size_t)p->walls + 3, sizeof *list->f) };
+    const double *row = c->stress[i], rate[3] = { c->rate[k].x, c->rate[k].y, c->rate[k].z };
+    return (struct freedom){ .boundary = -1,
+                             .edge = k,
+                             .axis = v3(i == 0, i == 1, i == 2),
+                             .mass = c->mass[k][i],
+                             .force = -v3_dot(v3(row[0], row[1], row[2]), area[k]),
+                             .speed = rate[i] };
+}
+
+/* m^2, of discs m: the faces across the edges, to the side that they go */
+static void face_areas(const struct packing *p, const vec3 edge[3], vec3 area[3])
+{
+    double volume = v3_dot(edge[0], v3_cross(edge[1], edge[2]));
+    if (p->dim == 2) volume /= v3_norm(edge[2]); // which only closes the cell
+    cell_inverse(edge, area);
+    for (int k = 0; k < 3; k++) area[k] = v3_scale(fabs(volume), area[k]);
+}
+
+int freedoms_init(struct freedoms *list, const struct packing *p, const vec3 half[3],
+                  struct why *why)
+{
+    *list = (struct freedoms){ 0 };
+    if (!freedoms_in(p)) return 0;
+    list->f = calloc((size_t)p->walls + 9, sizeof *list->f);
     if (!list->f) return why_set(why, EX_SOFTWARE, "no memory for the loads");
     for (int32_t w = 0; w < p->walls; w++)
         if (p->wall[w].load.way) list->f[list->n++] = wall_freedom(p, w);
+    vec3 area[3];
+    face_areas(p, half, area);
+    for (int k = 0; k < 9; k++)
+        if (p->cell.mass[k / 3][k % 3] > 0)
+            list->f[list->n++] = edge_freedom(&p->cell, k / 3, k % 3, area);
     return 0;
 }
 

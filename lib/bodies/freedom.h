@@ -8,7 +8,9 @@
  *
  *     s+ = s + (dt f + J^T r)/m.
  *
- * They are gathered anew for each step, from the loads of the packing [bodies/load.h].
+ * They are gathered anew for each step, from the loads of the packing [bodies/load.h] and the masses
+ * and the stress of its cell [bodies/cell.h]: on component i of edge k acts - (stress A_k)_i, where
+ * A_k, the face that the other two edges span, has its normal to the side of the edge.
  */
 #ifndef NSD_FREEDOM_H
 #define NSD_FREEDOM_H
@@ -19,12 +21,12 @@
 
 struct freedom {
     int32_t boundary; /* the boundary that it moves; -1: the cell's edge */
-    int edge;         /* of the cell */
+    int edge;         /* of the cell; it yields along an axis of space */
     bool turns;       /* about the axis, not along it */
     vec3 axis, point; /* unit vector; m: a point on the axis, of the predicted position */
     double mass;      /* kg, or kg m^2 */
     double force;     /* N, or N m, of this step */
-    double speed;     /* m/s, or rad/s, before the step */
+    double speed;     /* m/s, or rad/s */
 };
 
 struct freedoms {
@@ -34,9 +36,10 @@ struct freedoms {
 
 /* Whether the packing has any. */
 bool freedoms_in(const struct packing *p);
-/* Those of the step that begins where the packing is. Returns 0, or EX_SOFTWARE with nothing to
-   free. */
-int freedoms_init(struct freedoms *list, const struct packing *p, struct why *why);
+/* Those of a step; speeds are those that the packing has. half: the edges of the cell where the
+   contacts act, m. Returns 0, or EX_SOFTWARE with nothing to free. */
+int freedoms_init(struct freedoms *list, const struct packing *p, const vec3 half[3],
+                  struct why *why);
 void freedoms_free(struct freedoms *list);
 
 /* Of the packing's contact c: the velocity of b relative to a per unit speed: -axis for a boundary

@@ -9,13 +9,15 @@ static quat turn(quat q, double dt, vec3 w)
 }
 
 /* Body i through the second half of the step, with its impulse and moment. */
-static void body_move(struct packing *p, int64_t i, vec3 force, vec3 moment)
+static void body_move(struct packing *p, const struct cell_flow *flow, int64_t i, vec3 force,
+                      vec3 moment)
 {
     double before = (1 - p->theta) * p->dt, after = p->theta * p->dt;
     p->x[i] = packing_predict(p, i);
     p->q[i] = turn(p->q[i], before, p->w[i]);
     if (p->mass[i] > 0) {
         p->v[i] = v3_axpy(v3_axpy(p->v[i], p->dt, p->g), 1 / p->mass[i], force);
+        if (flow->changes) p->v[i] = v3_add(p->v[i], cell_flow_gain(flow, p->x[i]));
         p->w[i] = v3_axpy(p->w[i], 1 / p->inertia[i], moment);
     }
     p->x[i] = v3_axpy(p->x[i], after, p->v[i]);
@@ -23,13 +25,15 @@ static void body_move(struct packing *p, int64_t i, vec3 force, vec3 moment)
 }
 
 /* The inverse. */
-static void body_unmove(struct packing *p, int64_t i, vec3 force, vec3 moment)
+static void body_unmove(struct packing *p, const struct cell_flow *flow, int64_t i, vec3 force,
+                        vec3 moment)
 {
     double before = (1 - p->theta) * p->dt, after = p->theta * p->dt;
     p->x[i] = v3_axpy(p->x[i], -after, p->v[i]);
     p->q[i] = turn(p->q[i], -after, p->w[i]);
     if (p->mass[i] > 0) {
         p->v[i] = v3_axpy(v3_axpy(p->v[i], -p->dt, p->g), -1 / p->mass[i], force);
+        if (flow->changes) p->v[i] = v3_sub(p->v[i], cell_flow_gain(flow, p->x[i]));
         p->w[i] = v3_axpy(p->w[i], -1 / p->inertia[i], moment);
     }
     p->x[i] = v3_axpy(p->x[i], -before, p->v[i]);
@@ -44,7 +48,8 @@ static void move_freedoms(struct packing *p, const struct impulses *sum, bool ba
 
 void move_by(struct packing *p, const struct impulses *sum)
 {
-    for (int64_t i = 0; i < p->n; i++) body_move(p, i, sum->force[i], sum->moment[i]);
+    for (int64_t i = 0; i < p->n; i++) body_move(p, &sum->flow, i, sum->force[i], sum->moment[i]);
+    cell_move(&p->cell, p->dt, p->theta, sum->next);
     move_freedoms(p, sum, false);
     p->step++;
     p->t += p->dt;
@@ -53,20 +58,28 @@ void move_by(struct packing *p, const struct impulses *sum)
 int move_step(struct packing *p, const struct contacts *s, struct why *why)
 {
     struct impulses sum;
-    if (!impulses_init(&sum, p, (1 - p->theta) * p->dt, s, why)) move_by(p, &sum);
+    if (!impulses_init(&sum, p, s, false, why)) move_by(p, &sum);
     impulses_free(&sum);
     return why->status;
+}
+
+static void unmove_by(struct packing *p, struct impulses *sum)
+{
+    vec3 gain[3];
+    move_freedoms(p, sum, true);
+    for (int k = 0; k < 3; k++) gain[k] = p->cell.rate[k];
+    cell_unmove(&p->cell, p->t - p->dt, p->dt, p->theta);
+    for (int k = 0; k < 3; k++) gain[k] = v3_sub(gain[k], p->cell.rate[k]);
+    cell_flow_init(&sum->flow, &p->cell, sum->edge, gain);
+    for (int64_t i = 0; i < p->n; i++) body_unmove(p, &sum->flow, i, sum->force[i], sum->moment[i]);
+    p->step--;
+    p->t -= p->dt;
 }
 
 int move_back(struct packing *p, const struct contacts *s, struct why *why)
 {
     struct impulses sum;
-    if (!impulses_init(&sum, p, -p->theta * p->dt, s, why)) {
-        for (int64_t i = 0; i < p->n; i++) body_unmove(p, i, sum.force[i], sum.moment[i]);
-        move_freedoms(p, &sum, true);
-        p->step--;
-        p->t -= p->dt;
-    }
+    if (!impulses_init(&sum, p, s, true, why)) unmove_by(p, &sum);
     impulses_free(&sum);
     return why->status;
 }

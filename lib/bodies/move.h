@@ -3,6 +3,8 @@
  *
  *     qdot_{k+1} = qdot_free + M^-1 P r,   q_{k+1} = q_{k+1/2} + theta dt qdot_{k+1}
  *
+ * and the cell's edges by their rates (bodies/cell.h)
+ *
  * [uzawa3 and the line after it]; q_{k+1/2} is the predicted position, in which the contacts act.
  */
 #ifndef NSD_MOVE_H
@@ -13,7 +15,7 @@
 /* The bodies and the freedoms move, by the contacts' reactions; step and t advance. Returns 0 or EX_SOFTWARE. */
 int move_step(struct packing *p, const struct contacts *s, struct why *why);
 
-/* The same by the sums of the reactions, taken (1 - theta) dt ahead. */
+/* The same by the sums of the reactions. */
 void move_by(struct packing *p, const struct impulses *sum);
 
 /* Back to before move_step(), to rounding: what a solution in a trajectory is checked from. */

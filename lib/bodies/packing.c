@@ -12,7 +12,7 @@ static void *array(int64_t n, size_t size)
 
 int packing_init(struct packing *p, int dim, int64_t n, struct why *why)
 {
-    *p = (struct packing){ .dim = dim, .n = n, .theta = 0.5 };
+    *p = (struct packing){ .dim = dim, .n = n, .theta = 0.5, .cell = cell_none() };
     p->radius = array(n, sizeof *p->radius);
     p->mass = array(n, sizeof *p->mass);
     p->inertia = array(n, sizeof *p->inertia);
@@ -43,7 +43,8 @@ void packing_free(struct packing *p)
 {
     free(p->radius), free(p->mass), free(p->inertia), free(p->id), free(p->kind);
     free(p->x), free(p->q), free(p->v), free(p->w);
-    free(p->wall), free(p->scene);
+    free(p->wall), free(p->scene), free(p->image);
+    cell_free(&p->cell);
     kinds_free(p);
     memset(p, 0, sizeof *p);
 }
@@ -72,13 +73,22 @@ int packing_alloc_kinds(struct packing *p, int32_t k, struct why *why)
     return allocated ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d kinds", k);
 }
 
+int packing_alloc_images(struct packing *p, struct why *why)
+{
+    free(p->image);
+    p->image = array(p->n, sizeof *p->image);
+    return p->image ? 0 : why_set(why, EX_SOFTWARE, "no memory for the images");
+}
+
 int packing_copy(struct packing *to, const struct packing *p, struct why *why)
 {
     if (packing_init(to, p->dim, p->n, why)) return why->status;
     if (packing_alloc_walls(to, p->walls, why) || packing_alloc_kinds(to, p->kinds, why)) goto fail;
     size_t n = (size_t)p->n, k2 = (size_t)p->kinds * (size_t)p->kinds;
     to->step = p->step, to->t = p->t, to->dt = p->dt, to->theta = p->theta, to->g = p->g;
-    to->seed = p->seed, to->cell = p->cell;
+    to->seed = p->seed;
+    if (cell_copy(&to->cell, &p->cell) || (p->image && packing_alloc_images(to, why))) goto fail;
+    if (p->image) memcpy(to->image, p->image, n * sizeof *p->image);
     memcpy(to->radius, p->radius, n * sizeof *p->radius);
     memcpy(to->mass, p->mass, n * sizeof *p->mass);
     memcpy(to->inertia, p->inertia, n * sizeof *p->inertia);
@@ -147,6 +157,28 @@ static const char *wall_trouble(const struct packing *p, const struct wall *w)
     return load_trouble(p, w);
 }
 
+/* The cell, which the largest body must fit into, and the images. */
+static int check_cell(const struct packing *p, struct why *why)
+{
+    double most = 0;
+    for (int64_t i = 0; cell_repeats(&p->cell) && i < p->n; i++) most = fmax(most, p->radius[i]);
+    if (cell_check(&p->cell, p->dim, 2 * most, why)) return why->status;
+    if (cell_repeats(&p->cell) != (p->image != NULL))
+        return why_set(why, EX_DATAERR, "images without a cell that repeats, or the reverse");
+    for (int32_t i = 0; cell_repeats(&p->cell) && i < p->walls; i++)
+        for (int k = 0; k < 3; k++) {
+            const vec3 e = p->cell.edge[k], r = p->cell.rate[k];
+            if (p->cell.repeats[k] && !(fabs(v3_dot(e, p->wall[i].n)) <= 1e-9 * v3_norm(e)))
+                return why_set(why, EX_DATAERR, "wall %d: the cell repeats across it", i);
+            if (p->cell.repeats[k] && v3_norm(r) > 0)
+                return why_set(why, EX_DATAERR,
+                               "wall %d: the edges along it move, so that its bodies' images "
+                               "would meet it at other speeds",
+                               i);
+        }
+    return 0;
+}
+
 int packing_check(const struct packing *p, struct why *why)
 {
     if (p->dim != 2 && p->dim != 3)
@@ -174,7 +206,18 @@ int packing_check(const struct packing *p, struct why *why)
         const char *trouble = wall_trouble(p, &p->wall[i]);
         if (trouble) return why_set(why, EX_DATAERR, "wall %d: %s", i, trouble);
     }
-    return 0;
+    return check_cell(p, why);
+}
+
+struct cell_flow packing_flow(const struct packing *p)
+{
+    struct cell_flow f;
+    vec3 half[3], gain[3];
+    cell_predict(&p->cell, (1 - p->theta) * p->dt, half);
+    cell_next_rate(&p->cell, p->t, p->dt, p->theta, gain);
+    for (int k = 0; k < 3; k++) gain[k] = v3_sub(gain[k], p->cell.rate[k]);
+    cell_flow_init(&f, &p->cell, half, gain);
+    return f;
 }
 
 void packing_solid(int dim, double radius, double density, double *mass, double *inertia)

@@ -32,14 +32,15 @@ struct packing {
     vec3 g;       /* m/s^2 */
     uint64_t seed;
 
-    double *radius;  /* [n] m */
-    double *mass;    /* [n] kg; 0: immovable or prescribed */
-    double *inertia; /* [n] kg m^2 */
-    int32_t *id;     /* [n] a number that stays with the body */
-    int32_t *kind;   /* [n] row of the material tables */
-    vec3 *x;         /* [n] m */
-    quat *q;         /* [n] orientation */
-    vec3 *v, *w;     /* [n] m/s, rad/s */
+    double *radius;      /* [n] m */
+    double *mass;        /* [n] kg; 0: immovable or prescribed */
+    double *inertia;     /* [n] kg m^2 */
+    int32_t *id;         /* [n] a number that stays with the body */
+    int32_t *kind;       /* [n] row of the material tables */
+    vec3 *x;             /* [n] m */
+    quat *q;             /* [n] orientation */
+    vec3 *v, *w;         /* [n] m/s, rad/s */
+    int32_t (*image)[3]; /* [n] edges to add to x for the way gone; NULL: nothing repeats */
 
     int32_t walls;
     struct wall *wall; /* [walls] */
@@ -62,6 +63,9 @@ void packing_free(struct packing *p);
    Each returns 0 or EX_SOFTWARE. */
 int packing_alloc_walls(struct packing *p, int32_t k, struct why *why);
 int packing_alloc_kinds(struct packing *p, int32_t k, struct why *why);
+
+/* image[n], all zero, in place of the old one. Returns 0 or EX_SOFTWARE. */
+int packing_alloc_images(struct packing *p, struct why *why);
 
 /* to = a deep copy of from; to need not be initialised. Returns 0 or EX_SOFTWARE. */
 int packing_copy(struct packing *to, const struct packing *from, struct why *why);
@@ -98,6 +102,9 @@ static inline vec3 packing_predict(const struct packing *p, int64_t i)
 {
     return v3_axpy(p->x[i], (1 - p->theta) * p->dt, p->v[i]);
 }
+
+/* The acceleration of the flow that the cell's edges make, in the step to come */
+struct cell_flow packing_flow(const struct packing *p);
 
 /* body[] = those of bodies a and b that can move (mass > 0; a < 0 is a wall); returns how many. */
 static inline int packing_movable(const struct packing *p, int32_t a, int32_t b, int32_t body[2])

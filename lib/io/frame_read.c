@@ -49,11 +49,32 @@ static int count_contacts(struct frame_read *r, struct why *why)
     return why->status;
 }
 
+/* Which edges of H5MD's box are periodic */
+static int read_boundary(struct frame_read *r, struct why *why)
+{
+    const char *box = "/particles/all/box";
+    char boundary[3][16];
+    bool there;
+    if (source_texts(r->source, box, "boundary", 3, boundary, &there, why)) return why->status;
+    bool edges = source_has(r->source, "/particles/all/box/edges");
+    for (int k = 0; there && k < 3; k++) {
+        r->repeats[k] = !strcmp(boundary[k], "periodic");
+        if (!r->repeats[k] && strcmp(boundary[k], "none") != 0)
+            return why_set(why, EX_DATAERR, "%s@boundary: '%s' is neither periodic nor none", box,
+                           boundary[k]);
+        if (r->repeats[k] && !edges)
+            return why_set(why, EX_DATAERR, "%s: periodic without edges", box);
+    }
+    if (!there && edges)
+        return why_set(why, EX_DATAERR, "%s@boundary: not three strings of fixed length", box);
+    return 0;
+}
+
 int frame_read_open(struct frame_read *r, struct source *source, struct why *why)
 {
     *r = (struct frame_read){ .source = source, .frames = 1 };
     if (source_has(source, "/particles/all")) {
-        if (count_frames(r, why)) return why->status;
+        if (count_frames(r, why) || read_boundary(r, why)) return why->status;
         if (source_has(source, "/contacts") && count_contacts(r, why)) return why->status;
     } else if (!fclib_in(source)) {
         return why_set(why, EX_DATAERR, "holds neither particles nor an FCLIB problem");
@@ -160,6 +181,77 @@ static int read_parameters(struct source *doc, struct packing *p, struct why *wh
     return why->status;
 }
 
+/* Edges, constant or of frame k: three lengths, or three vectors */
+static int read_edges(struct frame_read *r, int64_t k, struct cell *c, struct why *why)
+{
+    const char *moving = "/particles/all/box/edges/value", *still = "/particles/all/box/edges";
+    uint64_t shape[4];
+    double edge[9];
+    if (source_has(r->source, moving)) {
+        int rank = source_shape(r->source, moving, shape);
+        if (rank != 2 && rank != 3)
+            return why_set(why, EX_DATAERR, "%s: not of shape frames x 3 (x 3)", moving);
+        if (source_rows(r->source, moving, COLUMN_F64, k, 1, rank == 2 ? 3 : 9, edge, why))
+            return why->status;
+        shape[0] = rank == 2 ? 3 : 9;
+    } else {
+        int rank = source_shape(r->source, still, shape);
+        if (rank == 2) shape[0] *= shape[1];
+        if ((rank != 1 && rank != 2) || shape[0] != (rank == 1 ? 3 : 9))
+            return why_set(why, EX_DATAERR, "%s: not of shape 3 (x 3)", still);
+        if (source_read(r->source, still, COLUMN_F64, shape[0], edge, why)) return why->status;
+    }
+    for (int i = 0; i < 3; i++)
+        c->edge[i] = shape[0] == 9
+                         ? v3(edge[3 * i], edge[3 * i + 1], edge[3 * i + 2])
+                         : v3(i == 0 ? edge[0] : 0, i == 1 ? edge[1] : 0, i == 2 ? edge[2] : 0);
+    return 0;
+}
+
+/* What moves the edges, and what they yield to */
+static int read_drive(struct source *doc, struct cell *c, struct why *why)
+{
+    uint64_t n = 0;
+    if (!source_has(doc, "/nsd/cell")) return 0;
+    double *t = source_read_all(doc, "/nsd/cell/time", COLUMN_F64, &n, why);
+    double *L = t && n < 1 << 24 ? calloc(9 * n + 1, sizeof *L) : NULL;
+    c->gradient = L ? calloc(n + 1, sizeof *c->gradient) : NULL;
+    if (t && !c->gradient) why_set(why, EX_SOFTWARE, "no memory for the cell's gradient");
+    if (c->gradient && !source_read(doc, "/nsd/cell/gradient", COLUMN_F64, 9 * n, L, why))
+        for (c->gradients = 0; c->gradients < (int32_t)n; c->gradients++) {
+            struct cell_gradient *g = &c->gradient[c->gradients];
+            g->t = t[c->gradients];
+            memcpy(g->L, L + 9 * (size_t)c->gradients, sizeof g->L);
+        }
+    free(t), free(L);
+    if (why->status) return why->status;
+    return source_read(doc, "/nsd/cell/mass", COLUMN_F64, 9, c->mass, why) ||
+                   source_read(doc, "/nsd/cell/stress", COLUMN_F64, 9, c->stress, why)
+               ? why->status
+               : 0;
+}
+
+/* The cell of frame k; the packing has its time. */
+static int read_cell(struct frame_read *r, int64_t k, struct packing *p, struct why *why)
+{
+    const char *origin = "/particles/all/box/origin", *rate = "/particles/all/box/rate/value",
+               *image = "/particles/all/image/value";
+    struct cell *c = &p->cell;
+    memcpy(c->repeats, r->repeats, sizeof c->repeats);
+    if (!cell_repeats(c)) return 0;
+    if (read_edges(r, k, c, why) || read_drive(r->source, c, why) || packing_alloc_images(p, why) ||
+        (source_has(r->source, origin) &&
+         source_read(r->source, origin, COLUMN_F64, 3, &c->origin, why)))
+        return why->status;
+    cell_set_rate(c, p->t);
+    if (source_has(r->source, rate) &&
+        source_rows(r->source, rate, COLUMN_F64, k, 1, 9, c->rate, why))
+        return why->status;
+    return source_has(r->source, image)
+               ? source_rows(r->source, image, COLUMN_I32, k, 1, 3 * p->n, p->image, why)
+               : 0;
+}
+
 static int read_packing(struct frame_read *r, int64_t k, struct packing *p, struct why *why)
 {
     uint64_t shape[4];
@@ -191,7 +283,15 @@ static int read_packing(struct frame_read *r, int64_t k, struct packing *p, stru
             return why->status;
     }
     p->step = r->step[k], p->t = r->time[k];
-    return packing_check(p, why);
+    return read_cell(r, k, p, why) ? why->status : packing_check(p, why);
+}
+
+/* Of two shifts: < 0 where the first is the earlier one, 0 where they are the same */
+static int compare_shifts(const int8_t a[3], const int8_t b[3])
+{
+    for (int k = 0; k < 3; k++)
+        if (a[k] != b[k]) return a[k] < b[k] ? -1 : 1;
+    return 0;
 }
 
 /* What contacts_check leaves: they are sorted, each pair once, and their states are states. */
@@ -199,7 +299,11 @@ static int check_order(const struct contacts *s, struct why *why)
 {
     for (int64_t i = 1; i < s->n; i++) {
         const struct contact *c = &s->c[i - 1], *next = &s->c[i];
-        if (c->a == next->a && c->b == next->b)
+        bool same_pair = c->a == next->a && c->b == next->b;
+        int later = compare_shifts(c->shift, next->shift);
+        if (same_pair && later > 0)
+            return why_set(why, EX_DATAERR, "contact %lld: not sorted by its shift", (long long)i);
+        if (same_pair && !later)
             return why_set(why, EX_DATAERR, "contact %lld: of bodies %d and %d, as the one before",
                            (long long)i, next->a, next->b);
         if (c->a > next->a || (c->a == next->a && c->b > next->b))
@@ -254,6 +358,9 @@ static int read_contacts(struct frame_read *r, int64_t k, struct frame *f, struc
     if (table_read_columns(r->source, "/contacts", "", layout_contacts, first, s->n, s->c,
                            sizeof *s->c, why) ||
         read_bases(r->source, first, s, why) ||
+        (cell_repeats(&f->packing.cell) &&
+         table_read_columns(r->source, "/contacts", "", layout_shifts, first, s->n, s->c,
+                            sizeof *s->c, why)) ||
         (solved && table_read_columns(r->source, "/contacts", "", layout_found, first, s->n,
                                       s->found, sizeof *s->found, why)))
         return why->status;

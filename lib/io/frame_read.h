@@ -15,6 +15,7 @@ struct frame_read {
     double *time;    /* [frames] s; else NULL */
     int64_t *solved; /* [solves] the steps that /observables/solver reports on */
     int64_t solves;
+    bool repeats[3]; /* the box's edges */
     struct {
         int64_t *step;  /* [blocks] of the frames whose contacts are kept, */
         int64_t *start; /* [blocks] the first row of each, */

@@ -9,15 +9,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Hard links to HOME/NAME, a clock, in the groups of all columns, which share it */
-static int link_clock(struct table_write *s, const char *home, const char *name, const char *where,
+/* Hard links WHERE/COLUMN/name to the dataset `from` for all columns */
+static int link_clock(struct table_write *s, const char *from, const char *name, const char *where,
                       const struct column *c, struct why *why)
 {
-    char from[80], to[80];
-    snprintf(from, sizeof from, "%s/%s", home, name);
+    char to[80];
     for (; c->name; c++) {
         snprintf(to, sizeof to, "%s/%s/%s", where, c->name, name);
-        if (h5_has(s->file, to)) continue; // this is HOME
+        if (h5_has(s->file, to)) continue; // this is where it was written
         if (H5Lcreate_hard(s->file, from, s->file, to, H5P_DEFAULT, H5P_DEFAULT) < 0)
             return why_set(why, EX_IOERR, "%s: cannot be linked", to);
     }
@@ -36,7 +35,7 @@ static int write_clock(struct table_write *s, const char *home, bool step, const
     if (table_write_rows(s, path, step ? COLUMN_I64 : COLUMN_F64, 1, &one, CHUNK_FRAMES, value,
                          step ? NULL : "s", why))
         return why->status;
-    return linked ? 0 : link_clock(s, home, name, where, c, why);
+    return linked ? 0 : link_clock(s, path, name, where, c, why);
 }
 
 /* ---- what is the same in all frames ---- */
@@ -87,20 +86,53 @@ static int write_material(hid_t file, const struct packing *p, struct why *why)
     return e;
 }
 
-/* H5MD's box: nothing is periodic, so it has no edges. */
-static int write_box(hid_t file, struct why *why)
+/* What moves the cell's edges, and what they yield to */
+static int write_drive(hid_t file, const struct cell *c, struct why *why)
+{
+    const hsize_t shape[3] = { (hsize_t)c->gradients, 3, 3 }, *square = shape + 1;
+    size_t n = (size_t)c->gradients;
+    double *t = calloc(n + 1, sizeof *t), (*L)[9] = calloc(n + 1, sizeof *L);
+    if (t && L)
+        for (size_t k = 0; k < n; k++) {
+            t[k] = c->gradient[k].t;
+            memcpy(L[k], c->gradient[k].L, sizeof L[k]);
+        }
+    else
+        why_set(why, EX_SOFTWARE, "no memory for the cell");
+    bool bad =
+        why->status || h5_write(file, "/nsd/cell/time", H5T_NATIVE_DOUBLE, 1, shape, t, "s", why) ||
+        h5_write(file, "/nsd/cell/gradient", H5T_NATIVE_DOUBLE, 3, shape, L, "s-1", why) ||
+        h5_write(file, "/nsd/cell/mass", H5T_NATIVE_DOUBLE, 2, square, c->mass, "kg", why) ||
+        h5_write(file, "/nsd/cell/stress", H5T_NATIVE_DOUBLE, 2, square, c->stress, "Pa", why);
+    free(t), free(L);
+    return bad ? why->status : 0;
+}
+
+/* H5MD's box; where nothing is periodic it has no edges. */
+static int write_box(hid_t file, const struct cell *c, struct why *why)
 {
     const int dimension = 3; // positions have three components in the plane too
     const char none[3][5] = { "none", "none", "none" };
     const char *box = "/particles/all/box";
+    const hsize_t three = 3;
     if (h5_group(file, box, why) ||
         h5_attr(file, box, "dimension", H5T_NATIVE_INT, -1, &dimension, why))
         return why->status;
+    char boundary[3][9] = { "none", "none", "none" };
+    for (int k = 0; k < 3; k++)
+        if (c->repeats[k]) memcpy(boundary[k], "periodic", sizeof boundary[k]);
+    bool repeats = cell_repeats(c);
     hid_t text = H5Tcopy(H5T_C_S1);
-    H5Tset_size(text, sizeof none[0]);
-    int e = h5_attr(file, box, "boundary", text, 3, none, why);
+    H5Tset_size(text, repeats ? sizeof boundary[0] : sizeof none[0]);
+    int e = h5_attr(file, box, "boundary", text, 3,
+                    repeats ? (const void *)boundary : (const void *)none, why);
     H5Tclose(text);
-    return e;
+    if (e || !repeats) return e;
+    return h5_write(file, "/particles/all/box/origin", H5T_NATIVE_DOUBLE, 1, &three, &c->origin,
+                    "m", why) ||
+                   write_drive(file, c, why)
+               ? why->status
+               : 0;
 }
 
 static int write_bodies_and_walls(struct table_write *s, const struct packing *p, struct why *why)
@@ -157,6 +189,22 @@ static int write_yield(struct table_write *s, const struct packing *p, struct wh
     return e ? e : write_clock(s, loads, false, &p->t, loads, layout_yield, why);
 }
 
+/* The images and the edges, where the cell repeats */
+static int write_cell(struct table_write *s, const struct packing *p, struct why *why)
+{
+    for (const struct column *c = layout_cell; cell_repeats(&p->cell) && c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
+        bool images = c == layout_cell;
+        const hsize_t shape[3] = { 1, images ? (hsize_t)p->n : 3, 3 };
+        const void *data = images ? column_array(c, p) : (const char *)&p->cell + c->offset;
+        if (table_write_rows(s, path, c->type, 3, shape, images ? 1 : CHUNK_FRAMES, data, c->units,
+                             why))
+            return why->status;
+    }
+    return 0;
+}
+
 static int write_bases(struct table_write *s, const struct contacts *t, struct why *why)
 {
     const hsize_t shape[3] = { (hsize_t)t->n, 3, 3 };
@@ -184,6 +232,9 @@ static int write_contacts(struct table_write *s, const struct frame *f, struct w
         table_write_columns(s, "/contacts", "", layout_contacts, t->n, t->c, sizeof *t->c,
                             CHUNK_CONTACTS, why) ||
         write_bases(s, t, why) ||
+        (cell_repeats(&f->packing.cell) &&
+         table_write_columns(s, "/contacts", "", layout_shifts, t->n, t->c, sizeof *t->c,
+                             CHUNK_CONTACTS, why)) ||
         (t->found && table_write_columns(s, "/contacts", "", layout_found, t->n, t->found,
                                          sizeof *t->found, CHUNK_CONTACTS, why)) ||
         table_write_rows(s, "/contacts/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &f->packing.step,
@@ -202,8 +253,8 @@ static int write_balance(struct table_write *s, const struct report *rep, bool f
     if (table_write_columns(s, solver, "/value", layout_balance, 1, rep, sizeof *rep, CHUNK_FRAMES,
                             why))
         return why->status;
-    if (first && (link_clock(s, solver, "step", solver, layout_balance, why) ||
-                  link_clock(s, solver, "time", solver, layout_balance, why)))
+    if (first && (link_clock(s, "/observables/solver/step", "step", solver, layout_balance, why) ||
+                  link_clock(s, "/observables/solver/time", "time", solver, layout_balance, why)))
         return why->status;
     return 0;
 }
@@ -233,19 +284,31 @@ static int write_report(struct table_write *s, const struct report *rep, struct 
 int frame_write_static(struct table_write *s, const struct frame *f, struct why *why)
 {
     if (write_parameters(s->file, f, why)) return why->status;
-    if (f->packed && (write_material(s->file, &f->packing, why) || write_box(s->file, why) ||
-                      write_bodies_and_walls(s, &f->packing, why)))
+    if (f->packed &&
+        (write_material(s->file, &f->packing, why) || write_box(s->file, &f->packing.cell, why) ||
+         write_bodies_and_walls(s, &f->packing, why)))
         return why->status;
     return unknown_write(f->unknown, s->file, f->stale && !f->foreign, why);
 }
 
 static const char particles[] = "/particles/all", position[] = "/particles/all/position";
 
+/* Its steps or its times, for all that a frame has of particles */
+static int write_particles_clock(struct table_write *s, bool step, const struct packing *p,
+                                 struct why *why)
+{
+    const char *from = step ? "/particles/all/position/step" : "/particles/all/position/time";
+    bool linked = table_write_grows(s, from);
+    const void *value = step ? (const void *)&p->step : (const void *)&p->t;
+    if (write_clock(s, position, step, value, particles, layout_motion, why)) return why->status;
+    if (linked || !cell_repeats(&p->cell)) return 0;
+    return link_clock(s, from, step ? "step" : "time", particles, layout_cell, why);
+}
+
 int frame_write_moment(struct table_write *s, const struct frame *f, struct why *why)
 {
-    if (f->packed &&
-        (write_motion(s, &f->packing, why) ||
-         write_clock(s, position, false, &f->packing.t, particles, layout_motion, why)))
+    if (f->packed && (write_motion(s, &f->packing, why) || write_cell(s, &f->packing, why) ||
+                      write_particles_clock(s, false, &f->packing, why)))
         return why->status;
     if (f->packed && freedoms_in(&f->packing) && write_yield(s, &f->packing, why))
         return why->status;
@@ -256,5 +319,5 @@ int frame_write_moment(struct table_write *s, const struct frame *f, struct why 
 int frame_write_step(struct table_write *s, const struct frame *f, struct why *why)
 {
     if (!f->packed) return 0;
-    return write_clock(s, position, true, &f->packing.step, particles, layout_motion, why);
+    return write_particles_clock(s, true, &f->packing, why);
 }

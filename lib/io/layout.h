@@ -26,6 +26,14 @@ static const struct column layout_motion[] = {
     { 0 },
 };
 
+/* The same where the cell repeats: a pointer in struct packing; members of struct cell, [F][3][3] */
+static const struct column layout_cell[] = {
+    { "image", "1", COLUMN_I32, 3, offsetof(struct packing, image) },
+    { "box/edges", "m", COLUMN_F64, 9, offsetof(struct cell, edge) },
+    { "box/rate", "m s-1", COLUMN_F64, 9, offsetof(struct cell, rate) },
+    { 0 },
+};
+
 /* /particles/all/NAME [N]: pointers in struct packing */
 static const struct column layout_bodies[] = {
     { "radius", "m", COLUMN_F64, 1, offsetof(struct packing, radius) },
@@ -82,6 +90,12 @@ static const struct column layout_contacts[] = {
     { 0 },
 };
 
+/* The same where the cell repeats */
+static const struct column layout_shifts[] = {
+    { "shift", "1", COLUMN_I8, 3, offsetof(struct contact, shift) },
+    { 0 },
+};
+
 /* /contacts/NAME [S][width] of solved contacts: members of struct found */
 static const struct column layout_found[] = {
     { "reaction", "N s", COLUMN_F64, 3, offsetof(struct found, r) },
@@ -116,6 +130,7 @@ static const struct column layout_report[] = {
 /* /observables/solver/NAME/value [F][width] where there are bodies: members of struct report */
 static const struct column layout_balance[] = {
     { "kinetic_energy", "J", COLUMN_F64, 1, offsetof(struct report, balance.kinetic) },
+    { "kinetic_change", "J", COLUMN_F64, 1, offsetof(struct report, balance.change) },
     { "potential_energy", "J", COLUMN_F64, 1, offsetof(struct report, balance.potential) },
     { "work_gravity", "J", COLUMN_F64, 1, offsetof(struct report, balance.gravity) },
     { "work_drives", "J", COLUMN_F64, 1, offsetof(struct report, balance.drives) },

@@ -56,6 +56,7 @@ static json_t *balance(const struct balance *b)
 {
     json_t *j = json_object();
     json_object_set_new(j, "kinetic", json_number(b->kinetic));
+    json_object_set_new(j, "change", json_number(b->change));
     json_object_set_new(j, "potential", json_number(b->potential));
     json_object_set_new(j, "gravity", json_number(b->gravity));
     json_object_set_new(j, "drives", json_number(b->drives));

@@ -30,11 +30,11 @@ static const struct {
     const char *known[12];
 } looked_through[] = {
     { "", { "h5md", "nsd", "particles", "walls", "contacts", "observables", "solution" } },
-    { "/nsd", { "history", "scene", "material" } },
+    { "/nsd", { "history", "scene", "material", "cell" } },
     { "/particles", { "all" } },
     { "/particles/all",
       { "box", "position", "velocity", "angular_velocity", "orientation", "radius", "mass",
-        "inertia", "id", "species" } },
+        "inertia", "id", "species", "image" } },
     { "/walls", { "plane", "load" } },
     { "/observables", { "solver" } },
 };

@@ -41,7 +41,9 @@ int couplings_init(struct couplings *c, const struct packing *p, const struct co
 {
     int64_t room = 0;
     *c = (struct couplings){ 0 };
-    if (freedoms_init(&c->freedoms, p, why)) return why->status;
+    vec3 half[3];
+    cell_predict(&p->cell, (1 - p->theta) * p->dt, half);
+    if (freedoms_init(&c->freedoms, p, half, why)) return why->status;
     c->first = calloc((size_t)s->n + 1, sizeof *c->first);
     bool good = c->first != NULL;
     for (int64_t i = 0; good && i < s->n; i++) {

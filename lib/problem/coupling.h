@@ -12,7 +12,9 @@
 
 #include "bodies/freedom.h"
 
-enum { COUPLINGS_MAX = 4 }; /* of a contact: a boundary's, and those of the cell's three edges */
+enum {
+    COUPLINGS_MAX = 10
+}; /* of a contact: a boundary's, and nine components of the cell's edges */
 
 struct coupling {
     int32_t freedom, contact;

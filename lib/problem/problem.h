@@ -30,14 +30,15 @@ enum {
 
 struct problem {
     int d;
-    int64_t n;               /* contacts */
-    int64_t bundles, slots;  /* slots: 8 a bundle, some without a contact */
-    struct bundle *bundle;   /* [bundles] in the order of the sweep */
-    struct rebound *rebound; /* [bundles]; NULL: e_n = e_t = 0 everywhere */
-    double (*u)[3][BUNDLE];  /* [bundles] m/s: what the local method believes */
-    int32_t *contact;        /* [slots] slot i is contact[i] of the packing or of W; -1: none */
-    int64_t groups;          /* no two contacts of a group share a body (a block of W): */
-    int64_t *group;          /* [groups + 1] bundles group[g] .. group[g+1]-1 may be done at once */
+    int64_t n;              /* contacts */
+    int64_t bundles, slots; /* slots: 8 a bundle, some without a contact */
+    struct bundle *bundle;  /* [bundles] in the order of the sweep */
+    struct rebound
+        *rebound; /* [bundles]; NULL: e_n = e_t = 0 everywhere, and images move as bodies */
+    double (*u)[3][BUNDLE]; /* [bundles] m/s: what the local method believes */
+    int32_t *contact;       /* [slots] slot i is contact[i] of the packing or of W; -1: none */
+    int64_t groups;         /* no two contacts of a group share a body (a block of W): */
+    int64_t *group;         /* [groups + 1] bundles group[g] .. group[g+1]-1 may be done at once */
     struct two_thread_split *split; /* NULL: the order has no halves */
     int64_t bodies;                 /* of body[]; 0: given by W */
     struct body *body; /* [bodies] the packing's, by colours in the order in which the sweep first
@@ -72,7 +73,8 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
                              enum order order, struct why *why);
 void problem_free(struct problem *p);
 
-/* Sets the bodies of a packing to v_free, their velocities before the step plus dt g. */
+/* Sets the bodies of a packing to v_free, their velocities before the step plus dt g, and what the flow
+   of the cell's edges gains. */
 void problem_set_free_motion(struct problem *p);
 
 /* How many of these threads are to share a sweep: all where the groups are large enough, else two

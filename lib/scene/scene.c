@@ -7,6 +7,7 @@ void scene_free(struct scene *s)
 {
     for (int32_t k = 0; k < s->kinds; k++) free(s->kind[k].name);
     for (int64_t i = 0; i < s->groups; i++) free(s->bodies[i].file);
+    cell_free(&s->cell.cell);
     free(s->kind), free(s->law), free(s->bodies), free(s->wall), free(s->text);
     *s = (struct scene){ 0 };
 }

@@ -19,6 +19,7 @@
  *   overlap   true | false             [false] bodies may overlap at the start
  *   bodies    [ GROUP ]                [none]
  *   walls     [ WALL ]                 [none]
+ *   cell      CELL                     [none] the box that repeats
  *
  * GROUP, one of
  *   { x: vector, radius: number }      one body
@@ -48,6 +49,18 @@
  *   { along: vector, mass: kg, force: N [0], speed: m/s [0] }              free along the vector
  *   { about: vector, mass: kg m^2, torque: N m [0], speed: rad/s [0] }     about its normal there
  *   Its weight is a force like others: gravity does not pull at walls.
+ *
+ * CELL { edges: [vector, ...] or lengths: vector, repeats, origin, gradient, affine, stress }
+ *   edges    dim of them, the cell's from its origin; lengths: along x, y, z
+ *   repeats  [true | false, ...] [all true]   along which edges
+ *   origin   vector [0]
+ *   gradient MATRIX, 1/s, or [ { t: s, L: MATRIX } ], linear between and constant outside [0]: of
+ *            velocity; the edges move with it, d edge/dt = L edge. MATRIX [[L_xx, L_xy], ...]
+ *   affine   true | false [false]: at the start bodies have the velocity L (x - origin) as well
+ *   stress   { pressure: Pa, mass: kg } or { target: MATRIX, mass: kg }: what edges yield to, as
+ *            bodies of this mass; compression is positive, N/m in the plane. Number [i][j]: component
+ *            i of edge j yields; null: it moves by the gradient. A pressure is one on the diagonal,
+ *            of edges that repeat. mass may be a MATRIX of masses, of the same shape
  *
  * The paper's examples. The paper gives radii, mu, dt and (example 1) the initial velocity. Our
  * choices: density 2500 kg/m^3, g 9.81 m/s^2, e_n = e_t = 0, and
@@ -97,6 +110,11 @@ struct scene_bodies {
     int32_t kind;
 };
 
+struct scene_cell {
+    bool given, affine;
+    struct cell cell; /* rates are those at the start */
+};
+
 struct scene {
     int dim;
     double dt, theta;
@@ -113,6 +131,7 @@ struct scene {
 
     int32_t walls;
     struct wall *wall; /* [walls] */
+    struct scene_cell cell;
 
     char *text; /* the JSON, without blanks outside strings */
 };

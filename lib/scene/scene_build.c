@@ -2,6 +2,7 @@
 #include "scene/scene_build.h"
 
 #include "bodies/detect.h"
+#include "bodies/tidy.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -214,6 +215,8 @@ static int set_parameters(struct packing *p, const struct scene *s, struct why *
     if (packing_alloc_walls(p, s->walls, why) || packing_alloc_kinds(p, s->kinds, why))
         return why->status;
     for (int32_t i = 0; i < s->walls; i++) p->wall[i] = s->wall[i];
+    if (s->cell.given && (cell_copy(&p->cell, &s->cell.cell) || packing_alloc_images(p, why)))
+        goto fail;
     for (int32_t k = 0; k < s->kinds; k++) {
         free(p->kind_name[k]);
         if (!(p->kind_name[k] = strdup(s->kind[k].name))) goto fail;
@@ -244,6 +247,15 @@ static int check_overlap(const struct packing *p, struct why *why)
     return e;
 }
 
+/* The flow that the cell's edges make, for the bodies that can move */
+static void add_affine_flow(struct packing *p)
+{
+    struct cell_flow f;
+    cell_flow_init(&f, &p->cell, p->cell.edge, p->cell.rate);
+    for (int64_t i = 0; f.changes && i < p->n; i++)
+        if (p->mass[i] > 0) p->v[i] = v3_add(p->v[i], cell_flow_gain(&f, p->x[i]));
+}
+
 /* Are the numbers in range, and do no bodies overlap, unless the scene allows it? */
 static int check_packing(const struct packing *p, const struct scene *s, struct why *why)
 {
@@ -261,8 +273,11 @@ static int build_packing(struct packing *p, const struct scene *s, const struct 
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     if (!rng) why_set(why, EX_SOFTWARE, "no memory for random numbers");
     if (rng) gsl_rng_set(rng, s->seed);
-    if (rng && !set_parameters(p, s, why) && !fill_groups(p, s, table, rng, why))
+    if (rng && !set_parameters(p, s, why) && !fill_groups(p, s, table, rng, why)) {
+        if (s->cell.affine) add_affine_flow(p);
+        packing_tidy(p, NULL);
         check_packing(p, s, why);
+    }
     gsl_rng_free(rng);
     if (why->status) packing_free(p);
     return why->status;

@@ -25,6 +25,9 @@ int scene_read_kind(jnode name, const struct scene *s, int32_t *kind);
 int scene_read_walls(jnode walls, struct scene *s, struct scene_box *box, bool *boxed);
 int scene_read_box(jnode object, int dim, struct scene_box *box);
 
+/* scene/scene_cell.c: "cell" */
+int scene_read_cell(jnode cell, int dim, struct scene_cell *out);
+
 /* scene/scene_bodies.c: "bodies"; a lattice without a box fills this one (NULL: must have its
    own). */
 int scene_read_bodies(jnode bodies, struct scene *s, const struct scene_box *box);

@@ -3,6 +3,7 @@
 
 #include "bodies/detect.h"
 #include "bodies/move.h"
+#include "bodies/tidy.h"
 #include "problem/prepare.h"
 
 #include <stdlib.h>
@@ -18,8 +19,7 @@ static double max_overlap(const struct contacts *s)
 static int sum_up(const struct packing *pack, const struct contacts *s, struct report *rep,
                   struct impulses *sum, struct why *why)
 {
-    if (impulses_init(sum, pack, (1 - pack->theta) * pack->dt, s, why) ||
-        balance_step(&rep->balance, pack, s, sum, why))
+    if (impulses_init(sum, pack, s, false, why) || balance_step(&rep->balance, pack, s, sum, why))
         return why->status;
     rep->balanced = true;
     return 0;
@@ -79,6 +79,7 @@ int step_advance(struct packing *p, struct contacts *s, struct neighbours *near,
     struct contacts before = { 0 };
     if (o->warm) before = *s, *s = (struct contacts){ 0 };
     double cpu = report_seconds(CLOCK_CPU);
+    packing_tidy(p, &before);
     int e = detect_contacts(s, p, o->gap, near, why);
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
     if (!e && o->warm && contacts_match(s, &before))
