@@ -85,6 +85,36 @@ static void show_document(const struct frame *f, int64_t frames)
     json_line(j);
 }
 
+static json_t *three(const vec3 e[3])
+{
+    json_t *list = json_array();
+    for (int k = 0; k < 3; k++) json_array_append_new(list, json_vec(e[k]));
+    return list;
+}
+
+/*
+ * Pa, in the plane N/m: the mean stress by the contacts, compression positive: the sum of
+ * force x branch over the cell's volume, the branch from centre to centre.
+ */
+static json_t *stress(const struct packing *p, const struct contacts *s)
+{
+    const vec3 *e = p->cell.edge;
+    double volume = fabs(v3_dot(e[0], v3_cross(e[1], e[2])));
+    if (p->dim == 2) volume /= fabs(e[2].z);
+    vec3 sum[3] = { { 0, 0, 0 } };
+    for (int64_t i = 0; i < s->n; i++) {
+        const struct contact *c = &s->c[i];
+        const double *r = s->found[i].r;
+        if (c->a < 0) continue;
+        vec3 f = v3_axpy(v3_axpy(v3_scale(r[0], c->n), r[1], c->t1), r[2], contact_t2(c));
+        double length = p->radius[c->a] + p->radius[c->b] + c->gap;
+        vec3 branch = v3_scale(length / (p->dt * volume), c->n);
+        sum[0] = v3_axpy(sum[0], f.x, branch), sum[1] = v3_axpy(sum[1], f.y, branch);
+        sum[2] = v3_axpy(sum[2], f.z, branch);
+    }
+    return three(sum);
+}
+
 static void show_moment(const struct frame *f)
 {
     if (f->foreign && !f->reported) return;
@@ -105,6 +135,12 @@ static void show_moment(const struct frame *f)
         json_object_set_new(j, "kinetic_energy", json_number(kinetic));
         json_object_set_new(j, "potential_energy", json_number(potential));
         json_object_set_new(j, "max_speed", json_number(fastest));
+    }
+    if (f->packed && cell_repeats(&f->packing.cell)) {
+        json_object_set_new(j, "edges", three(f->packing.cell.edge));
+        json_object_set_new(j, "rates", three(f->packing.cell.rate));
+        if (f->detected && f->contacts.found)
+            json_object_set_new(j, "stress", stress(&f->packing, &f->contacts));
     }
     if (f->reported) {
         json_t *r = json_report(&f->report);
@@ -129,6 +165,9 @@ static void show_particles(const struct packing *p)
         json_object_set_new(j, "v", json_vec(p->v[i]));
         json_object_set_new(j, "w", json_vec(p->w[i]));
         json_object_set_new(j, "q", json_numbers(q, 4));
+        const int32_t *image = p->image ? p->image[i] : NULL;
+        if (image)
+            json_object_set_new(j, "image", json_pack("[i,i,i]", image[0], image[1], image[2]));
         json_line(j);
     }
 }
@@ -171,6 +210,9 @@ static void show_contacts(const struct frame *f)
         json_t *j = json_object();
         json_object_set_new(j, "step", json_integer(f->packing.step));
         json_object_set_new(j, "body", json_pack("[i,i]", c->a, c->b));
+        if (cell_repeats(&f->packing.cell))
+            json_object_set_new(j, "shift",
+                                json_pack("[i,i,i]", c->shift[0], c->shift[1], c->shift[2]));
         json_object_set_new(j, "point", json_vec(c->x));
         json_object_set_new(j, "n", json_vec(c->n));
         json_object_set_new(j, "t1", json_vec(c->t1));

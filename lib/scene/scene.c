@@ -12,7 +12,8 @@ void scene_free(struct scene *s)
     *s = (struct scene){ 0 };
 }
 
-/* In x (and y) the cells fill the box; along the last axis they have the least edge. */
+/* In x (and y) the cells fill the box; along the last axis they have the least edge, unless the box
+   is the cell that repeats. */
 struct scene_lattice scene_lattice(const struct scene_bodies *b, int dim)
 {
     struct scene_lattice l = { .cells = { 1, 1, 1 } };
@@ -20,7 +21,7 @@ struct scene_lattice scene_lattice(const struct scene_bodies *b, int dim)
     for (int i = 0; i < dim; i++) {
         double width = b->box.hi[i] - b->box.lo[i];
         l.cells[i] = floor(width / least * (1 + 1e-12)); // 6.3 mm holds six cells of 1.05 mm
-        l.edge[i] = i < dim - 1 ? width / l.cells[i] : least;
+        l.edge[i] = i < dim - 1 || b->in_cell ? width / l.cells[i] : least;
     }
     return l;
 }

@@ -31,7 +31,8 @@
  *   density [its kind's] or mass, kg; fixed true | false [false]: moves with v and w whatever
  *   happens, so that its mass does not matter
  * and for a lattice
- *   box      [that of the first wall that is a BOX]    may be open only above (the last axis)
+ *   box      [the cell, in rows along its edges; else that of the first wall that is a BOX]
+ *                                                      may be open only above (the last axis)
  *   spacing  number >= 1 [1.05]        least edge of a cell, in largest diameters
  *   jitter   0..1 [1]                  share of the free room in its cell that is used; no overlap
  *   thermal  number >= 0 [0]           m/s, standard deviation added to each component of v
@@ -103,6 +104,7 @@ struct scene_bodies {
     char *file;    /* SCENE_TABLE */
     struct scene_size size;
     struct scene_box box;
+    bool in_cell;                    /* box is the cell's: heights above its faces, from 0 */
     double spacing, jitter, thermal; /* of a lattice, as above */
     vec3 v, w;                       /* m/s, rad/s */
     double density, mass;            /* kg/m^3 or kg/m^2; kg a body, 0: from the density */

@@ -83,7 +83,7 @@ static int check_lattice(const jnode *o, int dim, const struct scene_bodies *b)
 static int read_lattice(jnode o, const struct scene *s, bool boxed, struct scene_bodies *b)
 {
     if (json_node_only(o, "count radius box spacing jitter thermal v w kind density mass fixed") ||
-        json_node_need(&o, boxed ? "radius" : "radius box") ||
+        json_node_need(&o, boxed || s->cell.given ? "radius" : "radius box") ||
         json_node_integer(json_node_key(&o, "count"), 0, INT32_MAX, &b->count) ||
         read_size(json_node_key(&o, "radius"), &b->size) ||
         json_node_number(json_node_key(&o, "spacing"), J_ANY, &b->spacing) ||
@@ -94,6 +94,11 @@ static int read_lattice(jnode o, const struct scene *s, bool boxed, struct scene
         return json_node_fault(json_node_key(&o, "spacing"), "must be at least 1");
     jnode box = json_node_key(&o, "box");
     if (box.json && scene_read_box(box, s->dim, &b->box)) return 1;
+    if (!box.json && s->cell.given) {
+        b->in_cell = true;
+        cell_heights(&s->cell.cell, b->box.hi);
+        for (int k = 0; k < 3; k++) b->box.lo[k] = 0;
+    }
     return check_lattice(&o, s->dim, b);
 }
 

@@ -145,9 +145,10 @@ static double draw_radius(const struct scene_size *z, gsl_rng *rng)
     return r;
 }
 
-/* The middle of cell k of the lattice, moved at random as far as the body stays in the cell. */
-static vec3 draw_place(const struct scene_bodies *b, const struct scene_lattice *l, int dim,
-                       int64_t k, double r, gsl_rng *rng)
+/* The middle of cell k of the lattice, moved at random as far as the body stays in the cell; in the
+   cell that repeats (else NULL) along its edges. */
+static vec3 draw_place(const struct scene_bodies *b, const struct scene_lattice *l,
+                       const struct cell *c, int dim, int64_t k, double r, gsl_rng *rng)
 {
     double x[3] = { 0 }, rest = (double)k;
     for (int i = 0; i < dim; i++) {
@@ -158,7 +159,10 @@ static vec3 draw_place(const struct scene_bodies *b, const struct scene_lattice 
         x[i] = b->box.lo[i] + (cell + 0.5) * l->edge[i] + slack * (2 * gsl_rng_uniform(rng) - 1);
         rest = above;
     }
-    return v3(x[0], x[1], x[2]);
+    if (!c) return v3(x[0], x[1], x[2]);
+    vec3 place = c->origin;
+    for (int i = 0; i < dim; i++) place = v3_axpy(place, x[i] / b->box.hi[i], c->edge[i]);
+    return place;
 }
 
 static vec3 draw_velocity(double sd, int dim, gsl_rng *rng)
@@ -174,7 +178,7 @@ static int fill_lattice(struct packing *p, int64_t first, const struct scene_bod
     struct scene_lattice l = scene_lattice(b, p->dim);
     for (int64_t k = 0; k < b->count; k++) {
         double r = draw_radius(&b->size, rng);
-        vec3 x = draw_place(b, &l, p->dim, k, r, rng);
+        vec3 x = draw_place(b, &l, b->in_cell ? &p->cell : NULL, p->dim, k, r, rng);
         if (set_body(p, first + k, b, x, r, why)) return why->status;
         if (b->thermal > 0) p->v[first + k] = v3_add(b->v, draw_velocity(b->thermal, p->dim, rng));
     }
