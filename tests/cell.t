@@ -144,7 +144,7 @@ fi
 
 # ---- pictures ----
 
-nsd-view --svg --bare -o "$tmp/shown.svg" "$tmp/dense.h5"
+nsd-view --svg --bare -o "$tmp/shown.svg" "$tmp/dense.h5" 2>/dev/null
 discs=$(grep -c '<path.*fill-rule' "$tmp/shown.svg")
 ok "discs that the border cuts are drawn on both sides ($discs paths)" test "$discs" -gt $((2 * 144 + 40))
 done_testing
