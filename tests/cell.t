@@ -93,6 +93,9 @@ jq -c '.walls = [{ point: [0, 0], normal: [0, 1] }] | .cell.repeats = [true, tru
 refuses 65 'a wall that the cell repeats across is refused' nsd-gen "$tmp/bad.json"
 jq -c '.walls = [{ point: [0, 0], normal: [0, 1] }] | .cell.repeats = [true, false]' scenes/shear.json >"$tmp/bad.json"
 refuses 65 'a wall along edges that move is refused' nsd-gen "$tmp/bad.json"
+jq -c '.walls = [{ point: [0, 0], normal: [0, 1] }] | .cell.repeats = [true, false] | .cell.affine = false |
+    .cell.gradient = [{ t: 5, L: [[0, 0], [0, 0]] }, { t: 6, L: [[1, 0], [0, 0]] }]' scenes/shear.json >"$tmp/bad.json"
+refuses 65 'and along edges that will' nsd-gen "$tmp/bad.json"
 jq -c 'del(.cell.gradient) | .walls = [{ point: [0, 0], normal: [0, 1] }] | .gravity = [1, -9] |
     .cell.repeats = [true, false]' scenes/shear.json >"$tmp/slope.json"
 ok 'a slope that repeats downhill is a scene' nsd-gen "$tmp/slope.json"
@@ -123,6 +126,7 @@ with h5py.File('$tmp/lie.h5', 'r+') as f:
     lie 'rates that are not finite' 'box["rate/value"][0, 0, 0] = np.inf'
     lie 'an origin of another shape' 'del box["origin"]; box["origin"] = np.zeros(2)'
     lie 'an origin that is not finite' 'box["origin"][1] = np.nan'
+    lie 'images out of range' 'f["particles/all/image/value"][0, 3, 0] = 2**31 - 1'
     lie 'images of another shape' \
         'del f["particles/all/image"]; f["particles/all/image/value"] = np.zeros((1, 3, 3), "i4")'
     lie 'moments that do not increase' 'f["nsd/cell/time"][2] = 0'
@@ -144,7 +148,7 @@ fi
 
 # ---- pictures ----
 
-nsd-view --svg --bare -o "$tmp/shown.svg" "$tmp/dense.h5"
+nsd-view --svg --bare -o "$tmp/shown.svg" "$tmp/dense.h5" 2>/dev/null
 discs=$(grep -c '<path.*fill-rule' "$tmp/shown.svg")
 ok "discs that the border cuts are drawn on both sides ($discs paths)" test "$discs" -gt $((2 * 144 + 40))
 done_testing

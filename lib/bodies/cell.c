@@ -125,6 +125,22 @@ bool cell_yields(const struct cell *c)
     return false;
 }
 
+static vec3 times(double L[3][3], vec3 x)
+{
+    return v3(L[0][0] * x.x + L[0][1] * x.y + L[0][2] * x.z,
+              L[1][0] * x.x + L[1][1] * x.y + L[1][2] * x.z,
+              L[2][0] * x.x + L[2][1] * x.y + L[2][2] * x.z);
+}
+
+bool cell_moves(const struct cell *c, int k)
+{
+    bool moves = v3_norm(c->rate[k]) > 0;
+    for (int i = 0; i < 3; i++) moves = moves || c->mass[k][i] > 0;
+    for (int32_t m = 0; m < c->gradients; m++)
+        moves = moves || v3_norm(times(c->gradient[m].L, c->edge[k])) > 0;
+    return moves;
+}
+
 void cell_gradient_at(const struct cell *c, double t, double L[3][3])
 {
     const struct cell_gradient *g = c->gradient;
@@ -138,13 +154,6 @@ void cell_gradient_at(const struct cell *c, double t, double L[3][3])
         double a = one->L[i / 3][i % 3], b = other->L[i / 3][i % 3];
         L[i / 3][i % 3] = a + share * (b - a);
     }
-}
-
-static vec3 times(double L[3][3], vec3 x)
-{
-    return v3(L[0][0] * x.x + L[0][1] * x.y + L[0][2] * x.z,
-              L[1][0] * x.x + L[1][1] * x.y + L[1][2] * x.z,
-              L[2][0] * x.x + L[2][1] * x.y + L[2][2] * x.z);
 }
 
 /* out[k] = the e with (1 - s L) e = edge[k] */

@@ -83,8 +83,10 @@ void cell_inverse(const vec3 edge[3], vec3 inverse[3]);
 /* m, in the plane too: distances of opposite faces */
 void cell_heights(const struct cell *c, double height[3]);
 
-/* Does component i of any edge yield? */
+/* Does any component of an edge yield? */
 bool cell_yields(const struct cell *c);
+/* Does edge k move, or may it at some time? */
+bool cell_moves(const struct cell *c, int k);
 /* The velocity gradient at time t (s) */
 void cell_gradient_at(const struct cell *c, double t, double L[3][3]);
 /* rate = those of the gradient at time t (s); of what yields 0 */

@@ -415,7 +415,7 @@ static bool list_serves_cell(const struct neighbours *s, const struct packing *p
         vec3 d = v3_sub(v3_sub(x[i], o), deform(f, v3_sub(s->listed[i], o)));
         for (int k = 0; k < 3; k++)
             if (p->image[i][k] != s->image[i][k])
-                d = v3_axpy(d, p->image[i][k] - s->image[i][k], edge[k]);
+                d = v3_axpy(d, (double)p->image[i][k] - s->image[i][k], edge[k]);
         if (!(v3_dot(d, d) <= most * most)) return false;
     }
     return true;

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { IMAGES_MOST = 1 << 30 }; /* so that sums and differences of images are numbers too */
+
 static void *array(int64_t n, size_t size)
 {
     return calloc(n > 0 ? (size_t)n : 1, size);
@@ -165,12 +167,16 @@ static int check_cell(const struct packing *p, struct why *why)
     if (cell_check(&p->cell, p->dim, 2 * most, why)) return why->status;
     if (cell_repeats(&p->cell) != (p->image != NULL))
         return why_set(why, EX_DATAERR, "images without a cell that repeats, or the reverse");
+    for (int64_t i = 0; p->image && i < p->n; i++)
+        for (int k = 0; k < 3; k++)
+            if (p->image[i][k] < -IMAGES_MOST || p->image[i][k] > IMAGES_MOST)
+                return why_set(why, EX_DATAERR, "body %lld: image is out of range", (long long)i);
     for (int32_t i = 0; cell_repeats(&p->cell) && i < p->walls; i++)
         for (int k = 0; k < 3; k++) {
-            const vec3 e = p->cell.edge[k], r = p->cell.rate[k];
+            const vec3 e = p->cell.edge[k];
             if (p->cell.repeats[k] && !(fabs(v3_dot(e, p->wall[i].n)) <= 1e-9 * v3_norm(e)))
                 return why_set(why, EX_DATAERR, "wall %d: the cell repeats across it", i);
-            if (p->cell.repeats[k] && v3_norm(r) > 0)
+            if (p->cell.repeats[k] && cell_moves(&p->cell, k))
                 return why_set(why, EX_DATAERR,
                                "wall %d: the edges along it move, so that its bodies' images "
                                "would meet it at other speeds",

@@ -294,6 +294,17 @@ static int compare_shifts(const int8_t a[3], const int8_t b[3])
     return 0;
 }
 
+static int check_shifts(const struct contacts *s, const struct cell *cell, struct why *why)
+{
+    for (int64_t i = 0; i < s->n; i++)
+        for (int k = 0; k < 3; k++)
+            if (s->c[i].shift[k] && !cell->repeats[k])
+                return why_set(why, EX_DATAERR,
+                               "contact %lld: shift along edge %d, which does not repeat",
+                               (long long)i, k);
+    return 0;
+}
+
 /* What contacts_check leaves: they are sorted, each pair once, and their states are states. */
 static int check_order(const struct contacts *s, struct why *why)
 {
@@ -364,7 +375,8 @@ static int read_contacts(struct frame_read *r, int64_t k, struct frame *f, struc
         (solved && table_read_columns(r->source, "/contacts", "", layout_found, first, s->n,
                                       s->found, sizeof *s->found, why)))
         return why->status;
-    if (contacts_check(s, f->packing.n, f->packing.walls, why) || check_order(s, why))
+    if (contacts_check(s, f->packing.n, f->packing.walls, why) || check_order(s, why) ||
+        check_shifts(s, &f->packing.cell, why))
         return why->status;
     int moved;
     if (source_attribute(r->source, "/contacts", "moved", COLUMN_I32, -1, &moved, why))
