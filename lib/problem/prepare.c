@@ -26,8 +26,8 @@ static struct delassus *assemble(const struct problem *bodies, const struct cont
 {
     struct assembly A = { 0 };
     struct delassus *W = calloc(1, sizeof *W);
-    if (!W) why_set(why, EX_SOFTWARE, "no memory for the contact problem");
-    int e = W ? assembly_init(&A, bodies, why) : why->status;
+    if (!W) return why_set(why, EX_SOFTWARE, "no memory for the contact problem"), NULL;
+    int e = assembly_init(&A, bodies, why);
     if (!e) e = assembly_blocks(&A, W, why);
     assembly_free(&A);
     if (e) return free(W), NULL;
