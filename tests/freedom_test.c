@@ -495,8 +495,39 @@ static void test_untouched(void)
     contacts_free(&s), report_free(&rep);
 }
 
+/* What a document may say of a load and must not */
+static void test_checks(void)
+{
+    static const struct {
+        const char *what;
+        struct load load;
+    } bad[] = {
+        { "way", { .way = 3, .axis = { 0, 0, 1 }, .mass = 1 } },
+        { "negative way", { .way = -1, .axis = { 0, 0, 1 }, .mass = 1 } },
+        { "axis", { .way = LOAD_GLIDES, .axis = { 0, 0, 0.9 }, .mass = 1 } },
+        { "mass", { .way = LOAD_GLIDES, .axis = { 0, 0, 1 } } },
+        { "infinite mass", { .way = LOAD_GLIDES, .axis = { 0, 0, 1 }, .mass = INFINITY } },
+        { "force", { .way = LOAD_GLIDES, .axis = { 0, 0, 1 }, .mass = 1, .force = NAN } },
+        { "speed", { .way = LOAD_GLIDES, .axis = { 0, 0, 1 }, .mass = 1, .speed = NAN } },
+        { "travel", { .way = LOAD_GLIDES, .axis = { 0, 0, 1 }, .mass = 1, .travel = INFINITY } },
+        { "tilt", { .way = LOAD_TURNS, .axis = { 1, 0, 0 }, .mass = 1 } },
+    };
+    struct packing p;
+    stack(&p, 3, 1);
+    p.wall[1].load = glides(v3(0, 0, 1), 1, -1);
+    struct why why = { 0 };
+    ok(!packing_check(&p, &why), "a good load is accepted");
+    for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
+        why = (struct why){ 0 };
+        p.wall[1].load = bad[k].load;
+        ok(packing_check(&p, &why) == EX_DATAERR, "a bad %s is refused: %s", bad[k].what, why.text);
+    }
+    packing_free(&p);
+}
+
 int main(void)
 {
+    test_checks();
     test_free();
     for (int g = 0; solvers[g]; g++) test_static(3, 1, 2, 7, true, solvers[g], &local_exact);
     for (int m = 0; m < METHOD_COUNT; m++) test_static(3, 1, 2, 7, true, &solver_nlgs, methods[m]);
