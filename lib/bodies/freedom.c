@@ -99,3 +99,11 @@ void freedom_move(const struct freedom *f, struct packing *p, double change, boo
     else
         wall_move(p, &p->wall[f->boundary].load, change, back);
 }
+
+void freedom_displace(const struct freedom *f, struct packing *p, double way)
+{
+    if (f->boundary < 0)
+        p->cell.edge[f->edge] = v3_axpy(p->cell.edge[f->edge], way, f->axis);
+    else
+        p->wall[f->boundary].load.travel += way;
+}

@@ -52,5 +52,7 @@ vec3 freedom_direction(const struct freedom *f, const struct contact *c);
  * dt rate, is the motion of the cell. back: the inverse.
  */
 void freedom_move(const struct freedom *f, struct packing *p, double change, bool back);
+/* What it moves is displaced by this way (m) along its axis, without a velocity. */
+void freedom_displace(const struct freedom *f, struct packing *p, double way);
 
 #endif
