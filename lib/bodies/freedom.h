@@ -8,9 +8,10 @@
  *
  *     s+ = s + (dt f + J^T r)/m.
  *
- * They are gathered anew for each step, from the loads of the packing [bodies/load.h] and the masses
- * and the stress of its cell [bodies/cell.h]: on component i of edge k acts - (stress A_k)_i, where
- * A_k, the face that the other two edges span, has its normal to the side of the edge.
+ * They are gathered anew for each step, from the loads of the packing [bodies/load.h] and the
+ * masses and the stress of its cell [bodies/cell.h]: on component i of edge k acts - (stress
+ * A_k)_i, where A_k, the face that the other two edges span, has its normal to the side of the
+ * edge.
  */
 #ifndef NSD_FREEDOM_H
 #define NSD_FREEDOM_H
@@ -47,9 +48,9 @@ void freedoms_free(struct freedoms *list);
 vec3 freedom_direction(const struct freedom *f, const struct contact *c);
 
 /*
- * The speed changes where the contacts act, at the predicted position. A boundary also makes its way
- * along or about the axis, dt s + theta dt change, while an edge gets theta dt change alone: the rest,
- * dt rate, is the motion of the cell. back: the inverse.
+ * The speed changes where the contacts act, at the predicted position. A boundary also makes its
+ * way along or about the axis, dt s + theta dt change, while an edge gets theta dt change alone:
+ * the rest, dt rate, is the motion of the cell. back: the inverse.
  */
 void freedom_move(const struct freedom *f, struct packing *p, double change, bool back);
 /* What it moves is displaced by this way (m) along its axis, without a velocity. */

@@ -2,9 +2,9 @@
  * bodies/kinematics.h: what the motion of two bodies means at their contact.
  *
  * The lever arms lie along the normal. The paper's reach to the point of contact as it is
- * predicted, midway in the overlap. An impact finds an overlap of up to v dt/2, and the arms shorter
- * by that. Against a wall the true arm is the radius. Between two bodies half the overlap is taken
- * off each: only la + lb = the distance of the centres keeps the angular momentum.
+ * predicted, midway in the overlap. An impact finds an overlap of up to v dt/2, and the arms
+ * shorter by that. Against a wall the true arm is the radius. Between two bodies half the overlap
+ * is taken off each: only la + lb = the distance of the centres keeps the angular momentum.
  */
 #ifndef NSD_KINEMATICS_H
 #define NSD_KINEMATICS_H
@@ -12,8 +12,8 @@
 #include "bodies/contact.h"
 #include "bodies/packing.h"
 
-/* la, lb (m), with the bodies `ahead` (s) from where they are when the contact acts; edge: those of the
-   cell there, m */
+/* la, lb (m), with the bodies `ahead` (s) from where they are when the contact acts, and the
+   edges of the cell (m) there */
 static inline void arms_of(const struct packing *p, const struct contact *c, double ahead,
                            const vec3 edge[3], double *la, double *lb)
 {

@@ -1,6 +1,6 @@
 /*
- * bodies/load.h: what a boundary yields to that is free along or about one axis: a force, as a piston
- * at constant pressure, or a torque.
+ * bodies/load.h: what a boundary yields to that is free along or about one axis: a force, as a
+ * piston at constant pressure, or a torque.
  *
  * How it moves besides is prescribed: the load's speed adds to the boundary's own velocity.
  */

@@ -63,8 +63,8 @@ struct packing {
     char *scene; /* the JSON it was built from, or NULL */
 };
 
-/* n bodies (orientation 1, id = index), no wall and one kind "0"; theta = 1/2; all else is zero, dt
-   too. Returns 0 or EX_SOFTWARE. */
+/* n bodies (orientation 1, id = index), no wall and one kind "0"; theta = 1/2; all else is zero,
+   dt too. Returns 0 or EX_SOFTWARE. */
 int packing_init(struct packing *p, int dim, int64_t n, struct why *why);
 void packing_free(struct packing *p);
 
@@ -104,7 +104,8 @@ static inline vec3 wall_at(const struct packing *p, const struct wall *w, double
     return v3_axpy(x, w->load.travel + (t - p->t) * w->load.speed, w->load.axis);
 }
 
-/* m/s: of the wall's material at point x (m): what is prescribed, and with what its load makes of it */
+/* m/s: of the wall's material at point x (m): what is prescribed, and with what its load makes of
+   it */
 static inline vec3 wall_held(const struct wall *w, vec3 x)
 {
     (void)x;

@@ -12,7 +12,8 @@ enum {
 
 /* Of the smaller radius: contacts keep an overlap, so that rounding does not open them */
 #define SLOP 1e-6
-/* Of the smaller radius: what a contact is moved apart in a step, at most; normals turn otherwise */
+/* Of the smaller radius: what a contact is moved apart in a step, at most; normals turn
+   otherwise */
 #define MOST 0.1
 /* Of the slop: changes that are not worth another sweep */
 #define ENOUGH 0.01
@@ -52,7 +53,8 @@ struct displacements {
     double *z; /* [freedoms.n] m */
 };
 
-/* How much freedom k opens a contact, per m along its axis; one that turns does not, to first order */
+/* How much freedom k opens a contact, per m along its axis; one that turns does not, to first
+   order */
 static double opens(const struct displacements *o, int32_t k, const struct contact *c)
 {
     const struct freedom *f = &o->freedoms.f[k];

@@ -149,7 +149,8 @@ static void add_shared(const struct couplings *y, int64_t c, int64_t b, double B
         }
 }
 
-/* B = W_cb, the sum of J_c M^-1 J_b^T over the movable bodies and the freedoms that c and b share */
+/* B = W_cb, the sum of J_c M^-1 J_b^T over the movable bodies and the freedoms that c and b
+   share */
 static void assembly_block(const struct assembly *A, int64_t c, int64_t b, double B[3][3])
 {
     memset(B, 0, 9 * sizeof **B);
@@ -185,8 +186,8 @@ static struct queue queue_of(const struct lists *lists, int64_t owner, const str
                            of };
 }
 
-/* near[] = the contacts that share a movable body or a freedom with c, c too, ascending; returns how
-   many. */
+/* near[] = the contacts that share a movable body or a freedom with c, c too, ascending; returns
+   how many. */
 static int64_t assembly_neighbours(const struct assembly *A, int64_t c, int64_t *near)
 {
     const struct couplings *y = A->p->coupling;
@@ -342,8 +343,8 @@ static void fill_H(const struct assembly *A, const int32_t *first, struct stored
     }
 }
 
-/* first[body], -1 for those that do not move or have no contact, and after these first[p->bodies + f]
-   of freedom f; returns the number of unknowns. */
+/* first[body], -1 for those that do not move or have no contact, and after these first[p->bodies
+   + f] of freedom f; returns the number of unknowns. */
 static int64_t assembly_unknowns(const struct assembly *A, int32_t *first)
 {
     int64_t nv = 0, bodies = A->p->bodies;

@@ -3,8 +3,8 @@
  *
  *     u_c = ... + J_c s
  *
- * s: the freedoms' speeds. All contacts of one freedom depend on each other, so the sweep over bodies
- * does not do for them: there the speeds are prescribed, those before the step, and
+ * s: the freedoms' speeds. All contacts of one freedom depend on each other, so the sweep over
+ * bodies does not do for them: there the speeds are prescribed, those before the step, and
  * problem/assembly.h makes a W of it in which they are unknowns.
  */
 #ifndef NSD_COUPLING_H

@@ -8,7 +8,8 @@
 
 #define GB 1e9 /* bytes */
 
-/* Whether the blocks that freedoms couple fit into the machine, W and its rows in the sweep's order */
+/* Whether the blocks that freedoms couple fit into the machine, W and its rows in the sweep's
+   order */
 static int check_memory(const struct problem *p, struct why *why)
 {
     double blocks = couplings_pairs(p->coupling), size = 8.0 * p->d * p->d + 4;

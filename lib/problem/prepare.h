@@ -6,9 +6,10 @@
  *
  *     D u~ = W r + q,   W = H^T M^-1 H with a row of H for each freedom.
  *
- * All k contacts of a freedom depend on each other: W has k^2 blocks, and the sweep solves them one
- * after the other. u in the slots is then D u~, (1 + e) times what the contacts are told, and the
- * errors are those of D u~; e = 0 makes no difference. Any other packing has the form of its bodies.
+ * All k contacts of a freedom depend on each other: W has k^2 blocks, and the sweep solves them
+ * one after the other. u in the slots is then D u~, (1 + e) times what the contacts are told, and
+ * the errors are those of D u~; e = 0 makes no difference. Any other packing has the form of its
+ * bodies.
  */
 #ifndef NSD_PREPARE_H
 #define NSD_PREPARE_H

@@ -59,11 +59,11 @@ struct problem {
 };
 
 /*
- * The problem of a packing's contacts, in bundles of bodies: freedoms beyond theirs keep their speed
- * here [problem/prepare.h has the problem in which they do not]. r from the contacts where they are solved, else 0, and the
- * bodies at v_free + M^-1 P r. rho = alpha m_red where alpha > 0, else
- * rho_factor/lambda_max(W~_cc). Borrows pack. Returns 0, EX_SOFTWARE, or EX_DATAERR where there are
- * too many bodies, with nothing to free.
+ * The problem of a packing's contacts, in bundles of bodies: freedoms beyond theirs keep their
+ * speed here [problem/prepare.h has the problem in which they do not]. r from the contacts where
+ * they are solved, else 0, and the bodies at v_free + M^-1 P r. rho = alpha m_red where alpha >
+ * 0, else rho_factor/lambda_max(W~_cc). Borrows pack. Returns 0, EX_SOFTWARE, or EX_DATAERR where
+ * there are too many bodies, with nothing to free.
  */
 int problem_prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
                     double alpha, double rho_factor, enum order order, struct why *why);
@@ -72,8 +72,8 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
                              enum order order, struct why *why);
 void problem_free(struct problem *p);
 
-/* Sets the bodies of a packing to v_free, their velocities before the step plus dt g, and what the flow
-   of the cell's edges gains. */
+/* Sets the bodies of a packing to v_free, their velocities before the step plus dt g, and what
+   the flow of the cell's edges gains. */
 void problem_set_free_motion(struct problem *p);
 
 /* How many of these threads are to share a sweep: all where the groups are large enough, else two
