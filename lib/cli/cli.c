@@ -1,5 +1,4 @@
 #include "cli/cli.h"
-#include "cli/completion.h"
 
 #include "io/reader.h"
 
@@ -212,17 +211,8 @@ static double gigabytes;
 static const struct cli_option unpack = { CLI_REAL, 0,          "unpack",      &gigabytes,
                                           "GB",     .max = 1e6, .silent = true };
 
-/* --completion SHELL, for make install: not among the options, whose abbreviations it would change */
-static void completion(const char *shell)
-{
-    if (!completion_print(shell)) die_usage("--completion: bash or zsh");
-    finish_stdout();
-    exit(0);
-}
-
 int cli_parse(int argc, char **argv)
 {
-    if (argc == 3 && !strcmp(argv[1], "--completion")) completion(argv[2]);
     struct option lng[OPTIONS + OF_ALL + 1] = { { "help", 0, NULL, HELP },
                                                 { "version", 0, NULL, VERSION },
                                                 { "unpack", 1, NULL, UNPACK } };

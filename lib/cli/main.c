@@ -1,11 +1,13 @@
 /* cli/main.c: the only main(), of every tool; the tool itself is in tool_main(). */
 #include "cli/cli.h"
+#include "cli/completion.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <jansson.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 /*
@@ -28,11 +30,20 @@ static void *json_memory(size_t size)
     return memory;
 }
 
+/* --completion SHELL, for make install: not among the options, whose abbreviations it would change */
+static void completion(const char *shell)
+{
+    if (!completion_print(shell)) die_usage("--completion: bash or zsh");
+    finish_stdout();
+    exit(0);
+}
+
 int main(int argc, char **argv)
 {
     guard_standard_descriptors();
     signal(SIGPIPE, SIG_DFL);
     json_set_alloc_funcs(json_memory, free);
+    if (argc == 3 && !strcmp(argv[1], "--completion")) completion(argv[2]);
     int first = cli_parse(argc, argv);
     return tool_main(argc - first, argv + first);
 }
