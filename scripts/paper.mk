@@ -7,7 +7,8 @@
 #   paper     the paper's own: alpha 0.6 (sbp, sal) or 1 (ebp, eal), the plain Newton, its error absolute
 #   plain-A   table 4: alpha A, the plain Newton
 #   line-A    the same with nsd's line search
-# Always Gauss-Seidel, the paper's criterion, its tolerance and its limit of sweeps, whatever the tools' defaults.
+# Always Gauss-Seidel, the paper's criterion, its tolerance and its limit of sweeps, and nothing done about overlap,
+# whatever the tools' defaults.
 #
 #   runs/*.h5, *.log   the last two frames of a run; a line for each of its solves
 #   runs.json          a line for each run: what the tables are made from
@@ -49,7 +50,7 @@ n_example3 := $(if $(QUICK),600,1000)
 n_alpha    := 500
 n_rest     := $(if $(QUICK),2000,6000)
 cap        := $(if $(QUICK),500,5000)
-nlgs       := --global nlgs --criterion glob
+nlgs       := --global nlgs --criterion glob --overlap keep
 limits_example1 := $(nlgs) --eps 1e-10 --max-sweeps 5000
 limits_example2 := $(nlgs) --eps 1e-12 --max-sweeps $(cap)
 limits_example3 := $(nlgs) --eps 1e-12 --max-sweeps $(cap)

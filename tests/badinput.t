@@ -233,6 +233,7 @@ wrong_packings=(
     "f[P + 'orientation/value'][0, 0] = [1, 1, 0, 0]" "f[P + 'species'][0] = 7" "f[P + 'species'][0] = -1"
     "f['/nsd'].attrs['dim'] = 4" "f['/nsd'].attrs['dt'] = -1." "f['/nsd'].attrs['dt'] = nan"
     "f['/nsd'].attrs['theta'] = 2." "f['/nsd'].attrs['gravity'] = [0., 0., nan]" "del f['/nsd'].attrs['dt']"
+    "f['/nsd'].attrs['overlap'] = 'magic'" "f['/nsd'].attrs['overlap'] = 3"
     "f['/nsd'].attrs['dt'] = 'soon'" "f['/nsd/material/mu'][0, 0] = -0.1" "f['/nsd/material/mu'][0, 0] = nan"
     "f['/walls/plane/normal'][0] = [0, 0, 0]" "f['/walls/plane/point'][0] = [nan, 0, 0]"
     "new(P + 'radius', np.ones(3))" "new(P + 'radius', np.ones((4, 1)))" "new(P + 'radius', b'four')"
@@ -429,6 +430,7 @@ for tool in nsd-cat nsd-info; do
     done
     refuses 64 "$tool --last --steps 1" "$tool" --last --steps 1 "$tmp/packing.h5"
 done
+refuses 64 "nsd-solve --overlap that wants other contacts" nsd-solve --overlap gap "$tmp/contacts.h5"
 refuses 64 "nsd-solve --theta other than the contacts'" nsd-solve --theta 0.9 "$tmp/contacts.h5"
 
 

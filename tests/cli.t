@@ -42,6 +42,7 @@ done <<'END'
 nsd-gen --dim \[3\]
 nsd-detect --gap \[0\]
 nsd-detect --theta 0\.5\]
+nsd-detect --overlap keep|gap|push|project|gap-project.*project\]
 nsd-detect --fclib local|global
 nsd-solve --method auto|sbp|.*\[auto\]
 nsd-solve --global auto|nlgs|.*\[nlgs with -m

@@ -108,6 +108,12 @@ claim()
         bodies rough.h5 300 && settings rough.h5 '.material | all(.mu == 0.5)' && frames rough.h5 ".[-1] == $2" ;;
     *'.mu = 0.5'*'> rough.h5') bodies rough.h5 500 && settings rough.h5 '.material | all(.mu == 0.5)' ;;
     *'{file: "balls.txt"}'*'> table.h5') bodies table.h5 300 ;;
+    *'nsd-gen scenes/pour.json'*'> poured.h5') frames poured.h5 ".[-1] == $2" ;;
+    *'poured.h5'*'.removed[0].bodies'*) output '.[0] > 100' ;;
+    *'nsd-gen scenes/sieve.json'*'> settled.h5') frames settled.h5 ".[-1] == $2" ;;
+    *'nsd-info --scene '*'nsd-step'*'> tilted.h5') settings tilted.h5 '.bodies > 0 and .gravity[0] == 2' && frames tilted.h5 ".[-1] == $2" ;;
+    *'nsd-info --scene '*'> tilted.h5') settings tilted.h5 '.bodies > 0 and .gravity[0] >= 2' ;;
+    *'nsd-step -n '*'--in-place out.h5') frames out.h5 "length > $2 and .[-1] == 1000 + $2" ;;
     # steps
     *'nsd-step'*'--every 100'*'> column.h5') touching column.h5 && converged column.h5 && frames column.h5 "length == $2 / 100" ;;
     *'nsd-step'*'--every 10 > fast.h5') touching fast.h5 && converged fast.h5 && frames fast.h5 "length == $2 / 10" ;;

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # What other programs read: nsd-export's files by VTK, ASE and MDAnalysis; documents by MDAnalysis and
 # h5py; scripts/nsd.py. The numbers are compared with the documents' own, and the forces with Newton's law.
-# shellcheck source=tests/tap.sh disable=SC2317 # functions called by name
+# shellcheck source=tests/tap.sh disable=SC2317,SC2016 # functions called by name; backquotes of Markdown
 . tests/tap.sh
 
 has() { /usr/bin/python3 -c "import $1" 2>/dev/null; }

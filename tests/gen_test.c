@@ -248,6 +248,88 @@ static void test_bells(void)
     }
 }
 
+/* The share of the mass below a diameter that a scene asks for: straight lines over log d. */
+static double sieve_passing(const double (*point)[2], int n, double d)
+{
+    for (int i = 1; i < n; i++)
+        if (d <= point[i][0])
+            return point[i - 1][1] + (point[i][1] - point[i - 1][1]) * log(d / point[i - 1][0]) /
+                                         log(point[i][0] / point[i - 1][0]);
+    return 1;
+}
+
+/* The sample's curve by mass keeps to `point` within Kolmogorov's bound, at which a true sample of
+   so many is refused once in a million; n_eff = (sum m)^2 / sum m^2 grains count as much. */
+static void check_sieve(const char *name, const char *size, int dim, const double (*point)[2],
+                        int n)
+{
+    struct packing p;
+    struct why why;
+    char text[900];
+    snprintf(text, sizeof text,
+             "{\"dt\": 1, \"dim\": %d, \"bodies\": [{\"count\": 400000, \"radius\": %s, \"box\":"
+             "{\"x\": [0, 10]%s}}]}",
+             dim, size, dim == 2 ? ", \"y\": [0, null]" : ", \"y\": [0, 10], \"z\": [0, null]");
+    if (!ok(!build(&p, text, NULL, &why), "%s %s", name, why.text)) return;
+    double sum = 0, square = 0, below = 0, worst = 0;
+    gsl_sort(p.radius, 1, (size_t)p.n);
+    for (int64_t i = 0; i < p.n; i++) {
+        double m = pow(p.radius[i], dim);
+        sum += m, square += m * m;
+    }
+    for (int64_t i = 0; i < p.n; i++) {
+        below += pow(p.radius[i], dim);
+        worst = fmax(worst, fabs(below / sum - sieve_passing(point, n, 2 * p.radius[i])));
+    }
+    double bound = sqrt(0.5 * log(2e6) * square) / sum;
+    if (!ok(worst < bound && bound < 0.05, "%s: the sample's curve is the one asked for", name))
+        diag("off by %g, at most %g", worst, bound);
+    ok(2 * p.radius[0] >= point[0][0] && 2 * p.radius[p.n - 1] <= point[n - 1][0],
+       "%s: within its ends", name);
+    packing_free(&p);
+}
+
+static void test_sieves(void)
+{
+    static const double sand[][2] = { { 1.5e-4, 0 },   { 2.5e-4, 0.12 }, { 4e-4, 0.45 },
+                                      { 6.3e-4, 0.8 }, { 1e-3, 0.97 },   { 1.4e-3, 1 } };
+    const char *text = "{\"sieve\": [[1.5e-4, 0], [2.5e-4, 0.12], [4e-4, 0.45], [6.3e-4, 0.8],"
+                       "[1e-3, 0.97], [1.4e-3, 1]]}";
+    check_sieve("a sieve curve", text, 3, sand, 6);
+    check_sieve("a sieve curve of discs", text, 2, sand, 6);
+    static const double gap[][2] = { { 1e-3, 0 }, { 2e-3, 0.5 }, { 4e-3, 0.5 }, { 5e-3, 1 } };
+    check_sieve("a curve with a gap",
+                "{\"sieve\": [[1e-3, 0], [2e-3, 0.5], [4e-3, 0.5], [5e-3, 1]]}", 3, gap, 4);
+    // as much mass at every radius is a density by number of r^-dim
+    double line[401][2];
+    for (int i = 0; i <= 400; i++) line[i][0] = 2e-4 * (1 + 0.0225 * i), line[i][1] = i / 400.0;
+    line[400][0] = 2e-3;
+    const double(*uniform)[2] = (const double(*)[2])line;
+    check_sieve("uniform by mass", "{\"uniform_by_mass\": [1e-4, 1e-3]}", 3, uniform, 401);
+    check_sieve("a power law", "{\"power\": {\"exponent\": 3, \"min\": 1e-4, \"max\": 1e-3}}", 3,
+                uniform, 401);
+    static const char *const bad[][2] = {
+        { "{\"sieve\": [[1, 0]]}", "wants two points [size, passing] or more" },
+        { "{\"sieve\": [[1, 0.1], [2, 1]]}", "nothing passes the first sieve: 0" },
+        { "{\"sieve\": [[1, 0], [2, 0.9]]}", "all passes the last sieve: 1" },
+        { "{\"sieve\": [[2, 0], [1, 1]]}", "sizes and shares must not fall" },
+        { "{\"sieve\": [[1, 0], [2, 0.5], [3, 0.4], [4, 1]]}", "sizes and shares must not fall" },
+        { "{\"power\": {\"exponent\": 99, \"min\": 1, \"max\": 2}}", "must lie in [-20, 20]" },
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        struct packing p;
+        struct why why;
+        char scene[400];
+        snprintf(scene, sizeof scene,
+                 "{\"dt\": 1, \"bodies\": [{\"count\": 1, \"radius\": %s, \"box\":"
+                 "{\"x\": [0, 99], \"y\": [0, 99], \"z\": [0, null]}}]}",
+                 bad[i][0]);
+        if (!ok(build(&p, scene, NULL, &why) == EX_DATAERR && strstr(why.text, bad[i][1]),
+                "refused: %s", bad[i][1]))
+            diag("%s", why.text);
+    }
+}
+
 static void test_thermal(void)
 {
     struct packing p;
@@ -411,8 +493,9 @@ static void test_bad_scenes(void)
           "4:4: bodies[1].radius: must be positive" },
         { BODY("{\"x\": [0, 0, 0]}"), "2:13: bodies[0].radius: is missing" },
         { BODY("{\"x\": [0, 0, 0], \"count\": 3}"),
-          "2:13: bodies[0]: wants one of the keys x count file" },
-        { BODY("7"), "2:13: bodies[0]: wants an object with one of the keys x count file" },
+          "2:13: bodies[0]: wants one of the keys x count file document random" },
+        { BODY("7"),
+          "2:13: bodies[0]: wants an object with one of the keys x count file document random" },
         { BODY("{\"x\": [0, 0, 0], \"raduis\": 1}"),
           "2:30: bodies[0].raduis: unknown key; known here: x radius v w kind density mass fixed" },
         { BODY("{\"x\": [0, 0, 0], \"radius\": 1, \"mass\": 1, \"density\": 1}"),
@@ -438,7 +521,8 @@ static void test_bad_scenes(void)
         { COUNT("{\"lognormal\": {\"median\": 1, \"sigma\": 0, \"min\": 2, \"max\": 3}}"),
           "2:88: bodies[0].radius.lognormal: [min, max] keeps less than a thousandth of it" },
         { COUNT("{\"poisson\": 3}"),
-          "2:77: bodies[0].radius: wants one of the keys uniform gaussian lognormal" },
+          "2:77: bodies[0].radius: wants one of the keys uniform gaussian lognormal "
+          "uniform_by_mass power sieve" },
         { "{\"dt\": 1, \"walls\": [{\"point\": [0, 0, 0], \"normal\": [0, 0, 0]}]}",
           "1:42: walls[0].normal: must not be zero" },
         { "{\"dt\": 1, \"pairs\": [{\"pair\": [\"ball\", \"wall\"]}, {\"pair\": [\"wall\", "
@@ -508,7 +592,7 @@ int main(void)
     }
     test_numbers(), test_seed();
     test_paper_files(), test_scene_files(), test_example1();
-    test_bells(), test_thermal(), test_material();
+    test_bells(), test_sieves(), test_thermal(), test_material();
     test_table(), test_bad_tables(), test_bad_scenes(), test_damage();
     test_million();
     static const char *const name[] = { "good", "flat", "bad" };

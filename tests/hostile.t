@@ -219,11 +219,34 @@ crowd() { echo '{"dt": 1e-3, "overlap": true, "bodies": [{"file": "crowd"}]}' >"
 awk 'BEGIN { for (i = 0; i < 3000; i++) print "0 0 0 1" }' >"$tmp/crowd"
 status 65 "3000 balls in one place" timeout 20 bash -c "$(declare -f crowd); tmp=$tmp; set -o pipefail; crowd"
 like "says so" "$(cat "$tmp/err")" 'in one place'
+crowd_to() { nsd-gen "$tmp/crowd.json" | nsd-step -o "$tmp/none.h5"; }
+refuses 65 "the same into a file" timeout 20 bash -c "$(declare -f crowd_to); tmp=$tmp; crowd_to"
+ok "which is not left behind empty" [ ! -e "$tmp/none.h5" ]
+ln -s none.h5 "$tmp/none.link"
+crowd_to() { nsd-gen "$tmp/crowd.json" | nsd-step -o "$tmp/none.link"; }
+refuses 65 "the same through a link" timeout 20 bash -c "$(declare -f crowd_to); tmp=$tmp; crowd_to"
+ok "which stays" [ -L "$tmp/none.link" ]
 table() { echo "{\"dt\": 1, \"bodies\": [{\"file\": \"$1\"}]}" | timeout 20 nsd-gen -; }
 refuses 66 "a device for a table" table /dev/zero
 mkfifo "$tmp/endless"
 { yes "$(printf '%05000d' 0)" >"$tmp/endless" || true; } 2>/dev/null &
 refuses 65 "a table with lines without end" table "$tmp/endless"
+
+alone() # the tool ends, whichever way, and no process of its is left to whoever inherits orphans
+{
+    /usr/bin/python3 - "$@" <<'PYTHON'
+import ctypes, os, subprocess, sys
+ctypes.CDLL(None).prctl(36, 1, 0, 0, 0)  # PR_SET_CHILD_SUBREAPER: orphans become ours
+s = subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode
+try:
+    sys.exit("an orphan: %s" % (os.waitpid(-1, 0),))
+except ChildProcessError:
+    sys.exit(s)
+PYTHON
+}
+status 0 "a tool that is done leaves no process behind" alone nsd-info "$tmp/four.h5"
+status 65 "nor one that refuses its input" alone nsd-step -n 1 "$tmp/crowd"
+status 64 "nor one that is told nonsense" alone nsd-view --every 1 -o film "$tmp/four.h5"
 
 # ---- copies ----
 
@@ -242,6 +265,14 @@ assert a['/text'][()] == b['/text'][()] and np.array_equal(a['/g/x'].attrs['k'],
 PYTHON
 }
 ok "numbers and texts that nsd does not know are copied" kept
+labelled()
+{
+    nsd-detect --fclib=local "$tmp/solved.h5" | tail -c +513 >"$tmp/problem.h5" &&
+        /usr/bin/python3 -c "import h5py; f = h5py.File('$tmp/problem.h5', 'r+'); f['fclib_local'].attrs['by'] = 'hand'; f['fclib_local/W'].attrs['k'] = [1, 2]" &&
+        nsd-solve "$tmp/problem.h5" 2>/dev/null | nsd-cat >"$tmp/copy.h5" &&
+        /usr/bin/python3 -c "import h5py; f = h5py.File('$tmp/copy.h5'); assert f['fclib_local'].attrs['by'] == b'hand' or f['fclib_local'].attrs['by'] == 'hand'; assert list(f['fclib_local/W'].attrs['k']) == [1, 2]"
+}
+ok "and attributes of the groups of an FCLIB problem from elsewhere" labelled
 make compound.h5 four.h5 "f['/mine'] = np.zeros(3, [('a', 'i4'), ('b', 'f8')])"
 refuses 65 "a compound would be lost: refused" nsd-cat "$tmp/compound.h5"
 like "says which" "$(cat "$tmp/err")" '/mine: neither numbers nor texts'

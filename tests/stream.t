@@ -62,6 +62,7 @@ all_closed() { nsd-step -n 2 -o "$tmp/closed.h5" "$tmp/heap.h5" <&- >&- 2>&- && 
 ok "all three closed: -o FILE is a document" all_closed
 if command -v script >/dev/null; then
     for command in "${commands[@]:0:7}"; do
+        [[ $command != nsd-step* ]] || command="nsd-step - <$tmp/heap.h5" # a FILE it appends to
         into() { script -q -e -c "$command 2>$tmp/said" "$tmp/typed" </dev/null >/dev/null 2>&1; }
         status 64 "$(short "$command") does not write to a terminal" into
         like "says so" "$(cat "$tmp/said")" "^${command%% *}: standard output is a terminal"

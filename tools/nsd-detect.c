@@ -3,6 +3,7 @@
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/tool_filter.h"
+#include "scene/flow.h"
 
 #include <stdlib.h>
 
@@ -44,11 +45,24 @@ static void add_problem(struct frame *f)
     f->export_global = form == FORM_GLOBAL;
 }
 
+/* The step begins: bodies come and go. */
+static void flow(struct packing *p)
+{
+    struct flow scene;
+    struct why why = { 0 };
+    bool changed;
+    p->events.n = 0;
+    if (flow_read(&scene, p, &why) || flow_step(&scene, p, NULL, &changed, &why)) die_why(&why);
+    flow_free(&scene);
+}
+
 static void detect(struct frame *f, const char *where)
 {
     struct why why = { 0 };
     tool_wants_packing(f, where);
     options_theta(&f->packing, false);
+    options_overlap(&f->packing, false);
+    flow(&f->packing);
     if (detect_contacts(&f->contacts, &f->packing, options.gap, NULL, &why)) die_why(&why);
     f->detected = true, f->reported = f->moved = false;
     f->stale = true;

@@ -1,5 +1,6 @@
 /* nsd-gen: builds a packing, the paper's N balls or what a scene says. */
 #include "cli/cli.h"
+#include "io/reader.h"
 #include "io/writer.h"
 #include "scene/scene_build.h"
 
@@ -27,6 +28,7 @@ const struct cli_tool tool = {
     tables,
     "  nsd-gen 500 > balls.h5\n"
     "  nsd-gen scenes/column.json | nsd-step -n 1000 > out.h5\n"
+    "  nsd-info --scene out.h5 | jq '.gravity = [3, 0, -9.81]' | nsd-gen - > tilted.h5\n"
     "  jq '.mu = 0.5' scenes/paper/example3.json | nsd-gen - > rough.h5\n"
 };
 
@@ -74,6 +76,53 @@ static bool is_number(const char *text, double *x)
     return end != text && !*end;
 }
 
+/* ---- documents that a scene takes bodies from ---- */
+
+/* How many frames there are in all documents of a file */
+static int64_t count_frames(char *path)
+{
+    struct reader *in;
+    struct why why = { 0 };
+    int64_t frames = 0, all = 0;
+    if (reader_open(&in, 1, &path, &why)) die_why(&why);
+    while (!reader_document(in, &frames, &why) && frames >= 0) all += frames;
+    if (why.status) die_why(&why);
+    reader_close(in);
+    return all;
+}
+
+/* Frame k of the file, from 0, or from the end: -1 is the last */
+static void read_frame(struct frame *f, char *path, int64_t k)
+{
+    struct reader *in;
+    struct why why = { 0 };
+    bool more = true;
+    int64_t wanted = k < -1 ? count_frames(path) + k : k;
+    if (reader_open(&in, 1, &path, &why)) die_why(&why);
+    if (k == -1) reader_last(in, f, &more, &why);
+    for (int64_t i = 0; k != -1 && i <= wanted && more && !why.status; i++)
+        reader_next(in, NULL, f, &more, &why);
+    if (why.status) die_why(&why);
+    if (!more || (k < -1 && wanted < 0)) die(EX_DATAERR, "%s: no frame %lld", path, (long long)k);
+    if (!f->packed) die(EX_DATAERR, "%s: an FCLIB problem has no bodies", path);
+    reader_close(in);
+}
+
+static void read_document(struct scene_bodies *b, const char *dir)
+{
+    struct frame f = { 0 };
+    bool whole = *b->file == '/' || !dir;
+    size_t room = strlen(b->file) + (whole ? 0 : strlen(dir)) + 2;
+    char *path = malloc(room);
+    b->document = malloc(sizeof *b->document);
+    if (!path || !b->document) die(EX_SOFTWARE, "no memory for a document");
+    snprintf(path, room, "%s%s%s", whole ? "" : dir, whole ? "" : "/", b->file);
+    read_frame(&f, path, b->frame);
+    *b->document = f.packing, f.packing = (struct packing){ 0 };
+    frame_free(&f);
+    free(path);
+}
+
 int tool_main(int argc, char **argv)
 {
     struct scene scene;
@@ -91,6 +140,8 @@ int tool_main(int argc, char **argv)
     } else {
         read_scene(&scene, argv[0], &dir);
     }
+    for (int64_t g = 0; g < scene.groups; g++)
+        if (scene.bodies[g].from == SCENE_DOCUMENT) read_document(&scene.bodies[g], dir);
     if (scene_build(&frame.packing, &scene, dir, &why)) die_why(&why);
     if (frame_note(&frame, cli_history(), &why) || writer_frame(out, &frame, &why) ||
         writer_close(out, &why))

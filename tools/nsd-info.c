@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool last, particles, contacts, walls, history;
+static bool last, particles, contacts, walls, history, events, scene;
 static const char *steps;
 static bool shown; /* whether any frame had what was asked for: contacts, a history */
 
@@ -17,6 +17,10 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 'w', "walls", &walls, .help = "instead, a line for each wall" },
     { CLI_FLAG, 0, "history", &history,
       .help = "instead, a line for each sweep that nsd-solve --history has kept" },
+    { CLI_FLAG, 0, "events", &events,
+      .help = "instead, a line for each body that has come or gone" },
+    { CLI_FLAG, 0, "scene", &scene,
+      .help = "instead, the scene that goes on from FILE's last frame" },
     { CLI_FLAG, 'l', "last", &last, .help = "only the very last frame" },
     { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
     { 0 },
@@ -75,6 +79,7 @@ static void show_document(const struct frame *f, int64_t frames)
         json_object_set_new(j, "walls", json_integer(p->walls));
         json_object_set_new(j, "dt", json_number(p->dt));
         json_object_set_new(j, "theta", json_number(p->theta));
+        if (p->overlap) json_object_set_new(j, "overlap", json_string(overlap_name[p->overlap]));
         json_object_set_new(j, "gravity", json_vec(p->g));
         json_object_set_new(j, "seed", json_integer((json_int_t)p->seed));
         json_object_set_new(j, "material", material(p));
@@ -83,6 +88,17 @@ static void show_document(const struct frame *f, int64_t frames)
         json_object_set_new(j, "options", json_loads(f->report.options, 0, NULL));
     json_object_set_new(j, "history", commands(f->history));
     json_line(j);
+}
+
+/* How many bodies pours have brought, or removals have taken, so far, and their mass */
+static void show_passages(json_t *j, const char *name, int32_t n, const struct passage *passed)
+{
+    json_t *list = json_array();
+    for (int32_t k = 0; k < n; k++)
+        json_array_append_new(list, json_pack("{s:I, s:o}", "bodies", (json_int_t)passed[k].bodies,
+                                              "mass", json_number(passed[k].mass)));
+    if (n) json_object_set(j, name, list);
+    json_decref(list);
 }
 
 static void show_moment(const struct frame *f)
@@ -105,6 +121,8 @@ static void show_moment(const struct frame *f)
         json_object_set_new(j, "kinetic_energy", json_number(kinetic));
         json_object_set_new(j, "potential_energy", json_number(potential));
         json_object_set_new(j, "max_speed", json_number(fastest));
+        show_passages(j, "poured", p->pours, p->poured);
+        show_passages(j, "removed", p->removals, p->removed);
     }
     if (f->reported) {
         json_t *r = json_report(&f->report);
@@ -129,6 +147,24 @@ static void show_particles(const struct packing *p)
         json_object_set_new(j, "v", json_vec(p->v[i]));
         json_object_set_new(j, "w", json_vec(p->w[i]));
         json_object_set_new(j, "q", json_numbers(q, 4));
+        json_line(j);
+    }
+}
+
+static void show_events(const struct packing *p)
+{
+    for (int64_t i = 0; i < p->events.n; i++) {
+        const struct event *e = &p->events.e[i];
+        json_t *j = json_object();
+        json_object_set_new(j, "step", json_integer(e->step));
+        json_object_set_new(j, "time", json_number(e->t));
+        json_object_set_new(j, "event", json_string(e->came ? "poured" : "removed"));
+        json_object_set_new(j, "by", json_integer(e->which));
+        json_object_set_new(j, "id", json_integer(e->id));
+        json_object_set_new(j, "radius", json_number(e->radius));
+        json_object_set_new(j, "mass", json_number(e->mass));
+        json_object_set_new(j, "x", json_vec(e->x));
+        json_object_set_new(j, "v", json_vec(e->v));
         json_line(j);
     }
 }
@@ -207,11 +243,40 @@ static void show_sweeps(const struct frame *f)
 static void show(const struct frame *f)
 {
     if (particles && f->packed) show_particles(&f->packing);
+    if (events && f->packed) show_events(&f->packing);
     if (walls && f->packed) show_walls(&f->packing);
     if (contacts && f->foreign) show_problem_contacts(f);
     if (contacts && f->detected) show_contacts(f);
     if (history && f->report.history) show_sweeps(f);
-    if (!particles && !walls && !contacts && !history) show_moment(f);
+    if (!particles && !walls && !contacts && !history && !events) show_moment(f);
+}
+
+/* ---- --scene ---- */
+
+/* A scene of the same parameters, of a packing that keeps none */
+static json_t *scene_of_parameters(const struct packing *p)
+{
+    json_t *j =
+        json_pack("{s:i, s:f, s:I}", "dim", p->dim, "dt", p->dt, "seed", (json_int_t)p->seed);
+    const double g[3] = { p->g.x, p->g.y, p->g.z };
+    json_t *kinds = json_object();
+    for (int32_t k = 0; k < p->kinds; k++)
+        json_object_set_new(kinds, p->kind_name[k], json_object());
+    json_object_set_new(j, "gravity", json_numbers(g, p->dim));
+    json_object_set_new(j, "kinds", kinds);
+    json_object_set_new(j, "pairs", material(p));
+    return j;
+}
+
+/* The scene with the last frame's bodies, at its time */
+static void show_scene(const struct packing *p, const char *path)
+{
+    json_t *j = p->scene ? json_loads(p->scene, 0, NULL) : scene_of_parameters(p);
+    if (!json_is_object(j)) die(EX_DATAERR, "%s: /nsd/scene is no scene", path);
+    json_object_set_new(j, "theta", json_real(p->theta));
+    json_object_set_new(j, "time", json_real(p->t));
+    json_object_set_new(j, "bodies", json_pack("[{s:s}]", "document", path));
+    json_line(j);
 }
 
 int tool_main(int argc, char **argv)
@@ -220,14 +285,21 @@ int tool_main(int argc, char **argv)
     struct frame f = { 0 };
     struct range range;
     struct why why = { 0 };
-    bool more, part = particles || walls || contacts || history;
+    bool more, part = particles || walls || contacts || history || events;
     int64_t frames = 0;
     if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
     if (last && steps) die_usage("--last and --steps exclude each other");
+    if (scene && (argc != 1 || !strcmp(argv[0], "-")))
+        die_usage("--scene: one FILE, which the scene names");
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
+    if (scene) last = true;
     if (last) {
         if (reader_last(in, &f, &more, &why)) die_why(&why);
-        if (more) show(&f);
+        if (scene && (!more || !f.packed)) die(EX_DATAERR, "%s: no bodies", reader_where(in));
+        if (scene)
+            show_scene(&f.packing, argv[0]);
+        else if (more)
+            show(&f);
     }
     while (!last && !why.status && !reader_document(in, &frames, &why) && frames >= 0)
         for (int64_t k = 0; k < frames; k++) {

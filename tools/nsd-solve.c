@@ -11,6 +11,8 @@ static bool forces;
 static const struct cli_option own[] = {
     { CLI_REAL, 0, "theta", &options.theta, "T", .max = 1,
       .help = "must be what the contacts were detected with [the document's]" },
+    { CLI_CHOICE, 0, "overlap", &options.overlap, .choice = options_overlap_choice,
+      .help = "what nsd-move will do about overlap [the document's]" },
     { CLI_FLAG, 'w', "warm", &options.warm, .help = "start from the reactions in the document" },
     { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start from 0, as the paper",
       .usual = options_usual },
@@ -49,6 +51,7 @@ static void solve(struct frame *f, const char *where)
     f->report.options = options_json(&o);
     if (!f->foreign) {
         options_theta(&f->packing, true);
+        options_overlap(&f->packing, true);
         if (options.warm && !f->contacts.found && f->contacts.n)
             warn("%s: no reactions to start from, starting from 0", where);
         if (step_solve(&f->packing, &f->contacts, &o, &f->report, &why)) die_why(&why);

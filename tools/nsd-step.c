@@ -4,18 +4,26 @@
 #include "cli/tool_filter.h"
 #include "io/reader.h"
 #include "io/writer.h"
+#include "scene/flow.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
 
-static int64_t steps = 1, every = 1;
-static bool contacts, forces;
+static int64_t steps = 1;
+static struct cli_every every = { 1, 0 };
+static double until, lines; /* s: of the motion; of real time */
+static bool contacts, forces, in_place;
 static const char *output;
 
 static const struct cli_option own[] = {
     { CLI_INT, 'n', "steps", &steps, "N", "steps to make [1]", .max = 1e15 },
-    { CLI_INT, 0, "every", &every, "K", "keep every K-th step, and the last [1]", .min = 1,
-      .max = 1e15 },
+    { CLI_REAL, 0, "until", &until, "T", "or steps until the time is T, s [by -n]", .min = -1e300,
+      .max = 1e300 },
+    { CLI_EVERY, 0, "every", &every, "K|Ts",
+      "keep every K-th step, or one every T s of its time, and the last [1]", .max = 1e15 },
     { CLI_FLAG, 0, "contacts", &contacts, .help = "keep each frame's contacts too" },
     { CLI_FLAG, 0, "forces", &forces,
       .help = "and with them their forces, in N and in space; means --contacts" },
@@ -23,6 +31,10 @@ static const struct cli_option own[] = {
       .help = "start each solve from the last step's reactions" },
     { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start each solve from 0, as the paper",
       .usual = options_usual },
+    { CLI_FLAG, 'i', "in-place", &in_place, .silent = true,
+      .help = "append to FILE; also where standard output is a terminal" },
+    { CLI_ABOVE, 0, "progress", &lines, "S", .max = 1e9, .silent = true,
+      .help = "say how far it is every S seconds, on no terminal too [terminal]" },
     { CLI_TEXT, 'o', "output", &output, "FILE", "write to FILE [standard output]", .silent = true },
     { 0 },
 };
@@ -35,7 +47,8 @@ const struct cli_tool tool = { "nsd-step", "[FILE ...]",
                                "disk as soon as it is made; to a pipe: one document a frame.",
                                tables,
                                "  nsd-gen 500 | nsd-step -n 1000 > out.h5\n"
-                               "  nsd-step -n 100 --eps 1e-8 -o more.h5 out.h5\n" };
+                               "  nsd-step -n 100 --eps 1e-8 -o more.h5 out.h5\n"
+                               "  nsd-step -n 100 --in-place out.h5\n" };
 
 static struct {
     int64_t sweeps, safeguarded, gave_up;
@@ -77,81 +90,215 @@ static void summary(int64_t made)
              total.worst, total.eps);
 }
 
-/* Makes one step of f; false where its solve has diverged, and f has not moved. */
-static bool advance(struct frame *f, struct neighbours *near, const struct step_opt *o)
+/* ---- how far it is ---- */
+
+static double seconds_now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* "step 120, 12 % of 1000, 35/s, 0:25 left: 812 contacts, 40 sweeps, natural 9e-05" */
+static void tell(const struct report *r, int64_t made, double since)
+{
+    double rate = (double)made / fmax(seconds_now() - since, 1e-9);
+    double left = (double)(steps - made) / rate, hours = floor(left / 3600);
+    double minutes = floor(left / 60) - 60 * hours;
+    char clock[40];
+    if (hours >= 1)
+        snprintf(clock, sizeof clock, "%.0f:%02.0f h", hours, minutes);
+    else
+        snprintf(clock, sizeof clock, "%.0f:%02.0f", minutes, floor(left - 60 * minutes));
+    progress("step %lld, %.0f %% of %lld, %.3g/s, %s left: %lld contacts, %d sweeps, %s %.2g",
+             (long long)r->step, floor(100.0 * (double)made / (double)steps), (long long)steps,
+             rate, clock, (long long)r->err.contacts, r->sweeps, options_error(r->criterion),
+             err_of(&r->err, r->criterion));
+}
+
+/* ---- the run ---- */
+
+/* A run from frame f on */
+struct run {
+    struct frame f;
+    struct writer *out;
+    struct flow flow;
+    struct neighbours near;
+    struct step_opt o;
+};
+
+/* Bodies come and go, as the step begins. */
+static void flow(struct run *r)
 {
     struct why why = { 0 };
-    struct report *r = &f->report;
-    if (step_advance(&f->packing, &f->contacts, near, o, r, &why)) die_why(&why);
+    bool changed;
+    if (flow_step(&r->flow, &r->f.packing, &r->f.contacts, &changed, &why)) die_why(&why);
+    if (changed) neighbours_free(&r->near);
+}
+
+/* Makes one step; false where its solve has diverged, and the bodies have not moved. */
+static bool advance(struct run *r)
+{
+    struct why why = { 0 };
+    struct frame *f = &r->f;
+    struct report *rep = &f->report;
+    flow(r);
+    if (step_advance(&f->packing, &f->contacts, &r->near, &r->o, rep, &why)) die_why(&why);
     f->reported = f->moved = true;
-    count(r);
-    options_log(r);
-    double error = err_of(&r->err, r->criterion);
-    progress("step %lld: %lld contacts, %d sweeps, %s %.2g", (long long)r->step,
-             (long long)r->err.contacts, r->sweeps, options_error(r->criterion), error);
-    return isfinite(r->err.paper.eps_glob);
+    count(rep);
+    options_log(rep);
+    return isfinite(rep->err.paper.eps_glob);
+}
+
+static void write_frame(struct run *r)
+{
+    struct why why = { 0 };
+    if (writer_frame(r->out, &r->f, &why)) die_why(&why);
+    r->f.packing.events.n = 0; // they are written
+}
+
+/* Is the frame after the k-th step of this run one to keep? By seconds: the first at or after each
+   multiple of them, wherever the run began. */
+static bool is_kept(const struct packing *p, int64_t k)
+{
+    if (every.steps) return k % every.steps == 0;
+    double now = p->t / every.seconds, before = (p->t - p->dt) / every.seconds;
+    return floor(now + 1e-6) > floor(before + 1e-6); // times are sums of dt, with their rounding
 }
 
 /* Writes the last step that could be made, the k-th, without its contacts, unless it is written. */
-static void keep_last(struct frame *f, struct writer *out, int64_t k)
+static void keep_last(struct run *r, int64_t k)
 {
-    struct why why = { 0 };
-    if (k && k % every == 0) return;
-    f->reported = f->detected = false;
-    if (writer_frame(out, f, &why)) die_why(&why);
+    if (k && is_kept(&r->f.packing, k)) return;
+    r->f.reported = r->f.detected = false;
+    write_frame(r);
 }
 
-/* Makes the steps, writes every K-th and the last, and returns how many were made. */
-static int64_t run(struct frame *f, struct writer *out)
+static void begin(struct run *r)
 {
     struct why why = { 0 };
-    struct step_opt o = options_step(f->packing.dt, false);
-    struct neighbours near = { 0 };
-    if (steps) {
-        report_free(&f->report);
-        f->report.options = options_json(&o);
-        f->detected = contacts || forces;
-        f->forces = forces;
-        f->stale = true;
+    struct frame *f = &r->f;
+    r->o = options_step(f->packing.dt, false);
+    if (flow_read(&r->flow, &f->packing, &why)) die_why(&why);
+    if (!steps) return;
+    f->packing.events.n = 0; // they belong to the frame that was read
+    report_free(&f->report);
+    f->report.options = options_json(&r->o);
+    f->detected = contacts || forces;
+    f->forces = forces;
+    f->stale = true;
+}
+
+/* Makes the steps, writes those to keep and the last, and returns how many were made. */
+static int64_t run(struct run *r)
+{
+    int64_t made = 0;
+    bool good = true;
+    double since = seconds_now();
+    begin(r);
+    while (made < steps && (good = advance(r))) {
+        made++;
+        tell(&r->f.report, made, since);
+        if (is_kept(&r->f.packing, made) || made == steps) write_frame(r);
     }
-    for (int64_t k = 1; k <= steps; k++) {
-        if (!advance(f, &near, &o)) {
-            warn("step %lld: the solve diverged, the run ends before it",
-                 (long long)f->report.step);
-            keep_last(f, out, k - 1);
-            neighbours_free(&near);
-            return k - 1;
-        }
-        if ((k % every == 0 || k == steps) && writer_frame(out, f, &why)) die_why(&why);
+    if (!good) {
+        warn("step %lld: the solve diverged, the run ends before it", (long long)r->f.report.step);
+        keep_last(r, made);
     }
-    if (!steps && writer_frame(out, f, &why)) die_why(&why);
-    neighbours_free(&near);
-    return steps;
+    if (!steps && !in_place) write_frame(r);
+    neighbours_free(&r->near);
+    flow_free(&r->flow);
+    return made;
+}
+
+/* How many steps --until wants, of a packing at this time */
+static void count_steps(const struct packing *p)
+{
+    if (!cli_given(&until)) return;
+    double n =
+        ceil((until - p->t) / p->dt - 1e-6); // a time that is a sum of dt is reached, not passed
+    if (n > 1e15) die_usage("--until %g: more than 1e15 steps of %g s", until, p->dt);
+    steps = n > 0 ? (int64_t)n : 0;
+}
+
+/* ---- from where, and where to ---- */
+
+/* The frames of the file go into the one that takes its place, the last one stays in f. */
+static void copy_all(struct reader *in, struct writer *out, struct frame *f)
+{
+    struct frame next = { 0 };
+    struct why why = { 0 };
+    bool more;
+    int64_t frames = 0;
+    while (!reader_next(in, NULL, &next, &more, &why) && more) {
+        tool_wants_packing(&next, reader_where(in));
+        const char *lost = reader_loses(in);
+        if (lost)
+            die(EX_DATAERR, "%s: %s is not known, and depends on time: -o FILE goes on without it",
+                reader_where(in), lost);
+        if (!frames++ && frame_note(&next, cli_history(), &why)) break;
+        if (writer_frame(out, &next, &why)) die(why.status, "%s: %s", reader_where(in), why.text);
+        frame_free(f);
+        *f = next, next = (struct frame){ 0 };
+        progress("%lld frames copied", (long long)frames);
+    }
+    if (why.status) die_why(&why);
+    if (!frames) die(EX_DATAERR, "%s: no frame to start from", reader_where(in));
+}
+
+static void start_in_place(struct run *r, struct reader *in, const char *path)
+{
+    struct why why = { 0 };
+    if (writer_open_over(&r->out, path, &why)) die_why(&why);
+    copy_all(in, r->out, &r->f);
+    double theta = r->f.packing.theta;
+    options_theta(&r->f.packing, false);
+    options_overlap(&r->f.packing, false);
+    if (theta != r->f.packing.theta)
+        die_usage("--theta: %s has %g, and a trajectory has one", path, theta);
+    if (writer_take_place(r->out, &why)) die_why(&why);
+}
+
+static void start(struct run *r, struct reader *in)
+{
+    struct why why = { 0 };
+    bool more;
+    if (reader_last(in, &r->f, &more, &why)) die_why(&why);
+    if (!more) die(EX_DATAERR, "%s: no frame to start from", reader_where(in));
+    tool_wants_packing(&r->f, reader_where(in));
+    options_theta(&r->f.packing, false);
+    options_overlap(&r->f.packing, false);
+    if (writer_open(&r->out, output, WRITER_TRAJECTORY, &why)) die_why(&why);
+    if (frame_note(&r->f, cli_history(), &why)) die_why(&why);
 }
 
 int tool_main(int argc, char **argv)
 {
     struct reader *in;
-    struct writer *out;
-    struct frame f = { 0 };
+    struct run r = { 0 };
     struct why why = { 0 };
-    bool more;
+    bool file = argc == 1 && strcmp(argv[0], "-") != 0;
     options_check();
+    if (cli_given(&until) && cli_given(&steps)) die_usage("-n and --until exclude each other");
+    if (in_place && output) die_usage("-i and -o exclude each other");
+    if (in_place && !file) die_usage("-i: one FILE, to which it appends");
+    if (file && !output && isatty(STDOUT_FILENO)) in_place = true;
+    progress_lines(lines);
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
     reader_copies(in);
-    if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
-    if (reader_last(in, &f, &more, &why)) die_why(&why);
-    if (!more) die(EX_DATAERR, "%s: no frame to start from", reader_where(in));
-    tool_wants_packing(&f, reader_where(in));
-    options_theta(&f.packing, false);
-    if (writer_open(&out, output, WRITER_TRAJECTORY, &why)) die_why(&why);
+    if (output && reader_reads(argc, argv, output))
+        die_usage("%s: is also the input; -i appends to it", output);
+    if (in_place)
+        start_in_place(&r, in, argv[0]);
+    else
+        start(&r, in);
     options_log_open(argc, argv, output);
-    if (frame_note(&f, cli_history(), &why)) die_why(&why);
-    int64_t made = run(&f, out);
-    if (writer_close(out, &why)) die_why(&why);
+    count_steps(&r.f.packing);
+    int64_t made = run(&r);
+    if (writer_close(r.out, &why)) die_why(&why);
     options_log_close();
     summary(made);
-    frame_free(&f);
+    frame_free(&r.f);
     reader_close(in);
     return made < steps || (options.strict && total.missed);
 }

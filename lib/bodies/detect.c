@@ -1,6 +1,8 @@
 /* bodies/detect.c: gaps and points of contact of balls and planes. */
 #include "bodies/detect.h"
 
+#include "bodies/kinematics.h"
+
 #include <stdlib.h>
 
 /* The law of a pair of kinds of material */
@@ -62,13 +64,46 @@ int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3
     return e || stored ? e : why_set(why, EX_SOFTWARE, "no memory for the contacts");
 }
 
+/*
+ * m: how far apart two bodies may be that touch before the next step's contacts are sought, where
+ * the law sees gaps: the way of the fastest in a step, twice; not more than half the smallest
+ * radius, so that lists of neighbours stay short where something flies off.
+ */
+static double meeting_reach(const struct packing *p)
+{
+    double speed = 0, small = INFINITY;
+    for (int64_t i = 0; i < p->n; i++)
+        speed = fmax(speed, v3_norm(p->v[i])), small = fmin(small, p->radius[i]);
+    for (int32_t w = 0; w < p->walls; w++) speed = fmax(speed, v3_norm(p->wall[w].v));
+    return fmin(p->dt * (2 * speed + packing_calm(p)), 0.5 * small);
+}
+
+/* Whether a pair with a gap above `gap` may close it. Where it would rebound, the impact waits for
+   the bodies to touch. */
+static bool meets(const struct packing *p, const struct contact *c)
+{
+    double approach = -opening_of(p, c), calm = packing_calm(p);
+    return c->gap <= p->dt * (approach + calm) && (c->en == 0 || approach <= calm);
+}
+
+/* Keeps the contacts with at most this gap, and those that may close theirs. */
+static void keep_meeting(struct contacts *s, const struct packing *p, double gap)
+{
+    int64_t n = 0;
+    for (int64_t i = 0; i < s->n; i++)
+        if (s->c[i].gap <= gap || meets(p, &s->c[i])) s->c[n++] = s->c[i];
+    s->n = n;
+}
+
 int detect_contacts(struct contacts *out, const struct packing *p, double gap,
                     struct neighbours *kept, struct why *why)
 {
     vec3 *x = malloc(((size_t)p->n + 1) * sizeof *x);
     if (!x) return why_set(why, EX_SOFTWARE, "no memory for the contacts");
     for (int64_t i = 0; i < p->n; i++) x[i] = packing_predict(p, i);
-    int e = detect_contacts_at(out, p, x, p->t + (1 - p->theta) * p->dt, gap, kept, why);
+    double reach = overlap_sees_gaps(p->overlap) ? fmax(gap, meeting_reach(p)) : gap;
+    int e = detect_contacts_at(out, p, x, p->t + (1 - p->theta) * p->dt, reach, kept, why);
+    if (!e && reach > gap) keep_meeting(out, p, gap);
     free(x);
     return e;
 }

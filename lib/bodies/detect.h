@@ -10,8 +10,9 @@
 
 /*
  * out = a contact for every pair of bodies, and of a body and a wall, whose gap at the predicted
- * positions is at most `gap` (m) and of which one can move. Gaps: ball-ball and ball-plane; in the
- * plane disc-disc and disc-line.
+ * positions is at most `gap` (m) and of which one can move; where the law sees gaps
+ * [bodies/overlap.h], also for those that may close theirs within the step. Gaps: ball-ball and
+ * ball-plane; in the plane disc-disc and disc-line.
  *
  * kept: neighbours of these bodies, kept from one step to the next to save the search; or NULL. The
  * contacts are the same. Returns 0 or EX_SOFTWARE.

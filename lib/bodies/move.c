@@ -1,6 +1,9 @@
 /* move.c: see bodies/move.h. */
 #include "bodies/move.h"
 
+#include "bodies/kinematics.h"
+#include "bodies/project.h"
+
 #include <stdlib.h>
 
 /* The reactions' impulses and their moments about the centres, which are at x + ahead v when the
@@ -11,8 +14,7 @@ static void impulses(const struct packing *p, double ahead, const struct contact
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
         double la, lb;
-        vec3 xa = c->a < 0 ? c->x : v3_axpy(p->x[c->a], ahead, p->v[c->a]);
-        contact_arms(c, xa, v3_axpy(p->x[c->b], ahead, p->v[c->b]), &la, &lb);
+        arms_of(p, c, ahead, &la, &lb);
         const double *r = s->found[i].r;
         vec3 t2 = contact_t2(c), f = v3_axpy(v3_axpy(v3_scale(r[0], c->n), r[1], c->t1), r[2], t2);
         vec3 m = v3_axpy(v3_scale(r[2], c->t1), -r[1], t2); // -n x r
@@ -73,7 +75,9 @@ static int move(struct packing *p, double ahead, const struct contacts *s,
 
 int move_step(struct packing *p, const struct contacts *s, struct why *why)
 {
-    if (move(p, (1 - p->theta) * p->dt, s, body_move, why)) return why->status;
+    if (move(p, (1 - p->theta) * p->dt, s, body_move, why) ||
+        (overlap_projects(p->overlap) && project_apart(p, s, why)))
+        return why->status;
     p->step++;
     p->t += p->dt;
     return 0;

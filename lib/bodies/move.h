@@ -11,10 +11,13 @@
 #include "bodies/contact.h"
 #include "bodies/packing.h"
 
-/* The bodies move, by the contacts' reactions; step and t advance. Returns 0 or EX_SOFTWARE. */
+/* The bodies move, by the contacts' reactions, and apart where the packing wants it
+   [bodies/project.h]; step and t advance. Returns 0 or EX_SOFTWARE. */
 int move_step(struct packing *p, const struct contacts *s, struct why *why);
 
-/* Back to before move_step(), to rounding: what a solution in a trajectory is checked from. */
+/* Back to before move_step(), to rounding: what a solution in a trajectory is checked from. A
+   projection is not undone: the errors depend on velocities, and where there is a projection the
+   lever arms on radii. */
 int move_back(struct packing *p, const struct contacts *s, struct why *why);
 
 #endif

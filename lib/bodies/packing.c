@@ -5,6 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+const char *const overlap_name[OVERLAP_COUNT] = { "",     "keep",    "gap",
+                                                  "push", "project", "gap-project" };
+
 static void *array(int64_t n, size_t size)
 {
     return calloc(n > 0 ? (size_t)n : 1, size);
@@ -44,6 +47,8 @@ void packing_free(struct packing *p)
     free(p->radius), free(p->mass), free(p->inertia), free(p->id), free(p->kind);
     free(p->x), free(p->q), free(p->v), free(p->w);
     free(p->wall), free(p->scene);
+    free(p->poured), free(p->removed);
+    events_free(&p->events);
     kinds_free(p);
     memset(p, 0, sizeof *p);
 }
@@ -72,12 +77,50 @@ int packing_alloc_kinds(struct packing *p, int32_t k, struct why *why)
     return allocated ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d kinds", k);
 }
 
+int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals, struct why *why)
+{
+    free(p->poured), free(p->removed);
+    p->poured = array(pours, sizeof *p->poured);
+    p->removed = array(removals, sizeof *p->removed);
+    p->pours = p->poured ? pours : 0, p->removals = p->removed ? removals : 0;
+    return p->poured && p->removed ? 0 : why_set(why, EX_SOFTWARE, "no memory for passages");
+}
+
+/* The array that *at points to has n elements of `size` bytes, those from `had` on zero; false: it
+   is as it was. */
+static bool resize(void *at, int64_t had, int64_t n, size_t size)
+{
+    void *old;
+    memcpy(&old, at, sizeof old);
+    char *more = realloc(old, (n > 0 ? (size_t)n : 1) * size);
+    if (!more) return false;
+    if (n > had) memset(more + (size_t)had * size, 0, (size_t)(n - had) * size);
+    memcpy(at, &more, sizeof more);
+    return true; // cppcheck-suppress memleak ; it is *at now
+}
+
+int packing_resize(struct packing *p, int64_t n, struct why *why)
+{
+    int64_t had = p->n;
+    if (!resize(&p->radius, had, n, sizeof *p->radius) ||
+        !resize(&p->mass, had, n, sizeof *p->mass) ||
+        !resize(&p->inertia, had, n, sizeof *p->inertia) ||
+        !resize(&p->id, had, n, sizeof *p->id) || !resize(&p->kind, had, n, sizeof *p->kind) ||
+        !resize(&p->x, had, n, sizeof *p->x) || !resize(&p->q, had, n, sizeof *p->q) ||
+        !resize(&p->v, had, n, sizeof *p->v) || !resize(&p->w, had, n, sizeof *p->w))
+        return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
+    for (int64_t i = had; i < n; i++) p->id[i] = -1, p->q[i].w = 1;
+    p->n = n;
+    return 0;
+}
+
 int packing_copy(struct packing *to, const struct packing *p, struct why *why)
 {
     if (packing_init(to, p->dim, p->n, why)) return why->status;
     if (packing_alloc_walls(to, p->walls, why) || packing_alloc_kinds(to, p->kinds, why)) goto fail;
     size_t n = (size_t)p->n, k2 = (size_t)p->kinds * (size_t)p->kinds;
     to->step = p->step, to->t = p->t, to->dt = p->dt, to->theta = p->theta, to->g = p->g;
+    to->overlap = p->overlap;
     to->seed = p->seed, to->cell = p->cell;
     memcpy(to->radius, p->radius, n * sizeof *p->radius);
     memcpy(to->mass, p->mass, n * sizeof *p->mass);
@@ -97,6 +140,12 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
         if (!(to->kind_name[i] = strdup(p->kind_name[i]))) goto fail;
     }
     if (p->scene && !(to->scene = strdup(p->scene))) goto fail;
+    if (packing_alloc_passages(to, p->pours, p->removals, why)) goto fail;
+    to->first_id = p->first_id;
+    for (int32_t k = 0; k < p->pours; k++) to->poured[k] = p->poured[k];
+    for (int32_t k = 0; k < p->removals; k++) to->removed[k] = p->removed[k];
+    for (int64_t i = 0; i < p->events.n; i++)
+        if (events_add(&to->events, &p->events.e[i], why)) goto fail;
     return 0;
 fail:
     packing_free(to);

@@ -10,6 +10,8 @@
 #include "base/vec.h"
 #include "base/why.h"
 #include "bodies/cell.h"
+#include "bodies/overlap.h"
+#include "bodies/passage.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -29,6 +31,7 @@ struct packing {
     double theta; /* of the theta-method; 1/2 is the paper's midpoint */
     vec3 g;       /* m/s^2 */
     uint64_t seed;
+    enum overlap overlap;
 
     double *radius;  /* [n] m */
     double *mass;    /* [n] kg; 0: immovable or prescribed */
@@ -48,6 +51,12 @@ struct packing {
     double *mu;       /* [kinds * kinds], symmetric: friction */
     double *en, *et;  /* [kinds * kinds], symmetric: normal and tangential restitution */
 
+    /* Grains come and go [scene/flow.h] where there are pours or removals. */
+    int32_t pours, removals;
+    struct passage *poured, *removed; /* [pours], [removals] */
+    int32_t first_id;                 /* of the first body that is poured */
+    struct events events;             /* since the last frame */
+
     char *scene; /* the JSON it was built from, or NULL */
 };
 
@@ -61,6 +70,20 @@ void packing_free(struct packing *p);
 int packing_alloc_walls(struct packing *p, int32_t k, struct why *why);
 int packing_alloc_kinds(struct packing *p, int32_t k, struct why *why);
 
+/* Accounts of so many pours and removals, all zero, in place of the old ones. Returns 0 or
+   EX_SOFTWARE. */
+int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals, struct why *why);
+
+/* Do bodies come and go? */
+static inline bool packing_varies(const struct packing *p)
+{
+    return p->pours > 0 || p->removals > 0;
+}
+
+/* Room for n bodies; those beyond the present ones are at rest at the origin, their id -1. Fewer: the
+   last ones are cut off. Returns 0 or EX_SOFTWARE, where nothing has changed. */
+int packing_resize(struct packing *p, int64_t n, struct why *why);
+
 /* to = a deep copy of from; to need not be initialised. Returns 0 or EX_SOFTWARE. */
 int packing_copy(struct packing *to, const struct packing *from, struct why *why);
 
@@ -72,6 +95,12 @@ int packing_check(const struct packing *p, struct why *why);
 static inline vec3 packing_predict(const struct packing *p, int64_t i)
 {
     return v3_axpy(p->x[i], (1 - p->theta) * p->dt, p->v[i]);
+}
+
+/* m/s: no contact at rest approaches faster, whatever gravity did to both bodies in a step. */
+static inline double packing_calm(const struct packing *p)
+{
+    return 2 * p->dt * v3_norm(p->g);
 }
 
 /* body[] = those of bodies a and b that can move (mass > 0; a < 0 is a wall); returns how many. */

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdio_ext.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -41,6 +42,7 @@ void die(int status, const char *format, ...)
     va_start(ap, format);
     message(format, ap);
     va_end(ap);
+    if (status == EX_IOERR) __fpurge(stdout); // what comes after a piece that is missing
     exit(status);
 }
 
@@ -68,22 +70,30 @@ void warn(const char *format, ...)
 }
 
 static bool progress_shown;
+static double between_lines; /* s; 0: only on a terminal */
+
+void progress_lines(double seconds)
+{
+    between_lines = seconds;
+}
 
 void progress(const char *format, ...)
 {
     static double last;
     struct timespec t;
-    if (!isatty(STDERR_FILENO)) return;
+    bool terminal = isatty(STDERR_FILENO);
+    if (!terminal && !(between_lines > 0)) return;
     clock_gettime(CLOCK_MONOTONIC, &t);
     double now = (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-    if (now - last < 0.1) return;
+    if (now - last < (terminal ? 0.1 : between_lines)) return;
     last = now;
     va_list ap;
     va_start(ap, format);
-    fprintf(stderr, "\r\033[K%s: ", tool.name);
+    fprintf(stderr, terminal ? "\r\033[K%s: " : "%s: ", tool.name);
     vfprintf(stderr, format, ap);
     va_end(ap);
-    progress_shown = true;
+    if (!terminal) fputc('\n', stderr);
+    progress_shown = terminal;
 }
 
 void progress_end(void)
@@ -182,6 +192,22 @@ static void set_number(const struct cli_option *o, const char *text)
     *(int64_t *)o->to = (int64_t)x;
 }
 
+static json_t *set_every(const struct cli_option *o, const char *text)
+{
+    struct cli_every *e = o->to;
+    char *end;
+    double x = strtod(text, &end);
+    bool seconds = !strcmp(end, "s");
+    if (end == text || (*end && !seconds) || !isfinite(x) || isspace((unsigned char)*text))
+        die_usage("--%s: '%s' is neither a number of steps nor, as 0.01s, of seconds", o->name,
+                  text);
+    if (seconds ? !(x > 0) : !(x >= 1 && x <= o->max && x == floor(x)))
+        die_usage("--%s: %s must be %s", o->name, text,
+                  seconds ? "above 0" : "a whole number, at least 1");
+    *e = (struct cli_every){ seconds ? 0 : (int64_t)x, seconds ? x : 0 };
+    return seconds ? json_string(text) : json_integer(e->steps);
+}
+
 /* Sets the option and returns its value for the history. */
 static json_t *set(const struct cli_option *o, const char *text)
 {
@@ -197,6 +223,8 @@ static json_t *set(const struct cli_option *o, const char *text)
         *(int *)o->to = index_of(o, text);
         if (*(int *)o->to < 0) die_usage("--%s: '%s' is none of %s", o->name, text, words(o));
         return json_string(text);
+    case CLI_EVERY:
+        return set_every(o, text);
     case CLI_INT:
         set_number(o, text);
         return json_integer(*(int64_t *)o->to);

@@ -20,8 +20,15 @@ enum cli_kind {
     CLI_REAL,    /* double in [min, max] */
     CLI_ABOVE,   /* double in (min, max] */
     CLI_BETWEEN, /* double in (min, max) */
+    CLI_EVERY,   /* struct cli_every: "10" steps or "0.01s" */
     CLI_CHOICE,  /* int: the index of the word among its choices */
     CLI_TEXT     /* const char * */
+};
+
+/* How often: every so many steps or, where that is 0, seconds of simulated time */
+struct cli_every {
+    int64_t steps;
+    double seconds;
 };
 
 /* A word that an option takes, and what it means; help may be NULL. */
@@ -75,6 +82,8 @@ void warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* One line that is overwritten, at most ten times a second, only when stderr is a terminal. */
 void progress(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* Elsewhere, too: a line of its own every so many seconds of real time */
+void progress_lines(double seconds);
 void progress_end(void);
 
 /* Flushes and closes stdout, where it is text; ends with EX_IOERR if any of it was not written. */

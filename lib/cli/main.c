@@ -31,11 +31,11 @@ static void *json_memory(size_t size)
 }
 
 /* --completion SHELL, for make install: not among the options, whose abbreviations it would change */
-static void completion(const char *shell)
+static int completion(const char *shell)
 {
     if (!completion_print(shell)) die_usage("--completion: bash or zsh");
     finish_stdout();
-    exit(0);
+    return 0;
 }
 
 int main(int argc, char **argv)
@@ -43,7 +43,7 @@ int main(int argc, char **argv)
     guard_standard_descriptors();
     signal(SIGPIPE, SIG_DFL);
     json_set_alloc_funcs(json_memory, free);
-    if (argc == 3 && !strcmp(argv[1], "--completion")) completion(argv[2]);
+    if (argc == 3 && !strcmp(argv[1], "--completion")) return completion(argv[2]);
     int first = cli_parse(argc, argv);
     return tool_main(argc - first, argv + first);
 }

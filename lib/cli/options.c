@@ -31,6 +31,7 @@ struct usual {
     enum newton_steps newton;
     double newton_eps; /* of |(r, rho b)| */
     int newton_max;    /* steps for a contact in a sweep */
+    enum overlap overlap;
 };
 
 /* nsd's own choice. --help shows it from here; nsd-solve(1) and nsd-step(1) repeat it. */
@@ -52,6 +53,7 @@ static const struct usual usual = {
     .newton = NEWTON_LINESEARCH, // plain steps run in circles at some contacts
     .newton_eps = 1e-13,         // about a thousand roundings: as if it were exact
     .newton_max = 100,           // after which the exact solution stands in
+    .overlap = OVERLAP_PROJECT,  // bounds overlap, adds no velocity, costs nothing [nsd-methods(7)]
 };
 
 /* --paper: the protocol of the paper's tables, which does not change with nsd's choice. */
@@ -70,6 +72,7 @@ static const struct usual paper = {
     .newton = NEWTON_LINESEARCH, // the paper's own Newton is asked for with --newton, --newton-abs
     .newton_eps = 1e-13,
     .newton_max = 100,
+    .overlap = OVERLAP_KEEP,
 };
 
 struct options options = { .threads = 1 };
@@ -97,6 +100,8 @@ const char *options_usual(const void *to)
                  u->relax > 0 ? u->relax : solver_nlgs.relax);
     if (to == &options.newton_eps) snprintf(text, room, "%g", u->newton_eps);
     if (to == &options.newton_max) snprintf(text, room, "%d", u->newton_max);
+    if (to == &options.overlap)
+        snprintf(text, room, "the document's; %s", overlap_name[u->overlap]);
     return text;
 }
 
@@ -127,6 +132,11 @@ static struct cli_choice order_choice(int k)
 static struct cli_choice newton_choice(int k)
 {
     return (struct cli_choice){ k < NEWTON_COUNT ? newton_name[k] : NULL, NULL };
+}
+
+struct cli_choice options_overlap_choice(int k)
+{
+    return (struct cli_choice){ k + 1 < OVERLAP_COUNT ? overlap_name[k + 1] : NULL, NULL };
 }
 
 /* ---- the options ---- */
@@ -180,6 +190,8 @@ const struct cli_option options_detect[] = {
       .help = "a contact is a pair with a predicted gap of at most G m [0]" },
     { CLI_REAL, 0, "theta", &options.theta, "T", .max = 1,
       .help = "predict the position q + (1 - T) dt qdot [the document's; 0.5]" },
+    { CLI_CHOICE, 0, "overlap", &options.overlap, .choice = options_overlap_choice,
+      .help = "against overlap; keep is the paper's", .usual = options_usual },
     { 0 },
 };
 
@@ -269,6 +281,18 @@ void options_theta(struct packing *p, bool detected)
     if (detected)
         die_usage("--theta: the contacts were detected with %g; give it to nsd-detect", p->theta);
     p->theta = options.theta;
+}
+
+void options_overlap(struct packing *p, bool detected)
+{
+    enum overlap was = p->overlap, now = was;
+    if (!was && !detected) now = usual.overlap;
+    if (options.paper) now = paper.overlap;
+    now = OPTION(overlap, (int)now - 1) + 1;
+    if (detected && overlap_sees_gaps(was) != overlap_sees_gaps(now))
+        die_usage("--overlap: the contacts were detected with %s; give it to nsd-detect",
+                  overlap_name[was ? was : OVERLAP_KEEP]);
+    p->overlap = now;
 }
 
 static FILE *log_file;

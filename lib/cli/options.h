@@ -11,8 +11,8 @@
 /* What was given; cli_given() says which of them were. */
 struct options {
     bool paper;
-    int method;                           /* 0: auto; else 1 + the index in methods[] */
-    int global, criterion, order, newton; /* indices among their choices */
+    int method;                                    /* 0: auto; else 1 + the index in methods[] */
+    int global, criterion, order, newton, overlap; /* indices among their choices */
     double eps, alpha, newton_eps, newton_abs, max_seconds, relax;
     double gap; /* m */
     double theta;
@@ -24,7 +24,10 @@ struct options {
 extern struct options options;
 extern const struct cli_option options_solve[];  /* the solver's own */
 extern const struct cli_option options_run[];    /* -j, --log, -e */
-extern const struct cli_option options_detect[]; /* --gap, --theta */
+extern const struct cli_option options_detect[]; /* --gap, --theta, --overlap */
+
+/* The words that --overlap takes */
+struct cli_choice options_overlap_choice(int index);
 
 /* The default of the member of `options` that `to` points to, as --help shows it. */
 const char *options_usual(const void *to);
@@ -40,6 +43,12 @@ char *options_json(const struct step_opt *step);
 
 /* Puts --theta into the packing; EX_USAGE where contacts were detected with another. */
 void options_theta(struct packing *packing, bool detected);
+/*
+ * Puts what is done about overlap into the packing: --overlap, keep with --paper, else what the
+ * document says, else nsd's choice. Of contacts that are detected it may change only what comes
+ * after the solve; else EX_USAGE.
+ */
+void options_overlap(struct packing *packing, bool detected);
 
 /*
  * --log: opens the file at once; then a line of JSON for each solve, with the clock's seconds,

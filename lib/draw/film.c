@@ -1,6 +1,8 @@
 /* draw/film.c: a pipe into ffmpeg [draw/film.h]. */
 #include "draw/film.h"
 
+#include "base/unfinished.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -18,6 +20,7 @@ struct film {
     int rate, width, height;
     FILE *pipe; /* NULL until the first picture, whose size ffmpeg must know */
     pid_t child;
+    struct unfinished unfinished; /* the other */
 };
 
 static const char *ending(const char *path)
@@ -61,6 +64,7 @@ int film_open(struct film **film, const char *path, int rate, struct why *why)
         free(f->path), free(f->other), free(f);
         return why->status;
     }
+    unfinished_begin(&f->unfinished, f->other, fd);
     close(fd);
     *film = f;
     return 0;
@@ -143,6 +147,7 @@ int film_close(struct film *f, struct why *why)
     if (written && !why->status && rename(f->other, f->path))
         why_set(why, EX_IOERR, "%s: %s", f->path, strerror(errno));
     if (why->status || !written) unlink(f->other);
+    unfinished_done(&f->unfinished);
     free(f->path), free(f->other), free(f);
     return why->status;
 }

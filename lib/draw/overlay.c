@@ -285,9 +285,12 @@ int overlay_draw(const struct overlay *o, const struct view *v, const struct pac
     cairo_t *cr = cairo_create(surface);
     overlay_bodies(cr, o, v, p, s);
     if (o->legend) overlay_legend(cr, o, v, p, top);
+    bool good = cairo_status(cr) == CAIRO_STATUS_SUCCESS;
     cairo_destroy(cr);
     cairo_surface_flush(surface);
-    copy_pixels(pic, data, cairo_image_surface_get_stride(surface), true);
+    if (good) copy_pixels(pic, data, cairo_image_surface_get_stride(surface), true);
     cairo_surface_destroy(surface);
-    return 0;
+    if (good) return 0;
+    picture_free(pic);
+    return why_set(why, EX_SOFTWARE, "no memory for lines and words");
 }

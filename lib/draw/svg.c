@@ -35,10 +35,11 @@ static void draw_disc(cairo_t *cr, const struct view *v, const struct packing *p
     cairo_stroke(cr);
 }
 
-static void draw_walls(cairo_t *cr, const struct view *v, const struct packing *p)
+/* 0; -1: no memory */
+static int draw_walls(cairo_t *cr, const struct view *v, const struct packing *p)
 {
     struct walls *b = malloc(sizeof *b);
-    if (!b) return;
+    if (!b) return -1;
     const struct region r = { v3_add(v->region.lo, v->moved), v3_add(v->region.hi, v->moved) };
     walls_build(b, p, &r);
     cairo_set_source_rgb(cr, 0.2, 0.2, 0.2);
@@ -51,6 +52,7 @@ static void draw_walls(cairo_t *cr, const struct view *v, const struct packing *
         cairo_stroke(cr);
     }
     free(b);
+    return 0;
 }
 
 static cairo_status_t keep(void *picture, const unsigned char *data, unsigned n)
@@ -59,7 +61,8 @@ static cairo_status_t keep(void *picture, const unsigned char *data, unsigned n)
     return bytes_append(b, data, n) ? CAIRO_STATUS_NO_MEMORY : CAIRO_STATUS_SUCCESS;
 }
 
-static void draw_all(cairo_t *cr, const struct overlay *o, const struct view *v,
+/* Is all of it there? */
+static bool draw_all(cairo_t *cr, const struct overlay *o, const struct view *v,
                      const struct packing *p, const struct contacts *contacts)
 {
     set_colour(cr, v->background);
@@ -69,10 +72,11 @@ static void draw_all(cairo_t *cr, const struct overlay *o, const struct view *v,
     cairo_clip(cr);
     for (int64_t i = 0; i < p->n; i++)
         if (view_shows(v, p, i)) draw_disc(cr, v, p, i);
-    draw_walls(cr, v, p);
+    int missing = draw_walls(cr, v, p);
     cairo_restore(cr);
     overlay_bodies(cr, o, v, p, contacts);
     if (o->legend) overlay_legend(cr, o, v, p, v->camera.height);
+    return !missing && cairo_status(cr) == CAIRO_STATUS_SUCCESS;
 }
 
 int svg_draw(const struct overlay *o, const struct view *v, const struct packing *p,
@@ -84,10 +88,10 @@ int svg_draw(const struct overlay *o, const struct view *v, const struct packing
     cairo_surface_t *surface = cairo_svg_surface_create_for_stream(
         keep, &b, c->width, c->height + overlay_strip(o, c->width));
     cairo_t *cr = cairo_create(surface);
-    draw_all(cr, o, v, p, contacts);
+    bool good = draw_all(cr, o, v, p, contacts);
     cairo_destroy(cr);
     cairo_surface_finish(surface);
-    bool good = cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS;
+    good &= cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS;
     cairo_surface_destroy(surface);
     if (!good)
         why_set(why, EX_SOFTWARE, "no memory for the SVG");

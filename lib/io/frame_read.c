@@ -1,5 +1,6 @@
 #include "io/frame_read.h"
 
+#include "io/flow_tables.h"
 #include "law/local.h"
 
 #include <stdio.h>
@@ -41,6 +42,8 @@ static int count_frames(struct frame_read *r, struct why *why)
                            c->width);
         n = n < (int64_t)shape[0] ? n : (int64_t)shape[0];
     }
+    if (source_shape(r->source, "/particles/all/id/value", shape) == 2)
+        n = n < (int64_t)shape[0] ? n : (int64_t)shape[0];
     // a killed writer may have made room for a step without setting it
     for (r->frames = n > 0; r->frames < n; r->frames++)
         if (r->step[r->frames] <= r->step[r->frames - 1]) break;
@@ -149,6 +152,17 @@ static int read_walls(struct source *r, struct packing *p, struct why *why)
                               sizeof *p->wall, why);
 }
 
+/* What is done about overlap; a document need not say it. */
+static int read_overlap(struct source *doc, struct packing *p, struct why *why)
+{
+    char *name = source_text(doc, "/nsd", "overlap", why);
+    if (!name) return why->status;
+    for (int k = OVERLAP_KEEP; k < OVERLAP_COUNT; k++)
+        if (!strcmp(name, overlap_name[k])) p->overlap = (enum overlap)k;
+    free(name);
+    return p->overlap ? 0 : why_set(why, EX_DATAERR, "/nsd@overlap: no such way against overlap");
+}
+
 static int read_parameters(struct source *doc, struct packing *p, struct why *why)
 {
     double g[3];
@@ -160,7 +174,92 @@ static int read_parameters(struct source *doc, struct packing *p, struct why *wh
         return why->status;
     p->g = v3(g[0], g[1], g[2]);
     p->seed = (uint64_t)seed;
+    if (read_overlap(doc, p, why)) return why->status;
     p->scene = source_text(doc, "/nsd/scene", NULL, why);
+    return why->status;
+}
+
+/* Bodies as they are in every frame, and where they are in frame k */
+static int read_bodies(struct frame_read *r, int64_t k, struct packing *p, struct why *why)
+{
+    for (const struct column *c = layout_bodies; c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "/particles/all/%s", c->name);
+        if (source_rows(r->source, path, c->type, 0, p->n, c->width, column_array(c, p), why))
+            return why->status;
+    }
+    for (const struct column *c = layout_motion; c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
+        if (source_rows(r->source, path, c->type, k, 1, p->n * c->width, column_array(c, p), why))
+            return why->status;
+    }
+    return 0;
+}
+
+/* Rows row[n] of a column: of a frame, or of a table that all frames share (frame -1) */
+static int read_spread(struct source *s, const char *path, const struct column *c, int64_t frame,
+                       const int64_t *row, int64_t n, void *out, struct why *why)
+{
+    uint64_t shape[4];
+    int rank = source_shape(s, path, shape);
+    bool moves = frame >= 0;
+    if (rank < 1 + moves) return why_set(why, EX_DATAERR, "%s: no dataset of bodies", path);
+    int64_t rows = (int64_t)shape[moves], most = n ? row[n - 1] + 1 : 0; // rows ascend
+    if (rows < most || rows > INT32_MAX)
+        return why_set(why, EX_DATAERR, "%s: fewer rows than bodies", path);
+    size_t bytes = (size_t)c->width * column_size(c->type);
+    char *all = malloc((size_t)rows * bytes + 1);
+    if (!all) return why_set(why, EX_SOFTWARE, "%s: no memory", path);
+    int e = moves ? source_rows(s, path, c->type, frame, 1, rows * c->width, all, why)
+                  : source_rows(s, path, c->type, 0, rows, c->width, all, why);
+    for (int64_t i = 0; !e && i < n; i++)
+        memcpy((char *)out + (size_t)i * bytes, all + (size_t)row[i] * bytes, bytes);
+    free(all);
+    return e;
+}
+
+/* The bodies of frame k where they come and go [io/roster.h]: rows whose id is not -1 */
+static int read_roster(struct frame_read *r, int64_t k, const int64_t *row, struct packing *p,
+                       struct why *why)
+{
+    for (const struct column *c = layout_bodies; c->name; c++) {
+        char path[80];
+        bool moves = !strcmp(c->name, "id");
+        snprintf(path, sizeof path, "/particles/all/%s%s", c->name, moves ? "/value" : "");
+        if (read_spread(r->source, path, c, moves ? k : -1, row, p->n, column_array(c, p), why))
+            return why->status;
+    }
+    for (const struct column *c = layout_motion; c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
+        if (read_spread(r->source, path, c, k, row, p->n, column_array(c, p), why))
+            return why->status;
+    }
+    return 0;
+}
+
+/* Which rows are bodies in frame k; *row to be freed, NULL: the frame has all, as every frame. */
+static int find_bodies(struct frame_read *r, int64_t k, int64_t **row, int64_t *n, struct why *why)
+{
+    uint64_t shape[4];
+    const char *ids = "/particles/all/id/value";
+    *row = NULL;
+    if (source_shape(r->source, "/particles/all/radius", shape) != 1 || shape[0] > INT32_MAX)
+        return why_set(why, EX_DATAERR, "/particles/all/radius: not a list of numbers");
+    *n = (int64_t)shape[0];
+    if (!source_has(r->source, ids)) return 0;
+    if (source_shape(r->source, ids, shape) != 2 || shape[1] > INT32_MAX)
+        return why_set(why, EX_DATAERR, "%s: not of shape frames x bodies", ids);
+    int64_t rows = (int64_t)shape[1];
+    int32_t *id = malloc(((size_t)rows + 1) * sizeof *id);
+    *row = malloc(((size_t)rows + 1) * sizeof **row);
+    if (!id || !*row) why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)rows);
+    if (!why->status) source_rows(r->source, ids, COLUMN_I32, k, 1, rows, id, why);
+    *n = 0;
+    for (int64_t i = 0; !why->status && i < rows; i++)
+        if (id[i] >= 0) (*row)[(*n)++] = i;
+    free(id);
     return why->status;
 }
 
@@ -168,34 +267,26 @@ static int read_packing(struct frame_read *r, int64_t k, struct packing *p, stru
 {
     uint64_t shape[4];
     int dim;
-    if (source_shape(r->source, "/particles/all/radius", shape) != 1 || shape[0] > INT32_MAX)
-        return why_set(why, EX_DATAERR, "/particles/all/radius: not a list of numbers");
-    int64_t n = (int64_t)shape[0];
-    if (source_attribute(r->source, "/nsd", "dim", COLUMN_I32, -1, &dim, why)) return why->status;
+    int64_t n = 0, *row;
+    if (find_bodies(r, k, &row, &n, why)) goto end;
+    if (source_attribute(r->source, "/nsd", "dim", COLUMN_I32, -1, &dim, why)) goto end;
     // no memory is allocated for bodies without positions
     if (source_shape(r->source, "/particles/all/position/value", shape) != 3 ||
-        (int64_t)shape[1] != n)
-        return why_set(why, EX_DATAERR,
-                       "/particles/all/position/value: not of shape frames x %lld x 3",
-                       (long long)n);
-    if (packing_init(p, dim, n, why)) return why->status;
-    if (read_parameters(r->source, p, why) || read_material(r->source, p, why) ||
-        read_walls(r->source, p, why))
-        return why->status;
-    for (const struct column *c = layout_bodies; c->name; c++) {
-        char path[80];
-        snprintf(path, sizeof path, "/particles/all/%s", c->name);
-        if (source_rows(r->source, path, c->type, 0, n, c->width, column_array(c, p), why))
-            return why->status;
+        (row ? (int64_t)shape[1] < n : (int64_t)shape[1] != n)) {
+        why_set(why, EX_DATAERR, "/particles/all/position/value: not of shape frames x %lld x 3",
+                (long long)n);
+        goto end;
     }
-    for (const struct column *c = layout_motion; c->name; c++) {
-        char path[80];
-        snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
-        if (source_rows(r->source, path, c->type, k, 1, n * c->width, column_array(c, p), why))
-            return why->status;
-    }
+    if (packing_init(p, dim, n, why) || read_parameters(r->source, p, why) ||
+        read_material(r->source, p, why) || read_walls(r->source, p, why) ||
+        (row ? read_roster(r, k, row, p, why) : read_bodies(r, k, p, why)) ||
+        flow_tables_read(r->source, k, p, why))
+        goto end;
     p->step = r->step[k], p->t = r->time[k];
-    return packing_check(p, why);
+    packing_check(p, why);
+end:
+    free(row);
+    return why->status;
 }
 
 /* What contacts_check leaves: they are sorted, each pair once, and their states are states. */

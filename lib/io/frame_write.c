@@ -1,6 +1,8 @@
 #include "io/frame_write.h"
 
+#include "io/flow_tables.h"
 #include "io/h5.h"
+#include "io/roster.h"
 #include "io/stream.h"
 #include "io/unknown.h"
 
@@ -56,7 +58,8 @@ static int write_parameters(hid_t file, const struct frame *f, struct why *why)
         h5_attr(file, "/nsd", "dt", H5T_NATIVE_DOUBLE, -1, &p->dt, why) ||
         h5_attr(file, "/nsd", "theta", H5T_NATIVE_DOUBLE, -1, &p->theta, why) ||
         h5_attr(file, "/nsd", "gravity", H5T_NATIVE_DOUBLE, 3, g, why) ||
-        h5_attr(file, "/nsd", "seed", H5T_NATIVE_INT64, -1, &seed, why))
+        h5_attr(file, "/nsd", "seed", H5T_NATIVE_INT64, -1, &seed, why) ||
+        (p->overlap && h5_attr_text(file, "/nsd", "overlap", overlap_name[p->overlap], why)))
         return why->status;
     return p->scene ? h5_write_text(file, "/nsd/scene", p->scene, why) : 0;
 }
@@ -99,7 +102,7 @@ static int write_box(hid_t file, struct why *why)
 static int write_bodies_and_walls(struct table_write *s, const struct packing *p, struct why *why)
 {
     const hsize_t n = (hsize_t)p->n;
-    for (const struct column *c = layout_bodies; c->name; c++) {
+    for (const struct column *c = layout_bodies; c->name && !s->roster; c++) {
         char path[80];
         snprintf(path, sizeof path, "/particles/all/%s", c->name);
         if (h5_write(s->file, path, column_native(c->type), 1, &n, column_array(c, p), c->units,
@@ -116,8 +119,18 @@ static int write_bodies_and_walls(struct table_write *s, const struct packing *p
 
 /* ---- what belongs to one frame ---- */
 
+/* A trajectory whose bodies come and go */
+static int write_roster(struct table_write *s, const struct packing *p, struct why *why)
+{
+    int64_t *row;
+    if (!roster_enter(s->roster, s, p, &row, why)) roster_write(s->roster, s, p, row, why);
+    free(row);
+    return why->status;
+}
+
 static int write_motion(struct table_write *s, const struct packing *p, struct why *why)
 {
+    if (s->roster) return write_roster(s, p, why);
     for (const struct column *c = layout_motion; c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
@@ -217,7 +230,8 @@ int frame_write_moment(struct table_write *s, const struct frame *f, struct why 
 {
     if (f->packed &&
         (write_motion(s, &f->packing, why) ||
-         write_clock(s, position, false, &f->packing.t, particles, layout_motion, why)))
+         write_clock(s, position, false, &f->packing.t, particles, layout_motion, why) ||
+         flow_write(s, &f->packing, why)))
         return why->status;
     if (f->packed && f->detected && write_contacts(s, f, why)) return why->status;
     return f->reported ? write_report(s, &f->report, why) : 0;
@@ -226,5 +240,8 @@ int frame_write_moment(struct table_write *s, const struct frame *f, struct why 
 int frame_write_step(struct table_write *s, const struct frame *f, struct why *why)
 {
     if (!f->packed) return 0;
-    return write_clock(s, position, true, &f->packing.step, particles, layout_motion, why);
+    bool first = !table_write_grows(s, "/particles/all/position/step");
+    if (write_clock(s, position, true, &f->packing.step, particles, layout_motion, why))
+        return why->status;
+    return first ? flow_link(s, &f->packing, why) : 0;
 }

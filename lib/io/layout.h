@@ -106,6 +106,32 @@ static const struct column layout_report[] = {
     { 0 },
 };
 
+/* /observables/flow/NAME/value [F][pours], or [removals]: members of struct passage */
+static const struct column layout_poured[] = {
+    { "poured", "1", COLUMN_I64, 1, offsetof(struct passage, bodies) },
+    { "poured_mass", "kg", COLUMN_F64, 1, offsetof(struct passage, mass) },
+    { 0 },
+};
+static const struct column layout_removed[] = {
+    { "removed", "1", COLUMN_I64, 1, offsetof(struct passage, bodies) },
+    { "removed_mass", "kg", COLUMN_F64, 1, offsetof(struct passage, mass) },
+    { 0 },
+};
+
+/* /observables/flow/events/NAME [E][width]: members of struct event */
+static const struct column layout_events[] = {
+    { "step", "1", COLUMN_I64, 1, offsetof(struct event, step) },
+    { "time", "s", COLUMN_F64, 1, offsetof(struct event, t) },
+    { "id", "1", COLUMN_I32, 1, offsetof(struct event, id) },
+    { "came", "1", COLUMN_I8, 1, offsetof(struct event, came) },
+    { "which", "1", COLUMN_I32, 1, offsetof(struct event, which) },
+    { "radius", "m", COLUMN_F64, 1, offsetof(struct event, radius) },
+    { "mass", "kg", COLUMN_F64, 1, offsetof(struct event, mass) },
+    { "position", "m", COLUMN_F64, 3, offsetof(struct event, x) },
+    { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct event, v) },
+    { 0 },
+};
+
 /* The array that the struct's member of this column points to */
 void *column_array(const struct column *column, const void *structure);
 /* A column's numbers out of an array of n structs, and back into one. */

@@ -33,6 +33,11 @@ void reader_copies(struct reader *r)
     r->copies = true;
 }
 
+const char *reader_loses(const struct reader *r)
+{
+    return r->doc.frames > 1 ? unknown_timed(r->source) : NULL;
+}
+
 void reader_close(struct reader *r)
 {
     if (!r) return;
@@ -82,8 +87,7 @@ int reader_document(struct reader *r, int64_t *frames, struct why *why)
     if (source_next(r->source, &d, &more, why)) return why->status;
     if (!more) return 0;
     if (frame_read_open(&r->doc, r->source, why)) return name_document(r, why);
-    if (r->copies &&
-        unknown_read(&r->unknown, r->source, r->doc.frames <= 1, d.foreign || d.unfinished, why))
+    if (r->copies && unknown_read(&r->unknown, r->source, r->doc.frames <= 1, why))
         return name_document(r, why);
     *frames = r->doc.frames;
     return 0;

@@ -21,6 +21,10 @@ void reader_unpack(double bytes);
 /* Frames shall bring along what nsd does not know in their documents, for a writer to copy. */
 void reader_copies(struct reader *reader);
 
+/* Something in the open document that depends on time and that nsd does not know, so that frames
+   do not bring it along: its path, or NULL. */
+const char *reader_loses(const struct reader *reader);
+
 /*
  * Opens the next document and tells in *frames how many it holds: 1 for an FCLIB problem, -1 when
  * there is no further document. All that is read from a file is checked first (EX_DATAERR).

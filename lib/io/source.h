@@ -2,16 +2,17 @@
  * io/source.h: what is in the documents of a stream, read by a process of its own.
  *
  * libhdf5 crashes on damaged files, and worse is possible with files made to harm. So a child of the
- * tool opens the files and asks libhdf5 (io/serve.h), with bounds on its memory and time, and hands
- * over plain numbers and texts through shared memory. Whatever becomes of the child, the tool goes
- * on, and says which document it was (EX_DATAERR).
+ * tool opens the files and asks libhdf5 (io/server.h), with bounds on its memory and time, and hands
+ * over plain numbers and texts. Whatever becomes of the child, the tool goes on, and says which
+ * document it was (EX_DATAERR).
  *
  * Paths are absolute; "" is the root.
  */
 #ifndef NSD_SOURCE_H
 #define NSD_SOURCE_H
 
-#include "io/serve.h"
+#include "io/h5.h"
+#include "io/object.h"
 
 struct source;
 
@@ -76,12 +77,5 @@ int source_attribute(struct source *source, const char *path, const char *name,
 void *source_raw(struct source *source, const char *path, uint64_t *size, struct why *why);
 /* All attributes of an object, as a sequence of struct object; to be freed. */
 void *source_attributes(struct source *source, const char *path, uint64_t *size, struct why *why);
-
-/*
- * The object at bytes[*at] of such a sequence, its shape, name and data; *at moves behind it. False
- * at the end, and where the bytes are no such object.
- */
-bool source_unpack(const unsigned char *bytes, uint64_t size, uint64_t *at, struct object *object,
-                   const uint64_t **shape, const char **name, const void **data);
 
 #endif

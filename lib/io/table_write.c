@@ -2,11 +2,25 @@
 
 #include "io/h5.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static hid_t create(hid_t file, const char *path, enum column_type type, int rank,
+/* Room for bodies to come, in datasets of [frames][bodies]; in frames before they came, their rows
+   say so: their id is -1, their numbers are no numbers. */
+static void make_room(const struct table_write *s, const char *path, enum column_type type,
+                      int rank, hsize_t most[4], hsize_t chunk[4], hid_t plist)
+{
+    const double none = NAN;
+    const int32_t nobody = -1;
+    if (!s->most_bodies || rank < 2 || strncmp(path, "/particles/all/", 15) != 0) return;
+    most[1] = s->most_bodies, chunk[1] = s->chunk_bodies;
+    H5Pset_fill_value(plist, column_native(type),
+                      type == COLUMN_F64 ? (const void *)&none : (const void *)&nobody);
+}
+
+static hid_t create(const struct table_write *s, const char *path, enum column_type type, int rank,
                     const hsize_t *shape, hsize_t chunk_rows, const char *units, struct why *why)
 {
     hsize_t empty[4] = { 0 }, most[4] = { H5S_UNLIMITED }, chunk[4] = { chunk_rows };
@@ -14,10 +28,15 @@ static hid_t create(hid_t file, const char *path, enum column_type type, int ran
         empty[k] = most[k] = shape[k];
         chunk[k] = shape[k] < 1 ? 1 : shape[k] > CHUNK_BODIES ? CHUNK_BODIES : shape[k];
     }
+    hid_t file = s->file, plist = h5_dataset_plist();
+    make_room(s, path, type, rank, most, chunk, plist);
     char parent[80];
     snprintf(parent, sizeof parent, "%.*s", (int)(strrchr(path, '/') - path), path);
-    if (h5_group(file, parent, why)) return -1;
-    hid_t space = H5Screate_simple(rank, empty, most), plist = h5_dataset_plist();
+    if (h5_group(file, parent, why)) {
+        H5Pclose(plist);
+        return -1;
+    }
+    hid_t space = H5Screate_simple(rank, empty, most);
     hid_t disk = H5Tcopy(column_native(type));
     H5Tset_order(disk, H5T_ORDER_LE);
     H5Pset_chunk(plist, rank, chunk);
@@ -53,6 +72,7 @@ static int append(hid_t set, enum column_type type, int rank, const hsize_t *sha
     H5Sclose(space);
     start[0] = size[0];
     size[0] += shape[0];
+    for (int k = 1; k < rank; k++) size[k] = shape[k] > size[k] ? shape[k] : size[k];
     if (H5Dset_extent(set, size) < 0) return -1;
     hid_t disk = H5Dget_space(set), memory = H5Screate_simple(rank, shape, NULL);
     H5Sselect_hyperslab(disk, H5S_SELECT_SET, start, NULL, shape, NULL);
@@ -72,7 +92,7 @@ int table_write_rows(struct table_write *s, const char *path, enum column_type t
     if (set < 0) {
         if (s->count == GROWING_DATASETS)
             return why_set(why, EX_SOFTWARE, "%s: too many datasets", path);
-        set = create(s->file, path, type, rank, shape, chunk_rows, units, why);
+        set = create(s, path, type, rank, shape, chunk_rows, units, why);
         if (set < 0) return why->status;
         snprintf(s->open[s->count].path, sizeof s->open[0].path, "%s", path);
         s->open[s->count++].set = set;

@@ -8,7 +8,7 @@
 #include "io/layout.h"
 
 enum {
-    GROWING_DATASETS = 64, /* at once; the tables of io/layout.h have fewer columns than that */
+    GROWING_DATASETS = 96, /* at once; the tables of io/layout.h have fewer columns than that */
     CHUNK_FRAMES = 64,     /* rows a chunk of one number a frame: half a KiB of reals */
     CHUNK_CONTACTS = 256,  /* rows a chunk of contacts: 2 KiB of reals; few are left empty */
     CHUNK_BODIES = 8192    /* at most, a chunk of one frame of bodies: 192 KiB of positions */
@@ -17,12 +17,17 @@ enum {
 struct table_write {
     hid_t file;
     bool growing; /* a trajectory */
+    /* Where bodies come and go, its datasets of [frames][bodies]: the most bodies that they can have,
+       and how many a chunk has; 0: as many as the first frame has, in chunks of CHUNK_BODIES */
+    hsize_t most_bodies, chunk_bodies;
+    struct roster *roster; /* the bodies then, else NULL; the writer's */
     struct {
         char path[80];
         hid_t set;
     } open[GROWING_DATASETS]; /* datasets that grow stay open */
     int count;                /* of open datasets */
     int64_t contacts;         /* rows of /contacts so far */
+    int64_t events;           /* rows of /observables/flow/events so far */
 };
 
 /*

@@ -1,5 +1,6 @@
 #include "io/unknown.h"
 
+#include "io/element.h"
 #include "io/source.h"
 
 #include <stdio.h>
@@ -9,7 +10,7 @@
 /* A group, or a dataset and its data; with attributes */
 struct item {
     struct object object;
-    hsize_t shape[SERVE_RANK];
+    hsize_t shape[OBJECT_RANK];
     char *path;
     char *text; /* of a scalar text, else NULL */
     void *data; /* of any other dataset, else NULL */
@@ -19,7 +20,6 @@ struct item {
 
 struct unknown {
     int owners;
-    bool unchecked; /* attributes of groups are left out */
     int64_t count, room;
     struct item *item;
 };
@@ -36,7 +36,7 @@ static const struct {
       { "box", "position", "velocity", "angular_velocity", "orientation", "radius", "mass",
         "inertia", "id", "species" } },
     { "/walls", { "plane" } },
-    { "/observables", { "solver" } },
+    { "/observables", { "solver", "flow" } },
 };
 
 enum { GROUPS = sizeof looked_through / sizeof looked_through[0] };
@@ -62,16 +62,15 @@ static bool is_unknown(const char *path)
     return false;
 }
 
-static int read_item(struct item *i, bool unchecked, struct source *s, struct why *why)
+static int read_item(struct item *i, struct source *s, struct why *why)
 {
     const struct object *o = &i->object;
     uint64_t size;
-    if (o->kind == OBJECT_OTHER || o->rank > SERVE_RANK ||
+    if (o->kind == OBJECT_OTHER || o->rank > OBJECT_RANK ||
         (o->rank && o->kind != OBJECT_GROUP && !o->size))
         return why_set(why, EX_DATAERR, "%s: neither numbers nor texts: it cannot be copied",
                        i->path);
-    if (o->kind != OBJECT_GROUP || !unchecked)
-        i->attributes = source_attributes(s, i->path, &i->attributes_size, why);
+    i->attributes = source_attributes(s, i->path, &i->attributes_size, why);
     if (o->kind == OBJECT_TEXT && !o->rank)
         i->text = source_text(s, i->path, NULL, why);
     else if (o->kind != OBJECT_GROUP && !why->status)
@@ -91,8 +90,8 @@ static int add(struct unknown *u, const struct object *o, const char *path, cons
     struct item *i = &u->item[u->count++];
     *i = (struct item){ .object = *o, .path = strdup(path) };
     if (!i->path) return why_set(why, EX_SOFTWARE, "no memory for a copy of %s", path);
-    for (uint32_t k = 0; k < o->rank && o->rank <= SERVE_RANK; k++) i->shape[k] = shape[k];
-    return read_item(i, u->unchecked, s, why);
+    for (uint32_t k = 0; k < o->rank && o->rank <= OBJECT_RANK; k++) i->shape[k] = shape[k];
+    return read_item(i, s, why);
 }
 
 /* An object and all that is in it, which follows it in the walk; the first that does not. */
@@ -111,14 +110,13 @@ static int64_t add_tree(struct unknown *u, struct source *s, int64_t k, struct w
     return k;
 }
 
-int unknown_read(struct unknown **out, struct source *s, bool whole, bool unchecked,
-                 struct why *why)
+int unknown_read(struct unknown **out, struct source *s, bool whole, struct why *why)
 {
     struct unknown *u = *out = NULL;
     const char *path;
     const uint64_t *shape;
     for (int64_t k = 0; !why->status && source_object(s, k, &path, &shape);) {
-        char step[SERVE_PATH + 8];
+        char step[OBJECT_PATH + 8];
         const struct object *o = source_object(s, k, &path, &shape);
         snprintf(step, sizeof step, "%s/step", path);
         if (o->attribute || !is_unknown(path) || (!whole && source_has(s, step))) {
@@ -127,10 +125,23 @@ int unknown_read(struct unknown **out, struct source *s, bool whole, bool unchec
         }
         if (!u) *out = u = calloc(1, sizeof *u);
         if (!u) return why_set(why, EX_SOFTWARE, "no memory for a copy of %s", path);
-        u->owners = 1, u->unchecked = unchecked;
+        u->owners = 1;
         k = add_tree(u, s, k, why);
     }
     return why->status;
+}
+
+const char *unknown_timed(struct source *s)
+{
+    const char *path;
+    const uint64_t *shape;
+    for (int64_t k = 0; source_object(s, k, &path, &shape); k++) {
+        char step[OBJECT_PATH + 8];
+        const struct object *o = source_object(s, k, &path, &shape);
+        snprintf(step, sizeof step, "%s/step", path);
+        if (!o->attribute && is_unknown(path) && source_has(s, step)) return path;
+    }
+    return NULL;
 }
 
 struct unknown *unknown_share(struct unknown *u)
@@ -150,17 +161,6 @@ void unknown_free(struct unknown *u)
     free(u);
 }
 
-/* The memory type of an item's elements. To be closed when it is a string. */
-static hid_t element_type(const struct object *o)
-{
-    if (o->class != 's') return h5_plain(o->class, o->size);
-    hid_t type = H5Tcopy(H5T_C_S1);
-    H5Tset_size(type, o->size);
-    H5Tset_strpad(type, H5T_STR_NULLPAD);
-    H5Tset_cset(type, H5T_CSET_UTF8);
-    return type;
-}
-
 static int write_attributes(const struct item *i, hid_t file, struct why *why)
 {
     uint64_t at = 0;
@@ -169,11 +169,11 @@ static int write_attributes(const struct item *i, hid_t file, struct why *why)
     const char *name;
     const void *data;
     while (!why->status &&
-           source_unpack(i->attributes, i->attributes_size, &at, &o, &shape, &name, &data)) {
+           object_unpack(i->attributes, i->attributes_size, &at, &o, &shape, &name, &data)) {
         if (o.kind == OBJECT_OTHER || !o.size)
             return why_set(why, EX_DATAERR, "%s@%s: neither numbers nor texts: it cannot be copied",
                            i->path, name);
-        hsize_t dims[SERVE_RANK], points = 1;
+        hsize_t dims[OBJECT_RANK], points = 1;
         for (uint32_t k = 0; k < o.rank; k++) points *= dims[k] = shape[k];
         if (points * o.size != o.data)
             return why_set(why, EX_DATAERR, "%s@%s: of another size", i->path, name);

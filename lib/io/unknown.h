@@ -15,13 +15,13 @@ struct source;
 struct unknown;
 
 /*
- * All of it; NULL where there is nothing. Unless `whole` (the document has one frame) only what does
- * not depend on time. Attributes of groups come along unless the document is `unchecked`: FCLIB
- * problems from elsewhere have always been copied without. EX_DATAERR: there is something that is
- * neither numbers nor texts, and would be lost.
+ * All of it, with attributes; NULL where there is nothing. Unless `whole` (the document has one frame)
+ * only what does not depend on time. EX_DATAERR: there is something that is neither numbers nor texts,
+ * and would be lost.
  */
-int unknown_read(struct unknown **unknown, struct source *source, bool whole, bool unchecked,
-                 struct why *why);
+int unknown_read(struct unknown **unknown, struct source *source, bool whole, struct why *why);
+/* The path of the first object that unknown_read leaves out unless `whole`, or NULL. */
+const char *unknown_timed(struct source *source);
 /* One more owner, who frees it too. */
 struct unknown *unknown_share(struct unknown *unknown);
 void unknown_free(struct unknown *unknown);

@@ -1,12 +1,15 @@
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): F_OFD_SETLK
 #include "io/writer.h"
 
+#include "base/unfinished.h"
 #include "io/frame_write.h"
 #include "io/h5.h"
+#include "io/roster.h"
 #include "io/stream.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <libgen.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,7 +29,10 @@ struct shared {
     int dim;
     int64_t n;
     double dt, theta;
-    uint32_t crc; /* of their radii and masses */
+    enum overlap overlap;
+    uint32_t
+        crc; /* of their radii and masses; 0 where bodies come and go: io/roster.c sees to it */
+    int32_t pours, removals;
 };
 
 struct writer {
@@ -37,10 +43,15 @@ struct writer {
     int disk;               /* a trajectory's file, opened again: > opens it for writing only */
     struct table_write doc; /* a trajectory's datasets; file -1 before the first frame */
     struct shared first;    /* what its first frame has set */
+    struct roster roster;   /* its bodies, where they come and go */
     bool contacts, solved, moved; /* does it have contacts yet, and which kind */
     int64_t step;                 /* of the last frame */
     int64_t frames;               /* that are finished */
     off_t end;                    /* of the file, at the last flush */
+    /* a trajectory that takes a file's place, until it has: */
+    int old;                      /* the file, open and locked; else -1 */
+    char *place, *elsewhere;      /* its path, and that of the new one */
+    struct unfinished unfinished; /* the file, before there is anything in it */
 };
 
 static int output_failed(const struct writer *s, struct why *why, const char *trouble)
@@ -78,12 +89,13 @@ int writer_open(struct writer **out, const char *path, enum writer_kind kind, st
     struct writer *s = *out = calloc(1, sizeof *s);
     if (!s) return why_set(why, EX_SOFTWARE, "no memory");
     h5_start();
-    s->doc.file = s->disk = -1;
+    s->doc.file = s->disk = s->old = -1;
     s->name = path ? path : "standard output";
     s->fd = path ? open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666) : STDOUT_FILENO;
     if (s->fd < 0) return output_failed(s, why, strerror(errno));
     s->append = fcntl(s->fd, F_GETFL) & O_APPEND;
     if (!s->append && take_hold(s, F_OFD_SETLK, why)) return why->status;
+    if (path) unfinished_begin(&s->unfinished, path, s->fd);
     struct stat st;
     if (path && !fstat(s->fd, &st) && S_ISREG(st.st_mode) && ftruncate(s->fd, 0))
         return output_failed(s, why, strerror(errno));
@@ -95,6 +107,68 @@ int writer_open(struct writer **out, const char *path, enum writer_kind kind, st
     snprintf(again, sizeof again, "/proc/self/fd/%d", s->fd);
     if (own && kind == WRITER_TRAJECTORY) s->disk = open(again, O_RDWR | O_CLOEXEC);
     s->trajectory = s->disk >= 0;
+    return 0;
+}
+
+/* ---- in the place of another file ---- */
+
+/* The new file, until it has its place: a tool that ends before removes it. (One without a name,
+   O_TMPFILE, libhdf5 does not open.) */
+static char *beside;
+
+static void remove_beside(void)
+{
+    if (beside) unlink(beside);
+}
+
+/* A file in the folder of s->place; the one writer that has s->place locked may use its name. */
+static int open_beside(struct writer *s, mode_t mode, struct why *why)
+{
+    char *folder = strdup(s->place);
+    size_t room = strlen(s->place) + 32;
+    s->elsewhere = malloc(room);
+    if (folder && s->elsewhere) {
+        const char *name = strrchr(s->place, '/') + 1; // of an absolute path
+        snprintf(s->elsewhere, room, "%s/.%s.nsd-new", dirname(folder), name);
+        s->fd = open(s->elsewhere, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, mode);
+    }
+    bool allocated = folder && s->elsewhere;
+    free(folder);
+    if (!allocated) return why_set(why, EX_SOFTWARE, "no memory");
+    if (s->fd < 0) return output_failed(s, why, strerror(errno));
+    beside = s->elsewhere;
+    return atexit(remove_beside) ? why_set(why, EX_SOFTWARE, "no memory") : 0;
+}
+
+int writer_open_over(struct writer **out, const char *path, struct why *why)
+{
+    struct stat st;
+    struct writer *s = *out = calloc(1, sizeof *s);
+    if (!s) return why_set(why, EX_SOFTWARE, "no memory");
+    h5_start();
+    s->doc.file = s->disk = s->fd = -1;
+    s->name = path;
+    s->place = realpath(path, NULL); // a link stays one
+    s->old = s->place ? open(s->place, O_RDWR | O_CLOEXEC) : -1;
+    if (s->old < 0 || fstat(s->old, &st)) return output_failed(s, why, strerror(errno));
+    if (!S_ISREG(st.st_mode)) return output_failed(s, why, "not a regular file");
+    s->fd = s->old;
+    if (take_hold(s, F_OFD_SETLK, why) || open_beside(s, st.st_mode & 0777, why) ||
+        take_hold(s, F_OFD_SETLK, why))
+        return why->status;
+    char again[40];
+    snprintf(again, sizeof again, "/proc/self/fd/%d", s->fd);
+    s->disk = open(again, O_RDWR | O_CLOEXEC);
+    s->trajectory = s->disk >= 0;
+    return s->trajectory ? 0 : output_failed(s, why, strerror(errno));
+}
+
+int writer_take_place(struct writer *s, struct why *why)
+{
+    if (fsync(s->fd) || rename(s->elsewhere, s->place)) // on disk before the old one goes
+        return output_failed(s, why, strerror(errno));
+    close(s->old);
+    s->old = -1, beside = NULL;
     return 0;
 }
 
@@ -191,14 +265,25 @@ static bool write_at(const struct writer *s, const unsigned char *bytes, size_t 
     return true;
 }
 
+/* The other way round; false also where the file ends before. */
+static bool read_at(const struct writer *s, unsigned char *bytes, size_t size, off_t at)
+{
+    for (size_t done = 0; done < size;) {
+        ssize_t n = pread(s->disk, bytes + done, size - done, at + (off_t)done);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return false;
+        done += (size_t)n;
+    }
+    return true;
+}
+
 /* Is what was written still there? A shell's > f cuts f off, and what HDF5 writes then leaves holes. */
 static bool still_there(const struct writer *s)
 {
     unsigned char header[DOCUMENT_USERBLOCK], now[DOCUMENT_USERBLOCK];
     struct stat st;
     document_header(header, 0, 0);
-    return !fstat(s->disk, &st) && st.st_size >= s->end &&
-           pread(s->disk, now, sizeof now, 0) == (ssize_t)sizeof now &&
+    return !fstat(s->disk, &st) && st.st_size >= s->end && read_at(s, now, sizeof now, 0) &&
            !memcmp(header, now, sizeof now);
 }
 
@@ -218,7 +303,10 @@ static int reserve(struct writer *s, const struct frame *f, struct why *why)
     hsize_t size = 0, n = (hsize_t)f->packing.n, rows = 0;
     if (H5Fget_filesize(s->doc.file, &size) < 0) return output_failed(s, why, "cannot be written");
     if (n > CHUNK_BODIES) n += CHUNK_BODIES; // chunks are whole
+    if (s->doc.roster) // bodies that were there before, and what their rows are rounded up to
+        n += (hsize_t)s->roster.rows + 2 * s->doc.chunk_bodies;
     if (f->detected) rows = (hsize_t)f->contacts.n + CHUNK_CONTACTS;
+    rows += (hsize_t)f->packing.events.n;
     // 128 bytes a body, and as many of its motion, 256 a contact, and the tables that may grow
     hsize_t frame = 256 * n + 256 * rows + (1 << 17);
     struct stat st; // HDF5 sometimes cuts the reserve off
@@ -250,9 +338,11 @@ static int flush(struct writer *s, struct why *why)
 
 static struct shared shared_of(const struct packing *p)
 {
+    if (packing_varies(p))
+        return (struct shared){ p->dim, 0, p->dt, p->theta, p->overlap, 0, p->pours, p->removals };
     uint32_t crc = document_crc(0, p->radius, (size_t)p->n * sizeof *p->radius);
     crc = document_crc(crc, p->mass, (size_t)p->n * sizeof *p->mass);
-    return (struct shared){ p->dim, p->n, p->dt, p->theta, crc };
+    return (struct shared){ p->dim, p->n, p->dt, p->theta, p->overlap, crc, 0, 0 };
 }
 
 /* What is stored only with the first frame has to be true of all. */
@@ -264,6 +354,10 @@ static int check_same(const struct writer *s, const struct frame *f, struct why 
                        (long long)p.n);
     if (p.dim != q.dim || p.dt != q.dt || p.theta != q.theta)
         return why_set(why, EX_DATAERR, "dim, dt or theta differ from the trajectory's");
+    if (p.overlap && q.overlap && p.overlap != q.overlap) // that of a scene is not said yet
+        return why_set(why, EX_DATAERR, "overlap differs from the trajectory's");
+    if (p.pours != q.pours || p.removals != q.removals)
+        return why_set(why, EX_DATAERR, "other pours or removals than the trajectory's");
     if (p.crc != q.crc) return why_set(why, EX_DATAERR, "other bodies than the trajectory's");
     if (f->packing.step <= s->step)
         return why_set(why, EX_DATAERR, "step %lld after step %lld: a trajectory's steps increase",
@@ -286,7 +380,13 @@ static int trajectory_begin(struct writer *s, const struct frame *f, struct why 
     if (s->doc.file < 0) return output_failed(s, why, "cannot be written");
     if (H5Fset_libver_bounds(s->doc.file, H5F_LIBVER_V110, H5F_LIBVER_V110) < 0)
         return output_failed(s, why, "cannot be written (full?)");
-    if (reserve(s, f, why)) return why->status;
+    if (packing_varies(&f->packing)) {
+        int64_t most, chunk;
+        roster_bounds(&f->packing, &most, &chunk, why);
+        s->doc.most_bodies = (hsize_t)most, s->doc.chunk_bodies = (hsize_t)chunk;
+        s->doc.roster = &s->roster;
+    }
+    if (why->status || reserve(s, f, why)) return why->status;
     s->first = shared_of(&f->packing);
     s->step = f->packing.step - 1;
     return write_header(s, 0, 0, why) || frame_write_static(&s->doc, f, why) ? why->status : 0;
@@ -339,8 +439,9 @@ int writer_frame(struct writer *s, const struct frame *f, struct why *why)
         return why->status; // no reader would accept it
     if (!f->packed && s->doc.file < 0)
         s->trajectory = false; // an FCLIB problem is a document of its own
-    if (!s->trajectory) return stream_frame(s, f, why);
-    if (!trajectory_frame(s, f, why)) return 0;
+    int e = s->trajectory ? trajectory_frame(s, f, why) : stream_frame(s, f, why);
+    if (!e) unfinished_done(&s->unfinished);
+    if (!e || !s->trajectory) return e;
     // half a first frame is nothing; HDF5 writes no more, for h5_start has told it so
     if (!s->frames && ftruncate(s->disk, 0)) return why->status;
     return why->status;
@@ -349,7 +450,12 @@ int writer_frame(struct writer *s, const struct frame *f, struct why *why)
 int writer_close(struct writer *s, struct why *why)
 {
     int e = s->doc.file >= 0 ? trajectory_close(s, why) : 0;
+    unfinished_done(&s->unfinished);
     if (s->disk >= 0) close(s->disk);
+    if (s->old >= 0) close(s->old);
+    if (beside && beside == s->elsewhere) unlink(beside), beside = NULL;
+    free(s->place), free(s->elsewhere);
+    roster_free(&s->roster);
     if (close(s->fd) && !e) e = output_failed(s, why, strerror(errno));
     free(s);
     return e;

@@ -22,6 +22,14 @@ enum writer_kind {
 int writer_open(struct writer **writer, const char *path, enum writer_kind kind, struct why *why);
 
 /*
+ * A trajectory that shall take the place of the file at `path`, which stays as it is, and locked,
+ * until writer_take_place: the new one is then there in one stroke, and grows on. Killed before, it
+ * has left nothing. EX_IOERR: the file cannot be written, or another program is writing it.
+ */
+int writer_open_over(struct writer **writer, const char *path, struct why *why);
+int writer_take_place(struct writer *writer, struct why *why);
+
+/*
  * Writes one more frame. A trajectory keeps the bodies, walls and parameters of its first frame and
  * demands the same bodies of every other. Its frame is on disk when this returns, and whoever reads
  * the unfinished file sees whole frames only. Objects of frame->origin that nsd does not know are

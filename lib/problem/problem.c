@@ -1,6 +1,8 @@
 /* problem/problem.c: the bundles of a packing and of a given W [problem/problem.h]. */
 #include "problem/problem.h"
 
+#include "bodies/kinematics.h"
+#include "problem/offset.h"
 #include "problem/schedule.h"
 
 #include <assert.h>
@@ -136,6 +138,17 @@ static int32_t place_of(struct problem *p, int32_t i, int64_t *next)
     return body_place((*next)++);
 }
 
+/* un: u^-_n of the bodies alone, m/s */
+static void add_offset(struct rebound *e, int k, const struct packing *pack,
+                       const struct contact *c, double un)
+{
+    struct offset o;
+    offset_of(pack, c, un, &o);
+    // D^-1 (E (u^- + moves) + moves + law): of moves D^-1 leaves what it was
+    const double en[3] = { c->en, c->et, c->et };
+    for (int j = 0; j < 3; j++) e->offset[j][k] += o.moves[j] + o.law[j] / (1 + en[j]);
+}
+
 /* Fills slot i except for the reaction. The bodies still have their velocities before the step. */
 static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
                       const struct contact *c, double alpha, double rho_factor)
@@ -147,13 +160,13 @@ static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
     int k = slot_lane(i);
     for (int j = 0; j < 3; j++) r->n[j][k] = n[j], r->t1[j][k] = t1[j];
     r->mu[k] = c->mu;
-    vec3 xa = c->a < 0 ? c->x : packing_predict(pack, c->a), xb = packing_predict(pack, c->b);
-    contact_arms(c, xa, xb, &r->la[k], &r->lb[k]);
+    arms_of(pack, c, (1 - pack->theta) * pack->dt, &r->la[k], &r->lb[k]);
     const struct body *a = &p->body[body_index(r->a[k])], *b = &p->body[body_index(r->b[k])];
     double u[3], im = a->im + b->im;
     double it = im + r->la[k] * r->la[k] * a->ii + r->lb[k] * r->lb[k] * b->ii;
     body_velocity(p->body, r, NULL, k, u); // u^-
     for (int j = 0; j < 3 && e; j++) e->offset[j][k] = u[j] * (en[j] / (1 + en[j]));
+    if (e && offset_in(pack, c)) add_offset(e, k, pack, c, u[0]);
     for (int j = 0; j < 2 && e; j++) e->s[j][k] = s[j];
     r->w[0][k] = s[0] * im, r->w[1][k] = s[1] * it;
     for (int j = 0; j < 2; j++) r->iw[j][k] = 1 / r->w[j][k];
@@ -194,10 +207,11 @@ static int64_t count_bodies(const struct packing *pack, const struct contacts *s
     return n;
 }
 
-static bool rebounds(const struct contacts *s)
+/* Whether u~ is anything but u */
+static bool rebounds(const struct packing *pack, const struct contacts *s)
 {
     for (int64_t i = 0; i < s->n; i++)
-        if (s->c[i].en > 0 || s->c[i].et > 0) return true;
+        if (s->c[i].en > 0 || s->c[i].et > 0 || offset_in(pack, &s->c[i])) return true;
     return false;
 }
 
@@ -212,7 +226,7 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     p->body = alloc_lines(p->bodies, sizeof *p->body);
     bool room = p->body && !schedule_bodies(&plan, order, s, pack) && lay_out_bundles(p, &plan);
     schedule_free(&plan);
-    if (room && rebounds(s))
+    if (room && rebounds(pack, s))
         room = (p->rebound = alloc_lines(p->bundles, sizeof *p->rebound)) != NULL;
     if (!room || !(p->seat = seat_bodies(p, pack, s, order))) return no_memory(p, why);
     set_bodies(p);

@@ -32,7 +32,7 @@ struct problem {
     int64_t n;               /* contacts */
     int64_t bundles, slots;  /* slots: 8 a bundle, some without a contact */
     struct bundle *bundle;   /* [bundles] in the order of the sweep */
-    struct rebound *rebound; /* [bundles]; NULL: e_n = e_t = 0 everywhere */
+    struct rebound *rebound; /* [bundles]; NULL: e_n = e_t = 0 everywhere, and no offset */
     double (*u)[3][BUNDLE];  /* [bundles] m/s: what the local method believes */
     int32_t *contact;        /* [slots] slot i is contact[i] of the packing or of W; -1: none */
     int64_t groups;          /* no two contacts of a group share a body (a block of W): */

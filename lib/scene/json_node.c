@@ -254,6 +254,19 @@ int json_node_text(jnode n, const char **out)
     return 0;
 }
 
+int json_node_word(jnode n, const char *const *words, int *out)
+{
+    const char *text = NULL;
+    if (json_node_text(n, &text)) return 1;
+    if (!text) return 0;
+    for (int k = 0; words[k]; k++) {
+        if (strcmp(words[k], text) != 0) continue;
+        *out = k;
+        return 0;
+    }
+    return json_node_fault(n, "\"%s\" is no choice here, \"%s\" is", text, words[0]);
+}
+
 int json_node_array(jnode n, size_t *length)
 {
     *length = json_array_size(n.json);

@@ -57,7 +57,9 @@ int json_node_number(jnode node, enum json_range range, double *out);
 int json_node_integer(jnode node, int64_t least, int64_t most, int64_t *out);
 int json_node_bool(jnode node, bool *out);
 int json_node_text(jnode node, const char **out); /* borrowed from the parsed text */
-int json_node_array(jnode node, size_t *length);  /* 0 when it is not there */
+/* One of these words, NULL ends them: *out is its index. */
+int json_node_word(jnode node, const char *const *words, int *out);
+int json_node_array(jnode node, size_t *length); /* 0 when it is not there */
 int json_node_vector(jnode node, int dim, vec3 *out);
 
 #endif

@@ -6,7 +6,14 @@
 void scene_free(struct scene *s)
 {
     for (int32_t k = 0; k < s->kinds; k++) free(s->kind[k].name);
-    for (int64_t i = 0; i < s->groups; i++) free(s->bodies[i].file);
+    for (int64_t i = 0; i < s->groups; i++) {
+        struct scene_bodies *b = &s->bodies[i];
+        scene_size_free(&b->size);
+        if (b->document) packing_free(b->document);
+        free(b->document), free(b->file);
+    }
+    for (int32_t i = 0; i < s->pours; i++) scene_size_free(&s->pour[i].size);
+    free(s->pour), free(s->removal);
     free(s->kind), free(s->law), free(s->bodies), free(s->wall), free(s->text);
     *s = (struct scene){ 0 };
 }

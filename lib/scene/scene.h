@@ -16,34 +16,57 @@
  *   e_n, e_t  0..1                     [0] restitution, normal and tangential, of every pair
  *   kinds     { NAME: { density } }    kinds of material; "ball" and "wall" are always there
  *   pairs     [ { pair: [NAME, NAME], mu, e_n, e_t } ]       exceptions, each pair once
+ *   time      number                   [0] s: of the packing; what moves by itself is where it then is
  *   overlap   true | false             [false] bodies may overlap at the start
  *   bodies    [ GROUP ]                [none]
- *   walls     [ WALL ]                 [none]
+ *   walls     [ WALL ]                 [those of the first document among the bodies, else none]
+ *   pour      [ POUR ]                 [none] grains that come, while the scene runs
+ *   remove    [ REMOVAL ]              [none] grains that go
  *
  * GROUP, one of
  *   { x: vector, radius: number }      one body
- *   { count: integer, radius: SIZE, box: BOX, spacing, jitter, thermal }   a random lattice
+ *   { count: integer, radius: SIZE, box: BOX, cells, spacing, jitter, thermal }   a random lattice
+ *   { random: { phi: 0..1 | count: integer }, radius: SIZE, box: BOX, thermal }   without a lattice:
+ *                                      as many as fill phi of the box, or count
  *   { file: string }                   a table, one body a line: x y z r, or x y r where dim is 2;
- *                                      # begins a comment; a relative name starts at the scene
+ *                                      # begins a comment, the first may name columns, see below
+ *   { document: string, frame: integer, at_rest: true | false }      the bodies of a document
+ *                                      [nsd-format(5)]: frame [-1], -1 is the last, 0 the first
+ *   a relative name starts at the scene
  * with, for each of its bodies,
  *   v vector [0] m/s; w vector, or a number where dim is 2 [0] rad/s; kind NAME ["ball"];
  *   density [its kind's] or mass, kg; fixed true | false [false]: moves with v and w whatever
- *   happens, so that its mass does not matter
+ *   happens, so that its mass does not matter. For a table or a document: [what it says]
  * and for a lattice
  *   box      [that of the first wall that is a BOX]    may be open only above (the last axis)
- *   spacing  number >= 1 [1.05]        least edge of a cell, in largest diameters
+ *   cells    "equal" | "own" ["equal"]  all of one size, or each as its body needs it
+ *   spacing  number >= 1 [1.05]        least edge of a cell, in largest diameters (own: in its own)
  *   jitter   0..1 [1]                  share of the free room in its cell that is used; no overlap
  *   thermal  number >= 0 [0]           m/s, standard deviation added to each component of v
+ *
+ * A table's first line may name its columns: "# x y z r kind", in any order. x y z and r or d (the
+ * diameter) are needed; mass density vx vy vz wx wy wz qw qx qy qz id kind fixed may be there.
  *
  * SIZE, the radius in m: a number, or one of
  *   { uniform: [min, max] }
  *   { gaussian: { mean, sd, min, max } }           drawn again until it lies in [min, max]
  *   { lognormal: { median, sigma, min, max } }     sigma: of the logarithm
+ *   { uniform_by_mass: [min, max] }                as much mass at every radius
+ *   { power: { exponent, min, max } }              density by number: r^-exponent
+ *   { sieve: [[size, passing], ...] }              share of the mass that passes a sieve of this
+ *                                                  aperture (m, a diameter), from 0 to 1
  *
  * BOX { x: [from, to], y: [from, to], z: [from, to] }: null is open, and so is an axis left out.
  *
  * WALL { point: vector, normal: vector } or { box: BOX }, with velocity vector [0], kind ["wall"].
  *   Bodies stay on the side that the normal, of any length, points to; in a box they stay inside.
+ *
+ * POUR { rate: bodies/s | mass_rate: kg/s, opening: { box: BOX } or { disc: { center, normal,
+ *   radius } }, radius: SIZE, v, w, kind, density or mass, from [time] s, until s, count }
+ *   [scene/flow.h]; in the plane the disc is a segment.
+ *
+ * REMOVAL { outside: BOX } or { inside: BOX } or { below: { point, normal } }, with kind [any]: bodies
+ *   go whose centre is there.
  *
  * The paper's examples. The paper gives radii, mu, dt and (example 1) the initial velocity. Our
  * choices: density 2500 kg/m^3, g 9.81 m/s^2, e_n = e_t = 0, and
@@ -57,6 +80,7 @@
 
 #include "base/why.h"
 #include "bodies/packing.h"
+#include "scene/scene_size.h"
 
 #include <stddef.h>
 
@@ -69,21 +93,29 @@ struct scene_law {
     double mu, en, et;
 };
 
-struct scene_size {
-    enum { SIZE_UNIFORM, SIZE_GAUSSIAN, SIZE_LOGNORMAL } law;
-    double mid, spread; /* gaussian: mean and sd, m; lognormal: median, m, and sigma */
-    double min, max;    /* m; a single radius is min = max */
-};
-
 struct scene_box {
     double lo[3], hi[3]; /* m; infinite where it is open */
 };
 
 struct scene_bodies {
-    enum scene_source { SCENE_ONE, SCENE_LATTICE, SCENE_TABLE } from;
-    int64_t count; /* bodies; 0 for a table, which is read only by scene_build */
+    enum scene_source {
+        SCENE_ONE,
+        SCENE_LATTICE,
+        SCENE_TABLE,
+        SCENE_SHELVES, /* a lattice whose cells fit their grains */
+        SCENE_RANDOM,
+        SCENE_DOCUMENT
+    } from;
+    int64_t count; /* bodies; 0 where only scene_build knows: tables, documents, "phi" */
     vec3 x;        /* m, SCENE_ONE */
-    char *file;    /* SCENE_TABLE */
+    char *file;    /* of a table or a document */
+    double phi;    /* SCENE_RANDOM: share of the box that is filled; 0: count bodies */
+    int64_t frame; /* SCENE_DOCUMENT: from 0, or from the end: -1 is the last */
+    bool at_rest;  /* SCENE_DOCUMENT: without its velocities */
+    bool has_v, has_w, has_kind, has_density, has_fixed; /* given for all bodies of the group */
+    /* SCENE_DOCUMENT: the frame, which whoever can read documents puts here before the scene is
+       built; owned */
+    struct packing *document;
     struct scene_size size;
     struct scene_box box;
     double spacing, jitter, thermal; /* of a lattice, as above */
@@ -91,6 +123,30 @@ struct scene_bodies {
     double density, mass;            /* kg/m^3 or kg/m^2; kg a body, 0: from the density */
     bool fixed;
     int32_t kind;
+};
+
+/* Where grains come in: one after another, each at a place drawn in the opening */
+struct scene_pour {
+    double rate; /* bodies a second or, by mass, kg/s */
+    bool by_mass;
+    double from, until;   /* s */
+    double count;         /* bodies at most; may be infinite */
+    struct scene_box box; /* the opening, m */
+    bool disc;            /* it is a disc instead, in the plane a segment: */
+    vec3 center, normal;  /* m; unit vector */
+    double radius;        /* m, of the disc */
+    struct scene_size size;
+    vec3 v, w;            /* m/s, rad/s */
+    double density, mass; /* as of struct scene_bodies */
+    int32_t kind;
+};
+
+/* Where grains go: bodies whose centre is there */
+struct scene_removal {
+    enum scene_region { REGION_OUTSIDE, REGION_INSIDE, REGION_BELOW } region;
+    struct scene_box box;
+    vec3 point, normal; /* m; unit vector: REGION_BELOW, on the side away from the normal */
+    int32_t kind;       /* only bodies of this kind; -1: of all */
 };
 
 struct scene {
@@ -109,6 +165,12 @@ struct scene {
 
     int32_t walls;
     struct wall *wall; /* [walls] */
+    bool has_walls;    /* else those of the first document are taken */
+    double t;          /* s: the packing's time */
+
+    int32_t pours, removals;       /* grains that come and go [scene/flow.h] */
+    struct scene_pour *pour;       /* [pours] */
+    struct scene_removal *removal; /* [removals] */
 
     char *text; /* the JSON, without blanks outside strings */
 };

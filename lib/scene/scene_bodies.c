@@ -4,59 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int read_uniform(jnode a, struct scene_size *z)
-{
-    size_t n;
-    if (json_node_array(a, &n)) return 1;
-    if (n != 2) return json_node_fault(a, "wants [min, max]");
-    if (json_node_number(json_node_item(&a, 0), J_POSITIVE, &z->min) ||
-        json_node_number(json_node_item(&a, 1), J_POSITIVE, &z->max))
-        return 1;
-    return z->min <= z->max ? 0 : json_node_fault(a, "max is less than min");
-}
-
-/* Probability that a standard normal deviate is below z */
-static double normal_below(double z)
-{
-    return 0.5 * erfc(-z * M_SQRT1_2);
-}
-
-/* A gaussian or lognormal distribution cut to [min, max], which must hold 1e-3 of it at least:
-   radii are drawn again until they lie in it. */
-static int read_bell(jnode o, struct scene_size *z)
-{
-    bool gauss = z->law == SIZE_GAUSSIAN;
-    const char *mid = gauss ? "mean" : "median", *spread = gauss ? "sd" : "sigma";
-    if (json_node_only(o, gauss ? "mean sd min max" : "median sigma min max") ||
-        json_node_need(&o, gauss ? "mean sd min max" : "median sigma min max") ||
-        json_node_number(json_node_key(&o, mid), gauss ? J_ANY : J_POSITIVE, &z->mid) ||
-        json_node_number(json_node_key(&o, spread), J_NOT_NEGATIVE, &z->spread) ||
-        json_node_number(json_node_key(&o, "min"), J_POSITIVE, &z->min) ||
-        json_node_number(json_node_key(&o, "max"), J_POSITIVE, &z->max))
-        return 1;
-    if (z->min > z->max) return json_node_fault(json_node_key(&o, "max"), "is less than min");
-    double from = gauss ? z->min - z->mid : log(z->min / z->mid);
-    double to = gauss ? z->max - z->mid : log(z->max / z->mid);
-    bool enough = z->spread > 0
-                      ? normal_below(to / z->spread) - normal_below(from / z->spread) > 1e-3
-                      : from <= 0 && to >= 0;
-    return enough ? 0 : json_node_fault(o, "[min, max] keeps less than a thousandth of it");
-}
-
-static int read_size(jnode n, struct scene_size *z)
-{
-    if (!json_is_object(n.json)) {
-        int bad = json_node_number(n, J_POSITIVE, &z->min);
-        z->max = z->min;
-        return bad;
-    }
-    int which = json_node_choice(n, "uniform gaussian lognormal");
-    if (which < 0 || json_node_only(n, "uniform gaussian lognormal")) return 1;
-    z->law = which == 0 ? SIZE_UNIFORM : which == 1 ? SIZE_GAUSSIAN : SIZE_LOGNORMAL;
-    if (which == 0) return read_uniform(json_node_key(&n, "uniform"), z);
-    return read_bell(json_node_key(&n, which == 1 ? "gaussian" : "lognormal"), z);
-}
-
 static int check_lattice(const jnode *o, int dim, const struct scene_bodies *b)
 {
     jnode box = json_node_key(o, "box");
@@ -67,6 +14,7 @@ static int check_lattice(const jnode *o, int dim, const struct scene_bodies *b)
         if (!(b->box.hi[i] - b->box.lo[i] <= 1e9 * b->size.max || i == dim - 1))
             return json_node_fault(box, "too wide for bodies of %g m", b->size.max);
     }
+    if (b->from == SCENE_SHELVES) return 0; // scene_build sees what fits
     struct scene_lattice l = scene_lattice(b, dim);
     double places = 1;
     for (int i = 0; i < dim; i++) {
@@ -82,10 +30,14 @@ static int check_lattice(const jnode *o, int dim, const struct scene_bodies *b)
 
 static int read_lattice(jnode o, const struct scene *s, bool boxed, struct scene_bodies *b)
 {
-    if (json_node_only(o, "count radius box spacing jitter thermal v w kind density mass fixed") ||
+    static const char *const cells[] = { "equal", "own", NULL };
+    int own = 0;
+    if (json_node_only(o, "count radius box cells spacing jitter thermal v w kind density mass "
+                          "fixed") ||
         json_node_need(&o, boxed ? "radius" : "radius box") ||
         json_node_integer(json_node_key(&o, "count"), 0, INT32_MAX, &b->count) ||
-        read_size(json_node_key(&o, "radius"), &b->size) ||
+        scene_read_size(json_node_key(&o, "radius"), s->dim, &b->size) ||
+        json_node_word(json_node_key(&o, "cells"), cells, &own) ||
         json_node_number(json_node_key(&o, "spacing"), J_ANY, &b->spacing) ||
         json_node_number(json_node_key(&o, "jitter"), J_UNIT, &b->jitter) ||
         json_node_number(json_node_key(&o, "thermal"), J_NOT_NEGATIVE, &b->thermal))
@@ -94,7 +46,46 @@ static int read_lattice(jnode o, const struct scene *s, bool boxed, struct scene
         return json_node_fault(json_node_key(&o, "spacing"), "must be at least 1");
     jnode box = json_node_key(&o, "box");
     if (box.json && scene_read_box(box, s->dim, &b->box)) return 1;
+    if (own) b->from = SCENE_SHELVES;
     return check_lattice(&o, s->dim, b);
+}
+
+static int read_random(jnode o, const struct scene *s, bool boxed, struct scene_bodies *b)
+{
+    jnode how = json_node_key(&o, "random"), box = json_node_key(&o, "box");
+    if (json_node_only(o, "random radius box thermal v w kind density mass fixed") ||
+        json_node_need(&o, boxed ? "radius" : "radius box") ||
+        scene_read_size(json_node_key(&o, "radius"), s->dim, &b->size) ||
+        json_node_number(json_node_key(&o, "thermal"), J_NOT_NEGATIVE, &b->thermal))
+        return 1;
+    int which = json_node_choice(how, "phi count");
+    jnode phi = json_node_key(&how, "phi");
+    if (which < 0 || json_node_only(how, "phi count") || json_node_number(phi, J_UNIT, &b->phi) ||
+        json_node_integer(json_node_key(&how, "count"), 0, INT32_MAX, &b->count))
+        return 1;
+    if (box.json && scene_read_box(box, s->dim, &b->box)) return 1;
+    for (int i = 0; i < s->dim; i++) {
+        double width = b->box.hi[i] - b->box.lo[i];
+        if (!isfinite(width))
+            return json_node_fault(box, "a random start wants a closed box, %s is open",
+                                   axis_name[i]);
+        if (!(width >= 2 * b->size.max))
+            return json_node_fault(box, "%s is narrower than the largest grain, %g m", axis_name[i],
+                                   2 * b->size.max);
+    }
+    return 0;
+}
+
+static int read_document(jnode o, struct scene_bodies *b)
+{
+    const char *name = NULL;
+    if (json_node_only(o, "document frame at_rest v w kind density mass fixed") ||
+        json_node_text(json_node_key(&o, "document"), &name) ||
+        json_node_integer(json_node_key(&o, "frame"), -1000000000, 1000000000, &b->frame) ||
+        json_node_bool(json_node_key(&o, "at_rest"), &b->at_rest))
+        return 1;
+    b->file = strdup(name);
+    return b->file ? 0 : why_set(o.in->why, EX_SOFTWARE, "no memory for a file name");
 }
 
 static int read_one(jnode o, int dim, struct scene_bodies *b)
@@ -118,37 +109,48 @@ static int read_table(jnode o, struct scene_bodies *b)
     return b->file ? 0 : why_set(o.in->why, EX_SOFTWARE, "no memory for a file name");
 }
 
-static int read_spin(jnode n, int dim, vec3 *w)
+int scene_read_spin(jnode n, int dim, vec3 *w)
 {
     return dim == 2 ? json_node_number(n, J_ANY, &w->z) : json_node_vector(n, 3, w);
+}
+
+int scene_read_mass(const jnode *o, double *density, double *mass)
+{
+    jnode m = json_node_key(o, "mass"), d = json_node_key(o, "density");
+    if (m.json && d.json) return json_node_fault(m, "density is given too");
+    return json_node_number(d, J_POSITIVE, density) || json_node_number(m, J_POSITIVE, mass);
 }
 
 /* What the bodies of a group have in common */
 static int read_common(jnode o, const struct scene *s, struct scene_bodies *b)
 {
     if (json_node_vector(json_node_key(&o, "v"), s->dim, &b->v) ||
-        read_spin(json_node_key(&o, "w"), s->dim, &b->w) ||
+        scene_read_spin(json_node_key(&o, "w"), s->dim, &b->w) ||
         scene_read_kind(json_node_key(&o, "kind"), s, &b->kind))
         return 1;
     b->density = s->kind[b->kind].density;
-    jnode mass = json_node_key(&o, "mass"), density = json_node_key(&o, "density");
-    if (mass.json && density.json) return json_node_fault(mass, "density is given too");
-    return json_node_number(density, J_POSITIVE, &b->density) ||
-           json_node_number(mass, J_POSITIVE, &b->mass) ||
+    b->has_v = json_node_key(&o, "v").json, b->has_w = json_node_key(&o, "w").json;
+    b->has_kind = json_node_key(&o, "kind").json, b->has_fixed = json_node_key(&o, "fixed").json;
+    b->has_density = json_node_key(&o, "density").json;
+    return scene_read_mass(&o, &b->density, &b->mass) ||
            json_node_bool(json_node_key(&o, "fixed"), &b->fixed);
 }
 
 static int read_group(jnode o, const struct scene *s, const struct scene_box *box,
                       struct scene_bodies *b)
 {
-    *b = (struct scene_bodies){ .spacing = 1.05, .jitter = 1 };
+    static const enum scene_source from[] = { SCENE_ONE, SCENE_LATTICE, SCENE_TABLE, SCENE_DOCUMENT,
+                                              SCENE_RANDOM };
+    *b = (struct scene_bodies){ .spacing = 1.05, .jitter = 1, .frame = -1 };
     if (box) b->box = *box;
-    int which = json_node_choice(o, "x count file");
+    int which = json_node_choice(o, "x count file document random");
     if (which < 0) return 1;
-    b->from = which == 0 ? SCENE_ONE : which == 1 ? SCENE_LATTICE : SCENE_TABLE;
+    b->from = from[which];
     int bad = which == 0   ? read_one(o, s->dim, b)
               : which == 1 ? read_lattice(o, s, box, b)
-                           : read_table(o, b);
+              : which == 2 ? read_table(o, b)
+              : which == 3 ? read_document(o, b)
+                           : read_random(o, s, box, b);
     return bad || read_common(o, s, b);
 }
 

@@ -1,112 +1,15 @@
-/* scene/scene_build.c: tables, random lattices, the check for overlaps: a packing from a scene. */
+/* scene/scene_build.c: groups of bodies, the check for overlaps: a packing from a scene. */
 #include "scene/scene_build.h"
 
 #include "bodies/detect.h"
+#include "scene/counter.h"
+#include "scene/grains.h"
+#include "scene/random_start.h"
+#include "scene/shelves.h"
 
-#include <ctype.h>
-#include <errno.h>
-#include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-
-/* ---- tables ---- */
-
-enum {
-    LINE = 4096,         /* bytes of a line, a comment's too */
-    MOST_ROWS = 1 << 27, /* bodies of a table: 4 GiB of rows, 100 GiB of packing */
-};
-
-struct row {
-    double x[4]; /* m: x y z r; in the plane x y r */
-};
-
-struct table {
-    int64_t n, room;
-    struct row *row;
-};
-
-/* Reads the numbers of a line up to its end or a '#'; returns how many, -1 if there is anything
-   else. */
-static int parse_numbers(const char *s, double out[4])
-{
-    for (int n = 0;; n++) {
-        char *end;
-        while (isspace((unsigned char)*s)) s++;
-        if (*s == 0 || *s == '#') return n;
-        double x = strtod(s, &end);
-        if (end == s || (*end && *end != '#' && !isspace((unsigned char)*end)) || n == 4) return -1;
-        out[n] = x, s = end;
-    }
-}
-
-static int add_row(struct table *t, const struct row *row, struct why *why)
-{
-    if (t->n == MOST_ROWS)
-        return why_set(why, EX_DATAERR, "a table of more than %d bodies (endless?)", MOST_ROWS);
-    if (t->n == t->room) {
-        int64_t more = t->room ? 2 * t->room : 256;
-        struct row *wider = realloc(t->row, (size_t)more * sizeof *wider);
-        if (!wider) return why_set(why, EX_SOFTWARE, "no memory for a table");
-        t->row = wider, t->room = more;
-    }
-    t->row[t->n++] = *row;
-    return 0;
-}
-
-static int read_line(struct table *t, int dim, const char *line, const char *name, int64_t at,
-                     struct why *why)
-{
-    struct row row = { 0 };
-    int n = parse_numbers(line, row.x);
-    if (n == 0) return 0;
-    if (n != dim + 1)
-        return why_set(why, EX_DATAERR, "%s:%lld: wants %s", name, (long long)at,
-                       dim == 2 ? "x y r" : "x y z r");
-    for (int i = 0; i < n; i++)
-        if (!isfinite(row.x[i]))
-            return why_set(why, EX_DATAERR, "%s:%lld: not finite", name, (long long)at);
-    if (!(row.x[n - 1] > 0))
-        return why_set(why, EX_DATAERR, "%s:%lld: the radius must be positive", name,
-                       (long long)at);
-    return add_row(t, &row, why);
-}
-
-/* A line of a table without its newline; false at the end, and where it is too long. */
-static bool next_line(FILE *f, char line[LINE], const char *path, int64_t at, struct why *why)
-{
-    size_t n = 0;
-    int c = 0;
-    while (n < LINE - 1 && (c = getc(f)) != EOF && c != '\n') line[n++] = (char)c;
-    line[n] = 0;
-    if (n == LINE - 1)
-        return why_set(why, EX_DATAERR, "%s:%lld: a line of more than %d bytes", path,
-                       (long long)at, LINE - 2),
-               false;
-    return n || c != EOF;
-}
-
-static int read_table(struct table *t, int dim, const char *dir, const char *name, struct why *why)
-{
-    char path[4096], line[LINE] = "";
-    struct stat st;
-    int64_t at = 0;
-    bool whole = *name == '/' || !dir;
-    if ((size_t)snprintf(path, sizeof path, "%s%s%s", whole ? "" : dir, whole ? "" : "/", name) >=
-        sizeof path)
-        return why_set(why, EX_NOINPUT, "%.100s...: name too long", name);
-    FILE *f = fopen(path, "r");
-    if (!f) return why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
-    if (!fstat(fileno(f), &st) && (S_ISCHR(st.st_mode) || S_ISBLK(st.st_mode)))
-        why_set(why, EX_NOINPUT, "%s: a device is no table", path);
-    while (!why->status && next_line(f, line, path, ++at, why))
-        read_line(t, dim, line, path, at, why);
-    if (!why->status && ferror(f)) why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
-    fclose(f);
-    return why->status;
-}
 
 /* ---- bodies ---- */
 
@@ -124,24 +27,6 @@ static int set_body(struct packing *p, int64_t i, const struct scene_bodies *b, 
     p->mass[i] = b->fixed ? 0 : mass, p->inertia[i] = b->fixed ? 0 : inertia;
     p->kind[i] = b->kind;
     return 0;
-}
-
-/* A normal deviate rounded to float: the last bits of libm's logarithm and exponential, from which
-   it is made, differ on machines without FMA. */
-static double draw_normal(gsl_rng *rng, double sd)
-{
-    return (float)gsl_ran_gaussian(rng, sd);
-}
-
-static double draw_radius(const struct scene_size *z, gsl_rng *rng)
-{
-    double r;
-    if (z->law == SIZE_UNIFORM) return z->min < z->max ? gsl_ran_flat(rng, z->min, z->max) : z->min;
-    do {
-        double z1 = draw_normal(rng, z->spread);
-        r = z->law == SIZE_GAUSSIAN ? z->mid + z1 : z->mid * (float)exp(z1);
-    } while (r < z->min || r > z->max); // ends: [min, max] has a share of 1e-3 at least (read_bell)
-    return r;
 }
 
 /* The middle of cell k of the lattice, moved at random as far as the body stays in the cell. */
@@ -163,7 +48,7 @@ static vec3 draw_place(const struct scene_bodies *b, const struct scene_lattice 
 static vec3 draw_velocity(double sd, int dim, gsl_rng *rng)
 {
     double v[3] = { 0 };
-    for (int i = 0; i < dim; i++) v[i] = draw_normal(rng, sd);
+    for (int i = 0; i < dim; i++) v[i] = scene_draw_normal(rng, sd);
     return v3(v[0], v[1], v[2]);
 }
 
@@ -172,7 +57,7 @@ static int fill_lattice(struct packing *p, int64_t first, const struct scene_bod
 {
     struct scene_lattice l = scene_lattice(b, p->dim);
     for (int64_t k = 0; k < b->count; k++) {
-        double r = draw_radius(&b->size, rng);
+        double r = scene_size_draw(&b->size, rng);
         vec3 x = draw_place(b, &l, p->dim, k, r, rng);
         if (set_body(p, first + k, b, x, r, why)) return why->status;
         if (b->thermal > 0) p->v[first + k] = v3_add(b->v, draw_velocity(b->thermal, p->dim, rng));
@@ -180,37 +65,91 @@ static int fill_lattice(struct packing *p, int64_t first, const struct scene_bod
     return 0;
 }
 
-static int fill_table(struct packing *p, int64_t first, const struct scene_bodies *b,
-                      const struct table *t, struct why *why)
+/* What is said of a grain comes before what its kind is; what its group says, before both. */
+static int set_grain(struct packing *p, int64_t i, const struct scene *s,
+                     const struct scene_bodies *b, const struct grain *g, struct why *why)
 {
-    for (int64_t k = 0; k < t->n; k++) {
-        const double *x = t->row[k].x;
-        vec3 place = v3(x[0], x[1], p->dim == 3 ? x[2] : 0);
-        if (set_body(p, first + k, b, place, x[p->dim], why)) return why->status;
+    struct scene_bodies one = *b;
+    if (!b->has_kind && g->kind >= 0) one.kind = g->kind;
+    if (!b->has_v && g->has_v) one.v = g->v;
+    if (!b->has_w && g->has_w) one.w = g->w;
+    if (!b->has_fixed) one.fixed = g->fixed;
+    if (!b->has_density) one.density = g->density > 0 ? g->density : s->kind[one.kind].density;
+    if (!b->has_density && !(b->mass > 0)) one.mass = g->mass;
+    if (set_body(p, i, &one, g->x, g->r, why)) return why->status;
+    p->q[i] = g->q, p->id[i] = g->id;
+    if (g->weighs && !one.fixed && g->mass > 0 && one.mass == g->mass) p->inertia[i] = g->inertia;
+    return 0;
+}
+
+static int fill_grains(struct packing *p, int64_t first, const struct scene *s,
+                       const struct scene_bodies *b, const struct grains *list, gsl_rng *rng,
+                       struct why *why)
+{
+    for (int64_t k = 0; k < list->n; k++) {
+        if (set_grain(p, first + k, s, b, &list->g[k], why)) return why->status;
+        if (b->thermal > 0) p->v[first + k] = v3_add(b->v, draw_velocity(b->thermal, p->dim, rng));
     }
     return 0;
 }
 
-static int fill_groups(struct packing *p, const struct scene *s, const struct table *table,
+/* Numbers that tables and documents give, each once; the others follow the greatest of them. */
+static int set_ids(struct packing *p, bool given, struct why *why)
+{
+    int32_t next = 0;
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->id[i] >= next) next = p->id[i] < INT32_MAX ? p->id[i] + 1 : INT32_MAX;
+    p->first_id = next;
+    if (!given) return 0;
+    unsigned char *taken = calloc((size_t)next + 1, 1);
+    if (!taken) return why_set(why, EX_SOFTWARE, "no memory for the bodies' numbers");
+    for (int64_t i = 0; i < p->n && !why->status; i++) {
+        if (p->id[i] < 0 && next == INT32_MAX)
+            why_set(why, EX_DATAERR, "body %lld: no number is left for it", (long long)i);
+        else if (p->id[i] < 0)
+            p->id[i] = next++;
+        else if (taken[p->id[i]]++)
+            why_set(why, EX_DATAERR, "body %lld: another one has its id, %d", (long long)i,
+                    p->id[i]);
+    }
+    free(taken);
+    p->first_id = next;
+    return why->status;
+}
+
+static bool is_list(const struct scene_bodies *b)
+{
+    return b->from != SCENE_ONE && b->from != SCENE_LATTICE;
+}
+
+static int fill_groups(struct packing *p, const struct scene *s, const struct grains *list,
                        gsl_rng *rng, struct why *why)
 {
     int64_t first = 0;
+    bool given = false;
     for (int64_t g = 0; g < s->groups; g++) {
         const struct scene_bodies *b = &s->bodies[g];
-        int bad = b->from == SCENE_ONE       ? set_body(p, first, b, b->x, b->size.min, why)
-                  : b->from == SCENE_LATTICE ? fill_lattice(p, first, b, rng, why)
-                                             : fill_table(p, first, b, &table[g], why);
+        int bad = is_list(b)             ? fill_grains(p, first, s, b, &list[g], rng, why)
+                  : b->from == SCENE_ONE ? set_body(p, first, b, b->x, b->size.min, why)
+                                         : fill_lattice(p, first, b, rng, why);
         if (bad) return bad;
-        first += b->count + table[g].n;
+        given |= is_list(b);
+        if (!is_list(b)) // numbers are given anew below, where any are given
+            for (int64_t k = 0; k < b->count; k++) p->id[first + k] = -1;
+        first += is_list(b) ? list[g].n : b->count;
     }
-    return 0;
+    bool numbered = false;
+    for (int64_t i = 0; i < p->n; i++) numbered |= p->id[i] >= 0;
+    for (int64_t i = 0; i < p->n && !numbered; i++) p->id[i] = (int32_t)i;
+    return set_ids(p, numbered && given, why);
 }
 
 /* ---- the packing ---- */
 
 static int set_parameters(struct packing *p, const struct scene *s, struct why *why)
 {
-    p->dt = s->dt, p->theta = s->theta, p->g = s->g, p->seed = s->seed;
+    p->dt = s->dt, p->theta = s->theta, p->g = s->g, p->seed = s->seed, p->t = s->t;
+    if (packing_alloc_passages(p, s->pours, s->removals, why)) return why->status;
     if (packing_alloc_walls(p, s->walls, why) || packing_alloc_kinds(p, s->kinds, why))
         return why->status;
     for (int32_t i = 0; i < s->walls; i++) p->wall[i] = s->wall[i];
@@ -225,7 +164,25 @@ fail:
     return why_set(why, EX_SOFTWARE, "no memory for the scene");
 }
 
-static int check_overlap(const struct packing *p, struct why *why)
+/* Radii by which bodies may overlap at the start. Rounding: bodies that just touch. A run leaves its
+   bodies a little in one another, which are a start all the same, and in walls that have not moved. */
+static const double ROUNDING = 1e-6, LEFT_BY_A_RUN = 0.1;
+
+/* Which bodies are a document's; NULL when memory is short. */
+static bool *from_documents(const struct packing *p, const struct scene *s,
+                            const struct grains *list)
+{
+    bool *settled = calloc((size_t)p->n + 1, sizeof *settled);
+    int64_t first = 0;
+    for (int64_t g = 0; settled && g < s->groups; g++) {
+        int64_t n = is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count;
+        for (int64_t i = 0; i < n; i++) settled[first + i] = s->bodies[g].from == SCENE_DOCUMENT;
+        first += n;
+    }
+    return settled;
+}
+
+static int check_overlap(const struct packing *p, const bool *settled, struct why *why)
 {
     struct contacts found = { 0 };
     int e = detect_contacts_at(&found, p, p->x, p->t, 0, NULL, why);
@@ -233,8 +190,8 @@ static int check_overlap(const struct packing *p, struct why *why)
         const struct contact *c = &found.c[i];
         double r = p->radius[c->b];
         if (c->a >= 0) r = fmin(r, p->radius[c->a]);
-        if (c->gap >= -1e-6 * r)
-            continue; // rounding: bodies that just touch may overlap by this much
+        bool by_run = settled[c->b] && (c->a < 0 || settled[c->a]);
+        if (c->gap >= -(by_run ? LEFT_BY_A_RUN : ROUNDING) * r) continue;
         e = c->a < 0 ? why_set(why, EX_DATAERR, "body %d is %.3g m deep in wall %d", c->b, -c->gap,
                                -1 - c->a)
                      : why_set(why, EX_DATAERR, "bodies %d and %d overlap by %.3g m", c->a, c->b,
@@ -245,38 +202,100 @@ static int check_overlap(const struct packing *p, struct why *why)
 }
 
 /* Are the numbers in range, and do no bodies overlap, unless the scene allows it? */
-static int check_packing(const struct packing *p, const struct scene *s, struct why *why)
+static int check_packing(const struct packing *p, const struct scene *s, const struct grains *list,
+                         struct why *why)
 {
     if (packing_check(p, why)) return why->status;
-    return s->overlap ? 0 : check_overlap(p, why);
+    if (s->overlap) return 0;
+    bool *settled = from_documents(p, s, list);
+    if (!settled) return why_set(why, EX_SOFTWARE, "no memory to look for overlaps");
+    check_overlap(p, settled, why);
+    free(settled);
+    return why->status;
 }
 
-static int build_packing(struct packing *p, const struct scene *s, const struct table *table,
+static int32_t kind_named(const struct scene *s, const char *name)
+{
+    for (int32_t k = 0; k < s->kinds; k++)
+        if (!strcmp(s->kind[k].name, name)) return k;
+    return -1;
+}
+
+/* The walls of a document, where they were at its time when it is the scene's. */
+static int take_walls(struct packing *p, const struct scene *s, const struct scene_bodies *b,
+                      struct why *why)
+{
+    const struct packing *from = b->document;
+    if (packing_alloc_walls(p, from->walls, why)) return why->status;
+    for (int32_t i = 0; i < from->walls; i++) {
+        struct wall *w = &p->wall[i];
+        *w = from->wall[i];
+        w->x = v3_axpy(w->x, from->t - s->t, w->v);
+        w->kind = kind_named(s, from->kind_name[from->wall[i].kind]);
+        if (w->kind < 0)
+            return why_set(why, EX_DATAERR,
+                           "%s: wall %d is of kind \"%s\": name it under \"kinds\"", b->file, i,
+                           from->kind_name[from->wall[i].kind]);
+    }
+    return 0;
+}
+
+static int inherit_walls(struct packing *p, const struct scene *s, struct why *why)
+{
+    for (int64_t g = 0; g < s->groups && !s->has_walls; g++)
+        if (s->bodies[g].document) return take_walls(p, s, &s->bodies[g], why);
+    return 0;
+}
+
+static int build_packing(struct packing *p, const struct scene *s, const struct grains *list,
                          struct why *why)
 {
     int64_t n = 0;
-    for (int64_t g = 0; g < s->groups; g++) n += s->bodies[g].count + table[g].n;
+    for (int64_t g = 0; g < s->groups; g++)
+        n += is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count;
     if (n > INT32_MAX) return why_set(why, EX_DATAERR, "more than %d bodies", INT32_MAX);
     if (packing_init(p, s->dim, n, why)) return why->status;
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     if (!rng) why_set(why, EX_SOFTWARE, "no memory for random numbers");
     if (rng) gsl_rng_set(rng, s->seed);
-    if (rng && !set_parameters(p, s, why) && !fill_groups(p, s, table, rng, why))
-        check_packing(p, s, why);
+    if (rng && !set_parameters(p, s, why) && !inherit_walls(p, s, why) &&
+        !fill_groups(p, s, list, rng, why))
+        check_packing(p, s, list, why);
     gsl_rng_free(rng);
     if (why->status) packing_free(p);
     return why->status;
 }
 
+/* The bodies of group g where only building tells how many they are */
+static int list_group(struct grains *out, const struct scene *s, int64_t g, const char *dir,
+                      gsl_rng *rng, struct why *why)
+{
+    const struct scene_bodies *b = &s->bodies[g];
+    counter_start(rng, s->seed, COUNTER_GROUP, (uint64_t)g, 0, 0);
+    switch (b->from) {
+    case SCENE_TABLE:
+        return grains_of_table(out, s, dir, b->file, why);
+    case SCENE_DOCUMENT:
+        return grains_of_document(out, s, b, why);
+    case SCENE_SHELVES:
+        return shelves_fill(out, b, s->dim, rng, why);
+    case SCENE_RANDOM:
+        return random_start(out, b, s->dim, rng, why);
+    default:
+        return 0;
+    }
+}
+
 int scene_build(struct packing *p, const struct scene *s, const char *dir, struct why *why)
 {
-    struct table *table = calloc(s->groups > 0 ? (size_t)s->groups : 1, sizeof *table);
-    if (!table) return why_set(why, EX_SOFTWARE, "no memory for tables");
+    struct grains *list = calloc(s->groups > 0 ? (size_t)s->groups : 1, sizeof *list);
+    gsl_rng *rng = counter_alloc();
+    if (!list || !rng) why_set(why, EX_SOFTWARE, "no memory for the bodies");
     for (int64_t g = 0; g < s->groups && !why->status; g++)
-        if (s->bodies[g].from == SCENE_TABLE)
-            read_table(&table[g], s->dim, dir, s->bodies[g].file, why);
-    if (!why->status) build_packing(p, s, table, why);
-    for (int64_t g = 0; g < s->groups; g++) free(table[g].row);
-    free(table);
+        list_group(&list[g], s, g, dir, rng, why);
+    if (!why->status) build_packing(p, s, list, why);
+    for (int64_t g = 0; list && g < s->groups; g++) grains_free(&list[g]);
+    free(list);
+    gsl_rng_free(rng);
     return why->status;
 }

@@ -36,23 +36,27 @@ static int read_scene(jnode o, struct scene *s)
     const char *title;
     struct scene_law law = { 0 };
     struct scene_box box = { 0 };
-    if (json_node_only(o, "title dim dt theta gravity seed density mu e_n e_t kinds pairs overlap "
-                          "bodies walls") ||
+    if (json_node_only(o, "title dim dt theta gravity seed density mu e_n e_t kinds pairs time "
+                          "overlap bodies walls pour remove") ||
         json_node_need(&o, "dt") || json_node_text(json_node_key(&o, "title"), &title) ||
         json_node_integer(json_node_key(&o, "dim"), 2, 3, &dim) ||
         json_node_integer(json_node_key(&o, "seed"), 0, UINT32_MAX, &seed) ||
         json_node_number(json_node_key(&o, "dt"), J_POSITIVE, &s->dt) ||
         json_node_number(json_node_key(&o, "theta"), J_UNIT, &s->theta) ||
         json_node_number(json_node_key(&o, "density"), J_POSITIVE, &density) ||
-        scene_read_law(&o, &law) || json_node_bool(json_node_key(&o, "overlap"), &s->overlap))
+        json_node_number(json_node_key(&o, "time"), J_ANY, &s->t) || scene_read_law(&o, &law) ||
+        json_node_bool(json_node_key(&o, "overlap"), &s->overlap))
         return 1;
+    s->has_walls = json_node_key(&o, "walls").json;
     s->dim = (int)dim, s->seed = (uint64_t)seed;
     s->g = dim == 2 ? v3(0, -9.81, 0) : v3(0, 0, -9.81);
     return json_node_vector(json_node_key(&o, "gravity"), s->dim, &s->g) ||
            scene_read_kinds(json_node_key(&o, "kinds"), s, density) ||
            scene_read_pairs(json_node_key(&o, "pairs"), s, law) ||
            scene_read_walls(json_node_key(&o, "walls"), s, &box, &boxed) ||
-           scene_read_bodies(json_node_key(&o, "bodies"), s, boxed ? &box : NULL);
+           scene_read_bodies(json_node_key(&o, "bodies"), s, boxed ? &box : NULL) ||
+           scene_read_pours(json_node_key(&o, "pour"), s) ||
+           scene_read_removals(json_node_key(&o, "remove"), s);
 }
 
 int scene_parse(struct scene *s, const char *text, size_t length, struct why *why)

@@ -25,8 +25,18 @@ int scene_read_kind(jnode name, const struct scene *s, int32_t *kind);
 int scene_read_walls(jnode walls, struct scene *s, struct scene_box *box, bool *boxed);
 int scene_read_box(jnode object, int dim, struct scene_box *box);
 
+/* scene/scene_radii.c: a SIZE */
+int scene_read_size(jnode size, int dim, struct scene_size *z);
+
+/* scene/scene_flow.c: "pour" and "remove" */
+int scene_read_pours(jnode pours, struct scene *s);
+int scene_read_removals(jnode removals, struct scene *s);
+
 /* scene/scene_bodies.c: "bodies"; a lattice without a box fills this one (NULL: must have its
    own). */
 int scene_read_bodies(jnode bodies, struct scene *s, const struct scene_box *box);
+int scene_read_spin(jnode spin, int dim, vec3 *w);
+/* density or mass, not both; *density holds the default */
+int scene_read_mass(const jnode *object, double *density, double *mass);
 
 #endif

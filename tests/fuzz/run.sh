@@ -6,7 +6,7 @@ set -euo pipefail
 seconds=$1
 shift
 found=0
-export ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1:handle_segv=0:${ASAN_OPTIONS-}
+export ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1:handle_segv=0:quarantine_size_mb=8:${ASAN_OPTIONS-}
 for target in "$@"; do
     corpus=build/fuzz/corpus/$target
     mkdir -p "$corpus"

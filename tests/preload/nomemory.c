@@ -45,9 +45,18 @@ __attribute__((constructor)) static void start(void)
     on = true;
 }
 
+/* What the compiler adds at the end (gcov's counts) is not the tool's. */
+static void end(void)
+{
+    on = false;
+}
+
 static bool fails(const void *caller)
 {
     uintptr_t at = (uintptr_t)caller;
+    static atomic_flag begun = ATOMIC_FLAG_INIT;
+    if (on && at >= tool_first && at < tool_end && !atomic_flag_test_and_set(&begun))
+        atexit(end); // before the destructors, for main() has begun
     if (!on || (at >= tool_first && at < tool_end) != in_tool) return false;
     if (atomic_fetch_add(&count, 1) + 1 != fail_at) return false;
     errno = ENOMEM;

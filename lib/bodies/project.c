@@ -1,0 +1,83 @@
+/* bodies/project.c: overlaps taken out of positions [bodies/project.h]. */
+#include "bodies/project.h"
+
+#include "bodies/kinematics.h"
+
+#include <stdlib.h>
+
+enum {
+    SWEEPS = 10 /* a step, at most: a tenth of what its solve costs */
+};
+
+/* Of the smaller radius: contacts keep an overlap, so that rounding does not open them */
+#define SLOP 1e-6
+/* Of the smaller radius: what a contact is moved apart in a step, at most; normals turn otherwise */
+#define MOST 0.1
+/* Of the slop: changes that are not worth another sweep */
+#define ENOUGH 0.01
+
+/* One contact's part: lambda >= 0 keeps gap + n . (d_b - d_a) >= 0. */
+struct part {
+    int32_t a, b; /* bodies; a < 0: a wall */
+    vec3 n;
+    double gap;    /* m: at the next predicted position, above the slop */
+    double w;      /* 1/kg: 1/m_a + 1/m_b */
+    double lambda; /* kg m */
+    double slop;   /* m */
+};
+
+static double inverse_mass(const struct packing *p, int32_t i)
+{
+    return i >= 0 && p->mass[i] > 0 ? 1 / p->mass[i] : 0;
+}
+
+/* The part of a contact; the slop is what gravity overlaps in a step, and more than rounding. */
+static struct part part_of(const struct packing *p, const struct contact *c)
+{
+    double small = c->a < 0 ? p->radius[c->b] : fmin(p->radius[c->a], p->radius[c->b]);
+    double slop = SLOP * small + v3_norm(p->g) * p->dt * p->dt;
+    return (struct part){ .a = c->a,
+                          .b = c->b,
+                          .n = c->n,
+                          .gap = fmax(c->gap + p->dt * opening_of(p, c) + slop, -MOST * small),
+                          .w = inverse_mass(p, c->a) + inverse_mass(p, c->b),
+                          .slop = slop };
+}
+
+/* Changes lambda and d so that this gap is 0, or lambda is; returns whether that changed much. */
+static bool relax(const struct packing *p, struct part *k, vec3 *d)
+{
+    double gap = k->gap + v3_dot(k->n, d[k->b]) - (k->a < 0 ? 0 : v3_dot(k->n, d[k->a]));
+    double lambda = fmax(k->lambda - gap / k->w, 0), more = lambda - k->lambda;
+    if (more == 0) return false;
+    k->lambda = lambda;
+    d[k->b] = v3_axpy(d[k->b], more * inverse_mass(p, k->b), k->n);
+    if (k->a >= 0) d[k->a] = v3_axpy(d[k->a], -more * inverse_mass(p, k->a), k->n);
+    return fabs(more) * k->w > ENOUGH * k->slop;
+}
+
+/* The parts, and d = 0, in memory that the caller frees; whether any gap is below 0 */
+static bool parts_make(const struct packing *p, const struct contacts *s, struct part *part)
+{
+    bool any = false;
+    for (int64_t i = 0; i < s->n; i++) {
+        part[i] = part_of(p, &s->c[i]);
+        any |= part[i].gap < 0;
+    }
+    return any;
+}
+
+int project_apart(struct packing *p, const struct contacts *s, struct why *why)
+{
+    struct part *part = malloc(((size_t)s->n + 1) * sizeof *part);
+    vec3 *d = calloc((size_t)p->n + 1, sizeof *d);
+    bool room = part && d, more = room && parts_make(p, s, part), moves = more;
+    for (int sweep = 0; more && sweep < SWEEPS; sweep++) {
+        more = false;
+        for (int64_t i = 0; i < s->n; i++)
+            if (part[i].w > 0 && relax(p, &part[i], d)) more = true;
+    }
+    for (int64_t i = 0; moves && i < p->n; i++) p->x[i] = v3_add(p->x[i], d[i]);
+    free(part), free(d);
+    return room ? 0 : why_set(why, EX_SOFTWARE, "no memory to move the bodies apart");
+}

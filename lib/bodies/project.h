@@ -1,0 +1,27 @@
+/*
+ * bodies/project.h: moves bodies that overlap apart, without giving them a velocity: the direct
+ * projection of Siconos [Acary 2013].
+ *
+ * After a step, contact c will at the next predicted position have the gap
+ *
+ *     g_c + dt u_n,   u_n = n . (v_b - v_a) of the new velocities,
+ *
+ * to first order, and for balls it does not depend on rotations. Displacements d = M^-1 P lambda,
+ * lambda >= 0 along the normals, are sought with
+ *
+ *     g_c + dt u_n + n . (d_b - d_a) >= -slop,   and = -slop where lambda_c > 0:
+ *
+ * of all that part the bodies, the least in the norm of M. A few Gauss-Seidel sweeps, the same on
+ * every machine; what they leave is left to the next step. An impact that rebounds out of its
+ * overlap in time is not touched.
+ */
+#ifndef NSD_PROJECT_H
+#define NSD_PROJECT_H
+
+#include "bodies/contact.h"
+#include "bodies/packing.h"
+
+/* The bodies after their step by these contacts. Returns 0 or EX_SOFTWARE. */
+int project_apart(struct packing *p, const struct contacts *s, struct why *why);
+
+#endif

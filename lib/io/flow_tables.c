@@ -1,0 +1,138 @@
+#include "io/flow_tables.h"
+
+#include "io/h5.h"
+#include "io/table_read.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char flow[] = "/observables/flow", events[] = "/observables/flow/events";
+
+/* A column of n passages, as one frame */
+static int write_passages(struct table_write *s, const struct column *c, int32_t n,
+                          const struct passage *from, struct why *why)
+{
+    for (; c->name && n > 0; c++) {
+        char path[80];
+        int64_t data[1000]; // as wide as a double; at most 1000 of each (scene_flow.c)
+        snprintf(path, sizeof path, "%s/%s/value", flow, c->name);
+        column_gather(c, n, from, sizeof *from, data);
+        const hsize_t shape[2] = { 1, (hsize_t)n };
+        if (table_write_rows(s, path, c->type, 2, shape, CHUNK_FRAMES, data, c->units, why))
+            return why->status;
+    }
+    return 0;
+}
+
+int flow_write(struct table_write *s, const struct packing *p, struct why *why)
+{
+    if (!packing_varies(p)) return 0;
+    const hsize_t one = 1;
+    bool first = !table_write_grows(s, "/observables/flow/events/id");
+    if (write_passages(s, layout_poured, p->pours, p->poured, why) ||
+        write_passages(s, layout_removed, p->removals, p->removed, why) ||
+        table_write_rows(s, "/observables/flow/events/start", COLUMN_I64, 1, &one, CHUNK_FRAMES,
+                         &s->events, NULL, why) ||
+        table_write_rows(s, "/observables/flow/events/count", COLUMN_I64, 1, &one, CHUNK_FRAMES,
+                         &p->events.n, NULL, why) ||
+        table_write_columns(s, events, "", layout_events, p->events.n, p->events.e,
+                            sizeof *p->events.e, CHUNK_CONTACTS, why))
+        return why->status;
+    if (s->growing) s->events += p->events.n;
+    return !first ? 0 : h5_attr(s->file, flow, "first_id", H5T_NATIVE_INT32, -1, &p->first_id, why);
+}
+
+static int link_clock(struct table_write *s, const char *where, const char *name, struct why *why)
+{
+    static const char *const clock[] = { "step", "time" };
+    for (int k = 0; k < 2; k++) {
+        char from[80], to[80];
+        snprintf(from, sizeof from, "/particles/all/position/%s", clock[k]);
+        snprintf(to, sizeof to, "%s/%s/%s", where, name, clock[k]);
+        if (H5Lcreate_hard(s->file, from, s->file, to, H5P_DEFAULT, H5P_DEFAULT) < 0)
+            return why_set(why, EX_IOERR, "%s: cannot be linked", to);
+    }
+    return 0;
+}
+
+int flow_link(struct table_write *s, const struct packing *p, struct why *why)
+{
+    if (!packing_varies(p)) return 0;
+    for (const struct column *c = layout_poured; c->name && p->pours > 0; c++)
+        if (link_clock(s, flow, c->name, why)) return why->status;
+    for (const struct column *c = layout_removed; c->name && p->removals > 0; c++)
+        if (link_clock(s, flow, c->name, why)) return why->status;
+    return s->roster ? link_clock(s, "/particles/all", "id", why) : 0;
+}
+
+/* ---- reading ---- */
+
+/* How many pours, or removals, there are: the width of their datasets; -1: not as it should be */
+static int32_t count_of(struct source *s, const char *path, struct why *why)
+{
+    uint64_t shape[4];
+    int rank = source_shape(s, path, shape);
+    if (rank < 0 && !source_has(s, path)) return 0;
+    if (rank == 2 && shape[1] <= 1000) return (int32_t)shape[1];
+    return why_set(why, EX_DATAERR, "%s: not of shape frames x pours or removals", path), -1;
+}
+
+static int read_passages(struct source *s, int64_t k, const struct column *c, int32_t n,
+                         struct passage *to, struct why *why)
+{
+    for (; c->name && n > 0; c++) {
+        char path[80];
+        int64_t data[1000];
+        snprintf(path, sizeof path, "%s/%s/value", flow, c->name);
+        if (source_rows(s, path, c->type, k, 1, n, data, why)) return why->status;
+        column_scatter(c, n, data, to, sizeof *to);
+    }
+    for (int32_t i = 0; i < n; i++)
+        if (to[i].bodies < 0 || !(to[i].mass >= 0 && isfinite(to[i].mass)))
+            return why_set(why, EX_DATAERR, "%s: a number or mass of bodies is out of range", flow);
+    return 0;
+}
+
+static int check_event(const struct event *e, struct why *why)
+{
+    bool good = isfinite(e->t) && (e->came == 0 || e->came == 1) && e->which >= 0 &&
+                e->radius > 0 && isfinite(e->radius) && e->mass >= 0 && isfinite(e->mass) &&
+                v3_finite(e->x) && v3_finite(e->v);
+    return good ? 0 : why_set(why, EX_DATAERR, "%s: a number is out of range", events);
+}
+
+static int read_events(struct source *s, int64_t k, struct packing *p, struct why *why)
+{
+    int64_t start, count;
+    uint64_t shape[4];
+    if (source_rows(s, "/observables/flow/events/start", COLUMN_I64, k, 1, 1, &start, why) ||
+        source_rows(s, "/observables/flow/events/count", COLUMN_I64, k, 1, 1, &count, why))
+        return why->status;
+    if (source_shape(s, "/observables/flow/events/id", shape) != 1 || start < 0 || count < 0 ||
+        start > INT32_MAX || count > INT32_MAX || (uint64_t)(start + count) > shape[0])
+        return why_set(why, EX_DATAERR, "%s: start or count is out of range", events);
+    if (!(p->events.e = calloc((size_t)count + 1, sizeof *p->events.e)))
+        return why_set(why, EX_SOFTWARE, "no memory for events");
+    p->events.n = count, p->events.room = count + 1;
+    if (table_read_columns(s, events, "", layout_events, start, count, p->events.e,
+                           sizeof *p->events.e, why))
+        return why->status;
+    for (int64_t i = 0; i < count; i++)
+        if (check_event(&p->events.e[i], why)) return why->status;
+    return 0;
+}
+
+int flow_tables_read(struct source *s, int64_t k, struct packing *p, struct why *why)
+{
+    if (!source_has(s, flow)) return 0;
+    int32_t pours = count_of(s, "/observables/flow/poured/value", why);
+    int32_t removals = pours < 0 ? -1 : count_of(s, "/observables/flow/removed/value", why);
+    if (removals < 0 || packing_alloc_passages(p, pours, removals, why)) return why->status;
+    if (source_attribute(s, flow, "first_id", COLUMN_I32, -1, &p->first_id, why) ||
+        read_passages(s, k, layout_poured, pours, p->poured, why) ||
+        read_passages(s, k, layout_removed, removals, p->removed, why))
+        return why->status;
+    if (p->first_id < 0) return why_set(why, EX_DATAERR, "%s@first_id: is negative", flow);
+    return read_events(s, k, p, why);
+}

@@ -1,0 +1,150 @@
+#include "io/roster.h"
+
+#include "io/h5.h"
+#include "scene/flow.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    CHUNKS = 256,              /* of a frame, at most as a rule */
+    LEAST_CHUNK = 128,         /* rows */
+    UNBOUNDED_LEAST = 1 << 17, /* rows, where nothing bounds a pour, */
+    UNBOUNDED_TIMES = 16       /* or as many times the first bodies */
+};
+
+/* How many bodies a pour can bring in all; infinite where the scene sets no end to it */
+static double most_of(const struct scene_pour *o)
+{
+    double by_time = o->by_mass ? INFINITY : floor(o->rate * fmax(o->until - o->from, 0)) + 1;
+    return fmin(o->count, by_time);
+}
+
+void roster_bounds(const struct packing *p, int64_t *most, int64_t *chunk, struct why *why)
+{
+    struct flow flow;
+    double bound = (double)p->n;
+    *most = *chunk = 0;
+    if (flow_read(&flow, p, why)) return;
+    for (int32_t k = 0; k < flow.scene.pours; k++) bound += most_of(&flow.scene.pour[k]);
+    flow_free(&flow);
+    if (isinf(bound)) bound = fmax(UNBOUNDED_LEAST, UNBOUNDED_TIMES * (double)p->n);
+    bound = fmin(fmax(bound, 1), INT32_MAX);
+    double rows = fmin(fmax(bound / CHUNKS, LEAST_CHUNK), CHUNK_BODIES);
+    *chunk = (int64_t)ceil(rows);
+    *most = ((int64_t)bound + *chunk - 1) / *chunk * *chunk;
+}
+
+void roster_free(struct roster *r)
+{
+    free(r->id), free(r->radius), free(r->mass);
+    *r = (struct roster){ 0 };
+}
+
+static int grow(struct roster *r, struct why *why)
+{
+    if (r->rows < r->room) return 0;
+    size_t room = r->room ? 2 * (size_t)r->room : 256;
+    int32_t *id = realloc(r->id, room * sizeof *id);
+    if (id) r->id = id;
+    double *radius = realloc(r->radius, room * sizeof *radius);
+    if (radius) r->radius = radius;
+    double *mass = realloc(r->mass, room * sizeof *mass);
+    if (mass) r->mass = mass;
+    if (!id || !radius || !mass) return why_set(why, EX_SOFTWARE, "no memory for the roster");
+    r->room = (int64_t)room;
+    return 0;
+}
+
+/* The row of body i, at or after `from`: bodies keep their order. New ones get the next. */
+static int64_t row_of(struct roster *r, const struct packing *p, int64_t i, int64_t from,
+                      struct why *why)
+{
+    while (from < r->rows && r->id[from] != p->id[i]) from++;
+    if (from < r->rows) {
+        if (r->radius[from] == p->radius[i] && r->mass[from] == p->mass[i]) return from;
+        return why_set(why, EX_DATAERR, "other bodies than the trajectory's"), -1;
+    }
+    if (grow(r, why)) return -1;
+    for (int64_t k = r->rows - 1; k >= 0 && r->id[k] >= p->id[i]; k--)
+        if (r->id[k] == p->id[i])
+            return why_set(why, EX_DATAERR, "bodies in another order than the trajectory's"), -1;
+    r->id[r->rows] = p->id[i], r->radius[r->rows] = p->radius[i], r->mass[r->rows] = p->mass[i];
+    return r->rows++;
+}
+
+/* The tables of bodies go on with those from `first` on, the last ones of the packing. */
+static int write_new(struct table_write *s, const struct packing *p, int64_t first, struct why *why)
+{
+    const hsize_t n = (hsize_t)(p->n - first);
+    for (const struct column *c = layout_bodies; c->name; c++) {
+        char path[80];
+        if (!strcmp(c->name, "id")) continue; // a dataset of frames x rows
+        snprintf(path, sizeof path, "/particles/all/%s", c->name);
+        const char *data = column_array(c, p);
+        if (table_write_rows(s, path, c->type, 1, &n, s->chunk_bodies,
+                             data + (size_t)first * column_size(c->type), c->units, why))
+            return why->status;
+    }
+    return 0;
+}
+
+int roster_enter(struct roster *r, struct table_write *s, const struct packing *p, int64_t **row,
+                 struct why *why)
+{
+    int64_t had = r->rows, first = p->n, at = 0;
+    *row = malloc(((size_t)p->n + 1) * sizeof **row);
+    if (!*row) return why_set(why, EX_SOFTWARE, "no memory for the roster");
+    for (int64_t i = 0; i < p->n; i++) {
+        (*row)[i] = row_of(r, p, i, at, why);
+        if (why->status) return why->status;
+        if ((*row)[i] >= had && first == p->n) first = i;
+        at = (*row)[i] + 1;
+    }
+    if (r->rows > (int64_t)s->most_bodies)
+        return why_set(
+            why, EX_DATAERR,
+            "the trajectory has rows for %lld bodies, and more have come: a count for the "
+            "pour tells how many it takes",
+            (long long)s->most_bodies);
+    int64_t chunk = (int64_t)s->chunk_bodies;
+    while (r->width < r->rows || !r->width) r->width += chunk;
+    if (first < p->n || !had) return write_new(s, p, first, why);
+    return 0;
+}
+
+static int write_spread(struct roster *r, struct table_write *s, const char *path,
+                        enum column_type type, int width, const void *data, const int64_t *row,
+                        int64_t n, const char *units, struct why *why)
+{
+    size_t number = column_size(type), bytes = (size_t)width * number;
+    char *all = malloc((size_t)r->width * bytes);
+    if (!all) return why_set(why, EX_SOFTWARE, "no memory for %s", path);
+    const double none = NAN;
+    const int32_t nobody = -1;
+    const void *empty = type == COLUMN_F64 ? (const void *)&none : (const void *)&nobody;
+    for (size_t k = 0; k < (size_t)r->width * (size_t)width; k++)
+        memcpy(all + k * number, empty, number);
+    for (int64_t i = 0; i < n; i++)
+        memcpy(all + (size_t)row[i] * bytes, (const char *)data + (size_t)i * bytes, bytes);
+    const hsize_t shape[3] = { 1, (hsize_t)r->width, (hsize_t)width };
+    int e = table_write_rows(s, path, type, width == 1 ? 2 : 3, shape, 1, all, units, why);
+    free(all);
+    return e;
+}
+
+int roster_write(struct roster *r, struct table_write *s, const struct packing *p,
+                 const int64_t *row, struct why *why)
+{
+    if (write_spread(r, s, "/particles/all/id/value", COLUMN_I32, 1, p->id, row, p->n, "1", why))
+        return why->status;
+    for (const struct column *c = layout_motion; c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
+        if (write_spread(r, s, path, c->type, c->width, column_array(c, p), row, p->n, c->units,
+                         why))
+            return why->status;
+    }
+    return 0;
+}

@@ -1,0 +1,263 @@
+#include "scene/flow.h"
+
+#include "bodies/detect.h"
+#include "scene/counter.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { TRIES = 16 }; /* places for a grain in a step */
+
+int flow_read(struct flow *f, const struct packing *p, struct why *why)
+{
+    *f = (struct flow){ 0 };
+    if (!packing_varies(p)) return 0;
+    if (!p->scene)
+        return why_set(why, EX_DATAERR, "bodies come and go, and there is no scene that says how");
+    if (scene_parse(&f->scene, p->scene, strlen(p->scene), why)) return why->status;
+    if (f->scene.pours == p->pours && f->scene.removals == p->removals &&
+        f->scene.kinds == p->kinds && f->scene.dim == p->dim)
+        return 0;
+    flow_free(f);
+    return why_set(why, EX_DATAERR, "the scene's pours, removals or kinds are not the packing's");
+}
+
+void flow_free(struct flow *f)
+{
+    scene_free(&f->scene);
+}
+
+static void note(struct packing *p, int64_t i, bool came, int32_t which, struct why *why)
+{
+    struct event e = { p->step,      p->t,       p->id[i], came,   which,
+                       p->radius[i], p->mass[i], p->x[i],  p->v[i] };
+    events_add(&p->events, &e, why);
+}
+
+/* ---- removals ---- */
+
+static bool in_box(const struct scene_box *b, vec3 x, int dim)
+{
+    const double at[3] = { x.x, x.y, x.z };
+    for (int k = 0; k < dim; k++)
+        if (at[k] < b->lo[k] || at[k] > b->hi[k]) return false;
+    return true;
+}
+
+static bool takes(const struct scene_removal *r, const struct packing *p, int64_t i)
+{
+    if (r->kind >= 0 && p->kind[i] != r->kind) return false;
+    if (r->region == REGION_BELOW) return v3_dot(v3_sub(p->x[i], r->point), r->normal) < 0;
+    return in_box(&r->box, p->x[i], p->dim) == (r->region == REGION_INSIDE);
+}
+
+/* The removal that takes body i; -1: none does. */
+static int32_t taken_by(const struct flow *f, const struct packing *p, int64_t i)
+{
+    for (int32_t k = 0; k < f->scene.removals; k++)
+        if (takes(&f->scene.removal[k], p, i)) return k;
+    return -1;
+}
+
+static void copy_body(struct packing *p, int64_t from, int64_t to)
+{
+    p->radius[to] = p->radius[from], p->mass[to] = p->mass[from];
+    p->inertia[to] = p->inertia[from], p->id[to] = p->id[from], p->kind[to] = p->kind[from];
+    p->x[to] = p->x[from], p->q[to] = p->q[from], p->v[to] = p->v[from], p->w[to] = p->w[from];
+}
+
+/* Removes, and tells in row[i] where body i is now, -1: gone. */
+static int remove_bodies(const struct flow *f, struct packing *p, int32_t *row, struct why *why)
+{
+    int64_t kept = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        int32_t k = taken_by(f, p, i);
+        row[i] = k < 0 ? (int32_t)kept : -1;
+        if (k < 0) {
+            copy_body(p, i, kept++);
+            continue;
+        }
+        p->removed[k].bodies++, p->removed[k].mass += p->mass[i];
+        note(p, i, false, k, why);
+        if (why->status) return why->status; // the tool ends here
+    }
+    return packing_resize(p, kept, why);
+}
+
+/* The contacts of bodies that are still there, in their new rows, in the same order */
+static void follow(struct contacts *s, const int32_t *row)
+{
+    int64_t kept = 0;
+    for (int64_t i = 0; i < s->n; i++) {
+        struct contact *c = &s->c[i];
+        int32_t a = c->a < 0 ? c->a : row[c->a], b = row[c->b];
+        if (b < 0 || (c->a >= 0 && a < 0)) continue;
+        s->c[kept] = *c;
+        s->c[kept].a = a, s->c[kept].b = b;
+        if (s->found) s->found[kept] = s->found[i];
+        kept++;
+    }
+    s->n = kept;
+}
+
+/* ---- pours ---- */
+
+static bool is_due(const struct scene_pour *o, const struct passage *so_far, double t)
+{
+    if (t < o->from || t > o->until || (double)so_far->bodies >= o->count) return false;
+    double had = o->by_mass ? so_far->mass : (double)so_far->bodies;
+    return had <= o->rate * (t - o->from);
+}
+
+/* Two unit vectors across a normal; in the plane the first lies in it. */
+static void across(vec3 n, int dim, vec3 *a, vec3 *b)
+{
+    double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
+    vec3 least = x <= y && x <= z ? v3(1, 0, 0) : y <= z ? v3(0, 1, 0) : v3(0, 0, 1);
+    vec3 t = dim == 2 ? v3(-n.y, n.x, 0) : v3_cross(n, least);
+    *a = v3_scale(1 / v3_norm(t), t);
+    *b = v3_cross(n, *a);
+}
+
+/* A place in the opening, each as likely */
+static vec3 draw_place(const struct scene_pour *o, int dim, gsl_rng *rng)
+{
+    if (!o->disc) {
+        double x[3] = { 0 };
+        for (int k = 0; k < dim; k++)
+            x[k] = o->box.lo[k] + (o->box.hi[k] - o->box.lo[k]) * gsl_rng_uniform(rng);
+        return v3(x[0], x[1], x[2]);
+    }
+    double u, w;
+    vec3 a, b;
+    across(o->normal, dim, &a, &b);
+    do {
+        u = 2 * gsl_rng_uniform(rng) - 1, w = dim == 2 ? 0 : 2 * gsl_rng_uniform(rng) - 1;
+    } while (u * u + w * w > 1);
+    return v3_axpy(v3_axpy(o->center, o->radius * u, a), o->radius * w, b);
+}
+
+/* The bodies that a grain in the opening may meet, for whom nothing else moves, and the grain behind
+   them: it is the only one with a mass, so that only its contacts are found. */
+struct crowd {
+    struct packing p; /* shares walls, kinds and all else but the bodies */
+    int64_t *body;    /* [p.n - 1] */
+    vec3 *now;        /* [p.n] m: positions, and the predicted ones */
+    vec3 *then;
+};
+
+static void crowd_free(struct crowd *c)
+{
+    free(c->p.radius), free(c->p.mass), free(c->p.kind), free(c->p.v);
+    free(c->now), free(c->then), free(c->body);
+}
+
+static bool may_meet(const struct scene_pour *o, const struct packing *p, int64_t i)
+{
+    vec3 middle = o->center;
+    double far = o->radius;
+    if (!o->disc) {
+        const struct scene_box *b = &o->box;
+        vec3 lo = v3(b->lo[0], b->lo[1], p->dim == 3 ? b->lo[2] : 0);
+        vec3 hi = v3(b->hi[0], b->hi[1], p->dim == 3 ? b->hi[2] : 0);
+        middle = v3_scale(0.5, v3_add(lo, hi)), far = 0.5 * v3_norm(v3_sub(hi, lo));
+    }
+    double way = p->dt * (v3_norm(o->v) + v3_norm(p->v[i]));
+    double most = (far + o->size.max + p->radius[i] + way) * (1 + 1e-9);
+    vec3 d = v3_sub(p->x[i], middle);
+    return cell_repeats(&p->cell) || v3_dot(d, d) <= most * most; // images are anywhere
+}
+
+static int crowd_gather(struct crowd *c, const struct packing *p, const struct scene_pour *o,
+                        struct why *why)
+{
+    size_t room = (size_t)p->n + 1;
+    *c = (struct crowd){ .p = *p };
+    c->p.n = 0;
+    c->p.radius = calloc(room, sizeof *c->p.radius), c->p.mass = calloc(room, sizeof *c->p.mass);
+    c->p.kind = calloc(room, sizeof *c->p.kind), c->p.v = calloc(room, sizeof *c->p.v);
+    c->now = calloc(room, sizeof *c->now), c->then = calloc(room, sizeof *c->then);
+    c->body = calloc(room, sizeof *c->body);
+    if (!c->p.radius || !c->p.mass || !c->p.kind || !c->p.v || !c->now || !c->then || !c->body)
+        return why_set(why, EX_SOFTWARE, "no memory to pour");
+    for (int64_t i = 0; i < p->n; i++) {
+        if (!may_meet(o, p, i)) continue;
+        int64_t k = c->p.n++;
+        c->body[k] = i;
+        c->p.radius[k] = p->radius[i], c->p.kind[k] = p->kind[i];
+        c->now[k] = p->x[i], c->then[k] = packing_predict(p, i);
+    }
+    c->p.n++;
+    return 0;
+}
+
+/* Would a grain of this radius at x meet nothing, neither now nor at the predicted positions? */
+static bool is_free(struct crowd *c, const struct scene_pour *o, vec3 x, double r, struct why *why)
+{
+    int64_t last = c->p.n - 1;
+    struct contacts met = { 0 };
+    double ahead = (1 - c->p.theta) * c->p.dt;
+    c->p.radius[last] = r, c->p.mass[last] = 1, c->p.kind[last] = o->kind;
+    c->now[last] = x, c->then[last] = v3_axpy(x, ahead, o->v);
+    bool clear = !detect_contacts_at(&met, &c->p, c->now, c->p.t, 0, NULL, why) && !met.n &&
+                 !detect_contacts_at(&met, &c->p, c->then, c->p.t + ahead, 0, NULL, why) && !met.n;
+    contacts_free(&met);
+    return clear && !why->status;
+}
+
+static int add_grain(struct packing *p, const struct scene_pour *o, int32_t which, vec3 x, double r,
+                     struct why *why)
+{
+    int64_t i = p->n, id = p->first_id;
+    for (int32_t k = 0; k < p->pours; k++) id += p->poured[k].bodies;
+    if (id >= INT32_MAX) return why_set(why, EX_DATAERR, "more than %d bodies", INT32_MAX);
+    if (packing_resize(p, i + 1, why)) return why->status;
+    packing_solid(p->dim, r, o->density, &p->mass[i], &p->inertia[i]);
+    if (o->mass > 0) p->inertia[i] *= o->mass / p->mass[i], p->mass[i] = o->mass;
+    if (!(p->mass[i] > 0 && p->inertia[i] > 0))
+        return why_set(why, EX_DATAERR, "pour %d: a radius of %g m gives no mass", which, r);
+    p->x[i] = x, p->v[i] = o->v, p->w[i] = o->w, p->radius[i] = r;
+    p->kind[i] = o->kind, p->id[i] = (int32_t)id;
+    p->poured[which].bodies++, p->poured[which].mass += p->mass[i];
+    note(p, i, true, which, why);
+    return why->status;
+}
+
+/* The next grain of a pour, if it finds a place. */
+static bool pour_one(struct packing *p, const struct scene_pour *o, int32_t which, gsl_rng *rng,
+                     struct why *why)
+{
+    struct crowd c;
+    uint64_t k = (uint64_t)which, n = (uint64_t)p->poured[which].bodies;
+    counter_start(rng, p->seed, COUNTER_GRAIN, k, n, 0);
+    double r = scene_size_draw(&o->size, rng);
+    counter_start(rng, p->seed, COUNTER_PLACE, k, n, (uint64_t)p->step);
+    bool poured = false;
+    crowd_gather(&c, p, o, why);
+    for (int try = 0; try < TRIES && !poured && !why->status; try++) {
+        vec3 x = draw_place(o, p->dim, rng);
+        poured = is_free(&c, o, x, r, why) && !add_grain(p, o, which, x, r, why);
+    }
+    crowd_free(&c);
+    return poured;
+}
+
+int flow_step(const struct flow *f, struct packing *p, struct contacts *last, bool *changed,
+              struct why *why)
+{
+    *changed = false;
+    if (!packing_varies(p)) return 0;
+    int64_t before = p->events.n;
+    int32_t *row = malloc(((size_t)p->n + 1) * sizeof *row);
+    gsl_rng *rng = counter_alloc();
+    if (!row || !rng) why_set(why, EX_SOFTWARE, "no memory for bodies that come and go");
+    if (!why->status && !remove_bodies(f, p, row, why) && last) follow(last, row);
+    for (int32_t k = 0; k < f->scene.pours && !why->status; k++)
+        while (!why->status && is_due(&f->scene.pour[k], &p->poured[k], p->t) &&
+               pour_one(p, &f->scene.pour[k], k, rng, why))
+            ;
+    *changed = p->events.n > before;
+    free(row);
+    gsl_rng_free(rng);
+    return why->status;
+}

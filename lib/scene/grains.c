@@ -1,0 +1,64 @@
+#include "scene/grains.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct grain grain_at(vec3 x, double r)
+{
+    return (struct grain){ .x = x, .q = { 1, 0, 0, 0 }, .r = r, .kind = -1, .id = -1 };
+}
+
+int grains_add(struct grains *t, const struct grain *g, struct why *why)
+{
+    if (t->n == t->room) {
+        int64_t room = t->room ? 2 * t->room : 256;
+        struct grain *more = realloc(t->g, (size_t)room * sizeof *more);
+        if (!more) return why_set(why, EX_SOFTWARE, "no memory for the bodies");
+        t->g = more, t->room = room;
+    }
+    t->g[t->n++] = *g;
+    return 0;
+}
+
+void grains_free(struct grains *t)
+{
+    free(t->g);
+    *t = (struct grains){ 0 };
+}
+
+/* The scene's kind of this name; -1 where it has none */
+static int32_t kind_named(const struct scene *s, const char *name)
+{
+    for (int32_t k = 0; k < s->kinds; k++)
+        if (!strcmp(s->kind[k].name, name)) return k;
+    return -1;
+}
+
+static int add_body(struct grains *out, const struct scene *s, const struct scene_bodies *b,
+                    int64_t i, struct why *why)
+{
+    const struct packing *p = b->document;
+    struct grain g = grain_at(p->x[i], p->radius[i]);
+    g.q = p->q[i], g.id = p->id[i];
+    g.has_v = g.has_w = true;
+    if (!b->at_rest) g.v = p->v[i], g.w = p->w[i];
+    g.weighs = true, g.mass = p->mass[i], g.inertia = p->inertia[i], g.fixed = p->mass[i] == 0;
+    g.kind = b->has_kind ? b->kind : kind_named(s, p->kind_name[p->kind[i]]);
+    if (g.kind < 0)
+        return why_set(why, EX_DATAERR, "%s: body %lld is of kind \"%s\": name it under \"kinds\"",
+                       b->file, (long long)i, p->kind_name[p->kind[i]]);
+    return grains_add(out, &g, why);
+}
+
+int grains_of_document(struct grains *out, const struct scene *s, const struct scene_bodies *b,
+                       struct why *why)
+{
+    if (!b->document)
+        return why_set(why, EX_DATAERR, "%s: a document, which is not read here", b->file);
+    if (b->document->dim != s->dim)
+        return why_set(why, EX_DATAERR, "%s: its dim is %d, and the scene's is %d", b->file,
+                       b->document->dim, s->dim);
+    for (int64_t i = 0; i < b->document->n; i++)
+        if (add_body(out, s, b, i, why)) return why->status;
+    return 0;
+}

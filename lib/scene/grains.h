@@ -1,0 +1,42 @@
+/*
+ * scene/grains.h: the bodies of a group before they are a packing: what a table, a document or a
+ * random start says of each. What it does not say is the group's.
+ */
+#ifndef NSD_GRAINS_H
+#define NSD_GRAINS_H
+
+#include "bodies/packing.h"
+#include "scene/scene.h"
+
+struct grain {
+    vec3 x;                           /* m */
+    quat q;                           /* orientation */
+    vec3 v, w;                        /* m/s, rad/s */
+    double r;                         /* m */
+    double density;                   /* kg/m^3, in the plane kg/m^2; 0: not said */
+    double mass, inertia;             /* kg, kg m^2; 0: not said */
+    int32_t kind, id;                 /* -1: not said */
+    bool has_v, has_w, fixed, weighs; /* weighs: mass and inertia are said, even where they are 0 */
+};
+
+struct grains {
+    int64_t n, room;
+    struct grain *g;
+};
+
+/* A grain of which nothing is said but where and how large it is */
+struct grain grain_at(vec3 x, double r);
+
+/* Returns 0 or EX_SOFTWARE. */
+int grains_add(struct grains *list, const struct grain *grain, struct why *why);
+void grains_free(struct grains *list);
+
+/* scene/scene_table.c: those of a table [scene/scene.h]; dir as of scene_build. Returns 0,
+   EX_DATAERR with file:line, EX_NOINPUT or EX_SOFTWARE. */
+int grains_of_table(struct grains *out, const struct scene *s, const char *dir, const char *name,
+                    struct why *why);
+/* scene/grains.c: those of a document's frame: EX_DATAERR where a kind is none of the scene's. */
+int grains_of_document(struct grains *out, const struct scene *s, const struct scene_bodies *b,
+                       struct why *why);
+
+#endif

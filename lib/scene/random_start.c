@@ -1,0 +1,326 @@
+#include "scene/random_start.h"
+
+#include "bodies/neighbours.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    LEVELS = 24,   /* grids of cells, for radii down to 2^-24 of the largest */
+    TRIES = 20000, /* places tried for a grain: at these densities it takes a dozen */
+    SWEEPS = 100,  /* over the pairs at most, after a growth */
+    LAST = 20000,  /* and in the end */
+    STEPS = 24     /* growths from loose to dense */
+};
+static const double LOOSE[4] = { 0, 0, 0.4, 0.28 }; /* [dim] share of the box */
+static const double FURTHER = 1e-4; /* radii: what pairs are pushed beyond touching */
+static const double BETWEEN = 0.02; /* smaller radii: overlap that may remain between growths */
+static const double REACH = 0.5;    /* mean radii: pairs this near are kept in the list */
+
+/* The grains in work, sorted: the largest first */
+struct start {
+    int dim;
+    const struct scene_box *box;
+    struct packing p; /* radius: as they are asked for; mass: r^dim, in units of the largest */
+    double scale;     /* of the radii */
+    int64_t *from;    /* [p.n] the place in the order drawn */
+};
+
+/* ---- random sequential addition ---- */
+
+/* The grains that are placed, by size and cell; radii of a level are within a factor of two */
+struct level {
+    double h; /* m: a cell's edge, at least the diameter of its grains */
+    uint64_t mask;
+    int64_t *head; /* [mask + 1] the last grain of a bucket, -1: none */
+};
+
+struct placed {
+    struct level level[LEVELS];
+    int64_t *next; /* [n] the grain before in the same bucket */
+};
+
+static uint64_t bucket(const struct level *l, const int64_t cell[3])
+{
+    uint64_t h = (uint64_t)cell[0] * 0x9e3779b97f4a7c15 ^ (uint64_t)cell[1] * 0xc2b2ae3d27d4eb4f ^
+                 (uint64_t)cell[2] * 0x165667b19e3779f9;
+    return (h ^ h >> 29) & l->mask;
+}
+
+static void cell_of(const struct level *l, const struct start *s, vec3 x, int64_t cell[3])
+{
+    const double at[3] = { x.x, x.y, x.z };
+    for (int k = 0; k < 3; k++)
+        cell[k] = k < s->dim ? (int64_t)floor((at[k] - s->box->lo[k]) / l->h) : 0;
+}
+
+static double radius(const struct start *s, int64_t i)
+{
+    return s->scale * s->p.radius[i];
+}
+
+static int level_of(const struct start *s, int64_t i)
+{
+    int l = ilogb(s->p.radius[0] / s->p.radius[i]);
+    return l < LEVELS ? l : LEVELS - 1;
+}
+
+static bool placed_alloc(struct placed *t, const struct start *s)
+{
+    int64_t count[LEVELS] = { 0 };
+    *t = (struct placed){ 0 };
+    if (!(t->next = malloc(((size_t)s->p.n + 1) * sizeof *t->next))) return false;
+    for (int64_t i = 0; i < s->p.n; i++) {
+        struct level *l = &t->level[level_of(s, i)];
+        l->h = fmax(l->h, 2 * radius(s, i));
+        count[level_of(s, i)]++;
+    }
+    for (int k = 0; k < LEVELS; k++) {
+        struct level *l = &t->level[k];
+        if (!count[k]) continue;
+        for (l->mask = 4; l->mask < 2 * (uint64_t)count[k];) l->mask *= 2;
+        if (!(l->head = malloc(l->mask * sizeof *l->head))) return false;
+        for (uint64_t b = 0; b < l->mask; b++) l->head[b] = -1;
+        l->mask--;
+    }
+    return true;
+}
+
+static void placed_free(struct placed *t)
+{
+    for (int k = 0; k < LEVELS; k++) free(t->level[k].head);
+    free(t->next);
+}
+
+/* Would grain i, no larger than those that are placed, meet one of this cell? */
+static bool meets(const struct placed *t, const struct level *l, const struct start *s, int64_t i,
+                  vec3 x, const int64_t cell[3])
+{
+    for (int64_t j = l->head[bucket(l, cell)]; j >= 0; j = t->next[j]) {
+        vec3 d = v3_sub(x, s->p.x[j]);
+        double most = (radius(s, i) + radius(s, j)) * (1 + FURTHER);
+        if (v3_dot(d, d) < most * most) return true;
+    }
+    return false;
+}
+
+static bool is_free(const struct placed *t, const struct start *s, int64_t i, vec3 x)
+{
+    for (int k = level_of(s, i); k >= 0; k--) {
+        const struct level *l = &t->level[k];
+        int64_t c[3], at[3], up = s->dim == 3;
+        if (!l->head) continue;
+        cell_of(l, s, x, c);
+        for (at[2] = c[2] - up; at[2] <= c[2] + up; at[2]++)
+            for (at[1] = c[1] - 1; at[1] <= c[1] + 1; at[1]++)
+                for (at[0] = c[0] - 1; at[0] <= c[0] + 1; at[0]++)
+                    if (meets(t, l, s, i, x, at)) return false;
+    }
+    return true;
+}
+
+/* A place in the box where grain i stays inside */
+static vec3 draw_place(const struct start *s, int64_t i, gsl_rng *rng)
+{
+    double x[3] = { 0 }, r = s->p.radius[i] * (1 + FURTHER); // as it will be
+    for (int k = 0; k < s->dim; k++) {
+        double lo = s->box->lo[k] + r, hi = s->box->hi[k] - r;
+        x[k] = hi > lo ? lo + (hi - lo) * gsl_rng_uniform(rng) : 0.5 * (lo + hi);
+    }
+    return v3(x[0], x[1], x[2]);
+}
+
+static int add_one_by_one(struct start *s, gsl_rng *rng, struct why *why)
+{
+    struct placed t;
+    if (!placed_alloc(&t, s)) why_set(why, EX_SOFTWARE, "no memory for a random start");
+    for (int64_t i = 0; i < s->p.n && !why->status; i++) {
+        int tries = 0;
+        do {
+            s->p.x[i] = draw_place(s, i, rng);
+        } while (!is_free(&t, s, i, s->p.x[i]) && ++tries < TRIES);
+        if (tries == TRIES)
+            why_set(why, EX_DATAERR, "no room for body %lld of %lld in %d tries", (long long)i,
+                    (long long)s->p.n, TRIES);
+        struct level *l = &t.level[level_of(s, i)];
+        int64_t c[3];
+        cell_of(l, s, s->p.x[i], c);
+        t.next[i] = l->head[bucket(l, c)];
+        l->head[bucket(l, c)] = i;
+    }
+    placed_free(&t);
+    return why->status;
+}
+
+/* ---- growth ---- */
+
+/* Pushes the pair apart, to beyond touching; returns its overlap, in radii of the smaller. */
+static double push_pair(struct start *s, int64_t a, int64_t b)
+{
+    vec3 d = v3_sub(s->p.x[b], s->p.x[a]);
+    double touch = radius(s, a) + radius(s, b), d2 = v3_dot(d, d);
+    double wanted = touch * (1 + FURTHER);
+    if (d2 >= wanted * wanted) return 0;
+    double distance = sqrt(d2), ma = s->p.mass[a], mb = s->p.mass[b];
+    if (!(distance > 0)) d = v3(0, 1, 0), d2 = 1; // in one place: any way out will do
+    vec3 way = v3_scale((wanted - distance) / (sqrt(d2) * (ma + mb)), d);
+    s->p.x[a] = v3_axpy(s->p.x[a], -mb, way);
+    s->p.x[b] = v3_axpy(s->p.x[b], ma, way);
+    return (touch - distance) / fmin(radius(s, a), radius(s, b));
+}
+
+/* Back into the box, where it has left it */
+static void push_in(struct start *s, int64_t i)
+{
+    double r = radius(s, i) * (1 + FURTHER), *x[3] = { &s->p.x[i].x, &s->p.x[i].y, &s->p.x[i].z };
+    for (int k = 0; k < s->dim; k++) {
+        double lo = s->box->lo[k] + r, hi = s->box->hi[k] - r;
+        *x[k] = hi > lo ? fmin(fmax(*x[k], lo), hi) : 0.5 * (lo + hi);
+    }
+}
+
+/* Sweeps over the pairs until no overlap is above `most` (smaller radii); *left: the largest. */
+static int push_apart(struct start *s, struct neighbours *near, double most, int sweeps,
+                      double *left, struct why *why)
+{
+    double sum = 0;
+    for (int64_t i = 0; i < s->p.n; i++) sum += radius(s, i);
+    double reach = REACH * sum / (double)(s->p.n ? s->p.n : 1);
+    vec3 *listed = malloc(((size_t)s->p.n + 1) * sizeof *listed);
+    if (!listed) return why_set(why, EX_SOFTWARE, "no memory for a random start");
+    bool fresh = false;
+    for (int k = 0; k < sweeps; k++) {
+        double moved = 0;
+        for (int64_t i = 0; i < s->p.n && fresh; i++) {
+            vec3 d = v3_sub(s->p.x[i], listed[i]);
+            moved = fmax(moved, v3_dot(d, d));
+        }
+        if (!fresh || moved > 0.2 * reach * reach) { // 0.45 reach: each of a pair
+            if (neighbours_find(near, &s->p, s->p.x, reach, false, why)) break;
+            memcpy(listed, s->p.x, (size_t)s->p.n * sizeof *listed);
+            fresh = true;
+        }
+        *left = 0;
+        for (int64_t i = 0; i < near->n; i++)
+            *left = fmax(*left, push_pair(s, near->pair[i].a, near->pair[i].b));
+        for (int64_t i = 0; i < s->p.n; i++) push_in(s, i);
+        if (*left <= most) break;
+    }
+    free(listed);
+    return why->status;
+}
+
+/* What overlaps in the end, all pushing done, in smaller radii */
+static int worst(const struct start *s, struct neighbours *near, double *left, struct why *why)
+{
+    *left = 0;
+    if (neighbours_find(near, &s->p, s->p.x, 0, false, why)) return why->status;
+    for (int64_t i = 0; i < near->n; i++) {
+        int64_t a = near->pair[i].a, b = near->pair[i].b;
+        double r = s->p.radius[a] + s->p.radius[b];
+        double gap = v3_norm(v3_sub(s->p.x[a], s->p.x[b])) - r;
+        *left = fmax(*left, -gap / fmin(s->p.radius[a], s->p.radius[b]));
+    }
+    return 0;
+}
+
+/* From s->scale to 1 */
+static int grow(struct start *s, double phi, struct why *why)
+{
+    struct neighbours near = { 0 };
+    double step = pow(s->scale, -1.0 / STEPS), left = 0;
+    while (s->scale < 1 && !why->status) {
+        s->scale = fmin(1, s->scale * step);
+        push_apart(s, &near, BETWEEN, SWEEPS, &left, why);
+    }
+    for (int k = 0; k < 50 && !why->status; k++) { // the last sweep moves grains, too
+        push_apart(s, &near, 0, LAST / 50, &left, why);
+        if (why->status || worst(s, &near, &left, why) || left == 0) break;
+    }
+    if (!why->status && left > 0)
+        why_set(why, EX_DATAERR, "phi %g: the grains do not go in, %.2g of a radius overlaps", phi,
+                left);
+    neighbours_free(&near);
+    return why->status;
+}
+
+/* ---- */
+
+static double volume(int dim, double r)
+{
+    double mass, inertia;
+    packing_solid(dim, r, 1, &mass, &inertia);
+    return mass;
+}
+
+static double box_volume(const struct scene_box *b, int dim)
+{
+    double v = 1;
+    for (int k = 0; k < dim; k++) v *= b->hi[k] - b->lo[k];
+    return v;
+}
+
+/* The radii: `count` of them, or as many as fill phi of the box best. Returns what they fill. */
+static double draw_radii(struct grains *out, const struct scene_bodies *b, int dim, gsl_rng *rng,
+                         struct why *why)
+{
+    double room = box_volume(&b->box, dim), filled = 0;
+    int64_t most = b->phi > 0 ? 100000000 : b->count;
+    for (int64_t i = 0; i < most; i++) {
+        struct grain g = grain_at(v3(0, 0, 0), scene_size_draw(&b->size, rng));
+        double v = volume(dim, g.r);
+        if (b->phi > 0 && filled + v > b->phi * room &&
+            filled + v - b->phi * room > b->phi * room - filled)
+            break;
+        if (grains_add(out, &g, why)) break;
+        filled += v;
+        if (b->phi > 0 && filled >= b->phi * room) break;
+    }
+    return filled / room;
+}
+
+struct drawn {
+    double r;
+    int64_t i;
+};
+
+static int larger_first(const void *one, const void *other)
+{
+    const struct drawn *a = one, *b = other;
+    if (a->r != b->r) return a->r > b->r ? -1 : 1;
+    return a->i < b->i ? -1 : a->i > b->i;
+}
+
+static int sort_radii(struct start *s, const struct grains *g, struct why *why)
+{
+    if (packing_init(&s->p, s->dim, g->n, why)) return why->status;
+    struct drawn *d = malloc(((size_t)g->n + 1) * sizeof *d);
+    s->from = malloc(((size_t)g->n + 1) * sizeof *s->from);
+    if (!d || !s->from) why_set(why, EX_SOFTWARE, "no memory for a random start");
+    for (int64_t i = 0; i < g->n && !why->status; i++) d[i] = (struct drawn){ g->g[i].r, i };
+    if (!why->status) qsort(d, (size_t)g->n, sizeof *d, larger_first);
+    for (int64_t i = 0; i < g->n && !why->status; i++) {
+        double r = d[i].r / d[0].r;
+        s->p.radius[i] = d[i].r, s->from[i] = d[i].i;
+        s->p.mass[i] = fmax(s->dim == 3 ? r * r * r : r * r, 1e-300);
+    }
+    free(d);
+    return why->status;
+}
+
+int random_start(struct grains *out, const struct scene_bodies *b, int dim, gsl_rng *rng,
+                 struct why *why)
+{
+    struct start s = { .dim = dim, .box = &b->box, .scale = 1 };
+    double phi = draw_radii(out, b, dim, rng, why);
+    if (!why->status && phi > 0.95)
+        why_set(why, EX_DATAERR, "a random start cannot fill %g of its box", phi);
+    if (!why->status && !sort_radii(&s, out, why)) {
+        if (phi > LOOSE[dim]) s.scale = pow(LOOSE[dim] / phi, 1.0 / dim);
+        if (!add_one_by_one(&s, rng, why) && s.scale < 1) grow(&s, phi, why);
+        for (int64_t i = 0; i < out->n && !why->status; i++) out->g[s.from[i]].x = s.p.x[i];
+    }
+    packing_free(&s.p);
+    free(s.from);
+    return why->status;
+}

@@ -1,0 +1,23 @@
+/*
+ * scene/random_start.h: grains at random in a box, without overlap and without a lattice.
+ *
+ * Loose (a share of the box up to 0.28, in the plane 0.4): random sequential addition, the largest
+ * first, each where it meets none that is there. Denser: that, with radii scaled down; then all
+ * radii grow together towards what was asked, as in Lubachevsky & Stillinger (1990), and after every
+ * growth the overlaps are pushed out pair by pair, as in Jodrey & Tory (1985), a pair's lighter grain
+ * by more. Equal balls reach 0.6 of a large box, discs 0.8; then none overlaps at all, for pairs are
+ * pushed a little further than needed.
+ */
+#ifndef NSD_RANDOM_START_H
+#define NSD_RANDOM_START_H
+
+#include "scene/grains.h"
+
+#include <gsl/gsl_rng.h>
+
+/* The group's grains, in the order drawn. Returns 0, EX_DATAERR where they do not go in, or
+   EX_SOFTWARE. */
+int random_start(struct grains *out, const struct scene_bodies *group, int dim, gsl_rng *rng,
+                 struct why *why);
+
+#endif

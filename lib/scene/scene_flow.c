@@ -1,0 +1,102 @@
+/* scene/scene_flow.c: "pour" and "remove" from their JSON. */
+#include "scene/scene_read.h"
+
+#include <string.h>
+
+/* A vector that is not zero, made of length 1 */
+static int read_direction(jnode n, int dim, vec3 *out)
+{
+    vec3 d = v3(0, 0, 0);
+    if (json_node_vector(n, dim, &d)) return 1;
+    double most = fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z))); // so that no square overflows
+    if (!(most > 0)) return json_node_fault(n, "must not be zero");
+    d = v3(d.x / most, d.y / most, d.z / most);
+    double length = v3_norm(d);
+    *out = v3(d.x / length, d.y / length, d.z / length);
+    return 0;
+}
+
+static int read_disc(jnode o, int dim, struct scene_pour *p)
+{
+    p->disc = true;
+    return json_node_only(o, "center normal radius") ||
+           json_node_need(&o, "center normal radius") ||
+           json_node_vector(json_node_key(&o, "center"), dim, &p->center) ||
+           read_direction(json_node_key(&o, "normal"), dim, &p->normal) ||
+           json_node_number(json_node_key(&o, "radius"), J_POSITIVE, &p->radius);
+}
+
+static int read_opening(jnode o, int dim, struct scene_pour *p)
+{
+    int which = json_node_choice(o, "box disc");
+    if (which < 0 || json_node_only(o, "box disc")) return 1;
+    if (which == 1) return read_disc(json_node_key(&o, "disc"), dim, p);
+    jnode box = json_node_key(&o, "box");
+    if (scene_read_box(box, dim, &p->box)) return 1;
+    for (int i = 0; i < dim; i++)
+        if (!isfinite(p->box.hi[i] - p->box.lo[i]))
+            return json_node_fault(box, "an opening wants a closed box, %s is open", axis_name[i]);
+    return 0;
+}
+
+static int read_pour(jnode o, const struct scene *s, struct scene_pour *p)
+{
+    int64_t count = -1;
+    *p = (struct scene_pour){ .until = INFINITY, .count = INFINITY };
+    int which = json_node_choice(o, "rate mass_rate");
+    if (which < 0 ||
+        json_node_only(o, "rate mass_rate opening radius v w kind density mass from until count") ||
+        json_node_need(&o, "opening radius"))
+        return 1;
+    p->by_mass = which == 1;
+    if (json_node_number(json_node_key(&o, which ? "mass_rate" : "rate"), J_POSITIVE, &p->rate) ||
+        read_opening(json_node_key(&o, "opening"), s->dim, p) ||
+        scene_read_size(json_node_key(&o, "radius"), s->dim, &p->size) ||
+        json_node_vector(json_node_key(&o, "v"), s->dim, &p->v) ||
+        scene_read_spin(json_node_key(&o, "w"), s->dim, &p->w) ||
+        scene_read_kind(json_node_key(&o, "kind"), s, &p->kind) ||
+        json_node_number(json_node_key(&o, "from"), J_ANY, &p->from) ||
+        json_node_number(json_node_key(&o, "until"), J_ANY, &p->until) ||
+        json_node_integer(json_node_key(&o, "count"), 0, INT32_MAX, &count))
+        return 1;
+    if (count >= 0) p->count = (double)count;
+    p->from = fmax(p->from, s->t); // nothing is due from before the scene begins
+    p->density = s->kind[p->kind].density;
+    return scene_read_mass(&o, &p->density, &p->mass);
+}
+
+int scene_read_pours(jnode a, struct scene *s)
+{
+    size_t n;
+    if (json_node_array(a, &n) || !(s->pour = scene_alloc(a, n, sizeof *s->pour))) return 1;
+    if (n > 1000) return json_node_fault(a, "more than 1000 pours");
+    for (size_t i = 0; i < n; i++)
+        if (read_pour(json_node_item(&a, i), s, &s->pour[s->pours++])) return 1;
+    return 0;
+}
+
+static int read_removal(jnode o, const struct scene *s, struct scene_removal *r)
+{
+    static const char *const key[] = { "outside", "inside", "below" };
+    *r = (struct scene_removal){ .kind = -1 };
+    int which = json_node_choice(o, "outside inside below");
+    if (which < 0 || json_node_only(o, "outside inside below kind") ||
+        scene_read_kind(json_node_key(&o, "kind"), s, &r->kind))
+        return 1;
+    r->region = (enum scene_region)which;
+    jnode where = json_node_key(&o, key[which]);
+    if (r->region != REGION_BELOW) return scene_read_box(where, s->dim, &r->box);
+    return json_node_only(where, "point normal") || json_node_need(&where, "point normal") ||
+           json_node_vector(json_node_key(&where, "point"), s->dim, &r->point) ||
+           read_direction(json_node_key(&where, "normal"), s->dim, &r->normal);
+}
+
+int scene_read_removals(jnode a, struct scene *s)
+{
+    size_t n;
+    if (json_node_array(a, &n) || !(s->removal = scene_alloc(a, n, sizeof *s->removal))) return 1;
+    if (n > 1000) return json_node_fault(a, "more than 1000 removals");
+    for (size_t i = 0; i < n; i++)
+        if (read_removal(json_node_item(&a, i), s, &s->removal[s->removals++])) return 1;
+    return 0;
+}

@@ -1,0 +1,248 @@
+/* scene/scene_table.c: tables of bodies: text, a line a body, columns that the first line names. */
+#include "scene/grains.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum {
+    LINE = 4096,         /* bytes of a line, a comment's too */
+    MOST_ROWS = 1 << 27, /* bodies of a table */
+    COLUMNS = 24         /* of a line */
+};
+
+enum column {
+    X,
+    Y,
+    Z,
+    R,
+    D,
+    MASS,
+    DENSITY,
+    VX,
+    VY,
+    VZ,
+    WX,
+    WY,
+    WZ,
+    QW,
+    QX,
+    QY,
+    QZ,
+    ID,
+    KIND,
+    FIXED,
+    NAMES
+};
+static const char *const column_name[NAMES] = { "x",  "y",  "z",  "r",  "d",    "mass", "density",
+                                                "vx", "vy", "vz", "wx", "wy",   "wz",   "qw",
+                                                "qx", "qy", "qz", "id", "kind", "fixed" };
+
+struct table {
+    const char *path;
+    int64_t line; /* its number, from 1 */
+    const struct scene *scene;
+    int n;                       /* columns */
+    enum column column[COLUMNS]; /* [n] */
+    bool has[NAMES];
+    bool named; /* by its first line */
+};
+
+static int fault(const struct table *t, struct why *why, const char *trouble, const char *word)
+{
+    return why_set(why, EX_DATAERR, "%s:%lld: %s%s%s%s", t->path, (long long)t->line, trouble,
+                   word ? " \"" : "", word ? word : "", word ? "\"" : "");
+}
+
+/* The next word of a line, ended by a zero; NULL at its end */
+static char *next_word(char **at)
+{
+    char *s = *at;
+    while (isspace((unsigned char)*s)) s++;
+    if (!*s) return NULL;
+    char *end = s;
+    while (*end && !isspace((unsigned char)*end)) end++;
+    *at = *end ? end + 1 : end;
+    *end = 0;
+    return s;
+}
+
+static int name_index(const char *word)
+{
+    for (int k = 0; k < NAMES; k++)
+        if (!strcmp(column_name[k], word)) return k;
+    return -1;
+}
+
+static bool of_space(enum column c)
+{
+    return c == Z || c == VZ || c == WX || c == WY;
+}
+
+static int add_column(struct table *t, char *word, struct why *why)
+{
+    int k = name_index(word);
+    if (k < 0) return fault(t, why, "no column is called", word);
+    if (t->has[k]) return fault(t, why, "named twice: the column", word);
+    if (t->scene->dim == 2 && of_space((enum column)k))
+        return fault(t, why, "the scene's dim is 2, there is no column", word);
+    t->has[k] = true;
+    t->column[t->n++] = (enum column)k; // at most NAMES, for none comes twice
+    return 0;
+}
+
+/* The columns that the first line, a comment, names: if its first two words are names. */
+static int read_names(struct table *t, char *line, struct why *why)
+{
+    char copy[LINE], *at = strcpy(copy, line), *first = next_word(&at), *second = next_word(&at);
+    if (!first || !second || name_index(first) < 0 || name_index(second) < 0) return 0;
+    t->n = 0, t->named = true;
+    memset(t->has, 0, sizeof t->has);
+    char *word;
+    for (at = line; (word = next_word(&at));)
+        if (add_column(t, word, why)) return why->status;
+    for (int k = X; k <= Z; k++)
+        if (!t->has[k] && !(k == Z && t->scene->dim == 2))
+            return fault(t, why, "there is no column", column_name[k]);
+    if (!t->has[R] && !t->has[D]) return fault(t, why, "there is no column", "r");
+    if (t->has[R] && t->has[D]) return fault(t, why, "both r and", "d");
+    if (t->has[MASS] && t->has[DENSITY]) return fault(t, why, "both mass and", "density");
+    int q = t->has[QW] + t->has[QX] + t->has[QY] + t->has[QZ];
+    return !q || q == 4 ? 0 : fault(t, why, "an orientation is qw qx qy qz", NULL);
+}
+
+static void usual_columns(struct table *t)
+{
+    static const enum column usual[] = { X, Y, Z, R };
+    t->n = 0;
+    for (int k = 0; k < 4; k++)
+        if (t->scene->dim == 3 || usual[k] != Z)
+            t->column[t->n++] = usual[k], t->has[usual[k]] = true;
+}
+
+/* ---- a line ---- */
+
+static int fault_usual(const struct table *t, struct why *why)
+{
+    return fault(t, why, t->scene->dim == 2 ? "wants x y r" : "wants x y z r", NULL);
+}
+
+static int read_number(const struct table *t, enum column c, const char *word, double *x,
+                       struct why *why)
+{
+    char *end, text[80];
+    *x = strtod(word, &end);
+    if (*end && !t->named) return fault_usual(t, why);
+    snprintf(text, sizeof text, "%s: not a number:", column_name[c]);
+    if (*end) return fault(t, why, text, word);
+    snprintf(text, sizeof text, "%s: not finite", column_name[c]);
+    if (!isfinite(*x)) return fault(t, why, t->named ? text : "not finite", NULL);
+    snprintf(text, sizeof text, "the %s must be positive", c == R ? "radius" : column_name[c]);
+    bool positive = c == R || c == D || c == MASS || c == DENSITY;
+    if (positive && !(*x > 0)) return fault(t, why, text, NULL);
+    bool whole = *x == floor(*x) && *x >= 0 && *x <= INT32_MAX;
+    if (c == ID && !whole) return fault(t, why, "an id must be a whole number:", word);
+    if (c == FIXED && *x != 0 && *x != 1) return fault(t, why, "fixed must be 0 or 1:", word);
+    return 0;
+}
+
+static int read_kind(const struct table *t, const char *word, int32_t *kind, struct why *why)
+{
+    for (int32_t k = 0; k < t->scene->kinds; k++) {
+        if (strcmp(t->scene->kind[k].name, word) != 0) continue;
+        *kind = k;
+        return 0;
+    }
+    return fault(t, why, "the scene names no kind", word);
+}
+
+static int make_grain(const struct table *t, const double *x, struct grain *g, struct why *why)
+{
+    *g = grain_at(v3(x[X], x[Y], x[Z]), t->has[D] ? 0.5 * x[D] : x[R]);
+    g->mass = x[MASS], g->density = x[DENSITY];
+    g->v = v3(x[VX], x[VY], x[VZ]), g->w = v3(x[WX], x[WY], x[WZ]);
+    g->has_v = t->has[VX] || t->has[VY] || t->has[VZ];
+    g->has_w = t->has[WX] || t->has[WY] || t->has[WZ];
+    g->fixed = x[FIXED] != 0;
+    if (t->has[ID]) g->id = (int32_t)x[ID];
+    if (!t->has[QW]) return 0;
+    quat q = { x[QW], x[QX], x[QY], x[QZ] };
+    double length = sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+    if (!(fabs(length - 1) < 1e-3)) return fault(t, why, "qw qx qy qz is no unit quaternion", NULL);
+    g->q = quat_unit(q);
+    return 0;
+}
+
+static int read_line(struct table *t, char *line, struct grains *out, struct why *why)
+{
+    double x[NAMES] = { 0 };
+    int32_t kind = -1;
+    char *word, *at = line, *comment = strchr(line, '#');
+    struct grain g;
+    int n = 0;
+    if (comment) *comment = 0;
+    for (; (word = next_word(&at)); n++) {
+        if (n == t->n) break;
+        enum column c = t->column[n];
+        if (c == KIND ? read_kind(t, word, &kind, why) : read_number(t, c, word, &x[c], why))
+            return why->status;
+    }
+    if (!n) return 0;
+    if (word || n != t->n)
+        return t->named ? fault(t, why, "not as many words as columns", NULL) : fault_usual(t, why);
+    if (out->n == MOST_ROWS) return fault(t, why, "a table of too many bodies (endless?)", NULL);
+    if (make_grain(t, x, &g, why)) return why->status;
+    g.kind = kind;
+    return grains_add(out, &g, why);
+}
+
+/* A line of a table without its newline; false at the end, and where it is too long. */
+static bool next_line(FILE *f, char line[LINE], const struct table *t, struct why *why)
+{
+    size_t n = 0;
+    int c = 0;
+    while (n < LINE - 1 && (c = getc(f)) != EOF && c != '\n') line[n++] = c ? (char)c : '?';
+    line[n] = 0;
+    if (n == LINE - 1)
+        return why_set(why, EX_DATAERR, "%s:%lld: a line of more than %d bytes", t->path,
+                       (long long)t->line, LINE - 2),
+               false;
+    return n || c != EOF;
+}
+
+static int read_lines(struct table *t, FILE *f, struct grains *out, struct why *why)
+{
+    char line[LINE] = "";
+    for (t->line = 1; !why->status && next_line(f, line, t, why); t->line++) {
+        char *s = line + strspn(line, " \t\r\v\f");
+        if (t->line == 1 && *s == '#')
+            read_names(t, s + 1, why);
+        else
+            read_line(t, line, out, why);
+    }
+    return why->status;
+}
+
+int grains_of_table(struct grains *out, const struct scene *s, const char *dir, const char *name,
+                    struct why *why)
+{
+    char path[4096];
+    struct stat st;
+    bool whole = *name == '/' || !dir;
+    if ((size_t)snprintf(path, sizeof path, "%s%s%s", whole ? "" : dir, whole ? "" : "/", name) >=
+        sizeof path)
+        return why_set(why, EX_NOINPUT, "%.100s...: name too long", name);
+    struct table t = { .path = path, .scene = s };
+    usual_columns(&t);
+    FILE *f = fopen(path, "r");
+    if (!f) return why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
+    if (!fstat(fileno(f), &st) && (S_ISCHR(st.st_mode) || S_ISBLK(st.st_mode)))
+        why_set(why, EX_NOINPUT, "%s: a device is no table", path);
+    if (!why->status) read_lines(&t, f, out, why);
+    if (!why->status && ferror(f)) why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
+    fclose(f);
+    return why->status;
+}
