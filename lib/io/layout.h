@@ -137,7 +137,7 @@ static const struct column layout_report[] = {
     { 0 },
 };
 
-/* /observables/flow/NAME/value [F][pours], or [removals]: members of struct passage */
+/* /nsd/flow/NAME/value [F][pours], or [removals]: members of struct passage */
 static const struct column layout_poured[] = {
     { "poured", "1", COLUMN_I64, 1, offsetof(struct passage, bodies) },
     { "poured_mass", "kg", COLUMN_F64, 1, offsetof(struct passage, mass) },
@@ -149,7 +149,7 @@ static const struct column layout_removed[] = {
     { 0 },
 };
 
-/* /observables/flow/events/NAME [E][width]: members of struct event */
+/* /nsd/flow/events/NAME [E][width]: members of struct event */
 static const struct column layout_events[] = {
     { "step", "1", COLUMN_I64, 1, offsetof(struct event, step) },
     { "time", "s", COLUMN_F64, 1, offsetof(struct event, t) },
