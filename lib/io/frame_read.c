@@ -80,6 +80,10 @@ static int count_reports(struct frame_read *r, struct why *why)
     r->reports = source_has(r->source, LAYOUT_REPORT) ? LAYOUT_REPORT : LAYOUT_REPORT_0_1;
     snprintf(path, sizeof path, "%s/step", r->reports);
     if (source_has(r->source, path)) r->solved = steps_of(r, path, &r->solves, why);
+    uint64_t shape[4];
+    snprintf(path, sizeof path, "%s/time", r->reports);
+    if (source_shape(r->source, path, shape) > 0 && shape[0] < (uint64_t)r->solves)
+        r->solves = (int64_t)shape[0];
     count_rows(r, layout_report);
     count_rows(r, layout_balance);
     return why->status;
