@@ -307,7 +307,7 @@ static int find_bodies(struct frame_read *r, int64_t k, int64_t **row, int64_t *
         return why_set(why, EX_DATAERR, "%s: not of shape frames x bodies", ids);
     int64_t rows = (int64_t)shape[1];
     int32_t *id = malloc(((size_t)rows + 1) * sizeof *id);
-    *row = malloc(((size_t)rows + 1) * sizeof **row);
+    *row = calloc((size_t)rows + 1, sizeof **row);
     if (!id || !*row) why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)rows);
     if (!why->status) source_rows(r->source, ids, COLUMN_I32, k, 1, rows, id, why);
     *n = 0;
