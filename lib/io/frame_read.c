@@ -308,11 +308,14 @@ static int find_bodies(struct frame_read *r, int64_t k, int64_t **row, int64_t *
     int64_t rows = (int64_t)shape[1];
     int32_t *id = malloc(((size_t)rows + 1) * sizeof *id);
     *row = calloc((size_t)rows + 1, sizeof **row);
-    if (!id || !*row) why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)rows);
-    if (!why->status) source_rows(r->source, ids, COLUMN_I32, k, 1, rows, id, why);
     *n = 0;
-    for (int64_t i = 0; !why->status && i < rows; i++)
-        if (id[i] >= 0) (*row)[(*n)++] = i;
+    if (!id || !*row) {
+        free(id);
+        return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)rows);
+    }
+    if (!source_rows(r->source, ids, COLUMN_I32, k, 1, rows, id, why))
+        for (int64_t i = 0; i < rows; i++)
+            if (id[i] >= 0) (*row)[(*n)++] = i;
     free(id);
     return why->status;
 }
