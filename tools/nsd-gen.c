@@ -59,8 +59,9 @@ static void read_scene(struct scene *s, const char *path, char **dir)
     char *text = f ? slurp(f, &n) : NULL;
     if (!f || ferror(f)) die(EX_NOINPUT, "%s: %s", name, strerror(errno));
     if (!text) die(EX_SOFTWARE, "%s: no memory", name);
-    if (scene_parse(s, text, n, &why)) die(why.status, "%s:%s", name, why.text);
+    scene_parse(s, text, n, &why);
     free(text);
+    if (why.status) die(why.status, "%s:%s", name, why.text);
     if (standard) return;
     fclose(f);
     char *copy = strdup(path);

@@ -1,4 +1,5 @@
 /* nsd-info: shows any part of a document as JSON lines, for jq and gnuplot. */
+#include "bodies/energy.h"
 #include "cli/cli.h"
 #include "io/reader.h"
 #include "io/report_json.h"
@@ -137,20 +138,14 @@ static void show_moment(const struct frame *f)
     json_t *j = json_object();
     if (f->packed) {
         const struct packing *p = &f->packing;
-        double kinetic = 0, potential = 0, fastest = 0;
-        for (int64_t i = 0; i < p->n; i++) {
-            double v2 = v3_dot(p->v[i], p->v[i]);
-            kinetic += 0.5 * (p->mass[i] * v2 + p->inertia[i] * v3_dot(p->w[i], p->w[i]));
-            potential -= p->mass[i] * v3_dot(p->g, p->x[i]);
-            fastest = fmax(fastest, sqrt(v2));
-        }
+        const struct energy e = energy_of(p);
         json_object_set_new(j, "step", json_integer(p->step));
         json_object_set_new(j, "time", json_number(p->t));
         json_object_set_new(j, "bodies", json_integer(p->n));
         json_object_set_new(j, "contacts", f->detected ? json_integer(f->contacts.n) : json_null());
-        json_object_set_new(j, "kinetic_energy", json_number(kinetic));
-        json_object_set_new(j, "potential_energy", json_number(potential));
-        json_object_set_new(j, "max_speed", json_number(fastest));
+        json_object_set_new(j, "kinetic_energy", json_number(e.kinetic));
+        json_object_set_new(j, "potential_energy", json_number(e.potential));
+        json_object_set_new(j, "max_speed", json_number(e.fastest));
         show_passages(j, "poured", p->pours, p->poured);
         show_passages(j, "removed", p->removals, p->removed);
     }

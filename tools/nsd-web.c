@@ -1,5 +1,6 @@
 /* nsd-web: a trajectory as one page that plays it in a browser. */
 #include "base/unfinished.h"
+#include "bodies/energy.h"
 #include "cli/cli.h"
 #include "cli/tool_filter.h"
 #include "draw/page.h"
@@ -56,16 +57,10 @@ static void add(struct page *p, const char *name, const char *unit, double value
 
 static void add_energy(struct page *page, const struct packing *p)
 {
-    double kinetic = 0, potential = 0, fastest = 0;
-    for (int64_t i = 0; i < p->n; i++) {
-        double v2 = v3_dot(p->v[i], p->v[i]);
-        kinetic += 0.5 * (p->mass[i] * v2 + p->inertia[i] * v3_dot(p->w[i], p->w[i]));
-        potential -= p->mass[i] * v3_dot(p->g, p->x[i]);
-        fastest = fmax(fastest, sqrt(v2));
-    }
-    add(page, "kinetic energy", "J", kinetic);
-    add(page, "potential energy", "J", potential);
-    add(page, "largest speed", "m/s", fastest);
+    const struct energy e = energy_of(p);
+    add(page, "kinetic energy", "J", e.kinetic);
+    add(page, "potential energy", "J", e.potential);
+    add(page, "largest speed", "m/s", e.fastest);
 }
 
 static void add_contacts(struct page *page, const struct frame *f)
@@ -140,7 +135,9 @@ static void run(struct reader *in, struct page *page, FILE *out, FILE *lines)
         tool_wants_packing(&f, reader_where(in));
         if (!page->out) {
             char *name = title ? strdup(title) : title_of(&f.packing);
-            if (page_begin(page, out, name ? name : "nsd", &why)) die_why(&why);
+            if (page_begin(page, out, output ? output : "standard output", name ? name : "nsd",
+                           &why))
+                die_why(&why);
             free(name);
         }
         add_frame(page, &f, lines, reader_where(in));

@@ -1,36 +1,18 @@
-/*
- * bodies/neighbours.c: a hashed grid for each size of body, and how long a list of pairs serves.
- */
+/* bodies/neighbours.c: the search of pairs in the grids, and how long a list of them serves. */
 #include "bodies/neighbours.h"
+
+#include "bodies/grid.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum {
-    LEVELS = 40,    /* grids, so radii down to 2^-40 of the largest; smaller ones share the last */
     KEEP_STEPS = 8, /* steps that a list is meant to serve, all at the speed of the fastest body */
 };
 /* What a list may reach further than was asked, in mean radii: */
 static const double MIN_SPARE = 0.02, /* when (nearly) nothing moves */
     MAX_SPARE = 0.5;                  /* beyond it a list would be crowded: it serves one step */
-
-struct entry {
-    vec3 x;          /* m: of the body */
-    double r;        /* m: its radius */
-    int32_t cell[3]; /* its cell along x, y, z */
-    int32_t body;
-};
-
-/* The bodies of one level, radii within a factor of two, hashed by cell. */
-struct grid {
-    double h;      /* m: a cell's edge: bodies within reach are in the same or adjacent cells */
-    int64_t n;     /* bodies */
-    uint64_t mask; /* buckets - 1 */
-    uint64_t stride[2];  /* of the hash, along y and z; along x it is 1, for locality */
-    int64_t *first;      /* [buckets + 1] of bucket b: entry[first[b]] .. entry[first[b + 1] - 1] */
-    struct entry *entry; /* [n] sorted by bucket */
-};
 
 void neighbours_free(struct neighbours *s)
 {
@@ -62,102 +44,6 @@ static bool pairs_add(struct neighbours *s, int32_t a, int32_t b, const int8_t s
     struct pair *new = &s->pair[s->n++];
     *new = a < b ? (struct pair){ .a = a, .b = b } : (struct pair){ .a = b, .b = a };
     for (int k = 0; k < 3; k++) new->shift[k] = (int8_t)(a < b ? -shift[k] : shift[k]);
-    return true;
-}
-
-/* ---- the grids ---- */
-
-static int32_t cell_of(double x, double h)
-{
-    double c = floor(x / h), far = 1e9;
-    return (int32_t)(c < -far ? -far : c > far ? far : c);
-}
-
-static uint64_t bucket(const struct grid *g, int64_t i, int64_t j, int64_t k)
-{
-    return ((uint64_t)i + (uint64_t)j * g->stride[0] + (uint64_t)k * g->stride[1]) & g->mask;
-}
-
-static int level_of(double r, double rmax)
-{
-    int level = ilogb(rmax / r);
-    return level < LEVELS ? level : LEVELS - 1;
-}
-
-/* Strides that number the cells of the bodies' bounding box one by one. */
-static void grid_strides(struct grid *g, const int32_t lo[3], const int32_t hi[3])
-{
-    uint64_t nx = (uint64_t)((int64_t)hi[0] - lo[0] + 3);
-    uint64_t ny = (uint64_t)((int64_t)hi[1] - lo[1] + 3);
-    g->stride[0] = nx;
-    g->stride[1] = nx * ny;
-}
-
-/* Sorts g->entry, cells set, by bucket: a counting sort. */
-static bool grid_sort(struct grid *g)
-{
-    uint64_t buckets = 4;
-    while (buckets < 2 * (uint64_t)g->n) buckets *= 2;
-    g->mask = buckets - 1;
-    struct entry *sorted = malloc((size_t)g->n * sizeof *sorted);
-    g->first = calloc(buckets + 2, sizeof *g->first);
-    if (!sorted || !g->first) {
-        free(sorted);
-        return false;
-    }
-    for (int64_t i = 0; i < g->n; i++) { // counts two ahead: after the fill, b starts at first[b]
-        const int32_t *c = g->entry[i].cell;
-        g->first[bucket(g, c[0], c[1], c[2]) + 2]++;
-    }
-    for (uint64_t b = 0; b < buckets; b++) g->first[b + 2] += g->first[b + 1];
-    for (int64_t i = 0; i < g->n; i++) {
-        const int32_t *c = g->entry[i].cell;
-        sorted[g->first[bucket(g, c[0], c[1], c[2]) + 1]++] = g->entry[i];
-    }
-    free(g->entry);
-    g->entry = sorted;
-    return true;
-}
-
-static void grids_free(struct grid *g)
-{
-    for (int l = 0; l < LEVELS; l++) free(g[l].first), free(g[l].entry);
-}
-
-static bool grids_build(struct grid g[LEVELS], const struct packing *p, const vec3 *at,
-                        double reach)
-{
-    double rmax = 0, top[LEVELS] = { 0 };
-    for (int64_t i = 0; i < p->n; i++) rmax = fmax(rmax, p->radius[i]);
-    for (int64_t i = 0; i < p->n; i++) {
-        int l = level_of(p->radius[i], rmax);
-        g[l].n++;
-        top[l] = fmax(top[l], p->radius[i]);
-    }
-    int32_t lo[LEVELS][3], hi[LEVELS][3];
-    for (int l = 0; l < LEVELS; l++) {
-        if (!g[l].n) continue;
-        g[l].h = (2 * top[l] + reach) * (1 + 1e-12);
-        if (!(g[l].entry = malloc((size_t)g[l].n * sizeof *g[l].entry))) return false;
-        for (int k = 0; k < 3; k++) lo[l][k] = INT32_MAX, hi[l][k] = INT32_MIN;
-        g[l].n = 0;
-    }
-    for (int64_t i = 0; i < p->n; i++) {
-        int l = level_of(p->radius[i], rmax);
-        struct entry *e = &g[l].entry[g[l].n++];
-        *e = (struct entry){ at[i], p->radius[i], { 0 }, (int32_t)i };
-        const double x[3] = { e->x.x, e->x.y, e->x.z };
-        for (int k = 0; k < 3; k++) {
-            int32_t c = e->cell[k] = cell_of(x[k], g[l].h);
-            if (c < lo[l][k]) lo[l][k] = c;
-            if (c > hi[l][k]) hi[l][k] = c;
-        }
-    }
-    for (int l = 0; l < LEVELS; l++) {
-        if (!g[l].n) continue;
-        grid_strides(&g[l], lo[l], hi[l]);
-        if (!grid_sort(&g[l])) return false;
-    }
     return true;
 }
 
@@ -199,7 +85,7 @@ static bool look_at(const struct seeker *s, const struct grid *g, int64_t first,
 static bool look_along(const struct seeker *s, const struct grid *g, int64_t i0, int64_t i1,
                        int64_t j, int64_t k)
 {
-    uint64_t b0 = bucket(g, i0, j, k), b1 = bucket(g, i1, j, k);
+    uint64_t b0 = grid_bucket(g, i0, j, k), b1 = grid_bucket(g, i1, j, k);
     if (b0 <= b1) return look_at(s, g, g->first[b0], g->first[b1 + 1], i0, i1, j, k);
     return look_at(s, g, g->first[b0], g->n, i0, i1, j, k) &&
            look_at(s, g, 0, g->first[b1 + 1], i0, i1, j, k);
@@ -209,7 +95,7 @@ static bool look_along(const struct seeker *s, const struct grid *g, int64_t i0,
 static bool look_here(const struct seeker *s, const struct grid *g, int64_t m)
 {
     int64_t i = s->e->cell[0], j = s->e->cell[1], k = s->e->cell[2];
-    int64_t end = g->first[bucket(g, i, j, k) + 1];
+    int64_t end = g->first[grid_bucket(g, i, j, k) + 1];
     if (!look_at(s, g, m + 1, end, i, i, j, k) || !look_along(s, g, i + 1, i + 1, j, k) ||
         !look_along(s, g, i - 1, i + 1, j + 1, k))
         return false;
@@ -222,7 +108,7 @@ static bool look_here(const struct seeker *s, const struct grid *g, int64_t m)
 static bool look_around(const struct seeker *s, const struct grid *g)
 {
     const vec3 x = s->x;
-    int64_t i = cell_of(x.x, g->h), j = cell_of(x.y, g->h), k = cell_of(x.z, g->h);
+    int64_t i = grid_cell(x.x, g->h), j = grid_cell(x.y, g->h), k = grid_cell(x.z, g->h);
     int64_t up = s->p->dim == 3;
     for (int64_t m = k - up; m <= k + up; m++)
         for (int64_t l = j - 1; l <= j + 1; l++)
@@ -397,16 +283,9 @@ static bool list_serves_cell(const struct neighbours *s, const struct packing *p
     const vec3 *inverse = s->inverse, o = p->cell.origin;
     vec3 f[3];
     for (int k = 0; k < 3; k++) {
-        const double u[3] = { k == 0   ? inverse[0].x
-                              : k == 1 ? inverse[0].y
-                                       : inverse[0].z,
-                              k == 0   ? inverse[1].x
-                              : k == 1 ? inverse[1].y
-                                       : inverse[1].z,
-                              k == 0   ? inverse[2].x
-                              : k == 1 ? inverse[2].y
-                                       : inverse[2].z };
-        f[k] = v3_axpy(v3_axpy(v3_scale(u[0], edge[0]), u[1], edge[1]), u[2], edge[2]);
+        vec3 e = v3(k == 0, k == 1, k == 2);
+        f[k] =
+            deform(edge, v3(v3_dot(inverse[0], e), v3_dot(inverse[1], e), v3_dot(inverse[2], e)));
     }
     double stretch = fmin(least_stretch(f), 1), wide = 2 * largest_radius(p);
     double most = 0.49 * (stretch * s->reach - gap - (1 - stretch) * wide);
@@ -465,8 +344,7 @@ static double spare_reach(const struct packing *p)
     for (int64_t i = 0; i < p->n; i++) r += p->radius[i];
     r /= (double)(p->n ? p->n : 1);
     double way = fastest(p);
-    for (int k = 0; cell_repeats(&p->cell) && k < 3;
-         k++) // and what the edges' motion takes from it
+    for (int k = 0; cell_repeats(&p->cell) && k < 3; k++) // what the edges' motion takes from it
         way += v3_norm(p->cell.rate[k]) / v3_norm(p->cell.edge[k]) * largest_radius(p);
     double s = fmax(2 * KEEP_STEPS * p->dt * way, MIN_SPARE * r);
     return s <= MAX_SPARE * r ? s : 0;

@@ -32,11 +32,6 @@ struct ground {
     double x[WALLS_CORNERS], y[WALLS_CORNERS]; /* of the corners */
 };
 
-/* A triangle of a boundary that is half transparent */
-struct glass {
-    vec3 corner[3];
-};
-
 /* What is cut away: where side[0] x + side[1] y + side[2] z + side[3] > 0 */
 struct cutting {
     bool cuts;
@@ -57,8 +52,6 @@ struct raster {
     int grounds, edges;
     struct ground *ground;
     struct edge *edge;
-    int64_t glasses;
-    struct glass *glass;
     struct cutting cutting;
     float pale;   /* 0 to 1: how much the bodies are mixed with the background */
     double thick; /* half the width of an edge */
@@ -86,7 +79,6 @@ struct band {
     struct span *range; /* [squares] least and largest depth of what is in front */
     float *dark;        /* [width (y1 - y0)] share of the sky that is hidden */
     float *edge;        /* [width (y1 - y0)] opacity of an edge over it, 0 to 1 */
-    float *clear; /* [width (y1 - y0)] share of the light that comes through glass before it */
     int64_t spots;
     int64_t *spot; /* [spots] those near the band */
 };

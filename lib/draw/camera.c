@@ -21,6 +21,12 @@ void window_add(struct window *w, const struct camera *c, vec3 x, double r)
     w->front = fmax(w->front, s.z + r);
 }
 
+double camera_round(double x)
+{
+    double power = pow(10, floor(log10(x))), m = x / power;
+    return power * (m < 2 ? 1 : m < 5 ? 2 : 5);
+}
+
 void camera_perspective(struct camera *c, const struct window *w, double angle)
 {
     c->eye = INFINITY, c->front = w->front;

@@ -55,6 +55,9 @@ static inline double camera_shrinks(const struct camera *c, double height)
     return isinf(c->eye) ? 1 : depth > -0.95 * c->eye ? c->eye / (c->eye + depth) : 0;
 }
 
+/* 1, 2 or 5 times a power of ten, not above x: the lengths that a picture shows */
+double camera_round(double x);
+
 /* The angle of sight (degrees; 0: none) over the longer side of what the camera shows */
 void camera_perspective(struct camera *c, const struct window *w, double angle);
 

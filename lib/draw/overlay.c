@@ -100,13 +100,6 @@ int overlay_strip(const struct overlay *o, int width)
     return strip < 44 ? 44 : strip > 110 ? 110 : strip;
 }
 
-/* 1, 2 or 5 times a power of ten, not above x */
-static double round_length(double x)
-{
-    double power = pow(10, floor(log10(x))), m = x / power;
-    return power * (m < 2 ? 1 : m < 5 ? 2 : 5);
-}
-
 /* A length in m as one reads it */
 static void say_length(double m, char *text, size_t room)
 {
@@ -135,16 +128,16 @@ static double write_words(cairo_t *cr, double x, double y, enum side side, const
     return e.x_advance;
 }
 
+void overlay_colour(cairo_t *cr, struct rgb c)
+{
+    cairo_set_source_rgb(cr, rgb_byte(c.r) / 255.0, rgb_byte(c.g) / 255.0, rgb_byte(c.b) / 255.0);
+}
+
 static double font_height(cairo_t *cr)
 {
     cairo_font_extents_t e;
     cairo_font_extents(cr, &e);
     return e.ascent;
-}
-
-static void set_rgb(cairo_t *cr, struct rgb c)
-{
-    cairo_set_source_rgb(cr, rgb_byte(c.r) / 255.0, rgb_byte(c.g) / 255.0, rgb_byte(c.b) / 255.0);
 }
 
 /* The palette with its name, unit and ends; where there is one value, that */
@@ -161,7 +154,7 @@ static void draw_palette(cairo_t *cr, const struct paint *p, double x, double y,
     cairo_save(cr);
     cairo_set_antialias(cr, CAIRO_ANTIALIAS_NONE); // no seams between the steps
     for (int i = 0; i < 256; i++) {
-        set_rgb(cr, p->palette[i]);
+        overlay_colour(cr, p->palette[i]);
         cairo_rectangle(cr, x + w * i / 256, y, w / 256 + 0.5, h);
         cairo_fill(cr);
     }
@@ -176,7 +169,7 @@ static void draw_palette(cairo_t *cr, const struct paint *p, double x, double y,
 
 static void draw_scale(cairo_t *cr, const struct view *v, double x, double y, double most)
 {
-    double length = round_length(most / v->camera.scale), w = length * v->camera.scale;
+    double length = camera_round(most / v->camera.scale), w = length * v->camera.scale;
     char text[40];
     say_length(length, text, sizeof text);
     cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);

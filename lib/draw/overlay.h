@@ -20,6 +20,8 @@ struct overlay {
     double force;  /* N: of the widest line; 0: the largest of the frame */
 };
 
+/* Lines and areas from now on have this colour. */
+void overlay_colour(cairo_t *cr, struct rgb c);
 /* Pixels that the legend takes below a picture of this width */
 int overlay_strip(const struct overlay *o, int width);
 

@@ -13,12 +13,12 @@
  */
 #include "draw/page.h"
 
+#include "base/json.h"
+#include "draw/page_chunk.h"
 #include "draw/page_parts.h"
 
-#include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
-#include <zlib.h>
 
 struct page_moment {
     int64_t step, n, contacts, grains, walls;
@@ -27,30 +27,6 @@ struct page_moment {
 
 enum { U16 = 65535, I16 = 32767, I8 = 127 };
 
-/* ---- chunks ---- */
-
-struct bytes {
-    unsigned char *at;
-    size_t n;
-};
-
-static void put(struct bytes *b, const void *from, size_t size)
-{
-    memcpy(b->at + b->n, from, size), b->n += size;
-}
-
-static void put_float(struct bytes *b, double x)
-{
-    float single = (float)x;
-    put(b, &single, sizeof single);
-}
-
-static void put_u16(struct bytes *b, int x)
-{
-    uint16_t number = (uint16_t)x;
-    put(b, &number, sizeof number);
-}
-
 static int no_memory(struct why *why)
 {
     return why_set(why, EX_SOFTWARE, "no memory for the page");
@@ -58,40 +34,18 @@ static int no_memory(struct why *why)
 
 static int not_written(const struct page *p, struct why *why)
 {
-    return ferror(p->out) ? why_set(why, EX_IOERR, "standard output: not written") : 0;
+    return ferror(p->out) ? why_set(why, EX_IOERR, "%s: not written", p->name) : 0;
 }
 
-static void write_base64(FILE *out, const unsigned char *x, size_t n)
-{
-    static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < n; i += 3) {
-        unsigned b = (unsigned)x[i] << 16 | (i + 1 < n ? (unsigned)x[i + 1] << 8 : 0) |
-                     (i + 2 < n ? x[i + 2] : 0);
-        char four[4] = { digit[b >> 18], digit[b >> 12 & 63], i + 1 < n ? digit[b >> 6 & 63] : '=',
-                         i + 2 < n ? digit[b & 63] : '=' };
-        fwrite(four, 1, 4, out);
-    }
-}
-
-static int write_chunk(struct page *p, char letter, int64_t number, const struct bytes *b,
+static int write_chunk(struct page *p, char letter, int64_t number, const struct chunk *b,
                        struct why *why)
 {
-    uLongf size = compressBound(b->n);
-    unsigned char *packed = malloc(size);
-    if (!packed || compress2(packed, &size, b->at, b->n, 6) != Z_OK) {
-        free(packed);
-        return no_memory(why);
-    }
-    fprintf(p->out, "<script type=\"text/plain\" id=\"%c%lld\">", letter, (long long)number);
-    write_base64(p->out, packed, size);
-    fputs("</script>\n", p->out);
-    free(packed);
-    return not_written(p, why);
+    return chunk_write(p->out, letter, number, b) ? no_memory(why) : not_written(p, why);
 }
 
 /* Writes a chunk unless it is the same as the last of its kind; frees b or keeps it. */
 static int write_changed(struct page *p, char letter, int64_t *count, void **last,
-                         size_t *last_size, struct bytes *b, struct why *why)
+                         size_t *last_size, struct chunk *b, struct why *why)
 {
     if (*count && *last_size == b->n && !memcmp(*last, b->at, b->n)) {
         free(b->at);
@@ -106,25 +60,25 @@ static int write_changed(struct page *p, char letter, int64_t *count, void **las
 
 static int write_grains(struct page *p, const struct packing *k, struct why *why)
 {
-    struct bytes b = { malloc(16 * (size_t)k->n + 1), 0 };
+    struct chunk b = { malloc(16 * (size_t)k->n + 1), 0 };
     if (!b.at) return no_memory(why);
-    for (int64_t i = 0; i < k->n; i++) put_float(&b, k->radius[i]);
-    for (int64_t i = 0; i < k->n; i++) put_float(&b, k->mass[i]);
-    put(&b, k->id, 4 * (size_t)k->n);
-    put(&b, k->kind, 4 * (size_t)k->n);
+    for (int64_t i = 0; i < k->n; i++) chunk_put_float(&b, k->radius[i]);
+    for (int64_t i = 0; i < k->n; i++) chunk_put_float(&b, k->mass[i]);
+    chunk_put(&b, k->id, 4 * (size_t)k->n);
+    chunk_put(&b, k->kind, 4 * (size_t)k->n);
     return write_changed(p, 'g', &p->grains, &p->grains_last, &p->grains_size, &b, why);
 }
 
-static void put_point(struct bytes *b, vec3 x)
+static void put_point(struct chunk *b, vec3 x)
 {
-    put_float(b, x.x), put_float(b, x.y), put_float(b, x.z);
+    chunk_put_float(b, x.x), chunk_put_float(b, x.y), chunk_put_float(b, x.z);
 }
 
 static int write_walls(struct page *p, const struct packing *k, const struct region *r,
                        struct why *why)
 {
     struct walls *w = malloc(sizeof *w);
-    struct bytes b = { malloc(8 + 36 * (size_t)WALLS_PANELS * WALLS_CORNERS + 24 * WALLS_EDGES),
+    struct chunk b = { malloc(8 + 36 * (size_t)WALLS_PANELS * WALLS_CORNERS + 24 * WALLS_EDGES),
                        0 };
     if (!w || !b.at) {
         free(w), free(b.at);
@@ -134,7 +88,7 @@ static int write_walls(struct page *p, const struct packing *k, const struct reg
     uint32_t counts[2] = { 0, (uint32_t)w->edges };
     for (int i = 0; i < w->panels; i++)
         if (w->panel[i].corners > 2) counts[0] += (uint32_t)w->panel[i].corners - 2;
-    put(&b, counts, sizeof counts);
+    chunk_put(&b, counts, sizeof counts);
     for (int i = 0; i < w->panels; i++)
         for (int c = 2; c < w->panel[i].corners; c++)
             put_point(&b, w->panel[i].corner[0]), put_point(&b, w->panel[i].corner[c - 1]),
@@ -145,13 +99,6 @@ static int write_walls(struct page *p, const struct packing *k, const struct reg
 }
 
 /* ---- a frame ---- */
-
-/* x in [-most, most] as a whole number; 0 where it is no number */
-static int quantise(double x, double most, int steps)
-{
-    double k = most > 0 ? x / most * steps : 0;
-    return isfinite(k) ? (int)lround(fmin(fmax(k, -steps), steps)) : 0;
-}
 
 /* What the numbers of the grains are relative to; grains that have flown off do not count. */
 static void measure(struct page_moment *m, const struct packing *k)
@@ -172,29 +119,29 @@ static void measure(struct page_moment *m, const struct packing *k)
     }
 }
 
-static void put_motion(struct bytes *b, const struct page_moment *m, const struct packing *k)
+static void put_motion(struct chunk *b, const struct page_moment *m, const struct packing *k)
 {
     for (int64_t i = 0; i < k->n; i++) {
         const double x[3] = { k->x[i].x, k->x[i].y, k->x[i].z };
         uint16_t four[4];
         for (int j = 0; j < 3; j++) {
-            int at = quantise(x[j] - m->lo[j], m->quantum[j] * U16, U16);
+            int at = chunk_quantise(x[j] - m->lo[j], m->quantum[j] * U16, U16);
             four[j] = (uint16_t)(at > 0 ? at : 0);
         }
-        four[3] = (uint16_t)quantise(v3_norm(k->w[i]), m->wmax, U16);
-        put(b, four, sizeof four);
+        four[3] = (uint16_t)chunk_quantise(v3_norm(k->w[i]), m->wmax, U16);
+        chunk_put(b, four, sizeof four);
     }
     for (int64_t i = 0; i < k->n; i++) {
         const double v[4] = { k->v[i].x, k->v[i].y, k->v[i].z, 0 };
         int16_t four[4];
-        for (int j = 0; j < 4; j++) four[j] = (int16_t)quantise(v[j], m->vmax, I16);
-        put(b, four, sizeof four);
+        for (int j = 0; j < 4; j++) four[j] = (int16_t)chunk_quantise(v[j], m->vmax, I16);
+        chunk_put(b, four, sizeof four);
     }
     for (int64_t i = 0; i < k->n; i++) {
         const double q[4] = { k->q[i].w, k->q[i].x, k->q[i].y, k->q[i].z };
         int8_t four[4];
-        for (int j = 0; j < 4; j++) four[j] = (int8_t)quantise(q[j], 1, I8);
-        put(b, four, sizeof four);
+        for (int j = 0; j < 4; j++) four[j] = (int8_t)chunk_quantise(q[j], 1, I8);
+        chunk_put(b, four, sizeof four);
     }
 }
 
@@ -203,21 +150,21 @@ static double tangential(const struct found *f)
     return hypot(f->r[1], f->r[2]);
 }
 
-static void put_contacts(struct bytes *b, const struct page_moment *m, const struct packing *k,
+static void put_contacts(struct chunk *b, const struct page_moment *m, const struct packing *k,
                          const struct contacts *s)
 {
-    for (int64_t i = 0; i < s->n; i++) put(b, &s->c[i].a, 4);
-    for (int64_t i = 0; i < s->n; i++) put(b, &s->c[i].b, 4);
+    for (int64_t i = 0; i < s->n; i++) chunk_put(b, &s->c[i].a, 4);
+    for (int64_t i = 0; i < s->n; i++) chunk_put(b, &s->c[i].b, 4);
     for (int t = 0; t < 2; t++)
         for (int64_t i = 0; i < s->n; i++) {
             double r = t ? tangential(&s->found[i]) : fmax(s->found[i].r[0], 0);
-            put_u16(b, quantise(r / k->dt, m->fmax, U16));
+            chunk_put_u16(b, chunk_quantise(r / k->dt, m->fmax, U16));
         }
     for (int64_t i = 0; i < s->n; i++) {
         vec3 n = s->c[i].n;
-        int8_t four[4] = { (int8_t)quantise(n.x, 1, I8), (int8_t)quantise(n.y, 1, I8),
-                           (int8_t)quantise(n.z, 1, I8), s->found[i].status };
-        put(b, four, sizeof four);
+        int8_t four[4] = { (int8_t)chunk_quantise(n.x, 1, I8), (int8_t)chunk_quantise(n.y, 1, I8),
+                           (int8_t)chunk_quantise(n.z, 1, I8), s->found[i].status };
+        chunk_put(b, four, sizeof four);
     }
 }
 
@@ -235,7 +182,7 @@ static int widen(struct page *p, const struct page_moment *m, const struct packi
     p->force = fmax(p->force, m->fmax);
     for (int64_t i = 0; i < s->n; i++) {
         double f = s->found[i].r[0] / k->dt;
-        if (!quantise(f, m->fmax, U16)) continue;
+        if (!chunk_quantise(f, m->fmax, U16)) continue;
         push[s->c[i].b] += f, count[s->c[i].b]++;
         if (s->c[i].a >= 0) push[s->c[i].a] += f, count[s->c[i].a]++;
     }
@@ -251,7 +198,7 @@ static int widen(struct page *p, const struct page_moment *m, const struct packi
 static int write_frame(struct page *p, const struct page_moment *m, const struct packing *k,
                        const struct contacts *s, struct why *why)
 {
-    struct bytes b = { malloc(20 * (size_t)k->n + 16 * (size_t)m->contacts + 1), 0 };
+    struct chunk b = { malloc(20 * (size_t)k->n + 16 * (size_t)m->contacts + 1), 0 };
     if (!b.at) return no_memory(why);
     put_motion(&b, m, k);
     if (m->contacts) put_contacts(&b, m, k, s);
@@ -351,9 +298,9 @@ static void write_text(FILE *out, const char *text) // as HTML
             fputc(*text, out);
 }
 
-int page_begin(struct page *p, FILE *out, const char *title, struct why *why)
+int page_begin(struct page *p, FILE *out, const char *name, const char *title, struct why *why)
 {
-    *p = (struct page){ .out = out };
+    *p = (struct page){ .out = out, .name = name };
     fputs("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>",
           out);
@@ -363,29 +310,17 @@ int page_begin(struct page *p, FILE *out, const char *title, struct why *why)
     return not_written(p, why);
 }
 
-static json_t *number(double x)
-{
-    return isfinite(x) ? json_real(x) : json_null();
-}
-
-static json_t *numbers(const double *x, int64_t n)
-{
-    json_t *a = json_array();
-    for (int64_t i = 0; i < n; i++) json_array_append_new(a, number(x[i]));
-    return a;
-}
-
 static json_t *moment_json(const struct page_moment *m)
 {
     json_t *j =
         json_pack("{s:I, s:I, s:I, s:I, s:o}", "s", (json_int_t)m->step, "n", (json_int_t)m->n, "c",
-                  (json_int_t)m->contacts, "g", (json_int_t)m->grains, "t", number(m->t));
+                  (json_int_t)m->contacts, "g", (json_int_t)m->grains, "t", json_number(m->t));
     if (m->walls >= 0) json_object_set_new(j, "b", json_integer(m->walls));
-    json_object_set_new(j, "lo", numbers(m->lo, 3));
-    json_object_set_new(j, "step", numbers(m->quantum, 3));
-    json_object_set_new(j, "vmax", number(m->vmax));
-    json_object_set_new(j, "wmax", number(m->wmax));
-    json_object_set_new(j, "fmax", number(m->fmax));
+    json_object_set_new(j, "lo", json_numbers(m->lo, 3));
+    json_object_set_new(j, "step", json_numbers(m->quantum, 3));
+    json_object_set_new(j, "vmax", json_number(m->vmax));
+    json_object_set_new(j, "wmax", json_number(m->wmax));
+    json_object_set_new(j, "fmax", json_number(m->fmax));
     return j;
 }
 
@@ -393,11 +328,12 @@ static json_t *range_json(const struct page *p)
 {
     const double lo[3] = { p->seen.lo.x, p->seen.lo.y, p->seen.lo.z },
                  hi[3] = { p->seen.hi.x, p->seen.hi.y, p->seen.hi.z };
-    json_t *j = json_pack("{s:o, s:o, s:o, s:o, s:i}", "lo", numbers(lo, 3), "hi", numbers(hi, 3),
-                          "speed", number(p->fastest), "spin", number(p->spin), "z", p->most);
-    json_object_set_new(j, "radius", numbers(p->radius, 2));
-    json_object_set_new(j, "force", number(p->force));
-    json_object_set_new(j, "push", number(p->push));
+    json_t *j =
+        json_pack("{s:o, s:o, s:o, s:o, s:i}", "lo", json_numbers(lo, 3), "hi", json_numbers(hi, 3),
+                  "speed", json_number(p->fastest), "spin", json_number(p->spin), "z", p->most);
+    json_object_set_new(j, "radius", json_numbers(p->radius, 2));
+    json_object_set_new(j, "force", json_number(p->force));
+    json_object_set_new(j, "push", json_number(p->push));
     return j;
 }
 
@@ -432,7 +368,7 @@ static json_t *meta_json(const struct page *p)
     for (int c = 0; c < p->curves; c++)
         json_object_set_new(list, p->curve[c].name,
                             json_pack("{s:s, s:o}", "unit", p->curve[c].unit, "value",
-                                      numbers(p->curve[c].value, p->frames)));
+                                      json_numbers(p->curve[c].value, p->frames)));
     json_object_set_new(j, "said", said(p));
     return j;
 }

@@ -24,6 +24,7 @@ struct page_moment; /* what a frame's numbers are relative to */
 /* All zero to begin with. */
 struct page {
     FILE *out;
+    const char *name; /* of its file, for messages */
     int dim;
     int64_t frames, room;
     struct page_moment *moment; /* [frames] */
@@ -41,7 +42,7 @@ struct page {
 };
 
 /* Each returns 0, EX_SOFTWARE, EX_IOERR or EX_DATAERR (more than INT32_MAX grains or contacts). */
-int page_begin(struct page *p, FILE *out, const char *title, struct why *why);
+int page_begin(struct page *p, FILE *out, const char *name, const char *title, struct why *why);
 /* contacts: NULL, or those of this moment; only solved ones are kept. */
 int page_frame(struct page *p, const struct packing *k, const struct contacts *contacts,
                struct why *why);

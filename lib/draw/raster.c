@@ -8,8 +8,6 @@
 /* Samples of a band, about 40 bytes each. A band has at least one row of pixels. */
 enum { BAND_SAMPLES = 1 << 17 };
 
-#define GLASS_CLEAR 0.86F /* of the light that comes through one sheet of glass */
-
 /* ---- what is in front ---- */
 
 /* Where a line of sight at (x, y) comes out of a ball, at *z, that it enters at `under`, once what is
@@ -62,35 +60,6 @@ static void draw_ground(struct band *b, const struct raster *s, int i)
     }
 }
 
-/* Glass before what is seen takes a share of its light. */
-static void draw_glass(struct band *b, const struct glass *g)
-{
-    const vec3 *p = g->corner;
-    double area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
-    if (!(fabs(area) > 1e-12)) return; // seen from the side
-    int y0 = band_clamp(ceil(fmin(p[0].y, fmin(p[1].y, p[2].y)) - 0.5), b->y0, b->y1);
-    int y1 = band_clamp(ceil(fmax(p[0].y, fmax(p[1].y, p[2].y)) - 0.5), b->y0, b->y1);
-    for (int y = y0; y < y1; y++) {
-        double x0 = INFINITY, x1 = -INFINITY, at = y + 0.5;
-        for (int k = 0; k < 3; k++) {
-            vec3 a = p[k], c = p[(k + 1) % 3];
-            if ((a.y <= at) == (c.y <= at)) continue;
-            double x = a.x + (at - a.y) / (c.y - a.y) * (c.x - a.x);
-            x0 = fmin(x0, x), x1 = fmax(x1, x);
-        }
-        int end = band_clamp(ceil(x1 - 0.5), 0, b->width);
-        for (int x = band_clamp(ceil(x0 - 0.5), 0, b->width); x < end; x++) {
-            double s =
-                ((x + 0.5 - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (at - p[0].y)) / area;
-            double t =
-                ((p[1].x - p[0].x) * (at - p[0].y) - (x + 0.5 - p[0].x) * (p[1].y - p[0].y)) / area;
-            double z = p[0].z + s * (p[1].z - p[0].z) + t * (p[2].z - p[0].z);
-            size_t k = band_at(b, x, y);
-            if (z > b->z[k]) b->clear[k] *= GLASS_CLEAR;
-        }
-    }
-}
-
 /* The depth of what is seen at k; of a floor that of its plane at (-x, -y) from there. */
 static double depth_beside(const struct band *b, const struct raster *s, size_t k, double x,
                            double y)
@@ -133,7 +102,7 @@ static void band_draw(struct band *b, const struct raster *s, struct picture *p)
 {
     size_t n = (size_t)(b->y1 - b->y0) * (size_t)b->width;
     for (size_t k = 0; k < n; k++)
-        b->z[k] = -INFINITY, b->what[k] = NOTHING, b->dark[k] = b->edge[k] = 0, b->clear[k] = 1;
+        b->z[k] = -INFINITY, b->what[k] = NOTHING, b->dark[k] = b->edge[k] = 0;
     b->spots = 0;
     for (int64_t i = 0; i < s->spots; i++) { // those that are seen in it or darken it
         const struct spot *o = &s->spot[i];
@@ -143,7 +112,6 @@ static void band_draw(struct band *b, const struct raster *s, struct picture *p)
     for (int i = 0; i < s->grounds; i++) draw_ground(b, s, i);
     for (int64_t i = 0; i < b->spots; i++) draw_spot(b, s, b->spot[i]);
     for (int i = 0; i < s->edges; i++) draw_edge(b, s, &s->edge[i]);
-    for (int64_t i = 0; i < s->glasses; i++) draw_glass(b, &s->glass[i]);
     shade_normals(b, s);
     shade_near(b, s);
     shade_pixels(b, s, p);

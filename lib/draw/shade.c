@@ -168,8 +168,6 @@ static struct rgb ground_shown(const struct band *b, const struct raster *s, siz
     return (struct rgb){ light, light, light };
 }
 
-static const struct rgb glass = { 0.26F, 0.33F, 0.43F };
-
 static struct rgb sample(const struct band *b, const struct raster *s, int x, int y, struct turn *t)
 {
     size_t k = band_at(b, x, y);
@@ -179,7 +177,6 @@ static struct rgb sample(const struct band *b, const struct raster *s, int x, in
                    : s->flat        ? disc_light(s, &s->spot[what], x + 0.5, y + 0.5, t)
                                     : ball_light(b, s, k, t);
     if (what >= 0 && s->pale > 0) c = rgb_mix(c, s->background, s->pale);
-    if (b->clear[k] < 1) c = rgb_mix(glass, c, b->clear[k]);
     if (!(b->edge[k] > 0)) return c;
     float line = bright_background(s) ? 0.08F : 0.4F;
     return rgb_mix(c, (struct rgb){ line, line, line }, b->edge[k]);

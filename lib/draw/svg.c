@@ -7,11 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void set_colour(cairo_t *cr, struct rgb c)
-{
-    cairo_set_source_rgb(cr, rgb_byte(c.r) / 255.0, rgb_byte(c.g) / 255.0, rgb_byte(c.b) / 255.0);
-}
-
 /* The disc, its half that was up when it was made paler, and its rim */
 static void draw_disc(cairo_t *cr, const struct view *v, const struct packing *p, int64_t i)
 {
@@ -22,16 +17,16 @@ static void draw_disc(cairo_t *cr, const struct view *v, const struct packing *p
         return;
     struct rgb own = paint_body(&v->paint, p, i);
     own = rgb_mix(own, v->background, v->pale);
-    set_colour(cr, own);
+    overlay_colour(cr, own);
     cairo_arc(cr, at.x, at.y, r, 0, 2 * M_PI);
     cairo_fill(cr);
     if (!v->paint.plain) {
         struct rgb half = rgb_mix(paint_disc(&v->paint, own, v3(0, 1, 0)), v->background, v->pale);
-        set_colour(cr, half);
+        overlay_colour(cr, half);
         cairo_arc(cr, at.x, at.y, r, M_PI - angle, 2 * M_PI - angle);
         cairo_fill(cr);
     }
-    set_colour(cr, (struct rgb){ 0.06F, 0.06F, 0.06F });
+    overlay_colour(cr, (struct rgb){ 0.06F, 0.06F, 0.06F });
     cairo_set_line_width(cr, fmin(0.08 * r, 0.8));
     cairo_arc(cr, at.x, at.y, r, 0, 2 * M_PI);
     cairo_stroke(cr);
@@ -68,7 +63,7 @@ static cairo_status_t keep(void *picture, const unsigned char *data, unsigned n)
 static bool draw_all(cairo_t *cr, const struct overlay *o, const struct view *v,
                      const struct packing *p, const struct contacts *contacts)
 {
-    set_colour(cr, v->background);
+    overlay_colour(cr, v->background);
     cairo_paint(cr);
     cairo_save(cr);
     cairo_rectangle(cr, 0, 0, v->camera.width, v->camera.height);

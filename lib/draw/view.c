@@ -232,13 +232,6 @@ static int place_spots(struct raster *s, const struct view *v, const struct pack
     return 0;
 }
 
-/* 1, 2 or 5 times a power of ten */
-static double round_length(double x)
-{
-    double power = pow(10, floor(log10(x))), m = x / power;
-    return power * (m < 2 ? 1 : m < 5 ? 2 : 5);
-}
-
 /* f = the affine function of a sample that is (n . x - d) over, x what is seen there */
 static void affine_of(const struct view *v, vec3 n, vec3 origin, double f[4], double over[4])
 {
@@ -278,7 +271,7 @@ static void place_ground(struct ground *g, const struct view *v, const struct pa
     double size = fmax(fmax(r->hi.x - r->lo.x, r->hi.y - r->lo.y), 1e-150);
     vec3 e = fabs(f->n.x) < 0.9 ? v3(1, 0, 0) : v3(0, 1, 0);
     vec3 along[2] = { v3_axpy(e, -v3_dot(e, f->n), f->n) };
-    along[0] = v3_scale(1 / (round_length(size / 6) * v3_norm(along[0])), along[0]);
+    along[0] = v3_scale(1 / (camera_round(size / 6) * v3_norm(along[0])), along[0]);
     along[1] = v3_cross(f->n, along[0]);
     // square[] and over are affine, so three points determine them
     vec3 at[3] = { { 0, 0, g->plane[0] },

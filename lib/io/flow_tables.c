@@ -43,27 +43,23 @@ int flow_write(struct table_write *s, const struct packing *p, struct why *why)
     return !first ? 0 : h5_attr(s->file, flow, "first_id", H5T_NATIVE_INT32, -1, &p->first_id, why);
 }
 
-static int link_clock(struct table_write *s, const char *where, const char *name, struct why *why)
+/* The clock of the particles, for columns in a group */
+static int link_clocks(struct table_write *s, const char *where, const struct column *c,
+                       struct why *why)
 {
-    static const char *const clock[] = { "step", "time" };
-    for (int k = 0; k < 2; k++) {
-        char from[80], to[80];
-        snprintf(from, sizeof from, "/particles/all/position/%s", clock[k]);
-        snprintf(to, sizeof to, "%s/%s/%s", where, name, clock[k]);
-        if (H5Lcreate_hard(s->file, from, s->file, to, H5P_DEFAULT, H5P_DEFAULT) < 0)
-            return why_set(why, EX_IOERR, "%s: cannot be linked", to);
-    }
-    return 0;
+    return table_write_link(s, "/particles/all/position/step", "step", where, c, why) ||
+                   table_write_link(s, "/particles/all/position/time", "time", where, c, why)
+               ? why->status
+               : 0;
 }
 
 int flow_link(struct table_write *s, const struct packing *p, struct why *why)
 {
-    if (!packing_varies(p)) return 0;
-    for (const struct column *c = layout_poured; c->name && p->pours > 0; c++)
-        if (link_clock(s, flow, c->name, why)) return why->status;
-    for (const struct column *c = layout_removed; c->name && p->removals > 0; c++)
-        if (link_clock(s, flow, c->name, why)) return why->status;
-    return s->roster ? link_clock(s, "/particles/all", "id", why) : 0;
+    static const struct column ids[] = { { .name = "id" }, { 0 } };
+    if ((p->pours > 0 && link_clocks(s, flow, layout_poured, why)) ||
+        (p->removals > 0 && link_clocks(s, flow, layout_removed, why)))
+        return why->status;
+    return s->roster ? link_clocks(s, "/particles/all", ids, why) : 0;
 }
 
 /* ---- reading ---- */

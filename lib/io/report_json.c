@@ -3,24 +3,6 @@
 #include <math.h>
 #include <stdio.h>
 
-json_t *json_number(double x)
-{
-    return isfinite(x) ? json_real(x) : json_null();
-}
-
-json_t *json_numbers(const double *x, int64_t n)
-{
-    json_t *a = json_array();
-    for (int64_t i = 0; i < n; i++) json_array_append_new(a, json_number(x[i]));
-    return a;
-}
-
-json_t *json_vec(vec3 v)
-{
-    const double x[3] = { v.x, v.y, v.z };
-    return json_numbers(x, 3);
-}
-
 static void set_terms(json_t *j, const struct terms *t)
 {
     json_object_set_new(j, "eps_glob", json_number(t->eps_glob));

@@ -4,14 +4,8 @@
 #ifndef NSD_REPORT_JSON_H
 #define NSD_REPORT_JSON_H
 
-#include "base/vec.h"
+#include "base/json.h"
 #include "problem/report.h"
-
-#include <jansson.h>
-
-json_t *json_number(double x); /* null where x is not finite */
-json_t *json_vec(vec3 v);
-json_t *json_numbers(const double *x, int64_t n);
 
 /*
  * contacts, eps_glob, motion, proj, bipotential, penetration, scaled {...}, max_penetration,

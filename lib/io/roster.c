@@ -148,3 +148,71 @@ int roster_write(struct roster *r, struct table_write *s, const struct packing *
     }
     return 0;
 }
+
+/* ---- from a document ---- */
+
+int roster_find(struct source *source, int64_t k, int64_t **row, int64_t *n, struct why *why)
+{
+    uint64_t shape[4];
+    const char *ids = "/particles/all/id/value";
+    *row = NULL;
+    if (source_shape(source, "/particles/all/radius", shape) != 1 || shape[0] > INT32_MAX)
+        return why_set(why, EX_DATAERR, "/particles/all/radius: not a list of numbers");
+    *n = (int64_t)shape[0];
+    if (!source_has(source, ids)) return 0;
+    if (source_shape(source, ids, shape) != 2 || shape[1] > INT32_MAX)
+        return why_set(why, EX_DATAERR, "%s: not of shape frames x bodies", ids);
+    int64_t rows = (int64_t)shape[1];
+    int32_t *id = malloc(((size_t)rows + 1) * sizeof *id);
+    *row = calloc((size_t)rows + 1, sizeof **row);
+    *n = 0;
+    if (!id || !*row) {
+        free(id);
+        return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)rows);
+    }
+    if (!source_rows(source, ids, COLUMN_I32, k, 1, rows, id, why))
+        for (int64_t i = 0; i < rows; i++)
+            if (id[i] >= 0) (*row)[(*n)++] = i;
+    free(id);
+    return why->status;
+}
+
+/* Rows row[n] of a column: of a frame, or of a table that all frames share (frame -1) */
+static int read_spread(struct source *s, const char *path, const struct column *c, int64_t frame,
+                       const int64_t *row, int64_t n, void *out, struct why *why)
+{
+    uint64_t shape[4];
+    int rank = source_shape(s, path, shape);
+    bool moves = frame >= 0;
+    if (rank < 1 + moves) return why_set(why, EX_DATAERR, "%s: no dataset of bodies", path);
+    int64_t rows = (int64_t)shape[moves], most = n ? row[n - 1] + 1 : 0; // rows ascend
+    if (rows < most || rows > INT32_MAX)
+        return why_set(why, EX_DATAERR, "%s: fewer rows than bodies", path);
+    size_t bytes = (size_t)c->width * column_size(c->type);
+    char *all = malloc((size_t)rows * bytes + 1);
+    if (!all) return why_set(why, EX_SOFTWARE, "%s: no memory", path);
+    int e = moves ? source_rows(s, path, c->type, frame, 1, rows * c->width, all, why)
+                  : source_rows(s, path, c->type, 0, rows, c->width, all, why);
+    for (int64_t i = 0; !e && i < n; i++)
+        memcpy((char *)out + (size_t)i * bytes, all + (size_t)row[i] * bytes, bytes);
+    free(all);
+    return e;
+}
+
+int roster_read(struct source *source, int64_t k, const int64_t *row, struct packing *p,
+                struct why *why)
+{
+    for (const struct column *c = layout_bodies; c->name; c++) {
+        char path[80];
+        bool moves = !strcmp(c->name, "id");
+        snprintf(path, sizeof path, "/particles/all/%s%s", c->name, moves ? "/value" : "");
+        if (read_spread(source, path, c, moves ? k : -1, row, p->n, column_array(c, p), why))
+            return why->status;
+    }
+    for (const struct column *c = layout_motion; c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
+        if (read_spread(source, path, c, k, row, p->n, column_array(c, p), why)) return why->status;
+    }
+    return 0;
+}

@@ -7,6 +7,7 @@
 #ifndef NSD_ROSTER_H
 #define NSD_ROSTER_H
 
+#include "io/source.h"
 #include "io/table_write.h"
 
 struct roster {
@@ -31,5 +32,12 @@ int roster_enter(struct roster *r, struct table_write *s, const struct packing *
 int roster_write(struct roster *r, struct table_write *s, const struct packing *p,
                  const int64_t *row, struct why *why);
 void roster_free(struct roster *r);
+
+/* How many bodies frame k of a document has, and which rows they are; *row is to be freed. NULL: no
+   body comes or goes, the frame has them all. */
+int roster_find(struct source *source, int64_t k, int64_t **row, int64_t *n, struct why *why);
+/* The bodies in these rows of frame k, into the packing's arrays of as many */
+int roster_read(struct source *source, int64_t k, const int64_t *row, struct packing *p,
+                struct why *why);
 
 #endif

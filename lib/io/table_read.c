@@ -19,3 +19,18 @@ int table_read_columns(struct source *s, const char *group, const char *tail,
     }
     return 0;
 }
+
+int64_t *table_read_steps(struct source *source, const char *path, int64_t *n, struct why *why)
+{
+    uint64_t count = 0;
+    int64_t *steps = source_read_all(source, path, COLUMN_I64, &count, why);
+    *n = (int64_t)count;
+    return steps;
+}
+
+int64_t table_read_row(const int64_t *steps, int64_t n, int64_t step, int64_t guess)
+{
+    if (guess < n && steps[guess] == step) return guess;
+    while (--n >= 0 && steps[n] != step) continue;
+    return n;
+}

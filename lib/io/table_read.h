@@ -16,4 +16,9 @@ int table_read_columns(struct source *source, const char *group, const char *tai
                        const struct column *column, int64_t start, int64_t n, void *structs,
                        size_t stride, struct why *why);
 
+/* A dataset of steps, *n of them; to be freed. NULL: not there, or no memory. */
+int64_t *table_read_steps(struct source *source, const char *path, int64_t *n, struct why *why);
+/* The row of a step; looked for at `guess`, where it mostly is, then from the end on; -1: none */
+int64_t table_read_row(const int64_t *steps, int64_t n, int64_t step, int64_t guess);
+
 #endif

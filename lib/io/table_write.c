@@ -128,3 +128,30 @@ int table_write_close(struct table_write *s)
     s->count = 0;
     return e < 0 ? -1 : 0;
 }
+
+int table_write_link(struct table_write *s, const char *from, const char *name, const char *where,
+                     const struct column *c, struct why *why)
+{
+    char to[80];
+    for (; c->name; c++) {
+        snprintf(to, sizeof to, "%s/%s/%s", where, c->name, name);
+        if (h5_has(s->file, to)) continue; // this is where it was written
+        if (H5Lcreate_hard(s->file, from, s->file, to, H5P_DEFAULT, H5P_DEFAULT) < 0)
+            return why_set(why, EX_IOERR, "%s: cannot be linked", to);
+    }
+    return 0;
+}
+
+int table_write_clock(struct table_write *s, const char *home, bool step, const void *value,
+                      const char *where, const struct column *c, struct why *why)
+{
+    const hsize_t one = 1;
+    const char *name = step ? "step" : "time";
+    char path[80];
+    snprintf(path, sizeof path, "%s/%s", home, name);
+    bool linked = table_write_grows(s, path);
+    if (table_write_rows(s, path, step ? COLUMN_I64 : COLUMN_F64, 1, &one, CHUNK_FRAMES, value,
+                         step ? NULL : "s", why))
+        return why->status;
+    return linked ? 0 : table_write_link(s, path, name, where, c, why);
+}

@@ -113,14 +113,8 @@ int writer_open(struct writer **out, const char *path, enum writer_kind kind, st
 
 /* ---- in the place of another file ---- */
 
-/* The new file, until it has its place: a tool that ends before removes it. (One without a name,
-   O_TMPFILE, libhdf5 does not open.) */
-static char *beside;
-
-static void remove_beside(void)
-{
-    if (beside) unlink(beside);
-}
+/* The new file is unfinished until it has its place. (One without a name, O_TMPFILE, libhdf5 does not
+   open.) */
 
 /* A file in the folder of s->place; the one writer that has s->place locked may use its name. */
 static int open_beside(struct writer *s, mode_t mode, struct why *why)
@@ -137,8 +131,8 @@ static int open_beside(struct writer *s, mode_t mode, struct why *why)
     free(folder);
     if (!allocated) return why_set(why, EX_SOFTWARE, "no memory");
     if (s->fd < 0) return output_failed(s, why, strerror(errno));
-    beside = s->elsewhere;
-    return atexit(remove_beside) ? why_set(why, EX_SOFTWARE, "no memory") : 0;
+    unfinished_begin(&s->unfinished, s->elsewhere, s->fd);
+    return 0;
 }
 
 int writer_open_over(struct writer **out, const char *path, struct why *why)
@@ -169,7 +163,8 @@ int writer_take_place(struct writer *s, struct why *why)
     if (fsync(s->fd) || rename(s->elsewhere, s->place)) // on disk before the old one goes
         return output_failed(s, why, strerror(errno));
     close(s->old);
-    s->old = -1, beside = NULL;
+    s->old = -1;
+    unfinished_done(&s->unfinished);
     return 0;
 }
 
@@ -453,7 +448,7 @@ int writer_frame(struct writer *s, const struct frame *f, struct why *why)
     if (!f->packed && s->doc.file < 0)
         s->trajectory = false; // an FCLIB problem is a document of its own
     int e = s->trajectory ? trajectory_frame(s, f, why) : stream_frame(s, f, why);
-    if (!e) unfinished_done(&s->unfinished);
+    if (!e && s->old < 0) unfinished_done(&s->unfinished);
     if (!e || !s->trajectory) return e;
     // half a first frame is nothing; HDF5 writes no more, for h5_start has told it so
     if (!s->frames && ftruncate(s->disk, 0)) return why->status;
@@ -463,10 +458,10 @@ int writer_frame(struct writer *s, const struct frame *f, struct why *why)
 int writer_close(struct writer *s, struct why *why)
 {
     int e = s->doc.file >= 0 ? trajectory_close(s, why) : 0;
+    if (s->old >= 0 && s->unfinished.path) unlink(s->elsewhere); // it has not got its place
     unfinished_done(&s->unfinished);
     if (s->disk >= 0) close(s->disk);
     if (s->old >= 0) close(s->old);
-    if (beside && beside == s->elsewhere) unlink(beside), beside = NULL;
     free(s->place), free(s->elsewhere);
     roster_free(&s->roster);
     if (close(s->fd) && !e) e = output_failed(s, why, strerror(errno));

@@ -1,0 +1,161 @@
+#include "io/cell_tables.h"
+
+#include "io/h5.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+int cell_tables_open(struct source *source, bool repeats[3], struct why *why)
+{
+    const char *box = "/particles/all/box";
+    char boundary[3][16];
+    bool there;
+    if (source_texts(source, box, "boundary", 3, boundary, &there, why)) return why->status;
+    bool edges = source_has(source, "/particles/all/box/edges");
+    for (int k = 0; there && k < 3; k++) {
+        repeats[k] = !strcmp(boundary[k], "periodic");
+        if (!repeats[k] && strcmp(boundary[k], "none") != 0)
+            return why_set(why, EX_DATAERR, "%s@boundary: '%s' is neither periodic nor none", box,
+                           boundary[k]);
+        if (repeats[k] && !edges)
+            return why_set(why, EX_DATAERR, "%s: periodic without edges", box);
+    }
+    if (!there && edges)
+        return why_set(why, EX_DATAERR, "%s@boundary: not three strings of fixed length", box);
+    return 0;
+}
+
+/* Edges, constant or of frame k: three lengths, or three vectors */
+static int read_edges(struct source *source, int64_t k, struct cell *c, struct why *why)
+{
+    const char *moving = "/particles/all/box/edges/value", *still = "/particles/all/box/edges";
+    uint64_t shape[4];
+    double edge[9];
+    if (source_has(source, moving)) {
+        int rank = source_shape(source, moving, shape);
+        if (rank != 2 && rank != 3)
+            return why_set(why, EX_DATAERR, "%s: not of shape frames x 3 (x 3)", moving);
+        if (source_rows(source, moving, COLUMN_F64, k, 1, rank == 2 ? 3 : 9, edge, why))
+            return why->status;
+        shape[0] = rank == 2 ? 3 : 9;
+    } else {
+        int rank = source_shape(source, still, shape);
+        if (rank == 2) shape[0] *= shape[1];
+        if ((rank != 1 && rank != 2) || shape[0] != (rank == 1 ? 3 : 9))
+            return why_set(why, EX_DATAERR, "%s: not of shape 3 (x 3)", still);
+        if (source_read(source, still, COLUMN_F64, shape[0], edge, why)) return why->status;
+    }
+    for (int i = 0; i < 3; i++)
+        c->edge[i] = shape[0] == 9
+                         ? v3(edge[3 * i], edge[3 * i + 1], edge[3 * i + 2])
+                         : v3(i == 0 ? edge[0] : 0, i == 1 ? edge[1] : 0, i == 2 ? edge[2] : 0);
+    return 0;
+}
+
+/* What moves the edges, and what they yield to */
+static int read_drive(struct source *doc, struct cell *c, struct why *why)
+{
+    uint64_t n = 0;
+    if (!source_has(doc, "/nsd/cell")) return 0;
+    double *t = source_read_all(doc, "/nsd/cell/time", COLUMN_F64, &n, why);
+    double *L = t && n < 1 << 24 ? calloc(9 * n + 1, sizeof *L) : NULL;
+    c->gradient = L ? calloc(n + 1, sizeof *c->gradient) : NULL;
+    if (t && !c->gradient) why_set(why, EX_SOFTWARE, "no memory for the cell's gradient");
+    if (c->gradient && !source_read(doc, "/nsd/cell/gradient", COLUMN_F64, 9 * n, L, why))
+        for (c->gradients = 0; c->gradients < (int32_t)n; c->gradients++) {
+            struct cell_gradient *g = &c->gradient[c->gradients];
+            g->t = t[c->gradients];
+            memcpy(g->L, L + 9 * (size_t)c->gradients, sizeof g->L);
+        }
+    free(t), free(L);
+    if (why->status) return why->status;
+    return source_read(doc, "/nsd/cell/mass", COLUMN_F64, 9, c->mass, why) ||
+                   source_read(doc, "/nsd/cell/stress", COLUMN_F64, 9, c->stress, why)
+               ? why->status
+               : 0;
+}
+
+int cell_tables_read(struct source *source, int64_t k, const bool repeats[3], struct packing *p,
+                     struct why *why)
+{
+    const char *origin = "/particles/all/box/origin", *rate = "/particles/all/box/rate/value",
+               *image = "/particles/all/image/value";
+    struct cell *c = &p->cell;
+    memcpy(c->repeats, repeats, sizeof c->repeats);
+    if (!cell_repeats(c)) return 0;
+    if (read_edges(source, k, c, why) || read_drive(source, c, why) ||
+        packing_alloc_images(p, why) ||
+        (source_has(source, origin) && source_read(source, origin, COLUMN_F64, 3, &c->origin, why)))
+        return why->status;
+    cell_set_rate(c, p->t);
+    if (source_has(source, rate) && source_rows(source, rate, COLUMN_F64, k, 1, 9, c->rate, why))
+        return why->status;
+    return source_has(source, image)
+               ? source_rows(source, image, COLUMN_I32, k, 1, 3 * p->n, p->image, why)
+               : 0;
+}
+
+/* ---- to a document ---- */
+
+/* What moves the cell's edges, and what they yield to */
+static int write_drive(hid_t file, const struct cell *c, struct why *why)
+{
+    const hsize_t shape[3] = { (hsize_t)c->gradients, 3, 3 }, *square = shape + 1;
+    size_t n = (size_t)c->gradients;
+    double *t = calloc(n + 1, sizeof *t), (*L)[9] = calloc(n + 1, sizeof *L);
+    if (t && L)
+        for (size_t k = 0; k < n; k++) {
+            t[k] = c->gradient[k].t;
+            memcpy(L[k], c->gradient[k].L, sizeof L[k]);
+        }
+    else
+        why_set(why, EX_SOFTWARE, "no memory for the cell");
+    bool bad =
+        why->status || h5_write(file, "/nsd/cell/time", H5T_NATIVE_DOUBLE, 1, shape, t, "s", why) ||
+        h5_write(file, "/nsd/cell/gradient", H5T_NATIVE_DOUBLE, 3, shape, L, "s-1", why) ||
+        h5_write(file, "/nsd/cell/mass", H5T_NATIVE_DOUBLE, 2, square, c->mass, "kg", why) ||
+        h5_write(file, "/nsd/cell/stress", H5T_NATIVE_DOUBLE, 2, square, c->stress, "Pa", why);
+    free(t), free(L);
+    return bad ? why->status : 0;
+}
+
+int cell_tables_write_box(hid_t file, const struct cell *c, struct why *why)
+{
+    const int dimension = 3; // positions have three components in the plane too
+    const char none[3][5] = { "none", "none", "none" };
+    const char *box = "/particles/all/box";
+    const hsize_t three = 3;
+    if (h5_group(file, box, why) ||
+        h5_attr(file, box, "dimension", H5T_NATIVE_INT, -1, &dimension, why))
+        return why->status;
+    char boundary[3][9] = { "none", "none", "none" };
+    for (int k = 0; k < 3; k++)
+        if (c->repeats[k]) memcpy(boundary[k], "periodic", sizeof boundary[k]);
+    bool repeats = cell_repeats(c);
+    hid_t text = H5Tcopy(H5T_C_S1);
+    H5Tset_size(text, repeats ? sizeof boundary[0] : sizeof none[0]);
+    int e = h5_attr(file, box, "boundary", text, 3,
+                    repeats ? (const void *)boundary : (const void *)none, why);
+    H5Tclose(text);
+    if (e || !repeats) return e;
+    return h5_write(file, "/particles/all/box/origin", H5T_NATIVE_DOUBLE, 1, &three, &c->origin,
+                    "m", why) ||
+                   write_drive(file, c, why)
+               ? why->status
+               : 0;
+}
+
+int cell_tables_write(struct table_write *s, const struct packing *p, struct why *why)
+{
+    for (const struct column *c = layout_cell; cell_repeats(&p->cell) && c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
+        bool images = c == layout_cell;
+        const hsize_t shape[3] = { 1, images ? (hsize_t)p->n : 3, 3 };
+        const void *data = images ? column_array(c, p) : (const char *)&p->cell + c->offset;
+        if (table_write_rows(s, path, c->type, 3, shape, images ? 1 : CHUNK_FRAMES, data, c->units,
+                             why))
+            return why->status;
+    }
+    return 0;
+}

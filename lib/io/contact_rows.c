@@ -1,0 +1,182 @@
+#include "io/contact_rows.h"
+
+#include "io/h5.h"
+#include "law/local.h"
+
+#include <stdlib.h>
+
+int contact_rows_open(struct contact_rows *r, struct source *source, struct why *why)
+{
+    int64_t n, m, l;
+    *r = (struct contact_rows){ .source = source, .last = -1 };
+    r->step = table_read_steps(source, "/contacts/step", &n, why);
+    r->start = table_read_steps(source, "/contacts/start", &m, why);
+    r->count = table_read_steps(source, "/contacts/count", &l, why);
+    n = n < m ? n : m; // a killed writer may have extended only some columns
+    r->blocks = n < l ? n : l;
+    return why->status;
+}
+
+/* Of two shifts: < 0 where the first is the earlier one, 0 where they are the same */
+static int compare_shifts(const int8_t a[3], const int8_t b[3])
+{
+    for (int k = 0; k < 3; k++)
+        if (a[k] != b[k]) return a[k] < b[k] ? -1 : 1;
+    return 0;
+}
+
+static int check_shifts(const struct contacts *s, const struct cell *cell, struct why *why)
+{
+    for (int64_t i = 0; i < s->n; i++)
+        for (int k = 0; k < 3; k++)
+            if (s->c[i].shift[k] && !cell->repeats[k])
+                return why_set(why, EX_DATAERR,
+                               "contact %lld: shift along edge %d, which does not repeat",
+                               (long long)i, k);
+    return 0;
+}
+
+/* What contacts_check leaves: they are sorted, each pair once, and their states are states. */
+static int check_order(const struct contacts *s, struct why *why)
+{
+    for (int64_t i = 1; i < s->n; i++) {
+        const struct contact *c = &s->c[i - 1], *next = &s->c[i];
+        bool same_pair = c->a == next->a && c->b == next->b;
+        int later = compare_shifts(c->shift, next->shift);
+        if (same_pair && later > 0)
+            return why_set(why, EX_DATAERR, "contact %lld: not sorted by its shift", (long long)i);
+        if (same_pair && !later)
+            return why_set(why, EX_DATAERR, "contact %lld: of bodies %d and %d, as the one before",
+                           (long long)i, next->a, next->b);
+        if (c->a > next->a || (c->a == next->a && c->b > next->b))
+            return why_set(why, EX_DATAERR, "contact %lld: not sorted by its bodies", (long long)i);
+    }
+    for (int64_t i = 0; s->found && i < s->n; i++)
+        if (s->found[i].status < LOCAL_FREE || s->found[i].status > LOCAL_SLIDE)
+            return why_set(why, EX_DATAERR, "contact %lld: status is %d", (long long)i,
+                           s->found[i].status);
+    return 0;
+}
+
+/* The bases of the contacts from row `first` on; t2 has to be n x t1. */
+static int read_bases(struct source *r, int64_t first, struct contacts *s, struct why *why)
+{
+    vec3(*basis)[3] = malloc((size_t)(s->n + 1) * sizeof *basis);
+    if (!basis) return why_set(why, EX_SOFTWARE, "no memory for /contacts/frame");
+    int e = source_rows(r, "/contacts/frame", COLUMN_F64, first, s->n, 9, basis, why);
+    for (int64_t i = 0; !e && i < s->n; i++) {
+        struct contact *c = &s->c[i];
+        c->n = basis[i][0], c->t1 = basis[i][1];
+        if (!(v3_norm(v3_sub(contact_t2(c), basis[i][2])) < 1e-6))
+            e = why_set(why, EX_DATAERR, "contact %lld: frame is not right-handed and orthonormal",
+                        (long long)i);
+    }
+    free(basis);
+    return e;
+}
+
+int contact_rows_read(struct contact_rows *r, struct frame *f, struct why *why)
+{
+    int64_t at = table_read_row(r->step, r->blocks, f->packing.step, r->last + 1), first;
+    struct contacts *s = &f->contacts;
+    if (at < 0) return 0;
+    r->last = at;
+    first = r->start[at], s->n = r->count[at];
+    if (first < 0 || s->n < 0 || first > INT32_MAX || s->n > INT32_MAX)
+        return why_set(why, EX_DATAERR, "/contacts: start or count is out of range");
+    uint64_t shape[4];
+    if (source_shape(r->source, "/contacts/body", shape) != 2 ||
+        (uint64_t)(first + s->n) > shape[0])
+        return why_set(why, EX_DATAERR,
+                       "/contacts/body: fewer than the %lld contacts of its frames",
+                       (long long)(first + s->n));
+    s->room = s->n ? s->n : 1;
+    s->c = calloc((size_t)s->room, sizeof *s->c);
+    if (!s->c) return why_set(why, EX_SOFTWARE, "no memory for the contacts");
+    bool solved = source_has(r->source, "/contacts/reaction");
+    if (solved && contacts_alloc_found(s))
+        return why_set(why, EX_SOFTWARE, "no memory for reactions");
+    if (table_read_columns(r->source, "/contacts", "", layout_contacts, first, s->n, s->c,
+                           sizeof *s->c, why) ||
+        read_bases(r->source, first, s, why) ||
+        (cell_repeats(&f->packing.cell) &&
+         table_read_columns(r->source, "/contacts", "", layout_shifts, first, s->n, s->c,
+                            sizeof *s->c, why)) ||
+        (solved && table_read_columns(r->source, "/contacts", "", layout_found, first, s->n,
+                                      s->found, sizeof *s->found, why)))
+        return why->status;
+    if (contacts_check(s, f->packing.n, f->packing.walls, why) || check_order(s, why) ||
+        check_shifts(s, &f->packing.cell, why))
+        return why->status;
+    int moved;
+    if (source_attribute(r->source, "/contacts", "moved", COLUMN_I32, -1, &moved, why))
+        return why->status;
+    f->moved = moved;
+    f->forces = source_has(r->source, LAYOUT_FORCE);
+    f->detected = true;
+    return 0;
+}
+
+void contact_rows_close(struct contact_rows *r)
+{
+    free(r->step), free(r->start), free(r->count);
+    *r = (struct contact_rows){ 0 };
+}
+
+/* ---- to a document ---- */
+
+static int write_bases(struct table_write *s, const struct contacts *t, struct why *why)
+{
+    const hsize_t shape[3] = { (hsize_t)t->n, 3, 3 };
+    vec3(*basis)[3] = malloc((size_t)(t->n + 1) * sizeof *basis);
+    if (!basis) return why_set(why, EX_SOFTWARE, "no memory for /contacts/frame");
+    for (int64_t i = 0; i < t->n; i++) {
+        const struct contact *c = &t->c[i];
+        basis[i][0] = c->n, basis[i][1] = c->t1, basis[i][2] = contact_t2(c);
+    }
+    int e = table_write_rows(s, "/contacts/frame", COLUMN_F64, 3, shape, CHUNK_CONTACTS, basis, "1",
+                             why);
+    free(basis);
+    return e;
+}
+
+static int write_forces(struct table_write *s, const struct contacts *t, double dt, struct why *why)
+{
+    const hsize_t shape[2] = { (hsize_t)t->n, 3 };
+    vec3 *force = malloc((size_t)(t->n + 1) * sizeof *force);
+    if (!force) return why_set(why, EX_SOFTWARE, "no memory for %s", LAYOUT_FORCE);
+    for (int64_t i = 0; i < t->n; i++)
+        force[i] = v3_scale(1 / dt, contact_in_space(&t->c[i], t->found[i].r));
+    int e =
+        table_write_rows(s, LAYOUT_FORCE, COLUMN_F64, 2, shape, CHUNK_CONTACTS, force, "N", why);
+    free(force);
+    return e;
+}
+
+int contact_rows_write(struct table_write *s, const struct frame *f, struct why *why)
+{
+    bool first = !table_write_grows(s, "/contacts/start");
+    const hsize_t one = 1;
+    const struct contacts *t = &f->contacts;
+    // a column of a trajectory is one of all its contacts, or of none
+    bool forces = t->found && (first ? f->forces : table_write_grows(s, LAYOUT_FORCE));
+    if (table_write_rows(s, "/contacts/start", COLUMN_I64, 1, &one, CHUNK_FRAMES, &s->contacts,
+                         NULL, why) ||
+        table_write_rows(s, "/contacts/count", COLUMN_I64, 1, &one, CHUNK_FRAMES, &t->n, NULL,
+                         why) ||
+        table_write_columns(s, "/contacts", "", layout_contacts, t->n, t->c, sizeof *t->c,
+                            CHUNK_CONTACTS, why) ||
+        write_bases(s, t, why) ||
+        (cell_repeats(&f->packing.cell) &&
+         table_write_columns(s, "/contacts", "", layout_shifts, t->n, t->c, sizeof *t->c,
+                             CHUNK_CONTACTS, why)) ||
+        (t->found && table_write_columns(s, "/contacts", "", layout_found, t->n, t->found,
+                                         sizeof *t->found, CHUNK_CONTACTS, why)) ||
+        (forces && write_forces(s, t, f->packing.dt, why)) ||
+        table_write_rows(s, "/contacts/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &f->packing.step,
+                         NULL, why))
+        return why->status;
+    if (s->growing) s->contacts += t->n;
+    int moved = f->moved;
+    return !first ? 0 : h5_attr(s->file, "/contacts", "moved", H5T_NATIVE_INT, -1, &moved, why);
+}

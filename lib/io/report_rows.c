@@ -1,0 +1,159 @@
+#include "io/report_rows.h"
+
+#include "io/h5.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { AHEAD = 256 }; /* reports read at once: 64 KiB */
+
+/* The reports whose numbers in these columns are there: a killed writer's may differ. */
+static void count_rows(struct report_rows *r, const struct column *columns)
+{
+    for (const struct column *c = columns; c->name; c++) {
+        uint64_t shape[4];
+        char path[80];
+        snprintf(path, sizeof path, "%s/%s/value", r->group, c->name);
+        if (source_shape(r->source, path, shape) > 0 && shape[0] < (uint64_t)r->solves)
+            r->solves = (int64_t)shape[0];
+    }
+}
+
+int report_rows_open(struct report_rows *r, struct source *source, struct why *why)
+{
+    *r = (struct report_rows){ .source = source, .ahead.last = -1 };
+    char path[80];
+    r->group = source_has(r->source, LAYOUT_REPORT) ? LAYOUT_REPORT : LAYOUT_REPORT_0_1;
+    snprintf(path, sizeof path, "%s/step", r->group);
+    if (source_has(r->source, path)) r->solved = table_read_steps(r->source, path, &r->solves, why);
+    uint64_t shape[4];
+    snprintf(path, sizeof path, "%s/time", r->group);
+    if (source_shape(r->source, path, shape) > 0 && shape[0] < (uint64_t)r->solves)
+        r->solves = (int64_t)shape[0];
+    count_rows(r, layout_report);
+    count_rows(r, layout_balance);
+    return why->status;
+}
+
+/* Counts that are counts, a flag that is one: looked at as a byte, for a bool may not be 5. */
+static int check_report(const struct report *rep, const char *group, struct why *why)
+{
+    uint8_t converged;
+    memcpy(&converged, &rep->converged, 1);
+    if (rep->sweeps < 0 || rep->err.contacts < 0 || rep->newton < 0 || rep->safeguarded < 0 ||
+        rep->gave_up < 0)
+        return why_set(why, EX_DATAERR, "%s: a number of things is negative", group);
+    if (converged > 1) return why_set(why, EX_DATAERR, "%s/converged: is %d", group, converged);
+    return 0;
+}
+
+static int read_history(struct source *doc, const char *group, struct report *rep, struct why *why)
+{
+    uint64_t n;
+    char path[80];
+    snprintf(path, sizeof path, "%s/history", group);
+    if (!source_has(doc, path)) return 0;
+    double *h = source_read_all(doc, path, COLUMN_F64, &n, why);
+    if (!h) return why->status;
+    rep->history = (struct terms *)h;
+    return n == 5 * (uint64_t)rep->sweeps
+               ? 0
+               : why_set(why, EX_DATAERR, "%s: not of shape %d x 5", path, rep->sweeps);
+}
+
+/* Reports from `at` on, as many as there are up to AHEAD, but for their texts. */
+static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
+{
+    char time[80];
+    free(r->ahead.row), free(r->ahead.time);
+    int64_t n = r->solves - at < AHEAD ? r->solves - at : AHEAD;
+    r->ahead.first = at, r->ahead.n = 0;
+    r->ahead.row = calloc((size_t)n, sizeof *r->ahead.row);
+    r->ahead.time = calloc((size_t)n, sizeof *r->ahead.time);
+    if (!r->ahead.row || !r->ahead.time)
+        return why_set(why, EX_SOFTWARE, "no memory for %s", r->group);
+    snprintf(time, sizeof time, "%s/time", r->group);
+    if (table_read_columns(r->source, r->group, "/value", layout_report, at, n, r->ahead.row,
+                           sizeof *r->ahead.row, why) ||
+        source_rows(r->source, time, COLUMN_F64, at, n, 1, r->ahead.time, why))
+        return why->status;
+    snprintf(time, sizeof time, "%s/dissipation/value", r->group);
+    bool balanced = source_has(r->source, "/particles/all") && source_has(r->source, time);
+    if (balanced && table_read_columns(r->source, r->group, "/value", layout_balance, at, n,
+                                       r->ahead.row, sizeof *r->ahead.row, why))
+        return why->status;
+    for (int64_t i = 0; i < n; i++) r->ahead.row[i].balanced = balanced;
+    r->ahead.n = n;
+    return 0;
+}
+
+int report_rows_read(struct report_rows *r, int64_t step, bool alone, struct report *rep,
+                     bool *there, struct why *why)
+{
+    const char *group = r->group;
+    alone = alone && r->solves == 1;
+    int64_t at = alone ? 0 : table_read_row(r->solved, r->solves, step, r->ahead.last + 1);
+    *there = at >= 0;
+    if (at < 0) return 0;
+    bool is_read = at >= r->ahead.first && at < r->ahead.first + r->ahead.n;
+    if (!is_read && read_ahead(r, at, why)) return why->status;
+    *rep = r->ahead.row[at - r->ahead.first];
+    if (check_report(rep, group, why)) return why->status;
+    rep->step = r->solved[at], rep->t = r->ahead.time[at - r->ahead.first];
+    r->ahead.last = at;
+    char *method = source_text(r->source, group, "method", why);
+    char *criterion = source_text(r->source, group, "criterion", why);
+    rep->options = source_text(r->source, group, "options", why);
+    snprintf(rep->method, sizeof rep->method, "%s", method ? method : "");
+    for (int c = 0; criterion && c < CRITERION_COUNT; c++)
+        if (!strcmp(criterion, criterion_name[c])) rep->criterion = c;
+    free(method), free(criterion);
+    if (why->status || source_attribute(r->source, group, "eps", COLUMN_F64, -1, &rep->eps, why))
+        return why->status;
+    return read_history(r->source, group, rep, why);
+}
+
+void report_rows_close(struct report_rows *r)
+{
+    free(r->solved), free(r->ahead.row), free(r->ahead.time);
+    *r = (struct report_rows){ 0 };
+}
+
+/* ---- to a document ---- */
+
+/* The balances, beside the report, whose clocks they share */
+static int write_balance(struct table_write *s, const struct report *rep, bool first,
+                         struct why *why)
+{
+    const char *solver = LAYOUT_REPORT;
+    if (table_write_columns(s, solver, "/value", layout_balance, 1, rep, sizeof *rep, CHUNK_FRAMES,
+                            why))
+        return why->status;
+    if (first && (table_write_link(s, LAYOUT_REPORT "/step", "step", solver, layout_balance, why) ||
+                  table_write_link(s, LAYOUT_REPORT "/time", "time", solver, layout_balance, why)))
+        return why->status;
+    return 0;
+}
+
+int report_rows_write(struct table_write *s, const struct report *rep, struct why *why)
+{
+    const char *solver = LAYOUT_REPORT;
+    bool first = !table_write_grows(s, LAYOUT_REPORT "/eps/value");
+    if (table_write_columns(s, solver, "/value", layout_report, 1, rep, sizeof *rep, CHUNK_FRAMES,
+                            why) ||
+        table_write_clock(s, solver, true, &rep->step, solver, layout_report, why) ||
+        table_write_clock(s, solver, false, &rep->t, solver, layout_report, why) ||
+        (rep->balanced && write_balance(s, rep, first, why)))
+        return why->status;
+    if (first &&
+        (h5_attr_text(s->file, solver, "method", rep->method, why) ||
+         h5_attr_text(s->file, solver, "criterion", criterion_name[rep->criterion], why) ||
+         h5_attr(s->file, solver, "eps", H5T_NATIVE_DOUBLE, -1, &rep->eps, why) ||
+         h5_attr_text(s->file, solver, "options", rep->options ? rep->options : "{}", why)))
+        return why->status;
+    if (!rep->history || s->growing) return 0;
+    const hsize_t shape[2] = { (hsize_t)rep->sweeps, 5 };
+    return h5_write(s->file, LAYOUT_REPORT "/history", H5T_NATIVE_DOUBLE, 2, shape, rep->history,
+                    "1", why);
+}
