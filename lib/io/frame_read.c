@@ -82,6 +82,10 @@ static int count_reports(struct frame_read *r, struct why *why)
     if (source_has(r->source, path)) r->solved = steps_of(r, path, &r->solves, why);
     count_rows(r, layout_report);
     count_rows(r, layout_balance);
+    uint64_t shape[4];
+    snprintf(path, sizeof path, "%s/time", r->reports); // the last that is written
+    if (source_shape(r->source, path, shape) == 1 && shape[0] < (uint64_t)r->solves)
+        r->solves = (int64_t)shape[0];
     return why->status;
 }
 
