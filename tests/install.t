@@ -31,7 +31,7 @@ build_step()
 }
 ok "a program is built by pkg-config" build_step
 is "and makes the steps that nsd-step makes" "$("$tmp/step")" \
-    "$(nsd-gen 100 | nsd-step -n 200 --every 200 --contacts --warm -m exact --order natural --criterion natural --eps 1e-6 \
+    "$(nsd-gen 100 | nsd-step --overlap keep -n 200 --every 200 --contacts --warm -m exact --order natural --criterion natural --eps 1e-6 \
         --max-sweeps 10000 2>/dev/null >"$tmp/step.h5"
     nsd-info --last -p "$tmp/step.h5" | head -n 1 | jq -r .x[2] >"$tmp/z"
     nsd-info --last "$tmp/step.h5" | jq -r '[.step, .time, .contacts] | @tsv' | tr '\t' ' ' |

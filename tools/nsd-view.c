@@ -39,7 +39,7 @@ static const struct cli_option own[] = {
     { CLI_INT, 0, "every", &every, "K", .min = 1, .max = 1e15,
       .help = "a series: every K-th frame, numbered from 0 [one picture]" },
     { CLI_TEXT, 'o', "output", &output, "FILE", .silent = true,
-      .help = "write to FILE; a series: f%05d.png, x.mp4, x.webm [standard output]" },
+      .help = "write to FILE; a series: 'f%05d.png', or film.mp4 [standard output]" },
     { CLI_INT, 0, "rate", &rate, "N", .min = 1, .max = 240,
       .help = "pictures a second of a film [25]" },
     { CLI_FLAG, 0, "svg", &svg, .help = "of discs: an SVG in place of a PNG" },

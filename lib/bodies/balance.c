@@ -81,9 +81,12 @@ static void add_beyond(struct work *w, const struct packing *p, const struct imp
 static void add_contacts(struct balance *b, const struct packing *p, const struct contacts *s,
                          const struct impulses *sum, const struct mean *mean)
 {
+    bool beyond = sum->freedoms.n || cell_repeats(&p->cell);
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
-        const struct push o = push_of(p, sum->ahead, sum->edge, c, s->found[i].r);
+        const double *r = s->found[i].r;
+        if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
+        const struct push o = push_of(p, sum->ahead, sum->edge, c, r);
         const struct mean *mb = &mean[c->b];
         struct work w = { 0 };
         bool a_moves = c->a >= 0 && p->mass[c->a] > 0, b_moves = p->mass[c->b] > 0;
@@ -94,7 +97,7 @@ static void add_contacts(struct balance *b, const struct packing *p, const struc
         } else {
             w.held -= v3_dot(o.f, wall_held(&p->wall[-1 - c->a], c->x));
         }
-        add_beyond(&w, p, sum, c, o.f);
+        if (beyond) add_beyond(&w, p, sum, c, o.f);
         b->drives -= w.held;
         b->dissipation -= w.held + w.free;
         if (!a_moves && b_moves) add_to(b->impulse, 1, o.f);

@@ -80,12 +80,12 @@ static int count_reports(struct frame_read *r, struct why *why)
     r->reports = source_has(r->source, LAYOUT_REPORT) ? LAYOUT_REPORT : LAYOUT_REPORT_0_1;
     snprintf(path, sizeof path, "%s/step", r->reports);
     if (source_has(r->source, path)) r->solved = steps_of(r, path, &r->solves, why);
+    uint64_t shape[4];
+    snprintf(path, sizeof path, "%s/time", r->reports);
+    if (source_shape(r->source, path, shape) > 0 && shape[0] < (uint64_t)r->solves)
+        r->solves = (int64_t)shape[0];
     count_rows(r, layout_report);
     count_rows(r, layout_balance);
-    uint64_t shape[4];
-    snprintf(path, sizeof path, "%s/time", r->reports); // the last that is written
-    if (source_shape(r->source, path, shape) == 1 && shape[0] < (uint64_t)r->solves)
-        r->solves = (int64_t)shape[0];
     return why->status;
 }
 
@@ -307,12 +307,15 @@ static int find_bodies(struct frame_read *r, int64_t k, int64_t **row, int64_t *
         return why_set(why, EX_DATAERR, "%s: not of shape frames x bodies", ids);
     int64_t rows = (int64_t)shape[1];
     int32_t *id = malloc(((size_t)rows + 1) * sizeof *id);
-    *row = malloc(((size_t)rows + 1) * sizeof **row);
-    if (!id || !*row) why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)rows);
-    if (!why->status) source_rows(r->source, ids, COLUMN_I32, k, 1, rows, id, why);
+    *row = calloc((size_t)rows + 1, sizeof **row);
     *n = 0;
-    for (int64_t i = 0; !why->status && i < rows; i++)
-        if (id[i] >= 0) (*row)[(*n)++] = i;
+    if (!id || !*row) {
+        free(id);
+        return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)rows);
+    }
+    if (!source_rows(r->source, ids, COLUMN_I32, k, 1, rows, id, why))
+        for (int64_t i = 0; i < rows; i++)
+            if (id[i] >= 0) (*row)[(*n)++] = i;
     free(id);
     return why->status;
 }

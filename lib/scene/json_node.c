@@ -13,10 +13,22 @@ static void make_printable(char *s)
         if ((unsigned char)*s < ' ' || *s == 0x7f) *s = '?';
 }
 
+/* jansson takes a zero byte behind a number for a blank, and the text would end there. */
+static int refuse_zero(const char *text, size_t length, struct why *why)
+{
+    const char *zero = memchr(text, 0, length), *line = text;
+    int lines = 1;
+    if (!zero) return 0;
+    for (const char *s = text; s < zero; s++)
+        if (*s == '\n') lines++, line = s + 1;
+    return why_set(why, EX_DATAERR, "%d:%d: a zero byte", lines, (int)(zero - line) + 1);
+}
+
 int json_doc_parse(struct json_doc *t, const char *text, size_t length, struct why *why)
 {
     json_error_t e;
     *t = (struct json_doc){ .why = why };
+    if (refuse_zero(text, length, why)) return why->status;
     t->root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &e);
     if (!t->root) {
         make_printable(e.text);
