@@ -103,6 +103,14 @@ for name, type in BODIES: f[P + name][:] = 0 if name == 'species' else 1"
     ! nsd-info "$tmp/packed.h5" && nsd-info --unpack 1 "$tmp/packed.h5" >"$tmp/info" && grep -q '"bodies":700000' "$tmp/info"
 }
 ok "--unpack raises the limit" packed
+hostile "groups 40 deep" 'more than 32 deep' four.h5 "f.create_group('/a' * 40)"
+hostile "a name of 500 bytes" 'a name too long' four.h5 "f['/' + 'n' * 500] = 1"
+hostile "more objects than anybody has" 'more than 100000 objects' four.h5 "
+g = f.create_group('/many')
+for k in range(100001): g[str(k)] = f['/nsd/scene']"
+hostile "a chunk of a filter without a name" 'filter' four.h5 "
+p = h5p.create(h5p.DATASET_CREATE); p.set_chunk((4,)); p.set_filter(400, h5py.h5z.FLAG_OPTIONAL, (1, 2))
+h5d.create(f.id, b'/mine', h5t.STD_I32LE, h5s.create_simple((4,)), dcpl=p)"
 hostile "a group in itself" 'deep|objects' four.h5 "f['/loop/a'] = 1; f['/loop/b'] = f['/loop']; f['/loop/c'] = f['/loop']"
 hostile "bodies of which nothing is stored" 'stored' four.h5 \
     "bodies(f, 200000, {})"
@@ -265,6 +273,16 @@ assert a['/text'][()] == b['/text'][()] and np.array_equal(a['/g/x'].attrs['k'],
 PYTHON
 }
 ok "numbers and texts that nsd does not know are copied" kept
+many()
+{
+    make many.h5 four.h5 "
+for k in range(600): f['/g%d/x' % (k % 7) + str(k)] = np.arange(k % 50)" &&
+        nsd-cat "$tmp/many.h5" >"$tmp/copy.h5" && /usr/bin/python3 -c "
+import h5py, numpy as np
+f = h5py.File('$tmp/copy.h5')
+for k in range(600): assert np.array_equal(f['/g%d/x' % (k % 7) + str(k)][()], np.arange(k % 50)), k"
+}
+ok "and hundreds of them" many
 labelled()
 {
     nsd-detect --fclib=local "$tmp/solved.h5" | tail -c +513 >"$tmp/problem.h5" &&

@@ -102,6 +102,15 @@ ok "padded by zeros" text "t = f['/nsd/scene'][()]; del f['/nsd/scene']; f['/nsd
 ok "kinds as a string of any length" text "k = f['/nsd/material'].attrs['kinds']; f['/nsd/material'].attrs['kinds'] = k if isinstance(k, str) else k.decode()"
 refused small "del f['/nsd/scene']; f['/nsd/scene'] = 3" 'scene: a text is wanted'
 
+# documents of more than 64 MiB are given back to the system part by part, and read all the same
+nsd-gen 600000 >"$tmp/huge.h5"
+ok "a large document is one" [ "$(stat -c %s "$tmp/huge.h5")" -gt 70000000 ]
+huge() { cmp <(nsd-cat "$tmp/huge.h5") <(nsd-cat <"$tmp/huge.h5") && cmp <(cat "$tmp/huge.h5" "$tmp/huge.h5" | nsd-info) <(nsd-info "$tmp/huge.h5" "$tmp/huge.h5"); }
+ok "from a file and from a pipe, one after another" huge
+foreign "$tmp/huge.h5" "$tmp/hugeforeign.h5"
+ok "and without our header" cmp <(nsd-info "$tmp/huge.h5") <(nsd-info "$tmp/hugeforeign.h5")
+rm "$tmp"/huge*
+
 # copies of what nsd does not know, whatever its type and size
 kept() # SIZE CODE: f['/mine'] and its attributes
 {

@@ -69,7 +69,7 @@ bool listed_numbers(const struct listed *l, uint64_t first, uint64_t n, enum col
 {
     const struct object *o = &l->object;
     if (o->kind != OBJECT_NUMBERS || (o->class == 'f' && type != COLUMN_F64)) return false;
-    if (n > UINT64_MAX / 16 || first > UINT64_MAX / 16 || (first + n) * o->size > o->data)
+    if (n > UINT64_MAX / 32 || first > UINT64_MAX / 32 || (first + n) * o->size > o->data)
         return false;
     if ((o->class == 'f' && o->size == 8) ||
         (o->class == 'i' && type != COLUMN_F64 && column_size(type) == o->size)) {

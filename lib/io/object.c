@@ -41,11 +41,21 @@ int objects_add(struct objects *to, const struct object *o, const void *shape, c
     return 0;
 }
 
+/* Is it one that we may take numbers of? The process that sends it has met hostile bytes. */
+static bool makes_sense(const struct object *o)
+{
+    bool power = o->size == 1 || o->size == 2 || o->size == 4 || o->size == 8;
+    if (o->kind != OBJECT_NUMBERS) return o->kind <= OBJECT_OTHER && o->rank <= OBJECT_RANK + 1;
+    return power && (o->class == 'i' || o->class == 'u' || (o->class == 'f' && o->size >= 4)) &&
+           o->rank <= OBJECT_RANK + 1;
+}
+
 bool object_unpack(const unsigned char *bytes, uint64_t size, uint64_t *at, struct object *o,
                    const uint64_t **shape, const char **name, const void **data)
 {
     if (size - *at < padded(sizeof *o)) return false;
     memcpy(o, bytes + *at, sizeof *o);
+    if (!makes_sense(o)) return false;
     uint64_t left = size - *at - padded(sizeof *o), rank = o->rank > OBJECT_RANK ? 0 : o->rank;
     uint64_t shapes = rank * sizeof **shape;
     if (shapes > left || padded(o->name) > left - shapes || !o->name || o->data > left ||

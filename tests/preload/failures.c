@@ -1,6 +1,6 @@
 /*
  * Preloaded: call number NSD_FAIL_AT of those to the system that NSD_FAIL_CALL names (read, write, sync,
- * rename, close, resize, reserve) fails with NSD_FAIL_WITH: EIO or EINTR once, ENOSPC from there on, or, as "short",
+ * rename, close, resize, reserve, message, process, socket) fails with NSD_FAIL_WITH: EIO or EINTR once, ENOSPC from there on, or, as "short",
  * half of what was asked for is done. Parent and child count together. With NSD_COUNT the number of
  * such calls goes to that file. Standard error is left alone: it has to tell of the failure.
  *
@@ -44,6 +44,13 @@ static const struct {
     { "close", { SYS_close, -1 } },
     { "resize", { SYS_ftruncate, -1 } },
     { "reserve", { SYS_fallocate, -1 } },
+    { "message", { SYS_sendto, SYS_recvfrom, SYS_wait4, -1 } },
+    { "process", { SYS_clone,
+#ifdef SYS_fork
+                   SYS_fork,
+#endif
+                   -1 } },
+    { "socket", { SYS_socketpair, -1 } },
 };
 
 static atomic_long *count; /* shared with children */

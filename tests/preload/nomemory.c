@@ -51,6 +51,14 @@ static void end(void)
     on = false;
 }
 
+/* So the reading process says that only counts are left. */
+int malloc_trim(size_t pad)
+{
+    (void)pad;
+    end();
+    return 0;
+}
+
 static bool fails(const void *caller)
 {
     uintptr_t at = (uintptr_t)caller;
