@@ -107,6 +107,7 @@ claim()
     *'.mu = 0.5'*'{"file": "balls.txt"}'*'> rough.h5')
         bodies rough.h5 300 && settings rough.h5 '.material | all(.mu == 0.5)' && frames rough.h5 ".[-1] == $2" ;;
     *'.mu = 0.5'*'> rough.h5') bodies rough.h5 500 && settings rough.h5 '.material | all(.mu == 0.5)' ;;
+    *'scenes/shear.json'*'> shear.h5') bodies shear.h5 200 ;;
     *'{file: "balls.txt"}'*'> table.h5') bodies table.h5 300 ;;
     *'nsd-gen scenes/pour.json'*'> poured.h5') frames poured.h5 ".[-1] == $2" ;;
     *'poured.h5'*'.removed[0].bodies'*) output '.[0] > 100' ;;
