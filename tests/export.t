@@ -53,6 +53,19 @@ other "MDAnalysis reads it" MDAnalysis readable "$tmp/pour.h5"
 nsd-export --part contacts -o "$tmp/pour.csv" "$tmp/pour.h5"
 other "and their contacts" h5py table "$tmp/pour.csv" "$tmp/pour.h5" contacts ,
 
+# ---- a cell that repeats ----
+
+nsd-gen scenes/shear.json | nsd-step -n 2300 --every 2300 >"$tmp/sheared.h5" 2>/dev/null
+nsd-step -n 6 --contacts "$tmp/sheared.h5" >"$tmp/shear.h5" 2>/dev/null
+nsd-export -o "$tmp/shear/" "$tmp/shear.h5"
+nsd-export -o "$tmp/shear.xyz" "$tmp/shear.h5"
+nsd-export -o "$tmp/shear.lammpstrj" "$tmp/shear.h5"
+other "a contact's line goes to the image that it is with" vtk images "$tmp/shear.h5" "$tmp/shear"
+other "the cell's lines are its edges" vtk cell "$tmp/shear.h5" "$tmp/shear"
+other "forces are Newton's there, too" vtk newton "$tmp/shear.h5" "$tmp/shear"
+other "ASE reads the cell" ase ase_cell "$tmp/shear.h5" "$tmp/shear.xyz" "$tmp/shear.lammpstrj"
+other "MDAnalysis reads it from the document" MDAnalysis box "$tmp/shear.h5"
+
 # ---- the others ----
 
 nsd-export -o "$tmp/out.xyz" "$tmp/out.h5"

@@ -14,35 +14,44 @@ static const char *ends(const struct box *b, int k)
     return b->repeats[k] ? "pp" : "ff";
 }
 
-static double part_of(vec3 a, int k)
+/* Edge 0 along x and edge 1 in the plane of x and y: the box of LAMMPS that every reader knows */
+static bool is_restricted(const vec3 e[3])
 {
-    return k == 0 ? a.x : k == 1 ? a.y : a.z;
+    return e[0].x > 0 && e[0].y == 0 && e[0].z == 0 && e[1].y > 0 && e[1].z == 0 && e[2].z > 0;
 }
 
-/* Does each edge run along its axis? */
-static bool is_upright(const struct box *b)
+/* Bounds of x, y and z as far as the tilted box reaches, each with its tilt: xy, xz, yz */
+static void put_tilted(FILE *out, const struct box *b)
 {
-    for (int k = 0; k < 3; k++)
-        for (int l = 0; l < 3; l++)
-            if (l != k && part_of(b->edge[k], l) != 0) return false;
-    return true;
+    const double xy = b->edge[1].x, xz = b->edge[2].x, yz = b->edge[2].y;
+    const vec3 o = b->origin;
+    double lo = fmin(fmin(0, xy + xz), fmin(xy, xz)), hi = fmax(fmax(0, xy + xz), fmax(xy, xz));
+    fprintf(out, "ITEM: BOX BOUNDS xy xz yz %s %s %s\n", ends(b, 0), ends(b, 1), ends(b, 2));
+    fprintf(out, "%.17g %.17g %.17g\n", o.x + lo, o.x + b->edge[0].x + hi, xy);
+    fprintf(out, "%.17g %.17g %.17g\n", o.y + fmin(0, yz), o.y + b->edge[1].y + fmax(0, yz), xz);
+    fprintf(out, "%.17g %.17g %.17g\n", o.z, o.z + b->edge[2].z, yz);
 }
 
 static void put_box(FILE *out, const struct packing *p)
 {
     struct box b;
     moment_box(&b, p);
-    bool upright = is_upright(&b); // else edges as they are, LAMMPS' general triclinic box
-    fprintf(out, "ITEM: BOX BOUNDS %s%s %s %s\n", upright ? "" : "abc origin ", ends(&b, 0),
-            ends(&b, 1), ends(&b, 2));
-    for (int k = 0; k < 3; k++) {
-        double from = part_of(b.origin, k);
-        const vec3 e = b.edge[k];
-        if (upright)
-            fprintf(out, "%.17g %.17g\n", from, from + part_of(e, k));
-        else
-            fprintf(out, "%.17g %.17g %.17g %.17g\n", e.x, e.y, e.z, from);
+    const vec3 *e = b.edge, o = b.origin;
+    bool restricted = is_restricted(e);
+    if (restricted && e[1].x == 0 && e[2].x == 0 && e[2].y == 0) {
+        fprintf(out, "ITEM: BOX BOUNDS %s %s %s\n", ends(&b, 0), ends(&b, 1), ends(&b, 2));
+        fprintf(out, "%.17g %.17g\n%.17g %.17g\n%.17g %.17g\n", o.x, o.x + e[0].x, o.y,
+                o.y + e[1].y, o.z, o.z + e[2].z);
+        return;
     }
+    if (restricted) {
+        put_tilted(out, &b);
+        return;
+    }
+    const double from[3] = { o.x, o.y, o.z };
+    fprintf(out, "ITEM: BOX BOUNDS abc origin %s %s %s\n", ends(&b, 0), ends(&b, 1), ends(&b, 2));
+    for (int k = 0; k < 3; k++)
+        fprintf(out, "%.17g %.17g %.17g %.17g\n", e[k].x, e[k].y, e[k].z, from[k]);
 }
 
 static int dump(FILE *out, const struct moment *m, enum part part, bool first, struct why *why)
