@@ -39,8 +39,8 @@ static void note(struct packing *p, int64_t i, bool came, int32_t which, struct 
 static bool in_box(const struct scene_box *b, vec3 x, int dim)
 {
     const double at[3] = { x.x, x.y, x.z };
-    for (int k = 0; k < dim; k++)
-        if (at[k] < b->lo[k] || at[k] > b->hi[k]) return false;
+    for (int k = 0; k < 3; k++) /* in the plane the third axis does not count */
+        if (k < dim && (at[k] < b->lo[k] || at[k] > b->hi[k])) return false;
     return true;
 }
 
