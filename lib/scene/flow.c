@@ -250,8 +250,10 @@ int flow_step(const struct flow *f, struct packing *p, struct contacts *last, bo
     int64_t before = p->events.n;
     int32_t *row = malloc(((size_t)p->n + 1) * sizeof *row);
     gsl_rng *rng = counter_alloc();
-    if (!row || !rng) why_set(why, EX_SOFTWARE, "no memory for bodies that come and go");
-    if (!why->status && !remove_bodies(f, p, row, why) && last) follow(last, row);
+    if (!row || !rng)
+        why_set(why, EX_SOFTWARE, "no memory for bodies that come and go");
+    else if (!remove_bodies(f, p, row, why) && last)
+        follow(last, row);
     for (int32_t k = 0; k < f->scene.pours && !why->status; k++)
         while (!why->status && is_due(&f->scene.pour[k], &p->poured[k], p->t) &&
                pour_one(p, &f->scene.pour[k], k, rng, why))
