@@ -152,7 +152,7 @@ static bool converts(char class, int bytes, whole v)
         int size = (int)column_size(type[k]);
         bool fits = v >= least('i', size) && v <= most('i', size);
         good &= listed_numbers(&l, 0, 1, type[k], &i) == fits;
-        int64_t sign = (int64_t)1 << (8 * size - 1), mask = size == 8 ? -1 : 2 * sign - 1;
+        int64_t mask = size == 8 ? -1 : ((int64_t)1 << 8 * size) - 1;
         if (fits) good &= (i & mask) == ((int64_t)v & mask);
     }
     return good;
