@@ -69,6 +69,9 @@ $B/tools/%.o: tools/%.c Makefile
 $B/%: $B/tools/%.o $B/lib/cli/main.o $B/libnsd.a
 	$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(NSD_LDLIBS)
 
+# what reads the meshes of other programs
+$B/nsd-gen: NSD_LDLIBS += -lassimp
+
 $B/tests/%: tests/%.c $B/libnsd.a Makefile
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -o $@ $< $B/libnsd.a $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS) $(TESTLIBS)

@@ -2,6 +2,7 @@
 #include "cli/cli.h"
 #include "io/reader.h"
 #include "io/writer.h"
+#include "scene/mesh_file.h"
 #include "scene/scene_build.h"
 
 #include <errno.h>
@@ -143,7 +144,8 @@ int tool_main(int argc, char **argv)
     }
     for (int64_t g = 0; g < scene.groups; g++)
         if (scene.bodies[g].from == SCENE_DOCUMENT) read_document(&scene.bodies[g], dir);
-    if (scene_build(&frame.packing, &scene, dir, &why)) die_why(&why);
+    if (mesh_files_read(&scene, dir, &why) || scene_build(&frame.packing, &scene, dir, &why))
+        die_why(&why);
     if (frame_note(&frame, cli_history(), &why) || writer_frame(out, &frame, &why) ||
         writer_close(out, &why))
         die_why(&why);

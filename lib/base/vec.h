@@ -64,6 +64,17 @@ static inline quat quat_unit(quat q)
     return (quat){ s * q.w, s * q.x, s * q.y, s * q.z };
 }
 
+/* q applied to a, and its inverse */
+static inline vec3 quat_turn(quat q, vec3 a)
+{
+    vec3 u = v3(q.x, q.y, q.z), t = v3_scale(2, v3_cross(u, a));
+    return v3_add(v3_axpy(a, q.w, t), v3_cross(u, t));
+}
+static inline vec3 quat_turn_back(quat q, vec3 a)
+{
+    return quat_turn((quat){ q.w, -q.x, -q.y, -q.z }, a);
+}
+
 /*
  * The rotation by the vector a (rad), the exponential map: by its series up to an angle of 1,
  * beyond by halving the angle and squaring. Not by libm: its last bits differ on machines without

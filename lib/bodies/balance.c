@@ -95,7 +95,7 @@ static void add_contacts(struct balance *b, const struct packing *p, const struc
             const struct mean *ma = &mean[c->a];
             *(a_moves ? &w.free : &w.held) += o.la * v3_dot(o.m, ma->w) - v3_dot(o.f, ma->v);
         } else {
-            w.held -= v3_dot(o.f, wall_held(&p->wall[-1 - c->a], c->x));
+            w.held -= v3_dot(o.f, wall_held(p, &p->wall[-1 - c->a], c->x));
         }
         if (beyond) add_beyond(&w, p, sum, c, o.f);
         b->drives -= w.held;

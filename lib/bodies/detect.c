@@ -12,23 +12,57 @@ static void set_law(struct contact *c, const struct packing *p, int32_t one, int
     c->mu = p->mu[k], c->en = p->en[k], c->et = p->et[k];
 }
 
-/* Each of the two returns false when memory is short. */
-static bool add_wall_contact(struct contacts *out, const struct packing *p, int32_t w, double t,
-                             int64_t i, vec3 x, double gap)
+/* A place where ball i meets wall w, in space; false when memory is short. */
+static bool add_touch(struct contacts *out, const struct packing *p, int32_t w, int64_t i, vec3 x,
+                      const struct touch *t)
 {
-    const struct wall *wall = &p->wall[w];
-    vec3 at = wall_at(p, wall, t);
-    double distance = v3_dot(v3_sub(x, at), wall->n), g = distance - p->radius[i];
-    if (!(g <= gap) || p->mass[i] == 0) return true;
     struct contact *c = contacts_add(out, -1 - w, (int32_t)i);
     if (!c) return false;
-    contact_basis(c, p->dim, wall->n);
-    c->gap = g;
-    c->x = v3_axpy(x, -distance, wall->n);
-    set_law(c, p, wall->kind, p->kind[i]);
+    contact_basis(c, p->dim, t->n);
+    c->gap = t->distance - p->radius[i];
+    c->x = v3_axpy(x, -t->distance, t->n);
+    c->feature = t->feature;
+    set_law(c, p, p->wall[w].kind, p->kind[i]);
     return true;
 }
 
+/* The bodies at x and a plane, where it is at time t; false when memory is short. */
+static bool add_plane(struct contacts *out, const struct packing *p, int32_t w, double t,
+                      const vec3 *x, double gap)
+{
+    vec3 at = wall_at(p, &p->wall[w], t), n = wall_normal(p, &p->wall[w], t);
+    for (int64_t i = 0; i < p->n; i++) {
+        struct touch touch = { n, v3_dot(v3_sub(x[i], at), n), 0 };
+        if (!(touch.distance - p->radius[i] <= gap) || p->mass[i] == 0) continue;
+        if (!add_touch(out, p, w, i, x[i], &touch)) return false;
+    }
+    return true;
+}
+
+/* The same of any other shape. Balls are brought to where the shape is described, and what they touch
+   back from there. */
+static bool add_shape(struct contacts *out, const struct packing *p, int32_t w, double t,
+                      const vec3 *x, double gap, const struct surface *surface)
+{
+    const struct wall *wall = &p->wall[w];
+    struct pose pose = wall_pose(p, wall, t);
+    struct touch touch[TOUCHES_MOST];
+    for (int64_t i = 0; i < p->n; i++) {
+        double r = p->radius[i];
+        vec3 c = v3_sub(quat_turn_back(pose.q, v3_sub(x[i], pose.shift)), wall->x);
+        if (p->mass[i] == 0) continue;
+        int n = surface ? surface_touches(surface, c, r + gap, touch)
+                        : boundary_nearest(wall, p->dim, c, r, touch);
+        for (int k = 0; k < n; k++) {
+            if (!(touch[k].distance - r <= gap)) continue;
+            touch[k].n = quat_turn(pose.q, touch[k].n);
+            if (!add_touch(out, p, w, i, x[i], &touch[k])) return false;
+        }
+    }
+    return true;
+}
+
+/* False when memory is short. */
 static bool add_ball_contact(struct contacts *out, const struct packing *p,
                              const struct neighbours *near, const struct pair *pair, const vec3 *x,
                              const vec3 edge[3], double gap)
@@ -64,9 +98,14 @@ static int detect(struct contacts *out, const struct packing *p, const vec3 *x, 
     bool stored = true, images = cell_repeats(&p->cell);
     out->n = 0, contacts_free_found(out);
     int e = neighbours_find(near, p, x, edge, gap, kept, why);
-    for (int32_t w = p->walls - 1; !e && stored && w >= 0; w--)
-        for (int64_t i = 0; stored && i < p->n; i++)
-            stored = add_wall_contact(out, p, w, t, i, x[i], gap);
+    if (!e) e = neighbours_surfaces(near, p, why);
+    for (int32_t w = p->walls - 1; !e && stored && w >= 0; w--) {
+        const struct wall *wall = &p->wall[w];
+        bool plane = wall->shape == BOUNDARY_PLANE, mesh = wall->shape == BOUNDARY_MESH;
+        if (!wall_there(wall, t)) continue;
+        stored = plane ? add_plane(out, p, w, t, x, gap)
+                       : add_shape(out, p, w, t, x, gap, mesh ? &near->surface[w] : NULL);
+    }
     for (int64_t i = 0; !e && stored && i < near->n; i++)
         stored = add_ball_contact(out, p, near, &near->pair[i], x, images ? edge : NULL, gap);
     neighbours_free(&once);
@@ -91,7 +130,7 @@ static double meeting_reach(const struct packing *p)
     double speed = 0, small = INFINITY;
     for (int64_t i = 0; i < p->n; i++)
         speed = fmax(speed, v3_norm(p->v[i])), small = fmin(small, p->radius[i]);
-    for (int32_t w = 0; w < p->walls; w++) speed = fmax(speed, v3_norm(p->wall[w].v));
+    for (int32_t w = 0; w < p->walls; w++) speed = fmax(speed, wall_top_speed(p, &p->wall[w]));
     return fmin(p->dt * (2 * speed + packing_calm(p)), 0.5 * small);
 }
 

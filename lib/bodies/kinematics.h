@@ -30,7 +30,7 @@ static inline void arms_of(const struct packing *p, const struct contact *c, dou
 /* m/s: n . (v_b - v_a), with the velocities that the bodies have now; for balls that is u_n */
 static inline double opening_of(const struct packing *p, const struct contact *c)
 {
-    vec3 va = c->a < 0 ? wall_velocity(&p->wall[-1 - c->a], c->x) : p->v[c->a];
+    vec3 va = c->a < 0 ? wall_velocity(p, &p->wall[-1 - c->a], c->x) : p->v[c->a];
     vec3 vb = v3_add(p->v[c->b], cell_shift(p->cell.rate, c->shift));
     return v3_dot(v3_sub(vb, va), c->n);
 }

@@ -14,8 +14,16 @@ enum {
 static const double MIN_SPARE = 0.02, /* when (nearly) nothing moves */
     MAX_SPARE = 0.5;                  /* beyond it a list would be crowded: it serves one step */
 
+static void surfaces_free(struct neighbours *s)
+{
+    for (int32_t w = 0; w < s->surfaces; w++) surface_free(&s->surface[w]);
+    free(s->surface);
+    s->surface = NULL, s->surfaces = 0;
+}
+
 void neighbours_free(struct neighbours *s)
 {
+    surfaces_free(s);
     free(s->listed), free(s->pair), free(s->image);
     *s = (struct neighbours){ 0 };
 }
@@ -404,4 +412,20 @@ int neighbours_find(struct neighbours *s, const struct packing *p, const vec3 *x
                          (long long)crowd(s));
     if (keep && p->n) memcpy(s->listed, x, size);
     return keep && images ? note_images(s, p, edge, why) : 0;
+}
+
+int neighbours_surfaces(struct neighbours *s, const struct packing *p, struct why *why)
+{
+    if (!p->mesh.elements || s->surfaces == p->walls) return 0;
+    surfaces_free(s);
+    s->surface = calloc((size_t)p->walls + 1, sizeof *s->surface);
+    if (!s->surface) return why_set(why, EX_SOFTWARE, "no memory for the surfaces of meshes");
+    s->surfaces = p->walls;
+    for (int32_t w = 0; w < p->walls; w++) {
+        const struct wall *wall = &p->wall[w];
+        if (wall->shape == BOUNDARY_MESH &&
+            surface_init(&s->surface[w], &p->mesh, wall->first_element, wall->elements, why))
+            return why->status;
+    }
+    return 0;
 }

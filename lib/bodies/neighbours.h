@@ -22,6 +22,9 @@ struct neighbours {
     /* Where the cell repeats: their images then, and the inverse of the edges */
     int32_t (*image)[3]; /* [bodies] */
     vec3 inverse[3];     /* 1/m */
+    /* Of the walls that are meshes; they move as a whole, so that one made once serves for ever. */
+    int32_t surfaces;        /* 0: not made yet, else walls */
+    struct surface *surface; /* [surfaces] */
 };
 
 /*
@@ -42,6 +45,8 @@ int neighbours_find(struct neighbours *s, const struct packing *p, const vec3 *x
 /* The pair's shift now, bodies having been wrapped since the list was made */
 void neighbours_shift(const struct neighbours *s, const struct packing *p, const struct pair *pair,
                       int8_t shift[3]);
+/* Makes s->surface, if it is not there. Returns 0 or EX_SOFTWARE. */
+int neighbours_surfaces(struct neighbours *s, const struct packing *p, struct why *why);
 void neighbours_free(struct neighbours *s);
 
 #endif

@@ -48,6 +48,7 @@ void packing_free(struct packing *p)
     free(p->radius), free(p->mass), free(p->inertia), free(p->id), free(p->kind);
     free(p->x), free(p->q), free(p->v), free(p->w);
     free(p->wall), free(p->scene), free(p->image);
+    drives_free(&p->drives), mesh_free(&p->mesh);
     free(p->poured), free(p->removed);
     events_free(&p->events);
     cell_free(&p->cell);
@@ -60,6 +61,7 @@ int packing_alloc_walls(struct packing *p, int32_t k, struct why *why)
     free(p->wall);
     p->walls = k;
     p->wall = array(k, sizeof *p->wall);
+    for (int32_t w = 0; p->wall && w < k; w++) p->wall[w].until = INFINITY;
     return p->wall ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d walls", k);
 }
 
@@ -143,6 +145,7 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     memcpy(to->v, p->v, n * sizeof *p->v);
     memcpy(to->w, p->w, n * sizeof *p->w);
     memcpy(to->wall, p->wall, (size_t)p->walls * sizeof *p->wall);
+    if (drives_copy(&to->drives, &p->drives, why) || mesh_copy(&to->mesh, &p->mesh, why)) goto fail;
     memcpy(to->mu, p->mu, k2 * sizeof *p->mu);
     memcpy(to->en, p->en, k2 * sizeof *p->en);
     memcpy(to->et, p->et, k2 * sizeof *p->et);
@@ -182,6 +185,95 @@ static const char *body_trouble(const struct packing *p, int64_t i)
     return NULL;
 }
 
+/* ---- boundaries ---- */
+
+struct pose wall_pose(const struct packing *p, const struct wall *w, double t)
+{
+    const struct load *l = &w->load;
+    struct pose all = drives_pose(&p->drives, w->first_drive, w->drives, t);
+    all.shift = v3_axpy(all.shift, t, w->v);
+    double travel = l->travel + (t - p->t) * l->speed;
+    if (l->way == LOAD_GLIDES) all.shift = v3_axpy(all.shift, travel, l->axis);
+    if (l->way != LOAD_TURNS) return all;
+    quat q = quat_rotation(v3_scale(travel, l->axis));
+    all.shift = v3_add(l->point, quat_turn(q, v3_sub(all.shift, l->point)));
+    all.q = quat_unit(quat_mul(q, all.q));
+    return all;
+}
+
+/* Planes that only glide, which most walls are: no rotation, whose rounding would show */
+static bool only_glides(const struct wall *w)
+{
+    return !w->drives && (w->load.way != LOAD_TURNS || w->shape == BOUNDARY_PLANE);
+}
+
+vec3 wall_at(const struct packing *p, const struct wall *w, double t)
+{
+    if (!only_glides(w)) {
+        struct pose pose = wall_pose(p, w, t);
+        return pose_of(&pose, w->x);
+    }
+    vec3 x = v3_axpy(w->x, t, w->v);
+    if (w->load.way != LOAD_GLIDES) return x;
+    return v3_axpy(x, w->load.travel + (t - p->t) * w->load.speed, w->load.axis);
+}
+
+vec3 wall_normal(const struct packing *p, const struct wall *w, double t)
+{
+    return only_glides(w) ? w->n : quat_turn(wall_pose(p, w, t).q, w->n);
+}
+
+vec3 wall_held(const struct packing *p, const struct wall *w, vec3 x)
+{
+    if (!w->drives) return w->v;
+    const struct load *l = &w->load;
+    vec3 y = v3_axpy(x, -(p->t + p->dt / 2), w->v);
+    // drives move the boundary first, and what they made the load moves
+    double travel = l->travel + p->dt / 2 * l->speed;
+    quat q = { 1, 0, 0, 0 };
+    if (l->way == LOAD_GLIDES) y = v3_axpy(y, -travel, l->axis);
+    if (l->way == LOAD_TURNS) {
+        q = quat_rotation(v3_scale(travel, l->axis));
+        y = v3_add(l->point, quat_turn_back(q, v3_sub(y, l->point)));
+    }
+    vec3 v = drives_velocity(&p->drives, w->first_drive, w->drives, p->t, p->dt, y);
+    return v3_add(w->v, l->way == LOAD_TURNS ? quat_turn(q, v) : v);
+}
+
+vec3 wall_velocity(const struct packing *p, const struct wall *w, vec3 x)
+{
+    const struct load *l = &w->load;
+    vec3 v = wall_held(p, w, x);
+    if (l->way == LOAD_GLIDES) return v3_axpy(v, l->speed, l->axis);
+    if (l->way != LOAD_TURNS) return v;
+    return v3_axpy(v, l->speed, v3_cross(l->axis, v3_sub(x, l->point)));
+}
+
+vec3 wall_spin(const struct packing *p, const struct wall *w)
+{
+    vec3 s = drives_spin(&p->drives, w->first_drive, w->drives, p->t, p->dt);
+    return w->load.way == LOAD_TURNS ? v3_axpy(s, w->load.speed, w->load.axis) : s;
+}
+
+/* m: of its points that bodies may touch from a place */
+static double farthest(const struct packing *p, const struct wall *w, vec3 from)
+{
+    double reach = boundary_reach(w), most = 0;
+    if (isfinite(reach)) return v3_norm(v3_sub(w->x, from)) + reach;
+    for (int64_t i = 0; i < p->n; i++) most = fmax(most, v3_norm(v3_sub(p->x[i], from)));
+    return most;
+}
+
+double wall_top_speed(const struct packing *p, const struct wall *w)
+{
+    double most = v3_norm(w->v) + fabs(w->load.speed);
+    for (int32_t i = w->first_drive; i < w->first_drive + w->drives; i++) {
+        const struct drive *k = &p->drives.drive[i];
+        most += drive_top_speed(&p->drives, k) * (k->turns ? farthest(p, w, k->point) : 1);
+    }
+    return most;
+}
+
 static const char *load_trouble(const struct packing *p, const struct wall *w)
 {
     const struct load *l = &w->load;
@@ -191,20 +283,36 @@ static const char *load_trouble(const struct packing *p, const struct wall *w)
     if (!isfinite(l->force) || !isfinite(l->speed) || !isfinite(l->travel) || !v3_finite(l->point))
         return "its load is not finite";
     if (!(fabs(v3_dot(l->axis, l->axis) - 1) < 1e-6)) return "its load's axis is not a unit vector";
-    if (p->dim == 2 && (l->axis.z != 0 || l->point.z != 0 || l->way == LOAD_TURNS))
+    bool turns = l->way == LOAD_TURNS;
+    bool leaves = turns ? l->axis.x != 0 || l->axis.y != 0 : l->axis.z != 0;
+    if (p->dim == 2 && (leaves || l->point.z != 0))
         return "its load leaves the plane, and dim is 2";
-    if (l->way == LOAD_TURNS && !(v3_norm(v3_cross(l->axis, w->n)) < 1e-6))
+    if (turns && w->shape == BOUNDARY_PLANE && !(v3_norm(v3_cross(l->axis, w->n)) < 1e-6))
         return "it turns about another axis than its normal";
     return NULL;
 }
 
 static const char *wall_trouble(const struct packing *p, const struct wall *w)
 {
-    if (!v3_finite(w->x) || !v3_finite(w->v)) return "point or velocity is not finite";
-    if (!(fabs(v3_dot(w->n, w->n) - 1) < 1e-6)) return "normal is not a unit vector";
-    if (p->dim == 2 && (w->n.z != 0 || w->v.z != 0)) return "leaves the plane, and dim is 2";
+    const char *trouble = boundary_trouble(w, p->dim);
+    if (trouble) return trouble;
+    bool mesh = w->shape == BOUNDARY_MESH;
+    if (mesh && (w->first_element < 0 || w->first_element > p->mesh.elements ||
+                 w->elements > p->mesh.elements - w->first_element))
+        return "its mesh is not there";
     if (w->kind < 0 || w->kind >= p->kinds) return "kind has no material";
     return load_trouble(p, w);
+}
+
+/* Is the wall the same after a shift by this edge? */
+static bool repeats_along(const struct packing *p, const struct wall *w, vec3 edge)
+{
+    double tiny = 1e-9 * v3_norm(edge);
+    for (int32_t k = w->first_drive; k < w->first_drive + w->drives; k++)
+        if (p->drives.drive[k].turns && w->shape == BOUNDARY_PLANE) return false;
+    if (w->shape == BOUNDARY_PLANE) return fabs(v3_dot(edge, w->n)) <= tiny;
+    if (w->shape != BOUNDARY_CYLINDER || w->size[2] > 0) return false;
+    return v3_norm(v3_cross(edge, w->n)) <= tiny;
 }
 
 /* The cell, which the largest body must fit into, and the images. */
@@ -221,8 +329,7 @@ static int check_cell(const struct packing *p, struct why *why)
                 return why_set(why, EX_DATAERR, "body %lld: image is out of range", (long long)i);
     for (int32_t i = 0; cell_repeats(&p->cell) && i < p->walls; i++)
         for (int k = 0; k < 3; k++) {
-            const vec3 e = p->cell.edge[k];
-            if (p->cell.repeats[k] && !(fabs(v3_dot(e, p->wall[i].n)) <= 1e-9 * v3_norm(e)))
+            if (p->cell.repeats[k] && !repeats_along(p, &p->wall[i], p->cell.edge[k]))
                 return why_set(why, EX_DATAERR, "wall %d: the cell repeats across it", i);
             if (p->cell.repeats[k] && cell_moves(&p->cell, k))
                 return why_set(why, EX_DATAERR,
@@ -260,6 +367,11 @@ int packing_check(const struct packing *p, struct why *why)
         const char *trouble = wall_trouble(p, &p->wall[i]);
         if (trouble) return why_set(why, EX_DATAERR, "wall %d: %s", i, trouble);
     }
+    for (int32_t i = 0; i < p->drives.n; i++) {
+        const char *trouble = drive_trouble(&p->drives, i, p->walls, p->dim);
+        if (trouble) return why_set(why, EX_DATAERR, "drive %d: %s", i, trouble);
+    }
+    if (mesh_check(&p->mesh, p->dim, why)) return why->status;
     return check_cell(p, why);
 }
 

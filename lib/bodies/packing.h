@@ -9,21 +9,15 @@
 
 #include "base/vec.h"
 #include "base/why.h"
+#include "bodies/boundary.h"
 #include "bodies/cell.h"
-#include "bodies/load.h"
+#include "bodies/drive.h"
+#include "bodies/mesh.h"
 #include "bodies/overlap.h"
 #include "bodies/passage.h"
 
 #include <stdbool.h>
 #include <stdint.h>
-
-/* A plane, in the plane a line: bodies stay on the side that the normal points to. */
-struct wall {
-    vec3 x, n;        /* m: a point on it at t = 0; unit normal */
-    vec3 v;           /* m/s: at time t the point is at x + v t */
-    int32_t kind;     /* row of the material tables */
-    struct load load; /* that it yields to; LOAD_NONE: it does not */
-};
 
 struct packing {
     int dim;      /* 2 or 3 */
@@ -46,7 +40,9 @@ struct packing {
     int32_t (*image)[3]; /* [n] edges to add to x for the way gone; NULL: nothing repeats */
 
     int32_t walls;
-    struct wall *wall; /* [walls] */
+    struct wall *wall;    /* [walls] */
+    struct drives drives; /* of them */
+    struct mesh mesh;     /* of those that are meshes */
     struct cell cell;
 
     int32_t kinds;
@@ -96,29 +92,28 @@ int packing_copy(struct packing *to, const struct packing *from, struct why *why
    unit normals ...)? Returns 0, or EX_DATAERR with the first body or wall that fails. */
 int packing_check(const struct packing *p, struct why *why);
 
-/* m: a point of the wall at time t (s), which is not before the packing's */
-static inline vec3 wall_at(const struct packing *p, const struct wall *w, double t)
+/* Is the wall still there at time t (s)? */
+static inline bool wall_there(const struct wall *w, double t)
 {
-    vec3 x = v3_axpy(w->x, t, w->v);
-    if (w->load.way != LOAD_GLIDES) return x;
-    return v3_axpy(x, w->load.travel + (t - p->t) * w->load.speed, w->load.axis);
+    return t < w->until;
 }
 
-/* m/s: of the wall's material at point x (m): what is prescribed, and with what its load makes of
-   it */
-static inline vec3 wall_held(const struct wall *w, vec3 x)
-{
-    (void)x;
-    return w->v;
-}
-static inline vec3 wall_velocity(const struct wall *w, vec3 x)
-{
-    const struct load *l = &w->load;
-    vec3 v = wall_held(w, x);
-    if (l->way == LOAD_GLIDES) return v3_axpy(v, l->speed, l->axis);
-    if (l->way != LOAD_TURNS) return v;
-    return v3_axpy(v, l->speed, v3_cross(l->axis, v3_sub(x, l->point)));
-}
+/* m: where the wall's point of reference is at time t (s), which is not before the packing's */
+vec3 wall_at(const struct packing *p, const struct wall *w, double t);
+/* The motion that has brought it there from where its shape is described */
+struct pose wall_pose(const struct packing *p, const struct wall *w, double t);
+/* Its normal or axis then */
+vec3 wall_normal(const struct packing *p, const struct wall *w, double t);
+
+/* m/s: of the wall's material at point x (m), the mean over the step from the packing's time: what is
+   prescribed, and with what its load makes of it */
+vec3 wall_held(const struct packing *p, const struct wall *w, vec3 x);
+vec3 wall_velocity(const struct packing *p, const struct wall *w, vec3 x);
+/* rad/s: its mean angular velocity */
+vec3 wall_spin(const struct packing *p, const struct wall *w);
+/* m/s: no point of the wall within its reach is faster, nor, of a mesh or a shape without an end,
+   within that of the bodies */
+double wall_top_speed(const struct packing *p, const struct wall *w);
 
 /* m: the position at which contacts are detected, q + (1 - theta) dt qdot [globalmapapp1]. */
 static inline vec3 packing_predict(const struct packing *p, int64_t i)

@@ -42,9 +42,11 @@ static int check_order(const struct contacts *s, struct why *why)
     for (int64_t i = 1; i < s->n; i++) {
         const struct contact *c = &s->c[i - 1], *next = &s->c[i];
         bool same_pair = c->a == next->a && c->b == next->b;
-        int later = compare_shifts(c->shift, next->shift);
+        int later = c->feature != next->feature ? (c->feature > next->feature ? 1 : -1)
+                                                : compare_shifts(c->shift, next->shift);
         if (same_pair && later > 0)
-            return why_set(why, EX_DATAERR, "contact %lld: not sorted by its shift", (long long)i);
+            return why_set(why, EX_DATAERR, "contact %lld: not sorted by its feature and shift",
+                           (long long)i);
         if (same_pair && !later)
             return why_set(why, EX_DATAERR, "contact %lld: of bodies %d and %d, as the one before",
                            (long long)i, next->a, next->b);
@@ -101,6 +103,9 @@ int contact_rows_read(struct contact_rows *r, struct frame *f, struct why *why)
         read_bases(r->source, first, s, why) ||
         (cell_repeats(&f->packing.cell) &&
          table_read_columns(r->source, "/contacts", "", layout_shifts, first, s->n, s->c,
+                            sizeof *s->c, why)) ||
+        (f->packing.mesh.elements &&
+         table_read_columns(r->source, "/contacts", "", layout_features, first, s->n, s->c,
                             sizeof *s->c, why)) ||
         (solved && table_read_columns(r->source, "/contacts", "", layout_found, first, s->n,
                                       s->found, sizeof *s->found, why)))
@@ -169,6 +174,9 @@ int contact_rows_write(struct table_write *s, const struct frame *f, struct why 
         write_bases(s, t, why) ||
         (cell_repeats(&f->packing.cell) &&
          table_write_columns(s, "/contacts", "", layout_shifts, t->n, t->c, sizeof *t->c,
+                             CHUNK_CONTACTS, why)) ||
+        (f->packing.mesh.elements &&
+         table_write_columns(s, "/contacts", "", layout_features, t->n, t->c, sizeof *t->c,
                              CHUNK_CONTACTS, why)) ||
         (t->found && table_write_columns(s, "/contacts", "", layout_found, t->n, t->found,
                                          sizeof *t->found, CHUNK_CONTACTS, why)) ||

@@ -1,5 +1,6 @@
 #include "io/frame_read.h"
 
+#include "io/boundary_tables.h"
 #include "io/cell_tables.h"
 #include "io/flow_tables.h"
 #include "io/roster.h"
@@ -97,38 +98,6 @@ static int read_material(struct source *doc, struct packing *p, struct why *why)
     return e ? e : check_symmetric(p, why);
 }
 
-/* The walls' loads, as they are in frame k */
-static int read_loads(struct source *r, int64_t k, struct packing *p, struct why *why)
-{
-    if (!source_has(r, "/walls/load")) return 0;
-    if (table_read_columns(r, "/walls/load", "", layout_loads, 0, p->walls, p->wall,
-                           sizeof *p->wall, why))
-        return why->status;
-    double *row = calloc((size_t)p->walls + 1, sizeof *row);
-    if (!row) return why_set(why, EX_SOFTWARE, "no memory for the loads");
-    for (const struct column *c = layout_yield; !why->status && c->name; c++) {
-        char path[80];
-        snprintf(path, sizeof path, "/walls/load/%s/value", c->name);
-        if (!source_rows(r, path, c->type, k, 1, p->walls, row, why))
-            column_scatter(c, p->walls, row, p->wall, sizeof *p->wall);
-    }
-    free(row);
-    return why->status;
-}
-
-static int read_walls(struct source *r, int64_t k, struct packing *p, struct why *why)
-{
-    uint64_t shape[4];
-    if (!source_has(r, "/walls/plane")) return 0;
-    if (source_shape(r, "/walls/plane/point", shape) != 2 || shape[0] > 1 << 24)
-        return why_set(why, EX_DATAERR, "/walls/plane/point: not of shape walls x 3");
-    if (packing_alloc_walls(p, (int32_t)shape[0], why)) return why->status;
-    if (table_read_columns(r, "/walls/plane", "", layout_walls, 0, p->walls, p->wall,
-                           sizeof *p->wall, why))
-        return why->status;
-    return read_loads(r, k, p, why);
-}
-
 /* What is done about overlap; a document need not say it. */
 static int read_overlap(struct source *doc, struct packing *p, struct why *why)
 {
@@ -189,7 +158,7 @@ static int read_packing(struct frame_read *r, int64_t k, struct packing *p, stru
         goto end;
     }
     if (packing_init(p, dim, n, why) || read_parameters(r->source, p, why) ||
-        read_material(r->source, p, why) || read_walls(r->source, k, p, why) ||
+        read_material(r->source, p, why) || boundary_tables_read(r->source, k, p, why) ||
         (row ? roster_read(r->source, k, row, p, why) : read_bodies(r, k, p, why)) ||
         flow_tables_read(r->source, k, p, why))
         goto end;

@@ -1,6 +1,6 @@
 #include "io/frame_write.h"
 
-#include "bodies/freedom.h"
+#include "io/boundary_tables.h"
 #include "io/cell_tables.h"
 #include "io/contact_rows.h"
 #include "io/flow_tables.h"
@@ -63,7 +63,7 @@ static int write_material(hid_t file, const struct packing *p, struct why *why)
     return e;
 }
 
-static int write_bodies_and_walls(struct table_write *s, const struct packing *p, struct why *why)
+static int write_bodies(struct table_write *s, const struct packing *p, struct why *why)
 {
     const hsize_t n = (hsize_t)p->n;
     for (const struct column *c = layout_bodies; c->name && !s->roster; c++) {
@@ -73,15 +73,7 @@ static int write_bodies_and_walls(struct table_write *s, const struct packing *p
                      why))
             return why->status;
     }
-    bool growing = s->growing;
-    s->growing = false; // walls do not grow with the frames
-    int e = table_write_columns(s, "/walls/plane", "", layout_walls, p->walls, p->wall,
-                                sizeof *p->wall, 0, why);
-    if (!e && freedoms_in(p))
-        e = table_write_columns(s, "/walls/load", "", layout_loads, p->walls, p->wall,
-                                sizeof *p->wall, 0, why);
-    s->growing = growing;
-    return e;
+    return boundary_tables_write_static(s, p, why);
 }
 
 /* ---- what belongs to one frame ---- */
@@ -108,31 +100,12 @@ static int write_motion(struct table_write *s, const struct packing *p, struct w
     return 0;
 }
 
-/* The speeds and travels of the walls' loads, with clocks of their own */
-static int write_yield(struct table_write *s, const struct packing *p, struct why *why)
-{
-    const char *loads = "/walls/load";
-    double *row = malloc(((size_t)p->walls + 1) * sizeof *row);
-    if (!row) return why_set(why, EX_SOFTWARE, "no memory for the loads");
-    const hsize_t shape[2] = { 1, (hsize_t)p->walls };
-    int e = 0;
-    for (const struct column *c = layout_yield; !e && c->name; c++) {
-        char path[80];
-        snprintf(path, sizeof path, "%s/%s/value", loads, c->name);
-        column_gather(c, p->walls, p->wall, sizeof *p->wall, row);
-        e = table_write_rows(s, path, c->type, 2, shape, CHUNK_FRAMES, row, c->units, why);
-    }
-    free(row);
-    if (!e) e = table_write_clock(s, loads, true, &p->step, loads, layout_yield, why);
-    return e ? e : table_write_clock(s, loads, false, &p->t, loads, layout_yield, why);
-}
-
 int frame_write_static(struct table_write *s, const struct frame *f, struct why *why)
 {
     if (write_parameters(s->file, f, why)) return why->status;
     if (f->packed && (write_material(s->file, &f->packing, why) ||
                       cell_tables_write_box(s->file, &f->packing.cell, why) ||
-                      write_bodies_and_walls(s, &f->packing, why)))
+                      write_bodies(s, &f->packing, why)))
         return why->status;
     return unknown_write(f->unknown, s->file, f->stale && !f->foreign, why);
 }
@@ -158,8 +131,7 @@ int frame_write_moment(struct table_write *s, const struct frame *f, struct why 
         (write_motion(s, &f->packing, why) || cell_tables_write(s, &f->packing, why) ||
          write_particles_clock(s, false, &f->packing, why) || flow_write(s, &f->packing, why)))
         return why->status;
-    if (f->packed && freedoms_in(&f->packing) && write_yield(s, &f->packing, why))
-        return why->status;
+    if (f->packed && boundary_tables_write(s, &f->packing, why)) return why->status;
     if (f->packed && f->detected && contact_rows_write(s, f, why)) return why->status;
     return f->reported ? report_rows_write(s, &f->report, why) : 0;
 }

@@ -44,8 +44,19 @@ static const struct column layout_bodies[] = {
     { 0 },
 };
 
-/* /walls/plane/NAME [walls][width]: members of struct wall */
-static const struct column layout_walls[] = {
+/* /particles/boundary/body/NAME [B][width]: members of struct wall. Until version 1 they were planes,
+   the last table of the three, in /walls/plane, and their loads were in /walls/load. */
+static const struct column layout_boundary[] = {
+    { "shape", "1", COLUMN_I32, 1, offsetof(struct wall, shape) },
+    { "side", "1", COLUMN_I32, 1, offsetof(struct wall, side) },
+    { "along", "1", COLUMN_F64, 3, offsetof(struct wall, along) },
+    { "size", "m", COLUMN_F64, 3, offsetof(struct wall, size) },
+    { "arc", "rad", COLUMN_F64, 1, offsetof(struct wall, arc) },
+    { "elements", "1", COLUMN_I32, 2, offsetof(struct wall, first_element) },
+    { "until", "s", COLUMN_F64, 1, offsetof(struct wall, until) },
+    { 0 },
+};
+static const struct column layout_plane[] = {
     { "point", "m", COLUMN_F64, 3, offsetof(struct wall, x) },
     { "normal", "1", COLUMN_F64, 3, offsetof(struct wall, n) },
     { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct wall, v) },
@@ -53,7 +64,7 @@ static const struct column layout_walls[] = {
     { 0 },
 };
 
-/* /walls/load/NAME [walls][width] where any wall yields: members of struct wall */
+/* /particles/boundary/load/NAME [B][width] where any yields: members of struct wall */
 static const struct column layout_loads[] = {
     { "way", "1", COLUMN_I32, 1, offsetof(struct wall, load.way) },
     { "axis", "1", COLUMN_F64, 3, offsetof(struct wall, load.axis) },
@@ -63,10 +74,43 @@ static const struct column layout_loads[] = {
     { 0 },
 };
 
-/* /walls/load/NAME/value [F][walls], the same */
+/* /particles/boundary/load/NAME/value [F][B], the same */
 static const struct column layout_yield[] = {
     { "speed", "m s-1, rad s-1", COLUMN_F64, 1, offsetof(struct wall, load.speed) },
     { "travel", "m, rad", COLUMN_F64, 1, offsetof(struct wall, load.travel) },
+    { 0 },
+};
+
+/* /particles/boundary/drive/NAME [D][width]: members of struct drive */
+static const struct column layout_drive[] = {
+    { "boundary", "1", COLUMN_I32, 1, offsetof(struct drive, boundary) },
+    { "turns", "1", COLUMN_I32, 1, offsetof(struct drive, turns) },
+    { "signal", "1", COLUMN_I32, 1, offsetof(struct drive, signal) },
+    { "axis", "1", COLUMN_F64, 3, offsetof(struct drive, axis) },
+    { "point", "m", COLUMN_F64, 3, offsetof(struct drive, point) },
+    { "value", "m s-1, rad s-1, m, rad", COLUMN_F64, 1, offsetof(struct drive, value) },
+    { "frequency", "s-1", COLUMN_F64, 1, offsetof(struct drive, frequency) },
+    { "phase", "rad", COLUMN_F64, 1, offsetof(struct drive, phase) },
+    { "from", "s", COLUMN_F64, 1, offsetof(struct drive, from) },
+    { "until", "s", COLUMN_F64, 1, offsetof(struct drive, until) },
+    { "clock", "s", COLUMN_F64, 1, offsetof(struct drive, clock) },
+    { "rows", "1", COLUMN_I32, 2, offsetof(struct drive, first) },
+    { 0 },
+};
+
+/* /particles/boundary/NAME [B][width], where any moves NAME/value [F][B][width]: where they are. It
+   follows from the tables above, and is not read. */
+struct boundary_motion {
+    vec3 x; /* m: the point of reference */
+    quat q; /* from the orientation in which the shape is described */
+    vec3 v; /* m/s: of that point */
+    vec3 w; /* rad/s */
+};
+static const struct column layout_boundary_motion[] = {
+    { "position", "m", COLUMN_F64, 3, offsetof(struct boundary_motion, x) },
+    { "orientation", "1", COLUMN_F64, 4, offsetof(struct boundary_motion, q) },
+    { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct boundary_motion, v) },
+    { "angular_velocity", "rad s-1", COLUMN_F64, 3, offsetof(struct boundary_motion, w) },
     { 0 },
 };
 
@@ -93,6 +137,12 @@ static const struct column layout_contacts[] = {
 /* The same where the cell repeats */
 static const struct column layout_shifts[] = {
     { "shift", "1", COLUMN_I8, 3, offsetof(struct contact, shift) },
+    { 0 },
+};
+
+/* The same where there is a mesh */
+static const struct column layout_features[] = {
+    { "feature", "1", COLUMN_I32, 1, offsetof(struct contact, feature) },
     { 0 },
 };
 

@@ -12,7 +12,7 @@
 #include <stdint.h>
 
 enum {
-    DOCUMENT_VERSION = 1,
+    DOCUMENT_VERSION = 2,
     DOCUMENT_USERBLOCK = 512, /* bytes in front of HDF5's own; HDF5 allows no fewer */
     DOCUMENT_UNFINISHED = 1   /* flag: still being written, and reaches to the end of its file */
 };

@@ -31,7 +31,10 @@ static const struct {
 } looked_through[] = {
     { "", { "h5md", "nsd", "particles", "walls", "contacts", "observables", "solution" } },
     { "/nsd", { "history", "scene", "material", "solver", "flow", "cell" } },
-    { "/particles", { "all" } },
+    { "/particles", { "all", "boundary" } },
+    { "/particles/boundary",
+      { "body", "load", "drive", "mesh", "position", "orientation", "velocity", "angular_velocity",
+        "step", "time" } },
     { "/particles/all",
       { "box", "position", "velocity", "angular_velocity", "orientation", "radius", "mass",
         "inertia", "id", "species", "image" } },

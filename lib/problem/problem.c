@@ -144,7 +144,7 @@ static int32_t place_of(struct problem *p, int32_t i, vec3 x, int64_t *next)
     const struct packing *pack = p->packing;
     if (i >= 0 && pack->mass[i] > 0) return body_place(p->seat[i]);
     struct body *copy = &p->body[*next];
-    vec3 v = i < 0 ? wall_velocity(&pack->wall[-1 - i], x) : pack->v[i];
+    vec3 v = i < 0 ? wall_velocity(pack, &pack->wall[-1 - i], x) : pack->v[i];
     *copy = (struct body){ .v = { v.x, v.y, v.z } };
     if (i >= 0) *copy = p->body[p->seat[i]];
     return body_place((*next)++);
@@ -227,7 +227,7 @@ static double top_speed(const struct packing *p)
     for (int64_t i = 0; i < p->n; i++)
         most = fmax(most, v3_norm(p->v[i]) + p->radius[i] * v3_norm(p->w[i]));
     for (int32_t k = 0; k < p->walls; k++)
-        most = fmax(most, v3_norm(p->wall[k].v) + fabs(p->wall[k].load.speed));
+        most = fmax(most, wall_top_speed(p, &p->wall[k]));
     double images = 0;
     for (int k = 0; k < 3; k++) images += p->cell.repeats[k] ? v3_norm(p->cell.rate[k]) : 0;
     most += images;

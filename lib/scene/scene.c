@@ -2,6 +2,7 @@
 #include "scene/scene.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 void scene_free(struct scene *s)
 {
@@ -15,6 +16,9 @@ void scene_free(struct scene *s)
     for (int32_t i = 0; i < s->pours; i++) scene_size_free(&s->pour[i].size);
     free(s->pour), free(s->removal);
     cell_free(&s->cell.cell);
+    drives_free(&s->drives), mesh_free(&s->mesh);
+    for (int32_t k = 0; k < s->meshes; k++) free(s->mesh_file[k].file);
+    free(s->mesh_file);
     free(s->kind), free(s->law), free(s->bodies), free(s->wall), free(s->text);
     *s = (struct scene){ 0 };
 }
@@ -31,4 +35,21 @@ struct scene_lattice scene_lattice(const struct scene_bodies *b, int dim)
         l.edge[i] = i < dim - 1 || b->in_cell ? width / l.cells[i] : least;
     }
     return l;
+}
+
+int scene_grow_mesh(struct scene *s, int32_t vertices, int32_t elements, vec3 **vertex,
+                    int32_t (**element)[3], struct why *why)
+{
+    struct mesh *m = &s->mesh;
+    if (vertices > INT32_MAX - m->vertices || elements > INT32_MAX - m->elements)
+        return why_set(why, EX_SOFTWARE, "no memory for so many triangles");
+    vec3 *v = realloc(m->vertex, ((size_t)m->vertices + (size_t)vertices + 1) * sizeof *v);
+    if (v) m->vertex = v;
+    int32_t(*e)[3] = realloc(m->element, ((size_t)m->elements + (size_t)elements + 1) * sizeof *e);
+    if (e) m->element = e;
+    if (!v || !e) return why_set(why, EX_SOFTWARE, "no memory for a mesh");
+    *vertex = v + m->vertices, *element = e + m->elements;
+    memset(*vertex, 0, (size_t)vertices * sizeof **vertex);
+    m->vertices += vertices, m->elements += elements;
+    return 0;
 }

@@ -168,6 +168,14 @@ struct scene_removal {
     int32_t kind;       /* only bodies of this kind; -1: of all */
 };
 
+/* A boundary whose triangles are in a file: whoever can read it adds them, with scene_add_mesh(), before
+   the scene is built. */
+struct scene_mesh {
+    int32_t wall;
+    char *file;
+    double scale; /* m a unit of the file */
+};
+
 struct scene_cell {
     bool given, affine;
     struct cell cell; /* rates are those at the start */
@@ -189,6 +197,10 @@ struct scene {
 
     int32_t walls;
     struct wall *wall; /* [walls] */
+    struct drives drives;   /* of them */
+    struct mesh mesh;       /* of those that are meshes */
+    int32_t meshes;
+    struct scene_mesh *mesh_file; /* [meshes] those that are files */
     bool has_walls;    /* else those of the first document are taken */
     double t;          /* s: the packing's time */
 
@@ -209,6 +221,10 @@ struct scene_lattice scene_lattice(const struct scene_bodies *b, int dim);
 /* Returns 0, EX_DATAERR or EX_SOFTWARE; *s needs to be freed only after 0. */
 int scene_parse(struct scene *s, const char *text, size_t length, struct why *why);
 void scene_free(struct scene *s);
+/* Room for more of the mesh, at its end, where the caller fills it in; vertices are counted from the
+   mesh's first. Returns 0 or EX_SOFTWARE. */
+int scene_grow_mesh(struct scene *s, int32_t vertices, int32_t elements, vec3 **vertex,
+                    int32_t (**element)[3], struct why *why);
 
 /*
  * The paper's sedimentation of n balls (dim 3) or discs (dim 2): example 3 for n = 500, example 2

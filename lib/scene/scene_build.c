@@ -158,6 +158,8 @@ static int set_parameters(struct packing *p, const struct scene *s, struct why *
     if (packing_alloc_walls(p, s->walls, why) || packing_alloc_kinds(p, s->kinds, why))
         return why->status;
     for (int32_t i = 0; i < s->walls; i++) p->wall[i] = s->wall[i];
+    if (drives_copy(&p->drives, &s->drives, why) || mesh_copy(&p->mesh, &s->mesh, why))
+        return why->status;
     if (s->cell.given && (cell_copy(&p->cell, &s->cell.cell) || packing_alloc_images(p, why)))
         goto fail;
     for (int32_t k = 0; k < s->kinds; k++) {
@@ -247,12 +249,16 @@ static int take_walls(struct packing *p, const struct scene *s, const struct sce
         struct wall *w = &p->wall[i];
         *w = from->wall[i];
         w->x = v3_axpy(w->x, from->t - s->t, w->v);
+        w->until -= from->t - s->t;
         w->kind = kind_named(s, from->kind_name[from->wall[i].kind]);
         if (w->kind < 0)
             return why_set(why, EX_DATAERR,
                            "%s: wall %d is of kind \"%s\": name it under \"kinds\"", b->file, i,
                            from->kind_name[from->wall[i].kind]);
     }
+    if (drives_copy(&p->drives, &from->drives, why) || mesh_copy(&p->mesh, &from->mesh, why))
+        return why->status;
+    for (int32_t k = 0; k < p->drives.n; k++) p->drives.drive[k].clock += from->t - s->t;
     return 0;
 }
 

@@ -3,26 +3,13 @@
 
 #include <string.h>
 
-/* A vector that is not zero, made of length 1 */
-static int read_direction(jnode n, int dim, vec3 *out)
-{
-    vec3 d = v3(0, 0, 0);
-    if (json_node_vector(n, dim, &d)) return 1;
-    double most = fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z))); // so that no square overflows
-    if (!(most > 0)) return json_node_fault(n, "must not be zero");
-    d = v3(d.x / most, d.y / most, d.z / most);
-    double length = v3_norm(d);
-    *out = v3(d.x / length, d.y / length, d.z / length);
-    return 0;
-}
-
 static int read_disc(jnode o, int dim, struct scene_pour *p)
 {
     p->disc = true;
     return json_node_only(o, "center normal radius") ||
            json_node_need(&o, "center normal radius") ||
            json_node_vector(json_node_key(&o, "center"), dim, &p->center) ||
-           read_direction(json_node_key(&o, "normal"), dim, &p->normal) ||
+           scene_read_direction(json_node_key(&o, "normal"), dim, &p->normal) ||
            json_node_number(json_node_key(&o, "radius"), J_POSITIVE, &p->radius);
 }
 
@@ -88,7 +75,7 @@ static int read_removal(jnode o, const struct scene *s, struct scene_removal *r)
     if (r->region != REGION_BELOW) return scene_read_box(where, s->dim, &r->box);
     return json_node_only(where, "point normal") || json_node_need(&where, "point normal") ||
            json_node_vector(json_node_key(&where, "point"), s->dim, &r->point) ||
-           read_direction(json_node_key(&where, "normal"), s->dim, &r->normal);
+           scene_read_direction(json_node_key(&where, "normal"), s->dim, &r->normal);
 }
 
 int scene_read_removals(jnode a, struct scene *s)

@@ -23,6 +23,14 @@ int scene_read_kind(jnode name, const struct scene *s, int32_t *kind);
 /* scene/scene_walls.c: "walls", where *box = that of the first wall that is a box, the default of a
    lattice, and *boxed whether there is one; a BOX */
 int scene_read_walls(jnode walls, struct scene *s, struct scene_box *box, bool *boxed);
+/* a vector that is not zero, made of length 1; nothing when it is not there */
+int scene_read_direction(jnode vector, int dim, vec3 *out);
+/* scene/scene_shapes.c: the shape of a boundary, one of those of space or of the plane; common: the
+   keys that it may have besides */
+int scene_read_shape_2d(jnode object, const char *common, struct scene *s, struct wall *w);
+int scene_read_shape_3d(jnode object, const char *common, struct scene *s, struct wall *w);
+/* scene/scene_drives.c: "drives" of a boundary, behind those that are there */
+int scene_read_drives(jnode array, struct scene *s, int32_t wall);
 int scene_read_box(jnode object, int dim, struct scene_box *box);
 
 /* scene/scene_radii.c: a SIZE */

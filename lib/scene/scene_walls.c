@@ -1,5 +1,7 @@
-/* scene/scene_walls.c: walls and boxes from their JSON. */
+/* scene/scene_walls.c: boundaries, and boxes of planes, from their JSON. */
 #include "scene/scene_read.h"
+
+#include <stdlib.h>
 
 static int read_side(jnode n, double lo_hi[2])
 {
@@ -25,23 +27,6 @@ int scene_read_box(jnode o, int dim, struct scene_box *b)
     return 0;
 }
 
-static void add_wall(struct scene *s, struct wall w, vec3 point, vec3 normal)
-{
-    w.x = point, w.n = normal;
-    s->wall[s->walls++] = w;
-}
-
-/* Walls at the lower x, the upper x, the lower y ..., where the box is not open */
-static void add_box(struct scene *s, struct wall w, const struct scene_box *b)
-{
-    for (int i = 0; i < 3; i++) {
-        double e[3] = { i == 0, i == 1, i == 2 }, lo = b->lo[i], hi = b->hi[i];
-        vec3 n = v3(e[0], e[1], e[2]), zero = v3(0, 0, 0);
-        if (isfinite(lo)) add_wall(s, w, v3_axpy(zero, lo, n), n);
-        if (isfinite(hi)) add_wall(s, w, v3_axpy(zero, hi, n), v3_axpy(zero, -1, n));
-    }
-}
-
 /* Makes a vector of any length a unit vector; false where it is zero. */
 static bool direction(vec3 *n)
 {
@@ -54,13 +39,25 @@ static bool direction(vec3 *n)
     return true;
 }
 
-/* "along" a line, under a force, or "about" the normal at a point, under a torque */
-static int read_load(jnode o, int dim, vec3 normal, struct load *l)
+int scene_read_direction(jnode n, int dim, vec3 *out)
 {
+    if (!n.json) return 0;
+    if (json_node_vector(n, dim, out)) return 1;
+    return direction(out) ? 0 : json_node_fault(n, "must not be zero");
+}
+
+/* ---- what a boundary yields to ---- */
+
+/* "along" a line, under a force, or "about" an axis through a point, under a torque */
+static int read_load(jnode o, int dim, const struct wall *w, struct load *l)
+{
+    bool plane = w->shape == BOUNDARY_PLANE;
     if (!o.json) return 0;
     int which = json_node_choice(o, "along about");
     if (which < 0 ||
-        json_node_only(o, which ? "about mass torque speed" : "along mass force speed") ||
+        json_node_only(o, !which              ? "along mass force speed"
+                          : plane || dim == 2 ? "about mass torque speed"
+                                              : "about axis mass torque speed") ||
         json_node_need(&o, "mass") ||
         json_node_number(json_node_key(&o, "mass"), J_POSITIVE, &l->mass) ||
         json_node_number(json_node_key(&o, which ? "torque" : "force"), J_ANY, &l->force) ||
@@ -68,44 +65,82 @@ static int read_load(jnode o, int dim, vec3 normal, struct load *l)
         return 1;
     jnode where = json_node_key(&o, which ? "about" : "along");
     if (which) {
-        l->way = LOAD_TURNS, l->axis = normal;
-        if (dim == 2) return json_node_fault(where, "in the plane no wall turns");
-        return json_node_vector(where, dim, &l->point);
+        l->way = LOAD_TURNS, l->axis = dim == 2 ? v3(0, 0, 1) : w->n;
+        if (dim == 2 && plane) return json_node_fault(where, "in the plane no wall turns");
+        return json_node_vector(where, dim, &l->point) ||
+               scene_read_direction(json_node_key(&o, "axis"), dim, &l->axis);
     }
     l->way = LOAD_GLIDES;
-    if (json_node_vector(where, dim, &l->axis)) return 1;
-    return direction(&l->axis) ? 0 : json_node_fault(where, "must not be zero");
+    return scene_read_direction(where, dim, &l->axis);
+}
+
+/* ---- what is common to all shapes ---- */
+
+/* What all shapes have besides their own keys */
+#define COMMON "velocity kind drives until"
+
+/* Adds a wall, and its drives. */
+static int add_wall(jnode o, struct scene *s, struct wall w)
+{
+    w.first_drive = s->drives.n;
+    if (scene_read_drives(json_node_key(&o, "drives"), s, s->walls)) return 1;
+    w.drives = s->drives.n - w.first_drive;
+    s->wall[s->walls++] = w;
+    return 0;
+}
+
+/* Walls at the lower x, the upper x, the lower y ..., where the box is not open */
+static int add_box(jnode o, struct scene *s, struct wall w, const struct scene_box *b)
+{
+    for (int i = 0; i < 3; i++) {
+        double e[3] = { i == 0, i == 1, i == 2 }, side[2] = { b->lo[i], b->hi[i] };
+        vec3 axis = v3(e[0], e[1], e[2]), zero = v3(0, 0, 0);
+        for (int k = 0; k < 2; k++) {
+            w.x = v3_axpy(zero, k ? -side[1] : side[0], k ? v3_scale(-1, axis) : axis);
+            w.n = k ? v3_axpy(zero, -1, axis) : axis;
+            if (isfinite(side[k]) && add_wall(o, s, w)) return 1;
+        }
+    }
+    return 0;
 }
 
 static int read_plane(jnode o, struct scene *s, struct wall w)
 {
-    vec3 x = v3(0, 0, 0), n = x;
-    if (json_node_only(o, "point normal velocity kind load") ||
-        json_node_need(&o, "point normal") ||
-        json_node_vector(json_node_key(&o, "point"), s->dim, &x) ||
-        json_node_vector(json_node_key(&o, "normal"), s->dim, &n))
+    w.n = v3(0, 0, 0);
+    if (json_node_only(o, "point normal load " COMMON) || json_node_need(&o, "point normal") ||
+        json_node_vector(json_node_key(&o, "point"), s->dim, &w.x) ||
+        scene_read_direction(json_node_key(&o, "normal"), s->dim, &w.n) ||
+        read_load(json_node_key(&o, "load"), s->dim, &w, &w.load))
         return 1;
-    if (!direction(&n)) return json_node_fault(json_node_key(&o, "normal"), "must not be zero");
-    if (read_load(json_node_key(&o, "load"), s->dim, n, &w.load)) return 1;
-    add_wall(s, w, x, n);
+    return add_wall(o, s, w);
+}
+
+static int read_box(jnode o, struct scene *s, struct wall w, struct scene_box *box, bool *boxed)
+{
+    struct scene_box b;
+    if (json_node_only(o, "box " COMMON) ||
+        scene_read_box(json_node_key(&o, "box"), s->dim, &b) || add_box(o, s, w, &b))
+        return 1;
+    if (!*boxed) *box = b, *boxed = true;
     return 0;
 }
 
 static int read_wall(jnode o, struct scene *s, struct scene_box *box, bool *boxed)
 {
-    struct wall w = { .kind = 1 };
-    struct scene_box b;
-    int which = json_node_choice(o, "point box");
+    static const char *const plane_shapes = "point box segment polygon circle arc";
+    static const char *const space_shapes = "point box rectangle disc cylinder cone sphere mesh";
+    struct wall w = boundary_plane(v3(0, 0, 0), v3(0, 0, 1), 1);
+    int which = json_node_choice(o, s->dim == 2 ? plane_shapes : space_shapes);
     if (which < 0 || json_node_vector(json_node_key(&o, "velocity"), s->dim, &w.v) ||
-        scene_read_kind(json_node_key(&o, "kind"), s, &w.kind))
+        scene_read_kind(json_node_key(&o, "kind"), s, &w.kind) ||
+        json_node_number(json_node_key(&o, "until"), J_ANY, &w.until))
         return 1;
     if (which == 0) return read_plane(o, s, w);
-    if (json_node_only(o, "box velocity kind") ||
-        scene_read_box(json_node_key(&o, "box"), s->dim, &b))
-        return 1;
-    add_box(s, w, &b);
-    if (!*boxed) *box = b, *boxed = true;
-    return 0;
+    if (which == 1) return read_box(o, s, w, box, boxed);
+    int e = s->dim == 2 ? scene_read_shape_2d(o, "load " COMMON, s, &w)
+                        : scene_read_shape_3d(o, "load " COMMON, s, &w);
+    if (e || read_load(json_node_key(&o, "load"), s->dim, &w, &w.load)) return 1;
+    return add_wall(o, s, w);
 }
 
 int scene_read_walls(jnode a, struct scene *s, struct scene_box *box, bool *boxed)

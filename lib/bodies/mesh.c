@@ -1,0 +1,332 @@
+/* bodies/mesh.c: a tree of boxes over the elements of a surface, and the local minima of its distance
+   from a point [bodies/mesh.h]. */
+#include "bodies/mesh.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    LEAF = 4,    /* elements that are looked at one by one */
+    FEATURES = 7 /* of a triangle: edges 0 to 2 (from corner k), corners 3 to 5, its inside */
+};
+
+int mesh_alloc(struct mesh *m, int32_t vertices, int32_t elements, struct why *why)
+{
+    mesh_free(m);
+    m->vertex = calloc((size_t)vertices + 1, sizeof *m->vertex);
+    m->element = calloc((size_t)elements + 1, sizeof *m->element);
+    if (!m->vertex || !m->element) {
+        mesh_free(m);
+        return why_set(why, EX_SOFTWARE, "no memory for a mesh of %d elements", elements);
+    }
+    m->vertices = vertices, m->elements = elements;
+    return 0;
+}
+
+void mesh_free(struct mesh *m)
+{
+    free(m->vertex), free(m->element);
+    *m = (struct mesh){ 0 };
+}
+
+int mesh_copy(struct mesh *to, const struct mesh *from, struct why *why)
+{
+    *to = (struct mesh){ 0 };
+    if (!from->elements) return 0;
+    if (mesh_alloc(to, from->vertices, from->elements, why)) return why->status;
+    memcpy(to->vertex, from->vertex, (size_t)from->vertices * sizeof *to->vertex);
+    memcpy(to->element, from->element, (size_t)from->elements * sizeof *to->element);
+    return 0;
+}
+
+int mesh_check(const struct mesh *m, int dim, struct why *why)
+{
+    for (int32_t i = 0; i < m->vertices; i++)
+        if (!v3_finite(m->vertex[i]) || (dim == 2 && m->vertex[i].z != 0))
+            return why_set(why, EX_DATAERR, "vertex %d of the mesh: not finite, or not in the plane",
+                           i);
+    for (int32_t i = 0; i < m->elements; i++) {
+        const int32_t *e = m->element[i];
+        for (int k = 0; k < 3; k++)
+            if (e[k] < 0 || e[k] >= m->vertices)
+                return why_set(why, EX_DATAERR, "element %d of the mesh: no such vertex", i);
+        vec3 a = v3_sub(m->vertex[e[1]], m->vertex[e[0]]);
+        vec3 b = v3_sub(m->vertex[e[2]], m->vertex[e[0]]);
+        if ((dim == 2 && e[2] != e[1]) || !(v3_norm(dim == 2 ? a : v3_cross(a, b)) > 0))
+            return why_set(why, EX_DATAERR, "element %d of the mesh: without an extent", i);
+    }
+    return 0;
+}
+
+/* ---- the tree ---- */
+
+/* Of order[lo .. hi-1]; its halves are in the boxes that follow, the second from `next` on. */
+struct surface_box {
+    vec3 lo, hi;  /* m */
+    int32_t next; /* the index of the second half's box */
+};
+
+static vec3 least(vec3 a, vec3 b)
+{
+    return v3(fmin(a.x, b.x), fmin(a.y, b.y), fmin(a.z, b.z));
+}
+
+static vec3 greatest(vec3 a, vec3 b)
+{
+    return v3(fmax(a.x, b.x), fmax(a.y, b.y), fmax(a.z, b.z));
+}
+
+struct keyed {
+    double key;
+    int32_t element;
+};
+
+static int by_key(const void *a, const void *b)
+{
+    const struct keyed *p = a, *q = b;
+    if (p->key != q->key) return p->key < q->key ? -1 : 1;
+    return (p->element > q->element) - (p->element < q->element);
+}
+
+/* Makes the boxes of order[lo .. hi-1] from box `at` on; returns the index behind them. */
+static int32_t grow(struct surface *s, struct keyed *room, int32_t lo, int32_t hi, int32_t at)
+{
+    struct surface_box *b = &s->box[at];
+    b->lo = v3(INFINITY, INFINITY, INFINITY), b->hi = v3_scale(-1, b->lo);
+    for (int32_t i = lo; i < hi; i++)
+        for (int k = 0; k < 3; k++) {
+            vec3 x = s->at[s->order[i]][k];
+            b->lo = least(b->lo, x), b->hi = greatest(b->hi, x);
+        }
+    if (hi - lo <= LEAF) return b->next = at + 1;
+    vec3 d = v3_sub(b->hi, b->lo);
+    int axis = d.x >= d.y && d.x >= d.z ? 0 : d.y >= d.z ? 1 : 2;
+    for (int32_t i = lo; i < hi; i++) {
+        vec3 sum = v3_add(s->at[s->order[i]][0],
+                          v3_add(s->at[s->order[i]][1], s->at[s->order[i]][2]));
+        room[i] = (struct keyed){ axis == 0 ? sum.x : axis == 1 ? sum.y : sum.z, s->order[i] };
+    }
+    qsort(room + lo, (size_t)(hi - lo), sizeof *room, by_key);
+    for (int32_t i = lo; i < hi; i++) s->order[i] = room[i].element;
+    int32_t middle = lo + (hi - lo) / 2;
+    b->next = grow(s, room, lo, middle, at + 1);
+    return grow(s, room, middle, hi, b->next);
+}
+
+/* ---- which elements meet at a corner ---- */
+
+struct placed {
+    vec3 x;
+    int32_t vertex;
+};
+
+static int by_place(const void *a, const void *b)
+{
+    const struct placed *p = a, *q = b;
+    if (p->x.x != q->x.x) return p->x.x < q->x.x ? -1 : 1;
+    if (p->x.y != q->x.y) return p->x.y < q->x.y ? -1 : 1;
+    if (p->x.z != q->x.z) return p->x.z < q->x.z ? -1 : 1;
+    return (p->vertex > q->vertex) - (p->vertex < q->vertex);
+}
+
+static bool same_place(vec3 a, vec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+/* one[v] = the first of the vertices that lie where v does: an STL file has each once a triangle. */
+static bool weld(const struct mesh *m, int32_t *one)
+{
+    struct placed *p = malloc(((size_t)m->vertices + 1) * sizeof *p);
+    if (!p) return false;
+    for (int32_t i = 0; i < m->vertices; i++) p[i] = (struct placed){ m->vertex[i], i };
+    qsort(p, (size_t)m->vertices, sizeof *p, by_place);
+    for (int32_t i = 0; i < m->vertices; i++)
+        one[p[i].vertex] =
+            i && same_place(p[i].x, p[i - 1].x) ? one[p[i - 1].vertex] : p[i].vertex;
+    free(p);
+    return true;
+}
+
+/* corner[], star[] and member[] of the elements from `first` on */
+static bool meet(struct surface *s, const struct mesh *m, int32_t first)
+{
+    int32_t *one = calloc((size_t)m->vertices + 1, sizeof *one);
+    s->corner = calloc(3 * (size_t)s->n + 1, sizeof *s->corner);
+    s->star = calloc((size_t)m->vertices + 2, sizeof *s->star);
+    s->member = calloc(3 * (size_t)s->n + 1, sizeof *s->member);
+    bool good = one && s->corner && s->star && s->member && weld(m, one);
+    for (int32_t e = 0; good && e < s->n; e++)
+        for (int k = 0; k < 3; k++) {
+            int32_t v = one[m->element[first + e][k]];
+            s->corner[3 * e + k] = v;
+            s->star[v + 2]++;
+        }
+    for (int32_t v = 0; good && v < m->vertices; v++) s->star[v + 2] += s->star[v + 1];
+    // star[v+1] is now where v begins, and moves to where v ends
+    for (int32_t i = 0; good && i < 3 * s->n; i++) s->member[s->star[s->corner[i] + 1]++] = i / 3;
+    free(one);
+    return good;
+}
+
+int surface_init(struct surface *s, const struct mesh *m, int32_t first, int32_t n, struct why *why)
+{
+    *s = (struct surface){ .n = n };
+    struct keyed *room = malloc(((size_t)n + 1) * sizeof *room);
+    s->at = malloc(((size_t)n + 1) * sizeof *s->at);
+    s->order = malloc(((size_t)n + 1) * sizeof *s->order);
+    s->box = malloc((2 * (size_t)n + 1) * sizeof *s->box);
+    bool good = room && s->at && s->order && s->box && meet(s, m, first);
+    for (int32_t i = 0; good && i < n; i++) {
+        s->order[i] = i;
+        for (int k = 0; k < 3; k++) s->at[i][k] = m->vertex[m->element[first + i][k]];
+    }
+    if (good) grow(s, room, 0, n, 0);
+    free(room);
+    return good ? 0 : why_set(why, EX_SOFTWARE, "no memory for a surface of %d elements", n);
+}
+
+void surface_free(struct surface *s)
+{
+    free(s->at), free(s->order), free(s->box), free(s->corner), free(s->star), free(s->member);
+    *s = (struct surface){ 0 };
+}
+
+/* ---- distances ---- */
+
+/* The nearest place of an element, and which part of it: below 3 the edge from that corner, below 6
+   a corner, 6 the inside */
+struct place {
+    vec3 x;
+    int part;
+};
+
+static struct place near_segment(vec3 a, vec3 b, vec3 c)
+{
+    vec3 ab = v3_sub(b, a);
+    double s = v3_dot(v3_sub(c, a), ab), most = v3_dot(ab, ab);
+    if (s <= 0) return (struct place){ a, 3 };
+    if (s >= most) return (struct place){ b, 4 };
+    return (struct place){ v3_axpy(a, s / most, ab), 6 };
+}
+
+/* By the regions of Voronoi [Ericson 2005, Real-Time Collision Detection, 5.1.5] */
+static struct place near_triangle(vec3 a, vec3 b, vec3 c, vec3 p)
+{
+    vec3 ab = v3_sub(b, a), ac = v3_sub(c, a), ap = v3_sub(p, a);
+    double d1 = v3_dot(ab, ap), d2 = v3_dot(ac, ap);
+    if (d1 <= 0 && d2 <= 0) return (struct place){ a, 3 };
+    vec3 bp = v3_sub(p, b), cp = v3_sub(p, c);
+    double d3 = v3_dot(ab, bp), d4 = v3_dot(ac, bp);
+    if (d3 >= 0 && d4 <= d3) return (struct place){ b, 4 };
+    double vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return (struct place){ v3_axpy(a, d1 / (d1 - d3), ab), 0 };
+    double d5 = v3_dot(ab, cp), d6 = v3_dot(ac, cp);
+    if (d6 >= 0 && d5 <= d6) return (struct place){ c, 5 };
+    double vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return (struct place){ v3_axpy(a, d2 / (d2 - d6), ac), 2 };
+    double va = d3 * d6 - d5 * d4, along = (d4 - d3) + (d5 - d6);
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+        return (struct place){ v3_axpy(b, (d4 - d3) / along, v3_sub(c, b)), 1 };
+    double sum = va + vb + vc;
+    return (struct place){ v3_axpy(v3_axpy(a, vb / sum, ab), vc / sum, ac), 6 };
+}
+
+static struct place near_element(const struct surface *s, int32_t e, vec3 c)
+{
+    const vec3 *x = s->at[e];
+    if (s->corner[3 * e + 1] == s->corner[3 * e + 2]) return near_segment(x[0], x[1], c);
+    return near_triangle(x[0], x[1], x[2], c);
+}
+
+/* Which corner of element e is vertex v; -1: none */
+static int which_corner(const struct surface *s, int32_t e, int32_t v)
+{
+    for (int k = 0; k < 3; k++)
+        if (s->corner[3 * e + k] == v) return k;
+    return -1;
+}
+
+/* Is `part` of element e on the edge of the corners v and w, or for w = v at that corner? */
+static bool is_there(const struct surface *s, int32_t e, int part, int32_t v, int32_t w)
+{
+    if (part == 6) return false;
+    const int32_t *corner = &s->corner[3 * e];
+    if (part >= 3) return corner[part - 3] == v || corner[part - 3] == w;
+    int32_t from = corner[part], to = corner[(part + 1) % 3];
+    return v != w && ((from == v && to == w) || (from == w && to == v));
+}
+
+/* Whether the place on an edge or at a corner of element e is a minimum that e reports, the first of
+   those that meet there */
+static bool is_minimum(const struct surface *s, int32_t e, int part, vec3 c)
+{
+    int k = part < 3 ? part : part - 3;
+    int32_t v = s->corner[3 * e + k], w = part < 3 ? s->corner[3 * e + (k + 1) % 3] : v;
+    for (int32_t i = s->star[v]; i < s->star[v + 1]; i++) {
+        int32_t other = s->member[i];
+        if (other == e || which_corner(s, other, w) < 0) continue;
+        struct place at = near_element(s, other, c);
+        if (!is_there(s, other, at.part, v, w)) return false;
+        if (other < e) return false;
+    }
+    return true;
+}
+
+static void look_at(const struct surface *s, int32_t e, vec3 c, double most, struct touch *touch,
+                    int *n)
+{
+    struct place at = near_element(s, e, c);
+    vec3 d = v3_sub(c, at.x);
+    double distance = v3_norm(d);
+    if (!(distance <= most) || (at.part < 6 && !is_minimum(s, e, at.part, c)) || *n == TOUCHES_MOST)
+        return;
+    vec3 up = v3_cross(v3_sub(s->at[e][1], s->at[e][0]),
+                       v3_sub(s->at[e][2], s->at[e][0]));
+    if (v3_dot(up, up) == 0) { // a segment
+        vec3 ab = v3_sub(s->at[e][1], s->at[e][0]);
+        up = v3(-ab.y, ab.x, 0);
+    }
+    vec3 n_of = distance > 0 ? v3_scale(1 / distance, d) : v3_scale(1 / v3_norm(up), up);
+    touch[(*n)++] = (struct touch){ n_of, distance, FEATURES * e + at.part };
+}
+
+static double beyond(double x, double lo, double hi)
+{
+    return x < lo ? lo - x : x > hi ? x - hi : 0;
+}
+
+static bool is_near(const struct surface_box *b, vec3 c, double most)
+{
+    double x = beyond(c.x, b->lo.x, b->hi.x), y = beyond(c.y, b->lo.y, b->hi.y);
+    double z = beyond(c.z, b->lo.z, b->hi.z);
+    return x * x + y * y + z * z <= most * most * (1 + 1e-12);
+}
+
+static int by_feature(const void *a, const void *b)
+{
+    const struct touch *p = a, *q = b;
+    return (p->feature > q->feature) - (p->feature < q->feature);
+}
+
+int surface_touches(const struct surface *s, vec3 c, double most, struct touch touch[TOUCHES_MOST])
+{
+    struct {
+        int32_t box, lo, hi;
+    } stack[64];
+    int depth = 0, n = 0;
+    stack[depth++] = (typeof(stack[0])){ 0, 0, s->n };
+    while (depth) {
+        int32_t at = stack[--depth].box, lo = stack[depth].lo, hi = stack[depth].hi;
+        if (!is_near(&s->box[at], c, most)) continue;
+        if (hi - lo <= LEAF) {
+            for (int32_t i = lo; i < hi; i++) look_at(s, s->order[i], c, most, touch, &n);
+            continue;
+        }
+        int32_t middle = lo + (hi - lo) / 2;
+        stack[depth++] = (typeof(stack[0])){ s->box[at].next, middle, hi };
+        stack[depth++] = (typeof(stack[0])){ at + 1, lo, middle };
+    }
+    qsort(touch, (size_t)n, sizeof *touch, by_feature);
+    return n;
+}

@@ -1,0 +1,52 @@
+/*
+ * bodies/mesh.h: surfaces of triangles, in the plane chains of segments, and where they are next to
+ * a point.
+ *
+ * A ball touches a surface where its distance has a local minimum: in a triangle, on an edge or at
+ * a corner. An edge counts when no triangle that meets there comes nearer elsewhere, a corner
+ * likewise; so a flat wall of many triangles is met once, and a ball in a groove twice. Both
+ * sides of the surface are met.
+ */
+#ifndef NSD_MESH_H
+#define NSD_MESH_H
+
+#include "base/vec.h"
+#include "base/why.h"
+#include "bodies/boundary.h"
+
+struct mesh {
+    int32_t vertices, elements;
+    vec3 *vertex;          /* [vertices] m, from the point of reference of their boundary */
+    int32_t (*element)[3]; /* [elements] vertices; in the plane the third is that of the second */
+};
+
+/* Room for so many, all zero, in place of the old ones. Returns 0 or EX_SOFTWARE. */
+int mesh_alloc(struct mesh *m, int32_t vertices, int32_t elements, struct why *why);
+void mesh_free(struct mesh *m);
+int mesh_copy(struct mesh *to, const struct mesh *from, struct why *why);
+/* Are vertices finite, and elements of vertices that are there, with an extent? Returns 0, or EX_DATAERR
+   with the first that is not. */
+int mesh_check(const struct mesh *m, int dim, struct why *why);
+
+/* The elements of one boundary, ordered so that those near a place are found at once */
+struct surface {
+    int32_t n;
+    vec3 (*at)[3];           /* [n] m: their vertices; of a segment the third is the second */
+    int32_t *order;          /* [n] elements, as the tree has them */
+    struct surface_box *box; /* of a tree over order[] */
+    int32_t *corner;         /* [n][3] numbers of vertices, those at one place being one */
+    int32_t *star, *member;  /* of corner v: elements member[star[v]] .. member[star[v+1]-1] */
+};
+
+/* Returns 0, or EX_SOFTWARE; surface_free() in any case. */
+int surface_init(struct surface *s, const struct mesh *m, int32_t first, int32_t n, struct why *why);
+void surface_free(struct surface *s);
+
+enum {
+    TOUCHES_MOST = 64 /* of a ball and a surface: beyond it the last ones are left out */
+};
+/* The places at most `most` (m) from c (m) at which the distance has a minimum, by their features;
+   returns how many. */
+int surface_touches(const struct surface *s, vec3 c, double most, struct touch touch[TOUCHES_MOST]);
+
+#endif

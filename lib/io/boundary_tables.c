@@ -1,0 +1,201 @@
+#include "io/boundary_tables.h"
+
+#include "bodies/freedom.h"
+#include "io/h5.h"
+#include "io/table_read.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#define BOUNDARY "/particles/boundary"
+
+/* ---- from a document ---- */
+
+/* The loads as they are in frame k, in `group` */
+static int read_loads(struct source *r, const char *group, int64_t k, struct packing *p,
+                      struct why *why)
+{
+    if (!source_has(r, group)) return 0;
+    if (table_read_columns(r, group, "", layout_loads, 0, p->walls, p->wall, sizeof *p->wall, why))
+        return why->status;
+    double *row = calloc((size_t)p->walls + 1, sizeof *row);
+    if (!row) return why_set(why, EX_SOFTWARE, "no memory for the loads");
+    for (const struct column *c = layout_yield; !why->status && c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "%s/%s/value", group, c->name);
+        if (!source_rows(r, path, c->type, k, 1, p->walls, row, why))
+            column_scatter(c, p->walls, row, p->wall, sizeof *p->wall);
+    }
+    free(row);
+    return why->status;
+}
+
+/* The number of rows of a dataset of so many dimensions */
+static int count_rows(struct source *r, const char *path, int rank, int32_t *n, struct why *why)
+{
+    uint64_t shape[4];
+    if (source_shape(r, path, shape) != rank || shape[0] > 1 << 28)
+        return why_set(why, EX_DATAERR, "%s: not of %d dimensions", path, rank);
+    *n = (int32_t)shape[0];
+    return 0;
+}
+
+static int read_drives(struct source *r, struct packing *p, struct why *why)
+{
+    const char *group = BOUNDARY "/drive", *rows = BOUNDARY "/drive/row";
+    int32_t n = 0, m = 0;
+    if (!source_has(r, group)) return 0;
+    if (count_rows(r, BOUNDARY "/drive/boundary", 1, &n, why) || count_rows(r, rows, 2, &m, why) ||
+        drives_alloc(&p->drives, n, m, why) ||
+        table_read_columns(r, group, "", layout_drive, 0, n, p->drives.drive,
+                           sizeof *p->drives.drive, why) ||
+        source_rows(r, rows, COLUMN_F64, 0, m, 2, p->drives.row, why))
+        return why->status;
+    for (int32_t k = 0; k < n; k++) {
+        int32_t w = p->drives.drive[k].boundary;
+        if (w < 0 || w >= p->walls || (k && w < p->drives.drive[k - 1].boundary))
+            return why_set(why, EX_DATAERR, "%s/boundary: not in the order of the boundaries",
+                           group);
+        if (!p->wall[w].drives++) p->wall[w].first_drive = k;
+    }
+    return 0;
+}
+
+static int read_mesh(struct source *r, struct packing *p, struct why *why)
+{
+    const char *vertex = BOUNDARY "/mesh/vertex", *element = BOUNDARY "/mesh/element";
+    int32_t n = 0, m = 0;
+    if (!source_has(r, BOUNDARY "/mesh")) return 0;
+    if (count_rows(r, vertex, 2, &n, why) || count_rows(r, element, 2, &m, why) ||
+        mesh_alloc(&p->mesh, n, m, why) ||
+        source_rows(r, vertex, COLUMN_F64, 0, n, 3, p->mesh.vertex, why) ||
+        source_rows(r, element, COLUMN_I32, 0, m, 3, p->mesh.element, why))
+        return why->status;
+    return 0;
+}
+
+/* Planes, as version 1 had them */
+static int read_planes(struct source *r, int64_t k, struct packing *p, struct why *why)
+{
+    int32_t n = 0;
+    if (!source_has(r, "/walls/plane")) return 0;
+    if (count_rows(r, "/walls/plane/point", 2, &n, why) || packing_alloc_walls(p, n, why) ||
+        table_read_columns(r, "/walls/plane", "", layout_plane, 0, n, p->wall, sizeof *p->wall,
+                           why))
+        return why->status;
+    return read_loads(r, "/walls/load", k, p, why);
+}
+
+int boundary_tables_read(struct source *r, int64_t k, struct packing *p, struct why *why)
+{
+    const char *body = BOUNDARY "/body";
+    int32_t n = 0;
+    if (!source_has(r, body)) return read_planes(r, k, p, why);
+    if (count_rows(r, BOUNDARY "/body/point", 2, &n, why) || packing_alloc_walls(p, n, why) ||
+        table_read_columns(r, body, "", layout_plane, 0, n, p->wall, sizeof *p->wall, why) ||
+        table_read_columns(r, body, "", layout_boundary, 0, n, p->wall, sizeof *p->wall, why) ||
+        read_loads(r, BOUNDARY "/load", k, p, why) || read_drives(r, p, why) ||
+        read_mesh(r, p, why))
+        return why->status;
+    return 0;
+}
+
+/* ---- to a document ---- */
+
+static bool any_moves(const struct packing *p)
+{
+    for (int32_t w = 0; w < p->walls; w++)
+        if (v3_norm(p->wall[w].v) > 0 || p->wall[w].load.way) return true;
+    return p->drives.n > 0;
+}
+
+/* [walls]; NULL: no memory */
+static struct boundary_motion *motions(const struct packing *p, struct why *why)
+{
+    struct boundary_motion *m = calloc((size_t)p->walls + 1, sizeof *m);
+    if (!m) why_set(why, EX_SOFTWARE, "no memory for the motion of the boundaries");
+    for (int32_t w = 0; m && w < p->walls; w++) {
+        const struct wall *wall = &p->wall[w];
+        vec3 x = wall_at(p, wall, p->t);
+        m[w] = (struct boundary_motion){ x, wall_pose(p, wall, p->t).q, wall_velocity(p, wall, x),
+                                         wall_spin(p, wall) };
+    }
+    return m;
+}
+
+static int write_drives(struct table_write *s, const struct packing *p, struct why *why)
+{
+    const hsize_t shape[2] = { (hsize_t)p->drives.rows, 2 };
+    if (!p->drives.n) return 0;
+    if (table_write_columns(s, BOUNDARY "/drive", "", layout_drive, p->drives.n, p->drives.drive,
+                            sizeof *p->drives.drive, 0, why))
+        return why->status;
+    return h5_write(s->file, BOUNDARY "/drive/row", H5T_NATIVE_DOUBLE, 2, shape, p->drives.row,
+                    "s; m, rad", why);
+}
+
+static int write_mesh(struct table_write *s, const struct packing *p, struct why *why)
+{
+    const hsize_t vertices[2] = { (hsize_t)p->mesh.vertices, 3 },
+                  elements[2] = { (hsize_t)p->mesh.elements, 3 };
+    if (!p->mesh.elements) return 0;
+    if (h5_write(s->file, BOUNDARY "/mesh/vertex", H5T_NATIVE_DOUBLE, 2, vertices, p->mesh.vertex,
+                 "m", why))
+        return why->status;
+    return h5_write(s->file, BOUNDARY "/mesh/element", H5T_NATIVE_INT32, 2, elements,
+                    p->mesh.element, NULL, why);
+}
+
+int boundary_tables_write_static(struct table_write *s, const struct packing *p, struct why *why)
+{
+    bool growing = s->growing;
+    struct boundary_motion *m = NULL;
+    const char *body = BOUNDARY "/body";
+    s->growing = false;
+    if (!table_write_columns(s, body, "", layout_plane, p->walls, p->wall, sizeof *p->wall, 0,
+                             why) &&
+        !table_write_columns(s, body, "", layout_boundary, p->walls, p->wall, sizeof *p->wall, 0,
+                             why) &&
+        !write_drives(s, p, why) && !write_mesh(s, p, why) && freedoms_in(p))
+        table_write_columns(s, BOUNDARY "/load", "", layout_loads, p->walls, p->wall,
+                            sizeof *p->wall, 0, why);
+    if (!why->status && !any_moves(p) && (m = motions(p, why)))
+        table_write_columns(s, BOUNDARY, "", layout_boundary_motion, p->walls, m, sizeof *m, 0,
+                            why);
+    free(m);
+    s->growing = growing;
+    return why->status;
+}
+
+/* One row of a table of [frames][walls], of structs */
+static int write_row(struct table_write *s, const char *group, const struct column *table,
+                     int32_t walls, const void *structs, size_t stride, const struct packing *p,
+                     struct why *why)
+{
+    for (const struct column *c = table; !why->status && c->name; c++) {
+        char path[80];
+        const hsize_t shape[3] = { 1, (hsize_t)walls, (hsize_t)c->width };
+        double *row = malloc(((size_t)walls * (size_t)c->width + 1) * sizeof *row);
+        snprintf(path, sizeof path, "%s/%s/value", group, c->name);
+        if (!row) return why_set(why, EX_SOFTWARE, "no memory for %s", path);
+        column_gather(c, walls, structs, stride, row);
+        table_write_rows(s, path, c->type, c->width == 1 ? 2 : 3, shape, CHUNK_FRAMES, row,
+                         c->units, why);
+        free(row);
+    }
+    if (why->status || table_write_clock(s, group, true, &p->step, group, table, why))
+        return why->status;
+    return table_write_clock(s, group, false, &p->t, group, table, why);
+}
+
+int boundary_tables_write(struct table_write *s, const struct packing *p, struct why *why)
+{
+    if (!any_moves(p)) return 0;
+    struct boundary_motion *m = motions(p, why);
+    if (m &&
+        !write_row(s, BOUNDARY, layout_boundary_motion, p->walls, m, sizeof *m, p, why) &&
+        freedoms_in(p))
+        write_row(s, BOUNDARY "/load", layout_yield, p->walls, p->wall, sizeof *p->wall, p, why);
+    free(m);
+    return why->status;
+}

@@ -1,0 +1,20 @@
+/*
+ * io/boundary_tables.h: boundaries in a document [nsd-format(5)]: their shapes, meshes, loads and
+ * drives, and where they are over time.
+ */
+#ifndef NSD_BOUNDARY_TABLES_H
+#define NSD_BOUNDARY_TABLES_H
+
+#include "io/source.h"
+#include "io/table_write.h"
+
+/* Those of frame k, whose time p has */
+int boundary_tables_read(struct source *source, int64_t k, struct packing *p, struct why *why);
+
+/* What all frames share */
+int boundary_tables_write_static(struct table_write *tables, const struct packing *p,
+                                 struct why *why);
+/* A frame's part: nothing where nothing moves */
+int boundary_tables_write(struct table_write *tables, const struct packing *p, struct why *why);
+
+#endif

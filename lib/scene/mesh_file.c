@@ -1,0 +1,108 @@
+/* scene/mesh_file.c: meshes by libassimp [scene/mesh_file.h]. */
+#include "scene/mesh_file.h"
+
+#include <assimp/cimport.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static vec3 vertex_of(const struct aiVector3D *v, const struct aiMatrix4x4 *m, double scale)
+{
+    const double x = (double)v->x, y = (double)v->y, z = (double)v->z;
+    return v3_scale(scale,
+                    v3((double)m->a1 * x + (double)m->a2 * y + (double)m->a3 * z + (double)m->a4,
+                       (double)m->b1 * x + (double)m->b2 * y + (double)m->b3 * z + (double)m->b4,
+                       (double)m->c1 * x + (double)m->c2 * y + (double)m->c3 * z + (double)m->c4));
+}
+
+/* What is gathered from a file's tree of nodes */
+struct gather {
+    const struct aiScene *file;
+    struct scene *scene;
+    double scale;
+    struct why *why;
+};
+
+static int add_mesh(const struct gather *g, const struct aiMesh *m, const struct aiMatrix4x4 *at)
+{
+    vec3 *vertex;
+    int32_t(*element)[3], first = g->scene->mesh.vertices, n = 0;
+    if (m->mNumVertices > 1 << 28 || m->mNumFaces > 1 << 28)
+        return why_set(g->why, EX_DATAERR, "more triangles than a mesh may have");
+    if (scene_grow_mesh(g->scene, (int32_t)m->mNumVertices, (int32_t)m->mNumFaces, &vertex,
+                        &element, g->why))
+        return g->why->status;
+    for (unsigned i = 0; i < m->mNumVertices; i++)
+        vertex[i] = vertex_of(&m->mVertices[i], at, g->scale);
+    for (unsigned i = 0; i < m->mNumFaces; i++) {
+        const struct aiFace *f = &m->mFaces[i];
+        if (f->mNumIndices != 3) continue; // points and lines
+        const unsigned *v = f->mIndices;
+        if (v[0] >= m->mNumVertices || v[1] >= m->mNumVertices || v[2] >= m->mNumVertices)
+            return why_set(g->why, EX_DATAERR, "a triangle of vertices that are not there");
+        vec3 a = v3_sub(vertex[v[1]], vertex[v[0]]), b = v3_sub(vertex[v[2]], vertex[v[0]]);
+        if (!(v3_norm(v3_cross(a, b)) > 0)) continue;
+        for (int k = 0; k < 3; k++) element[n][k] = first + (int32_t)v[k];
+        n++;
+    }
+    g->scene->mesh.elements -= (int32_t)m->mNumFaces - n;
+    return 0;
+}
+
+static struct aiMatrix4x4 product(const struct aiMatrix4x4 *a, const struct aiMatrix4x4 *b)
+{
+    struct aiMatrix4x4 c = *a;
+    aiMultiplyMatrix4(&c, b);
+    return c;
+}
+
+static int add_node(const struct gather *g, const struct aiNode *node, const struct aiMatrix4x4 *up)
+{
+    struct aiMatrix4x4 at = product(up, &node->mTransformation);
+    for (unsigned k = 0; k < node->mNumMeshes; k++)
+        if (node->mMeshes[k] < g->file->mNumMeshes &&
+            add_mesh(g, g->file->mMeshes[node->mMeshes[k]], &at))
+            return 1;
+    for (unsigned k = 0; k < node->mNumChildren; k++)
+        if (add_node(g, node->mChildren[k], &at)) return 1;
+    return 0;
+}
+
+static int read_file(struct scene *s, const struct scene_mesh *m, const char *path, struct why *why)
+{
+    struct wall *w = &s->wall[m->wall];
+    if (access(path, R_OK)) return why_set(why, EX_NOINPUT, "%s: cannot be read", path);
+    const struct aiScene *file = aiImportFile(path, aiProcess_Triangulate);
+    if (!file || !file->mRootNode) {
+        why_set(why, EX_DATAERR, "%s: %s", path, aiGetErrorString());
+        aiReleaseImport(file);
+        return why->status;
+    }
+    struct aiMatrix4x4 one;
+    aiIdentityMatrix4(&one);
+    const struct gather g = { file, s, m->scale, why };
+    w->first_element = s->mesh.elements;
+    add_node(&g, file->mRootNode, &one);
+    w->elements = s->mesh.elements - w->first_element;
+    aiReleaseImport(file);
+    if (why->status) return why->status;
+    return w->elements ? 0 : why_set(why, EX_DATAERR, "%s: no triangles", path);
+}
+
+int mesh_files_read(struct scene *s, const char *dir, struct why *why)
+{
+    for (int32_t k = 0; k < s->meshes && !why->status; k++) {
+        const struct scene_mesh *m = &s->mesh_file[k];
+        bool whole = *m->file == '/' || !dir;
+        size_t room = strlen(m->file) + (whole ? 0 : strlen(dir)) + 2;
+        char *path = malloc(room);
+        if (!path) return why_set(why, EX_SOFTWARE, "no memory for a name");
+        snprintf(path, room, "%s%s%s", whole ? "" : dir, whole ? "" : "/", m->file);
+        read_file(s, m, path, why);
+        free(path);
+    }
+    return why->status;
+}

@@ -1,0 +1,15 @@
+/*
+ * scene/mesh_file.h: triangles from files of other programs, STL, OBJ, PLY and what else libassimp
+ * reads. Only nsd-gen needs it, and only nsd-gen is linked with that library.
+ */
+#ifndef NSD_MESH_FILE_H
+#define NSD_MESH_FILE_H
+
+#include "scene/scene.h"
+
+/* Reads the files of all meshes of the scene, whose names are relative to dir (NULL: the current
+   folder), and adds their triangles; those without an area are left out. Returns 0, EX_NOINPUT, EX_DATAERR
+   or EX_SOFTWARE. */
+int mesh_files_read(struct scene *s, const char *dir, struct why *why);
+
+#endif

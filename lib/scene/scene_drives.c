@@ -1,0 +1,96 @@
+/* scene/scene_drives.c: the motions of a boundary from their JSON. */
+#include "scene/scene_read.h"
+
+#include <stdlib.h>
+
+/* Room for `more` in an array of n; NULL is told. */
+static void *grown(jnode at, void *array, int32_t n, size_t more, size_t size)
+{
+    void *new = realloc(array, ((size_t)n + more + 1) * size);
+    if (!new) why_set(at.in->why, EX_SOFTWARE, "no memory for the drives");
+    return new;
+}
+
+/* [[t, s], ...], t rising */
+static int read_table(jnode a, struct scene *s, struct drive *d)
+{
+    size_t rows = 0;
+    if (json_node_array(a, &rows)) return 1;
+    if (!rows || rows > 1 << 24) return json_node_fault(a, "wants [[time, way], ...]");
+    struct drive_row *row = grown(a, s->drives.row, s->drives.rows, rows, sizeof *row);
+    if (!row) return 1;
+    s->drives.row = row, row += s->drives.rows;
+    d->first = s->drives.rows, d->rows = (int32_t)rows;
+    for (size_t i = 0; i < rows; i++) {
+        jnode pair = json_node_item(&a, i), t, way;
+        size_t two = 0;
+        if (json_node_array(pair, &two)) return 1;
+        if (two != 2) return json_node_fault(pair, "wants [time, way]");
+        t = json_node_item(&pair, 0), way = json_node_item(&pair, 1);
+        if (json_node_number(t, J_ANY, &row[i].t) || json_node_number(way, J_ANY, &row[i].s))
+            return 1;
+        if (i && !(row[i].t > row[i - 1].t)) return json_node_fault(t, "times must rise");
+    }
+    s->drives.rows += d->rows;
+    return 0;
+}
+
+static int read_signal(jnode o, struct scene *s, int which, struct drive *d)
+{
+    d->signal = which;
+    switch (which) {
+    case DRIVE_SPEED:
+        return json_node_number(json_node_key(&o, "speed"), J_ANY, &d->value);
+    case DRIVE_SINE:
+        return json_node_need(&o, "frequency") ||
+               json_node_number(json_node_key(&o, "amplitude"), J_ANY, &d->value) ||
+               json_node_number(json_node_key(&o, "frequency"), J_NOT_NEGATIVE, &d->frequency) ||
+               json_node_number(json_node_key(&o, "phase"), J_ANY, &d->phase);
+    default:
+        return read_table(json_node_key(&o, "table"), s, d);
+    }
+}
+
+/* "along" a direction, or "about" a point (and in space an axis) */
+static int read_axis(jnode o, int dim, struct drive *d)
+{
+    int which = json_node_choice(o, "along about");
+    if (which < 0) return 1;
+    if (which == 0) return scene_read_direction(json_node_key(&o, "along"), dim, &d->axis);
+    d->turns = 1, d->axis = v3(0, 0, 1);
+    if (json_node_vector(json_node_key(&o, "about"), dim, &d->point)) return 1;
+    if (dim == 2) return 0;
+    return json_node_need(&o, "axis") ||
+           scene_read_direction(json_node_key(&o, "axis"), dim, &d->axis);
+}
+
+static int read_drive(jnode o, struct scene *s, int32_t wall)
+{
+    static const char *const keys[] = { "speed", "amplitude frequency phase", "table" };
+    struct drive d = { .boundary = wall, .until = INFINITY };
+    int which = json_node_choice(o, "speed amplitude table");
+    char names[100];
+    if (which < 0 || read_axis(o, s->dim, &d)) return 1;
+    snprintf(names, sizeof names, "%s from until %s", keys[which],
+             !d.turns ? "along" : s->dim == 2 ? "about" : "about axis");
+    if (which != DRIVE_SPEED) d.from = -INFINITY;
+    if (json_node_only(o, names) || read_signal(o, s, which, &d) ||
+        json_node_number(json_node_key(&o, "from"), J_ANY, &d.from) ||
+        json_node_number(json_node_key(&o, "until"), J_ANY, &d.until))
+        return 1;
+    if (!(d.from <= d.until))
+        return json_node_fault(json_node_key(&o, "until"), "must not lie before its beginning");
+    struct drive *more = grown(o, s->drives.drive, s->drives.n, 1, sizeof *more);
+    if (!more) return 1;
+    s->drives.drive = more, more[s->drives.n++] = d;
+    return 0;
+}
+
+int scene_read_drives(jnode a, struct scene *s, int32_t wall)
+{
+    size_t n = 0;
+    if (json_node_array(a, &n)) return 1;
+    for (size_t i = 0; i < n; i++)
+        if (read_drive(json_node_item(&a, i), s, wall)) return 1;
+    return 0;
+}
