@@ -13,6 +13,8 @@
  */
 #include "draw/page.h"
 
+#include "draw/outline.h"
+
 #include "base/json.h"
 #include "draw/page_chunk.h"
 #include "draw/page_parts.h"
@@ -74,28 +76,49 @@ static void put_point(struct chunk *b, vec3 x)
     chunk_put_float(b, x.x), chunk_put_float(b, x.y), chunk_put_float(b, x.z);
 }
 
+static void put_triangle(struct chunk *b, vec3 x, vec3 y, vec3 z)
+{
+    put_point(b, x), put_point(b, y), put_point(b, z);
+}
+
+/* Floors, all that has an outline, and the lines of both */
+static void put_walls(struct chunk *b, const struct walls *w, const struct outline *o)
+{
+    uint32_t counts[2] = { (uint32_t)o->triangles, (uint32_t)w->edges };
+    for (int i = 0; i < w->panels; i++)
+        if (w->panel[i].corners > 2) counts[0] += (uint32_t)w->panel[i].corners - 2;
+    chunk_put(b, counts, sizeof counts);
+    for (int i = 0; i < w->panels; i++)
+        for (int c = 2; c < w->panel[i].corners; c++)
+            put_triangle(b, w->panel[i].corner[0], w->panel[i].corner[c - 1],
+                         w->panel[i].corner[c]);
+    for (int64_t i = 0; i < o->triangles; i++) {
+        const vec3 *x = o->triangle[i].corner;
+        put_triangle(b, x[0], x[1], x[2]);
+    }
+    for (int i = 0; i < w->edges; i++) put_point(b, w->edge[i].a), put_point(b, w->edge[i].b);
+}
+
 static int write_walls(struct page *p, const struct packing *k, const struct region *r,
                        struct why *why)
 {
     struct walls *w = malloc(sizeof *w);
-    struct chunk b = { malloc(8 + 36 * (size_t)WALLS_PANELS * WALLS_CORNERS + 24 * WALLS_EDGES),
-                       0 };
-    if (!w || !b.at) {
-        free(w), free(b.at);
-        return no_memory(why);
+    struct outline o;
+    if (!w) return no_memory(why);
+    int e = outline_init(&o, k, v3_norm(v3_sub(r->hi, r->lo)), why);
+    if (!e) {
+        struct chunk b = { malloc(8 + 36 * ((size_t)WALLS_PANELS * WALLS_CORNERS +
+                                            (size_t)o.triangles) +
+                                  24 * WALLS_EDGES),
+                           0 };
+        walls_build(w, k, r);
+        if (b.at) put_walls(&b, w, &o);
+        e = b.at ? write_changed(p, 'b', &p->walls, &p->walls_last, &p->walls_size, &b, why)
+                 : no_memory(why);
+        outline_free(&o);
     }
-    walls_build(w, k, r);
-    uint32_t counts[2] = { 0, (uint32_t)w->edges };
-    for (int i = 0; i < w->panels; i++)
-        if (w->panel[i].corners > 2) counts[0] += (uint32_t)w->panel[i].corners - 2;
-    chunk_put(&b, counts, sizeof counts);
-    for (int i = 0; i < w->panels; i++)
-        for (int c = 2; c < w->panel[i].corners; c++)
-            put_point(&b, w->panel[i].corner[0]), put_point(&b, w->panel[i].corner[c - 1]),
-                put_point(&b, w->panel[i].corner[c]);
-    for (int i = 0; i < w->edges; i++) put_point(&b, w->edge[i].a), put_point(&b, w->edge[i].b);
     free(w);
-    return write_changed(p, 'b', &p->walls, &p->walls_last, &p->walls_size, &b, why);
+    return e;
 }
 
 /* ---- a frame ---- */

@@ -1,6 +1,8 @@
 /* draw/walls.c: the region of a packing, and its walls cut by the region and by each other. */
 #include "draw/walls.h"
 
+#include "draw/outline.h"
+
 static double *component(vec3 *a, int axis)
 {
     return axis == 0 ? &a->x : axis == 1 ? &a->y : &a->z;
@@ -14,6 +16,17 @@ static vec3 unit(int axis, double sign)
 static vec3 wall_now(const struct packing *p, int i)
 {
     return wall_at(p, &p->wall[i], p->t);
+}
+
+static vec3 normal_now(const struct packing *p, int i)
+{
+    return wall_normal(p, &p->wall[i], p->t);
+}
+
+/* A plane that is there; all else is draw/outline.h's */
+static bool is_plane(const struct packing *p, int i)
+{
+    return p->wall[i].shape == BOUNDARY_PLANE && wall_there(&p->wall[i], p->t);
 }
 
 static bool is_drawn(vec3 x)
@@ -34,7 +47,8 @@ static double limit(const struct packing *p, int axis, double sign)
     double found = NAN;
     for (int i = 0; i < walls_of(p); i++) {
         vec3 x = wall_now(p, i);
-        if (v3_dot(p->wall[i].n, unit(axis, sign)) < 0.999 || !is_drawn(x)) continue;
+        if (!is_plane(p, i) || !is_drawn(x) || v3_dot(normal_now(p, i), unit(axis, sign)) < 0.999)
+            continue;
         double c = *component(&x, axis);
         if (isnan(found) || sign * c > sign * found) found = c;
     }
@@ -62,6 +76,35 @@ static bool region_of_walls(struct region *r, const struct packing *p)
     return any;
 }
 
+static bool is_finite(const struct packing *p, int32_t i)
+{
+    const struct wall *w = &p->wall[i];
+    return wall_there(w, p->t) && (w->shape == BOUNDARY_MESH || isfinite(boundary_reach(w)));
+}
+
+static bool any_finite(const struct packing *p)
+{
+    for (int32_t i = 0; i < p->walls; i++)
+        if (is_finite(p, i)) return true;
+    return false;
+}
+
+/* Boundaries that end somewhere are shown whole; without memory for that they are not. */
+static void add_finite(struct region *r, const struct packing *p)
+{
+    struct outline o;
+    struct why why = { 0 };
+    if (!any_finite(p) || outline_init(&o, p, 0, &why)) return;
+    for (int64_t i = 0; i < o.lines; i++)
+        for (int k = 0; k < 2; k++) {
+            vec3 x = o.line[i].end[k];
+            if (!is_finite(p, o.line[i].boundary) || !is_drawn(x)) continue;
+            r->lo = v3(fmin(r->lo.x, x.x), fmin(r->lo.y, x.y), fmin(r->lo.z, x.z));
+            r->hi = v3(fmax(r->hi.x, x.x), fmax(r->hi.y, x.y), fmax(r->hi.z, x.z));
+        }
+    outline_free(&o);
+}
+
 bool region_of(struct region *r, const struct packing *p)
 {
     const double far = 2 * WALLS_FAR;
@@ -72,7 +115,8 @@ bool region_of(struct region *r, const struct packing *p)
             *component(&r->lo, k) = fmin(*component(&r->lo, k), c - b);
             *component(&r->hi, k) = fmax(*component(&r->hi, k), c + b);
         }
-    if (r->lo.x > r->hi.x) return region_of_walls(r, p);
+    if (r->lo.x > r->hi.x && !any_finite(p)) return region_of_walls(r, p);
+    add_finite(r, p);
     double size = fmax(r->hi.x - r->lo.x, fmax(r->hi.y - r->lo.y, r->hi.z - r->lo.z));
     for (int k = 0; k < p->dim; k++) {
         // wide beside the bodies, where the floor is seen; narrow above them
@@ -132,7 +176,7 @@ static void clip_region(struct polygon *g, const struct region *r, vec3 middle, 
 /* A square, or in the plane a line, of wall i that extends beyond the region; m from its middle */
 static struct polygon wall_uncut(const struct packing *p, int i, vec3 middle, double size)
 {
-    vec3 n = p->wall[i].n, x = v3_sub(wall_now(p, i), middle);
+    vec3 n = normal_now(p, i), x = v3_sub(wall_now(p, i), middle);
     vec3 foot = v3_scale(v3_dot(n, x), n);
     vec3 s = p->dim == 2       ? v3(0, 0, 1)
              : fabs(n.x) < 0.7 ? v3_cross(n, v3(1, 0, 0))
@@ -156,9 +200,9 @@ static void keep_polygon(struct walls *b, const struct packing *p, int i, const 
         b->edge[b->edges++] =
             (struct edge){ v3_add(g->p[k], middle), v3_add(g->p[(k + 1) % g->count], middle) };
     }
-    if (stroke || g->count < 3 || p->wall[i].n.z < 0.5) return;
+    if (stroke || g->count < 3 || normal_now(p, i).z < 0.5) return;
     struct panel *f = &b->panel[b->panels++];
-    *f = (struct panel){ .n = p->wall[i].n, .origin = wall_now(p, i), .corners = g->count };
+    *f = (struct panel){ .n = normal_now(p, i), .origin = wall_now(p, i), .corners = g->count };
     for (int k = 0; k < g->count; k++) f->corner[k] = v3_add(g->p[k], middle);
 }
 
@@ -166,15 +210,27 @@ static void keep_polygon(struct walls *b, const struct packing *p, int i, const 
 static struct polygon wall_cut(const struct packing *p, int i, const struct region *r, vec3 middle)
 {
     double size = v3_norm(v3_sub(r->hi, r->lo));
-    if (!is_drawn(wall_now(p, i))) return (struct polygon){ .count = 0 };
+    if (!is_plane(p, i) || !is_drawn(wall_now(p, i))) return (struct polygon){ .count = 0 };
     struct polygon g = wall_uncut(p, i, middle, size);
     clip_region(&g, r, middle, size, p->dim);
     for (int j = 0; j < walls_of(p) && g.count; j++) {
-        vec3 n = p->wall[j].n, x = wall_now(p, j);
-        if (j == i || !is_drawn(x)) continue;
+        vec3 n = normal_now(p, j), x = wall_now(p, j);
+        if (j == i || !is_plane(p, j) || !is_drawn(x)) continue;
         clip(&g, n, v3_dot(n, v3_sub(x, middle)) - 1e-9 * size, j);
     }
     return g;
+}
+
+/* Lines of the other shapes; without memory for them there are none. */
+static void add_outlines(struct walls *b, const struct packing *p, const struct region *r)
+{
+    struct outline o;
+    struct why why = { 0 };
+    if (outline_init(&o, p, v3_norm(v3_sub(r->hi, r->lo)), &why)) return;
+    for (int64_t i = 0; i < o.lines && b->edges < WALLS_EDGES; i++)
+        if (is_drawn(o.line[i].end[0]) && is_drawn(o.line[i].end[1]))
+            b->edge[b->edges++] = (struct edge){ o.line[i].end[0], o.line[i].end[1] };
+    outline_free(&o);
 }
 
 void walls_build(struct walls *b, const struct packing *p, const struct region *r)
@@ -185,6 +241,7 @@ void walls_build(struct walls *b, const struct packing *p, const struct region *
         struct polygon g = wall_cut(p, i, r, middle);
         if (g.count > 1) keep_polygon(b, p, i, &g, middle);
     }
+    add_outlines(b, p, r);
 }
 
 int walls_polygon(const struct packing *p, int i, const struct region *r, vec3 *corner)

@@ -1,6 +1,7 @@
 /*
- * draw/walls.h: what a picture shows of the walls: floors as panels, and for all walls the edges
- * where they meet. Walls are infinite planes; they are cut off at a region of space.
+ * draw/walls.h: what a picture shows of the boundaries: floors as panels, for planes the edges where
+ * they meet, for other shapes their outlines [draw/outline.h]. Planes are infinite; they are cut off at
+ * a region of space.
  */
 #ifndef NSD_WALLS_H
 #define NSD_WALLS_H
@@ -18,7 +19,7 @@ struct region {
 enum {
     WALLS_PANELS = 64,                    /* walls beyond this number are not drawn */
     WALLS_CORNERS = 4 + 6 + WALLS_PANELS, /* a square, cut by the region and by every wall */
-    WALLS_EDGES = 2048                    /* edges beyond this number are not drawn */
+    WALLS_EDGES = 8192                    /* edges beyond this number are not drawn */
 };
 
 struct panel {

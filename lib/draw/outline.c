@@ -1,0 +1,212 @@
+/* draw/outline.c: surfaces as grids of points, and their borders [draw/outline.h]. */
+#include "draw/outline.h"
+
+#include <stdlib.h>
+
+#define TWO_PI 6.283185307179586
+#define SHARP  0.94 /* the cosine of the least angle between triangles whose edge is drawn */
+
+/* A boundary where it is now */
+struct placed {
+    const struct packing *p;
+    const struct wall *w;
+    int32_t boundary;
+    struct pose pose;
+    double reach; /* m */
+};
+
+static bool add_triangle(struct outline *o, const struct placed *b, vec3 x, vec3 y, vec3 z)
+{
+    if (o->triangles == o->triangle_room) {
+        int64_t room = 2 * o->triangle_room + 256;
+        struct outline_triangle *more = realloc(o->triangle, (size_t)room * sizeof *more);
+        if (!more) return false;
+        o->triangle = more, o->triangle_room = room;
+    }
+    o->triangle[o->triangles++] = (struct outline_triangle){ { x, y, z }, b->boundary };
+    return true;
+}
+
+static bool add_line(struct outline *o, const struct placed *b, vec3 x, vec3 y)
+{
+    if (o->lines == o->line_room) {
+        int64_t room = 2 * o->line_room + 256;
+        struct outline_line *more = realloc(o->line, (size_t)room * sizeof *more);
+        if (!more) return false;
+        o->line = more, o->line_room = room;
+    }
+    o->line[o->lines++] = (struct outline_line){ { x, y }, b->boundary };
+    return true;
+}
+
+/* ---- shapes that are grids ---- */
+
+/* Across the axis, at a share u of the whole angle */
+static vec3 around(const struct wall *w, double u)
+{
+    vec3 along = w->along;
+    if (!(v3_dot(along, along) > 0.5)) {
+        vec3 e = fabs(w->n.x) < 0.7 ? v3(1, 0, 0) : v3(0, 1, 0);
+        along = v3_axpy(e, -v3_dot(e, w->n), w->n);
+        along = v3_scale(1 / v3_norm(along), along);
+    }
+    double angle = (w->arc > 0 ? w->arc : TWO_PI) * u;
+    return v3_add(v3_scale(cos(angle), along), v3_scale(sin(angle), v3_cross(w->n, along)));
+}
+
+/* The point (u, v) of the surface, both from 0 to 1: u around the axis, v along the generatrix */
+static vec3 point_of(const struct placed *b, double u, double v)
+{
+    const struct wall *w = b->w;
+    const double *s = w->size;
+    bool endless = w->shape == BOUNDARY_CYLINDER && s[2] == 0;
+    vec3 x, d = around(w, u);
+    switch (w->shape) {
+    case BOUNDARY_RECTANGLE:
+        x = v3_axpy(v3_scale((u - 0.5) * s[0], w->along), (v - 0.5) * s[1],
+                    v3_cross(w->n, w->along));
+        break;
+    case BOUNDARY_DISC:
+        x = v3_scale(s[0] + v * (s[1] - s[0]), d);
+        break;
+    case BOUNDARY_SPHERE:
+        x = v3_axpy(v3_scale(s[0] * sin(0.5 * TWO_PI * v), d), -s[0] * cos(0.5 * TWO_PI * v), w->n);
+        break;
+    default:
+        x = v3_scale(w->shape == BOUNDARY_CONE ? s[0] + v * (s[1] - s[0]) : s[0], d);
+        x = v3_axpy(x, endless ? (2 * v - 1) * b->reach : v * s[2], w->n);
+    }
+    return pose_of(&b->pose, v3_add(w->x, x));
+}
+
+/* A curve of the surface, from (u0, v0) to (u1, v1), in n pieces */
+static bool add_curve(struct outline *o, const struct placed *b, double u0, double v0, double u1,
+                      double v1, int n)
+{
+    vec3 last = point_of(b, u0, v0);
+    for (int i = 1; i <= n; i++) {
+        double s = (double)i / n;
+        vec3 next = point_of(b, u0 + s * (u1 - u0), v0 + s * (v1 - v0));
+        if (!add_line(o, b, last, next)) return false;
+        last = next;
+    }
+    return true;
+}
+
+static bool add_grid(struct outline *o, const struct placed *b, int nu, int nv)
+{
+    for (int i = 0; i < nu; i++)
+        for (int j = 0; j < nv; j++) {
+            double u[2] = { (double)i / nu, (double)(i + 1) / nu };
+            double v[2] = { (double)j / nv, (double)(j + 1) / nv };
+            vec3 x[4] = { point_of(b, u[0], v[0]), point_of(b, u[1], v[0]), point_of(b, u[1], v[1]),
+                          point_of(b, u[0], v[1]) };
+            if (!add_triangle(o, b, x[0], x[1], x[2]) || !add_triangle(o, b, x[0], x[2], x[3]))
+                return false;
+        }
+    return true;
+}
+
+static bool add_shape(struct outline *o, const struct placed *b)
+{
+    const struct wall *w = b->w;
+    bool flat = b->p->dim == 2, rectangle = w->shape == BOUNDARY_RECTANGLE;
+    bool sphere = w->shape == BOUNDARY_SPHERE;
+    int n = rectangle ? 1 : OUTLINE_FACETS;
+    if (flat) return add_curve(o, b, 0, 0.5, 1, 0.5, n);
+    if (!add_grid(o, b, n, sphere ? OUTLINE_FACETS / 2 : 1)) return false;
+    for (int k = 0; k < 3; k++) // borders, of a sphere three circles
+        if (!add_curve(o, b, 0, sphere ? 0.25 * (k + 1) : k % 2, 1, sphere ? 0.25 * (k + 1) : k % 2,
+                       n))
+            return false;
+    // straight lines, which show that it turns
+    int lines = rectangle || w->arc > 0 ? 2 : 8, pieces = sphere ? n / 2 : 1;
+    for (int k = 0; k < lines && w->shape != BOUNDARY_DISC; k++) {
+        double u = lines == 2 ? k : (double)k / lines;
+        if (!add_curve(o, b, u, 0, u, 1, pieces)) return false;
+    }
+    return true;
+}
+
+/* ---- meshes ---- */
+
+/* An edge of a triangle, its lower vertex first */
+struct side {
+    vec3 end[2], normal;
+};
+
+static int compare(vec3 a, vec3 b)
+{
+    if (a.x != b.x) return a.x < b.x ? -1 : 1;
+    if (a.y != b.y) return a.y < b.y ? -1 : 1;
+    return a.z < b.z ? -1 : a.z > b.z;
+}
+
+static int by_ends(const void *a, const void *b)
+{
+    const struct side *s = a, *t = b;
+    int first = compare(s->end[0], t->end[0]);
+    return first ? first : compare(s->end[1], t->end[1]);
+}
+
+/* Edges that are no other triangle's, or where two meet at an angle */
+static bool add_sharp(struct outline *o, const struct placed *b, struct side *s, size_t n)
+{
+    qsort(s, n, sizeof *s, by_ends);
+    for (size_t i = 0, next; i < n; i = next) {
+        for (next = i + 1; next < n && !by_ends(&s[i], &s[next]);) next++;
+        bool smooth = next == i + 2 && fabs(v3_dot(s[i].normal, s[i + 1].normal)) > SHARP;
+        if (!smooth && !add_line(o, b, s[i].end[0], s[i].end[1])) return false;
+    }
+    return true;
+}
+
+static bool add_mesh(struct outline *o, const struct placed *b)
+{
+    const struct mesh *m = &b->p->mesh;
+    const struct wall *w = b->w;
+    struct side *side = malloc(3 * (size_t)w->elements * sizeof *side + 1);
+    bool good = side, flat = b->p->dim == 2;
+    size_t n = 0;
+    for (int32_t e = w->first_element; good && e < w->first_element + w->elements; e++) {
+        vec3 x[3];
+        for (int k = 0; k < 3; k++)
+            x[k] = pose_of(&b->pose, v3_add(w->x, m->vertex[m->element[e][k]]));
+        if (flat) {
+            good = add_line(o, b, x[0], x[1]);
+            continue;
+        }
+        vec3 normal = v3_cross(v3_sub(x[1], x[0]), v3_sub(x[2], x[0]));
+        normal = v3_scale(1 / fmax(v3_norm(normal), 1e-300), normal);
+        good = add_triangle(o, b, x[0], x[1], x[2]);
+        for (int k = 0; k < 3; k++) {
+            vec3 from = x[k], to = x[(k + 1) % 3];
+            bool rises = compare(from, to) < 0;
+            side[n++] = (struct side){ { rises ? from : to, rises ? to : from }, normal };
+        }
+    }
+    good = good && add_sharp(o, b, side, n);
+    free(side);
+    return good;
+}
+
+int outline_init(struct outline *o, const struct packing *p, double reach, struct why *why)
+{
+    bool good = true;
+    *o = (struct outline){ 0 };
+    for (int32_t w = 0; good && w < p->walls; w++) {
+        const struct wall *wall = &p->wall[w];
+        if (wall->shape == BOUNDARY_PLANE || !wall_there(wall, p->t)) continue;
+        const struct placed b = { p, wall, w, wall_pose(p, wall, p->t), reach };
+        good = wall->shape == BOUNDARY_MESH ? add_mesh(o, &b) : add_shape(o, &b);
+    }
+    if (good) return 0;
+    outline_free(o);
+    return why_set(why, EX_SOFTWARE, "no memory for the outlines of the boundaries");
+}
+
+void outline_free(struct outline *o)
+{
+    free(o->triangle), free(o->line);
+    *o = (struct outline){ 0 };
+}

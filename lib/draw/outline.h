@@ -1,0 +1,36 @@
+/*
+ * draw/outline.h: boundaries that are not planes as triangles and lines, for pictures, pages and other
+ * programs: each at the packing's time, round shapes by OUTLINE_FACETS facets. Planes have no end:
+ * draw/walls.h cuts them.
+ */
+#ifndef NSD_OUTLINE_H
+#define NSD_OUTLINE_H
+
+#include "base/why.h"
+#include "bodies/packing.h"
+
+enum { OUTLINE_FACETS = 64 };
+
+struct outline_triangle {
+    vec3 corner[3];   /* m */
+    int32_t boundary; /* whose it is */
+};
+
+/* In space the borders and sharp edges of shapes; in the plane all of them */
+struct outline_line {
+    vec3 end[2]; /* m */
+    int32_t boundary;
+};
+
+struct outline {
+    int64_t triangles, lines, triangle_room, line_room;
+    struct outline_triangle *triangle;
+    struct outline_line *line;
+};
+
+/* reach (m): as far as shapes without an end are followed from the point of reference, to both sides.
+   Returns 0, or EX_SOFTWARE with nothing to free. */
+int outline_init(struct outline *o, const struct packing *p, double reach, struct why *why);
+void outline_free(struct outline *o);
+
+#endif
