@@ -20,4 +20,11 @@ struct why {
 int why_set(struct why *why, int status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* What the static analyser, which sees one file at a time, has to know of it */
+#ifdef __clang_analyzer__
+void why_said(const char *format, ...);
+#define why_set(why, code, ...)                                                                    \
+    ((why)->status ? (why)->status : (why_said(__VA_ARGS__), (why)->status = (code)))
+#endif
+
 #endif

@@ -133,7 +133,10 @@ static vec3 draw_place(const struct start *s, int64_t i, gsl_rng *rng)
 static int add_one_by_one(struct start *s, gsl_rng *rng, struct why *why)
 {
     struct placed t;
-    if (!placed_alloc(&t, s)) why_set(why, EX_SOFTWARE, "no memory for a random start");
+    if (!placed_alloc(&t, s)) {
+        placed_free(&t);
+        return why_set(why, EX_SOFTWARE, "no memory for a random start");
+    }
     for (int64_t i = 0; i < s->p.n && !why->status; i++) {
         int tries = 0;
         do {
@@ -291,21 +294,26 @@ static int larger_first(const void *one, const void *other)
     return a->i < b->i ? -1 : a->i > b->i;
 }
 
+/* The bodies of s, the largest first; from[]: which of the radii each has */
 static int sort_radii(struct start *s, const struct grains *g, struct why *why)
 {
-    if (packing_init(&s->p, s->dim, g->n, why)) return why->status;
+    int e = packing_init(&s->p, s->dim, g->n, why);
+    if (e) return e;
     struct drawn *d = malloc(((size_t)g->n + 1) * sizeof *d);
     s->from = malloc(((size_t)g->n + 1) * sizeof *s->from);
-    if (!d || !s->from) why_set(why, EX_SOFTWARE, "no memory for a random start");
-    for (int64_t i = 0; i < g->n && !why->status; i++) d[i] = (struct drawn){ g->g[i].r, i };
-    if (!why->status) qsort(d, (size_t)g->n, sizeof *d, larger_first);
-    for (int64_t i = 0; i < g->n && !why->status; i++) {
+    if (!d || !s->from) {
+        free(d);
+        return why_set(why, EX_SOFTWARE, "no memory for a random start");
+    }
+    for (int64_t i = 0; i < g->n; i++) d[i] = (struct drawn){ g->g[i].r, i };
+    qsort(d, (size_t)g->n, sizeof *d, larger_first);
+    for (int64_t i = 0; i < g->n; i++) {
         double r = d[i].r / d[0].r;
         s->p.radius[i] = d[i].r, s->from[i] = d[i].i;
         s->p.mass[i] = fmax(s->dim == 3 ? r * r * r : r * r, 1e-300);
     }
     free(d);
-    return why->status;
+    return 0;
 }
 
 int random_start(struct grains *out, const struct scene_bodies *b, int dim, gsl_rng *rng,
