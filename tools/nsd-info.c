@@ -216,6 +216,14 @@ static json_t *load(const struct load *l)
     return j;
 }
 
+/* m: as nsd-format(5) has them */
+static json_t *sizes(const struct wall *w)
+{
+    json_t *j = json_array();
+    for (int k = 0; k < 3; k++) json_array_append_new(j, json_number(w->size[k]));
+    return j;
+}
+
 static void show_walls(const struct packing *p)
 {
     for (int32_t i = 0; i < p->walls; i++) {
@@ -224,9 +232,14 @@ static void show_walls(const struct packing *p)
         json_object_set_new(j, "step", json_integer(p->step));
         json_object_set_new(j, "wall", json_integer(i));
         json_object_set_new(j, "kind", json_string(p->kind_name[w->kind]));
-        json_object_set_new(j, "point", json_vec(wall_at(p, w, p->t)));
-        json_object_set_new(j, "normal", json_vec(w->n));
-        json_object_set_new(j, "velocity", json_vec(w->v));
+        vec3 x = wall_at(p, w, p->t), spin = wall_spin(p, w);
+        json_object_set_new(j, "shape", json_string(boundary_shape_name[w->shape]));
+        json_object_set_new(j, "point", json_vec(x));
+        json_object_set_new(j, "normal", json_vec(wall_normal(p, w, p->t)));
+        json_object_set_new(j, "velocity", json_vec(wall_velocity(p, w, x)));
+        if (v3_norm(spin) > 0) json_object_set_new(j, "spin", json_vec(spin));
+        if (w->shape != BOUNDARY_PLANE) json_object_set_new(j, "size", sizes(w));
+        if (!wall_there(w, p->t)) json_object_set_new(j, "gone", json_true());
         if (w->load.way) json_object_set_new(j, "load", load(&w->load));
         json_line(j);
     }
