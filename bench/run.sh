@@ -93,6 +93,13 @@ writing() {
     done | figure "writing 1000 frames of the run with 5000 sweeps a step" "% of its CPU" 5
 }
 
+reading() {
+    nsd-gen 20 | nsd-step -n 10000 > "$work/long.h5" 2> /dev/null
+    for ((k = 0; k < runs; k++)); do
+        { time nsd-info "$work/long.h5" > /dev/null; } 2>&1 | awk '{ print ($2 + $3) / 10 }'
+    done | figure "nsd-info, a frame of 20 balls" "ms of CPU" 0.3
+}
+
 # The criterion's share of a run. With the number of sweeps fixed (--eps 0 is never met) a sweep costs
 # s + c with the criterion after each and s + c/25 as it comes: that gives s, a sweep with no criterion
 # at all. Of a run that stops by the criterion, as many sweeps of s are what is not the criterion's.
@@ -171,6 +178,7 @@ settle
 a_sweep
 whole_runs
 writing
+reading
 criterion
 sizes
 million

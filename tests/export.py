@@ -333,14 +333,4 @@ def memory(few, many, *command):
     assert most[1] < 1.25 * most[0], most
 
 
-def cost(document, most):
-    """nsd-info takes at most so many ms of the processor a frame."""
-    with open(os.devnull, "w") as null:
-        subprocess.run(["nsd-info", document], stdout=null, check=True)
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    frames = sum(1 for _ in nsd.frames(document))
-    each = 1e3 * (used.ru_utime + used.ru_stime) / frames
-    assert each <= float(most), f"{each} ms"
-
-
 globals()[sys.argv[1]](*[int(a) if a.isdigit() else a for a in sys.argv[2:]])

@@ -142,8 +142,6 @@ if has matplotlib; then ok "plot the forces" plots; else skip "plot the forces" 
 # ---- bounds ----
 
 if [ -z "$quick" ]; then
-    nsd-gen 20 | nsd-step -n 10000 >"$tmp/long.h5" 2>/dev/null
-    other "nsd-info takes 0.3 ms a frame at most" h5py cost "$tmp/long.h5" 0.3
     nsd-gen 2000 >"$tmp/many.h5"
     nsd-step -n 10 "$tmp/many.h5" 2>/dev/null | cat >"$tmp/few"
     nsd-step -n 100 "$tmp/many.h5" 2>/dev/null | cat >"$tmp/more"

@@ -247,7 +247,7 @@ static void heap(struct packing *p, int dim, double e)
     struct wall *wall = realloc(p->wall, (size_t)(p->walls + 1) * sizeof *wall);
     must(!wall, &why);
     p->wall = wall;
-    wall[p->walls++] = (struct wall){ .x = v3_scale(top, up), .n = v3_scale(-1, up), .kind = 1 };
+    wall[p->walls++] = boundary_plane(v3_scale(top, up), v3_scale(-1, up), 1);
     wall[p->walls - 1].load = glides(up, 0.3 * p->mass[0], -2 * weight);
     wall[0].load = glides(wall[0].n, 5 * p->mass[0], 0.8 * weight);
     for (int32_t k = 0; dim == 3 && k < p->walls; k++)
@@ -352,7 +352,7 @@ static void contact_velocities(const struct packing *p, const struct packing *ar
         vec3 v = v3_add(p->v[c->b], v3_cross(p->w[c->b], v3_sub(c->x, xb)));
         v = v3_add(v, cell_shift(p->cell.rate, c->shift));
         if (c->a < 0)
-            v = v3_sub(v, wall_velocity(&p->wall[-1 - c->a], c->x));
+            v = v3_sub(v, wall_velocity(p, &p->wall[-1 - c->a], c->x));
         else
             v = v3_sub(v, v3_add(p->v[c->a],
                                  v3_cross(p->w[c->a], v3_sub(c->x, packing_predict(arms, c->a)))));
@@ -485,7 +485,7 @@ static void test_untouched(void)
         struct wall *wall = realloc(p[k].wall, (size_t)(p[k].walls + 1) * sizeof *wall);
         must(!wall, &why);
         p[k].wall = wall;
-        wall[p[k].walls++] = (struct wall){ .x = v3(0, 0, 1), .n = v3(0, 0, -1), .kind = 1 };
+        wall[p[k].walls++] = boundary_plane(v3(0, 0, 1), v3(0, 0, -1), 1);
         if (k) wall[p[k].walls - 1].load = glides(v3(0, 0, 1), 1, 0);
         run(&p[k], &s, &o, 300, &rep);
     }

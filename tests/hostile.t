@@ -118,7 +118,7 @@ hostile "bodies of which nothing is stored" 'stored' four.h5 \
 # ---- numbers that are not what they say ----
 
 for change in "new(f, P + 'species', data=np.full(4, 0.9))" "new(f, P + 'id', data=np.full(4, np.nan))" \
-    "new(f, P + 'id', data=np.full(4, 2**40))" "new(f, '/walls/plane/species', data=np.full(5, 0.5))" \
+    "new(f, P + 'id', data=np.full(4, 2**40))" "new(f, '/particles/boundary/body/species', data=np.full(5, 0.5))" \
     "f['/nsd/material/mu'][0, 1] = 0.7" "f['/nsd/material/en'][1, 0] = 0.7"; do
     make bad.h5 four.h5 "$change"
     refuses 65 "$change" nsd-step "$tmp/bad.h5"
@@ -160,7 +160,7 @@ mended()
     local at=$((512 + ($1 * 509) % (size - 512))) f=$tmp/mended.$BASHPID tools=(nsd-info nsd-cat nsd-detect)
     cp "$tmp/export.h5" "$f"
     poke "$f" "$at" $((byte[at] ^ (1 << $1 % 8)))
-    header "$f" 1 0 "$size"
+    header "$f" 2 0 "$size"
     breaks "$f" "${tools[$1 % 3]}" || echo "byte $at"
 }
 ok_each "a byte changed and the checksum mended: an answer, or 65" mended "$([ -n "$quick" ] && echo 24 || echo 90)"

@@ -4,8 +4,8 @@
 
 #define TWO_PI 6.283185307179586
 
-const char *const boundary_shape_name[] = { "plane",  "rectangle", "disc", "cylinder",
-                                            "cone",   "sphere",    "mesh", NULL };
+const char *const boundary_shape_name[] = { "plane", "rectangle", "disc", "cylinder",
+                                            "cone",  "sphere",    "mesh", NULL };
 const char *const boundary_side_name[] = { "inside", "outside", "both", NULL };
 
 struct wall boundary_plane(vec3 x, vec3 n, int32_t kind)
@@ -58,8 +58,8 @@ const char *boundary_trouble(const struct wall *w, int dim)
     }
     if (!(w->arc >= 0 && w->arc < TWO_PI)) return "its arc is out of range";
     bool directed = w->shape == BOUNDARY_RECTANGLE || (is_round(w) && w->arc > 0);
-    if (directed && !(fabs(v3_dot(w->along, w->along) - 1) < 1e-6 &&
-                      fabs(v3_dot(w->along, w->n)) < 1e-6))
+    if (directed &&
+        !(fabs(v3_dot(w->along, w->along) - 1) < 1e-6 && fabs(v3_dot(w->along, w->n)) < 1e-6))
         return "its direction is not a unit vector across its normal";
     if (dim == 2 && directed && w->along.z != 0) return "leaves the plane, and dim is 2";
     return size_trouble(w, dim);

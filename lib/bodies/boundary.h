@@ -47,9 +47,9 @@ enum boundary_side { BOUNDARY_INSIDE, BOUNDARY_OUTSIDE, BOUNDARY_BOTH, BOUNDARY_
 extern const char *const boundary_side_name[BOUNDARY_SIDES + 1]; /* the last one NULL */
 
 struct wall {
-    vec3 x, n;        /* m: its point of reference at t = 0; unit normal or axis */
-    vec3 v;           /* m/s: at time t the point is at x + v t, and where drives and load bring it */
-    int32_t kind;     /* row of the material tables */
+    vec3 x, n;    /* m: its point of reference at t = 0; unit normal or axis */
+    vec3 v;       /* m/s: at time t the point is at x + v t, and where drives and load bring it */
+    int32_t kind; /* row of the material tables */
     struct load load; /* that it yields to; LOAD_NONE: it does not */
 
     int32_t shape, side; /* enum boundary_shape, boundary_side */

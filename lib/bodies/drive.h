@@ -20,15 +20,15 @@ enum drive_signal { DRIVE_SPEED, DRIVE_SINE, DRIVE_TABLE, DRIVE_SIGNALS };
 extern const char *const drive_signal_name[DRIVE_SIGNALS + 1]; /* the last one NULL */
 
 struct drive {
-    int32_t boundary; /* that it moves */
-    int32_t turns;    /* 1: about the axis, 0: along it */
-    int32_t signal;   /* enum drive_signal */
-    vec3 axis, point; /* unit vector; m: a point on the axis, of one that turns */
-    double value;     /* m/s, rad/s of a speed; m, rad of a sine */
-    double frequency; /* Hz */
-    double phase;     /* rad */
-    double from, until; /* s: the way is made between them; perhaps infinite */
-    double clock;       /* s: added to the packing's time, in which all others are said */
+    int32_t boundary;    /* that it moves */
+    int32_t turns;       /* 1: about the axis, 0: along it */
+    int32_t signal;      /* enum drive_signal */
+    vec3 axis, point;    /* unit vector; m: a point on the axis, of one that turns */
+    double value;        /* m/s, rad/s of a speed; m, rad of a sine */
+    double frequency;    /* Hz */
+    double phase;        /* rad */
+    double from, until;  /* s: the way is made between them; perhaps infinite */
+    double clock;        /* s: added to the packing's time, in which all others are said */
     int32_t first, rows; /* of a table */
 };
 

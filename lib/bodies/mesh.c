@@ -43,8 +43,8 @@ int mesh_check(const struct mesh *m, int dim, struct why *why)
 {
     for (int32_t i = 0; i < m->vertices; i++)
         if (!v3_finite(m->vertex[i]) || (dim == 2 && m->vertex[i].z != 0))
-            return why_set(why, EX_DATAERR, "vertex %d of the mesh: not finite, or not in the plane",
-                           i);
+            return why_set(why, EX_DATAERR,
+                           "vertex %d of the mesh: not finite, or not in the plane", i);
     for (int32_t i = 0; i < m->elements; i++) {
         const int32_t *e = m->element[i];
         for (int k = 0; k < 3; k++)
@@ -102,8 +102,8 @@ static int32_t grow(struct surface *s, struct keyed *room, int32_t lo, int32_t h
     vec3 d = v3_sub(b->hi, b->lo);
     int axis = d.x >= d.y && d.x >= d.z ? 0 : d.y >= d.z ? 1 : 2;
     for (int32_t i = lo; i < hi; i++) {
-        vec3 sum = v3_add(s->at[s->order[i]][0],
-                          v3_add(s->at[s->order[i]][1], s->at[s->order[i]][2]));
+        vec3 sum =
+            v3_add(s->at[s->order[i]][0], v3_add(s->at[s->order[i]][1], s->at[s->order[i]][2]));
         room[i] = (struct keyed){ axis == 0 ? sum.x : axis == 1 ? sum.y : sum.z, s->order[i] };
     }
     qsort(room + lo, (size_t)(hi - lo), sizeof *room, by_key);
@@ -117,7 +117,7 @@ static int32_t grow(struct surface *s, struct keyed *room, int32_t lo, int32_t h
 
 struct placed {
     vec3 x;
-    int32_t vertex;
+    int32_t corner;
 };
 
 static int by_place(const void *a, const void *b)
@@ -126,7 +126,7 @@ static int by_place(const void *a, const void *b)
     if (p->x.x != q->x.x) return p->x.x < q->x.x ? -1 : 1;
     if (p->x.y != q->x.y) return p->x.y < q->x.y ? -1 : 1;
     if (p->x.z != q->x.z) return p->x.z < q->x.z ? -1 : 1;
-    return (p->vertex > q->vertex) - (p->vertex < q->vertex);
+    return (p->corner > q->corner) - (p->corner < q->corner);
 }
 
 static bool same_place(vec3 a, vec3 b)
@@ -134,39 +134,35 @@ static bool same_place(vec3 a, vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* one[v] = the first of the vertices that lie where v does: an STL file has each once a triangle. */
-static bool weld(const struct mesh *m, int32_t *one)
+/* corner[c] = the first of the corners that lie where c does: an STL file has a vertex once a
+   triangle. */
+static bool weld(struct surface *s)
 {
-    struct placed *p = malloc(((size_t)m->vertices + 1) * sizeof *p);
+    int32_t n = 3 * s->n;
+    struct placed *p = malloc(((size_t)n + 1) * sizeof *p);
     if (!p) return false;
-    for (int32_t i = 0; i < m->vertices; i++) p[i] = (struct placed){ m->vertex[i], i };
-    qsort(p, (size_t)m->vertices, sizeof *p, by_place);
-    for (int32_t i = 0; i < m->vertices; i++)
-        one[p[i].vertex] =
-            i && same_place(p[i].x, p[i - 1].x) ? one[p[i - 1].vertex] : p[i].vertex;
+    for (int32_t c = 0; c < n; c++) p[c] = (struct placed){ s->at[c / 3][c % 3], c };
+    qsort(p, (size_t)n, sizeof *p, by_place);
+    for (int32_t i = 0; i < n; i++)
+        s->corner[p[i].corner] =
+            i && same_place(p[i].x, p[i - 1].x) ? s->corner[p[i - 1].corner] : p[i].corner;
     free(p);
     return true;
 }
 
-/* corner[], star[] and member[] of the elements from `first` on */
-static bool meet(struct surface *s, const struct mesh *m, int32_t first)
+/* corner[], star[] and member[] */
+static bool meet(struct surface *s)
 {
-    int32_t *one = calloc((size_t)m->vertices + 1, sizeof *one);
-    s->corner = calloc(3 * (size_t)s->n + 1, sizeof *s->corner);
-    s->star = calloc((size_t)m->vertices + 2, sizeof *s->star);
-    s->member = calloc(3 * (size_t)s->n + 1, sizeof *s->member);
-    bool good = one && s->corner && s->star && s->member && weld(m, one);
-    for (int32_t e = 0; good && e < s->n; e++)
-        for (int k = 0; k < 3; k++) {
-            int32_t v = one[m->element[first + e][k]];
-            s->corner[3 * e + k] = v;
-            s->star[v + 2]++;
-        }
-    for (int32_t v = 0; good && v < m->vertices; v++) s->star[v + 2] += s->star[v + 1];
+    int32_t n = 3 * s->n;
+    s->corner = calloc((size_t)n + 1, sizeof *s->corner);
+    s->star = calloc((size_t)n + 2, sizeof *s->star);
+    s->member = calloc((size_t)n + 1, sizeof *s->member);
+    if (!s->corner || !s->star || !s->member || !weld(s)) return false;
+    for (int32_t c = 0; c < n; c++) s->star[s->corner[c] + 2]++;
+    for (int32_t v = 0; v < n; v++) s->star[v + 2] += s->star[v + 1];
     // star[v+1] is now where v begins, and moves to where v ends
-    for (int32_t i = 0; good && i < 3 * s->n; i++) s->member[s->star[s->corner[i] + 1]++] = i / 3;
-    free(one);
-    return good;
+    for (int32_t c = 0; c < n; c++) s->member[s->star[s->corner[c] + 1]++] = c / 3;
+    return true;
 }
 
 int surface_init(struct surface *s, const struct mesh *m, int32_t first, int32_t n, struct why *why)
@@ -176,11 +172,12 @@ int surface_init(struct surface *s, const struct mesh *m, int32_t first, int32_t
     s->at = malloc(((size_t)n + 1) * sizeof *s->at);
     s->order = malloc(((size_t)n + 1) * sizeof *s->order);
     s->box = malloc((2 * (size_t)n + 1) * sizeof *s->box);
-    bool good = room && s->at && s->order && s->box && meet(s, m, first);
+    bool good = room && s->at && s->order && s->box;
     for (int32_t i = 0; good && i < n; i++) {
         s->order[i] = i;
         for (int k = 0; k < 3; k++) s->at[i][k] = m->vertex[m->element[first + i][k]];
     }
+    good = good && meet(s);
     if (good) grow(s, room, 0, n, 0);
     free(room);
     return good ? 0 : why_set(why, EX_SOFTWARE, "no memory for a surface of %d elements", n);
@@ -281,8 +278,7 @@ static void look_at(const struct surface *s, int32_t e, vec3 c, double most, str
     double distance = v3_norm(d);
     if (!(distance <= most) || (at.part < 6 && !is_minimum(s, e, at.part, c)) || *n == TOUCHES_MOST)
         return;
-    vec3 up = v3_cross(v3_sub(s->at[e][1], s->at[e][0]),
-                       v3_sub(s->at[e][2], s->at[e][0]));
+    vec3 up = v3_cross(v3_sub(s->at[e][1], s->at[e][0]), v3_sub(s->at[e][2], s->at[e][0]));
     if (v3_dot(up, up) == 0) { // a segment
         vec3 ab = v3_sub(s->at[e][1], s->at[e][0]);
         up = v3(-ab.y, ab.x, 0);

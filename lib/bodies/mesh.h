@@ -34,12 +34,13 @@ struct surface {
     vec3 (*at)[3];           /* [n] m: their vertices; of a segment the third is the second */
     int32_t *order;          /* [n] elements, as the tree has them */
     struct surface_box *box; /* of a tree over order[] */
-    int32_t *corner;         /* [n][3] numbers of vertices, those at one place being one */
+    int32_t *corner;         /* [n][3] numbers of corners, of those at one place the first */
     int32_t *star, *member;  /* of corner v: elements member[star[v]] .. member[star[v+1]-1] */
 };
 
 /* Returns 0, or EX_SOFTWARE; surface_free() in any case. */
-int surface_init(struct surface *s, const struct mesh *m, int32_t first, int32_t n, struct why *why);
+int surface_init(struct surface *s, const struct mesh *m, int32_t first, int32_t n,
+                 struct why *why);
 void surface_free(struct surface *s);
 
 enum {

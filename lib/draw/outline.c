@@ -115,10 +115,12 @@ static bool add_shape(struct outline *o, const struct placed *b)
     int n = rectangle ? 1 : OUTLINE_FACETS;
     if (flat) return add_curve(o, b, 0, 0.5, 1, 0.5, n);
     if (!add_grid(o, b, n, sphere ? OUTLINE_FACETS / 2 : 1)) return false;
-    for (int k = 0; k < 3; k++) // borders, of a sphere three circles
-        if (!add_curve(o, b, 0, sphere ? 0.25 * (k + 1) : k % 2, 1, sphere ? 0.25 * (k + 1) : k % 2,
-                       n))
-            return false;
+    for (int k = 0; k < 3; k++) { // borders, of a sphere three circles
+        double v = sphere ? 0.25 * (k + 1) : k % 2;
+        bool point = !sphere && w->shape != BOUNDARY_CYLINDER && w->size[v > 0] == 0;
+        if (k == 2 && !sphere) break;
+        if ((rectangle || !point) && !add_curve(o, b, 0, v, 1, v, n)) return false;
+    }
     // straight lines, which show that it turns
     int lines = rectangle || w->arc > 0 ? 2 : 8, pieces = sphere ? n / 2 : 1;
     for (int k = 0; k < lines && w->shape != BOUNDARY_DISC; k++) {

@@ -107,10 +107,11 @@ static int write_walls(struct page *p, const struct packing *k, const struct reg
     if (!w) return no_memory(why);
     int e = outline_init(&o, k, v3_norm(v3_sub(r->hi, r->lo)), why);
     if (!e) {
-        struct chunk b = { malloc(8 + 36 * ((size_t)WALLS_PANELS * WALLS_CORNERS +
-                                            (size_t)o.triangles) +
-                                  24 * WALLS_EDGES),
-                           0 };
+        struct chunk b = {
+            malloc(8 + 36 * ((size_t)WALLS_PANELS * WALLS_CORNERS + (size_t)o.triangles) +
+                   24 * WALLS_EDGES),
+            0
+        };
         walls_build(w, k, r);
         if (b.at) put_walls(&b, w, &o);
         e = b.at ? write_changed(p, 'b', &p->walls, &p->walls_last, &p->walls_size, &b, why)

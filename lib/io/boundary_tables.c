@@ -1,6 +1,5 @@
 #include "io/boundary_tables.h"
 
-#include "bodies/freedom.h"
 #include "io/h5.h"
 #include "io/table_read.h"
 
@@ -93,7 +92,8 @@ int boundary_tables_read(struct source *r, int64_t k, struct packing *p, struct 
     if (!source_has(r, body)) return read_planes(r, k, p, why);
     if (count_rows(r, BOUNDARY "/body/point", 2, &n, why) || packing_alloc_walls(p, n, why) ||
         table_read_columns(r, body, "", layout_plane, 0, n, p->wall, sizeof *p->wall, why) ||
-        table_read_columns(r, body, "", layout_boundary, 0, n, p->wall, sizeof *p->wall, why) ||
+        (source_has(r, BOUNDARY "/body/shape") &&
+         table_read_columns(r, body, "", layout_boundary, 0, n, p->wall, sizeof *p->wall, why)) ||
         read_loads(r, BOUNDARY "/load", k, p, why) || read_drives(r, p, why) ||
         read_mesh(r, p, why))
         return why->status;
@@ -101,6 +101,21 @@ int boundary_tables_read(struct source *r, int64_t k, struct packing *p, struct 
 }
 
 /* ---- to a document ---- */
+
+/* Planes that are there for ever need no table of shapes. */
+static bool any_shapes(const struct packing *p)
+{
+    for (int32_t w = 0; w < p->walls; w++)
+        if (p->wall[w].shape != BOUNDARY_PLANE || p->wall[w].until < INFINITY) return true;
+    return false;
+}
+
+static bool any_loads(const struct packing *p)
+{
+    for (int32_t w = 0; w < p->walls; w++)
+        if (p->wall[w].load.way) return true;
+    return false;
+}
 
 static bool any_moves(const struct packing *p)
 {
@@ -154,9 +169,9 @@ int boundary_tables_write_static(struct table_write *s, const struct packing *p,
     s->growing = false;
     if (!table_write_columns(s, body, "", layout_plane, p->walls, p->wall, sizeof *p->wall, 0,
                              why) &&
-        !table_write_columns(s, body, "", layout_boundary, p->walls, p->wall, sizeof *p->wall, 0,
-                             why) &&
-        !write_drives(s, p, why) && !write_mesh(s, p, why) && freedoms_in(p))
+        !(any_shapes(p) && table_write_columns(s, body, "", layout_boundary, p->walls, p->wall,
+                                               sizeof *p->wall, 0, why)) &&
+        !write_drives(s, p, why) && !write_mesh(s, p, why) && any_loads(p))
         table_write_columns(s, BOUNDARY "/load", "", layout_loads, p->walls, p->wall,
                             sizeof *p->wall, 0, why);
     if (!why->status && !any_moves(p) && (m = motions(p, why)))
@@ -192,9 +207,8 @@ int boundary_tables_write(struct table_write *s, const struct packing *p, struct
 {
     if (!any_moves(p)) return 0;
     struct boundary_motion *m = motions(p, why);
-    if (m &&
-        !write_row(s, BOUNDARY, layout_boundary_motion, p->walls, m, sizeof *m, p, why) &&
-        freedoms_in(p))
+    if (m && !write_row(s, BOUNDARY, layout_boundary_motion, p->walls, m, sizeof *m, p, why) &&
+        any_loads(p))
         write_row(s, BOUNDARY "/load", layout_yield, p->walls, p->wall, sizeof *p->wall, p, why);
     free(m);
     return why->status;

@@ -104,9 +104,8 @@ int contact_rows_read(struct contact_rows *r, struct frame *f, struct why *why)
         (cell_repeats(&f->packing.cell) &&
          table_read_columns(r->source, "/contacts", "", layout_shifts, first, s->n, s->c,
                             sizeof *s->c, why)) ||
-        (f->packing.mesh.elements &&
-         table_read_columns(r->source, "/contacts", "", layout_features, first, s->n, s->c,
-                            sizeof *s->c, why)) ||
+        (f->packing.mesh.elements && table_read_columns(r->source, "/contacts", "", layout_features,
+                                                        first, s->n, s->c, sizeof *s->c, why)) ||
         (solved && table_read_columns(r->source, "/contacts", "", layout_found, first, s->n,
                                       s->found, sizeof *s->found, why)))
         return why->status;

@@ -44,8 +44,8 @@ static const struct column layout_bodies[] = {
     { 0 },
 };
 
-/* /particles/boundary/body/NAME [B][width]: members of struct wall. Until version 1 they were planes,
-   the last table of the three, in /walls/plane, and their loads were in /walls/load. */
+/* /particles/boundary/body/NAME [B][width]: members of struct wall. In version 1 all were planes, in
+   /walls/plane, and their loads in /walls/load. Shapes are there where any is no plane, or vanishes. */
 static const struct column layout_boundary[] = {
     { "shape", "1", COLUMN_I32, 1, offsetof(struct wall, shape) },
     { "side", "1", COLUMN_I32, 1, offsetof(struct wall, side) },

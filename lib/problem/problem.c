@@ -226,8 +226,7 @@ static double top_speed(const struct packing *p)
     double most = 0;
     for (int64_t i = 0; i < p->n; i++)
         most = fmax(most, v3_norm(p->v[i]) + p->radius[i] * v3_norm(p->w[i]));
-    for (int32_t k = 0; k < p->walls; k++)
-        most = fmax(most, wall_top_speed(p, &p->wall[k]));
+    for (int32_t k = 0; k < p->walls; k++) most = fmax(most, wall_top_speed(p, &p->wall[k]));
     double images = 0;
     for (int k = 0; k < 3; k++) images += p->cell.repeats[k] ? v3_norm(p->cell.rate[k]) : 0;
     most += images;

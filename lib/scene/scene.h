@@ -196,13 +196,13 @@ struct scene {
     struct scene_bodies *bodies; /* [groups] */
 
     int32_t walls;
-    struct wall *wall; /* [walls] */
-    struct drives drives;   /* of them */
-    struct mesh mesh;       /* of those that are meshes */
+    struct wall *wall;    /* [walls] */
+    struct drives drives; /* of them */
+    struct mesh mesh;     /* of those that are meshes */
     int32_t meshes;
     struct scene_mesh *mesh_file; /* [meshes] those that are files */
-    bool has_walls;    /* else those of the first document are taken */
-    double t;          /* s: the packing's time */
+    bool has_walls;               /* else those of the first document are taken */
+    double t;                     /* s: the packing's time */
 
     int32_t pours, removals;       /* grains that come and go [scene/flow.h] */
     struct scene_pour *pour;       /* [pours] */

@@ -72,7 +72,9 @@ static int read_drive(jnode o, struct scene *s, int32_t wall)
     char names[100];
     if (which < 0 || read_axis(o, s->dim, &d)) return 1;
     snprintf(names, sizeof names, "%s from until %s", keys[which],
-             !d.turns ? "along" : s->dim == 2 ? "about" : "about axis");
+             !d.turns      ? "along"
+             : s->dim == 2 ? "about"
+                           : "about axis");
     if (which != DRIVE_SPEED) d.from = -INFINITY;
     if (json_node_only(o, names) || read_signal(o, s, which, &d) ||
         json_node_number(json_node_key(&o, "from"), J_ANY, &d.from) ||

@@ -9,9 +9,7 @@
 /* A unit vector across n, next to the one given, or to an axis of space */
 static vec3 across(vec3 n, vec3 wish)
 {
-    vec3 e = v3_norm(v3_cross(n, wish)) > 1e-9 ? wish
-             : fabs(n.x) < 0.7                 ? v3(1, 0, 0)
-                                               : v3(0, 1, 0);
+    vec3 e = v3_norm(v3_cross(n, wish)) > 1e-9 ? wish : fabs(n.x) < 0.7 ? v3(1, 0, 0) : v3(0, 1, 0);
     e = v3_axpy(e, -v3_dot(e, n), n);
     return v3_scale(1 / v3_norm(e), e);
 }
@@ -97,8 +95,8 @@ static int read_cone(jnode o, struct scene *s, struct wall *w)
         json_node_vector(json_node_key(&o, "point"), 3, &w->x) ||
         scene_read_direction(json_node_key(&o, "axis"), 3, &w->n) ||
         read_two(radii, J_NOT_NEGATIVE, w->size) ||
-        json_node_number(json_node_key(&o, "length"), J_POSITIVE, &w->size[2]) ||
-        read_side(o, w) || read_arc(o, 3, w))
+        json_node_number(json_node_key(&o, "length"), J_POSITIVE, &w->size[2]) || read_side(o, w) ||
+        read_arc(o, 3, w))
         return 1;
     return w->size[0] + w->size[1] > 0 ? 0 : json_node_fault(radii, "must not both be 0");
 }
@@ -225,7 +223,8 @@ static int read_polygon(jnode o, struct scene *s, struct wall *w)
         int32_t next = (k + 1) % (int32_t)n;
         element[k][0] = first + k, element[k][1] = element[k][2] = first + next;
         if (!(v3_norm(v3_sub(vertex[next], vertex[k])) > 0))
-            return json_node_fault(json_node_item(&a, (size_t)next), "lies where the last one does");
+            return json_node_fault(json_node_item(&a, (size_t)next),
+                                   "lies where the last one does");
     }
     return 0;
 }

@@ -118,8 +118,8 @@ static int read_plane(jnode o, struct scene *s, struct wall w)
 static int read_box(jnode o, struct scene *s, struct wall w, struct scene_box *box, bool *boxed)
 {
     struct scene_box b;
-    if (json_node_only(o, "box " COMMON) ||
-        scene_read_box(json_node_key(&o, "box"), s->dim, &b) || add_box(o, s, w, &b))
+    if (json_node_only(o, "box " COMMON) || scene_read_box(json_node_key(&o, "box"), s->dim, &b) ||
+        add_box(o, s, w, &b))
         return 1;
     if (!*boxed) *box = b, *boxed = true;
     return 0;
