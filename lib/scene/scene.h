@@ -60,12 +60,23 @@
  *
  * BOX { x: [from, to], y: [from, to], z: [from, to] }: null is open, and so is an axis left out.
  *
- * WALL { point: vector, normal: vector } or { box: BOX }, with velocity vector [0], kind ["wall"], load.
- *   Bodies stay on the side that the normal, of any length, points to; in a box they stay inside.
- *   A wall by point and normal may yield to a load, on top of its velocity:
+ * WALL, a boundary: { point: vector, normal: vector } or { box: BOX }, or in space one of
+ *   { rectangle: { center, normal, sides: [a, b], along } }   { disc: { center, normal, radius, hole } }
+ *   { cylinder: { point, axis, radius, length, side, along, arc } }
+ *   { cone: { point, axis, radii: [r, s], length, side, along, arc } }
+ *   { sphere: { center, radius, side } }                      { mesh: { file, scale, at } }
+ *   in the plane one of
+ *   { segment: [[x, y], [x, y]] }      { polygon: { points: [[x, y], ...], closed } }
+ *   { circle: { center, radius, side } }  { arc: { center, radius, along, arc, side } }
+ *   with velocity vector [0], kind ["wall"], drives [ DRIVE ], until s, and all but the box load:
+ *   Bodies stay on the side that the normal points to; in a box they stay inside.
+ *   side inside [that] | outside | both. A boundary may yield to a load, on top of its motion:
  *   { along: vector, mass: kg, force: N [0], speed: m/s [0] }              free along the vector
- *   { about: vector, mass: kg m^2, torque: N m [0], speed: rad/s [0] }     about its normal there
- *   Its weight is a force like others: gravity does not pull at walls.
+ *   { about: point, axis, mass: kg m^2, torque: N m [0], speed: rad/s [0] }   about an axis there
+ *   Its weight is a force like others: gravity does not pull at boundaries.
+ *
+ * DRIVE { along: vector } or { about: point, axis: vector }, with speed, or amplitude, frequency and
+ *   phase, or table [[t, way], ...]; from, until s [bodies/drive.h]
  *
  * CELL { edges: [vector, ...] or lengths: vector, repeats, origin, gradient, affine, stress }
  *   edges    dim of them, the cell's from its origin; lengths: along x, y, z
