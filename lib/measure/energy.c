@@ -2,7 +2,7 @@
 #include "measure/branch.h"
 #include "measure/measures.h"
 #include "measure/step_motion.h"
-#include "measure/walls.h"
+#include "measure/boundaries.h"
 
 #include <math.h>
 
@@ -37,7 +37,7 @@ static int add_step(double **at, const struct snapshot *s, struct why *why)
         step_motion_at(&m, s, i, u);
         impact -= times * r[0] * u[0], friction -= times * (r[1] * u[1] + r[2] * u[2]);
         if (c->a < 0)
-            boundaries += times * v3_dot(contact_in_space(c, r), walls_velocity(s->p, c->a, c->x));
+            boundaries += times * v3_dot(contact_in_space(c, r), boundary_velocity(s->p, c->a, c->x));
     }
     put(at, impact + friction), put(at, impact), put(at, friction), put(at, boundaries);
     step_motion_free(&m);

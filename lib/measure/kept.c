@@ -1,6 +1,6 @@
 #include "measure/kept.h"
 
-#include "measure/images.h"
+#include "measure/period.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -44,6 +44,6 @@ vec3 kept_place(const struct packing *p, int64_t i)
 
 vec3 kept_way(const struct packing *p, vec3 from, vec3 to)
 {
-    struct images images;
-    return images_shortest(images_of(&images, &p->cell, p->dim), v3_sub(to, from));
+    struct period period;
+    return period_shortest(period_of(&period, &p->cell, p->dim), v3_sub(to, from));
 }

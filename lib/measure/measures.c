@@ -5,7 +5,7 @@
 
 static const struct measure *const measures[] = {
     &measure_fraction,    &measure_coordination,  &measure_contact_numbers,
-    &measure_fabric,      &measure_stress,        &measure_walls,
+    &measure_fabric,      &measure_stress,        &measure_boundaries,
     &measure_energy,      &measure_temperature,   &measure_profile,
     &measure_friction,    &measure_normal_forces, &measure_tangential_forces,
     &measure_mobilised,   &measure_pairs,         &measure_sizes,

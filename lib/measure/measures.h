@@ -30,7 +30,7 @@ struct measure {
 };
 
 extern const struct measure measure_fraction, measure_coordination, measure_contact_numbers,
-    measure_fabric, measure_stress, measure_walls, measure_energy, measure_temperature,
+    measure_fabric, measure_stress, measure_boundaries, measure_energy, measure_temperature,
     measure_profile, measure_friction, measure_normal_forces, measure_tangential_forces,
     measure_mobilised, measure_pairs, measure_sizes, measure_segregation, measure_displacement,
     measure_surface, measure_flux, measure_grains;

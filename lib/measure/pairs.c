@@ -38,7 +38,7 @@ static bool add_point(struct scatter *a, vec3 x)
 }
 
 /* All images within `reach` of the cell; those of the bodies themselves, brought into it, first */
-static bool add_images(struct scatter *a, const struct images *m, double reach)
+static bool add_images(struct scatter *a, const struct period *m, double reach)
 {
     int most[3] = { 0, 0, 0 };
     for (int64_t i = 0; i < a->seekers; i++) {
@@ -75,10 +75,10 @@ static void window(struct scatter *a, const struct snapshot *s)
         const double x[3] = { a->x[i].x, a->x[i].y, a->x[i].z };
         for (int k = 0; k < 3; k++) lo[k] = fmin(lo[k], x[k]), hi[k] = fmax(hi[k], x[k]);
     }
-    a->volume = r->images.volume;
+    a->volume = r->period.volume;
     for (int k = 0; k < s->p->dim; k++) {
         a->size[k] = r->all ? hi[k] - lo[k] : r->hi[k] - r->lo[k];
-        if (r->images.any && s->p->cell.repeats[k])
+        if (r->period.any && s->p->cell.repeats[k])
             a->size[k] = INFINITY;
         else
             a->volume *= a->size[k];
@@ -127,7 +127,7 @@ static void fill(struct table *t, const struct snapshot *s, const struct scatter
 
 static const char *impossible(const struct snapshot *s, const struct scatter *a, double reach)
 {
-    const struct images *m = &s->region.images;
+    const struct period *m = &s->region.period;
     if (a->seekers < 2) return "there are less than two bodies";
     if (!(a->volume > 0)) return "the bodies have no extent along an axis";
     for (int k = 0; m->any && k < 3; k++)
@@ -152,7 +152,7 @@ static int of(struct table *t, const struct snapshot *s, struct why *why)
     a.seekers = a.n;
     window(&a, s);
     const char *reason = impossible(s, &a, reach);
-    if (!reason && room && s->region.images.any) room = add_images(&a, &s->region.images, reach);
+    if (!reason && room && s->region.period.any) room = add_images(&a, &s->region.period, reach);
     if (!reason && room) room = near_init(&g, a.x, a.n, reach);
     if (!reason && room && !count(&a, &g, counts, s->asked->bins)) reason = "bodies crowd";
     if (reason)

@@ -46,7 +46,7 @@ static int add_layer(struct table *t, const struct snapshot *s, const struct reg
     put(&at, solid(s->p, r) / r->volume);
     if (m.bodies) {
         double *next = at;
-        put_vec(&next, r->images.any ? velocity(s->p, r, m.mass) : m.velocity);
+        put_vec(&next, r->period.any ? velocity(s->p, r, m.mass) : m.velocity);
         put_vec(&next, m.spin), put(&next, tensor_trace(&m.kinetic) / s->p->dim / m.mass);
     } else {
         table_null(t, "layers without bodies have no velocity");

@@ -1,7 +1,7 @@
 #include "measure/region.h"
 
 #include "measure/ball_part.h"
-#include "measure/walls.h"
+#include "measure/boundaries.h"
 
 #include <math.h>
 
@@ -13,9 +13,9 @@ struct region_walk region_walk(const struct region *r, vec3 x, double margin)
 {
     struct region_walk s = { { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 } };
     const double far = 1e6;
-    for (int k = 0; r->images.any && !r->all && k < 3; k++) {
-        if (!r->images.cell->repeats[k]) continue;
-        vec3 row = r->images.inverse[k];
+    for (int k = 0; r->period.any && !r->all && k < 3; k++) {
+        if (!r->period.cell->repeats[k]) continue;
+        vec3 row = r->period.inverse[k];
         const double w[3] = { row.x, row.y, row.z };
         double least = 0, most = 0, at = v3_dot(row, x), more = margin * v3_norm(row);
         for (int j = 0; j < 3; j++) {
@@ -33,7 +33,7 @@ struct region_walk region_walk(const struct region *r, vec3 x, double margin)
 static vec3 shifted(const struct region *r, vec3 x, int i, int j, int k)
 {
     if (!i && !j && !k) return x;
-    const vec3 *e = r->images.edge;
+    const vec3 *e = r->period.edge;
     return v3_axpy(v3_axpy(v3_axpy(x, i, e[0]), j, e[1]), k, e[2]);
 }
 
@@ -63,7 +63,7 @@ static void reach(const struct packing *p, double lo[3], double hi[3])
 }
 
 /* The bounds of the box that the cell's edges reach along the axes */
-static void reach_cell(const struct images *m, int axis, double *lo, double *hi)
+static void reach_cell(const struct period *m, int axis, double *lo, double *hi)
 {
     const vec3 o = m->cell->origin;
     const double origin[3] = { o.x, o.y, o.z };
@@ -77,13 +77,13 @@ static void reach_cell(const struct images *m, int axis, double *lo, double *hi)
 void region_whole(struct region *r, const struct packing *p)
 {
     *r = (struct region){ .dim = p->dim, .all = true };
-    images_of(&r->images, &p->cell, p->dim);
+    period_of(&r->period, &p->cell, p->dim);
     reach(p, r->lo, r->hi);
-    r->volume = p->n ? r->images.volume : 0;
+    r->volume = p->n ? r->period.volume : 0;
     for (int k = 0; k < p->dim; k++) {
-        if (p->n) walls_reach(p, k, &r->lo[k], &r->hi[k]);
-        if (r->images.any && p->cell.repeats[k])
-            reach_cell(&r->images, k, &r->lo[k], &r->hi[k]);
+        if (p->n) boundaries_reach(p, k, &r->lo[k], &r->hi[k]);
+        if (r->period.any && p->cell.repeats[k])
+            reach_cell(&r->period, k, &r->lo[k], &r->hi[k]);
         else
             r->volume *= r->hi[k] - r->lo[k];
     }
@@ -92,7 +92,7 @@ void region_whole(struct region *r, const struct packing *p)
 void region_box(struct region *r, const struct packing *p, const double lo[3], const double hi[3])
 {
     *r = (struct region){ .dim = p->dim, .volume = 1 };
-    images_of(&r->images, &p->cell, p->dim);
+    period_of(&r->period, &p->cell, p->dim);
     for (int k = 0; k < 3; k++) {
         bool bound = k < p->dim;
         r->lo[k] = bound ? lo[k] : -INFINITY, r->hi[k] = bound ? hi[k] : INFINITY;

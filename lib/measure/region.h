@@ -10,7 +10,7 @@
 #define NSD_REGION_H
 
 #include "bodies/packing.h"
-#include "measure/images.h"
+#include "measure/period.h"
 
 struct region {
     int dim;
@@ -19,7 +19,7 @@ struct region {
     double inner, outer; /* m: distances from the line along z through centre; outer 0: no shell */
     vec3 centre;         /* m */
     double volume;       /* m^3, m^2 in the plane */
-    struct images images;
+    struct period period;
 };
 
 /*

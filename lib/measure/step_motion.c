@@ -1,7 +1,7 @@
 #include "measure/step_motion.h"
 
 #include "measure/branch.h"
-#include "measure/walls.h"
+#include "measure/boundaries.h"
 
 #include <stdlib.h>
 
@@ -52,7 +52,7 @@ void step_motion_at(const struct step_motion *m, const struct snapshot *s, int64
     const struct contact *c = &s->s->c[i];
     vec3 n = c->n, t2 = contact_t2(c);
     vec3 at_b = v3_axpy(m->v[c->b], -arm_b(p, c), v3_cross(m->w[c->b], n));
-    vec3 at_a = c->a < 0 ? walls_velocity(p, c->a, c->x)
+    vec3 at_a = c->a < 0 ? boundary_velocity(p, c->a, c->x)
                          : v3_axpy(m->v[c->a], branch_a(p, c), v3_cross(m->w[c->a], n));
     vec3 v = v3_add(v3_sub(at_b, at_a), cell_shift(p->cell.rate, c->shift));
     u[0] = v3_dot(v, n), u[1] = v3_dot(v, c->t1), u[2] = v3_dot(v, t2);

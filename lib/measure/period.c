@@ -1,12 +1,12 @@
-#include "measure/images.h"
+#include "measure/period.h"
 
 #include <math.h>
 
-const struct images *images_of(struct images *m, const struct cell *cell, int dim)
+const struct period *period_of(struct period *m, const struct cell *cell, int dim)
 {
     const vec3 unit[3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
     (void)dim;
-    *m = (struct images){ .cell = cell, .any = cell_repeats(cell), .volume = 1 };
+    *m = (struct period){ .cell = cell, .any = cell_repeats(cell), .volume = 1 };
     if (!m->any) return m;
     for (int k = 0; k < 3; k++) m->edge[k] = cell->repeats[k] ? cell->edge[k] : unit[k];
     m->volume = v3_dot(m->edge[0], v3_cross(m->edge[1], m->edge[2]));
@@ -17,14 +17,14 @@ const struct images *images_of(struct images *m, const struct cell *cell, int di
     return m;
 }
 
-vec3 images_shortest(const struct images *m, vec3 way)
+vec3 period_shortest(const struct period *m, vec3 way)
 {
     for (int k = 2; m->any && k >= 0; k--)
         if (m->cell->repeats[k]) way = v3_axpy(way, -rint(v3_dot(m->inverse[k], way)), m->edge[k]);
     return way;
 }
 
-vec3 images_flow(const struct images *m, vec3 x)
+vec3 period_flow(const struct period *m, vec3 x)
 {
     vec3 v = v3(0, 0, 0);
     for (int k = 0; m->any && k < 3; k++)

@@ -1,4 +1,4 @@
-/* measure/grains.c: numbers of each body: its stress, its contacts, its speed. */
+/* measure/each_grain.c: numbers of each body: its stress, its contacts, its speed. */
 #include "measure/ball_part.h"
 #include "measure/branch.h"
 #include "measure/counts.h"

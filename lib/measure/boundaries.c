@@ -1,5 +1,5 @@
-/* measure/walls.c: the boundaries, and what pushes them. All that measures know of them is here. */
-#include "measure/walls.h"
+/* measure/boundaries.c: the boundaries, and what pushes them. All that measures know of them is here. */
+#include "measure/boundaries.h"
 
 #include "measure/branch.h"
 #include "measure/measures.h"
@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-void walls_reach(const struct packing *p, int axis, double *lo, double *hi)
+void boundaries_reach(const struct packing *p, int axis, double *lo, double *hi)
 {
     double from = -INFINITY, to = INFINITY;
     for (int32_t w = 0; w < p->walls; w++) {
@@ -22,7 +22,7 @@ void walls_reach(const struct packing *p, int axis, double *lo, double *hi)
     if (*hi < *lo) *hi = *lo;
 }
 
-vec3 walls_velocity(const struct packing *p, int32_t a, vec3 x)
+vec3 boundary_velocity(const struct packing *p, int32_t a, vec3 x)
 {
     (void)x;
     return p->wall[-1 - a].v;
@@ -84,7 +84,7 @@ static int of(struct table *t, const struct snapshot *s, struct why *why)
     return why->status;
 }
 
-const struct measure measure_walls = {
+const struct measure measure_boundaries = {
     .name = "boundaries",
     .help = "forces on boundaries, and their torques",
     .quantity = quantities,
