@@ -228,10 +228,6 @@ $B/completion/zsh/_%: $B/%
 	@mkdir -p $(@D)
 	$< --completion zsh > $@
 
-$B/nsd.pc: nsd.pc.in Makefile
-	@mkdir -p $(@D)
-	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|' $< > $@
-
 # ---- installation ----
 
 LIBDIR ?= $(PREFIX)/lib
@@ -251,14 +247,15 @@ install-tools: all completions
 	install -m 644 $B/completion/zsh/* $(TO)/share/zsh/site-functions
 
 # The library's headers lie in the folders by which they include each other.
-install-dev: $B/libnsd.a $B/nsd.pc
+install-dev: $B/libnsd.a
 	install -d $(DESTDIR)$(LIBDIR)/pkgconfig
 	for d in lib/*/; do \
 	    install -d $(TO)/include/nsd/$$(basename $$d); \
 	    ! ls $$d*.h >/dev/null 2>&1 || install -m 644 $$d*.h $(TO)/include/nsd/$$(basename $$d); \
 	done
 	install -m 644 $B/libnsd.a $(DESTDIR)$(LIBDIR)
-	install -m 644 $B/nsd.pc $(DESTDIR)$(LIBDIR)/pkgconfig
+	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|' nsd.pc.in \
+	    > $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc
 
 uninstall:
 	cd $(TO)/bin && rm -f $(notdir $(TOOLS))

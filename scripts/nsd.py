@@ -86,13 +86,20 @@ class Frame:
         self.gravity = np.array(file["nsd"].attrs["gravity"])  # m/s^2
 
     def __repr__(self):
-        return f"<nsd frame of step {self.step}: {self._all['position/value'].shape[1]} bodies>"
+        return f"<nsd frame of step {self.step}: {len(self.id)} bodies>"
+
+    @cached_property
+    def _rows(self):
+        """Where bodies come and go: the rows that are there in this frame; else all."""
+        if isinstance(self._all["id"], h5py.Group):
+            return np.flatnonzero(self._all["id/value"][self.row] >= 0)
+        return slice(None)
 
     def _moving(self, name):
-        return self._all[name]["value"][self.row]
+        return self._all[name]["value"][self.row][self._rows]
 
     def _fixed(self, name):
-        return self._all[name][()]
+        return self._all[name][()][self._rows]
 
     x = cached_property(lambda self: self._moving("position"))  # m
     v = cached_property(lambda self: self._moving("velocity"))  # m/s
@@ -101,7 +108,12 @@ class Frame:
     radius = cached_property(lambda self: self._fixed("radius"))  # m
     mass = cached_property(lambda self: self._fixed("mass"))  # kg
     inertia = cached_property(lambda self: self._fixed("inertia"))  # kg m^2
-    id = cached_property(lambda self: self._fixed("id"))
+
+    @cached_property
+    def id(self):
+        moves = isinstance(self._all["id"], h5py.Group)
+        return self._moving("id") if moves else self._fixed("id")
+
     kind = cached_property(lambda self: self._fixed("species"))
 
     @cached_property

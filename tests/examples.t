@@ -107,6 +107,7 @@ claim()
     *'.mu = 0.5'*'{"file": "balls.txt"}'*'> rough.h5')
         bodies rough.h5 300 && settings rough.h5 '.material | all(.mu == 0.5)' && frames rough.h5 ".[-1] == $2" ;;
     *'.mu = 0.5'*'> rough.h5') bodies rough.h5 500 && settings rough.h5 '.material | all(.mu == 0.5)' ;;
+    *'scenes/shear.json'*'> shear.h5') bodies shear.h5 200 ;;
     *'{file: "balls.txt"}'*'> table.h5') bodies table.h5 300 ;;
     *'nsd-gen scenes/pour.json'*'> poured.h5') frames poured.h5 ".[-1] == $2" ;;
     *'poured.h5'*'.removed[0].bodies'*) output '.[0] > 100' ;;
@@ -192,6 +193,7 @@ claim()
     # without a prompt: a scene, and Python
     '{ "title": "A steel ball'*) bodies stdout 801 && nsd-info -p stdout | jq -s -e 'map(.kind) | unique == ["ball", "steel"]' ;;
     *'with h5py.File("out.h5")'*) grep -q '^100 frames, the last is step 1000' stdout && grep -q '^[1-9][0-9]* contacts, at most [0-9.]* N' stdout ;;
+    *'nsd.frames("out.h5")'*) table 3 100 <(tr ' ' '\t' <stdout) ;;
     *'MDAnalysis.Universe.empty'*) table 3 100 <(tr ' ' '\t' <stdout) ;;
     *'sys.stdin.buffer.read(512)'*) table 2 2 <(tr ' ' '\t' <stdout) ;;
     *) return 99 ;;
@@ -224,6 +226,7 @@ example() # SOURCE COMMAND SHOWN: in $tmp/run
     case $command in
     'make '*) make -C "$repository" --no-print-directory -n ${command#make } >stdout 2>stderr || s=$? ;;
     '{ "'*) nsd-gen - <<<"$command" >stdout 2>stderr || s=$? ;;
+    *import*nsd*) PYTHONPATH=$repository/scripts /usr/bin/python3 -c "$command" >stdout 2>stderr || s=$? ;;
     import*sys.stdin*) cat a.h5 packing.h5 | /usr/bin/python3 -c "$command" >stdout 2>stderr || s=$? ;;
     import*) /usr/bin/python3 -c "$command" >stdout 2>stderr || s=$? ;;
     *) GNUTERM=dumb bash -o pipefail -c "$command" >stdout 2>stderr || s=$? ;;

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # What other programs read: nsd-export's files by VTK, ASE and MDAnalysis; documents by MDAnalysis and
 # h5py; scripts/nsd.py. The numbers are compared with the documents' own, and the forces with Newton's law.
-# shellcheck source=tests/tap.sh disable=SC2317 # functions called by name
+# shellcheck source=tests/tap.sh disable=SC2317,SC2016 # functions called by name; backquotes of Markdown
 . tests/tap.sh
 
 has() { /usr/bin/python3 -c "import $1" 2>/dev/null; }
@@ -40,6 +40,18 @@ grows()
     return $s
 }
 if has h5py; then ok "a list is whole while it grows" grows; else skip "a list is whole while it grows" "no h5py"; fi
+
+# ---- grains that come and go ----
+
+nsd-gen scenes/pour.json | nsd-step -n 400 --every 50 --contacts 2>/dev/null >"$tmp/pour"
+nsd-cat "$tmp/pour" >"$tmp/pour.h5"
+is "grains come" "$(nsd-info "$tmp/pour.h5" | jq -s 'map(select(.step).bodies) | last > first')" true
+nsd-export -o "$tmp/pour.csv" "$tmp/pour.h5"
+ok "a stream and a trajectory of them give the same table" cmp "$tmp/pour.csv" <(nsd-export --to csv "$tmp/pour")
+other "nsd.py sees those that are there" h5py table "$tmp/pour.csv" "$tmp/pour.h5" grains ,
+other "MDAnalysis reads it" MDAnalysis readable "$tmp/pour.h5"
+nsd-export --part contacts -o "$tmp/pour.csv" "$tmp/pour.h5"
+other "and their contacts" h5py table "$tmp/pour.csv" "$tmp/pour.h5" contacts ,
 
 # ---- the others ----
 

@@ -11,8 +11,8 @@ last() { nsd-cat --last "$1"; }
 same_last() # ONE OTHER: also what is remembered of the pours
 {
     last "$1" >one.last && last "$2" >other.last && same_particles one.last other.last &&
-        cmp <(dump one.last /observables/flow/poured) <(dump other.last /observables/flow/poured) &&
-        cmp <(dump one.last /observables/flow/removed_mass) <(dump other.last /observables/flow/removed_mass)
+        cmp <(dump one.last /nsd/flow/poured) <(dump other.last /nsd/flow/poured) &&
+        cmp <(dump one.last /nsd/flow/removed_mass) <(dump other.last /nsd/flow/removed_mass)
 }
 every_frame() { nsd-info "$1" | jq -s -e "map(select(.step != null)) | $2"; }
 
@@ -78,8 +78,8 @@ with h5py.File("whole.h5") as f:
     assert here.shape[1] <= p["position/value"].maxshape[1] and (here.sum(1)[-1] > 0)
     assert (id[here] == np.broadcast_to(np.arange(id.shape[1]), id.shape)[here]).all()  # a row for ever
     assert np.isfinite(x[here]).all() and np.isnan(x[~here]).all()
-    poured = f["observables/flow/poured/value"][:, 0]
-    removed = f["observables/flow/removed/value"][:, 0]
+    poured = f["nsd/flow/poured/value"][:, 0]
+    removed = f["nsd/flow/removed/value"][:, 0]
     assert (here.sum(1) == poured - removed).all() and len(radius) == poured[-1]
     assert (p["id/step"][:] == p["position/step"][:]).all()
 EOF
@@ -229,7 +229,7 @@ cp base.h5 grown.h5
 ok "a run in place appends" eval 'nsd-step -n 100 --every 10 -i grown.h5 2>/dev/null && every_frame grown.h5 "map(.step) == [range(10; 201; 10)]"'
 nsd-step -n 200 --every 10 small.h5 2>/dev/null >long.h5
 ok "the frames are those of a run that did not stop" \
-    eval 'cmp <(dump grown.h5) <(dump long.h5) && cmp <(dump grown.h5 /observables) <(dump long.h5 /observables)'
+    eval 'cmp <(dump grown.h5) <(dump long.h5) && cmp <(dump grown.h5 /nsd/solver) <(dump long.h5 /nsd/solver)'
 ok "the history has both commands" eval 'nsd-info grown.h5 | jq -s -e ".[0].history | map(.command) == [\"nsd-gen\", \"nsd-step\", \"nsd-step\"]"'
 is "nothing else is left there" "$(find . -name '*nsd-new*' | wc -l)" 0
 chmod 640 grown.h5 && ln -s grown.h5 link.h5

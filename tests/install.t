@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # make install, completion in the shells, a program with the library, and the Debian packages.
-# shellcheck source=tests/tap.sh disable=SC2317 # functions called by name
+# shellcheck source=tests/tap.sh disable=SC2317,SC2016 # functions called by name; text for other shells
 . tests/tap.sh
 
 if [ -n "$quick" ]; then
@@ -57,8 +57,8 @@ lacking() # options in --help that completion does not know
     local t o
     for t in $(tools); do
         for o in $(nsd-help "$t"); do
-            grep -q -e " $o[ ']" "$root/share/bash-completion/completions/$t" || echo "$t: bash: $o"
-            grep -q -e "$o[=['}]" "$root/share/zsh/site-functions/_$t" || echo "$t: zsh: $o"
+            grep -q -e " ${o}[ ']" "$root/share/bash-completion/completions/$t" || echo "$t: bash: $o"
+            grep -q -e "${o}[=['}]" "$root/share/zsh/site-functions/_$t" || echo "$t: zsh: $o"
         done
     done
 }
@@ -71,7 +71,6 @@ if command -v zsh >/dev/null; then
     ok "zsh reads them" zsh_reads
     zsh_completes() # TEXT: what a line begun so becomes, by the tab key
     {
-        # shellcheck disable=SC2016 # it is zsh's
         timeout 60 zsh -f -c '
             zmodload zsh/zpty
             zpty shell zsh -f -i
@@ -95,7 +94,7 @@ is "make uninstall leaves no file" "$(find "$root" -type f)" ""
 # ---- Debian ----
 
 if command -v dh >/dev/null && command -v dpkg-buildpackage >/dev/null; then
-    ok "make deb" nice make -s deb
+    ok "make deb" env DEB_BUILD_OPTIONS=noopt nice make -s deb # the packages, not their speed
     version=$(sed -n 's/^VERSION := //p' Makefile)
     arch=$(dpkg --print-architecture)
     tools_deb=build/deb/nsd-tools_${version}_$arch.deb dev_deb=build/deb/libnsd-dev_${version}_$arch.deb

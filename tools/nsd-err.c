@@ -4,6 +4,7 @@
 #include "io/reader.h"
 #include "io/report_json.h"
 #include "problem/err.h"
+#include "problem/prepare.h"
 
 static const struct cli_option *const tables[] = { NULL };
 
@@ -16,10 +17,10 @@ const struct cli_tool tool = {
 };
 
 /* The problem that the reactions of a packing solve, with the reactions in it. */
-static int prepare_packing(struct problem *p, struct frame *f, struct why *why)
+static int prepare_own(struct problem *p, struct frame *f, struct why *why)
 {
     if (f->moved && move_back(&f->packing, &f->contacts, why)) return why->status;
-    if (problem_prepare(p, &f->packing, &f->contacts, 0, 1, ORDER_NATURAL, why)) return why->status;
+    if (prepare_packing(p, &f->packing, &f->contacts, 0, 1, ORDER_NATURAL, why)) return why->status;
     for (int64_t i = 0; i < f->contacts.n; i++)
         f->report.err.max_overlap = fmax(f->report.err.max_overlap, -f->contacts.c[i].gap);
     return 0;
@@ -45,7 +46,7 @@ static void print(struct frame *f, struct why *why)
     struct problem p = { 0 };
     f->report.err.max_overlap = 0;
     int64_t step = f->packing.step; // the frame's own, not that of the step before, which is judged
-    if ((f->foreign ? prepare_foreign : prepare_packing)(&p, f, why)) return;
+    if ((f->foreign ? prepare_foreign : prepare_own)(&p, f, why)) return;
     double overlap = f->report.err.max_overlap;
     struct err err;
     err_eval(&err, &p, true, ERR_ALL, 1);

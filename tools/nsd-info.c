@@ -101,6 +101,36 @@ static void show_passages(json_t *j, const char *name, int32_t n, const struct p
     json_decref(list);
 }
 
+static json_t *three(const vec3 e[3])
+{
+    json_t *list = json_array();
+    for (int k = 0; k < 3; k++) json_array_append_new(list, json_vec(e[k]));
+    return list;
+}
+
+/*
+ * Pa, in the plane N/m: the mean stress by the contacts, compression positive: the sum of
+ * force x branch over the cell's volume, the branch from centre to centre.
+ */
+static json_t *stress(const struct packing *p, const struct contacts *s)
+{
+    const vec3 *e = p->cell.edge;
+    double volume = fabs(v3_dot(e[0], v3_cross(e[1], e[2])));
+    if (p->dim == 2) volume /= fabs(e[2].z);
+    vec3 sum[3] = { { 0, 0, 0 } };
+    for (int64_t i = 0; i < s->n; i++) {
+        const struct contact *c = &s->c[i];
+        const double *r = s->found[i].r;
+        if (c->a < 0) continue;
+        vec3 f = v3_axpy(v3_axpy(v3_scale(r[0], c->n), r[1], c->t1), r[2], contact_t2(c));
+        double length = p->radius[c->a] + p->radius[c->b] + c->gap;
+        vec3 branch = v3_scale(length / (p->dt * volume), c->n);
+        sum[0] = v3_axpy(sum[0], f.x, branch), sum[1] = v3_axpy(sum[1], f.y, branch);
+        sum[2] = v3_axpy(sum[2], f.z, branch);
+    }
+    return three(sum);
+}
+
 static void show_moment(const struct frame *f)
 {
     if (f->foreign && !f->reported) return;
@@ -123,6 +153,12 @@ static void show_moment(const struct frame *f)
         json_object_set_new(j, "max_speed", json_number(fastest));
         show_passages(j, "poured", p->pours, p->poured);
         show_passages(j, "removed", p->removals, p->removed);
+    }
+    if (f->packed && cell_repeats(&f->packing.cell)) {
+        json_object_set_new(j, "edges", three(f->packing.cell.edge));
+        json_object_set_new(j, "rates", three(f->packing.cell.rate));
+        if (f->detected && f->contacts.found)
+            json_object_set_new(j, "stress", stress(&f->packing, &f->contacts));
     }
     if (f->reported) {
         json_t *r = json_report(&f->report);
@@ -147,6 +183,9 @@ static void show_particles(const struct packing *p)
         json_object_set_new(j, "v", json_vec(p->v[i]));
         json_object_set_new(j, "w", json_vec(p->w[i]));
         json_object_set_new(j, "q", json_numbers(q, 4));
+        const int32_t *image = p->image ? p->image[i] : NULL;
+        if (image)
+            json_object_set_new(j, "image", json_pack("[i,i,i]", image[0], image[1], image[2]));
         json_line(j);
     }
 }
@@ -169,6 +208,19 @@ static void show_events(const struct packing *p)
     }
 }
 
+static json_t *load(const struct load *l)
+{
+    json_t *j = json_object();
+    bool turns = l->way == LOAD_TURNS;
+    json_object_set_new(j, turns ? "about" : "along", json_vec(l->axis));
+    if (turns) json_object_set_new(j, "point", json_vec(l->point));
+    json_object_set_new(j, "mass", json_number(l->mass));
+    json_object_set_new(j, turns ? "torque" : "force", json_number(l->force));
+    json_object_set_new(j, "speed", json_number(l->speed));
+    json_object_set_new(j, "travel", json_number(l->travel));
+    return j;
+}
+
 static void show_walls(const struct packing *p)
 {
     for (int32_t i = 0; i < p->walls; i++) {
@@ -177,9 +229,10 @@ static void show_walls(const struct packing *p)
         json_object_set_new(j, "step", json_integer(p->step));
         json_object_set_new(j, "wall", json_integer(i));
         json_object_set_new(j, "kind", json_string(p->kind_name[w->kind]));
-        json_object_set_new(j, "point", json_vec(v3_axpy(w->x, p->t, w->v)));
+        json_object_set_new(j, "point", json_vec(wall_at(p, w, p->t)));
         json_object_set_new(j, "normal", json_vec(w->n));
         json_object_set_new(j, "velocity", json_vec(w->v));
+        if (w->load.way) json_object_set_new(j, "load", load(&w->load));
         json_line(j);
     }
 }
@@ -193,6 +246,9 @@ static void show_contacts(const struct frame *f)
         json_t *j = json_object();
         json_object_set_new(j, "step", json_integer(f->packing.step));
         json_object_set_new(j, "body", json_pack("[i,i]", c->a, c->b));
+        if (cell_repeats(&f->packing.cell))
+            json_object_set_new(j, "shift",
+                                json_pack("[i,i,i]", c->shift[0], c->shift[1], c->shift[2]));
         json_object_set_new(j, "point", json_vec(c->x));
         json_object_set_new(j, "n", json_vec(c->n));
         json_object_set_new(j, "t1", json_vec(c->t1));

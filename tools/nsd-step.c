@@ -56,6 +56,8 @@ static struct {
     double worst;                 /* the largest error of those */
     enum criterion criterion;     /* which error that is */
     double eps;                   /* and what was asked of it */
+    int64_t growing;              /* of those the ones whose reactions grow and only seem good */
+    double approach;              /* m/s: of bodies in these steps, the largest */
     int64_t fell_back;            /* steps that were solved otherwise than asked */
     double seconds;
 } total;
@@ -73,6 +75,8 @@ static void count(const struct report *r)
     double error = err_of(&r->err, r->criterion);
     if (!(error <= total.worst)) total.worst = error; // also where it is not a number
     total.criterion = r->criterion, total.eps = r->eps;
+    if (!(error <= r->eps)) return;
+    total.growing++, total.approach = fmax(total.approach, r->err.max_penetration_true);
 }
 
 static void summary(int64_t made)
@@ -88,6 +92,10 @@ static void summary(int64_t made)
         warn("%lld steps NOT CONVERGED, the first is step %lld; the largest %s is %.3g, not %g",
              (long long)total.missed, (long long)total.first_missed, options_error(total.criterion),
              total.worst, total.eps);
+    if (total.growing)
+        warn("in %lld of them reactions grow without end, and bodies still approach at up to %.3g "
+             "m/s",
+             (long long)total.growing, total.approach);
 }
 
 /* ---- how far it is ---- */

@@ -2,6 +2,7 @@
 #include "cli/cli.h"
 #include "cli/tool_filter.h"
 #include "draw/film.h"
+#include "draw/images.h"
 #include "draw/overlay.h"
 #include "draw/svg.h"
 #include "draw/values.h"
@@ -191,10 +192,25 @@ static const char *conversion(const char *name)
 static struct values values;
 static double *shown; /* [bodies] of the frame at hand, where the colour is not of the body alone */
 
-/* Before a frame is seen or drawn: the numbers of its bodies */
-static void set_values(struct view *v, const struct frame *f, const char *where)
+/* Where the cell repeats: the images that a picture shows, and their numbers */
+static void add_images(struct view *v, struct frame *f)
 {
-    tool_wants_packing(f, where);
+    int64_t *of;
+    struct why why = { 0 };
+    if (images_append(&f->packing, &of, &why)) die_why(&why);
+    if (of && colour_meaning[colour].given) {
+        double *more = malloc((size_t)(f->packing.n + 1) * sizeof *more);
+        if (!more) die(EX_SOFTWARE, "no memory for %lld bodies", (long long)f->packing.n);
+        for (int64_t i = 0; i < f->packing.n; i++) more[i] = shown[of[i]];
+        free(shown);
+        v->paint.value = shown = more;
+    }
+    free(of);
+}
+
+/* The numbers of the bodies of a frame */
+static void set_numbers(struct view *v, const struct frame *f, const char *where)
+{
     if (!colour_meaning[colour].given) return;
     const struct contacts *s = f->detected ? &f->contacts : NULL;
     if (colour != COLOUR_VALUE && (!s || !s->found))
@@ -204,6 +220,14 @@ static void set_values(struct view *v, const struct frame *f, const char *where)
     if (!shown) die(EX_SOFTWARE, "no memory for %lld bodies", (long long)f->packing.n);
     values_of(shown, (enum colour)colour, &f->packing, s, &values);
     v->paint.value = shown;
+}
+
+/* Before a frame is seen or drawn */
+static void set_values(struct view *v, struct frame *f, const char *where)
+{
+    tool_wants_packing(f, where);
+    set_numbers(v, f, where);
+    add_images(v, f);
 }
 
 static void read_values(struct view *v)
@@ -240,7 +264,7 @@ static void draw(const struct view *v, const struct frame *f, const char *path, 
 }
 
 /* Makes what is shown include this frame. */
-static void extend(struct view *v, const struct frame *f, const char *where)
+static void extend(struct view *v, struct frame *f, const char *where)
 {
     struct why why = { 0 };
     set_values(v, f, where);

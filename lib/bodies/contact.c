@@ -62,6 +62,16 @@ void contact_basis(struct contact *c, int dim, vec3 n)
     c->t1 = v3(1 + n.x * n.x * a, n.x * n.y * a, -sign * n.x);
 }
 
+static bool same_pair(const struct contact *c, const struct contact *d)
+{
+    return c->a == d->a && c->b == d->b;
+}
+
+static bool same_place(const struct contact *c, const struct contact *d)
+{
+    return c->feature == d->feature && !memcmp(c->shift, d->shift, sizeof c->shift);
+}
+
 int contacts_match(struct contacts *new, const struct contacts *old)
 {
     int64_t k = 0;
@@ -72,10 +82,11 @@ int contacts_match(struct contacts *new, const struct contacts *old)
         double *r = new->found[i].r;
         while (k < old->n && (old->c[k].a < c->a || (old->c[k].a == c->a && old->c[k].b < c->b)))
             k++;
-        if (k == old->n) continue;
-        const struct contact *o = &old->c[k];
-        if (o->a != c->a || o->b != c->b) continue;
-        const double *was = old->found[k].r;
+        int64_t l = k; // the pair's contacts: their order may have changed with the cell's cut
+        while (l < old->n && same_pair(&old->c[l], c) && !same_place(&old->c[l], c)) l++;
+        if (l == old->n || !same_pair(&old->c[l], c)) continue;
+        const struct contact *o = &old->c[l];
+        const double *was = old->found[l].r;
         vec3 t = v3_axpy(v3_scale(was[1], o->t1), was[2], contact_t2(o));
         r[0] = was[0], r[1] = v3_dot(t, c->t1), r[2] = v3_dot(t, contact_t2(c));
     }

@@ -17,7 +17,7 @@ static bool add_wall_contact(struct contacts *out, const struct packing *p, int3
                              int64_t i, vec3 x, double gap)
 {
     const struct wall *wall = &p->wall[w];
-    vec3 at = v3_axpy(wall->x, t, wall->v);
+    vec3 at = wall_at(p, wall, t);
     double distance = v3_dot(v3_sub(x, at), wall->n), g = distance - p->radius[i];
     if (!(g <= gap) || p->mass[i] == 0) return true;
     struct contact *c = contacts_add(out, -1 - w, (int32_t)i);
@@ -29,10 +29,17 @@ static bool add_wall_contact(struct contacts *out, const struct packing *p, int3
     return true;
 }
 
-static bool add_ball_contact(struct contacts *out, const struct packing *p, int32_t a, int32_t b,
-                             const vec3 *x, double gap)
+static bool add_ball_contact(struct contacts *out, const struct packing *p,
+                             const struct neighbours *near, const struct pair *pair, const vec3 *x,
+                             const vec3 edge[3], double gap)
 {
+    int32_t a = pair->a, b = pair->b;
+    int8_t shift[3] = { 0 };
     vec3 d = v3_sub(x[b], x[a]);
+    if (edge) {
+        neighbours_shift(near, p, pair, shift);
+        d = v3_add(d, cell_shift(edge, shift));
+    }
     double radii = p->radius[a] + p->radius[b], most = radii + gap, d2 = v3_dot(d, d);
     if (d2 > most * most * (1 + 1e-12)) return true; // clearly apart: no square root needed
     double distance = sqrt(d2), g = distance - radii;
@@ -42,26 +49,36 @@ static bool add_ball_contact(struct contacts *out, const struct packing *p, int3
     // balls with the same centre: any normal will do, so b is taken to lie above a
     vec3 up = p->dim == 2 ? v3(0, 1, 0) : v3(0, 0, 1);
     contact_basis(c, p->dim, distance > 0 ? v3_scale(1 / distance, d) : up);
+    for (int k = 0; k < 3; k++) c->shift[k] = shift[k];
     c->gap = g;
     c->x = v3_axpy(x[a], p->radius[a] + 0.5 * g, c->n);
     set_law(c, p, p->kind[a], p->kind[b]);
     return true;
 }
 
-int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3 *x, double t,
-                       double gap, struct neighbours *kept, struct why *why)
+/* The bodies at x, the cell's edges at edge (m), the walls where they are at time t (s) */
+static int detect(struct contacts *out, const struct packing *p, const vec3 *x, const vec3 edge[3],
+                  double t, double gap, struct neighbours *kept, struct why *why)
 {
     struct neighbours once = { 0 }, *near = kept ? kept : &once;
-    bool stored = true;
+    bool stored = true, images = cell_repeats(&p->cell);
     out->n = 0, contacts_free_found(out);
-    int e = neighbours_find(near, p, x, gap, kept, why);
+    int e = neighbours_find(near, p, x, edge, gap, kept, why);
     for (int32_t w = p->walls - 1; !e && stored && w >= 0; w--)
         for (int64_t i = 0; stored && i < p->n; i++)
             stored = add_wall_contact(out, p, w, t, i, x[i], gap);
     for (int64_t i = 0; !e && stored && i < near->n; i++)
-        stored = add_ball_contact(out, p, near->pair[i].a, near->pair[i].b, x, gap);
+        stored = add_ball_contact(out, p, near, &near->pair[i], x, images ? edge : NULL, gap);
     neighbours_free(&once);
     return e || stored ? e : why_set(why, EX_SOFTWARE, "no memory for the contacts");
+}
+
+int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3 *x, double t,
+                       double gap, struct neighbours *kept, struct why *why)
+{
+    vec3 edge[3];
+    cell_predict(&p->cell, t - p->t, edge);
+    return detect(out, p, x, edge, t, gap, kept, why);
 }
 
 /*
@@ -101,8 +118,11 @@ int detect_contacts(struct contacts *out, const struct packing *p, double gap,
     vec3 *x = malloc(((size_t)p->n + 1) * sizeof *x);
     if (!x) return why_set(why, EX_SOFTWARE, "no memory for the contacts");
     for (int64_t i = 0; i < p->n; i++) x[i] = packing_predict(p, i);
+    vec3 edge[3];
+    double ahead = (1 - p->theta) * p->dt;
     double reach = overlap_sees_gaps(p->overlap) ? fmax(gap, meeting_reach(p)) : gap;
-    int e = detect_contacts_at(out, p, x, p->t + (1 - p->theta) * p->dt, reach, kept, why);
+    cell_predict(&p->cell, ahead, edge);
+    int e = detect(out, p, x, edge, p->t + ahead, reach, kept, why);
     if (!e && reach > gap) keep_meeting(out, p, gap);
     free(x);
     return e;

@@ -4,22 +4,56 @@
  *
  * Each is one number, a speed s, with a mass m (kg; kg m^2 where it turns) and a force f (N; N m):
  * m ds/dt = f + what the contacts push. It enters the velocity of a contact, u_c += J_c s, and so
- * the contact problem like any other unknown: W = H^T M^-1 H has its rows as well.
+ * the contact problem like any other unknown: W = H^T M^-1 H has its rows as well. Over a step
+ *
+ *     s+ = s + (dt f + J^T r)/m.
+ *
+ * They are gathered anew for each step, from the loads of the packing [bodies/load.h] and the
+ * masses and the stress of its cell [bodies/cell.h]: on component i of edge k acts - (stress
+ * A_k)_i, where A_k, the face that the other two edges span, has its normal to the side of the
+ * edge.
  */
 #ifndef NSD_FREEDOM_H
 #define NSD_FREEDOM_H
 
 #include "base/vec.h"
 #include "bodies/contact.h"
+#include "bodies/packing.h"
 
 struct freedom {
     int32_t boundary; /* the boundary that it moves; -1: the cell's edge */
-    int edge;         /* of the cell */
+    int edge;         /* of the cell; it yields along an axis of space */
     bool turns;       /* about the axis, not along it */
     vec3 axis, point; /* unit vector; m: a point on the axis, of the predicted position */
     double mass;      /* kg, or kg m^2 */
     double force;     /* N, or N m, of this step */
-    double speed;     /* m/s, or rad/s, before the step */
+    double speed;     /* m/s, or rad/s */
 };
+
+struct freedoms {
+    int32_t n;
+    struct freedom *f; /* [n] boundaries first, in their order, then edges */
+};
+
+/* Whether the packing has any. */
+bool freedoms_in(const struct packing *p);
+/* Those of a step; speeds are those that the packing has. half: the edges of the cell where the
+   contacts act, m. Returns 0, or EX_SOFTWARE with nothing to free. */
+int freedoms_init(struct freedoms *list, const struct packing *p, const vec3 half[3],
+                  struct why *why);
+void freedoms_free(struct freedoms *list);
+
+/* Of the packing's contact c: the velocity of b relative to a per unit speed: -axis for a boundary
+   that glides, -axis x (x_c - point) for one that turns, shift axis for an edge; 0 for others. */
+vec3 freedom_direction(const struct freedom *f, const struct contact *c);
+
+/*
+ * The speed changes where the contacts act, at the predicted position. A boundary also makes its
+ * way along or about the axis, dt s + theta dt change, while an edge gets theta dt change alone:
+ * the rest, dt rate, is the motion of the cell. back: the inverse.
+ */
+void freedom_move(const struct freedom *f, struct packing *p, double change, bool back);
+/* What it moves is displaced by this way (m) along its axis, without a velocity. */
+void freedom_displace(const struct freedom *f, struct packing *p, double way);
 
 #endif

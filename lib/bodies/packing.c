@@ -7,6 +7,7 @@
 
 const char *const overlap_name[OVERLAP_COUNT] = { "",     "keep",    "gap",
                                                   "push", "project", "gap-project" };
+enum { IMAGES_MOST = 1 << 30 }; /* so that sums and differences of images are numbers too */
 
 static void *array(int64_t n, size_t size)
 {
@@ -15,7 +16,7 @@ static void *array(int64_t n, size_t size)
 
 int packing_init(struct packing *p, int dim, int64_t n, struct why *why)
 {
-    *p = (struct packing){ .dim = dim, .n = n, .theta = 0.5 };
+    *p = (struct packing){ .dim = dim, .n = n, .theta = 0.5, .cell = cell_none() };
     p->radius = array(n, sizeof *p->radius);
     p->mass = array(n, sizeof *p->mass);
     p->inertia = array(n, sizeof *p->inertia);
@@ -46,9 +47,10 @@ void packing_free(struct packing *p)
 {
     free(p->radius), free(p->mass), free(p->inertia), free(p->id), free(p->kind);
     free(p->x), free(p->q), free(p->v), free(p->w);
-    free(p->wall), free(p->scene);
+    free(p->wall), free(p->scene), free(p->image);
     free(p->poured), free(p->removed);
     events_free(&p->events);
+    cell_free(&p->cell);
     kinds_free(p);
     memset(p, 0, sizeof *p);
 }
@@ -114,6 +116,13 @@ int packing_resize(struct packing *p, int64_t n, struct why *why)
     return 0;
 }
 
+int packing_alloc_images(struct packing *p, struct why *why)
+{
+    free(p->image);
+    p->image = array(p->n, sizeof *p->image);
+    return p->image ? 0 : why_set(why, EX_SOFTWARE, "no memory for the images");
+}
+
 int packing_copy(struct packing *to, const struct packing *p, struct why *why)
 {
     if (packing_init(to, p->dim, p->n, why)) return why->status;
@@ -121,7 +130,9 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     size_t n = (size_t)p->n, k2 = (size_t)p->kinds * (size_t)p->kinds;
     to->step = p->step, to->t = p->t, to->dt = p->dt, to->theta = p->theta, to->g = p->g;
     to->overlap = p->overlap;
-    to->seed = p->seed, to->cell = p->cell;
+    to->seed = p->seed;
+    if (cell_copy(&to->cell, &p->cell) || (p->image && packing_alloc_images(to, why))) goto fail;
+    if (p->image) memcpy(to->image, p->image, n * sizeof *p->image);
     memcpy(to->radius, p->radius, n * sizeof *p->radius);
     memcpy(to->mass, p->mass, n * sizeof *p->mass);
     memcpy(to->inertia, p->inertia, n * sizeof *p->inertia);
@@ -171,13 +182,55 @@ static const char *body_trouble(const struct packing *p, int64_t i)
     return NULL;
 }
 
+static const char *load_trouble(const struct packing *p, const struct wall *w)
+{
+    const struct load *l = &w->load;
+    if (l->way == LOAD_NONE) return NULL;
+    if (l->way < 0 || l->way >= LOAD_WAYS) return "its load neither glides nor turns";
+    if (!(l->mass > 0 && isfinite(l->mass))) return "the mass of its load must be positive";
+    if (!isfinite(l->force) || !isfinite(l->speed) || !isfinite(l->travel) || !v3_finite(l->point))
+        return "its load is not finite";
+    if (!(fabs(v3_dot(l->axis, l->axis) - 1) < 1e-6)) return "its load's axis is not a unit vector";
+    if (p->dim == 2 && (l->axis.z != 0 || l->point.z != 0 || l->way == LOAD_TURNS))
+        return "its load leaves the plane, and dim is 2";
+    if (l->way == LOAD_TURNS && !(v3_norm(v3_cross(l->axis, w->n)) < 1e-6))
+        return "it turns about another axis than its normal";
+    return NULL;
+}
+
 static const char *wall_trouble(const struct packing *p, const struct wall *w)
 {
     if (!v3_finite(w->x) || !v3_finite(w->v)) return "point or velocity is not finite";
     if (!(fabs(v3_dot(w->n, w->n) - 1) < 1e-6)) return "normal is not a unit vector";
     if (p->dim == 2 && (w->n.z != 0 || w->v.z != 0)) return "leaves the plane, and dim is 2";
     if (w->kind < 0 || w->kind >= p->kinds) return "kind has no material";
-    return NULL;
+    return load_trouble(p, w);
+}
+
+/* The cell, which the largest body must fit into, and the images. */
+static int check_cell(const struct packing *p, struct why *why)
+{
+    double most = 0;
+    for (int64_t i = 0; cell_repeats(&p->cell) && i < p->n; i++) most = fmax(most, p->radius[i]);
+    if (cell_check(&p->cell, p->dim, 2 * most, why)) return why->status;
+    if (cell_repeats(&p->cell) != (p->image != NULL))
+        return why_set(why, EX_DATAERR, "images without a cell that repeats, or the reverse");
+    for (int64_t i = 0; p->image && i < p->n; i++)
+        for (int k = 0; k < 3; k++)
+            if (p->image[i][k] < -IMAGES_MOST || p->image[i][k] > IMAGES_MOST)
+                return why_set(why, EX_DATAERR, "body %lld: image is out of range", (long long)i);
+    for (int32_t i = 0; cell_repeats(&p->cell) && i < p->walls; i++)
+        for (int k = 0; k < 3; k++) {
+            const vec3 e = p->cell.edge[k];
+            if (p->cell.repeats[k] && !(fabs(v3_dot(e, p->wall[i].n)) <= 1e-9 * v3_norm(e)))
+                return why_set(why, EX_DATAERR, "wall %d: the cell repeats across it", i);
+            if (p->cell.repeats[k] && cell_moves(&p->cell, k))
+                return why_set(why, EX_DATAERR,
+                               "wall %d: the edges along it move, so that its bodies' images "
+                               "would meet it at other speeds",
+                               i);
+        }
+    return 0;
 }
 
 int packing_check(const struct packing *p, struct why *why)
@@ -207,7 +260,18 @@ int packing_check(const struct packing *p, struct why *why)
         const char *trouble = wall_trouble(p, &p->wall[i]);
         if (trouble) return why_set(why, EX_DATAERR, "wall %d: %s", i, trouble);
     }
-    return 0;
+    return check_cell(p, why);
+}
+
+struct cell_flow packing_flow(const struct packing *p)
+{
+    struct cell_flow f;
+    vec3 half[3], gain[3];
+    cell_predict(&p->cell, (1 - p->theta) * p->dt, half);
+    cell_next_rate(&p->cell, p->t, p->dt, p->theta, gain);
+    for (int k = 0; k < 3; k++) gain[k] = v3_sub(gain[k], p->cell.rate[k]);
+    cell_flow_init(&f, &p->cell, half, gain);
+    return f;
 }
 
 void packing_solid(int dim, double radius, double density, double *mass, double *inertia)

@@ -10,6 +10,7 @@
 #include "base/vec.h"
 #include "base/why.h"
 #include "bodies/cell.h"
+#include "bodies/load.h"
 #include "bodies/overlap.h"
 #include "bodies/passage.h"
 
@@ -18,9 +19,10 @@
 
 /* A plane, in the plane a line: bodies stay on the side that the normal points to. */
 struct wall {
-    vec3 x, n;    /* m: a point on it at t = 0; unit normal */
-    vec3 v;       /* m/s: at time t the point is at x + v t */
-    int32_t kind; /* row of the material tables */
+    vec3 x, n;        /* m: a point on it at t = 0; unit normal */
+    vec3 v;           /* m/s: at time t the point is at x + v t */
+    int32_t kind;     /* row of the material tables */
+    struct load load; /* that it yields to; LOAD_NONE: it does not */
 };
 
 struct packing {
@@ -33,14 +35,15 @@ struct packing {
     uint64_t seed;
     enum overlap overlap;
 
-    double *radius;  /* [n] m */
-    double *mass;    /* [n] kg; 0: immovable or prescribed */
-    double *inertia; /* [n] kg m^2 */
-    int32_t *id;     /* [n] a number that stays with the body */
-    int32_t *kind;   /* [n] row of the material tables */
-    vec3 *x;         /* [n] m */
-    quat *q;         /* [n] orientation */
-    vec3 *v, *w;     /* [n] m/s, rad/s */
+    double *radius;      /* [n] m */
+    double *mass;        /* [n] kg; 0: immovable or prescribed */
+    double *inertia;     /* [n] kg m^2 */
+    int32_t *id;         /* [n] a number that stays with the body */
+    int32_t *kind;       /* [n] row of the material tables */
+    vec3 *x;             /* [n] m */
+    quat *q;             /* [n] orientation */
+    vec3 *v, *w;         /* [n] m/s, rad/s */
+    int32_t (*image)[3]; /* [n] edges to add to x for the way gone; NULL: nothing repeats */
 
     int32_t walls;
     struct wall *wall; /* [walls] */
@@ -60,8 +63,8 @@ struct packing {
     char *scene; /* the JSON it was built from, or NULL */
 };
 
-/* n bodies (orientation 1, id = index), no wall and one kind "0"; theta = 1/2; all else is zero, dt
-   too. Returns 0 or EX_SOFTWARE. */
+/* n bodies (orientation 1, id = index), no wall and one kind "0"; theta = 1/2; all else is zero,
+   dt too. Returns 0 or EX_SOFTWARE. */
 int packing_init(struct packing *p, int dim, int64_t n, struct why *why);
 void packing_free(struct packing *p);
 
@@ -83,6 +86,8 @@ static inline bool packing_varies(const struct packing *p)
 /* Room for n bodies; those beyond the present ones are at rest at the origin, their id -1. Fewer: the
    last ones are cut off. Returns 0 or EX_SOFTWARE, where nothing has changed. */
 int packing_resize(struct packing *p, int64_t n, struct why *why);
+/* image[n], all zero, in place of the old one. Returns 0 or EX_SOFTWARE. */
+int packing_alloc_images(struct packing *p, struct why *why);
 
 /* to = a deep copy of from; to need not be initialised. Returns 0 or EX_SOFTWARE. */
 int packing_copy(struct packing *to, const struct packing *from, struct why *why);
@@ -90,6 +95,30 @@ int packing_copy(struct packing *to, const struct packing *from, struct why *why
 /* Is every number finite and in its range (radius > 0, mass >= 0, mu >= 0, 0 <= e <= 1, dt > 0,
    unit normals ...)? Returns 0, or EX_DATAERR with the first body or wall that fails. */
 int packing_check(const struct packing *p, struct why *why);
+
+/* m: a point of the wall at time t (s), which is not before the packing's */
+static inline vec3 wall_at(const struct packing *p, const struct wall *w, double t)
+{
+    vec3 x = v3_axpy(w->x, t, w->v);
+    if (w->load.way != LOAD_GLIDES) return x;
+    return v3_axpy(x, w->load.travel + (t - p->t) * w->load.speed, w->load.axis);
+}
+
+/* m/s: of the wall's material at point x (m): what is prescribed, and with what its load makes of
+   it */
+static inline vec3 wall_held(const struct wall *w, vec3 x)
+{
+    (void)x;
+    return w->v;
+}
+static inline vec3 wall_velocity(const struct wall *w, vec3 x)
+{
+    const struct load *l = &w->load;
+    vec3 v = wall_held(w, x);
+    if (l->way == LOAD_GLIDES) return v3_axpy(v, l->speed, l->axis);
+    if (l->way != LOAD_TURNS) return v;
+    return v3_axpy(v, l->speed, v3_cross(l->axis, v3_sub(x, l->point)));
+}
 
 /* m: the position at which contacts are detected, q + (1 - theta) dt qdot [globalmapapp1]. */
 static inline vec3 packing_predict(const struct packing *p, int64_t i)
@@ -102,6 +131,8 @@ static inline double packing_calm(const struct packing *p)
 {
     return 2 * p->dt * v3_norm(p->g);
 }
+/* The acceleration of the flow that the cell's edges make, in the step to come */
+struct cell_flow packing_flow(const struct packing *p);
 
 /* body[] = those of bodies a and b that can move (mass > 0; a < 0 is a wall); returns how many. */
 static inline int packing_movable(const struct packing *p, int32_t a, int32_t b, int32_t body[2])

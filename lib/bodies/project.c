@@ -1,6 +1,7 @@
 /* bodies/project.c: overlaps taken out of positions [bodies/project.h]. */
 #include "bodies/project.h"
 
+#include "bodies/freedom.h"
 #include "bodies/kinematics.h"
 
 #include <stdlib.h>
@@ -11,7 +12,8 @@ enum {
 
 /* Of the smaller radius: contacts keep an overlap, so that rounding does not open them */
 #define SLOP 1e-6
-/* Of the smaller radius: what a contact is moved apart in a step, at most; normals turn otherwise */
+/* Of the smaller radius: what a contact is moved apart in a step, at most; normals turn
+   otherwise */
 #define MOST 0.1
 /* Of the slop: changes that are not worth another sweep */
 #define ENOUGH 0.01
@@ -21,7 +23,7 @@ struct part {
     int32_t a, b; /* bodies; a < 0: a wall */
     vec3 n;
     double gap;    /* m: at the next predicted position, above the slop */
-    double w;      /* 1/kg: 1/m_a + 1/m_b */
+    double w;      /* 1/kg: 1/m_a + 1/m_b, and what freedoms add */
     double lambda; /* kg m */
     double slop;   /* m */
 };
@@ -44,40 +46,74 @@ static struct part part_of(const struct packing *p, const struct contact *c)
                           .slop = slop };
 }
 
-/* Changes lambda and d so that this gap is 0, or lambda is; returns whether that changed much. */
-static bool relax(const struct packing *p, struct part *k, vec3 *d)
+/* The displacements sought: of bodies, and along the axes of freedoms beyond theirs */
+struct displacements {
+    vec3 *d; /* [n] m */
+    struct freedoms freedoms;
+    double *z; /* [freedoms.n] m */
+};
+
+/* How much freedom k opens a contact, per m along its axis; one that turns does not, to first
+   order */
+static double opens(const struct displacements *o, int32_t k, const struct contact *c)
 {
+    const struct freedom *f = &o->freedoms.f[k];
+    return f->turns ? 0 : v3_dot(c->n, freedom_direction(f, c));
+}
+
+/* Changes lambda and d so that this gap is 0, or lambda is; returns whether that changed much. */
+static bool relax(const struct packing *p, struct part *k, const struct contact *c,
+                  struct displacements *o)
+{
+    vec3 *d = o->d;
     double gap = k->gap + v3_dot(k->n, d[k->b]) - (k->a < 0 ? 0 : v3_dot(k->n, d[k->a]));
+    for (int32_t f = 0; f < o->freedoms.n; f++) gap += opens(o, f, c) * o->z[f];
     double lambda = fmax(k->lambda - gap / k->w, 0), more = lambda - k->lambda;
     if (more == 0) return false;
     k->lambda = lambda;
     d[k->b] = v3_axpy(d[k->b], more * inverse_mass(p, k->b), k->n);
     if (k->a >= 0) d[k->a] = v3_axpy(d[k->a], -more * inverse_mass(p, k->a), k->n);
+    for (int32_t f = 0; f < o->freedoms.n; f++)
+        o->z[f] += more * opens(o, f, c) / o->freedoms.f[f].mass;
     return fabs(more) * k->w > ENOUGH * k->slop;
 }
 
-/* The parts, and d = 0, in memory that the caller frees; whether any gap is below 0 */
-static bool parts_make(const struct packing *p, const struct contacts *s, struct part *part)
+/* The parts; whether any gap is below 0 */
+static bool parts_make(const struct packing *p, const struct contacts *s,
+                       const struct displacements *o, struct part *part)
 {
     bool any = false;
     for (int64_t i = 0; i < s->n; i++) {
         part[i] = part_of(p, &s->c[i]);
+        for (int32_t k = 0; k < o->freedoms.n; k++) {
+            double J = opens(o, k, &s->c[i]);
+            part[i].w += J * J / o->freedoms.f[k].mass;
+        }
         any |= part[i].gap < 0;
     }
     return any;
 }
 
+static void displace(struct packing *p, const struct displacements *o)
+{
+    for (int64_t i = 0; i < p->n; i++) p->x[i] = v3_add(p->x[i], o->d[i]);
+    for (int32_t k = 0; k < o->freedoms.n; k++) freedom_displace(&o->freedoms.f[k], p, o->z[k]);
+}
+
 int project_apart(struct packing *p, const struct contacts *s, struct why *why)
 {
+    struct displacements o = { .d = calloc((size_t)p->n + 1, sizeof *o.d) };
     struct part *part = malloc(((size_t)s->n + 1) * sizeof *part);
-    vec3 *d = calloc((size_t)p->n + 1, sizeof *d);
-    bool room = part && d, more = room && parts_make(p, s, part), moves = more;
+    bool room = part && o.d && !freedoms_init(&o.freedoms, p, p->cell.edge, why);
+    room = room && (o.z = calloc((size_t)o.freedoms.n + 1, sizeof *o.z));
+    bool more = room && parts_make(p, s, &o, part), moves = more;
     for (int sweep = 0; more && sweep < SWEEPS; sweep++) {
         more = false;
         for (int64_t i = 0; i < s->n; i++)
-            if (part[i].w > 0 && relax(p, &part[i], d)) more = true;
+            if (part[i].w > 0 && relax(p, &part[i], &s->c[i], &o)) more = true;
     }
-    for (int64_t i = 0; moves && i < p->n; i++) p->x[i] = v3_add(p->x[i], d[i]);
-    free(part), free(d);
+    if (moves) displace(p, &o);
+    free(part), free(o.d), free(o.z);
+    freedoms_free(&o.freedoms);
     return room ? 0 : why_set(why, EX_SOFTWARE, "no memory to move the bodies apart");
 }

@@ -11,9 +11,10 @@
  *
  *     g_c + dt u_n + n . (d_b - d_a) >= -slop,   and = -slop where lambda_c > 0:
  *
- * of all that part the bodies, the least in the norm of M. A few Gauss-Seidel sweeps, the same on
- * every machine; what they leave is left to the next step. An impact that rebounds out of its
- * overlap in time is not touched.
+ * (and what freedoms beyond the bodies' open [bodies/freedom.h]: pistons and edges that yield
+ * give way, other walls do not) of all that part the bodies, the least in the norm of M. A few
+ * Gauss-Seidel sweeps, the same on every machine; what they leave is left to the next step. An
+ * impact that rebounds out of its overlap in time is not touched.
  */
 #ifndef NSD_PROJECT_H
 #define NSD_PROJECT_H

@@ -344,14 +344,18 @@ void options_warn(const char *where, const struct report *r)
 
 void options_summary(const char *where, const struct report *r)
 {
-    char trouble[120] = "", newton[40] = "", missed[60] = "";
+    char trouble[120] = "", newton[40] = "", missed[60] = "", growing[60] = "";
+    double error = err_of(&r->err, r->criterion);
     options_warn(where, r);
     if (r->newton) snprintf(newton, sizeof newton, ", %lld Newton steps", (long long)r->newton);
     if (r->safeguarded || r->gave_up)
         snprintf(trouble, sizeof trouble, ", %lld local solves safeguarded, %lld given up",
                  (long long)r->safeguarded, (long long)r->gave_up);
     if (!r->converged) snprintf(missed, sizeof missed, ": NOT CONVERGED to %g", r->eps);
-    warn("%s: %lld contacts, %s: %d sweeps%s, %s %.3g%s, %.3g s%s", where,
+    if (!r->converged && error <= r->eps) // the map is relative to reactions that grow without end
+        snprintf(growing, sizeof growing, ", bodies still approach at %.3g m/s",
+                 r->err.max_penetration_true);
+    warn("%s: %lld contacts, %s: %d sweeps%s, %s %.3g%s%s, %.3g s%s", where,
          (long long)r->err.contacts, r->method, r->sweeps, newton, options_error(r->criterion),
-         err_of(&r->err, r->criterion), trouble, r->seconds, missed);
+         error, growing, trouble, r->seconds, missed);
 }

@@ -1,6 +1,8 @@
 /* draw/svg.c: discs, walls and what lies over them, by cairo's SVG surface. */
 #include "draw/svg.h"
 
+#include "draw/images.h"
+
 #include <cairo-svg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,6 +44,7 @@ static int draw_walls(cairo_t *cr, const struct view *v, const struct packing *p
     if (!b) return -1;
     const struct region r = { v3_add(v->region.lo, v->moved), v3_add(v->region.hi, v->moved) };
     walls_build(b, p, &r);
+    images_outline(b, p);
     cairo_set_source_rgb(cr, 0.2, 0.2, 0.2);
     cairo_set_line_width(cr, 1.2);
     for (int i = 0; i < b->edges; i++) {

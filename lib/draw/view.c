@@ -1,6 +1,7 @@
 /* draw/view.c: the window of a series, and its bodies and walls placed among the samples. */
 #include "draw/view.h"
 
+#include "draw/images.h"
 #include "draw/raster.h"
 
 #include <stdlib.h>
@@ -146,6 +147,7 @@ void view_fit(struct view *v, const struct packing *p)
     struct walls *b = v->boxed ? NULL : malloc(sizeof *b);
     if (b) { // without memory for the walls, the window has the bodies only
         walls_build(b, p, &v->region);
+        images_outline(b, p);
         for (int i = 0; i < b->panels; i++)
             for (int k = 0; k < b->panel[i].corners; k++)
                 window_add(&v->window, &v->camera, b->panel[i].corner[k], 0);
@@ -300,7 +302,7 @@ static int place_walls(struct raster *s, const struct view *v, const struct pack
     s->edge = malloc(WALLS_EDGES * sizeof *s->edge);
     bool allocated = b && s->ground && s->edge;
     const struct region r = { v3_add(v->region.lo, v->moved), v3_add(v->region.hi, v->moved) };
-    if (allocated) walls_build(b, p, &r);
+    if (allocated) walls_build(b, p, &r), images_outline(b, p);
     for (int i = 0; allocated && i < b->panels; i++)
         if (v3_dot(b->panel[i].n, v->camera.toward) > 1e-3)
             place_ground(&s->ground[s->grounds++], v, &b->panel[i]);

@@ -13,7 +13,7 @@ static vec3 unit(int axis, double sign)
 
 static vec3 wall_now(const struct packing *p, int i)
 {
-    return v3_axpy(p->wall[i].x, p->t, p->wall[i].v);
+    return wall_at(p, &p->wall[i], p->t);
 }
 
 static bool is_drawn(vec3 x)

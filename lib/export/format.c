@@ -2,14 +2,15 @@
 
 #include <string.h>
 
+/* NULL ends it; the first is that of a directory. */
 static const struct format *const formats[] = {
-    &format_vtp, &format_vtu, &format_xyz, &format_lammps, &format_csv, &format_tsv, &format_stl,
+    &format_vtp, &format_vtu, &format_xyz, &format_lammps,
+    &format_csv, &format_tsv, &format_stl, NULL,
 };
 
 const struct format *format_at(int k)
 {
-    int count = sizeof formats / sizeof *formats;
-    return k >= 0 && k < count ? formats[k] : NULL;
+    return formats[k];
 }
 
 const struct format *format_of_name(const char *name)

@@ -27,7 +27,7 @@ struct format {
 extern const struct format format_vtp, format_vtu, format_xyz, format_lammps, format_csv,
     format_tsv, format_stl;
 
-/* The k-th; NULL past the last. */
+/* The k-th from 0; NULL behind the last. */
 const struct format *format_at(int k);
 /* The format that a file of this name has, by its ending; NULL: none. */
 const struct format *format_of_name(const char *name);

@@ -27,7 +27,7 @@ static void put(double *out, int64_t i, vec3 x)
 int sheet_boundary(struct sheet *s, const struct moment *m, struct why *why)
 {
     const struct packing *p = m->packing;
-    int32_t wall[WALLS_PANELS];
+    int32_t wall[WALLS_PANELS] = { 0 };
     s->shape = p->dim == 2 ? SHEET_LINE : SHEET_POLYGON;
     if (add_polygons(s, p, wall, why)) return why->status;
     int32_t *number = sheet_whole(s, "boundary", "", why), *kind = sheet_whole(s, "kind", "", why);

@@ -33,7 +33,7 @@ static int add_forces(struct sheet *s, const struct moment *m, struct why *why)
     if (why->status) return why->status;
     for (int64_t i = 0; i < m->contacts->n; i++) {
         const struct found *f = &m->contacts->found[i];
-        status[i] = f->status;
+        status[i] = (int32_t)f->status; // NOLINT(bugprone-signed-char-misuse): 0, 1 or 2
         put(force, i, v3_scale(1 / dt, contact_in_space(&m->contacts->c[i], f->r)));
         normal[i] = f->r[0] / dt, tangential[i] = hypot(f->r[1], f->r[2]) / dt;
     }

@@ -7,6 +7,7 @@
 #include "export/sheet.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { DISC = 48 /* corners: no angle is seen at the size of a page */ };
 
@@ -68,12 +69,9 @@ static int ball_build(struct ball *b, int detail, struct why *why)
 static void put_float(FILE *out, double x)
 {
     float number = (float)x;
-    uint32_t bits;
-    unsigned char bytes[4];
-    _Static_assert(sizeof bits == sizeof number, "a float of 32 bits");
-    for (size_t k = 0; k < 4; k++) ((char *)&bits)[k] = ((const char *)&number)[k];
-    for (int k = 0; k < 4; k++) bytes[k] = (unsigned char)(bits >> 8 * k);
-    fwrite(bytes, 1, 4, out);
+    uint32_t bits = 0;
+    memcpy(&bits, &number, sizeof bits);
+    for (int k = 0; k < 4; k++) putc((int)(bits >> 8 * k & 255), out);
 }
 
 static void put_vec(FILE *out, vec3 a)

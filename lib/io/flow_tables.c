@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char flow[] = "/observables/flow", events[] = "/observables/flow/events";
+static const char flow[] = "/nsd/flow", events[] = "/nsd/flow/events";
 
 /* A column of n passages, as one frame */
 static int write_passages(struct table_write *s, const struct column *c, int32_t n,
@@ -29,12 +29,12 @@ int flow_write(struct table_write *s, const struct packing *p, struct why *why)
 {
     if (!packing_varies(p)) return 0;
     const hsize_t one = 1;
-    bool first = !table_write_grows(s, "/observables/flow/events/id");
+    bool first = !table_write_grows(s, "/nsd/flow/events/id");
     if (write_passages(s, layout_poured, p->pours, p->poured, why) ||
         write_passages(s, layout_removed, p->removals, p->removed, why) ||
-        table_write_rows(s, "/observables/flow/events/start", COLUMN_I64, 1, &one, CHUNK_FRAMES,
-                         &s->events, NULL, why) ||
-        table_write_rows(s, "/observables/flow/events/count", COLUMN_I64, 1, &one, CHUNK_FRAMES,
+        table_write_rows(s, "/nsd/flow/events/start", COLUMN_I64, 1, &one, CHUNK_FRAMES, &s->events,
+                         NULL, why) ||
+        table_write_rows(s, "/nsd/flow/events/count", COLUMN_I64, 1, &one, CHUNK_FRAMES,
                          &p->events.n, NULL, why) ||
         table_write_columns(s, events, "", layout_events, p->events.n, p->events.e,
                             sizeof *p->events.e, CHUNK_CONTACTS, why))
@@ -106,10 +106,10 @@ static int read_events(struct source *s, int64_t k, struct packing *p, struct wh
 {
     int64_t start, count;
     uint64_t shape[4];
-    if (source_rows(s, "/observables/flow/events/start", COLUMN_I64, k, 1, 1, &start, why) ||
-        source_rows(s, "/observables/flow/events/count", COLUMN_I64, k, 1, 1, &count, why))
+    if (source_rows(s, "/nsd/flow/events/start", COLUMN_I64, k, 1, 1, &start, why) ||
+        source_rows(s, "/nsd/flow/events/count", COLUMN_I64, k, 1, 1, &count, why))
         return why->status;
-    if (source_shape(s, "/observables/flow/events/id", shape) != 1 || start < 0 || count < 0 ||
+    if (source_shape(s, "/nsd/flow/events/id", shape) != 1 || start < 0 || count < 0 ||
         start > INT32_MAX || count > INT32_MAX || (uint64_t)(start + count) > shape[0])
         return why_set(why, EX_DATAERR, "%s: start or count is out of range", events);
     if (!(p->events.e = calloc((size_t)count + 1, sizeof *p->events.e)))
@@ -126,8 +126,8 @@ static int read_events(struct source *s, int64_t k, struct packing *p, struct wh
 int flow_tables_read(struct source *s, int64_t k, struct packing *p, struct why *why)
 {
     if (!source_has(s, flow)) return 0;
-    int32_t pours = count_of(s, "/observables/flow/poured/value", why);
-    int32_t removals = pours < 0 ? -1 : count_of(s, "/observables/flow/removed/value", why);
+    int32_t pours = count_of(s, "/nsd/flow/poured/value", why);
+    int32_t removals = pours < 0 ? -1 : count_of(s, "/nsd/flow/removed/value", why);
     if (removals < 0 || packing_alloc_passages(p, pours, removals, why)) return why->status;
     if (source_attribute(s, flow, "first_id", COLUMN_I32, -1, &p->first_id, why) ||
         read_passages(s, k, layout_poured, pours, p->poured, why) ||

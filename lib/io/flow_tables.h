@@ -1,5 +1,5 @@
 /*
- * io/flow_tables.h: /observables/flow of a document [nsd-format(5)]: how many bodies have come and
+ * io/flow_tables.h: /nsd/flow of a document [nsd-format(5)]: how many bodies have come and
  * gone, and the events.
  */
 #ifndef NSD_FLOW_TABLES_H

@@ -62,19 +62,48 @@ static int count_contacts(struct frame_read *r, struct why *why)
     return why->status;
 }
 
+/* The reports whose numbers in these columns are there: a killed writer's may differ. */
+static void count_rows(struct frame_read *r, const struct column *columns)
+{
+    for (const struct column *c = columns; c->name; c++) {
+        uint64_t shape[4];
+        char path[80];
+        snprintf(path, sizeof path, "%s/%s/value", r->reports, c->name);
+        if (source_shape(r->source, path, shape) > 0 && shape[0] < (uint64_t)r->solves)
+            r->solves = (int64_t)shape[0];
+    }
+}
+
 static int count_reports(struct frame_read *r, struct why *why)
 {
     char path[80];
     r->reports = source_has(r->source, LAYOUT_REPORT) ? LAYOUT_REPORT : LAYOUT_REPORT_0_1;
     snprintf(path, sizeof path, "%s/step", r->reports);
     if (source_has(r->source, path)) r->solved = steps_of(r, path, &r->solves, why);
-    for (const struct column *c = layout_report; c->name; c++) { // a killed writer's may differ
-        uint64_t shape[4];
-        snprintf(path, sizeof path, "%s/%s/value", r->reports, c->name);
-        if (source_shape(r->source, path, shape) > 0 && shape[0] < (uint64_t)r->solves)
-            r->solves = (int64_t)shape[0];
-    }
+    count_rows(r, layout_report);
+    count_rows(r, layout_balance);
     return why->status;
+}
+
+/* Which edges of H5MD's box are periodic */
+static int read_boundary(struct frame_read *r, struct why *why)
+{
+    const char *box = "/particles/all/box";
+    char boundary[3][16];
+    bool there;
+    if (source_texts(r->source, box, "boundary", 3, boundary, &there, why)) return why->status;
+    bool edges = source_has(r->source, "/particles/all/box/edges");
+    for (int k = 0; there && k < 3; k++) {
+        r->repeats[k] = !strcmp(boundary[k], "periodic");
+        if (!r->repeats[k] && strcmp(boundary[k], "none") != 0)
+            return why_set(why, EX_DATAERR, "%s@boundary: '%s' is neither periodic nor none", box,
+                           boundary[k]);
+        if (r->repeats[k] && !edges)
+            return why_set(why, EX_DATAERR, "%s: periodic without edges", box);
+    }
+    if (!there && edges)
+        return why_set(why, EX_DATAERR, "%s@boundary: not three strings of fixed length", box);
+    return 0;
 }
 
 int frame_read_open(struct frame_read *r, struct source *source, struct why *why)
@@ -82,7 +111,7 @@ int frame_read_open(struct frame_read *r, struct source *source, struct why *why
     *r = (struct frame_read){ .source = source, .frames = 1 };
     r->ahead.last = r->contacts.last = -1;
     if (source_has(source, "/particles/all")) {
-        if (count_frames(r, why)) return why->status;
+        if (count_frames(r, why) || read_boundary(r, why)) return why->status;
         if (source_has(source, "/contacts") && count_contacts(r, why)) return why->status;
     } else if (!fclib_in(source)) {
         return why_set(why, EX_DATAERR, "holds neither particles nor an FCLIB problem");
@@ -141,15 +170,36 @@ static int read_material(struct source *doc, struct packing *p, struct why *why)
     return e ? e : check_symmetric(p, why);
 }
 
-static int read_walls(struct source *r, struct packing *p, struct why *why)
+/* The walls' loads, as they are in frame k */
+static int read_loads(struct source *r, int64_t k, struct packing *p, struct why *why)
+{
+    if (!source_has(r, "/walls/load")) return 0;
+    if (table_read_columns(r, "/walls/load", "", layout_loads, 0, p->walls, p->wall,
+                           sizeof *p->wall, why))
+        return why->status;
+    double *row = calloc((size_t)p->walls + 1, sizeof *row);
+    if (!row) return why_set(why, EX_SOFTWARE, "no memory for the loads");
+    for (const struct column *c = layout_yield; !why->status && c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "/walls/load/%s/value", c->name);
+        if (!source_rows(r, path, c->type, k, 1, p->walls, row, why))
+            column_scatter(c, p->walls, row, p->wall, sizeof *p->wall);
+    }
+    free(row);
+    return why->status;
+}
+
+static int read_walls(struct source *r, int64_t k, struct packing *p, struct why *why)
 {
     uint64_t shape[4];
     if (!source_has(r, "/walls/plane")) return 0;
     if (source_shape(r, "/walls/plane/point", shape) != 2 || shape[0] > 1 << 24)
         return why_set(why, EX_DATAERR, "/walls/plane/point: not of shape walls x 3");
     if (packing_alloc_walls(p, (int32_t)shape[0], why)) return why->status;
-    return table_read_columns(r, "/walls/plane", "", layout_walls, 0, p->walls, p->wall,
-                              sizeof *p->wall, why);
+    if (table_read_columns(r, "/walls/plane", "", layout_walls, 0, p->walls, p->wall,
+                           sizeof *p->wall, why))
+        return why->status;
+    return read_loads(r, k, p, why);
 }
 
 /* What is done about overlap; a document need not say it. */
@@ -263,6 +313,77 @@ static int find_bodies(struct frame_read *r, int64_t k, int64_t **row, int64_t *
     return why->status;
 }
 
+/* Edges, constant or of frame k: three lengths, or three vectors */
+static int read_edges(struct frame_read *r, int64_t k, struct cell *c, struct why *why)
+{
+    const char *moving = "/particles/all/box/edges/value", *still = "/particles/all/box/edges";
+    uint64_t shape[4];
+    double edge[9];
+    if (source_has(r->source, moving)) {
+        int rank = source_shape(r->source, moving, shape);
+        if (rank != 2 && rank != 3)
+            return why_set(why, EX_DATAERR, "%s: not of shape frames x 3 (x 3)", moving);
+        if (source_rows(r->source, moving, COLUMN_F64, k, 1, rank == 2 ? 3 : 9, edge, why))
+            return why->status;
+        shape[0] = rank == 2 ? 3 : 9;
+    } else {
+        int rank = source_shape(r->source, still, shape);
+        if (rank == 2) shape[0] *= shape[1];
+        if ((rank != 1 && rank != 2) || shape[0] != (rank == 1 ? 3 : 9))
+            return why_set(why, EX_DATAERR, "%s: not of shape 3 (x 3)", still);
+        if (source_read(r->source, still, COLUMN_F64, shape[0], edge, why)) return why->status;
+    }
+    for (int i = 0; i < 3; i++)
+        c->edge[i] = shape[0] == 9
+                         ? v3(edge[3 * i], edge[3 * i + 1], edge[3 * i + 2])
+                         : v3(i == 0 ? edge[0] : 0, i == 1 ? edge[1] : 0, i == 2 ? edge[2] : 0);
+    return 0;
+}
+
+/* What moves the edges, and what they yield to */
+static int read_drive(struct source *doc, struct cell *c, struct why *why)
+{
+    uint64_t n = 0;
+    if (!source_has(doc, "/nsd/cell")) return 0;
+    double *t = source_read_all(doc, "/nsd/cell/time", COLUMN_F64, &n, why);
+    double *L = t && n < 1 << 24 ? calloc(9 * n + 1, sizeof *L) : NULL;
+    c->gradient = L ? calloc(n + 1, sizeof *c->gradient) : NULL;
+    if (t && !c->gradient) why_set(why, EX_SOFTWARE, "no memory for the cell's gradient");
+    if (c->gradient && !source_read(doc, "/nsd/cell/gradient", COLUMN_F64, 9 * n, L, why))
+        for (c->gradients = 0; c->gradients < (int32_t)n; c->gradients++) {
+            struct cell_gradient *g = &c->gradient[c->gradients];
+            g->t = t[c->gradients];
+            memcpy(g->L, L + 9 * (size_t)c->gradients, sizeof g->L);
+        }
+    free(t), free(L);
+    if (why->status) return why->status;
+    return source_read(doc, "/nsd/cell/mass", COLUMN_F64, 9, c->mass, why) ||
+                   source_read(doc, "/nsd/cell/stress", COLUMN_F64, 9, c->stress, why)
+               ? why->status
+               : 0;
+}
+
+/* The cell of frame k; the packing has its time. */
+static int read_cell(struct frame_read *r, int64_t k, struct packing *p, struct why *why)
+{
+    const char *origin = "/particles/all/box/origin", *rate = "/particles/all/box/rate/value",
+               *image = "/particles/all/image/value";
+    struct cell *c = &p->cell;
+    memcpy(c->repeats, r->repeats, sizeof c->repeats);
+    if (!cell_repeats(c)) return 0;
+    if (read_edges(r, k, c, why) || read_drive(r->source, c, why) || packing_alloc_images(p, why) ||
+        (source_has(r->source, origin) &&
+         source_read(r->source, origin, COLUMN_F64, 3, &c->origin, why)))
+        return why->status;
+    cell_set_rate(c, p->t);
+    if (source_has(r->source, rate) &&
+        source_rows(r->source, rate, COLUMN_F64, k, 1, 9, c->rate, why))
+        return why->status;
+    return source_has(r->source, image)
+               ? source_rows(r->source, image, COLUMN_I32, k, 1, 3 * p->n, p->image, why)
+               : 0;
+}
+
 static int read_packing(struct frame_read *r, int64_t k, struct packing *p, struct why *why)
 {
     uint64_t shape[4];
@@ -278,15 +399,37 @@ static int read_packing(struct frame_read *r, int64_t k, struct packing *p, stru
         goto end;
     }
     if (packing_init(p, dim, n, why) || read_parameters(r->source, p, why) ||
-        read_material(r->source, p, why) || read_walls(r->source, p, why) ||
+        read_material(r->source, p, why) || read_walls(r->source, k, p, why) ||
         (row ? read_roster(r, k, row, p, why) : read_bodies(r, k, p, why)) ||
         flow_tables_read(r->source, k, p, why))
         goto end;
     p->step = r->step[k], p->t = r->time[k];
-    packing_check(p, why);
+    if (packing_varies(p) && (r->repeats[0] || r->repeats[1] || r->repeats[2]))
+        why_set(why, EX_DATAERR, "bodies that come and go in a cell that repeats: not known");
+    else if (!read_cell(r, k, p, why))
+        packing_check(p, why);
 end:
     free(row);
     return why->status;
+}
+
+/* Of two shifts: < 0 where the first is the earlier one, 0 where they are the same */
+static int compare_shifts(const int8_t a[3], const int8_t b[3])
+{
+    for (int k = 0; k < 3; k++)
+        if (a[k] != b[k]) return a[k] < b[k] ? -1 : 1;
+    return 0;
+}
+
+static int check_shifts(const struct contacts *s, const struct cell *cell, struct why *why)
+{
+    for (int64_t i = 0; i < s->n; i++)
+        for (int k = 0; k < 3; k++)
+            if (s->c[i].shift[k] && !cell->repeats[k])
+                return why_set(why, EX_DATAERR,
+                               "contact %lld: shift along edge %d, which does not repeat",
+                               (long long)i, k);
+    return 0;
 }
 
 /* What contacts_check leaves: they are sorted, each pair once, and their states are states. */
@@ -294,7 +437,11 @@ static int check_order(const struct contacts *s, struct why *why)
 {
     for (int64_t i = 1; i < s->n; i++) {
         const struct contact *c = &s->c[i - 1], *next = &s->c[i];
-        if (c->a == next->a && c->b == next->b)
+        bool same_pair = c->a == next->a && c->b == next->b;
+        int later = compare_shifts(c->shift, next->shift);
+        if (same_pair && later > 0)
+            return why_set(why, EX_DATAERR, "contact %lld: not sorted by its shift", (long long)i);
+        if (same_pair && !later)
             return why_set(why, EX_DATAERR, "contact %lld: of bodies %d and %d, as the one before",
                            (long long)i, next->a, next->b);
         if (c->a > next->a || (c->a == next->a && c->b > next->b))
@@ -350,10 +497,14 @@ static int read_contacts(struct frame_read *r, int64_t k, struct frame *f, struc
     if (table_read_columns(r->source, "/contacts", "", layout_contacts, first, s->n, s->c,
                            sizeof *s->c, why) ||
         read_bases(r->source, first, s, why) ||
+        (cell_repeats(&f->packing.cell) &&
+         table_read_columns(r->source, "/contacts", "", layout_shifts, first, s->n, s->c,
+                            sizeof *s->c, why)) ||
         (solved && table_read_columns(r->source, "/contacts", "", layout_found, first, s->n,
                                       s->found, sizeof *s->found, why)))
         return why->status;
-    if (contacts_check(s, f->packing.n, f->packing.walls, why) || check_order(s, why))
+    if (contacts_check(s, f->packing.n, f->packing.walls, why) || check_order(s, why) ||
+        check_shifts(s, &f->packing.cell, why))
         return why->status;
     int moved;
     if (source_attribute(r->source, "/contacts", "moved", COLUMN_I32, -1, &moved, why))
@@ -406,6 +557,12 @@ static int read_ahead(struct frame_read *r, int64_t at, struct why *why)
                            sizeof *r->ahead.row, why) ||
         source_rows(r->source, time, COLUMN_F64, at, n, 1, r->ahead.time, why))
         return why->status;
+    snprintf(time, sizeof time, "%s/dissipation/value", r->reports);
+    bool balanced = source_has(r->source, "/particles/all") && source_has(r->source, time);
+    if (balanced && table_read_columns(r->source, r->reports, "/value", layout_balance, at, n,
+                                       r->ahead.row, sizeof *r->ahead.row, why))
+        return why->status;
+    for (int64_t i = 0; i < n; i++) r->ahead.row[i].balanced = balanced;
     r->ahead.n = n;
     return 0;
 }

@@ -17,6 +17,7 @@ struct frame_read {
     const char *reports; /* the group of the solver's reports, */
     int64_t *solved;     /* [solves] the steps that they are on */
     int64_t solves;
+    bool repeats[3]; /* the box's edges */
     struct {
         struct report *row; /* [n] reports from `first` on, read at once: a question of the document
                                takes longer than its answer; or NULL */

@@ -26,6 +26,14 @@ static const struct column layout_motion[] = {
     { 0 },
 };
 
+/* The same where the cell repeats: a pointer in struct packing; members of struct cell, [F][3][3] */
+static const struct column layout_cell[] = {
+    { "image", "1", COLUMN_I32, 3, offsetof(struct packing, image) },
+    { "box/edges", "m", COLUMN_F64, 9, offsetof(struct cell, edge) },
+    { "box/rate", "m s-1", COLUMN_F64, 9, offsetof(struct cell, rate) },
+    { 0 },
+};
+
 /* /particles/all/NAME [N]: pointers in struct packing */
 static const struct column layout_bodies[] = {
     { "radius", "m", COLUMN_F64, 1, offsetof(struct packing, radius) },
@@ -42,6 +50,23 @@ static const struct column layout_walls[] = {
     { "normal", "1", COLUMN_F64, 3, offsetof(struct wall, n) },
     { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct wall, v) },
     { "species", "1", COLUMN_I32, 1, offsetof(struct wall, kind) },
+    { 0 },
+};
+
+/* /walls/load/NAME [walls][width] where any wall yields: members of struct wall */
+static const struct column layout_loads[] = {
+    { "way", "1", COLUMN_I32, 1, offsetof(struct wall, load.way) },
+    { "axis", "1", COLUMN_F64, 3, offsetof(struct wall, load.axis) },
+    { "point", "m", COLUMN_F64, 3, offsetof(struct wall, load.point) },
+    { "mass", "kg, kg m2", COLUMN_F64, 1, offsetof(struct wall, load.mass) },
+    { "force", "N, N m", COLUMN_F64, 1, offsetof(struct wall, load.force) },
+    { 0 },
+};
+
+/* /walls/load/NAME/value [F][walls], the same */
+static const struct column layout_yield[] = {
+    { "speed", "m s-1, rad s-1", COLUMN_F64, 1, offsetof(struct wall, load.speed) },
+    { "travel", "m, rad", COLUMN_F64, 1, offsetof(struct wall, load.travel) },
     { 0 },
 };
 
@@ -62,6 +87,12 @@ static const struct column layout_contacts[] = {
     { "mu", "1", COLUMN_F64, 1, offsetof(struct contact, mu) },
     { "en", "1", COLUMN_F64, 1, offsetof(struct contact, en) },
     { "et", "1", COLUMN_F64, 1, offsetof(struct contact, et) },
+    { 0 },
+};
+
+/* The same where the cell repeats */
+static const struct column layout_shifts[] = {
+    { "shift", "1", COLUMN_I8, 3, offsetof(struct contact, shift) },
     { 0 },
 };
 
@@ -106,7 +137,7 @@ static const struct column layout_report[] = {
     { 0 },
 };
 
-/* /observables/flow/NAME/value [F][pours], or [removals]: members of struct passage */
+/* /nsd/flow/NAME/value [F][pours], or [removals]: members of struct passage */
 static const struct column layout_poured[] = {
     { "poured", "1", COLUMN_I64, 1, offsetof(struct passage, bodies) },
     { "poured_mass", "kg", COLUMN_F64, 1, offsetof(struct passage, mass) },
@@ -118,7 +149,7 @@ static const struct column layout_removed[] = {
     { 0 },
 };
 
-/* /observables/flow/events/NAME [E][width]: members of struct event */
+/* /nsd/flow/events/NAME [E][width]: members of struct event */
 static const struct column layout_events[] = {
     { "step", "1", COLUMN_I64, 1, offsetof(struct event, step) },
     { "time", "s", COLUMN_F64, 1, offsetof(struct event, t) },
@@ -129,6 +160,20 @@ static const struct column layout_events[] = {
     { "mass", "kg", COLUMN_F64, 1, offsetof(struct event, mass) },
     { "position", "m", COLUMN_F64, 3, offsetof(struct event, x) },
     { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct event, v) },
+    { 0 },
+};
+
+/* /observables/solver/NAME/value [F][width] where there are bodies: members of struct report */
+static const struct column layout_balance[] = {
+    { "kinetic_energy", "J", COLUMN_F64, 1, offsetof(struct report, balance.kinetic) },
+    { "kinetic_change", "J", COLUMN_F64, 1, offsetof(struct report, balance.change) },
+    { "potential_energy", "J", COLUMN_F64, 1, offsetof(struct report, balance.potential) },
+    { "work_gravity", "J", COLUMN_F64, 1, offsetof(struct report, balance.gravity) },
+    { "work_drives", "J", COLUMN_F64, 1, offsetof(struct report, balance.drives) },
+    { "work_loads", "J", COLUMN_F64, 1, offsetof(struct report, balance.loads) },
+    { "dissipation", "J", COLUMN_F64, 1, offsetof(struct report, balance.dissipation) },
+    { "momentum", "N s", COLUMN_F64, 3, offsetof(struct report, balance.momentum) },
+    { "boundary_impulse", "N s", COLUMN_F64, 3, offsetof(struct report, balance.impulse) },
     { 0 },
 };
 

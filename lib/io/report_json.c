@@ -52,6 +52,21 @@ json_t *json_err(const struct err *e)
     return j;
 }
 
+static json_t *balance(const struct balance *b)
+{
+    json_t *j = json_object();
+    json_object_set_new(j, "kinetic", json_number(b->kinetic));
+    json_object_set_new(j, "change", json_number(b->change));
+    json_object_set_new(j, "potential", json_number(b->potential));
+    json_object_set_new(j, "gravity", json_number(b->gravity));
+    json_object_set_new(j, "drives", json_number(b->drives));
+    json_object_set_new(j, "loads", json_number(b->loads));
+    json_object_set_new(j, "dissipation", json_number(b->dissipation));
+    json_object_set_new(j, "momentum", json_numbers(b->momentum, 3));
+    json_object_set_new(j, "impulse", json_numbers(b->impulse, 3));
+    return j;
+}
+
 json_t *json_report(const struct report *r)
 {
     json_t *j = json_object();
@@ -66,6 +81,7 @@ json_t *json_report(const struct report *r)
     json_object_set_new(j, "newton", json_integer(r->newton));
     json_object_set_new(j, "safeguarded", json_integer(r->safeguarded));
     json_object_set_new(j, "gave_up", json_integer(r->gave_up));
+    if (r->balanced) json_object_set_new(j, "balance", balance(&r->balance));
     return j;
 }
 

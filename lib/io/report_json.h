@@ -20,7 +20,8 @@ json_t *json_numbers(const double *x, int64_t n);
 json_t *json_err(const struct err *err);
 /*
  * step, time, method, the keys of json_err, criterion, eps, sweeps, converged, newton, safeguarded,
- * gave_up
+ * gave_up; and where it is known balance { kinetic, change, potential, gravity, drives, loads, dissipation,
+ * momentum, impulse } [bodies/balance.h]
  */
 json_t *json_report(const struct report *report);
 

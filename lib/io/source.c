@@ -224,6 +224,37 @@ int source_attribute(struct source *s, const char *path, const char *name, enum 
     return ask(s, &q, &t, why);
 }
 
+/* Cut into strings; false where it is something else. */
+static bool cut_texts(const struct object *o, const uint64_t *shape, const char *data, int count,
+                      char out[][16])
+{
+    if (o->kind != OBJECT_TEXT || o->rank != 1 || shape[0] != (uint64_t)count || !o->size ||
+        o->data != shape[0] * o->size)
+        return false;
+    for (int k = 0; k < count; k++)
+        snprintf(out[k], sizeof out[k], "%.*s", (int)(o->size < 15 ? o->size : 15),
+                 data + (size_t)k * o->size);
+    return true;
+}
+
+int source_texts(struct source *s, const char *path, const char *name, int count, char out[][16],
+                 bool *there, struct why *why)
+{
+    const struct listed *l = list_attribute(&s->list, path, name);
+    *there = l && cut_texts(&l->object, l->shape, l->data, count, out);
+    if (l || !list_find(&s->list, path)) return 0;
+    uint64_t size = 0, at = 0;
+    struct object o;
+    const uint64_t *shape;
+    const char *is;
+    const void *data;
+    unsigned char *bytes = source_attributes(s, path, &size, why); // the list was too long for it
+    while (bytes && object_unpack(bytes, size, &at, &o, &shape, &is, &data))
+        if (!strcmp(is, name)) *there = cut_texts(&o, shape, data, count, out);
+    free(bytes);
+    return why->status;
+}
+
 void *source_raw(struct source *s, const char *path, uint64_t *size, struct why *why)
 {
     struct request q = request_of(REQUEST_RAW, path);

@@ -73,6 +73,12 @@ char *source_text(struct source *source, const char *path, const char *name, str
 /* `count` numbers of an attribute; count < 0: a scalar. */
 int source_attribute(struct source *source, const char *path, const char *name,
                      enum column_type type, int count, void *out, struct why *why);
+/*
+ * `count` strings of fixed length of an attribute, each cut to 15 bytes. *there: false where there are
+ * none, or they are something else.
+ */
+int source_texts(struct source *source, const char *path, const char *name, int count,
+                 char out[][16], bool *there, struct why *why);
 /* All of a dataset in its own plain type; to be freed. */
 void *source_raw(struct source *source, const char *path, uint64_t *size, struct why *why);
 /* All attributes of an object, as a sequence of struct object; to be freed. */

@@ -27,7 +27,7 @@ struct table_write {
     } open[GROWING_DATASETS]; /* datasets that grow stay open */
     int count;                /* of open datasets */
     int64_t contacts;         /* rows of /contacts so far */
-    int64_t events;           /* rows of /observables/flow/events so far */
+    int64_t events;           /* rows of /nsd/flow/events so far */
 };
 
 /*

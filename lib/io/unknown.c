@@ -30,13 +30,13 @@ static const struct {
     const char *known[12];
 } looked_through[] = {
     { "", { "h5md", "nsd", "particles", "walls", "contacts", "observables", "solution" } },
-    { "/nsd", { "history", "scene", "material", "solver" } },
+    { "/nsd", { "history", "scene", "material", "solver", "flow", "cell" } },
     { "/particles", { "all" } },
     { "/particles/all",
       { "box", "position", "velocity", "angular_velocity", "orientation", "radius", "mass",
-        "inertia", "id", "species" } },
-    { "/walls", { "plane" } },
-    { "/observables", { "solver", "flow" } },
+        "inertia", "id", "species", "image" } },
+    { "/walls", { "plane", "load" } },
+    { "/observables", { "solver" } },
 };
 
 enum { GROUPS = sizeof looked_through / sizeof looked_through[0] };

@@ -33,6 +33,7 @@ struct shared {
     uint32_t
         crc; /* of their radii and masses; 0 where bodies come and go: io/roster.c sees to it */
     int32_t pours, removals;
+    uint32_t cell; /* of the cell: what repeats, from where, and its drive */
 };
 
 struct writer {
@@ -336,13 +337,24 @@ static int flush(struct writer *s, struct why *why)
     return good ? 0 : output_failed(s, why, "cannot be written (full?)");
 }
 
+static uint32_t cell_crc(const struct cell *c)
+{
+    uint32_t crc = document_crc(0, c->repeats, sizeof c->repeats);
+    crc = document_crc(crc, &c->origin, sizeof c->origin);
+    crc = document_crc(crc, c->gradient, (size_t)c->gradients * sizeof *c->gradient);
+    crc = document_crc(crc, c->mass, sizeof c->mass);
+    return document_crc(crc, c->stress, sizeof c->stress);
+}
+
 static struct shared shared_of(const struct packing *p)
 {
     if (packing_varies(p))
-        return (struct shared){ p->dim, 0, p->dt, p->theta, p->overlap, 0, p->pours, p->removals };
+        return (
+            struct shared){ p->dim, 0, p->dt, p->theta, p->overlap, 0, p->pours, p->removals, 0 };
     uint32_t crc = document_crc(0, p->radius, (size_t)p->n * sizeof *p->radius);
     crc = document_crc(crc, p->mass, (size_t)p->n * sizeof *p->mass);
-    return (struct shared){ p->dim, p->n, p->dt, p->theta, p->overlap, crc, 0, 0 };
+    return (
+        struct shared){ p->dim, p->n, p->dt, p->theta, p->overlap, crc, 0, 0, cell_crc(&p->cell) };
 }
 
 /* What is stored only with the first frame has to be true of all. */
@@ -359,6 +371,7 @@ static int check_same(const struct writer *s, const struct frame *f, struct why 
     if (p.pours != q.pours || p.removals != q.removals)
         return why_set(why, EX_DATAERR, "other pours or removals than the trajectory's");
     if (p.crc != q.crc) return why_set(why, EX_DATAERR, "other bodies than the trajectory's");
+    if (p.cell != q.cell) return why_set(why, EX_DATAERR, "another cell than the trajectory's");
     if (f->packing.step <= s->step)
         return why_set(why, EX_DATAERR, "step %lld after step %lld: a trajectory's steps increase",
                        (long long)f->packing.step, (long long)s->step);

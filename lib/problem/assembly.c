@@ -14,6 +14,7 @@ void assembly_free(struct assembly *A)
 {
     free(A->slot), free(A->end), free(A->q), free(A->w), free(A->free);
     lists_free(&A->of);
+    lists_free(&A->yield);
     *A = (struct assembly){ 0 };
 }
 
@@ -37,6 +38,40 @@ static void assembly_velocity(const struct assembly *A, struct body *body, doubl
     }
 }
 
+/* m/s, rad/s: of a freedom without the reactions */
+static double free_speed(const struct assembly *A, const struct freedom *f)
+{
+    return f->speed + A->p->dt * f->force / f->mass;
+}
+
+/* The bodies are as fast as the freedoms were before the step: q gets what the forces add to that,
+   and w loses it. */
+static void add_freedoms(struct assembly *A)
+{
+    const struct couplings *y = A->p->coupling;
+    int d = A->p->d;
+    for (int64_t i = 0; y && i < y->n; i++) {
+        const struct coupling *c = &y->of[i];
+        const struct freedom *f = &y->freedoms.f[c->freedom];
+        double more = free_speed(A, f) - f->speed;
+        for (int k = 0; k < d; k++) {
+            A->q[d * c->contact + k] += more * c->J[k];
+            A->w[d * c->contact + k] -= f->speed * c->J[k];
+        }
+    }
+}
+
+static bool list_freedoms(struct assembly *A)
+{
+    const struct couplings *y = A->p->coupling;
+    int64_t n = y ? y->n : 0;
+    int32_t *owner = malloc((size_t)(n + 1) * sizeof *owner);
+    for (int64_t i = 0; owner && i < n; i++) owner[i] = y->of[i].freedom;
+    bool good = owner && lists_init(&A->yield, y ? y->freedoms.n : 0, n, owner);
+    free(owner);
+    return good;
+}
+
 /* q from the bodies without the reactions; w with the movable bodies at rest as well */
 static bool assembly_vectors(struct assembly *A)
 {
@@ -58,6 +93,7 @@ static bool assembly_vectors(struct assembly *A)
     }
     assembly_velocity(A, A->free, A->q);
     assembly_velocity(A, still, A->w);
+    add_freedoms(A);
     free(still);
     return true;
 }
@@ -81,7 +117,8 @@ int assembly_init(struct assembly *A, const struct problem *p, struct why *why)
         A->end[2 * c] = p->body[a].im > 0 ? (int32_t)a : -1;
         A->end[2 * c + 1] = p->body[b].im > 0 ? (int32_t)b : -1;
     }
-    good = good && lists_init(&A->of, p->bodies, 2 * p->n, A->end) && assembly_vectors(A);
+    good = good && lists_init(&A->of, p->bodies, 2 * p->n, A->end) && list_freedoms(A) &&
+           assembly_vectors(A);
     return good ? 0 : short_of_memory(why);
 }
 
@@ -99,7 +136,21 @@ static void jacobian(const struct assembly *A, int64_t contact, int end, double 
     }
 }
 
-/* B = W_cb, the sum of J_c M^-1 J_b^T over the movable bodies that c and b share */
+/* B += J_c J_b^T / m over the freedoms that c and b share */
+static void add_shared(const struct couplings *y, int64_t c, int64_t b, double B[3][3])
+{
+    for (int64_t k = y->first[c]; k < y->first[c + 1]; k++)
+        for (int64_t l = y->first[b]; l < y->first[b + 1]; l++) {
+            const struct coupling *of_c = &y->of[k], *of_b = &y->of[l];
+            if (of_c->freedom != of_b->freedom) continue;
+            double m = y->freedoms.f[of_c->freedom].mass;
+            for (int i = 0; i < 3; i++)
+                for (int j = 0; j < 3; j++) B[i][j] += of_c->J[i] * of_b->J[j] / m;
+        }
+}
+
+/* B = W_cb, the sum of J_c M^-1 J_b^T over the movable bodies and the freedoms that c and b
+   share */
 static void assembly_block(const struct assembly *A, int64_t c, int64_t b, double B[3][3])
 {
     memset(B, 0, 9 * sizeof **B);
@@ -114,23 +165,50 @@ static void assembly_block(const struct assembly *A, int64_t c, int64_t b, doubl
                 B[i][j] += im * (J[i][0] * K[j][0] + J[i][1] * K[j][1] + J[i][2] * K[j][2]) +
                            ii * (J[i][3] * K[j][3] + J[i][4] * K[j][4] + J[i][5] * K[j][5]);
     }
+    if (A->p->coupling) add_shared(A->p->coupling, c, b, B);
 }
 
-/* near[] = the contacts that share a movable body with c, c too, ascending; returns how many. */
+/* The contacts of a body or a freedom, ascending, while they are being merged with others */
+struct queue {
+    const int64_t *at, *end;
+    const struct coupling *of; /* of a freedom: contact of[*at].contact; of a body, NULL: *at / 2 */
+};
+
+static int64_t queue_first(const struct queue *q)
+{
+    if (q->at == q->end) return INT64_MAX;
+    return q->of ? q->of[*q->at].contact : *q->at / 2;
+}
+
+static struct queue queue_of(const struct lists *lists, int64_t owner, const struct coupling *of)
+{
+    return (struct queue){ lists->item + lists->first[owner], lists->item + lists->first[owner + 1],
+                           of };
+}
+
+/* near[] = the contacts that share a movable body or a freedom with c, c too, ascending; returns
+   how many. */
 static int64_t assembly_neighbours(const struct assembly *A, int64_t c, int64_t *near)
 {
-    int64_t at[2] = { 0 }, end[2] = { 0 }, count = 0;
-    for (int s = 0; s < 2; s++) {
-        int32_t body = A->end[2 * c + s];
-        if (body >= 0) at[s] = A->of.first[body], end[s] = A->of.first[body + 1];
+    const struct couplings *y = A->p->coupling;
+    struct queue q[2 + COUPLINGS_MAX];
+    int64_t count = 0;
+    int queues = 0;
+    for (int s = 0; s < 2; s++)
+        if (A->end[2 * c + s] >= 0) q[queues++] = queue_of(&A->of, A->end[2 * c + s], NULL);
+    for (int64_t k = y ? y->first[c] : 0; y && k < y->first[c + 1]; k++)
+        q[queues++] = queue_of(&A->yield, y->of[k].freedom, y->of);
+    for (;;) {
+        int64_t next = INT64_MAX;
+        for (int k = 0; k < queues; k++) {
+            int64_t first = queue_first(&q[k]);
+            next = first < next ? first : next;
+        }
+        if (next == INT64_MAX) return count;
+        near[count++] = next;
+        for (int k = 0; k < queues; k++)
+            while (queue_first(&q[k]) == next) q[k].at++;
     }
-    while (at[0] < end[0] || at[1] < end[1]) {
-        int64_t a = at[0] < end[0] ? A->of.item[at[0]] / 2 : INT64_MAX;
-        int64_t b = at[1] < end[1] ? A->of.item[at[1]] / 2 : INT64_MAX;
-        near[count++] = a < b ? a : b;
-        at[0] += a <= b, at[1] += b <= a;
-    }
-    return count;
 }
 
 static void fill_W(const struct assembly *A, struct stored *W, int64_t *near)
@@ -204,6 +282,11 @@ int assembly_blocks(const struct assembly *A, struct delassus *W, struct why *wh
 /* The unknowns of a body are dof[0 .. dofs-1] of its (v, w). */
 static const int dof_plane[] = { 0, 1, 5 }, dof_space[] = { 0, 1, 2, 3, 4, 5 };
 
+static int32_t freedoms_of(const struct assembly *A)
+{
+    return A->p->coupling ? A->p->coupling->freedoms.n : 0;
+}
+
 /* M diagonal, f = M v_free; first[body] is the body's first unknown. The w of a body that cannot
    turn stays in the vector w; its unknowns are in no equation of a contact. */
 static void fill_M(const struct assembly *A, const int32_t *first, struct stored *M, double *f)
@@ -220,13 +303,22 @@ static void fill_M(const struct assembly *A, const int32_t *first, struct stored
             f[row] = M->x[row] * (turns ? b->w[dof[k] - 3] : b->v[dof[k]]);
         }
     }
+    for (int32_t i = 0; i < freedoms_of(A); i++) {
+        const struct freedom *freedom = &A->p->coupling->freedoms.f[i];
+        int32_t row = first[A->p->bodies + i];
+        if (row < 0) continue;
+        M->p[row + 1] = row + 1, M->i[row] = row;
+        M->x[row] = freedom->mass;
+        f[row] = freedom->mass * free_speed(A, freedom);
+    }
 }
 
-/* H = J^T by columns */
+/* H = J^T by columns; those of freedoms come last, and in the order of the freedoms */
 static void fill_H(const struct assembly *A, const int32_t *first, struct stored *H)
 {
     int d = A->p->d, dofs = d == 2 ? 3 : 6;
     const int *dof = d == 2 ? dof_plane : dof_space;
+    const struct couplings *y = A->p->coupling;
     int32_t count = 0;
     for (int64_t c = 0; c < A->p->n; c++) {
         double J[2][3][6];
@@ -241,19 +333,29 @@ static void fill_H(const struct assembly *A, const int32_t *first, struct stored
                     H->i[count] = first[body] + k, H->x[count++] = x;
                 }
             }
+            for (int64_t k = y ? y->first[c] : 0; y && k < y->first[c + 1]; k++) {
+                if (y->of[k].J[i] == 0) continue;
+                H->i[count] = first[A->p->bodies + y->of[k].freedom];
+                H->x[count++] = y->of[k].J[i];
+            }
             H->p[d * c + i + 1] = count;
         }
     }
 }
 
-/* first[body], -1 for those that do not move or have no contact; returns the number of unknowns. */
+/* first[body], -1 for those that do not move or have no contact, and after these first[p->bodies
+   + f] of freedom f; returns the number of unknowns. */
 static int64_t assembly_unknowns(const struct assembly *A, int32_t *first)
 {
-    int64_t nv = 0;
-    for (int64_t i = 0; i < A->p->bodies; i++) {
+    int64_t nv = 0, bodies = A->p->bodies;
+    for (int64_t i = 0; i < bodies; i++) {
         bool in = A->of.first[i] < A->of.first[i + 1];
         first[i] = in ? (int32_t)nv : -1;
         if (in) nv += A->p->d == 2 ? 3 : 6;
+    }
+    for (int32_t i = 0; i < freedoms_of(A); i++) {
+        bool in = A->yield.first[i] < A->yield.first[i + 1];
+        first[bodies + i] = in ? (int32_t)nv++ : -1;
     }
     return nv;
 }
@@ -261,16 +363,17 @@ static int64_t assembly_unknowns(const struct assembly *A, int32_t *first)
 int assembly_MH(const struct assembly *A, struct stored *M, struct stored *H, double **f,
                 struct why *why)
 {
-    int64_t nd = A->p->n * A->p->d;
+    int64_t nd = A->p->n * A->p->d, couplings = A->p->coupling ? A->p->coupling->n : 0;
     *M = *H = (struct stored){ 0 }, *f = NULL;
-    if (A->p->bodies > INT32_MAX / 6 || nd > INT32_MAX / 12)
+    if (A->p->bodies > INT32_MAX / 6 - freedoms_of(A) || nd > (INT32_MAX - 3 * couplings) / 12)
         return why_set(why, EX_DATAERR,
                        "/fclib_global/H: too large for the 32-bit indices of FCLIB");
-    int32_t *first = malloc((size_t)(A->p->bodies + 1) * sizeof *first);
+    int32_t *first = malloc((size_t)(A->p->bodies + freedoms_of(A) + 1) * sizeof *first);
     if (!first) return short_of_memory(why);
     int64_t nv = assembly_unknowns(A, first);
     *f = malloc((size_t)(nv + 1) * sizeof **f);
-    bool good = *f && stored_init(M, nv, nv, -1, nv) && stored_init(H, nv, nd, -1, 12 * nd);
+    bool good =
+        *f && stored_init(M, nv, nv, -1, nv) && stored_init(H, nv, nd, -1, 12 * nd + 3 * couplings);
     if (good) {
         fill_M(A, first, M, *f);
         fill_H(A, first, H);

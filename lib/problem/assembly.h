@@ -11,7 +11,8 @@
  *     M v = H r + f,   D u~ = H^T v + w,   f = M v_free,
  *
  * are the velocities of the movable bodies that have a contact, in the problem's order: (vx, vy,
- * vz, wx, wy, wz), or (vx, vy, wz) in the plane.
+ * vz, wx, wy, wz), or (vx, vy, wz) in the plane; after them the speed of each freedom that moves a
+ * contact [problem/coupling.h], whose row of H are its J, and whose v_free is s + dt f/m.
  */
 #ifndef NSD_ASSEMBLY_H
 #define NSD_ASSEMBLY_H
@@ -21,11 +22,12 @@
 
 struct assembly {
     const struct problem *p;
-    int64_t *slot;     /* [n] contact c is in slot[c] of p */
-    int32_t *end;      /* [2 n] bodies a and b of contact c at 2 c, 2 c + 1; -1: immovable */
-    struct lists of;   /* of each body: its places in end[] */
-    double *q, *w;     /* [n d] D u~ at v_free, and with the movable bodies at rest, m/s */
-    struct body *free; /* [p->bodies] at v_free */
+    int64_t *slot;      /* [n] contact c is in slot[c] of p */
+    int32_t *end;       /* [2 n] bodies a and b of contact c at 2 c, 2 c + 1; -1: immovable */
+    struct lists of;    /* of each body: its places in end[] */
+    struct lists yield; /* of each freedom: its places in p->coupling->of[] */
+    double *q, *w;      /* [n d] D u~ at v_free, and with all unknowns at rest, m/s */
+    struct body *free;  /* [p->bodies] at v_free */
 };
 
 /* All return 0, EX_SOFTWARE, or EX_DATAERR where the problem is too large for FCLIB's 32-bit

@@ -32,11 +32,11 @@ struct bundle {
     int32_t a[BUNDLE], b[BUNDLE];   /* places of bodies; given by W: a is the contact, -1: none */
 };
 
-/* Newton's impact law in a bundle, and the offsets of its contacts [problem/offset.h]:
-   u~ = s u + offset */
+/* Newton's impact law in a bundle, the velocity d by which an image moves faster than its body, and
+   what the law sees besides [problem/offset.h]: u~ = s u + offset */
 struct rebound {
     double s[2][BUNDLE];      /* 1/(1 + e_n), 1/(1 + e_t) */
-    double offset[3][BUNDLE]; /* m/s: D^-1 (E u^- + moves + law) */
+    double offset[3][BUNDLE]; /* m/s: D^-1 (E (u^- + d^-) + d + law) */
 };
 
 /* Of eight partial results, one a lane: their sum; the largest, at least 0 and never NaN */

@@ -82,7 +82,7 @@ void err_eval(struct err *e, const struct problem *p, bool believes, enum err_te
         e->natural = ratio(sqrt(bundle_sum(all.natural2)), sqrt(bundle_sum(all.r2)));
         // where no reactions are needed, r and its map are rounding, and their ratio is meaningless
         if (off <= ROUNDING * contacts * p->speed) e->natural = 0;
-        if (p->body) e->stray = ratio(off, fmax(p->norm_q, contacts * p->fall));
+        if (p->packing) e->stray = ratio(off, fmax(p->norm_q, contacts * p->fall));
         e->natural_siconos = p->norm_q > 0 ? siconos / p->norm_q : siconos;
         e->natural_q = ratio(off, p->norm_q);
     }

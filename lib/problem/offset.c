@@ -1,4 +1,4 @@
-/* problem/offset.c: constants in the velocities at contacts [problem/offset.h]. */
+/* problem/offset.c: gaps as velocities [problem/offset.h]. */
 #include "problem/offset.h"
 
 bool offset_in(const struct packing *pack, const struct contact *c)
@@ -10,13 +10,8 @@ bool offset_in(const struct packing *pack, const struct contact *c)
  * Signorini's condition on the gap at the next predicted position, g + dt u_n. Not of an impact
  * that rebounds: its velocities are Newton's, wherever in the step it falls.
  */
-static double gap_velocity(const struct packing *pack, const struct contact *c, double un)
+double offset_of(const struct packing *pack, const struct contact *c, double un)
 {
     bool impact = c->en > 0 && -un > packing_calm(pack);
     return impact || !offset_in(pack, c) ? 0 : c->gap / pack->dt;
-}
-
-void offset_of(const struct packing *pack, const struct contact *c, double un, struct offset *o)
-{
-    *o = (struct offset){ .law = { gap_velocity(pack, c, un) } };
 }

@@ -1,9 +1,9 @@
 /*
- * problem/offset.h: what the velocity at a contact has besides those of the two bodies.
+ * problem/offset.h: what the contact law sees of a gap, as a velocity:
  *
- * Both parts enter the contact problem as one constant, in struct rebound:
+ *     u~ = D^-1 (u + E u^- + law n)
  *
- *     u = P* qdot + moves,   u~ = D^-1 (u + E u^- + law)
+ * It enters the contact problem as a constant, in struct rebound.
  */
 #ifndef NSD_OFFSET_H
 #define NSD_OFFSET_H
@@ -11,15 +11,9 @@
 #include "bodies/contact.h"
 #include "bodies/packing.h"
 
-/* (n, t1, t2), m/s */
-struct offset {
-    double moves[3]; /* part of u, before the step as after it */
-    double law[3];   /* what the law alone sees */
-};
-
-/* Whether the contact may have an offset; where not, offset_of() gives zeros. */
+/* Whether the contact may have an offset; where not, offset_of() is 0. */
 bool offset_in(const struct packing *pack, const struct contact *c);
-/* un: u_n before the step of the bodies alone, m/s */
-void offset_of(const struct packing *pack, const struct contact *c, double un, struct offset *o);
+/* m/s; un: u_n before the step, m/s */
+double offset_of(const struct packing *pack, const struct contact *c, double un);
 
 #endif

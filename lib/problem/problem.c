@@ -35,6 +35,11 @@ static void *alloc_lines(int64_t n, size_t size)
     return p;
 }
 
+static bool shifted(const struct contact *c)
+{
+    return c->shift[0] || c->shift[1] || c->shift[2];
+}
+
 static int no_memory(struct problem *p, struct why *why)
 {
     problem_free(p);
@@ -46,6 +51,9 @@ void problem_free(struct problem *p)
     free(p->bundle), free(p->rebound), free(p->u), free(p->contact), free(p->group), free(p->body);
     free(p->split), free(p->seat);
     delassus_free(&p->sorted);
+    if (p->own) delassus_free(p->own);
+    if (p->coupling) couplings_free(p->coupling);
+    free(p->own), free(p->coupling);
     *p = (struct problem){ 0 };
 }
 
@@ -117,41 +125,63 @@ static void set_bodies(struct problem *p)
 void problem_set_free_motion(struct problem *p)
 {
     const struct packing *pack = p->packing;
-    const vec3 dv = v3_scale(pack->dt, pack->g);
+    const vec3 fall = v3_scale(pack->dt, pack->g);
+    const struct cell_flow flow = packing_flow(pack);
     for (int64_t i = 0; i < pack->n; i++) {
         struct body *b = &p->body[p->seat[i]];
+        vec3 dv = fall;
         if (!(b->im > 0)) continue;
+        if (flow.changes) dv = v3_add(dv, cell_flow_gain(&flow, packing_predict(pack, i)));
         b->v[0] = pack->v[i].x + dv.x, b->v[1] = pack->v[i].y + dv.y, b->v[2] = pack->v[i].z + dv.z;
         b->w[0] = pack->w[i].x, b->w[1] = pack->w[i].y, b->w[2] = pack->w[i].z;
     }
 }
 
-/* The place of a contact's body i (wall w: -1-w): its own, or of a new copy if it does not move */
-static int32_t place_of(struct problem *p, int32_t i, int64_t *next)
+/* The place of a body i (wall w: -1-w) of a contact at x (m): its own, or of a new copy if it does
+   not move. A load's speed is prescribed here [problem/coupling.h]. */
+static int32_t place_of(struct problem *p, int32_t i, vec3 x, int64_t *next)
 {
     const struct packing *pack = p->packing;
     if (i >= 0 && pack->mass[i] > 0) return body_place(p->seat[i]);
     struct body *copy = &p->body[*next];
-    vec3 v = i < 0 ? pack->wall[-1 - i].v : pack->v[i];
+    vec3 v = i < 0 ? wall_velocity(&pack->wall[-1 - i], x) : pack->v[i];
     *copy = (struct body){ .v = { v.x, v.y, v.z } };
     if (i >= 0) *copy = p->body[p->seat[i]];
     return body_place((*next)++);
 }
 
-/* un: u^-_n of the bodies alone, m/s */
+/* un: u^-_n, m/s */
 static void add_offset(struct rebound *e, int k, const struct packing *pack,
                        const struct contact *c, double un)
 {
-    struct offset o;
-    offset_of(pack, c, un, &o);
-    // D^-1 (E (u^- + moves) + moves + law): of moves D^-1 leaves what it was
-    const double en[3] = { c->en, c->et, c->et };
-    for (int j = 0; j < 3; j++) e->offset[j][k] += o.moves[j] + o.law[j] / (1 + en[j]);
+    e->offset[0][k] += offset_of(pack, c, un) / (1 + c->en);
+}
+
+/* The cell's edges where the contacts act (m), and their rates before and after the step (m/s) */
+struct lattice {
+    vec3 edge[3], before[3], after[3];
+};
+
+static struct lattice lattice_of(const struct packing *pack)
+{
+    struct lattice l;
+    cell_predict(&pack->cell, (1 - pack->theta) * pack->dt, l.edge);
+    for (int k = 0; k < 3; k++) l.before[k] = pack->cell.rate[k];
+    cell_next_rate(&pack->cell, pack->t, pack->dt, pack->theta, l.after);
+    return l;
+}
+
+/* What the image of b is faster than b, in the basis of the contact */
+static void image_velocity(const vec3 rate[3], const struct contact *c, double u[3])
+{
+    vec3 v = cell_shift(rate, c->shift);
+    u[0] = v3_dot(c->n, v), u[1] = v3_dot(c->t1, v), u[2] = v3_dot(contact_t2(c), v);
 }
 
 /* Fills slot i except for the reaction. The bodies still have their velocities before the step. */
 static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
-                      const struct contact *c, double alpha, double rho_factor)
+                      const struct lattice *cell, const struct contact *c, double alpha,
+                      double rho_factor)
 {
     const double en[3] = { c->en, c->et, c->et }, n[3] = { c->n.x, c->n.y, c->n.z },
                  t1[3] = { c->t1.x, c->t1.y, c->t1.z }, s[2] = { 1 / (1 + c->en), 1 / (1 + c->et) };
@@ -160,12 +190,18 @@ static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
     int k = slot_lane(i);
     for (int j = 0; j < 3; j++) r->n[j][k] = n[j], r->t1[j][k] = t1[j];
     r->mu[k] = c->mu;
-    arms_of(pack, c, (1 - pack->theta) * pack->dt, &r->la[k], &r->lb[k]);
+    arms_of(pack, c, (1 - pack->theta) * pack->dt, cell->edge, &r->la[k], &r->lb[k]);
     const struct body *a = &p->body[body_index(r->a[k])], *b = &p->body[body_index(r->b[k])];
     double u[3], im = a->im + b->im;
     double it = im + r->la[k] * r->la[k] * a->ii + r->lb[k] * r->lb[k] * b->ii;
     body_velocity(p->body, r, NULL, k, u); // u^-
+    double before[3], after[3];
+    if (shifted(c)) {
+        image_velocity(cell->before, c, before), image_velocity(cell->after, c, after);
+        for (int j = 0; j < 3; j++) u[j] += before[j];
+    }
     for (int j = 0; j < 3 && e; j++) e->offset[j][k] = u[j] * (en[j] / (1 + en[j]));
+    for (int j = 0; j < 3 && e && shifted(c); j++) e->offset[j][k] += s[j > 0] * after[j];
     if (e && offset_in(pack, c)) add_offset(e, k, pack, c, u[0]);
     for (int j = 0; j < 2 && e; j++) e->s[j][k] = s[j];
     r->w[0][k] = s[0] * im, r->w[1][k] = s[1] * it;
@@ -190,7 +226,11 @@ static double top_speed(const struct packing *p)
     double most = 0;
     for (int64_t i = 0; i < p->n; i++)
         most = fmax(most, v3_norm(p->v[i]) + p->radius[i] * v3_norm(p->w[i]));
-    for (int32_t k = 0; k < p->walls; k++) most = fmax(most, v3_norm(p->wall[k].v));
+    for (int32_t k = 0; k < p->walls; k++)
+        most = fmax(most, v3_norm(p->wall[k].v) + fabs(p->wall[k].load.speed));
+    double images = 0;
+    for (int k = 0; k < 3; k++) images += p->cell.repeats[k] ? v3_norm(p->cell.rate[k]) : 0;
+    most += images;
     return most + p->dt * v3_norm(p->g);
 }
 
@@ -205,6 +245,17 @@ static int64_t count_bodies(const struct packing *pack, const struct contacts *s
         n += 2 - packing_movable(pack, c->a, c->b, moves);
     }
     return n;
+}
+
+/* Do images move otherwise than their bodies, now or at the end of the step? */
+static bool glides(const struct contacts *s, const struct lattice *cell)
+{
+    double most = 0;
+    for (int k = 0; k < 3; k++)
+        most = fmax(most, fmax(v3_norm(cell->before[k]), v3_norm(cell->after[k])));
+    for (int64_t i = 0; most > 0 && i < s->n; i++)
+        if (shifted(&s->c[i])) return true;
+    return false;
 }
 
 /* Whether u~ is anything but u */
@@ -226,9 +277,14 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     p->body = alloc_lines(p->bodies, sizeof *p->body);
     bool room = p->body && !schedule_bodies(&plan, order, s, pack) && lay_out_bundles(p, &plan);
     schedule_free(&plan);
-    if (room && rebounds(pack, s))
+    const struct lattice cell = lattice_of(pack);
+    if (room && (rebounds(pack, s) || glides(s, &cell)))
         room = (p->rebound = alloc_lines(p->bundles, sizeof *p->rebound)) != NULL;
     if (!room || !(p->seat = seat_bodies(p, pack, s, order))) return no_memory(p, why);
+    if (freedoms_in(pack)) {
+        if (!(p->coupling = calloc(1, sizeof *p->coupling))) return no_memory(p, why);
+        if (couplings_init(p->coupling, pack, s, why)) return problem_free(p), why->status;
+    }
     set_bodies(p);
     int64_t nobody = pack->n, next = nobody + 2;
     int64_t other = p->split ? BUNDLE * p->group[p->split->inside] : p->slots;
@@ -238,8 +294,8 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
         r->a[k] = r->b[k] = body_place(nobody + (i >= other));
         if (p->contact[i] < 0) continue;
         const struct contact *c = &s->c[p->contact[i]];
-        r->a[k] = place_of(p, c->a, &next), r->b[k] = place_of(p, c->b, &next);
-        slot_init(p, i, pack, c, alpha, rho_factor);
+        r->a[k] = place_of(p, c->a, c->x, &next), r->b[k] = place_of(p, c->b, c->x, &next);
+        slot_init(p, i, pack, &cell, c, alpha, rho_factor);
     }
 
     double g = v3_norm(pack->g);
@@ -340,6 +396,8 @@ int problem_store(const struct problem *p, struct contacts *s)
         if (p->contact[i] < 0) continue;
         struct found *c = &s->found[p->contact[i]];
         slot_get(p, i, c->r, c->u);
+        const struct contact *law = &s->c[p->contact[i]];
+        for (int k = 0; k < 3 && p->W; k++) c->u[k] /= 1 + (k ? law->et : law->en); // it is D u~
         c->status = (int8_t)local_status(slot_bundle(p, i)->mu[slot_lane(i)], c->r);
     }
     return 0;

@@ -20,6 +20,7 @@
 #include "bodies/contact.h"
 #include "bodies/packing.h"
 #include "problem/bundle.h"
+#include "problem/coupling.h"
 #include "problem/delassus.h"
 #include "problem/schedule.h"
 
@@ -41,9 +42,12 @@ struct problem {
     int64_t bodies;                 /* of body[]; 0: given by W */
     struct body *body; /* [bodies] the packing's, by colours in the order in which the sweep first
                           meets them, and copies of what does not move; NULL: given by W */
-    const struct packing *packing; /* borrowed: its velocities are those before the step */
+    const struct packing *packing; /* borrowed: its velocities are those before the step; NULL:
+                                      there is only W */
     int32_t *seat;                 /* [packing->n] body i of the packing is body[seat[i]] */
-    struct delassus *W;            /* borrowed; NULL: given by bodies */
+    struct couplings *coupling;    /* what freedoms the packing has beyond its bodies; NULL: none */
+    struct delassus *W;            /* NULL: given by bodies */
+    struct delassus *own;          /* W where the problem is to free it, else NULL: W is borrowed */
     struct delassus sorted;        /* given by W: its block rows in the order of the slots */
     bool full;                     /* given by W, and some W_cc is more than diag(w_n, w_t, w_t) */
     double dt;      /* s: the paper's forces are r / dt; 1 where there are no steps */
@@ -51,14 +55,15 @@ struct problem {
     double scale_r; /* N s: that of reactions, m g dt */
     double fall;    /* m/s: |g| dt */
     double norm_q;  /* m/s: |u~_free| of all contacts, |q| */
-    double speed;   /* m/s: the fastest point before the step, plus g dt; 0: given by W */
+    double speed;   /* m/s: the fastest point before the step, plus g dt; 0: there is only W */
 };
 
 /*
- * The problem of a packing's contacts; r from the contacts where they are solved, else 0, and the
- * bodies at v_free + M^-1 P r. rho = alpha m_red where alpha > 0, else
- * rho_factor/lambda_max(W~_cc). Borrows pack. Returns 0, EX_SOFTWARE, or EX_DATAERR where there are
- * too many bodies, with nothing to free.
+ * The problem of a packing's contacts, in bundles of bodies: freedoms beyond theirs keep their
+ * speed here [problem/prepare.h has the problem in which they do not]. r from the contacts where
+ * they are solved, else 0, and the bodies at v_free + M^-1 P r. rho = alpha m_red where alpha >
+ * 0, else rho_factor/lambda_max(W~_cc). Borrows pack. Returns 0, EX_SOFTWARE, or EX_DATAERR where
+ * there are too many bodies, with nothing to free.
  */
 int problem_prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
                     double alpha, double rho_factor, enum order order, struct why *why);
@@ -67,14 +72,15 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
                              enum order order, struct why *why);
 void problem_free(struct problem *p);
 
-/* Sets the bodies of a packing to v_free, their velocities before the step plus dt g. */
+/* Sets the bodies of a packing to v_free, their velocities before the step plus dt g, and what
+   the flow of the cell's edges gains. */
 void problem_set_free_motion(struct problem *p);
 
 /* How many of these threads are to share a sweep: all where the groups are large enough, else two
    where the order has halves, else one */
 int problem_team(const struct problem *p, int threads);
 
-/* Stores r, u and the status of each contact in s->found; -1 when memory is short. */
+/* Stores r, u and the status of each contact of a packing in s->found; -1 when memory is short. */
 int problem_store(const struct problem *p, struct contacts *s);
 
 /* The bundle and the lane of slot i, its impact law (NULL: none), its r (N s) and u (m/s) */

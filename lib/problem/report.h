@@ -5,6 +5,8 @@
 #ifndef NSD_REPORT_H
 #define NSD_REPORT_H
 
+#include "bodies/balance.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -39,6 +41,8 @@ struct report {
     int64_t step;
     double t; /* s, after the step */
     struct err err;
+    bool balanced;          /* balance is known: where there is a packing */
+    struct balance balance; /* of the step that the reactions make */
     enum criterion criterion;
     double eps;     /* what was asked */
     int32_t sweeps; /* or steps of cg */

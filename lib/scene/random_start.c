@@ -196,7 +196,7 @@ static int push_apart(struct start *s, struct neighbours *near, double most, int
             moved = fmax(moved, v3_dot(d, d));
         }
         if (!fresh || moved > 0.2 * reach * reach) { // 0.45 reach: each of a pair
-            if (neighbours_find(near, &s->p, s->p.x, reach, false, why)) break;
+            if (neighbours_find(near, &s->p, s->p.x, s->p.cell.edge, reach, false, why)) break;
             memcpy(listed, s->p.x, (size_t)s->p.n * sizeof *listed);
             fresh = true;
         }
@@ -214,7 +214,7 @@ static int push_apart(struct start *s, struct neighbours *near, double most, int
 static int worst(const struct start *s, struct neighbours *near, double *left, struct why *why)
 {
     *left = 0;
-    if (neighbours_find(near, &s->p, s->p.x, 0, false, why)) return why->status;
+    if (neighbours_find(near, &s->p, s->p.x, s->p.cell.edge, 0, false, why)) return why->status;
     for (int64_t i = 0; i < near->n; i++) {
         int64_t a = near->pair[i].a, b = near->pair[i].b;
         double r = s->p.radius[a] + s->p.radius[b];

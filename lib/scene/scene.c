@@ -14,11 +14,13 @@ void scene_free(struct scene *s)
     }
     for (int32_t i = 0; i < s->pours; i++) scene_size_free(&s->pour[i].size);
     free(s->pour), free(s->removal);
+    cell_free(&s->cell.cell);
     free(s->kind), free(s->law), free(s->bodies), free(s->wall), free(s->text);
     *s = (struct scene){ 0 };
 }
 
-/* In x (and y) the cells fill the box; along the last axis they have the least edge. */
+/* In x (and y) the cells fill the box; along the last axis they have the least edge, unless the box
+   is the cell that repeats. */
 struct scene_lattice scene_lattice(const struct scene_bodies *b, int dim)
 {
     struct scene_lattice l = { .cells = { 1, 1, 1 } };
@@ -26,7 +28,7 @@ struct scene_lattice scene_lattice(const struct scene_bodies *b, int dim)
     for (int i = 0; i < dim; i++) {
         double width = b->box.hi[i] - b->box.lo[i];
         l.cells[i] = floor(width / least * (1 + 1e-12)); // 6.3 mm holds six cells of 1.05 mm
-        l.edge[i] = i < dim - 1 ? width / l.cells[i] : least;
+        l.edge[i] = i < dim - 1 || b->in_cell ? width / l.cells[i] : least;
     }
     return l;
 }

@@ -22,6 +22,7 @@
  *   walls     [ WALL ]                 [those of the first document among the bodies, else none]
  *   pour      [ POUR ]                 [none] grains that come, while the scene runs
  *   remove    [ REMOVAL ]              [none] grains that go
+ *   cell      CELL                     [none] the box that repeats
  *
  * GROUP, one of
  *   { x: vector, radius: number }      one body
@@ -38,7 +39,8 @@
  *   density [its kind's] or mass, kg; fixed true | false [false]: moves with v and w whatever
  *   happens, so that its mass does not matter. For a table or a document: [what it says]
  * and for a lattice
- *   box      [that of the first wall that is a BOX]    may be open only above (the last axis)
+ *   box      [the cell, in rows along its edges; else that of the first wall that is a BOX]
+ *                                                      may be open only above (the last axis)
  *   cells    "equal" | "own" ["equal"]  all of one size, or each as its body needs it
  *   spacing  number >= 1 [1.05]        least edge of a cell, in largest diameters (own: in its own)
  *   jitter   0..1 [1]                  share of the free room in its cell that is used; no overlap
@@ -58,8 +60,24 @@
  *
  * BOX { x: [from, to], y: [from, to], z: [from, to] }: null is open, and so is an axis left out.
  *
- * WALL { point: vector, normal: vector } or { box: BOX }, with velocity vector [0], kind ["wall"].
+ * WALL { point: vector, normal: vector } or { box: BOX }, with velocity vector [0], kind ["wall"], load.
  *   Bodies stay on the side that the normal, of any length, points to; in a box they stay inside.
+ *   A wall by point and normal may yield to a load, on top of its velocity:
+ *   { along: vector, mass: kg, force: N [0], speed: m/s [0] }              free along the vector
+ *   { about: vector, mass: kg m^2, torque: N m [0], speed: rad/s [0] }     about its normal there
+ *   Its weight is a force like others: gravity does not pull at walls.
+ *
+ * CELL { edges: [vector, ...] or lengths: vector, repeats, origin, gradient, affine, stress }
+ *   edges    dim of them, the cell's from its origin; lengths: along x, y, z
+ *   repeats  [true | false, ...] [all true]   along which edges
+ *   origin   vector [0]
+ *   gradient MATRIX, 1/s, or [ { t: s, L: MATRIX } ], linear between and constant outside [0]: of
+ *            velocity; the edges move with it, d edge/dt = L edge. MATRIX [[L_xx, L_xy], ...]
+ *   affine   true | false [false]: at the start bodies have the velocity L (x - origin) as well
+ *   stress   { pressure: Pa, mass: kg } or { target: MATRIX, mass: kg }: what edges yield to, as
+ *            bodies of this mass; compression is positive, N/m in the plane. Number [i][j]: component
+ *            i of edge j yields; null: it moves by the gradient. A pressure is one on the diagonal,
+ *            of edges that repeat. mass may be a MATRIX of masses, of the same shape
  *
  * POUR { rate: bodies/s | mass_rate: kg/s, opening: { box: BOX } or { disc: { center, normal,
  *   radius } }, radius: SIZE, v, w, kind, density or mass, from [time] s, until s, count }
@@ -118,6 +136,7 @@ struct scene_bodies {
     struct packing *document;
     struct scene_size size;
     struct scene_box box;
+    bool in_cell;                    /* box is the cell's: heights above its faces, from 0 */
     double spacing, jitter, thermal; /* of a lattice, as above */
     vec3 v, w;                       /* m/s, rad/s */
     double density, mass;            /* kg/m^3 or kg/m^2; kg a body, 0: from the density */
@@ -149,6 +168,11 @@ struct scene_removal {
     int32_t kind;       /* only bodies of this kind; -1: of all */
 };
 
+struct scene_cell {
+    bool given, affine;
+    struct cell cell; /* rates are those at the start */
+};
+
 struct scene {
     int dim;
     double dt, theta;
@@ -171,6 +195,7 @@ struct scene {
     int32_t pours, removals;       /* grains that come and go [scene/flow.h] */
     struct scene_pour *pour;       /* [pours] */
     struct scene_removal *removal; /* [removals] */
+    struct scene_cell cell;
 
     char *text; /* the JSON, without blanks outside strings */
 };

@@ -34,7 +34,7 @@ static int read_lattice(jnode o, const struct scene *s, bool boxed, struct scene
     int own = 0;
     if (json_node_only(o, "count radius box cells spacing jitter thermal v w kind density mass "
                           "fixed") ||
-        json_node_need(&o, boxed ? "radius" : "radius box") ||
+        json_node_need(&o, boxed || s->cell.given ? "radius" : "radius box") ||
         json_node_integer(json_node_key(&o, "count"), 0, INT32_MAX, &b->count) ||
         scene_read_size(json_node_key(&o, "radius"), s->dim, &b->size) ||
         json_node_word(json_node_key(&o, "cells"), cells, &own) ||
@@ -47,6 +47,13 @@ static int read_lattice(jnode o, const struct scene *s, bool boxed, struct scene
     jnode box = json_node_key(&o, "box");
     if (box.json && scene_read_box(box, s->dim, &b->box)) return 1;
     if (own) b->from = SCENE_SHELVES;
+    if (!box.json && s->cell.given && own)
+        return json_node_fault(o, "cells of their own want a box");
+    if (!box.json && s->cell.given) {
+        b->in_cell = true;
+        cell_heights(&s->cell.cell, b->box.hi);
+        for (int k = 0; k < 3; k++) b->box.lo[k] = 0;
+    }
     return check_lattice(&o, s->dim, b);
 }
 

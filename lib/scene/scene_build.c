@@ -2,6 +2,7 @@
 #include "scene/scene_build.h"
 
 #include "bodies/detect.h"
+#include "bodies/tidy.h"
 #include "scene/counter.h"
 #include "scene/grains.h"
 #include "scene/random_start.h"
@@ -29,9 +30,10 @@ static int set_body(struct packing *p, int64_t i, const struct scene_bodies *b, 
     return 0;
 }
 
-/* The middle of cell k of the lattice, moved at random as far as the body stays in the cell. */
-static vec3 draw_place(const struct scene_bodies *b, const struct scene_lattice *l, int dim,
-                       int64_t k, double r, gsl_rng *rng)
+/* The middle of cell k of the lattice, moved at random as far as the body stays in the cell; in the
+   cell that repeats (else NULL) along its edges. */
+static vec3 draw_place(const struct scene_bodies *b, const struct scene_lattice *l,
+                       const struct cell *c, int dim, int64_t k, double r, gsl_rng *rng)
 {
     double x[3] = { 0 }, rest = (double)k;
     for (int i = 0; i < dim; i++) {
@@ -42,7 +44,10 @@ static vec3 draw_place(const struct scene_bodies *b, const struct scene_lattice 
         x[i] = b->box.lo[i] + (cell + 0.5) * l->edge[i] + slack * (2 * gsl_rng_uniform(rng) - 1);
         rest = above;
     }
-    return v3(x[0], x[1], x[2]);
+    if (!c) return v3(x[0], x[1], x[2]);
+    vec3 place = c->origin;
+    for (int i = 0; i < dim; i++) place = v3_axpy(place, x[i] / b->box.hi[i], c->edge[i]);
+    return place;
 }
 
 static vec3 draw_velocity(double sd, int dim, gsl_rng *rng)
@@ -58,7 +63,7 @@ static int fill_lattice(struct packing *p, int64_t first, const struct scene_bod
     struct scene_lattice l = scene_lattice(b, p->dim);
     for (int64_t k = 0; k < b->count; k++) {
         double r = scene_size_draw(&b->size, rng);
-        vec3 x = draw_place(b, &l, p->dim, k, r, rng);
+        vec3 x = draw_place(b, &l, b->in_cell ? &p->cell : NULL, p->dim, k, r, rng);
         if (set_body(p, first + k, b, x, r, why)) return why->status;
         if (b->thermal > 0) p->v[first + k] = v3_add(b->v, draw_velocity(b->thermal, p->dim, rng));
     }
@@ -153,6 +158,8 @@ static int set_parameters(struct packing *p, const struct scene *s, struct why *
     if (packing_alloc_walls(p, s->walls, why) || packing_alloc_kinds(p, s->kinds, why))
         return why->status;
     for (int32_t i = 0; i < s->walls; i++) p->wall[i] = s->wall[i];
+    if (s->cell.given && (cell_copy(&p->cell, &s->cell.cell) || packing_alloc_images(p, why)))
+        goto fail;
     for (int32_t k = 0; k < s->kinds; k++) {
         free(p->kind_name[k]);
         if (!(p->kind_name[k] = strdup(s->kind[k].name))) goto fail;
@@ -199,6 +206,15 @@ static int check_overlap(const struct packing *p, const bool *settled, struct wh
     }
     contacts_free(&found);
     return e;
+}
+
+/* The flow that the cell's edges make, for the bodies that can move */
+static void add_affine_flow(struct packing *p)
+{
+    struct cell_flow f;
+    cell_flow_init(&f, &p->cell, p->cell.edge, p->cell.rate);
+    for (int64_t i = 0; f.changes && i < p->n; i++)
+        if (p->mass[i] > 0) p->v[i] = v3_add(p->v[i], cell_flow_gain(&f, p->x[i]));
 }
 
 /* Are the numbers in range, and do no bodies overlap, unless the scene allows it? */
@@ -259,8 +275,11 @@ static int build_packing(struct packing *p, const struct scene *s, const struct 
     if (!rng) why_set(why, EX_SOFTWARE, "no memory for random numbers");
     if (rng) gsl_rng_set(rng, s->seed);
     if (rng && !set_parameters(p, s, why) && !inherit_walls(p, s, why) &&
-        !fill_groups(p, s, list, rng, why))
+        !fill_groups(p, s, list, rng, why)) {
+        if (s->cell.affine) add_affine_flow(p);
+        packing_tidy(p, NULL);
         check_packing(p, s, list, why);
+    }
     gsl_rng_free(rng);
     if (why->status) packing_free(p);
     return why->status;

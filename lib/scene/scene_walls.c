@@ -42,19 +42,52 @@ static void add_box(struct scene *s, struct wall w, const struct scene_box *b)
     }
 }
 
+/* Makes a vector of any length a unit vector; false where it is zero. */
+static bool direction(vec3 *n)
+{
+    double most =
+        fmax(fabs(n->x), fmax(fabs(n->y), fabs(n->z))); // scaled by it so that no square overflows
+    if (!(most > 0)) return false;
+    *n = v3(n->x / most, n->y / most, n->z / most);
+    double length = v3_norm(*n);
+    *n = v3(n->x / length, n->y / length, n->z / length);
+    return true;
+}
+
+/* "along" a line, under a force, or "about" the normal at a point, under a torque */
+static int read_load(jnode o, int dim, vec3 normal, struct load *l)
+{
+    if (!o.json) return 0;
+    int which = json_node_choice(o, "along about");
+    if (which < 0 ||
+        json_node_only(o, which ? "about mass torque speed" : "along mass force speed") ||
+        json_node_need(&o, "mass") ||
+        json_node_number(json_node_key(&o, "mass"), J_POSITIVE, &l->mass) ||
+        json_node_number(json_node_key(&o, which ? "torque" : "force"), J_ANY, &l->force) ||
+        json_node_number(json_node_key(&o, "speed"), J_ANY, &l->speed))
+        return 1;
+    jnode where = json_node_key(&o, which ? "about" : "along");
+    if (which) {
+        l->way = LOAD_TURNS, l->axis = normal;
+        if (dim == 2) return json_node_fault(where, "in the plane no wall turns");
+        return json_node_vector(where, dim, &l->point);
+    }
+    l->way = LOAD_GLIDES;
+    if (json_node_vector(where, dim, &l->axis)) return 1;
+    return direction(&l->axis) ? 0 : json_node_fault(where, "must not be zero");
+}
+
 static int read_plane(jnode o, struct scene *s, struct wall w)
 {
     vec3 x = v3(0, 0, 0), n = x;
-    if (json_node_only(o, "point normal velocity kind") || json_node_need(&o, "point normal") ||
+    if (json_node_only(o, "point normal velocity kind load") ||
+        json_node_need(&o, "point normal") ||
         json_node_vector(json_node_key(&o, "point"), s->dim, &x) ||
         json_node_vector(json_node_key(&o, "normal"), s->dim, &n))
         return 1;
-    double most =
-        fmax(fabs(n.x), fmax(fabs(n.y), fabs(n.z))); // scaled by it so that no square overflows
-    if (!(most > 0)) return json_node_fault(json_node_key(&o, "normal"), "must not be zero");
-    n = v3(n.x / most, n.y / most, n.z / most);
-    double length = v3_norm(n);
-    add_wall(s, w, x, v3(n.x / length, n.y / length, n.z / length));
+    if (!direction(&n)) return json_node_fault(json_node_key(&o, "normal"), "must not be zero");
+    if (read_load(json_node_key(&o, "load"), s->dim, n, &w.load)) return 1;
+    add_wall(s, w, x, n);
     return 0;
 }
 

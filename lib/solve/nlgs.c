@@ -129,7 +129,7 @@ int nlgs_fall_back(struct solve *s, const char *reason)
 
 static int run(struct solve *s)
 {
-    return nlgs_sweeps(s, s->o->max_sweeps, s->o->relax);
+    return nlgs_sweeps(s, s->o->max_sweeps, s->o->relax > 0 ? s->o->relax : 1);
 }
 
 const struct solver solver_nlgs = { "nlgs", "Gauss-Seidel: sweeps of a local method", 1, run };

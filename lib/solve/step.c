@@ -3,6 +3,8 @@
 
 #include "bodies/detect.h"
 #include "bodies/move.h"
+#include "bodies/tidy.h"
+#include "problem/prepare.h"
 
 #include <stdlib.h>
 
@@ -13,12 +15,22 @@ static double max_overlap(const struct contacts *s)
     return depth;
 }
 
-int step_solve(const struct packing *pack, struct contacts *s, const struct step_opt *o,
-               struct report *rep, struct why *why)
+/* The reactions' sums and the balances they make; sum is to be freed in any case. */
+static int sum_up(const struct packing *pack, const struct contacts *s, struct report *rep,
+                  struct impulses *sum, struct why *why)
+{
+    if (impulses_init(sum, pack, s, false, why) || balance_step(&rep->balance, pack, s, sum, why))
+        return why->status;
+    rep->balanced = true;
+    return 0;
+}
+
+static int solve_contacts(const struct packing *pack, struct contacts *s, const struct step_opt *o,
+                          struct report *rep, struct why *why)
 {
     struct problem p;
     if (!o->warm) contacts_free_found(s);
-    if (problem_prepare(&p, pack, s, o->alpha, o->solve.method->rho, o->order, why))
+    if (prepare_packing(&p, pack, s, o->alpha, o->solve.method->rho, o->order, why))
         return why->status;
     rep->step = pack->step + 1;
     rep->t = pack->t + pack->dt;
@@ -32,6 +44,15 @@ int step_solve(const struct packing *pack, struct contacts *s, const struct step
     return failed ? why->status : 0;
 }
 
+int step_solve(const struct packing *pack, struct contacts *s, const struct step_opt *o,
+               struct report *rep, struct why *why)
+{
+    struct impulses sum = { 0 };
+    if (!solve_contacts(pack, s, o, rep, why)) sum_up(pack, s, rep, &sum, why);
+    impulses_free(&sum);
+    return why->status;
+}
+
 int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o, struct report *rep,
                         struct why *why)
 {
@@ -40,6 +61,7 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
         for (int64_t i = 0; i < W->d * W->n; i++) W->r[i] = 0;
     if (problem_prepare_delassus(&p, W, o->alpha, o->solve.method->rho, o->order, why))
         return why->status;
+    rep->balanced = false;
     int failed = solve_problem(&p, &o->solve, rep);
     for (int64_t i = 0; i < p.slots; i++) {
         double r[3], v[3];
@@ -57,12 +79,17 @@ int step_advance(struct packing *p, struct contacts *s, struct neighbours *near,
     struct contacts before = { 0 };
     if (o->warm) before = *s, *s = (struct contacts){ 0 };
     double cpu = report_seconds(CLOCK_CPU);
+    packing_tidy(p, &before);
     int e = detect_contacts(s, p, o->gap, near, why);
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
     if (!e && o->warm && contacts_match(s, &before))
         e = why_set(why, EX_SOFTWARE, "no memory for the last reactions");
     contacts_free(&before);
     if (e) return e;
-    if (step_solve(p, s, o, rep, why)) return why->status;
-    return isfinite(rep->err.paper.eps_glob) ? move_step(p, s, why) : 0;
+    struct impulses sum = { 0 };
+    if (!solve_contacts(p, s, o, rep, why) && !sum_up(p, s, rep, &sum, why) &&
+        isfinite(rep->err.paper.eps_glob))
+        move_by(p, s, &sum, why);
+    impulses_free(&sum);
+    return why->status;
 }

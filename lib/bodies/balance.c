@@ -1,0 +1,116 @@
+/* bodies/balance.c: energy and momentum, summed over bodies and contacts [bodies/balance.h]. */
+#include "bodies/balance.h"
+
+#include <stdlib.h>
+
+/* The mean velocities of a body over the step */
+struct mean {
+    vec3 v, w; /* m/s, rad/s */
+};
+
+static void add_to(double t[3], double s, vec3 a)
+{
+    t[0] += s * a.x, t[1] += s * a.y, t[2] += s * a.z;
+}
+
+/* The cell's flow accelerates body i, whose velocity the rest of the step changes by *dv. */
+static void add_flow(struct balance *b, const struct packing *p, const struct impulses *sum,
+                     int64_t i, vec3 *dv)
+{
+    vec3 gain = cell_flow_gain(&sum->flow, packing_predict(p, i));
+    *dv = v3_add(*dv, gain);
+    b->drives += p->mass[i] * v3_dot(gain, v3_axpy(p->v[i], 0.5, *dv));
+    add_to(b->impulse, p->mass[i], gain);
+}
+
+/* The sums over bodies, and mean[n] */
+static void add_bodies(struct balance *b, const struct packing *p, const struct impulses *sum,
+                       struct mean *mean)
+{
+    double before = (1 - p->theta) * p->dt, after = p->theta * p->dt;
+    for (int64_t i = 0; i < p->n; i++) {
+        double m = p->mass[i];
+        mean[i] = (struct mean){ p->v[i], p->w[i] };
+        if (!(m > 0)) continue;
+        vec3 dv = v3_axpy(v3_scale(p->dt, p->g), 1 / m, sum->force[i]);
+        if (sum->flow.changes) add_flow(b, p, sum, i, &dv);
+        vec3 dw = v3_scale(1 / p->inertia[i], sum->moment[i]);
+        vec3 v = v3_add(p->v[i], dv), w = v3_add(p->w[i], dw);
+        vec3 x = v3_axpy(v3_axpy(p->x[i], before, p->v[i]), after, v);
+        mean[i] = (struct mean){ v3_axpy(p->v[i], 0.5, dv), v3_axpy(p->w[i], 0.5, dw) };
+        b->kinetic += 0.5 * (m * v3_dot(v, v) + p->inertia[i] * v3_dot(w, w));
+        b->potential -= m * v3_dot(p->g, x);
+        b->change += 0.5 * m * (v3_dot(v, v) - v3_dot(p->v[i], p->v[i]));
+        b->change += 0.5 * p->inertia[i] * (v3_dot(w, w) - v3_dot(p->w[i], p->w[i]));
+        b->gravity += p->dt * m * v3_dot(p->g, mean[i].v);
+        add_to(b->momentum, m, v);
+    }
+}
+
+static void add_freedoms(struct balance *b, const struct packing *p, const struct impulses *sum)
+{
+    for (int32_t k = 0; k < sum->freedoms.n; k++) {
+        const struct freedom *f = &sum->freedoms.f[k];
+        double change = impulses_change(sum, p, k), s = f->speed + change;
+        b->kinetic += 0.5 * f->mass * s * s;
+        b->change += 0.5 * f->mass * (s * s - f->speed * f->speed);
+        b->loads += p->dt * f->force * (f->speed + 0.5 * change);
+    }
+}
+
+/* J: r . u of what is prescribed of the velocity at a contact, and of the rest, with the mean over
+   the step */
+struct work {
+    double held, free;
+};
+
+/* What freedoms and the cell add to it: an edge that yields has its speed in the cell's rate. */
+static void add_beyond(struct work *w, const struct packing *p, const struct impulses *sum,
+                       const struct contact *c, vec3 f)
+{
+    vec3 twice = v3_add(cell_shift(p->cell.rate, c->shift), cell_shift(sum->next, c->shift));
+    w->held += 0.5 * v3_dot(f, twice);
+    for (int32_t k = 0; k < sum->freedoms.n; k++) {
+        const struct freedom *freedom = &sum->freedoms.f[k];
+        double along = v3_dot(f, freedom_direction(freedom, c));
+        w->free += along * (freedom->speed + 0.5 * impulses_change(sum, p, k));
+        if (freedom->boundary < 0) w->held -= along * freedom->speed;
+    }
+}
+
+static void add_contacts(struct balance *b, const struct packing *p, const struct contacts *s,
+                         const struct impulses *sum, const struct mean *mean)
+{
+    for (int64_t i = 0; i < s->n; i++) {
+        const struct contact *c = &s->c[i];
+        const struct push o = push_of(p, sum->ahead, sum->edge, c, s->found[i].r);
+        const struct mean *mb = &mean[c->b];
+        struct work w = { 0 };
+        bool a_moves = c->a >= 0 && p->mass[c->a] > 0, b_moves = p->mass[c->b] > 0;
+        *(b_moves ? &w.free : &w.held) += v3_dot(o.f, mb->v) + o.lb * v3_dot(o.m, mb->w);
+        if (c->a >= 0) {
+            const struct mean *ma = &mean[c->a];
+            *(a_moves ? &w.free : &w.held) += o.la * v3_dot(o.m, ma->w) - v3_dot(o.f, ma->v);
+        } else {
+            w.held -= v3_dot(o.f, wall_held(&p->wall[-1 - c->a], c->x));
+        }
+        add_beyond(&w, p, sum, c, o.f);
+        b->drives -= w.held;
+        b->dissipation -= w.held + w.free;
+        if (!a_moves && b_moves) add_to(b->impulse, 1, o.f);
+        if (a_moves && !b_moves) add_to(b->impulse, -1, o.f);
+    }
+}
+
+int balance_step(struct balance *b, const struct packing *p, const struct contacts *s,
+                 const struct impulses *sum, struct why *why)
+{
+    struct mean *mean = malloc(((size_t)p->n + 1) * sizeof *mean);
+    *b = (struct balance){ 0 };
+    if (!mean) return why_set(why, EX_SOFTWARE, "no memory for the balances");
+    add_bodies(b, p, sum, mean);
+    add_freedoms(b, p, sum);
+    add_contacts(b, p, s, sum, mean);
+    free(mean);
+    return 0;
+}

@@ -1,0 +1,44 @@
+/*
+ * bodies/balance.h: the balances of energy and momentum over one step.
+ *
+ * The equation of motion M (v+ - v-) = dt F + H r times the mean velocity is, to rounding and
+ * whatever r is [Kelvin & Tait 1867, art. 308: an impulse works by the mean of the velocities
+ * before and after it]:
+ *
+ *     T+ - T- = gravity + loads + drives - dissipation
+ *
+ *     gravity      dt sum m g . (v+ + v-)/2
+ *     loads        dt sum f (s+ + s-)/2, of the freedoms [bodies/freedom.h]
+ *     drives       - sum r . w: w is what the motions that are prescribed (boundaries, fixed
+ *                  bodies, the cell) are in the velocity of the contact, their mean over the
+ *                  step; and what the flow of the cell does to bodies
+ *     dissipation  - sum r . (u+ + u-)/2
+ *
+ * Each of the four is a sum of its own, none a difference of the others. Momentum changes by the
+ * weight, dt sum m g, and by the impulse of boundaries, fixed bodies and the cell's flow. Where
+ * the cell repeats, T- is not T+ of the step before: a body that is replaced by its image has
+ * another velocity.
+ *
+ * Without restitution a contact that holds has u+ = 0 and dissipates -r . u-/2, which is negative
+ * where the step has begun with separating bodies; over an impact it is what the law takes.
+ */
+#ifndef NSD_BALANCE_H
+#define NSD_BALANCE_H
+
+#include "bodies/impulse.h"
+
+struct balance {
+    double kinetic;   /* J: after the step; of the bodies and of what loads move */
+    double change;    /* J: of kinetic, in the step */
+    double potential; /* J: - sum m g . x, after the step, of the bodies */
+    double gravity, drives, loads, dissipation; /* J: in the step */
+    double momentum[3];                         /* N s: of the bodies, after the step */
+    double impulse[3]; /* N s: of boundaries and fixed bodies on the others, in the step */
+};
+
+/* Of the step that begins where the packing is, by the reactions of its contacts, whose sums are
+   given, too. Returns 0 or EX_SOFTWARE. */
+int balance_step(struct balance *b, const struct packing *p, const struct contacts *s,
+                 const struct impulses *sum, struct why *why);
+
+#endif

@@ -1,0 +1,109 @@
+/* bodies/freedom.c: the freedoms of a step, from loads and back [bodies/freedom.h]. */
+#include "bodies/freedom.h"
+
+#include <stdlib.h>
+
+bool freedoms_in(const struct packing *p)
+{
+    if (cell_yields(&p->cell)) return true;
+    for (int32_t w = 0; w < p->walls; w++)
+        if (p->wall[w].load.way) return true;
+    return false;
+}
+
+static struct freedom wall_freedom(const struct packing *p, int32_t w)
+{
+    const struct load *l = &p->wall[w].load;
+    return (struct freedom){ .boundary = w,
+                             .turns = l->way == LOAD_TURNS,
+                             .axis = l->axis,
+                             .point = l->point,
+                             .mass = l->mass,
+                             .force = l->force,
+                             .speed = l->speed };
+}
+
+/* Component i of edge k, where the face across is area[k] */
+static struct freedom edge_freedom(const struct cell *c, int k, int i, const vec3 area[3])
+{
+    const double *row = c->stress[i], rate[3] = { c->rate[k].x, c->rate[k].y, c->rate[k].z };
+    return (struct freedom){ .boundary = -1,
+                             .edge = k,
+                             .axis = v3(i == 0, i == 1, i == 2),
+                             .mass = c->mass[k][i],
+                             .force = -v3_dot(v3(row[0], row[1], row[2]), area[k]),
+                             .speed = rate[i] };
+}
+
+/* m^2, of discs m: the faces across the edges, to the side that they go */
+static void face_areas(const struct packing *p, const vec3 edge[3], vec3 area[3])
+{
+    double volume = v3_dot(edge[0], v3_cross(edge[1], edge[2]));
+    if (p->dim == 2) volume /= v3_norm(edge[2]); // which only closes the cell
+    cell_inverse(edge, area);
+    for (int k = 0; k < 3; k++) area[k] = v3_scale(fabs(volume), area[k]);
+}
+
+int freedoms_init(struct freedoms *list, const struct packing *p, const vec3 half[3],
+                  struct why *why)
+{
+    *list = (struct freedoms){ 0 };
+    if (!freedoms_in(p)) return 0;
+    list->f = calloc((size_t)p->walls + 9, sizeof *list->f);
+    if (!list->f) return why_set(why, EX_SOFTWARE, "no memory for the loads");
+    for (int32_t w = 0; w < p->walls; w++)
+        if (p->wall[w].load.way) list->f[list->n++] = wall_freedom(p, w);
+    vec3 area[3];
+    face_areas(p, half, area);
+    for (int k = 0; k < 9; k++)
+        if (p->cell.mass[k / 3][k % 3] > 0)
+            list->f[list->n++] = edge_freedom(&p->cell, k / 3, k % 3, area);
+    return 0;
+}
+
+void freedoms_free(struct freedoms *list)
+{
+    free(list->f);
+    *list = (struct freedoms){ 0 };
+}
+
+vec3 freedom_direction(const struct freedom *f, const struct contact *c)
+{
+    vec3 none = v3(0, 0, 0);
+    if (f->boundary < 0) return c->shift[f->edge] ? v3_scale(c->shift[f->edge], f->axis) : none;
+    if (c->a != -1 - f->boundary) return none;
+    return v3_scale(-1, f->turns ? v3_cross(f->axis, v3_sub(c->x, f->point)) : f->axis);
+}
+
+static void wall_move(const struct packing *p, struct load *l, double change, bool back)
+{
+    double after = p->theta * p->dt * change;
+    if (back) l->speed -= change;
+    double way = p->dt * l->speed + after;
+    l->travel += back ? -way : way;
+    if (!back) l->speed += change;
+}
+
+static void edge_move(struct packing *p, const struct freedom *f, double change, bool back)
+{
+    double sign = back ? -1 : 1;
+    vec3 *rate = &p->cell.rate[f->edge], *edge = &p->cell.edge[f->edge];
+    *edge = v3_axpy(*edge, sign * p->theta * p->dt * change, f->axis);
+    *rate = v3_axpy(*rate, sign * change, f->axis);
+}
+
+void freedom_move(const struct freedom *f, struct packing *p, double change, bool back)
+{
+    if (f->boundary < 0)
+        edge_move(p, f, change, back);
+    else
+        wall_move(p, &p->wall[f->boundary].load, change, back);
+}
+
+void freedom_displace(const struct freedom *f, struct packing *p, double way)
+{
+    if (f->boundary < 0)
+        p->cell.edge[f->edge] = v3_axpy(p->cell.edge[f->edge], way, f->axis);
+    else
+        p->wall[f->boundary].load.travel += way;
+}

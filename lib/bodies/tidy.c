@@ -1,0 +1,50 @@
+/* bodies/tidy.c: bodies back into the cell, edges upright [bodies/tidy.h]. */
+#include "bodies/tidy.h"
+
+static int8_t clamp(int64_t s)
+{
+    return (int8_t)(s < INT8_MIN ? INT8_MIN : s > INT8_MAX ? INT8_MAX : s);
+}
+
+static int32_t add(int32_t image, int64_t edges)
+{
+    int64_t sum = image + edges;
+    return (int32_t)(sum < INT32_MIN ? INT32_MIN : sum > INT32_MAX ? INT32_MAX : sum);
+}
+
+/* edge[to] -= n edge[from] has happened: what counted edges counts n more of `from` for one of `to`. */
+static void recount(struct packing *p, struct contacts *s, int32_t n, int to, int from)
+{
+    for (int64_t i = 0; i < p->n; i++)
+        p->image[i][from] = add(p->image[i][from], (int64_t)n * p->image[i][to]);
+    for (int64_t i = 0; s && i < s->n; i++)
+        s->c[i].shift[from] = clamp(s->c[i].shift[from] + (int64_t)n * s->c[i].shift[to]);
+}
+
+void packing_tidy(struct packing *p, struct contacts *s)
+{
+    struct cell *c = &p->cell;
+    vec3 inverse[3];
+    int32_t n;
+    int to, from;
+    if (!cell_repeats(c)) return;
+    while ((n = cell_recut(c, &to, &from))) recount(p, s, n, to, from);
+    cell_inverse(c->edge, inverse);
+    for (int64_t i = 0; s && i < s->n; i++) {
+        struct contact *k = &s->c[i];
+        int32_t a[3], b[3];
+        if (k->a < 0) continue; // a plane is its own image
+        cell_wraps(c, inverse, p->x[k->a], a), cell_wraps(c, inverse, p->x[k->b], b);
+        for (int j = 0; j < 3; j++) k->shift[j] = clamp((int64_t)k->shift[j] + b[j] - a[j]);
+    }
+    for (int64_t i = 0; i < p->n; i++) {
+        int32_t w[3];
+        cell_wraps(c, inverse, p->x[i], w);
+        for (int k = 0; k < 3; k++) {
+            if (!w[k]) continue;
+            p->x[i] = v3_axpy(p->x[i], -w[k], c->edge[k]);
+            p->v[i] = v3_axpy(p->v[i], -w[k], c->rate[k]);
+            p->image[i][k] = add(p->image[i][k], w[k]);
+        }
+    }
+}

@@ -1,0 +1,151 @@
+/* scene/scene_cell.c: the cell that repeats, from its JSON. */
+#include "scene/scene_read.h"
+
+/* dim rows of dim numbers; where `given` is not NULL an item may be null, which leaves it out. */
+static int read_matrix(jnode n, int dim, double M[3][3], bool given[3][3])
+{
+    size_t rows = 0, columns = 0;
+    if (json_node_array(n, &rows)) return 1;
+    if (rows != (size_t)dim) return json_node_fault(n, "wants %d rows", dim);
+    for (size_t i = 0; i < rows; i++) {
+        jnode row = json_node_item(&n, i);
+        if (json_node_array(row, &columns)) return 1;
+        if (columns != (size_t)dim) return json_node_fault(row, "wants %d numbers", dim);
+        for (size_t j = 0; j < columns; j++) {
+            jnode x = json_node_item(&row, j);
+            if (given && json_is_null(x.json)) continue;
+            if (json_node_number(x, J_ANY, &M[i][j])) return 1;
+            if (given) given[i][j] = true;
+        }
+    }
+    return 0;
+}
+
+static int read_edges(jnode o, int dim, struct cell *c)
+{
+    jnode edges = json_node_key(&o, "edges");
+    size_t n = 0;
+    int which = json_node_choice(o, "edges lengths");
+    if (which < 0) return 1;
+    if (which == 1) {
+        vec3 length = v3(0, 0, 0);
+        jnode lengths = json_node_key(&o, "lengths");
+        if (json_node_vector(lengths, dim, &length)) return 1;
+        if (!(length.x > 0 && length.y > 0 && (dim == 2 || length.z > 0)))
+            return json_node_fault(lengths, "must be positive");
+        c->edge[0].x = length.x, c->edge[1].y = length.y;
+        if (dim == 3) c->edge[2].z = length.z;
+        return 0;
+    }
+    if (json_node_array(edges, &n)) return 1;
+    if (n != (size_t)dim) return json_node_fault(edges, "wants %d vectors", dim);
+    for (size_t k = 0; k < n; k++)
+        if (json_node_vector(json_node_item(&edges, k), dim, &c->edge[k])) return 1;
+    return 0;
+}
+
+static int read_repeats(jnode a, int dim, struct cell *c)
+{
+    size_t n = 0;
+    for (int k = 0; k < dim; k++) c->repeats[k] = true;
+    if (!a.json) return 0;
+    if (json_node_array(a, &n)) return 1;
+    if (n != (size_t)dim) return json_node_fault(a, "wants true or false for %d edges", dim);
+    for (size_t k = 0; k < n; k++)
+        if (json_node_bool(json_node_item(&a, k), &c->repeats[k])) return 1;
+    return cell_repeats(c) ? 0 : json_node_fault(a, "no edge repeats");
+}
+
+static int read_moment(jnode o, int dim, struct cell_gradient *g)
+{
+    return json_node_only(o, "t L") || json_node_need(&o, "t L") ||
+           json_node_number(json_node_key(&o, "t"), J_ANY, &g->t) ||
+           read_matrix(json_node_key(&o, "L"), dim, g->L, NULL);
+}
+
+static int read_gradient(jnode a, int dim, struct cell *c)
+{
+    size_t n = 0;
+    if (!a.json) return 0;
+    if (json_node_array(a, &n)) return 1;
+    bool table = n && json_is_object(json_node_item(&a, 0).json);
+    if (!table) n = 1;
+    if (!(c->gradient = scene_alloc(a, n, sizeof *c->gradient))) return 1;
+    c->gradients = (int32_t)n;
+    if (!table) return read_matrix(a, dim, c->gradient[0].L, NULL);
+    for (size_t m = 0; m < n; m++) {
+        jnode moment = json_node_item(&a, m);
+        if (read_moment(moment, dim, &c->gradient[m])) return 1;
+        if (m && !(c->gradient[m].t > c->gradient[m - 1].t))
+            return json_node_fault(json_node_key(&moment, "t"),
+                                   "must be later than the one before");
+    }
+    return 0;
+}
+
+/* Each entry of a symmetric matrix may be given at one of its two places, or alike at both. */
+static int set_target(jnode n, int dim, double target[3][3], bool given[3][3], struct cell *c)
+{
+    for (int i = 0; i < dim; i++)
+        for (int j = 0; j < dim; j++) {
+            if (!given[i][j]) continue;
+            if (!c->repeats[j])
+                return json_node_fault(n, "edge %d does not repeat, so it cannot yield", j);
+            if (given[j][i] && target[i][j] != target[j][i])
+                return json_node_fault(n, "a stress is symmetric");
+            c->stress[i][j] = c->stress[j][i] = target[i][j];
+        }
+    return 0;
+}
+
+static int read_mass(jnode n, int dim, bool yields[3][3], struct cell *c)
+{
+    double one = 0, mass[3][3] = { { 0 } };
+    bool matrix = json_is_array(n.json), given[3][3] = { { false } };
+    if (matrix ? read_matrix(n, dim, mass, given) : json_node_number(n, J_POSITIVE, &one)) return 1;
+    for (int i = 0; i < dim; i++)
+        for (int j = 0; j < dim; j++) {
+            if (!yields[i][j]) continue;
+            c->mass[j][i] = matrix ? mass[i][j] : one;
+            if (!(c->mass[j][i] > 0))
+                return json_node_fault(n, "component %s of edge %d yields and needs a mass",
+                                       axis_name[i], j);
+        }
+    return 0;
+}
+
+static int read_stress(jnode o, int dim, struct cell *c)
+{
+    double target[3][3] = { { 0 } };
+    bool yields[3][3] = { { false } };
+    if (!o.json) return 0;
+    int which = json_node_choice(o, "pressure target");
+    if (which < 0 || json_node_only(o, "pressure target mass") || json_node_need(&o, "mass"))
+        return 1;
+    jnode pressure = json_node_key(&o, "pressure"), matrix = json_node_key(&o, "target");
+    if (which == 1 && read_matrix(matrix, dim, target, yields)) return 1;
+    for (int k = 0; which == 0 && k < dim; k++) {
+        yields[k][k] = c->repeats[k];
+        if (json_node_number(pressure, J_ANY, &target[k][k])) return 1;
+    }
+    if (set_target(which == 1 ? matrix : pressure, dim, target, yields, c)) return 1;
+    return read_mass(json_node_key(&o, "mass"), dim, yields, c);
+}
+
+int scene_read_cell(jnode o, int dim, struct scene_cell *out)
+{
+    struct cell *c = &out->cell;
+    struct why why = { 0 };
+    *c = cell_none();
+    if (!o.json) return 0;
+    out->given = true;
+    if (json_node_only(o, "edges lengths repeats origin gradient affine stress") ||
+        read_edges(o, dim, c) || read_repeats(json_node_key(&o, "repeats"), dim, c) ||
+        json_node_vector(json_node_key(&o, "origin"), dim, &c->origin) ||
+        read_gradient(json_node_key(&o, "gradient"), dim, c) ||
+        json_node_bool(json_node_key(&o, "affine"), &out->affine) ||
+        read_stress(json_node_key(&o, "stress"), dim, c))
+        return 1;
+    cell_set_rate(c, 0);
+    return cell_check(c, dim, 0, &why) ? json_node_fault(o, "%s", why.text) : 0;
+}
