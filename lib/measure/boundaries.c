@@ -12,7 +12,7 @@ void boundaries_reach(const struct packing *p, int axis, double *lo, double *hi)
     double from = -INFINITY, to = INFINITY;
     for (int32_t w = 0; w < p->walls; w++) {
         const struct wall *wall = &p->wall[w];
-        const vec3 at = v3_axpy(wall->x, p->t, wall->v);
+        const vec3 at = wall_at(p, wall, p->t);
         const double n[3] = { wall->n.x, wall->n.y, wall->n.z }, x[3] = { at.x, at.y, at.z };
         if (n[axis] > 1 - 1e-12) from = fmax(from, x[axis]);
         if (n[axis] < -1 + 1e-12) to = fmin(to, x[axis]);
@@ -20,12 +20,6 @@ void boundaries_reach(const struct packing *p, int axis, double *lo, double *hi)
     if (isfinite(from)) *lo = from;
     if (isfinite(to)) *hi = to;
     if (*hi < *lo) *hi = *lo;
-}
-
-vec3 boundary_velocity(const struct packing *p, int32_t a, vec3 x)
-{
-    (void)x;
-    return p->wall[-1 - a].v;
 }
 
 /* What bodies do to a boundary, or to all fixed bodies */

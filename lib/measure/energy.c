@@ -2,7 +2,6 @@
 #include "measure/branch.h"
 #include "measure/measures.h"
 #include "measure/step_motion.h"
-#include "measure/boundaries.h"
 
 #include <math.h>
 
@@ -25,19 +24,19 @@ static int add_step(double **at, const struct snapshot *s, struct why *why)
 {
     struct step_motion m;
     double impact = 0, friction = 0, boundaries = 0;
-    if (step_motion_init(&m, s)) {
+    if (step_motion_init(&m, s, why)) {
         step_motion_free(&m);
-        return why_set(why, EX_SOFTWARE, "no memory for the energies");
+        return why->status;
     }
     for (int64_t i = 0; i < s->s->n; i++) {
         const struct contact *c = &s->s->c[i];
         const double *r = s->s->found[i].r;
         double u[3];
         int times = region_holds(&s->region, c->x);
-        step_motion_at(&m, s, i, u);
+        step_motion_at(&m, c, u);
         impact -= times * r[0] * u[0], friction -= times * (r[1] * u[1] + r[2] * u[2]);
         if (c->a < 0)
-            boundaries += times * v3_dot(contact_in_space(c, r), boundary_velocity(s->p, c->a, c->x));
+            boundaries += times * v3_dot(contact_in_space(c, r), step_motion_boundary(&m, c));
     }
     put(at, impact + friction), put(at, impact), put(at, friction), put(at, boundaries);
     step_motion_free(&m);

@@ -39,7 +39,9 @@ const struct kept_body *kept_find(const struct kept *k, int32_t id)
 
 vec3 kept_place(const struct packing *p, int64_t i)
 {
-    return p->x[i];
+    vec3 x = p->x[i];
+    for (int k = 0; p->image && k < 3; k++) x = v3_axpy(x, p->image[i][k], p->cell.edge[k]);
+    return x;
 }
 
 vec3 kept_way(const struct packing *p, vec3 from, vec3 to)

@@ -1,59 +1,47 @@
 #include "measure/step_motion.h"
 
+#include "bodies/move.h"
 #include "measure/branch.h"
-#include "measure/boundaries.h"
 
-#include <stdlib.h>
+int step_motion_init(struct step_motion *m, const struct snapshot *s, struct why *why)
+{
+    *m = (struct step_motion){ .p = s->p };
+    if (packing_copy(&m->other, s->p, why)) return why->status;
+    return (s->moved ? move_back : move_step)(&m->other, s->s, why);
+}
 
-/* m: the lever arms that the step has used [bodies/kinematics.h] */
+void step_motion_free(struct step_motion *m)
+{
+    packing_free(&m->other);
+}
+
+/* m: the lever arm that the step has used [bodies/kinematics.h] */
 static double arm_b(const struct packing *p, const struct contact *c)
 {
     return c->a < 0 && p->overlap > OVERLAP_KEEP ? p->radius[c->b] : branch_b(p, c);
 }
 
-/* The velocity of a body changes in the step by d; half of it leads from the frame to the mean. */
-static void add_impulse(struct step_motion *m, const struct packing *p, int64_t body, double sign,
-                        double arm, vec3 f, vec3 moment)
+static vec3 boundary(const struct packing *p, const struct contact *c)
 {
-    if (!(p->mass[body] > 0)) return;
-    m->v[body] = v3_axpy(m->v[body], sign / p->mass[body], f);
-    m->w[body] = v3_axpy(m->w[body], arm / p->inertia[body], moment);
+    return wall_velocity(&p->wall[-1 - c->a], c->x);
 }
 
-int step_motion_init(struct step_motion *m, const struct snapshot *s)
+/* m/s: of b relative to a, at the contact, in space */
+static vec3 relative(const struct packing *p, const struct contact *c)
 {
-    const struct packing *p = s->p;
-    const double half = s->moved ? -0.5 : 0.5;
-    m->v = calloc((size_t)p->n + 1, sizeof *m->v), m->w = calloc((size_t)p->n + 1, sizeof *m->w);
-    if (!m->v || !m->w) return -1;
-    for (int64_t i = 0; i < s->s->n; i++) {
-        const struct contact *c = &s->s->c[i];
-        const double *r = s->s->found[i].r;
-        vec3 f = contact_in_space(c, r);
-        vec3 moment = v3_axpy(v3_scale(r[2], c->t1), -r[1], contact_t2(c)); // -n x r
-        add_impulse(m, p, c->b, 1, arm_b(p, c), f, moment);
-        if (c->a >= 0) add_impulse(m, p, c->a, -1, branch_a(p, c), f, moment);
-    }
-    for (int64_t i = 0; i < p->n; i++) {
-        vec3 change = p->mass[i] > 0 ? v3_axpy(m->v[i], p->dt, p->g) : v3(0, 0, 0);
-        m->v[i] = v3_axpy(p->v[i], half, change), m->w[i] = v3_axpy(p->w[i], half, m->w[i]);
-    }
-    return 0;
+    vec3 b = v3_axpy(p->v[c->b], -arm_b(p, c), v3_cross(p->w[c->b], c->n));
+    vec3 a = c->a < 0 ? boundary(p, c)
+                      : v3_axpy(p->v[c->a], branch_a(p, c), v3_cross(p->w[c->a], c->n));
+    return v3_add(v3_sub(b, a), cell_shift(p->cell.rate, c->shift));
 }
 
-void step_motion_free(struct step_motion *m)
+void step_motion_at(const struct step_motion *m, const struct contact *c, double u[3])
 {
-    free(m->v), free(m->w);
+    vec3 v = v3_scale(0.5, v3_add(relative(m->p, c), relative(&m->other, c)));
+    u[0] = v3_dot(v, c->n), u[1] = v3_dot(v, c->t1), u[2] = v3_dot(v, contact_t2(c));
 }
 
-void step_motion_at(const struct step_motion *m, const struct snapshot *s, int64_t i, double u[3])
+vec3 step_motion_boundary(const struct step_motion *m, const struct contact *c)
 {
-    const struct packing *p = s->p;
-    const struct contact *c = &s->s->c[i];
-    vec3 n = c->n, t2 = contact_t2(c);
-    vec3 at_b = v3_axpy(m->v[c->b], -arm_b(p, c), v3_cross(m->w[c->b], n));
-    vec3 at_a = c->a < 0 ? boundary_velocity(p, c->a, c->x)
-                         : v3_axpy(m->v[c->a], branch_a(p, c), v3_cross(m->w[c->a], n));
-    vec3 v = v3_add(v3_sub(at_b, at_a), cell_shift(p->cell.rate, c->shift));
-    u[0] = v3_dot(v, n), u[1] = v3_dot(v, c->t1), u[2] = v3_dot(v, t2);
+    return v3_scale(0.5, v3_add(boundary(m->p, c), boundary(&m->other, c)));
 }
