@@ -1,0 +1,47 @@
+/*
+ * measure/branch.h: where a contact's force acts. Contacts act in the middle of a step, at the
+ * predicted positions [nsd-methods(7)], which a document does not have but the contact says: the
+ * centres lie on its normal through its point. So branch vectors across the border of a cell that
+ * repeats are those to the image, and the frame's own positions, half a step before or after, do
+ * not matter.
+ */
+#ifndef NSD_BRANCH_H
+#define NSD_BRANCH_H
+
+#include "bodies/contact.h"
+#include "bodies/packing.h"
+
+/* m: how far the centres of a and b are from the contact's point; a boundary's is 0, and b's then
+   the whole distance to it. */
+static inline double branch_a(const struct packing *p, const struct contact *c)
+{
+    return c->a < 0 ? 0 : p->radius[c->a] + 0.5 * c->gap;
+}
+static inline double branch_b(const struct packing *p, const struct contact *c)
+{
+    return p->radius[c->b] + (c->a < 0 ? c->gap : 0.5 * c->gap);
+}
+
+/* m: the centre of a, or the point on the boundary; and from there to the centre of b */
+static inline vec3 branch_from(const struct packing *p, const struct contact *c)
+{
+    return v3_axpy(c->x, -branch_a(p, c), c->n);
+}
+static inline vec3 branch_way(const struct packing *p, const struct contact *c)
+{
+    return v3_scale(branch_a(p, c) + branch_b(p, c), c->n);
+}
+
+/* N, in space: on b of contact i */
+static inline vec3 branch_force(const struct packing *p, const struct contacts *s, int64_t i)
+{
+    return v3_scale(1 / p->dt, contact_in_space(&s->c[i], s->found[i].r));
+}
+
+/* Does contact i count? Solved: it pushes; else the bodies touch. */
+static inline bool branch_counts(const struct contacts *s, int64_t i)
+{
+    return s->found ? s->found[i].r[0] > 0 : s->c[i].gap <= 0;
+}
+
+#endif

@@ -1,0 +1,109 @@
+/* measure/coordination.c: how many contacts bodies have. */
+#include "measure/branch.h"
+#include "measure/counts.h"
+#include "measure/measures.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const struct quantity quantities[] = {
+    { "bodies", "1", 1, "that move, their centres in the region" },
+    { "contacts", "1", 1, "of the frame: that push; not solved: that touch" },
+    { "z", "1", 1, "contacts of a body, mean of all" },
+    { "z_mechanical", "1", 1, "mean of those with more than one (Thornton 2000)" },
+    { "z_without_rattlers", "1", 1, "mean of those that bear, among themselves" },
+    { "rattlers", "1", 1, "bodies that bear nothing" },
+    { 0 },
+};
+
+/* Contacts without which a body bears nothing: two with friction, else one more than dimensions */
+static int least_contacts(const struct snapshot *s)
+{
+    for (int64_t i = 0; i < s->s->n; i++)
+        if (s->s->c[i].mu > 0) return 2;
+    return s->p->dim + 1;
+}
+
+/* Mean over bodies with at least `least` contacts; *n of them */
+static double mean(const struct snapshot *s, const int32_t *count, int least, int64_t *n)
+{
+    int64_t sum = 0;
+    *n = 0;
+    for (int64_t i = 0; i < s->p->n; i++)
+        if (count[i] >= least && counts_body(s, i)) sum += count[i], ++*n;
+    return *n ? (double)sum / (double)*n : NAN;
+}
+
+static int of(struct table *t, const struct snapshot *s, struct why *why)
+{
+    int64_t bodies, bearing, more, contacts = 0;
+    double *at = table_row(t, why);
+    int32_t *count = counts_of(s);
+    if (!at || !count) {
+        free(count);
+        return why_set(why, EX_SOFTWARE, "no memory to count contacts");
+    }
+    for (int64_t i = 0; i < s->s->n; i++) contacts += branch_counts(s->s, i);
+    double z = mean(s, count, 0, &bodies), mechanical = mean(s, count, 2, &more);
+    if (counts_without_rattlers(count, s, least_contacts(s)))
+        why_set(why, EX_SOFTWARE, "no memory to count contacts");
+    double bears = mean(s, count, 1, &bearing);
+    put(&at, (double)bodies), put(&at, (double)contacts);
+    put(&at, z), put(&at, mechanical), put(&at, bears), put(&at, (double)(bodies - bearing));
+    if (!bodies) table_null(t, "no body that moves is in the region");
+    if (!more) table_null(t, "no body has two contacts");
+    if (!bearing) table_null(t, "every body is a rattler");
+    free(count);
+    return why->status;
+}
+
+const struct measure measure_coordination = {
+    .name = "coordination",
+    .help = "contacts of a body; rattlers",
+    .quantity = quantities,
+    .usual = true,
+    .needs = NEEDS_CONTACTS,
+    .of = of,
+};
+
+/* ---- how many bodies have how many ---- */
+
+static const struct quantity numbers[] = {
+    { "contacts", "1", 1, "of a body" },
+    { "bodies", "1", 1, "that have so many" },
+    { "share", "1", 1, "of all bodies" },
+    { 0 },
+};
+
+static int of_numbers(struct table *t, const struct snapshot *s, struct why *why)
+{
+    int32_t *count = counts_of(s), most = 0;
+    int64_t all = 0;
+    if (!count) return why_set(why, EX_SOFTWARE, "no memory to count contacts");
+    for (int64_t i = 0; i < s->p->n; i++) {
+        if (!counts_body(s, i)) count[i] = -1;
+        all += count[i] >= 0;
+        if (count[i] > most) most = count[i];
+    }
+    int64_t *bodies = calloc((size_t)most + 1, sizeof *bodies);
+    if (!bodies) why_set(why, EX_SOFTWARE, "no memory to count contacts");
+    for (int64_t i = 0; bodies && i < s->p->n; i++)
+        if (count[i] >= 0) bodies[count[i]]++;
+    for (int32_t k = 0; bodies && all && k <= most; k++) {
+        double *at = table_row(t, why);
+        if (!at) break;
+        put(&at, k), put(&at, (double)bodies[k]), put(&at, (double)bodies[k] / (double)all);
+    }
+    if (!all) table_null(t, "no body that moves is in the region");
+    free(bodies), free(count);
+    return why->status;
+}
+
+const struct measure measure_contact_numbers = {
+    .name = "contact_numbers",
+    .help = "how many bodies have how many contacts",
+    .quantity = numbers,
+    .list = true,
+    .needs = NEEDS_CONTACTS,
+    .of = of_numbers,
+};

@@ -1,0 +1,58 @@
+/* measure/displacement.c: how far bodies have come since the first frame. */
+#include "measure/measures.h"
+
+static const struct quantity quantities[] = {
+    { "since", "s", 1, "time since the first frame" },
+    { "bodies", "1", 1, "that were there, too, and move" },
+    { "msd", "m2", 1, "mean square displacement" },
+    { "components", "m2", 3, "the same of x, y, z" },
+    { "drift", "m", 3, "mean displacement" },
+    { "about_drift", "m2", 1, "mean square displacement about the drift" },
+    { 0 },
+};
+
+/* m: of body i since the first frame; false: it was not there */
+static bool displacement(const struct snapshot *s, int64_t i, vec3 *d)
+{
+    const struct kept_body *then = s->p->mass[i] > 0 ? kept_find(s->first, s->p->id[i]) : NULL;
+    if (then) *d = v3_sub(kept_place(s->p, i), then->x);
+    return then;
+}
+
+static int of(struct table *t, const struct snapshot *s, struct why *why)
+{
+    double n = 0, square[3] = { 0, 0, 0 }, *at = table_row(t, why);
+    vec3 drift = v3(0, 0, 0), d;
+    if (!at) return why->status;
+    for (int64_t i = 0; i < s->p->n; i++)
+        if (displacement(s, i, &d)) {
+            n++, drift = v3_add(drift, d);
+            square[0] += d.x * d.x, square[1] += d.y * d.y, square[2] += d.z * d.z;
+        }
+    put(&at, s->p->t - s->first->t), put(&at, n);
+    if (!(n > 0)) {
+        table_null(t, "no body that moves was there in the first frame");
+        return 0;
+    }
+    drift = v3_scale(1 / n, drift);
+    double msd = (square[0] + square[1] + square[2]) / n;
+    put(&at, msd);
+    for (int k = 0; k < 3; k++) put(&at, square[k] / n);
+    put_vec(&at, drift);
+    double about = 0;
+    for (int64_t i = 0; i < s->p->n; i++)
+        if (displacement(s, i, &d)) {
+            d = v3_sub(d, drift);
+            about += v3_dot(d, d);
+        }
+    put(&at, about / n);
+    return 0;
+}
+
+const struct measure measure_displacement = {
+    .name = "displacement",
+    .help = "mean square displacement since the first frame",
+    .quantity = quantities,
+    .needs = NEEDS_BEFORE,
+    .of = of,
+};

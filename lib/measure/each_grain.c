@@ -1,0 +1,72 @@
+/* measure/each_grain.c: numbers of each body: its stress, its contacts, its speed. */
+#include "measure/ball_part.h"
+#include "measure/branch.h"
+#include "measure/counts.h"
+#include "measure/measures.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const struct quantity quantities[] = {
+    { "id", "1", 1, "" },
+    { "radius", "m", 1, "" },
+    { "x", "m", 3, "" },
+    { "speed", "m/s", 1, "" },
+    { "spin", "rad/s", 1, "size of the angular velocity" },
+    { "z", "1", 1, "contacts that count" },
+    { "p", "Pa", 1, "mean pressure in it (2D: N/m)" },
+    { "q", "Pa", 1, "deviator (2D: N/m)" },
+    { "stress", "Pa", 9, "forces times the way from centre to contact, by its volume" },
+    { 0 },
+};
+
+/* N m, [n]: each body's sum of f (x_contact - x)^T, compression positive */
+static struct tensor *moments(const struct snapshot *s)
+{
+    struct tensor *T = calloc((size_t)s->p->n + 1, sizeof *T);
+    for (int64_t i = 0; T && i < s->s->n; i++) {
+        const struct contact *c = &s->s->c[i];
+        vec3 f = branch_force(s->p, s->s, i);
+        tensor_add(&T[c->b], branch_b(s->p, c), f, c->n);
+        if (c->a >= 0) tensor_add(&T[c->a], branch_a(s->p, c), f, c->n);
+    }
+    return T;
+}
+
+static void fill(double *at, const struct packing *p, int64_t i, const int32_t *count,
+                 struct tensor *T)
+{
+    put(&at, p->id[i]), put(&at, p->radius[i]), put_vec(&at, p->x[i]);
+    put(&at, v3_norm(p->v[i])), put(&at, v3_norm(p->w[i]));
+    put(&at, count ? count[i] : NAN);
+    if (!T) return;
+    tensor_scale(&T[i], 1 / ball_volume(p->dim, p->radius[i]));
+    put(&at, tensor_trace(&T[i]) / p->dim), put(&at, tensor_deviator(&T[i], p->dim));
+    put_tensor(&at, &T[i]);
+}
+
+static int of(struct table *t, const struct snapshot *s, struct why *why)
+{
+    bool solved = s->s && (s->s->found || !s->s->n);
+    int32_t *count = s->s ? counts_of(s) : NULL;
+    struct tensor *T = solved ? moments(s) : NULL;
+    bool memory = (count || !s->s) && (T || !solved);
+    if (!memory) why_set(why, EX_SOFTWARE, "no memory for numbers of bodies");
+    if (!solved) table_null(t, "no stress: the document has no solved contacts");
+    for (int64_t i = 0; memory && i < s->p->n; i++) {
+        if (!region_holds(&s->region, s->p->x[i])) continue;
+        double *at = table_row(t, why);
+        if (!at) break;
+        fill(at, s->p, i, count, T);
+    }
+    free(count), free(T);
+    return why->status;
+}
+
+const struct measure measure_grains = {
+    .name = "grains",
+    .help = "each body: stress, contacts, speed",
+    .quantity = quantities,
+    .list = true,
+    .of = of,
+};

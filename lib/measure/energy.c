@@ -1,0 +1,70 @@
+/* measure/energy.c: energies, and what a step takes of them. */
+#include "measure/branch.h"
+#include "measure/measures.h"
+#include "measure/step_motion.h"
+
+#include <math.h>
+
+static const struct quantity quantities[] = {
+    { "kinetic", "J", 1, "of translation" },
+    { "rotation", "J", 1, "of rotation" },
+    { "potential", "J", 1, "- m g.x, zero at the origin" },
+    { "stored", "J", 1, "in contacts: rigid bodies store none" },
+    { "total", "J", 1, "of these four" },
+    { "dissipated", "J", 1, "by contacts in the step that they belong to" },
+    { "impact", "J", 1, "of that, by normal velocities" },
+    { "friction", "J", 1, "of that, by tangential ones" },
+    { "boundaries", "J", 1, "work of boundaries on bodies in that step" },
+    { 0 },
+};
+
+/* What contacts take in the step is minus their work on the relative velocity, - r . u, u the mean of
+   those before and after it. */
+static int add_step(double **at, const struct snapshot *s, struct why *why)
+{
+    struct step_motion m;
+    double impact = 0, friction = 0, boundaries = 0;
+    if (step_motion_init(&m, s, why)) {
+        step_motion_free(&m);
+        return why->status;
+    }
+    for (int64_t i = 0; i < s->s->n; i++) {
+        const struct contact *c = &s->s->c[i];
+        const double *r = s->s->found[i].r;
+        double u[3];
+        int times = region_holds(&s->region, c->x);
+        step_motion_at(&m, c, u);
+        impact -= times * r[0] * u[0], friction -= times * (r[1] * u[1] + r[2] * u[2]);
+        if (c->a < 0)
+            boundaries += times * v3_dot(contact_in_space(c, r), step_motion_boundary(&m, c));
+    }
+    put(at, impact + friction), put(at, impact), put(at, friction), put(at, boundaries);
+    step_motion_free(&m);
+    return 0;
+}
+
+static int of(struct table *t, const struct snapshot *s, struct why *why)
+{
+    const struct packing *p = s->p;
+    double kinetic = 0, rotation = 0, potential = 0, *at = table_row(t, why);
+    if (!at) return why->status;
+    for (int64_t i = 0; i < p->n; i++) {
+        int times = region_holds(&s->region, p->x[i]);
+        kinetic += times * 0.5 * p->mass[i] * v3_dot(p->v[i], p->v[i]);
+        rotation += times * 0.5 * p->inertia[i] * v3_dot(p->w[i], p->w[i]);
+        potential -= times * p->mass[i] * v3_dot(p->g, p->x[i]);
+    }
+    put(&at, kinetic), put(&at, rotation), put(&at, potential), put(&at, 0);
+    put(&at, kinetic + rotation + potential);
+    if (s->s && (s->s->found || !s->s->n)) return add_step(&at, s, why);
+    table_null(t, "no dissipation: the document has no solved contacts");
+    return 0;
+}
+
+const struct measure measure_energy = {
+    .name = "energy",
+    .help = "energies; what a step dissipates",
+    .quantity = quantities,
+    .usual = true,
+    .of = of,
+};

@@ -1,0 +1,215 @@
+#include "measure/fields.h"
+
+#include "measure/ball_part.h"
+#include "measure/branch.h"
+#include "measure/tensor.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double CUT = 4; /* widths */
+static const int64_t MOST_POINTS = 100000000;
+static const double USUAL_CELLS = 32; /* along an axis: what a picture shows, in a moment */
+
+const struct quantity field_quantity[FIELD_COUNT + 1] = {
+    [FIELD_DENSITY] = { "density", "kg m-3", 1, "mass" },
+    [FIELD_FRACTION] = { "fraction", "1", 1, "solid volume" },
+    [FIELD_MOMENTUM] = { "momentum", "kg m-2 s-1", 3, "momentum" },
+    [FIELD_VELOCITY] = { "velocity", "m s-1", 3, "momentum over density" },
+    [FIELD_STRESS] = { "stress", "Pa", 9, "of contacts and motion, compression positive" },
+    [FIELD_CONTACTS] = { "contact_stress", "Pa", 9, "of contacts" },
+    [FIELD_KINETIC] = { "kinetic_stress", "Pa", 9, "of motion" },
+};
+
+/* ---- the grid ---- */
+
+static double mean_diameter(const struct packing *p)
+{
+    double sum = 0;
+    for (int64_t i = 0; i < p->n; i++) sum += 2 * p->radius[i] / (double)p->n;
+    return sum;
+}
+
+static int grid_init(struct fields *f, const struct snapshot *s, double spacing, struct why *why)
+{
+    const struct region *r = &s->region;
+    double origin[3] = { 0, 0, 0 }, step[3] = { 1, 1, 1 }, points = 1;
+    for (int k = 0; k < 3; k++) {
+        f->n[k] = 1;
+        if (k >= s->p->dim) continue;
+        double size = r->hi[k] - r->lo[k];
+        double wide = spacing > 0 ? spacing : fmax(mean_diameter(s->p), size / USUAL_CELLS);
+        double cells = fmax(ceil(size / wide * (1 - 1e-12)), 1);
+        if (!(size > 0)) return why_set(why, EX_DATAERR, "no volume to lay a grid over");
+        points *= cells;
+        if (!(points <= (double)MOST_POINTS))
+            return why_set(why, EX_DATAERR, "a grid of more than %lld points",
+                           (long long)MOST_POINTS);
+        f->n[k] = (int64_t)cells, step[k] = size / cells, origin[k] = r->lo[k] + 0.5 * step[k];
+    }
+    f->origin = v3(origin[0], origin[1], origin[2]), f->step = v3(step[0], step[1], step[2]);
+    return 0;
+}
+
+int fields_init(struct fields *f, const struct snapshot *s, double width, double spacing,
+                struct why *why)
+{
+    *f = (struct fields){ .width = width > 0 ? width : mean_diameter(s->p) };
+    if (!s->p->n) return why_set(why, EX_DATAERR, "no bodies to lay a grid over");
+    if (grid_init(f, s, spacing, why)) return why->status;
+    for (int k = 0; k < FIELD_COUNT; k++) {
+        size_t numbers = (size_t)fields_points(f) * (size_t)field_quantity[k].width;
+        if (!(f->x[k] = calloc(numbers, sizeof *f->x[k])))
+            return why_set(why, EX_SOFTWARE, "no memory for fields");
+    }
+    return 0;
+}
+
+void fields_free(struct fields *f)
+{
+    for (int k = 0; k < FIELD_COUNT; k++) free(f->x[k]);
+    *f = (struct fields){ 0 };
+}
+
+/* ---- the points within the cut of a way from x to x + l ---- */
+
+struct patch {
+    int64_t from[3], to[3];
+};
+
+static struct patch patch_of(const struct fields *f, int dim, vec3 x, vec3 l)
+{
+    const double at[3] = { x.x, x.y, x.z }, by[3] = { l.x, l.y, l.z };
+    const double o[3] = { f->origin.x, f->origin.y, f->origin.z };
+    const double h[3] = { f->step.x, f->step.y, f->step.z };
+    struct patch b = { { 0, 0, 0 }, { 0, 0, 0 } };
+    for (int k = 0; k < dim; k++) {
+        double lo = ceil((at[k] + fmin(by[k], 0) - CUT * f->width - o[k]) / h[k]);
+        double hi = floor((at[k] + fmax(by[k], 0) + CUT * f->width - o[k]) / h[k]);
+        double last = (double)(f->n[k] - 1);
+        b.from[k] = (int64_t)fmin(fmax(lo, 0), last + 1),
+        b.to[k] = (int64_t)fmax(fmin(hi, last), -1);
+    }
+    return b;
+}
+
+static vec3 point_at(const struct fields *f, int64_t i, int64_t j, int64_t k)
+{
+    return v3(f->origin.x + (double)i * f->step.x, f->origin.y + (double)j * f->step.y,
+              f->origin.z + (double)k * f->step.z);
+}
+
+/* 1/m^3, 1/m^2: phi at 0 */
+static double greatest(const struct fields *f, int dim)
+{
+    double w = sqrt(M_PI) * f->width;
+    return 1 / (dim == 2 ? w * w : w * w * w);
+}
+
+/* The integral over 0 < s < 1 of phi(d - s l), d the way from the beginning of l */
+static double along(const struct fields *f, int dim, vec3 d, vec3 l)
+{
+    double L = v3_norm(l), w = f->width;
+    if (!(L > 1e-9 * w)) {
+        double d2 = v3_dot(d, d);
+        return d2 > CUT * CUT * w * w ? 0 : greatest(f, dim) * exp(-d2 / (w * w));
+    }
+    double s = v3_dot(d, l) / L, across = fmax(v3_dot(d, d) - s * s, 0);
+    double over = fmax(fmax(-s, s - L), 0); // beyond either end
+    if (across + over * over > CUT * CUT * w * w) return 0;
+    return greatest(f, dim) * exp(-across / (w * w)) * 0.5 * sqrt(M_PI) * w / L *
+           (erf(s / w) - erf((s - L) / w));
+}
+
+/* ---- the sums ---- */
+
+struct body {
+    double mass, volume;
+    vec3 v;
+};
+
+static void add_tensor(double *to, double s, vec3 a, vec3 b)
+{
+    const double x[3] = { s * a.x, s * a.y, s * a.z }, y[3] = { b.x, b.y, b.z };
+    for (int k = 0; k < 9; k++) to[k] += x[k / 3] * y[k % 3];
+}
+
+static void add_body(struct fields *f, int dim, vec3 x, const struct body *b)
+{
+    struct patch c = patch_of(f, dim, x, v3(0, 0, 0));
+    for (int64_t k = c.from[2]; k <= c.to[2]; k++)
+        for (int64_t j = c.from[1]; j <= c.to[1]; j++)
+            for (int64_t i = c.from[0]; i <= c.to[0]; i++) {
+                int64_t at = (k * f->n[1] + j) * f->n[0] + i;
+                double phi = along(f, dim, v3_sub(point_at(f, i, j, k), x), v3(0, 0, 0));
+                if (phi == 0) continue;
+                double *momentum = f->x[FIELD_MOMENTUM] + 3 * at, m = phi * b->mass;
+                f->x[FIELD_DENSITY][at] += m, f->x[FIELD_FRACTION][at] += phi * b->volume;
+                momentum[0] += m * b->v.x, momentum[1] += m * b->v.y, momentum[2] += m * b->v.z;
+                add_tensor(f->x[FIELD_KINETIC] + 9 * at, m, b->v, b->v);
+            }
+}
+
+static void add_contact(struct fields *f, int dim, vec3 x, vec3 l, vec3 force)
+{
+    struct patch c = patch_of(f, dim, x, l);
+    for (int64_t k = c.from[2]; k <= c.to[2]; k++)
+        for (int64_t j = c.from[1]; j <= c.to[1]; j++)
+            for (int64_t i = c.from[0]; i <= c.to[0]; i++) {
+                double phi = along(f, dim, v3_sub(point_at(f, i, j, k), x), l);
+                int64_t at = (k * f->n[1] + j) * f->n[0] + i;
+                if (phi > 0) add_tensor(f->x[FIELD_CONTACTS] + 9 * at, phi, force, l);
+            }
+}
+
+/* Velocities from momenta; the motion's stress about them; the whole stress. Where there is no mass
+   there is no velocity: 0. */
+static void finish(struct fields *f)
+{
+    for (int64_t i = 0; i < fields_points(f); i++) {
+        double density = f->x[FIELD_DENSITY][i], *v = f->x[FIELD_VELOCITY] + 3 * i;
+        double *kinetic = f->x[FIELD_KINETIC] + 9 * i;
+        for (int k = 0; k < 3; k++)
+            v[k] = density > 0 ? f->x[FIELD_MOMENTUM][3 * i + k] / density : 0;
+        for (int k = 0; k < 9; k++) {
+            kinetic[k] -= density * v[k / 3] * v[k % 3];
+            f->x[FIELD_STRESS][9 * i + k] = kinetic[k] + f->x[FIELD_CONTACTS][9 * i + k];
+        }
+    }
+}
+
+/* The grid as a region, for images */
+static struct region grid_region(const struct fields *f, const struct packing *p)
+{
+    struct region r;
+    vec3 first = f->origin, last = point_at(f, f->n[0] - 1, f->n[1] - 1, f->n[2] - 1);
+    const double lo[3] = { first.x, first.y, first.z }, hi[3] = { last.x, last.y, last.z };
+    region_box(&r, p, lo, hi);
+    return r;
+}
+
+void fields_set(struct fields *f, const struct snapshot *s)
+{
+    const struct packing *p = s->p;
+    const struct region r = grid_region(f, p);
+    const bool solved = s->s && (s->s->found || !s->s->n);
+    const double ahead = !s->s ? 0 : s->moved ? -p->theta * p->dt : (1 - p->theta) * p->dt;
+    for (int k = 0; k < FIELD_COUNT; k++)
+        memset(f->x[k], 0,
+               (size_t)fields_points(f) * (size_t)field_quantity[k].width * sizeof(double));
+    for (int64_t i = 0; i < p->n; i++) {
+        const struct body b = { p->mass[i], ball_volume(p->dim, p->radius[i]), p->v[i] };
+        vec3 x = v3_axpy(p->x[i], ahead, p->v[i]);
+        struct region_walk w = region_walk(&r, x, CUT * f->width);
+        for (vec3 y; region_next(&w, &r, x, &y);) add_body(f, p->dim, y, &b);
+    }
+    for (int64_t i = 0; solved && i < s->s->n; i++) {
+        vec3 x = branch_from(p, &s->s->c[i]), l = branch_way(p, &s->s->c[i]);
+        struct region_walk w = region_walk(&r, x, CUT * f->width + v3_norm(l));
+        for (vec3 y; region_next(&w, &r, x, &y);)
+            add_contact(f, p->dim, y, l, branch_force(p, s->s, i));
+    }
+    for (int64_t i = 0; !solved && i < 9 * fields_points(f); i++) f->x[FIELD_CONTACTS][i] = NAN;
+    finish(f);
+}

@@ -1,0 +1,52 @@
+/*
+ * measure/fields.h: coarse graining: fields that are defined at every point and obey the balances of
+ * mass and momentum exactly [Goldhirsch 2010], by his Gaussian
+ *
+ *     phi(R) = (sqrt(pi) w)^-dim exp(-R^2/w^2),
+ *
+ * cut off at 4 w, where it is 1e-7 of its greatest. A contact's stress is f l^T times the integral of
+ * phi along its branch vector l, which is a difference of two error functions.
+ */
+#ifndef NSD_FIELDS_H
+#define NSD_FIELDS_H
+
+#include "measure/quantity.h"
+#include "measure/snapshot.h"
+
+enum field {
+    FIELD_DENSITY,
+    FIELD_FRACTION,
+    FIELD_MOMENTUM,
+    FIELD_VELOCITY,
+    FIELD_STRESS,
+    FIELD_CONTACTS,
+    FIELD_KINETIC,
+    FIELD_COUNT
+};
+/* Their names and units; one without a name ends them. */
+extern const struct quantity field_quantity[FIELD_COUNT + 1];
+
+struct fields {
+    int64_t n[3];           /* points along the axes; x counts fastest */
+    vec3 origin, step;      /* m: the first point, and from one to the next */
+    double width;           /* m: w */
+    double *x[FIELD_COUNT]; /* [points][width of the quantity] */
+};
+
+/*
+ * A grid over a region, its points in the middle of cells that are at most `spacing` (m) wide; 0: as
+ * the mean diameter, but not more than 32 cells along an axis. width (m) 0: the mean diameter.
+ * Returns 0, EX_SOFTWARE, or EX_DATAERR where there is nothing to lay it over.
+ */
+int fields_init(struct fields *f, const struct snapshot *s, double width, double spacing,
+                struct why *why);
+void fields_free(struct fields *f);
+/* The fields of a snapshot, on the grid that there is; without solved contacts their stress is NaN. */
+void fields_set(struct fields *f, const struct snapshot *s);
+
+static inline int64_t fields_points(const struct fields *f)
+{
+    return f->n[0] * f->n[1] * f->n[2];
+}
+
+#endif

@@ -1,0 +1,85 @@
+/* measure/flux.c: bodies that cross a plane, or a disc in it, between frames. */
+#include "measure/measures.h"
+
+#include <math.h>
+
+static const struct quantity quantities[] = {
+    { "since", "s", 1, "time since the frame before" },
+    { "forth", "1", 1, "bodies that crossed along the normal" },
+    { "back", "1", 1, "against it" },
+    { "mass_forth", "kg", 1, "their mass" },
+    { "mass_back", "kg", 1, "" },
+    { "rate", "1/s", 1, "bodies forth less back, by time" },
+    { "mass_rate", "kg/s", 1, "the same of mass" },
+    { 0 },
+};
+
+struct crossed {
+    double bodies[2], mass[2]; /* forth, back */
+};
+
+/* The straight way from x to x + d: does the centre cross? */
+static void cross(struct crossed *n, const struct snapshot *s, vec3 x, vec3 d, double mass)
+{
+    const struct asked *a = s->asked;
+    vec3 from = v3_sub(x, a->point);
+    double before = v3_dot(from, a->normal), after = v3_dot(v3_add(from, d), a->normal);
+    bool forth = before < 0 && after >= 0, back = before >= 0 && after < 0;
+    if (!forth && !back) return;
+    vec3 at = v3_axpy(from, before / (before - after), d);
+    if (!(v3_norm(v3_axpy(at, -v3_dot(at, a->normal), a->normal)) <= a->radius)) return;
+    n->bodies[back]++, n->mass[back] += mass;
+}
+
+/* Those that have come or gone between the frames: from where they came, or to where they went */
+static int add_events(struct crossed *n, const struct snapshot *s, struct why *why)
+{
+    const struct packing *p = s->p;
+    struct kept now = { 0 };
+    if (!p->events.n) return 0;
+    if (kept_set(&now, p, why)) return why->status;
+    for (int64_t k = 0; k < p->events.n; k++) {
+        const struct event *e = &p->events.e[k];
+        const struct kept_body *b = kept_find(e->came ? &now : s->before, e->id);
+        if (!b) continue;
+        vec3 way = kept_way(p, e->came ? e->x : b->x, e->came ? b->x : e->x);
+        cross(n, s, e->came ? e->x : b->x, way, e->mass);
+    }
+    kept_free(&now);
+    return 0;
+}
+
+static int of(struct table *t, const struct snapshot *s, struct why *why)
+{
+    const struct packing *p = s->p;
+    struct crossed n = { { 0, 0 }, { 0, 0 } };
+    double since = p->t - s->before->t, *at = table_row(t, why);
+    if (!at) return why->status;
+    if (!(v3_norm(s->asked->normal) > 0)) {
+        table_null(t, "--plane says which plane");
+        return 0;
+    }
+    for (int64_t i = 0; i < p->n; i++) {
+        const struct kept_body *then = kept_find(s->before, p->id[i]);
+        if (!then) continue;
+        // from where it would be now, had it come straight and never been replaced by an image
+        vec3 way = v3_sub(kept_place(p, i), then->x);
+        cross(&n, s, v3_sub(p->x[i], way), way, p->mass[i]);
+    }
+    if (add_events(&n, s, why)) return why->status;
+    put(&at, since);
+    for (int k = 0; k < 2; k++) put(&at, n.bodies[k]);
+    for (int k = 0; k < 2; k++) put(&at, n.mass[k]);
+    if (!(since > 0)) table_null(t, "no time has passed since the frame before");
+    put(&at, since > 0 ? (n.bodies[0] - n.bodies[1]) / since : NAN);
+    put(&at, since > 0 ? (n.mass[0] - n.mass[1]) / since : NAN);
+    return 0;
+}
+
+const struct measure measure_flux = {
+    .name = "flux",
+    .help = "bodies that cross a plane or an orifice",
+    .quantity = quantities,
+    .needs = NEEDS_BEFORE,
+    .of = of,
+};

@@ -1,0 +1,39 @@
+/* measure/fraction.c: how much of the volume is solid. */
+#include "measure/ball_part.h"
+#include "measure/measures.h"
+
+static const struct quantity quantities[] = {
+    { "fraction", "1", 1, "solid volume over volume" },
+    { "void_ratio", "1", 1, "void over solid volume" },
+    { "solid", "m3", 1, "volume of the bodies, of what is in the region (2D: m2)" },
+    { "volume", "m3", 1, "of the region (2D: m2)" },
+    { "from", "m", 3, "corner of the region, or of what it reaches" },
+    { "to", "m", 3, "the opposite one" },
+    { 0 },
+};
+
+static int of(struct table *t, const struct snapshot *s, struct why *why)
+{
+    const struct packing *p = s->p;
+    const struct region *r = &s->region;
+    double solid = 0, *at = table_row(t, why);
+    if (!at) return why->status;
+    for (int64_t i = 0; i < p->n; i++) solid += region_ball(r, p->x[i], p->radius[i]);
+    if (!(r->volume > 0)) table_null(t, "the region has no volume");
+    if (!(solid > 0)) table_null(t, "the box is empty: no void ratio");
+    put(&at, r->volume > 0 ? solid / r->volume : NAN);
+    put(&at, solid > 0 ? (r->volume - solid) / solid : NAN);
+    put(&at, solid), put(&at, r->volume);
+    double flat = p->dim == 2 ? 0 : 1;
+    put_vec(&at, v3(r->lo[0], r->lo[1], flat > 0 ? r->lo[2] : 0));
+    put_vec(&at, v3(r->hi[0], r->hi[1], flat > 0 ? r->hi[2] : 0));
+    return 0;
+}
+
+const struct measure measure_fraction = {
+    .name = "fraction",
+    .help = "volume fraction, void ratio, volumes",
+    .quantity = quantities,
+    .usual = true,
+    .of = of,
+};

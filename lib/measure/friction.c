@@ -1,0 +1,166 @@
+/* measure/friction.c: forces of contacts, their distributions, and how much of friction is used. */
+#include "measure/branch.h"
+#include "measure/histogram.h"
+#include "measure/measures.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { SLIDES = 2 }; /* of found.status [law/local.h] */
+
+/* Does contact i push, in the region? */
+static bool pushes(const struct snapshot *s, int64_t i)
+{
+    return s->s->found[i].r[0] > 0 && region_holds(&s->region, s->s->c[i].x);
+}
+
+/* N: the tangential force */
+static double tangential(const struct snapshot *s, int64_t i)
+{
+    const double *r = s->s->found[i].r;
+    return hypot(r[1], r[2]) / s->p->dt;
+}
+
+static double normal(const struct snapshot *s, int64_t i)
+{
+    return s->s->found[i].r[0] / s->p->dt;
+}
+
+/* How much of the friction that there could be there is, 0 to 1; NaN without any */
+static double mobilised(const struct snapshot *s, int64_t i)
+{
+    double most = s->s->c[i].mu * normal(s, i);
+    return most > 0 ? tangential(s, i) / most : NAN;
+}
+
+static const struct quantity quantities[] = {
+    { "contacts", "1", 1, "that push, their points in the region" },
+    { "sliding", "1", 1, "of them, that slide" },
+    { "mobilised", "1", 1, "mean of |f_t| / (mu f_n), of those with friction" },
+    { "ratio", "1", 1, "sum of |f_t| over sum of mu f_n" },
+    { "normal_mean", "N", 1, "normal force, mean" },
+    { "normal_most", "N", 1, "the largest" },
+    { "normal_spread", "1", 1, "standard deviation over mean" },
+    { "tangential_mean", "N", 1, "tangential force, mean" },
+    { "tangential_most", "N", 1, "the largest" },
+    { 0 },
+};
+
+struct sums {
+    int64_t contacts, sliding, rough;
+    double mobilised, tangential, limit, normal, normal_most, tangential_most;
+};
+
+static void add(struct sums *m, const struct snapshot *s, int64_t i)
+{
+    double fn = normal(s, i), ft = tangential(s, i), part = mobilised(s, i);
+    m->contacts++, m->sliding += s->s->found[i].status == SLIDES;
+    m->normal += fn, m->tangential += ft, m->limit += s->s->c[i].mu * fn;
+    m->normal_most = fmax(m->normal_most, fn), m->tangential_most = fmax(m->tangential_most, ft);
+    if (part >= 0) m->rough++, m->mobilised += part;
+}
+
+static int of(struct table *t, const struct snapshot *s, struct why *why)
+{
+    struct sums m = { 0 };
+    double square = 0, *at = table_row(t, why);
+    if (!at) return why->status;
+    for (int64_t i = 0; i < s->s->n; i++)
+        if (pushes(s, i)) add(&m, s, i);
+    double n = (double)m.contacts, mean = m.normal / n;
+    for (int64_t i = 0; i < s->s->n; i++)
+        if (pushes(s, i)) square += (normal(s, i) - mean) * (normal(s, i) - mean);
+    put(&at, n), put(&at, (double)m.sliding);
+    if (!m.contacts) {
+        table_null(t, "no contact pushes");
+        return 0;
+    }
+    if (!m.rough) table_null(t, "no contact has friction");
+    put(&at, m.rough ? m.mobilised / (double)m.rough : NAN);
+    put(&at, m.rough ? m.tangential / m.limit : NAN);
+    put(&at, mean), put(&at, m.normal_most), put(&at, sqrt(square / n) / mean);
+    put(&at, m.tangential / n), put(&at, m.tangential_most);
+    return 0;
+}
+
+const struct measure measure_friction = {
+    .name = "friction",
+    .help = "forces, and how much of friction is used",
+    .quantity = quantities,
+    .usual = true,
+    .needs = NEEDS_FORCES,
+    .of = of,
+};
+
+/* ---- distributions ---- */
+
+/* Rows of a histogram of what value() says of the contacts that push; over its mean where `by_mean`,
+   up to `most`, 0: the largest */
+static int distribution(struct table *t, const struct snapshot *s,
+                        double (*value)(const struct snapshot *, int64_t), bool by_mean,
+                        double most, struct why *why)
+{
+    double *x = malloc(((size_t)s->s->n + 1) * sizeof *x), sum = 0, largest = 0;
+    int64_t n = 0;
+    if (!x) return why_set(why, EX_SOFTWARE, "no memory for a distribution");
+    for (int64_t i = 0; i < s->s->n; i++) {
+        double v = pushes(s, i) ? value(s, i) : NAN;
+        if (v >= 0) x[n++] = v, sum += v, largest = fmax(largest, v);
+    }
+    double mean = n ? sum / (double)n : 0, unit = by_mean ? mean : 1;
+    if (!(mean > 0) || !isfinite(sum)) {
+        table_null(t, n ? "all are zero" : "no contact pushes");
+        free(x);
+        return 0;
+    }
+    for (int64_t i = 0; i < n; i++) {
+        x[i] /= unit;
+        if (most > 0) x[i] = fmin(x[i], most); // rounding
+    }
+    histogram_rows(t, x, n, most > 0 ? most : largest / unit, s->asked->bins, why);
+    free(x);
+    return why->status;
+}
+
+static const struct quantity of_force[] = { HISTOGRAM_QUANTITIES("1", "in mean forces"), { 0 } };
+static const struct quantity of_part[] = { HISTOGRAM_QUANTITIES("1", "|f_t| / (mu f_n)"), { 0 } };
+
+static int of_normal(struct table *t, const struct snapshot *s, struct why *why)
+{
+    return distribution(t, s, normal, true, 0, why);
+}
+static int of_tangential(struct table *t, const struct snapshot *s, struct why *why)
+{
+    return distribution(t, s, tangential, true, 0, why);
+}
+static int of_mobilised(struct table *t, const struct snapshot *s, struct why *why)
+{
+    return distribution(t, s, mobilised, false, 1, why);
+}
+
+const struct measure measure_normal_forces = {
+    .name = "normal_forces",
+    .help = "distribution of normal forces over their mean",
+    .quantity = of_force,
+    .list = true,
+    .needs = NEEDS_FORCES,
+    .of = of_normal,
+};
+
+const struct measure measure_tangential_forces = {
+    .name = "tangential_forces",
+    .help = "distribution of tangential forces over their mean",
+    .quantity = of_force,
+    .list = true,
+    .needs = NEEDS_FORCES,
+    .of = of_tangential,
+};
+
+const struct measure measure_mobilised = {
+    .name = "mobilised",
+    .help = "distribution of the part of friction that is used",
+    .quantity = of_part,
+    .list = true,
+    .needs = NEEDS_FORCES,
+    .of = of_mobilised,
+};

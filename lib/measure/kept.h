@@ -1,0 +1,29 @@
+/* measure/kept.h: what is remembered of a frame, for measures of what happens between frames. */
+#ifndef NSD_KEPT_H
+#define NSD_KEPT_H
+
+#include "bodies/packing.h"
+
+struct kept {
+    int64_t step;
+    double t; /* s */
+    int64_t n;
+    struct kept_body {
+        int32_t id;
+        double mass; /* kg */
+        vec3 x;      /* m: unwrapped, where the cell repeats: the way since it was built */
+    } * body;        /* [n] sorted by id */
+};
+
+/* k = the packing now, in place of what was kept; all zero to begin with. Returns 0 or EX_SOFTWARE. */
+int kept_set(struct kept *k, const struct packing *p, struct why *why);
+void kept_free(struct kept *k);
+/* The body with this id; NULL: it was not there. */
+const struct kept_body *kept_find(const struct kept *k, int32_t id);
+
+/* m: where body i is, with the edges added that were taken off it */
+vec3 kept_place(const struct packing *p, int64_t i);
+/* m: from the kept place to the present one, the shortest among images where the cell repeats */
+vec3 kept_way(const struct packing *p, vec3 from, vec3 to);
+
+#endif

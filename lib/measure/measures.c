@@ -1,0 +1,52 @@
+#include "measure/measures.h"
+
+#include <math.h>
+#include <string.h>
+
+static const struct measure *const measures[] = {
+    &measure_fraction,    &measure_coordination,  &measure_contact_numbers,
+    &measure_fabric,      &measure_stress,        &measure_boundaries,
+    &measure_energy,      &measure_temperature,   &measure_profile,
+    &measure_friction,    &measure_normal_forces, &measure_tangential_forces,
+    &measure_mobilised,   &measure_pairs,         &measure_sizes,
+    &measure_segregation, &measure_displacement,  &measure_surface,
+    &measure_flux,        &measure_grains,        NULL,
+};
+
+const struct measure *measure_at(int k)
+{
+    return measures[k];
+}
+
+const struct measure *measure_named(const char *name, size_t n)
+{
+    for (int k = 0; measures[k]; k++)
+        if (!strncmp(measures[k]->name, name, n) && !measures[k]->name[n]) return measures[k];
+    return NULL;
+}
+
+/* Why this cannot be measured here, or NULL */
+static const char *lacks(const struct snapshot *s, enum needs needs)
+{
+    if (!s->p->n) return "there are no bodies";
+    if (needs == NEEDS_BEFORE && !s->before) return "there is no frame before";
+    if ((needs == NEEDS_CONTACTS || needs == NEEDS_FORCES) && !s->s)
+        return "the document has no contacts: nsd-step --contacts keeps them";
+    if (needs == NEEDS_FORCES && !s->s->found && s->s->n)
+        return "the contacts are not solved: nsd-solve comes before";
+    return NULL;
+}
+
+int measure_run(struct table *t, const struct measure *m, const struct snapshot *s, struct why *why)
+{
+    table_init(t, m->quantity);
+    const char *lack = lacks(s, m->needs);
+    if (lack) {
+        table_null(t, "%s", lack);
+        return 0;
+    }
+    if (m->of(t, s, why)) return why->status;
+    for (int64_t i = 0; i < t->rows * t->width; i++)
+        if (!isfinite(t->x[i])) table_null(t, "beyond the range of numbers");
+    return 0;
+}

@@ -1,0 +1,172 @@
+/*
+ * measure/pairs.c: the pair correlation g(r): how many bodies there are at a distance, over how many
+ * there would be were they scattered evenly. Pairs that a border leaves out are made up for by the
+ * part of all directions in which a partner is inside [Ohser 1983, the isotropised set covariance].
+ */
+#include "measure/measures.h"
+#include "measure/near.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const struct quantity quantities[] = {
+    { "from", "m", 1, "distance of centres: where the bin begins" },
+    { "to", "m", 1, "where it ends" },
+    { "pairs", "1", 1, "of bodies, each once" },
+    { "g", "1", 1, "over those of bodies scattered evenly" },
+    { 0 },
+};
+
+/* What is looked at: the centres, and images of them */
+struct scatter {
+    int64_t n, seekers, room; /* the first of x are the bodies, others images */
+    vec3 *x;
+    double size[3]; /* m: of the window along axes that do not repeat; INFINITY: it repeats */
+    double volume;
+};
+
+static bool add_point(struct scatter *a, vec3 x)
+{
+    if (a->n == a->room) {
+        int64_t room = 2 * a->room + 1;
+        vec3 *more = realloc(a->x, (size_t)room * sizeof *more);
+        if (!more) return false;
+        a->x = more, a->room = room;
+    }
+    a->x[a->n++] = x;
+    return true;
+}
+
+/* All images within `reach` of the cell; those of the bodies themselves, brought into it, first */
+static bool add_images(struct scatter *a, const struct period *m, double reach)
+{
+    int most[3] = { 0, 0, 0 };
+    for (int64_t i = 0; i < a->seekers; i++) {
+        vec3 d = v3_sub(a->x[i], m->cell->origin);
+        for (int k = 0; k < 3; k++)
+            if (m->cell->repeats[k])
+                a->x[i] = v3_axpy(a->x[i], -floor(v3_dot(m->inverse[k], d)), m->edge[k]);
+    }
+    for (int k = 0; k < 3; k++)
+        if (m->cell->repeats[k]) most[k] = (int)ceil(reach * v3_norm(m->inverse[k]));
+    for (int64_t i = 0; i < a->seekers; i++)
+        for (int u = -most[0]; u <= most[0]; u++)
+            for (int v = -most[1]; v <= most[1]; v++)
+                for (int w = -most[2]; w <= most[2]; w++) {
+                    if (!u && !v && !w) continue;
+                    vec3 x = v3_axpy(a->x[i], u, m->edge[0]);
+                    x = v3_axpy(v3_axpy(x, v, m->edge[1]), w, m->edge[2]);
+                    bool near = true;
+                    for (int k = 0; k < 3; k++) {
+                        double at = v3_dot(m->inverse[k], v3_sub(x, m->cell->origin));
+                        double margin = reach * v3_norm(m->inverse[k]);
+                        if (m->cell->repeats[k]) near = near && at > -margin && at < 1 + margin;
+                    }
+                    if (near && !add_point(a, x)) return false;
+                }
+    return true;
+}
+
+static void window(struct scatter *a, const struct snapshot *s)
+{
+    const struct region *r = &s->region;
+    double lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY };
+    for (int64_t i = 0; i < a->n; i++) {
+        const double x[3] = { a->x[i].x, a->x[i].y, a->x[i].z };
+        for (int k = 0; k < 3; k++) lo[k] = fmin(lo[k], x[k]), hi[k] = fmax(hi[k], x[k]);
+    }
+    a->volume = r->period.volume;
+    for (int k = 0; k < s->p->dim; k++) {
+        a->size[k] = r->all ? hi[k] - lo[k] : r->hi[k] - r->lo[k];
+        if (r->period.any && s->p->cell.repeats[k])
+            a->size[k] = INFINITY;
+        else
+            a->volume *= a->size[k];
+    }
+}
+
+/* m^3, m^2: the integral from 0 to r of the surface of a sphere of that radius, times the part of its
+   directions in which the window reaches as far */
+static double expected(const struct scatter *a, int dim, double r)
+{
+    const double b[3] = { 1 / a->size[0], 1 / a->size[1], dim == 3 ? 1 / a->size[2] : 0 };
+    double one = b[0] + b[1] + b[2], two = b[0] * b[1] + b[1] * b[2] + b[2] * b[0];
+    if (dim == 2)
+        return 2 * M_PI * r * r * (0.5 - 2 * r * one / (3 * M_PI) + r * r * two / (4 * M_PI));
+    return 4 * M_PI * r * r * r *
+           (1.0 / 3 - r * one / 8 + 2 * r * r * two / (15 * M_PI) -
+            r * r * r * b[0] * b[1] * b[2] / (24 * M_PI));
+}
+
+/* Counts by distance, each pair twice; false: bodies crowd */
+static bool count(const struct scatter *a, const struct near *g, int64_t *counts, int64_t bins)
+{
+    int64_t looked = 0, most = ((int64_t)1 << 26) + 20000 * a->seekers;
+    for (int64_t i = 0; i < a->seekers && looked <= most; i++)
+        looked += near_count(g, a->x[i], counts, bins);
+    return looked <= most;
+}
+
+static void fill(struct table *t, const struct snapshot *s, const struct scatter *a, double reach,
+                 const int64_t *counts, struct why *why)
+{
+    double bins = (double)s->asked->bins, n = (double)a->seekers, least = INFINITY;
+    for (int k = 0; k < s->p->dim; k++) least = fmin(least, a->size[k]);
+    double others = isinf(least) ? n : n - 1; // a body's own images are partners, too
+    if (reach > least) table_null(t, "distances beyond the smallest side of the region");
+    for (int64_t k = 0; k < s->asked->bins; k++) {
+        double from = reach * (double)k / bins, to = reach * (double)(k + 1) / bins;
+        double even =
+            n * others / a->volume * (expected(a, s->p->dim, to) - expected(a, s->p->dim, from));
+        double *at = table_row(t, why);
+        if (!at) return;
+        put(&at, from), put(&at, to), put(&at, 0.5 * (double)counts[k]);
+        put(&at, to <= least ? (double)counts[k] / even : NAN);
+    }
+}
+
+static const char *impossible(const struct snapshot *s, const struct scatter *a, double reach)
+{
+    const struct period *m = &s->region.period;
+    if (a->seekers < 2) return "there are less than two bodies";
+    if (!(a->volume > 0)) return "the bodies have no extent along an axis";
+    for (int k = 0; m->any && k < 3; k++)
+        if (m->cell->repeats[k] && reach * v3_norm(m->inverse[k]) > 2)
+            return "distances beyond two of the cell's edges";
+    if (m->any && !s->region.all) return "a box in a cell that repeats";
+    return NULL;
+}
+
+static int of(struct table *t, const struct snapshot *s, struct why *why)
+{
+    const struct packing *p = s->p;
+    struct scatter a = { .size = { INFINITY, INFINITY, INFINITY } };
+    struct near g = { 0 };
+    int64_t *counts = calloc((size_t)s->asked->bins, sizeof *counts);
+    double reach = s->asked->distance;
+    bool room = counts;
+    for (int64_t i = 0; i < p->n; i++) {
+        if (!(s->asked->distance > 0)) reach += 6 * p->radius[i] / (double)p->n;
+        if (region_holds(&s->region, p->x[i])) room = room && add_point(&a, p->x[i]);
+    }
+    a.seekers = a.n;
+    window(&a, s);
+    const char *reason = impossible(s, &a, reach);
+    if (!reason && room && s->region.period.any) room = add_images(&a, &s->region.period, reach);
+    if (!reason && room) room = near_init(&g, a.x, a.n, reach);
+    if (!reason && room && !count(&a, &g, counts, s->asked->bins)) reason = "bodies crowd";
+    if (reason)
+        table_null(t, "%s", reason);
+    else if (room)
+        fill(t, s, &a, reach, counts, why);
+    near_free(&g), free(a.x), free(counts);
+    return room ? why->status : why_set(why, EX_SOFTWARE, "no memory for pairs of bodies");
+}
+
+const struct measure measure_pairs = {
+    .name = "pairs",
+    .help = "pair correlation g(r)",
+    .quantity = quantities,
+    .list = true,
+    .of = of,
+};

@@ -1,0 +1,89 @@
+/* measure/profile.c: layers or shells: how full they are, how they move, their stress. */
+#include "measure/measures.h"
+#include "measure/stress.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const struct quantity quantities[] = {
+    { "from", "m", 1, "where the layer begins, or the shell's inner radius" },
+    { "to", "m", 1, "where it ends" },
+    { "at", "m", 1, "its middle" },
+    { "bodies", "1", 1, "that move, their centres in it" },
+    { "fraction", "1", 1, "solid volume over volume" },
+    { "velocity", "m/s", 3, "mean, by mass" },
+    { "spin", "rad/s", 3, "mean, by moment of inertia" },
+    { "temperature", "m2/s2", 1, "mean square of a velocity's component about the mean" },
+    { "p", "Pa", 1, "mean pressure (2D: N/m)" },
+    { "stress", "Pa", 9, "by contacts and motion, compression positive (2D: N/m)" },
+    { 0 },
+};
+
+static double solid(const struct packing *p, const struct region *r)
+{
+    double sum = 0;
+    for (int64_t i = 0; i < p->n; i++) sum += region_ball(r, p->x[i], p->radius[i]);
+    return sum;
+}
+
+/* The whole velocity: the flow that moving_of leaves out comes back, by the layer's bodies. */
+static vec3 velocity(const struct packing *p, const struct region *r, double mass)
+{
+    vec3 sum = v3(0, 0, 0);
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->mass[i] > 0 && region_holds(r, p->x[i])) sum = v3_axpy(sum, p->mass[i], p->v[i]);
+    return v3_scale(1 / mass, sum);
+}
+
+static int add_layer(struct table *t, const struct snapshot *s, const struct region *r, double from,
+                     double to, struct why *why)
+{
+    struct moving m;
+    double *at = table_row(t, why);
+    if (!at) return why->status;
+    moving_of(&m, s, r);
+    put(&at, from), put(&at, to), put(&at, 0.5 * (from + to)), put(&at, (double)m.bodies);
+    put(&at, solid(s->p, r) / r->volume);
+    if (m.bodies) {
+        double *next = at;
+        put_vec(&next, r->period.any ? velocity(s->p, r, m.mass) : m.velocity);
+        put_vec(&next, m.spin), put(&next, tensor_trace(&m.kinetic) / s->p->dim / m.mass);
+    } else {
+        table_null(t, "layers without bodies have no velocity");
+    }
+    at += 7;
+    if (!s->s || (!s->s->found && s->s->n)) {
+        table_null(t, "no stress: the document has no solved contacts");
+        return 0;
+    }
+    struct tensor T = stress_contacts(s, r);
+    for (int k = 0; k < 9; k++) T.x[k / 3][k % 3] += m.kinetic.x[k / 3][k % 3];
+    tensor_scale(&T, 1 / r->volume);
+    put(&at, tensor_trace(&T) / s->p->dim), put_tensor(&at, &T);
+    return 0;
+}
+
+static int of(struct table *t, const struct snapshot *s, struct why *why)
+{
+    const char *reason = NULL;
+    int64_t n = s->asked->layers;
+    int axis = snapshot_axis(s);
+    struct region *layer = calloc((size_t)n + 1, sizeof *layer);
+    if (!layer) return why_set(why, EX_SOFTWARE, "no memory for layers");
+    if (!snapshot_layers(s, layer, &reason)) table_null(t, "%s", reason);
+    for (int64_t i = 0; !reason && i < n; i++) {
+        double from = axis == 3 ? layer[i].inner : layer[i].lo[axis];
+        double to = axis == 3 ? layer[i].outer : layer[i].hi[axis];
+        if (add_layer(t, s, &layer[i], from, to, why)) break;
+    }
+    free(layer);
+    return why->status;
+}
+
+const struct measure measure_profile = {
+    .name = "profile",
+    .help = "layers: fraction, velocity, temperature, stress",
+    .quantity = quantities,
+    .list = true,
+    .of = of,
+};

@@ -1,0 +1,56 @@
+/*
+ * measure/region.h: where a measure looks: all there is, a box, a layer, a shell. What lies only
+ * partly in a region counts by its part: balls by their volume, forces by the part of the branch
+ * vector along which they act, which is what coarse graining with the region's indicator function
+ * gives [Goldhirsch 2010].
+ *
+ * Where the cell repeats, a region sees images.
+ */
+#ifndef NSD_REGION_H
+#define NSD_REGION_H
+
+#include "bodies/packing.h"
+#include "measure/period.h"
+
+struct region {
+    int dim;
+    bool all;            /* everything is in it, wherever it is */
+    double lo[3], hi[3]; /* m: a box; infinite: no bound. Of `all`: how far everything reaches */
+    double inner, outer; /* m: distances from the line along z through centre; outer 0: no shell */
+    vec3 centre;         /* m */
+    double volume;       /* m^3, m^2 in the plane */
+    struct period period;
+};
+
+/*
+ * All there is: along an edge that repeats the cell, along others from wall to wall where a wall is
+ * upright to the axis, else as far as bodies reach. The volume is 0 without bodies.
+ */
+void region_whole(struct region *r, const struct packing *p);
+/* The box from lo to hi (m) */
+void region_box(struct region *r, const struct packing *p, const double lo[3], const double hi[3]);
+/*
+ * n layers of a region along an axis; n shells of the same thickness around the line along z through
+ * centre, out to where `in` ends. False, with a reason, where that is not possible.
+ */
+bool region_layers(struct region *layer, int64_t n, const struct region *in,
+                   const struct packing *p, int axis, const char **reason);
+bool region_shells(struct region *shell, int64_t n, const struct region *in,
+                   const struct packing *p, vec3 centre, const char **reason);
+
+/* The images of a point that are within a margin (m) of the region, one after another; where nothing
+   repeats, or the region holds all, the point itself. region_next() is false after the last. */
+struct region_walk {
+    int from[3], to[3], at[3]; /* edges */
+};
+struct region_walk region_walk(const struct region *r, vec3 x, double margin);
+bool region_next(struct region_walk *w, const struct region *r, vec3 x, vec3 *image);
+
+/* How many images of the point are in the region: 0 or 1 where nothing repeats */
+int region_holds(const struct region *r, vec3 x);
+/* m^3, m^2: the volume in the region of a ball of this radius (m) at x */
+double region_ball(const struct region *r, vec3 x, double radius);
+/* The part in the region of the way from x to x + l, 0 to 1; 1 where it holds all */
+double region_way(const struct region *r, vec3 x, vec3 l);
+
+#endif

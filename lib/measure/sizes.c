@@ -1,0 +1,144 @@
+/* measure/sizes.c: where large and small bodies are. */
+#include "measure/ball_part.h"
+#include "measure/counts.h"
+#include "measure/measures.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const struct quantity quantities[] = {
+    { "from", "m", 1, "where the layer begins, or the shell's inner radius" },
+    { "to", "m", 1, "where it ends" },
+    { "bodies", "1", 1, "that move, their centres in it" },
+    { "radius", "m", 1, "their mean" },
+    { "least", "m", 1, "the smallest" },
+    { "most", "m", 1, "the largest" },
+    { "large", "1", 1, "part of their volume in bodies larger than the mean of all" },
+    { 0 },
+};
+
+/* m: of all that move, in the region */
+static double mean_radius(const struct snapshot *s)
+{
+    double sum = 0, n = 0;
+    for (int64_t i = 0; i < s->p->n; i++)
+        if (counts_body(s, i)) sum += s->p->radius[i], n++;
+    return n > 0 ? sum / n : NAN;
+}
+
+static int add_layer(struct table *t, const struct snapshot *s, const struct region *layer,
+                     double from, double to, double mean, struct why *why)
+{
+    double n = 0, sum = 0, least = INFINITY, most = 0, volume = 0, large = 0;
+    double *at = table_row(t, why);
+    if (!at) return why->status;
+    for (int64_t i = 0; i < s->p->n; i++) {
+        double r = s->p->radius[i], v = ball_volume(s->p->dim, r);
+        if (!(s->p->mass[i] > 0) || !region_holds(layer, s->p->x[i])) continue;
+        n++, sum += r, least = fmin(least, r), most = fmax(most, r);
+        volume += v, large += r > mean ? v : 0;
+    }
+    put(&at, from), put(&at, to), put(&at, n);
+    if (n > 0)
+        put(&at, sum / n), put(&at, least), put(&at, most), put(&at, large / volume);
+    else
+        table_null(t, "layers without bodies have no sizes");
+    return 0;
+}
+
+static int of(struct table *t, const struct snapshot *s, struct why *why)
+{
+    const char *reason = NULL;
+    int64_t n = s->asked->layers;
+    int axis = snapshot_axis(s);
+    double mean = mean_radius(s);
+    struct region *layer = calloc((size_t)n + 1, sizeof *layer);
+    if (!layer) return why_set(why, EX_SOFTWARE, "no memory for layers");
+    if (!snapshot_layers(s, layer, &reason)) table_null(t, "%s", reason);
+    for (int64_t i = 0; !reason && i < n; i++) {
+        double from = axis == 3 ? layer[i].inner : layer[i].lo[axis];
+        double to = axis == 3 ? layer[i].outer : layer[i].hi[axis];
+        if (add_layer(t, s, &layer[i], from, to, mean, why)) break;
+    }
+    free(layer);
+    return why->status;
+}
+
+const struct measure measure_sizes = {
+    .name = "sizes",
+    .help = "layers: how large their bodies are",
+    .quantity = quantities,
+    .list = true,
+    .of = of,
+};
+
+/* ---- one number for it ---- */
+
+static const struct quantity one[] = {
+    { "correlation", "1", 1, "of radius and height, -1 to 1" },
+    { "large", "m", 1, "mean height of bodies larger than the mean" },
+    { "small", "m", 1, "of the others" },
+    { "index", "1", 1, "(large - small) over the spread of heights if fully apart, -1 to 1" },
+    { 0 },
+};
+
+/* m: along up, or the asked axis */
+static double height(const struct snapshot *s, int axis, int64_t i)
+{
+    const vec3 x = s->p->x[i], d = v3_sub(x, s->asked->point);
+    return axis == 3 ? hypot(d.x, d.y) : axis == 0 ? x.x : axis == 1 ? x.y : x.z;
+}
+
+struct moments {
+    double n, r, h, rr, hh, rh;  /* sums about the means */
+    double large, small, nl, ns; /* of heights; bodies */
+};
+
+static void moments_of(struct moments *m, const struct snapshot *s, int axis)
+{
+    double r = 0, h = 0, n = 0;
+    *m = (struct moments){ 0 };
+    for (int64_t i = 0; i < s->p->n; i++)
+        if (counts_body(s, i)) r += s->p->radius[i], h += height(s, axis, i), n++;
+    if (!(n > 0)) return;
+    m->n = n, m->r = r / n, m->h = h / n;
+    for (int64_t i = 0; i < s->p->n; i++) {
+        if (!counts_body(s, i)) continue;
+        double dr = s->p->radius[i] - m->r, y = height(s, axis, i), dh = y - m->h;
+        m->rr += dr * dr, m->hh += dh * dh, m->rh += dr * dh;
+        if (dr > 1e-12 * m->r)
+            m->large += y, m->nl++;
+        else
+            m->small += y, m->ns++;
+    }
+}
+
+static int of_segregation(struct table *t, const struct snapshot *s, struct why *why)
+{
+    struct moments m;
+    double *at = table_row(t, why);
+    if (!at) return why->status;
+    if (snapshot_axis(s) >= s->p->dim && snapshot_axis(s) < 3) {
+        table_null(t, "in the plane there are no heights along z");
+        return 0;
+    }
+    moments_of(&m, s, snapshot_axis(s));
+    if (!(m.nl > 0)) {
+        table_null(t, m.n > 0 ? "all bodies have the same size"
+                              : "no body that moves is in the region");
+        return 0;
+    }
+    // fully apart and spread evenly over a height H, the two means are H/2 apart; H^2/12 is the variance
+    double large = m.large / m.nl, small = m.small / m.ns, spread = sqrt(3 * m.hh / m.n);
+    if (!(m.hh > 0)) table_null(t, "all bodies are at the same height");
+    put(&at, m.hh > 0 ? m.rh / sqrt(m.rr * m.hh) : NAN);
+    put(&at, large), put(&at, small), put(&at, m.hh > 0 ? (large - small) / spread : NAN);
+    return 0;
+}
+
+const struct measure measure_segregation = {
+    .name = "segregation",
+    .help = "whether large bodies are above small ones",
+    .quantity = one,
+    .of = of_segregation,
+};

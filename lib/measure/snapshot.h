@@ -1,0 +1,45 @@
+/*
+ * measure/snapshot.h: what measures look at: a frame's packing and its contacts, what was asked, and
+ * what is remembered of frames before.
+ */
+#ifndef NSD_SNAPSHOT_H
+#define NSD_SNAPSHOT_H
+
+#include "bodies/contact.h"
+#include "bodies/packing.h"
+#include "measure/kept.h"
+#include "measure/region.h"
+
+/* What the user asks for beside the measures' names; the same for all frames */
+struct asked {
+    bool boxed;
+    double lo[3], hi[3]; /* m: the box that measures keep to */
+    int axis;            /* of layers: 0 x, 1 y, 2 z, 3 shells around the line along z; -1: up */
+    int64_t layers;
+    vec3 point;      /* m: of torques, of shells, of the plane */
+    vec3 normal;     /* of the plane that is crossed; 0: none is asked for */
+    double radius;   /* m: of the disc in it that is crossed; INFINITY: the plane */
+    int64_t bins;    /* of histograms */
+    double distance; /* m: up to which pairs are counted; 0: three mean diameters */
+};
+
+struct snapshot {
+    const struct packing *p;
+    const struct contacts *s; /* NULL: the document has none; s->found NULL: not solved */
+    bool moved;               /* the contacts have led to these positions, not from them */
+    const struct asked *asked;
+    const struct kept *first, *before; /* frames before this one; NULL: it is the first */
+    struct region whole;               /* all there is, and its volume */
+    struct region region;              /* the box, or else the whole */
+};
+
+/* s = a frame. Regions are found; the rest is borrowed. */
+void snapshot_init(struct snapshot *s, const struct packing *p, const struct contacts *contacts,
+                   bool moved, const struct asked *asked);
+
+/* The layers asked for, layer[asked->layers]; false, with a reason, where they are not possible. */
+bool snapshot_layers(const struct snapshot *s, struct region *layer, const char **reason);
+/* The axis of layers: the asked one, or the one nearest to up */
+int snapshot_axis(const struct snapshot *s);
+
+#endif

@@ -1,0 +1,47 @@
+#include "measure/step_motion.h"
+
+#include "bodies/move.h"
+#include "measure/branch.h"
+
+int step_motion_init(struct step_motion *m, const struct snapshot *s, struct why *why)
+{
+    *m = (struct step_motion){ .p = s->p };
+    if (packing_copy(&m->other, s->p, why)) return why->status;
+    return (s->moved ? move_back : move_step)(&m->other, s->s, why);
+}
+
+void step_motion_free(struct step_motion *m)
+{
+    packing_free(&m->other);
+}
+
+/* m: the lever arm that the step has used [bodies/kinematics.h] */
+static double arm_b(const struct packing *p, const struct contact *c)
+{
+    return c->a < 0 && p->overlap > OVERLAP_KEEP ? p->radius[c->b] : branch_b(p, c);
+}
+
+static vec3 boundary(const struct packing *p, const struct contact *c)
+{
+    return wall_velocity(&p->wall[-1 - c->a], c->x);
+}
+
+/* m/s: of b relative to a, at the contact, in space */
+static vec3 relative(const struct packing *p, const struct contact *c)
+{
+    vec3 b = v3_axpy(p->v[c->b], -arm_b(p, c), v3_cross(p->w[c->b], c->n));
+    vec3 a = c->a < 0 ? boundary(p, c)
+                      : v3_axpy(p->v[c->a], branch_a(p, c), v3_cross(p->w[c->a], c->n));
+    return v3_add(v3_sub(b, a), cell_shift(p->cell.rate, c->shift));
+}
+
+void step_motion_at(const struct step_motion *m, const struct contact *c, double u[3])
+{
+    vec3 v = v3_scale(0.5, v3_add(relative(m->p, c), relative(&m->other, c)));
+    u[0] = v3_dot(v, c->n), u[1] = v3_dot(v, c->t1), u[2] = v3_dot(v, contact_t2(c));
+}
+
+vec3 step_motion_boundary(const struct step_motion *m, const struct contact *c)
+{
+    return v3_scale(0.5, v3_add(boundary(m->p, c), boundary(&m->other, c)));
+}

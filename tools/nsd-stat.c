@@ -1,0 +1,359 @@
+/* nsd-stat: numbers of frames: fraction, stress, forces, profiles, distributions; and fields. */
+#include "cli/cli.h"
+#include "cli/tool_filter.h"
+#include "export/vti.h"
+#include "io/fields_write.h"
+#include "io/reader.h"
+#include "measure/measures.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *names, *box, *layers, *point, *plane, *steps, *fields_to;
+static bool list, tsv, last, grains;
+static double width, spacing;
+static struct asked asked = {
+    .axis = -1,
+    .layers = 20, // a layer then has a few grains where the height has a hundred
+    .bins = 50,   // enough contacts in a bin where there are a thousand
+    .radius = INFINITY,
+};
+
+static const char *usual_layers(const void *to)
+{
+    (void)to;
+    return "20 along gravity";
+}
+
+static const struct cli_option own[] = {
+    { CLI_TEXT, 'm', "measures", &names, "A,B,...",
+      .help = "these measures, or all [the usual ones]" },
+    { CLI_FLAG, 0, "list", &list, .help = "instead, all measures with their numbers and units" },
+    { CLI_FLAG, 'g', "grains", &grains, .help = "the measure grains as a table, for nsd-view -V" },
+    { CLI_FLAG, 't', "tsv", &tsv, .help = "a table, columns separated by tabs [JSON lines]" },
+    { CLI_TEXT, 'b', "box", &box, "X0,X1,...",
+      .help = "only in this box; 2D: four numbers [m, all]" },
+    { CLI_TEXT, 0, "layers", &layers, "AXIS:N", .usual = usual_layers,
+      .help = "N layers along x, y or z; r: shells around z" },
+    { CLI_TEXT, 0, "point", &point, "X,Y,Z", .help = "of torques, shells, the plane [m, 0,0,0]" },
+    { CLI_TEXT, 0, "plane", &plane, "NX,NY,NZ",
+      .help = "normal of the plane of flux, through the point" },
+    { CLI_ABOVE, 0, "radius", &asked.radius, "M",
+      .help = "of a disc in it around the point, an orifice [m, none]", .max = INFINITY },
+    { CLI_INT, 0, "bins", &asked.bins, "N", .help = "of distributions [50]", .min = 1, .max = 1e6 },
+    { CLI_ABOVE, 0, "distance", &asked.distance, "M",
+      .help = "of pairs, at most [m, three mean diameters]", .max = 1e300 },
+    { CLI_TEXT, 'f', "fields", &fields_to, "FILE",
+      .help = "also coarse-grained fields: FILE.h5, or 'f%05d.vti'" },
+    { CLI_ABOVE, 0, "width", &width, "M", .help = "w of their Gaussian [m, the mean diameter]",
+      .max = 1e300 },
+    { CLI_ABOVE, 0, "spacing", &spacing, "M",
+      .help = "of their grid [m, the mean diameter, at most 32 points]", .max = 1e300 },
+    { CLI_FLAG, 'l', "last", &last, .help = "only the very last frame" },
+    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
+    { 0 },
+};
+static const struct cli_option *const tables[] = { own, NULL };
+
+const struct cli_tool tool = {
+    "nsd-stat", "[FILE ...]",
+    "Measures frames: a line of JSON for each, in SI units, forces in N; what cannot be measured "
+    "is\n"
+    "null, and \"why\" says why.",
+    tables,
+    "  nsd-stat out.h5 | jq -r '[.time, .fraction.fraction, .energy.kinetic] | @tsv'\n"
+    "  nsd-stat --last -m profile --tsv out.h5 > profile.tsv\n"
+    "  nsd-stat --last -f fields.vti out.h5\n"
+};
+
+/* ---- what is asked ---- */
+
+enum { MOST_MEASURES = 32 };
+
+static const struct measure *chosen[MOST_MEASURES + 1];
+
+/* As many finite numbers as there are, from `least` to `most`, by commas; returns how many. */
+static int numbers(const char *option, const char *text, double *x, int least, int most)
+{
+    const char *s = text;
+    char *end;
+    for (int k = 0; k < most; k++, s = end + 1) {
+        x[k] = strtod(s, &end);
+        if (end == s || !isfinite(x[k])) break;
+        if (!*end && k + 1 >= least) return k + 1;
+        if (*end != ',') break;
+    }
+    die_usage("--%s: '%s' is not %d numbers with commas between", option, text, most);
+}
+
+static void choose(const struct measure *m)
+{
+    int k = 0;
+    while (chosen[k] && chosen[k] != m) k++;
+    if (k < MOST_MEASURES) chosen[k] = m;
+}
+
+static void choose_named(const char *text)
+{
+    for (const char *s = text;; s++) {
+        size_t n = strcspn(s, ",");
+        const struct measure *m = measure_named(s, n);
+        if (n == 3 && !strncmp(s, "all", n))
+            for (int k = 0; measure_at(k); k++) choose(measure_at(k));
+        else if (!m)
+            die_usage("--measures: no '%.*s' (--list names them)", (int)n, s);
+        else
+            choose(m);
+        s += n;
+        if (!*s) return;
+    }
+}
+
+static void choose_all(void)
+{
+    if (grains && names) die_usage("--grains and --measures exclude each other");
+    if (grains) tsv = true, choose(measure_named("grains", 6));
+    if (names) choose_named(names);
+    for (int k = 0; !names && !grains && measure_at(k); k++)
+        if (measure_at(k)->usual) choose(measure_at(k));
+    bool any_list = false;
+    for (int k = 0; chosen[k]; k++) any_list = any_list || chosen[k]->list;
+    if (tsv && any_list && chosen[1])
+        die_usage("--tsv: a table has one measure of many rows, or many of one row");
+}
+
+static void parse_layers(void)
+{
+    const char axes[] = "xyzr", *axis = strchr(axes, *layers);
+    char *end = NULL;
+    double n = *layers && layers[1] == ':' ? strtod(layers + 2, &end) : 0;
+    if (!*layers || !axis || !end || *end || !(n >= 1 && n <= 1e6) || n != floor(n))
+        die_usage("--layers: '%s' is not x:N, y:N, z:N or r:N", layers);
+    asked.axis = (int)(axis - axes), asked.layers = (int64_t)n;
+}
+
+static void parse(void)
+{
+    double x[6] = { 0 };
+    if (layers) parse_layers();
+    if (point) {
+        numbers("point", point, x, 2, 3);
+        asked.point = v3(x[0], x[1], x[2]);
+    }
+    if (plane) {
+        double n[3] = { 0, 0, 0 };
+        numbers("plane", plane, n, 2, 3);
+        vec3 normal = v3(n[0], n[1], n[2]);
+        double size = v3_norm(normal);
+        if (!(size > 0 && size < INFINITY)) die_usage("--plane: '%s' is no direction", plane);
+        asked.normal = v3_scale(1 / size, normal);
+    }
+    if (box) {
+        double b[6] = { 0, 0, 0, 0, -INFINITY, INFINITY };
+        int n = numbers("box", box, b, 4, 6);
+        if (n == 5) die_usage("--box: '%s' has five numbers", box);
+        for (int k = 0; k < 3; k++) asked.lo[k] = b[2 * k], asked.hi[k] = b[2 * k + 1];
+        for (int k = 0; k < n / 2; k++)
+            if (!(asked.lo[k] < asked.hi[k])) die_usage("--box: '%s' is empty", box);
+        asked.boxed = true;
+    }
+}
+
+/* ---- output ---- */
+
+static void show_list(void)
+{
+    for (int k = 0; measure_at(k); k++) {
+        const struct measure *m = measure_at(k);
+        printf("%s%s: %s%s\n", k ? "\n" : "", m->name, m->help,
+               m->usual  ? " (usual)"
+               : m->list ? " (many rows)"
+                         : "");
+        for (const struct quantity *q = m->quantity; q->name; q++) {
+            const char *kind = q->width == 3 ? " x, y, z" : q->width == 9 ? " 3 x 3" : "";
+            printf("  %-19s %-6s %s%s%s\n", q->name, strcmp(q->unit, "1") ? q->unit : "", q->help,
+                   *q->help && *kind ? "," : "", kind);
+        }
+    }
+}
+
+static void head_tsv(void)
+{
+    fputs("step\ttime", stdout);
+    for (int k = 0; chosen[k]; k++)
+        table_names(stdout, chosen[k]->quantity, chosen[1] ? chosen[k]->name : NULL);
+    putchar('\n');
+}
+
+static void show_tsv(const struct packing *p, const struct table *t)
+{
+    int64_t rows = chosen[0]->list ? t[0].rows : 1;
+    static bool said[MOST_MEASURES];
+    for (int64_t i = 0; i < rows; i++) {
+        printf("%" PRId64 "\t", p->step);
+        print_number(stdout, p->t, "nan");
+        for (int k = 0; chosen[k]; k++) table_numbers(stdout, &t[k], i);
+        putchar('\n');
+    }
+    for (int k = 0; chosen[k]; k++)
+        if (*t[k].null && !said[k]) {
+            said[k] = true;
+            warn("%s: step %" PRId64 ": %s", chosen[k]->name, p->step, t[k].null);
+        }
+}
+
+static void show_json(const struct snapshot *s, const struct table *t)
+{
+    const char *mark = ",\"why\":{";
+    printf("{\"step\":%" PRId64 ",\"time\":", s->p->step);
+    print_number(stdout, s->p->t, "null");
+    printf(",\"bodies\":%" PRId64 ",\"contacts\":", s->p->n);
+    s->s ? printf("%" PRId64, s->s->n) : printf("null");
+    for (int k = 0; chosen[k]; k++) {
+        printf(",\"%s\":", chosen[k]->name);
+        table_json(stdout, &t[k], chosen[k]->list);
+    }
+    for (int k = 0; chosen[k]; k++)
+        if (*t[k].null) printf("%s\"%s\":\"%s\"", mark, chosen[k]->name, t[k].null), mark = ",";
+    printf("%s}\n", *mark == ',' && mark[1] ? "" : "}");
+}
+
+/* ---- fields ---- */
+
+static struct {
+    struct fields fields;
+    struct fields_file *file;
+    int64_t frames;
+} coarse;
+
+static bool ends(const char *name, const char *ending)
+{
+    size_t n = strlen(name), m = strlen(ending);
+    return n > m && !strcmp(name + n - m, ending);
+}
+
+/* The %0Nd, N from 1 to 9, of a series' name; NULL: it has no percent sign */
+static const char *number_in(const char *name)
+{
+    const char *at = strchr(name, '%');
+    if (!at) return NULL;
+    if (at[1] != '0' || at[2] < '1' || at[2] > '9' || at[3] != 'd' || strchr(at + 1, '%'))
+        die_usage("--fields: '%s' has not just one %%0Nd, N from 1 to 9", name);
+    return at;
+}
+
+static void write_vti(const struct packing *p)
+{
+    const char *at = number_in(fields_to);
+    char name[4096];
+    if (!at && coarse.frames)
+        die_usage("--fields: a .vti holds one frame: --last, or 'f%%05d.vti'");
+    if (at)
+        snprintf(name, sizeof name, "%.*s%0*lld%s", (int)(at - fields_to), fields_to, at[2] - '0',
+                 (long long)coarse.frames, at + 4);
+    else
+        snprintf(name, sizeof name, "%s", fields_to);
+    FILE *out = fopen(name, "w");
+    if (!out) die(EX_IOERR, "%s: %s", name, strerror(errno));
+    vti_write(out, &coarse.fields, p->step, p->t);
+    if (ferror(out) | fclose(out)) die(EX_IOERR, "%s: not written (disk full?)", name);
+}
+
+static void add_fields(const struct snapshot *s, struct why *why)
+{
+    bool document = ends(fields_to, ".h5");
+    // the grid of the first frame is that of all
+    if (!coarse.frames && fields_init(&coarse.fields, s, width, spacing, why)) return;
+    fields_set(&coarse.fields, s);
+    if (!document) {
+        write_vti(s->p);
+    } else {
+        if (!coarse.frames &&
+            fields_file_open(&coarse.file, fields_to, &coarse.fields, cli_history(), why))
+            return;
+        if (fields_file_add(coarse.file, &coarse.fields, s->p->step, s->p->t, why)) return;
+    }
+    coarse.frames++;
+}
+
+/* ---- frames ---- */
+
+static struct kept first, before;
+
+/* Does any measure that is asked for look at earlier frames? */
+static bool remembers(void)
+{
+    for (int k = 0; chosen[k]; k++)
+        if (chosen[k]->needs == NEEDS_BEFORE) return true;
+    return false;
+}
+
+static void show(const struct frame *f, const char *where, int64_t k, struct why *why)
+{
+    struct snapshot s;
+    struct table t[MOST_MEASURES] = { 0 };
+    tool_wants_packing(f, where);
+    if (asked.boxed && f->packing.dim == 3 && !isfinite(asked.lo[2]))
+        die_usage("--box: '%s' has four numbers, and the bodies are balls", box);
+    snapshot_init(&s, &f->packing, f->detected ? &f->contacts : NULL, f->moved, &asked);
+    if (k) s.first = &first, s.before = &before;
+    for (int i = 0; chosen[i]; i++)
+        if (measure_run(&t[i], chosen[i], &s, why)) return;
+    if (tsv)
+        show_tsv(s.p, t);
+    else
+        show_json(&s, t);
+    for (int i = 0; chosen[i]; i++) table_free(&t[i]);
+    if (fflush(stdout)) finish_stdout(); // a line is seen when its frame is there
+    if (fields_to) add_fields(&s, why);
+    if (remembers() && !why->status) {
+        if (!k) kept_set(&first, s.p, why);
+        if (!why->status) kept_set(&before, s.p, why);
+    }
+}
+
+static void run(struct reader *in)
+{
+    struct frame f = { 0 };
+    struct why why = { 0 };
+    struct range range;
+    bool more;
+    int64_t k = 0;
+    if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
+    if (last && steps) die_usage("--last and --steps exclude each other");
+    if (tsv) head_tsv();
+    if (last && !reader_last(in, &f, &more, &why) && more) show(&f, reader_where(in), k++, &why);
+    while (!last && !why.status && !reader_next(in, steps ? &range : NULL, &f, &more, &why) && more)
+        show(&f, reader_where(in), k++, &why);
+    if (coarse.file && !why.status) fields_file_close(coarse.file, &why);
+    if (why.status) die_why(&why);
+    if (!k) die(EX_DATAERR, "%s: no such frame", reader_where(in));
+    frame_free(&f);
+    kept_free(&first), kept_free(&before), fields_free(&coarse.fields);
+}
+
+int tool_main(int argc, char **argv)
+{
+    struct reader *in;
+    struct why why = { 0 };
+    if (list) {
+        show_list();
+        finish_stdout();
+        return 0;
+    }
+    parse();
+    choose_all();
+    if (fields_to && !ends(fields_to, ".h5") && !ends(fields_to, ".vti"))
+        die_usage("--fields: '%s' does not end in .h5 or .vti", fields_to);
+    if (fields_to && ends(fields_to, ".vti")) number_in(fields_to);
+    if (reader_open(&in, argc, argv, &why)) die_why(&why);
+    if (fields_to && reader_reads(argc, argv, fields_to))
+        die_usage("%s: is also the input", fields_to);
+    run(in);
+    reader_close(in);
+    finish_stdout();
+    return 0;
+}
