@@ -17,7 +17,7 @@ struct owners {
 static int add_cell(struct sheet *s, struct owners *o, int32_t boundary, int corners,
                     const vec3 *corner, struct why *why)
 {
-    if (s->cells == o->room) {
+    if (!o->of || s->cells == o->room) {
         int64_t room = 2 * o->room + 64;
         int32_t *of = realloc(o->of, (size_t)room * sizeof *of);
         if (!of) return why_set(why, EX_SOFTWARE, "no memory for the boundaries");
@@ -63,7 +63,7 @@ static int add_columns(struct sheet *s, const struct owners *o, const struct pac
     double *point = sheet_real(s, "point", "xyz", why), *n = sheet_real(s, "normal", "xyz", why);
     double *v = sheet_real(s, "velocity", "xyz", why);
     if (why->status) return why->status;
-    for (int64_t k = 0; k < s->cells; k++) {
+    for (int64_t k = 0; o->of && k < s->cells; k++) {
         const struct wall *w = &p->wall[o->of[k]];
         vec3 x = wall_at(p, w, p->t);
         number[k] = o->of[k], kind[k] = w->kind;

@@ -21,27 +21,31 @@ static double arm_b(const struct packing *p, const struct contact *c)
     return c->a < 0 && p->overlap > OVERLAP_KEEP ? p->radius[c->b] : branch_b(p, c);
 }
 
-static vec3 boundary(const struct packing *p, const struct contact *c)
+/* m/s: of the boundary where p is; what is prescribed is the step's mean, said where the step begins. */
+static vec3 boundary(const struct step_motion *m, const struct packing *p, const struct contact *c)
 {
-    return wall_velocity(&p->wall[-1 - c->a], c->x);
+    int32_t w = -1 - c->a;
+    const struct packing *start = m->p->step < m->other.step ? m->p : &m->other;
+    vec3 load = v3_sub(wall_velocity(p, &p->wall[w], c->x), wall_held(p, &p->wall[w], c->x));
+    return v3_add(wall_held(start, &start->wall[w], c->x), load);
 }
 
 /* m/s: of b relative to a, at the contact, in space */
-static vec3 relative(const struct packing *p, const struct contact *c)
+static vec3 relative(const struct step_motion *m, const struct packing *p, const struct contact *c)
 {
     vec3 b = v3_axpy(p->v[c->b], -arm_b(p, c), v3_cross(p->w[c->b], c->n));
-    vec3 a = c->a < 0 ? boundary(p, c)
+    vec3 a = c->a < 0 ? boundary(m, p, c)
                       : v3_axpy(p->v[c->a], branch_a(p, c), v3_cross(p->w[c->a], c->n));
     return v3_add(v3_sub(b, a), cell_shift(p->cell.rate, c->shift));
 }
 
 void step_motion_at(const struct step_motion *m, const struct contact *c, double u[3])
 {
-    vec3 v = v3_scale(0.5, v3_add(relative(m->p, c), relative(&m->other, c)));
+    vec3 v = v3_scale(0.5, v3_add(relative(m, m->p, c), relative(m, &m->other, c)));
     u[0] = v3_dot(v, c->n), u[1] = v3_dot(v, c->t1), u[2] = v3_dot(v, contact_t2(c));
 }
 
 vec3 step_motion_boundary(const struct step_motion *m, const struct contact *c)
 {
-    return v3_scale(0.5, v3_add(boundary(m->p, c), boundary(&m->other, c)));
+    return v3_scale(0.5, v3_add(boundary(m, m->p, c), boundary(m, &m->other, c)));
 }
