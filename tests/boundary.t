@@ -4,7 +4,7 @@
 . tests/tap.sh
 
 quick=${NSD_QUICK-}
-steps=$((quick ? 60 : 300))
+steps=$((quick ? 200 : 300))
 step() { nsd-step "$@" 2>/dev/null; }
 numbers() { /usr/bin/python3 - "$@"; }
 if ! /usr/bin/python3 -c 'import h5py, numpy' 2>/dev/null; then echo "1..0 # SKIP no h5py"; exit; fi
@@ -118,6 +118,7 @@ done
 
 # ---- drives ----
 
+# shellcheck disable=SC2016 # jq's variable
 one='{ dt: 1e-3, gravity: [0, 0, 0], bodies: [{ x: [0, 0, 9], radius: 1 }], walls: [{ point: [0, 0, 0], normal: [0, 0, 1], drives: [$drive] }] }'
 heights() # DRIVE: the wall's height at 0.1, 0.2, ... 1 s
 {

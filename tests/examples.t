@@ -79,6 +79,10 @@ table() # COLUMNS [ROWS]: numbers, and in the last row something in each
         NF != columns || /[^0-9.eE\t+-]/ { print "line " NR ": " $0; bad = 1 }
         END { exit bad || NR == 0 || (rows && NR != rows) }' "${3:-stdout}"
 }
+named() # COLUMNS ROWS FILE: under names in the first line
+{
+    awk -F'\t' -v columns="$1" -v rows="$2" 'NF != columns { bad = 1 } END { exit bad || NR != rows }' "$3"
+}
 falls() { awk -F'\t' '{ e[NR] = $2 } END { exit !(NR > 9 && e[NR] < 0.05 * e[1]) }' "${1:-stdout}"; }
 png() # FILE [WxH]
 {
@@ -181,6 +185,12 @@ claim()
     'nsd-web --every 10 '*' -o heap.html out.h5') page heap.html 10 && grep -q '<title>A heap' heap.html ;;
     'nsd-view '*'-o film.mp4 out.h5') [ -s film.mp4 ] || [ -s film-00000.png ] ;;
     *'nsd-view --network --svg > forces.svg') [ "$(grep -c '<path' forces.svg)" -gt 800 ] ;;
+    # measures
+    *'nsd-stat > run.jsonl') jq -s -e "length == $2 and .[-1].stress.p > 0" run.jsonl ;;
+    'nsd-stat out.h5 |'*'.fraction.fraction, .energy.kinetic'*) table 3 "$(frames out.h5 length)" ;;
+    'nsd-stat --last -m profile --tsv out.h5 > profile.tsv') named 24 21 profile.tsv ;;
+    'nsd-stat --last -f fields.vti out.h5') grep -aq 'Name="density"' fields.vti ;;
+    'nsd-stat --last --grains out.h5 > grains.tsv') named 21 501 grains.tsv ;;
     # files of other programs
     'nsd-'*'nsd-export -o live/') listed live "$2" ;;
     'nsd-export -o paraview/ out.h5') listed paraview "$(frames out.h5 length)" && [ -s paraview/contacts-00099.vtp ] ;;

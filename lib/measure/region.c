@@ -1,7 +1,7 @@
 #include "measure/region.h"
 
 #include "measure/ball_part.h"
-#include "measure/boundaries.h"
+#include "measure/reach.h"
 
 #include <math.h>
 
@@ -81,7 +81,7 @@ void region_whole(struct region *r, const struct packing *p)
     reach(p, r->lo, r->hi);
     r->volume = p->n ? r->period.volume : 0;
     for (int k = 0; k < p->dim; k++) {
-        if (p->n) boundaries_reach(p, k, &r->lo[k], &r->hi[k]);
+        if (p->n) reach_of_planes(p, k, &r->lo[k], &r->hi[k]);
         if (r->period.any && p->cell.repeats[k])
             reach_cell(&r->period, k, &r->lo[k], &r->hi[k]);
         else

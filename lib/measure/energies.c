@@ -1,4 +1,4 @@
-/* measure/energy.c: energies, and what a step takes of them. */
+/* measure/energies.c: energies, and what a step takes of them. */
 #include "measure/branch.h"
 #include "measure/measures.h"
 #include "measure/step_motion.h"
