@@ -249,6 +249,9 @@ install-tools: all completions
 	install -m 644 scenes/*.json $(TO)/share/nsd/scenes
 	install -m 644 scenes/paper/*.json $(TO)/share/nsd/scenes/paper
 	install -m 644 scripts/nsd.py $(TO)/share/nsd
+	install -d $(TO)/share/nsd/campaign
+	install -m 755 scripts/campaign/*.sh scripts/campaign/array.sbatch $(TO)/share/nsd/campaign
+	install -m 644 scripts/campaign/*.mk scripts/campaign/*.gp $(TO)/share/nsd/campaign
 	install -m 644 $B/completion/bash/* $(TO)/share/bash-completion/completions
 	install -m 644 $B/completion/zsh/* $(TO)/share/zsh/site-functions
 

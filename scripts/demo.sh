@@ -18,11 +18,13 @@ nsd-info "$dir/out.h5" |
            | [.step, .contacts, .sweeps, .natural, .max_penetration_true] | @tsv' > "$dir/steps.tsv"
 gnuplot -e "dir='$dir'" scripts/demo.gp
 
+nsd-web --title "500 balls fall into a box" --every 5 -o "$dir/out.html" "$dir/out.h5"
+
 echo
 echo "the last steps:"
 printf 'step\tcontacts\tsweeps\tnatural map\tmax_penetration_true\n'
 tail -n 5 "$dir/steps.tsv"
 echo
-echo "look at    $dir/demo.png"
+echo "look at    $dir/demo.png, and in a browser $dir/out.html, which plays it"
 echo "ask        build/nsd-info $dir/out.h5 | jq -c 'select(.step == 1000)'"
 echo "open       h5ls -r $dir/out.h5"

@@ -8,7 +8,7 @@ run=(build-essential pkg-config libhdf5-dev hdf5-tools libgsl-dev libjansson-dev
 paper=("${run[@]}" pandoc)
 check=("${paper[@]}" perl python3-h5py mandoc shellcheck cppcheck clang libomp-dev libclang-rt-dev
     clang-tidy clang-format libfclib-dev gcovr
-    debhelper lintian zsh python3-vtk9 python3-ase python3-mdanalysis
+    debhelper lintian zsh parallel python3-vtk9 python3-ase python3-mdanalysis
     ffmpeg chromium chromium-driver python3-selenium)
 
 case "${1:-run}" in

@@ -58,7 +58,7 @@ static double beyond(int dim, const double a[3])
 {
     double b[3] = { a[0], a[1], dim == 3 ? a[2] : 0 }, whole[3] = { a[0], a[1], a[2] };
     int times = 1;
-    for (int k = 0; k < dim; k++) {
+    for (int k = 0; k < 3 && k < dim; k++) {
         if (a[k] >= 1) return 0;
         if (a[k] <= -1) {
             b[k] = 0, times *= 2; // both halves, mirrored

@@ -85,7 +85,7 @@ static int of_numbers(struct table *t, const struct snapshot *s, struct why *why
         all += count[i] >= 0;
         if (count[i] > most) most = count[i];
     }
-    int64_t *bodies = calloc((size_t)most + 1, sizeof *bodies);
+    int64_t *bodies = calloc((size_t)(most > 0 ? most : 0) + 1, sizeof *bodies);
     if (!bodies) why_set(why, EX_SOFTWARE, "no memory to count contacts");
     for (int64_t i = 0; bodies && i < s->p->n; i++)
         if (count[i] >= 0) bodies[count[i]]++;
