@@ -76,7 +76,7 @@ double ball_in_box(int dim, vec3 x, double radius, const double lo[3], const dou
     const double at[3] = { x.x, x.y, x.z };
     double bound[2][3], sum = 0, unit = radius * radius * (dim == 3 ? radius : 1);
     int inside = 1;
-    for (int k = 0; k < dim; k++) {
+    for (int k = 0; k < 3 && k < dim; k++) {
         bound[0][k] = (lo[k] - at[k]) / radius, bound[1][k] = (hi[k] - at[k]) / radius;
         if (!(bound[0][k] < 1 && bound[1][k] > -1 && bound[0][k] < bound[1][k])) return 0;
         inside = inside && bound[0][k] <= -1 && bound[1][k] >= 1;
@@ -85,7 +85,7 @@ double ball_in_box(int dim, vec3 x, double radius, const double lo[3], const dou
     for (int corners = 0; corners < 1 << dim; corners++) {
         double a[3] = { 0, 0, 0 };
         int sign = 1;
-        for (int k = 0; k < dim; k++) {
+        for (int k = 0; k < 3 && k < dim; k++) {
             int side = corners >> k & 1;
             a[k] = bound[side][k];
             if (side) sign = -sign;

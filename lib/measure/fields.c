@@ -84,7 +84,7 @@ static struct patch patch_of(const struct fields *f, int dim, vec3 x, vec3 l)
     const double o[3] = { f->origin.x, f->origin.y, f->origin.z };
     const double h[3] = { f->step.x, f->step.y, f->step.z };
     struct patch b = { { 0, 0, 0 }, { 0, 0, 0 } };
-    for (int k = 0; k < dim; k++) {
+    for (int k = 0; k < 3 && k < dim; k++) {
         double lo = ceil((at[k] + fmin(by[k], 0) - CUT * f->width - o[k]) / h[k]);
         double hi = floor((at[k] + fmax(by[k], 0) + CUT * f->width - o[k]) / h[k]);
         double last = (double)(f->n[k] - 1);

@@ -76,7 +76,7 @@ static void window(struct scatter *a, const struct snapshot *s)
         for (int k = 0; k < 3; k++) lo[k] = fmin(lo[k], x[k]), hi[k] = fmax(hi[k], x[k]);
     }
     a->volume = r->period.volume;
-    for (int k = 0; k < s->p->dim; k++) {
+    for (int k = 0; k < 3 && k < s->p->dim; k++) {
         a->size[k] = r->all ? hi[k] - lo[k] : r->hi[k] - r->lo[k];
         if (r->period.any && s->p->cell.repeats[k])
             a->size[k] = INFINITY;
@@ -111,7 +111,7 @@ static void fill(struct table *t, const struct snapshot *s, const struct scatter
                  const int64_t *counts, struct why *why)
 {
     double bins = (double)s->asked->bins, n = (double)a->seekers, least = INFINITY;
-    for (int k = 0; k < s->p->dim; k++) least = fmin(least, a->size[k]);
+    for (int k = 0; k < 3 && k < s->p->dim; k++) least = fmin(least, a->size[k]);
     double others = isinf(least) ? n : n - 1; // a body's own images are partners, too
     if (reach > least) table_null(t, "distances beyond the smallest side of the region");
     for (int64_t k = 0; k < s->asked->bins; k++) {

@@ -80,7 +80,7 @@ void region_whole(struct region *r, const struct packing *p)
     period_of(&r->period, &p->cell, p->dim);
     reach(p, r->lo, r->hi);
     r->volume = p->n ? r->period.volume : 0;
-    for (int k = 0; k < p->dim; k++) {
+    for (int k = 0; k < 3 && k < p->dim; k++) {
         if (p->n) reach_of_planes(p, k, &r->lo[k], &r->hi[k]);
         if (r->period.any && p->cell.repeats[k])
             reach_cell(&r->period, k, &r->lo[k], &r->hi[k]);
@@ -181,7 +181,7 @@ static double distance(const struct region *r, vec3 x)
 static bool inside(const struct region *r, vec3 x)
 {
     const double at[3] = { x.x, x.y, x.z };
-    for (int k = 0; k < r->dim; k++)
+    for (int k = 0; k < 3 && k < r->dim; k++)
         if (!(at[k] >= r->lo[k] && at[k] < r->hi[k])) return false;
     if (r->outer > 0) {
         double d = distance(r, x);
@@ -238,7 +238,7 @@ static double one_way(const struct region *r, vec3 x, vec3 l)
 {
     const double at[3] = { x.x, x.y, x.z }, by[3] = { l.x, l.y, l.z };
     double from = 0, to = 1;
-    for (int k = 0; k < r->dim; k++) {
+    for (int k = 0; k < 3 && k < r->dim; k++) {
         if (by[k] == 0) {
             if (!(at[k] >= r->lo[k] && at[k] < r->hi[k])) return 0;
             continue;

@@ -14,9 +14,9 @@ void snapshot_init(struct snapshot *s, const struct packing *p, const struct con
 int snapshot_axis(const struct snapshot *s)
 {
     const double g[3] = { fabs(s->p->g.x), fabs(s->p->g.y), fabs(s->p->g.z) };
-    int axis = s->p->dim - 1;
+    int axis = s->p->dim == 2 ? 1 : 2;
     if (s->asked->axis >= 0) return s->asked->axis;
-    for (int k = 0; k < s->p->dim; k++)
+    for (int k = 0; k < 3 && k < s->p->dim; k++)
         if (g[k] > g[axis]) axis = k;
     return axis;
 }
