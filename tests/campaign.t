@@ -17,6 +17,7 @@ by_make() { make -s -C "$1" -f "$campaign/campaign.mk" "${@:2}" >"$tmp/said" 2>&
 
 ok "make -j over mu and seeds" by_make "$tmp/make" -j2
 is "a line for each run" "$(cut -f 1,2 "$tmp/make/campaign.tsv" | tr '\t\n' ' ;')" 'mu seed;0.1 1;0.1 2;0.5 1;0.5 2;'
+# shellcheck disable=SC2016 # columns of awk
 ok "rougher heaps are looser" awk 'NR > 1 { sum[$1] += $3 } END { exit !(sum["0.5"] < sum["0.1"]) }' "$tmp/make/campaign.tsv"
 ok "a plot" test -s "$tmp/make/campaign.png"
 touch "$tmp/stamp"
