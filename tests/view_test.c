@@ -46,7 +46,7 @@ static void walls(struct packing *p, int n, const vec3 (*w)[2]) /* point, normal
 {
     struct why why = { 0 };
     if (packing_alloc_walls(p, n, &why)) exit(1);
-    for (int i = 0; i < n; i++) p->wall[i] = (struct wall){ .x = w[i][0], .n = w[i][1] };
+    for (int i = 0; i < n; i++) p->wall[i] = boundary_plane(w[i][0], w[i][1], 0);
 }
 
 static const vec3 box[6][2] = {
@@ -394,7 +394,7 @@ static void test_extremes(void)
     if (packing_alloc_walls(&p, 500, &(struct why){ 0 })) exit(1);
     for (int i = 0; i < 500; i++) {
         double a = 2 * M_PI * i / 500;
-        p.wall[i] = (struct wall){ .x = v3(-cos(a), -sin(a), 0), .n = v3(cos(a), sin(a), 0) };
+        p.wall[i] = boundary_plane(v3(-cos(a), -sin(a), 0), v3(cos(a), sin(a), 0), 0);
     }
     extreme("500 walls", &p, false);
     packing_free(&p);
