@@ -130,7 +130,8 @@ FUZZ    := document problem scene
 FUZZCC  := clang
 FUZZSAN := -fsanitize=address,undefined -fno-sanitize-recover=undefined
 F       := build/fuzz
-FLIB    := $(patsubst $B/%,$F/%,$(filter-out $B/lib/cli/%,$(LIB)))
+# nsd's own readers: not the command line, nor what hands files to libassimp
+FLIB    := $(patsubst $B/%,$F/%,$(filter-out $B/lib/cli/% $B/lib/scene/mesh_file.o,$(LIB)))
 
 $F/lib/%.o: lib/%.c
 	@mkdir -p $(@D)
