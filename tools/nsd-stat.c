@@ -190,7 +190,7 @@ static void head_tsv(void)
 
 static void show_tsv(const struct packing *p, const struct table *t)
 {
-    int64_t rows = chosen[0]->list ? t[0].rows : 1;
+    int64_t rows = chosen[0] && chosen[0]->list ? t[0].rows : 1;
     static bool said[MOST_MEASURES];
     for (int64_t i = 0; i < rows; i++) {
         printf("%" PRId64 "\t", p->step);

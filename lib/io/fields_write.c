@@ -35,7 +35,7 @@ static int write_head(hid_t file, const struct fields *f, const char *history, s
     if (!e) e = h5_attr(file, "/fields", "width", H5T_NATIVE_DOUBLE, -1, &f->width, why);
     if (!e) e = h5_write(file, "/fields/points", H5T_NATIVE_INT64, 1, &three, points, "1", why);
     if (!e) e = h5_write(file, "/fields/origin", H5T_NATIVE_DOUBLE, 1, &three, origin, "m", why);
-    if (!e) e = h5_write(file, "/fields/spacing", H5T_NATIVE_DOUBLE, 1, &three, step, "m", why);
+    if (!e) h5_write(file, "/fields/spacing", H5T_NATIVE_DOUBLE, 1, &three, step, "m", why);
     return why->status;
 }
 
