@@ -88,7 +88,7 @@ void stream_close(struct stream *s)
     free(s);
 }
 
-void stream_unload(struct stream *s)
+void stream_unload(const struct stream *s)
 {
     if (s->map && s->size > LARGE) madvise(s->map, s->size, MADV_DONTNEED); // the pages are clean
 }
@@ -165,6 +165,18 @@ static int refuse(const struct stream *s, struct why *why, const char *trouble)
     return why_set(why, EX_DATAERR, "%s: %s", s->name, trouble);
 }
 
+/* In pieces, so that a large file's pages do not all stay */
+static uint32_t crc_of(const struct stream *s, const unsigned char *bytes, size_t size)
+{
+    uint32_t crc = 0;
+    for (size_t at = 0, piece; at < size; at += piece) {
+        piece = size - at < LARGE ? size - at : LARGE;
+        crc = document_crc(crc, bytes + at, piece);
+        stream_unload(s);
+    }
+    return crc;
+}
+
 /* A document with our header: checks that and finds its size. */
 static int read_own(struct stream *s, struct image *im, size_t have, struct why *why)
 {
@@ -186,10 +198,9 @@ static int read_own(struct stream *s, struct image *im, size_t have, struct why 
     if (have < want)
         return why_set(why, EX_DATAERR, "%s: document %lld: truncated, %zu of %zu bytes", s->name,
                        (long long)s->in_file + 1, have, want);
-    if (document_crc(0, im->bytes + DOCUMENT_USERBLOCK, have - DOCUMENT_USERBLOCK) != crc)
+    if (crc_of(s, im->bytes + DOCUMENT_USERBLOCK, have - DOCUMENT_USERBLOCK) != crc)
         return refuse(s, why,
                       "damaged: its checksum is wrong (changed on purpose? see nsd-format(5))");
-    stream_unload(s);
     return 0;
 }
 

@@ -49,7 +49,7 @@ int stream_open(struct stream **stream, int files, char *const *file, struct why
  */
 int stream_next(struct stream *stream, struct image *image, struct why *why);
 /* Pages of a large file that have been read leave memory; when wanted they are read again. */
-void stream_unload(struct stream *stream);
+void stream_unload(const struct stream *stream);
 /* The current document is no longer needed: the memory of a large one from a pipe is freed. */
 void stream_release(struct stream *stream);
 void stream_close(struct stream *stream);
