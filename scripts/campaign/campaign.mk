@@ -11,13 +11,12 @@ export SCENE UNTIL EVERY
 RUNS := $(foreach m,$(MU),$(foreach s,$(SEEDS),runs/mu-$m-seed-$s.h5))
 
 all: campaign.png
-.DELETE_ON_ERROR:
 
 $(RUNS): runs/%.h5: $(SCENE)
 	$(here)run.sh $(subst -seed-, ,$(patsubst mu-%,%,$*))
 
 campaign.tsv: $(RUNS)
-	$(here)table.sh $^ > $@
+	$(here)table.sh $^ > $@.part && mv $@.part $@
 
 campaign.png: campaign.tsv
-	gnuplot -e "table='$<'; picture='$@'" $(here)plot.gp
+	gnuplot -e "table='$<'; picture='$@.part'" $(here)plot.gp && mv $@.part $@
