@@ -10,7 +10,7 @@ echo "500 balls, $steps steps of 5e-5 s (nsd-gen 500 | nsd-step ...)"
 nsd-gen 500 > "$dir/start.h5"
 nsd-step -n "$steps" -o "$dir/out.h5" "$dir/start.h5"
 
-view=(nsd-view --size 560x1300 '--box=-0.0032,0.0032,-0.0032,0.0032,0,0.0155')
+view=(nsd-view --bare --size 560x1300 '--box=-0.0032,0.0032,-0.0032,0.0032,0,0.0155')
 "${view[@]}" "$dir/start.h5" > "$dir/start.png"
 "${view[@]}" "$dir/out.h5" > "$dir/end.png"
 nsd-info "$dir/out.h5" |
