@@ -57,6 +57,15 @@ for name in sys.argv[1:]:
     off = v("work_drives") + v("work_gravity") - v("dissipation") - v("kinetic_change")
     assert np.abs(off).max() < 1e-13 and np.abs(v("work_drives")).max() > 1e-9
 END
+step -n 30 "$tmp/drum-out.h5" >"$tmp/each.h5"
+ok "momentum is what gravity and the boundaries give" numbers "$tmp/each.h5" <<'END'
+import sys, h5py, numpy as np
+f = h5py.File(sys.argv[1])
+p, b = [f["nsd/solver/" + n + "/value"][:] for n in ("momentum", "boundary_impulse")]
+weight = f["particles/all/mass"][:].sum() * f["nsd"].attrs["gravity"] * f["nsd"].attrs["dt"]
+assert np.abs(np.diff(p, axis=0) - b[1:] - weight).max() < 1e-12 * np.abs(weight).max() * 100
+assert np.abs(b).max() > 0.1 * np.abs(weight).max()
+END
 ok "positions of boundaries are there as those of grains are" numbers "$tmp/drum-out.h5" <<'END'
 import sys, h5py, numpy as np
 f = h5py.File(sys.argv[1])

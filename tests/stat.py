@@ -121,8 +121,8 @@ def flight(document):
 
 def scattered(document):
     """Points at random: g is 1."""
-    g = stat("-m", "pairs", "--bins", "10", document)[-1]["pairs"]
-    pairs, g = np.array(g["pairs"]), np.array(g["g"])
+    g = stat("-m", "pairs", "--bins", "10", "--distance", "0.2", "--box", "0,1,0,1,0,1", document)[-1]["pairs"]
+    pairs, g = np.array(g["pairs"])[1:], np.array(g["g"], float)[1:]
     assert pairs.min() > 100 and np.all(np.abs(g - 1) < 5 / np.sqrt(pairs)), (pairs, g)
 
 

@@ -113,12 +113,9 @@ static void read_frame(struct frame *f, char *path, int64_t k)
 static void read_document(struct scene_bodies *b, const char *dir)
 {
     struct frame f = { 0 };
-    bool whole = *b->file == '/' || !dir;
-    size_t room = strlen(b->file) + (whole ? 0 : strlen(dir)) + 2;
-    char *path = malloc(room);
+    char *path = scene_path(dir, b->file);
     b->document = malloc(sizeof *b->document);
     if (!path || !b->document) die(EX_SOFTWARE, "no memory for a document");
-    snprintf(path, room, "%s%s%s", whole ? "" : dir, whole ? "" : "/", b->file);
     read_frame(&f, path, b->frame);
     *b->document = f.packing, f.packing = (struct packing){ 0 };
     frame_free(&f);

@@ -45,6 +45,13 @@ static inline vec3 v3_cross(vec3 a, vec3 b)
 {
     return v3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
+/* A unit vector across the unit vector n, the same for the same n */
+static inline vec3 v3_across(vec3 n)
+{
+    vec3 e = fabs(n.x) < 0.7 ? v3(1, 0, 0) : v3(0, 1, 0), s = v3_axpy(e, -v3_dot(e, n), n);
+    return v3_scale(1 / v3_norm(s), s);
+}
+
 static inline int v3_finite(vec3 a)
 {
     return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);

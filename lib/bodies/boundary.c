@@ -2,8 +2,6 @@
    [bodies/boundary.h]. */
 #include "bodies/boundary.h"
 
-#define TWO_PI 6.283185307179586
-
 const char *const boundary_shape_name[] = { "plane", "rectangle", "disc", "cylinder",
                                             "cone",  "sphere",    "mesh", NULL };
 const char *const boundary_side_name[] = { "inside", "outside", "both", NULL };
@@ -56,7 +54,7 @@ const char *boundary_trouble(const struct wall *w, int dim)
         if (w->shape == BOUNDARY_CYLINDER && (w->n.z != 1 || w->size[2] != 0))
             return "in the plane a cylinder is a circle around z";
     }
-    if (!(w->arc >= 0 && w->arc < TWO_PI)) return "its arc is out of range";
+    if (!(w->arc >= 0 && w->arc < 2 * M_PI)) return "its arc is out of range";
     bool directed = w->shape == BOUNDARY_RECTANGLE || (is_round(w) && w->arc > 0);
     if (directed &&
         !(fabs(v3_dot(w->along, w->along) - 1) < 1e-6 && fabs(v3_dot(w->along, w->n)) < 1e-6))
@@ -111,20 +109,13 @@ static struct touch near_rectangle(const struct wall *w, int dim, vec3 c)
     return touch_at(v3_axpy(v3_scale(pa, w->along), pb, across), c, w->n);
 }
 
-/* A unit vector across n */
-static vec3 any_across(vec3 n)
-{
-    vec3 e = fabs(n.x) < 0.7 ? v3(1, 0, 0) : v3(0, 1, 0), s = v3_axpy(e, -v3_dot(e, n), n);
-    return v3_scale(1 / v3_norm(s), s);
-}
-
 /* c = z n + rho d: d of unit length, across n */
 static vec3 radial(vec3 n, vec3 c, double *z, double *rho)
 {
     *z = v3_dot(c, n);
     vec3 d = v3_axpy(c, -*z, n);
     *rho = v3_norm(d);
-    return *rho > 0 ? v3_scale(1 / *rho, d) : any_across(n);
+    return *rho > 0 ? v3_scale(1 / *rho, d) : v3_across(n);
 }
 
 static struct touch near_disc(const struct wall *w, vec3 c)
@@ -158,7 +149,7 @@ static bool in_arc(const struct wall *w, vec3 d)
     vec3 end = quat_turn(q, w->along);
     bool after = v3_dot(v3_cross(w->along, d), w->n) >= 0;
     bool before = v3_dot(v3_cross(d, end), w->n) >= 0;
-    return w->arc <= TWO_PI / 2 ? after && before : after || before;
+    return w->arc <= M_PI ? after && before : after || before;
 }
 
 /* The nearest place of the generatrix that lies at direction d, as a vector of space */

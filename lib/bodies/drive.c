@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TWO_PI 6.283185307179586
-
 const char *const drive_signal_name[] = { "speed", "sine", "table", NULL };
 
 int drives_alloc(struct drives *d, int32_t n, int32_t rows, struct why *why)
@@ -71,7 +69,7 @@ const char *drive_trouble(const struct drives *d, int32_t k, int32_t boundaries,
 /* Not libm's, whose last bits differ between machines */
 static double sine(double x)
 {
-    return quat_rotation(v3(2 * fmod(x, TWO_PI), 0, 0)).x;
+    return quat_rotation(v3(2 * fmod(x, 2 * M_PI), 0, 0)).x;
 }
 
 static double table_way(const struct drive_row *row, int32_t rows, double t)
@@ -93,7 +91,7 @@ double drive_way(const struct drives *d, const struct drive *k, double t)
     case DRIVE_SPEED:
         return k->value * (t - k->from);
     case DRIVE_SINE:
-        return k->value * sine(TWO_PI * fmod(k->frequency * t, 1) + k->phase);
+        return k->value * sine(2 * M_PI * fmod(k->frequency * t, 1) + k->phase);
     default:
         return table_way(&d->row[k->first], k->rows, t);
     }
@@ -102,7 +100,7 @@ double drive_way(const struct drives *d, const struct drive *k, double t)
 double drive_top_speed(const struct drives *d, const struct drive *k)
 {
     if (k->signal == DRIVE_SPEED) return fabs(k->value);
-    if (k->signal == DRIVE_SINE) return fabs(TWO_PI * k->frequency * k->value);
+    if (k->signal == DRIVE_SINE) return fabs(2 * M_PI * k->frequency * k->value);
     double most = 0;
     const struct drive_row *r = &d->row[k->first];
     for (int32_t i = 1; i < k->rows; i++)
@@ -114,7 +112,7 @@ static struct pose drive_pose(const struct drives *d, const struct drive *k, dou
 {
     double s = drive_way(d, k, t);
     if (!k->turns) return (struct pose){ { 1, 0, 0, 0 }, v3_scale(s, k->axis) };
-    quat q = quat_rotation(v3_scale(fmod(s, TWO_PI), k->axis));
+    quat q = quat_rotation(v3_scale(fmod(s, 2 * M_PI), k->axis));
     return (struct pose){ q, v3_sub(k->point, quat_turn(q, k->point)) };
 }
 

@@ -305,13 +305,16 @@ static int by_feature(const void *a, const void *b)
     return (p->feature > q->feature) - (p->feature < q->feature);
 }
 
+/* A box of the tree, over order[lo .. hi-1] */
+struct branch {
+    int32_t box, lo, hi;
+};
+
 int surface_touches(const struct surface *s, vec3 c, double most, struct touch touch[TOUCHES_MOST])
 {
-    struct {
-        int32_t box, lo, hi;
-    } stack[64];
+    struct branch stack[64];
     int depth = 0, n = 0;
-    stack[depth++] = (typeof(stack[0])){ 0, 0, s->n };
+    stack[depth++] = (struct branch){ 0, 0, s->n };
     while (depth) {
         int32_t at = stack[--depth].box, lo = stack[depth].lo, hi = stack[depth].hi;
         if (!is_near(&s->box[at], c, most)) continue;
@@ -320,8 +323,8 @@ int surface_touches(const struct surface *s, vec3 c, double most, struct touch t
             continue;
         }
         int32_t middle = lo + (hi - lo) / 2;
-        stack[depth++] = (typeof(stack[0])){ s->box[at].next, middle, hi };
-        stack[depth++] = (typeof(stack[0])){ at + 1, lo, middle };
+        stack[depth++] = (struct branch){ s->box[at].next, middle, hi };
+        stack[depth++] = (struct branch){ at + 1, lo, middle };
     }
     qsort(touch, (size_t)n, sizeof *touch, by_feature);
     return n;

@@ -3,8 +3,7 @@
 
 #include <stdlib.h>
 
-#define TWO_PI 6.283185307179586
-#define SHARP  0.94 /* the cosine of the least angle between triangles whose edge is drawn */
+#define SHARP 0.94 /* the cosine of the least angle between triangles whose edge is drawn */
 
 /* A boundary where it is now */
 struct placed {
@@ -44,13 +43,9 @@ static bool add_line(struct outline *o, const struct placed *b, vec3 x, vec3 y)
 /* Across the axis, at a share u of the whole angle */
 static vec3 around(const struct wall *w, double u)
 {
-    vec3 along = w->along;
-    if (!(v3_dot(along, along) > 0.5)) {
-        vec3 e = fabs(w->n.x) < 0.7 ? v3(1, 0, 0) : v3(0, 1, 0);
-        along = v3_axpy(e, -v3_dot(e, w->n), w->n);
-        along = v3_scale(1 / v3_norm(along), along);
-    }
-    double angle = (w->arc > 0 ? w->arc : TWO_PI) * u;
+    bool given = v3_dot(w->along, w->along) > 0;
+    vec3 along = given ? w->along : v3_across(w->n);
+    double angle = (w->arc > 0 ? w->arc : 2 * M_PI) * u;
     return v3_add(v3_scale(cos(angle), along), v3_scale(sin(angle), v3_cross(w->n, along)));
 }
 
@@ -70,7 +65,7 @@ static vec3 point_of(const struct placed *b, double u, double v)
         x = v3_scale(s[0] + v * (s[1] - s[0]), d);
         break;
     case BOUNDARY_SPHERE:
-        x = v3_axpy(v3_scale(s[0] * sin(0.5 * TWO_PI * v), d), -s[0] * cos(0.5 * TWO_PI * v), w->n);
+        x = v3_axpy(v3_scale(s[0] * sin(M_PI * v), d), -s[0] * cos(M_PI * v), w->n);
         break;
     default:
         x = v3_scale(w->shape == BOUNDARY_CONE ? s[0] + v * (s[1] - s[0]) : s[0], d);

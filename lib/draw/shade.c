@@ -111,13 +111,6 @@ struct turn {
     vec3 x, y, z;
 };
 
-/* a, turned from space into the axes of a body with orientation q */
-static vec3 into_body(quat q, vec3 a)
-{
-    quat c = { q.w, -q.x, -q.y, -q.z }, r = quat_mul(quat_mul(c, (quat){ 0, a.x, a.y, a.z }), q);
-    return v3(r.x, r.y, r.z);
-}
-
 /* (x, y, z) of the camera, in the axes of the body */
 static vec3 camera_to_body(struct turn *t, const struct raster *s, int64_t body, double x, double y,
                            double z)
@@ -125,7 +118,8 @@ static vec3 camera_to_body(struct turn *t, const struct raster *s, int64_t body,
     if (t->body != body) { // neighbouring samples mostly show the same body
         quat q = s->q[body];
         t->body = body;
-        t->x = into_body(q, s->right), t->y = into_body(q, s->up), t->z = into_body(q, s->toward);
+        t->x = quat_turn_back(q, s->right), t->y = quat_turn_back(q, s->up),
+        t->z = quat_turn_back(q, s->toward);
     }
     return v3_axpy(v3_axpy(v3_scale(x, t->x), y, t->y), z, t->z);
 }

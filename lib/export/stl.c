@@ -88,19 +88,12 @@ static void put_triangle(FILE *out, vec3 a, vec3 b, vec3 c)
     putc(0, out), putc(0, out);
 }
 
-/* a turned by q: a + 2 u x (u x a + w a), u the vector part of q */
-static vec3 turned(quat q, vec3 a)
-{
-    const vec3 u = v3(q.x, q.y, q.z);
-    return v3_axpy(a, 2, v3_cross(u, v3_axpy(v3_cross(u, a), q.w, a)));
-}
-
 static void put_ball(FILE *out, const struct packing *p, int64_t i, const struct ball *b)
 {
     for (int64_t k = 0; k < b->n; k++) {
         vec3 x[3];
         for (int c = 0; c < 3; c++)
-            x[c] = v3_axpy(p->x[i], p->radius[i], turned(p->q[i], b->t[k].corner[c]));
+            x[c] = v3_axpy(p->x[i], p->radius[i], quat_turn(p->q[i], b->t[k].corner[c]));
         put_triangle(out, x[0], x[1], x[2]);
     }
 }

@@ -33,7 +33,7 @@ static int read_loads(struct source *r, const char *group, int64_t k, struct pac
 static int count_rows(struct source *r, const char *path, int rank, int32_t *n, struct why *why)
 {
     uint64_t shape[4];
-    if (source_shape(r, path, shape) != rank || shape[0] > 1 << 28)
+    if (source_shape(r, path, shape) != rank || shape[0] > 1 << 24)
         return why_set(why, EX_DATAERR, "%s: not of %d dimensions", path, rank);
     *n = (int32_t)shape[0];
     return 0;

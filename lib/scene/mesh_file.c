@@ -96,11 +96,8 @@ int mesh_files_read(struct scene *s, const char *dir, struct why *why)
 {
     for (int32_t k = 0; k < s->meshes && !why->status; k++) {
         const struct scene_mesh *m = &s->mesh_file[k];
-        bool whole = *m->file == '/' || !dir;
-        size_t room = strlen(m->file) + (whole ? 0 : strlen(dir)) + 2;
-        char *path = malloc(room);
+        char *path = scene_path(dir, m->file);
         if (!path) return why_set(why, EX_SOFTWARE, "no memory for a name");
-        snprintf(path, room, "%s%s%s", whole ? "" : dir, whole ? "" : "/", m->file);
         read_file(s, m, path, why);
         free(path);
     }

@@ -1,6 +1,7 @@
 /* scene/scene.c: the memory of a scene, and the cells of a lattice. */
 #include "scene/scene.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,6 +36,15 @@ struct scene_lattice scene_lattice(const struct scene_bodies *b, int dim)
         l.edge[i] = i < dim - 1 || b->in_cell ? width / l.cells[i] : least;
     }
     return l;
+}
+
+char *scene_path(const char *dir, const char *name)
+{
+    bool whole = *name == '/' || !dir;
+    size_t room = strlen(name) + (whole ? 0 : strlen(dir)) + 2;
+    char *path = malloc(room);
+    if (path) snprintf(path, room, "%s%s%s", whole ? "" : dir, whole ? "" : "/", name);
+    return path;
 }
 
 int scene_grow_mesh(struct scene *s, int32_t vertices, int32_t elements, vec3 **vertex,

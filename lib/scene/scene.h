@@ -232,6 +232,9 @@ struct scene_lattice scene_lattice(const struct scene_bodies *b, int dim);
 /* Returns 0, EX_DATAERR or EX_SOFTWARE; *s needs to be freed only after 0. */
 int scene_parse(struct scene *s, const char *text, size_t length, struct why *why);
 void scene_free(struct scene *s);
+/* A file that the scene names, where names are relative to dir (NULL: to the current folder); to be freed.
+   NULL: no memory. */
+char *scene_path(const char *dir, const char *name);
 /* Room for more of the mesh, at its end, where the caller fills it in; vertices are counted from the
    mesh's first. Returns 0 or EX_SOFTWARE. */
 int scene_grow_mesh(struct scene *s, int32_t vertices, int32_t elements, vec3 **vertex,

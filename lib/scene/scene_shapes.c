@@ -4,14 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TWO_PI 6.283185307179586
-
 /* A unit vector across n, next to the one given, or to an axis of space */
 static vec3 across(vec3 n, vec3 wish)
 {
-    vec3 e = v3_norm(v3_cross(n, wish)) > 1e-9 ? wish : fabs(n.x) < 0.7 ? v3(1, 0, 0) : v3(0, 1, 0);
-    e = v3_axpy(e, -v3_dot(e, n), n);
-    return v3_scale(1 / v3_norm(e), e);
+    vec3 e = v3_axpy(wish, -v3_dot(wish, n), n);
+    double length = v3_norm(e);
+    return length > 1e-9 ? v3_scale(1 / length, e) : v3_across(n);
 }
 
 static int read_along(jnode o, int dim, struct wall *w)
@@ -44,7 +42,7 @@ static int read_arc(jnode o, int dim, struct wall *w)
 {
     jnode arc = json_node_key(&o, "arc");
     if (json_node_number(arc, J_POSITIVE, &w->arc)) return 1;
-    if (w->arc >= TWO_PI) return json_node_fault(arc, "must be below 2 pi; leave it out for all");
+    if (w->arc >= 2 * M_PI) return json_node_fault(arc, "must be below 2 pi; leave it out for all");
     return read_along(o, dim, w);
 }
 

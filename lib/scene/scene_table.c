@@ -226,15 +226,9 @@ static int read_lines(struct table *t, FILE *f, struct grains *out, struct why *
     return why->status;
 }
 
-int grains_of_table(struct grains *out, const struct scene *s, const char *dir, const char *name,
-                    struct why *why)
+static int read_table(struct grains *out, const struct scene *s, const char *path, struct why *why)
 {
-    char path[4096];
     struct stat st;
-    bool whole = *name == '/' || !dir;
-    if ((size_t)snprintf(path, sizeof path, "%s%s%s", whole ? "" : dir, whole ? "" : "/", name) >=
-        sizeof path)
-        return why_set(why, EX_NOINPUT, "%.100s...: name too long", name);
     struct table t = { .path = path, .scene = s };
     usual_columns(&t);
     FILE *f = fopen(path, "r");
@@ -244,5 +238,15 @@ int grains_of_table(struct grains *out, const struct scene *s, const char *dir, 
     if (!why->status) read_lines(&t, f, out, why);
     if (!why->status && ferror(f)) why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
     fclose(f);
+    return why->status;
+}
+
+int grains_of_table(struct grains *out, const struct scene *s, const char *dir, const char *name,
+                    struct why *why)
+{
+    char *path = scene_path(dir, name);
+    if (!path) return why_set(why, EX_SOFTWARE, "no memory for a name");
+    read_table(out, s, path, why);
+    free(path);
     return why->status;
 }
