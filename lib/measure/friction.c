@@ -1,12 +1,11 @@
 /* measure/friction.c: forces of contacts, their distributions, and how much of friction is used. */
+#include "law/local.h"
 #include "measure/branch.h"
 #include "measure/histogram.h"
 #include "measure/measures.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-enum { SLIDES = 2 }; /* of found.status [law/local.h] */
 
 /* Does contact i push, in the region? */
 static bool pushes(const struct snapshot *s, int64_t i)
@@ -54,7 +53,7 @@ struct sums {
 static void add(struct sums *m, const struct snapshot *s, int64_t i)
 {
     double fn = normal(s, i), ft = tangential(s, i), part = mobilised(s, i);
-    m->contacts++, m->sliding += s->s->found[i].status == SLIDES;
+    m->contacts++, m->sliding += s->s->found[i].status == LOCAL_SLIDE;
     m->normal += fn, m->tangential += ft, m->limit += s->s->c[i].mu * fn;
     m->normal_most = fmax(m->normal_most, fn), m->tangential_most = fmax(m->tangential_most, ft);
     if (part >= 0) m->rough++, m->mobilised += part;

@@ -47,5 +47,5 @@ vec3 kept_place(const struct packing *p, int64_t i)
 vec3 kept_way(const struct packing *p, vec3 from, vec3 to)
 {
     struct period period;
-    return period_shortest(period_of(&period, &p->cell, p->dim), v3_sub(to, from));
+    return period_shortest(period_of(&period, &p->cell), v3_sub(to, from));
 }

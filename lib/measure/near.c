@@ -1,13 +1,9 @@
 #include "measure/near.h"
 
+#include "bodies/grid.h"
+
 #include <math.h>
 #include <stdlib.h>
-
-static int32_t cell_of(double x, double width)
-{
-    double c = floor(x / width), far = 1e9;
-    return (int32_t)(c < -far ? -far : c > far ? far : c);
-}
 
 /* Cells along x are in buckets one after another, so that a line of them is looked along at once. */
 static int64_t bucket(const struct near *g, int64_t i, int64_t j, int64_t k)
@@ -36,7 +32,7 @@ bool near_init(struct near *g, const vec3 *x, int64_t n, double reach)
     for (int64_t i = 0; i < n; i++) {
         const double at[3] = { x[i].x, x[i].y, x[i].z };
         point[i].x = x[i];
-        for (int k = 0; k < 3; k++) point[i].cell[k] = cell_of(at[k], reach);
+        for (int k = 0; k < 3; k++) point[i].cell[k] = grid_cell(at[k], reach);
         g->first[bucket_of(g, &point[i]) + 2]++;
     }
     for (int64_t b = 0; b < g->buckets; b++) g->first[b + 2] += g->first[b + 1];
@@ -67,7 +63,8 @@ static void count_cell(const struct near *g, int64_t b, const int64_t cell[3], v
 
 int64_t near_count(const struct near *g, vec3 x, int64_t *count, int64_t bins)
 {
-    const int64_t c[3] = { cell_of(x.x, g->reach), cell_of(x.y, g->reach), cell_of(x.z, g->reach) };
+    const int64_t c[3] = { grid_cell(x.x, g->reach), grid_cell(x.y, g->reach),
+                           grid_cell(x.z, g->reach) };
     int64_t looked = 0;
     for (int64_t k = c[2] - 1; k <= c[2] + 1; k++)
         for (int64_t j = c[1] - 1; j <= c[1] + 1; j++)

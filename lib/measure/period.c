@@ -2,18 +2,14 @@
 
 #include <math.h>
 
-const struct period *period_of(struct period *m, const struct cell *cell, int dim)
+const struct period *period_of(struct period *m, const struct cell *cell)
 {
     const vec3 unit[3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
-    (void)dim;
     *m = (struct period){ .cell = cell, .any = cell_repeats(cell), .volume = 1 };
     if (!m->any) return m;
     for (int k = 0; k < 3; k++) m->edge[k] = cell->repeats[k] ? cell->edge[k] : unit[k];
-    m->volume = v3_dot(m->edge[0], v3_cross(m->edge[1], m->edge[2]));
-    for (int k = 0; k < 3; k++)
-        m->inverse[k] =
-            v3_scale(1 / m->volume, v3_cross(m->edge[(k + 1) % 3], m->edge[(k + 2) % 3]));
-    m->volume = fabs(m->volume);
+    m->volume = fabs(v3_dot(m->edge[0], v3_cross(m->edge[1], m->edge[2])));
+    cell_inverse(m->edge, m->inverse);
     return m;
 }
 

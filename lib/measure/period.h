@@ -14,7 +14,7 @@ struct period {
 };
 
 /* Returns period. */
-const struct period *period_of(struct period *period, const struct cell *cell, int dim);
+const struct period *period_of(struct period *period, const struct cell *cell);
 /* m: the shortest way of all that differ by edges, where edges are not much oblique */
 vec3 period_shortest(const struct period *period, vec3 way);
 /* m/s: the velocity of the cell's flow at x: what the rates of its edges make of a uniform flow */

@@ -77,7 +77,7 @@ static void reach_cell(const struct period *m, int axis, double *lo, double *hi)
 void region_whole(struct region *r, const struct packing *p)
 {
     *r = (struct region){ .dim = p->dim, .all = true };
-    period_of(&r->period, &p->cell, p->dim);
+    period_of(&r->period, &p->cell);
     reach(p, r->lo, r->hi);
     r->volume = p->n ? r->period.volume : 0;
     for (int k = 0; k < 3 && k < p->dim; k++) {
@@ -92,7 +92,7 @@ void region_whole(struct region *r, const struct packing *p)
 void region_box(struct region *r, const struct packing *p, const double lo[3], const double hi[3])
 {
     *r = (struct region){ .dim = p->dim, .volume = 1 };
-    period_of(&r->period, &p->cell, p->dim);
+    period_of(&r->period, &p->cell);
     for (int k = 0; k < 3; k++) {
         bool bound = k < p->dim;
         r->lo[k] = bound ? lo[k] : -INFINITY, r->hi[k] = bound ? hi[k] : INFINITY;
