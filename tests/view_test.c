@@ -240,6 +240,71 @@ static void test_walls(void)
     picture_free(&above), picture_free(&below), packing_free(&p);
 }
 
+/* ---- glass ---- */
+
+static const double clear = 0.1, glass[3] = { 0.62, 0.74, 0.86 }; // of a pane seen face to face
+
+/* Linear light of an sRGB byte, and back [IEC 61966-2-1] */
+static double light_of(unsigned char c)
+{
+    double s = c / 255.0;
+    return s <= 0.04045 ? s / 12.92 : pow((s + 0.055) / 1.055, 2.4);
+}
+
+static double byte_of(double light)
+{
+    return 255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * pow(light, 1 / 2.4) - 0.055);
+}
+
+/* Whether a pixel is what is seen behind n panes, to a step of a byte */
+static bool behind(const struct picture *panes, const struct picture *bare, int x, int y, int n)
+{
+    double passes = pow(1 - clear, n);
+    const unsigned char *is = pixel(panes, x, y), *was = pixel(bare, x, y);
+    for (int k = 0; k < 3; k++)
+        if (fabs(byte_of(passes * light_of(was[k]) + (1 - passes) * glass[k]) - is[k]) > 1.5)
+            return false;
+    return true;
+}
+
+/* A ball between a wall in front of it and one behind, without their edges: those lie outside */
+static void test_glass(void)
+{
+    struct packing p = balls(3, 1, (const double[][4]){ { 0, 0, 0, 0.5 } });
+    struct view v = view(64, 0, 0);
+    paint_init(&v.paint, COLOUR_KIND, false);
+    struct picture bare = draw(v, &p);
+    static const vec3 front[2] = { { 0, -1, 0 }, { 0, 1, 0 } },
+                      back[2] = { { 0, 1, 0 }, { 0, -1, 0 } };
+    const vec3 both[2][2] = { { front[0], front[1] }, { back[0], back[1] } };
+    const vec3 turned[2][2] = { { back[0], back[1] }, { front[0], front[1] } };
+    v.glass = true;
+    walls(&p, 2, both);
+    struct picture two = draw(v, &p);
+    ok(behind(&two, &bare, 32, 32, 1), "a ball is seen through the wall in front of it");
+    ok(behind(&two, &bare, 8, 8, 2), "beside it one looks through both walls");
+    walls(&p, 2, turned);
+    struct picture other = draw(v, &p);
+    ok(same(&two, &other), "their order does not matter");
+    v.samples = 2, v.threads = 3;
+    struct picture fine = draw(v, &p);
+    v.threads = 1;
+    struct picture single = draw(v, &p);
+    ok(same(&fine, &single), "nor do threads");
+    v.samples = 1, v.cuts = true, v.cut = v3(0, -1, 0), v.cut_at = 0.7; // the wall in front is away
+    struct picture cut = draw(v, &p);
+    ok(behind(&cut, &bare, 32, 32, 0) && behind(&cut, &bare, 8, 8, 1),
+       "what is cut away takes no light");
+    v.cuts = false, v.angle = 40;
+    struct picture wide = draw(v, &p);
+    v.glass = false;
+    struct picture wide_bare = draw(v, &p);
+    ok(behind(&wide, &wide_bare, 32, 32, 1), "with perspective too");
+    picture_free(&bare), picture_free(&two), picture_free(&other), picture_free(&fine);
+    picture_free(&single), picture_free(&cut), picture_free(&wide), picture_free(&wide_bare);
+    packing_free(&p);
+}
+
 /* ---- marks and colours ---- */
 
 static void test_marks(void)
@@ -427,6 +492,7 @@ int main(void)
     test_fit();
     test_order();
     test_walls();
+    test_glass();
     test_marks();
     test_colours();
     test_threads();

@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 static int64_t step = -1, every, samples = 3, threads, follow = -1, rate = 25;
-static int colour = COLOUR_RADIUS;
+static int colour = COLOUR_RADIUS, boundaries;
 static bool plain, bare, svg, strays;
 static double perspective, pale;
 static struct overlay over;
@@ -31,6 +31,16 @@ static struct cli_choice colour_choice(int k)
                         : k == COLOUR_VALUE  ? "a column of --values"
                                              : NULL;
     return (struct cli_choice){ colour_meaning[k].name, about };
+}
+
+enum { GLASS, LINES };
+
+static struct cli_choice boundaries_choice(int k)
+{
+    static const struct cli_choice choices[] = { { "glass", "half transparent" },
+                                                 { "lines", "their edges and outlines alone" },
+                                                 { NULL, NULL } };
+    return choices[k];
 }
 
 static const struct cli_option own[] = {
@@ -74,6 +84,8 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 0, "strays", &strays, .help = "make room for bodies far from all others too" },
     { CLI_TEXT, 0, "box", &box, "X0,X1,Y0,Y1[,Z0,Z1]",
       .help = "only bodies with their centre in this box (m) [all]" },
+    { CLI_CHOICE, 0, "boundaries", &boundaries, .choice = boundaries_choice,
+      .help = "how they are drawn [glass]" },
     { CLI_TEXT, 0, "background", &background, "RRGGBB", .help = "its colour [ffffff]" },
     { CLI_INT, 0, "samples", &samples, "N", .min = 1, .max = 8,
       .help = "a pixel is the mean of N x N samples [3]" },
@@ -146,6 +158,7 @@ static struct view view_of_options(void)
                       .threads = threads ? (int)threads : omp_get_num_procs(),
                       .angle = perspective,
                       .strays = strays,
+                      .glass = boundaries == GLASS,
                       .follows = follow >= 0,
                       .follow = (int32_t)follow,
                       .pale = (float)(cli_given(&pale)                ? pale

@@ -25,12 +25,14 @@ bool band_init(struct band *b, const struct raster *s, int rows)
     size_t tiles = (size_t)(s->width / SHADE_TILE + 1) * (size_t)(rows / SHADE_TILE + 1);
     b->range = malloc(tiles * sizeof *b->range);
     b->dark = calloc(n, sizeof *b->dark), b->edge = calloc(n, sizeof *b->edge);
+    if (s->panes) b->veil = calloc(n, sizeof *b->veil);
     b->spot = malloc((size_t)(s->spots + 1) * sizeof *b->spot);
-    return b->z && b->what && b->n && b->range && b->dark && b->edge && b->spot;
+    return b->z && b->what && b->n && b->range && b->dark && b->edge && b->spot &&
+           (b->veil || !s->panes);
 }
 
 void band_free(struct band *b)
 {
     free(b->z), free(b->what), free(b->n), free(b->range), free(b->dark), free(b->edge),
-        free(b->spot);
+        free(b->spot), free(b->veil);
 }

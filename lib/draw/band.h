@@ -32,6 +32,13 @@ struct ground {
     double x[WALLS_CORNERS], y[WALLS_CORNERS]; /* of the corners */
 };
 
+/* A half-transparent facet: the plane z = plane[0] + plane[1] x + plane[2] y inside a triangle */
+struct pane {
+    double x[3], y[3], plane[3];
+    float part;  /* of the light behind it that it takes [draw/glass.h] */
+    float light; /* its brightness */
+};
+
 /* What is cut away: where side[0] x + side[1] y + side[2] z + side[3] > 0 */
 struct cutting {
     bool cuts;
@@ -52,6 +59,8 @@ struct raster {
     int grounds, edges;
     struct ground *ground;
     struct edge *edge;
+    int64_t panes;
+    struct pane *pane;
     struct cutting cutting;
     float pale;   /* 0 to 1: how much the bodies are mixed with the background */
     double thick; /* half the width of an edge */
@@ -71,6 +80,11 @@ struct normal {
     float x, y, z;
 };
 
+/* The panes in front of a sample: the part of the light that passes, sums of their parts and lights */
+struct veil {
+    float passes, parts, lights;
+};
+
 struct band {
     int width, y0, y1;  /* samples: all of these columns, rows y0 to y1 - 1 */
     double *z;          /* [width (y1 - y0)] depth of what is in front; -INFINITY: nothing */
@@ -78,6 +92,7 @@ struct band {
     struct normal *n;   /* [width (y1 - y0)] its unit normal */
     struct span *range; /* [squares] least and largest depth of what is in front */
     float *dark;        /* [width (y1 - y0)] share of the sky that is hidden */
+    struct veil *veil;  /* [width (y1 - y0)] what panes in front of it do; NULL without panes */
     float *edge;        /* [width (y1 - y0)] opacity of an edge over it, 0 to 1 */
     int64_t spots;
     int64_t *spot; /* [spots] those near the band */

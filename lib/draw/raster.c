@@ -40,22 +40,50 @@ static void draw_spot(struct band *b, const struct raster *s, int64_t i)
     }
 }
 
+/* The samples of the row y, from *lo to before *hi, with their middle inside a polygon */
+static void row_inside(const struct band *b, const double *px, const double *py, int corners, int y,
+                       int *lo, int *hi)
+{
+    double x0 = INFINITY, x1 = -INFINITY, at = y + 0.5;
+    for (int k = 0; k < corners; k++) { // where its sides cross this row
+        int l = (k + 1) % corners;
+        if ((py[k] <= at) == (py[l] <= at)) continue;
+        double x = px[k] + (at - py[k]) / (py[l] - py[k]) * (px[l] - px[k]);
+        x0 = fmin(x0, x), x1 = fmax(x1, x);
+    }
+    *lo = band_clamp(ceil(x0 - 0.5), 0, b->width), *hi = band_clamp(ceil(x1 - 0.5), 0, b->width);
+}
+
 static void draw_ground(struct band *b, const struct raster *s, int i)
 {
     const struct ground *g = &s->ground[i];
     for (int y = b->y0; y < b->y1; y++) {
-        double x0 = INFINITY, x1 = -INFINITY, at = y + 0.5;
-        for (int k = 0; k < g->corners; k++) { // where its sides cross this row
-            int l = (k + 1) % g->corners;
-            if ((g->y[k] <= at) == (g->y[l] <= at)) continue;
-            double x = g->x[k] + (at - g->y[k]) / (g->y[l] - g->y[k]) * (g->x[l] - g->x[k]);
-            x0 = fmin(x0, x), x1 = fmax(x1, x);
-        }
-        int end = band_clamp(ceil(x1 - 0.5), 0, b->width);
-        for (int x = band_clamp(ceil(x0 - 0.5), 0, b->width); x < end; x++) {
+        int x, end;
+        double at = y + 0.5;
+        for (row_inside(b, g->x, g->y, g->corners, y, &x, &end); x < end; x++) {
             size_t k = band_at(b, x, y);
             double z = g->plane[0] + g->plane[1] * (x + 0.5) + g->plane[2] * at;
             if (z > b->z[k]) b->z[k] = z, b->what[k] = GROUND - i;
+        }
+    }
+}
+
+static void draw_pane(struct band *b, const struct raster *s, const struct pane *p)
+{
+    const double *side = s->cutting.side;
+    int y0 = band_clamp(ceil(fmin(p->y[0], fmin(p->y[1], p->y[2])) - 0.5), b->y0, b->y1);
+    int y1 = band_clamp(ceil(fmax(p->y[0], fmax(p->y[1], p->y[2])) - 0.5), b->y0, b->y1);
+    for (int y = y0; y < y1; y++) {
+        int x, end;
+        double at = y + 0.5;
+        for (row_inside(b, p->x, p->y, 3, y, &x, &end); x < end; x++) {
+            double z = p->plane[0] + p->plane[1] * (x + 0.5) + p->plane[2] * at;
+            size_t k = band_at(b, x, y);
+            if (!(z > b->z[k])) continue;
+            if (s->cutting.cuts && side[0] * (x + 0.5) + side[1] * at + side[2] * z + side[3] > 0)
+                continue;
+            struct veil *v = &b->veil[k];
+            v->passes *= 1 - p->part, v->parts += p->part, v->lights += p->part * p->light;
         }
     }
 }
@@ -103,6 +131,7 @@ static void band_draw(struct band *b, const struct raster *s, struct picture *p)
     size_t n = (size_t)(b->y1 - b->y0) * (size_t)b->width;
     for (size_t k = 0; k < n; k++)
         b->z[k] = -INFINITY, b->what[k] = NOTHING, b->dark[k] = b->edge[k] = 0;
+    for (size_t k = 0; s->panes && k < n; k++) b->veil[k] = (struct veil){ 1, 0, 0 };
     b->spots = 0;
     for (int64_t i = 0; i < s->spots; i++) { // those that are seen in it or darken it
         const struct spot *o = &s->spot[i];
@@ -111,6 +140,7 @@ static void band_draw(struct band *b, const struct raster *s, struct picture *p)
     }
     for (int i = 0; i < s->grounds; i++) draw_ground(b, s, i);
     for (int64_t i = 0; i < b->spots; i++) draw_spot(b, s, b->spot[i]);
+    for (int64_t i = 0; i < s->panes; i++) draw_pane(b, s, &s->pane[i]);
     for (int i = 0; i < s->edges; i++) draw_edge(b, s, &s->edge[i]);
     shade_normals(b, s);
     shade_near(b, s);

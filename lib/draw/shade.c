@@ -162,6 +162,14 @@ static struct rgb ground_shown(const struct band *b, const struct raster *s, siz
     return (struct rgb){ light, light, light };
 }
 
+static struct rgb behind_glass(struct rgb seen, const struct veil *v)
+{
+    if (!(v->parts > 0)) return seen;
+    static const struct rgb glass = { 0.62F, 0.74F, 0.86F };
+    float light = v->lights / v->parts;
+    return rgb_mix(seen, scaled(glass, light, 0), 1 - v->passes);
+}
+
 static struct rgb sample(const struct band *b, const struct raster *s, int x, int y, struct turn *t)
 {
     size_t k = band_at(b, x, y);
@@ -171,6 +179,7 @@ static struct rgb sample(const struct band *b, const struct raster *s, int x, in
                    : s->flat        ? disc_light(s, &s->spot[what], x + 0.5, y + 0.5, t)
                                     : ball_light(b, s, k, t);
     if (what >= 0 && s->pale > 0) c = rgb_mix(c, s->background, s->pale);
+    if (s->panes) c = behind_glass(c, &b->veil[k]);
     if (!(b->edge[k] > 0)) return c;
     float line = bright_background(s) ? 0.08F : 0.4F;
     return rgb_mix(c, (struct rgb){ line, line, line }, b->edge[k]);

@@ -1,6 +1,7 @@
 /* draw/view.c: the window of a series, and its bodies and walls placed among the samples. */
 #include "draw/view.h"
 
+#include "draw/glass.h"
 #include "draw/images.h"
 #include "draw/raster.h"
 
@@ -297,13 +298,46 @@ static int place_walls(struct raster *s, const struct view *v, const struct pack
     const struct region r = { v3_add(v->region.lo, v->moved), v3_add(v->region.hi, v->moved) };
     if (allocated) walls_build(b, p, &r), images_outline(b, p);
     for (int i = 0; allocated && i < b->panels; i++)
-        if (v3_dot(b->panel[i].n, v->camera.toward) > 1e-3)
+        if (v3_dot(b->panel[i].n, v->camera.toward) > WALLS_FACING)
             place_ground(&s->ground[s->grounds++], v, &b->panel[i]);
     for (int i = 0; allocated && i < b->edges; i++)
         s->edge[s->edges++] = (struct edge){ sample_of(v, v3_sub(b->edge[i].a, v->moved)),
                                              sample_of(v, v3_sub(b->edge[i].b, v->moved)) };
     free(b);
     return allocated ? 0 : -1;
+}
+
+/* f's plane and corners among the samples; false where a corner is not before the eye. */
+static bool place_pane(struct pane *g, const struct view *v, const struct facet *f)
+{
+    vec3 at[3], n = camera_sees(&v->camera, f->n);
+    for (int k = 0; k < 3; k++) {
+        double near;
+        at[k] = sample_near(v, v3_sub(f->corner[k], v->moved), &near);
+        g->x[k] = at[k].x, g->y[k] = at[k].y;
+        if (!(near > 0)) return false;
+    }
+    vec3 across = v3_cross(v3_sub(at[1], at[0]), v3_sub(at[2], at[0]));
+    if (fabs(across.z) < 1e-6) return false; // seen edgewise, it covers no sample
+    g->plane[1] = -across.x / across.z, g->plane[2] = -across.y / across.z;
+    g->plane[0] = at[0].z - g->plane[1] * at[0].x - g->plane[2] * at[0].y;
+    g->part = glass_part(n.z);
+    g->light = (float)(0.75 + 0.25 * fabs(n.z));
+    return true;
+}
+
+static int place_panes(struct raster *s, const struct view *v, const struct packing *p)
+{
+    struct glass glass;
+    struct why why = { 0 };
+    const struct region r = { v3_add(v->region.lo, v->moved), v3_add(v->region.hi, v->moved) };
+    if (!v->glass) return 0;
+    if (glass_init(&glass, p, &r, v->camera.toward, &why)) return -1;
+    s->pane = malloc((size_t)(glass.facets + 1) * sizeof *s->pane);
+    for (int64_t i = 0; s->pane && i < glass.facets; i++)
+        s->panes += place_pane(&s->pane[s->panes], v, &glass.facet[i]);
+    glass_free(&glass);
+    return s->pane ? 0 : -1;
 }
 
 int view_draw(const struct view *v, const struct packing *p, struct picture *pic, struct why *why)
@@ -329,10 +363,10 @@ int view_draw(const struct view *v, const struct packing *p, struct picture *pic
     *pic = (struct picture){ 0 };
     if (v->dim != p->dim)
         why_set(why, EX_DATAERR, "dim %d after dim %d in one series", p->dim, v->dim);
-    else if (place_spots(&s, v, p) || place_walls(&s, v, p))
+    else if (place_spots(&s, v, p) || place_walls(&s, v, p) || place_panes(&s, v, p))
         why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)p->n);
     else if (!picture_init(pic, c->width, c->height, why) && raster_draw(&s, pic, why))
         picture_free(pic);
-    free(s.spot), free(s.ground), free(s.edge);
+    free(s.spot), free(s.ground), free(s.edge), free(s.pane);
     return why->status;
 }

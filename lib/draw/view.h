@@ -24,6 +24,7 @@ struct view {
     bool strays;       /* bodies far from all others count too in what the picture shows */
     bool follows;      /* a body stays where it is in the picture: */
     int32_t follow;    /* its id */
+    bool glass;        /* boundaries are half-transparent, not lines alone [draw/glass.h] */
     float pale;        /* 0 to 1: how much bodies are mixed with the background */
     int width, height; /* pixels; 0: chosen */
     int samples;       /* a pixel is the mean of samples x samples */

@@ -200,7 +200,7 @@ static void keep_polygon(struct walls *b, const struct packing *p, int i, const 
         b->edge[b->edges++] =
             (struct edge){ v3_add(g->p[k], middle), v3_add(g->p[(k + 1) % g->count], middle) };
     }
-    if (stroke || g->count < 3 || normal_now(p, i).z < 0.5) return;
+    if (stroke || g->count < 3 || normal_now(p, i).z < WALLS_FLAT) return;
     struct panel *f = &b->panel[b->panels++];
     *f = (struct panel){ .n = normal_now(p, i), .origin = wall_now(p, i), .corners = g->count };
     for (int k = 0; k < g->count; k++) f->corner[k] = v3_add(g->p[k], middle);
@@ -242,6 +242,12 @@ void walls_build(struct walls *b, const struct packing *p, const struct region *
         if (g.count > 1) keep_polygon(b, p, i, &g, middle);
     }
     add_outlines(b, p, r);
+}
+
+bool walls_floor(const struct packing *p, int i, vec3 toward)
+{
+    vec3 n = normal_now(p, i);
+    return n.z >= WALLS_FLAT && v3_dot(n, toward) > WALLS_FACING;
 }
 
 int walls_polygon(const struct packing *p, int i, const struct region *r, vec3 *corner)

@@ -32,6 +32,9 @@ struct edge {
     vec3 a, b; /* its ends, m; in a raster samples */
 };
 
+#define WALLS_FLAT   0.5  /* the cosine of the steepest floor */
+#define WALLS_FACING 1e-3 /* the cosine between a floor and the line of sight, where it is seen */
+
 struct walls {
     int panels, edges;
     struct panel panel[WALLS_PANELS];
@@ -48,6 +51,9 @@ struct region region_join(struct region a, struct region b);
 
 /* b = the walls inside the region at the packing's time. In the plane walls are edges. */
 void walls_build(struct walls *b, const struct packing *p, const struct region *r);
+
+/* Whether wall i is drawn as a floor where it is seen from `toward` (unit vector to the viewer) */
+bool walls_floor(const struct packing *p, int i, vec3 toward);
 
 /* corner[] = the corners (m) of wall i inside the region and before all other walls, at most
    WALLS_CORNERS, two in the plane; returns how many. i < WALLS_PANELS. */
