@@ -63,6 +63,7 @@ try:
     seen['chosen'] = run('return nsd.chosen')
     seen['text'] = browser.find_element(By.ID, 'picked').text
     seen['position'] = run('const f = nsd.frame, i = %d; return [0, 1, 2].map(j => f.m.lo[j] + f.m.step[j] * f.x[4 * i + j])' % seen['row'])
+    seen['images'] = run('return Array.from(nsd.frame.shown.row).sort()')
     seen['curves'] = run('return Object.keys(nsd.meta.curves)')
     before = pixels()
     network = browser.find_element(By.ID, 'network')

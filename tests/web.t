@@ -90,6 +90,14 @@ if [ -z "$quick" ]; then
     nsd-web "$tmp/discs.h5" >"$tmp/discs.html" 2>/dev/null
     plays "$tmp/discs.html" "discs, without contacts" false "$tmp/discs.h5"
 
+    # a cell that repeats: two discs meet across its border, one of them cuts a corner
+    printf '{"dim": 2, "dt": 1e-3, "density": 2500, "mu": 0, "gravity": [0, 0],
+        "cell": {"lengths": [1, 1]}, "bodies": [{"radius": 0.1, "x": [0.02, 0.03]}, {"radius": 0.1, "x": [0.81, 0.03], "v": [1, 0.5]}]}' |
+        nsd-gen - | nsd-step -n 11 --contacts >"$tmp/cell.h5" 2>/dev/null
+    nsd-web "$tmp/cell.h5" >"$tmp/cell.html" 2>/dev/null
+    plays "$tmp/cell.html" "a cell that repeats" true "$tmp/cell.h5"
+    is "grains are drawn on either side of its border: 4 and 2 images" "$(seen '.images | tojson')" '[0,0,0,0,1,1]'
+
     nsd-gen 500 | nsd-step -n 1000 --contacts >"$tmp/long.h5" 2>/dev/null
     nsd-web "$tmp/long.h5" >"$tmp/long.html" 2>/dev/null
     ok "500 balls, 1000 frames with their contacts: below 30 MB" [ "$(stat -c %s "$tmp/long.html")" -lt 30000000 ]

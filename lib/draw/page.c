@@ -13,6 +13,7 @@
  */
 #include "draw/page.h"
 
+#include "draw/images.h"
 #include "draw/outline.h"
 
 #include "base/json.h"
@@ -25,6 +26,8 @@
 struct page_moment {
     int64_t step, n, contacts, grains, walls;
     double t, lo[3], quantum[3], vmax, wmax, fmax;
+    bool repeats[3]; /* the cell, where it repeats */
+    vec3 origin, edge[3];
 };
 
 enum { U16 = 65535, I16 = 32767, I8 = 127 };
@@ -113,6 +116,7 @@ static int write_walls(struct page *p, const struct packing *k, const struct reg
             0
         };
         walls_build(w, k, r);
+        images_outline(w, k);
         if (b.at) put_walls(&b, w, &o);
         e = b.at ? write_changed(p, 'b', &p->walls, &p->walls_last, &p->walls_size, &b, why)
                  : no_memory(why);
@@ -280,13 +284,15 @@ int page_frame(struct page *p, const struct packing *k, const struct contacts *s
         double f = fmax(s->found[i].r[0], tangential(&s->found[i])) / k->dt;
         if (isfinite(f)) m->fmax = fmax(m->fmax, f);
     }
-    bool any = region_of(&r, k);
+    for (int j = 0; j < 3; j++) m->repeats[j] = k->cell.repeats[j], m->edge[j] = k->cell.edge[j];
+    m->origin = k->cell.origin;
+    bool any = region_of(&r, k), walls = k->walls || cell_repeats(&k->cell);
     if (any) p->seen = p->frames ? region_join(p->seen, r) : r;
-    if (any && k->walls && write_walls(p, k, &r, why)) return why->status;
+    if (any && walls && write_walls(p, k, &r, why)) return why->status;
     if (write_grains(p, k, why) || widen(p, m, k, s, why) || write_frame(p, m, k, s, why))
         return why->status;
     m->grains = p->grains - 1;
-    if (any && k->walls) m->walls = p->walls - 1;
+    if (any && walls) m->walls = p->walls - 1;
     p->frames++;
     return 0;
 }
@@ -334,12 +340,30 @@ int page_begin(struct page *p, FILE *out, const char *name, const char *title, s
     return not_written(p, why);
 }
 
+static json_t *vec_json(vec3 x)
+{
+    const double three[3] = { x.x, x.y, x.z };
+    return json_numbers(three, 3);
+}
+
+static json_t *cell_json(const struct page_moment *m)
+{
+    json_t *j = json_pack("{s:[b,b,b]}", "repeats", m->repeats[0], m->repeats[1], m->repeats[2]);
+    json_object_set_new(j, "origin", vec_json(m->origin));
+    json_object_set_new(
+        j, "edge",
+        json_pack("[o,o,o]", vec_json(m->edge[0]), vec_json(m->edge[1]), vec_json(m->edge[2])));
+    return j;
+}
+
 static json_t *moment_json(const struct page_moment *m)
 {
     json_t *j =
         json_pack("{s:I, s:I, s:I, s:I, s:o}", "s", (json_int_t)m->step, "n", (json_int_t)m->n, "c",
                   (json_int_t)m->contacts, "g", (json_int_t)m->grains, "t", json_number(m->t));
     if (m->walls >= 0) json_object_set_new(j, "b", json_integer(m->walls));
+    if (m->repeats[0] || m->repeats[1] || m->repeats[2])
+        json_object_set_new(j, "cell", cell_json(m));
     json_object_set_new(j, "lo", json_numbers(m->lo, 3));
     json_object_set_new(j, "step", json_numbers(m->quantum, 3));
     json_object_set_new(j, "vmax", json_number(m->vmax));

@@ -60,10 +60,45 @@ async function load(k) {
   f.mass = take(grains, Float32Array, n);
   f.id = take(grains, Int32Array, n);
   f.kind = take(grains, Int32Array, n);
+  f.shown = images(f);
   return f;
 }
 
 const place = (f, i) => [0, 1, 2].map(j => f.m.lo[j] + f.m.step[j] * f.x[4 * i + j]);
+
+/*
+ * What is drawn: grains, and where a cell repeats each inside it and once more on every other side of the
+ * border that it cuts. `row` is whose, `by` (m) how far from where the document has it.
+ */
+function images(f) {
+  const cell = f.m.cell, row = [], by = [];
+  if (!cell) return { n: f.n, row: Int32Array.from({ length: f.n }, (_, i) => i), by: new Float32Array(3 * f.n) };
+  const inverse = new T.Matrix3().set(...[0, 1, 2].flatMap(j => cell.edge.map(e => e[j]))).invert().elements;
+  const across = [0, 1, 2].map(k => [0, 1, 2].map(j => inverse[3 * j + k])); // u_k = across_k . (x - origin)
+  const ways = cell.repeats.map(repeats => repeats ? [-1, 0, 1] : [0]);
+  const put = (i, s) => {
+    row.push(i);
+    by.push(...[0, 1, 2].map(j => s[0] * cell.edge[0][j] + s[1] * cell.edge[1][j] + s[2] * cell.edge[2][j]));
+  };
+  for (let i = 0; i < f.n; i++) {
+    const d = place(f, i).map((x, j) => x - cell.origin[j]);
+    const u = across.map(a => a[0] * d[0] + a[1] * d[1] + a[2] * d[2]);
+    const home = u.map((v, k) => cell.repeats[k] ? -Math.floor(v) : 0), wide = across.map(a => f.radius[i] * norm(a));
+    const cut = (k, s) => !s || (u[k] + home[k] + s + wide[k] >= 0 && u[k] + home[k] + s - wide[k] <= 1);
+    for (const a of ways[0]) for (const b of ways[1]) for (const c of ways[2])
+      if (cut(0, a) && cut(1, b) && cut(2, c)) put(i, [home[0] + a, home[1] + b, home[2] + c]);
+  }
+  return { n: row.length, row: Int32Array.from(row), by: Float32Array.from(by) };
+}
+/* Where image k is drawn, m */
+const drawn = (f, k) => place(f, f.shown.row[k]).map((x, j) => x + f.shown.by[3 * k + j]);
+/* An array with `width` numbers a grain as one with as many an image */
+function imaged(f, array, width) {
+  if (!f.m.cell) return array;
+  const out = new array.constructor(width * f.shown.n);
+  f.shown.row.forEach((i, k) => { for (let j = 0; j < width; j++) out[width * k + j] = array[width * i + j]; });
+  return out;
+}
 const velocity = (f, i) => [0, 1, 2].map(j => f.m.vmax * f.v[4 * i + j] / 32767);
 const spin = (f, i) => f.m.wmax * f.x[4 * i + 3] / 65535;
 const norm = v => Math.hypot(...v);
@@ -151,12 +186,13 @@ uniform bool ortho, classes;
 uniform sampler2D palette;
 in vec3 position;
 in vec4 x, q;
+in vec3 by;
 in float radius, value, chosen;
 out vec3 at, centre, colour;
 out vec4 turn;
 flat out float r;
 void main() {
-  vec3 world = (origin + quantum * x.xyz) * scale;
+  vec3 world = (origin + quantum * x.xyz + by) * scale;
   centre = (viewMatrix * vec4(world, 1.)).xyz;
   r = radius * scale;
   float d = length(centre), wide = r;
@@ -302,7 +338,7 @@ let now = null, chosen = null; // the frame shown; the id of the grain picked
 
 function show_grains(f) {
   const g = balls.geometry, show = colours[by_id('colour').value];
-  if (f.n !== g.instanceCount) for (const a of ['x', 'q', 'radius', 'value', 'chosen']) g.deleteAttribute(a);
+  if (f.shown.n !== g.instanceCount) for (const a of ['x', 'q', 'by', 'radius', 'value', 'chosen']) g.deleteAttribute(a);
   const value = show.of(f), range = range_of(show, value);
   draw_bar(show, range);
   if (range) {
@@ -310,12 +346,13 @@ function show_grains(f) {
     for (let i = 0; i < f.n; i++)
       value[i] = hi > lo ? Math.min(Math.max((value[i] - lo) / (hi - lo), 0), 1) : 0.5;
   }
-  instanced(g, 'x', f.x, 4, false);
-  instanced(g, 'q', f.q, 4, true);
-  instanced(g, 'radius', f.radius, 1, false);
-  instanced(g, 'value', value, 1, false);
-  instanced(g, 'chosen', Float32Array.from(f.id, id => id === chosen ? 1 : 0), 1, false);
-  g.instanceCount = f.n;
+  instanced(g, 'x', imaged(f, f.x, 4), 4, false);
+  instanced(g, 'q', imaged(f, f.q, 4), 4, true);
+  instanced(g, 'by', f.shown.by, 3, false);
+  instanced(g, 'radius', imaged(f, f.radius, 1), 1, false);
+  instanced(g, 'value', imaged(f, value, 1), 1, false);
+  instanced(g, 'chosen', imaged(f, Float32Array.from(f.id, id => id === chosen ? 1 : 0), 1), 1, false);
+  g.instanceCount = f.shown.n;
   uniforms.origin.value.set(...f.m.lo);
   uniforms.quantum.value.set(...f.m.step);
   uniforms.classes.value = !!show.classes;
@@ -324,13 +361,17 @@ function show_grains(f) {
 function show_network(f) {
   network.visible = by_id('network').checked && f.c > 0;
   if (!network.visible) return;
-  const push = [];
+  const push = [], home = new Map(); // where each grain is drawn first
+  f.shown.row.forEach((i, k) => { if (!home.has(i)) home.set(i, k); });
+  const at = i => drawn(f, home.get(i));
   for (let i = 0; i < f.c; i++) if (f.fn[i]) push.push(i);
   const n = push.length, from = new Float32Array(3 * n), to = new Float32Array(3 * n),
     colour = new Float32Array(3 * n), wide = new Float32Array(n);
   push.forEach((i, k) => {
-    const b = place(f, f.b[i]), normal = [0, 1, 2].map(j => f.normal[4 * i + j] / 127);
-    const a = f.a[i] >= 0 ? place(f, f.a[i]) : b.map((x, j) => x - f.radius[f.b[i]] * normal[j]);
+    const b = at(f.b[i]), normal = [0, 1, 2].map(j => f.normal[4 * i + j] / 127);
+    const away = f.radius[f.b[i]] + (f.a[i] >= 0 ? f.radius[f.a[i]] : 0);
+    // to the image that it touches, or to the boundary
+    const a = f.a[i] >= 0 && !f.m.cell ? at(f.a[i]) : b.map((x, j) => x - away * normal[j]);
     for (let j = 0; j < 3; j++) from[3 * k + j] = scale * a[j], to[3 * k + j] = scale * b[j];
     colour.set(f.normal[4 * i + 3] === 2 ? [.82, .24, .17] : [.12, .31, .61], 3 * k);
     wide[k] = 8 * devicePixelRatio * f.fn[i] / 65535; // pixels, half of it; the frame's largest has 16
@@ -501,7 +542,8 @@ function draw() {
   axes(cam);
 }
 
-/* The grain under a point of the canvas: the row of the nearest ball that the ray meets; -1: none */
+/* The grain under a point of the canvas: the row of the nearest ball that the ray meets, perhaps as an
+   image; -1: none */
 function pick(px, py) {
   if (!now) return -1;
   const cam = camera(), box = canvas.getBoundingClientRect();
@@ -510,8 +552,9 @@ function pick(px, py) {
   const { origin, direction } = ray.ray;
   const ahead = cam.getWorldDirection(new T.Vector3());
   let best = -1, nearest = Infinity;
-  for (let i = 0; i < now.n; i++) {
-    const c = new T.Vector3(...place(now, i)).multiplyScalar(scale), r = scale * now.radius[i];
+  for (let k = 0; k < now.shown.n; k++) {
+    const i = now.shown.row[k];
+    const c = new T.Vector3(...drawn(now, k)).multiplyScalar(scale), r = scale * now.radius[i];
     if (c.clone().sub(cam.position).dot(ahead) < uniforms.cutoff.value) continue;
     c.sub(origin);
     const b = c.dot(direction), h = r * r - c.lengthSq() + b * b;
@@ -622,7 +665,7 @@ requestAnimationFrame(tick);
 /* For those who drive the page by a program: go(k), pick(x, y) -> row, what is shown. */
 window.nsd = { meta, go, pick, draw, get frame() { return now; }, get chosen() { return chosen; },
   seen(i) {
-    const v = new T.Vector3(...place(now, i)).multiplyScalar(scale).project(camera());
+    const v = new T.Vector3(...drawn(now, now.shown.row.indexOf(i))).multiplyScalar(scale).project(camera());
     const box = canvas.getBoundingClientRect();
     return [box.left + (v.x + 1) / 2 * box.width, box.top + (1 - v.y) / 2 * box.height];
   } };
