@@ -42,10 +42,12 @@ try:
     run('await nsd.go(nsd.meta.frames.length - 1)')
     seen['changes'] = pixels() != first
     seen['back'] = run('await nsd.go(0)') or pixels() == first
-    # played by its button, it goes on by itself
+    # played by its button, it goes on by itself; and round, so one look could find the first frame again
     browser.find_element(By.ID, 'play').click()
-    time.sleep(1.5)
-    seen['plays'] = run('return nsd.frame.k') > 0
+    start, frames = time.time(), set()
+    while len(frames) < 3 and time.time() - start < 60:
+        frames.add(run('return nsd.frame.k'))
+    seen['plays'] = len(frames) == 3
     browser.find_element(By.ID, 'play').click()
     run('await nsd.go(nsd.meta.frames.length - 1)')
     # a click where the nearest grain of the middle is seen reads that grain
