@@ -45,6 +45,14 @@ nsd-cat --stream "$tmp/kept.h5" | nsd-cat -o "$tmp/again.h5"
 ok 'a stream joined again is the trajectory' same_particles "$tmp/kept.h5" "$tmp/again.h5"
 is 'and its contacts' "$(nsd-info -c "$tmp/kept.h5" | cksum)" "$(nsd-info -c "$tmp/again.h5" | cksum)"
 
+# The height yields to a pressure, the width does not: however flat the cell and oblique its height, its width stays
+# along x, for cut by the height it would move as nothing that was asked for.
+printf '{"dim": 2, "dt": 0.01, "gravity": [0, 0], "density": 1, "mu": 0.4, "cell": {"lengths": [12, 6], "affine": true,
+    "gradient": [[0, 1], [0, 0]], "stress": {"target": [[null, null], [null, 1]], "mass": 10}},
+    "bodies": [{"count": 36, "radius": 0.45, "spacing": 1}]}' | nsd-gen - | nsd-step -n 400 2>/dev/null >"$tmp/flat.h5"
+is 'a cell is cut only into edges that move as its own' \
+    "$(nsd-info --last "$tmp/flat.h5" | jq -c '.edges[0], (.edges[1][1] < 6)' | paste -sd' ')" '[12,0,0] true'
+
 # The contact problem as FCLIB has it: q holds the edges' rates, so that W r + q is what was solved.
 nsd-detect --fclib=local "$tmp/dense.h5" >"$tmp/both.h5"
 foreign "$tmp/both.h5" "$tmp/both.raw"

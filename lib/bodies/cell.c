@@ -248,11 +248,20 @@ void cell_wraps(const struct cell *c, const vec3 inverse[3], vec3 x, int32_t wra
     }
 }
 
+/* Edge k less edge j moves as an edge does whose components yield or are given as those of k: where
+   one of j yields, that of k must too. */
+static bool may_recut(const struct cell *c, int k, int j)
+{
+    for (int i = 0; i < 3; i++)
+        if (c->mass[j][i] > 0 && !(c->mass[k][i] > 0)) return false;
+    return c->repeats[j] && c->repeats[k];
+}
+
 int32_t cell_recut(struct cell *c, int *to, int *from)
 {
     for (int k = 0; k < 3; k++)
         for (int j = 0; j < 3; j++) {
-            if (j == k || !c->repeats[j] || !c->repeats[k]) continue;
+            if (j == k || !may_recut(c, k, j)) continue;
             double lean = v3_dot(c->edge[k], c->edge[j]) / v3_dot(c->edge[j], c->edge[j]);
             if (!(fabs(lean) > TOO_OBLIQUE && fabs(lean) < 1e6)) continue;
             double n = rint(lean);

@@ -123,7 +123,7 @@ static inline vec3 cell_flow_gain(const struct cell_flow *f, vec3 x)
 void cell_wraps(const struct cell *c, const vec3 inverse[3], vec3 x, int32_t wraps[3]);
 /*
  * One cut of the cell into a less oblique one of the same lattice: edge[*to] -= n edge[*from].
- * Returns n; 0: it is not too oblique.
+ * Returns n; 0: it is not too oblique, or the new edge would not move as it must.
  */
 int32_t cell_recut(struct cell *c, int *to, int *from);
 
