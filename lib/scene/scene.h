@@ -73,6 +73,8 @@
  *   side inside [that] | outside | both. A boundary may yield to a load, on top of its motion:
  *   { along: vector, mass: kg, force: N [0], speed: m/s [0] }              free along the vector
  *   { about: point, axis, mass: kg m^2, torque: N m [0], speed: rad/s [0] }   about an axis there
+ *   whose force or torque is a number or { table: [[t, N], ...], mean [0] } or
+ *   { amplitude, frequency, phase, mean }.
  *   Its weight is a force like others: gravity does not pull at boundaries.
  *
  * DRIVE { along: vector } or { about: point, axis: vector }, with speed, or amplitude, frequency and
@@ -209,6 +211,7 @@ struct scene {
     int32_t walls;
     struct wall *wall;    /* [walls] */
     struct drives drives; /* of them */
+    struct drives pushes; /* of their loads */
     struct mesh mesh;     /* of those that are meshes */
     int32_t meshes;
     struct scene_mesh *mesh_file; /* [meshes] those that are files */

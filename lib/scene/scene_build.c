@@ -158,7 +158,8 @@ static int set_parameters(struct packing *p, const struct scene *s, struct why *
     if (packing_alloc_walls(p, s->walls, why) || packing_alloc_kinds(p, s->kinds, why))
         return why->status;
     for (int32_t i = 0; i < s->walls; i++) p->wall[i] = s->wall[i];
-    if (drives_copy(&p->drives, &s->drives, why) || mesh_copy(&p->mesh, &s->mesh, why))
+    if (drives_copy(&p->drives, &s->drives, why) || drives_copy(&p->pushes, &s->pushes, why) ||
+        mesh_copy(&p->mesh, &s->mesh, why))
         return why->status;
     if (s->cell.given && (cell_copy(&p->cell, &s->cell.cell) || packing_alloc_images(p, why)))
         goto fail;
@@ -256,9 +257,11 @@ static int take_walls(struct packing *p, const struct scene *s, const struct sce
                            "%s: wall %d is of kind \"%s\": name it under \"kinds\"", b->file, i,
                            from->kind_name[from->wall[i].kind]);
     }
-    if (drives_copy(&p->drives, &from->drives, why) || mesh_copy(&p->mesh, &from->mesh, why))
+    if (drives_copy(&p->drives, &from->drives, why) ||
+        drives_copy(&p->pushes, &from->pushes, why) || mesh_copy(&p->mesh, &from->mesh, why))
         return why->status;
     for (int32_t k = 0; k < p->drives.n; k++) p->drives.drive[k].clock += from->t - s->t;
+    for (int32_t k = 0; k < p->pushes.n; k++) p->pushes.drive[k].clock += from->t - s->t;
     return 0;
 }
 
