@@ -148,6 +148,9 @@ like "is not converged" "$(jq -s 'map(.converged) | any | not' "$tmp/jam.log")" 
 like "and says how fast bodies still approach" "$(cat "$tmp/err")" 'reactions grow without end, and bodies still approach at up to 0\.[0-9]+ m/s'
 like "which the report has, too" "$(jq -s 'map(.max_penetration_true) | min > 0.05' "$tmp/jam.log")" true
 
+nsd-info --scene "$tmp/pressed.h5" | nsd-gen - >"$tmp/on.h5"
+is "nsd-info --scene goes on with the piston where it is" "$(load "$tmp/on.h5")" "$(load "$tmp/pressed.h5")"
+
 # ---- a load that changes in time ----
 
 # Speed and way of a piston alone, 2 kg, after 200 steps of 1 ms, under force $1

@@ -42,8 +42,9 @@ int scene_read_size(jnode size, int dim, struct scene_size *z);
 /* scene/scene_flow.c: "pour" and "remove" */
 int scene_read_pours(jnode pours, struct scene *s);
 int scene_read_removals(jnode removals, struct scene *s);
-/* scene/scene_cell.c: "cell" */
-int scene_read_cell(jnode cell, int dim, struct scene_cell *out);
+/* scene/scene_cell.c: "cell", at time t (s); edges may be left out where there are documents among the
+   bodies */
+int scene_read_cell(jnode cell, int dim, double t, bool documents, struct scene_cell *out);
 
 /* scene/scene_bodies.c: "bodies"; a lattice without a box fills this one (NULL: must have its
    own). */

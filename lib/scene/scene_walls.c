@@ -68,12 +68,13 @@ static int read_load(jnode o, struct scene *s, struct wall *w)
     if (!o.json) return 0;
     int which = json_node_choice(o, "along about");
     if (which < 0 ||
-        json_node_only(o, !which                 ? "along mass force speed"
-                          : plane || s->dim == 2 ? "about mass torque speed"
-                                                 : "about axis mass torque speed") ||
+        json_node_only(o, !which                 ? "along mass force speed travel"
+                          : plane || s->dim == 2 ? "about mass torque speed travel"
+                                                 : "about axis mass torque speed travel") ||
         json_node_need(&o, "mass") ||
         json_node_number(json_node_key(&o, "mass"), J_POSITIVE, &w->load.mass) ||
         json_node_number(json_node_key(&o, "speed"), J_ANY, &w->load.speed) ||
+        json_node_number(json_node_key(&o, "travel"), J_ANY, &w->load.travel) ||
         read_way(o, s->dim, w, which == 1, &w->load))
         return 1;
     w->first_push = s->pushes.n;
