@@ -3,7 +3,7 @@
 # shellcheck source=scripts/gallery/common.sh
 . "$(dirname "$0")/common.sh"
 
-width=$(pick 0.08 0.2)
+width=$(pick 0.1 0.2)
 read -ra ratios <<<"$(pick '0.5 1.5 3 7' '0.4 0.7 1 1.5 2.2 3.2 4.7 6.8 10')"
 
 echo "a runout front" >"$out/runout.tsv"
@@ -16,11 +16,11 @@ for a in "${ratios[@]}"; do
         nsd-gen - | step "column-$a.h5" --until "$gate" --every 1s
     # the document has its gate, which vanishes at its next step
     nsd-step --until "$end" --every 0.05s --overlap project -o "$out/run-$a.h5" "$out/column-$a.h5" 2>"$out/run.log"
-    # what has no gap of two diameters before it is part of the heap; a column's mean height is half its own
+    # what touches on is part of the heap: discs that have rolled ahead are not; a column's mean height is half its own
     { nsd-info --last -p "$out/column-$a.h5"; nsd-info --last -p "$out/run-$a.h5"; } |
         with 'map([.step, .x[0], .x[1], .radius]) | group_by(.[0]) |
             (.[0] | 2 * (map(.[2]) | mean)) as $height |
-            (.[1] | map(.[1] + .[3]) | sort | [range(1; length) as $i | select(.[$i] - .[$i - 1] > 0.02) | .[$i - 1]] as $gaps | ($gaps[0] // .[-1])) as $front |
+            (.[1] | map(.[1] + .[3]) | sort | [range(1; length) as $i | select(.[$i] - .[$i - 1] > 0.013) | .[$i - 1]] as $gaps | ($gaps[0] // .[-1])) as $front |
             [$height / $w, ($front - $w) / $w, $front] | @tsv' -rs --argjson w "$width" >>"$out/runout.tsv"
 done
 curve

@@ -34,7 +34,7 @@ on() { nsd-info --scene "$out/$1" | jq "${@:2}" >"$out/on.json"; nsd-gen "$out/o
 # with FILTER [jq's arguments]: jq with the functions of rows.jq
 with() { jq -L "$P" "include \"rows\"; $1" "${@:2}"; }
 
-picture() { nsd-view --size 900x900 -o "$out/picture.png" "$@"; }
+picture() { nsd-view -o "$out/picture.png" "$@"; }
 
 # The curve, by NAME.gp, from the tables in the folder
 curve() { gnuplot -e "dir = '$out'; quick = ${QUICK:+1}${QUICK:-0}" "$P/style.gp" "$P/$name.gp"; }
