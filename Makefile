@@ -4,6 +4,7 @@
 # make bench-solvers   all solvers over a collection of problems, Siconos' beside them
 # make rest       what is done about overlap: columns and piles that rest (nsd-methods(7))
 # make paper      every table and figure of the paper     QUICK=1        the same in minutes
+# make gallery    experiments beside what is published     QUICK=1       small, in minutes
 # make docs       the manuals as HTML, in docs/man        make deb       Debian packages, in build/deb
 #
 # Objects, tools and tests are under build/; SAN=1 makes the same with ASan and UBSan in build/san/,
@@ -104,6 +105,11 @@ demo: setup-run
 paper paper-keep: setup-paper
 	$(MAKE) -j2 all
 	$(MAKE) -f scripts/paper.mk $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc)) $(@:paper%=all%)
+
+# scripts/gallery.mk says what is run; gallery-keep puts the page into docs/gallery.
+gallery gallery-keep: setup-run
+	$(MAKE) -j2 all
+	$(MAKE) -f scripts/gallery.mk $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc)) $(if $(filter gallery-keep,$@),keep,all)
 
 bench: all
 	bench/run.sh
@@ -286,5 +292,5 @@ clean:
 -include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs completions install install-tools install-dev uninstall deb clean setup-run setup-paper setup-check
+.PHONY: all tests test check demo paper paper-keep gallery gallery-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs completions install install-tools install-dev uninstall deb clean setup-run setup-paper setup-check
 .SECONDARY:

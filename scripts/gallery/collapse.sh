@@ -3,8 +3,8 @@
 # shellcheck source=scripts/gallery/common.sh
 . "$(dirname "$0")/common.sh"
 
-width=$(pick 0.1 0.2)
-read -ra ratios <<<"$(pick '0.5 1.5 3 7' '0.4 0.7 1 1.5 2.2 3.2 4.7 6.8 10')"
+width=$(pick 0.08 0.15)
+read -ra ratios <<<"$(pick '0.5 1.5 4' '0.5 0.9 1.5 2.3 3.5 5.5 8')"
 
 echo "a runout front" >"$out/runout.tsv"
 for a in "${ratios[@]}"; do

@@ -14,8 +14,8 @@ layer() # FILE HEIGHT DEGREES arguments of nsd-step
 speed() { nsd-info -p "$out/$1" | jq -s 'map(select(.mass > 0) | [.step, .v[0]]) | (map(.[0]) | max / 2) as $half | map(select(.[0] > $half) | .[1]) | add / length'; }
 
 # from a flow at 26 degrees the slope is lowered until nothing moves
-read -ra heights <<<"$(pick '3 7' '3 4 6 9 13 20')"
-hold=$(pick 60 100) less=$(pick 2 0.5)
+read -ra heights <<<"$(pick '3 7' '3 5 8 12')"
+hold=$(pick 60 80) less=$(pick 2 0.5)
 echo "height angle" >"$out/stop.tsv"
 for h in "${heights[@]}"; do
     layer lower.h5 "$h" 26 --until "$hold" --every "${hold}s"
@@ -30,8 +30,8 @@ for h in "${heights[@]}"; do
     echo "$h $angle" >>"$out/stop.tsv"
 done
 
-read -ra flows <<<"$(pick '5 8' '6 8 11 15 20')"
-until=$(pick 100 300)
+read -ra flows <<<"$(pick '5 8' '6 9 13 18')"
+until=$(pick 100 250)
 echo "height speed" >"$out/flow.tsv"
 for h in "${flows[@]}"; do
     layer "flow-$h.h5" "$h" 24 --until "$until" --every "$(jq -n "$until / 40")s"

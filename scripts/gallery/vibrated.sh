@@ -3,8 +3,8 @@
 # shellcheck source=scripts/gallery/common.sh
 . "$(dirname "$0")/common.sh"
 
-read -ra gammas <<<"$(pick '0.9 1.8' '0.7 0.8 0.9 0.95 1.05 1.1 1.2 1.4 1.6 1.8 2.1 2.4 2.7 3')"
-count=$(pick 36 100) periods=$(pick 8 24)
+read -ra gammas <<<"$(pick '0.9 1.8' '0.7 0.9 1.1 1.4 1.7 2 2.4 2.8')"
+count=$(pick 36 60) periods=$(pick 8 16)
 
 # the fall of the bed, then its periods; the last half of them is measured, each of the 400 steps a period
 echo "gamma flight closed force" >"$out/flight.tsv"
