@@ -4,7 +4,7 @@
 . "$(dirname "$0")/common.sh"
 
 width=$(pick 0.08 0.15)
-read -ra ratios <<<"$(pick '0.5 1.5 4' '0.5 0.9 1.5 2.3 3.5 5.5 8')"
+read -ra ratios <<<"$(pick '0.6 1.6 2.6 5' '0.5 0.9 1.5 2.3 3.5 5.5 8')"
 
 echo "a runout front" >"$out/runout.tsv"
 for a in "${ratios[@]}"; do

@@ -5,8 +5,8 @@ set -euo pipefail
 
 P=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 name=$(basename "$0" .sh)
-out=$1
-mkdir -p "$out"
+mkdir -p "$1"
+out=$(cd "$1" && pwd)
 
 # pick QUICK FULL: one of them
 pick() { if [ -n "${QUICK:-}" ]; then echo "$1"; else echo "$2"; fi; }
