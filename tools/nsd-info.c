@@ -172,6 +172,7 @@ static void show_particles(const struct packing *p)
         json_object_set_new(j, "step", json_integer(p->step));
         json_object_set_new(j, "id", json_integer(p->id[i]));
         json_object_set_new(j, "kind", json_string(p->kind_name[p->kind[i]]));
+        if (p->shape) json_object_set_new(j, "shape", json_string(p->shapes.s[p->shape[i]].name));
         json_object_set_new(j, "radius", json_number(p->radius[i]));
         json_object_set_new(j, "mass", json_number(p->mass[i]));
         json_object_set_new(j, "x", json_vec(p->x[i]));

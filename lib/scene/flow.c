@@ -63,7 +63,9 @@ static void copy_body(struct packing *p, int64_t from, int64_t to)
 {
     p->radius[to] = p->radius[from], p->mass[to] = p->mass[from];
     p->inertia[to] = p->inertia[from], p->id[to] = p->id[from], p->kind[to] = p->kind[from];
-    p->x[to] = p->x[from], p->q[to] = p->q[from], p->v[to] = p->v[from], p->w[to] = p->w[from];
+    p->x[to] = p->x[from], p->q[to] = p->q[from];
+    if (p->shape) p->shape[to] = p->shape[from];
+    p->v[to] = p->v[from], p->w[to] = p->w[from];
 }
 
 /* Removes, and tells in row[i] where body i is now, -1: gone. */
