@@ -130,8 +130,9 @@ static struct rgb ball_light(const struct band *b, const struct raster *s, size_
     const struct spot *o = &s->spot[b->what[k]];
     struct normal n = b->n[k];
     bool facets = o->shape && o->shape->form == SHAPE_HULL; // which show themselves how it turns
-    struct rgb own = o->own;
-    if (!facets) own = paint_ball(s->paint, own, camera_to_body(t, s, o->body, n.x, -n.y, n.z));
+    vec3 at = camera_to_body(t, s, o->body, n.x, -n.y, n.z);
+    if (o->shape && o->shape->form == SHAPE_CAPSULE) at = v3(at.y, at.z, at.x); // poles at its ends
+    struct rgb own = facets ? o->own : paint_ball(s->paint, o->own, at);
     double lambert = fmax(0, n.x * lamp.x + n.y * lamp.y + n.z * lamp.z);
     double open = 1 / (1 + 2 * b->dark[k]);
     // Blinn: h is half way between the lamp and the viewer
@@ -146,7 +147,7 @@ static struct rgb disc_light(const struct raster *s, const struct spot *o, float
                              double y, struct turn *t)
 {
     if (o->shape) { // a rim of 0.7 pixels
-        double least = fmin(0.3 * o->r, fmax(0.08 * o->r, s->samples * 0.7));
+        double least = fmin(0.3 * o->r, fmax(0.04 * o->r, s->samples * 0.7));
         return scaled(o->own, depth < least ? 0.25F : 0.9F, 0);
     }
     double dx = (x - o->x.x) / o->r, dy = (o->x.y - y) / o->r, d2 = dx * dx + dy * dy;
