@@ -28,7 +28,7 @@ NSD_CFLAGS  := -std=gnu11 -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes 
                $(if $(SAN),-fsanitize=address$(,)undefined -fno-sanitize-recover=undefined)
 # Only the libraries that a tool calls: starting libpng, KLU and CHOLMOD costs milliseconds.
 NSD_LDFLAGS := -fopenmp -Wl,--as-needed $(if $(SAN),-fsanitize=address$(,)undefined)
-NSD_LDLIBS  := $(PL) -lhdf5_hl -lklu -lcholmod -lm
+NSD_LDLIBS  := $(PL) -lhdf5_hl -lklu -lcholmod -lqhull_r -lm
 
 # The inner loops once a width; without contraction, and with instructions that the others know nothing of.
 # Distributions build with -O2, at which gcc leaves loops over three components loops: three times the time.

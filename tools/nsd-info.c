@@ -1,5 +1,6 @@
 /* nsd-info: shows any part of a document as JSON lines, for jq and gnuplot. */
 #include "bodies/energy.h"
+#include "bodies/kinematics.h"
 #include "cli/cli.h"
 #include "io/reader.h"
 #include "io/report_json.h"
@@ -126,6 +127,10 @@ static json_t *stress(const struct packing *p, const struct contacts *s)
         vec3 f = v3_axpy(v3_axpy(v3_scale(r[0], c->n), r[1], c->t1), r[2], contact_t2(c));
         double length = p->radius[c->a] + p->radius[c->b] + c->gap;
         vec3 branch = v3_scale(length / (p->dt * volume), c->n);
+        if (contact_shaped(p, c)) {
+            vec3 b = v3_add(p->x[c->b], cell_shift(p->cell.edge, c->shift));
+            branch = v3_scale(1 / (p->dt * volume), v3_sub(b, p->x[c->a]));
+        }
         sum[0] = v3_axpy(sum[0], f.x, branch), sum[1] = v3_axpy(sum[1], f.y, branch);
         sum[2] = v3_axpy(sum[2], f.z, branch);
     }
@@ -172,6 +177,7 @@ static void show_particles(const struct packing *p)
         json_object_set_new(j, "step", json_integer(p->step));
         json_object_set_new(j, "id", json_integer(p->id[i]));
         json_object_set_new(j, "kind", json_string(p->kind_name[p->kind[i]]));
+        if (p->shape) json_object_set_new(j, "shape", json_string(p->shapes.s[p->shape[i]].name));
         json_object_set_new(j, "radius", json_number(p->radius[i]));
         json_object_set_new(j, "mass", json_number(p->mass[i]));
         json_object_set_new(j, "x", json_vec(p->x[i]));

@@ -1,7 +1,9 @@
-/* bodies/detect.c: gaps and points of contact of balls and planes. */
+/* bodies/detect.c: gaps and points of contact of balls; bodies of other shapes: detect_shapes.c. */
 #include "bodies/detect.h"
 
+#include "bodies/detect_shapes.h"
 #include "bodies/kinematics.h"
+#include "bodies/top.h"
 
 #include <stdlib.h>
 
@@ -28,12 +30,16 @@ static bool add_touch(struct contacts *out, const struct packing *p, int32_t w, 
 
 /* The bodies at x and a plane, where it is at time t; false when memory is short. */
 static bool add_plane(struct contacts *out, const struct packing *p, int32_t w, double t,
-                      const vec3 *x, double gap)
+                      const vec3 *x, double gap, const struct placed *shaped)
 {
     vec3 at = wall_at(p, &p->wall[w], t), n = wall_normal(p, &p->wall[w], t);
     for (int64_t i = 0; i < p->n; i++) {
         struct touch touch = { n, v3_dot(v3_sub(x[i], at), n), 0 };
         if (!(touch.distance - p->radius[i] <= gap) || p->mass[i] == 0) continue;
+        if (shaped && packing_shape(p, i)) {
+            if (!detect_shapes_wall(out, shaped, w, i, t, gap, NULL)) return false;
+            continue;
+        }
         if (!add_touch(out, p, w, i, x[i], &touch)) return false;
     }
     return true;
@@ -42,7 +48,8 @@ static bool add_plane(struct contacts *out, const struct packing *p, int32_t w, 
 /* The same of any other shape. Balls are brought to where the shape is described, and what they touch
    back from there. */
 static bool add_shape(struct contacts *out, const struct packing *p, int32_t w, double t,
-                      const vec3 *x, double gap, const struct surface *surface)
+                      const vec3 *x, double gap, const struct surface *surface,
+                      const struct placed *shaped)
 {
     const struct wall *wall = &p->wall[w];
     struct pose pose = wall_pose(p, wall, t);
@@ -51,6 +58,10 @@ static bool add_shape(struct contacts *out, const struct packing *p, int32_t w, 
         double r = p->radius[i];
         vec3 c = v3_sub(quat_turn_back(pose.q, v3_sub(x[i], pose.shift)), wall->x);
         if (p->mass[i] == 0) continue;
+        if (shaped && packing_shape(p, i)) {
+            if (!detect_shapes_wall(out, shaped, w, i, t, gap, surface)) return false;
+            continue;
+        }
         int n = surface ? surface_touches(surface, c, r + gap, touch)
                         : boundary_nearest(wall, p->dim, c, r, touch);
         for (int k = 0; k < n; k++) {
@@ -65,7 +76,7 @@ static bool add_shape(struct contacts *out, const struct packing *p, int32_t w, 
 /* False when memory is short. */
 static bool add_ball_contact(struct contacts *out, const struct packing *p,
                              const struct neighbours *near, const struct pair *pair, const vec3 *x,
-                             const vec3 edge[3], double gap)
+                             const vec3 edge[3], double gap, const struct placed *shaped)
 {
     int32_t a = pair->a, b = pair->b;
     int8_t shift[3] = { 0 };
@@ -76,6 +87,8 @@ static bool add_ball_contact(struct contacts *out, const struct packing *p,
     }
     double radii = p->radius[a] + p->radius[b], most = radii + gap, d2 = v3_dot(d, d);
     if (d2 > most * most * (1 + 1e-12)) return true; // clearly apart: no square root needed
+    if (shaped && (packing_shape(p, a) || packing_shape(p, b)))
+        return detect_shapes_pair(out, shaped, a, b, shift, v3_sub(d, v3_sub(x[b], x[a])), gap);
     double distance = sqrt(d2), g = distance - radii;
     if (!(g <= gap)) return true;
     struct contact *c = contacts_add(out, a, b);
@@ -90,24 +103,29 @@ static bool add_ball_contact(struct contacts *out, const struct packing *p,
     return true;
 }
 
-/* The bodies at x, the cell's edges at edge (m), the walls where they are at time t (s) */
-static int detect(struct contacts *out, const struct packing *p, const vec3 *x, const vec3 edge[3],
-                  double t, double gap, struct neighbours *kept, struct why *why)
+/* The bodies at x and q, the cell's edges at edge (m), the walls where they are at time t (s) */
+static int detect(struct contacts *out, const struct packing *p, const vec3 *x, const quat *q,
+                  const vec3 edge[3], double t, double gap, struct neighbours *kept,
+                  struct why *why)
 {
+    struct placed placed = { 0 }, *shaped = p->shape ? &placed : NULL;
     struct neighbours once = { 0 }, *near = kept ? kept : &once;
     bool stored = true, images = cell_repeats(&p->cell);
     out->n = 0, contacts_free_found(out);
     int e = neighbours_find(near, p, x, edge, gap, kept, why);
     if (!e) e = neighbours_surfaces(near, p, why);
+    if (!e && shaped) e = placed_init(shaped, p, x, q, why);
     for (int32_t w = p->walls - 1; !e && stored && w >= 0; w--) {
         const struct wall *wall = &p->wall[w];
         bool plane = wall->shape == BOUNDARY_PLANE, mesh = wall->shape == BOUNDARY_MESH;
         if (!wall_there(wall, t)) continue;
-        stored = plane ? add_plane(out, p, w, t, x, gap)
-                       : add_shape(out, p, w, t, x, gap, mesh ? &near->surface[w] : NULL);
+        stored = plane ? add_plane(out, p, w, t, x, gap, shaped)
+                       : add_shape(out, p, w, t, x, gap, mesh ? &near->surface[w] : NULL, shaped);
     }
     for (int64_t i = 0; !e && stored && i < near->n; i++)
-        stored = add_ball_contact(out, p, near, &near->pair[i], x, images ? edge : NULL, gap);
+        stored =
+            add_ball_contact(out, p, near, &near->pair[i], x, images ? edge : NULL, gap, shaped);
+    placed_free(&placed);
     neighbours_free(&once);
     return e || stored ? e : why_set(why, EX_SOFTWARE, "no memory for the contacts");
 }
@@ -117,7 +135,7 @@ int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3
 {
     vec3 edge[3];
     cell_predict(&p->cell, t - p->t, edge);
-    return detect(out, p, x, edge, t, gap, kept, why);
+    return detect(out, p, x, p->q, edge, t, gap, kept, why);
 }
 
 /*
@@ -130,6 +148,8 @@ static double meeting_reach(const struct packing *p)
     double speed = 0, small = INFINITY;
     for (int64_t i = 0; i < p->n; i++)
         speed = fmax(speed, v3_norm(p->v[i])), small = fmin(small, p->radius[i]);
+    for (int64_t i = 0; i < p->n && p->shape; i++) // a corner is faster than its body
+        speed = fmax(speed, v3_norm(p->v[i]) + p->radius[i] * v3_norm(p->w[i]));
     for (int32_t w = 0; w < p->walls; w++) speed = fmax(speed, wall_top_speed(p, &p->wall[w]));
     return fmin(p->dt * (2 * speed + packing_calm(p)), 0.5 * small);
 }
@@ -155,14 +175,20 @@ int detect_contacts(struct contacts *out, const struct packing *p, double gap,
                     struct neighbours *kept, struct why *why)
 {
     vec3 *x = malloc(((size_t)p->n + 1) * sizeof *x);
-    if (!x) return why_set(why, EX_SOFTWARE, "no memory for the contacts");
+    quat *q = p->shape ? malloc(((size_t)p->n + 1) * sizeof *q) : NULL;
+    if (!x || (p->shape && !q)) {
+        free(x), free(q);
+        return why_set(why, EX_SOFTWARE, "no memory for the contacts");
+    }
     for (int64_t i = 0; i < p->n; i++) x[i] = packing_predict(p, i);
+    for (int64_t i = 0; i < p->n && q; i++)
+        q[i] = packing_shape(p, i) ? top_predict(p, i) : p->q[i];
     vec3 edge[3];
     double ahead = (1 - p->theta) * p->dt;
     double reach = overlap_sees_gaps(p->overlap) ? fmax(gap, meeting_reach(p)) : gap;
     cell_predict(&p->cell, ahead, edge);
-    int e = detect(out, p, x, edge, p->t + ahead, reach, kept, why);
+    int e = detect(out, p, x, q, edge, p->t + ahead, reach, kept, why);
     if (!e && reach > gap) keep_meeting(out, p, gap);
-    free(x);
+    free(x), free(q);
     return e;
 }

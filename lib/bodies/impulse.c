@@ -6,12 +6,14 @@
 static void add(struct impulses *sum, const struct contact *c, const struct push *o)
 {
     sum->force[c->b] = v3_add(sum->force[c->b], o->f);
-    sum->moment[c->b] = v3_axpy(sum->moment[c->b], o->lb, o->m);
+    sum->moment[c->b] =
+        o->shaped ? v3_add(sum->moment[c->b], o->mb) : v3_axpy(sum->moment[c->b], o->lb, o->m);
     for (int32_t k = 0; k < sum->freedoms.n; k++)
         sum->yield[k] += v3_dot(freedom_direction(&sum->freedoms.f[k], c), o->f);
     if (c->a < 0) return;
     sum->force[c->a] = v3_sub(sum->force[c->a], o->f);
-    sum->moment[c->a] = v3_axpy(sum->moment[c->a], o->la, o->m);
+    sum->moment[c->a] =
+        o->shaped ? v3_add(sum->moment[c->a], o->ma) : v3_axpy(sum->moment[c->a], o->la, o->m);
 }
 
 int impulses_init(struct impulses *sum, const struct packing *p, const struct contacts *s,

@@ -2,6 +2,7 @@
 #include "bodies/move.h"
 
 #include "bodies/project.h"
+#include "bodies/top.h"
 
 #include <stdlib.h>
 
@@ -10,20 +11,33 @@ static quat turn(quat q, double dt, vec3 w)
     return quat_mul(quat_rotation(v3_scale(dt, w)), q);
 }
 
+/* A body that keeps its angular momentum, not its angular velocity [bodies/top.h]; back: the inverse. */
+static void top_move(struct packing *p, int64_t i, vec3 moment, bool back)
+{
+    double first = (1 - p->theta) * p->dt, then = p->theta * p->dt;
+    vec3 L = top_momentum(p, i, p->q[i], p->w[i]);
+    p->q[i] = top_turn(p, i, p->q[i], L, back ? -then : first);
+    L = v3_axpy(L, back ? -1 : 1, moment);
+    p->q[i] = top_turn(p, i, p->q[i], L, back ? -first : then);
+    p->w[i] = top_spin(p, i, p->q[i], L);
+}
+
 /* Body i through the second half of the step, with its impulse and moment. */
 static void body_move(struct packing *p, const struct cell_flow *flow, int64_t i, vec3 force,
                       vec3 moment)
 {
     double before = (1 - p->theta) * p->dt, after = p->theta * p->dt;
+    bool top = top_is(p, i);
+    if (top) top_move(p, i, moment, false);
     p->x[i] = packing_predict(p, i);
-    p->q[i] = turn(p->q[i], before, p->w[i]);
+    if (!top) p->q[i] = turn(p->q[i], before, p->w[i]);
     if (p->mass[i] > 0) {
         p->v[i] = v3_axpy(v3_axpy(p->v[i], p->dt, p->g), 1 / p->mass[i], force);
         if (flow->changes) p->v[i] = v3_add(p->v[i], cell_flow_gain(flow, p->x[i]));
-        p->w[i] = v3_axpy(p->w[i], 1 / p->inertia[i], moment);
+        if (!top) p->w[i] = v3_axpy(p->w[i], 1 / p->inertia[i], moment);
     }
     p->x[i] = v3_axpy(p->x[i], after, p->v[i]);
-    p->q[i] = quat_unit(turn(p->q[i], after, p->w[i]));
+    if (!top) p->q[i] = quat_unit(turn(p->q[i], after, p->w[i]));
 }
 
 /* The inverse. */
@@ -31,15 +45,17 @@ static void body_unmove(struct packing *p, const struct cell_flow *flow, int64_t
                         vec3 moment)
 {
     double before = (1 - p->theta) * p->dt, after = p->theta * p->dt;
+    bool top = top_is(p, i);
+    if (top) top_move(p, i, moment, true);
     p->x[i] = v3_axpy(p->x[i], -after, p->v[i]);
-    p->q[i] = turn(p->q[i], -after, p->w[i]);
+    if (!top) p->q[i] = turn(p->q[i], -after, p->w[i]);
     if (p->mass[i] > 0) {
         p->v[i] = v3_axpy(v3_axpy(p->v[i], -p->dt, p->g), -1 / p->mass[i], force);
         if (flow->changes) p->v[i] = v3_sub(p->v[i], cell_flow_gain(flow, p->x[i]));
-        p->w[i] = v3_axpy(p->w[i], -1 / p->inertia[i], moment);
+        if (!top) p->w[i] = v3_axpy(p->w[i], -1 / p->inertia[i], moment);
     }
     p->x[i] = v3_axpy(p->x[i], -before, p->v[i]);
-    p->q[i] = quat_unit(turn(p->q[i], -before, p->w[i]));
+    if (!top) p->q[i] = quat_unit(turn(p->q[i], -before, p->w[i]));
 }
 
 static void move_freedoms(struct packing *p, const struct impulses *sum, bool back)

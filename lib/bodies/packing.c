@@ -47,7 +47,8 @@ void packing_free(struct packing *p)
 {
     free(p->radius), free(p->mass), free(p->inertia), free(p->id), free(p->kind);
     free(p->x), free(p->q), free(p->v), free(p->w);
-    free(p->wall), free(p->scene), free(p->image);
+    free(p->wall), free(p->scene), free(p->image), free(p->shape);
+    shapes_free(&p->shapes);
     drives_free(&p->drives), drives_free(&p->pushes), mesh_free(&p->mesh);
     free(p->poured), free(p->removed);
     events_free(&p->events);
@@ -113,6 +114,8 @@ int packing_resize(struct packing *p, int64_t n, struct why *why)
         !resize(&p->x, had, n, sizeof *p->x) || !resize(&p->q, had, n, sizeof *p->q) ||
         !resize(&p->v, had, n, sizeof *p->v) || !resize(&p->w, had, n, sizeof *p->w))
         return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
+    if (p->shape && !resize(&p->shape, had, n, sizeof *p->shape))
+        return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
     for (int64_t i = had; i < n; i++) p->id[i] = -1, p->q[i].w = 1;
     p->n = n;
     return 0;
@@ -125,6 +128,13 @@ int packing_alloc_images(struct packing *p, struct why *why)
     return p->image ? 0 : why_set(why, EX_SOFTWARE, "no memory for the images");
 }
 
+int packing_alloc_shapes(struct packing *p, struct why *why)
+{
+    free(p->shape);
+    p->shape = array(p->n, sizeof *p->shape);
+    return p->shape ? 0 : why_set(why, EX_SOFTWARE, "no memory for the shapes");
+}
+
 int packing_copy(struct packing *to, const struct packing *p, struct why *why)
 {
     if (packing_init(to, p->dim, p->n, why)) return why->status;
@@ -135,6 +145,9 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     to->seed = p->seed;
     if (cell_copy(&to->cell, &p->cell) || (p->image && packing_alloc_images(to, why))) goto fail;
     if (p->image) memcpy(to->image, p->image, n * sizeof *p->image);
+    if (shapes_copy(&to->shapes, &p->shapes, why) || (p->shape && packing_alloc_shapes(to, why)))
+        goto fail;
+    if (p->shape) memcpy(to->shape, p->shape, n * sizeof *p->shape);
     memcpy(to->radius, p->radius, n * sizeof *p->radius);
     memcpy(to->mass, p->mass, n * sizeof *p->mass);
     memcpy(to->inertia, p->inertia, n * sizeof *p->inertia);
@@ -183,6 +196,9 @@ static const char *body_trouble(const struct packing *p, int64_t i)
         return "orientation is not a unit quaternion";
     if (p->dim == 2 && (p->x[i].z != 0 || p->v[i].z != 0 || p->w[i].x != 0 || p->w[i].y != 0))
         return "leaves the plane z = 0, and dim is 2";
+    if (p->shape && (p->shape[i] < 0 || p->shape[i] >= p->shapes.n)) return "has no such shape";
+    if (p->dim == 2 && packing_shape(p, i) && (q.x != 0 || q.y != 0))
+        return "turns out of the plane, and dim is 2";
     if (p->kind[i] < 0 || p->kind[i] >= p->kinds) return "kind has no material";
     return NULL;
 }
@@ -400,6 +416,15 @@ struct cell_flow packing_flow(const struct packing *p)
     for (int k = 0; k < 3; k++) gain[k] = v3_sub(gain[k], p->cell.rate[k]);
     cell_flow_init(&f, &p->cell, half, gain);
     return f;
+}
+
+void packing_solid_shape(int dim, const struct shape *s, double radius, double density,
+                         double *mass, double *inertia)
+{
+    const double *m = s->moment;
+    double mean = dim == 2 ? m[2] : (m[0] + m[1] + m[2]) / 3;
+    *mass = density * s->volume * (dim == 2 ? radius * radius : radius * radius * radius);
+    *inertia = *mass * radius * radius * mean;
 }
 
 void packing_solid(int dim, double radius, double density, double *mass, double *inertia)

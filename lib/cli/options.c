@@ -286,7 +286,8 @@ void options_theta(struct packing *p, bool detected)
 void options_overlap(struct packing *p, bool detected)
 {
     enum overlap was = p->overlap, now = was;
-    if (!was && !detected) now = usual.overlap;
+    if (!was && !detected)
+        now = p->shape ? OVERLAP_GAP_PROJECT : usual.overlap; // corners that open
     if (options.paper) now = paper.overlap;
     now = OPTION(overlap, (int)now - 1) + 1;
     if (detected && overlap_sees_gaps(was) != overlap_sees_gaps(now))

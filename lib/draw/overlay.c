@@ -1,6 +1,8 @@
 /* draw/overlay.c: what cairo draws over a picture [draw/overlay.h]. */
 #include "draw/overlay.h"
 
+#include "bodies/kinematics.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,7 +45,10 @@ static void draw_push(cairo_t *cr, const struct view *v, const struct packing *p
 {
     double size;
     vec3 b = p->x[c->b], a = c->a >= 0 ? p->x[c->a] : c->x;
-    if (c->a >= 0) a = v3_sub(b, v3_scale(p->radius[c->a] + p->radius[c->b] + c->gap, c->n));
+    if (c->a >= 0 && contact_shaped(p, c))
+        a = v3_sub(p->x[c->a], cell_shift(p->cell.edge, c->shift));
+    else if (c->a >= 0)
+        a = v3_sub(b, v3_scale(p->radius[c->a] + p->radius[c->b] + c->gap, c->n));
     if (is_cut(v, a) || is_cut(v, b)) return;
     double width = share * WIDEST * longer_side(v);
     vec3 from = view_sees(v, a, &size), to = view_sees(v, b, &size);

@@ -104,8 +104,9 @@ int contact_rows_read(struct contact_rows *r, struct frame *f, struct why *why)
         (cell_repeats(&f->packing.cell) &&
          table_read_columns(r->source, "/contacts", "", layout_shifts, first, s->n, s->c,
                             sizeof *s->c, why)) ||
-        (f->packing.mesh.elements && table_read_columns(r->source, "/contacts", "", layout_features,
-                                                        first, s->n, s->c, sizeof *s->c, why)) ||
+        ((f->packing.mesh.elements || f->packing.shape) &&
+         table_read_columns(r->source, "/contacts", "", layout_features, first, s->n, s->c,
+                            sizeof *s->c, why)) ||
         (solved && table_read_columns(r->source, "/contacts", "", layout_found, first, s->n,
                                       s->found, sizeof *s->found, why)))
         return why->status;
@@ -174,7 +175,7 @@ int contact_rows_write(struct table_write *s, const struct frame *f, struct why 
         (cell_repeats(&f->packing.cell) &&
          table_write_columns(s, "/contacts", "", layout_shifts, t->n, t->c, sizeof *t->c,
                              CHUNK_CONTACTS, why)) ||
-        (f->packing.mesh.elements &&
+        ((f->packing.mesh.elements || f->packing.shape) &&
          table_write_columns(s, "/contacts", "", layout_features, t->n, t->c, sizeof *t->c,
                              CHUNK_CONTACTS, why)) ||
         (t->found && table_write_columns(s, "/contacts", "", layout_found, t->n, t->found,

@@ -7,6 +7,7 @@
 #include "io/h5.h"
 #include "io/report_rows.h"
 #include "io/roster.h"
+#include "io/shape_tables.h"
 #include "io/stream.h"
 #include "io/unknown.h"
 
@@ -68,6 +69,7 @@ static int write_bodies(struct table_write *s, const struct packing *p, struct w
     const hsize_t n = (hsize_t)p->n;
     for (const struct column *c = layout_bodies; c->name && !s->roster; c++) {
         char path[80];
+        if (!column_array(c, p)) continue;
         snprintf(path, sizeof path, "/particles/all/%s", c->name);
         if (h5_write(s->file, path, column_native(c->type), 1, &n, column_array(c, p), c->units,
                      why))
@@ -104,6 +106,7 @@ int frame_write_static(struct table_write *s, const struct frame *f, struct why 
 {
     if (write_parameters(s->file, f, why)) return why->status;
     if (f->packed && (write_material(s->file, &f->packing, why) ||
+                      shape_tables_write(s->file, &f->packing, why) ||
                       cell_tables_write_box(s->file, &f->packing.cell, why) ||
                       write_bodies(s, &f->packing, why)))
         return why->status;

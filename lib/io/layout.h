@@ -34,13 +34,14 @@ static const struct column layout_cell[] = {
     { 0 },
 };
 
-/* /particles/all/NAME [N]: pointers in struct packing */
+/* /particles/all/NAME [N]: pointers in struct packing; shape: not where all are balls */
 static const struct column layout_bodies[] = {
     { "radius", "m", COLUMN_F64, 1, offsetof(struct packing, radius) },
     { "mass", "kg", COLUMN_F64, 1, offsetof(struct packing, mass) },
     { "inertia", "kg m2", COLUMN_F64, 1, offsetof(struct packing, inertia) },
     { "id", "1", COLUMN_I32, 1, offsetof(struct packing, id) },
     { "species", "1", COLUMN_I32, 1, offsetof(struct packing, kind) },
+    { "shape", "1", COLUMN_I32, 1, offsetof(struct packing, shape) },
     { 0 },
 };
 

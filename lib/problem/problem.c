@@ -2,6 +2,7 @@
 #include "problem/problem.h"
 
 #include "bodies/kinematics.h"
+#include "bodies/top.h"
 #include "problem/offset.h"
 #include "problem/schedule.h"
 
@@ -18,6 +19,7 @@ enum {
 
 static_assert(sizeof(struct body) == 64, "a body is a cache line");
 static_assert(sizeof(struct bundle) % 64 == 0, "lanes begin a cache line");
+static_assert(sizeof(struct levers) % 64 == 0, "lanes begin a cache line");
 
 /*
  * Zeroed memory aligned to cache lines, in huge pages where it is large: bodies read in any order
@@ -49,7 +51,7 @@ static int no_memory(struct problem *p, struct why *why)
 void problem_free(struct problem *p)
 {
     free(p->bundle), free(p->rebound), free(p->u), free(p->contact), free(p->group), free(p->body);
-    free(p->split), free(p->seat);
+    free(p->split), free(p->seat), free(p->lever), free(p->spin);
     delassus_free(&p->sorted);
     if (p->own) delassus_free(p->own);
     if (p->coupling) couplings_free(p->coupling);
@@ -114,11 +116,12 @@ static void set_bodies(struct problem *p)
 {
     const struct packing *pack = p->packing;
     for (int64_t i = 0; i < pack->n; i++) {
-        vec3 v = pack->v[i], w = pack->w[i];
+        vec3 v = pack->v[i], w = p->spin ? p->spin[i] : pack->w[i];
         p->body[p->seat[i]] = (struct body){ { v.x, v.y, v.z },
                                              { w.x, w.y, w.z },
                                              pack->mass[i] > 0 ? 1 / pack->mass[i] : 0,
                                              pack->mass[i] > 0 ? 1 / pack->inertia[i] : 0 };
+        if (p->spin && pack->mass[i] > 0) p->body[p->seat[i]].ii = 1;
     }
 }
 
@@ -133,7 +136,8 @@ void problem_set_free_motion(struct problem *p)
         if (!(b->im > 0)) continue;
         if (flow.changes) dv = v3_add(dv, cell_flow_gain(&flow, packing_predict(pack, i)));
         b->v[0] = pack->v[i].x + dv.x, b->v[1] = pack->v[i].y + dv.y, b->v[2] = pack->v[i].z + dv.z;
-        b->w[0] = pack->w[i].x, b->w[1] = pack->w[i].y, b->w[2] = pack->w[i].z;
+        vec3 w = p->spin ? p->spin[i] : pack->w[i];
+        b->w[0] = w.x, b->w[1] = w.y, b->w[2] = w.z;
     }
 }
 
@@ -210,6 +214,82 @@ static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
     r->rho[k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / im : rho_factor / lambda;
 }
 
+/* ---- levers ---- */
+
+static bool shaped(const struct packing *pack, const struct contacts *s)
+{
+    for (int64_t i = 0; i < s->n; i++)
+        if (contact_shaped(pack, &s->c[i])) return true;
+    return false;
+}
+
+/* half[n] = the orientations in which contacts act, and p->spin; false when memory is short. */
+static bool find_spins(struct problem *p, const struct packing *pack, quat **half)
+{
+    *half = calloc((size_t)pack->n + 1, sizeof **half);
+    p->spin = calloc((size_t)pack->n + 1, sizeof *p->spin);
+    if (!*half || !p->spin) return false;
+    for (int64_t i = 0; i < pack->n; i++) {
+        p->spin[i] = pack->w[i];
+        if (!(pack->mass[i] > 0)) continue;
+        (*half)[i] = top_is(pack, i) ? top_predict(pack, i) : pack->q[i];
+        p->spin[i] = top_root(pack, i, (*half)[i], top_predict_spin(pack, i, (*half)[i]));
+    }
+    return true;
+}
+
+/* The rows G_i of a body with this arm; a boundary's (i < 0) are 0. */
+static void set_rows(double G[9][BUNDLE], int k, const struct packing *pack, int32_t i, vec3 arm,
+                     const struct contact *c, const quat *half)
+{
+    const vec3 e[3] = { c->n, c->t1, contact_t2(c) };
+    for (int j = 0; j < 3 && i >= 0; j++) {
+        vec3 row = v3_cross(arm, e[j]);
+        if (pack->dim == 2) row = j == 2 ? v3(0, 0, 0) : v3(0, 0, row.z);
+        if (pack->mass[i] > 0) row = top_inverse_root(pack, i, half[i], row);
+        G[3 * j][k] = row.x, G[3 * j + 1][k] = row.y, G[3 * j + 2][k] = row.z;
+    }
+}
+
+/* Fills the slot's levers, W_cc and rho; its rebound, undivided: u + E u^- + d, with D law */
+static void lever_init(struct problem *p, int64_t i, const struct packing *pack,
+                       const struct lattice *cell, const struct contact *c, double alpha,
+                       double rho_factor, const quat *half)
+{
+    const double en[3] = { c->en, c->et, c->et }, n[3] = { c->n.x, c->n.y, c->n.z },
+                 t1[3] = { c->t1.x, c->t1.y, c->t1.z };
+    struct bundle *r = slot_bundle(p, i);
+    struct levers *g = &p->lever[i / BUNDLE];
+    struct rebound *e = slot_rebound(p, i);
+    int k = slot_lane(i);
+    struct arms arm = arm_vectors(pack, c, (1 - pack->theta) * pack->dt, cell->edge);
+    for (int j = 0; j < 3; j++) g->n[j][k] = n[j], g->t1[j][k] = t1[j];
+    set_rows(g->Ga, k, pack, c->a, arm.a, c, half), set_rows(g->Gb, k, pack, c->b, arm.b, c, half);
+    const struct body *a = &p->body[body_index(r->a[k])], *b = &p->body[body_index(r->b[k])];
+    double W[9], u[3];
+    for (int j = 0; j < 9; j++) {
+        W[j] = j % 4 == 0 ? a->im + b->im : 0;
+        for (int l = 0; l < 3; l++)
+            W[j] += a->ii * g->Ga[3 * (j / 3) + l][k] * g->Ga[3 * (j % 3) + l][k] +
+                    b->ii * g->Gb[3 * (j / 3) + l][k] * g->Gb[3 * (j % 3) + l][k];
+        r->W[j][k] = W[j];
+    }
+    double lambda = local_lambda_max(W);
+    r->mu[k] = c->mu;
+    for (int j = 0; j < 2; j++) r->w[j][k] = lambda, r->iw[j][k] = 1 / lambda;
+    r->rho[k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / W[0] : rho_factor / lambda;
+    if (!e) return;
+    problem_velocity(p, p->body, r, NULL, k, u); // u^-
+    double before[3] = { 0 }, after[3] = { 0 };
+    if (shifted(c)) image_velocity(cell->before, c, before), image_velocity(cell->after, c, after);
+    for (int j = 0; j < 3; j++) {
+        u[j] += before[j];
+        e->offset[j][k] = en[j] * u[j] + after[j];
+    }
+    if (offset_in(pack, c)) e->offset[0][k] += offset_of(pack, c, u[0]);
+    for (int j = 0; j < 2; j++) e->s[j][k] = 1;
+}
+
 /* kg: the mean mass of the bodies that move, for the scaled errors */
 static double mean_mass(const struct packing *p)
 {
@@ -277,12 +357,19 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     bool room = p->body && !schedule_bodies(&plan, order, s, pack) && lay_out_bundles(p, &plan);
     schedule_free(&plan);
     const struct lattice cell = lattice_of(pack);
+    quat *half = NULL;
+    if (room && shaped(pack, s)) {
+        p->full = true;
+        p->lever = alloc_lines(p->bundles, sizeof *p->lever);
+        room = p->lever && find_spins(p, pack, &half);
+    }
     if (room && (rebounds(pack, s) || glides(s, &cell)))
         room = (p->rebound = alloc_lines(p->bundles, sizeof *p->rebound)) != NULL;
-    if (!room || !(p->seat = seat_bodies(p, pack, s, order))) return no_memory(p, why);
+    if (!room || !(p->seat = seat_bodies(p, pack, s, order))) return free(half), no_memory(p, why);
     if (freedoms_in(pack)) {
-        if (!(p->coupling = calloc(1, sizeof *p->coupling))) return no_memory(p, why);
-        if (couplings_init(p->coupling, pack, s, why)) return problem_free(p), why->status;
+        if (!(p->coupling = calloc(1, sizeof *p->coupling))) return free(half), no_memory(p, why);
+        if (couplings_init(p->coupling, pack, s, why))
+            return free(half), problem_free(p), why->status;
     }
     set_bodies(p);
     int64_t nobody = pack->n, next = nobody + 2;
@@ -291,11 +378,16 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
         struct bundle *r = slot_bundle(p, i);
         int k = slot_lane(i);
         r->a[k] = r->b[k] = body_place(nobody + (i >= other));
+        for (int j = 0; j < 9 && p->lever; j += 4) r->W[j][k] = 1; // of a lane without a contact
         if (p->contact[i] < 0) continue;
         const struct contact *c = &s->c[p->contact[i]];
         r->a[k] = place_of(p, c->a, c->x, &next), r->b[k] = place_of(p, c->b, c->x, &next);
-        slot_init(p, i, pack, &cell, c, alpha, rho_factor);
+        if (p->lever)
+            lever_init(p, i, pack, &cell, c, alpha, rho_factor, half);
+        else
+            slot_init(p, i, pack, &cell, c, alpha, rho_factor);
     }
+    free(half);
 
     double g = v3_norm(pack->g);
     p->fall = g * pack->dt;
@@ -306,15 +398,18 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     for (int64_t i = 0; i < p->slots; i++) {
         double q[3];
         if (p->contact[i] < 0) continue;
-        body_velocity(p->body, slot_bundle(p, i), slot_rebound(p, i), slot_lane(i), q);
+        problem_velocity(p, p->body, slot_bundle(p, i), slot_rebound(p, i), slot_lane(i), q);
         p->norm_q += q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
     }
     p->norm_q = sqrt(p->norm_q);
     for (int64_t i = 0; s->found && i < p->slots; i++) {
         if (p->contact[i] < 0) continue;
         const struct found *c = &s->found[p->contact[i]];
-        slot_set(p, i, c->r, c->u);
-        body_push(p->body, slot_bundle(p, i), slot_lane(i), c->r);
+        const struct contact *law = &s->c[p->contact[i]];
+        double u[3] = { c->u[0], c->u[1], c->u[2] };
+        for (int k = 0; k < 3 && p->lever; k++) u[k] *= 1 + (k ? law->et : law->en);
+        slot_set(p, i, c->r, u);
+        problem_push(p, p->body, slot_bundle(p, i), slot_lane(i), c->r);
     }
     return 0;
 }
@@ -396,7 +491,8 @@ int problem_store(const struct problem *p, struct contacts *s)
         struct found *c = &s->found[p->contact[i]];
         slot_get(p, i, c->r, c->u);
         const struct contact *law = &s->c[p->contact[i]];
-        for (int k = 0; k < 3 && p->W; k++) c->u[k] /= 1 + (k ? law->et : law->en); // it is D u~
+        for (int k = 0; k < 3 && problem_undivided(p); k++)
+            c->u[k] /= 1 + (k ? law->et : law->en); // it is D u~
         c->status = (int8_t)local_status(slot_bundle(p, i)->mu[slot_lane(i)], c->r);
     }
     return 0;

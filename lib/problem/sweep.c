@@ -33,8 +33,9 @@ struct loaded {
     vd v[3];  /* m/s: u~ with the present r; given by W: b_c */
 };
 
+/* full, but not given by W: with levers */
 ALWAYS_INLINE void load_slots(const struct problem *p, const struct bundle *c, int k,
-                              bool given_by_W, struct loaded *s)
+                              bool given_by_W, bool full, struct loaded *s)
 {
     if (given_by_W) {
         blocks_gather(p, c, k, s->v);
@@ -42,6 +43,10 @@ ALWAYS_INLINE void load_slots(const struct problem *p, const struct bundle *c, i
     }
     struct twist a, b;
     bodies_load(&s->a, p->body, c->a + k, &a), bodies_load(&s->b, p->body, c->b + k, &b);
+    if (full) {
+        levers_velocity(&p->lever[c - p->bundle], bundle_rebound(p, c), k, &a, &b, s->v, s->t2);
+        return;
+    }
     bundle_velocity(c, bundle_rebound(p, c), k, &a, &b, s->v, s->t2);
 }
 
@@ -57,8 +62,9 @@ ALWAYS_INLINE void make_local(const struct problem *p, const struct bundle *c, i
         l->w[i] = full ? W[4 * i] : vload(c->w[i > 0] + k);
         l->iw[i] = full ? splat(0) : vload(c->iw[i > 0] + k);
         l->r[i] = vload(c->r[i] + k), l->v[i] = s->v[i];
-        l->b[i] = given_by_W ? s->v[i] : l->v[i] - l->w[i] * l->r[i];
+        l->b[i] = given_by_W || full ? s->v[i] : l->v[i] - l->w[i] * l->r[i];
     }
+    for (int i = 0; i < 3 && full && !given_by_W; i++) l->b[i] -= dot3(W + 3 * i, l->r);
     if (given_by_W) local_velocity(l, l->r, l->v);
 }
 
@@ -104,10 +110,12 @@ ALWAYS_INLINE void store_solution(struct bundle *c, int k, double (*belief)[BUND
 
 /* Passes the change on to the bodies, or r to W->r. */
 ALWAYS_INLINE void pass_on(struct problem *p, const struct bundle *c, int k, bool given_by_W,
-                           const struct loaded *s, const vd dr[3])
+                           bool full, const struct loaded *s, const vd dr[3])
 {
     if (given_by_W)
         blocks_scatter(p, c, k);
+    else if (full)
+        levers_push(c, &p->lever[c - p->bundle], k, s->t2, dr, p->body, &s->a, &s->b);
     else
         bundle_push(c, k, s->t2, dr, p->body, &s->a, &s->b);
 }
@@ -122,7 +130,7 @@ ALWAYS_INLINE void solve_bundles(struct problem *p, int64_t first, int64_t end,
 {
     if (first == end) return;
     struct loaded s[2], *now = &s[0], *next = &s[1];
-    load_slots(p, &p->bundle[first], 0, given_by_W, now);
+    load_slots(p, &p->bundle[first], 0, given_by_W, full, now);
     for (int64_t i = first; i < end; i++) {
         struct bundle *c = &p->bundle[i];
         double(*belief)[BUNDLE] = o->keep ? p->u[i] : NULL;
@@ -134,10 +142,10 @@ ALWAYS_INLINE void solve_bundles(struct problem *p, int64_t first, int64_t end,
             solve_relaxed(&l, c, k, solve, full, o);
             store_solution(c, k, belief, &l, dr, t);
             if (k + LANES < BUNDLE)
-                load_slots(p, c, k + LANES, given_by_W, next);
+                load_slots(p, c, k + LANES, given_by_W, full, next);
             else if (i + 1 < end)
-                load_slots(p, c + 1, 0, given_by_W, next);
-            pass_on(p, c, k, given_by_W, now, dr);
+                load_slots(p, c + 1, 0, given_by_W, full, next);
+            pass_on(p, c, k, given_by_W, full, now, dr);
             struct loaded *was = now;
             now = next, next = was;
         }
@@ -172,7 +180,9 @@ ALWAYS_INLINE void sweep(struct problem *p, int me, int threads, const struct sw
     static void sweep_##name(struct problem *p, int me, int threads, const struct sweep_opt *o,    \
                              struct tally *t)                                                      \
     {                                                                                              \
-        if (p->full)                                                                               \
+        if (p->lever)                                                                              \
+            sweep(p, me, threads, o, name##_solve, false, true, t);                                \
+        else if (p->full)                                                                          \
             sweep(p, me, threads, o, name##_solve, true, true, t);                                 \
         else if (p->W)                                                                             \
             sweep(p, me, threads, o, name##_solve, true, false, t);                                \
@@ -191,7 +201,7 @@ ALWAYS_INLINE void push_group(struct problem *p, int64_t first, int64_t end, voi
         for (int k = 0; k < BUNDLE; k += LANES) {
             const struct bundle *c = &p->bundle[i];
             const vd r[3] = { vload(c->r[0] + k), vload(c->r[1] + k), vload(c->r[2] + k) };
-            body_push(p->body, c, k, r);
+            problem_push(p, p->body, c, k, r);
         }
     }
 }
@@ -207,7 +217,7 @@ static void push(struct problem *p, int me, int threads)
 ALWAYS_INLINE void motion_velocity(const struct problem *p, const struct bundle *c, int k, vd u[3])
 {
     if (!p->W) {
-        body_velocity(p->body, c, bundle_rebound(p, c), k, u);
+        problem_velocity(p, p->body, c, bundle_rebound(p, c), k, u);
         return;
     }
     struct local l = { 0 };

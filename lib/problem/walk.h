@@ -41,6 +41,8 @@ ALWAYS_INLINE void fetch_ahead(const struct problem *p, int64_t i)
     const char *line = (const char *)&p->bundle[i + BUNDLES_AHEAD];
     for (size_t k = 0; k < sizeof *p->bundle; k += 64) __builtin_prefetch(line + k, 0, 2);
     if (!p->body) return;
+    const char *arms = (const char *)(p->lever ? &p->lever[i + BUNDLES_AHEAD] : NULL);
+    for (size_t k = 0; arms && k < sizeof *p->lever; k += 64) __builtin_prefetch(arms + k, 0, 2);
     fetch_bodies_to_second_level(p, &p->bundle[i + BODIES_AHEAD]);
     fetch_bodies(p, &p->bundle[i + BODIES_NEXT]);
 }

@@ -63,7 +63,9 @@ static void copy_body(struct packing *p, int64_t from, int64_t to)
 {
     p->radius[to] = p->radius[from], p->mass[to] = p->mass[from];
     p->inertia[to] = p->inertia[from], p->id[to] = p->id[from], p->kind[to] = p->kind[from];
-    p->x[to] = p->x[from], p->q[to] = p->q[from], p->v[to] = p->v[from], p->w[to] = p->w[from];
+    p->x[to] = p->x[from], p->q[to] = p->q[from];
+    if (p->shape) p->shape[to] = p->shape[from];
+    p->v[to] = p->v[from], p->w[to] = p->w[from];
 }
 
 /* Removes, and tells in row[i] where body i is now, -1: gone. */
@@ -149,7 +151,7 @@ struct crowd {
 static void crowd_free(struct crowd *c)
 {
     free(c->p.radius), free(c->p.mass), free(c->p.kind), free(c->p.v);
-    free(c->now), free(c->then), free(c->body);
+    free(c->now), free(c->then), free(c->body), free(c->p.q), free(c->p.shape);
 }
 
 static bool may_meet(const struct scene_pour *o, const struct packing *p, int64_t i)
@@ -178,13 +180,17 @@ static int crowd_gather(struct crowd *c, const struct packing *p, const struct s
     c->p.kind = calloc(room, sizeof *c->p.kind), c->p.v = calloc(room, sizeof *c->p.v);
     c->now = calloc(room, sizeof *c->now), c->then = calloc(room, sizeof *c->then);
     c->body = calloc(room, sizeof *c->body);
-    if (!c->p.radius || !c->p.mass || !c->p.kind || !c->p.v || !c->now || !c->then || !c->body)
+    c->p.q = calloc(room, sizeof *c->p.q);
+    c->p.shape = p->shape ? calloc(room, sizeof *c->p.shape) : NULL;
+    if (!c->p.radius || !c->p.mass || !c->p.kind || !c->p.v || !c->now || !c->then || !c->body ||
+        !c->p.q || (p->shape && !c->p.shape))
         return why_set(why, EX_SOFTWARE, "no memory to pour");
     for (int64_t i = 0; i < p->n; i++) {
         if (!may_meet(o, p, i)) continue;
         int64_t k = c->p.n++;
         c->body[k] = i;
-        c->p.radius[k] = p->radius[i], c->p.kind[k] = p->kind[i];
+        c->p.radius[k] = p->radius[i], c->p.kind[k] = p->kind[i], c->p.q[k] = p->q[i];
+        if (p->shape) c->p.shape[k] = p->shape[i];
         c->now[k] = p->x[i], c->then[k] = packing_predict(p, i);
     }
     c->p.n++;

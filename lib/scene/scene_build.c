@@ -18,7 +18,10 @@ static int set_body(struct packing *p, int64_t i, const struct scene_bodies *b, 
                     struct why *why)
 {
     double mass, inertia;
-    packing_solid(p->dim, r, b->density, &mass, &inertia);
+    if (b->shape)
+        packing_solid_shape(p->dim, &p->shapes.s[b->shape], r, b->density, &mass, &inertia);
+    else
+        packing_solid(p->dim, r, b->density, &mass, &inertia);
     if (b->mass > 0) inertia *= b->mass / mass, mass = b->mass;
     if (!b->fixed && !(mass > 0 && inertia > 0))
         return why_set(why, EX_DATAERR, "body %lld: a radius of %g m gives no mass", (long long)i,
@@ -27,6 +30,7 @@ static int set_body(struct packing *p, int64_t i, const struct scene_bodies *b, 
     p->radius[i] = r;
     p->mass[i] = b->fixed ? 0 : mass, p->inertia[i] = b->fixed ? 0 : inertia;
     p->kind[i] = b->kind;
+    if (p->shape) p->shape[i] = b->shape;
     return 0;
 }
 
@@ -81,6 +85,7 @@ static int set_grain(struct packing *p, int64_t i, const struct scene *s,
     if (!b->has_fixed) one.fixed = g->fixed;
     if (!b->has_density) one.density = g->density > 0 ? g->density : s->kind[one.kind].density;
     if (!b->has_density && !(b->mass > 0)) one.mass = g->mass;
+    if (g->shape) one.shape = shapes_find(&p->shapes, b->document->shapes.s[g->shape].name);
     if (set_body(p, i, &one, g->x, g->r, why)) return why->status;
     p->q[i] = g->q, p->id[i] = g->id;
     if (g->weighs && !one.fixed && g->mass > 0 && one.mass == g->mass) p->inertia[i] = g->inertia;
@@ -122,6 +127,37 @@ static int set_ids(struct packing *p, bool given, struct why *why)
     return why->status;
 }
 
+/* Each as likely [Shoemake 1992, by rejection: no sines] */
+static quat draw_orientation(int dim, gsl_rng *rng)
+{
+    double x[4], sum;
+    do {
+        sum = 0;
+        for (int k = 0; k < 4; k++) {
+            x[k] = dim == 2 && (k == 1 || k == 2) ? 0 : 2 * gsl_rng_uniform(rng) - 1;
+            sum += x[k] * x[k];
+        }
+    } while (sum > 1 || sum < 1e-4);
+    return quat_unit((quat){ x[0], x[1], x[2], x[3] });
+}
+
+/* Orientations are functions of the group and the body's number in it: no other draw depends on them. */
+static int orient_group(struct packing *p, const struct scene *s, int64_t g, int64_t first,
+                        int64_t n, struct why *why)
+{
+    const struct scene_bodies *b = &s->bodies[g];
+    gsl_rng *rng = b->tumbled ? counter_alloc() : NULL;
+    if (b->tumbled && !rng) return why_set(why, EX_SOFTWARE, "no memory for random numbers");
+    for (int64_t i = 0; i < n; i++) {
+        quat q = b->turned;
+        if (rng) counter_start(rng, s->seed, COUNTER_TURN, (uint64_t)g, (uint64_t)i, 0);
+        if (rng) q = draw_orientation(p->dim, rng);
+        p->q[first + i] = quat_unit(quat_mul(q, s->solid[b->shape].turn));
+    }
+    gsl_rng_free(rng);
+    return 0;
+}
+
 static bool is_list(const struct scene_bodies *b)
 {
     return b->from != SCENE_ONE && b->from != SCENE_LATTICE;
@@ -138,6 +174,8 @@ static int fill_groups(struct packing *p, const struct scene *s, const struct gr
                   : b->from == SCENE_ONE ? set_body(p, first, b, b->x, b->size.min, why)
                                          : fill_lattice(p, first, b, rng, why);
         if (bad) return bad;
+        int64_t n = is_list(b) ? list[g].n : b->count;
+        if (b->shape && orient_group(p, s, g, first, n, why)) return why->status;
         given |= is_list(b);
         if (!is_list(b)) // numbers are given anew below, where any are given
             for (int64_t k = 0; k < b->count; k++) p->id[first + k] = -1;
@@ -151,10 +189,37 @@ static int fill_groups(struct packing *p, const struct scene *s, const struct gr
 
 /* ---- the packing ---- */
 
+/* The shapes of a document, behind the scene's: a name stands for one shape. */
+static int take_shapes(struct packing *p, const struct scene_bodies *b, struct why *why)
+{
+    const struct shapes *from = &b->document->shapes;
+    struct shapes copy;
+    if (shapes_copy(&copy, from, why)) return why->status;
+    for (int32_t k = 1; k < from->n && !why->status; k++) {
+        int32_t had = shapes_find(&p->shapes, from->s[k].name);
+        if (had >= 0 && !shape_same(&p->shapes.s[had], &from->s[k]))
+            why_set(why, EX_DATAERR, "%s: its shape \"%s\" is another than the scene's", b->file,
+                    from->s[k].name);
+        else if (had < 0)
+            shapes_add(&p->shapes, p->dim, &copy.s[k], why);
+    }
+    shapes_free(&copy);
+    return why->status;
+}
+
+static int set_shapes(struct packing *p, const struct scene *s, struct why *why)
+{
+    if (shapes_copy(&p->shapes, &s->shapes, why)) return why->status;
+    for (int64_t g = 0; g < s->groups; g++)
+        if (s->bodies[g].document && take_shapes(p, &s->bodies[g], why)) return why->status;
+    return p->shapes.n ? packing_alloc_shapes(p, why) : 0;
+}
+
 static int set_parameters(struct packing *p, const struct scene *s, struct why *why)
 {
     p->dt = s->dt, p->theta = s->theta, p->g = s->g, p->seed = s->seed, p->t = s->t;
-    if (packing_alloc_passages(p, s->pours, s->removals, why)) return why->status;
+    if (packing_alloc_passages(p, s->pours, s->removals, why) || set_shapes(p, s, why))
+        return why->status;
     if (packing_alloc_walls(p, s->walls, why) || packing_alloc_kinds(p, s->kinds, why))
         return why->status;
     for (int32_t i = 0; i < s->walls; i++) p->wall[i] = s->wall[i];

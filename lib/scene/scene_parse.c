@@ -45,7 +45,7 @@ static int read_scene(jnode o, struct scene *s)
     struct scene_law law = { 0 };
     struct scene_box box = { 0 };
     if (json_node_only(o, "title dim dt theta gravity seed density mu e_n e_t kinds pairs time "
-                          "overlap bodies walls pour remove cell") ||
+                          "overlap bodies walls pour remove cell shapes") ||
         json_node_need(&o, "dt") || json_node_text(json_node_key(&o, "title"), &title) ||
         json_node_integer(json_node_key(&o, "dim"), 2, 3, &dim) ||
         json_node_integer(json_node_key(&o, "seed"), 0, UINT32_MAX, &seed) ||
@@ -61,6 +61,7 @@ static int read_scene(jnode o, struct scene *s)
     if (json_node_vector(json_node_key(&o, "gravity"), s->dim, &s->g) ||
         scene_read_kinds(json_node_key(&o, "kinds"), s, density) ||
         scene_read_pairs(json_node_key(&o, "pairs"), s, law) ||
+        scene_read_shapes(json_node_key(&o, "shapes"), s) ||
         scene_read_cell(json_node_key(&o, "cell"), s->dim, s->t,
                         takes_documents(json_node_key(&o, "bodies")), &s->cell) ||
         scene_read_walls(json_node_key(&o, "walls"), s, &box, &boxed) ||

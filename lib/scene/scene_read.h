@@ -36,7 +36,14 @@ int scene_read_drives(jnode array, struct scene *s, int32_t wall);
 int scene_read_push(jnode force, struct scene *s, int32_t wall, struct load *l);
 int scene_read_box(jnode object, int dim, struct scene_box *box);
 
-/* scene/scene_radii.c: a SIZE */
+/* scene/scene_solids.c: "shapes"; the shape of a group of bodies and their orientation; how large they
+   are, by their radius or their size */
+int scene_read_shapes(jnode shapes, struct scene *s);
+int scene_read_shaped(jnode object, const struct scene *s, struct scene_bodies *b);
+int scene_read_sizes(jnode object, const struct scene *s, const struct scene_bodies *b,
+                     struct scene_size *z);
+
+/* scene/scene_radii.c: a SIZE; one that is not there leaves *z as it is */
 int scene_read_size(jnode size, int dim, struct scene_size *z);
 
 /* scene/scene_flow.c: "pour" and "remove" */
