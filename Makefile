@@ -35,10 +35,10 @@ PL      := $(foreach l,hdf5_hl hdf5 gsl gslcblas jansson,$(call library,$l)) $(S
 
 # No contraction to FMA: the same bytes on every machine.
 NSD_CFLAGS  := -std=gnu11 -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wvla \
-               -ffp-contract=off -fno-math-errno -fopenmp -DNSD_VERSION='"$(VERSION)"' -Ilib $(PC) \
+               -ffp-contract=off -fno-math-errno -pthread -DNSD_VERSION='"$(VERSION)"' -Ilib $(PC) \
                $(if $(SAN),-fsanitize=address$(,)undefined -fno-sanitize-recover=undefined)
 # Only the libraries that a tool calls: starting libpng, KLU and CHOLMOD costs milliseconds.
-NSD_LDFLAGS := -fopenmp -Wl,--as-needed $(if $(SAN),-fsanitize=address$(,)undefined)
+NSD_LDFLAGS := -pthread -Wl,--as-needed $(if $(SAN),-fsanitize=address$(,)undefined)
 NSD_LDLIBS  := $(PL)
 
 # The inner loops once a width; without contraction, and with instructions that the others know nothing of.
