@@ -1,6 +1,8 @@
 /* bodies/balance.c: energy and momentum, summed over bodies and contacts [bodies/balance.h]. */
 #include "bodies/balance.h"
 
+#include "bodies/tie.h"
+
 #include <stdlib.h>
 
 /* The mean velocities of a body over the step */
@@ -78,6 +80,19 @@ static void add_beyond(struct work *w, const struct packing *p, const struct imp
     }
 }
 
+/* What tied contacts store is not dissipated. */
+static void add_ties(struct balance *b, const struct packing *p, const struct contacts *s)
+{
+    for (int64_t i = 0; s->tie && i < s->n; i++) {
+        const struct tie *t = &s->tie[i];
+        if (!t->state && !(t->pull > 0)) continue;
+        struct tie_end end = tie_end(p, &s->c[i], t, &s->found[i]);
+        struct tie_account a = tie_account(p, &s->c[i], t, &end);
+        b->bond_change += a.change, b->bond_energy += a.stored, b->broken += a.broken;
+    }
+    b->dissipation -= b->bond_change + b->broken;
+}
+
 static void add_contacts(struct balance *b, const struct packing *p, const struct contacts *s,
                          const struct impulses *sum, const struct mean *mean)
 {
@@ -114,6 +129,7 @@ int balance_step(struct balance *b, const struct packing *p, const struct contac
     add_bodies(b, p, sum, mean);
     add_freedoms(b, p, sum);
     add_contacts(b, p, s, sum, mean);
+    add_ties(b, p, s);
     free(mean);
     return 0;
 }

@@ -6,7 +6,7 @@
 
 void contacts_free(struct contacts *s)
 {
-    free(s->c), free(s->found);
+    free(s->c), free(s->found), free(s->tie);
     *s = (struct contacts){ 0 };
 }
 
@@ -16,6 +16,12 @@ void contacts_free_found(struct contacts *s)
     s->found = NULL;
 }
 
+void contacts_free_tie(struct contacts *s)
+{
+    free(s->tie);
+    s->tie = NULL;
+}
+
 int contacts_alloc_found(struct contacts *s)
 {
     contacts_free_found(s);
@@ -23,17 +29,26 @@ int contacts_alloc_found(struct contacts *s)
     return s->found ? 0 : -1;
 }
 
+int contacts_alloc_tie(struct contacts *s)
+{
+    contacts_free_tie(s);
+    s->tie = calloc((size_t)s->n + 1, sizeof *s->tie);
+    return s->tie ? 0 : -1;
+}
+
 int contacts_copy(struct contacts *to, const struct contacts *from)
 {
     *to = (struct contacts){ .n = from->n, .room = from->n };
     size_t n = (size_t)from->n;
     to->c = malloc((n + 1) * sizeof *to->c);
-    if (!to->c || (from->found && contacts_alloc_found(to))) {
+    if (!to->c || (from->found && contacts_alloc_found(to)) ||
+        (from->tie && contacts_alloc_tie(to))) {
         contacts_free(to);
         return -1;
     }
     if (n) memcpy(to->c, from->c, n * sizeof *to->c);
     if (n && from->found) memcpy(to->found, from->found, n * sizeof *to->found);
+    if (n && from->tie) memcpy(to->tie, from->tie, n * sizeof *to->tie);
     return 0;
 }
 
@@ -111,10 +126,28 @@ static const char *contact_trouble(const struct contact *c, const struct found *
     return NULL;
 }
 
+static bool not_negative(double x)
+{
+    return x >= 0 && isfinite(x);
+}
+
+static const char *tie_trouble(const struct tie *t)
+{
+    if (!not_negative(t->pull) || !not_negative(t->offset) || !not_negative(t->jump[0]) ||
+        !isfinite(t->jump[1]) || !isfinite(t->jump[2]))
+        return "its pull, offset or jump is out of range";
+    if (!not_negative(t->stiff[0]) || !not_negative(t->stiff[1]) || !(t->beta >= 0 && t->beta <= 1))
+        return "its stiffness or beta is out of range";
+    if (!not_negative(t->mu_r) || !not_negative(t->mu_p))
+        return "mu_r and mu_p must not be negative";
+    return t->state >= 0 && t->state < TIE_STATES ? NULL : "its tie has no such state";
+}
+
 int contacts_check(const struct contacts *s, int64_t bodies, int32_t walls, struct why *why)
 {
     for (int64_t i = 0; i < s->n; i++) {
         const char *what = contact_trouble(&s->c[i], s->found ? &s->found[i] : NULL, bodies, walls);
+        if (!what && s->tie) what = tie_trouble(&s->tie[i]);
         if (what) return why_set(why, EX_DATAERR, "contact %lld: %s", (long long)i, what);
     }
     return 0;

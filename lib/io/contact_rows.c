@@ -98,6 +98,8 @@ int contact_rows_read(struct contact_rows *r, struct frame *f, struct why *why)
     bool solved = source_has(r->source, "/contacts/reaction");
     if (solved && contacts_alloc_found(s))
         return why_set(why, EX_SOFTWARE, "no memory for reactions");
+    if (f->packing.law && contacts_alloc_tie(s))
+        return why_set(why, EX_SOFTWARE, "no memory for the ties");
     if (table_read_columns(r->source, "/contacts", "", layout_contacts, first, s->n, s->c,
                            sizeof *s->c, why) ||
         read_bases(r->source, first, s, why) ||
@@ -106,6 +108,8 @@ int contact_rows_read(struct contact_rows *r, struct frame *f, struct why *why)
                             sizeof *s->c, why)) ||
         (f->packing.mesh.elements && table_read_columns(r->source, "/contacts", "", layout_features,
                                                         first, s->n, s->c, sizeof *s->c, why)) ||
+        (s->tie && table_read_columns(r->source, "/contacts", "", layout_ties, first, s->n, s->tie,
+                                      sizeof *s->tie, why)) ||
         (solved && table_read_columns(r->source, "/contacts", "", layout_found, first, s->n,
                                       s->found, sizeof *s->found, why)))
         return why->status;
@@ -177,6 +181,8 @@ int contact_rows_write(struct table_write *s, const struct frame *f, struct why 
         (f->packing.mesh.elements &&
          table_write_columns(s, "/contacts", "", layout_features, t->n, t->c, sizeof *t->c,
                              CHUNK_CONTACTS, why)) ||
+        (f->packing.law && table_write_columns(s, "/contacts", "", layout_ties, t->n, t->tie,
+                                               sizeof *t->tie, CHUNK_CONTACTS, why)) ||
         (t->found && table_write_columns(s, "/contacts", "", layout_found, t->n, t->found,
                                          sizeof *t->found, CHUNK_CONTACTS, why)) ||
         (forces && write_forces(s, t, f->packing.dt, why)) ||

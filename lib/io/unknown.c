@@ -30,7 +30,7 @@ static const struct {
     const char *known[12];
 } looked_through[] = {
     { "", { "h5md", "nsd", "particles", "walls", "contacts", "observables", "solution" } },
-    { "/nsd", { "history", "scene", "material", "solver", "flow", "cell" } },
+    { "/nsd", { "history", "scene", "material", "solver", "flow", "cell", "law", "bonds" } },
     { "/particles", { "all", "boundary" } },
     { "/particles/boundary",
       { "body", "load", "drive", "mesh", "position", "orientation", "velocity", "angular_velocity",

@@ -2,7 +2,7 @@
 #include "problem/problem.h"
 
 #include "bodies/kinematics.h"
-#include "problem/offset.h"
+#include "bodies/offset.h"
 #include "problem/schedule.h"
 
 #include <assert.h>
@@ -49,7 +49,7 @@ static int no_memory(struct problem *p, struct why *why)
 void problem_free(struct problem *p)
 {
     free(p->bundle), free(p->rebound), free(p->u), free(p->contact), free(p->group), free(p->body);
-    free(p->split), free(p->seat);
+    free(p->split), free(p->seat), free(p->pull);
     delassus_free(&p->sorted);
     if (p->own) delassus_free(p->own);
     if (p->coupling) couplings_free(p->coupling);
@@ -135,6 +135,22 @@ void problem_set_free_motion(struct problem *p)
         b->v[0] = pack->v[i].x + dv.x, b->v[1] = pack->v[i].y + dv.y, b->v[2] = pack->v[i].z + dv.z;
         b->w[0] = pack->w[i].x, b->w[1] = pack->w[i].y, b->w[2] = pack->w[i].z;
     }
+    for (int64_t i = 0; p->pull && i < p->slots; i++) {
+        const double pulled[3] = { -p->pull[i], 0, 0 };
+        if (p->pull[i] > 0) body_push(p->body, slot_bundle(p, i), slot_lane(i), pulled);
+    }
+}
+
+/* N s: of the contacts' ties */
+static bool set_pulls(struct problem *p, const struct contacts *s)
+{
+    bool any = false;
+    for (int64_t i = 0; s->tie && i < s->n; i++) any = any || s->tie[i].pull > 0;
+    if (!any) return true;
+    p->pull = calloc((size_t)p->slots + 1, sizeof *p->pull);
+    for (int64_t i = 0; p->pull && i < p->slots; i++)
+        if (p->contact[i] >= 0) p->pull[i] = p->dt * s->tie[p->contact[i]].pull;
+    return p->pull != NULL;
 }
 
 /* The place of a body i (wall w: -1-w) of a contact at x (m): its own, or of a new copy if it does
@@ -180,8 +196,8 @@ static void image_velocity(const vec3 rate[3], const struct contact *c, double u
 
 /* Fills slot i except for the reaction. The bodies still have their velocities before the step. */
 static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
-                      const struct lattice *cell, const struct contact *c, double alpha,
-                      double rho_factor)
+                      const struct lattice *cell, const struct contact *c, const struct tie *tie,
+                      double alpha, double rho_factor)
 {
     const double en[3] = { c->en, c->et, c->et }, n[3] = { c->n.x, c->n.y, c->n.z },
                  t1[3] = { c->t1.x, c->t1.y, c->t1.z }, s[2] = { 1 / (1 + c->en), 1 / (1 + c->et) };
@@ -202,7 +218,10 @@ static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
     }
     for (int j = 0; j < 3 && e; j++) e->offset[j][k] = u[j] * (en[j] / (1 + en[j]));
     for (int j = 0; j < 3 && e && shifted(c); j++) e->offset[j][k] += s[j > 0] * after[j];
-    if (e && offset_in(pack, c)) add_offset(e, k, pack, c, u[0]);
+    if (e && tie && tie->offset > 0)
+        e->offset[0][k] += tie->offset;
+    else if (e && offset_in(pack, c))
+        add_offset(e, k, pack, c, u[0]);
     for (int j = 0; j < 2 && e; j++) e->s[j][k] = s[j];
     r->w[0][k] = s[0] * im, r->w[1][k] = s[1] * it;
     for (int j = 0; j < 2; j++) r->iw[j][k] = 1 / r->w[j][k];
@@ -261,7 +280,9 @@ static bool glides(const struct contacts *s, const struct lattice *cell)
 static bool rebounds(const struct packing *pack, const struct contacts *s)
 {
     for (int64_t i = 0; i < s->n; i++)
-        if (s->c[i].en > 0 || s->c[i].et > 0 || offset_in(pack, &s->c[i])) return true;
+        if (s->c[i].en > 0 || s->c[i].et > 0 || offset_in(pack, &s->c[i]) ||
+            (s->tie && s->tie[i].offset > 0))
+            return true;
     return false;
 }
 
@@ -279,6 +300,7 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     const struct lattice cell = lattice_of(pack);
     if (room && (rebounds(pack, s) || glides(s, &cell)))
         room = (p->rebound = alloc_lines(p->bundles, sizeof *p->rebound)) != NULL;
+    room = room && set_pulls(p, s);
     if (!room || !(p->seat = seat_bodies(p, pack, s, order))) return no_memory(p, why);
     if (freedoms_in(pack)) {
         if (!(p->coupling = calloc(1, sizeof *p->coupling))) return no_memory(p, why);
@@ -294,7 +316,8 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
         if (p->contact[i] < 0) continue;
         const struct contact *c = &s->c[p->contact[i]];
         r->a[k] = place_of(p, c->a, c->x, &next), r->b[k] = place_of(p, c->b, c->x, &next);
-        slot_init(p, i, pack, &cell, c, alpha, rho_factor);
+        const struct tie *tie = s->tie ? &s->tie[p->contact[i]] : NULL;
+        slot_init(p, i, pack, &cell, c, tie, alpha, rho_factor);
     }
 
     double g = v3_norm(pack->g);
@@ -313,8 +336,10 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     for (int64_t i = 0; s->found && i < p->slots; i++) {
         if (p->contact[i] < 0) continue;
         const struct found *c = &s->found[p->contact[i]];
-        slot_set(p, i, c->r, c->u);
-        body_push(p->body, slot_bundle(p, i), slot_lane(i), c->r);
+        double r[3] = { c->r[0], c->r[1], c->r[2] };
+        if (p->pull) r[0] += p->pull[i];
+        slot_set(p, i, r, c->u);
+        body_push(p->body, slot_bundle(p, i), slot_lane(i), r);
     }
     return 0;
 }
@@ -398,6 +423,7 @@ int problem_store(const struct problem *p, struct contacts *s)
         const struct contact *law = &s->c[p->contact[i]];
         for (int k = 0; k < 3 && p->W; k++) c->u[k] /= 1 + (k ? law->et : law->en); // it is D u~
         c->status = (int8_t)local_status(slot_bundle(p, i)->mu[slot_lane(i)], c->r);
+        if (p->pull) c->r[0] -= p->pull[i];
     }
     return 0;
 }

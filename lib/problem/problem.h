@@ -44,6 +44,7 @@ struct problem {
                           meets them, and copies of what does not move; NULL: given by W */
     const struct packing *packing; /* borrowed: its velocities are those before the step; NULL:
                                       there is only W */
+    double *pull;                  /* [slots] N s: of cohesion, against n; NULL: none */
     int32_t *seat;                 /* [packing->n] body i of the packing is body[seat[i]] */
     struct couplings *coupling;    /* what freedoms the packing has beyond its bodies; NULL: none */
     struct delassus *W;            /* NULL: given by bodies */
@@ -72,8 +73,8 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
                              enum order order, struct why *why);
 void problem_free(struct problem *p);
 
-/* Sets the bodies of a packing to v_free, their velocities before the step plus dt g, and what
-   the flow of the cell's edges gains. */
+/* Sets the bodies of a packing to v_free, their velocities before the step plus dt g, what the flow
+   of the cell's edges gains, and what cohesion pulls. */
 void problem_set_free_motion(struct problem *p);
 
 /* How many of these threads are to share a sweep: all where the groups are large enough, else two

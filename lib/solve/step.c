@@ -21,7 +21,7 @@ static int sum_up(const struct packing *pack, const struct contacts *s, struct r
 {
     if (impulses_init(sum, pack, s, false, why) || balance_step(&rep->balance, pack, s, sum, why))
         return why->status;
-    rep->balanced = true;
+    rep->balanced = true, rep->tied = pack->law != NULL;
     return 0;
 }
 
@@ -61,7 +61,7 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
         for (int64_t i = 0; i < W->d * W->n; i++) W->r[i] = 0;
     if (problem_prepare_delassus(&p, W, o->alpha, o->solve.method->rho, o->order, why))
         return why->status;
-    rep->balanced = false;
+    rep->balanced = rep->tied = false;
     int failed = solve_problem(&p, &o->solve, rep);
     for (int64_t i = 0; i < p.slots; i++) {
         double r[3], v[3];
