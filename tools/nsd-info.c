@@ -309,6 +309,8 @@ static void show_contacts(const struct frame *f)
         if (found) {
             json_object_set_new(j, "r", json_numbers(found->r, 3));
             json_object_set_new(j, "u", json_numbers(found->u, 3));
+            if (f->contacts.moment)
+                json_object_set_new(j, "moment", json_numbers(f->contacts.moment[i], 3));
             json_object_set_new(j, "status", json_string(status[found->status % 3]));
         }
         json_line(j);

@@ -93,6 +93,18 @@ static void add_ties(struct balance *b, const struct packing *p, const struct co
     b->dissipation -= b->bond_change + b->broken;
 }
 
+/* The moment on b turns it, and the other way round a. */
+static void add_moment(struct work *w, const struct packing *p, const struct contact *c,
+                       const double moment[3], const struct mean *mean)
+{
+    vec3 m = contact_in_space(c, moment);
+    *(p->mass[c->b] > 0 ? &w->free : &w->held) += v3_dot(m, mean[c->b].w);
+    if (c->a < 0)
+        w->held -= v3_dot(m, wall_spin(p, &p->wall[-1 - c->a]));
+    else
+        *(p->mass[c->a] > 0 ? &w->free : &w->held) -= v3_dot(m, mean[c->a].w);
+}
+
 static void add_contacts(struct balance *b, const struct packing *p, const struct contacts *s,
                          const struct impulses *sum, const struct mean *mean)
 {
@@ -113,6 +125,7 @@ static void add_contacts(struct balance *b, const struct packing *p, const struc
             w.held -= v3_dot(o.f, wall_held(p, &p->wall[-1 - c->a], c->x));
         }
         if (beyond) add_beyond(&w, p, sum, c, o.f);
+        if (s->moment) add_moment(&w, p, c, s->moment[i], mean);
         b->drives -= w.held;
         b->dissipation -= w.held + w.free;
         if (!a_moves && b_moves) add_to(b->impulse, 1, o.f);

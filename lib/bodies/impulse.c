@@ -14,6 +14,13 @@ static void add(struct impulses *sum, const struct contact *c, const struct push
     sum->moment[c->a] = v3_axpy(sum->moment[c->a], o->la, o->m);
 }
 
+static void add_moment(struct impulses *sum, const struct contact *c, const double moment[3])
+{
+    vec3 m = contact_in_space(c, moment);
+    sum->moment[c->b] = v3_add(sum->moment[c->b], m);
+    if (c->a >= 0) sum->moment[c->a] = v3_sub(sum->moment[c->a], m);
+}
+
 int impulses_init(struct impulses *sum, const struct packing *p, const struct contacts *s,
                   bool ended, struct why *why)
 {
@@ -30,6 +37,7 @@ int impulses_init(struct impulses *sum, const struct packing *p, const struct co
     for (int64_t i = 0; i < s->n; i++) {
         struct push o = push_of(p, sum->ahead, sum->edge, &s->c[i], s->found[i].r);
         add(sum, &s->c[i], &o);
+        if (s->moment) add_moment(sum, &s->c[i], s->moment[i]);
     }
     return 0;
 }

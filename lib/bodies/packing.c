@@ -89,6 +89,13 @@ int packing_alloc_laws(struct packing *p, struct why *why)
     return p->law ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d kinds", p->kinds);
 }
 
+bool packing_rolls(const struct packing *p)
+{
+    for (int32_t k = 0; p->law && k < p->kinds * p->kinds; k++)
+        if (law_rolls(&p->law[k])) return true;
+    return false;
+}
+
 int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals, struct why *why)
 {
     free(p->poured), free(p->removed);

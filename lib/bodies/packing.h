@@ -86,6 +86,9 @@ static inline bool packing_varies(const struct packing *p)
     return p->pours > 0 || p->removals > 0;
 }
 
+/* Has any pair of kinds rolling or pivoting friction? */
+bool packing_rolls(const struct packing *p);
+
 /* Room for n bodies; those beyond the present ones are at rest at the origin, their id -1. Fewer: the
    last ones are cut off. Returns 0 or EX_SOFTWARE, where nothing has changed. */
 int packing_resize(struct packing *p, int64_t n, struct why *why);

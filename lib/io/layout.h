@@ -201,6 +201,9 @@ static const struct column layout_found[] = {
     { 0 },
 };
 
+/* [S][3] N m s: the moments of solved contacts on b, in the frame, where there is rolling friction */
+#define LAYOUT_MOMENT "/contacts/moment"
+
 /* [S][3] N: the reactions of solved contacts as forces on b, in space; written where asked, not read */
 #define LAYOUT_FORCE "/contacts/force"
 

@@ -79,6 +79,10 @@ static int prepare_coupled(struct problem *p, const struct packing *pack, const 
     unsolved.found = NULL;
     if (problem_prepare(&bodies, pack, &unsolved, alpha, rho_factor, ORDER_NATURAL, why))
         return why->status;
+    if (bodies.rolls) {
+        problem_free(&bodies);
+        return why_set(why, EX_DATAERR, "rolling friction where loads push contacts: not known");
+    }
     struct delassus *W = check_memory(&bodies, why) ? NULL : assemble(&bodies, s, why);
     if (W && !problem_prepare_delassus(p, W, alpha, rho_factor, order, why)) {
         p->own = W;

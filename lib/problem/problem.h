@@ -19,6 +19,7 @@
 
 #include "bodies/contact.h"
 #include "bodies/packing.h"
+#include "problem/beyond.h"
 #include "problem/bundle.h"
 #include "problem/coupling.h"
 #include "problem/delassus.h"
@@ -34,6 +35,8 @@ struct problem {
     int64_t bundles, slots;  /* slots: 8 a bundle, some without a contact */
     struct bundle *bundle;   /* [bundles] in the order of the sweep */
     struct rebound *rebound; /* [bundles]; NULL: e_n = e_t = 0 everywhere, and no offset */
+    struct beyond *beyond;   /* [bundles]; NULL: no contact is bonded, none has rolling friction */
+    bool rolls;              /* some contact has it */
     double (*u)[3][BUNDLE];  /* [bundles] m/s: what the local method believes */
     int32_t *contact;        /* [slots] slot i is contact[i] of the packing or of W; -1: none */
     int64_t groups;          /* no two contacts of a group share a body (a block of W): */
@@ -72,6 +75,11 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
 int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha, double rho_factor,
                              enum order order, struct why *why);
 void problem_free(struct problem *p);
+
+/* What of an iterate is beyond r: p and m of a slot's contact */
+enum { BEYOND = 6 };
+void slot_get_beyond(const struct problem *p, int64_t i, double x[BEYOND]);
+void slot_set_beyond(struct problem *p, int64_t i, const double x[BEYOND]);
 
 /* Sets the bodies of a packing to v_free, their velocities before the step plus dt g, what the flow
    of the cell's edges gains, and what cohesion pulls. */

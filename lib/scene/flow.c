@@ -95,6 +95,7 @@ static void follow(struct contacts *s, const int32_t *row)
         s->c[kept] = *c;
         s->c[kept].a = a, s->c[kept].b = b;
         if (s->found) s->found[kept] = s->found[i];
+        for (int k = 0; k < 3 && s->moment; k++) s->moment[kept][k] = s->moment[i][k];
         kept++;
     }
     s->n = kept;

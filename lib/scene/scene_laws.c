@@ -31,7 +31,6 @@ static int read_capillary(jnode o, struct law *l)
 static int read_rolling(jnode o, struct law *l)
 {
     if (!o.json) return 0;
-    if (!SOLVED) return json_node_fault(o, "rolling friction is not solved yet");
     l->mu_r = l->mu_p = 0;
     return json_node_only(o, "mu_r mu_p") ||
            json_node_number(json_node_key(&o, "mu_r"), J_NOT_NEGATIVE, &l->mu_r) ||

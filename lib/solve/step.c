@@ -25,6 +25,15 @@ static int sum_up(const struct packing *pack, const struct contacts *s, struct r
     return 0;
 }
 
+/* Refuses what the solver asked for cannot solve. */
+static int check_solver(const struct problem *p, const struct solver *global, struct why *why)
+{
+    if (!p->beyond || global == &solver_auto || global == &solver_nlgs) return 0;
+    return why_set(why, EX_DATAERR,
+                   "%s does not solve contacts with rolling friction: --global auto and nlgs do",
+                   global->name);
+}
+
 static int solve_contacts(const struct packing *pack, struct contacts *s, const struct step_opt *o,
                           struct report *rep, struct why *why)
 {
@@ -35,6 +44,7 @@ static int solve_contacts(const struct packing *pack, struct contacts *s, const 
     rep->step = pack->step + 1;
     rep->t = pack->t + pack->dt;
     rep->err.max_overlap = max_overlap(s);
+    if (check_solver(&p, o->solve.global, why)) return problem_free(&p), why->status;
     int failed = solve_problem(&p, &o->solve, rep);
     if (failed)
         why_set(why, EX_SOFTWARE, "no memory to solve the contacts");
