@@ -1,6 +1,7 @@
 /* bodies/balance.c: energy and momentum, summed over bodies and contacts [bodies/balance.h]. */
 #include "bodies/balance.h"
 
+#include "bodies/tie.h"
 #include "bodies/top.h"
 
 #include <stdlib.h>
@@ -82,6 +83,31 @@ static void add_beyond(struct work *w, const struct packing *p, const struct imp
     }
 }
 
+/* What tied contacts store is not dissipated. */
+static void add_ties(struct balance *b, const struct packing *p, const struct contacts *s)
+{
+    for (int64_t i = 0; s->tie && i < s->n; i++) {
+        const struct tie *t = &s->tie[i];
+        if (!t->state && !(t->pull > 0)) continue;
+        struct tie_end end = tie_end(p, &s->c[i], t, &s->found[i]);
+        struct tie_account a = tie_account(p, &s->c[i], t, &end);
+        b->bond_change += a.change, b->bond_energy += a.stored, b->broken += a.broken;
+    }
+    b->dissipation -= b->bond_change + b->broken;
+}
+
+/* The moment on b turns it, and the other way round a. */
+static void add_moment(struct work *w, const struct packing *p, const struct contact *c,
+                       const double moment[3], const struct mean *mean)
+{
+    vec3 m = contact_in_space(c, moment);
+    *(p->mass[c->b] > 0 ? &w->free : &w->held) += v3_dot(m, mean[c->b].w);
+    if (c->a < 0)
+        w->held -= v3_dot(m, wall_spin(p, &p->wall[-1 - c->a]));
+    else
+        *(p->mass[c->a] > 0 ? &w->free : &w->held) -= v3_dot(m, mean[c->a].w);
+}
+
 static void add_contacts(struct balance *b, const struct packing *p, const struct contacts *s,
                          const struct impulses *sum, const struct mean *mean)
 {
@@ -102,6 +128,7 @@ static void add_contacts(struct balance *b, const struct packing *p, const struc
             w.held -= v3_dot(o.f, wall_held(p, &p->wall[-1 - c->a], c->x));
         }
         if (beyond) add_beyond(&w, p, sum, c, o.f);
+        if (s->moment) add_moment(&w, p, c, s->moment[i], mean);
         b->drives -= w.held;
         b->dissipation -= w.held + w.free;
         if (!a_moves && b_moves) add_to(b->impulse, 1, o.f);
@@ -118,6 +145,7 @@ int balance_step(struct balance *b, const struct packing *p, const struct contac
     add_bodies(b, p, sum, mean);
     add_freedoms(b, p, sum);
     add_contacts(b, p, s, sum, mean);
+    add_ties(b, p, s);
     free(mean);
     return 0;
 }

@@ -3,6 +3,7 @@
 
 #include "bodies/detect_shapes.h"
 #include "bodies/kinematics.h"
+#include "bodies/tie.h"
 #include "bodies/top.h"
 
 #include <stdlib.h>
@@ -111,7 +112,7 @@ static int detect(struct contacts *out, const struct packing *p, const vec3 *x, 
     struct placed placed = { 0 }, *shaped = p->shape ? &placed : NULL;
     struct neighbours once = { 0 }, *near = kept ? kept : &once;
     bool stored = true, images = cell_repeats(&p->cell);
-    out->n = 0, contacts_free_found(out);
+    out->n = 0, contacts_free_found(out), contacts_free_tie(out);
     int e = neighbours_find(near, p, x, edge, gap, kept, why);
     if (!e) e = neighbours_surfaces(near, p, why);
     if (!e && shaped) e = placed_init(shaped, p, x, q, why);
@@ -162,12 +163,18 @@ static bool meets(const struct packing *p, const struct contact *c)
     return c->gap <= p->dt * (approach + calm) && (c->en == 0 || approach <= calm);
 }
 
-/* Keeps the contacts with at most this gap, and those that may close theirs. */
+/* Keeps the contacts with at most this gap, those that may close theirs where the law sees gaps, and
+   those that other laws hold. */
 static void keep_meeting(struct contacts *s, const struct packing *p, double gap)
 {
     int64_t n = 0;
-    for (int64_t i = 0; i < s->n; i++)
-        if (s->c[i].gap <= gap || meets(p, &s->c[i])) s->c[n++] = s->c[i];
+    bool sees = overlap_sees_gaps(p->overlap);
+    for (int64_t i = 0; i < s->n; i++) {
+        bool held = s->tie && tie_holds(&s->tie[i]);
+        if (!(s->c[i].gap <= gap || held || (sees && meets(p, &s->c[i])))) continue;
+        if (s->tie) s->tie[n] = s->tie[i];
+        s->c[n++] = s->c[i];
+    }
     s->n = n;
 }
 
@@ -186,8 +193,10 @@ int detect_contacts(struct contacts *out, const struct packing *p, double gap,
     vec3 edge[3];
     double ahead = (1 - p->theta) * p->dt;
     double reach = overlap_sees_gaps(p->overlap) ? fmax(gap, meeting_reach(p)) : gap;
+    if (p->law) reach = fmax(reach, ties_reach(p));
     cell_predict(&p->cell, ahead, edge);
     int e = detect(out, p, x, q, edge, p->t + ahead, reach, kept, why);
+    if (!e && p->law) e = ties_find(out, p, why);
     if (!e && reach > gap) keep_meeting(out, p, gap);
     free(x), free(q);
     return e;

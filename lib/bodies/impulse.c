@@ -16,6 +16,13 @@ static void add(struct impulses *sum, const struct contact *c, const struct push
         o->shaped ? v3_add(sum->moment[c->a], o->ma) : v3_axpy(sum->moment[c->a], o->la, o->m);
 }
 
+static void add_moment(struct impulses *sum, const struct contact *c, const double moment[3])
+{
+    vec3 m = contact_in_space(c, moment);
+    sum->moment[c->b] = v3_add(sum->moment[c->b], m);
+    if (c->a >= 0) sum->moment[c->a] = v3_sub(sum->moment[c->a], m);
+}
+
 int impulses_init(struct impulses *sum, const struct packing *p, const struct contacts *s,
                   bool ended, struct why *why)
 {
@@ -32,6 +39,7 @@ int impulses_init(struct impulses *sum, const struct packing *p, const struct co
     for (int64_t i = 0; i < s->n; i++) {
         struct push o = push_of(p, sum->ahead, sum->edge, &s->c[i], s->found[i].r);
         add(sum, &s->c[i], &o);
+        if (s->moment) add_moment(sum, &s->c[i], s->moment[i]);
     }
     return 0;
 }

@@ -2,6 +2,7 @@
 #include "bodies/move.h"
 
 #include "bodies/project.h"
+#include "bodies/tie.h"
 #include "bodies/top.h"
 
 #include <stdlib.h>
@@ -67,6 +68,7 @@ static void move_freedoms(struct packing *p, const struct impulses *sum, bool ba
 int move_by(struct packing *p, const struct contacts *s, const struct impulses *sum,
             struct why *why)
 {
+    if (p->law && ties_keep(p, s, why)) return why->status;
     for (int64_t i = 0; i < p->n; i++) body_move(p, &sum->flow, i, sum->force[i], sum->moment[i]);
     cell_move(&p->cell, p->dt, p->theta, sum->next);
     move_freedoms(p, sum, false);

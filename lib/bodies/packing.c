@@ -39,8 +39,8 @@ int packing_init(struct packing *p, int dim, int64_t n, struct why *why)
 static void kinds_free(struct packing *p)
 {
     for (int32_t k = 0; p->kind_name && k < p->kinds; k++) free(p->kind_name[k]);
-    free(p->kind_name), free(p->mu), free(p->en), free(p->et);
-    p->kind_name = NULL, p->mu = p->en = p->et = NULL, p->kinds = 0;
+    free(p->kind_name), free(p->mu), free(p->en), free(p->et), free(p->law);
+    p->kind_name = NULL, p->mu = p->en = p->et = NULL, p->law = NULL, p->kinds = 0;
 }
 
 void packing_free(struct packing *p)
@@ -52,6 +52,7 @@ void packing_free(struct packing *p)
     drives_free(&p->drives), drives_free(&p->pushes), mesh_free(&p->mesh);
     free(p->poured), free(p->removed);
     events_free(&p->events);
+    bonds_free(&p->bonds);
     cell_free(&p->cell);
     kinds_free(p);
     memset(p, 0, sizeof *p);
@@ -80,6 +81,20 @@ int packing_alloc_kinds(struct packing *p, int32_t k, struct why *why)
         allocated = (p->kind_name[p->kinds] = strdup(name));
     }
     return allocated ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d kinds", k);
+}
+
+int packing_alloc_laws(struct packing *p, struct why *why)
+{
+    free(p->law);
+    p->law = array((int64_t)p->kinds * p->kinds, sizeof *p->law);
+    return p->law ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d kinds", p->kinds);
+}
+
+bool packing_rolls(const struct packing *p)
+{
+    for (int32_t k = 0; p->law && k < p->kinds * p->kinds; k++)
+        if (law_rolls(&p->law[k])) return true;
+    return false;
 }
 
 int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals, struct why *why)
@@ -164,6 +179,9 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     memcpy(to->mu, p->mu, k2 * sizeof *p->mu);
     memcpy(to->en, p->en, k2 * sizeof *p->en);
     memcpy(to->et, p->et, k2 * sizeof *p->et);
+    if (p->law && packing_alloc_laws(to, why)) goto fail;
+    if (p->law) memcpy(to->law, p->law, k2 * sizeof *p->law);
+    if (bonds_copy(&to->bonds, &p->bonds, why)) goto fail;
     for (int32_t i = 0; i < p->kinds; i++) {
         free(to->kind_name[i]);
         if (!(to->kind_name[i] = strdup(p->kind_name[i]))) goto fail;
@@ -384,6 +402,8 @@ int packing_check(const struct packing *p, struct why *why)
             return why_set(why, EX_DATAERR, pair, a, b, "mu must not be negative");
         if (!(p->en[i] >= 0 && p->en[i] <= 1 && p->et[i] >= 0 && p->et[i] <= 1))
             return why_set(why, EX_DATAERR, pair, a, b, "restitution must lie in [0, 1]");
+        const char *trouble = p->law ? law_trouble(&p->law[i]) : NULL;
+        if (trouble) return why_set(why, EX_DATAERR, pair, a, b, trouble);
     }
     for (int64_t i = 0; i < p->n; i++) {
         const char *trouble = body_trouble(p, i);
@@ -404,6 +424,7 @@ int packing_check(const struct packing *p, struct why *why)
         if (trouble) return why_set(why, EX_DATAERR, "push %d: %s", i, trouble);
     }
     if (mesh_check(&p->mesh, p->dim, why)) return why->status;
+    if (bonds_check(&p->bonds, p->n, p->walls, why)) return why->status;
     return check_cell(p, why);
 }
 

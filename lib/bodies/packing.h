@@ -9,9 +9,11 @@
 
 #include "base/vec.h"
 #include "base/why.h"
+#include "bodies/bond.h"
 #include "bodies/boundary.h"
 #include "bodies/cell.h"
 #include "bodies/drive.h"
+#include "bodies/law.h"
 #include "bodies/mesh.h"
 #include "bodies/overlap.h"
 #include "bodies/passage.h"
@@ -51,9 +53,11 @@ struct packing {
     struct cell cell;
 
     int32_t kinds;
-    char **kind_name; /* [kinds] */
-    double *mu;       /* [kinds * kinds], symmetric: friction */
-    double *en, *et;  /* [kinds * kinds], symmetric: normal and tangential restitution */
+    char **kind_name;   /* [kinds] */
+    double *mu;         /* [kinds * kinds], symmetric: friction */
+    double *en, *et;    /* [kinds * kinds], symmetric: normal and tangential restitution */
+    struct law *law;    /* [kinds * kinds], symmetric: what is beyond these; NULL: nothing */
+    struct bonds bonds; /* what lasts of pairs by these laws */
 
     /* Grains come and go [scene/flow.h] where there are pours or removals. */
     int32_t pours, removals;
@@ -74,6 +78,9 @@ void packing_free(struct packing *p);
 int packing_alloc_walls(struct packing *p, int32_t k, struct why *why);
 int packing_alloc_kinds(struct packing *p, int32_t k, struct why *why);
 
+/* law[kinds * kinds], all zero, in place of the old ones. Returns 0 or EX_SOFTWARE. */
+int packing_alloc_laws(struct packing *p, struct why *why);
+
 /* Accounts of so many pours and removals, all zero, in place of the old ones. Returns 0 or
    EX_SOFTWARE. */
 int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals, struct why *why);
@@ -83,6 +90,9 @@ static inline bool packing_varies(const struct packing *p)
 {
     return p->pours > 0 || p->removals > 0;
 }
+
+/* Has any pair of kinds rolling or pivoting friction? */
+bool packing_rolls(const struct packing *p);
 
 /* Room for n bodies; those beyond the present ones are at rest at the origin, their id -1. Fewer: the
    last ones are cut off. Returns 0 or EX_SOFTWARE, where nothing has changed. */

@@ -3,6 +3,7 @@
 #include "io/boundary_tables.h"
 #include "io/cell_tables.h"
 #include "io/flow_tables.h"
+#include "io/law_tables.h"
 #include "io/roster.h"
 #include "io/shape_tables.h"
 
@@ -163,7 +164,7 @@ static int read_packing(struct frame_read *r, int64_t k, struct packing *p, stru
         read_material(r->source, p, why) || shape_tables_read(r->source, p, why) ||
         boundary_tables_read(r->source, k, p, why) ||
         (row ? roster_read(r->source, k, row, p, why) : read_bodies(r, k, p, why)) ||
-        flow_tables_read(r->source, k, p, why))
+        flow_tables_read(r->source, k, p, why) || law_tables_read(r->source, k, p, why))
         goto end;
     p->step = r->step[k], p->t = r->time[k];
     if (packing_varies(p) && (r->repeats[0] || r->repeats[1] || r->repeats[2]))

@@ -343,7 +343,7 @@ static int reserve(struct writer *s, const struct frame *f, struct why *why)
     if (s->doc.roster) // bodies that were there before, and what their rows are rounded up to
         n += (hsize_t)s->roster.rows + 2 * s->doc.chunk_bodies;
     if (f->detected) rows = (hsize_t)f->contacts.n + CHUNK_CONTACTS;
-    rows += (hsize_t)f->packing.events.n;
+    rows += (hsize_t)f->packing.events.n + (hsize_t)f->packing.bonds.n;
     // 128 bytes a body, and as many of its motion, 256 a contact, and the tables that may grow
     hsize_t frame = 256 * n + 256 * rows + (1 << 17);
     struct stat st; // HDF5 sometimes cuts the reserve off
@@ -389,6 +389,8 @@ static struct shared shared_of(const struct packing *p)
             struct shared){ p->dim, 0, p->dt, p->theta, p->overlap, 0, p->pours, p->removals, 0 };
     uint32_t crc = document_crc(0, p->radius, (size_t)p->n * sizeof *p->radius);
     crc = document_crc(crc, p->mass, (size_t)p->n * sizeof *p->mass);
+    size_t pairs = p->law ? (size_t)p->kinds * (size_t)p->kinds : 0;
+    if (pairs) crc = document_crc(crc, p->law, pairs * sizeof *p->law);
     return (
         struct shared){ p->dim, p->n, p->dt, p->theta, p->overlap, crc, 0, 0, cell_crc(&p->cell) };
 }

@@ -12,7 +12,7 @@ static int short_of_memory(struct why *why)
 
 void assembly_free(struct assembly *A)
 {
-    free(A->slot), free(A->end), free(A->q), free(A->w), free(A->free);
+    free(A->slot), free(A->end), free(A->q), free(A->w), free(A->free), free(A->pulled);
     lists_free(&A->of);
     lists_free(&A->yield);
     *A = (struct assembly){ 0 };
@@ -41,13 +41,33 @@ static void assembly_velocity(const struct assembly *A, struct body *body, doubl
 /* m/s, rad/s: of a freedom without the reactions */
 static double free_speed(const struct assembly *A, const struct freedom *f)
 {
-    return f->speed + A->p->dt * f->force / f->mass;
+    double pull = A->pulled ? A->pulled[f - A->p->coupling->freedoms.f] : 0;
+    return f->speed + A->p->dt * f->force / f->mass + pull;
+}
+
+/* m/s, rad/s: of the freedoms, what cohesion pulls; NULL: nothing, or no memory, which *good tells */
+static double *pulled(const struct assembly *A, bool *good)
+{
+    const struct couplings *y = A->p->coupling;
+    *good = true;
+    if (!y || !A->p->pull) return NULL;
+    double *speed = calloc((size_t)y->freedoms.n + 1, sizeof *speed);
+    *good = speed != NULL;
+    for (int64_t i = 0; speed && i < y->n; i++) {
+        const struct coupling *c = &y->of[i];
+        double pull = A->p->pull[A->slot[c->contact]];
+        speed[c->freedom] -= c->J[0] * pull / y->freedoms.f[c->freedom].mass;
+    }
+    return speed;
 }
 
 /* The bodies are as fast as the freedoms were before the step: q gets what the forces add to that,
    and w loses it. */
-static void add_freedoms(struct assembly *A)
+static bool add_freedoms(struct assembly *A)
 {
+    A->pulled = NULL;
+    bool good;
+    if (!(A->pulled = pulled(A, &good)) && !good) return false;
     const struct couplings *y = A->p->coupling;
     int d = A->p->d;
     for (int64_t i = 0; y && i < y->n; i++) {
@@ -59,6 +79,7 @@ static void add_freedoms(struct assembly *A)
             A->w[d * c->contact + k] -= f->speed * c->J[k];
         }
     }
+    return true;
 }
 
 static bool list_freedoms(struct assembly *A)
@@ -93,9 +114,8 @@ static bool assembly_vectors(struct assembly *A)
     }
     assembly_velocity(A, A->free, A->q);
     assembly_velocity(A, still, A->w);
-    add_freedoms(A);
     free(still);
-    return true;
+    return add_freedoms(A);
 }
 
 int assembly_init(struct assembly *A, const struct problem *p, struct why *why)

@@ -29,6 +29,7 @@ struct assembly {
     struct lists yield; /* of each freedom: its places in p->coupling->of[] */
     double *q, *w;      /* [n d] D u~ at v_free, and with all unknowns at rest, m/s */
     struct body *free;  /* [p->bodies] at v_free */
+    double *pulled;     /* [freedoms] m/s, rad/s: what cohesion makes of them; NULL: nothing */
 };
 
 /* All return 0, EX_SOFTWARE, or EX_DATAERR where the problem is too large for FCLIB's 32-bit

@@ -34,7 +34,23 @@ static struct delassus *assemble(const struct problem *bodies, const struct cont
     if (e) return free(W), NULL;
     for (int64_t c = 0; c < s->n && s->found; c++)
         for (int k = 0; k < W->d; k++) W->r[W->d * c + k] = s->found[c].r[k];
+    for (int64_t i = 0; s->found && bodies->pull && i < bodies->slots; i++)
+        if (bodies->contact[i] >= 0) W->r[W->d * bodies->contact[i]] += bodies->pull[i];
     return W;
+}
+
+/* What cohesion pulls, in the slots of the problem given by W; false when memory is short. */
+static bool copy_pulls(struct problem *p, const struct problem *bodies)
+{
+    double *of = bodies->pull ? calloc((size_t)p->n + 1, sizeof *of) : NULL;
+    if (!bodies->pull) return true;
+    if (of) p->pull = calloc((size_t)p->slots + 1, sizeof *p->pull);
+    for (int64_t i = 0; of && i < bodies->slots; i++)
+        if (bodies->contact[i] >= 0) of[bodies->contact[i]] = bodies->pull[i];
+    for (int64_t i = 0; of && p->pull && i < p->slots; i++)
+        if (p->contact[i] >= 0) p->pull[i] = of[p->contact[i]];
+    free(of);
+    return p->pull != NULL;
 }
 
 /* What a problem given by W does not know of the packing */
@@ -48,8 +64,10 @@ static void describe(struct problem *p, const struct problem *bodies, const stru
         const struct contact *c = &s->c[p->contact[i]];
         const struct found *f = &s->found[p->contact[i]];
         double D[3] = { 1 + c->en, 1 + c->et, 1 + c->et }, u[3];
+        double r[3] = { f->r[0], f->r[1], f->r[2] };
+        if (p->pull) r[0] += p->pull[i];
         for (int k = 0; k < 3; k++) u[k] = D[k] * f->u[k];
-        slot_set(p, i, f->r, u);
+        slot_set(p, i, r, u);
     }
 }
 
@@ -61,10 +79,19 @@ static int prepare_coupled(struct problem *p, const struct packing *pack, const 
     unsolved.found = NULL;
     if (problem_prepare(&bodies, pack, &unsolved, alpha, rho_factor, ORDER_NATURAL, why))
         return why->status;
+    if (bodies.rolls) {
+        problem_free(&bodies);
+        return why_set(why, EX_DATAERR, "rolling friction where loads push contacts: not known");
+    }
     struct delassus *W = check_memory(&bodies, why) ? NULL : assemble(&bodies, s, why);
     if (W && !problem_prepare_delassus(p, W, alpha, rho_factor, order, why)) {
         p->own = W;
-        describe(p, &bodies, s);
+        if (copy_pulls(p, &bodies)) {
+            describe(p, &bodies, s);
+        } else {
+            problem_free(p);
+            why_set(why, EX_SOFTWARE, "no memory for the contact problem");
+        }
     } else if (W) {
         delassus_free(W);
         free(W);

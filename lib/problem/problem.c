@@ -2,8 +2,8 @@
 #include "problem/problem.h"
 
 #include "bodies/kinematics.h"
+#include "bodies/offset.h"
 #include "bodies/top.h"
-#include "problem/offset.h"
 #include "problem/schedule.h"
 
 #include <assert.h>
@@ -51,7 +51,7 @@ static int no_memory(struct problem *p, struct why *why)
 void problem_free(struct problem *p)
 {
     free(p->bundle), free(p->rebound), free(p->u), free(p->contact), free(p->group), free(p->body);
-    free(p->split), free(p->seat), free(p->lever), free(p->spin);
+    free(p->split), free(p->seat), free(p->pull), free(p->beyond), free(p->lever), free(p->spin);
     delassus_free(&p->sorted);
     if (p->own) delassus_free(p->own);
     if (p->coupling) couplings_free(p->coupling);
@@ -139,6 +139,22 @@ void problem_set_free_motion(struct problem *p)
         vec3 w = p->spin ? p->spin[i] : pack->w[i];
         b->w[0] = w.x, b->w[1] = w.y, b->w[2] = w.z;
     }
+    for (int64_t i = 0; p->pull && i < p->slots; i++) {
+        const double pulled[3] = { -p->pull[i], 0, 0 };
+        if (p->pull[i] > 0) problem_push(p, p->body, slot_bundle(p, i), slot_lane(i), pulled);
+    }
+}
+
+/* N s: of the contacts' ties */
+static bool set_pulls(struct problem *p, const struct contacts *s)
+{
+    bool any = false;
+    for (int64_t i = 0; s->tie && i < s->n; i++) any = any || s->tie[i].pull > 0;
+    if (!any) return true;
+    p->pull = calloc((size_t)p->slots + 1, sizeof *p->pull);
+    for (int64_t i = 0; p->pull && i < p->slots; i++)
+        if (p->contact[i] >= 0) p->pull[i] = p->dt * s->tie[p->contact[i]].pull;
+    return p->pull != NULL;
 }
 
 /* The place of a body i (wall w: -1-w) of a contact at x (m): its own, or of a new copy if it does
@@ -150,6 +166,10 @@ static int32_t place_of(struct problem *p, int32_t i, vec3 x, int64_t *next)
     struct body *copy = &p->body[*next];
     vec3 v = i < 0 ? wall_velocity(pack, &pack->wall[-1 - i], x) : pack->v[i];
     *copy = (struct body){ .v = { v.x, v.y, v.z } };
+    if (i < 0 && p->rolls) { // its arm is 0: that it turns matters to moments only
+        vec3 w = wall_spin(pack, &pack->wall[-1 - i]);
+        copy->w[0] = w.x, copy->w[1] = w.y, copy->w[2] = w.z;
+    }
     if (i >= 0) *copy = p->body[p->seat[i]];
     return body_place((*next)++);
 }
@@ -184,8 +204,8 @@ static void image_velocity(const vec3 rate[3], const struct contact *c, double u
 
 /* Fills slot i except for the reaction. The bodies still have their velocities before the step. */
 static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
-                      const struct lattice *cell, const struct contact *c, double alpha,
-                      double rho_factor)
+                      const struct lattice *cell, const struct contact *c, const struct tie *tie,
+                      double alpha, double rho_factor)
 {
     const double en[3] = { c->en, c->et, c->et }, n[3] = { c->n.x, c->n.y, c->n.z },
                  t1[3] = { c->t1.x, c->t1.y, c->t1.z }, s[2] = { 1 / (1 + c->en), 1 / (1 + c->et) };
@@ -206,7 +226,10 @@ static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
     }
     for (int j = 0; j < 3 && e; j++) e->offset[j][k] = u[j] * (en[j] / (1 + en[j]));
     for (int j = 0; j < 3 && e && shifted(c); j++) e->offset[j][k] += s[j > 0] * after[j];
-    if (e && offset_in(pack, c)) add_offset(e, k, pack, c, u[0]);
+    if (e && tie && tie->offset > 0)
+        e->offset[0][k] += tie->offset;
+    else if (e && offset_in(pack, c))
+        add_offset(e, k, pack, c, u[0]);
     for (int j = 0; j < 2 && e; j++) e->s[j][k] = s[j];
     r->w[0][k] = s[0] * im, r->w[1][k] = s[1] * it;
     for (int j = 0; j < 2; j++) r->iw[j][k] = 1 / r->w[j][k];
@@ -253,8 +276,8 @@ static void set_rows(double G[9][BUNDLE], int k, const struct packing *pack, int
 
 /* Fills the slot's levers, W_cc and rho; its rebound, undivided: u + E u^- + d, with D law */
 static void lever_init(struct problem *p, int64_t i, const struct packing *pack,
-                       const struct lattice *cell, const struct contact *c, double alpha,
-                       double rho_factor, const quat *half)
+                       const struct lattice *cell, const struct contact *c,
+                       const struct tie *tie, double alpha, double rho_factor, const quat *half)
 {
     const double en[3] = { c->en, c->et, c->et }, n[3] = { c->n.x, c->n.y, c->n.z },
                  t1[3] = { c->t1.x, c->t1.y, c->t1.z };
@@ -286,8 +309,80 @@ static void lever_init(struct problem *p, int64_t i, const struct packing *pack,
         u[j] += before[j];
         e->offset[j][k] = en[j] * u[j] + after[j];
     }
-    if (offset_in(pack, c)) e->offset[0][k] += offset_of(pack, c, u[0]);
+    if (tie && tie->offset > 0)
+        e->offset[0][k] += (1 + en[0]) * tie->offset;
+    else if (offset_in(pack, c))
+        e->offset[0][k] += offset_of(pack, c, u[0]);
     for (int j = 0; j < 2; j++) e->s[j][k] = 1;
+}
+
+/* Beyond W~, rho and the offset, which slot_init() has set: the bond's part, and that of moments */
+static void slot_go_beyond(struct problem *p, int64_t i, const struct contact *c,
+                           const struct tie *t, double alpha, double rho_factor)
+{
+    int k = slot_lane(i);
+    struct bundle *r = slot_bundle(p, i);
+    struct beyond *x = &p->beyond[i / BUNDLE];
+    const struct rebound *e = slot_rebound(p, i);
+    const struct body *a = &p->body[body_index(r->a[k])], *b = &p->body[body_index(r->b[k])];
+    double h = p->dt, seen = t->offset > 0 ? t->offset : offset_of(p->packing, c, 0);
+    double wt = r->w[1][k] / (e ? e->s[1][k] : 1);
+    for (int j = 0; j < 2; j++) {
+        x->K[j][k] = h * h * t->stiff[j], x->s[j][k] = 1 / (1 + r->w[j][k] * x->K[j][k]);
+        r->w[j][k] *= x->s[j][k], r->iw[j][k] += x->K[j][k];
+    }
+    double lambda = bundle_lambda(r, k);
+    if (t->beta > 0 && !(alpha > 0)) r->rho[k] = lambda > 0 ? rho_factor / lambda : 1;
+    x->a[0][k] = x->K[0][k] * (t->jump[0] / h - seen);
+    for (int j = 1; j < 3; j++) x->a[j][k] = h * t->stiff[1] * t->jump[j];
+    x->mu_r[k] = t->mu_r, x->mu_p[k] = t->mu_p;
+    if (!beyond_rolls(x, k)) return;
+    x->k[k] = r->lb[k] * b->ii - r->la[k] * a->ii, x->wr[k] = a->ii + b->ii;
+    x->length[k] = x->wr[k] > 0 ? sqrt(wt / x->wr[k]) : 1;
+    struct rolling q;
+    const double s[2] = { e ? e->s[0][k] : 1, e ? e->s[1][k] : 1 }, u[3] = { 0 };
+    double v[ROLLING];
+    beyond_rolling(r, x, p->body, k, s, u, &q, v);
+    x->rho[k] = r->rho[k] * lambda / rolling_lambda(&q);
+}
+
+/* Allocates what bonds and moments need, where there are any; false when memory is short. */
+static bool lay_out_beyond(struct problem *p, const struct contacts *s)
+{
+    bool any = false;
+    for (int64_t i = 0; s->tie && i < s->n; i++) {
+        const struct tie *t = &s->tie[i];
+        p->rolls = p->rolls || t->mu_r > 0 || t->mu_p > 0;
+        any = any || t->stiff[0] > 0 || t->stiff[1] > 0;
+    }
+    if (!any && !p->rolls) return true;
+    p->beyond = alloc_lines(p->bundles, sizeof *p->beyond);
+    for (int64_t i = 0; p->beyond && i < p->slots; i++)
+        for (int j = 0; j < 2; j++) p->beyond[i / BUNDLE].s[j][slot_lane(i)] = 1;
+    return p->beyond != NULL;
+}
+
+/* The reactions found, as r* and what is beyond it; the bodies get them. */
+static void take_found(struct problem *p, int64_t i, const struct contacts *s)
+{
+    const struct found *c = &s->found[p->contact[i]];
+    struct beyond *x = p->beyond ? &p->beyond[i / BUNDLE] : NULL;
+    int k = slot_lane(i);
+    double r[3] = { c->r[0], c->r[1], c->r[2] };
+    if (p->pull) r[0] += p->pull[i];
+    problem_push(p, p->body, slot_bundle(p, i), k, r);
+    for (int j = 0; x && j < 3; j++) {
+        x->p[j][k] = -x->a[j][k] - x->K[j > 0][k] * c->u[j];
+        r[j] -= x->p[j][k];
+        if (s->moment) x->m[j][k] = s->moment[p->contact[i]][j];
+    }
+    const struct contact *law = &s->c[p->contact[i]];
+    double u[3] = { c->u[0], c->u[1], c->u[2] };
+    for (int j = 0; j < 3 && p->lever; j++) u[j] *= 1 + (j ? law->et : law->en);
+    slot_set(p, i, r, u);
+    if (!x || !beyond_rolls(x, k)) return;
+    const double m[3] = { x->m[0][k], x->m[1][k], x->m[2][k] };
+    beyond_push(slot_bundle(p, i), k, p->body, m);
 }
 
 /* kg: the mean mass of the bodies that move, for the scaled errors */
@@ -341,7 +436,9 @@ static bool glides(const struct contacts *s, const struct lattice *cell)
 static bool rebounds(const struct packing *pack, const struct contacts *s)
 {
     for (int64_t i = 0; i < s->n; i++)
-        if (s->c[i].en > 0 || s->c[i].et > 0 || offset_in(pack, &s->c[i])) return true;
+        if (s->c[i].en > 0 || s->c[i].et > 0 || offset_in(pack, &s->c[i]) ||
+            (s->tie && s->tie[i].offset > 0))
+            return true;
     return false;
 }
 
@@ -365,6 +462,12 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     }
     if (room && (rebounds(pack, s) || glides(s, &cell)))
         room = (p->rebound = alloc_lines(p->bundles, sizeof *p->rebound)) != NULL;
+    room = room && set_pulls(p, s) && lay_out_beyond(p, s);
+    if (room && p->beyond && p->lever) {
+        free(half), problem_free(p);
+        return why_set(why, EX_DATAERR,
+                       "bonds and rolling friction are for balls and discs, and there are contacts of other shapes");
+    }
     if (!room || !(p->seat = seat_bodies(p, pack, s, order))) return free(half), no_memory(p, why);
     if (freedoms_in(pack)) {
         if (!(p->coupling = calloc(1, sizeof *p->coupling))) return free(half), no_memory(p, why);
@@ -382,10 +485,12 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
         if (p->contact[i] < 0) continue;
         const struct contact *c = &s->c[p->contact[i]];
         r->a[k] = place_of(p, c->a, c->x, &next), r->b[k] = place_of(p, c->b, c->x, &next);
+        const struct tie *tie = s->tie ? &s->tie[p->contact[i]] : NULL;
         if (p->lever)
-            lever_init(p, i, pack, &cell, c, alpha, rho_factor, half);
+            lever_init(p, i, pack, &cell, c, tie, alpha, rho_factor, half);
         else
-            slot_init(p, i, pack, &cell, c, alpha, rho_factor);
+            slot_init(p, i, pack, &cell, c, tie, alpha, rho_factor);
+        if (p->beyond) slot_go_beyond(p, i, c, tie, alpha, rho_factor);
     }
     free(half);
 
@@ -402,15 +507,8 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
         p->norm_q += q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
     }
     p->norm_q = sqrt(p->norm_q);
-    for (int64_t i = 0; s->found && i < p->slots; i++) {
-        if (p->contact[i] < 0) continue;
-        const struct found *c = &s->found[p->contact[i]];
-        const struct contact *law = &s->c[p->contact[i]];
-        double u[3] = { c->u[0], c->u[1], c->u[2] };
-        for (int k = 0; k < 3 && p->lever; k++) u[k] *= 1 + (k ? law->et : law->en);
-        slot_set(p, i, c->r, u);
-        problem_push(p, p->body, slot_bundle(p, i), slot_lane(i), c->r);
-    }
+    for (int64_t i = 0; s->found && i < p->slots; i++)
+        if (p->contact[i] >= 0) take_found(p, i, s);
     return 0;
 }
 
@@ -477,6 +575,18 @@ void slot_set(struct problem *p, int64_t i, const double r[3], const double u[3]
         c->r[k][slot_lane(i)] = r[k], p->u[i / BUNDLE][k][slot_lane(i)] = u[k];
 }
 
+void slot_get_beyond(const struct problem *p, int64_t i, double x[BEYOND])
+{
+    const struct beyond *y = &p->beyond[i / BUNDLE];
+    for (int k = 0; k < 3; k++) x[k] = y->p[k][slot_lane(i)], x[3 + k] = y->m[k][slot_lane(i)];
+}
+
+void slot_set_beyond(struct problem *p, int64_t i, const double x[BEYOND])
+{
+    struct beyond *y = &p->beyond[i / BUNDLE];
+    for (int k = 0; k < 3; k++) y->p[k][slot_lane(i)] = x[k], y->m[k][slot_lane(i)] = x[3 + k];
+}
+
 int problem_team(const struct problem *p, int threads)
 {
     if (p->bundles >= PARALLEL_FROM * p->groups) return threads;
@@ -485,7 +595,7 @@ int problem_team(const struct problem *p, int threads)
 
 int problem_store(const struct problem *p, struct contacts *s)
 {
-    if (contacts_alloc_found(s)) return -1;
+    if (contacts_alloc_found(s) || (p->rolls && contacts_alloc_moment(s))) return -1;
     for (int64_t i = 0; i < p->slots; i++) {
         if (p->contact[i] < 0) continue;
         struct found *c = &s->found[p->contact[i]];
@@ -494,6 +604,13 @@ int problem_store(const struct problem *p, struct contacts *s)
         for (int k = 0; k < 3 && problem_undivided(p); k++)
             c->u[k] /= 1 + (k ? law->et : law->en); // it is D u~
         c->status = (int8_t)local_status(slot_bundle(p, i)->mu[slot_lane(i)], c->r);
+        double x[BEYOND];
+        if (p->beyond) slot_get_beyond(p, i, x);
+        for (int k = 0; k < 3 && p->beyond; k++) {
+            c->r[k] += x[k];
+            if (s->moment) s->moment[p->contact[i]][k] = x[3 + k];
+        }
+        if (p->pull) c->r[0] -= p->pull[i];
     }
     return 0;
 }

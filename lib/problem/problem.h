@@ -21,6 +21,7 @@
 
 #include "bodies/contact.h"
 #include "bodies/packing.h"
+#include "problem/beyond.h"
 #include "problem/bundle.h"
 #include "problem/coupling.h"
 #include "problem/delassus.h"
@@ -38,6 +39,8 @@ struct problem {
     struct bundle *bundle;   /* [bundles] in the order of the sweep */
     struct rebound *rebound; /* [bundles]; NULL: e_n = e_t = 0 everywhere, and no offset */
     struct levers *lever;    /* [bundles]; NULL: balls, or given by W */
+    struct beyond *beyond;   /* [bundles]; NULL: no contact is bonded, none has rolling friction */
+    bool rolls;              /* some contact has it */
     double (*u)[3][BUNDLE];  /* [bundles] m/s: what the local method believes */
     int32_t *contact;        /* [slots] slot i is contact[i] of the packing or of W; -1: none */
     int64_t groups;          /* no two contacts of a group share a body (a block of W): */
@@ -49,6 +52,7 @@ struct problem {
     const struct packing *packing; /* borrowed: its velocities are those before the step; NULL:
                                       there is only W */
     vec3 *spin;                    /* [packing->n] y before the reactions; NULL without levers */
+    double *pull;                  /* [slots] N s: of cohesion, against n; NULL: none */
     int32_t *seat;                 /* [packing->n] body i of the packing is body[seat[i]] */
     struct couplings *coupling;    /* what freedoms the packing has beyond its bodies; NULL: none */
     struct delassus *W;            /* NULL: given by bodies */
@@ -77,8 +81,13 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
                              enum order order, struct why *why);
 void problem_free(struct problem *p);
 
-/* Sets the bodies of a packing to v_free, their velocities before the step plus dt g, and what
-   the flow of the cell's edges gains. */
+/* What of an iterate is beyond r: p and m of a slot's contact */
+enum { BEYOND = 6 };
+void slot_get_beyond(const struct problem *p, int64_t i, double x[BEYOND]);
+void slot_set_beyond(struct problem *p, int64_t i, const double x[BEYOND]);
+
+/* Sets the bodies of a packing to v_free, their velocities before the step plus dt g, what the flow
+   of the cell's edges gains, and what cohesion pulls. */
 void problem_set_free_motion(struct problem *p);
 
 /* How many of these threads are to share a sweep: all where the groups are large enough, else two

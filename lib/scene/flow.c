@@ -97,7 +97,22 @@ static void follow(struct contacts *s, const int32_t *row)
         s->c[kept] = *c;
         s->c[kept].a = a, s->c[kept].b = b;
         if (s->found) s->found[kept] = s->found[i];
+        for (int k = 0; k < 3 && s->moment; k++) s->moment[kept][k] = s->moment[i][k];
         kept++;
+    }
+    s->n = kept;
+}
+
+/* The bonds of bodies that are still there, likewise */
+static void follow_bonds(struct bonds *s, const int32_t *row)
+{
+    int64_t kept = 0;
+    for (int64_t i = 0; i < s->n; i++) {
+        struct bond x = s->bond[i];
+        if (x.a >= 0) x.a = row[x.a];
+        bool there = row[x.b] >= 0 && (s->bond[i].a < 0 || x.a >= 0);
+        x.b = row[x.b];
+        if (there) s->bond[kept++] = x;
     }
     s->n = kept;
 }
@@ -258,8 +273,10 @@ int flow_step(const struct flow *f, struct packing *p, struct contacts *last, bo
     gsl_rng *rng = counter_alloc();
     if (!row || !rng)
         why_set(why, EX_SOFTWARE, "no memory for bodies that come and go");
-    else if (!remove_bodies(f, p, row, why) && last)
-        follow(last, row);
+    else if (!remove_bodies(f, p, row, why)) {
+        follow_bonds(&p->bonds, row);
+        if (last) follow(last, row);
+    }
     for (int32_t k = 0; k < f->scene.pours && !why->status; k++)
         while (!why->status && is_due(&f->scene.pour[k], &p->poured[k], p->t) &&
                pour_one(p, &f->scene.pour[k], k, rng, why))

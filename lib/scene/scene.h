@@ -137,6 +137,7 @@ struct scene_kind {
 
 struct scene_law {
     double mu, en, et;
+    struct law beyond;
 };
 
 struct scene_box {

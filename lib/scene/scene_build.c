@@ -215,6 +215,14 @@ static int set_shapes(struct packing *p, const struct scene *s, struct why *why)
     return p->shapes.n ? packing_alloc_shapes(p, why) : 0;
 }
 
+/* Has any pair of kinds a law beyond friction and restitution? */
+static bool goes_beyond(const struct scene *s)
+{
+    for (int32_t k = 0; k < s->kinds * s->kinds; k++)
+        if (law_ties(&s->law[k].beyond) || law_rolls(&s->law[k].beyond)) return true;
+    return false;
+}
+
 static int set_parameters(struct packing *p, const struct scene *s, struct why *why)
 {
     p->dt = s->dt, p->theta = s->theta, p->g = s->g, p->seed = s->seed, p->t = s->t;
@@ -235,6 +243,8 @@ static int set_parameters(struct packing *p, const struct scene *s, struct why *
     }
     for (int32_t k = 0; k < s->kinds * s->kinds; k++)
         p->mu[k] = s->law[k].mu, p->en[k] = s->law[k].en, p->et[k] = s->law[k].et;
+    if (goes_beyond(s) && packing_alloc_laws(p, why)) return why->status;
+    for (int32_t k = 0; p->law && k < s->kinds * s->kinds; k++) p->law[k] = s->law[k].beyond;
     if ((p->scene = strdup(s->text))) return 0;
 fail:
     return why_set(why, EX_SOFTWARE, "no memory for the scene");

@@ -16,6 +16,8 @@ void *scene_alloc(jnode node, size_t count, size_t size);
 /* scene/scene_material.c: mu, e_n, e_t; "kinds" and "pairs", with density and law for those that
    give none; the NAME of a kind */
 int scene_read_law(const jnode *object, struct scene_law *law);
+/* scene/scene_laws.c: the laws beyond these; t: the time of the scene, s */
+int scene_read_laws(const jnode *object, double t, struct law *law);
 int scene_read_kinds(jnode kinds, struct scene *s, double density);
 int scene_read_pairs(jnode pairs, struct scene *s, struct scene_law law);
 int scene_read_kind(jnode name, const struct scene *s, int32_t *kind);

@@ -21,8 +21,17 @@ static int sum_up(const struct packing *pack, const struct contacts *s, struct r
 {
     if (impulses_init(sum, pack, s, false, why) || balance_step(&rep->balance, pack, s, sum, why))
         return why->status;
-    rep->balanced = true;
+    rep->balanced = true, rep->tied = pack->law != NULL;
     return 0;
+}
+
+/* Refuses what the solver asked for cannot solve. */
+static int check_solver(const struct problem *p, const struct solver *global, struct why *why)
+{
+    if (!p->beyond || global == &solver_auto || global == &solver_nlgs) return 0;
+    return why_set(why, EX_DATAERR,
+                   "%s does not solve contacts with rolling friction: --global auto and nlgs do",
+                   global->name);
 }
 
 static int solve_contacts(const struct packing *pack, struct contacts *s, const struct step_opt *o,
@@ -35,6 +44,7 @@ static int solve_contacts(const struct packing *pack, struct contacts *s, const 
     rep->step = pack->step + 1;
     rep->t = pack->t + pack->dt;
     rep->err.max_overlap = max_overlap(s);
+    if (check_solver(&p, o->solve.global, why)) return problem_free(&p), why->status;
     int failed = solve_problem(&p, &o->solve, rep);
     if (failed)
         why_set(why, EX_SOFTWARE, "no memory to solve the contacts");
@@ -61,7 +71,7 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
         for (int64_t i = 0; i < W->d * W->n; i++) W->r[i] = 0;
     if (problem_prepare_delassus(&p, W, o->alpha, o->solve.method->rho, o->order, why))
         return why->status;
-    rep->balanced = false;
+    rep->balanced = rep->tied = false;
     int failed = solve_problem(&p, &o->solve, rep);
     for (int64_t i = 0; i < p.slots; i++) {
         double r[3], v[3];
