@@ -141,6 +141,17 @@ is 'bodies from a document have their shapes' "$(nsd-info -p "$tmp/from.h5" | jq
 is 'nsd-info says which' "$(nsd-info -p "$tmp/heap.h5" | jq -s 'map(.shape) | unique | join(" ")')" '"clump cube rounded stone"'
 ok 'nsd-view draws them' sh -c "nsd-view '$tmp/heap.h5' >'$tmp/heap.png' && [ -s '$tmp/heap.png' ]"
 
+# Stones that pour in: the same bytes, whatever the threads, and however often the run is begun again
+printf '{"dt": 1e-3, "mu": 0.4, "shapes": {"stone": {"points": [[0.9,0.1,0.2],[-0.8,0.3,0.1],[0.1,1,-0.2],[-0.2,-0.9,0.3],[0.3,-0.1,0.8],[-0.1,0.2,-0.7]]}},
+    "walls": [{"point": [0, 0, 0], "normal": [0, 0, 1]}], "bodies": [{"x": [0.5, 0, 0.1], "shape": "stone", "size": 0.05}],
+    "pour": [{"rate": 100, "opening": {"disc": {"center": [0, 0, 0.6], "normal": [0, 0, 1], "radius": 0.1}}, "shape": "stone",
+        "orientation": "random", "size": {"uniform": [0.03, 0.05]}, "v": [0, 0, -1], "count": 30}]}' | nsd-gen - >"$tmp/pour.h5"
+nsd-step -n 500 "$tmp/pour.h5" 2>/dev/null | nsd-cat --last >"$tmp/whole.h5"
+is 'stones pour in' "$(nsd-info --last -p "$tmp/whole.h5" | jq -s 'map(.shape == "stone") | [length, all] | tojson')" '"[31,true]"'
+nsd-step -n 230 "$tmp/pour.h5" 2>/dev/null >"$tmp/half.h5"
+nsd-step -n 270 -j 2 "$tmp/half.h5" 2>/dev/null | nsd-cat --last >"$tmp/rest.h5"
+ok 'a run of them that goes on is the run, to the bit' same_particles "$tmp/whole.h5" "$tmp/rest.h5"
+
 # ---- shapes that are none ----
 
 bad() # name shape [dim]
