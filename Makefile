@@ -4,6 +4,7 @@
 # make bench-solvers   all solvers over a collection of problems, Siconos' beside them
 # make rest       what is done about overlap: columns and piles that rest (nsd-methods(7))
 # make paper      every table and figure of the paper     QUICK=1        the same in minutes
+# make gallery    experiments beside what is published     QUICK=1       small, in minutes
 # make docs       the manuals as HTML, in docs/man        make deb       Debian packages, in build/deb
 #
 # Objects, tools and tests are under build/; SAN=1 makes the same with ASan and UBSan in build/san/,
@@ -19,15 +20,29 @@ B       := build$(if $(SAN),/san)
 , := ,
 LIBS := hdf5 gsl jansson zlib libpng cairo
 PC   := $(shell pkg-config --cflags $(LIBS) 2>/dev/null)
-PL   := $(shell pkg-config --libs $(LIBS) 2>/dev/null)
+
+# Archives of the libraries where there are some, of which a tool gets what it calls: shared ones load others,
+# libhdf5 36 (libcurl and its own), CHOLMOD OpenBLAS, cairo X11, and a tool then starts in 10 ms of the
+# processor instead of 2. SHARED=1: none, as distributions want it.
+SHARED ?=
+FOLDERS := $(dir $(shell $(CC) -print-file-name=libgsl.a)) $(patsubst -L%,%/,$(shell pkg-config --libs-only-L hdf5 2>/dev/null))
+library = $(firstword $(if $(SHARED),,$(foreach d,$(FOLDERS),$(wildcard $dlib$1.a))) -l$1)
+# CHOLMOD's archive needs METIS, of which Debian has no link for compilers
+METIS   := $(firstword $(foreach d,$(FOLDERS),$(wildcard $dlibmetis.so $dlibmetis.so.5)))
+SPARSE  := $(if $(METIS),$(foreach l,klu btf cholmod camd ccolamd colamd amd suitesparseconfig,$(call library,$l)) $(METIS),-lklu -lcholmod)
+# and qhull's has another name than its shared library
+QHULL   := $(firstword $(if $(SHARED),,$(foreach d,$(FOLDERS),$(wildcard $dlibqhullstatic_r.a))) -lqhull_r)
+PL      := $(foreach l,hdf5_hl hdf5 gsl gslcblas jansson,$(call library,$l)) $(SPARSE) $(QHULL) $(call library,cairo) \
+           $(shell pkg-config $(if $(SHARED),,--static) --libs hdf5 cairo zlib libpng 2>/dev/null) \
+           $(foreach l,sz,$(if $(wildcard $(FOLDERS:%=%lib$l.so)),-l$l)) -lm
 
 # No contraction to FMA: the same bytes on every machine.
 NSD_CFLAGS  := -std=gnu11 -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wvla \
-               -ffp-contract=off -fno-math-errno -fopenmp -DNSD_VERSION='"$(VERSION)"' -Ilib $(PC) \
+               -ffp-contract=off -fno-math-errno -pthread -DNSD_VERSION='"$(VERSION)"' -Ilib $(PC) \
                $(if $(SAN),-fsanitize=address$(,)undefined -fno-sanitize-recover=undefined)
 # Only the libraries that a tool calls: starting libpng, KLU and CHOLMOD costs milliseconds.
-NSD_LDFLAGS := -fopenmp -Wl,--as-needed $(if $(SAN),-fsanitize=address$(,)undefined)
-NSD_LDLIBS  := $(PL) -lhdf5_hl -lklu -lcholmod -lqhull_r -lm
+NSD_LDFLAGS := -pthread -Wl,--as-needed $(if $(SAN),-fsanitize=address$(,)undefined)
+NSD_LDLIBS  := $(PL)
 
 # The inner loops once a width; without contraction, and with instructions that the others know nothing of.
 # Distributions build with -O2, at which gcc leaves loops over three components loops: three times the time.
@@ -69,9 +84,6 @@ $B/tools/%.o: tools/%.c Makefile
 $B/%: $B/tools/%.o $B/lib/cli/main.o $B/libnsd.a
 	$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(NSD_LDLIBS)
 
-# what reads the meshes of other programs
-$B/nsd-gen: NSD_LDLIBS += -lassimp
-
 $B/tests/%: tests/%.c $B/libnsd.a Makefile
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -o $@ $< $B/libnsd.a $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS) $(TESTLIBS)
@@ -104,6 +116,11 @@ demo: setup-run
 paper paper-keep: setup-paper
 	$(MAKE) -j2 all
 	$(MAKE) -f scripts/paper.mk $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc)) $(@:paper%=all%)
+
+# scripts/gallery.mk says what is run; gallery-keep puts the page into docs/gallery.
+gallery gallery-keep: setup-run
+	$(MAKE) -j2 all
+	$(MAKE) -f scripts/gallery.mk $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc)) $(if $(filter gallery-keep,$@),keep,all)
 
 bench: all
 	bench/run.sh
@@ -286,5 +303,5 @@ clean:
 -include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs completions install install-tools install-dev uninstall deb clean setup-run setup-paper setup-check
+.PHONY: all tests test check demo paper paper-keep gallery gallery-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs completions install install-tools install-dev uninstall deb clean setup-run setup-paper setup-check
 .SECONDARY:

@@ -66,6 +66,31 @@ PY
     like 'the FCLIB problem of a cell is solved' "$(jq '. < 1e-9' "$tmp/a")" true
 fi
 
+# ---- a cell becomes one of another scene ----
+
+# Compressed under a stress, then sheared: what goes on are edges, rates and bodies.
+jq '.bodies[0].count = 60 | .cell.lengths = [0.4, 0.4] | .cell.stress = {pressure: 50, mass: 10} | del(.cell.gradient) |
+    .cell.affine = false' scenes/shear.json | nsd-gen - | nsd-step -n 200 --every 200 -o "$tmp/pressed.h5" 2>/dev/null
+edges() { nsd-info --last "$1" | jq -c '[.edges, .rates]'; }
+nsd-info --scene "$tmp/pressed.h5" >"$tmp/again.json"
+nsd-gen "$tmp/again.json" >"$tmp/again.h5"
+is "nsd-info --scene goes on from the edges as they are, and their rates" "$(edges "$tmp/again.h5")" "$(edges "$tmp/pressed.h5")"
+bodies() { nsd-info --last -p "$1" | jq -c 'del(.image, .step)'; }
+ok "and bodies" cmp <(bodies "$tmp/again.h5") <(bodies "$tmp/pressed.h5")
+jq 'del(.cell)' "$tmp/again.json" | nsd-gen - >"$tmp/same.h5"
+is "a scene without a cell takes the document's" "$(edges "$tmp/same.h5")" "$(edges "$tmp/pressed.h5")"
+is "none where it is null" "$(jq '.cell = null' "$tmp/again.json" | nsd-gen - | nsd-info | jq -s 'map(.edges // empty)')" '[]'
+jq '.cell = {gradient: [[0, 2], [0, 0]]}' "$tmp/again.json" | nsd-gen - >"$tmp/sheared.h5"
+like "or another motion of the same edges" \
+    "$(nsd-info --last "$tmp/sheared.h5" | jq '.rates[1][0] / .edges[1][1]')" '^(2|1\.99999999+\d*|2\.0000000+\d*)$'
+jq '.bodies = [] ' "$tmp/again.json" >"$tmp/none.json"
+refuses 65 "edges are wanted where no document is" nsd-gen "$tmp/none.json"
+jq '.bodies[0].document = "'"$tmp/free.h5"'"' "$tmp/again.json" >"$tmp/none.json"
+nsd-gen 3 | nsd-cat -o "$tmp/free.h5"
+jq '.dim = 3 | .gravity = [0, 0, 0] | .cell = {}' "$tmp/none.json" >"$tmp/free.json"
+refuses 65 "and where it has no cell" nsd-gen "$tmp/free.json"
+like "which is said" "$(cat "$tmp/err")" 'cell: has no edges, and nor has the first document'
+
 # ---- what a scene may not say ----
 
 # fault 'jq program' 'line and path, and the trouble': a scene as one line

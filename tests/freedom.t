@@ -148,6 +148,44 @@ like "is not converged" "$(jq -s 'map(.converged) | any | not' "$tmp/jam.log")" 
 like "and says how fast bodies still approach" "$(cat "$tmp/err")" 'reactions grow without end, and bodies still approach at up to 0\.[0-9]+ m/s'
 like "which the report has, too" "$(jq -s 'map(.max_penetration_true) | min > 0.05' "$tmp/jam.log")" true
 
+nsd-info --scene "$tmp/pressed.h5" | nsd-gen - >"$tmp/on.h5"
+is "nsd-info --scene goes on with the piston where it is" "$(load "$tmp/on.h5")" "$(load "$tmp/pressed.h5")"
+
+# ---- a load that changes in time ----
+
+# Speed and way of a piston alone, 2 kg, after 200 steps of 1 ms, under force $1
+pushed()
+{
+    jq --argjson force "$1" '.bodies = [{x: [2e-3, 2e-3, 1e-3], radius: 5e-4}] | .gravity = [0, 0, 0] | .dt = 1e-3 |
+        .walls[1].load = {along: [0, 0, 1], mass: 2, force: $force}' scenes/press.json | nsd-gen - >"$tmp/push.h5"
+    step -n 200 --every 50 -o "$tmp/pushed.h5" "$tmp/push.h5"
+    nsd-info --last -w "$tmp/pushed.h5" | jq -c 'select(.load).load'
+}
+# linear in each step: its middle is its mean, to rounding
+like "a force by table, with a mean" \
+    "$(pushed '{"table": [[0.05, 0], [0.1, 40], [0.15, -10]], "mean": 3}' |
+        jq '(.speed - (0.2 * 3 + 0.05 * 20 + 0.05 * 15 - 0.05 * 10) / 2 | fabs) < 1e-12')" true
+# the middle of a step is wrong for its mean by (pi f dt)^2/6 = 1.6e-6
+like "a force by sine, against the integral" \
+    "$(pushed '{"amplitude": 6, "frequency": 1, "phase": 0.4, "mean": 1}' |
+        jq '((6 * ((0.4 | cos) - (0.4 + 0.4 * 3.141592653589793 | cos)) / (2 * 3.141592653589793) + 0.2) / 2) as $v |
+        (.speed / $v - 1 | fabs) < 3e-6')" true
+step -n 100 -o "$tmp/half.h5" "$tmp/push.h5"
+step -n 100 -o "$tmp/rest.h5" "$tmp/half.h5"
+is "resumed, it is where it would have been" "$(nsd-info --last -w "$tmp/rest.h5")" "$(nsd-info --last -w "$tmp/pushed.h5")"
+jq '.bodies = [{document: "half.h5"}] | del(.walls) | .gravity = [0, 0, 0] | .dt = 1e-3' scenes/press.json >"$tmp/on.json"
+nsd-gen "$tmp/on.json" | step -n 100 -o "$tmp/on.h5"
+is "and in a scene that takes the document" "$(nsd-info --last -w "$tmp/on.h5" | jq -c 'select(.load).load')" \
+    "$(nsd-info --last -w "$tmp/pushed.h5" | jq -c 'select(.load).load')"
+if have_h5py; then
+    foreign "$tmp/push.h5" "$tmp/loose.h5"
+    /usr/bin/python3 -c 'import h5py, sys; h5py.File(sys.argv[1], "r+")["/particles/boundary/load/way"][:] = 0' "$tmp/loose.h5"
+    refuses 65 "a push of a boundary that yields to none is refused" nsd-cat "$tmp/loose.h5"
+    like "and named" "$(cat "$tmp/err")" 'push 0: its boundary yields to no load'
+else
+    skip "a push of a boundary that yields to none" "no h5py"
+fi
+
 # ---- too large, and bad scenes ----
 
 jq '.bodies[0] = {count: 160000, radius: 5e-4, spacing: 1, jitter: 0, box: {x: [0, 0.4], y: [0, 0.4], z: [0, 1e-3]}} |
@@ -168,4 +206,7 @@ bad "no direction is refused" '.walls[1].load.along = [0, 0, 0]' 'walls\[1\].loa
 bad "two ways are refused" '.walls[1].load.about = [0, 0, 0]' 'walls\[1\].load'
 bad "a torque along an axis is refused" '.walls[1].load.torque = 1' 'walls\[1\].load.torque'
 bad "a load of a box is refused" '.walls[0].load = .walls[1].load' 'walls\[0\].load'
+bad "a force that is a word is refused" '.walls[1].load.force = "much"' 'walls\[1\].load.force'
+bad "a table's times must rise" '.walls[1].load.force = {table: [[1, 0], [1, 2]]}' 'walls\[1\].load.force.table\[1\].*times must rise'
+bad "a sine needs its frequency" '.walls[1].load.force = {amplitude: 1}' 'walls\[1\].load.force.frequency: is missing'
 done_testing

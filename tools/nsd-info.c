@@ -338,6 +338,39 @@ static json_t *scene_of_parameters(const struct packing *p)
     return j;
 }
 
+/* How many boundaries this item of a scene's walls is: of a box, as many as it has sides */
+static int32_t boundaries_of(const json_t *wall)
+{
+    const char *axis;
+    json_t *side, *box = json_object_get(wall, "box");
+    int32_t n = 0;
+    if (!box) return 1;
+    json_object_foreach(box, axis, side) n +=
+        json_is_number(json_array_get(side, 0)) + json_is_number(json_array_get(side, 1));
+    return n;
+}
+
+/* What yields to a load goes on from where it is, and as fast. */
+static void set_loads(json_t *list, const struct packing *p)
+{
+    int32_t at = 0;
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        json_t *wall = json_array_get(list, i), *load = json_object_get(wall, "load");
+        if (load && at < p->walls) {
+            json_object_set_new(load, "speed", json_real(p->wall[at].load.speed));
+            json_object_set_new(load, "travel", json_real(p->wall[at].load.travel));
+        }
+        at += boundaries_of(wall);
+    }
+}
+
+/* And so does a cell: its edges are taken from the document. */
+static void set_cell(json_t *cell)
+{
+    json_object_del(cell, "lengths"), json_object_del(cell, "edges");
+    json_object_del(cell, "affine");
+}
+
 /* The scene with the last frame's bodies, at its time */
 static void show_scene(const struct packing *p, const char *path)
 {
@@ -345,6 +378,8 @@ static void show_scene(const struct packing *p, const char *path)
     if (!json_is_object(j)) die(EX_DATAERR, "%s: /nsd/scene is no scene", path);
     json_object_set_new(j, "theta", json_real(p->theta));
     json_object_set_new(j, "time", json_real(p->t));
+    set_loads(json_object_get(j, "walls"), p);
+    if (cell_repeats(&p->cell)) set_cell(json_object_get(j, "cell"));
     json_object_set_new(j, "bodies", json_pack("[{s:s}]", "document", path));
     json_line(j);
 }

@@ -1,4 +1,5 @@
 /* nsd-view: draws the bodies, one picture, a series or a film. */
+#include "base/team.h"
 #include "cli/cli.h"
 #include "cli/tool_filter.h"
 #include "draw/film.h"
@@ -9,7 +10,6 @@
 #include "io/reader.h"
 
 #include <ctype.h>
-#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -155,7 +155,7 @@ static void set_cut(struct view *v)
 static struct view view_of_options(void)
 {
     struct view v = { .samples = (int)samples,
-                      .threads = threads ? (int)threads : omp_get_num_procs(),
+                      .threads = threads ? (int)threads : team_cores(),
                       .angle = perspective,
                       .strays = strays,
                       .glass = boundaries == GLASS,

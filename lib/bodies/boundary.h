@@ -58,7 +58,8 @@ struct wall {
     double arc;          /* rad */
     int32_t first_element, elements; /* of the packing's mesh */
     int32_t first_drive, drives;
-    double until; /* s: the packing's time at which it vanishes; infinite: never */
+    int32_t first_push, pushes; /* what the force of its load is in time, besides its constant */
+    double until;               /* s: the packing's time at which it vanishes; infinite: never */
 };
 
 /* A plane that is there for ever, at rest */

@@ -4,6 +4,9 @@
  * The way s(t) is closed in t, so that a boundary is where its time says, however it came there.
  * Over a step the velocity is the mean, (s(t + dt) - s(t))/dt: bodies at rest on a boundary then
  * stay on it, whatever its acceleration.
+ *
+ * The same signals say what the force of a load is in time [bodies/load.h]; then the way is a force, N
+ * along the axis or N m about it.
  */
 #ifndef NSD_DRIVE_H
 #define NSD_DRIVE_H
@@ -20,7 +23,7 @@ enum drive_signal { DRIVE_SPEED, DRIVE_SINE, DRIVE_TABLE, DRIVE_SIGNALS };
 extern const char *const drive_signal_name[DRIVE_SIGNALS + 1]; /* the last one NULL */
 
 struct drive {
-    int32_t boundary;    /* that it moves */
+    int32_t boundary;    /* that it moves, or pushes */
     int32_t turns;       /* 1: about the axis, 0: along it */
     int32_t signal;      /* enum drive_signal */
     vec3 axis, point;    /* unit vector; m: a point on the axis, of one that turns */

@@ -19,7 +19,7 @@ static struct freedom wall_freedom(const struct packing *p, int32_t w)
                              .axis = l->axis,
                              .point = l->point,
                              .mass = l->mass,
-                             .force = l->force,
+                             .force = wall_force(p, &p->wall[w]),
                              .speed = l->speed };
 }
 

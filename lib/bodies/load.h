@@ -19,7 +19,7 @@ struct load {
     vec3 axis;     /* unit vector */
     vec3 point;    /* m: a point on the axis, of one that turns */
     double mass;   /* kg that move along the axis; kg m^2 about it */
-    double force;  /* N along the axis, N m about it; its weight is in it */
+    double force;  /* N along the axis, N m about it; its weight is in it. Pushes add to it. */
     double speed;  /* m/s, rad/s */
     double travel; /* m, rad: how far it has come */
 };

@@ -49,7 +49,7 @@ void packing_free(struct packing *p)
     free(p->x), free(p->q), free(p->v), free(p->w);
     free(p->wall), free(p->scene), free(p->image), free(p->shape);
     shapes_free(&p->shapes);
-    drives_free(&p->drives), mesh_free(&p->mesh);
+    drives_free(&p->drives), drives_free(&p->pushes), mesh_free(&p->mesh);
     free(p->poured), free(p->removed);
     events_free(&p->events);
     cell_free(&p->cell);
@@ -158,7 +158,9 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     memcpy(to->v, p->v, n * sizeof *p->v);
     memcpy(to->w, p->w, n * sizeof *p->w);
     memcpy(to->wall, p->wall, (size_t)p->walls * sizeof *p->wall);
-    if (drives_copy(&to->drives, &p->drives, why) || mesh_copy(&to->mesh, &p->mesh, why)) goto fail;
+    if (drives_copy(&to->drives, &p->drives, why) || drives_copy(&to->pushes, &p->pushes, why) ||
+        mesh_copy(&to->mesh, &p->mesh, why))
+        goto fail;
     memcpy(to->mu, p->mu, k2 * sizeof *p->mu);
     memcpy(to->en, p->en, k2 * sizeof *p->en);
     memcpy(to->et, p->et, k2 * sizeof *p->et);
@@ -269,6 +271,14 @@ vec3 wall_spin(const struct packing *p, const struct wall *w)
 {
     vec3 s = drives_spin(&p->drives, w->first_drive, w->drives, p->t, p->dt);
     return w->load.way == LOAD_TURNS ? v3_axpy(s, w->load.speed, w->load.axis) : s;
+}
+
+double wall_force(const struct packing *p, const struct wall *w)
+{
+    double force = w->load.force;
+    for (int32_t k = w->first_push; k < w->first_push + w->pushes; k++)
+        force += drive_way(&p->pushes, &p->pushes.drive[k], p->t + p->dt / 2);
+    return force;
 }
 
 /* m: of its points that bodies may touch from a place */
@@ -386,6 +396,12 @@ int packing_check(const struct packing *p, struct why *why)
     for (int32_t i = 0; i < p->drives.n; i++) {
         const char *trouble = drive_trouble(&p->drives, i, p->walls, p->dim);
         if (trouble) return why_set(why, EX_DATAERR, "drive %d: %s", i, trouble);
+    }
+    for (int32_t i = 0; i < p->pushes.n; i++) {
+        const char *trouble = drive_trouble(&p->pushes, i, p->walls, p->dim);
+        if (!trouble && !p->wall[p->pushes.drive[i].boundary].load.way)
+            trouble = "its boundary yields to no load";
+        if (trouble) return why_set(why, EX_DATAERR, "push %d: %s", i, trouble);
     }
     if (mesh_check(&p->mesh, p->dim, why)) return why->status;
     return check_cell(p, why);

@@ -46,6 +46,7 @@ struct packing {
     int32_t walls;
     struct wall *wall;    /* [walls] */
     struct drives drives; /* of them */
+    struct drives pushes; /* of their loads: signals that are forces, N or N m */
     struct mesh mesh;     /* of those that are meshes */
     struct cell cell;
 
@@ -118,6 +119,8 @@ vec3 wall_held(const struct packing *p, const struct wall *w, vec3 x);
 vec3 wall_velocity(const struct packing *p, const struct wall *w, vec3 x);
 /* rad/s: its mean angular velocity */
 vec3 wall_spin(const struct packing *p, const struct wall *w);
+/* N, N m: what its load is in the step from the packing's time, at the middle of it */
+double wall_force(const struct packing *p, const struct wall *w);
 /* m/s: no point of the wall within its reach is faster, nor, of a mesh or a shape without an end,
    within that of the bodies */
 double wall_top_speed(const struct packing *p, const struct wall *w);

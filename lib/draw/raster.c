@@ -1,6 +1,7 @@
 /* draw/raster.c: what is in front at each sample, band by band. */
 #include "draw/raster.h"
 
+#include "base/team.h"
 #include "draw/shade.h"
 #include "draw/sight.h"
 
@@ -190,27 +191,34 @@ static void band_draw(struct band *b, const struct raster *s, struct picture *p)
     shade_pixels(b, s, p);
 }
 
+/* The bands of a picture, which threads take one after another */
+struct bands {
+    const struct raster *s;
+    struct picture *p;
+    int rows; /* of pixels, a band */
+    _Atomic int next;
+    _Atomic bool failed; /* for want of memory */
+};
+
+static void draw_bands(void *arg, int me, int threads)
+{
+    struct bands *d = arg;
+    struct band b;
+    (void)me, (void)threads;
+    bool allocated = band_init(&b, d->s, d->rows * d->s->samples);
+    if (!allocated) d->failed = true;
+    for (int y; allocated && (y = atomic_fetch_add(&d->next, d->rows)) < d->p->height;) {
+        int end = y + d->rows < d->p->height ? y + d->rows : d->p->height;
+        b.y0 = y * d->s->samples, b.y1 = end * d->s->samples;
+        band_draw(&b, d->s, d->p);
+    }
+    band_free(&b);
+}
+
 int raster_draw(const struct raster *s, struct picture *p, struct why *why)
 {
     int rows = BAND_SAMPLES / (s->width * s->samples);
-    rows = rows < 1 ? 1 : rows > p->height ? p->height : rows; // of pixels
-    int bands = (p->height + rows - 1) / rows;
-    bool failed = false;
-#pragma omp parallel num_threads(s->threads)
-    {
-        struct band b;
-        bool allocated = band_init(&b, s, rows * s->samples);
-        if (!allocated) {
-#pragma omp atomic write
-            failed = true;
-        }
-#pragma omp for schedule(dynamic)
-        for (int i = 0; i < bands; i++) {
-            int end = (i + 1) * rows < p->height ? (i + 1) * rows : p->height;
-            b.y0 = i * rows * s->samples, b.y1 = end * s->samples;
-            if (allocated) band_draw(&b, s, p);
-        }
-        band_free(&b);
-    }
-    return failed ? why_set(why, EX_SOFTWARE, "no memory for the picture") : 0;
+    struct bands d = { s, p, rows < 1 ? 1 : rows > p->height ? p->height : rows, 0, false };
+    team_do(s->threads, draw_bands, &d);
+    return d.failed ? why_set(why, EX_SOFTWARE, "no memory for the picture") : 0;
 }

@@ -39,25 +39,38 @@ static int count_rows(struct source *r, const char *path, int rank, int32_t *n, 
     return 0;
 }
 
-static int read_drives(struct source *r, struct packing *p, struct why *why)
+/* Signals in time, in `group`, the rows of their tables in `rows`: of walls of which each counts its own
+   from the first one, at these two members of its struct */
+static int read_signals(struct source *r, const char *group, struct drives *d, struct packing *p,
+                        size_t first, size_t count, struct why *why)
 {
-    const char *group = BOUNDARY "/drive", *rows = BOUNDARY "/drive/row";
+    char boundary[60], rows[60];
     int32_t n = 0, m = 0;
+    snprintf(boundary, sizeof boundary, "%s/boundary", group);
+    snprintf(rows, sizeof rows, "%s/row", group);
     if (!source_has(r, group)) return 0;
-    if (count_rows(r, BOUNDARY "/drive/boundary", 1, &n, why) || count_rows(r, rows, 2, &m, why) ||
-        drives_alloc(&p->drives, n, m, why) ||
-        table_read_columns(r, group, "", layout_drive, 0, n, p->drives.drive,
-                           sizeof *p->drives.drive, why) ||
-        source_rows(r, rows, COLUMN_F64, 0, m, 2, p->drives.row, why))
+    if (count_rows(r, boundary, 1, &n, why) || count_rows(r, rows, 2, &m, why) ||
+        drives_alloc(d, n, m, why) ||
+        table_read_columns(r, group, "", layout_drive, 0, n, d->drive, sizeof *d->drive, why) ||
+        source_rows(r, rows, COLUMN_F64, 0, m, 2, d->row, why))
         return why->status;
     for (int32_t k = 0; k < n; k++) {
-        int32_t w = p->drives.drive[k].boundary;
-        if (w < 0 || w >= p->walls || (k && w < p->drives.drive[k - 1].boundary))
-            return why_set(why, EX_DATAERR, "%s/boundary: not in the order of the boundaries",
-                           group);
-        if (!p->wall[w].drives++) p->wall[w].first_drive = k;
+        int32_t w = d->drive[k].boundary;
+        if (w < 0 || w >= p->walls || (k && w < d->drive[k - 1].boundary))
+            return why_set(why, EX_DATAERR, "%s: not in the order of the boundaries", boundary);
+        int32_t *had = (int32_t *)(void *)((char *)&p->wall[w] + count);
+        if (!(*had)++) *(int32_t *)(void *)((char *)&p->wall[w] + first) = k;
     }
     return 0;
+}
+
+static int read_drives(struct source *r, struct packing *p, struct why *why)
+{
+    if (read_signals(r, BOUNDARY "/drive", &p->drives, p, offsetof(struct wall, first_drive),
+                     offsetof(struct wall, drives), why))
+        return why->status;
+    return read_signals(r, BOUNDARY "/push", &p->pushes, p, offsetof(struct wall, first_push),
+                        offsetof(struct wall, pushes), why);
 }
 
 static int read_mesh(struct source *r, struct packing *p, struct why *why)
@@ -138,15 +151,22 @@ static struct boundary_motion *motions(const struct packing *p, struct why *why)
     return m;
 }
 
+static int write_signals(struct table_write *s, const char *group, const struct drives *d,
+                         const char *units, struct why *why)
+{
+    const hsize_t shape[2] = { (hsize_t)d->rows, 2 };
+    char rows[60];
+    snprintf(rows, sizeof rows, "%s/row", group);
+    if (!d->n) return 0;
+    if (table_write_columns(s, group, "", layout_drive, d->n, d->drive, sizeof *d->drive, 0, why))
+        return why->status;
+    return h5_write(s->file, rows, H5T_NATIVE_DOUBLE, 2, shape, d->row, units, why);
+}
+
 static int write_drives(struct table_write *s, const struct packing *p, struct why *why)
 {
-    const hsize_t shape[2] = { (hsize_t)p->drives.rows, 2 };
-    if (!p->drives.n) return 0;
-    if (table_write_columns(s, BOUNDARY "/drive", "", layout_drive, p->drives.n, p->drives.drive,
-                            sizeof *p->drives.drive, 0, why))
-        return why->status;
-    return h5_write(s->file, BOUNDARY "/drive/row", H5T_NATIVE_DOUBLE, 2, shape, p->drives.row,
-                    "s; m, rad", why);
+    if (write_signals(s, BOUNDARY "/drive", &p->drives, "s; m, rad", why)) return why->status;
+    return write_signals(s, BOUNDARY "/push", &p->pushes, "s; N, N m", why);
 }
 
 static int write_mesh(struct table_write *s, const struct packing *p, struct why *why)

@@ -82,7 +82,8 @@ static const struct column layout_yield[] = {
     { 0 },
 };
 
-/* /particles/boundary/drive/NAME [D][width]: members of struct drive */
+/* /particles/boundary/drive/NAME and, where a load is one in time, push/NAME [D][width]: members of
+   struct drive */
 static const struct column layout_drive[] = {
     { "boundary", "1", COLUMN_I32, 1, offsetof(struct drive, boundary) },
     { "turns", "1", COLUMN_I32, 1, offsetof(struct drive, turns) },

@@ -49,6 +49,7 @@ struct writer {
     int64_t step;                 /* of the last frame */
     int64_t frames;               /* that are finished */
     off_t end;                    /* of the file, at the last flush */
+    off_t start, size;            /* of a stream's document in hand; start -1: of a pipe */
     /* a trajectory that takes a file's place, until it has: */
     int old;                      /* the file, open and locked; else -1 */
     char *place, *elsewhere;      /* its path, and that of the new one */
@@ -180,25 +181,65 @@ static hid_t create(const char *path, hid_t access)
 
 /* ---- a stream ---- */
 
-/* Writes all bytes. On failure a regular file is cut back to what it was. */
-static int write_all(struct writer *s, const unsigned char *bytes, size_t size, struct why *why)
+/* A document begins: others that append wait, so that documents stay whole. */
+static int document_begin(struct writer *s, struct why *why)
 {
-    if (s->append && take_hold(s, F_OFD_SETLKW, why)) return why->status; // documents stay whole
-    off_t start = lseek(s->fd, 0, s->append ? SEEK_END : SEEK_CUR);
+    if (s->append && take_hold(s, F_OFD_SETLKW, why)) return why->status;
+    s->start = lseek(s->fd, 0, s->append ? SEEK_END : SEEK_CUR);
+    s->size = 0;
+    return 0;
+}
+
+/* More of its bytes. On failure a regular file is cut back to what it was. */
+static int document_bytes(void *to, const void *bytes, size_t size, struct why *why)
+{
+    struct writer *s = to;
     for (size_t done = 0; done < size;) {
-        ssize_t n = write(s->fd, bytes + done, size - done);
+        ssize_t n = write(s->fd, (const char *)bytes + done, size - done);
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) {
             output_failed(s, why, strerror(errno));
-            if (start >= 0 && ftruncate(s->fd, start)) return why->status;
+            if (s->start >= 0 && ftruncate(s->fd, s->start)) return why->status;
             return why->status;
         }
         done += (size_t)n;
     }
-    if (s->append) let_go(s);
+    s->size += (off_t)size;
+    return 0;
+}
+
+static int document_end(struct writer *s, struct why *why)
+{
     struct stat st;
-    if (start >= 0 && !fstat(s->fd, &st) && S_ISREG(st.st_mode) && st.st_size < start + (off_t)size)
+    if (s->append) let_go(s);
+    if (s->start >= 0 && !fstat(s->fd, &st) && S_ISREG(st.st_mode) &&
+        st.st_size < s->start + s->size)
         return output_failed(s, why, CUT_OFF);
+    return 0;
+}
+
+static int write_all(struct writer *s, const unsigned char *bytes, size_t size, struct why *why)
+{
+    return document_begin(s, why) || document_bytes(s, bytes, size, why) || document_end(s, why)
+               ? why->status
+               : 0;
+}
+
+bool writer_passes(const struct writer *s)
+{
+    return !s->trajectory;
+}
+
+int writer_pass(struct writer *s, struct reader *from, struct why *why)
+{
+    if (document_begin(s, why)) return why->status;
+    if (reader_pour(from, document_bytes, s, why)) {
+        // a reader that broke down half-way leaves no half a document in a file
+        if (s->start >= 0 && ftruncate(s->fd, s->start)) return why->status;
+        return why->status;
+    }
+    if (document_end(s, why)) return why->status;
+    unfinished_done(&s->unfinished);
     return 0;
 }
 

@@ -1,9 +1,9 @@
 /* problem/apply.c: W r by the bodies or by the blocks of W [problem/apply.h]. */
 #include "problem/apply.h"
 
+#include "base/team.h"
 #include "problem/sweep.h"
 
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -61,16 +61,16 @@ void problem_apply(const struct problem *p, struct apply *a, const double *x, do
     (p->W ? apply_blocks : apply_bodies)(p, a, x, y);
 }
 
+static void push(void *problem, int me, int threads)
+{
+    sweep_widest()->push(problem, me, threads);
+}
+
 void problem_renew(struct problem *p, int threads)
 {
     if (!p->body) return;
     problem_set_free_motion(p);
-    if (threads == 1) { // a parallel region costs time
-        sweep_widest()->push(p, 0, 1);
-        return;
-    }
-#pragma omp parallel num_threads(threads)
-    sweep_widest()->push(p, omp_get_thread_num(), omp_get_num_threads());
+    team_do(threads, push, p);
 }
 
 void problem_react(struct problem *p, const double *r, int threads)

@@ -6,6 +6,7 @@
 #ifndef NSD_WALK_H
 #define NSD_WALK_H
 
+#include "base/team.h"
 #include "problem/problem.h"
 
 /*
@@ -103,7 +104,7 @@ ALWAYS_INLINE int legs_of_thread(const struct problem *p, int me, bool by_halves
 ALWAYS_INLINE void begin_leg(const struct problem *p, const struct leg *leg, int me)
 {
     if (!leg->done) return;
-    two_thread_split_wait(leg->after, atomic_load_explicit(leg->done, memory_order_relaxed) + me);
+    team_await(leg->after, atomic_load_explicit(leg->done, memory_order_relaxed) + me);
     for (int64_t i = p->group[leg->first]; i < p->group[leg->end]; i++)
         fetch_bodies(p, &p->bundle[i]);
 }
@@ -133,7 +134,7 @@ ALWAYS_INLINE void walk(struct problem *p, int me, int threads, walk_text *each,
             int64_t first = p->group[g], n = p->group[g + 1] - first;
             each(p, first + n * mine / share, first + n * (mine + 1) / share, task);
             if (share == 1) continue;
-#pragma omp barrier
+            team_meet();
         }
         end_leg(&leg[k]);
     }

@@ -23,7 +23,7 @@
  *   walls     [ WALL ]                 [those of the first document among the bodies, else none]
  *   pour      [ POUR ]                 [none] grains that come, while the scene runs
  *   remove    [ REMOVAL ]              [none] grains that go
- *   cell      CELL                     [none] the box that repeats
+ *   cell      CELL or null             [that of the first document, else none] the box that repeats
  *
  * GROUP, one of
  *   { x: vector, radius: number }      one body
@@ -86,14 +86,16 @@
  *   with velocity vector [0], kind ["wall"], drives [ DRIVE ], until s, and all but the box load:
  *   Bodies stay on the side that the normal points to; in a box they stay inside.
  *   side inside [that] | outside | both. A boundary may yield to a load, on top of its motion:
- *   { along: vector, mass: kg, force: N [0], speed: m/s [0] }              free along the vector
- *   { about: point, axis, mass: kg m^2, torque: N m [0], speed: rad/s [0] }   about an axis there
+ *   { along: vector, mass: kg, force: N [0], speed: m/s [0], travel: m [0] }  free along the vector
+ *   { about: point, axis, mass: kg m^2, torque: N m [0], speed, travel }   about an axis there
+ *   whose force or torque is a number or { table: [[t, N], ...], mean [0] } or
+ *   { amplitude, frequency, phase, mean }.
  *   Its weight is a force like others: gravity does not pull at boundaries.
  *
  * DRIVE { along: vector } or { about: point, axis: vector }, with speed, or amplitude, frequency and
  *   phase, or table [[t, way], ...]; from, until s [bodies/drive.h]
  *
- * CELL { edges: [vector, ...] or lengths: vector, repeats, origin, gradient, affine, stress }
+ * CELL { edges: [vector, ...] or lengths: vector [the first document's], repeats, origin, gradient, affine, stress }
  *   edges    dim of them, the cell's from its origin; lengths: along x, y, z
  *   repeats  [true | false, ...] [all true]   along which edges
  *   origin   vector [0]
@@ -221,7 +223,10 @@ struct scene_solid {
 };
 
 struct scene_cell {
-    bool given, affine;
+    bool given;   /* else that of the first document is taken, unless there shall be none */
+    bool none;    /* null is given */
+    bool goes_on; /* edges, and what else of these is not given, are those of the first document */
+    bool repeats, origin, affine;
     struct cell cell; /* rates are those at the start */
 };
 
@@ -242,6 +247,7 @@ struct scene {
     int32_t walls;
     struct wall *wall;    /* [walls] */
     struct drives drives; /* of them */
+    struct drives pushes; /* of their loads */
     struct mesh mesh;     /* of those that are meshes */
     int32_t meshes;
     struct scene_mesh *mesh_file; /* [meshes] those that are files */

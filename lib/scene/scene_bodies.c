@@ -48,6 +48,8 @@ static int read_lattice(jnode o, const struct scene *s, bool boxed, struct scene
     jnode box = json_node_key(&o, "box");
     if (box.json && scene_read_box(box, s->dim, &b->box)) return 1;
     if (own) b->from = SCENE_SHELVES;
+    if (!box.json && s->cell.goes_on)
+        return json_node_fault(o, "wants a box: the cell's edges come with a document");
     if (!box.json && s->cell.given && own)
         return json_node_fault(o, "cells of their own want a box");
     if (!box.json && s->cell.given) {

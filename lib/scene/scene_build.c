@@ -208,9 +208,11 @@ static int set_parameters(struct packing *p, const struct scene *s, struct why *
     if (packing_alloc_walls(p, s->walls, why) || packing_alloc_kinds(p, s->kinds, why))
         return why->status;
     for (int32_t i = 0; i < s->walls; i++) p->wall[i] = s->wall[i];
-    if (drives_copy(&p->drives, &s->drives, why) || mesh_copy(&p->mesh, &s->mesh, why))
+    if (drives_copy(&p->drives, &s->drives, why) || drives_copy(&p->pushes, &s->pushes, why) ||
+        mesh_copy(&p->mesh, &s->mesh, why))
         return why->status;
-    if (s->cell.given && (cell_copy(&p->cell, &s->cell.cell) || packing_alloc_images(p, why)))
+    if (s->cell.given && !s->cell.goes_on &&
+        (cell_copy(&p->cell, &s->cell.cell) || packing_alloc_images(p, why)))
         goto fail;
     for (int32_t k = 0; k < s->kinds; k++) {
         free(p->kind_name[k]);
@@ -306,9 +308,11 @@ static int take_walls(struct packing *p, const struct scene *s, const struct sce
                            "%s: wall %d is of kind \"%s\": name it under \"kinds\"", b->file, i,
                            from->kind_name[from->wall[i].kind]);
     }
-    if (drives_copy(&p->drives, &from->drives, why) || mesh_copy(&p->mesh, &from->mesh, why))
+    if (drives_copy(&p->drives, &from->drives, why) ||
+        drives_copy(&p->pushes, &from->pushes, why) || mesh_copy(&p->mesh, &from->mesh, why))
         return why->status;
     for (int32_t k = 0; k < p->drives.n; k++) p->drives.drive[k].clock += from->t - s->t;
+    for (int32_t k = 0; k < p->pushes.n; k++) p->pushes.drive[k].clock += from->t - s->t;
     return 0;
 }
 
@@ -317,6 +321,50 @@ static int inherit_walls(struct packing *p, const struct scene *s, struct why *w
     for (int64_t g = 0; g < s->groups && !s->has_walls; g++)
         if (s->bodies[g].document) return take_walls(p, s, &s->bodies[g], why);
     return 0;
+}
+
+/* The whole cell of a document, its moments as if the document's time were the scene's */
+static int take_cell(struct packing *p, const struct scene *s, const struct packing *from)
+{
+    if (cell_copy(&p->cell, &from->cell)) return 1;
+    for (int32_t m = 0; m < p->cell.gradients; m++) p->cell.gradient[m].t += s->t - from->t;
+    return 0;
+}
+
+/* The scene's, with what it leaves out as the document has it; edges that yield go on as they moved. */
+static int complete_cell(struct packing *p, const struct scene *s, const struct packing *from)
+{
+    struct cell *c = &p->cell;
+    if (cell_copy(c, &s->cell.cell)) return 1;
+    if (!s->cell.origin) c->origin = from->cell.origin;
+    for (int k = 0; k < 3; k++) {
+        c->edge[k] = from->cell.edge[k];
+        if (!s->cell.repeats) c->repeats[k] = from->cell.repeats[k];
+    }
+    cell_set_rate(c, s->t);
+    for (int k = 0; k < 3; k++) {
+        if (c->mass[k][0] > 0) c->rate[k].x = from->cell.rate[k].x;
+        if (c->mass[k][1] > 0) c->rate[k].y = from->cell.rate[k].y;
+        if (c->mass[k][2] > 0) c->rate[k].z = from->cell.rate[k].z;
+    }
+    return 0;
+}
+
+static int inherit_cell(struct packing *p, const struct scene *s, struct why *why)
+{
+    const struct packing *from = NULL;
+    for (int64_t g = 0; g < s->groups && !from; g++) from = s->bodies[g].document;
+    bool repeats = from && cell_repeats(&from->cell);
+    if (s->cell.goes_on && !repeats)
+        return why_set(why, EX_DATAERR, "cell: has no edges, and nor has the first document");
+    if (!repeats || s->cell.none || (s->cell.given && !s->cell.goes_on)) return 0;
+    if (s->pours + s->removals)
+        return why_set(why, EX_DATAERR,
+                       "bodies come and go in no cell that repeats, and the first "
+                       "document has one (\"cell\": null leaves it out)");
+    if (s->cell.goes_on ? complete_cell(p, s, from) : take_cell(p, s, from))
+        return why_set(why, EX_SOFTWARE, "no memory for the cell");
+    return packing_alloc_images(p, why);
 }
 
 static int build_packing(struct packing *p, const struct scene *s, const struct grains *list,
@@ -331,7 +379,7 @@ static int build_packing(struct packing *p, const struct scene *s, const struct 
     if (!rng) why_set(why, EX_SOFTWARE, "no memory for random numbers");
     if (rng) gsl_rng_set(rng, s->seed);
     if (rng && !set_parameters(p, s, why) && !inherit_walls(p, s, why) &&
-        !fill_groups(p, s, list, rng, why)) {
+        !inherit_cell(p, s, why) && !fill_groups(p, s, list, rng, why)) {
         if (s->cell.affine) add_affine_flow(p);
         packing_tidy(p, NULL);
         check_packing(p, s, list, why);

@@ -132,20 +132,27 @@ static int read_stress(jnode o, int dim, struct cell *c)
     return read_mass(json_node_key(&o, "mass"), dim, yields, c);
 }
 
-int scene_read_cell(jnode o, int dim, struct scene_cell *out)
+int scene_read_cell(jnode o, int dim, double t, bool documents, struct scene_cell *out)
 {
     struct cell *c = &out->cell;
     struct why why = { 0 };
     *c = cell_none();
     if (!o.json) return 0;
+    if (json_is_null(o.json)) return out->none = true, 0;
     out->given = true;
+    out->repeats = json_node_key(&o, "repeats").json;
+    out->origin = json_node_key(&o, "origin").json;
+    out->goes_on =
+        documents && !json_node_key(&o, "edges").json && !json_node_key(&o, "lengths").json;
     if (json_node_only(o, "edges lengths repeats origin gradient affine stress") ||
-        read_edges(o, dim, c) || read_repeats(json_node_key(&o, "repeats"), dim, c) ||
+        (!out->goes_on && read_edges(o, dim, c)) ||
+        read_repeats(json_node_key(&o, "repeats"), dim, c) ||
         json_node_vector(json_node_key(&o, "origin"), dim, &c->origin) ||
         read_gradient(json_node_key(&o, "gradient"), dim, c) ||
         json_node_bool(json_node_key(&o, "affine"), &out->affine) ||
         read_stress(json_node_key(&o, "stress"), dim, c))
         return 1;
-    cell_set_rate(c, 0);
+    if (out->goes_on) return 0;
+    cell_set_rate(c, t);
     return cell_check(c, dim, 0, &why) ? json_node_fault(o, "%s", why.text) : 0;
 }

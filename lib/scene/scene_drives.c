@@ -1,4 +1,4 @@
-/* scene/scene_drives.c: the motions of a boundary from their JSON. */
+/* scene/scene_drives.c: the motions of a boundary, and loads in time, from their JSON. */
 #include "scene/scene_read.h"
 
 #include <stdlib.h>
@@ -12,30 +12,30 @@ static void *grown(jnode at, void *array, int32_t n, size_t more, size_t size)
 }
 
 /* [[t, s], ...], t rising */
-static int read_table(jnode a, struct scene *s, struct drive *d)
+static int read_table(jnode a, struct drives *list, struct drive *d)
 {
     size_t rows = 0;
     if (json_node_array(a, &rows)) return 1;
-    if (!rows || rows > 1 << 24) return json_node_fault(a, "wants [[time, way], ...]");
-    struct drive_row *row = grown(a, s->drives.row, s->drives.rows, rows, sizeof *row);
+    if (!rows || rows > 1 << 24) return json_node_fault(a, "wants [[time, value], ...]");
+    struct drive_row *row = grown(a, list->row, list->rows, rows, sizeof *row);
     if (!row) return 1;
-    s->drives.row = row, row += s->drives.rows;
-    d->first = s->drives.rows, d->rows = (int32_t)rows;
+    list->row = row, row += list->rows;
+    d->first = list->rows, d->rows = (int32_t)rows;
     for (size_t i = 0; i < rows; i++) {
         jnode pair = json_node_item(&a, i), t, way;
         size_t two = 0;
         if (json_node_array(pair, &two)) return 1;
-        if (two != 2) return json_node_fault(pair, "wants [time, way]");
+        if (two != 2) return json_node_fault(pair, "wants [time, value]");
         t = json_node_item(&pair, 0), way = json_node_item(&pair, 1);
         if (json_node_number(t, J_ANY, &row[i].t) || json_node_number(way, J_ANY, &row[i].s))
             return 1;
         if (i && !(row[i].t > row[i - 1].t)) return json_node_fault(t, "times must rise");
     }
-    s->drives.rows += d->rows;
+    list->rows += d->rows;
     return 0;
 }
 
-static int read_signal(jnode o, struct scene *s, int which, struct drive *d)
+static int read_signal(jnode o, struct drives *list, int which, struct drive *d)
 {
     d->signal = which;
     switch (which) {
@@ -47,8 +47,16 @@ static int read_signal(jnode o, struct scene *s, int which, struct drive *d)
                json_node_number(json_node_key(&o, "frequency"), J_NOT_NEGATIVE, &d->frequency) ||
                json_node_number(json_node_key(&o, "phase"), J_ANY, &d->phase);
     default:
-        return read_table(json_node_key(&o, "table"), s, d);
+        return read_table(json_node_key(&o, "table"), list, d);
     }
+}
+
+static int add_signal(jnode o, struct drives *list, struct drive d)
+{
+    struct drive *more = grown(o, list->drive, list->n, 1, sizeof *more);
+    if (!more) return 1;
+    list->drive = more, more[list->n++] = d;
+    return 0;
 }
 
 /* "along" a direction, or "about" a point (and in space an axis) */
@@ -76,16 +84,13 @@ static int read_drive(jnode o, struct scene *s, int32_t wall)
              : s->dim == 2 ? "about"
                            : "about axis");
     if (which != DRIVE_SPEED) d.from = -INFINITY;
-    if (json_node_only(o, names) || read_signal(o, s, which, &d) ||
+    if (json_node_only(o, names) || read_signal(o, &s->drives, which, &d) ||
         json_node_number(json_node_key(&o, "from"), J_ANY, &d.from) ||
         json_node_number(json_node_key(&o, "until"), J_ANY, &d.until))
         return 1;
     if (!(d.from <= d.until))
         return json_node_fault(json_node_key(&o, "until"), "must not lie before its beginning");
-    struct drive *more = grown(o, s->drives.drive, s->drives.n, 1, sizeof *more);
-    if (!more) return 1;
-    s->drives.drive = more, more[s->drives.n++] = d;
-    return 0;
+    return add_signal(o, &s->drives, d);
 }
 
 int scene_read_drives(jnode a, struct scene *s, int32_t wall)
@@ -95,4 +100,20 @@ int scene_read_drives(jnode a, struct scene *s, int32_t wall)
     for (size_t i = 0; i < n; i++)
         if (read_drive(json_node_item(&a, i), s, wall)) return 1;
     return 0;
+}
+
+int scene_read_push(jnode o, struct scene *s, int32_t wall, struct load *l)
+{
+    if (!json_is_object(o.json)) return json_node_number(o, J_ANY, &l->force);
+    struct drive d = { .boundary = wall,
+                       .turns = l->way == LOAD_TURNS,
+                       .axis = l->axis,
+                       .from = -INFINITY,
+                       .until = INFINITY };
+    int which = json_node_choice(o, "amplitude table");
+    if (which < 0 || json_node_only(o, which ? "table mean" : "amplitude frequency phase mean") ||
+        read_signal(o, &s->pushes, which ? DRIVE_TABLE : DRIVE_SINE, &d) ||
+        json_node_number(json_node_key(&o, "mean"), J_ANY, &l->force))
+        return 1;
+    return add_signal(o, &s->pushes, d);
 }

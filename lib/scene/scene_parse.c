@@ -28,6 +28,14 @@ static char *compact(const char *text)
     return out;
 }
 
+static bool takes_documents(jnode bodies)
+{
+    bool any = false;
+    for (size_t k = 0; k < json_array_size(bodies.json); k++)
+        any = any || json_object_get(json_array_get(bodies.json, k), "document");
+    return any;
+}
+
 static int read_scene(jnode o, struct scene *s)
 {
     int64_t dim = 3, seed = 1;
@@ -54,7 +62,8 @@ static int read_scene(jnode o, struct scene *s)
         scene_read_kinds(json_node_key(&o, "kinds"), s, density) ||
         scene_read_pairs(json_node_key(&o, "pairs"), s, law) ||
         scene_read_shapes(json_node_key(&o, "shapes"), s) ||
-        scene_read_cell(json_node_key(&o, "cell"), s->dim, &s->cell) ||
+        scene_read_cell(json_node_key(&o, "cell"), s->dim, s->t,
+                        takes_documents(json_node_key(&o, "bodies")), &s->cell) ||
         scene_read_walls(json_node_key(&o, "walls"), s, &box, &boxed) ||
         scene_read_bodies(json_node_key(&o, "bodies"), s, boxed ? &box : NULL) ||
         scene_read_pours(json_node_key(&o, "pour"), s) ||

@@ -31,6 +31,9 @@ int scene_read_shape_2d(jnode object, const char *common, struct scene *s, struc
 int scene_read_shape_3d(jnode object, const char *common, struct scene *s, struct wall *w);
 /* scene/scene_drives.c: "drives" of a boundary, behind those that are there */
 int scene_read_drives(jnode array, struct scene *s, int32_t wall);
+/* a "force" or "torque", a number or a signal: the constant part of l, and pushes behind those that are
+   there. Of l, way and axis are known. */
+int scene_read_push(jnode force, struct scene *s, int32_t wall, struct load *l);
 int scene_read_box(jnode object, int dim, struct scene_box *box);
 
 /* scene/scene_solids.c: "shapes"; the shape of a group of bodies and their orientation; how large they
@@ -46,8 +49,9 @@ int scene_read_size(jnode size, int dim, struct scene_size *z);
 /* scene/scene_flow.c: "pour" and "remove" */
 int scene_read_pours(jnode pours, struct scene *s);
 int scene_read_removals(jnode removals, struct scene *s);
-/* scene/scene_cell.c: "cell" */
-int scene_read_cell(jnode cell, int dim, struct scene_cell *out);
+/* scene/scene_cell.c: "cell", at time t (s); edges may be left out where there are documents among the
+   bodies */
+int scene_read_cell(jnode cell, int dim, double t, bool documents, struct scene_cell *out);
 
 /* scene/scene_bodies.c: "bodies"; a lattice without a box fills this one (NULL: must have its
    own). */

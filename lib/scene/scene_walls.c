@@ -48,30 +48,40 @@ int scene_read_direction(jnode n, int dim, vec3 *out)
 
 /* ---- what a boundary yields to ---- */
 
-/* "along" a line, under a force, or "about" an axis through a point, under a torque */
-static int read_load(jnode o, int dim, const struct wall *w, struct load *l)
+/* "along" a line, or "about" an axis through a point */
+static int read_way(jnode o, int dim, const struct wall *w, bool turns, struct load *l)
+{
+    l->way = turns ? LOAD_TURNS : LOAD_GLIDES;
+    if (!turns) return scene_read_direction(json_node_key(&o, "along"), dim, &l->axis);
+    jnode about = json_node_key(&o, "about");
+    l->axis = dim == 2 ? v3(0, 0, 1) : w->n;
+    if (dim == 2 && w->shape == BOUNDARY_PLANE)
+        return json_node_fault(about, "in the plane no wall turns");
+    return json_node_vector(about, dim, &l->point) ||
+           scene_read_direction(json_node_key(&o, "axis"), dim, &l->axis);
+}
+
+/* What it is free to do, and the force or the torque */
+static int read_load(jnode o, struct scene *s, struct wall *w)
 {
     bool plane = w->shape == BOUNDARY_PLANE;
     if (!o.json) return 0;
     int which = json_node_choice(o, "along about");
     if (which < 0 ||
-        json_node_only(o, !which              ? "along mass force speed"
-                          : plane || dim == 2 ? "about mass torque speed"
-                                              : "about axis mass torque speed") ||
+        json_node_only(o, !which                 ? "along mass force speed travel"
+                          : plane || s->dim == 2 ? "about mass torque speed travel"
+                                                 : "about axis mass torque speed travel") ||
         json_node_need(&o, "mass") ||
-        json_node_number(json_node_key(&o, "mass"), J_POSITIVE, &l->mass) ||
-        json_node_number(json_node_key(&o, which ? "torque" : "force"), J_ANY, &l->force) ||
-        json_node_number(json_node_key(&o, "speed"), J_ANY, &l->speed))
+        json_node_number(json_node_key(&o, "mass"), J_POSITIVE, &w->load.mass) ||
+        json_node_number(json_node_key(&o, "speed"), J_ANY, &w->load.speed) ||
+        json_node_number(json_node_key(&o, "travel"), J_ANY, &w->load.travel) ||
+        read_way(o, s->dim, w, which == 1, &w->load))
         return 1;
-    jnode where = json_node_key(&o, which ? "about" : "along");
-    if (which) {
-        l->way = LOAD_TURNS, l->axis = dim == 2 ? v3(0, 0, 1) : w->n;
-        if (dim == 2 && plane) return json_node_fault(where, "in the plane no wall turns");
-        return json_node_vector(where, dim, &l->point) ||
-               scene_read_direction(json_node_key(&o, "axis"), dim, &l->axis);
-    }
-    l->way = LOAD_GLIDES;
-    return scene_read_direction(where, dim, &l->axis);
+    w->first_push = s->pushes.n;
+    if (scene_read_push(json_node_key(&o, which ? "torque" : "force"), s, s->walls, &w->load))
+        return 1;
+    w->pushes = s->pushes.n - w->first_push;
+    return 0;
 }
 
 /* ---- what is common to all shapes ---- */
@@ -110,7 +120,7 @@ static int read_plane(jnode o, struct scene *s, struct wall w)
     if (json_node_only(o, "point normal load " COMMON) || json_node_need(&o, "point normal") ||
         json_node_vector(json_node_key(&o, "point"), s->dim, &w.x) ||
         scene_read_direction(json_node_key(&o, "normal"), s->dim, &w.n) ||
-        read_load(json_node_key(&o, "load"), s->dim, &w, &w.load))
+        read_load(json_node_key(&o, "load"), s, &w))
         return 1;
     return add_wall(o, s, w);
 }
@@ -139,7 +149,7 @@ static int read_wall(jnode o, struct scene *s, struct scene_box *box, bool *boxe
     if (which == 1) return read_box(o, s, w, box, boxed);
     int e = s->dim == 2 ? scene_read_shape_2d(o, "load " COMMON, s, &w)
                         : scene_read_shape_3d(o, "load " COMMON, s, &w);
-    if (e || read_load(json_node_key(&o, "load"), s->dim, &w, &w.load)) return 1;
+    if (e || read_load(json_node_key(&o, "load"), s, &w)) return 1;
     return add_wall(o, s, w);
 }
 

@@ -1,0 +1,38 @@
+# gallery.mk: the experiments of the gallery, and its page (make gallery).
+#
+#   OUT/E/picture.png, curve.png, result.json   of experiment E, scripts/gallery/E.sh; with all it was made from
+#   OUT/README.md                               the page
+#
+# What is there is not made again: to start afresh remove its folder.
+
+QUICK ?=
+OUT   ?= build/gallery$(if $(QUICK),-quick)
+KEEP  ?= docs/gallery
+P     := scripts/gallery
+ALL   := drum silo plane-shear triaxial collapse incline vibrated isotropic
+ONLY  ?= $(ALL)
+export PATH := $(CURDIR)/build:$(PATH)
+export QUICK
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.DELETE_ON_ERROR:
+
+all: $(OUT)/README.md
+	@echo "gallery: $(OUT)/README.md" >&2
+
+$(OUT)/README.md: $(ONLY:%=$(OUT)/%/result.json) $(P)/page.jq $(P)/about.json
+	jq -rs -L $(P) --argjson about "$$(cat $(P)/about.json)" -f $(P)/page.jq $(ONLY:%=$(OUT)/%/result.json) >$@
+
+# what an experiment left half done is made anew
+$(OUT)/%/result.json: $(P)/%.sh $(P)/common.sh $(P)/rows.jq
+	@echo "gallery: $*" >&2
+	rm -rf $(OUT)/$*
+	$(P)/$*.sh $(OUT)/$*
+
+# where readers find it: without the runs
+keep: all
+	rm -rf $(KEEP)
+	for e in $(ONLY); do install -D -m 644 -t $(KEEP)/$$e $(OUT)/$$e/{picture.png,curve.png,result.json}; done
+	install -m 644 $(OUT)/README.md $(KEEP)/README.md
+
+.PHONY: all keep

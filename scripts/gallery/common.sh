@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# What the experiments of the gallery share: . common.sh, in one whose only operand is the folder that it makes
+# [scripts/gallery.mk]. QUICK=1 in the environment: in seconds, with fewer grains.
+set -euo pipefail
+
+P=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+name=$(basename "$0" .sh)
+mkdir -p "$1"
+out=$(cd "$1" && pwd)
+
+# pick QUICK FULL: one of them
+pick() { if [ -n "${QUICK:-}" ]; then echo "$1"; else echo "$2"; fi; }
+
+# scene NAME [jq's arguments]: scenes/NAME.json as a filter changes it. Relative names start at the folder.
+scene()
+{
+    local file=$P/../../scenes/$1.json
+    shift
+    jq "$@" "$file"
+}
+
+# step FILE.h5 [arguments of nsd-step]: what comes in makes steps, and the trajectory is in the folder. What
+# it says goes to FILE.log, and is shown where it fails.
+step()
+{
+    local file=$out/$1
+    shift
+    nsd-step "$@" -o "$file" 2>"${file%.h5}.log" || { cat "${file%.h5}.log" >&2; return 1; }
+}
+
+# on FILE.json FILE.h5 [jq's arguments]: a scene that goes on from the trajectory, as a filter changes it
+on() { nsd-info --scene "$out/$1" | jq "${@:2}" >"$out/on.json"; nsd-gen "$out/on.json"; }
+
+# with FILTER [jq's arguments]: jq with the functions of rows.jq
+with() { jq -L "$P" "include \"rows\"; $1" "${@:2}"; }
+
+picture() { nsd-view -o "$out/picture.png" "$@"; }
+
+# The curve, by NAME.gp, from the tables in the folder
+curve() { gnuplot -e "dir = '$out'; quick = ${QUICK:+1}${QUICK:-0}" "$P/style.gp" "$P/$name.gp"; }
+
+# results: rows of the table come in; result.json goes out
+results() { jq -s --arg name "$name" '{name: $name, rows: .}' >"$out/result.json"; }

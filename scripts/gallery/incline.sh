@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# A layer on a bumpy slope: where it stops, by its height, and how fast it flows.
+# shellcheck source=scripts/gallery/common.sh
+. "$(dirname "$0")/common.sh"
+
+width=$(pick 10 20)
+layer() # FILE HEIGHT DEGREES arguments of nsd-step
+{
+    scene incline --argjson h "$2" --argjson angle "$3" --argjson w "$width" '($angle * 3.141592653589793 / 180) as $a |
+        .gravity = [($a | sin), -($a | cos)] | .cell.lengths[0] = $w | .bodies[0] |= (.count = $w | .box.x = [0, $w]) |
+        .bodies[1] |= (.count = ($w * $h | round) | .box.x = [0, $w])' | nsd-gen - | step "$1" "${@:4}"
+}
+# m/s: the mean along the slope of what is not fixed, as a mean over the frames of the second half
+speed() { nsd-info -p "$out/$1" | jq -s 'map(select(.mass > 0) | [.step, .v[0]]) | (map(.[0]) | max / 2) as $half | map(select(.[0] > $half) | .[1]) | add / length'; }
+
+# from a flow at 26 degrees the slope is lowered until nothing moves
+read -ra heights <<<"$(pick '3 7' '3 5 8 12')"
+hold=$(pick 60 80) less=$(pick 2 0.5)
+echo "height angle" >"$out/stop.tsv"
+for h in "${heights[@]}"; do
+    layer lower.h5 "$h" 26 --until "$hold" --every "${hold}s"
+    angle=26 moves=true
+    while [ $moves = true ] && [ "$(jq -n "$angle > 10")" = true ]; do
+        angle=$(jq -n "$angle - $less")
+        on lower.h5 --argjson angle "$angle" '($angle * 3.141592653589793 / 180) as $a | .gravity = [($a | sin), -($a | cos)] | .time = 0' |
+            step next.h5 --until "$hold" --every "${hold}s"
+        mv "$out/next.h5" "$out/lower.h5"
+        moves=$(nsd-info --last -p "$out/lower.h5" | jq -s 'map(select(.mass > 0) | .v[0] | fabs) | add / length > 2e-3')
+    done
+    echo "$h $angle" >>"$out/stop.tsv"
+done
+
+read -ra flows <<<"$(pick '5 8' '6 9 13 18')"
+until=$(pick 100 250)
+echo "height speed" >"$out/flow.tsv"
+for h in "${flows[@]}"; do
+    layer "flow-$h.h5" "$h" 24 --until "$until" --every "$(jq -n "$until / 40")s"
+    echo "$h $(speed "flow-$h.h5")" >>"$out/flow.tsv"
+done
+# of the thickest: mean speed by depth, over its last half
+nsd-info -p "$out/flow-${flows[-1]}.h5" | jq -rs 'map(select(.mass > 0) | [.step, .x[1], .v[0]]) | (map(.[0]) | max / 2) as $half |
+    map(select(.[0] > $half)) | group_by(.[1] | floor) | map([(map(.[1]) | add / length), (map(.[2]) | add / length), length]) |
+    (map(.[2]) | max) as $most | .[] | select(.[2] > $most / 2) | @tsv' >"$out/profile.tsv"
+curve
+picture -c speed "$out/flow-${flows[-1]}.h5"
+with 'def numbers: split("\n") | map(select(test("^[0-9]")) | split("[ \t]"; null) | map(tonumber));
+    ($stop | numbers) as $s | ($flow | numbers | power) as $v | ($profile | numbers) as $p | ($flow | numbers)[-1][1] as $mean |
+    row("angle at which the thickest layer stops, degrees"; $s[-1][1]; 14; 21; "17 to 20"; "GDR MiDi 2004; Silbert et al. 2001 (discs)"),
+    row("thicker layers that stop at a steeper slope"; ([range(1; $s | length) | select($s[.][1] > $s[. - 1][1])] | length); 0; 0; "none: h_stop falls with the angle"; "Pouliquen 1999"),
+    row("angle of the thinnest less that of the thickest"; $s[0][1] - $s[-1][1]; 0.5; 8; "some degrees"; "the same"),
+    row("exponent of the mean speed by height at 24 degrees"; $v.b; (if env.QUICK then 0.6 else 1.2 end); 1.8; "1.5"; "Bagnold 1954; GDR MiDi 2004"),
+    row("fastest layer over the mean speed"; ($p | map(.[1]) | max) / $mean; 1.35; 1.85; "5/3"; "the same")' \
+    -n --rawfile stop "$out/stop.tsv" --rawfile flow "$out/flow.tsv" --rawfile profile "$out/profile.tsv" | results

@@ -1,0 +1,20 @@
+# page.jq: the gallery's README.md from all result.json (-s) and about.json
+
+include "rows";
+
+def cell: if . == null then "none" elif type == "number" then tostring else . end;
+def range_of: if .low == .high then "\(.low)" else "\(.low) to \(.high)" end;
+
+($about | map({(.name): .}) | add) as $of |
+"# The gallery", "",
+"Experiments that granular physicists do, each a script of nsd\u0027s tools, jq and gnuplot: `make gallery` runs them all" +
+" (`QUICK=1`: small, in minutes). Each is held against what others have published: the range is where we take it to agree," +
+" and what lies outside is shown.", "",
+"\(map(.rows[]) | length) comparisons, \(map(.rows[] | select(.holds)) | length) within their range.", "",
+(sort_by(.name) | sort_by($of[.name].order) | .[] | $of[.name] as $a |
+    "## \($a.title)", "", $a.text, "",
+    "    " + $a.pipeline, "",
+    "![\($a.title)](\(.name)/picture.png)", "", "![its curve](\(.name)/curve.png)", "",
+    "| what | found | range | | published | source |", "|---|---|---|---|---|---|",
+    (.rows[] | "| \(.what) | \(.found | cell) | \(range_of) | \(if .holds then "holds" else "**differs**" end) | \(.published) | \(.source) |"),
+    (if $a.remark then "", $a.remark else empty end), "")

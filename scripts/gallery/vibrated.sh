@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# A vibrated bed: when it leaves the floor, and for how long, against a ball that does not bounce.
+# shellcheck source=scripts/gallery/common.sh
+. "$(dirname "$0")/common.sh"
+
+read -ra gammas <<<"$(pick '0.9 1.8' '0.7 0.9 1.1 1.4 1.7 2 2.4 2.8')"
+count=$(pick 36 60) periods=$(pick 8 16)
+
+# the fall of the bed, then its periods; the last half of them is measured, each of the 400 steps a period
+echo "gamma flight closed force" >"$out/flight.tsv"
+for gamma in "${gammas[@]}"; do
+    scene vibrated --argjson gamma "$gamma" --argjson n "$count" '.bodies[0].count = $n |
+        .walls[0].drives[0].amplitude = $gamma * 9.81 / (40 * 3.141592653589793 | . * .)' |
+        nsd-gen - | step "fall-$gamma.h5" --until "$(jq -n "0.3 + $periods / 40")" --every 1s
+    nsd-step --until "$(jq -n "0.3 + $periods / 20")" --contacts -o "$out/bed-$gamma.h5" "$out/fall-$gamma.h5" 2>"$out/bed.log"
+    nsd-stat -m boundaries "$out/bed-$gamma.h5" |
+        with '
+        # of a ball that does not bounce: the phase from its leaving to its landing, over 2 pi
+        def closed($g): if $g <= 1 then 0 else (1 / $g | asin) as $at |
+            def above($x): ($at | sin) + $x * ($at | cos) - $x * $x / (2 * $g) - ($at + $x | sin);
+            (first(range(1; 6000) | . / 1000 | select(. > 0.05 and above(.) < 0))) as $land | $land / (2 * 3.141592653589793) end;
+        # a flight is as long as eight steps: a bed that is nearly weightless pushes the floor at one step and not at the next
+        map(.boundaries.normal | add // 0) | mean as $force | length as $all |
+        (reduce .[] as $f ({run: 0, free: 0};
+            if $f == 0 then .run += 1 else (if .run >= 8 then .free += .run else . end) | .run = 0 end) |
+            .free + (if .run >= 8 then .run else 0 end)) as $free |
+        [$gamma, $free / $all, closed($gamma), $force] | @tsv' -rs --argjson gamma "$gamma" >>"$out/flight.tsv"
+done
+curve
+picture -c force --boundaries lines "$out/bed-${gammas[-1]}.h5"
+mass=$(nsd-info -p --last "$out/bed-${gammas[-1]}.h5" | jq -s 'map(.mass) | add')
+with '[inputs | split("\t") | map(tonumber)] |
+    row("part of the time off the floor, largest below 1 g"; (map(select(.[0] < 1) | .[1]) | max); 0; 0; "0"; "a ball on a plate"),
+    (map(select(.[0] > 1.3) | .[1] - .[2] | fabs) | max) as $off |
+    row("part of a period in flight above 1.3 g, largest difference from the ball\u0027s"; $off; 0; 0.05; "0"; "closed solution: Mehta and Luck 1990"),
+    row("mean force on the floor over the weight, all"; (map(.[3]) | mean) / ($mass * 9.81); 0.97; 1.03; "1"; "momentum")' \
+    -nR --argjson mass "$mass" <(tail -n +2 "$out/flight.tsv") | results
