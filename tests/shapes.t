@@ -74,6 +74,21 @@ plane()
 disc=$(plane '"radius": 0.1') many=$(plane '"shape": "many"')
 is "a polygon of 100 sides rolls nearly as a disc ($many, $disc)" "$(below "($many - $disc) / $disc | fabs" 0.1)" true
 
+# arch THICKNESS BLOCKS: a semicircular arch of mean radius 1 that stands on the floor, its stones not mortared
+arch()
+{
+    awk -v t="$1" -v n="$2" 'BEGIN {
+        d = atan2(0, -1) / n; i = 1 - t / 2; o = 1 + t / 2; s = sin(d / 2); c = cos(d / 2)
+        g = i * c + (o - i) * c / 3 * (i + 2 * o) / (i + o) # centre of a stone
+        printf "{\"dim\": 2, \"dt\": 1e-3, \"mu\": 1, \"walls\": [{\"point\": [0, 0], \"normal\": [0, 1]}], \"shapes\": {\"stone\": {\"polygon\": "
+        printf "[[%.15g, %.15g], [%.15g, %.15g], [%.15g, %.15g], [%.15g, %.15g]]}}, \"bodies\": [", i * c, -i * s, o * c, -o * s, o * c, o * s, i * c, i * s
+        for (k = 0; k < n; k++)
+            printf "%s{\"x\": [%.15g, %.15g], \"shape\": \"stone\", \"orientation\": %.15g}", k ? ", " : "", g * cos((k + 0.5) * d), g * sin((k + 0.5) * d), (k + 0.5) * d
+        print "]}" }' | nsd-gen - | nsd-step -n 1000 --every 1000 --warm --eps 1e-6 2>/dev/null | nsd-info --last -p | jq -s '.[10].x[1] > 0.95'
+}
+is 'an arch of 21 stones stands with a thickness of 0.11 radii [Couplet, Heyman: 0.107]' "$(arch 0.11 21)" true
+is 'and falls with 0.105' "$(arch 0.105 21)" false
+
 # ---- a heap of all shapes ----
 
 jq '.bodies |= map(.count = ([.count, 14] | min)) | .bodies[1].box.z[0] = 0.9 | .bodies[2].box.z[0] = 1.7 | .bodies[3].box.z[0] = 2.5' \
@@ -126,6 +141,17 @@ is 'bodies from a document have their shapes' "$(nsd-info -p "$tmp/from.h5" | jq
 is 'nsd-info says which' "$(nsd-info -p "$tmp/heap.h5" | jq -s 'map(.shape) | unique | join(" ")')" '"clump cube rounded stone"'
 ok 'nsd-view draws them' sh -c "nsd-view '$tmp/heap.h5' >'$tmp/heap.png' && [ -s '$tmp/heap.png' ]"
 
+# Stones that pour in: the same bytes, whatever the threads, and however often the run is begun again
+printf '{"dt": 1e-3, "mu": 0.4, "shapes": {"stone": {"points": [[0.9,0.1,0.2],[-0.8,0.3,0.1],[0.1,1,-0.2],[-0.2,-0.9,0.3],[0.3,-0.1,0.8],[-0.1,0.2,-0.7]]}},
+    "walls": [{"point": [0, 0, 0], "normal": [0, 0, 1]}], "bodies": [{"x": [0.5, 0, 0.1], "shape": "stone", "size": 0.05}],
+    "pour": [{"rate": 100, "opening": {"disc": {"center": [0, 0, 0.6], "normal": [0, 0, 1], "radius": 0.1}}, "shape": "stone",
+        "orientation": "random", "size": {"uniform": [0.03, 0.05]}, "v": [0, 0, -1], "count": 30}]}' | nsd-gen - >"$tmp/pour.h5"
+nsd-step -n 500 "$tmp/pour.h5" 2>/dev/null | nsd-cat --last >"$tmp/whole.h5"
+is 'stones pour in' "$(nsd-info --last -p "$tmp/whole.h5" | jq -s 'map(.shape == "stone") | [length, all] | tojson')" '"[31,true]"'
+nsd-step -n 230 "$tmp/pour.h5" 2>/dev/null >"$tmp/half.h5"
+nsd-step -n 270 -j 2 "$tmp/half.h5" 2>/dev/null | nsd-cat --last >"$tmp/rest.h5"
+ok 'a run of them that goes on is the run, to the bit' same_particles "$tmp/whole.h5" "$tmp/rest.h5"
+
 # ---- shapes that are none ----
 
 bad() # name shape [dim]
@@ -161,5 +187,39 @@ printf '{"dt": 1e-3, "mu": 0.5, "shapes": {"needle": {"box": [1, 0.001, 0.001]},
     "bodies": [{"x": [0, 0, 0.001], "shape": "needle"}, {"x": [2, 2, 0.3], "shape": "plate", "orientation": [0.3, 0, 0]}]}' |
     nsd-gen - | nsd-step -n 800 --every 800 --warm 2>/dev/null | nsd-info --last -p >"$tmp/thin"
 is 'a needle and a plate of 1000 : 1 lie flat' "$(jq -s 'map(.x[2] < 0.002 and .x[2] > 0.0004) | all' "$tmp/thin")" true
+
+
+# ---- documents ----
+
+# A document whose table of shapes has been damaged is refused.
+if have_h5py; then
+    jq '.walls = [] | .shapes.brick = {"box": [1, 2, 3]} | .bodies = [{"x": [0, 0, 0], "shape": "brick"}, {"x": [9, 0, 0], "shape": "clump"}]' scenes/rubble.json |
+        nsd-gen - >"$tmp/good.h5"
+    foreign "$tmp/good.h5" "$tmp/good.raw"
+    status 0 'a document of shapes is read without its header, too' nsd-info "$tmp/good.raw"
+    while IFS='|' read -r what change; do
+        cp "$tmp/good.raw" "$tmp/poked.raw"
+        /usr/bin/python3 -c "import h5py, numpy; f = h5py.File('$tmp/poked.raw', 'r+'); s = f['/nsd/shape']; a = f['/particles/all/shape']; $change"
+        refuses 65 "a document with $what" nsd-info "$tmp/poked.raw"
+    done <<'EOS'
+a shape that is not there|a[0] = 99
+a shape before the first|a[1] = -1
+no name for a shape|s.attrs['names'] = b'brick\n'
+two shapes of one name|s.attrs['names'] = b'a\na\nb\nc\nd\n'
+a form that is none|s['form'][0] = 9
+fewer vertices than it says|s['vertices'][0] = 2000000000
+a negative number of corners|s['corners'][0] = -5
+a corner that is no vertex|s['corner'][3] = 77
+a face of two corners|s['face'][0] = 2
+a vertex that is no number|s['vertex'][0, 0] = float('nan')
+a vertex beyond the ball around it|s['vertex'][0, 0] = 3
+a volume of nothing|s['volume'][0] = 0
+moments that are no body's|s['moment'][0] = (0.9, 0.1, 0.1)
+a rounding below 0|s['round'][0] = -1
+a capsule of ten vertices|s['form'][0] = 2
+EOS
+else
+    skip 'documents with damaged shapes' 'no h5py'
+fi
 
 done_testing

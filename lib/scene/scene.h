@@ -108,7 +108,8 @@
  *            of edges that repeat. mass may be a MATRIX of masses, of the same shape
  *
  * POUR { rate: bodies/s | mass_rate: kg/s, opening: { box: BOX } or { disc: { center, normal,
- *   radius } }, radius: SIZE, v, w, kind, density or mass, from [time] s, until s, count }
+ *   radius } }, radius: SIZE, v, w, kind, density or mass, from [time] s, until s, count, and shape,
+ *   size, orientation as of a group of bodies }
  *   [scene/flow.h]; in the plane the disc is a segment.
  *
  * REMOVAL { outside: BOX } or { inside: BOX } or { below: { point, normal } }, with kind [any]: bodies
@@ -144,6 +145,14 @@ struct scene_box {
     double lo[3], hi[3]; /* m; infinite where it is open */
 };
 
+/* The shape of the bodies of a group */
+struct scene_form {
+    int32_t shape; /* row of the scene's shapes; 0: balls */
+    bool tumbled;  /* orientations at random; else */
+    quat turned;   /* that of all, from how the shape is described */
+    double fill;   /* its volume, in volumes of the ball around it */
+};
+
 struct scene_bodies {
     enum scene_source {
         SCENE_ONE,
@@ -171,10 +180,7 @@ struct scene_bodies {
     double density, mass;            /* kg/m^3 or kg/m^2; kg a body, 0: from the density */
     bool fixed;
     int32_t kind;
-    int32_t shape; /* row of the scene's shapes; 0: balls */
-    bool tumbled;  /* orientations at random; else */
-    double fill;   /* its volume, in volumes of the ball around it */
-    quat turned;   /* that of all, from how the shape is described */
+    struct scene_form form;
 };
 
 /* Where grains come in: one after another, each at a place drawn in the opening */
@@ -191,6 +197,7 @@ struct scene_pour {
     vec3 v, w;            /* m/s, rad/s */
     double density, mass; /* as of struct scene_bodies */
     int32_t kind;
+    struct scene_form form;
 };
 
 /* Where grains go: bodies whose centre is there */

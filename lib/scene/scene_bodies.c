@@ -37,7 +37,7 @@ static int read_lattice(jnode o, const struct scene *s, bool boxed, struct scene
                        "kind density mass fixed") ||
         (!boxed && !s->cell.given && json_node_need(&o, "box")) ||
         json_node_integer(json_node_key(&o, "count"), 0, INT32_MAX, &b->count) ||
-        scene_read_sizes(o, s, b, &b->size) ||
+        scene_read_sizes(o, s, &b->form, &b->size) ||
         json_node_word(json_node_key(&o, "cells"), cells, &own) ||
         json_node_number(json_node_key(&o, "spacing"), J_ANY, &b->spacing) ||
         json_node_number(json_node_key(&o, "jitter"), J_UNIT, &b->jitter) ||
@@ -65,7 +65,7 @@ static int read_random(jnode o, const struct scene *s, bool boxed, struct scene_
     jnode how = json_node_key(&o, "random"), box = json_node_key(&o, "box");
     if (json_node_only(o, "random radius size shape orientation box thermal v w kind density mass "
                           "fixed") ||
-        (!boxed && json_node_need(&o, "box")) || scene_read_sizes(o, s, b, &b->size) ||
+        (!boxed && json_node_need(&o, "box")) || scene_read_sizes(o, s, &b->form, &b->size) ||
         json_node_number(json_node_key(&o, "thermal"), J_NOT_NEGATIVE, &b->thermal))
         return 1;
     int which = json_node_choice(how, "phi count");
@@ -106,10 +106,10 @@ static int read_one(jnode o, const struct scene *s, struct scene_bodies *b)
         json_node_vector(json_node_key(&o, "x"), s->dim, &b->x))
         return 1;
     if (radius.json && size.json) return json_node_fault(size, "a radius is given too");
-    if (!b->shape && json_node_need(&o, "radius")) return 1;
+    if (!b->form.shape && json_node_need(&o, "radius")) return 1;
     b->size.min = 1;
     if (json_node_number(radius.json ? radius : size, J_POSITIVE, &b->size.min)) return 1;
-    if (!radius.json) b->size.min *= s->solid[b->shape].reach;
+    if (!radius.json) b->size.min *= s->solid[b->form.shape].reach;
     b->size.max = b->size.min;
     return 0;
 }
@@ -156,12 +156,13 @@ static int read_group(jnode o, const struct scene *s, const struct scene_box *bo
 {
     static const enum scene_source from[] = { SCENE_ONE, SCENE_LATTICE, SCENE_TABLE, SCENE_DOCUMENT,
                                               SCENE_RANDOM };
-    *b = (struct scene_bodies){ .spacing = 1.05, .jitter = 1, .frame = -1, .fill = 1 };
+    *b = (struct scene_bodies){ .spacing = 1.05, .jitter = 1, .frame = -1, .form = { .fill = 1 } };
     if (box) b->box = *box;
     int which = json_node_choice(o, "x count file document random");
     if (which < 0) return 1;
     b->from = from[which];
-    if (from[which] != SCENE_TABLE && from[which] != SCENE_DOCUMENT && scene_read_shaped(o, s, b))
+    if (from[which] != SCENE_TABLE && from[which] != SCENE_DOCUMENT &&
+        scene_read_form(o, s, &b->form))
         return 1;
     int bad = which == 0   ? read_one(o, s, b)
               : which == 1 ? read_lattice(o, s, box, b)

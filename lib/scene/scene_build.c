@@ -5,6 +5,7 @@
 #include "bodies/tidy.h"
 #include "scene/counter.h"
 #include "scene/grains.h"
+#include "scene/orientation.h"
 #include "scene/random_start.h"
 #include "scene/shelves.h"
 
@@ -18,8 +19,8 @@ static int set_body(struct packing *p, int64_t i, const struct scene_bodies *b, 
                     struct why *why)
 {
     double mass, inertia;
-    if (b->shape)
-        packing_solid_shape(p->dim, &p->shapes.s[b->shape], r, b->density, &mass, &inertia);
+    if (b->form.shape)
+        packing_solid_shape(p->dim, &p->shapes.s[b->form.shape], r, b->density, &mass, &inertia);
     else
         packing_solid(p->dim, r, b->density, &mass, &inertia);
     if (b->mass > 0) inertia *= b->mass / mass, mass = b->mass;
@@ -30,7 +31,7 @@ static int set_body(struct packing *p, int64_t i, const struct scene_bodies *b, 
     p->radius[i] = r;
     p->mass[i] = b->fixed ? 0 : mass, p->inertia[i] = b->fixed ? 0 : inertia;
     p->kind[i] = b->kind;
-    if (p->shape) p->shape[i] = b->shape;
+    if (p->shape) p->shape[i] = b->form.shape;
     return 0;
 }
 
@@ -85,7 +86,7 @@ static int set_grain(struct packing *p, int64_t i, const struct scene *s,
     if (!b->has_fixed) one.fixed = g->fixed;
     if (!b->has_density) one.density = g->density > 0 ? g->density : s->kind[one.kind].density;
     if (!b->has_density && !(b->mass > 0)) one.mass = g->mass;
-    if (g->shape) one.shape = shapes_find(&p->shapes, b->document->shapes.s[g->shape].name);
+    if (g->shape) one.form.shape = shapes_find(&p->shapes, b->document->shapes.s[g->shape].name);
     if (set_body(p, i, &one, g->x, g->r, why)) return why->status;
     p->q[i] = g->q, p->id[i] = g->id;
     if (g->weighs && !one.fixed && g->mass > 0 && one.mass == g->mass) p->inertia[i] = g->inertia;
@@ -127,32 +128,16 @@ static int set_ids(struct packing *p, bool given, struct why *why)
     return why->status;
 }
 
-/* Each as likely [Shoemake 1992, by rejection: no sines] */
-static quat draw_orientation(int dim, gsl_rng *rng)
-{
-    double x[4], sum;
-    do {
-        sum = 0;
-        for (int k = 0; k < 4; k++) {
-            x[k] = dim == 2 && (k == 1 || k == 2) ? 0 : 2 * gsl_rng_uniform(rng) - 1;
-            sum += x[k] * x[k];
-        }
-    } while (sum > 1 || sum < 1e-4);
-    return quat_unit((quat){ x[0], x[1], x[2], x[3] });
-}
-
 /* Orientations are functions of the group and the body's number in it: no other draw depends on them. */
 static int orient_group(struct packing *p, const struct scene *s, int64_t g, int64_t first,
                         int64_t n, struct why *why)
 {
     const struct scene_bodies *b = &s->bodies[g];
-    gsl_rng *rng = b->tumbled ? counter_alloc() : NULL;
-    if (b->tumbled && !rng) return why_set(why, EX_SOFTWARE, "no memory for random numbers");
+    gsl_rng *rng = b->form.tumbled ? counter_alloc() : NULL;
+    if (b->form.tumbled && !rng) return why_set(why, EX_SOFTWARE, "no memory for random numbers");
     for (int64_t i = 0; i < n; i++) {
-        quat q = b->turned;
         if (rng) counter_start(rng, s->seed, COUNTER_TURN, (uint64_t)g, (uint64_t)i, 0);
-        if (rng) q = draw_orientation(p->dim, rng);
-        p->q[first + i] = quat_unit(quat_mul(q, s->solid[b->shape].turn));
+        p->q[first + i] = orientation_draw(s, &b->form, rng);
     }
     gsl_rng_free(rng);
     return 0;
@@ -175,7 +160,7 @@ static int fill_groups(struct packing *p, const struct scene *s, const struct gr
                                          : fill_lattice(p, first, b, rng, why);
         if (bad) return bad;
         int64_t n = is_list(b) ? list[g].n : b->count;
-        if (b->shape && orient_group(p, s, g, first, n, why)) return why->status;
+        if (b->form.shape && orient_group(p, s, g, first, n, why)) return why->status;
         given |= is_list(b);
         if (!is_list(b)) // numbers are given anew below, where any are given
             for (int64_t k = 0; k < b->count; k++) p->id[first + k] = -1;

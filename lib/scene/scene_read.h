@@ -41,8 +41,8 @@ int scene_read_box(jnode object, int dim, struct scene_box *box);
 /* scene/scene_solids.c: "shapes"; the shape of a group of bodies and their orientation; how large they
    are, by their radius or their size */
 int scene_read_shapes(jnode shapes, struct scene *s);
-int scene_read_shaped(jnode object, const struct scene *s, struct scene_bodies *b);
-int scene_read_sizes(jnode object, const struct scene *s, const struct scene_bodies *b,
+int scene_read_form(jnode object, const struct scene *s, struct scene_form *form);
+int scene_read_sizes(jnode object, const struct scene *s, const struct scene_form *form,
                      struct scene_size *z);
 
 /* scene/scene_radii.c: a SIZE; one that is not there leaves *z as it is */

@@ -264,47 +264,48 @@ int scene_read_shapes(jnode o, struct scene *s)
 
 /* ---- the shape of a group ---- */
 
-static int read_orientation(jnode n, int dim, struct scene_bodies *b)
+static int read_orientation(jnode n, int dim, struct scene_form *form)
 {
     vec3 turn = v3(0, 0, 0);
     if (json_is_string(n.json)) {
         static const char *const words[] = { "random", NULL };
         int word = 0;
         if (json_node_word(n, words, &word)) return 1;
-        b->tumbled = true;
+        form->tumbled = true;
         return 0;
     }
     if (scene_read_spin(n, dim, &turn)) return 1;
-    b->turned = quat_rotation(turn);
+    form->turned = quat_rotation(turn);
     return 0;
 }
 
-int scene_read_shaped(jnode o, const struct scene *s, struct scene_bodies *b)
+int scene_read_form(jnode o, const struct scene *s, struct scene_form *form)
 {
     const char *name = NULL;
     jnode n = json_node_key(&o, "shape");
-    b->turned = (quat){ 1, 0, 0, 0 }, b->fill = 1;
+    form->turned = (quat){ 1, 0, 0, 0 }, form->fill = 1;
     if (json_node_text(n, &name)) return 1;
     if (!name) {
         jnode size = json_node_key(&o, "size"), turn = json_node_key(&o, "orientation");
         if (size.json) return json_node_fault(size, "is that of a shape; a ball has a radius");
         return turn.json ? json_node_fault(turn, "is that of a shape") : 0;
     }
-    b->shape = shapes_find(&s->shapes, name);
-    if (b->shape < 1) return json_node_fault(n, "no shape \"%s\"; name it under \"shapes\"", name);
-    b->fill = s->shapes.s[b->shape].volume / s->shapes.s[0].volume;
-    return read_orientation(json_node_key(&o, "orientation"), s->dim, b);
+    form->shape = shapes_find(&s->shapes, name);
+    if (form->shape < 1)
+        return json_node_fault(n, "no shape \"%s\"; name it under \"shapes\"", name);
+    form->fill = s->shapes.s[form->shape].volume / s->shapes.s[0].volume;
+    return read_orientation(json_node_key(&o, "orientation"), s->dim, form);
 }
 
-int scene_read_sizes(jnode o, const struct scene *s, const struct scene_bodies *b,
+int scene_read_sizes(jnode o, const struct scene *s, const struct scene_form *form,
                      struct scene_size *z)
 {
     jnode radius = json_node_key(&o, "radius"), size = json_node_key(&o, "size");
     if (radius.json && size.json) return json_node_fault(size, "a radius is given too");
-    if (!b->shape && !radius.json) return json_node_need(&o, "radius");
+    if (!form->shape && !radius.json) return json_node_need(&o, "radius");
     if (radius.json) return scene_read_size(radius, s->dim, z);
     z->min = z->max = 1;
     if (scene_read_size(size, s->dim, z)) return 1;
-    scene_size_scale(z, s->solid[b->shape].reach);
+    scene_size_scale(z, s->solid[form->shape].reach);
     return 0;
 }
