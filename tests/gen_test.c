@@ -610,12 +610,14 @@ static const char *const whole_scene[] = {
     "  \"min\": 0.9, \"max\": 1.1}}}, {\"count\": 1, \"radius\": {\"uniform_by_mass\": [0.5, 1]}},"
     " {\"random\": {\"count\": 3}, \"box\": {\"x\": [0, 9], \"y\": [0, 9], \"z\": [0, 9]},"
     "  \"radius\": {\"sieve\": [[0.1, 0], [0.2, 0.5], [0.3, 1]]}}],"
-    "\"pour\": [{\"rate\": 9, \"radius\": {\"power\": {\"exponent\": 3, \"min\": 0.1, \"max\": 0.2}},"
+    "\"pour\": [{\"rate\": 9, \"radius\": {\"power\": {\"exponent\": 3, \"min\": 0.1, \"max\": "
+    "0.2}},"
     "  \"opening\": {\"disc\": {\"center\": [0, 0, 8], \"normal\": [0, 0, 1], \"radius\": 3}},"
     "  \"v\": [0, 0, -0.5], \"w\": [0, 0, 0], \"kind\": \"steel\", \"mass\": 2, \"from\": 0.1,"
     "  \"until\": 0.5, \"count\": 9}, {\"mass_rate\": 9, \"radius\": 0.1, \"density\": 3,"
     "  \"opening\": {\"box\": {\"x\": [0, 1], \"y\": [0, 1], \"z\": [0, 1]}}}],"
-    "\"remove\": [{\"outside\": {\"x\": [-9, 9]}, \"kind\": \"steel\"}, {\"inside\": {\"y\": [5, 6]}},"
+    "\"remove\": [{\"outside\": {\"x\": [-9, 9]}, \"kind\": \"steel\"}, {\"inside\": {\"y\": [5, "
+    "6]}},"
     " {\"below\": {\"point\": [0, 0, -9], \"normal\": [0, 0, 1]}}]}",
 
     "{\"title\": \"build\", \"dim\": 2, \"dt\": 1e-3, \"gravity\": [0, -9.81], \"overlap\": true,"
@@ -630,7 +632,8 @@ static const char *const whole_scene[] = {
     " {\"count\": 4, \"radius\": 0.2, \"box\": {\"x\": [0, 9], \"y\": [0, null]}},"
     " {\"random\": {\"count\": 3}, \"radius\": {\"uniform\": [0.1, 0.2]}, \"box\": {\"x\": [0, 9],"
     "  \"y\": [0, 9]}}],"
-    "\"pour\": [{\"rate\": 9, \"radius\": 0.1, \"w\": 1, \"opening\": {\"disc\": {\"center\": [0, 8],"
+    "\"pour\": [{\"rate\": 9, \"radius\": 0.1, \"w\": 1, \"opening\": {\"disc\": {\"center\": [0, "
+    "8],"
     "  \"normal\": [0, 1], \"radius\": 3}}, \"count\": 9}], \"remove\": [{\"below\":"
     "  {\"point\": [0, -9], \"normal\": [0, 1]}}]}",
 
@@ -649,8 +652,22 @@ static const char *const whole_scene[] = {
 
 /* What stands in the place of each; the first two are wrong wherever they are. */
 static const char *const other_value[] = {
-    "{\"no such key\": 1}", "\"no such word\"", "null", "true", "false", "-1", "0", "0.5", "3",
-    "1e30", "[]", "[1, 2]", "[3, 2, 1]", "[null, 1]", "{}", "[[1, 2], [3, 4]]",
+    "{\"no such key\": 1}",
+    "\"no such word\"",
+    "null",
+    "true",
+    "false",
+    "-1",
+    "0",
+    "0.5",
+    "3",
+    "1e30",
+    "[]",
+    "[1, 2]",
+    "[3, 2, 1]",
+    "[null, 1]",
+    "{}",
+    "[[1, 2], [3, 4]]",
 };
 
 static struct {
