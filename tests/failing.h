@@ -178,9 +178,11 @@ static const char *const scene_text[] = {
     "{\"dt\": 1e-3, \"kinds\": {\"steel\": {\"density\": 7800}}, \"mu\": 0.3, \"pairs\":"
     "[{\"pair\": [\"ball\", \"steel\"], \"mu\": 0.1}], \"overlap\": true,"
     "\"walls\": [{\"point\": [0, 0, -1], \"normal\": [0, 0, 1], \"load\": {\"along\": [0, 0, 1],"
-    "  \"mass\": 2, \"force\": 9}}, {\"cylinder\": {\"point\": [0, 0, 0], \"axis\": [0, 0, 1],"
-    "  \"radius\": 9, \"length\": 9}, \"drives\": [{\"about\": [0, 0, 0], \"axis\": [0, 0, 1],"
-    "  \"table\": [[0, 0], [1, 2]]}], \"until\": 9}],"
+    "  \"mass\": 2, \"force\": 9}, \"drives\": [{\"along\": [0, 0, 1], \"speed\": 0.1}]},"
+    " {\"cylinder\": {\"point\": [0, 0, 0], \"axis\": [0, 0, 1], \"radius\": 9, \"length\": 9},"
+    "  \"load\": {\"about\": [0, 0, 0], \"axis\": [0, 0, 1], \"mass\": 2, \"torque\": 1},"
+    "  \"drives\": [{\"about\": [0, 0, 0], \"axis\": [0, 0, 1], \"table\": [[0, 0], [1, 2]]}],"
+    "  \"until\": 9}, {\"disc\": {\"center\": [0, 0, -4], \"normal\": [0, 0, 1], \"radius\": 2}}],"
     "\"bodies\": [{\"x\": [0, 0, 0], \"radius\": 1}, {\"x\": [1.99, 0, 0], \"radius\": 1,"
     "  \"kind\": \"steel\"}, {\"file\": \"balls\"}, {\"x\": [0, 1.99, 0], \"radius\": 1,"
     "  \"fixed\": true}, {\"x\": [8.01, 0, 3], \"radius\": 1}, {\"count\": 3, \"cells\": \"own\","
@@ -253,6 +255,7 @@ __attribute__((unused)) static void each_fails(const char *name,
         }
         long total = asked->calls;
         if (most > most_failures) most = most_failures;
+        if (now && most > 250) most = 250; // all of them in the first scene
         long n = total < most ? total : most;
         for (long i = 0; i < n; i++) {
             long k = 1 + i * total / n;

@@ -645,6 +645,13 @@ static const char *const whole_scene[] = {
     "  \"mass\": [[1, null, null], [null, 1, 1], [null, 1, null]]}},"
     "\"bodies\": [{\"count\": 8, \"radius\": 0.5, \"spacing\": 1.2}]}",
 
+    "{\"title\": \"build\", \"dt\": 1e-3, \"gravity\": [0, 0, -1], \"overlap\": true, \"cell\": {"
+    "  \"lengths\": [9, 9, 9], \"repeats\": [true, false, false]}, \"walls\": [{\"point\":"
+    "  [0, 0, -1], \"normal\": [0, 0, 1], \"drives\": [{\"along\": [0, 0, 1], \"speed\": 1}]},"
+    " {\"cylinder\": {\"point\": [0, 4, 4], \"axis\": [1, 0, 0], \"radius\": 9}, \"drives\":"
+    "  [{\"about\": [0, 4, 4], \"axis\": [1, 0, 0], \"speed\": 1}]}],"
+    "\"bodies\": [{\"x\": [1, 4, 4], \"radius\": 0.5}]}",
+
     "{\"title\": \"build\", \"dim\": 2, \"dt\": 1e-3, \"gravity\": [0, 0], \"cell\": {"
     "  \"lengths\": [9, 9], \"repeats\": [true, false], \"gradient\": [[0, 0.1], [0, 0]],"
     "  \"stress\": {\"pressure\": 3, \"mass\": 1}}, \"bodies\": [{\"count\": 4, \"radius\": 0.5}]}",
