@@ -28,6 +28,11 @@ cubic 0.5235987755982988 6
 fcc 0.7404804896930609 12
 END
 
+pairs() { nsd-stat -m pairs --bins "$2" --distance "$3" "$tmp/$1.h5" 2>/dev/null | jq -c .pairs.pairs; }
+is "pairs of a square lattice, two to a body in each shell, whatever is across the border" "$(pairs square 3 3.3)" '[0,200,200]'
+is "of a hexagonal one, three" "$(pairs hexagonal 1 3)" '[300]'
+is "of a cubic one, three to a body, then six" "$(pairs cubic 3 3.3)" '[0,375,750]'
+
 # ---- forces ----
 
 jq -n '{ dt: 1e-5, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
