@@ -399,6 +399,8 @@ static struct shared shared_of(const struct packing *p)
 static int check_same(const struct writer *s, const struct frame *f, struct why *why)
 {
     const struct shared p = s->first, q = shared_of(&f->packing);
+    if (p.pours != q.pours || p.removals != q.removals)
+        return why_set(why, EX_DATAERR, "other pours or removals than the trajectory's");
     if (p.n != q.n)
         return why_set(why, EX_DATAERR, "%lld bodies, and the trajectory has %lld", (long long)q.n,
                        (long long)p.n);
@@ -406,8 +408,6 @@ static int check_same(const struct writer *s, const struct frame *f, struct why 
         return why_set(why, EX_DATAERR, "dim, dt or theta differ from the trajectory's");
     if (p.overlap && q.overlap && p.overlap != q.overlap) // that of a scene is not said yet
         return why_set(why, EX_DATAERR, "overlap differs from the trajectory's");
-    if (p.pours != q.pours || p.removals != q.removals)
-        return why_set(why, EX_DATAERR, "other pours or removals than the trajectory's");
     if (p.crc != q.crc) return why_set(why, EX_DATAERR, "other bodies than the trajectory's");
     if (p.cell != q.cell) return why_set(why, EX_DATAERR, "another cell than the trajectory's");
     if (f->packing.step <= s->step)
