@@ -1,6 +1,7 @@
 /* problem/problem.c: the bundles of a packing and of a given W [problem/problem.h]. */
 #include "problem/problem.h"
 
+#include "base/team.h"
 #include "bodies/kinematics.h"
 #include "problem/offset.h"
 #include "problem/schedule.h"
@@ -13,6 +14,7 @@
 
 enum {
     HUGE_PAGE = 2 << 20, /* bytes */
+    SOME = 4096,         /* bodies or slots that are worth a thread: 100 us of work */
     PARALLEL_FROM = 64   /* bundles a group, on average, that are worth more than one thread */
 };
 
@@ -109,11 +111,12 @@ static int32_t *seat_bodies(const struct problem *p, const struct packing *pack,
     return seat;
 }
 
-/* Sets the bodies, with their velocities before the step. */
-static void set_bodies(struct problem *p)
+/* Sets bodies first .. end-1, with their velocities before the step. */
+static void set_some(void *arg, int64_t first, int64_t end)
 {
+    struct problem *p = arg;
     const struct packing *pack = p->packing;
-    for (int64_t i = 0; i < pack->n; i++) {
+    for (int64_t i = first; i < end; i++) {
         vec3 v = pack->v[i], w = pack->w[i];
         p->body[p->seat[i]] = (struct body){ { v.x, v.y, v.z },
                                              { w.x, w.y, w.z },
@@ -122,12 +125,13 @@ static void set_bodies(struct problem *p)
     }
 }
 
-void problem_set_free_motion(struct problem *p)
+static void free_some(void *arg, int64_t first, int64_t end)
 {
+    struct problem *p = arg;
     const struct packing *pack = p->packing;
     const vec3 fall = v3_scale(pack->dt, pack->g);
     const struct cell_flow flow = packing_flow(pack);
-    for (int64_t i = 0; i < pack->n; i++) {
+    for (int64_t i = first; i < end; i++) {
         struct body *b = &p->body[p->seat[i]];
         vec3 dv = fall;
         if (!(b->im > 0)) continue;
@@ -135,6 +139,11 @@ void problem_set_free_motion(struct problem *p)
         b->v[0] = pack->v[i].x + dv.x, b->v[1] = pack->v[i].y + dv.y, b->v[2] = pack->v[i].z + dv.z;
         b->w[0] = pack->w[i].x, b->w[1] = pack->w[i].y, b->w[2] = pack->w[i].z;
     }
+}
+
+void problem_set_free_motion(struct problem *p)
+{
+    team_share(team_size(), p->packing->n, SOME, free_some, p);
 }
 
 /* The place of a body i (wall w: -1-w) of a contact at x (m): its own, or of a new copy if it does
@@ -208,6 +217,38 @@ static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
     for (int j = 0; j < 2; j++) r->iw[j][k] = 1 / r->w[j][k];
     double lambda = bundle_lambda(r, k);
     r->rho[k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / im : rho_factor / lambda;
+}
+
+/* Slots that are filled, and what the free motion makes of them */
+struct filling {
+    struct problem *p;
+    const struct contacts *s;
+    const struct lattice *cell;
+    double alpha, rho_factor;
+    double *q2; /* [slots] m^2/s^2: |q|^2 */
+};
+
+/* Bundles first .. end-1, whose bodies have their places */
+static void fill_some(void *arg, int64_t first, int64_t end)
+{
+    const struct filling *f = arg;
+    for (int64_t i = BUNDLE * first; i < BUNDLE * end; i++) {
+        int32_t c = f->p->contact[i];
+        if (c < 0) continue;
+        slot_init(f->p, i, f->p->packing, f->cell, &f->s->c[c], f->alpha, f->rho_factor);
+    }
+}
+
+static void measure_some(void *arg, int64_t first, int64_t end)
+{
+    const struct filling *f = arg;
+    const struct problem *p = f->p;
+    for (int64_t i = BUNDLE * first; i < BUNDLE * end; i++) {
+        double q[3] = { 0 };
+        if (p->contact[i] >= 0)
+            body_velocity(p->body, slot_bundle(p, i), slot_rebound(p, i), slot_lane(i), q);
+        f->q2[i] = q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
+    }
 }
 
 /* kg: the mean mass of the bodies that move, for the scaled errors */
@@ -284,7 +325,7 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
         if (!(p->coupling = calloc(1, sizeof *p->coupling))) return no_memory(p, why);
         if (couplings_init(p->coupling, pack, s, why)) return problem_free(p), why->status;
     }
-    set_bodies(p);
+    team_share(team_size(), pack->n, SOME, set_some, p);
     int64_t nobody = pack->n, next = nobody + 2;
     int64_t other = p->split ? BUNDLE * p->group[p->split->inside] : p->slots;
     for (int64_t i = 0; i < p->slots; i++) {
@@ -294,8 +335,9 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
         if (p->contact[i] < 0) continue;
         const struct contact *c = &s->c[p->contact[i]];
         r->a[k] = place_of(p, c->a, c->x, &next), r->b[k] = place_of(p, c->b, c->x, &next);
-        slot_init(p, i, pack, &cell, c, alpha, rho_factor);
     }
+    struct filling f = { p, s, &cell, alpha, rho_factor, NULL };
+    team_share(team_size(), p->bundles, SOME / BUNDLE, fill_some, &f);
 
     double g = v3_norm(pack->g);
     p->fall = g * pack->dt;
@@ -303,12 +345,10 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     p->scale_r = p->scale_v * mean_mass(pack);
     p->speed = top_speed(pack);
     problem_set_free_motion(p);
-    for (int64_t i = 0; i < p->slots; i++) {
-        double q[3];
-        if (p->contact[i] < 0) continue;
-        body_velocity(p->body, slot_bundle(p, i), slot_rebound(p, i), slot_lane(i), q);
-        p->norm_q += q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
-    }
+    if (!(f.q2 = malloc((size_t)(p->slots + 1) * sizeof *f.q2))) return no_memory(p, why);
+    team_share(team_size(), p->bundles, SOME / BUNDLE, measure_some, &f);
+    for (int64_t i = 0; i < p->slots; i++) p->norm_q += f.q2[i]; // in one order always
+    free(f.q2);
     p->norm_q = sqrt(p->norm_q);
     for (int64_t i = 0; s->found && i < p->slots; i++) {
         if (p->contact[i] < 0) continue;
