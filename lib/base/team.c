@@ -38,6 +38,7 @@ struct gate {
     }
 
 static struct {
+    int size;                   /* threads of works that are not told how many; 0: 1 */
     int workers;                /* threads that there are besides the caller's */
     bool no_more;               /* more cannot be had */
     int64_t born[THREADS_MOST]; /* works that had begun before worker k was there */
@@ -63,6 +64,16 @@ static int64_t clock_now(clockid_t clock)
     struct timespec t;
     clock_gettime(clock, &t);
     return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
+}
+
+void team_set_size(int threads)
+{
+    team.size = threads;
+}
+
+int team_size(void)
+{
+    return team.size > 1 ? team.size : 1;
 }
 
 int team_cores(void)

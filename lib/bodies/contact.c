@@ -73,6 +73,19 @@ struct contact *contacts_add(struct contacts *s, int32_t a, int32_t b)
     return c;
 }
 
+bool contacts_append(struct contacts *s, const struct contacts *more)
+{
+    if (s->n + more->n > s->room) {
+        int64_t room = s->room + s->room / 2 + more->n;
+        struct contact *c = realloc(s->c, (size_t)room * sizeof *c);
+        if (!c) return false;
+        s->c = c, s->room = room;
+    }
+    if (more->n) memcpy(s->c + s->n, more->c, (size_t)more->n * sizeof *more->c);
+    s->n += more->n;
+    return true;
+}
+
 void contact_basis(struct contact *c, int dim, vec3 n)
 {
     c->n = n;

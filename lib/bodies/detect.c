@@ -1,12 +1,18 @@
 /* bodies/detect.c: gaps and points of contact of balls; bodies of other shapes: detect_shapes.c. */
 #include "bodies/detect.h"
 
+#include "base/team.h"
 #include "bodies/detect_shapes.h"
 #include "bodies/kinematics.h"
 #include "bodies/tie.h"
 #include "bodies/top.h"
 
 #include <stdlib.h>
+
+enum {
+    SOME = 512,  /* bodies whose places on a curved boundary are worth a thread: 50 us of work, */
+    MANY = 16384 /* and bodies at a plane, or pairs */
+};
 
 /* The law of a pair of kinds of material */
 static void set_law(struct contact *c, const struct packing *p, int32_t one, int32_t other)
@@ -29,16 +35,65 @@ static bool add_touch(struct contacts *out, const struct packing *p, int32_t w, 
     return true;
 }
 
-/* The bodies at x and a plane, where it is at time t; false when memory is short. */
-static bool add_plane(struct contacts *out, const struct packing *p, int32_t w, double t,
-                      const vec3 *x, double gap, const struct placed *shaped)
+/* What contacts are sought of: the bodies at x, the cell's edges at edge (m; NULL: it does not repeat), the
+   boundaries where they are at time t (s) */
+struct sought {
+    const struct packing *p;
+    const vec3 *x, *edge;
+    double t, gap;
+    const struct neighbours *near;
+    const struct placed *shaped; /* NULL: all are balls */
+    int32_t wall;                /* the one in hand */
+};
+
+/* Adds those of first .. end-1, bodies or pairs of near ones; false when memory is short. */
+typedef bool find_text(struct contacts *out, const struct sought *o, int64_t first, int64_t end);
+
+/* Parts of a search: their contacts, one after another, are those of the whole. */
+struct parts {
+    const struct sought *o;
+    find_text *find;
+    int64_t n, parts;
+    struct contacts *found; /* [parts] */
+    _Atomic bool failed;
+};
+
+static void find_parts(void *arg, int64_t first, int64_t end)
 {
-    vec3 at = wall_at(p, &p->wall[w], t), n = wall_normal(p, &p->wall[w], t);
-    for (int64_t i = 0; i < p->n; i++) {
+    struct parts *s = arg;
+    for (int64_t k = first; k < end; k++)
+        if (!s->find(&s->found[k], s->o, s->n * k / s->parts, s->n * (k + 1) / s->parts))
+            s->failed = true;
+}
+
+/* All of 0 .. n-1, in parts of at least `least` where there are threads for them */
+static bool find_all(struct contacts *out, const struct sought *o, int64_t n, int64_t least,
+                     find_text *find)
+{
+    struct parts s = { o, find, n, 4 * (int64_t)team_size(), NULL, false };
+    if (team_size() == 1 || n < 2 * least) return find(out, o, 0, n);
+    if (!(s.found = calloc((size_t)s.parts, sizeof *s.found))) return false;
+    team_share(team_size(), s.parts, 1, find_parts, &s);
+    for (int64_t k = 0; k < s.parts; k++) {
+        if (!contacts_append(out, &s.found[k])) s.failed = true;
+        contacts_free(&s.found[k]);
+    }
+    free(s.found);
+    return !s.failed;
+}
+
+static bool add_plane(struct contacts *out, const struct sought *o, int64_t first, int64_t end)
+{
+    const struct packing *p = o->p;
+    const int32_t w = o->wall;
+    const vec3 *x = o->x;
+    const double gap = o->gap;
+    vec3 at = wall_at(p, &p->wall[w], o->t), n = wall_normal(p, &p->wall[w], o->t);
+    for (int64_t i = first; i < end; i++) {
         struct touch touch = { n, v3_dot(v3_sub(x[i], at), n), 0 };
         if (!(touch.distance - p->radius[i] <= gap) || p->mass[i] == 0) continue;
-        if (shaped && packing_shape(p, i)) {
-            if (!detect_shapes_wall(out, shaped, w, i, t, gap, NULL)) return false;
+        if (o->shaped && packing_shape(p, i)) {
+            if (!detect_shapes_wall(out, o->shaped, w, i, o->t, gap, NULL)) return false;
             continue;
         }
         if (!add_touch(out, p, w, i, x[i], &touch)) return false;
@@ -48,19 +103,22 @@ static bool add_plane(struct contacts *out, const struct packing *p, int32_t w, 
 
 /* The same of any other shape. Balls are brought to where the shape is described, and what they touch
    back from there. */
-static bool add_shape(struct contacts *out, const struct packing *p, int32_t w, double t,
-                      const vec3 *x, double gap, const struct surface *surface,
-                      const struct placed *shaped)
+static bool add_shape(struct contacts *out, const struct sought *o, int64_t first, int64_t end)
 {
+    const struct packing *p = o->p;
+    const int32_t w = o->wall;
+    const vec3 *x = o->x;
+    const double gap = o->gap;
     const struct wall *wall = &p->wall[w];
-    struct pose pose = wall_pose(p, wall, t);
+    const struct surface *surface = wall->shape == BOUNDARY_MESH ? &o->near->surface[w] : NULL;
+    struct pose pose = wall_pose(p, wall, o->t);
     struct touch touch[TOUCHES_MOST];
-    for (int64_t i = 0; i < p->n; i++) {
+    for (int64_t i = first; i < end; i++) {
         double r = p->radius[i];
         vec3 c = v3_sub(quat_turn_back(pose.q, v3_sub(x[i], pose.shift)), wall->x);
         if (p->mass[i] == 0) continue;
-        if (shaped && packing_shape(p, i)) {
-            if (!detect_shapes_wall(out, shaped, w, i, t, gap, surface)) return false;
+        if (o->shaped && packing_shape(p, i)) {
+            if (!detect_shapes_wall(out, o->shaped, w, i, o->t, gap, surface)) return false;
             continue;
         }
         int n = surface ? surface_touches(surface, c, r + gap, touch)
@@ -104,6 +162,16 @@ static bool add_ball_contact(struct contacts *out, const struct packing *p,
     return true;
 }
 
+/* Pairs of near bodies */
+static bool add_pairs(struct contacts *out, const struct sought *o, int64_t first, int64_t end)
+{
+    for (int64_t i = first; i < end; i++)
+        if (!add_ball_contact(out, o->p, o->near, &o->near->pair[i], o->x, o->edge, o->gap,
+                              o->shaped))
+            return false;
+    return true;
+}
+
 /* The bodies at x and q, the cell's edges at edge (m), the walls where they are at time t (s) */
 static int detect(struct contacts *out, const struct packing *p, const vec3 *x, const quat *q,
                   const vec3 edge[3], double t, double gap, struct neighbours *kept,
@@ -111,21 +179,20 @@ static int detect(struct contacts *out, const struct packing *p, const vec3 *x, 
 {
     struct placed placed = { 0 }, *shaped = p->shape ? &placed : NULL;
     struct neighbours once = { 0 }, *near = kept ? kept : &once;
-    bool stored = true, images = cell_repeats(&p->cell);
+    const vec3 *edges = cell_repeats(&p->cell) ? edge : NULL;
+    struct sought o = { p, x, edges, t, gap, near, shaped, 0 };
+    bool stored = true;
     out->n = 0, contacts_free_found(out), contacts_free_tie(out);
     int e = neighbours_find(near, p, x, edge, gap, kept, why);
     if (!e) e = neighbours_surfaces(near, p, why);
     if (!e && shaped) e = placed_init(shaped, p, x, q, why);
-    for (int32_t w = p->walls - 1; !e && stored && w >= 0; w--) {
-        const struct wall *wall = &p->wall[w];
-        bool plane = wall->shape == BOUNDARY_PLANE, mesh = wall->shape == BOUNDARY_MESH;
+    for (o.wall = p->walls - 1; !e && stored && o.wall >= 0; o.wall--) {
+        const struct wall *wall = &p->wall[o.wall];
+        bool plane = wall->shape == BOUNDARY_PLANE;
         if (!wall_there(wall, t)) continue;
-        stored = plane ? add_plane(out, p, w, t, x, gap, shaped)
-                       : add_shape(out, p, w, t, x, gap, mesh ? &near->surface[w] : NULL, shaped);
+        stored = find_all(out, &o, p->n, plane ? MANY : SOME, plane ? add_plane : add_shape);
     }
-    for (int64_t i = 0; !e && stored && i < near->n; i++)
-        stored =
-            add_ball_contact(out, p, near, &near->pair[i], x, images ? edge : NULL, gap, shaped);
+    if (!e && stored) stored = find_all(out, &o, near->n, MANY, add_pairs);
     placed_free(&placed);
     neighbours_free(&once);
     return e || stored ? e : why_set(why, EX_SOFTWARE, "no memory for the contacts");

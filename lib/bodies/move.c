@@ -1,11 +1,16 @@
 /* move.c: see bodies/move.h. */
 #include "bodies/move.h"
 
+#include "base/team.h"
 #include "bodies/project.h"
 #include "bodies/tie.h"
 #include "bodies/top.h"
 
 #include <stdlib.h>
+
+enum {
+    SOME = 1024 /* bodies that are worth a thread: 100 us of work */
+};
 
 static quat turn(quat q, double dt, vec3 w)
 {
@@ -65,11 +70,25 @@ static void move_freedoms(struct packing *p, const struct impulses *sum, bool ba
         freedom_move(&sum->freedoms.f[k], p, impulses_change(sum, p, k), back);
 }
 
+/* Bodies that move */
+struct moving {
+    struct packing *p;
+    const struct impulses *sum;
+};
+
+static void move_some(void *arg, int64_t first, int64_t end)
+{
+    const struct moving *m = arg;
+    for (int64_t i = first; i < end; i++)
+        body_move(m->p, &m->sum->flow, i, m->sum->force[i], m->sum->moment[i]);
+}
+
 int move_by(struct packing *p, const struct contacts *s, const struct impulses *sum,
             struct why *why)
 {
     if (p->law && ties_keep(p, s, why)) return why->status;
-    for (int64_t i = 0; i < p->n; i++) body_move(p, &sum->flow, i, sum->force[i], sum->moment[i]);
+    struct moving m = { p, sum };
+    team_share(team_size(), p->n, SOME, move_some, &m);
     cell_move(&p->cell, p->dt, p->theta, sum->next);
     move_freedoms(p, sum, false);
     p->step++;

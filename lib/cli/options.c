@@ -1,5 +1,6 @@
 #include "cli/options.h"
 
+#include "base/team.h"
 #include "io/reader.h"
 #include "io/report_json.h"
 
@@ -209,6 +210,7 @@ void options_check(void)
 {
     char names[100] = "";
     size_t n = 0;
+    team_set_size((int)options.threads);
     if (!options.paper || options.method) return;
     for (int k = 0; methods[k] && n < sizeof names; k++)
         n += (size_t)snprintf(names + n, sizeof names - n, "%s%s", k ? "|" : "", methods[k]->name);

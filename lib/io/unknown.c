@@ -30,7 +30,8 @@ static const struct {
     const char *known[13];
 } looked_through[] = {
     { "", { "h5md", "nsd", "particles", "walls", "contacts", "observables", "solution" } },
-    { "/nsd", { "history", "scene", "material", "solver", "flow", "cell", "shape", "law", "bonds" } },
+    { "/nsd",
+      { "history", "scene", "material", "solver", "flow", "cell", "shape", "law", "bonds" } },
     { "/particles", { "all", "boundary" } },
     { "/particles/boundary",
       { "body", "load", "drive", "push", "mesh", "position", "orientation", "velocity",

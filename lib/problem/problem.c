@@ -1,6 +1,7 @@
 /* problem/problem.c: the bundles of a packing and of a given W [problem/problem.h]. */
 #include "problem/problem.h"
 
+#include "base/team.h"
 #include "bodies/kinematics.h"
 #include "bodies/offset.h"
 #include "bodies/top.h"
@@ -14,6 +15,7 @@
 
 enum {
     HUGE_PAGE = 2 << 20, /* bytes */
+    SOME = 4096,         /* bodies or slots that are worth a thread: 100 us of work */
     PARALLEL_FROM = 64   /* bundles a group, on average, that are worth more than one thread */
 };
 
@@ -111,11 +113,12 @@ static int32_t *seat_bodies(const struct problem *p, const struct packing *pack,
     return seat;
 }
 
-/* Sets the bodies, with their velocities before the step. */
-static void set_bodies(struct problem *p)
+/* Sets bodies first .. end-1, with their velocities before the step. */
+static void set_some(void *arg, int64_t first, int64_t end)
 {
+    struct problem *p = arg;
     const struct packing *pack = p->packing;
-    for (int64_t i = 0; i < pack->n; i++) {
+    for (int64_t i = first; i < end; i++) {
         vec3 v = pack->v[i], w = p->spin ? p->spin[i] : pack->w[i];
         p->body[p->seat[i]] = (struct body){ { v.x, v.y, v.z },
                                              { w.x, w.y, w.z },
@@ -125,12 +128,13 @@ static void set_bodies(struct problem *p)
     }
 }
 
-void problem_set_free_motion(struct problem *p)
+static void free_some(void *arg, int64_t first, int64_t end)
 {
+    struct problem *p = arg;
     const struct packing *pack = p->packing;
     const vec3 fall = v3_scale(pack->dt, pack->g);
     const struct cell_flow flow = packing_flow(pack);
-    for (int64_t i = 0; i < pack->n; i++) {
+    for (int64_t i = first; i < end; i++) {
         struct body *b = &p->body[p->seat[i]];
         vec3 dv = fall;
         if (!(b->im > 0)) continue;
@@ -138,10 +142,6 @@ void problem_set_free_motion(struct problem *p)
         b->v[0] = pack->v[i].x + dv.x, b->v[1] = pack->v[i].y + dv.y, b->v[2] = pack->v[i].z + dv.z;
         vec3 w = p->spin ? p->spin[i] : pack->w[i];
         b->w[0] = w.x, b->w[1] = w.y, b->w[2] = w.z;
-    }
-    for (int64_t i = 0; p->pull && i < p->slots; i++) {
-        const double pulled[3] = { -p->pull[i], 0, 0 };
-        if (p->pull[i] > 0) problem_push(p, p->body, slot_bundle(p, i), slot_lane(i), pulled);
     }
 }
 
@@ -155,6 +155,15 @@ static bool set_pulls(struct problem *p, const struct contacts *s)
     for (int64_t i = 0; p->pull && i < p->slots; i++)
         if (p->contact[i] >= 0) p->pull[i] = p->dt * s->tie[p->contact[i]].pull;
     return p->pull != NULL;
+}
+
+void problem_set_free_motion(struct problem *p)
+{
+    team_share(team_size(), p->packing->n, SOME, free_some, p);
+    for (int64_t i = 0; p->pull && i < p->slots; i++) {
+        const double pulled[3] = { -p->pull[i], 0, 0 };
+        if (p->pull[i] > 0) problem_push(p, p->body, slot_bundle(p, i), slot_lane(i), pulled);
+    }
 }
 
 /* The place of a body i (wall w: -1-w) of a contact at x (m): its own, or of a new copy if it does
@@ -276,8 +285,8 @@ static void set_rows(double G[9][BUNDLE], int k, const struct packing *pack, int
 
 /* Fills the slot's levers, W_cc and rho; its rebound, undivided: u + E u^- + d, with D law */
 static void lever_init(struct problem *p, int64_t i, const struct packing *pack,
-                       const struct lattice *cell, const struct contact *c,
-                       const struct tie *tie, double alpha, double rho_factor, const quat *half)
+                       const struct lattice *cell, const struct contact *c, const struct tie *tie,
+                       double alpha, double rho_factor, const quat *half)
 {
     const double en[3] = { c->en, c->et, c->et }, n[3] = { c->n.x, c->n.y, c->n.z },
                  t1[3] = { c->t1.x, c->t1.y, c->t1.z };
@@ -385,6 +394,46 @@ static void take_found(struct problem *p, int64_t i, const struct contacts *s)
     beyond_push(slot_bundle(p, i), k, p->body, m);
 }
 
+/* Slots that are filled, and what the free motion makes of them */
+struct filling {
+    struct problem *p;
+    const struct contacts *s;
+    const struct lattice *cell;
+    double alpha, rho_factor;
+    const quat *half; /* [n] orientations in which contacts act; NULL: only balls */
+    double *q2;       /* [slots] m^2/s^2: |q|^2 */
+};
+
+/* Bundles first .. end-1, whose bodies have their places */
+static void fill_some(void *arg, int64_t first, int64_t end)
+{
+    const struct filling *f = arg;
+    for (int64_t i = BUNDLE * first; i < BUNDLE * end; i++) {
+        int32_t c = f->p->contact[i];
+        if (c < 0) continue;
+        const struct contact *law = &f->s->c[c];
+        const struct tie *tie = f->s->tie ? &f->s->tie[c] : NULL;
+        const struct packing *pack = f->p->packing;
+        if (f->p->lever)
+            lever_init(f->p, i, pack, f->cell, law, tie, f->alpha, f->rho_factor, f->half);
+        else
+            slot_init(f->p, i, pack, f->cell, law, tie, f->alpha, f->rho_factor);
+        if (f->p->beyond) slot_go_beyond(f->p, i, law, tie, f->alpha, f->rho_factor);
+    }
+}
+
+static void measure_some(void *arg, int64_t first, int64_t end)
+{
+    const struct filling *f = arg;
+    const struct problem *p = f->p;
+    for (int64_t i = BUNDLE * first; i < BUNDLE * end; i++) {
+        double q[3] = { 0 };
+        if (p->contact[i] >= 0)
+            problem_velocity(p, p->body, slot_bundle(p, i), slot_rebound(p, i), slot_lane(i), q);
+        f->q2[i] = q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
+    }
+}
+
 /* kg: the mean mass of the bodies that move, for the scaled errors */
 static double mean_mass(const struct packing *p)
 {
@@ -466,7 +515,8 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     if (room && p->beyond && p->lever) {
         free(half), problem_free(p);
         return why_set(why, EX_DATAERR,
-                       "bonds and rolling friction are for balls and discs, and there are contacts of other shapes");
+                       "bonds and rolling friction are for balls and discs, and there are contacts "
+                       "of other shapes");
     }
     if (!room || !(p->seat = seat_bodies(p, pack, s, order))) return free(half), no_memory(p, why);
     if (freedoms_in(pack)) {
@@ -474,7 +524,7 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
         if (couplings_init(p->coupling, pack, s, why))
             return free(half), problem_free(p), why->status;
     }
-    set_bodies(p);
+    team_share(team_size(), pack->n, SOME, set_some, p);
     int64_t nobody = pack->n, next = nobody + 2;
     int64_t other = p->split ? BUNDLE * p->group[p->split->inside] : p->slots;
     for (int64_t i = 0; i < p->slots; i++) {
@@ -485,13 +535,9 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
         if (p->contact[i] < 0) continue;
         const struct contact *c = &s->c[p->contact[i]];
         r->a[k] = place_of(p, c->a, c->x, &next), r->b[k] = place_of(p, c->b, c->x, &next);
-        const struct tie *tie = s->tie ? &s->tie[p->contact[i]] : NULL;
-        if (p->lever)
-            lever_init(p, i, pack, &cell, c, tie, alpha, rho_factor, half);
-        else
-            slot_init(p, i, pack, &cell, c, tie, alpha, rho_factor);
-        if (p->beyond) slot_go_beyond(p, i, c, tie, alpha, rho_factor);
     }
+    struct filling f = { p, s, &cell, alpha, rho_factor, half, NULL };
+    team_share(team_size(), p->bundles, SOME / BUNDLE, fill_some, &f);
     free(half);
 
     double g = v3_norm(pack->g);
@@ -500,12 +546,10 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     p->scale_r = p->scale_v * mean_mass(pack);
     p->speed = top_speed(pack);
     problem_set_free_motion(p);
-    for (int64_t i = 0; i < p->slots; i++) {
-        double q[3];
-        if (p->contact[i] < 0) continue;
-        problem_velocity(p, p->body, slot_bundle(p, i), slot_rebound(p, i), slot_lane(i), q);
-        p->norm_q += q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
-    }
+    if (!(f.q2 = malloc((size_t)(p->slots + 1) * sizeof *f.q2))) return no_memory(p, why);
+    team_share(team_size(), p->bundles, SOME / BUNDLE, measure_some, &f);
+    for (int64_t i = 0; i < p->slots; i++) p->norm_q += f.q2[i]; // in one order always
+    free(f.q2);
     p->norm_q = sqrt(p->norm_q);
     for (int64_t i = 0; s->found && i < p->slots; i++)
         if (p->contact[i] >= 0) take_found(p, i, s);

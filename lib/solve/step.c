@@ -16,13 +16,12 @@ static double max_overlap(const struct contacts *s)
 }
 
 /* The reactions' sums and the balances they make; sum is to be freed in any case. */
-static int sum_up(const struct packing *pack, const struct contacts *s, struct report *rep,
-                  struct impulses *sum, struct why *why)
+static int sum_up(const struct packing *pack, const struct contacts *s, const struct step_opt *o,
+                  struct report *rep, struct impulses *sum, struct why *why)
 {
-    if (impulses_init(sum, pack, s, false, why) || balance_step(&rep->balance, pack, s, sum, why))
-        return why->status;
-    rep->balanced = true, rep->tied = pack->law != NULL;
-    return 0;
+    rep->balanced = !o->bare, rep->tied = pack->law != NULL;
+    if (impulses_init(sum, pack, s, false, why)) return why->status;
+    return o->bare ? 0 : balance_step(&rep->balance, pack, s, sum, why);
 }
 
 /* Refuses what the solver asked for cannot solve. */
@@ -58,7 +57,7 @@ int step_solve(const struct packing *pack, struct contacts *s, const struct step
                struct report *rep, struct why *why)
 {
     struct impulses sum = { 0 };
-    if (!solve_contacts(pack, s, o, rep, why)) sum_up(pack, s, rep, &sum, why);
+    if (!solve_contacts(pack, s, o, rep, why)) sum_up(pack, s, o, rep, &sum, why);
     impulses_free(&sum);
     return why->status;
 }
@@ -97,7 +96,7 @@ int step_advance(struct packing *p, struct contacts *s, struct neighbours *near,
     contacts_free(&before);
     if (e) return e;
     struct impulses sum = { 0 };
-    if (!solve_contacts(p, s, o, rep, why) && !sum_up(p, s, rep, &sum, why) &&
+    if (!solve_contacts(p, s, o, rep, why) && !sum_up(p, s, o, rep, &sum, why) &&
         isfinite(rep->err.paper.eps_glob))
         move_by(p, s, &sum, why);
     impulses_free(&sum);
