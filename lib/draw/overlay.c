@@ -118,13 +118,13 @@ static void draw_contacts(cairo_t *cr, const struct view *v, const struct packin
 void overlay_bodies(cairo_t *cr, const struct overlay *o, const struct view *v,
                     const struct packing *p, const struct contacts *s)
 {
-    if (!s) return;
+    if (!s && !o->bonds) return;
     cairo_save(cr);
     cairo_rectangle(cr, 0, 0, v->camera.width, v->camera.height);
     cairo_clip(cr);
-    if (o->network && s->found) draw_network(cr, o, v, p, s);
+    if (o->network && s && s->found) draw_network(cr, o, v, p, s);
     if (o->bonds) draw_bonds(cr, v, p);
-    if (o->contacts) draw_contacts(cr, v, p, s);
+    if (o->contacts && s) draw_contacts(cr, v, p, s);
     cairo_restore(cr);
 }
 

@@ -1,6 +1,7 @@
 /* law/rolling.c: the five local methods with rolling friction [law/rolling.h]. */
 #include "law/rolling.h"
 
+#include <float.h>
 #include <gsl/gsl_linalg.h>
 #include <string.h>
 
@@ -141,17 +142,35 @@ static bool first_slides(double wt, double wm, double k, const double bt[2], con
  * Both slide. For a multiplier lambda of t, m has the length Rm along -(b_m - k b_t/(w_t + lambda)),
  * and |b_t + k m| - Rt (w_t + lambda), which falls, is 0.
  */
+static double both_at(double lambda, double wt, double k, const double bt[2], const double bm[2],
+                      double Rt, double Rm, double t[2], double m[2])
+{
+    double w = wt + lambda, f[2], g[2];
+    for (int i = 0; i < 2; i++) f[i] = -(bm[i] - k * bt[i] / w);
+    slides(f, 0, Rm, m);
+    for (int i = 0; i < 2; i++) g[i] = -(bt[i] + k * m[i]), t[i] = g[i] / w;
+    return sqrt(dot(g, g, 2)) - Rt * w;
+}
+
+/* The root by false position; an end that stays twice counts half [the Illinois rule]. */
 static void both_slide(double wt, double k, const double bt[2], const double bm[2], double Rt,
                        double Rm, double t[2], double m[2])
 {
     double low = 0, high = (sqrt(dot(bt, bt, 2)) + fabs(k) * Rm) / Rt;
-    for (int step = 0; step < 100 && low < high; step++) {
-        double lambda = 0.5 * (low + high), w = wt + lambda, f[2], g[2];
-        for (int i = 0; i < 2; i++) f[i] = -(bm[i] - k * bt[i] / w);
-        slides(f, 0, Rm, m);
-        for (int i = 0; i < 2; i++) g[i] = -(bt[i] + k * m[i]), t[i] = g[i] / w;
-        if (lambda == low || lambda == high) return;
-        *(sqrt(dot(g, g, 2)) > Rt * w ? &low : &high) = lambda;
+    double at_low = both_at(low, wt, k, bt, bm, Rt, Rm, t, m);
+    double at_high = both_at(high, wt, k, bt, bm, Rt, Rm, t, m), tiny = 8 * DBL_EPSILON;
+    if (!(at_low > 0)) both_at(low, wt, k, bt, bm, Rt, Rm, t, m);
+    for (int step = 0; step < 100 && at_low > 0 && at_high < 0; step++) {
+        double lambda = (low * at_high - high * at_low) / (at_high - at_low);
+        if (!(lambda > low && lambda < high)) lambda = 0.5 * (low + high);
+        double at = both_at(lambda, wt, k, bt, bm, Rt, Rm, t, m);
+        double size = sqrt(dot(bt, bt, 2)) + fabs(k) * Rm + Rt * (wt + lambda); // of its rounding
+        if (fabs(at) <= tiny * size || high - low <= tiny * high) return;
+        if (at > 0) {
+            low = lambda, at_low = at, at_high *= 0.5;
+        } else {
+            high = lambda, at_high = at, at_low *= 0.5;
+        }
     }
 }
 

@@ -68,6 +68,9 @@ ALWAYS_INLINE void make_local(const struct problem *p, const struct bundle *c, i
     if (given_by_W) local_velocity(l, l->r, l->v);
 }
 
+/* What contacts have beyond their bundles: each a text of its own, so that none pays for another */
+enum beyond_what { NOTHING, BONDS, MOMENTS };
+
 /*
  * The local problem of a bonded contact [problem/beyond.h]: W^ stands in the bundle already. What is
  * not bonded keeps its bits.
@@ -175,8 +178,8 @@ ALWAYS_INLINE void pass_on(struct problem *p, const struct bundle *c, int k, boo
  */
 ALWAYS_INLINE void solve_bundles(struct problem *p, int64_t first, int64_t end,
                                  const struct sweep_opt *o, enum method_id method,
-                                 method_text *solve, bool given_by_W, bool full, bool beyond,
-                                 struct counts *t)
+                                 method_text *solve, bool given_by_W, bool full,
+                                 enum beyond_what beyond, struct counts *t)
 {
     if (first == end) return;
     struct loaded s[2], *now = &s[0], *next = &s[1];
@@ -189,11 +192,11 @@ ALWAYS_INLINE void solve_bundles(struct problem *p, int64_t first, int64_t end,
             struct local l;
             struct beyond *x = beyond ? &p->beyond[i] : NULL;
             vd W[9], dr[3];
-            double dm[LANES][3] = { { 0 } };
+            double dm[LANES][3];
             make_local(p, c, k, given_by_W, full, now, W, &l);
             if (beyond) bond_local(x, k, &l);
             solve_relaxed(&l, c, k, solve, full, o);
-            if (beyond && p->rolls) roll_lanes(p, c, x, k, method, o, &l, dm);
+            if (beyond == MOMENTS) roll_lanes(p, c, x, k, method, o, &l, dm);
             store_solution(c, k, belief, &l, dr, t);
             if (beyond) bond_follow(x, k, &l, dr);
             if (k + LANES < BUNDLE)
@@ -201,7 +204,7 @@ ALWAYS_INLINE void solve_bundles(struct problem *p, int64_t first, int64_t end,
             else if (i + 1 < end)
                 load_slots(p, c + 1, 0, given_by_W, full, next);
             pass_on(p, c, k, given_by_W, full, now, dr);
-            for (int j = 0; j < LANES && beyond && p->rolls; j++)
+            for (int j = 0; j < LANES && beyond == MOMENTS; j++)
                 if (beyond_rolls(x, k + j)) beyond_push(c, k + j, p->body, dm[j]);
             struct loaded *was = now;
             now = next, next = was;
@@ -214,7 +217,8 @@ struct task {
     const struct sweep_opt *o;
     enum method_id method;
     method_text *solve;
-    bool given_by_W, full, beyond;
+    bool given_by_W, full;
+    enum beyond_what beyond;
     struct counts *count;
 };
 
@@ -227,7 +231,7 @@ ALWAYS_INLINE void solve_group(struct problem *p, int64_t first, int64_t end, vo
 
 ALWAYS_INLINE void sweep(struct problem *p, int me, int threads, const struct sweep_opt *o,
                          enum method_id method, method_text *solve, bool given_by_W, bool full,
-                         bool beyond, struct tally *t)
+                         enum beyond_what beyond, struct tally *t)
 {
     struct counts c = { splat(0), splat(0), splat(0), splat(0) };
     struct task task = { o, method, solve, given_by_W, full, beyond, &c };
@@ -241,15 +245,17 @@ ALWAYS_INLINE void sweep(struct problem *p, int me, int threads, const struct sw
                              struct tally *t)                                                      \
     {                                                                                              \
         if (p->lever)                                                                              \
-            sweep(p, me, threads, o, METHOD_##name, name##_solve, false, true, false, t);          \
+            sweep(p, me, threads, o, METHOD_##name, name##_solve, false, true, NOTHING, t);        \
         else if (p->full)                                                                          \
-            sweep(p, me, threads, o, METHOD_##name, name##_solve, true, true, false, t);           \
+            sweep(p, me, threads, o, METHOD_##name, name##_solve, true, true, NOTHING, t);         \
         else if (p->W)                                                                             \
-            sweep(p, me, threads, o, METHOD_##name, name##_solve, true, false, false, t);          \
+            sweep(p, me, threads, o, METHOD_##name, name##_solve, true, false, NOTHING, t);        \
+        else if (p->rolls)                                                                         \
+            sweep(p, me, threads, o, METHOD_##name, name##_solve, false, false, MOMENTS, t);       \
         else if (p->beyond)                                                                        \
-            sweep(p, me, threads, o, METHOD_##name, name##_solve, false, false, true, t);          \
+            sweep(p, me, threads, o, METHOD_##name, name##_solve, false, false, BONDS, t);         \
         else                                                                                       \
-            sweep(p, me, threads, o, METHOD_##name, name##_solve, false, false, false, t);         \
+            sweep(p, me, threads, o, METHOD_##name, name##_solve, false, false, NOTHING, t);       \
     }
 EACH_METHOD(DEFINE_SWEEP)
 
@@ -351,7 +357,7 @@ ALWAYS_INLINE void add_natural(struct sums *s, const struct bundle *c, int k, co
 
 /* What an inconsistent pull of the bond means: e = p + a + K u~, of which s e would be taken back */
 ALWAYS_INLINE void add_bonds(struct sums *s, const struct bundle *c, const struct beyond *x, int k,
-                             const vd u[3])
+                             enum err_terms which, const vd u[3])
 {
     vd lambda = bundle_lambda(c, k), off[3], p[3];
     for (int i = 0; i < 3; i++) {
@@ -360,7 +366,8 @@ ALWAYS_INLINE void add_bonds(struct sums *s, const struct bundle *c, const struc
             vload(x->s[i > 0] + k) * (p[i] + vload(x->a[i] + k) + vload(x->K[i > 0] + k) * u[i]);
     }
     vd n2 = dot3(off, off);
-    add_to(s->motion + k, lambda * norm3(off));
+    if (which & ERR_TERMS) add_to(s->motion + k, lambda * norm3(off));
+    if (!(which & ERR_NATURAL)) return;
     add_to(s->natural2 + k, n2), add_to(s->velocity2 + k, n2 * lambda * lambda);
     add_to(s->siconos2 + k, n2), add_to(s->r2 + k, dot3(p, p));
 }
@@ -384,9 +391,9 @@ static void judge_rolling(struct sums *s, const struct problem *p, int64_t i, in
     s->siconos2[k] = rolling_natural2(&q, 1, q.x, v);
 }
 
-/* judge() of a bundle beyond: its sums apart, so that lanes can be replaced */
-static void judge_beyond(const struct problem *p, int64_t i, bool believes, enum err_terms which,
-                         struct sums *s)
+/* judge() of a bundle with rolling friction: its sums apart, so that lanes can be replaced */
+static void judge_moments(const struct problem *p, int64_t i, bool believes, enum err_terms which,
+                          struct sums *s)
 {
     struct sums one = { 0 };
     for (int k = 0; k < BUNDLE; k += LANES) {
@@ -400,7 +407,7 @@ static void judge_beyond(const struct problem *p, int64_t i, bool believes, enum
             const double v[3] = { lane[0][j], lane[1][j], lane[2][j] };
             if (beyond_rolls(&p->beyond[i], k + j)) judge_rolling(&one, p, i, k + j, v);
         }
-        add_bonds(&one, &p->bundle[i], &p->beyond[i], k, u);
+        add_bonds(&one, &p->bundle[i], &p->beyond[i], k, ERR_ALL, u);
     }
     for (int k = 0; k < BUNDLE; k++) {
         if (which & ERR_TERMS) {
@@ -421,8 +428,8 @@ static void judge(const struct problem *p, int64_t first, int64_t end, bool beli
 {
     for (int64_t i = first; i < end; i++) {
         fetch_ahead(p, i);
-        if (p->beyond) {
-            judge_beyond(p, i, believes, which, s);
+        if (p->rolls) {
+            judge_moments(p, i, believes, which, s);
             continue;
         }
         for (int k = 0; k < BUNDLE; k += LANES) {
@@ -430,6 +437,7 @@ static void judge(const struct problem *p, int64_t first, int64_t end, bool beli
             motion_velocity(p, &p->bundle[i], k, u);
             if (which & ERR_TERMS) add_terms(s, &p->bundle[i], p->u[i], k, believes, u);
             if (which & ERR_NATURAL) add_natural(s, &p->bundle[i], k, u);
+            if (p->beyond) add_bonds(s, &p->bundle[i], &p->beyond[i], k, which, u);
         }
     }
 }
