@@ -115,9 +115,21 @@ static bool answers(hid_t file, struct why *why)
 /* What the frame needs not, for nobody computes with it */
 static bool is_spare(const struct place *p)
 {
-    static const char *const spare[] = { "/mine",        "/h5md",      "/nsd/solver",
-                                         "/nsd/history", "/nsd/scene", "/contacts/force",
-                                         "/fclib",       "/solution" };
+    static const char *const spare[] = {
+        "/mine",
+        "/h5md",
+        "/nsd/solver",
+        "/nsd/history",
+        "/nsd/scene",
+        "/contacts/force",
+        "/fclib",
+        "/solution",
+        // where boundaries are follows from their motion
+        "/particles/boundary/position",
+        "/particles/boundary/orientation",
+        "/particles/boundary/velocity",
+        "/particles/boundary/angular_velocity",
+    };
     for (size_t k = 0; k < sizeof spare / sizeof *spare; k++)
         if (!strncmp(p->path, spare[k], strlen(spare[k]))) return true;
     const char *last = strrchr(p->path, '/'); // clocks are links to that of the particles

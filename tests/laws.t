@@ -177,11 +177,104 @@ for g in anderson cg prox ipm; do
     refuses 65 "rolling grains: --global $g says that it cannot" nsd-solve --global $g "$tmp/contacts.h5"
 done
 refuses 65 "rolling grains: nor is there an FCLIB problem of them" nsd-detect --fclib=local "$tmp/rolling.h5"
-jq '.rolling = { mu_r: 1e-4 }' scenes/press.json | nsd-gen - | step -n 300 --every 300 -o "$tmp/press.h5"
+jq '.rolling = { mu_r: 1e-4 }' scenes/press.json | nsd-gen - >"$tmp/press.h5"
 refuses 65 "nor are they solved with loads" nsd-step -n 1000 -o "$tmp/pressed.h5" "$tmp/press.h5"
 like "moments are within their limits" "$(nsd-info -c "$tmp/m.h5" | jq -s \
     'map(select(.mu_r) | (.moment[1] * .moment[1] + .moment[2] * .moment[2] | sqrt) <= 1e-4 * .r[0] * (1 + 1e-9) + 1e-30 and
         (.moment[0] | fabs) <= 5e-5 * .r[0] * (1 + 1e-9) + 1e-30) | length > 20 and all')" true
+
+# ---- adhesion with damage ----
+
+# pull DT VELOCITY ETA: two heavy balls, bonded, part at 1 m/s; c_n = 1e12, c_t = 5e11, w = 2, S = 1e-6
+pull()
+{
+    jq -n --argjson dt "$1" --argjson v "$2" --argjson eta "$3" '{ dt: $dt, gravity: [0, 0, 0], mu: 0.3, overlap: true,
+        adhesion: { c_n: 1e12, c_t: 5e11, w: 2, area: 1e-6, eta: $eta },
+        bodies: [{ x: [0, 0, 0], radius: 1e-3, density: 1e12 }, { x: [(0.002 - $dt / 2 * $v[0]), 0, 0], radius: 1e-3, density: 1e12, v: $v }] }' |
+        nsd-gen - >"$tmp/pull.h5"
+    step -n "$(jq -n "7e-5 / $1 | floor")" --contacts --log "$tmp/pull.log" -o "$tmp/pulled.h5" "$tmp/pull.h5"
+    nsd-info -c "$tmp/pulled.h5" >"$tmp/pulled"
+    rm "$tmp/pulled.h5"
+    jq -n -c --argjson peak "$(jq -s "map(.r | map(. * .) | add | sqrt) | max / $1" "$tmp/pulled")" \
+        --argjson broken "$(jq -s 'map(.balance.broken) | add' "$tmp/pull.log")" '[$peak, $broken]'
+}
+for direction in '[1,0,0] 2e12' '[0,1,0] 1e12' '[0,0,-1] 1e12'; do
+    read -r v wc <<<"$direction"
+    a=$(pull 1e-7 "$v" 0)
+    b=$(pull 2.5e-8 "$v" 0)
+    like "pulled along $v a bond bears S sqrt(w c), to first order" "$(jq -n --argjson a "$a" --argjson b "$b" \
+        "(\$a[0] / (1e-6 * ($wc | sqrt)) - 1) as \$e | (\$b[0] / (1e-6 * ($wc | sqrt)) - 1) as \$f |
+        (\$f | fabs) < 0.02 and (\$f | fabs) < 0.4 * (\$e | fabs)")" true
+    like "and costs w S, to first order" "$(jq -n --argjson a "$a" --argjson b "$b" \
+        '($a[1] / 2e-6 - 1) as $e | ($b[1] / 2e-6 - 1) as $f | ($f | fabs) < 0.03 and ($f | fabs) < 0.4 * ($e | fabs)')" true
+done
+like "beta never grows" "$(jq -s 'map(.beta) | . == (sort | reverse) and .[0] == 1 and .[-1] < 0.01' "$tmp/pulled")" true
+like "energy is balanced in every step" "$(misfit "$tmp/pull.log" | jq '. < 1e-6')" true
+like "viscosity makes it cost more" "$(pull 1e-7 '[1,0,0]' 1e-5 | jq '.[1] > 2.2e-6')" true
+
+# a ball welded below another that is held
+jq -n '{ dt: 1e-3, mu: 0.3, adhesion: { c_n: 1e12, w: 1e9, area: 1e-4 },
+    bodies: [{ x: [0, 0, 0], radius: 0.01, fixed: true }, { x: [0, 0, -0.02], radius: 0.01, density: 1e4 }] }' | nsd-gen - >"$tmp/weld.h5"
+for m in sbp sal ebp eal exact; do
+    step -m $m --eps 1e-10 -n 20 "$tmp/weld.h5" >"$tmp/welded.h5"
+    like "-m $m: a welded ball hangs, its bond as long as its weight makes it" "$(nsd-info --last -p "$tmp/welded.h5" |
+        jq -s '(4 / 3 * 3.141592653589793e-6 * 1e4 * 9.81 / 1e8) as $d | (-0.02 - .[1].x[2] - $d | fabs) < 0.01 * $d')" true
+    rm "$tmp/welded.h5"
+done
+
+# beam N: two rows of N + 1 discs, bonded, held at one end: below rigid, above springs of c_n
+beam()
+{
+    jq -n --argjson n "$1" '{ dim: 2, dt: 1, density: (4 / 3.141592653589793), gravity: [0, -1], adhesion: { c_n: 1e9, w: 1e6, area: 1 },
+        bodies: [range(0; $n + 1) as $i | range(0; 2) as $j | { x: [$i, $j], radius: 0.5, fixed: ($i == 0) }] }' | nsd-gen - >"$tmp/beam.h5"
+    step --global ipm --eps 1e-10 -n 4 "$tmp/beam.h5" >"$tmp/bent.h5"
+    nsd-info --last -p "$tmp/bent.h5" | jq -s --argjson n "$1" 'map(select(.x[0] > $n - 0.5).x[1]) | (1 - add) / 2 / (2 * pow($n; 4) / 8e9) - 1'
+    rm "$tmp/bent.h5"
+}
+e=$(for n in 5 10 20; do beam $n; done | jq -s -c .)
+like "a bonded beam bends as Euler and Bernoulli have it, in the limit of a slender one" \
+    "$(jq -n --argjson e "$e" '$e[2] < 0.09 and $e[1] < 0.5 * $e[0] and $e[2] < 0.5 * $e[1]')" true
+
+# a chain of balls is peeled off a floor: w S a ball
+jq -n '{ dt: 1e-6, mu: 0.3, gravity: [0, 0, 0], kinds: { hook: {} }, pairs: [{ pair: ["ball", "wall"], adhesion: { c_n: 1e12, w: 1, area: 1e-7 } },
+    { pair: ["ball", "ball"], adhesion: { c_n: 1e13, w: 1e6, area: 1e-7 } }, { pair: ["ball", "hook"], adhesion: { c_n: 1e13, w: 1e6, area: 1e-7 } }], walls: [{ normal: [0, 0, 1], point: [0, 0, 0] }],
+    bodies: [range(0; 5) as $i | { x: [$i * 2e-3, 0, 1e-3], radius: 1e-3 } | if $i == 0 then . + { kind: "hook", density: 1e9, v: [0, 0, 1] } else . end] }' |
+    nsd-gen - >"$tmp/chain.h5"
+step -n 7000 --every 7000 --log "$tmp/peel.log" -o "$tmp/peeled.h5" "$tmp/chain.h5"
+like "peeling a chain of five balls, one free, costs four times w S" \
+    "$(jq -s '(map(.balance.broken) | add) / 4e-7 - 1 | fabs < 0.1' "$tmp/peel.log")" true
+like "and the balls still hang together" "$(nsd-cat --last "$tmp/peeled.h5" | nsd-detect | nsd-info -c | jq -s 'map(select(.beta == 1 and .body[0] >= 0)) | length')" 4
+
+grains() # ADHESION
+{
+    jq -n --argjson a "$1" '{ dt: 2e-5, mu: 0.4, e_n: 0.2, walls: [{ box: { x: [0, 0.006], y: [0, 0.006], z: [0, null] } }],
+        bodies: [{ random: { count: 80 }, radius: { uniform: [4e-4, 6e-4] }, box: { x: [0, 0.006], y: [0, 0.006], z: [0, 0.006] }, v: [0, 0, -0.2] }] } +
+        if $a then { adhesion: $a } else {} end' | nsd-gen - >"$tmp/grains.h5"
+    step -n 400 --every 400 --log "$tmp/bonded.log" -o "$tmp/some.h5" "$tmp/grains.h5"
+    nsd-cat --last "$tmp/some.h5" >"$tmp/bonded.h5"
+    rm "$tmp/some.h5"
+}
+grains null
+cp "$tmp/bonded.h5" "$tmp/dry.h5"
+grains '{ "c_n": 1e11, "w": 1, "beta": 0, "forever": true }'
+ok "with beta = 0 it is Coulomb's law, to the bit" same_particles "$tmp/dry.h5" "$tmp/bonded.h5"
+grains '{ "c_n": 1e11, "c_t": 5e10, "w": 0.02, "eta": 1e-6, "area": 1e-7, "forever": true }'
+like "bonded grains: energy is balanced in every step" "$(misfit "$tmp/bonded.log" | jq '. < 1e-12')" true
+whole bonded.h5
+nsd-detect "$tmp/bonded.h5" >"$tmp/contacts.h5"
+for m in sbp sal ebp eal exact; do
+    solve -m $m --eps 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/m.h5"
+    like "bonded grains: -m $m solves them" "$(nsd-err "$tmp/m.h5" | jq '.natural < 1e-7')" true
+done
+for g in anderson cg prox ipm; do
+    solve --global $g --eps 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/g.h5"
+    like "bonded grains: --global $g solves them, with the bonds in W" "$(nsd-err "$tmp/g.h5" | jq '.natural < 1e-7')" true
+    like "and finds the same velocities" "$(jq -n --slurpfile a <(nsd-info -c "$tmp/m.h5") --slurpfile b <(nsd-info -c "$tmp/g.h5") \
+        '[$a, $b] | transpose | map(.[0].u[0] - .[1].u[0] | fabs) | max < 1e-6')" true
+done
+jq '.adhesion = { c_n: 1e11, w: 0.1, forever: true } | .capillary = { volume: 1e-11, tension: 0.07 }' scenes/press.json | nsd-gen - | step -n 600 --every 600 --log "$tmp/press.log" -o "$tmp/press.h5"
+like "bonded and wet under a piston: energy is balanced" "$(misfit "$tmp/press.log" | jq '. < 1e-11')" true
+like "and all steps converge" "$(jq -s 'all(.converged) and .[-1].contacts > 50' "$tmp/press.log")" true
 
 # ---- bad input ----
 

@@ -63,6 +63,8 @@ static const struct cli_option own[] = {
       .help = "the column of --values that is shown [the last]" },
     { CLI_FLAG, 0, "network", &over.network,
       .help = "forces: a line for each contact that pushes, as wide as its force" },
+    { CLI_FLAG, 0, "bonds", &over.bonds,
+      .help = "a line for each bond: green where it is whole, red where it breaks; blue: liquid" },
     { CLI_FLAG, 0, "contacts", &over.contacts,
       .help = "a dot at each contact, coloured by its status" },
     { CLI_ABOVE, 0, "force", &over.force, "N", .min = 0, .max = 1e300,
@@ -161,9 +163,9 @@ static struct view view_of_options(void)
                       .glass = boundaries == GLASS,
                       .follows = follow >= 0,
                       .follow = (int32_t)follow,
-                      .pale = (float)(cli_given(&pale)                ? pale
-                                      : over.network || over.contacts ? 0.6
-                                                                      : 0) };
+                      .pale = (float)(cli_given(&pale)                              ? pale
+                                      : over.network || over.contacts || over.bonds ? 0.6
+                                                                                    : 0) };
     double x[2];
     over.legend = !bare;
     if (table && !cli_given(&colour)) colour = COLOUR_VALUE;

@@ -53,7 +53,8 @@ static int no_memory(struct problem *p, struct why *why)
 void problem_free(struct problem *p)
 {
     free(p->bundle), free(p->rebound), free(p->u), free(p->contact), free(p->group), free(p->body);
-    free(p->split), free(p->seat), free(p->pull), free(p->beyond), free(p->lever), free(p->spin);
+    free(p->split), free(p->seat), free(p->pull), free(p->beyond), free(p->in_W);
+    free(p->lever), free(p->spin);
     delassus_free(&p->sorted);
     if (p->own) delassus_free(p->own);
     if (p->coupling) couplings_free(p->coupling);
@@ -654,6 +655,9 @@ int problem_store(const struct problem *p, struct contacts *s)
             c->r[k] += x[k];
             if (s->moment) s->moment[p->contact[i]][k] = x[3 + k];
         }
+        const struct beyond *in_W = p->in_W ? &p->in_W[i / BUNDLE] : NULL;
+        for (int k = 0; k < 3 && in_W; k++) // e = 0 where there is a bond, so that D is 1
+            c->r[k] -= in_W->a[k][slot_lane(i)] + in_W->K[k > 0][slot_lane(i)] * c->u[k];
         if (p->pull) c->r[0] -= p->pull[i];
     }
     return 0;

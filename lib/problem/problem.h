@@ -41,6 +41,7 @@ struct problem {
     struct levers *lever;    /* [bundles]; NULL: balls, or given by W */
     struct beyond *beyond;   /* [bundles]; NULL: no contact is bonded, none has rolling friction */
     bool rolls;              /* some contact has it */
+    struct beyond *in_W;     /* [bundles] K and a of bonds that W has in it; NULL: none */
     double (*u)[3][BUNDLE];  /* [bundles] m/s: what the local method believes */
     int32_t *contact;        /* [slots] slot i is contact[i] of the packing or of W; -1: none */
     int64_t groups;          /* no two contacts of a group share a body (a block of W): */

@@ -2,8 +2,6 @@
    law is an object of its own, which takes the place of the one for all pairs. */
 #include "scene/scene_read.h"
 
-enum { SOLVED = 0 };
-
 static int read_cohesion(jnode o, struct law *l)
 {
     if (!o.json) return 0;
@@ -42,7 +40,6 @@ static int read_adhesion(jnode o, double t, struct law *l)
 {
     bool forever = false;
     if (!o.json) return 0;
-    if (!SOLVED) return json_node_fault(o, "adhesion is not solved yet");
     l->eta = l->area = 0, l->beta = 1, l->made = t;
     if (json_node_only(o, "c_n c_t w eta area beta made forever") || json_node_need(&o, "c_n w") ||
         json_node_number(json_node_key(&o, "c_n"), J_POSITIVE, &l->cn))

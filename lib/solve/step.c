@@ -24,10 +24,16 @@ static int sum_up(const struct packing *pack, const struct contacts *s, const st
     return o->bare ? 0 : balance_step(&rep->balance, pack, s, sum, why);
 }
 
+/* Does it solve by sweeps alone what bonds and moments hold together? */
+static bool sweeps(const struct solver *global)
+{
+    return global == &solver_auto || global == &solver_nlgs;
+}
+
 /* Refuses what the solver asked for cannot solve. */
 static int check_solver(const struct problem *p, const struct solver *global, struct why *why)
 {
-    if (!p->beyond || global == &solver_auto || global == &solver_nlgs) return 0;
+    if (!p->rolls || sweeps(global)) return 0;
     return why_set(why, EX_DATAERR,
                    "%s does not solve contacts with rolling friction: --global auto and nlgs do",
                    global->name);
@@ -38,7 +44,8 @@ static int solve_contacts(const struct packing *pack, struct contacts *s, const 
 {
     struct problem p;
     if (!o->warm) contacts_free_found(s);
-    if (prepare_packing(&p, pack, s, o->alpha, o->solve.method->rho, o->order, why))
+    if (prepare_packing(&p, pack, s, sweeps(o->solve.global), o->alpha, o->solve.method->rho,
+                        o->order, why))
         return why->status;
     rep->step = pack->step + 1;
     rep->t = pack->t + pack->dt;
