@@ -132,6 +132,7 @@ gallery gallery-keep: setup-run
 
 bench: all
 	bench/run.sh
+	bench/whole.sh
 	bench/sweeps.sh
 	bench/problems.sh
 

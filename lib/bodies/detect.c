@@ -162,10 +162,21 @@ static bool add_ball_contact(struct contacts *out, const struct packing *p,
     return true;
 }
 
-/* Pairs of near bodies */
+/* From i on, the first entry that is not of the pair of bodies before it: what two bodies and their images
+   have for contacts is sorted together. */
+static int64_t next_bodies(const struct neighbours *s, int64_t i)
+{
+    while (i > 0 && i < s->n && s->pair[i].a == s->pair[i - 1].a &&
+           s->pair[i].b == s->pair[i - 1].b)
+        i++;
+    return i;
+}
+
+/* Pairs of near bodies, the first and last of the part whole */
 static bool add_pairs(struct contacts *out, const struct sought *o, int64_t first, int64_t end)
 {
-    for (int64_t i = first; i < end; i++)
+    end = next_bodies(o->near, end);
+    for (int64_t i = next_bodies(o->near, first); i < end; i++)
         if (!add_ball_contact(out, o->p, o->near, &o->near->pair[i], o->x, o->edge, o->gap,
                               o->shaped))
             return false;
@@ -190,9 +201,10 @@ static int detect(struct contacts *out, const struct packing *p, const vec3 *x, 
         const struct wall *wall = &p->wall[o.wall];
         bool plane = wall->shape == BOUNDARY_PLANE;
         if (!wall_there(wall, t)) continue;
-        stored = find_all(out, &o, p->n, plane ? MANY : SOME, plane ? add_plane : add_shape);
+        stored =
+            find_all(out, &o, p->n, plane && !shaped ? MANY : SOME, plane ? add_plane : add_shape);
     }
-    if (!e && stored) stored = find_all(out, &o, near->n, MANY, add_pairs);
+    if (!e && stored) stored = find_all(out, &o, near->n, shaped ? SOME : MANY, add_pairs);
     placed_free(&placed);
     neighbours_free(&once);
     return e || stored ? e : why_set(why, EX_SOFTWARE, "no memory for the contacts");
