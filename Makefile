@@ -67,6 +67,9 @@ FAILING := malloc calloc realloc strdup strndup malloc_trim H5Fcreate H5Fflush H
            H5Acreate_by_name H5Awrite H5Aread H5Aopen H5Aopen_by_name H5Aiterate2 H5Aget_space H5Aget_type \
            H5Tcopy H5Screate H5Screate_simple H5Fclose H5Gclose H5Dclose H5Aclose
 $B/tests/failing_test $B/tests/failing_draw_test $B/tests/changed_test: TESTLIBS += $(FAILING:%=-Wl,--wrap=%)
+# Those of the libraries among themselves do not: these are shared ones here.
+$B/tests/failing_test $B/tests/failing_draw_test $B/tests/changed_test: NSD_LDLIBS := \
+    -lhdf5_hl -lklu -lcholmod -lqhull_r $(shell pkg-config --libs $(LIBS) 2>/dev/null) -lm
 
 $B/libnsd.a: $(LIB)
 	rm -f $@ && ar rcs $@ $^
