@@ -6,7 +6,8 @@
 #include <stdlib.h>
 
 enum {
-    CORNERS_MOST = 96, /* of a face that is being clipped; hulls with more lose some of them */
+    CORNERS_MOST =
+        520, /* of two faces while one is clipped: of larger ones some corners are left out */
     /* Features: what met, in the bits above those that tell which */
     BY_CORNER = 0,
     BY_SIDES = 1 << 26, /* an edge of one face over a side of the other */
@@ -17,11 +18,12 @@ enum {
     BITS = 12
 };
 
-static const double FACE_FIRST = 1e-5; /* of the size: edges must be better by more than faces, */
-static const double A_FIRST = 1e-6;    /* and b's faces than a's, so that which it is lasts */
-static const double PARALLEL = 1e-6;   /* sine^2 of two edges that have no axis */
-static const double ALONG = 1e-6;      /* 1 - cosine: the shortest way is along a face's normal */
-static const double APART = 1e-9;      /* of the size: a distance that is one */
+/* Of the size: edges must be better by more than faces, which hold a body in several places, and faces
+   of b than those of a, so that which it is lasts. What overlaps at rest does so by 1e-4. */
+static const double FACE_FIRST = 1e-3, A_FIRST = 1e-4;
+static const double PARALLEL = 1e-6; /* sine^2 of two edges that have no axis */
+static const double ALONG = 1e-6;    /* 1 - cosine: the shortest way is along a face's normal */
+static const double APART = 1e-9;    /* of the size: a distance that is one */
 
 /* The best axis so far */
 struct axis {
