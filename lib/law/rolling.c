@@ -152,25 +152,23 @@ static double both_at(double lambda, double wt, double k, const double bt[2], co
     return sqrt(dot(g, g, 2)) - Rt * w;
 }
 
-/* The root by false position; an end that stays twice counts half [the Illinois rule]. */
+/*
+ * The root by secants, from 0 and from what m at 0 would make of it: m changes little with lambda.
+ * The bracket keeps it safe.
+ */
 static void both_slide(double wt, double k, const double bt[2], const double bm[2], double Rt,
                        double Rm, double t[2], double m[2])
 {
-    double low = 0, high = (sqrt(dot(bt, bt, 2)) + fabs(k) * Rm) / Rt;
-    double at_low = both_at(low, wt, k, bt, bm, Rt, Rm, t, m);
-    double at_high = both_at(high, wt, k, bt, bm, Rt, Rm, t, m), tiny = 8 * DBL_EPSILON;
-    if (!(at_low > 0)) both_at(low, wt, k, bt, bm, Rt, Rm, t, m);
-    for (int step = 0; step < 100 && at_low > 0 && at_high < 0; step++) {
-        double lambda = (low * at_high - high * at_low) / (at_high - at_low);
-        if (!(lambda > low && lambda < high)) lambda = 0.5 * (low + high);
-        double at = both_at(lambda, wt, k, bt, bm, Rt, Rm, t, m);
-        double size = sqrt(dot(bt, bt, 2)) + fabs(k) * Rm + Rt * (wt + lambda); // of its rounding
-        if (fabs(at) <= tiny * size || high - low <= tiny * high) return;
-        if (at > 0) {
-            low = lambda, at_low = at, at_high *= 0.5;
-        } else {
-            high = lambda, at_high = at, at_low *= 0.5;
-        }
+    double most = sqrt(dot(bt, bt, 2)) + fabs(k) * Rm, low = 0, high = most / Rt, was = 0;
+    double at_was = both_at(was, wt, k, bt, bm, Rt, Rm, t, m), lambda = at_was / Rt;
+    for (int step = 0; step < 100; step++) {
+        if (!(lambda >= low && lambda <= high)) lambda = 0.5 * (low + high);
+        double at = both_at(lambda, wt, k, bt, bm, Rt, Rm, t, m), next;
+        double size = most + Rt * (wt + lambda); // of its rounding
+        if (fabs(at) <= 4 * DBL_EPSILON * size || !(low < high)) return;
+        *(at > 0 ? &low : &high) = lambda;
+        next = lambda - at * (lambda - was) / (at - at_was);
+        was = lambda, at_was = at, lambda = next;
     }
 }
 

@@ -620,13 +620,13 @@ void slot_set(struct problem *p, int64_t i, const double r[3], const double u[3]
         c->r[k][slot_lane(i)] = r[k], p->u[i / BUNDLE][k][slot_lane(i)] = u[k];
 }
 
-void slot_get_beyond(const struct problem *p, int64_t i, double x[BEYOND])
+void slot_get_beyond(const struct problem *p, int64_t i, double x[BESIDE_R])
 {
     const struct beyond *y = &p->beyond[i / BUNDLE];
     for (int k = 0; k < 3; k++) x[k] = y->p[k][slot_lane(i)], x[3 + k] = y->m[k][slot_lane(i)];
 }
 
-void slot_set_beyond(struct problem *p, int64_t i, const double x[BEYOND])
+void slot_set_beyond(struct problem *p, int64_t i, const double x[BESIDE_R])
 {
     struct beyond *y = &p->beyond[i / BUNDLE];
     for (int k = 0; k < 3; k++) y->p[k][slot_lane(i)] = x[k], y->m[k][slot_lane(i)] = x[3 + k];
@@ -649,7 +649,7 @@ int problem_store(const struct problem *p, struct contacts *s)
         for (int k = 0; k < 3 && problem_undivided(p); k++)
             c->u[k] /= 1 + (k ? law->et : law->en); // it is D u~
         c->status = (int8_t)local_status(slot_bundle(p, i)->mu[slot_lane(i)], c->r);
-        double x[BEYOND];
+        double x[BESIDE_R];
         if (p->beyond) slot_get_beyond(p, i, x);
         for (int k = 0; k < 3 && p->beyond; k++) {
             c->r[k] += x[k];

@@ -83,9 +83,9 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
 void problem_free(struct problem *p);
 
 /* What of an iterate is beyond r: p and m of a slot's contact */
-enum { BEYOND = 6 };
-void slot_get_beyond(const struct problem *p, int64_t i, double x[BEYOND]);
-void slot_set_beyond(struct problem *p, int64_t i, const double x[BEYOND]);
+enum { BESIDE_R = 6 };
+void slot_get_beyond(const struct problem *p, int64_t i, double x[BESIDE_R]);
+void slot_set_beyond(struct problem *p, int64_t i, const double x[BESIDE_R]);
 
 /* Sets the bodies of a packing to v_free, their velocities before the step plus dt g, what the flow
    of the cell's edges gains, and what cohesion pulls. */
