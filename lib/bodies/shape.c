@@ -72,14 +72,15 @@ int32_t shapes_find(const struct shapes *t, const char *name)
 
 bool shape_same(const struct shape *a, const struct shape *b)
 {
-    size_t n = (size_t)a->vertices;
-    return a->form == b->form && a->round == b->round && a->vertices == b->vertices &&
-           a->faces == b->faces && a->corners == b->corners && a->volume == b->volume &&
-           !memcmp(a->moment, b->moment, sizeof a->moment) &&
-           (!n || (!memcmp(a->vertex, b->vertex, n * sizeof *a->vertex) &&
-                   !memcmp(a->ball, b->ball, n * sizeof *a->ball))) &&
-           (!a->faces || (!memcmp(a->first, b->first, ((size_t)a->faces + 1) * sizeof *a->first) &&
-                          !memcmp(a->corner, b->corner, (size_t)a->corners * sizeof *a->corner)));
+    bool same = a->form == b->form && a->round == b->round && a->vertices == b->vertices &&
+                a->faces == b->faces && a->corners == b->corners && a->volume == b->volume;
+    for (int k = 0; same && k < 3; k++) same = a->moment[k] == b->moment[k];
+    for (int32_t i = 0; same && i < a->vertices; i++)
+        same = a->vertex[i].x == b->vertex[i].x && a->vertex[i].y == b->vertex[i].y &&
+               a->vertex[i].z == b->vertex[i].z && a->ball[i] == b->ball[i];
+    for (int32_t f = 0; same && f < a->faces; f++) same = a->first[f + 1] == b->first[f + 1];
+    for (int32_t i = 0; same && i < a->corners; i++) same = a->corner[i] == b->corner[i];
+    return same;
 }
 
 static int copy_one(struct shape *to, const struct shape *from, struct why *why)

@@ -330,7 +330,7 @@ static void even_out(double m[3])
 
 int solid_settle(struct shape *s, int dim, double *reach, vec3 *centre, quat *turn, struct why *why)
 {
-    struct solid o;
+    struct solid o = { 0 };
     if (solid_of(&o, s, dim, why)) return why->status;
     if (!v3_finite(o.centre)) return why_set(why, EX_DATAERR, "has no volume");
     *centre = o.centre;

@@ -21,18 +21,23 @@
 
 #include "bodies/packing.h"
 
-/* Does body i turn otherwise than a ball? */
-static inline bool top_is(const struct packing *p, int64_t i)
+/* The shape of body i where it turns otherwise than a ball, else NULL */
+static inline const struct shape *top_shape(const struct packing *p, int64_t i)
 {
     const struct shape *s = p->dim == 3 && p->mass[i] > 0 ? packing_shape(p, i) : NULL;
-    return s && (s->moment[0] != s->moment[1] || s->moment[1] != s->moment[2]);
+    return s && (s->moment[0] != s->moment[1] || s->moment[1] != s->moment[2]) ? s : NULL;
+}
+static inline bool top_is(const struct packing *p, int64_t i)
+{
+    return top_shape(p, i) != NULL;
 }
 
 /* kg m^2: its principal moments; their mean is inertia[i] */
 static inline vec3 top_moments(const struct packing *p, int64_t i)
 {
-    if (!top_is(p, i)) return v3(p->inertia[i], p->inertia[i], p->inertia[i]);
-    const double *m = packing_shape(p, i)->moment, unit = 3 / (m[0] + m[1] + m[2]);
+    const struct shape *s = top_shape(p, i);
+    if (!s) return v3(p->inertia[i], p->inertia[i], p->inertia[i]);
+    const double *m = s->moment, unit = 3 / (m[0] + m[1] + m[2]);
     return v3_scale(unit * p->inertia[i], v3(m[0], m[1], m[2]));
 }
 

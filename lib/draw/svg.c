@@ -12,7 +12,7 @@ static void draw_core(cairo_t *cr, const struct view *v, const struct packing *p
                       double rim)
 {
     const struct shape *s = packing_shape(p, i);
-    double r = p->radius[i], scale;
+    double r = p->radius[i], scale = 0;
     int32_t corners = s->form == SHAPE_HULL ? s->corners : s->vertices;
     for (int32_t k = 0; k < corners; k++) {
         int32_t vertex = s->form == SHAPE_HULL ? s->corner[k] : k;

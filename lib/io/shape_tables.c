@@ -65,7 +65,9 @@ static int make_shape(struct shape *s, const struct row *row, const struct listi
     if (row->vertices < 0 || row->faces < 0 || row->corners < 0 ||
         (uint64_t)row->vertices > l->vertices - at->vertices ||
         (uint64_t)row->faces > l->faces - at->faces ||
-        (uint64_t)row->corners > l->corners - at->corners)
+        (uint64_t)row->corners > l->corners - at->corners ||
+        (row->vertices && !(l->vertex && l->ball)) || (row->faces && !l->face) ||
+        (row->corners && !l->corner))
         return why_set(why, EX_DATAERR, "more vertices or faces than there are");
     if (shape_alloc(s, row->vertices, row->faces, row->corners, why)) return why->status;
     s->form = row->form, s->round = row->round, s->volume = row->volume;
