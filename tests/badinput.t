@@ -297,6 +297,36 @@ for tool in nsd-detect nsd-move nsd-step; do
     refuses 65 "$tool wants bodies" "$tool" "$tmp/local.hdf5"
 done
 
+# ---- frames that do not belong into one trajectory ----
+
+one='{"dt": 1e-3, "bodies": [{"x": [0, 0, 0], "radius": 1}], "walls": [{"point": [0, 0, -1], "normal": [0, 0, 1]}]}'
+nsd-gen - <<<"$one" >"$tmp/one.h5"
+nsd-step --overlap keep --contacts "$tmp/one.h5" 2>/dev/null | nsd-cat --stream >"$tmp/kept.h5"
+apart() # what regex jq
+{
+    jq "$3" <<<"$one" | nsd-gen - >"$tmp/two.h5"
+    refuses 65 "$1 in one trajectory" nsd-cat -o "$tmp/joined.h5" "$tmp/one.h5" "$tmp/two.h5"
+    like "says what" "$(cat "$tmp/err")" "two.h5: $2"
+    is "what came before is there" "$(nsd-info "$tmp/joined.h5" | jq -s -c '[.[].step | numbers]')" '[0]'
+    rm -f "$tmp/joined.h5"
+}
+apart "other numbers of bodies" '2 bodies, and the trajectory has 1' '.bodies += [{"x": [5, 0, 0], "radius": 1}]'
+apart "balls and discs" 'dim, dt or theta differ' '.dim = 2 | .bodies[0].x = [0, 0] | .walls = []'
+apart "two lengths of a step" 'dim, dt or theta differ' '.dt = 2e-3'
+apart "two thetas" 'dim, dt or theta differ' '.theta = 0.6'
+apart "two sizes of a body" "other bodies than the trajectory's" '.bodies[0].radius = 0.9'
+apart "a cell and none" "another cell than the trajectory's" '.walls = [] | .cell = {"lengths": [9, 9, 9]}'
+apart "a pour and none" "other pours or removals than the trajectory's" '.pour = [{"rate": 1, "radius": 1, "opening": {"box": {"x": [0, 1], "y": [0, 1], "z": [5, 6]}}}]'
+apart "a step twice" "step 0 after step 0: a trajectory's steps increase" '.'
+nsd-step -n 1 --overlap gap "$tmp/kept.h5" 2>/dev/null | nsd-cat --stream >"$tmp/two.h5"
+refuses 65 "two ways against overlap in one trajectory" nsd-cat -o "$tmp/joined.h5" "$tmp/kept.h5" "$tmp/two.h5"
+like "says what" "$(cat "$tmp/err")" "overlap differs from the trajectory's"
+nsd-step --contacts "$tmp/kept.h5" 2>/dev/null | nsd-cat --stream | nsd-detect >"$tmp/two.h5"
+refuses 65 "solved contacts and unsolved ones" nsd-cat -o "$tmp/joined.h5" "$tmp/kept.h5" "$tmp/two.h5"
+like "says what" "$(cat "$tmp/err")" 'contacts solved and unsolved in one trajectory'
+refuses 65 "an FCLIB problem behind a packing" nsd-cat -o "$tmp/joined.h5" "$tmp/one.h5" "$tmp/local.hdf5"
+like "says what" "$(cat "$tmp/err")" 'an FCLIB problem does not go into a trajectory'
+
 # ---- scenes ----
 
 # scene TEXT: nsd-gen of it

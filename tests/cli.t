@@ -32,6 +32,15 @@ for tool in "${tools[@]}"; do
     status 0 "$tool --version" "$tool" --version
     like "says the version" "$(cat "$tmp/out")" "^$tool \(nsd\) [0-9]+\.[0-9]+$"
 done
+for tool in "${tools[@]}"; do
+    "$tool" --help | grep -o -E '^ +(-., )?--[a-z-]+' | grep -o -e '--.*' | sort -u >"$tmp/options"
+    for shell in bash zsh; do
+        status 0 "$tool --completion $shell" "$tool" --completion $shell
+        is "has every option of --help" "$(while read -r option; do grep -q -e "$option" "$tmp/out" || echo "$option"; done <"$tmp/options")" ""
+    done
+    refuses 64 "$tool --completion of another shell" "$tool" --completion fish
+done
+ok "bash reads what it is to complete with" bash -n <(nsd-step --completion bash)
 mentions() # tool option default
 {
     "$1" --help | tr '\n' ' ' | grep -q -e "$2[ ,].*$3"

@@ -115,6 +115,10 @@ claim()
     *'{file: "balls.txt"}'*'> table.h5') bodies table.h5 300 ;;
     *'nsd-gen scenes/pour.json'*'> poured.h5') frames poured.h5 ".[-1] == $2" ;;
     *'poured.h5'*'.removed[0].bodies'*) output '.[0] > 100' ;;
+    *'.capillary = '*'> wet.h5') frames wet.h5 ".[-1] == $2" && settings wet.h5 '.material | all(.capillary)' ;;
+    *'wet.h5'*'.balance.bond_energy'*) output '.[0] < 0' ;;
+    *'nsd-gen scenes/bonded.json'*'> fallen.h5') frames fallen.h5 ".[-1] == $2" ;;
+    *'fallen.h5'*'.beta > 0'*) output '.[0] > 250 and .[0] <= 303' ;;
     *'nsd-gen scenes/sieve.json'*'> settled.h5') frames settled.h5 ".[-1] == $2" ;;
     *'nsd-info --scene '*'nsd-step'*'> tilted.h5') settings tilted.h5 '.bodies > 0 and .gravity[0] == 2' && frames tilted.h5 ".[-1] == $2" ;;
     *'nsd-info --scene '*'> tilted.h5') settings tilted.h5 '.bodies > 0 and .gravity[0] >= 2' ;;

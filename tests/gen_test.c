@@ -5,6 +5,7 @@
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_sort.h>
 #include <gsl/gsl_statistics.h>
+#include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -497,7 +498,8 @@ static void test_bad_scenes(void)
         { BODY("7"),
           "2:13: bodies[0]: wants an object with one of the keys x count file document random" },
         { BODY("{\"x\": [0, 0, 0], \"raduis\": 1}"),
-          "2:30: bodies[0].raduis: unknown key; known here: x radius v w kind density mass fixed" },
+          "2:30: bodies[0].raduis: unknown key; known here: x radius size shape orientation v w "
+          "kind density mass fixed" },
         { BODY("{\"x\": [0, 0, 0], \"radius\": 1, \"mass\": 1, \"density\": 1}"),
           "2:43: bodies[0].mass: density is given too" },
         { BODY("{\"x\": [0, 0, 0], \"radius\": 1, \"kind\": \"glass\"}"),
@@ -573,6 +575,231 @@ static void test_damage(void)
     free(text);
 }
 
+/* ---- every value of a scene in turn ---- */
+
+/* All that a scene may say, of space and of the plane, in few words. What says "build" is built, too. */
+static const char *const whole_scene[] = {
+    "{\"title\": \"all\", \"dim\": 3, \"dt\": 1e-3, \"theta\": 0.5, \"gravity\": [0, 0, -9.81],"
+    "\"seed\": 3, \"density\": 2500, \"mu\": 0.3, \"e_n\": 0.1, \"e_t\": 0, \"time\": 0,"
+    "\"overlap\": true, \"kinds\": {\"steel\": {\"density\": 7800}},"
+    "\"pairs\": [{\"pair\": [\"ball\", \"steel\"], \"mu\": 0.1, \"e_n\": 0.5, \"e_t\": 0.1}],"
+    "\"walls\": [{\"point\": [0, 0, -2], \"normal\": [0, 0, 1], \"kind\": \"steel\","
+    "  \"load\": {\"along\": [0, 0, 1], \"mass\": 2, \"force\": 3, \"speed\": 0.1}},"
+    " {\"box\": {\"x\": [-20, 20], \"y\": [-20, 20], \"z\": [-1, null]}, \"until\": 9},"
+    " {\"rectangle\": {\"center\": [0, 0, 0], \"normal\": [0, 0, 1], \"along\": [1, 0, 0],"
+    "  \"sides\": [1, 2]}, \"velocity\": [0, 0, 1]},"
+    " {\"disc\": {\"center\": [0, 0, 0], \"normal\": [0, 0, 1], \"radius\": 2, \"hole\": 1},"
+    "  \"drives\": [{\"along\": [0, 0, 1], \"speed\": 1, \"from\": 0.1, \"until\": 0.2},"
+    "   {\"about\": [0, 0, 0], \"axis\": [0, 0, 1], \"amplitude\": 0.1, \"frequency\": 2,"
+    "    \"phase\": 1}, {\"along\": [1, 0, 0], \"table\": [[0, 1], [1, 2]]}]},"
+    " {\"cylinder\": {\"point\": [0, 0, 0], \"axis\": [0, 0, 1], \"radius\": 9, \"length\": 9,"
+    "  \"side\": \"inside\", \"along\": [1, 0, 0], \"arc\": 3}, \"load\": {\"about\": [0, 0, 0],"
+    "  \"axis\": [0, 0, 1], \"mass\": 2, \"torque\": 1, \"speed\": 0}},"
+    " {\"cone\": {\"point\": [0, 0, 0], \"axis\": [0, 0, 1], \"radii\": [8, 9], \"length\": 9,"
+    "  \"side\": \"both\", \"along\": [1, 0, 0], \"arc\": 3}},"
+    " {\"sphere\": {\"center\": [0, 0, 0], \"radius\": 30, \"side\": \"outside\"}},"
+    " {\"mesh\": {\"file\": \"none.stl\", \"scale\": 2, \"at\": [0, 0, 0]}}],"
+    "\"bodies\": [{\"x\": [0, 0, 0], \"radius\": 1, \"v\": [0, 0, 0], \"w\": [0, 0, 0],"
+    "  \"kind\": \"steel\", \"density\": 3, \"fixed\": true},"
+    " {\"count\": 3, \"radius\": {\"uniform\": [0.1, 0.2]}, \"box\": {\"x\": [0, 9], \"y\": [0, 9],"
+    "  \"z\": [0, null]}, \"cells\": \"own\", \"spacing\": 1.1, \"jitter\": 0.5, \"thermal\": 0.1,"
+    "  \"mass\": 3}, {\"file\": \"balls\", \"v\": [0, 0, 0]},"
+    " {\"document\": \"none.h5\", \"frame\": 3, \"at_rest\": true},"
+    " {\"random\": {\"phi\": 0.1}, \"thermal\": 0.1, \"box\": {\"x\": [0, 9], \"y\": [0, 9],"
+    "  \"z\": [0, 9]}, \"radius\": {\"gaussian\": {\"mean\": 1, \"sd\": 0.1, \"min\": 0.9,"
+    "  \"max\": 1.1}}}, {\"count\": 1, \"radius\": {\"lognormal\": {\"median\": 1, \"sigma\": 0.1,"
+    "  \"min\": 0.9, \"max\": 1.1}}}, {\"count\": 1, \"radius\": {\"uniform_by_mass\": [0.5, 1]}},"
+    " {\"random\": {\"count\": 3}, \"box\": {\"x\": [0, 9], \"y\": [0, 9], \"z\": [0, 9]},"
+    "  \"radius\": {\"sieve\": [[0.1, 0], [0.2, 0.5], [0.3, 1]]}}],"
+    "\"pour\": [{\"rate\": 9, \"radius\": {\"power\": {\"exponent\": 3, \"min\": 0.1, \"max\": "
+    "0.2}},"
+    "  \"opening\": {\"disc\": {\"center\": [0, 0, 8], \"normal\": [0, 0, 1], \"radius\": 3}},"
+    "  \"v\": [0, 0, -0.5], \"w\": [0, 0, 0], \"kind\": \"steel\", \"mass\": 2, \"from\": 0.1,"
+    "  \"until\": 0.5, \"count\": 9}, {\"mass_rate\": 9, \"radius\": 0.1, \"density\": 3,"
+    "  \"opening\": {\"box\": {\"x\": [0, 1], \"y\": [0, 1], \"z\": [0, 1]}}}],"
+    "\"remove\": [{\"outside\": {\"x\": [-9, 9]}, \"kind\": \"steel\"}, {\"inside\": {\"y\": [5, "
+    "6]}},"
+    " {\"below\": {\"point\": [0, 0, -9], \"normal\": [0, 0, 1]}}]}",
+
+    "{\"title\": \"build\", \"dim\": 2, \"dt\": 1e-3, \"gravity\": [0, -9.81], \"overlap\": true,"
+    "\"walls\": [{\"point\": [0, -9], \"normal\": [0, 1], \"load\": {\"along\": [0, 1],"
+    "  \"mass\": 1}}, {\"segment\": [[-9, -5], [9, -5]], \"drives\": [{\"about\": [0, 0],"
+    "  \"speed\": 0.1}]}, {\"circle\": {\"center\": [0, 0], \"radius\": 40, \"side\": \"inside\"},"
+    "  \"load\": {\"about\": [0, 0], \"mass\": 2, \"torque\": 1}},"
+    " {\"arc\": {\"center\": [0, 0], \"radius\": 30, \"along\": [1, 0], \"arc\": 1,"
+    "  \"side\": \"both\"}}, {\"polygon\": {\"points\": [[20, 0], [21, 0], [21, 1]],"
+    "  \"closed\": true}}, {\"box\": {\"x\": [-20, 20], \"y\": [-20, null]}}],"
+    "\"bodies\": [{\"x\": [0, 0], \"radius\": 1, \"v\": [0, 1], \"w\": 2, \"mass\": 3},"
+    " {\"count\": 4, \"radius\": 0.2, \"box\": {\"x\": [0, 9], \"y\": [0, null]}},"
+    " {\"random\": {\"count\": 3}, \"radius\": {\"uniform\": [0.1, 0.2]}, \"box\": {\"x\": [0, 9],"
+    "  \"y\": [0, 9]}}],"
+    "\"pour\": [{\"rate\": 9, \"radius\": 0.1, \"w\": 1, \"opening\": {\"disc\": {\"center\": [0, "
+    "8],"
+    "  \"normal\": [0, 1], \"radius\": 3}}, \"count\": 9}], \"remove\": [{\"below\":"
+    "  {\"point\": [0, -9], \"normal\": [0, 1]}}]}",
+
+    "{\"title\": \"build\", \"dt\": 1e-3, \"gravity\": [0, 0, 0], \"cell\": {\"edges\": [[9, 0, 0],"
+    "  [1, 9, 0], [0, 0, 9]], \"origin\": [1, 2, 3], \"repeats\": [true, true, true],"
+    "  \"gradient\": [{\"t\": 0, \"L\": [[0, 0.1, 0], [0, 0, 0], [0, 0, 0]]}, {\"t\": 1,"
+    "  \"L\": [[0, 0.2, 0], [0, 0, 0], [0, 0, 0]]}], \"affine\": true, \"stress\": {"
+    "  \"target\": [[1, null, null], [null, 2, 0.5], [null, 0.5, null]],"
+    "  \"mass\": [[1, null, null], [null, 1, 1], [null, 1, null]]}},"
+    "\"bodies\": [{\"count\": 8, \"radius\": 0.5, \"spacing\": 1.2}]}",
+
+    "{\"title\": \"build\", \"dt\": 1e-3, \"gravity\": [0, 0, -1], \"overlap\": true, \"cell\": {"
+    "  \"lengths\": [9, 9, 9], \"repeats\": [true, false, false]}, \"walls\": [{\"point\":"
+    "  [0, 0, -1], \"normal\": [0, 0, 1], \"drives\": [{\"along\": [0, 0, 1], \"speed\": 1}]},"
+    " {\"cylinder\": {\"point\": [0, 4, 4], \"axis\": [1, 0, 0], \"radius\": 9}, \"drives\":"
+    "  [{\"about\": [0, 4, 4], \"axis\": [1, 0, 0], \"speed\": 1}]}],"
+    "\"bodies\": [{\"x\": [1, 4, 4], \"radius\": 0.5}]}",
+
+    "{\"title\": \"build\", \"dim\": 2, \"dt\": 1e-3, \"gravity\": [0, 0], \"cell\": {"
+    "  \"lengths\": [9, 9], \"repeats\": [true, false], \"gradient\": [[0, 0.1], [0, 0]],"
+    "  \"stress\": {\"pressure\": 3, \"mass\": 1}}, \"bodies\": [{\"count\": 4, \"radius\": 0.5}]}",
+};
+
+/* What stands in the place of each; the first two are wrong wherever they are. */
+static const char *const other_value[] = {
+    "{\"no such key\": 1}",
+    "\"no such word\"",
+    "null",
+    "true",
+    "false",
+    "-1",
+    "0",
+    "0.5",
+    "3",
+    "1e30",
+    "[]",
+    "[1, 2]",
+    "[3, 2, 1]",
+    "[null, 1]",
+    "{}",
+    "[[1, 2], [3, 4]]",
+};
+
+static struct {
+    json_t *root;
+    bool builds;
+    int tried, taken; /* scenes with one change, and those that are scenes still */
+    int odd;          /* ... that have neither an answer nor a reason as it should be */
+} turn;
+
+static void odd(const char *path, const char *what, const struct why *why)
+{
+    if (turn.odd++ < 5) diag("%s, now %s: %d %s", path, what, why->status, why->text);
+}
+
+/* Is the reason "line:column: path: trouble", of this node, or one above or below it? */
+static bool says_where(const char *text, const char *path)
+{
+    int line, column, n = 0;
+    if (sscanf(text, "%d:%d: %n", &line, &column, &n) < 2 || !n || strchr(text, '\n')) return false;
+    const char *said = text + n, *end = strstr(said, ": ");
+    size_t length = end ? (size_t)(end - said) : 0;
+    if (length > strlen(path)) length = strlen(path);
+    return length && !strncmp(said, path, length);
+}
+
+static void try_change(const char *path, const char *what, bool wrong)
+{
+    struct scene s;
+    struct packing p = { 0 };
+    struct why why = { 0 };
+    char *text = json_dumps(turn.root, JSON_INDENT(1));
+    if (!text) return;
+    turn.tried++;
+    int e = scene_parse(&s, text, strlen(text), &why);
+    free(text);
+    if (e) {
+        int line, column;
+        if (e != EX_DATAERR || why.status != e || sscanf(why.text, "%d:%d: ", &line, &column) < 2 ||
+            (wrong && !says_where(why.text, path)))
+            odd(path, what, &why);
+        return;
+    }
+    turn.taken++;
+    if (wrong) odd(path, what, &why);
+    if (turn.builds && !scene_build(&p, &s, NULL, &why)) {
+        if (packing_check(&p, &why)) odd(path, what, &why); // no reader would take it
+        packing_free(&p);
+    } else if (turn.builds && (why.status != EX_DATAERR || !*why.text || strchr(why.text, '\n'))) {
+        odd(path, what, &why);
+    }
+    scene_free(&s);
+}
+
+/* Puts a value in the place of another, in an object (key) or an array. */
+static void place(json_t *in, const char *key, size_t i, json_t *value)
+{
+    key ? json_object_set(in, key, value) : json_array_set(in, i, value);
+}
+
+static void change_all(json_t *in, const char *path);
+
+static void change_one(json_t *in, const char *key, size_t i, const char *above)
+{
+    char path[300];
+    if (key)
+        snprintf(path, sizeof path, "%s%s%s", above, *above ? "." : "", key);
+    else
+        snprintf(path, sizeof path, "%s[%zu]", above, i);
+    json_t *was = json_incref(key ? json_object_get(in, key) : json_array_get(in, i));
+    for (size_t k = 0; k < sizeof other_value / sizeof *other_value; k++) {
+        json_t *other = json_loads(other_value[k], JSON_DECODE_ANY, NULL);
+        place(in, key, i, other);
+        try_change(path, other_value[k], k == 0 || (k == 1 && !json_is_string(was)));
+        json_decref(other);
+    }
+    place(in, key, i, was);
+    change_all(was, path);
+    key ? json_object_del(in, key) : json_array_remove(in, i);
+    try_change(path, "gone", false);
+    key ? json_object_set(in, key, was) : json_array_insert(in, i, was);
+    json_decref(was);
+}
+
+static void change_all(json_t *in, const char *path)
+{
+    const char *key;
+    json_t *value;
+    char *keys[40];
+    size_t n = 0;
+    for (size_t i = 0; i < json_array_size(in); i++) change_one(in, NULL, i, path);
+    if (!json_is_object(in)) return;
+    json_object_foreach(in, key, value) if (n < 40) keys[n++] = strdup(key);
+    for (size_t i = 0; i < n; i++) {
+        change_one(in, keys[i], 0, path);
+        free(keys[i]);
+    }
+    if (strcmp(path, "kinds") != 0) { // where any key is a name
+        json_object_set_new(in, "unheard of", json_true());
+        try_change(*path ? path : "unheard of", "with a key more", true);
+        json_object_del(in, "unheard of");
+    }
+}
+
+static void test_every_value(void)
+{
+    for (size_t k = 0; k < sizeof whole_scene / sizeof *whole_scene; k++) {
+        struct scene s;
+        struct why why = { 0 };
+        const char *text = whole_scene[k];
+        if (!ok(!scene_parse(&s, text, strlen(text), &why), "a scene that says much %s", why.text))
+            continue;
+        scene_free(&s);
+        memset(&turn, 0, sizeof turn);
+        turn.root = json_loads(text, 0, NULL);
+        turn.builds = strstr(text, "build");
+        change_all(turn.root, "");
+        json_decref(turn.root);
+        ok(!turn.odd && turn.taken > 0 && turn.taken < turn.tried,
+           "of %d such scenes with a change, %d are scenes; the others are refused, where they "
+           "should be by the place of the change",
+           turn.tried, turn.taken);
+    }
+}
+
 static void test_million(void)
 {
     struct packing p;
@@ -594,6 +821,7 @@ int main(void)
     test_paper_files(), test_scene_files(), test_example1();
     test_bells(), test_sieves(), test_thermal(), test_material();
     test_table(), test_bad_tables(), test_bad_scenes(), test_damage();
+    test_every_value();
     test_million();
     static const char *const name[] = { "good", "flat", "bad" };
     for (int i = 0; i < 3; i++) {

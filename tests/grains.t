@@ -164,6 +164,21 @@ bad_table "too many" 'table.txt:2: not as many words as columns' '# x y z r' '1 
 bad_table "no number" 'table.txt:2: r: not a number: "four"' '# x y z r' '1 2 3 four'
 bad_table "no kind" 'table.txt:2: the scene names no kind "wood"' '# x y z r kind' '1 2 3 4 wood'
 bad_table "one number for two" 'body 1: another one has its id, 5' '# x y z r id' '1 2 3 1 5' '4 5 6 1 5'
+bad_table "a number that is none of bodies" 'table.txt:2: an id must be a whole number: "0.5"' '# x y z r id' '1 2 3 1 0.5'
+bad_table "neither fixed nor free" 'table.txt:2: fixed must be 0 or 1: "2"' '# x y z r fixed' '1 2 3 1 2'
+bad_table "half an orientation" 'table.txt:1: an orientation is qw qx qy qz' '# x y z r qw qx' '1 2 3 1 1 0'
+bad_table "an orientation that is no rotation" 'table.txt:2: qw qx qy qz is no unit quaternion' '# x y z r qw qx qy qz' '1 2 3 1 1 1 0 0'
+bad_table "radius and diameter" 'table.txt:1: both r and "d"' '# x y z r d' '1 2 3 1 2'
+bad_table "mass and density" 'table.txt:1: both mass and "density"' '# x y z r mass density' '1 2 3 1 2 3'
+bad_table "no height" 'table.txt:1: there is no column "z"' '# x y r' '1 2 1'
+printf '%s\n' '# x y z r qw qx qy qz fixed mass' '1 2 3 1 0 1 0 0 1 5' '5 2 3 1 0.6 0 0.8 0 0 5' >table.txt
+ok "orientations, masses, and bodies that are fixed" \
+    eval 'nsd-gen - <<<"$scene" | nsd-info -p | jq -s -e "map([.mass, .q]) == [[0, [0, 1, 0, 0]], [5, [0.6, 0, 0.8, 0]]]"'
+jq -c '.dim = 2' <<<"$scene" >plane.json
+printf '%s\n' '# x y r z' '1 2 1 0' >table.txt
+refuses 65 "a height in the plane" nsd-gen plane.json
+printf '%s\n' '# x y r wz vx' '1 2 1 3 4' >table.txt
+ok "in the plane a spin is one number" eval 'nsd-gen plane.json | nsd-info -p | jq -e ".w == [0, 0, 3] and .v == [4, 0, 0]"'
 printf '%s\n' '# a table, whose columns are x y z r' '1 2 3 4' >table.txt
 ok "any other comment is a comment" eval 'nsd-gen - <<<"$scene" | nsd-info -p | jq -e ".radius == 4"'
 

@@ -28,6 +28,11 @@ cubic 0.5235987755982988 6
 fcc 0.7404804896930609 12
 END
 
+pairs() { nsd-stat -m pairs --bins "$2" --distance "$3" "$tmp/$1.h5" 2>/dev/null | jq -c .pairs.pairs; }
+is "pairs of a square lattice, two to a body in each shell, whatever is across the border" "$(pairs square 3 3.3)" '[0,200,200]'
+is "of a hexagonal one, three" "$(pairs hexagonal 1 3)" '[300]'
+is "of a cubic one, three to a body, then six" "$(pairs cubic 3 3.3)" '[0,375,750]'
+
 # ---- forces ----
 
 jq -n '{ dt: 1e-5, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
@@ -46,6 +51,26 @@ if [ -z "${NSD_QUICK-}" ]; then
     nsd-gen 500 | step -n 3000 | nsd-cat --last | step -n 2 --contacts --eps 1e-7 --max-sweeps 20000 -o "$tmp/pile.h5"
     ok "fields: div stress = rho (g - a) in a settled pile" truth fields "$tmp/pile.h5" "$tmp/fields.h5"
 fi
+
+# the same of a small one, whatever the time: a file of fields of frames on one grid, and the sum over it
+jq -n '{ dt: 1e-3, gravity: [0, 0, 0], bodies: [range(3) | { x: [0.5, 0.5, (0.4 + 0.1 * .)], radius: 0.03, v: [., 0, 1] }],
+    walls: [{ box: { x: [0, 1], y: [0, 1], z: [0, 1] } }] }' | nsd-gen - | step -n 2 --contacts >"$tmp/few.h5"
+nsd-stat --width 0.05 --spacing 0.04 -f "$tmp/few-fields.h5" "$tmp/few.h5" >/dev/null 2>&1
+mass() # of the fields' last frame, over that of the bodies
+{
+    /usr/bin/python3 -c 'import h5py, numpy as np, sys
+f, p = h5py.File(sys.argv[1]), h5py.File(sys.argv[2])
+d, cell = f["fields/density/value"], np.prod(f["fields/spacing"][:])
+assert len(d) == 2 and list(f["fields/step"][:]) == [1, 2]
+assert abs(d[-1].sum() * cell / p["particles/all/mass"][:].sum() - 1) < 1e-6
+v = f["fields/momentum/value"][-1].sum(0) * cell / p["particles/all/mass"][:].sum()
+assert np.abs(v - [1, 0, 1]).max() < 1e-6, v' "$@"
+}
+ok "fields have the mass and the momentum of the bodies" mass "$tmp/few-fields.h5" "$tmp/few.h5"
+status 74 "fields in a folder that is not there" nsd-stat -f "$tmp/none/fields.h5" "$tmp/few.h5"
+status 65 "fields without bodies" nsd-stat -f "$tmp/none.h5" <(nsd-gen - <<<'{"dt": 1}')
+status 65 "fields on a grid of too many points" nsd-stat --spacing 1e-6 -f "$tmp/none.h5" "$tmp/few.h5"
+ok "nothing is left of a file of fields that is refused" test ! -e "$tmp/none.h5"
 
 # ---- motion, places ----
 
@@ -111,6 +136,27 @@ none "a body in a wall of no volume" '{"dt": 1, "walls": [{"box": {"x": [-1, 1],
 like "a reason in words" "$(nsd-stat -m stress "$tmp/gas.h5" 2>/dev/null | jq -r .why.stress)" 'no contacts: nsd-step --contacts'
 nsd-stat -m all -b 5,6,5,6,5,6 "$tmp/heap.h5" >"$tmp/empty.json" 2>/dev/null
 is "a box with nothing in it: no NaN" "$(grep -ci nan "$tmp/empty.json" || true)" 0
+# a box of a cell that repeats has the images that lie in it: four quarters of a disc at a corner
+jq -n '{ dim: 2, dt: 1, overlap: true, gravity: [0, 0], cell: { edges: [[4, 0], [1, 4]] }, bodies: [{ x: [0, 0], radius: 1 }, { x: [2, 2], radius: 0.5 }] }' | nsd-gen - >"$tmp/corner.h5"
+is "a box around a corner of a cell: the disc there" "$(nsd-stat -m fraction -b -1,1,-1,1 "$tmp/corner.h5" 2>/dev/null | jq '.fraction.fraction * 4 / 3.141592653589793 - 1 | fabs < 1e-6')" true
+is "and one around its image" "$(nsd-stat -m fraction -b 4,6,3,5 "$tmp/corner.h5" 2>/dev/null | jq '.fraction.fraction * 4 / 3.141592653589793 - 1 | fabs < 1e-6')" true
+is "the whole cell has both" "$(nsd-stat -m fraction "$tmp/corner.h5" 2>/dev/null | jq '.fraction.fraction * 16 / 3.141592653589793 / 1.25 - 1 | fabs < 1e-9')" true
+why() { nsd-stat -m "$1" "${@:3}" "$2" 2>/dev/null | tail -n 1 | jq -r ".why.$1"; }
+like "layers along an axis that two edges lean along" "$(why profile "$tmp/corner.h5" --layers x:3)" 'several edges of the cell lean'
+like "pairs in a box of a cell that repeats" "$(why pairs "$tmp/corner.h5" -b -1,1,-1,1)" 'less than two bodies|a box in a cell that repeats'
+like "pairs beyond two edges" "$(why pairs "$tmp/corner.h5" --distance 99)" "distances beyond two of the cell's edges"
+like "pairs beyond the bodies" "$(why pairs "$tmp/points.h5" --distance 0.9)" 'null|distances beyond the smallest side'
+like "pairs on a line" "$(why pairs "$tmp/row.h5" --distance 0.1)" 'no extent along an axis'
+is "shells around an axis" "$(nsd-stat --last -m profile --layers r:4 --point 0.5,0.5,0 "$tmp/points.h5" 2>/dev/null | jq '.profile | [.[] | arrays | length] | unique | .[-1] >= 4')" true
+is "flux through a disc" "$(nsd-stat -m flux --plane 1,0,0 --point 0.5,0.5,0.5 --radius 0.1 "$tmp/flight.h5" 2>/dev/null | tail -n 1 | jq '.flux | type')" '"object"'
+is "--list names every measure once" "$(nsd-stat --list | grep -c '^[a-z_]*: ')" "$(nsd-stat --list | sed -n 's/^\([a-z_]*\): .*/\1/p' | sort -u | wc -l)"
+ok "a table of one row of each measure that has one" test "$(nsd-stat --last --tsv -m fraction,energy,stress "$tmp/heap.h5" 2>/dev/null | awk '{ print NF }' | uniq | wc -l)" = 1
+refuses 64 "a box that is empty" nsd-stat -b 1,0,0,1 "$tmp/corner.h5"
+refuses 64 "a box of five numbers" nsd-stat -b 0,1,0,1,0 "$tmp/corner.h5"
+refuses 64 "a plane of no direction" nsd-stat --plane 0,0,0 "$tmp/heap.h5"
+refuses 64 "--grains and --measures" nsd-stat --grains -m stress "$tmp/heap.h5"
+refuses 64 "--last and --steps" nsd-stat --last -s 1:2 "$tmp/heap.h5"
+refuses 65 "a step that is not there" nsd-stat -s 99999 "$tmp/heap.h5"
 refuses 64 "no such measure" nsd-stat -m heat "$tmp/heap.h5"
 refuses 64 "a box of three numbers" nsd-stat -b 0,1,2 "$tmp/heap.h5"
 refuses 64 "layers of nothing" nsd-stat --layers z:0 "$tmp/heap.h5"

@@ -191,13 +191,13 @@ static void settled(struct packing *p, struct contacts *s, int dim, int steps)
 static void test_halves(const struct problem *q, const struct packing *p)
 {
     const struct two_thread_split *h = q->split;
-    enum { BORDER = 1, BEYOND = 2, INSIDE = 4, RIM = 8 };
+    enum { BORDER = 1, OUTSIDE = 2, INSIDE = 4, RIM = 8 };
     int *parts = calloc((size_t)p->n, sizeof *parts), wrong = 0;
     int64_t ours = 0, theirs = 0;
     for (int64_t i = 0; h && i < q->bundles; i++) {
         int64_t g = 0;
         while (q->group[g + 1] <= i) g++;
-        int part = g < h->beyond ? BORDER : g < h->inside ? BEYOND : INSIDE;
+        int part = g < h->beyond ? BORDER : g < h->inside ? OUTSIDE : INSIDE;
         if (g >= h->rim && g < h->rest) part = RIM;
         *(part < INSIDE ? &ours : &theirs) += 1;
         const int32_t *both[2] = { q->bundle[i].a, q->bundle[i].b };
@@ -205,7 +205,7 @@ static void test_halves(const struct problem *q, const struct packing *p)
             if (both[k % 2][k / 2] < p->n) parts[both[k % 2][k / 2]] |= part;
     }
     for (int64_t i = 0; i < p->n; i++) {
-        wrong += parts[i] & BEYOND && parts[i] & (INSIDE | RIM);
+        wrong += parts[i] & OUTSIDE && parts[i] & (INSIDE | RIM);
         wrong += parts[i] & BORDER && parts[i] & INSIDE;
     }
     free(parts);

@@ -144,6 +144,17 @@ trickle()
         nsd-cat |
         cmp - <(nsd-cat "$tmp/joined.h5" | cat)
 }
+# A large document goes through nsd-cat as it is; --last decodes it.
+nsd-gen 10000 | nsd-detect | nsd-solve --max-sweeps 3 2>/dev/null >"$tmp/large.h5"
+ok "a large document: the bytes that decoding it gives" cmp "$tmp/large.h5" <(nsd-cat --last "$tmp/large.h5")
+large() { cat "$tmp/large.h5" "$tmp/solved.h5" "$tmp/large.h5" | nsd-cat | cmp - <(cat "$tmp/large.h5" "$tmp/solved.h5" "$tmp/large.h5"); }
+ok "large and small ones, as they came" large
+large_file() { nsd-cat "$tmp/large.h5" >"$tmp/one.h5" && nsd-cat --stream "$tmp/one.h5" | cmp - "$tmp/large.h5"; }
+ok "into a file, a trajectory all the same" large_file
+{ head -c 1000000 "$tmp/large.h5" && printf x && tail -c +1000002 "$tmp/large.h5"; } >"$tmp/damaged.h5"
+refuses_large() { nsd-cat --stream "$tmp/damaged.h5" >"$tmp/refused.h5"; }
+refuses 65 "a large one that is damaged" refuses_large
+is "of which nothing goes on" "$(wc -c <"$tmp/refused.h5")" 0
 several nsd-err lines "$s" "$s" "$s"
 ok "a pipe that gives its bytes as it likes" trickle
 fifo() { mkfifo "$tmp/fifo" && { nsd-gen 4 >"$tmp/fifo" & } && nsd-info "$tmp/fifo" && wait $!; }

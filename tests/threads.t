@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# No thread is where another writes: the tools are built again with clang's ThreadSanitizer, which archer
-# tells what OpenMP orders.
+# No thread is where another writes: the tools are built again with clang's ThreadSanitizer.
 # shellcheck source=tests/tap.sh
 . tests/tap.sh
 
@@ -9,33 +8,41 @@ if [ -n "$quick" ] || ! command -v clang >/dev/null; then
     exit 0
 fi
 
-built=build/tsan flags=(-O1 -g1 -fsanitize=thread) tools=(nsd-solve nsd-step nsd-view)
+built=build/tsan flags=(-O1 -g1 -fsanitize=thread -DNSD_STEADY) tools=(nsd-solve nsd-step nsd-view)
 ok "the tools build" make -j2 SAN= B=$built CC=clang CFLAGS="${flags[*]}" LDFLAGS=-fsanitize=thread \
     "${tools[@]/#/$built/}"
 
-omp=$(ldd $built/nsd-solve | awk '/libomp/ { print $3 }')
-export OMP_TOOL_LIBRARIES
-OMP_TOOL_LIBRARIES=$(dirname "$(realpath "$omp")")/libarcher.so
 export NSD_LANES=2 # the sanitizer sees no access of more than 16 bytes
 export TSAN_OPTIONS=ignore_noninstrumented_modules=1:abort_on_error=1
 
 # ---- is anyone watching? ----
 
 cat >"$tmp/race.c" <<'EOF'
+#include "base/team.h"
+#include <stdio.h>
+
+static int64_t n;
+
+static void count(void *lock, int me, int threads)
+{
+    (void)me, (void)threads;
+    for (int k = 0; k < 1000; k++) {
+#ifdef ORDERED
+        team_meet();
+        if (me == k % threads)
+#endif
+            n++;
+    }
+}
+
 int main(void)
 {
-    int n = 0;
-#pragma omp parallel num_threads(2)
-    for (int k = 0; k < 1000; k++)
-#ifdef ORDERED
-#pragma omp critical
-#endif
-        n++;
+    for (int k = 0; k < 10; k++) team_do(2, count, NULL);
     return !n;
 }
 EOF
-clang -fopenmp "${flags[@]}" -o "$tmp/race" "$tmp/race.c"
-clang -fopenmp "${flags[@]}" -DORDERED -o "$tmp/ordered" "$tmp/race.c"
+clang -Ilib "${flags[@]}" -o "$tmp/race" "$tmp/race.c" lib/base/team.c
+clang -Ilib "${flags[@]}" -DORDERED -o "$tmp/ordered" "$tmp/race.c" lib/base/team.c
 status 134 "a race is seen" "$tmp/race"
 status 0 "and none where there is none" "$tmp/ordered"
 

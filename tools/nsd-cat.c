@@ -40,12 +40,19 @@ int tool_main(int argc, char **argv)
     reader_copies(in);
     if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
     enum writer_kind kind = stream || last ? WRITER_STREAM : WRITER_TRAJECTORY;
-    while (!(last ? reader_last(in, &f, &more, &why) : reader_next(in, &range, &f, &more, &why)) &&
+    while (!(last ? reader_last(in, &f, &more, &why) : reader_find(in, &range, &more, &why)) &&
            more) {
+        bool whole = !last && reader_whole(in);
+        if (!last && !whole && reader_take(in, &f, &why)) break;
         if (!out && writer_open(&out, output, kind, &why)) break;
-        if (writer_frame(out, &f, &why) == EX_DATAERR)
-            die(EX_DATAERR, "%s: %s", reader_where(in), why.text);
-        if (why.status) break;
+        if (whole && writer_passes(out)) {
+            if (writer_pass(out, in, &why)) break;
+        } else {
+            if (whole && reader_take(in, &f, &why)) break;
+            if (writer_frame(out, &f, &why) == EX_DATAERR)
+                die(EX_DATAERR, "%s: %s", reader_where(in), why.text);
+            if (why.status) break;
+        }
         copied++;
         progress("%lld frames", (long long)copied);
         if (last) break;

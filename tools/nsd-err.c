@@ -20,7 +20,8 @@ const struct cli_tool tool = {
 static int prepare_own(struct problem *p, struct frame *f, struct why *why)
 {
     if (f->moved && move_back(&f->packing, &f->contacts, why)) return why->status;
-    if (prepare_packing(p, &f->packing, &f->contacts, 0, 1, ORDER_NATURAL, why)) return why->status;
+    if (prepare_packing(p, &f->packing, &f->contacts, true, 0, 1, ORDER_NATURAL, why))
+        return why->status;
     for (int64_t i = 0; i < f->contacts.n; i++)
         f->report.err.max_overlap = fmax(f->report.err.max_overlap, -f->contacts.c[i].gap);
     return 0;

@@ -1,5 +1,6 @@
 /* nsd-info: shows any part of a document as JSON lines, for jq and gnuplot. */
 #include "bodies/energy.h"
+#include "bodies/kinematics.h"
 #include "cli/cli.h"
 #include "io/reader.h"
 #include "io/report_json.h"
@@ -36,15 +37,38 @@ const struct cli_tool tool = {
     "  nsd-info --last -p out.h5 | jq -r '[.x[], .radius] | @tsv'\n"
 };
 
+/* What pairs of kinds do beyond friction and restitution */
+static void add_law(json_t *j, const struct law *l)
+{
+    if (l->cohesion > 0)
+        json_object_set_new(j, "cohesion",
+                            json_pack("{s:f, s:f}", "force", l->cohesion, "range", l->range));
+    if (law_wets(l))
+        json_object_set_new(j, "capillary",
+                            json_pack("{s:f, s:f, s:f}", "volume", l->volume, "tension", l->tension,
+                                      "wetting", l->wetting));
+    if (law_rolls(l))
+        json_object_set_new(j, "rolling",
+                            json_pack("{s:f, s:f}", "mu_r", l->mu_r, "mu_p", l->mu_p));
+    if (!law_adheres(l)) return;
+    json_t *a = json_pack("{s:f, s:f, s:f, s:f, s:f, s:f}", "c_n", l->cn, "c_t", l->ct, "w", l->w,
+                          "eta", l->eta, "area", l->area, "beta", l->beta);
+    json_object_set_new(a, l->forever ? "forever" : "made",
+                        l->forever ? json_true() : json_real(l->made));
+    json_object_set_new(j, "adhesion", a);
+}
+
 static json_t *material(const struct packing *p)
 {
     json_t *list = json_array();
     for (int32_t a = 0; a < p->kinds; a++)
         for (int32_t b = a; b < p->kinds; b++) {
             int32_t k = a * p->kinds + b;
-            json_array_append_new(list, json_pack("{s:[s,s], s:f, s:f, s:f}", "pair",
-                                                  p->kind_name[a], p->kind_name[b], "mu", p->mu[k],
-                                                  "e_n", p->en[k], "e_t", p->et[k]));
+            json_t *j =
+                json_pack("{s:[s,s], s:f, s:f, s:f}", "pair", p->kind_name[a], p->kind_name[b],
+                          "mu", p->mu[k], "e_n", p->en[k], "e_t", p->et[k]);
+            if (p->law) add_law(j, &p->law[k]);
+            json_array_append_new(list, j);
         }
     return list;
 }
@@ -126,6 +150,10 @@ static json_t *stress(const struct packing *p, const struct contacts *s)
         vec3 f = v3_axpy(v3_axpy(v3_scale(r[0], c->n), r[1], c->t1), r[2], contact_t2(c));
         double length = p->radius[c->a] + p->radius[c->b] + c->gap;
         vec3 branch = v3_scale(length / (p->dt * volume), c->n);
+        if (contact_shaped(p, c)) {
+            vec3 b = v3_add(p->x[c->b], cell_shift(p->cell.edge, c->shift));
+            branch = v3_scale(1 / (p->dt * volume), v3_sub(b, p->x[c->a]));
+        }
         sum[0] = v3_axpy(sum[0], f.x, branch), sum[1] = v3_axpy(sum[1], f.y, branch);
         sum[2] = v3_axpy(sum[2], f.z, branch);
     }
@@ -172,6 +200,7 @@ static void show_particles(const struct packing *p)
         json_object_set_new(j, "step", json_integer(p->step));
         json_object_set_new(j, "id", json_integer(p->id[i]));
         json_object_set_new(j, "kind", json_string(p->kind_name[p->kind[i]]));
+        if (p->shape) json_object_set_new(j, "shape", json_string(p->shapes.s[p->shape[i]].name));
         json_object_set_new(j, "radius", json_number(p->radius[i]));
         json_object_set_new(j, "mass", json_number(p->mass[i]));
         json_object_set_new(j, "x", json_vec(p->x[i]));
@@ -245,6 +274,22 @@ static void show_walls(const struct packing *p)
     }
 }
 
+/* What other laws do at a contact */
+static void add_tie(json_t *j, const struct tie *t)
+{
+    json_object_set_new(j, "pull", json_number(t->pull));
+    json_object_set_new(j, "beta", json_number(t->beta));
+    json_object_set_new(j, "wet", json_boolean(t->state & TIE_WET));
+    if (t->beta > 0) {
+        json_object_set_new(j, "stiffness", json_numbers(t->stiff, 2));
+        json_object_set_new(j, "jump", json_numbers(t->jump, 3));
+    }
+    if (t->mu_r > 0 || t->mu_p > 0) {
+        json_object_set_new(j, "mu_r", json_number(t->mu_r));
+        json_object_set_new(j, "mu_p", json_number(t->mu_p));
+    }
+}
+
 static void show_contacts(const struct frame *f)
 {
     static const char *const status[] = { "free", "stick", "slide" };
@@ -265,10 +310,13 @@ static void show_contacts(const struct frame *f)
         json_object_set_new(j, "mu", json_number(c->mu));
         json_object_set_new(j, "e_n", json_number(c->en));
         json_object_set_new(j, "e_t", json_number(c->et));
+        if (f->contacts.tie) add_tie(j, &f->contacts.tie[i]);
         const struct found *found = f->contacts.found ? &f->contacts.found[i] : NULL;
         if (found) {
             json_object_set_new(j, "r", json_numbers(found->r, 3));
             json_object_set_new(j, "u", json_numbers(found->u, 3));
+            if (f->contacts.moment)
+                json_object_set_new(j, "moment", json_numbers(f->contacts.moment[i], 3));
             json_object_set_new(j, "status", json_string(status[found->status % 3]));
         }
         json_line(j);

@@ -2,15 +2,22 @@
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/tool_filter.h"
+#include "io/behind.h"
 #include "io/reader.h"
 #include "io/writer.h"
 #include "scene/flow.h"
 
+#include <malloc.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
+
+enum {
+    KEEP_BLOCK = 1 << 25, /* bytes of a block of memory that is kept, at most: no more can be had */
+    KEEP_MEMORY = 1 << 28 /* bytes that are kept */
+};
 
 static int64_t steps = 1;
 static struct cli_every every = { 1, 0 };
@@ -130,6 +137,7 @@ static void tell(const struct report *r, int64_t made, double since)
 struct run {
     struct frame f;
     struct writer *out;
+    struct behind *behind; /* NULL: one thread makes the steps, and writes */
     struct flow flow;
     struct neighbours near;
     struct step_opt o;
@@ -144,13 +152,24 @@ static void flow(struct run *r)
     if (changed) neighbours_free(&r->near);
 }
 
-/* Makes one step; false where its solve has diverged, and the bodies have not moved. */
-static bool advance(struct run *r)
+/* Is the frame after the k-th step of this run one to keep, at time t? By seconds: the first at or after
+   each multiple of them, wherever the run began. */
+static bool is_kept(double t, double dt, int64_t k)
+{
+    if (every.steps) return k % every.steps == 0;
+    double now = t / every.seconds, before = (t - dt) / every.seconds;
+    return floor(now + 1e-6) > floor(before + 1e-6); // times are sums of dt, with their rounding
+}
+
+/* Makes one step, the k-th; false where its solve has diverged, and the bodies have not moved. */
+static bool advance(struct run *r, int64_t k)
 {
     struct why why = { 0 };
     struct frame *f = &r->f;
     struct report *rep = &f->report;
     flow(r);
+    const struct packing *p = &f->packing;
+    r->o.bare = !options.log && k < steps && !is_kept(p->t + p->dt, p->dt, k);
     if (step_advance(&f->packing, &f->contacts, &r->near, &r->o, rep, &why)) die_why(&why);
     f->reported = f->moved = true;
     count(rep);
@@ -161,23 +180,15 @@ static bool advance(struct run *r)
 static void write_frame(struct run *r)
 {
     struct why why = { 0 };
-    if (writer_frame(r->out, &r->f, &why)) die_why(&why);
+    if ((r->behind ? behind_frame(r->behind, &r->f, &why) : writer_frame(r->out, &r->f, &why)))
+        die_why(&why);
     r->f.packing.events.n = 0; // they are written
-}
-
-/* Is the frame after the k-th step of this run one to keep? By seconds: the first at or after each
-   multiple of them, wherever the run began. */
-static bool is_kept(const struct packing *p, int64_t k)
-{
-    if (every.steps) return k % every.steps == 0;
-    double now = p->t / every.seconds, before = (p->t - p->dt) / every.seconds;
-    return floor(now + 1e-6) > floor(before + 1e-6); // times are sums of dt, with their rounding
 }
 
 /* Writes the last step that could be made, the k-th, without its contacts, unless it is written. */
 static void keep_last(struct run *r, int64_t k)
 {
-    if (k && is_kept(&r->f.packing, k)) return;
+    if (k && is_kept(r->f.packing.t, r->f.packing.dt, k)) return;
     r->f.reported = r->f.detected = false;
     write_frame(r);
 }
@@ -203,11 +214,14 @@ static int64_t run(struct run *r)
     int64_t made = 0;
     bool good = true;
     double since = seconds_now();
+    struct why why = { 0 };
     begin(r);
-    while (made < steps && (good = advance(r))) {
+    // where there is no other thread, this one writes
+    if (options.threads > 1 && steps) behind_open(&r->behind, r->out, &(struct why){ 0 });
+    while (made < steps && (good = advance(r, made + 1))) {
         made++;
         tell(&r->f.report, made, since);
-        if (is_kept(&r->f.packing, made) || made == steps) write_frame(r);
+        if (is_kept(r->f.packing.t, r->f.packing.dt, made) || made == steps) write_frame(r);
     }
     if (!good) {
         warn("step %lld: the solve diverged, the run ends before it", (long long)r->f.report.step);
@@ -216,6 +230,7 @@ static int64_t run(struct run *r)
     if (!steps && !in_place) write_frame(r);
     neighbours_free(&r->near);
     flow_free(&r->flow);
+    if (behind_close(r->behind, &why)) die_why(&why);
     return made;
 }
 
@@ -280,6 +295,14 @@ static void start(struct run *r, struct reader *in)
     if (frame_note(&r->f, cli_history(), &why)) die_why(&why);
 }
 
+/* Memory of a step is kept for the next, and not given back and asked for page by page each time. */
+static void keep_memory(void)
+{
+#ifdef M_MMAP_THRESHOLD
+    mallopt(M_MMAP_THRESHOLD, KEEP_BLOCK), mallopt(M_TRIM_THRESHOLD, KEEP_MEMORY);
+#endif
+}
+
 int tool_main(int argc, char **argv)
 {
     struct reader *in;
@@ -287,6 +310,7 @@ int tool_main(int argc, char **argv)
     struct why why = { 0 };
     bool file = argc == 1 && strcmp(argv[0], "-") != 0;
     options_check();
+    keep_memory();
     if (cli_given(&until) && cli_given(&steps)) die_usage("-n and --until exclude each other");
     if (in_place && output) die_usage("-i and -o exclude each other");
     if (in_place && !file) die_usage("-i: one FILE, to which it appends");

@@ -1,4 +1,5 @@
 /* nsd-view: draws the bodies, one picture, a series or a film. */
+#include "base/team.h"
 #include "cli/cli.h"
 #include "cli/tool_filter.h"
 #include "draw/film.h"
@@ -9,7 +10,6 @@
 #include "io/reader.h"
 
 #include <ctype.h>
-#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,6 +63,8 @@ static const struct cli_option own[] = {
       .help = "the column of --values that is shown [the last]" },
     { CLI_FLAG, 0, "network", &over.network,
       .help = "forces: a line for each contact that pushes, as wide as its force" },
+    { CLI_FLAG, 0, "bonds", &over.bonds,
+      .help = "a line for each bond: green where it is whole, red where it breaks; blue: liquid" },
     { CLI_FLAG, 0, "contacts", &over.contacts,
       .help = "a dot at each contact, coloured by its status" },
     { CLI_ABOVE, 0, "force", &over.force, "N", .min = 0, .max = 1e300,
@@ -155,15 +157,15 @@ static void set_cut(struct view *v)
 static struct view view_of_options(void)
 {
     struct view v = { .samples = (int)samples,
-                      .threads = threads ? (int)threads : omp_get_num_procs(),
+                      .threads = threads ? (int)threads : team_cores(),
                       .angle = perspective,
                       .strays = strays,
                       .glass = boundaries == GLASS,
                       .follows = follow >= 0,
                       .follow = (int32_t)follow,
-                      .pale = (float)(cli_given(&pale)                ? pale
-                                      : over.network || over.contacts ? 0.6
-                                                                      : 0) };
+                      .pale = (float)(cli_given(&pale)                              ? pale
+                                      : over.network || over.contacts || over.bonds ? 0.6
+                                                                                    : 0) };
     double x[2];
     over.legend = !bare;
     if (table && !cli_given(&colour)) colour = COLOUR_VALUE;

@@ -7,12 +7,15 @@
 
 static struct unfinished *files;
 
-static void remove_all(void)
+static void remove_one(const struct unfinished *f)
 {
     struct stat st;
-    for (struct unfinished *f = files; f; f = f->next)
-        if (!lstat(f->path, &st) && st.st_dev == f->device && st.st_ino == f->inode)
-            unlink(f->path);
+    if (!lstat(f->path, &st) && st.st_dev == f->device && st.st_ino == f->inode) unlink(f->path);
+}
+
+static void remove_all(void)
+{
+    for (struct unfinished *f = files; f; f = f->next) remove_one(f);
 }
 
 void unfinished_begin(struct unfinished *f, const char *path, int fd)
@@ -35,4 +38,10 @@ void unfinished_done(struct unfinished *f)
             break;
         }
     f->path = NULL;
+}
+
+void unfinished_drop(struct unfinished *f)
+{
+    if (f->path) remove_one(f);
+    unfinished_done(f);
 }

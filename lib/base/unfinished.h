@@ -18,5 +18,7 @@ struct unfinished {
 void unfinished_begin(struct unfinished *file, const char *path, int fd);
 /* It is whole, or holds something worth keeping. */
 void unfinished_done(struct unfinished *file);
+/* It will not be: it is removed now. */
+void unfinished_drop(struct unfinished *file);
 
 #endif

@@ -91,6 +91,7 @@ static inline quat quat_rotation(vec3 a)
 {
     double h = v3_dot(a, a) / 4, s = 0.5; // the square of half the angle
     int halvings = 0;
+    if (h == 0) return (quat){ 1, s * a.x, s * a.y, s * a.z }; // as below: 20 quotients are saved
     for (; h > 0.25 && h < INFINITY; halvings++) h /= 4, s /= 2;
     s *= 1 - h / 6 * (1 - h / 20 * (1 - h / 42 * (1 - h / 72 * (1 - h / 110 * (1 - h / 156)))));
     double c = 1 - h / 132 * (1 - h / 182);

@@ -1,6 +1,9 @@
 /* bodies/balance.c: energy and momentum, summed over bodies and contacts [bodies/balance.h]. */
 #include "bodies/balance.h"
 
+#include "bodies/tie.h"
+#include "bodies/top.h"
+
 #include <stdlib.h>
 
 /* The mean velocities of a body over the step */
@@ -34,14 +37,16 @@ static void add_bodies(struct balance *b, const struct packing *p, const struct 
         if (!(m > 0)) continue;
         vec3 dv = v3_axpy(v3_scale(p->dt, p->g), 1 / m, sum->force[i]);
         if (sum->flow.changes) add_flow(b, p, sum, i, &dv);
-        vec3 dw = v3_scale(1 / p->inertia[i], sum->moment[i]);
-        vec3 v = v3_add(p->v[i], dv), w = v3_add(p->w[i], dw);
+        quat q = top_is(p, i) ? top_predict(p, i) : p->q[i]; // where the reactions act
+        vec3 dw = top_spin(p, i, q, sum->moment[i]), was = top_predict_spin(p, i, q);
+        vec3 v = v3_add(p->v[i], dv), w = v3_add(was, dw);
         vec3 x = v3_axpy(v3_axpy(p->x[i], before, p->v[i]), after, v);
-        mean[i] = (struct mean){ v3_axpy(p->v[i], 0.5, dv), v3_axpy(p->w[i], 0.5, dw) };
-        b->kinetic += 0.5 * (m * v3_dot(v, v) + p->inertia[i] * v3_dot(w, w));
+        mean[i] = (struct mean){ v3_axpy(p->v[i], 0.5, dv), v3_axpy(was, 0.5, dw) };
+        b->kinetic += 0.5 * (m * v3_dot(v, v) + top_energy2(p, i, q, w));
         b->potential -= m * v3_dot(p->g, x);
         b->change += 0.5 * m * (v3_dot(v, v) - v3_dot(p->v[i], p->v[i]));
-        b->change += 0.5 * p->inertia[i] * (v3_dot(w, w) - v3_dot(p->w[i], p->w[i]));
+        b->change += top_is(p, i) ? 0.5 * (top_energy2(p, i, q, w) - top_energy2(p, i, q, was))
+                                  : 0.5 * p->inertia[i] * (v3_dot(w, w) - v3_dot(p->w[i], p->w[i]));
         b->gravity += p->dt * m * v3_dot(p->g, mean[i].v);
         add_to(b->momentum, m, v);
     }
@@ -78,6 +83,31 @@ static void add_beyond(struct work *w, const struct packing *p, const struct imp
     }
 }
 
+/* What tied contacts store is not dissipated. */
+static void add_ties(struct balance *b, const struct packing *p, const struct contacts *s)
+{
+    for (int64_t i = 0; s->tie && i < s->n; i++) {
+        const struct tie *t = &s->tie[i];
+        if (!t->state && !(t->pull > 0)) continue;
+        struct tie_end end = tie_end(p, &s->c[i], t, &s->found[i]);
+        struct tie_account a = tie_account(p, &s->c[i], t, &end);
+        b->bond_change += a.change, b->bond_energy += a.stored, b->broken += a.broken;
+    }
+    b->dissipation -= b->bond_change + b->broken;
+}
+
+/* The moment on b turns it, and the other way round a. */
+static void add_moment(struct work *w, const struct packing *p, const struct contact *c,
+                       const double moment[3], const struct mean *mean)
+{
+    vec3 m = contact_in_space(c, moment);
+    *(p->mass[c->b] > 0 ? &w->free : &w->held) += v3_dot(m, mean[c->b].w);
+    if (c->a < 0)
+        w->held -= v3_dot(m, wall_spin(p, &p->wall[-1 - c->a]));
+    else
+        *(p->mass[c->a] > 0 ? &w->free : &w->held) -= v3_dot(m, mean[c->a].w);
+}
+
 static void add_contacts(struct balance *b, const struct packing *p, const struct contacts *s,
                          const struct impulses *sum, const struct mean *mean)
 {
@@ -90,14 +120,15 @@ static void add_contacts(struct balance *b, const struct packing *p, const struc
         const struct mean *mb = &mean[c->b];
         struct work w = { 0 };
         bool a_moves = c->a >= 0 && p->mass[c->a] > 0, b_moves = p->mass[c->b] > 0;
-        *(b_moves ? &w.free : &w.held) += v3_dot(o.f, mb->v) + o.lb * v3_dot(o.m, mb->w);
+        *(b_moves ? &w.free : &w.held) += v3_dot(o.f, mb->v) + push_turns_b(&o, mb->w);
         if (c->a >= 0) {
             const struct mean *ma = &mean[c->a];
-            *(a_moves ? &w.free : &w.held) += o.la * v3_dot(o.m, ma->w) - v3_dot(o.f, ma->v);
+            *(a_moves ? &w.free : &w.held) += push_turns_a(&o, ma->w) - v3_dot(o.f, ma->v);
         } else {
             w.held -= v3_dot(o.f, wall_held(p, &p->wall[-1 - c->a], c->x));
         }
         if (beyond) add_beyond(&w, p, sum, c, o.f);
+        if (s->moment) add_moment(&w, p, c, s->moment[i], mean);
         b->drives -= w.held;
         b->dissipation -= w.held + w.free;
         if (!a_moves && b_moves) add_to(b->impulse, 1, o.f);
@@ -114,6 +145,7 @@ int balance_step(struct balance *b, const struct packing *p, const struct contac
     add_bodies(b, p, sum, mean);
     add_freedoms(b, p, sum);
     add_contacts(b, p, s, sum, mean);
+    add_ties(b, p, s);
     free(mean);
     return 0;
 }

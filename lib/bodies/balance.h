@@ -14,6 +14,10 @@
  *                  step; and what the flow of the cell does to bodies
  *     dissipation  - sum r . (u+ + u-)/2
  *
+ * and where pairs are tied [bodies/tie.h] what their energy takes is no dissipation:
+ *
+ *     T+ - T- = gravity + loads + drives - dissipation - bond_change - broken
+ *
  * Each of the four is a sum of its own, none a difference of the others. Momentum changes by the
  * weight, dt sum m g, and by the impulse of boundaries, fixed bodies and the cell's flow. Where
  * the cell repeats, T- is not T+ of the step before: a body that is replaced by its image has
@@ -32,8 +36,11 @@ struct balance {
     double change;    /* J: of kinetic, in the step */
     double potential; /* J: - sum m g . x, after the step, of the bodies */
     double gravity, drives, loads, dissipation; /* J: in the step */
-    double momentum[3];                         /* N s: of the bodies, after the step */
-    double impulse[3]; /* N s: of boundaries and fixed bodies on the others, in the step */
+    /* J, where pairs are tied [bodies/tie.h]: of what is stored, in the step; what is stored then; what
+       broken bonds and joining liquid have given up, in the step */
+    double bond_change, bond_energy, broken;
+    double momentum[3]; /* N s: of the bodies, after the step */
+    double impulse[3];  /* N s: of boundaries and fixed bodies on the others, in the step */
 };
 
 /* Of the step that begins where the packing is, by the reactions of its contacts, whose sums are

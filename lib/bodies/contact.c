@@ -6,14 +6,20 @@
 
 void contacts_free(struct contacts *s)
 {
-    free(s->c), free(s->found);
+    free(s->c), free(s->found), free(s->tie), free(s->moment);
     *s = (struct contacts){ 0 };
 }
 
 void contacts_free_found(struct contacts *s)
 {
-    free(s->found);
-    s->found = NULL;
+    free(s->found), free(s->moment);
+    s->found = NULL, s->moment = NULL;
+}
+
+void contacts_free_tie(struct contacts *s)
+{
+    free(s->tie);
+    s->tie = NULL;
 }
 
 int contacts_alloc_found(struct contacts *s)
@@ -23,17 +29,34 @@ int contacts_alloc_found(struct contacts *s)
     return s->found ? 0 : -1;
 }
 
+int contacts_alloc_tie(struct contacts *s)
+{
+    contacts_free_tie(s);
+    s->tie = calloc((size_t)s->n + 1, sizeof *s->tie);
+    return s->tie ? 0 : -1;
+}
+
+int contacts_alloc_moment(struct contacts *s)
+{
+    free(s->moment);
+    s->moment = calloc((size_t)s->n + 1, sizeof *s->moment);
+    return s->moment ? 0 : -1;
+}
+
 int contacts_copy(struct contacts *to, const struct contacts *from)
 {
     *to = (struct contacts){ .n = from->n, .room = from->n };
     size_t n = (size_t)from->n;
     to->c = malloc((n + 1) * sizeof *to->c);
-    if (!to->c || (from->found && contacts_alloc_found(to))) {
+    if (!to->c || (from->found && contacts_alloc_found(to)) ||
+        (from->tie && contacts_alloc_tie(to)) || (from->moment && contacts_alloc_moment(to))) {
         contacts_free(to);
         return -1;
     }
     if (n) memcpy(to->c, from->c, n * sizeof *to->c);
     if (n && from->found) memcpy(to->found, from->found, n * sizeof *to->found);
+    if (n && from->moment) memcpy(to->moment, from->moment, n * sizeof *to->moment);
+    if (n && from->tie) memcpy(to->tie, from->tie, n * sizeof *to->tie);
     return 0;
 }
 
@@ -48,6 +71,19 @@ struct contact *contacts_add(struct contacts *s, int32_t a, int32_t b)
     struct contact *c = &s->c[s->n++];
     *c = (struct contact){ .a = a, .b = b };
     return c;
+}
+
+bool contacts_append(struct contacts *s, const struct contacts *more)
+{
+    if (s->n + more->n > s->room) {
+        int64_t room = s->room + s->room / 2 + more->n;
+        struct contact *c = realloc(s->c, (size_t)room * sizeof *c);
+        if (!c) return false;
+        s->c = c, s->room = room;
+    }
+    if (more->n) memcpy(s->c + s->n, more->c, (size_t)more->n * sizeof *more->c);
+    s->n += more->n;
+    return true;
 }
 
 void contact_basis(struct contact *c, int dim, vec3 n)
@@ -72,11 +108,19 @@ static bool same_place(const struct contact *c, const struct contact *d)
     return c->feature == d->feature && !memcmp(c->shift, d->shift, sizeof c->shift);
 }
 
+/* r of c = what `was` in the basis of o */
+static void turn_into(const struct contact *c, const struct contact *o, const double was[3],
+                      double r[3])
+{
+    vec3 t = v3_axpy(v3_scale(was[1], o->t1), was[2], contact_t2(o));
+    r[0] = was[0], r[1] = v3_dot(t, c->t1), r[2] = v3_dot(t, contact_t2(c));
+}
+
 int contacts_match(struct contacts *new, const struct contacts *old)
 {
     int64_t k = 0;
     if (!old->found) return 0;
-    if (contacts_alloc_found(new)) return -1;
+    if (contacts_alloc_found(new) || (old->moment && contacts_alloc_moment(new))) return -1;
     for (int64_t i = 0; i < new->n; i++) {
         const struct contact *c = &new->c[i];
         double *r = new->found[i].r;
@@ -87,8 +131,8 @@ int contacts_match(struct contacts *new, const struct contacts *old)
         if (l == old->n || !same_pair(&old->c[l], c)) continue;
         const struct contact *o = &old->c[l];
         const double *was = old->found[l].r;
-        vec3 t = v3_axpy(v3_scale(was[1], o->t1), was[2], contact_t2(o));
-        r[0] = was[0], r[1] = v3_dot(t, c->t1), r[2] = v3_dot(t, contact_t2(c));
+        turn_into(c, o, was, r);
+        if (old->moment) turn_into(c, o, old->moment[l], new->moment[i]);
     }
     return 0;
 }
@@ -111,10 +155,30 @@ static const char *contact_trouble(const struct contact *c, const struct found *
     return NULL;
 }
 
+static bool not_negative(double x)
+{
+    return x >= 0 && isfinite(x);
+}
+
+static const char *tie_trouble(const struct tie *t)
+{
+    if (!not_negative(t->pull) || !not_negative(t->offset) || !not_negative(t->jump[0]) ||
+        !isfinite(t->jump[1]) || !isfinite(t->jump[2]))
+        return "its pull, offset or jump is out of range";
+    if (!not_negative(t->stiff[0]) || !not_negative(t->stiff[1]) || !(t->beta >= 0 && t->beta <= 1))
+        return "its stiffness or beta is out of range";
+    if (!not_negative(t->mu_r) || !not_negative(t->mu_p))
+        return "mu_r and mu_p must not be negative";
+    return t->state >= 0 && t->state < TIE_STATES ? NULL : "its tie has no such state";
+}
+
 int contacts_check(const struct contacts *s, int64_t bodies, int32_t walls, struct why *why)
 {
     for (int64_t i = 0; i < s->n; i++) {
         const char *what = contact_trouble(&s->c[i], s->found ? &s->found[i] : NULL, bodies, walls);
+        for (int k = 0; k < 3 && s->moment; k++)
+            if (!isfinite(s->moment[i][k])) what = "moment is not finite";
+        if (!what && s->tie) what = tie_trouble(&s->tie[i]);
         if (what) return why_set(why, EX_DATAERR, "contact %lld: %s", (long long)i, what);
     }
     return 0;

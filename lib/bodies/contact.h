@@ -26,21 +26,46 @@ struct found {
     int8_t status; /* enum local_status */
 };
 
+/* Of a contact's tie: what is kept of it, and what is new in this step */
+enum { TIE_WET = 1, TIE_BONDED = 2, TIE_NEW_BRIDGE = 4, TIE_STATES = 8 };
+
+/* What laws beyond friction and restitution do at a contact [bodies/tie.h]. Apart, so that it takes
+   memory only where there are such laws. */
+struct tie {
+    double pull;       /* N: f_c */
+    double stiff[2];   /* N/m: S beta^2 c_n, S beta^2 c_t */
+    double jump[3];    /* m: d, in the contact's basis */
+    double beta;       /* intensity of adhesion at the beginning of the step */
+    double offset;     /* m/s: what Signorini's condition adds to u_n, because the pair is apart */
+    double mu_r, mu_p; /* m: rolling and pivoting friction */
+    int8_t state;      /* TIE_... */
+};
+
 /* Sorted by (a, b, feature, shift) with boundaries first; each key occurs once. */
 struct contacts {
     int64_t n, room;     /* contacts; how many c has memory for */
     struct contact *c;   /* [n] */
     struct found *found; /* [n]; NULL: not solved */
+    double (*moment)[3]; /* [n] N m s: on b, in (n, t1, t2); NULL: not solved, or without moments */
+    struct tie *tie;     /* [n]; NULL: friction and restitution are all */
 };
 
 void contacts_free(struct contacts *contacts);
 /* found[n], all zero, in place of the old one; -1 when memory is short. */
 int contacts_alloc_found(struct contacts *contacts);
+/* moment[n], likewise */
+int contacts_alloc_moment(struct contacts *contacts);
+/* tie[n], all zero, in place of the old ones; -1 when memory is short. */
+int contacts_alloc_tie(struct contacts *contacts);
+void contacts_free_tie(struct contacts *contacts);
+/* found and moment */
 void contacts_free_found(struct contacts *contacts);
 /* to = a deep copy of from; to need not be initialised; -1 when memory is short. */
 int contacts_copy(struct contacts *to, const struct contacts *from);
 /* Appends a contact, zero but for a and b; NULL when memory is short. */
 struct contact *contacts_add(struct contacts *contacts, int32_t a, int32_t b);
+/* Appends more contacts, unsolved ones; false when memory is short. */
+bool contacts_append(struct contacts *contacts, const struct contacts *more);
 
 /* Do bodies and walls exist, are numbers finite and in range, bases orthonormal (to 1e-6)?
    Returns 0, or EX_DATAERR with the first contact that fails. */
@@ -61,7 +86,7 @@ static inline vec3 contact_in_space(const struct contact *c, const double r[3])
     return v3_axpy(v3_axpy(normal, r[1], c->t1), r[2], contact_t2(c));
 }
 
-/* new->found[].r = the reactions of old, turned into the bases of new, for pairs that are in both,
+/* new->found[].r = the reactions of old (and moments, where it has any), turned into the bases of new, for pairs that are in both,
    and 0 for others. Leaves new as it is when old is not solved. -1 when memory is short. */
 int contacts_match(struct contacts *new, const struct contacts *old);
 

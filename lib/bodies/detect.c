@@ -1,9 +1,18 @@
-/* bodies/detect.c: gaps and points of contact of balls and planes. */
+/* bodies/detect.c: gaps and points of contact of balls; bodies of other shapes: detect_shapes.c. */
 #include "bodies/detect.h"
 
+#include "base/team.h"
+#include "bodies/detect_shapes.h"
 #include "bodies/kinematics.h"
+#include "bodies/tie.h"
+#include "bodies/top.h"
 
 #include <stdlib.h>
+
+enum {
+    SOME = 512,  /* bodies whose places on a curved boundary are worth a thread: 50 us of work, */
+    MANY = 16384 /* and bodies at a plane, or pairs */
+};
 
 /* The law of a pair of kinds of material */
 static void set_law(struct contact *c, const struct packing *p, int32_t one, int32_t other)
@@ -26,14 +35,67 @@ static bool add_touch(struct contacts *out, const struct packing *p, int32_t w, 
     return true;
 }
 
-/* The bodies at x and a plane, where it is at time t; false when memory is short. */
-static bool add_plane(struct contacts *out, const struct packing *p, int32_t w, double t,
-                      const vec3 *x, double gap)
+/* What contacts are sought of: the bodies at x, the cell's edges at edge (m; NULL: it does not repeat), the
+   boundaries where they are at time t (s) */
+struct sought {
+    const struct packing *p;
+    const vec3 *x, *edge;
+    double t, gap;
+    const struct neighbours *near;
+    const struct placed *shaped; /* NULL: all are balls */
+    int32_t wall;                /* the one in hand */
+};
+
+/* Adds those of first .. end-1, bodies or pairs of near ones; false when memory is short. */
+typedef bool find_text(struct contacts *out, const struct sought *o, int64_t first, int64_t end);
+
+/* Parts of a search: their contacts, one after another, are those of the whole. */
+struct parts {
+    const struct sought *o;
+    find_text *find;
+    int64_t n, parts;
+    struct contacts *found; /* [parts] */
+    _Atomic bool failed;
+};
+
+static void find_parts(void *arg, int64_t first, int64_t end)
 {
-    vec3 at = wall_at(p, &p->wall[w], t), n = wall_normal(p, &p->wall[w], t);
-    for (int64_t i = 0; i < p->n; i++) {
+    struct parts *s = arg;
+    for (int64_t k = first; k < end; k++)
+        if (!s->find(&s->found[k], s->o, s->n * k / s->parts, s->n * (k + 1) / s->parts))
+            s->failed = true;
+}
+
+/* All of 0 .. n-1, in parts of at least `least` where there are threads for them */
+static bool find_all(struct contacts *out, const struct sought *o, int64_t n, int64_t least,
+                     find_text *find)
+{
+    struct parts s = { o, find, n, 4 * (int64_t)team_size(), NULL, false };
+    if (team_size() == 1 || n < 2 * least) return find(out, o, 0, n);
+    if (!(s.found = calloc((size_t)s.parts, sizeof *s.found))) return false;
+    team_share(team_size(), s.parts, 1, find_parts, &s);
+    for (int64_t k = 0; k < s.parts; k++) {
+        if (!contacts_append(out, &s.found[k])) s.failed = true;
+        contacts_free(&s.found[k]);
+    }
+    free(s.found);
+    return !s.failed;
+}
+
+static bool add_plane(struct contacts *out, const struct sought *o, int64_t first, int64_t end)
+{
+    const struct packing *p = o->p;
+    const int32_t w = o->wall;
+    const vec3 *x = o->x;
+    const double gap = o->gap;
+    vec3 at = wall_at(p, &p->wall[w], o->t), n = wall_normal(p, &p->wall[w], o->t);
+    for (int64_t i = first; i < end; i++) {
         struct touch touch = { n, v3_dot(v3_sub(x[i], at), n), 0 };
         if (!(touch.distance - p->radius[i] <= gap) || p->mass[i] == 0) continue;
+        if (o->shaped && packing_shape(p, i)) {
+            if (!detect_shapes_wall(out, o->shaped, w, i, o->t, gap, NULL)) return false;
+            continue;
+        }
         if (!add_touch(out, p, w, i, x[i], &touch)) return false;
     }
     return true;
@@ -41,16 +103,24 @@ static bool add_plane(struct contacts *out, const struct packing *p, int32_t w, 
 
 /* The same of any other shape. Balls are brought to where the shape is described, and what they touch
    back from there. */
-static bool add_shape(struct contacts *out, const struct packing *p, int32_t w, double t,
-                      const vec3 *x, double gap, const struct surface *surface)
+static bool add_shape(struct contacts *out, const struct sought *o, int64_t first, int64_t end)
 {
+    const struct packing *p = o->p;
+    const int32_t w = o->wall;
+    const vec3 *x = o->x;
+    const double gap = o->gap;
     const struct wall *wall = &p->wall[w];
-    struct pose pose = wall_pose(p, wall, t);
+    const struct surface *surface = wall->shape == BOUNDARY_MESH ? &o->near->surface[w] : NULL;
+    struct pose pose = wall_pose(p, wall, o->t);
     struct touch touch[TOUCHES_MOST];
-    for (int64_t i = 0; i < p->n; i++) {
+    for (int64_t i = first; i < end; i++) {
         double r = p->radius[i];
         vec3 c = v3_sub(quat_turn_back(pose.q, v3_sub(x[i], pose.shift)), wall->x);
         if (p->mass[i] == 0) continue;
+        if (o->shaped && packing_shape(p, i)) {
+            if (!detect_shapes_wall(out, o->shaped, w, i, o->t, gap, surface)) return false;
+            continue;
+        }
         int n = surface ? surface_touches(surface, c, r + gap, touch)
                         : boundary_nearest(wall, p->dim, c, r, touch);
         for (int k = 0; k < n; k++) {
@@ -65,7 +135,7 @@ static bool add_shape(struct contacts *out, const struct packing *p, int32_t w, 
 /* False when memory is short. */
 static bool add_ball_contact(struct contacts *out, const struct packing *p,
                              const struct neighbours *near, const struct pair *pair, const vec3 *x,
-                             const vec3 edge[3], double gap)
+                             const vec3 edge[3], double gap, const struct placed *shaped)
 {
     int32_t a = pair->a, b = pair->b;
     int8_t shift[3] = { 0 };
@@ -76,6 +146,8 @@ static bool add_ball_contact(struct contacts *out, const struct packing *p,
     }
     double radii = p->radius[a] + p->radius[b], most = radii + gap, d2 = v3_dot(d, d);
     if (d2 > most * most * (1 + 1e-12)) return true; // clearly apart: no square root needed
+    if (shaped && (packing_shape(p, a) || packing_shape(p, b)))
+        return detect_shapes_pair(out, shaped, a, b, shift, v3_sub(d, v3_sub(x[b], x[a])), gap);
     double distance = sqrt(d2), g = distance - radii;
     if (!(g <= gap)) return true;
     struct contact *c = contacts_add(out, a, b);
@@ -90,24 +162,50 @@ static bool add_ball_contact(struct contacts *out, const struct packing *p,
     return true;
 }
 
-/* The bodies at x, the cell's edges at edge (m), the walls where they are at time t (s) */
-static int detect(struct contacts *out, const struct packing *p, const vec3 *x, const vec3 edge[3],
-                  double t, double gap, struct neighbours *kept, struct why *why)
+/* From i on, the first entry that is not of the pair of bodies before it: what two bodies and their images
+   have for contacts is sorted together. */
+static int64_t next_bodies(const struct neighbours *s, int64_t i)
 {
+    while (i > 0 && i < s->n && s->pair[i].a == s->pair[i - 1].a &&
+           s->pair[i].b == s->pair[i - 1].b)
+        i++;
+    return i;
+}
+
+/* Pairs of near bodies, the first and last of the part whole */
+static bool add_pairs(struct contacts *out, const struct sought *o, int64_t first, int64_t end)
+{
+    end = next_bodies(o->near, end);
+    for (int64_t i = next_bodies(o->near, first); i < end; i++)
+        if (!add_ball_contact(out, o->p, o->near, &o->near->pair[i], o->x, o->edge, o->gap,
+                              o->shaped))
+            return false;
+    return true;
+}
+
+/* The bodies at x and q, the cell's edges at edge (m), the walls where they are at time t (s) */
+static int detect(struct contacts *out, const struct packing *p, const vec3 *x, const quat *q,
+                  const vec3 edge[3], double t, double gap, struct neighbours *kept,
+                  struct why *why)
+{
+    struct placed placed = { 0 }, *shaped = p->shape ? &placed : NULL;
     struct neighbours once = { 0 }, *near = kept ? kept : &once;
-    bool stored = true, images = cell_repeats(&p->cell);
-    out->n = 0, contacts_free_found(out);
+    const vec3 *edges = cell_repeats(&p->cell) ? edge : NULL;
+    struct sought o = { p, x, edges, t, gap, near, shaped, 0 };
+    bool stored = true;
+    out->n = 0, contacts_free_found(out), contacts_free_tie(out);
     int e = neighbours_find(near, p, x, edge, gap, kept, why);
     if (!e) e = neighbours_surfaces(near, p, why);
-    for (int32_t w = p->walls - 1; !e && stored && w >= 0; w--) {
-        const struct wall *wall = &p->wall[w];
-        bool plane = wall->shape == BOUNDARY_PLANE, mesh = wall->shape == BOUNDARY_MESH;
+    if (!e && shaped) e = placed_init(shaped, p, x, q, why);
+    for (o.wall = p->walls - 1; !e && stored && o.wall >= 0; o.wall--) {
+        const struct wall *wall = &p->wall[o.wall];
+        bool plane = wall->shape == BOUNDARY_PLANE;
         if (!wall_there(wall, t)) continue;
-        stored = plane ? add_plane(out, p, w, t, x, gap)
-                       : add_shape(out, p, w, t, x, gap, mesh ? &near->surface[w] : NULL);
+        stored =
+            find_all(out, &o, p->n, plane && !shaped ? MANY : SOME, plane ? add_plane : add_shape);
     }
-    for (int64_t i = 0; !e && stored && i < near->n; i++)
-        stored = add_ball_contact(out, p, near, &near->pair[i], x, images ? edge : NULL, gap);
+    if (!e && stored) stored = find_all(out, &o, near->n, shaped ? SOME : MANY, add_pairs);
+    placed_free(&placed);
     neighbours_free(&once);
     return e || stored ? e : why_set(why, EX_SOFTWARE, "no memory for the contacts");
 }
@@ -117,7 +215,7 @@ int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3
 {
     vec3 edge[3];
     cell_predict(&p->cell, t - p->t, edge);
-    return detect(out, p, x, edge, t, gap, kept, why);
+    return detect(out, p, x, p->q, edge, t, gap, kept, why);
 }
 
 /*
@@ -130,6 +228,8 @@ static double meeting_reach(const struct packing *p)
     double speed = 0, small = INFINITY;
     for (int64_t i = 0; i < p->n; i++)
         speed = fmax(speed, v3_norm(p->v[i])), small = fmin(small, p->radius[i]);
+    for (int64_t i = 0; i < p->n && p->shape; i++) // a corner is faster than its body
+        speed = fmax(speed, v3_norm(p->v[i]) + p->radius[i] * v3_norm(p->w[i]));
     for (int32_t w = 0; w < p->walls; w++) speed = fmax(speed, wall_top_speed(p, &p->wall[w]));
     return fmin(p->dt * (2 * speed + packing_calm(p)), 0.5 * small);
 }
@@ -142,12 +242,18 @@ static bool meets(const struct packing *p, const struct contact *c)
     return c->gap <= p->dt * (approach + calm) && (c->en == 0 || approach <= calm);
 }
 
-/* Keeps the contacts with at most this gap, and those that may close theirs. */
+/* Keeps the contacts with at most this gap, those that may close theirs where the law sees gaps, and
+   those that other laws hold. */
 static void keep_meeting(struct contacts *s, const struct packing *p, double gap)
 {
     int64_t n = 0;
-    for (int64_t i = 0; i < s->n; i++)
-        if (s->c[i].gap <= gap || meets(p, &s->c[i])) s->c[n++] = s->c[i];
+    bool sees = overlap_sees_gaps(p->overlap);
+    for (int64_t i = 0; i < s->n; i++) {
+        bool held = s->tie && tie_holds(&s->tie[i]);
+        if (!(s->c[i].gap <= gap || held || (sees && meets(p, &s->c[i])))) continue;
+        if (s->tie) s->tie[n] = s->tie[i];
+        s->c[n++] = s->c[i];
+    }
     s->n = n;
 }
 
@@ -155,14 +261,22 @@ int detect_contacts(struct contacts *out, const struct packing *p, double gap,
                     struct neighbours *kept, struct why *why)
 {
     vec3 *x = malloc(((size_t)p->n + 1) * sizeof *x);
-    if (!x) return why_set(why, EX_SOFTWARE, "no memory for the contacts");
+    quat *q = p->shape ? malloc(((size_t)p->n + 1) * sizeof *q) : NULL;
+    if (!x || (p->shape && !q)) {
+        free(x), free(q);
+        return why_set(why, EX_SOFTWARE, "no memory for the contacts");
+    }
     for (int64_t i = 0; i < p->n; i++) x[i] = packing_predict(p, i);
+    for (int64_t i = 0; i < p->n && q; i++)
+        q[i] = packing_shape(p, i) ? top_predict(p, i) : p->q[i];
     vec3 edge[3];
     double ahead = (1 - p->theta) * p->dt;
     double reach = overlap_sees_gaps(p->overlap) ? fmax(gap, meeting_reach(p)) : gap;
+    if (p->law) reach = fmax(reach, ties_reach(p));
     cell_predict(&p->cell, ahead, edge);
-    int e = detect(out, p, x, edge, p->t + ahead, reach, kept, why);
+    int e = detect(out, p, x, q, edge, p->t + ahead, reach, kept, why);
+    if (!e && p->law) e = ties_find(out, p, why);
     if (!e && reach > gap) keep_meeting(out, p, gap);
-    free(x);
+    free(x), free(q);
     return e;
 }

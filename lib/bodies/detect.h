@@ -11,8 +11,8 @@
 /*
  * out = a contact for every pair of bodies, and of a body and a wall, whose gap at the predicted
  * positions is at most `gap` (m) and of which one can move; where the law sees gaps
- * [bodies/overlap.h], also for those that may close theirs within the step. Gaps: ball-ball and
- * ball-plane; in the plane disc-disc and disc-line. Where the cell repeats, b is any image of a body
+ * [bodies/overlap.h], also for those that may close theirs within the step. Balls meet in one place,
+ * bodies of other shapes in several [bodies/detect_shapes.h]. Where the cell repeats, b is any image of a body
  * that a meets.
  *
  * kept: neighbours of these bodies, kept from one step to the next to save the search; or NULL. The
@@ -21,7 +21,7 @@
 int detect_contacts(struct contacts *out, const struct packing *p, double gap,
                     struct neighbours *kept, struct why *why);
 
-/* The same with the bodies at x[n] (m), walls and cell where they are at time t (s). */
+/* The same with the bodies at x[n] (m), turned as they are, walls and cell where they are at time t (s). */
 int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3 *x, double t,
                        double gap, struct neighbours *kept, struct why *why);
 

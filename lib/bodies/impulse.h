@@ -12,6 +12,8 @@
 struct push {
     vec3 f, m;     /* N s: on b; N s: -n x f, which turns a by la and b by lb */
     double la, lb; /* m: lever arms along n */
+    bool shaped;   /* arms are any vectors: these moments act */
+    vec3 ma, mb;   /* N m s: on a and on b */
 };
 
 struct impulses {
@@ -28,12 +30,27 @@ struct impulses {
 static inline struct push push_of(const struct packing *p, double ahead, const vec3 edge[3],
                                   const struct contact *c, const double r[3])
 {
-    struct push o;
+    struct push o = { .shaped = contact_shaped(p, c) };
     vec3 t2 = contact_t2(c);
-    arms_of(p, c, ahead, edge, &o.la, &o.lb);
     o.f = v3_axpy(v3_axpy(v3_scale(r[0], c->n), r[1], c->t1), r[2], t2);
+    if (o.shaped) {
+        struct arms arm = arm_vectors(p, c, ahead, edge);
+        o.ma = v3_cross(o.f, arm.a), o.mb = v3_cross(arm.b, o.f);
+        return o;
+    }
+    arms_of(p, c, ahead, edge, &o.la, &o.lb);
     o.m = v3_axpy(v3_scale(r[2], c->t1), -r[1], t2); // -n x r
     return o;
+}
+
+/* J: what it does at b, and at a, in turning with the angular velocity w */
+static inline double push_turns_b(const struct push *o, vec3 w)
+{
+    return o->shaped ? v3_dot(o->mb, w) : o->lb * v3_dot(o->m, w);
+}
+static inline double push_turns_a(const struct push *o, vec3 w)
+{
+    return o->shaped ? v3_dot(o->ma, w) : o->la * v3_dot(o->m, w);
 }
 
 /* Of all contacts, in the step that begins where the packing is, or, ended, that ends there; then

@@ -27,11 +27,43 @@ static inline void arms_of(const struct packing *p, const struct contact *c, dou
     *lb = p->radius[c->b] + (c->a < 0 ? 0 : 0.5 * c->gap);
 }
 
-/* m/s: n . (v_b - v_a), with the velocities that the bodies have now; for balls that is u_n */
+/* Whether a body of the contact has another shape than a ball: its arms are any vectors. */
+static inline bool contact_shaped(const struct packing *p, const struct contact *c)
+{
+    return p->shape && (p->shape[c->b] > 0 || (c->a >= 0 && p->shape[c->a] > 0));
+}
+
+/* m: from the centres of a and b to the point of contact, b the image that a meets; 0 of a wall, whose
+   velocity is that of the point */
+struct arms {
+    vec3 a, b;
+};
+
+static inline struct arms arm_vectors(const struct packing *p, const struct contact *c,
+                                      double ahead, const vec3 edge[3])
+{
+    struct arms o = { { 0, 0, 0 }, { 0, 0, 0 } };
+    if (!contact_shaped(p, c)) {
+        double la, lb;
+        arms_of(p, c, ahead, edge, &la, &lb);
+        return (struct arms){ v3_scale(la, c->n), v3_scale(-lb, c->n) };
+    }
+    vec3 xb = v3_axpy(p->x[c->b], ahead, p->v[c->b]);
+    o.b = v3_sub(c->x, v3_add(xb, cell_shift(edge, c->shift)));
+    if (c->a >= 0) o.a = v3_sub(c->x, v3_axpy(p->x[c->a], ahead, p->v[c->a]));
+    return o;
+}
+
+/* m/s: n . (v_b - v_a), with the velocities that the bodies have now; which is u_n */
 static inline double opening_of(const struct packing *p, const struct contact *c)
 {
     vec3 va = c->a < 0 ? wall_velocity(p, &p->wall[-1 - c->a], c->x) : p->v[c->a];
     vec3 vb = v3_add(p->v[c->b], cell_shift(p->cell.rate, c->shift));
+    if (contact_shaped(p, c)) { // arms from where the bodies are: half a step makes no difference
+        struct arms o = arm_vectors(p, c, 0, p->cell.edge);
+        vb = v3_add(vb, v3_cross(p->w[c->b], o.b));
+        if (c->a >= 0) va = v3_add(va, v3_cross(p->w[c->a], o.a));
+    }
     return v3_dot(v3_sub(vb, va), c->n);
 }
 

@@ -1,14 +1,19 @@
 /* bodies/neighbours.c: the search of pairs in the grids, and how long a list of them serves. */
 #include "bodies/neighbours.h"
 
+#include "base/team.h"
 #include "bodies/grid.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum {
-    KEEP_STEPS = 8, /* steps that a list is meant to serve, all at the speed of the fastest body */
+    KEEP_STEPS = 8, /* steps that a list is meant to serve, all at the speed of the fastest body; */
+    KEEP_LEAST = 3, /* no list is kept that would serve fewer */
+    SEEKERS = 512,  /* bodies whose search is worth a thread: 100 us */
+    SOME = 16384    /* and bodies whose way is */
 };
 /* What a list may reach further than was asked, in mean radii: */
 static const double MIN_SPARE = 0.02, /* when (nearly) nothing moves */
@@ -230,26 +235,77 @@ static bool pairs_sort(struct neighbours *s)
     return true;
 }
 
+/* The bodies of one grid that look for others, in parts */
+struct search {
+    const struct packing *p;
+    const struct grid *g;    /* [level + 1] */
+    const struct lattice *c; /* NULL: nothing repeats */
+    int level;
+    pthread_mutex_t lock; /* of what follows */
+    struct neighbours *out;
+    bool failed;
+};
+
+/* The pairs of a part join the others: in any order, for they are sorted in the end. */
+static bool pairs_join(struct neighbours *s, struct neighbours *part)
+{
+    if (!s->n) { // all of them, mostly
+        free(s->pair);
+        s->pair = part->pair, s->n = part->n, s->room = part->room;
+        part->pair = NULL;
+        return true;
+    }
+    if (s->n + part->n > crowd(s)) return s->n = crowd(s), false;
+    if (s->n + part->n > s->room) {
+        int64_t room = s->room + s->room / 2 + part->n;
+        struct pair *p = realloc(s->pair, (size_t)room * sizeof *p);
+        if (!p) return false;
+        s->pair = p, s->room = room;
+    }
+    if (part->n) memcpy(s->pair + s->n, part->pair, (size_t)part->n * sizeof *part->pair);
+    s->n += part->n;
+    return true;
+}
+
+static void search_some(void *arg, int64_t first, int64_t end)
+{
+    struct search *o = arg;
+    const struct grid *g = o->g;
+    const int l = o->level;
+    struct neighbours part = { .bodies = o->out->bodies };
+    bool found = true;
+    for (int64_t m = first; found && m < end; m++) {
+        const struct entry *e = &g[l].entry[m];
+        const struct seeker k = {
+            .p = o->p, .e = e, .x = e->x, .reach = o->out->reach, .out = &part
+        };
+        for (int b = 0; found && b < l; b++)
+            if (g[b].n) found = look_around(&k, &g[b]);
+        found = found && look_here(&k, &g[l], m);
+        for (int b = 0; o->c && found && b <= l; b++)
+            if (g[b].n) found = look_from_images(k, &g[b], b == l, o->c);
+    }
+    pthread_mutex_lock(&o->lock);
+    if (!pairs_join(o->out, &part) || !found) o->failed = true;
+    pthread_mutex_unlock(&o->lock);
+    free(part.pair);
+}
+
 /* c: NULL, nothing repeats */
 static bool make_list(struct neighbours *s, const struct packing *p, const vec3 *x,
                       const struct lattice *c)
 {
     struct grid g[LEVELS];
     memset(g, 0, sizeof g);
-    bool allocated = grids_build(g, p, x, s->reach);
+    struct search o = {
+        .p = p, .g = g, .c = c, .lock = PTHREAD_MUTEX_INITIALIZER, .out = s, .failed = false
+    };
+    o.failed = !grids_build(g, p, x, s->reach);
     s->n = 0;
-    for (int l = 0; allocated && l < LEVELS; l++)
-        for (int64_t m = 0; allocated && m < g[l].n; m++) {
-            const struct entry *e = &g[l].entry[m];
-            const struct seeker k = { .p = p, .e = e, .x = e->x, .reach = s->reach, .out = s };
-            for (int b = 0; allocated && b < l; b++)
-                if (g[b].n) allocated = look_around(&k, &g[b]);
-            allocated = allocated && look_here(&k, &g[l], m);
-            for (int b = 0; c && allocated && b <= l; b++)
-                if (g[b].n) allocated = look_from_images(k, &g[b], b == l, c);
-        }
+    for (o.level = 0; !o.failed && o.level < LEVELS; o.level++)
+        team_share(team_size(), g[o.level].n, SEEKERS, search_some, &o);
     grids_free(g);
-    return allocated && pairs_sort(s);
+    return !o.failed && pairs_sort(s);
 }
 
 /* ---- from step to step ---- */
@@ -308,30 +364,87 @@ static bool list_serves_cell(const struct neighbours *s, const struct packing *p
     return true;
 }
 
+/* The ways of bodies since a list was made */
+struct ways {
+    const struct neighbours *s;
+    const vec3 *x;
+    vec3 common;          /* m: a way that all have gone, which brings no two nearer */
+    double most;          /* m: that each may have gone beyond it */
+    pthread_mutex_t lock; /* of what follows */
+    vec3 lo, hi;          /* m: the box of all ways */
+    bool far;             /* some body has gone further */
+};
+
+static vec3 least_of(vec3 a, vec3 b)
+{
+    return v3(a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z);
+}
+
+static vec3 most_of(vec3 a, vec3 b)
+{
+    return v3(a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z);
+}
+
+static void look_at_ways(void *arg, int64_t first, int64_t end)
+{
+    struct ways *o = arg;
+    vec3 lo = v3(INFINITY, INFINITY, INFINITY), hi = v3_scale(-1, lo);
+    bool far = false;
+    for (int64_t i = first; i < end; i++) {
+        vec3 d = v3_sub(o->x[i], o->s->listed[i]), beyond = v3_sub(d, o->common);
+        lo = least_of(lo, d), hi = most_of(hi, d);
+        far |= !(v3_dot(beyond, beyond) <= o->most * o->most);
+    }
+    pthread_mutex_lock(&o->lock);
+    o->lo = least_of(o->lo, lo), o->hi = most_of(o->hi, hi);
+    if (far) o->far = true;
+    pthread_mutex_unlock(&o->lock);
+}
+
 /* Has the list still every pair with at most this gap (m)? Yes if no body has moved by half of what
-   the list reaches further. */
+   the list reaches further; what all bodies move, as those that fall, does not count. */
 static bool list_serves(const struct neighbours *s, const struct packing *p, const vec3 *x,
                         const vec3 edge[3], double gap)
 {
     if (cell_repeats(&p->cell)) return list_serves_cell(s, p, x, edge, gap);
-    double most = 0.49 * (s->reach - gap); // not 0.5: a margin for rounding
-    if (!s->listed || most < 0) return false;
-    for (int64_t i = 0; i < s->bodies; i++) {
-        vec3 d = v3_sub(x[i], s->listed[i]);
-        if (!(v3_dot(d, d) <= most * most)) return false;
-    }
-    return true;
+    struct ways o = { .s = s,
+                      .x = x,
+                      .most = 0.49 * (s->reach - gap), // not 0.5: a margin for rounding
+                      .lock = PTHREAD_MUTEX_INITIALIZER,
+                      .lo = v3(INFINITY, INFINITY, INFINITY),
+                      .hi = v3(-INFINITY, -INFINITY, -INFINITY) };
+    if (!s->listed || o.most < 0) return false;
+    team_share(team_size(), s->bodies, SOME, look_at_ways, &o);
+    if (!o.far) return true;
+    o.common = v3_scale(0.5, v3_add(o.lo, o.hi)), o.far = false;
+    if (!(v3_norm(v3_sub(o.hi, o.lo)) <= 4 * o.most)) return false;
+    team_share(team_size(), s->bodies, SOME, look_at_ways, &o);
+    return !o.far;
 }
 
-/* m/s: the fastest body, where the cell repeats beyond the flow that its edges make: by how much two
-   bodies near each other may differ at most, and half of it */
+/* m/s: the fastest body beyond a velocity that all share: by how much two bodies may differ at most, and
+   half of it */
+static double fastest_of_all(const struct packing *p)
+{
+    vec3 lo = v3(INFINITY, INFINITY, INFINITY), hi = v3_scale(-1, lo);
+    double v2 = 0, beyond2 = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        v2 = fmax(v2, v3_dot(p->v[i], p->v[i]));
+        lo = least_of(lo, p->v[i]), hi = most_of(hi, p->v[i]);
+    }
+    vec3 common = v3_scale(0.5, v3_add(lo, hi));
+    for (int64_t i = 0; i < p->n; i++) {
+        vec3 d = v3_sub(p->v[i], common);
+        beyond2 = fmax(beyond2, v3_dot(d, d));
+    }
+    return sqrt(fmin(v2, beyond2));
+}
+
+/* The same, where the cell repeats beyond the flow that its edges make */
 static double fastest(const struct packing *p)
 {
     double v2 = 0;
-    if (!cell_repeats(&p->cell)) {
-        for (int64_t i = 0; i < p->n; i++) v2 = fmax(v2, v3_dot(p->v[i], p->v[i]));
-        return sqrt(v2);
-    }
+    if (!cell_repeats(&p->cell)) return fastest_of_all(p);
     vec3 inverse[3], mean = v3(0, 0, 0);
     cell_inverse(p->cell.edge, inverse);
     for (int pass = 0; pass < 2; pass++)
@@ -354,8 +467,9 @@ static double spare_reach(const struct packing *p)
     double way = fastest(p);
     for (int k = 0; cell_repeats(&p->cell) && k < 3; k++) // what the edges' motion takes from it
         way += v3_norm(p->cell.rate[k]) / v3_norm(p->cell.edge[k]) * largest_radius(p);
-    double s = fmax(2 * KEEP_STEPS * p->dt * way, MIN_SPARE * r);
-    return s <= MAX_SPARE * r ? s : 0;
+    double step = 2 * p->dt * way, s = fmax(KEEP_STEPS * step, MIN_SPARE * r);
+    if (s <= MAX_SPARE * r) return s;
+    return KEEP_LEAST * step <= MAX_SPARE * r ? MAX_SPARE * r : 0;
 }
 
 /* Where the list is made: images and edges, for the steps that it is to serve */

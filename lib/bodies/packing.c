@@ -39,18 +39,20 @@ int packing_init(struct packing *p, int dim, int64_t n, struct why *why)
 static void kinds_free(struct packing *p)
 {
     for (int32_t k = 0; p->kind_name && k < p->kinds; k++) free(p->kind_name[k]);
-    free(p->kind_name), free(p->mu), free(p->en), free(p->et);
-    p->kind_name = NULL, p->mu = p->en = p->et = NULL, p->kinds = 0;
+    free(p->kind_name), free(p->mu), free(p->en), free(p->et), free(p->law);
+    p->kind_name = NULL, p->mu = p->en = p->et = NULL, p->law = NULL, p->kinds = 0;
 }
 
 void packing_free(struct packing *p)
 {
     free(p->radius), free(p->mass), free(p->inertia), free(p->id), free(p->kind);
     free(p->x), free(p->q), free(p->v), free(p->w);
-    free(p->wall), free(p->scene), free(p->image);
+    free(p->wall), free(p->scene), free(p->image), free(p->shape);
+    shapes_free(&p->shapes);
     drives_free(&p->drives), drives_free(&p->pushes), mesh_free(&p->mesh);
     free(p->poured), free(p->removed);
     events_free(&p->events);
+    bonds_free(&p->bonds);
     cell_free(&p->cell);
     kinds_free(p);
     memset(p, 0, sizeof *p);
@@ -79,6 +81,20 @@ int packing_alloc_kinds(struct packing *p, int32_t k, struct why *why)
         allocated = (p->kind_name[p->kinds] = strdup(name));
     }
     return allocated ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d kinds", k);
+}
+
+int packing_alloc_laws(struct packing *p, struct why *why)
+{
+    free(p->law);
+    p->law = array((int64_t)p->kinds * p->kinds, sizeof *p->law);
+    return p->law ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d kinds", p->kinds);
+}
+
+bool packing_rolls(const struct packing *p)
+{
+    for (int32_t k = 0; p->law && k < p->kinds * p->kinds; k++)
+        if (law_rolls(&p->law[k])) return true;
+    return false;
 }
 
 int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals, struct why *why)
@@ -113,6 +129,8 @@ int packing_resize(struct packing *p, int64_t n, struct why *why)
         !resize(&p->x, had, n, sizeof *p->x) || !resize(&p->q, had, n, sizeof *p->q) ||
         !resize(&p->v, had, n, sizeof *p->v) || !resize(&p->w, had, n, sizeof *p->w))
         return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
+    if (p->shape && !resize(&p->shape, had, n, sizeof *p->shape))
+        return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
     for (int64_t i = had; i < n; i++) p->id[i] = -1, p->q[i].w = 1;
     p->n = n;
     return 0;
@@ -125,6 +143,13 @@ int packing_alloc_images(struct packing *p, struct why *why)
     return p->image ? 0 : why_set(why, EX_SOFTWARE, "no memory for the images");
 }
 
+int packing_alloc_shapes(struct packing *p, struct why *why)
+{
+    free(p->shape);
+    p->shape = array(p->n, sizeof *p->shape);
+    return p->shape ? 0 : why_set(why, EX_SOFTWARE, "no memory for the shapes");
+}
+
 int packing_copy(struct packing *to, const struct packing *p, struct why *why)
 {
     if (packing_init(to, p->dim, p->n, why)) return why->status;
@@ -135,6 +160,9 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     to->seed = p->seed;
     if (cell_copy(&to->cell, &p->cell) || (p->image && packing_alloc_images(to, why))) goto fail;
     if (p->image) memcpy(to->image, p->image, n * sizeof *p->image);
+    if (shapes_copy(&to->shapes, &p->shapes, why) || (p->shape && packing_alloc_shapes(to, why)))
+        goto fail;
+    if (p->shape) memcpy(to->shape, p->shape, n * sizeof *p->shape);
     memcpy(to->radius, p->radius, n * sizeof *p->radius);
     memcpy(to->mass, p->mass, n * sizeof *p->mass);
     memcpy(to->inertia, p->inertia, n * sizeof *p->inertia);
@@ -151,6 +179,9 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     memcpy(to->mu, p->mu, k2 * sizeof *p->mu);
     memcpy(to->en, p->en, k2 * sizeof *p->en);
     memcpy(to->et, p->et, k2 * sizeof *p->et);
+    if (p->law && packing_alloc_laws(to, why)) goto fail;
+    if (p->law) memcpy(to->law, p->law, k2 * sizeof *p->law);
+    if (bonds_copy(&to->bonds, &p->bonds, why)) goto fail;
     for (int32_t i = 0; i < p->kinds; i++) {
         free(to->kind_name[i]);
         if (!(to->kind_name[i] = strdup(p->kind_name[i]))) goto fail;
@@ -183,6 +214,9 @@ static const char *body_trouble(const struct packing *p, int64_t i)
         return "orientation is not a unit quaternion";
     if (p->dim == 2 && (p->x[i].z != 0 || p->v[i].z != 0 || p->w[i].x != 0 || p->w[i].y != 0))
         return "leaves the plane z = 0, and dim is 2";
+    if (p->shape && (p->shape[i] < 0 || p->shape[i] >= p->shapes.n)) return "has no such shape";
+    if (p->dim == 2 && packing_shape(p, i) && (q.x != 0 || q.y != 0))
+        return "turns out of the plane, and dim is 2";
     if (p->kind[i] < 0 || p->kind[i] >= p->kinds) return "kind has no material";
     return NULL;
 }
@@ -368,6 +402,8 @@ int packing_check(const struct packing *p, struct why *why)
             return why_set(why, EX_DATAERR, pair, a, b, "mu must not be negative");
         if (!(p->en[i] >= 0 && p->en[i] <= 1 && p->et[i] >= 0 && p->et[i] <= 1))
             return why_set(why, EX_DATAERR, pair, a, b, "restitution must lie in [0, 1]");
+        const char *trouble = p->law ? law_trouble(&p->law[i]) : NULL;
+        if (trouble) return why_set(why, EX_DATAERR, pair, a, b, trouble);
     }
     for (int64_t i = 0; i < p->n; i++) {
         const char *trouble = body_trouble(p, i);
@@ -388,6 +424,7 @@ int packing_check(const struct packing *p, struct why *why)
         if (trouble) return why_set(why, EX_DATAERR, "push %d: %s", i, trouble);
     }
     if (mesh_check(&p->mesh, p->dim, why)) return why->status;
+    if (bonds_check(&p->bonds, p->n, p->walls, why)) return why->status;
     return check_cell(p, why);
 }
 
@@ -400,6 +437,15 @@ struct cell_flow packing_flow(const struct packing *p)
     for (int k = 0; k < 3; k++) gain[k] = v3_sub(gain[k], p->cell.rate[k]);
     cell_flow_init(&f, &p->cell, half, gain);
     return f;
+}
+
+void packing_solid_shape(int dim, const struct shape *s, double radius, double density,
+                         double *mass, double *inertia)
+{
+    const double *m = s->moment;
+    double mean = dim == 2 ? m[2] : (m[0] + m[1] + m[2]) / 3;
+    *mass = density * s->volume * (dim == 2 ? radius * radius : radius * radius * radius);
+    *inertia = *mass * radius * radius * mean;
 }
 
 void packing_solid(int dim, double radius, double density, double *mass, double *inertia)

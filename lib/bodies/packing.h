@@ -9,12 +9,15 @@
 
 #include "base/vec.h"
 #include "base/why.h"
+#include "bodies/bond.h"
 #include "bodies/boundary.h"
 #include "bodies/cell.h"
 #include "bodies/drive.h"
+#include "bodies/law.h"
 #include "bodies/mesh.h"
 #include "bodies/overlap.h"
 #include "bodies/passage.h"
+#include "bodies/shape.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -31,13 +34,16 @@ struct packing {
 
     double *radius;      /* [n] m */
     double *mass;        /* [n] kg; 0: immovable or prescribed */
-    double *inertia;     /* [n] kg m^2 */
+    double *inertia;     /* [n] kg m^2; the mean of the principal moments */
     int32_t *id;         /* [n] a number that stays with the body */
     int32_t *kind;       /* [n] row of the material tables */
     vec3 *x;             /* [n] m */
     quat *q;             /* [n] orientation */
     vec3 *v, *w;         /* [n] m/s, rad/s */
+    int32_t *shape;      /* [n] row of shapes; NULL: all are balls */
     int32_t (*image)[3]; /* [n] edges to add to x for the way gone; NULL: nothing repeats */
+
+    struct shapes shapes; /* of bodies; radius is that of the ball around them */
 
     int32_t walls;
     struct wall *wall;    /* [walls] */
@@ -47,9 +53,11 @@ struct packing {
     struct cell cell;
 
     int32_t kinds;
-    char **kind_name; /* [kinds] */
-    double *mu;       /* [kinds * kinds], symmetric: friction */
-    double *en, *et;  /* [kinds * kinds], symmetric: normal and tangential restitution */
+    char **kind_name;   /* [kinds] */
+    double *mu;         /* [kinds * kinds], symmetric: friction */
+    double *en, *et;    /* [kinds * kinds], symmetric: normal and tangential restitution */
+    struct law *law;    /* [kinds * kinds], symmetric: what is beyond these; NULL: nothing */
+    struct bonds bonds; /* what lasts of pairs by these laws */
 
     /* Grains come and go [scene/flow.h] where there are pours or removals. */
     int32_t pours, removals;
@@ -70,6 +78,9 @@ void packing_free(struct packing *p);
 int packing_alloc_walls(struct packing *p, int32_t k, struct why *why);
 int packing_alloc_kinds(struct packing *p, int32_t k, struct why *why);
 
+/* law[kinds * kinds], all zero, in place of the old ones. Returns 0 or EX_SOFTWARE. */
+int packing_alloc_laws(struct packing *p, struct why *why);
+
 /* Accounts of so many pours and removals, all zero, in place of the old ones. Returns 0 or
    EX_SOFTWARE. */
 int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals, struct why *why);
@@ -80,11 +91,17 @@ static inline bool packing_varies(const struct packing *p)
     return p->pours > 0 || p->removals > 0;
 }
 
+/* Has any pair of kinds rolling or pivoting friction? */
+bool packing_rolls(const struct packing *p);
+
 /* Room for n bodies; those beyond the present ones are at rest at the origin, their id -1. Fewer: the
    last ones are cut off. Returns 0 or EX_SOFTWARE, where nothing has changed. */
 int packing_resize(struct packing *p, int64_t n, struct why *why);
 /* image[n], all zero, in place of the old one. Returns 0 or EX_SOFTWARE. */
 int packing_alloc_images(struct packing *p, struct why *why);
+
+/* shape[n], all balls, in place of the old one. Returns 0 or EX_SOFTWARE. */
+int packing_alloc_shapes(struct packing *p, struct why *why);
 
 /* to = a deep copy of from; to need not be initialised. Returns 0 or EX_SOFTWARE. */
 int packing_copy(struct packing *to, const struct packing *from, struct why *why);
@@ -140,6 +157,15 @@ static inline int packing_movable(const struct packing *p, int32_t a, int32_t b,
     if (p->mass[b] > 0) body[k++] = b;
     return k;
 }
+
+/* The shape of body i; NULL: a ball or disc */
+static inline const struct shape *packing_shape(const struct packing *p, int64_t i)
+{
+    return p->shape && p->shape[i] > 0 ? &p->shapes.s[p->shape[i]] : NULL;
+}
+/* Mass and inertia of a shape of this radius, as packing_solid() */
+void packing_solid_shape(int dim, const struct shape *s, double radius, double density,
+                         double *mass, double *inertia);
 
 /* Mass (kg) and inertia (kg m^2) of a solid ball or disc: radius in m, density in kg m^-3, of a
    disc in kg m^-2. */

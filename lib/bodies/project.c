@@ -1,13 +1,15 @@
 /* bodies/project.c: overlaps taken out of positions [bodies/project.h]. */
 #include "bodies/project.h"
 
+#include "base/team.h"
 #include "bodies/freedom.h"
 #include "bodies/kinematics.h"
 
 #include <stdlib.h>
 
 enum {
-    SWEEPS = 10 /* a step, at most: a tenth of what its solve costs */
+    SOME = 2048, /* contacts that are worth a thread */
+    SWEEPS = 10  /* a step, at most: a tenth of what its solve costs */
 };
 
 /* Of the smaller radius: contacts keep an overlap, so that rounding does not open them */
@@ -78,20 +80,39 @@ static bool relax(const struct packing *p, struct part *k, const struct contact 
     return fabs(more) * k->w > ENOUGH * k->slop;
 }
 
+/* Parts that are made */
+struct making {
+    const struct packing *p;
+    const struct contacts *s;
+    const struct displacements *o;
+    struct part *part;
+    _Atomic bool any; /* gap is below 0 */
+};
+
+static void make_some(void *arg, int64_t first, int64_t end)
+{
+    struct making *m = arg;
+    const struct displacements *o = m->o;
+    bool any = false;
+    for (int64_t i = first; i < end; i++) {
+        const struct contact *c = &m->s->c[i];
+        m->part[i] = part_of(m->p, c);
+        for (int32_t k = 0; k < o->freedoms.n; k++) {
+            double J = opens(o, k, c);
+            m->part[i].w += J * J / o->freedoms.f[k].mass;
+        }
+        any |= m->part[i].gap < 0;
+    }
+    if (any) m->any = true;
+}
+
 /* The parts; whether any gap is below 0 */
 static bool parts_make(const struct packing *p, const struct contacts *s,
                        const struct displacements *o, struct part *part)
 {
-    bool any = false;
-    for (int64_t i = 0; i < s->n; i++) {
-        part[i] = part_of(p, &s->c[i]);
-        for (int32_t k = 0; k < o->freedoms.n; k++) {
-            double J = opens(o, k, &s->c[i]);
-            part[i].w += J * J / o->freedoms.f[k].mass;
-        }
-        any |= part[i].gap < 0;
-    }
-    return any;
+    struct making m = { p, s, o, part, false };
+    team_share(team_size(), s->n, SOME, make_some, &m);
+    return m.any;
 }
 
 static void displace(struct packing *p, const struct displacements *o)

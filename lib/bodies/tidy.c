@@ -19,6 +19,20 @@ static void recount(struct packing *p, struct contacts *s, int32_t n, int to, in
         p->image[i][from] = add(p->image[i][from], (int64_t)n * p->image[i][to]);
     for (int64_t i = 0; s && i < s->n; i++)
         s->c[i].shift[from] = clamp(s->c[i].shift[from] + (int64_t)n * s->c[i].shift[to]);
+    for (int64_t i = 0; i < p->bonds.n; i++) {
+        int8_t *shift = p->bonds.bond[i].shift;
+        shift[from] = clamp(shift[from] + (int64_t)n * shift[to]);
+    }
+}
+
+/* The image of b that a meets, when both have been brought back into the cell */
+static void follow(const struct packing *p, const vec3 inverse[3], int32_t a, int32_t b,
+                   int8_t shift[3])
+{
+    int32_t of_a[3], of_b[3];
+    if (a < 0) return; // a plane is its own image
+    cell_wraps(&p->cell, inverse, p->x[a], of_a), cell_wraps(&p->cell, inverse, p->x[b], of_b);
+    for (int j = 0; j < 3; j++) shift[j] = clamp((int64_t)shift[j] + of_b[j] - of_a[j]);
 }
 
 void packing_tidy(struct packing *p, struct contacts *s)
@@ -30,13 +44,12 @@ void packing_tidy(struct packing *p, struct contacts *s)
     if (!cell_repeats(c)) return;
     while ((n = cell_recut(c, &to, &from))) recount(p, s, n, to, from);
     cell_inverse(c->edge, inverse);
-    for (int64_t i = 0; s && i < s->n; i++) {
-        struct contact *k = &s->c[i];
-        int32_t a[3], b[3];
-        if (k->a < 0) continue; // a plane is its own image
-        cell_wraps(c, inverse, p->x[k->a], a), cell_wraps(c, inverse, p->x[k->b], b);
-        for (int j = 0; j < 3; j++) k->shift[j] = clamp((int64_t)k->shift[j] + b[j] - a[j]);
+    for (int64_t i = 0; s && i < s->n; i++) follow(p, inverse, s->c[i].a, s->c[i].b, s->c[i].shift);
+    for (int64_t i = 0; i < p->bonds.n; i++) {
+        struct bond *x = &p->bonds.bond[i];
+        follow(p, inverse, x->a, x->b, x->shift);
     }
+    bonds_sort(&p->bonds);
     for (int64_t i = 0; i < p->n; i++) {
         int32_t w[3];
         cell_wraps(c, inverse, p->x[i], w);

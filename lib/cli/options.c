@@ -1,5 +1,6 @@
 #include "cli/options.h"
 
+#include "base/team.h"
 #include "io/reader.h"
 #include "io/report_json.h"
 
@@ -209,6 +210,7 @@ void options_check(void)
 {
     char names[100] = "";
     size_t n = 0;
+    team_set_size((int)options.threads);
     if (!options.paper || options.method) return;
     for (int k = 0; methods[k] && n < sizeof names; k++)
         n += (size_t)snprintf(names + n, sizeof names - n, "%s%s", k ? "|" : "", methods[k]->name);
@@ -286,7 +288,8 @@ void options_theta(struct packing *p, bool detected)
 void options_overlap(struct packing *p, bool detected)
 {
     enum overlap was = p->overlap, now = was;
-    if (!was && !detected) now = usual.overlap;
+    if (!was && !detected)
+        now = p->shape ? OVERLAP_GAP_PROJECT : usual.overlap; // corners that open
     if (options.paper) now = paper.overlap;
     now = OPTION(overlap, (int)now - 1) + 1;
     if (detected && overlap_sees_gaps(was) != overlap_sees_gaps(now))

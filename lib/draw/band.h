@@ -19,7 +19,9 @@ struct spot {
     vec3 x;   /* its centre */
     double r; /* its radius */
     int64_t body;
-    struct rgb own; /* the body's colour */
+    struct rgb own;            /* the body's colour */
+    const struct shape *shape; /* NULL: a ball or disc; else r is that of the ball around it, */
+    double dark; /* and this that of a ball of its volume, by which it darkens others */
 };
 
 /* A floor: the plane z = plane[0] + plane[1] x + plane[2] y inside a convex polygon. square[k] /

@@ -35,6 +35,7 @@ static void copy_body(struct packing *q, int64_t to, const struct packing *p, in
     q->x[to] = v3_add(p->x[i], by), q->q[to] = p->q[i], q->v[to] = p->v[i], q->w[to] = p->w[i];
     q->radius[to] = p->radius[i], q->mass[to] = p->mass[i], q->inertia[to] = p->inertia[i];
     q->id[to] = p->id[i], q->kind[to] = p->kind[i];
+    if (p->shape) q->shape[to] = p->shape[i];
 }
 
 /* Fills q, or counts only where it is NULL: the bodies, then their images. */
@@ -64,6 +65,10 @@ int images_append(struct packing *p, int64_t **of, struct why *why)
     packing_tidy(p, NULL);
     int64_t n = fill(NULL, NULL, p);
     if (packing_init(&q, p->dim, n, why)) return why->status;
+    if (p->shape && packing_alloc_shapes(&q, why)) {
+        packing_free(&q);
+        return why->status;
+    }
     *of = malloc(((size_t)n + 1) * sizeof **of);
     if (!*of) {
         packing_free(&q);
@@ -74,6 +79,7 @@ int images_append(struct packing *p, int64_t **of, struct why *why)
     struct packing all = *p;
     all.n = n, all.x = q.x, all.q = q.q, all.v = q.v, all.w = q.w, all.radius = q.radius;
     all.mass = q.mass, all.inertia = q.inertia, all.id = q.id, all.kind = q.kind, all.image = NULL;
+    all.shape = q.shape, q.shape = p->shape;
     q.n = p->n, q.x = p->x, q.q = p->q, q.v = p->v, q.w = p->w, q.radius = p->radius;
     q.mass = p->mass, q.inertia = p->inertia, q.id = p->id, q.kind = p->kind, q.image = p->image;
     *p = all;

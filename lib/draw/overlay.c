@@ -1,6 +1,8 @@
 /* draw/overlay.c: what cairo draws over a picture [draw/overlay.h]. */
 #include "draw/overlay.h"
 
+#include "bodies/kinematics.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,7 +45,10 @@ static void draw_push(cairo_t *cr, const struct view *v, const struct packing *p
 {
     double size;
     vec3 b = p->x[c->b], a = c->a >= 0 ? p->x[c->a] : c->x;
-    if (c->a >= 0) a = v3_sub(b, v3_scale(p->radius[c->a] + p->radius[c->b] + c->gap, c->n));
+    if (c->a >= 0 && contact_shaped(p, c))
+        a = v3_sub(p->x[c->a], cell_shift(p->cell.edge, c->shift));
+    else if (c->a >= 0)
+        a = v3_sub(b, v3_scale(p->radius[c->a] + p->radius[c->b] + c->gap, c->n));
     if (is_cut(v, a) || is_cut(v, b)) return;
     double width = share * WIDEST * longer_side(v);
     vec3 from = view_sees(v, a, &size), to = view_sees(v, b, &size);
@@ -65,6 +70,37 @@ static void draw_network(cairo_t *cr, const struct overlay *o, const struct view
             draw_push(cr, v, p, &s->c[i], &s->found[i], fmin(s->found[i].r[0] / p->dt / most, 1));
 }
 
+/* Whole bonds are green, those that break red; liquid alone is blue. */
+static void set_bond(cairo_t *cr, const struct bond *b)
+{
+    if (b->beta > 0)
+        cairo_set_source_rgb(cr, 0.84 - 0.74 * b->beta, 0.20 + 0.35 * b->beta,
+                             0.14 + 0.1 * b->beta);
+    else
+        cairo_set_source_rgb(cr, 0.20, 0.55, 0.90);
+}
+
+/* A line for each pair that is tied, as draw_push() has them, or from a boundary to the body's centre */
+static void draw_bonds(cairo_t *cr, const struct view *v, const struct packing *p)
+{
+    cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
+    for (int64_t i = 0; i < p->bonds.n; i++) {
+        const struct bond *k = &p->bonds.bond[i];
+        if (!(k->beta > 0) && !k->wet) continue;
+        double size, small = p->radius[k->b], length = p->radius[k->b] + k->gap;
+        if (k->a >= 0) small = fmin(small, p->radius[k->a]), length += p->radius[k->a];
+        vec3 b = p->x[k->b], a = v3_axpy(b, -length, k->n);
+        if (is_cut(v, a) || is_cut(v, b)) continue;
+        vec3 from = view_sees(v, a, &size), to = view_sees(v, b, &size);
+        if (!(size > 0)) continue;
+        set_bond(cr, k);
+        cairo_set_line_width(cr, fmax(0.25 * small * v->camera.scale, 1.2));
+        cairo_move_to(cr, from.x, from.y);
+        cairo_line_to(cr, to.x, to.y);
+        cairo_stroke(cr);
+    }
+}
+
 static void draw_contacts(cairo_t *cr, const struct view *v, const struct packing *p,
                           const struct contacts *s)
 {
@@ -82,12 +118,13 @@ static void draw_contacts(cairo_t *cr, const struct view *v, const struct packin
 void overlay_bodies(cairo_t *cr, const struct overlay *o, const struct view *v,
                     const struct packing *p, const struct contacts *s)
 {
-    if (!s) return;
+    if (!s && !o->bonds) return;
     cairo_save(cr);
     cairo_rectangle(cr, 0, 0, v->camera.width, v->camera.height);
     cairo_clip(cr);
-    if (o->network && s->found) draw_network(cr, o, v, p, s);
-    if (o->contacts) draw_contacts(cr, v, p, s);
+    if (o->network && s && s->found) draw_network(cr, o, v, p, s);
+    if (o->bonds) draw_bonds(cr, v, p);
+    if (o->contacts && s) draw_contacts(cr, v, p, s);
     cairo_restore(cr);
 }
 
@@ -260,7 +297,7 @@ int overlay_draw(const struct overlay *o, const struct view *v, const struct pac
 {
     int top = v->camera.height;
     if (view_draw(v, p, pic, why)) return why->status;
-    if (!o->network && !o->contacts && !o->legend) return 0;
+    if (!o->network && !o->contacts && !o->bonds && !o->legend) return 0;
     if (add_strip(pic, v, overlay_strip(o, pic->width), why)) {
         picture_free(pic);
         return why->status;

@@ -16,6 +16,7 @@
 struct overlay {
     bool network;  /* a line for each contact that pushes, as wide as its force */
     bool contacts; /* a dot at each contact, its colour the status */
+    bool bonds;    /* a line for each bond, its colour the intensity; and for each liquid bridge */
     bool legend;   /* a strip below: the palette, a length, the time */
     double force;  /* N: of the widest line; 0: the largest of the frame */
 };

@@ -1,7 +1,9 @@
 /* draw/raster.c: what is in front at each sample, band by band. */
 #include "draw/raster.h"
 
+#include "base/team.h"
 #include "draw/shade.h"
+#include "draw/sight.h"
 
 #include <stdlib.h>
 
@@ -21,9 +23,51 @@ static bool cut_ball(const struct cutting *c, double x, double y, double under, 
     return *z >= under;
 }
 
+/* A body of another shape: its normal, or in the plane how deep the sample lies in it, is known here, and
+   kept. */
+static void draw_shape(struct band *b, const struct raster *s, int64_t i)
+{
+    const struct spot *o = &s->spot[i];
+    struct patch t = band_patch(b, o->x.x, o->x.y, o->r);
+    quat q = s->q[o->body];
+    double unit = 1 / o->r;
+    vec3 right = quat_turn_back(q, v3_scale(unit, s->right)),
+         down = quat_turn_back(q, v3_scale(-unit, s->up)), toward = quat_turn_back(q, s->toward);
+    for (int y = t.y0; y < t.y1; y++)
+        for (int x = t.x0; x < t.x1; x++) {
+            size_t k = band_at(b, x, y);
+            const double *side = s->cutting.side;
+            struct sight line = {
+                v3_axpy(v3_scale(x + 0.5 - o->x.x, right), y + 0.5 - o->x.y, down), toward, INFINITY
+            };
+            double beside = side[0] * (x + 0.5) + side[1] * (y + 0.5) + side[3], at, z = o->x.z;
+            vec3 n = v3(0, 0, 1);
+            if (s->cutting.cuts && side[2] > 0) line.before = unit * (-beside / side[2] - o->x.z);
+            if (s->flat) {
+                n.x = o->r * sight_depth(o->shape, line.from);
+                if (n.x < 0) continue;
+            } else {
+                if (!sight_meets(o->shape, &line, &at, &n)) continue;
+                z += o->r * at;
+                if (s->cutting.cuts && !(side[2] > 0) && beside + side[2] * z > 0) continue;
+                n = v3_dot(n, n) > 0 ? quat_turn(q, n) : v3(0, 0, 0);
+            }
+            if (!(z > b->z[k])) continue;
+            b->z[k] = z, b->what[k] = i;
+            vec3 seen = v3(v3_dot(n, s->right), -v3_dot(n, s->up), v3_dot(n, s->toward));
+            if (s->flat) seen = n;
+            if (v3_dot(n, n) == 0) seen = s->cutting.n;
+            b->n[k] = (struct normal){ (float)seen.x, (float)seen.y, (float)seen.z };
+        }
+}
+
 static void draw_spot(struct band *b, const struct raster *s, int64_t i)
 {
     const struct spot *o = &s->spot[i];
+    if (o->shape) {
+        draw_shape(b, s, i);
+        return;
+    }
     struct patch t = band_patch(b, o->x.x, o->x.y, o->r);
     double r2 = o->r * o->r;
     for (int y = t.y0; y < t.y1; y++) {
@@ -147,27 +191,34 @@ static void band_draw(struct band *b, const struct raster *s, struct picture *p)
     shade_pixels(b, s, p);
 }
 
+/* The bands of a picture, which threads take one after another */
+struct bands {
+    const struct raster *s;
+    struct picture *p;
+    int rows; /* of pixels, a band */
+    _Atomic int next;
+    _Atomic bool failed; /* for want of memory */
+};
+
+static void draw_bands(void *arg, int me, int threads)
+{
+    struct bands *d = arg;
+    struct band b;
+    (void)me, (void)threads;
+    bool allocated = band_init(&b, d->s, d->rows * d->s->samples);
+    if (!allocated) d->failed = true;
+    for (int y; allocated && (y = atomic_fetch_add(&d->next, d->rows)) < d->p->height;) {
+        int end = y + d->rows < d->p->height ? y + d->rows : d->p->height;
+        b.y0 = y * d->s->samples, b.y1 = end * d->s->samples;
+        band_draw(&b, d->s, d->p);
+    }
+    band_free(&b);
+}
+
 int raster_draw(const struct raster *s, struct picture *p, struct why *why)
 {
     int rows = BAND_SAMPLES / (s->width * s->samples);
-    rows = rows < 1 ? 1 : rows > p->height ? p->height : rows; // of pixels
-    int bands = (p->height + rows - 1) / rows;
-    bool failed = false;
-#pragma omp parallel num_threads(s->threads)
-    {
-        struct band b;
-        bool allocated = band_init(&b, s, rows * s->samples);
-        if (!allocated) {
-#pragma omp atomic write
-            failed = true;
-        }
-#pragma omp for schedule(dynamic)
-        for (int i = 0; i < bands; i++) {
-            int end = (i + 1) * rows < p->height ? (i + 1) * rows : p->height;
-            b.y0 = i * rows * s->samples, b.y1 = end * s->samples;
-            if (allocated) band_draw(&b, s, p);
-        }
-        band_free(&b);
-    }
-    return failed ? why_set(why, EX_SOFTWARE, "no memory for the picture") : 0;
+    struct bands d = { s, p, rows < 1 ? 1 : rows > p->height ? p->height : rows, 0, false };
+    team_do(s->threads, draw_bands, &d);
+    return d.failed ? why_set(why, EX_SOFTWARE, "no memory for the picture") : 0;
 }

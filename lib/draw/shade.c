@@ -14,6 +14,7 @@ void shade_normals(struct band *b, const struct raster *s)
                 continue;
             }
             const struct spot *o = &s->spot[b->what[k]];
+            if (o->shape) continue; // it is there
             double i = 1 / o->r;
             *n = (struct normal){ (float)(i * (x + 0.5 - o->x.x)), (float)(i * (y + 0.5 - o->x.y)),
                                   (float)(i * (b->z[k] - o->x.z)) };
@@ -45,7 +46,7 @@ static void find_ranges(struct band *b)
 /* Adds what ball i hides of the sky over the samples t. */
 static void darken(struct band *b, const struct spot *o, int64_t i, struct patch t)
 {
-    double far2 = SHADE_REACH * SHADE_REACH * o->r * o->r;
+    double far2 = SHADE_REACH * SHADE_REACH * o->dark * o->dark;
     for (int y = t.y0; y < t.y1; y++) {
         double dy = o->x.y - (y + 0.5);
         size_t row = band_at(b, 0, y);
@@ -57,7 +58,7 @@ static void darken(struct band *b, const struct spot *o, int64_t i, struct patch
             double toward = b->n[k].x * dx + b->n[k].y * dy + b->n[k].z * dz;
             if (toward <= 0) continue;
             // (r/d)^2 less its value at the reach, so that the shadow ends smoothly
-            double part = o->r * o->r * (1 / d2 - 1 / far2);
+            double part = o->dark * o->dark * (1 / d2 - 1 / far2);
             b->dark[k] += (float)(toward / sqrt(d2) * fmin(part, 1));
         }
     }
@@ -71,7 +72,7 @@ void shade_near(struct band *b, const struct raster *s)
     for (int64_t k = 0; k < b->spots; k++) {
         int64_t i = b->spot[k];
         const struct spot *o = &s->spot[i];
-        double reach = SHADE_REACH * o->r;
+        double reach = SHADE_REACH * o->dark;
         if (o->r < 1) continue; // smaller than a sample can show
         struct patch t = band_patch(b, o->x.x, o->x.y, reach);
         int line = (t.y0 - b->y0) / SHADE_TILE;
@@ -128,7 +129,10 @@ static struct rgb ball_light(const struct band *b, const struct raster *s, size_
 {
     const struct spot *o = &s->spot[b->what[k]];
     struct normal n = b->n[k];
-    struct rgb own = paint_ball(s->paint, o->own, camera_to_body(t, s, o->body, n.x, -n.y, n.z));
+    bool facets = o->shape && o->shape->form == SHAPE_HULL; // which show themselves how it turns
+    vec3 at = camera_to_body(t, s, o->body, n.x, -n.y, n.z);
+    if (o->shape && o->shape->form == SHAPE_CAPSULE) at = v3(at.y, at.z, at.x); // poles at its ends
+    struct rgb own = facets ? o->own : paint_ball(s->paint, o->own, at);
     double lambert = fmax(0, n.x * lamp.x + n.y * lamp.y + n.z * lamp.z);
     double open = 1 / (1 + 2 * b->dark[k]);
     // Blinn: h is half way between the lamp and the viewer
@@ -139,9 +143,13 @@ static struct rgb ball_light(const struct band *b, const struct raster *s, size_
     return scaled(own, (float)light, (float)(0.16 * shine * open));
 }
 
-static struct rgb disc_light(const struct raster *s, const struct spot *o, double x, double y,
-                             struct turn *t)
+static struct rgb disc_light(const struct raster *s, const struct spot *o, float depth, double x,
+                             double y, struct turn *t)
 {
+    if (o->shape) { // a rim of 0.7 pixels
+        double least = fmin(0.3 * o->r, fmax(0.04 * o->r, s->samples * 0.7));
+        return scaled(o->own, depth < least ? 0.25F : 0.9F, 0);
+    }
     double dx = (x - o->x.x) / o->r, dy = (o->x.y - y) / o->r, d2 = dx * dx + dy * dy;
     struct rgb own = paint_disc(s->paint, o->own, camera_to_body(t, s, o->body, dx, dy, 0));
     double rim = 1 - fmax(0.08, s->samples * 0.7 / o->r); // at least 0.7 pixels
@@ -176,7 +184,7 @@ static struct rgb sample(const struct band *b, const struct raster *s, int x, in
     int64_t what = b->what[k];
     struct rgb c = what == NOTHING  ? s->background
                    : what <= GROUND ? ground_shown(b, s, k, x + 0.5, y + 0.5)
-                   : s->flat        ? disc_light(s, &s->spot[what], x + 0.5, y + 0.5, t)
+                   : s->flat        ? disc_light(s, &s->spot[what], b->n[k].x, x + 0.5, y + 0.5, t)
                                     : ball_light(b, s, k, t);
     if (what >= 0 && s->pale > 0) c = rgb_mix(c, s->background, s->pale);
     if (s->panes) c = behind_glass(c, &b->veil[k]);

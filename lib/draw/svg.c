@@ -7,6 +7,60 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A shape in one colour, wider by `rim` (pixels) all around: its core filled, and drawn with a round pen */
+static void draw_core(cairo_t *cr, const struct view *v, const struct packing *p, int64_t i,
+                      double rim)
+{
+    const struct shape *s = packing_shape(p, i);
+    double r = p->radius[i], scale;
+    int32_t corners = s->form == SHAPE_HULL ? s->corners : s->vertices;
+    for (int32_t k = 0; k < corners; k++) {
+        int32_t vertex = s->form == SHAPE_HULL ? s->corner[k] : k;
+        vec3 x = v3_axpy(p->x[i], r, quat_turn(p->q[i], s->vertex[vertex]));
+        vec3 at = view_sees(v, x, &scale);
+        if (s->form == SHAPE_CLUMP) {
+            cairo_arc(cr, at.x, at.y, s->ball[k] * r * scale + rim, 0, 2 * M_PI);
+            cairo_fill(cr);
+        } else {
+            (k ? cairo_line_to : cairo_move_to)(cr, at.x, at.y);
+        }
+    }
+    if (s->form == SHAPE_CLUMP) return;
+    cairo_set_line_width(cr, 2 * (s->round * r * scale + rim));
+    cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND), cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
+    if (s->form == SHAPE_HULL) cairo_close_path(cr), cairo_fill_preserve(cr);
+    if (s->round * r * scale + rim > 0)
+        cairo_stroke(cr);
+    else
+        cairo_new_path(cr);
+}
+
+static void draw_shape(cairo_t *cr, const struct view *v, const struct packing *p, int64_t i,
+                       struct rgb own, double r)
+{
+    const struct rgb dark = { 0.06F, 0.06F, 0.06F };
+    const struct shape *s = packing_shape(p, i);
+    double rim = fmin(0.08 * r, 0.8);
+    if (s->form != SHAPE_HULL || s->round * r > rim) {
+        overlay_colour(cr, dark), draw_core(cr, v, p, i, 0);
+        overlay_colour(cr, own), draw_core(cr, v, p, i, -rim);
+        return;
+    }
+    overlay_colour(cr, own);
+    draw_core(cr, v, p, i, 0); // a sharp one: its rim is drawn over it, half of it outside
+    overlay_colour(cr, dark);
+    cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
+    for (int32_t k = 0; k < s->corners; k++) {
+        double scale;
+        vec3 x = v3_axpy(p->x[i], p->radius[i], quat_turn(p->q[i], s->vertex[s->corner[k]]));
+        vec3 at = view_sees(v, x, &scale);
+        (k ? cairo_line_to : cairo_move_to)(cr, at.x, at.y);
+    }
+    cairo_close_path(cr);
+    cairo_set_line_width(cr, rim);
+    cairo_stroke(cr);
+}
+
 /* The disc, its half that was up when it was made paler, and its rim */
 static void draw_disc(cairo_t *cr, const struct view *v, const struct packing *p, int64_t i)
 {
@@ -17,6 +71,10 @@ static void draw_disc(cairo_t *cr, const struct view *v, const struct packing *p
         return;
     struct rgb own = paint_body(&v->paint, p, i);
     own = rgb_mix(own, v->background, v->pale);
+    if (packing_shape(p, i)) {
+        draw_shape(cr, v, p, i, own, r);
+        return;
+    }
     overlay_colour(cr, own);
     cairo_arc(cr, at.x, at.y, r, 0, 2 * M_PI);
     cairo_fill(cr);

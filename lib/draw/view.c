@@ -228,7 +228,11 @@ static int place_spots(struct raster *s, const struct view *v, const struct pack
         double r = fmax(k * near * p->radius[i], M_SQRT1_2); // so large that each has a sample
         if (!(near > 0 && fabs(x.z) < far && r < far)) continue;
         if (!(x.x + r > 0 && x.x - r < s->width && x.y + r > 0 && x.y - r < s->height)) continue;
-        s->spot[s->spots++] = (struct spot){ x, r, i, paint_body(&v->paint, p, i) };
+        const struct shape *shape = packing_shape(p, i);
+        double fill = shape ? shape->volume / p->shapes.s[0].volume : 1;
+        s->spot[s->spots++] = (struct spot){ x,     r,
+                                             i,     paint_body(&v->paint, p, i),
+                                             shape, shape ? r * cbrt(fill) : r };
     }
     return 0;
 }

@@ -37,7 +37,9 @@ int sheet_grains(struct sheet *s, const struct moment *m, struct why *why)
     double *v = sheet_real(s, "velocity", "xyz", why);
     double *w = sheet_real(s, "angular_velocity", "xyz", why);
     double *q = sheet_real(s, "orientation", "wxyz", why);
+    int32_t *shape = p->shape ? sheet_whole(s, "shape", "", why) : NULL;
     if (why->status) return why->status;
+    if (n && shape) memcpy(shape, p->shape, n * sizeof *shape);
     if (n) {
         memcpy(id, p->id, n * sizeof *id), memcpy(kind, p->kind, n * sizeof *kind);
         memcpy(radius, p->radius, n * sizeof *radius), memcpy(mass, p->mass, n * sizeof *mass);

@@ -1,8 +1,10 @@
 /*
  * export/stl.c: a moment as triangles, binary STL, in m: balls as icosahedra whose faces are divided
  * into four `detail` times, turned as the grains are; boundaries as their polygons. In the plane
- * there are discs of 48 corners.
+ * there are discs of 48 corners. Sharp hulls have the triangles of their faces, clumps those of their
+ * balls; on rounded shapes the corners of the ball's triangles are moved along its radii.
  */
+#include "draw/sight.h"
 #include "export/format.h"
 #include "export/sheet.h"
 
@@ -88,25 +90,95 @@ static void put_triangle(FILE *out, vec3 a, vec3 b, vec3 c)
     putc(0, out), putc(0, out);
 }
 
-static void put_ball(FILE *out, const struct packing *p, int64_t i, const struct ball *b)
+static void put_ball(FILE *out, vec3 x0, double r, quat q, const struct ball *b)
 {
     for (int64_t k = 0; k < b->n; k++) {
         vec3 x[3];
-        for (int c = 0; c < 3; c++)
-            x[c] = v3_axpy(p->x[i], p->radius[i], quat_turn(p->q[i], b->t[k].corner[c]));
+        for (int c = 0; c < 3; c++) x[c] = v3_axpy(x0, r, quat_turn(q, b->t[k].corner[c]));
         put_triangle(out, x[0], x[1], x[2]);
     }
 }
 
-static void put_disc(FILE *out, const struct packing *p, int64_t i)
+static void put_disc(FILE *out, vec3 x, double r)
 {
-    vec3 last = v3_add(p->x[i], v3(p->radius[i], 0, 0));
+    vec3 last = v3_add(x, v3(r, 0, 0));
     for (int k = 1; k <= DISC; k++) {
         double angle = 2 * M_PI * k / DISC;
-        vec3 next = v3_axpy(p->x[i], p->radius[i], v3(cos(angle), sin(angle), 0));
-        put_triangle(out, p->x[i], last, next);
+        vec3 next = v3_axpy(x, r, v3(cos(angle), sin(angle), 0));
+        put_triangle(out, x, last, next);
         last = next;
     }
+}
+
+/* ---- other shapes ---- */
+
+/* Where a ray from the centre of a shape leaves it */
+static vec3 leaves(const struct shape *s, int dim, vec3 along)
+{
+    const struct sight ray = { { 0, 0, 0 }, along, INFINITY };
+    vec3 n;
+    double t = 0, lo = 0, hi = 1;
+    if (dim == 3) return sight_meets(s, &ray, &t, &n) ? v3_scale(t, along) : v3(0, 0, 0);
+    for (int k = 0; k < 50; k++) {
+        t = 0.5 * (lo + hi);
+        *(sight_depth(s, v3_scale(t, along)) > 0 ? &lo : &hi) = t;
+    }
+    return v3_scale(t, along);
+}
+
+static bool is_sharp(const struct shape *s)
+{
+    return s->form == SHAPE_HULL && s->round == 0;
+}
+
+/* How many triangles a grain has */
+static int64_t grain_triangles(const struct packing *p, int64_t i, const struct ball *b)
+{
+    const struct shape *s = packing_shape(p, i);
+    int64_t round = p->dim == 2 ? DISC : b->n;
+    if (!s) return round;
+    if (s->form == SHAPE_CLUMP) return s->vertices * round;
+    return is_sharp(s) ? s->corners - 2 * s->faces : round;
+}
+
+static void put_shape(FILE *out, const struct packing *p, int64_t i, const struct ball *b)
+{
+    const struct shape *s = packing_shape(p, i);
+    double r = p->radius[i];
+    quat q = p->q[i];
+#define PLACED(v) v3_axpy(p->x[i], r, quat_turn(q, v))
+    for (int32_t f = 0; f < s->faces && is_sharp(s); f++)
+        for (int32_t k = s->first[f] + 2; k < s->first[f + 1]; k++)
+            put_triangle(out, PLACED(s->vertex[s->corner[s->first[f]]]),
+                         PLACED(s->vertex[s->corner[k - 1]]), PLACED(s->vertex[s->corner[k]]));
+    for (int32_t k = 0; k < s->vertices && s->form == SHAPE_CLUMP; k++) {
+        if (p->dim == 2)
+            put_disc(out, PLACED(s->vertex[k]), r * s->ball[k]);
+        else
+            put_ball(out, PLACED(s->vertex[k]), r * s->ball[k], q, b);
+    }
+    if (is_sharp(s) || s->form == SHAPE_CLUMP) return;
+    for (int64_t k = 0; k < b->n && p->dim == 3; k++) {
+        vec3 x[3];
+        for (int c = 0; c < 3; c++) x[c] = PLACED(leaves(s, 3, b->t[k].corner[c]));
+        put_triangle(out, x[0], x[1], x[2]);
+    }
+    for (int k = 0; k < DISC && p->dim == 2; k++) {
+        double one = 2 * M_PI * k / DISC, next = 2 * M_PI * (k + 1) / DISC;
+        put_triangle(out, p->x[i], PLACED(leaves(s, 2, v3(cos(one), sin(one), 0))),
+                     PLACED(leaves(s, 2, v3(cos(next), sin(next), 0))));
+    }
+#undef PLACED
+}
+
+static void put_grain(FILE *out, const struct packing *p, int64_t i, const struct ball *b)
+{
+    if (packing_shape(p, i))
+        put_shape(out, p, i, b);
+    else if (p->dim == 2)
+        put_disc(out, p->x[i], p->radius[i]);
+    else
+        put_ball(out, p->x[i], p->radius[i], p->q[i], b);
 }
 
 /* A convex polygon, as a fan */
@@ -139,12 +211,12 @@ static int stl(FILE *out, const struct moment *m, enum part part, bool first, st
         return why->status;
     }
     int64_t grains = part == PART_GRAINS ? p->n : 0;
-    int64_t n = grains * (p->dim == 2 ? DISC : b.n) + polygon_triangles(&walls);
+    int64_t n = polygon_triangles(&walls);
+    for (int64_t i = 0; i < grains; i++) n += grain_triangles(p, i, &b);
     if (n > UINT32_MAX) why_set(why, EX_DATAERR, "more triangles than STL can count");
     fprintf(out, "%-80s", "nsd: balls and walls in m");
     for (int k = 0; k < 4; k++) putc((int)(n >> 8 * k & 255), out);
-    for (int64_t i = 0; i < grains && !why->status; i++)
-        p->dim == 2 ? put_disc(out, p, i) : put_ball(out, p, i, &b);
+    for (int64_t i = 0; i < grains && !why->status; i++) put_grain(out, p, i, &b);
     put_polygons(out, &walls);
     sheet_free(&walls);
     free(b.t);

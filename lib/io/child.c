@@ -142,8 +142,9 @@ static int take(struct child *c, struct taker *t, struct why *why)
         begun = true;
         if (r.here > REQUEST_PIECE || r.here > t->size - t->done || (!r.here && t->done < t->size))
             return why_set(why, EX_DATAERR, "%.250s: an answer of another size", c->shared->where);
-        if (r.here && t->out)
-            memcpy((char *)t->out + t->done, c->shared->piece[pieces % 2], (size_t)r.here);
+        const unsigned char *piece = c->shared->piece[pieces % 2];
+        if (t->pour ? t->pour(t->out, piece, (size_t)r.here, why) : 0) return why->status;
+        if (r.here && t->out && !t->pour) memcpy((char *)t->out + t->done, piece, (size_t)r.here);
         t->done += r.here;
         if (t->done == t->size) return 0;
         if (!line_send(c->line, "", 1)) return child_gone(c, why);

@@ -77,6 +77,12 @@ static int read_bases(struct source *r, int64_t first, struct contacts *s, struc
     return e;
 }
 
+static int read_moments(struct source *r, int64_t first, struct contacts *s, struct why *why)
+{
+    if (contacts_alloc_moment(s)) return why_set(why, EX_SOFTWARE, "no memory for moments");
+    return source_rows(r, LAYOUT_MOMENT, COLUMN_F64, first, s->n, 3, s->moment, why);
+}
+
 int contact_rows_read(struct contact_rows *r, struct frame *f, struct why *why)
 {
     int64_t at = table_read_row(r->step, r->blocks, f->packing.step, r->last + 1), first;
@@ -98,16 +104,22 @@ int contact_rows_read(struct contact_rows *r, struct frame *f, struct why *why)
     bool solved = source_has(r->source, "/contacts/reaction");
     if (solved && contacts_alloc_found(s))
         return why_set(why, EX_SOFTWARE, "no memory for reactions");
+    if (f->packing.law && contacts_alloc_tie(s))
+        return why_set(why, EX_SOFTWARE, "no memory for the ties");
     if (table_read_columns(r->source, "/contacts", "", layout_contacts, first, s->n, s->c,
                            sizeof *s->c, why) ||
         read_bases(r->source, first, s, why) ||
         (cell_repeats(&f->packing.cell) &&
          table_read_columns(r->source, "/contacts", "", layout_shifts, first, s->n, s->c,
                             sizeof *s->c, why)) ||
-        (f->packing.mesh.elements && table_read_columns(r->source, "/contacts", "", layout_features,
-                                                        first, s->n, s->c, sizeof *s->c, why)) ||
+        ((f->packing.mesh.elements || f->packing.shape) &&
+         table_read_columns(r->source, "/contacts", "", layout_features, first, s->n, s->c,
+                            sizeof *s->c, why)) ||
+        (s->tie && table_read_columns(r->source, "/contacts", "", layout_ties, first, s->n, s->tie,
+                                      sizeof *s->tie, why)) ||
         (solved && table_read_columns(r->source, "/contacts", "", layout_found, first, s->n,
-                                      s->found, sizeof *s->found, why)))
+                                      s->found, sizeof *s->found, why)) ||
+        (solved && packing_rolls(&f->packing) && read_moments(r->source, first, s, why)))
         return why->status;
     if (contacts_check(s, f->packing.n, f->packing.walls, why) || check_order(s, why) ||
         check_shifts(s, &f->packing.cell, why))
@@ -144,6 +156,18 @@ static int write_bases(struct table_write *s, const struct contacts *t, struct w
     return e;
 }
 
+/* All of them 0 where no contact of the frame rolls */
+static int write_moments(struct table_write *s, const struct contacts *t, struct why *why)
+{
+    const hsize_t shape[2] = { (hsize_t)t->n, 3 };
+    double(*none)[3] = t->moment ? NULL : calloc((size_t)t->n + 1, sizeof *none);
+    if (!t->moment && !none) return why_set(why, EX_SOFTWARE, "no memory for moments");
+    int e = table_write_rows(s, LAYOUT_MOMENT, COLUMN_F64, 2, shape, CHUNK_CONTACTS,
+                             none ? none : t->moment, "N m s", why);
+    free(none);
+    return e;
+}
+
 static int write_forces(struct table_write *s, const struct contacts *t, double dt, struct why *why)
 {
     const hsize_t shape[2] = { (hsize_t)t->n, 3 };
@@ -174,11 +198,14 @@ int contact_rows_write(struct table_write *s, const struct frame *f, struct why 
         (cell_repeats(&f->packing.cell) &&
          table_write_columns(s, "/contacts", "", layout_shifts, t->n, t->c, sizeof *t->c,
                              CHUNK_CONTACTS, why)) ||
-        (f->packing.mesh.elements &&
+        ((f->packing.mesh.elements || f->packing.shape) &&
          table_write_columns(s, "/contacts", "", layout_features, t->n, t->c, sizeof *t->c,
                              CHUNK_CONTACTS, why)) ||
+        (f->packing.law && table_write_columns(s, "/contacts", "", layout_ties, t->n, t->tie,
+                                               sizeof *t->tie, CHUNK_CONTACTS, why)) ||
         (t->found && table_write_columns(s, "/contacts", "", layout_found, t->n, t->found,
                                          sizeof *t->found, CHUNK_CONTACTS, why)) ||
+        (t->found && packing_rolls(&f->packing) && write_moments(s, t, why)) ||
         (forces && write_forces(s, t, f->packing.dt, why)) ||
         table_write_rows(s, "/contacts/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &f->packing.step,
                          NULL, why))

@@ -85,8 +85,7 @@ int fields_file_close(struct fields_file *s, struct why *why)
 {
     if (table_write_close(&s->tables) | (H5Fclose(s->tables.file) < 0))
         why_set(why, EX_IOERR, "%s: cannot be written (disk full?)", s->path);
-    else
-        unfinished_done(&s->unfinished);
+    why->status ? unfinished_drop(&s->unfinished) : unfinished_done(&s->unfinished);
     free(s);
     return why->status;
 }

@@ -3,7 +3,9 @@
 #include "io/boundary_tables.h"
 #include "io/cell_tables.h"
 #include "io/flow_tables.h"
+#include "io/law_tables.h"
 #include "io/roster.h"
+#include "io/shape_tables.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -130,6 +132,7 @@ static int read_bodies(struct frame_read *r, int64_t k, struct packing *p, struc
 {
     for (const struct column *c = layout_bodies; c->name; c++) {
         char path[80];
+        if (!column_array(c, p)) continue;
         snprintf(path, sizeof path, "/particles/all/%s", c->name);
         if (source_rows(r->source, path, c->type, 0, p->n, c->width, column_array(c, p), why))
             return why->status;
@@ -158,9 +161,10 @@ static int read_packing(struct frame_read *r, int64_t k, struct packing *p, stru
         goto end;
     }
     if (packing_init(p, dim, n, why) || read_parameters(r->source, p, why) ||
-        read_material(r->source, p, why) || boundary_tables_read(r->source, k, p, why) ||
+        read_material(r->source, p, why) || shape_tables_read(r->source, p, why) ||
+        boundary_tables_read(r->source, k, p, why) ||
         (row ? roster_read(r->source, k, row, p, why) : read_bodies(r, k, p, why)) ||
-        flow_tables_read(r->source, k, p, why))
+        flow_tables_read(r->source, k, p, why) || law_tables_read(r->source, k, p, why))
         goto end;
     p->step = r->step[k], p->t = r->time[k];
     if (packing_varies(p) && (r->repeats[0] || r->repeats[1] || r->repeats[2]))

@@ -5,8 +5,10 @@
 #include "io/contact_rows.h"
 #include "io/flow_tables.h"
 #include "io/h5.h"
+#include "io/law_tables.h"
 #include "io/report_rows.h"
 #include "io/roster.h"
+#include "io/shape_tables.h"
 #include "io/stream.h"
 #include "io/unknown.h"
 
@@ -68,6 +70,7 @@ static int write_bodies(struct table_write *s, const struct packing *p, struct w
     const hsize_t n = (hsize_t)p->n;
     for (const struct column *c = layout_bodies; c->name && !s->roster; c++) {
         char path[80];
+        if (!column_array(c, p)) continue;
         snprintf(path, sizeof path, "/particles/all/%s", c->name);
         if (h5_write(s->file, path, column_native(c->type), 1, &n, column_array(c, p), c->units,
                      why))
@@ -104,6 +107,8 @@ int frame_write_static(struct table_write *s, const struct frame *f, struct why 
 {
     if (write_parameters(s->file, f, why)) return why->status;
     if (f->packed && (write_material(s->file, &f->packing, why) ||
+                      shape_tables_write(s->file, &f->packing, why) ||
+                      law_tables_write_static(s->file, &f->packing, why) ||
                       cell_tables_write_box(s->file, &f->packing.cell, why) ||
                       write_bodies(s, &f->packing, why)))
         return why->status;
@@ -131,7 +136,9 @@ int frame_write_moment(struct table_write *s, const struct frame *f, struct why 
         (write_motion(s, &f->packing, why) || cell_tables_write(s, &f->packing, why) ||
          write_particles_clock(s, false, &f->packing, why) || flow_write(s, &f->packing, why)))
         return why->status;
-    if (f->packed && boundary_tables_write(s, &f->packing, why)) return why->status;
+    if (f->packed &&
+        (boundary_tables_write(s, &f->packing, why) || law_tables_write(s, &f->packing, why)))
+        return why->status;
     if (f->packed && f->detected && contact_rows_write(s, f, why)) return why->status;
     return f->reported ? report_rows_write(s, &f->report, why) : 0;
 }

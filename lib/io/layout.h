@@ -34,13 +34,14 @@ static const struct column layout_cell[] = {
     { 0 },
 };
 
-/* /particles/all/NAME [N]: pointers in struct packing */
+/* /particles/all/NAME [N]: pointers in struct packing; shape: not where all are balls */
 static const struct column layout_bodies[] = {
     { "radius", "m", COLUMN_F64, 1, offsetof(struct packing, radius) },
     { "mass", "kg", COLUMN_F64, 1, offsetof(struct packing, mass) },
     { "inertia", "kg m2", COLUMN_F64, 1, offsetof(struct packing, inertia) },
     { "id", "1", COLUMN_I32, 1, offsetof(struct packing, id) },
     { "species", "1", COLUMN_I32, 1, offsetof(struct packing, kind) },
+    { "shape", "1", COLUMN_I32, 1, offsetof(struct packing, shape) },
     { 0 },
 };
 
@@ -123,6 +124,40 @@ static const struct column layout_material[] = {
     { 0 },
 };
 
+/* /nsd/law/NAME [kinds][kinds] where any pair has a law beyond these: members of struct law */
+static const struct column layout_law[] = {
+    { "cohesion", "N", COLUMN_F64, 1, offsetof(struct law, cohesion) },
+    { "range", "m", COLUMN_F64, 1, offsetof(struct law, range) },
+    { "volume", "m3", COLUMN_F64, 1, offsetof(struct law, volume) },
+    { "tension", "N m-1", COLUMN_F64, 1, offsetof(struct law, tension) },
+    { "wetting", "rad", COLUMN_F64, 1, offsetof(struct law, wetting) },
+    { "mu_r", "m", COLUMN_F64, 1, offsetof(struct law, mu_r) },
+    { "mu_p", "m", COLUMN_F64, 1, offsetof(struct law, mu_p) },
+    { "c_n", "N m-3", COLUMN_F64, 1, offsetof(struct law, cn) },
+    { "c_t", "N m-3", COLUMN_F64, 1, offsetof(struct law, ct) },
+    { "w", "J m-2", COLUMN_F64, 1, offsetof(struct law, w) },
+    { "eta", "N s m-1", COLUMN_F64, 1, offsetof(struct law, eta) },
+    { "area", "m2", COLUMN_F64, 1, offsetof(struct law, area) },
+    { "beta", "1", COLUMN_F64, 1, offsetof(struct law, beta) },
+    { "made", "s", COLUMN_F64, 1, offsetof(struct law, made) },
+    { "forever", "1", COLUMN_F64, 1, offsetof(struct law, forever) },
+    { 0 },
+};
+
+/* /nsd/bonds/NAME [B][width], of frame k rows start[k] .. start[k] + count[k] - 1: members of struct
+   bond */
+static const struct column layout_bonds[] = {
+    { "body", "1", COLUMN_I32, 2, offsetof(struct bond, a) },
+    { "feature", "1", COLUMN_I32, 1, offsetof(struct bond, feature) },
+    { "shift", "1", COLUMN_I8, 3, offsetof(struct bond, shift) },
+    { "wet", "1", COLUMN_I8, 1, offsetof(struct bond, wet) },
+    { "beta", "1", COLUMN_F64, 1, offsetof(struct bond, beta) },
+    { "gap", "m", COLUMN_F64, 1, offsetof(struct bond, gap) },
+    { "normal", "1", COLUMN_F64, 3, offsetof(struct bond, n) },
+    { "slip", "m", COLUMN_F64, 3, offsetof(struct bond, slip) },
+    { 0 },
+};
+
 /* /contacts/NAME [S][width]: members of struct contact; /contacts/frame, its
    basis, is handled apart */
 static const struct column layout_contacts[] = {
@@ -147,6 +182,19 @@ static const struct column layout_features[] = {
     { 0 },
 };
 
+/* The same where pairs have laws beyond friction and restitution: members of struct tie */
+static const struct column layout_ties[] = {
+    { "pull", "N", COLUMN_F64, 1, offsetof(struct tie, pull) },
+    { "stiffness", "N m-1", COLUMN_F64, 2, offsetof(struct tie, stiff) },
+    { "jump", "m", COLUMN_F64, 3, offsetof(struct tie, jump) },
+    { "beta", "1", COLUMN_F64, 1, offsetof(struct tie, beta) },
+    { "offset", "m s-1", COLUMN_F64, 1, offsetof(struct tie, offset) },
+    { "mu_r", "m", COLUMN_F64, 1, offsetof(struct tie, mu_r) },
+    { "mu_p", "m", COLUMN_F64, 1, offsetof(struct tie, mu_p) },
+    { "tie", "1", COLUMN_I8, 1, offsetof(struct tie, state) },
+    { 0 },
+};
+
 /* /contacts/NAME [S][width] of solved contacts: members of struct found */
 static const struct column layout_found[] = {
     { "reaction", "N s", COLUMN_F64, 3, offsetof(struct found, r) },
@@ -154,6 +202,9 @@ static const struct column layout_found[] = {
     { "status", "1", COLUMN_I8, 1, offsetof(struct found, status) },
     { 0 },
 };
+
+/* [S][3] N m s: the moments of solved contacts on b, in the frame, where there is rolling friction */
+#define LAYOUT_MOMENT "/contacts/moment"
 
 /* [S][3] N: the reactions of solved contacts as forces on b, in space; written where asked, not read */
 #define LAYOUT_FORCE "/contacts/force"
@@ -225,6 +276,14 @@ static const struct column layout_balance[] = {
     { "dissipation", "J", COLUMN_F64, 1, offsetof(struct report, balance.dissipation) },
     { "momentum", "N s", COLUMN_F64, 3, offsetof(struct report, balance.momentum) },
     { "boundary_impulse", "N s", COLUMN_F64, 3, offsetof(struct report, balance.impulse) },
+    { 0 },
+};
+
+/* The same where pairs have laws beyond friction and restitution */
+static const struct column layout_bond_balance[] = {
+    { "bond_change", "J", COLUMN_F64, 1, offsetof(struct report, balance.bond_change) },
+    { "bond_energy", "J", COLUMN_F64, 1, offsetof(struct report, balance.bond_energy) },
+    { "broken", "J", COLUMN_F64, 1, offsetof(struct report, balance.broken) },
     { 0 },
 };
 

@@ -8,12 +8,18 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+enum {
+    WHOLE_FROM =
+        1 << 20 /* bytes of a document that may go on as it is: decoding a smaller one takes a ms */
+};
+
 struct reader {
     struct source *source;
     struct frame_read doc;
     struct unknown *unknown; /* of the open document, where it is wanted */
     bool copies;             /* it is */
-    int64_t next;            /* the frame that reader_next reads next */
+    int64_t next;            /* the frame that reader_take reads next */
+    bool whole;              /* the open document may go on as it is */
 };
 
 int reader_open(struct reader **out, int files, char *const *file, struct why *why)
@@ -77,20 +83,33 @@ static int name_document(const struct reader *r, struct why *why)
     return why->status;
 }
 
+/* Has this nsd written it? Then it would write the same bytes again. */
+static int by_nsd(struct reader *r, struct why *why)
+{
+    char *name = source_text(r->source, "/h5md/creator", "name", why), *version = NULL;
+    if (!why->status) version = source_text(r->source, "/h5md/creator", "version", why);
+    r->whole = name && version && !strcmp(name, "nsd") && !strcmp(version, NSD_VERSION);
+    free(name), free(version);
+    return why->status;
+}
+
 int reader_document(struct reader *r, int64_t *frames, struct why *why)
 {
     struct source_document d;
     bool more;
     frame_read_close(&r->doc);
     unknown_free(r->unknown);
-    r->unknown = NULL, r->next = 0, *frames = -1;
+    r->unknown = NULL, r->next = 0, r->whole = false, *frames = -1;
     if (source_next(r->source, &d, &more, why)) return why->status;
     if (!more) return 0;
     if (frame_read_open(&r->doc, r->source, why)) return name_document(r, why);
     if (r->copies && unknown_read(&r->unknown, r->source, r->doc.frames <= 1, why))
         return name_document(r, why);
     *frames = r->doc.frames;
-    return 0;
+    r->whole = r->copies && !r->unknown && !d.foreign && !d.unfinished && d.plain &&
+               d.size >= WHOLE_FROM && r->doc.frames == 1 &&
+               source_has(r->source, "/particles/all");
+    return r->whole ? by_nsd(r, why) : 0;
 }
 
 int reader_frame(struct reader *r, int64_t k, struct frame *f, struct why *why)
@@ -114,8 +133,7 @@ bool reader_has(const struct reader *r, int64_t k, const struct range *steps)
     return !r->doc.step || range_has(steps, r->doc.step[k]);
 }
 
-int reader_next(struct reader *r, const struct range *steps, struct frame *f, bool *more,
-                struct why *why)
+int reader_find(struct reader *r, const struct range *steps, bool *more, struct why *why)
 {
     for (;;) {
         while (steps && r->next < r->doc.frames && !reader_has(r, r->next, steps)) r->next++;
@@ -123,11 +141,36 @@ int reader_next(struct reader *r, const struct range *steps, struct frame *f, bo
         if (*more) break;
         int64_t frames;
         if (reader_document(r, &frames, why)) return why->status;
-        if (frames >= 0) continue;
-        frame_free(f);
-        return 0;
+        if (frames < 0) return 0;
     }
+    return 0;
+}
+
+int reader_take(struct reader *r, struct frame *f, struct why *why)
+{
     return reader_frame(r, r->next++, f, why) ? why->status : release(r, f, why);
+}
+
+bool reader_whole(const struct reader *r)
+{
+    return r->whole && !r->next;
+}
+
+int reader_pour(struct reader *r, source_sink pour, void *to, struct why *why)
+{
+    r->next++;
+    if (source_pour(r->source, pour, to, why)) return why->status;
+    frame_read_close(&r->doc);
+    return source_release(r->source, why);
+}
+
+int reader_next(struct reader *r, const struct range *steps, struct frame *f, bool *more,
+                struct why *why)
+{
+    if (reader_find(r, steps, more, why)) return why->status;
+    if (*more) return reader_take(r, f, why);
+    frame_free(f);
+    return 0;
 }
 
 int reader_last(struct reader *r, struct frame *f, bool *more, struct why *why)

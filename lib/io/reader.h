@@ -7,6 +7,7 @@
 
 #include "base/range.h"
 #include "io/frame.h"
+#include "io/source.h"
 
 struct reader;
 
@@ -40,9 +41,20 @@ int reader_frame(struct reader *reader, int64_t k, struct frame *frame, struct w
 bool reader_has(const struct reader *reader, int64_t k, const struct range *steps);
 
 /*
- * The next frame of these steps (NULL: of all), across documents. *more becomes false when there
+ * Goes to the next frame of these steps (NULL: of all), across documents. *more becomes false when there
  * is none.
  */
+int reader_find(struct reader *reader, const struct range *steps, bool *more, struct why *why);
+/* Reads it. */
+int reader_take(struct reader *reader, struct frame *frame, struct why *why);
+/*
+ * Or may it go on as it is, of a reader that copies? A document of nsd's own with one packing and nothing else, as
+ * nsd writes it into a stream, and so large that it matters: a small one is decoded, and thereby checked, as fast.
+ */
+bool reader_whole(const struct reader *reader);
+/* All bytes of its document, in pieces, to pour(to, ...); none of its numbers has been looked at. */
+int reader_pour(struct reader *reader, source_sink pour, void *to, struct why *why);
+/* Both: the next frame of these steps, and *more */
 int reader_next(struct reader *reader, const struct range *steps, struct frame *frame, bool *more,
                 struct why *why);
 /* The very last frame of all documents; *more becomes false when there is no frame at all. */

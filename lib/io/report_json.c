@@ -34,7 +34,7 @@ json_t *json_err(const struct err *e)
     return j;
 }
 
-static json_t *balance(const struct balance *b)
+static json_t *balance(const struct balance *b, bool tied)
 {
     json_t *j = json_object();
     json_object_set_new(j, "kinetic", json_number(b->kinetic));
@@ -44,6 +44,11 @@ static json_t *balance(const struct balance *b)
     json_object_set_new(j, "drives", json_number(b->drives));
     json_object_set_new(j, "loads", json_number(b->loads));
     json_object_set_new(j, "dissipation", json_number(b->dissipation));
+    if (tied) {
+        json_object_set_new(j, "bond_change", json_number(b->bond_change));
+        json_object_set_new(j, "bond_energy", json_number(b->bond_energy));
+        json_object_set_new(j, "broken", json_number(b->broken));
+    }
     json_object_set_new(j, "momentum", json_numbers(b->momentum, 3));
     json_object_set_new(j, "impulse", json_numbers(b->impulse, 3));
     return j;
@@ -63,7 +68,7 @@ json_t *json_report(const struct report *r)
     json_object_set_new(j, "newton", json_integer(r->newton));
     json_object_set_new(j, "safeguarded", json_integer(r->safeguarded));
     json_object_set_new(j, "gave_up", json_integer(r->gave_up));
-    if (r->balanced) json_object_set_new(j, "balance", balance(&r->balance));
+    if (r->balanced) json_object_set_new(j, "balance", balance(&r->balance, r->tied));
     return j;
 }
 

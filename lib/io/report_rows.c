@@ -33,6 +33,7 @@ int report_rows_open(struct report_rows *r, struct source *source, struct why *w
         r->solves = (int64_t)shape[0];
     count_rows(r, layout_report);
     count_rows(r, layout_balance);
+    count_rows(r, layout_bond_balance);
     return why->status;
 }
 
@@ -83,7 +84,13 @@ static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
     if (balanced && table_read_columns(r->source, r->group, "/value", layout_balance, at, n,
                                        r->ahead.row, sizeof *r->ahead.row, why))
         return why->status;
-    for (int64_t i = 0; i < n; i++) r->ahead.row[i].balanced = balanced;
+    snprintf(time, sizeof time, "%s/broken/value", r->group);
+    bool tied = balanced && source_has(r->source, time);
+    if (tied && table_read_columns(r->source, r->group, "/value", layout_bond_balance, at, n,
+                                   r->ahead.row, sizeof *r->ahead.row, why))
+        return why->status;
+    for (int64_t i = 0; i < n; i++)
+        r->ahead.row[i].balanced = balanced, r->ahead.row[i].tied = tied;
     r->ahead.n = n;
     return 0;
 }
@@ -122,18 +129,24 @@ void report_rows_close(struct report_rows *r)
 
 /* ---- to a document ---- */
 
-/* The balances, beside the report, whose clocks they share */
+/* One table of the balances, beside the report, whose clocks they share */
+static int write_table(struct table_write *s, const struct column *table, const struct report *rep,
+                       bool first, struct why *why)
+{
+    const char *solver = LAYOUT_REPORT;
+    if (table_write_columns(s, solver, "/value", table, 1, rep, sizeof *rep, CHUNK_FRAMES, why))
+        return why->status;
+    if (first && (table_write_link(s, LAYOUT_REPORT "/step", "step", solver, table, why) ||
+                  table_write_link(s, LAYOUT_REPORT "/time", "time", solver, table, why)))
+        return why->status;
+    return 0;
+}
+
 static int write_balance(struct table_write *s, const struct report *rep, bool first,
                          struct why *why)
 {
-    const char *solver = LAYOUT_REPORT;
-    if (table_write_columns(s, solver, "/value", layout_balance, 1, rep, sizeof *rep, CHUNK_FRAMES,
-                            why))
-        return why->status;
-    if (first && (table_write_link(s, LAYOUT_REPORT "/step", "step", solver, layout_balance, why) ||
-                  table_write_link(s, LAYOUT_REPORT "/time", "time", solver, layout_balance, why)))
-        return why->status;
-    return 0;
+    if (write_table(s, layout_balance, rep, first, why)) return why->status;
+    return rep->tied ? write_table(s, layout_bond_balance, rep, first, why) : 0;
 }
 
 int report_rows_write(struct table_write *s, const struct report *rep, struct why *why)

@@ -26,7 +26,8 @@ static int taker_begin(struct sink *sink, const struct reply *reply)
     struct taker *t = (struct taker *)sink;
     t->reply = *reply;
     t->reply.text[sizeof t->reply.text - 1] = 0;
-    if (!t->out) {
+    if (t->pour) t->size = reply->size;
+    if (!t->out && !t->pour) {
         t->size = reply->size;
         if (reply->size > SIZE_MAX / 2 || !(t->out = malloc((size_t)reply->size + 8)))
             return why_set(t->why, EX_SOFTWARE, "no memory for %llu bytes of a document",

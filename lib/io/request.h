@@ -23,6 +23,7 @@ struct request {
         REQUEST_TEXT,      /* a scalar string, without its zero; of an attribute if name[0] */
         REQUEST_ATTRIBUTE, /* n numbers of an attribute; n < 0: a scalar */
         REQUEST_ATTRIBUTES, /* all attributes of an object, as objects with their data */
+        REQUEST_IMAGE,      /* the document's own bytes, header and all */
         REQUEST_UNLOAD,     /* stream_unload */
         REQUEST_RELEASE     /* the document is closed, and stream_release */
     } op;
@@ -40,6 +41,7 @@ struct reply {
     bool foreign, unfinished;
     int64_t number;    /* of the document in its file */
     uint64_t document; /* its bytes */
+    bool plain;        /* its datasets are in one piece each, not in chunks */
     char text[400];    /* status 0, REQUEST_NEXT: the name of its file; else the reason */
 };
 
@@ -56,10 +58,14 @@ struct sink {
 /* Bytes that are already there, as an answer. Returns 0, or -1 when they do not go on. */
 int sink_bytes(struct sink *sink, struct reply *reply, const void *bytes, size_t size);
 
-/* A sink into memory: `size` bytes at out or, where out is NULL, fresh memory. */
+/*
+ * A sink into memory: `size` bytes at out or, where out is NULL, fresh memory. Of a child's answers also
+ * one that keeps nothing: pour() gets the pieces, and returns 0 to go on.
+ */
 struct taker {
     struct sink sink;
-    void *out;
+    int (*pour)(void *to, const void *bytes, size_t size, struct why *why);
+    void *out; /* or what pour() wants to know */
     uint64_t size, done;
     struct reply reply;
     struct why *why;

@@ -81,6 +81,7 @@ static int write_new(struct table_write *s, const struct packing *p, int64_t fir
     for (const struct column *c = layout_bodies; c->name; c++) {
         char path[80];
         if (!strcmp(c->name, "id")) continue; // a dataset of frames x rows
+        if (!column_array(c, p)) continue;
         snprintf(path, sizeof path, "/particles/all/%s", c->name);
         const char *data = column_array(c, p);
         if (table_write_rows(s, path, c->type, 1, &n, s->chunk_bodies,
@@ -205,6 +206,7 @@ int roster_read(struct source *source, int64_t k, const int64_t *row, struct pac
     for (const struct column *c = layout_bodies; c->name; c++) {
         char path[80];
         bool moves = !strcmp(c->name, "id");
+        if (!column_array(c, p)) continue;
         snprintf(path, sizeof path, "/particles/all/%s%s", c->name, moves ? "/value" : "");
         if (read_spread(source, path, c, moves ? k : -1, row, p->n, column_array(c, p), why))
             return why->status;

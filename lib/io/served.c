@@ -101,6 +101,7 @@ static int look_at_dataset(struct served *s, hid_t set, struct entry *e, struct 
     hid_t plist = H5Dget_create_plist(set);
     int status = plist < 0 ? why_set(why, EX_DATAERR, "%s: cannot be opened (damaged?)", e->path)
                            : check_storage(plist, e, why);
+    s->chunked |= plist >= 0 && H5Pget_layout(plist) == H5D_CHUNKED;
     if (!status) status = look_at_shape(s, set, e, why);
     if (!status) set = open_again(set, plist, e);
     if (plist >= 0) H5Pclose(plist);

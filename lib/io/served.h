@@ -30,6 +30,7 @@ struct served {
     uint64_t size;       /* bytes of the document */
     uint64_t limit;      /* bytes that its datasets may hold in all, packed data unpacked */
     uint64_t unpacked;   /* bytes that they do hold */
+    bool chunked;        /* some dataset is in chunks, as those of a trajectory are */
     int64_t count, room; /* of entries */
     struct entry *entry; /* what is in it, in the order of a walk by names */
 };

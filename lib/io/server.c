@@ -72,6 +72,7 @@ struct server {
     uint64_t sent, pieces, acknowledged;
     uint64_t limit; /* as of served_open */
     struct stream *stream;
+    struct image image; /* the document in hand; without bytes: none */
     struct served served;
 };
 
@@ -127,6 +128,7 @@ static int answer_next(struct server *s, struct why *why)
     struct image im;
     struct reply reply = { 0 };
     served_close(&s->served);
+    s->image.bytes = NULL;
     set_limit(RLIMIT_AS, RLIM_INFINITY), set_limit(RLIMIT_CPU, RLIM_INFINITY);
     if (stream_next(s->stream, &im, why)) return why->status;
     if (!im.bytes) return s->sink.begin(&s->sink, &reply);
@@ -142,21 +144,33 @@ static int answer_next(struct server *s, struct why *why)
         return why->status;
     }
     reply.foreign = im.foreign, reply.unfinished = im.unfinished, reply.number = im.number;
-    reply.document = im.size;
+    reply.document = im.size, reply.plain = !s->served.chunked;
+    s->image = im;
     snprintf(reply.text, sizeof reply.text, "%s", im.name);
     int e = sink_bytes(&s->sink, &reply, objects, size);
     free(objects);
     return e ? why_set(why, EX_SOFTWARE, "not sent") : 0;
 }
 
+static int answer_image(struct server *s, struct why *why)
+{
+    struct reply reply = { 0 };
+    if (!s->image.bytes) return why_set(why, EX_SOFTWARE, "no document");
+    return sink_bytes(&s->sink, &reply, s->image.bytes, s->image.size)
+               ? why_set(why, EX_SOFTWARE, "not sent")
+               : 0;
+}
+
 static int answer(struct server *s, const struct request *q, struct why *why)
 {
     struct reply done = { .there = true };
+    if (q->op == REQUEST_IMAGE) return answer_image(s, why);
     if (q->op == REQUEST_NEXT) return answer_next(s, why);
     bound_time(s->served.size, s->limit);
     if (q->op != REQUEST_UNLOAD && q->op != REQUEST_RELEASE)
         return serve_answer(&s->served, q, &s->sink, why);
-    if (q->op == REQUEST_RELEASE) served_close(&s->served), stream_release(s->stream);
+    if (q->op == REQUEST_RELEASE)
+        served_close(&s->served), s->image.bytes = NULL, stream_release(s->stream);
     if (q->op == REQUEST_UNLOAD) stream_unload(s->stream);
     return s->sink.begin(&s->sink, &done);
 }

@@ -92,7 +92,9 @@ int source_next(struct source *s, struct source_document *d, bool *more, struct 
     snprintf(s->name, sizeof s->name, "%.290s", t.reply.text);
     snprintf(s->where, sizeof s->where, t.reply.number > 1 ? "%.250s: document %lld" : "%.250s",
              s->name, (long long)t.reply.number);
-    *d = (struct source_document){ s->name, t.reply.number, t.reply.foreign, t.reply.unfinished };
+    *d = (struct source_document){ s->name,          t.reply.number,
+                                   t.reply.foreign,  t.reply.unfinished,
+                                   t.reply.document, t.reply.plain };
     *more = true;
     s->large = t.reply.document > LARGE;
     return list_open(&s->list, t.out, t.size, why);
@@ -134,6 +136,13 @@ int source_release(struct source *s, struct why *why)
     struct taker t = { .out = &q };
     list_free(&s->list);
     return s->child && s->large ? ask(s, &q, &t, why) : 0;
+}
+
+int source_pour(struct source *s, source_sink pour, void *to, struct why *why)
+{
+    struct request q = request_of(REQUEST_IMAGE, "");
+    struct taker t = { .pour = pour, .out = to };
+    return ask(s, &q, &t, why);
 }
 
 int source_rows(struct source *s, const char *path, enum column_type type, int64_t start, int64_t n,

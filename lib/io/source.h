@@ -34,7 +34,12 @@ struct source_document {
     int64_t number;   /* its place in that file, from 1 */
     bool foreign;     /* an HDF5 file without our header */
     bool unfinished;  /* no checksum vouches for it */
+    uint64_t size;    /* bytes */
+    bool plain;       /* its datasets are in one piece each, not in chunks */
 };
+
+/* How the pieces of a document go on; 0, or why not. */
+typedef int (*source_sink)(void *to, const void *bytes, size_t size, struct why *why);
 
 /* On to the next document; *more becomes false when there is none. */
 int source_next(struct source *source, struct source_document *document, bool *more,
@@ -43,6 +48,8 @@ int source_next(struct source *source, struct source_document *document, bool *m
 const char *source_where(const struct source *source);
 /* Pages of a large file that have been read leave memory. */
 int source_unload(struct source *source, struct why *why);
+/* All bytes of the document, as they came, to pour(to, ...) in pieces. */
+int source_pour(struct source *source, source_sink pour, void *to, struct why *why);
 /* The document is done with: it is closed, and a large one's memory freed. */
 int source_release(struct source *source, struct why *why);
 

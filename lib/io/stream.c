@@ -1,3 +1,4 @@
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): mremap, F_SETPIPE_SZ
 #include "io/stream.h"
 
 #include <errno.h>
@@ -7,7 +8,6 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <zlib.h>
 
 static const unsigned char MAGIC[8] = "\x89NSD\r\n\x1a\n", HDF5[8] = "\x89HDF\r\n\x1a\n";
 
@@ -15,7 +15,9 @@ static const unsigned char MAGIC[8] = "\x89NSD\r\n\x1a\n", HDF5[8] = "\x89HDF\r\
 enum { AT_VERSION = 8, AT_FLAGS = 12, AT_LENGTH = 16, AT_CRC = 24, AT_HEADER_CRC = 28 };
 
 enum {
-    LARGE = 1 << 26 /* bytes: a document from here on outweighs the tool, and is not kept */
+    LARGE = 1 << 26, /* bytes: a document from here on outweighs the tool, and is not kept */
+    PIPE = 1 << 20,  /* bytes that a pipe shall hold, the most that is anybody's: fewer waits */
+    PIECE = 1 << 19  /* bytes whose checksum is taken while they are in a core's second cache */
 };
 
 static void store(unsigned char *p, uint64_t x, int bytes)
@@ -28,11 +30,6 @@ static uint64_t load(const unsigned char *p, int bytes)
     uint64_t x = 0;
     for (int k = 0; k < bytes; k++) x |= (uint64_t)p[k] << (8 * k);
     return x;
-}
-
-uint32_t document_crc(uint32_t crc, const void *bytes, size_t size)
-{
-    return (uint32_t)crc32_z(crc, bytes, size);
 }
 
 void document_header(unsigned char u[DOCUMENT_USERBLOCK], uint64_t length, uint32_t crc)
@@ -79,12 +76,44 @@ static void file_close(struct stream *s)
     s->map = NULL, s->size = s->at = 0, s->fd = -1;
 }
 
+static void buffer_free(struct stream *s)
+{
+    if (s->buffer) munmap(s->buffer, s->room);
+    s->buffer = NULL, s->room = 0;
+}
+
+/* The last document keeps its buffer; the next one goes into the other. */
+static void swap_buffers(struct stream *s)
+{
+    unsigned char *b = s->buffer;
+    size_t room = s->room;
+    s->buffer = s->spare, s->room = s->spare_room;
+    s->spare = b, s->spare_room = room;
+}
+
+/*
+ * Room for more of a document, that which has arrived kept. Pages are the system's only once they are
+ * written; large ones, for half the time that a document takes in small ones is spent on getting them.
+ */
+static bool buffer_grow(struct stream *s, size_t room)
+{
+    void *b = s->buffer ? mremap(s->buffer, s->room, room, MREMAP_MAYMOVE)
+                        : mmap(NULL, room, PROT_READ | PROT_WRITE,
+                               MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (b == MAP_FAILED) return false;
+    s->buffer = b, s->room = room;
+    madvise(b, room, MADV_HUGEPAGE);
+    return true;
+}
+
 void stream_close(struct stream *s)
 {
     if (!s) return;
     file_close(s);
     if (s->old) munmap(s->old, s->old_size);
-    free(s->buffer), free(s->spare);
+    buffer_free(s);
+    swap_buffers(s);
+    buffer_free(s);
     free(s);
 }
 
@@ -96,9 +125,7 @@ void stream_unload(const struct stream *s)
 void stream_release(struct stream *s)
 {
     stream_unload(s);
-    if (s->room <= LARGE) return; // kept for the next document
-    free(s->buffer);
-    s->buffer = NULL, s->room = 0;
+    if (s->room > LARGE) buffer_free(s); // else kept for the next document
 }
 
 static int file_open(struct stream *s, struct why *why)
@@ -115,6 +142,7 @@ static int file_open(struct stream *s, struct why *why)
         return why_set(why, EX_USAGE,
                        "%s is a terminal: give a FILE, or a pipe (--help tells more)", s->name);
     if (S_ISDIR(st.st_mode)) return why_set(why, EX_NOINPUT, "%s: is a directory", s->name);
+    if (S_ISFIFO(st.st_mode)) fcntl(s->fd, F_SETPIPE_SZ, PIPE); // or it stays as it is
     off_t at = S_ISREG(st.st_mode) ? lseek(s->fd, 0, SEEK_CUR) : -1;
     if (at < 0 || st.st_size <= at) return 0; // a pipe, or an empty file
     s->size = (size_t)st.st_size, s->at = (size_t)at;
@@ -129,10 +157,8 @@ static int fill(struct stream *s, size_t *have, size_t want, struct why *why)
 {
     while (*have < want) {
         if (*have == s->room) { // grows with what arrives: the header's length is not trusted
-            size_t room = s->room ? 2 * s->room : 1 << 16;
-            unsigned char *b = realloc(s->buffer, room);
-            if (!b) return why_set(why, EX_SOFTWARE, "%s: no memory for the document", s->name);
-            s->buffer = b, s->room = room;
+            if (!buffer_grow(s, s->room ? 2 * s->room : 1 << 16))
+                return why_set(why, EX_SOFTWARE, "%s: no memory for the document", s->name);
         }
         size_t most = (want < s->room ? want : s->room) - *have;
         ssize_t n = read(s->fd, s->buffer + *have, most);
@@ -165,16 +191,23 @@ static int refuse(const struct stream *s, struct why *why, const char *trouble)
     return why_set(why, EX_DATAERR, "%s: %s", s->name, trouble);
 }
 
-/* In pieces, so that a large file's pages do not all stay */
-static uint32_t crc_of(const struct stream *s, const unsigned char *bytes, size_t size)
+/*
+ * All of a document of `want` bytes, or as many as there are, in *have; the checksum of those after the
+ * user block in *crc. In pieces: of a pipe's, while they are at hand; of a large file's, so that its pages do not
+ * all stay.
+ */
+static int read_all(struct stream *s, struct image *im, size_t *have, size_t want, uint32_t *crc,
+                    struct why *why)
 {
-    uint32_t crc = 0;
-    for (size_t at = 0, piece; at < size; at += piece) {
-        piece = size - at < LARGE ? size - at : LARGE;
-        crc = document_crc(crc, bytes + at, piece);
-        stream_unload(s);
+    size_t at = DOCUMENT_USERBLOCK, unloaded = 0;
+    for (*crc = 0; at < want && at <= *have; at = *have) {
+        size_t next = want - at < PIECE ? want : at + PIECE;
+        if (peek(s, &im->bytes, have, next, why)) return why->status;
+        *crc = document_crc(*crc, im->bytes + at, *have - at);
+        if (*have - unloaded >= LARGE) stream_unload(s), unloaded = *have;
+        if (*have < next) break;
     }
-    return crc;
+    return 0;
 }
 
 /* A document with our header: checks that and finds its size. */
@@ -192,13 +225,16 @@ static int read_own(struct stream *s, struct image *im, size_t have, struct why 
     im->unfinished = load(h + AT_FLAGS, 4) & DOCUMENT_UNFINISHED;
     if (!im->unfinished && length <= DOCUMENT_USERBLOCK) return refuse(s, why, "damaged header");
     size_t want = im->unfinished ? SIZE_MAX : length;
-    if (peek(s, &im->bytes, &have, want, why)) return why->status;
+    uint32_t is = 0;
+    if (im->unfinished ? peek(s, &im->bytes, &have, want, why)
+                       : read_all(s, im, &have, want, &is, why))
+        return why->status;
     im->size = have;
     if (im->unfinished) return 0;
     if (have < want)
         return why_set(why, EX_DATAERR, "%s: document %lld: truncated, %zu of %zu bytes", s->name,
                        (long long)s->in_file + 1, have, want);
-    if (crc_of(s, im->bytes + DOCUMENT_USERBLOCK, have - DOCUMENT_USERBLOCK) != crc)
+    if (is != crc)
         return refuse(s, why,
                       "damaged: its checksum is wrong (changed on purpose? see nsd-format(5))");
     return 0;
@@ -218,15 +254,6 @@ static bool is_hdf5(const unsigned char *b, size_t have)
     for (size_t at = 0; at + sizeof HDF5 <= have; at = at ? 2 * at : 512)
         if (!memcmp(b + at, HDF5, sizeof HDF5)) return true;
     return false;
-}
-
-/* The last document keeps its buffer; the next one goes into the other. */
-static void swap_buffers(struct stream *s)
-{
-    unsigned char *b = s->buffer;
-    size_t room = s->room;
-    s->buffer = s->spare, s->room = s->spare_room;
-    s->spare = b, s->spare_room = room;
 }
 
 int stream_next(struct stream *s, struct image *im, struct why *why)

@@ -6,6 +6,7 @@
 #define NSD_STREAM_H
 
 #include "base/why.h"
+#include "io/crc.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -23,8 +24,6 @@ enum {
  * being written. The rest of the user block becomes zero.
  */
 void document_header(unsigned char userblock[DOCUMENT_USERBLOCK], uint64_t length, uint32_t crc);
-/* The checksum so far (0 to begin with), continued over more bytes. */
-uint32_t document_crc(uint32_t crc, const void *bytes, size_t size);
 
 /* One whole document. Its bytes belong to the stream and last until the next call but one. */
 struct image {

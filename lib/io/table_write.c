@@ -68,18 +68,21 @@ static int append(hid_t set, enum column_type type, int rank, const hsize_t *sha
 {
     hsize_t size[4], start[4] = { 0 };
     hid_t space = H5Dget_space(set);
-    H5Sget_simple_extent_dims(space, size, NULL);
-    H5Sclose(space);
+    bool known = H5Sget_simple_extent_dims(space, size, NULL) == rank;
+    if (space >= 0) H5Sclose(space);
+    if (!known) return -1;
     start[0] = size[0];
     size[0] += shape[0];
     for (int k = 1; k < rank; k++) size[k] = shape[k] > size[k] ? shape[k] : size[k];
     if (H5Dset_extent(set, size) < 0) return -1;
     hid_t disk = H5Dget_space(set), memory = H5Screate_simple(rank, shape, NULL);
-    H5Sselect_hyperslab(disk, H5S_SELECT_SET, start, NULL, shape, NULL);
-    bool some = H5Sget_simple_extent_npoints(memory) > 0;
-    herr_t e = some ? H5Dwrite(set, column_native(type), memory, disk, H5P_DEFAULT, data) : 0;
-    H5Sclose(memory), H5Sclose(disk);
-    return e < 0 ? -1 : 0;
+    bool good = disk >= 0 && memory >= 0 &&
+                H5Sselect_hyperslab(disk, H5S_SELECT_SET, start, NULL, shape, NULL) >= 0;
+    if (good && H5Sget_simple_extent_npoints(memory) > 0)
+        good = H5Dwrite(set, column_native(type), memory, disk, H5P_DEFAULT, data) >= 0;
+    if (memory >= 0) H5Sclose(memory);
+    if (disk >= 0) H5Sclose(disk);
+    return good ? 0 : -1;
 }
 
 int table_write_rows(struct table_write *s, const char *path, enum column_type type, int rank,

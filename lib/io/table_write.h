@@ -8,10 +8,10 @@
 #include "io/layout.h"
 
 enum {
-    GROWING_DATASETS = 96, /* at once; the tables of io/layout.h have fewer columns than that */
-    CHUNK_FRAMES = 64,     /* rows a chunk of one number a frame: half a KiB of reals */
-    CHUNK_CONTACTS = 256,  /* rows a chunk of contacts: 2 KiB of reals; few are left empty */
-    CHUNK_BODIES = 8192    /* at most, a chunk of one frame of bodies: 192 KiB of positions */
+    GROWING_DATASETS = 128, /* at once; the tables of io/layout.h have fewer columns than that */
+    CHUNK_FRAMES = 64,      /* rows a chunk of one number a frame: half a KiB of reals */
+    CHUNK_CONTACTS = 256,   /* rows a chunk of contacts: 2 KiB of reals; few are left empty */
+    CHUNK_BODIES = 8192     /* at most, a chunk of one frame of bodies: 192 KiB of positions */
 };
 
 struct table_write {
@@ -28,6 +28,7 @@ struct table_write {
     int count;                /* of open datasets */
     int64_t contacts;         /* rows of /contacts so far */
     int64_t events;           /* rows of /nsd/flow/events so far */
+    int64_t bonds;            /* rows of /nsd/bonds so far */
 };
 
 /*

@@ -27,17 +27,18 @@ struct unknown {
 /* Groups whose members are looked through, and the names in them that nsd uses */
 static const struct {
     const char *group;
-    const char *known[12];
+    const char *known[13];
 } looked_through[] = {
     { "", { "h5md", "nsd", "particles", "walls", "contacts", "observables", "solution" } },
-    { "/nsd", { "history", "scene", "material", "solver", "flow", "cell" } },
+    { "/nsd",
+      { "history", "scene", "material", "solver", "flow", "cell", "shape", "law", "bonds" } },
     { "/particles", { "all", "boundary" } },
     { "/particles/boundary",
       { "body", "load", "drive", "push", "mesh", "position", "orientation", "velocity",
         "angular_velocity", "step", "time" } },
     { "/particles/all",
       { "box", "position", "velocity", "angular_velocity", "orientation", "radius", "mass",
-        "inertia", "id", "species", "image" } },
+        "inertia", "id", "species", "image", "shape" } },
     { "/walls", { "plane", "load" } },
     { "/observables", { "solver" } },
 };

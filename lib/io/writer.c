@@ -49,6 +49,7 @@ struct writer {
     int64_t step;                 /* of the last frame */
     int64_t frames;               /* that are finished */
     off_t end;                    /* of the file, at the last flush */
+    off_t start, size;            /* of a stream's document in hand; start -1: of a pipe */
     /* a trajectory that takes a file's place, until it has: */
     int old;                      /* the file, open and locked; else -1 */
     char *place, *elsewhere;      /* its path, and that of the new one */
@@ -180,25 +181,65 @@ static hid_t create(const char *path, hid_t access)
 
 /* ---- a stream ---- */
 
-/* Writes all bytes. On failure a regular file is cut back to what it was. */
-static int write_all(struct writer *s, const unsigned char *bytes, size_t size, struct why *why)
+/* A document begins: others that append wait, so that documents stay whole. */
+static int document_begin(struct writer *s, struct why *why)
 {
-    if (s->append && take_hold(s, F_OFD_SETLKW, why)) return why->status; // documents stay whole
-    off_t start = lseek(s->fd, 0, s->append ? SEEK_END : SEEK_CUR);
+    if (s->append && take_hold(s, F_OFD_SETLKW, why)) return why->status;
+    s->start = lseek(s->fd, 0, s->append ? SEEK_END : SEEK_CUR);
+    s->size = 0;
+    return 0;
+}
+
+/* More of its bytes. On failure a regular file is cut back to what it was. */
+static int document_bytes(void *to, const void *bytes, size_t size, struct why *why)
+{
+    struct writer *s = to;
     for (size_t done = 0; done < size;) {
-        ssize_t n = write(s->fd, bytes + done, size - done);
+        ssize_t n = write(s->fd, (const char *)bytes + done, size - done);
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) {
             output_failed(s, why, strerror(errno));
-            if (start >= 0 && ftruncate(s->fd, start)) return why->status;
+            if (s->start >= 0 && ftruncate(s->fd, s->start)) return why->status;
             return why->status;
         }
         done += (size_t)n;
     }
-    if (s->append) let_go(s);
+    s->size += (off_t)size;
+    return 0;
+}
+
+static int document_end(struct writer *s, struct why *why)
+{
     struct stat st;
-    if (start >= 0 && !fstat(s->fd, &st) && S_ISREG(st.st_mode) && st.st_size < start + (off_t)size)
+    if (s->append) let_go(s);
+    if (s->start >= 0 && !fstat(s->fd, &st) && S_ISREG(st.st_mode) &&
+        st.st_size < s->start + s->size)
         return output_failed(s, why, CUT_OFF);
+    return 0;
+}
+
+static int write_all(struct writer *s, const unsigned char *bytes, size_t size, struct why *why)
+{
+    return document_begin(s, why) || document_bytes(s, bytes, size, why) || document_end(s, why)
+               ? why->status
+               : 0;
+}
+
+bool writer_passes(const struct writer *s)
+{
+    return !s->trajectory;
+}
+
+int writer_pass(struct writer *s, struct reader *from, struct why *why)
+{
+    if (document_begin(s, why)) return why->status;
+    if (reader_pour(from, document_bytes, s, why)) {
+        // a reader that broke down half-way leaves no half a document in a file
+        if (s->start >= 0 && ftruncate(s->fd, s->start)) return why->status;
+        return why->status;
+    }
+    if (document_end(s, why)) return why->status;
+    unfinished_done(&s->unfinished);
     return 0;
 }
 
@@ -302,7 +343,7 @@ static int reserve(struct writer *s, const struct frame *f, struct why *why)
     if (s->doc.roster) // bodies that were there before, and what their rows are rounded up to
         n += (hsize_t)s->roster.rows + 2 * s->doc.chunk_bodies;
     if (f->detected) rows = (hsize_t)f->contacts.n + CHUNK_CONTACTS;
-    rows += (hsize_t)f->packing.events.n;
+    rows += (hsize_t)f->packing.events.n + (hsize_t)f->packing.bonds.n;
     // 128 bytes a body, and as many of its motion, 256 a contact, and the tables that may grow
     hsize_t frame = 256 * n + 256 * rows + (1 << 17);
     struct stat st; // HDF5 sometimes cuts the reserve off
@@ -348,6 +389,8 @@ static struct shared shared_of(const struct packing *p)
             struct shared){ p->dim, 0, p->dt, p->theta, p->overlap, 0, p->pours, p->removals, 0 };
     uint32_t crc = document_crc(0, p->radius, (size_t)p->n * sizeof *p->radius);
     crc = document_crc(crc, p->mass, (size_t)p->n * sizeof *p->mass);
+    size_t pairs = p->law ? (size_t)p->kinds * (size_t)p->kinds : 0;
+    if (pairs) crc = document_crc(crc, p->law, pairs * sizeof *p->law);
     return (
         struct shared){ p->dim, p->n, p->dt, p->theta, p->overlap, crc, 0, 0, cell_crc(&p->cell) };
 }
@@ -356,6 +399,8 @@ static struct shared shared_of(const struct packing *p)
 static int check_same(const struct writer *s, const struct frame *f, struct why *why)
 {
     const struct shared p = s->first, q = shared_of(&f->packing);
+    if (p.pours != q.pours || p.removals != q.removals)
+        return why_set(why, EX_DATAERR, "other pours or removals than the trajectory's");
     if (p.n != q.n)
         return why_set(why, EX_DATAERR, "%lld bodies, and the trajectory has %lld", (long long)q.n,
                        (long long)p.n);
@@ -363,8 +408,6 @@ static int check_same(const struct writer *s, const struct frame *f, struct why 
         return why_set(why, EX_DATAERR, "dim, dt or theta differ from the trajectory's");
     if (p.overlap && q.overlap && p.overlap != q.overlap) // that of a scene is not said yet
         return why_set(why, EX_DATAERR, "overlap differs from the trajectory's");
-    if (p.pours != q.pours || p.removals != q.removals)
-        return why_set(why, EX_DATAERR, "other pours or removals than the trajectory's");
     if (p.crc != q.crc) return why_set(why, EX_DATAERR, "other bodies than the trajectory's");
     if (p.cell != q.cell) return why_set(why, EX_DATAERR, "another cell than the trajectory's");
     if (f->packing.step <= s->step)

@@ -6,6 +6,7 @@
 #define NSD_WRITER_H
 
 #include "io/frame.h"
+#include "io/reader.h"
 
 struct writer;
 
@@ -36,6 +37,11 @@ int writer_take_place(struct writer *writer, struct why *why);
  * copied. FCLIB problems go into streams only.
  */
 int writer_frame(struct writer *writer, const struct frame *frame, struct why *why);
+
+/* Do frames become documents of their own? Then one that has come as such may go on as it is: */
+bool writer_passes(const struct writer *writer);
+/* the document that the reader has found, and of which reader_whole() is true. */
+int writer_pass(struct writer *writer, struct reader *from, struct why *why);
 
 /* Completes the document (lengths, checksum) and reports what the file system had held back. */
 int writer_close(struct writer *writer, struct why *why);

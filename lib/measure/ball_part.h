@@ -13,10 +13,22 @@
 #ifndef NSD_BALL_PART_H
 #define NSD_BALL_PART_H
 
-#include "base/vec.h"
+#include "bodies/packing.h"
 
 /* m^3, of a disc m^2: of the whole ball */
 double ball_volume(int dim, double radius);
+
+/* The volume of a grain of any shape, in volumes of the ball around it, over which its parts are counted as
+   if it were spread; and m^3, of the plane m^2 */
+static inline double grain_fill(const struct packing *p, int64_t i)
+{
+    const struct shape *s = packing_shape(p, i);
+    return s ? s->volume / p->shapes.s[0].volume : 1;
+}
+static inline double grain_volume(const struct packing *p, int64_t i)
+{
+    return grain_fill(p, i) * ball_volume(p->dim, p->radius[i]);
+}
 
 /* m^3, of a disc m^2: the part between lo and hi (m, along each axis; may be infinite) of the ball
    with its centre at x. In the plane the third axis has no bounds. */

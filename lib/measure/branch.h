@@ -3,13 +3,12 @@
  * predicted positions [nsd-methods(7)], which a document does not have but the contact says: the
  * centres lie on its normal through its point. So branch vectors across the border of a cell that
  * repeats are those to the image, and the frame's own positions, half a step before or after, do
- * not matter.
+ * not matter. Those of bodies of other shapes than balls are from the frame's positions.
  */
 #ifndef NSD_BRANCH_H
 #define NSD_BRANCH_H
 
-#include "bodies/contact.h"
-#include "bodies/packing.h"
+#include "bodies/kinematics.h"
 
 /* m: how far the centres of a and b are from the contact's point; a boundary's is 0, and b's then
    the whole distance to it. */
@@ -22,13 +21,28 @@ static inline double branch_b(const struct packing *p, const struct contact *c)
     return p->radius[c->b] + (c->a < 0 ? c->gap : 0.5 * c->gap);
 }
 
+/* m: from the contact's point to the centre of b (that a meets), and from that of a, or the point on the
+   boundary, to the contact's point */
+static inline vec3 branch_to_b(const struct packing *p, const struct contact *c)
+{
+    if (!contact_shaped(p, c)) return v3_scale(branch_b(p, c), c->n);
+    return v3_sub(v3_add(p->x[c->b], cell_shift(p->cell.edge, c->shift)), c->x);
+}
+static inline vec3 branch_from_a(const struct packing *p, const struct contact *c)
+{
+    if (!contact_shaped(p, c)) return v3_scale(branch_a(p, c), c->n);
+    return c->a < 0 ? v3(0, 0, 0) : v3_sub(c->x, p->x[c->a]);
+}
+
 /* m: the centre of a, or the point on the boundary; and from there to the centre of b */
 static inline vec3 branch_from(const struct packing *p, const struct contact *c)
 {
+    if (contact_shaped(p, c)) return v3_sub(c->x, branch_from_a(p, c));
     return v3_axpy(c->x, -branch_a(p, c), c->n);
 }
 static inline vec3 branch_way(const struct packing *p, const struct contact *c)
 {
+    if (contact_shaped(p, c)) return v3_add(branch_from_a(p, c), branch_to_b(p, c));
     return v3_scale(branch_a(p, c) + branch_b(p, c), c->n);
 }
 

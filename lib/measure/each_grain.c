@@ -27,6 +27,11 @@ static struct tensor *moments(const struct snapshot *s)
     for (int64_t i = 0; T && i < s->s->n; i++) {
         const struct contact *c = &s->s->c[i];
         vec3 f = branch_force(s->p, s->s, i);
+        if (contact_shaped(s->p, c)) {
+            tensor_add(&T[c->b], 1, f, branch_to_b(s->p, c));
+            if (c->a >= 0) tensor_add(&T[c->a], 1, f, branch_from_a(s->p, c));
+            continue;
+        }
         tensor_add(&T[c->b], branch_b(s->p, c), f, c->n);
         if (c->a >= 0) tensor_add(&T[c->a], branch_a(s->p, c), f, c->n);
     }
@@ -40,7 +45,7 @@ static void fill(double *at, const struct packing *p, int64_t i, const int32_t *
     put(&at, v3_norm(p->v[i])), put(&at, v3_norm(p->w[i]));
     put(&at, count ? count[i] : NAN);
     if (!T) return;
-    tensor_scale(&T[i], 1 / ball_volume(p->dim, p->radius[i]));
+    tensor_scale(&T[i], 1 / grain_volume(p, i));
     put(&at, tensor_trace(&T[i]) / p->dim), put(&at, tensor_deviator(&T[i], p->dim));
     put_tensor(&at, &T[i]);
 }

@@ -1,4 +1,5 @@
 /* measure/energies.c: energies, and what a step takes of them. */
+#include "bodies/top.h"
 #include "measure/branch.h"
 #include "measure/measures.h"
 #include "measure/step_motion.h"
@@ -51,7 +52,7 @@ static int of(struct table *t, const struct snapshot *s, struct why *why)
     for (int64_t i = 0; i < p->n; i++) {
         int times = region_holds(&s->region, p->x[i]);
         kinetic += times * 0.5 * p->mass[i] * v3_dot(p->v[i], p->v[i]);
-        rotation += times * 0.5 * p->inertia[i] * v3_dot(p->w[i], p->w[i]);
+        rotation += times * 0.5 * top_energy2(p, i, p->q[i], p->w[i]);
         potential -= times * p->mass[i] * v3_dot(p->g, p->x[i]);
     }
     put(&at, kinetic), put(&at, rotation), put(&at, potential), put(&at, 0);

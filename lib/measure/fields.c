@@ -199,7 +199,7 @@ void fields_set(struct fields *f, const struct snapshot *s)
         memset(f->x[k], 0,
                (size_t)fields_points(f) * (size_t)field_quantity[k].width * sizeof(double));
     for (int64_t i = 0; i < p->n; i++) {
-        const struct body b = { p->mass[i], ball_volume(p->dim, p->radius[i]), p->v[i] };
+        const struct body b = { p->mass[i], grain_volume(p, i), p->v[i] };
         vec3 x = v3_axpy(p->x[i], ahead, p->v[i]);
         struct region_walk w = region_walk(&r, x, CUT * f->width);
         for (vec3 y; region_next(&w, &r, x, &y);) add_body(f, p->dim, y, &b);

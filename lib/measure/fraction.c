@@ -18,7 +18,8 @@ static int of(struct table *t, const struct snapshot *s, struct why *why)
     const struct region *r = &s->region;
     double solid = 0, *at = table_row(t, why);
     if (!at) return why->status;
-    for (int64_t i = 0; i < p->n; i++) solid += region_ball(r, p->x[i], p->radius[i]);
+    for (int64_t i = 0; i < p->n; i++)
+        solid += grain_fill(p, i) * region_ball(r, p->x[i], p->radius[i]);
     if (!(r->volume > 0)) table_null(t, "the region has no volume");
     if (!(solid > 0)) table_null(t, "the box is empty: no void ratio");
     put(&at, r->volume > 0 ? solid / r->volume : NAN);

@@ -1,4 +1,5 @@
 /* measure/profile.c: layers or shells: how full they are, how they move, their stress. */
+#include "measure/ball_part.h"
 #include "measure/measures.h"
 #include "measure/stress.h"
 
@@ -22,7 +23,8 @@ static const struct quantity quantities[] = {
 static double solid(const struct packing *p, const struct region *r)
 {
     double sum = 0;
-    for (int64_t i = 0; i < p->n; i++) sum += region_ball(r, p->x[i], p->radius[i]);
+    for (int64_t i = 0; i < p->n; i++)
+        sum += grain_fill(p, i) * region_ball(r, p->x[i], p->radius[i]);
     return sum;
 }
 

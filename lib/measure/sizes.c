@@ -33,7 +33,7 @@ static int add_layer(struct table *t, const struct snapshot *s, const struct reg
     double *at = table_row(t, why);
     if (!at) return why->status;
     for (int64_t i = 0; i < s->p->n; i++) {
-        double r = s->p->radius[i], v = ball_volume(s->p->dim, r);
+        double r = s->p->radius[i], v = grain_volume(s->p, i);
         if (!(s->p->mass[i] > 0) || !region_holds(layer, s->p->x[i])) continue;
         n++, sum += r, least = fmin(least, r), most = fmax(most, r);
         volume += v, large += r > mean ? v : 0;

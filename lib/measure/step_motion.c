@@ -33,6 +33,12 @@ static vec3 boundary(const struct step_motion *m, const struct packing *p, const
 /* m/s: of b relative to a, at the contact, in space */
 static vec3 relative(const struct step_motion *m, const struct packing *p, const struct contact *c)
 {
+    if (contact_shaped(p, c)) {
+        struct arms arm = arm_vectors(p, c, 0, p->cell.edge);
+        vec3 of_b = v3_add(p->v[c->b], v3_cross(p->w[c->b], arm.b));
+        vec3 of_a = c->a < 0 ? boundary(m, p, c) : v3_add(p->v[c->a], v3_cross(p->w[c->a], arm.a));
+        return v3_add(v3_sub(of_b, of_a), cell_shift(p->cell.rate, c->shift));
+    }
     vec3 b = v3_axpy(p->v[c->b], -arm_b(p, c), v3_cross(p->w[c->b], c->n));
     vec3 a = c->a < 0 ? boundary(m, p, c)
                       : v3_axpy(p->v[c->a], branch_a(p, c), v3_cross(p->w[c->a], c->n));

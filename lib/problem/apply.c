@@ -1,9 +1,9 @@
 /* problem/apply.c: W r by the bodies or by the blocks of W [problem/apply.h]. */
 #include "problem/apply.h"
 
+#include "base/team.h"
 #include "problem/sweep.h"
 
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -46,11 +46,12 @@ static void apply_bodies(const struct problem *p, struct apply *a, const double 
     for (int64_t i = 0; i < p->bodies; i++)
         memset(a->body[i].v, 0, sizeof a->body[i].v), memset(a->body[i].w, 0, sizeof a->body[i].w);
     for (int64_t i = 0; i < p->slots; i++)
-        if (p->contact[i] >= 0) body_push(a->body, slot_bundle(p, i), slot_lane(i), x + 3 * i);
+        if (p->contact[i] >= 0)
+            problem_push(p, a->body, slot_bundle(p, i), slot_lane(i), x + 3 * i);
     for (int64_t i = 0; i < p->slots; i++) {
         const struct rebound *e = slot_rebound(p, i);
         if (p->contact[i] < 0) continue;
-        body_velocity(a->body, slot_bundle(p, i), NULL, slot_lane(i), y + 3 * i);
+        problem_velocity(p, a->body, slot_bundle(p, i), NULL, slot_lane(i), y + 3 * i);
         for (int k = 0; e && k < 3; k++) y[3 * i + k] *= e->s[k > 0][slot_lane(i)];
     }
 }
@@ -60,16 +61,16 @@ void problem_apply(const struct problem *p, struct apply *a, const double *x, do
     (p->W ? apply_blocks : apply_bodies)(p, a, x, y);
 }
 
+static void push(void *problem, int me, int threads)
+{
+    sweep_widest()->push(problem, me, threads);
+}
+
 void problem_renew(struct problem *p, int threads)
 {
     if (!p->body) return;
     problem_set_free_motion(p);
-    if (threads == 1) { // a parallel region costs time
-        sweep_widest()->push(p, 0, 1);
-        return;
-    }
-#pragma omp parallel num_threads(threads)
-    sweep_widest()->push(p, omp_get_thread_num(), omp_get_num_threads());
+    team_do(threads, push, p);
 }
 
 void problem_react(struct problem *p, const double *r, int threads)

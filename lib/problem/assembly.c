@@ -12,7 +12,7 @@ static int short_of_memory(struct why *why)
 
 void assembly_free(struct assembly *A)
 {
-    free(A->slot), free(A->end), free(A->q), free(A->w), free(A->free);
+    free(A->slot), free(A->end), free(A->q), free(A->w), free(A->free), free(A->pulled);
     lists_free(&A->of);
     lists_free(&A->yield);
     *A = (struct assembly){ 0 };
@@ -33,7 +33,7 @@ static void assembly_velocity(const struct assembly *A, struct body *body, doubl
         const struct rebound *e = slot_rebound(A->p, A->slot[c]);
         int lane = slot_lane(A->slot[c]);
         double u[3];
-        body_velocity(body, bundle, e, lane, u);
+        problem_velocity(A->p, body, bundle, e, lane, u);
         for (int k = 0; k < d; k++) *out++ = e ? u[k] / e->s[k > 0][lane] : u[k];
     }
 }
@@ -41,13 +41,33 @@ static void assembly_velocity(const struct assembly *A, struct body *body, doubl
 /* m/s, rad/s: of a freedom without the reactions */
 static double free_speed(const struct assembly *A, const struct freedom *f)
 {
-    return f->speed + A->p->dt * f->force / f->mass;
+    double pull = A->pulled ? A->pulled[f - A->p->coupling->freedoms.f] : 0;
+    return f->speed + A->p->dt * f->force / f->mass + pull;
+}
+
+/* m/s, rad/s: of the freedoms, what cohesion pulls; NULL: nothing, or no memory, which *good tells */
+static double *pulled(const struct assembly *A, bool *good)
+{
+    const struct couplings *y = A->p->coupling;
+    *good = true;
+    if (!y || !A->p->pull) return NULL;
+    double *speed = calloc((size_t)y->freedoms.n + 1, sizeof *speed);
+    *good = speed != NULL;
+    for (int64_t i = 0; speed && i < y->n; i++) {
+        const struct coupling *c = &y->of[i];
+        double pull = A->p->pull[A->slot[c->contact]];
+        speed[c->freedom] -= c->J[0] * pull / y->freedoms.f[c->freedom].mass;
+    }
+    return speed;
 }
 
 /* The bodies are as fast as the freedoms were before the step: q gets what the forces add to that,
    and w loses it. */
-static void add_freedoms(struct assembly *A)
+static bool add_freedoms(struct assembly *A)
 {
+    A->pulled = NULL;
+    bool good;
+    if (!(A->pulled = pulled(A, &good)) && !good) return false;
     const struct couplings *y = A->p->coupling;
     int d = A->p->d;
     for (int64_t i = 0; y && i < y->n; i++) {
@@ -59,6 +79,7 @@ static void add_freedoms(struct assembly *A)
             A->w[d * c->contact + k] -= f->speed * c->J[k];
         }
     }
+    return true;
 }
 
 static bool list_freedoms(struct assembly *A)
@@ -84,7 +105,7 @@ static bool assembly_vectors(struct assembly *A)
         if (p->contact[i] < 0) continue;
         slot_get(p, i, r, u);
         const double back[3] = { -r[0], -r[1], -r[2] };
-        body_push(A->free, slot_bundle(p, i), slot_lane(i), back);
+        problem_push(p, A->free, slot_bundle(p, i), slot_lane(i), back);
     }
     for (int64_t i = 0; i < p->bodies; i++) {
         still[i] = A->free[i];
@@ -93,9 +114,8 @@ static bool assembly_vectors(struct assembly *A)
     }
     assembly_velocity(A, A->free, A->q);
     assembly_velocity(A, still, A->w);
-    add_freedoms(A);
     free(still);
-    return true;
+    return add_freedoms(A);
 }
 
 int assembly_init(struct assembly *A, const struct problem *p, struct why *why)
@@ -122,11 +142,26 @@ int assembly_init(struct assembly *A, const struct problem *p, struct why *why)
     return good ? 0 : short_of_memory(why);
 }
 
+/* The same of levers: J (v, y) */
+static void levers_jacobian(const struct levers *g, int i, int end, double J[3][6])
+{
+    double n[3], t1[3], t2[3], sign = end ? 1 : -1;
+    levers_basis(g, i, n, t1, t2);
+    for (int k = 0; k < 3; k++) {
+        J[0][k] = sign * n[k], J[1][k] = sign * t1[k], J[2][k] = sign * t2[k];
+        for (int c = 0; c < 3; c++) J[c][3 + k] = sign * (end ? g->Gb : g->Ga)[3 * c + k][i];
+    }
+}
+
 /* J: u_c = J (v, w) for the body at this end of the contact, as in bundle_velocity() */
 static void jacobian(const struct assembly *A, int64_t contact, int end, double J[3][6])
 {
     const struct bundle *c = assembly_bundle(A, contact);
     int i = slot_lane(A->slot[contact]);
+    if (A->p->lever) {
+        levers_jacobian(&A->p->lever[A->slot[contact] / BUNDLE], i, end, J);
+        return;
+    }
     double sign = end ? 1 : -1, l = end ? c->lb[i] : c->la[i], n[3], t1[3], t2[3];
     bundle_basis(c, i, n, t1, t2);
     for (int k = 0; k < 3; k++) {

@@ -12,7 +12,8 @@
  *
  * are the velocities of the movable bodies that have a contact, in the problem's order: (vx, vy,
  * vz, wx, wy, wz), or (vx, vy, wz) in the plane; after them the speed of each freedom that moves a
- * contact [problem/coupling.h], whose row of H are its J, and whose v_free is s + dt f/m.
+ * contact [problem/coupling.h], whose row of H are its J, and whose v_free is s + dt f/m. Where
+ * contacts have levers, y = I^1/2 w stands in the place of w, with the inertia 1 [problem/levers.h].
  */
 #ifndef NSD_ASSEMBLY_H
 #define NSD_ASSEMBLY_H
@@ -28,6 +29,7 @@ struct assembly {
     struct lists yield; /* of each freedom: its places in p->coupling->of[] */
     double *q, *w;      /* [n d] D u~ at v_free, and with all unknowns at rest, m/s */
     struct body *free;  /* [p->bodies] at v_free */
+    double *pulled;     /* [freedoms] m/s, rad/s: what cohesion makes of them; NULL: nothing */
 };
 
 /* All return 0, EX_SOFTWARE, or EX_DATAERR where the problem is too large for FCLIB's 32-bit

@@ -33,7 +33,7 @@ struct bundle {
 };
 
 /* Newton's impact law in a bundle, the velocity d by which an image moves faster than its body, and
-   what the law sees besides [problem/offset.h]: u~ = s u + offset */
+   what the law sees besides [bodies/offset.h]: u~ = s u + offset */
 struct rebound {
     double s[2][BUNDLE];      /* 1/(1 + e_n), 1/(1 + e_t) */
     double offset[3][BUNDLE]; /* m/s: D^-1 (E (u^- + d^-) + d + law) */

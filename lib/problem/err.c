@@ -1,6 +1,8 @@
 /* problem/err.c: the sums over the contacts, and the errors made of them [problem/err.h]. */
 #include "problem/err.h"
 
+#include "base/team.h"
+
 #include <float.h>
 
 enum {
@@ -42,6 +44,15 @@ static double ratio(double a, double b)
     return isfinite(b) ? a / b : NAN;
 }
 
+/* What is judged, and where the sums of blocks go */
+struct judged {
+    const struct problem *p;
+    bool believes;
+    enum err_terms which;
+    int64_t first;
+    struct sums *s;
+};
+
 /* The sums of one block */
 static void judge_block(const struct problem *p, bool believes, enum err_terms which, int64_t block,
                         struct sums *s)
@@ -49,6 +60,14 @@ static void judge_block(const struct problem *p, bool believes, enum err_terms w
     int64_t from = block * BLOCK, to = from + BLOCK;
     *s = (struct sums){ 0 };
     sweep_widest()->judge(p, from, to < p->bundles ? to : p->bundles, believes, which, s);
+}
+
+/* Blocks from .. to-1 of a stripe */
+static void judge_some(void *arg, int64_t from, int64_t to)
+{
+    const struct judged *j = arg;
+    for (int64_t b = from; b < to; b++)
+        judge_block(j->p, j->believes, j->which, j->first + b, &j->s[b]);
 }
 
 void err_eval(struct err *e, const struct problem *p, bool believes, enum err_terms which,
@@ -62,12 +81,8 @@ void err_eval(struct err *e, const struct problem *p, bool believes, enum err_te
     for (int64_t first = 0; first < blocks; first += STRIPE) {
         struct sums s[STRIPE];
         int64_t n = blocks - first < STRIPE ? blocks - first : STRIPE;
-        if (threads == 1 || (n < PARALLEL_FROM && !p->split)) { // a parallel region costs time
-            for (int64_t b = 0; b < n; b++) judge_block(p, believes, which, first + b, &s[b]);
-        } else {
-#pragma omp parallel for num_threads(threads)
-            for (int64_t b = 0; b < n; b++) judge_block(p, believes, which, first + b, &s[b]);
-        }
+        struct judged j = { p, believes, which, first, s };
+        team_share(n < PARALLEL_FROM && !p->split ? 1 : threads, n, 1, judge_some, &j);
         for (int64_t b = 0; b < n; b++) sums_add(&all, &s[b]);
     }
     if (which & ERR_TERMS) {

@@ -10,7 +10,7 @@
  *
  * with r as a force, r/dt. It is 0 where there is no contact. A method that has no u~ of its own
  * (SBP, SAL) is judged by the motion's u~, and eps_motion is 0. Where the law sees gaps u~_n is what
- * it sees, with the gap in it [problem/offset.h]; all measures here are of that u~.
+ * it sees, with the gap in it [bodies/offset.h]; all measures here are of that u~.
  */
 #ifndef NSD_ERR_H
 #define NSD_ERR_H

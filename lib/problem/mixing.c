@@ -83,7 +83,7 @@ ALWAYS_INLINE void react_text(int d, int depth, struct problem *p, const struct 
             if (p->W)
                 blocks_scatter(p, c, k);
             else
-                body_push(p->body, c, k, dr);
+                problem_push(p, p->body, c, k, dr);
         }
     }
 }

@@ -1,7 +1,8 @@
-/* problem/prepare.c: the problem of a packing with freedoms, given by W [problem/prepare.h]. */
+/* problem/prepare.c: the problem of a packing given by W [problem/prepare.h]. */
 #include "problem/prepare.h"
 
 #include "problem/assembly.h"
+#include "problem/bonded.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -21,20 +22,68 @@ static int check_memory(const struct problem *p, struct why *why)
                    blocks, need / GB, have / GB);
 }
 
-/* W of the bodies and the freedoms, with the reactions found; NULL and why where it fails */
-static struct delassus *assemble(const struct problem *bodies, const struct contacts *s,
-                                 struct why *why)
+/* W of the bodies and the freedoms */
+static int assemble_free(const struct problem *bodies, struct delassus *W, struct why *why)
 {
     struct assembly A = { 0 };
-    struct delassus *W = calloc(1, sizeof *W);
-    if (!W) return why_set(why, EX_SOFTWARE, "no memory for the contact problem"), NULL;
+    if (check_memory(bodies, why)) return why->status;
     int e = assembly_init(&A, bodies, why);
     if (!e) e = assembly_blocks(&A, W, why);
     assembly_free(&A);
+    return e;
+}
+
+/* What the contact in a slot of `bodies` has besides the push of its surfaces, by its D u~ (m/s) */
+static void besides(const struct problem *bodies, int64_t i, const double u[3], double p[3])
+{
+    const struct beyond *x = bodies->beyond ? &bodies->beyond[i / BUNDLE] : NULL;
+    int lane = slot_lane(i);
+    for (int k = 0; k < 3; k++) p[k] = x ? -x->a[k][lane] - x->K[k > 0][lane] * u[k] : 0;
+    if (bodies->pull) p[0] -= bodies->pull[i];
+}
+
+/* W, with the pushes of the reactions found; NULL and why where it fails */
+static struct delassus *assemble(const struct problem *bodies, const struct contacts *s,
+                                 struct why *why)
+{
+    struct delassus *W = calloc(1, sizeof *W);
+    if (!W) return why_set(why, EX_SOFTWARE, "no memory for the contact problem"), NULL;
+    int e = bodies->beyond ? bonded_blocks(bodies, W, why) : assemble_free(bodies, W, why);
     if (e) return free(W), NULL;
-    for (int64_t c = 0; c < s->n && s->found; c++)
-        for (int k = 0; k < W->d; k++) W->r[W->d * c + k] = s->found[c].r[k];
+    for (int64_t i = 0; s->found && i < bodies->slots; i++) {
+        int64_t c = bodies->contact[i];
+        if (c < 0) continue;
+        double p[3];
+        besides(bodies, i, s->found[c].u, p);
+        for (int k = 0; k < W->d; k++) W->r[W->d * c + k] = s->found[c].r[k] - p[k];
+    }
     return W;
+}
+
+/* What cohesion pulls, and bonds, in the slots of the problem given by W, which has them in it; false
+   when memory is short. */
+static bool copy_ties(struct problem *p, const struct problem *bodies)
+{
+    int64_t *at = malloc((size_t)(p->n + 1) * sizeof *at);
+    bool good = at != NULL;
+    if (good && bodies->pull)
+        good = (p->pull = calloc((size_t)p->slots + 1, sizeof *p->pull)) != NULL;
+    if (good && bodies->beyond)
+        good = (p->in_W = calloc((size_t)p->bundles + 1, sizeof *p->in_W)) != NULL;
+    for (int64_t i = 0; good && i < bodies->slots; i++)
+        if (bodies->contact[i] >= 0) at[bodies->contact[i]] = i;
+    for (int64_t i = 0; good && i < p->slots; i++) {
+        if (p->contact[i] < 0) continue;
+        int64_t from = at[p->contact[i]];
+        if (p->pull) p->pull[i] = bodies->pull[from];
+        if (!p->in_W) continue;
+        struct beyond *to = &p->in_W[i / BUNDLE];
+        const struct beyond *x = &bodies->beyond[from / BUNDLE];
+        for (int k = 0; k < 3; k++) to->a[k][slot_lane(i)] = x->a[k][slot_lane(from)];
+        for (int k = 0; k < 2; k++) to->K[k][slot_lane(i)] = x->K[k][slot_lane(from)];
+    }
+    free(at);
+    return good;
 }
 
 /* What a problem given by W does not know of the packing */
@@ -47,24 +96,36 @@ static void describe(struct problem *p, const struct problem *bodies, const stru
         if (p->contact[i] < 0) continue;
         const struct contact *c = &s->c[p->contact[i]];
         const struct found *f = &s->found[p->contact[i]];
-        double D[3] = { 1 + c->en, 1 + c->et, 1 + c->et }, u[3];
+        double D[3] = { 1 + c->en, 1 + c->et, 1 + c->et }, r[3] = { 0 }, u[3];
         for (int k = 0; k < 3; k++) u[k] = D[k] * f->u[k];
-        slot_set(p, i, f->r, u);
+        for (int k = 0; k < p->d; k++) r[k] = p->W->r[p->d * p->contact[i] + k];
+        slot_set(p, i, r, u);
     }
 }
 
-static int prepare_coupled(struct problem *p, const struct packing *pack, const struct contacts *s,
-                           double alpha, double rho_factor, enum order order, struct why *why)
+static int prepare_by_W(struct problem *p, const struct packing *pack, const struct contacts *s,
+                        double alpha, double rho_factor, enum order order, struct why *why)
 {
     struct problem bodies;
     struct contacts unsolved = *s; // only W and q are wanted of the bodies
     unsolved.found = NULL;
     if (problem_prepare(&bodies, pack, &unsolved, alpha, rho_factor, ORDER_NATURAL, why))
         return why->status;
-    struct delassus *W = check_memory(&bodies, why) ? NULL : assemble(&bodies, s, why);
+    if (bodies.rolls) {
+        problem_free(&bodies);
+        return why_set(why, EX_DATAERR,
+                       "rolling friction where loads push contacts, or by another "
+                       "solver than auto and nlgs: not known");
+    }
+    struct delassus *W = assemble(&bodies, s, why);
     if (W && !problem_prepare_delassus(p, W, alpha, rho_factor, order, why)) {
         p->own = W;
-        describe(p, &bodies, s);
+        if (copy_ties(p, &bodies)) {
+            describe(p, &bodies, s);
+        } else {
+            problem_free(p);
+            why_set(why, EX_SOFTWARE, "no memory for the contact problem");
+        }
     } else if (W) {
         delassus_free(W);
         free(W);
@@ -73,13 +134,22 @@ static int prepare_coupled(struct problem *p, const struct packing *pack, const 
     return why->status;
 }
 
-int prepare_packing(struct problem *p, const struct packing *pack, const struct contacts *s,
-                    double alpha, double rho_factor, enum order order, struct why *why)
+static bool bonded(const struct contacts *s)
 {
-    if (!freedoms_in(pack)) return problem_prepare(p, pack, s, alpha, rho_factor, order, why);
-    struct couplings touched;
-    if (couplings_init(&touched, pack, s, why)) return why->status;
-    int64_t n = touched.n;
-    couplings_free(&touched);
-    return (n ? prepare_coupled : problem_prepare)(p, pack, s, alpha, rho_factor, order, why);
+    for (int64_t i = 0; s->tie && i < s->n; i++)
+        if (s->tie[i].stiff[0] > 0 || s->tie[i].stiff[1] > 0) return true;
+    return false;
+}
+
+int prepare_packing(struct problem *p, const struct packing *pack, const struct contacts *s,
+                    bool sweeps, double alpha, double rho_factor, enum order order, struct why *why)
+{
+    bool by_W = !sweeps && bonded(s);
+    if (!by_W && freedoms_in(pack)) {
+        struct couplings touched;
+        if (couplings_init(&touched, pack, s, why)) return why->status;
+        by_W = touched.n > 0;
+        couplings_free(&touched);
+    }
+    return (by_W ? prepare_by_W : problem_prepare)(p, pack, s, alpha, rho_factor, order, why);
 }

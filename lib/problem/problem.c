@@ -1,8 +1,10 @@
 /* problem/problem.c: the bundles of a packing and of a given W [problem/problem.h]. */
 #include "problem/problem.h"
 
+#include "base/team.h"
 #include "bodies/kinematics.h"
-#include "problem/offset.h"
+#include "bodies/offset.h"
+#include "bodies/top.h"
 #include "problem/schedule.h"
 
 #include <assert.h>
@@ -13,11 +15,13 @@
 
 enum {
     HUGE_PAGE = 2 << 20, /* bytes */
+    SOME = 4096,         /* bodies or slots that are worth a thread: 100 us of work */
     PARALLEL_FROM = 64   /* bundles a group, on average, that are worth more than one thread */
 };
 
 static_assert(sizeof(struct body) == 64, "a body is a cache line");
 static_assert(sizeof(struct bundle) % 64 == 0, "lanes begin a cache line");
+static_assert(sizeof(struct levers) % 64 == 0, "lanes begin a cache line");
 
 /*
  * Zeroed memory aligned to cache lines, in huge pages where it is large: bodies read in any order
@@ -49,7 +53,8 @@ static int no_memory(struct problem *p, struct why *why)
 void problem_free(struct problem *p)
 {
     free(p->bundle), free(p->rebound), free(p->u), free(p->contact), free(p->group), free(p->body);
-    free(p->split), free(p->seat);
+    free(p->split), free(p->seat), free(p->pull), free(p->beyond), free(p->in_W);
+    free(p->lever), free(p->spin);
     delassus_free(&p->sorted);
     if (p->own) delassus_free(p->own);
     if (p->coupling) couplings_free(p->coupling);
@@ -109,31 +114,56 @@ static int32_t *seat_bodies(const struct problem *p, const struct packing *pack,
     return seat;
 }
 
-/* Sets the bodies, with their velocities before the step. */
-static void set_bodies(struct problem *p)
+/* Sets bodies first .. end-1, with their velocities before the step. */
+static void set_some(void *arg, int64_t first, int64_t end)
 {
+    struct problem *p = arg;
     const struct packing *pack = p->packing;
-    for (int64_t i = 0; i < pack->n; i++) {
-        vec3 v = pack->v[i], w = pack->w[i];
+    for (int64_t i = first; i < end; i++) {
+        vec3 v = pack->v[i], w = p->spin ? p->spin[i] : pack->w[i];
         p->body[p->seat[i]] = (struct body){ { v.x, v.y, v.z },
                                              { w.x, w.y, w.z },
                                              pack->mass[i] > 0 ? 1 / pack->mass[i] : 0,
                                              pack->mass[i] > 0 ? 1 / pack->inertia[i] : 0 };
+        if (p->spin && pack->mass[i] > 0) p->body[p->seat[i]].ii = 1;
     }
 }
 
-void problem_set_free_motion(struct problem *p)
+static void free_some(void *arg, int64_t first, int64_t end)
 {
+    struct problem *p = arg;
     const struct packing *pack = p->packing;
     const vec3 fall = v3_scale(pack->dt, pack->g);
     const struct cell_flow flow = packing_flow(pack);
-    for (int64_t i = 0; i < pack->n; i++) {
+    for (int64_t i = first; i < end; i++) {
         struct body *b = &p->body[p->seat[i]];
         vec3 dv = fall;
         if (!(b->im > 0)) continue;
         if (flow.changes) dv = v3_add(dv, cell_flow_gain(&flow, packing_predict(pack, i)));
         b->v[0] = pack->v[i].x + dv.x, b->v[1] = pack->v[i].y + dv.y, b->v[2] = pack->v[i].z + dv.z;
-        b->w[0] = pack->w[i].x, b->w[1] = pack->w[i].y, b->w[2] = pack->w[i].z;
+        vec3 w = p->spin ? p->spin[i] : pack->w[i];
+        b->w[0] = w.x, b->w[1] = w.y, b->w[2] = w.z;
+    }
+}
+
+/* N s: of the contacts' ties */
+static bool set_pulls(struct problem *p, const struct contacts *s)
+{
+    bool any = false;
+    for (int64_t i = 0; s->tie && i < s->n; i++) any = any || s->tie[i].pull > 0;
+    if (!any) return true;
+    p->pull = calloc((size_t)p->slots + 1, sizeof *p->pull);
+    for (int64_t i = 0; p->pull && i < p->slots; i++)
+        if (p->contact[i] >= 0) p->pull[i] = p->dt * s->tie[p->contact[i]].pull;
+    return p->pull != NULL;
+}
+
+void problem_set_free_motion(struct problem *p)
+{
+    team_share(team_size(), p->packing->n, SOME, free_some, p);
+    for (int64_t i = 0; p->pull && i < p->slots; i++) {
+        const double pulled[3] = { -p->pull[i], 0, 0 };
+        if (p->pull[i] > 0) problem_push(p, p->body, slot_bundle(p, i), slot_lane(i), pulled);
     }
 }
 
@@ -146,6 +176,10 @@ static int32_t place_of(struct problem *p, int32_t i, vec3 x, int64_t *next)
     struct body *copy = &p->body[*next];
     vec3 v = i < 0 ? wall_velocity(pack, &pack->wall[-1 - i], x) : pack->v[i];
     *copy = (struct body){ .v = { v.x, v.y, v.z } };
+    if (i < 0 && p->rolls) { // its arm is 0: that it turns matters to moments only
+        vec3 w = wall_spin(pack, &pack->wall[-1 - i]);
+        copy->w[0] = w.x, copy->w[1] = w.y, copy->w[2] = w.z;
+    }
     if (i >= 0) *copy = p->body[p->seat[i]];
     return body_place((*next)++);
 }
@@ -180,8 +214,8 @@ static void image_velocity(const vec3 rate[3], const struct contact *c, double u
 
 /* Fills slot i except for the reaction. The bodies still have their velocities before the step. */
 static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
-                      const struct lattice *cell, const struct contact *c, double alpha,
-                      double rho_factor)
+                      const struct lattice *cell, const struct contact *c, const struct tie *tie,
+                      double alpha, double rho_factor)
 {
     const double en[3] = { c->en, c->et, c->et }, n[3] = { c->n.x, c->n.y, c->n.z },
                  t1[3] = { c->t1.x, c->t1.y, c->t1.z }, s[2] = { 1 / (1 + c->en), 1 / (1 + c->et) };
@@ -202,12 +236,203 @@ static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
     }
     for (int j = 0; j < 3 && e; j++) e->offset[j][k] = u[j] * (en[j] / (1 + en[j]));
     for (int j = 0; j < 3 && e && shifted(c); j++) e->offset[j][k] += s[j > 0] * after[j];
-    if (e && offset_in(pack, c)) add_offset(e, k, pack, c, u[0]);
+    if (e && tie && tie->offset > 0)
+        e->offset[0][k] += tie->offset;
+    else if (e && offset_in(pack, c))
+        add_offset(e, k, pack, c, u[0]);
     for (int j = 0; j < 2 && e; j++) e->s[j][k] = s[j];
     r->w[0][k] = s[0] * im, r->w[1][k] = s[1] * it;
     for (int j = 0; j < 2; j++) r->iw[j][k] = 1 / r->w[j][k];
     double lambda = bundle_lambda(r, k);
     r->rho[k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / im : rho_factor / lambda;
+}
+
+/* ---- levers ---- */
+
+static bool shaped(const struct packing *pack, const struct contacts *s)
+{
+    for (int64_t i = 0; i < s->n; i++)
+        if (contact_shaped(pack, &s->c[i])) return true;
+    return false;
+}
+
+/* half[n] = the orientations in which contacts act, and p->spin; false when memory is short. */
+static bool find_spins(struct problem *p, const struct packing *pack, quat **half)
+{
+    *half = calloc((size_t)pack->n + 1, sizeof **half);
+    p->spin = calloc((size_t)pack->n + 1, sizeof *p->spin);
+    if (!*half || !p->spin) return false;
+    for (int64_t i = 0; i < pack->n; i++) {
+        p->spin[i] = pack->w[i];
+        if (!(pack->mass[i] > 0)) continue;
+        (*half)[i] = top_is(pack, i) ? top_predict(pack, i) : pack->q[i];
+        p->spin[i] = top_root(pack, i, (*half)[i], top_predict_spin(pack, i, (*half)[i]));
+    }
+    return true;
+}
+
+/* The rows G_i of a body with this arm; a boundary's (i < 0) are 0. */
+static void set_rows(double G[9][BUNDLE], int k, const struct packing *pack, int32_t i, vec3 arm,
+                     const struct contact *c, const quat *half)
+{
+    const vec3 e[3] = { c->n, c->t1, contact_t2(c) };
+    for (int j = 0; j < 3 && i >= 0; j++) {
+        vec3 row = v3_cross(arm, e[j]);
+        if (pack->dim == 2) row = j == 2 ? v3(0, 0, 0) : v3(0, 0, row.z);
+        if (pack->mass[i] > 0) row = top_inverse_root(pack, i, half[i], row);
+        G[3 * j][k] = row.x, G[3 * j + 1][k] = row.y, G[3 * j + 2][k] = row.z;
+    }
+}
+
+/* Fills the slot's levers, W_cc and rho; its rebound, undivided: u + E u^- + d, with D law */
+static void lever_init(struct problem *p, int64_t i, const struct packing *pack,
+                       const struct lattice *cell, const struct contact *c, const struct tie *tie,
+                       double alpha, double rho_factor, const quat *half)
+{
+    const double en[3] = { c->en, c->et, c->et }, n[3] = { c->n.x, c->n.y, c->n.z },
+                 t1[3] = { c->t1.x, c->t1.y, c->t1.z };
+    struct bundle *r = slot_bundle(p, i);
+    struct levers *g = &p->lever[i / BUNDLE];
+    struct rebound *e = slot_rebound(p, i);
+    int k = slot_lane(i);
+    struct arms arm = arm_vectors(pack, c, (1 - pack->theta) * pack->dt, cell->edge);
+    for (int j = 0; j < 3; j++) g->n[j][k] = n[j], g->t1[j][k] = t1[j];
+    set_rows(g->Ga, k, pack, c->a, arm.a, c, half), set_rows(g->Gb, k, pack, c->b, arm.b, c, half);
+    const struct body *a = &p->body[body_index(r->a[k])], *b = &p->body[body_index(r->b[k])];
+    double W[9], u[3];
+    for (int j = 0; j < 9; j++) {
+        W[j] = j % 4 == 0 ? a->im + b->im : 0;
+        for (int l = 0; l < 3; l++)
+            W[j] += a->ii * g->Ga[3 * (j / 3) + l][k] * g->Ga[3 * (j % 3) + l][k] +
+                    b->ii * g->Gb[3 * (j / 3) + l][k] * g->Gb[3 * (j % 3) + l][k];
+        r->W[j][k] = W[j];
+    }
+    double lambda = local_lambda_max(W);
+    r->mu[k] = c->mu;
+    for (int j = 0; j < 2; j++) r->w[j][k] = lambda, r->iw[j][k] = 1 / lambda;
+    r->rho[k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / W[0] : rho_factor / lambda;
+    if (!e) return;
+    problem_velocity(p, p->body, r, NULL, k, u); // u^-
+    double before[3] = { 0 }, after[3] = { 0 };
+    if (shifted(c)) image_velocity(cell->before, c, before), image_velocity(cell->after, c, after);
+    for (int j = 0; j < 3; j++) {
+        u[j] += before[j];
+        e->offset[j][k] = en[j] * u[j] + after[j];
+    }
+    if (tie && tie->offset > 0)
+        e->offset[0][k] += (1 + en[0]) * tie->offset;
+    else if (offset_in(pack, c))
+        e->offset[0][k] += offset_of(pack, c, u[0]);
+    for (int j = 0; j < 2; j++) e->s[j][k] = 1;
+}
+
+/* Beyond W~, rho and the offset, which slot_init() has set: the bond's part, and that of moments */
+static void slot_go_beyond(struct problem *p, int64_t i, const struct contact *c,
+                           const struct tie *t, double alpha, double rho_factor)
+{
+    int k = slot_lane(i);
+    struct bundle *r = slot_bundle(p, i);
+    struct beyond *x = &p->beyond[i / BUNDLE];
+    const struct rebound *e = slot_rebound(p, i);
+    const struct body *a = &p->body[body_index(r->a[k])], *b = &p->body[body_index(r->b[k])];
+    double h = p->dt, seen = t->offset > 0 ? t->offset : offset_of(p->packing, c, 0);
+    double wt = r->w[1][k] / (e ? e->s[1][k] : 1);
+    for (int j = 0; j < 2; j++) {
+        x->K[j][k] = h * h * t->stiff[j], x->s[j][k] = 1 / (1 + r->w[j][k] * x->K[j][k]);
+        r->w[j][k] *= x->s[j][k], r->iw[j][k] += x->K[j][k];
+    }
+    double lambda = bundle_lambda(r, k);
+    if (t->beta > 0 && !(alpha > 0)) r->rho[k] = lambda > 0 ? rho_factor / lambda : 1;
+    x->a[0][k] = x->K[0][k] * (t->jump[0] / h - seen);
+    for (int j = 1; j < 3; j++) x->a[j][k] = h * t->stiff[1] * t->jump[j];
+    x->mu_r[k] = t->mu_r, x->mu_p[k] = t->mu_p;
+    if (!beyond_rolls(x, k)) return;
+    x->k[k] = r->lb[k] * b->ii - r->la[k] * a->ii, x->wr[k] = a->ii + b->ii;
+    x->length[k] = x->wr[k] > 0 ? sqrt(wt / x->wr[k]) : 1;
+    struct rolling q;
+    const double s[2] = { e ? e->s[0][k] : 1, e ? e->s[1][k] : 1 }, u[3] = { 0 };
+    double v[ROLLING];
+    beyond_rolling(r, x, p->body, k, s, u, &q, v);
+    x->rho[k] = r->rho[k] * lambda / rolling_lambda(&q);
+}
+
+/* Allocates what bonds and moments need, where there are any; false when memory is short. */
+static bool lay_out_beyond(struct problem *p, const struct contacts *s)
+{
+    bool any = false;
+    for (int64_t i = 0; s->tie && i < s->n; i++) {
+        const struct tie *t = &s->tie[i];
+        p->rolls = p->rolls || t->mu_r > 0 || t->mu_p > 0;
+        any = any || t->stiff[0] > 0 || t->stiff[1] > 0;
+    }
+    if (!any && !p->rolls) return true;
+    p->beyond = alloc_lines(p->bundles, sizeof *p->beyond);
+    for (int64_t i = 0; p->beyond && i < p->slots; i++)
+        for (int j = 0; j < 2; j++) p->beyond[i / BUNDLE].s[j][slot_lane(i)] = 1;
+    return p->beyond != NULL;
+}
+
+/* The reactions found, as r* and what is beyond it; the bodies get them. */
+static void take_found(struct problem *p, int64_t i, const struct contacts *s)
+{
+    const struct found *c = &s->found[p->contact[i]];
+    struct beyond *x = p->beyond ? &p->beyond[i / BUNDLE] : NULL;
+    int k = slot_lane(i);
+    double r[3] = { c->r[0], c->r[1], c->r[2] };
+    if (p->pull) r[0] += p->pull[i];
+    problem_push(p, p->body, slot_bundle(p, i), k, r);
+    for (int j = 0; x && j < 3; j++) {
+        x->p[j][k] = -x->a[j][k] - x->K[j > 0][k] * c->u[j];
+        r[j] -= x->p[j][k];
+        if (s->moment) x->m[j][k] = s->moment[p->contact[i]][j];
+    }
+    const struct contact *law = &s->c[p->contact[i]];
+    double u[3] = { c->u[0], c->u[1], c->u[2] };
+    for (int j = 0; j < 3 && p->lever; j++) u[j] *= 1 + (j ? law->et : law->en);
+    slot_set(p, i, r, u);
+    if (!x || !beyond_rolls(x, k)) return;
+    const double m[3] = { x->m[0][k], x->m[1][k], x->m[2][k] };
+    beyond_push(slot_bundle(p, i), k, p->body, m);
+}
+
+/* Slots that are filled, and what the free motion makes of them */
+struct filling {
+    struct problem *p;
+    const struct contacts *s;
+    const struct lattice *cell;
+    double alpha, rho_factor;
+    const quat *half; /* [n] orientations in which contacts act; NULL: only balls */
+    double *q2;       /* [slots] m^2/s^2: |q|^2 */
+};
+
+/* Bundles first .. end-1, whose bodies have their places */
+static void fill_some(void *arg, int64_t first, int64_t end)
+{
+    const struct filling *f = arg;
+    for (int64_t i = BUNDLE * first; i < BUNDLE * end; i++) {
+        int32_t c = f->p->contact[i];
+        if (c < 0) continue;
+        const struct contact *law = &f->s->c[c];
+        const struct tie *tie = f->s->tie ? &f->s->tie[c] : NULL;
+        const struct packing *pack = f->p->packing;
+        if (f->p->lever)
+            lever_init(f->p, i, pack, f->cell, law, tie, f->alpha, f->rho_factor, f->half);
+        else
+            slot_init(f->p, i, pack, f->cell, law, tie, f->alpha, f->rho_factor);
+        if (f->p->beyond) slot_go_beyond(f->p, i, law, tie, f->alpha, f->rho_factor);
+    }
+}
+
+static void measure_some(void *arg, int64_t first, int64_t end)
+{
+    const struct filling *f = arg;
+    const struct problem *p = f->p;
+    for (int64_t i = BUNDLE * first; i < BUNDLE * end; i++) {
+        double q[3] = { 0 };
+        if (p->contact[i] >= 0)
+            problem_velocity(p, p->body, slot_bundle(p, i), slot_rebound(p, i), slot_lane(i), q);
+        f->q2[i] = q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
+    }
 }
 
 /* kg: the mean mass of the bodies that move, for the scaled errors */
@@ -261,7 +486,9 @@ static bool glides(const struct contacts *s, const struct lattice *cell)
 static bool rebounds(const struct packing *pack, const struct contacts *s)
 {
     for (int64_t i = 0; i < s->n; i++)
-        if (s->c[i].en > 0 || s->c[i].et > 0 || offset_in(pack, &s->c[i])) return true;
+        if (s->c[i].en > 0 || s->c[i].et > 0 || offset_in(pack, &s->c[i]) ||
+            (s->tie && s->tie[i].offset > 0))
+            return true;
     return false;
 }
 
@@ -277,25 +504,42 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     bool room = p->body && !schedule_bodies(&plan, order, s, pack) && lay_out_bundles(p, &plan);
     schedule_free(&plan);
     const struct lattice cell = lattice_of(pack);
+    quat *half = NULL;
+    if (room && shaped(pack, s)) {
+        p->full = true;
+        p->lever = alloc_lines(p->bundles, sizeof *p->lever);
+        room = p->lever && find_spins(p, pack, &half);
+    }
     if (room && (rebounds(pack, s) || glides(s, &cell)))
         room = (p->rebound = alloc_lines(p->bundles, sizeof *p->rebound)) != NULL;
-    if (!room || !(p->seat = seat_bodies(p, pack, s, order))) return no_memory(p, why);
-    if (freedoms_in(pack)) {
-        if (!(p->coupling = calloc(1, sizeof *p->coupling))) return no_memory(p, why);
-        if (couplings_init(p->coupling, pack, s, why)) return problem_free(p), why->status;
+    room = room && set_pulls(p, s) && lay_out_beyond(p, s);
+    if (room && p->beyond && p->lever) {
+        free(half), problem_free(p);
+        return why_set(why, EX_DATAERR,
+                       "bonds and rolling friction are for balls and discs, and there are contacts "
+                       "of other shapes");
     }
-    set_bodies(p);
+    if (!room || !(p->seat = seat_bodies(p, pack, s, order))) return free(half), no_memory(p, why);
+    if (freedoms_in(pack)) {
+        if (!(p->coupling = calloc(1, sizeof *p->coupling))) return free(half), no_memory(p, why);
+        if (couplings_init(p->coupling, pack, s, why))
+            return free(half), problem_free(p), why->status;
+    }
+    team_share(team_size(), pack->n, SOME, set_some, p);
     int64_t nobody = pack->n, next = nobody + 2;
     int64_t other = p->split ? BUNDLE * p->group[p->split->inside] : p->slots;
     for (int64_t i = 0; i < p->slots; i++) {
         struct bundle *r = slot_bundle(p, i);
         int k = slot_lane(i);
         r->a[k] = r->b[k] = body_place(nobody + (i >= other));
+        for (int j = 0; j < 9 && p->lever; j += 4) r->W[j][k] = 1; // of a lane without a contact
         if (p->contact[i] < 0) continue;
         const struct contact *c = &s->c[p->contact[i]];
         r->a[k] = place_of(p, c->a, c->x, &next), r->b[k] = place_of(p, c->b, c->x, &next);
-        slot_init(p, i, pack, &cell, c, alpha, rho_factor);
     }
+    struct filling f = { p, s, &cell, alpha, rho_factor, half, NULL };
+    team_share(team_size(), p->bundles, SOME / BUNDLE, fill_some, &f);
+    free(half);
 
     double g = v3_norm(pack->g);
     p->fall = g * pack->dt;
@@ -303,19 +547,13 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     p->scale_r = p->scale_v * mean_mass(pack);
     p->speed = top_speed(pack);
     problem_set_free_motion(p);
-    for (int64_t i = 0; i < p->slots; i++) {
-        double q[3];
-        if (p->contact[i] < 0) continue;
-        body_velocity(p->body, slot_bundle(p, i), slot_rebound(p, i), slot_lane(i), q);
-        p->norm_q += q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
-    }
+    if (!(f.q2 = malloc((size_t)(p->slots + 1) * sizeof *f.q2))) return no_memory(p, why);
+    team_share(team_size(), p->bundles, SOME / BUNDLE, measure_some, &f);
+    for (int64_t i = 0; i < p->slots; i++) p->norm_q += f.q2[i]; // in one order always
+    free(f.q2);
     p->norm_q = sqrt(p->norm_q);
-    for (int64_t i = 0; s->found && i < p->slots; i++) {
-        if (p->contact[i] < 0) continue;
-        const struct found *c = &s->found[p->contact[i]];
-        slot_set(p, i, c->r, c->u);
-        body_push(p->body, slot_bundle(p, i), slot_lane(i), c->r);
-    }
+    for (int64_t i = 0; s->found && i < p->slots; i++)
+        if (p->contact[i] >= 0) take_found(p, i, s);
     return 0;
 }
 
@@ -382,6 +620,18 @@ void slot_set(struct problem *p, int64_t i, const double r[3], const double u[3]
         c->r[k][slot_lane(i)] = r[k], p->u[i / BUNDLE][k][slot_lane(i)] = u[k];
 }
 
+void slot_get_beyond(const struct problem *p, int64_t i, double x[BESIDE_R])
+{
+    const struct beyond *y = &p->beyond[i / BUNDLE];
+    for (int k = 0; k < 3; k++) x[k] = y->p[k][slot_lane(i)], x[3 + k] = y->m[k][slot_lane(i)];
+}
+
+void slot_set_beyond(struct problem *p, int64_t i, const double x[BESIDE_R])
+{
+    struct beyond *y = &p->beyond[i / BUNDLE];
+    for (int k = 0; k < 3; k++) y->p[k][slot_lane(i)] = x[k], y->m[k][slot_lane(i)] = x[3 + k];
+}
+
 int problem_team(const struct problem *p, int threads)
 {
     if (p->bundles >= PARALLEL_FROM * p->groups) return threads;
@@ -390,14 +640,25 @@ int problem_team(const struct problem *p, int threads)
 
 int problem_store(const struct problem *p, struct contacts *s)
 {
-    if (contacts_alloc_found(s)) return -1;
+    if (contacts_alloc_found(s) || (p->rolls && contacts_alloc_moment(s))) return -1;
     for (int64_t i = 0; i < p->slots; i++) {
         if (p->contact[i] < 0) continue;
         struct found *c = &s->found[p->contact[i]];
         slot_get(p, i, c->r, c->u);
         const struct contact *law = &s->c[p->contact[i]];
-        for (int k = 0; k < 3 && p->W; k++) c->u[k] /= 1 + (k ? law->et : law->en); // it is D u~
+        for (int k = 0; k < 3 && problem_undivided(p); k++)
+            c->u[k] /= 1 + (k ? law->et : law->en); // it is D u~
         c->status = (int8_t)local_status(slot_bundle(p, i)->mu[slot_lane(i)], c->r);
+        double x[BESIDE_R];
+        if (p->beyond) slot_get_beyond(p, i, x);
+        for (int k = 0; k < 3 && p->beyond; k++) {
+            c->r[k] += x[k];
+            if (s->moment) s->moment[p->contact[i]][k] = x[3 + k];
+        }
+        const struct beyond *in_W = p->in_W ? &p->in_W[i / BUNDLE] : NULL;
+        for (int k = 0; k < 3 && in_W; k++) // e = 0 where there is a bond, so that D is 1
+            c->r[k] -= in_W->a[k][slot_lane(i)] + in_W->K[k > 0][slot_lane(i)] * c->u[k];
+        if (p->pull) c->r[0] -= p->pull[i];
     }
     return 0;
 }

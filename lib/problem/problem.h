@@ -9,7 +9,9 @@
  *
  *     u~ = D^-1 (u + E u^-),  W~ = D^-1 W,  D = 1 + E,  E = diag(e_n, e_t, e_t).
  *
- * For balls and discs the lever arms lie along n, hence W~_cc = diag(w_n, w_t, w_t).
+ * For balls and discs the lever arms lie along n, hence W~_cc = diag(w_n, w_t, w_t). Where any body of
+ * a contact has another shape, all bundles have levers [problem/levers.h], W_cc is full, and, so that it
+ * is symmetric, u in the slots is D u~, as it is where W is given.
  *
  * Slot i is lane i % 8 of bundle i / 8. Each contact has a copy of its own of a body that does not
  * move: the contacts of a group then share no body at all, and all bodies are written back alike.
@@ -19,9 +21,11 @@
 
 #include "bodies/contact.h"
 #include "bodies/packing.h"
+#include "problem/beyond.h"
 #include "problem/bundle.h"
 #include "problem/coupling.h"
 #include "problem/delassus.h"
+#include "problem/levers.h"
 #include "problem/schedule.h"
 
 enum {
@@ -34,6 +38,10 @@ struct problem {
     int64_t bundles, slots;  /* slots: 8 a bundle, some without a contact */
     struct bundle *bundle;   /* [bundles] in the order of the sweep */
     struct rebound *rebound; /* [bundles]; NULL: e_n = e_t = 0 everywhere, and no offset */
+    struct levers *lever;    /* [bundles]; NULL: balls, or given by W */
+    struct beyond *beyond;   /* [bundles]; NULL: no contact is bonded, none has rolling friction */
+    bool rolls;              /* some contact has it */
+    struct beyond *in_W;     /* [bundles] K and a of bonds that W has in it; NULL: none */
     double (*u)[3][BUNDLE];  /* [bundles] m/s: what the local method believes */
     int32_t *contact;        /* [slots] slot i is contact[i] of the packing or of W; -1: none */
     int64_t groups;          /* no two contacts of a group share a body (a block of W): */
@@ -44,12 +52,14 @@ struct problem {
                           meets them, and copies of what does not move; NULL: given by W */
     const struct packing *packing; /* borrowed: its velocities are those before the step; NULL:
                                       there is only W */
+    vec3 *spin;                    /* [packing->n] y before the reactions; NULL without levers */
+    double *pull;                  /* [slots] N s: of cohesion, against n; NULL: none */
     int32_t *seat;                 /* [packing->n] body i of the packing is body[seat[i]] */
     struct couplings *coupling;    /* what freedoms the packing has beyond its bodies; NULL: none */
     struct delassus *W;            /* NULL: given by bodies */
     struct delassus *own;          /* W where the problem is to free it, else NULL: W is borrowed */
     struct delassus sorted;        /* given by W: its block rows in the order of the slots */
-    bool full;                     /* given by W, and some W_cc is more than diag(w_n, w_t, w_t) */
+    bool full;                     /* some W_cc is more than diag(w_n, w_t, w_t) */
     double dt;      /* s: the paper's forces are r / dt; 1 where there are no steps */
     double scale_v; /* m/s: the unit of velocities in scaled errors, g dt */
     double scale_r; /* N s: that of reactions, m g dt */
@@ -72,8 +82,13 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
                              enum order order, struct why *why);
 void problem_free(struct problem *p);
 
-/* Sets the bodies of a packing to v_free, their velocities before the step plus dt g, and what
-   the flow of the cell's edges gains. */
+/* What of an iterate is beyond r: p and m of a slot's contact */
+enum { BESIDE_R = 6 };
+void slot_get_beyond(const struct problem *p, int64_t i, double x[BESIDE_R]);
+void slot_set_beyond(struct problem *p, int64_t i, const double x[BESIDE_R]);
+
+/* Sets the bodies of a packing to v_free, their velocities before the step plus dt g, what the flow
+   of the cell's edges gains, and what cohesion pulls. */
 void problem_set_free_motion(struct problem *p);
 
 /* How many of these threads are to share a sweep: all where the groups are large enough, else two
@@ -98,6 +113,12 @@ static inline struct rebound *slot_rebound(const struct problem *p, int64_t i)
 }
 void slot_get(const struct problem *p, int64_t i, double r[3], double u[3]);
 void slot_set(struct problem *p, int64_t i, const double r[3], const double u[3]);
+
+/* Whether u in the slots is D u~ */
+static inline bool problem_undivided(const struct problem *p)
+{
+    return p->W || p->lever;
+}
 
 /* The largest eigenvalue of W~_cc: 1/rho_a of the natural map */
 ALWAYS_INLINE vd bundle_lambda(const struct bundle *c, int k)
@@ -125,6 +146,37 @@ ALWAYS_INLINE void body_push(struct body *body, const struct bundle *c, int k, c
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
     bundle_basis(c, k, n, t1, t2);
     bundle_push(c, k, t2, dr, body, &a, &b);
+}
+
+/* Both, whether the problem has levers or not */
+ALWAYS_INLINE void problem_velocity(const struct problem *p, struct body *body,
+                                    const struct bundle *c, const struct rebound *e, int k, vd u[3])
+{
+    struct bodies a, b;
+    struct twist ma, mb;
+    vd t2[3];
+    if (!p->lever) {
+        body_velocity(body, c, e, k, u);
+        return;
+    }
+    bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
+    levers_velocity(&p->lever[c - p->bundle], e, k, &ma, &mb, u, t2);
+}
+
+ALWAYS_INLINE void problem_push(const struct problem *p, struct body *body, const struct bundle *c,
+                                int k, const vd dr[3])
+{
+    struct bodies a, b;
+    struct twist ma, mb;
+    vd n[3], t1[3], t2[3];
+    if (!p->lever) {
+        body_push(body, c, k, dr);
+        return;
+    }
+    const struct levers *g = &p->lever[c - p->bundle];
+    bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
+    levers_basis(g, k, n, t1, t2);
+    levers_push(c, g, k, t2, dr, body, &a, &b);
 }
 
 #endif

@@ -42,6 +42,7 @@ struct report {
     double t; /* s, after the step */
     struct err err;
     bool balanced;          /* balance is known: where there is a packing */
+    bool tied;              /* its terms of bonds too: where pairs have other laws */
     struct balance balance; /* of the step that the reactions make */
     enum criterion criterion;
     double eps;     /* what was asked */

@@ -1,14 +1,12 @@
-/* problem/two_thread_split.c: the cut, the zones, the wait [problem/two_thread_split.h]. */
+/* problem/two_thread_split.c: the cut and the zones [problem/two_thread_split.h]. */
 #include "problem/two_thread_split.h"
 
 #include <gsl/gsl_statistics_double.h>
 #include <math.h>
-#include <sched.h>
 #include <stdlib.h>
 
 enum {
-    SAMPLE = 16384, /* contacts that decide where to cut, at most */
-    SPINS = 10000   /* reads of the count before another process may have the core */
+    SAMPLE = 16384 /* contacts that decide where to cut, at most */
 };
 
 static double coordinate(const struct packing *p, int32_t body, int axis)
@@ -72,10 +70,4 @@ int two_thread_split_divide(const struct contacts *s, const struct packing *p, i
     }
     free(top), free(shared);
     return room ? 0 : -1;
-}
-
-void two_thread_split_wait(const _Atomic int64_t *done, int64_t n)
-{
-    for (int k = 0; atomic_load_explicit(done, memory_order_acquire) < n; k++)
-        if (k >= SPINS) sched_yield();
 }

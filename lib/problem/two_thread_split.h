@@ -35,7 +35,4 @@ struct two_thread_split {
     alignas(64) _Atomic int64_t rims;    /* how often the rim has */
 };
 
-/* Waits until `done`, which the other thread counts up, is at least n. */
-void two_thread_split_wait(const _Atomic int64_t *done, int64_t n);
-
 #endif

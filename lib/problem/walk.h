@@ -6,6 +6,7 @@
 #ifndef NSD_WALK_H
 #define NSD_WALK_H
 
+#include "base/team.h"
 #include "problem/problem.h"
 
 /*
@@ -41,6 +42,8 @@ ALWAYS_INLINE void fetch_ahead(const struct problem *p, int64_t i)
     const char *line = (const char *)&p->bundle[i + BUNDLES_AHEAD];
     for (size_t k = 0; k < sizeof *p->bundle; k += 64) __builtin_prefetch(line + k, 0, 2);
     if (!p->body) return;
+    const char *arms = (const char *)(p->lever ? &p->lever[i + BUNDLES_AHEAD] : NULL);
+    for (size_t k = 0; arms && k < sizeof *p->lever; k += 64) __builtin_prefetch(arms + k, 0, 2);
     fetch_bodies_to_second_level(p, &p->bundle[i + BODIES_AHEAD]);
     fetch_bodies(p, &p->bundle[i + BODIES_NEXT]);
 }
@@ -101,7 +104,7 @@ ALWAYS_INLINE int legs_of_thread(const struct problem *p, int me, bool by_halves
 ALWAYS_INLINE void begin_leg(const struct problem *p, const struct leg *leg, int me)
 {
     if (!leg->done) return;
-    two_thread_split_wait(leg->after, atomic_load_explicit(leg->done, memory_order_relaxed) + me);
+    team_await(leg->after, atomic_load_explicit(leg->done, memory_order_relaxed) + me);
     for (int64_t i = p->group[leg->first]; i < p->group[leg->end]; i++)
         fetch_bodies(p, &p->bundle[i]);
 }
@@ -131,7 +134,7 @@ ALWAYS_INLINE void walk(struct problem *p, int me, int threads, walk_text *each,
             int64_t first = p->group[g], n = p->group[g + 1] - first;
             each(p, first + n * mine / share, first + n * (mine + 1) / share, task);
             if (share == 1) continue;
-#pragma omp barrier
+            team_meet();
         }
         end_leg(&leg[k]);
     }

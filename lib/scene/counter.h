@@ -13,7 +13,7 @@
 #include <stdint.h>
 
 /* What a stream is for: each use of the seed has its own numbers. */
-enum counter_use { COUNTER_GROUP, COUNTER_GRAIN, COUNTER_PLACE };
+enum counter_use { COUNTER_GROUP, COUNTER_GRAIN, COUNTER_PLACE, COUNTER_TURN };
 
 /* A generator, NULL when memory is short; to be freed by gsl_rng_free. */
 gsl_rng *counter_alloc(void);

@@ -2,11 +2,21 @@
 
 #include "bodies/detect.h"
 #include "scene/counter.h"
+#include "scene/orientation.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum { TRIES = 16 }; /* places for a grain in a step */
+
+/* The scene's shapes are the first of the packing's. */
+static bool same_shapes(const struct scene *s, const struct packing *p)
+{
+    if (s->shapes.n > p->shapes.n) return false;
+    for (int32_t k = 1; k < s->shapes.n; k++)
+        if (!shape_same(&s->shapes.s[k], &p->shapes.s[k])) return false;
+    return true;
+}
 
 int flow_read(struct flow *f, const struct packing *p, struct why *why)
 {
@@ -16,10 +26,11 @@ int flow_read(struct flow *f, const struct packing *p, struct why *why)
         return why_set(why, EX_DATAERR, "bodies come and go, and there is no scene that says how");
     if (scene_parse(&f->scene, p->scene, strlen(p->scene), why)) return why->status;
     if (f->scene.pours == p->pours && f->scene.removals == p->removals &&
-        f->scene.kinds == p->kinds && f->scene.dim == p->dim)
+        f->scene.kinds == p->kinds && f->scene.dim == p->dim && same_shapes(&f->scene, p))
         return 0;
     flow_free(f);
-    return why_set(why, EX_DATAERR, "the scene's pours, removals or kinds are not the packing's");
+    return why_set(why, EX_DATAERR,
+                   "the scene's pours, removals, kinds or shapes are not the packing's");
 }
 
 void flow_free(struct flow *f)
@@ -63,7 +74,9 @@ static void copy_body(struct packing *p, int64_t from, int64_t to)
 {
     p->radius[to] = p->radius[from], p->mass[to] = p->mass[from];
     p->inertia[to] = p->inertia[from], p->id[to] = p->id[from], p->kind[to] = p->kind[from];
-    p->x[to] = p->x[from], p->q[to] = p->q[from], p->v[to] = p->v[from], p->w[to] = p->w[from];
+    p->x[to] = p->x[from], p->q[to] = p->q[from];
+    if (p->shape) p->shape[to] = p->shape[from];
+    p->v[to] = p->v[from], p->w[to] = p->w[from];
 }
 
 /* Removes, and tells in row[i] where body i is now, -1: gone. */
@@ -95,7 +108,22 @@ static void follow(struct contacts *s, const int32_t *row)
         s->c[kept] = *c;
         s->c[kept].a = a, s->c[kept].b = b;
         if (s->found) s->found[kept] = s->found[i];
+        for (int k = 0; k < 3 && s->moment; k++) s->moment[kept][k] = s->moment[i][k];
         kept++;
+    }
+    s->n = kept;
+}
+
+/* The bonds of bodies that are still there, likewise */
+static void follow_bonds(struct bonds *s, const int32_t *row)
+{
+    int64_t kept = 0;
+    for (int64_t i = 0; i < s->n; i++) {
+        struct bond x = s->bond[i];
+        if (x.a >= 0) x.a = row[x.a];
+        bool there = row[x.b] >= 0 && (s->bond[i].a < 0 || x.a >= 0);
+        x.b = row[x.b];
+        if (there) s->bond[kept++] = x;
     }
     s->n = kept;
 }
@@ -149,7 +177,7 @@ struct crowd {
 static void crowd_free(struct crowd *c)
 {
     free(c->p.radius), free(c->p.mass), free(c->p.kind), free(c->p.v);
-    free(c->now), free(c->then), free(c->body);
+    free(c->now), free(c->then), free(c->body), free(c->p.q), free(c->p.shape);
 }
 
 static bool may_meet(const struct scene_pour *o, const struct packing *p, int64_t i)
@@ -178,13 +206,17 @@ static int crowd_gather(struct crowd *c, const struct packing *p, const struct s
     c->p.kind = calloc(room, sizeof *c->p.kind), c->p.v = calloc(room, sizeof *c->p.v);
     c->now = calloc(room, sizeof *c->now), c->then = calloc(room, sizeof *c->then);
     c->body = calloc(room, sizeof *c->body);
-    if (!c->p.radius || !c->p.mass || !c->p.kind || !c->p.v || !c->now || !c->then || !c->body)
+    c->p.q = calloc(room, sizeof *c->p.q);
+    c->p.shape = p->shape ? calloc(room, sizeof *c->p.shape) : NULL;
+    if (!c->p.radius || !c->p.mass || !c->p.kind || !c->p.v || !c->now || !c->then || !c->body ||
+        !c->p.q || (p->shape && !c->p.shape))
         return why_set(why, EX_SOFTWARE, "no memory to pour");
     for (int64_t i = 0; i < p->n; i++) {
         if (!may_meet(o, p, i)) continue;
         int64_t k = c->p.n++;
         c->body[k] = i;
-        c->p.radius[k] = p->radius[i], c->p.kind[k] = p->kind[i];
+        c->p.radius[k] = p->radius[i], c->p.kind[k] = p->kind[i], c->p.q[k] = p->q[i];
+        if (p->shape) c->p.shape[k] = p->shape[i];
         c->now[k] = p->x[i], c->then[k] = packing_predict(p, i);
     }
     c->p.n++;
@@ -192,12 +224,15 @@ static int crowd_gather(struct crowd *c, const struct packing *p, const struct s
 }
 
 /* Would a grain of this radius at x meet nothing, neither now nor at the predicted positions? */
-static bool is_free(struct crowd *c, const struct scene_pour *o, vec3 x, double r, struct why *why)
+static bool is_free(struct crowd *c, const struct scene_pour *o, vec3 x, quat q, double r,
+                    struct why *why)
 {
     int64_t last = c->p.n - 1;
     struct contacts met = { 0 };
     double ahead = (1 - c->p.theta) * c->p.dt;
     c->p.radius[last] = r, c->p.mass[last] = 1, c->p.kind[last] = o->kind;
+    c->p.q[last] = q;
+    if (c->p.shape) c->p.shape[last] = o->form.shape;
     c->now[last] = x, c->then[last] = v3_axpy(x, ahead, o->v);
     bool clear = !detect_contacts_at(&met, &c->p, c->now, c->p.t, 0, NULL, why) && !met.n &&
                  !detect_contacts_at(&met, &c->p, c->then, c->p.t + ahead, 0, NULL, why) && !met.n;
@@ -205,38 +240,49 @@ static bool is_free(struct crowd *c, const struct scene_pour *o, vec3 x, double 
     return clear && !why->status;
 }
 
-static int add_grain(struct packing *p, const struct scene_pour *o, int32_t which, vec3 x, double r,
-                     struct why *why)
+static int add_grain(struct packing *p, const struct scene_pour *o, int32_t which, vec3 x, quat q,
+                     double r, struct why *why)
 {
     int64_t i = p->n, id = p->first_id;
     for (int32_t k = 0; k < p->pours; k++) id += p->poured[k].bodies;
     if (id >= INT32_MAX) return why_set(why, EX_DATAERR, "more than %d bodies", INT32_MAX);
     if (packing_resize(p, i + 1, why)) return why->status;
-    packing_solid(p->dim, r, o->density, &p->mass[i], &p->inertia[i]);
+    if (o->form.shape)
+        packing_solid_shape(p->dim, &p->shapes.s[o->form.shape], r, o->density, &p->mass[i],
+                            &p->inertia[i]);
+    else
+        packing_solid(p->dim, r, o->density, &p->mass[i], &p->inertia[i]);
     if (o->mass > 0) p->inertia[i] *= o->mass / p->mass[i], p->mass[i] = o->mass;
     if (!(p->mass[i] > 0 && p->inertia[i] > 0))
         return why_set(why, EX_DATAERR, "pour %d: a radius of %g m gives no mass", which, r);
     p->x[i] = x, p->v[i] = o->v, p->w[i] = o->w, p->radius[i] = r;
-    p->kind[i] = o->kind, p->id[i] = (int32_t)id;
+    p->kind[i] = o->kind, p->id[i] = (int32_t)id, p->q[i] = q;
+    if (p->shape) p->shape[i] = o->form.shape;
     p->poured[which].bodies++, p->poured[which].mass += p->mass[i];
     note(p, i, true, which, why);
     return why->status;
 }
 
 /* The next grain of a pour, if it finds a place. */
-static bool pour_one(struct packing *p, const struct scene_pour *o, int32_t which, gsl_rng *rng,
+static bool pour_one(const struct scene *s, struct packing *p, int32_t which, gsl_rng *rng,
                      struct why *why)
 {
+    const struct scene_pour *o = &s->pour[which];
+    quat q = { 1, 0, 0, 0 };
     struct crowd c;
     uint64_t k = (uint64_t)which, n = (uint64_t)p->poured[which].bodies;
     counter_start(rng, p->seed, COUNTER_GRAIN, k, n, 0);
     double r = scene_size_draw(&o->size, rng);
+    if (o->form.shape) {
+        counter_start(rng, p->seed, COUNTER_TURN, UINT64_MAX - k, n, 0); // no group has that number
+        q = orientation_draw(s, &o->form, rng);
+    }
     counter_start(rng, p->seed, COUNTER_PLACE, k, n, (uint64_t)p->step);
     bool poured = false;
     crowd_gather(&c, p, o, why);
     for (int try = 0; try < TRIES && !poured && !why->status; try++) {
         vec3 x = draw_place(o, p->dim, rng);
-        poured = is_free(&c, o, x, r, why) && !add_grain(p, o, which, x, r, why);
+        poured = is_free(&c, o, x, q, r, why) && !add_grain(p, o, which, x, q, r, why);
     }
     crowd_free(&c);
     return poured;
@@ -252,11 +298,13 @@ int flow_step(const struct flow *f, struct packing *p, struct contacts *last, bo
     gsl_rng *rng = counter_alloc();
     if (!row || !rng)
         why_set(why, EX_SOFTWARE, "no memory for bodies that come and go");
-    else if (!remove_bodies(f, p, row, why) && last)
-        follow(last, row);
+    else if (!remove_bodies(f, p, row, why)) {
+        follow_bonds(&p->bonds, row);
+        if (last) follow(last, row);
+    }
     for (int32_t k = 0; k < f->scene.pours && !why->status; k++)
         while (!why->status && is_due(&f->scene.pour[k], &p->poured[k], p->t) &&
-               pour_one(p, &f->scene.pour[k], k, rng, why))
+               pour_one(&f->scene, p, k, rng, why))
             ;
     *changed = p->events.n > before;
     free(row);

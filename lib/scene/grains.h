@@ -16,6 +16,7 @@ struct grain {
     double density;                   /* kg/m^3, in the plane kg/m^2; 0: not said */
     double mass, inertia;             /* kg, kg m^2; 0: not said */
     int32_t kind, id;                 /* -1: not said */
+    int32_t shape;                    /* of its document's; 0: a ball */
     bool has_v, has_w, fixed, weighs; /* weighs: mass and inertia are said, even where they are 0 */
 };
 

@@ -5,9 +5,43 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <dlfcn.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+/* What is called of libassimp: found when it is loaded */
+static struct {
+    const struct aiScene *(*import)(const char *path, unsigned flags);
+    void (*release)(const struct aiScene *file);
+    const char *(*error)(void);
+    void (*identity)(struct aiMatrix4x4 *m);
+    void (*multiply)(struct aiMatrix4x4 *m, const struct aiMatrix4x4 *by);
+} assimp;
+
+/* Our own functions have the types of its headers: see to it that they are the same. */
+#define FIND(member, name)                                                                         \
+    do {                                                                                           \
+        assimp.member = 0 ? (name) : NULL;                                                         \
+        *(void **)&assimp.member = dlsym(library, #name);                                          \
+        missing |= !assimp.member;                                                                 \
+    } while (0)
+
+/* Never closed: a process reads its files at once, and ends. */
+static int load(struct why *why)
+{
+    bool missing = false;
+    if (assimp.import) return 0;
+    void *library = dlopen("libassimp.so.5", RTLD_NOW); // the one of the headers in use
+    if (!library) library = dlopen("libassimp.so", RTLD_NOW);
+    if (!library) return why_set(why, EX_SOFTWARE, "meshes are read by libassimp: %s", dlerror());
+    FIND(import, aiImportFile);
+    FIND(release, aiReleaseImport);
+    FIND(error, aiGetErrorString);
+    FIND(identity, aiIdentityMatrix4);
+    FIND(multiply, aiMultiplyMatrix4);
+    return missing ? why_set(why, EX_SOFTWARE, "meshes are read by libassimp: not this one") : 0;
+}
 
 static vec3 vertex_of(const struct aiVector3D *v, const struct aiMatrix4x4 *m, double scale)
 {
@@ -55,7 +89,7 @@ static int add_mesh(const struct gather *g, const struct aiMesh *m, const struct
 static struct aiMatrix4x4 product(const struct aiMatrix4x4 *a, const struct aiMatrix4x4 *b)
 {
     struct aiMatrix4x4 c = *a;
-    aiMultiplyMatrix4(&c, b);
+    assimp.multiply(&c, b);
     return c;
 }
 
@@ -75,19 +109,20 @@ static int read_file(struct scene *s, const struct scene_mesh *m, const char *pa
 {
     struct wall *w = &s->wall[m->wall];
     if (access(path, R_OK)) return why_set(why, EX_NOINPUT, "%s: cannot be read", path);
-    const struct aiScene *file = aiImportFile(path, aiProcess_Triangulate);
+    if (load(why)) return why->status;
+    const struct aiScene *file = assimp.import(path, aiProcess_Triangulate);
     if (!file || !file->mRootNode) {
-        why_set(why, EX_DATAERR, "%s: %s", path, aiGetErrorString());
-        aiReleaseImport(file);
+        why_set(why, EX_DATAERR, "%s: %s", path, assimp.error());
+        assimp.release(file);
         return why->status;
     }
     struct aiMatrix4x4 one;
-    aiIdentityMatrix4(&one);
+    assimp.identity(&one);
     const struct gather g = { file, s, m->scale, why };
     w->first_element = s->mesh.elements;
     add_node(&g, file->mRootNode, &one);
     w->elements = s->mesh.elements - w->first_element;
-    aiReleaseImport(file);
+    assimp.release(file);
     if (why->status) return why->status;
     return w->elements ? 0 : why_set(why, EX_DATAERR, "%s: no triangles", path);
 }

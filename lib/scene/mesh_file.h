@@ -1,6 +1,6 @@
 /*
  * scene/mesh_file.h: triangles from files of other programs, STL, OBJ, PLY and what else libassimp
- * reads. Only nsd-gen needs it, and only nsd-gen is linked with that library.
+ * reads. That is loaded with the first file: it takes longer than nsd-gen needs for a scene without one.
  */
 #ifndef NSD_MESH_FILE_H
 #define NSD_MESH_FILE_H

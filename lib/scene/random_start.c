@@ -263,7 +263,8 @@ static double box_volume(const struct scene_box *b, int dim)
     return v;
 }
 
-/* The radii: `count` of them, or as many as fill phi of the box best. Returns what they fill. */
+/* The radii: `count` of them, or as many as fill phi of the box best. Returns what the balls around
+   them fill, which are what is placed. */
 static double draw_radii(struct grains *out, const struct scene_bodies *b, int dim, gsl_rng *rng,
                          struct why *why)
 {
@@ -271,7 +272,7 @@ static double draw_radii(struct grains *out, const struct scene_bodies *b, int d
     int64_t most = b->phi > 0 ? 100000000 : b->count;
     for (int64_t i = 0; i < most; i++) {
         struct grain g = grain_at(v3(0, 0, 0), scene_size_draw(&b->size, rng));
-        double v = volume(dim, g.r);
+        double v = b->form.fill * volume(dim, g.r);
         if (b->phi > 0 && filled + v > b->phi * room &&
             filled + v - b->phi * room > b->phi * room - filled)
             break;
@@ -279,7 +280,7 @@ static double draw_radii(struct grains *out, const struct scene_bodies *b, int d
         filled += v;
         if (b->phi > 0 && filled >= b->phi * room) break;
     }
-    return filled / room;
+    return filled / (b->form.fill * room);
 }
 
 struct drawn {

@@ -17,6 +17,8 @@ void scene_free(struct scene *s)
     for (int32_t i = 0; i < s->pours; i++) scene_size_free(&s->pour[i].size);
     free(s->pour), free(s->removal);
     cell_free(&s->cell.cell);
+    shapes_free(&s->shapes);
+    free(s->solid);
     drives_free(&s->drives), drives_free(&s->pushes), mesh_free(&s->mesh);
     for (int32_t k = 0; k < s->meshes; k++) free(s->mesh_file[k].file);
     free(s->mesh_file);

@@ -19,6 +19,7 @@
  *   time      number                   [0] s: of the packing; what moves by itself is where it then is
  *   overlap   true | false             [false] bodies may overlap at the start
  *   bodies    [ GROUP ]                [none]
+ *   shapes    { NAME: SHAPE }          [none] shapes of grains; "ball" is always there
  *   walls     [ WALL ]                 [those of the first document among the bodies, else none]
  *   pour      [ POUR ]                 [none] grains that come, while the scene runs
  *   remove    [ REMOVAL ]              [none] grains that go
@@ -38,6 +39,9 @@
  *   v vector [0] m/s; w vector, or a number where dim is 2 [0] rad/s; kind NAME ["ball"];
  *   density [its kind's] or mass, kg; fixed true | false [false]: moves with v and w whatever
  *   happens, so that its mass does not matter. For a table or a document: [what it says]
+ *   shape NAME [a ball], and then orientation "random" | rotation vector, rad, or an angle where dim is
+ *   2 [as described], and in place of a radius, which is that of the ball around it, size SIZE [1]: how
+ *   many times as large as described. x is its centre of mass. Not for a table or a document.
  * and for a lattice
  *   box      [the cell, in rows along its edges; else that of the first wall that is a BOX]
  *                                                      may be open only above (the last axis)
@@ -57,6 +61,17 @@
  *   { power: { exponent, min, max } }              density by number: r^-exponent
  *   { sieve: [[size, passing], ...] }              share of the mass that passes a sieve of this
  *                                                  aperture (m, a diameter), from 0 to 1
+ *
+ * SHAPE, one of (m)
+ *   { box: vector }                                sides along x, y (, z)
+ *   { regular: { sides, radius, height } }         a prism along z, in the plane a polygon, no height
+ *   { points: [vector, ...] }                      their convex hull
+ *   { vertices: [vector, ...], faces: [[0, 1, 2, ...], ...] }     a convex polyhedron, as it is: corners
+ *                                                  counterclockwise seen from outside
+ *   { polygon: [[x, y], ...] }                     in the plane, convex, counterclockwise
+ *     these with round m [0]: all points within that of it
+ *   { capsule: { length, radius } }                length between the centres of its ends, along x
+ *   { balls: [[x, y, z, r], ...] }                 a clump; in the plane [x, y, r]
  *
  * BOX { x: [from, to], y: [from, to], z: [from, to] }: null is open, and so is an axis left out.
  *
@@ -93,7 +108,8 @@
  *            of edges that repeat. mass may be a MATRIX of masses, of the same shape
  *
  * POUR { rate: bodies/s | mass_rate: kg/s, opening: { box: BOX } or { disc: { center, normal,
- *   radius } }, radius: SIZE, v, w, kind, density or mass, from [time] s, until s, count }
+ *   radius } }, radius: SIZE, v, w, kind, density or mass, from [time] s, until s, count, and shape,
+ *   size, orientation as of a group of bodies }
  *   [scene/flow.h]; in the plane the disc is a segment.
  *
  * REMOVAL { outside: BOX } or { inside: BOX } or { below: { point, normal } }, with kind [any]: bodies
@@ -122,10 +138,19 @@ struct scene_kind {
 
 struct scene_law {
     double mu, en, et;
+    struct law beyond;
 };
 
 struct scene_box {
     double lo[3], hi[3]; /* m; infinite where it is open */
+};
+
+/* The shape of the bodies of a group */
+struct scene_form {
+    int32_t shape; /* row of the scene's shapes; 0: balls */
+    bool tumbled;  /* orientations at random; else */
+    quat turned;   /* that of all, from how the shape is described */
+    double fill;   /* its volume, in volumes of the ball around it */
 };
 
 struct scene_bodies {
@@ -155,6 +180,7 @@ struct scene_bodies {
     double density, mass;            /* kg/m^3 or kg/m^2; kg a body, 0: from the density */
     bool fixed;
     int32_t kind;
+    struct scene_form form;
 };
 
 /* Where grains come in: one after another, each at a place drawn in the opening */
@@ -171,6 +197,7 @@ struct scene_pour {
     vec3 v, w;            /* m/s, rad/s */
     double density, mass; /* as of struct scene_bodies */
     int32_t kind;
+    struct scene_form form;
 };
 
 /* Where grains go: bodies whose centre is there */
@@ -187,6 +214,13 @@ struct scene_mesh {
     int32_t wall;
     char *file;
     double scale; /* m a unit of the file */
+};
+
+/* What a shape was before it was brought to its own axes and unit [bodies/solid.h] */
+struct scene_solid {
+    double reach; /* m */
+    vec3 centre;  /* m */
+    quat turn;    /* from its axes to those it was described in */
 };
 
 struct scene_cell {
@@ -225,6 +259,8 @@ struct scene {
     struct scene_pour *pour;       /* [pours] */
     struct scene_removal *removal; /* [removals] */
     struct scene_cell cell;
+    struct shapes shapes;      /* of grains */
+    struct scene_solid *solid; /* [shapes.n] */
 
     char *text; /* the JSON, without blanks outside strings */
 };

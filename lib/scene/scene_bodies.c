@@ -32,11 +32,12 @@ static int read_lattice(jnode o, const struct scene *s, bool boxed, struct scene
 {
     static const char *const cells[] = { "equal", "own", NULL };
     int own = 0;
-    if (json_node_only(o, "count radius box cells spacing jitter thermal v w kind density mass "
-                          "fixed") ||
-        json_node_need(&o, boxed || s->cell.given ? "radius" : "radius box") ||
+    if (json_node_only(o,
+                       "count radius size shape orientation box cells spacing jitter thermal v w "
+                       "kind density mass fixed") ||
+        (!boxed && !s->cell.given && json_node_need(&o, "box")) ||
         json_node_integer(json_node_key(&o, "count"), 0, INT32_MAX, &b->count) ||
-        scene_read_size(json_node_key(&o, "radius"), s->dim, &b->size) ||
+        scene_read_sizes(o, s, &b->form, &b->size) ||
         json_node_word(json_node_key(&o, "cells"), cells, &own) ||
         json_node_number(json_node_key(&o, "spacing"), J_ANY, &b->spacing) ||
         json_node_number(json_node_key(&o, "jitter"), J_UNIT, &b->jitter) ||
@@ -62,9 +63,9 @@ static int read_lattice(jnode o, const struct scene *s, bool boxed, struct scene
 static int read_random(jnode o, const struct scene *s, bool boxed, struct scene_bodies *b)
 {
     jnode how = json_node_key(&o, "random"), box = json_node_key(&o, "box");
-    if (json_node_only(o, "random radius box thermal v w kind density mass fixed") ||
-        json_node_need(&o, boxed ? "radius" : "radius box") ||
-        scene_read_size(json_node_key(&o, "radius"), s->dim, &b->size) ||
+    if (json_node_only(o, "random radius size shape orientation box thermal v w kind density mass "
+                          "fixed") ||
+        (!boxed && json_node_need(&o, "box")) || scene_read_sizes(o, s, &b->form, &b->size) ||
         json_node_number(json_node_key(&o, "thermal"), J_NOT_NEGATIVE, &b->thermal))
         return 1;
     int which = json_node_choice(how, "phi count");
@@ -97,13 +98,18 @@ static int read_document(jnode o, struct scene_bodies *b)
     return b->file ? 0 : why_set(o.in->why, EX_SOFTWARE, "no memory for a file name");
 }
 
-static int read_one(jnode o, int dim, struct scene_bodies *b)
+static int read_one(jnode o, const struct scene *s, struct scene_bodies *b)
 {
     b->count = 1;
-    if (json_node_only(o, "x radius v w kind density mass fixed") || json_node_need(&o, "radius") ||
-        json_node_vector(json_node_key(&o, "x"), dim, &b->x) ||
-        json_node_number(json_node_key(&o, "radius"), J_POSITIVE, &b->size.min))
+    jnode radius = json_node_key(&o, "radius"), size = json_node_key(&o, "size");
+    if (json_node_only(o, "x radius size shape orientation v w kind density mass fixed") ||
+        json_node_vector(json_node_key(&o, "x"), s->dim, &b->x))
         return 1;
+    if (radius.json && size.json) return json_node_fault(size, "a radius is given too");
+    if (!b->form.shape && json_node_need(&o, "radius")) return 1;
+    b->size.min = 1;
+    if (json_node_number(radius.json ? radius : size, J_POSITIVE, &b->size.min)) return 1;
+    if (!radius.json) b->size.min *= s->solid[b->form.shape].reach;
     b->size.max = b->size.min;
     return 0;
 }
@@ -150,12 +156,15 @@ static int read_group(jnode o, const struct scene *s, const struct scene_box *bo
 {
     static const enum scene_source from[] = { SCENE_ONE, SCENE_LATTICE, SCENE_TABLE, SCENE_DOCUMENT,
                                               SCENE_RANDOM };
-    *b = (struct scene_bodies){ .spacing = 1.05, .jitter = 1, .frame = -1 };
+    *b = (struct scene_bodies){ .spacing = 1.05, .jitter = 1, .frame = -1, .form = { .fill = 1 } };
     if (box) b->box = *box;
     int which = json_node_choice(o, "x count file document random");
     if (which < 0) return 1;
     b->from = from[which];
-    int bad = which == 0   ? read_one(o, s->dim, b)
+    if (from[which] != SCENE_TABLE && from[which] != SCENE_DOCUMENT &&
+        scene_read_form(o, s, &b->form))
+        return 1;
+    int bad = which == 0   ? read_one(o, s, b)
               : which == 1 ? read_lattice(o, s, box, b)
               : which == 2 ? read_table(o, b)
               : which == 3 ? read_document(o, b)

@@ -5,6 +5,7 @@
 #include "bodies/tidy.h"
 #include "scene/counter.h"
 #include "scene/grains.h"
+#include "scene/orientation.h"
 #include "scene/random_start.h"
 #include "scene/shelves.h"
 
@@ -18,7 +19,10 @@ static int set_body(struct packing *p, int64_t i, const struct scene_bodies *b, 
                     struct why *why)
 {
     double mass, inertia;
-    packing_solid(p->dim, r, b->density, &mass, &inertia);
+    if (b->form.shape)
+        packing_solid_shape(p->dim, &p->shapes.s[b->form.shape], r, b->density, &mass, &inertia);
+    else
+        packing_solid(p->dim, r, b->density, &mass, &inertia);
     if (b->mass > 0) inertia *= b->mass / mass, mass = b->mass;
     if (!b->fixed && !(mass > 0 && inertia > 0))
         return why_set(why, EX_DATAERR, "body %lld: a radius of %g m gives no mass", (long long)i,
@@ -27,6 +31,7 @@ static int set_body(struct packing *p, int64_t i, const struct scene_bodies *b, 
     p->radius[i] = r;
     p->mass[i] = b->fixed ? 0 : mass, p->inertia[i] = b->fixed ? 0 : inertia;
     p->kind[i] = b->kind;
+    if (p->shape) p->shape[i] = b->form.shape;
     return 0;
 }
 
@@ -81,6 +86,7 @@ static int set_grain(struct packing *p, int64_t i, const struct scene *s,
     if (!b->has_fixed) one.fixed = g->fixed;
     if (!b->has_density) one.density = g->density > 0 ? g->density : s->kind[one.kind].density;
     if (!b->has_density && !(b->mass > 0)) one.mass = g->mass;
+    if (g->shape) one.form.shape = shapes_find(&p->shapes, b->document->shapes.s[g->shape].name);
     if (set_body(p, i, &one, g->x, g->r, why)) return why->status;
     p->q[i] = g->q, p->id[i] = g->id;
     if (g->weighs && !one.fixed && g->mass > 0 && one.mass == g->mass) p->inertia[i] = g->inertia;
@@ -122,6 +128,21 @@ static int set_ids(struct packing *p, bool given, struct why *why)
     return why->status;
 }
 
+/* Orientations are functions of the group and the body's number in it: no other draw depends on them. */
+static int orient_group(struct packing *p, const struct scene *s, int64_t g, int64_t first,
+                        int64_t n, struct why *why)
+{
+    const struct scene_bodies *b = &s->bodies[g];
+    gsl_rng *rng = b->form.tumbled ? counter_alloc() : NULL;
+    if (b->form.tumbled && !rng) return why_set(why, EX_SOFTWARE, "no memory for random numbers");
+    for (int64_t i = 0; i < n; i++) {
+        if (rng) counter_start(rng, s->seed, COUNTER_TURN, (uint64_t)g, (uint64_t)i, 0);
+        p->q[first + i] = orientation_draw(s, &b->form, rng);
+    }
+    gsl_rng_free(rng);
+    return 0;
+}
+
 static bool is_list(const struct scene_bodies *b)
 {
     return b->from != SCENE_ONE && b->from != SCENE_LATTICE;
@@ -138,6 +159,8 @@ static int fill_groups(struct packing *p, const struct scene *s, const struct gr
                   : b->from == SCENE_ONE ? set_body(p, first, b, b->x, b->size.min, why)
                                          : fill_lattice(p, first, b, rng, why);
         if (bad) return bad;
+        int64_t n = is_list(b) ? list[g].n : b->count;
+        if (b->form.shape && orient_group(p, s, g, first, n, why)) return why->status;
         given |= is_list(b);
         if (!is_list(b)) // numbers are given anew below, where any are given
             for (int64_t k = 0; k < b->count; k++) p->id[first + k] = -1;
@@ -151,10 +174,45 @@ static int fill_groups(struct packing *p, const struct scene *s, const struct gr
 
 /* ---- the packing ---- */
 
+/* The shapes of a document, behind the scene's: a name stands for one shape. */
+static int take_shapes(struct packing *p, const struct scene_bodies *b, struct why *why)
+{
+    const struct shapes *from = &b->document->shapes;
+    struct shapes copy;
+    if (shapes_copy(&copy, from, why)) return why->status;
+    for (int32_t k = 1; k < from->n && !why->status; k++) {
+        int32_t had = shapes_find(&p->shapes, from->s[k].name);
+        if (had >= 0 && !shape_same(&p->shapes.s[had], &from->s[k]))
+            why_set(why, EX_DATAERR, "%s: its shape \"%s\" is another than the scene's", b->file,
+                    from->s[k].name);
+        else if (had < 0)
+            shapes_add(&p->shapes, p->dim, &copy.s[k], why);
+    }
+    shapes_free(&copy);
+    return why->status;
+}
+
+static int set_shapes(struct packing *p, const struct scene *s, struct why *why)
+{
+    if (shapes_copy(&p->shapes, &s->shapes, why)) return why->status;
+    for (int64_t g = 0; g < s->groups; g++)
+        if (s->bodies[g].document && take_shapes(p, &s->bodies[g], why)) return why->status;
+    return p->shapes.n ? packing_alloc_shapes(p, why) : 0;
+}
+
+/* Has any pair of kinds a law beyond friction and restitution? */
+static bool goes_beyond(const struct scene *s)
+{
+    for (int32_t k = 0; k < s->kinds * s->kinds; k++)
+        if (law_ties(&s->law[k].beyond) || law_rolls(&s->law[k].beyond)) return true;
+    return false;
+}
+
 static int set_parameters(struct packing *p, const struct scene *s, struct why *why)
 {
     p->dt = s->dt, p->theta = s->theta, p->g = s->g, p->seed = s->seed, p->t = s->t;
-    if (packing_alloc_passages(p, s->pours, s->removals, why)) return why->status;
+    if (packing_alloc_passages(p, s->pours, s->removals, why) || set_shapes(p, s, why))
+        return why->status;
     if (packing_alloc_walls(p, s->walls, why) || packing_alloc_kinds(p, s->kinds, why))
         return why->status;
     for (int32_t i = 0; i < s->walls; i++) p->wall[i] = s->wall[i];
@@ -170,6 +228,8 @@ static int set_parameters(struct packing *p, const struct scene *s, struct why *
     }
     for (int32_t k = 0; k < s->kinds * s->kinds; k++)
         p->mu[k] = s->law[k].mu, p->en[k] = s->law[k].en, p->et[k] = s->law[k].et;
+    if (goes_beyond(s) && packing_alloc_laws(p, why)) return why->status;
+    for (int32_t k = 0; p->law && k < s->kinds * s->kinds; k++) p->law[k] = s->law[k].beyond;
     if ((p->scene = strdup(s->text))) return 0;
 fail:
     return why_set(why, EX_SOFTWARE, "no memory for the scene");

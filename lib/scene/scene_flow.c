@@ -32,13 +32,15 @@ static int read_pour(jnode o, const struct scene *s, struct scene_pour *p)
     *p = (struct scene_pour){ .until = INFINITY, .count = INFINITY };
     int which = json_node_choice(o, "rate mass_rate");
     if (which < 0 ||
-        json_node_only(o, "rate mass_rate opening radius v w kind density mass from until count") ||
-        json_node_need(&o, "opening radius"))
+        json_node_only(
+            o, "rate mass_rate opening radius size shape orientation v w kind density mass from "
+               "until count") ||
+        json_node_need(&o, "opening") || scene_read_form(o, s, &p->form))
         return 1;
     p->by_mass = which == 1;
     if (json_node_number(json_node_key(&o, which ? "mass_rate" : "rate"), J_POSITIVE, &p->rate) ||
         read_opening(json_node_key(&o, "opening"), s->dim, p) ||
-        scene_read_size(json_node_key(&o, "radius"), s->dim, &p->size) ||
+        scene_read_sizes(o, s, &p->form, &p->size) ||
         json_node_vector(json_node_key(&o, "v"), s->dim, &p->v) ||
         scene_read_spin(json_node_key(&o, "w"), s->dim, &p->w) ||
         scene_read_kind(json_node_key(&o, "kind"), s, &p->kind) ||

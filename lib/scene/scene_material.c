@@ -63,7 +63,9 @@ static int read_pair(jnode o, struct scene *s, bool *given)
 {
     size_t n;
     int32_t k[2] = { 0 };
-    if (json_node_only(o, "pair mu e_n e_t") || json_node_need(&o, "pair")) return 1;
+    if (json_node_only(o, "pair mu e_n e_t cohesion capillary rolling adhesion") ||
+        json_node_need(&o, "pair"))
+        return 1;
     jnode pair = json_node_key(&o, "pair");
     if (json_node_array(pair, &n)) return 1;
     if (n != 2) return json_node_fault(pair, "wants two kinds");
@@ -74,7 +76,7 @@ static int read_pair(jnode o, struct scene *s, bool *given)
     int32_t ab = k[0] * s->kinds + k[1], ba = k[1] * s->kinds + k[0];
     if (given[ab]) return json_node_fault(pair, "this pair was given before");
     given[ab] = given[ba] = true;
-    if (scene_read_law(&o, &s->law[ab])) return 1;
+    if (scene_read_law(&o, &s->law[ab]) || scene_read_laws(&o, s->t, &s->law[ab].beyond)) return 1;
     s->law[ba] = s->law[ab];
     return 0;
 }

@@ -45,7 +45,8 @@ static int read_scene(jnode o, struct scene *s)
     struct scene_law law = { 0 };
     struct scene_box box = { 0 };
     if (json_node_only(o, "title dim dt theta gravity seed density mu e_n e_t kinds pairs time "
-                          "overlap bodies walls pour remove cell") ||
+                          "overlap bodies walls pour remove cell shapes cohesion capillary rolling "
+                          "adhesion") ||
         json_node_need(&o, "dt") || json_node_text(json_node_key(&o, "title"), &title) ||
         json_node_integer(json_node_key(&o, "dim"), 2, 3, &dim) ||
         json_node_integer(json_node_key(&o, "seed"), 0, UINT32_MAX, &seed) ||
@@ -53,6 +54,7 @@ static int read_scene(jnode o, struct scene *s)
         json_node_number(json_node_key(&o, "theta"), J_UNIT, &s->theta) ||
         json_node_number(json_node_key(&o, "density"), J_POSITIVE, &density) ||
         json_node_number(json_node_key(&o, "time"), J_ANY, &s->t) || scene_read_law(&o, &law) ||
+        scene_read_laws(&o, s->t, &law.beyond) ||
         json_node_bool(json_node_key(&o, "overlap"), &s->overlap))
         return 1;
     s->has_walls = json_node_key(&o, "walls").json;
@@ -61,6 +63,7 @@ static int read_scene(jnode o, struct scene *s)
     if (json_node_vector(json_node_key(&o, "gravity"), s->dim, &s->g) ||
         scene_read_kinds(json_node_key(&o, "kinds"), s, density) ||
         scene_read_pairs(json_node_key(&o, "pairs"), s, law) ||
+        scene_read_shapes(json_node_key(&o, "shapes"), s) ||
         scene_read_cell(json_node_key(&o, "cell"), s->dim, s->t,
                         takes_documents(json_node_key(&o, "bodies")), &s->cell) ||
         scene_read_walls(json_node_key(&o, "walls"), s, &box, &boxed) ||

@@ -113,6 +113,7 @@ static int read_sieve(jnode a, int dim, struct scene_size *z)
 int scene_read_size(jnode n, int dim, struct scene_size *z)
 {
     static const char laws[] = "uniform gaussian lognormal uniform_by_mass power sieve";
+    if (!n.json) return 0;
     if (!json_is_object(n.json)) {
         int bad = json_node_number(n, J_POSITIVE, &z->min);
         z->max = z->min;

@@ -16,6 +16,8 @@ void *scene_alloc(jnode node, size_t count, size_t size);
 /* scene/scene_material.c: mu, e_n, e_t; "kinds" and "pairs", with density and law for those that
    give none; the NAME of a kind */
 int scene_read_law(const jnode *object, struct scene_law *law);
+/* scene/scene_laws.c: the laws beyond these; t: the time of the scene, s */
+int scene_read_laws(const jnode *object, double t, struct law *law);
 int scene_read_kinds(jnode kinds, struct scene *s, double density);
 int scene_read_pairs(jnode pairs, struct scene *s, struct scene_law law);
 int scene_read_kind(jnode name, const struct scene *s, int32_t *kind);
@@ -36,7 +38,14 @@ int scene_read_drives(jnode array, struct scene *s, int32_t wall);
 int scene_read_push(jnode force, struct scene *s, int32_t wall, struct load *l);
 int scene_read_box(jnode object, int dim, struct scene_box *box);
 
-/* scene/scene_radii.c: a SIZE */
+/* scene/scene_solids.c: "shapes"; the shape of a group of bodies and their orientation; how large they
+   are, by their radius or their size */
+int scene_read_shapes(jnode shapes, struct scene *s);
+int scene_read_form(jnode object, const struct scene *s, struct scene_form *form);
+int scene_read_sizes(jnode object, const struct scene *s, const struct scene_form *form,
+                     struct scene_size *z);
+
+/* scene/scene_radii.c: a SIZE; one that is not there leaves *z as it is */
 int scene_read_size(jnode size, int dim, struct scene_size *z);
 
 /* scene/scene_flow.c: "pour" and "remove" */

@@ -55,6 +55,13 @@ static double draw_sieve(const struct scene_size *z, gsl_rng *rng)
     return s->from * invert_power(1 + z->dim, s->from, s->to, v);
 }
 
+void scene_size_scale(struct scene_size *z, double factor)
+{
+    z->min *= factor, z->max *= factor, z->mid *= factor;
+    if (z->law == SIZE_GAUSSIAN) z->spread *= factor; // lognormal: that of the logarithm
+    for (int64_t k = 0; k < z->segments; k++) z->sieve[k].from *= factor, z->sieve[k].to *= factor;
+}
+
 double scene_size_draw(const struct scene_size *z, gsl_rng *rng)
 {
     switch (z->law) {

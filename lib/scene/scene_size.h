@@ -37,6 +37,8 @@ struct scene_size {
 
 /* m: the next radius */
 double scene_size_draw(const struct scene_size *size, gsl_rng *rng);
+/* Makes all grains `factor` times as large. */
+void scene_size_scale(struct scene_size *size, double factor);
 /* A normal deviate with standard deviation sd, the same on every machine */
 double scene_draw_normal(gsl_rng *rng, double sd);
 void scene_size_free(struct scene_size *size);

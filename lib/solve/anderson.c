@@ -19,12 +19,12 @@
  */
 #include "solve/anderson.h"
 
+#include "base/team.h"
 #include "problem/mixing.h"
 #include "solve/nlgs.h"
 #include "solve/prices.h"
 
 #include <gsl/gsl_linalg.h>
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -115,6 +115,11 @@ static void measure_chunk(const struct anderson *a, int64_t chunk)
                                  t);
 }
 
+static void measure_chunks(void *arg, int64_t first, int64_t end)
+{
+    for (int64_t k = first; k < end; k++) measure_chunk(arg, k);
+}
+
 /* After the sweeps: f, the differences and their products; returns |f|^2. */
 static double measure(struct anderson *a)
 {
@@ -123,12 +128,7 @@ static double measure(struct anderson *a)
     int64_t n = chunks(p);
     a->s->rep->work += price_sweep(p); // with the mixing that follows
     int now = a->m.next;
-    if (n == 1 || a->s->o->threads == 1) { // a parallel region costs time
-        for (int64_t k = 0; k < n; k++) measure_chunk(a, k);
-    } else {
-#pragma omp parallel for num_threads(a->s->o->threads)
-        for (int64_t k = 0; k < n; k++) measure_chunk(a, k);
-    }
+    team_share(a->s->o->threads, n, 1, measure_chunks, a);
     for (int64_t k = 0; k < n; k++) mixing_sums_add(&t, &a->sums[k]);
     if (a->begun) {
         a->count = a->count < depth(a) ? a->count + 1 : depth(a);
@@ -162,17 +162,24 @@ static void solve_gamma(const struct anderson *a, double gamma[MIXING_DEPTH])
     for (size_t i = 0; i < n; i++) gamma[i] = b[i] * s[i];
 }
 
+/* How the iterate is changed */
+struct jump {
+    struct anderson *a;
+    double leap;
+    const double *gamma;
+};
+
+static void jump(void *arg, int me, int threads)
+{
+    const struct jump *j = arg;
+    mixing_widest()->react(j->a->s->p, me, threads, &j->a->m, j->leap, j->gamma);
+}
+
 static void react(struct anderson *a, double leap, const double gamma[MIXING_DEPTH])
 {
-    struct problem *p = a->s->p;
-    int threads = problem_team(p, a->s->o->threads);
+    struct jump j = { a, leap, gamma };
     a->s->renewed = false;
-    if (threads == 1) {
-        mixing_widest()->react(p, 0, 1, &a->m, leap, gamma);
-        return;
-    }
-#pragma omp parallel num_threads(threads)
-    mixing_widest()->react(p, omp_get_thread_num(), omp_get_num_threads(), &a->m, leap, gamma);
+    team_do(problem_team(a->s->p, a->s->o->threads), jump, &j);
 }
 
 /* ---- how a turn begins: by a step from the iterate to the next point ---- */

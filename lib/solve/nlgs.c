@@ -4,10 +4,11 @@
  */
 #include "solve/nlgs.h"
 
+#include "base/team.h"
 #include "problem/sweep.h"
 #include "solve/prices.h"
 
-#include <omp.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -27,36 +28,46 @@ static double add_tally(struct report *rep, const struct tally *t)
     return bundle_max(t->change);
 }
 
+/* Sweeps that a team makes */
+struct round {
+    struct problem *p;
+    sweep_text *text;
+    struct sweep_opt quiet, last; /* of all but the last sweep, and of that */
+    int32_t sweeps;
+    pthread_mutex_t lock; /* of what follows */
+    struct report *rep;
+    double change; /* m/s: the largest of a normal velocity in the last sweep */
+};
+
+static void make_round(void *arg, int me, int threads)
+{
+    struct round *r = arg;
+    struct tally t = { 0 };
+    for (int32_t k = r->sweeps - 1; k >= 0; k--) {
+        memset(t.change, 0, sizeof t.change);
+        r->text(r->p, me, threads, k ? &r->quiet : &r->last, &t);
+    }
+    pthread_mutex_lock(&r->lock);
+    r->change = fmax(r->change, add_tally(r->rep, &t));
+    pthread_mutex_unlock(&r->lock);
+}
+
 /* `unjudged` sweeps and one more, which stores u if `keep`. Counts them in the report; returns the
    largest change of a normal velocity in the last one, m/s. */
 static double sweep(struct solve *s, double omega, int32_t unjudged, bool keep)
 {
     const struct solve_opt *o = s->o;
-    sweep_text *text = sweep_widest()->sweep[o->method->id];
-    const struct sweep_opt quiet = { o->local, omega, false }, opt = { o->local, omega, keep };
-    double change = 0;
-    int threads = problem_team(s->p, s->o->threads);
+    struct round r = { .p = s->p,
+                       .text = sweep_widest()->sweep[o->method->id],
+                       .quiet = { o->local, omega, false },
+                       .last = { o->local, omega, keep },
+                       .sweeps = unjudged + 1,
+                       .lock = PTHREAD_MUTEX_INITIALIZER,
+                       .rep = s->rep };
     s->rep->sweeps += unjudged + 1, s->rep->work += (unjudged + 1) * price_sweep(s->p);
     s->renewed = false;
-    if (threads == 1) { // a parallel region costs time
-        struct tally t = { 0 };
-        for (int32_t k = unjudged; k >= 0; k--) {
-            memset(t.change, 0, sizeof t.change);
-            text(s->p, 0, 1, k ? &quiet : &opt, &t);
-        }
-        return add_tally(s->rep, &t);
-    }
-#pragma omp parallel num_threads(threads)
-    {
-        struct tally t = { 0 };
-        for (int32_t k = unjudged; k >= 0; k--) {
-            memset(t.change, 0, sizeof t.change);
-            text(s->p, omp_get_thread_num(), omp_get_num_threads(), k ? &quiet : &opt, &t);
-        }
-#pragma omp critical
-        change = fmax(change, add_tally(s->rep, &t));
-    }
-    return change;
+    team_do(problem_team(s->p, o->threads), make_round, &r);
+    return r.change;
 }
 
 /*

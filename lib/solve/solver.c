@@ -100,9 +100,15 @@ static bool with_u(const struct problem *p)
     return p->n <= MANY_CONTACTS;
 }
 
+/* Where in it begins what is beyond r, BESIDE_R numbers a slot */
+static int64_t end_of_ru(const struct problem *p)
+{
+    return with_u(p) ? 6 * p->slots + 1 : 3 * p->slots;
+}
+
 int solve_best_init(struct best *b, const struct problem *p)
 {
-    return best_init(b, with_u(p) ? 6 * p->slots + 1 : 3 * p->slots);
+    return best_init(b, end_of_ru(p) + (p->beyond ? BESIDE_R * p->slots : 0));
 }
 
 void solve_best_offer(const struct solve *s, struct best *b)
@@ -114,6 +120,8 @@ void solve_best_offer(const struct solve *s, struct best *b)
     for (int64_t i = 0; i < p->slots; i++)
         slot_get(p, i, r + 3 * i, with_u(p) ? u + 3 * i : unwanted);
     if (with_u(p)) u[3 * p->slots] = s->believes;
+    for (int64_t i = 0; p->beyond && i < p->slots; i++)
+        slot_get_beyond(p, i, r + end_of_ru(p) + BESIDE_R * i);
 }
 
 void solve_react(struct solve *s, const double *r)
@@ -127,6 +135,8 @@ void solve_best_restore(struct solve *s, const struct best *b)
     struct problem *p = s->p;
     if (!b->x || !(b->value < INFINITY) || s->value <= b->value) return;
     const double *r = b->x, *u = r + 3 * p->slots;
+    for (int64_t i = 0; p->beyond && i < p->slots; i++)
+        slot_set_beyond(p, i, r + end_of_ru(p) + BESIDE_R * i);
     solve_react(s, r);
     s->value = b->value, s->believes = with_u(p) && u[3 * p->slots] != 0;
     for (int64_t i = 0; s->believes && i < p->slots; i++) slot_set(p, i, r + 3 * i, u + 3 * i);

@@ -16,13 +16,27 @@ static double max_overlap(const struct contacts *s)
 }
 
 /* The reactions' sums and the balances they make; sum is to be freed in any case. */
-static int sum_up(const struct packing *pack, const struct contacts *s, struct report *rep,
-                  struct impulses *sum, struct why *why)
+static int sum_up(const struct packing *pack, const struct contacts *s, const struct step_opt *o,
+                  struct report *rep, struct impulses *sum, struct why *why)
 {
-    if (impulses_init(sum, pack, s, false, why) || balance_step(&rep->balance, pack, s, sum, why))
-        return why->status;
-    rep->balanced = true;
-    return 0;
+    rep->balanced = !o->bare, rep->tied = pack->law != NULL;
+    if (impulses_init(sum, pack, s, false, why)) return why->status;
+    return o->bare ? 0 : balance_step(&rep->balance, pack, s, sum, why);
+}
+
+/* Does it solve by sweeps alone what bonds and moments hold together? */
+static bool sweeps(const struct solver *global)
+{
+    return global == &solver_auto || global == &solver_nlgs;
+}
+
+/* Refuses what the solver asked for cannot solve. */
+static int check_solver(const struct problem *p, const struct solver *global, struct why *why)
+{
+    if (!p->rolls || sweeps(global)) return 0;
+    return why_set(why, EX_DATAERR,
+                   "%s does not solve contacts with rolling friction: --global auto and nlgs do",
+                   global->name);
 }
 
 static int solve_contacts(const struct packing *pack, struct contacts *s, const struct step_opt *o,
@@ -30,11 +44,13 @@ static int solve_contacts(const struct packing *pack, struct contacts *s, const 
 {
     struct problem p;
     if (!o->warm) contacts_free_found(s);
-    if (prepare_packing(&p, pack, s, o->alpha, o->solve.method->rho, o->order, why))
+    if (prepare_packing(&p, pack, s, sweeps(o->solve.global), o->alpha, o->solve.method->rho,
+                        o->order, why))
         return why->status;
     rep->step = pack->step + 1;
     rep->t = pack->t + pack->dt;
     rep->err.max_overlap = max_overlap(s);
+    if (check_solver(&p, o->solve.global, why)) return problem_free(&p), why->status;
     int failed = solve_problem(&p, &o->solve, rep);
     if (failed)
         why_set(why, EX_SOFTWARE, "no memory to solve the contacts");
@@ -48,7 +64,7 @@ int step_solve(const struct packing *pack, struct contacts *s, const struct step
                struct report *rep, struct why *why)
 {
     struct impulses sum = { 0 };
-    if (!solve_contacts(pack, s, o, rep, why)) sum_up(pack, s, rep, &sum, why);
+    if (!solve_contacts(pack, s, o, rep, why)) sum_up(pack, s, o, rep, &sum, why);
     impulses_free(&sum);
     return why->status;
 }
@@ -61,7 +77,7 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
         for (int64_t i = 0; i < W->d * W->n; i++) W->r[i] = 0;
     if (problem_prepare_delassus(&p, W, o->alpha, o->solve.method->rho, o->order, why))
         return why->status;
-    rep->balanced = false;
+    rep->balanced = rep->tied = false;
     int failed = solve_problem(&p, &o->solve, rep);
     for (int64_t i = 0; i < p.slots; i++) {
         double r[3], v[3];
@@ -87,7 +103,7 @@ int step_advance(struct packing *p, struct contacts *s, struct neighbours *near,
     contacts_free(&before);
     if (e) return e;
     struct impulses sum = { 0 };
-    if (!solve_contacts(p, s, o, rep, why) && !sum_up(p, s, rep, &sum, why) &&
+    if (!solve_contacts(p, s, o, rep, why) && !sum_up(p, s, o, rep, &sum, why) &&
         isfinite(rep->err.paper.eps_glob))
         move_by(p, s, &sum, why);
     impulses_free(&sum);

@@ -13,6 +13,7 @@ struct step_opt {
     double alpha; /* > 0: rho = alpha m_red; else the method's default */
     enum order order;
     bool warm; /* start from the reactions of the contacts given, else from 0 */
+    bool bare; /* nobody reads the report's balance of this step: it is left out */
     struct solve_opt solve;
 };
 

@@ -1,7 +1,8 @@
 /*
  * Preloaded: allocation number NSD_FAIL_AT fails, of those asked for by the tool itself (NSD_FAIL_IN
  * is "tool") or by its libraries ("library"); a child goes on counting where its parent stood. With
- * NSD_COUNT the number of allocations goes to that file.
+ * NSD_COUNT the number of allocations goes to that file. NSD_TOOL_END is where the tool's own code ends in
+ * its file and that of archives begins, in hexadecimal; empty: they are shared libraries.
  */
 #define _GNU_SOURCE
 #include <errno.h>
@@ -31,6 +32,8 @@ static int look_at(struct dl_phdr_info *info, size_t size, void *data)
         if (info->dlpi_phdr[k].p_type != PT_LOAD || !(info->dlpi_phdr[k].p_flags & PF_X)) continue;
         tool_first = info->dlpi_addr + info->dlpi_phdr[k].p_vaddr;
         tool_end = tool_first + info->dlpi_phdr[k].p_memsz;
+        const char *end = getenv("NSD_TOOL_END");
+        if (end && *end) tool_end = info->dlpi_addr + strtoul(end, NULL, 16);
     }
     return 1; // the first is the program itself
 }

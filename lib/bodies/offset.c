@@ -1,5 +1,5 @@
-/* problem/offset.c: gaps as velocities [problem/offset.h]. */
-#include "problem/offset.h"
+/* bodies/offset.c: gaps as velocities [bodies/offset.h]. */
+#include "bodies/offset.h"
 
 bool offset_in(const struct packing *pack, const struct contact *c)
 {

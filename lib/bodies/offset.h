@@ -1,5 +1,5 @@
 /*
- * problem/offset.h: what the contact law sees of a gap, as a velocity:
+ * bodies/offset.h: what the contact law sees of a gap, as a velocity:
  *
  *     u~ = D^-1 (u + E u^- + law n)
  *

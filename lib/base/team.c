@@ -1,0 +1,242 @@
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): sched_getaffinity
+#include "base/team.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <time.h>
+
+enum {
+    THREADS_MOST = 1024,
+    SPINS = 1000,      /* looks before a thread sleeps: some 20 us */
+    NAP = 20000,       /* ns that it then sleeps between looks, where nobody wakes it */
+    WATCH = 3000000,   /* ns of works after which they are judged, */
+    WATCH_ALL = 50000, /* all works that take as many ns, */
+    WATCH_EVERY = 8,   /* and one in so many shorter ones */
+    ALONE =
+        20000000, /* ns that the caller works alone after the first bad judgement; twice as long */
+    ALONE_MOST = 640000000 /* after each further one, at most this */
+};
+#ifdef NSD_STEADY
+#define GAIN 0.0 /* ThreadSanitizer's findings do not depend on what else there is to do */
+#else
+#define GAIN                                                                                       \
+    1.2 /* cores that works have had, at least, to be worth a team: alone there would be 1 */
+#endif
+
+/* A count, and threads that wait for it. */
+struct gate {
+    _Atomic int64_t count;
+    _Atomic int sleepers;
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+};
+#define GATE                                                                                       \
+    {                                                                                              \
+        0, 0, PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER                                  \
+    }
+
+static struct {
+    int size;                   /* threads of works that are not told how many; 0: 1 */
+    int workers;                /* threads that there are besides the caller's */
+    bool no_more;               /* more cannot be had */
+    int64_t born[THREADS_MOST]; /* works that had begun before worker k was there */
+    int threads;                /* of the work in hand; 0: none */
+    team_work *work;
+    void *arg;
+    struct gate begun, ended; /* works; workers that have ended theirs, of all works */
+    struct gate met;          /* meetings */
+    _Atomic int here;         /* threads that have come to the next */
+} team = { .begun = GATE, .ended = GATE, .met = GATE };
+
+/* Whether a team is worth it: of works that were watched */
+static struct {
+    int64_t works;         /* since the beginning */
+    int64_t last;          /* ns that the last one took */
+    int64_t together, cpu; /* ns that they took; of all cores */
+    int64_t alone_until;   /* ns on the wall's clock */
+    int64_t alone;         /* ns: how long, next time */
+} judgement = { .alone = ALONE };
+
+static int64_t clock_now(clockid_t clock)
+{
+    struct timespec t;
+    clock_gettime(clock, &t);
+    return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
+}
+
+void team_set_size(int threads)
+{
+    team.size = threads;
+}
+
+int team_size(void)
+{
+    return team.size > 1 ? team.size : 1;
+}
+
+int team_cores(void)
+{
+    cpu_set_t cores;
+    int n = sched_getaffinity(0, sizeof cores, &cores) ? 1 : CPU_COUNT(&cores);
+    return n > 0 ? n : 1;
+}
+
+/* ---- waiting ---- */
+
+static void rest(void)
+{
+#if defined __x86_64__ || defined __i386__
+    __builtin_ia32_pause();
+#endif
+}
+
+/* Spins until the count is there; false where it takes longer. */
+static bool spun(const _Atomic int64_t *count, int64_t n)
+{
+    for (int k = 0; k < SPINS; k++) {
+        if (atomic_load_explicit(count, memory_order_acquire) >= n) return true;
+        rest();
+    }
+    return false;
+}
+
+static void gate_wait(struct gate *g, int64_t n)
+{
+    if (spun(&g->count, n)) return;
+    pthread_mutex_lock(&g->lock);
+    atomic_fetch_add(&g->sleepers, 1); // seen by who counts up next, or its count is seen here
+    while (atomic_load(&g->count) < n) pthread_cond_wait(&g->changed, &g->lock);
+    atomic_fetch_sub(&g->sleepers, 1);
+    pthread_mutex_unlock(&g->lock);
+}
+
+static void gate_count(struct gate *g)
+{
+    atomic_fetch_add(&g->count, 1);
+    if (!atomic_load(&g->sleepers)) return;
+    pthread_mutex_lock(&g->lock);
+    pthread_cond_broadcast(&g->changed);
+    pthread_mutex_unlock(&g->lock);
+}
+
+void team_await(const _Atomic int64_t *count, int64_t n)
+{
+    const struct timespec nap = { 0, NAP };
+    while (!spun(count, n)) nanosleep(&nap, NULL);
+}
+
+void team_meet(void)
+{
+    if (team.threads < 2) return;
+    int64_t next = atomic_load(&team.met.count) + 1;
+    if (atomic_fetch_add(&team.here, 1) + 1 < team.threads) {
+        gate_wait(&team.met, next);
+        return;
+    }
+    atomic_store(&team.here, 0);
+    gate_count(&team.met);
+}
+
+/* ---- workers ---- */
+
+static void *worker(void *arg)
+{
+    int me = (int)(ptrdiff_t)arg;
+    for (int64_t works = team.born[me] + 1;; works++) {
+        gate_wait(&team.begun, works);
+        if (me < team.threads) team.work(team.arg, me, team.threads);
+        gate_count(&team.ended);
+    }
+    return NULL;
+}
+
+/* The number of threads that there are: `threads` if they can be had */
+static int gather(int threads)
+{
+    if (threads > THREADS_MOST) threads = THREADS_MOST;
+    while (!team.no_more && team.workers + 1 < threads) {
+        pthread_t t;
+        int me = team.workers + 1;
+        team.born[me] = atomic_load(&team.begun.count);
+        team.no_more = pthread_create(&t, NULL, worker, (void *)(ptrdiff_t)me) != 0;
+        if (!team.no_more) pthread_detach(t), team.workers++;
+    }
+    return team.workers + 1 < threads ? team.workers + 1 : threads;
+}
+
+/* The processor's clock, where the work that begins is watched; else -1. Asking it costs half a microsecond. */
+static int64_t watch(void)
+{
+    bool watched = judgement.last > WATCH_ALL || judgement.works++ % WATCH_EVERY == 0;
+    return watched ? clock_now(CLOCK_PROCESS_CPUTIME_ID) : -1;
+}
+
+/* A work has taken `wall` ns. How many cores have works had? */
+static void judge(int64_t now, int64_t wall, int64_t cpu_before)
+{
+    judgement.last = wall;
+    if (cpu_before < 0) return;
+    judgement.together += wall, judgement.cpu += clock_now(CLOCK_PROCESS_CPUTIME_ID) - cpu_before;
+    if (judgement.together < WATCH) return;
+    if ((double)judgement.cpu < GAIN * (double)judgement.together) {
+        judgement.alone_until = now + judgement.alone;
+        judgement.alone = judgement.alone < ALONE_MOST ? 2 * judgement.alone : ALONE_MOST;
+    } else {
+        judgement.alone = judgement.alone / 2 > ALONE ? judgement.alone / 2 : ALONE;
+    }
+    judgement.together = judgement.cpu = 0;
+}
+
+void team_do(int threads, team_work *work, void *arg)
+{
+    int64_t since = threads > 1 ? clock_now(CLOCK_MONOTONIC) : 0;
+    if (threads > 1) threads = since < judgement.alone_until ? 1 : gather(threads);
+    if (threads < 2) {
+        work(arg, 0, 1);
+        return;
+    }
+    int64_t cpu = watch(), all = atomic_load(&team.ended.count) + team.workers, now;
+    team.threads = threads, team.work = work, team.arg = arg;
+    gate_count(&team.begun);
+    work(arg, 0, threads);
+    gate_wait(&team.ended, all);
+    team.threads = 0;
+    now = clock_now(CLOCK_MONOTONIC);
+    judge(now, now - since, cpu);
+}
+
+/* ---- loops ---- */
+
+struct share {
+    int64_t n, least;
+    team_part *some;
+    void *arg;
+    _Atomic int64_t next;
+};
+
+/* Parts are taken one after another: some are more work than others. */
+static void take_parts(void *arg, int me, int threads)
+{
+    struct share *s = arg;
+    (void)me, (void)threads;
+    for (;;) {
+        int64_t first = atomic_fetch_add_explicit(&s->next, s->least, memory_order_relaxed);
+        if (first >= s->n) return;
+        s->some(s->arg, first, s->n - first < s->least ? s->n : first + s->least);
+    }
+}
+
+void team_share(int threads, int64_t n, int64_t least, team_part *some, void *arg)
+{
+    if (threads < 2 || n <= least) {
+        if (n > 0) some(arg, 0, n);
+        return;
+    }
+    int64_t parts =
+        8 * (int64_t)threads; // of such a size that the last thread ends soon after the first
+    if (n / parts > least) least = n / parts;
+    struct share s = { n, least, some, arg, 0 };
+    team_do(threads, take_parts, &s);
+}

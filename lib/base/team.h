@@ -1,0 +1,42 @@
+/*
+ * base/team.h: threads that share the work of a process. Results never depend on their number, so that a team
+ * may have fewer threads than asked: where none can be had or, for a while, where one waits long for another,
+ * because other programs want the processor's cores.
+ *
+ * Who waits spins at first, for some tens of microseconds, since most waits are shorter than putting a thread to
+ * sleep and waking it; then sleeps, and leaves the core to others.
+ */
+#ifndef NSD_TEAM_H
+#define NSD_TEAM_H
+
+#include <stdatomic.h>
+#include <stdint.h>
+
+/* What one of the threads does; me = 0 is the caller's. */
+typedef void team_work(void *arg, int me, int threads);
+
+/* Has work(arg, me, n) done by n threads at once, 1 <= n <= threads, and returns when all are done. Not to be
+   called by what they do. */
+void team_do(int threads, team_work *work, void *arg);
+
+/* Nobody in team_do goes on before all have come here. All must call it. */
+void team_meet(void);
+
+/*
+ * Has some(arg, first, end) called for parts of 0 .. n-1 of at least `least` each, which together are all of it;
+ * in one thread, all at once, where there is not more than that.
+ */
+typedef void team_part(void *arg, int64_t first, int64_t end);
+void team_share(int threads, int64_t n, int64_t least, team_part *some, void *arg);
+
+/* Threads for whatever is not told how many it may have: 1, unless the tool says otherwise; and how many */
+void team_set_size(int threads);
+int team_size(void);
+
+/* The cores that this process may run on */
+int team_cores(void);
+
+/* Waits until *count is at least n; whoever counts up need not know that somebody waits. */
+void team_await(const _Atomic int64_t *count, int64_t n);
+
+#endif

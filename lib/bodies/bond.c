@@ -1,0 +1,89 @@
+/* bodies/bond.c: the list of what lasts of pairs [bodies/bond.h]. */
+#include "bodies/bond.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void bonds_free(struct bonds *s)
+{
+    free(s->bond);
+    *s = (struct bonds){ 0 };
+}
+
+int bonds_copy(struct bonds *to, const struct bonds *from, struct why *why)
+{
+    *to = (struct bonds){ 0 };
+    for (int64_t i = 0; i < from->n; i++)
+        if (!bonds_add(to, &from->bond[i])) {
+            bonds_free(to);
+            return why_set(why, EX_SOFTWARE, "no memory for the bonds");
+        }
+    return 0;
+}
+
+struct bond *bonds_add(struct bonds *s, const struct bond *bond)
+{
+    if (s->n == s->room) {
+        int64_t room = s->room + s->room / 2 + 64;
+        struct bond *more = realloc(s->bond, (size_t)room * sizeof *more);
+        if (!more) return NULL;
+        s->bond = more, s->room = room;
+    }
+    s->bond[s->n] = *bond;
+    return &s->bond[s->n++];
+}
+
+/* < 0 where the key of x comes before this one */
+static int compare(const struct bond *x, int32_t a, int32_t b, int32_t feature,
+                   const int8_t shift[3])
+{
+    if (x->a != a) return x->a < a ? -1 : 1;
+    if (x->b != b) return x->b < b ? -1 : 1;
+    if (x->feature != feature) return x->feature < feature ? -1 : 1;
+    for (int k = 0; k < 3; k++)
+        if (x->shift[k] != shift[k]) return x->shift[k] < shift[k] ? -1 : 1;
+    return 0;
+}
+
+static int compare_bonds(const void *x, const void *y)
+{
+    const struct bond *key = y;
+    return compare(x, key->a, key->b, key->feature, key->shift);
+}
+
+void bonds_sort(struct bonds *s)
+{
+    if (s->n) qsort(s->bond, (size_t)s->n, sizeof *s->bond, compare_bonds);
+}
+
+const struct bond *bonds_find(const struct bonds *s, const struct contact *c, int64_t *from)
+{
+    int order = -1;
+    while (*from < s->n && (order = compare(&s->bond[*from], c->a, c->b, c->feature, c->shift)) < 0)
+        ++*from;
+    return *from < s->n && order == 0 ? &s->bond[*from] : NULL;
+}
+
+static const char *bond_trouble(const struct bond *x, int64_t bodies, int32_t walls)
+{
+    if (x->b < 0 || x->b >= bodies || x->a >= bodies || x->a < -walls || x->a == x->b)
+        return "no such bodies";
+    if (x->wet != 0 && x->wet != 1) return "is neither wet nor dry";
+    if (!(x->beta >= 0 && x->beta <= 1)) return "beta must lie in [0, 1]";
+    if (!isfinite(x->gap) || !v3_finite(x->slip)) return "gap or slip is not finite";
+    if (!(fabs(v3_dot(x->n, x->n) - 1) < 1e-6)) return "its normal is not a unit vector";
+    return NULL;
+}
+
+int bonds_check(const struct bonds *s, int64_t bodies, int32_t walls, struct why *why)
+{
+    for (int64_t i = 0; i < s->n; i++) {
+        const struct bond *x = &s->bond[i];
+        const char *trouble = bond_trouble(x, bodies, walls);
+        if (trouble) return why_set(why, EX_DATAERR, "bond %lld: %s", (long long)i, trouble);
+        if (i && compare_bonds(x - 1, x) >= 0)
+            return why_set(why, EX_DATAERR, "bond %lld: not sorted by its bodies, or there twice",
+                           (long long)i);
+    }
+    return 0;
+}

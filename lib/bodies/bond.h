@@ -1,0 +1,43 @@
+/*
+ * bodies/bond.h: what lasts of a pair from one step to the next: a liquid bridge, the intensity of
+ * adhesion. Found again by the key of the pair's contact.
+ */
+#ifndef NSD_BOND_H
+#define NSD_BOND_H
+
+#include "base/vec.h"
+#include "base/why.h"
+#include "bodies/contact.h"
+
+struct bond {
+    int32_t a, b, feature; /* the key, as in struct contact */
+    int8_t shift[3];
+    int8_t wet;  /* 1: there is a liquid bridge */
+    double beta; /* intensity of adhesion; 0 where there is none, or it is broken */
+    double gap;  /* m: expected at the next step, at the predicted positions */
+    vec3 n;      /* the contact's normal when this was kept */
+    vec3 slip;   /* m: across n: how far the bond is sheared, b against a */
+};
+
+/* Sorted as contacts are, each key once. */
+struct bonds {
+    int64_t n, room;
+    struct bond *bond; /* [n] */
+};
+
+void bonds_free(struct bonds *bonds);
+/* to = a deep copy of from; to need not be initialised. Returns 0 or EX_SOFTWARE. */
+int bonds_copy(struct bonds *to, const struct bonds *from, struct why *why);
+/* Appends one; NULL when memory is short. */
+struct bond *bonds_add(struct bonds *bonds, const struct bond *bond);
+/* Back into order, after keys have changed */
+void bonds_sort(struct bonds *bonds);
+/* That of a contact, or NULL. *from, 0 at first, is where to look from on: contacts are asked for in
+   their order. */
+const struct bond *bonds_find(const struct bonds *bonds, const struct contact *c, int64_t *from);
+
+/* Do bodies and walls exist, are keys in order, numbers in range? Returns 0, or EX_DATAERR with the
+   first bond that fails. */
+int bonds_check(const struct bonds *bonds, int64_t bodies, int32_t walls, struct why *why);
+
+#endif

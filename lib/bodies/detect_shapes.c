@@ -1,0 +1,216 @@
+#include "bodies/detect_shapes.h"
+
+#include "bodies/meet.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    CORNERS = 256,   /* of a body that are near a boundary, at most: of more the first */
+    MOVED_MOST = 256 /* corners of a body that is met as an image without memory of its own */
+};
+
+/* The order of contacts within a pair: by feature, then shift */
+static bool comes_before(const struct contact *a, const struct contact *b)
+{
+    if (a->feature != b->feature) return a->feature < b->feature;
+    for (int k = 0; k < 3; k++)
+        if (a->shift[k] != b->shift[k]) return a->shift[k] < b->shift[k];
+    return false;
+}
+
+/* Sorts the new last contact among those of its pair, of which each key is there once: the deeper of
+   two is kept. */
+static void settle(struct contacts *out)
+{
+    int64_t k = out->n - 1;
+    struct contact new = out->c[k];
+    for (; k > 0; k--) {
+        const struct contact *c = &out->c[k - 1];
+        if (c->a != new.a || c->b != new.b || comes_before(c, &new)) break;
+        if (!comes_before(&new, c)) { // the same key
+            if (new.gap < c->gap) out->c[k - 1] = new;
+            memmove(&out->c[k], &out->c[k + 1], (size_t)(out->n - 1 - k) * sizeof *out->c);
+            out->n--;
+            return;
+        }
+        out->c[k] = *c;
+    }
+    out->c[k] = new;
+}
+
+static void set_law(struct contact *c, const struct packing *p, int32_t one, int32_t other)
+{
+    int32_t k = one * p->kinds + other;
+    c->mu = p->mu[k], c->en = p->en[k], c->et = p->et[k];
+}
+
+static bool add(struct contacts *out, const struct placed *s, int32_t a, int32_t b,
+                const int8_t shift[3], const struct place *place)
+{
+    const struct packing *p = s->p;
+    struct contact *c = contacts_add(out, a, b);
+    if (!c) return false;
+    vec3 n = place->n;
+    if (p->dim == 2) n.z = 0;
+    contact_basis(c, p->dim, n);
+    c->gap = place->gap, c->x = place->x, c->feature = place->feature;
+    for (int k = 0; k < 3; k++) c->shift[k] = shift[k];
+    set_law(c, p, a < 0 ? p->wall[-1 - a].kind : p->kind[a], p->kind[b]);
+    settle(out);
+    return true;
+}
+
+/* The core moved; room[n] is used where it has more than one vertex. */
+static struct core moved(struct core c, vec3 away, vec3 *room)
+{
+    for (int32_t i = 0; i < c.n; i++) room[i] = v3_add(c.v[i], away);
+    c.v = room, c.centre = v3_add(c.centre, away);
+    return c;
+}
+
+/* Do the balls around two bodies, and those of a clump, come near? */
+static bool apart(const struct core *a, const struct core *b, double ra, double rb, double gap)
+{
+    vec3 d = v3_sub(b->centre, a->centre);
+    double most = ra + rb + gap;
+    return v3_dot(d, d) > most * most * (1 + 1e-12);
+}
+
+static bool meet_pair(struct contacts *out, const struct placed *s, int32_t a, int32_t b,
+                      const int8_t shift[3], vec3 away, double gap, vec3 *room)
+{
+    const struct packing *p = s->p;
+    int32_t as = placed_cores(s, a), bs = placed_cores(s, b);
+    bool image = away.x != 0 || away.y != 0 || away.z != 0, whole = as == 1 && bs == 1;
+    for (int32_t i = 0; i < as; i++)
+        for (int32_t j = 0; j < bs; j++) {
+            struct core ca = placed_core(s, a, i), cb = placed_core(s, b, j);
+            struct place place[PLACES_MOST];
+            if (image) cb = moved(cb, away, room);
+            if (apart(&ca, &cb, as > 1 ? ca.round : p->radius[a], bs > 1 ? cb.round : p->radius[b],
+                      gap))
+                continue;
+            int n = meet_cores(p->dim, &ca, &cb, gap, place);
+            for (int k = 0; k < n; k++) {
+                if (!whole) place[k].feature = (i * bs + j) * PLACES_MOST + k;
+                if (!add(out, s, a, b, shift, &place[k])) return false;
+            }
+        }
+    return true;
+}
+
+bool detect_shapes_pair(struct contacts *out, const struct placed *s, int32_t a, int32_t b,
+                        const int8_t shift[3], vec3 away, double gap)
+{
+    vec3 few[MOVED_MOST];
+    const struct shape *shape = packing_shape(s->p, b);
+    if (!shape || shape->vertices <= MOVED_MOST)
+        return meet_pair(out, s, a, b, shift, away, gap, few);
+    vec3 *many = malloc((size_t)shape->vertices * sizeof *many);
+    bool good = many && meet_pair(out, s, a, b, shift, away, gap, many);
+    free(many);
+    return good;
+}
+
+/* ---- boundaries ---- */
+
+/* Where a corner meets the surface; n points to the body's side. Returns how many places. */
+static int near_surface(const struct placed *s, const struct wall *wall, const struct pose *pose,
+                        const struct surface *surface, int64_t i, vec3 v, double round, double gap,
+                        struct touch touch[TOUCHES_MOST])
+{
+    const struct packing *p = s->p;
+    vec3 c = v3_sub(quat_turn_back(pose->q, v3_sub(v, pose->shift)), wall->x);
+    vec3 middle = v3_sub(quat_turn_back(pose->q, v3_sub(s->x[i], pose->shift)), wall->x);
+    double r = p->radius[i];
+    int n = surface ? surface_touches(surface, c, round + gap + r, touch)
+                    : boundary_nearest(wall, p->dim, c, r, touch);
+    for (int k = 0; k < n; k++) {
+        vec3 place = v3_axpy(c, -touch[k].distance, touch[k].n);
+        bool two_sided = surface || wall->side == BOUNDARY_BOTH ||
+                         wall->shape == BOUNDARY_RECTANGLE || wall->shape == BOUNDARY_DISC;
+        if (two_sided && v3_dot(touch[k].n, v3_sub(middle, place)) < 0)
+            touch[k].n = v3_scale(-1, touch[k].n), touch[k].distance *= -1;
+        touch[k].n = quat_turn(pose->q, touch[k].n);
+    }
+    return n;
+}
+
+/* The outside of a sphere or an endless cylinder, as the core of a ball or capsule; false: no such
+   boundary */
+static bool convex_boundary(const struct packing *p, const struct wall *wall,
+                            const struct pose *pose, vec3 near, double reach, vec3 v[2],
+                            struct core *c)
+{
+    if (wall->side != BOUNDARY_OUTSIDE || wall->arc > 0) return false;
+    bool ball = wall->shape == BOUNDARY_SPHERE || (wall->shape == BOUNDARY_CYLINDER && p->dim == 2);
+    bool tube = wall->shape == BOUNDARY_CYLINDER && p->dim == 3 && wall->size[2] == 0;
+    if (!ball && !tube) return false;
+    vec3 x = pose_of(pose, wall->x), n = quat_turn(pose->q, wall->n);
+    double along = v3_dot(n, v3_sub(near, x));
+    v[0] = tube ? v3_axpy(x, along - reach, n) : x, v[1] = v3_axpy(x, along + reach, n);
+    *c = (struct core){ .n = tube ? 2 : 1, .v = v, .round = wall->size[0] };
+    c->centre = tube ? v3_axpy(x, along, n) : x;
+    return true;
+}
+
+static bool meet_convex(struct contacts *out, const struct placed *s, int32_t w, int64_t i,
+                        const struct core *boundary, double gap)
+{
+    static const int8_t none[3] = { 0, 0, 0 };
+    int32_t cores = placed_cores(s, i);
+    for (int32_t k = 0; k < cores; k++) {
+        struct core c = placed_core(s, i, k);
+        struct place place[PLACES_MOST];
+        int n = meet_cores(s->p->dim, boundary, &c, gap, place);
+        for (int l = 0; l < n; l++) {
+            if (cores > 1) place[l].feature = k * PLACES_MOST + l;
+            place[l].x = v3_axpy(place[l].x, -0.5 * place[l].gap, place[l].n); // on the surface
+            if (!add(out, s, -1 - w, (int32_t)i, none, &place[l])) return false;
+        }
+    }
+    return true;
+}
+
+bool detect_shapes_wall(struct contacts *out, const struct placed *s, int32_t w, int64_t i,
+                        double t, double gap, const struct surface *surface)
+{
+    static const int8_t none[3] = { 0, 0, 0 };
+    const struct packing *p = s->p;
+    const struct wall *wall = &p->wall[w];
+    const struct pose pose = wall_pose(p, wall, t);
+    bool plane = wall->shape == BOUNDARY_PLANE;
+    vec3 at = wall_at(p, wall, t), n = wall_normal(p, wall, t), ends[2];
+    struct core boundary;
+    double reach = p->radius[i] + fmax(gap, 0);
+    if (plane && v3_dot(v3_sub(s->x[i], at), n) > reach) return true;
+    if (convex_boundary(p, wall, &pose, s->x[i], 2 * reach, ends, &boundary))
+        return meet_convex(out, s, w, i, &boundary, gap);
+    struct place place[CORNERS];
+    int count = 0;
+    int32_t cores = placed_cores(s, i);
+    for (int32_t k = 0; k < cores; k++) {
+        const struct core c = placed_core(s, i, k);
+        for (int32_t l = 0; l < c.n; l++) {
+            struct touch touch[TOUCHES_MOST];
+            int touches = 1;
+            if (plane)
+                touch[0] = (struct touch){ n, v3_dot(v3_sub(c.v[l], at), n), 0 };
+            else
+                touches = near_surface(s, wall, &pose, surface, i, c.v[l], c.round, gap, touch);
+            for (int m = 0; m < touches && count < CORNERS; m++) {
+                if (!(touch[m].distance - c.round <= gap)) continue;
+                uint32_t key = (uint32_t)touch[m].feature * (uint32_t)(cores > 1 ? cores : c.n) +
+                               (uint32_t)(cores > 1 ? k : l);
+                place[count++] =
+                    (struct place){ v3_axpy(c.v[l], -touch[m].distance, touch[m].n), touch[m].n,
+                                    touch[m].distance - c.round, (int32_t)(key & INT32_MAX) };
+            }
+        }
+    }
+    if (cores == 1 && plane) count = meet_few(place, count);
+    for (int k = 0; k < count; k++)
+        if (!add(out, s, -1 - w, (int32_t)i, none, &place[k])) return false;
+    return true;
+}

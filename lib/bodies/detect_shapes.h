@@ -1,0 +1,25 @@
+/*
+ * bodies/detect_shapes.h: contacts of bodies that are not both balls, and of shaped bodies with
+ * boundaries.
+ *
+ * A boundary is met by the corners of a core, each where the surface is next to it: that is all that
+ * can meet a plane, or a cylinder, cone or sphere from inside. The outside of a sphere or an endless
+ * cylinder is met as a ball or a capsule would be. Of surfaces that end (rectangles, discs, meshes, the
+ * outside of other shapes) the rims and edges do not meet faces of bodies.
+ */
+#ifndef NSD_DETECT_SHAPES_H
+#define NSD_DETECT_SHAPES_H
+
+#include "bodies/contact.h"
+#include "bodies/neighbours.h"
+#include "bodies/placed.h"
+
+/* Contacts of bodies a and b, moved by `away` (m), with a gap of at most `gap` (m), sorted by feature.
+   shift: as of a contact. Law and point are set. False when memory is short. */
+bool detect_shapes_pair(struct contacts *out, const struct placed *s, int32_t a, int32_t b,
+                        const int8_t shift[3], vec3 away, double gap);
+/* Contacts of body i with boundary w, where it is at time t (s) */
+bool detect_shapes_wall(struct contacts *out, const struct placed *s, int32_t w, int64_t i,
+                        double t, double gap, const struct surface *surface);
+
+#endif

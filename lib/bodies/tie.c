@@ -1,0 +1,220 @@
+/* bodies/tie.c: ties made, followed over a step, and kept [bodies/tie.h]. */
+#include "bodies/tie.h"
+
+#include "bodies/kinematics.h"
+#include "bodies/offset.h"
+
+#include <stdlib.h>
+
+static const double TOUCH = 1e-6;      /* radii: pairs not further apart touch; it is rounding */
+static const double LEAST_BETA = 1e-3; /* bonds of less are broken */
+static const double MARGIN = 0.05;     /* radii: by which a step may miss the gap that it expects */
+
+static const struct law *law_of(const struct packing *p, const struct contact *c)
+{
+    int32_t a = c->a < 0 ? p->wall[-1 - c->a].kind : p->kind[c->a];
+    return &p->law[a * p->kinds + p->kind[c->b]];
+}
+
+static double smaller_radius(const struct packing *p, const struct contact *c)
+{
+    return c->a < 0 ? p->radius[c->b] : fmin(p->radius[c->a], p->radius[c->b]);
+}
+
+/* m: of a liquid bridge */
+static double bridge_size(const struct packing *p, const struct contact *c)
+{
+    return bridge_radius(c->a < 0 ? 0 : p->radius[c->a], p->radius[c->b]);
+}
+
+/* m^2: of a bond; discs are 1 m deep */
+static double bond_area(const struct packing *p, const struct contact *c, const struct law *l)
+{
+    double r = smaller_radius(p, c);
+    return l->area > 0 ? l->area : p->dim == 2 ? 2 * r : M_PI * r * r;
+}
+
+double ties_reach(const struct packing *p)
+{
+    double reach = 0, small = INFINITY, large = 0, apart = -INFINITY;
+    for (int32_t k = 0; k < p->kinds * p->kinds; k++)
+        reach = fmax(reach,
+                     fmax(p->law[k].cohesion > 0 ? p->law[k].range : 0, bridge_reach(&p->law[k])));
+    for (int64_t i = 0; i < p->n; i++)
+        small = fmin(small, p->radius[i]), large = fmax(large, p->radius[i]);
+    for (int64_t i = 0; i < p->bonds.n; i++)
+        if (p->bonds.bond[i].beta > 0) apart = fmax(apart, p->bonds.bond[i].gap);
+    if (apart > -INFINITY) reach = fmax(reach, apart + MARGIN * small);
+    return fmax(reach, TOUCH * large);
+}
+
+/* The rotation that takes the unit vector `from` to `to` the short way, of a vector across `from` */
+static vec3 turn_along(vec3 from, vec3 to, vec3 x)
+{
+    vec3 axis = v3_cross(from, to);
+    double c = v3_dot(from, to);
+    if (!(c > -0.999)) return v3(0, 0, 0); // the pair has been passed: nothing of the shear is left
+    // Rodrigues: x + axis x x + axis x (axis x x)/(1 + c)
+    vec3 y = v3_cross(axis, x);
+    return v3_axpy(v3_add(x, y), 1 / (1 + c), v3_cross(axis, y));
+}
+
+/* Beta and the jump of a bond that there is, or that is made in this step */
+static void set_bond(struct tie *t, const struct packing *p, const struct contact *c,
+                     const struct law *l, const struct bond *old, bool touches)
+{
+    bool due = fabs(p->t - l->made) < 0.5 * p->dt && !(old && old->beta > 0);
+    if (touches && (l->forever ? !old : due)) {
+        t->beta = l->beta, t->state |= TIE_BONDED;
+    } else if (old && (old->beta > 0 || l->forever)) {
+        vec3 slip = turn_along(old->n, c->n, old->slip);
+        t->beta = old->beta, t->state |= TIE_BONDED;
+        t->jump[1] = v3_dot(slip, c->t1), t->jump[2] = v3_dot(slip, contact_t2(c));
+    }
+    if (!(t->beta > 0)) return;
+    double S = bond_area(p, c, l) * t->beta * t->beta;
+    t->stiff[0] = S * l->cn, t->stiff[1] = S * l->ct;
+}
+
+/* m/s: an impact that rebounds waits for the bodies to touch */
+static double offset_apart(const struct packing *p, const struct contact *c)
+{
+    double approach = -opening_of(p, c);
+    bool impact = c->en > 0 && approach > packing_calm(p);
+    return c->gap / p->dt + (impact ? 2 * approach : 0);
+}
+
+static void set_tie(struct tie *t, const struct packing *p, struct contact *c,
+                    const struct bond *old)
+{
+    const struct law *l = law_of(p, c);
+    double touch = TOUCH * smaller_radius(p, c);
+    bool touches = c->gap <= touch;
+    t->jump[0] = fmax(0, c->gap);
+    t->mu_r = l->mu_r, t->mu_p = l->mu_p;
+    if (l->cohesion > 0 && c->gap <= fmax(l->range, touch)) t->pull = l->cohesion;
+    if (law_wets(l) && (touches || (old && old->wet && c->gap < bridge_reach(l)))) {
+        t->state |= old && old->wet ? TIE_WET : TIE_WET | TIE_NEW_BRIDGE;
+        t->pull += bridge_force(l, bridge_size(p, c), c->gap);
+    }
+    if (law_adheres(l)) set_bond(t, p, c, l, old, touches);
+    if (tie_holds(t) && c->gap > 0) t->offset = offset_apart(p, c);
+    if (t->beta > 0 || t->offset > 0) c->en = c->et = 0;
+    c->mu *= 1 - t->beta;
+}
+
+int ties_find(struct contacts *s, const struct packing *p, struct why *why)
+{
+    int64_t from = 0;
+    if (contacts_alloc_tie(s)) return why_set(why, EX_SOFTWARE, "no memory for the ties");
+    for (int64_t i = 0; i < s->n; i++)
+        set_tie(&s->tie[i], p, &s->c[i], bonds_find(&p->bonds, &s->c[i], &from));
+    return 0;
+}
+
+/* ---- over the step ---- */
+
+/* m/s: u_n after the step, out of what the law has seen */
+static double opening_after(const struct packing *p, const struct contact *c, const struct tie *t,
+                            const struct found *found)
+{
+    if (t->offset > 0) return found->u[0] - t->offset;
+    double before = opening_of(p, c);
+    return (1 + c->en) * found->u[0] - c->en * before - offset_of(p, c, before);
+}
+
+static double damage(double h, const struct law *l, double beta, double q)
+{
+    if (!(l->w < beta * q)) return beta;
+    double left = fmin(beta, (h * l->w + l->eta * beta) / (h * q + l->eta));
+    return left < LEAST_BETA ? 0 : left;
+}
+
+struct tie_end tie_end(const struct packing *p, const struct contact *c, const struct tie *t,
+                       const struct found *found)
+{
+    const struct law *l = law_of(p, c);
+    struct tie_end e = { .gap = c->gap + p->dt * opening_after(p, c, t, found), .beta = t->beta };
+    e.wet = t->state & TIE_WET && e.gap < bridge_reach(l);
+    for (int k = 0; k < 2 && t->beta > 0; k++) e.slip[k] = t->jump[1 + k] + p->dt * found->u[1 + k];
+    double open = fmax(0, e.gap);
+    double q = l->cn * open * open + l->ct * (e.slip[0] * e.slip[0] + e.slip[1] * e.slip[1]);
+    e.beta = damage(p->dt, l, t->beta, q);
+    return e;
+}
+
+/* J: of a constant pull */
+static double cohesion_energy(const struct packing *p, const struct contact *c, const struct law *l,
+                              double gap)
+{
+    double range = fmax(l->range, TOUCH * smaller_radius(p, c));
+    return gap < range ? -l->cohesion * (range - gap) : 0;
+}
+
+/* J: of the bond, were its beta still the one it began with */
+static double elastic_energy(const struct tie *t, double gap, double slip1, double slip2)
+{
+    double open = fmax(0, gap), slip = slip1 * slip1 + slip2 * slip2;
+    return 0.5 * (t->stiff[0] * open * open + t->stiff[1] * slip);
+}
+
+struct tie_account tie_account(const struct packing *p, const struct contact *c,
+                               const struct tie *t, const struct tie_end *end)
+{
+    const struct law *l = law_of(p, c);
+    struct tie_account a = { 0 };
+    double before = cohesion_energy(p, c, l, c->gap), R = bridge_size(p, c);
+    double after = cohesion_energy(p, c, l, end->gap);
+    if (t->state & TIE_WET) {
+        double bridge = bridge_energy(l, R, c->gap);
+        if (t->state & TIE_NEW_BRIDGE)
+            a.broken -= bridge;
+        else
+            before += bridge;
+        after += bridge_energy(l, R, end->gap);
+    }
+    if (t->beta > 0) {
+        double left = end->beta / t->beta;
+        double stretched = elastic_energy(t, end->gap, end->slip[0], end->slip[1]);
+        before += elastic_energy(t, c->gap, t->jump[1], t->jump[2]);
+        after += left * left * stretched;
+        a.broken += (1 - left * left) * stretched;
+    }
+    a.change = after - before, a.stored = after;
+    return a;
+}
+
+/* rad: by which the pair turns about the contact's normal in the step */
+static double spin_about(const struct packing *p, const struct contact *c)
+{
+    vec3 wa = c->a < 0 ? wall_spin(p, &p->wall[-1 - c->a]) : p->w[c->a];
+    return 0.5 * p->dt * v3_dot(c->n, v3_add(wa, p->w[c->b]));
+}
+
+int ties_keep(struct packing *p, const struct contacts *s, struct why *why)
+{
+    struct bonds kept = { 0 };
+    for (int64_t i = 0; i < s->n && s->tie; i++) {
+        const struct contact *c = &s->c[i];
+        const struct tie *t = &s->tie[i];
+        if (!(t->state & (TIE_WET | TIE_BONDED))) continue;
+        struct tie_end e = tie_end(p, c, t, &s->found[i]);
+        // a broken bond is remembered while the pair touches: it is not made anew
+        bool rests = t->state & TIE_BONDED && e.gap <= TOUCH * smaller_radius(p, c);
+        if (!e.wet && !(e.beta > 0) && !rests) continue;
+        double angle = spin_about(p, c), cs = cos(angle), sn = sin(angle);
+        struct bond b = { .a = c->a, .b = c->b, .feature = c->feature, .n = c->n };
+        for (int k = 0; k < 3; k++) b.shift[k] = c->shift[k];
+        b.wet = e.wet, b.beta = e.beta, b.gap = e.gap;
+        if (e.beta > 0)
+            b.slip = v3_axpy(v3_scale(cs * e.slip[0] - sn * e.slip[1], c->t1),
+                             sn * e.slip[0] + cs * e.slip[1], contact_t2(c));
+        if (!bonds_add(&kept, &b)) {
+            bonds_free(&kept);
+            return why_set(why, EX_SOFTWARE, "no memory for the bonds");
+        }
+    }
+    bonds_free(&p->bonds);
+    p->bonds = kept;
+    return 0;
+}

@@ -1,0 +1,63 @@
+/*
+ * bodies/tie.h: what the laws of bodies/law.h do at the contacts of a step, and what they leave for
+ * the next.
+ *
+ * A step begins at the predicted positions, at gap g, and the next one, h later, at g + h u_n: u is
+ * the velocity after the step. What ties a pair together over that way is an impulse
+ *
+ *     p = - h f_c n - h S beta^2 C (d + h u),     r = r* + p,     C = diag(c_n, c_t, c_t)
+ *
+ * f_c: the pull of cohesion and of a liquid bridge. d: the jump at the beginning, max(0, g) along n
+ * and, across, how far the pair is sheared since it was bonded. r is what the bodies feel; r*, the
+ * push of one surface on the other, is on Signorini's condition, for a pair that is apart
+ * u_n + g/h >= 0, and on Coulomb's law with mu (1 - beta): what is no longer bonded rubs.
+ *
+ * Adhesion with damage [Raous, Cangemi & Cocou 1999]: S beta^2/2 d.C d - S w beta is the energy of a
+ * bond, and beta falls where that and the viscosity eta ask for it,
+ *
+ *     eta beta' = - max(0, beta q - w),   q = c_n max(0, d_n + h u_n)^2 + c_t |d_t + h u_t|^2,
+ *
+ * by the implicit step beta = (h w + eta beta)/(h q + eta), and with eta = 0 beta = w/q. A bond of
+ * less than a thousandth is broken: it would never end.
+ */
+#ifndef NSD_TIE_H
+#define NSD_TIE_H
+
+#include "bodies/packing.h"
+
+/* m: contacts are to be sought up to this gap */
+double ties_reach(const struct packing *p);
+/*
+ * contacts->tie[n] of contacts that have just been detected, by the laws and the bonds of the packing;
+ * bonds are made. Where adhesion holds mu is that of what is not bonded; it and a gap let nothing
+ * rebound. Returns 0 or EX_SOFTWARE.
+ */
+int ties_find(struct contacts *s, const struct packing *p, struct why *why);
+/* Does anything but touch make this a contact? */
+static inline bool tie_holds(const struct tie *t)
+{
+    return t->pull > 0 || t->beta > 0;
+}
+
+/* What has become of a tie when the step is over */
+struct tie_end {
+    double gap, slip[2]; /* m */
+    double beta;
+    bool wet;
+};
+struct tie_end tie_end(const struct packing *p, const struct contact *c, const struct tie *t,
+                       const struct found *found);
+
+/* J: what the step has changed of the energy that is stored at the contact, what is stored then, and
+   what was given up by bonds that broke and by liquid that joined */
+struct tie_account {
+    double change, stored, broken;
+};
+struct tie_account tie_account(const struct packing *p, const struct contact *c,
+                               const struct tie *t, const struct tie_end *end);
+
+/* p->bonds = what lasts of the contacts' ties; the bodies have not moved yet. Returns 0 or
+   EX_SOFTWARE. */
+int ties_keep(struct packing *p, const struct contacts *s, struct why *why);
+
+#endif

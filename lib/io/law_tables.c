@@ -1,0 +1,99 @@
+#include "io/law_tables.h"
+
+#include "io/h5.h"
+#include "io/table_read.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static const char law[] = "/nsd/law", bonds[] = "/nsd/bonds";
+
+/* ---- from a document ---- */
+
+/* Both halves of a table say the same. */
+static int check_symmetric(const struct packing *p, const struct column *c, const double *table,
+                           struct why *why)
+{
+    for (int32_t a = 0; a < p->kinds; a++)
+        for (int32_t b = 0; b < a; b++)
+            if (!(table[a * p->kinds + b] == table[b * p->kinds + a]))
+                return why_set(why, EX_DATAERR, "%s/%s: %s and %s have two values", law, c->name,
+                               p->kind_name[b], p->kind_name[a]);
+    return 0;
+}
+
+static int read_laws(struct source *s, struct packing *p, struct why *why)
+{
+    int64_t n = (int64_t)p->kinds * p->kinds;
+    double *table = malloc((size_t)n * sizeof *table + 1);
+    if (!table) return why_set(why, EX_SOFTWARE, "no memory for the laws");
+    if (!packing_alloc_laws(p, why))
+        for (const struct column *c = layout_law; !why->status && c->name; c++) {
+            char path[80];
+            snprintf(path, sizeof path, "%s/%s", law, c->name);
+            if (source_read(s, path, COLUMN_F64, (uint64_t)n, table, why) ||
+                check_symmetric(p, c, table, why))
+                break;
+            column_scatter(c, n, table, p->law, sizeof *p->law);
+        }
+    free(table);
+    return why->status;
+}
+
+static int read_bonds(struct source *s, int64_t k, struct packing *p, struct why *why)
+{
+    int64_t start, count;
+    uint64_t shape[4];
+    if (source_rows(s, "/nsd/bonds/start", COLUMN_I64, k, 1, 1, &start, why) ||
+        source_rows(s, "/nsd/bonds/count", COLUMN_I64, k, 1, 1, &count, why))
+        return why->status;
+    if (source_shape(s, "/nsd/bonds/body", shape) != 2 || start < 0 || count < 0 ||
+        start > INT32_MAX || count > INT32_MAX || (uint64_t)(start + count) > shape[0])
+        return why_set(why, EX_DATAERR, "%s: start or count is out of range", bonds);
+    p->bonds.bond = calloc((size_t)count + 1, sizeof *p->bonds.bond);
+    if (!p->bonds.bond) return why_set(why, EX_SOFTWARE, "no memory for the bonds");
+    p->bonds.n = count, p->bonds.room = count + 1;
+    return table_read_columns(s, bonds, "", layout_bonds, start, count, p->bonds.bond,
+                              sizeof *p->bonds.bond, why);
+}
+
+int law_tables_read(struct source *s, int64_t k, struct packing *p, struct why *why)
+{
+    if (!source_has(s, law)) return 0;
+    if (read_laws(s, p, why)) return why->status;
+    return source_has(s, bonds) ? read_bonds(s, k, p, why) : 0;
+}
+
+/* ---- to a document ---- */
+
+int law_tables_write_static(hid_t file, const struct packing *p, struct why *why)
+{
+    int64_t n = (int64_t)p->kinds * p->kinds;
+    const hsize_t square[2] = { (hsize_t)p->kinds, (hsize_t)p->kinds };
+    if (!p->law) return 0;
+    double *table = malloc((size_t)n * sizeof *table + 1);
+    if (!table) return why_set(why, EX_SOFTWARE, "no memory for the laws");
+    for (const struct column *c = layout_law; !why->status && c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "%s/%s", law, c->name);
+        column_gather(c, n, p->law, sizeof *p->law, table);
+        h5_write(file, path, H5T_NATIVE_DOUBLE, 2, square, table, c->units, why);
+    }
+    free(table);
+    return why->status;
+}
+
+int law_tables_write(struct table_write *s, const struct packing *p, struct why *why)
+{
+    const hsize_t one = 1;
+    if (!p->law) return 0;
+    if (table_write_rows(s, "/nsd/bonds/start", COLUMN_I64, 1, &one, CHUNK_FRAMES, &s->bonds, NULL,
+                         why) ||
+        table_write_rows(s, "/nsd/bonds/count", COLUMN_I64, 1, &one, CHUNK_FRAMES, &p->bonds.n,
+                         NULL, why) ||
+        table_write_columns(s, bonds, "", layout_bonds, p->bonds.n, p->bonds.bond,
+                            sizeof *p->bonds.bond, CHUNK_CONTACTS, why))
+        return why->status;
+    if (s->growing) s->bonds += p->bonds.n;
+    return 0;
+}

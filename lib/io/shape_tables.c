@@ -1,0 +1,205 @@
+#include "io/shape_tables.h"
+
+#include "io/h5.h"
+#include "io/table_read.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define SHAPE "/nsd/shape"
+
+/* What all shapes have, a row each: numbers, and how many of the rows of vertices and corners */
+struct row {
+    int32_t form, vertices, faces, corners;
+    double round, volume, moment[3];
+};
+
+static const struct column layout_rows[] = {
+    { "form", "1", COLUMN_I32, 1, offsetof(struct row, form) },
+    { "vertices", "1", COLUMN_I32, 1, offsetof(struct row, vertices) },
+    { "faces", "1", COLUMN_I32, 1, offsetof(struct row, faces) },
+    { "corners", "1", COLUMN_I32, 1, offsetof(struct row, corners) },
+    { "round", "1", COLUMN_F64, 1, offsetof(struct row, round) },
+    { "volume", "1", COLUMN_F64, 1, offsetof(struct row, volume) },
+    { "moment", "1", COLUMN_F64, 3, offsetof(struct row, moment) },
+    { 0 },
+};
+
+/* ---- from a document ---- */
+
+/* The lists that follow one another in the datasets of all shapes */
+struct listing {
+    vec3 *vertex;
+    double *ball;
+    int32_t *face, *corner; /* face: its number of corners */
+    uint64_t vertices, faces, corners;
+};
+
+static int read_lists(struct source *r, struct listing *l, struct why *why)
+{
+    uint64_t balls, n[4];
+    if (source_shape(r, SHAPE "/vertex", n) != 2 || n[0] > INT32_MAX)
+        return why_set(why, EX_DATAERR, SHAPE "/vertex: not of shape vertices x 3");
+    l->vertices = n[0];
+    l->vertex = calloc((size_t)n[0] + 1, sizeof *l->vertex);
+    if (!l->vertex) return why_set(why, EX_SOFTWARE, "no memory for the shapes");
+    if (source_rows(r, SHAPE "/vertex", COLUMN_F64, 0, (int64_t)n[0], 3, l->vertex, why))
+        return why->status;
+    l->ball = source_read_all(r, SHAPE "/ball", COLUMN_F64, &balls, why);
+    l->face = source_read_all(r, SHAPE "/face", COLUMN_I32, &l->faces, why);
+    l->corner = source_read_all(r, SHAPE "/corner", COLUMN_I32, &l->corners, why);
+    if (!why->status && balls != l->vertices)
+        why_set(why, EX_DATAERR, SHAPE "/ball: not a number for each vertex");
+    return why->status;
+}
+
+static void listing_drop(struct listing *l)
+{
+    free(l->vertex), free(l->ball), free(l->face), free(l->corner);
+}
+
+/* The shape of a row, and the lists from `at` on, which moves on; nothing to free where it fails */
+static int make_shape(struct shape *s, const struct row *row, const struct listing *l,
+                      struct listing *at, int dim, struct why *why)
+{
+    if (row->vertices < 0 || row->faces < 0 || row->corners < 0 ||
+        (uint64_t)row->vertices > l->vertices - at->vertices ||
+        (uint64_t)row->faces > l->faces - at->faces ||
+        (uint64_t)row->corners > l->corners - at->corners)
+        return why_set(why, EX_DATAERR, "more vertices or faces than there are");
+    if (shape_alloc(s, row->vertices, row->faces, row->corners, why)) return why->status;
+    s->form = row->form, s->round = row->round, s->volume = row->volume;
+    memcpy(s->moment, row->moment, sizeof s->moment);
+    for (int32_t i = 0; i < s->vertices; i++, at->vertices++)
+        s->vertex[i] = l->vertex[at->vertices], s->ball[i] = l->ball[at->vertices];
+    for (int32_t f = 0; f < s->faces && !why->status; f++) {
+        int32_t n = l->face[at->faces++];
+        if (n < 3 || n > s->corners - s->first[f])
+            why_set(why, EX_DATAERR, "a face has %d corners", n);
+        else
+            s->first[f + 1] = s->first[f] + n;
+    }
+    for (int32_t i = 0; i < s->corners; i++) s->corner[i] = l->corner[at->corners++];
+    if (why->status || shape_finish(s, dim, why)) shape_free(s);
+    return why->status;
+}
+
+/* Rows 1, 2 ... of the table; row 0 is the ball, which stands in no list. names: a line each */
+static int make_shapes(struct packing *p, const struct row *row, int32_t n, const char *names,
+                       const struct listing *l, struct why *why)
+{
+    struct listing at = { 0 };
+    for (int32_t k = 0; k < n && !why->status; k++) {
+        struct shape s = { 0 };
+        struct why trouble = { 0 };
+        const char *end = strchr(names, '\n');
+        if (!end || end == names)
+            return why_set(why, EX_DATAERR, SHAPE "@names: fewer names than shapes");
+        char *name = strndup(names, (size_t)(end - names));
+        names = end + 1;
+        make_shape(&s, &row[k], l, &at, p->dim, &trouble);
+        if (trouble.status)
+            why_set(why, trouble.status, SHAPE ": \"%s\": %s", name ? name : "", trouble.text);
+        if (trouble.status) free(name);
+        s.name = trouble.status ? NULL : name;
+        bool twice = !why->status && name && shapes_find(&p->shapes, name) >= 0;
+        if (!why->status && shapes_add(&p->shapes, p->dim, &s, why)) return why->status;
+        if (twice) why_set(why, EX_DATAERR, SHAPE "@names: two shapes have one name");
+    }
+    return why->status;
+}
+
+int shape_tables_read(struct source *r, struct packing *p, struct why *why)
+{
+    uint64_t n[4];
+    struct listing l = { 0 };
+    if (!source_has(r, SHAPE)) return 0;
+    if (source_shape(r, SHAPE "/form", n) != 1 || n[0] < 1 || n[0] >= SHAPES_MOST)
+        return why_set(why, EX_DATAERR, SHAPE "/form: not a list of shapes");
+    struct row *row = calloc((size_t)n[0], sizeof *row);
+    char *names = row ? source_text(r, SHAPE, "names", why) : NULL;
+    if (!row || (!names && !why->status)) why_set(why, EX_SOFTWARE, "no memory for the shapes");
+    if (!why->status &&
+        !table_read_columns(r, SHAPE, "", layout_rows, 0, (int64_t)n[0], row, sizeof *row, why) &&
+        !read_lists(r, &l, why))
+        make_shapes(p, row, (int32_t)n[0], names, &l, why);
+    listing_drop(&l);
+    free(row), free(names);
+    return why->status ? why->status : packing_alloc_shapes(p, why);
+}
+
+/* ---- to a document ---- */
+
+static int write_rows(hid_t file, const struct shapes *t, struct why *why)
+{
+    const hsize_t n = (hsize_t)t->n - 1, wide[2] = { n, 3 };
+    struct row *row = calloc((size_t)n + 1, sizeof *row);
+    double *out = calloc((size_t)n + 1, sizeof row->moment);
+    if (!row || !out) why_set(why, EX_SOFTWARE, "no memory for the shapes");
+    for (int32_t k = 1; k < t->n && row && out; k++) {
+        const struct shape *s = &t->s[k];
+        row[k - 1] = (struct row){ s->form,
+                                   s->vertices,
+                                   s->faces,
+                                   s->corners,
+                                   s->round,
+                                   s->volume,
+                                   { s->moment[0], s->moment[1], s->moment[2] } };
+    }
+    for (const struct column *c = layout_rows; c->name && !why->status; c++) {
+        char path[80];
+        snprintf(path, sizeof path, SHAPE "/%s", c->name);
+        column_gather(c, (int64_t)n, row, sizeof *row, out);
+        h5_write(file, path, column_native(c->type), c->width > 1 ? 2 : 1, wide, out, c->units,
+                 why);
+    }
+    free(row), free(out);
+    return why->status;
+}
+
+static int write_lists(hid_t file, const struct shapes *t, struct why *why)
+{
+    struct listing l = { 0 };
+    for (int32_t k = 1; k < t->n; k++) {
+        const struct shape *s = &t->s[k];
+        l.vertices += (uint64_t)s->vertices, l.faces += (uint64_t)s->faces;
+        l.corners += (uint64_t)s->corners;
+    }
+    const hsize_t vertices[2] = { l.vertices, 3 }, faces = l.faces, corners = l.corners;
+    l.vertex = calloc(l.vertices + 1, sizeof *l.vertex);
+    l.ball = calloc(l.vertices + 1, sizeof *l.ball);
+    l.face = calloc(l.faces + 1, sizeof *l.face);
+    l.corner = calloc(l.corners + 1, sizeof *l.corner);
+    uint64_t v = 0, f = 0, c = 0;
+    if (!l.vertex || !l.ball || !l.face || !l.corner)
+        why_set(why, EX_SOFTWARE, "no memory for the shapes");
+    for (int32_t k = 1; k < t->n && !why->status; k++) {
+        const struct shape *s = &t->s[k];
+        for (int32_t i = 0; i < s->vertices; i++, v++)
+            l.vertex[v] = s->vertex[i], l.ball[v] = s->ball[i];
+        for (int32_t i = 0; i < s->faces; i++) l.face[f++] = s->first[i + 1] - s->first[i];
+        for (int32_t i = 0; i < s->corners; i++) l.corner[c++] = s->corner[i];
+    }
+    bool bad =
+        why->status ||
+        h5_write(file, SHAPE "/vertex", H5T_NATIVE_DOUBLE, 2, vertices, l.vertex, "1", why) ||
+        h5_write(file, SHAPE "/ball", H5T_NATIVE_DOUBLE, 1, vertices, l.ball, "1", why) ||
+        h5_write(file, SHAPE "/face", H5T_NATIVE_INT32, 1, &faces, l.face, "1", why) ||
+        h5_write(file, SHAPE "/corner", H5T_NATIVE_INT32, 1, &corners, l.corner, "1", why);
+    listing_drop(&l);
+    return bad ? why->status : 0;
+}
+
+int shape_tables_write(hid_t file, const struct packing *p, struct why *why)
+{
+    size_t length = 1;
+    if (p->shapes.n < 2) return 0;
+    if (write_rows(file, &p->shapes, why) || write_lists(file, &p->shapes, why)) return why->status;
+    for (int32_t k = 1; k < p->shapes.n; k++) length += strlen(p->shapes.s[k].name) + 1;
+    char *names = calloc(length, 1), *at = names;
+    if (!names) return why_set(why, EX_SOFTWARE, "no memory for the shapes");
+    for (int32_t k = 1; k < p->shapes.n; k++) at += sprintf(at, "%s\n", p->shapes.s[k].name);
+    int e = h5_attr_text(file, SHAPE, "names", names, why);
+    free(names);
+    return e;
+}

@@ -1,0 +1,56 @@
+/*
+ * law/rolling.h: one contact with rolling and pivoting friction [Acary & Bourrier 2021]: find
+ *
+ *     u = W x + b,   x = (r_n, r_t, m_n, m_t),   u = (u_n, u_t, omega_n, omega_t)
+ *
+ *     |r_t| <= mu r_n,  |m_n| <= mu_p r_n,  |m_t| <= mu_r r_n,
+ *
+ * u_n on Signorini's condition, and each of the other three parts of u against its part of x, where
+ * that is at its limit, or 0. The five local methods are those of law/local_NAME.h with more parts:
+ * u^ = u + (mu |u_t| + mu_p |omega_n| + mu_r |omega_t|) n, and the cone K of all three limits.
+ *
+ * omega is the angular velocity of b relative to a, turned a quarter in the tangent plane,
+ * omega_t = (-omega_2, omega_1), and so is the moment. Between balls W is then four numbers:
+ *
+ *     u_n = w_n r_n + b_n              u_t = w_t r_t + k m_t + b_t
+ *     omega_n = w_p m_n + b_p          omega_t = k r_t + w_r m_t + b_r
+ *
+ * Moments are divided, and angular velocities multiplied, by a length that makes w_r about w_t, so
+ * that all parts of x are impulses (N s), all of u velocities (m/s), and one step rho suits them.
+ */
+#ifndef NSD_ROLLING_H
+#define NSD_ROLLING_H
+
+#include "law/method.h"
+
+enum {
+    ROLLING = 6,
+    ROLLING_PARTS = 3
+}; /* numbers of x: n | t1 t2 | p | r1 r2; parts with a limit */
+
+struct rolling {
+    double wn, wt, wp, wr, k; /* kg^-1 */
+    double mu[ROLLING_PARTS]; /* mu, mu_p, mu_r, the latter two over the length */
+    double rho;               /* kg */
+    double b[ROLLING];        /* m/s */
+    double x[ROLLING];        /* N s; in: of the last sweep, out: of this one */
+    int steps;                /* out: of Newton */
+    bool safeguarded, gave_up;
+};
+
+/* Solves the contact by the local method. */
+void rolling_solve(enum method_id method, struct rolling *q, const struct local_opt *opt);
+/* u = W x + b */
+void rolling_velocity(const struct rolling *q, const double x[ROLLING], double u[ROLLING]);
+/* p = the nearest point of K */
+void rolling_project(const struct rolling *q, const double tau[ROLLING], double p[ROLLING]);
+/* |x - proj(x - rho u^)|^2 */
+double rolling_natural2(const struct rolling *q, double rho, const double x[ROLLING],
+                        const double u[ROLLING]);
+/* u.x + (mu |u_t| + mu_p |omega_n| + mu_r |omega_t|) r_n */
+double rolling_bipotential(const struct rolling *q, const double x[ROLLING],
+                           const double u[ROLLING]);
+/* kg^-1: of W, the largest eigenvalue */
+double rolling_lambda(const struct rolling *q);
+
+#endif

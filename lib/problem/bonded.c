@@ -1,0 +1,90 @@
+/* problem/bonded.c: M + H K H^T, condensed [problem/bonded.h]. */
+#include "problem/bonded.h"
+
+#include "problem/assembly.h"
+#include "problem/condense.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define GB 1e9 /* bytes */
+
+static int check_memory(const struct problem *p, struct why *why)
+{
+    double entries = (double)p->n * (double)p->n * p->d * p->d, need = 3 * 16 * entries;
+    double have = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+    if (need <= have) return 0;
+    return why_set(why, EX_SOFTWARE,
+                   "the bonds couple %lld contacts: needs %.3g GB, the machine has %.3g; "
+                   "--global auto and nlgs need no W",
+                   (long long)p->n, need / GB, have / GB);
+}
+
+/* K and a of component j (0 to d-1) of contact c */
+static double stiffness(const struct assembly *A, int64_t c, int j)
+{
+    int64_t i = A->slot[c];
+    return A->p->beyond[i / BUNDLE].K[j > 0][slot_lane(i)];
+}
+static double prestress(const struct assembly *A, int64_t c, int j)
+{
+    int64_t i = A->slot[c];
+    return A->p->beyond[i / BUNDLE].a[j][slot_lane(i)];
+}
+
+/* M += H K H^T, f -= H (a + K w); false when memory is short. */
+static bool add_bonds(const struct assembly *A, struct global *P)
+{
+    struct lists of;
+    int d = A->p->d;
+    bool good = lists_init(&of, P->H.n, P->H.count, P->H.col);
+    if (!good) return false;
+    for (int64_t col = 0; good && col < P->H.n; col++) {
+        int64_t c = col / d, from = of.first[col], to = of.first[col + 1];
+        double K = stiffness(A, c, (int)(col % d)), a = prestress(A, c, (int)(col % d));
+        for (int64_t k = from; good && k < to && (K > 0 || a != 0); k++) {
+            int64_t e = of.item[k];
+            P->f[P->H.row[e]] -= P->H.x[e] * (a + K * A->w[col]);
+            for (int64_t l = from; good && l < to; l++) {
+                int64_t g = of.item[l];
+                good = sparse_add(&P->M, P->H.row[e], P->H.row[g], K * P->H.x[e] * P->H.x[g]);
+            }
+        }
+    }
+    lists_free(&of);
+    return good;
+}
+
+static int fill(const struct assembly *A, struct delassus *W, struct why *why)
+{
+    struct stored M = { 0 }, H = { 0 };
+    struct global P = { 0 };
+    struct motion U = { 0 };
+    struct sparse w = { 0 };
+    int64_t n = A->p->n, d = A->p->d;
+    double *q = malloc((size_t)(n * d + 1) * sizeof *q), *mu = malloc((size_t)(n + 1) * sizeof *mu);
+    int e = q && mu ? 0 : why_set(why, EX_SOFTWARE, "no memory for the bonds");
+    if (!e) e = assembly_MH(A, &M, &H, &P.f, why);
+    P.nv = M.n;
+    if (!e) e = sparse_unpack(&P.M, &M, "M", why) || sparse_unpack(&P.H, &H, "H", why);
+    if (!e && !add_bonds(A, &P)) e = why_set(why, EX_SOFTWARE, "no memory for the bonds");
+    if (!e) memcpy(q, A->w, (size_t)(n * d) * sizeof *q);
+    if (!e) e = condense(&P, &U, &w, q, why);
+    for (int64_t c = 0; !e && c < n; c++)
+        mu[c] = slot_bundle(A->p, A->slot[c])->mu[slot_lane(A->slot[c])];
+    if (!e) e = delassus_init(W, (int)d, n, w.count, w.row, w.col, w.x, q, mu, why);
+    free(q), free(mu);
+    stored_free(&M), stored_free(&H), global_free(&P), motion_free(&U), sparse_free(&w);
+    return e ? why->status : 0;
+}
+
+int bonded_blocks(const struct problem *bodies, struct delassus *W, struct why *why)
+{
+    struct assembly A;
+    if (check_memory(bodies, why)) return why->status;
+    int e = assembly_init(&A, bodies, why);
+    if (!e) e = fill(&A, W, why);
+    assembly_free(&A);
+    return e;
+}

@@ -1,0 +1,20 @@
+/*
+ * problem/bonded.h: the Delassus operator of contacts that are bonded, for solvers that want a W.
+ *
+ * The bonds' p = - a - K u~ of all contacts, u~ = H^T v + w, in the motion M v = f + H (r* + p):
+ *
+ *     (M + H K H^T) v = f - H (a + K w) + H r*
+ *
+ * which problem/condense.h brings to u~ = W^ r* + q^. W^ couples all contacts of bodies that hang
+ * together by bonds: it has the square of their number of blocks.
+ */
+#ifndef NSD_BONDED_H
+#define NSD_BONDED_H
+
+#include "problem/problem.h"
+
+/* W^, q^, mu, r = 0, of a packing's problem with its bodies. Returns 0, EX_SOFTWARE or EX_DATAERR, with
+   nothing to free. */
+int bonded_blocks(const struct problem *bodies, struct delassus *W, struct why *why);
+
+#endif

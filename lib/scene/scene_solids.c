@@ -1,0 +1,311 @@
+/* scene/scene_solids.c: "shapes" of grains from their JSON, and the shape of a group. */
+#include "bodies/solid.h"
+#include "scene/hull.h"
+#include "scene/scene_read.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    SIDES_MOST = 256,     /* of a regular polygon */
+    POINTS_MOST = 1 << 20 /* of a hull */
+};
+
+/* A box by its faces, corners from -a/2 to a/2 */
+static int make_box(struct shape *s, int dim, vec3 sides, struct why *why)
+{
+    static const int32_t face[6][4] = { { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 },
+                                        { 2, 6, 7, 3 }, { 0, 2, 3, 1 }, { 4, 5, 7, 6 } };
+    static const int32_t loop[4] = { 0, 1, 3, 2 };
+    if (shape_alloc(s, dim == 2 ? 4 : 8, dim == 2 ? 1 : 6, dim == 2 ? 4 : 24, why))
+        return why->status;
+    for (int32_t i = 0; i < s->vertices; i++)
+        s->vertex[i] = v3((i & 1 ? 0.5 : -0.5) * sides.x, (i & 2 ? 0.5 : -0.5) * sides.y,
+                          dim == 2 ? 0 : (i & 4 ? 0.5 : -0.5) * sides.z);
+    for (int32_t i = 0; i < s->corners; i++) s->corner[i] = dim == 2 ? loop[i] : face[i / 4][i % 4];
+    for (int32_t f = 0; f <= s->faces; f++) s->first[f] = 4 * f;
+    return 0;
+}
+
+static int read_box(jnode o, struct shape *s, int dim)
+{
+    jnode box = json_node_key(&o, "box");
+    vec3 a = v3(1, 1, 1);
+    if (json_node_vector(box, dim, &a)) return 1;
+    if (!(a.x > 0 && a.y > 0 && (dim == 2 || a.z > 0)))
+        return json_node_fault(box, "its sides must be positive");
+    return make_box(s, dim, a, o.in->why);
+}
+
+static int read_capsule(jnode o, struct shape *s)
+{
+    double length = 0;
+    jnode c = json_node_key(&o, "capsule");
+    if (json_node_only(c, "length radius") || json_node_need(&c, "length radius") ||
+        json_node_number(json_node_key(&c, "length"), J_POSITIVE, &length) ||
+        json_node_number(json_node_key(&c, "radius"), J_POSITIVE, &s->round))
+        return 1;
+    double round = s->round;
+    if (shape_alloc(s, 2, 0, 0, o.in->why)) return 1;
+    s->form = SHAPE_CAPSULE, s->round = round;
+    s->vertex[0] = v3(-length / 2, 0, 0), s->vertex[1] = v3(length / 2, 0, 0);
+    return 0;
+}
+
+/* A ball of a clump: [x, y, z, r], in the plane [x, y, r] */
+static int read_ball(jnode n, int dim, vec3 *x, double *r)
+{
+    size_t length;
+    double of[4] = { 0 };
+    if (json_node_array(n, &length)) return 1;
+    if (length != (size_t)dim + 1)
+        return json_node_fault(n, "wants %d numbers, its centre and its radius", dim + 1);
+    for (size_t k = 0; k < length; k++) {
+        jnode number = json_node_item(&n, k);
+        if (json_node_number(number, k + 1 < length ? J_ANY : J_POSITIVE, &of[k])) return 1;
+    }
+    *x = v3(of[0], of[1], dim == 2 ? 0 : of[2]), *r = of[dim];
+    return 0;
+}
+
+static int read_balls(jnode o, struct shape *s, int dim)
+{
+    size_t n;
+    jnode balls = json_node_key(&o, "balls");
+    if (json_node_array(balls, &n)) return 1;
+    if (n < 1 || n > SHAPE_VERTICES_MOST)
+        return json_node_fault(balls, "wants 1 to %d balls", SHAPE_VERTICES_MOST);
+    if (shape_alloc(s, (int32_t)n, 0, 0, o.in->why)) return 1;
+    s->form = SHAPE_CLUMP;
+    for (size_t i = 0; i < n; i++)
+        if (read_ball(json_node_item(&balls, i), dim, &s->vertex[i], &s->ball[i])) return 1;
+    return 0;
+}
+
+/* A list of points; to be freed. NULL: a fault */
+static vec3 *read_points(jnode list, int dim, size_t least, size_t most, size_t *n)
+{
+    if (json_node_array(list, n)) return NULL;
+    if (*n < least || *n > most) {
+        json_node_fault(list, "wants %zu to %zu points", least, most);
+        return NULL;
+    }
+    vec3 *x = scene_alloc(list, *n, sizeof *x);
+    for (size_t i = 0; x && i < *n; i++)
+        if (json_node_vector(json_node_item(&list, i), dim, &x[i])) {
+            free(x);
+            return NULL;
+        }
+    return x;
+}
+
+static int read_hull(jnode o, struct shape *s, int dim)
+{
+    size_t n;
+    jnode points = json_node_key(&o, "points");
+    vec3 *x = read_points(points, dim, (size_t)dim + 1, POINTS_MOST, &n);
+    struct why why = { 0 };
+    if (!x) return 1;
+    hull_of_points(s, dim, (int64_t)n, x, &why);
+    free(x);
+    if (why.status == EX_DATAERR) return json_node_fault(points, "%s", why.text);
+    return why.status ? why_set(o.in->why, why.status, "%s", why.text) : 0;
+}
+
+static int read_polygon(jnode o, struct shape *s)
+{
+    size_t n;
+    vec3 *x = read_points(json_node_key(&o, "polygon"), 2, 3, SHAPE_VERTICES_MOST, &n);
+    int bad = !x || shape_alloc(s, (int32_t)n, 1, (int32_t)n, o.in->why);
+    for (size_t i = 0; !bad && i < n; i++) s->vertex[i] = x[i], s->corner[i] = (int32_t)i;
+    if (!bad) s->first[1] = (int32_t)n;
+    free(x);
+    return bad;
+}
+
+/* The corners of a face */
+static int read_face(jnode face, struct shape *s, size_t room)
+{
+    size_t n;
+    if (json_node_array(face, &n)) return 1;
+    if (n < 3) return json_node_fault(face, "a face has three corners or more");
+    if ((size_t)s->corners + n > room) return json_node_fault(face, "too many corners");
+    for (size_t k = 0; k < n; k++) {
+        int64_t v = 0;
+        if (json_node_integer(json_node_item(&face, k), 0, s->vertices - 1, &v)) return 1;
+        s->corner[s->corners++] = (int32_t)v;
+    }
+    s->first[++s->faces] = s->corners;
+    return 0;
+}
+
+/* A polyhedron as it is given: nothing is mended. */
+static int read_polyhedron(jnode o, struct shape *s)
+{
+    size_t n, faces;
+    jnode list = json_node_key(&o, "faces");
+    if (json_node_need(&o, "faces") || json_node_array(list, &faces)) return 1;
+    vec3 *x = read_points(json_node_key(&o, "vertices"), 3, 4, SHAPE_VERTICES_MOST, &n);
+    if (!x) return 1;
+    size_t room = 6 * n; // a closed surface has no more
+    int bad = shape_alloc(s, (int32_t)n, 2 * (int32_t)n, (int32_t)room, o.in->why);
+    for (size_t i = 0; !bad && i < n; i++) s->vertex[i] = x[i];
+    free(x);
+    s->faces = s->corners = 0;
+    if (!bad && (faces < 4 || faces > 2 * n))
+        return json_node_fault(list, "%zu faces close no body of %zu vertices", faces, n);
+    for (size_t f = 0; !bad && f < faces; f++) bad = read_face(json_node_item(&list, f), s, room);
+    return bad;
+}
+
+/* A regular polygon in the plane; in space a prism of them along z */
+static int read_regular(jnode o, struct shape *s, int dim)
+{
+    int64_t sides = 0;
+    double radius = 0, height = 0;
+    jnode r = json_node_key(&o, "regular");
+    const char *keys = dim == 2 ? "sides radius" : "sides radius height";
+    if (json_node_only(r, keys) || json_node_need(&r, keys) ||
+        json_node_integer(json_node_key(&r, "sides"), 3, SIDES_MOST, &sides) ||
+        json_node_number(json_node_key(&r, "radius"), J_POSITIVE, &radius) ||
+        json_node_number(json_node_key(&r, "height"), J_POSITIVE, &height))
+        return 1;
+    int32_t n = (int32_t)sides, levels = dim == 2 ? 1 : 2;
+    if (shape_alloc(s, n * levels, dim == 2 ? 1 : n + 2, dim == 2 ? n : 6 * n, o.in->why)) return 1;
+    for (int32_t i = 0; i < n * levels; i++) {
+        vec3 x = quat_turn(quat_rotation(v3(0, 0, 2 * M_PI * (i % n) / n)), v3(radius, 0, 0));
+        s->vertex[i] = v3(x.x, x.y, dim == 2 ? 0 : i < n ? -height / 2 : height / 2);
+    }
+    for (int32_t i = 0; i < n; i++) {
+        s->corner[i] = dim == 2 ? i : n - 1 - i; // of the lower face, seen from below
+        if (dim == 2) continue;
+        const int32_t side[4] = { i, (i + 1) % n, n + (i + 1) % n, n + i };
+        s->corner[n + i] = n + i;
+        for (int k = 0; k < 4; k++) s->corner[2 * n + 4 * i + k] = side[k];
+    }
+    for (int32_t f = 1; f <= s->faces; f++) s->first[f] = f <= 2 ? f * n : 2 * n + 4 * (f - 2);
+    return 0;
+}
+
+static int read_form(jnode o, struct shape *s, int dim)
+{
+    static const char plane[] = "box capsule balls points regular polygon",
+                      space[] = "box capsule balls points regular vertices";
+    int which = json_node_choice(o, dim == 2 ? plane : space);
+    if (which < 0) return 1;
+    bool rounded = which != 1 && which != 2;
+    char keys[120];
+    snprintf(keys, sizeof keys, "%s%s%s", dim == 2 ? plane : space, dim == 3 ? " faces" : "",
+             rounded ? " round" : "");
+    s->form = SHAPE_HULL;
+    if (json_node_only(o, keys)) return 1;
+    if (which != 5 && json_node_key(&o, "faces").json)
+        return json_node_fault(json_node_key(&o, "faces"), "goes with vertices");
+    return which == 0   ? read_box(o, s, dim)
+           : which == 1 ? read_capsule(o, s)
+           : which == 2 ? read_balls(o, s, dim)
+           : which == 3 ? read_hull(o, s, dim)
+           : which == 4 ? read_regular(o, s, dim)
+           : dim == 2   ? read_polygon(o, s)
+                        : read_polyhedron(o, s);
+}
+
+/* What was read, in its own axes and unit; a fault of the shape is reported at its place. */
+static int settle(jnode o, struct shape *s, int dim, struct scene_solid *solid)
+{
+    struct why why = { 0 };
+    solid_settle(s, dim, &solid->reach, &solid->centre, &solid->turn, &why);
+    if (!why.status) shape_finish(s, dim, &why);
+    if (why.status == EX_DATAERR) return json_node_fault(o, "%s", why.text);
+    return why.status ? why_set(o.in->why, why.status, "%s", why.text) : 0;
+}
+
+static int read_shape(jnode o, struct scene *s, const char *name)
+{
+    struct shape shape = { 0 };
+    struct scene_solid solid = { 0 };
+    int bad = read_form(o, &shape, s->dim);
+    bool hull = shape.form == SHAPE_HULL;
+    bad = bad || (hull && json_node_number(json_node_key(&o, "round"), J_POSITIVE, &shape.round));
+    for (int32_t i = 0; !bad && shape.form != SHAPE_CLUMP && i < shape.vertices; i++)
+        shape.ball[i] = shape.round;
+    bad = bad || settle(o, &shape, s->dim, &solid);
+    if (!bad && !(shape.name = strdup(name)))
+        bad = why_set(o.in->why, EX_SOFTWARE, "no memory for a shape");
+    if (bad) return shape_free(&shape), 1;
+    if (shapes_add(&s->shapes, s->dim, &shape, o.in->why)) return 1;
+    s->solid[s->shapes.n - 1] = solid;
+    return 0;
+}
+
+int scene_read_shapes(jnode o, struct scene *s)
+{
+    const char *name;
+    json_t *value;
+    size_t count = json_object_size(o.json);
+    if (!o.json) return 0;
+    if (!json_is_object(o.json)) return json_node_fault(o, "wants an object {...}");
+    if (count >= SHAPES_MOST) return json_node_fault(o, "more than %d shapes", SHAPES_MOST - 1);
+    if (!(s->solid = scene_alloc(o, count + 1, sizeof *s->solid))) return 1;
+    s->solid[0] = (struct scene_solid){ 1, { 0, 0, 0 }, { 1, 0, 0, 0 } };
+    json_object_foreach(o.json, name, value)
+    {
+        jnode n = json_node_key(&o, name);
+        if (!strcmp(name, "comment")) continue;
+        bool printable = *name; // documents keep names line by line
+        for (const char *c = name; *c; c++) printable &= (unsigned char)*c >= ' ';
+        if (!printable)
+            return json_node_fault(n, "a shape wants a name without control characters");
+        if (!strcmp(name, "ball")) return json_node_fault(n, "a ball is a ball");
+        if (read_shape(n, s, name)) return 1;
+    }
+    return 0;
+}
+
+/* ---- the shape of a group ---- */
+
+static int read_orientation(jnode n, int dim, struct scene_form *form)
+{
+    vec3 turn = v3(0, 0, 0);
+    if (json_is_string(n.json)) {
+        static const char *const words[] = { "random", NULL };
+        int word = 0;
+        if (json_node_word(n, words, &word)) return 1;
+        form->tumbled = true;
+        return 0;
+    }
+    if (scene_read_spin(n, dim, &turn)) return 1;
+    form->turned = quat_rotation(turn);
+    return 0;
+}
+
+int scene_read_form(jnode o, const struct scene *s, struct scene_form *form)
+{
+    const char *name = NULL;
+    jnode n = json_node_key(&o, "shape");
+    form->turned = (quat){ 1, 0, 0, 0 }, form->fill = 1;
+    if (json_node_text(n, &name)) return 1;
+    if (!name) {
+        jnode size = json_node_key(&o, "size"), turn = json_node_key(&o, "orientation");
+        if (size.json) return json_node_fault(size, "is that of a shape; a ball has a radius");
+        return turn.json ? json_node_fault(turn, "is that of a shape") : 0;
+    }
+    form->shape = shapes_find(&s->shapes, name);
+    if (form->shape < 1)
+        return json_node_fault(n, "no shape \"%s\"; name it under \"shapes\"", name);
+    form->fill = s->shapes.s[form->shape].volume / s->shapes.s[0].volume;
+    return read_orientation(json_node_key(&o, "orientation"), s->dim, form);
+}
+
+int scene_read_sizes(jnode o, const struct scene *s, const struct scene_form *form,
+                     struct scene_size *z)
+{
+    jnode radius = json_node_key(&o, "radius"), size = json_node_key(&o, "size");
+    if (radius.json && size.json) return json_node_fault(size, "a radius is given too");
+    if (!form->shape && !radius.json) return json_node_need(&o, "radius");
+    if (radius.json) return scene_read_size(radius, s->dim, z);
+    z->min = z->max = 1;
+    if (scene_read_size(size, s->dim, z)) return 1;
+    scene_size_scale(z, s->solid[form->shape].reach);
+    return 0;
+}

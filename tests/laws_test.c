@@ -1,0 +1,127 @@
+/* The laws beyond friction and restitution by themselves: forces are the slopes of energies, the
+   damage of a bond follows its equation. */
+#include "bodies/tie.h"
+#include "law/rolling.h"
+#include "tap.h"
+
+#include <math.h>
+
+/* The largest difference between a bridge's force and the slope of its energy, relative */
+static double slope_error(const struct law *l, double R)
+{
+    double worst = 0, most = bridge_force(l, R, 0), end = bridge_reach(l), h = 1e-6 * end;
+    for (int k = 1; k < 1000; k++) {
+        double g = end * k / 1000;
+        double slope = (bridge_energy(l, R, g + h) - bridge_energy(l, R, g - h)) / (2 * h);
+        worst = fmax(worst, fabs(slope - bridge_force(l, R, g)) / most);
+    }
+    return worst;
+}
+
+static void test_bridge(void)
+{
+    const struct law l = { .volume = 2e-10, .tension = 0.072, .wetting = 0.4 };
+    double R = bridge_radius(1e-3, 3e-3), end = bridge_reach(&l);
+    ok(fabs(R - 1.5e-3) < 1e-18, "R of two balls is their harmonic mean");
+    ok(fabs(bridge_radius(1e9, 3e-3) / bridge_radius(0, 3e-3) - 1) < 1e-6,
+       "a boundary is a very large ball");
+    ok(slope_error(&l, R) < 1e-6, "a bridge's force is the slope of its energy");
+    ok(bridge_energy(&l, R, end) == 0 && bridge_force(&l, R, end) == 0, "it ruptures");
+    double touch = 2 * M_PI * R * l.tension * cos(l.wetting);
+    ok(fabs(bridge_force(&l, R, 0) / touch - 1) < 1e-14 && bridge_force(&l, R, -1e-6) == touch,
+       "where bodies touch it pulls with 2 pi R sigma cos(theta)");
+    // Rabinovich, Esayanur & Moudgil 2005, the other way to write it: 1/(1 + g/(2 d))
+    double g = 0.3 * end, d = g / 2 * (-1 + sqrt(1 + 2 * l.volume / (M_PI * R * g * g)));
+    ok(fabs(bridge_force(&l, R, g) / (touch / (1 + g / (2 * d))) - 1) < 1e-12,
+       "apart with the closed form");
+}
+
+/* ---- rolling friction ---- */
+
+static double uniform(uint64_t *seed)
+{
+    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*seed >> 11) / (double)(1ull << 53);
+}
+
+/* A contact as between balls of any size: |k| is less than the mean of w_t and w_r = w_t */
+static struct rolling random_contact(uint64_t *seed, bool plane)
+{
+    struct rolling q = { .wn = 0.1 + uniform(seed) };
+    q.wt = q.wn * (2 + 2 * uniform(seed)), q.wr = q.wt, q.wp = q.wt;
+    q.k = q.wt * (1.8 * uniform(seed) - 0.9) * (uniform(seed) < 0.8);
+    for (int i = 0; i < ROLLING_PARTS; i++) q.mu[i] = uniform(seed) < 0.1 ? 0 : uniform(seed);
+    for (int i = 0; i < ROLLING; i++) q.b[i] = 2 * uniform(seed) - 1.4 + 0.4 * (i > 0);
+    for (int i = 2; plane && i < ROLLING; i++) q.b[i] = i == 4 ? q.b[i] : 0;
+    q.rho = 1 / rolling_lambda(&q);
+    return q;
+}
+
+static double far(const struct rolling *a, const struct rolling *b)
+{
+    double sum = 0;
+    for (int i = 0; i < ROLLING; i++) sum += (a->x[i] - b->x[i]) * (a->x[i] - b->x[i]);
+    return sqrt(sum);
+}
+
+static void test_rolling(bool plane)
+{
+    const struct local_opt opt = { .newton_eps = 1e-13, .newton_max = 100 };
+    double law = 0, newton = 0, uzawa = 0;
+    int safeguarded = 0, n = 4000;
+    uint64_t seed = 7;
+    for (int k = 0; k < n; k++) {
+        struct rolling q = random_contact(&seed, plane), exact = q;
+        double u[ROLLING];
+        rolling_solve(METHOD_exact, &exact, &opt);
+        rolling_velocity(&q, exact.x, u);
+        law = fmax(law, sqrt(rolling_natural2(&q, q.rho, exact.x, u)));
+        for (enum method_id m = METHOD_ebp; m <= METHOD_eal; m++) {
+            struct rolling one = q;
+            rolling_solve(m, &one, &opt);
+            newton = fmax(newton, far(&one, &exact)), safeguarded += one.safeguarded;
+        }
+        for (enum method_id m = METHOD_sbp; m <= METHOD_sal; m++) {
+            struct rolling one = q;
+            for (int i = 0; i < 3000; i++) rolling_solve(m, &one, &opt);
+            uzawa = fmax(uzawa, far(&one, &exact));
+        }
+    }
+    const char *where = plane ? "the plane" : "space";
+    ok(law < 1e-13, "%s: exact is on the law of rolling friction (%.2g)", where, law);
+    ok(newton < 1e-10, "%s: ebp and eal find the same (%.2g)", where, newton);
+    ok(safeguarded < n / 20, "%s: and seldom need the safeguard (%d of %d)", where, safeguarded,
+       2 * n);
+    ok(uzawa < 1e-6, "%s: so do sbp and sal in the end (%.2g)", where, uzawa);
+}
+
+/* The projection on the cone of three limits, beside a search for its r_n */
+static void test_projection(void)
+{
+    uint64_t seed = 3;
+    double worst = 0;
+    for (int k = 0; k < 2000; k++) {
+        struct rolling q = random_contact(&seed, false);
+        double p[ROLLING], low = 0, high = 10;
+        for (int i = 0; i < ROLLING; i++) q.x[i] = 4 * uniform(&seed) - 2;
+        rolling_project(&q, q.x, p);
+        const double t[] = { hypot(q.x[1], q.x[2]), fabs(q.x[3]), hypot(q.x[4], q.x[5]) };
+        for (int i = 0; i < 100; i++) {
+            double r = 0.5 * (low + high), slope = r - q.x[0];
+            for (int j = 0; j < ROLLING_PARTS; j++) slope -= q.mu[j] * fmax(0, t[j] - q.mu[j] * r);
+            *(slope < 0 ? &low : &high) = r;
+        }
+        worst = fmax(worst, fabs(p[0] - low));
+    }
+    ok(worst < 1e-12, "the projection on the cone of all limits is the nearest point (%.2g)",
+       worst);
+}
+
+int main(void)
+{
+    test_bridge();
+    test_projection();
+    test_rolling(false);
+    test_rolling(true);
+    return tap_done();
+}

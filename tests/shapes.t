@@ -1,0 +1,225 @@
+#!/usr/bin/env bash
+# Grains of other shapes than balls, through the tools: what is known of bricks, towers, capsules and clumps;
+# threads, the pipeline, documents; and shapes that are none.
+. tests/tap.sh
+
+# scene SHAPES BODIES [REST]: on a floor, in space
+scene()
+{
+    printf '{"dt": 1e-3, "mu": 0.5, "shapes": {%s}, "bodies": [%s], "walls": [{"point": [0, 0, 0], "normal": [0, 0, 1]}] %s}' \
+        "$1" "$2" "${3-}"
+}
+brick='"brick": {"box": [0.2, 0.2, 0.1]}' cube='"cube": {"box": [0.1, 0.1, 0.1]}'
+last() { nsd-info --last "$1" | jq "$2"; }
+below() { jq -n "($1) < ($2)"; }
+
+# ---- what is known ----
+
+# On a slope of tan = t gravity leans; a brick of width 0.2 and height 0.1 tips only at t = 2.
+lean() # t mu shape: the speed after half a second, m/s, and the spin, rad/s
+{
+    scene "$brick, \"tall\": {\"box\": [0.1, 0.2, 0.2]}" "{\"x\": [0, 0, $4], \"shape\": \"$3\"}" ", \"gravity\": [$(jq -n "9.81 * $1"), 0, -9.81]" |
+        jq ".mu = $2" | nsd-gen - | nsd-step -n 500 --every 500 --eps 1e-8 --warm 2>/dev/null | nsd-info --last -p | jq -c '[.v[0], .w[1]]'
+}
+is 'a brick on a slope less steep than its friction stays' "$(lean 0.49 0.5 brick 0.05 | jq 'map(fabs < 1e-3) | all')" true
+is 'on a steeper one it slides with g (tan - mu)' \
+    "$(lean 0.6 0.5 brick 0.05 | jq '(.[0] / (9.81 * 0.1 * 0.5) - 1 | fabs) < 0.01 and (.[1] | fabs) < 1e-3')" true
+is 'twice as high as wide, it stands at tan = 0.49' "$(lean 0.49 0.9 tall 0.1 | jq 'map(fabs < 1e-3) | all')" true
+is 'and tips at 0.51, width over height' "$(lean 0.51 0.9 tall 0.1 | jq '.[1] > 0.02')" true
+
+# A cube that falls on a corner comes to rest on a face, and its reactions carry it.
+scene "$cube" '{"x": [0, 0, 0.12], "shape": "cube", "orientation": [0.5, 0.3, 0.1]}' |
+    nsd-gen - | nsd-step -n 1500 --every 500 --contacts --eps 1e-8 --warm 2>/dev/null >"$tmp/cube.h5"
+is 'a cube that is dropped rests on four corners' "$(last "$tmp/cube.h5" .contacts)" 4
+is 'that carry its weight' \
+    "$(nsd-info --last -c "$tmp/cube.h5" | jq -s '(map(.r[0]) | add) / (2500e-3 * 9.81 * 1e-3) - 1 | fabs < 1e-6')" true
+is 'flat, and on the floor' "$(nsd-info --last -p "$tmp/cube.h5" | jq '(.x[2] - 0.05 | fabs) < 1e-5')" true
+is 'at rest' "$(last "$tmp/cube.h5" '.kinetic_energy < 1e-10')" true
+
+# Symmetric: from a full solution all corners carry the same.
+scene "$cube" '{"x": [0, 0, 0.05], "shape": "cube"}' | jq '.mu = 0' | nsd-gen - | nsd-detect --gap 1e-9 |
+    nsd-solve -m exact --global ipm --eps 1e-10 2>/dev/null | nsd-info -c |
+    jq -s 'map(.r[0]) | (max - min) / max < 1e-3' >"$tmp/equal"
+is 'its corners carry equal parts, by the interior point method' "$(cat "$tmp/equal")" true
+
+# A tower of 20 bricks
+scene "$brick" "$(for k in {0..19}; do printf '%s{"x": [0, 0, %s], "shape": "brick"}' "${sep-}" "$(jq -n "0.05 + 0.1 * $k")"; sep=,; done)" |
+    nsd-gen - >"$tmp/tower.h5"
+nsd-step -n 1000 --every 1000 --contacts --warm "$tmp/tower.h5" 2>/dev/null >"$tmp/stands.h5"
+is 'a tower of 20 bricks has four contacts a joint' "$(last "$tmp/stands.h5" .contacts)" 80
+is 'and stands' "$(nsd-info --last -p "$tmp/stands.h5" | jq -s '.[-1].x | (.[2] - 1.95 | fabs) < 1e-3 and (.[0] | fabs) < 2e-3')" true
+
+# A capsule rolls down a slope as a cylinder with round ends does: a = g sin / (1 + I/(m r^2)).
+scene '"pill": {"capsule": {"length": 0.3, "radius": 0.1}}' '{"x": [0, 0, 0.1], "shape": "pill", "orientation": [0, 0, 1.5707963267948966]}' \
+    ', "gravity": [1, 0, -9.81]' | nsd-gen - | nsd-step -n 500 --every 500 --eps 1e-10 --warm 2>/dev/null >"$tmp/pill.h5"
+is 'a capsule rolls as fast as its moment of inertia lets it' \
+    "$(nsd-info --last -p "$tmp/pill.h5" | jq '3.141592653589793 as $p | ($p * 0.3 * 1e-2) as $c | (4 / 3 * $p * 1e-3) as $b |
+        (($c / 2 + 0.4 * $b) / ($c + $b)) as $k | (.v[0] / (0.5 / (1 + $k)) - 1 | fabs) < 1e-3')" true
+
+# A clump of one ball is a ball, but for the lever arms in what overlaps.
+scene '"one": {"balls": [[0, 0, 0, 0.1]]}' '{"x": [0, 0, 0.1], "shape": "one", "v": [1, 0, 0]}' | nsd-gen - |
+    nsd-step -n 400 --every 400 --eps 1e-10 2>/dev/null | nsd-info --last -p | jq -c '[.x[0], .v[0], .w[1]]' >"$tmp/clump"
+scene '' '{"x": [0, 0, 0.1], "radius": 0.1, "v": [1, 0, 0]}' | nsd-gen - |
+    nsd-step -n 400 --every 400 --eps 1e-10 --overlap gap-project 2>/dev/null | nsd-info --last -p | jq -c '[.x[0], .v[0], .w[1]]' >"$tmp/ball"
+is 'a clump of one ball moves as the ball' \
+    "$(jq -s '[.[0], .[1]] | transpose | map((.[0] / .[1] - 1 | fabs) < 1e-4) | all' "$tmp/clump" "$tmp/ball")" true
+
+# In the plane: a polygon of 60 sides rolls as a disc does, to the difference of their sides.
+plane()
+{
+    printf '{"dim": 2, "dt": 1e-3, "mu": 0.9, "gravity": [1, -9.81], "shapes": {"many": {"regular": {"sides": 100, "radius": 0.1}}},
+        "bodies": [{"x": [0, 0.1], %s}], "walls": [{"point": [0, 0], "normal": [0, 1]}]}' "$1" |
+        nsd-gen - | nsd-step -n 500 --every 500 --warm 2>/dev/null | nsd-info --last -p | jq '.v[0]'
+}
+disc=$(plane '"radius": 0.1') many=$(plane '"shape": "many"')
+is "a polygon of 100 sides rolls nearly as a disc ($many, $disc)" "$(below "($many - $disc) / $disc | fabs" 0.1)" true
+
+# arch THICKNESS BLOCKS: a semicircular arch of mean radius 1 that stands on the floor, its stones not mortared
+arch()
+{
+    awk -v t="$1" -v n="$2" 'BEGIN {
+        d = atan2(0, -1) / n; i = 1 - t / 2; o = 1 + t / 2; s = sin(d / 2); c = cos(d / 2)
+        g = i * c + (o - i) * c / 3 * (i + 2 * o) / (i + o) # centre of a stone
+        printf "{\"dim\": 2, \"dt\": 1e-3, \"mu\": 1, \"walls\": [{\"point\": [0, 0], \"normal\": [0, 1]}], \"shapes\": {\"stone\": {\"polygon\": "
+        printf "[[%.15g, %.15g], [%.15g, %.15g], [%.15g, %.15g], [%.15g, %.15g]]}}, \"bodies\": [", i * c, -i * s, o * c, -o * s, o * c, o * s, i * c, i * s
+        for (k = 0; k < n; k++)
+            printf "%s{\"x\": [%.15g, %.15g], \"shape\": \"stone\", \"orientation\": %.15g}", k ? ", " : "", g * cos((k + 0.5) * d), g * sin((k + 0.5) * d), (k + 0.5) * d
+        print "]}" }' | nsd-gen - | nsd-step -n 1000 --every 1000 --warm --eps 1e-6 2>/dev/null | nsd-info --last -p | jq -s '.[10].x[1] > 0.95'
+}
+is 'an arch of 21 stones stands with a thickness of 0.11 radii [Couplet, Heyman: 0.107]' "$(arch 0.11 21)" true
+is 'and falls with 0.105' "$(arch 0.105 21)" false
+
+# ---- a heap of all shapes ----
+
+jq '.bodies |= map(.count = ([.count, 14] | min)) | .bodies[1].box.z[0] = 0.9 | .bodies[2].box.z[0] = 1.7 | .bodies[3].box.z[0] = 2.5' \
+    scenes/rubble.json | nsd-gen - >"$tmp/rubble.h5"
+nsd-step -n 800 --warm "$tmp/rubble.h5" 2>/dev/null | nsd-cat --last >"$tmp/heap.h5"
+like 'a heap of stones, cubes, rounded bricks and clumps has contacts' "$(nsd-detect "$tmp/heap.h5" | nsd-info --last | jq .contacts)" '^[0-9]{2,4}$'
+is 'whose overlaps are small' "$(nsd-detect "$tmp/heap.h5" | nsd-info --last -c | jq -s 'map(.gap) | min > -2e-3')" true
+for j in 2 4; do
+    nsd-step -j "$j" -n 60 --every 20 --contacts --warm "$tmp/heap.h5" >"$tmp/j$j.h5" 2>/dev/null
+done
+nsd-step -j 1 -n 60 --every 20 --contacts --warm "$tmp/heap.h5" >"$tmp/j1.h5" 2>/dev/null
+ok '1 and 2 threads give the same bytes' cmp "$tmp/j1.h5" "$tmp/j2.h5"
+ok '1 and 4 threads give the same bytes' cmp "$tmp/j1.h5" "$tmp/j4.h5"
+NSD_LANES=2 nsd-step -j 1 -n 60 --every 20 --contacts --warm "$tmp/heap.h5" >"$tmp/lanes.h5" 2>/dev/null
+ok 'and every width of vectors' cmp "$tmp/j1.h5" "$tmp/lanes.h5"
+
+cp "$tmp/heap.h5" "$tmp/pipe.h5"
+for _ in 1 2 3; do
+    nsd-detect "$tmp/pipe.h5" | nsd-solve 2>/dev/null | nsd-move >"$tmp/next.h5"
+    mv "$tmp/next.h5" "$tmp/pipe.h5"
+done
+nsd-step -n 3 "$tmp/heap.h5" 2>/dev/null | nsd-cat --last >"$tmp/three.h5"
+ok 'detect | solve | move is nsd-step' same_particles "$tmp/pipe.h5" "$tmp/three.h5"
+nsd-step -n 30 "$tmp/heap.h5" 2>/dev/null | nsd-cat --last >"$tmp/whole.h5"
+nsd-step -n 17 "$tmp/heap.h5" 2>/dev/null >"$tmp/half.h5"
+nsd-step -n 13 "$tmp/half.h5" 2>/dev/null | nsd-cat --last >"$tmp/rest.h5"
+ok 'a run that goes on from its file is the run, to the bit' same_particles "$tmp/whole.h5" "$tmp/rest.h5"
+
+nsd-detect "$tmp/heap.h5" >"$tmp/contacts.h5"
+for m in sbp sal ebp eal exact; do
+    nsd-solve -m "$m" --eps 1e-6 --max-sweeps 20000 "$tmp/contacts.h5" 2>/dev/null >"$tmp/$m.h5"
+    is "$m solves it" "$(nsd-err "$tmp/$m.h5" | jq '.natural < 1.1e-6')" true
+done
+for g in nlgs anderson cg prox ipm; do
+    nsd-solve --global "$g" --eps 1e-4 --max-sweeps 20000 "$tmp/contacts.h5" 2>/dev/null >"$tmp/$g.h5"
+    is "and so does $g" "$(nsd-err "$tmp/$g.h5" | jq '.natural < 1.1e-4')" true
+done
+
+# The problem as FCLIB has it, in both forms, has the same solution.
+for form in local global; do
+    nsd-detect --fclib=$form "$tmp/heap.h5" >"$tmp/both.h5"
+    foreign "$tmp/both.h5" "$tmp/$form.raw"
+    is "as FCLIB's $form problem it can be solved" "$(nsd-solve --eps 1e-6 "$tmp/$form.raw" 2>/dev/null | nsd-err | jq '.natural < 1.1e-6')" true
+done
+
+# A scene from a document has its shapes.
+printf '{"dt": 1e-3, "mu": 0.5, "overlap": true, "bodies": [{"document": "%s"}]}' "$tmp/heap.h5" | nsd-gen - >"$tmp/from.h5"
+is 'bodies from a document have their shapes' "$(nsd-info -p "$tmp/from.h5" | jq -s 'map([.shape, .x, .q]) | tojson' | cksum)" \
+    "$(nsd-info -p "$tmp/heap.h5" | jq -s 'map([.shape, .x, .q]) | tojson' | cksum)"
+is 'nsd-info says which' "$(nsd-info -p "$tmp/heap.h5" | jq -s 'map(.shape) | unique | join(" ")')" '"clump cube rounded stone"'
+ok 'nsd-view draws them' sh -c "nsd-view '$tmp/heap.h5' >'$tmp/heap.png' && [ -s '$tmp/heap.png' ]"
+
+# Stones that pour in: the same bytes, whatever the threads, and however often the run is begun again
+printf '{"dt": 1e-3, "mu": 0.4, "shapes": {"stone": {"points": [[0.9,0.1,0.2],[-0.8,0.3,0.1],[0.1,1,-0.2],[-0.2,-0.9,0.3],[0.3,-0.1,0.8],[-0.1,0.2,-0.7]]}},
+    "walls": [{"point": [0, 0, 0], "normal": [0, 0, 1]}], "bodies": [{"x": [0.5, 0, 0.1], "shape": "stone", "size": 0.05}],
+    "pour": [{"rate": 100, "opening": {"disc": {"center": [0, 0, 0.6], "normal": [0, 0, 1], "radius": 0.1}}, "shape": "stone",
+        "orientation": "random", "size": {"uniform": [0.03, 0.05]}, "v": [0, 0, -1], "count": 30}]}' | nsd-gen - >"$tmp/pour.h5"
+nsd-step -n 500 "$tmp/pour.h5" 2>/dev/null | nsd-cat --last >"$tmp/whole.h5"
+is 'stones pour in' "$(nsd-info --last -p "$tmp/whole.h5" | jq -s 'map(.shape == "stone") | [length, all] | tojson')" '"[31,true]"'
+nsd-step -n 230 "$tmp/pour.h5" 2>/dev/null >"$tmp/half.h5"
+nsd-step -n 270 -j 2 "$tmp/half.h5" 2>/dev/null | nsd-cat --last >"$tmp/rest.h5"
+ok 'a run of them that goes on is the run, to the bit' same_particles "$tmp/whole.h5" "$tmp/rest.h5"
+
+# ---- shapes that are none ----
+
+bad() # name shape [dim]
+{
+    printf '{"dt": 1e-3, "dim": %s, "shapes": {"it": %s}, "bodies": [{"x": [0, 0%s], "shape": "it"}]}' "${3-3}" "$2" "$([ "${3-3}" = 2 ] || echo ', 0')" >"$tmp/bad.json"
+    refuses 65 "$1" nsd-gen "$tmp/bad.json"
+    like "  and its place is told" "$(cat "$tmp/err")" 'bad.json:1:[0-9]+: shapes\.it'
+}
+v='"vertices": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]]'
+bad 'a flat hull' '{"points": [[0,0,0],[1,0,0],[0,1,0],[1,1,0],[0.5,0.5,0]]}'
+bad 'a hull of one point, many times' '{"points": [[1,1,1],[1,1,1],[1,1,1],[1,1,1]]}'
+bad 'a hull that is flat to rounding' '{"points": [[0,0,0],[1,0,0],[0,1,0],[0.3,0.3,1e-13]]}'
+bad 'faces turned inside out' "{$v, \"faces\": [[0,1,2],[0,3,1],[0,2,3],[1,3,2]]}"
+bad 'one face turned inside out' "{$v, \"faces\": [[0,2,1],[0,3,1],[0,3,2],[1,2,3]]}"
+bad 'a surface that is open' "{$v, \"faces\": [[0,2,1],[0,1,3],[0,3,2],[0,1,3]]}"
+bad 'a polyhedron that is not convex' '{"vertices": [[0,0,0],[1,0,0],[0,1,0],[0,0,1],[0.2,0.2,0.2]], "faces": [[0,2,1],[0,1,3],[0,3,2],[1,2,4],[2,3,4],[3,1,4]]}'
+bad 'a face that is not flat' '{"vertices": [[0,0,0],[1,0,0],[1,1,0.3],[0,1,0],[0,0,1],[1,0,1],[1,1,1],[0,1,1]], "faces": [[3,2,1,0],[4,5,6,7],[0,1,5,4],[1,2,6,5],[2,3,7,6],[3,0,4,7]]}'
+bad 'a vertex that is not there' "{$v, \"faces\": [[0,2,1],[0,1,3],[0,3,2],[1,2,9]]}"
+bad 'a box without height' '{"box": [1, 1, 0]}'
+bad 'a capsule without radius' '{"capsule": {"length": 1, "radius": 0}}'
+bad 'a ball of a clump without radius' '{"balls": [[0, 0, 0, 0]]}'
+bad 'a clump of nothing' '{"balls": []}'
+bad 'a polygon that is not convex' '{"polygon": [[0,0],[1,0],[0.1,0.1],[0,1]]}' 2
+bad 'a polygon the wrong way round' '{"polygon": [[0,0],[0,1],[1,0]]}' 2
+bad 'a polygon that goes round twice' '{"polygon": [[0,0],[1,0],[1,1],[0,1],[-0.1,-0.1],[1.1,-0.2],[1.2,1.2],[-0.2,1.1]]}' 2
+bad 'a rounding of nothing' '{"box": [1, 1, 1], "round": 0}'
+bad 'two forms in one shape' '{"box": [1, 1, 1], "balls": [[0, 0, 0, 1]]}'
+printf '{"dt": 1e-3, "shapes": {}, "bodies": [{"x": [0, 0, 0], "shape": "it"}]}' >"$tmp/bad.json"
+refuses 65 'a shape without a description' nsd-gen "$tmp/bad.json"
+printf '{"dt": 1e-3, "shapes": {%s}, "bodies": [{"x": [0, 0, 0], "shape": "cube"}, {"x": [0, 0, 0], "shape": "cube"}]}' "$cube" >"$tmp/bad.json"
+refuses 65 'two grains in one place' nsd-gen "$tmp/bad.json"
+printf '{"dt": 1e-3, "mu": 0.5, "shapes": {"needle": {"box": [1, 0.001, 0.001]}, "plate": {"box": [1, 1, 0.001]}}, "walls": [{"point": [0,0,0], "normal": [0,0,1]}],
+    "bodies": [{"x": [0, 0, 0.001], "shape": "needle"}, {"x": [2, 2, 0.3], "shape": "plate", "orientation": [0.3, 0, 0]}]}' |
+    nsd-gen - | nsd-step -n 800 --every 800 --warm 2>/dev/null | nsd-info --last -p >"$tmp/thin"
+is 'a needle and a plate of 1000 : 1 lie flat' "$(jq -s 'map(.x[2] < 0.002 and .x[2] > 0.0004) | all' "$tmp/thin")" true
+
+
+# ---- documents ----
+
+# A document whose table of shapes has been damaged is refused.
+if have_h5py; then
+    jq '.walls = [] | .shapes.brick = {"box": [1, 2, 3]} | .bodies = [{"x": [0, 0, 0], "shape": "brick"}, {"x": [9, 0, 0], "shape": "clump"}]' scenes/rubble.json |
+        nsd-gen - >"$tmp/good.h5"
+    foreign "$tmp/good.h5" "$tmp/good.raw"
+    status 0 'a document of shapes is read without its header, too' nsd-info "$tmp/good.raw"
+    while IFS='|' read -r what change; do
+        cp "$tmp/good.raw" "$tmp/poked.raw"
+        /usr/bin/python3 -c "import h5py, numpy; f = h5py.File('$tmp/poked.raw', 'r+'); s = f['/nsd/shape']; a = f['/particles/all/shape']; $change"
+        refuses 65 "a document with $what" nsd-info "$tmp/poked.raw"
+    done <<'EOS'
+a shape that is not there|a[0] = 99
+a shape before the first|a[1] = -1
+no name for a shape|s.attrs['names'] = b'brick\n'
+two shapes of one name|s.attrs['names'] = b'a\na\nb\nc\nd\n'
+a form that is none|s['form'][0] = 9
+fewer vertices than it says|s['vertices'][0] = 2000000000
+a negative number of corners|s['corners'][0] = -5
+a corner that is no vertex|s['corner'][3] = 77
+a face of two corners|s['face'][0] = 2
+a vertex that is no number|s['vertex'][0, 0] = float('nan')
+a vertex beyond the ball around it|s['vertex'][0, 0] = 3
+a volume of nothing|s['volume'][0] = 0
+moments that are no body's|s['moment'][0] = (0.9, 0.1, 0.1)
+a rounding below 0|s['round'][0] = -1
+a capsule of ten vertices|s['form'][0] = 2
+EOS
+else
+    skip 'documents with damaged shapes' 'no h5py'
+fi
+
+done_testing
