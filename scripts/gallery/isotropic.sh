@@ -3,7 +3,7 @@
 # shellcheck source=scripts/gallery/common.sh
 . "$(dirname "$0")/common.sh"
 
-read -ra mus <<<"$(pick '0 0.5' '0 0.01 0.1 0.3 1 10')"
+read -ra mus <<<"$(pick '0 0.5' '0 0.01 0.1 0.3 1')"
 count=$(pick 80 400) end=$(pick 30 80)
 
 compress() # FILE DIM MU

@@ -3,6 +3,7 @@ set xlabel "strain"
 set key bottom right noreverse Right
 set ylabel "sin of the mobilised friction angle"
 set yrange [0:0.7]
+set xtics 0.1
 set key top right
 plot dir . "/discs-dense.tsv" using 1:2 skip 1 with lines ls 1 title "discs, dense", \
      dir . "/discs-loose.tsv" using 1:2 skip 1 with lines ls 2 title "loose", \
