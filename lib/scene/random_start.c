@@ -47,11 +47,17 @@ static uint64_t bucket(const struct level *l, const int64_t cell[3])
     return (h ^ h >> 29) & l->mask;
 }
 
+/* Cells farther away than this are one: those that meet stay neighbours, and a number of any size is one
+   of 64 bits. */
+#define FAR_CELL 1e15
+
 static void cell_of(const struct level *l, const struct start *s, vec3 x, int64_t cell[3])
 {
     const double at[3] = { x.x, x.y, x.z };
-    for (int k = 0; k < 3; k++)
-        cell[k] = k < s->dim ? (int64_t)floor((at[k] - s->box->lo[k]) / l->h) : 0;
+    for (int k = 0; k < 3; k++) {
+        double c = floor((at[k] - s->box->lo[k]) / l->h);
+        cell[k] = k < s->dim ? (int64_t)fmax(-FAR_CELL, fmin(c, FAR_CELL)) : 0;
+    }
 }
 
 static double radius(const struct start *s, int64_t i)
