@@ -40,4 +40,4 @@ picture() { nsd-view -o "$out/picture.png" "$@"; }
 curve() { gnuplot -e "dir = '$out'; quick = ${QUICK:+1}${QUICK:-0}" "$P/style.gp" "$P/$name.gp"; }
 
 # results: rows of the table come in; result.json goes out
-results() { jq -s --arg name "$name" '{name: $name, rows: .}' >"$out/result.json"; }
+results() { jq -s --arg name "$name" --argjson quick "$(pick true false)" '{name: $name, quick: $quick, rows: .}' >"$out/result.json"; }

@@ -14,6 +14,7 @@ def range_of: if .low == .high then "\(.low)" else "\(.low) to \(.high)" end;
 (sort_by(.name) | sort_by($of[.name].order) | .[] | $of[.name] as $a |
     "## \($a.title)", "", $a.text, "",
     "    " + $a.pipeline, "",
+    (if .quick then "*A small run, as with `QUICK=1`.*", "" else empty end),
     "![\($a.title)](\(.name)/picture.png)", "", "![its curve](\(.name)/curve.png)", "",
     "| what | found | range | | published | source |", "|---|---|---|---|---|---|",
     (.rows[] | "| \(.what) | \(.found | cell) | \(range_of) | \(if .holds then "holds" else "**differs**" end) | \(.published) | \(.source) |"),
