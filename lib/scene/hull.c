@@ -60,7 +60,9 @@ static int ask_qhull(struct answer *a, int dim, int64_t n, const vec3 *x, double
         a->plane = malloc(((size_t)qh->num_facets + 1) * sizeof *a->plane);
         a->corner = calloc((size_t)n, sizeof *a->corner);
         if (!a->plane || !a->corner) no_memory(why);
+        // cppcheck-suppress uninitvar ; the loop sets it
         FORALLfacets if (a->plane) add_plane(a, facet, dim, size);
+        // cppcheck-suppress legacyUninitvar ; so does this
         FORALLvertices if (a->corner) a->corner[qh_pointid(qh, vertex->point)] = true;
     }
     int left, total;
