@@ -72,16 +72,16 @@ static int make_shape(struct shape *s, const struct row *row, const struct listi
     if (shape_alloc(s, row->vertices, row->faces, row->corners, why)) return why->status;
     s->form = row->form, s->round = row->round, s->volume = row->volume;
     memcpy(s->moment, row->moment, sizeof s->moment);
-    for (int32_t i = 0; i < s->vertices; i++, at->vertices++)
+    for (int32_t i = 0; i < row->vertices; i++, at->vertices++)
         s->vertex[i] = l->vertex[at->vertices], s->ball[i] = l->ball[at->vertices];
-    for (int32_t f = 0; f < s->faces && !why->status; f++) {
+    for (int32_t f = 0; f < row->faces && !why->status; f++) {
         int32_t n = l->face[at->faces++];
         if (n < 3 || n > s->corners - s->first[f])
             why_set(why, EX_DATAERR, "a face has %d corners", n);
         else
             s->first[f + 1] = s->first[f] + n;
     }
-    for (int32_t i = 0; i < s->corners; i++) s->corner[i] = l->corner[at->corners++];
+    for (int32_t i = 0; i < row->corners; i++) s->corner[i] = l->corner[at->corners++];
     if (why->status || shape_finish(s, dim, why)) shape_free(s);
     return why->status;
 }
