@@ -64,7 +64,7 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 0, "network", &over.network,
       .help = "forces: a line for each contact that pushes, as wide as its force" },
     { CLI_FLAG, 0, "bonds", &over.bonds,
-      .help = "a line for each bond: green where it is whole, red where it breaks; blue: liquid" },
+      .help = "bonds: green where whole, red where they break; blue: liquid" },
     { CLI_FLAG, 0, "contacts", &over.contacts,
       .help = "a dot at each contact, coloured by its status" },
     { CLI_ABOVE, 0, "force", &over.force, "N", .min = 0, .max = 1e300,
