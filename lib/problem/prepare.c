@@ -55,7 +55,7 @@ static struct delassus *assemble(const struct problem *bodies, const struct cont
         if (c < 0) continue;
         double p[3];
         besides(bodies, i, s->found[c].u, p);
-        for (int k = 0; k < W->d; k++) W->r[W->d * c + k] = s->found[c].r[k] - p[k];
+        for (int k = 0; k < W->d && k < 3; k++) W->r[W->d * c + k] = s->found[c].r[k] - p[k];
     }
     return W;
 }
@@ -75,8 +75,8 @@ static bool copy_ties(struct problem *p, const struct problem *bodies)
     for (int64_t i = 0; good && i < p->slots; i++) {
         if (p->contact[i] < 0) continue;
         int64_t from = at[p->contact[i]];
-        if (p->pull) p->pull[i] = bodies->pull[from];
-        if (!p->in_W) continue;
+        if (p->pull && bodies->pull) p->pull[i] = bodies->pull[from];
+        if (!p->in_W || !bodies->beyond) continue;
         struct beyond *to = &p->in_W[i / BUNDLE];
         const struct beyond *x = &bodies->beyond[from / BUNDLE];
         for (int k = 0; k < 3; k++) to->a[k][slot_lane(i)] = x->a[k][slot_lane(from)];

@@ -419,7 +419,7 @@ static void fill_some(void *arg, int64_t first, int64_t end)
             lever_init(f->p, i, pack, f->cell, law, tie, f->alpha, f->rho_factor, f->half);
         else
             slot_init(f->p, i, pack, f->cell, law, tie, f->alpha, f->rho_factor);
-        if (f->p->beyond) slot_go_beyond(f->p, i, law, tie, f->alpha, f->rho_factor);
+        if (f->p->beyond && tie) slot_go_beyond(f->p, i, law, tie, f->alpha, f->rho_factor);
     }
 }
 
