@@ -9,8 +9,8 @@ read -ra rates <<<"$(pick '0.03 0.3' '0.01 0.03 0.06 0.1 0.2 0.3')"
 # I, mu, phi, and the pressure across the shear
 echo "rate mu phi pressure" >"$out/shear.tsv"
 for rate in "${rates[@]}"; do
-    # it comes together within a strain of 2 or 40 s, and is then measured over 2.5
-    read -r begin end every < <(jq -nr --argjson I "$rate" '[([40, 2 / $I] | max), ([40, 2 / $I] | max) + 2.5 / $I, 0.03 / $I] | @tsv')
+    # it comes together within a strain of 2 or 40 s, and is then measured over 2.5 or 40 s
+    read -r begin end every < <(jq -nr --argjson I "$rate" '[([40, 2 / $I] | max), ([40, 2 / $I] | max) + ([40, 2.5 / $I] | max), 0.03 / $I] | @tsv')
     scene plane-shear --argjson I "$rate" --argjson L "$width" \
         '.cell.gradient[0][1] = $I | .cell.lengths = [$L, 1.8 * $L] | .bodies[0].count = ($L * $L | round) |
         .cell.stress.mass = $L * $L / 10' |
