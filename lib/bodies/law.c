@@ -1,6 +1,8 @@
 /* bodies/law.c: the checks of a pair's law, and the liquid bridge [bodies/law.h]. */
 #include "bodies/law.h"
 
+#include "base/vec.h"
+
 #include <math.h>
 #include <stddef.h>
 
@@ -43,17 +45,23 @@ double bridge_reach(const struct law *l)
     return law_wets(l) ? (1 + l->wetting / 2) * cbrt(l->volume) : 0;
 }
 
-/* N: with which bodies that touch are pulled together */
+/* N: with which bodies that touch are pulled together. The cosine is not libm's, whose last bits differ
+   between machines, as those of its hypot do. */
 static double at_touch(const struct law *l, double R)
 {
-    return 2 * M_PI * R * l->tension * cos(l->wetting);
+    return 2 * M_PI * R * l->tension * quat_rotation(v3(2 * l->wetting, 0, 0)).w;
+}
+
+static double hypotenuse(double g, double c)
+{
+    return sqrt(g * g + c * c);
 }
 
 double bridge_force(const struct law *l, double R, double g)
 {
     double c = sqrt(2 * l->volume / (M_PI * R));
     if (g <= 0) return at_touch(l, R);
-    return g >= bridge_reach(l) ? 0 : at_touch(l, R) * (1 - g / hypot(g, c));
+    return g >= bridge_reach(l) ? 0 : at_touch(l, R) * (1 - g / hypotenuse(g, c));
 }
 
 double bridge_energy(const struct law *l, double R, double g)
@@ -62,6 +70,6 @@ double bridge_energy(const struct law *l, double R, double g)
     if (g >= end) return 0;
     double apart = fmax(g, 0), overlap = fmin(g, 0);
     // the integral of 1 - g/hypot(g, c) is g - hypot(g, c), here without its cancellation
-    double rest = c * c / (apart + hypot(apart, c)) - c * c / (end + hypot(end, c));
+    double rest = c * c / (apart + hypotenuse(apart, c)) - c * c / (end + hypotenuse(end, c));
     return at_touch(l, R) * (overlap - rest);
 }

@@ -202,13 +202,11 @@ int ties_keep(struct packing *p, const struct contacts *s, struct why *why)
         // a broken bond is remembered while the pair touches: it is not made anew
         bool rests = t->state & TIE_BONDED && e.gap <= TOUCH * smaller_radius(p, c);
         if (!e.wet && !(e.beta > 0) && !rests) continue;
-        double angle = spin_about(p, c), cs = cos(angle), sn = sin(angle);
         struct bond b = { .a = c->a, .b = c->b, .feature = c->feature, .n = c->n };
         for (int k = 0; k < 3; k++) b.shift[k] = c->shift[k];
         b.wet = e.wet, b.beta = e.beta, b.gap = e.gap;
-        if (e.beta > 0)
-            b.slip = v3_axpy(v3_scale(cs * e.slip[0] - sn * e.slip[1], c->t1),
-                             sn * e.slip[0] + cs * e.slip[1], contact_t2(c));
+        vec3 slip = v3_axpy(v3_scale(e.slip[0], c->t1), e.slip[1], contact_t2(c));
+        if (e.beta > 0) b.slip = quat_turn(quat_rotation(v3_scale(spin_about(p, c), c->n)), slip);
         if (!bonds_add(&kept, &b)) {
             bonds_free(&kept);
             return why_set(why, EX_SOFTWARE, "no memory for the bonds");

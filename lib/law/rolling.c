@@ -33,8 +33,8 @@ void rolling_velocity(const struct rolling *q, const double x[ROLLING], double u
 
 double rolling_lambda(const struct rolling *q)
 {
-    double mean = 0.5 * (q->wt + q->wr), half = hypot(0.5 * (q->wt - q->wr), q->k);
-    return fmax(fmax(q->wn, q->wp), mean + half);
+    double mean = 0.5 * (q->wt + q->wr), apart = 0.5 * (q->wt - q->wr);
+    return fmax(fmax(q->wn, q->wp), mean + sqrt(apart * apart + q->k * q->k));
 }
 
 /* ---- projections ---- */
