@@ -101,13 +101,7 @@ static int check_event(const struct event *e, struct why *why)
 static int read_events(struct source *s, int64_t k, struct packing *p, struct why *why)
 {
     int64_t start, count;
-    uint64_t shape[4];
-    if (source_rows(s, "/nsd/flow/events/start", COLUMN_I64, k, 1, 1, &start, why) ||
-        source_rows(s, "/nsd/flow/events/count", COLUMN_I64, k, 1, 1, &count, why))
-        return why->status;
-    if (source_shape(s, "/nsd/flow/events/id", shape) != 1 || start < 0 || count < 0 ||
-        start > INT32_MAX || count > INT32_MAX || (uint64_t)(start + count) > shape[0])
-        return why_set(why, EX_DATAERR, "%s: start or count is out of range", events);
+    if (table_read_span(s, events, "id", 1, k, &start, &count, why)) return why->status;
     if (!(p->events.e = calloc((size_t)count + 1, sizeof *p->events.e)))
         return why_set(why, EX_SOFTWARE, "no memory for events");
     p->events.n = count, p->events.room = count + 1;

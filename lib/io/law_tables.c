@@ -43,13 +43,7 @@ static int read_laws(struct source *s, struct packing *p, struct why *why)
 static int read_bonds(struct source *s, int64_t k, struct packing *p, struct why *why)
 {
     int64_t start, count;
-    uint64_t shape[4];
-    if (source_rows(s, "/nsd/bonds/start", COLUMN_I64, k, 1, 1, &start, why) ||
-        source_rows(s, "/nsd/bonds/count", COLUMN_I64, k, 1, 1, &count, why))
-        return why->status;
-    if (source_shape(s, "/nsd/bonds/body", shape) != 2 || start < 0 || count < 0 ||
-        start > INT32_MAX || count > INT32_MAX || (uint64_t)(start + count) > shape[0])
-        return why_set(why, EX_DATAERR, "%s: start or count is out of range", bonds);
+    if (table_read_span(s, bonds, "body", 2, k, &start, &count, why)) return why->status;
     p->bonds.bond = calloc((size_t)count + 1, sizeof *p->bonds.bond);
     if (!p->bonds.bond) return why_set(why, EX_SOFTWARE, "no memory for the bonds");
     p->bonds.n = count, p->bonds.room = count + 1;

@@ -20,6 +20,22 @@ int table_read_columns(struct source *s, const char *group, const char *tail,
     return 0;
 }
 
+int table_read_span(struct source *r, const char *group, const char *one, int rank, int64_t k,
+                    int64_t *start, int64_t *count, struct why *why)
+{
+    char path[80];
+    uint64_t shape[4];
+    snprintf(path, sizeof path, "%s/start", group);
+    if (source_rows(r, path, COLUMN_I64, k, 1, 1, start, why)) return why->status;
+    snprintf(path, sizeof path, "%s/count", group);
+    if (source_rows(r, path, COLUMN_I64, k, 1, 1, count, why)) return why->status;
+    snprintf(path, sizeof path, "%s/%s", group, one);
+    if (source_shape(r, path, shape) != rank || *start < 0 || *count < 0 || *start > INT32_MAX ||
+        *count > INT32_MAX || (uint64_t)(*start + *count) > shape[0])
+        return why_set(why, EX_DATAERR, "%s: start or count is out of range", group);
+    return 0;
+}
+
 int64_t *table_read_steps(struct source *source, const char *path, int64_t *n, struct why *why)
 {
     uint64_t count = 0;

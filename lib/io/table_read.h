@@ -16,6 +16,11 @@ int table_read_columns(struct source *source, const char *group, const char *tai
                        const struct column *column, int64_t start, int64_t n, void *structs,
                        size_t stride, struct why *why);
 
+/* Which rows of group/one, of that many dimensions, belong to frame k: *count from *start on, as
+   group/start and group/count say. Returns 0, EX_DATAERR or EX_SOFTWARE. */
+int table_read_span(struct source *source, const char *group, const char *one, int rank, int64_t k,
+                    int64_t *start, int64_t *count, struct why *why);
+
 /* A dataset of steps, *n of them; to be freed. NULL: not there, or no memory. */
 int64_t *table_read_steps(struct source *source, const char *path, int64_t *n, struct why *why);
 /* The row of a step; looked for at `guess`, where it mostly is, then from the end on; -1: none */
