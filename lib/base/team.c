@@ -9,20 +9,20 @@
 
 enum {
     THREADS_MOST = 1024,
-    SPINS = 1000,      /* looks before a thread sleeps: some 20 us */
-    NAP = 20000,       /* ns that it then sleeps between looks, where nobody wakes it */
-    WATCH = 3000000,   /* ns of works after which they are judged, */
-    WATCH_ALL = 50000, /* all works that take as many ns, */
-    WATCH_EVERY = 8,   /* and one in so many shorter ones */
-    ALONE =
-        20000000, /* ns that the caller works alone after the first bad judgement; twice as long */
+    SPINS = 1000,          /* looks before a thread sleeps: some 20 us */
+    NAP = 20000,           /* ns that it then sleeps between looks, where nobody wakes it */
+    WATCH = 3000000,       /* ns of works after which they are judged, */
+    WATCH_ALL = 50000,     /* all works that take as many ns, */
+    WATCH_EVERY = 8,       /* and one in so many shorter ones */
+    ALONE = 20000000,      /* ns that the caller works alone after a bad judgement; twice as long */
     ALONE_MOST = 640000000 /* after each further one, at most this */
 };
+/* Cores that works have had, at least, to be worth a team: alone there would be 1. With NSD_STEADY any
+   team is, so that ThreadSanitizer's findings do not depend on what else the machine has to do. */
 #ifdef NSD_STEADY
-#define GAIN 0.0 /* ThreadSanitizer's findings do not depend on what else there is to do */
+#define GAIN 0.0
 #else
-#define GAIN                                                                                       \
-    1.2 /* cores that works have had, at least, to be worth a team: alone there would be 1 */
+#define GAIN 1.2
 #endif
 
 /* A count, and threads that wait for it. */
