@@ -5,6 +5,7 @@
 #include "bodies/kinematics.h"
 #include "bodies/offset.h"
 #include "bodies/top.h"
+#include "problem/filling.h"
 #include "problem/schedule.h"
 
 #include <assert.h>
@@ -37,11 +38,6 @@ static void *alloc_lines(int64_t n, size_t size)
 #endif
     if (p) memset(p, 0, bytes);
     return p;
-}
-
-static bool shifted(const struct contact *c)
-{
-    return c->shift[0] || c->shift[1] || c->shift[2];
 }
 
 static int no_memory(struct problem *p, struct why *why)
@@ -184,71 +180,6 @@ static int32_t place_of(struct problem *p, int32_t i, vec3 x, int64_t *next)
     return body_place((*next)++);
 }
 
-/* un: u^-_n, m/s */
-static void add_offset(struct rebound *e, int k, const struct packing *pack,
-                       const struct contact *c, double un)
-{
-    e->offset[0][k] += offset_of(pack, c, un) / (1 + c->en);
-}
-
-/* The cell's edges where the contacts act (m), and their rates before and after the step (m/s) */
-struct lattice {
-    vec3 edge[3], before[3], after[3];
-};
-
-static struct lattice lattice_of(const struct packing *pack)
-{
-    struct lattice l;
-    cell_predict(&pack->cell, (1 - pack->theta) * pack->dt, l.edge);
-    for (int k = 0; k < 3; k++) l.before[k] = pack->cell.rate[k];
-    cell_next_rate(&pack->cell, pack->t, pack->dt, pack->theta, l.after);
-    return l;
-}
-
-/* What the image of b is faster than b, in the basis of the contact */
-static void image_velocity(const vec3 rate[3], const struct contact *c, double u[3])
-{
-    vec3 v = cell_shift(rate, c->shift);
-    u[0] = v3_dot(c->n, v), u[1] = v3_dot(c->t1, v), u[2] = v3_dot(contact_t2(c), v);
-}
-
-/* Fills slot i except for the reaction. The bodies still have their velocities before the step. */
-static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
-                      const struct lattice *cell, const struct contact *c, const struct tie *tie,
-                      double alpha, double rho_factor)
-{
-    const double en[3] = { c->en, c->et, c->et }, n[3] = { c->n.x, c->n.y, c->n.z },
-                 t1[3] = { c->t1.x, c->t1.y, c->t1.z }, s[2] = { 1 / (1 + c->en), 1 / (1 + c->et) };
-    struct bundle *r = slot_bundle(p, i);
-    struct rebound *e = slot_rebound(p, i);
-    int k = slot_lane(i);
-    for (int j = 0; j < 3; j++) r->n[j][k] = n[j], r->t1[j][k] = t1[j];
-    r->mu[k] = c->mu;
-    arms_of(pack, c, (1 - pack->theta) * pack->dt, cell->edge, &r->la[k], &r->lb[k]);
-    const struct body *a = &p->body[body_index(r->a[k])], *b = &p->body[body_index(r->b[k])];
-    double u[3], im = a->im + b->im;
-    double it = im + r->la[k] * r->la[k] * a->ii + r->lb[k] * r->lb[k] * b->ii;
-    body_velocity(p->body, r, NULL, k, u); // u^-
-    double before[3], after[3];
-    if (shifted(c)) {
-        image_velocity(cell->before, c, before), image_velocity(cell->after, c, after);
-        for (int j = 0; j < 3; j++) u[j] += before[j];
-    }
-    for (int j = 0; j < 3 && e; j++) e->offset[j][k] = u[j] * (en[j] / (1 + en[j]));
-    for (int j = 0; j < 3 && e && shifted(c); j++) e->offset[j][k] += s[j > 0] * after[j];
-    if (e && tie && tie->offset > 0)
-        e->offset[0][k] += tie->offset;
-    else if (e && offset_in(pack, c))
-        add_offset(e, k, pack, c, u[0]);
-    for (int j = 0; j < 2 && e; j++) e->s[j][k] = s[j];
-    r->w[0][k] = s[0] * im, r->w[1][k] = s[1] * it;
-    for (int j = 0; j < 2; j++) r->iw[j][k] = 1 / r->w[j][k];
-    double lambda = bundle_lambda(r, k);
-    r->rho[k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / im : rho_factor / lambda;
-}
-
-/* ---- levers ---- */
-
 static bool shaped(const struct packing *pack, const struct contacts *s)
 {
     for (int64_t i = 0; i < s->n; i++)
@@ -269,91 +200,6 @@ static bool find_spins(struct problem *p, const struct packing *pack, quat **hal
         p->spin[i] = top_root(pack, i, (*half)[i], top_predict_spin(pack, i, (*half)[i]));
     }
     return true;
-}
-
-/* The rows G_i of a body with this arm; a boundary's (i < 0) are 0. */
-static void set_rows(double G[9][BUNDLE], int k, const struct packing *pack, int32_t i, vec3 arm,
-                     const struct contact *c, const quat *half)
-{
-    const vec3 e[3] = { c->n, c->t1, contact_t2(c) };
-    for (int j = 0; j < 3 && i >= 0; j++) {
-        vec3 row = v3_cross(arm, e[j]);
-        if (pack->dim == 2) row = j == 2 ? v3(0, 0, 0) : v3(0, 0, row.z);
-        if (pack->mass[i] > 0) row = top_inverse_root(pack, i, half[i], row);
-        G[3 * j][k] = row.x, G[3 * j + 1][k] = row.y, G[3 * j + 2][k] = row.z;
-    }
-}
-
-/* Fills the slot's levers, W_cc and rho; its rebound, undivided: u + E u^- + d, with D law */
-static void lever_init(struct problem *p, int64_t i, const struct packing *pack,
-                       const struct lattice *cell, const struct contact *c, const struct tie *tie,
-                       double alpha, double rho_factor, const quat *half)
-{
-    const double en[3] = { c->en, c->et, c->et }, n[3] = { c->n.x, c->n.y, c->n.z },
-                 t1[3] = { c->t1.x, c->t1.y, c->t1.z };
-    struct bundle *r = slot_bundle(p, i);
-    struct levers *g = &p->lever[i / BUNDLE];
-    struct rebound *e = slot_rebound(p, i);
-    int k = slot_lane(i);
-    struct arms arm = arm_vectors(pack, c, (1 - pack->theta) * pack->dt, cell->edge);
-    for (int j = 0; j < 3; j++) g->n[j][k] = n[j], g->t1[j][k] = t1[j];
-    set_rows(g->Ga, k, pack, c->a, arm.a, c, half), set_rows(g->Gb, k, pack, c->b, arm.b, c, half);
-    const struct body *a = &p->body[body_index(r->a[k])], *b = &p->body[body_index(r->b[k])];
-    double W[9], u[3];
-    for (int j = 0; j < 9; j++) {
-        W[j] = j % 4 == 0 ? a->im + b->im : 0;
-        for (int l = 0; l < 3; l++)
-            W[j] += a->ii * g->Ga[3 * (j / 3) + l][k] * g->Ga[3 * (j % 3) + l][k] +
-                    b->ii * g->Gb[3 * (j / 3) + l][k] * g->Gb[3 * (j % 3) + l][k];
-        r->W[j][k] = W[j];
-    }
-    double lambda = local_lambda_max(W);
-    r->mu[k] = c->mu;
-    for (int j = 0; j < 2; j++) r->w[j][k] = lambda, r->iw[j][k] = 1 / lambda;
-    r->rho[k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / W[0] : rho_factor / lambda;
-    if (!e) return;
-    problem_velocity(p, p->body, r, NULL, k, u); // u^-
-    double before[3] = { 0 }, after[3] = { 0 };
-    if (shifted(c)) image_velocity(cell->before, c, before), image_velocity(cell->after, c, after);
-    for (int j = 0; j < 3; j++) {
-        u[j] += before[j];
-        e->offset[j][k] = en[j] * u[j] + after[j];
-    }
-    if (tie && tie->offset > 0)
-        e->offset[0][k] += (1 + en[0]) * tie->offset;
-    else if (offset_in(pack, c))
-        e->offset[0][k] += offset_of(pack, c, u[0]);
-    for (int j = 0; j < 2; j++) e->s[j][k] = 1;
-}
-
-/* Beyond W~, rho and the offset, which slot_init() has set: the bond's part, and that of moments */
-static void slot_go_beyond(struct problem *p, int64_t i, const struct contact *c,
-                           const struct tie *t, double alpha, double rho_factor)
-{
-    int k = slot_lane(i);
-    struct bundle *r = slot_bundle(p, i);
-    struct beyond *x = &p->beyond[i / BUNDLE];
-    const struct rebound *e = slot_rebound(p, i);
-    const struct body *a = &p->body[body_index(r->a[k])], *b = &p->body[body_index(r->b[k])];
-    double h = p->dt, seen = t->offset > 0 ? t->offset : offset_of(p->packing, c, 0);
-    double wt = r->w[1][k] / (e ? e->s[1][k] : 1);
-    for (int j = 0; j < 2; j++) {
-        x->K[j][k] = h * h * t->stiff[j], x->s[j][k] = 1 / (1 + r->w[j][k] * x->K[j][k]);
-        r->w[j][k] *= x->s[j][k], r->iw[j][k] += x->K[j][k];
-    }
-    double lambda = bundle_lambda(r, k);
-    if (t->beta > 0 && !(alpha > 0)) r->rho[k] = lambda > 0 ? rho_factor / lambda : 1;
-    x->a[0][k] = x->K[0][k] * (t->jump[0] / h - seen);
-    for (int j = 1; j < 3; j++) x->a[j][k] = h * t->stiff[1] * t->jump[j];
-    x->mu_r[k] = t->mu_r, x->mu_p[k] = t->mu_p;
-    if (!beyond_rolls(x, k)) return;
-    x->k[k] = r->lb[k] * b->ii - r->la[k] * a->ii, x->wr[k] = a->ii + b->ii;
-    x->length[k] = x->wr[k] > 0 ? sqrt(wt / x->wr[k]) : 1;
-    struct rolling q;
-    const double s[2] = { e ? e->s[0][k] : 1, e ? e->s[1][k] : 1 }, u[3] = { 0 };
-    double v[ROLLING];
-    beyond_rolling(r, x, p->body, k, s, u, &q, v);
-    x->rho[k] = r->rho[k] * lambda / rolling_lambda(&q);
 }
 
 /* Allocates what bonds and moments need, where there are any; false when memory is short. */
@@ -395,43 +241,21 @@ static void take_found(struct problem *p, int64_t i, const struct contacts *s)
     beyond_push(slot_bundle(p, i), k, p->body, m);
 }
 
-/* Slots that are filled, and what the free motion makes of them */
-struct filling {
+/* What the free motion makes of the slots */
+struct measuring {
     struct problem *p;
-    const struct contacts *s;
-    const struct lattice *cell;
-    double alpha, rho_factor;
-    const quat *half; /* [n] orientations in which contacts act; NULL: only balls */
-    double *q2;       /* [slots] m^2/s^2: |q|^2 */
+    double *q2; /* [slots] m^2/s^2: |q|^2 */
 };
-
-/* Bundles first .. end-1, whose bodies have their places */
-static void fill_some(void *arg, int64_t first, int64_t end)
-{
-    const struct filling *f = arg;
-    for (int64_t i = BUNDLE * first; i < BUNDLE * end; i++) {
-        int32_t c = f->p->contact[i];
-        if (c < 0) continue;
-        const struct contact *law = &f->s->c[c];
-        const struct tie *tie = f->s->tie ? &f->s->tie[c] : NULL;
-        const struct packing *pack = f->p->packing;
-        if (f->p->lever)
-            lever_init(f->p, i, pack, f->cell, law, tie, f->alpha, f->rho_factor, f->half);
-        else
-            slot_init(f->p, i, pack, f->cell, law, tie, f->alpha, f->rho_factor);
-        if (f->p->beyond && tie) slot_go_beyond(f->p, i, law, tie, f->alpha, f->rho_factor);
-    }
-}
 
 static void measure_some(void *arg, int64_t first, int64_t end)
 {
-    const struct filling *f = arg;
-    const struct problem *p = f->p;
+    const struct measuring *m = arg;
+    const struct problem *p = m->p;
     for (int64_t i = BUNDLE * first; i < BUNDLE * end; i++) {
         double q[3] = { 0 };
         if (p->contact[i] >= 0)
             problem_velocity(p, p->body, slot_bundle(p, i), slot_rebound(p, i), slot_lane(i), q);
-        f->q2[i] = q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
+        m->q2[i] = q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
     }
 }
 
@@ -478,7 +302,7 @@ static bool glides(const struct contacts *s, const struct lattice *cell)
     for (int k = 0; k < 3; k++)
         most = fmax(most, fmax(v3_norm(cell->before[k]), v3_norm(cell->after[k])));
     for (int64_t i = 0; most > 0 && i < s->n; i++)
-        if (shifted(&s->c[i])) return true;
+        if (contact_shifted(&s->c[i])) return true;
     return false;
 }
 
@@ -537,8 +361,8 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
         const struct contact *c = &s->c[p->contact[i]];
         r->a[k] = place_of(p, c->a, c->x, &next), r->b[k] = place_of(p, c->b, c->x, &next);
     }
-    struct filling f = { p, s, &cell, alpha, rho_factor, half, NULL };
-    team_share(team_size(), p->bundles, SOME / BUNDLE, fill_some, &f);
+    struct filling f = { p, s, &cell, alpha, rho_factor, half };
+    team_share(team_size(), p->bundles, SOME / BUNDLE, fill_bundles, &f);
     free(half);
 
     double g = v3_norm(pack->g);
@@ -547,10 +371,11 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     p->scale_r = p->scale_v * mean_mass(pack);
     p->speed = top_speed(pack);
     problem_set_free_motion(p);
-    if (!(f.q2 = malloc((size_t)(p->slots + 1) * sizeof *f.q2))) return no_memory(p, why);
-    team_share(team_size(), p->bundles, SOME / BUNDLE, measure_some, &f);
-    for (int64_t i = 0; i < p->slots; i++) p->norm_q += f.q2[i]; // in one order always
-    free(f.q2);
+    struct measuring m = { p, malloc((size_t)(p->slots + 1) * sizeof *m.q2) };
+    if (!m.q2) return no_memory(p, why);
+    team_share(team_size(), p->bundles, SOME / BUNDLE, measure_some, &m);
+    for (int64_t i = 0; i < p->slots; i++) p->norm_q += m.q2[i]; // in one order always
+    free(m.q2);
     p->norm_q = sqrt(p->norm_q);
     for (int64_t i = 0; s->found && i < p->slots; i++)
         if (p->contact[i] >= 0) take_found(p, i, s);

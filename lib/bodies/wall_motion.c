@@ -1,0 +1,97 @@
+/* bodies/wall_motion.c: where boundaries are, and how they move [bodies/packing.h]. */
+#include "bodies/packing.h"
+
+struct pose wall_pose(const struct packing *p, const struct wall *w, double t)
+{
+    const struct load *l = &w->load;
+    struct pose all = drives_pose(&p->drives, w->first_drive, w->drives, t);
+    all.shift = v3_axpy(all.shift, t, w->v);
+    double travel = l->travel + (t - p->t) * l->speed;
+    if (l->way == LOAD_GLIDES) all.shift = v3_axpy(all.shift, travel, l->axis);
+    if (l->way != LOAD_TURNS) return all;
+    quat q = quat_rotation(v3_scale(travel, l->axis));
+    all.shift = v3_add(l->point, quat_turn(q, v3_sub(all.shift, l->point)));
+    all.q = quat_unit(quat_mul(q, all.q));
+    return all;
+}
+
+/* Planes that only glide, which most walls are: no rotation, whose rounding would show */
+static bool only_glides(const struct wall *w)
+{
+    return !w->drives && (w->load.way != LOAD_TURNS || w->shape == BOUNDARY_PLANE);
+}
+
+vec3 wall_at(const struct packing *p, const struct wall *w, double t)
+{
+    if (!only_glides(w)) {
+        struct pose pose = wall_pose(p, w, t);
+        return pose_of(&pose, w->x);
+    }
+    vec3 x = v3_axpy(w->x, t, w->v);
+    if (w->load.way != LOAD_GLIDES) return x;
+    return v3_axpy(x, w->load.travel + (t - p->t) * w->load.speed, w->load.axis);
+}
+
+vec3 wall_normal(const struct packing *p, const struct wall *w, double t)
+{
+    return only_glides(w) ? w->n : quat_turn(wall_pose(p, w, t).q, w->n);
+}
+
+vec3 wall_held(const struct packing *p, const struct wall *w, vec3 x)
+{
+    if (!w->drives) return w->v;
+    const struct load *l = &w->load;
+    vec3 y = v3_axpy(x, -(p->t + p->dt / 2), w->v);
+    // drives move the boundary first, and what they made the load moves
+    double travel = l->travel + p->dt / 2 * l->speed;
+    quat q = { 1, 0, 0, 0 };
+    if (l->way == LOAD_GLIDES) y = v3_axpy(y, -travel, l->axis);
+    if (l->way == LOAD_TURNS) {
+        q = quat_rotation(v3_scale(travel, l->axis));
+        y = v3_add(l->point, quat_turn_back(q, v3_sub(y, l->point)));
+    }
+    vec3 v = drives_velocity(&p->drives, w->first_drive, w->drives, p->t, p->dt, y);
+    return v3_add(w->v, l->way == LOAD_TURNS ? quat_turn(q, v) : v);
+}
+
+vec3 wall_velocity(const struct packing *p, const struct wall *w, vec3 x)
+{
+    const struct load *l = &w->load;
+    vec3 v = wall_held(p, w, x);
+    if (l->way == LOAD_GLIDES) return v3_axpy(v, l->speed, l->axis);
+    if (l->way != LOAD_TURNS) return v;
+    return v3_axpy(v, l->speed, v3_cross(l->axis, v3_sub(x, l->point)));
+}
+
+vec3 wall_spin(const struct packing *p, const struct wall *w)
+{
+    vec3 s = drives_spin(&p->drives, w->first_drive, w->drives, p->t, p->dt);
+    return w->load.way == LOAD_TURNS ? v3_axpy(s, w->load.speed, w->load.axis) : s;
+}
+
+double wall_force(const struct packing *p, const struct wall *w)
+{
+    double force = w->load.force;
+    for (int32_t k = w->first_push; k < w->first_push + w->pushes; k++)
+        force += drive_way(&p->pushes, &p->pushes.drive[k], p->t + p->dt / 2);
+    return force;
+}
+
+/* m: of its points that bodies may touch from a place */
+static double farthest(const struct packing *p, const struct wall *w, vec3 from)
+{
+    double reach = boundary_reach(w), most = 0;
+    if (isfinite(reach)) return v3_norm(v3_sub(w->x, from)) + reach;
+    for (int64_t i = 0; i < p->n; i++) most = fmax(most, v3_norm(v3_sub(p->x[i], from)));
+    return most;
+}
+
+double wall_top_speed(const struct packing *p, const struct wall *w)
+{
+    double most = v3_norm(w->v) + fabs(w->load.speed);
+    for (int32_t i = w->first_drive; i < w->first_drive + w->drives; i++) {
+        const struct drive *k = &p->drives.drive[i];
+        most += drive_top_speed(&p->drives, k) * (k->turns ? farthest(p, w, k->point) : 1);
+    }
+    return most;
+}

@@ -1,0 +1,38 @@
+/*
+ * problem/filling.h: the slots of a packing's problem, all but their reactions: local bases, arms,
+ * W~_cc and rho, and what the law sees besides u. fill.c fills them, for problem.c.
+ */
+#ifndef NSD_FILLING_H
+#define NSD_FILLING_H
+
+#include "bodies/contact.h"
+#include "bodies/packing.h"
+
+struct problem;
+
+/* The cell's edges where the contacts act (m), and their rates before and after the step (m/s) */
+struct lattice {
+    vec3 edge[3], before[3], after[3];
+};
+struct lattice lattice_of(const struct packing *pack);
+
+/* Is b an image? */
+static inline bool contact_shifted(const struct contact *c)
+{
+    return c->shift[0] || c->shift[1] || c->shift[2];
+}
+
+/* Whose slots are filled, and from what */
+struct filling {
+    struct problem *p;
+    const struct contacts *s;
+    const struct lattice *cell;
+    double alpha, rho_factor;
+    const quat *half; /* [n] orientations in which contacts act; NULL: only balls */
+};
+
+/* Fills bundles first .. end-1 of a struct filling, as a part of a team's work. The slots know their bodies,
+   which still have their velocities before the step. */
+void fill_bundles(void *filling, int64_t first, int64_t end);
+
+#endif
