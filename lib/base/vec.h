@@ -4,6 +4,17 @@
 
 #include <math.h>
 
+/* The larger and the smaller of both, a unless b is that: what is not a number in b is passed over. libm's
+   fmax and fmin are calls, which loops over all bodies feel. */
+static inline double dmax(double a, double b)
+{
+    return b > a ? b : a;
+}
+static inline double dmin(double a, double b)
+{
+    return b < a ? b : a;
+}
+
 typedef struct {
     double x, y, z;
 } vec3;

@@ -52,11 +52,11 @@ void grids_free(struct grid *g)
 bool grids_build(struct grid g[LEVELS], const struct packing *p, const vec3 *at, double reach)
 {
     double rmax = 0, top[LEVELS] = { 0 };
-    for (int64_t i = 0; i < p->n; i++) rmax = fmax(rmax, p->radius[i]);
+    for (int64_t i = 0; i < p->n; i++) rmax = dmax(rmax, p->radius[i]);
     for (int64_t i = 0; i < p->n; i++) {
         int l = level_of(p->radius[i], rmax);
         g[l].n++;
-        top[l] = fmax(top[l], p->radius[i]);
+        top[l] = dmax(top[l], p->radius[i]);
     }
     int32_t lo[LEVELS][3], hi[LEVELS][3];
     for (int l = 0; l < LEVELS; l++) {

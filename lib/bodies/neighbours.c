@@ -152,7 +152,7 @@ static struct lattice lattice_of(const struct packing *p, const vec3 *x, const v
     for (int64_t i = 0; i < p->n; i++)
         for (int k = 0; k < 3; k++) {
             double u = edges_along(&c, k, x[i]);
-            c.lo[k] = fmin(c.lo[k], u), c.hi[k] = fmax(c.hi[k], u);
+            c.lo[k] = dmin(c.lo[k], u), c.hi[k] = dmax(c.hi[k], u);
         }
     return c;
 }
@@ -325,7 +325,7 @@ static double least_stretch(const vec3 f[3])
 static double largest_radius(const struct packing *p)
 {
     double most = 0;
-    for (int64_t i = 0; i < p->n; i++) most = fmax(most, p->radius[i]);
+    for (int64_t i = 0; i < p->n; i++) most = dmax(most, p->radius[i]);
     return most;
 }
 
@@ -429,13 +429,13 @@ static double fastest_of_all(const struct packing *p)
     vec3 lo = v3(INFINITY, INFINITY, INFINITY), hi = v3_scale(-1, lo);
     double v2 = 0, beyond2 = 0;
     for (int64_t i = 0; i < p->n; i++) {
-        v2 = fmax(v2, v3_dot(p->v[i], p->v[i]));
+        v2 = dmax(v2, v3_dot(p->v[i], p->v[i]));
         lo = least_of(lo, p->v[i]), hi = most_of(hi, p->v[i]);
     }
     vec3 common = v3_scale(0.5, v3_add(lo, hi));
     for (int64_t i = 0; i < p->n; i++) {
         vec3 d = v3_sub(p->v[i], common);
-        beyond2 = fmax(beyond2, v3_dot(d, d));
+        beyond2 = dmax(beyond2, v3_dot(d, d));
     }
     return sqrt(fmin(v2, beyond2));
 }
@@ -453,7 +453,7 @@ static double fastest(const struct packing *p)
             for (int k = 0; k < 3; k++) v = v3_axpy(v, -v3_dot(inverse[k], d), p->cell.rate[k]);
             if (pass == 0) mean = v3_axpy(mean, 1 / (double)p->n, v);
             v = v3_sub(v, mean);
-            if (pass == 1) v2 = fmax(v2, v3_dot(v, v));
+            if (pass == 1) v2 = dmax(v2, v3_dot(v, v));
         }
     return sqrt(v2);
 }

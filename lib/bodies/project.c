@@ -38,12 +38,12 @@ static double inverse_mass(const struct packing *p, int32_t i)
 /* The part of a contact; the slop is what gravity overlaps in a step, and more than rounding. */
 static struct part part_of(const struct packing *p, const struct contact *c)
 {
-    double small = c->a < 0 ? p->radius[c->b] : fmin(p->radius[c->a], p->radius[c->b]);
+    double small = c->a < 0 ? p->radius[c->b] : dmin(p->radius[c->a], p->radius[c->b]);
     double slop = SLOP * small + v3_norm(p->g) * p->dt * p->dt;
     return (struct part){ .a = c->a,
                           .b = c->b,
                           .n = c->n,
-                          .gap = fmax(c->gap + p->dt * opening_of(p, c) + slop, -MOST * small),
+                          .gap = dmax(-MOST * small, c->gap + p->dt * opening_of(p, c) + slop),
                           .w = inverse_mass(p, c->a) + inverse_mass(p, c->b),
                           .slop = slop };
 }
@@ -70,7 +70,7 @@ static bool relax(const struct packing *p, struct part *k, const struct contact 
     vec3 *d = o->d;
     double gap = k->gap + v3_dot(k->n, d[k->b]) - (k->a < 0 ? 0 : v3_dot(k->n, d[k->a]));
     for (int32_t f = 0; f < o->freedoms.n; f++) gap += opens(o, f, c) * o->z[f];
-    double lambda = fmax(k->lambda - gap / k->w, 0), more = lambda - k->lambda;
+    double lambda = dmax(0, k->lambda - gap / k->w), more = lambda - k->lambda;
     if (more == 0) return false;
     k->lambda = lambda;
     d[k->b] = v3_axpy(d[k->b], more * inverse_mass(p, k->b), k->n);

@@ -24,7 +24,7 @@ static void extent(const struct packing *p, const struct contact *c, int axis, d
     *lo = INFINITY, *hi = -INFINITY;
     for (int j = 0; j < k; j++) {
         double x = coordinate(p, body[j], axis);
-        *lo = fmin(*lo, x), *hi = fmax(*hi, x);
+        *lo = dmin(*lo, x), *hi = dmax(*hi, x);
     }
 }
 
