@@ -132,20 +132,22 @@ int main(void)
     ok(written && writes > 20 * FRAMES && writes < ROOM, "%d frames are written in %d writes",
        FRAMES, writes);
     if (ftruncate(fd, 0)) return 1;
-    int seen = 0, torn = 0;
+    int seen = 0, torn = 0, crossing = 0, every = getenv("NSD_QUICK") ? 5 : 1;
     for (int k = 0; k < writes; k++) {
         size_t part = (size_t)(PAGE - made[k].at % PAGE);
         // blocks of an index longer than 512 bytes do cross pages: nsd-format(5)
-        if (made[k].frames && part < made[k].size && made[k].size <= 512) {
+        if (made[k].frames && part < made[k].size && made[k].size <= 512 &&
+            crossing++ % every == 0) {
             if (!put(k, part)) return 1;
             torn++, look(k, part);
         }
         if (!put(k, made[k].size) || ftruncate(fd, made[k].length)) return 1;
         // indices of chunks grow at multiples of 16
-        if (made[k].frames && (made[k].frames + 1) % 16 <= 1) seen++, look(k, made[k].size);
+        if (made[k].frames && (made[k].frames + 1) % 16 <= 1 && k % every == 0)
+            seen++, look(k, made[k].size);
         free(made[k].bytes);
     }
-    ok(!bad && seen > writes / 10 && torn > 8,
+    ok(!bad && seen > writes / 10 / every && torn > 8 / every,
        "after any of %d, and in the midst of %d, the frames before it are there and whole", seen,
        torn);
     close(fd);
