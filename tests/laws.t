@@ -200,6 +200,7 @@ pull()
 }
 for direction in '[1,0,0] 2e12' '[0,1,0] 1e12' '[0,0,-1] 1e12'; do
     read -r v wc <<<"$direction"
+    [ -z "$quick" ] || [ "$v" = '[0,1,0]' ] || continue
     a=$(pull 1e-7 "$v" 0)
     b=$(pull 2.5e-8 "$v" 0)
     like "pulled along $v a bond bears S sqrt(w c), to first order" "$(jq -n --argjson a "$a" --argjson b "$b" \
