@@ -89,6 +89,37 @@ arch()
 is 'an arch of 21 stones stands with a thickness of 0.11 radii [Couplet, Heyman: 0.107]' "$(arch 0.11 21)" true
 is 'and falls with 0.105' "$(arch 0.105 21)" false
 
+# ---- rims and ridges of boundaries ----
+
+# on WALL X Z SHAPE [TURN]: a body of density 2500 after half a second: height, spin, and what its contacts carry of its weight
+on()
+{
+    printf '{"dt": 1e-3, "mu": 0.5, "shapes": {"plank": {"box": [0.6, 0.1, 0.02]}, "cube": {"box": [0.1, 0.1, 0.1]}, "pill": {"capsule": {"length": 0.5, "radius": 0.01}}},
+        "bodies": [{"x": [%s, 0, %s], "shape": "%s", "orientation": %s}], "walls": [%s]}' "$2" "$3" "$4" "${5-[0, 0, 0]}" "$1" >"$tmp/on.json"
+    nsd-gen "$tmp/on.json" | nsd-step -n 500 --every 500 --contacts --eps 1e-8 --warm 2>/dev/null >"$tmp/on.h5"
+    nsd-info --last -p "$tmp/on.h5" | jq -c '[.x[2], (.w | map(. * .) | add | sqrt), .mass]' >"$tmp/body"
+    nsd-info --last -c "$tmp/on.h5" | jq -s '[length, (map(.r[0]) | add // 0)]' | jq -c --slurpfile b "$tmp/body" '[$b[0][0], $b[0][1], .[0], .[1] / ($b[0][2] * 9.81e-3)]'
+}
+rests() { jq -n --argjson of "$1" "(\$of[0] - $2 | fabs) < 1e-5 and \$of[1] < 1e-4 and \$of[2] == $3 and (\$of[3] - 1 | fabs) < 1e-5"; }
+rail='{"rectangle": {"center": [0, 0, 0], "normal": [0, 0, 1], "sides": [0.1, 1]}}'
+printf 'v %s\n' '-0.5 -1 -0.5' '-0.5 1 -0.5' '0 -1 0' '0 1 0' '0.5 -1 -0.5' '0.5 1 -0.5' >"$tmp/roof.obj"
+printf 'f %s\n' '1 3 4' '1 4 2' '3 5 6' '3 6 4' >>"$tmp/roof.obj"
+roof='{"mesh": {"file": "roof.obj"}}'
+is 'a plank across a rail, all its corners beside it, rests on the rims' "$(rests "$(on "$rail" 0 0.01 plank)" 0.01 4)" true
+is 'turned, too' "$(rests "$(on "$rail" 0 0.01 plank '[0, 0, 0.4]')" 0.01 4)" true
+is 'while its centre is above the rail' "$(rests "$(on "$rail" 0.04 0.01 plank)" 0.01 4)" true
+is 'beyond its rim it tips' "$(on "$rail" 0.06 0.01 plank | jq '.[1] > 0.5')" true
+is 'a pill lies on both rims' "$(rests "$(on "$rail" 0 0.01 pill)" 0.01 2)" true
+is 'a plank lies on the ridge of a roof' "$(rests "$(on "$roof" 0 0.01 plank)" 0.01 2)" true
+is 'a cube stands on it on the edge that crosses it' "$(rests "$(on "$roof" 0 0.0707106781186548 cube '[0.785398163397448, 0, 0]')" 0.0707107 1)" true
+is 'what is beside a rectangle falls past it' "$(on "$rail" 0.2 0.05 cube | jq '.[0] < -1 and .[2] == 0')" true
+# in the plane: a rod across two posts of a chain
+printf '{"dim": 2, "dt": 1e-3, "mu": 0.5, "shapes": {"rod": {"box": [0.6, 0.02]}}, "bodies": [{"x": [0, 0.01], "shape": "rod"}],
+    "walls": [{"polygon": {"points": [[-0.2, -1], [-0.1, 0], [0, -1], [0.1, 0], [0.2, -1]], "closed": false}}]}' |
+    nsd-gen - | nsd-step -n 500 --every 500 --contacts --warm 2>/dev/null >"$tmp/rod.h5"
+is 'in the plane a rod lies on two points of a chain' \
+    "$(nsd-info --last -p "$tmp/rod.h5" | jq -c '[(.x[1] - 0.01 | fabs) < 1e-5, .w[2] == 0 or (.w[2] | fabs) < 1e-6]') $(last "$tmp/rod.h5" .contacts)" '[true,true] 2'
+
 # ---- a heap of all shapes ----
 
 jq '.bodies |= map(.count = ([.count, 14] | min)) | .bodies[1].box.z[0] = 0.9 | .bodies[2].box.z[0] = 1.7 | .bodies[3].box.z[0] = 2.5' \
