@@ -207,7 +207,8 @@ static void dense(struct packing *p, struct contacts *s, int dim, double e)
         dim == 2 ? "[[-0.5, 0], [0, -0.5]]" : "[[-0.5, 0, 0], [0, -0.5, 0], [0, 0, -0.5]]",
         dim == 2 ? 100 : 125, dim == 2 ? 0.035 : 0.07, dim == 2 ? 0.05 : 0.1,
         dim == 2 ? "" : ", \"z\": [0, 1]");
-    must(scene_parse(&scene, text, strlen(text), &why) || scene_build(p, &scene, NULL, &why), &why);
+    must(scene_parse(&scene, text, strlen(text), NULL, &why) || scene_build(p, &scene, NULL, &why),
+         &why);
     scene_free(&scene);
     struct step_opt o = sweeps(30);
     run(p, s, &o, dim == 2 ? 350 : 420);

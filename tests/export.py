@@ -142,6 +142,27 @@ def stl(path, document, detail):
     assert len(x) - each * len(frame.x) >= 10  # five walls
 
 
+def surfaces(path, document, density):
+    """Each grain's polygons close, and hold its mass about its centre."""
+    x, cells, _, data, field = vtk_read(path)
+    frame = nsd.last(document)
+    same(field["step"], [frame.step])
+    volume, first = np.zeros(len(frame.x)), np.zeros((len(frame.x), 3))
+    row = {id: i for i, id in enumerate(frame.id)}
+    for k, corners in enumerate(cells):
+        i = row[data["id"][k]]
+        p = x[corners] - frame.x[i]
+        for a, b in zip(p[1:], p[2:]):
+            v = np.dot(p[0], np.cross(a, b)) / 6
+            volume[i] += v
+            first[i] += v * (p[0] + a + b) / 4
+        same(data["velocity"][k], frame.v[i]), same(data["mass"][k], frame.mass[i])
+    seen = volume > 0
+    assert seen.sum() == (data["shape"].max() > 0) * len(set(data["id"])) > 0
+    assert abs(volume * density / frame.mass - 1)[seen].max() < 1e-6
+    assert (np.linalg.norm(first, axis=1) / (volume * frame.radius))[seen].max() < 1e-6
+
+
 def xyz(path, document):
     import ase.io
     read = ase.io.read(path, index=":", format="extxyz")

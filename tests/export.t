@@ -66,6 +66,18 @@ other "forces are Newton's there, too" vtk newton "$tmp/shear.h5" "$tmp/shear"
 other "ASE reads the cell" ase ase_cell "$tmp/shear.h5" "$tmp/shear.xyz" "$tmp/shear.lammpstrj"
 other "MDAnalysis reads it from the document" MDAnalysis box "$tmp/shear.h5"
 
+# ---- other shapes ----
+
+jq '.bodies = [{"x": [0, 0, 0], "radius": 0.1}, {"x": [1, 0, 0.1], "shape": "stone", "orientation": [1, 2, 3], "v": [1, 2, 3]},
+    {"x": [3, 0, 0], "shape": "cube", "size": 0.3, "orientation": [0.2, 0, 0.1]}] | .walls = []' scenes/rubble.json | nsd-gen - >"$tmp/shaped.h5"
+nsd-export --part surfaces -o "$tmp/shaped.vtp" "$tmp/shaped.h5"
+nsd-export --part surfaces -o "$tmp/shaped.vtu" "$tmp/shaped.h5"
+other "VTK reads the faces of stones, which hold their mass" vtk surfaces "$tmp/shaped.vtp" "$tmp/shaped.h5" 2600
+other "as an unstructured grid, too" vtk surfaces "$tmp/shaped.vtu" "$tmp/shaped.h5" 2600
+refuses 65 "balls alone have no surfaces" nsd-export --last --part surfaces -o "$tmp/none.vtp" "$tmp/out.h5"
+nsd-export -o "$tmp/shaped/" "$tmp/shaped.h5"
+ok "a directory has them" cmp "$tmp/shaped/surfaces-00000.vtp" "$tmp/shaped.vtp"
+
 # ---- the others ----
 
 nsd-export -o "$tmp/out.xyz" "$tmp/out.h5"

@@ -213,7 +213,7 @@ static int now; /* which of them a run is about */
 static int build(struct packing *p, int k, struct why *why)
 {
     struct scene s;
-    if (scene_parse(&s, scene_text[k], strlen(scene_text[k]), why)) return why->status;
+    if (scene_parse(&s, scene_text[k], strlen(scene_text[k]), NULL, why)) return why->status;
     scene_build(p, &s, folder, why);
     scene_free(&s);
     return why->status;

@@ -282,7 +282,7 @@ static void squeezed(struct packing *p, int dim, double e)
     struct contacts s = { 0 };
     struct report rep = { 0 };
     struct step_opt o = options(&solver_auto, &local_exact, 1e-6);
-    must(scene_parse(&sc, text[dim - 2], strlen(text[dim - 2]), &why) ||
+    must(scene_parse(&sc, text[dim - 2], strlen(text[dim - 2]), NULL, &why) ||
              scene_build(p, &sc, NULL, &why),
          &why);
     scene_free(&sc);

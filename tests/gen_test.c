@@ -27,7 +27,7 @@ static int build(struct packing *p, const char *text, const char *dir, struct wh
 {
     struct scene s;
     *why = (struct why){ 0 };
-    if (scene_parse(&s, text, strlen(text), why)) return why->status;
+    if (scene_parse(&s, text, strlen(text), NULL, why)) return why->status;
     scene_build(p, &s, dir, why);
     scene_free(&s);
     return why->status;
@@ -564,7 +564,7 @@ static void test_damage(void)
         size_t n = i < length ? i : length;
         char *copy = malloc(n ? n : 1);
         memcpy(copy, damaged, n);
-        int status = scene_parse(&s, copy, n, &why);
+        int status = scene_parse(&s, copy, n, NULL, &why);
         cut += i < length && status == EX_DATAERR;
         odd += status != 0 && status != EX_DATAERR;
         if (!status) scene_free(&s);
@@ -709,7 +709,7 @@ static void try_change(const char *path, const char *what, bool wrong)
     char *text = json_dumps(turn.root, JSON_INDENT(1));
     if (!text) return;
     turn.tried++;
-    int e = scene_parse(&s, text, strlen(text), &why);
+    int e = scene_parse(&s, text, strlen(text), NULL, &why);
     free(text);
     if (e) {
         int line, column;
@@ -785,7 +785,8 @@ static void test_every_value(void)
         struct scene s;
         struct why why = { 0 };
         const char *text = whole_scene[k];
-        if (!ok(!scene_parse(&s, text, strlen(text), &why), "a scene that says much %s", why.text))
+        if (!ok(!scene_parse(&s, text, strlen(text), NULL, &why), "a scene that says much %s",
+                why.text))
             continue;
         scene_free(&s);
         memset(&turn, 0, sizeof turn);

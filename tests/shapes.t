@@ -89,6 +89,37 @@ arch()
 is 'an arch of 21 stones stands with a thickness of 0.11 radii [Couplet, Heyman: 0.107]' "$(arch 0.11 21)" true
 is 'and falls with 0.105' "$(arch 0.105 21)" false
 
+# ---- rims and ridges of boundaries ----
+
+# on WALL X Z SHAPE [TURN]: a body of density 2500 after half a second: height, spin, and what its contacts carry of its weight
+on()
+{
+    printf '{"dt": 1e-3, "mu": 0.5, "shapes": {"plank": {"box": [0.6, 0.1, 0.02]}, "cube": {"box": [0.1, 0.1, 0.1]}, "pill": {"capsule": {"length": 0.5, "radius": 0.01}}},
+        "bodies": [{"x": [%s, 0, %s], "shape": "%s", "orientation": %s}], "walls": [%s]}' "$2" "$3" "$4" "${5-[0, 0, 0]}" "$1" >"$tmp/on.json"
+    nsd-gen "$tmp/on.json" | nsd-step -n 500 --every 500 --contacts --eps 1e-8 --warm 2>/dev/null >"$tmp/on.h5"
+    nsd-info --last -p "$tmp/on.h5" | jq -c '[.x[2], (.w | map(. * .) | add | sqrt), .mass]' >"$tmp/body"
+    nsd-info --last -c "$tmp/on.h5" | jq -s '[length, (map(.r[0]) | add // 0)]' | jq -c --slurpfile b "$tmp/body" '[$b[0][0], $b[0][1], .[0], .[1] / ($b[0][2] * 9.81e-3)]'
+}
+rests() { jq -n --argjson of "$1" "(\$of[0] - $2 | fabs) < 1e-5 and \$of[1] < 1e-4 and \$of[2] == $3 and (\$of[3] - 1 | fabs) < 1e-5"; }
+rail='{"rectangle": {"center": [0, 0, 0], "normal": [0, 0, 1], "sides": [0.1, 1]}}'
+printf 'v %s\n' '-0.5 -1 -0.5' '-0.5 1 -0.5' '0 -1 0' '0 1 0' '0.5 -1 -0.5' '0.5 1 -0.5' >"$tmp/roof.obj"
+printf 'f %s\n' '1 3 4' '1 4 2' '3 5 6' '3 6 4' >>"$tmp/roof.obj"
+roof='{"mesh": {"file": "roof.obj"}}'
+is 'a plank across a rail, all its corners beside it, rests on the rims' "$(rests "$(on "$rail" 0 0.01 plank)" 0.01 4)" true
+is 'turned, too' "$(rests "$(on "$rail" 0 0.01 plank '[0, 0, 0.4]')" 0.01 4)" true
+is 'while its centre is above the rail' "$(rests "$(on "$rail" 0.04 0.01 plank)" 0.01 4)" true
+is 'beyond its rim it tips' "$(on "$rail" 0.06 0.01 plank | jq '.[1] > 0.5')" true
+is 'a pill lies on both rims' "$(rests "$(on "$rail" 0 0.01 pill)" 0.01 2)" true
+is 'a plank lies on the ridge of a roof' "$(rests "$(on "$roof" 0 0.01 plank)" 0.01 2)" true
+is 'a cube stands on it on the edge that crosses it' "$(rests "$(on "$roof" 0 0.0707106781186548 cube '[0.785398163397448, 0, 0]')" 0.0707107 1)" true
+is 'what is beside a rectangle falls past it' "$(on "$rail" 0.2 0.05 cube | jq '.[0] < -1 and .[2] == 0')" true
+# in the plane: a rod across two posts of a chain
+printf '{"dim": 2, "dt": 1e-3, "mu": 0.5, "shapes": {"rod": {"box": [0.6, 0.02]}}, "bodies": [{"x": [0, 0.01], "shape": "rod"}],
+    "walls": [{"polygon": {"points": [[-0.2, -1], [-0.1, 0], [0, -1], [0.1, 0], [0.2, -1]], "closed": false}}]}' |
+    nsd-gen - | nsd-step -n 500 --every 500 --contacts --warm 2>/dev/null >"$tmp/rod.h5"
+is 'in the plane a rod lies on two points of a chain' \
+    "$(nsd-info --last -p "$tmp/rod.h5" | jq -c '[(.x[1] - 0.01 | fabs) < 1e-5, .w[2] == 0 or (.w[2] | fabs) < 1e-6]') $(last "$tmp/rod.h5" .contacts)" '[true,true] 2'
+
 # ---- a heap of all shapes ----
 
 jq '.bodies |= map(.count = ([.count, 14] | min)) | .bodies[1].box.z[0] = 0.9 | .bodies[2].box.z[0] = 1.7 | .bodies[3].box.z[0] = 2.5' \
@@ -188,6 +219,88 @@ printf '{"dt": 1e-3, "mu": 0.5, "shapes": {"needle": {"box": [1, 0.001, 0.001]},
     nsd-gen - | nsd-step -n 800 --every 800 --warm 2>/dev/null | nsd-info --last -p >"$tmp/thin"
 is 'a needle and a plate of 1000 : 1 lie flat' "$(jq -s 'map(.x[2] < 0.002 and .x[2] > 0.0004) | all' "$tmp/thin")" true
 
+
+# ---- shapes in files ----
+
+# an OBJ of the brick 3 x 2 x 1, corner of x + 2 y + 4 z; and the same as STL of its triangles, as text
+obj() # FACES...: a file of those corners on standard output
+{
+    printf 'v %s\n' '0 0 0' '3 0 0' '0 2 0' '3 2 0' '0 0 1' '3 0 1' '0 2 1' '3 2 1' '1.5 1 0.4'
+    printf 'f %s\n' "$@"
+}
+sides=('1 5 7 3' '2 4 8 6' '1 2 6 5' '3 7 8 4' '1 3 4 2')
+obj "${sides[@]}" '5 6 8 7' >"$tmp/brick.obj"
+obj "${sides[@]}" >"$tmp/open.obj"
+obj "${sides[@]}" '7 8 6 5' >"$tmp/one.obj"
+obj '3 7 5 1' '6 8 4 2' '5 6 2 1' '4 8 7 3' '2 4 3 1' '7 8 6 5' >"$tmp/inside.obj"
+obj "${sides[@]}" '5 6 9' '6 8 9' '8 7 9' '7 5 9' >"$tmp/dent.obj"
+obj '1 2 4' '4 3 1' '1 4 2' '1 3 4' >"$tmp/flat.obj"
+mesh() # 'FILE" MORE...': mass and moments of a body of density 1
+{
+    printf '{"dt": 1e-3, "density": 1, "shapes": {"it": {"mesh": {"file": "%s}}}, "bodies": [{"x": [0, 0, 0], "shape": "it"}]}' "$1" >"$tmp/mesh.json"
+    nsd-gen "$tmp/mesh.json" >"$tmp/mesh.h5"
+    nsd-info -p "$tmp/mesh.h5" | jq -c '.mass as $m | [$m, .radius]'
+}
+is_brick() { jq -n --argjson of "$1" '($of[0] - 6 | fabs) < 1e-5 and ($of[1] - (14 | sqrt) / 2 | fabs) < 1e-6'; }
+is 'the brick of an OBJ file has its mass and reach' "$(is_brick "$(mesh 'brick.obj"')")" true
+nsd-export --to stl -o "$tmp/brick.stl" "$tmp/mesh.h5"
+is 'that of a binary STL file, too' "$(is_brick "$(mesh 'brick.stl"')")" true
+awk 'BEGIN { print "solid brick" }
+    /^v/ { x[++n] = $2 " " $3 " " $4 }
+    /^f/ { for (k = 3; k < NF; k++) print "facet normal 0 0 0\nouter loop\nvertex " x[$2] "\nvertex " x[$k] "\nvertex " x[$(k + 1)] "\nendloop\nendfacet" }
+    END { print "endsolid brick" }' "$tmp/brick.obj" >"$tmp/text.stl"
+is 'and of an STL file of text' "$(is_brick "$(mesh 'text.stl"')")" true
+is 'its unit may be a millimetre' "$(mesh 'brick.obj", "scale": 1e-3' | jq '(.[0] / 6e-9 - 1 | fabs) < 1e-12')" true
+for file in open one inside dent; do
+    is "the hull of $file.obj is the brick" "$(is_brick "$(mesh "$file.obj\", \"hull\": true")")" true
+done
+
+# A dodecahedron, turned, and then in single precision: its twelve faces are still pentagons.
+printf '{"dt": 1e-3, "density": 1, "shapes": {"it": {"points": [%s]}}, "bodies": [{"x": [7, 0, 0], "shape": "it", "orientation": [0.3, 0.2, 0.5]}]}' "$(
+    awk 'BEGIN { g = (1 + sqrt(5)) / 2
+        for (a = -1; a <= 1; a += 2) for (b = -1; b <= 1; b += 2) {
+            for (c = -1; c <= 1; c += 2) printf "[%d,%d,%d],", a, b, c
+            printf "[0,%.17g,%.17g],[%.17g,%.17g,0],[%.17g,0,%.17g]%s", a / g, b * g, a / g, b * g, a * g, b / g, a + b == 2 ? "" : "," } }')" |
+    nsd-gen - | nsd-export --to stl -o "$tmp/dod.stl"
+is 'a dodecahedron in single precision has its volume' \
+    "$(mesh 'dod.stl"' | jq '(.[0] / ((15 + 7 * (5 | sqrt)) / 4 * pow((5 | sqrt) - 1; 3)) - 1 | fabs) < 1e-6')" true
+is 'and twelve pentagons' "$(h5dump -d /nsd/shape/face "$tmp/mesh.h5" | grep -o '[(:] *[0-9, ]*5[, 5]*$' | tr -cd 5)" 555555555555
+
+# Grains that pour in: a document keeps the shape, and goes on without the file.
+printf '{"dt": 1e-3, "shapes": {"stone": {"mesh": {"file": "dod.stl", "scale": 0.03}}}, "bodies": [], "walls": [{"point": [0, 0, 0], "normal": [0, 0, 1]}],
+    "pour": [{"rate": 100, "opening": {"disc": {"center": [0, 0, 0.6], "normal": [0, 0, 1], "radius": 0.1}}, "shape": "stone", "v": [0, 0, -1], "count": 5}]}' >"$tmp/pour.json"
+nsd-gen "$tmp/pour.json" >"$tmp/pour.h5"
+rm "$tmp/dod.stl"
+nsd-step -n 200 "$tmp/pour.h5" 2>/dev/null >"$tmp/poured.h5"
+is 'stones of a file pour in, and the file is not needed any more' "$(nsd-info --last -p "$tmp/poured.h5" | jq -s 'map(.shape) | tojson')" \
+    '"[\"stone\",\"stone\",\"stone\",\"stone\",\"stone\"]"'
+
+for what in 'open|is open' 'one|turned inside out' 'inside|is turned inside out' 'dent|is not convex: its volume is 4.8 m'; do
+    bad "a file that ${what#*|}" "{\"mesh\": {\"file\": \"${what%|*}.obj\"}}"
+    like '  and what is wrong' "$(cat "$tmp/err")" "${what#*|}"
+done
+bad 'a flat file' '{"mesh": {"file": "flat.obj"}}'
+bad 'and its hull' '{"mesh": {"file": "flat.obj", "hull": true}}'
+bad 'a mesh in the plane' '{"mesh": {"file": "brick.obj"}}' 2
+head -c 3000 /dev/urandom >"$tmp/noise.stl"
+bad 'a file of noise' '{"mesh": {"file": "noise.stl"}}'
+printf '{"dt": 1e-3, "shapes": {"it": {"mesh": {"file": "none.stl"}}}, "bodies": []}' >"$tmp/bad.json"
+refuses 66 'a file that is not there' nsd-gen "$tmp/bad.json"
+
+# Superquadrics: of exponent 1 an octahedron, of 2 an ellipsoid, up to its facets
+quadric() # radii exponents segments [dim]: the mass of a body of density 1
+{
+    printf '{"dt": 1e-3, "dim": %s, "density": 1, "shapes": {"it": {"superquadric": {"radii": %s, "exponents": %s, "segments": %s}}}, "bodies": [{"x": %s, "shape": "it"}]}' \
+        "${4-3}" "$1" "$2" "$3" "$([ "${4-3}" = 2 ] && echo '[0, 0]' || echo '[0, 0, 0]')" | nsd-gen - | nsd-info -p | jq .mass
+}
+is 'a superquadric of exponents 1 is an octahedron' "$(below "$(quadric '[1,2,3]' '[1,1]' 4) - 8 | fabs" 1e-6)" true
+is 'of exponents 2 an ellipsoid, to 2% with 10 segments' "$(below "1 - $(quadric '[1,2,3]' '[2,2]' 10) / (8 * 3.14159265) | fabs" 0.02)" true
+is 'to 0.3% with 24' "$(below "1 - $(quadric '[1,2,3]' '[2,2]' 24) / (8 * 3.14159265) | fabs" 0.003)" true
+is 'of exponents 2 and 100 nearly a cylinder' "$(below "1 - $(quadric '[1,1,1]' '[2,100]' 24) / (2 * 3.14159265) | fabs" 0.05)" true
+is 'in the plane of exponent 1 a square' "$(below "$(quadric '[1,2]' '[1]' 4 2) - 4 | fabs" 1e-6)" true
+bad 'a superquadric that is not convex' '{"superquadric": {"radii": [1,1,1], "exponents": [0.9,2]}}'
+bad 'one without a radius' '{"superquadric": {"radii": [1,0,1], "exponents": [2,2]}}'
+bad 'one with too many corners' '{"superquadric": {"radii": [1,1,1], "exponents": [2,2], "segments": 40}}'
 
 # ---- documents ----
 

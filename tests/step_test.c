@@ -42,7 +42,7 @@ static void scene_file(struct packing *p, const char *path)
     FILE *f = fopen(path, "r");
     size_t n = f ? fread(text, 1, sizeof text, f) : 0;
     if (f) fclose(f);
-    must(scene_parse(&s, text, n, &why) || scene_build(p, &s, NULL, &why), &why);
+    must(scene_parse(&s, text, n, NULL, &why) || scene_build(p, &s, NULL, &why), &why);
     scene_free(&s);
 }
 

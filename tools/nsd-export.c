@@ -37,7 +37,7 @@ static const struct cli_option own[] = {
       .help = "FILE, a series 'f%05d.vtp', or a directory 'DIR/' [standard output]" },
     { CLI_FLAG, 'l', "last", &last, .help = "only the very last frame" },
     { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
-    { CLI_INT, 0, "detail", &detail, "N", .help = "balls of STL have 20 * 4^N triangles [2]",
+    { CLI_INT, 0, "detail", &detail, "N", .help = "round grains have 20 * 4^N triangles in STL, surfaces [2]",
       .max = 6 },
     { 0 },
 };
@@ -158,11 +158,11 @@ static void directory_make(const char *name)
     if (mkdir(name, 0777) && errno != EEXIST) die(EX_IOERR, "%s: %s", name, strerror(errno));
 }
 
-/* Is there anything of this part? A packing has a cell, boundaries or contacts, or it has not. */
+/* Is there anything of this part? A packing has a cell, boundaries, contacts or shapes, or it has not. */
 static bool has_part(const struct frame *f, enum part what)
 {
     const bool has[PART_COUNT] = { true, f->detected, f->packing.walls > 0,
-                                   cell_repeats(&f->packing.cell) };
+                                   cell_repeats(&f->packing.cell), f->packing.shape != NULL };
     return has[what];
 }
 

@@ -60,14 +60,16 @@ static void read_scene(struct scene *s, const char *path, char **dir)
     char *text = f ? slurp(f, &n) : NULL;
     if (!f || ferror(f)) die(EX_NOINPUT, "%s: %s", name, strerror(errno));
     if (!text) die(EX_SOFTWARE, "%s: no memory", name);
-    scene_parse(s, text, n, &why);
+    if (!standard) {
+        fclose(f);
+        char *copy = strdup(path);
+        *dir = copy ? strdup(dirname(copy)) : NULL;
+        free(copy);
+    }
+    const struct scene_files files = { *dir, mesh_file_read };
+    scene_parse(s, text, n, &files, &why);
     free(text);
     if (why.status) die(why.status, "%s:%s", name, why.text);
-    if (standard) return;
-    fclose(f);
-    char *copy = strdup(path);
-    *dir = copy ? strdup(dirname(copy)) : NULL;
-    free(copy);
 }
 
 /* "500", "1e6" and also "-5" are numbers, in range or not; all else is the name of a file. */

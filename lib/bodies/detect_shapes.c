@@ -1,12 +1,17 @@
 #include "bodies/detect_shapes.h"
 
+#include "bodies/between.h"
 #include "bodies/meet.h"
+#include "bodies/rim.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum {
-    CORNERS = 256,   /* of a body that are near a boundary, at most: of more the first */
+    CORNERS = 256,     /* of a body that are near a boundary, at most: of more the first */
+    RIMS = 64,         /* of a boundary that are near a body, likewise */
+    RIM_KEY = 1 << 30, /* features of rims, and of their ends: apart from those of corners */
+    RIM_END = 1 << 29,
     MOVED_MOST = 256 /* corners of a body that is met as an image without memory of its own */
 };
 
@@ -115,7 +120,8 @@ bool detect_shapes_pair(struct contacts *out, const struct placed *s, int32_t a,
 
 /* ---- boundaries ---- */
 
-/* Where a corner meets the surface; n points to the body's side. Returns how many places. */
+/* Where a corner meets the surface; n points to the body's side. Sharp corners do not meet its ends: their
+   edges and faces do. Returns how many places. */
 static int near_surface(const struct placed *s, const struct wall *wall, const struct pose *pose,
                         const struct surface *surface, int64_t i, vec3 v, double round, double gap,
                         struct touch touch[TOUCHES_MOST])
@@ -126,15 +132,21 @@ static int near_surface(const struct placed *s, const struct wall *wall, const s
     double r = p->radius[i];
     int n = surface ? surface_touches(surface, c, round + gap + r, touch)
                     : boundary_nearest(wall, p->dim, c, r, touch);
+    int kept = 0;
     for (int k = 0; k < n; k++) {
-        vec3 place = v3_axpy(c, -touch[k].distance, touch[k].n);
+        bool end = rim_is_at(wall, p->dim, surface, c, &touch[k]);
+        if (end && round == 0) continue;
+        touch[kept++] = touch[k];
+        struct touch *t = &touch[kept - 1];
+        vec3 place = v3_axpy(c, -t->distance, t->n);
         bool two_sided = surface || wall->side == BOUNDARY_BOTH ||
                          wall->shape == BOUNDARY_RECTANGLE || wall->shape == BOUNDARY_DISC;
-        if (two_sided && v3_dot(touch[k].n, v3_sub(middle, place)) < 0)
-            touch[k].n = v3_scale(-1, touch[k].n), touch[k].distance *= -1;
-        touch[k].n = quat_turn(pose->q, touch[k].n);
+        if (two_sided && !end && v3_dot(t->n, v3_sub(middle, place)) < 0 &&
+            boundary_between(wall, p->dim, surface, middle, c))
+            t->n = v3_scale(-1, t->n), t->distance *= -1;
+        t->n = quat_turn(pose->q, t->n);
     }
-    return n;
+    return kept;
 }
 
 /* The outside of a sphere or an endless cylinder, as the core of a ball or capsule; false: no such
@@ -173,6 +185,79 @@ static bool meet_convex(struct contacts *out, const struct placed *s, int32_t w,
     return true;
 }
 
+/* Of the radius: a corner there is the same place */
+static const double SAME_PLACE = 1e-3;
+/* Sine: a face that lies on a surface to this is next to its rim, too */
+static const double ALONG_SURFACE = 1e-3;
+
+/* The part of a rim within `reach` of x, in space; returns its ends, 0: none. */
+static int place_rim(const struct rim *r, const struct wall *wall, const struct pose *pose, vec3 x,
+                     double reach, vec3 v[2], bool cut[2])
+{
+    for (int k = 0; k < r->n; k++) v[k] = pose_of(pose, v3_add(wall->x, r->v[k]));
+    cut[0] = cut[1] = false;
+    if (r->n == 1) return 1;
+    vec3 a = v[0], d = v3_sub(v[1], a), w = v3_sub(x, a);
+    double length2 = v3_dot(d, d), middle = v3_dot(w, d) / length2;
+    double half2 = reach * reach - v3_dot(w, w) + middle * middle * length2;
+    double half = half2 > 0 ? sqrt(half2 / length2) : 0;
+    double lo = fmax(middle - half, 0), hi = fmin(middle + half, 1);
+    if (!(lo < hi)) return 0;
+    cut[0] = lo > 0, cut[1] = hi < 1;
+    if (cut[0]) v[0] = v3_axpy(a, lo, d);
+    if (cut[1]) v[1] = v3_axpy(a, hi, d);
+    return 2;
+}
+
+/* Does n, from the rim to a body, lead into none of the surfaces that meet there? */
+static bool leads_away(const struct rim *r, const struct pose *pose, vec3 n)
+{
+    for (int k = 0; k < r->sides; k++)
+        if (v3_dot(quat_turn(pose->q, r->into[k]), n) > ALONG_SURFACE) return false;
+    return true;
+}
+
+static bool is_there(const struct place *place, int n, vec3 x, double near)
+{
+    for (int k = 0; k < n; k++) {
+        vec3 d = v3_sub(place[k].x, x);
+        if (v3_dot(d, d) < near * near) return true;
+    }
+    return false;
+}
+
+/* Adds where the rims of a boundary meet a core and no corner does; returns how many places there are. */
+static int meet_rims(struct place *place, int count, const struct packing *p,
+                     const struct wall *wall, const struct pose *pose,
+                     const struct surface *surface, const struct core *c, double radius, double gap)
+{
+    struct rim rim[RIMS];
+    double reach = radius + fmax(gap, 0), near = SAME_PLACE * radius;
+    vec3 at = v3_sub(quat_turn_back(pose->q, v3_sub(c->centre, pose->shift)), wall->x);
+    int rims = rims_near(wall, p->dim, surface, at, reach, rim, RIMS), corners = count;
+    for (int k = 0; k < rims; k++) {
+        const struct rim *r = &rim[k];
+        vec3 v[2];
+        bool cut[2];
+        struct place found[PLACES_MOST];
+        struct core line = { .n = place_rim(r, wall, pose, c->centre, reach, v, cut), .v = v };
+        if (!line.n) continue;
+        line.centre = v3_scale(0.5, v3_add(v[0], v[line.n - 1]));
+        int n = meet_cores(p->dim, &line, c, gap, found);
+        for (int l = 0; l < n && count < CORNERS; l++) {
+            struct place *f = &found[l];
+            if (!leads_away(r, pose, f->n)) continue;
+            f->x = v3_axpy(f->x, -0.5 * f->gap, f->n); // on the rim
+            if (is_there(place, corners, f->x, near)) continue;
+            int end = p->dim == 2 ? 0 : meet_end(f);
+            f->feature = end >= 0 && !cut[end] ? RIM_KEY | RIM_END | r->corner[end]
+                                               : RIM_KEY | (r->key % (RIM_END / 4) * 4 + l);
+            place[count++] = *f;
+        }
+    }
+    return count;
+}
+
 bool detect_shapes_wall(struct contacts *out, const struct placed *s, int32_t w, int64_t i,
                         double t, double gap, const struct surface *surface)
 {
@@ -209,6 +294,9 @@ bool detect_shapes_wall(struct contacts *out, const struct placed *s, int32_t w,
             }
         }
     }
+    const struct core c = placed_core(s, i, 0);
+    if (cores == 1 && !plane && (c.hull || c.n == 2))
+        count = meet_rims(place, count, p, wall, &pose, surface, &c, p->radius[i], gap);
     if (cores == 1 && plane) count = meet_few(place, count);
     for (int k = 0; k < count; k++)
         if (!add(out, s, -1 - w, (int32_t)i, none, &place[k])) return false;

@@ -102,6 +102,30 @@ static bool try_edges(struct axis *best, const struct core *a, const struct core
     return true;
 }
 
+/* A segment and the edges of a hull: its arc on the unit sphere is a whole circle. of_a: it is a's. */
+static bool try_segment(struct axis *best, const struct core *segment, const struct core *hull,
+                        bool of_a, double handicap, double most)
+{
+    double at_least = best->gap + handicap;
+    vec3 x = segment->v[0], d = v3_sub(segment->v[1], x);
+    for (int32_t i = 0; i < hull->hull->edges; i++) {
+        const struct shape_edge *e = &hull->hull->edge[i];
+        vec3 p = hull->normal[e->left], q = hull->normal[e->right], y = hull->v[e->tail];
+        double pd = v3_dot(p, d), qd = v3_dot(q, d);
+        if (!(pd * qd < 0)) continue;
+        vec3 out = v3_add(v3_scale(fabs(qd), p), v3_scale(fabs(pd), q));
+        vec3 edge = v3_sub(hull->v[e->head], y), across = v3_cross(edge, d);
+        if (v3_dot(across, across) < PARALLEL * v3_dot(edge, edge) * v3_dot(d, d)) continue;
+        out = v3_scale(1 / v3_norm(out), out);
+        double gap = v3_dot(out, v3_sub(x, y));
+        if (gap > most) return false;
+        if (gap > at_least && gap > best->gap)
+            *best = of_a ? (struct axis){ AXIS_EDGES, 0, i, v3_scale(-1, out), gap }
+                         : (struct axis){ AXIS_EDGES, i, 0, out, gap };
+    }
+    return true;
+}
+
 /* ---- places ---- */
 
 /* A corner of a face while it is clipped, and what the edge that begins there is: an edge of the
@@ -197,6 +221,12 @@ static int by_face(int dim, const struct core *face, const struct core *other, i
     return places;
 }
 
+int meet_end(const struct place *p)
+{
+    int32_t which = p->feature >= OF_B ? p->feature - OF_B : p->feature;
+    return which == 0 || which == 1 ? which : -1;
+}
+
 int meet_few(struct place *p, int n)
 {
     if (n <= PLACES_MOST) return n;
@@ -226,13 +256,19 @@ int meet_few(struct place *p, int n)
     return PLACES_MOST;
 }
 
+/* An edge of a hull; a segment is one. */
+static vec3 edge_of(const struct core *c, int32_t k, vec3 *along)
+{
+    int32_t tail = c->hull ? c->hull->edge[k].tail : 0, head = c->hull ? c->hull->edge[k].head : 1;
+    *along = v3_sub(c->v[head], c->v[tail]);
+    return c->v[tail];
+}
+
 /* Two edges that cross: the places on both lines that are nearest, and the middle */
 static int by_edges(const struct core *a, const struct core *b, const struct axis *best,
                     struct place *out)
 {
-    const struct shape_edge *e = &a->hull->edge[best->i], *f = &b->hull->edge[best->j];
-    vec3 p = a->v[e->tail], d = v3_sub(a->v[e->head], p), q = b->v[f->tail],
-         g = v3_sub(b->v[f->head], q), w = v3_sub(q, p);
+    vec3 d, g, p = edge_of(a, best->i, &d), q = edge_of(b, best->j, &g), w = v3_sub(q, p);
     double dd = v3_dot(d, d), gg = v3_dot(g, g), dg = v3_dot(d, g), det = dd * gg - dg * dg;
     double s = (v3_dot(w, d) * gg - v3_dot(w, g) * dg) / det;
     double t = (v3_dot(w, d) * dg - v3_dot(w, g) * dd) / det;
@@ -317,16 +353,23 @@ int meet_cores(int dim, const struct core *a, const struct core *b, double reach
     best.by = AXIS_NONE;
     if (!try_faces(&best, b, a, dim, most, true)) return 0;
     if (of_a.by && (!best.by || of_a.gap + A_FIRST * size >= best.gap)) best = of_a;
-    bool sharp = a->hull && b->hull && round == 0;
+    bool sharp = a->hull && b->hull && round == 0, apart = false;
     if (!sharp && (best.gap > -APART * size || !a->hull || !b->hull)) {
         const struct nearest o = gjk_nearest(a, b);
-        if (o.distance > APART * size) {
+        apart = o.distance > APART * size;
+        if (apart) {
             vec3 n = v3_scale(1 / o.distance, v3_sub(o.b, o.a));
             if (o.distance > most) return 0;
             if (1 - v3_dot(n, best.n) > ALONG) return by_nearest(a, b, &o, reach, out);
         }
     }
     if (a->hull && b->hull && dim == 3 && !try_edges(&best, a, b, FACE_FIRST * size, most))
+        return 0;
+    if (!apart && dim == 3 && !a->hull && a->n == 2 &&
+        !try_segment(&best, a, b, true, FACE_FIRST * size, most))
+        return 0;
+    if (!apart && dim == 3 && !b->hull && b->n == 2 &&
+        !try_segment(&best, b, a, false, FACE_FIRST * size, most))
         return 0;
     if (best.by == AXIS_EDGES) return by_edges(a, b, &best, out);
     int count = best.by == AXIS_FACE_A ? by_face(dim, a, b, best.i, false, reach, out)

@@ -29,6 +29,8 @@ struct place {
 /* Returns how many places have a gap of at most `reach` (m). */
 int meet_cores(int dim, const struct core *a, const struct core *b, double reach,
                struct place place[PLACES_MOST]);
+/* Of a segment and a hull: which end of the segment meets there; -1: none */
+int meet_end(const struct place *place);
 /* Leaves four of n places: the deepest, and those that span most. Returns how many are left. */
 int meet_few(struct place *place, int n);
 

@@ -2,13 +2,10 @@
    from a point [bodies/mesh.h]. */
 #include "bodies/mesh.h"
 
+#include "bodies/surface_tree.h"
+
 #include <stdlib.h>
 #include <string.h>
-
-enum {
-    LEAF = 4,    /* elements that are looked at one by one */
-    FEATURES = 7 /* of a triangle: edges 0 to 2 (from corner k), corners 3 to 5, its inside */
-};
 
 int mesh_alloc(struct mesh *m, int32_t vertices, int32_t elements, struct why *why)
 {
@@ -27,6 +24,22 @@ void mesh_free(struct mesh *m)
 {
     free(m->vertex), free(m->element);
     *m = (struct mesh){ 0 };
+}
+
+int mesh_grow(struct mesh *m, int32_t vertices, int32_t elements, vec3 **vertex,
+              int32_t (**element)[3], struct why *why)
+{
+    if (vertices > INT32_MAX - m->vertices || elements > INT32_MAX - m->elements)
+        return why_set(why, EX_SOFTWARE, "no memory for so many triangles");
+    vec3 *v = realloc(m->vertex, ((size_t)m->vertices + (size_t)vertices + 1) * sizeof *v);
+    if (v) m->vertex = v;
+    int32_t(*e)[3] = realloc(m->element, ((size_t)m->elements + (size_t)elements + 1) * sizeof *e);
+    if (e) m->element = e;
+    if (!v || !e) return why_set(why, EX_SOFTWARE, "no memory for a mesh");
+    *vertex = v + m->vertices, *element = e + m->elements;
+    memset(*vertex, 0, (size_t)vertices * sizeof **vertex);
+    m->vertices += vertices, m->elements += elements;
+    return 0;
 }
 
 int mesh_copy(struct mesh *to, const struct mesh *from, struct why *why)
@@ -60,12 +73,6 @@ int mesh_check(const struct mesh *m, int dim, struct why *why)
 
 /* ---- the tree ---- */
 
-/* Of order[lo .. hi-1]; its halves are in the boxes that follow, the second from `next` on. */
-struct surface_box {
-    vec3 lo, hi;  /* m */
-    int32_t next; /* the index of the second half's box */
-};
-
 static vec3 least(vec3 a, vec3 b)
 {
     return v3(fmin(a.x, b.x), fmin(a.y, b.y), fmin(a.z, b.z));
@@ -98,7 +105,7 @@ static int32_t grow(struct surface *s, struct keyed *room, int32_t lo, int32_t h
             vec3 x = s->at[s->order[i]][k];
             b->lo = least(b->lo, x), b->hi = greatest(b->hi, x);
         }
-    if (hi - lo <= LEAF) return b->next = at + 1;
+    if (hi - lo <= SURFACE_LEAF) return b->next = at + 1;
     vec3 d = v3_sub(b->hi, b->lo);
     int axis = d.x >= d.y && d.x >= d.z ? 0 : d.y >= d.z ? 1 : 2;
     for (int32_t i = lo; i < hi; i++) {
@@ -284,19 +291,7 @@ static void look_at(const struct surface *s, int32_t e, vec3 c, double most, str
         up = v3(-ab.y, ab.x, 0);
     }
     vec3 n_of = distance > 0 ? v3_scale(1 / distance, d) : v3_scale(1 / v3_norm(up), up);
-    touch[(*n)++] = (struct touch){ n_of, distance, FEATURES * e + at.part };
-}
-
-static double beyond(double x, double lo, double hi)
-{
-    return x < lo ? lo - x : x > hi ? x - hi : 0;
-}
-
-static bool is_near(const struct surface_box *b, vec3 c, double most)
-{
-    double x = beyond(c.x, b->lo.x, b->hi.x), y = beyond(c.y, b->lo.y, b->hi.y);
-    double z = beyond(c.z, b->lo.z, b->hi.z);
-    return x * x + y * y + z * z <= most * most * (1 + 1e-12);
+    touch[(*n)++] = (struct touch){ n_of, distance, SURFACE_FEATURES * e + at.part };
 }
 
 static int by_feature(const void *a, const void *b)
@@ -305,27 +300,13 @@ static int by_feature(const void *a, const void *b)
     return (p->feature > q->feature) - (p->feature < q->feature);
 }
 
-/* A box of the tree, over order[lo .. hi-1] */
-struct branch {
-    int32_t box, lo, hi;
-};
-
 int surface_touches(const struct surface *s, vec3 c, double most, struct touch touch[TOUCHES_MOST])
 {
-    struct branch stack[64];
-    int depth = 0, n = 0;
-    stack[depth++] = (struct branch){ 0, 0, s->n };
-    while (depth) {
-        int32_t at = stack[--depth].box, lo = stack[depth].lo, hi = stack[depth].hi;
-        if (!is_near(&s->box[at], c, most)) continue;
-        if (hi - lo <= LEAF) {
-            for (int32_t i = lo; i < hi; i++) look_at(s, s->order[i], c, most, touch, &n);
-            continue;
-        }
-        int32_t middle = lo + (hi - lo) / 2;
-        stack[depth++] = (struct branch){ s->box[at].next, middle, hi };
-        stack[depth++] = (struct branch){ at + 1, lo, middle };
-    }
+    struct surface_walk walk = surface_walk_begin(s);
+    struct surface_branch leaf;
+    int n = 0;
+    while (surface_walk_next(&walk, s, c, most, &leaf))
+        for (int32_t i = leaf.lo; i < leaf.hi; i++) look_at(s, s->order[i], c, most, touch, &n);
     qsort(touch, (size_t)n, sizeof *touch, by_feature);
     return n;
 }

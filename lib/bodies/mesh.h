@@ -23,6 +23,10 @@ struct mesh {
 /* Room for so many, all zero, in place of the old ones. Returns 0 or EX_SOFTWARE. */
 int mesh_alloc(struct mesh *m, int32_t vertices, int32_t elements, struct why *why);
 void mesh_free(struct mesh *m);
+/* Room for more at its end, where the caller fills it in; vertices are counted from the mesh's first.
+   Returns 0 or EX_SOFTWARE. */
+int mesh_grow(struct mesh *m, int32_t vertices, int32_t elements, vec3 **vertex,
+              int32_t (**element)[3], struct why *why);
 int mesh_copy(struct mesh *to, const struct mesh *from, struct why *why);
 /* Are vertices finite, and elements of vertices that are there, with an extent? Returns 0, or EX_DATAERR
    with the first that is not. */

@@ -6,8 +6,9 @@
 
 const char *const shape_form_name[SHAPE_FORMS] = { "ball", "clump", "capsule", "hull" };
 
-/* Of the radius: faces are flat, and vertices behind them, to this */
-static const double FLAT = 1e-7;
+/* Of the radius: faces are flat, and vertices behind them, to this: files of triangles are written in
+   single precision, and what overlaps at rest does so by 1e-4. */
+static const double FLAT = 1e-6;
 
 int shape_alloc(struct shape *s, int32_t vertices, int32_t faces, int32_t corners, struct why *why)
 {

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-const char *const part_name[PART_COUNT] = { "grains", "contacts", "boundary", "cell" };
+const char *const part_name[PART_COUNT] = { "grains", "contacts", "boundary", "cell", "surfaces" };
 
 /* m: the least and the greatest of (direction . x) -+ radius over the grains; 0 and 1 without any */
 static void reach(const struct packing *p, vec3 direction, double *lo, double *hi)

@@ -1,6 +1,6 @@
 /*
  * export/moment.h: what is exported of one moment, and the parts of it: grains, contacts, boundaries,
- * the cell. Files of other programs take either a part as a sheet (export/sheet.h), or the grains.
+ * the cell, the surfaces of grains that are no balls. Files of other programs take either a part as a sheet (export/sheet.h), or the grains.
  */
 #ifndef NSD_MOMENT_H
 #define NSD_MOMENT_H
@@ -8,7 +8,7 @@
 #include "bodies/contact.h"
 #include "bodies/packing.h"
 
-enum part { PART_GRAINS, PART_CONTACTS, PART_BOUNDARY, PART_CELL, PART_COUNT };
+enum part { PART_GRAINS, PART_CONTACTS, PART_BOUNDARY, PART_CELL, PART_SURFACES, PART_COUNT };
 extern const char *const part_name[PART_COUNT];
 
 struct moment {

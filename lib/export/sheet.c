@@ -12,9 +12,9 @@ void sheet_free(struct sheet *s)
 
 int sheet_of(struct sheet *s, enum part part, const struct moment *m, struct why *why)
 {
-    static int (*const fill[PART_COUNT])(struct sheet *, const struct moment *,
-                                         struct why *) = { sheet_grains, sheet_contacts,
-                                                           sheet_boundary, sheet_box };
+    static int (*const fill[PART_COUNT])(struct sheet *, const struct moment *, struct why *) = {
+        sheet_grains, sheet_contacts, sheet_boundary, sheet_box, sheet_surfaces
+    };
     *s = (struct sheet){ .shape = SHEET_POINT };
     if (fill[part](s, m, why)) sheet_free(s);
     return why->status;

@@ -46,6 +46,7 @@ static inline int64_t sheet_rows(const struct sheet *s)
 int sheet_grains(struct sheet *s, const struct moment *m, struct why *why);
 int sheet_contacts(struct sheet *s, const struct moment *m, struct why *why);
 int sheet_boundary(struct sheet *s, const struct moment *m, struct why *why);
+int sheet_surfaces(struct sheet *s, const struct moment *m, struct why *why);
 int sheet_box(struct sheet *s, const struct moment *m, struct why *why);
 
 /* One cell more, of these corners. */

@@ -24,7 +24,7 @@ int flow_read(struct flow *f, const struct packing *p, struct why *why)
     if (!packing_varies(p)) return 0;
     if (!p->scene)
         return why_set(why, EX_DATAERR, "bodies come and go, and there is no scene that says how");
-    if (scene_parse(&f->scene, p->scene, strlen(p->scene), why)) return why->status;
+    if (scene_parse(&f->scene, p->scene, strlen(p->scene), NULL, why)) return why->status;
     if (f->scene.pours == p->pours && f->scene.removals == p->removals &&
         f->scene.kinds == p->kinds && f->scene.dim == p->dim && same_shapes(&f->scene, p))
         return 0;

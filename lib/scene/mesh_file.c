@@ -55,7 +55,7 @@ static vec3 vertex_of(const struct aiVector3D *v, const struct aiMatrix4x4 *m, d
 /* What is gathered from a file's tree of nodes */
 struct gather {
     const struct aiScene *file;
-    struct scene *scene;
+    struct mesh *mesh;
     double scale;
     struct why *why;
 };
@@ -63,11 +63,11 @@ struct gather {
 static int add_mesh(const struct gather *g, const struct aiMesh *m, const struct aiMatrix4x4 *at)
 {
     vec3 *vertex;
-    int32_t(*element)[3], first = g->scene->mesh.vertices, n = 0;
+    int32_t(*element)[3], first = g->mesh->vertices, n = 0;
     if (m->mNumVertices > 1 << 28 || m->mNumFaces > 1 << 28)
         return why_set(g->why, EX_DATAERR, "more triangles than a mesh may have");
-    if (scene_grow_mesh(g->scene, (int32_t)m->mNumVertices, (int32_t)m->mNumFaces, &vertex,
-                        &element, g->why))
+    if (mesh_grow(g->mesh, (int32_t)m->mNumVertices, (int32_t)m->mNumFaces, &vertex, &element,
+                  g->why))
         return g->why->status;
     for (unsigned i = 0; i < m->mNumVertices; i++)
         vertex[i] = vertex_of(&m->mVertices[i], at, g->scale);
@@ -82,7 +82,7 @@ static int add_mesh(const struct gather *g, const struct aiMesh *m, const struct
         for (int k = 0; k < 3; k++) element[n][k] = first + (int32_t)v[k];
         n++;
     }
-    g->scene->mesh.elements -= (int32_t)m->mNumFaces - n;
+    g->mesh->elements -= (int32_t)m->mNumFaces - n;
     return 0;
 }
 
@@ -105,9 +105,8 @@ static int add_node(const struct gather *g, const struct aiNode *node, const str
     return 0;
 }
 
-static int read_file(struct scene *s, const struct scene_mesh *m, const char *path, struct why *why)
+static int read_path(struct mesh *to, const char *path, double scale, struct why *why)
 {
-    struct wall *w = &s->wall[m->wall];
     if (access(path, R_OK)) return why_set(why, EX_NOINPUT, "%s: cannot be read", path);
     if (load(why)) return why->status;
     const struct aiScene *file = assimp.import(path, aiProcess_Triangulate);
@@ -118,23 +117,32 @@ static int read_file(struct scene *s, const struct scene_mesh *m, const char *pa
     }
     struct aiMatrix4x4 one;
     assimp.identity(&one);
-    const struct gather g = { file, s, m->scale, why };
-    w->first_element = s->mesh.elements;
+    const struct gather g = { file, to, scale, why };
+    int32_t before = to->elements;
     add_node(&g, file->mRootNode, &one);
-    w->elements = s->mesh.elements - w->first_element;
     assimp.release(file);
     if (why->status) return why->status;
-    return w->elements ? 0 : why_set(why, EX_DATAERR, "%s: no triangles", path);
+    return to->elements > before ? 0 : why_set(why, EX_DATAERR, "%s: no triangles", path);
+}
+
+int mesh_file_read(struct mesh *to, const char *dir, const char *name, double scale,
+                   struct why *why)
+{
+    char *path = scene_path(dir, name);
+    if (!path) return why_set(why, EX_SOFTWARE, "no memory for a name");
+    read_path(to, path, scale, why);
+    free(path);
+    return why->status;
 }
 
 int mesh_files_read(struct scene *s, const char *dir, struct why *why)
 {
     for (int32_t k = 0; k < s->meshes && !why->status; k++) {
         const struct scene_mesh *m = &s->mesh_file[k];
-        char *path = scene_path(dir, m->file);
-        if (!path) return why_set(why, EX_SOFTWARE, "no memory for a name");
-        read_file(s, m, path, why);
-        free(path);
+        struct wall *w = &s->wall[m->wall];
+        w->first_element = s->mesh.elements;
+        if (mesh_file_read(&s->mesh, dir, m->file, m->scale, why)) return why->status;
+        w->elements = s->mesh.elements - w->first_element;
     }
-    return why->status;
+    return 0;
 }

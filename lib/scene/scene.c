@@ -48,20 +48,3 @@ char *scene_path(const char *dir, const char *name)
     if (path) snprintf(path, room, "%s%s%s", whole ? "" : dir, whole ? "" : "/", name);
     return path;
 }
-
-int scene_grow_mesh(struct scene *s, int32_t vertices, int32_t elements, vec3 **vertex,
-                    int32_t (**element)[3], struct why *why)
-{
-    struct mesh *m = &s->mesh;
-    if (vertices > INT32_MAX - m->vertices || elements > INT32_MAX - m->elements)
-        return why_set(why, EX_SOFTWARE, "no memory for so many triangles");
-    vec3 *v = realloc(m->vertex, ((size_t)m->vertices + (size_t)vertices + 1) * sizeof *v);
-    if (v) m->vertex = v;
-    int32_t(*e)[3] = realloc(m->element, ((size_t)m->elements + (size_t)elements + 1) * sizeof *e);
-    if (e) m->element = e;
-    if (!v || !e) return why_set(why, EX_SOFTWARE, "no memory for a mesh");
-    *vertex = v + m->vertices, *element = e + m->elements;
-    memset(*vertex, 0, (size_t)vertices * sizeof **vertex);
-    m->vertices += vertices, m->elements += elements;
-    return 0;
-}

@@ -208,8 +208,8 @@ struct scene_removal {
     int32_t kind;       /* only bodies of this kind; -1: of all */
 };
 
-/* A boundary whose triangles are in a file: whoever can read it adds them, with scene_add_mesh(), before
-   the scene is built. */
+/* A boundary whose triangles are in a file: whoever can read it adds them, with mesh_grow(), before the
+   scene is built. */
 struct scene_mesh {
     int32_t wall;
     char *file;
@@ -262,7 +262,9 @@ struct scene {
     struct shapes shapes;      /* of grains */
     struct scene_solid *solid; /* [shapes.n] */
 
-    char *text; /* the JSON, without blanks outside strings */
+    const struct scene_files *files; /* while it is parsed */
+    bool rewritten;                  /* the JSON, which now has what was in files */
+    char *text;                      /* the JSON, without blanks outside strings */
 };
 
 /* Cells of a lattice along each axis, filled along x, then y, then z; and their edges (m). */
@@ -271,16 +273,22 @@ struct scene_lattice {
 };
 struct scene_lattice scene_lattice(const struct scene_bodies *b, int dim);
 
-/* Returns 0, EX_DATAERR or EX_SOFTWARE; *s needs to be freed only after 0. */
-int scene_parse(struct scene *s, const char *text, size_t length, struct why *why);
+/* Who reads the triangles of a file, `scale` m a unit of it, and adds them to a mesh. What parses scenes
+   out of documents has none: those name no files. */
+struct scene_files {
+    const char *dir; /* that names are relative to; NULL: the current folder */
+    int (*read_mesh)(struct mesh *to, const char *dir, const char *name, double scale,
+                     struct why *why);
+};
+
+/* files: NULL where shapes of grains must not be in files; the scene's text then has what was in them.
+   Returns 0, EX_DATAERR, EX_NOINPUT or EX_SOFTWARE; *s needs to be freed only after 0. */
+int scene_parse(struct scene *s, const char *text, size_t length, const struct scene_files *files,
+                struct why *why);
 void scene_free(struct scene *s);
 /* A file that the scene names, where names are relative to dir (NULL: to the current folder); to be freed.
    NULL: no memory. */
 char *scene_path(const char *dir, const char *name);
-/* Room for more of the mesh, at its end, where the caller fills it in; vertices are counted from the
-   mesh's first. Returns 0 or EX_SOFTWARE. */
-int scene_grow_mesh(struct scene *s, int32_t vertices, int32_t elements, vec3 **vertex,
-                    int32_t (**element)[3], struct why *why);
 
 /*
  * The paper's sedimentation of n balls (dim 3) or discs (dim 2): example 3 for n = 500, example 2

@@ -77,13 +77,15 @@ static int read_scene(jnode o, struct scene *s)
     return 0;
 }
 
-int scene_parse(struct scene *s, const char *text, size_t length, struct why *why)
+int scene_parse(struct scene *s, const char *text, size_t length, const struct scene_files *files,
+                struct why *why)
 {
     struct json_doc t;
-    *s = (struct scene){ .theta = 0.5 };
+    *s = (struct scene){ .theta = 0.5, .files = files };
     if (json_doc_parse(&t, text, length, why)) return why->status;
     int bad = read_scene(json_doc_root(&t), s);
-    if (!bad && !(s->text = compact(t.text)))
+    s->files = NULL;
+    if (!bad && !(s->text = s->rewritten ? json_dumps(t.root, JSON_COMPACT) : compact(t.text)))
         bad = why_set(why, EX_SOFTWARE, "no memory for the scene's text");
     json_doc_free(&t);
     if (bad) scene_free(s);

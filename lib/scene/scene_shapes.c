@@ -214,7 +214,7 @@ static int read_polygon(jnode o, struct scene *s, struct wall *w)
     int32_t(*element)[3];
     w->first_element = s->mesh.elements, w->elements = segments;
     int32_t first = s->mesh.vertices;
-    if (scene_grow_mesh(s, (int32_t)n, segments, &vertex, &element, a.in->why)) return 1;
+    if (mesh_grow(&s->mesh, (int32_t)n, segments, &vertex, &element, a.in->why)) return 1;
     for (size_t i = 0; i < n; i++)
         if (json_node_vector(json_node_item(&a, i), 2, &vertex[i])) return 1;
     for (int32_t k = 0; k < segments; k++) {

@@ -1,14 +1,16 @@
 /* scene/scene_solids.c: "shapes" of grains from their JSON, and the shape of a group. */
 #include "bodies/solid.h"
 #include "scene/hull.h"
+#include "scene/mesh_shape.h"
 #include "scene/scene_read.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum {
-    SIDES_MOST = 256,     /* of a regular polygon */
-    POINTS_MOST = 1 << 20 /* of a hull */
+    SIDES_MOST = 256,      /* of a regular polygon */
+    POINTS_MOST = 1 << 20, /* of a hull */
+    SEGMENTS_MOST = 31     /* of a superquadric between two of its axes: 4 n^2 + 2 corners */
 };
 
 /* A box by its faces, corners from -a/2 to a/2 */
@@ -106,7 +108,7 @@ static int read_hull(jnode o, struct shape *s, int dim)
     vec3 *x = read_points(points, dim, (size_t)dim + 1, POINTS_MOST, &n);
     struct why why = { 0 };
     if (!x) return 1;
-    hull_of_points(s, dim, (int64_t)n, x, &why);
+    hull_of_points(s, dim, (int64_t)n, x, HULL_FLAT, &why);
     free(x);
     if (why.status == EX_DATAERR) return json_node_fault(points, "%s", why.text);
     return why.status ? why_set(o.in->why, why.status, "%s", why.text) : 0;
@@ -187,10 +189,113 @@ static int read_regular(jnode o, struct shape *s, int dim)
     return 0;
 }
 
-static int read_form(jnode o, struct shape *s, int dim)
+/* In place of the key "mesh" of the scene's JSON, what its file has: documents keep the scene, and name
+   no files. */
+static int rewrite(jnode o, const struct shape *s, struct scene *scene)
 {
-    static const char plane[] = "box capsule balls points regular polygon",
-                      space[] = "box capsule balls points regular vertices";
+    json_t *vertices = json_array(), *faces = json_array();
+    for (int32_t i = 0; i < s->vertices; i++) {
+        vec3 x = s->vertex[i];
+        json_array_append_new(vertices, json_pack("[f, f, f]", x.x, x.y, x.z));
+    }
+    for (int32_t f = 0; f < s->faces; f++) {
+        json_t *face = json_array();
+        for (int32_t i = s->first[f]; i < s->first[f + 1]; i++)
+            json_array_append_new(face, json_integer(s->corner[i]));
+        json_array_append_new(faces, face);
+    }
+    bool bad = json_object_set_new(o.json, "vertices", vertices) ||
+               json_object_set_new(o.json, "faces", faces) || json_object_del(o.json, "mesh");
+    scene->rewritten = true;
+    return bad ? why_set(o.in->why, EX_SOFTWARE, "no memory for the scene's text") : 0;
+}
+
+/* A polyhedron from the triangles of a file */
+static int read_mesh(jnode o, struct shape *s, struct scene *scene)
+{
+    const char *name = NULL;
+    double scale = 1;
+    bool hull = false;
+    struct mesh mesh = { 0 };
+    struct why why = { 0 };
+    jnode m = json_node_key(&o, "mesh");
+    if (json_node_only(m, "file scale hull") || json_node_need(&m, "file") ||
+        json_node_text(json_node_key(&m, "file"), &name) ||
+        json_node_number(json_node_key(&m, "scale"), J_POSITIVE, &scale) ||
+        json_node_bool(json_node_key(&m, "hull"), &hull))
+        return 1;
+    if (!scene->files) return json_node_fault(m, "no files are read for what is in a document");
+    if (!scene->files->read_mesh(&mesh, scene->files->dir, name, scale, &why) &&
+        mesh_shape(s, &mesh, hull, &why) && why.status == EX_DATAERR)
+        json_node_fault(m, "%s: %s%s", name, why.text,
+                        hull ? "" : " (\"hull\": true asks for less)");
+    else if (why.status)
+        json_node_fault(m, "%s", why.text);
+    if (why.status) o.in->why->status = why.status;
+    mesh_free(&mesh);
+    return why.status ? why.status : rewrite(o, s, scene);
+}
+
+/* x^p for x in [0, 1], the same on every machine: the last bits of pow() are not. */
+static double power(double x, double p)
+{
+    return (double)(float)pow(x, p);
+}
+
+/*
+ * (|x/a|^n + |y/b|^n)^(m/n) + |z/c|^m = 1 at the places a R cos^(2/n), b R sin^(2/n), c d_z^(2/m) with
+ * R = (1 - d_z^2)^(1/m) [Barr 1981], one for each direction d of a grid on the octahedron. So corners are
+ * close where the surface is bent most.
+ */
+static int read_superquadric(jnode o, struct shape *s, int dim)
+{
+    vec3 a = v3(1, 1, 1);
+    double n = 2, m = 2;
+    int64_t segments = dim == 2 ? 16 : 5, count = 0;
+    jnode q = json_node_key(&o, "superquadric"), e = json_node_key(&q, "exponents");
+    if (json_node_only(q, "radii exponents segments") || json_node_need(&q, "radii exponents") ||
+        json_node_vector(json_node_key(&q, "radii"), dim, &a) ||
+        json_node_integer(json_node_key(&q, "segments"), 2, SEGMENTS_MOST, &segments))
+        return 1;
+    if (!(a.x > 0 && a.y > 0 && (dim == 2 || a.z > 0)))
+        return json_node_fault(json_node_key(&q, "radii"), "must be positive");
+    size_t exponents;
+    if (json_node_array(e, &exponents)) return 1;
+    if (exponents != (size_t)dim - 1)
+        return json_node_fault(e, dim == 2 ? "wants one number" : "wants two numbers");
+    if (json_node_number(json_node_item(&e, 0), J_POSITIVE, &n) ||
+        (dim == 3 && json_node_number(json_node_item(&e, 1), J_POSITIVE, &m)))
+        return 1;
+    if (!(n >= 1 && m >= 1 && n <= 100 && m <= 100))
+        return json_node_fault(e, "must lie in [1, 100]: below 1 it is not convex");
+    int N = (int)segments;
+    vec3 *x = scene_alloc(q, (size_t)(4 * N * N + 2), sizeof *x);
+    if (!x) return 1;
+    for (int i = -N; i <= N; i++)
+        for (int j = -N; j <= N; j++) {
+            int rest = N - abs(i) - abs(j);
+            if (rest < 0 || (dim == 2 && rest)) continue;
+            for (int k = -rest; k <= rest; k += rest ? 2 * rest : 1) {
+                double length = sqrt(i * i + j * j + k * k), across = sqrt(i * i + j * j);
+                double R = dim == 2 ? 1 : power(across / length, 2 / m);
+                double cx = across > 0 ? power(abs(i) / across, 2 / n) : 0;
+                double cy = across > 0 ? power(abs(j) / across, 2 / n) : 0;
+                x[count++] = v3(copysign(a.x * R * cx, i), copysign(a.y * R * cy, j),
+                                copysign(a.z * power(abs(k) / length, 2 / m), k));
+            }
+        }
+    struct why why = { 0 };
+    hull_of_points(s, dim, count, x, HULL_FLAT_SINGLE, &why);
+    free(x);
+    if (why.status == EX_DATAERR) return json_node_fault(q, "%s", why.text);
+    return why.status ? why_set(o.in->why, why.status, "%s", why.text) : 0;
+}
+
+static int read_form(jnode o, struct shape *s, struct scene *scene)
+{
+    int dim = scene->dim;
+    static const char plane[] = "box capsule balls points regular superquadric polygon",
+                      space[] = "box capsule balls points regular superquadric vertices mesh";
     int which = json_node_choice(o, dim == 2 ? plane : space);
     if (which < 0) return 1;
     bool rounded = which != 1 && which != 2;
@@ -199,13 +304,15 @@ static int read_form(jnode o, struct shape *s, int dim)
              rounded ? " round" : "");
     s->form = SHAPE_HULL;
     if (json_node_only(o, keys)) return 1;
-    if (which != 5 && json_node_key(&o, "faces").json)
+    if ((dim == 2 || which != 6) && json_node_key(&o, "faces").json)
         return json_node_fault(json_node_key(&o, "faces"), "goes with vertices");
     return which == 0   ? read_box(o, s, dim)
            : which == 1 ? read_capsule(o, s)
            : which == 2 ? read_balls(o, s, dim)
            : which == 3 ? read_hull(o, s, dim)
            : which == 4 ? read_regular(o, s, dim)
+           : which == 5 ? read_superquadric(o, s, dim)
+           : which == 7 ? read_mesh(o, s, scene)
            : dim == 2   ? read_polygon(o, s)
                         : read_polyhedron(o, s);
 }
@@ -224,7 +331,7 @@ static int read_shape(jnode o, struct scene *s, const char *name)
 {
     struct shape shape = { 0 };
     struct scene_solid solid = { 0 };
-    int bad = read_form(o, &shape, s->dim);
+    int bad = read_form(o, &shape, s);
     bool hull = shape.form == SHAPE_HULL;
     bad = bad || (hull && json_node_number(json_node_key(&o, "round"), J_POSITIVE, &shape.round));
     for (int32_t i = 0; !bad && shape.form != SHAPE_CLUMP && i < shape.vertices; i++)

@@ -13,7 +13,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     char *text = malloc(size + 1); // the parser gets no byte behind its text
     if (!text) abort();
     memcpy(text, data, size);
-    int e = scene_parse(&scene, text, size, &why);
+    int e = scene_parse(&scene, text, size, NULL, &why);
     free(text);
     if (e) {
         if (!why.status || !why.text[0] || strchr(why.text, '\n')) abort();

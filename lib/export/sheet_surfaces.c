@@ -1,0 +1,67 @@
+/* export/sheet_surfaces.c: the surfaces of grains that are no balls, as polygons: a cell for each. */
+#include "export/facets.h"
+#include "export/sheet.h"
+
+#include <stdlib.h>
+
+/* Which grain each cell is of */
+struct cells {
+    struct sheet *s;
+    int64_t grain, room;
+    int32_t *of;
+    struct why *why;
+};
+
+static void add_cell(void *to, int corners, const vec3 *x)
+{
+    struct cells *c = to;
+    if (c->why->status) return;
+    if (c->s->cells == c->room) {
+        int64_t room = 2 * c->room + 64;
+        int32_t *of = realloc(c->of, (size_t)room * sizeof *of);
+        if (!of) {
+            why_set(c->why, EX_SOFTWARE, "no memory for the surfaces of the grains");
+            return;
+        }
+        c->of = of, c->room = room;
+    }
+    c->of[c->s->cells] = (int32_t)c->grain;
+    sheet_add(c->s, corners, x, c->why);
+}
+
+static void put(double *out, int64_t k, vec3 x)
+{
+    out[3 * k] = x.x, out[3 * k + 1] = x.y, out[3 * k + 2] = x.z;
+}
+
+static void add_columns(struct sheet *s, const int32_t *of, const struct packing *p,
+                        struct why *why)
+{
+    int32_t *id = sheet_whole(s, "id", "", why), *kind = sheet_whole(s, "kind", "", why),
+            *shape = sheet_whole(s, "shape", "", why);
+    double *radius = sheet_real(s, "radius", "", why), *mass = sheet_real(s, "mass", "", why);
+    double *v = sheet_real(s, "velocity", "xyz", why);
+    double *w = sheet_real(s, "angular_velocity", "xyz", why);
+    if (why->status) return;
+    for (int64_t k = 0; k < s->cells; k++) {
+        int32_t i = of[k];
+        id[k] = p->id[i], kind[k] = p->kind[i], shape[k] = p->shape[i];
+        radius[k] = p->radius[i], mass[k] = p->mass[i];
+        put(v, k, p->v[i]), put(w, k, p->w[i]);
+    }
+}
+
+int sheet_surfaces(struct sheet *s, const struct moment *m, struct why *why)
+{
+    const struct packing *p = m->packing;
+    struct cells c = { .s = s, .why = why };
+    struct facets f;
+    s->shape = SHEET_POLYGON;
+    if (facets_init(&f, m->detail, why)) return why->status;
+    for (c.grain = 0; c.grain < p->n && !why->status; c.grain++)
+        if (packing_shape(p, c.grain)) facets_of(&f, p, c.grain, add_cell, &c);
+    if (!why->status) add_columns(s, c.of, p, why);
+    facets_free(&f);
+    free(c.of);
+    return why->status;
+}

@@ -1,0 +1,139 @@
+#include "scene/mesh_shape.h"
+
+#include "bodies/solid.h"
+#include "scene/hull.h"
+
+#include <stdlib.h>
+
+/* Of the hull's volume: the surface has it to this. Single precision makes 1e-7 of it. */
+static const double CONVEX = 1e-5;
+
+static int no_memory(struct why *why)
+{
+    return why_set(why, EX_SOFTWARE, "no memory for a mesh");
+}
+
+struct corner {
+    vec3 x;
+    int32_t vertex;
+};
+
+static int by_place(const void *one, const void *other)
+{
+    const struct corner *a = one, *b = other;
+    if (a->x.x != b->x.x) return a->x.x < b->x.x ? -1 : 1;
+    if (a->x.y != b->x.y) return a->x.y < b->x.y ? -1 : 1;
+    if (a->x.z != b->x.z) return a->x.z < b->x.z ? -1 : 1;
+    return (a->vertex > b->vertex) - (a->vertex < b->vertex);
+}
+
+/* to[v] = the first of the vertices that lie where v does: an STL file has one once a triangle. */
+static int weld(int32_t *to, const struct mesh *m, struct why *why)
+{
+    struct corner *c = malloc(((size_t)m->vertices + 1) * sizeof *c);
+    if (!c) return no_memory(why);
+    for (int32_t i = 0; i < m->vertices; i++) c[i] = (struct corner){ m->vertex[i], i };
+    qsort(c, (size_t)m->vertices, sizeof *c, by_place);
+    for (int32_t i = 0; i < m->vertices; i++) {
+        bool same =
+            i && c[i].x.x == c[i - 1].x.x && c[i].x.y == c[i - 1].x.y && c[i].x.z == c[i - 1].x.z;
+        to[c[i].vertex] = same ? to[c[i - 1].vertex] : c[i].vertex;
+    }
+    free(c);
+    return 0;
+}
+
+/* A side of a triangle, from the lesser vertex to the greater or back */
+struct side {
+    int32_t lo, hi, back, triangle;
+};
+
+static int by_vertices(const void *one, const void *other)
+{
+    const struct side *a = one, *b = other;
+    if (a->lo != b->lo) return a->lo < b->lo ? -1 : 1;
+    if (a->hi != b->hi) return a->hi < b->hi ? -1 : 1;
+    if (a->back != b->back) return a->back - b->back;
+    return (a->triangle > b->triangle) - (a->triangle < b->triangle);
+}
+
+static int judge_sides(const struct side *side, int32_t n, struct why *why)
+{
+    for (int32_t k = 0, end; k < n; k = end) {
+        const struct side *a = &side[k];
+        for (end = k + 1; end < n && side[end].lo == a->lo && side[end].hi == a->hi;) end++;
+        if (end - k == 1)
+            return why_set(why, EX_DATAERR, "is open: triangle %d has a side without a neighbour",
+                           a->triangle);
+        if (end - k > 2)
+            return why_set(why, EX_DATAERR, "more than two triangles share a side of triangle %d",
+                           a->triangle);
+        if (a->back == side[k + 1].back)
+            return why_set(why, EX_DATAERR,
+                           "of triangles %d and %d, which share a side, one is turned inside out",
+                           a->triangle, side[k + 1].triangle);
+    }
+    return 0;
+}
+
+/* Is every side that of two triangles, once either way? */
+static int judge_closed(const struct mesh *m, const int32_t *place, struct why *why)
+{
+    struct side *side = malloc((3 * (size_t)m->elements + 1) * sizeof *side);
+    if (!side) return no_memory(why);
+    for (int32_t i = 0; i < m->elements; i++)
+        for (int k = 0; k < 3; k++) {
+            int32_t a = place[m->element[i][k]], b = place[m->element[i][(k + 1) % 3]];
+            side[3 * i + k] = (struct side){ a < b ? a : b, a < b ? b : a, a > b, i };
+        }
+    qsort(side, 3 * (size_t)m->elements, sizeof *side, by_vertices);
+    judge_sides(side, 3 * m->elements, why);
+    free(side);
+    return why->status;
+}
+
+/* m^3: within the triangles, by the divergence theorem, about one of the corners */
+static double volume_of(const struct mesh *m)
+{
+    double sum = 0;
+    vec3 o = m->vertex[m->element[0][0]];
+    for (int32_t i = 0; i < m->elements; i++) {
+        const int32_t *e = m->element[i];
+        vec3 a = v3_sub(m->vertex[e[0]], o), b = v3_sub(m->vertex[e[1]], o),
+             c = v3_sub(m->vertex[e[2]], o);
+        sum += v3_dot(a, v3_cross(b, c)) / 6;
+    }
+    return sum;
+}
+
+static int judge_convex(const struct mesh *m, const struct shape *s, struct why *why)
+{
+    struct solid hull;
+    double volume = volume_of(m);
+    if (solid_of(&hull, s, 3, why)) return why->status;
+    if (volume < 0) return why_set(why, EX_DATAERR, "is turned inside out");
+    if (fabs(volume - hull.volume) > CONVEX * hull.volume)
+        return why_set(why, EX_DATAERR,
+                       "is not convex: its volume is %.6g m^3, that of its hull %.6g m^3", volume,
+                       hull.volume);
+    return 0;
+}
+
+int mesh_shape(struct shape *s, const struct mesh *m, bool hull, struct why *why)
+{
+    int32_t *place = malloc(((size_t)m->vertices + 1) * sizeof *place), n = 0;
+    vec3 *x = malloc(((size_t)m->vertices + 1) * sizeof *x);
+    bool *used = calloc((size_t)m->vertices + 1, sizeof *used);
+    if (!place || !x || !used)
+        no_memory(why);
+    else if (!mesh_check(m, 3, why) && !weld(place, m, why) &&
+             (hull || !judge_closed(m, place, why))) {
+        for (int32_t i = 0; i < m->elements; i++)
+            for (int k = 0; k < 3; k++) used[place[m->element[i][k]]] = true;
+        for (int32_t i = 0; i < m->vertices; i++)
+            if (used[i]) x[n++] = m->vertex[i];
+        if (!hull_of_points(s, 3, n, x, HULL_FLAT_SINGLE, why) && !hull) judge_convex(m, s, why);
+    }
+    free(place), free(x), free(used);
+    return why->status;
+}

@@ -1,0 +1,19 @@
+/*
+ * scene/mesh_shape.h: the convex shape of a grain from the triangles of a file [scene/mesh_file.h].
+ *
+ * The triangles are to be the surface of a convex body as they stand: closed, each edge the side of two
+ * of them, once either way; outward; with the volume of their convex hull to 1e-5. Corners of triangles
+ * that lie in one place are one. What is taken is then the hull, whose faces are as large as they can be,
+ * not triangles. Or the hull of the corners is wanted, and of the triangles nothing is asked.
+ */
+#ifndef NSD_MESH_SHAPE_H
+#define NSD_MESH_SHAPE_H
+
+#include "bodies/mesh.h"
+#include "bodies/shape.h"
+
+/* s's vertices (m), faces and corners. hull: of the corners, whatever the triangles are. Returns 0,
+   EX_DATAERR with what is wrong with the surface, or EX_SOFTWARE. */
+int mesh_shape(struct shape *s, const struct mesh *m, bool hull, struct why *why);
+
+#endif
