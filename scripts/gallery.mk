@@ -9,7 +9,7 @@ QUICK ?=
 OUT   ?= build/gallery$(if $(QUICK),-quick)
 KEEP  ?= docs/gallery
 P     := scripts/gallery
-ALL   := drum silo plane-shear triaxial collapse incline vibrated isotropic
+ALL   := drum silo plane-shear triaxial collapse incline vibrated isotropic repose wet-column wet-drum
 ONLY  ?= $(ALL)
 export PATH := $(CURDIR)/build:$(PATH)
 export QUICK

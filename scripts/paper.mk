@@ -7,6 +7,7 @@
 #   paper     the paper's own: alpha 0.6 (sbp, sal) or 1 (ebp, eal), the plain Newton, its error absolute
 #   plain-A   table 4: alpha A, the plain Newton
 #   line-A    the same with nsd's line search
+#   bond      nsd's, with bonds of BOND weights wherever grains touch
 # Always Gauss-Seidel, the paper's criterion, its tolerance and its limit of sweeps, and nothing done about overlap,
 # whatever the tools' defaults.
 #
@@ -65,6 +66,13 @@ TABLE4 := $(foreach s,example3 example3-2d,$(foreach a,$(ALPHAS),$(METHODS:%=$s_
           $s_plain-$a_ebp $s_plain-$a_eal))
 RUNS   := $(TABLES) $(TABLE2) $(BOXED) $(PILED) $(TABLE4)
 
+# The same with adhesion: balls, nsd's settings. A bond bears BOND weights of a ball: in example 3 a third of the bonds
+# is whole at the end, most of the others are damaged.
+BOND        := 30
+BOND_SEEDS  := $(if $(QUICK),1 2 3,$(SEEDS))
+BOND_ROUNDS := $(if $(QUICK),1,1 2 3 4 5)
+BONDED      := $(foreach m,$(METHODS) exact,example1_bond_$m $(BOND_SEEDS:%=example2_bond_$m_%) example3_bond_$m)
+
 # ---- one run ----
 
 part      = $(word $1,$(subst _, ,$*))
@@ -86,7 +94,8 @@ options         = $(options_$(firstword $(subst -, ,$(settings)))) $(if $(alpha)
 steps           = $(if $(alpha),$(n_alpha),$(n_$(example)))
 
 # The scene with the run's seed and box, as a packing
-packing = jq -f $P/scene.jq --arg seed '$(seed)' --arg box '$(box)' scenes/paper/$(scene).json | nsd-gen -
+bond    = $(if $(filter bond,$(settings)),| jq -f $P/bond.jq --argjson weights $(BOND))
+packing = jq -f $P/scene.jq --arg seed '$(seed)' --arg box '$(box)' scenes/paper/$(scene).json $(bond) | nsd-gen -
 
 # The last two frames: the last solve can be made again. Exit status 1: a solve diverged, the run ends.
 $(OUT)/runs/%.h5 $(OUT)/runs/%.log: | $(OUT)/runs
@@ -94,7 +103,7 @@ $(OUT)/runs/%.h5 $(OUT)/runs/%.log: | $(OUT)/runs
 	@$(packing) | nsd-step -m $(method) -n $(steps) $(options) --every $$(($(steps) - 1)) \
 	    --log $(@D)/$*.part -o $(@D)/$*.h5 2> $(@D)/$*.err || [ $$? = 1 ]
 	@mv $(@D)/$*.part $(@D)/$*.log
-	@echo "paper: $$(find $(@D) -name '*.log' | wc -l) of $(words $(RUNS)): $*: $$(tail -n 1 $(@D)/$*.err)" >&2
+	@echo "paper: $$(find $(@D) -name '*.log' | wc -l) of $(words $(RUNS) $(BONDED)): $*: $$(tail -n 1 $(@D)/$*.err)" >&2
 
 $(OUT)/runs/%.json: $(OUT)/runs/%.h5 $(OUT)/runs/%.log $P/summary.jq
 	@jq -s -c -f $P/summary.jq --arg run $* --argjson steps $(steps) $(@D)/$*.log \
@@ -112,7 +121,8 @@ fair = $(foreach k,$3,$(foreach m,$(METHODS) exact,$1_$(if $(filter exact,$m),ns
 SAME := $(call fair,example2,nsd,$(SEEDS)) $(call fair,example2-2d,paper,$(SEEDS)) \
         $(call fair,example3,nsd,$(PILES)) $(call fair,example3-2d,paper,$(PILES))
 
-last_problem = nsd-cat --steps $$(($(steps) - 1)):$$(($(steps) - 1)) $1 | nsd-detect
+last_problem_of = nsd-cat --steps $$(($2 - 1)):$$(($2 - 1)) $1 | nsd-detect
+last_problem    = $(call last_problem_of,$1,$(steps))
 
 $(OUT)/same/%.json: $(OUT)/runs.json | $(OUT)/same
 	@$(call last_problem,$(OUT)/runs/$(scene)_nsd_exact$(if $(filter example3_1,$(example)_$(seed)),,_$(seed)).h5) | \
@@ -121,6 +131,40 @@ $(OUT)/same/%.json: $(OUT)/runs.json | $(OUT)/same
 
 $(OUT)/same.json: $(SAME:%=$(OUT)/same/%.json)
 	@cat $^ > $@
+
+# ---- with adhesion ----
+
+# A run's summary, how many of its last contacts have bonds that are whole, damaged and broken, and its CPU seconds
+$(OUT)/adhesion/%.json: $(OUT)/runs/%.json | $(OUT)/adhesion
+	@nsd-cat --last $(OUT)/runs/$*.h5 | nsd-detect | nsd-info --contacts | \
+	    jq -s -c -f $P/bonds.jq --slurpfile run $< --slurpfile log $(OUT)/runs/$*.log > $@
+
+$(OUT)/adhesion.json: $(BONDED:%=$(OUT)/adhesion/%.json)
+	@cat $^ > $@
+
+BOND_SAME := $(foreach m,$(METHODS) exact,$(BOND_SEEDS:%=example2_bond_$m_%) example3_bond_$m_1)
+
+$(OUT)/adhesion-same/%.json: $(OUT)/adhesion.json | $(OUT)/adhesion-same
+	@$(call last_problem,$(OUT)/runs/$(scene)_bond_exact$(if $(filter example2,$(example)),_$(seed)).h5) | \
+	    nsd-solve -m $(method) $(options) 2> /dev/null | nsd-info --last | \
+	    jq -c '{ scene: "$(scene)", method: "$(method)", pile: $(seed) } + .' > $@
+
+$(OUT)/adhesion-same.json: $(BOND_SAME:%=$(OUT)/adhesion-same/%.json)
+	@cat $^ > $@
+
+# 500 sweeps of the last problem of example 3, the methods in turn, ROUND_METHOD
+$(OUT)/adhesion-times/%.json: $(OUT)/adhesion.json | $(OUT)/adhesion-times
+	@$(call last_problem_of,$(OUT)/runs/example3_bond_exact.h5,$(n_example3)) | \
+	    nsd-solve -m $(call part,2) $(nlgs) --max-sweeps 500 --eps 0 --log $@.part > /dev/null 2>&1
+	@jq -s -c '{ method: "$(call part,2)", round: $(call part,1), seconds: (map(.seconds) | add) }' $@.part > $@
+	@rm $@.part
+
+$(OUT)/adhesion-times.json: $(foreach r,$(BOND_ROUNDS),$(foreach m,$(METHODS) exact,$(OUT)/adhesion-times/$r_$m.json))
+	@cat $^ > $@
+
+$(OUT)/tables/adhesion-%.tsv: $(OUT)/adhesion.json $(OUT)/adhesion-same.json $(OUT)/adhesion-times.json $P/adhesion.jq $P/stats.jq | $(OUT)/tables
+	@jq -r -s -L $P -f $P/adhesion.jq --arg table $* --slurpfile same $(OUT)/adhesion-same.json \
+	    --slurpfile times $(OUT)/adhesion-times.json $< > $@
 
 # ---- CPU seconds ----
 
@@ -164,6 +208,7 @@ $(OUT)/times.tsv: $(RUNS:%=$(OUT)/times/0/%.json) $(TIMES:%=$(OUT)/times/%.json)
 # ---- tables ----
 
 N := 1 2 3 4
+ADHESION := adhesion-rows adhesion-same adhesion-claims
 
 $(OUT)/tables/table%.tsv: $(OUT)/runs.json $(OUT)/times.tsv $P/tables.jq $P/paper.json $P/stats.jq | $(OUT)/tables
 	@jq -r -s -L $P -f $P/tables.jq --arg table $* --rawfile times $(OUT)/times.tsv \
@@ -275,7 +320,7 @@ $(OUT)/tables/motion.tsv: $(OUT)/runs.json $(PILED_UP:%=$(OUT)/rest/%.h5) $P/mot
 
 # ---- the page ----
 
-PARTS := $(N:%=table%) seeds boxes same motion claims closed
+PARTS := $(N:%=table%) seeds boxes same motion claims closed $(ADHESION)
 
 $(OUT)/README.md: $P/page.md $P/page.awk $(PARTS:%=$(OUT)/tables/%.tsv) \
     $(SVG:%=$(OUT)/figures/%.svg) $(PNG:%=$(OUT)/figures/%.png)
@@ -285,7 +330,7 @@ $(OUT)/index.html: $(OUT)/README.md $P/page.css
 	@pandoc --self-contained --standalone --from gfm --css $P/page.css \
 	    --metadata title="nsd: the paper, every table and figure" --resource-path $(OUT) -o $@ $<
 
-$(addprefix $(OUT)/,runs same rest tables closed data history figures) \
+$(addprefix $(OUT)/,adhesion adhesion-same adhesion-times runs same rest tables closed data history figures) \
 $(addprefix $(OUT)/times/,0 $(rounds_example1) $(rounds_sweeps:%=sweeps-%)):
 	@mkdir -p $@
 
@@ -293,6 +338,6 @@ $(addprefix $(OUT)/times/,0 $(rounds_example1) $(rounds_sweeps:%=sweeps-%)):
 all-keep: all
 	mkdir -p docs/paper
 	rm -rf docs/paper/tables docs/paper/figures
-	cp -r $(OUT)/README.md $(OUT)/index.html $(OUT)/runs.json $(OUT)/same.json $(OUT)/times.tsv $(OUT)/tables $(OUT)/figures docs/paper/
+	cp -r $(OUT)/README.md $(OUT)/index.html $(OUT)/runs.json $(OUT)/same.json $(OUT)/adhesion.json $(OUT)/adhesion-same.json $(OUT)/times.tsv $(OUT)/tables $(OUT)/figures docs/paper/
 
 .PHONY: all all-keep

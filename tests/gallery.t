@@ -19,7 +19,7 @@ within()
     like "$1: $2 is within $3 to $4" "$(jq --argjson x "$(found "$1" "$2")" -n "\$x >= $3 and \$x <= $4")" true
 }
 
-for e in drum silo plane-shear triaxial collapse incline vibrated isotropic; do
+for e in drum silo plane-shear triaxial collapse incline vibrated isotropic repose wet-column wet-drum; do
     like "$e: all that its table compares was found" "$(jq '(.rows | length > 2) and all(.rows[]; .found != null)' "$out/$e/result.json")" true
     for png in picture curve; do
         like "$e: $png.png is a picture" "$(head -c 8 "$out/$e/$png.png" | od -An -c | tr -d ' ')" '^211PNG'
@@ -43,4 +43,10 @@ within vibrated "mean force" 0.98 1.02
 within isotropic "Z of discs" 3.8 4.1
 within isotropic "Z of balls" 5.4 6.1
 within isotropic "Z at the largest friction" 3.6 5.4
+within repose "slope at the largest rolling friction" 4 30
+within repose "slope at the largest Bond number" 5 60
+within wet-column "run-out of the most cohesive" -0.1 0.35
+within wet-column "height left of the most cohesive" 0.9 1.02
+within wet-drum "angle at the largest Bond number" 2 45
+within wet-drum "roughness of the surface" 1.15 10
 done_testing

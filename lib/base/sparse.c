@@ -146,3 +146,37 @@ void lists_free(struct lists *L)
     free(L->item);
     *L = (struct lists){ 0 };
 }
+
+bool stored_columns(struct stored *S, const struct sparse *A)
+{
+    struct lists rows = { 0 };
+    *S = (struct stored){ 0 };
+    int32_t *last = malloc((size_t)(A->n + 1) * sizeof *last); // of a column: its last row so far
+    bool good = A->count <= INT32_MAX && last && stored_init(S, A->m, A->n, -1, A->count) &&
+                lists_init(&rows, A->m, A->count, A->row);
+    // the columns' lengths, then their entries: both row by row, so that rows ascend
+    for (int pass = 0; good && pass < 2; pass++) {
+        for (int64_t j = 0; j < A->n; j++) last[j] = -1;
+        for (int64_t i = 0; i < A->m; i++)
+            for (int64_t k = rows.first[i]; k < rows.first[i + 1]; k++) {
+                int64_t e = rows.item[k];
+                int32_t j = A->col[e];
+                bool new = last[j] != i;
+                last[j] = (int32_t)i;
+                if (pass == 0) {
+                    S->p[j + 1] += new;
+                    continue;
+                }
+                int32_t at = S->p[j + 1] - !new; // p[j + 1] is where the next entry goes
+                S->i[at] = (int32_t)i, S->x[at] = new ? A->x[e] : S->x[at] + A->x[e];
+                S->p[j + 1] += new;
+            }
+        // after the first pass p[j + 1] becomes the column's beginning, after the second its end
+        for (int64_t j = 0, sum = 0; pass == 0 && j < A->n; j++) {
+            int32_t length = S->p[j + 1];
+            S->p[j + 1] = (int32_t)sum, sum += length;
+        }
+    }
+    lists_free(&rows), free(last);
+    return good;
+}

@@ -37,6 +37,10 @@ struct stored {
 bool stored_init(struct stored *S, int64_t m, int64_t n, int32_t nz, int64_t count);
 void stored_free(struct stored *S);
 
+/* S = A by columns, rows ascending, the entries at the same place added; false when memory is short or
+   there are more entries than 32 bits count. S must be freed in any case. */
+bool stored_columns(struct stored *S, const struct sparse *A);
+
 /* A = S, all of it checked; moves the arrays of S into A. Returns 0, EX_SOFTWARE or EX_DATAERR with
    a reason "name/p: ...". */
 int sparse_unpack(struct sparse *A, struct stored *S, const char *name, struct why *why);

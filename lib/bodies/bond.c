@@ -64,6 +64,16 @@ const struct bond *bonds_find(const struct bonds *s, const struct contact *c, in
     return *from < s->n && order == 0 ? &s->bond[*from] : NULL;
 }
 
+bool bonds_broken(const struct bonds *s, int32_t a, int32_t b, int64_t from)
+{
+    for (int64_t i = from; i < s->n && s->bond[i].a <= a; i++) {
+        const struct bond *x = &s->bond[i];
+        if (x->a == a && x->b > b) break;
+        if (x->a == a && x->b == b && bond_anchored(x) && !(x->beta > 0)) return true;
+    }
+    return false;
+}
+
 static const char *bond_trouble(const struct bond *x, int64_t bodies, int32_t walls)
 {
     if (x->b < 0 || x->b >= bodies || x->a >= bodies || x->a < -walls || x->a == x->b)
@@ -72,6 +82,11 @@ static const char *bond_trouble(const struct bond *x, int64_t bodies, int32_t wa
     if (!(x->beta >= 0 && x->beta <= 1)) return "beta must lie in [0, 1]";
     if (!isfinite(x->gap) || !v3_finite(x->slip)) return "gap or slip is not finite";
     if (!(fabs(v3_dot(x->n, x->n) - 1) < 1e-6)) return "its normal is not a unit vector";
+    if (!(x->area >= 0 && isfinite(x->area))) return "its area is not a number of at least 0";
+    if (!bond_anchored(x)) return NULL;
+    if (!v3_finite(x->at_a) || !v3_finite(x->at_b)) return "its place is not finite";
+    if (!(fabs(v3_dot(x->axis, x->axis) - 1) < 1e-6)) return "its axis is not a unit vector";
+    if (x->feature >= 0) return "keeps a place, and has the key of a contact that does not";
     return NULL;
 }
 

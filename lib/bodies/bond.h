@@ -17,7 +17,16 @@ struct bond {
     double gap;  /* m: expected at the next step, at the predicted positions */
     vec3 n;      /* the contact's normal when this was kept */
     vec3 slip;   /* m: across n: how far the bond is sheared, b against a */
+    /* Of grains that are no balls, a bond keeps the place where it was made [bodies/anchor.h]. */
+    double area;     /* m^2; 0: none has been kept, and what follows is 0 */
+    vec3 at_a, at_b; /* m: in the frames of a, a body or a boundary, and of b */
+    vec3 axis;       /* the normal in the frame of b */
 };
+
+static inline bool bond_anchored(const struct bond *x)
+{
+    return x->area > 0;
+}
 
 /* Sorted as contacts are, each key once. */
 struct bonds {
@@ -35,6 +44,9 @@ void bonds_sort(struct bonds *bonds);
 /* That of a contact, or NULL. *from, 0 at first, is where to look from on: contacts are asked for in
    their order. */
 const struct bond *bonds_find(const struct bonds *bonds, const struct contact *c, int64_t *from);
+
+/* Has an anchored bond of this pair broken, which is still remembered? from: as above */
+bool bonds_broken(const struct bonds *bonds, int32_t a, int32_t b, int64_t from);
 
 /* Do bodies and walls exist, are keys in order, numbers in range? Returns 0, or EX_DATAERR with the
    first bond that fails. */

@@ -2,6 +2,7 @@
 #include "bodies/detect.h"
 
 #include "base/team.h"
+#include "bodies/anchor.h"
 #include "bodies/detect_shapes.h"
 #include "bodies/kinematics.h"
 #include "bodies/tie.h"
@@ -14,13 +15,6 @@ enum {
     MANY = 16384 /* and bodies at a plane, or pairs */
 };
 
-/* The law of a pair of kinds of material */
-static void set_law(struct contact *c, const struct packing *p, int32_t one, int32_t other)
-{
-    int32_t k = one * p->kinds + other;
-    c->mu = p->mu[k], c->en = p->en[k], c->et = p->et[k];
-}
-
 /* A place where ball i meets wall w, in space; false when memory is short. */
 static bool add_touch(struct contacts *out, const struct packing *p, int32_t w, int64_t i, vec3 x,
                       const struct touch *t)
@@ -31,7 +25,7 @@ static bool add_touch(struct contacts *out, const struct packing *p, int32_t w, 
     c->gap = t->distance - p->radius[i];
     c->x = v3_axpy(x, -t->distance, t->n);
     c->feature = t->feature;
-    set_law(c, p, p->wall[w].kind, p->kind[i]);
+    packing_set_law(p, c);
     return true;
 }
 
@@ -158,7 +152,7 @@ static bool add_ball_contact(struct contacts *out, const struct packing *p,
     for (int k = 0; k < 3; k++) c->shift[k] = shift[k];
     c->gap = g;
     c->x = v3_axpy(x[a], p->radius[a] + 0.5 * g, c->n);
-    set_law(c, p, p->kind[a], p->kind[b]);
+    packing_set_law(p, c);
     return true;
 }
 
@@ -275,6 +269,7 @@ int detect_contacts(struct contacts *out, const struct packing *p, double gap,
     if (p->law) reach = fmax(reach, ties_reach(p));
     cell_predict(&p->cell, ahead, edge);
     int e = detect(out, p, x, q, edge, p->t + ahead, reach, kept, why);
+    if (!e && p->law && q) e = anchors_place(out, p, x, q, edge, p->t + ahead, why);
     if (!e && p->law) e = ties_find(out, p, why);
     if (!e && reach > gap) keep_meeting(out, p, gap);
     free(x), free(q);

@@ -44,12 +44,6 @@ static void settle(struct contacts *out)
     out->c[k] = new;
 }
 
-static void set_law(struct contact *c, const struct packing *p, int32_t one, int32_t other)
-{
-    int32_t k = one * p->kinds + other;
-    c->mu = p->mu[k], c->en = p->en[k], c->et = p->et[k];
-}
-
 static bool add(struct contacts *out, const struct placed *s, int32_t a, int32_t b,
                 const int8_t shift[3], const struct place *place)
 {
@@ -61,7 +55,7 @@ static bool add(struct contacts *out, const struct placed *s, int32_t a, int32_t
     contact_basis(c, p->dim, n);
     c->gap = place->gap, c->x = place->x, c->feature = place->feature;
     for (int k = 0; k < 3; k++) c->shift[k] = shift[k];
-    set_law(c, p, a < 0 ? p->wall[-1 - a].kind : p->kind[a], p->kind[b]);
+    packing_set_law(p, c);
     settle(out);
     return true;
 }

@@ -12,6 +12,7 @@
 #include "bodies/bond.h"
 #include "bodies/boundary.h"
 #include "bodies/cell.h"
+#include "bodies/contact.h"
 #include "bodies/drive.h"
 #include "bodies/law.h"
 #include "bodies/mesh.h"
@@ -148,6 +149,19 @@ static inline double packing_calm(const struct packing *p)
 }
 /* The acceleration of the flow that the cell's edges make, in the step to come */
 struct cell_flow packing_flow(const struct packing *p);
+
+/* Where mu, en, et and law have what body a (< 0: boundary -1-a) and body b do to each other */
+static inline int32_t packing_pair(const struct packing *p, int32_t a, int32_t b)
+{
+    return (a < 0 ? p->wall[-1 - a].kind : p->kind[a]) * p->kinds + p->kind[b];
+}
+
+/* The contact's friction and restitution, of the kinds of its bodies */
+static inline void packing_set_law(const struct packing *p, struct contact *c)
+{
+    int32_t k = packing_pair(p, c->a, c->b);
+    c->mu = p->mu[k], c->en = p->en[k], c->et = p->et[k];
+}
 
 /* body[] = those of bodies a and b that can move (mass > 0; a < 0 is a wall); returns how many. */
 static inline int packing_movable(const struct packing *p, int32_t a, int32_t b, int32_t body[2])

@@ -1,6 +1,7 @@
 /* bodies/tie.c: ties made, followed over a step, and kept [bodies/tie.h]. */
 #include "bodies/tie.h"
 
+#include "bodies/anchor.h"
 #include "bodies/kinematics.h"
 #include "bodies/offset.h"
 
@@ -12,13 +13,18 @@ static const double MARGIN = 0.05;     /* radii: by which a step may miss the ga
 
 static const struct law *law_of(const struct packing *p, const struct contact *c)
 {
-    int32_t a = c->a < 0 ? p->wall[-1 - c->a].kind : p->kind[c->a];
-    return &p->law[a * p->kinds + p->kind[c->b]];
+    return &p->law[packing_pair(p, c->a, c->b)];
 }
 
 static double smaller_radius(const struct packing *p, const struct contact *c)
 {
     return c->a < 0 ? p->radius[c->b] : fmin(p->radius[c->a], p->radius[c->b]);
+}
+
+/* m: pairs with at most this gap touch */
+static double touch_of(const struct packing *p, const struct contact *c)
+{
+    return TOUCH * smaller_radius(p, c);
 }
 
 /* m: of a liquid bridge */
@@ -27,7 +33,7 @@ static double bridge_size(const struct packing *p, const struct contact *c)
     return bridge_radius(c->a < 0 ? 0 : p->radius[c->a], p->radius[c->b]);
 }
 
-/* m^2: of a bond; discs are 1 m deep */
+/* m^2: of a bond, of all places of a pair together; discs are 1 m deep */
 static double bond_area(const struct packing *p, const struct contact *c, const struct law *l)
 {
     double r = smaller_radius(p, c);
@@ -43,7 +49,8 @@ double ties_reach(const struct packing *p)
     for (int64_t i = 0; i < p->n; i++)
         small = fmin(small, p->radius[i]), large = fmax(large, p->radius[i]);
     for (int64_t i = 0; i < p->bonds.n; i++)
-        if (p->bonds.bond[i].beta > 0) apart = fmax(apart, p->bonds.bond[i].gap);
+        if (p->bonds.bond[i].beta > 0 && !bond_anchored(&p->bonds.bond[i]))
+            apart = fmax(apart, p->bonds.bond[i].gap);
     if (apart > -INFINITY) reach = fmax(reach, apart + MARGIN * small);
     return fmax(reach, TOUCH * large);
 }
@@ -59,12 +66,19 @@ static vec3 turn_along(vec3 from, vec3 to, vec3 x)
     return v3_axpy(v3_add(x, y), 1 / (1 + c), v3_cross(axis, y));
 }
 
+/* What a pair shares among the places where it meets; of balls, one each */
+struct places {
+    double touching, tied; /* that touch; that cohesion or liquid holds */
+    bool broken;           /* a bond of the pair has broken, and it has not parted since */
+};
+
 /* Beta and the jump of a bond that there is, or that is made in this step */
 static void set_bond(struct tie *t, const struct packing *p, const struct contact *c,
-                     const struct law *l, const struct bond *old, bool touches)
+                     const struct law *l, const struct bond *old, bool touches,
+                     const struct places *of)
 {
     bool due = fabs(p->t - l->made) < 0.5 * p->dt && !(old && old->beta > 0);
-    if (touches && (l->forever ? !old : due)) {
+    if (touches && (l->forever ? !old && !of->broken : due)) {
         t->beta = l->beta, t->state |= TIE_BONDED;
     } else if (old && (old->beta > 0 || l->forever)) {
         vec3 slip = turn_along(old->n, c->n, old->slip);
@@ -72,7 +86,8 @@ static void set_bond(struct tie *t, const struct packing *p, const struct contac
         t->jump[1] = v3_dot(slip, c->t1), t->jump[2] = v3_dot(slip, contact_t2(c));
     }
     if (!(t->beta > 0)) return;
-    double S = bond_area(p, c, l) * t->beta * t->beta;
+    double area = old && bond_anchored(old) ? old->area : bond_area(p, c, l) / of->touching;
+    double S = area * t->beta * t->beta;
     t->stiff[0] = S * l->cn, t->stiff[1] = S * l->ct;
 }
 
@@ -84,31 +99,71 @@ static double offset_apart(const struct packing *p, const struct contact *c)
     return c->gap / p->dt + (impact ? 2 * approach : 0);
 }
 
+/* N: of cohesion and, where the contact is wet, liquid, were the place the only one of its pair */
+static double whole_pull(const struct packing *p, const struct contact *c, const struct law *l,
+                         bool wet)
+{
+    double f = l->cohesion > 0 && c->gap <= fmax(l->range, touch_of(p, c)) ? l->cohesion : 0;
+    return wet ? f + bridge_force(l, bridge_size(p, c), c->gap) : f;
+}
+
+static bool is_wet(const struct packing *p, const struct contact *c, const struct law *l,
+                   const struct bond *old)
+{
+    bool touches = c->gap <= touch_of(p, c);
+    return law_wets(l) && (touches || (old && old->wet && c->gap < bridge_reach(l)));
+}
+
 static void set_tie(struct tie *t, const struct packing *p, struct contact *c,
-                    const struct bond *old)
+                    const struct bond *old, const struct places *of)
 {
     const struct law *l = law_of(p, c);
-    double touch = TOUCH * smaller_radius(p, c);
-    bool touches = c->gap <= touch;
+    bool wet = is_wet(p, c, l, old);
     t->jump[0] = fmax(0, c->gap);
     t->mu_r = l->mu_r, t->mu_p = l->mu_p;
-    if (l->cohesion > 0 && c->gap <= fmax(l->range, touch)) t->pull = l->cohesion;
-    if (law_wets(l) && (touches || (old && old->wet && c->gap < bridge_reach(l)))) {
-        t->state |= old && old->wet ? TIE_WET : TIE_WET | TIE_NEW_BRIDGE;
-        t->pull += bridge_force(l, bridge_size(p, c), c->gap);
-    }
-    if (law_adheres(l)) set_bond(t, p, c, l, old, touches);
+    if (wet) t->state |= old && old->wet ? TIE_WET : TIE_WET | TIE_NEW_BRIDGE;
+    t->pull = whole_pull(p, c, l, wet) / of->tied;
+    if (law_adheres(l)) set_bond(t, p, c, l, old, c->gap <= touch_of(p, c), of);
     if (tie_holds(t) && c->gap > 0) t->offset = offset_apart(p, c);
     if (t->beta > 0 || t->offset > 0) c->en = c->et = 0;
     c->mu *= 1 - t->beta;
+}
+
+/* The end of the contacts of one pair that begin at `first` */
+static int64_t end_of_pair(const struct contacts *s, int64_t first)
+{
+    int64_t i = first + 1;
+    while (i < s->n && s->c[i].a == s->c[first].a && s->c[i].b == s->c[first].b) i++;
+    return i;
+}
+
+/* Of the contacts first .. end-1 of a pair of which one is no ball; from: as of bonds_find() */
+static struct places count_places(const struct contacts *s, const struct packing *p, int64_t first,
+                                  int64_t end, int64_t from)
+{
+    struct places of = { 0, 0, bonds_broken(&p->bonds, s->c[first].a, s->c[first].b, from) };
+    for (int64_t i = first; i < end; i++) {
+        const struct contact *c = &s->c[i];
+        const struct law *l = law_of(p, c);
+        const struct bond *old = bonds_find(&p->bonds, c, &from);
+        of.touching += c->gap <= touch_of(p, c) && !(old && bond_anchored(old));
+        of.tied += whole_pull(p, c, l, is_wet(p, c, l, old)) > 0;
+    }
+    of.touching = fmax(of.touching, 1), of.tied = fmax(of.tied, 1);
+    return of;
 }
 
 int ties_find(struct contacts *s, const struct packing *p, struct why *why)
 {
     int64_t from = 0;
     if (contacts_alloc_tie(s)) return why_set(why, EX_SOFTWARE, "no memory for the ties");
-    for (int64_t i = 0; i < s->n; i++)
-        set_tie(&s->tie[i], p, &s->c[i], bonds_find(&p->bonds, &s->c[i], &from));
+    for (int64_t i = 0, end; i < s->n; i = end) {
+        struct places of = { 1, 1, false };
+        end = contact_shaped(p, &s->c[i]) ? end_of_pair(s, i) : i + 1;
+        if (contact_shaped(p, &s->c[i])) of = count_places(s, p, i, end, from);
+        for (int64_t k = i; k < end; k++)
+            set_tie(&s->tie[k], p, &s->c[k], bonds_find(&p->bonds, &s->c[k], &from), &of);
+    }
     return 0;
 }
 
@@ -147,8 +202,16 @@ struct tie_end tie_end(const struct packing *p, const struct contact *c, const s
 static double cohesion_energy(const struct packing *p, const struct contact *c, const struct law *l,
                               double gap)
 {
-    double range = fmax(l->range, TOUCH * smaller_radius(p, c));
+    double range = fmax(l->range, touch_of(p, c));
     return gap < range ? -l->cohesion * (range - gap) : 0;
+}
+
+/* What of its pair's cohesion and liquid a contact has */
+static double share_of(const struct packing *p, const struct contact *c, const struct law *l,
+                       const struct tie *t)
+{
+    if (!(t->pull > 0) || !contact_shaped(p, c)) return 1;
+    return t->pull / whole_pull(p, c, l, t->state & TIE_WET);
 }
 
 /* J: of the bond, were its beta still the one it began with */
@@ -163,15 +226,16 @@ struct tie_account tie_account(const struct packing *p, const struct contact *c,
 {
     const struct law *l = law_of(p, c);
     struct tie_account a = { 0 };
-    double before = cohesion_energy(p, c, l, c->gap), R = bridge_size(p, c);
-    double after = cohesion_energy(p, c, l, end->gap);
+    double R = bridge_size(p, c), share = share_of(p, c, l, t);
+    double before = share * cohesion_energy(p, c, l, c->gap);
+    double after = share * cohesion_energy(p, c, l, end->gap);
     if (t->state & TIE_WET) {
-        double bridge = bridge_energy(l, R, c->gap);
+        double bridge = share * bridge_energy(l, R, c->gap);
         if (t->state & TIE_NEW_BRIDGE)
             a.broken -= bridge;
         else
             before += bridge;
-        after += bridge_energy(l, R, end->gap);
+        after += share * bridge_energy(l, R, end->gap);
     }
     if (t->beta > 0) {
         double left = end->beta / t->beta;
@@ -191,27 +255,86 @@ static double spin_about(const struct packing *p, const struct contact *c)
     return 0.5 * p->dt * v3_dot(c->n, v3_add(wa, p->w[c->b]));
 }
 
+/* What lasts of contact i, whose tie is wet or bonded; false: nothing does. */
+static bool bond_of(const struct packing *p, const struct contacts *s, int64_t i, struct bond *b)
+{
+    const struct contact *c = &s->c[i];
+    const struct tie *t = &s->tie[i];
+    struct tie_end e = tie_end(p, c, t, &s->found[i]);
+    // a broken bond is remembered while the pair touches: it is not made anew
+    bool bonded = t->state & TIE_BONDED;
+    bool rests = bonded && (e.gap <= touch_of(p, c) || contact_anchored(c));
+    if (!e.wet && !(e.beta > 0) && !rests) return false;
+    *b = (struct bond){ .a = c->a, .b = c->b, .feature = c->feature, .n = c->n };
+    for (int k = 0; k < 3; k++) b->shift[k] = c->shift[k];
+    b->wet = e.wet, b->beta = e.beta, b->gap = e.gap;
+    vec3 slip = v3_axpy(v3_scale(e.slip[0], c->t1), e.slip[1], contact_t2(c));
+    if (e.beta > 0) b->slip = quat_turn(quat_rotation(v3_scale(spin_about(p, c), c->n)), slip);
+    return true;
+}
+
+/* The place of a bond where there is a shape: the one that it had, or that of this contact, with a new
+   key, below all of its pair. from: of bonds_find() for this contact */
+static void anchor(struct bond *b, const struct packing *p, const struct contact *c,
+                   const struct tie *t, int64_t from, const struct bonds *kept)
+{
+    const struct bond *old = bonds_find(&p->bonds, c, &from);
+    if (old && bond_anchored(old)) {
+        b->area = old->area, b->at_a = old->at_a, b->at_b = old->at_b, b->axis = old->axis;
+        return;
+    }
+    if (!(t->beta > 0)) return;
+    int32_t least = 0;
+    for (int64_t i = 0; i < p->bonds.n; i++) // few: bonds are made once
+        if (p->bonds.bond[i].a == c->a && p->bonds.bond[i].b == c->b)
+            least = p->bonds.bond[i].feature < least ? p->bonds.bond[i].feature : least;
+    for (int64_t i = kept->n - 1; i >= 0 && kept->bond[i].a == c->a && kept->bond[i].b == c->b; i--)
+        least = kept->bond[i].feature < least ? kept->bond[i].feature : least;
+    b->feature = least > INT32_MIN ? least - 1 : least;
+    anchor_bond(b, p, c, t->stiff[0] / (law_of(p, c)->cn * t->beta * t->beta));
+}
+
+/* Adds the anchored bonds that broke in earlier steps, of pairs that have not parted since; false when
+   memory is short. */
+static bool remember_broken(struct bonds *kept, const struct packing *p, const struct contacts *s)
+{
+    bool good = true;
+    int64_t c = 0;
+    for (int64_t i = 0; good && i < p->bonds.n; i++) {
+        const struct bond *b = &p->bonds.bond[i];
+        if (!bond_anchored(b) || b->beta > 0 || b->wet) continue;
+        while (c < s->n && (s->c[c].a < b->a || (s->c[c].a == b->a && s->c[c].b < b->b))) c++;
+        bool together = false;
+        for (int64_t k = c; k < s->n && s->c[k].a == b->a && s->c[k].b == b->b; k++)
+            together =
+                together || s->c[k].gap <= touch_of(p, &s->c[k]) || (s->tie && s->tie[k].beta > 0);
+        if (together) good = bonds_add(kept, b) != NULL;
+    }
+    return good;
+}
+
 int ties_keep(struct packing *p, const struct contacts *s, struct why *why)
 {
     struct bonds kept = { 0 };
-    for (int64_t i = 0; i < s->n && s->tie; i++) {
+    bool good = true, anchored = false;
+    int64_t from = 0;
+    for (int64_t i = 0; good && i < s->n && s->tie; i++) {
         const struct contact *c = &s->c[i];
-        const struct tie *t = &s->tie[i];
-        if (!(t->state & (TIE_WET | TIE_BONDED))) continue;
-        struct tie_end e = tie_end(p, c, t, &s->found[i]);
-        // a broken bond is remembered while the pair touches: it is not made anew
-        bool rests = t->state & TIE_BONDED && e.gap <= TOUCH * smaller_radius(p, c);
-        if (!e.wet && !(e.beta > 0) && !rests) continue;
-        struct bond b = { .a = c->a, .b = c->b, .feature = c->feature, .n = c->n };
-        for (int k = 0; k < 3; k++) b.shift[k] = c->shift[k];
-        b.wet = e.wet, b.beta = e.beta, b.gap = e.gap;
-        vec3 slip = v3_axpy(v3_scale(e.slip[0], c->t1), e.slip[1], contact_t2(c));
-        if (e.beta > 0) b.slip = quat_turn(quat_rotation(v3_scale(spin_about(p, c), c->n)), slip);
-        if (!bonds_add(&kept, &b)) {
-            bonds_free(&kept);
-            return why_set(why, EX_SOFTWARE, "no memory for the bonds");
+        struct bond b;
+        if (!(s->tie[i].state & (TIE_WET | TIE_BONDED)) || !bond_of(p, s, i, &b)) continue;
+        bool bonded = s->tie[i].state & TIE_BONDED && (s->tie[i].beta > 0 || contact_anchored(c));
+        if (contact_shaped(p, c) && bonded) {
+            bonds_find(&p->bonds, c, &from);
+            anchor(&b, p, c, &s->tie[i], from, &kept), anchored = true;
         }
+        good = bonds_add(&kept, &b) != NULL;
     }
+    good = good && (!p->shape || remember_broken(&kept, p, s));
+    if (!good) {
+        bonds_free(&kept);
+        return why_set(why, EX_SOFTWARE, "no memory for the bonds");
+    }
+    if (anchored || p->shape) bonds_sort(&kept);
     bonds_free(&p->bonds);
     p->bonds = kept;
     return 0;

@@ -19,6 +19,9 @@
  *
  * by the implicit step beta = (h w + eta beta)/(h q + eta), and with eta = 0 beta = w/q. A bond of
  * less than a thousandth is broken: it would never end.
+ *
+ * Where a shape is, a pair has several places: they share its pull and the area of bonds that are made in
+ * one step, and bonds keep their place [bodies/anchor.h].
  */
 #ifndef NSD_TIE_H
 #define NSD_TIE_H

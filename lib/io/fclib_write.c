@@ -2,6 +2,7 @@
 #include "io/fclib.h"
 #include "io/h5.h"
 #include "problem/assembly.h"
+#include "problem/bonded.h"
 
 #include <stdlib.h>
 
@@ -72,8 +73,48 @@ static int stored_write(const struct stored *A, hid_t file, const char *group, s
     return e;
 }
 
+/* W^ and q^ of contacts that are bonded */
+static int write_bonded_W(const struct assembly *A, hid_t file, struct why *why)
+{
+    struct delassus W;
+    struct sparse all = { .m = A->p->n * A->p->d, .n = A->p->n * A->p->d };
+    struct stored S = { 0 };
+    int d = A->p->d, e = bonded_blocks(A->p, &W, why);
+    if (e) return e;
+    bool good = true;
+    for (int64_t c = 0; c < W.n; c++) {
+        for (int k = 0; good && k < d * d; k++)
+            good =
+                sparse_add(&all, d * c + k % d, d * c + k / d, W.diag[9 * c + k % d + 3 * (k / d)]);
+        for (int64_t b = W.first[c]; b < W.first[c + 1]; b++)
+            for (int k = 0; good && k < d * d; k++)
+                good =
+                    sparse_add(&all, d * c + k % d, d * W.col[b] + k / d, W.block[d * d * b + k]);
+    }
+    if (!good || !stored_columns(&S, &all)) e = short_of_memory(why);
+    if (!e) e = stored_write(&S, file, "/fclib_local/W", why);
+    if (!e) e = write_vector(file, "/fclib_local", "vectors/q", W.n * d, W.q, why);
+    sparse_free(&all), stored_free(&S), delassus_free(&W);
+    return e;
+}
+
+static int write_bonded_MH(const struct assembly *A, hid_t file, struct why *why)
+{
+    struct global P;
+    struct stored M = { 0 }, H = { 0 };
+    int e = bonded_global(A, &P, why);
+    P.M.m = P.M.n = P.nv, P.H.m = P.nv, P.H.n = A->p->n * A->p->d;
+    if (!e && (!stored_columns(&M, &P.M) || !stored_columns(&H, &P.H))) e = short_of_memory(why);
+    if (!e) e = stored_write(&M, file, "/fclib_global/M", why);
+    if (!e) e = stored_write(&H, file, "/fclib_global/H", why);
+    if (!e) e = write_vector(file, "/fclib_global/vectors", "f", P.nv, P.f, why);
+    stored_free(&M), stored_free(&H), global_free(&P);
+    return e;
+}
+
 static int write_W(const struct assembly *A, hid_t file, struct why *why)
 {
+    if (A->p->beyond) return write_bonded_W(A, file, why);
     struct stored W;
     int e = assembly_W(A, &W, why);
     if (!e) e = stored_write(&W, file, "/fclib_local/W", why);
@@ -83,6 +124,7 @@ static int write_W(const struct assembly *A, hid_t file, struct why *why)
 
 static int write_MH(const struct assembly *A, hid_t file, struct why *why)
 {
+    if (A->p->beyond) return write_bonded_MH(A, file, why);
     struct stored M, H;
     double *f;
     int e = assembly_MH(A, &M, &H, &f, why);
@@ -132,7 +174,8 @@ static int write_vectors(const struct assembly *A, bool global, hid_t file, stru
         mu[c] = slot_bundle(A->p, A->slot[c])->mu[slot_lane(A->slot[c])];
     if (!e) e = write_vector(file, group, "vectors/mu", n, mu, why);
     if (!e && global) e = write_vector(file, group, "vectors/w", n * d, A->w, why);
-    if (!e && !global) e = write_vector(file, group, "vectors/q", n * d, A->q, why);
+    if (!e && !global && !A->p->beyond)
+        e = write_vector(file, group, "vectors/q", n * d, A->q, why);
     free(mu);
     return e;
 }

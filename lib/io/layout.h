@@ -158,6 +158,15 @@ static const struct column layout_bonds[] = {
     { 0 },
 };
 
+/* The same where there are shapes */
+static const struct column layout_anchors[] = {
+    { "area", "m2", COLUMN_F64, 1, offsetof(struct bond, area) },
+    { "anchor_a", "m", COLUMN_F64, 3, offsetof(struct bond, at_a) },
+    { "anchor_b", "m", COLUMN_F64, 3, offsetof(struct bond, at_b) },
+    { "axis", "1", COLUMN_F64, 3, offsetof(struct bond, axis) },
+    { 0 },
+};
+
 /* /contacts/NAME [S][width]: members of struct contact; /contacts/frame, its
    basis, is handled apart */
 static const struct column layout_contacts[] = {

@@ -24,6 +24,10 @@ static double part(const double x[ROLLING], int i)
 
 void rolling_velocity(const struct rolling *q, const double x[ROLLING], double u[ROLLING])
 {
+    if (q->full) {
+        for (int i = 0; i < ROLLING; i++) u[i] = q->b[i] + dot(q->W + ROLLING * i, x, ROLLING);
+        return;
+    }
     u[0] = q->wn * x[0] + q->b[0], u[3] = q->wp * x[3] + q->b[3];
     for (int i = 1; i < 3; i++) {
         u[i] = q->wt * x[i] + q->k * x[3 + i] + q->b[i];
@@ -33,6 +37,7 @@ void rolling_velocity(const struct rolling *q, const double x[ROLLING], double u
 
 double rolling_lambda(const struct rolling *q)
 {
+    if (q->full) return q->lambda;
     double mean = 0.5 * (q->wt + q->wr), apart = 0.5 * (q->wt - q->wr);
     return fmax(fmax(q->wn, q->wp), mean + sqrt(apart * apart + q->k * q->k));
 }
@@ -197,8 +202,119 @@ static void exact_discs(const struct rolling *q, double Rt, double Rm, double t[
     }
 }
 
+/*
+ * y of A y + f = g within the disc |y| <= R, f along -y: A symmetric, positive definite, 2 x 2. In
+ * its axes y_i = g_i/(lambda_i + m), and m is the root of 1/|y| - 1/R, to which Newton's method rises
+ * from 0.
+ */
+static void in_disc(const double A[3], const double g[2], double R, double y[2])
+{
+    double mean = 0.5 * (A[0] + A[2]), half = 0.5 * (A[0] - A[2]);
+    double apart = sqrt(half * half + A[1] * A[1]), high = mean + apart, low = mean - apart;
+    // the axis of `high`, of two ways the one without cancellation
+    double e[2] = { half > 0 ? half + apart : A[1], half > 0 ? A[1] : apart - half };
+    double length = sqrt(dot(e, e, 2));
+    if (length > 0)
+        e[0] /= length, e[1] /= length;
+    else
+        e[0] = 1, e[1] = 0;
+    double p = e[0] * g[0] + e[1] * g[1], q = e[0] * g[1] - e[1] * g[0], m = 0;
+    for (int step = 0; step < 50; step++) {
+        double a = p / (high + m), b = q / (low + m), y2 = a * a + b * b;
+        if (y2 <= R * R) break;
+        double fall = (a * a / (high + m) + b * b / (low + m)) / y2, was = m;
+        m += (sqrt(y2) / R - 1) / fall;
+        if (!(m > was * (1 + 4 * DBL_EPSILON))) break;
+    }
+    double a = p / (high + m), b = q / (low + m), over = sqrt(a * a + b * b) / R;
+    if (over > 1) a /= over, b /= over;
+    y[0] = e[0] * a - e[1] * b, y[1] = e[1] * a + e[0] * b;
+}
+
+/* One part of x within its limit, the others held; returns |its change|. */
+static double part_alone(const struct rolling *q, int part, double R, double x[ROLLING])
+{
+    int f = first_of[part], n = size_of[part];
+    double g[2], y[2] = { 0 };
+    for (int i = 0; i < n; i++) {
+        const double *row = q->W + ROLLING * (f + i);
+        g[i] = -q->b[f + i] - dot(row, x, ROLLING) + dot(row + f, x + f, n);
+    }
+    const double *D = q->W + ROLLING * f + f;
+    if (n == 1)
+        y[0] = fmax(-R, fmin(R, g[0] / D[0]));
+    else if (R > 0)
+        in_disc((double[]){ D[0], D[1], D[ROLLING + 1] }, g, R, y);
+    double change = 0;
+    for (int i = 0; i < n; i++) change = fmax(change, fabs(y[i] - x[f + i])), x[f + i] = y[i];
+    return change;
+}
+
+/* x of this r_n: a convex problem, by turns of its parts; returns u_n. */
+static double at_push(const struct rolling *q, double rn, double x[ROLLING])
+{
+    x[0] = rn;
+    for (int turn = 0; turn < 500; turn++) {
+        double change = 0;
+        for (int i = 0; i < ROLLING_PARTS; i++)
+            change = fmax(change, part_alone(q, i, q->mu[i] * rn, x));
+        if (change <= DBL_EPSILON * rn) break;
+    }
+    return q->b[0] + dot(q->W, x, ROLLING);
+}
+
+/*
+ * Where W is full the law is no convex problem, but for a given r_n the rest is one, and u_n a
+ * continuous function of r_n that begins at b_n < 0: its root is a solution. false: none is found.
+ */
+static bool root_of_push(struct rolling *q)
+{
+    double low = 0, at_low = q->b[0], high = -q->b[0] / q->W[0], at_high;
+    double x[ROLLING] = { 0 };
+    for (int k = 0; (at_high = at_push(q, high, x)) < 0;
+         k++, low = high, at_low = at_high, high *= 2)
+        if (k == 60) return false;
+    for (int step = 0, side = 0; step < 200 && at_high > 0; step++) { // regula falsi, Illinois
+        double rn = (low * at_high - high * at_low) / (at_high - at_low);
+        if (!(rn > low && rn < high)) break;
+        double at = at_push(q, rn, x);
+        if (fabs(at) <= 4 * DBL_EPSILON * fabs(q->b[0])) break;
+        if (at > 0) {
+            high = rn, at_high = at;
+            if (side > 0) at_low *= 0.5;
+            side = 1;
+        } else {
+            low = rn, at_low = at;
+            if (side < 0) at_high *= 0.5;
+            side = -1;
+        }
+    }
+    memcpy(q->x, x, sizeof x);
+    return true;
+}
+
+static bool newton(struct rolling *q, bool hat, const struct local_opt *opt);
+
+/* Nothing where the surfaces part, else by Newton's method, which mostly ends in three steps, and what
+   it does not solve by the root above */
+static void exact_full(struct rolling *q)
+{
+    const struct local_opt tight = { .newton_eps = 1e-15, .newton_max = 20 };
+    int steps = q->steps;
+    if (!(q->b[0] < 0)) {
+        memset(q->x, 0, sizeof q->x);
+        return;
+    }
+    q->gave_up = !newton(q, false, &tight) && !root_of_push(q);
+    q->steps = steps;
+}
+
 static void exact(struct rolling *q)
 {
+    if (q->full) {
+        exact_full(q);
+        return;
+    }
     double rn = q->b[0] < 0 && q->wn > 0 ? -q->b[0] / q->wn : 0, most = q->mu[1] * rn;
     q->x[0] = rn;
     q->x[3] = q->wp > 0 ? fmax(-most, fmin(most, -q->b[3] / q->wp)) : 0;
@@ -232,6 +348,7 @@ static void slope_of_prediction(const struct rolling *q, bool hat, const struct 
     W[0][0] = q->wn, W[3][3] = q->wp;
     for (int i = 1; i < 3; i++)
         W[i][i] = q->wt, W[3 + i][3 + i] = q->wr, W[i][3 + i] = W[3 + i][i] = q->k;
+    if (q->full) memcpy(W, q->W, sizeof W);
     for (int i = 0; i < ROLLING; i++)
         for (int j = 0; j < ROLLING; j++) T[i][j] = (i == j) - q->rho * W[i][j];
     for (int i = 0; hat && i < ROLLING_PARTS; i++) {

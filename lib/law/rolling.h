@@ -15,6 +15,8 @@
  *     u_n = w_n r_n + b_n              u_t = w_t r_t + k m_t + b_t
  *     omega_n = w_p m_n + b_p          omega_t = k r_t + w_r m_t + b_r
  *
+ * and between other bodies it is any symmetric, positive definite matrix.
+ *
  * Moments are divided, and angular velocities multiplied, by a length that makes w_r about w_t, so
  * that all parts of x are impulses (N s), all of u velocities (m/s), and one step rho suits them.
  */
@@ -29,12 +31,15 @@ enum {
 }; /* numbers of x: n | t1 t2 | p | r1 r2; parts with a limit */
 
 struct rolling {
-    double wn, wt, wp, wr, k; /* kg^-1 */
-    double mu[ROLLING_PARTS]; /* mu, mu_p, mu_r, the latter two over the length */
-    double rho;               /* kg */
-    double b[ROLLING];        /* m/s */
-    double x[ROLLING];        /* N s; in: of the last sweep, out: of this one */
-    int steps;                /* out: of Newton */
+    double wn, wt, wp, wr, k;    /* kg^-1: between balls */
+    bool full;                   /* else W is, in their place */
+    double W[ROLLING * ROLLING]; /* kg^-1, symmetric */
+    double lambda;               /* kg^-1: its largest eigenvalue */
+    double mu[ROLLING_PARTS];    /* mu, mu_p, mu_r, the latter two over the length */
+    double rho;                  /* kg */
+    double b[ROLLING];           /* m/s */
+    double x[ROLLING];           /* N s; in: of the last sweep, out: of this one */
+    int steps;                   /* out: of Newton */
     bool safeguarded, gave_up;
 };
 

@@ -1,6 +1,8 @@
 /* problem/beyond.c: rolling friction, lane by lane [problem/beyond.h]. */
 #include "problem/beyond.h"
 
+#include "problem/beyond_levers.h"
+
 #include <string.h>
 
 /* The bodies' angular velocity relative to each other, in (n, t1, t2) */
@@ -15,8 +17,13 @@ static void spin(const struct bundle *c, struct body *body, int i, double omega[
     }
 }
 
-void beyond_push(const struct bundle *c, int i, struct body *body, const double dm[3])
+void beyond_push(const struct bundle *c, const struct beyond *x, const struct beyond_levers *y,
+                 int i, struct body *body, const double dm[3])
 {
+    if (y) {
+        beyond_levers_push(c, x, y, i, body, dm);
+        return;
+    }
     double *a = body_at(body, c->a[i]), *b = body_at(body, c->b[i]), basis[3][3];
     bundle_basis(c, i, basis[0], basis[1], basis[2]);
     for (int l = 0; l < 3; l++) {
@@ -47,9 +54,14 @@ static void set_impulse(const struct beyond *x, int i, const double r[3], double
     out[3] = x->m[0][i] / l, out[4] = -x->m[2][i] / l, out[5] = x->m[1][i] / l;
 }
 
-void beyond_rolling(const struct bundle *c, const struct beyond *x, struct body *body, int i,
-                    const double s[2], const double u[3], struct rolling *q, double v[ROLLING])
+void beyond_rolling(const struct bundle *c, const struct beyond *x, const struct beyond_levers *y,
+                    struct body *body, int i, const double s[2], const double u[3],
+                    struct rolling *q, double v[ROLLING])
 {
+    if (y) {
+        beyond_levers_rolling(c, x, y, body, i, u, q, v);
+        return;
+    }
     const double w[2] = { c->w[0][i], c->w[1][i] }, r[3] = { c->r[0][i], c->r[1][i], c->r[2][i] };
     double omega[3], l = x->length[i];
     set_operator(c, x, i, w, s, q);
@@ -59,9 +71,14 @@ void beyond_rolling(const struct bundle *c, const struct beyond *x, struct body 
     v[3] = l * omega[0], v[4] = -l * omega[2], v[5] = l * omega[1];
 }
 
-void beyond_roll(const struct bundle *c, struct beyond *x, struct body *body, int i,
-                 enum method_id method, const struct local_opt *opt, struct rolling_lane *l)
+void beyond_roll(const struct bundle *c, struct beyond *x, const struct beyond_levers *y,
+                 struct body *body, int i, enum method_id method, const struct local_opt *opt,
+                 struct rolling_lane *l)
 {
+    if (y) {
+        beyond_levers_roll(c, x, y, body, i, method, opt, l);
+        return;
+    }
     struct rolling q;
     double omega[3], was[ROLLING], k = x->s[1][i] * x->k[i], length = x->length[i];
     set_operator(c, x, i, l->w, l->s, &q);
@@ -72,10 +89,10 @@ void beyond_roll(const struct bundle *c, struct beyond *x, struct body *body, in
     q.b[0] = l->b[0] / l->s[0];
     q.b[3] = length * omega[0] - q.wp * q.x[3];
     for (int j = 0; j < 2; j++) { // what is there without r* and m
-        double y = length * q.x[4 + j], bt = l->b[1 + j] / l->s[1] - k * y;
+        double turned_m = length * q.x[4 + j], bt = l->b[1 + j] / l->s[1] - k * turned_m;
         double felt = l->r[1 + j] + x->p[1 + j][i];
         double spun =
-            turned[j] - x->k[i] * (felt + x->a[1 + j][i] + x->K[1][i] * bt) - x->wr[i] * y;
+            turned[j] - x->k[i] * (felt + x->a[1 + j][i] + x->K[1][i] * bt) - x->wr[i] * turned_m;
         q.b[1 + j] = bt, q.b[4 + j] = length * spun;
     }
     rolling_solve(method, &q, opt);

@@ -37,6 +37,7 @@ struct beyond {
 /* What of a local problem the moment needs, and changes */
 struct rolling_lane {
     double w[2], b[3], r[3]; /* w^, b^; r* of the last sweep */
+    double u[3];             /* u~ of the last sweep, where there are levers */
     double s[2];             /* of the impact law, 1/(1 + e) */
     double relax;
     double dm[3]; /* out: change of m, in (n, t1, t2) */
@@ -49,16 +50,21 @@ static inline bool beyond_rolls(const struct beyond *x, int lane)
     return x->mu_r[lane] > 0 || x->mu_p[lane] > 0;
 }
 
+struct beyond_levers; /* [problem/beyond_levers.h]; NULL: a bundle of balls */
+
 /* Solves lane i with its moment: l->r and x->m are the new ones, l->b that for the new moment. The
    bodies turn at their velocities of before. */
-void beyond_roll(const struct bundle *c, struct beyond *x, struct body *body, int i,
-                 enum method_id method, const struct local_opt *opt, struct rolling_lane *l);
+void beyond_roll(const struct bundle *c, struct beyond *x, const struct beyond_levers *y,
+                 struct body *body, int i, enum method_id method, const struct local_opt *opt,
+                 struct rolling_lane *l);
 
 /* What a change dm of the moment makes of the bodies */
-void beyond_push(const struct bundle *c, int i, struct body *body, const double dm[3]);
+void beyond_push(const struct bundle *c, const struct beyond *x, const struct beyond_levers *y,
+                 int i, struct body *body, const double dm[3]);
 
 /* The contact as one of law/rolling.h, without b; its x, and its u where u_D = (1 + e) u~ is u_n, u_t */
-void beyond_rolling(const struct bundle *c, const struct beyond *x, struct body *body, int i,
-                    const double s[2], const double u[3], struct rolling *q, double v[ROLLING]);
+void beyond_rolling(const struct bundle *c, const struct beyond *x, const struct beyond_levers *y,
+                    struct body *body, int i, const double s[2], const double u[3],
+                    struct rolling *q, double v[ROLLING]);
 
 #endif

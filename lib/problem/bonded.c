@@ -1,9 +1,6 @@
 /* problem/bonded.c: M + H K H^T, condensed [problem/bonded.h]. */
 #include "problem/bonded.h"
 
-#include "problem/assembly.h"
-#include "problem/condense.h"
-
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -17,7 +14,7 @@ static int check_memory(const struct problem *p, struct why *why)
     if (need <= have) return 0;
     return why_set(why, EX_SOFTWARE,
                    "the bonds couple %lld contacts: needs %.3g GB, the machine has %.3g; "
-                   "--global auto and nlgs need no W",
+                   "--global auto, anderson and nlgs need no W",
                    (long long)p->n, need / GB, have / GB);
 }
 
@@ -56,26 +53,34 @@ static bool add_bonds(const struct assembly *A, struct global *P)
     return good;
 }
 
-static int fill(const struct assembly *A, struct delassus *W, struct why *why)
+int bonded_global(const struct assembly *A, struct global *P, struct why *why)
 {
     struct stored M = { 0 }, H = { 0 };
+    *P = (struct global){ 0 };
+    int e = assembly_MH(A, &M, &H, &P->f, why);
+    P->nv = M.n;
+    if (!e) e = sparse_unpack(&P->M, &M, "M", why) || sparse_unpack(&P->H, &H, "H", why);
+    if (!e && !add_bonds(A, P)) why_set(why, EX_SOFTWARE, "no memory for the bonds");
+    stored_free(&M), stored_free(&H);
+    return why->status;
+}
+
+static int fill(const struct assembly *A, struct delassus *W, struct why *why)
+{
     struct global P = { 0 };
     struct motion U = { 0 };
     struct sparse w = { 0 };
     int64_t n = A->p->n, d = A->p->d;
     double *q = malloc((size_t)(n * d + 1) * sizeof *q), *mu = malloc((size_t)(n + 1) * sizeof *mu);
     int e = q && mu ? 0 : why_set(why, EX_SOFTWARE, "no memory for the bonds");
-    if (!e) e = assembly_MH(A, &M, &H, &P.f, why);
-    P.nv = M.n;
-    if (!e) e = sparse_unpack(&P.M, &M, "M", why) || sparse_unpack(&P.H, &H, "H", why);
-    if (!e && !add_bonds(A, &P)) e = why_set(why, EX_SOFTWARE, "no memory for the bonds");
+    if (!e) e = bonded_global(A, &P, why);
     if (!e) memcpy(q, A->w, (size_t)(n * d) * sizeof *q);
     if (!e) e = condense(&P, &U, &w, q, why);
     for (int64_t c = 0; !e && c < n; c++)
         mu[c] = slot_bundle(A->p, A->slot[c])->mu[slot_lane(A->slot[c])];
     if (!e) e = delassus_init(W, (int)d, n, w.count, w.row, w.col, w.x, q, mu, why);
     free(q), free(mu);
-    stored_free(&M), stored_free(&H), global_free(&P), motion_free(&U), sparse_free(&w);
+    global_free(&P), motion_free(&U), sparse_free(&w);
     return e ? why->status : 0;
 }
 

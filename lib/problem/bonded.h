@@ -11,10 +11,15 @@
 #ifndef NSD_BONDED_H
 #define NSD_BONDED_H
 
-#include "problem/problem.h"
+#include "problem/assembly.h"
+#include "problem/condense.h"
 
 /* W^, q^, mu, r = 0, of a packing's problem with its bodies. Returns 0, EX_SOFTWARE or EX_DATAERR, with
    nothing to free. */
 int bonded_blocks(const struct problem *bodies, struct delassus *W, struct why *why);
+
+/* M + H K H^T, H and f - H (a + K w) of an assembly whose problem has bonds; P is to be freed in any
+   case. Returns 0, EX_SOFTWARE or EX_DATAERR. */
+int bonded_global(const struct assembly *A, struct global *P, struct why *why);
 
 #endif

@@ -4,6 +4,7 @@
 #include "bodies/kinematics.h"
 #include "bodies/offset.h"
 #include "bodies/top.h"
+#include "problem/beyond_levers.h"
 #include "problem/problem.h"
 
 /* un: u^-_n, m/s */
@@ -146,8 +147,52 @@ static void slot_go_beyond(struct problem *p, int64_t i, const struct contact *c
     struct rolling q;
     const double s[2] = { e ? e->s[0][k] : 1, e ? e->s[1][k] : 1 }, u[3] = { 0 };
     double v[ROLLING];
-    beyond_rolling(r, x, p->body, k, s, u, &q, v);
+    beyond_rolling(r, x, NULL, p->body, k, s, u, &q, v);
     x->rho[k] = r->rho[k] * lambda / rolling_lambda(&q);
+}
+
+/* The rows R_i of a body, or a boundary */
+static void set_turning(double R[9][BUNDLE], int k, const struct packing *pack, int32_t i,
+                        const struct contact *c, const quat *half)
+{
+    const vec3 e[3] = { c->n, v3_scale(-1, contact_t2(c)), c->t1 };
+    for (int j = 0; j < 3; j++) {
+        vec3 row = e[j];
+        if (pack->dim == 2) row = v3(0, 0, row.z);
+        if (i >= 0 && pack->mass[i] > 0) row = top_inverse_root(pack, i, half[i], row);
+        R[3 * j][k] = row.x, R[3 * j + 1][k] = row.y, R[3 * j + 2][k] = row.z;
+    }
+}
+
+/* The same beyond what lever_init() has set */
+static void lever_go_beyond(struct problem *p, int64_t i, const struct contact *c,
+                            const struct tie *t, double alpha, double rho_factor, const quat *half)
+{
+    int k = slot_lane(i);
+    struct bundle *r = slot_bundle(p, i);
+    struct beyond *x = &p->beyond[i / BUNDLE];
+    struct beyond_levers *y = slot_turn(p, i);
+    const struct body *a = &p->body[body_index(r->a[k])], *b = &p->body[body_index(r->b[k])];
+    double h = p->dt, seen = t->offset > 0 ? t->offset : offset_of(p->packing, c, 0);
+    double W[9], K[2] = { h * h * t->stiff[0], h * h * t->stiff[1] };
+    for (int j = 0; j < 9; j++) W[j] = r->W[j][k];
+    for (int j = 0; j < 2; j++) x->K[j][k] = K[j];
+    x->a[0][k] = K[0] * (t->jump[0] / h - seen);
+    for (int j = 1; j < 3; j++) x->a[j][k] = h * t->stiff[1] * t->jump[j];
+    if (K[0] > 0 || K[1] > 0) {
+        double hat[9];
+        beyond_levers_bond(r, y, k, K);
+        for (int j = 0; j < 9; j++) hat[j] = r->W[j][k];
+        double lambda = local_lambda_max(hat);
+        for (int j = 0; j < 2; j++) r->w[j][k] = lambda, r->iw[j][k] = 1 / lambda;
+        if (!(alpha > 0)) r->rho[k] = lambda > 0 ? rho_factor / lambda : 1;
+    }
+    x->mu_r[k] = t->mu_r, x->mu_p[k] = t->mu_p;
+    if (!beyond_rolls(x, k)) return;
+    set_turning(y->Ra, k, p->packing, c->a, c, half);
+    set_turning(y->Rb, k, p->packing, c->b, c, half);
+    x->length[k] = beyond_levers_turn(&p->lever[i / BUNDLE], r, y, k, W, K, a->ii, b->ii);
+    x->rho[k] = r->rho[k] * r->w[0][k] / y->lambda[k];
 }
 
 void fill_bundles(void *arg, int64_t first, int64_t end)
@@ -163,6 +208,9 @@ void fill_bundles(void *arg, int64_t first, int64_t end)
             lever_init(f->p, i, pack, f->cell, law, tie, f->alpha, f->rho_factor, f->half);
         else
             slot_init(f->p, i, pack, f->cell, law, tie, f->alpha, f->rho_factor);
-        if (f->p->beyond && tie) slot_go_beyond(f->p, i, law, tie, f->alpha, f->rho_factor);
+        if (f->p->turn && tie)
+            lever_go_beyond(f->p, i, law, tie, f->alpha, f->rho_factor, f->half);
+        else if (f->p->beyond && tie)
+            slot_go_beyond(f->p, i, law, tie, f->alpha, f->rho_factor);
     }
 }

@@ -1,13 +1,38 @@
 /* problem/mixing.c: measuring and mixing [problem/mixing.h]. Compiled with LANES = 2, 4 and 8. */
 #include "problem/mixing.h"
 
+#include "problem/beyond_levers.h"
 #include "problem/walk.h"
+
+/*
+ * What a slot's vector is made of: r, and in a problem with bonds or moments their p and m, which
+ * follow r through the sweeps and must be mixed as it is.
+ */
+enum { WITH_BESIDE = 3 + BESIDE_R };
+
+ALWAYS_INLINE double *component(const struct problem *p, int64_t i, int l)
+{
+    if (l < 3) return p->bundle[i].r[l];
+    return l < 6 ? p->beyond[i].p[l - 3] : p->beyond[i].m[l - 6];
+}
+
+/* Its weight: of a moment that of the impulse which it is over the length of law/rolling.h */
+ALWAYS_INLINE vd weight(const struct problem *p, int64_t i, int k, int l, vd lambda)
+{
+    if (l < 6) return lambda;
+    vd length = vload(p->beyond[i].length + k);
+    return pick(lt(splat(0), length), lambda / (length * length), splat(0));
+}
 
 /* d and the depth are constants of each call, so that the compiler unrolls the loops over them. */
 #define BY_SHAPE(p, m, text, ...)                                                                  \
     do {                                                                                           \
         bool all = (m)->depth == MIXING_DEPTH;                                                     \
-        if ((p)->d == 3 && all)                                                                    \
+        if ((p)->beyond && all)                                                                    \
+            text(WITH_BESIDE, MIXING_DEPTH, __VA_ARGS__);                                          \
+        else if ((p)->beyond)                                                                      \
+            text(WITH_BESIDE, MIXING_DEPTH_MANY, __VA_ARGS__);                                     \
+        else if ((p)->d == 3 && all)                                                               \
             text(3, MIXING_DEPTH, __VA_ARGS__);                                                    \
         else if ((p)->d == 3)                                                                      \
             text(3, MIXING_DEPTH_MANY, __VA_ARGS__);                                               \
@@ -30,10 +55,11 @@ ALWAYS_INLINE void measure_text(int d, int depth, const struct problem *p, const
             vd lambda = bundle_lambda(c, k);
             for (int l = 0; l < d; l++) {
                 int64_t at = (i * d + l) * BUNDLE + k;
-                vd g = vload(c->r[l] + k), f = g - vload(df + at), change = f - vload(m.f + at);
+                vd g = vload(component(p, i, l) + k), f = g - vload(df + at),
+                   change = f - vload(m.f + at);
                 vstore(dg + at, g - vload(dg + at)), vstore(df + at, change);
                 vstore(m.f + at, f);
-                vd wf = lambda * f, wdf = lambda * change;
+                vd w = weight(p, i, k, l, lambda), wf = w * f, wdf = w * change;
                 f2 += wf * f;
                 for (int j = 0; j < depth; j++)
                     ff[j] += wdf * vload(m.df[j] + at), fd[j] += wf * vload(m.df[j] + at);
@@ -57,6 +83,27 @@ struct jump {
     const double *gamma;
 };
 
+/* Stores x as the p and m of lanes k.., moments within their limits; dp, dm: their changes */
+ALWAYS_INLINE void react_beside(struct problem *p, int64_t i, int k, const vd x[WITH_BESIDE],
+                                vd dp[3], double dm[LANES][3])
+{
+    struct beyond *y = &p->beyond[i];
+    double m[3][LANES], was[3][LANES];
+    for (int l = 0; l < 3; l++) {
+        dp[l] = x[3 + l] - vload(y->p[l] + k), vstore(y->p[l] + k, x[3 + l]);
+        vstore(was[l], vload(y->m[l] + k)), vstore(m[l], x[6 + l]);
+    }
+    for (int j = 0; j < LANES; j++) {
+        if (!beyond_rolls(y, k + j)) continue;
+        double rn = p->bundle[i].r[0][k + j], most = y->mu_r[k + j] * rn;
+        double t2 = m[1][j] * m[1][j] + m[2][j] * m[2][j], pivot = y->mu_p[k + j] * rn;
+        double s = t2 > most * most ? most / sqrt(t2) : 1;
+        m[0][j] = m[0][j] > pivot ? pivot : m[0][j] < -pivot ? -pivot : m[0][j];
+        m[1][j] *= s, m[2][j] *= s;
+        for (int l = 0; l < 3; l++) dm[j][l] = m[l][j] - was[l][j], y->m[l][k + j] = m[l][j];
+    }
+}
+
 /* Projects onto the disc, not onto the cone: the orthogonal projection on the cone would change r_n
    of contacts that slide. */
 ALWAYS_INLINE void react_text(int d, int depth, struct problem *p, const struct mixing m,
@@ -67,10 +114,11 @@ ALWAYS_INLINE void react_text(int d, int depth, struct problem *p, const struct 
         fetch_ahead(p, i);
         for (int k = 0; k < BUNDLE; k += LANES) {
             struct bundle *c = &p->bundle[i];
-            vd x[3] = { splat(0), splat(0), splat(0) }, r[3], dr[3];
+            vd x[WITH_BESIDE] = { splat(0), splat(0), splat(0) }, r[3], dr[3];
+            double dm[LANES][3];
             for (int l = 0; l < d; l++) {
                 int64_t at = (i * d + l) * BUNDLE + k;
-                x[l] = vload(c->r[l] + k) + j.leap * vload(m.f + at);
+                x[l] = vload(component(p, i, l) + k) + j.leap * vload(m.f + at);
                 for (int n = 0; n < depth; n++) x[l] -= j.gamma[n] * vload(m.dg[n] + at);
             }
             disc_project(vload(c->mu + k), x, r);
@@ -80,10 +128,27 @@ ALWAYS_INLINE void react_text(int d, int depth, struct problem *p, const struct 
                 dr[l] = r[l] - was, vstore(c->r[l] + k, r[l]);
                 if (l < d) vstore(g + at, was), vstore(from + at, r[l]);
             }
+            if (d == WITH_BESIDE) {
+                vd dp[3];
+                for (int l = 3; l < d; l++) {
+                    int64_t at = (i * d + l) * BUNDLE + k;
+                    vstore(g + at, vload(component(p, i, l) + k));
+                }
+                react_beside(p, i, k, x, dp, dm);
+                for (int l = 0; l < 3; l++) dr[l] += dp[l];
+                for (int l = 3; l < d; l++) {
+                    int64_t at = (i * d + l) * BUNDLE + k;
+                    vstore(from + at, vload(component(p, i, l) + k));
+                }
+            }
             if (p->W)
                 blocks_scatter(p, c, k);
             else
                 problem_push(p, p->body, c, k, dr);
+            const struct beyond_levers *turn = p->turn ? &p->turn[i] : NULL;
+            for (int l = 0; l < LANES && d == WITH_BESIDE; l++)
+                if (beyond_rolls(&p->beyond[i], k + l))
+                    beyond_push(c, &p->beyond[i], turn, k + l, p->body, dm[l]);
         }
     }
 }

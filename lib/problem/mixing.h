@@ -2,7 +2,8 @@
  * problem/mixing.h: the inner loops of Anderson's acceleration (solve/anderson.c), written once for
  * every vector width.
  *
- * A vector is [bundles][d][8], the reactions as the slots have them, N s. In a sum over contacts
+ * A vector is [bundles][d][8], the reactions as the slots have them, N s; where there are bonds or moments
+ * [bundles][9][8], r, p and m. In a sum over contacts
  * each contact is weighted by lambda_max(W~_cc), so that a sum of squares is an energy whatever the
  * masses.
  *
@@ -19,6 +20,12 @@ enum {
     MIXING_DEPTH = 5,     /* changes kept; with 2, 3 and 6 more sweeps are needed */
     MIXING_DEPTH_MANY = 2 /* changes kept of MANY_CONTACTS: each takes 16 d bytes a contact */
 };
+
+/* The numbers of a slot in a vector */
+static inline int mixing_width(const struct problem *p)
+{
+    return p->beyond ? 3 + BESIDE_R : p->d;
+}
 
 struct mixing {
     int depth; /* MIXING_DEPTH or MIXING_DEPTH_MANY */

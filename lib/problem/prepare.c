@@ -115,7 +115,7 @@ static int prepare_by_W(struct problem *p, const struct packing *pack, const str
         problem_free(&bodies);
         return why_set(why, EX_DATAERR,
                        "rolling friction where loads push contacts, or by another "
-                       "solver than auto and nlgs: not known");
+                       "solver than auto, anderson and nlgs: not known");
     }
     struct delassus *W = assemble(&bodies, s, why);
     if (W && !problem_prepare_delassus(p, W, alpha, rho_factor, order, why)) {

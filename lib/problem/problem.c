@@ -5,6 +5,7 @@
 #include "bodies/kinematics.h"
 #include "bodies/offset.h"
 #include "bodies/top.h"
+#include "problem/beyond_levers.h"
 #include "problem/filling.h"
 #include "problem/schedule.h"
 
@@ -50,7 +51,7 @@ void problem_free(struct problem *p)
 {
     free(p->bundle), free(p->rebound), free(p->u), free(p->contact), free(p->group), free(p->body);
     free(p->split), free(p->seat), free(p->pull), free(p->beyond), free(p->in_W);
-    free(p->lever), free(p->spin);
+    free(p->lever), free(p->spin), free(p->turn);
     delassus_free(&p->sorted);
     if (p->own) delassus_free(p->own);
     if (p->coupling) couplings_free(p->coupling);
@@ -215,7 +216,11 @@ static bool lay_out_beyond(struct problem *p, const struct contacts *s)
     p->beyond = alloc_lines(p->bundles, sizeof *p->beyond);
     for (int64_t i = 0; p->beyond && i < p->slots; i++)
         for (int j = 0; j < 2; j++) p->beyond[i / BUNDLE].s[j][slot_lane(i)] = 1;
-    return p->beyond != NULL;
+    if (!p->beyond || !p->lever) return p->beyond != NULL;
+    p->turn = alloc_lines(p->bundles, sizeof *p->turn);
+    for (int64_t i = 0; p->turn && i < p->slots; i++)
+        for (int j = 0; j < 9; j += 4) p->turn[i / BUNDLE].S[j][slot_lane(i)] = 1;
+    return p->turn != NULL;
 }
 
 /* The reactions found, as r* and what is beyond it; the bodies get them. */
@@ -238,7 +243,7 @@ static void take_found(struct problem *p, int64_t i, const struct contacts *s)
     slot_set(p, i, r, u);
     if (!x || !beyond_rolls(x, k)) return;
     const double m[3] = { x->m[0][k], x->m[1][k], x->m[2][k] };
-    beyond_push(slot_bundle(p, i), k, p->body, m);
+    beyond_push(slot_bundle(p, i), x, slot_turn(p, i), k, p->body, m);
 }
 
 /* What the free motion makes of the slots */
@@ -337,12 +342,6 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     if (room && (rebounds(pack, s) || glides(s, &cell)))
         room = (p->rebound = alloc_lines(p->bundles, sizeof *p->rebound)) != NULL;
     room = room && set_pulls(p, s) && lay_out_beyond(p, s);
-    if (room && p->beyond && p->lever) {
-        free(half), problem_free(p);
-        return why_set(why, EX_DATAERR,
-                       "bonds and rolling friction are for balls and discs, and there are contacts "
-                       "of other shapes");
-    }
     if (!room || !(p->seat = seat_bodies(p, pack, s, order))) return free(half), no_memory(p, why);
     if (freedoms_in(pack)) {
         if (!(p->coupling = calloc(1, sizeof *p->coupling))) return free(half), no_memory(p, why);
@@ -429,6 +428,11 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
     if (p->norm_q > 0) p->scale_v = p->norm_q / sqrt((double)(W->d * W->n));
     p->scale_r = trace > 0 ? p->scale_v * (double)(W->d * W->n) / trace : p->scale_v;
     return 0;
+}
+
+struct beyond_levers *slot_turn(const struct problem *p, int64_t i)
+{
+    return p->turn ? &p->turn[i / BUNDLE] : NULL;
 }
 
 void slot_get(const struct problem *p, int64_t i, double r[3], double u[3])

@@ -34,18 +34,19 @@ enum {
 
 struct problem {
     int d;
-    int64_t n;               /* contacts */
-    int64_t bundles, slots;  /* slots: 8 a bundle, some without a contact */
-    struct bundle *bundle;   /* [bundles] in the order of the sweep */
-    struct rebound *rebound; /* [bundles]; NULL: e_n = e_t = 0 everywhere, and no offset */
-    struct levers *lever;    /* [bundles]; NULL: balls, or given by W */
-    struct beyond *beyond;   /* [bundles]; NULL: no contact is bonded, none has rolling friction */
-    bool rolls;              /* some contact has it */
-    struct beyond *in_W;     /* [bundles] K and a of bonds that W has in it; NULL: none */
-    double (*u)[3][BUNDLE];  /* [bundles] m/s: what the local method believes */
-    int32_t *contact;        /* [slots] slot i is contact[i] of the packing or of W; -1: none */
-    int64_t groups;          /* no two contacts of a group share a body (a block of W): */
-    int64_t *group;          /* [groups + 1] bundles group[g] .. group[g+1]-1 may be done at once */
+    int64_t n;                  /* contacts */
+    int64_t bundles, slots;     /* slots: 8 a bundle, some without a contact */
+    struct bundle *bundle;      /* [bundles] in the order of the sweep */
+    struct rebound *rebound;    /* [bundles]; NULL: e_n = e_t = 0 everywhere, and no offset */
+    struct levers *lever;       /* [bundles]; NULL: balls, or given by W */
+    struct beyond_levers *turn; /* [bundles] the same between bodies with levers; else NULL */
+    struct beyond *beyond;  /* [bundles]; NULL: no contact is bonded, none has rolling friction */
+    bool rolls;             /* some contact has it */
+    struct beyond *in_W;    /* [bundles] K and a of bonds that W has in it; NULL: none */
+    double (*u)[3][BUNDLE]; /* [bundles] m/s: what the local method believes */
+    int32_t *contact;       /* [slots] slot i is contact[i] of the packing or of W; -1: none */
+    int64_t groups;         /* no two contacts of a group share a body (a block of W): */
+    int64_t *group;         /* [groups + 1] bundles group[g] .. group[g+1]-1 may be done at once */
     struct two_thread_split *split; /* NULL: the order has no halves */
     int64_t bodies;                 /* of body[]; 0: given by W */
     struct body *body; /* [bodies] the packing's, by colours in the order in which the sweep first
@@ -111,6 +112,7 @@ static inline struct rebound *slot_rebound(const struct problem *p, int64_t i)
 {
     return p->rebound ? &p->rebound[i / BUNDLE] : NULL;
 }
+struct beyond_levers *slot_turn(const struct problem *p, int64_t i); /* NULL: balls */
 void slot_get(const struct problem *p, int64_t i, double r[3], double u[3]);
 void slot_set(struct problem *p, int64_t i, const double r[3], const double u[3]);
 

@@ -6,6 +6,7 @@
 #include "law/local_exact.h"
 #include "law/local_sal.h"
 #include "law/local_sbp.h"
+#include "problem/beyond_levers.h"
 #include "problem/walk.h"
 
 typedef void method_text(struct local *, const struct local_opt *);
@@ -75,8 +76,22 @@ enum beyond_what { NOTHING, BONDS, MOMENTS };
  * The local problem of a bonded contact [problem/beyond.h]: W^ stands in the bundle already. What is
  * not bonded keeps its bits.
  */
-ALWAYS_INLINE void bond_local(const struct beyond *x, int k, struct local *l)
+ALWAYS_INLINE void bond_local(const struct beyond *x, const struct beyond_levers *y, int k,
+                              struct local *l)
 {
+    if (y) {
+        vd felt[3], b[3];
+        for (int i = 0; i < 3; i++) felt[i] = l->r[i] + vload(x->p[i] + k) + vload(x->a[i] + k);
+        for (int i = 0; i < 3; i++) {
+            b[i] = -dot3(l->W + 3 * i, felt);
+            for (int j = 0; j < 3; j++) b[i] += vload(y->S[3 * i + j] + k) * l->v[j];
+        }
+        vm held = lt(splat(0), vload(x->K[0] + k) + vload(x->K[1] + k));
+        for (int i = 0; i < 3; i++) l->b[i] = pick(held, b[i], l->b[i]);
+        for (int i = 0; i < 3; i++)
+            l->v[i] = pick(held, dot3(l->W + 3 * i, l->r) + l->b[i], l->v[i]);
+        return;
+    }
     for (int i = 0; i < 3; i++) {
         vd s = vload(x->s[i > 0] + k), felt = l->r[i] + vload(x->p[i] + k);
         l->b[i] = s * l->v[i] - l->w[i] * (felt + vload(x->a[i] + k));
@@ -96,22 +111,26 @@ ALWAYS_INLINE void bond_follow(struct beyond *x, int k, const struct local *l, v
     }
 }
 
-/* The lanes with rolling friction, anew; dm: the changes of their moments */
-ALWAYS_INLINE void roll_lanes(struct problem *p, const struct bundle *c, struct beyond *x, int k,
-                              enum method_id method, const struct sweep_opt *o, struct local *l,
+/* The lanes with rolling friction, anew; before: their u~ of the last sweep; dm: the changes of their moments */
+ALWAYS_INLINE void roll_lanes(struct problem *p, const struct bundle *c, struct beyond *x,
+                              const struct beyond_levers *y, int k, enum method_id method,
+                              const struct sweep_opt *o, const vd before[3], struct local *l,
                               double dm[LANES][3])
 {
     const struct rebound *e = bundle_rebound(p, c);
-    double b[3][LANES], r[3][LANES], w[3][LANES], steps[LANES], safe[LANES], gave[LANES];
+    double b[3][LANES], r[3][LANES], w[3][LANES], u[3][LANES];
+    double steps[LANES], safe[LANES], gave[LANES];
     for (int j = 0; j < 3; j++) vstore(b[j], l->b[j]), vstore(r[j], l->r[j]), vstore(w[j], l->w[j]);
+    for (int j = 0; j < 3 && y; j++) vstore(u[j], before[j]);
     vstore(steps, l->steps), vstore(safe, pick(l->safeguarded, splat(1), splat(0)));
     vstore(gave, pick(l->gave_up, splat(1), splat(0)));
     for (int i = 0; i < LANES; i++) {
         if (!beyond_rolls(x, k + i)) continue;
         struct rolling_lane one = { .relax = o->relax, .w = { w[0][i], w[1][i] } };
         for (int j = 0; j < 3; j++) one.b[j] = b[j][i], one.r[j] = c->r[j][k + i];
+        for (int j = 0; j < 3 && y; j++) one.u[j] = u[j][i];
         for (int j = 0; j < 2; j++) one.s[j] = e ? e->s[j][k + i] : 1;
-        beyond_roll(c, x, p->body, k + i, method, &o->local, &one);
+        beyond_roll(c, x, y, p->body, k + i, method, &o->local, &one);
         for (int j = 0; j < 3; j++) b[j][i] = one.b[j], r[j][i] = one.r[j], dm[i][j] = one.dm[j];
         steps[i] = one.steps, safe[i] = one.safeguarded, gave[i] = one.gave_up;
     }
@@ -191,12 +210,13 @@ ALWAYS_INLINE void solve_bundles(struct problem *p, int64_t first, int64_t end,
         for (int k = 0; k < BUNDLE; k += LANES) {
             struct local l;
             struct beyond *x = beyond ? &p->beyond[i] : NULL;
+            const struct beyond_levers *y = beyond && full ? &p->turn[i] : NULL;
             vd W[9], dr[3];
             double dm[LANES][3];
             make_local(p, c, k, given_by_W, full, now, W, &l);
-            if (beyond) bond_local(x, k, &l);
+            if (beyond) bond_local(x, y, k, &l);
             solve_relaxed(&l, c, k, solve, full, o);
-            if (beyond == MOMENTS) roll_lanes(p, c, x, k, method, o, &l, dm);
+            if (beyond == MOMENTS) roll_lanes(p, c, x, y, k, method, o, now->v, &l, dm);
             store_solution(c, k, belief, &l, dr, t);
             if (beyond) bond_follow(x, k, &l, dr);
             if (k + LANES < BUNDLE)
@@ -205,7 +225,7 @@ ALWAYS_INLINE void solve_bundles(struct problem *p, int64_t first, int64_t end,
                 load_slots(p, c + 1, 0, given_by_W, full, next);
             pass_on(p, c, k, given_by_W, full, now, dr);
             for (int j = 0; j < LANES && beyond == MOMENTS; j++)
-                if (beyond_rolls(x, k + j)) beyond_push(c, k + j, p->body, dm[j]);
+                if (beyond_rolls(x, k + j)) beyond_push(c, x, y, k + j, p->body, dm[j]);
             struct loaded *was = now;
             now = next, next = was;
         }
@@ -244,7 +264,9 @@ ALWAYS_INLINE void sweep(struct problem *p, int me, int threads, const struct sw
     static void sweep_##name(struct problem *p, int me, int threads, const struct sweep_opt *o,    \
                              struct tally *t)                                                      \
     {                                                                                              \
-        if (p->lever)                                                                              \
+        if (p->turn)                                                                               \
+            sweep(p, me, threads, o, METHOD_##name, name##_solve, false, true, MOMENTS, t);        \
+        else if (p->lever)                                                                         \
             sweep(p, me, threads, o, METHOD_##name, name##_solve, false, true, NOTHING, t);        \
         else if (p->full)                                                                          \
             sweep(p, me, threads, o, METHOD_##name, name##_solve, true, true, NOTHING, t);         \
@@ -275,7 +297,8 @@ ALWAYS_INLINE void push_group(struct problem *p, int64_t first, int64_t end, voi
         for (int k = 0; k < BUNDLE && p->rolls; k++) {
             const struct beyond *x = &p->beyond[i];
             const double m[3] = { x->m[0][k], x->m[1][k], x->m[2][k] };
-            if (beyond_rolls(x, k)) beyond_push(&p->bundle[i], k, p->body, m);
+            const struct beyond_levers *y = p->turn ? &p->turn[i] : NULL;
+            if (beyond_rolls(x, k)) beyond_push(&p->bundle[i], x, y, k, p->body, m);
         }
     }
 }
@@ -355,15 +378,20 @@ ALWAYS_INLINE void add_natural(struct sums *s, const struct bundle *c, int k, co
     add_to(s->r2 + k, dot3(r, r));
 }
 
-/* What an inconsistent pull of the bond means: e = p + a + K u~, of which s e would be taken back */
-ALWAYS_INLINE void add_bonds(struct sums *s, const struct bundle *c, const struct beyond *x, int k,
-                             enum err_terms which, const vd u[3])
+/* What an inconsistent pull of the bond means: e = p + a + K u~, of which s e, or S^T e, would be taken back */
+ALWAYS_INLINE void add_bonds(struct sums *s, const struct bundle *c, const struct beyond *x,
+                             const struct beyond_levers *y, int k, enum err_terms which,
+                             const vd u[3])
 {
-    vd lambda = bundle_lambda(c, k), off[3], p[3];
+    vd lambda = bundle_lambda(c, k), off[3], p[3], e[3];
     for (int i = 0; i < 3; i++) {
         p[i] = vload(x->p[i] + k);
-        off[i] =
-            vload(x->s[i > 0] + k) * (p[i] + vload(x->a[i] + k) + vload(x->K[i > 0] + k) * u[i]);
+        e[i] = p[i] + vload(x->a[i] + k) + vload(x->K[i > 0] + k) * u[i];
+        off[i] = vload(x->s[i > 0] + k) * e[i];
+    }
+    for (int i = 0; i < 3 && y; i++) {
+        off[i] = splat(0);
+        for (int j = 0; j < 3; j++) off[i] += vload(y->S[3 * j + i] + k) * e[j];
     }
     vd n2 = dot3(off, off);
     if (which & ERR_TERMS) add_to(s->motion + k, lambda * norm3(off));
@@ -381,7 +409,8 @@ static void judge_rolling(struct sums *s, const struct problem *p, int64_t i, in
     const double scale[2] = { e ? e->s[0][k] : 1, e ? e->s[1][k] : 1 };
     double v[ROLLING], on[ROLLING], far = 0, r2 = 0;
     struct rolling q;
-    beyond_rolling(c, &p->beyond[i], p->body, k, scale, u, &q, v);
+    const struct beyond_levers *y = p->turn ? &p->turn[i] : NULL;
+    beyond_rolling(c, &p->beyond[i], y, p->body, k, scale, u, &q, v);
     rolling_project(&q, q.x, on);
     for (int j = 0; j < ROLLING; j++)
         far += (q.x[j] - on[j]) * (q.x[j] - on[j]), r2 += q.x[j] * q.x[j];
@@ -407,7 +436,7 @@ static void judge_moments(const struct problem *p, int64_t i, bool believes, enu
             const double v[3] = { lane[0][j], lane[1][j], lane[2][j] };
             if (beyond_rolls(&p->beyond[i], k + j)) judge_rolling(&one, p, i, k + j, v);
         }
-        add_bonds(&one, &p->bundle[i], &p->beyond[i], k, ERR_ALL, u);
+        add_bonds(&one, &p->bundle[i], &p->beyond[i], p->turn ? &p->turn[i] : NULL, k, ERR_ALL, u);
     }
     for (int k = 0; k < BUNDLE; k++) {
         if (which & ERR_TERMS) {
@@ -437,7 +466,8 @@ static void judge(const struct problem *p, int64_t first, int64_t end, bool beli
             motion_velocity(p, &p->bundle[i], k, u);
             if (which & ERR_TERMS) add_terms(s, &p->bundle[i], p->u[i], k, believes, u);
             if (which & ERR_NATURAL) add_natural(s, &p->bundle[i], k, u);
-            if (p->beyond) add_bonds(s, &p->bundle[i], &p->beyond[i], k, which, u);
+            const struct beyond_levers *y = p->turn ? &p->turn[i] : NULL;
+            if (p->beyond) add_bonds(s, &p->bundle[i], &p->beyond[i], y, k, which, u);
         }
     }
 }

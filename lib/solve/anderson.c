@@ -98,8 +98,12 @@ static void remember_start(struct anderson *a)
 {
     const struct problem *p = a->s->p;
     double *x = a->m.df[a->m.next];
-    for (int64_t i = 0; i < p->bundles; i++, x += p->d * BUNDLE)
-        memcpy(x, p->bundle[i].r, (size_t)(p->d * BUNDLE) * sizeof *x);
+    for (int64_t i = 0; i < p->bundles; i++, x += mixing_width(p) * BUNDLE) {
+        memcpy(x, p->bundle[i].r, (size_t)(p->beyond ? 3 : p->d) * BUNDLE * sizeof *x);
+        if (!p->beyond) continue;
+        memcpy(x + 3 * BUNDLE, p->beyond[i].p, sizeof p->beyond[i].p);
+        memcpy(x + 6 * BUNDLE, p->beyond[i].m, sizeof p->beyond[i].m);
+    }
 }
 
 /* The sums of one chunk */
@@ -290,7 +294,7 @@ struct anderson *anderson_new(struct solve *s)
     if (!a) return NULL;
     a->s = s;
     a->m.depth = s->p->n > MANY_CONTACTS ? MIXING_DEPTH_MANY : MIXING_DEPTH;
-    size_t size = (size_t)(s->p->slots * s->p->d),
+    size_t size = (size_t)(s->p->slots * mixing_width(s->p)),
            bytes = (size_t)(1 + 2 * depth(a)) * size * sizeof(double);
     for (int k = 0; k < 2; k++)
         a->omega[k] = s->o->relax > 0 ? s->o->relax : k || s->p->full ? 1 : OMEGA_BALLS;

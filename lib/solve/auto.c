@@ -234,7 +234,7 @@ static int sweep_and_choose(struct strategy *a)
 
 static int run(struct solve *s)
 {
-    if (s->p->beyond) return solver_nlgs.run(s); // W is none that could be factorised
+    if (s->p->beyond) return solver_anderson.run(s); // W is none that could be factorised
     struct strategy a = { .s = s,
                           .sweeps = anderson_new(s),
                           .price = price_sweep(s->p),

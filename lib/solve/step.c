@@ -27,16 +27,17 @@ static int sum_up(const struct packing *pack, const struct contacts *s, const st
 /* Does it solve by sweeps alone what bonds and moments hold together? */
 static bool sweeps(const struct solver *global)
 {
-    return global == &solver_auto || global == &solver_nlgs;
+    return global == &solver_auto || global == &solver_nlgs || global == &solver_anderson;
 }
 
 /* Refuses what the solver asked for cannot solve. */
 static int check_solver(const struct problem *p, const struct solver *global, struct why *why)
 {
     if (!p->rolls || sweeps(global)) return 0;
-    return why_set(why, EX_DATAERR,
-                   "%s does not solve contacts with rolling friction: --global auto and nlgs do",
-                   global->name);
+    return why_set(
+        why, EX_DATAERR,
+        "%s does not solve contacts with rolling friction: --global auto, anderson and nlgs do",
+        global->name);
 }
 
 static int solve_contacts(const struct packing *pack, struct contacts *s, const struct step_opt *o,

@@ -1,0 +1,124 @@
+/* bodies/anchor.c: bonds as contacts of a step [bodies/anchor.h]. */
+#include "bodies/anchor.h"
+
+#include "bodies/kinematics.h"
+#include "bodies/top.h"
+
+#include <stdlib.h>
+
+static const double NEAR = 0.2; /* smaller radii: closer contacts are where the bond is */
+
+/* Of two keys: < 0 where x comes first */
+static int compare(const struct contact *x, const struct contact *y)
+{
+    if (x->a != y->a) return x->a < y->a ? -1 : 1;
+    if (x->b != y->b) return x->b < y->b ? -1 : 1;
+    if (x->feature != y->feature) return x->feature < y->feature ? -1 : 1;
+    for (int k = 0; k < 3; k++)
+        if (x->shift[k] != y->shift[k]) return x->shift[k] < y->shift[k] ? -1 : 1;
+    return 0;
+}
+
+/* The contact of bond b; q has no half step of balls, whose turning is constant. */
+static struct contact place(const struct packing *p, const struct bond *b, const vec3 *x,
+                            const quat *q, const vec3 edge[3], double t)
+{
+    struct contact c = { .a = b->a, .b = b->b, .feature = b->feature };
+    quat qb = packing_shape(p, b->b) ? q[b->b] : top_predict(p, b->b);
+    vec3 xb = v3_add(v3_add(x[b->b], cell_shift(edge, b->shift)), quat_turn(qb, b->at_b)), xa;
+    if (b->a < 0) {
+        const struct pose pose = wall_pose(p, &p->wall[-1 - b->a], t);
+        xa = pose_of(&pose, b->at_a);
+    } else {
+        quat qa = packing_shape(p, b->a) ? q[b->a] : top_predict(p, b->a);
+        xa = v3_add(x[b->a], quat_turn(qa, b->at_a));
+    }
+    for (int k = 0; k < 3; k++) c.shift[k] = b->shift[k];
+    vec3 n = quat_turn(qb, b->axis);
+    if (p->dim == 2) n.z = 0;
+    contact_basis(&c, p->dim, v3_scale(1 / v3_norm(n), n));
+    c.x = v3_scale(0.5, v3_add(xa, xb)), c.gap = v3_dot(c.n, v3_sub(xb, xa));
+    packing_set_law(p, &c);
+    return c;
+}
+
+static double smaller_radius(const struct packing *p, const struct contact *c)
+{
+    return c->a < 0 ? p->radius[c->b] : fmin(p->radius[c->a], p->radius[c->b]);
+}
+
+/* Is the contact where one of these is, which are sorted? *from: where its pair's begin */
+static bool is_taken(const struct packing *p, const struct contact *c, const struct contact *of,
+                     int64_t n, int64_t *from)
+{
+    while (*from < n && (of[*from].a < c->a || (of[*from].a == c->a && of[*from].b < c->b)))
+        ++*from;
+    double near = NEAR * smaller_radius(p, c);
+    for (int64_t i = *from; i < n && of[i].a == c->a && of[i].b == c->b; i++) {
+        vec3 d = v3_sub(of[i].x, c->x);
+        bool same = true;
+        for (int k = 0; k < 3; k++) same = same && of[i].shift[k] == c->shift[k];
+        if (same && v3_dot(d, d) <= near * near) return true;
+    }
+    return false;
+}
+
+/* to = both, in order; those of s that are taken left out. False when memory is short. */
+static bool merge(struct contacts *to, const struct packing *p, const struct contacts *s,
+                  const struct contact *placed, int64_t n)
+{
+    int64_t next = 0, from = 0;
+    bool good = true;
+    for (int64_t i = 0; good && i <= s->n; i++) {
+        for (; good && next < n && (i == s->n || compare(&placed[next], &s->c[i]) < 0); next++) {
+            struct contact *c = contacts_add(to, 0, 0);
+            if ((good = c != NULL)) *c = placed[next];
+        }
+        if (!good || i == s->n || is_taken(p, &s->c[i], placed, n, &from)) continue;
+        struct contact *c = contacts_add(to, 0, 0);
+        if ((good = c != NULL)) *c = s->c[i];
+    }
+    return good;
+}
+
+int anchors_place(struct contacts *s, const struct packing *p, const vec3 *x, const quat *q,
+                  const vec3 edge[3], double t, struct why *why)
+{
+    int64_t n = 0;
+    for (int64_t i = 0; i < p->bonds.n; i++) n += bond_anchored(&p->bonds.bond[i]);
+    if (!n) return 0;
+    struct contact *placed = malloc((size_t)n * sizeof *placed);
+    struct contacts both = { 0 };
+    n = 0;
+    for (int64_t i = 0; placed && i < p->bonds.n; i++) {
+        const struct bond *b = &p->bonds.bond[i];
+        bool there = b->a >= 0 || wall_there(&p->wall[-1 - b->a], t);
+        if (there && bond_anchored(b) && (b->beta > 0 || b->wet))
+            placed[n++] = place(p, b, x, q, edge, t);
+    }
+    if (!placed || !merge(&both, p, s, placed, n)) {
+        free(placed), contacts_free(&both);
+        return why_set(why, EX_SOFTWARE, "no memory for the contacts of bonds");
+    }
+    free(placed), contacts_free(s);
+    *s = both;
+    return 0;
+}
+
+void anchor_bond(struct bond *b, const struct packing *p, const struct contact *c, double area)
+{
+    double ahead = (1 - p->theta) * p->dt;
+    vec3 edge[3], half = v3_scale(0.5 * c->gap, c->n);
+    cell_predict(&p->cell, ahead, edge);
+    vec3 on_a = v3_sub(c->x, half), on_b = v3_add(c->x, half);
+    quat qb = top_predict(p, c->b);
+    vec3 xb = v3_add(packing_predict(p, c->b), cell_shift(edge, c->shift));
+    b->at_b = quat_turn_back(qb, v3_sub(on_b, xb)), b->axis = quat_turn_back(qb, c->n);
+    b->area = area;
+    if (c->a < 0) {
+        const struct pose pose = wall_pose(p, &p->wall[-1 - c->a], p->t + ahead);
+        b->at_a = quat_turn_back(pose.q, v3_sub(on_a, pose.shift));
+        return;
+    }
+    b->at_a = quat_turn_back(top_predict(p, c->a), v3_sub(on_a, packing_predict(p, c->a)));
+}

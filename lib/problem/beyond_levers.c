@@ -1,0 +1,181 @@
+/* problem/beyond_levers.c: bonds and moments as matrices [problem/beyond_levers.h]. */
+#include "problem/beyond_levers.h"
+
+#include <gsl/gsl_eigen.h>
+#include <string.h>
+
+/* C = A^-1, 3 x 3; A's eigenvalues are at least 1. */
+static void invert(const double A[9], double C[9])
+{
+    double B[9];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            int k = (i + 1) % 3, l = (i + 2) % 3, m = (j + 1) % 3, n = (j + 2) % 3;
+            B[3 * j + i] = A[3 * k + m] * A[3 * l + n] - A[3 * k + n] * A[3 * l + m];
+        }
+    double det = A[0] * B[0] + A[1] * B[3] + A[2] * B[6];
+    for (int i = 0; i < 9; i++) C[i] = B[i] / det;
+}
+
+void beyond_levers_bond(struct bundle *c, struct beyond_levers *y, int i, const double K[2])
+{
+    double A[9], S[9], W[9];
+    for (int j = 0; j < 9; j++) A[j] = (j % 4 == 0) + c->W[j][i] * K[j % 3 > 0];
+    invert(A, S);
+    for (int j = 0; j < 9; j++) {
+        y->S[j][i] = S[j], W[j] = 0;
+        for (int l = 0; l < 3; l++) W[j] += S[3 * (j / 3) + l] * c->W[3 * l + j % 3][i];
+    }
+    for (int j = 0; j < 9; j++) c->W[j][i] = 0.5 * (W[j] + W[3 * (j % 3) + j / 3]);
+}
+
+/* kg^-1: the largest eigenvalue of a symmetric W */
+static double largest(const double W[ROLLING * ROLLING])
+{
+    double A[ROLLING * ROLLING], d[ROLLING], sd[ROLLING], e[ROLLING], most = 0;
+    gsl_eigen_symm_workspace room = { ROLLING, d, sd };
+    gsl_matrix_view M = gsl_matrix_view_array(A, ROLLING, ROLLING);
+    gsl_vector_view v = gsl_vector_view_array(e, ROLLING);
+    memcpy(A, W, sizeof A);
+    gsl_eigen_symm(&M.matrix, &v.vector, &room);
+    for (int i = 0; i < ROLLING; i++) most = fmax(most, e[i]);
+    return most;
+}
+
+static double dot_rows(double (*A)[BUNDLE], double (*B)[BUNDLE], int i, int j, int lane)
+{
+    double sum = 0;
+    for (int k = 0; k < 3; k++) sum += A[3 * i + k][lane] * B[3 * j + k][lane];
+    return sum;
+}
+
+double beyond_levers_turn(const struct levers *g, const struct bundle *c, struct beyond_levers *y,
+                          int i, const double W[9], const double K[2], double iia, double iib)
+{
+    struct levers arm = *g; // not const, for dot_rows()
+    double Z[9], wt = fmax(W[4], W[8]), length = 1, full[ROLLING * ROLLING];
+    for (int j = 0; j < 9; j++)
+        Z[j] = iia * dot_rows(y->Ra, y->Ra, j / 3, j % 3, i) +
+               iib * dot_rows(y->Rb, y->Rb, j / 3, j % 3, i);
+    double wr = fmax(Z[4], Z[8]);
+    if (wr > 0) length = sqrt(wt / wr);
+    for (int j = 0; j < 9; j++) {
+        y->Ra[j][i] *= length, y->Rb[j][i] *= length;
+        Z[j] *= length * length;
+    }
+    for (int j = 0; j < 9; j += 4)
+        if (!(Z[j] > 0)) Z[j] = wt;
+    for (int j = 0; j < 9; j++)
+        y->V[j][i] = iia * dot_rows(y->Ra, arm.Ga, j / 3, j % 3, i) +
+                     iib * dot_rows(y->Rb, arm.Gb, j / 3, j % 3, i);
+    for (int j = 0; j < 3; j++)
+        for (int k = 0; k < 3; k++) {
+            double on = 0, left = 0; // V S^T and V K S V^T
+            for (int l = 0; l < 3; l++) {
+                on += y->V[3 * j + l][i] * y->S[3 * k + l][i];
+                for (int m = 0; m < 3; m++)
+                    left += y->V[3 * j + l][i] * K[l > 0] * y->S[3 * l + m][i] * y->V[3 * k + m][i];
+            }
+            full[ROLLING * j + k] = c->W[3 * j + k][i];
+            full[ROLLING * (3 + j) + k] = full[ROLLING * k + 3 + j] = on;
+            full[ROLLING * (3 + j) + 3 + k] = Z[3 * j + k] - left;
+        }
+    for (int j = 0; j < ROLLING; j++)
+        for (int k = 0; k < j; k++) {
+            double mean = 0.5 * (full[ROLLING * j + k] + full[ROLLING * k + j]);
+            full[ROLLING * j + k] = full[ROLLING * k + j] = mean;
+        }
+    for (int j = 0; j < ROLLING * ROLLING; j++) y->W[j][i] = full[j];
+    y->lambda[i] = largest(full);
+    return length;
+}
+
+/* The bodies' angular velocity relative to each other, as law/rolling.h has it */
+static void spin(const struct bundle *c, const struct beyond_levers *y, struct body *body, int i,
+                 double omega[3])
+{
+    const double *wa = body_at(body, c->a[i]) + 3, *wb = body_at(body, c->b[i]) + 3;
+    for (int j = 0; j < 3; j++) {
+        omega[j] = 0;
+        for (int l = 0; l < 3; l++)
+            omega[j] += y->Rb[3 * j + l][i] * wb[l] - y->Ra[3 * j + l][i] * wa[l];
+    }
+}
+
+/* The contact without its b and x: W and limits */
+static void set_operator(const struct bundle *c, const struct beyond *x,
+                         const struct beyond_levers *y, int i, struct rolling *q)
+{
+    *q = (struct rolling){ .full = true, .lambda = y->lambda[i], .rho = x->rho[i] };
+    for (int j = 0; j < ROLLING * ROLLING; j++) q->W[j] = y->W[j][i];
+    q->mu[0] = c->mu[i], q->mu[1] = x->mu_p[i] / x->length[i], q->mu[2] = x->mu_r[i] / x->length[i];
+}
+
+static void set_impulse(const struct beyond *x, int i, const double r[3], double out[ROLLING])
+{
+    double l = x->length[i];
+    for (int j = 0; j < 3; j++) out[j] = r[j];
+    out[3] = x->m[0][i] / l, out[4] = -x->m[2][i] / l, out[5] = x->m[1][i] / l;
+}
+
+void beyond_levers_rolling(const struct bundle *c, const struct beyond *x,
+                           const struct beyond_levers *y, struct body *body, int i,
+                           const double u[3], struct rolling *q, double v[ROLLING])
+{
+    const double r[3] = { c->r[0][i], c->r[1][i], c->r[2][i] };
+    set_operator(c, x, y, i, q);
+    set_impulse(x, i, r, q->x);
+    for (int j = 0; j < 3; j++) v[j] = u[j];
+    spin(c, y, body, i, v + 3);
+}
+
+void beyond_levers_push(const struct bundle *c, const struct beyond *x,
+                        const struct beyond_levers *y, int i, struct body *body, const double dm[3])
+{
+    double *a = body_at(body, c->a[i]), *b = body_at(body, c->b[i]), l = x->length[i];
+    const double turned[3] = { dm[0] / l, -dm[2] / l, dm[1] / l };
+    for (int k = 0; k < 3; k++)
+        for (int j = 0; j < 3; j++) {
+            a[3 + k] -= a[7] * y->Ra[3 * j + k][i] * turned[j];
+            b[3 + k] += b[7] * y->Rb[3 * j + k][i] * turned[j];
+        }
+}
+
+void beyond_levers_roll(const struct bundle *c, struct beyond *x, const struct beyond_levers *y,
+                        struct body *body, int i, enum method_id method,
+                        const struct local_opt *opt, struct rolling_lane *l)
+{
+    struct rolling q;
+    double now[ROLLING], was[ROLLING], omega[3], length = x->length[i], dp[3];
+    set_operator(c, x, y, i, &q);
+    set_impulse(x, i, l->r, q.x);
+    memcpy(was, q.x, sizeof was);
+    spin(c, y, body, i, omega);
+    for (int j = 0; j < 3; j++) { // u and omega with the bond's pull that goes with them
+        now[j] = 0;
+        for (int k = 0; k < 3; k++)
+            now[j] += y->S[3 * j + k][i] * l->u[k] - c->W[3 * j + k][i] * (x->p[k][i] + x->a[k][i]);
+        dp[j] = -x->a[j][i] - x->K[j > 0][i] * now[j] - x->p[j][i];
+    }
+    for (int j = 0; j < 3; j++) {
+        now[3 + j] = omega[j];
+        for (int k = 0; k < 3; k++) now[3 + j] += y->V[3 * j + k][i] * dp[k];
+    }
+    for (int j = 0; j < ROLLING; j++) {
+        q.b[j] = now[j];
+        for (int k = 0; k < ROLLING; k++) q.b[j] -= q.W[ROLLING * j + k] * q.x[k];
+    }
+    rolling_solve(method, &q, opt);
+    if (l->relax != 1) {
+        double tau[ROLLING];
+        for (int j = 0; j < ROLLING; j++) tau[j] = was[j] + l->relax * (q.x[j] - was[j]);
+        rolling_project(&q, tau, q.x);
+    }
+    const double m[3] = { length * q.x[3], length * q.x[5], -length * q.x[4] };
+    for (int j = 0; j < 3; j++) {
+        l->b[j] = q.b[j]; // that without r alone, as the vector text has it
+        for (int k = 3; k < ROLLING; k++) l->b[j] += q.W[ROLLING * j + k] * q.x[k];
+        l->r[j] = q.x[j], l->dm[j] = m[j] - x->m[j][i], x->m[j][i] = m[j];
+    }
+    l->steps = q.steps, l->safeguarded = q.safeguarded, l->gave_up = q.gave_up;
+}

@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# A drum of discs that hold together: how steep and how rough the surface is, by their cohesion.
+# shellcheck source=scripts/gallery/common.sh
+. "$(dirname "$0")/common.sh"
+
+scale=$(pick 0.5 1) end=$(pick 0.9 2)
+read -ra bonds <<<"$(pick '0 20' '0 5 20 40')"
+weight=$(jq -n '2500 * 3.141592653589793 * 1.5e-3 * 1.5e-3 * 9.81')
+
+echo "bond angle rough" >"$out/angle.tsv"
+for b in "${bonds[@]}"; do
+    scene cohesive --argjson s "$scale" --argjson f "$(jq -n "$b * $weight")" '.walls[0].circle.radius *= $s |
+        (if $f > 0 then .cohesion.force = $f else del(.cohesion) end) |
+        .bodies = [{random: {count: (800 * $s * $s | floor)}, radius: .bodies[0].radius,
+            box: {x: [-0.047 * $s, 0.047 * $s], y: [-0.047 * $s, 0.047 * $s]}}]' |
+        nsd-gen - | step "drum-$b.h5" --until "$end" --every 0.05s
+    # the surface: the highest disc of each strip two discs wide, turned by the mean angle; how far it is from its
+    # line, in diameters, as a mean over the last half of the frames
+    a=$(nsd-stat -m surface "$out/drum-$b.h5" | jq -s '.[length / 2 | floor:] | map(.surface.angle | fabs) | add / length')
+    rough=$(nsd-info -p "$out/drum-$b.h5" | jq -s --argjson a "$a" --argjson r "$(jq -n "0.07 * $scale")" '($a * 3.141592653589793 / 180) as $a |
+        (map(.step) | max / 2) as $half | map(select(.step > $half) | [.step, .x[0] * ($a | cos) + .x[1] * ($a | sin), -.x[0] * ($a | sin) + .x[1] * ($a | cos)]) |
+        map(select(.[1] > -0.6 * $r and .[1] < 0.6 * $r)) | group_by(.[0]) |
+        map(group_by(.[1] / 0.006 | floor) | map([(map(.[1]) | add / length), (map(.[2]) | max)]) |
+            (map(.[0]) | add / length) as $x | (map(.[1]) | add / length) as $y |
+            ((map((.[0] - $x) * (.[1] - $y)) | add) / (map((.[0] - $x) * (.[0] - $x)) | add)) as $s |
+            (map(.[1] - $y - $s * (.[0] - $x) | . * .) | add / length | sqrt) / 0.003) | add / length')
+    echo "$b $a $rough" >>"$out/angle.tsv"
+done
+curve
+picture -c speed --boundaries lines "$out/drum-${bonds[-1]}.h5"
+with '($angles | split("\n") | map(select(test("^[0-9]")) | split(" ") | map(tonumber))) as $a |
+    row("angle of dry discs, degrees"; $a[0][1]; 17; 32; "20 to 26"; "Renouf et al. 2005; GDR MiDi 2004"),
+    row("angle at the largest Bond number less that"; $a[-1][1] - $a[0][1]; 3; 45; "it rises with cohesion"; "Nowak et al. 2005; Pol et al. 2025"),
+    row("roughness of the surface at the largest Bond number over that of dry discs"; $a[-1][2] / $a[0][2]; 1.15; 6; "it rises: clusters"; "Pol et al. 2025; Abramian et al. 2021 (deposits)")' \
+    -n --rawfile angles "$out/angle.tsv" | results
