@@ -89,6 +89,79 @@ arch()
 is 'an arch of 21 stones stands with a thickness of 0.11 radii [Couplet, Heyman: 0.107]' "$(arch 0.11 21)" true
 is 'and falls with 0.105' "$(arch 0.105 21)" false
 
+# Two cards of length L lean against each other, a from upright: from the moments about a card's lower edge the other
+# pushes it with H = m g (L sin a - c cos a) / 2 / (L cos a + r), c thick and rounded by r, and the floor, which carries
+# m g, has to hold H. So mu decides at H / (m g).
+lean() # part of the critical mu: how high the cards' centres are after 0.4 s, of their height at the start
+{
+    awk -v part="$1" 'BEGIN { a = 0.35; L = 0.088; c = 0.0002; r = 0.0001; s = sin(a); k = cos(a)
+        x = L / 2 * s - c / 2 * k; z = r + L / 2 * k + c / 2 * s; apex = L * s + r; mu = part * (L * s - c * k) / 2 / (L * k + r)
+        printf "{\"dt\": 1e-3, \"mu\": %.12g, \"shapes\": {\"card\": {\"box\": [%g, 0.063, %g], \"round\": %g}}, \"walls\": [{\"point\": [0, 0, 0], \"normal\": [0, 0, 1]}],", mu, c, L, r
+        printf "\"bodies\": [{\"x\": [%.12g, 0, %.12g], \"shape\": \"card\", \"orientation\": [0, %g, 0]}, {\"x\": [%.12g, 0, %.12g], \"shape\": \"card\", \"orientation\": [0, %g, 0]}]}", x - apex, z, a, apex - x, z, -a
+    }' | nsd-gen - | nsd-step -n 400 --every 400 --warm --eps 1e-8 2>/dev/null | nsd-info --last -p | jq -s 'map(.x[2]) | add / 2 / 0.04137'
+}
+is 'two cards lean against each other with a friction of 1.01 times what statics asks for' "$(below '0.995' "$(lean 1.01)")" true
+is 'and slide apart with 0.98 times' "$(below "$(lean 0.98)" 0.9)" true
+
+# Dominoes without friction between them, in the plane. Between two hits the row is a mechanism of one freedom: domino
+# n, at angle t_n, leans on the next, h sin(t_n - t_n+1) = (s + d) cos t_n+1 - d, and keeps its energy; a hit is
+# without rebound [van Leeuwen, Am. J. Phys. 78 (2010) 721].
+dominoes() # height thickness gap: the speed by that theory, and by nsd between the 8th and the 18th
+{
+    awk -v h="$1" -v d="$2" -v s="$3" 'function asin(x) { return atan2(x, sqrt(1 - x * x)) }
+        function train(t, m,    k, u, w) { # of m: sum of (dt_n/dt)^2, and of heights
+            J = P = 0; w = 1
+            for (k = 0; k < m; k++) {
+                J += w * w; P += (h * cos(t) + d * sin(t)) / 2
+                u = t + asin(((s + d) * cos(t) - d) / h); w *= 1 - (s + d) * sin(t) / (h * cos(u - t)); t = u
+            }
+        }
+        BEGIN {
+            g = 9.81; I = (h * h + d * d) / 3; c = asin(s / h); w = 10; N = 500
+            for (m = 1; m <= 18; m++) {
+                train(0, m); E = I * J * w * w / 2 + g * P; T = 0
+                for (i = 0; i < N; i++) { train((i + 0.5) * c / N, m); T += c / N / sqrt(2 * (E - g * P) / (I * J)) }
+                train(c, m); w = sqrt(2 * (E - g * P) / (I * J)) * J / (1 + J)
+            }
+            print (s + d) / T
+        }'
+    awk -v h="$1" -v d="$2" -v s="$3" 'BEGIN {
+        printf "{\"dim\": 2, \"dt\": 2e-4, \"mu\": 0, \"pairs\": [{\"pair\": [\"ball\", \"wall\"], \"mu\": 5}], \"walls\": [{\"point\": [0, 0], \"normal\": [0, 1]}], \"shapes\": {\"domino\": {\"box\": [%g, %g]}}, \"bodies\": [", d, h
+        for (k = 0; k < 20; k++) printf "%s{\"x\": [%.9g, %.9g], \"shape\": \"domino\" %s}", k ? ", " : "", k * (s + d), h / 2, k ? "" : ", \"w\": -10, \"v\": [" 5 * h ", " 5 * d "]"
+        print "]}" }' | nsd-gen - | nsd-step --until 0.6 --every 5 --warm --eps 1e-6 2>/dev/null | nsd-info -p |
+        jq -n --argjson pitch "$(jq -n "$2 + $3")" 'reduce (inputs | select(.id == 8 or .id == 18) | select((.w[2] | fabs) > 0.05)) as $b ({};
+            if .["\($b.id)"] then . else .["\($b.id)"] = $b.step end) | 10 * $pitch / (.["18"] - .["8"]) / 2e-4'
+}
+mapfile -t speed < <(dominoes 0.05 0.01 0.02)
+is "dominoes fall with ${speed[1]} m/s, by theory ${speed[0]}" "$(below "(${speed[1]}) / (${speed[0]}) - 1 | fabs" 0.025)" true
+
+# A capsule, and a clump of 81 balls along its axis, which is the same body to 1e-4: they fall, turn and roll alike.
+roll() # shape
+{
+    awk -v s="$1" 'BEGIN { n = 81
+        printf "{\"dt\": 1e-3, \"mu\": 0.3, \"gravity\": [2, 1, -9.81], \"shapes\": {\"pill\": {\"capsule\": {\"length\": 0.2, \"radius\": 0.05}}, \"clump\": {\"balls\": ["
+        for (k = 0; k < n; k++) printf "%s[%.12g, 0, 0, 0.05]", k ? ", " : "", -0.1 + 0.2 * k / (n - 1)
+        printf "]}}, \"walls\": [{\"point\": [0, 0, 0], \"normal\": [0, 0, 1]}], \"bodies\": [{\"x\": [0, 0, 0.1], \"shape\": \"%s\", \"orientation\": [0.1, 0.3, 0.7]}]}", s
+    }' | nsd-gen - | nsd-step -n 400 --every 400 --warm --eps 1e-8 2>/dev/null | nsd-info --last -p | jq -c '[.mass, .v[0], .v[1], .w[0], .w[1]]'
+}
+is 'a clump of balls along a line moves as the capsule' \
+    "$(jq -n --argjson a "$(roll pill)" --argjson b "$(roll clump)" '[$a, $b] | transpose | map((.[0] / .[1] - 1 | fabs) < 2e-4) | all')" true
+
+# Polygons of more and more sides, and capsules that are shorter and shorter, pack as discs do: solid fractions of a
+# settled box, from its area and the height of its centre
+packs() # SHAPE...: as the body's keys
+{
+    printf '{"dim": 2, "dt": 1e-3, "mu": 0.5, "shapes": {"six": {"regular": {"sides": 6, "radius": 1}}, "many": {"regular": {"sides": 24, "radius": 1}},
+        "pill": {"capsule": {"length": 0.05, "radius": 1}}}, "walls": [{"box": {"x": [0, 0.6], "y": [0, null]}}], "bodies": [{"count": 300, %s "radius": {"uniform": [0.01, 0.018]}}]}' "${1-}" |
+        nsd-gen - | nsd-step -n 1500 --every 1500 --warm 2>/dev/null | nsd-info --last -p |
+        jq -s '(map(.mass) | add) as $m | $m / 2500 / (1.2 * (map(.x[1] * .mass) | add) / $m)'
+}
+disc=$(packs) six=$(packs '"shape": "six", "orientation": "random",') many=$(packs '"shape": "many", "orientation": "random",')
+pill=$(packs '"shape": "pill", "orientation": "random",')
+is "polygons of 24 sides pack as discs ($many, $disc)" "$(below "$many - $disc | fabs" 0.02)" true
+is "those of 6 sides do not ($six)" "$(below "$six - $disc" -0.03)" true
+is "short capsules do, too ($pill)" "$(below "$pill - $disc | fabs" 0.02)" true
+
 # ---- rims and ridges of boundaries ----
 
 # on WALL X Z SHAPE [TURN]: a body of density 2500 after half a second: height, spin, and what its contacts carry of its weight

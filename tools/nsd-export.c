@@ -37,8 +37,8 @@ static const struct cli_option own[] = {
       .help = "FILE, a series 'f%05d.vtp', or a directory 'DIR/' [standard output]" },
     { CLI_FLAG, 'l', "last", &last, .help = "only the very last frame" },
     { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
-    { CLI_INT, 0, "detail", &detail, "N", .help = "round grains have 20 * 4^N triangles in STL, surfaces [2]",
-      .max = 6 },
+    { CLI_INT, 0, "detail", &detail, "N",
+      .help = "round grains have 20 * 4^N triangles in STL, surfaces [2]", .max = 6 },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };

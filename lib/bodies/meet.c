@@ -23,7 +23,8 @@ enum {
 static const double FACE_FIRST = 1e-3, A_FIRST = 1e-4;
 static const double PARALLEL = 1e-6; /* sine^2 of two edges that have no axis */
 static const double ALONG = 1e-6;    /* 1 - cosine: the shortest way is along a face's normal */
-static const double APART = 1e-9;    /* of the size: a distance that is one */
+static const double NEARLY_ACROSS = 2e-2; /* cosine: an edge that lies across the shortest way */
+static const double APART = 1e-9;         /* of the size: a distance that is one */
 
 /* The best axis so far */
 struct axis {
@@ -282,16 +283,6 @@ static int by_edges(const struct core *a, const struct core *b, const struct axi
     return 1;
 }
 
-/* Apart along the shortest way */
-static int by_nearest(const struct core *a, const struct core *b, const struct nearest *o,
-                      double reach, struct place *out)
-{
-    vec3 n = v3_scale(1 / o->distance, v3_sub(o->b, o->a));
-    double gap = o->distance - a->round - b->round;
-    out[0] = (struct place){ v3_axpy(o->a, a->round + 0.5 * gap, n), n, gap, BY_NEAREST };
-    return gap <= reach;
-}
-
 /* ---- points and segments ---- */
 
 static double clamp(double x)
@@ -339,6 +330,41 @@ static int meet_segments(const struct core *a, const struct core *b, double reac
            at_parameters(a, b, hi, clamp((hi * de - ew) / ee), BY_CORNER + 1, reach, out + count);
 }
 
+/* The corner of c that is farthest along n, and the one that falls off least on the way there; false:
+   that is no edge across n. */
+static bool edge_across(const struct core *c, vec3 n, vec3 v[2])
+{
+    double top = -INFINITY, least = NEARLY_ACROSS;
+    int32_t first = 0, second = -1;
+    for (int32_t i = 0; i < c->n; i++)
+        if (v3_dot(n, c->v[i]) > top) top = v3_dot(n, c->v[i]), first = i;
+    for (int32_t i = 0; i < c->n; i++) {
+        vec3 d = v3_sub(c->v[i], c->v[first]);
+        double length = v3_norm(d), slope = length > 0 ? -v3_dot(n, d) / length : INFINITY;
+        if (slope < least) least = slope, second = i;
+    }
+    if (second < 0) return false;
+    int32_t lo = first < second ? first : second; // in an order that lasts
+    v[0] = c->v[lo], v[1] = c->v[first + second - lo];
+    return true;
+}
+
+/* Apart along the shortest way. Edges side by side meet in two places, as segments do. */
+static int by_nearest(int dim, const struct core *a, const struct core *b, const struct nearest *o,
+                      double size, double reach, struct place *out)
+{
+    vec3 n = v3_scale(1 / o->distance, v3_sub(o->b, o->a)), of_a[2], of_b[2];
+    double gap = o->distance - a->round - b->round;
+    if (dim == 3 && edge_across(a, n, of_a) && edge_across(b, v3_scale(-1, n), of_b)) {
+        const struct core s = { .n = 2, .v = of_a, .round = a->round, .centre = a->centre };
+        const struct core t = { .n = 2, .v = of_b, .round = b->round, .centre = b->centre };
+        int count = meet_segments(&s, &t, reach, out);
+        if (count == 2 && fmin(out[0].gap, out[1].gap) < gap + ALONG * size) return count;
+    }
+    out[0] = (struct place){ v3_axpy(o->a, a->round + 0.5 * gap, n), n, gap, BY_NEAREST };
+    return gap <= reach;
+}
+
 /* ---- all of them ---- */
 
 int meet_cores(int dim, const struct core *a, const struct core *b, double reach,
@@ -360,7 +386,7 @@ int meet_cores(int dim, const struct core *a, const struct core *b, double reach
         if (apart) {
             vec3 n = v3_scale(1 / o.distance, v3_sub(o.b, o.a));
             if (o.distance > most) return 0;
-            if (1 - v3_dot(n, best.n) > ALONG) return by_nearest(a, b, &o, reach, out);
+            if (1 - v3_dot(n, best.n) > ALONG) return by_nearest(dim, a, b, &o, size, reach, out);
         }
     }
     if (a->hull && b->hull && dim == 3 && !try_edges(&best, a, b, FACE_FIRST * size, most))
@@ -376,5 +402,5 @@ int meet_cores(int dim, const struct core *a, const struct core *b, double reach
                                        : by_face(dim, b, a, best.i, true, reach, out);
     if (count || round == 0) return count;
     const struct nearest o = gjk_nearest(a, b); // a corner beside the face
-    return o.distance > 0 ? by_nearest(a, b, &o, reach, out) : 0;
+    return o.distance > 0 ? by_nearest(dim, a, b, &o, size, reach, out) : 0;
 }

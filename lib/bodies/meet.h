@@ -7,7 +7,9 @@
  * are places, each as deep as it is; the others that are left are those beyond `reach`, so that a
  * brick that is tipped loses its corners one by one. Crossed edges have one place. Cores that do not
  * overlap, points and segments among them, are told apart along their shortest connection
- * [bodies/gjk.h], and where that is a face's normal, as above.
+ * [bodies/gjk.h], and where that is a face's normal, as above. Rounded edges side by side have two
+ * places, as segments have: with one, at whichever end is nearer, two cards that lean against each other
+ * fall.
  *
  * The gap between sharp hulls that do not overlap is that along the best axis: where a corner is next
  * to a corner it is less than their distance, never more.

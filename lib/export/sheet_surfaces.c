@@ -43,7 +43,7 @@ static void add_columns(struct sheet *s, const int32_t *of, const struct packing
     double *v = sheet_real(s, "velocity", "xyz", why);
     double *w = sheet_real(s, "angular_velocity", "xyz", why);
     if (why->status) return;
-    for (int64_t k = 0; k < s->cells; k++) {
+    for (int64_t k = 0; of && k < s->cells; k++) {
         int32_t i = of[k];
         id[k] = p->id[i], kind[k] = p->kind[i], shape[k] = p->shape[i];
         radius[k] = p->radius[i], mass[k] = p->mass[i];
