@@ -225,13 +225,16 @@ int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3
  */
 static double meeting_reach(const struct packing *p)
 {
-    double speed = 0, small = INFINITY;
-    for (int64_t i = 0; i < p->n; i++)
-        speed = fmax(speed, v3_norm(p->v[i])), small = fmin(small, p->radius[i]);
-    for (int64_t i = 0; i < p->n && p->shape; i++) // a corner is faster than its body
-        speed = fmax(speed, v3_norm(p->v[i]) + p->radius[i] * v3_norm(p->w[i]));
+    const struct whole all = packing_whole(p);
+    double speed = p->shape ? all.top_speed : all.speed; // a corner is faster than its body
     for (int32_t w = 0; w < p->walls; w++) speed = fmax(speed, wall_top_speed(p, &p->wall[w]));
-    return fmin(p->dt * (2 * speed + packing_calm(p)), 0.5 * small);
+    return fmin(p->dt * (2 * speed + packing_calm(p)), 0.5 * all.small);
+}
+
+double detect_reach(const struct packing *p, double gap)
+{
+    double reach = overlap_sees_gaps(p->overlap) ? fmax(gap, meeting_reach(p)) : gap;
+    return p->law ? fmax(reach, ties_reach(p)) : reach;
 }
 
 /* Whether a pair with a gap above `gap` may close it. Where it would rebound, the impact waits for
@@ -257,8 +260,8 @@ static void keep_meeting(struct contacts *s, const struct packing *p, double gap
     s->n = n;
 }
 
-int detect_contacts(struct contacts *out, const struct packing *p, double gap,
-                    struct neighbours *kept, struct why *why)
+int detect_near(struct contacts *out, const struct packing *p, double reach,
+                struct neighbours *kept, struct why *why)
 {
     vec3 *x = malloc(((size_t)p->n + 1) * sizeof *x);
     quat *q = p->shape ? malloc(((size_t)p->n + 1) * sizeof *q) : NULL;
@@ -271,12 +274,24 @@ int detect_contacts(struct contacts *out, const struct packing *p, double gap,
         q[i] = packing_shape(p, i) ? top_predict(p, i) : p->q[i];
     vec3 edge[3];
     double ahead = (1 - p->theta) * p->dt;
-    double reach = overlap_sees_gaps(p->overlap) ? fmax(gap, meeting_reach(p)) : gap;
-    if (p->law) reach = fmax(reach, ties_reach(p));
     cell_predict(&p->cell, ahead, edge);
     int e = detect(out, p, x, q, edge, p->t + ahead, reach, kept, why);
-    if (!e && p->law) e = ties_find(out, p, why);
-    if (!e && reach > gap) keep_meeting(out, p, gap);
     free(x), free(q);
     return e;
+}
+
+int detect_choose(struct contacts *s, const struct packing *p, double gap, double reach,
+                  struct why *why)
+{
+    int e = p->law ? ties_find(s, p, why) : 0;
+    if (!e && reach > gap) keep_meeting(s, p, gap);
+    return e;
+}
+
+int detect_contacts(struct contacts *out, const struct packing *p, double gap,
+                    struct neighbours *kept, struct why *why)
+{
+    double reach = detect_reach(p, gap);
+    int e = detect_near(out, p, reach, kept, why);
+    return e ? e : detect_choose(out, p, gap, reach, why);
 }
