@@ -7,6 +7,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 enum word { LEAVE, BEGIN, OTHER_BODIES, STEP };
@@ -88,17 +89,25 @@ int crew_step(struct packing *p, struct contacts *s, struct neighbours *near, bo
 
 const char *crew_leave(void)
 {
-    static char text[200];
+    static char text[400];
     const struct stride *y = &crew.stride;
     if (!crew.talk.me) next(LEAVE);
     double mine[2] = { (double)y->solved[0], (double)y->solved[1] }, most[2];
     MPI_Reduce(mine, most, 2, MPI_DOUBLE, MPI_MAX, 0, crew.talk.comm);
     double sweeps = y->sweeps > 0 ? (double)y->sweeps : 1;
-    snprintf(text, sizeof text,
-             "%d ranks: %.3g bytes in %.3g messages a sweep, of the one that sends most; contacts "
-             "within %.3g of the mean at worst, %lld cuts, %lld steps solved by the first alone",
-             crew.talk.n, most[0] / sweeps, most[1] / sweeps, y->worst, (long long)y->part.cuts,
-             (long long)y->alone);
+    struct rusage used;
+    getrusage(RUSAGE_SELF, &used);
+    double kb = (double)used.ru_maxrss, memory[2];
+    MPI_Reduce(&kb, &memory[0], 1, MPI_DOUBLE, MPI_MAX, 0, crew.talk.comm);
+    MPI_Reduce(&kb, &memory[1], 1, MPI_DOUBLE, MPI_SUM, 0, crew.talk.comm);
+    snprintf(
+        text, sizeof text,
+        "%d ranks: %.3g bytes in %.3g messages a sweep, of the one that sends most; contacts of "
+        "the "
+        "fullest %.3g of the mean at most, %lld cuts; %lld steps solved by the first alone; memory "
+        "%.3g MB, of the largest %.3g MB",
+        crew.talk.n, most[0] / sweeps, most[1] / sweeps, y->worst, (long long)y->part.cuts,
+        (long long)y->alone, memory[1] / 1024, memory[0] / 1024);
     if (crew.begun || crew.talk.me) stride_free(&crew.stride);
     MPI_Finalize();
     return text;
