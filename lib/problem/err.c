@@ -129,13 +129,36 @@ static void judge_blocks(const struct problem *p, bool believes, enum err_terms 
     }
 }
 
+/* Where each process adds up its own */
+static void judge_and_add(const struct problem *p, bool believes, enum err_terms which, int threads,
+                          struct sums *all)
+{
+    struct shared *shared = p->shared;
+    shared->judging(shared, (struct problem *)p, true);
+    judge_blocks(p, believes, which, threads, all);
+    shared->judging(shared, (struct problem *)p, false);
+    double *const sum[SHARED_TERMS] = { all->motion,      all->proj,     all->bipotential,
+                                        all->penetration, all->natural2, all->siconos2,
+                                        all->velocity2,   all->r2 };
+    double x[SHARED_TERMS];
+    for (int j = 0; j < SHARED_TERMS; j++) x[j] = bundle_sum(sum[j]);
+    shared->add(shared, x, SHARED_TERMS);
+    for (int j = 0; j < SHARED_TERMS; j++)
+        for (int k = 0; k < BUNDLE; k++) sum[j][k] = k ? 0 : x[j];
+    double pen = shared->most(shared, bundle_max(all->max_pen));
+    double true_pen = shared->most(shared, bundle_max(all->max_true));
+    for (int k = 0; k < BUNDLE; k++) all->max_pen[k] = pen, all->max_true[k] = true_pen;
+}
+
 void err_eval(struct err *e, const struct problem *p, bool believes, enum err_terms which,
               int threads)
 {
     struct sums all = { 0 };
     *e = (struct err){ .contacts = p->n };
     if (!p->n) return;
-    if (p->shared)
+    if (p->shared && p->shared->add)
+        judge_and_add(p, believes, which, threads, &all);
+    else if (p->shared)
         judge_shared(p, believes, which, &all);
     else
         judge_blocks(p, believes, which, threads, &all);

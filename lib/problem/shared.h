@@ -46,6 +46,9 @@ struct shared {
     double (*agree)(struct shared *s, double x);
     /* Memory is short: ends all processes, for the others wait for this one. */
     void (*fail)(struct shared *s);
+    /* x[n] = the sums of all processes' x, in their order; NULL: sums are made by sum(), in the order of all
+       contacts, and here they would have other bits. */
+    void (*add)(struct shared *s, double *x, int n);
 };
 
 /* Are the contacts of this bundle counted by another process? */

@@ -40,7 +40,9 @@ static void post(struct talk *t, int width, const struct border *go_list, double
         MPI_Isend(go[q], (int)(width * go_list[q].n), MPI_DOUBLE, q, TAG, t->comm, &r[n++]);
         t->bytes += width * go_list[q].n * (int64_t)sizeof(double), t->messages++;
     }
+    double since = talk_busy();
     MPI_Waitall(n, r, MPI_STATUSES_IGNORE);
+    t->waited += talk_busy() - since;
     free(r);
 }
 
@@ -124,35 +126,24 @@ static void judging(struct shared *s, struct problem *p, bool begins)
     for (int64_t i = 0; i < b->brakes; i++) brake_set(p, &b->brake[i], !begins);
 }
 
-/* The numbers of all ranks, added in their order */
-static void add_ranks(struct talk *t, const double *mine, int n, double *out)
+static void add(struct shared *s, double *x, int n)
 {
-    double *all = talk_new(t, (int64_t)n * t->n, sizeof *all);
-    MPI_Allgather(mine, n, MPI_DOUBLE, all, n, MPI_DOUBLE, t->comm);
-    for (int j = 0; j < n; j++) out[j] = 0;
+    struct talk *t = of(s)->part->talk;
+    double *all = talk_new(t, (int64_t)n * t->n, sizeof *all), since = talk_busy();
+    MPI_Allgather(x, n, MPI_DOUBLE, all, n, MPI_DOUBLE, t->comm);
+    t->waited += talk_busy() - since;
+    for (int j = 0; j < n; j++) x[j] = 0;
     for (int q = 0; q < t->n; q++)
-        for (int j = 0; j < n; j++) out[j] += all[q * n + j];
+        for (int j = 0; j < n; j++) x[j] += all[q * n + j];
     free(all);
-}
-
-static void sum(struct shared *s, const struct problem *p, int64_t chunk, int parts, int terms,
-                const double *term, double *out)
-{
-    double *mine = talk_new(of(s)->part->talk, terms * BUNDLE, sizeof *mine);
-    (void)chunk;
-    for (int64_t i = 0; i < p->slots; i++)
-        for (int j = 0; j < parts * terms && p->contact[i] >= 0; j++)
-            mine[j % terms * BUNDLE + i % BUNDLE] += term[i * parts * terms + j];
-    add_ranks(of(s)->part->talk, mine, terms * BUNDLE, out);
-    free(mine);
 }
 
 static double sum_along(struct shared *s, const struct problem *p, const double *term)
 {
-    double mine = 0, all;
-    for (int64_t i = 0; i < p->slots; i++) mine += p->contact[i] >= 0 ? term[i] : 0;
-    add_ranks(of(s)->part->talk, &mine, 1, &all);
-    return all;
+    double sum = 0;
+    for (int64_t i = 0; i < p->slots; i++) sum += p->contact[i] >= 0 ? term[i] : 0;
+    add(s, &sum, 1);
+    return sum;
 }
 
 static double most(struct shared *s, double x)
@@ -229,7 +220,7 @@ void blocks_begin(struct blocks *b, struct part *y, const struct contacts *s, en
                                  .begin = begin,
                                  .settle = settle,
                                  .judging = judging,
-                                 .sum = sum,
+                                 .add = add,
                                  .sum_along = sum_along,
                                  .most = most,
                                  .count = count,

@@ -89,11 +89,12 @@ int crew_step(struct packing *p, struct contacts *s, struct neighbours *near, bo
 
 const char *crew_leave(void)
 {
-    static char text[400];
+    static char text[500];
     const struct stride *y = &crew.stride;
     if (!crew.talk.me) next(LEAVE);
-    double mine[2] = { (double)y->solved[0], (double)y->solved[1] }, most[2];
-    MPI_Reduce(mine, most, 2, MPI_DOUBLE, MPI_MAX, 0, crew.talk.comm);
+    double mine[4] = { (double)y->solved[0], (double)y->solved[1], y->busy[0], y->busy[1] },
+           most[4];
+    MPI_Reduce(mine, most, 4, MPI_DOUBLE, MPI_MAX, 0, crew.talk.comm);
     double sweeps = y->sweeps > 0 ? (double)y->sweeps : 1;
     struct rusage used;
     getrusage(RUSAGE_SELF, &used);
@@ -105,9 +106,10 @@ const char *crew_leave(void)
         "%d ranks: %.3g bytes in %.3g messages a sweep, of the one that sends most; contacts of "
         "the "
         "fullest %.3g of the mean at most, %lld cuts; %lld steps solved by the first alone; memory "
-        "%.3g MB, of the largest %.3g MB",
+        "%.3g MB, of the largest %.3g MB; "
+        "%.3g s without waiting, %.3g s of them in the solver",
         crew.talk.n, most[0] / sweeps, most[1] / sweeps, y->worst, (long long)y->part.cuts,
-        (long long)y->alone, memory[1] / 1024, memory[0] / 1024);
+        (long long)y->alone, memory[1] / 1024, memory[0] / 1024, most[3], most[2]);
     if (crew.begun || crew.talk.me) stride_free(&crew.stride);
     MPI_Finalize();
     return text;

@@ -148,9 +148,11 @@ static void solve(struct stride *y, struct problem *p, struct contacts *s, const
                   struct report *rep)
 {
     int64_t bytes = y->part.talk->bytes, messages = y->part.talk->messages;
+    double since = talk_busy() - y->part.talk->waited;
     if (solve_problem(p, &o->solve, rep) || problem_store(p, s))
         talk_fail(y->part.talk, EX_SOFTWARE, "no memory to solve the contacts");
     y->sweeps += rep->sweeps;
+    y->busy[0] += talk_busy() - y->part.talk->waited - since;
     y->solved[0] += y->part.talk->bytes - bytes;
     y->solved[1] += y->part.talk->messages - messages;
 }
@@ -356,5 +358,8 @@ int stride_step(struct stride *y, struct packing *whole, struct contacts *all,
 {
     const struct packing *p = &y->part.p;
     bool by_all = o->order == ORDER_BLOCK && is_shared(p, o) && !p->law && !o->warm && !y->varies;
-    return (by_all ? step_by_all : step_by_first)(y, whole, all, o, rep, why);
+    double since = talk_busy() - y->part.talk->waited;
+    int e = (by_all ? step_by_all : step_by_first)(y, whole, all, o, rep, why);
+    y->busy[1] += talk_busy() - y->part.talk->waited - since;
+    return e;
 }

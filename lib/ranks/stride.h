@@ -22,7 +22,9 @@ struct stride {
     int64_t alone;           /* steps whose contacts the first rank has solved alone */
     double imbalance, worst; /* in the last step; of all */
     int64_t sweeps;          /* of the shared solves */
-    int64_t solved[2];       /* bytes and messages of these, sent by this rank */
+    double busy
+        [2]; /* s of this processor's time in them, and in all steps, without waiting for others */
+    int64_t solved[2]; /* bytes and messages of these, sent by this rank */
 };
 
 /* Collective. The first rank's packing; in others it is not looked at. */

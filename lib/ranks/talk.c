@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 enum {
     PIECE = 1 << 30, /* bytes of a message, at most: MPI counts them in an int */
@@ -117,7 +118,9 @@ static void pass(struct talk *t, struct parcel *out, struct parcel *in, const in
     }
     for (int q = 0; q < t->n; q++)
         if (q != t->me) send_all(t, &out[q], q, r + k), k += pieces(out[q].size);
+    double since = talk_busy();
     MPI_Waitall(k, r, MPI_STATUSES_IGNORE);
+    t->waited += talk_busy() - since;
     free(r);
     parcel_free(&in[t->me]);
     in[t->me] = out[t->me], out[t->me] = (struct parcel){ 0 };
@@ -173,10 +176,18 @@ void talk_spread(struct talk *t, struct parcel *p)
     if (t->n > 1 && !t->me) t->bytes += size, t->messages++;
 }
 
+double talk_busy(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
 double talk_most(struct talk *t, double x)
 {
-    double most;
+    double most, since = talk_busy();
     MPI_Allreduce(&x, &most, 1, MPI_DOUBLE, MPI_MAX, t->comm);
+    t->waited += talk_busy() - since;
     return most;
 }
 

@@ -16,6 +16,7 @@ struct talk {
     MPI_Comm comm;
     int me, n;               /* this rank, of how many; 0 leads */
     int64_t bytes, messages; /* sent by this rank to others so far, by whatever way */
+    double waited; /* s of this processor's time in which this rank has waited for others */
 };
 
 /* Bytes that grow; all zero to begin with. */
@@ -43,6 +44,9 @@ void talk_gather(struct talk *t, struct parcel *mine, struct parcel *in);
 void talk_scatter(struct talk *t, struct parcel *out, struct parcel *mine);
 /* Everybody gets what the first has in it. */
 void talk_spread(struct talk *t, struct parcel *p);
+
+/* s of the processor's time that this thread has had; not collective */
+double talk_busy(void);
 
 double talk_most(struct talk *t, double x);
 int64_t talk_sum(struct talk *t, int64_t n);

@@ -94,7 +94,9 @@ static double *bring(const struct tally_order *o, struct talk *t, int terms, con
         if (q == t->me || !count[q]) continue;
         t->bytes += (int64_t)count[q] * (int64_t)sizeof *go, t->messages++;
     }
+    double since = talk_busy();
     MPI_Alltoallv(go, count, from, MPI_DOUBLE, come, in, to, MPI_DOUBLE, t->comm);
+    t->waited += talk_busy() - since;
     free(go), free(count);
     return come;
 }

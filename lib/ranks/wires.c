@@ -133,7 +133,9 @@ void wires_send(struct wires *w, const struct problem *p, int64_t g)
 void wires_wait(struct wires *w, struct problem *p, int64_t g)
 {
     if (!w->requests) return;
+    double since = talk_busy();
     MPI_Waitall(w->requests, w->request, MPI_STATUSES_IGNORE);
+    w->talk->waited += talk_busy() - since;
     w->requests = 0;
     for (int k = 0; k < w->n; k++) {
         const struct wire *x = &w->wire[k];

@@ -161,6 +161,17 @@ static void measure_shared(const struct anderson *a, struct mixing_sums *t)
     free(term);
 }
 
+/* Where each process adds up its own */
+static void add_shared(const struct anderson *a, struct mixing_sums *t)
+{
+    double x[1 + 2 * MIXING_DEPTH] = { bundle_sum(t->f2) };
+    for (int j = 0; j < depth(a); j++)
+        x[1 + 2 * j] = bundle_sum(t->ff[j]), x[2 + 2 * j] = bundle_sum(t->fd[j]);
+    a->s->p->shared->add(a->s->p->shared, x, 1 + 2 * depth(a));
+    *t = (struct mixing_sums){ .f2 = { x[0] } };
+    for (int j = 0; j < depth(a); j++) t->ff[j][0] = x[1 + 2 * j], t->fd[j][0] = x[2 + 2 * j];
+}
+
 /* After the sweeps: f, the differences and their products; returns |f|^2. */
 static double measure(struct anderson *a)
 {
@@ -169,11 +180,12 @@ static double measure(struct anderson *a)
     int64_t n = chunks(p);
     a->s->rep->work += price_sweep(p); // with the mixing that follows
     int now = a->m.next;
-    if (p->shared) {
+    if (p->shared && !p->shared->add) {
         measure_shared(a, &t);
     } else {
         team_share(a->s->o->threads, n, 1, measure_chunks, a);
         for (int64_t k = 0; k < n; k++) mixing_sums_add(&t, &a->sums[k]);
+        if (p->shared) add_shared(a, &t);
     }
     if (a->begun) {
         a->count = a->count < depth(a) ? a->count + 1 : depth(a);
