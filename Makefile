@@ -54,12 +54,19 @@ WIDTH_8   := -mavx512f -mavx512dq -mavx512vl
 SAN_WIDE  := --param asan-instrumentation-with-call-threshold=0 \
              -fno-sanitize=null,alignment,object-size,pointer-overflow
 
-LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/cli/main.c $(WIDE:%=lib/problem/%.c),$(wildcard lib/*/*.c))) \
+LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/cli/main.c lib/ranks/%.c $(WIDE:%=lib/problem/%.c),$(wildcard lib/*/*.c))) \
          $(foreach w,$(WIDE),$(WIDTHS:%=$B/lib/problem/$w-%.o))
 TOOLS := $(patsubst tools/%.c,$B/%,$(wildcard tools/*.c))
+
+# Where there are MPI and Zoltan, nsd-step-mpi: what nsd-step becomes under mpirun. MPICC= : without.
+MPICC  ?= $(if $(wildcard /usr/include/trilinos/zoltan.h),$(shell command -v mpicc))
+MPI_PC := $(if $(MPICC),$(shell $(MPICC) --showme:compile 2>/dev/null))
+MPI_LD := $(if $(MPICC),$(shell $(MPICC) --showme:link 2>/dev/null) -ltrilinos_zoltan)
+RANKS  := $(if $(MPICC),$(patsubst lib/%.c,$B/lib/%.o,$(wildcard lib/ranks/*.c)))
+MPI    := $(if $(MPICC),$B/nsd-step-mpi)
 CTEST := $(patsubst tests/%.c,$B/tests/%,$(wildcard tests/*_test.c))
 
-all: $(TOOLS)
+all: $(TOOLS) $(MPI)
 
 $B/tests/fclib_test: TESTLIBS += -lfclib
 
@@ -102,7 +109,12 @@ $B/tests/%: tests/%.c $B/libnsd.a Makefile
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -o $@ $< $B/libnsd.a $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS) $(TESTLIBS)
 
-tests: $(TOOLS) $(CTEST)
+# ranks/company.c stands for cli/crew.c, which the archive then is not asked for.
+$(RANKS): NSD_CFLAGS += $(MPI_PC)
+$B/nsd-step-mpi: $B/tools/nsd-step.o $B/lib/cli/main.o $(RANKS) $B/libnsd.a
+	$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(NSD_LDLIBS) $(MPI_LD)
+
+tests: $(TOOLS) $(MPI) $(CTEST)
 
 # ---- set-up, checks, the demonstration ----
 
@@ -229,13 +241,13 @@ lint-cppcheck:
 	cppcheck --quiet --error-exitcode=1 --std=c11 --enable=warning,performance,portability \
 	    --inline-suppr --suppress=missingIncludeSystem -Ilib lib tools
 
-TIDY := $(patsubst %.c,lint-tidy-%,$(notdir $(wildcard lib/*/*.c tools/*.c)))
+TIDY := $(patsubst %.c,lint-tidy-%,$(notdir $(filter-out $(if $(MPICC),,lib/ranks/%),$(wildcard lib/*/*.c tools/*.c))))
 
 lint-tidy: $(TIDY)
 
 $(TIDY): lint-tidy-%:
 	clang-tidy --quiet $(wildcard lib/*/$*.c tools/$*.c) -- -std=gnu11 -DNSD_VERSION='"$(VERSION)"' \
-	    -Ilib $(PC) 2>/dev/null
+	    -Ilib $(PC) $(MPI_PC) 2>/dev/null
 
 # ---- what is made for others ----
 
@@ -277,7 +289,7 @@ install: install-tools install-dev
 install-tools: all completions
 	install -d $(TO)/bin $(addprefix $(TO)/share/man/man,1 5 7) $(TO)/share/nsd/scenes/paper \
 	    $(TO)/share/bash-completion/completions $(TO)/share/zsh/site-functions
-	install -m 755 $(TOOLS) $(TO)/bin
+	install -m 755 $(TOOLS) $(MPI) $(TO)/bin
 	for m in man/*; do install -m 644 $$m $(TO)/share/man/man$${m##*.}; done
 	install -m 644 scenes/*.json $(TO)/share/nsd/scenes
 	install -m 644 scenes/paper/*.json $(TO)/share/nsd/scenes/paper
@@ -291,7 +303,7 @@ install-tools: all completions
 # The library's headers lie in the folders by which they include each other.
 install-dev: $B/libnsd.a
 	install -d $(DESTDIR)$(LIBDIR)/pkgconfig
-	for d in lib/*/; do \
+	for d in $(filter-out lib/ranks/,$(sort $(wildcard lib/*/))); do \
 	    install -d $(TO)/include/nsd/$$(basename $$d); \
 	    ! ls $$d*.h >/dev/null 2>&1 || install -m 644 $$d*.h $(TO)/include/nsd/$$(basename $$d); \
 	done
@@ -300,7 +312,7 @@ install-dev: $B/libnsd.a
 	    > $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc
 
 uninstall:
-	cd $(TO)/bin && rm -f $(notdir $(TOOLS))
+	cd $(TO)/bin && rm -f $(notdir $(TOOLS)) nsd-step-mpi
 	for m in man/*; do rm -f $(TO)/share/man/man$${m##*.}/$${m##*/}; done
 	for t in $(notdir $(TOOLS)); do \
 	    rm -f $(TO)/share/bash-completion/completions/$$t $(TO)/share/zsh/site-functions/_$$t; \

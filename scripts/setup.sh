@@ -4,7 +4,8 @@
 set -euo pipefail
 
 run=(build-essential pkg-config libhdf5-dev hdf5-tools libgsl-dev libjansson-dev zlib1g-dev libpng-dev
-    libcairo2-dev libsuitesparse-dev libassimp-dev libqhull-dev jq gnuplot-nox)
+    libcairo2-dev libsuitesparse-dev libassimp-dev libqhull-dev jq gnuplot-nox
+    openmpi-bin libopenmpi-dev libtrilinos-zoltan-dev)
 paper=("${run[@]}" pandoc)
 check=("${paper[@]}" perl python3-h5py mandoc shellcheck cppcheck clang libomp-dev libclang-rt-dev
     clang-tidy clang-format libfclib-dev gcovr

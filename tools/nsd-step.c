@@ -1,5 +1,6 @@
 /* nsd-step: makes many steps: detects, solves and moves in a loop. */
 #include "cli/cli.h"
+#include "cli/crew.h"
 #include "cli/options.h"
 #include "cli/tool_filter.h"
 #include "io/behind.h"
@@ -140,6 +141,7 @@ struct run {
     struct behind *behind; /* NULL: one thread makes the steps, and writes */
     struct flow flow;
     struct neighbours near;
+    bool other_bodies; /* than in the step before */
     struct step_opt o;
 };
 
@@ -147,9 +149,7 @@ struct run {
 static void flow(struct run *r)
 {
     struct why why = { 0 };
-    bool changed;
-    if (flow_step(&r->flow, &r->f.packing, &r->f.contacts, &changed, &why)) die_why(&why);
-    if (changed) neighbours_free(&r->near);
+    if (flow_step(&r->flow, &r->f.packing, &r->f.contacts, &r->other_bodies, &why)) die_why(&why);
 }
 
 /* Is the frame after the k-th step of this run one to keep, at time t? By seconds: the first at or after
@@ -170,7 +170,8 @@ static bool advance(struct run *r, int64_t k)
     flow(r);
     const struct packing *p = &f->packing;
     r->o.bare = !options.log && k < steps && !is_kept(p->t + p->dt, p->dt, k);
-    if (step_advance(&f->packing, &f->contacts, &r->near, &r->o, rep, &why)) die_why(&why);
+    if (crew_step(&f->packing, &f->contacts, &r->near, r->other_bodies, &r->o, rep, &why))
+        die_why(&why);
     f->reported = f->moved = true;
     count(rep);
     options_log(rep);
@@ -311,10 +312,13 @@ int tool_main(int argc, char **argv)
     bool file = argc == 1 && strcmp(argv[0], "-") != 0;
     options_check();
     keep_memory();
+    if (!crew_join()) return crew_follow();
     if (cli_given(&until) && cli_given(&steps)) die_usage("-n and --until exclude each other");
     if (in_place && output) die_usage("-i and -o exclude each other");
     if (in_place && !file) die_usage("-i: one FILE, to which it appends");
-    if (file && !output && isatty(STDOUT_FILENO)) in_place = true;
+    if (file && !output && isatty(STDOUT_FILENO) && !crew_started()) in_place = true;
+    if (crew_started() && !output && !in_place)
+        die_usage("under mpirun the output goes to a file: -o FILE, or -i");
     progress_lines(lines);
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
     reader_copies(in);
@@ -329,7 +333,9 @@ int tool_main(int argc, char **argv)
     int64_t made = run(&r);
     if (writer_close(r.out, &why)) die_why(&why);
     options_log_close();
+    const char *told = crew_leave();
     summary(made);
+    if (told) warn("%s", told);
     frame_free(&r.f);
     reader_close(in);
     return made < steps || (options.strict && total.missed);

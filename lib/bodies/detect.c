@@ -219,13 +219,16 @@ int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3
  */
 static double meeting_reach(const struct packing *p)
 {
-    double speed = 0, small = INFINITY;
-    for (int64_t i = 0; i < p->n; i++)
-        speed = fmax(speed, v3_norm(p->v[i])), small = fmin(small, p->radius[i]);
-    for (int64_t i = 0; i < p->n && p->shape; i++) // a corner is faster than its body
-        speed = fmax(speed, v3_norm(p->v[i]) + p->radius[i] * v3_norm(p->w[i]));
+    const struct whole all = packing_whole(p);
+    double speed = p->shape ? all.top_speed : all.speed; // a corner is faster than its body
     for (int32_t w = 0; w < p->walls; w++) speed = fmax(speed, wall_top_speed(p, &p->wall[w]));
-    return fmin(p->dt * (2 * speed + packing_calm(p)), 0.5 * small);
+    return fmin(p->dt * (2 * speed + packing_calm(p)), 0.5 * all.small);
+}
+
+double detect_reach(const struct packing *p, double gap)
+{
+    double reach = overlap_sees_gaps(p->overlap) ? fmax(gap, meeting_reach(p)) : gap;
+    return p->law ? fmax(reach, ties_reach(p)) : reach;
 }
 
 /* Whether a pair with a gap above `gap` may close it. Where it would rebound, the impact waits for
@@ -251,27 +254,68 @@ static void keep_meeting(struct contacts *s, const struct packing *p, double gap
     s->n = n;
 }
 
+/* Where bodies and edges are when contacts are sought: at the midpoint of the step, for theta = 1/2. */
+struct prediction {
+    vec3 *x;      /* [n] */
+    quat *q;      /* [n]; NULL: no body has a shape */
+    vec3 edge[3]; /* m */
+    double t;     /* s */
+};
+
+static void prediction_free(struct prediction *m)
+{
+    free(m->x), free(m->q);
+}
+
+static int predict(struct prediction *m, const struct packing *p, struct why *why)
+{
+    double ahead = (1 - p->theta) * p->dt;
+    *m = (struct prediction){ .x = malloc(((size_t)p->n + 1) * sizeof *m->x), .t = p->t + ahead };
+    if (p->shape) m->q = malloc(((size_t)p->n + 1) * sizeof *m->q);
+    if (!m->x || (p->shape && !m->q)) {
+        prediction_free(m);
+        return why_set(why, EX_SOFTWARE, "no memory for the contacts");
+    }
+    for (int64_t i = 0; i < p->n; i++) m->x[i] = packing_predict(p, i);
+    for (int64_t i = 0; i < p->n && m->q; i++)
+        m->q[i] = packing_shape(p, i) ? top_predict(p, i) : p->q[i];
+    cell_predict(&p->cell, ahead, m->edge);
+    return 0;
+}
+
+int detect_near(struct contacts *out, const struct packing *p, double reach,
+                struct neighbours *kept, struct why *why)
+{
+    struct prediction m;
+    if (predict(&m, p, why)) return why->status;
+    int e = detect(out, p, m.x, m.q, m.edge, m.t, reach, kept, why);
+    prediction_free(&m);
+    return e;
+}
+
+/* The places of bonds between shapes are contacts, too. */
+static int add_anchored(struct contacts *s, const struct packing *p, struct why *why)
+{
+    struct prediction m;
+    if (predict(&m, p, why)) return why->status;
+    int e = anchors_place(s, p, m.x, m.q, m.edge, m.t, why);
+    prediction_free(&m);
+    return e;
+}
+
+int detect_choose(struct contacts *s, const struct packing *p, double gap, double reach,
+                  struct why *why)
+{
+    int e = p->law && p->shape && p->bonds.n ? add_anchored(s, p, why) : 0;
+    if (!e && p->law) e = ties_find(s, p, why);
+    if (!e && reach > gap) keep_meeting(s, p, gap);
+    return e;
+}
+
 int detect_contacts(struct contacts *out, const struct packing *p, double gap,
                     struct neighbours *kept, struct why *why)
 {
-    vec3 *x = malloc(((size_t)p->n + 1) * sizeof *x);
-    quat *q = p->shape ? malloc(((size_t)p->n + 1) * sizeof *q) : NULL;
-    if (!x || (p->shape && !q)) {
-        free(x), free(q);
-        return why_set(why, EX_SOFTWARE, "no memory for the contacts");
-    }
-    for (int64_t i = 0; i < p->n; i++) x[i] = packing_predict(p, i);
-    for (int64_t i = 0; i < p->n && q; i++)
-        q[i] = packing_shape(p, i) ? top_predict(p, i) : p->q[i];
-    vec3 edge[3];
-    double ahead = (1 - p->theta) * p->dt;
-    double reach = overlap_sees_gaps(p->overlap) ? fmax(gap, meeting_reach(p)) : gap;
-    if (p->law) reach = fmax(reach, ties_reach(p));
-    cell_predict(&p->cell, ahead, edge);
-    int e = detect(out, p, x, q, edge, p->t + ahead, reach, kept, why);
-    if (!e && p->law && q) e = anchors_place(out, p, x, q, edge, p->t + ahead, why);
-    if (!e && p->law) e = ties_find(out, p, why);
-    if (!e && reach > gap) keep_meeting(out, p, gap);
-    free(x), free(q);
-    return e;
+    double reach = detect_reach(p, gap);
+    int e = detect_near(out, p, reach, kept, why);
+    return e ? e : detect_choose(out, p, gap, reach, why);
 }

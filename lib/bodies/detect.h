@@ -21,6 +21,14 @@
 int detect_contacts(struct contacts *out, const struct packing *p, double gap,
                     struct neighbours *kept, struct why *why);
 
+/* Its parts: m, the largest gap of a pair that it looks at; those pairs; which of them are contacts, and
+   what ties them */
+double detect_reach(const struct packing *p, double gap);
+int detect_near(struct contacts *out, const struct packing *p, double reach,
+                struct neighbours *kept, struct why *why);
+int detect_choose(struct contacts *s, const struct packing *p, double gap, double reach,
+                  struct why *why);
+
 /* The same with the bodies at x[n] (m), turned as they are, walls and cell where they are at time t (s). */
 int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3 *x, double t,
                        double gap, struct neighbours *kept, struct why *why);

@@ -199,6 +199,22 @@ fail:
     return why_set(why, EX_SOFTWARE, "no memory for a copy of the packing");
 }
 
+struct whole packing_whole(const struct packing *p)
+{
+    if (p->whole) return *p->whole;
+    struct whole all = { .small = INFINITY, .apart = -INFINITY };
+    for (int64_t i = 0; i < p->n; i++) {
+        double speed = v3_norm(p->v[i]);
+        all.speed = fmax(all.speed, speed);
+        all.top_speed = fmax(all.top_speed, speed + p->radius[i] * v3_norm(p->w[i]));
+        all.small = fmin(all.small, p->radius[i]), all.large = fmax(all.large, p->radius[i]);
+    }
+    for (int64_t i = 0; i < p->bonds.n; i++)
+        if (p->bonds.bond[i].beta > 0 && !bond_anchored(&p->bonds.bond[i]))
+            all.apart = fmax(all.apart, p->bonds.bond[i].gap);
+    return all;
+}
+
 static const char *body_trouble(const struct packing *p, int64_t i)
 {
     if (!(p->radius[i] > 0 && isfinite(p->radius[i]))) return "radius must be positive and finite";

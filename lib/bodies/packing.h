@@ -23,6 +23,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+struct whole;
+
 struct packing {
     int dim;      /* 2 or 3 */
     int64_t n;    /* bodies */
@@ -67,7 +69,18 @@ struct packing {
     struct events events;             /* since the last frame */
 
     char *scene; /* the JSON it was built from, or NULL */
+
+    const struct whole
+        *whole; /* borrowed: that of which these bodies are a part; NULL: they are all */
 };
+
+/* What a part of a packing knows of all bodies: m/s, the speed of the fastest centre and of the fastest
+   point; m, the smallest and the largest radius, and the widest gap that a bond is expected to have */
+struct whole {
+    double speed, top_speed, small, large, apart;
+};
+/* Of the bodies of this packing */
+struct whole packing_whole(const struct packing *p);
 
 /* n bodies (orientation 1, id = index), no wall and one kind "0"; theta = 1/2; all else is zero,
    dt too. Returns 0 or EX_SOFTWARE. */

@@ -123,15 +123,25 @@ static void displace(struct packing *p, const struct displacements *o)
 
 int project_apart(struct packing *p, const struct contacts *s, struct why *why)
 {
+    return project_shared(p, s, NULL, why);
+}
+
+int project_shared(struct packing *p, const struct contacts *s, const struct project_share *share,
+                   struct why *why)
+{
     struct displacements o = { .d = calloc((size_t)p->n + 1, sizeof *o.d) };
     struct part *part = malloc(((size_t)s->n + 1) * sizeof *part);
     bool room = part && o.d && !freedoms_init(&o.freedoms, p, p->cell.edge, why);
     room = room && (o.z = calloc((size_t)o.freedoms.n + 1, sizeof *o.z));
-    bool more = room && parts_make(p, s, &o, part), moves = more;
+    bool more = room && parts_make(p, s, &o, part);
+    if (share) more = share->any(share->with, more);
+    bool moves = more;
+    for (int64_t i = 0; share && i < s->n; i++) part[i].w *= share->brake[i];
     for (int sweep = 0; more && sweep < SWEEPS; sweep++) {
         more = false;
         for (int64_t i = 0; i < s->n; i++)
             if (part[i].w > 0 && relax(p, &part[i], &s->c[i], &o)) more = true;
+        if (share) more = share->after_sweep(share->with, o.d, more);
     }
     if (moves) displace(p, &o);
     free(part), free(o.d), free(o.z);

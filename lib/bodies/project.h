@@ -22,6 +22,20 @@
 #include "bodies/contact.h"
 #include "bodies/packing.h"
 
+/* Of a packing of which several processes have a part each, by contacts that each is in one of: what is asked
+   of the others */
+struct project_share {
+    void *with;
+    const double *brake; /* [contacts] by which a contact's step is shortened, at least 1 */
+    /* Is it so in any process? */
+    bool (*any)(void *with, bool here);
+    /* The processes' displacements d[n] (m) since the last time are added up; more: is another sweep worth
+       it here? Returns whether it is to any. */
+    bool (*after_sweep)(void *with, vec3 *d, bool more);
+};
+int project_shared(struct packing *p, const struct contacts *s, const struct project_share *share,
+                   struct why *why);
+
 /* The bodies after their step by these contacts. Returns 0 or EX_SOFTWARE. */
 int project_apart(struct packing *p, const struct contacts *s, struct why *why);
 

@@ -42,17 +42,13 @@ static double bond_area(const struct packing *p, const struct contact *c, const 
 
 double ties_reach(const struct packing *p)
 {
-    double reach = 0, small = INFINITY, large = 0, apart = -INFINITY;
+    const struct whole all = packing_whole(p);
+    double reach = 0;
     for (int32_t k = 0; k < p->kinds * p->kinds; k++)
         reach = fmax(reach,
                      fmax(p->law[k].cohesion > 0 ? p->law[k].range : 0, bridge_reach(&p->law[k])));
-    for (int64_t i = 0; i < p->n; i++)
-        small = fmin(small, p->radius[i]), large = fmax(large, p->radius[i]);
-    for (int64_t i = 0; i < p->bonds.n; i++)
-        if (p->bonds.bond[i].beta > 0 && !bond_anchored(&p->bonds.bond[i]))
-            apart = fmax(apart, p->bonds.bond[i].gap);
-    if (apart > -INFINITY) reach = fmax(reach, apart + MARGIN * small);
-    return fmax(reach, TOUCH * large);
+    if (all.apart > -INFINITY) reach = fmax(reach, all.apart + MARGIN * all.small);
+    return fmax(reach, TOUCH * all.large);
 }
 
 /* The rotation that takes the unit vector `from` to `to` the short way, of a vector across `from` */

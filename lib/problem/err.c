@@ -2,13 +2,16 @@
 #include "problem/err.h"
 
 #include "base/team.h"
+#include "problem/shared.h"
 
 #include <float.h>
+#include <stdlib.h>
 
 enum {
     BLOCK = 64,        /* bundles of one partial sum: the bits do not depend on the threads */
     PARALLEL_FROM = 8, /* blocks that are worth a second thread */
-    STRIPE = 16        /* blocks whose partial sums are held at a time */
+    STRIPE = 16,       /* blocks whose partial sums are held at a time */
+    SHARED_TERMS = 8   /* sums of struct sums */
 };
 
 #define ROUNDING (16 * DBL_EPSILON) /* of the top speed: smaller errors are rounding */
@@ -70,21 +73,95 @@ static void judge_some(void *arg, int64_t from, int64_t to)
         judge_block(j->p, j->believes, j->which, j->first + b, &j->s[b]);
 }
 
-void err_eval(struct err *e, const struct problem *p, bool believes, enum err_terms which,
-              int threads)
+/* The sums of one bundle are its lanes' terms. */
+static void take_terms(const struct sums *s, int k, double term[SHARED_TERMS])
 {
-    *e = (struct err){ .contacts = p->n };
-    if (!p->n) return;
+    const double t[SHARED_TERMS] = { s->motion[k],      s->proj[k],     s->bipotential[k],
+                                     s->penetration[k], s->natural2[k], s->siconos2[k],
+                                     s->velocity2[k],   s->r2[k] };
+    for (int j = 0; j < SHARED_TERMS; j++) term[j] = t[j];
+}
+
+/* Of a problem that processes share */
+static void judge_shared(const struct problem *p, bool believes, enum err_terms which,
+                         struct sums *all)
+{
+    struct shared *shared = p->shared;
+    double(*term)[SHARED_TERMS] = malloc((size_t)(p->slots + 1) * sizeof *term);
+    double out[SHARED_TERMS][BUNDLE], most[2] = { 0 };
+    if (!term) {
+        shared->fail(shared);
+        return;
+    }
+    shared->judging(shared, (struct problem *)p, true);
+    for (int64_t i = 0; i < p->bundles; i++) {
+        struct sums s = { 0 };
+        if (shared_is_copy(shared, i)) continue;
+        sweep_widest()->judge(p, i, i + 1, believes, which, &s);
+        for (int k = 0; k < BUNDLE; k++) take_terms(&s, k, term[BUNDLE * i + k]);
+        most[0] = fmax(most[0], bundle_max(s.max_pen));
+        most[1] = fmax(most[1], bundle_max(s.max_true));
+    }
+    shared->judging(shared, (struct problem *)p, false);
+    shared->sum(shared, p, BLOCK, 1, SHARED_TERMS, term[0], out[0]);
+    free(term);
+    for (int k = 0; k < BUNDLE; k++) {
+        all->motion[k] = out[0][k], all->proj[k] = out[1][k];
+        all->bipotential[k] = out[2][k], all->penetration[k] = out[3][k];
+        all->natural2[k] = out[4][k], all->siconos2[k] = out[5][k];
+        all->velocity2[k] = out[6][k], all->r2[k] = out[7][k];
+    }
+    all->max_pen[0] = shared->most(shared, most[0]);
+    all->max_true[0] = shared->most(shared, most[1]);
+}
+
+static void judge_blocks(const struct problem *p, bool believes, enum err_terms which, int threads,
+                         struct sums *all)
+{
     int64_t blocks = (p->bundles + BLOCK - 1) / BLOCK;
-    struct sums all = { 0 };
     // the partial sums of a stripe of blocks, always added in the same order
     for (int64_t first = 0; first < blocks; first += STRIPE) {
         struct sums s[STRIPE];
         int64_t n = blocks - first < STRIPE ? blocks - first : STRIPE;
         struct judged j = { p, believes, which, first, s };
         team_share(n < PARALLEL_FROM && !p->split ? 1 : threads, n, 1, judge_some, &j);
-        for (int64_t b = 0; b < n; b++) sums_add(&all, &s[b]);
+        for (int64_t b = 0; b < n; b++) sums_add(all, &s[b]);
     }
+}
+
+/* Where each process adds up its own */
+static void judge_and_add(const struct problem *p, bool believes, enum err_terms which, int threads,
+                          struct sums *all)
+{
+    struct shared *shared = p->shared;
+    shared->judging(shared, (struct problem *)p, true);
+    judge_blocks(p, believes, which, threads, all);
+    shared->judging(shared, (struct problem *)p, false);
+    double *const sum[SHARED_TERMS] = { all->motion,      all->proj,     all->bipotential,
+                                        all->penetration, all->natural2, all->siconos2,
+                                        all->velocity2,   all->r2 };
+    double x[SHARED_TERMS];
+    for (int j = 0; j < SHARED_TERMS; j++) x[j] = bundle_sum(sum[j]);
+    shared->add(shared, x, SHARED_TERMS);
+    for (int j = 0; j < SHARED_TERMS; j++)
+        for (int k = 0; k < BUNDLE; k++) sum[j][k] = k ? 0 : x[j];
+    double pen = shared->most(shared, bundle_max(all->max_pen));
+    double true_pen = shared->most(shared, bundle_max(all->max_true));
+    for (int k = 0; k < BUNDLE; k++) all->max_pen[k] = pen, all->max_true[k] = true_pen;
+}
+
+void err_eval(struct err *e, const struct problem *p, bool believes, enum err_terms which,
+              int threads)
+{
+    struct sums all = { 0 };
+    *e = (struct err){ .contacts = p->n };
+    if (!p->n) return;
+    if (p->shared && p->shared->add)
+        judge_and_add(p, believes, which, threads, &all);
+    else if (p->shared)
+        judge_shared(p, believes, which, &all);
+    else
+        judge_blocks(p, believes, which, threads, &all);
     if (which & ERR_TERMS) {
         e->paper = mean_terms(&all, p->n, 1, p->dt);
         e->scaled = mean_terms(&all, p->n, p->scale_v, p->scale_r);

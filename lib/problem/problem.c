@@ -8,6 +8,7 @@
 #include "problem/beyond_levers.h"
 #include "problem/filling.h"
 #include "problem/schedule.h"
+#include "problem/shared.h"
 
 #include <assert.h>
 #include <float.h>
@@ -143,12 +144,18 @@ static void free_some(void *arg, int64_t first, int64_t end)
     }
 }
 
+/* Is it so of any contact of any process? One text of the sweep serves them all. */
+static bool anywhere(const struct problem *p, bool here)
+{
+    return p->shared ? p->shared->most(p->shared, here) > 0 : here;
+}
+
 /* N s: of the contacts' ties */
 static bool set_pulls(struct problem *p, const struct contacts *s)
 {
     bool any = false;
     for (int64_t i = 0; s->tie && i < s->n; i++) any = any || s->tie[i].pull > 0;
-    if (!any) return true;
+    if (!anywhere(p, any)) return true;
     p->pull = calloc((size_t)p->slots + 1, sizeof *p->pull);
     for (int64_t i = 0; p->pull && i < p->slots; i++)
         if (p->contact[i] >= 0) p->pull[i] = p->dt * s->tie[p->contact[i]].pull;
@@ -158,10 +165,12 @@ static bool set_pulls(struct problem *p, const struct contacts *s)
 void problem_set_free_motion(struct problem *p)
 {
     team_share(team_size(), p->packing->n, SOME, free_some, p);
+    if (p->shared) p->shared->begin(p->shared, p);
     for (int64_t i = 0; p->pull && i < p->slots; i++) {
         const double pulled[3] = { -p->pull[i], 0, 0 };
         if (p->pull[i] > 0) problem_push(p, p->body, slot_bundle(p, i), slot_lane(i), pulled);
     }
+    if (p->shared && p->pull) p->shared->settle(p->shared, p);
 }
 
 /* The place of a body i (wall w: -1-w) of a contact at x (m): its own, or of a new copy if it does
@@ -212,6 +221,7 @@ static bool lay_out_beyond(struct problem *p, const struct contacts *s)
         p->rolls = p->rolls || t->mu_r > 0 || t->mu_p > 0;
         any = any || t->stiff[0] > 0 || t->stiff[1] > 0;
     }
+    p->rolls = anywhere(p, p->rolls), any = anywhere(p, any);
     if (!any && !p->rolls) return true;
     p->beyond = alloc_lines(p->bundles, sizeof *p->beyond);
     for (int64_t i = 0; p->beyond && i < p->slots; i++)
@@ -265,10 +275,12 @@ static void measure_some(void *arg, int64_t first, int64_t end)
 }
 
 /* kg: the mean mass of the bodies that move, for the scaled errors */
-static double mean_mass(const struct packing *p)
+static double mean_mass(const struct problem *problem)
 {
+    const struct packing *p = problem->packing;
     double sum = 0;
     int64_t n = 0;
+    if (problem->shared) return problem->shared->mean_mass;
     for (int64_t i = 0; i < p->n; i++) sum += p->mass[i], n += p->mass[i] > 0;
     return n ? sum / (double)n : 1;
 }
@@ -321,25 +333,29 @@ static bool rebounds(const struct packing *pack, const struct contacts *s)
     return false;
 }
 
-int problem_prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
-                    double alpha, double rho_factor, enum order order, struct why *why)
+static int prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
+                   double alpha, double rho_factor, enum order order, const struct schedule *given,
+                   struct shared *shared, struct why *why)
 {
     struct schedule plan = { 0 };
     *p = (struct problem){
         .d = pack->dim, .n = s->n, .dt = pack->dt, .packing = pack, .bodies = count_bodies(pack, s)
     };
+    p->shared = shared;
+    if (shared) p->n = shared->contacts;
     if (p->bodies > BODIES_MAX) return why_set(why, EX_DATAERR, "more than %d bodies", BODIES_MAX);
     p->body = alloc_lines(p->bodies, sizeof *p->body);
-    bool room = p->body && !schedule_bodies(&plan, order, s, pack) && lay_out_bundles(p, &plan);
+    bool room = p->body && (given || !schedule_bodies(&plan, order, s, pack)) &&
+                lay_out_bundles(p, given ? given : &plan);
     schedule_free(&plan);
     const struct lattice cell = lattice_of(pack);
     quat *half = NULL;
-    if (room && shaped(pack, s)) {
+    if (anywhere(p, shaped(pack, s)) && room) {
         p->full = true;
         p->lever = alloc_lines(p->bundles, sizeof *p->lever);
         room = p->lever && find_spins(p, pack, &half);
     }
-    if (room && (rebounds(pack, s) || glides(s, &cell)))
+    if (anywhere(p, rebounds(pack, s) || glides(s, &cell)) && room)
         room = (p->rebound = alloc_lines(p->bundles, sizeof *p->rebound)) != NULL;
     room = room && set_pulls(p, s) && lay_out_beyond(p, s);
     if (!room || !(p->seat = seat_bodies(p, pack, s, order))) return free(half), no_memory(p, why);
@@ -367,18 +383,44 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     double g = v3_norm(pack->g);
     p->fall = g * pack->dt;
     p->scale_v = (g > 0 ? g : 9.81) * pack->dt;
-    p->scale_r = p->scale_v * mean_mass(pack);
+    p->scale_r = p->scale_v * mean_mass(p);
     p->speed = top_speed(pack);
+    if (shared) p->speed = shared->most(shared, p->speed);
     problem_set_free_motion(p);
     struct measuring m = { p, malloc((size_t)(p->slots + 1) * sizeof *m.q2) };
     if (!m.q2) return no_memory(p, why);
     team_share(team_size(), p->bundles, SOME / BUNDLE, measure_some, &m);
-    for (int64_t i = 0; i < p->slots; i++) p->norm_q += m.q2[i]; // in one order always
+    if (shared) p->norm_q = shared->sum_along(shared, p, m.q2);
+    for (int64_t i = 0; i < p->slots && !shared; i++) p->norm_q += m.q2[i]; // in one order always
     free(m.q2);
     p->norm_q = sqrt(p->norm_q);
     for (int64_t i = 0; s->found && i < p->slots; i++)
         if (p->contact[i] >= 0) take_found(p, i, s);
+    if (shared && s->found) shared->settle(shared, p);
     return 0;
+}
+
+int problem_prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
+                    double alpha, double rho_factor, enum order order, struct why *why)
+{
+    return prepare(p, pack, s, alpha, rho_factor, order, NULL, NULL, why);
+}
+
+int problem_prepare_shared(struct problem *p, const struct packing *pack, const struct contacts *s,
+                           double alpha, double rho_factor, const struct schedule *plan,
+                           struct shared *shared, struct why *why)
+{
+    return prepare(p, pack, s, alpha, rho_factor, ORDER_COLOUR, plan, shared, why);
+}
+
+int64_t problem_bundles(const struct problem *p)
+{
+    return p->shared ? p->shared->bundles : p->bundles;
+}
+
+bool problem_halves(const struct problem *p)
+{
+    return p->shared ? p->shared->halves : p->split != NULL;
 }
 
 /* Whether D[9] is diag(w_n, w_t, w_t) to rounding, as between balls. */

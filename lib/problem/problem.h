@@ -32,9 +32,11 @@ enum {
     FAR_BUNDLES = 1024 /* bundles, 1.2 MB: more do not stay in a near cache from sweep to sweep */
 };
 
+struct shared;
+
 struct problem {
     int d;
-    int64_t n;                  /* contacts */
+    int64_t n;                  /* contacts, of all processes */
     int64_t bundles, slots;     /* slots: 8 a bundle, some without a contact */
     struct bundle *bundle;      /* [bundles] in the order of the sweep */
     struct rebound *rebound;    /* [bundles]; NULL: e_n = e_t = 0 everywhere, and no offset */
@@ -48,7 +50,8 @@ struct problem {
     int64_t groups;         /* no two contacts of a group share a body (a block of W): */
     int64_t *group;         /* [groups + 1] bundles group[g] .. group[g+1]-1 may be done at once */
     struct two_thread_split *split; /* NULL: the order has no halves */
-    int64_t bodies;                 /* of body[]; 0: given by W */
+    struct shared *shared; /* borrowed: the other processes that have a part of it; NULL: none */
+    int64_t bodies;        /* of body[]; 0: given by W */
     struct body *body; /* [bodies] the packing's, by colours in the order in which the sweep first
                           meets them, and copies of what does not move; NULL: given by W */
     const struct packing *packing; /* borrowed: its velocities are those before the step; NULL:
@@ -78,6 +81,11 @@ struct problem {
  */
 int problem_prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
                     double alpha, double rho_factor, enum order order, struct why *why);
+/* The same of a part of a problem, whose bundles are laid out by the plan: its groups are those that
+   shared->after_group is told of. */
+int problem_prepare_shared(struct problem *p, const struct packing *pack, const struct contacts *s,
+                           double alpha, double rho_factor, const struct schedule *plan,
+                           struct shared *shared, struct why *why);
 /* The same for a problem given by W, which it borrows; r from W->r. */
 int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha, double rho_factor,
                              enum order order, struct why *why);
@@ -115,6 +123,10 @@ static inline struct rebound *slot_rebound(const struct problem *p, int64_t i)
 struct beyond_levers *slot_turn(const struct problem *p, int64_t i); /* NULL: balls */
 void slot_get(const struct problem *p, int64_t i, double r[3], double u[3]);
 void slot_set(struct problem *p, int64_t i, const double r[3], const double u[3]);
+
+/* Bundles of all processes; whether all contacts are swept by halves */
+int64_t problem_bundles(const struct problem *p);
+bool problem_halves(const struct problem *p);
 
 /* Whether u in the slots is D u~ */
 static inline bool problem_undivided(const struct problem *p)

@@ -10,7 +10,8 @@
  * contacts coloured greedily in their natural order; another sequence, in fewer groups. halves: the
  * zones of problem/two_thread_split.h one after another, each coloured by itself. From 8192
  * contacts of a packing on, colour goes by halves too; halves is as colour for a problem given by W
- * or with fewer than 384 contacts.
+ * or with fewer than 384 contacts. block: colours, and where several processes share the contacts each
+ * sweeps its own by itself [ranks/blocks.h]; as colour in one.
  */
 #ifndef NSD_SCHEDULE_H
 #define NSD_SCHEDULE_H
@@ -20,7 +21,7 @@
 #include "problem/delassus.h"
 #include "problem/two_thread_split.h"
 
-enum order { ORDER_NATURAL, ORDER_REVERSE, ORDER_RANDOM, ORDER_COLOUR, ORDER_HALVES, ORDER_COUNT };
+enum order { ORDER_NATURAL, ORDER_REVERSE, ORDER_RANDOM, ORDER_COLOUR, ORDER_HALVES, ORDER_BLOCK, ORDER_COUNT };
 extern const char *const order_name[ORDER_COUNT]; /* as command lines and documents have them */
 
 struct schedule {

@@ -245,8 +245,10 @@ struct task {
 ALWAYS_INLINE void solve_group(struct problem *p, int64_t first, int64_t end, void *task)
 {
     const struct task *t = task;
+    struct counts other = { splat(0), splat(0), splat(0), splat(0) }; // another process counts them
+    bool copies = p->shared && first < end && shared_is_copy(p->shared, first);
     solve_bundles(p, first, end, t->o, t->method, t->solve, t->given_by_W, t->full, t->beyond,
-                  t->count);
+                  copies ? &other : t->count);
 }
 
 ALWAYS_INLINE void sweep(struct problem *p, int me, int threads, const struct sweep_opt *o,

@@ -8,6 +8,7 @@
 
 #include "base/team.h"
 #include "problem/problem.h"
+#include "problem/shared.h"
 
 /*
  * How many bundles ahead data are fetched: first into the second-level cache, since the first-level
@@ -133,8 +134,10 @@ ALWAYS_INLINE void walk(struct problem *p, int me, int threads, walk_text *each,
         for (int64_t g = leg[k].first; g < leg[k].end; g++) {
             int64_t first = p->group[g], n = p->group[g + 1] - first;
             each(p, first + n * mine / share, first + n * (mine + 1) / share, task);
-            if (share == 1) continue;
-            team_meet();
+            if (share > 1) team_meet();
+            if (!p->shared) continue;
+            if (mine == 0) p->shared->after_group(p->shared, p, g);
+            if (share > 1) team_meet();
         }
         end_leg(&leg[k]);
     }

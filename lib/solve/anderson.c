@@ -21,6 +21,7 @@
 
 #include "base/team.h"
 #include "problem/mixing.h"
+#include "problem/shared.h"
 #include "solve/nlgs.h"
 #include "solve/prices.h"
 
@@ -124,6 +125,57 @@ static void measure_chunks(void *arg, int64_t first, int64_t end)
     for (int64_t k = first; k < end; k++) measure_chunk(arg, k);
 }
 
+/* The terms of one slot, component by component, as mixing's measure() has just added them */
+static void take_terms(const struct anderson *a, int64_t slot, double *term)
+{
+    const struct problem *p = a->s->p;
+    const struct bundle *c = slot_bundle(p, slot);
+    const double *df = a->m.df[a->m.next];
+    int k = slot_lane(slot);
+    double lambda = c->w[0][k] > c->w[1][k] ? c->w[0][k] : c->w[1][k];
+    for (int l = 0; l < p->d; l++) {
+        int64_t at = (slot / BUNDLE * p->d + l) * BUNDLE + k;
+        double wf = lambda * a->m.f[at], wdf = lambda * df[at];
+        *term++ = wf * a->m.f[at];
+        for (int j = 0; j < depth(a); j++)
+            *term++ = wdf * a->m.df[j][at], *term++ = wf * a->m.df[j][at];
+    }
+}
+
+/* The same of a problem that processes share, whose sums are made of all slots' terms */
+static void measure_shared(const struct anderson *a, struct mixing_sums *t)
+{
+    const struct problem *p = a->s->p;
+    const int n = 1 + 2 * depth(a), size = p->d * n;
+    double *term = malloc((size_t)(p->slots + 1) * (size_t)size * sizeof *term);
+    double out[1 + 2 * MIXING_DEPTH][BUNDLE];
+    struct mixing_sums here = { 0 };
+    if (!term) {
+        p->shared->fail(p->shared);
+        return;
+    }
+    mixing_widest()->measure(p, &a->m, 0, p->bundles, &here);
+    for (int64_t i = 0; i < p->slots; i++) take_terms(a, i, term + size * i);
+    p->shared->sum(p->shared, p, CHUNK_BUNDLES, p->d, n, term, out[0]);
+    for (int k = 0; k < BUNDLE; k++) {
+        t->f2[k] = out[0][k];
+        for (int j = 0; j < depth(a); j++)
+            t->ff[j][k] = out[1 + 2 * j][k], t->fd[j][k] = out[2 + 2 * j][k];
+    }
+    free(term);
+}
+
+/* Where each process adds up its own */
+static void add_shared(const struct anderson *a, struct mixing_sums *t)
+{
+    double x[1 + 2 * MIXING_DEPTH] = { bundle_sum(t->f2) };
+    for (int j = 0; j < depth(a); j++)
+        x[1 + 2 * j] = bundle_sum(t->ff[j]), x[2 + 2 * j] = bundle_sum(t->fd[j]);
+    a->s->p->shared->add(a->s->p->shared, x, 1 + 2 * depth(a));
+    *t = (struct mixing_sums){ .f2 = { x[0] } };
+    for (int j = 0; j < depth(a); j++) t->ff[j][0] = x[1 + 2 * j], t->fd[j][0] = x[2 + 2 * j];
+}
+
 /* After the sweeps: f, the differences and their products; returns |f|^2. */
 static double measure(struct anderson *a)
 {
@@ -132,8 +184,13 @@ static double measure(struct anderson *a)
     int64_t n = chunks(p);
     a->s->rep->work += price_sweep(p); // with the mixing that follows
     int now = a->m.next;
-    team_share(a->s->o->threads, n, 1, measure_chunks, a);
-    for (int64_t k = 0; k < n; k++) mixing_sums_add(&t, &a->sums[k]);
+    if (p->shared && !p->shared->add) {
+        measure_shared(a, &t);
+    } else {
+        team_share(a->s->o->threads, n, 1, measure_chunks, a);
+        for (int64_t k = 0; k < n; k++) mixing_sums_add(&t, &a->sums[k]);
+        if (p->shared) add_shared(a, &t);
+    }
     if (a->begun) {
         a->count = a->count < depth(a) ? a->count + 1 : depth(a);
         a->m.next = (now + 1) % depth(a);

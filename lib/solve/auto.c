@@ -7,6 +7,7 @@
  * The choice rests on how fast the criterion falls, and on prices that are counted
  * [solve/prices.h].
  */
+#include "problem/shared.h"
 #include "solve/anderson.h"
 #include "solve/ipm.h"
 #include "solve/nlgs.h"
@@ -226,6 +227,11 @@ static int sweep_and_choose(struct strategy *a)
         double more = a->older.sweeps ? sweeps_to_come(a, anderson_best_value(a->sweeps)) : 0;
         a->older.value = before, a->older.sweeps = had;
         if (a->tried || gain(a, more, least) * rep->sweeps * a->price < least) continue;
+        if (s->p->shared) {
+            if (!s->p->shared->may_want) continue;
+            s->p->shared->wants_whole = true;
+            break;
+        }
         if (look_for_better(a, more)) return -1;
     }
     anderson_restore_best(a->sweeps);

@@ -5,6 +5,7 @@
 #include "solve/nlgs.h"
 
 #include "base/team.h"
+#include "problem/shared.h"
 #include "problem/sweep.h"
 #include "solve/prices.h"
 
@@ -67,7 +68,7 @@ static double sweep(struct solve *s, double omega, int32_t unjudged, bool keep)
     s->rep->sweeps += unjudged + 1, s->rep->work += (unjudged + 1) * price_sweep(s->p);
     s->renewed = false;
     team_do(problem_team(s->p, o->threads), make_round, &r);
-    return r.change;
+    return s->p->shared ? s->p->shared->most(s->p->shared, r.change) : r.change;
 }
 
 /*
@@ -83,7 +84,8 @@ static int judged_sweep(struct solve *s, double omega, int32_t unjudged, bool la
     bool sure = s->o->history || s->o->every_sweep || n <= w->judge_all_until ||
                 n - w->last_judged >= CHECK_EVERY || n >= s->o->max_sweeps || last;
     bool keep =
-        sure || w->change <= (s->p->bundles < FAR_BUNDLES ? CHEAP_FORESIGHT : FORESIGHT) * w->due;
+        sure ||
+        w->change <= (problem_bundles(s->p) < FAR_BUNDLES ? CHEAP_FORESIGHT : FORESIGHT) * w->due;
     double change = w->change = sweep(s, omega, unjudged, keep && s->believes);
     w->just_judged = false;
     if (solve_history(s)) return -1;
@@ -109,7 +111,7 @@ int nlgs_sweep(struct solve *s, double omega, struct watch *w)
 static int32_t foresee(const struct solve *s, const struct watch *w, int32_t end)
 {
     int32_t n = s->rep->sweeps, next = w->last_judged + CHECK_EVERY;
-    if (!s->p->split || s->o->history || s->o->every_sweep || n < w->judge_all_until ||
+    if (!problem_halves(s->p) || s->o->history || s->o->every_sweep || n < w->judge_all_until ||
         !(w->change > w->due))
         return 0;
     if (next > end) next = end;

@@ -2,6 +2,7 @@
 #include "solve/solver.h"
 
 #include "problem/apply.h"
+#include "problem/shared.h"
 #include "problem/sweep.h"
 
 #include <math.h>
@@ -51,7 +52,8 @@ bool solve_met(const struct solve *s)
 double solve_seconds_left(const struct solve *s)
 {
     if (!(s->o->max_seconds > 0)) return INFINITY;
-    return s->o->max_seconds - (report_seconds(CLOCK_WALL) - s->start);
+    double left = s->o->max_seconds - (report_seconds(CLOCK_WALL) - s->start);
+    return s->p->shared ? s->p->shared->agree(s->p->shared, left) : left;
 }
 
 bool solve_spent(const struct solve *s)
@@ -173,6 +175,12 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
     if (failed) return -1;
     renew(&s);
     if (!s.believes) sweep_widest()->velocities(p, 0, p->bundles);
+    if (p->shared) {
+        struct shared *all = p->shared;
+        rep->newton = all->count(all, rep->newton);
+        rep->safeguarded = all->count(all, rep->safeguarded);
+        rep->gave_up = all->count(all, rep->gave_up);
+    }
     double overlap = rep->err.max_overlap;
     err_eval(&rep->err, p, s.believes, ERR_ALL, o->threads);
     rep->err.max_overlap = overlap;

@@ -40,8 +40,8 @@ static int check_solver(const struct problem *p, const struct solver *global, st
         global->name);
 }
 
-static int solve_contacts(const struct packing *pack, struct contacts *s, const struct step_opt *o,
-                          struct report *rep, struct why *why)
+int step_solve_contacts(const struct packing *pack, struct contacts *s, const struct step_opt *o,
+                        struct report *rep, struct why *why)
 {
     struct problem p;
     if (!o->warm) contacts_free_found(s);
@@ -64,10 +64,8 @@ static int solve_contacts(const struct packing *pack, struct contacts *s, const 
 int step_solve(const struct packing *pack, struct contacts *s, const struct step_opt *o,
                struct report *rep, struct why *why)
 {
-    struct impulses sum = { 0 };
-    if (!solve_contacts(pack, s, o, rep, why)) sum_up(pack, s, o, rep, &sum, why);
-    impulses_free(&sum);
-    return why->status;
+    if (step_solve_contacts(pack, s, o, rep, why)) return why->status;
+    return step_balance(pack, s, o, rep, why);
 }
 
 int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o, struct report *rep,
@@ -90,8 +88,8 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
     return failed ? why_set(why, EX_SOFTWARE, "no memory to solve the contacts") : 0;
 }
 
-int step_advance(struct packing *p, struct contacts *s, struct neighbours *near,
-                 const struct step_opt *o, struct report *rep, struct why *why)
+int step_detect(struct packing *p, struct contacts *s, struct neighbours *near,
+                const struct step_opt *o, struct report *rep, struct why *why)
 {
     struct contacts before = { 0 };
     if (o->warm) before = *s, *s = (struct contacts){ 0 };
@@ -102,11 +100,32 @@ int step_advance(struct packing *p, struct contacts *s, struct neighbours *near,
     if (!e && o->warm && contacts_match(s, &before))
         e = why_set(why, EX_SOFTWARE, "no memory for the last reactions");
     contacts_free(&before);
-    if (e) return e;
+    return e;
+}
+
+int step_balance(const struct packing *p, const struct contacts *s, const struct step_opt *o,
+                 struct report *rep, struct why *why)
+{
     struct impulses sum = { 0 };
-    if (!solve_contacts(p, s, o, rep, why) && !sum_up(p, s, o, rep, &sum, why) &&
-        isfinite(rep->err.paper.eps_glob))
+    sum_up(p, s, o, rep, &sum, why);
+    impulses_free(&sum);
+    return why->status;
+}
+
+int step_move(struct packing *p, struct contacts *s, const struct step_opt *o, struct report *rep,
+              struct why *why)
+{
+    struct impulses sum = { 0 };
+    if (!sum_up(p, s, o, rep, &sum, why) && isfinite(rep->err.paper.eps_glob))
         move_by(p, s, &sum, why);
     impulses_free(&sum);
     return why->status;
+}
+
+int step_advance(struct packing *p, struct contacts *s, struct neighbours *near,
+                 const struct step_opt *o, struct report *rep, struct why *why)
+{
+    if (step_detect(p, s, near, o, rep, why) || step_solve_contacts(p, s, o, rep, why))
+        return why->status;
+    return step_move(p, s, o, rep, why);
 }

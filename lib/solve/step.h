@@ -35,4 +35,15 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
 int step_advance(struct packing *p, struct contacts *s, struct neighbours *near,
                  const struct step_opt *o, struct report *rep, struct why *why);
 
+/* Its three parts: contacts, with their last reactions if warm; found[] and the report of the solve; the
+   balances alone, or the balances and the motion. */
+int step_detect(struct packing *p, struct contacts *s, struct neighbours *near,
+                const struct step_opt *o, struct report *rep, struct why *why);
+int step_solve_contacts(const struct packing *pack, struct contacts *s, const struct step_opt *o,
+                        struct report *rep, struct why *why);
+int step_balance(const struct packing *p, const struct contacts *s, const struct step_opt *o,
+                 struct report *rep, struct why *why);
+int step_move(struct packing *p, struct contacts *s, const struct step_opt *o, struct report *rep,
+              struct why *why);
+
 #endif

@@ -1,0 +1,83 @@
+/* cli/crew.c: a process alone, or on its way to become one of several [cli/crew.h]. */
+#include "cli/crew.h"
+
+#include "cli/cli.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { ARGUMENTS_MOST = 4096 };
+
+/* What the starters of MPI programs say to them: Open MPI, and those who speak PMI */
+static int ranks_started(void)
+{
+    const char *said = getenv("OMPI_COMM_WORLD_SIZE");
+    if (!said) said = getenv("PMI_SIZE");
+    return said ? atoi(said) : 0;
+}
+
+bool crew_started(void)
+{
+    return ranks_started() > 0;
+}
+
+/* The arguments of this process, once more: getopt has sorted those that main() had. NULL: they cannot be
+   read. */
+static char **arguments(void)
+{
+    static char *argv[ARGUMENTS_MOST + 1];
+    FILE *f = fopen("/proc/self/cmdline", "r");
+    size_t room = 0;
+    int n = 0;
+    while (f && n < ARGUMENTS_MOST && getdelim(&argv[n], &room, 0, f) > 0) n++, room = 0;
+    if (f) fclose(f);
+    argv[n] = NULL;
+    return n ? argv : NULL;
+}
+
+/* PATH-mpi of this program's PATH */
+static bool beside(char path[PATH_MAX])
+{
+    static const char end[] = "-mpi";
+    ssize_t n = readlink("/proc/self/exe", path, PATH_MAX - sizeof end);
+    if (n < 1) return false;
+    memcpy(path + n, end, sizeof end);
+    return true;
+}
+
+bool crew_join(void)
+{
+    char path[PATH_MAX];
+    int ranks = ranks_started();
+    if (ranks < 2) return true;
+    char **argv = arguments();
+    if (argv && beside(path)) execv(path, argv);
+    die(EX_UNAVAILABLE, "%d processes were started together, and this nsd-step has no MPI: %s",
+        ranks, strerror(errno));
+}
+
+int crew_size(void)
+{
+    return 1;
+}
+
+int crew_follow(void)
+{
+    return 0;
+}
+
+int crew_step(struct packing *p, struct contacts *s, struct neighbours *near, bool other_bodies,
+              const struct step_opt *o, struct report *rep, struct why *why)
+{
+    if (other_bodies) neighbours_free(near);
+    return step_advance(p, s, near, o, rep, why);
+}
+
+const char *crew_leave(void)
+{
+    return NULL;
+}

@@ -1,0 +1,68 @@
+/*
+ * problem/shared.h: a contact problem of which several processes have a part each, and what a part
+ * asks of the others. Solvers go the same way in all of them: whatever they decide by is a number
+ * that is the same everywhere.
+ *
+ * A process has bodies of its own and copies of others'. A contact that several have is counted by
+ * one of them; in the others it lies in bundles of copies.
+ */
+#ifndef NSD_SHARED_H
+#define NSD_SHARED_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct problem;
+
+struct shared {
+    int64_t contacts, bundles; /* of all processes */
+    bool halves;               /* the order of all contacts has halves */
+    double mean_mass;          /* kg: of all bodies that move */
+    int64_t *copies;           /* [n_copies] pairs first, end of bundles that another counts */
+    int64_t n_copies;
+    bool may_want;    /* one process could solve all of it, */
+    bool wants_whole; /* and a solver has come to where only that goes on */
+
+    /* A walk over the bundles has done with this group. */
+    void (*after_group)(struct shared *s, struct problem *p, int64_t group);
+    /* The bodies have their free motion; contacts are about to be pushed, slot after slot. */
+    void (*begin)(struct shared *s, struct problem *p);
+    /* They have been: copies of bodies become what the bodies are. */
+    void (*settle)(struct shared *s, struct problem *p);
+    /* Before and after the errors are computed */
+    void (*judging)(struct shared *s, struct problem *p, bool begins);
+    /*
+     * out[terms][8] = the sums of term[slots][parts][terms] over all contacts, part after part, lane by
+     * lane of the bundles of the order of all, `chunk` bundles a partial sum: the bits of one process that
+     * has them all. Where the order is this process' own, they are the same in all processes.
+     */
+    void (*sum)(struct shared *s, const struct problem *p, int64_t chunk, int parts, int terms,
+                const double *term, double *out);
+    /* The sum of term[slots] along the order of all slots */
+    double (*sum_along)(struct shared *s, const struct problem *p, const double *term);
+    /* The largest of all processes' numbers; how many all have counted; what the first one says */
+    double (*most)(struct shared *s, double x);
+    int64_t (*count)(struct shared *s, int64_t n);
+    double (*agree)(struct shared *s, double x);
+    /* Memory is short: ends all processes, for the others wait for this one. */
+    void (*fail)(struct shared *s);
+    /* x[n] = the sums of all processes' x, in their order; NULL: sums are made by sum(), in the order of all
+       contacts, and here they would have other bits. */
+    void (*add)(struct shared *s, double *x, int n);
+};
+
+/* Are the contacts of this bundle counted by another process? */
+static inline bool shared_is_copy(const struct shared *s, int64_t bundle)
+{
+    int64_t lo = 0, hi = s->n_copies;
+    while (lo < hi) { // the last range that begins at or before the bundle
+        int64_t middle = (lo + hi) / 2;
+        if (s->copies[2 * middle] <= bundle)
+            lo = middle + 1;
+        else
+            hi = middle;
+    }
+    return lo > 0 && bundle < s->copies[2 * lo - 1];
+}
+
+#endif

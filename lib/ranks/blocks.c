@@ -1,0 +1,376 @@
+/* ranks/blocks.c: every rank its own contacts, an exchange a sweep [ranks/blocks.h]. */
+#include "ranks/blocks.h"
+
+#include "bodies/move.h"
+#include "bodies/project.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    TWIST = 6, /* numbers of a body's velocity */
+    TAG = 9
+};
+
+static struct blocks *of(struct shared *s)
+{
+    return (struct blocks *)s;
+}
+
+/* Where the numbers of a body are that ranks add up: `width` of them */
+typedef double *place_text(void *of, int32_t body);
+
+static double *twist_of(void *problem, int32_t body)
+{
+    const struct problem *p = problem;
+    return (double *)&p->body[p->seat[body]]; // v[3], and w[3] after it
+}
+
+/* What goes to each rank and comes from it: so many numbers for each body of the lists */
+static void post(struct talk *t, int width, const struct border *go_list, double **go,
+                 const struct border *come_list, double **come)
+{
+    MPI_Request *r = talk_new(t, 2 * t->n, sizeof *r);
+    int n = 0;
+    for (int q = 0; q < t->n; q++)
+        if (come_list[q].n)
+            MPI_Irecv(come[q], (int)(width * come_list[q].n), MPI_DOUBLE, q, TAG, t->comm, &r[n++]);
+    for (int q = 0; q < t->n; q++) {
+        if (!go_list[q].n) continue;
+        MPI_Isend(go[q], (int)(width * go_list[q].n), MPI_DOUBLE, q, TAG, t->comm, &r[n++]);
+        t->bytes += width * go_list[q].n * (int64_t)sizeof(double), t->messages++;
+    }
+    double since = talk_busy();
+    MPI_Waitall(n, r, MPI_STATUSES_IGNORE);
+    t->waited += talk_busy() - since;
+    free(r);
+}
+
+static double **letters(const struct talk *t, const struct border *b, int width)
+{
+    double **v = talk_new(t, t->n, sizeof *v);
+    for (int q = 0; q < t->n; q++) v[q] = talk_new(t, width * b[q].n, sizeof **v);
+    return v;
+}
+
+static void letters_free(const struct talk *t, double **v)
+{
+    for (int q = 0; v && q < t->n; q++) free(v[q]);
+    free(v);
+}
+
+static void remember(struct blocks *b, int width, place_text *at, void *arg, double **since)
+{
+    for (int q = 0; q < b->part->talk->n; q++)
+        for (int64_t k = 0; k < b->touched[q].n; k++)
+            memcpy(since[q] + width * k, at(arg, b->touched[q].body[k]),
+                   (size_t)width * sizeof **since);
+}
+
+/* Copies' changes since[] are added to the bodies, in the order of ranks; copies become what these are. */
+static void add_up(struct blocks *b, int width, place_text *at, void *arg, double **since)
+{
+    struct talk *t = b->part->talk;
+    double **here = letters(t, b->touched, width), **there = letters(t, b->pushed, width);
+    const size_t size = (size_t)width * sizeof(double);
+    for (int q = 0; q < t->n; q++)
+        for (int64_t k = 0; k < b->touched[q].n; k++) {
+            const double *v = at(arg, b->touched[q].body[k]);
+            for (int j = 0; j < width; j++) here[q][width * k + j] = v[j] - since[q][width * k + j];
+        }
+    post(t, width, b->touched, here, b->pushed, there);
+    for (int q = 0; q < t->n; q++)
+        for (int64_t k = 0; k < b->pushed[q].n; k++) {
+            double *v = at(arg, b->pushed[q].body[k]);
+            for (int j = 0; j < width; j++) v[j] += there[q][width * k + j];
+        }
+    for (int q = 0; q < t->n; q++)
+        for (int64_t k = 0; k < b->pushed[q].n; k++)
+            memcpy(there[q] + width * k, at(arg, b->pushed[q].body[k]), size);
+    post(t, width, b->pushed, there, b->touched, here);
+    for (int q = 0; q < t->n; q++)
+        for (int64_t k = 0; k < b->touched[q].n; k++)
+            memcpy(at(arg, b->touched[q].body[k]), here[q] + width * k, size);
+    letters_free(t, here), letters_free(t, there);
+    remember(b, width, at, arg, since);
+}
+
+static void settle(struct shared *s, struct problem *p)
+{
+    add_up(of(s), TWIST, twist_of, p, of(s)->since);
+}
+
+static void after_group(struct shared *s, struct problem *p, int64_t group)
+{
+    if (group == of(s)->groups - 1) settle(s, p);
+}
+
+static void begin(struct shared *s, struct problem *p)
+{
+    remember(of(s), TWIST, twist_of, p, of(s)->since);
+}
+
+static void brake_set(struct problem *p, const struct braked *b, bool on)
+{
+    struct bundle *c = slot_bundle(p, b->slot);
+    int k = slot_lane(b->slot);
+    double f = on ? b->factor : 1;
+    for (int j = 0; j < 2; j++) c->w[j][k] = f * b->w[j], c->iw[j][k] = b->iw[j] / f;
+    c->rho[k] = b->rho / f;
+    for (int j = 0; j < 9 && p->lever; j++) c->W[j][k] = f * b->W[j];
+}
+
+static void judging(struct shared *s, struct problem *p, bool begins)
+{
+    struct blocks *b = of(s);
+    for (int64_t i = 0; i < b->brakes; i++) brake_set(p, &b->brake[i], !begins);
+}
+
+static void add(struct shared *s, double *x, int n)
+{
+    struct talk *t = of(s)->part->talk;
+    double *all = talk_new(t, (int64_t)n * t->n, sizeof *all), since = talk_busy();
+    MPI_Allgather(x, n, MPI_DOUBLE, all, n, MPI_DOUBLE, t->comm);
+    t->waited += talk_busy() - since;
+    for (int j = 0; j < n; j++) x[j] = 0;
+    for (int q = 0; q < t->n; q++)
+        for (int j = 0; j < n; j++) x[j] += all[q * n + j];
+    free(all);
+}
+
+static double sum_along(struct shared *s, const struct problem *p, const double *term)
+{
+    double sum = 0;
+    for (int64_t i = 0; i < p->slots; i++) sum += p->contact[i] >= 0 ? term[i] : 0;
+    add(s, &sum, 1);
+    return sum;
+}
+
+static double most(struct shared *s, double x)
+{
+    return talk_most(of(s)->part->talk, x);
+}
+
+static int64_t count(struct shared *s, int64_t n)
+{
+    return talk_sum(of(s)->part->talk, n);
+}
+
+static double agree(struct shared *s, double x)
+{
+    MPI_Bcast(&x, 1, MPI_DOUBLE, 0, of(s)->part->talk->comm);
+    return x;
+}
+
+static void fail(struct shared *s)
+{
+    talk_fail(of(s)->part->talk, EX_SOFTWARE, "no memory to solve the contacts");
+}
+
+/* ---- the borders ---- */
+
+/* touched[] of what the contacts push; pushed[] as the others tell */
+static void find_borders(struct blocks *b, const struct contacts *s)
+{
+    const struct part *y = b->part;
+    struct talk *t = y->talk;
+    struct parcel *out = parcels_new(t), *in = parcels_new(t);
+    bool *is = talk_new(t, y->p.n, sizeof *is);
+    for (int64_t i = 0; i < s->n; i++) {
+        int32_t a = s->c[i].a;
+        if (a >= 0 && y->owner[a] != t->me && y->p.mass[a] > 0) is[a] = true;
+    }
+    b->touched = talk_new(t, t->n, sizeof *b->touched);
+    b->pushed = talk_new(t, t->n, sizeof *b->pushed);
+    b->since = talk_new(t, t->n, sizeof *b->since);
+    for (int q = 0; q < t->n; q++) {
+        struct border *to = &b->touched[q];
+        to->body = talk_new(t, y->here[q].n, sizeof *to->body);
+        for (int64_t k = 0; k < y->here[q].n; k++) {
+            int32_t body = y->here[q].body[k];
+            if (!is[body]) continue;
+            int32_t place = (int32_t)k; // among those that the owner has lent
+            to->body[to->n++] = body;
+            parcel_put(t, &out[q], &place, sizeof place);
+        }
+        b->since[q] = talk_new(t, TWIST * to->n, sizeof **b->since);
+    }
+    free(is);
+    talk_exchange(t, out, in);
+    for (int q = 0; q < t->n; q++) {
+        struct border *from = &b->pushed[q];
+        int64_t n = (int64_t)(in[q].size / sizeof(int32_t));
+        from->body = talk_new(t, n, sizeof *from->body);
+        for (; from->n < n; from->n++) {
+            int32_t place;
+            parcel_take(t, &in[q], &place, sizeof place);
+            if (place < 0 || place >= y->lent[q].n)
+                talk_fail(t, EX_SOFTWARE, "ranks disagree about a border");
+            from->body[from->n] = y->lent[q].body[place];
+        }
+    }
+    parcels_free(t, out), parcels_free(t, in);
+}
+
+void blocks_begin(struct blocks *b, struct part *y, const struct contacts *s, enum order order)
+{
+    struct talk *t = y->talk;
+    *b = (struct blocks){ .part = y };
+    b->shared = (struct shared){ .after_group = after_group,
+                                 .begin = begin,
+                                 .settle = settle,
+                                 .judging = judging,
+                                 .add = add,
+                                 .sum_along = sum_along,
+                                 .most = most,
+                                 .count = count,
+                                 .agree = agree,
+                                 .fail = fail };
+    find_borders(b, s);
+    if (schedule_bodies(&b->plan, order, s, &y->p))
+        talk_fail(t, EX_SOFTWARE, "no memory for the order of the contacts");
+    b->plan.beyond = b->plan.inside = b->plan.rim = b->plan.rest =
+        0;                 // a rank's threads share groups
+    if (!b->plan.groups) { // one without a contact, in which the exchange is made all the same
+        free(b->plan.group);
+        b->plan.group = talk_new(t, 2, sizeof *b->plan.group), b->plan.groups = 1;
+    }
+    b->groups = b->plan.groups;
+    int64_t bundles = 0;
+    for (int64_t g = 0; g < b->groups; g++)
+        bundles += (b->plan.group[g + 1] - b->plan.group[g] + BUNDLE - 1) / BUNDLE;
+    b->shared.contacts = talk_sum(t, s->n), b->shared.bundles = talk_sum(t, bundles);
+}
+
+/* ranks[n]: how many ranks push each body at once */
+static int32_t *count_ranks(const struct blocks *b)
+{
+    const struct part *y = b->part;
+    struct talk *t = y->talk;
+    int32_t *ranks = talk_new(t, y->p.n, sizeof *ranks);
+    struct parcel *out = parcels_new(t), *in = parcels_new(t);
+    for (int64_t i = 0; i < y->p.n; i++) ranks[i] = 1;
+    for (int q = 0; q < t->n; q++)
+        for (int64_t k = 0; k < b->pushed[q].n; k++) ranks[b->pushed[q].body[k]]++;
+    for (int q = 0; q < t->n; q++)
+        for (int64_t k = 0; k < b->pushed[q].n; k++)
+            parcel_put(t, &out[q], &ranks[b->pushed[q].body[k]], sizeof *ranks);
+    talk_exchange(t, out, in);
+    for (int q = 0; q < t->n; q++)
+        for (int64_t k = 0; k < b->touched[q].n; k++)
+            parcel_take(t, &in[q], &ranks[b->touched[q].body[k]], sizeof *ranks);
+    parcels_free(t, out), parcels_free(t, in);
+    return ranks;
+}
+
+void blocks_brake(struct blocks *b, struct problem *p, const struct contacts *s)
+{
+    int32_t *ranks = count_ranks(b);
+    b->brake = talk_new(b->part->talk, s->n, sizeof *b->brake);
+    b->slower = talk_new(b->part->talk, s->n, sizeof *b->slower);
+    for (int64_t i = 0; i < s->n; i++) b->slower[i] = 1;
+    for (int64_t i = 0; i < p->slots; i++) {
+        if (p->contact[i] < 0) continue;
+        const struct contact *c = &s->c[p->contact[i]];
+        int32_t k = ranks[c->b];
+        if (c->a >= 0 && ranks[c->a] > k) k = ranks[c->a];
+        if (k < 2) continue;
+        struct braked *x = &b->brake[b->brakes++];
+        b->slower[p->contact[i]] = k;
+        const struct bundle *from = slot_bundle(p, i);
+        int lane = slot_lane(i);
+        *x = (struct braked){ .slot = i, .factor = k, .rho = from->rho[lane] };
+        for (int j = 0; j < 2; j++) x->w[j] = from->w[j][lane], x->iw[j] = from->iw[j][lane];
+        for (int j = 0; j < 9 && p->lever; j++) x->W[j] = from->W[j][lane];
+        brake_set(p, x, true);
+    }
+    free(ranks);
+}
+
+/* ---- the motion ---- */
+
+static double *impulse_of(void *impulses, int32_t body)
+{
+    const struct impulses *sum = impulses;
+    return &sum->force[body].x;
+}
+
+static double *moment_of(void *impulses, int32_t body)
+{
+    const struct impulses *sum = impulses;
+    return &sum->moment[body].x;
+}
+
+static double *vector_of(void *vectors, int32_t body)
+{
+    vec3 *v = vectors;
+    return &v[body].x;
+}
+
+/* Displacements that are being sought */
+struct apart {
+    struct blocks *b;
+    double **since; /* those of copies after the last exchange */
+};
+
+static bool in_any(void *with, bool here)
+{
+    const struct apart *a = with;
+    return talk_most(a->b->part->talk, here) > 0;
+}
+
+static bool after_sweep(void *with, vec3 *d, bool more)
+{
+    struct apart *a = with;
+    add_up(a->b, 3, vector_of, d, a->since);
+    return in_any(with, more);
+}
+
+static void move_apart(struct blocks *b, const struct contacts *s)
+{
+    struct talk *t = b->part->talk;
+    struct why why = { 0 };
+    struct apart a = { b, letters(t, b->touched, 3) };
+    const struct project_share share = { &a, b->slower, in_any, after_sweep };
+    if (project_shared(&b->part->p, s, &share, &why)) talk_fail(t, why.status, why.text);
+    letters_free(t, a.since);
+}
+
+void blocks_move(struct blocks *b, const struct contacts *s)
+{
+    struct talk *t = b->part->talk;
+    struct packing *p = &b->part->p;
+    struct why why = { 0 };
+    struct impulses sum;
+    double **none = letters(t, b->touched, 3); // since nothing was pushed
+    const enum overlap overlap = p->overlap;
+    if (impulses_init(&sum, p, s, false, &why)) talk_fail(t, why.status, why.text);
+    add_up(b, 3, impulse_of, &sum, none);
+    letters_free(t, none), none = letters(t, b->touched, 3);
+    add_up(b, 3, moment_of, &sum, none);
+    letters_free(t, none);
+    p->overlap = OVERLAP_KEEP;
+    if (move_by(p, s, &sum, &why)) talk_fail(t, why.status, why.text);
+    p->overlap = overlap;
+    impulses_free(&sum);
+    part_refresh(b->part);
+    if (!overlap_projects(overlap)) return;
+    move_apart(b, s);
+    part_refresh(b->part);
+}
+
+static void borders_free(const struct talk *t, struct border *b)
+{
+    for (int q = 0; b && q < t->n; q++) free(b[q].body);
+    free(b);
+}
+
+void blocks_free(struct blocks *b)
+{
+    const struct talk *t = b->part->talk;
+    borders_free(t, b->touched), borders_free(t, b->pushed);
+    letters_free(t, b->since);
+    free(b->brake), free(b->slower);
+    schedule_free(&b->plan);
+    *b = (struct blocks){ 0 };
+}

@@ -1,0 +1,215 @@
+/* ranks/colours.c: the order of all contacts, walked by all ranks [ranks/colours.h]. */
+#include "ranks/colours.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { PARTS = 3, COPIES = 1, QUIET = 2 }; /* of a group, and two of them; 0: what is told of */
+
+/* ---- what solvers ask ---- */
+
+static struct colours *of(struct shared *s)
+{
+    return (struct colours *)s;
+}
+
+static void after_group(struct shared *s, struct problem *p, int64_t group)
+{
+    struct colours *c = of(s);
+    if (group % PARTS == COPIES) wires_send(&c->wires, p, group / PARTS);
+    if (group % PARTS == QUIET) wires_wait(&c->wires, p, group / PARTS);
+}
+
+static void begin(struct shared *s, struct problem *p)
+{
+    (void)s, (void)p;
+}
+
+static void settle(struct shared *s, struct problem *p)
+{
+    wires_refresh(of(s)->part, p);
+}
+
+static void judging(struct shared *s, struct problem *p, bool begins)
+{
+    (void)s, (void)p, (void)begins;
+}
+
+static const struct tally_order *tally(struct colours *c, const struct problem *p)
+{
+    if (!c->tallied) tally_begin(&c->tally, c->part->talk, p, c->slot, c->shared.bundles);
+    c->tallied = true;
+    return &c->tally;
+}
+
+static void sum(struct shared *s, const struct problem *p, int64_t chunk, int parts, int terms,
+                const double *term, double *out)
+{
+    struct colours *c = of(s);
+    tally_sum(tally(c, p), c->part->talk, s->bundles, chunk, parts, terms, term, out);
+}
+
+static double sum_along(struct shared *s, const struct problem *p, const double *term)
+{
+    struct colours *c = of(s);
+    return tally_along(tally(c, p), c->part->talk, s->bundles, term);
+}
+
+static double most(struct shared *s, double x)
+{
+    return talk_most(of(s)->part->talk, x);
+}
+
+static int64_t count(struct shared *s, int64_t n)
+{
+    return talk_sum(of(s)->part->talk, n);
+}
+
+static double agree(struct shared *s, double x)
+{
+    MPI_Bcast(&x, 1, MPI_DOUBLE, 0, of(s)->part->talk->comm);
+    return x;
+}
+
+static void fail(struct shared *s)
+{
+    talk_fail(of(s)->part->talk, EX_SOFTWARE, "no memory to solve the contacts");
+}
+
+/* ---- the order ---- */
+
+/* other[first[i]] .. other[first[i + 1] - 1]: the ranks that have copies of body i */
+struct holders {
+    int64_t *first;
+    int32_t *rank;
+};
+
+static void holders_find(struct holders *h, const struct part *y)
+{
+    const struct talk *t = y->talk;
+    h->first = talk_new(t, y->p.n + 1, sizeof *h->first);
+    for (int q = 0; q < t->n; q++)
+        for (int64_t k = 0; k < y->lent[q].n; k++) h->first[y->lent[q].body[k] + 2]++;
+    for (int64_t i = 0; i <= y->p.n; i++) h->first[i + 1] += h->first[i];
+    // first[i + 1] is where the next rank of body i goes, and in the end where body i + 1 begins
+    h->rank = talk_new(t, h->first[y->p.n + 1], sizeof *h->rank);
+    for (int q = 0; q < t->n; q++)
+        for (int64_t k = 0; k < y->lent[q].n; k++) h->rank[h->first[y->lent[q].body[k] + 1]++] = q;
+}
+
+/* Body i (own, and moving) of a contact whose other body is `other` (< 0: a boundary): who must be told of
+   what this contact makes of it? Returns how many. */
+static int told(const struct part *y, const struct holders *h, int32_t i, int32_t other,
+                int32_t *rank)
+{
+    int n = 0;
+    if (i < 0 || y->owner[i] != y->talk->me || !(y->p.mass[i] > 0)) return 0;
+    for (int64_t k = h->first[i]; k < h->first[i + 1]; k++)
+        if (other < 0 || y->owner[other] != h->rank[k]) rank[n++] = h->rank[k];
+    return n;
+}
+
+/* A contact's place in the walk */
+struct stop {
+    int64_t group, slot, contact;
+};
+
+static int by_walk(const void *a, const void *b)
+{
+    const struct stop *x = a, *y = b;
+    if (x->group != y->group) return x->group < y->group ? -1 : 1;
+    return x->slot < y->slot ? -1 : x->slot > y->slot;
+}
+
+static void lay_plan(struct colours *c, const struct talk *t, int64_t groups, int64_t n,
+                     struct stop *stop)
+{
+    struct schedule *plan = &c->plan;
+    int64_t bundles = 0;
+    qsort(stop, (size_t)n, sizeof *stop, by_walk);
+    plan->groups = PARTS * groups;
+    plan->sequence = talk_new(t, n, sizeof *plan->sequence);
+    plan->group = talk_new(t, plan->groups + 1, sizeof *plan->group);
+    for (int64_t i = 0; i < n; i++) {
+        plan->sequence[i] = stop[i].contact;
+        plan->group[stop[i].group + 1]++;
+    }
+    c->shared.copies = talk_new(t, 2 * groups, sizeof *c->shared.copies);
+    for (int64_t g = 0; g < plan->groups; g++) {
+        int64_t more = (plan->group[g + 1] + BUNDLE - 1) / BUNDLE;
+        if (g % PARTS == COPIES && more) {
+            c->shared.copies[2 * c->shared.n_copies] = bundles;
+            c->shared.copies[2 * c->shared.n_copies++ + 1] = bundles + more;
+        }
+        bundles += more;
+        plan->group[g + 1] += plan->group[g];
+    }
+}
+
+static int by_errand(const void *a, const void *b)
+{
+    const struct errand *x = a, *y = b;
+    if (x->rank != y->rank) return x->rank < y->rank ? -1 : 1;
+    if (x->group != y->group) return x->group < y->group ? -1 : 1;
+    return x->body < y->body ? -1 : x->body > y->body;
+}
+
+void colours_begin(struct colours *c, struct part *y, const struct contacts *s,
+                   const struct verdict *verdict, int64_t groups, int64_t bundles)
+{
+    struct talk *t = y->talk;
+    struct holders h;
+    int64_t errands = 0, room = 0;
+    struct errand *errand = NULL;
+    int32_t *rank = talk_new(t, t->n, sizeof *rank);
+    struct stop *stop = talk_new(t, s->n, sizeof *stop);
+    *c = (struct colours){ .part = y };
+    c->shared = (struct shared){ .bundles = bundles,
+                                 .may_want = true,
+                                 .after_group = after_group,
+                                 .begin = begin,
+                                 .settle = settle,
+                                 .judging = judging,
+                                 .sum = sum,
+                                 .sum_along = sum_along,
+                                 .most = most,
+                                 .count = count,
+                                 .agree = agree,
+                                 .fail = fail };
+    c->slot = talk_new(t, s->n, sizeof *c->slot);
+    holders_find(&h, y);
+    for (int64_t i = 0; i < s->n; i++) {
+        const struct contact *k = &s->c[i];
+        const int32_t body[2] = { k->b, k->a };
+        bool mine = part_counts(y, k), tells = false;
+        for (int j = 0; j < 2; j++) {
+            int n = told(y, &h, body[j], body[1 - j], rank);
+            tells = tells || n;
+            if (errands + n > room) {
+                room = 2 * room + n + 256;
+                errand = realloc(errand, (size_t)room * sizeof *errand);
+                if (!errand) talk_fail(t, EX_SOFTWARE, "no memory for the borders");
+            }
+            for (int m = 0; m < n; m++)
+                errand[errands++] = (struct errand){ verdict[i].group, rank[m], body[j] };
+        }
+        int in = !mine ? COPIES : tells ? 0 : QUIET;
+        stop[i] = (struct stop){ PARTS * verdict[i].group + in, verdict[i].slot, i };
+        c->slot[i] = mine ? verdict[i].slot : -1;
+    }
+    free(h.first), free(h.rank), free(rank);
+    lay_plan(c, t, groups, s->n, stop);
+    free(stop);
+    if (errands) qsort(errand, (size_t)errands, sizeof *errand, by_errand);
+    wires_lay(&c->wires, y, groups, errands, errand);
+    free(errand);
+}
+
+void colours_free(struct colours *c)
+{
+    wires_free(&c->wires);
+    if (c->tallied) tally_free(&c->tally);
+    free(c->slot), free(c->shared.copies);
+    schedule_free(&c->plan);
+    *c = (struct colours){ 0 };
+}

@@ -1,0 +1,369 @@
+/* ranks/part.c: bodies dealt, and what is told of them [ranks/part.h]. */
+#include "ranks/part.h"
+
+#include "ranks/settings.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* What a margin is: so many steps of the fastest body, within these numbers of mean radii */
+#define STEPS_AHEAD  16
+#define MARGIN_LEAST 0.05
+#define MARGIN_MOST  0.5
+
+/* A body on its way */
+struct traveller {
+    double radius, mass, inertia;
+    vec3 x, v, w;
+    quat q;
+    int32_t row, owner, id, kind, shape, load, image[3], unused;
+};
+
+/* Where a body is and how it moves */
+struct state {
+    vec3 x, v, w;
+    quat q;
+    int32_t image[3], unused;
+};
+
+static void fail(const struct part *y, const struct why *why)
+{
+    talk_fail(y->talk, why->status, why->text);
+}
+
+static struct traveller traveller_of(const struct packing *p, int64_t i, int32_t row, int32_t owner,
+                                     int32_t load)
+{
+    struct traveller b;
+    memset(&b, 0, sizeof b);
+    b.radius = p->radius[i], b.mass = p->mass[i], b.inertia = p->inertia[i];
+    b.x = p->x[i], b.v = p->v[i], b.w = p->w[i], b.q = p->q[i];
+    b.row = row, b.owner = owner, b.id = p->id[i], b.kind = p->kind[i];
+    b.shape = p->shape ? p->shape[i] : 0, b.load = load;
+    for (int k = 0; k < 3 && p->image; k++) b.image[k] = p->image[i][k];
+    return b;
+}
+
+static struct state state_of(const struct packing *p, int64_t i)
+{
+    struct state s;
+    memset(&s, 0, sizeof s);
+    s.x = p->x[i], s.v = p->v[i], s.w = p->w[i], s.q = p->q[i];
+    for (int k = 0; k < 3 && p->image; k++) s.image[k] = p->image[i][k];
+    return s;
+}
+
+static void set_state(struct packing *p, int64_t i, const struct state *s)
+{
+    p->x[i] = s->x, p->v[i] = s->v, p->w[i] = s->w, p->q[i] = s->q;
+    for (int k = 0; k < 3 && p->image; k++) p->image[i][k] = s->image[k];
+}
+
+static void borders_free(const struct part *y, struct border *b)
+{
+    for (int q = 0; b && q < y->talk->n; q++) free(b[q].body);
+    free(b);
+}
+
+/* Room for n bodies, none of them set */
+static void resize(struct part *y, int64_t n)
+{
+    struct why why = { 0 };
+    struct packing *p = &y->p;
+    if (packing_resize(p, n, &why)) fail(y, &why);
+    if (p->image && packing_alloc_images(p, &why)) fail(y, &why);
+    free(y->row), free(y->owner), free(y->dealt), free(y->load);
+    y->row = talk_new(y->talk, n, sizeof *y->row),
+    y->owner = talk_new(y->talk, n, sizeof *y->owner);
+    y->dealt = talk_new(y->talk, n, sizeof *y->dealt),
+    y->load = talk_new(y->talk, n, sizeof *y->load);
+}
+
+static void set_body(struct part *y, int64_t i, const struct traveller *b)
+{
+    struct packing *p = &y->p;
+    p->radius[i] = b->radius, p->mass[i] = b->mass, p->inertia[i] = b->inertia;
+    p->x[i] = b->x, p->v[i] = b->v, p->w[i] = b->w, p->q[i] = b->q;
+    p->id[i] = b->id, p->kind[i] = b->kind;
+    if (p->shape) p->shape[i] = b->shape;
+    for (int k = 0; k < 3 && p->image; k++) p->image[i][k] = b->image[k];
+    y->row[i] = b->row, y->owner[i] = b->owner, y->load[i] = b->load;
+    y->dealt[i] = b->x;
+}
+
+/* At first the first rank owns all bodies. */
+static void take_all(struct part *y, const struct packing *whole)
+{
+    int64_t n = y->talk->me ? 0 : whole->n;
+    y->all = talk_sum(y->talk, n);
+    resize(y, n);
+    for (int64_t i = 0; i < n; i++) {
+        struct traveller b = traveller_of(whole, i, (int32_t)i, 0, 0);
+        set_body(y, i, &b);
+    }
+    y->own = n;
+    y->margin = -1; // they are to be dealt
+}
+
+void part_begin(struct part *y, struct talk *t, const struct packing *whole)
+{
+    struct why why = { 0 };
+    *y = (struct part){ .talk = t, .territory = territory_new(t) };
+    if (!t->me) {
+        struct packing none = *whole;
+        none.n = 0, none.events.n = 0, none.bonds.n = 0;
+        if (packing_copy(&y->p, &none, &why)) fail(y, &why);
+    }
+    settings_spread(t, &y->p);
+    y->p.whole = &y->whole;
+    take_all(y, whole);
+    part_recut(y);
+}
+
+void part_begin_again(struct part *y, const struct packing *whole)
+{
+    take_all(y, whole);
+}
+
+void part_free(struct part *y)
+{
+    borders_free(y, y->lent), borders_free(y, y->here);
+    free(y->row), free(y->owner), free(y->dealt), free(y->load);
+    packing_free(&y->p);
+    territory_free(y->territory);
+    *y = (struct part){ 0 };
+}
+
+void part_measure(struct part *y)
+{
+    struct packing *p = &y->p;
+    p->whole = NULL;
+    struct whole w = packing_whole(p);
+    double most[5] = { w.speed, w.top_speed, -w.small, w.large, w.apart }, all[5];
+    MPI_Allreduce(most, all, 5, MPI_DOUBLE, MPI_MAX, y->talk->comm);
+    y->whole = (struct whole){ all[0], all[1], -all[2], all[3], all[4] };
+    p->whole = &y->whole;
+}
+
+double part_imbalance(struct part *y, const struct contacts *s)
+{
+    memset(y->load, 0, (size_t)y->p.n * sizeof *y->load);
+    int64_t mine = 0;
+    for (int64_t i = 0; i < s->n; i++) {
+        y->load[s->c[i].b]++;
+        if (s->c[i].a >= 0) y->load[s->c[i].a]++;
+        mine += part_counts(y, &s->c[i]);
+    }
+    double most = talk_most(y->talk, (double)mine);
+    int64_t all = talk_sum(y->talk, mine);
+    return all ? most * y->talk->n / (double)all : 1;
+}
+
+void part_recut(struct part *y)
+{
+    int64_t n = 0;
+    vec3 *x = talk_new(y->talk, y->own, sizeof *x);
+    float *weight = talk_new(y->talk, y->own, sizeof *weight);
+    for (int64_t i = 0; i < y->p.n; i++)
+        if (y->owner[i] == y->talk->me)
+            x[n] = y->p.x[i], weight[n++] = 1 + 0.5f * (float)y->load[i];
+    territory_cut(y->territory, n, x, weight);
+    free(x), free(weight);
+    y->margin = -1, y->cuts++;
+}
+
+/* ---- dealing ---- */
+
+/* Has any own body gone further than half the margin, at the predicted position? */
+static bool is_due(const struct part *y)
+{
+    bool due = y->margin < 0;
+    for (int k = 0; k < 3; k++) due = due || (y->p.cell.repeats[k] && cell_moves(&y->p.cell, k));
+    for (int64_t i = 0; i < y->p.n && !due; i++) {
+        vec3 d = v3_sub(packing_predict(&y->p, i), y->dealt[i]);
+        due = y->owner[i] == y->talk->me && !(v3_norm(d) <= 0.49 * y->margin);
+    }
+    return talk_most(y->talk, due) > 0;
+}
+
+/* The ranks that have a copy of a body which is at x, and those of its images: mark[] is set. */
+static void mark_ranks(const struct part *y, const vec3 x, double half, int *met, bool *mark)
+{
+    const struct cell *c = &y->p.cell;
+    int most[3];
+    for (int k = 0; k < 3; k++) most[k] = c->repeats[k] ? 1 : 0;
+    for (int i = -most[0]; i <= most[0]; i++)
+        for (int j = -most[1]; j <= most[1]; j++)
+            for (int k = -most[2]; k <= most[2]; k++) {
+                const int8_t shift[3] = { (int8_t)i, (int8_t)j, (int8_t)k };
+                vec3 at = v3_add(x, cell_shift(c->edge, shift)), d = v3(half, half, half);
+                int n = territory_meets(y->territory, v3_sub(at, d), v3_add(at, d), met);
+                for (int m = 0; m < n; m++) mark[met[m]] = true;
+            }
+}
+
+static int by_row(const void *a, const void *b)
+{
+    const struct traveller *x = a, *y = b;
+    return x->row < y->row ? -1 : x->row > y->row;
+}
+
+/* The lists of bodies that are here and elsewhere: a copy's rank tells the owner. */
+static void find_borders(struct part *y)
+{
+    struct talk *t = y->talk;
+    struct parcel *out = parcels_new(t), *in = parcels_new(t);
+    borders_free(y, y->lent), borders_free(y, y->here);
+    y->lent = talk_new(t, t->n, sizeof *y->lent), y->here = talk_new(t, t->n, sizeof *y->here);
+    for (int64_t i = 0; i < y->p.n; i++)
+        if (y->owner[i] != t->me) y->here[y->owner[i]].n++;
+    for (int q = 0; q < t->n; q++) {
+        y->here[q].body = talk_new(t, y->here[q].n, sizeof *y->here[q].body);
+        y->here[q].n = 0;
+    }
+    for (int64_t i = 0; i < y->p.n; i++) {
+        struct border *b = &y->here[y->owner[i]];
+        if (y->owner[i] == t->me) continue;
+        b->body[b->n++] = (int32_t)i;
+        parcel_put(t, &out[y->owner[i]], &y->row[i], sizeof *y->row);
+    }
+    talk_exchange(t, out, in);
+    for (int q = 0; q < t->n; q++) {
+        struct border *b = &y->lent[q];
+        int64_t at = 0;
+        b->n = (int64_t)(in[q].size / sizeof *y->row);
+        b->body = talk_new(t, b->n, sizeof *b->body);
+        for (int64_t k = 0; k < b->n; k++) { // both lists ascend
+            int32_t row;
+            parcel_take(t, &in[q], &row, sizeof row);
+            while (at < y->p.n && y->row[at] < row) at++;
+            if (at == y->p.n || y->row[at] != row)
+                talk_fail(t, EX_SOFTWARE, "ranks disagree: a copy of a body that is not here");
+            b->body[k] = (int32_t)at;
+        }
+    }
+    parcels_free(t, out), parcels_free(t, in);
+}
+
+static double mean_radius(const struct part *y)
+{
+    double sum = 0, all;
+    for (int64_t i = 0; i < y->p.n; i++) sum += y->owner[i] == y->talk->me ? y->p.radius[i] : 0;
+    MPI_Allreduce(&sum, &all, 1, MPI_DOUBLE, MPI_SUM, y->talk->comm);
+    return y->all ? all / (double)y->all : 0;
+}
+
+/* m: every step must stay within half of it */
+static double choose_margin(const struct part *y)
+{
+    double r = mean_radius(y), step = y->p.dt * y->whole.speed;
+    double m = fmax(fmin(STEPS_AHEAD * step, MARGIN_MOST * r), MARGIN_LEAST * r);
+    return fmax(m, 2.1 * step);
+}
+
+static void send_bodies(struct part *y, double reach, struct parcel *out)
+{
+    struct talk *t = y->talk;
+    int *met = talk_new(t, t->n, sizeof *met);
+    bool *mark = talk_new(t, t->n, sizeof *mark);
+    for (int64_t i = 0; i < y->p.n; i++) {
+        if (y->owner[i] != t->me) continue;
+        int owner = territory_owner(y->territory, y->p.x[i]);
+        memset(mark, 0, (size_t)t->n * sizeof *mark);
+        mark_ranks(y, y->p.x[i], y->p.radius[i] + y->whole.large + reach + y->margin, met, mark);
+        mark[owner] = true;
+        struct traveller b = traveller_of(&y->p, i, y->row[i], owner, y->load[i]);
+        for (int q = 0; q < t->n; q++)
+            if (mark[q]) parcel_put(t, &out[q], &b, sizeof b);
+    }
+    free(met), free(mark);
+}
+
+bool part_deal(struct part *y, double reach)
+{
+    struct talk *t = y->talk;
+    if (!is_due(y)) return false;
+    y->margin = choose_margin(y), y->deals++;
+    struct parcel *out = parcels_new(t), *in = parcels_new(t);
+    send_bodies(y, reach, out);
+    talk_exchange(t, out, in);
+    int64_t n = 0, k = 0;
+    for (int q = 0; q < t->n; q++) n += (int64_t)(in[q].size / sizeof(struct traveller));
+    struct traveller *b = talk_new(t, n, sizeof *b);
+    for (int q = 0; q < t->n; q++)
+        while (in[q].at < in[q].size) parcel_take(t, &in[q], &b[k++], sizeof *b);
+    parcels_free(t, out), parcels_free(t, in);
+    qsort(b, (size_t)n, sizeof *b, by_row);
+    resize(y, n);
+    y->own = 0;
+    for (int64_t i = 0; i < n; i++) {
+        set_body(y, i, &b[i]);
+        y->own += b[i].owner == t->me;
+    }
+    free(b);
+    find_borders(y);
+    return true;
+}
+
+/* ---- places and motion ---- */
+
+void part_follow(struct part *y, const struct packing *whole)
+{
+    struct talk *t = y->talk;
+    struct parcel rows = { 0 }, mine = { 0 }, *in = parcels_new(t), *out = parcels_new(t);
+    parcel_put(t, &rows, y->row, (size_t)y->p.n * sizeof *y->row);
+    talk_gather(t, &rows, in);
+    for (int q = 0; q < t->n && !t->me; q++)
+        while (in[q].at < in[q].size) {
+            int32_t row;
+            parcel_take(t, &in[q], &row, sizeof row);
+            struct state s = state_of(whole, row);
+            parcel_put(t, &out[q], &s, sizeof s);
+        }
+    talk_scatter(t, out, &mine);
+    for (int64_t i = 0; i < y->p.n; i++) {
+        struct state s;
+        parcel_take(t, &mine, &s, sizeof s);
+        set_state(&y->p, i, &s);
+    }
+    parcel_free(&mine), parcels_free(t, in), parcels_free(t, out);
+}
+
+void part_collect(const struct part *y, struct packing *whole)
+{
+    struct talk *t = y->talk;
+    struct parcel mine = { 0 }, *in = parcels_new(t);
+    for (int64_t i = 0; i < y->p.n; i++) {
+        if (y->owner[i] != t->me) continue;
+        struct state s = state_of(&y->p, i);
+        parcel_put(t, &mine, &y->row[i], sizeof *y->row), parcel_put(t, &mine, &s, sizeof s);
+    }
+    talk_gather(t, &mine, in);
+    for (int q = 0; q < t->n && !t->me; q++)
+        while (in[q].at < in[q].size) {
+            int32_t row;
+            struct state s;
+            parcel_take(t, &in[q], &row, sizeof row), parcel_take(t, &in[q], &s, sizeof s);
+            set_state(whole, row, &s);
+        }
+    parcels_free(t, in);
+}
+
+void part_refresh(struct part *y)
+{
+    struct talk *t = y->talk;
+    struct parcel *out = parcels_new(t), *in = parcels_new(t);
+    for (int q = 0; q < t->n; q++)
+        for (int64_t k = 0; k < y->lent[q].n; k++) {
+            struct state s = state_of(&y->p, y->lent[q].body[k]);
+            parcel_put(t, &out[q], &s, sizeof s);
+        }
+    talk_exchange(t, out, in);
+    for (int q = 0; q < t->n; q++)
+        for (int64_t k = 0; k < y->here[q].n; k++) {
+            struct state s;
+            parcel_take(t, &in[q], &s, sizeof s);
+            set_state(&y->p, y->here[q].body[k], &s);
+        }
+    parcels_free(t, out), parcels_free(t, in);
+}

@@ -1,0 +1,72 @@
+/*
+ * ranks/part.h: what a rank has of a packing: the bodies in its territory, which it owns, and copies of those
+ * of others that may meet them. Bodies lie in the order of their rows in the whole packing, so that contacts
+ * are found in the order in which one process would find them.
+ */
+#ifndef NSD_PART_H
+#define NSD_PART_H
+
+#include "bodies/contact.h"
+#include "bodies/packing.h"
+#include "ranks/territory.h"
+
+/* Bodies that are here and at another rank too, in the order of rows */
+struct border {
+    int64_t n;
+    int32_t *body; /* [n] of this rank's packing */
+};
+
+struct part {
+    struct talk *talk;
+    struct territory *territory;
+    struct packing p; /* own bodies and copies */
+    int64_t all;      /* bodies of the whole */
+    int64_t own;
+    int32_t *row;        /* [p.n] in the whole, ascending */
+    int32_t *owner;      /* [p.n] rank */
+    struct border *lent; /* [ranks] own bodies that rank q has copies of */
+    struct border *here; /* [ranks] copies of bodies of rank q */
+    double margin; /* m: that bodies may come nearer to each other before they are dealt again */
+    vec3 *dealt;   /* [p.n] m: where they were when they were dealt */
+    int32_t *load; /* [p.n] contacts of a body when they were last counted */
+    struct whole whole; /* p.whole */
+    int64_t deals;      /* how often bodies were dealt, and cut anew */
+    int64_t cuts;
+};
+
+/* The first rank's packing becomes parts: its bodies are copied from it, and it stays as it is. Those of the
+   others are not looked at. Collective, as all that follows. */
+void part_begin(struct part *y, struct talk *t, const struct packing *whole);
+void part_free(struct part *y);
+/* The same of a packing that has other bodies than before */
+void part_begin_again(struct part *y, const struct packing *whole);
+
+/* y->whole of all, anew */
+void part_measure(struct part *y);
+/* Deals the bodies so that every pair with a gap of at most `reach` (m) at the predicted positions meets in
+   the owners of both, now and until bodies have gone half the margin. Returns whether it had to. */
+bool part_deal(struct part *y, double reach);
+
+/* Own bodies' contacts per rank, the largest over the mean: 1 is balanced. Notes them for the next cut. */
+double part_imbalance(struct part *y, const struct contacts *s);
+/* New cuts, by what was noted; bodies are dealt at the next part_deal(). */
+void part_recut(struct part *y);
+
+/* Where bodies are and how they move, of the first rank's whole packing; and the same back */
+void part_follow(struct part *y, const struct packing *whole);
+void part_collect(const struct part *y, struct packing *whole);
+/* Copies become what the bodies are: their places and motion. */
+void part_refresh(struct part *y);
+
+/* Whose is the contact of this rank's packing? That of b counts it. */
+static inline bool part_counts(const struct part *y, const struct contact *c)
+{
+    return y->owner[c->b] == y->talk->me;
+}
+/* Has this rank a body in it? */
+static inline bool part_has(const struct part *y, const struct contact *c)
+{
+    return part_counts(y, c) || (c->a >= 0 && y->owner[c->a] == y->talk->me);
+}
+
+#endif

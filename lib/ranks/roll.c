@@ -1,0 +1,159 @@
+/* ranks/roll.c: contacts gathered, and verdicts told [ranks/roll.h]. */
+#include "ranks/roll.h"
+
+#include <stdlib.h>
+
+static bool comes_first(const struct contact *a, const struct contact *b)
+{
+    return a->a < b->a || (a->a == b->a && a->b < b->b);
+}
+
+/* Merges what the ranks have sent: contacts of one pair are all of one rank. */
+static void merge(struct roll *l, struct talk *t, struct parcel *in, struct contacts *all)
+{
+    const size_t size = sizeof(struct contact);
+    struct contact **c = talk_new(t, t->n, sizeof *c);
+    int64_t *n = talk_new(t, t->n, sizeof *n);
+    l->n = 0;
+    for (int q = 0; q < t->n; q++) {
+        c[q] = (struct contact *)(void *)in[q].bytes;
+        n[q] = (int64_t)(in[q].size / size), l->n += n[q];
+    }
+    l->whose = talk_new(t, l->n, sizeof *l->whose);
+    free(all->c);
+    all->c = talk_new(t, l->n, size), all->n = l->n, all->room = l->n + 1;
+    for (int64_t i = 0; i < l->n; i++) {
+        int least = -1;
+        for (int q = 0; q < t->n; q++)
+            if (n[q] && (least < 0 || comes_first(c[q], c[least]))) least = q;
+        all->c[i] = *c[least]++, n[least]--, l->whose[i] = least;
+    }
+    free(c), free(n);
+}
+
+void roll_call(struct roll *l, const struct part *y, const struct contacts *s, struct contacts *all)
+{
+    struct talk *t = y->talk;
+    struct parcel mine = { 0 }, *in = parcels_new(t);
+    for (int64_t i = 0; i < s->n; i++) {
+        struct contact c = s->c[i];
+        if (!part_counts(y, &c)) continue;
+        c.b = y->row[c.b];
+        if (c.a >= 0) c.a = y->row[c.a];
+        parcel_put(t, &mine, &c, sizeof c);
+    }
+    *l = (struct roll){ 0 };
+    talk_gather(t, &mine, in);
+    contacts_free_found(all), contacts_free_tie(all);
+    if (!t->me) merge(l, t, in, all);
+    parcels_free(t, in);
+    MPI_Bcast(&l->n, 1, MPI_INT64_T, 0, t->comm);
+}
+
+void roll_free(struct roll *l)
+{
+    free(l->whose);
+    *l = (struct roll){ 0 };
+}
+
+/* Does another rank have the contact too, which this one counts? Which: the owner of a */
+static int other_rank(const struct part *y, const struct contact *c)
+{
+    return c->a >= 0 && y->owner[c->a] != y->talk->me ? y->owner[c->a] : -1;
+}
+
+/*
+ * Records of `size` bytes: of[l->n] at the first, to[s->n] here. From those who count a contact they go on to
+ * those who have it too; both have their common contacts in the same order.
+ */
+static void tell(const struct roll *l, const struct part *y, const struct contacts *s,
+                 const void *of, void *to, size_t size)
+{
+    struct talk *t = y->talk;
+    struct parcel *out = parcels_new(t), *in = parcels_new(t), mine = { 0 };
+    for (int64_t i = 0; i < l->n && !t->me; i++)
+        parcel_put(t, &out[l->whose[i]], (const char *)of + (size_t)i * size, size);
+    talk_scatter(t, out, &mine);
+    for (int64_t i = 0; i < s->n; i++) {
+        char *x = (char *)to + (size_t)i * size;
+        int q = other_rank(y, &s->c[i]);
+        if (!part_counts(y, &s->c[i])) continue;
+        parcel_take(t, &mine, x, size);
+        if (q >= 0) parcel_put(t, &out[q], x, size);
+    }
+    parcel_free(&mine);
+    talk_exchange(t, out, in);
+    for (int64_t i = 0; i < s->n; i++)
+        if (!part_counts(y, &s->c[i]))
+            parcel_take(t, &in[y->owner[s->c[i].b]], (char *)to + (size_t)i * size, size);
+    for (int q = 0; q < t->n; q++)
+        if (in[q].at != in[q].size) talk_fail(t, EX_SOFTWARE, "ranks disagree about contacts");
+    parcels_free(t, out), parcels_free(t, in);
+}
+
+void roll_tell(const struct roll *l, const struct part *y, const struct contacts *s,
+               const struct verdict *all, struct verdict *mine)
+{
+    tell(l, y, s, all, mine, sizeof *mine);
+    for (int64_t i = 0; i < s->n; i++)
+        if (mine[i].row != y->row[s->c[i].b])
+            talk_fail(y->talk, EX_SOFTWARE, "ranks disagree about a contact");
+}
+
+/* What laws make of a contact, and what it starts from */
+struct law_record {
+    double mu, en, et, r[3], u[3], moment[3];
+    struct tie tie;
+};
+
+void roll_tell_laws(const struct roll *l, const struct part *y, struct contacts *s,
+                    const struct contacts *all)
+{
+    struct talk *t = y->talk;
+    int32_t has[3] = { all->found != NULL, all->moment != NULL, all->tie != NULL };
+    struct law_record *of = talk_new(t, t->me ? 0 : l->n, sizeof *of),
+                      *to = talk_new(t, s->n, sizeof *to);
+    MPI_Bcast(has, 3, MPI_INT32_T, 0, t->comm);
+    for (int64_t i = 0; i < l->n && !t->me; i++) {
+        of[i].mu = all->c[i].mu, of[i].en = all->c[i].en, of[i].et = all->c[i].et;
+        for (int k = 0; k < 3 && has[0]; k++)
+            of[i].r[k] = all->found[i].r[k], of[i].u[k] = all->found[i].u[k];
+        for (int k = 0; k < 3 && has[1]; k++) of[i].moment[k] = all->moment[i][k];
+        if (has[2]) of[i].tie = all->tie[i];
+    }
+    tell(l, y, s, of, to, sizeof *to);
+    if ((has[0] && contacts_alloc_found(s)) || (has[1] && contacts_alloc_moment(s)) ||
+        (has[2] && contacts_alloc_tie(s)))
+        talk_fail(t, EX_SOFTWARE, "no memory for the contacts");
+    for (int64_t i = 0; i < s->n; i++) {
+        s->c[i].mu = to[i].mu, s->c[i].en = to[i].en, s->c[i].et = to[i].et;
+        for (int k = 0; k < 3 && has[0]; k++)
+            s->found[i].r[k] = to[i].r[k], s->found[i].u[k] = to[i].u[k];
+        for (int k = 0; k < 3 && has[1]; k++) s->moment[i][k] = to[i].moment[k];
+        if (has[2]) s->tie[i] = to[i].tie;
+    }
+    free(of), free(to);
+}
+
+void roll_found(const struct roll *l, const struct part *y, const struct contacts *s,
+                struct contacts *all)
+{
+    struct talk *t = y->talk;
+    struct parcel mine = { 0 }, *in = parcels_new(t);
+    const double none[3] = { 0 };
+    int rolls = s->moment != NULL, any;
+    MPI_Allreduce(&rolls, &any, 1, MPI_INT, MPI_MAX, t->comm);
+    for (int64_t i = 0; i < s->n; i++) {
+        if (!part_counts(y, &s->c[i])) continue;
+        parcel_put(t, &mine, &s->found[i], sizeof s->found[i]);
+        if (any) parcel_put(t, &mine, s->moment ? s->moment[i] : none, sizeof none);
+    }
+    talk_gather(t, &mine, in);
+    if (!t->me && (contacts_alloc_found(all) || (any && contacts_alloc_moment(all))))
+        talk_fail(t, EX_SOFTWARE, "no memory for the reactions");
+    for (int64_t i = 0; i < l->n && !t->me; i++) {
+        parcel_take(t, &in[l->whose[i]], &all->found[i], sizeof *all->found);
+        if (any) parcel_take(t, &in[l->whose[i]], all->moment[i], sizeof none);
+    }
+    parcels_free(t, in);
+}

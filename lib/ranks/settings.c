@@ -1,0 +1,203 @@
+/* ranks/settings.c: what a packing has besides its bodies [ranks/settings.h]. */
+#include "ranks/settings.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void put_text(struct talk *t, struct parcel *o, const char *text)
+{
+    parcel_put_array(t, o, text, text ? (int64_t)strlen(text) + 1 : 0, 1);
+}
+
+static char *take_text(struct talk *t, struct parcel *o)
+{
+    char *text;
+    if (parcel_take_array(t, o, &text, 1)) return text;
+    free(text);
+    return NULL;
+}
+
+static void put_drives(struct talk *t, struct parcel *o, const struct drives *d)
+{
+    parcel_put_array(t, o, d->drive, d->n, sizeof *d->drive);
+    parcel_put_array(t, o, d->row, d->rows, sizeof *d->row);
+}
+
+static void take_drives(struct talk *t, struct parcel *o, struct drives *d)
+{
+    drives_free(d);
+    d->n = (int32_t)parcel_take_array(t, o, &d->drive, sizeof *d->drive);
+    d->rows = (int32_t)parcel_take_array(t, o, &d->row, sizeof *d->row);
+}
+
+static void put_shapes(struct talk *t, struct parcel *o, const struct shapes *list)
+{
+    parcel_put(t, o, &list->n, sizeof list->n);
+    for (int32_t k = 1; k < list->n; k++) {
+        const struct shape *s = &list->s[k];
+        const int32_t faces = s->faces, corners = s->corners;
+        put_text(t, o, s->name);
+        parcel_put(t, o, &s->form, sizeof s->form), parcel_put(t, o, &s->round, sizeof s->round);
+        parcel_put(t, o, &s->volume, sizeof s->volume);
+        parcel_put(t, o, s->moment, sizeof s->moment);
+        parcel_put_array(t, o, s->vertex, s->vertices, sizeof *s->vertex);
+        parcel_put_array(t, o, s->ball, s->vertices, sizeof *s->ball);
+        parcel_put_array(t, o, s->first, faces ? faces + 1 : 0, sizeof *s->first);
+        parcel_put_array(t, o, s->corner, corners, sizeof *s->corner);
+    }
+}
+
+static void fail(struct talk *t, const struct why *why)
+{
+    talk_fail(t, why->status, why->text);
+}
+
+static void take_shapes(struct talk *t, struct parcel *o, struct shapes *list, int dim)
+{
+    int32_t n;
+    struct why why = { 0 };
+    shapes_free(list);
+    parcel_take(t, o, &n, sizeof n);
+    for (int32_t k = 1; k < n; k++) {
+        struct shape s = { 0 };
+        s.name = take_text(t, o);
+        parcel_take(t, o, &s.form, sizeof s.form), parcel_take(t, o, &s.round, sizeof s.round);
+        parcel_take(t, o, &s.volume, sizeof s.volume);
+        parcel_take(t, o, s.moment, sizeof s.moment);
+        s.vertices = (int32_t)parcel_take_array(t, o, &s.vertex, sizeof *s.vertex);
+        parcel_take_array(t, o, &s.ball, sizeof *s.ball);
+        s.faces = (int32_t)parcel_take_array(t, o, &s.first, sizeof *s.first);
+        s.faces -= s.faces > 0;
+        s.corners = (int32_t)parcel_take_array(t, o, &s.corner, sizeof *s.corner);
+        const double volume = s.volume, moment[3] = { s.moment[0], s.moment[1], s.moment[2] };
+        if (shape_finish(&s, dim, &why) || shapes_add(list, dim, &s, &why)) fail(t, &why);
+        struct shape *made = &list->s[list->n - 1];
+        made->volume = volume;
+        for (int j = 0; j < 3; j++) made->moment[j] = moment[j];
+    }
+}
+
+static void put_cell(struct talk *t, struct parcel *o, const struct cell *c)
+{
+    parcel_put(t, o, c, sizeof *c);
+    parcel_put_array(t, o, c->gradient, c->gradients, sizeof *c->gradient);
+}
+
+static void take_cell(struct talk *t, struct parcel *o, struct cell *c)
+{
+    cell_free(c);
+    parcel_take(t, o, c, sizeof *c);
+    c->gradients = (int32_t)parcel_take_array(t, o, &c->gradient, sizeof *c->gradient);
+}
+
+/* Numbers that are not pointers */
+struct numbers {
+    int64_t step;
+    double t, dt, theta;
+    vec3 g;
+    uint64_t seed;
+    int32_t dim, overlap, kinds, has_law, has_shape, has_image, pours, removals, first_id;
+};
+
+static void put(struct talk *t, struct parcel *o, const struct packing *p)
+{
+    struct numbers n;
+    int64_t k2 = (int64_t)p->kinds * p->kinds;
+    memset(&n, 0, sizeof n); // its gaps, too: parcels are compared by nobody, but read by valgrind
+    n = (struct numbers){ p->step,
+                          p->t,
+                          p->dt,
+                          p->theta,
+                          p->g,
+                          p->seed,
+                          p->dim,
+                          (int32_t)p->overlap,
+                          p->kinds,
+                          p->law != NULL,
+                          p->shape != NULL,
+                          p->image != NULL,
+                          p->pours,
+                          p->removals,
+                          p->first_id };
+    parcel_put(t, o, &n, sizeof n);
+    parcel_put_array(t, o, p->wall, p->walls, sizeof *p->wall);
+    put_drives(t, o, &p->drives), put_drives(t, o, &p->pushes);
+    parcel_put_array(t, o, p->mesh.vertex, p->mesh.vertices, sizeof *p->mesh.vertex);
+    parcel_put_array(t, o, p->mesh.element, p->mesh.elements, sizeof *p->mesh.element);
+    put_cell(t, o, &p->cell);
+    put_shapes(t, o, &p->shapes);
+    for (int32_t k = 0; k < p->kinds; k++) put_text(t, o, p->kind_name[k]);
+    parcel_put_array(t, o, p->mu, k2, sizeof *p->mu);
+    parcel_put_array(t, o, p->en, k2, sizeof *p->en);
+    parcel_put_array(t, o, p->et, k2, sizeof *p->et);
+    if (p->law) parcel_put_array(t, o, p->law, k2, sizeof *p->law);
+}
+
+static void take(struct talk *t, struct parcel *o, struct packing *p)
+{
+    struct numbers n;
+    struct why why = { 0 };
+    parcel_take(t, o, &n, sizeof n);
+    packing_free(p);
+    if (packing_init(p, n.dim, 0, &why) || packing_alloc_kinds(p, n.kinds, &why)) fail(t, &why);
+    p->step = n.step, p->t = n.t, p->dt = n.dt, p->theta = n.theta, p->g = n.g, p->seed = n.seed;
+    p->overlap = (enum overlap)n.overlap, p->first_id = n.first_id;
+    free(p->wall);
+    p->walls = (int32_t)parcel_take_array(t, o, &p->wall, sizeof *p->wall);
+    take_drives(t, o, &p->drives), take_drives(t, o, &p->pushes);
+    p->mesh.vertices = (int32_t)parcel_take_array(t, o, &p->mesh.vertex, sizeof *p->mesh.vertex);
+    p->mesh.elements = (int32_t)parcel_take_array(t, o, &p->mesh.element, sizeof *p->mesh.element);
+    take_cell(t, o, &p->cell);
+    take_shapes(t, o, &p->shapes, p->dim);
+    for (int32_t k = 0; k < p->kinds; k++) free(p->kind_name[k]), p->kind_name[k] = take_text(t, o);
+    free(p->mu), free(p->en), free(p->et);
+    parcel_take_array(t, o, &p->mu, sizeof *p->mu);
+    parcel_take_array(t, o, &p->en, sizeof *p->en);
+    parcel_take_array(t, o, &p->et, sizeof *p->et);
+    if (n.has_law) parcel_take_array(t, o, &p->law, sizeof *p->law);
+    if (n.has_shape && packing_alloc_shapes(p, &why)) fail(t, &why);
+    if (n.has_image && packing_alloc_images(p, &why)) fail(t, &why);
+}
+
+void settings_spread(struct talk *t, struct packing *p)
+{
+    struct parcel o = { 0 };
+    if (!t->me) put(t, &o, p);
+    talk_spread(t, &o);
+    if (t->me) take(t, &o, p);
+    parcel_free(&o);
+}
+
+void settings_copy_motion(struct packing *to, const struct packing *from)
+{
+    to->step = from->step, to->t = from->t;
+    for (int k = 0; k < 3; k++)
+        to->cell.edge[k] = from->cell.edge[k], to->cell.rate[k] = from->cell.rate[k];
+    to->cell.origin = from->cell.origin;
+    for (int32_t w = 0; w < to->walls && w < from->walls; w++) to->wall[w] = from->wall[w];
+}
+
+void settings_follow(struct talk *t, struct packing *p)
+{
+    struct parcel o = { 0 };
+    struct {
+        int64_t step;
+        double t;
+        vec3 origin, edge[3], rate[3];
+    } now;
+    memset(&now, 0, sizeof now);
+    if (!t->me) {
+        now.step = p->step, now.t = p->t, now.origin = p->cell.origin;
+        for (int k = 0; k < 3; k++) now.edge[k] = p->cell.edge[k], now.rate[k] = p->cell.rate[k];
+        parcel_put(t, &o, &now, sizeof now);
+        parcel_put(t, &o, p->wall, (size_t)p->walls * sizeof *p->wall);
+    }
+    talk_spread(t, &o);
+    if (t->me) {
+        parcel_take(t, &o, &now, sizeof now);
+        p->step = now.step, p->t = now.t, p->cell.origin = now.origin;
+        for (int k = 0; k < 3; k++) p->cell.edge[k] = now.edge[k], p->cell.rate[k] = now.rate[k];
+        parcel_take(t, &o, p->wall, (size_t)p->walls * sizeof *p->wall);
+    }
+    parcel_free(&o);
+}

@@ -1,0 +1,19 @@
+/*
+ * ranks/settings.h: all that a packing has besides its bodies, what they are made of and bounded by, on its
+ * way from the first rank to the others: whole, and what of it changes from step to step.
+ */
+#ifndef NSD_SETTINGS_H
+#define NSD_SETTINGS_H
+
+#include "bodies/packing.h"
+#include "ranks/talk.h"
+
+/* Collective. Of the first rank's packing; in the others *p is made, with no bodies: freed before. */
+void settings_spread(struct talk *t, struct packing *p);
+/* Time, boundaries and edges of the first rank's packing become those of the others', which are otherwise
+   the same. */
+void settings_follow(struct talk *t, struct packing *p);
+/* The same of two packings of one rank */
+void settings_copy_motion(struct packing *to, const struct packing *from);
+
+#endif

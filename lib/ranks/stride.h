@@ -1,0 +1,40 @@
+/*
+ * ranks/stride.h: one time step of all ranks. Each finds the contacts of its own bodies; they are solved by
+ * all, in the order of all (ranks/colours.h) or each rank's own (ranks/blocks.h). The first rank has the
+ * whole packing: it says what order that is, what laws make of the contacts, sums the balances and moves the
+ * bodies.
+ *
+ * What only a process that has all contacts can solve the first one solves alone: loads, other solvers than
+ * auto, nlgs and anderson, and where auto goes on with Newton's method.
+ */
+#ifndef NSD_STRIDE_H
+#define NSD_STRIDE_H
+
+#include "bodies/neighbours.h"
+#include "ranks/part.h"
+#include "solve/step.h"
+
+struct stride {
+    struct part part;
+    struct neighbours near;
+    bool varies;             /* bodies come and go, at the first */
+    int64_t steps, since;    /* steps made; since the last cut */
+    int64_t alone;           /* steps whose contacts the first rank has solved alone */
+    double imbalance, worst; /* in the last step; of all */
+    int64_t sweeps;          /* of the shared solves */
+    double busy
+        [2]; /* s of this processor's time in them, and in all steps, without waiting for others */
+    int64_t solved[2]; /* bytes and messages of these, sent by this rank */
+};
+
+/* Collective. The first rank's packing; in others it is not looked at. */
+void stride_begin(struct stride *y, struct talk *t, const struct packing *whole);
+/* After the first rank's packing has got other bodies */
+void stride_begin_again(struct stride *y, const struct packing *whole);
+/* As step_advance(): whole, s, rep are those of the first rank. Returns 0, or a status at the first, which
+   then has to end the run: the others wait. */
+int stride_step(struct stride *y, struct packing *whole, struct contacts *s,
+                const struct step_opt *o, struct report *rep, struct why *why);
+void stride_free(struct stride *y);
+
+#endif

@@ -1,0 +1,164 @@
+/* ranks/wires.c: velocities between ranks [ranks/wires.h]. */
+#include "ranks/wires.h"
+
+#include "base/why.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    TWIST = 6, /* numbers of a body's velocity */
+    TAG = 8
+};
+
+static struct wire *wire_to(struct wires *w, int rank)
+{
+    for (int k = 0; k < w->n; k++)
+        if (w->wire[k].rank == rank) return &w->wire[k];
+    struct wire *x = &w->wire[w->n++];
+    x->rank = rank;
+    x->go = talk_new(w->talk, w->groups + 1, sizeof *x->go);
+    x->come = talk_new(w->talk, w->groups + 1, sizeof *x->come);
+    return x;
+}
+
+static int64_t largest(const int64_t *first, int64_t groups)
+{
+    int64_t most = 0;
+    for (int64_t g = 0; g < groups; g++)
+        if (first[g + 1] - first[g] > most) most = first[g + 1] - first[g];
+    return most;
+}
+
+/* What comes from a rank: groups and rows, as it has told */
+static void take_list(struct wires *w, const struct part *y, struct parcel *in, int rank)
+{
+    int64_t n = 0;
+    if (!in->size) return;
+    struct wire *x = wire_to(w, rank);
+    int64_t most = (int64_t)(in->size / (sizeof(int64_t) + sizeof(int32_t)));
+    x->come_body = talk_new(w->talk, most, sizeof *x->come_body);
+    while (in->at < in->size) {
+        int64_t g, lo = 0, hi = y->p.n;
+        int32_t row;
+        parcel_take(w->talk, in, &g, sizeof g), parcel_take(w->talk, in, &row, sizeof row);
+        while (lo < hi) {
+            int64_t middle = (lo + hi) / 2;
+            if (y->row[middle] < row)
+                lo = middle + 1;
+            else
+                hi = middle;
+        }
+        if (lo == y->p.n || y->row[lo] != row || g < 0 || g >= w->groups)
+            talk_fail(w->talk, EX_SOFTWARE,
+                      "ranks disagree: a velocity of a body that is not here");
+        x->come_body[n++] = (int32_t)lo, x->come[g + 1]++;
+    }
+}
+
+void wires_lay(struct wires *w, const struct part *y, int64_t groups, int64_t n,
+               const struct errand *errand)
+{
+    struct talk *t = y->talk;
+    struct parcel *out = parcels_new(t), *in = parcels_new(t);
+    *w = (struct wires){ .talk = t, .groups = groups };
+    w->wire = talk_new(t, t->n, sizeof *w->wire);
+    w->request = talk_new(t, 2 * t->n, sizeof *w->request);
+    int64_t *many = talk_new(t, t->n, sizeof *many), *next = talk_new(t, t->n, sizeof *next);
+    for (int64_t i = 0; i < n; i++) many[errand[i].rank]++;
+    for (int64_t i = 0; i < n; i++) {
+        struct wire *x = wire_to(w, errand[i].rank);
+        if (!x->go_body) x->go_body = talk_new(t, many[x->rank], sizeof *x->go_body);
+        x->go_body[next[x->rank]++] = errand[i].body, x->go[errand[i].group + 1]++;
+        parcel_put(t, &out[x->rank], &errand[i].group, sizeof errand->group);
+        parcel_put(t, &out[x->rank], &y->row[errand[i].body], sizeof *y->row);
+    }
+    free(many), free(next);
+    talk_exchange(t, out, in);
+    for (int q = 0; q < t->n; q++) take_list(w, y, &in[q], q);
+    parcels_free(t, out), parcels_free(t, in);
+    for (int k = 0; k < w->n; k++) {
+        struct wire *x = &w->wire[k];
+        for (int64_t g = 0; g < groups; g++) x->go[g + 1] += x->go[g], x->come[g + 1] += x->come[g];
+        x->go_v = talk_new(t, TWIST * largest(x->go, groups), sizeof *x->go_v);
+        x->come_v = talk_new(t, TWIST * largest(x->come, groups), sizeof *x->come_v);
+    }
+}
+
+void wires_free(struct wires *w)
+{
+    for (int k = 0; k < w->n; k++) {
+        struct wire *x = &w->wire[k];
+        free(x->go), free(x->come), free(x->go_body), free(x->come_body);
+        free(x->go_v), free(x->come_v);
+    }
+    free(w->wire), free(w->request);
+    *w = (struct wires){ 0 };
+}
+
+static void read_twist(const struct problem *p, int32_t body, double v[TWIST])
+{
+    const struct body *b = &p->body[p->seat[body]];
+    memcpy(v, b->v, sizeof b->v), memcpy(v + 3, b->w, sizeof b->w);
+}
+
+static void write_twist(struct problem *p, int32_t body, const double v[TWIST])
+{
+    struct body *b = &p->body[p->seat[body]];
+    memcpy(b->v, v, sizeof b->v), memcpy(b->w, v + 3, sizeof b->w);
+}
+
+void wires_send(struct wires *w, const struct problem *p, int64_t g)
+{
+    w->requests = 0;
+    for (int k = 0; k < w->n; k++) {
+        struct wire *x = &w->wire[k];
+        int64_t n = x->come[g + 1] - x->come[g];
+        if (n)
+            MPI_Irecv(x->come_v, (int)(TWIST * n), MPI_DOUBLE, x->rank, TAG, w->talk->comm,
+                      &w->request[w->requests++]);
+    }
+    for (int k = 0; k < w->n; k++) {
+        struct wire *x = &w->wire[k];
+        int64_t n = x->go[g + 1] - x->go[g];
+        if (!n) continue;
+        for (int64_t i = 0; i < n; i++)
+            read_twist(p, x->go_body[x->go[g] + i], x->go_v + TWIST * i);
+        MPI_Isend(x->go_v, (int)(TWIST * n), MPI_DOUBLE, x->rank, TAG, w->talk->comm,
+                  &w->request[w->requests++]);
+        w->talk->bytes += TWIST * n * (int64_t)sizeof(double), w->talk->messages++;
+    }
+}
+
+void wires_wait(struct wires *w, struct problem *p, int64_t g)
+{
+    if (!w->requests) return;
+    double since = talk_busy();
+    MPI_Waitall(w->requests, w->request, MPI_STATUSES_IGNORE);
+    w->talk->waited += talk_busy() - since;
+    w->requests = 0;
+    for (int k = 0; k < w->n; k++) {
+        const struct wire *x = &w->wire[k];
+        for (int64_t i = x->come[g]; i < x->come[g + 1]; i++)
+            write_twist(p, x->come_body[i], x->come_v + TWIST * (i - x->come[g]));
+    }
+}
+
+void wires_refresh(const struct part *y, struct problem *p)
+{
+    struct talk *t = y->talk;
+    double v[TWIST];
+    struct parcel *out = parcels_new(t), *in = parcels_new(t);
+    for (int q = 0; q < t->n; q++)
+        for (int64_t k = 0; k < y->lent[q].n; k++) {
+            read_twist(p, y->lent[q].body[k], v);
+            parcel_put(t, &out[q], v, sizeof v);
+        }
+    talk_exchange(t, out, in);
+    for (int q = 0; q < t->n; q++)
+        for (int64_t k = 0; k < y->here[q].n; k++) {
+            parcel_take(t, &in[q], v, sizeof v);
+            write_twist(p, y->here[q].body[k], v);
+        }
+    parcels_free(t, out), parcels_free(t, in);
+}

@@ -1,0 +1,45 @@
+/*
+ * ranks/wires.h: bodies' velocities on their way between ranks while contacts are solved. A wire leads to one
+ * rank and carries, after each group of contacts, those that the other needs: nothing, mostly.
+ */
+#ifndef NSD_WIRES_H
+#define NSD_WIRES_H
+
+#include "problem/problem.h"
+#include "ranks/part.h"
+
+struct wire {
+    int rank;
+    int64_t *go,
+        *come; /* [groups + 1] of group g: bodies go_body[go[g]] .. go_body[go[g + 1] - 1] */
+    int32_t *go_body, *come_body;
+    double *go_v, *come_v; /* [most of a group][6] */
+};
+
+struct wires {
+    struct talk *talk;
+    int64_t groups;
+    int n;
+    struct wire *wire; /* [n] */
+    MPI_Request *request;
+    int requests;
+};
+
+/* A body that is to be told to a rank after a group */
+struct errand {
+    int64_t group;
+    int32_t rank, body;
+};
+
+/* Collective. errand[n], in the order of groups for each rank, of bodies that this rank owns; the others learn
+   from it what will come. */
+void wires_lay(struct wires *w, const struct part *y, int64_t groups, int64_t n,
+               const struct errand *errand);
+void wires_free(struct wires *w);
+/* Sends what goes after group g, and waits for what comes: between them there is time for other work. */
+void wires_send(struct wires *w, const struct problem *p, int64_t g);
+void wires_wait(struct wires *w, struct problem *p, int64_t g);
+/* All copies become what their bodies are. */
+void wires_refresh(const struct part *y, struct problem *p);
+
+#endif
