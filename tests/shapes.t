@@ -103,6 +103,11 @@ lean() # part of the critical mu: how high the cards' centres are after 0.4 s, o
 is 'two cards lean against each other with a friction of 1.01 times what statics asks for' "$(below '0.995' "$(lean 1.01)")" true
 is 'and slide apart with 0.98 times' "$(below "$(lean 0.98)" 0.9)" true
 
+# The scene: three floors
+nsd-gen scenes/cards.json | nsd-step -n 300 --every 300 --warm 2>/dev/null >"$tmp/house.h5"
+is 'a house of cards of three floors stands' \
+    "$(nsd-info --last -p "$tmp/house.h5" | jq -s 'map(.x[2]) | max > 0.208') $(last "$tmp/house.h5" '.kinetic_energy < 1e-8')" 'true true'
+
 # Dominoes without friction between them, in the plane. Between two hits the row is a mechanism of one freedom: domino
 # n, at angle t_n, leans on the next, h sin(t_n - t_n+1) = (s + d) cos t_n+1 - d, and keeps its energy; a hit is
 # without rebound [van Leeuwen, Am. J. Phys. 78 (2010) 721].
@@ -192,6 +197,18 @@ printf '{"dim": 2, "dt": 1e-3, "mu": 0.5, "shapes": {"rod": {"box": [0.6, 0.02]}
     nsd-gen - | nsd-step -n 500 --every 500 --contacts --warm 2>/dev/null >"$tmp/rod.h5"
 is 'in the plane a rod lies on two points of a chain' \
     "$(nsd-info --last -p "$tmp/rod.h5" | jq -c '[(.x[1] - 0.01 | fabs) < 1e-5, .w[2] == 0 or (.w[2] | fabs) < 1e-6]') $(last "$tmp/rod.h5" .contacts)" '[true,true] 2'
+
+# ---- a heap of polyhedra comes to rest ----
+
+printf '{"dt": 1e-3, "density": 2600, "mu": 0.5, "shapes": {"stone": %s, "cube": {"box": [1, 1, 1]}, "tetra": {"points": [[1,1,1],[1,-1,-1],[-1,1,-1],[-1,-1,1]]}},
+    "walls": [{"box": {"x": [0, 0.4], "y": [0, 0.4], "z": [0, null]}}], "bodies": [{"count": 25, "shape": "stone", "orientation": "random", "size": {"uniform": [0.03, 0.07]}},
+    {"count": 25, "shape": "cube", "orientation": "random", "size": {"uniform": [0.05, 0.1]}, "box": {"x": [0, 0.4], "y": [0, 0.4], "z": [1.1, null]}},
+    {"count": 25, "shape": "tetra", "orientation": "random", "size": 0.05, "box": {"x": [0, 0.4], "y": [0, 0.4], "z": [2.8, null]}}]}' "$(jq -c .shapes.stone scenes/rubble.json)" >"$tmp/rests.json"
+nsd-gen "$tmp/rests.json" | nsd-step -n 4000 --every 100 --warm 2>/dev/null >"$tmp/rests.h5"
+is 'a heap of polyhedra stands still: below 1e-6 m g d in all' \
+    "$(nsd-info "$tmp/rests.h5" | jq -s --argjson e "$(nsd-info --last -p "$tmp/rests.h5" | jq -s 'map(.mass * 9.81 * 2 * .radius) | add / length')" \
+        'map(select(.step > 3000).kinetic_energy) | length == 10 and max < 1e-6 * $e')" true
+is 'its overlaps are below 1e-4 of a grain' "$(last "$tmp/rests.h5" '.max_overlap < 1e-5')" true
 
 # ---- a heap of all shapes ----
 
