@@ -103,6 +103,11 @@ lean() # part of the critical mu: how high the cards' centres are after 0.4 s, o
 is 'two cards lean against each other with a friction of 1.01 times what statics asks for' "$(below '0.995' "$(lean 1.01)")" true
 is 'and slide apart with 0.98 times' "$(below "$(lean 0.98)" 0.9)" true
 
+# The scene: three floors
+nsd-gen scenes/cards.json | nsd-step -n 300 --every 300 --warm 2>/dev/null >"$tmp/house.h5"
+is 'a house of cards of three floors stands' \
+    "$(nsd-info --last -p "$tmp/house.h5" | jq -s 'map(.x[2]) | max > 0.208') $(last "$tmp/house.h5" '.kinetic_energy < 1e-8')" 'true true'
+
 # Dominoes without friction between them, in the plane. Between two hits the row is a mechanism of one freedom: domino
 # n, at angle t_n, leans on the next, h sin(t_n - t_n+1) = (s + d) cos t_n+1 - d, and keeps its energy; a hit is
 # without rebound [van Leeuwen, Am. J. Phys. 78 (2010) 721].
@@ -192,6 +197,39 @@ printf '{"dim": 2, "dt": 1e-3, "mu": 0.5, "shapes": {"rod": {"box": [0.6, 0.02]}
     nsd-gen - | nsd-step -n 500 --every 500 --contacts --warm 2>/dev/null >"$tmp/rod.h5"
 is 'in the plane a rod lies on two points of a chain' \
     "$(nsd-info --last -p "$tmp/rod.h5" | jq -c '[(.x[1] - 0.01 | fabs) < 1e-5, .w[2] == 0 or (.w[2] | fabs) < 1e-6]') $(last "$tmp/rod.h5" .contacts)" '[true,true] 2'
+
+# Long capsules fall at random and lie down on a flat floor: the mean of (3 cos^2 - 1) / 2 of their axes to the
+# vertical is 0 where each direction is as likely, and -1/2 where all lie.
+printf '{"dt": 1e-3, "mu": 0.3, "shapes": {"rod": {"capsule": {"length": 0.05, "radius": 0.004}}}, "walls": [{"box": {"x": [0, 0.15], "y": [0, 0.15], "z": [0, null]}}],
+    "bodies": [{"count": 60, "shape": "rod", "orientation": "random"}]}' | nsd-gen - >"$tmp/rods.h5"
+nsd-step -n 1500 --every 1500 --warm "$tmp/rods.h5" 2>/dev/null >"$tmp/lie.h5"
+order() { nsd-info --last -p "$1" | jq -s "map(select(.x[2] < $2) | .q as \$q | 2 * (\$q[1] * \$q[3] - \$q[0] * \$q[2]) | 1.5 * . * . - 0.5) | add / length"; }
+is 'capsules that fall point anywhere' "$(below "$(order "$tmp/rods.h5" 99) | fabs" 0.15)" true
+is 'on the floor they lie' "$(below "$(order "$tmp/lie.h5" 0.009)" -0.45)" true
+is 'and above it nearly' "$(below "$(order "$tmp/lie.h5" 99)" -0.35)" true
+
+# Tetrahedra with friction settle as loose as dice do [Baker & Kudrolli, Phys. Rev. E 82 (2010) 061304: 0.51 to 0.64 from
+# poured to shaken]: the fraction from how much higher the centre of more of them is, so that floor and top do not count.
+column() # COUNT: volume, m^3, and the height of their centre, m
+{
+    printf '{"dt": 1e-3, "mu": 0.5, "shapes": {"die": {"points": [[1,1,1],[1,-1,-1],[-1,1,-1],[-1,-1,1]]}}, "cell": {"lengths": [0.12, 0.12, 1], "repeats": [true, true, false]},
+        "walls": [{"point": [0, 0, 0], "normal": [0, 0, 1]}], "bodies": [{"count": %s, "shape": "die", "size": 0.01, "orientation": "random", "box": {"x": [0, 0.12], "y": [0, 0.12], "z": [0, null]}}]}' "$1" |
+        nsd-gen - | nsd-step -n 1500 --every 1500 --warm 2>/dev/null | nsd-info --last -p | jq -sc '(map(.mass) | add) as $m | [$m / 2500, (map(.x[2] * .mass) | add) / $m]'
+}
+fraction=$(jq -n --argjson a "$(column 60)" --argjson b "$(column 180)" '($b[0] - $a[0]) / (0.12 * 0.12 * 2 * ($b[1] - $a[1]))')
+is "tetrahedra settle to a solid fraction of $fraction" "$(below 0.47 "$fraction") $(below "$fraction" 0.64)" 'true true'
+
+# ---- a heap of polyhedra comes to rest ----
+
+printf '{"dt": 1e-3, "density": 2600, "mu": 0.5, "shapes": {"stone": %s, "cube": {"box": [1, 1, 1]}, "tetra": {"points": [[1,1,1],[1,-1,-1],[-1,1,-1],[-1,-1,1]]}},
+    "walls": [{"box": {"x": [0, 0.4], "y": [0, 0.4], "z": [0, null]}}], "bodies": [{"count": 25, "shape": "stone", "orientation": "random", "size": {"uniform": [0.03, 0.07]}},
+    {"count": 25, "shape": "cube", "orientation": "random", "size": {"uniform": [0.05, 0.1]}, "box": {"x": [0, 0.4], "y": [0, 0.4], "z": [1.1, null]}},
+    {"count": 25, "shape": "tetra", "orientation": "random", "size": 0.05, "box": {"x": [0, 0.4], "y": [0, 0.4], "z": [2.8, null]}}]}' "$(jq -c .shapes.stone scenes/rubble.json)" >"$tmp/rests.json"
+nsd-gen "$tmp/rests.json" | nsd-step -n 4000 --every 100 --warm 2>/dev/null >"$tmp/rests.h5"
+is 'a heap of polyhedra stands still: below 1e-6 m g d in all' \
+    "$(nsd-info "$tmp/rests.h5" | jq -s --argjson e "$(nsd-info --last -p "$tmp/rests.h5" | jq -s 'map(.mass * 9.81 * 2 * .radius) | add / length')" \
+        'map(select(.step > 3000).kinetic_energy) | length == 10 and max < 1e-6 * $e')" true
+is 'its overlaps are below 1e-4 of a grain' "$(last "$tmp/rests.h5" '.max_overlap < 1e-5')" true
 
 # ---- a heap of all shapes ----
 

@@ -74,11 +74,11 @@ static bool of_element(const struct surface *s, int dim, int32_t e, int k, struc
 static int of_surface(const struct surface *s, int dim, vec3 c, double reach, struct rim *out,
                       int most)
 {
-    struct surface_walk walk = surface_walk_begin(s);
+    struct surface_walk walk = surface_walk_begin(s->n);
     struct surface_branch leaf;
     struct rim r;
     int n = 0;
-    while (surface_walk_next(&walk, s, c, reach, &leaf))
+    while (surface_walk_next(&walk, s->box, c, reach, &leaf))
         for (int32_t i = leaf.lo; i < leaf.hi; i++)
             for (int k = 0; k < dim; k++)
                 if (n < most && of_element(s, dim, s->order[i], k, &r) && counts(&r, c, reach))

@@ -3,9 +3,10 @@
 #ifndef NSD_SURFACE_TREE_H
 #define NSD_SURFACE_TREE_H
 
-#include "bodies/mesh.h"
+#include "base/vec.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 
 enum {
     SURFACE_LEAF = 4, /* elements that are looked at one by one */
@@ -42,23 +43,24 @@ static inline bool surface_is_near(const struct surface_box *b, vec3 c, double m
     return x * x + y * y + z * z <= most * most * (1 + 1e-12);
 }
 
-static inline struct surface_walk surface_walk_begin(const struct surface *s)
+/* Of n elements */
+static inline struct surface_walk surface_walk_begin(int32_t n)
 {
-    return (struct surface_walk){ .stack = { { 0, 0, s->n } }, .depth = 1 };
+    return (struct surface_walk){ .stack = { { 0, 0, n } }, .depth = 1 };
 }
 
 /* The next few elements, order[leaf->lo .. leaf->hi - 1], of which some are at most `most` (m) from c;
    false: no more. */
-static inline bool surface_walk_next(struct surface_walk *w, const struct surface *s, vec3 c,
+static inline bool surface_walk_next(struct surface_walk *w, const struct surface_box *box, vec3 c,
                                      double most, struct surface_branch *leaf)
 {
     while (w->depth) {
         const struct surface_branch b = w->stack[--w->depth];
-        if (!surface_is_near(&s->box[b.box], c, most)) continue;
+        if (!surface_is_near(&box[b.box], c, most)) continue;
         *leaf = b;
         if (b.hi - b.lo <= SURFACE_LEAF) return true;
         int32_t middle = b.lo + (b.hi - b.lo) / 2;
-        w->stack[w->depth++] = (struct surface_branch){ s->box[b.box].next, middle, b.hi };
+        w->stack[w->depth++] = (struct surface_branch){ box[b.box].next, middle, b.hi };
         w->stack[w->depth++] = (struct surface_branch){ b.box + 1, b.lo, middle };
     }
     return false;

@@ -29,6 +29,7 @@ static struct facet facet_of(qhT *qh, facetT *f, const vec3 *x)
     struct facet to = { .n = v3(f->normal[0], f->normal[1], f->normal[2]), .at = -f->offset };
     vertexT *vertex, **vertexp;
     int k = 0;
+    // cppcheck-suppress legacyUninitvar ; the loop sets it
     FOREACHvertex_(f->vertices) if (k < 3) to.point[k++] = qh_pointid(qh, vertex->point);
     vec3 a = x[to.point[0]];
     to.area = v3_norm(v3_cross(v3_sub(x[to.point[1]], a), v3_sub(x[to.point[2]], a)));
