@@ -235,7 +235,7 @@ static void in_disc(const double A[3], const double g[2], double R, double y[2])
 static double part_alone(const struct rolling *q, int part, double R, double x[ROLLING])
 {
     int f = first_of[part], n = size_of[part];
-    double g[2], y[2] = { 0 };
+    double g[2] = { 0 }, y[2] = { 0 };
     for (int i = 0; i < n; i++) {
         const double *row = q->W + ROLLING * (f + i);
         g[i] = -q->b[f + i] - dot(row, x, ROLLING) + dot(row + f, x + f, n);
