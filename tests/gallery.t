@@ -43,10 +43,10 @@ within vibrated "mean force" 0.98 1.02
 within isotropic "Z of discs" 3.8 4.1
 within isotropic "Z of balls" 5.4 6.1
 within isotropic "Z at the largest friction" 3.6 5.4
-within repose "slope at the largest rolling friction" 4 30
-within repose "slope at the largest Bond number" 5 60
+within repose "slope at the largest rolling friction" 4 60
+within repose "height at the largest Bond number" 0.6 1.1
 within wet-column "run-out of the most cohesive" -0.1 0.35
 within wet-column "height left of the most cohesive" 0.9 1.02
-within wet-drum "angle at the largest Bond number" 2 45
-within wet-drum "roughness of the surface" 1.15 10
+within wet-drum "largest angle less that" 2 45
+within wet-drum "roughness of the surface" 1.15 30
 done_testing

@@ -245,6 +245,17 @@ e=$(for n in 5 10 20; do beam $n; done | jq -s -c .)
 like "a bonded beam bends as Euler and Bernoulli have it, in the limit of a slender one" \
     "$(jq -n --argjson e "$e" '$e[2] < 0.09 and $e[1] < 0.5 * $e[0] and $e[2] < 0.5 * $e[1]')" true
 
+# by its weight, of N^2 N m at the wall, and rows 1 m apart, the uppermost bond there bears N^2 N: that it bears, or it breaks
+for part in 1.02 0.98; do
+    jq -n --argjson part $part '6 as $n | { dim: 2, dt: 1, density: (4 / 3.141592653589793), gravity: [0, -1],
+        adhesion: { c_n: 1e9, w: ($part * $n * $n | . * . / 1e9), area: 1 },
+        bodies: [range(0; $n + 1) as $i | range(0; 2) as $j | { x: [$i, $j], radius: 0.5, fixed: ($i == 0) }] }' | nsd-gen - |
+        step --overlap keep --global prox --eps 1e-8 -n 6 --every 6 --log "$tmp/breaks.log" -o "$tmp/breaks.h5"
+    like "a bonded beam breaks where a bond bears S sqrt(w c_n), not below: $part" \
+        "$(jq -s 'map(.balance.broken) | add > 0' "$tmp/breaks.log")" "$(jq -n "$part < 1")"
+    rm "$tmp/breaks.h5"
+done
+
 # a chain of balls is peeled off a floor: w S a ball
 jq -n '{ dt: 5e-7, mu: 0.3, gravity: [0, 0, 0], kinds: { hook: {} }, pairs: [{ pair: ["ball", "wall"], adhesion: { c_n: 1e12, w: 1, area: 1e-7 } },
     { pair: ["ball", "ball"], adhesion: { c_n: 1e13, w: 1e6, area: 1e-7 } }, { pair: ["ball", "hook"], adhesion: { c_n: 1e13, w: 1e6, area: 1e-7 } }], walls: [{ normal: [0, 0, 1], point: [0, 0, 0] }],
@@ -377,6 +388,22 @@ like "polygons: energy is balanced in every step" "$(misfit "$tmp/plane.log" | j
 nsd-cat --last "$tmp/plane-end.h5" >"$tmp/polygons.h5"
 whole polygons.h5
 
+# ---- a boundary that turns does work by forces and by moments ----
+
+for grain in disc box; do
+    jq -n --arg grain $grain '{ dim: 2, dt: 5e-4, density: 2500, mu: 0.4, e_n: 0.2, rolling: { mu_r: 3e-4 }, cohesion: { force: 1, range: 1e-5 },
+        adhesion: { c_n: 1e9, w: 0.02, forever: true }, shapes: { box: { box: [0.003, 0.002] } },
+        walls: [{ circle: { center: [0, 0], radius: 0.03 }, drives: [{ about: [0, 0], speed: 6 }] }],
+        bodies: [{ random: { count: 40 }, radius: { uniform: [1.4e-3, 1.6e-3] }, box: { x: [-0.02, 0.02], y: [-0.02, 0.02] } } +
+            if $grain == "box" then { shape: "box" } else {} end] }' | nsd-gen - |
+        step -n 250 --every 250 --eps 1e-3 --log "$tmp/turns.log" -o "$tmp/turned.h5"
+    like "a drum of $grain grains that roll, hold together and break: energy is balanced in every step" \
+        "$(misfit "$tmp/turns.log" | jq '. < 1e-12')" true
+    like "and the drum has done work, and bonds have broken" \
+        "$(jq -s '(map(.balance.drives) | add) > 1e-6 and (map(.balance.broken) | add) > 1e-6' "$tmp/turns.log")" true
+    rm "$tmp/turned.h5"
+done
+
 # ---- bad input ----
 
 bad() { echo "{\"dt\": 1e-3, $1}" | nsd-gen -; }
@@ -426,6 +453,19 @@ f['/contacts/jump'][0] = np.inf
 f['/contacts/tie'][0] = 9
 f['/contacts/mu_r'][0] = -1
 del f['/contacts/stiffness']
+CODES
+    nsd-cat --last "$tmp/polygons.h5" >"$tmp/kept.h5"
+    while IFS= read -r code; do
+        changed kept.h5 "$code"
+        refuses 65 "nsd-detect refuses $code" nsd-detect "$tmp/changed.h5"
+    done <<'CODES'
+f['/nsd/bonds/area'][0] = -1
+f['/nsd/bonds/area'][0] = np.nan
+f['/nsd/bonds/anchor_a'][0] = np.inf
+f['/nsd/bonds/anchor_b'][0] = np.nan
+f['/nsd/bonds/axis'][0] = 0
+f['/nsd/bonds/feature'][0] = 3
+del f['/nsd/bonds/axis']
 CODES
 else
     skip "hostile documents" "no h5py"

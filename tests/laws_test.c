@@ -95,6 +95,87 @@ static void test_rolling(bool plane)
     ok(uzawa < 1e-6, "%s: so do sbp and sal in the end (%.2g)", where, uzawa);
 }
 
+/* ---- the same where W is full ---- */
+
+/* The W of balls as a matrix */
+static void fill_up(struct rolling *q)
+{
+    double *W = q->W;
+    q->lambda = rolling_lambda(q), q->full = true;
+    W[0] = q->wn, W[21] = q->wp;
+    for (int i = 1; i < 3; i++) {
+        W[7 * i] = q->wt, W[7 * (3 + i)] = q->wr;
+        W[ROLLING * i + 3 + i] = W[ROLLING * (3 + i) + i] = q->k;
+    }
+}
+
+/* W = J J^T of any J, and little friction, so that there is a solution */
+static struct rolling random_full(uint64_t *seed)
+{
+    struct rolling q = random_contact(seed, false);
+    double J[ROLLING][ROLLING], trace = 0;
+    q.full = true;
+    for (int i = 0; i < ROLLING; i++)
+        for (int j = 0; j < ROLLING; j++) J[i][j] = uniform(seed) - 0.5 + (i == j);
+    for (int i = 0; i < ROLLING; i++)
+        for (int j = 0; j < ROLLING; j++)
+            for (int l = 0; l < ROLLING; l++) q.W[ROLLING * i + j] += J[i][l] * J[j][l];
+    for (int i = 0; i < ROLLING; i++) trace += q.W[7 * i];
+    for (int i = 0; i < ROLLING_PARTS; i++) q.mu[i] *= 0.5;
+    q.lambda = trace, q.rho = 1 / trace; // at least the largest eigenvalue
+    return q;
+}
+
+static double off_the_law(const struct rolling *q, const double x[ROLLING])
+{
+    double u[ROLLING];
+    rolling_velocity(q, x, u);
+    return sqrt(rolling_natural2(q, q->rho, x, u));
+}
+
+static void test_full(void)
+{
+    const struct local_opt opt = { .newton_eps = 1e-13, .newton_max = 100 };
+    double balls = 0, search = 0, law = 0, newton = 0, uzawa = 0;
+    int gave_up = 0, pushing = 0, n = 3000;
+    uint64_t seed = 5;
+    for (int k = 0; k < n; k++) {
+        struct rolling q = random_contact(&seed, k % 2), full = q;
+        rolling_solve(METHOD_exact, &q, &opt);
+        fill_up(&full);
+        struct rolling sought = full;
+        rolling_solve(METHOD_exact, &full, &opt);
+        balls = fmax(balls, far(&q, &full));
+        if (sought.b[0] < 0 && rolling_search(&sought)) search = fmax(search, far(&q, &sought));
+    }
+    ok(balls < 1e-10, "a full W: balls' contacts as by numbers (%.2g)", balls);
+    ok(search < 1e-9, "and by the search for r_n (%.2g)", search);
+    search = 0;
+    for (int k = 0; k < n; k++) {
+        struct rolling q = random_full(&seed), exact = q, one;
+        rolling_solve(METHOD_exact, &exact, &opt);
+        gave_up += exact.gave_up, pushing += exact.x[0] > 0;
+        if (exact.gave_up) continue;
+        law = fmax(law, off_the_law(&q, exact.x));
+        one = q;
+        if (q.b[0] < 0 && rolling_search(&one)) search = fmax(search, off_the_law(&q, one.x));
+        for (enum method_id m = METHOD_ebp; m <= METHOD_eal; m++) {
+            one = q;
+            rolling_solve(m, &one, &opt);
+            newton = fmax(newton, off_the_law(&q, one.x));
+        }
+        one = q;
+        for (int i = 0; i < 3000; i++) rolling_solve(METHOD_sbp, &one, &opt);
+        uzawa = fmax(uzawa, off_the_law(&q, one.x));
+    }
+    ok(gave_up == 0 && pushing > n / 2, "any W: exact gives none up (%d of %d, %d push)", gave_up,
+       n, pushing);
+    ok(law < 1e-12, "exact is on the law (%.2g)", law);
+    ok(search < 1e-11, "so is what the search finds (%.2g)", search);
+    ok(newton < 1e-11, "so are ebp and eal (%.2g)", newton);
+    ok(uzawa < 1e-5, "and sbp comes near (%.2g)", uzawa);
+}
+
 /* The projection on the cone of three limits, beside a search for its r_n */
 static void test_projection(void)
 {
@@ -123,5 +204,6 @@ int main(void)
     test_projection();
     test_rolling(false);
     test_rolling(true);
+    test_full();
     return tap_done();
 }

@@ -235,7 +235,7 @@ static void in_disc(const double A[3], const double g[2], double R, double y[2])
 static double part_alone(const struct rolling *q, int part, double R, double x[ROLLING])
 {
     int f = first_of[part], n = size_of[part];
-    double g[2], y[2] = { 0 };
+    double g[2] = { 0 }, y[2] = { 0 };
     for (int i = 0; i < n; i++) {
         const double *row = q->W + ROLLING * (f + i);
         g[i] = -q->b[f + i] - dot(row, x, ROLLING) + dot(row + f, x + f, n);
@@ -267,18 +267,21 @@ static double at_push(const struct rolling *q, double rn, double x[ROLLING])
  * Where W is full the law is no convex problem, but for a given r_n the rest is one, and u_n a
  * continuous function of r_n that begins at b_n < 0: its root is a solution. false: none is found.
  */
-static bool root_of_push(struct rolling *q)
+bool rolling_search(struct rolling *q)
 {
-    double low = 0, at_low = q->b[0], high = -q->b[0] / q->W[0], at_high;
-    double x[ROLLING] = { 0 };
-    for (int k = 0; (at_high = at_push(q, high, x)) < 0;
-         k++, low = high, at_low = at_high, high *= 2)
+    double low = 0, at_low = q->b[0], high = -q->b[0] / q->W[0], at_high, x[ROLLING] = { 0 };
+    for (int k = 0; (at_high = at_push(q, high, x)) < 0; k++) {
         if (k == 60) return false;
-    for (int step = 0, side = 0; step < 200 && at_high > 0; step++) { // regula falsi, Illinois
+        low = high, at_low = at_high, high *= 2;
+    }
+    double best = high, off = at_high;
+    if (-at_low < off) best = low, off = -at_low;
+    for (int step = 0, side = 0; step < 200 && off > 0; step++) { // regula falsi, Illinois
         double rn = (low * at_high - high * at_low) / (at_high - at_low);
         if (!(rn > low && rn < high)) break;
         double at = at_push(q, rn, x);
-        if (fabs(at) <= 4 * DBL_EPSILON * fabs(q->b[0])) break;
+        if (fabs(at) < off) best = rn, off = fabs(at);
+        if (off <= 4 * DBL_EPSILON * fabs(q->b[0])) break;
         if (at > 0) {
             high = rn, at_high = at;
             if (side > 0) at_low *= 0.5;
@@ -289,6 +292,7 @@ static bool root_of_push(struct rolling *q)
             side = -1;
         }
     }
+    at_push(q, best, x);
     memcpy(q->x, x, sizeof x);
     return true;
 }
@@ -305,7 +309,7 @@ static void exact_full(struct rolling *q)
         memset(q->x, 0, sizeof q->x);
         return;
     }
-    q->gave_up = !newton(q, false, &tight) && !root_of_push(q);
+    q->gave_up = !newton(q, false, &tight) && !rolling_search(q);
     q->steps = steps;
 }
 

@@ -45,6 +45,9 @@ struct rolling {
 
 /* Solves the contact by the local method. */
 void rolling_solve(enum method_id method, struct rolling *q, const struct local_opt *opt);
+/* What exact falls back on where W is full and Newton's method fails: x by a search for r_n, where b_n < 0.
+   False: there is no solution in reach. */
+bool rolling_search(struct rolling *q);
 /* u = W x + b */
 void rolling_velocity(const struct rolling *q, const double x[ROLLING], double u[ROLLING]);
 /* p = the nearest point of K */

@@ -1,8 +1,6 @@
 /* problem/beyond.c: rolling friction, lane by lane [problem/beyond.h]. */
 #include "problem/beyond.h"
 
-#include "problem/beyond_levers.h"
-
 #include <string.h>
 
 /* The bodies' angular velocity relative to each other, in (n, t1, t2) */
@@ -90,9 +88,8 @@ void beyond_roll(const struct bundle *c, struct beyond *x, const struct beyond_l
     q.b[3] = length * omega[0] - q.wp * q.x[3];
     for (int j = 0; j < 2; j++) { // what is there without r* and m
         double turned_m = length * q.x[4 + j], bt = l->b[1 + j] / l->s[1] - k * turned_m;
-        double felt = l->r[1 + j] + x->p[1 + j][i];
-        double spun =
-            turned[j] - x->k[i] * (felt + x->a[1 + j][i] + x->K[1][i] * bt) - x->wr[i] * turned_m;
+        double felt = l->r[1 + j] + x->z[1 + j][i] + x->K[1][i] * bt;
+        double spun = turned[j] - x->k[i] * felt - x->wr[i] * turned_m;
         q.b[1 + j] = bt, q.b[4 + j] = length * spun;
     }
     rolling_solve(method, &q, opt);

@@ -8,8 +8,8 @@
  *     u~ = W^ r* + b^,   W^ = (1 + W K)^-1 W,   b^ = (1 + W K)^-1 (b - W a),
  *
  * which for balls is a number along n and one across: w^ = s w, s = 1/(1 + w K). p is that of the
- * last visit, and the bodies have the velocities that r* + p makes. Where all are visited often
- * enough p is - a - K u~, and u~ that of M + H K H^T.
+ * last visit, kept as z = p + a, and the bodies have the velocities that r* + p makes. Where all are
+ * visited often enough p is - a - K u~, and u~ that of M + H K H^T.
  *
  * Rolling friction adds a moment, and the relative angular velocity of the bodies, which is coupled
  * to u_t by k = l_b/I_b - l_a/I_a [law/rolling.h].
@@ -18,20 +18,49 @@
 #define NSD_BEYOND_H
 
 #include "law/rolling.h"
-#include "problem/bundle.h"
+#include "problem/levers.h"
 
 /* Lane k of each belongs to lane k of the bundle. */
 struct beyond {
     double s[2][BUNDLE]; /* 1/(1 + w K), along n and across; 1: not bonded */
     double K[2][BUNDLE]; /* kg */
+    double z[3][BUNDLE]; /* N s: p + a = - K u~ of the last visit, in (n, t1, t2) */
     double a[3][BUNDLE]; /* N s */
-    double p[3][BUNDLE]; /* N s: of the bond, in (n, t1, t2) */
 
     double mu_r[BUNDLE], mu_p[BUNDLE]; /* m; both 0: only the vector text solves the lane */
     double k[BUNDLE], wr[BUNDLE];      /* m/(kg m^2), 1/(kg m^2) */
     double length[BUNDLE];             /* m: of law/rolling.h */
     double rho[BUNDLE];                /* kg: its step */
     double m[3][BUNDLE];               /* N m s: on b, in (n, t1, t2) */
+};
+
+/*
+ * The same where lever arms are any vectors [problem/levers.h]: what is single numbers for balls is
+ * matrices.
+ *
+ * With W_cc full the bond of a contact makes
+ *
+ *     W^ = S W,   b^ = S (b - W a),   S = (1 + W K)^-1,   K = diag(K_n, K_t, K_t),
+ *
+ * W^ symmetric as W is, and in the bundle in its place. The relative angular velocity is
+ *
+ *     omega_i = R_b,i . y_b - R_a,i . y_a,   R_i = I^-1/2 e_i,
+ *
+ * over the basis turned a quarter, (n, -t2, t1), times the length of law/rolling.h. With V what r makes
+ * of omega and Z what moments do, the bond leaves
+ *
+ *     W^ of (u, omega) = ( S W    S V^T          )
+ *                        ( V S^T  Z - V K S V^T ).
+ *
+ * Z has a positive number where nothing can turn: omega is 0 or given there, and the moment is at its
+ * limit against it. All but S are set where there is rolling friction.
+ */
+struct beyond_levers {
+    double S[9][BUNDLE];
+    double Ra[9][BUNDLE], Rb[9][BUNDLE]; /* m (kg m^2)^-1/2: component j of R_i at 3 i + j */
+    double V[9][BUNDLE];                 /* kg^-1 */
+    double W[ROLLING * ROLLING][BUNDLE]; /* kg^-1: W^ of (u, omega) */
+    double lambda[BUNDLE];               /* kg^-1: its largest eigenvalue */
 };
 
 /* What of a local problem the moment needs, and changes */
@@ -50,7 +79,7 @@ static inline bool beyond_rolls(const struct beyond *x, int lane)
     return x->mu_r[lane] > 0 || x->mu_p[lane] > 0;
 }
 
-struct beyond_levers; /* [problem/beyond_levers.h]; NULL: a bundle of balls */
+/* y of all that follows: NULL between balls */
 
 /* Solves lane i with its moment: l->r and x->m are the new ones, l->b that for the new moment. The
    bodies turn at their velocities of before. */
@@ -66,5 +95,25 @@ void beyond_push(const struct bundle *c, const struct beyond *x, const struct be
 void beyond_rolling(const struct bundle *c, const struct beyond *x, const struct beyond_levers *y,
                     struct body *body, int i, const double s[2], const double u[3],
                     struct rolling *q, double v[ROLLING]);
+
+/*
+ * The bond of lane i, with K[2] (kg): S, and W^ in place of W in the bundle. Then, where it rolls, the
+ * rest by R_a and R_b of length 1, which are set, between bodies of these 1/mass and 1/inertia;
+ * returns the length (m).
+ */
+void beyond_levers_bond(struct bundle *c, struct beyond_levers *y, int i, const double K[2]);
+double beyond_levers_turn(const struct levers *g, const struct bundle *c, struct beyond_levers *y,
+                          int i, const double W[9], const double K[2], double iia, double iib);
+
+/* As beyond_roll(), beyond_push() and beyond_rolling() */
+void beyond_levers_roll(const struct bundle *c, struct beyond *x, const struct beyond_levers *y,
+                        struct body *body, int i, enum method_id method,
+                        const struct local_opt *opt, struct rolling_lane *l);
+void beyond_levers_push(const struct bundle *c, const struct beyond *x,
+                        const struct beyond_levers *y, int i, struct body *body,
+                        const double dm[3]);
+void beyond_levers_rolling(const struct bundle *c, const struct beyond *x,
+                           const struct beyond_levers *y, struct body *body, int i,
+                           const double u[3], struct rolling *q, double v[ROLLING]);
 
 #endif

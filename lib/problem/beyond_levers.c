@@ -1,5 +1,5 @@
-/* problem/beyond_levers.c: bonds and moments as matrices [problem/beyond_levers.h]. */
-#include "problem/beyond_levers.h"
+/* problem/beyond_levers.c: bonds and moments as matrices [problem/beyond.h]. */
+#include "problem/beyond.h"
 
 #include <gsl/gsl_eigen.h>
 #include <string.h>
@@ -154,8 +154,8 @@ void beyond_levers_roll(const struct bundle *c, struct beyond *x, const struct b
     for (int j = 0; j < 3; j++) { // u and omega with the bond's pull that goes with them
         now[j] = 0;
         for (int k = 0; k < 3; k++)
-            now[j] += y->S[3 * j + k][i] * l->u[k] - c->W[3 * j + k][i] * (x->p[k][i] + x->a[k][i]);
-        dp[j] = -x->a[j][i] - x->K[j > 0][i] * now[j] - x->p[j][i];
+            now[j] += y->S[3 * j + k][i] * l->u[k] - c->W[3 * j + k][i] * x->z[k][i];
+        dp[j] = -x->K[j > 0][i] * now[j] - x->z[j][i];
     }
     for (int j = 0; j < 3; j++) {
         now[3 + j] = omega[j];

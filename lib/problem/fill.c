@@ -4,7 +4,6 @@
 #include "bodies/kinematics.h"
 #include "bodies/offset.h"
 #include "bodies/top.h"
-#include "problem/beyond_levers.h"
 #include "problem/problem.h"
 
 /* un: u^-_n, m/s */
@@ -140,6 +139,7 @@ static void slot_go_beyond(struct problem *p, int64_t i, const struct contact *c
     if (t->beta > 0 && !(alpha > 0)) r->rho[k] = lambda > 0 ? rho_factor / lambda : 1;
     x->a[0][k] = x->K[0][k] * (t->jump[0] / h - seen);
     for (int j = 1; j < 3; j++) x->a[j][k] = h * t->stiff[1] * t->jump[j];
+    for (int j = 0; j < 3; j++) x->z[j][k] = x->a[j][k]; // p = 0
     x->mu_r[k] = t->mu_r, x->mu_p[k] = t->mu_p;
     if (!beyond_rolls(x, k)) return;
     x->k[k] = r->lb[k] * b->ii - r->la[k] * a->ii, x->wr[k] = a->ii + b->ii;
@@ -187,6 +187,7 @@ static void lever_go_beyond(struct problem *p, int64_t i, const struct contact *
         for (int j = 0; j < 2; j++) r->w[j][k] = lambda, r->iw[j][k] = 1 / lambda;
         if (!(alpha > 0)) r->rho[k] = lambda > 0 ? rho_factor / lambda : 1;
     }
+    for (int j = 0; j < 3; j++) x->z[j][k] = x->a[j][k]; // p = 0
     x->mu_r[k] = t->mu_r, x->mu_p[k] = t->mu_p;
     if (!beyond_rolls(x, k)) return;
     set_turning(y->Ra, k, p->packing, c->a, c, half);

@@ -1,11 +1,10 @@
 /* problem/mixing.c: measuring and mixing [problem/mixing.h]. Compiled with LANES = 2, 4 and 8. */
 #include "problem/mixing.h"
 
-#include "problem/beyond_levers.h"
 #include "problem/walk.h"
 
 /*
- * What a slot's vector is made of: r, and in a problem with bonds or moments their p and m, which
+ * What a slot's vector is made of: r, and in a problem with bonds or moments their z and m, which
  * follow r through the sweeps and must be mixed as it is.
  */
 enum { WITH_BESIDE = 3 + BESIDE_R };
@@ -13,7 +12,7 @@ enum { WITH_BESIDE = 3 + BESIDE_R };
 ALWAYS_INLINE double *component(const struct problem *p, int64_t i, int l)
 {
     if (l < 3) return p->bundle[i].r[l];
-    return l < 6 ? p->beyond[i].p[l - 3] : p->beyond[i].m[l - 6];
+    return l < 6 ? p->beyond[i].z[l - 3] : p->beyond[i].m[l - 6];
 }
 
 /* Its weight: of a moment that of the impulse which it is over the length of law/rolling.h */
@@ -83,14 +82,14 @@ struct jump {
     const double *gamma;
 };
 
-/* Stores x as the p and m of lanes k.., moments within their limits; dp, dm: their changes */
+/* Stores x as the z and m of lanes k.., moments within their limits; dp, dm: their changes */
 ALWAYS_INLINE void react_beside(struct problem *p, int64_t i, int k, const vd x[WITH_BESIDE],
                                 vd dp[3], double dm[LANES][3])
 {
     struct beyond *y = &p->beyond[i];
     double m[3][LANES], was[3][LANES];
     for (int l = 0; l < 3; l++) {
-        dp[l] = x[3 + l] - vload(y->p[l] + k), vstore(y->p[l] + k, x[3 + l]);
+        dp[l] = x[3 + l] - vload(y->z[l] + k), vstore(y->z[l] + k, x[3 + l]);
         vstore(was[l], vload(y->m[l] + k)), vstore(m[l], x[6 + l]);
     }
     for (int j = 0; j < LANES; j++) {

@@ -3,7 +3,7 @@
  * every vector width.
  *
  * A vector is [bundles][d][8], the reactions as the slots have them, N s; where there are bonds or moments
- * [bundles][9][8], r, p and m. In a sum over contacts
+ * [bundles][9][8], r, z and m. In a sum over contacts
  * each contact is weighted by lambda_max(W~_cc), so that a sum of squares is an energy whatever the
  * masses.
  *

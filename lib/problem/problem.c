@@ -5,7 +5,6 @@
 #include "bodies/kinematics.h"
 #include "bodies/offset.h"
 #include "bodies/top.h"
-#include "problem/beyond_levers.h"
 #include "problem/filling.h"
 #include "problem/schedule.h"
 #include "problem/shared.h"
@@ -243,8 +242,8 @@ static void take_found(struct problem *p, int64_t i, const struct contacts *s)
     if (p->pull) r[0] += p->pull[i];
     problem_push(p, p->body, slot_bundle(p, i), k, r);
     for (int j = 0; x && j < 3; j++) {
-        x->p[j][k] = -x->a[j][k] - x->K[j > 0][k] * c->u[j];
-        r[j] -= x->p[j][k];
+        x->z[j][k] = -x->K[j > 0][k] * c->u[j];
+        r[j] -= x->z[j][k] - x->a[j][k];
         if (s->moment) x->m[j][k] = s->moment[p->contact[i]][j];
     }
     const struct contact *law = &s->c[p->contact[i]];
@@ -494,13 +493,13 @@ void slot_set(struct problem *p, int64_t i, const double r[3], const double u[3]
 void slot_get_beyond(const struct problem *p, int64_t i, double x[BESIDE_R])
 {
     const struct beyond *y = &p->beyond[i / BUNDLE];
-    for (int k = 0; k < 3; k++) x[k] = y->p[k][slot_lane(i)], x[3 + k] = y->m[k][slot_lane(i)];
+    for (int k = 0; k < 3; k++) x[k] = y->z[k][slot_lane(i)], x[3 + k] = y->m[k][slot_lane(i)];
 }
 
 void slot_set_beyond(struct problem *p, int64_t i, const double x[BESIDE_R])
 {
     struct beyond *y = &p->beyond[i / BUNDLE];
-    for (int k = 0; k < 3; k++) y->p[k][slot_lane(i)] = x[k], y->m[k][slot_lane(i)] = x[3 + k];
+    for (int k = 0; k < 3; k++) y->z[k][slot_lane(i)] = x[k], y->m[k][slot_lane(i)] = x[3 + k];
 }
 
 int problem_team(const struct problem *p, int threads)
@@ -523,7 +522,7 @@ int problem_store(const struct problem *p, struct contacts *s)
         double x[BESIDE_R];
         if (p->beyond) slot_get_beyond(p, i, x);
         for (int k = 0; k < 3 && p->beyond; k++) {
-            c->r[k] += x[k];
+            c->r[k] += x[k] - p->beyond[i / BUNDLE].a[k][slot_lane(i)];
             if (s->moment) s->moment[p->contact[i]][k] = x[3 + k];
         }
         const struct beyond *in_W = p->in_W ? &p->in_W[i / BUNDLE] : NULL;

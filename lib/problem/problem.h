@@ -91,7 +91,7 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
                              enum order order, struct why *why);
 void problem_free(struct problem *p);
 
-/* What of an iterate is beyond r: p and m of a slot's contact */
+/* What of an iterate is beyond r: z and m of a slot's contact */
 enum { BESIDE_R = 6 };
 void slot_get_beyond(const struct problem *p, int64_t i, double x[BESIDE_R]);
 void slot_set_beyond(struct problem *p, int64_t i, const double x[BESIDE_R]);

@@ -6,7 +6,6 @@
 #include "law/local_exact.h"
 #include "law/local_sal.h"
 #include "law/local_sbp.h"
-#include "problem/beyond_levers.h"
 #include "problem/walk.h"
 
 typedef void method_text(struct local *, const struct local_opt *);
@@ -81,7 +80,7 @@ ALWAYS_INLINE void bond_local(const struct beyond *x, const struct beyond_levers
 {
     if (y) {
         vd felt[3], b[3];
-        for (int i = 0; i < 3; i++) felt[i] = l->r[i] + vload(x->p[i] + k) + vload(x->a[i] + k);
+        for (int i = 0; i < 3; i++) felt[i] = l->r[i] + vload(x->z[i] + k);
         for (int i = 0; i < 3; i++) {
             b[i] = -dot3(l->W + 3 * i, felt);
             for (int j = 0; j < 3; j++) b[i] += vload(y->S[3 * i + j] + k) * l->v[j];
@@ -93,8 +92,8 @@ ALWAYS_INLINE void bond_local(const struct beyond *x, const struct beyond_levers
         return;
     }
     for (int i = 0; i < 3; i++) {
-        vd s = vload(x->s[i > 0] + k), felt = l->r[i] + vload(x->p[i] + k);
-        l->b[i] = s * l->v[i] - l->w[i] * (felt + vload(x->a[i] + k));
+        vd s = vload(x->s[i > 0] + k), felt = l->r[i] + vload(x->z[i] + k);
+        l->b[i] = s * l->v[i] - l->w[i] * felt;
         l->v[i] = pick(lt(s, splat(1)), l->w[i] * l->r[i] + l->b[i], l->v[i]);
     }
 }
@@ -105,9 +104,9 @@ ALWAYS_INLINE void bond_follow(struct beyond *x, int k, const struct local *l, v
     vd u[3];
     local_velocity(l, l->r, u);
     for (int i = 0; i < 3; i++) {
-        vd p = -vload(x->a[i] + k) - vload(x->K[i > 0] + k) * u[i];
-        dr[i] += p - vload(x->p[i] + k);
-        vstore(x->p[i] + k, p);
+        vd z = -vload(x->K[i > 0] + k) * u[i];
+        dr[i] += z - vload(x->z[i] + k);
+        vstore(x->z[i] + k, z);
     }
 }
 
@@ -293,7 +292,8 @@ ALWAYS_INLINE void push_group(struct problem *p, int64_t first, int64_t end, voi
         for (int k = 0; k < BUNDLE; k += LANES) {
             const struct bundle *c = &p->bundle[i];
             vd r[3] = { vload(c->r[0] + k), vload(c->r[1] + k), vload(c->r[2] + k) };
-            for (int j = 0; j < 3 && p->beyond; j++) r[j] += vload(p->beyond[i].p[j] + k);
+            for (int j = 0; j < 3 && p->beyond; j++)
+                r[j] += vload(p->beyond[i].z[j] + k) - vload(p->beyond[i].a[j] + k);
             problem_push(p, p->body, c, k, r);
         }
         for (int k = 0; k < BUNDLE && p->rolls; k++) {
@@ -387,8 +387,9 @@ ALWAYS_INLINE void add_bonds(struct sums *s, const struct bundle *c, const struc
 {
     vd lambda = bundle_lambda(c, k), off[3], p[3], e[3];
     for (int i = 0; i < 3; i++) {
-        p[i] = vload(x->p[i] + k);
-        e[i] = p[i] + vload(x->a[i] + k) + vload(x->K[i > 0] + k) * u[i];
+        vd z = vload(x->z[i] + k);
+        p[i] = z - vload(x->a[i] + k);
+        e[i] = z + vload(x->K[i > 0] + k) * u[i];
         off[i] = vload(x->s[i > 0] + k) * e[i];
     }
     for (int i = 0; i < 3 && y; i++) {

@@ -102,7 +102,7 @@ static void remember_start(struct anderson *a)
     for (int64_t i = 0; i < p->bundles; i++, x += mixing_width(p) * BUNDLE) {
         memcpy(x, p->bundle[i].r, (size_t)(p->beyond ? 3 : p->d) * BUNDLE * sizeof *x);
         if (!p->beyond) continue;
-        memcpy(x + 3 * BUNDLE, p->beyond[i].p, sizeof p->beyond[i].p);
+        memcpy(x + 3 * BUNDLE, p->beyond[i].z, sizeof p->beyond[i].z);
         memcpy(x + 6 * BUNDLE, p->beyond[i].m, sizeof p->beyond[i].m);
     }
 }

@@ -3,9 +3,9 @@
 # shellcheck source=scripts/gallery/common.sh
 . "$(dirname "$0")/common.sh"
 
-half=$(pick 0.03 0.06) until=$(pick 0.6 1.2)
+half=$(pick 0.05 0.06) until=$(pick 0.8 1.2)
 read -ra rolls <<<"$(pick '0 0.1' '0 0.02 0.05 0.1 0.3')"
-read -ra bonds <<<"$(pick '0 16' '0 1 4 16 30')"
+read -ra bonds <<<"$(pick '0 30' '0 1 4 16 30')"
 weight=$(jq -n '2500 * 3.141592653589793 * 4e-6 * 9.81')
 
 # heap FILE FILTER: discs of 4 mm, a block as wide as the slab, which the filter changes; it comes to rest
@@ -18,26 +18,32 @@ heap()
             box: { x: [-$h, $h], y: [0, (1.1 * $h)] } }] } | '"$2" | nsd-gen - |
         step "$1" --until "$until" --every "${until}s" --overlap project
 }
-# degrees: of lines through the tops of both sides, in strips a disc wide, without the peak and the edges
+# degrees: of lines through the tops of strips a disc wide on both flanks, from a fifth of the heap's height up to where,
+# coming from outside, four fifths are first reached; the mean of both sides
 slope()
 {
-    nsd-info --last -p "$out/$1" | jq -s --argjson h "$half" 'map([.x[0], .x[1] + .radius]) |
-        group_by(.[0] / 0.004 | floor) | map([(map(.[0]) | add / length), (map(.[1]) | max)]) |
-        [map(select(.[0] > 0.1 * $h and .[0] < 0.8 * $h)), map(select(.[0] < -0.1 * $h and .[0] > -0.8 * $h) | [-.[0], .[1]])] |
-        map((map(.[0]) | add / length) as $x | (map(.[1]) | add / length) as $y |
-            (map((.[0] - $x) * (.[1] - $y)) | add) / (map((.[0] - $x) * (.[0] - $x)) | add)) |
-        -(add / 2) | atan * 180 / 3.141592653589793'
+    nsd-info --last -p "$out/$1" | jq -s 'map([.x[0], .x[1] + .radius]) | (map(.[1]) | max) as $top |
+        group_by(.[0] / 0.004 | floor) | map([(map(.[0]) | add / length), (map(.[1]) | max)]) | . as $strips |
+        [1, -1] | map(. as $side | $strips | map([.[0] * $side, .[1]]) | sort_by(-.[0]) | map(.[1]) as $h |
+            ([range(0; $h | length) | select($h[.] >= 0.8 * $top)][0]) as $up | .[:$up + 1] | map(select(.[1] > 0.2 * $top)) |
+            (map(.[0]) | add / length) as $x | (map(.[1]) | add / length) as $y |
+            (map((.[0] - $x) * (.[0] - $x)) | add) as $xx |
+            if $xx > 0 then -(map((.[0] - $x) * (.[1] - $y)) | add) / $xx | atan else 1.5707963267948966 end) |
+        add / 2 * 180 / 3.141592653589793'
 }
+
+# of the heap's top over that of the block, which was as high as the random start's box
+top() { nsd-info --last -p "$out/$1" | jq -s --argjson h "$half" 'map(.x[1] + .radius) | max / (1.1 * $h)'; }
 
 echo "mu_r slope" >"$out/rolling.tsv"
 for r in "${rolls[@]}"; do
     heap "roll-$r.h5" "if $r > 0 then .rolling = { mu_r: ($r * 0.002) } else . end"
     echo "$r $(slope "roll-$r.h5")" >>"$out/rolling.tsv"
 done
-echo "bond slope" >"$out/cohesion.tsv"
+echo "bond slope top" >"$out/cohesion.tsv"
 for b in "${bonds[@]}"; do
     heap "bond-$b.h5" "if $b > 0 then .cohesion = { force: ($b * $weight), range: 2e-5 } else . end"
-    echo "$b $(slope "bond-$b.h5")" >>"$out/cohesion.tsv"
+    echo "$b $(slope "bond-$b.h5") $(top "bond-$b.h5")" >>"$out/cohesion.tsv"
 done
 curve
 picture -c speed "$out/roll-${rolls[-1]}.h5"
@@ -45,9 +51,10 @@ with 'def numbers: split("\n") | map(select(test("^[0-9]")) | split(" ") | map(t
     def falls: [range(1; length) as $i | select(.[$i][1] < .[$i - 1][1] - 3)] | length;
     ($rolling | numbers) as $r | ($cohesion | numbers) as $c |
     row("slope without rolling friction, degrees"; $r[0][1]; 10; 25; "lower than of balls: discs roll"; "Zhou et al. 2001; Estrada et al. 2008"),
-    row("slope at the largest rolling friction less that"; $r[-1][1] - $r[0][1]; 4; 30; "it rises with mu_r"; "Zhou et al. 2001: rolling friction is a primary reason for heaps"),
+    row("slope at the largest rolling friction less that"; $r[-1][1] - $r[0][1]; 4; 60; "it rises with mu_r"; "Zhou et al. 2001: rolling friction is a primary reason for heaps"),
     row("steps of mu_r that make a heap flatter by more than 3 degrees"; ($r | falls); 0; 0; "none"; "the same"),
     (if ($r | length) > 4 then row("rise over the upper half of mu_r over that over the lower"; ($r[-1][1] - $r[-3][1]) / ($r[-3][1] - $r[0][1]); -0.3; 0.7; "below 1: where mu_r is large, sliding friction limits the strength"; "Estrada et al. 2008: two regimes") else empty end),
-    row("slope at the largest Bond number less that of dry discs"; $c[-1][1] - $c[0][1]; 5; 60; "it rises with the Bond number"; "Restagno et al. 2004; Elekes and Parteli 2021"),
-    row("at the smallest Bond number, the same"; $c[1][1] - $c[0][1]; -3; (if env.QUICK then 12 else 6 end); "little: cohesion matters where it exceeds the weight"; "Elekes and Parteli 2021")' \
+    row("steepest cohesive slope less that of dry discs"; ($c[1:] | map(.[1]) | max) - $c[0][1]; 5; 70; "it rises with the Bond number"; "Restagno et al. 2004; Elekes and Parteli 2021"),
+    (if ($c | length) > 3 then row("slope at a Bond number of 1 less that of dry discs"; $c[1][1] - $c[0][1]; -3; 6; "little: cohesion matters where it exceeds the weight"; "Elekes and Parteli 2021") else empty end),
+    row("height at the largest Bond number over that of the block"; $c[-1][2]; 0.75; 1.1; "above a critical ratio of cohesion to weight heaps are irregular: here the block stands"; "the same")' \
     -n --rawfile rolling "$out/rolling.tsv" --rawfile cohesion "$out/cohesion.tsv" | results

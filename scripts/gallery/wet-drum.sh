@@ -30,6 +30,7 @@ curve
 picture -c speed --boundaries lines "$out/drum-${bonds[-1]}.h5"
 with '($angles | split("\n") | map(select(test("^[0-9]")) | split(" ") | map(tonumber))) as $a |
     row("angle of dry discs, degrees"; $a[0][1]; 17; 32; "20 to 26"; "Renouf et al. 2005; GDR MiDi 2004"),
-    row("angle at the largest Bond number less that"; $a[-1][1] - $a[0][1]; 3; 45; "it rises with cohesion"; "Nowak et al. 2005; Pol et al. 2025"),
-    row("roughness of the surface at the largest Bond number over that of dry discs"; $a[-1][2] / $a[0][2]; 1.15; 6; "it rises: clusters"; "Pol et al. 2025; Abramian et al. 2021 (deposits)")' \
+    row("largest angle less that of dry discs"; ($a[1:] | map(.[1]) | max) - $a[0][1]; 2.5; 45; "it rises with cohesion"; "Nowak et al. 2005; Pol et al. 2025"),
+    row("angle at the largest Bond number less that of dry discs"; $a[-1][1] - $a[0][1]; 2.5; 45; "the same"; "the same"),
+    row("roughness of the surface, the least of cohesive discs over that of dry ones"; ($a[1:] | map(.[2]) | min) / $a[0][2]; 1.15; 30; "it rises: clusters"; "Pol et al. 2025; Abramian et al. 2021 (deposits)")' \
     -n --rawfile angles "$out/angle.tsv" | results
