@@ -247,7 +247,7 @@ lint-tidy: $(TIDY)
 
 $(TIDY): lint-tidy-%:
 	clang-tidy --quiet $(wildcard lib/*/$*.c tools/$*.c) -- -std=gnu11 -DNSD_VERSION='"$(VERSION)"' \
-	    -Ilib $(PC) $(MPI_PC) 2>/dev/null
+	    -Ilib $(PC) $(MPI_PC:-I%=-isystem %) 2>/dev/null
 
 # ---- what is made for others ----
 

@@ -61,18 +61,16 @@ pair() # SIDE SIDE2 STEPS: one process on the one cube, two ranks on the other, 
         { e = $3 / $5 * (weak ? $2 / $1 / 2 : 1 / 2)
           printf "| %d | %d | %.3g | %d | %.3g | %d | %.0f %% | %.0f %% |\n", $1, $2, $3, $4, $5, $6, 100 * e, 100 * e * $6 / $4 }'
 }
-memory() # MB of all, of the largest, one process and 2, 4, 8
+memory() # MB of all, of the largest: one process, and 2, 4, 8
 {
-    local n k all most _bytes _many one
-    for n in 46; do
-        f=$(cube $n)
-        one=$(/usr/bin/env python3 -c 'import resource, subprocess, sys
+    local k all most _bytes _many one f
+    f=$(cube 46)
+    one=$(python3 -c 'import resource, subprocess, sys
 subprocess.run(sys.argv[1:], stderr=subprocess.DEVNULL)
 print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)' nsd-step --gap 1e-8 -n 2 --every 1000 --order block --eps 1e-2 -o "$tmp/one.h5" "$f")
-        for k in 2 4 8; do
-            read -r _bytes _many all most < <(run $k $n -n 2 --order block --eps 1e-2 | said)
-            echo "$k $one $all $most"
-        done
+    for k in 2 4 8; do
+        read -r _bytes _many all most < <(run "$k" 46 -n 2 --order block --eps 1e-2 | said)
+        echo "$k $one $all $most"
     done | awk '{ printf "| %d | %.0f | %.0f | %.0f | %.2f |\n", $1, $2, $3, $4, $4 / ($2 / $1) }'
 }
 

@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const order_name[ORDER_COUNT] = { "natural", "reverse", "random", "colour", "halves", "block" };
+const char *const order_name[ORDER_COUNT] = { "natural", "reverse", "random",
+                                              "colour",  "halves",  "block" };
 
 enum {
     MARK_COLOURS = 64, /* colours, the bits of a mark; other contacts get groups of their own */

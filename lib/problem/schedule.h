@@ -21,7 +21,15 @@
 #include "problem/delassus.h"
 #include "problem/two_thread_split.h"
 
-enum order { ORDER_NATURAL, ORDER_REVERSE, ORDER_RANDOM, ORDER_COLOUR, ORDER_HALVES, ORDER_BLOCK, ORDER_COUNT };
+enum order {
+    ORDER_NATURAL,
+    ORDER_REVERSE,
+    ORDER_RANDOM,
+    ORDER_COLOUR,
+    ORDER_HALVES,
+    ORDER_BLOCK,
+    ORDER_COUNT
+};
 extern const char *const order_name[ORDER_COUNT]; /* as command lines and documents have them */
 
 struct schedule {

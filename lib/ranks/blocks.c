@@ -30,7 +30,7 @@ static double *twist_of(void *problem, int32_t body)
 static void post(struct talk *t, int width, const struct border *go_list, double **go,
                  const struct border *come_list, double **come)
 {
-    MPI_Request *r = talk_new(t, 2 * t->n, sizeof *r);
+    MPI_Request *r = talk_new(t, 2 * t->n, sizeof(MPI_Request));
     int n = 0;
     for (int q = 0; q < t->n; q++)
         if (come_list[q].n)

@@ -12,7 +12,7 @@ static bool comes_first(const struct contact *a, const struct contact *b)
 static void merge(struct roll *l, struct talk *t, struct parcel *in, struct contacts *all)
 {
     const size_t size = sizeof(struct contact);
-    struct contact **c = talk_new(t, t->n, sizeof *c);
+    struct contact **c = talk_new(t, t->n, sizeof(struct contact *));
     int64_t *n = talk_new(t, t->n, sizeof *n);
     l->n = 0;
     for (int q = 0; q < t->n; q++) {
@@ -116,10 +116,10 @@ void roll_tell_laws(const struct roll *l, const struct part *y, struct contacts 
     MPI_Bcast(has, 3, MPI_INT32_T, 0, t->comm);
     for (int64_t i = 0; i < l->n && !t->me; i++) {
         of[i].mu = all->c[i].mu, of[i].en = all->c[i].en, of[i].et = all->c[i].et;
-        for (int k = 0; k < 3 && has[0]; k++)
+        for (int k = 0; k < 3 && all->found; k++)
             of[i].r[k] = all->found[i].r[k], of[i].u[k] = all->found[i].u[k];
-        for (int k = 0; k < 3 && has[1]; k++) of[i].moment[k] = all->moment[i][k];
-        if (has[2]) of[i].tie = all->tie[i];
+        for (int k = 0; k < 3 && all->moment; k++) of[i].moment[k] = all->moment[i][k];
+        if (all->tie) of[i].tie = all->tie[i];
     }
     tell(l, y, s, of, to, sizeof *to);
     if ((has[0] && contacts_alloc_found(s)) || (has[1] && contacts_alloc_moment(s)) ||

@@ -111,7 +111,7 @@ static void pass(struct talk *t, struct parcel *out, struct parcel *in, const in
 {
     int n = 0, k = 0;
     for (int q = 0; q < t->n; q++) n += pieces(out[q].size) + pieces((size_t)come[q]);
-    MPI_Request *r = talk_new(t, n, sizeof *r);
+    MPI_Request *r = talk_new(t, n, sizeof(MPI_Request));
     for (int q = 0; q < t->n; q++) {
         if (q == t->me) continue;
         receive_all(t, &in[q], come[q], q, r + k), k += pieces((size_t)come[q]);

@@ -63,7 +63,7 @@ void wires_lay(struct wires *w, const struct part *y, int64_t groups, int64_t n,
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
     *w = (struct wires){ .talk = t, .groups = groups };
     w->wire = talk_new(t, t->n, sizeof *w->wire);
-    w->request = talk_new(t, 2 * t->n, sizeof *w->request);
+    w->request = talk_new(t, 2 * t->n, sizeof(MPI_Request));
     int64_t *many = talk_new(t, t->n, sizeof *many), *next = talk_new(t, t->n, sizeof *next);
     for (int64_t i = 0; i < n; i++) many[errand[i].rank]++;
     for (int64_t i = 0; i < n; i++) {
