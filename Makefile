@@ -4,6 +4,7 @@
 # make bench-solvers   all solvers over a collection of problems, Siconos' beside them
 # make rest       what is done about overlap: columns and piles that rest (nsd-methods(7))
 # make paper      every table and figure of the paper     QUICK=1        the same in minutes
+# make wall       what holds up the solvers on large piles QUICK=1      one pile, in a minute
 # make gallery    experiments beside what is published     QUICK=1       small, in minutes
 # make docs       the manuals as HTML, in docs/man        make deb       Debian packages, in build/deb
 #
@@ -118,7 +119,7 @@ tests: $(TOOLS) $(MPI) $(CTEST)
 
 # ---- set-up, checks, the demonstration ----
 
-setup-run setup-paper setup-check:
+setup-run setup-paper setup-wall setup-check:
 	scripts/setup.sh $(@:setup-%=%)
 
 PROVE := prove -j2 --timer
@@ -142,6 +143,11 @@ demo: setup-run
 paper paper-keep: setup-paper
 	$(MAKE) -j2 all
 	$(MAKE) -f scripts/paper.mk $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc)) $(@:paper%=all%)
+
+# scripts/wall.mk says what is measured; wall-keep puts the page into docs/wall.
+wall wall-keep: setup-wall
+	$(MAKE) all
+	$(MAKE) -f scripts/wall.mk $(if $(filter wall-keep,$@),keep,all)
 
 # scripts/gallery.mk says what is run; gallery-keep puts the page into docs/gallery.
 gallery gallery-keep: setup-run
@@ -330,5 +336,5 @@ clean:
 -include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep gallery gallery-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs completions install install-tools install-dev uninstall deb clean setup-run setup-paper setup-check
+.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs completions install install-tools install-dev uninstall deb clean setup-run setup-paper setup-wall setup-check
 .SECONDARY:

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# setup.sh run|paper|check: see that what nsd needs is there; install it where that is allowed, else name
+# setup.sh run|paper|wall|check: see that what nsd needs is there; install it where that is allowed, else name
 # the line that does.
 set -euo pipefail
 
@@ -7,7 +7,8 @@ run=(build-essential pkg-config libhdf5-dev hdf5-tools libgsl-dev libjansson-dev
     libcairo2-dev libsuitesparse-dev libassimp-dev libqhull-dev jq gnuplot-nox
     openmpi-bin libopenmpi-dev libtrilinos-zoltan-dev)
 paper=("${run[@]}" pandoc)
-check=("${paper[@]}" perl python3-h5py mandoc shellcheck cppcheck clang libomp-dev libclang-rt-dev
+wall=("${run[@]}" python3-h5py python3-scipy)
+check=("${paper[@]}" "${wall[@]}" perl mandoc shellcheck cppcheck clang libomp-dev libclang-rt-dev
     clang-tidy clang-format libfclib-dev gcovr
     debhelper lintian zsh parallel python3-vtk9 python3-ase python3-mdanalysis
     ffmpeg chromium chromium-driver python3-selenium)
@@ -15,8 +16,9 @@ check=("${paper[@]}" perl python3-h5py mandoc shellcheck cppcheck clang libomp-d
 case "${1:-run}" in
 run) packages=("${run[@]}") ;;
 paper) packages=("${paper[@]}") ;;
+wall) packages=("${wall[@]}") ;;
 check) packages=("${check[@]}") ;;
-*) echo "usage: setup.sh run|paper|check" >&2; exit 64 ;;
+*) echo "usage: setup.sh run|paper|wall|check" >&2; exit 64 ;;
 esac
 
 if ! command -v dpkg-query >/dev/null; then

@@ -5,6 +5,7 @@
 #include "io/report_json.h"
 #include "problem/err.h"
 #include "problem/prepare.h"
+#include "problem/self_stress.h"
 
 static const struct cli_option *const tables[] = { NULL };
 
@@ -52,11 +53,18 @@ static void print(struct frame *f, struct why *why)
     struct err err;
     err_eval(&err, &p, true, ERR_ALL, 1);
     err.max_overlap = overlap;
+    double ratio;
+    int e = self_stress(&p, &ratio);
     problem_free(&p);
+    if (e) {
+        why_set(why, EX_SOFTWARE, "out of memory");
+        return;
+    }
     json_t *line = json_object(), *terms = json_err(&err);
     if (f->packed) json_object_set_new(line, "step", json_integer(step));
     if (f->reported) json_object_set_new(line, "method", json_string(f->report.method));
     json_object_update(line, terms);
+    json_object_set_new(line, "self_stress", json_number(ratio));
     json_decref(terms);
     json_line(line);
 }

@@ -66,7 +66,7 @@ static struct {
     double eps;                   /* and what was asked of it */
     int64_t growing;              /* of those the ones whose reactions grow and only seem good */
     double approach;              /* m/s: of bodies in these steps, the largest */
-    int64_t fell_back;            /* steps that were solved otherwise than asked */
+    int64_t fell_back;            /* steps that were solved otherwise than asked, or given up */
     double seconds;
 } total;
 
@@ -74,7 +74,8 @@ static void count(const struct report *r)
 {
     char where[40];
     snprintf(where, sizeof where, "step %lld", (long long)r->step);
-    if (r->fallback && !total.fell_back++) options_warn(where, r); // of all steps, mostly
+    if ((r->fallback || r->given_up) && !total.fell_back++)
+        options_warn(where, r); // of all steps, mostly
     total.sweeps += r->sweeps;
     total.safeguarded += r->safeguarded, total.gave_up += r->gave_up;
     total.seconds += r->seconds;

@@ -343,6 +343,7 @@ const char *options_error(enum criterion criterion)
 void options_warn(const char *where, const struct report *r)
 {
     if (r->fallback) warn("%s: %s: %s sweeps instead", where, r->fallback, r->method);
+    if (r->given_up) warn("%s: given up: %s", where, r->given_up);
 }
 
 void options_summary(const char *where, const struct report *r)

@@ -62,7 +62,7 @@ void options_log_close(void);
 /* What a report's criterion is called: eps_glob, scaled or natural. */
 const char *options_error(enum criterion criterion);
 
-/* To stderr: that a solver could not do what was asked, and why; nothing where it could. */
+/* To stderr: that a solver could not do what was asked or gave up, and why; nothing where it did neither. */
 void options_warn(const char *where, const struct report *r);
 
 /* Says on stderr how a solve went: "1135 contacts, exact: 812 sweeps, eps_glob 9.9e-11, 0.04 s" */

@@ -53,6 +53,7 @@ struct report {
     int64_t gave_up;      /* local solves that did not satisfy the law */
     double work;          /* ns, counted and not timed, of the whole solve [solve/prices.h] */
     const char *fallback; /* why the solver asked for could not go on, and swept instead; or NULL */
+    const char *given_up; /* why it ended before its limits, a literal; or NULL */
     double seconds;       /* s of CPU, of all threads, in the solve */
     double elapsed;       /* s on the wall, in the solve */
     double detection;     /* s of CPU to find the contacts, where the step did so itself */

@@ -29,7 +29,9 @@ enum {
     STEPS_TO_END = 25, /* factorisations that it takes to the end, mostly */
     RETRIES = 8,       /* attempts from other sweeps where the first has failed, at most */
     RETRY_COST = 3,    /* cost of all retries, at most, in multiples of all that was spent before */
-    LAST_SWEEPS = 20000 /* sweeps at most after that */
+    LAST_SWEEPS = 20000, /* sweeps at most after that */
+    CHUNKS_MAX = 64,     /* chunks of a solve whose end is remembered */
+    WANDER_FROM = 10000  /* sweeps that nothing is given up before */
 };
 
 #define SUBSET_CONTACT 4e4  /* ns a contact of a small subset, mostly */
@@ -37,6 +39,8 @@ enum {
 #define AFFORD         3e10 /* ns: a factorisation that costs more is not made */
 #define CHEAP          2e8  /* ns that the last sweeps may always take */
 #define FAR            30   /* times eps: sweeps that have come nearer mostly end soon */
+#define WANDER_MAP     1e-4 /* natural map from which on sweeps may wander */
+#define WANDER         0.75 /* of the best map of a quarter of the sweeps: it has to fall below */
 
 struct strategy {
     struct solve *s;
@@ -52,6 +56,11 @@ struct strategy {
         int32_t sweeps;
     } older;
     int32_t sweeps_max; /* of the whole solve */
+    int chunks;
+    struct { /* after each chunk: the sweeps made, and their best criterion so far */
+        int32_t sweeps;
+        double value;
+    } chunk[CHUNKS_MAX];
 };
 
 /*
@@ -211,6 +220,30 @@ static int look_for_better(struct strategy *a, double more)
     return 0;
 }
 
+/*
+ * Whether the sweeps wander: in a large pile friction makes their fixed points repel, along motions of
+ * much of the pile that hardly change the velocities at the contacts, and they stay at some distance for
+ * ever [nsd-methods(7), THE WALL]. Then four times the sweeps have hardly improved the best map. Only
+ * below a map that is small already, where a chain of contacts that drifts no longer decides.
+ */
+static bool wanders(struct strategy *a)
+{
+    const struct solve *s = a->s;
+    double best = anderson_best_value(a->sweeps);
+    int32_t now = s->rep->sweeps;
+    if (a->chunks < CHUNKS_MAX) {
+        a->chunk[a->chunks].sweeps = now, a->chunk[a->chunks].value = best;
+        a->chunks++;
+    }
+    if (s->o->criterion != CRITERION_NATURAL || now < WANDER_FROM || best > WANDER_MAP)
+        return false;
+    int k = a->chunks - 1;
+    while (k >= 0 && a->chunk[k].sweeps > now / 4) k--;
+    return k >= 0 && best > WANDER * a->chunk[k].value;
+}
+
+static const char wander[] = "the sweeps wander, more come no nearer";
+
 /* Sweeps in chunks, with a look for something better after each. 0, or -1 when memory is short */
 static int sweep_and_choose(struct strategy *a)
 {
@@ -226,13 +259,17 @@ static int sweep_and_choose(struct strategy *a)
         if (!isfinite(s->value)) break;
         double more = a->older.sweeps ? sweeps_to_come(a, anderson_best_value(a->sweeps)) : 0;
         a->older.value = before, a->older.sweeps = had;
-        if (a->tried || gain(a, more, least) * rep->sweeps * a->price < least) continue;
-        if (s->p->shared) {
-            if (!s->p->shared->may_want) continue;
-            s->p->shared->wants_whole = true;
+        if (!a->tried && gain(a, more, least) * rep->sweeps * a->price >= least) {
+            if (s->p->shared && s->p->shared->may_want) {
+                s->p->shared->wants_whole = true;
+                break;
+            }
+            if (!s->p->shared && look_for_better(a, more)) return -1;
+        }
+        if (!solve_over(s) && wanders(a)) {
+            s->rep->given_up = wander;
             break;
         }
-        if (look_for_better(a, more)) return -1;
     }
     anderson_restore_best(a->sweeps);
     return 0;

@@ -166,7 +166,7 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
     s.best.value = INFINITY, s.pace = PACE;
     rep->criterion = o->criterion, rep->eps = o->eps;
     rep->sweeps = 0, rep->newton = rep->safeguarded = rep->gave_up = 0;
-    rep->work = 0, rep->fallback = NULL;
+    rep->work = 0, rep->fallback = rep->given_up = NULL;
     snprintf(rep->method, sizeof rep->method, "%s",
              o->global == &solver_nlgs ? o->method->name : o->global->name);
     int failed = p->n ? o->global->run(&s) : 0;
