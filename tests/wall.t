@@ -54,6 +54,8 @@ elif [ -e "$problems/piles/pile8000.h5" ]; then
     like "nsd-solve says so" "$(cat "$tmp/err")" 'given up: the sweeps wander'
     like "long before the limit, with the best that they found" \
         "$(nsd-info "$tmp/given-up.h5" | jq -c 'select(.sweeps) | [.sweeps < 50000, .converged, .natural < 1e-5]')" '^\[true,false,true\]$'
+    NSD_LANES=2 nsd-solve -j 2 --eps 1e-8 "$tmp/pile.h5" >"$tmp/again.h5" 2>/dev/null
+    ok "at the same sweep for any threads and width" cmp "$tmp/given-up.h5" "$tmp/again.h5"
     status 0 "the default is not concerned" nsd-solve --strict "$tmp/pile.h5"
 else
     skip "sweeps of 8000 balls" "no ../shared/problems"
