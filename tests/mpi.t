@@ -165,8 +165,12 @@ dies() # one of three is killed after some frames; whole frames are left, and th
         [ "$(nsd-info "$tmp/d.h5" 2>/dev/null | jq -s 'map(select(.step != null)) | length')" -gt 2 ] 2>/dev/null && break
         sleep 0.1
     done
-    victim=$(ps -eo pid,args | awk -v f="$tmp/d.h5" 'index($0, f) && $2 ~ /^nsd-step/ { print $1 }' | sort -n | tail -n 1)
+    for k in $(ps -eo pid,args | awk -v f="$tmp/d.h5" 'index($0, f) && $2 ~ /^nsd-step/ { print $1 }'); do
+        ! tr '\0' '\n' <"/proc/$k/environ" | grep -qx OMPI_COMM_WORLD_RANK=2 || victim=$k
+    done
     [ -n "$victim" ] && kill -9 "$victim" || return 1
+    for ((k = 0; k < 300; k++)); do kill -0 "$job" 2>/dev/null || break; sleep 0.1; done
+    kill "$job" 2>/dev/null && return 1 # it has not ended by itself
     wait "$job" && return 1
     grep -q 'nsd-step: another process of the run has ended' "$tmp/said" || { cat "$tmp/said"; return 1; }
     nsd-step -n 2 -i "$tmp/d.h5" && nsd-info "$tmp/d.h5" >/dev/null
