@@ -37,9 +37,15 @@ nsd_half() # EPS
     local seconds natural
     { time nsd-step -j 1 -n "$late" --every "$late" --contacts --warm --eps "$1" "$work/rests.h5" 2> /dev/null > "$work/end.h5"; } 2> "$work/time"
     seconds=$(cat "$work/time")
-    natural=$(nsd-info --last -c "$work/end.h5" | jq -s --argjson dt $dt --argjson m "$(nsd-info -p "$work/start.h5" | jq -s 'map(.mass) | add / length')" '
+    nsd-info --last -p "$work/end.h5" | jq -s 'map({x, v, w})' > "$work/moving"
+    natural=$(nsd-info --last -c "$work/end.h5" | jq -s --argjson dt $dt --slurpfile bodies "$work/moving" \
+        --argjson m "$(nsd-info -p "$work/start.h5" | jq -s 'map(.mass) | add / length')" '
         def norm: map(. * .) | add | sqrt;
-        map(.mu as $mu | .r as $r | .u as $u | ($u[1:] | norm) as $ut |
+        def dot($a; $b): [$a, $b] | transpose | map(.[0] * .[1]) | add;
+        def at($i; $x): if $i < 0 then [0, 0, 0] else $bodies[0][$i] as $b | [range(3) | $x[.] - $b.x[.]] as $d | $b.w as $w |
+            [$b.v[0] + $w[1] * $d[2] - $w[2] * $d[1], $b.v[1] + $w[2] * $d[0] - $w[0] * $d[2], $b.v[2] + $w[0] * $d[1] - $w[1] * $d[0]] end;
+        map(.mu as $mu | .r as $r | at(.body[0]; .point) as $va | at(.body[1]; .point) as $vb | [range(3) | $vb[.] - $va[.]] as $v |
+            [dot(.n; $v), dot(.t1; $v), dot(.t2; $v)] as $u | ($u[1:] | norm) as $ut |
             [$r[0] - $m * ($u[0] + $mu * $ut), $r[1] - $m * $u[1], $r[2] - $m * $u[2]] as $tau | ($tau[1:] | norm) as $t |
             (if $mu * $t <= -$tau[0] then [0, 0, 0] elif $t <= $mu * $tau[0] then $tau
              else (($tau[0] + $mu * $t) / (1 + $mu * $mu)) as $p | [$p, $mu * $p * $tau[1] / $t, $mu * $p * $tau[2] / $t] end) as $p |

@@ -203,6 +203,7 @@ claim()
     'nsd-export --part contacts -o '*'.vtp'*) series "$(frames out.h5 length)" forces*.vtp ;;
     'nsd-export '*'> grains.csv') [ "$(wc -l <grains.csv)" = 501 ] ;;
     'nsd-export -o out.lammpstrj out.h5') [ "$(grep -c '^ITEM: ATOMS id type x y z ' out.lammpstrj)" = "$(frames out.h5 length)" ] ;;
+    *'--part surfaces -o bricks.vtp') grep -q 'NumberOfPolys="390"' bricks.vtp ;; # 65 bricks of six faces
     'nsd-export -o out.xyz out.h5') [ "$(grep -c 'Properties=species:S:1:pos:R:3:' out.xyz)" = "$(frames out.h5 length)" ] ;;
     *'> forces.txt') table 1 "$(nsd-info --last out.h5 | jq .contacts)" forces.txt && awk '$1 < 0 { exit 1 }' forces.txt ;;
     'gnuplot '*) ;;

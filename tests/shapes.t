@@ -191,6 +191,15 @@ is 'a pill lies on both rims' "$(rests "$(on "$rail" 0 0.01 pill)" 0.01 2)" true
 is 'a plank lies on the ridge of a roof' "$(rests "$(on "$roof" 0 0.01 plank)" 0.01 2)" true
 is 'a cube stands on it on the edge that crosses it' "$(rests "$(on "$roof" 0 0.0707106781186548 cube '[0.785398163397448, 0, 0]')" 0.0707107 1)" true
 is 'what is beside a rectangle falls past it' "$(on "$rail" 0.2 0.05 cube | jq '.[0] < -1 and .[2] == 0')" true
+# stones and boxes on the roof and the rail: the same bytes
+jq --argjson w "[$roof, $rail]" '.walls = $w | .shapes = {stone: .shapes.stone, cube: .shapes.cube} |
+    .bodies = [{count: 60, shape: "stone", orientation: "random", size: 0.05, box: {x: [-0.2, 0.2], y: [-0.3, 0.3], z: [0.2, null]}}]' scenes/rubble.json >"$tmp/roof.json"
+nsd-gen "$tmp/roof.json" >"$tmp/roof.h5"
+for j in 1 2; do nsd-step -j "$j" -n 350 --every 50 --contacts --warm "$tmp/roof.h5" 2>/dev/null >"$tmp/roof$j.h5"; done
+NSD_LANES=2 nsd-step -j 1 -n 350 --every 50 --contacts --warm "$tmp/roof.h5" 2>/dev/null >"$tmp/lanes.h5"
+is 'stones meet ridges and rims' "$(nsd-info -c "$tmp/roof1.h5" | jq -s 'map(select(.body[0] < 0)) | length > 50')" true
+ok 'with the same bytes in 1 and 2 threads' cmp "$tmp/roof1.h5" "$tmp/roof2.h5"
+ok 'and with every width of vectors' cmp "$tmp/roof1.h5" "$tmp/lanes.h5"
 # in the plane: a rod across two posts of a chain
 printf '{"dim": 2, "dt": 1e-3, "mu": 0.5, "shapes": {"rod": {"box": [0.6, 0.02]}}, "bodies": [{"x": [0, 0.01], "shape": "rod"}],
     "walls": [{"polygon": {"points": [[-0.2, -1], [-0.1, 0], [0, -1], [0.1, 0], [0.2, -1]], "closed": false}}]}' |
