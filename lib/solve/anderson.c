@@ -132,10 +132,13 @@ static void take_terms(const struct anderson *a, int64_t slot, double *term)
     const struct bundle *c = slot_bundle(p, slot);
     const double *df = a->m.df[a->m.next];
     int k = slot_lane(slot);
+    int width = mixing_width(p);
     double lambda = c->w[0][k] > c->w[1][k] ? c->w[0][k] : c->w[1][k];
-    for (int l = 0; l < p->d; l++) {
-        int64_t at = (slot / BUNDLE * p->d + l) * BUNDLE + k;
-        double wf = lambda * a->m.f[at], wdf = lambda * df[at];
+    double length = p->beyond ? p->beyond[slot / BUNDLE].length[k] : 0;
+    for (int l = 0; l < width; l++) {
+        int64_t at = (slot / BUNDLE * width + l) * BUNDLE + k;
+        double w = l < 6 ? lambda : length > 0 ? lambda / (length * length) : 0; // 6 on: moments
+        double wf = w * a->m.f[at], wdf = w * df[at];
         *term++ = wf * a->m.f[at];
         for (int j = 0; j < depth(a); j++)
             *term++ = wdf * a->m.df[j][at], *term++ = wf * a->m.df[j][at];
@@ -146,7 +149,7 @@ static void take_terms(const struct anderson *a, int64_t slot, double *term)
 static void measure_shared(const struct anderson *a, struct mixing_sums *t)
 {
     const struct problem *p = a->s->p;
-    const int n = 1 + 2 * depth(a), size = p->d * n;
+    const int n = 1 + 2 * depth(a), size = mixing_width(p) * n;
     double *term = malloc((size_t)(p->slots + 1) * (size_t)size * sizeof *term);
     double out[1 + 2 * MIXING_DEPTH][BUNDLE];
     struct mixing_sums here = { 0 };
@@ -156,7 +159,7 @@ static void measure_shared(const struct anderson *a, struct mixing_sums *t)
     }
     mixing_widest()->measure(p, &a->m, 0, p->bundles, &here);
     for (int64_t i = 0; i < p->slots; i++) take_terms(a, i, term + size * i);
-    p->shared->sum(p->shared, p, CHUNK_BUNDLES, p->d, n, term, out[0]);
+    p->shared->sum(p->shared, p, CHUNK_BUNDLES, mixing_width(p), n, term, out[0]);
     for (int k = 0; k < BUNDLE; k++) {
         t->f2[k] = out[0][k];
         for (int j = 0; j < depth(a); j++)
