@@ -157,7 +157,7 @@ static bool set_pulls(struct problem *p, const struct contacts *s)
     if (!anywhere(p, any)) return true;
     p->pull = calloc((size_t)p->slots + 1, sizeof *p->pull);
     for (int64_t i = 0; p->pull && i < p->slots; i++)
-        if (p->contact[i] >= 0) p->pull[i] = p->dt * s->tie[p->contact[i]].pull;
+        if (s->tie && p->contact[i] >= 0) p->pull[i] = p->dt * s->tie[p->contact[i]].pull;
     return p->pull != NULL;
 }
 
