@@ -65,7 +65,7 @@ memory() # MB of all, of the largest: one process, and 2, 4, 8
 {
     local k all most _bytes _many one f
     f=$(cube 46)
-    one=$(python3 -c 'import resource, subprocess, sys
+    one=$(/usr/bin/python3 -c 'import resource, subprocess, sys
 subprocess.run(sys.argv[1:], stderr=subprocess.DEVNULL)
 print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)' nsd-step --gap 1e-8 -n 2 --every 1000 --order block --eps 1e-2 -o "$tmp/one.h5" "$f")
     for k in 2 4 8; do

@@ -83,7 +83,7 @@ blocks() # FILE K EPS ARGUMENT ...: to the criterion, and moving as the order of
     rm -f "$tmp"/one.h5 "$tmp"/block.h5
     nsd-step "$@" --eps "$eps" -o "$tmp/one.h5" "$file" &&
         ranks "$k" "$@" --eps "$eps" --contacts --order block -o "$tmp/block.h5" "$file" || return 1
-    jq -n --argjson e "$(natural "$tmp/block.h5")" --argjson eps "$eps" -e '$e <= $eps' && python3 - "$eps" "$tmp/one.h5" "$tmp/block.h5" <<'EOF'
+    jq -n --argjson e "$(natural "$tmp/block.h5")" --argjson eps "$eps" -e '$e <= $eps' && /usr/bin/python3 - "$eps" "$tmp/one.h5" "$tmp/block.h5" <<'EOF'
 import io, sys, h5py
 import numpy as np
 def last(path):

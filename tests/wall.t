@@ -24,7 +24,7 @@ like "self-stress falls as eps does" "$(jq -s 'map(.self_stress) | [.[0] / .[1],
 
 # ---- the page's own numbers, from M and H ----
 
-if python3 -c 'import scipy' 2>/dev/null; then
+if /usr/bin/python3 -c 'import scipy' 2>/dev/null; then
     nsd-detect --overlap keep --fclib=global <"$tmp/jam.h5" >"$tmp/jam.global" 2>/dev/null ||
         nsd-cat "$tmp/jam.h5" | nsd-detect --overlap keep --fclib=global >"$tmp/jam.global"
     scripts/wall/wall.py follow "$tmp/jam.global" "$tmp"/jam-1e-[456].h5 >"$tmp/follow"

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """page.py OUT SIZE...: the page of make wall, from what wall.py found."""
 import json
 import sys

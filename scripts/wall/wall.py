@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """wall.py COMMAND ...: what holds up the solvers on large piles (make wall; nsd-methods(7)).
 
   follow G S...          the iterates S of the problem G, one after the other: a line of JSON each
