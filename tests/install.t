@@ -50,7 +50,7 @@ is "bash: an option" "$(complete nsd-step --meth)" --method
 is "bash: its words" "$(complete nsd-step --method e)" "ebp eal exact"
 is "bash: of a letter" "$(complete nsd-solve -m sb)" sbp
 is "bash: behind =" "$(complete nsd-export --to = l)" lammps
-is "bash: = itself" "$(complete nsd-export --part =)" "grains contacts boundary cell"
+is "bash: = itself" "$(complete nsd-export --part =)" "grains contacts boundary cell surfaces"
 is "bash: files are the shell's" "$(complete nsd-info out)" ""
 lacking() # options in --help that completion does not know
 {
