@@ -44,12 +44,26 @@ static void set_operator(const struct bundle *c, const struct beyond *x, int i, 
     q->rho = x->rho[i];
 }
 
-/* x of a contact: r*, and the moment turned a quarter */
-static void set_impulse(const struct beyond *x, int i, const double r[3], double out[ROLLING])
+void beyond_impulse(const struct beyond *x, int i, const double r[3], double out[ROLLING])
 {
     double l = x->length[i];
     for (int j = 0; j < 3; j++) out[j] = r[j];
     out[3] = x->m[0][i] / l, out[4] = -x->m[2][i] / l, out[5] = x->m[1][i] / l;
+}
+
+void beyond_solve(struct beyond *x, int i, enum method_id method, struct rolling *q,
+                  const struct local_opt *opt, struct rolling_lane *l)
+{
+    double was[ROLLING], tau[ROLLING], length = x->length[i];
+    memcpy(was, q->x, sizeof was);
+    rolling_solve(method, q, opt);
+    if (l->relax != 1) {
+        for (int j = 0; j < ROLLING; j++) tau[j] = was[j] + l->relax * (q->x[j] - was[j]);
+        rolling_project(q, tau, q->x);
+    }
+    const double m[3] = { length * q->x[3], length * q->x[5], -length * q->x[4] };
+    for (int j = 0; j < 3; j++) l->dm[j] = m[j] - x->m[j][i], x->m[j][i] = m[j];
+    l->steps = q->steps, l->safeguarded = q->safeguarded, l->gave_up = q->gave_up;
 }
 
 void beyond_rolling(const struct bundle *c, const struct beyond *x, const struct beyond_levers *y,
@@ -63,7 +77,7 @@ void beyond_rolling(const struct bundle *c, const struct beyond *x, const struct
     const double w[2] = { c->w[0][i], c->w[1][i] }, r[3] = { c->r[0][i], c->r[1][i], c->r[2][i] };
     double omega[3], l = x->length[i];
     set_operator(c, x, i, w, s, q);
-    set_impulse(x, i, r, q->x);
+    beyond_impulse(x, i, r, q->x);
     spin(c, body, i, omega);
     for (int j = 0; j < 3; j++) v[j] = u[j] / s[j > 0];
     v[3] = l * omega[0], v[4] = -l * omega[2], v[5] = l * omega[1];
@@ -78,10 +92,10 @@ void beyond_roll(const struct bundle *c, struct beyond *x, const struct beyond_l
         return;
     }
     struct rolling q;
-    double omega[3], was[ROLLING], k = x->s[1][i] * x->k[i], length = x->length[i];
+    double omega[3], k = x->s[1][i] * x->k[i], length = x->length[i];
     set_operator(c, x, i, l->w, l->s, &q);
-    set_impulse(x, i, l->r, q.x);
-    memcpy(was, q.x, sizeof was);
+    beyond_impulse(x, i, l->r, q.x);
+    const double was[2] = { q.x[4], q.x[5] };
     spin(c, body, i, omega);
     const double turned[2] = { -omega[2], omega[1] };
     q.b[0] = l->b[0] / l->s[0];
@@ -92,14 +106,7 @@ void beyond_roll(const struct bundle *c, struct beyond *x, const struct beyond_l
         double spun = turned[j] - x->k[i] * felt - x->wr[i] * turned_m;
         q.b[1 + j] = bt, q.b[4 + j] = length * spun;
     }
-    rolling_solve(method, &q, opt);
-    if (l->relax != 1) {
-        double tau[ROLLING];
-        for (int j = 0; j < ROLLING; j++) tau[j] = was[j] + l->relax * (q.x[j] - was[j]);
-        rolling_project(&q, tau, q.x);
-    }
-    const double m[3] = { length * q.x[3], length * q.x[5], -length * q.x[4] };
-    for (int j = 0; j < 3; j++) l->r[j] = q.x[j], l->dm[j] = m[j] - x->m[j][i], x->m[j][i] = m[j];
-    for (int j = 0; j < 2; j++) l->b[1 + j] += l->s[1] * k * length * (q.x[4 + j] - was[4 + j]);
-    l->steps = q.steps, l->safeguarded = q.safeguarded, l->gave_up = q.gave_up;
+    beyond_solve(x, i, method, &q, opt, l);
+    for (int j = 0; j < 3; j++) l->r[j] = q.x[j];
+    for (int j = 0; j < 2; j++) l->b[1 + j] += l->s[1] * k * length * (q.x[4 + j] - was[j]);
 }

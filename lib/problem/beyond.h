@@ -105,6 +105,12 @@ void beyond_levers_bond(struct bundle *c, struct beyond_levers *y, int i, const 
 double beyond_levers_turn(const struct levers *g, const struct bundle *c, struct beyond_levers *y,
                           int i, const double W[9], const double K[2], double iia, double iib);
 
+/* What both kinds share: out = x of lane i, r* (N s) and the moment turned a quarter; */
+void beyond_impulse(const struct beyond *x, int i, const double r[3], double out[ROLLING]);
+/* and q solved, relaxed: the moment of lane i becomes q's, and l has its change and how that was found. */
+void beyond_solve(struct beyond *x, int i, enum method_id method, struct rolling *q,
+                  const struct local_opt *opt, struct rolling_lane *l);
+
 /* As beyond_roll(), beyond_push() and beyond_rolling() */
 void beyond_levers_roll(const struct bundle *c, struct beyond *x, const struct beyond_levers *y,
                         struct body *body, int i, enum method_id method,

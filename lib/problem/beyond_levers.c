@@ -111,20 +111,13 @@ static void set_operator(const struct bundle *c, const struct beyond *x,
     q->mu[0] = c->mu[i], q->mu[1] = x->mu_p[i] / x->length[i], q->mu[2] = x->mu_r[i] / x->length[i];
 }
 
-static void set_impulse(const struct beyond *x, int i, const double r[3], double out[ROLLING])
-{
-    double l = x->length[i];
-    for (int j = 0; j < 3; j++) out[j] = r[j];
-    out[3] = x->m[0][i] / l, out[4] = -x->m[2][i] / l, out[5] = x->m[1][i] / l;
-}
-
 void beyond_levers_rolling(const struct bundle *c, const struct beyond *x,
                            const struct beyond_levers *y, struct body *body, int i,
                            const double u[3], struct rolling *q, double v[ROLLING])
 {
     const double r[3] = { c->r[0][i], c->r[1][i], c->r[2][i] };
     set_operator(c, x, y, i, q);
-    set_impulse(x, i, r, q->x);
+    beyond_impulse(x, i, r, q->x);
     for (int j = 0; j < 3; j++) v[j] = u[j];
     spin(c, y, body, i, v + 3);
 }
@@ -146,10 +139,9 @@ void beyond_levers_roll(const struct bundle *c, struct beyond *x, const struct b
                         const struct local_opt *opt, struct rolling_lane *l)
 {
     struct rolling q;
-    double now[ROLLING], was[ROLLING], omega[3], length = x->length[i], dp[3];
+    double now[ROLLING], omega[3], dp[3];
     set_operator(c, x, y, i, &q);
-    set_impulse(x, i, l->r, q.x);
-    memcpy(was, q.x, sizeof was);
+    beyond_impulse(x, i, l->r, q.x);
     spin(c, y, body, i, omega);
     for (int j = 0; j < 3; j++) { // u and omega with the bond's pull that goes with them
         now[j] = 0;
@@ -165,17 +157,10 @@ void beyond_levers_roll(const struct bundle *c, struct beyond *x, const struct b
         q.b[j] = now[j];
         for (int k = 0; k < ROLLING; k++) q.b[j] -= q.W[ROLLING * j + k] * q.x[k];
     }
-    rolling_solve(method, &q, opt);
-    if (l->relax != 1) {
-        double tau[ROLLING];
-        for (int j = 0; j < ROLLING; j++) tau[j] = was[j] + l->relax * (q.x[j] - was[j]);
-        rolling_project(&q, tau, q.x);
-    }
-    const double m[3] = { length * q.x[3], length * q.x[5], -length * q.x[4] };
+    beyond_solve(x, i, method, &q, opt, l);
     for (int j = 0; j < 3; j++) {
         l->b[j] = q.b[j]; // that without r alone, as the vector text has it
         for (int k = 3; k < ROLLING; k++) l->b[j] += q.W[ROLLING * j + k] * q.x[k];
-        l->r[j] = q.x[j], l->dm[j] = m[j] - x->m[j][i], x->m[j][i] = m[j];
+        l->r[j] = q.x[j];
     }
-    l->steps = q.steps, l->safeguarded = q.safeguarded, l->gave_up = q.gave_up;
 }
