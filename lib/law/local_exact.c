@@ -70,9 +70,10 @@ static bool slide_nearest(struct local *l)
     slide_init(&k, l);
     for (int i = 0, n = slide_roots(&k, root); i < n; i++) {
         if (!slide_accept(l, &k, root[i], r)) continue;
-        double far = hypot(r[0] - l->r[0], hypot(r[1] - l->r[1], r[2] - l->r[2]));
-        if (!(far < nearest)) continue;
-        nearest = far;
+        double far2 = 0;
+        for (int j = 0; j < 3; j++) far2 += (r[j] - l->r[j]) * (r[j] - l->r[j]);
+        if (!(far2 < nearest)) continue;
+        nearest = far2;
         for (int j = 0; j < 3; j++) best[j] = r[j];
     }
     if (!(nearest < INFINITY)) return false;

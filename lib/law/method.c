@@ -68,7 +68,7 @@ double local_lambda_max(const double W[9])
         int k = i % 3, p = (k + 1) % 3, q = (k + 2) % 3;
         if (S[p][q] == 0) continue;
         double h = 0.5 * (S[q][q] - S[p][p]) / S[p][q];
-        double t = copysign(1 / (fabs(h) + hypot(1, h)), h), c = 1 / sqrt(1 + t * t), s = t * c;
+        double t = copysign(1 / (fabs(h) + sqrt(1 + h * h)), h), c = 1 / sqrt(1 + t * t), s = t * c;
         double a = S[k][p], b = S[k][q];
         S[p][p] -= t * S[p][q], S[q][q] += t * S[p][q];
         S[p][q] = S[q][p] = 0;
