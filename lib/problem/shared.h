@@ -13,8 +13,10 @@
 #include <stdint.h>
 
 struct problem;
+struct talk; /* how the processes reach each other: ranks/talk.h */
 
 struct shared {
+    struct talk *talk;         /* borrowed */
     int64_t contacts, bundles; /* of all processes */
     bool halves;               /* the order of all contacts has halves */
     double mean_mass;          /* kg: of all bodies that move */

@@ -1,6 +1,8 @@
 /* ranks/blocks.c: every rank its own contacts, an exchange a sweep [ranks/blocks.h]. */
 #include "ranks/blocks.h"
 
+#include "ranks/answers.h"
+
 #include "bodies/move.h"
 #include "bodies/project.h"
 
@@ -146,27 +148,6 @@ static double sum_along(struct shared *s, const struct problem *p, const double 
     return sum;
 }
 
-static double most(struct shared *s, double x)
-{
-    return talk_most(of(s)->part->talk, x);
-}
-
-static int64_t count(struct shared *s, int64_t n)
-{
-    return talk_sum(of(s)->part->talk, n);
-}
-
-static double agree(struct shared *s, double x)
-{
-    MPI_Bcast(&x, 1, MPI_DOUBLE, 0, of(s)->part->talk->comm);
-    return x;
-}
-
-static void fail(struct shared *s)
-{
-    talk_fail(of(s)->part->talk, EX_SOFTWARE, "no memory to solve the contacts");
-}
-
 /* ---- the borders ---- */
 
 /* touched[] of what the contacts push; pushed[] as the others tell */
@@ -221,11 +202,8 @@ void blocks_begin(struct blocks *b, struct part *y, const struct contacts *s, en
                                  .settle = settle,
                                  .judging = judging,
                                  .add = add,
-                                 .sum_along = sum_along,
-                                 .most = most,
-                                 .count = count,
-                                 .agree = agree,
-                                 .fail = fail };
+                                 .sum_along = sum_along };
+    answers_alike(&b->shared, t);
     find_borders(b, s);
     if (schedule_bodies(&b->plan, order, s, &y->p))
         talk_fail(t, EX_SOFTWARE, "no memory for the order of the contacts");

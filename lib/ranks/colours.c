@@ -1,6 +1,8 @@
 /* ranks/colours.c: the order of all contacts, walked by all ranks [ranks/colours.h]. */
 #include "ranks/colours.h"
 
+#include "ranks/answers.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -53,27 +55,6 @@ static double sum_along(struct shared *s, const struct problem *p, const double 
 {
     struct colours *c = of(s);
     return tally_along(tally(c, p), c->part->talk, s->bundles, term);
-}
-
-static double most(struct shared *s, double x)
-{
-    return talk_most(of(s)->part->talk, x);
-}
-
-static int64_t count(struct shared *s, int64_t n)
-{
-    return talk_sum(of(s)->part->talk, n);
-}
-
-static double agree(struct shared *s, double x)
-{
-    MPI_Bcast(&x, 1, MPI_DOUBLE, 0, of(s)->part->talk->comm);
-    return x;
-}
-
-static void fail(struct shared *s)
-{
-    talk_fail(of(s)->part->talk, EX_SOFTWARE, "no memory to solve the contacts");
 }
 
 /* ---- the order ---- */
@@ -171,11 +152,8 @@ void colours_begin(struct colours *c, struct part *y, const struct contacts *s,
                                  .settle = settle,
                                  .judging = judging,
                                  .sum = sum,
-                                 .sum_along = sum_along,
-                                 .most = most,
-                                 .count = count,
-                                 .agree = agree,
-                                 .fail = fail };
+                                 .sum_along = sum_along };
+    answers_alike(&c->shared, t);
     c->slot = talk_new(t, s->n, sizeof *c->slot);
     holders_find(&h, y);
     for (int64_t i = 0; i < s->n; i++) {

@@ -1,0 +1,11 @@
+/* ranks/answers.h: what solvers ask [problem/shared.h] that ranks answer alike, in whatever order they solve. */
+#ifndef NSD_ANSWERS_H
+#define NSD_ANSWERS_H
+
+#include "problem/shared.h"
+#include "ranks/talk.h"
+
+/* Sets s->talk, most, count, agree and fail. */
+void answers_alike(struct shared *s, struct talk *t);
+
+#endif
