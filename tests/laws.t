@@ -112,17 +112,21 @@ for g in auto nlgs anderson cg prox ipm; do
     nsd-detect "$tmp/wet.h5" | solve --global $g --eps 1e-6 >"$tmp/g.h5"
     like "wet grains: --global $g solves them" "$(nsd-err "$tmp/g.h5" | jq '.natural <= 1e-6')" true
 done
-nsd-detect --fclib=local "$tmp/wet.h5" >"$tmp/fclib.h5"
-if have_h5py; then
-    /usr/bin/python3 - "$tmp/fclib.h5" "$tmp/problem.h5" <<'PYTHON'
+# FORM PACKING CONTACTS: "true" where the problem that FCLIB gets has the velocities of these contacts, more than 20
+foreign()
+{
+    nsd-detect "--fclib=$1" "$2" >"$tmp/fclib.h5"
+    /usr/bin/python3 - "$tmp/fclib.h5" "$tmp/problem.h5" "fclib_$1" <<'PYTHON'
 import h5py, sys
 with h5py.File(sys.argv[1], 'r') as a, h5py.File(sys.argv[2], 'w') as b:
-    a.copy('fclib_local', b)
+    a.copy(sys.argv[3], b)
 PYTHON
-    solve --eps 1e-9 "$tmp/problem.h5" | nsd-info -c >"$tmp/foreign"
-    like "wet grains: as an FCLIB problem they have the same velocities" \
-        "$(nsd-info -c "$tmp/g.h5" | jq -s --slurpfile f "$tmp/foreign" \
-            '[., $f] | transpose | map(.[0].u[0] * (1 + .[0].e_n) - .[1].u[0] | fabs) | max < 1e-6')" true
+    solve --eps 1e-10 "$tmp/problem.h5" | nsd-info -c >"$tmp/foreign"
+    nsd-info -c "$3" | jq -s --slurpfile f "$tmp/foreign" \
+        '[., $f] | transpose | map(.[0].u[0] * (1 + .[0].e_n) - .[1].u[0] | fabs) | length > 20 and max < 1e-6'
+}
+if have_h5py; then
+    like "wet grains: as an FCLIB problem they have the same velocities" "$(foreign local "$tmp/wet.h5" "$tmp/g.h5")" true
 else
     skip "wet grains as an FCLIB problem" "no h5py"
 fi
@@ -295,17 +299,8 @@ for g in auto anderson cg prox ipm; do
 done
 # bonded grains as problems of others: r of these is r*, their velocities are the same
 for form in local global; do
-    nsd-detect --fclib=$form "$tmp/bonded.h5" >"$tmp/fclib.h5"
     if have_h5py; then
-        /usr/bin/python3 - "$tmp/fclib.h5" "$tmp/problem.h5" "fclib_$form" <<'PYTHON'
-import h5py, sys
-with h5py.File(sys.argv[1], 'r') as a, h5py.File(sys.argv[2], 'w') as b:
-    a.copy(sys.argv[3], b)
-PYTHON
-        solve --eps 1e-10 "$tmp/problem.h5" | nsd-info -c >"$tmp/foreign"
-        like "bonded grains: as a $form FCLIB problem they have the same velocities" \
-            "$(nsd-info -c "$tmp/m.h5" | jq -s --slurpfile f "$tmp/foreign" \
-                '[., $f] | transpose | map(.[0].u[0] * (1 + .[0].e_n) - .[1].u[0] | fabs) | length > 20 and max < 1e-6')" true
+        like "bonded grains: as a $form FCLIB problem they have the same velocities" "$(foreign "$form" "$tmp/bonded.h5" "$tmp/m.h5")" true
     else
         skip "bonded grains as a $form FCLIB problem" "no h5py"
     fi

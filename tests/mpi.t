@@ -15,7 +15,7 @@ ranks() # K ARGUMENT ...: nsd-step by K processes
 {
     local k=$1
     shift
-    timeout 300 mpirun --oversubscribe --bind-to none -n "$k" nsd-step "$@"
+    timeout 300 mpirun --oversubscribe --bind-to none -n "$k" nsd-step "$@" </dev/null # or mpirun reads on where a test does
 }
 
 same() # FILE "K ..." ARGUMENT ...: the bytes of one process
@@ -45,24 +45,20 @@ ok "by another criterion, with warm starts" same "$tmp/heap.h5" 3 -n 5 --criteri
 ok "where auto goes on with Newton's method" same "$tmp/heap.h5" 2 -n 1 --eps 1e-12
 ok "by the interior point method, which the first makes alone" same "$tmp/heap.h5" 2 -n 1 --global ipm
 
-after 200 scenes/drum.json
-ok "a drum that turns" same "$tmp/drum.h5" 3 -n 5
-after 60 scenes/shear.json
-ok "a cell that is sheared" same "$tmp/shear.h5" 3 -n 20
-after 100 scenes/vibrated.json
-ok "a cell that repeats, over a floor that is shaken" same "$tmp/vibrated.h5" 3 -n 10
-after 30 scenes/rubble.json
-ok "clumps, capsules, hulls" same "$tmp/rubble.h5" 3 -n 3
-after 100 scenes/cohesive.json
-ok "cohesion" same "$tmp/cohesive.h5" 3 -n 5
-after 300 scenes/rolling.json
-ok "rolling friction" same "$tmp/rolling.h5" 3 -n 5
-after 20 scenes/bonded.json
-ok "bonds" same "$tmp/bonded.h5" 2 -n 5
-after 50 scenes/press.json
-ok "a piston under a load" same "$tmp/press.h5" 2 -n 5
-after 500 scenes/pour.json
-ok "grains that pour and are taken away" same "$tmp/pour.h5" 3 -n 20
+while read -r before scene ranks steps name; do
+    after "$before" "scenes/$scene.json"
+    ok "$name" same "$tmp/$scene.h5" "$ranks" -n "$steps"
+done <<'END'
+200 drum 3 5 a drum that turns
+60 shear 3 20 a cell that is sheared
+100 vibrated 3 10 a cell that repeats, over a floor that is shaken
+30 rubble 3 3 clumps, capsules, hulls
+100 cohesive 3 5 cohesion
+300 rolling 3 5 rolling friction
+20 bonded 2 5 bonds
+50 press 2 5 a piston under a load
+500 pour 3 20 grains that pour and are taken away
+END
 
 on_others() # a run on 2, then 3, against one process
 {
