@@ -51,6 +51,7 @@ struct parts {
     int64_t n, parts;
     struct contacts *found; /* [parts] */
     struct contact *at;     /* where they go */
+    int64_t guess;          /* contacts of a part: as many as in the step before */
     _Atomic bool failed;
 };
 
@@ -58,7 +59,8 @@ static void find_parts(void *arg, int64_t first, int64_t end)
 {
     struct parts *s = arg;
     for (int64_t k = first; k < end; k++)
-        if (!s->find(&s->found[k], s->o, s->n * k / s->parts, s->n * (k + 1) / s->parts))
+        if (!contacts_reserve(&s->found[k], s->guess) ||
+            !s->find(&s->found[k], s->o, s->n * k / s->parts, s->n * (k + 1) / s->parts))
             s->failed = true;
 }
 
@@ -75,8 +77,9 @@ static void copy_parts(void *arg, int64_t first, int64_t end)
 static bool find_all(struct contacts *out, const struct sought *o, int64_t n, int64_t least,
                      find_text *find)
 {
-    struct parts s = { o, find, n, 4 * (int64_t)team_size(), NULL, NULL, false };
+    struct parts s = { o, find, n, 4 * (int64_t)team_size(), NULL, NULL, 0, false };
     int64_t more = 0;
+    s.guess = out->room / s.parts;
     if (team_size() == 1 || n < 2 * least) return find(out, o, 0, n);
     if (!(s.found = calloc((size_t)s.parts, sizeof *s.found))) return false;
     team_share(team_size(), s.parts, 1, find_parts, &s);

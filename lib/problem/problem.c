@@ -218,12 +218,12 @@ void problem_set_free_motion(struct problem *p)
 
 /* The place of a body i (wall w: -1-w) of a contact at x (m): its own, or of a new copy if it does
    not move. A load's speed is prescribed here [problem/coupling.h]. */
-static int32_t place_of(struct problem *p, int32_t i, vec3 x, int64_t *next)
+static int32_t place_of(struct problem *p, int32_t i, const vec3 *x, int64_t *next)
 {
     const struct packing *pack = p->packing;
     if (i >= 0 && pack->mass[i] > 0) return body_place(p->seat[i]);
     struct body *copy = &p->body[*next];
-    vec3 v = i < 0 ? wall_velocity(pack, &pack->wall[-1 - i], x) : pack->v[i];
+    vec3 v = i < 0 ? wall_velocity(pack, &pack->wall[-1 - i], *x) : pack->v[i];
     *copy = (struct body){ .v = { v.x, v.y, v.z } };
     if (i < 0 && p->rolls) { // its arm is 0: that it turns matters to moments only
         vec3 w = wall_spin(pack, &pack->wall[-1 - i]);
@@ -248,7 +248,7 @@ static void place_some(void *arg, int64_t first, int64_t end)
         r->a[k] = r->b[k] = body_place(nobody + (i >= other));
         for (int j = 0; j < 9 && p->lever; j += 4) r->W[j][k] = 1; // of a lane without a contact
         if (body[1] < 0) continue;
-        vec3 x = m->s->c[p->contact[i]].x;
+        const vec3 *x = &m->s->c[p->contact[i]].x;
         r->a[k] = place_of(p, body[0], x, &next), r->b[k] = place_of(p, body[1], x, &next);
     }
 }
