@@ -292,9 +292,10 @@ static int by_feature(const void *a, const void *b)
 
 int surface_touches(const struct surface *s, vec3 c, double most, struct touch touch[TOUCHES_MOST])
 {
-    struct surface_walk walk = surface_walk_begin(s->n);
+    struct surface_walk walk;
     struct surface_branch leaf;
     int n = 0;
+    surface_walk_begin(&walk, s->n);
     while (surface_walk_next(&walk, s->box, c, most, &leaf))
         for (int32_t i = leaf.lo; i < leaf.hi; i++) look_at(s, s->order[i], c, most, touch, &n);
     qsort(touch, (size_t)n, sizeof *touch, by_feature);

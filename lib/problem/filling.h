@@ -16,12 +16,6 @@ struct lattice {
 };
 struct lattice lattice_of(const struct packing *pack);
 
-/* Is b an image? */
-static inline bool contact_shifted(const struct contact *c)
-{
-    return c->shift[0] || c->shift[1] || c->shift[2];
-}
-
 /* Whose slots are filled, and from what */
 struct filling {
     struct problem *p;
