@@ -108,6 +108,18 @@ static bool same_place(const struct contact *c, const struct contact *d)
     return c->feature == d->feature && !memcmp(c->shift, d->shift, sizeof c->shift);
 }
 
+bool contact_is(const struct contact *c, const struct contact *d)
+{
+    return same_pair(c, d) && same_place(c, d);
+}
+
+double contacts_max_overlap(const struct contacts *s)
+{
+    double depth = 0;
+    for (int64_t i = 0; i < s->n; i++) depth = fmax(depth, -s->c[i].gap);
+    return depth;
+}
+
 /* r of c = what `was` in the basis of o */
 static void turn_into(const struct contact *c, const struct contact *o, const double was[3],
                       double r[3])

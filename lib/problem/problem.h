@@ -134,10 +134,17 @@ static inline bool problem_undivided(const struct problem *p)
     return p->W || p->lever;
 }
 
-/* The largest eigenvalue of W~_cc: 1/rho_a of the natural map */
+/* The largest eigenvalue of W~_cc: 1/rho_a of the natural map; of lanes k.., of slot i */
 ALWAYS_INLINE vd bundle_lambda(const struct bundle *c, int k)
 {
     return larger(vload(c->w[0] + k), vload(c->w[1] + k));
+}
+
+static inline double slot_lambda(const struct problem *p, int64_t i)
+{
+    const struct bundle *c = slot_bundle(p, i);
+    int k = slot_lane(i);
+    return c->w[0][k] > c->w[1][k] ? c->w[0][k] : c->w[1][k];
 }
 
 /* u~ of lanes k.. of c from the velocities of body[], or u where e is NULL */

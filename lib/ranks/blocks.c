@@ -44,7 +44,7 @@ static void post(struct talk *t, int width, const struct border *go_list, double
     }
     double since = talk_busy();
     MPI_Waitall(n, r, MPI_STATUSES_IGNORE);
-    t->waited += talk_busy() - since;
+    talk_waited(t, since);
     free(r);
 }
 
@@ -104,7 +104,7 @@ static void settle(struct shared *s, struct problem *p)
 
 static void after_group(struct shared *s, struct problem *p, int64_t group)
 {
-    if (group == of(s)->groups - 1) settle(s, p);
+    if (group == of(s)->plan.groups - 1) settle(s, p);
 }
 
 static void begin(struct shared *s, struct problem *p)
@@ -133,7 +133,7 @@ static void add(struct shared *s, double *x, int n)
     struct talk *t = of(s)->part->talk;
     double *all = talk_new(t, (int64_t)n * t->n, sizeof *all), since = talk_busy();
     MPI_Allgather(x, n, MPI_DOUBLE, all, n, MPI_DOUBLE, t->comm);
-    t->waited += talk_busy() - since;
+    talk_waited(t, since);
     for (int j = 0; j < n; j++) x[j] = 0;
     for (int q = 0; q < t->n; q++)
         for (int j = 0; j < n; j++) x[j] += all[q * n + j];
@@ -207,15 +207,15 @@ void blocks_begin(struct blocks *b, struct part *y, const struct contacts *s, en
     find_borders(b, s);
     if (schedule_bodies(&b->plan, order, s, &y->p))
         talk_fail(t, EX_SOFTWARE, "no memory for the order of the contacts");
-    b->plan.beyond = b->plan.inside = b->plan.rim = b->plan.rest =
-        0;                 // a rank's threads share groups
-    if (!b->plan.groups) { // one without a contact, in which the exchange is made all the same
+    // a rank's threads share groups
+    b->plan.beyond = b->plan.inside = b->plan.rim = b->plan.rest = 0;
+    // one without a contact, in which the exchange is made all the same
+    if (!b->plan.groups) {
         free(b->plan.group);
         b->plan.group = talk_new(t, 2, sizeof *b->plan.group), b->plan.groups = 1;
     }
-    b->groups = b->plan.groups;
     int64_t bundles = 0;
-    for (int64_t g = 0; g < b->groups; g++)
+    for (int64_t g = 0; g < b->plan.groups; g++)
         bundles += (b->plan.group[g + 1] - b->plan.group[g] + BUNDLE - 1) / BUNDLE;
     b->shared.contacts = talk_sum(t, s->n), b->shared.bundles = talk_sum(t, bundles);
 }
@@ -335,12 +335,6 @@ void blocks_move(struct blocks *b, const struct contacts *s)
     if (!overlap_projects(overlap)) return;
     move_apart(b, s);
     part_refresh(b->part);
-}
-
-static void borders_free(const struct talk *t, struct border *b)
-{
-    for (int q = 0; b && q < t->n; q++) free(b[q].body);
-    free(b);
 }
 
 void blocks_free(struct blocks *b)

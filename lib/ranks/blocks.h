@@ -30,9 +30,8 @@ struct blocks {
     struct part *part;
     struct border *touched; /* [ranks] copies here of bodies of rank q that contacts here push */
     struct border *pushed;  /* [ranks] own bodies that contacts of rank q push */
-    double *
-        *since; /* [ranks][touched[q].n][6] m/s, rad/s: their velocities after the last exchange */
-    int64_t groups; /* of this rank */
+    /* [ranks][touched[q].n][6] m/s, rad/s: their velocities after the last exchange */
+    double **since;
     int64_t brakes;
     struct braked *brake; /* [brakes] */
     double *slower;       /* [contacts] their factors */

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a margin is: so many steps of the fastest body, within these numbers of mean radii */
+/* A margin is the way of the fastest body in STEPS_AHEAD steps, in mean radii at least and at most: */
 #define STEPS_AHEAD  16
 #define MARGIN_LEAST 0.05
 #define MARGIN_MOST  0.5
@@ -59,9 +59,9 @@ static void set_state(struct packing *p, int64_t i, const struct state *s)
     for (int k = 0; k < 3 && p->image; k++) p->image[i][k] = s->image[k];
 }
 
-static void borders_free(const struct part *y, struct border *b)
+void borders_free(const struct talk *t, struct border *b)
 {
-    for (int q = 0; b && q < y->talk->n; q++) free(b[q].body);
+    for (int q = 0; b && q < t->n; q++) free(b[q].body);
     free(b);
 }
 
@@ -127,7 +127,7 @@ void part_begin_again(struct part *y, const struct packing *whole)
 
 void part_free(struct part *y)
 {
-    borders_free(y, y->lent), borders_free(y, y->here);
+    borders_free(y->talk, y->lent), borders_free(y->talk, y->here);
     free(y->row), free(y->owner), free(y->dealt), free(y->load);
     packing_free(&y->p);
     territory_free(y->territory);
@@ -213,7 +213,7 @@ static void find_borders(struct part *y)
 {
     struct talk *t = y->talk;
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
-    borders_free(y, y->lent), borders_free(y, y->here);
+    borders_free(t, y->lent), borders_free(t, y->here);
     y->lent = talk_new(t, t->n, sizeof *y->lent), y->here = talk_new(t, t->n, sizeof *y->here);
     for (int64_t i = 0; i < y->p.n; i++)
         if (y->owner[i] != t->me) y->here[y->owner[i]].n++;

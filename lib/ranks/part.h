@@ -16,6 +16,9 @@ struct border {
     int32_t *body; /* [n] of this rank's packing */
 };
 
+/* Of all ranks; not collective */
+void borders_free(const struct talk *t, struct border *b);
+
 struct part {
     struct talk *talk;
     struct territory *territory;

@@ -16,8 +16,8 @@
 enum {
     CUT_AFTER = 20 /* steps that cuts are left alone, at least */
 };
-#define IMBALANCE                                                                                  \
-    1.1 /* contacts of the rank that has most over the mean: from here on cuts are made anew */
+/* Contacts of the rank that has most over the mean: from here on cuts are made anew. */
+#define IMBALANCE 1.1
 
 void stride_begin(struct stride *y, struct talk *t, const struct packing *whole)
 {
@@ -44,13 +44,15 @@ static void fail(const struct stride *y, const struct why *why)
     talk_fail(y->part.talk, why->status, why->text);
 }
 
-/* Keeps the contacts for which keep[] is true, with their ties. */
+/* Keeps the contacts for which keep[] is true, with all that is known of them. */
 static void sift(struct contacts *s, const bool *keep)
 {
     int64_t n = 0;
     for (int64_t i = 0; i < s->n; i++) {
         if (!keep[i]) continue;
         if (s->tie) s->tie[n] = s->tie[i];
+        if (s->found) s->found[n] = s->found[i];
+        if (s->moment) memcpy(s->moment[n], s->moment[i], sizeof *s->moment);
         s->c[n++] = s->c[i];
     }
     s->n = n;
@@ -70,12 +72,6 @@ static void find_contacts(struct stride *y, double gap, double reach, struct con
     if (!part->p.law && detect_choose(s, &part->p, gap, reach, &why)) fail(y, &why);
 }
 
-static bool same_contact(const struct contact *x, const struct contact *y)
-{
-    return x->a == y->a && x->b == y->b && x->feature == y->feature &&
-           !memcmp(x->shift, y->shift, sizeof x->shift);
-}
-
 /* The first rank chooses by the laws which of `all` are contacts; then all ranks have these. */
 static int choose_by_laws(struct stride *y, const struct packing *whole, struct roll *roll,
                           struct contacts *s, struct contacts *all, const struct step_opt *o,
@@ -92,7 +88,7 @@ static int choose_by_laws(struct stride *y, const struct packing *whole, struct 
         int64_t k = 0;
         for (int64_t i = 0; i < before.n; i++) {
             of[i].row = before.c[i].b;
-            of[i].keep = k < all->n && same_contact(&before.c[i], &all->c[k]);
+            of[i].keep = k < all->n && contact_is(&before.c[i], &all->c[k]);
             k += of[i].keep;
         }
     }
@@ -135,10 +131,7 @@ static int order_all(const struct stride *y, const struct packing *whole,
 /* kg: as one process adds it */
 static double mean_mass(const struct stride *y, const struct packing *whole)
 {
-    double sum = 0, n = 0;
-    for (int64_t i = 0; i < whole->n && !y->part.talk->me; i++)
-        sum += whole->mass[i], n += whole->mass[i] > 0;
-    double mean = n > 0 ? sum / n : 1;
+    double mean = y->part.talk->me ? 0 : packing_mean_mass(whole);
     MPI_Bcast(&mean, 1, MPI_DOUBLE, 0, y->part.talk->comm);
     return mean;
 }
@@ -193,9 +186,6 @@ static void solve_in_blocks(struct stride *y, struct blocks *b, const struct pac
     struct problem p;
     bool *keep = talk_new(y->part.talk, s->n, sizeof *keep);
     for (int64_t i = 0; i < s->n; i++) keep[i] = part_counts(&y->part, &s->c[i]);
-    int64_t n = 0;
-    for (int64_t i = 0; i < s->n && s->found; i++)
-        if (keep[i]) s->found[n++] = s->found[i];
     sift(s, keep);
     free(keep);
     blocks_begin(b, &y->part, s, o->order);
@@ -211,35 +201,21 @@ static void solve_in_blocks(struct stride *y, struct blocks *b, const struct pac
 /* Can ranks solve it together? */
 static bool is_shared(const struct packing *p, const struct step_opt *o)
 {
-    const struct solver *g = o->solve.global;
-    bool sweeps = g == &solver_auto || g == &solver_nlgs;
     for (int32_t k = 0; p->law && k < p->kinds * p->kinds; k++)
         if (law_adheres(&p->law[k])) return false;
-    return (sweeps || (g == &solver_anderson && !packing_rolls(p))) && !freedoms_in(p);
-}
-
-static double max_overlap(const struct contacts *s)
-{
-    double depth = 0;
-    for (int64_t i = 0; i < s->n; i++) depth = fmax(depth, -s->c[i].gap);
-    return depth;
-}
-
-/* What only a bond knows of the widest gap, which the first rank has */
-static void measure(struct stride *y, const struct packing *whole)
-{
-    double apart = y->part.talk->me ? 0 : packing_whole(whole).apart;
-    part_measure(&y->part);
-    MPI_Bcast(&apart, 1, MPI_DOUBLE, 0, y->part.talk->comm);
-    y->part.whole.apart = apart;
+    return step_sweeps(o->solve.global) && !freedoms_in(p);
 }
 
 /* The pairs here that are contacts, or may be by laws */
 static void detect_here(struct stride *y, const struct packing *whole, struct contacts *s,
                         const struct step_opt *o, double *reach)
 {
+    // of the widest gap only a bond knows, and bonds are the first's
+    double apart = y->part.talk->me ? 0 : packing_whole(whole).apart;
     packing_tidy(&y->part.p, NULL);
-    measure(y, whole);
+    part_measure(&y->part);
+    MPI_Bcast(&apart, 1, MPI_DOUBLE, 0, y->part.talk->comm);
+    y->part.whole.apart = apart;
     *reach = talk_most(y->part.talk, detect_reach(&y->part.p, o->gap));
     find_contacts(y, o->gap, *reach, s);
 }
@@ -265,10 +241,10 @@ static int detect(struct stride *y, struct packing *whole, struct contacts *all,
 
 static void balance_load(struct stride *y, const struct contacts *s)
 {
-    y->imbalance = part_imbalance(&y->part, s);
-    y->worst = fmax(y->worst, y->imbalance);
+    double imbalance = part_imbalance(&y->part, s);
+    y->worst = fmax(y->worst, imbalance);
     y->steps++;
-    if (y->imbalance <= IMBALANCE || y->steps - y->since < CUT_AFTER) return;
+    if (imbalance <= IMBALANCE || y->steps - y->since < CUT_AFTER) return;
     part_recut(&y->part);
     y->since = y->steps;
 }
@@ -288,7 +264,7 @@ static int step_by_first(struct stride *y, struct packing *whole, struct contact
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
     if (!t->me) {
         rep->step = whole->step + 1, rep->t = whole->t + whole->dt;
-        rep->err.max_overlap = max_overlap(all);
+        rep->err.max_overlap = contacts_max_overlap(all);
     }
     if (blocks)
         solve_in_blocks(y, &b, whole, &s, o, rep, why), blocks_free(&b);
@@ -335,18 +311,16 @@ static int step_by_all(struct stride *y, struct packing *whole, struct contacts 
     detect_here(y, whole, &s, o, &reach);
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
     rep->step = y->part.p.step + 1, rep->t = y->part.p.t + y->part.p.dt;
-    rep->err.max_overlap = talk_most(t, max_overlap(&s));
+    rep->err.max_overlap = talk_most(t, contacts_max_overlap(&s));
     rep->balanced = !bare, rep->tied = false;
     solve_in_blocks(y, &b, whole, &s, o, rep, why);
     bool moves = isfinite(rep->err.paper.eps_glob);
-    if (!moves) {
-        part_collect(&y->part, whole);
-    } else {
-        if (!bare && tell_first(y, whole, all, &s, o, rep, why)) return why->status;
+    if (!bare && tell_first(y, whole, all, &s, o, rep, why)) return why->status;
+    if (moves) {
         blocks_move(&b, &s);
-        if (!bare) part_collect(&y->part, whole);
         if (!t->me) settings_copy_motion(whole, &y->part.p);
     }
+    if (!bare || !moves) part_collect(&y->part, whole); // a run that diverges ends, and keeps this
     balance_load(y, &s);
     blocks_free(&b);
     contacts_free(&s);

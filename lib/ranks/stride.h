@@ -17,14 +17,14 @@
 struct stride {
     struct part part;
     struct neighbours near;
-    bool varies;             /* bodies come and go, at the first */
-    int64_t steps, since;    /* steps made; since the last cut */
-    int64_t alone;           /* steps whose contacts the first rank has solved alone */
-    double imbalance, worst; /* in the last step; of all */
-    int64_t sweeps;          /* of the shared solves */
-    double busy
-        [2]; /* s of this processor's time in them, and in all steps, without waiting for others */
-    int64_t solved[2]; /* bytes and messages of these, sent by this rank */
+    bool varies;          /* bodies come and go, at the first */
+    int64_t steps, since; /* steps made; since the last cut */
+    int64_t alone;        /* steps whose contacts the first rank has solved alone */
+    double worst;         /* of all steps: contacts of the rank that has most, over the mean */
+    int64_t sweeps;       /* of the shared solves */
+    /* s of this processor's time in these, and in all steps, without waiting for others */
+    double busy[2];
+    int64_t solved[2]; /* bytes and messages of the shared solves, sent by this rank */
 };
 
 /* Collective. The first rank's packing; in others it is not looked at. */

@@ -30,6 +30,12 @@ static int64_t largest(const int64_t *first, int64_t groups)
     return most;
 }
 
+static int by_row(const void *key, const void *row)
+{
+    int32_t x = *(const int32_t *)key, y = *(const int32_t *)row;
+    return x < y ? -1 : x > y;
+}
+
 /* What comes from a rank: groups and rows, as it has told */
 static void take_list(struct wires *w, const struct part *y, struct parcel *in, int rank)
 {
@@ -39,20 +45,14 @@ static void take_list(struct wires *w, const struct part *y, struct parcel *in, 
     int64_t most = (int64_t)(in->size / (sizeof(int64_t) + sizeof(int32_t)));
     x->come_body = talk_new(w->talk, most, sizeof *x->come_body);
     while (in->at < in->size) {
-        int64_t g, lo = 0, hi = y->p.n;
+        int64_t g;
         int32_t row;
         parcel_take(w->talk, in, &g, sizeof g), parcel_take(w->talk, in, &row, sizeof row);
-        while (lo < hi) {
-            int64_t middle = (lo + hi) / 2;
-            if (y->row[middle] < row)
-                lo = middle + 1;
-            else
-                hi = middle;
-        }
-        if (lo == y->p.n || y->row[lo] != row || g < 0 || g >= w->groups)
+        const int32_t *at = bsearch(&row, y->row, (size_t)y->p.n, sizeof *at, by_row);
+        if (!at || g < 0 || g >= w->groups)
             talk_fail(w->talk, EX_SOFTWARE,
                       "ranks disagree: a velocity of a body that is not here");
-        x->come_body[n++] = (int32_t)lo, x->come[g + 1]++;
+        x->come_body[n++] = (int32_t)(at - y->row), x->come[g + 1]++;
     }
 }
 
@@ -135,7 +135,7 @@ void wires_wait(struct wires *w, struct problem *p, int64_t g)
     if (!w->requests) return;
     double since = talk_busy();
     MPI_Waitall(w->requests, w->request, MPI_STATUSES_IGNORE);
-    w->talk->waited += talk_busy() - since;
+    talk_waited(w->talk, since);
     w->requests = 0;
     for (int k = 0; k < w->n; k++) {
         const struct wire *x = &w->wire[k];
