@@ -92,8 +92,8 @@ int contacts_match(struct contacts *new, const struct contacts *old);
 
 /* m: the deepest overlap, 0 where there is none */
 double contacts_max_overlap(const struct contacts *contacts);
-/* Are they one pair, and one place of it? */
-bool contact_is(const struct contact *c, const struct contact *d);
+/* Of their keys: < 0 where c comes first; 0: one pair, and one place of it */
+int contact_compare(const struct contact *c, const struct contact *d);
 
 /* The lever arms la, lb (m) of a contact between bodies whose centres are at xa and, that of the image
    that a meets, xb (m), along its normal; a wall has none: la = 0, whatever xa. */

@@ -5,6 +5,7 @@
 #include "bodies/kinematics.h"
 #include "bodies/offset.h"
 #include "bodies/top.h"
+#include "problem/brake.h"
 #include "problem/filling.h"
 #include "problem/schedule.h"
 #include "problem/shared.h"
@@ -53,6 +54,7 @@ void problem_free(struct problem *p)
     free(p->split), free(p->seat), free(p->pull), free(p->beyond), free(p->in_W);
     free(p->lever), free(p->spin), free(p->turn);
     delassus_free(&p->sorted);
+    brake_free(p->brake);
     if (p->own) delassus_free(p->own);
     if (p->coupling) couplings_free(p->coupling);
     free(p->own), free(p->coupling);
@@ -366,7 +368,9 @@ static int prepare(struct problem *p, const struct packing *pack, const struct c
     }
     struct filling f = { p, s, &cell, alpha, rho_factor, half };
     team_share(team_size(), p->bundles, SOME / BUNDLE, fill_bundles, &f);
+    room = !shared || !shared->slower || !brake_make(p, &f, shared->slower);
     free(half);
+    if (!room) return no_memory(p, why);
 
     double g = v3_norm(pack->g);
     p->fall = g * pack->dt;

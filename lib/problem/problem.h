@@ -33,6 +33,7 @@ enum {
 };
 
 struct shared;
+struct brake;
 
 struct problem {
     int d;
@@ -51,6 +52,7 @@ struct problem {
     int64_t *group;         /* [groups + 1] bundles group[g] .. group[g+1]-1 may be done at once */
     struct two_thread_split *split; /* NULL: the order has no halves */
     struct shared *shared; /* borrowed: the other processes that have a part of it; NULL: none */
+    struct brake *brake;   /* slots that the sweeps have to solve by shorter steps; NULL: none */
     int64_t bodies;        /* of body[]; 0: given by W */
     struct body *body; /* [bodies] the packing's, by colours in the order in which the sweep first
                           meets them, and copies of what does not move; NULL: given by W */

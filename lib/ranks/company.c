@@ -104,11 +104,11 @@ const char *crew_leave(void)
     snprintf(
         text, sizeof text,
         "%d ranks: %.3g bytes in %.3g messages a sweep, of the one that sends most; contacts of "
-        "the fullest %.3g of the mean at most, %lld cuts; %lld steps solved by the first alone; "
-        "memory "
-        "%.3g MB, of the largest %.3g MB; "
+        "the fullest %.3g of the mean on average, %.3g at most, %lld cuts; %lld steps solved by "
+        "the first alone; memory %.3g MB, of the largest %.3g MB; "
         "%.3g s without waiting, %.3g s of them in the solver",
-        crew.talk.n, most[0] / sweeps, most[1] / sweeps, y->worst, (long long)y->part.cuts,
+        crew.talk.n, most[0] / sweeps, most[1] / sweeps,
+        y->steps ? y->uneven / (double)y->steps : 1, y->worst, (long long)y->part.cuts,
         (long long)y->alone, memory[1] / 1024, memory[0] / 1024, most[3], most[2]);
     if (crew.begun || crew.talk.me) stride_free(&crew.stride);
     MPI_Finalize();

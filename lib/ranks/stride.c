@@ -14,7 +14,8 @@
 #include <string.h>
 
 enum {
-    CUT_AFTER = 20 /* steps that cuts are left alone, at least */
+    CUT_AFTER = 20, /* steps that cuts are left alone, */
+    LOST_MOST = 2   /* unless so many steps' work was lost since by what they became worse */
 };
 /* Contacts of the rank that has most over the mean: from here on cuts are made anew. */
 #define IMBALANCE 1.1
@@ -23,7 +24,8 @@ void stride_begin(struct stride *y, struct talk *t, const struct packing *whole)
 {
     int varies = packing_varies(whole);
     MPI_Bcast(&varies, 1, MPI_INT, 0, t->comm);
-    *y = (struct stride){ .varies = varies };
+    *y =
+        (struct stride){ .varies = varies, .since = -CUT_AFTER }; // the first cuts know no contacts
     part_begin(&y->part, t, whole);
 }
 
@@ -72,25 +74,80 @@ static void find_contacts(struct stride *y, double gap, double reach, struct con
     if (!part->p.law && detect_choose(s, &part->p, gap, reach, &why)) fail(y, &why);
 }
 
-/* The first rank chooses by the laws which of `all` are contacts; then all ranks have these. */
+/* Which of `before` laws have left in `all`, into of[before->n]; `added`: what they have put there besides */
+static void compare(struct talk *t, const struct contacts *before, const struct contacts *all,
+                    struct verdict *of, struct parcel *added)
+{
+    int64_t k = 0;
+    for (int64_t i = 0; i <= before->n; i++) {
+        int order = -1;
+        while (k < all->n) {
+            order = i < before->n ? contact_compare(&all->c[k], &before->c[i]) : -1;
+            if (order >= 0) break;
+            parcel_put(t, added, &all->c[k++], sizeof *all->c);
+        }
+        if (i == before->n) break;
+        of[i].row = before->c[i].b, of[i].keep = k < all->n && order == 0;
+        k += of[i].keep;
+    }
+}
+
+/* Puts those of `added`, by rows of the whole, into s in which this rank has a body. */
+static void insert(const struct stride *y, struct contacts *s, struct parcel *added)
+{
+    struct talk *t = y->part.talk;
+    struct contacts both = { 0 };
+    int64_t n = (int64_t)(added->size / sizeof(struct contact)), i = 0;
+    both.c = talk_new(t, s->n + n, sizeof *both.c), both.room = s->n + n;
+    for (; n > 0; n--) {
+        struct contact c;
+        parcel_take(t, added, &c, sizeof c);
+        int32_t a = c.a < 0 ? c.a : part_find(&y->part, c.a), b = part_find(&y->part, c.b);
+        bool here = b >= 0 && (c.a < 0 || a >= 0); // else neither body is this rank's
+        c.a = a, c.b = b;
+        if (!here || !part_has(&y->part, &c)) continue;
+        while (i < s->n && contact_compare(&s->c[i], &c) < 0) both.c[both.n++] = s->c[i++];
+        both.c[both.n++] = c;
+    }
+    while (i < s->n) both.c[both.n++] = s->c[i++];
+    contacts_free(s);
+    *s = both;
+}
+
+/* Bonds between shapes are contacts where detection finds none [bodies/anchor.h]: these become known to the
+   ranks that have their bodies, and the roll is called again. */
+static void add_to_all(struct stride *y, struct roll *roll, struct contacts *s,
+                       const struct contacts *all, struct parcel *added)
+{
+    struct talk *t = y->part.talk;
+    struct contacts again = { 0 };
+    talk_spread(t, added);
+    if (!added->size) return;
+    insert(y, s, added);
+    roll_free(roll);
+    roll_call(roll, &y->part, s, &again);
+    bool alike = t->me || again.n == all->n;
+    for (int64_t i = 0; !t->me && alike && i < all->n; i++)
+        alike = !contact_compare(&again.c[i], &all->c[i]);
+    if (!alike) talk_fail(t, EX_SOFTWARE, "ranks disagree about the contacts of bonds");
+    contacts_free(&again);
+}
+
+/* The first rank chooses by the laws which of `all` are contacts, and adds others; then all ranks have these. */
 static int choose_by_laws(struct stride *y, const struct packing *whole, struct roll *roll,
                           struct contacts *s, struct contacts *all, const struct step_opt *o,
                           double reach, struct why *why)
 {
     struct talk *t = y->part.talk;
     struct contacts before = { 0 };
+    struct parcel added = { 0 };
     struct verdict *of = talk_new(t, t->me ? 0 : roll->n, sizeof *of),
                    *mine = talk_new(t, s->n, sizeof *mine);
     if (!t->me) {
         if (contacts_copy(&before, all))
             return free(of), free(mine), why_set(why, EX_SOFTWARE, "no memory for the contacts");
         if (detect_choose(all, whole, o->gap, reach, why)) return free(of), free(mine), why->status;
-        int64_t k = 0;
-        for (int64_t i = 0; i < before.n; i++) {
-            of[i].row = before.c[i].b;
-            of[i].keep = k < all->n && contact_is(&before.c[i], &all->c[k]);
-            k += of[i].keep;
-        }
+        compare(t, &before, all, of, &added);
     }
     roll_tell(roll, &y->part, s, of, mine);
     int64_t n = 0;
@@ -103,6 +160,8 @@ static int choose_by_laws(struct stride *y, const struct packing *whole, struct 
     sift(s, keep);
     free(keep), free(of), free(mine);
     contacts_free(&before);
+    add_to_all(y, roll, s, all, &added);
+    parcel_free(&added);
     return 0;
 }
 
@@ -193,7 +252,6 @@ static void solve_in_blocks(struct stride *y, struct blocks *b, const struct pac
     if (problem_prepare_shared(&p, &y->part.p, s, o->alpha, o->solve.method->rho, &b->plan,
                                &b->shared, why))
         fail(y, why);
-    blocks_brake(b, &p, s);
     solve(y, &p, s, o, rep);
     problem_free(&p);
 }
@@ -201,8 +259,6 @@ static void solve_in_blocks(struct stride *y, struct blocks *b, const struct pac
 /* Can ranks solve it together? */
 static bool is_shared(const struct packing *p, const struct step_opt *o)
 {
-    for (int32_t k = 0; p->law && k < p->kinds * p->kinds; k++)
-        if (law_adheres(&p->law[k])) return false;
     return step_sweeps(o->solve.global) && !freedoms_in(p);
 }
 
@@ -242,9 +298,12 @@ static int detect(struct stride *y, struct packing *whole, struct contacts *all,
 static void balance_load(struct stride *y, const struct contacts *s)
 {
     double imbalance = part_imbalance(&y->part, s);
-    y->worst = fmax(y->worst, imbalance);
+    y->worst = fmax(y->worst, imbalance), y->uneven += imbalance;
     y->steps++;
-    if (imbalance <= IMBALANCE || y->steps - y->since < CUT_AFTER) return;
+    if (y->steps == y->since + 1) y->fresh = imbalance, y->lost = 0;
+    y->lost += imbalance - y->fresh;
+    if (imbalance <= IMBALANCE) return;
+    if (y->steps - y->since < CUT_AFTER && y->lost <= LOST_MOST) return;
     part_recut(&y->part);
     y->since = y->steps;
 }

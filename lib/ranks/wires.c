@@ -30,12 +30,6 @@ static int64_t largest(const int64_t *first, int64_t groups)
     return most;
 }
 
-static int by_row(const void *key, const void *row)
-{
-    int32_t x = *(const int32_t *)key, y = *(const int32_t *)row;
-    return x < y ? -1 : x > y;
-}
-
 /* What comes from a rank: groups and rows, as it has told */
 static void take_list(struct wires *w, const struct part *y, struct parcel *in, int rank)
 {
@@ -48,11 +42,11 @@ static void take_list(struct wires *w, const struct part *y, struct parcel *in, 
         int64_t g;
         int32_t row;
         parcel_take(w->talk, in, &g, sizeof g), parcel_take(w->talk, in, &row, sizeof row);
-        const int32_t *at = bsearch(&row, y->row, (size_t)y->p.n, sizeof *at, by_row);
-        if (!at || g < 0 || g >= w->groups)
+        int32_t body = part_find(y, row);
+        if (body < 0 || g < 0 || g >= w->groups)
             talk_fail(w->talk, EX_SOFTWARE,
                       "ranks disagree: a velocity of a body that is not here");
-        x->come_body[n++] = (int32_t)(at - y->row), x->come[g + 1]++;
+        x->come_body[n++] = body, x->come[g + 1]++;
     }
 }
 
