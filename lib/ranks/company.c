@@ -63,7 +63,7 @@ int crew_follow(void)
     struct report rep = { 0 };
     struct why why = { 0 };
     for (enum word w; (w = next(LEAVE)) != LEAVE;) {
-        if (w == BEGIN) stride_begin(&crew.stride, &crew.talk, &none);
+        if (w == BEGIN) stride_begin(&crew.stride, &crew.talk, options.hypergraph, &none);
         if (w == OTHER_BODIES) stride_begin_again(&crew.stride, &none);
         if (w != STEP) continue;
         const struct step_opt o = options_step(crew.stride.part.p.dt, false);
@@ -79,7 +79,7 @@ int crew_step(struct packing *p, struct contacts *s, struct neighbours *near, bo
 {
     (void)near;
     if (!crew.begun)
-        next(BEGIN), stride_begin(&crew.stride, &crew.talk, p);
+        next(BEGIN), stride_begin(&crew.stride, &crew.talk, options.hypergraph, p);
     else if (other_bodies)
         next(OTHER_BODIES), stride_begin_again(&crew.stride, p);
     crew.begun = true;

@@ -109,10 +109,10 @@ static void take_all(struct part *y, const struct packing *whole)
     y->margin = -1; // they are to be dealt
 }
 
-void part_begin(struct part *y, struct talk *t, const struct packing *whole)
+void part_begin(struct part *y, struct talk *t, bool hypergraph, const struct packing *whole)
 {
     struct why why = { 0 };
-    *y = (struct part){ .talk = t, .territory = territory_new(t) };
+    *y = (struct part){ .talk = t, .territory = territory_new(t, hypergraph) };
     if (!t->me) {
         struct packing none = *whole;
         none.n = 0, none.events.n = 0, none.bonds.n = 0;

@@ -39,7 +39,7 @@ struct part {
 
 /* The first rank's packing becomes parts: its bodies are copied from it, and it stays as it is. Those of the
    others are not looked at. Collective, as all that follows. */
-void part_begin(struct part *y, struct talk *t, const struct packing *whole);
+void part_begin(struct part *y, struct talk *t, bool hypergraph, const struct packing *whole);
 void part_free(struct part *y);
 /* The same of a packing that has other bodies than before */
 void part_begin_again(struct part *y, const struct packing *whole);

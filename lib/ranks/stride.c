@@ -20,13 +20,13 @@ enum {
 /* Contacts of the rank that has most over the mean: from here on cuts are made anew. */
 #define IMBALANCE 1.1
 
-void stride_begin(struct stride *y, struct talk *t, const struct packing *whole)
+void stride_begin(struct stride *y, struct talk *t, bool hypergraph, const struct packing *whole)
 {
     int varies = packing_varies(whole);
     MPI_Bcast(&varies, 1, MPI_INT, 0, t->comm);
     *y =
         (struct stride){ .varies = varies, .since = -CUT_AFTER }; // the first cuts know no contacts
-    part_begin(&y->part, t, whole);
+    part_begin(&y->part, t, hypergraph, whole);
 }
 
 void stride_begin_again(struct stride *y, const struct packing *whole)

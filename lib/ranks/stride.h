@@ -31,8 +31,9 @@ struct stride {
     int64_t solved[2]; /* bytes and messages of the shared solves, sent by this rank */
 };
 
-/* Collective. The first rank's packing; in others it is not looked at. */
-void stride_begin(struct stride *y, struct talk *t, const struct packing *whole);
+/* Collective. The first rank's packing; in others it is not looked at. hypergraph: how space is cut
+   [ranks/territory.h] */
+void stride_begin(struct stride *y, struct talk *t, bool hypergraph, const struct packing *whole);
 /* After the first rank's packing has got other bodies */
 void stride_begin_again(struct stride *y, const struct packing *whole);
 /* As step_advance(): whole, s, rep are those of the first rank. Returns 0, or a status at the first, which
