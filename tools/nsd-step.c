@@ -26,6 +26,16 @@ static double until, lines; /* s: of the motion; of real time */
 static bool contacts, forces, in_place;
 static const char *output;
 
+/* By index: options.hypergraph */
+static struct cli_choice cut_choice(int index)
+{
+    static const struct cli_choice cuts[] = {
+        { "bisection", "boxes, by recursive bisection" },
+        { "hypergraph", "cells of a grid, with the fewest bodies that several have" },
+    };
+    return index < 2 ? cuts[index] : (struct cli_choice){ 0 };
+}
+
 static const struct cli_option own[] = {
     { CLI_INT, 'n', "steps", &steps, "N", "steps to make [1]", .max = 1e15 },
     { CLI_REAL, 0, "until", &until, "T", "or steps until the time is T, s [by -n]", .min = -1e300,
@@ -39,6 +49,8 @@ static const struct cli_option own[] = {
       .help = "start each solve from the last step's reactions" },
     { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start each solve from 0, as the paper",
       .usual = options_usual },
+    { CLI_CHOICE, 0, "cut", &options.hypergraph, .choice = cut_choice,
+      .help = "under mpirun, how processes share out space [bisection]" },
     { CLI_FLAG, 'i', "in-place", &in_place, .silent = true,
       .help = "append to FILE; also where standard output is a terminal" },
     { CLI_ABOVE, 0, "progress", &lines, "S", .max = 1e9, .silent = true,
@@ -66,7 +78,8 @@ static struct {
     double eps;                   /* and what was asked of it */
     int64_t growing;              /* of those the ones whose reactions grow and only seem good */
     double approach;              /* m/s: of bodies in these steps, the largest */
-    int64_t fell_back;            /* steps that were solved otherwise than asked, or given up */
+    int64_t fell_back;            /* steps that were solved otherwise than asked */
+    int64_t abandoned;            /* steps whose solver knew no further way */
     double seconds;
 } total;
 
@@ -74,8 +87,9 @@ static void count(const struct report *r)
 {
     char where[40];
     snprintf(where, sizeof where, "step %lld", (long long)r->step);
-    if ((r->fallback || r->given_up) && !total.fell_back++)
-        options_warn(where, r); // of all steps, mostly
+    bool news = (r->fallback && !total.fell_back) || (r->given_up && !total.abandoned);
+    total.fell_back += r->fallback != NULL, total.abandoned += r->given_up != NULL;
+    if (news) options_warn(where, r); // of all steps, mostly
     total.sweeps += r->sweeps;
     total.safeguarded += r->safeguarded, total.gave_up += r->gave_up;
     total.seconds += r->seconds;
@@ -97,6 +111,8 @@ static void summary(int64_t made)
              (long long)total.gave_up);
     if (total.fell_back)
         warn("%lld steps were solved by sweeps alone, not as asked", (long long)total.fell_back);
+    if (total.abandoned)
+        warn("%lld steps were given up before their limits", (long long)total.abandoned);
     if (total.missed)
         warn("%lld steps NOT CONVERGED, the first is step %lld; the largest %s is %.3g, not %g",
              (long long)total.missed, (long long)total.first_missed, options_error(total.criterion),

@@ -22,8 +22,7 @@ static vec3 nearest_image(const struct cell *cell, const vec3 edge[3], vec3 at, 
     return at;
 }
 
-/* The contact of bond b. x are predicted, and so is q of shapes; balls are turned as at the step's beginning
-   there, and are predicted here. */
+/* The contact of bond b; q has no half step of balls, whose turning is constant. */
 static struct contact place(const struct packing *p, const struct bond *b, const vec3 *x,
                             const quat *q, const vec3 edge[3], double t)
 {
@@ -62,11 +61,6 @@ static bool is_taken(const struct packing *p, const struct contact *c, const str
     return false;
 }
 
-static bool comes_before(const struct contact *x, const struct contact *y)
-{
-    return contact_key_order(contact_key(x), contact_key(y)) < 0;
-}
-
 /* to = both, in order; those of s that are taken left out. False when memory is short. */
 static bool merge(struct contacts *to, const struct packing *p, const struct contacts *s,
                   const struct contact *placed, int64_t n)
@@ -74,7 +68,8 @@ static bool merge(struct contacts *to, const struct packing *p, const struct con
     int64_t next = 0, from = 0;
     bool good = true;
     for (int64_t i = 0; good && i <= s->n; i++) {
-        for (; good && next < n && (i == s->n || comes_before(&placed[next], &s->c[i])); next++) {
+        for (; good && next < n && (i == s->n || contact_compare(&placed[next], &s->c[i]) < 0);
+             next++) {
             struct contact *c = contacts_add(to, 0, 0);
             if ((good = c != NULL)) *c = placed[next];
         }

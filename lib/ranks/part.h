@@ -16,6 +16,9 @@ struct border {
     int32_t *body; /* [n] of this rank's packing */
 };
 
+/* Of all ranks; not collective */
+void borders_free(const struct talk *t, struct border *b);
+
 struct part {
     struct talk *talk;
     struct territory *territory;
@@ -36,7 +39,7 @@ struct part {
 
 /* The first rank's packing becomes parts: its bodies are copied from it, and it stays as it is. Those of the
    others are not looked at. Collective, as all that follows. */
-void part_begin(struct part *y, struct talk *t, const struct packing *whole);
+void part_begin(struct part *y, struct talk *t, bool hypergraph, const struct packing *whole);
 void part_free(struct part *y);
 /* The same of a packing that has other bodies than before */
 void part_begin_again(struct part *y, const struct packing *whole);
@@ -57,6 +60,9 @@ void part_follow(struct part *y, const struct packing *whole);
 void part_collect(const struct part *y, struct packing *whole);
 /* Copies become what the bodies are: their places and motion. */
 void part_refresh(struct part *y);
+
+/* The body of this rank's packing that has this row in the whole; -1: it is not here. Not collective */
+int32_t part_find(const struct part *y, int32_t row);
 
 /* Whose is the contact of this rank's packing? That of b counts it. */
 static inline bool part_counts(const struct part *y, const struct contact *c)
