@@ -45,8 +45,8 @@ static struct {
     int threads;                /* of the work in hand; 0: none */
     team_work *work;
     void *arg;
-    bool watched;               /* the work in hand is */
-    _Atomic int64_t cpu;        /* ns of the processor's cores that watched works took */
+    bool watched;             /* the work in hand is */
+    _Atomic int64_t cpu;      /* ns of the processor's cores that watched works took */
     struct gate begun, ended; /* works; workers that have ended theirs, of all works */
     struct gate met;          /* meetings */
     _Atomic int here;         /* threads that have come to the next */

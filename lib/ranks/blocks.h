@@ -14,6 +14,7 @@
 #ifndef NSD_BLOCKS_H
 #define NSD_BLOCKS_H
 
+#include "bodies/balance.h"
 #include "problem/problem.h"
 #include "problem/shared.h"
 #include "ranks/part.h"
@@ -45,9 +46,10 @@ void blocks_begin(struct blocks *b, struct part *y, const struct contacts *s, en
 void blocks_brake(struct blocks *b, struct problem *p, const struct contacts *s);
 /*
  * After the solve: the bodies here move by the contacts' reactions, those at borders by what the owners have
- * summed up, and are moved apart where the packing wants it; copies become what the bodies are.
+ * summed up, and are moved apart where the packing wants it; copies become what the bodies are. told: the
+ * balances of the step, added up in the order of ranks; NULL: they are not asked for.
  */
-void blocks_move(struct blocks *b, const struct contacts *s);
+void blocks_move(struct blocks *b, const struct contacts *s, struct balance *told);
 void blocks_free(struct blocks *b);
 
 #endif

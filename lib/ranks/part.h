@@ -38,6 +38,10 @@ struct part {
    others are not looked at. Collective, as all that follows. */
 void part_begin(struct part *y, struct talk *t, const struct packing *whole);
 void part_free(struct part *y);
+/* The same where each rank has some rows of the bodies, those from `first` on: they become its own. settings:
+   the first rank's packing, all but its bodies. */
+void part_begin_rows(struct part *y, struct talk *t, const struct packing *settings,
+                     const struct packing *rows, int64_t first, int64_t all);
 /* The same of a packing that has other bodies than before */
 void part_begin_again(struct part *y, const struct packing *whole);
 
