@@ -23,6 +23,8 @@ enum {
     ALIGN_FROM = 64, /* bytes: the smallest thing aligned; an index's head has 72 */
 };
 
+static const off_t LOCKED = (off_t)1 << 62; /* the byte that a writer locks */
+
 static const char CUT_OFF[] = "has been cut off by another program";
 
 /* What every frame of a trajectory shares */
@@ -65,11 +67,12 @@ static int output_failed(const struct writer *s, struct why *why, const char *tr
 /*
  * A regular file has one writer: the second is refused, or has to wait where it only appends. The lock
  * belongs to what the shell opened, so that { a; b; } > f is one writer. HDF5's own, of flock, is
- * not taken: it would keep readers out, too (h5py of a growing trajectory).
+ * not taken: it would keep readers out, too (h5py of a growing trajectory). Only a byte beyond all data is locked:
+ * MPI-IO may lock the bytes that the processes of one run write together.
  */
 static int take_hold(struct writer *s, int how, struct why *why)
 {
-    struct flock lock = { .l_type = F_WRLCK, .l_whence = SEEK_SET };
+    struct flock lock = { .l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = LOCKED, .l_len = 1 };
     struct stat st;
     if (fstat(s->fd, &st) || !S_ISREG(st.st_mode)) return 0; // /dev/null has any number
     while (fcntl(s->fd, how, &lock)) {
@@ -83,7 +86,7 @@ static int take_hold(struct writer *s, int how, struct why *why)
 
 static void let_go(const struct writer *s)
 {
-    struct flock lock = { .l_type = F_UNLCK, .l_whence = SEEK_SET };
+    struct flock lock = { .l_type = F_UNLCK, .l_whence = SEEK_SET, .l_start = LOCKED, .l_len = 1 };
     fcntl(s->fd, F_OFD_SETLK, &lock);
 }
 
@@ -470,6 +473,15 @@ static int trajectory_begin(struct writer *s, const struct frame *f, struct why 
     return write_header(s, 0, 0, why) || frame_write_static(&s->doc, f, why) ? why->status : 0;
 }
 
+/* Processes that write together give the reserve back. */
+static int fill_frame(struct writer *s, const struct frame *f, struct why *why)
+{
+    char path[PATH_MAX];
+    if (!f->elsewhere) return 0;
+    return fill(&s->doc, find_path(s, path) ? path : NULL, why) || reserve(s, f, why) ? why->status
+                                                                                      : 0;
+}
+
 static int trajectory_frame(struct writer *s, const struct frame *f, struct why *why)
 {
     if (!f->packed)
@@ -478,10 +490,8 @@ static int trajectory_frame(struct writer *s, const struct frame *f, struct why 
     if (!first && !still_there(s)) return output_failed(s, why, CUT_OFF);
     if (first ? trajectory_begin(s, f, why) : reserve(s, f, why)) return why->status;
     if (check_same(s, f, why)) return why->status;
-    char path[PATH_MAX];
-    if (frame_write_moment(&s->doc, f, why) || flush(s, why) ||
-        fill(&s->doc, find_path(s, path) ? path : NULL, why) || frame_write_step(&s->doc, f, why) ||
-        flush(s, why))
+    if (frame_write_moment(&s->doc, f, why) || flush(s, why) || fill_frame(s, f, why) ||
+        frame_write_step(&s->doc, f, why) || flush(s, why))
         return why->status;
     s->step = f->packing.step, s->frames++;
     if (f->detected) s->contacts = true, s->solved = f->contacts.found, s->moved = f->moved;

@@ -36,6 +36,8 @@ static void stopped(int signal)
 bool crew_join(void)
 {
     int level;
+    // Nobody shares a pointer into a file. For such pointers Open MPI may make files beside it, and a kill leaves them.
+    setenv("OMPI_MCA_sharedfp", "^lockedfile", false);
     MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &level);
     crew.talk.comm = MPI_COMM_WORLD;
     MPI_Comm_rank(MPI_COMM_WORLD, &crew.talk.me), MPI_Comm_size(MPI_COMM_WORLD, &crew.talk.n);
