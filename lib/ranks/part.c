@@ -3,6 +3,7 @@
 
 #include "ranks/settings.h"
 
+#include <malloc.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -298,6 +299,14 @@ static void send_bodies(struct part *y, double reach, struct parcel *out)
     free(met), free(mark);
 }
 
+/* Memory of parcels, in which all bodies have come and gone, is the system's again: it is kept otherwise. */
+static void give_back(void)
+{
+#ifdef M_TRIM_THRESHOLD
+    malloc_trim(0);
+#endif
+}
+
 bool part_deal(struct part *y, double reach)
 {
     struct talk *t = y->talk;
@@ -321,6 +330,7 @@ bool part_deal(struct part *y, double reach)
     }
     free(b);
     find_borders(y);
+    give_back();
     return true;
 }
 
