@@ -63,17 +63,19 @@ LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/cli/main.c lib/ranks/%.c
          $(foreach w,$(WIDE),$(WIDTHS:%=$B/lib/problem/$w-%.o))
 TOOLS := $(patsubst tools/%.c,$B/%,$(wildcard tools/*.c))
 
-# Where there are MPI and Zoltan, nsd-step-mpi: what nsd-step becomes under mpirun. MPICC= : without.
-MPICC  ?= $(if $(wildcard /usr/include/trilinos/zoltan.h),$(shell command -v mpicc))
-MPI_PC := $(if $(MPICC),$(shell $(MPICC) --showme:compile 2>/dev/null))
-MPI_LD := $(if $(MPICC),$(shell $(MPICC) --showme:link 2>/dev/null) -ltrilinos_zoltan)
+# Where there are Open MPI, whose mpicc shows its flags, and Zoltan, nsd-step-mpi: what nsd-step becomes under
+# mpirun. MPICC= : without.
+MPICC  ?= mpicc
+ZOLTAN := $(wildcard /usr/include/trilinos/zoltan.h)
+MPI_PC := $(if $(and $(MPICC),$(ZOLTAN)),$(shell $(MPICC) --showme:compile 2>/dev/null))
+MPI_LD := $(if $(MPI_PC),$(shell $(MPICC) --showme:link 2>/dev/null) -ltrilinos_zoltan)
 # Its libhdf5 is the one that knows MPI, where that is there, and of the same version: ranks then write files
 # together. PARALLEL= : the one of the other tools; the first rank then writes what the others send it.
-PARALLEL ?= $(if $(MPICC),$(shell pkg-config --exists 'hdf5-openmpi = '$$(pkg-config --modversion $(HDF5)) 2>/dev/null && echo 1))
-MPI_H5   := $(if $(PARALLEL),$(shell pkg-config --cflags-only-I hdf5-openmpi))
-MPI_PL   := $(if $(PARALLEL),$(subst hdf5/serial,hdf5/openmpi,$(PL)),$(PL))
-RANKS  := $(if $(MPICC),$(patsubst lib/%.c,$B/lib/%.o,$(wildcard lib/ranks/*.c)))
-MPI    := $(if $(MPICC),$B/nsd-step-mpi)
+PARALLEL ?= $(if $(MPI_PC),$(shell pkg-config --exists 'hdf5-openmpi = '$$(pkg-config --modversion $(HDF5)) 2>/dev/null && echo 1))
+MPI_H5 := $(if $(PARALLEL),$(shell pkg-config --cflags-only-I hdf5-openmpi))
+MPI_PL := $(if $(PARALLEL),$(subst hdf5/serial,hdf5/openmpi,$(PL)),$(PL))
+RANKS  := $(if $(MPI_PC),$(patsubst lib/%.c,$B/lib/%.o,$(wildcard lib/ranks/*.c)))
+MPI    := $(if $(MPI_PC),$B/nsd-step-mpi)
 CTEST := $(patsubst tests/%.c,$B/tests/%,$(wildcard tests/*_test.c))
 
 all: $(TOOLS) $(MPI)
@@ -259,7 +261,7 @@ lint-cppcheck:
 	cppcheck --quiet --error-exitcode=1 --std=c11 --enable=warning,performance,portability \
 	    --inline-suppr --suppress=missingIncludeSystem -Ilib lib tools
 
-TIDY := $(patsubst %.c,lint-tidy-%,$(notdir $(filter-out $(if $(MPICC),,lib/ranks/%),$(wildcard lib/*/*.c tools/*.c))))
+TIDY := $(patsubst %.c,lint-tidy-%,$(notdir $(filter-out $(if $(MPI_PC),,lib/ranks/%),$(wildcard lib/*/*.c tools/*.c))))
 
 lint-tidy: $(TIDY)
 

@@ -4,11 +4,13 @@
 #
 # A cube of equal balls on a lattice, between a floor and four walls, under leaning gravity: every rank has as
 # much to do, and 3 contacts a ball. Processes beyond the cores count for bytes, messages and memory, not for
-# time; processor time is without waiting for others, since machines are shared. QUICK=1: small; REPEATS=3
+# time; processor time is without waiting for others, since machines are shared. QUICK=1: no cube of more than
+# 97 336 balls; REPEATS=3
 set -euo pipefail
 export PATH=$PWD/build:$PATH OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_mpi_yield_when_idle=1
-parts=("${@:-messages strong weak memory}")
-read -ra parts <<<"${parts[*]}"
+[ $# -gt 0 ] || set -- messages strong weak memory
+sizes=(16 24 32 46) million=46 half=36
+[ -n "${QUICK-}" ] || sizes+=(64) million=100 half=79
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 
@@ -42,8 +44,8 @@ messages() # bytes and messages a sweep and rank, 8 ranks, and the fit c N^(2/3)
 {
     local n order bytes many _rest
     for order in block colour; do
-        for n in 16 24 32 48 64; do
-            read -r bytes many _rest < <(run 8 $n -n 1 -m exact --order $order --max-sweeps 100 --eps 1e-30 | said)
+        for n in "${sizes[@]}"; do
+            read -r bytes many _rest < <(run 8 "$n" -n 1 -m exact --order $order --max-sweeps 100 --eps 1e-30 | said)
             echo "$order $((n * n * n)) $((n * n * n / 8)) $bytes $many"
         done
     done | awk '{ c = $4 / $3 ^ (2 / 3); printf "| %s | %d | %d | %.0f | %.1f | %.1f |\n", $1, $2, $3, $4, $5, c }'
@@ -74,13 +76,13 @@ print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)' nsd-step -
     done | awk '{ printf "| %d | %.0f | %.0f | %.0f | %.2f |\n", $1, $2, $3, $4, $4 / ($2 / $1) }'
 }
 
-for part in "${parts[@]}"; do
+for part; do
     case $part in
     messages) printf '| order | balls | a rank | bytes a sweep | messages a sweep | bytes / N^(2/3) |\n|---|---|---|---|---|---|\n'; messages ;;
     strong) printf '| balls, one process | balls, two ranks | s | sweeps | s of a rank | sweeps | efficiency | of a sweep |\n|---|---|---|---|---|---|---|---|\n'
-        pair 46 46 4; [ -n "${QUICK-}" ] || pair 100 100 3 ;;
+        pair 46 46 4; [ -n "${QUICK-}" ] || pair "$million" "$million" 3 ;;
     weak) printf '| balls, one process | balls, two ranks | s | sweeps | s of a rank | sweeps | efficiency | of a sweep |\n|---|---|---|---|---|---|---|---|\n'
-        if [ -n "${QUICK-}" ]; then pair 36 46 4; else pair 79 100 3; fi ;;
+        pair "$half" "$million" 3 ;;
     memory) printf '| ranks | one process, MB | all ranks, MB | the largest, MB | of its share |\n|---|---|---|---|---|\n'; memory ;;
     *) echo "usage: scale.sh [messages] [strong] [weak] [memory]" >&2; exit 64 ;;
     esac

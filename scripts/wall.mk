@@ -39,7 +39,7 @@ $(OUT)/%/pile.h5: $(P)/pile.jq
 	jq -n --argjson n $* -f $(P)/pile.jq | nsd-gen - | nsd-step -n 450 --every 450 2>$(@D)/step.log | nsd-cat --last | nsd-detect >$@
 
 $(OUT)/%/global.h5: $(OUT)/%/pile.h5
-	nsd-cat $< | nsd-detect --fclib=global >$@
+	nsd-detect --fclib=global <$< >$@
 
 # sweeps without mixing or relaxation, each a continuation of the one before
 define sweeps
@@ -76,7 +76,7 @@ $(OUT)/jam/eps-auto.h5: $(OUT)/jam/jam.h5
 $(OUT)/jam/follow.jsonl: $(OUT)/jam/global.h5 $(EPS:%=$(OUT)/jam/eps-%.h5) $(OUT)/jam/eps-auto.h5 $(P)/wall.py
 	$(P)/wall.py follow $< $(EPS:%=$(OUT)/jam/eps-%.h5) $(OUT)/jam/eps-auto.h5 >$@
 $(OUT)/jam/global.h5: $(OUT)/jam/jam.h5
-	nsd-cat $< | nsd-detect --overlap keep --fclib=global >$@
+	nsd-detect --overlap keep --fclib=global <$< >$@
 
 $(OUT)/map.svg: $(P)/map.gp $(SIZES:%=$(OUT)/%/follow.jsonl) $(OUT)/$(LAST)/steps.jsonl
 	for n in $(SIZES); do jq -r '[(.file | capture("sweeps-(?<k>[0-9]+)").k), .natural, .dv] | @tsv' $(OUT)/$$n/follow.jsonl; echo; echo; done >$(OUT)/follow.tsv

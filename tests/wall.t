@@ -25,8 +25,7 @@ like "self-stress falls as eps does" "$(jq -s 'map(.self_stress) | [.[0] / .[1],
 # ---- the page's own numbers, from M and H ----
 
 if /usr/bin/python3 -c 'import scipy' 2>/dev/null; then
-    nsd-detect --overlap keep --fclib=global <"$tmp/jam.h5" >"$tmp/jam.global" 2>/dev/null ||
-        nsd-cat "$tmp/jam.h5" | nsd-detect --overlap keep --fclib=global >"$tmp/jam.global"
+    nsd-detect --overlap keep --fclib=global <"$tmp/jam.h5" >"$tmp/jam.global"
     scripts/wall/wall.py follow "$tmp/jam.global" "$tmp"/jam-1e-[456].h5 >"$tmp/follow"
     is "the self-stress and the map of nsd-err are those of M and H" \
         "$(jq -s '[.[0:3], .[3:]] | transpose | map((.[0].self_stress / .[1].self_stress - 1 | fabs < 1e-9) and (.[0].natural / .[1].natural - 1 | fabs < 1e-6)) | all' \

@@ -23,8 +23,7 @@ static int prepare_own(struct problem *p, struct frame *f, struct why *why)
     if (f->moved && move_back(&f->packing, &f->contacts, why)) return why->status;
     if (prepare_packing(p, &f->packing, &f->contacts, true, 0, 1, ORDER_NATURAL, why))
         return why->status;
-    for (int64_t i = 0; i < f->contacts.n; i++)
-        f->report.err.max_overlap = fmax(f->report.err.max_overlap, -f->contacts.c[i].gap);
+    f->report.err.max_overlap = contacts_max_overlap(&f->contacts);
     return 0;
 }
 

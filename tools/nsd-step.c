@@ -66,7 +66,8 @@ static struct {
     double eps;                   /* and what was asked of it */
     int64_t growing;              /* of those the ones whose reactions grow and only seem good */
     double approach;              /* m/s: of bodies in these steps, the largest */
-    int64_t fell_back;            /* steps that were solved otherwise than asked, or given up */
+    int64_t fell_back;            /* steps that were solved otherwise than asked */
+    int64_t abandoned;            /* steps whose solver knew no further way */
     double seconds;
 } total;
 
@@ -74,8 +75,9 @@ static void count(const struct report *r)
 {
     char where[40];
     snprintf(where, sizeof where, "step %lld", (long long)r->step);
-    if ((r->fallback || r->given_up) && !total.fell_back++)
-        options_warn(where, r); // of all steps, mostly
+    bool news = (r->fallback && !total.fell_back) || (r->given_up && !total.abandoned);
+    total.fell_back += r->fallback != NULL, total.abandoned += r->given_up != NULL;
+    if (news) options_warn(where, r); // of all steps, mostly
     total.sweeps += r->sweeps;
     total.safeguarded += r->safeguarded, total.gave_up += r->gave_up;
     total.seconds += r->seconds;
@@ -97,6 +99,8 @@ static void summary(int64_t made)
              (long long)total.gave_up);
     if (total.fell_back)
         warn("%lld steps were solved by sweeps alone, not as asked", (long long)total.fell_back);
+    if (total.abandoned)
+        warn("%lld steps were given up before their limits", (long long)total.abandoned);
     if (total.missed)
         warn("%lld steps NOT CONVERGED, the first is step %lld; the largest %s is %.3g, not %g",
              (long long)total.missed, (long long)total.first_missed, options_error(total.criterion),

@@ -8,17 +8,6 @@
 
 static const double NEAR = 0.2; /* smaller radii: closer contacts are where the bond is */
 
-/* Of two keys: < 0 where x comes first */
-static int compare(const struct contact *x, const struct contact *y)
-{
-    if (x->a != y->a) return x->a < y->a ? -1 : 1;
-    if (x->b != y->b) return x->b < y->b ? -1 : 1;
-    if (x->feature != y->feature) return x->feature < y->feature ? -1 : 1;
-    for (int k = 0; k < 3; k++)
-        if (x->shift[k] != y->shift[k]) return x->shift[k] < y->shift[k] ? -1 : 1;
-    return 0;
-}
-
 /* The contact of bond b; q has no half step of balls, whose turning is constant. */
 static struct contact place(const struct packing *p, const struct bond *b, const vec3 *x,
                             const quat *q, const vec3 edge[3], double t)
@@ -70,7 +59,8 @@ static bool merge(struct contacts *to, const struct packing *p, const struct con
     int64_t next = 0, from = 0;
     bool good = true;
     for (int64_t i = 0; good && i <= s->n; i++) {
-        for (; good && next < n && (i == s->n || compare(&placed[next], &s->c[i]) < 0); next++) {
+        for (; good && next < n && (i == s->n || contact_compare(&placed[next], &s->c[i]) < 0);
+             next++) {
             struct contact *c = contacts_add(to, 0, 0);
             if ((good = c != NULL)) *c = placed[next];
         }

@@ -108,6 +108,23 @@ static bool same_place(const struct contact *c, const struct contact *d)
     return c->feature == d->feature && !memcmp(c->shift, d->shift, sizeof c->shift);
 }
 
+int contact_compare(const struct contact *c, const struct contact *d)
+{
+    if (c->a != d->a) return c->a < d->a ? -1 : 1;
+    if (c->b != d->b) return c->b < d->b ? -1 : 1;
+    if (c->feature != d->feature) return c->feature < d->feature ? -1 : 1;
+    for (int k = 0; k < 3; k++)
+        if (c->shift[k] != d->shift[k]) return c->shift[k] < d->shift[k] ? -1 : 1;
+    return 0;
+}
+
+double contacts_max_overlap(const struct contacts *s)
+{
+    double depth = 0;
+    for (int64_t i = 0; i < s->n; i++) depth = fmax(depth, -s->c[i].gap);
+    return depth;
+}
+
 /* r of c = what `was` in the basis of o */
 static void turn_into(const struct contact *c, const struct contact *o, const double was[3],
                       double r[3])

@@ -90,6 +90,11 @@ static inline vec3 contact_in_space(const struct contact *c, const double r[3])
    and 0 for others. Leaves new as it is when old is not solved. -1 when memory is short. */
 int contacts_match(struct contacts *new, const struct contacts *old);
 
+/* m: the deepest overlap, 0 where there is none */
+double contacts_max_overlap(const struct contacts *contacts);
+/* Of their keys: < 0 where c comes first; 0: one pair, and one place of it */
+int contact_compare(const struct contact *c, const struct contact *d);
+
 /* The lever arms la, lb (m) of a contact between bodies whose centres are at xa and, that of the image
    that a meets, xb (m), along its normal; a wall has none: la = 0, whatever xa. */
 void contact_arms(const struct contact *c, vec3 xa, vec3 xb, double *la, double *lb);

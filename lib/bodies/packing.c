@@ -199,6 +199,14 @@ fail:
     return why_set(why, EX_SOFTWARE, "no memory for a copy of the packing");
 }
 
+double packing_mean_mass(const struct packing *p)
+{
+    double sum = 0;
+    int64_t n = 0;
+    for (int64_t i = 0; i < p->n; i++) sum += p->mass[i], n += p->mass[i] > 0;
+    return n ? sum / (double)n : 1;
+}
+
 struct whole packing_whole(const struct packing *p)
 {
     if (p->whole) return *p->whole;

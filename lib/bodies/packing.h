@@ -81,6 +81,8 @@ struct whole {
 };
 /* Of the bodies of this packing */
 struct whole packing_whole(const struct packing *p);
+/* kg: of the bodies that move; 1 where none does */
+double packing_mean_mass(const struct packing *p);
 
 /* n bodies (orientation 1, id = index), no wall and one kind "0"; theta = 1/2; all else is zero,
    dt too. Returns 0 or EX_SOFTWARE. */

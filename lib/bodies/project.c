@@ -133,6 +133,7 @@ int project_shared(struct packing *p, const struct contacts *s, const struct pro
     struct part *part = malloc(((size_t)s->n + 1) * sizeof *part);
     bool room = part && o.d && !freedoms_init(&o.freedoms, p, p->cell.edge, why);
     room = room && (o.z = calloc((size_t)o.freedoms.n + 1, sizeof *o.z));
+    if (!room) share = NULL; // the caller ends the others, who wait
     bool more = room && parts_make(p, s, &o, part);
     if (share) more = share->any(share->with, more);
     bool moves = more;

@@ -26,6 +26,7 @@ enum {
 };
 
 static char *history;
+static char **arguments;
 static const void *given[OPTIONS]; /* the variables that were set, NULL between */
 
 static void message(const char *format, va_list ap)
@@ -111,6 +112,11 @@ void finish_stdout(void)
 const char *cli_history(void)
 {
     return history;
+}
+
+char **cli_arguments(void)
+{
+    return arguments;
 }
 
 bool cli_given(const void *to)
@@ -257,6 +263,9 @@ int cli_parse(int argc, char **argv)
         }
     json_t *value[OPTIONS] = { NULL };
     int c;
+    size_t size = ((size_t)argc + 1) * sizeof *argv;
+    if (!(arguments = malloc(size))) die(EX_SOFTWARE, "no memory");
+    memcpy(arguments, argv, size);
     opterr = 0;
     while ((c = getopt_long(argc, argv, letters, lng, NULL)) != -1) {
         if (c == HELP) help();

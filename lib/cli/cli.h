@@ -65,6 +65,9 @@ int tool_main(int operands, char **operand); /* called after cli_parse; returns 
  */
 int cli_parse(int argc, char **argv);
 
+/* main()'s argv as it was: options are sorted to the front of that */
+char **cli_arguments(void);
+
 /* Was an option given that sets this variable? Then its value is the user's, else the default. */
 bool cli_given(const void *to);
 

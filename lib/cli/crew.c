@@ -10,8 +10,6 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { ARGUMENTS_MOST = 4096 };
-
 /* What the starters of MPI programs say to them: Open MPI, and those who speak PMI */
 static int ranks_started(void)
 {
@@ -23,20 +21,6 @@ static int ranks_started(void)
 bool crew_started(void)
 {
     return ranks_started() > 0;
-}
-
-/* The arguments of this process, once more: getopt has sorted those that main() had. NULL: they cannot be
-   read. */
-static char **arguments(void)
-{
-    static char *argv[ARGUMENTS_MOST + 1];
-    FILE *f = fopen("/proc/self/cmdline", "r");
-    size_t room = 0;
-    int n = 0;
-    while (f && n < ARGUMENTS_MOST && getdelim(&argv[n], &room, 0, f) > 0) n++, room = 0;
-    if (f) fclose(f);
-    argv[n] = NULL;
-    return n ? argv : NULL;
 }
 
 /* PATH-mpi of this program's PATH */
@@ -54,8 +38,7 @@ bool crew_join(void)
     char path[PATH_MAX];
     int ranks = ranks_started();
     if (ranks < 2) return true;
-    char **argv = arguments();
-    if (argv && beside(path)) execv(path, argv);
+    if (beside(path)) execv(path, cli_arguments());
     die(EX_UNAVAILABLE, "%d processes were started together, and this nsd-step has no MPI: %s",
         ranks, strerror(errno));
 }

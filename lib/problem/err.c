@@ -82,12 +82,33 @@ static void take_terms(const struct sums *s, int k, double term[SHARED_TERMS])
     for (int j = 0; j < SHARED_TERMS; j++) term[j] = t[j];
 }
 
+static void sums_negate(struct sums *s)
+{
+    for (int k = 0; k < BUNDLE; k++) {
+        s->motion[k] = -s->motion[k], s->proj[k] = -s->proj[k];
+        s->bipotential[k] = -s->bipotential[k], s->penetration[k] = -s->penetration[k];
+        s->natural2[k] = -s->natural2[k], s->siconos2[k] = -s->siconos2[k];
+        s->velocity2[k] = -s->velocity2[k], s->r2[k] = -s->r2[k];
+    }
+}
+
+/* The sums of one bundle without what its bonds add to them afterwards */
+static void judge_unbonded(const struct problem *p, int64_t bundle, bool believes,
+                           enum err_terms which, struct sums *s)
+{
+    struct problem unbonded = *p;
+    unbonded.beyond = NULL;
+    sweep_widest()->judge(&unbonded, bundle, bundle + 1, believes, which, s);
+}
+
 /* Of a problem that processes share */
 static void judge_shared(const struct problem *p, bool believes, enum err_terms which,
                          struct sums *all)
 {
     struct shared *shared = p->shared;
-    double(*term)[SHARED_TERMS] = malloc((size_t)(p->slots + 1) * sizeof *term);
+    const int parts =
+        p->beyond && !p->rolls ? 2 : 1; // what the sweep's text adds of a slot at once
+    double(*term)[SHARED_TERMS] = malloc((size_t)(p->slots + 1) * (size_t)parts * sizeof *term);
     double out[SHARED_TERMS][BUNDLE], most[2] = { 0 };
     if (!term) {
         shared->fail(shared);
@@ -97,13 +118,18 @@ static void judge_shared(const struct problem *p, bool believes, enum err_terms 
     for (int64_t i = 0; i < p->bundles; i++) {
         struct sums s = { 0 };
         if (shared_is_copy(shared, i)) continue;
+        if (parts == 2) judge_unbonded(p, i, believes, which, &s);
+        for (int k = 0; k < BUNDLE && parts == 2; k++)
+            take_terms(&s, k, term[(BUNDLE * i + k) * parts]);
+        if (parts == 2) sums_negate(&s); // so that what is added to them first leaves 0
         sweep_widest()->judge(p, i, i + 1, believes, which, &s);
-        for (int k = 0; k < BUNDLE; k++) take_terms(&s, k, term[BUNDLE * i + k]);
+        for (int k = 0; k < BUNDLE; k++)
+            take_terms(&s, k, term[(BUNDLE * i + k) * parts + parts - 1]);
         most[0] = fmax(most[0], bundle_max(s.max_pen));
         most[1] = fmax(most[1], bundle_max(s.max_true));
     }
     shared->judging(shared, (struct problem *)p, false);
-    shared->sum(shared, p, BLOCK, 1, SHARED_TERMS, term[0], out[0]);
+    shared->sum(shared, p, BLOCK, parts, SHARED_TERMS, term[0], out[0]);
     free(term);
     for (int k = 0; k < BUNDLE; k++) {
         all->motion[k] = out[0][k], all->proj[k] = out[1][k];

@@ -6,6 +6,14 @@
 #include "bodies/top.h"
 #include "problem/problem.h"
 
+/* The body at a place, so many times lighter */
+static struct body lighter(const struct problem *p, int32_t place, double times)
+{
+    struct body b = p->body[body_index(place)];
+    b.im *= times, b.ii *= times;
+    return b;
+}
+
 /* un: u^-_n, m/s */
 static void add_offset(struct rebound *e, int k, const struct packing *pack,
                        const struct contact *c, double un)
@@ -32,7 +40,7 @@ static void image_velocity(const vec3 rate[3], const struct contact *c, double u
 /* Fills slot i except for the reaction. The bodies still have their velocities before the step. */
 static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
                       const struct lattice *cell, const struct contact *c, const struct tie *tie,
-                      double alpha, double rho_factor)
+                      double alpha, double rho_factor, double slower)
 {
     const double en[3] = { c->en, c->et, c->et }, n[3] = { c->n.x, c->n.y, c->n.z },
                  t1[3] = { c->t1.x, c->t1.y, c->t1.z }, s[2] = { 1 / (1 + c->en), 1 / (1 + c->et) };
@@ -42,9 +50,9 @@ static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
     for (int j = 0; j < 3; j++) r->n[j][k] = n[j], r->t1[j][k] = t1[j];
     r->mu[k] = c->mu;
     arms_of(pack, c, (1 - pack->theta) * pack->dt, cell->edge, &r->la[k], &r->lb[k]);
-    const struct body *a = &p->body[body_index(r->a[k])], *b = &p->body[body_index(r->b[k])];
-    double u[3], im = a->im + b->im;
-    double it = im + r->la[k] * r->la[k] * a->ii + r->lb[k] * r->lb[k] * b->ii;
+    const struct body a = lighter(p, r->a[k], slower), b = lighter(p, r->b[k], slower);
+    double u[3], im = a.im + b.im;
+    double it = im + r->la[k] * r->la[k] * a.ii + r->lb[k] * r->lb[k] * b.ii;
     body_velocity(p->body, r, NULL, k, u); // u^-
     double before[3], after[3];
     if (contact_shifted(c)) {
@@ -80,7 +88,7 @@ static void set_rows(double G[9][BUNDLE], int k, const struct packing *pack, int
 /* Fills the slot's levers, W_cc and rho; its rebound, undivided: u + E u^- + d, with D law */
 static void lever_init(struct problem *p, int64_t i, const struct packing *pack,
                        const struct lattice *cell, const struct contact *c, const struct tie *tie,
-                       double alpha, double rho_factor, const quat *half)
+                       double alpha, double rho_factor, double slower, const quat *half)
 {
     const double en[3] = { c->en, c->et, c->et }, n[3] = { c->n.x, c->n.y, c->n.z },
                  t1[3] = { c->t1.x, c->t1.y, c->t1.z };
@@ -91,13 +99,13 @@ static void lever_init(struct problem *p, int64_t i, const struct packing *pack,
     struct arms arm = arm_vectors(pack, c, (1 - pack->theta) * pack->dt, cell->edge);
     for (int j = 0; j < 3; j++) g->n[j][k] = n[j], g->t1[j][k] = t1[j];
     set_rows(g->Ga, k, pack, c->a, arm.a, c, half), set_rows(g->Gb, k, pack, c->b, arm.b, c, half);
-    const struct body *a = &p->body[body_index(r->a[k])], *b = &p->body[body_index(r->b[k])];
+    const struct body a = lighter(p, r->a[k], slower), b = lighter(p, r->b[k], slower);
     double W[9], u[3];
     for (int j = 0; j < 9; j++) {
-        W[j] = j % 4 == 0 ? a->im + b->im : 0;
+        W[j] = j % 4 == 0 ? a.im + b.im : 0;
         for (int l = 0; l < 3; l++)
-            W[j] += a->ii * g->Ga[3 * (j / 3) + l][k] * g->Ga[3 * (j % 3) + l][k] +
-                    b->ii * g->Gb[3 * (j / 3) + l][k] * g->Gb[3 * (j % 3) + l][k];
+            W[j] += a.ii * g->Ga[3 * (j / 3) + l][k] * g->Ga[3 * (j % 3) + l][k] +
+                    b.ii * g->Gb[3 * (j / 3) + l][k] * g->Gb[3 * (j % 3) + l][k];
         r->W[j][k] = W[j];
     }
     double lambda = local_lambda_max(W);
@@ -122,13 +130,13 @@ static void lever_init(struct problem *p, int64_t i, const struct packing *pack,
 
 /* Beyond W~, rho and the offset, which slot_init() has set: the bond's part, and that of moments */
 static void slot_go_beyond(struct problem *p, int64_t i, const struct contact *c,
-                           const struct tie *t, double alpha, double rho_factor)
+                           const struct tie *t, double alpha, double rho_factor, double slower)
 {
     int k = slot_lane(i);
     struct bundle *r = slot_bundle(p, i);
     struct beyond *x = &p->beyond[i / BUNDLE];
     const struct rebound *e = slot_rebound(p, i);
-    const struct body *a = &p->body[body_index(r->a[k])], *b = &p->body[body_index(r->b[k])];
+    const struct body a = lighter(p, r->a[k], slower), b = lighter(p, r->b[k], slower);
     double h = p->dt, seen = t->offset > 0 ? t->offset : offset_of(p->packing, c, 0);
     double wt = r->w[1][k] / (e ? e->s[1][k] : 1);
     for (int j = 0; j < 2; j++) {
@@ -142,7 +150,7 @@ static void slot_go_beyond(struct problem *p, int64_t i, const struct contact *c
     for (int j = 0; j < 3; j++) x->z[j][k] = x->a[j][k]; // p = 0
     x->mu_r[k] = t->mu_r, x->mu_p[k] = t->mu_p;
     if (!beyond_rolls(x, k)) return;
-    x->k[k] = r->lb[k] * b->ii - r->la[k] * a->ii, x->wr[k] = a->ii + b->ii;
+    x->k[k] = r->lb[k] * b.ii - r->la[k] * a.ii, x->wr[k] = a.ii + b.ii;
     x->length[k] = x->wr[k] > 0 ? sqrt(wt / x->wr[k]) : 1;
     struct rolling q;
     const double s[2] = { e ? e->s[0][k] : 1, e ? e->s[1][k] : 1 }, u[3] = { 0 };
@@ -166,13 +174,14 @@ static void set_turning(double R[9][BUNDLE], int k, const struct packing *pack, 
 
 /* The same beyond what lever_init() has set */
 static void lever_go_beyond(struct problem *p, int64_t i, const struct contact *c,
-                            const struct tie *t, double alpha, double rho_factor, const quat *half)
+                            const struct tie *t, double alpha, double rho_factor, double slower,
+                            const quat *half)
 {
     int k = slot_lane(i);
     struct bundle *r = slot_bundle(p, i);
     struct beyond *x = &p->beyond[i / BUNDLE];
     struct beyond_levers *y = slot_turn(p, i);
-    const struct body *a = &p->body[body_index(r->a[k])], *b = &p->body[body_index(r->b[k])];
+    const struct body a = lighter(p, r->a[k], slower), b = lighter(p, r->b[k], slower);
     double h = p->dt, seen = t->offset > 0 ? t->offset : offset_of(p->packing, c, 0);
     double W[9], K[2] = { h * h * t->stiff[0], h * h * t->stiff[1] };
     for (int j = 0; j < 9; j++) W[j] = r->W[j][k];
@@ -192,26 +201,28 @@ static void lever_go_beyond(struct problem *p, int64_t i, const struct contact *
     if (!beyond_rolls(x, k)) return;
     set_turning(y->Ra, k, p->packing, c->a, c, half);
     set_turning(y->Rb, k, p->packing, c->b, c, half);
-    x->length[k] = beyond_levers_turn(&p->lever[i / BUNDLE], r, y, k, W, K, a->ii, b->ii);
+    x->length[k] = beyond_levers_turn(&p->lever[i / BUNDLE], r, y, k, W, K, a.ii, b.ii);
     x->rho[k] = r->rho[k] * r->w[0][k] / y->lambda[k];
+}
+
+void fill_slot(const struct filling *f, int64_t i, double slower)
+{
+    struct problem *p = f->p;
+    int32_t c = p->contact[i];
+    if (c < 0) return;
+    const struct contact *law = &f->s->c[c];
+    const struct tie *tie = f->s->tie ? &f->s->tie[c] : NULL;
+    if (p->lever)
+        lever_init(p, i, p->packing, f->cell, law, tie, f->alpha, f->rho_factor, slower, f->half);
+    else
+        slot_init(p, i, p->packing, f->cell, law, tie, f->alpha, f->rho_factor, slower);
+    if (p->turn && tie)
+        lever_go_beyond(p, i, law, tie, f->alpha, f->rho_factor, slower, f->half);
+    else if (p->beyond && tie)
+        slot_go_beyond(p, i, law, tie, f->alpha, f->rho_factor, slower);
 }
 
 void fill_bundles(void *arg, int64_t first, int64_t end)
 {
-    const struct filling *f = arg;
-    for (int64_t i = BUNDLE * first; i < BUNDLE * end; i++) {
-        int32_t c = f->p->contact[i];
-        if (c < 0) continue;
-        const struct contact *law = &f->s->c[c];
-        const struct tie *tie = f->s->tie ? &f->s->tie[c] : NULL;
-        const struct packing *pack = f->p->packing;
-        if (f->p->lever)
-            lever_init(f->p, i, pack, f->cell, law, tie, f->alpha, f->rho_factor, f->half);
-        else
-            slot_init(f->p, i, pack, f->cell, law, tie, f->alpha, f->rho_factor);
-        if (f->p->turn && tie)
-            lever_go_beyond(f->p, i, law, tie, f->alpha, f->rho_factor, f->half);
-        else if (f->p->beyond && tie)
-            slot_go_beyond(f->p, i, law, tie, f->alpha, f->rho_factor);
-    }
+    for (int64_t i = BUNDLE * first; i < BUNDLE * end; i++) fill_slot(arg, i, 1);
 }

@@ -5,6 +5,7 @@
 #include "bodies/kinematics.h"
 #include "bodies/offset.h"
 #include "bodies/top.h"
+#include "problem/brake.h"
 #include "problem/filling.h"
 #include "problem/schedule.h"
 #include "problem/shared.h"
@@ -53,6 +54,7 @@ void problem_free(struct problem *p)
     free(p->split), free(p->seat), free(p->pull), free(p->beyond), free(p->in_W);
     free(p->lever), free(p->spin), free(p->turn);
     delassus_free(&p->sorted);
+    brake_free(p->brake);
     if (p->own) delassus_free(p->own);
     if (p->coupling) couplings_free(p->coupling);
     free(p->own), free(p->coupling);
@@ -273,17 +275,6 @@ static void measure_some(void *arg, int64_t first, int64_t end)
     }
 }
 
-/* kg: the mean mass of the bodies that move, for the scaled errors */
-static double mean_mass(const struct problem *problem)
-{
-    const struct packing *p = problem->packing;
-    double sum = 0;
-    int64_t n = 0;
-    if (problem->shared) return problem->shared->mean_mass;
-    for (int64_t i = 0; i < p->n; i++) sum += p->mass[i], n += p->mass[i] > 0;
-    return n ? sum / (double)n : 1;
-}
-
 /* m/s: the speed of the fastest point of a body or wall, plus g dt. The velocities at contacts are
    differences of such speeds, and have their rounding. */
 static double top_speed(const struct packing *p)
@@ -377,12 +368,14 @@ static int prepare(struct problem *p, const struct packing *pack, const struct c
     }
     struct filling f = { p, s, &cell, alpha, rho_factor, half };
     team_share(team_size(), p->bundles, SOME / BUNDLE, fill_bundles, &f);
+    room = !shared || !shared->slower || !brake_make(p, &f, shared->slower);
     free(half);
+    if (!room) return no_memory(p, why);
 
     double g = v3_norm(pack->g);
     p->fall = g * pack->dt;
     p->scale_v = (g > 0 ? g : 9.81) * pack->dt;
-    p->scale_r = p->scale_v * mean_mass(p);
+    p->scale_r = p->scale_v * (shared ? shared->mean_mass : packing_mean_mass(pack));
     p->speed = top_speed(pack);
     if (shared) p->speed = shared->most(shared, p->speed);
     problem_set_free_motion(p);

@@ -33,6 +33,7 @@ enum {
 };
 
 struct shared;
+struct brake;
 
 struct problem {
     int d;
@@ -51,6 +52,7 @@ struct problem {
     int64_t *group;         /* [groups + 1] bundles group[g] .. group[g+1]-1 may be done at once */
     struct two_thread_split *split; /* NULL: the order has no halves */
     struct shared *shared; /* borrowed: the other processes that have a part of it; NULL: none */
+    struct brake *brake;   /* slots that the sweeps have to solve by shorter steps; NULL: none */
     int64_t bodies;        /* of body[]; 0: given by W */
     struct body *body; /* [bodies] the packing's, by colours in the order in which the sweep first
                           meets them, and copies of what does not move; NULL: given by W */
@@ -134,10 +136,17 @@ static inline bool problem_undivided(const struct problem *p)
     return p->W || p->lever;
 }
 
-/* The largest eigenvalue of W~_cc: 1/rho_a of the natural map */
+/* The largest eigenvalue of W~_cc: 1/rho_a of the natural map; of lanes k.., of slot i */
 ALWAYS_INLINE vd bundle_lambda(const struct bundle *c, int k)
 {
     return larger(vload(c->w[0] + k), vload(c->w[1] + k));
+}
+
+static inline double slot_lambda(const struct problem *p, int64_t i)
+{
+    const struct bundle *c = slot_bundle(p, i);
+    int k = slot_lane(i);
+    return c->w[0][k] > c->w[1][k] ? c->w[0][k] : c->w[1][k];
 }
 
 /* u~ of lanes k.. of c from the velocities of body[], or u where e is NULL */

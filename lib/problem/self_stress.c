@@ -27,8 +27,7 @@ int self_stress(const struct problem *p, double *ratio)
     int e = r && y ? move(p, r, y) : -1;
     for (int64_t i = 0; !e && i < p->slots; i++) {
         if (p->contact[i] < 0) continue;
-        const struct bundle *c = slot_bundle(p, i);
-        double lambda = fmax(c->w[0][slot_lane(i)], c->w[1][slot_lane(i)]);
+        double lambda = slot_lambda(p, i);
         for (int k = 0; k < 3; k++) {
             double step = y[3 * i + k] / lambda;
             moved += step * step, all += r[3 * i + k] * r[3 * i + k];

@@ -22,8 +22,11 @@ struct shared {
     double mean_mass;          /* kg: of all bodies that move */
     int64_t *copies;           /* [n_copies] pairs first, end of bundles that another counts */
     int64_t n_copies;
-    bool may_want;    /* one process could solve all of it, */
-    bool wants_whole; /* and a solver has come to where only that goes on */
+    const double
+        *slower; /* [contacts here] steps are shorter by this factor, at least 1 [problem/brake.h];
+                             NULL: none is */
+    bool may_want;    /* set before the solve: one process could begin anew with all contacts */
+    bool wants_whole; /* set by a solver, which then ends: only such a process goes on from here */
 
     /* A walk over the bundles has done with this group. */
     void (*after_group)(struct shared *s, struct problem *p, int64_t group);
@@ -34,9 +37,11 @@ struct shared {
     /* Before and after the errors are computed */
     void (*judging)(struct shared *s, struct problem *p, bool begins);
     /*
+     * Sums are made in one of two ways: exactly one of sum and add is there, the other is NULL.
+     *
      * out[terms][8] = the sums of term[slots][parts][terms] over all contacts, part after part, lane by
      * lane of the bundles of the order of all, `chunk` bundles a partial sum: the bits of one process that
-     * has them all. Where the order is this process' own, they are the same in all processes.
+     * has them all.
      */
     void (*sum)(struct shared *s, const struct problem *p, int64_t chunk, int parts, int terms,
                 const double *term, double *out);
@@ -48,8 +53,7 @@ struct shared {
     double (*agree)(struct shared *s, double x);
     /* Memory is short: ends all processes, for the others wait for this one. */
     void (*fail)(struct shared *s);
-    /* x[n] = the sums of all processes' x, in their order; NULL: sums are made by sum(), in the order of all
-       contacts, and here they would have other bits. */
+    /* x[n] = the sums of all processes' x, in the order of processes: other bits for another number of them */
     void (*add)(struct shared *s, double *x, int n);
 };
 

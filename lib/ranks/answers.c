@@ -15,7 +15,9 @@ static int64_t count(struct shared *s, int64_t n)
 
 static double agree(struct shared *s, double x)
 {
+    double since = talk_busy();
     MPI_Bcast(&x, 1, MPI_DOUBLE, 0, s->talk->comm);
+    talk_waited(s->talk, since);
     return x;
 }
 

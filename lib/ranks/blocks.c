@@ -5,6 +5,7 @@
 
 #include "bodies/move.h"
 #include "bodies/project.h"
+#include "problem/brake.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -44,7 +45,7 @@ static void post(struct talk *t, int width, const struct border *go_list, double
     }
     double since = talk_busy();
     MPI_Waitall(n, r, MPI_STATUSES_IGNORE);
-    t->waited += talk_busy() - since;
+    talk_waited(t, since);
     free(r);
 }
 
@@ -104,7 +105,7 @@ static void settle(struct shared *s, struct problem *p)
 
 static void after_group(struct shared *s, struct problem *p, int64_t group)
 {
-    if (group == of(s)->groups - 1) settle(s, p);
+    if (group == of(s)->plan.groups - 1) settle(s, p);
 }
 
 static void begin(struct shared *s, struct problem *p)
@@ -112,20 +113,10 @@ static void begin(struct shared *s, struct problem *p)
     remember(of(s), TWIST, twist_of, p, of(s)->since);
 }
 
-static void brake_set(struct problem *p, const struct braked *b, bool on)
-{
-    struct bundle *c = slot_bundle(p, b->slot);
-    int k = slot_lane(b->slot);
-    double f = on ? b->factor : 1;
-    for (int j = 0; j < 2; j++) c->w[j][k] = f * b->w[j], c->iw[j][k] = b->iw[j] / f;
-    c->rho[k] = b->rho / f;
-    for (int j = 0; j < 9 && p->lever; j++) c->W[j][k] = f * b->W[j];
-}
-
 static void judging(struct shared *s, struct problem *p, bool begins)
 {
-    struct blocks *b = of(s);
-    for (int64_t i = 0; i < b->brakes; i++) brake_set(p, &b->brake[i], !begins);
+    (void)s;
+    brake_hold(p, !begins);
 }
 
 static void add(struct shared *s, double *x, int n)
@@ -133,7 +124,7 @@ static void add(struct shared *s, double *x, int n)
     struct talk *t = of(s)->part->talk;
     double *all = talk_new(t, (int64_t)n * t->n, sizeof *all), since = talk_busy();
     MPI_Allgather(x, n, MPI_DOUBLE, all, n, MPI_DOUBLE, t->comm);
-    t->waited += talk_busy() - since;
+    talk_waited(t, since);
     for (int j = 0; j < n; j++) x[j] = 0;
     for (int q = 0; q < t->n; q++)
         for (int j = 0; j < n; j++) x[j] += all[q * n + j];
@@ -193,33 +184,6 @@ static void find_borders(struct blocks *b, const struct contacts *s)
     parcels_free(t, out), parcels_free(t, in);
 }
 
-void blocks_begin(struct blocks *b, struct part *y, const struct contacts *s, enum order order)
-{
-    struct talk *t = y->talk;
-    *b = (struct blocks){ .part = y };
-    b->shared = (struct shared){ .after_group = after_group,
-                                 .begin = begin,
-                                 .settle = settle,
-                                 .judging = judging,
-                                 .add = add,
-                                 .sum_along = sum_along };
-    answers_alike(&b->shared, t);
-    find_borders(b, s);
-    if (schedule_bodies(&b->plan, order, s, &y->p))
-        talk_fail(t, EX_SOFTWARE, "no memory for the order of the contacts");
-    b->plan.beyond = b->plan.inside = b->plan.rim = b->plan.rest =
-        0;                 // a rank's threads share groups
-    if (!b->plan.groups) { // one without a contact, in which the exchange is made all the same
-        free(b->plan.group);
-        b->plan.group = talk_new(t, 2, sizeof *b->plan.group), b->plan.groups = 1;
-    }
-    b->groups = b->plan.groups;
-    int64_t bundles = 0;
-    for (int64_t g = 0; g < b->groups; g++)
-        bundles += (b->plan.group[g + 1] - b->plan.group[g] + BUNDLE - 1) / BUNDLE;
-    b->shared.contacts = talk_sum(t, s->n), b->shared.bundles = talk_sum(t, bundles);
-}
-
 /* ranks[n]: how many ranks push each body at once */
 static int32_t *count_ranks(const struct blocks *b)
 {
@@ -241,28 +205,46 @@ static int32_t *count_ranks(const struct blocks *b)
     return ranks;
 }
 
-void blocks_brake(struct blocks *b, struct problem *p, const struct contacts *s)
+static void find_slower(struct blocks *b, const struct contacts *s)
 {
     int32_t *ranks = count_ranks(b);
-    b->brake = talk_new(b->part->talk, s->n, sizeof *b->brake);
     b->slower = talk_new(b->part->talk, s->n, sizeof *b->slower);
-    for (int64_t i = 0; i < s->n; i++) b->slower[i] = 1;
-    for (int64_t i = 0; i < p->slots; i++) {
-        if (p->contact[i] < 0) continue;
-        const struct contact *c = &s->c[p->contact[i]];
+    for (int64_t i = 0; i < s->n; i++) {
+        const struct contact *c = &s->c[i];
         int32_t k = ranks[c->b];
         if (c->a >= 0 && ranks[c->a] > k) k = ranks[c->a];
-        if (k < 2) continue;
-        struct braked *x = &b->brake[b->brakes++];
-        b->slower[p->contact[i]] = k;
-        const struct bundle *from = slot_bundle(p, i);
-        int lane = slot_lane(i);
-        *x = (struct braked){ .slot = i, .factor = k, .rho = from->rho[lane] };
-        for (int j = 0; j < 2; j++) x->w[j] = from->w[j][lane], x->iw[j] = from->iw[j][lane];
-        for (int j = 0; j < 9 && p->lever; j++) x->W[j] = from->W[j][lane];
-        brake_set(p, x, true);
+        b->slower[i] = k;
     }
     free(ranks);
+    b->shared.slower = b->slower;
+}
+
+void blocks_begin(struct blocks *b, struct part *y, const struct contacts *s, enum order order)
+{
+    struct talk *t = y->talk;
+    *b = (struct blocks){ .part = y };
+    b->shared = (struct shared){ .after_group = after_group,
+                                 .begin = begin,
+                                 .settle = settle,
+                                 .judging = judging,
+                                 .add = add,
+                                 .sum_along = sum_along };
+    answers_alike(&b->shared, t);
+    find_borders(b, s);
+    find_slower(b, s);
+    if (schedule_bodies(&b->plan, order, s, &y->p))
+        talk_fail(t, EX_SOFTWARE, "no memory for the order of the contacts");
+    // a rank's threads share groups
+    b->plan.beyond = b->plan.inside = b->plan.rim = b->plan.rest = 0;
+    // one without a contact, in which the exchange is made all the same
+    if (!b->plan.groups) {
+        free(b->plan.group);
+        b->plan.group = talk_new(t, 2, sizeof *b->plan.group), b->plan.groups = 1;
+    }
+    int64_t bundles = 0;
+    for (int64_t g = 0; g < b->plan.groups; g++)
+        bundles += (b->plan.group[g + 1] - b->plan.group[g] + BUNDLE - 1) / BUNDLE;
+    b->shared.contacts = talk_sum(t, s->n), b->shared.bundles = talk_sum(t, bundles);
 }
 
 /* ---- the motion ---- */
@@ -351,18 +333,12 @@ void blocks_move(struct blocks *b, const struct contacts *s, struct balance *tol
     part_refresh(b->part);
 }
 
-static void borders_free(const struct talk *t, struct border *b)
-{
-    for (int q = 0; b && q < t->n; q++) free(b[q].body);
-    free(b);
-}
-
 void blocks_free(struct blocks *b)
 {
     const struct talk *t = b->part->talk;
     borders_free(t, b->touched), borders_free(t, b->pushed);
     letters_free(t, b->since);
-    free(b->brake), free(b->slower);
+    free(b->slower);
     schedule_free(&b->plan);
     *b = (struct blocks){ 0 };
 }

@@ -7,9 +7,8 @@
  * After a sweep the changes of copies are sent to the owners, which add them up in the order of ranks, and
  * send back what the bodies then move with: v = v_free + M^-1 P r holds for all.
  *
- * A body that k ranks push at once would be pushed too far: its contacts see W~_cc k times as large, which
- * shortens their steps and changes no solution [mass splitting, Tonge et al. 2012]. Errors are those of
- * the true W~_cc.
+ * A body that k ranks push at once would be pushed too far: its contacts are solved by steps that are k times
+ * shorter [problem/brake.h].
  */
 #ifndef NSD_BLOCKS_H
 #define NSD_BLOCKS_H
@@ -20,30 +19,19 @@
 #include "ranks/part.h"
 #include "ranks/wires.h"
 
-/* A slot at a border, and its true numbers */
-struct braked {
-    int64_t slot;
-    double factor, w[2], iw[2], rho, W[9];
-};
-
 struct blocks {
     struct shared shared; /* first: what solvers are given leads back here */
     struct part *part;
     struct border *touched; /* [ranks] copies here of bodies of rank q that contacts here push */
     struct border *pushed;  /* [ranks] own bodies that contacts of rank q push */
-    double *
-        *since; /* [ranks][touched[q].n][6] m/s, rad/s: their velocities after the last exchange */
-    int64_t groups; /* of this rank */
-    int64_t brakes;
-    struct braked *brake; /* [brakes] */
-    double *slower;       /* [contacts] their factors */
+    /* [ranks][touched[q].n][6] m/s, rad/s: their velocities after the last exchange */
+    double **since;
+    double *slower; /* [contacts] how many ranks push one of their bodies at once */
     struct schedule plan;
 };
 
 /* s: the contacts that this rank counts, and no others. */
 void blocks_begin(struct blocks *b, struct part *y, const struct contacts *s, enum order order);
-/* Once the problem is prepared */
-void blocks_brake(struct blocks *b, struct problem *p, const struct contacts *s);
 /*
  * After the solve: the bodies here move by the contacts' reactions, those at borders by what the owners have
  * summed up, and are moved apart where the packing wants it; copies become what the bodies are. told: the

@@ -148,22 +148,22 @@ const char *crew_leave(void)
     const struct stride *y = &crew.stride;
     if (!crew.talk.me) next(LEAVE);
     double mine[4] = { (double)y->solved[0], (double)y->solved[1], y->busy[0], y->busy[1] },
-           most[4];
+           most[4] = { 0 };
     MPI_Reduce(mine, most, 4, MPI_DOUBLE, MPI_MAX, 0, crew.talk.comm);
     double sweeps = y->sweeps > 0 ? (double)y->sweeps : 1;
     struct rusage used;
     getrusage(RUSAGE_SELF, &used);
-    double kb = (double)used.ru_maxrss, memory[2];
+    double kb = (double)used.ru_maxrss, memory[2] = { 0 };
     MPI_Reduce(&kb, &memory[0], 1, MPI_DOUBLE, MPI_MAX, 0, crew.talk.comm);
     MPI_Reduce(&kb, &memory[1], 1, MPI_DOUBLE, MPI_SUM, 0, crew.talk.comm);
     snprintf(
         text, sizeof text,
         "%d ranks: %.3g bytes in %.3g messages a sweep, of the one that sends most; contacts of "
-        "the "
-        "fullest %.3g of the mean at most, %lld cuts; %lld steps solved by the first alone; memory "
-        "%.3g MB, of the largest %.3g MB; "
+        "the fullest %.3g of the mean on average, %.3g at most, %lld cuts; %lld steps solved by "
+        "the first alone; memory %.3g MB, of the largest %.3g MB; "
         "%.3g s without waiting, %.3g s of them in the solver",
-        crew.talk.n, most[0] / sweeps, most[1] / sweeps, y->worst, (long long)y->part.cuts,
+        crew.talk.n, most[0] / sweeps, most[1] / sweeps,
+        y->steps ? y->uneven / (double)y->steps : 1, y->worst, (long long)y->part.cuts,
         (long long)y->alone, memory[1] / 1024, memory[0] / 1024, most[3], most[2]);
     if (crew.begun) stride_free(&crew.stride);
     rows_free(&crew.rows);

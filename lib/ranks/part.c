@@ -7,10 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a margin is: so many steps of the fastest body, within these numbers of mean radii */
+/* A margin is the way of the fastest body in STEPS_AHEAD steps, in mean radii at least and at most: */
 #define STEPS_AHEAD  16
 #define MARGIN_LEAST 0.05
 #define MARGIN_MOST  0.5
+
+/* What a body weighs beside a contact, when space is cut: it is moved once a step, and seeks neighbours, while a
+   contact is solved a hundred times. Its half of each contact comes on top. */
+#define A_BODY 0.1f
 
 /* A body on its way */
 struct traveller {
@@ -60,9 +64,9 @@ static void set_state(struct packing *p, int64_t i, const struct state *s)
     for (int k = 0; k < 3 && p->image; k++) p->image[i][k] = s->image[k];
 }
 
-static void borders_free(const struct part *y, struct border *b)
+void borders_free(const struct talk *t, struct border *b)
 {
-    for (int q = 0; b && q < y->talk->n; q++) free(b[q].body);
+    for (int q = 0; b && q < t->n; q++) free(b[q].body);
     free(b);
 }
 
@@ -147,7 +151,7 @@ void part_begin_again(struct part *y, const struct packing *whole)
 
 void part_free(struct part *y)
 {
-    borders_free(y, y->lent), borders_free(y, y->here);
+    borders_free(y->talk, y->lent), borders_free(y->talk, y->here);
     free(y->row), free(y->owner), free(y->dealt), free(y->load);
     packing_free(&y->p);
     territory_free(y->territory);
@@ -186,7 +190,7 @@ void part_recut(struct part *y)
     float *weight = talk_new(y->talk, y->own, sizeof *weight);
     for (int64_t i = 0; i < y->p.n; i++)
         if (y->owner[i] == y->talk->me)
-            x[n] = y->p.x[i], weight[n++] = 1 + 0.5f * (float)y->load[i];
+            x[n] = y->p.x[i], weight[n++] = A_BODY + 0.5f * (float)y->load[i];
     territory_cut(y->territory, n, x, weight);
     free(x), free(weight);
     y->margin = -1, y->cuts++;
@@ -233,7 +237,7 @@ static void find_borders(struct part *y)
 {
     struct talk *t = y->talk;
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
-    borders_free(y, y->lent), borders_free(y, y->here);
+    borders_free(t, y->lent), borders_free(t, y->here);
     y->lent = talk_new(t, t->n, sizeof *y->lent), y->here = talk_new(t, t->n, sizeof *y->here);
     for (int64_t i = 0; i < y->p.n; i++)
         if (y->owner[i] != t->me) y->here[y->owner[i]].n++;
@@ -332,6 +336,18 @@ bool part_deal(struct part *y, double reach)
     find_borders(y);
     give_back();
     return true;
+}
+
+static int compare_rows(const void *key, const void *row)
+{
+    int32_t x = *(const int32_t *)key, y = *(const int32_t *)row;
+    return x < y ? -1 : x > y;
+}
+
+int32_t part_find(const struct part *y, int32_t row)
+{
+    const int32_t *at = bsearch(&row, y->row, (size_t)y->p.n, sizeof *at, compare_rows);
+    return at ? (int32_t)(at - y->row) : -1;
 }
 
 /* ---- places and motion ---- */

@@ -16,6 +16,9 @@ struct border {
     int32_t *body; /* [n] of this rank's packing */
 };
 
+/* Of all ranks; not collective */
+void borders_free(const struct talk *t, struct border *b);
+
 struct part {
     struct talk *talk;
     struct territory *territory;
@@ -61,6 +64,9 @@ void part_follow(struct part *y, const struct packing *whole);
 void part_collect(const struct part *y, struct packing *whole);
 /* Copies become what the bodies are: their places and motion. */
 void part_refresh(struct part *y);
+
+/* The body of this rank's packing that has this row in the whole; -1: it is not here. Not collective */
+int32_t part_find(const struct part *y, int32_t row);
 
 /* Whose is the contact of this rank's packing? That of b counts it. */
 static inline bool part_counts(const struct part *y, const struct contact *c)

@@ -96,7 +96,7 @@ struct numbers {
     double t, dt, theta;
     vec3 g;
     uint64_t seed;
-    int32_t dim, overlap, kinds, has_law, has_shape, has_image, pours, removals, first_id;
+    int32_t dim, overlap, kinds, has_law, has_shape, has_image, first_id;
 };
 
 static void put(struct talk *t, struct parcel *o, const struct packing *p)
@@ -104,21 +104,9 @@ static void put(struct talk *t, struct parcel *o, const struct packing *p)
     struct numbers n;
     int64_t k2 = (int64_t)p->kinds * p->kinds;
     memset(&n, 0, sizeof n); // its gaps, too: parcels are compared by nobody, but read by valgrind
-    n = (struct numbers){ p->step,
-                          p->t,
-                          p->dt,
-                          p->theta,
-                          p->g,
-                          p->seed,
-                          p->dim,
-                          (int32_t)p->overlap,
-                          p->kinds,
-                          p->law != NULL,
-                          p->shape != NULL,
-                          p->image != NULL,
-                          p->pours,
-                          p->removals,
-                          p->first_id };
+    n.step = p->step, n.t = p->t, n.dt = p->dt, n.theta = p->theta, n.g = p->g, n.seed = p->seed;
+    n.dim = p->dim, n.overlap = (int32_t)p->overlap, n.kinds = p->kinds, n.first_id = p->first_id;
+    n.has_law = p->law != NULL, n.has_shape = p->shape != NULL, n.has_image = p->image != NULL;
     parcel_put(t, o, &n, sizeof n);
     parcel_put_array(t, o, p->wall, p->walls, sizeof *p->wall);
     put_drives(t, o, &p->drives), put_drives(t, o, &p->pushes);

@@ -14,16 +14,18 @@
 #include <string.h>
 
 enum {
-    CUT_AFTER = 20 /* steps that cuts are left alone, at least */
+    CUT_AFTER = 20, /* steps that cuts are left alone, */
+    LOST_MOST = 2   /* unless so many steps' work was lost since by what they became worse */
 };
-#define IMBALANCE                                                                                  \
-    1.1 /* contacts of the rank that has most over the mean: from here on cuts are made anew */
+/* Contacts of the rank that has most over the mean: from here on cuts are made anew. */
+#define IMBALANCE 1.1
 
 void stride_begin(struct stride *y, struct talk *t, const struct packing *whole, struct rows *rows)
 {
     int varies = packing_varies(whole);
     MPI_Bcast(&varies, 1, MPI_INT, 0, t->comm);
-    *y = (struct stride){ .varies = varies, .scattered = rows };
+    // the first cuts know no contacts
+    *y = (struct stride){ .varies = varies, .scattered = rows, .since = -CUT_AFTER };
     if (!rows) {
         part_begin(&y->part, t, whole);
         return;
@@ -50,13 +52,15 @@ static void fail(const struct stride *y, const struct why *why)
     talk_fail(y->part.talk, why->status, why->text);
 }
 
-/* Keeps the contacts for which keep[] is true, with their ties. */
+/* Keeps the contacts for which keep[] is true, with all that is known of them. */
 static void sift(struct contacts *s, const bool *keep)
 {
     int64_t n = 0;
     for (int64_t i = 0; i < s->n; i++) {
         if (!keep[i]) continue;
         if (s->tie) s->tie[n] = s->tie[i];
+        if (s->found) s->found[n] = s->found[i];
+        if (s->moment) memcpy(s->moment[n], s->moment[i], sizeof *s->moment);
         s->c[n++] = s->c[i];
     }
     s->n = n;
@@ -76,31 +80,80 @@ static void find_contacts(struct stride *y, double gap, double reach, struct con
     if (!part->p.law && detect_choose(s, &part->p, gap, reach, &why)) fail(y, &why);
 }
 
-static bool same_contact(const struct contact *x, const struct contact *y)
+/* Which of `before` laws have left in `all`, into of[before->n]; `added`: what they have put there besides */
+static void compare(struct talk *t, const struct contacts *before, const struct contacts *all,
+                    struct verdict *of, struct parcel *added)
 {
-    return x->a == y->a && x->b == y->b && x->feature == y->feature &&
-           !memcmp(x->shift, y->shift, sizeof x->shift);
+    int64_t k = 0;
+    for (int64_t i = 0; i <= before->n; i++) {
+        int order = -1;
+        while (k < all->n) {
+            order = i < before->n ? contact_compare(&all->c[k], &before->c[i]) : -1;
+            if (order >= 0) break;
+            parcel_put(t, added, &all->c[k++], sizeof *all->c);
+        }
+        if (i == before->n) break;
+        of[i].row = before->c[i].b, of[i].keep = k < all->n && order == 0;
+        k += of[i].keep;
+    }
 }
 
-/* The first rank chooses by the laws which of `all` are contacts; then all ranks have these. */
+/* Puts those of `added`, by rows of the whole, into s in which this rank has a body. */
+static void insert(const struct stride *y, struct contacts *s, struct parcel *added)
+{
+    struct talk *t = y->part.talk;
+    struct contacts both = { 0 };
+    int64_t n = (int64_t)(added->size / sizeof(struct contact)), i = 0;
+    both.c = talk_new(t, s->n + n, sizeof *both.c), both.room = s->n + n;
+    for (; n > 0; n--) {
+        struct contact c;
+        parcel_take(t, added, &c, sizeof c);
+        int32_t a = c.a < 0 ? c.a : part_find(&y->part, c.a), b = part_find(&y->part, c.b);
+        bool here = b >= 0 && (c.a < 0 || a >= 0); // else neither body is this rank's
+        c.a = a, c.b = b;
+        if (!here || !part_has(&y->part, &c)) continue;
+        while (i < s->n && contact_compare(&s->c[i], &c) < 0) both.c[both.n++] = s->c[i++];
+        both.c[both.n++] = c;
+    }
+    while (i < s->n) both.c[both.n++] = s->c[i++];
+    contacts_free(s);
+    *s = both;
+}
+
+/* Bonds between shapes are contacts where detection finds none [bodies/anchor.h]: these become known to the
+   ranks that have their bodies, and the roll is called again. */
+static void add_to_all(struct stride *y, struct roll *roll, struct contacts *s,
+                       const struct contacts *all, struct parcel *added)
+{
+    struct talk *t = y->part.talk;
+    struct contacts again = { 0 };
+    talk_spread(t, added);
+    if (!added->size) return;
+    insert(y, s, added);
+    roll_free(roll);
+    roll_call(roll, &y->part, s, &again);
+    bool alike = t->me || again.n == all->n;
+    for (int64_t i = 0; !t->me && alike && i < all->n; i++)
+        alike = !contact_compare(&again.c[i], &all->c[i]);
+    if (!alike) talk_fail(t, EX_SOFTWARE, "ranks disagree about the contacts of bonds");
+    contacts_free(&again);
+}
+
+/* The first rank chooses by the laws which of `all` are contacts, and adds others; then all ranks have these. */
 static int choose_by_laws(struct stride *y, const struct packing *whole, struct roll *roll,
                           struct contacts *s, struct contacts *all, const struct step_opt *o,
                           double reach, struct why *why)
 {
     struct talk *t = y->part.talk;
     struct contacts before = { 0 };
+    struct parcel added = { 0 };
     struct verdict *of = talk_new(t, t->me ? 0 : roll->n, sizeof *of),
                    *mine = talk_new(t, s->n, sizeof *mine);
     if (!t->me) {
         if (contacts_copy(&before, all))
             return free(of), free(mine), why_set(why, EX_SOFTWARE, "no memory for the contacts");
         if (detect_choose(all, whole, o->gap, reach, why)) return free(of), free(mine), why->status;
-        int64_t k = 0;
-        for (int64_t i = 0; i < before.n; i++) {
-            of[i].row = before.c[i].b;
-            of[i].keep = k < all->n && same_contact(&before.c[i], &all->c[k]);
-            k += of[i].keep;
-        }
+        compare(t, &before, all, of, &added);
     }
     roll_tell(roll, &y->part, s, of, mine);
     int64_t n = 0;
@@ -113,6 +166,8 @@ static int choose_by_laws(struct stride *y, const struct packing *whole, struct 
     sift(s, keep);
     free(keep), free(of), free(mine);
     contacts_free(&before);
+    add_to_all(y, roll, s, all, &added);
+    parcel_free(&added);
     return 0;
 }
 
@@ -141,11 +196,8 @@ static int order_all(const struct stride *y, const struct packing *whole,
 /* kg: as one process adds it */
 static double mean_mass(const struct stride *y, const struct packing *whole)
 {
-    double sum = 0, n = 0;
     if (y->scattered) return y->mean_mass;
-    for (int64_t i = 0; i < whole->n && !y->part.talk->me; i++)
-        sum += whole->mass[i], n += whole->mass[i] > 0;
-    double mean = n > 0 ? sum / n : 1;
+    double mean = y->part.talk->me ? 0 : packing_mean_mass(whole);
     MPI_Bcast(&mean, 1, MPI_DOUBLE, 0, y->part.talk->comm);
     return mean;
 }
@@ -200,9 +252,6 @@ static void solve_in_blocks(struct stride *y, struct blocks *b, const struct pac
     struct problem p;
     bool *keep = talk_new(y->part.talk, s->n, sizeof *keep);
     for (int64_t i = 0; i < s->n; i++) keep[i] = part_counts(&y->part, &s->c[i]);
-    int64_t n = 0;
-    for (int64_t i = 0; i < s->n && s->found; i++)
-        if (keep[i]) s->found[n++] = s->found[i];
     sift(s, keep);
     free(keep);
     blocks_begin(b, &y->part, s, o->order);
@@ -210,7 +259,6 @@ static void solve_in_blocks(struct stride *y, struct blocks *b, const struct pac
     if (problem_prepare_shared(&p, &y->part.p, s, o->alpha, o->solve.method->rho, &b->plan,
                                &b->shared, why))
         fail(y, why);
-    blocks_brake(b, &p, s);
     solve(y, &p, s, o, rep);
     problem_free(&p);
 }
@@ -218,11 +266,7 @@ static void solve_in_blocks(struct stride *y, struct blocks *b, const struct pac
 /* Can ranks solve it together? */
 static bool is_shared(const struct packing *p, const struct step_opt *o)
 {
-    const struct solver *g = o->solve.global;
-    bool sweeps = g == &solver_auto || g == &solver_nlgs;
-    for (int32_t k = 0; p->law && k < p->kinds * p->kinds; k++)
-        if (law_adheres(&p->law[k])) return false;
-    return (sweeps || (g == &solver_anderson && !packing_rolls(p))) && !freedoms_in(p);
+    return step_sweeps(o->solve.global) && !freedoms_in(p);
 }
 
 bool stride_scatters(const struct packing *p, const struct step_opt *o)
@@ -230,28 +274,16 @@ bool stride_scatters(const struct packing *p, const struct step_opt *o)
     return o->order == ORDER_BLOCK && is_shared(p, o) && !p->law && !o->warm && !packing_varies(p);
 }
 
-static double max_overlap(const struct contacts *s)
-{
-    double depth = 0;
-    for (int64_t i = 0; i < s->n; i++) depth = fmax(depth, -s->c[i].gap);
-    return depth;
-}
-
-/* What only a bond knows of the widest gap, which the first rank has */
-static void measure(struct stride *y, const struct packing *whole)
-{
-    double apart = y->part.talk->me ? 0 : packing_whole(whole).apart;
-    part_measure(&y->part);
-    MPI_Bcast(&apart, 1, MPI_DOUBLE, 0, y->part.talk->comm);
-    y->part.whole.apart = apart;
-}
-
 /* The pairs here that are contacts, or may be by laws */
 static void detect_here(struct stride *y, const struct packing *whole, struct contacts *s,
                         const struct step_opt *o, double *reach)
 {
+    // of the widest gap only a bond knows, and bonds are the first's
+    double apart = y->part.talk->me ? 0 : packing_whole(whole).apart;
     packing_tidy(&y->part.p, NULL);
-    measure(y, whole);
+    part_measure(&y->part);
+    MPI_Bcast(&apart, 1, MPI_DOUBLE, 0, y->part.talk->comm);
+    y->part.whole.apart = apart;
     *reach = talk_most(y->part.talk, detect_reach(&y->part.p, o->gap));
     find_contacts(y, o->gap, *reach, s);
 }
@@ -277,10 +309,13 @@ static int detect(struct stride *y, struct packing *whole, struct contacts *all,
 
 static void balance_load(struct stride *y, const struct contacts *s)
 {
-    y->imbalance = part_imbalance(&y->part, s);
-    y->worst = fmax(y->worst, y->imbalance);
+    double imbalance = part_imbalance(&y->part, s);
+    y->worst = fmax(y->worst, imbalance), y->uneven += imbalance;
     y->steps++;
-    if (y->imbalance <= IMBALANCE || y->steps - y->since < CUT_AFTER) return;
+    if (y->steps == y->since + 1) y->fresh = imbalance, y->lost = 0;
+    y->lost += imbalance - y->fresh;
+    if (imbalance <= IMBALANCE) return;
+    if (y->steps - y->since < CUT_AFTER && y->lost <= LOST_MOST) return;
     part_recut(&y->part);
     y->since = y->steps;
 }
@@ -300,7 +335,7 @@ static int step_by_first(struct stride *y, struct packing *whole, struct contact
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
     if (!t->me) {
         rep->step = whole->step + 1, rep->t = whole->t + whole->dt;
-        rep->err.max_overlap = max_overlap(all);
+        rep->err.max_overlap = contacts_max_overlap(all);
     }
     if (blocks)
         solve_in_blocks(y, &b, whole, &s, o, rep, why), blocks_free(&b);
@@ -344,7 +379,7 @@ static int step_by_all(struct stride *y, struct packing *whole, struct contacts 
     detect_here(y, whole, &s, o, &reach);
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
     rep->step = y->part.p.step + 1, rep->t = y->part.p.t + y->part.p.dt;
-    rep->err.max_overlap = talk_most(t, max_overlap(&s));
+    rep->err.max_overlap = talk_most(t, contacts_max_overlap(&s));
     rep->balanced = !bare, rep->tied = false;
     solve_in_blocks(y, &b, whole, &s, o, rep, why);
     bool moves = isfinite(rep->err.paper.eps_glob);
@@ -353,6 +388,8 @@ static int step_by_all(struct stride *y, struct packing *whole, struct contacts 
         blocks_move(&b, &s, bare ? NULL : &rep->balance);
         if (!t->me) settings_copy_motion(whole, &y->part.p);
     }
+    rep->balanced = !bare && moves;
+    // a run that diverges ends, and keeps this
     if (!y->scattered && (!bare || !moves)) part_collect(&y->part, whole);
     balance_load(y, &s);
     blocks_free(&b);

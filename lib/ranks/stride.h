@@ -4,11 +4,12 @@
  * whole packing: it says what order that is, what laws make of the contacts, sums the balances and moves the
  * bodies.
  *
- * What only a process that has all contacts can solve the first one solves alone: loads, other solvers than
- * auto, nlgs and anderson, and where auto goes on with Newton's method.
+ * What only a process that has all contacts can solve the first one solves alone: loads, whose contacts all
+ * depend on each other by a W of their own; other solvers than auto, nlgs and anderson; and where auto goes on
+ * with Newton's method.
  *
- * In blocks, where bodies neither come nor go, laws remember nothing and no load yields, each rank moves its own
- * and sums its balances, and nobody has the whole.
+ * In blocks, where bodies neither come nor go and pairs have no law beyond friction and restitution, each rank moves
+ * its own and sums its balances, and nobody has the whole.
  */
 #ifndef NSD_STRIDE_H
 #define NSD_STRIDE_H
@@ -20,17 +21,20 @@
 struct stride {
     struct part part;
     struct neighbours near;
-    bool varies;             /* bodies come and go, at the first */
-    bool scattered;          /* nobody has the whole packing */
-    double mean_mass;        /* kg: then */
-    bool contacts;           /* the first rank wants those of steps that are kept */
-    int64_t steps, since;    /* steps made; since the last cut */
-    int64_t alone;           /* steps whose contacts the first rank has solved alone */
-    double imbalance, worst; /* in the last step; of all */
-    int64_t sweeps;          /* of the shared solves */
-    double busy
-        [2]; /* s of this processor's time in them, and in all steps, without waiting for others */
-    int64_t solved[2]; /* bytes and messages of these, sent by this rank */
+    bool varies;          /* bodies come and go, at the first */
+    bool scattered;       /* nobody has the whole packing */
+    double mean_mass;     /* kg: then */
+    bool contacts;        /* the first rank wants those of steps that are kept */
+    int64_t steps, since; /* steps made; since the last cut */
+    int64_t alone;        /* steps whose contacts the first rank has solved alone */
+    /* Contacts of the rank that has most over the mean: the most of all steps, and the sum over them */
+    double worst, uneven;
+    double fresh,
+        lost; /* the same right after the last cut, and what it was more since then, added up */
+    int64_t sweeps; /* of the shared solves */
+    /* s of this processor's time in these, and in all steps, without waiting for others */
+    double busy[2];
+    int64_t solved[2]; /* bytes and messages of the shared solves, sent by this rank */
 };
 
 /* Collective. The first rank's packing; in others it is not looked at. rows: those of all ranks, where the

@@ -120,7 +120,7 @@ static void pass(struct talk *t, struct parcel *out, struct parcel *in, const in
         if (q != t->me) send_all(t, &out[q], q, r + k), k += pieces(out[q].size);
     double since = talk_busy();
     MPI_Waitall(k, r, MPI_STATUSES_IGNORE);
-    t->waited += talk_busy() - since;
+    talk_waited(t, since);
     free(r);
     parcel_free(&in[t->me]);
     in[t->me] = out[t->me], out[t->me] = (struct parcel){ 0 };
@@ -131,7 +131,9 @@ void talk_exchange(struct talk *t, struct parcel *out, struct parcel *in)
 {
     int64_t *go = talk_new(t, t->n, sizeof *go), *come = talk_new(t, t->n, sizeof *come);
     for (int q = 0; q < t->n; q++) go[q] = (int64_t)out[q].size;
+    double since = talk_busy();
     MPI_Alltoall(go, 1, MPI_INT64_T, come, 1, MPI_INT64_T, t->comm);
+    talk_waited(t, since);
     pass(t, out, in, come);
     free(go), free(come);
 }
@@ -140,7 +142,9 @@ void talk_gather(struct talk *t, struct parcel *mine, struct parcel *in)
 {
     struct parcel *out = parcels_new(t), *got = t->me ? parcels_new(t) : in;
     int64_t size = (int64_t)mine->size, *come = talk_new(t, t->n, sizeof *come);
+    double since = talk_busy();
     MPI_Gather(&size, 1, MPI_INT64_T, come, 1, MPI_INT64_T, 0, t->comm);
+    talk_waited(t, since);
     out[0] = *mine, *mine = (struct parcel){ 0 };
     pass(t, out, got, come);
     if (t->me) parcels_free(t, got);
@@ -153,7 +157,9 @@ void talk_scatter(struct talk *t, struct parcel *out, struct parcel *mine)
     struct parcel *none = t->me ? parcels_new(t) : NULL, *in = parcels_new(t);
     int64_t *go = talk_new(t, t->n, sizeof *go), *come = talk_new(t, t->n, sizeof *come);
     for (int q = 0; q < t->n && !t->me; q++) go[q] = (int64_t)out[q].size;
+    double since = talk_busy();
     MPI_Scatter(go, 1, MPI_INT64_T, come, 1, MPI_INT64_T, 0, t->comm);
+    talk_waited(t, since);
     pass(t, t->me ? none : out, in, come);
     parcel_free(mine);
     *mine = in[0], in[0] = (struct parcel){ 0 };
@@ -183,17 +189,24 @@ double talk_busy(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+void talk_waited(struct talk *t, double since)
+{
+    t->waited += talk_busy() - since;
+}
+
 double talk_most(struct talk *t, double x)
 {
     double most, since = talk_busy();
     MPI_Allreduce(&x, &most, 1, MPI_DOUBLE, MPI_MAX, t->comm);
-    t->waited += talk_busy() - since;
+    talk_waited(t, since);
     return most;
 }
 
 int64_t talk_sum(struct talk *t, int64_t n)
 {
     int64_t sum;
+    double since = talk_busy();
     MPI_Allreduce(&n, &sum, 1, MPI_INT64_T, MPI_SUM, t->comm);
+    talk_waited(t, since);
     return sum;
 }

@@ -14,8 +14,10 @@
 
 struct talk {
     MPI_Comm comm;
-    int me, n;               /* this rank, of how many; 0 leads */
-    int64_t bytes, messages; /* sent by this rank to others so far, by whatever way */
+    int me, n; /* this rank, of how many; 0 leads */
+    /* Sent by this rank to others so far, point to point: what sums and decisions of all send, a few numbers
+       each, is the library's own affair. */
+    int64_t bytes, messages;
     double waited; /* s of this processor's time in which this rank has waited for others */
 };
 
@@ -45,8 +47,9 @@ void talk_scatter(struct talk *t, struct parcel *out, struct parcel *mine);
 /* Everybody gets what the first has in it. */
 void talk_spread(struct talk *t, struct parcel *p);
 
-/* s of the processor's time that this thread has had; not collective */
+/* s of the processor's time that this thread has had; counts those since then as waited. Not collective */
 double talk_busy(void);
+void talk_waited(struct talk *t, double since);
 
 double talk_most(struct talk *t, double x);
 int64_t talk_sum(struct talk *t, int64_t n);

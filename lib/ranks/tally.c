@@ -85,6 +85,9 @@ static double *bring(const struct tally_order *o, struct talk *t, int terms, con
     double *go = talk_new(t, o->n * terms, sizeof *go),
            *come = talk_new(t, o->got * terms, sizeof *come);
     int *count = talk_new(t, 4 * t->n, sizeof *count);
+    if (o->n > INT32_MAX / terms || o->got > INT32_MAX / terms)
+        talk_fail(t, EX_SOFTWARE,
+                  "a sum over more numbers than MPI counts: more ranks, or --order block");
     for (int64_t i = 0; i < o->n; i++)
         memcpy(go + i * terms, term + o->mine[i] * terms, (size_t)terms * sizeof *go);
     int *from = count + t->n, *in = from + t->n, *to = in + t->n;
@@ -96,7 +99,7 @@ static double *bring(const struct tally_order *o, struct talk *t, int terms, con
     }
     double since = talk_busy();
     MPI_Alltoallv(go, count, from, MPI_DOUBLE, come, in, to, MPI_DOUBLE, t->comm);
-    t->waited += talk_busy() - since;
+    talk_waited(t, since);
     free(go), free(count);
     return come;
 }
@@ -119,7 +122,9 @@ static void add_chunks(struct talk *t, struct parcel *mine, int64_t chunks, size
         for (size_t j = 0; j < size; j++) out[j] += all[k * (int64_t)size + (int64_t)j];
     free(all);
     parcels_free(t, in);
+    double since = talk_busy();
     MPI_Bcast(out, (int)size, MPI_DOUBLE, 0, t->comm);
+    talk_waited(t, since);
 }
 
 void tally_sum(const struct tally_order *o, struct talk *t, int64_t bundles, int64_t chunk,
@@ -160,6 +165,8 @@ double tally_along(const struct tally_order *o, struct talk *t, int64_t bundles,
     for (int64_t i = 0; i < bundles * BUNDLE && !t->me; i++) sum += all[i];
     free(all);
     parcels_free(t, in);
+    double since = talk_busy();
     MPI_Bcast(&sum, 1, MPI_DOUBLE, 0, t->comm);
+    talk_waited(t, since);
     return sum;
 }

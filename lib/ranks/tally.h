@@ -9,14 +9,16 @@
 #include "ranks/talk.h"
 
 struct tally_order {
-    int64_t n,
-        *mine; /* [n] slots here that are counted, by the rank that adds them up, then along the order of all */
+    int64_t n;
+    /* [n] slots here that are counted, by the rank that adds them up, then along the order of all */
+    int64_t *mine;
     int *out, *in; /* [ranks] how many go there and come from there */
-    int64_t got, *at,
+    int64_t got;
+    int64_t *at,
         *where; /* [got] along the order of all: where they stand in what comes; their slots */
 };
 
-/* slot[contacts of this rank]: in the order of all, which has so many bundles; -1: another counts it.
+/* slot[contacts of this rank]: in the order of all and its `bundles`; -1: another counts it.
    Collective, as all that follows. */
 void tally_begin(struct tally_order *o, struct talk *t, const struct problem *p,
                  const int64_t *slot, int64_t bundles);

@@ -39,20 +39,14 @@ static void take_list(struct wires *w, const struct part *y, struct parcel *in, 
     int64_t most = (int64_t)(in->size / (sizeof(int64_t) + sizeof(int32_t)));
     x->come_body = talk_new(w->talk, most, sizeof *x->come_body);
     while (in->at < in->size) {
-        int64_t g, lo = 0, hi = y->p.n;
+        int64_t g;
         int32_t row;
         parcel_take(w->talk, in, &g, sizeof g), parcel_take(w->talk, in, &row, sizeof row);
-        while (lo < hi) {
-            int64_t middle = (lo + hi) / 2;
-            if (y->row[middle] < row)
-                lo = middle + 1;
-            else
-                hi = middle;
-        }
-        if (lo == y->p.n || y->row[lo] != row || g < 0 || g >= w->groups)
+        int32_t body = part_find(y, row);
+        if (body < 0 || g < 0 || g >= w->groups)
             talk_fail(w->talk, EX_SOFTWARE,
                       "ranks disagree: a velocity of a body that is not here");
-        x->come_body[n++] = (int32_t)lo, x->come[g + 1]++;
+        x->come_body[n++] = body, x->come[g + 1]++;
     }
 }
 
@@ -135,7 +129,7 @@ void wires_wait(struct wires *w, struct problem *p, int64_t g)
     if (!w->requests) return;
     double since = talk_busy();
     MPI_Waitall(w->requests, w->request, MPI_STATUSES_IGNORE);
-    w->talk->waited += talk_busy() - since;
+    talk_waited(w->talk, since);
     w->requests = 0;
     for (int k = 0; k < w->n; k++) {
         const struct wire *x = &w->wire[k];

@@ -129,11 +129,10 @@ static void measure_chunks(void *arg, int64_t first, int64_t end)
 static void take_terms(const struct anderson *a, int64_t slot, double *term)
 {
     const struct problem *p = a->s->p;
-    const struct bundle *c = slot_bundle(p, slot);
     const double *df = a->m.df[a->m.next];
     int k = slot_lane(slot);
     int width = mixing_width(p);
-    double lambda = c->w[0][k] > c->w[1][k] ? c->w[0][k] : c->w[1][k];
+    double lambda = slot_lambda(p, slot);
     double length = p->beyond ? p->beyond[slot / BUNDLE].length[k] : 0;
     for (int l = 0; l < width; l++) {
         int64_t at = (slot / BUNDLE * width + l) * BUNDLE + k;

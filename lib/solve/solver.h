@@ -62,9 +62,9 @@ extern const struct solver solver_auto, solver_nlgs, solver_anderson, solver_cg,
 
 /*
  * Solves a problem, starting from the r in its slots; afterwards they hold r and u. Fills method,
- * err (all but max_overlap), criterion, eps, sweeps, converged, counts, work, fallback, given_up, seconds and
- * history of the report. Returns 0, or -1 when memory is short for what the solver cannot do
- * without.
+ * err (all but max_overlap), criterion, eps, sweeps, converged, counts, work, fallback, given_up,
+ * seconds and history of the report. Returns 0, or -1 when memory is short for what the solver
+ * cannot do without.
  */
 int solve_problem(struct problem *p, const struct solve_opt *o, struct report *rep);
 

@@ -8,13 +8,6 @@
 
 #include <stdlib.h>
 
-static double max_overlap(const struct contacts *s)
-{
-    double depth = 0;
-    for (int64_t i = 0; i < s->n; i++) depth = fmax(depth, -s->c[i].gap);
-    return depth;
-}
-
 /* The reactions' sums and the balances they make; sum is to be freed in any case. */
 static int sum_up(const struct packing *pack, const struct contacts *s, const struct step_opt *o,
                   struct report *rep, struct impulses *sum, struct why *why)
@@ -24,8 +17,7 @@ static int sum_up(const struct packing *pack, const struct contacts *s, const st
     return o->bare ? 0 : balance_step(&rep->balance, pack, s, sum, NULL, why);
 }
 
-/* Does it solve by sweeps alone what bonds and moments hold together? */
-static bool sweeps(const struct solver *global)
+bool step_sweeps(const struct solver *global)
 {
     return global == &solver_auto || global == &solver_nlgs || global == &solver_anderson;
 }
@@ -33,7 +25,7 @@ static bool sweeps(const struct solver *global)
 /* Refuses what the solver asked for cannot solve. */
 static int check_solver(const struct problem *p, const struct solver *global, struct why *why)
 {
-    if (!p->rolls || sweeps(global)) return 0;
+    if (!p->rolls || step_sweeps(global)) return 0;
     return why_set(
         why, EX_DATAERR,
         "%s does not solve contacts with rolling friction: --global auto, anderson and nlgs do",
@@ -45,12 +37,12 @@ int step_solve_contacts(const struct packing *pack, struct contacts *s, const st
 {
     struct problem p;
     if (!o->warm) contacts_free_found(s);
-    if (prepare_packing(&p, pack, s, sweeps(o->solve.global), o->alpha, o->solve.method->rho,
+    if (prepare_packing(&p, pack, s, step_sweeps(o->solve.global), o->alpha, o->solve.method->rho,
                         o->order, why))
         return why->status;
     rep->step = pack->step + 1;
     rep->t = pack->t + pack->dt;
-    rep->err.max_overlap = max_overlap(s);
+    rep->err.max_overlap = contacts_max_overlap(s);
     if (check_solver(&p, o->solve.global, why)) return problem_free(&p), why->status;
     int failed = solve_problem(&p, &o->solve, rep);
     if (failed)

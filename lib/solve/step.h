@@ -17,7 +17,10 @@ struct step_opt {
     struct solve_opt solve;
 };
 
-/* All return 0, or EX_SOFTWARE or EX_DATAERR with the reason in why. */
+/* Does this solver make sweeps alone of what bonds and moments hold together? Others want a W. */
+bool step_sweeps(const struct solver *global);
+
+/* All that follow return 0, or EX_SOFTWARE or EX_DATAERR with the reason in why. */
 
 /* Solves the contacts, whose bases and gaps are known; their found[] gets r, u and status. */
 int step_solve(const struct packing *pack, struct contacts *s, const struct step_opt *o,
@@ -35,12 +38,13 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
 int step_advance(struct packing *p, struct contacts *s, struct neighbours *near,
                  const struct step_opt *o, struct report *rep, struct why *why);
 
-/* Its three parts: contacts, with their last reactions if warm; found[] and the report of the solve; the
-   balances alone, or the balances and the motion. */
+/* Its parts. The contacts, with their last reactions if warm */
 int step_detect(struct packing *p, struct contacts *s, struct neighbours *near,
                 const struct step_opt *o, struct report *rep, struct why *why);
+/* found[], and the report of the solve */
 int step_solve_contacts(const struct packing *pack, struct contacts *s, const struct step_opt *o,
                         struct report *rep, struct why *why);
+/* The balances alone; or the balances and the motion */
 int step_balance(const struct packing *p, const struct contacts *s, const struct step_opt *o,
                  struct report *rep, struct why *why);
 int step_move(struct packing *p, struct contacts *s, const struct step_opt *o, struct report *rep,

@@ -51,7 +51,9 @@ for name, value in {
         "COUNT": str(max(len(rows(n, "spectrum.jsonl")[0]["eigenvalues"]) + rows(n, "spectrum.jsonl")[0]["zero"]
                          for n in sizes)),
         "LAST": str(last),
-        "COULOMB": f"{min(ratio['Coulomb']):.3f} to {max(ratio['Coulomb']):.3f}",
-        "HELD": f"{min(ratio['held']):.3f} to {max(ratio['held']):.3f}"}.items():
+        "LONGER": str(sum(r > 1 for r in ratio["Coulomb"])),
+        "STEPS": str(len(ratio["Coulomb"])),
+        "COULOMB": f"{min(ratio['Coulomb']):.5f} to {max(ratio['Coulomb']):.5f}",
+        "HELD": f"{min(ratio['held']):.5f} to {max(ratio['held']):.5f}"}.items():
     text = text.replace(f"@{name}@", value)
 print(text, end="")
