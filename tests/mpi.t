@@ -234,7 +234,10 @@ refused() # the same status, and the same line, as in one process, and no file i
         s=0
         nsd-step -o "$tmp/refused.h5" "$tmp/$name.h5" 2>"$tmp/single" && return 1
         ranks 3 --order block -o "$tmp/refused.h5" "$tmp/$name.h5" 2>"$tmp/said" || s=$?
-        [ "$s" = 65 ] && grep -qxF "$(cat "$tmp/single")" "$tmp/said" && [ ! -e "$tmp/refused.h5" ] || { echo "$name: $s"; cat "$tmp/single" "$tmp/said"; return 1; }
+        if [ "$s" != 65 ] || ! grep -qxF "$(cat "$tmp/single")" "$tmp/said" || [ -e "$tmp/refused.h5" ]; then
+            echo "$name: $s" && cat "$tmp/single" "$tmp/said"
+            return 1
+        fi
     done
 }
 ok "bad bodies: the status and the line of one process" refused
