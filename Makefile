@@ -19,14 +19,16 @@ CFLAGS  ?= $(if $(SAN),-O1 -g1,-O3 -g)
 B       := build$(if $(SAN),/san)
 
 , := ,
-LIBS := hdf5 gsl jansson zlib libpng cairo
+# Debian's hdf5.pc is that of whichever flavour was installed last.
+HDF5 := $(if $(shell pkg-config --exists hdf5-serial 2>/dev/null && echo 1),hdf5-serial,hdf5)
+LIBS := $(HDF5) gsl jansson zlib libpng cairo
 PC   := $(shell pkg-config --cflags $(LIBS) 2>/dev/null)
 
 # Archives of the libraries where there are some, of which a tool gets what it calls: shared ones load others,
 # libhdf5 36 (libcurl and its own), CHOLMOD OpenBLAS, cairo X11, and a tool then starts in 10 ms of the
 # processor instead of 2. SHARED=1: none, as distributions want it.
 SHARED ?=
-FOLDERS := $(dir $(shell $(CC) -print-file-name=libgsl.a)) $(patsubst -L%,%/,$(shell pkg-config --libs-only-L hdf5 2>/dev/null))
+FOLDERS := $(dir $(shell $(CC) -print-file-name=libgsl.a)) $(patsubst -L%,%/,$(shell pkg-config --libs-only-L $(HDF5) 2>/dev/null))
 library = $(firstword $(if $(SHARED),,$(foreach d,$(FOLDERS),$(wildcard $dlib$1.a))) -l$1)
 # CHOLMOD's archive needs METIS, of which Debian has no link for compilers
 METIS   := $(firstword $(foreach d,$(FOLDERS),$(wildcard $dlibmetis.so $dlibmetis.so.5)))
@@ -34,7 +36,7 @@ SPARSE  := $(if $(METIS),$(foreach l,klu btf cholmod camd ccolamd colamd amd sui
 # and qhull's has another name than its shared library
 QHULL   := $(firstword $(if $(SHARED),,$(foreach d,$(FOLDERS),$(wildcard $dlibqhullstatic_r.a))) -lqhull_r)
 PL      := $(foreach l,hdf5_hl hdf5 gsl gslcblas jansson,$(call library,$l)) $(SPARSE) $(QHULL) $(call library,cairo) \
-           $(shell pkg-config $(if $(SHARED),,--static) --libs hdf5 cairo zlib libpng 2>/dev/null) \
+           $(shell pkg-config $(if $(SHARED),,--static) --libs $(HDF5) cairo zlib libpng 2>/dev/null) \
            $(foreach l,sz,$(if $(wildcard $(FOLDERS:%=%lib$l.so)),-l$l)) -lm
 
 # No contraction to FMA: the same bytes on every machine.
@@ -67,6 +69,11 @@ MPICC  ?= mpicc
 ZOLTAN := $(wildcard /usr/include/trilinos/zoltan.h)
 MPI_PC := $(if $(and $(MPICC),$(ZOLTAN)),$(shell $(MPICC) --showme:compile 2>/dev/null))
 MPI_LD := $(if $(MPI_PC),$(shell $(MPICC) --showme:link 2>/dev/null) -ltrilinos_zoltan)
+# Its libhdf5 is the one that knows MPI, where that is there, and of the same version: ranks then write files
+# together. PARALLEL= : the one of the other tools; the first rank then writes what the others send it.
+PARALLEL ?= $(if $(MPI_PC),$(shell pkg-config --exists 'hdf5-openmpi = '$$(pkg-config --modversion $(HDF5)) 2>/dev/null && echo 1))
+MPI_H5 := $(if $(PARALLEL),$(shell pkg-config --cflags-only-I hdf5-openmpi))
+MPI_PL := $(if $(PARALLEL),$(subst hdf5/serial,hdf5/openmpi,$(PL)),$(PL))
 RANKS  := $(if $(MPI_PC),$(patsubst lib/%.c,$B/lib/%.o,$(wildcard lib/ranks/*.c)))
 MPI    := $(if $(MPI_PC),$B/nsd-step-mpi)
 CTEST := $(patsubst tests/%.c,$B/tests/%,$(wildcard tests/*_test.c))
@@ -115,9 +122,9 @@ $B/tests/%: tests/%.c $B/libnsd.a Makefile
 	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -o $@ $< $B/libnsd.a $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS) $(TESTLIBS)
 
 # ranks/company.c stands for cli/crew.c, which the archive then is not asked for.
-$(RANKS): NSD_CFLAGS += $(MPI_PC)
+$(RANKS): NSD_CFLAGS := $(MPI_H5) $(NSD_CFLAGS) $(MPI_PC)
 $B/nsd-step-mpi: $B/tools/nsd-step.o $B/lib/cli/main.o $(RANKS) $B/libnsd.a
-	$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(NSD_LDLIBS) $(MPI_LD)
+	$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(MPI_PL) $(MPI_LD)
 
 tests: $(TOOLS) $(MPI) $(CTEST)
 
@@ -321,7 +328,7 @@ install-dev: $B/libnsd.a
 	    ! ls $$d*.h >/dev/null 2>&1 || install -m 644 $$d*.h $(TO)/include/nsd/$$(basename $$d); \
 	done
 	install -m 644 $B/libnsd.a $(DESTDIR)$(LIBDIR)
-	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|' nsd.pc.in \
+	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|; s|@HDF5@|$(HDF5)|' nsd.pc.in \
 	    > $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc
 
 uninstall:

@@ -17,12 +17,14 @@ trap 'rm -rf "$tmp"' EXIT
 cube() # SIDE: its file, made once
 {
     local f=$tmp/cube$1.h5
-    [ -e "$f" ] || jq -n --argjson n "$1" '{ dt: 1e-4, mu: 0.3, density: 2500, gravity: [0.3, 0.2, -9.81],
+    # from a table: a scene of a million bodies is itself as large as they are
+    [ -e "$f" ] || awk -v n="$1" 'BEGIN { for (k = 0; k < n; k++) for (j = 0; j < n; j++) for (i = 0; i < n; i++)
+        print 0.001 + 0.002 * i, 0.001 + 0.002 * j, 0.001 + 0.002 * k, 0.001 }' >"$tmp/balls.txt"
+    [ -e "$f" ] || jq -n --argjson n "$1" --arg balls "$tmp/balls.txt" '{ dt: 1e-4, mu: 0.3, density: 2500, gravity: [0.3, 0.2, -9.81],
         walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }, { point: [0, 0, 0], normal: [1, 0, 0] },
                 { point: [0, 0, 0], normal: [0, 1, 0] }, { point: [$n * 0.002, 0, 0], normal: [-1, 0, 0] },
                 { point: [0, $n * 0.002, 0], normal: [0, -1, 0] }],
-        bodies: [range($n * $n * $n) | { radius: 0.001,
-            x: [0.001 + 0.002 * (. % $n), 0.001 + 0.002 * ((. / $n | floor) % $n), 0.001 + 0.002 * (. / ($n * $n) | floor)] }] }' |
+        bodies: [{ file: $balls }] }' |
         nsd-gen - >"$f"
     echo "$f"
 }
@@ -63,17 +65,17 @@ pair() # SIDE SIDE2 STEPS: one process on the one cube, two ranks on the other, 
         { e = $3 / $5 * (weak ? $2 / $1 / 2 : 1 / 2)
           printf "| %d | %d | %.3g | %d | %.3g | %d | %.0f %% | %.0f %% |\n", $1, $2, $3, $4, $5, $6, 100 * e, 100 * e * $6 / $4 }'
 }
-memory() # MB of all, of the largest: one process, and 2, 4, 8
+memory() # ORDER SIDE: MB of all, of the largest: one process, and 2, 4, 8
 {
     local k all most _bytes _many one f
-    f=$(cube 46)
+    f=$(cube "$2")
     one=$(/usr/bin/python3 -c 'import resource, subprocess, sys
 subprocess.run(sys.argv[1:], stderr=subprocess.DEVNULL)
-print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)' nsd-step --gap 1e-8 -n 2 --every 1000 --order block --eps 1e-2 -o "$tmp/one.h5" "$f")
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)' nsd-step --gap 1e-8 -n 1 --every 1000 --order "$1" --eps 1e-2 -o "$tmp/one.h5" "$f")
     for k in 2 4 8; do
-        read -r _bytes _many all most < <(run "$k" 46 -n 2 --order block --eps 1e-2 | said)
-        echo "$k $one $all $most"
-    done | awk '{ printf "| %d | %.0f | %.0f | %.0f | %.2f |\n", $1, $2, $3, $4, $4 / ($2 / $1) }'
+        read -r _bytes _many all most < <(run "$k" "$2" -n 1 --order "$1" --eps 1e-2 | said)
+        echo "$1 $(($2 * $2 * $2)) $k $one $all $most"
+    done | awk '{ printf "| %s | %d | %d | %.0f | %.0f | %.0f | %.2f |\n", $1, $2, $3, $4, $5, $6, $6 / ($4 / $3) }'
 }
 
 for part; do
@@ -83,7 +85,8 @@ for part; do
         pair 46 46 4; [ -n "${QUICK-}" ] || pair "$million" "$million" 3 ;;
     weak) printf '| balls, one process | balls, two ranks | s | sweeps | s of a rank | sweeps | efficiency | of a sweep |\n|---|---|---|---|---|---|---|---|\n'
         pair "$half" "$million" 3 ;;
-    memory) printf '| ranks | one process, MB | all ranks, MB | the largest, MB | of its share |\n|---|---|---|---|---|\n'; memory ;;
+    memory) printf '| order | balls | ranks | one process, MB | all ranks, MB | the largest, MB | of its share |\n|---|---|---|---|---|---|---|\n'
+        memory block 46; [ -n "${QUICK-}" ] || memory block 100; memory colour 46 ;;
     *) echo "usage: scale.sh [messages] [strong] [weak] [memory]" >&2; exit 64 ;;
     esac
     echo

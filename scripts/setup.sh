@@ -9,7 +9,8 @@ paper=("${run[@]}" pandoc)
 wall=("${run[@]}" python3-h5py python3-scipy)
 check=("${paper[@]}" "${wall[@]}" perl mandoc shellcheck cppcheck clang libomp-dev libclang-rt-dev
     clang-tidy clang-format libfclib-dev gcovr
-    openmpi-bin libopenmpi-dev libtrilinos-zoltan-dev debhelper lintian zsh parallel python3-vtk9 python3-ase python3-mdanalysis
+    openmpi-bin libopenmpi-dev libhdf5-openmpi-dev libtrilinos-zoltan-dev
+    debhelper lintian zsh parallel python3-vtk9 python3-ase python3-mdanalysis
     ffmpeg chromium chromium-driver python3-selenium)
 
 case "${1:-run}" in

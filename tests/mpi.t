@@ -141,6 +141,149 @@ frames_alike() # the same processes: the same bytes; and as many frames as may b
 }
 ok "as many processes give the same bytes, whatever frames are kept" frames_alike
 
+# ---- nobody has the whole: rows of bodies from and to files ----
+
+forms() # FILE K ARGUMENT ...: all ranks write, or the first what they send it: the same bytes
+{
+    local file=$1 k=$2
+    shift 2
+    rm -f "$tmp"/[ab].h5
+    ranks "$k" "$@" --order block -o "$tmp/a.h5" "$file" && NSD_GATHER=1 ranks "$k" "$@" --order block -o "$tmp/b.h5" "$file" &&
+        cmp "$tmp/a.h5" "$tmp/b.h5" && nsd-info "$tmp/a.h5" >"$tmp/info"
+}
+written_alike() { forms "$tmp/rubble.h5" 4 -n 2 && forms "$tmp/vibrated.h5" 8 -n 3 &&
+    OMPI_MCA_io=romio321 forms "$tmp/heap.h5" 2 -n 2 && forms "$tmp/heap.h5" 3 -n 4 --contacts; } # ROMIO locks what it writes
+ok "frames that all processes write, and that the first writes for them: the same bytes" written_alike
+balances() # of each frame: the change of the energy is the work, no body or contact twice
+{
+    jq -es 'map(select(.balance) | .balance) | length == 4 and all(.[];
+        (.change - (.gravity + .drives + .loads - .dissipation) | fabs) < 1e-12 * ([.kinetic, .gravity, .dissipation | fabs] | add) and
+        .dissipation != 0)' "$tmp/info"
+}
+ok "their balances close" balances
+
+# Rods and balls in a cell that repeats, too far from each other to touch: no order changes a bit
+jq -n '{ dt: 1e-3, gravity: [0, 0, -9.81], density: 1000, cell: { lengths: [10, 10, 10], repeats: [true, true, true] },
+    shapes: { rod: { capsule: { length: 2, radius: 0.5 } } }, bodies: [range(101) |
+    { x: [(. % 5) * 2 + 1, (. / 5 | floor) % 5 * 2 + 1, (. / 25 | floor) * 1.9 + 1], v: [300, -200, 50], w: [1, 2, 3] } +
+    if . % 3 == 0 then { shape: "rod", size: 0.1 } else { radius: 0.1 } end] }' >"$tmp/gas.json"
+nsd-gen "$tmp/gas.json" >"$tmp/gas.h5"
+same_particles() # FILE FILE ...: the bytes of all that is in /particles
+{
+    /usr/bin/python3 - "$@" <<'EOF'
+import io, sys, h5py
+import numpy as np
+def columns(path):
+    found = {}
+    f = h5py.File(io.BytesIO(open(path, "rb").read()[512:]), "r")
+    f["particles"].visititems(lambda name, o: found.update({ name: o[()] }) if isinstance(o, h5py.Dataset) else None)
+    return found
+one = columns(sys.argv[1])
+assert np.abs(one["all/image/value"]).max() > 0 and one["all/shape"].max() > 0
+for path in sys.argv[2:]:
+    other = columns(path)
+    assert one.keys() == other.keys(), path
+    for name in one:
+        assert one[name].dtype == other[name].dtype and one[name].tobytes() == other[name].tobytes(), (path, name)
+EOF
+}
+gas() # in each step a frame; and on from it, on another number of processes
+{
+    local k
+    rm -f "$tmp"/gas-*
+    nsd-step -n 20 --every 5 -o "$tmp/gas-1" "$tmp/gas.h5" && nsd-step -n 4 -i "$tmp/gas-1" || return 1
+    for k in 2 3 4 8; do
+        ranks "$k" -n 20 --every 5 --order block -o "$tmp/gas-$k" "$tmp/gas.h5" && ranks $((k / 2 + 1)) -n 4 --order block -i "$tmp/gas-$k" &&
+            NSD_GATHER=1 ranks "$k" -n 20 --every 5 --order block -o "$tmp/gas-first-$k" "$tmp/gas.h5" &&
+            NSD_GATHER=1 ranks 2 -n 4 --order block -i "$tmp/gas-first-$k" || return 1
+    done
+    same_particles "$tmp"/gas-*
+}
+ok "bodies that do not touch: the bytes of one process on 2, 3, 4 and 8, in both forms, and where a run goes on" gas
+none_of_all() # more processes than bodies; no step; a stream, which is no file that all can open
+{
+    nsd-gen 3 >"$tmp/three.h5" && rm -f "$tmp"/[ab].h5 && mkfifo "$tmp/pipe" && ranks 5 -n 3 --order block -o "$tmp/a.h5" "$tmp/three.h5" &&
+        nsd-step -n 3 -o "$tmp/b.h5" "$tmp/three.h5" && [ "$(last_of "$tmp/a.h5")" = "$(last_of "$tmp/b.h5")" ] || return 1
+    cat "$tmp/pipe" >"$tmp/streamed.h5" &
+    rm -f "$tmp"/[ab].h5
+    ranks 3 -n 2 --order block -o "$tmp/pipe" "$tmp/heap.h5" && wait $! && ranks 3 -n 2 --order block -o "$tmp/a.h5" "$tmp/heap.h5" &&
+        cmp <(nsd-cat "$tmp/a.h5") <(nsd-cat "$tmp/streamed.h5") && ranks 3 -n 0 --order block -o "$tmp/b.h5" "$tmp/heap.h5" &&
+        [ "$(last_of "$tmp/heap.h5")" = "$(last_of "$tmp/b.h5")" ]
+}
+ok "a few bodies, no step, a pipe to write to" none_of_all
+
+harm() # NAME CODE: a copy of gas.h5, without its header, changed by Python; and what one process says of it
+{
+    tail -c +513 "$tmp/gas.h5" >"$tmp/$1.h5"
+    /usr/bin/python3 -c "import sys, h5py, numpy as np
+f, P = h5py.File(sys.argv[1], 'r+'), '/particles/all/'
+$2" "$tmp/$1.h5"
+}
+harm nan 'f[P + "position/value"][0, 77, 1] = np.nan'
+harm kind 'f[P + "species"][100] = 7'
+harm shape 'f[P + "shape"][99] = -3'
+harm image 'f[P + "image/value"][0, 3, 0] = 2**31 - 1'
+harm large 'f[P + "radius"][5] = 6'
+harm short 'del f[P + "velocity/value"]; f.create_dataset(P + "velocity/value", shape=(1, 100, 3), dtype="f8")'
+harm missing 'del f[P + "mass"]'
+harm text 'del f[P + "mass"]; f[P + "mass"] = np.array([b"x"] * 101)'
+refused() # the same status, and the same line, as in one process, and no file is left
+{
+    local name s
+    for name in nan kind shape image large short missing text; do
+        s=0
+        nsd-step -o "$tmp/refused.h5" "$tmp/$name.h5" 2>"$tmp/single" && return 1
+        ranks 3 --order block -o "$tmp/refused.h5" "$tmp/$name.h5" 2>"$tmp/said" || s=$?
+        if [ "$s" != 65 ] || ! grep -qxF "$(cat "$tmp/single")" "$tmp/said" || [ -e "$tmp/refused.h5" ]; then
+            echo "$name: $s" && cat "$tmp/single" "$tmp/said"
+            return 1
+        fi
+    done
+}
+ok "bad bodies: the status and the line of one process" refused
+
+# Many bodies that fall: nearly all of the time goes into frames
+awk 'BEGIN { for (i = 0; i < 17576; i++) print i % 26, int(i / 26) % 26, int(i / 676), 0.1 }' >"$tmp/many.txt"
+jq -n --arg file "$tmp/many.txt" '{ dt: 1e-4, density: 1000, gravity: [0, 0, -1], bodies: [{ file: $file, w: [1, 0, 2] }] }' |
+    nsd-gen - >"$tmp/many.h5"
+left_whole() # FILE OF: the frames of FILE are those that OF begins with; says how many
+{
+    nsd-cat "$1" >"$tmp/left.h5" && /usr/bin/python3 - "$tmp/left.h5" "$2" <<'EOF'
+import io, sys, h5py
+left, whole = (h5py.File(io.BytesIO(open(path, "rb").read()[512:]), "r")["particles/all"] for path in sys.argv[1:])
+n = len(left["position/step"])
+assert 0 < n
+for k in range(min(n, len(whole["position/step"]))):
+    for name in "position", "velocity", "angular_velocity", "orientation":
+        assert (left[name]["value"][k] == whole[name]["value"][k]).all(), (k, name)
+for name in "radius", "mass", "inertia", "id", "species":
+    assert (left[name][()] == whole[name][()]).all(), name
+print(n)
+EOF
+}
+killed_writing() # a process is killed, again and again at another moment; all frames are whole, those of a run that was not
+{
+    local k job pid victim n frames=0
+    rm -f "$tmp/w.h5" && ranks 2 -n 60 --order block -o "$tmp/w.h5" "$tmp/many.h5" || return 1
+    for k in 1 $([ -n "$quick" ] || echo 2 3); do
+        rm -f "$tmp/d.h5"
+        ranks 2 -n 1000 --order block -o "$tmp/d.h5" "$tmp/many.h5" >"$tmp/said" 2>&1 &
+        job=$! victim=
+        while ! nsd-info --last "$tmp/d.h5" >/dev/null 2>&1 && kill -0 "$job"; do sleep 0.02; done
+        sleep "0.$((k * 37 % 100))"
+        for pid in $(ps -eo pid,args | awk -v f="$tmp/d.h5" 'index($0, f) && $2 ~ /^nsd-step/ { print $1 }'); do
+            ! tr '\0' '\n' <"/proc/$pid/environ" | grep -qx "OMPI_COMM_WORLD_RANK=$((k % 2))" || victim=${victim:-$pid} # its child comes after it
+        done
+        [ -n "$victim" ] && kill -9 "$victim" || return 1
+        if wait "$job"; then return 1; fi
+        n=$(left_whole "$tmp/d.h5" "$tmp/w.h5") || { echo "$n"; return 1; }
+        frames=$((frames + n))
+    done
+    echo "$frames frames"
+    [ "$frames" -gt 2 ] && ranks 3 -n 1 --order block -i "$tmp/d.h5" && left_whole "$tmp/d.h5" "$tmp/w.h5"
+}
+ok "a process that is killed while all write leaves whole frames, and the run goes on" killed_writing
+
 # ---- balance ----
 
 even() # MEAN MOST CUTS: in the run of $tmp/said the fullest had less than these, over the mean, and there were more cuts

@@ -187,8 +187,7 @@ static bool advance(struct run *r, int64_t k)
     flow(r);
     const struct packing *p = &f->packing;
     r->o.bare = !options.log && k < steps && !is_kept(p->t + p->dt, p->dt, k);
-    if (crew_step(&f->packing, &f->contacts, &r->near, r->other_bodies, &r->o, rep, &why))
-        die_why(&why);
+    if (crew_step(f, &r->near, r->other_bodies, &r->o, &why)) die_why(&why);
     f->reported = f->moved = true;
     count(rep);
     options_log(rep);
@@ -234,8 +233,9 @@ static int64_t run(struct run *r)
     double since = seconds_now();
     struct why why = { 0 };
     begin(r);
-    // where there is no other thread, this one writes
-    if (options.threads > 1 && steps) behind_open(&r->behind, r->out, &(struct why){ 0 });
+    // where there is no other thread, this one writes; and with others, who have the bodies
+    if (options.threads > 1 && steps && !r->f.elsewhere)
+        behind_open(&r->behind, r->out, &(struct why){ 0 });
     while (made < steps && (good = advance(r, made + 1))) {
         made++;
         tell(&r->f.report, made, since);
@@ -339,6 +339,7 @@ int tool_main(int argc, char **argv)
     progress_lines(lines);
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
     reader_copies(in);
+    reader_hands_over(in, crew_elsewhere(contacts || forces));
     if (output && reader_reads(argc, argv, output))
         die_usage("%s: is also the input; -i appends to it", output);
     if (in_place)

@@ -26,12 +26,14 @@ static void add_flow(struct balance *b, const struct packing *p, const struct im
     add_to(b->impulse, p->mass[i], gain);
 }
 
-/* The sums over bodies, and mean[n] */
-static void add_bodies(struct balance *b, const struct packing *p, const struct impulses *sum,
-                       struct mean *mean)
+/* The sums over bodies of[], and mean[n] of all */
+static void add_bodies(struct balance *of_all, const struct packing *p, const struct impulses *sum,
+                       const bool *of, struct mean *mean)
 {
     double before = (1 - p->theta) * p->dt, after = p->theta * p->dt;
+    struct balance none = { 0 }; // of those that do not count
     for (int64_t i = 0; i < p->n; i++) {
+        struct balance *b = !of || of[i] ? of_all : &none;
         double m = p->mass[i];
         mean[i] = (struct mean){ p->v[i], p->w[i] };
         if (!(m > 0)) continue;
@@ -137,12 +139,12 @@ static void add_contacts(struct balance *b, const struct packing *p, const struc
 }
 
 int balance_step(struct balance *b, const struct packing *p, const struct contacts *s,
-                 const struct impulses *sum, struct why *why)
+                 const struct impulses *sum, const bool *of, struct why *why)
 {
     struct mean *mean = malloc(((size_t)p->n + 1) * sizeof *mean);
     *b = (struct balance){ 0 };
     if (!mean) return why_set(why, EX_SOFTWARE, "no memory for the balances");
-    add_bodies(b, p, sum, mean);
+    add_bodies(b, p, sum, of, mean);
     add_freedoms(b, p, sum);
     add_contacts(b, p, s, sum, mean);
     add_ties(b, p, s);

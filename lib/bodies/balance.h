@@ -44,8 +44,8 @@ struct balance {
 };
 
 /* Of the step that begins where the packing is, by the reactions of its contacts, whose sums are
-   given, too. Returns 0 or EX_SOFTWARE. */
+   given, too. Bodies count where of[n] is true; NULL: all. Returns 0 or EX_SOFTWARE. */
 int balance_step(struct balance *b, const struct packing *p, const struct contacts *s,
-                 const struct impulses *sum, struct why *why);
+                 const struct impulses *sum, const bool *of, struct why *why);
 
 #endif

@@ -286,6 +286,16 @@ static bool repeats_along(const struct packing *p, const struct wall *w, vec3 ed
     return v3_norm(v3_cross(edge, w->n)) <= tiny;
 }
 
+static int check_images(const struct packing *p, int64_t first, struct why *why)
+{
+    for (int64_t i = 0; p->image && i < p->n; i++)
+        for (int k = 0; k < 3; k++)
+            if (p->image[i][k] < -IMAGES_MOST || p->image[i][k] > IMAGES_MOST)
+                return why_set(why, EX_DATAERR, "body %lld: image is out of range",
+                               (long long)(first + i));
+    return 0;
+}
+
 /* The cell, which the largest body must fit into, and the images. */
 static int check_cell(const struct packing *p, struct why *why)
 {
@@ -294,10 +304,7 @@ static int check_cell(const struct packing *p, struct why *why)
     if (cell_check(&p->cell, p->dim, 2 * most, why)) return why->status;
     if (cell_repeats(&p->cell) != (p->image != NULL))
         return why_set(why, EX_DATAERR, "images without a cell that repeats, or the reverse");
-    for (int64_t i = 0; p->image && i < p->n; i++)
-        for (int k = 0; k < 3; k++)
-            if (p->image[i][k] < -IMAGES_MOST || p->image[i][k] > IMAGES_MOST)
-                return why_set(why, EX_DATAERR, "body %lld: image is out of range", (long long)i);
+    if (check_images(p, 0, why)) return why->status;
     for (int32_t i = 0; cell_repeats(&p->cell) && i < p->walls; i++)
         for (int k = 0; k < 3; k++) {
             if (p->cell.repeats[k] && !repeats_along(p, &p->wall[i], p->cell.edge[k]))
@@ -309,6 +316,21 @@ static int check_cell(const struct packing *p, struct why *why)
                                i);
         }
     return 0;
+}
+
+static int check_bodies(const struct packing *p, int64_t first, struct why *why)
+{
+    for (int64_t i = 0; i < p->n; i++) {
+        const char *trouble = body_trouble(p, i);
+        if (trouble)
+            return why_set(why, EX_DATAERR, "body %lld: %s", (long long)(first + i), trouble);
+    }
+    return 0;
+}
+
+int packing_check_bodies(const struct packing *p, int64_t first, struct why *why)
+{
+    return check_bodies(p, first, why) || check_images(p, first, why) ? why->status : 0;
 }
 
 int packing_check(const struct packing *p, struct why *why)
@@ -332,10 +354,7 @@ int packing_check(const struct packing *p, struct why *why)
         const char *trouble = p->law ? law_trouble(&p->law[i]) : NULL;
         if (trouble) return why_set(why, EX_DATAERR, pair, a, b, trouble);
     }
-    for (int64_t i = 0; i < p->n; i++) {
-        const char *trouble = body_trouble(p, i);
-        if (trouble) return why_set(why, EX_DATAERR, "body %lld: %s", (long long)i, trouble);
-    }
+    if (check_bodies(p, 0, why)) return why->status;
     for (int32_t i = 0; i < p->walls; i++) {
         const char *trouble = wall_trouble(p, &p->wall[i]);
         if (trouble) return why_set(why, EX_DATAERR, "wall %d: %s", i, trouble);

@@ -127,6 +127,8 @@ int packing_copy(struct packing *to, const struct packing *from, struct why *why
 /* Is every number finite and in its range (radius > 0, mass >= 0, mu >= 0, 0 <= e <= 1, dt > 0,
    unit normals ...)? Returns 0, or EX_DATAERR with the first body or wall that fails. */
 int packing_check(const struct packing *p, struct why *why);
+/* Of its bodies alone; the first one is the whole's body `first`. Returns the same. */
+int packing_check_bodies(const struct packing *p, int64_t first, struct why *why);
 
 /* Is the wall still there at time t (s)? */
 static inline bool wall_there(const struct wall *w, double t)

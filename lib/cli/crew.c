@@ -53,11 +53,17 @@ int crew_follow(void)
     return 0;
 }
 
-int crew_step(struct packing *p, struct contacts *s, struct neighbours *near, bool other_bodies,
-              const struct step_opt *o, struct report *rep, struct why *why)
+struct elsewhere *crew_elsewhere(bool contacts)
+{
+    (void)contacts;
+    return NULL;
+}
+
+int crew_step(struct frame *f, struct neighbours *near, bool other_bodies, const struct step_opt *o,
+              struct why *why)
 {
     if (other_bodies) neighbours_free(near);
-    return step_advance(p, s, near, o, rep, why);
+    return step_advance(&f->packing, &f->contacts, near, o, &f->report, why);
 }
 
 const char *crew_leave(void)

@@ -6,6 +6,7 @@
 #ifndef NSD_CREW_H
 #define NSD_CREW_H
 
+#include "io/elsewhere.h"
 #include "solve/step.h"
 
 /*
@@ -19,9 +20,13 @@ bool crew_started(void);
 int crew_size(void);
 /* Those who do not lead: makes the steps until crew_leave(), and returns the exit status. */
 int crew_follow(void);
-/* The leader: step_advance() by all. other_bodies: the packing has others than after the step before. */
-int crew_step(struct packing *p, struct contacts *s, struct neighbours *near, bool other_bodies,
-              const struct step_opt *o, struct report *rep, struct why *why);
+/* The leader: who takes the bodies of what it reads, where no process shall have all of them; contacts: of steps
+   that are kept they are wanted. NULL: nobody */
+struct elsewhere *crew_elsewhere(bool contacts);
+/* The leader: step_advance() of a frame by all. other_bodies: its packing has others than after the step
+   before. */
+int crew_step(struct frame *f, struct neighbours *near, bool other_bodies, const struct step_opt *o,
+              struct why *why);
 /* The leader, in the end: the others are done. A word of what they have told each other, or NULL */
 const char *crew_leave(void);
 

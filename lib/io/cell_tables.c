@@ -90,7 +90,7 @@ int cell_tables_read(struct source *source, int64_t k, const bool repeats[3], st
     cell_set_rate(c, p->t);
     if (source_has(source, rate) && source_rows(source, rate, COLUMN_F64, k, 1, 9, c->rate, why))
         return why->status;
-    return source_has(source, image)
+    return p->n && source_has(source, image)
                ? source_rows(source, image, COLUMN_I32, k, 1, 3 * p->n, p->image, why)
                : 0;
 }
@@ -150,11 +150,10 @@ int cell_tables_write(struct table_write *s, const struct packing *p, struct why
     for (const struct column *c = layout_cell; cell_repeats(&p->cell) && c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
-        bool images = c == layout_cell;
-        const hsize_t shape[3] = { 1, images ? (hsize_t)p->n : 3, 3 };
-        const void *data = images ? column_array(c, p) : (const char *)&p->cell + c->offset;
-        if (table_write_rows(s, path, c->type, 3, shape, images ? 1 : CHUNK_FRAMES, data, c->units,
-                             why))
+        const hsize_t shape[3] = { 1, 3, 3 };
+        if (c == layout_cell ? table_write_bodies(s, path, c, true, p, why)
+                             : table_write_rows(s, path, c->type, 3, shape, CHUNK_FRAMES,
+                                                (const char *)&p->cell + c->offset, c->units, why))
             return why->status;
     }
     return 0;

@@ -1,5 +1,6 @@
 #include "io/contact_rows.h"
 
+#include "io/elsewhere.h"
 #include "io/h5.h"
 #include "law/local.h"
 
@@ -110,7 +111,8 @@ int contact_rows_read(struct contact_rows *r, struct frame *f, struct why *why)
                                       s->found, sizeof *s->found, why)) ||
         (solved && packing_rolls(&f->packing) && read_moments(r->source, first, s, why)))
         return why->status;
-    if (contacts_check(s, f->packing.n, f->packing.walls, why) || check_order(s, why) ||
+    int64_t n = f->elsewhere ? f->elsewhere->n : f->packing.n;
+    if (contacts_check(s, n, f->packing.walls, why) || check_order(s, why) ||
         check_shifts(s, &f->packing.cell, why))
         return why->status;
     int moved;

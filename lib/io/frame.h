@@ -10,6 +10,8 @@
 #include "io/unknown.h"
 #include "problem/report.h"
 
+struct elsewhere;
+
 struct frame {
     bool packed;   /* packing is valid, */
     bool detected; /* contacts are, */
@@ -17,6 +19,8 @@ struct frame {
     bool moved;    /* the contacts' reactions have led to this packing, not from it */
     bool forces;   /* reactions are written as forces in space, too */
     struct packing packing;
+    struct elsewhere
+        *elsewhere; /* who has its bodies [io/elsewhere.h], borrowed; NULL: the packing */
     struct contacts contacts;
     struct report report;
 

@@ -2,6 +2,7 @@
 
 #include "io/boundary_tables.h"
 #include "io/cell_tables.h"
+#include "io/elsewhere.h"
 #include "io/flow_tables.h"
 #include "io/law_tables.h"
 #include "io/roster.h"
@@ -10,6 +11,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum {
+    BLOCK =
+        2 * 8192 /* bodies that are read at once where others take them: two chunks of nsd's own */
+};
 
 /* Steps and times of the frames. A frame counts when all of its motion is there. */
 static int count_frames(struct frame_read *r, struct why *why)
@@ -146,6 +152,109 @@ static int read_bodies(struct frame_read *r, int64_t k, struct packing *p, struc
     return 0;
 }
 
+/* All of frame k but its bodies, of which p has none; they may be elsewhere. */
+static int read_settings(struct frame_read *r, int64_t k, struct packing *p, struct why *why)
+{
+    int dim;
+    if (source_attribute(r->source, "/nsd", "dim", COLUMN_I32, -1, &dim, why) ||
+        packing_init(p, dim, 0, why) || read_parameters(r->source, p, why) ||
+        read_material(r->source, p, why) || shape_tables_read(r->source, p, why) ||
+        boundary_tables_read(r->source, k, p, why) || flow_tables_read(r->source, k, p, why) ||
+        law_tables_read(r->source, k, p, why))
+        return why->status;
+    p->step = r->step[k], p->t = r->time[k];
+    return cell_tables_read(r->source, k, r->repeats, p, why) || packing_check(p, why) ? why->status
+                                                                                       : 0;
+}
+
+/* Are all datasets of n bodies there, and of their shape? (What is not says read_bodies.) */
+static bool has_columns(const struct frame_read *r, const struct packing *p, int64_t n)
+{
+    uint64_t shape[4];
+    char path[80];
+    for (const struct column *c = layout_bodies; c->name; c++) {
+        snprintf(path, sizeof path, "/particles/all/%s", c->name);
+        if (column_array(c, p) &&
+            (source_shape(r->source, path, shape) != 1 || (int64_t)shape[0] != n))
+            return false;
+    }
+    for (const struct column *c = layout_motion; c->name; c++) {
+        snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
+        if (source_shape(r->source, path, shape) != 3 || (int64_t)shape[1] != n ||
+            shape[2] != (uint64_t)c->width)
+            return false;
+    }
+    const char *image = "/particles/all/image/value";
+    return !source_has(r->source, image) ||
+           (source_shape(r->source, image, shape) == 3 && (int64_t)shape[1] == n && shape[2] == 3);
+}
+
+/* Bodies first .. first + b->n - 1, into b */
+static int read_block(struct frame_read *r, int64_t k, int64_t first, struct packing *b,
+                      struct why *why)
+{
+    const struct column *image = layout_cell;
+    char path[80];
+    for (const struct column *c = layout_bodies; c->name; c++) {
+        snprintf(path, sizeof path, "/particles/all/%s", c->name);
+        if (column_array(c, b) &&
+            source_rows(r->source, path, c->type, first, b->n, c->width, column_array(c, b), why))
+            return why->status;
+    }
+    for (const struct column *c = layout_motion; c->name; c++) {
+        snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
+        if (source_part(r->source, path, c->type, k, first, b->n, c->width, column_array(c, b),
+                        why))
+            return why->status;
+    }
+    snprintf(path, sizeof path, "/particles/all/%s/value", image->name);
+    if (b->image && source_has(r->source, path) &&
+        source_part(r->source, path, image->type, k, first, b->n, image->width, b->image, why))
+        return why->status;
+    return 0;
+}
+
+/* The n bodies of frame k on their way to those who have them; p has all else. */
+static int hand_over(struct frame_read *r, int64_t k, const struct packing *p, int64_t n,
+                     struct why *why)
+{
+    struct packing room, block = *p; // what is not of bodies is the same, and borrowed
+    double most = 0;
+    if (packing_init(&room, p->dim, n < BLOCK ? n : BLOCK, why) ||
+        (p->shape && packing_alloc_shapes(&room, why)) ||
+        (p->image && packing_alloc_images(&room, why)))
+        return packing_free(&room), why->status;
+    block.radius = room.radius, block.mass = room.mass, block.inertia = room.inertia;
+    block.id = room.id, block.kind = room.kind, block.shape = room.shape, block.image = room.image;
+    block.x = room.x, block.q = room.q, block.v = room.v, block.w = room.w;
+    for (int64_t first = 0; first < n && !why->status; first += BLOCK) {
+        block.n = n - first < BLOCK ? n - first : BLOCK;
+        if (read_block(r, k, first, &block, why) || packing_check_bodies(&block, first, why) ||
+            r->elsewhere->take(r->elsewhere, &block, first, why) || source_unload(r->source, why))
+            break;
+        for (int64_t i = 0; i < block.n; i++)
+            most = most < block.radius[i] ? block.radius[i] : most;
+    }
+    packing_free(&room);
+    if (!why->status && cell_repeats(&p->cell)) cell_check(&p->cell, p->dim, 2 * most, why);
+    return why->status;
+}
+
+/* Do others take the bodies? Then *p has all else; else nothing. */
+static bool are_wanted(struct frame_read *r, int64_t k, struct packing *p)
+{
+    struct why none = { 0 };
+    uint64_t shape[4];
+    if (!r->elsewhere || source_has(r->source, "/particles/all/id/value") ||
+        source_shape(r->source, "/particles/all/radius", shape) != 1)
+        return false;
+    int64_t n = shape[0] > INT32_MAX ? 0 : (int64_t)shape[0];
+    bool good = !read_settings(r, k, p, &none) && n && has_columns(r, p, n);
+    if (good && r->elsewhere->wants(r->elsewhere, p, n)) return true;
+    packing_free(p);
+    return false;
+}
+
 static int read_packing(struct frame_read *r, int64_t k, struct packing *p, struct why *why)
 {
     uint64_t shape[4];
@@ -197,7 +306,12 @@ int frame_read_moment(struct frame_read *r, int64_t k, struct frame *f, struct w
     f->history = source_text(r->source, "/nsd/history", NULL, why);
     if (why->status) return why->status;
     if (!r->step) return read_foreign(r, f, why);
-    if (read_packing(r, k, &f->packing, why)) return why->status;
+    if (are_wanted(r, k, &f->packing)) {
+        f->elsewhere = r->elsewhere;
+        if (hand_over(r, k, &f->packing, f->elsewhere->n, why)) return why->status;
+    } else if (read_packing(r, k, &f->packing, why)) {
+        return why->status;
+    }
     f->packed = true;
     if (contact_rows_read(&r->contacts, f, why)) return why->status;
     return report_rows_read(&r->reports, r->step[k], r->frames == 1, &f->report, &f->reported, why);

@@ -18,6 +18,7 @@ struct frame_read {
     bool repeats[3]; /* the box's edges */
     struct contact_rows contacts;
     struct report_rows reports;
+    struct elsewhere *elsewhere; /* who may take the bodies, else NULL; borrowed */
 };
 
 /* The source's document; it stays the source's. EX_DATAERR: there are no frames in it. */

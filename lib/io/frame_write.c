@@ -67,14 +67,11 @@ static int write_material(hid_t file, const struct packing *p, struct why *why)
 
 static int write_bodies(struct table_write *s, const struct packing *p, struct why *why)
 {
-    const hsize_t n = (hsize_t)p->n;
     for (const struct column *c = layout_bodies; c->name && !s->roster; c++) {
         char path[80];
         if (!column_array(c, p)) continue;
         snprintf(path, sizeof path, "/particles/all/%s", c->name);
-        if (h5_write(s->file, path, column_native(c->type), 1, &n, column_array(c, p), c->units,
-                     why))
-            return why->status;
+        if (table_write_bodies(s, path, c, false, p, why)) return why->status;
     }
     return boundary_tables_write_static(s, p, why);
 }
@@ -96,9 +93,7 @@ static int write_motion(struct table_write *s, const struct packing *p, struct w
     for (const struct column *c = layout_motion; c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
-        const hsize_t shape[3] = { 1, (hsize_t)p->n, (hsize_t)c->width };
-        if (table_write_rows(s, path, c->type, 3, shape, 1, column_array(c, p), c->units, why))
-            return why->status;
+        if (table_write_bodies(s, path, c, true, p, why)) return why->status;
     }
     return 0;
 }

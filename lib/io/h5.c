@@ -36,6 +36,11 @@ hid_t h5_dataset_plist(void)
     return plist;
 }
 
+void h5_fill_later(hid_t plist)
+{
+    H5Pset_alloc_time(plist, H5D_ALLOC_TIME_EARLY), H5Pset_fill_time(plist, H5D_FILL_TIME_NEVER);
+}
+
 /* Makes the groups above an object. */
 static int make_parents(hid_t place, const char *path, struct why *why)
 {
@@ -68,10 +73,11 @@ static int write_data(hid_t place, const char *path, hid_t memory, hid_t disk, h
 {
     if (make_parents(place, path, why)) return why->status;
     hid_t plist = h5_dataset_plist();
+    if (!data && H5Sget_simple_extent_npoints(space) > 0) h5_fill_later(plist);
     hid_t set = H5Dcreate2(place, path, disk, space, H5P_DEFAULT, plist, H5P_DEFAULT);
     H5Pclose(plist);
     bool bad = set < 0;
-    if (!bad && H5Sget_simple_extent_npoints(space) > 0)
+    if (!bad && data && H5Sget_simple_extent_npoints(space) > 0)
         bad = H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0;
     if (!bad && units) bad = h5_attr_text(set, ".", "units", units, why);
     if (set >= 0) bad |= H5Dclose(set) < 0;

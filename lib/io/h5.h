@@ -38,7 +38,8 @@ void h5_start(void);
 
 bool h5_has(hid_t place, const char *path);
 
-/* A new dataset of fixed shape, little-endian on disk, with @units unless that is NULL. */
+/* A new dataset of fixed shape, little-endian on disk, with @units unless that is NULL. data NULL: room is
+   made for the numbers, and nothing is written there. */
 int h5_write(hid_t place, const char *path, hid_t type, int rank, const hsize_t *shape,
              const void *data, const char *units, struct why *why);
 int h5_write_text(hid_t place, const char *path, const char *text, struct why *why);
@@ -56,5 +57,7 @@ int h5_attr_text(hid_t place, const char *path, const char *name, const char *te
 
 /* A property list for new datasets, without object times. To be closed. */
 hid_t h5_dataset_plist(void);
+/* Datasets with this list get all of their place on the disk as they are made, or grow, and nothing into it. */
+void h5_fill_later(hid_t plist);
 
 #endif

@@ -22,6 +22,9 @@ void reader_unpack(double bytes);
 /* Frames shall bring along what nsd does not know in their documents, for a writer to copy. */
 void reader_copies(struct reader *reader);
 
+/* Bodies of frames may go to others [io/elsewhere.h]; NULL: they stay. */
+void reader_hands_over(struct reader *reader, struct elsewhere *to);
+
 /* Something in the open document that depends on time and that nsd does not know, so that frames
    do not bring it along: its path, or NULL. */
 const char *reader_loses(const struct reader *reader);

@@ -19,6 +19,7 @@ struct request {
     enum {
         REQUEST_NEXT,      /* the next document of the stream; answered by its objects, see below */
         REQUEST_ROWS,      /* rows start .. start+n-1 of width numbers; n < 0: all numbers */
+        REQUEST_PART,      /* n rows, from `from` on, of width numbers, of row start */
         REQUEST_RAW,       /* all of a dataset of numbers or texts, in its own plain type */
         REQUEST_TEXT,      /* a scalar string, without its zero; of an attribute if name[0] */
         REQUEST_ATTRIBUTE, /* n numbers of an attribute; n < 0: a scalar */
@@ -28,7 +29,7 @@ struct request {
         REQUEST_RELEASE     /* the document is closed, and stream_release */
     } op;
     enum column_type type; /* of the numbers wanted */
-    int64_t start, n, width;
+    int64_t start, n, width, from;
     char path[OBJECT_PATH], name[OBJECT_NAME];
 };
 

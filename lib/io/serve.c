@@ -78,6 +78,40 @@ static int answer_rows(struct served *s, const struct request *q, struct sink *s
                : 0;
 }
 
+/* Of one row some rows of the dimension within it */
+static int answer_part(struct served *s, const struct request *q, struct sink *sink,
+                       struct why *why)
+{
+    const struct entry *e = served_find(s, q->path, why);
+    if (!e) return why->status;
+    const struct object *o = &e->object;
+    if (!element_suits(o, q->type))
+        return why_set(why, EX_DATAERR, "%s: %s are wanted, and it holds something else", q->path,
+                       element_wanted(q->type));
+    hsize_t first[OBJECT_RANK] = { 0 }, count[OBJECT_RANK], width = 1;
+    for (uint32_t k = 0; k < o->rank; k++) {
+        count[k] = e->shape[k];
+        if (k > 1) width *= count[k];
+    }
+    if (o->rank < 2 || q->start < 0 || q->from < 0 || q->n < 0 || count[0] <= (hsize_t)q->start ||
+        count[1] < (hsize_t)q->from || count[1] - (hsize_t)q->from < (hsize_t)q->n ||
+        width != (hsize_t)q->width)
+        return why_set(why, EX_DATAERR, "%s: has no such part", q->path);
+    if (served_stored(e, count[1] * width * o->size, why)) return why->status;
+    first[0] = (hsize_t)q->start, count[0] = 1;
+    first[1] = (hsize_t)q->from, count[1] = (hsize_t)q->n;
+    hid_t set = served_set(s, e, why);
+    if (set < 0) return why->status;
+    struct reply reply = { .there = true };
+    reply.size = count[1] * width * column_size(q->type);
+    int bad = sink->begin(sink, &reply) ||
+              put_block(set, column_native(q->type), (int)o->rank, first, count, sink);
+    if (set != e->set) H5Dclose(set);
+    return bad ? why_set(why, EX_DATAERR, "%s: cannot be read as %s (damaged?)", q->path,
+                         element_wanted(q->type))
+               : 0;
+}
+
 static int answer_text(struct served *s, const struct request *q, struct sink *sink,
                        struct why *why)
 {
@@ -168,6 +202,8 @@ int serve_answer(struct served *s, const struct request *q, struct sink *sink, s
     switch (q->op) {
     case REQUEST_ROWS:
         return answer_rows(s, q, sink, why);
+    case REQUEST_PART:
+        return answer_part(s, q, sink, why);
     case REQUEST_RAW:
         return answer_raw(s, q, sink, why);
     case REQUEST_TEXT:

@@ -163,6 +163,26 @@ int source_rows(struct source *s, const char *path, enum column_type type, int64
     return ask(s, &q, &t, why);
 }
 
+int source_part(struct source *s, const char *path, enum column_type type, int64_t row,
+                int64_t first, int64_t n, int64_t width, void *out, struct why *why)
+{
+    struct request q = request_of(REQUEST_PART, path);
+    struct taker t = { .out = out, .size = (uint64_t)(n * width) * column_size(type) };
+    if (!t.size) t.out = &q; // nothing is written there
+    const struct listed *l = list_find(&s->list, path);
+    if (l && l->object.data && l->object.rank >= 2 && row >= 0 && first >= 0 && n >= 0) {
+        uint64_t numbers = 1;
+        for (uint32_t k = 2; k < l->object.rank; k++) numbers *= l->shape[k];
+        uint64_t before = (uint64_t)row * l->shape[1] + (uint64_t)first;
+        if (numbers == (uint64_t)width && (uint64_t)row < l->shape[0] &&
+            (uint64_t)first + (uint64_t)n <= l->shape[1] &&
+            listed_numbers(l, before * numbers, (uint64_t)n * numbers, type, out))
+            return 0;
+    }
+    q.type = type, q.start = row, q.from = first, q.n = n, q.width = width;
+    return ask(s, &q, &t, why);
+}
+
 void *source_read_all(struct source *s, const char *path, enum column_type type, uint64_t *count,
                       struct why *why)
 {

@@ -69,6 +69,9 @@ const struct object *source_object(const struct source *source, int64_t k, const
  */
 int source_rows(struct source *source, const char *path, enum column_type type, int64_t start,
                 int64_t n, int64_t width, void *out, struct why *why);
+/* Of row `row` of a dataset, itself rows of width numbers, those from `first` on, n of them. The same trouble */
+int source_part(struct source *source, const char *path, enum column_type type, int64_t row,
+                int64_t first, int64_t n, int64_t width, void *out, struct why *why);
 /* A whole dataset of exactly `count` numbers. */
 int source_read(struct source *source, const char *path, enum column_type type, uint64_t count,
                 void *out, struct why *why);

@@ -21,7 +21,8 @@ static void make_room(const struct table_write *s, const char *path, enum column
 }
 
 static hid_t create(const struct table_write *s, const char *path, enum column_type type, int rank,
-                    const hsize_t *shape, hsize_t chunk_rows, const char *units, struct why *why)
+                    const hsize_t *shape, hsize_t chunk_rows, bool later, const char *units,
+                    struct why *why)
 {
     hsize_t empty[4] = { 0 }, most[4] = { H5S_UNLIMITED }, chunk[4] = { chunk_rows };
     for (int k = 1; k < rank; k++) {
@@ -29,6 +30,8 @@ static hid_t create(const struct table_write *s, const char *path, enum column_t
         chunk[k] = shape[k] < 1 ? 1 : shape[k] > CHUNK_BODIES ? CHUNK_BODIES : shape[k];
     }
     hid_t file = s->file, plist = h5_dataset_plist();
+    for (int k = 0; k < rank; k++) later = later && shape[k];
+    if (later) h5_fill_later(plist);
     make_room(s, path, type, rank, most, chunk, plist);
     char parent[80];
     snprintf(parent, sizeof parent, "%.*s", (int)(strrchr(path, '/') - path), path);
@@ -78,7 +81,7 @@ static int append(hid_t set, enum column_type type, int rank, const hsize_t *sha
     hid_t disk = H5Dget_space(set), memory = H5Screate_simple(rank, shape, NULL);
     bool good = disk >= 0 && memory >= 0 &&
                 H5Sselect_hyperslab(disk, H5S_SELECT_SET, start, NULL, shape, NULL) >= 0;
-    if (good && H5Sget_simple_extent_npoints(memory) > 0)
+    if (good && data && H5Sget_simple_extent_npoints(memory) > 0)
         good = H5Dwrite(set, column_native(type), memory, disk, H5P_DEFAULT, data) >= 0;
     if (memory >= 0) H5Sclose(memory);
     if (disk >= 0) H5Sclose(disk);
@@ -95,7 +98,7 @@ int table_write_rows(struct table_write *s, const char *path, enum column_type t
     if (set < 0) {
         if (s->count == GROWING_DATASETS)
             return why_set(why, EX_SOFTWARE, "%s: too many datasets", path);
-        set = create(s, path, type, rank, shape, chunk_rows, units, why);
+        set = create(s, path, type, rank, shape, chunk_rows, !data, units, why);
         if (set < 0) return why->status;
         snprintf(s->open[s->count].path, sizeof s->open[0].path, "%s", path);
         s->open[s->count++].set = set;
@@ -103,6 +106,33 @@ int table_write_rows(struct table_write *s, const char *path, enum column_type t
     return append(set, type, rank, shape, data)
                ? why_set(why, EX_IOERR, "%s: cannot be written (disk full?)", path)
                : 0;
+}
+
+/* Frames that the dataset has, less one */
+static int64_t last_frame(const struct table_write *s, const char *path)
+{
+    hsize_t size[4] = { 1 };
+    hid_t set = find(s, path), space = set < 0 ? -1 : H5Dget_space(set);
+    if (space >= 0) H5Sget_simple_extent_dims(space, size, NULL), H5Sclose(space);
+    return (int64_t)size[0] - 1;
+}
+
+int table_write_bodies(struct table_write *s, const char *path, const struct column *c, bool move,
+                       const struct packing *p, struct why *why)
+{
+    const hsize_t n = (hsize_t)(s->elsewhere ? s->elsewhere->n : p->n);
+    const hsize_t shape[3] = { 1, n, (hsize_t)c->width };
+    const void *data = s->elsewhere ? NULL : column_array(c, p);
+    if (move ? table_write_rows(s, path, c->type, 3, shape, 1, data, c->units, why)
+             : h5_write(s->file, path, column_native(c->type), 1, &n, data, c->units, why))
+        return why->status;
+    if (!s->elsewhere) return 0;
+    if (s->places == ELSEWHERE_PLACES)
+        return why_set(why, EX_SOFTWARE, "%s: too many columns", path);
+    struct place *o = &s->place[s->places++];
+    *o = (struct place){ .column = c, .frame = move ? last_frame(s, path) : -1 };
+    snprintf(o->path, sizeof o->path, "%s", path);
+    return 0;
 }
 
 int table_write_columns(struct table_write *s, const char *where, const char *tail,

@@ -5,7 +5,7 @@
 #ifndef NSD_TABLE_WRITE_H
 #define NSD_TABLE_WRITE_H
 
-#include "io/layout.h"
+#include "io/elsewhere.h"
 
 enum {
     GROWING_DATASETS = 128, /* at once; the tables of io/layout.h have fewer columns than that */
@@ -21,6 +21,10 @@ struct table_write {
        and how many a chunk has; 0: as many as the first frame has, in chunks of CHUNK_BODIES */
     hsize_t most_bodies, chunk_bodies;
     struct roster *roster; /* the bodies then, else NULL; the writer's */
+    /* Who has the bodies, else NULL; and the datasets that have been made for them, and are not filled */
+    struct elsewhere *elsewhere;
+    struct place place[ELSEWHERE_PLACES];
+    int places;
     struct {
         char path[80];
         hid_t set;
@@ -33,11 +37,17 @@ struct table_write {
 
 /*
  * Writes shape[0] rows of data: as a dataset of their own or, in a trajectory, at the end of the
- * dataset that grows there, in chunks of chunk_rows.
+ * dataset that grows there, in chunks of chunk_rows. data NULL: room is made for them on the disk, and nothing is
+ * written there.
  */
 int table_write_rows(struct table_write *tables, const char *path, enum column_type type, int rank,
                      const hsize_t *shape, hsize_t chunk_rows, const void *data, const char *units,
                      struct why *why);
+
+/* A column of bodies, as a dataset or, where they move, a frame of one; its numbers follow where the
+   bodies are elsewhere. */
+int table_write_bodies(struct table_write *tables, const char *path, const struct column *column,
+                       bool move, const struct packing *p, struct why *why);
 
 /* Does the dataset grow already? Answered without libhdf5, which would have to look the path up. */
 bool table_write_grows(const struct table_write *tables, const char *path);

@@ -10,6 +10,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <libgen.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +22,8 @@ enum {
         1 << 22,     /* bytes reserved at a time: posix_fallocate costs a tenth of a frame */
     ALIGN_FROM = 64, /* bytes: the smallest thing aligned; an index's head has 72 */
 };
+
+static const off_t LOCKED = (off_t)1 << 62; /* the byte that a writer locks */
 
 static const char CUT_OFF[] = "has been cut off by another program";
 
@@ -64,11 +67,12 @@ static int output_failed(const struct writer *s, struct why *why, const char *tr
 /*
  * A regular file has one writer: the second is refused, or has to wait where it only appends. The lock
  * belongs to what the shell opened, so that { a; b; } > f is one writer. HDF5's own, of flock, is
- * not taken: it would keep readers out, too (h5py of a growing trajectory).
+ * not taken: it would keep readers out, too (h5py of a growing trajectory). Only a byte beyond all data is locked:
+ * MPI-IO may lock the bytes that the processes of one run write together.
  */
 static int take_hold(struct writer *s, int how, struct why *why)
 {
-    struct flock lock = { .l_type = F_WRLCK, .l_whence = SEEK_SET };
+    struct flock lock = { .l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = LOCKED, .l_len = 1 };
     struct stat st;
     if (fstat(s->fd, &st) || !S_ISREG(st.st_mode)) return 0; // /dev/null has any number
     while (fcntl(s->fd, how, &lock)) {
@@ -82,7 +86,7 @@ static int take_hold(struct writer *s, int how, struct why *why)
 
 static void let_go(const struct writer *s)
 {
-    struct flock lock = { .l_type = F_UNLCK, .l_whence = SEEK_SET };
+    struct flock lock = { .l_type = F_UNLCK, .l_whence = SEEK_SET, .l_start = LOCKED, .l_len = 1 };
     fcntl(s->fd, F_OFD_SETLK, &lock);
 }
 
@@ -167,6 +171,30 @@ int writer_take_place(struct writer *s, struct why *why)
     s->old = -1;
     unfinished_done(&s->unfinished);
     return 0;
+}
+
+static int64_t bodies_of(const struct frame *f)
+{
+    return f->elsewhere ? f->elsewhere->n : f->packing.n;
+}
+
+/* The numbers of bodies that others have */
+static int fill(struct table_write *t, const char *path, struct why *why)
+{
+    int places = t->places;
+    t->places = 0;
+    return t->elsewhere ? t->elsewhere->give(t->elsewhere, t->file, path, t->place, places, why)
+                        : 0;
+}
+
+/* Where another process finds the trajectory */
+static bool find_path(const struct writer *s, char path[PATH_MAX])
+{
+    char link[40];
+    snprintf(link, sizeof link, "/proc/self/fd/%d", s->disk);
+    ssize_t n = readlink(link, path, PATH_MAX - 1);
+    if (n > 0) path[n] = 0;
+    return n > 0;
 }
 
 static hid_t create(const char *path, hid_t access)
@@ -261,9 +289,9 @@ static int write_image(struct writer *s, hid_t file, struct why *why)
 static int stream_frame(struct writer *s, const struct frame *f, struct why *why)
 {
     hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-    size_t step = (size_t)f->packing.n * 32;
+    size_t step = (size_t)bodies_of(f) * 32;
     H5Pset_fapl_core(access, step < 1 << 16 ? 1 << 16 : step, false);
-    struct table_write doc = { .file = create("document", access) };
+    struct table_write doc = { .file = create("document", access), .elsewhere = f->elsewhere };
     H5Pclose(access);
     if (doc.file < 0) return why_set(why, EX_SOFTWARE, "no memory for the document");
     int e = frame_write_static(&doc, f, why) || frame_write_moment(&doc, f, why) ||
@@ -271,7 +299,7 @@ static int stream_frame(struct writer *s, const struct frame *f, struct why *why
             (f->export && fclib_write_problem(f->export, f->export_global, doc.file, why)) ||
             (f->foreign && f->u &&
              fclib_store_solution(&f->problem, doc.file, f->u, f->problem.W.r, why)) ||
-            write_image(s, doc.file, why);
+            fill(&doc, NULL, why) || write_image(s, doc.file, why);
     H5Fclose(doc.file);
     return e ? why->status : 0;
 }
@@ -337,7 +365,7 @@ static int write_header(struct writer *s, uint64_t length, uint32_t crc, struct 
  */
 static int reserve(struct writer *s, const struct frame *f, struct why *why)
 {
-    hsize_t size = 0, n = (hsize_t)f->packing.n, rows = 0;
+    hsize_t size = 0, n = (hsize_t)bodies_of(f), rows = 0;
     if (H5Fget_filesize(s->doc.file, &size) < 0) return output_failed(s, why, "cannot be written");
     if (n > CHUNK_BODIES) n += CHUNK_BODIES; // chunks are whole
     if (s->doc.roster) // bodies that were there before, and what their rows are rounded up to
@@ -382,8 +410,9 @@ static uint32_t cell_crc(const struct cell *c)
     return document_crc(crc, c->stress, sizeof c->stress);
 }
 
-static struct shared shared_of(const struct packing *p)
+static struct shared shared_of(const struct frame *f)
 {
+    const struct packing *p = &f->packing;
     if (packing_varies(p))
         return (
             struct shared){ p->dim, 0, p->dt, p->theta, p->overlap, 0, p->pours, p->removals, 0 };
@@ -391,14 +420,14 @@ static struct shared shared_of(const struct packing *p)
     crc = document_crc(crc, p->mass, (size_t)p->n * sizeof *p->mass);
     size_t pairs = p->law ? (size_t)p->kinds * (size_t)p->kinds : 0;
     if (pairs) crc = document_crc(crc, p->law, pairs * sizeof *p->law);
-    return (
-        struct shared){ p->dim, p->n, p->dt, p->theta, p->overlap, crc, 0, 0, cell_crc(&p->cell) };
+    return (struct shared){ p->dim, bodies_of(f),      p->dt, p->theta, p->overlap, crc, 0,
+                            0,      cell_crc(&p->cell) };
 }
 
 /* What is stored only with the first frame has to be true of all. */
 static int check_same(const struct writer *s, const struct frame *f, struct why *why)
 {
-    const struct shared p = s->first, q = shared_of(&f->packing);
+    const struct shared p = s->first, q = shared_of(f);
     if (p.pours != q.pours || p.removals != q.removals)
         return why_set(why, EX_DATAERR, "other pours or removals than the trajectory's");
     if (p.n != q.n)
@@ -438,9 +467,19 @@ static int trajectory_begin(struct writer *s, const struct frame *f, struct why 
         s->doc.roster = &s->roster;
     }
     if (why->status || reserve(s, f, why)) return why->status;
-    s->first = shared_of(&f->packing);
+    s->first = shared_of(f);
     s->step = f->packing.step - 1;
+    s->doc.elsewhere = f->elsewhere;
     return write_header(s, 0, 0, why) || frame_write_static(&s->doc, f, why) ? why->status : 0;
+}
+
+/* Processes that write together give the reserve back. */
+static int fill_frame(struct writer *s, const struct frame *f, struct why *why)
+{
+    char path[PATH_MAX];
+    if (!f->elsewhere) return 0;
+    return fill(&s->doc, find_path(s, path) ? path : NULL, why) || reserve(s, f, why) ? why->status
+                                                                                      : 0;
 }
 
 static int trajectory_frame(struct writer *s, const struct frame *f, struct why *why)
@@ -451,8 +490,8 @@ static int trajectory_frame(struct writer *s, const struct frame *f, struct why 
     if (!first && !still_there(s)) return output_failed(s, why, CUT_OFF);
     if (first ? trajectory_begin(s, f, why) : reserve(s, f, why)) return why->status;
     if (check_same(s, f, why)) return why->status;
-    if (frame_write_moment(&s->doc, f, why) || flush(s, why) || frame_write_step(&s->doc, f, why) ||
-        flush(s, why))
+    if (frame_write_moment(&s->doc, f, why) || flush(s, why) || fill_frame(s, f, why) ||
+        frame_write_step(&s->doc, f, why) || flush(s, why))
         return why->status;
     s->step = f->packing.step, s->frames++;
     if (f->detected) s->contacts = true, s->solved = f->contacts.found, s->moved = f->moved;

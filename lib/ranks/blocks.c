@@ -296,7 +296,20 @@ static void move_apart(struct blocks *b, const struct contacts *s)
     letters_free(t, a.since);
 }
 
-void blocks_move(struct blocks *b, const struct contacts *s)
+/* Each rank's own bodies, and the contacts that it counts */
+static void tell_balance(struct blocks *b, const struct contacts *s, const struct impulses *sum,
+                         struct balance *told)
+{
+    struct part *y = b->part;
+    struct why why = { 0 };
+    bool *own = talk_new(y->talk, y->p.n, sizeof *own);
+    for (int64_t i = 0; i < y->p.n; i++) own[i] = y->owner[i] == y->talk->me;
+    if (balance_step(told, &y->p, s, sum, own, &why)) talk_fail(y->talk, why.status, why.text);
+    free(own);
+    add(&b->shared, (double *)told, sizeof *told / sizeof(double)); // it has nothing else
+}
+
+void blocks_move(struct blocks *b, const struct contacts *s, struct balance *told)
 {
     struct talk *t = b->part->talk;
     struct packing *p = &b->part->p;
@@ -309,6 +322,7 @@ void blocks_move(struct blocks *b, const struct contacts *s)
     letters_free(t, none), none = letters(t, b->touched, 3);
     add_up(b, 3, moment_of, &sum, none);
     letters_free(t, none);
+    if (told) tell_balance(b, s, &sum, told);
     p->overlap = OVERLAP_KEEP;
     if (move_by(p, s, &sum, &why)) talk_fail(t, why.status, why.text);
     p->overlap = overlap;

@@ -13,6 +13,7 @@
 #ifndef NSD_BLOCKS_H
 #define NSD_BLOCKS_H
 
+#include "bodies/balance.h"
 #include "problem/problem.h"
 #include "problem/shared.h"
 #include "ranks/part.h"
@@ -33,9 +34,10 @@ struct blocks {
 void blocks_begin(struct blocks *b, struct part *y, const struct contacts *s, enum order order);
 /*
  * After the solve: the bodies here move by the contacts' reactions, those at borders by what the owners have
- * summed up, and are moved apart where the packing wants it; copies become what the bodies are.
+ * summed up, and are moved apart where the packing wants it; copies become what the bodies are. told: the
+ * balances of the step, added up in the order of ranks; NULL: they are not asked for.
  */
-void blocks_move(struct blocks *b, const struct contacts *s);
+void blocks_move(struct blocks *b, const struct contacts *s, struct balance *told);
 void blocks_free(struct blocks *b);
 
 #endif

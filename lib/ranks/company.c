@@ -2,6 +2,7 @@
 #include "cli/crew.h"
 
 #include "cli/options.h"
+#include "ranks/files.h"
 #include "ranks/stride.h"
 
 #include <signal.h>
@@ -10,12 +11,15 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-enum word { LEAVE, BEGIN, OTHER_BODIES, STEP };
+enum word { LEAVE, BEGIN, BEGIN_ROWS, OTHER_BODIES, STEP, TAKE, FILL };
 
 static struct {
     struct talk talk;
     struct stride stride;
+    struct rows rows;
+    struct elsewhere elsewhere;
     bool begun;
+    bool contacts; /* are wanted of steps that are kept */
 } crew;
 
 /* Where a process of the run ends before its time mpirun stops the others by this signal. */
@@ -32,6 +36,8 @@ static void stopped(int signal)
 bool crew_join(void)
 {
     int level;
+    // Nobody shares a pointer into a file. For such pointers Open MPI may make files beside it, and a kill leaves them.
+    setenv("OMPI_MCA_sharedfp", "^lockedfile", false);
     MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &level);
     crew.talk.comm = MPI_COMM_WORLD;
     MPI_Comm_rank(MPI_COMM_WORLD, &crew.talk.me), MPI_Comm_size(MPI_COMM_WORLD, &crew.talk.n);
@@ -56,6 +62,54 @@ static enum word next(enum word w)
     return (enum word)word;
 }
 
+static void begin(enum word w, const struct packing *p)
+{
+    struct territory *space = territory_new(&crew.talk, options.hypergraph);
+    stride_begin(&crew.stride, &crew.talk, space, p, w == BEGIN_ROWS ? &crew.rows : NULL);
+    crew.begun = true;
+}
+
+static int fill(hid_t file, const char *path, const struct place *place, int places,
+                struct why *why)
+{
+    return files_fill(&crew.rows, crew.begun ? &crew.stride.part : NULL, file, path, place, places,
+                      getenv("NSD_GATHER") != NULL, why);
+}
+
+/* ---- bodies that no process has all of ---- */
+
+static bool wants(struct elsewhere *e, const struct packing *settings, int64_t n)
+{
+    const struct step_opt o = options_step(settings->dt, false);
+    e->n = n;
+    return stride_scatters(settings, &o);
+}
+
+static int take(struct elsewhere *e, const struct packing *block, int64_t first, struct why *why)
+{
+    (void)why;
+    next(TAKE);
+    rows_take(&crew.rows, &crew.talk, block, first, e->n);
+    return 0;
+}
+
+static int give(struct elsewhere *e, hid_t file, const char *path, const struct place *place,
+                int places, struct why *why)
+{
+    (void)e;
+    next(FILL);
+    return fill(file, path, place, places, why);
+}
+
+struct elsewhere *crew_elsewhere(bool contacts)
+{
+    crew.contacts = contacts;
+    crew.elsewhere = (struct elsewhere){ .wants = wants, .take = take, .give = give };
+    return &crew.elsewhere;
+}
+
+/* ---- steps ---- */
+
 int crew_follow(void)
 {
     struct packing none = { 0 };
@@ -63,7 +117,9 @@ int crew_follow(void)
     struct report rep = { 0 };
     struct why why = { 0 };
     for (enum word w; (w = next(LEAVE)) != LEAVE;) {
-        if (w == BEGIN) stride_begin(&crew.stride, &crew.talk, options.hypergraph, &none);
+        if (w == BEGIN || w == BEGIN_ROWS) begin(w, &none);
+        if (w == TAKE) rows_take(&crew.rows, &crew.talk, NULL, 0, 0);
+        if (w == FILL) fill(-1, NULL, NULL, 0, &why); // the leader says what was wrong
         if (w == OTHER_BODIES) stride_begin_again(&crew.stride, &none);
         if (w != STEP) continue;
         const struct step_opt o = options_step(crew.stride.part.p.dt, false);
@@ -74,17 +130,17 @@ int crew_follow(void)
     return 0;
 }
 
-int crew_step(struct packing *p, struct contacts *s, struct neighbours *near, bool other_bodies,
-              const struct step_opt *o, struct report *rep, struct why *why)
+int crew_step(struct frame *f, struct neighbours *near, bool other_bodies, const struct step_opt *o,
+              struct why *why)
 {
     (void)near;
     if (!crew.begun)
-        next(BEGIN), stride_begin(&crew.stride, &crew.talk, options.hypergraph, p);
+        begin(next(f->elsewhere ? BEGIN_ROWS : BEGIN), &f->packing);
     else if (other_bodies)
-        next(OTHER_BODIES), stride_begin_again(&crew.stride, p);
-    crew.begun = true;
+        next(OTHER_BODIES), stride_begin_again(&crew.stride, &f->packing);
+    crew.stride.contacts = crew.contacts;
     next(STEP);
-    return stride_step(&crew.stride, p, s, o, rep, why);
+    return stride_step(&crew.stride, &f->packing, &f->contacts, o, &f->report, why);
 }
 
 const char *crew_leave(void)
@@ -110,7 +166,8 @@ const char *crew_leave(void)
         crew.talk.n, most[0] / sweeps, most[1] / sweeps,
         y->steps ? y->uneven / (double)y->steps : 1, y->worst, (long long)y->part.cuts,
         (long long)y->alone, memory[1] / 1024, memory[0] / 1024, most[3], most[2]);
-    if (crew.begun || crew.talk.me) stride_free(&crew.stride);
+    if (crew.begun) stride_free(&crew.stride);
+    rows_free(&crew.rows);
     MPI_Finalize();
     return text;
 }

@@ -3,6 +3,7 @@
 
 #include "ranks/settings.h"
 
+#include <malloc.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -95,32 +96,54 @@ static void set_body(struct part *y, int64_t i, const struct traveller *b)
     y->dealt[i] = b->x;
 }
 
-/* At first the first rank owns all bodies. */
-static void take_all(struct part *y, const struct packing *whole)
+/* These bodies, of rows from `first` on, are this rank's own. */
+static void take_own(struct part *y, const struct packing *p, int64_t n, int64_t first)
 {
-    int64_t n = y->talk->me ? 0 : whole->n;
     y->all = talk_sum(y->talk, n);
     resize(y, n);
     for (int64_t i = 0; i < n; i++) {
-        struct traveller b = traveller_of(whole, i, (int32_t)i, 0, 0);
+        struct traveller b = traveller_of(p, i, (int32_t)(first + i), y->talk->me, 0);
         set_body(y, i, &b);
     }
     y->own = n;
     y->margin = -1; // they are to be dealt
 }
 
-void part_begin(struct part *y, struct talk *t, bool hypergraph, const struct packing *whole)
+/* At first the first rank owns all bodies. */
+static void take_all(struct part *y, const struct packing *whole)
+{
+    take_own(y, whole, y->talk->me ? 0 : whole->n, 0);
+}
+
+static void begin(struct part *y, struct talk *t, struct territory *space,
+                  const struct packing *settings)
 {
     struct why why = { 0 };
-    *y = (struct part){ .talk = t, .territory = territory_new(t, hypergraph) };
+    *y = (struct part){ .talk = t, .territory = space };
     if (!t->me) {
-        struct packing none = *whole;
-        none.n = 0, none.events.n = 0, none.bonds.n = 0;
+        struct packing none = *settings;
+        none.n = 0, none.events.n = 0, none.bonds.n = 0, none.scene = NULL;
         if (packing_copy(&y->p, &none, &why)) fail(y, &why);
     }
     settings_spread(t, &y->p);
     y->p.whole = &y->whole;
+}
+
+void part_begin(struct part *y, struct talk *t, struct territory *space,
+                const struct packing *whole)
+{
+    begin(y, t, space, whole);
     take_all(y, whole);
+    part_recut(y);
+}
+
+void part_begin_rows(struct part *y, struct talk *t, struct territory *space,
+                     const struct packing *settings, const struct packing *rows, int64_t first,
+                     int64_t all)
+{
+    begin(y, t, space, settings);
+    take_own(y, rows, rows->n, first);
+    if (y->all != all) talk_fail(t, EX_SOFTWARE, "ranks disagree about rows of bodies");
     part_recut(y);
 }
 
@@ -283,6 +306,14 @@ static void send_bodies(struct part *y, double reach, struct parcel *out)
     free(met), free(mark);
 }
 
+/* Memory of parcels, in which all bodies have come and gone, is the system's again: it is kept otherwise. */
+static void give_back(void)
+{
+#ifdef M_TRIM_THRESHOLD
+    malloc_trim(0);
+#endif
+}
+
 bool part_deal(struct part *y, double reach)
 {
     struct talk *t = y->talk;
@@ -306,6 +337,7 @@ bool part_deal(struct part *y, double reach)
     }
     free(b);
     find_borders(y);
+    give_back();
     return true;
 }
 

@@ -20,13 +20,20 @@ enum {
 /* Contacts of the rank that has most over the mean: from here on cuts are made anew. */
 #define IMBALANCE 1.1
 
-void stride_begin(struct stride *y, struct talk *t, bool hypergraph, const struct packing *whole)
+void stride_begin(struct stride *y, struct talk *t, struct territory *space,
+                  const struct packing *whole, struct rows *rows)
 {
     int varies = packing_varies(whole);
     MPI_Bcast(&varies, 1, MPI_INT, 0, t->comm);
-    *y =
-        (struct stride){ .varies = varies, .since = -CUT_AFTER }; // the first cuts know no contacts
-    part_begin(&y->part, t, hypergraph, whole);
+    // the first cuts know no contacts
+    *y = (struct stride){ .varies = varies, .scattered = rows, .since = -CUT_AFTER };
+    if (!rows) {
+        part_begin(&y->part, t, space, whole);
+        return;
+    }
+    y->mean_mass = rows->heavy > 0 ? rows->mass / rows->heavy : 1;
+    MPI_Bcast(&y->mean_mass, 1, MPI_DOUBLE, 0, t->comm);
+    rows_deal(rows, &y->part, space, whole);
 }
 
 void stride_begin_again(struct stride *y, const struct packing *whole)
@@ -190,6 +197,7 @@ static int order_all(const struct stride *y, const struct packing *whole,
 /* kg: as one process adds it */
 static double mean_mass(const struct stride *y, const struct packing *whole)
 {
+    if (y->scattered) return y->mean_mass;
     double mean = y->part.talk->me ? 0 : packing_mean_mass(whole);
     MPI_Bcast(&mean, 1, MPI_DOUBLE, 0, y->part.talk->comm);
     return mean;
@@ -260,6 +268,11 @@ static void solve_in_blocks(struct stride *y, struct blocks *b, const struct pac
 static bool is_shared(const struct packing *p, const struct step_opt *o)
 {
     return step_sweeps(o->solve.global) && !freedoms_in(p);
+}
+
+bool stride_scatters(const struct packing *p, const struct step_opt *o)
+{
+    return o->order == ORDER_BLOCK && is_shared(p, o) && !p->law && !o->warm && !packing_varies(p);
 }
 
 /* The pairs here that are contacts, or may be by laws */
@@ -345,17 +358,13 @@ static int step_by_first(struct stride *y, struct packing *whole, struct contact
 
 /* ---- a step that each rank makes with its own, and the first hears of where a frame is kept ---- */
 
-/* What the first says of the step: its packing is as before it, its contacts are solved. */
-static int tell_first(struct stride *y, struct packing *whole, struct contacts *all,
-                      const struct contacts *s, const struct step_opt *o, struct report *rep,
-                      struct why *why)
+/* The contacts of all and their reactions, for the frame that the first keeps */
+static void tell_contacts(struct stride *y, struct contacts *all, const struct contacts *s)
 {
     struct roll roll;
-    part_collect(&y->part, whole);
     roll_call(&roll, &y->part, s, all);
     roll_found(&roll, &y->part, s, all);
     roll_free(&roll);
-    return y->part.talk->me ? 0 : step_balance(whole, all, o, rep, why);
 }
 
 static int step_by_all(struct stride *y, struct packing *whole, struct contacts *all,
@@ -365,8 +374,9 @@ static int step_by_all(struct stride *y, struct packing *whole, struct contacts 
     struct contacts s = { 0 };
     struct blocks b;
     double reach, cpu = report_seconds(CLOCK_CPU);
-    int bare = o->bare;
-    MPI_Bcast(&bare, 1, MPI_INT, 0, t->comm);
+    int told[2] = { o->bare, y->contacts };
+    MPI_Bcast(told, 2, MPI_INT, 0, t->comm);
+    const bool bare = told[0];
     detect_here(y, whole, &s, o, &reach);
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
     rep->step = y->part.p.step + 1, rep->t = y->part.p.t + y->part.p.dt;
@@ -374,12 +384,14 @@ static int step_by_all(struct stride *y, struct packing *whole, struct contacts 
     rep->balanced = !bare, rep->tied = false;
     solve_in_blocks(y, &b, whole, &s, o, rep, why);
     bool moves = isfinite(rep->err.paper.eps_glob);
-    if (!bare && tell_first(y, whole, all, &s, o, rep, why)) return why->status;
     if (moves) {
-        blocks_move(&b, &s);
+        if (!bare && told[1]) tell_contacts(y, all, &s);
+        blocks_move(&b, &s, bare ? NULL : &rep->balance);
         if (!t->me) settings_copy_motion(whole, &y->part.p);
     }
-    if (!bare || !moves) part_collect(&y->part, whole); // a run that diverges ends, and keeps this
+    rep->balanced = !bare && moves;
+    // a run that diverges ends, and keeps this
+    if (!y->scattered && (!bare || !moves)) part_collect(&y->part, whole);
     balance_load(y, &s);
     blocks_free(&b);
     contacts_free(&s);
@@ -389,8 +401,7 @@ static int step_by_all(struct stride *y, struct packing *whole, struct contacts 
 int stride_step(struct stride *y, struct packing *whole, struct contacts *all,
                 const struct step_opt *o, struct report *rep, struct why *why)
 {
-    const struct packing *p = &y->part.p;
-    bool by_all = o->order == ORDER_BLOCK && is_shared(p, o) && !p->law && !o->warm && !y->varies;
+    bool by_all = stride_scatters(&y->part.p, o) && !y->varies;
     double since = talk_busy() - y->part.talk->waited;
     int e = (by_all ? step_by_all : step_by_first)(y, whole, all, o, rep, why);
     y->busy[1] += talk_busy() - y->part.talk->waited - since;

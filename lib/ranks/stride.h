@@ -7,18 +7,24 @@
  * What only a process that has all contacts can solve the first one solves alone: loads, whose contacts all
  * depend on each other by a W of their own; other solvers than auto, nlgs and anderson; and where auto goes on
  * with Newton's method.
+ *
+ * In blocks, where bodies neither come nor go and pairs have no law beyond friction and restitution, each rank moves
+ * its own and sums its balances, and nobody has the whole.
  */
 #ifndef NSD_STRIDE_H
 #define NSD_STRIDE_H
 
 #include "bodies/neighbours.h"
-#include "ranks/part.h"
+#include "ranks/rows.h"
 #include "solve/step.h"
 
 struct stride {
     struct part part;
     struct neighbours near;
     bool varies;          /* bodies come and go, at the first */
+    bool scattered;       /* nobody has the whole packing */
+    double mean_mass;     /* kg: then */
+    bool contacts;        /* the first rank wants those of steps that are kept */
     int64_t steps, since; /* steps made; since the last cut */
     int64_t alone;        /* steps whose contacts the first rank has solved alone */
     /* Contacts of the rank that has most over the mean: the most of all steps, and the sum over them */
@@ -31,9 +37,12 @@ struct stride {
     int64_t solved[2]; /* bytes and messages of the shared solves, sent by this rank */
 };
 
-/* Collective. The first rank's packing; in others it is not looked at. hypergraph: how space is cut
-   [ranks/territory.h] */
-void stride_begin(struct stride *y, struct talk *t, bool hypergraph, const struct packing *whole);
+/* Collective. The first rank's packing; in others it is not looked at. space is taken over. rows: those of all
+   ranks, where the packing has everything but bodies, and nobody has the whole; NULL: the first rank has it. */
+void stride_begin(struct stride *y, struct talk *t, struct territory *space,
+                  const struct packing *whole, struct rows *rows);
+/* Can the steps be made so that nobody has the whole? settings: a packing, its bodies are not looked at */
+bool stride_scatters(const struct packing *settings, const struct step_opt *o);
 /* After the first rank's packing has got other bodies */
 void stride_begin_again(struct stride *y, const struct packing *whole);
 /* As step_advance(): whole, s, rep are those of the first rank. Returns 0, or a status at the first, which

@@ -14,7 +14,7 @@ static int sum_up(const struct packing *pack, const struct contacts *s, const st
 {
     rep->balanced = !o->bare, rep->tied = pack->law != NULL;
     if (impulses_init(sum, pack, s, false, why)) return why->status;
-    return o->bare ? 0 : balance_step(&rep->balance, pack, s, sum, why);
+    return o->bare ? 0 : balance_step(&rep->balance, pack, s, sum, NULL, why);
 }
 
 bool step_sweeps(const struct solver *global)

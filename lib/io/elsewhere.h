@@ -1,0 +1,34 @@
+/*
+ * io/elsewhere.h: the bodies of a frame where several processes have them, each some, and none has all: who reads
+ * a document hands their rows over, block after block, and who writes one has them written. The frame's
+ * packing has everything else, and no body.
+ */
+#ifndef NSD_ELSEWHERE_H
+#define NSD_ELSEWHERE_H
+
+#include "io/layout.h"
+
+enum {
+    ELSEWHERE_PLACES = 16 /* datasets of bodies, at most: io/layout.h has fewer columns */
+};
+
+/* A dataset of all bodies that has been made, and no numbers in it */
+struct place {
+    char path[80];
+    const struct column *column;
+    int64_t frame; /* its row [bodies][width]; -1: the dataset is [bodies] */
+};
+
+struct elsewhere {
+    int64_t n; /* bodies of all processes, of the frame that was taken last */
+    /* Shall the n bodies of a frame with these settings be taken? Else the packing has them. */
+    bool (*wants)(struct elsewhere *e, const struct packing *settings, int64_t n);
+    /* Bodies first .. first + block->n - 1, checked; blocks follow each other from 0 on. */
+    int (*take)(struct elsewhere *e, const struct packing *block, int64_t first, struct why *why);
+    /* Fills the datasets of `file`, which is open and flushed; path: where all processes find it, NULL where
+       there is no such file. EX_IOERR: not written. */
+    int (*give)(struct elsewhere *e, hid_t file, const char *path, const struct place *place,
+                int places, struct why *why);
+};
+
+#endif

@@ -1,0 +1,19 @@
+/*
+ * ranks/files.h: bodies into the datasets of a document. Where libhdf5 is the one that knows MPI (libhdf5-openmpi)
+ * and all ranks find the file, each writes its rows, all at once, into the place that the first has made for
+ * them. Else the first rank writes them, block after block as the ranks send them.
+ */
+#ifndef NSD_FILES_H
+#define NSD_FILES_H
+
+#include "io/elsewhere.h"
+#include "ranks/rows.h"
+
+/* Collective. file, path, place[places] of the first rank, as in struct elsewhere; y NULL: the bodies lie in the
+   rows. gather: the first is to write. Returns 0, or at the first EX_IOERR; EX_DATAERR: what no reader accepts. */
+int files_fill(const struct rows *r, const struct part *y, hid_t file, const char *path,
+               const struct place *place, int places, bool gather, struct why *why);
+/* Is libhdf5 the one that knows MPI? */
+bool files_parallel(void);
+
+#endif
