@@ -64,8 +64,8 @@ void contacts_free_found(struct contacts *contacts);
 int contacts_copy(struct contacts *to, const struct contacts *from);
 /* Appends a contact, zero but for a and b; NULL when memory is short. */
 struct contact *contacts_add(struct contacts *contacts, int32_t a, int32_t b);
-/* Appends more contacts, unsolved ones; false when memory is short. */
-bool contacts_append(struct contacts *contacts, const struct contacts *more);
+/* Makes room for so many more; false when memory is short. */
+bool contacts_reserve(struct contacts *contacts, int64_t more);
 
 /* Do bodies and walls exist, are numbers finite and in range, bases orthonormal (to 1e-6)?
    Returns 0, or EX_DATAERR with the first contact that fails. */
