@@ -26,7 +26,7 @@ struct filling {
 };
 
 /* Fills a slot, which knows its bodies: these still have their velocities before the step. slower: W~_cc is so
-   many times what it is, at least 1 [problem/brake.h]. */
+   many times what it is, at least 1 [problem/braking.h]. */
 void fill_slot(const struct filling *f, int64_t slot, double slower);
 /* Bundles first .. end-1 of a struct filling, as a part of a team's work */
 void fill_bundles(void *filling, int64_t first, int64_t end);

@@ -5,7 +5,7 @@
 #include "bodies/kinematics.h"
 #include "bodies/offset.h"
 #include "bodies/top.h"
-#include "problem/brake.h"
+#include "problem/braking.h"
 #include "problem/filling.h"
 #include "problem/schedule.h"
 #include "problem/shared.h"
