@@ -16,17 +16,17 @@ enum {
     CHANGES = NUMBERS + 2 * sizeof number / sizeof *number
 }; /* all of its numbers, or the first */
 
-struct place {
+struct spot {
     char path[200], name[80]; /* of the object, of its attribute, or "" */
 };
-static struct place places[1000];
+static struct spot places[1000];
 static int count;
 
 static herr_t add_attribute(hid_t at, const char *name, const H5A_info_t *info, void *path)
 {
     (void)at, (void)info;
     if (!strcmp(name, "units")) return 0; // for people
-    struct place *p = &places[count++];
+    struct spot *p = &places[count++];
     snprintf(p->path, sizeof p->path, "%s", (const char *)path);
     snprintf(p->name, sizeof p->name, "%s", name);
     return count == 1000;
@@ -45,7 +45,7 @@ static herr_t add_object(hid_t root, const char *name, const H5O_info_t *info, v
 }
 
 /* Its numbers, all or only the first, become x, as near as its type comes to that. */
-static void set_numbers(hid_t file, const struct place *p, double x, bool all)
+static void set_numbers(hid_t file, const struct spot *p, double x, bool all)
 {
     hid_t set = *p->name ? H5Aopen_by_name(file, p->path, p->name, H5P_DEFAULT, H5P_DEFAULT)
                          : H5Dopen2(file, p->path, H5P_DEFAULT);
@@ -67,7 +67,7 @@ static void set_numbers(hid_t file, const struct place *p, double x, bool all)
 }
 
 /* Something else in its place */
-static void replace(hid_t file, const struct place *p, enum change change)
+static void replace(hid_t file, const struct spot *p, enum change change)
 {
     static const double nine[9] = { 1, 2, 3, 4, 5, 6, 7, 8, 9 };
     const hsize_t seven = 7, square[2] = { 3, 3 };
@@ -113,7 +113,7 @@ static bool answers(hid_t file, struct why *why)
 }
 
 /* What the frame needs not, for nobody computes with it */
-static bool is_spare(const struct place *p)
+static bool is_spare(const struct spot *p)
 {
     static const char *const spare[] = {
         "/mine",
@@ -149,7 +149,7 @@ static void test_document(int k)
     ok(answers(file, &whole) && !whole.status, "document %d is read %s", k, whole.text);
     H5Fclose(file);
     for (long i = 0; i < (long)count * CHANGES; i += stride) {
-        const struct place *p = &places[i / CHANGES];
+        const struct spot *p = &places[i / CHANGES];
         int change = (int)(i % CHANGES), at = change - NUMBERS;
         struct why why = { 0 };
         file = open_copy(document[k]);

@@ -1,8 +1,15 @@
 /* bodies/contact.c: lists of contacts, their bases, and reactions carried from step to step. */
 #include "bodies/contact.h"
 
+#include "base/team.h"
+
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum {
+    SOME = 16384 /* contacts that are worth a thread: 100 us of looking at each */
+};
 
 void contacts_free(struct contacts *s)
 {
@@ -99,21 +106,28 @@ static bool same_place(const struct contact *c, const struct contact *d)
     return c->feature == d->feature && !memcmp(c->shift, d->shift, sizeof c->shift);
 }
 
-int contact_compare(const struct contact *c, const struct contact *d)
+/* The deepest overlap, as threads find it */
+struct depth {
+    const struct contacts *s;
+    double most; /* m */
+    pthread_mutex_t lock;
+};
+
+static void look_some(void *arg, int64_t first, int64_t end)
 {
-    if (c->a != d->a) return c->a < d->a ? -1 : 1;
-    if (c->b != d->b) return c->b < d->b ? -1 : 1;
-    if (c->feature != d->feature) return c->feature < d->feature ? -1 : 1;
-    for (int k = 0; k < 3; k++)
-        if (c->shift[k] != d->shift[k]) return c->shift[k] < d->shift[k] ? -1 : 1;
-    return 0;
+    struct depth *o = arg;
+    double most = 0;
+    for (int64_t i = first; i < end; i++) most = dmax(most, -o->s->c[i].gap);
+    pthread_mutex_lock(&o->lock);
+    o->most = dmax(o->most, most);
+    pthread_mutex_unlock(&o->lock);
 }
 
 double contacts_max_overlap(const struct contacts *s)
 {
-    double depth = 0;
-    for (int64_t i = 0; i < s->n; i++) depth = fmax(depth, -s->c[i].gap);
-    return depth;
+    struct depth o = { s, 0, PTHREAD_MUTEX_INITIALIZER };
+    team_share(team_size(), s->n, SOME, look_some, &o);
+    return o.most;
 }
 
 /* r of c = what `was` in the basis of o */

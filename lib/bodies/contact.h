@@ -62,6 +62,11 @@ static inline int contact_key_order(struct contact_key x, struct contact_key y)
     return 0;
 }
 
+static inline int contact_compare(const struct contact *c, const struct contact *d)
+{
+    return contact_key_order(contact_key(c), contact_key(d));
+}
+
 /* Is b an image? */
 static inline bool contact_shifted(const struct contact *c)
 {
@@ -119,8 +124,6 @@ int contacts_match(struct contacts *new, const struct contacts *old);
 
 /* m: the deepest overlap, 0 where there is none */
 double contacts_max_overlap(const struct contacts *contacts);
-/* Of their keys: < 0 where c comes first; 0: one pair, and one place of it */
-int contact_compare(const struct contact *c, const struct contact *d);
 
 /* The lever arms la, lb (m) of a contact between bodies whose centres are at xa and, that of the image
    that a meets, xb (m), along its normal; a wall has none: la = 0, whatever xa. */
