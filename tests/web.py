@@ -66,6 +66,22 @@ try:
     seen['text'] = browser.find_element(By.ID, 'picked').text
     seen['position'] = run('const f = nsd.frame, i = %d; return [0, 1, 2].map(j => f.m.lo[j] + f.m.step[j] * f.x[4 * i + j])' % seen['row'])
     seen['images'] = run('return Array.from(nsd.frame.shown.row).sort()')
+    # of two grains of one shape in the plane: how much of the ball around the first a click finds, and is coloured
+    seen['part'] = run('''const f = nsd.frame; if (!f.shape || f.n !== 2) return null;
+        const [a, b] = [nsd.seen(0), nsd.seen(1)], view = document.getElementById("view"), box = view.getBoundingClientRect();
+        const x = i => [0, 1].map(j => f.m.lo[j] + f.m.step[j] * f.x[4 * i + j]);
+        const r = f.radius[0] * Math.hypot(b[0] - a[0], b[1] - a[1]) / Math.hypot(x(1)[0] - x(0)[0], x(1)[1] - x(0)[1]);
+        const copy = document.createElement("canvas"); copy.width = view.width, copy.height = view.height;
+        nsd.draw(); const c = copy.getContext("2d"); c.drawImage(view, 0, 0);
+        let all = 0, found = 0, coloured = 0;
+        for (let i = -30; i <= 30; i++) for (let j = -30; j <= 30; j++) {
+            if (i * i + j * j > 900) continue;
+            const at = [a[0] + r * i / 30, a[1] + r * j / 30]; all++;
+            found += nsd.pick(at[0], at[1]) === 0;
+            const p = c.getImageData((at[0] - box.left) * view.width / box.width, (at[1] - box.top) * view.height / box.height, 1, 1).data;
+            coloured += p[0] + p[1] + p[2] < 740;
+        }
+        return [found / all, coloured / all]''')
     seen['curves'] = run('return Object.keys(nsd.meta.curves)')
     before = pixels()
     network = browser.find_element(By.ID, 'network')

@@ -57,6 +57,39 @@ PYTHON
 }
 ok "a frame's numbers are the document's, to the rounding that it states" chunks
 
+# the shapes of grains: closed surfaces of the right volume in the unit of a radius of 1, and their edges
+printf '{"dt": 1e-3, "shapes": {"cube": {"box": [0.1, 0.1, 0.1]}, "pill": {"capsule": {"length": 0.1, "radius": 0.05}}}, "gravity": [0, 0, 0],
+    "bodies": [{"x": [0, 0, 0], "shape": "cube", "w": [0, 0, 100]}, {"x": [0.5, 0, 0.3], "radius": 0.1}, {"x": [0.2, 0.4, 0], "shape": "pill"}]}' |
+    nsd-gen - | nsd-step -n 3 >"$tmp/shapes.h5" 2>/dev/null
+nsd-web "$tmp/shapes.h5" >"$tmp/shapes.html" 2>/dev/null
+shapes()
+{
+    /usr/bin/python3 - "$tmp/shapes.html" <<'PYTHON'
+import base64, re, sys, zlib
+import numpy as np
+page = open(sys.argv[1]).read()
+chunk = lambda name: zlib.decompress(base64.b64decode(re.search(r'id="%s">(.*?)</script>' % name, page).group(1)))
+assert list(np.frombuffer(chunk('g0'), '<i4')[12:]) == [1, 0, 2]
+data = chunk('s0')
+count = np.frombuffer(data, '<u4', 1)[0]
+each = np.frombuffer(data, '<u4', count, 4)
+assert list(each) == [0, 12, 320] and len(data) == 4 + 4 * count + 37 * sum(each)
+x = np.frombuffer(data, '<f4', 9 * sum(each), 4 + 4 * count).reshape(-1, 3, 3).astype(float)
+edges = np.frombuffer(data, 'u1', sum(each), len(data) - sum(each))
+volume = lambda t: sum(np.dot(a, np.cross(b, c)) for a, b, c in t) / 6
+for t in (x[:12], x[12:]):
+    assert abs(sum(np.cross(b - a, c - a) for a, b, c in t)).max() < 1e-5
+assert abs(volume(x[:12]) / (2 / 3 ** 0.5) ** 3 - 1) < 1e-6
+assert np.unpackbits(edges[:12]).sum() == 24 and not edges[12:].any()
+corners = x[12:].reshape(-1, 3) # half a unit from the pill's axis, which is 1 long
+axis = int(np.argmax(abs(corners).max(axis=0)))
+along = corners[:, axis]
+corners[:, axis] -= np.clip(along, -0.5, 0.5)
+assert abs(np.linalg.norm(corners, axis=1) - 0.5).max() < 1e-6
+PYTHON
+}
+ok "shapes are closed surfaces, and cubes have twelve edges, each of two faces" shapes
+
 nsd-gen 20 | nsd-detect --fclib=local | tail -c +513 >"$tmp/both.hdf5"
 h5copy -i "$tmp/both.hdf5" -o "$tmp/problem.hdf5" -s /fclib_local -d /fclib_local
 refuses 65 "an FCLIB problem has no grains" nsd-web "$tmp/problem.hdf5"
@@ -89,6 +122,16 @@ if [ -z "$quick" ]; then
     nsd-gen -d 2 50 | nsd-step -n 40 --every 4 >"$tmp/discs.h5" 2>/dev/null
     nsd-web "$tmp/discs.h5" >"$tmp/discs.html" 2>/dev/null
     plays "$tmp/discs.html" "discs, without contacts" false "$tmp/discs.h5"
+
+    plays "$tmp/shapes.html" "a cube, a ball and a pill" false "$tmp/shapes.h5"
+    printf '{"dim": 2, "dt": 1e-3, "gravity": [0, 0], "shapes": {"tile": {"box": [0.2, 0.1]}},
+        "bodies": [{"x": [0, 0], "shape": "tile", "orientation": 0.3}, {"x": [0.3, 0.1], "shape": "tile"}]}' |
+        nsd-gen - | nsd-step -n 1 >"$tmp/tiles.h5" 2>/dev/null
+    nsd-web "$tmp/tiles.h5" >"$tmp/tiles.html" 2>/dev/null
+    ok "tiles: a browser shows them" browse "$tmp/tiles.html"
+    # 2 a b of pi (a^2 + b^2)/4 with a = 2 b
+    is "a click finds a tile, and a tile is coloured, in 0.51 of the disc around it" \
+        "$(seen '.part | length == 2 and all(. > 0.49 and . < 0.53)')" true
 
     # a cell that repeats: two discs meet across its border, one of them cuts a corner
     printf '{"dim": 2, "dt": 1e-3, "density": 2500, "mu": 0, "gravity": [0, 0],

@@ -5,32 +5,24 @@
  *
  *   fK, frame K    u16[n][4] position and |spin|; i16[n][4] velocity, 0; i8[n][4] orientation;
  *                  i32[c] a; i32[c] b; u16[c] normal force; u16[c] tangential; i8[c][4] normal, status
- *   gK, grains     f32[n] radius; f32[n] mass; i32[n] id; i32[n] kind
+ *   gK, grains     f32[n] radius; f32[n] mass; i32[n] id; i32[n] kind; i32[n] shape, where not all are balls
+ *   sK, shapes     as draw/page_shapes.h has them; where not all are balls
  *   bK, walls      u32 triangles, u32 lines; f32 corners [9] each; f32 ends [6] each
  *
- * The JSON element "meta" has for each frame what its numbers are relative to: x = lo + step k,
+ * The JSON element "meta" [draw/page_meta.h] has for each frame what its numbers are relative to: x = lo + step k,
  * v = vmax k / 32767, |w| = wmax k / 65535, f = fmax k / 65535.
  */
 #include "draw/page.h"
 
 #include "draw/images.h"
 #include "draw/outline.h"
-
-#include "base/json.h"
 #include "draw/page_chunk.h"
 #include "draw/page_parts.h"
+#include "draw/page_shapes.h"
 
+#include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
-
-struct page_moment {
-    int64_t step, n, contacts, grains, walls;
-    double t, lo[3], quantum[3], vmax, wmax, fmax;
-    bool repeats[3]; /* the cell, where it repeats */
-    vec3 origin, edge[3];
-};
-
-enum { U16 = 65535, I16 = 32767, I8 = 127 };
 
 static int no_memory(struct why *why)
 {
@@ -65,13 +57,21 @@ static int write_changed(struct page *p, char letter, int64_t *count, void **las
 
 static int write_grains(struct page *p, const struct packing *k, struct why *why)
 {
-    struct chunk b = { malloc(16 * (size_t)k->n + 1), 0 };
+    struct chunk b = { malloc(20 * (size_t)k->n + 1), 0 };
     if (!b.at) return no_memory(why);
     for (int64_t i = 0; i < k->n; i++) chunk_put_float(&b, k->radius[i]);
     for (int64_t i = 0; i < k->n; i++) chunk_put_float(&b, k->mass[i]);
     chunk_put(&b, k->id, 4 * (size_t)k->n);
     chunk_put(&b, k->kind, 4 * (size_t)k->n);
+    if (k->shape) chunk_put(&b, k->shape, 4 * (size_t)k->n);
     return write_changed(p, 'g', &p->grains, &p->grains_last, &p->grains_size, &b, why);
+}
+
+static int write_shapes(struct page *p, const struct packing *k, struct why *why)
+{
+    struct chunk b;
+    if (page_shapes(&b, k->dim, &k->shapes, why)) return free(b.at), why->status;
+    return write_changed(p, 's', &p->shapes, &p->shapes_last, &p->shapes_size, &b, why);
 }
 
 static void put_point(struct chunk *b, vec3 x)
@@ -276,7 +276,7 @@ int page_frame(struct page *p, const struct packing *k, const struct contacts *s
     struct page_moment *m = add_moment(p);
     if (!m) return no_memory(why);
     *m = (struct page_moment){
-        .step = k->step, .t = k->t, .n = k->n, .contacts = s->n, .walls = -1
+        .step = k->step, .t = k->t, .n = k->n, .contacts = s->n, .walls = -1, .shapes = -1
     };
     p->solved |= s->found != NULL;
     measure(m, k);
@@ -289,6 +289,8 @@ int page_frame(struct page *p, const struct packing *k, const struct contacts *s
     bool any = region_of(&r, k), walls = k->walls || cell_repeats(&k->cell);
     if (any) p->seen = p->frames ? region_join(p->seen, r) : r;
     if (any && walls && write_walls(p, k, &r, why)) return why->status;
+    if (k->shape && write_shapes(p, k, why)) return why->status;
+    if (k->shape) m->shapes = p->shapes - 1;
     if (write_grains(p, k, why) || widen(p, m, k, s, why) || write_frame(p, m, k, s, why))
         return why->status;
     m->grains = p->grains - 1;
@@ -340,90 +342,9 @@ int page_begin(struct page *p, FILE *out, const char *name, const char *title, s
     return not_written(p, why);
 }
 
-static json_t *vec_json(vec3 x)
-{
-    const double three[3] = { x.x, x.y, x.z };
-    return json_numbers(three, 3);
-}
-
-static json_t *cell_json(const struct page_moment *m)
-{
-    json_t *j = json_pack("{s:[b,b,b]}", "repeats", m->repeats[0], m->repeats[1], m->repeats[2]);
-    json_object_set_new(j, "origin", vec_json(m->origin));
-    json_object_set_new(
-        j, "edge",
-        json_pack("[o,o,o]", vec_json(m->edge[0]), vec_json(m->edge[1]), vec_json(m->edge[2])));
-    return j;
-}
-
-static json_t *moment_json(const struct page_moment *m)
-{
-    json_t *j =
-        json_pack("{s:I, s:I, s:I, s:I, s:o}", "s", (json_int_t)m->step, "n", (json_int_t)m->n, "c",
-                  (json_int_t)m->contacts, "g", (json_int_t)m->grains, "t", json_number(m->t));
-    if (m->walls >= 0) json_object_set_new(j, "b", json_integer(m->walls));
-    if (m->repeats[0] || m->repeats[1] || m->repeats[2])
-        json_object_set_new(j, "cell", cell_json(m));
-    json_object_set_new(j, "lo", json_numbers(m->lo, 3));
-    json_object_set_new(j, "step", json_numbers(m->quantum, 3));
-    json_object_set_new(j, "vmax", json_number(m->vmax));
-    json_object_set_new(j, "wmax", json_number(m->wmax));
-    json_object_set_new(j, "fmax", json_number(m->fmax));
-    return j;
-}
-
-static json_t *range_json(const struct page *p)
-{
-    const double lo[3] = { p->seen.lo.x, p->seen.lo.y, p->seen.lo.z },
-                 hi[3] = { p->seen.hi.x, p->seen.hi.y, p->seen.hi.z };
-    json_t *j =
-        json_pack("{s:o, s:o, s:o, s:o, s:i}", "lo", json_numbers(lo, 3), "hi", json_numbers(hi, 3),
-                  "speed", json_number(p->fastest), "spin", json_number(p->spin), "z", p->most);
-    json_object_set_new(j, "radius", json_numbers(p->radius, 2));
-    json_object_set_new(j, "force", json_number(p->force));
-    json_object_set_new(j, "push", json_number(p->push));
-    return j;
-}
-
-/* What a reader has to know of the numbers: they are rounded. */
-static json_t *said(const struct page *p)
-{
-    double most = 0, speed = 0;
-    for (int64_t k = 0; k < p->frames; k++) {
-        for (int j = 0; j < 3; j++) most = fmax(most, p->moment[k].quantum[j]);
-        speed = fmax(speed, p->moment[k].vmax / I16);
-    }
-    char text[300];
-    snprintf(text, sizeof text,
-             "Numbers here are rounded: positions to %.2g m, velocities to %.2g m/s, orientations "
-             "to 1/127, forces to 1/65535 of a frame's largest. The document has them whole.",
-             most / 2, speed / 2);
-    return json_string(text);
-}
-
-static json_t *meta_json(const struct page *p)
-{
-    json_t *j = json_pack("{s:i, s:b}", "dim", p->dim, "solved", p->solved), *list = json_array();
-    for (int32_t k = 0; k < p->kinds; k++) {
-        json_t *name = json_string(p->kind_name[k]);
-        json_array_append_new(list, name ? name : json_string("?"));
-    }
-    json_object_set_new(j, "kinds", list);
-    json_object_set_new(j, "frames", list = json_array());
-    for (int64_t k = 0; k < p->frames; k++) json_array_append_new(list, moment_json(&p->moment[k]));
-    json_object_set_new(j, "range", range_json(p));
-    json_object_set_new(j, "curves", list = json_object());
-    for (int c = 0; c < p->curves; c++)
-        json_object_set_new(list, p->curve[c].name,
-                            json_pack("{s:s, s:o}", "unit", p->curve[c].unit, "value",
-                                      json_numbers(p->curve[c].value, p->frames)));
-    json_object_set_new(j, "said", said(p));
-    return j;
-}
-
 int page_end(struct page *p, struct why *why)
 {
-    json_t *meta = meta_json(p);
+    json_t *meta = page_meta(p);
     char *text = json_dumps(meta, JSON_COMPACT | JSON_REAL_PRECISION(9));
     json_decref(meta);
     if (!text) return no_memory(why);
@@ -448,5 +369,6 @@ void page_free(struct page *p)
         free(p->curve[c].name), free(p->curve[c].unit), free(p->curve[c].value);
     for (int32_t k = 0; p->kind_name && k < p->kinds; k++) free(p->kind_name[k]);
     free(p->curve), free(p->kind_name), free(p->moment), free(p->grains_last), free(p->walls_last);
+    free(p->shapes_last);
     *p = (struct page){ 0 };
 }

@@ -9,37 +9,7 @@
 #define NSD_PAGE_H
 
 #include "bodies/contact.h"
-#include "draw/walls.h"
-
-#include <stdio.h>
-
-/* A number for each frame, shown as a curve over time */
-struct page_curve {
-    char *name, *unit;
-    double *value; /* [frames]; NAN: none */
-};
-
-struct page_moment; /* what a frame's numbers are relative to */
-
-/* All zero to begin with. */
-struct page {
-    FILE *out;
-    const char *name; /* of its file, for messages */
-    int dim;
-    int64_t frames, room;
-    struct page_moment *moment; /* [frames] */
-    int curves;
-    struct page_curve *curve; /* [curves] */
-    int32_t kinds;
-    char **kind_name;      /* [kinds] of the first frame */
-    bool solved;           /* some frame has contacts with reactions */
-    int64_t grains, walls; /* chunks of what does not change in every frame */
-    size_t grains_size, walls_size;
-    void *grains_last, *walls_last;               /* the last of each, to see whether it changes */
-    struct region seen;                           /* m: of all grains and finite walls */
-    double fastest, spin, radius[2], force, push; /* m/s, rad/s, m, N, N: of all frames */
-    int most;                                     /* contacts of a grain that push */
-};
+#include "draw/page_meta.h"
 
 /* Each returns 0, EX_SOFTWARE, EX_IOERR or EX_DATAERR (more than INT32_MAX grains or contacts). */
 int page_begin(struct page *p, FILE *out, const char *name, const char *title, struct why *why);

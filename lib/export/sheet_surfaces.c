@@ -1,5 +1,5 @@
 /* export/sheet_surfaces.c: the surfaces of grains that are no balls, as polygons: a cell for each. */
-#include "export/facets.h"
+#include "draw/facets.h"
 #include "export/sheet.h"
 
 #include <stdlib.h>

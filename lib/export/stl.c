@@ -1,8 +1,8 @@
 /*
- * export/stl.c: a moment as triangles, binary STL, in m: grains as export/facets.h has them, boundaries
+ * export/stl.c: a moment as triangles, binary STL, in m: grains as draw/facets.h has them, boundaries
  * as their polygons.
  */
-#include "export/facets.h"
+#include "draw/facets.h"
 #include "export/format.h"
 #include "export/sheet.h"
 

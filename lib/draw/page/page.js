@@ -2,8 +2,8 @@
  * The page that nsd-web writes: it plays the frames that stand beside it.
  *
  * A chunk is a script element of base64: zlib around little-endian numbers, as draw/page.c packs
- * them. `meta` has what the numbers are relative to. Grains are drawn as exact balls: a square each,
- * in which the fragment shader finds where the ray of sight meets the ball.
+ * them. `meta` has what the numbers are relative to. Balls are drawn exactly: a square each, in which the
+ * fragment shader finds where the ray of sight meets the ball; grains of other shapes by their triangles.
  */
 'use strict';
 
@@ -60,8 +60,42 @@ async function load(k) {
   f.mass = take(grains, Float32Array, n);
   f.id = take(grains, Int32Array, n);
   f.kind = take(grains, Int32Array, n);
+  f.shape = m.h === undefined ? null : take(grains, Int32Array, n); // null: all are balls
+  f.solids = m.h === undefined ? [] : solids(await chunk('s' + m.h), 's' + m.h);
   f.shown = images(f);
   return f;
+}
+
+/*
+ * The shapes of a chunk, of which the first is the ball and has none: corners and normals of their triangles,
+ * of a grain of radius 1 in its own axes; across: 3 numbers a corner, of which number k falls from 1 to 0
+ * towards side k where that is an edge, and is 1 where it is not.
+ */
+let solid = { id: null, list: [] };
+function solids(buffer, id) {
+  if (solid.id === id) return solid.list;
+  const count = new Uint32Array(buffer, 0, 1)[0], each = new Uint32Array(buffer, 4, count);
+  const all = each.reduce((a, b) => a + b, 0);
+  const corner = new Float32Array(buffer, 4 + 4 * count, 9 * all);
+  const edge = new Uint8Array(buffer, 4 + 4 * count + 36 * all, all);
+  let first = 0;
+  const list = Array.from(each, n => {
+    const at = corner.slice(9 * first, 9 * (first + n)), normal = new Float32Array(9 * n), across = new Float32Array(9 * n);
+    for (let t = 0; t < n; t++) {
+      const [a, b, c] = [0, 3, 6].map(k => at.subarray(9 * t + k, 9 * t + k + 3));
+      const u = b.map((x, j) => x - a[j]), v = c.map((x, j) => x - a[j]);
+      const w = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]], length = norm(w) || 1;
+      for (let k = 0; k < 3; k++) {
+        normal.set(w.map(x => x / length), 9 * t + 3 * k);
+        for (let side = 0; side < 3; side++) // corner k is across from side k + 1
+          across[9 * t + 3 * k + side] = !(edge[first + t] >> side & 1) || (k + 1) % 3 === side ? 1 : 0;
+      }
+    }
+    first += n;
+    return { n, corner: at, normal, across };
+  });
+  solid = { id, list };
+  return list;
 }
 
 const place = (f, i) => [0, 1, 2].map(j => f.m.lo[j] + f.m.step[j] * f.x[4 * i + j]);
@@ -92,11 +126,17 @@ function images(f) {
 }
 /* Where image k is drawn, m */
 const drawn = (f, k) => place(f, f.shown.row[k]).map((x, j) => x + f.shown.by[3 * k + j]);
-/* An array with `width` numbers a grain as one with as many an image */
-function imaged(f, array, width) {
-  if (!f.m.cell) return array;
-  const out = new array.constructor(width * f.shown.n);
-  f.shown.row.forEach((i, k) => { for (let j = 0; j < width; j++) out[width * k + j] = array[width * i + j]; });
+/* The images that have this shape; null: all, and they are the grains */
+function shaped(f, shape) {
+  if (!f.m.cell && !f.shape) return null;
+  const every = Int32Array.from(f.shown.row.keys());
+  return f.shape ? every.filter(k => f.shape[f.shown.row[k]] === shape) : every;
+}
+/* An array with `width` numbers a row as one with those of these rows; null: all */
+function gather(array, width, rows) {
+  if (!rows) return array;
+  const out = new array.constructor(width * rows.length);
+  rows.forEach((i, k) => { for (let j = 0; j < width; j++) out[width * k + j] = array[width * i + j]; });
   return out;
 }
 const velocity = (f, i) => [0, 1, 2].map(j => f.m.vmax * f.v[4 * i + j] / 32767);
@@ -246,6 +286,47 @@ void main() {
                       : .3 + .55 * max(dot(n, normalize(vec3(-.4, .7, .6))), 0.) + .15 * n.z;
   pixel = vec4(own * light, 1.);
 }`;
+const solid_vertex = `
+precision highp float;
+uniform mat4 viewMatrix, projectionMatrix;
+uniform vec3 origin, quantum;
+uniform float scale, cutoff;
+uniform bool classes;
+uniform sampler2D palette;
+in vec3 position, normal, across;
+in vec4 x, q;
+in vec3 by;
+in float radius, value, chosen;
+out vec3 n, far, colour;
+vec3 turned(vec4 q, vec3 v) {
+  vec3 t = 2. * cross(q.yzw, v);
+  return v + q.x * t + cross(q.yzw, t);
+}
+void main() {
+  vec4 turn = normalize(q);
+  vec3 world = origin + quantum * x.xyz + by;
+  vec4 at = viewMatrix * vec4((world + radius * turned(turn, position)) * scale, 1.);
+  n = mat3(viewMatrix) * turned(turn, normal);
+  far = across;
+  colour = texture(palette, vec2(classes ? (mod(value, 10.) + .5) / 10. : (value * 255. + .5) / 256.,
+                                 classes ? .75 : .25)).rgb;
+  if (chosen > .5) colour = vec3(1., .25, .8);
+  gl_Position = projectionMatrix * at;
+  if (-(viewMatrix * vec4(world * scale, 1.)).z < cutoff) gl_Position = vec4(2., 2., 2., 1.);
+}`;
+const solid_fragment = `
+precision highp float;
+uniform bool plane;
+in vec3 n, far, colour;
+out vec4 pixel;
+void main() {
+  vec3 m = normalize(n), pixels = far / fwidth(far); // from the edges
+  if (m.z < 0.) m = -m;
+  float light = plane ? 1. : .3 + .55 * max(dot(m, normalize(vec3(-.4, .7, .6))), 0.) + .15 * m.z;
+  float edge = 1.;
+  for (int k = 0; k < 3; k++) if (far[k] < 1.) edge = min(edge, smoothstep(.5, 1.5, pixels[k]));
+  pixel = vec4(colour * light * (.55 + .45 * edge), 1.);
+}`;
 const line_vertex = `
 precision highp float;
 uniform mat4 viewMatrix, projectionMatrix;
@@ -312,6 +393,27 @@ function square() {
 const balls = new T.Mesh(square(), shader(ball_vertex, ball_fragment, uniforms));
 balls.frustumCulled = false;
 scene.add(balls);
+const bodies = new T.Group(); // a mesh for each shape
+scene.add(bodies);
+const solid_material = shader(solid_vertex, solid_fragment, uniforms);
+let bodies_shown = null;
+function make_bodies(list) {
+  if (bodies_shown === list) return;
+  bodies_shown = list;
+  for (const b of bodies.children) b.geometry.dispose();
+  bodies.clear();
+  list.forEach((solid, shape) => {
+    if (!solid.n) return;
+    const g = new T.InstancedBufferGeometry();
+    g.setAttribute('position', new T.BufferAttribute(solid.corner, 3));
+    g.setAttribute('normal', new T.BufferAttribute(solid.normal, 3));
+    g.setAttribute('across', new T.BufferAttribute(solid.across, 3));
+    const mesh = new T.Mesh(g, solid_material);
+    mesh.frustumCulled = false;
+    mesh.userData.shape = shape;
+    bodies.add(mesh);
+  });
+}
 const line_uniforms = { pixels: { value: new T.Vector2() } };
 const network = new T.Mesh(square(), shader(line_vertex, line_fragment, line_uniforms));
 network.frustumCulled = false;
@@ -336,9 +438,23 @@ function instanced(g, name, array, width, normalised) {
 
 let now = null, chosen = null; // the frame shown; the id of the grain picked
 
+/* Those of one shape, in the colours of value[] */
+function show_shape(mesh, f, shape, value) {
+  const g = mesh.geometry, images = shaped(f, shape), rows = images && images.map(k => f.shown.row[k]);
+  const n = images ? images.length : f.n;
+  if (n !== g.instanceCount) for (const a of ['x', 'q', 'by', 'radius', 'value', 'chosen']) g.deleteAttribute(a);
+  instanced(g, 'x', gather(f.x, 4, rows), 4, false);
+  instanced(g, 'q', gather(f.q, 4, rows), 4, true);
+  instanced(g, 'by', gather(f.shown.by, 3, images), 3, false);
+  instanced(g, 'radius', gather(f.radius, 1, rows), 1, false);
+  instanced(g, 'value', gather(value, 1, rows), 1, false);
+  instanced(g, 'chosen', gather(Float32Array.from(f.id, id => id === chosen ? 1 : 0), 1, rows), 1, false);
+  g.instanceCount = n;
+  mesh.visible = n > 0;
+}
+
 function show_grains(f) {
-  const g = balls.geometry, show = colours[by_id('colour').value];
-  if (f.shown.n !== g.instanceCount) for (const a of ['x', 'q', 'by', 'radius', 'value', 'chosen']) g.deleteAttribute(a);
+  const show = colours[by_id('colour').value];
   const value = show.of(f), range = range_of(show, value);
   draw_bar(show, range);
   if (range) {
@@ -346,13 +462,9 @@ function show_grains(f) {
     for (let i = 0; i < f.n; i++)
       value[i] = hi > lo ? Math.min(Math.max((value[i] - lo) / (hi - lo), 0), 1) : 0.5;
   }
-  instanced(g, 'x', imaged(f, f.x, 4), 4, false);
-  instanced(g, 'q', imaged(f, f.q, 4), 4, true);
-  instanced(g, 'by', f.shown.by, 3, false);
-  instanced(g, 'radius', imaged(f, f.radius, 1), 1, false);
-  instanced(g, 'value', imaged(f, value, 1), 1, false);
-  instanced(g, 'chosen', imaged(f, Float32Array.from(f.id, id => id === chosen ? 1 : 0), 1), 1, false);
-  g.instanceCount = f.shown.n;
+  make_bodies(f.solids);
+  show_shape(balls, f, 0, value);
+  for (const mesh of bodies.children) show_shape(mesh, f, mesh.userData.shape, value);
   uniforms.origin.value.set(...f.m.lo);
   uniforms.quantum.value.set(...f.m.step);
   uniforms.classes.value = !!show.classes;
@@ -542,8 +654,26 @@ function draw() {
   axes(cam);
 }
 
-/* The grain under a point of the canvas: the row of the nearest ball that the ray meets, perhaps as an
-   image; -1: none */
+/* v turned by the orientation of grain i, or back */
+function turned(f, i, v, back) {
+  const [w, x, y, z] = f.q.subarray(4 * i, 4 * i + 4);
+  const q = new T.Quaternion(x, y, z, w).normalize();
+  return v.clone().applyQuaternion(back ? q.invert() : q);
+}
+/* Where a ray, from a point relative to the centre of grain i, meets its triangles; Infinity: nowhere */
+function meets_solid(f, i, from, direction) {
+  const { n, corner } = f.solids[f.shape[i]], r = scale * f.radius[i], hit = new T.Vector3();
+  const ray = new T.Ray(turned(f, i, from, true).divideScalar(r), turned(f, i, direction, true));
+  const at = k => new T.Vector3(corner[k], corner[k + 1], corner[k + 2]);
+  let nearest = Infinity;
+  for (let t = 0; t < n; t++)
+    if (ray.intersectTriangle(at(9 * t), at(9 * t + 3), at(9 * t + 6), false, hit))
+      nearest = Math.min(nearest, r * hit.sub(ray.origin).dot(ray.direction));
+  return nearest;
+}
+
+/* The grain under a point of the canvas: the row of the nearest that the ray meets, perhaps as an image;
+   -1: none */
 function pick(px, py) {
   if (!now) return -1;
   const cam = camera(), box = canvas.getBoundingClientRect();
@@ -559,7 +689,8 @@ function pick(px, py) {
     c.sub(origin);
     const b = c.dot(direction), h = r * r - c.lengthSq() + b * b;
     if (h < 0) continue;
-    const t = flat ? b : b - Math.sqrt(h);
+    const shape = now.shape ? now.shape[i] : 0;
+    const t = shape ? meets_solid(now, i, c.negate(), direction) : flat ? b : b - Math.sqrt(h);
     if (t < nearest) nearest = t, best = i;
   }
   return best;

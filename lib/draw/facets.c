@@ -1,4 +1,4 @@
-#include "export/facets.h"
+#include "draw/facets.h"
 
 #include "draw/sight.h"
 
@@ -102,11 +102,6 @@ static vec3 leaves(const struct shape *s, int dim, vec3 along)
     return v3_scale(t, along);
 }
 
-static bool is_sharp(const struct shape *s)
-{
-    return s->form == SHAPE_HULL && s->round == 0;
-}
-
 /* A place of grain i, given in the unit and axes of its shape */
 static vec3 placed(const struct packing *p, int64_t i, vec3 v)
 {
@@ -166,7 +161,7 @@ void facets_of(const struct facets *b, const struct packing *p, int64_t i, facet
         put_ball(&out, p->x[i], p->radius[i], p->q[i], b);
     else if (s->form == SHAPE_CLUMP)
         put_clump(&out, p, i, s, b);
-    else if (is_sharp(s))
+    else if (facets_are_faces(s))
         put_faces(&out, p, i, s);
     else
         put_rounded(&out, p, i, s, b);
@@ -176,6 +171,6 @@ int64_t facets_triangles(const struct facets *b, const struct packing *p, int64_
 {
     const struct shape *s = packing_shape(p, i);
     int64_t round = p->dim == 2 ? DISC : b->n;
-    if (s && is_sharp(s)) return s->first[s->faces] - 2 * (int64_t)s->faces;
+    if (s && facets_are_faces(s)) return s->first[s->faces] - 2 * (int64_t)s->faces;
     return s && s->form == SHAPE_CLUMP ? round * s->vertices : round;
 }

@@ -1,5 +1,5 @@
 /*
- * export/facets.h: the surfaces of grains as polygons: sharp hulls by their faces, clumps by the
+ * draw/facets.h: the surfaces of grains as polygons: sharp hulls by their faces, clumps by the
  * triangles of their balls, rounded shapes by those of a ball whose corners are moved along its radii.
  * Balls are icosahedra whose faces are divided into four `detail` times; discs have 48 corners.
  */
@@ -27,6 +27,11 @@ void facets_free(struct facets *f);
 typedef void facets_text(void *to, int corners, const vec3 *x);
 void facets_of(const struct facets *f, const struct packing *p, int64_t i, facets_text *put,
                void *to);
+/* Are the polygons of this shape its faces, and not pieces of something round? */
+static inline bool facets_are_faces(const struct shape *s)
+{
+    return s->form == SHAPE_HULL && s->round == 0;
+}
 /* How many triangles these polygons are, each cut into a fan */
 int64_t facets_triangles(const struct facets *f, const struct packing *p, int64_t i);
 
