@@ -66,8 +66,8 @@ TABLE4 := $(foreach s,example3 example3-2d,$(foreach a,$(ALPHAS),$(METHODS:%=$s_
           $s_plain-$a_ebp $s_plain-$a_eal))
 RUNS   := $(TABLES) $(TABLE2) $(BOXED) $(PILED) $(TABLE4)
 
-# The same with adhesion: balls, nsd's settings. A bond bears BOND weights of a ball: in example 3 a third of the bonds
-# is whole at the end, most of the others are damaged.
+# The same with adhesion: balls, nsd's settings. A bond bears BOND weights of a ball: in example 3 close to half of the
+# bonds are whole at the end, nearly all others are damaged.
 BOND        := 30
 BOND_SEEDS  := $(if $(QUICK),1 2 3,$(SEEDS))
 BOND_ROUNDS := $(if $(QUICK),1,1 2 3 4 5)

@@ -10,7 +10,7 @@ misfit()
 {
     jq -s 'map(.balance | ((.change - (.gravity + .loads + .drives - .dissipation - .bond_change - .broken)) | fabs) /
         (.kinetic + (.gravity | fabs) + (.loads | fabs) + (.drives | fabs) + (.dissipation | fabs) +
-         (.bond_change | fabs) + 1e-300)) | max' "$1"
+         (.bond_change | fabs) + 1e-300)) | max // 1' "$1"
 }
 
 # whole NAME: a step of document $tmp/NAME by parts and whole, in threads, broken off, judged anew
@@ -187,7 +187,7 @@ for g in anderson auto; do
     like "in fewer sweeps than Gauss-Seidel" "$(jq -n --argjson a "$(nsd-info "$tmp/g.h5" | tail -n 1)" \
         --argjson b "$(nsd-info "$tmp/m.h5" | tail -n 1)" '$a.sweeps < $b.sweeps')" true
     like "and finds the same velocities" "$(jq -n --slurpfile a <(nsd-info -c "$tmp/m.h5") --slurpfile b <(nsd-info -c "$tmp/g.h5") \
-        '[$a, $b] | transpose | map(.[0].u[0] - .[1].u[0] | fabs) | max < 1e-6')" true
+        '[$a, $b] | transpose | map(.[0].u[0] - .[1].u[0] | fabs) | length > 20 and max < 1e-6')" true
 done
 refuses 65 "rolling grains: nor is there an FCLIB problem of them" nsd-detect --fclib=local "$tmp/rolling.h5"
 jq '.rolling = { mu_r: 1e-4 }' scenes/press.json | nsd-gen - >"$tmp/press.h5"
@@ -295,7 +295,7 @@ for g in auto anderson cg prox ipm; do
     solve --global $g --eps 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/g.h5"
     like "bonded grains: --global $g solves them" "$(nsd-err "$tmp/g.h5" | jq '.natural < 1e-7')" true
     like "and finds the same velocities" "$(jq -n --slurpfile a <(nsd-info -c "$tmp/m.h5") --slurpfile b <(nsd-info -c "$tmp/g.h5") \
-        '[$a, $b] | transpose | map(.[0].u[0] - .[1].u[0] | fabs) | max < 1e-6')" true
+        '[$a, $b] | transpose | map(.[0].u[0] - .[1].u[0] | fabs) | length > 20 and max < 1e-6')" true
 done
 # bonded grains as problems of others: r of these is r*, their velocities are the same
 for form in local global; do
@@ -332,6 +332,17 @@ for w in 2.1 0.95; do # what comes at once stretches a spring up to twice as far
     like "a cube hangs from a bond of $w times its weight, or does not" \
         "$(nsd-info --last -p "$tmp/welded.h5" | jq -s '.[1].x[2] > -0.1001')" "$(jq -n "$w > 1")"
 done
+# A brick bonded to a floor that carries it out of a cell that repeats, twice along one edge and once along the other
+jq -n '{ dt: 1e-3, mu: 0.3, density: 1000, cell: { lengths: [0.5, 0.5, 1], repeats: [true, true, false] },
+    shapes: { brick: { box: [0.2, 0.1, 0.1] } }, adhesion: { c_n: 1e9, c_t: 5e8, w: 1e9, area: 1e-3 },
+    walls: [{ point: [0, 0, 0], normal: [0, 0, 1], velocity: [2, -1, 0] }],
+    bodies: [{ x: [0.1, 0.1, 0.05], shape: "brick", v: [2, -1, 0] }] }' | nsd-gen - |
+    step --eps 1e-10 -n 500 --every 500 --contacts -o "$tmp/ride.h5"
+like "a brick rides on the floor that it is bonded to, through the border of a cell that repeats" \
+    "$(nsd-info --last -p "$tmp/ride.h5" | jq '.image == [2, -1, 0] and ([.x[0] - 0.1, .x[1] - 0.1, .x[2] - 0.05, .w[]] | map(fabs) | max < 1e-9)')" true
+like "by its four bonds alone, none of them stretched" \
+    "$(nsd-info --last -c "$tmp/ride.h5" | jq -s 'length == 4 and all(.beta == 1 and (.gap | fabs) < 1e-9)')" true
+
 shaped() # LAWS STEPS: bricks, rods, clumps and balls that fall into a box
 {
     jq -n '{ dt: 1e-4, mu: 0.4, e_n: 0.2, density: 2500, walls: [{ box: { x: [0, 0.05], y: [0, 0.05], z: [0, null] } }],
@@ -345,6 +356,7 @@ shaped() # LAWS STEPS: bricks, rods, clumps and balls that fall into a box
     like "shaped grains with $1: energy is balanced in every step" "$(misfit "$tmp/shaped.log" | jq '. < 1e-12')" true
     like "and nothing dissipates less than nothing" "$(jq -s '(map(.balance.kinetic) | max) as $most | map(.balance.dissipation) | min > -1e-5 * $most' "$tmp/shaped.log")" true
     nsd-detect "$tmp/shaped.h5" >"$tmp/contacts.h5"
+    like "and more than 30 contacts are left" "$(nsd-info -c "$tmp/contacts.h5" | jq -s 'length > 30')" true
     local m
     for m in sbp sal ebp eal exact; do
         solve -m $m --global anderson --eps 1e-7 --max-sweeps 20000 "$tmp/contacts.h5" >"$tmp/m.h5"
@@ -352,7 +364,7 @@ shaped() # LAWS STEPS: bricks, rods, clumps and balls that fall into a box
     done
 }
 shaped '{ cohesion: { force: 5e-3, range: 1e-4 }, capillary: { volume: 1e-9, tension: 0.07 } }' 300
-shaped '{ rolling: { mu_r: 1e-4, mu_p: 5e-5 } }' 300
+shaped '{ rolling: { mu_r: 1e-4, mu_p: 5e-5 } }' 350
 whole shaped.h5
 shaped '{ adhesion: { c_n: 1e9, c_t: 5e8, w: 5e-4, forever: true }, rolling: { mu_r: 1e-4, mu_p: 5e-5 } }' 500
 like "bonds have been made, and some have broken" "$(jq -s '(map(.balance.broken) | add) > 1e-7 and .[-1].contacts > 30' "$tmp/shaped.log")" true
@@ -460,8 +472,14 @@ f['/nsd/bonds/anchor_a'][0] = np.inf
 f['/nsd/bonds/anchor_b'][0] = np.nan
 f['/nsd/bonds/axis'][0] = 0
 f['/nsd/bonds/feature'][0] = 3
+f['/nsd/bonds/anchor_a'][0, 2] = 1e-3
+f['/nsd/bonds/anchor_b'][0, 2] = 1e-3
+f['/nsd/bonds/axis'][0] = (0, 0, 1)
 del f['/nsd/bonds/axis']
 CODES
+    # bonds of bodies that are all held
+    changed kept.h5 "f['/particles/all/mass'][...] = 0"
+    is "what cannot move has no contacts, bonded or not" "$(nsd-detect "$tmp/changed.h5" | nsd-info | tail -n 1 | jq .contacts)" 0
 else
     skip "hostile documents" "no h5py"
 fi

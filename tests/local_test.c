@@ -2,12 +2,14 @@
  * The five local methods on random one-contact problems, judged by the law itself and not by their
  * own formulas.
  */
+#include "base/eigen.h"
 #include "law/local_eal.h"
 #include "law/local_ebp.h"
 #include "law/method.h"
 #include "tap.h"
 
 #include <gsl/gsl_deriv.h>
+#include <gsl/gsl_eigen.h>
 #include <gsl/gsl_rng.h>
 #include <string.h>
 
@@ -480,6 +482,24 @@ static void test_lambda_max(void)
     ok(local_lambda_max(balls) == 3.5, "local_lambda_max of balls is w_t to the last bit");
 }
 
+/* Six rows, as of contacts that roll, beside GSL's method */
+static void test_eigen(void)
+{
+    double worst = 0;
+    for (int n = 0; n < PROBLEMS; n++) {
+        double A[36], whole[36], e[6], d[6], sd[6], most = -INFINITY;
+        gsl_eigen_symm_workspace room = { 6, d, sd };
+        for (int i = 0; i < 36; i++) A[i] = flat(-1, 1);
+        for (int i = 0; i < 36; i++) whole[i] = 0.5 * (A[i] + A[6 * (i % 6) + i / 6]);
+        gsl_matrix_view M = gsl_matrix_view_array(whole, 6, 6);
+        gsl_vector_view v = gsl_vector_view_array(e, 6);
+        gsl_eigen_symm(&M.matrix, &v.vector, &room);
+        for (int i = 0; i < 6; i++) most = fmax(most, e[i]);
+        worst = fmax(worst, fabs(eigen_largest(6, A) - most));
+    }
+    ok(worst < 1e-13, "eigen_largest of six rows is GSL's (%.1e)", worst);
+}
+
 int main(void)
 {
     rng = gsl_rng_alloc(gsl_rng_mt19937);
@@ -510,6 +530,7 @@ int main(void)
     test_cycles(&local_eal, 1, 10);
     test_semidefinite();
     test_hopeless();
+    test_eigen();
     gsl_rng_free(rng);
     return tap_done();
 }

@@ -302,6 +302,9 @@ nsd-gen - 2>/dev/null <<'EOF' | nsd-step -n 250 --every 250 2>/dev/null | nsd-ca
 EOF
 ok "a heap that slides across the parts: the bytes of one process" same "$tmp/slide.h5" 3 -n 120 --every 120
 ok "and it is cut anew, so that the work stays even" even 1.15 1.5 2
+ok "the same in cells of a grid, by a hypergraph" same "$tmp/slide.h5" 4 -n 60 --every 60 --cut hypergraph
+ok "as even" even 1.2 1.5 2
+ok "and in blocks" blocks "$tmp/heap.h5" 3 1e-8 -n 2 --overlap keep --cut hypergraph
 ok "a drum that turns through them: the bytes of one process" same "$tmp/drum.h5" 3 -n 25 --every 25
 ok "and the work stays even" even 1.15 1.3 1
 

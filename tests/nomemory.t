@@ -28,7 +28,10 @@ cat >"$tmp/scene.json" <<'EOF'
   "walls": [{ "point": [0, 0, -2], "normal": [0, 0, 1] }, { "box": { "x": [-20, 20], "y": [-20, 20], "z": [-1, null] } }] }
 EOF
 nsd-gen -d 2 5 >"$tmp/discs.h5"
-commands=("nsd-gen 20" "nsd-gen $tmp/scene.json" "nsd-info $tmp/solved.h5" "nsd-info $tmp/foreign.h5" "nsd-cat $tmp/solved.h5"
+printf 'v %s\n' '0 0 0' '1 0 0' '0 1 0' '0 0 1' >"$tmp/stone.obj"
+printf 'f %s\n' '1 3 2' '1 2 4' '2 3 4' '3 1 4' >>"$tmp/stone.obj"
+echo '{ "dt": 1e-3, "shapes": { "stone": { "mesh": { "file": "stone.obj" } } }, "bodies": [{ "x": [0, 0, 0], "shape": "stone" }] }' >"$tmp/stone.json"
+commands=("nsd-gen 20" "nsd-gen $tmp/scene.json" "nsd-gen $tmp/stone.json" "nsd-info $tmp/solved.h5" "nsd-info $tmp/foreign.h5" "nsd-cat $tmp/solved.h5"
     "nsd-cat --steps 402:403 $tmp/run.h5" "nsd-err $tmp/solved.h5" "nsd-move $tmp/solved.h5" "nsd-detect --fclib=local $tmp/solved.h5"
     "nsd-detect --fclib=global $tmp/solved.h5" "nsd-view --size 32x32 $tmp/solved.h5" "nsd-view --network --size 300x300 $tmp/solved.h5"
     "nsd-view --svg $tmp/discs.h5" "nsd-web $tmp/run.h5" "nsd-solve -m sbp --max-sweeps 3 $tmp/solved.h5"

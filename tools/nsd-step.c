@@ -26,6 +26,16 @@ static double until, lines; /* s: of the motion; of real time */
 static bool contacts, forces, in_place;
 static const char *output;
 
+/* By index: options.hypergraph */
+static struct cli_choice cut_choice(int index)
+{
+    static const struct cli_choice cuts[] = {
+        { "bisection", "boxes, by recursive bisection" },
+        { "hypergraph", "cells of a grid, with the fewest bodies that several have" },
+    };
+    return index < 2 ? cuts[index] : (struct cli_choice){ 0 };
+}
+
 static const struct cli_option own[] = {
     { CLI_INT, 'n', "steps", &steps, "N", "steps to make [1]", .max = 1e15 },
     { CLI_REAL, 0, "until", &until, "T", "or steps until the time is T, s [by -n]", .min = -1e300,
@@ -39,6 +49,8 @@ static const struct cli_option own[] = {
       .help = "start each solve from the last step's reactions" },
     { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start each solve from 0, as the paper",
       .usual = options_usual },
+    { CLI_CHOICE, 0, "cut", &options.hypergraph, .choice = cut_choice,
+      .help = "under mpirun, how processes share out space [bisection]" },
     { CLI_FLAG, 'i', "in-place", &in_place, .silent = true,
       .help = "append to FILE; also where standard output is a terminal" },
     { CLI_ABOVE, 0, "progress", &lines, "S", .max = 1e9, .silent = true,

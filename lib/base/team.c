@@ -9,7 +9,9 @@
 
 enum {
     THREADS_MOST = 1024,
-    SPINS = 1000,          /* looks before a thread sleeps: some 20 us */
+    SPINS = 1000,          /* looks of one who waits: some 20 us */
+    YIELDS = 500,          /* times that it then offers its core to others before it sleeps, */
+    LOOKS = 50,            /* with so many looks in between: some 500 us */
     NAP = 20000,           /* ns that it then sleeps between looks, where nobody wakes it */
     WATCH = 3000000,       /* ns of works after which they are judged, */
     WATCH_ALL = 50000,     /* all works that take as many ns, */
@@ -94,19 +96,27 @@ static void rest(void)
 #endif
 }
 
-/* Spins until the count is there; false where it takes longer. */
-static bool spun(const _Atomic int64_t *count, int64_t n)
+/* Looks so many times whether the count is there. */
+static bool spun(const _Atomic int64_t *count, int64_t n, int looks)
 {
-    for (int k = 0; k < SPINS; k++) {
+    for (int k = 0; k < looks; k++) {
         if (atomic_load_explicit(count, memory_order_acquire) >= n) return true;
         rest();
     }
     return false;
 }
 
+/* The same, for some time; false where it takes longer. */
+static bool came(const _Atomic int64_t *count, int64_t n)
+{
+    bool here = spun(count, n, SPINS);
+    for (int k = 0; k < YIELDS && !here; k++) sched_yield(), here = spun(count, n, LOOKS);
+    return here;
+}
+
 static void gate_wait(struct gate *g, int64_t n)
 {
-    if (spun(&g->count, n)) return;
+    if (came(&g->count, n)) return;
     pthread_mutex_lock(&g->lock);
     atomic_fetch_add(&g->sleepers, 1); // seen by who counts up next, or its count is seen here
     while (atomic_load(&g->count) < n) pthread_cond_wait(&g->changed, &g->lock);
@@ -126,7 +136,7 @@ static void gate_count(struct gate *g)
 void team_await(const _Atomic int64_t *count, int64_t n)
 {
     const struct timespec nap = { 0, NAP };
-    while (!spun(count, n)) nanosleep(&nap, NULL);
+    while (!came(count, n)) nanosleep(&nap, NULL);
 }
 
 void team_meet(void)

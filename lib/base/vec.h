@@ -44,6 +44,15 @@ static inline vec3 v3_axpy(vec3 a, double s, vec3 b)
 {
     return v3(a.x + s * b.x, a.y + s * b.y, a.z + s * b.z);
 }
+/* The smaller, and the larger, of each component */
+static inline vec3 v3_min(vec3 a, vec3 b)
+{
+    return v3(dmin(a.x, b.x), dmin(a.y, b.y), dmin(a.z, b.z));
+}
+static inline vec3 v3_max(vec3 a, vec3 b)
+{
+    return v3(dmax(a.x, b.x), dmax(a.y, b.y), dmax(a.z, b.z));
+}
 static inline double v3_dot(vec3 a, vec3 b)
 {
     return a.x * b.x + a.y * b.y + a.z * b.z;

@@ -8,6 +8,20 @@
 
 static const double NEAR = 0.2; /* smaller radii: closer contacts are where the bond is */
 
+/* The image of a place on a boundary that is nearest to x (m): a boundary goes on where the cell repeats,
+   and b, whom it has carried out of the cell, has come in again on the other side. */
+static vec3 nearest_image(const struct cell *cell, const vec3 edge[3], vec3 at, vec3 x)
+{
+    vec3 inverse[3], way = v3_sub(x, at);
+    if (!cell_repeats(cell)) return at;
+    cell_inverse(edge, inverse);
+    for (int k = 0; k < 3; k++) {
+        double edges = cell->repeats[k] ? floor(v3_dot(inverse[k], way) + 0.5) : 0;
+        if (edges != 0) at = v3_axpy(at, edges, edge[k]);
+    }
+    return at;
+}
+
 /* The contact of bond b; q has no half step of balls, whose turning is constant. */
 static struct contact place(const struct packing *p, const struct bond *b, const vec3 *x,
                             const quat *q, const vec3 edge[3], double t)
@@ -17,7 +31,7 @@ static struct contact place(const struct packing *p, const struct bond *b, const
     vec3 xb = v3_add(v3_add(x[b->b], cell_shift(edge, b->shift)), quat_turn(qb, b->at_b)), xa;
     if (b->a < 0) {
         const struct pose pose = wall_pose(p, &p->wall[-1 - b->a], t);
-        xa = pose_of(&pose, b->at_a);
+        xa = nearest_image(&p->cell, edge, pose_of(&pose, b->at_a), xb);
     } else {
         quat qa = packing_shape(p, b->a) ? q[b->a] : top_predict(p, b->a);
         xa = v3_add(x[b->a], quat_turn(qa, b->at_a));
@@ -31,18 +45,13 @@ static struct contact place(const struct packing *p, const struct bond *b, const
     return c;
 }
 
-static double smaller_radius(const struct packing *p, const struct contact *c)
-{
-    return c->a < 0 ? p->radius[c->b] : fmin(p->radius[c->a], p->radius[c->b]);
-}
-
 /* Is the contact where one of these is, which are sorted? *from: where its pair's begin */
 static bool is_taken(const struct packing *p, const struct contact *c, const struct contact *of,
                      int64_t n, int64_t *from)
 {
     while (*from < n && (of[*from].a < c->a || (of[*from].a == c->a && of[*from].b < c->b)))
         ++*from;
-    double near = NEAR * smaller_radius(p, c);
+    double near = NEAR * packing_smaller_radius(p, c);
     for (int64_t i = *from; i < n && of[i].a == c->a && of[i].b == c->b; i++) {
         vec3 d = v3_sub(of[i].x, c->x);
         bool same = true;
@@ -82,9 +91,10 @@ int anchors_place(struct contacts *s, const struct packing *p, const vec3 *x, co
     n = 0;
     for (int64_t i = 0; placed && i < p->bonds.n; i++) {
         const struct bond *b = &p->bonds.bond[i];
+        int32_t body[2];
         bool there = b->a >= 0 || wall_there(&p->wall[-1 - b->a], t);
-        if (there && bond_anchored(b) && (b->beta > 0 || b->wet))
-            placed[n++] = place(p, b, x, q, edge, t);
+        if (!there || !packing_movable(p, b->a, b->b, body)) continue;
+        if (bond_anchored(b) && (b->beta > 0 || b->wet)) placed[n++] = place(p, b, x, q, edge, t);
     }
     if (!placed || !merge(&both, p, s, placed, n)) {
         free(placed), contacts_free(&both);

@@ -34,10 +34,11 @@ static bool crosses_triangle(const vec3 x[3], vec3 a, vec3 b)
 
 static bool in_surface(const struct surface *s, int dim, vec3 a, vec3 b)
 {
-    struct surface_walk walk = surface_walk_begin(s->n);
+    struct surface_walk walk;
     struct surface_branch leaf;
     vec3 middle = v3_scale(0.5, v3_add(a, b));
     double reach = 0.5 * v3_norm(v3_sub(b, a));
+    surface_walk_begin(&walk, s->n);
     while (surface_walk_next(&walk, s->box, middle, reach, &leaf))
         for (int32_t i = leaf.lo; i < leaf.hi; i++) {
             const vec3 *x = s->at[s->order[i]];

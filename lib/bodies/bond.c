@@ -33,22 +33,9 @@ struct bond *bonds_add(struct bonds *s, const struct bond *bond)
     return &s->bond[s->n++];
 }
 
-/* < 0 where the key of x comes before this one */
-static int compare(const struct bond *x, int32_t a, int32_t b, int32_t feature,
-                   const int8_t shift[3])
-{
-    if (x->a != a) return x->a < a ? -1 : 1;
-    if (x->b != b) return x->b < b ? -1 : 1;
-    if (x->feature != feature) return x->feature < feature ? -1 : 1;
-    for (int k = 0; k < 3; k++)
-        if (x->shift[k] != shift[k]) return x->shift[k] < shift[k] ? -1 : 1;
-    return 0;
-}
-
 static int compare_bonds(const void *x, const void *y)
 {
-    const struct bond *key = y;
-    return compare(x, key->a, key->b, key->feature, key->shift);
+    return contact_key_order(bond_key(x), bond_key(y));
 }
 
 void bonds_sort(struct bonds *s)
@@ -58,9 +45,9 @@ void bonds_sort(struct bonds *s)
 
 const struct bond *bonds_find(const struct bonds *s, const struct contact *c, int64_t *from)
 {
+    const struct contact_key key = contact_key(c);
     int order = -1;
-    while (*from < s->n && (order = compare(&s->bond[*from], c->a, c->b, c->feature, c->shift)) < 0)
-        ++*from;
+    while (*from < s->n && (order = contact_key_order(bond_key(&s->bond[*from]), key)) < 0) ++*from;
     return *from < s->n && order == 0 ? &s->bond[*from] : NULL;
 }
 
@@ -74,7 +61,7 @@ bool bonds_broken(const struct bonds *s, int32_t a, int32_t b, int64_t from)
     return false;
 }
 
-static const char *bond_trouble(const struct bond *x, int64_t bodies, int32_t walls)
+static const char *bond_trouble(const struct bond *x, int dim, int64_t bodies, int32_t walls)
 {
     if (x->b < 0 || x->b >= bodies || x->a >= bodies || x->a < -walls || x->a == x->b)
         return "no such bodies";
@@ -86,15 +73,17 @@ static const char *bond_trouble(const struct bond *x, int64_t bodies, int32_t wa
     if (!bond_anchored(x)) return NULL;
     if (!v3_finite(x->at_a) || !v3_finite(x->at_b)) return "its place is not finite";
     if (!(fabs(v3_dot(x->axis, x->axis) - 1) < 1e-6)) return "its axis is not a unit vector";
+    if (dim == 2 && (x->at_a.z != 0 || x->at_b.z != 0 || x->axis.z != 0))
+        return "its place or axis leaves the plane, and dim is 2";
     if (x->feature >= 0) return "keeps a place, and has the key of a contact that does not";
     return NULL;
 }
 
-int bonds_check(const struct bonds *s, int64_t bodies, int32_t walls, struct why *why)
+int bonds_check(const struct bonds *s, int dim, int64_t bodies, int32_t walls, struct why *why)
 {
     for (int64_t i = 0; i < s->n; i++) {
         const struct bond *x = &s->bond[i];
-        const char *trouble = bond_trouble(x, bodies, walls);
+        const char *trouble = bond_trouble(x, dim, bodies, walls);
         if (trouble) return why_set(why, EX_DATAERR, "bond %lld: %s", (long long)i, trouble);
         if (i && compare_bonds(x - 1, x) >= 0)
             return why_set(why, EX_DATAERR, "bond %lld: not sorted by its bodies, or there twice",

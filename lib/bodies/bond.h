@@ -28,6 +28,12 @@ static inline bool bond_anchored(const struct bond *x)
     return x->area > 0;
 }
 
+static inline struct contact_key bond_key(const struct bond *x)
+{
+    return (
+        struct contact_key){ x->a, x->b, x->feature, { x->shift[0], x->shift[1], x->shift[2] } };
+}
+
 /* Sorted as contacts are, each key once. */
 struct bonds {
     int64_t n, room;
@@ -48,8 +54,8 @@ const struct bond *bonds_find(const struct bonds *bonds, const struct contact *c
 /* Has an anchored bond of this pair broken, which is still remembered? from: as above */
 bool bonds_broken(const struct bonds *bonds, int32_t a, int32_t b, int64_t from);
 
-/* Do bodies and walls exist, are keys in order, numbers in range? Returns 0, or EX_DATAERR with the
-   first bond that fails. */
-int bonds_check(const struct bonds *bonds, int64_t bodies, int32_t walls, struct why *why);
+/* Do bodies and walls exist, are keys in order, numbers in range, and where dim is 2 places in the plane?
+   Returns 0, or EX_DATAERR with the first bond that fails. */
+int bonds_check(const struct bonds *bonds, int dim, int64_t bodies, int32_t walls, struct why *why);
 
 #endif

@@ -60,30 +60,21 @@ int contacts_copy(struct contacts *to, const struct contacts *from)
     return 0;
 }
 
+bool contacts_reserve(struct contacts *s, int64_t more)
+{
+    int64_t room = s->room + s->room / 2 + more;
+    if (s->n + more <= s->room) return true;
+    struct contact *c = realloc(s->c, (size_t)room * sizeof *c);
+    if (c) s->c = c, s->room = room;
+    return c != NULL;
+}
+
 struct contact *contacts_add(struct contacts *s, int32_t a, int32_t b)
 {
-    if (s->n == s->room) {
-        int64_t room = s->room + s->room / 2 + 64;
-        struct contact *c = realloc(s->c, (size_t)room * sizeof *c);
-        if (!c) return NULL;
-        s->c = c, s->room = room;
-    }
+    if (s->n == s->room && !contacts_reserve(s, 64)) return NULL;
     struct contact *c = &s->c[s->n++];
     *c = (struct contact){ .a = a, .b = b };
     return c;
-}
-
-bool contacts_append(struct contacts *s, const struct contacts *more)
-{
-    if (s->n + more->n > s->room) {
-        int64_t room = s->room + s->room / 2 + more->n;
-        struct contact *c = realloc(s->c, (size_t)room * sizeof *c);
-        if (!c) return false;
-        s->c = c, s->room = room;
-    }
-    if (more->n) memcpy(s->c + s->n, more->c, (size_t)more->n * sizeof *more->c);
-    s->n += more->n;
-    return true;
 }
 
 void contact_basis(struct contact *c, int dim, vec3 n)

@@ -41,7 +41,34 @@ struct tie {
     int8_t state;      /* TIE_... */
 };
 
-/* Sorted by (a, b, feature, shift) with boundaries first; each key occurs once. */
+/* What tells contacts apart, as in struct contact */
+struct contact_key {
+    int32_t a, b, feature;
+    int8_t shift[3];
+};
+static inline struct contact_key contact_key(const struct contact *c)
+{
+    return (
+        struct contact_key){ c->a, c->b, c->feature, { c->shift[0], c->shift[1], c->shift[2] } };
+}
+/* < 0, 0, > 0: x comes before y, is y, comes after it */
+static inline int contact_key_order(struct contact_key x, struct contact_key y)
+{
+    if (x.a != y.a) return x.a < y.a ? -1 : 1;
+    if (x.b != y.b) return x.b < y.b ? -1 : 1;
+    if (x.feature != y.feature) return x.feature < y.feature ? -1 : 1;
+    for (int k = 0; k < 3; k++)
+        if (x.shift[k] != y.shift[k]) return x.shift[k] < y.shift[k] ? -1 : 1;
+    return 0;
+}
+
+/* Is b an image? */
+static inline bool contact_shifted(const struct contact *c)
+{
+    return c->shift[0] || c->shift[1] || c->shift[2];
+}
+
+/* Sorted by their keys, a first, so that boundaries come first; each key occurs once. */
 struct contacts {
     int64_t n, room;     /* contacts; how many c has memory for */
     struct contact *c;   /* [n] */
@@ -64,8 +91,8 @@ void contacts_free_found(struct contacts *contacts);
 int contacts_copy(struct contacts *to, const struct contacts *from);
 /* Appends a contact, zero but for a and b; NULL when memory is short. */
 struct contact *contacts_add(struct contacts *contacts, int32_t a, int32_t b);
-/* Appends more contacts, unsolved ones; false when memory is short. */
-bool contacts_append(struct contacts *contacts, const struct contacts *more);
+/* Makes room for so many more; false when memory is short. */
+bool contacts_reserve(struct contacts *contacts, int64_t more);
 
 /* Do bodies and walls exist, are numbers finite and in range, bases orthonormal (to 1e-6)?
    Returns 0, or EX_DATAERR with the first contact that fails. */

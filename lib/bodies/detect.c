@@ -9,6 +9,7 @@
 #include "bodies/top.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum {
     SOME = 512,  /* bodies whose places on a curved boundary are worth a thread: 50 us of work, */
@@ -49,6 +50,8 @@ struct parts {
     find_text *find;
     int64_t n, parts;
     struct contacts *found; /* [parts] */
+    struct contact *at;     /* where they go */
+    int64_t guess;          /* contacts of a part: as many as in the step before */
     _Atomic bool failed;
 };
 
@@ -56,22 +59,35 @@ static void find_parts(void *arg, int64_t first, int64_t end)
 {
     struct parts *s = arg;
     for (int64_t k = first; k < end; k++)
-        if (!s->find(&s->found[k], s->o, s->n * k / s->parts, s->n * (k + 1) / s->parts))
+        if (!contacts_reserve(&s->found[k], s->guess) ||
+            !s->find(&s->found[k], s->o, s->n * k / s->parts, s->n * (k + 1) / s->parts))
             s->failed = true;
+}
+
+static void copy_parts(void *arg, int64_t first, int64_t end)
+{
+    const struct parts *s = arg;
+    struct contact *to = s->at;
+    for (int64_t k = 0; k < end; to += s->found[k++].n)
+        if (k >= first && s->found[k].n)
+            memcpy(to, s->found[k].c, (size_t)s->found[k].n * sizeof *to);
 }
 
 /* All of 0 .. n-1, in parts of at least `least` where there are threads for them */
 static bool find_all(struct contacts *out, const struct sought *o, int64_t n, int64_t least,
                      find_text *find)
 {
-    struct parts s = { o, find, n, 4 * (int64_t)team_size(), NULL, false };
+    struct parts s = { o, find, n, 4 * (int64_t)team_size(), NULL, NULL, 0, false };
+    int64_t more = 0;
+    s.guess = out->room / s.parts;
     if (team_size() == 1 || n < 2 * least) return find(out, o, 0, n);
     if (!(s.found = calloc((size_t)s.parts, sizeof *s.found))) return false;
     team_share(team_size(), s.parts, 1, find_parts, &s);
-    for (int64_t k = 0; k < s.parts; k++) {
-        if (!contacts_append(out, &s.found[k])) s.failed = true;
-        contacts_free(&s.found[k]);
-    }
+    for (int64_t k = 0; k < s.parts; k++) more += s.found[k].n;
+    if (!contacts_reserve(out, more)) s.failed = true;
+    s.at = out->c + out->n;
+    if (!s.failed) team_share(team_size(), more ? s.parts : 0, 1, copy_parts, &s), out->n += more;
+    for (int64_t k = 0; k < s.parts; k++) contacts_free(&s.found[k]);
     free(s.found);
     return !s.failed;
 }
@@ -267,6 +283,21 @@ static void prediction_free(struct prediction *m)
     free(m->x), free(m->q);
 }
 
+/* Bodies whose places are predicted */
+struct predicting {
+    const struct packing *p;
+    struct prediction *m;
+};
+
+static void predict_some(void *arg, int64_t first, int64_t end)
+{
+    const struct predicting *y = arg;
+    const struct packing *p = y->p;
+    for (int64_t i = first; i < end; i++) y->m->x[i] = packing_predict(p, i);
+    for (int64_t i = first; i < end && y->m->q; i++)
+        y->m->q[i] = packing_shape(p, i) ? top_predict(p, i) : p->q[i];
+}
+
 static int predict(struct prediction *m, const struct packing *p, struct why *why)
 {
     double ahead = (1 - p->theta) * p->dt;
@@ -276,9 +307,8 @@ static int predict(struct prediction *m, const struct packing *p, struct why *wh
         prediction_free(m);
         return why_set(why, EX_SOFTWARE, "no memory for the contacts");
     }
-    for (int64_t i = 0; i < p->n; i++) m->x[i] = packing_predict(p, i);
-    for (int64_t i = 0; i < p->n && m->q; i++)
-        m->q[i] = packing_shape(p, i) ? top_predict(p, i) : p->q[i];
+    struct predicting y = { p, m };
+    team_share(team_size(), p->n, MANY, predict_some, &y);
     cell_predict(&p->cell, ahead, m->edge);
     return 0;
 }

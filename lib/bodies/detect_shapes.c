@@ -10,19 +10,10 @@
 enum {
     CORNERS = 256,     /* of a body that are near a boundary, at most: of more the first */
     RIMS = 64,         /* of a boundary that are near a body, likewise */
-    RIM_KEY = 1 << 30, /* features of rims, and of their ends: apart from those of corners */
-    RIM_END = 1 << 29,
-    MOVED_MOST = 256 /* corners of a body that is met as an image without memory of its own */
+    RIM_KEY = 1 << 30, /* features of rims; */
+    RIM_END = 1 << 29, /* with it, of their ends. Those of corners are below both. */
+    MOVED_MOST = 256   /* corners of a body that is met as an image without memory of its own */
 };
-
-/* The order of contacts within a pair: by feature, then shift */
-static bool comes_before(const struct contact *a, const struct contact *b)
-{
-    if (a->feature != b->feature) return a->feature < b->feature;
-    for (int k = 0; k < 3; k++)
-        if (a->shift[k] != b->shift[k]) return a->shift[k] < b->shift[k];
-    return false;
-}
 
 /* Sorts the new last contact among those of its pair, of which each key is there once: the deeper of
    two is kept. */
@@ -30,10 +21,13 @@ static void settle(struct contacts *out)
 {
     int64_t k = out->n - 1;
     struct contact new = out->c[k];
+    const struct contact_key key = contact_key(&new);
     for (; k > 0; k--) {
         const struct contact *c = &out->c[k - 1];
-        if (c->a != new.a || c->b != new.b || comes_before(c, &new)) break;
-        if (!comes_before(&new, c)) { // the same key
+        if (c->a != new.a || c->b != new.b) break;
+        int order = contact_key_order(contact_key(c), key);
+        if (order < 0) break;
+        if (order == 0) {
             if (new.gap < c->gap) out->c[k - 1] = new;
             memmove(&out->c[k], &out->c[k + 1], (size_t)(out->n - 1 - k) * sizeof *out->c);
             out->n--;
@@ -114,8 +108,9 @@ bool detect_shapes_pair(struct contacts *out, const struct placed *s, int32_t a,
 
 /* ---- boundaries ---- */
 
-/* Where a corner meets the surface; n points to the body's side. Sharp corners do not meet its ends: their
-   edges and faces do. Returns how many places. */
+/* Where a corner of body i, rounded by `round` (m), meets the surface; n points to the body's side. Where the
+   boundary ends only what is round meets it by its corners: of sharp bodies, edges and faces meet rims
+   [meet_rims()]. Returns how many places. */
 static int near_surface(const struct placed *s, const struct wall *wall, const struct pose *pose,
                         const struct surface *surface, int64_t i, vec3 v, double round, double gap,
                         struct touch touch[TOUCHES_MOST])
@@ -128,7 +123,7 @@ static int near_surface(const struct placed *s, const struct wall *wall, const s
                     : boundary_nearest(wall, p->dim, c, r, touch);
     int kept = 0;
     for (int k = 0; k < n; k++) {
-        bool end = rim_is_at(wall, p->dim, surface, c, &touch[k]);
+        bool end = boundary_ends_at(wall, p->dim, surface, c, &touch[k]);
         if (end && round == 0) continue;
         touch[kept++] = touch[k];
         struct touch *t = &touch[kept - 1];
@@ -284,7 +279,7 @@ bool detect_shapes_wall(struct contacts *out, const struct placed *s, int32_t w,
                                (uint32_t)(cores > 1 ? k : l);
                 place[count++] =
                     (struct place){ v3_axpy(c.v[l], -touch[m].distance, touch[m].n), touch[m].n,
-                                    touch[m].distance - c.round, (int32_t)(key & INT32_MAX) };
+                                    touch[m].distance - c.round, (int32_t)(key % RIM_END) };
             }
         }
     }

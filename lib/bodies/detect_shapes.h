@@ -4,8 +4,8 @@
  *
  * A boundary is met by the corners of a core, each where the surface is next to it: that is all that
  * can meet a plane, or a cylinder, cone or sphere from inside. The outside of a sphere or an endless
- * cylinder is met as a ball or a capsule would be. Of surfaces that end (rectangles, discs, meshes, the
- * outside of other shapes) the rims and edges do not meet faces of bodies.
+ * cylinder is met as a ball or a capsule would be. The rims and ridges of rectangles, segments, meshes and
+ * chains meet edges and faces, too [bodies/rim.h]; those of discs, cylinders and cones do not.
  */
 #ifndef NSD_DETECT_SHAPES_H
 #define NSD_DETECT_SHAPES_H

@@ -1,26 +1,63 @@
 /* bodies/impulse.c: the reactions' impulses and moments [bodies/impulse.h]. */
 #include "bodies/impulse.h"
 
+#include "base/team.h"
+
 #include <stdlib.h>
 
-static void add(struct impulses *sum, const struct contact *c, const struct push *o)
+enum {
+    SOME = 8192 /* contacts that are worth a thread: 200 us of work */
+};
+
+static void push_b(struct impulses *sum, int32_t b, const struct push *o)
 {
-    sum->force[c->b] = v3_add(sum->force[c->b], o->f);
-    sum->moment[c->b] =
-        o->shaped ? v3_add(sum->moment[c->b], o->mb) : v3_axpy(sum->moment[c->b], o->lb, o->m);
-    for (int32_t k = 0; k < sum->freedoms.n; k++)
-        sum->yield[k] += v3_dot(freedom_direction(&sum->freedoms.f[k], c), o->f);
-    if (c->a < 0) return;
-    sum->force[c->a] = v3_sub(sum->force[c->a], o->f);
-    sum->moment[c->a] =
-        o->shaped ? v3_add(sum->moment[c->a], o->ma) : v3_axpy(sum->moment[c->a], o->la, o->m);
+    sum->force[b] = v3_add(sum->force[b], o->f);
+    sum->moment[b] =
+        o->shaped ? v3_add(sum->moment[b], o->mb) : v3_axpy(sum->moment[b], o->lb, o->m);
 }
 
-static void add_moment(struct impulses *sum, const struct contact *c, const double moment[3])
+static void push_a(struct impulses *sum, int32_t a, const struct push *o)
 {
-    vec3 m = contact_in_space(c, moment);
-    sum->moment[c->b] = v3_add(sum->moment[c->b], m);
-    if (c->a >= 0) sum->moment[c->a] = v3_sub(sum->moment[c->a], m);
+    sum->force[a] = v3_sub(sum->force[a], o->f);
+    sum->moment[a] =
+        o->shaped ? v3_add(sum->moment[a], o->ma) : v3_axpy(sum->moment[a], o->la, o->m);
+}
+
+/* Bodies are shared out, not contacts: each sum is one thread's, in the contacts' order. */
+struct summing {
+    struct impulses *sum;
+    const struct packing *p;
+    const struct contacts *s;
+    int64_t parts;
+};
+
+static void sum_bodies(void *arg, int64_t first, int64_t end)
+{
+    const struct summing *y = arg;
+    struct impulses *sum = y->sum;
+    int64_t lo = y->p->n * first / y->parts, hi = y->p->n * end / y->parts;
+    for (int64_t i = 0; i < y->s->n; i++) {
+        const struct contact *c = &y->s->c[i];
+        bool a = c->a >= lo && c->a < hi, b = c->b >= lo && c->b < hi;
+        if (!a && !b) continue;
+        struct push o = push_of(y->p, sum->ahead, sum->edge, c, y->s->found[i].r);
+        if (b) push_b(sum, c->b, &o);
+        if (a) push_a(sum, c->a, &o);
+        if (!y->s->moment) continue;
+        vec3 m = contact_in_space(c, y->s->moment[i]);
+        if (b) sum->moment[c->b] = v3_add(sum->moment[c->b], m);
+        if (a) sum->moment[c->a] = v3_sub(sum->moment[c->a], m);
+    }
+}
+
+/* What the freedoms beyond the bodies' get */
+static void sum_yields(struct impulses *sum, const struct packing *p, const struct contacts *s)
+{
+    for (int64_t i = 0; i < s->n && sum->freedoms.n; i++) {
+        struct push o = push_of(p, sum->ahead, sum->edge, &s->c[i], s->found[i].r);
+        for (int32_t k = 0; k < sum->freedoms.n; k++)
+            sum->yield[k] += v3_dot(freedom_direction(&sum->freedoms.f[k], &s->c[i]), o.f);
+    }
 }
 
 int impulses_init(struct impulses *sum, const struct packing *p, const struct contacts *s,
@@ -36,11 +73,9 @@ int impulses_init(struct impulses *sum, const struct packing *p, const struct co
     sum->yield = calloc((size_t)sum->freedoms.n + 1, sizeof *sum->yield);
     if (!sum->force || !sum->moment || !sum->yield)
         return why_set(why, EX_SOFTWARE, "no memory to move the bodies");
-    for (int64_t i = 0; i < s->n; i++) {
-        struct push o = push_of(p, sum->ahead, sum->edge, &s->c[i], s->found[i].r);
-        add(sum, &s->c[i], &o);
-        if (s->moment) add_moment(sum, &s->c[i], s->moment[i]);
-    }
+    struct summing y = { sum, p, s, s->n < SOME ? 1 : team_size() };
+    team_share(team_size(), y.parts, 1, sum_bodies, &y);
+    sum_yields(sum, p, s);
     return 0;
 }
 

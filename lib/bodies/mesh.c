@@ -73,16 +73,6 @@ int mesh_check(const struct mesh *m, int dim, struct why *why)
 
 /* ---- the tree ---- */
 
-static vec3 least(vec3 a, vec3 b)
-{
-    return v3(fmin(a.x, b.x), fmin(a.y, b.y), fmin(a.z, b.z));
-}
-
-static vec3 greatest(vec3 a, vec3 b)
-{
-    return v3(fmax(a.x, b.x), fmax(a.y, b.y), fmax(a.z, b.z));
-}
-
 struct keyed {
     double key;
     int32_t element;
@@ -103,7 +93,7 @@ static int32_t grow(struct surface *s, struct keyed *room, int32_t lo, int32_t h
     for (int32_t i = lo; i < hi; i++)
         for (int k = 0; k < 3; k++) {
             vec3 x = s->at[s->order[i]][k];
-            b->lo = least(b->lo, x), b->hi = greatest(b->hi, x);
+            b->lo = v3_min(b->lo, x), b->hi = v3_max(b->hi, x);
         }
     if (hi - lo <= SURFACE_LEAF) return b->next = at + 1;
     vec3 d = v3_sub(b->hi, b->lo);
@@ -302,9 +292,10 @@ static int by_feature(const void *a, const void *b)
 
 int surface_touches(const struct surface *s, vec3 c, double most, struct touch touch[TOUCHES_MOST])
 {
-    struct surface_walk walk = surface_walk_begin(s->n);
+    struct surface_walk walk;
     struct surface_branch leaf;
     int n = 0;
+    surface_walk_begin(&walk, s->n);
     while (surface_walk_next(&walk, s->box, c, most, &leaf))
         for (int32_t i = leaf.lo; i < leaf.hi; i++) look_at(s, s->order[i], c, most, touch, &n);
     qsort(touch, (size_t)n, sizeof *touch, by_feature);

@@ -2,7 +2,7 @@
  * bodies/mesh.h: surfaces of triangles, in the plane chains of segments, and where they are next to
  * a point.
  *
- * A ball touches a surface where its distance has a local minimum: in a triangle, on an edge or at
+ * A ball, or a corner of another body, touches a surface where its distance has a local minimum: in a triangle, on an edge or at
  * a corner. An edge counts when no triangle that meets there comes nearer elsewhere, a corner
  * likewise; so a flat wall of many triangles is met once, and a ball in a groove twice. Both
  * sides of the surface are met.
@@ -38,7 +38,7 @@ struct surface {
     vec3 (*at)[3];           /* [n] m: their vertices; of a segment the third is the second */
     int32_t *order;          /* [n] elements, as the tree has them */
     struct surface_box *box; /* of a tree over order[] */
-    int32_t *corner;         /* [n][3] numbers of corners, of those at one place the first */
+    int32_t *corner;         /* [3 n] numbers of corners, of those at one place the first */
     int32_t *star, *member;  /* of corner v: elements member[star[v]] .. member[star[v+1]-1] */
 };
 
@@ -50,8 +50,8 @@ void surface_free(struct surface *s);
 enum {
     TOUCHES_MOST = 64 /* of a ball and a surface: beyond it the last ones are left out */
 };
-/* The places at most `most` (m) from c (m) at which the distance has a minimum, by their features;
-   returns how many. */
+/* The places at most `most` (m) from c (m, from the boundary's point of reference) at which the distance has
+   a minimum, sorted by feature; returns how many. t.n points from the place to c. */
 int surface_touches(const struct surface *s, vec3 c, double most, struct touch touch[TOUCHES_MOST]);
 
 #endif

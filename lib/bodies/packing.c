@@ -370,7 +370,7 @@ int packing_check(const struct packing *p, struct why *why)
         if (trouble) return why_set(why, EX_DATAERR, "push %d: %s", i, trouble);
     }
     if (mesh_check(&p->mesh, p->dim, why)) return why->status;
-    if (bonds_check(&p->bonds, p->n, p->walls, why)) return why->status;
+    if (bonds_check(&p->bonds, p->dim, p->n, p->walls, why)) return why->status;
     return check_cell(p, why);
 }
 

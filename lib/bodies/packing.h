@@ -74,10 +74,12 @@ struct packing {
         *whole; /* borrowed: that of which these bodies are a part; NULL: they are all */
 };
 
-/* What a part of a packing knows of all bodies: m/s, the speed of the fastest centre and of the fastest
-   point; m, the smallest and the largest radius, and the widest gap that a bond is expected to have */
+/* What a part of a packing knows of all bodies */
 struct whole {
-    double speed, top_speed, small, large, apart;
+    double speed, top_speed; /* m/s: of the fastest centre, and of the fastest point */
+    double small, large;     /* m: the smallest and the largest radius */
+    double apart; /* m: the widest gap at which contacts are to be sought for the bonds that hold
+                                and keep no place; -INFINITY where there are none */
 };
 /* Of the bodies of this packing */
 struct whole packing_whole(const struct packing *p);
@@ -178,6 +180,12 @@ static inline void packing_set_law(const struct packing *p, struct contact *c)
 {
     int32_t k = packing_pair(p, c->a, c->b);
     c->mu = p->mu[k], c->en = p->en[k], c->et = p->et[k];
+}
+
+/* m: of the bodies of a contact */
+static inline double packing_smaller_radius(const struct packing *p, const struct contact *c)
+{
+    return c->a < 0 ? p->radius[c->b] : fmin(p->radius[c->a], p->radius[c->b]);
 }
 
 /* body[] = those of bodies a and b that can move (mass > 0; a < 0 is a wall); returns how many. */

@@ -54,7 +54,8 @@ static bool has_corner(const struct surface *s, int32_t e, int32_t v)
     return s->corner[3 * e] == v || s->corner[3 * e + 1] == v || s->corner[3 * e + 2] == v;
 }
 
-/* Side k of element e, in the plane corner k; false: it is another element's, the first of those there. */
+/* r = side k of element e, in the plane its corner k. False where an element before e has it, too: a side
+   that several share is given once, by the first. */
 static bool of_element(const struct surface *s, int dim, int32_t e, int k, struct rim *r)
 {
     int next = dim == 2 ? k : (k + 1) % 3;
@@ -74,10 +75,11 @@ static bool of_element(const struct surface *s, int dim, int32_t e, int k, struc
 static int of_surface(const struct surface *s, int dim, vec3 c, double reach, struct rim *out,
                       int most)
 {
-    struct surface_walk walk = surface_walk_begin(s->n);
+    struct surface_walk walk;
     struct surface_branch leaf;
     struct rim r;
     int n = 0;
+    surface_walk_begin(&walk, s->n);
     while (surface_walk_next(&walk, s->box, c, reach, &leaf))
         for (int32_t i = leaf.lo; i < leaf.hi; i++)
             for (int k = 0; k < dim; k++)
@@ -125,8 +127,8 @@ static bool surface_ends(const struct surface *s, int dim, int32_t feature)
     return elements_at(s, s->corner[3 * e + part], s->corner[3 * e + (part + 1) % 3]) == 1;
 }
 
-bool rim_is_at(const struct wall *w, int dim, const struct surface *surface, vec3 c,
-               const struct touch *t)
+bool boundary_ends_at(const struct wall *w, int dim, const struct surface *surface, vec3 c,
+                      const struct touch *t)
 {
     const double tiny = 1e-9;
     if (surface) return surface_ends(surface, dim, t->feature);

@@ -29,8 +29,9 @@ struct rim {
 int rims_near(const struct wall *w, int dim, const struct surface *surface, vec3 c, double reach,
               struct rim *out, int most);
 
-/* Does the boundary end at the place t that is next to c (m)? There it has no other side. */
-bool rim_is_at(const struct wall *w, int dim, const struct surface *surface, vec3 c,
-               const struct touch *t);
+/* Does the boundary end at the place t that is next to c (m, from its point of reference)? There it has no
+   other side. */
+bool boundary_ends_at(const struct wall *w, int dim, const struct surface *surface, vec3 c,
+                      const struct touch *t);
 
 #endif

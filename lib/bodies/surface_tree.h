@@ -25,7 +25,6 @@ struct surface_branch {
     int32_t box, lo, hi;
 };
 
-/* Begin with depth 1 and all in stack[0]. */
 struct surface_walk {
     struct surface_branch stack[64];
     int depth;
@@ -43,10 +42,10 @@ static inline bool surface_is_near(const struct surface_box *b, vec3 c, double m
     return x * x + y * y + z * z <= most * most * (1 + 1e-12);
 }
 
-/* Of n elements */
-static inline struct surface_walk surface_walk_begin(int32_t n)
+/* Of n elements; what is above the stack's depth is not set. */
+static inline void surface_walk_begin(struct surface_walk *w, int32_t n)
 {
-    return (struct surface_walk){ .stack = { { 0, 0, n } }, .depth = 1 };
+    w->stack[0] = (struct surface_branch){ 0, 0, n }, w->depth = 1;
 }
 
 /* The next few elements, order[leaf->lo .. leaf->hi - 1], of which some are at most `most` (m) from c;

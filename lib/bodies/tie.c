@@ -16,15 +16,10 @@ static const struct law *law_of(const struct packing *p, const struct contact *c
     return &p->law[packing_pair(p, c->a, c->b)];
 }
 
-static double smaller_radius(const struct packing *p, const struct contact *c)
-{
-    return c->a < 0 ? p->radius[c->b] : fmin(p->radius[c->a], p->radius[c->b]);
-}
-
 /* m: pairs with at most this gap touch */
 static double touch_of(const struct packing *p, const struct contact *c)
 {
-    return TOUCH * smaller_radius(p, c);
+    return TOUCH * packing_smaller_radius(p, c);
 }
 
 /* m: of a liquid bridge */
@@ -36,7 +31,7 @@ static double bridge_size(const struct packing *p, const struct contact *c)
 /* m^2: of a bond, of all places of a pair together; discs are 1 m deep */
 static double bond_area(const struct packing *p, const struct contact *c, const struct law *l)
 {
-    double r = smaller_radius(p, c);
+    double r = packing_smaller_radius(p, c);
     return l->area > 0 ? l->area : p->dim == 2 ? 2 * r : M_PI * r * r;
 }
 
@@ -257,7 +252,8 @@ static bool bond_of(const struct packing *p, const struct contacts *s, int64_t i
     const struct contact *c = &s->c[i];
     const struct tie *t = &s->tie[i];
     struct tie_end e = tie_end(p, c, t, &s->found[i]);
-    // a broken bond is remembered while the pair touches: it is not made anew
+    // A broken bond is remembered while the pair touches, for it is not made anew. An anchored one has no
+    // contact of its own in the next step: remember_broken() sees whether its pair has parted.
     bool bonded = t->state & TIE_BONDED;
     bool rests = bonded && (e.gap <= touch_of(p, c) || contact_anchored(c));
     if (!e.wet && !(e.beta > 0) && !rests) return false;
@@ -269,23 +265,33 @@ static bool bond_of(const struct packing *p, const struct contacts *s, int64_t i
     return true;
 }
 
-/* The place of a bond where there is a shape: the one that it had, or that of this contact, with a new
-   key, below all of its pair. from: of bonds_find() for this contact */
-static void anchor(struct bond *b, const struct packing *p, const struct contact *c,
-                   const struct tie *t, int64_t from, const struct bonds *kept)
+static int32_t lesser(int32_t x, int32_t y)
 {
-    const struct bond *old = bonds_find(&p->bonds, c, &from);
+    return x < y ? x : y;
+}
+
+/* Has the contact's pair bond i of these? */
+static bool has_bond(const struct contact *c, const struct bonds *s, int64_t i)
+{
+    return i >= 0 && i < s->n && s->bond[i].a == c->a && s->bond[i].b == c->b;
+}
+
+/* The place of a bond where there is a shape: that of the old one, or of this contact, with a new key, below
+   all of its pair. old, from: of bonds_find() for this contact */
+static void anchor(struct bond *b, const struct packing *p, const struct contact *c,
+                   const struct tie *t, const struct bond *old, int64_t from,
+                   const struct bonds *kept)
+{
     if (old && bond_anchored(old)) {
         b->area = old->area, b->at_a = old->at_a, b->at_b = old->at_b, b->axis = old->axis;
         return;
     }
     if (!(t->beta > 0)) return;
     int32_t least = 0;
-    for (int64_t i = 0; i < p->bonds.n; i++) // few: bonds are made once
-        if (p->bonds.bond[i].a == c->a && p->bonds.bond[i].b == c->b)
-            least = p->bonds.bond[i].feature < least ? p->bonds.bond[i].feature : least;
-    for (int64_t i = kept->n - 1; i >= 0 && kept->bond[i].a == c->a && kept->bond[i].b == c->b; i--)
-        least = kept->bond[i].feature < least ? kept->bond[i].feature : least;
+    while (has_bond(c, &p->bonds, from - 1)) from--;
+    if (has_bond(c, &p->bonds, from)) least = lesser(least, p->bonds.bond[from].feature);
+    for (int64_t i = kept->n - 1; has_bond(c, kept, i); i--)
+        least = lesser(least, kept->bond[i].feature);
     b->feature = least > INT32_MIN ? least - 1 : least;
     anchor_bond(b, p, c, t->stiff[0] / (law_of(p, c)->cn * t->beta * t->beta));
 }
@@ -312,7 +318,7 @@ static bool remember_broken(struct bonds *kept, const struct packing *p, const s
 int ties_keep(struct packing *p, const struct contacts *s, struct why *why)
 {
     struct bonds kept = { 0 };
-    bool good = true, anchored = false;
+    bool good = true;
     int64_t from = 0;
     for (int64_t i = 0; good && i < s->n && s->tie; i++) {
         const struct contact *c = &s->c[i];
@@ -320,8 +326,8 @@ int ties_keep(struct packing *p, const struct contacts *s, struct why *why)
         if (!(s->tie[i].state & (TIE_WET | TIE_BONDED)) || !bond_of(p, s, i, &b)) continue;
         bool bonded = s->tie[i].state & TIE_BONDED && (s->tie[i].beta > 0 || contact_anchored(c));
         if (contact_shaped(p, c) && bonded) {
-            bonds_find(&p->bonds, c, &from);
-            anchor(&b, p, c, &s->tie[i], from, &kept), anchored = true;
+            const struct bond *old = bonds_find(&p->bonds, c, &from);
+            anchor(&b, p, c, &s->tie[i], old, from, &kept);
         }
         good = bonds_add(&kept, &b) != NULL;
     }
@@ -330,7 +336,7 @@ int ties_keep(struct packing *p, const struct contacts *s, struct why *why)
         bonds_free(&kept);
         return why_set(why, EX_SOFTWARE, "no memory for the bonds");
     }
-    if (anchored || p->shape) bonds_sort(&kept);
+    if (p->shape) bonds_sort(&kept);
     bonds_free(&p->bonds);
     p->bonds = kept;
     return 0;

@@ -171,3 +171,11 @@ void facets_of(const struct facets *b, const struct packing *p, int64_t i, facet
     else
         put_rounded(&out, p, i, s, b);
 }
+
+int64_t facets_triangles(const struct facets *b, const struct packing *p, int64_t i)
+{
+    const struct shape *s = packing_shape(p, i);
+    int64_t round = p->dim == 2 ? DISC : b->n;
+    if (s && is_sharp(s)) return s->first[s->faces] - 2 * (int64_t)s->faces;
+    return s && s->form == SHAPE_CLUMP ? round * s->vertices : round;
+}

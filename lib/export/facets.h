@@ -27,5 +27,7 @@ void facets_free(struct facets *f);
 typedef void facets_text(void *to, int corners, const vec3 *x);
 void facets_of(const struct facets *f, const struct packing *p, int64_t i, facets_text *put,
                void *to);
+/* How many triangles these polygons are, each cut into a fan */
+int64_t facets_triangles(const struct facets *f, const struct packing *p, int64_t i);
 
 #endif

@@ -37,13 +37,6 @@ static void put_fan(void *to, int corners, const vec3 *x)
     for (int k = 2; k < corners; k++) put_triangle(to, x[0], x[k - 1], x[k]);
 }
 
-static void count_fan(void *to, int corners, const vec3 *x)
-{
-    int64_t *n = to;
-    (void)x;
-    *n += corners - 2;
-}
-
 /* A convex polygon, as a fan */
 static void put_polygons(FILE *out, const struct sheet *s)
 {
@@ -73,7 +66,7 @@ static int stl(FILE *out, const struct moment *m, enum part part, bool first, st
     if (sheet_of(&walls, PART_BOUNDARY, m, why)) return facets_free(&b), why->status;
     int64_t grains = part == PART_GRAINS ? p->n : 0;
     int64_t n = polygon_triangles(&walls);
-    for (int64_t i = 0; i < grains; i++) facets_of(&b, p, i, count_fan, &n);
+    for (int64_t i = 0; i < grains; i++) n += facets_triangles(&b, p, i);
     if (n > UINT32_MAX) why_set(why, EX_DATAERR, "more triangles than STL can count");
     fprintf(out, "%-80s", "nsd: balls and walls in m");
     for (int k = 0; k < 4; k++) putc((int)(n >> 8 * k & 255), out);

@@ -1,5 +1,7 @@
 #include "io/behind.h"
 
+#include "io/h5.h"
+
 #include <pthread.h>
 #include <stdlib.h>
 
@@ -17,6 +19,7 @@ struct behind {
 static void *write_frames(void *arg)
 {
     struct behind *b = arg;
+    h5_start(); // of each thread libhdf5 asks anew whether it shall print its errors
     pthread_mutex_lock(&b->lock);
     for (;;) {
         while (!b->full && !b->over) pthread_cond_wait(&b->changed, &b->lock);

@@ -18,14 +18,6 @@ int contact_rows_open(struct contact_rows *r, struct source *source, struct why 
     return why->status;
 }
 
-/* Of two shifts: < 0 where the first is the earlier one, 0 where they are the same */
-static int compare_shifts(const int8_t a[3], const int8_t b[3])
-{
-    for (int k = 0; k < 3; k++)
-        if (a[k] != b[k]) return a[k] < b[k] ? -1 : 1;
-    return 0;
-}
-
 static int check_shifts(const struct contacts *s, const struct cell *cell, struct why *why)
 {
     for (int64_t i = 0; i < s->n; i++)
@@ -42,17 +34,14 @@ static int check_order(const struct contacts *s, struct why *why)
 {
     for (int64_t i = 1; i < s->n; i++) {
         const struct contact *c = &s->c[i - 1], *next = &s->c[i];
-        bool same_pair = c->a == next->a && c->b == next->b;
-        int later = c->feature != next->feature ? (c->feature > next->feature ? 1 : -1)
-                                                : compare_shifts(c->shift, next->shift);
-        if (same_pair && later > 0)
-            return why_set(why, EX_DATAERR, "contact %lld: not sorted by its feature and shift",
-                           (long long)i);
-        if (same_pair && !later)
+        int order = contact_key_order(contact_key(c), contact_key(next));
+        if (order < 0) continue;
+        if (order == 0)
             return why_set(why, EX_DATAERR, "contact %lld: of bodies %d and %d, as the one before",
                            (long long)i, next->a, next->b);
-        if (c->a > next->a || (c->a == next->a && c->b > next->b))
-            return why_set(why, EX_DATAERR, "contact %lld: not sorted by its bodies", (long long)i);
+        bool same_pair = c->a == next->a && c->b == next->b;
+        return why_set(why, EX_DATAERR, "contact %lld: not sorted by its %s", (long long)i,
+                       same_pair ? "feature and shift" : "bodies");
     }
     for (int64_t i = 0; s->found && i < s->n; i++)
         if (s->found[i].status < LOCAL_FREE || s->found[i].status > LOCAL_SLIDE)

@@ -76,25 +76,15 @@ static int stored_write(const struct stored *A, hid_t file, const char *group, s
 /* W^ and q^ of contacts that are bonded */
 static int write_bonded_W(const struct assembly *A, hid_t file, struct why *why)
 {
-    struct delassus W;
-    struct sparse all = { .m = A->p->n * A->p->d, .n = A->p->n * A->p->d };
+    struct sparse W = { 0 };
     struct stored S = { 0 };
-    int d = A->p->d, e = bonded_blocks(A->p, &W, why);
-    if (e) return e;
-    bool good = true;
-    for (int64_t c = 0; c < W.n; c++) {
-        for (int k = 0; good && k < d * d; k++)
-            good =
-                sparse_add(&all, d * c + k % d, d * c + k / d, W.diag[9 * c + k % d + 3 * (k / d)]);
-        for (int64_t b = W.first[c]; b < W.first[c + 1]; b++)
-            for (int k = 0; good && k < d * d; k++)
-                good =
-                    sparse_add(&all, d * c + k % d, d * W.col[b] + k / d, W.block[d * d * b + k]);
-    }
-    if (!good || !stored_columns(&S, &all)) e = short_of_memory(why);
+    int64_t rows = A->p->n * A->p->d;
+    double *q = malloc((size_t)(rows + 1) * sizeof *q);
+    int e = q ? bonded_local(A, &W, q, why) : short_of_memory(why);
+    if (!e && !stored_columns(&S, &W)) e = short_of_memory(why);
     if (!e) e = stored_write(&S, file, "/fclib_local/W", why);
-    if (!e) e = write_vector(file, "/fclib_local", "vectors/q", W.n * d, W.q, why);
-    sparse_free(&all), stored_free(&S), delassus_free(&W);
+    if (!e) e = write_vector(file, "/fclib_local", "vectors/q", rows, q, why);
+    sparse_free(&W), stored_free(&S), free(q);
     return e;
 }
 
@@ -103,7 +93,6 @@ static int write_bonded_MH(const struct assembly *A, hid_t file, struct why *why
     struct global P;
     struct stored M = { 0 }, H = { 0 };
     int e = bonded_global(A, &P, why);
-    P.M.m = P.M.n = P.nv, P.H.m = P.nv, P.H.n = A->p->n * A->p->d;
     if (!e && (!stored_columns(&M, &P.M) || !stored_columns(&H, &P.H))) e = short_of_memory(why);
     if (!e) e = stored_write(&M, file, "/fclib_global/M", why);
     if (!e) e = stored_write(&H, file, "/fclib_global/H", why);

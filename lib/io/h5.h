@@ -33,7 +33,7 @@ static inline size_t column_size(enum column_type t)
 /* The type of memory for plain numbers: class 'i' signed, 'u' unsigned, 'f' real, of size bytes. */
 hid_t h5_plain(char class, size_t size);
 
-/* Called before anything else of libhdf5: it shall print nothing, and close nothing by itself. */
+/* Called in each thread before anything else of libhdf5: it shall print nothing, and close nothing by itself. */
 void h5_start(void);
 
 bool h5_has(hid_t place, const char *path);

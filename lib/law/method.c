@@ -1,5 +1,7 @@
 /* law/method.c: the table of the local methods, and each of them in one lane. */
 #include "law/method.h"
+
+#include "base/eigen.h"
 #include "law/local_eal.h"
 #include "law/local_ebp.h"
 #include "law/local_exact.h"
@@ -59,21 +61,7 @@ enum local_status eal_linearise(double mu, double rho, const double r[3], const 
     return newton_linearise(mu, rho, r, v, EAL, Z, A, B);
 }
 
-/* By Jacobi rotations: 24 are eight rounds over the three off-diagonal entries, more than enough */
 double local_lambda_max(const double W[9])
 {
-    double S[3][3];
-    for (int i = 0; i < 9; i++) S[i / 3][i % 3] = 0.5 * (W[i] + W[3 * (i % 3) + i / 3]);
-    for (int i = 0; i < 24; i++) {
-        int k = i % 3, p = (k + 1) % 3, q = (k + 2) % 3;
-        if (S[p][q] == 0) continue;
-        double h = 0.5 * (S[q][q] - S[p][p]) / S[p][q];
-        double t = copysign(1 / (fabs(h) + sqrt(1 + h * h)), h), c = 1 / sqrt(1 + t * t), s = t * c;
-        double a = S[k][p], b = S[k][q];
-        S[p][p] -= t * S[p][q], S[q][q] += t * S[p][q];
-        S[p][q] = S[q][p] = 0;
-        S[k][p] = S[p][k] = c * a - s * b;
-        S[k][q] = S[q][k] = s * a + c * b;
-    }
-    return fmax(S[0][0], fmax(S[1][1], S[2][2]));
+    return eigen_largest(3, W);
 }

@@ -79,7 +79,7 @@ static inline bool beyond_rolls(const struct beyond *x, int lane)
     return x->mu_r[lane] > 0 || x->mu_p[lane] > 0;
 }
 
-/* y of all that follows: NULL between balls */
+/* In what follows y is NULL where all bodies are balls. */
 
 /* Solves lane i with its moment: l->r and x->m are the new ones, l->b that for the new moment. The
    bodies turn at their velocities of before. */
@@ -96,18 +96,18 @@ void beyond_rolling(const struct bundle *c, const struct beyond *x, const struct
                     struct body *body, int i, const double s[2], const double u[3],
                     struct rolling *q, double v[ROLLING]);
 
-/*
- * The bond of lane i, with K[2] (kg): S, and W^ in place of W in the bundle. Then, where it rolls, the
- * rest by R_a and R_b of length 1, which are set, between bodies of these 1/mass and 1/inertia;
- * returns the length (m).
- */
+/* Sets S of lane i for a bond of K[2] (kg), and puts W^ in place of the bundle's W. */
 void beyond_levers_bond(struct bundle *c, struct beyond_levers *y, int i, const double K[2]);
+/* Sets the rest of a lane that rolls, after its bond of K. On entry R_a and R_b are those of length 1.
+   W (kg^-1): without the bond; iia, iib: 1/inertia of both bodies in the problem's unknowns, 0 where one
+   cannot move. Returns the length (m). */
 double beyond_levers_turn(const struct levers *g, const struct bundle *c, struct beyond_levers *y,
                           int i, const double W[9], const double K[2], double iia, double iib);
 
-/* What both kinds share: out = x of lane i, r* (N s) and the moment turned a quarter; */
+/* What balls and levers share. out = x of lane i: r* (N s), and the moment, turned a quarter and over the
+   length. */
 void beyond_impulse(const struct beyond *x, int i, const double r[3], double out[ROLLING]);
-/* and q solved, relaxed: the moment of lane i becomes q's, and l has its change and how that was found. */
+/* Solves q, relaxed: the moment of lane i becomes that of q->x, and l has its change and how it was found. */
 void beyond_solve(struct beyond *x, int i, enum method_id method, struct rolling *q,
                   const struct local_opt *opt, struct rolling_lane *l);
 

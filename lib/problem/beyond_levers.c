@@ -1,8 +1,7 @@
 /* problem/beyond_levers.c: bonds and moments as matrices [problem/beyond.h]. */
 #include "problem/beyond.h"
 
-#include <gsl/gsl_eigen.h>
-#include <string.h>
+#include "base/eigen.h"
 
 /* C = A^-1, 3 x 3; A's eigenvalues are at least 1. */
 static void invert(const double A[9], double C[9])
@@ -27,19 +26,6 @@ void beyond_levers_bond(struct bundle *c, struct beyond_levers *y, int i, const 
         for (int l = 0; l < 3; l++) W[j] += S[3 * (j / 3) + l] * c->W[3 * l + j % 3][i];
     }
     for (int j = 0; j < 9; j++) c->W[j][i] = 0.5 * (W[j] + W[3 * (j % 3) + j / 3]);
-}
-
-/* kg^-1: the largest eigenvalue of a symmetric W */
-static double largest(const double W[ROLLING * ROLLING])
-{
-    double A[ROLLING * ROLLING], d[ROLLING], sd[ROLLING], e[ROLLING], most = 0;
-    gsl_eigen_symm_workspace room = { ROLLING, d, sd };
-    gsl_matrix_view M = gsl_matrix_view_array(A, ROLLING, ROLLING);
-    gsl_vector_view v = gsl_vector_view_array(e, ROLLING);
-    memcpy(A, W, sizeof A);
-    gsl_eigen_symm(&M.matrix, &v.vector, &room);
-    for (int i = 0; i < ROLLING; i++) most = fmax(most, e[i]);
-    return most;
 }
 
 static double dot_rows(double (*A)[BUNDLE], double (*B)[BUNDLE], int i, int j, int lane)
@@ -86,7 +72,7 @@ double beyond_levers_turn(const struct levers *g, const struct bundle *c, struct
             full[ROLLING * j + k] = full[ROLLING * k + j] = mean;
         }
     for (int j = 0; j < ROLLING * ROLLING; j++) y->W[j][i] = full[j];
-    y->lambda[i] = largest(full);
+    y->lambda[i] = fmax(0, eigen_largest(ROLLING, full));
     return length;
 }
 

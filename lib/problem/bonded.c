@@ -14,7 +14,7 @@ static int check_memory(const struct problem *p, struct why *why)
     if (need <= have) return 0;
     return why_set(why, EX_SOFTWARE,
                    "the bonds couple %lld contacts: needs %.3g GB, the machine has %.3g; "
-                   "--global auto, anderson and nlgs need no W",
+                   "--global auto, anderson and nlgs need no W, nor does --fclib=global",
                    (long long)p->n, need / GB, have / GB);
 }
 
@@ -65,29 +65,37 @@ int bonded_global(const struct assembly *A, struct global *P, struct why *why)
     return why->status;
 }
 
-static int fill(const struct assembly *A, struct delassus *W, struct why *why)
+int bonded_local(const struct assembly *A, struct sparse *W, double *q, struct why *why)
 {
     struct global P = { 0 };
     struct motion U = { 0 };
+    *W = (struct sparse){ 0 };
+    int e = check_memory(A->p, why);
+    if (!e) e = bonded_global(A, &P, why);
+    if (!e) memcpy(q, A->w, (size_t)(A->p->n * A->p->d) * sizeof *q);
+    if (!e) e = condense(&P, &U, W, q, why);
+    global_free(&P), motion_free(&U);
+    return e;
+}
+
+static int fill(const struct assembly *A, struct delassus *W, struct why *why)
+{
     struct sparse w = { 0 };
     int64_t n = A->p->n, d = A->p->d;
     double *q = malloc((size_t)(n * d + 1) * sizeof *q), *mu = malloc((size_t)(n + 1) * sizeof *mu);
     int e = q && mu ? 0 : why_set(why, EX_SOFTWARE, "no memory for the bonds");
-    if (!e) e = bonded_global(A, &P, why);
-    if (!e) memcpy(q, A->w, (size_t)(n * d) * sizeof *q);
-    if (!e) e = condense(&P, &U, &w, q, why);
+    if (!e) e = bonded_local(A, &w, q, why);
     for (int64_t c = 0; !e && c < n; c++)
         mu[c] = slot_bundle(A->p, A->slot[c])->mu[slot_lane(A->slot[c])];
     if (!e) e = delassus_init(W, (int)d, n, w.count, w.row, w.col, w.x, q, mu, why);
     free(q), free(mu);
-    global_free(&P), motion_free(&U), sparse_free(&w);
-    return e ? why->status : 0;
+    sparse_free(&w);
+    return e;
 }
 
 int bonded_blocks(const struct problem *bodies, struct delassus *W, struct why *why)
 {
     struct assembly A;
-    if (check_memory(bodies, why)) return why->status;
     int e = assembly_init(&A, bodies, why);
     if (!e) e = fill(&A, W, why);
     assembly_free(&A);

@@ -14,6 +14,9 @@
 #include "problem/assembly.h"
 #include "problem/condense.h"
 
+/* W^ and q^[n d] of an assembly whose problem has bonds; W is to be freed in any case. Returns 0, EX_DATAERR
+   or EX_SOFTWARE, also where the machine has no memory for W^. */
+int bonded_local(const struct assembly *A, struct sparse *W, double *q, struct why *why);
 /* W^, q^, mu, r = 0, of a packing's problem with its bodies. Returns 0, EX_SOFTWARE or EX_DATAERR, with
    nothing to free. */
 int bonded_blocks(const struct problem *bodies, struct delassus *W, struct why *why);

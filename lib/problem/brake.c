@@ -1,5 +1,5 @@
-/* problem/brake.c: two sets of numbers for a slot [problem/brake.h]. */
-#include "problem/brake.h"
+/* problem/brake.c: two sets of numbers for a slot [problem/braking.h]. */
+#include "problem/braking.h"
 
 #include "problem/problem.h"
 

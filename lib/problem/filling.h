@@ -16,12 +16,6 @@ struct lattice {
 };
 struct lattice lattice_of(const struct packing *pack);
 
-/* Is b an image? */
-static inline bool contact_shifted(const struct contact *c)
-{
-    return c->shift[0] || c->shift[1] || c->shift[2];
-}
-
 /* Whose slots are filled, and from what */
 struct filling {
     struct problem *p;
@@ -32,7 +26,7 @@ struct filling {
 };
 
 /* Fills a slot, which knows its bodies: these still have their velocities before the step. slower: W~_cc is so
-   many times what it is, at least 1 [problem/brake.h]. */
+   many times what it is, at least 1 [problem/braking.h]. */
 void fill_slot(const struct filling *f, int64_t slot, double slower);
 /* Bundles first .. end-1 of a struct filling, as a part of a team's work */
 void fill_bundles(void *filling, int64_t first, int64_t end);

@@ -5,20 +5,23 @@
 #include "bodies/kinematics.h"
 #include "bodies/offset.h"
 #include "bodies/top.h"
-#include "problem/brake.h"
+#include "problem/braking.h"
 #include "problem/filling.h"
 #include "problem/schedule.h"
 #include "problem/shared.h"
 
 #include <assert.h>
 #include <float.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 
 enum {
     HUGE_PAGE = 2 << 20, /* bytes */
-    SOME = 4096,         /* bodies or slots that are worth a thread: 100 us of work */
+    LINE = 64,           /* bytes of a cache line */
+    MANY_LINES = 8192,   /* lines that are worth a thread to clear: 50 us */
+    SOME = 4096,         /* bodies, contacts or slots that are worth a thread: 100 us of work */
     PARALLEL_FROM = 64   /* bundles a group, on average, that are worth more than one thread */
 };
 
@@ -26,19 +29,24 @@ static_assert(sizeof(struct body) == 64, "a body is a cache line");
 static_assert(sizeof(struct bundle) % 64 == 0, "lanes begin a cache line");
 static_assert(sizeof(struct levers) % 64 == 0, "lanes begin a cache line");
 
+static void clear_some(void *lines, int64_t first, int64_t end)
+{
+    memset((char *)lines + LINE * first, 0, (size_t)(end - first) * LINE);
+}
+
 /*
  * Zeroed memory aligned to cache lines, in huge pages where it is large: bodies read in any order
  * then do not wait for page tables. NULL only when memory is short, also for n = 0.
  */
 static void *alloc_lines(int64_t n, size_t size)
 {
-    size_t bytes = (size_t)(n > 0 ? n : 1) * size, page = bytes < 2 * HUGE_PAGE ? 64 : HUGE_PAGE;
+    size_t bytes = (size_t)(n > 0 ? n : 1) * size, page = bytes < 2 * HUGE_PAGE ? LINE : HUGE_PAGE;
     bytes = (bytes + page - 1) / page * page;
     void *p = aligned_alloc(page, bytes);
 #ifdef MADV_HUGEPAGE
     if (p && page == HUGE_PAGE) madvise(p, bytes, MADV_HUGEPAGE);
 #endif
-    if (p) memset(p, 0, bytes);
+    if (p) team_share(team_size(), (int64_t)(bytes / LINE), MANY_LINES, clear_some, p);
     return p;
 }
 
@@ -80,35 +88,71 @@ static bool lay_out_bundles(struct problem *p, const struct schedule *plan)
     if (p->split)
         *p->split =
             (struct two_thread_split){ plan->beyond, plan->inside, plan->rim, plan->rest, 0, 0 };
-    for (int64_t i = 0; i < p->slots; i++) {
-        p->contact[i] = -1;
-        struct bundle *c = slot_bundle(p, i);
-        for (int k = 0; k < 2; k++) c->w[k][slot_lane(i)] = c->iw[k][slot_lane(i)] = 1;
-    }
     for (int64_t g = 0; g < p->groups; g++) {
         int64_t first = plan->group[g], n = plan->group[g + 1] - first;
-        for (int64_t i = 0; i < n; i++)
-            p->contact[p->group[g] * BUNDLE + i] = (int32_t)plan->sequence[first + i];
+        int64_t at = p->group[g] * BUNDLE, end = p->group[g + 1] * BUNDLE;
+        for (int64_t i = 0; i < n; i++) p->contact[at++] = (int32_t)plan->sequence[first + i];
+        for (; at < end; at++) {
+            struct bundle *c = slot_bundle(p, at);
+            p->contact[at] = -1;
+            for (int k = 0; k < 2; k++) c->w[k][slot_lane(at)] = c->iw[k][slot_lane(at)] = 1;
+        }
     }
     return true;
+}
+
+/* What the problem is made of, slot by slot: contacts are long, and lie in another order. */
+struct making {
+    struct problem *p;
+    const struct contacts *s;
+    int32_t (*pair)[2]; /* [slots] a, b of the contact; of a lane without one b is -1 */
+    int64_t *copies;    /* [bundles + 1] of bodies that do not move, in the bundles before */
+};
+
+static void pair_some(void *arg, int64_t first, int64_t end)
+{
+    struct making *m = arg;
+    const struct problem *p = m->p;
+    int32_t moves[2];
+    for (int64_t i = BUNDLE * first; i < BUNDLE * end; i++) {
+        const struct contact *c = p->contact[i] < 0 ? NULL : &m->s->c[p->contact[i]];
+        m->pair[i][0] = c ? c->a : 0, m->pair[i][1] = c ? c->b : -1;
+        m->copies[i / BUNDLE + 1] += c ? 2 - packing_movable(p->packing, c->a, c->b, moves) : 0;
+    }
+}
+
+/* False when memory is short; to be freed in any case. */
+static bool making_init(struct making *m, struct problem *p, const struct contacts *s)
+{
+    *m = (struct making){ p, s, malloc((size_t)(p->slots + 1) * sizeof *m->pair),
+                          calloc((size_t)p->bundles + 1, sizeof *m->copies) };
+    if (!m->pair || !m->copies) return false;
+    team_share(team_size(), p->bundles, SOME / BUNDLE, pair_some, m);
+    for (int64_t k = 0; k < p->bundles; k++) m->copies[k + 1] += m->copies[k];
+    return true;
+}
+
+static void making_free(struct making *m)
+{
+    free(m->pair), free(m->copies);
 }
 
 /*
  * The place of each body in body[]: by colours in the order in which the sweep first meets them,
  * else as in the packing. NULL when memory is short.
  */
-static int32_t *seat_bodies(const struct problem *p, const struct packing *pack,
-                            const struct contacts *s, enum order order)
+static int32_t *seat_bodies(const struct making *m, enum order order)
 {
-    int32_t *seat = calloc((size_t)pack->n + 1, sizeof *seat), next = 0;
-    for (int64_t i = 0; seat && i < pack->n; i++) seat[i] = -1;
-    for (int64_t i = 0; seat && order >= ORDER_COLOUR && i < p->slots; i++) {
-        if (p->contact[i] < 0) continue;
-        const struct contact *c = &s->c[p->contact[i]];
-        if (c->a >= 0 && seat[c->a] < 0) seat[c->a] = next++;
-        if (seat[c->b] < 0) seat[c->b] = next++;
+    int64_t n = m->p->packing->n;
+    int32_t *seat = malloc((size_t)(n + 1) * sizeof *seat), next = 0;
+    for (int64_t i = 0; seat && i < n; i++) seat[i] = -1;
+    for (int64_t i = 0; seat && order >= ORDER_COLOUR && i < m->p->slots; i++) {
+        const int32_t *c = m->pair[i];
+        if (c[1] < 0) continue;
+        if (c[0] >= 0 && seat[c[0]] < 0) seat[c[0]] = next++;
+        if (seat[c[1]] < 0) seat[c[1]] = next++;
     }
-    for (int64_t i = 0; seat && i < pack->n; i++)
+    for (int64_t i = 0; seat && i < n; i++)
         if (seat[i] < 0) seat[i] = next++;
     return seat;
 }
@@ -176,12 +220,12 @@ void problem_set_free_motion(struct problem *p)
 
 /* The place of a body i (wall w: -1-w) of a contact at x (m): its own, or of a new copy if it does
    not move. A load's speed is prescribed here [problem/coupling.h]. */
-static int32_t place_of(struct problem *p, int32_t i, vec3 x, int64_t *next)
+static int32_t place_of(struct problem *p, int32_t i, const vec3 *x, int64_t *next)
 {
     const struct packing *pack = p->packing;
     if (i >= 0 && pack->mass[i] > 0) return body_place(p->seat[i]);
     struct body *copy = &p->body[*next];
-    vec3 v = i < 0 ? wall_velocity(pack, &pack->wall[-1 - i], x) : pack->v[i];
+    vec3 v = i < 0 ? wall_velocity(pack, &pack->wall[-1 - i], *x) : pack->v[i];
     *copy = (struct body){ .v = { v.x, v.y, v.z } };
     if (i < 0 && p->rolls) { // its arm is 0: that it turns matters to moments only
         vec3 w = wall_spin(pack, &pack->wall[-1 - i]);
@@ -191,11 +235,24 @@ static int32_t place_of(struct problem *p, int32_t i, vec3 x, int64_t *next)
     return body_place((*next)++);
 }
 
-static bool shaped(const struct packing *pack, const struct contacts *s)
+/* The bodies' places in the slots */
+static void place_some(void *arg, int64_t first, int64_t end)
 {
-    for (int64_t i = 0; i < s->n; i++)
-        if (contact_shaped(pack, &s->c[i])) return true;
-    return false;
+    struct making *m = arg;
+    struct problem *p = m->p;
+    int32_t nobody = (int32_t)p->packing->n;
+    int64_t other = p->split ? BUNDLE * p->group[p->split->inside] : p->slots;
+    int64_t next = nobody + 2 + m->copies[first];
+    for (int64_t i = BUNDLE * first; i < BUNDLE * end; i++) {
+        struct bundle *r = slot_bundle(p, i);
+        const int32_t *body = m->pair[i];
+        int k = slot_lane(i);
+        r->a[k] = r->b[k] = body_place(nobody + (i >= other));
+        for (int j = 0; j < 9 && p->lever; j += 4) r->W[j][k] = 1; // of a lane without a contact
+        if (body[1] < 0) continue;
+        const vec3 *x = &m->s->c[p->contact[i]].x;
+        r->a[k] = place_of(p, body[0], x, &next), r->b[k] = place_of(p, body[1], x, &next);
+    }
 }
 
 /* half[n] = the orientations in which contacts act, and p->spin; false when memory is short. */
@@ -275,52 +332,74 @@ static void measure_some(void *arg, int64_t first, int64_t end)
     }
 }
 
+/* A number of which the largest is sought by threads */
+struct most {
+    const struct packing *p;
+    double most;
+    pthread_mutex_t lock;
+};
+
+static void speed_some(void *arg, int64_t first, int64_t end)
+{
+    struct most *m = arg;
+    const struct packing *p = m->p;
+    double most = 0;
+    for (int64_t i = first; i < end; i++)
+        most = dmax(most, v3_norm(p->v[i]) + p->radius[i] * v3_norm(p->w[i]));
+    pthread_mutex_lock(&m->lock);
+    m->most = dmax(m->most, most);
+    pthread_mutex_unlock(&m->lock);
+}
+
 /* m/s: the speed of the fastest point of a body or wall, plus g dt. The velocities at contacts are
    differences of such speeds, and have their rounding. */
 static double top_speed(const struct packing *p)
 {
-    double most = 0;
-    for (int64_t i = 0; i < p->n; i++)
-        most = fmax(most, v3_norm(p->v[i]) + p->radius[i] * v3_norm(p->w[i]));
+    struct most m = { p, 0, PTHREAD_MUTEX_INITIALIZER };
+    team_share(team_size(), p->n, SOME, speed_some, &m);
+    double most = m.most, images = 0;
     for (int32_t k = 0; k < p->walls; k++) most = fmax(most, wall_top_speed(p, &p->wall[k]));
-    double images = 0;
     for (int k = 0; k < 3; k++) images += p->cell.repeats[k] ? v3_norm(p->cell.rate[k]) : 0;
     most += images;
     return most + p->dt * v3_norm(p->g);
 }
 
-/* The size of body[]: those of the packing, the copies, and for the lanes without a contact one
-   `nobody` in each half */
-static int64_t count_bodies(const struct packing *pack, const struct contacts *s)
+/* What there is among the contacts, in any of them */
+struct survey {
+    const struct packing *p;
+    const struct contacts *s;
+    bool moving_images; /* images move otherwise than their bodies, now or at the end of the step */
+    _Atomic int64_t copies;        /* of bodies that do not move */
+    _Atomic bool shaped, rebounds; /* u~ is anything but u */
+};
+
+static void survey_some(void *arg, int64_t first, int64_t end)
 {
-    int64_t n = pack->n + 2;
+    struct survey *y = arg;
+    bool shaped = false, rebounds = false;
+    int64_t copies = 0;
     int32_t moves[2];
-    for (int64_t i = 0; i < s->n; i++) {
-        const struct contact *c = &s->c[i];
-        n += 2 - packing_movable(pack, c->a, c->b, moves);
+    for (int64_t i = first; i < end; i++) {
+        const struct contact *c = &y->s->c[i];
+        copies += 2 - packing_movable(y->p, c->a, c->b, moves);
+        shaped |= contact_shaped(y->p, c);
+        rebounds |= c->en > 0 || c->et > 0 || offset_in(y->p, c) ||
+                    (y->s->tie && y->s->tie[i].offset > 0) ||
+                    (y->moving_images && contact_shifted(c));
     }
-    return n;
+    y->copies += copies;
+    if (shaped) y->shaped = true;
+    if (rebounds) y->rebounds = true;
 }
 
-/* Do images move otherwise than their bodies, now or at the end of the step? */
-static bool glides(const struct contacts *s, const struct lattice *cell)
+static void survey(struct survey *y, const struct packing *p, const struct contacts *s,
+                   const struct lattice *cell)
 {
     double most = 0;
     for (int k = 0; k < 3; k++)
         most = fmax(most, fmax(v3_norm(cell->before[k]), v3_norm(cell->after[k])));
-    for (int64_t i = 0; most > 0 && i < s->n; i++)
-        if (contact_shifted(&s->c[i])) return true;
-    return false;
-}
-
-/* Whether u~ is anything but u */
-static bool rebounds(const struct packing *pack, const struct contacts *s)
-{
-    for (int64_t i = 0; i < s->n; i++)
-        if (s->c[i].en > 0 || s->c[i].et > 0 || offset_in(pack, &s->c[i]) ||
-            (s->tie && s->tie[i].offset > 0))
-            return true;
-    return false;
+    *y = (struct survey){ .p = p, .s = s, .moving_images = most > 0 };
+    team_share(team_size(), s->n, SOME, survey_some, y);
 }
 
 static int prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
@@ -328,9 +407,12 @@ static int prepare(struct problem *p, const struct packing *pack, const struct c
                    struct shared *shared, struct why *why)
 {
     struct schedule plan = { 0 };
-    *p = (struct problem){
-        .d = pack->dim, .n = s->n, .dt = pack->dt, .packing = pack, .bodies = count_bodies(pack, s)
-    };
+    const struct lattice cell = lattice_of(pack);
+    struct survey found;
+    survey(&found, pack, s, &cell);
+    *p = (struct problem){ .d = pack->dim, .n = s->n, .dt = pack->dt, .packing = pack };
+    // those of the packing, the copies, and for the lanes without a contact one `nobody` in each half
+    p->bodies = pack->n + 2 + found.copies;
     p->shared = shared;
     if (shared) p->n = shared->contacts;
     if (p->bodies > BODIES_MAX) return why_set(why, EX_DATAERR, "more than %d bodies", BODIES_MAX);
@@ -338,39 +420,30 @@ static int prepare(struct problem *p, const struct packing *pack, const struct c
     bool room = p->body && (given || !schedule_bodies(&plan, order, s, pack)) &&
                 lay_out_bundles(p, given ? given : &plan);
     schedule_free(&plan);
-    const struct lattice cell = lattice_of(pack);
     quat *half = NULL;
-    if (anywhere(p, shaped(pack, s)) && room) {
+    if (anywhere(p, found.shaped) && room) {
         p->full = true;
         p->lever = alloc_lines(p->bundles, sizeof *p->lever);
         room = p->lever && find_spins(p, pack, &half);
     }
-    if (anywhere(p, rebounds(pack, s) || glides(s, &cell)) && room)
+    if (anywhere(p, found.rebounds) && room)
         room = (p->rebound = alloc_lines(p->bundles, sizeof *p->rebound)) != NULL;
     room = room && set_pulls(p, s) && lay_out_beyond(p, s);
-    if (!room || !(p->seat = seat_bodies(p, pack, s, order))) return free(half), no_memory(p, why);
-    if (freedoms_in(pack)) {
-        if (!(p->coupling = calloc(1, sizeof *p->coupling))) return free(half), no_memory(p, why);
-        if (couplings_init(p->coupling, pack, s, why))
-            return free(half), problem_free(p), why->status;
-    }
+    struct making make = { 0 };
+    room = room && making_init(&make, p, s) && (p->seat = seat_bodies(&make, order));
+    if (!room) return free(half), making_free(&make), no_memory(p, why);
     team_share(team_size(), pack->n, SOME, set_some, p);
-    int64_t nobody = pack->n, next = nobody + 2;
-    int64_t other = p->split ? BUNDLE * p->group[p->split->inside] : p->slots;
-    for (int64_t i = 0; i < p->slots; i++) {
-        struct bundle *r = slot_bundle(p, i);
-        int k = slot_lane(i);
-        r->a[k] = r->b[k] = body_place(nobody + (i >= other));
-        for (int j = 0; j < 9 && p->lever; j += 4) r->W[j][k] = 1; // of a lane without a contact
-        if (p->contact[i] < 0) continue;
-        const struct contact *c = &s->c[p->contact[i]];
-        r->a[k] = place_of(p, c->a, c->x, &next), r->b[k] = place_of(p, c->b, c->x, &next);
-    }
+    team_share(team_size(), p->bundles, SOME / BUNDLE, place_some, &make);
+    making_free(&make);
     struct filling f = { p, s, &cell, alpha, rho_factor, half };
     team_share(team_size(), p->bundles, SOME / BUNDLE, fill_bundles, &f);
     room = !shared || !shared->slower || !brake_make(p, &f, shared->slower);
     free(half);
     if (!room) return no_memory(p, why);
+    if (freedoms_in(pack)) {
+        if (!(p->coupling = calloc(1, sizeof *p->coupling))) return no_memory(p, why);
+        if (couplings_init(p->coupling, pack, s, why)) return problem_free(p), why->status;
+    }
 
     double g = v3_norm(pack->g);
     p->fall = g * pack->dt;
@@ -501,14 +574,21 @@ int problem_team(const struct problem *p, int threads)
     return p->split && threads > 1 ? 2 : 1;
 }
 
-int problem_store(const struct problem *p, struct contacts *s)
+/* Slots whose contacts are told what was found */
+struct storing {
+    const struct problem *p;
+    struct contacts *s;
+};
+
+static void store_some(void *arg, int64_t first, int64_t end)
 {
-    if (contacts_alloc_found(s) || (p->rolls && contacts_alloc_moment(s))) return -1;
-    for (int64_t i = 0; i < p->slots; i++) {
+    const struct storing *o = arg;
+    const struct problem *p = o->p;
+    for (int64_t i = BUNDLE * first; i < BUNDLE * end; i++) {
         if (p->contact[i] < 0) continue;
-        struct found *c = &s->found[p->contact[i]];
+        struct found *c = &o->s->found[p->contact[i]];
         slot_get(p, i, c->r, c->u);
-        const struct contact *law = &s->c[p->contact[i]];
+        const struct contact *law = &o->s->c[p->contact[i]];
         for (int k = 0; k < 3 && problem_undivided(p); k++)
             c->u[k] /= 1 + (k ? law->et : law->en); // it is D u~
         c->status = (int8_t)local_status(slot_bundle(p, i)->mu[slot_lane(i)], c->r);
@@ -516,12 +596,19 @@ int problem_store(const struct problem *p, struct contacts *s)
         if (p->beyond) slot_get_beyond(p, i, x);
         for (int k = 0; k < 3 && p->beyond; k++) {
             c->r[k] += x[k] - p->beyond[i / BUNDLE].a[k][slot_lane(i)];
-            if (s->moment) s->moment[p->contact[i]][k] = x[3 + k];
+            if (o->s->moment) o->s->moment[p->contact[i]][k] = x[3 + k];
         }
         const struct beyond *in_W = p->in_W ? &p->in_W[i / BUNDLE] : NULL;
         for (int k = 0; k < 3 && in_W; k++) // e = 0 where there is a bond, so that D is 1
             c->r[k] -= in_W->a[k][slot_lane(i)] + in_W->K[k > 0][slot_lane(i)] * c->u[k];
         if (p->pull) c->r[0] -= p->pull[i];
     }
+}
+
+int problem_store(const struct problem *p, struct contacts *s)
+{
+    struct storing o = { p, s };
+    if (contacts_alloc_found(s) || (p->rolls && contacts_alloc_moment(s))) return -1;
+    team_share(team_size(), p->bundles, SOME / BUNDLE, store_some, &o);
     return 0;
 }

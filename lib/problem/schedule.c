@@ -1,10 +1,12 @@
 /* problem/schedule.c: levels, colours, and the groups that they make [problem/schedule.h]. */
 #include "problem/schedule.h"
 
+#include "base/team.h"
 #include "problem/bundle.h"
 
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,31 +18,44 @@ enum {
     HALVES_FROM = 384, /* contacts from which halves are worth it */
     COLOUR_HALVES_FROM = 8192, /* contacts from which halves cost one thread nothing */
     ONE_BLOCK_MAX = 65536,     /* contacts that are coloured as one block, at most */
-    BLOCK = 16384              /* contacts of a block, whose bodies stay in a second-level cache */
-
+    BLOCK = 16384,             /* contacts of a block, whose bodies stay in a second-level cache */
+    SOME = 8192                /* contacts that are worth a thread */
 };
 
 /*
  * Which contacts depend on each other, for either kind of problem. A node is a movable body or,
- * where there is only W, a contact. Its mark is what the contacts before have left: a level, or a
- * set of colours.
+ * where there is only W, a contact.
  */
 struct graph {
     int64_t n, nodes;
     const struct contacts *contacts;
     const struct packing *packing;
-    const struct delassus *W;    /* NULL: contacts and packing */
-    uint64_t *mark;              /* [nodes] */
-    int64_t *place;              /* [n] level or colour, -1: not yet */
+    int32_t (*body)[2];       /* [n] movable bodies, side by side: contacts are 16 times as long */
+    const struct delassus *W; /* NULL: contacts and packing */
+    int64_t *place;           /* [n] level or colour, -1: not yet */
+};
+
+/* What contacts placed before have left at the nodes */
+struct marks {
+    uint64_t *mark;              /* [nodes] a level, or a set of colours */
     uint64_t begun;              /* set of the colours whose last bundle has room */
     int64_t count[MARK_COLOURS]; /* contacts of each colour */
 };
 
-/* node[] = the movable bodies of contact c; returns their number. */
-static int movable_nodes(const struct graph *g, int64_t c, int32_t node[2])
+static void find_some(void *arg, int64_t first, int64_t end)
 {
-    const struct contact *t = &g->contacts->c[c];
-    return packing_movable(g->packing, t->a, t->b, node);
+    struct graph *g = arg;
+    for (int64_t c = first; c < end; c++) {
+        const struct contact *t = &g->contacts->c[c];
+        g->body[c][0] = g->body[c][1] = -1;
+        packing_movable(g->packing, t->a, t->b, g->body[c]);
+    }
+}
+
+/* How many movable bodies contact c has; they come first in g->body[c]. */
+static int movable(const struct graph *g, int64_t c)
+{
+    return (g->body[c][0] >= 0) + (g->body[c][1] >= 0);
 }
 
 static uint64_t larger_of(uint64_t a, uint64_t b)
@@ -49,72 +64,128 @@ static uint64_t larger_of(uint64_t a, uint64_t b)
 }
 
 /* A colour not in `seen`: the first with room in its last bundle, else any; MARK_COLOURS if none */
-static int64_t pick_colour(struct graph *g, uint64_t seen)
+static int64_t pick_colour(struct marks *m, uint64_t seen)
 {
-    uint64_t free = ~seen & g->begun ? ~seen & g->begun : ~seen;
+    uint64_t free = ~seen & m->begun ? ~seen & m->begun : ~seen;
     if (!free) return MARK_COLOURS;
     int64_t c = __builtin_ctzll(free);
-    g->begun = ++g->count[c] % BUNDLE ? g->begun | 1ull << c : g->begun & ~(1ull << c);
+    m->begun = ++m->count[c] % BUNDLE ? m->begun | 1ull << c : m->begun & ~(1ull << c);
     return c;
 }
 
 /* Places c one level after the marks of its bodies or blocks, and marks them with its level. */
-static void place_level(struct graph *g, int64_t c)
+static void place_level(struct graph *g, uint64_t *mark, int64_t c)
 {
     uint64_t level = 0;
     if (!g->W) {
-        int32_t node[2];
-        int k = movable_nodes(g, c, node);
-        for (int j = 0; j < k; j++) level = larger_of(level, g->mark[node[j]]);
-        for (int j = 0; j < k; j++) g->mark[node[j]] = level + 1;
+        const int32_t *node = g->body[c];
+        int k = movable(g, c);
+        for (int j = 0; j < k; j++) level = larger_of(level, mark[node[j]]);
+        for (int j = 0; j < k; j++) mark[node[j]] = level + 1;
         g->place[c] = (int64_t)level;
         return;
     }
     // a block may stand on one side of the diagonal only: read the places in c's row, and mark them
     const int32_t *col = g->W->col + g->W->first[c], *end = g->W->col + g->W->first[c + 1];
-    level = g->mark[c];
+    level = mark[c];
     for (const int32_t *j = col; j < end; j++)
         if (g->place[*j] >= 0) level = larger_of(level, (uint64_t)g->place[*j] + 1);
-    for (const int32_t *j = col; j < end; j++) g->mark[*j] = larger_of(g->mark[*j], level + 1);
+    for (const int32_t *j = col; j < end; j++) mark[*j] = larger_of(mark[*j], level + 1);
     g->place[c] = (int64_t)level;
 }
 
+static int place_levels(struct graph *g, const int64_t *sequence)
+{
+    uint64_t *mark = calloc((size_t)g->nodes + 1, sizeof *mark);
+    for (int64_t i = 0; mark && i < g->n; i++) place_level(g, mark, sequence[i]);
+    free(mark);
+    return mark ? 0 : -1;
+}
+
 /* Chooses a colour for c that no mark of its bodies or blocks has, and adds it to these. */
-static int64_t choose_colour(struct graph *g, int64_t c)
+static int64_t choose_colour(const struct graph *g, struct marks *m, int64_t c)
 {
     uint64_t seen = 0;
     if (!g->W) {
-        int32_t node[2];
-        int k = movable_nodes(g, c, node);
-        for (int j = 0; j < k; j++) seen |= g->mark[node[j]];
-        int64_t free = pick_colour(g, seen);
-        for (int j = 0; j < k && free < MARK_COLOURS; j++) g->mark[node[j]] |= 1ull << free;
+        const int32_t *node = g->body[c];
+        int k = movable(g, c);
+        for (int j = 0; j < k; j++) seen |= m->mark[node[j]];
+        int64_t free = pick_colour(m, seen);
+        for (int j = 0; j < k && free < MARK_COLOURS; j++) m->mark[node[j]] |= 1ull << free;
         return free;
     }
     const int32_t *col = g->W->col + g->W->first[c], *end = g->W->col + g->W->first[c + 1];
-    seen = g->mark[c];
+    seen = m->mark[c];
     for (const int32_t *j = col; j < end; j++)
         if (g->place[*j] >= 0 && g->place[*j] < MARK_COLOURS) seen |= 1ull << g->place[*j];
-    int64_t free = pick_colour(g, seen);
-    for (const int32_t *j = col; j < end && free < MARK_COLOURS; j++) g->mark[*j] |= 1ull << free;
+    int64_t free = pick_colour(m, seen);
+    for (const int32_t *j = col; j < end && free < MARK_COLOURS; j++) m->mark[*j] |= 1ull << free;
     return free;
 }
 
-/* Colours n contacts, with places from `from` on; returns the place after the last. */
-static int64_t place_colours(struct graph *g, const int64_t *sequence, int64_t n, int64_t from)
+/* A stretch of the sequence that is coloured by itself */
+struct stretch {
+    int64_t first, n, places; /* contacts; how many places they take */
+};
+
+/* Colours a stretch, with places from 0 on. */
+static void colour(struct graph *g, struct marks *m, const int64_t *sequence, struct stretch *s)
 {
-    int64_t most = from, extra = from + MARK_COLOURS;
-    int32_t node[2];
-    g->begun = 0;
-    memset(g->count, 0, sizeof g->count);
-    for (int64_t i = 0; i < n && !g->W; i++)
-        for (int j = movable_nodes(g, sequence[i], node); j > 0; j--) g->mark[node[j - 1]] = 0;
-    for (int64_t i = 0; i < n; i++) {
-        int64_t c = choose_colour(g, sequence[i]);
-        g->place[sequence[i]] = c < MARK_COLOURS ? from + c : extra++;
-        most = larger_of(most, g->place[sequence[i]] + 1);
+    int64_t extra = MARK_COLOURS;
+    m->begun = 0;
+    memset(m->count, 0, sizeof m->count);
+    sequence += s->first;
+    for (int64_t i = 0; i < s->n; i++)
+        for (int j = g->W ? 0 : movable(g, sequence[i]); j > 0; j--)
+            m->mark[g->body[sequence[i]][j - 1]] = 0;
+    for (int64_t i = 0; i < s->n; i++) {
+        int64_t c = choose_colour(g, m, sequence[i]);
+        g->place[sequence[i]] = c < MARK_COLOURS ? c : extra++;
+        s->places = larger_of(s->places, g->place[sequence[i]] + 1);
     }
-    return most;
+}
+
+/* Stretches that threads colour */
+struct colouring {
+    struct graph *g;
+    const int64_t *sequence;
+    struct stretch *stretch;
+    _Atomic bool failed;
+};
+
+static void colour_some(void *arg, int64_t first, int64_t end)
+{
+    struct colouring *c = arg;
+    struct marks m = { .mark = calloc((size_t)c->g->nodes + 1, sizeof *m.mark) };
+    if (!m.mark) c->failed = true;
+    for (int64_t k = first; k < end && m.mark; k++) colour(c->g, &m, c->sequence, &c->stretch[k]);
+    free(m.mark);
+}
+
+/*
+ * Colours the zones of a sequence, count[zones] contacts in each, one after another, and where there are
+ * many contacts each block by block; first[zones + 1] = where their places begin. -1 when memory is short.
+ */
+static int place_zones(struct graph *g, const int64_t *sequence, int zones, const int64_t *count,
+                       int64_t *first)
+{
+    int64_t block = g->W || g->n <= ONE_BLOCK_MAX ? g->n + 1 : BLOCK, n = 0, begin = 0;
+    struct stretch *s = calloc((size_t)(g->n / block + zones + 1), sizeof *s);
+    struct colouring c = { g, sequence, s, false };
+    if (!s) return -1;
+    for (int k = 0; k < zones; begin += count[k++])
+        for (int64_t i = 0; i < count[k]; i += block)
+            s[n++].first = begin + i, s[n - 1].n = count[k] - i < block ? count[k] - i : block;
+    team_share(g->n < SOME ? 1 : team_size(), n, 1, colour_some, &c);
+    int64_t at = 0, from = 0, end = 0;
+    for (int k = 0; k < zones; k++) {
+        first[k] = from, end += count[k];
+        for (; at < n && s[at].first < end; from += s[at++].places)
+            for (int64_t i = 0; i < s[at].n; i++) g->place[sequence[s[at].first + i]] += from;
+    }
+    first[zones] = from;
+    free(s);
+    return c.failed ? -1 : 0;
 }
 
 /* The ten bits of x as bits 0, 3, 6 ... */
@@ -134,21 +205,49 @@ static uint32_t along_curve(vec3 x, vec3 lo, double h)
            spread_bits((uint32_t)i.z) << 2;
 }
 
+/* Places of contacts along the curve */
+struct places {
+    const struct contacts *s;
+    uint32_t *key;        /* [s->n] */
+    vec3 lo, hi;          /* m: of all points of contact */
+    double h;             /* m */
+    pthread_mutex_t lock; /* of lo and hi */
+};
+
+static void bound_some(void *arg, int64_t first, int64_t end)
+{
+    struct places *o = arg;
+    vec3 lo = o->s->c[first].x, hi = lo;
+    for (int64_t i = first + 1; i < end; i++)
+        lo = v3_min(lo, o->s->c[i].x), hi = v3_max(hi, o->s->c[i].x);
+    pthread_mutex_lock(&o->lock);
+    o->lo = v3_min(o->lo, lo), o->hi = v3_max(o->hi, hi);
+    pthread_mutex_unlock(&o->lock);
+}
+
+static void place_some(void *arg, int64_t first, int64_t end)
+{
+    struct places *o = arg;
+    for (int64_t i = first; i < end; i++) o->key[i] = along_curve(o->s->c[i].x, o->lo, o->h);
+}
+
+/* key[s->n] = where the contacts are on the curve; whether they are not all at one point */
+static bool find_places(const struct contacts *s, uint32_t *key)
+{
+    struct places o = { s, key, s->c[0].x, s->c[0].x, 0, PTHREAD_MUTEX_INITIALIZER };
+    team_share(team_size(), s->n, SOME, bound_some, &o);
+    o.h = dmax(o.hi.x - o.lo.x, dmax(o.hi.y - o.lo.y, o.hi.z - o.lo.z)) / 1023;
+    if (o.h > 0) team_share(team_size(), s->n, SOME, place_some, &o);
+    return o.h > 0;
+}
+
 /* Sorts the sequence along the curve, by ten bits of the key at a time; -1 when memory is short. */
 static int sort_along_curve(const struct contacts *s, int64_t *sequence)
 {
-    vec3 lo = s->c[0].x, hi = lo;
-    for (int64_t i = 0; i < s->n; i++) {
-        vec3 x = s->c[i].x;
-        lo = v3(fmin(lo.x, x.x), fmin(lo.y, x.y), fmin(lo.z, x.z));
-        hi = v3(fmax(hi.x, x.x), fmax(hi.y, x.y), fmax(hi.z, x.z));
-    }
-    double h = fmax(hi.x - lo.x, fmax(hi.y - lo.y, hi.z - lo.z)) / 1023;
     uint32_t *key = malloc((size_t)s->n * sizeof *key);
     int64_t *from = sequence, *to = malloc((size_t)s->n * sizeof *to), *spare = to;
-    bool room = key && to && h > 0;
-    for (int64_t i = 0; room && i < s->n; i++) key[i] = along_curve(s->c[i].x, lo, h);
-    for (int shift = 0; room && shift < 30; shift += 10) {
+    bool room = key && to, apart = room && find_places(s, key);
+    for (int shift = 0; apart && shift < 30; shift += 10) {
         int64_t tally[1025] = { 0 };
         for (int64_t i = 0; i < s->n; i++) tally[(key[i] >> shift & 1023) + 1]++;
         for (int k = 0; k < 1024; k++) tally[k + 1] += tally[k];
@@ -156,9 +255,9 @@ static int sort_along_curve(const struct contacts *s, int64_t *sequence)
         int64_t *swap = from;
         from = to, to = swap;
     }
-    if (room) memcpy(sequence, spare, (size_t)s->n * sizeof *sequence); // three passes end there
+    if (apart) memcpy(sequence, spare, (size_t)s->n * sizeof *sequence); // three passes end there
     free(key), free(spare);
-    return room || !(h > 0) ? 0 : -1;
+    return room ? 0 : -1;
 }
 
 static void sequence_init(int64_t *sequence, int64_t n, enum order order)
@@ -186,25 +285,15 @@ static int sort_by_zone(int64_t *sequence, int64_t n, const int8_t *zone, int64_
     return 0;
 }
 
-/* The same, block by block where there are many contacts */
-static int64_t place_blocks(struct graph *g, const int64_t *sequence, int64_t n, int64_t from)
-{
-    int64_t block = g->W || g->n <= ONE_BLOCK_MAX ? g->n + 1 : BLOCK;
-    for (int64_t i = 0; i < n; i += block)
-        from = place_colours(g, sequence + i, n - i < block ? n - i : block, from);
-    return from;
-}
-
 /* Colours by zones; the rim's groups go between those of the inside. -1 when memory is short. */
 static int place_halves(struct schedule *s, struct graph *g)
 {
     int8_t *zone = malloc((size_t)g->n + 1);
-    int64_t count[ZONE_COUNT], first[ZONE_COUNT + 1] = { 0 }, begin = 0;
-    if (!zone || two_thread_split_divide(g->contacts, g->packing, zone) ||
-        sort_by_zone(s->sequence, g->n, zone, count))
+    int64_t count[ZONE_COUNT], first[ZONE_COUNT + 1];
+    if (!zone || two_thread_split_divide(g->n, g->body, g->packing, zone) ||
+        sort_by_zone(s->sequence, g->n, zone, count) ||
+        place_zones(g, s->sequence, ZONE_COUNT, count, first))
         return free(zone), -1;
-    for (int k = 0; k < ZONE_COUNT; begin += count[k++])
-        first[k + 1] = place_blocks(g, s->sequence + begin, count[k], first[k]);
     s->beyond = first[ZONE_BEYOND], s->inside = first[ZONE_INSIDE];
     int64_t inside = first[ZONE_RIM] - s->inside, rim = first[ZONE_COUNT] - first[ZONE_RIM];
     s->rim = s->inside + inside / 3, s->rest = s->rim + rim; // the first colours are the largest
@@ -237,28 +326,29 @@ static int regroup(struct schedule *s, const struct graph *g)
     return 0;
 }
 
+static int place(struct schedule *s, enum order order, struct graph *g)
+{
+    bool halves = !g->W && g->n >= (order == ORDER_HALVES ? HALVES_FROM : COLOUR_HALVES_FROM);
+    int64_t first[2];
+    if (order < ORDER_COLOUR) return place_levels(g, s->sequence);
+    if (g->contacts && g->n > ONE_BLOCK_MAX && sort_along_curve(g->contacts, s->sequence))
+        return -1;
+    return halves ? place_halves(s, g) : place_zones(g, s->sequence, 1, &g->n, first);
+}
+
 static int schedule(struct schedule *s, enum order order, struct graph *g)
 {
-    bool colours = order >= ORDER_COLOUR;
-    bool halves = !g->W && g->n >= (order == ORDER_HALVES ? HALVES_FROM : COLOUR_HALVES_FROM);
     *s = (struct schedule){ .sequence = malloc((size_t)(g->n + 1) * sizeof *s->sequence) };
-    g->mark = calloc((size_t)g->nodes + 1, sizeof *g->mark);
     g->place = malloc((size_t)(g->n + 1) * sizeof *g->place);
-    int failed = !s->sequence || !g->mark || !g->place;
+    if (!g->W) g->body = malloc((size_t)(g->n + 1) * sizeof *g->body);
+    int failed = !s->sequence || !g->place || (!g->W && !g->body);
     if (!failed) {
+        if (!g->W) team_share(team_size(), g->n, SOME, find_some, g);
         sequence_init(s->sequence, g->n, order);
         for (int64_t i = 0; i < g->n; i++) g->place[i] = -1;
-        if (colours && g->contacts && g->n > ONE_BLOCK_MAX)
-            failed = sort_along_curve(g->contacts, s->sequence);
-        if (colours && halves)
-            failed = failed || place_halves(s, g);
-        else if (colours)
-            place_blocks(g, s->sequence, g->n, 0);
-        else
-            for (int64_t i = 0; i < g->n; i++) place_level(g, s->sequence[i]);
-        failed = failed || regroup(s, g);
+        failed = place(s, order, g) || regroup(s, g);
     }
-    free(g->mark), free(g->place);
+    free(g->place), free(g->body);
     if (!failed) return 0;
     schedule_free(s);
     return -1;

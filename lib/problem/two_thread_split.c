@@ -1,12 +1,25 @@
 /* problem/two_thread_split.c: the cut and the zones [problem/two_thread_split.h]. */
 #include "problem/two_thread_split.h"
 
+#include "base/team.h"
+
 #include <gsl/gsl_statistics_double.h>
 #include <math.h>
 #include <stdlib.h>
 
 enum {
-    SAMPLE = 16384 /* contacts that decide where to cut, at most */
+    SAMPLE = 16384, /* contacts that decide where to cut, at most */
+    SOME = 8192     /* contacts that are worth a thread */
+};
+
+struct division {
+    int64_t n;
+    int32_t (*body)[2];
+    const struct packing *p;
+    int8_t *zone;
+    int axis;     /* of the cut */
+    double at;    /* m */
+    bool *shared; /* [p->n] the body has a contact in the border zone */
 };
 
 static double coordinate(const struct packing *p, int32_t body, int axis)
@@ -16,14 +29,11 @@ static double coordinate(const struct packing *p, int32_t body, int axis)
 }
 
 /* From where to where contact c's movable bodies are along the axis, by their centres */
-static void extent(const struct packing *p, const struct contact *c, int axis, double *lo,
-                   double *hi)
+static void extent(const struct division *y, int64_t c, int axis, double *lo, double *hi)
 {
-    int32_t body[2];
-    int k = packing_movable(p, c->a, c->b, body);
     *lo = INFINITY, *hi = -INFINITY;
-    for (int j = 0; j < k; j++) {
-        double x = coordinate(p, body[j], axis);
+    for (int j = 0; j < 2 && y->body[c][j] >= 0; j++) {
+        double x = coordinate(y->p, y->body[c][j], axis);
         *lo = dmin(*lo, x), *hi = dmax(*hi, x);
     }
 }
@@ -32,42 +42,53 @@ static void extent(const struct packing *p, const struct contact *c, int axis, d
  * Chooses the axis and the place of the cut: half of the contacts are below, and as few as possible
  * across. Of many contacts a sample decides; top[SAMPLE] is work space.
  */
-static void choose_cut(const struct packing *p, const struct contacts *s, double *top, int *axis,
-                       double *at)
+static void choose_cut(struct division *y, double *top)
 {
-    int64_t stride = (s->n + SAMPLE - 1) / SAMPLE, least = s->n;
-    for (int k = 0; k < p->dim; k++) {
+    int64_t stride = (y->n + SAMPLE - 1) / SAMPLE, least = y->n;
+    for (int k = 0; k < y->p->dim; k++) {
         double lo, hi;
         int64_t n = 0, across = 0;
-        for (int64_t c = 0; c < s->n; c += stride) extent(p, &s->c[c], k, &lo, &top[n++]);
+        for (int64_t c = 0; c < y->n; c += stride) extent(y, c, k, &lo, &top[n++]);
         double middle = gsl_stats_select(top, 1, (size_t)n, (size_t)n / 2);
-        for (int64_t c = 0; c < s->n; c += stride) {
-            extent(p, &s->c[c], k, &lo, &hi);
+        for (int64_t c = 0; c < y->n; c += stride) {
+            extent(y, c, k, &lo, &hi);
             across += lo < middle && hi >= middle;
         }
-        if (across < least) least = across, *axis = k, *at = middle;
+        if (across < least) least = across, y->axis = k, y->at = middle;
     }
 }
 
-int two_thread_split_divide(const struct contacts *s, const struct packing *p, int8_t *zone)
+static void cut_some(void *arg, int64_t first, int64_t end)
 {
-    double *top = malloc(SAMPLE * sizeof *top), lo, hi, at = 0;
-    bool *shared = calloc((size_t)p->n + 1, sizeof *shared), room = top && shared;
-    int axis = 0;
-    int32_t body[2];
-    if (room) choose_cut(p, s, top, &axis, &at);
-    for (int64_t c = 0; room && c < s->n; c++) {
-        const struct contact *t = &s->c[c];
-        extent(p, t, axis, &lo, &hi);
-        zone[c] = hi < at ? ZONE_INSIDE : lo < at ? ZONE_BORDER : ZONE_BEYOND;
-        for (int k = packing_movable(p, t->a, t->b, body); zone[c] == ZONE_BORDER && k > 0; k--)
-            shared[body[k - 1]] = true;
+    struct division *y = arg;
+    double lo, hi;
+    for (int64_t c = first; c < end; c++) {
+        extent(y, c, y->axis, &lo, &hi);
+        y->zone[c] = hi < y->at ? ZONE_INSIDE : lo < y->at ? ZONE_BORDER : ZONE_BEYOND;
     }
-    for (int64_t c = 0; room && c < s->n; c++) {
-        const struct contact *t = &s->c[c];
-        for (int k = packing_movable(p, t->a, t->b, body); zone[c] == ZONE_INSIDE && k > 0; k--)
-            if (shared[body[k - 1]]) zone[c] = ZONE_RIM;
+}
+
+static void find_rim(void *arg, int64_t first, int64_t end)
+{
+    struct division *y = arg;
+    for (int64_t c = first; c < end; c++)
+        for (int k = 0; k < 2 && y->zone[c] == ZONE_INSIDE && y->body[c][k] >= 0; k++)
+            if (y->shared[y->body[c][k]]) y->zone[c] = ZONE_RIM;
+}
+
+int two_thread_split_divide(int64_t n, int32_t (*body)[2], const struct packing *p, int8_t *zone)
+{
+    double *top = malloc(SAMPLE * sizeof *top);
+    struct division y = { n, body, p, zone, 0, 0, calloc((size_t)p->n + 1, sizeof *y.shared) };
+    bool room = top && y.shared;
+    if (room) {
+        choose_cut(&y, top);
+        team_share(team_size(), n, SOME, cut_some, &y);
+        for (int64_t c = 0; c < n; c++)
+            for (int k = 0; k < 2 && zone[c] == ZONE_BORDER && body[c][k] >= 0; k++)
+                y.shared[body[c][k]] = true;
+        team_share(team_size(), n, SOME, find_rim, &y);
     }
-    free(top), free(shared);
+    free(top), free(y.shared);
     return room ? 0 : -1;
 }

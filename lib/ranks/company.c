@@ -64,7 +64,8 @@ static enum word next(enum word w)
 
 static void begin(enum word w, const struct packing *p)
 {
-    stride_begin(&crew.stride, &crew.talk, p, w == BEGIN_ROWS ? &crew.rows : NULL);
+    struct territory *space = territory_new(&crew.talk, options.hypergraph);
+    stride_begin(&crew.stride, &crew.talk, space, p, w == BEGIN_ROWS ? &crew.rows : NULL);
     crew.begun = true;
 }
 

@@ -115,10 +115,11 @@ static void take_all(struct part *y, const struct packing *whole)
     take_own(y, whole, y->talk->me ? 0 : whole->n, 0);
 }
 
-static void begin(struct part *y, struct talk *t, const struct packing *settings)
+static void begin(struct part *y, struct talk *t, struct territory *space,
+                  const struct packing *settings)
 {
     struct why why = { 0 };
-    *y = (struct part){ .talk = t, .territory = territory_new(t) };
+    *y = (struct part){ .talk = t, .territory = space };
     if (!t->me) {
         struct packing none = *settings;
         none.n = 0, none.events.n = 0, none.bonds.n = 0, none.scene = NULL;
@@ -128,17 +129,19 @@ static void begin(struct part *y, struct talk *t, const struct packing *settings
     y->p.whole = &y->whole;
 }
 
-void part_begin(struct part *y, struct talk *t, const struct packing *whole)
+void part_begin(struct part *y, struct talk *t, struct territory *space,
+                const struct packing *whole)
 {
-    begin(y, t, whole);
+    begin(y, t, space, whole);
     take_all(y, whole);
     part_recut(y);
 }
 
-void part_begin_rows(struct part *y, struct talk *t, const struct packing *settings,
-                     const struct packing *rows, int64_t first, int64_t all)
+void part_begin_rows(struct part *y, struct talk *t, struct territory *space,
+                     const struct packing *settings, const struct packing *rows, int64_t first,
+                     int64_t all)
 {
-    begin(y, t, settings);
+    begin(y, t, space, settings);
     take_own(y, rows, rows->n, first);
     if (y->all != all) talk_fail(t, EX_SOFTWARE, "ranks disagree about rows of bodies");
     part_recut(y);

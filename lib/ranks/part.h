@@ -38,13 +38,15 @@ struct part {
 };
 
 /* The first rank's packing becomes parts: its bodies are copied from it, and it stays as it is. Those of the
-   others are not looked at. Collective, as all that follows. */
-void part_begin(struct part *y, struct talk *t, const struct packing *whole);
+   others are not looked at. space is taken over. Collective, as all that follows. */
+void part_begin(struct part *y, struct talk *t, struct territory *space,
+                const struct packing *whole);
 void part_free(struct part *y);
 /* The same where each rank has some rows of the bodies, those from `first` on: they become its own. settings:
    the first rank's packing, all but its bodies. */
-void part_begin_rows(struct part *y, struct talk *t, const struct packing *settings,
-                     const struct packing *rows, int64_t first, int64_t all);
+void part_begin_rows(struct part *y, struct talk *t, struct territory *space,
+                     const struct packing *settings, const struct packing *rows, int64_t first,
+                     int64_t all);
 /* The same of a packing that has other bodies than before */
 void part_begin_again(struct part *y, const struct packing *whole);
 

@@ -81,9 +81,10 @@ void rows_take(struct rows *r, struct talk *t, const struct packing *block, int6
     parcel_free(&mine), parcels_free(t, out);
 }
 
-void rows_deal(struct rows *r, struct part *y, const struct packing *settings)
+void rows_deal(struct rows *r, struct part *y, struct territory *space,
+               const struct packing *settings)
 {
-    part_begin_rows(y, r->talk, settings, &r->p, r->first, r->all);
+    part_begin_rows(y, r->talk, space, settings, &r->p, r->first, r->all);
     packing_free(&r->p);
 }
 

@@ -29,7 +29,8 @@ static inline int64_t rows_begin(int64_t all, int ranks, int k)
 void rows_take(struct rows *r, struct talk *t, const struct packing *block, int64_t first,
                int64_t all);
 /* They become a part's own bodies, of which the first has all else in `settings`. */
-void rows_deal(struct rows *r, struct part *y, const struct packing *settings);
+void rows_deal(struct rows *r, struct part *y, struct territory *space,
+               const struct packing *settings);
 void rows_free(struct rows *r);
 
 /* Columns of bodies on their way into rows */

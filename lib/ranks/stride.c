@@ -20,19 +20,20 @@ enum {
 /* Contacts of the rank that has most over the mean: from here on cuts are made anew. */
 #define IMBALANCE 1.1
 
-void stride_begin(struct stride *y, struct talk *t, const struct packing *whole, struct rows *rows)
+void stride_begin(struct stride *y, struct talk *t, struct territory *space,
+                  const struct packing *whole, struct rows *rows)
 {
     int varies = packing_varies(whole);
     MPI_Bcast(&varies, 1, MPI_INT, 0, t->comm);
     // the first cuts know no contacts
     *y = (struct stride){ .varies = varies, .scattered = rows, .since = -CUT_AFTER };
     if (!rows) {
-        part_begin(&y->part, t, whole);
+        part_begin(&y->part, t, space, whole);
         return;
     }
     y->mean_mass = rows->heavy > 0 ? rows->mass / rows->heavy : 1;
     MPI_Bcast(&y->mean_mass, 1, MPI_DOUBLE, 0, t->comm);
-    rows_deal(rows, &y->part, whole);
+    rows_deal(rows, &y->part, space, whole);
 }
 
 void stride_begin_again(struct stride *y, const struct packing *whole)

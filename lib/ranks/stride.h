@@ -37,9 +37,10 @@ struct stride {
     int64_t solved[2]; /* bytes and messages of the shared solves, sent by this rank */
 };
 
-/* Collective. The first rank's packing; in others it is not looked at. rows: those of all ranks, where the
-   packing has everything but bodies, and nobody has the whole; NULL: the first rank has it. */
-void stride_begin(struct stride *y, struct talk *t, const struct packing *whole, struct rows *rows);
+/* Collective. The first rank's packing; in others it is not looked at. space is taken over. rows: those of all
+   ranks, where the packing has everything but bodies, and nobody has the whole; NULL: the first rank has it. */
+void stride_begin(struct stride *y, struct talk *t, struct territory *space,
+                  const struct packing *whole, struct rows *rows);
 /* Can the steps be made so that nobody has the whole? settings: a packing, its bodies are not looked at */
 bool stride_scatters(const struct packing *settings, const struct step_opt *o);
 /* After the first rank's packing has got other bodies */

@@ -2,12 +2,14 @@
 #include "ranks/territory.h"
 
 #include "base/why.h"
+#include "ranks/cells.h"
 
 #include <stdlib.h>
 #include <trilinos/zoltan.h>
 
 struct territory {
     struct talk *talk;
+    struct cells *cells; /* NULL: by bisection */
     struct Zoltan_Struct *zz;
     int64_t n;
     const vec3 *x;
@@ -53,11 +55,15 @@ static void places(void *arg, int gids, int lids, int n, ZOLTAN_ID_PTR gid, ZOLT
     *error = ZOLTAN_OK;
 }
 
-struct territory *territory_new(struct talk *t)
+struct territory *territory_new(struct talk *t, bool hypergraph)
 {
     struct territory *y = talk_new(t, 1, sizeof *y);
     float version;
     y->talk = t;
+    if (hypergraph) {
+        y->cells = cells_new(t);
+        return y;
+    }
     if (Zoltan_Initialize(0, NULL, &version) != ZOLTAN_OK || !(y->zz = Zoltan_Create(t->comm)))
         talk_fail(t, EX_SOFTWARE, "Zoltan does not begin");
     static const char *const set[][2] = {
@@ -75,7 +81,10 @@ struct territory *territory_new(struct talk *t)
 
 void territory_free(struct territory *y)
 {
-    if (y) Zoltan_Destroy(&y->zz);
+    if (y && y->cells)
+        cells_free(y->cells);
+    else if (y)
+        Zoltan_Destroy(&y->zz);
     free(y);
 }
 
@@ -84,6 +93,10 @@ void territory_cut(struct territory *y, int64_t n, const vec3 *x, const float *w
     int changes, gids, lids, in, out;
     ZOLTAN_ID_PTR a = NULL, b = NULL, c = NULL, d = NULL;
     int *p1 = NULL, *p2 = NULL, *p3 = NULL, *p4 = NULL;
+    if (y->cells) {
+        cells_cut(y->cells, n, x, weight);
+        return;
+    }
     y->n = n, y->x = x, y->weight = weight;
     if (n > INT32_MAX || Zoltan_LB_Partition(y->zz, &changes, &gids, &lids, &in, &a, &b, &p1, &p2,
                                              &out, &c, &d, &p3, &p4) != ZOLTAN_OK)
@@ -93,6 +106,7 @@ void territory_cut(struct territory *y, int64_t n, const vec3 *x, const float *w
 
 int territory_owner(const struct territory *y, vec3 x)
 {
+    if (y->cells) return cells_owner(y->cells, x);
     double at[3] = { x.x, x.y, x.z };
     int rank, part;
     if (Zoltan_LB_Point_PP_Assign(y->zz, at, &rank, &part) != ZOLTAN_OK)
@@ -102,6 +116,7 @@ int territory_owner(const struct territory *y, vec3 x)
 
 int territory_meets(const struct territory *y, vec3 lo, vec3 hi, int *rank)
 {
+    if (y->cells) return cells_meet(y->cells, lo, hi, rank);
     int n = 0;
     if (Zoltan_LB_Box_Assign(y->zz, lo.x, lo.y, lo.z, hi.x, hi.y, hi.z, rank, &n) != ZOLTAN_OK)
         talk_fail(y->talk, EX_SOFTWARE, "Zoltan knows no ranks of a box");

@@ -259,8 +259,7 @@ static int check_overlap(const struct packing *p, const bool *settled, struct wh
     int e = detect_contacts_at(&found, p, p->x, p->t, 0, NULL, why);
     for (int64_t i = 0; !e && i < found.n; i++) {
         const struct contact *c = &found.c[i];
-        double r = p->radius[c->b];
-        if (c->a >= 0) r = fmin(r, p->radius[c->a]);
+        double r = packing_smaller_radius(p, c);
         bool by_run = settled[c->b] && (c->a < 0 || settled[c->a]);
         if (c->gap >= -(by_run ? LEFT_BY_A_RUN : ROUNDING) * r) continue;
         e = c->a < 0 ? why_set(why, EX_DATAERR, "body %d is %.3g m deep in wall %d", c->b, -c->gap,

@@ -194,18 +194,19 @@ static int read_regular(jnode o, struct shape *s, int dim)
 static int rewrite(jnode o, const struct shape *s, struct scene *scene)
 {
     json_t *vertices = json_array(), *faces = json_array();
+    bool bad = false;
     for (int32_t i = 0; i < s->vertices; i++) {
         vec3 x = s->vertex[i];
-        json_array_append_new(vertices, json_pack("[f, f, f]", x.x, x.y, x.z));
+        bad |= json_array_append_new(vertices, json_pack("[f, f, f]", x.x, x.y, x.z)) != 0;
     }
     for (int32_t f = 0; f < s->faces; f++) {
         json_t *face = json_array();
         for (int32_t i = s->first[f]; i < s->first[f + 1]; i++)
-            json_array_append_new(face, json_integer(s->corner[i]));
-        json_array_append_new(faces, face);
+            bad |= json_array_append_new(face, json_integer(s->corner[i])) != 0;
+        bad |= json_array_append_new(faces, face) != 0;
     }
-    bool bad = json_object_set_new(o.json, "vertices", vertices) ||
-               json_object_set_new(o.json, "faces", faces) || json_object_del(o.json, "mesh");
+    bad |= json_object_set_new(o.json, "vertices", vertices) != 0;
+    bad |= json_object_set_new(o.json, "faces", faces) || json_object_del(o.json, "mesh");
     scene->rewritten = true;
     return bad ? why_set(o.in->why, EX_SOFTWARE, "no memory for the scene's text") : 0;
 }

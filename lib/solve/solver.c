@@ -1,6 +1,7 @@
 /* solve/solver.c: the table of solvers, and what they share [solve/solver.h]. */
 #include "solve/solver.h"
 
+#include "base/team.h"
 #include "problem/apply.h"
 #include "problem/shared.h"
 #include "problem/sweep.h"
@@ -17,6 +18,7 @@ const struct solver *const solvers[] = { &solver_auto, &solver_nlgs, &solver_and
                                          NULL };
 
 enum {
+    SOME = 16384,      /* slots that are worth a thread: 100 us of copying */
     RENEW_EVERY = 1000 /* sweeps: their rounding stays below 1e-13 of the velocities */
 };
 
@@ -113,17 +115,30 @@ int solve_best_init(struct best *b, const struct problem *p)
     return best_init(b, end_of_ru(p) + (p->beyond ? BESIDE_R * p->slots : 0));
 }
 
+/* Slots that are kept */
+struct keeping {
+    const struct problem *p;
+    double *r;
+};
+
+static void keep_some(void *arg, int64_t first, int64_t end)
+{
+    const struct keeping *k = arg;
+    const struct problem *p = k->p;
+    double *u = k->r + 3 * p->slots, unwanted[3] = { 0 };
+    for (int64_t i = first; i < end; i++)
+        slot_get(p, i, k->r + 3 * i, with_u(p) ? u + 3 * i : unwanted);
+    for (int64_t i = first; p->beyond && i < end; i++)
+        slot_get_beyond(p, i, k->r + end_of_ru(p) + BESIDE_R * i);
+}
+
 void solve_best_offer(const struct solve *s, struct best *b)
 {
     const struct problem *p = s->p;
-    double *r = best_offer(b, s->value), unwanted[3] = { 0 };
-    if (!r) return;
-    double *u = r + 3 * p->slots;
-    for (int64_t i = 0; i < p->slots; i++)
-        slot_get(p, i, r + 3 * i, with_u(p) ? u + 3 * i : unwanted);
-    if (with_u(p)) u[3 * p->slots] = s->believes;
-    for (int64_t i = 0; p->beyond && i < p->slots; i++)
-        slot_get_beyond(p, i, r + end_of_ru(p) + BESIDE_R * i);
+    struct keeping k = { p, best_offer(b, s->value) };
+    if (!k.r) return;
+    team_share(s->o->threads, p->slots, SOME, keep_some, &k);
+    if (with_u(p)) k.r[6 * p->slots] = s->believes;
 }
 
 void solve_react(struct solve *s, const double *r)

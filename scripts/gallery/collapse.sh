@@ -20,7 +20,7 @@ for a in "${ratios[@]}"; do
     { nsd-info --last -p "$out/column-$a.h5"; nsd-info --last -p "$out/run-$a.h5"; } |
         with 'map([.step, .x[0], .x[1], .radius]) | group_by(.[0]) |
             (.[0] | 2 * (map(.[2]) | mean)) as $height |
-            (.[1] | map(.[1] + .[3]) | sort | [range(1; length) as $i | select(.[$i] - .[$i - 1] > 0.013) | .[$i - 1]] as $gaps | ($gaps[0] // .[-1])) as $front |
+            (.[1] | map(.[1] + .[3]) | front) as $front |
             [$height / $w, ($front - $w) / $w, $front] | @tsv' -rs --argjson w "$width" >>"$out/runout.tsv"
 done
 curve

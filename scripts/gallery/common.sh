@@ -34,6 +34,9 @@ on() { nsd-info --scene "$out/$1" | jq "${@:2}" >"$out/on.json"; nsd-gen "$out/o
 # with FILTER [jq's arguments]: jq with the functions of rows.jq
 with() { jq -L "$P" "include \"rows\"; $1" "${@:2}"; }
 
+# angle FILE.h5: degrees, of the surface, a mean over the last half of the frames
+angle() { nsd-stat -m surface "$out/$1" | jq -s '.[length / 2 | floor:] | map(.surface.angle | fabs) | add / length'; }
+
 picture() { nsd-view -o "$out/picture.png" "$@"; }
 
 # The curve, by NAME.gp, from the tables in the folder

@@ -7,9 +7,6 @@ scale=$(pick 0.45 1) end=$(pick 1.5 3)
 read -ra speeds <<<"$(pick '1.5 4' '0.7 1.5 2.5 4')"
 radius=$(jq -n "0.105 * $scale")
 
-# angle FILE: of the surface, a mean over the last half of the frames
-angle() { nsd-stat -m surface "$1" | jq -s '.[length / 2 | floor:] | map(.surface.angle | fabs) | add / length'; }
-
 # layer FILE ANGLE UP: in the middle of the drum, depth below the surface and velocity down it, a mean over the last half
 # of the frames; in m and m/s. UP: the axis that points up
 layer()
@@ -31,7 +28,7 @@ for speed in "${speeds[@]}"; do
         .bodies = [{random: {count: (2000 * $s * $s | floor)}, radius: .bodies[0].radius,
             box: {x: [-0.071 * $s, 0.071 * $s], y: [-0.07 * $s, 0.07 * $s]}}]' |
         nsd-gen - | step "drum-$speed.h5" --until "$end" --every 0.05s
-    a=$(angle "$out/drum-$speed.h5")
+    a=$(angle "drum-$speed.h5")
     echo "$(jq -n "$speed * $speed * $radius / 9.81") $a" >>"$out/angle.tsv"
     layer "$out/drum-$speed.h5" "$a" 1 >"$out/layer-$speed.tsv"
 done
@@ -44,12 +41,11 @@ if [ -z "${QUICK:-}" ]; then
         walls: [{cylinder: {point: [0, 0, 0], axis: [0, 1, 0], radius: 0.03}, drives: [{about: [0, 0, 0], axis: [0, -1, 0], speed: 3}]}],
         bodies: [{count: 800, radius: {uniform: [1.4e-3, 1.6e-3]}, box: {x: [-0.02, 0.02], y: [0, 0.015], z: [-0.021, null]}}]}' |
         nsd-gen - | step balls.h5 --until "$end" --every 0.05s
-    angle "$out/balls.h5" >"$out/balls.tsv"
+    angle balls.h5 >"$out/balls.tsv"
 fi
 curve
 picture -c speed --boundaries lines "$out/drum-${speeds[1]}.h5"
-with 'def numbers: split("\n") | map(select(test("^[-0-9]")) | split("[ \t]"; null) | map(tonumber));
-    ($angle | numbers) as $a | ($layer | numbers) as $l | ($l | map(.[1]) | max) as $fastest |
+with '($angle | numbers) as $a | ($layer | numbers) as $l | ($l | map(.[1]) | max) as $fastest |
     # the layer: from its fastest row down to where a seventh of that is left
     ($l | map(select(.[1] > $fastest / 7 and .[1] < 0.95 * $fastest)) | line) as $fit | (9.81 / 0.003 | sqrt) as $rate |
     row("velocity in the layer: how much of its variance a line explains"; $fit.r2; 0.95; 1; "1: linear"; "Renouf et al. 2005; GDR MiDi 2004"),

@@ -11,25 +11,20 @@ weight=$(jq -n '2500 * 3.141592653589793 * 4e-6 * 9.81')
 # heap FILE FILTER: discs of 4 mm, a block as wide as the slab, which the filter changes; it comes to rest
 heap()
 {
-    jq -n --argjson h "$half" '{ dim: 2, dt: 5e-4, density: 2500, mu: 0.5, e_n: 0.1, seed: 5,
-        walls: [{ point: [0, 0], normal: [0, 1] }], remove: [{ outside: { x: [-$h, $h], y: [-1, 1] } }],
-        pairs: [{ pair: ["ball", "wall"], mu: 1 }],
-        bodies: [{ random: { count: ($h * $h * 1.4 * 0.8 / 1.257e-5 | round) }, radius: { uniform: [1.7e-3, 2.3e-3] },
-            box: { x: [-$h, $h], y: [0, (1.1 * $h)] } }] } | '"$2" | nsd-gen - |
+    scene heap --argjson h "$half" '.remove[0].outside.x = [-$h, $h] | .bodies[0] |= (.box = { x: [-$h, $h], y: [0, 1.1 * $h] } |
+        .random.count = ($h * $h * 1.4 * 0.8 / 1.257e-5 | round)) | '"$2" | nsd-gen - |
         step "$1" --until "$until" --every "${until}s" --overlap project
 }
 # degrees: of lines through the tops of strips a disc wide on both flanks, from a fifth of the heap's height up to where,
 # coming from outside, four fifths are first reached; the mean of both sides
 slope()
 {
-    nsd-info --last -p "$out/$1" | jq -s 'map([.x[0], .x[1] + .radius]) | (map(.[1]) | max) as $top |
+    nsd-info --last -p "$out/$1" | with 'map([.x[0], .x[1] + .radius]) | (map(.[1]) | max) as $top |
         group_by(.[0] / 0.004 | floor) | map([(map(.[0]) | add / length), (map(.[1]) | max)]) | . as $strips |
         [1, -1] | map(. as $side | $strips | map([.[0] * $side, .[1]]) | sort_by(-.[0]) | map(.[1]) as $h |
             ([range(0; $h | length) | select($h[.] >= 0.8 * $top)][0]) as $up | .[:$up + 1] | map(select(.[1] > 0.2 * $top)) |
-            (map(.[0]) | add / length) as $x | (map(.[1]) | add / length) as $y |
-            (map((.[0] - $x) * (.[0] - $x)) | add) as $xx |
-            if $xx > 0 then -(map((.[0] - $x) * (.[1] - $y)) | add) / $xx | atan else 1.5707963267948966 end) |
-        add / 2 * 180 / 3.141592653589793'
+            if (map(.[0]) | unique | length > 1) then -line.b | atan else 1.5707963267948966 end) |
+        add / 2 * 180 / 3.141592653589793' -s
 }
 
 # of the heap's top over that of the block, which was as high as the random start's box
@@ -47,8 +42,7 @@ for b in "${bonds[@]}"; do
 done
 curve
 picture -c speed "$out/roll-${rolls[-1]}.h5"
-with 'def numbers: split("\n") | map(select(test("^[0-9]")) | split(" ") | map(tonumber));
-    def falls: [range(1; length) as $i | select(.[$i][1] < .[$i - 1][1] - 3)] | length;
+with 'def falls: [range(1; length) as $i | select(.[$i][1] < .[$i - 1][1] - 3)] | length;
     ($rolling | numbers) as $r | ($cohesion | numbers) as $c |
     row("slope without rolling friction, degrees"; $r[0][1]; 10; 25; "lower than of balls: discs roll"; "Zhou et al. 2001; Estrada et al. 2008"),
     row("slope at the largest rolling friction less that"; $r[-1][1] - $r[0][1]; 4; 60; "it rises with mu_r"; "Zhou et al. 2001: rolling friction is a primary reason for heaps"),

@@ -19,12 +19,12 @@ for b in "${bonds[@]}"; do
     { nsd-info --last -p "$out/column-$b.h5"; nsd-info --last -p "$out/run-$b.h5"; } |
         with 'map([.step, .x[0], .x[1], .radius]) | group_by(.[0]) |
             (map(map(.[2] + .[3]) | max)) as $top |
-            (.[1] | map(.[1] + .[3]) | sort | [range(1; length) as $i | select(.[$i] - .[$i - 1] > 0.013) | .[$i - 1]] as $gaps | ($gaps[0] // .[-1])) as $front |
+            (.[1] | map(.[1] + .[3]) | front) as $front |
             [($front - $w) / $w, $top[1] / $top[0]] | "\($b) \(.[0]) \(.[1])"' -rs --argjson w "$width" --arg b "$b" >>"$out/runout.tsv"
 done
 curve
 picture "$out/run-${bonds[$((${#bonds[@]} / 2))]}.h5"
-with '($runs | split("\n") | map(select(test("^[0-9]")) | split(" ") | map(tonumber))) as $r |
+with '($runs | numbers) as $r |
     row("run-out of the dry column in widths"; $r[0][1]; 1.5; 4.5; "3.75 (discs), 1.8 (beads), of this height"; "Staron and Hinch 2005; Lajeunesse et al. 2005"),
     row("run-out of the most cohesive over that"; $r[-1][1] / $r[0][1]; -0.05; 0.35; "it falls with cohesion"; "Gans et al. 2023; Sharma et al. 2024"),
     row("steps of cohesion that run out farther by a tenth of that"; ([range(1; $r | length) | select($r[.][1] > $r[. - 1][1] + 0.1 * $r[0][1])] | length); 0; 0; "none"; "the same"),

@@ -16,19 +16,17 @@ for b in "${bonds[@]}"; do
         nsd-gen - | step "drum-$b.h5" --until "$end" --every 0.05s
     # the surface: the highest disc of each strip two discs wide, turned by the mean angle; how far it is from its
     # line, in diameters, as a mean over the last half of the frames
-    a=$(nsd-stat -m surface "$out/drum-$b.h5" | jq -s '.[length / 2 | floor:] | map(.surface.angle | fabs) | add / length')
-    rough=$(nsd-info -p "$out/drum-$b.h5" | jq -s --argjson a "$a" --argjson r "$(jq -n "0.07 * $scale")" '($a * 3.141592653589793 / 180) as $a |
+    a=$(angle "drum-$b.h5")
+    rough=$(nsd-info -p "$out/drum-$b.h5" | with '($a * 3.141592653589793 / 180) as $a |
         (map(.step) | max / 2) as $half | map(select(.step > $half) | [.step, .x[0] * ($a | cos) + .x[1] * ($a | sin), -.x[0] * ($a | sin) + .x[1] * ($a | cos)]) |
         map(select(.[1] > -0.6 * $r and .[1] < 0.6 * $r)) | group_by(.[0]) |
-        map(group_by(.[1] / 0.006 | floor) | map([(map(.[1]) | add / length), (map(.[2]) | max)]) |
-            (map(.[0]) | add / length) as $x | (map(.[1]) | add / length) as $y |
-            ((map((.[0] - $x) * (.[1] - $y)) | add) / (map((.[0] - $x) * (.[0] - $x)) | add)) as $s |
-            (map(.[1] - $y - $s * (.[0] - $x) | . * .) | add / length | sqrt) / 0.003) | add / length')
+        map(group_by(.[1] / 0.006 | floor) | map([(map(.[1]) | mean), (map(.[2]) | max)]) |
+            line as $l | (map(.[1] - $l.a - $l.b * .[0] | . * .) | mean | sqrt) / 0.003) | mean' -s --argjson a "$a" --argjson r "$(jq -n "0.07 * $scale")")
     echo "$b $a $rough" >>"$out/angle.tsv"
 done
 curve
 picture -c speed --boundaries lines "$out/drum-${bonds[-1]}.h5"
-with '($angles | split("\n") | map(select(test("^[0-9]")) | split(" ") | map(tonumber))) as $a |
+with '($angles | numbers) as $a |
     row("angle of dry discs, degrees"; $a[0][1]; 17; 32; "20 to 26"; "Renouf et al. 2005; GDR MiDi 2004"),
     row("largest angle less that of dry discs"; ($a[1:] | map(.[1]) | max) - $a[0][1]; 2.5; 45; "it rises with cohesion"; "Nowak et al. 2005; Pol et al. 2025"),
     row("angle at the largest Bond number less that of dry discs"; $a[-1][1] - $a[0][1]; 2.5; 45; "the same"; "the same"),

@@ -1,11 +1,11 @@
 /*
- * problem/brake.h: slots whose contacts are solved as if their bodies were lighter, k times, because k
+ * problem/braking.h: slots whose contacts are solved as if their bodies were lighter, k times, because k
  * processes push a body at once: each step is as much shorter, and no solution is another [mass
  * splitting, Tonge et al. 2012]. W~_cc and all that follows from it are those of the lighter bodies in
  * the sweeps, and the true ones where errors are computed; the bodies themselves stay as they are.
  */
-#ifndef NSD_BRAKE_H
-#define NSD_BRAKE_H
+#ifndef NSD_BRAKING_H
+#define NSD_BRAKING_H
 
 #include "problem/filling.h"
 

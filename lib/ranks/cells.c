@@ -1,0 +1,296 @@
+/* ranks/cells.c: a grid of cells, and who has which [ranks/cells.h]. */
+#include "ranks/cells.h"
+
+#include "base/why.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <trilinos/zoltan.h>
+
+enum {
+    CELLS_A_RANK = 500,   /* of the grid, about: enough to share out evenly */
+    CELLS_MOST = 1 << 20, /* of the grid */
+    AROUND = 27,          /* a cell, and those that touch it */
+    WEIGHT_UNITS = 20     /* of weight 1: whole numbers have one sum in any order */
+};
+
+struct cells {
+    struct talk *talk;
+    struct Zoltan_Struct *zz;
+    vec3 lo;        /* m: a corner of the grid */
+    double side;    /* m: of a cell */
+    int many[3];    /* cells along x, y, z */
+    int64_t n;      /* cells; 0: nothing is cut yet */
+    int *owner;     /* [n] rank */
+    int64_t *work;  /* [n] weight of each cell's bodies, in units */
+    int64_t *count; /* [n] bodies */
+    int *home; /* [n] the rank that asks for the cell, while it is being dealt; -1: it is empty */
+};
+
+static int64_t along(const struct cells *c, double x, double lo, int k)
+{
+    double i = floor((x - lo) / c->side);
+    return i > 0 ? (int64_t)fmin(i, c->many[k] - 1) : 0; // 0, too, where it is not a number
+}
+
+static void place(const struct cells *c, vec3 x, int64_t at[3])
+{
+    at[0] = along(c, x.x, c->lo.x, 0), at[1] = along(c, x.y, c->lo.y, 1);
+    at[2] = along(c, x.z, c->lo.z, 2);
+}
+
+static int64_t cell_at(const struct cells *c, const int64_t at[3])
+{
+    return (at[2] * c->many[1] + at[1]) * c->many[0] + at[0];
+}
+
+/* near[] = the cell and those around it; returns how many. */
+static int around(const struct cells *c, int64_t cell, int64_t near[AROUND])
+{
+    const int64_t at[3] = { cell % c->many[0], cell / c->many[0] % c->many[1],
+                            cell / c->many[0] / c->many[1] };
+    int n = 0;
+    for (int i = 0; i < AROUND; i++) {
+        const int64_t to[3] = { at[0] + i % 3 - 1, at[1] + i / 3 % 3 - 1, at[2] + i / 9 - 1 };
+        bool inside = true;
+        for (int k = 0; k < 3; k++) inside = inside && to[k] >= 0 && to[k] < c->many[k];
+        if (inside) near[n++] = cell_at(c, to);
+    }
+    return n;
+}
+
+/* ---- what Zoltan asks ---- */
+
+static bool is_asked(const struct cells *c, int64_t cell)
+{
+    return c->home[cell] == c->talk->me;
+}
+
+static int count(void *arg, int *error)
+{
+    const struct cells *c = arg;
+    int n = 0;
+    for (int64_t i = 0; i < c->n; i++) n += is_asked(c, i);
+    *error = ZOLTAN_OK;
+    return n;
+}
+
+static void list(void *arg, int gids, int lids, ZOLTAN_ID_PTR gid, ZOLTAN_ID_PTR lid, int weights,
+                 float *weight, int *error)
+{
+    const struct cells *c = arg;
+    int n = 0;
+    (void)gids, (void)lids, (void)weights;
+    for (int64_t i = 0; i < c->n; i++) {
+        if (!is_asked(c, i)) continue;
+        gid[n] = lid[n] = (ZOLTAN_ID_TYPE)i;
+        weight[n++] = (float)c->work[i];
+    }
+    *error = ZOLTAN_OK;
+}
+
+/* The hyperedge of a cell: occupied ones around it */
+static int edge_of(const struct cells *c, int64_t cell, int64_t edge[AROUND])
+{
+    int64_t near[AROUND];
+    int n = around(c, cell, near), pins = 0;
+    for (int i = 0; i < n; i++)
+        if (c->home[near[i]] >= 0) edge[pins++] = near[i];
+    return pins;
+}
+
+static void edge_sizes(void *arg, int *edges, int *pins, int *format, int *error)
+{
+    const struct cells *c = arg;
+    int64_t edge[AROUND];
+    *edges = *pins = 0, *format = ZOLTAN_COMPRESSED_EDGE, *error = ZOLTAN_OK;
+    for (int64_t i = 0; i < c->n; i++)
+        if (is_asked(c, i)) ++*edges, *pins += edge_of(c, i, edge);
+}
+
+static void edges(void *arg, int gids, int n, int pins, int format, ZOLTAN_ID_PTR gid, int *first,
+                  ZOLTAN_ID_PTR pin, int *error)
+{
+    const struct cells *c = arg;
+    int64_t edge[AROUND];
+    int next = 0, k = 0;
+    (void)gids, (void)n, (void)pins, (void)format;
+    for (int64_t i = 0; i < c->n; i++) {
+        if (!is_asked(c, i)) continue;
+        gid[k] = (ZOLTAN_ID_TYPE)i, first[k++] = next;
+        int m = edge_of(c, i, edge);
+        for (int j = 0; j < m; j++) pin[next++] = (ZOLTAN_ID_TYPE)edge[j];
+    }
+    *error = ZOLTAN_OK;
+}
+
+static void weight_sizes(void *arg, int *n, int *error)
+{
+    *n = count(arg, error);
+}
+
+static void edge_weights(void *arg, int gids, int lids, int n, int weights, ZOLTAN_ID_PTR gid,
+                         ZOLTAN_ID_PTR lid, float *weight, int *error)
+{
+    const struct cells *c = arg;
+    int k = 0;
+    (void)gids, (void)lids, (void)n, (void)weights;
+    for (int64_t i = 0; i < c->n; i++) {
+        if (!is_asked(c, i)) continue;
+        gid[k] = lid[k] = (ZOLTAN_ID_TYPE)i;
+        weight[k++] = (float)c->count[i];
+    }
+    *error = ZOLTAN_OK;
+}
+
+struct cells *cells_new(struct talk *t)
+{
+    struct cells *c = talk_new(t, 1, sizeof *c);
+    float version;
+    c->talk = t;
+    if (Zoltan_Initialize(0, NULL, &version) != ZOLTAN_OK || !(c->zz = Zoltan_Create(t->comm)))
+        talk_fail(t, EX_SOFTWARE, "Zoltan does not begin");
+    static const char *const set[][2] = { { "DEBUG_LEVEL", "0" },
+                                          { "LB_METHOD", "HYPERGRAPH" },
+                                          { "HYPERGRAPH_PACKAGE", "PHG" },
+                                          { "LB_APPROACH", "PARTITION" },
+                                          { "NUM_GID_ENTRIES", "1" },
+                                          { "NUM_LID_ENTRIES", "1" },
+                                          { "OBJ_WEIGHT_DIM", "1" },
+                                          { "EDGE_WEIGHT_DIM", "1" },
+                                          { "RETURN_LISTS", "PARTS" },
+                                          { "IMBALANCE_TOL", "1.02" },
+                                          { "SEED", "1" } };
+    for (size_t k = 0; k < sizeof set / sizeof *set; k++)
+        Zoltan_Set_Param(c->zz, set[k][0], set[k][1]);
+    Zoltan_Set_Num_Obj_Fn(c->zz, count, c), Zoltan_Set_Obj_List_Fn(c->zz, list, c);
+    Zoltan_Set_HG_Size_CS_Fn(c->zz, edge_sizes, c), Zoltan_Set_HG_CS_Fn(c->zz, edges, c);
+    Zoltan_Set_HG_Size_Edge_Wts_Fn(c->zz, weight_sizes, c);
+    Zoltan_Set_HG_Edge_Wts_Fn(c->zz, edge_weights, c);
+    return c;
+}
+
+static void forget(struct cells *c)
+{
+    free(c->owner), free(c->work), free(c->count), free(c->home);
+    c->owner = c->home = NULL, c->work = c->count = NULL, c->n = 0;
+}
+
+void cells_free(struct cells *c)
+{
+    if (c) Zoltan_Destroy(&c->zz), forget(c);
+    free(c);
+}
+
+/* ---- the cut ---- */
+
+/* The grid around the points of all ranks */
+static void lay_grid(struct cells *c, int64_t n, const vec3 *x)
+{
+    struct talk *t = c->talk;
+    double most[6] = { -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY }, all[6];
+    for (int64_t i = 0; i < n; i++) {
+        const double p[3] = { x[i].x, x[i].y, x[i].z };
+        for (int k = 0; k < 3; k++)
+            most[k] = fmax(most[k], -p[k]), most[3 + k] = fmax(most[3 + k], p[k]);
+    }
+    MPI_Allreduce(most, all, 6, MPI_DOUBLE, MPI_MAX, t->comm);
+    double size[3], longest = 0;
+    for (int k = 0; k < 3; k++) {
+        size[k] = all[k] + all[3 + k];
+        if (!(size[k] >= 0 && isfinite(size[k])))
+            size[k] = all[k] = 0; // no point, or one that is nowhere
+        longest = fmax(longest, size[k]);
+    }
+    c->lo = v3(-all[0], -all[1], -all[2]);
+    c->side = longest > 0 ? longest : 1, c->many[0] = c->many[1] = c->many[2] = 1, c->n = 1;
+    double limit = fmin((double)CELLS_A_RANK * t->n, CELLS_MOST);
+    for (int m = 2; longest > 0; m++) {
+        double cells = 1;
+        for (int k = 0; k < 3; k++) cells *= floor(size[k] / (longest / m)) + 1;
+        if (cells > limit) break;
+        c->side = longest / m, c->n = (int64_t)cells;
+        for (int k = 0; k < 3; k++) c->many[k] = (int)floor(size[k] / c->side) + 1;
+    }
+}
+
+/* What is in each cell, of all ranks */
+static void weigh(struct cells *c, int64_t n, const vec3 *x, const float *weight)
+{
+    struct talk *t = c->talk;
+    c->work = talk_new(t, c->n, sizeof *c->work), c->count = talk_new(t, c->n, sizeof *c->count);
+    for (int64_t i = 0; i < n; i++) {
+        int64_t at[3];
+        place(c, x[i], at);
+        c->work[cell_at(c, at)] += (int64_t)(WEIGHT_UNITS * weight[i] + 0.5f);
+        c->count[cell_at(c, at)]++;
+    }
+    MPI_Allreduce(MPI_IN_PLACE, c->work, (int)c->n, MPI_INT64_T, MPI_SUM, t->comm);
+    MPI_Allreduce(MPI_IN_PLACE, c->count, (int)c->n, MPI_INT64_T, MPI_SUM, t->comm);
+}
+
+/* Cells in which nothing is go with the nearest, cell by cell outwards. */
+static void spread(struct cells *c)
+{
+    int64_t *queue = talk_new(c->talk, c->n, sizeof *queue), first = 0, end = 0, near[AROUND];
+    for (int64_t i = 0; i < c->n; i++)
+        if (c->owner[i] >= 0) queue[end++] = i;
+    if (!end) c->owner[0] = 0, queue[end++] = 0;
+    for (; first < end; first++) {
+        int n = around(c, queue[first], near);
+        for (int i = 0; i < n; i++) {
+            if (c->owner[near[i]] >= 0) continue;
+            c->owner[near[i]] = c->owner[queue[first]], queue[end++] = near[i];
+        }
+    }
+    free(queue);
+}
+
+void cells_cut(struct cells *c, int64_t n, const vec3 *x, const float *weight)
+{
+    struct talk *t = c->talk;
+    int changes, gids, lids, in, out;
+    ZOLTAN_ID_PTR in_gid = NULL, in_lid = NULL, gid = NULL, lid = NULL;
+    int *in_rank = NULL, *in_part = NULL, *rank = NULL, *part = NULL;
+    forget(c);
+    lay_grid(c, n, x);
+    weigh(c, n, x, weight);
+    c->owner = talk_new(t, c->n, sizeof *c->owner), c->home = talk_new(t, c->n, sizeof *c->home);
+    int64_t occupied = 0, next = 0;
+    for (int64_t i = 0; i < c->n; i++) occupied += c->count[i] > 0;
+    for (int64_t i = 0; i < c->n; i++) {
+        c->owner[i] = -1;
+        c->home[i] = c->count[i] ? (int)(next++ * t->n / occupied) : -1;
+    }
+    if (Zoltan_LB_Partition(c->zz, &changes, &gids, &lids, &in, &in_gid, &in_lid, &in_rank,
+                            &in_part, &out, &gid, &lid, &rank, &part) != ZOLTAN_OK)
+        talk_fail(t, EX_SOFTWARE, "Zoltan finds no cuts");
+    for (int k = 0; k < out; k++) c->owner[gid[k]] = part[k];
+    Zoltan_LB_Free_Part(&in_gid, &in_lid, &in_rank, &in_part);
+    Zoltan_LB_Free_Part(&gid, &lid, &rank, &part);
+    MPI_Allreduce(MPI_IN_PLACE, c->owner, (int)c->n, MPI_INT, MPI_MAX, t->comm);
+    spread(c);
+}
+
+int cells_owner(const struct cells *c, vec3 x)
+{
+    int64_t at[3];
+    place(c, x, at);
+    return c->owner[cell_at(c, at)];
+}
+
+int cells_meet(const struct cells *c, vec3 lo, vec3 hi, int *rank)
+{
+    int64_t from[3], to[3], at[3];
+    int n = 0;
+    place(c, lo, from), place(c, hi, to);
+    for (at[2] = from[2]; at[2] <= to[2]; at[2]++)
+        for (at[1] = from[1]; at[1] <= to[1]; at[1]++)
+            for (at[0] = from[0]; at[0] <= to[0]; at[0]++) {
+                int owner = c->owner[cell_at(c, at)], k = 0;
+                while (k < n && rank[k] != owner) k++;
+                if (k == n) rank[n++] = owner;
+            }
+    return n;
+}
