@@ -13,7 +13,7 @@ enum {
 };
 
 /* A dataset of all bodies that has been made, and no numbers in it */
-struct place {
+struct unfilled {
     char path[80];
     const struct column *column;
     int64_t frame; /* its row [bodies][width]; -1: the dataset is [bodies] */
@@ -27,7 +27,7 @@ struct elsewhere {
     int (*take)(struct elsewhere *e, const struct packing *block, int64_t first, struct why *why);
     /* Fills the datasets of `file`, which is open and flushed; path: where all processes find it, NULL where
        there is no such file. EX_IOERR: not written. */
-    int (*give)(struct elsewhere *e, hid_t file, const char *path, const struct place *place,
+    int (*give)(struct elsewhere *e, hid_t file, const char *path, const struct unfilled *place,
                 int places, struct why *why);
 };
 

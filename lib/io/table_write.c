@@ -129,8 +129,8 @@ int table_write_bodies(struct table_write *s, const char *path, const struct col
     if (!s->elsewhere) return 0;
     if (s->places == ELSEWHERE_PLACES)
         return why_set(why, EX_SOFTWARE, "%s: too many columns", path);
-    struct place *o = &s->place[s->places++];
-    *o = (struct place){ .column = c, .frame = move ? last_frame(s, path) : -1 };
+    struct unfilled *o = &s->place[s->places++];
+    *o = (struct unfilled){ .column = c, .frame = move ? last_frame(s, path) : -1 };
     snprintf(o->path, sizeof o->path, "%s", path);
     return 0;
 }

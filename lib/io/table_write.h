@@ -23,7 +23,7 @@ struct table_write {
     struct roster *roster; /* the bodies then, else NULL; the writer's */
     /* Who has the bodies, else NULL; and the datasets that have been made for them, and are not filled */
     struct elsewhere *elsewhere;
-    struct place place[ELSEWHERE_PLACES];
+    struct unfilled place[ELSEWHERE_PLACES];
     int places;
     struct {
         char path[80];

@@ -69,7 +69,7 @@ static void begin(enum word w, const struct packing *p)
     crew.begun = true;
 }
 
-static int fill(hid_t file, const char *path, const struct place *place, int places,
+static int fill(hid_t file, const char *path, const struct unfilled *place, int places,
                 struct why *why)
 {
     return files_fill(&crew.rows, crew.begun ? &crew.stride.part : NULL, file, path, place, places,
@@ -93,7 +93,7 @@ static int take(struct elsewhere *e, const struct packing *block, int64_t first,
     return 0;
 }
 
-static int give(struct elsewhere *e, hid_t file, const char *path, const struct place *place,
+static int give(struct elsewhere *e, hid_t file, const char *path, const struct unfilled *place,
                 int places, struct why *why)
 {
     (void)e;

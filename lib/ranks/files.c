@@ -146,8 +146,8 @@ static void check_bodies(const struct rows *r, const struct part *y)
     if (least < INT64_MAX) MPI_Barrier(r->talk->comm);
 }
 
-static struct target *spread_targets(struct talk *t, char path[PATH_MAX], const struct place *place,
-                                     int *places, bool *gather)
+static struct target *spread_targets(struct talk *t, char path[PATH_MAX],
+                                     const struct unfilled *place, int *places, bool *gather)
 {
     struct parcel o = { 0 };
     for (int k = 0; k < *places && !t->me; k++) {
@@ -170,7 +170,7 @@ static struct target *spread_targets(struct talk *t, char path[PATH_MAX], const 
 }
 
 int files_fill(const struct rows *r, const struct part *y, hid_t file, const char *path,
-               const struct place *place, int places, bool gather, struct why *why)
+               const struct unfilled *place, int places, bool gather, struct why *why)
 {
     struct talk *t = r->talk;
     struct haul h;
