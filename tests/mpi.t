@@ -325,16 +325,16 @@ dies() # one of three is killed after some frames; whole frames are left, and th
     rm -f "$tmp/d.h5"
     ranks 3 -n 100000 --progress 1 -o "$tmp/d.h5" "$tmp/heap.h5" >"$tmp/said" 2>&1 &
     local job=$! k victim=
-    for ((k = 0; k < 300; k++)); do
+    for ((k = 0; k < 900; k++)); do
         [ "$(nsd-info "$tmp/d.h5" 2>/dev/null | jq -s 'map(select(.step != null)) | length')" -gt 2 ] 2>/dev/null && break
         sleep 0.1
     done
     for k in $(ps -eo pid,args | awk -v f="$tmp/d.h5" 'index($0, f) && $2 ~ /^nsd-step/ { print $1 }'); do
         ! tr '\0' '\n' <"/proc/$k/environ" | grep -qx OMPI_COMM_WORLD_RANK=2 || victim=$k
     done
-    [ -n "$victim" ] && kill -9 "$victim" || return 1
-    for ((k = 0; k < 300; k++)); do kill -0 "$job" 2>/dev/null || break; sleep 0.1; done
-    kill "$job" 2>/dev/null && return 1 # it has not ended by itself
+    [ -n "$victim" ] && kill -9 "$victim" || { cat "$tmp/said"; return 1; }
+    for ((k = 0; k < 900; k++)); do kill -0 "$job" 2>/dev/null || break; sleep 0.1; done
+    kill "$job" 2>/dev/null && echo "it has not ended by itself" && return 1
     wait "$job" && return 1
     grep -q 'nsd-step: another process of the run has ended' "$tmp/said" || { cat "$tmp/said"; return 1; }
     nsd-step -n 2 -i "$tmp/d.h5" && nsd-info "$tmp/d.h5" >/dev/null
