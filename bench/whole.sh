@@ -42,10 +42,11 @@ jq -n '{ dt: 1e-5, gravity: [0.3, 0.2, -9.81], walls: [{ point: [0, 0, 0], norma
 start='TIMEFORMAT="%U %S"; { time for k in 1 2 3 4 5 6 7 8 9 10; do TOOL --version > /dev/null; done; } 2>&1 | awk "{ print 100 * (\$1 + \$2) }"'
 # seconds for the document, to be turned into MB/s by the reader: 136 MB
 pipe='TIMEFORMAT=%R; { time cat "$work/million.h5" | CHAIN > /dev/null; } 2>&1'
+four='TIMEFORMAT=%R; { time cat "$work/million.h5"{,,,} | CHAIN > /dev/null; } 2>&1'
 # seconds on the wall of nsd-step
 steps='TIMEFORMAT=%R; { time nsd-step -j THREADS -n STEPS --every STEPS "$work/FILE.h5" > /dev/null 2>&1; } 2>&1'
 # the share of nsd-step's time that is not the solver's, %
-outside='TIMEFORMAT=%R; t=$({ time nsd-step -j 2 -n 40 --every 40 --log "$work/log" "$work/column.h5" > /dev/null 2>&1; } 2>&1)
+outside='TIMEFORMAT=%R; t=$({ time nsd-step -j 2 -n 200 --every 200 --log "$work/log" "$work/column.h5" > /dev/null 2>&1; } 2>&1)
     jq -s --argjson t "$t" "100 * (1 - (map(.elapsed) | add) / \$t)" "$work/log"'
 
 rows()
@@ -56,6 +57,7 @@ rows()
     done
     row "136 MB through nsd-cat" s 0.34 "${pipe//CHAIN/nsd-cat}"
     row "136 MB through nsd-cat, three in a row" s 0.34 "${pipe//CHAIN/nsd-cat | nsd-cat | nsd-cat}"
+    row "four times 136 MB through nsd-cat, three in a row" s 1.36 "${four//CHAIN/nsd-cat | nsd-cat | nsd-cat}"
     for file in pile:200 flat:20 column:20 cube:10; do
         n=${steps//STEPS/${file#*:}} n=${n//FILE/${file%:*}}
         row "${file#*:} steps, ${file%:*}, -j 1" s "" "${n//THREADS/1}"
@@ -63,7 +65,7 @@ rows()
         row "${file#*:} steps, ${file%:*}, -j 2, and a neighbour that wants a core" s "" \
             "while :; do :; done & trap 'kill \$!' EXIT; ${n//THREADS/2}"
     done
-    row "40 steps, column, -j 2: outside the solver" % 40 "$outside"
+    row "200 steps, column, -j 2: outside the solver" % 40 "$outside"
 }
 
 mkdir -p "$results"

@@ -7,6 +7,7 @@
 #include "bodies/top.h"
 #include "problem/braking.h"
 #include "problem/filling.h"
+#include "problem/laying.h"
 #include "problem/schedule.h"
 #include "problem/shared.h"
 
@@ -15,40 +16,15 @@
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 
 enum {
-    HUGE_PAGE = 2 << 20, /* bytes */
-    LINE = 64,           /* bytes of a cache line */
-    MANY_LINES = 8192,   /* lines that are worth a thread to clear: 50 us */
-    SOME = 4096,         /* bodies, contacts or slots that are worth a thread: 100 us of work */
-    PARALLEL_FROM = 64   /* bundles a group, on average, that are worth more than one thread */
+    SOME = 4096,       /* bodies, contacts or slots that are worth a thread: 100 us of work */
+    PARALLEL_FROM = 64 /* bundles a group, on average, that are worth more than one thread */
 };
 
 static_assert(sizeof(struct body) == 64, "a body is a cache line");
 static_assert(sizeof(struct bundle) % 64 == 0, "lanes begin a cache line");
 static_assert(sizeof(struct levers) % 64 == 0, "lanes begin a cache line");
-
-static void clear_some(void *lines, int64_t first, int64_t end)
-{
-    memset((char *)lines + LINE * first, 0, (size_t)(end - first) * LINE);
-}
-
-/*
- * Zeroed memory aligned to cache lines, in huge pages where it is large: bodies read in any order
- * then do not wait for page tables. NULL only when memory is short, also for n = 0.
- */
-static void *alloc_lines(int64_t n, size_t size)
-{
-    size_t bytes = (size_t)(n > 0 ? n : 1) * size, page = bytes < 2 * HUGE_PAGE ? LINE : HUGE_PAGE;
-    bytes = (bytes + page - 1) / page * page;
-    void *p = aligned_alloc(page, bytes);
-#ifdef MADV_HUGEPAGE
-    if (p && page == HUGE_PAGE) madvise(p, bytes, MADV_HUGEPAGE);
-#endif
-    if (p) team_share(team_size(), (int64_t)(bytes / LINE), MANY_LINES, clear_some, p);
-    return p;
-}
 
 static int no_memory(struct problem *p, struct why *why)
 {
@@ -67,94 +43,6 @@ void problem_free(struct problem *p)
     if (p->coupling) couplings_free(p->coupling);
     free(p->own), free(p->coupling);
     *p = (struct problem){ 0 };
-}
-
-/* Makes bundles of the plan's groups; each group begins a new one. */
-static bool lay_out_bundles(struct problem *p, const struct schedule *plan)
-{
-    p->groups = plan->groups;
-    p->group = malloc((size_t)(plan->groups + 1) * sizeof *p->group);
-    for (int64_t g = 0; p->group && g < plan->groups; g++) {
-        p->group[g] = p->bundles;
-        p->bundles += (plan->group[g + 1] - plan->group[g] + BUNDLE - 1) / BUNDLE;
-    }
-    p->slots = p->bundles * BUNDLE;
-    p->bundle = alloc_lines(p->bundles, sizeof *p->bundle);
-    p->u = alloc_lines(p->bundles, sizeof *p->u);
-    p->contact = malloc((size_t)(p->slots + 1) * sizeof *p->contact);
-    if (!p->group || !p->bundle || !p->u || !p->contact) return false;
-    p->group[p->groups] = p->bundles;
-    if (plan->rest && !(p->split = alloc_lines(1, sizeof *p->split))) return false;
-    if (p->split)
-        *p->split =
-            (struct two_thread_split){ plan->beyond, plan->inside, plan->rim, plan->rest, 0, 0 };
-    for (int64_t g = 0; g < p->groups; g++) {
-        int64_t first = plan->group[g], n = plan->group[g + 1] - first;
-        int64_t at = p->group[g] * BUNDLE, end = p->group[g + 1] * BUNDLE;
-        for (int64_t i = 0; i < n; i++) p->contact[at++] = (int32_t)plan->sequence[first + i];
-        for (; at < end; at++) {
-            struct bundle *c = slot_bundle(p, at);
-            p->contact[at] = -1;
-            for (int k = 0; k < 2; k++) c->w[k][slot_lane(at)] = c->iw[k][slot_lane(at)] = 1;
-        }
-    }
-    return true;
-}
-
-/* What the problem is made of, slot by slot: contacts are long, and lie in another order. */
-struct making {
-    struct problem *p;
-    const struct contacts *s;
-    int32_t (*pair)[2]; /* [slots] a, b of the contact; of a lane without one b is -1 */
-    int64_t *copies;    /* [bundles + 1] of bodies that do not move, in the bundles before */
-};
-
-static void pair_some(void *arg, int64_t first, int64_t end)
-{
-    struct making *m = arg;
-    const struct problem *p = m->p;
-    int32_t moves[2];
-    for (int64_t i = BUNDLE * first; i < BUNDLE * end; i++) {
-        const struct contact *c = p->contact[i] < 0 ? NULL : &m->s->c[p->contact[i]];
-        m->pair[i][0] = c ? c->a : 0, m->pair[i][1] = c ? c->b : -1;
-        m->copies[i / BUNDLE + 1] += c ? 2 - packing_movable(p->packing, c->a, c->b, moves) : 0;
-    }
-}
-
-/* False when memory is short; to be freed in any case. */
-static bool making_init(struct making *m, struct problem *p, const struct contacts *s)
-{
-    *m = (struct making){ p, s, malloc((size_t)(p->slots + 1) * sizeof *m->pair),
-                          calloc((size_t)p->bundles + 1, sizeof *m->copies) };
-    if (!m->pair || !m->copies) return false;
-    team_share(team_size(), p->bundles, SOME / BUNDLE, pair_some, m);
-    for (int64_t k = 0; k < p->bundles; k++) m->copies[k + 1] += m->copies[k];
-    return true;
-}
-
-static void making_free(struct making *m)
-{
-    free(m->pair), free(m->copies);
-}
-
-/*
- * The place of each body in body[]: by colours in the order in which the sweep first meets them,
- * else as in the packing. NULL when memory is short.
- */
-static int32_t *seat_bodies(const struct making *m, enum order order)
-{
-    int64_t n = m->p->packing->n;
-    int32_t *seat = malloc((size_t)(n + 1) * sizeof *seat), next = 0;
-    for (int64_t i = 0; seat && i < n; i++) seat[i] = -1;
-    for (int64_t i = 0; seat && order >= ORDER_COLOUR && i < m->p->slots; i++) {
-        const int32_t *c = m->pair[i];
-        if (c[1] < 0) continue;
-        if (c[0] >= 0 && seat[c[0]] < 0) seat[c[0]] = next++;
-        if (seat[c[1]] < 0) seat[c[1]] = next++;
-    }
-    for (int64_t i = 0; seat && i < n; i++)
-        if (seat[i] < 0) seat[i] = next++;
-    return seat;
 }
 
 /* Sets bodies first .. end-1, with their velocities before the step. */
@@ -218,43 +106,6 @@ void problem_set_free_motion(struct problem *p)
     if (p->shared && p->pull) p->shared->settle(p->shared, p);
 }
 
-/* The place of a body i (wall w: -1-w) of a contact at x (m): its own, or of a new copy if it does
-   not move. A load's speed is prescribed here [problem/coupling.h]. */
-static int32_t place_of(struct problem *p, int32_t i, const vec3 *x, int64_t *next)
-{
-    const struct packing *pack = p->packing;
-    if (i >= 0 && pack->mass[i] > 0) return body_place(p->seat[i]);
-    struct body *copy = &p->body[*next];
-    vec3 v = i < 0 ? wall_velocity(pack, &pack->wall[-1 - i], *x) : pack->v[i];
-    *copy = (struct body){ .v = { v.x, v.y, v.z } };
-    if (i < 0 && p->rolls) { // its arm is 0: that it turns matters to moments only
-        vec3 w = wall_spin(pack, &pack->wall[-1 - i]);
-        copy->w[0] = w.x, copy->w[1] = w.y, copy->w[2] = w.z;
-    }
-    if (i >= 0) *copy = p->body[p->seat[i]];
-    return body_place((*next)++);
-}
-
-/* The bodies' places in the slots */
-static void place_some(void *arg, int64_t first, int64_t end)
-{
-    struct making *m = arg;
-    struct problem *p = m->p;
-    int32_t nobody = (int32_t)p->packing->n;
-    int64_t other = p->split ? BUNDLE * p->group[p->split->inside] : p->slots;
-    int64_t next = nobody + 2 + m->copies[first];
-    for (int64_t i = BUNDLE * first; i < BUNDLE * end; i++) {
-        struct bundle *r = slot_bundle(p, i);
-        const int32_t *body = m->pair[i];
-        int k = slot_lane(i);
-        r->a[k] = r->b[k] = body_place(nobody + (i >= other));
-        for (int j = 0; j < 9 && p->lever; j += 4) r->W[j][k] = 1; // of a lane without a contact
-        if (body[1] < 0) continue;
-        const vec3 *x = &m->s->c[p->contact[i]].x;
-        r->a[k] = place_of(p, body[0], x, &next), r->b[k] = place_of(p, body[1], x, &next);
-    }
-}
-
 /* half[n] = the orientations in which contacts act, and p->spin; false when memory is short. */
 static bool find_spins(struct problem *p, const struct packing *pack, quat **half)
 {
@@ -281,11 +132,11 @@ static bool lay_out_beyond(struct problem *p, const struct contacts *s)
     }
     p->rolls = anywhere(p, p->rolls), any = anywhere(p, any);
     if (!any && !p->rolls) return true;
-    p->beyond = alloc_lines(p->bundles, sizeof *p->beyond);
+    p->beyond = lay_lines(p->bundles, sizeof *p->beyond);
     for (int64_t i = 0; p->beyond && i < p->slots; i++)
         for (int j = 0; j < 2; j++) p->beyond[i / BUNDLE].s[j][slot_lane(i)] = 1;
     if (!p->beyond || !p->lever) return p->beyond != NULL;
-    p->turn = alloc_lines(p->bundles, sizeof *p->turn);
+    p->turn = lay_lines(p->bundles, sizeof *p->turn);
     for (int64_t i = 0; p->turn && i < p->slots; i++)
         for (int j = 0; j < 9; j += 4) p->turn[i / BUNDLE].S[j][slot_lane(i)] = 1;
     return p->turn != NULL;
@@ -416,25 +267,25 @@ static int prepare(struct problem *p, const struct packing *pack, const struct c
     p->shared = shared;
     if (shared) p->n = shared->contacts;
     if (p->bodies > BODIES_MAX) return why_set(why, EX_DATAERR, "more than %d bodies", BODIES_MAX);
-    p->body = alloc_lines(p->bodies, sizeof *p->body);
+    p->body = lay_lines(p->bodies, sizeof *p->body);
     bool room = p->body && (given || !schedule_bodies(&plan, order, s, pack)) &&
-                lay_out_bundles(p, given ? given : &plan);
+                lay_bundles(p, given ? given : &plan);
     schedule_free(&plan);
     quat *half = NULL;
     if (anywhere(p, found.shaped) && room) {
         p->full = true;
-        p->lever = alloc_lines(p->bundles, sizeof *p->lever);
+        p->lever = lay_lines(p->bundles, sizeof *p->lever);
         room = p->lever && find_spins(p, pack, &half);
     }
     if (anywhere(p, found.rebounds) && room)
-        room = (p->rebound = alloc_lines(p->bundles, sizeof *p->rebound)) != NULL;
+        room = (p->rebound = lay_lines(p->bundles, sizeof *p->rebound)) != NULL;
     room = room && set_pulls(p, s) && lay_out_beyond(p, s);
-    struct making make = { 0 };
-    room = room && making_init(&make, p, s) && (p->seat = seat_bodies(&make, order));
-    if (!room) return free(half), making_free(&make), no_memory(p, why);
+    struct laying lay = { 0 };
+    room = room && laying_init(&lay, p, s) && (p->seat = lay_seats(&lay, order));
+    if (!room) return free(half), laying_free(&lay), no_memory(p, why);
     team_share(team_size(), pack->n, SOME, set_some, p);
-    team_share(team_size(), p->bundles, SOME / BUNDLE, place_some, &make);
-    making_free(&make);
+    lay_places(&lay);
+    laying_free(&lay);
     struct filling f = { p, s, &cell, alpha, rho_factor, half };
     team_share(team_size(), p->bundles, SOME / BUNDLE, fill_bundles, &f);
     room = !shared || !shared->slower || !brake_make(p, &f, shared->slower);
@@ -502,7 +353,7 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
 {
     struct schedule plan = { 0 };
     *p = (struct problem){ .d = W->d, .n = W->n, .W = W, .dt = 1, .scale_v = 1, .scale_r = 1 };
-    bool room = !schedule_blocks(&plan, order, W) && lay_out_bundles(p, &plan);
+    bool room = !schedule_blocks(&plan, order, W) && lay_bundles(p, &plan);
     schedule_free(&plan);
     if (!room || delassus_sort(&p->sorted, W, p->slots, p->contact, why)) return no_memory(p, why);
     for (int64_t c = 0; c < W->n; c++) p->full = p->full || !like_balls(W->diag + 9 * c);
