@@ -191,7 +191,8 @@ dies() # one of three is killed after some frames; whole frames are left, and th
     for k in $(ps -eo pid,args | awk -v f="$tmp/d.h5" 'index($0, f) && $2 ~ /^nsd-step/ { print $1 }'); do
         ! tr '\0' '\n' <"/proc/$k/environ" | grep -qx OMPI_COMM_WORLD_RANK=2 || victim=$k
     done
-    [ -n "$victim" ] && kill -9 "$victim" || { cat "$tmp/said"; return 1; }
+    [ -n "$victim" ] || { cat "$tmp/said"; return 1; }
+    kill -9 "$victim" || return 1
     for ((k = 0; k < 900; k++)); do kill -0 "$job" 2>/dev/null || break; sleep 0.1; done
     kill "$job" 2>/dev/null && echo "it has not ended by itself" && return 1
     wait "$job" && return 1
