@@ -304,6 +304,8 @@ ok "a heap that slides across the parts: the bytes of one process" same "$tmp/sl
 ok "and it is cut anew, so that the work stays even" even 1.15 1.5 2
 ok "the same in cells of a grid, by a hypergraph" same "$tmp/slide.h5" 4 -n 60 --every 60 --cut hypergraph
 ok "as even" even 1.2 1.5 2
+jq -n '{ dim: 2, dt: 1e-3, walls: [{ normal: [0, 1], point: [0, 0] }], bodies: [{ x: [0, 0.01], radius: 0.01 }] }' | nsd-gen - >"$tmp/disc.h5"
+ok "of one disc" same "$tmp/disc.h5" 3 -n 2 --cut hypergraph
 ok "and in blocks" blocks "$tmp/heap.h5" 3 1e-8 -n 2 --overlap keep --cut hypergraph
 ok "a drum that turns through them: the bytes of one process" same "$tmp/drum.h5" 3 -n 25 --every 25
 ok "and the work stays even" even 1.15 1.3 1
@@ -332,7 +334,8 @@ dies() # one of three is killed after some frames; whole frames are left, and th
     for k in $(ps -eo pid,args | awk -v f="$tmp/d.h5" 'index($0, f) && $2 ~ /^nsd-step/ { print $1 }'); do
         ! tr '\0' '\n' <"/proc/$k/environ" | grep -qx OMPI_COMM_WORLD_RANK=2 || victim=$k
     done
-    [ -n "$victim" ] && kill -9 "$victim" || { cat "$tmp/said"; return 1; }
+    [ -n "$victim" ] || { cat "$tmp/said"; return 1; }
+    kill -9 "$victim" || return 1
     for ((k = 0; k < 900; k++)); do kill -0 "$job" 2>/dev/null || break; sleep 0.1; done
     kill "$job" 2>/dev/null && echo "it has not ended by itself" && return 1
     wait "$job" && return 1

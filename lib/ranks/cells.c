@@ -247,12 +247,25 @@ static void spread(struct cells *c)
     free(queue);
 }
 
-void cells_cut(struct cells *c, int64_t n, const vec3 *x, const float *weight)
+/* Asks Zoltan whose the occupied cells are. */
+static void share_out(struct cells *c)
 {
     struct talk *t = c->talk;
     int changes, gids, lids, in, out;
     ZOLTAN_ID_PTR in_gid = NULL, in_lid = NULL, gid = NULL, lid = NULL;
     int *in_rank = NULL, *in_part = NULL, *rank = NULL, *part = NULL;
+    if (Zoltan_LB_Partition(c->zz, &changes, &gids, &lids, &in, &in_gid, &in_lid, &in_rank,
+                            &in_part, &out, &gid, &lid, &rank, &part) != ZOLTAN_OK)
+        talk_fail(t, EX_SOFTWARE, "Zoltan finds no cuts");
+    for (int k = 0; k < out; k++) c->owner[gid[k]] = part[k];
+    Zoltan_LB_Free_Part(&in_gid, &in_lid, &in_rank, &in_part);
+    Zoltan_LB_Free_Part(&gid, &lid, &rank, &part);
+    MPI_Allreduce(MPI_IN_PLACE, c->owner, (int)c->n, MPI_INT, MPI_MAX, t->comm);
+}
+
+void cells_cut(struct cells *c, int64_t n, const vec3 *x, const float *weight)
+{
+    struct talk *t = c->talk;
     forget(c);
     lay_grid(c, n, x);
     weigh(c, n, x, weight);
@@ -261,15 +274,13 @@ void cells_cut(struct cells *c, int64_t n, const vec3 *x, const float *weight)
     for (int64_t i = 0; i < c->n; i++) occupied += c->count[i] > 0;
     for (int64_t i = 0; i < c->n; i++) {
         c->owner[i] = -1;
-        c->home[i] = c->count[i] ? (int)(next++ * t->n / occupied) : -1;
+        c->home[i] = c->count[i] && occupied ? (int)(next++ * t->n / occupied) : -1;
     }
-    if (Zoltan_LB_Partition(c->zz, &changes, &gids, &lids, &in, &in_gid, &in_lid, &in_rank,
-                            &in_part, &out, &gid, &lid, &rank, &part) != ZOLTAN_OK)
-        talk_fail(t, EX_SOFTWARE, "Zoltan finds no cuts");
-    for (int k = 0; k < out; k++) c->owner[gid[k]] = part[k];
-    Zoltan_LB_Free_Part(&in_gid, &in_lid, &in_rank, &in_part);
-    Zoltan_LB_Free_Part(&gid, &lid, &rank, &part);
-    MPI_Allreduce(MPI_IN_PLACE, c->owner, (int)c->n, MPI_INT, MPI_MAX, t->comm);
+    // so few cells Zoltan does not share out
+    if (occupied >= 2 * t->n)
+        share_out(c);
+    else
+        for (int64_t i = 0; i < c->n; i++) c->owner[i] = c->home[i];
     spread(c);
 }
 
