@@ -11,6 +11,9 @@ fi
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_mpi_yield_when_idle=1
 export ASAN_OPTIONS=detect_leaks=0:$ASAN_OPTIONS # MPI's own
 
+all=${quick:+2 3} # with sanitizers each process takes a second to start
+all=${all:-2 3 4 8}
+
 ranks() # K ARGUMENT ...: nsd-step by K processes
 {
     local k=$1
@@ -44,7 +47,7 @@ after() # STEPS SCENE: its packing then, into $tmp/NAME.h5
 # ---- the order of all contacts ----
 
 nsd-gen 300 | nsd-step -n 900 --every 900 2>/dev/null | nsd-cat --last >"$tmp/heap.h5"
-ok "300 balls: the bytes of one process on 2, 3, 4 and 8" same "$tmp/heap.h5" "2 3 4 8" -n 10 --contacts
+ok "300 balls: the bytes of one process on $all" same "$tmp/heap.h5" "$all" -n 10 --contacts
 ok "in the natural order, by nlgs" same "$tmp/heap.h5" 3 -n 5 -m sbp --order natural --max-sweeps 30
 ok "by Anderson's acceleration, to a tight criterion" same "$tmp/heap.h5" 3 -n 3 --global anderson --eps 1e-7
 ok "by another criterion, with warm starts" same "$tmp/heap.h5" 3 -n 5 --criterion scaled --warm
@@ -192,14 +195,14 @@ gas() # in each step a frame; and on from it, on another number of processes
     local k
     rm -f "$tmp"/gas-*
     nsd-step -n 20 --every 5 -o "$tmp/gas-1" "$tmp/gas.h5" && nsd-step -n 4 -i "$tmp/gas-1" || return 1
-    for k in 2 3 4 8; do
+    for k in $all; do
         ranks "$k" -n 20 --every 5 --order block -o "$tmp/gas-$k" "$tmp/gas.h5" && ranks $((k / 2 + 1)) -n 4 --order block -i "$tmp/gas-$k" &&
             NSD_GATHER=1 ranks "$k" -n 20 --every 5 --order block -o "$tmp/gas-first-$k" "$tmp/gas.h5" &&
             NSD_GATHER=1 ranks 2 -n 4 --order block -i "$tmp/gas-first-$k" || return 1
     done
     same_particles "$tmp"/gas-*
 }
-ok "bodies that do not touch: the bytes of one process on 2, 3, 4 and 8, in both forms, and where a run goes on" gas
+ok "bodies that do not touch: the bytes of one process on $all, in both forms, and where a run goes on" gas
 none_of_all() # more processes than bodies; no step; a stream, which is no file that all can open
 {
     nsd-gen 3 >"$tmp/three.h5" && rm -f "$tmp"/[ab].h5 && mkfifo "$tmp/pipe" && ranks 5 -n 3 --order block -o "$tmp/a.h5" "$tmp/three.h5" &&
@@ -230,7 +233,7 @@ harm text 'del f[P + "mass"]; f[P + "mass"] = np.array([b"x"] * 101)'
 refused() # the same status, and the same line, as in one process, and no file is left
 {
     local name s
-    for name in nan kind shape image large short missing text; do
+    for name in nan missing $([ -n "$quick" ] || echo kind shape image large short text); do
         s=0
         nsd-step -o "$tmp/refused.h5" "$tmp/$name.h5" 2>"$tmp/single" && return 1
         ranks 3 --order block -o "$tmp/refused.h5" "$tmp/$name.h5" 2>"$tmp/said" || s=$?
