@@ -263,3 +263,26 @@ void team_share(int threads, int64_t n, int64_t least, team_part *some, void *ar
     struct share s = { n, least, some, arg, 0 };
     team_do(threads, take_parts, &s);
 }
+
+struct most {
+    team_look *some;
+    void *arg;
+    pthread_mutex_t lock;
+    double most;
+};
+
+static void look(void *arg, int64_t first, int64_t end)
+{
+    struct most *m = arg;
+    double most = m->some(m->arg, first, end);
+    pthread_mutex_lock(&m->lock);
+    m->most = most > m->most ? most : m->most;
+    pthread_mutex_unlock(&m->lock);
+}
+
+double team_most(int threads, int64_t n, int64_t least, team_look *some, void *arg)
+{
+    struct most m = { some, arg, PTHREAD_MUTEX_INITIALIZER, 0 };
+    team_share(threads, n, least, look, &m);
+    return m.most;
+}

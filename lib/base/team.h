@@ -30,6 +30,10 @@ void team_meet(void);
 typedef void team_part(void *arg, int64_t first, int64_t end);
 void team_share(int threads, int64_t n, int64_t least, team_part *some, void *arg);
 
+/* The largest number that `some` finds in such parts, at least 0 */
+typedef double team_look(void *arg, int64_t first, int64_t end);
+double team_most(int threads, int64_t n, int64_t least, team_look *some, void *arg);
+
 /* Threads for whatever is not told how many it may have: 1, unless the tool says otherwise; and how many */
 void team_set_size(int threads);
 int team_size(void);

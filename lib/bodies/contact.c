@@ -3,7 +3,6 @@
 
 #include "base/team.h"
 
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -106,28 +105,17 @@ static bool same_place(const struct contact *c, const struct contact *d)
     return c->feature == d->feature && !memcmp(c->shift, d->shift, sizeof c->shift);
 }
 
-/* The deepest overlap, as threads find it */
-struct depth {
-    const struct contacts *s;
-    double most; /* m */
-    pthread_mutex_t lock;
-};
-
-static void look_some(void *arg, int64_t first, int64_t end)
+static double deepest(void *arg, int64_t first, int64_t end)
 {
-    struct depth *o = arg;
-    double most = 0;
-    for (int64_t i = first; i < end; i++) most = dmax(most, -o->s->c[i].gap);
-    pthread_mutex_lock(&o->lock);
-    o->most = dmax(o->most, most);
-    pthread_mutex_unlock(&o->lock);
+    const struct contacts *s = arg;
+    double depth = 0;
+    for (int64_t i = first; i < end; i++) depth = dmax(depth, -s->c[i].gap);
+    return depth;
 }
 
 double contacts_max_overlap(const struct contacts *s)
 {
-    struct depth o = { s, 0, PTHREAD_MUTEX_INITIALIZER };
-    team_share(team_size(), s->n, SOME, look_some, &o);
-    return o.most;
+    return team_most(team_size(), s->n, SOME, deepest, (void *)s);
 }
 
 /* r of c = what `was` in the basis of o */

@@ -13,7 +13,6 @@
 
 #include <assert.h>
 #include <float.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -183,32 +182,20 @@ static void measure_some(void *arg, int64_t first, int64_t end)
     }
 }
 
-/* A number of which the largest is sought by threads */
-struct most {
-    const struct packing *p;
-    double most;
-    pthread_mutex_t lock;
-};
-
-static void speed_some(void *arg, int64_t first, int64_t end)
+static double fastest(void *arg, int64_t first, int64_t end)
 {
-    struct most *m = arg;
-    const struct packing *p = m->p;
+    const struct packing *p = arg;
     double most = 0;
     for (int64_t i = first; i < end; i++)
         most = dmax(most, v3_norm(p->v[i]) + p->radius[i] * v3_norm(p->w[i]));
-    pthread_mutex_lock(&m->lock);
-    m->most = dmax(m->most, most);
-    pthread_mutex_unlock(&m->lock);
+    return most;
 }
 
 /* m/s: the speed of the fastest point of a body or wall, plus g dt. The velocities at contacts are
    differences of such speeds, and have their rounding. */
 static double top_speed(const struct packing *p)
 {
-    struct most m = { p, 0, PTHREAD_MUTEX_INITIALIZER };
-    team_share(team_size(), p->n, SOME, speed_some, &m);
-    double most = m.most, images = 0;
+    double most = team_most(team_size(), p->n, SOME, fastest, (void *)p), images = 0;
     for (int32_t k = 0; k < p->walls; k++) most = fmax(most, wall_top_speed(p, &p->wall[k]));
     for (int k = 0; k < 3; k++) images += p->cell.repeats[k] ? v3_norm(p->cell.rate[k]) : 0;
     most += images;
