@@ -44,15 +44,42 @@ static int put_block(hid_t set, hid_t type, int rank, const hsize_t *first, cons
     return e < 0 ? -1 : 0;
 }
 
+/* The numbers wanted: the dataset of a request, whose type suits it; else NULL and why */
+static const struct entry *find_numbers(const struct served *s, const struct request *q,
+                                        struct why *why)
+{
+    const struct entry *e = served_find(s, q->path, why);
+    if (!e || element_suits(&e->object, q->type)) return e;
+    why_set(why, EX_DATAERR, "%s: %s are wanted, and it holds something else", q->path,
+            element_wanted(q->type));
+    return NULL;
+}
+
+/* The block of a dataset in which as many numbers as `stored` have to be there */
+static int answer_block(struct served *s, const struct entry *e, const struct request *q,
+                        hsize_t stored, const hsize_t *first, const hsize_t *count,
+                        struct sink *sink, struct why *why)
+{
+    const struct object *o = &e->object;
+    struct reply reply = { .there = true, .size = column_size(q->type) };
+    for (uint32_t k = 0; k < o->rank; k++) reply.size *= count[k];
+    if (served_stored(e, stored * o->size, why)) return why->status;
+    hid_t set = served_set(s, e, why);
+    if (set < 0) return why->status;
+    int bad = sink->begin(sink, &reply) ||
+              put_block(set, column_native(q->type), (int)o->rank, first, count, sink);
+    if (set != e->set) H5Dclose(set);
+    return bad ? why_set(why, EX_DATAERR, "%s: cannot be read as %s (damaged?)", q->path,
+                         element_wanted(q->type))
+               : 0;
+}
+
 static int answer_rows(struct served *s, const struct request *q, struct sink *sink,
                        struct why *why)
 {
-    const struct entry *e = served_find(s, q->path, why);
+    const struct entry *e = find_numbers(s, q, why);
     if (!e) return why->status;
     const struct object *o = &e->object;
-    if (!element_suits(o, q->type))
-        return why_set(why, EX_DATAERR, "%s: %s are wanted, and it holds something else", q->path,
-                       element_wanted(q->type));
     hsize_t first[OBJECT_RANK] = { 0 }, count[OBJECT_RANK], row = 1,
             rows = o->rank ? e->shape[0] : 1;
     for (uint32_t k = 0; k < o->rank; k++) {
@@ -64,30 +91,17 @@ static int answer_rows(struct served *s, const struct request *q, struct sink *s
                  rows - (hsize_t)q->start < (hsize_t)q->n || row != (hsize_t)q->width))
         return why_set(why, EX_DATAERR, "%s: not of %lld rows of %lld numbers", q->path,
                        (long long)(q->start + q->n), (long long)q->width);
-    if (!all) first[0] = (hsize_t)q->start, count[0] = (hsize_t)q->n, rows = first[0] + count[0];
-    if (served_stored(e, (all ? rows : count[0]) * row * o->size, why)) return why->status;
-    hid_t set = served_set(s, e, why);
-    if (set < 0) return why->status;
-    struct reply reply = { .there = true };
-    reply.size = (all ? rows : count[0]) * row * column_size(q->type);
-    int bad = sink->begin(sink, &reply) ||
-              put_block(set, column_native(q->type), (int)o->rank, first, count, sink);
-    if (set != e->set) H5Dclose(set);
-    return bad ? why_set(why, EX_DATAERR, "%s: cannot be read as %s (damaged?)", q->path,
-                         element_wanted(q->type))
-               : 0;
+    if (!all) first[0] = (hsize_t)q->start, count[0] = (hsize_t)q->n, rows = count[0];
+    return answer_block(s, e, q, rows * row, first, count, sink, why);
 }
 
 /* Of one row some rows of the dimension within it */
 static int answer_part(struct served *s, const struct request *q, struct sink *sink,
                        struct why *why)
 {
-    const struct entry *e = served_find(s, q->path, why);
+    const struct entry *e = find_numbers(s, q, why);
     if (!e) return why->status;
     const struct object *o = &e->object;
-    if (!element_suits(o, q->type))
-        return why_set(why, EX_DATAERR, "%s: %s are wanted, and it holds something else", q->path,
-                       element_wanted(q->type));
     hsize_t first[OBJECT_RANK] = { 0 }, count[OBJECT_RANK], width = 1;
     for (uint32_t k = 0; k < o->rank; k++) {
         count[k] = e->shape[k];
@@ -97,19 +111,10 @@ static int answer_part(struct served *s, const struct request *q, struct sink *s
         count[1] < (hsize_t)q->from || count[1] - (hsize_t)q->from < (hsize_t)q->n ||
         width != (hsize_t)q->width)
         return why_set(why, EX_DATAERR, "%s: has no such part", q->path);
-    if (served_stored(e, count[1] * width * o->size, why)) return why->status;
+    const hsize_t stored = count[1] * width;
     first[0] = (hsize_t)q->start, count[0] = 1;
     first[1] = (hsize_t)q->from, count[1] = (hsize_t)q->n;
-    hid_t set = served_set(s, e, why);
-    if (set < 0) return why->status;
-    struct reply reply = { .there = true };
-    reply.size = count[1] * width * column_size(q->type);
-    int bad = sink->begin(sink, &reply) ||
-              put_block(set, column_native(q->type), (int)o->rank, first, count, sink);
-    if (set != e->set) H5Dclose(set);
-    return bad ? why_set(why, EX_DATAERR, "%s: cannot be read as %s (damaged?)", q->path,
-                         element_wanted(q->type))
-               : 0;
+    return answer_block(s, e, q, stored, first, count, sink, why);
 }
 
 static int answer_text(struct served *s, const struct request *q, struct sink *sink,
