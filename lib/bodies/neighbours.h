@@ -33,11 +33,7 @@ struct neighbours {
  * there once for each image of b that is near a. keep: s will be asked again, after a step of the same bodies; the
  * list is then made to reach further, and is made anew only when it no longer serves.
  *
- * Cost is linear: bodies are sorted by size into levels of a factor of two, each level into the
- * cells of its own grid, and a body looks into the grids of its own and of larger sizes only.
- * Cells are hashed, so that a body far away costs nothing. Bodies that
- * lie within reach of the cell's border look from their images too, which costs as much as the
- * border has bodies. Returns 0, EX_SOFTWARE or, where bodies crowd or a body is within the gap of its
+ * The search is bodies/seeking.h's. Returns 0, EX_SOFTWARE or, where bodies crowd or a body is within the gap of its
  * own image, EX_DATAERR.
  */
 int neighbours_find(struct neighbours *s, const struct packing *p, const vec3 *x,
