@@ -26,7 +26,7 @@ static double until, lines; /* s: of the motion; of real time */
 static bool contacts, forces, in_place;
 static const char *output;
 
-/* By index: options.hypergraph */
+/* By index: options.cut */
 static struct cli_choice cut_choice(int index)
 {
     static const struct cli_choice cuts[] = {
@@ -49,7 +49,7 @@ static const struct cli_option own[] = {
       .help = "start each solve from the last step's reactions" },
     { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start each solve from 0, as the paper",
       .usual = options_usual },
-    { CLI_CHOICE, 0, "cut", &options.hypergraph, .choice = cut_choice,
+    { CLI_CHOICE, 0, "cut", &options.cut, .choice = cut_choice,
       .help = "under mpirun, how processes share out space [bisection]" },
     { CLI_FLAG, 'i', "in-place", &in_place, .silent = true,
       .help = "append to FILE; also where standard output is a terminal" },

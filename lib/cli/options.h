@@ -18,7 +18,7 @@ struct options {
     double theta;
     int64_t max_sweeps, newton_max, threads;
     bool warm, every_sweep, history, strict;
-    int hypergraph;  /* of several processes, how space is cut: 1, or 0 */
+    int cut;         /* of several processes, the way that space is cut [ranks/territory.h] */
     const char *log; /* or NULL */
 };
 

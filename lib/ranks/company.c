@@ -64,7 +64,7 @@ static enum word next(enum word w)
 
 static void begin(enum word w, const struct packing *p)
 {
-    struct territory *space = territory_new(&crew.talk, options.hypergraph);
+    struct territory *space = territory_new(&crew.talk, options.cut);
     stride_begin(&crew.stride, &crew.talk, space, p, w == BEGIN_ROWS ? &crew.rows : NULL);
     crew.begun = true;
 }

@@ -1,5 +1,11 @@
-/* ranks/cells.c: a grid of cells, and who has which [ranks/cells.h]. */
-#include "ranks/cells.h"
+/*
+ * ranks/hypergraph.c: the cells of a grid, each of which is one rank's, by Zoltan's hypergraph partitioner (PHG)
+ * [ranks/territory.h]. A cell weighs what its bodies do. It makes a hyperedge with the cells around it, which
+ * weighs as much as it has bodies: these are copied to all ranks that have one of the others, so what the
+ * partitioner keeps small is the number of copies [Catalyurek & Aykanat 1999]. Cells without a body go with the
+ * nearest that have one, and so do places outside of the grid.
+ */
+#include "ranks/territory.h"
 
 #include "base/why.h"
 
@@ -144,15 +150,9 @@ static void edge_weights(void *arg, int gids, int lids, int n, int weights, ZOLT
     *error = ZOLTAN_OK;
 }
 
-struct cells *cells_new(struct talk *t)
+static void *begin(struct talk *t)
 {
-    struct cells *c = talk_new(t, 1, sizeof *c);
-    float version;
-    c->talk = t;
-    if (Zoltan_Initialize(0, NULL, &version) != ZOLTAN_OK || !(c->zz = Zoltan_Create(t->comm)))
-        talk_fail(t, EX_SOFTWARE, "Zoltan does not begin");
-    static const char *const set[][2] = { { "DEBUG_LEVEL", "0" },
-                                          { "LB_METHOD", "HYPERGRAPH" },
+    static const char *const set[][2] = { { "LB_METHOD", "HYPERGRAPH" },
                                           { "HYPERGRAPH_PACKAGE", "PHG" },
                                           { "LB_APPROACH", "PARTITION" },
                                           { "NUM_GID_ENTRIES", "1" },
@@ -161,9 +161,10 @@ struct cells *cells_new(struct talk *t)
                                           { "EDGE_WEIGHT_DIM", "1" },
                                           { "RETURN_LISTS", "PARTS" },
                                           { "IMBALANCE_TOL", "1.02" },
-                                          { "SEED", "1" } };
-    for (size_t k = 0; k < sizeof set / sizeof *set; k++)
-        Zoltan_Set_Param(c->zz, set[k][0], set[k][1]);
+                                          { "SEED", "1" },
+                                          { NULL, NULL } };
+    struct cells *c = talk_new(t, 1, sizeof *c);
+    c->talk = t, c->zz = territory_zoltan(t, set);
     Zoltan_Set_Num_Obj_Fn(c->zz, count, c), Zoltan_Set_Obj_List_Fn(c->zz, list, c);
     Zoltan_Set_HG_Size_CS_Fn(c->zz, edge_sizes, c), Zoltan_Set_HG_CS_Fn(c->zz, edges, c);
     Zoltan_Set_HG_Size_Edge_Wts_Fn(c->zz, weight_sizes, c);
@@ -177,9 +178,10 @@ static void forget(struct cells *c)
     c->owner = c->home = NULL, c->work = c->count = NULL, c->n = 0;
 }
 
-void cells_free(struct cells *c)
+static void end(void *made)
 {
-    if (c) Zoltan_Destroy(&c->zz), forget(c);
+    struct cells *c = made;
+    Zoltan_Destroy(&c->zz), forget(c);
     free(c);
 }
 
@@ -263,8 +265,9 @@ static void share_out(struct cells *c)
     MPI_Allreduce(MPI_IN_PLACE, c->owner, (int)c->n, MPI_INT, MPI_MAX, t->comm);
 }
 
-void cells_cut(struct cells *c, int64_t n, const vec3 *x, const float *weight)
+static void cut(void *made, int64_t n, const vec3 *x, const float *weight)
 {
+    struct cells *c = made;
     struct talk *t = c->talk;
     forget(c);
     lay_grid(c, n, x);
@@ -284,24 +287,28 @@ void cells_cut(struct cells *c, int64_t n, const vec3 *x, const float *weight)
     spread(c);
 }
 
-int cells_owner(const struct cells *c, vec3 x)
+static int owner(const void *made, vec3 x)
 {
+    const struct cells *c = made;
     int64_t at[3];
     place(c, x, at);
     return c->owner[cell_at(c, at)];
 }
 
-int cells_meet(const struct cells *c, vec3 lo, vec3 hi, int *rank)
+static int meets(const void *made, vec3 lo, vec3 hi, int *rank)
 {
+    const struct cells *c = made;
     int64_t from[3], to[3], at[3];
     int n = 0;
     place(c, lo, from), place(c, hi, to);
     for (at[2] = from[2]; at[2] <= to[2]; at[2]++)
         for (at[1] = from[1]; at[1] <= to[1]; at[1]++)
             for (at[0] = from[0]; at[0] <= to[0]; at[0]++) {
-                int owner = c->owner[cell_at(c, at)], k = 0;
-                while (k < n && rank[k] != owner) k++;
-                if (k == n) rank[n++] = owner;
+                int k = 0, has = c->owner[cell_at(c, at)];
+                while (k < n && rank[k] != has) k++;
+                if (k == n) rank[n++] = has;
             }
     return n;
 }
+
+const struct cuts cuts_hypergraph = { begin, end, cut, owner, meets };

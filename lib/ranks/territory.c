@@ -1,124 +1,53 @@
-/* ranks/territory.c: by Zoltan [ranks/territory.h]. */
+/* ranks/territory.c: the ways to cut space [ranks/territory.h]. */
 #include "ranks/territory.h"
 
 #include "base/why.h"
-#include "ranks/cells.h"
 
 #include <stdlib.h>
 #include <trilinos/zoltan.h>
 
+static const struct cuts *const ways[] = { &cuts_bisection, &cuts_hypergraph }; // as --cut has them
+
 struct territory {
-    struct talk *talk;
-    struct cells *cells; /* NULL: by bisection */
-    struct Zoltan_Struct *zz;
-    int64_t n;
-    const vec3 *x;
-    const float *weight;
+    const struct cuts *way;
+    void *made;
 };
 
-static int count(void *arg, int *error)
-{
-    const struct territory *y = arg;
-    *error = ZOLTAN_OK;
-    return (int)y->n;
-}
-
-static void list(void *arg, int gids, int lids, ZOLTAN_ID_PTR gid, ZOLTAN_ID_PTR lid, int weights,
-                 float *weight, int *error)
-{
-    const struct territory *y = arg;
-    (void)gids, (void)lids, (void)weights;
-    for (int64_t i = 0; i < y->n; i++) {
-        gid[2 * i] = (ZOLTAN_ID_TYPE)y->talk->me, gid[2 * i + 1] = (ZOLTAN_ID_TYPE)i;
-        lid[i] = (ZOLTAN_ID_TYPE)i;
-        weight[i] = y->weight[i];
-    }
-    *error = ZOLTAN_OK;
-}
-
-static int dimensions(void *arg, int *error)
-{
-    (void)arg;
-    *error = ZOLTAN_OK;
-    return 3;
-}
-
-static void places(void *arg, int gids, int lids, int n, ZOLTAN_ID_PTR gid, ZOLTAN_ID_PTR lid,
-                   int dim, double *to, int *error)
-{
-    const struct territory *y = arg;
-    (void)gids, (void)lids, (void)gid, (void)dim;
-    for (int i = 0; i < n; i++) {
-        vec3 x = y->x[lid[i]];
-        to[3 * i] = x.x, to[3 * i + 1] = x.y, to[3 * i + 2] = x.z;
-    }
-    *error = ZOLTAN_OK;
-}
-
-struct territory *territory_new(struct talk *t, bool hypergraph)
+struct territory *territory_new(struct talk *t, int way)
 {
     struct territory *y = talk_new(t, 1, sizeof *y);
-    float version;
-    y->talk = t;
-    if (hypergraph) {
-        y->cells = cells_new(t);
-        return y;
-    }
-    if (Zoltan_Initialize(0, NULL, &version) != ZOLTAN_OK || !(y->zz = Zoltan_Create(t->comm)))
-        talk_fail(t, EX_SOFTWARE, "Zoltan does not begin");
-    static const char *const set[][2] = {
-        { "DEBUG_LEVEL", "0" },      { "LB_METHOD", "RCB" },      { "KEEP_CUTS", "1" },
-        { "NUM_GID_ENTRIES", "2" },  { "NUM_LID_ENTRIES", "1" },  { "OBJ_WEIGHT_DIM", "1" },
-        { "RETURN_LISTS", "NONE" },  { "IMBALANCE_TOL", "1.02" }, { "RCB_OUTPUT_LEVEL", "0" },
-        { "REDUCE_DIMENSIONS", "0" }
-    };
-    for (size_t k = 0; k < sizeof set / sizeof *set; k++)
-        Zoltan_Set_Param(y->zz, set[k][0], set[k][1]);
-    Zoltan_Set_Num_Obj_Fn(y->zz, count, y), Zoltan_Set_Obj_List_Fn(y->zz, list, y);
-    Zoltan_Set_Num_Geom_Fn(y->zz, dimensions, y), Zoltan_Set_Geom_Multi_Fn(y->zz, places, y);
+    *y = (struct territory){ ways[way], ways[way]->begin(t) };
     return y;
 }
 
 void territory_free(struct territory *y)
 {
-    if (y && y->cells)
-        cells_free(y->cells);
-    else if (y)
-        Zoltan_Destroy(&y->zz);
+    if (y) y->way->end(y->made);
     free(y);
 }
 
 void territory_cut(struct territory *y, int64_t n, const vec3 *x, const float *weight)
 {
-    int changes, gids, lids, in, out;
-    ZOLTAN_ID_PTR a = NULL, b = NULL, c = NULL, d = NULL;
-    int *p1 = NULL, *p2 = NULL, *p3 = NULL, *p4 = NULL;
-    if (y->cells) {
-        cells_cut(y->cells, n, x, weight);
-        return;
-    }
-    y->n = n, y->x = x, y->weight = weight;
-    if (n > INT32_MAX || Zoltan_LB_Partition(y->zz, &changes, &gids, &lids, &in, &a, &b, &p1, &p2,
-                                             &out, &c, &d, &p3, &p4) != ZOLTAN_OK)
-        talk_fail(y->talk, EX_SOFTWARE, "Zoltan finds no cuts");
-    Zoltan_LB_Free_Part(&a, &b, &p1, &p2), Zoltan_LB_Free_Part(&c, &d, &p3, &p4);
+    y->way->cut(y->made, n, x, weight);
 }
 
 int territory_owner(const struct territory *y, vec3 x)
 {
-    if (y->cells) return cells_owner(y->cells, x);
-    double at[3] = { x.x, x.y, x.z };
-    int rank, part;
-    if (Zoltan_LB_Point_PP_Assign(y->zz, at, &rank, &part) != ZOLTAN_OK)
-        talk_fail(y->talk, EX_SOFTWARE, "Zoltan knows no owner of a point");
-    return rank;
+    return y->way->owner(y->made, x);
 }
 
 int territory_meets(const struct territory *y, vec3 lo, vec3 hi, int *rank)
 {
-    if (y->cells) return cells_meet(y->cells, lo, hi, rank);
-    int n = 0;
-    if (Zoltan_LB_Box_Assign(y->zz, lo.x, lo.y, lo.z, hi.x, hi.y, hi.z, rank, &n) != ZOLTAN_OK)
-        talk_fail(y->talk, EX_SOFTWARE, "Zoltan knows no ranks of a box");
-    return n;
+    return y->way->meets(y->made, lo, hi, rank);
+}
+
+struct Zoltan_Struct *territory_zoltan(struct talk *t, const char *const set[][2])
+{
+    struct Zoltan_Struct *zz = NULL;
+    float version;
+    if (Zoltan_Initialize(0, NULL, &version) != ZOLTAN_OK || !(zz = Zoltan_Create(t->comm)))
+        talk_fail(t, EX_SOFTWARE, "Zoltan does not begin");
+    Zoltan_Set_Param(zz, "DEBUG_LEVEL", "0");
+    for (int k = 0; set[k][0]; k++) Zoltan_Set_Param(zz, set[k][0], set[k][1]);
+    return zz;
 }

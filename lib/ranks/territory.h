@@ -1,7 +1,6 @@
 /*
- * ranks/territory.h: which rank has which part of space: a box, by Zoltan's recursive coordinate bisection, whose
- * cuts are kept, or cells of a grid [ranks/cells.h]. Any point has one owner; a box is met by the ranks whose parts
- * it reaches into.
+ * ranks/territory.h: which rank has which part of space. Any point has one owner; a box is met by the ranks whose
+ * parts it reaches into. Zoltan cuts; in which way, is one of a table.
  */
 #ifndef NSD_TERRITORY_H
 #define NSD_TERRITORY_H
@@ -9,16 +8,28 @@
 #include "base/vec.h"
 #include "ranks/talk.h"
 
-#include <stdbool.h>
-
 struct territory;
 
-struct territory *territory_new(struct talk *t, bool hypergraph);
+/* way: 0 by bisection, 1 by the hypergraph */
+struct territory *territory_new(struct talk *t, int way);
 void territory_free(struct territory *y);
 /* New cuts, so that the weights of the points x[n] of all ranks are shared out evenly. Collective. */
 void territory_cut(struct territory *y, int64_t n, const vec3 *x, const float *weight);
 /* The owner of a point; the ranks that meet the box lo .. hi, into rank[t->n]: returns how many. */
 int territory_owner(const struct territory *y, vec3 x);
 int territory_meets(const struct territory *y, vec3 lo, vec3 hi, int *rank);
+
+/* A way: the same of what its begin() has made */
+struct cuts {
+    void *(*begin)(struct talk *t);
+    void (*end)(void *made);
+    void (*cut)(void *made, int64_t n, const vec3 *x, const float *weight);
+    int (*owner)(const void *made, vec3 x);
+    int (*meets)(const void *made, vec3 lo, vec3 hi, int *rank);
+};
+extern const struct cuts cuts_bisection, cuts_hypergraph;
+
+/* Zoltan, with these parameters, pairs of a name and a value up to a NULL */
+struct Zoltan_Struct *territory_zoltan(struct talk *t, const char *const set[][2]);
 
 #endif
