@@ -4,6 +4,7 @@
  * are not those of balls.
  */
 #include "bodies/detect.h"
+#include "problem/sweep.h"
 #include "scene/scene_build.h"
 #include "solve/scaled.h"
 #include "solve/step.h"

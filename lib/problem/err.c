@@ -62,7 +62,7 @@ static void judge_block(const struct problem *p, bool believes, enum err_terms w
 {
     int64_t from = block * BLOCK, to = from + BLOCK;
     *s = (struct sums){ 0 };
-    sweep_widest()->judge(p, from, to < p->bundles ? to : p->bundles, believes, which, s);
+    judge_widest()->judge(p, from, to < p->bundles ? to : p->bundles, believes, which, s);
 }
 
 /* Blocks from .. to-1 of a stripe */
@@ -98,7 +98,7 @@ static void judge_unbonded(const struct problem *p, int64_t bundle, bool believe
 {
     struct problem unbonded = *p;
     unbonded.beyond = NULL;
-    sweep_widest()->judge(&unbonded, bundle, bundle + 1, believes, which, s);
+    judge_widest()->judge(&unbonded, bundle, bundle + 1, believes, which, s);
 }
 
 /* Of a problem that processes share */
@@ -122,7 +122,7 @@ static void judge_shared(const struct problem *p, bool believes, enum err_terms 
         for (int k = 0; k < BUNDLE && parts == 2; k++)
             take_terms(&s, k, term[(BUNDLE * i + k) * parts]);
         if (parts == 2) sums_negate(&s); // so that what is added to them first leaves 0
-        sweep_widest()->judge(p, i, i + 1, believes, which, &s);
+        judge_widest()->judge(p, i, i + 1, believes, which, &s);
         for (int k = 0; k < BUNDLE; k++)
             take_terms(&s, k, term[(BUNDLE * i + k) * parts + parts - 1]);
         most[0] = fmax(most[0], bundle_max(s.max_pen));

@@ -1,7 +1,7 @@
 /*
- * problem/sweep.h: the inner loops over bundles: local solves, velocities, errors. sweep.c is
- * compiled for three vector widths; the width changes no bit of a result. The one used is the
- * widest that the machine has and the environment's NSD_LANES allows.
+ * problem/sweep.h: the inner loops over bundles: local solves. sweep.c is compiled for three vector
+ * widths; the width changes no bit of a result. The one used is the widest that the machine has and
+ * the environment's NSD_LANES allows.
  */
 #ifndef NSD_SWEEP_H
 #define NSD_SWEEP_H
@@ -21,15 +21,6 @@ struct tally {
     double newton[BUNDLE], safeguarded[BUNDLE], gave_up[BUNDLE];
 };
 
-/* Sums and maxima over contacts, each in eight parts: lane k of every bundle goes into part k. */
-struct sums {
-    double motion[BUNDLE], proj[BUNDLE], bipotential[BUNDLE], penetration[BUNDLE];
-    double natural2[BUNDLE], siconos2[BUNDLE], velocity2[BUNDLE], r2[BUNDLE];
-    double max_pen[BUNDLE], max_true[BUNDLE];
-};
-
-enum err_terms { ERR_TERMS = 1, ERR_NATURAL = 2, ERR_ALL = 3 };
-
 /* A sweep visits every slot once, group after group. This is the share of thread `me` of `threads`,
    all of which must call it. Two threads take a half each where the order has halves. */
 typedef void sweep_text(struct problem *p, int me, int threads, const struct sweep_opt *o,
@@ -40,11 +31,6 @@ struct sweep {
     int lanes;
     sweep_text
         *sweep[METHOD_COUNT]; /* one local solve a slot, r passed on at once to bodies or W */
-    /* Bundles first .. end-1: adds to the sums what problem/err.h defines. */
-    void (*judge)(const struct problem *p, int64_t first, int64_t end, bool believes,
-                  enum err_terms terms, struct sums *s);
-    /* Bundles first .. end-1: u of the slots becomes the motion's. */
-    void (*velocities)(struct problem *p, int64_t first, int64_t end);
     /* Adds to the bodies' velocities what all reactions make of them. Shared by threads as a sweep
        is. */
     void (*push)(struct problem *p, int me, int threads);

@@ -1,0 +1,32 @@
+/*
+ * problem/judge.h: the inner loops over bundles that ask how well reactions satisfy the law: velocities,
+ * and the terms of the errors. Compiled for each vector width, as problem/sweep.c is.
+ */
+#ifndef NSD_JUDGE_H
+#define NSD_JUDGE_H
+
+#include "problem/problem.h"
+
+/* Sums and maxima over contacts, each in eight parts: lane k of every bundle goes into part k. */
+struct sums {
+    double motion[BUNDLE], proj[BUNDLE], bipotential[BUNDLE], penetration[BUNDLE];
+    double natural2[BUNDLE], siconos2[BUNDLE], velocity2[BUNDLE], r2[BUNDLE];
+    double max_pen[BUNDLE], max_true[BUNDLE];
+};
+
+enum err_terms { ERR_TERMS = 1, ERR_NATURAL = 2, ERR_ALL = 3 };
+
+/* The loops for one vector width */
+struct judge {
+    /* Bundles first .. end-1: adds to the sums what problem/err.h defines. */
+    void (*judge)(const struct problem *p, int64_t first, int64_t end, bool believes,
+                  enum err_terms terms, struct sums *s);
+    /* Bundles first .. end-1: u of the slots becomes the motion's. */
+    void (*velocities)(struct problem *p, int64_t first, int64_t end);
+};
+
+/* The loops for the widest vectors that the machine has, of at most NSD_LANES lanes
+   [problem/sweep_dispatch.c] */
+const struct judge *judge_widest(void);
+
+#endif
