@@ -385,6 +385,7 @@ struct made {
     struct problem p;
     struct body body[BODIES], free[BODIES];
     struct bundle bundle[(CONTACTS + BUNDLE - 1) / BUNDLE];
+    struct tangents tangent[(CONTACTS + BUNDLE - 1) / BUNDLE];
     struct rebound rebound[(CONTACTS + BUNDLE - 1) / BUNDLE];
     double u[(CONTACTS + BUNDLE - 1) / BUNDLE][3][BUNDLE];
     int32_t contact[CONTACTS + BUNDLE];
@@ -396,7 +397,7 @@ static void cross(const double a[3], const double b[3], double c[3])
         c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-static void make_frame(int d, struct bundle *c, int i)
+static void make_frame(int d, struct bundle *c, struct tangents *t, int i)
 {
     const double z[3] = { 0, 0, 1 };
     double other[3] = { noise(), noise(), noise() }, n[3], t1[3];
@@ -406,7 +407,7 @@ static void make_frame(int d, struct bundle *c, int i)
     cross(d == 2 ? z : other, n, t1);
     size = norm(3, t1);
     for (int k = 0; k < 3; k++) t1[k] /= size;
-    for (int k = 0; k < 3; k++) c->n[k][i] = n[k], c->t1[k][i] = t1[k];
+    for (int k = 0; k < 3; k++) c->n[k][i] = n[k], t->t1[k][i] = t1[k];
 }
 
 /*
@@ -419,6 +420,7 @@ static void make(struct made *m, int d, int64_t n)
     m->p.slots = m->p.bundles * BUNDLE;
     m->p.bundle = m->bundle, m->p.rebound = m->rebound, m->p.contact = m->contact,
     m->p.bodies = BODIES, m->p.body = m->body, m->p.u = m->u;
+    m->p.tangent = m->tangent;
     for (int64_t i = n; i < m->p.slots; i++) m->contact[i] = -1;
     for (int i = 0; i < BODIES; i++) {
         struct body *b = &m->body[i];
@@ -438,7 +440,7 @@ static void make(struct made *m, int d, int64_t n)
         while (a == b || a == 3);
         if (i == 5) a = 0, b = 1;
         c->a[k] = body_place(a), c->b[k] = body_place(b);
-        make_frame(d, c, k);
+        make_frame(d, c, &m->tangent[i / BUNDLE], k);
         c->la[k] = noise(), c->lb[k] = noise(), c->mu[k] = fabs(noise());
         for (int j = 0; j < 2; j++) slot_rebound(&m->p, i)->s[j][k] = 1 / (1 + e[j]);
         for (int j = 0; j < d; j++) {
@@ -449,7 +451,7 @@ static void make(struct made *m, int d, int64_t n)
     for (int64_t i = 0; i < n; i++) {
         double r[3], u[3];
         slot_get(&m->p, i, r, u);
-        body_push(m->body, slot_bundle(&m->p, i), slot_lane(i), r);
+        body_push(&m->p, m->body, slot_bundle(&m->p, i), slot_lane(i), r);
     }
 }
 
@@ -463,12 +465,12 @@ static double *pushed(struct made *m, const double *r)
     for (int64_t i = 0; i < p.n; i++) {
         double full[3] = { 0 };
         memcpy(full, r + p.d * p.contact[i], (size_t)p.d * sizeof *r);
-        body_push(body, slot_bundle(&p, i), slot_lane(i), full);
+        body_push(&p, body, slot_bundle(&p, i), slot_lane(i), full);
     }
     assert(p.d == 2 || p.d == 3);
     for (int64_t i = 0; i < p.n; i++) {
         double v[3];
-        body_velocity(body, slot_bundle(&p, i), slot_rebound(&p, i), slot_lane(i), v);
+        body_velocity(&p, body, slot_bundle(&p, i), slot_rebound(&p, i), slot_lane(i), v);
         for (int k = 0; k < p.d; k++)
             u[p.d * p.contact[i] + k] = v[k] / slot_rebound(&p, i)->s[k > 0][slot_lane(i)];
     }

@@ -1,7 +1,7 @@
 /* The solvers of a whole problem end where Gauss-Seidel ends, and in the same bytes on any machine. */
 #include "bodies/detect.h"
-#include "scene/scene_build.h"
 #include "problem/sweep.h"
+#include "scene/scene_build.h"
 #include "solve/arc.h"
 #include "solve/ipm.h"
 #include "solve/nlgs.h"

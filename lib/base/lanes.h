@@ -159,6 +159,19 @@ ALWAYS_INLINE vd absolute(vd a)
 #endif
 }
 
+/* |a| with the sign of s */
+ALWAYS_INLINE vd with_sign(vd a, vd s)
+{
+#if LANES == 1
+    return copysign(a, s);
+#elif LANES == 8
+    const __m512d bit = _mm512_set1_pd(-0.0);
+    return _mm512_or_pd(_mm512_and_pd(s, bit), _mm512_andnot_pd(bit, a));
+#else
+    return (vd)(((vm)a & INT64_MAX) | ((vm)s & INT64_MIN));
+#endif
+}
+
 ALWAYS_INLINE vm is_finite(vd a)
 {
     return lt(absolute(a), splat(INFINITY));

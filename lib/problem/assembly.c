@@ -142,32 +142,19 @@ int assembly_init(struct assembly *A, const struct problem *p, struct why *why)
     return good ? 0 : short_of_memory(why);
 }
 
-/* The same of levers: J (v, y) */
-static void levers_jacobian(const struct levers *g, int i, int end, double J[3][6])
-{
-    double n[3], t1[3], t2[3], sign = end ? 1 : -1;
-    levers_basis(g, i, n, t1, t2);
-    for (int k = 0; k < 3; k++) {
-        J[0][k] = sign * n[k], J[1][k] = sign * t1[k], J[2][k] = sign * t2[k];
-        for (int c = 0; c < 3; c++) J[c][3 + k] = sign * (end ? g->Gb : g->Ga)[3 * c + k][i];
-    }
-}
-
-/* J: u_c = J (v, w) for the body at this end of the contact, as in bundle_velocity() */
+/* J: u_c = J (v, w), or J (v, y) of levers, for the body at this end of the contact, as in bundle_velocity() */
 static void jacobian(const struct assembly *A, int64_t contact, int end, double J[3][6])
 {
     const struct bundle *c = assembly_bundle(A, contact);
+    const struct levers *g = A->p->lever ? &A->p->lever[A->slot[contact] / BUNDLE] : NULL;
     int i = slot_lane(A->slot[contact]);
-    if (A->p->lever) {
-        levers_jacobian(&A->p->lever[A->slot[contact] / BUNDLE], i, end, J);
-        return;
-    }
     double sign = end ? 1 : -1, l = end ? c->lb[i] : c->la[i], n[3], t1[3], t2[3];
-    bundle_basis(c, i, n, t1, t2);
+    bundle_basis(c, bundle_tangents(A->p, c), i, n, t1, t2);
     for (int k = 0; k < 3; k++) {
         J[0][k] = sign * n[k], J[0][3 + k] = 0;
         J[1][k] = sign * t1[k], J[1][3 + k] = -l * t2[k];
         J[2][k] = sign * t2[k], J[2][3 + k] = l * t1[k];
+        for (int j = 0; j < 3 && g; j++) J[j][3 + k] = sign * (end ? g->Gb : g->Ga)[3 * j + k][i];
     }
 }
 

@@ -4,26 +4,27 @@
 #include <string.h>
 
 /* The bodies' angular velocity relative to each other, in (n, t1, t2) */
-static void spin(const struct bundle *c, struct body *body, int i, double omega[3])
+static void spin(const struct beyond_lane *at, double omega[3])
 {
-    const double *wa = body_at(body, c->a[i]) + 3, *wb = body_at(body, c->b[i]) + 3;
+    const double *wa = body_at(at->body, at->c->a[at->i]) + 3;
+    const double *wb = body_at(at->body, at->c->b[at->i]) + 3;
     double basis[3][3];
-    bundle_basis(c, i, basis[0], basis[1], basis[2]);
+    bundle_basis(at->c, at->t, at->i, basis[0], basis[1], basis[2]);
     for (int j = 0; j < 3; j++) {
         omega[j] = 0;
         for (int l = 0; l < 3; l++) omega[j] += basis[j][l] * (wb[l] - wa[l]);
     }
 }
 
-void beyond_push(const struct bundle *c, const struct beyond *x, const struct beyond_levers *y,
-                 int i, struct body *body, const double dm[3])
+void beyond_push(const struct beyond_lane *at, const double dm[3])
 {
-    if (y) {
-        beyond_levers_push(c, x, y, i, body, dm);
+    if (at->y) {
+        beyond_levers_push(at, dm);
         return;
     }
-    double *a = body_at(body, c->a[i]), *b = body_at(body, c->b[i]), basis[3][3];
-    bundle_basis(c, i, basis[0], basis[1], basis[2]);
+    double *a = body_at(at->body, at->c->a[at->i]), *b = body_at(at->body, at->c->b[at->i]);
+    double basis[3][3];
+    bundle_basis(at->c, at->t, at->i, basis[0], basis[1], basis[2]);
     for (int l = 0; l < 3; l++) {
         double m = dm[0] * basis[0][l] + dm[1] * basis[1][l] + dm[2] * basis[2][l];
         a[3 + l] -= a[7] * m, b[3 + l] += b[7] * m; // a[7]: 1/inertia
@@ -66,37 +67,40 @@ void beyond_solve(struct beyond *x, int i, enum method_id method, struct rolling
     l->steps = q->steps, l->safeguarded = q->safeguarded, l->gave_up = q->gave_up;
 }
 
-void beyond_rolling(const struct bundle *c, const struct beyond *x, const struct beyond_levers *y,
-                    struct body *body, int i, const double s[2], const double u[3],
-                    struct rolling *q, double v[ROLLING])
+void beyond_rolling(const struct beyond_lane *at, const double w[2], const double s[2],
+                    const double u[3], struct rolling *q, double v[ROLLING])
 {
-    if (y) {
-        beyond_levers_rolling(c, x, y, body, i, u, q, v);
+    if (at->y) {
+        beyond_levers_rolling(at, u, q, v);
         return;
     }
-    const double w[2] = { c->w[0][i], c->w[1][i] }, r[3] = { c->r[0][i], c->r[1][i], c->r[2][i] };
+    const struct bundle *c = at->c;
+    const struct beyond *x = at->x;
+    int i = at->i;
+    const double r[3] = { c->r[0][i], c->r[1][i], c->r[2][i] };
     double omega[3], l = x->length[i];
     set_operator(c, x, i, w, s, q);
     beyond_impulse(x, i, r, q->x);
-    spin(c, body, i, omega);
+    spin(at, omega);
     for (int j = 0; j < 3; j++) v[j] = u[j] / s[j > 0];
     v[3] = l * omega[0], v[4] = -l * omega[2], v[5] = l * omega[1];
 }
 
-void beyond_roll(const struct bundle *c, struct beyond *x, const struct beyond_levers *y,
-                 struct body *body, int i, enum method_id method, const struct local_opt *opt,
+void beyond_roll(const struct beyond_lane *at, enum method_id method, const struct local_opt *opt,
                  struct rolling_lane *l)
 {
-    if (y) {
-        beyond_levers_roll(c, x, y, body, i, method, opt, l);
+    if (at->y) {
+        beyond_levers_roll(at, method, opt, l);
         return;
     }
+    struct beyond *x = at->x;
+    int i = at->i;
     struct rolling q;
     double omega[3], k = x->s[1][i] * x->k[i], length = x->length[i];
-    set_operator(c, x, i, l->w, l->s, &q);
+    set_operator(at->c, x, i, l->w, l->s, &q);
     beyond_impulse(x, i, l->r, q.x);
     const double was[2] = { q.x[4], q.x[5] };
-    spin(c, body, i, omega);
+    spin(at, omega);
     const double turned[2] = { -omega[2], omega[1] };
     q.b[0] = l->b[0] / l->s[0];
     q.b[3] = length * omega[0] - q.wp * q.x[3];

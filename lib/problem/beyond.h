@@ -42,7 +42,7 @@ struct beyond {
  *
  *     W^ = S W,   b^ = S (b - W a),   S = (1 + W K)^-1,   K = diag(K_n, K_t, K_t),
  *
- * W^ symmetric as W is, and in the bundle in its place. The relative angular velocity is
+ * W^ symmetric as W is, and in its place in the block. The relative angular velocity is
  *
  *     omega_i = R_b,i . y_b - R_a,i . y_a,   R_i = I^-1/2 e_i,
  *
@@ -79,29 +79,35 @@ static inline bool beyond_rolls(const struct beyond *x, int lane)
     return x->mu_r[lane] > 0 || x->mu_p[lane] > 0;
 }
 
-/* In what follows y is NULL where all bodies are balls. */
+/* Lane i of a bundle, with what is beside it */
+struct beyond_lane {
+    int i;
+    const struct bundle *c;
+    const struct tangents *t; /* NULL: none */
+    struct beyond *x;
+    const struct beyond_levers *y; /* NULL: all bodies are balls */
+    struct body *body;             /* that the places of c are in */
+};
 
-/* Solves lane i with its moment: l->r and x->m are the new ones, l->b that for the new moment. The
+/* Solves a lane with its moment: l->r and x->m are the new ones, l->b that for the new moment. The
    bodies turn at their velocities of before. */
-void beyond_roll(const struct bundle *c, struct beyond *x, const struct beyond_levers *y,
-                 struct body *body, int i, enum method_id method, const struct local_opt *opt,
+void beyond_roll(const struct beyond_lane *at, enum method_id method, const struct local_opt *opt,
                  struct rolling_lane *l);
 
 /* What a change dm of the moment makes of the bodies */
-void beyond_push(const struct bundle *c, const struct beyond *x, const struct beyond_levers *y,
-                 int i, struct body *body, const double dm[3]);
+void beyond_push(const struct beyond_lane *at, const double dm[3]);
 
-/* The contact as one of law/rolling.h, without b; its x, and its u where u_D = (1 + e) u~ is u_n, u_t */
-void beyond_rolling(const struct bundle *c, const struct beyond *x, const struct beyond_levers *y,
-                    struct body *body, int i, const double s[2], const double u[3],
-                    struct rolling *q, double v[ROLLING]);
+/* The contact as one of law/rolling.h, without b; its x, and its u where u_D = (1 + e) u~ is u_n, u_t.
+   w (kg^-1): w^ along n and across; between balls */
+void beyond_rolling(const struct beyond_lane *at, const double w[2], const double s[2],
+                    const double u[3], struct rolling *q, double v[ROLLING]);
 
-/* Sets S of lane i for a bond of K[2] (kg), and puts W^ in place of the bundle's W. */
-void beyond_levers_bond(struct bundle *c, struct beyond_levers *y, int i, const double K[2]);
-/* Sets the rest of a lane that rolls, after its bond of K. On entry R_a and R_b are those of length 1.
-   W (kg^-1): without the bond; iia, iib: 1/inertia of both bodies in the problem's unknowns, 0 where one
-   cannot move. Returns the length (m). */
-double beyond_levers_turn(const struct levers *g, const struct bundle *c, struct beyond_levers *y,
+/* Sets S of lane i for a bond of K[2] (kg), and puts W^ in place of the block's W. */
+void beyond_levers_bond(double block[9][BUNDLE], struct beyond_levers *y, int i, const double K[2]);
+/* Sets the rest of a lane that rolls, after its bond of K, which made W^ of the block. On entry R_a and R_b
+   are those of length 1. W (kg^-1): without the bond; iia, iib: 1/inertia of both bodies in the problem's
+   unknowns, 0 where one cannot move. Returns the length (m). */
+double beyond_levers_turn(const struct levers *g, double block[9][BUNDLE], struct beyond_levers *y,
                           int i, const double W[9], const double K[2], double iia, double iib);
 
 /* What balls and levers share. out = x of lane i: r* (N s), and the moment, turned a quarter and over the
@@ -112,14 +118,10 @@ void beyond_solve(struct beyond *x, int i, enum method_id method, struct rolling
                   const struct local_opt *opt, struct rolling_lane *l);
 
 /* As beyond_roll(), beyond_push() and beyond_rolling() */
-void beyond_levers_roll(const struct bundle *c, struct beyond *x, const struct beyond_levers *y,
-                        struct body *body, int i, enum method_id method,
+void beyond_levers_roll(const struct beyond_lane *at, enum method_id method,
                         const struct local_opt *opt, struct rolling_lane *l);
-void beyond_levers_push(const struct bundle *c, const struct beyond *x,
-                        const struct beyond_levers *y, int i, struct body *body,
-                        const double dm[3]);
-void beyond_levers_rolling(const struct bundle *c, const struct beyond *x,
-                           const struct beyond_levers *y, struct body *body, int i,
-                           const double u[3], struct rolling *q, double v[ROLLING]);
+void beyond_levers_push(const struct beyond_lane *at, const double dm[3]);
+void beyond_levers_rolling(const struct beyond_lane *at, const double u[3], struct rolling *q,
+                           double v[ROLLING]);
 
 #endif

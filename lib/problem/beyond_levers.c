@@ -16,16 +16,16 @@ static void invert(const double A[9], double C[9])
     for (int i = 0; i < 9; i++) C[i] = B[i] / det;
 }
 
-void beyond_levers_bond(struct bundle *c, struct beyond_levers *y, int i, const double K[2])
+void beyond_levers_bond(double block[9][BUNDLE], struct beyond_levers *y, int i, const double K[2])
 {
     double A[9], S[9], W[9];
-    for (int j = 0; j < 9; j++) A[j] = (j % 4 == 0) + c->W[j][i] * K[j % 3 > 0];
+    for (int j = 0; j < 9; j++) A[j] = (j % 4 == 0) + block[j][i] * K[j % 3 > 0];
     invert(A, S);
     for (int j = 0; j < 9; j++) {
         y->S[j][i] = S[j], W[j] = 0;
-        for (int l = 0; l < 3; l++) W[j] += S[3 * (j / 3) + l] * c->W[3 * l + j % 3][i];
+        for (int l = 0; l < 3; l++) W[j] += S[3 * (j / 3) + l] * block[3 * l + j % 3][i];
     }
-    for (int j = 0; j < 9; j++) c->W[j][i] = 0.5 * (W[j] + W[3 * (j % 3) + j / 3]);
+    for (int j = 0; j < 9; j++) block[j][i] = 0.5 * (W[j] + W[3 * (j % 3) + j / 3]);
 }
 
 static double dot_rows(double (*A)[BUNDLE], double (*B)[BUNDLE], int i, int j, int lane)
@@ -35,7 +35,7 @@ static double dot_rows(double (*A)[BUNDLE], double (*B)[BUNDLE], int i, int j, i
     return sum;
 }
 
-double beyond_levers_turn(const struct levers *g, const struct bundle *c, struct beyond_levers *y,
+double beyond_levers_turn(const struct levers *g, double block[9][BUNDLE], struct beyond_levers *y,
                           int i, const double W[9], const double K[2], double iia, double iib)
 {
     struct levers arm = *g; // not const, for dot_rows()
@@ -62,7 +62,7 @@ double beyond_levers_turn(const struct levers *g, const struct bundle *c, struct
                 for (int m = 0; m < 3; m++)
                     left += y->V[3 * j + l][i] * K[l > 0] * y->S[3 * l + m][i] * y->V[3 * k + m][i];
             }
-            full[ROLLING * j + k] = c->W[3 * j + k][i];
+            full[ROLLING * j + k] = block[3 * j + k][i];
             full[ROLLING * (3 + j) + k] = full[ROLLING * k + 3 + j] = on;
             full[ROLLING * (3 + j) + 3 + k] = Z[3 * j + k] - left;
         }
@@ -77,10 +77,11 @@ double beyond_levers_turn(const struct levers *g, const struct bundle *c, struct
 }
 
 /* The bodies' angular velocity relative to each other, as law/rolling.h has it */
-static void spin(const struct bundle *c, const struct beyond_levers *y, struct body *body, int i,
-                 double omega[3])
+static void spin(const struct beyond_lane *at, double omega[3])
 {
-    const double *wa = body_at(body, c->a[i]) + 3, *wb = body_at(body, c->b[i]) + 3;
+    const struct beyond_levers *y = at->y;
+    int i = at->i;
+    const double *wa = body_at(at->body, at->c->a[i]) + 3, *wb = body_at(at->body, at->c->b[i]) + 3;
     for (int j = 0; j < 3; j++) {
         omega[j] = 0;
         for (int l = 0; l < 3; l++)
@@ -89,29 +90,33 @@ static void spin(const struct bundle *c, const struct beyond_levers *y, struct b
 }
 
 /* The contact without its b and x: W and limits */
-static void set_operator(const struct bundle *c, const struct beyond *x,
-                         const struct beyond_levers *y, int i, struct rolling *q)
+static void set_operator(const struct beyond_lane *at, struct rolling *q)
 {
+    const struct beyond *x = at->x;
+    const struct beyond_levers *y = at->y;
+    int i = at->i;
     *q = (struct rolling){ .full = true, .lambda = y->lambda[i], .rho = x->rho[i] };
     for (int j = 0; j < ROLLING * ROLLING; j++) q->W[j] = y->W[j][i];
-    q->mu[0] = c->mu[i], q->mu[1] = x->mu_p[i] / x->length[i], q->mu[2] = x->mu_r[i] / x->length[i];
+    q->mu[0] = at->c->mu[i], q->mu[1] = x->mu_p[i] / x->length[i],
+    q->mu[2] = x->mu_r[i] / x->length[i];
 }
 
-void beyond_levers_rolling(const struct bundle *c, const struct beyond *x,
-                           const struct beyond_levers *y, struct body *body, int i,
-                           const double u[3], struct rolling *q, double v[ROLLING])
+void beyond_levers_rolling(const struct beyond_lane *at, const double u[3], struct rolling *q,
+                           double v[ROLLING])
 {
-    const double r[3] = { c->r[0][i], c->r[1][i], c->r[2][i] };
-    set_operator(c, x, y, i, q);
-    beyond_impulse(x, i, r, q->x);
+    const double r[3] = { at->c->r[0][at->i], at->c->r[1][at->i], at->c->r[2][at->i] };
+    set_operator(at, q);
+    beyond_impulse(at->x, at->i, r, q->x);
     for (int j = 0; j < 3; j++) v[j] = u[j];
-    spin(c, y, body, i, v + 3);
+    spin(at, v + 3);
 }
 
-void beyond_levers_push(const struct bundle *c, const struct beyond *x,
-                        const struct beyond_levers *y, int i, struct body *body, const double dm[3])
+void beyond_levers_push(const struct beyond_lane *at, const double dm[3])
 {
-    double *a = body_at(body, c->a[i]), *b = body_at(body, c->b[i]), l = x->length[i];
+    const struct beyond_levers *y = at->y;
+    int i = at->i;
+    double *a = body_at(at->body, at->c->a[i]), *b = body_at(at->body, at->c->b[i]);
+    double l = at->x->length[i];
     const double turned[3] = { dm[0] / l, -dm[2] / l, dm[1] / l };
     for (int k = 0; k < 3; k++)
         for (int j = 0; j < 3; j++) {
@@ -120,19 +125,21 @@ void beyond_levers_push(const struct bundle *c, const struct beyond *x,
         }
 }
 
-void beyond_levers_roll(const struct bundle *c, struct beyond *x, const struct beyond_levers *y,
-                        struct body *body, int i, enum method_id method,
+void beyond_levers_roll(const struct beyond_lane *at, enum method_id method,
                         const struct local_opt *opt, struct rolling_lane *l)
 {
+    struct beyond *x = at->x;
+    const struct beyond_levers *y = at->y;
+    int i = at->i;
     struct rolling q;
     double now[ROLLING], omega[3], dp[3];
-    set_operator(c, x, y, i, &q);
+    set_operator(at, &q);
     beyond_impulse(x, i, l->r, q.x);
-    spin(c, y, body, i, omega);
+    spin(at, omega);
     for (int j = 0; j < 3; j++) { // u and omega with the bond's pull that goes with them
         now[j] = 0;
         for (int k = 0; k < 3; k++)
-            now[j] += y->S[3 * j + k][i] * l->u[k] - c->W[3 * j + k][i] * x->z[k][i];
+            now[j] += y->S[3 * j + k][i] * l->u[k] - y->W[ROLLING * j + k][i] * x->z[k][i];
         dp[j] = -x->K[j > 0][i] * now[j] - x->z[j][i];
     }
     for (int j = 0; j < 3; j++) {

@@ -17,12 +17,13 @@ enum {
 static int numbers(const struct problem *p, int64_t slot, double *at[OF_SLOT])
 {
     struct bundle *c = slot_bundle(p, slot);
+    int64_t bundle = slot / BUNDLE;
     int k = slot_lane(slot), n = 0;
-    for (int j = 0; j < 2; j++) at[n++] = &c->w[j][k], at[n++] = &c->iw[j][k];
-    at[n++] = &c->rho[k];
-    for (int j = 0; j < 9 && p->lever; j++) at[n++] = &c->W[j][k];
+    for (int j = 0; j < 2; j++) at[n++] = &p->w[bundle][j][k], at[n++] = &c->iw[j][k];
+    at[n++] = &p->rho[bundle][k];
+    for (int j = 0; j < 9 && p->lever; j++) at[n++] = &p->block[bundle][j][k];
     if (!p->beyond) return n;
-    struct beyond *x = &p->beyond[slot / BUNDLE];
+    struct beyond *x = &p->beyond[bundle];
     at[n++] = &x->s[0][k], at[n++] = &x->s[1][k];
     at[n++] = &x->k[k], at[n++] = &x->wr[k], at[n++] = &x->length[k], at[n++] = &x->rho[k];
     struct beyond_levers *y = slot_turn(p, slot);

@@ -5,7 +5,8 @@
  *
  * Each quantity of a bundle fills a cache line; lane k belongs to contact k. Functions that work on
  * LANES lanes at once are given the first, k. A sweep over many contacts takes as long as it takes
- * to read their bundles, so what is seldom needed stands elsewhere (problem/problem.h: u, rebound).
+ * to read their bundles, so what can be computed meanwhile (t1, t2, W~_cc of balls) or is seldom
+ * needed stands elsewhere (problem/problem.h: tangent, w, rho, block, u, rebound).
  *
  * A lane without a contact (at the end of a group) has rho = 0 and w = 1: its contact separates,
  * and is not counted.
@@ -18,18 +19,17 @@
 enum { BUNDLE = 8 };
 
 struct bundle {
-    union {
-        struct {
-            double n[3][BUNDLE], t1[3][BUNDLE];
-            double la[BUNDLE], lb[BUNDLE]; /* m: lever arms along n, from a's centre and to b's */
-        };
-        double W[9][BUNDLE]; /* kg^-1: W_cc of a problem that is given by W */
-    };
-    double w[2][BUNDLE]; /* kg^-1: W~_cc, normal and tangential; of a full W_cc, lambda_max twice */
-    double iw[2][BUNDLE];           /* kg: 1/w */
-    double mu[BUNDLE], rho[BUNDLE]; /* -, kg */
-    double r[3][BUNDLE];            /* N s */
-    int32_t a[BUNDLE], b[BUNDLE];   /* places of bodies; given by W: a is the contact, -1: none */
+    double n[3][BUNDLE];
+    double la[BUNDLE], lb[BUNDLE]; /* m: lever arms along n, from a's centre and to b's; of balls */
+    double iw[2][BUNDLE];          /* kg: 1/w, normal and tangential */
+    double mu[BUNDLE];
+    double r[3][BUNDLE];          /* N s */
+    int32_t a[BUNDLE], b[BUNDLE]; /* places of bodies; given by W: a is the contact, -1: none */
+};
+
+/* t1 of a bundle, where it is not what contact_basis() makes of n in space */
+struct tangents {
+    double t1[3][BUNDLE];
 };
 
 /* Newton's impact law in a bundle, the velocity d by which an image moves faster than its body, and
@@ -108,19 +108,30 @@ ALWAYS_INLINE void bodies_add(struct body *body, const int32_t *place, const str
     }
 }
 
-/* The bases; t2 = n x t1 is cheaper to compute than to load. */
-ALWAYS_INLINE void bundle_basis(const struct bundle *c, int k, vd n[3], vd t1[3], vd t2[3])
+/*
+ * The bases, which are cheaper to compute than to load: t2 = n x t1, and, where t is NULL, t1 as
+ * contact_basis() makes it, to the bit [Duff et al. 2017].
+ */
+ALWAYS_INLINE void bundle_basis(const struct bundle *c, const struct tangents *t, int k, vd n[3],
+                                vd t1[3], vd t2[3])
 {
-    for (int i = 0; i < 3; i++) n[i] = vload(c->n[i] + k), t1[i] = vload(c->t1[i] + k);
+    for (int i = 0; i < 3; i++) n[i] = vload(c->n[i] + k);
+    if (t) {
+        for (int i = 0; i < 3; i++) t1[i] = vload(t->t1[i] + k);
+    } else {
+        vd sign = with_sign(splat(1), n[2]), a = -sign / (sign + n[2]);
+        t1[0] = 1.0 + n[0] * n[0] * a, t1[1] = n[0] * n[1] * a, t1[2] = -sign * n[0];
+    }
     for (int i = 0, j = 1, l = 2; i < 3; j = l, l = i++) t2[i] = n[j] * t1[l] - n[l] * t1[j];
 }
 
-/* u~ from the bodies' velocities, or u where e is NULL; and t2, which bundle_push() needs again */
-ALWAYS_INLINE void bundle_velocity(const struct bundle *c, const struct rebound *e, int k,
-                                   const struct twist *a, const struct twist *b, vd u[3], vd t2[3])
+/* u~ from the bodies' velocities, or u where e is NULL; and t1 and t2, which bundle_push() needs again */
+ALWAYS_INLINE void bundle_velocity(const struct bundle *c, const struct tangents *t,
+                                   const struct rebound *e, int k, const struct twist *a,
+                                   const struct twist *b, vd u[3], vd t1[3], vd t2[3])
 {
-    vd n[3], t1[3], dv[3], m[3], la = vload(c->la + k), lb = vload(c->lb + k);
-    bundle_basis(c, k, n, t1, t2);
+    vd n[3], dv[3], m[3], la = vload(c->la + k), lb = vload(c->lb + k);
+    bundle_basis(c, t, k, n, t1, t2);
     for (int i = 0; i < 3; i++) {
         dv[i] = b->v[i] - a->v[i], m[i] = la * a->w[i] + lb * b->w[i];
     }
@@ -131,14 +142,15 @@ ALWAYS_INLINE void bundle_velocity(const struct bundle *c, const struct rebound 
 }
 
 /* Adds to the bodies' velocities what a change dr (n, t1, t2) of the reactions makes of them. */
-ALWAYS_INLINE void bundle_push(const struct bundle *c, int k, const vd t2[3], const vd dr[3],
-                               struct body *body, const struct bodies *a, const struct bodies *b)
+ALWAYS_INLINE void bundle_push(const struct bundle *c, int k, const vd t1[3], const vd t2[3],
+                               const vd dr[3], struct body *body, const struct bodies *a,
+                               const struct bodies *b)
 {
     vd turn_a = a->ii * vload(c->la + k), turn_b = b->ii * vload(c->lb + k), im = -a->im;
     struct twist da, db;
     for (int i = 0; i < 3; i++) { // f on b; m = -n x dr turns both
-        vd n = vload(c->n[i] + k), t1 = vload(c->t1[i] + k);
-        vd f = dr[0] * n + dr[1] * t1 + dr[2] * t2[i], m = dr[2] * t1 - dr[1] * t2[i];
+        vd n = vload(c->n[i] + k);
+        vd f = dr[0] * n + dr[1] * t1[i] + dr[2] * t2[i], m = dr[2] * t1[i] - dr[1] * t2[i];
         da.v[i] = im * f, da.w[i] = turn_a * m;
         db.v[i] = b->im * f, db.w[i] = turn_b * m;
     }

@@ -15,8 +15,8 @@
 #ifndef NSD_ERR_H
 #define NSD_ERR_H
 
-#include "problem/report.h"
 #include "problem/judge.h"
+#include "problem/report.h"
 
 /* Computes the terms asked for, of all contacts but without max_overlap; the rest is 0. believes: u
    is the local method's own. The same bits for any number of threads. */

@@ -37,23 +37,33 @@ static void image_velocity(const vec3 rate[3], const struct contact *c, double u
     u[0] = v3_dot(c->n, v), u[1] = v3_dot(c->t1, v), u[2] = v3_dot(contact_t2(c), v);
 }
 
+/* The slot's n, its t1 where it must be known, mu; s of a rebound is 1 where there is no contact. */
+static void set_basis(struct problem *p, int64_t i, const struct contact *c)
+{
+    const double n[3] = { c->n.x, c->n.y, c->n.z }, t1[3] = { c->t1.x, c->t1.y, c->t1.z };
+    struct bundle *r = slot_bundle(p, i);
+    int k = slot_lane(i);
+    for (int j = 0; j < 3; j++) r->n[j][k] = n[j];
+    for (int j = 0; j < 3 && p->tangent; j++) p->tangent[i / BUNDLE].t1[j][k] = t1[j];
+    r->mu[k] = c->mu;
+}
+
 /* Fills slot i except for the reaction. The bodies still have their velocities before the step. */
 static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
                       const struct lattice *cell, const struct contact *c, const struct tie *tie,
                       double alpha, double rho_factor, double slower)
 {
-    const double en[3] = { c->en, c->et, c->et }, n[3] = { c->n.x, c->n.y, c->n.z },
-                 t1[3] = { c->t1.x, c->t1.y, c->t1.z }, s[2] = { 1 / (1 + c->en), 1 / (1 + c->et) };
+    const double en[3] = { c->en, c->et, c->et }, s[2] = { 1 / (1 + c->en), 1 / (1 + c->et) };
     struct bundle *r = slot_bundle(p, i);
     struct rebound *e = slot_rebound(p, i);
+    double(*w)[BUNDLE] = p->w[i / BUNDLE];
     int k = slot_lane(i);
-    for (int j = 0; j < 3; j++) r->n[j][k] = n[j], r->t1[j][k] = t1[j];
-    r->mu[k] = c->mu;
+    set_basis(p, i, c);
     arms_of(pack, c, (1 - pack->theta) * pack->dt, cell->edge, &r->la[k], &r->lb[k]);
     const struct body a = lighter(p, r->a[k], slower), b = lighter(p, r->b[k], slower);
     double u[3], im = a.im + b.im;
     double it = im + r->la[k] * r->la[k] * a.ii + r->lb[k] * r->lb[k] * b.ii;
-    body_velocity(p->body, r, NULL, k, u); // u^-
+    body_velocity(p, p->body, r, NULL, k, u); // u^-
     double before[3], after[3];
     if (contact_shifted(c)) {
         image_velocity(cell->before, c, before), image_velocity(cell->after, c, after);
@@ -66,10 +76,10 @@ static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
     else if (e && offset_in(pack, c))
         add_offset(e, k, pack, c, u[0]);
     for (int j = 0; j < 2 && e; j++) e->s[j][k] = s[j];
-    r->w[0][k] = s[0] * im, r->w[1][k] = s[1] * it;
-    for (int j = 0; j < 2; j++) r->iw[j][k] = 1 / r->w[j][k];
-    double lambda = bundle_lambda(r, k);
-    r->rho[k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / im : rho_factor / lambda;
+    w[0][k] = s[0] * im, w[1][k] = s[1] * it;
+    for (int j = 0; j < 2; j++) r->iw[j][k] = 1 / w[j][k];
+    double lambda = slot_lambda(p, i);
+    p->rho[i / BUNDLE][k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / im : rho_factor / lambda;
 }
 
 /* The rows G_i of a body with this arm; a boundary's (i < 0) are 0. */
@@ -90,14 +100,13 @@ static void lever_init(struct problem *p, int64_t i, const struct packing *pack,
                        const struct lattice *cell, const struct contact *c, const struct tie *tie,
                        double alpha, double rho_factor, double slower, const quat *half)
 {
-    const double en[3] = { c->en, c->et, c->et }, n[3] = { c->n.x, c->n.y, c->n.z },
-                 t1[3] = { c->t1.x, c->t1.y, c->t1.z };
+    const double en[3] = { c->en, c->et, c->et };
     struct bundle *r = slot_bundle(p, i);
     struct levers *g = &p->lever[i / BUNDLE];
     struct rebound *e = slot_rebound(p, i);
     int k = slot_lane(i);
     struct arms arm = arm_vectors(pack, c, (1 - pack->theta) * pack->dt, cell->edge);
-    for (int j = 0; j < 3; j++) g->n[j][k] = n[j], g->t1[j][k] = t1[j];
+    set_basis(p, i, c);
     set_rows(g->Ga, k, pack, c->a, arm.a, c, half), set_rows(g->Gb, k, pack, c->b, arm.b, c, half);
     const struct body a = lighter(p, r->a[k], slower), b = lighter(p, r->b[k], slower);
     double W[9], u[3];
@@ -106,12 +115,11 @@ static void lever_init(struct problem *p, int64_t i, const struct packing *pack,
         for (int l = 0; l < 3; l++)
             W[j] += a.ii * g->Ga[3 * (j / 3) + l][k] * g->Ga[3 * (j % 3) + l][k] +
                     b.ii * g->Gb[3 * (j / 3) + l][k] * g->Gb[3 * (j % 3) + l][k];
-        r->W[j][k] = W[j];
+        p->block[i / BUNDLE][j][k] = W[j];
     }
     double lambda = local_lambda_max(W);
-    r->mu[k] = c->mu;
-    for (int j = 0; j < 2; j++) r->w[j][k] = lambda, r->iw[j][k] = 1 / lambda;
-    r->rho[k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / W[0] : rho_factor / lambda;
+    for (int j = 0; j < 2; j++) p->w[i / BUNDLE][j][k] = lambda, r->iw[j][k] = 1 / lambda;
+    p->rho[i / BUNDLE][k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / W[0] : rho_factor / lambda;
     if (!e) return;
     problem_velocity(p, p->body, r, NULL, k, u); // u^-
     double before[3] = { 0 }, after[3] = { 0 };
@@ -138,13 +146,13 @@ static void slot_go_beyond(struct problem *p, int64_t i, const struct contact *c
     const struct rebound *e = slot_rebound(p, i);
     const struct body a = lighter(p, r->a[k], slower), b = lighter(p, r->b[k], slower);
     double h = p->dt, seen = t->offset > 0 ? t->offset : offset_of(p->packing, c, 0);
-    double wt = r->w[1][k] / (e ? e->s[1][k] : 1);
+    double(*w)[BUNDLE] = p->w[i / BUNDLE], wt = w[1][k] / (e ? e->s[1][k] : 1);
     for (int j = 0; j < 2; j++) {
-        x->K[j][k] = h * h * t->stiff[j], x->s[j][k] = 1 / (1 + r->w[j][k] * x->K[j][k]);
-        r->w[j][k] *= x->s[j][k], r->iw[j][k] += x->K[j][k];
+        x->K[j][k] = h * h * t->stiff[j], x->s[j][k] = 1 / (1 + w[j][k] * x->K[j][k]);
+        w[j][k] *= x->s[j][k], r->iw[j][k] += x->K[j][k];
     }
-    double lambda = bundle_lambda(r, k);
-    if (t->beta > 0 && !(alpha > 0)) r->rho[k] = lambda > 0 ? rho_factor / lambda : 1;
+    double lambda = slot_lambda(p, i), *rho = &p->rho[i / BUNDLE][k];
+    if (t->beta > 0 && !(alpha > 0)) *rho = lambda > 0 ? rho_factor / lambda : 1;
     x->a[0][k] = x->K[0][k] * (t->jump[0] / h - seen);
     for (int j = 1; j < 3; j++) x->a[j][k] = h * t->stiff[1] * t->jump[j];
     for (int j = 0; j < 3; j++) x->z[j][k] = x->a[j][k]; // p = 0
@@ -155,8 +163,9 @@ static void slot_go_beyond(struct problem *p, int64_t i, const struct contact *c
     struct rolling q;
     const double s[2] = { e ? e->s[0][k] : 1, e ? e->s[1][k] : 1 }, u[3] = { 0 };
     double v[ROLLING];
-    beyond_rolling(r, x, NULL, p->body, k, s, u, &q, v);
-    x->rho[k] = r->rho[k] * lambda / rolling_lambda(&q);
+    const struct beyond_lane at = slot_beyond(p, i);
+    beyond_rolling(&at, (const double[2]){ w[0][k], w[1][k] }, s, u, &q, v);
+    x->rho[k] = *rho * lambda / rolling_lambda(&q);
 }
 
 /* The rows R_i of a body, or a boundary */
@@ -183,32 +192,35 @@ static void lever_go_beyond(struct problem *p, int64_t i, const struct contact *
     struct beyond_levers *y = slot_turn(p, i);
     const struct body a = lighter(p, r->a[k], slower), b = lighter(p, r->b[k], slower);
     double h = p->dt, seen = t->offset > 0 ? t->offset : offset_of(p->packing, c, 0);
-    double W[9], K[2] = { h * h * t->stiff[0], h * h * t->stiff[1] };
-    for (int j = 0; j < 9; j++) W[j] = r->W[j][k];
+    double(*block)[BUNDLE] = p->block[i / BUNDLE],
+    *w[2] = { p->w[i / BUNDLE][0] + k, p->w[i / BUNDLE][1] + k };
+    double *rho = &p->rho[i / BUNDLE][k], W[9], K[2] = { h * h * t->stiff[0], h * h * t->stiff[1] };
+    for (int j = 0; j < 9; j++) W[j] = block[j][k];
     for (int j = 0; j < 2; j++) x->K[j][k] = K[j];
     x->a[0][k] = K[0] * (t->jump[0] / h - seen);
     for (int j = 1; j < 3; j++) x->a[j][k] = h * t->stiff[1] * t->jump[j];
     if (K[0] > 0 || K[1] > 0) {
         double hat[9];
-        beyond_levers_bond(r, y, k, K);
-        for (int j = 0; j < 9; j++) hat[j] = r->W[j][k];
+        beyond_levers_bond(block, y, k, K);
+        for (int j = 0; j < 9; j++) hat[j] = block[j][k];
         double lambda = local_lambda_max(hat);
-        for (int j = 0; j < 2; j++) r->w[j][k] = lambda, r->iw[j][k] = 1 / lambda;
-        if (!(alpha > 0)) r->rho[k] = lambda > 0 ? rho_factor / lambda : 1;
+        for (int j = 0; j < 2; j++) *w[j] = lambda, r->iw[j][k] = 1 / lambda;
+        if (!(alpha > 0)) *rho = lambda > 0 ? rho_factor / lambda : 1;
     }
     for (int j = 0; j < 3; j++) x->z[j][k] = x->a[j][k]; // p = 0
     x->mu_r[k] = t->mu_r, x->mu_p[k] = t->mu_p;
     if (!beyond_rolls(x, k)) return;
     set_turning(y->Ra, k, p->packing, c->a, c, half);
     set_turning(y->Rb, k, p->packing, c->b, c, half);
-    x->length[k] = beyond_levers_turn(&p->lever[i / BUNDLE], r, y, k, W, K, a.ii, b.ii);
-    x->rho[k] = r->rho[k] * r->w[0][k] / y->lambda[k];
+    x->length[k] = beyond_levers_turn(&p->lever[i / BUNDLE], block, y, k, W, K, a.ii, b.ii);
+    x->rho[k] = *rho * *w[0] / y->lambda[k];
 }
 
 void fill_slot(const struct filling *f, int64_t i, double slower)
 {
     struct problem *p = f->p;
     int32_t c = p->contact[i];
+    for (int j = 0; j < 2 && c < 0 && p->rebound; j++) slot_rebound(p, i)->s[j][slot_lane(i)] = 1;
     if (c < 0) return;
     const struct contact *law = &f->s->c[c];
     const struct tie *tie = f->s->tie ? &f->s->tie[c] : NULL;

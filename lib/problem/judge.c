@@ -23,7 +23,7 @@ ALWAYS_INLINE void motion_velocity(const struct problem *p, const struct bundle 
     }
     struct local l = { 0 };
     vd W[9], r[3];
-    for (int i = 0; i < 9; i++) W[i] = vload(c->W[i] + k);
+    for (int i = 0; i < 9; i++) W[i] = vload(p->block[c - p->bundle][i] + k);
     for (int i = 0; i < 3; i++) r[i] = vload(c->r[i] + k);
     l.W = W;
     blocks_gather(p, c, k, l.b);
@@ -70,9 +70,11 @@ ALWAYS_INLINE vd natural2(vd mu, const vd r[3], vd rho, const vd u[3])
     return d * d;
 }
 
-ALWAYS_INLINE void add_natural(struct sums *s, const struct bundle *c, int k, const vd u[3])
+ALWAYS_INLINE void add_natural(struct sums *s, const struct problem *p, int64_t bundle, int k,
+                               const vd u[3])
 {
-    vd lambda = bundle_lambda(c, k), mu = vload(c->mu + k), r[3];
+    const struct bundle *c = &p->bundle[bundle];
+    vd lambda = bundle_lambda(p, bundle, k), mu = vload(c->mu + k), r[3];
     vd rho = pick(lt(splat(0), lambda), 1.0 / lambda, splat(1));
     for (int i = 0; i < 3; i++) r[i] = vload(c->r[i] + k);
     vd n2 = natural2(mu, r, rho, u);
@@ -83,14 +85,15 @@ ALWAYS_INLINE void add_natural(struct sums *s, const struct bundle *c, int k, co
 }
 
 /* What an inconsistent pull of the bond means: e = p + a + K u~, of which s e, or S^T e, would be taken back */
-ALWAYS_INLINE void add_bonds(struct sums *s, const struct bundle *c, const struct beyond *x,
-                             const struct beyond_levers *y, int k, enum err_terms which,
-                             const vd u[3])
+ALWAYS_INLINE void add_bonds(struct sums *s, const struct problem *p, int64_t bundle, int k,
+                             enum err_terms which, const vd u[3])
 {
-    vd lambda = bundle_lambda(c, k), off[3], p[3], e[3];
+    const struct beyond *x = &p->beyond[bundle];
+    const struct beyond_levers *y = p->turn ? &p->turn[bundle] : NULL;
+    vd lambda = bundle_lambda(p, bundle, k), off[3], pull[3], e[3];
     for (int i = 0; i < 3; i++) {
         vd z = vload(x->z[i] + k);
-        p[i] = z - vload(x->a[i] + k);
+        pull[i] = z - vload(x->a[i] + k);
         e[i] = z + vload(x->K[i > 0] + k) * u[i];
         off[i] = vload(x->s[i > 0] + k) * e[i];
     }
@@ -102,7 +105,7 @@ ALWAYS_INLINE void add_bonds(struct sums *s, const struct bundle *c, const struc
     if (which & ERR_TERMS) add_to(s->motion + k, lambda * norm3(off));
     if (!(which & ERR_NATURAL)) return;
     add_to(s->natural2 + k, n2), add_to(s->velocity2 + k, n2 * lambda * lambda);
-    add_to(s->siconos2 + k, n2), add_to(s->r2 + k, dot3(p, p));
+    add_to(s->siconos2 + k, n2), add_to(s->r2 + k, dot3(pull, pull));
 }
 
 /* The sums of lane k, whose contact has rolling friction, in place of those without it */
@@ -114,8 +117,8 @@ static void judge_rolling(struct sums *s, const struct problem *p, int64_t i, in
     const double scale[2] = { e ? e->s[0][k] : 1, e ? e->s[1][k] : 1 };
     double v[ROLLING], on[ROLLING], far = 0, r2 = 0;
     struct rolling q;
-    const struct beyond_levers *y = p->turn ? &p->turn[i] : NULL;
-    beyond_rolling(c, &p->beyond[i], y, p->body, k, scale, u, &q, v);
+    const struct beyond_lane at = slot_beyond(p, i * BUNDLE + k);
+    beyond_rolling(&at, (const double[2]){ p->w[i][0][k], p->w[i][1][k] }, scale, u, &q, v);
     rolling_project(&q, q.x, on);
     for (int j = 0; j < ROLLING; j++)
         far += (q.x[j] - on[j]) * (q.x[j] - on[j]), r2 += q.x[j] * q.x[j];
@@ -135,13 +138,13 @@ static void judge_moments(const struct problem *p, int64_t i, bool believes, enu
         double lane[3][LANES];
         motion_velocity(p, &p->bundle[i], k, u);
         add_terms(&one, &p->bundle[i], p->u[i], k, believes, u);
-        add_natural(&one, &p->bundle[i], k, u);
+        add_natural(&one, p, i, k, u);
         for (int j = 0; j < 3; j++) vstore(lane[j], u[j]);
         for (int j = 0; j < LANES; j++) {
             const double v[3] = { lane[0][j], lane[1][j], lane[2][j] };
             if (beyond_rolls(&p->beyond[i], k + j)) judge_rolling(&one, p, i, k + j, v);
         }
-        add_bonds(&one, &p->bundle[i], &p->beyond[i], p->turn ? &p->turn[i] : NULL, k, ERR_ALL, u);
+        add_bonds(&one, p, i, k, ERR_ALL, u);
     }
     for (int k = 0; k < BUNDLE; k++) {
         if (which & ERR_TERMS) {
@@ -170,9 +173,8 @@ static void judge(const struct problem *p, int64_t first, int64_t end, bool beli
             vd u[3];
             motion_velocity(p, &p->bundle[i], k, u);
             if (which & ERR_TERMS) add_terms(s, &p->bundle[i], p->u[i], k, believes, u);
-            if (which & ERR_NATURAL) add_natural(s, &p->bundle[i], k, u);
-            const struct beyond_levers *y = p->turn ? &p->turn[i] : NULL;
-            if (p->beyond) add_bonds(s, &p->bundle[i], &p->beyond[i], y, k, which, u);
+            if (which & ERR_NATURAL) add_natural(s, p, i, k, u);
+            if (p->beyond) add_bonds(s, p, i, k, which, u);
         }
     }
 }

@@ -42,9 +42,11 @@ bool lay_bundles(struct problem *p, const struct schedule *plan)
     }
     p->slots = p->bundles * BUNDLE;
     p->bundle = lay_lines(p->bundles, sizeof *p->bundle);
+    p->w = lay_lines(p->bundles, sizeof *p->w);
+    p->rho = lay_lines(p->bundles, sizeof *p->rho);
     p->u = lay_lines(p->bundles, sizeof *p->u);
     p->contact = malloc((size_t)(p->slots + 1) * sizeof *p->contact);
-    if (!p->group || !p->bundle || !p->u || !p->contact) return false;
+    if (!p->group || !p->bundle || !p->w || !p->rho || !p->u || !p->contact) return false;
     p->group[p->groups] = p->bundles;
     if (plan->rest && !(p->split = lay_lines(1, sizeof *p->split))) return false;
     if (p->split)
@@ -57,7 +59,8 @@ bool lay_bundles(struct problem *p, const struct schedule *plan)
         for (; at < end; at++) {
             struct bundle *c = slot_bundle(p, at);
             p->contact[at] = -1;
-            for (int k = 0; k < 2; k++) c->w[k][slot_lane(at)] = c->iw[k][slot_lane(at)] = 1;
+            for (int k = 0; k < 2; k++)
+                p->w[at / BUNDLE][k][slot_lane(at)] = c->iw[k][slot_lane(at)] = 1;
         }
     }
     return true;
@@ -135,7 +138,8 @@ static void place_some(void *arg, int64_t first, int64_t end)
         const int32_t *body = y->pair[i];
         int k = slot_lane(i);
         r->a[k] = r->b[k] = body_place(nobody + (i >= other));
-        for (int j = 0; j < 9 && p->lever; j += 4) r->W[j][k] = 1; // of a lane without a contact
+        for (int j = 0; j < 9 && p->lever; j += 4) // of a lane without a contact
+            p->block[i / BUNDLE][j][k] = 1;
         if (body[1] < 0) continue;
         const vec3 *x = &y->s->c[p->contact[i]].x;
         r->a[k] = place_of(p, body[0], x, &next), r->b[k] = place_of(p, body[1], x, &next);
@@ -144,5 +148,7 @@ static void place_some(void *arg, int64_t first, int64_t end)
 
 void lay_places(struct laying *y)
 {
+    // w of a lane without a contact is 1, where it is made of masses
+    for (int64_t i = 0; i < 2; i++) y->p->body[y->p->packing->n + i].im = 0.5;
     team_share(team_size(), y->p->bundles, SOME / BUNDLE, place_some, y);
 }

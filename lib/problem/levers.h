@@ -7,7 +7,7 @@
  * with e = (n, t1, t2), r from a body's centre to the point of contact, and I its inertia where the
  * contact acts. In y, which struct body holds in place of w, a body's inertia is 1: a change of the
  * reactions adds G^T dr, and a body stays a cache line. A body that does not move has y = w and
- * G_i = r x e_i, and keeps them. W_cc is full, and stands in the bundle in place of a ball's arms.
+ * G_i = r x e_i, and keeps them. W_cc is full [problem/problem.h: block].
  */
 #ifndef NSD_LEVERS_H
 #define NSD_LEVERS_H
@@ -15,22 +15,17 @@
 #include "problem/bundle.h"
 
 struct levers {
-    double n[3][BUNDLE], t1[3][BUNDLE];
     double Ga[9][BUNDLE], Gb[9][BUNDLE]; /* m (kg m^2)^-1/2: component j of G_i at 3 i + j */
 };
 
-ALWAYS_INLINE void levers_basis(const struct levers *g, int k, vd n[3], vd t1[3], vd t2[3])
-{
-    for (int i = 0; i < 3; i++) n[i] = vload(g->n[i] + k), t1[i] = vload(g->t1[i] + k);
-    for (int i = 0, j = 1, l = 2; i < 3; j = l, l = i++) t2[i] = n[j] * t1[l] - n[l] * t1[j];
-}
-
 /* As bundle_velocity() */
-ALWAYS_INLINE void levers_velocity(const struct levers *g, const struct rebound *e, int k,
-                                   const struct twist *a, const struct twist *b, vd u[3], vd t2[3])
+ALWAYS_INLINE void levers_velocity(const struct bundle *c, const struct tangents *t,
+                                   const struct levers *g, const struct rebound *e, int k,
+                                   const struct twist *a, const struct twist *b, vd u[3], vd t1[3],
+                                   vd t2[3])
 {
-    vd n[3], t1[3], dv[3];
-    levers_basis(g, k, n, t1, t2);
+    vd n[3], dv[3];
+    bundle_basis(c, t, k, n, t1, t2);
     for (int i = 0; i < 3; i++) dv[i] = b->v[i] - a->v[i];
     u[0] = dot3(n, dv), u[1] = dot3(t1, dv), u[2] = dot3(t2, dv);
     for (int i = 0; i < 3; i++)
@@ -41,13 +36,13 @@ ALWAYS_INLINE void levers_velocity(const struct levers *g, const struct rebound 
 
 /* As bundle_push() */
 ALWAYS_INLINE void levers_push(const struct bundle *c, const struct levers *g, int k,
-                               const vd t2[3], const vd dr[3], struct body *body,
+                               const vd t1[3], const vd t2[3], const vd dr[3], struct body *body,
                                const struct bodies *a, const struct bodies *b)
 {
     vd im = -a->im, ii = -a->ii;
     struct twist da, db;
     for (int i = 0; i < 3; i++) {
-        vd f = dr[0] * vload(g->n[i] + k) + dr[1] * vload(g->t1[i] + k) + dr[2] * t2[i];
+        vd f = dr[0] * vload(c->n[i] + k) + dr[1] * t1[i] + dr[2] * t2[i];
         vd ma = splat(0), mb = splat(0);
         for (int j = 0; j < 3; j++) {
             ma += vload(g->Ga[3 * j + i] + k) * dr[j];

@@ -50,8 +50,7 @@ ALWAYS_INLINE void measure_text(int d, int depth, const struct problem *p, const
         vd f2 = vload(t->f2 + k), ff[MIXING_DEPTH], fd[MIXING_DEPTH];
         for (int j = 0; j < depth; j++) ff[j] = vload(t->ff[j] + k), fd[j] = vload(t->fd[j] + k);
         for (int64_t i = first; i < end; i++) {
-            const struct bundle *c = &p->bundle[i];
-            vd lambda = bundle_lambda(c, k);
+            vd lambda = bundle_lambda(p, i, k);
             for (int l = 0; l < d; l++) {
                 int64_t at = (i * d + l) * BUNDLE + k;
                 vd g = vload(component(p, i, l) + k), f = g - vload(df + at),
@@ -144,10 +143,10 @@ ALWAYS_INLINE void react_text(int d, int depth, struct problem *p, const struct 
                 blocks_scatter(p, c, k);
             else
                 problem_push(p, p->body, c, k, dr);
-            const struct beyond_levers *turn = p->turn ? &p->turn[i] : NULL;
-            for (int l = 0; l < LANES && d == WITH_BESIDE; l++)
-                if (beyond_rolls(&p->beyond[i], k + l))
-                    beyond_push(c, &p->beyond[i], turn, k + l, p->body, dm[l]);
+            for (int l = 0; l < LANES && d == WITH_BESIDE; l++) {
+                const struct beyond_lane at = slot_beyond(p, i * BUNDLE + k + l);
+                if (beyond_rolls(at.x, at.i)) beyond_push(&at, dm[l]);
+            }
         }
     }
 }

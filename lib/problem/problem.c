@@ -36,6 +36,7 @@ void problem_free(struct problem *p)
     free(p->bundle), free(p->rebound), free(p->u), free(p->contact), free(p->group), free(p->body);
     free(p->split), free(p->seat), free(p->pull), free(p->beyond), free(p->in_W);
     free(p->lever), free(p->spin), free(p->turn);
+    free(p->w), free(p->rho), free(p->block), free(p->tangent);
     delassus_free(&p->sorted);
     brake_free(p->brake);
     if (p->own) delassus_free(p->own);
@@ -161,7 +162,8 @@ static void take_found(struct problem *p, int64_t i, const struct contacts *s)
     slot_set(p, i, r, u);
     if (!x || !beyond_rolls(x, k)) return;
     const double m[3] = { x->m[0][k], x->m[1][k], x->m[2][k] };
-    beyond_push(slot_bundle(p, i), x, slot_turn(p, i), k, p->body, m);
+    const struct beyond_lane at = slot_beyond(p, i);
+    beyond_push(&at, m);
 }
 
 /* What the free motion makes of the slots */
@@ -209,18 +211,26 @@ struct survey {
     bool moving_images; /* images move otherwise than their bodies, now or at the end of the step */
     _Atomic int64_t copies;        /* of bodies that do not move */
     _Atomic bool shaped, rebounds; /* u~ is anything but u */
+    _Atomic bool turned;           /* t1 is not what contact_basis() makes of n in space */
 };
+
+static bool same_bits(vec3 a, vec3 b)
+{
+    return !memcmp(&a, &b, sizeof a);
+}
 
 static void survey_some(void *arg, int64_t first, int64_t end)
 {
     struct survey *y = arg;
-    bool shaped = false, rebounds = false;
+    bool shaped = false, rebounds = false, turned = y->p->dim == 2;
     int64_t copies = 0;
     int32_t moves[2];
     for (int64_t i = first; i < end; i++) {
         const struct contact *c = &y->s->c[i];
         copies += 2 - packing_movable(y->p, c->a, c->b, moves);
         shaped |= contact_shaped(y->p, c);
+        struct contact made = { 0 };
+        if (!turned) contact_basis(&made, 3, c->n), turned = !same_bits(made.t1, c->t1);
         rebounds |= c->en > 0 || c->et > 0 || offset_in(y->p, c) ||
                     (y->s->tie && y->s->tie[i].offset > 0) ||
                     (y->moving_images && contact_shifted(c));
@@ -228,6 +238,7 @@ static void survey_some(void *arg, int64_t first, int64_t end)
     y->copies += copies;
     if (shaped) y->shaped = true;
     if (rebounds) y->rebounds = true;
+    if (turned) y->turned = true;
 }
 
 static void survey(struct survey *y, const struct packing *p, const struct contacts *s,
@@ -262,11 +273,17 @@ static int prepare(struct problem *p, const struct packing *pack, const struct c
     if (anywhere(p, found.shaped) && room) {
         p->full = true;
         p->lever = lay_lines(p->bundles, sizeof *p->lever);
-        room = p->lever && find_spins(p, pack, &half);
+        p->block = lay_lines(p->bundles, sizeof *p->block);
+        room = p->lever && p->block && find_spins(p, pack, &half);
     }
     if (anywhere(p, found.rebounds) && room)
         room = (p->rebound = lay_lines(p->bundles, sizeof *p->rebound)) != NULL;
+    // where bundles stay in a near cache, what can be computed is loaded in less time
+    bool far = p->bundles >= FAR_BUNDLES;
+    if ((found.turned || !far) && room)
+        room = (p->tangent = lay_lines(p->bundles, sizeof *p->tangent)) != NULL;
     room = room && set_pulls(p, s) && lay_out_beyond(p, s);
+    p->w_of_bodies = far && !p->lever && !p->beyond && !(shared && shared->slower);
     struct laying lay = { 0 };
     room = room && laying_init(&lay, p, s) && (p->seat = lay_seats(&lay, order));
     if (!room) return free(half), laying_free(&lay), no_memory(p, why);
@@ -340,7 +357,8 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
 {
     struct schedule plan = { 0 };
     *p = (struct problem){ .d = W->d, .n = W->n, .W = W, .dt = 1, .scale_v = 1, .scale_r = 1 };
-    bool room = !schedule_blocks(&plan, order, W) && lay_bundles(p, &plan);
+    bool room = !schedule_blocks(&plan, order, W) && lay_bundles(p, &plan) &&
+                (p->block = lay_lines(p->bundles, sizeof *p->block));
     schedule_free(&plan);
     if (!room || delassus_sort(&p->sorted, W, p->slots, p->contact, why)) return no_memory(p, why);
     for (int64_t c = 0; c < W->n; c++) p->full = p->full || !like_balls(W->diag + 9 * c);
@@ -351,16 +369,18 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
         int k = slot_lane(i);
         r->a[k] = (int32_t)c;
         for (int j = 0; j < 9; j++)
-            r->W[j][k] = c < 0 ? j % 4 == 0 : W->diag[9 * c + j / 3 + 3 * (j % 3)];
+            p->block[i / BUNDLE][j][k] = c < 0 ? j % 4 == 0 : W->diag[9 * c + j / 3 + 3 * (j % 3)];
         if (c < 0) continue;
         const double *D = W->diag + 9 * c, *q = W->q + W->d * c;
         double lambda = local_lambda_max(D);
         r->mu[k] = W->mu[c];
         for (int j = 0; j < 2; j++) {
-            r->w[j][k] = p->full ? lambda : D[4 * j];
-            r->iw[j][k] = 1 / r->w[j][k];
+            p->w[i / BUNDLE][j][k] = p->full ? lambda : D[4 * j];
+            r->iw[j][k] = 1 / p->w[i / BUNDLE][j][k];
         }
-        r->rho[k] = lambda <= 0 ? 1 : alpha > 0 && D[0] > 0 ? alpha / D[0] : rho_factor / lambda;
+        p->rho[i / BUNDLE][k] = lambda <= 0             ? 1
+                                : alpha > 0 && D[0] > 0 ? alpha / D[0]
+                                                        : rho_factor / lambda;
         for (int j = 0; j < W->d; j++) {
             r->r[j][k] = W->r[W->d * c + j];
             p->norm_q += q[j] * q[j];
@@ -378,6 +398,14 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
 struct beyond_levers *slot_turn(const struct problem *p, int64_t i)
 {
     return p->turn ? &p->turn[i / BUNDLE] : NULL;
+}
+
+struct beyond_lane slot_beyond(const struct problem *p, int64_t i)
+{
+    const struct bundle *c = slot_bundle(p, i);
+    return (struct beyond_lane){ slot_lane(i),          c,
+                                 bundle_tangents(p, c), &p->beyond[i / BUNDLE],
+                                 slot_turn(p, i),       p->body };
 }
 
 void slot_get(const struct problem *p, int64_t i, double r[3], double u[3])

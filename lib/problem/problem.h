@@ -29,7 +29,7 @@
 #include "problem/schedule.h"
 
 enum {
-    FAR_BUNDLES = 1024 /* bundles, 1.2 MB: more do not stay in a near cache from sweep to sweep */
+    FAR_BUNDLES = 1024 /* bundles, 0.8 MB: more do not stay in a near cache from sweep to sweep */
 };
 
 struct shared;
@@ -40,6 +40,13 @@ struct problem {
     int64_t n;                  /* contacts, of all processes */
     int64_t bundles, slots;     /* slots: 8 a bundle, some without a contact */
     struct bundle *bundle;      /* [bundles] in the order of the sweep */
+    double (*w)[2][BUNDLE];     /* [bundles] kg^-1: W~_cc, normal and tangential; of a full W_cc,
+                               lambda_max twice */
+    bool w_of_bodies;           /* sweeps make w of the masses and arms rather than load it */
+    double (*rho)[BUNDLE];      /* [bundles] kg: the step of the projections */
+    double (*block)[9][BUNDLE]; /* [bundles] kg^-1: W_cc, full; NULL: between balls */
+    struct tangents
+        *tangent; /* [bundles]; NULL: to be made of n, as contact_basis() makes it in space */
     struct rebound *rebound;    /* [bundles]; NULL: e_n = e_t = 0 everywhere, and no offset */
     struct levers *lever;       /* [bundles]; NULL: balls, or given by W */
     struct beyond_levers *turn; /* [bundles] the same between bodies with levers; else NULL */
@@ -123,6 +130,8 @@ static inline struct rebound *slot_rebound(const struct problem *p, int64_t i)
     return p->rebound ? &p->rebound[i / BUNDLE] : NULL;
 }
 struct beyond_levers *slot_turn(const struct problem *p, int64_t i); /* NULL: balls */
+/* The slot with what is beyond it, of a problem in which there is anything */
+struct beyond_lane slot_beyond(const struct problem *p, int64_t i);
 void slot_get(const struct problem *p, int64_t i, double r[3], double u[3]);
 void slot_set(struct problem *p, int64_t i, const double r[3], const double u[3]);
 
@@ -136,39 +145,51 @@ static inline bool problem_undivided(const struct problem *p)
     return p->W || p->lever;
 }
 
-/* The largest eigenvalue of W~_cc: 1/rho_a of the natural map; of lanes k.., of slot i */
-ALWAYS_INLINE vd bundle_lambda(const struct bundle *c, int k)
+/* The largest eigenvalue of W~_cc: 1/rho_a of the natural map; of lanes k.. of bundle i, of slot i */
+ALWAYS_INLINE vd bundle_lambda(const struct problem *p, int64_t i, int k)
 {
-    return larger(vload(c->w[0] + k), vload(c->w[1] + k));
+    return larger(vload(p->w[i][0] + k), vload(p->w[i][1] + k));
 }
 
 static inline double slot_lambda(const struct problem *p, int64_t i)
 {
-    const struct bundle *c = slot_bundle(p, i);
+    const double(*w)[BUNDLE] = (const double(*)[BUNDLE])p->w[i / BUNDLE];
     int k = slot_lane(i);
-    return c->w[0][k] > c->w[1][k] ? c->w[0][k] : c->w[1][k];
+    return w[0][k] > w[1][k] ? w[0][k] : w[1][k];
 }
 
-/* u~ of lanes k.. of c from the velocities of body[], or u where e is NULL */
-ALWAYS_INLINE void body_velocity(struct body *body, const struct bundle *c, const struct rebound *e,
-                                 int k, vd u[3])
+/* What a bundle of the problem has beside it: its impact law, its t1 (NULL: none) */
+ALWAYS_INLINE const struct rebound *bundle_rebound(const struct problem *p, const struct bundle *c)
+{
+    return p->rebound ? p->rebound + (c - p->bundle) : NULL;
+}
+ALWAYS_INLINE const struct tangents *bundle_tangents(const struct problem *p,
+                                                     const struct bundle *c)
+{
+    return p->tangent ? p->tangent + (c - p->bundle) : NULL;
+}
+
+/* u~ of lanes k.. of c from the velocities of body[], or u where e is NULL; between balls */
+ALWAYS_INLINE void body_velocity(const struct problem *p, struct body *body, const struct bundle *c,
+                                 const struct rebound *e, int k, vd u[3])
 {
     struct bodies a, b;
     struct twist ma, mb;
-    vd t2[3];
+    vd t1[3], t2[3];
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
-    bundle_velocity(c, e, k, &ma, &mb, u, t2);
+    bundle_velocity(c, bundle_tangents(p, c), e, k, &ma, &mb, u, t1, t2);
 }
 
 /* Adds to the velocities of body[] what a change dr of the reactions makes of them. */
-ALWAYS_INLINE void body_push(struct body *body, const struct bundle *c, int k, const vd dr[3])
+ALWAYS_INLINE void body_push(const struct problem *p, struct body *body, const struct bundle *c,
+                             int k, const vd dr[3])
 {
     struct bodies a, b;
     struct twist ma, mb;
     vd n[3], t1[3], t2[3];
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
-    bundle_basis(c, k, n, t1, t2);
-    bundle_push(c, k, t2, dr, body, &a, &b);
+    bundle_basis(c, bundle_tangents(p, c), k, n, t1, t2);
+    bundle_push(c, k, t1, t2, dr, body, &a, &b);
 }
 
 /* Both, whether the problem has levers or not */
@@ -177,13 +198,13 @@ ALWAYS_INLINE void problem_velocity(const struct problem *p, struct body *body,
 {
     struct bodies a, b;
     struct twist ma, mb;
-    vd t2[3];
+    vd t1[3], t2[3];
     if (!p->lever) {
-        body_velocity(body, c, e, k, u);
+        body_velocity(p, body, c, e, k, u);
         return;
     }
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
-    levers_velocity(&p->lever[c - p->bundle], e, k, &ma, &mb, u, t2);
+    levers_velocity(c, bundle_tangents(p, c), &p->lever[c - p->bundle], e, k, &ma, &mb, u, t1, t2);
 }
 
 ALWAYS_INLINE void problem_push(const struct problem *p, struct body *body, const struct bundle *c,
@@ -193,13 +214,12 @@ ALWAYS_INLINE void problem_push(const struct problem *p, struct body *body, cons
     struct twist ma, mb;
     vd n[3], t1[3], t2[3];
     if (!p->lever) {
-        body_push(body, c, k, dr);
+        body_push(p, body, c, k, dr);
         return;
     }
-    const struct levers *g = &p->lever[c - p->bundle];
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
-    levers_basis(g, k, n, t1, t2);
-    levers_push(c, g, k, t2, dr, body, &a, &b);
+    bundle_basis(c, bundle_tangents(p, c), k, n, t1, t2);
+    levers_push(c, &p->lever[c - p->bundle], k, t1, t2, dr, body, &a, &b);
 }
 
 #endif

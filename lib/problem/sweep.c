@@ -26,50 +26,75 @@ struct counts {
     vd change, newton, safeguarded, gave_up;
 };
 
+/* Of which kind the problem is: a constant where the sweep is to have a text of its own for it */
+struct kind {
+    enum method_id method;
+    method_text *solve;
+    bool given_by_W, full; /* full, but not given by W: with levers */
+    enum beyond_what {
+        NOTHING,
+        BONDS,
+        MOMENTS
+    } beyond; /* what contacts have beside their bundles */
+};
+
 /* What is loaded of LANES slots before they are solved */
 struct loaded {
     struct bodies a, b;
-    vd t2[3]; /* of the bases */
-    vd v[3];  /* m/s: u~ with the present r; given by W: b_c */
+    vd t1[3], t2[3]; /* of the bases */
+    vd v[3];         /* m/s: u~ with the present r; given by W: b_c */
 };
 
-/* full, but not given by W: with levers */
 ALWAYS_INLINE void load_slots(const struct problem *p, const struct bundle *c, int k,
-                              bool given_by_W, bool full, struct loaded *s)
+                              const struct kind kind, struct loaded *s)
 {
-    if (given_by_W) {
+    if (kind.given_by_W) {
         blocks_gather(p, c, k, s->v);
         return;
     }
     struct twist a, b;
+    const struct tangents *t = bundle_tangents(p, c);
+    const struct rebound *e = bundle_rebound(p, c);
     bodies_load(&s->a, p->body, c->a + k, &a), bodies_load(&s->b, p->body, c->b + k, &b);
-    if (full) {
-        levers_velocity(&p->lever[c - p->bundle], bundle_rebound(p, c), k, &a, &b, s->v, s->t2);
-        return;
-    }
-    bundle_velocity(c, bundle_rebound(p, c), k, &a, &b, s->v, s->t2);
+    if (kind.full)
+        levers_velocity(c, t, &p->lever[c - p->bundle], e, k, &a, &b, s->v, s->t1, s->t2);
+    else
+        bundle_velocity(c, t, e, k, &a, &b, s->v, s->t1, s->t2);
 }
 
-/* The local problems of LANES slots; l->W points to W[9]. */
+/* w of lanes k.. between balls, of nothing that is loaded for it: to the bit what stands in p->w */
+ALWAYS_INLINE void weigh(const struct problem *p, const struct bundle *c, int k,
+                         const struct loaded *s, vd w[3])
+{
+    const struct rebound *e = bundle_rebound(p, c);
+    vd la = vload(c->la + k), lb = vload(c->lb + k), im = s->a.im + s->b.im;
+    vd it = im + la * la * s->a.ii + lb * lb * s->b.ii;
+    w[0] = e ? vload(e->s[0] + k) * im : im;
+    w[1] = w[2] = e ? vload(e->s[1] + k) * it : it;
+}
+
+/* The local problems of LANES slots; l->W points to W[9]. exact has no use for rho. */
 ALWAYS_INLINE void make_local(const struct problem *p, const struct bundle *c, int k,
-                              bool given_by_W, bool full, const struct loaded *s, vd W[9],
+                              const struct kind kind, const struct loaded *s, vd W[9],
                               struct local *l)
 {
-    l->d = p->d, l->W = full ? W : NULL;
-    l->mu = vload(c->mu + k), l->rho = vload(c->rho + k);
-    for (int i = 0; i < 9 && full; i++) W[i] = vload(c->W[i] + k);
+    int64_t bundle = c - p->bundle;
+    l->d = p->d, l->W = kind.full ? W : NULL;
+    l->mu = vload(c->mu + k);
+    l->rho = kind.method == METHOD_exact ? splat(1) : vload(p->rho[bundle] + k);
+    for (int i = 0; i < 9 && kind.full; i++) W[i] = vload(p->block[bundle][i] + k);
+    for (int i = 0; i < 3; i++) l->r[i] = vload(c->r[i] + k), l->v[i] = s->v[i];
+    if (!kind.full && p->w_of_bodies)
+        weigh(p, c, k, s, l->w);
+    else
+        for (int i = 0; i < 3; i++) l->w[i] = kind.full ? W[4 * i] : vload(p->w[bundle][i > 0] + k);
     for (int i = 0; i < 3; i++) {
-        l->w[i] = full ? W[4 * i] : vload(c->w[i > 0] + k);
-        l->iw[i] = full ? splat(0) : vload(c->iw[i > 0] + k);
-        l->r[i] = vload(c->r[i] + k), l->v[i] = s->v[i];
-        l->b[i] = given_by_W || full ? s->v[i] : l->v[i] - l->w[i] * l->r[i];
+        l->iw[i] = kind.full ? splat(0) : vload(c->iw[i > 0] + k);
+        l->b[i] = kind.given_by_W || kind.full ? s->v[i] : l->v[i] - l->w[i] * l->r[i];
     }
-    for (int i = 0; i < 3 && full && !given_by_W; i++) l->b[i] -= dot3(W + 3 * i, l->r);
-    if (given_by_W) local_velocity(l, l->r, l->v);
+    for (int i = 0; i < 3 && kind.full && !kind.given_by_W; i++) l->b[i] -= dot3(W + 3 * i, l->r);
+    if (kind.given_by_W) local_velocity(l, l->r, l->v);
 }
-
-/* What contacts have beyond their bundles: each a text of its own, so that none pays for another */
-enum beyond_what { NOTHING, BONDS, MOMENTS };
 
 /*
  * The local problem of a bonded contact [problem/beyond.h]: W^ stands in the bundle already. What is
@@ -111,25 +136,26 @@ ALWAYS_INLINE void bond_follow(struct beyond *x, int k, const struct local *l, v
 }
 
 /* The lanes with rolling friction, anew; before: their u~ of the last sweep; dm: the changes of their moments */
-ALWAYS_INLINE void roll_lanes(struct problem *p, const struct bundle *c, struct beyond *x,
-                              const struct beyond_levers *y, int k, enum method_id method,
-                              const struct sweep_opt *o, const vd before[3], struct local *l,
-                              double dm[LANES][3])
+ALWAYS_INLINE void roll_lanes(struct problem *p, const struct bundle *c, int k,
+                              enum method_id method, const struct sweep_opt *o, const vd before[3],
+                              struct local *l, double dm[LANES][3])
 {
     const struct rebound *e = bundle_rebound(p, c);
+    int64_t slot = (c - p->bundle) * BUNDLE + k;
     double b[3][LANES], r[3][LANES], w[3][LANES], u[3][LANES];
     double steps[LANES], safe[LANES], gave[LANES];
     for (int j = 0; j < 3; j++) vstore(b[j], l->b[j]), vstore(r[j], l->r[j]), vstore(w[j], l->w[j]);
-    for (int j = 0; j < 3 && y; j++) vstore(u[j], before[j]);
+    for (int j = 0; j < 3 && p->turn; j++) vstore(u[j], before[j]);
     vstore(steps, l->steps), vstore(safe, pick(l->safeguarded, splat(1), splat(0)));
     vstore(gave, pick(l->gave_up, splat(1), splat(0)));
     for (int i = 0; i < LANES; i++) {
-        if (!beyond_rolls(x, k + i)) continue;
+        const struct beyond_lane at = slot_beyond(p, slot + i);
+        if (!beyond_rolls(at.x, at.i)) continue;
         struct rolling_lane one = { .relax = o->relax, .w = { w[0][i], w[1][i] } };
         for (int j = 0; j < 3; j++) one.b[j] = b[j][i], one.r[j] = c->r[j][k + i];
-        for (int j = 0; j < 3 && y; j++) one.u[j] = u[j][i];
+        for (int j = 0; j < 3 && p->turn; j++) one.u[j] = u[j][i];
         for (int j = 0; j < 2; j++) one.s[j] = e ? e->s[j][k + i] : 1;
-        beyond_roll(c, x, y, p->body, k + i, method, &o->local, &one);
+        beyond_roll(&at, method, &o->local, &one);
         for (int j = 0; j < 3; j++) b[j][i] = one.b[j], r[j][i] = one.r[j], dm[i][j] = one.dm[j];
         steps[i] = one.steps, safe[i] = one.safeguarded, gave[i] = one.gave_up;
     }
@@ -142,12 +168,12 @@ ALWAYS_INLINE void roll_lanes(struct problem *p, const struct bundle *c, struct 
  * The solution, over-relaxed. exact between balls relaxes its own step and projects onto the disc
  * [projected SOR], at no cost; other methods go past their new reaction, and back onto the cone.
  */
-ALWAYS_INLINE void solve_relaxed(struct local *l, const struct bundle *c, int k, method_text *solve,
-                                 bool full, const struct sweep_opt *o)
+ALWAYS_INLINE void solve_relaxed(struct local *l, const struct bundle *c, int k,
+                                 const struct kind kind, const struct sweep_opt *o)
 {
-    bool within = solve == exact_solve && !full;
+    bool within = kind.method == METHOD_exact && !kind.full;
     l->relax = within ? o->relax : 1;
-    solve(l, &o->local);
+    kind.solve(l, &o->local);
     if (within || o->relax == 1) return;
     vd tau[3];
     for (int i = 0; i < 3; i++) {
@@ -179,15 +205,15 @@ ALWAYS_INLINE void store_solution(struct bundle *c, int k, double (*belief)[BUND
 }
 
 /* Passes the change on to the bodies, or r to W->r. */
-ALWAYS_INLINE void pass_on(struct problem *p, const struct bundle *c, int k, bool given_by_W,
-                           bool full, const struct loaded *s, const vd dr[3])
+ALWAYS_INLINE void pass_on(struct problem *p, const struct bundle *c, int k, const struct kind kind,
+                           const struct loaded *s, const vd dr[3])
 {
-    if (given_by_W)
+    if (kind.given_by_W)
         blocks_scatter(p, c, k);
-    else if (full)
-        levers_push(c, &p->lever[c - p->bundle], k, s->t2, dr, p->body, &s->a, &s->b);
+    else if (kind.full)
+        levers_push(c, &p->lever[c - p->bundle], k, s->t1, s->t2, dr, p->body, &s->a, &s->b);
     else
-        bundle_push(c, k, s->t2, dr, p->body, &s->a, &s->b);
+        bundle_push(c, k, s->t1, s->t2, dr, p->body, &s->a, &s->b);
 }
 
 /*
@@ -195,36 +221,36 @@ ALWAYS_INLINE void pass_on(struct problem *p, const struct bundle *c, int k, boo
  * and quotients of these are being computed, which saves a quarter of the time.
  */
 ALWAYS_INLINE void solve_bundles(struct problem *p, int64_t first, int64_t end,
-                                 const struct sweep_opt *o, enum method_id method,
-                                 method_text *solve, bool given_by_W, bool full,
-                                 enum beyond_what beyond, struct counts *t)
+                                 const struct sweep_opt *o, const struct kind kind,
+                                 struct counts *t)
 {
     if (first == end) return;
     struct loaded s[2], *now = &s[0], *next = &s[1];
-    load_slots(p, &p->bundle[first], 0, given_by_W, full, now);
+    load_slots(p, &p->bundle[first], 0, kind, now);
     for (int64_t i = first; i < end; i++) {
         struct bundle *c = &p->bundle[i];
         double(*belief)[BUNDLE] = o->keep ? p->u[i] : NULL;
         fetch_ahead(p, i);
         for (int k = 0; k < BUNDLE; k += LANES) {
             struct local l;
-            struct beyond *x = beyond ? &p->beyond[i] : NULL;
-            const struct beyond_levers *y = beyond && full ? &p->turn[i] : NULL;
+            struct beyond *x = kind.beyond ? &p->beyond[i] : NULL;
             vd W[9], dr[3];
             double dm[LANES][3];
-            make_local(p, c, k, given_by_W, full, now, W, &l);
-            if (beyond) bond_local(x, y, k, &l);
-            solve_relaxed(&l, c, k, solve, full, o);
-            if (beyond == MOMENTS) roll_lanes(p, c, x, y, k, method, o, now->v, &l, dm);
+            make_local(p, c, k, kind, now, W, &l);
+            if (kind.beyond) bond_local(x, kind.full ? &p->turn[i] : NULL, k, &l);
+            solve_relaxed(&l, c, k, kind, o);
+            if (kind.beyond == MOMENTS) roll_lanes(p, c, k, kind.method, o, now->v, &l, dm);
             store_solution(c, k, belief, &l, dr, t);
-            if (beyond) bond_follow(x, k, &l, dr);
+            if (kind.beyond) bond_follow(x, k, &l, dr);
             if (k + LANES < BUNDLE)
-                load_slots(p, c, k + LANES, given_by_W, full, next);
+                load_slots(p, c, k + LANES, kind, next);
             else if (i + 1 < end)
-                load_slots(p, c + 1, 0, given_by_W, full, next);
-            pass_on(p, c, k, given_by_W, full, now, dr);
-            for (int j = 0; j < LANES && beyond == MOMENTS; j++)
-                if (beyond_rolls(x, k + j)) beyond_push(c, x, y, k + j, p->body, dm[j]);
+                load_slots(p, c + 1, 0, kind, next);
+            pass_on(p, c, k, kind, now, dr);
+            for (int j = 0; j < LANES && kind.beyond == MOMENTS; j++) {
+                const struct beyond_lane at = slot_beyond(p, i * BUNDLE + k + j);
+                if (beyond_rolls(at.x, at.i)) beyond_push(&at, dm[j]);
+            }
             struct loaded *was = now;
             now = next, next = was;
         }
@@ -234,10 +260,7 @@ ALWAYS_INLINE void solve_bundles(struct problem *p, int64_t first, int64_t end,
 /* What solve_group() needs to know */
 struct task {
     const struct sweep_opt *o;
-    enum method_id method;
-    method_text *solve;
-    bool given_by_W, full;
-    enum beyond_what beyond;
+    struct kind kind;
     struct counts *count;
 };
 
@@ -246,39 +269,68 @@ ALWAYS_INLINE void solve_group(struct problem *p, int64_t first, int64_t end, vo
     const struct task *t = task;
     struct counts other = { splat(0), splat(0), splat(0), splat(0) }; // another process counts them
     bool copies = p->shared && first < end && shared_is_copy(p->shared, first);
-    solve_bundles(p, first, end, t->o, t->method, t->solve, t->given_by_W, t->full, t->beyond,
-                  copies ? &other : t->count);
+    solve_bundles(p, first, end, t->o, t->kind, copies ? &other : t->count);
 }
 
 ALWAYS_INLINE void sweep(struct problem *p, int me, int threads, const struct sweep_opt *o,
-                         enum method_id method, method_text *solve, bool given_by_W, bool full,
-                         enum beyond_what beyond, struct tally *t)
+                         const struct kind kind, struct tally *t)
 {
     struct counts c = { splat(0), splat(0), splat(0), splat(0) };
-    struct task task = { o, method, solve, given_by_W, full, beyond, &c };
+    struct task task = { o, kind, &c };
     walk(p, me, threads, solve_group, &task);
     raise_to(t->change, c.change), add_to(t->newton, c.newton);
     add_to(t->safeguarded, c.safeguarded), add_to(t->gave_up, c.gave_up);
 }
 
+/*
+ * A text for each kind of problem and each method, which is inlined. Problems of three kinds share one text,
+ * which calls its method: those with moments, whose lanes are solved one by one, and the rare W_cc that are
+ * all diagonal. A call costs a third of a contact of balls, a text seconds to compile.
+ */
+typedef void kind_text(struct problem *p, int me, int threads, const struct sweep_opt *o,
+                       enum method_id method, method_text *solve, struct tally *t);
+
+#define DEFINE_KIND(name, given_by_W, full, beyond)                                                \
+    static void name(struct problem *p, int me, int threads, const struct sweep_opt *o,            \
+                     enum method_id method, method_text *solve, struct tally *t)                   \
+    {                                                                                              \
+        sweep(p, me, threads, o, (struct kind){ method, solve, given_by_W, full, beyond }, t);     \
+    }
+DEFINE_KIND(sweep_moments, false, false, MOMENTS)
+DEFINE_KIND(sweep_levers_moments, false, true, MOMENTS)
+DEFINE_KIND(sweep_diagonals, true, false, NOTHING)
+
 #define DEFINE_SWEEP(name)                                                                         \
+    static void name##_full(struct local *l, const struct local_opt *o)                            \
+    {                                                                                              \
+        if (l->W) name##_solve(l, o);                                                              \
+    }                                                                                              \
+    static void name##_diagonal(struct local *l, const struct local_opt *o)                        \
+    {                                                                                              \
+        if (!l->W) name##_solve(l, o);                                                             \
+    }                                                                                              \
     static void sweep_##name(struct problem *p, int me, int threads, const struct sweep_opt *o,    \
                              struct tally *t)                                                      \
     {                                                                                              \
+        const enum method_id id = METHOD_##name;                                                   \
+        const struct kind balls = { id, name##_solve, false, false, NOTHING };                     \
+        const struct kind bonds = { id, name##_solve, false, false, BONDS };                       \
+        const struct kind levers = { id, name##_solve, false, true, NOTHING };                     \
+        const struct kind blocks = { id, name##_solve, true, true, NOTHING };                      \
         if (p->turn)                                                                               \
-            sweep(p, me, threads, o, METHOD_##name, name##_solve, false, true, MOMENTS, t);        \
-        else if (p->lever)                                                                         \
-            sweep(p, me, threads, o, METHOD_##name, name##_solve, false, true, NOTHING, t);        \
-        else if (p->full)                                                                          \
-            sweep(p, me, threads, o, METHOD_##name, name##_solve, true, true, NOTHING, t);         \
-        else if (p->W)                                                                             \
-            sweep(p, me, threads, o, METHOD_##name, name##_solve, true, false, NOTHING, t);        \
+            sweep_levers_moments(p, me, threads, o, id, name##_full, t);                           \
         else if (p->rolls)                                                                         \
-            sweep(p, me, threads, o, METHOD_##name, name##_solve, false, false, MOMENTS, t);       \
+            sweep_moments(p, me, threads, o, id, name##_diagonal, t);                              \
+        else if (p->W && !p->full)                                                                 \
+            sweep_diagonals(p, me, threads, o, id, name##_diagonal, t);                            \
+        else if (p->lever)                                                                         \
+            sweep(p, me, threads, o, levers, t);                                                   \
+        else if (p->W)                                                                             \
+            sweep(p, me, threads, o, blocks, t);                                                   \
         else if (p->beyond)                                                                        \
-            sweep(p, me, threads, o, METHOD_##name, name##_solve, false, false, BONDS, t);         \
+            sweep(p, me, threads, o, bonds, t);                                                    \
         else                                                                                       \
-            sweep(p, me, threads, o, METHOD_##name, name##_solve, false, false, NOTHING, t);       \
+            sweep(p, me, threads, o, balls, t);                                                    \
     }
 EACH_METHOD(DEFINE_SWEEP)
 
@@ -297,10 +349,9 @@ ALWAYS_INLINE void push_group(struct problem *p, int64_t first, int64_t end, voi
             problem_push(p, p->body, c, k, r);
         }
         for (int k = 0; k < BUNDLE && p->rolls; k++) {
-            const struct beyond *x = &p->beyond[i];
-            const double m[3] = { x->m[0][k], x->m[1][k], x->m[2][k] };
-            const struct beyond_levers *y = p->turn ? &p->turn[i] : NULL;
-            if (beyond_rolls(x, k)) beyond_push(&p->bundle[i], x, y, k, p->body, m);
+            const struct beyond_lane at = slot_beyond(p, i * BUNDLE + k);
+            const double m[3] = { at.x->m[0][k], at.x->m[1][k], at.x->m[2][k] };
+            if (beyond_rolls(at.x, k)) beyond_push(&at, m);
         }
     }
 }

@@ -36,15 +36,21 @@ ALWAYS_INLINE void fetch_bodies_to_second_level(const struct problem *p, const s
     }
 }
 
+ALWAYS_INLINE void fetch_lines(const void *lines, size_t bytes)
+{
+    for (size_t k = 0; k < bytes; k += 64) __builtin_prefetch((const char *)lines + k, 0, 2);
+}
+
 /* Fetches what will be needed soon, while bundle i is worked on. */
 ALWAYS_INLINE void fetch_ahead(const struct problem *p, int64_t i)
 {
     if (p->bundles < FAR_BUNDLES || i + BUNDLES_AHEAD >= p->bundles) return;
-    const char *line = (const char *)&p->bundle[i + BUNDLES_AHEAD];
-    for (size_t k = 0; k < sizeof *p->bundle; k += 64) __builtin_prefetch(line + k, 0, 2);
+    int64_t ahead = i + BUNDLES_AHEAD;
+    fetch_lines(&p->bundle[ahead], sizeof *p->bundle);
+    if (p->block) fetch_lines(&p->block[ahead], sizeof *p->block);
     if (!p->body) return;
-    const char *arms = (const char *)(p->lever ? &p->lever[i + BUNDLES_AHEAD] : NULL);
-    for (size_t k = 0; arms && k < sizeof *p->lever; k += 64) __builtin_prefetch(arms + k, 0, 2);
+    if (p->tangent) fetch_lines(&p->tangent[ahead], sizeof *p->tangent);
+    if (p->lever) fetch_lines(&p->lever[ahead], sizeof *p->lever);
     fetch_bodies_to_second_level(p, &p->bundle[i + BODIES_AHEAD]);
     fetch_bodies(p, &p->bundle[i + BODIES_NEXT]);
 }
@@ -67,11 +73,6 @@ ALWAYS_INLINE void blocks_scatter(struct problem *p, const struct bundle *c, int
     for (int i = 0; i < LANES; i++)
         for (int j = 0; j < p->d && c->a[k + i] >= 0; j++)
             p->W->r[p->d * c->a[k + i] + j] = c->r[j][k + i];
-}
-
-ALWAYS_INLINE const struct rebound *bundle_rebound(const struct problem *p, const struct bundle *c)
-{
-    return p->rebound ? p->rebound + (c - p->bundle) : NULL;
 }
 
 /* Groups that a thread sweeps without waiting in between */

@@ -74,7 +74,7 @@ static int cg_init(struct cg *a, struct solve *s)
     a->r_before = a->bound + slots, a->way_back = a->r_before + 3 * slots;
     a->x = a->way_back + 3 * slots, a->y = a->x + 3 * slots;
     for (int64_t i = 0; i < p->slots; i++) {
-        double u[3], lambda = bundle_lambda(slot_bundle(p, i), slot_lane(i));
+        double u[3], lambda = slot_lambda(p, i);
         if (p->contact[i] < 0) continue;
         a->scale[i] = lambda > 0 ? 1 / sqrt(lambda) : 1;
         slot_get(p, i, a->r + 3 * i, u);

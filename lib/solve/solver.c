@@ -3,8 +3,8 @@
 
 #include "base/team.h"
 #include "problem/apply.h"
-#include "problem/shared.h"
 #include "problem/judge.h"
+#include "problem/shared.h"
 
 #include <math.h>
 #include <stdio.h>
