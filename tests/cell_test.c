@@ -59,9 +59,9 @@ static void run(struct packing *p, struct contacts *s, const struct step_opt *o,
 {
     struct why why = { 0 };
     struct report rep = { 0 };
-    struct neighbours near = { 0 };
-    for (int k = 0; k < steps; k++) must(step_advance(p, s, &near, o, &rep, &why), &why);
-    neighbours_free(&near), report_free(&rep);
+    struct step_memory memory = { 0 };
+    for (int k = 0; k < steps; k++) must(step_advance(p, s, &memory, o, &rep, &why), &why);
+    step_forget(&memory), report_free(&rep);
 }
 
 /* Where a body has got to, its images counted */

@@ -33,12 +33,12 @@ static int step(struct packing *p, struct contacts *s, const struct solver *solv
                 struct report *rep, struct why *why)
 {
     struct flow flow;
-    struct neighbours near = { 0 };
+    struct step_memory memory = { 0 };
     struct step_opt o = options(solver);
     bool changed;
     if (flow_read(&flow, p, why)) return why->status;
-    if (!flow_step(&flow, p, s, &changed, why)) step_advance(p, s, &near, &o, rep, why);
-    neighbours_free(&near), flow_free(&flow);
+    if (!flow_step(&flow, p, s, &changed, why)) step_advance(p, s, &memory, &o, rep, why);
+    step_forget(&memory), flow_free(&flow);
     return why->status;
 }
 

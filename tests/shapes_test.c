@@ -416,7 +416,7 @@ static void assembly_is_sweep(void)
     struct delassus W;
     struct apply a;
     detect_contacts(&s, &p, 0.5, NULL, &why);
-    prepare_packing(&q, &p, &s, true, 0, 1, ORDER_COLOUR, &why);
+    prepare_packing(&q, &p, &s, true, 0, 1, ORDER_COLOUR, NULL, &why);
     assembly_init(&A, &q, &why), assembly_blocks(&A, &W, &why);
     double *x = calloc((size_t)(3 * q.slots) + 4, sizeof *x),
            *y = calloc((size_t)(3 * q.slots) + 4, sizeof *y);

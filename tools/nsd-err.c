@@ -21,7 +21,7 @@ const struct cli_tool tool = {
 static int prepare_own(struct problem *p, struct frame *f, struct why *why)
 {
     if (f->moved && move_back(&f->packing, &f->contacts, why)) return why->status;
-    if (prepare_packing(p, &f->packing, &f->contacts, true, 0, 1, ORDER_NATURAL, why))
+    if (prepare_packing(p, &f->packing, &f->contacts, true, 0, 1, ORDER_NATURAL, NULL, why))
         return why->status;
     f->report.err.max_overlap = contacts_max_overlap(&f->contacts);
     return 0;

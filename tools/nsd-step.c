@@ -157,7 +157,7 @@ struct run {
     struct writer *out;
     struct behind *behind; /* NULL: one thread makes the steps, and writes */
     struct flow flow;
-    struct neighbours near;
+    struct step_memory memory;
     bool other_bodies; /* than in the step before */
     struct step_opt o;
 };
@@ -187,7 +187,7 @@ static bool advance(struct run *r, int64_t k)
     flow(r);
     const struct packing *p = &f->packing;
     r->o.bare = !options.log && k < steps && !is_kept(p->t + p->dt, p->dt, k);
-    if (crew_step(f, &r->near, r->other_bodies, &r->o, &why)) die_why(&why);
+    if (crew_step(f, &r->memory, r->other_bodies, &r->o, &why)) die_why(&why);
     f->reported = f->moved = true;
     count(rep);
     options_log(rep);
@@ -246,7 +246,7 @@ static int64_t run(struct run *r)
         keep_last(r, made);
     }
     if (!steps && !in_place) write_frame(r);
-    neighbours_free(&r->near);
+    step_forget(&r->memory);
     flow_free(&r->flow);
     if (behind_close(r->behind, &why)) die_why(&why);
     return made;

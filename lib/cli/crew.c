@@ -59,11 +59,11 @@ struct elsewhere *crew_elsewhere(bool contacts)
     return NULL;
 }
 
-int crew_step(struct frame *f, struct neighbours *near, bool other_bodies, const struct step_opt *o,
+int crew_step(struct frame *f, struct step_memory *m, bool other_bodies, const struct step_opt *o,
               struct why *why)
 {
-    if (other_bodies) neighbours_free(near);
-    return step_advance(&f->packing, &f->contacts, near, o, &f->report, why);
+    if (other_bodies) step_forget(m);
+    return step_advance(&f->packing, &f->contacts, m, o, &f->report, why);
 }
 
 const char *crew_leave(void)

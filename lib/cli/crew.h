@@ -25,7 +25,7 @@ int crew_follow(void);
 struct elsewhere *crew_elsewhere(bool contacts);
 /* The leader: step_advance() of a frame by all. other_bodies: its packing has others than after the step
    before. */
-int crew_step(struct frame *f, struct neighbours *near, bool other_bodies, const struct step_opt *o,
+int crew_step(struct frame *f, struct step_memory *m, bool other_bodies, const struct step_opt *o,
               struct why *why);
 /* The leader, in the end: the others are done. A word of what they have told each other, or NULL */
 const char *crew_leave(void);

@@ -142,7 +142,8 @@ static bool bonded(const struct contacts *s)
 }
 
 int prepare_packing(struct problem *p, const struct packing *pack, const struct contacts *s,
-                    bool sweeps, double alpha, double rho_factor, enum order order, struct why *why)
+                    bool sweeps, double alpha, double rho_factor, enum order order,
+                    struct plan **kept, struct why *why)
 {
     bool by_W = !sweeps && bonded(s);
     if (!by_W && freedoms_in(pack)) {
@@ -151,5 +152,7 @@ int prepare_packing(struct problem *p, const struct packing *pack, const struct 
         by_W = touched.n > 0;
         couplings_free(&touched);
     }
+    if (!by_W && kept)
+        return problem_prepare_again(p, pack, s, alpha, rho_factor, order, kept, why);
     return (by_W ? prepare_by_W : problem_prepare)(p, pack, s, alpha, rho_factor, order, why);
 }

@@ -8,6 +8,7 @@
 #include "problem/braking.h"
 #include "problem/filling.h"
 #include "problem/laying.h"
+#include "problem/plan.h"
 #include "problem/schedule.h"
 #include "problem/shared.h"
 
@@ -33,10 +34,11 @@ static int no_memory(struct problem *p, struct why *why)
 
 void problem_free(struct problem *p)
 {
-    free(p->bundle), free(p->rebound), free(p->u), free(p->contact), free(p->group), free(p->body);
-    free(p->split), free(p->seat), free(p->pull), free(p->beyond), free(p->in_W);
+    free(p->bundle), free(p->rebound), free(p->u), free(p->body);
+    free(p->split), free(p->pull), free(p->beyond), free(p->in_W);
     free(p->lever), free(p->spin), free(p->turn);
     free(p->w), free(p->rho), free(p->block), free(p->tangent);
+    plan_free(p->plan);
     delassus_free(&p->sorted);
     brake_free(p->brake);
     if (p->own) delassus_free(p->own);
@@ -208,10 +210,11 @@ static double top_speed(const struct packing *p)
 struct survey {
     const struct packing *p;
     const struct contacts *s;
+    bool far; /* bundles do not stay in a near cache: what can be computed is not loaded */
     bool moving_images; /* images move otherwise than their bodies, now or at the end of the step */
     _Atomic int64_t copies;        /* of bodies that do not move */
     _Atomic bool shaped, rebounds; /* u~ is anything but u */
-    _Atomic bool turned;           /* t1 is not what contact_basis() makes of n in space */
+    _Atomic bool turned; /* t1 is to be loaded: not what contact_basis() makes, or not far */
 };
 
 static bool same_bits(vec3 a, vec3 b)
@@ -222,7 +225,7 @@ static bool same_bits(vec3 a, vec3 b)
 static void survey_some(void *arg, int64_t first, int64_t end)
 {
     struct survey *y = arg;
-    bool shaped = false, rebounds = false, turned = y->p->dim == 2;
+    bool shaped = false, rebounds = false, turned = !y->far || y->p->dim == 2;
     int64_t copies = 0;
     int32_t moves[2];
     for (int64_t i = first; i < end; i++) {
@@ -247,15 +250,16 @@ static void survey(struct survey *y, const struct packing *p, const struct conta
     double most = 0;
     for (int k = 0; k < 3; k++)
         most = fmax(most, fmax(v3_norm(cell->before[k]), v3_norm(cell->after[k])));
-    *y = (struct survey){ .p = p, .s = s, .moving_images = most > 0 };
+    *y = (struct survey){
+        .p = p, .s = s, .far = s->n >= FAR_BUNDLES * BUNDLE, .moving_images = most > 0
+    };
     team_share(team_size(), s->n, SOME, survey_some, y);
 }
 
 static int prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
-                   double alpha, double rho_factor, enum order order, const struct schedule *given,
-                   struct shared *shared, struct why *why)
+                   double alpha, double rho_factor, const struct plan *plan, struct shared *shared,
+                   struct why *why)
 {
-    struct schedule plan = { 0 };
     const struct lattice cell = lattice_of(pack);
     struct survey found;
     survey(&found, pack, s, &cell);
@@ -266,9 +270,7 @@ static int prepare(struct problem *p, const struct packing *pack, const struct c
     if (shared) p->n = shared->contacts;
     if (p->bodies > BODIES_MAX) return why_set(why, EX_DATAERR, "more than %d bodies", BODIES_MAX);
     p->body = lay_lines(p->bodies, sizeof *p->body);
-    bool room = p->body && (given || !schedule_bodies(&plan, order, s, pack)) &&
-                lay_bundles(p, given ? given : &plan);
-    schedule_free(&plan);
+    bool room = p->body && lay_bundles(p, plan);
     quat *half = NULL;
     if (anywhere(p, found.shaped) && room) {
         p->full = true;
@@ -278,18 +280,13 @@ static int prepare(struct problem *p, const struct packing *pack, const struct c
     }
     if (anywhere(p, found.rebounds) && room)
         room = (p->rebound = lay_lines(p->bundles, sizeof *p->rebound)) != NULL;
-    // where bundles stay in a near cache, what can be computed is loaded in less time
-    bool far = p->bundles >= FAR_BUNDLES;
-    if ((found.turned || !far) && room)
+    if (found.turned && room)
         room = (p->tangent = lay_lines(p->bundles, sizeof *p->tangent)) != NULL;
     room = room && set_pulls(p, s) && lay_out_beyond(p, s);
-    p->w_of_bodies = far && !p->lever && !p->beyond && !(shared && shared->slower);
-    struct laying lay = { 0 };
-    room = room && laying_init(&lay, p, s) && (p->seat = lay_seats(&lay, order));
-    if (!room) return free(half), laying_free(&lay), no_memory(p, why);
+    p->w_of_bodies = found.far && !p->lever && !p->beyond && !(shared && shared->slower);
+    if (!room) return free(half), no_memory(p, why);
     team_share(team_size(), pack->n, SOME, set_some, p);
-    lay_places(&lay);
-    laying_free(&lay);
+    lay_seats(p, plan, s);
     struct filling f = { p, s, &cell, alpha, rho_factor, half };
     team_share(team_size(), p->bundles, SOME / BUNDLE, fill_bundles, &f);
     room = !shared || !shared->slower || !brake_make(p, &f, shared->slower);
@@ -320,17 +317,47 @@ static int prepare(struct problem *p, const struct packing *pack, const struct c
     return 0;
 }
 
+/* With a plan of the problem's own */
+static int prepare_with(struct problem *p, const struct packing *pack, const struct contacts *s,
+                        double alpha, double rho_factor, struct plan *plan, struct shared *shared,
+                        struct why *why)
+{
+    *p = (struct problem){ 0 };
+    if (!plan) return no_memory(p, why);
+    int e = prepare(p, pack, s, alpha, rho_factor, plan, shared, why);
+    if (e)
+        plan_free(plan);
+    else
+        p->plan = plan;
+    return e;
+}
+
 int problem_prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
                     double alpha, double rho_factor, enum order order, struct why *why)
 {
-    return prepare(p, pack, s, alpha, rho_factor, order, NULL, NULL, why);
+    struct plan *plan = plan_of_contacts(order, s, pack, NULL);
+    return prepare_with(p, pack, s, alpha, rho_factor, plan, NULL, why);
+}
+
+int problem_prepare_again(struct problem *p, const struct packing *pack, const struct contacts *s,
+                          double alpha, double rho_factor, enum order order, struct plan **kept,
+                          struct why *why)
+{
+    if (!*kept || !plan_holds(*kept, order, s, pack)) {
+        plan_free(*kept);
+        *kept = plan_of_contacts(order, s, pack, NULL);
+    }
+    *p = (struct problem){ 0 };
+    if (!*kept) return no_memory(p, why);
+    return prepare(p, pack, s, alpha, rho_factor, *kept, NULL, why);
 }
 
 int problem_prepare_shared(struct problem *p, const struct packing *pack, const struct contacts *s,
-                           double alpha, double rho_factor, const struct schedule *plan,
+                           double alpha, double rho_factor, const struct schedule *order,
                            struct shared *shared, struct why *why)
 {
-    return prepare(p, pack, s, alpha, rho_factor, ORDER_COLOUR, plan, shared, why);
+    struct plan *plan = plan_of_contacts(ORDER_COLOUR, s, pack, order);
+    return prepare_with(p, pack, s, alpha, rho_factor, plan, shared, why);
 }
 
 int64_t problem_bundles(const struct problem *p)
@@ -355,11 +382,10 @@ static bool like_balls(const double D[9])
 int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha, double rho_factor,
                              enum order order, struct why *why)
 {
-    struct schedule plan = { 0 };
     *p = (struct problem){ .d = W->d, .n = W->n, .W = W, .dt = 1, .scale_v = 1, .scale_r = 1 };
-    bool room = !schedule_blocks(&plan, order, W) && lay_bundles(p, &plan) &&
-                (p->block = lay_lines(p->bundles, sizeof *p->block));
-    schedule_free(&plan);
+    p->plan = plan_of_blocks(order, W);
+    bool room =
+        p->plan && lay_bundles(p, p->plan) && (p->block = lay_lines(p->bundles, sizeof *p->block));
     if (!room || delassus_sort(&p->sorted, W, p->slots, p->contact, why)) return no_memory(p, why);
     for (int64_t c = 0; c < W->n; c++) p->full = p->full || !like_balls(W->diag + 9 * c);
     double trace = 0;

@@ -34,6 +34,7 @@ enum {
 
 struct shared;
 struct brake;
+struct plan;
 
 struct problem {
     int d;
@@ -57,6 +58,7 @@ struct problem {
     int32_t *contact;       /* [slots] slot i is contact[i] of the packing or of W; -1: none */
     int64_t groups;         /* no two contacts of a group share a body (a block of W): */
     int64_t *group;         /* [groups + 1] bundles group[g] .. group[g+1]-1 may be done at once */
+    struct plan *plan;      /* has contact, group and seat; NULL: it is kept, not of the problem */
     struct two_thread_split *split; /* NULL: the order has no halves */
     struct shared *shared; /* borrowed: the other processes that have a part of it; NULL: none */
     struct brake *brake;   /* slots that the sweeps have to solve by shorter steps; NULL: none */
@@ -90,10 +92,15 @@ struct problem {
  */
 int problem_prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
                     double alpha, double rho_factor, enum order order, struct why *why);
-/* The same of a part of a problem, whose bundles are laid out by the plan: its groups are those that
+/* The same with the plan that is kept [problem/plan.h], where it holds; else a new one is kept, to be freed
+   after p. *kept may be NULL. */
+int problem_prepare_again(struct problem *p, const struct packing *pack, const struct contacts *s,
+                          double alpha, double rho_factor, enum order order, struct plan **kept,
+                          struct why *why);
+/* The same of a part of a problem, whose bundles are laid out by the schedule: its groups are those that
    shared->after_group is told of. */
 int problem_prepare_shared(struct problem *p, const struct packing *pack, const struct contacts *s,
-                           double alpha, double rho_factor, const struct schedule *plan,
+                           double alpha, double rho_factor, const struct schedule *order,
                            struct shared *shared, struct why *why);
 /* The same for a problem given by W, which it borrows; r from W->r. */
 int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha, double rho_factor,

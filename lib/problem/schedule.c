@@ -237,14 +237,17 @@ static bool find_places(const struct contacts *s, uint32_t *key)
     struct places o = { s, key, s->c[0].x, s->c[0].x, 0, PTHREAD_MUTEX_INITIALIZER };
     team_share(team_size(), s->n, SOME, bound_some, &o);
     o.h = dmax(o.hi.x - o.lo.x, dmax(o.hi.y - o.lo.y, o.hi.z - o.lo.z)) / 1023;
-    if (o.h > 0) team_share(team_size(), s->n, SOME, place_some, &o);
+    if (o.h > 0)
+        team_share(team_size(), s->n, SOME, place_some, &o);
+    else
+        memset(key, 0, (size_t)s->n * sizeof *key);
     return o.h > 0;
 }
 
 /* Sorts the sequence along the curve, by ten bits of the key at a time; -1 when memory is short. */
-static int sort_along_curve(const struct contacts *s, int64_t *sequence)
+static int sort_along_curve(const struct contacts *s, int64_t *sequence, uint32_t **keys)
 {
-    uint32_t *key = malloc((size_t)s->n * sizeof *key);
+    uint32_t *key = *keys = malloc((size_t)s->n * sizeof *key);
     int64_t *from = sequence, *to = malloc((size_t)s->n * sizeof *to), *spare = to;
     bool room = key && to, apart = room && find_places(s, key);
     for (int shift = 0; apart && shift < 30; shift += 10) {
@@ -256,7 +259,7 @@ static int sort_along_curve(const struct contacts *s, int64_t *sequence)
         from = to, to = swap;
     }
     if (apart) memcpy(sequence, spare, (size_t)s->n * sizeof *sequence); // three passes end there
-    free(key), free(spare);
+    free(spare);
     return room ? 0 : -1;
 }
 
@@ -288,12 +291,12 @@ static int sort_by_zone(int64_t *sequence, int64_t n, const int8_t *zone, int64_
 /* Colours by zones; the rim's groups go between those of the inside. -1 when memory is short. */
 static int place_halves(struct schedule *s, struct graph *g)
 {
-    int8_t *zone = malloc((size_t)g->n + 1);
+    int8_t *zone = s->zone = malloc((size_t)g->n + 1);
     int64_t count[ZONE_COUNT], first[ZONE_COUNT + 1];
     if (!zone || two_thread_split_divide(g->n, g->body, g->packing, zone) ||
         sort_by_zone(s->sequence, g->n, zone, count) ||
         place_zones(g, s->sequence, ZONE_COUNT, count, first))
-        return free(zone), -1;
+        return -1;
     s->beyond = first[ZONE_BEYOND], s->inside = first[ZONE_INSIDE];
     int64_t inside = first[ZONE_RIM] - s->inside, rim = first[ZONE_COUNT] - first[ZONE_RIM];
     s->rim = s->inside + inside / 3, s->rest = s->rim + rim; // the first colours are the largest
@@ -301,7 +304,6 @@ static int place_halves(struct schedule *s, struct graph *g)
         if (zone[c] == ZONE_RIM) g->place[c] -= first[ZONE_RIM] - s->rim;
         if (zone[c] == ZONE_INSIDE && g->place[c] >= s->rim) g->place[c] += rim;
     }
-    free(zone);
     return 0;
 }
 
@@ -331,7 +333,7 @@ static int place(struct schedule *s, enum order order, struct graph *g)
     bool halves = !g->W && g->n >= (order == ORDER_HALVES ? HALVES_FROM : COLOUR_HALVES_FROM);
     int64_t first[2];
     if (order < ORDER_COLOUR) return place_levels(g, s->sequence);
-    if (g->contacts && g->n > ONE_BLOCK_MAX && sort_along_curve(g->contacts, s->sequence))
+    if (g->contacts && g->n > ONE_BLOCK_MAX && sort_along_curve(g->contacts, s->sequence, &s->key))
         return -1;
     return halves ? place_halves(s, g) : place_zones(g, s->sequence, 1, &g->n, first);
 }
@@ -356,7 +358,7 @@ static int schedule(struct schedule *s, enum order order, struct graph *g)
 
 void schedule_free(struct schedule *s)
 {
-    free(s->sequence), free(s->group);
+    free(s->sequence), free(s->group), free(s->key), free(s->zone);
     *s = (struct schedule){ 0 };
 }
 
@@ -373,4 +375,32 @@ int schedule_blocks(struct schedule *s, enum order order, const struct delassus 
 {
     struct graph g = { .n = W->n, .nodes = W->n, .W = W };
     return schedule(s, order, &g);
+}
+
+static bool same_zones(const struct schedule *s, const struct contacts *contacts,
+                       const struct packing *packing)
+{
+    struct graph g = { .n = contacts->n, .contacts = contacts, .packing = packing };
+    int8_t *zone = malloc((size_t)g.n + 1);
+    g.body = malloc((size_t)(g.n + 1) * sizeof *g.body);
+    bool same = zone && g.body;
+    if (same) team_share(team_size(), g.n, SOME, find_some, &g);
+    same = same && !two_thread_split_divide(g.n, g.body, packing, zone) &&
+           !memcmp(zone, s->zone, (size_t)g.n);
+    free(zone), free(g.body);
+    return same;
+}
+
+bool schedule_holds(const struct schedule *s, const struct contacts *contacts,
+                    const struct packing *packing)
+{
+    if (s->key) {
+        uint32_t *key = malloc((size_t)(contacts->n + 1) * sizeof *key);
+        bool same = key != NULL;
+        if (same) find_places(contacts, key);
+        same = same && !memcmp(key, s->key, (size_t)contacts->n * sizeof *key);
+        free(key);
+        if (!same) return false;
+    }
+    return !s->zone || same_zones(s, contacts, packing);
 }

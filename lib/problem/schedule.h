@@ -37,6 +37,9 @@ struct schedule {
     int64_t groups;
     int64_t *group; /* [groups + 1] group g: sequence[group[g]] .. sequence[group[g+1]-1] */
     int64_t beyond, inside, rim, rest; /* by halves: as in struct two_thread_split; else 0 */
+    /* What it follows from beside the order and the bodies of the contacts: where these are */
+    uint32_t *key; /* [n] on the curve along which they are sorted; NULL: they are not */
+    int8_t *zone;  /* [n] enum zone; NULL: no halves */
 };
 
 /* Of a packing's contacts; of a problem given by W. Return 0, or -1 when memory is short. */
@@ -44,5 +47,10 @@ int schedule_bodies(struct schedule *s, enum order order, const struct contacts 
                     const struct packing *packing);
 int schedule_blocks(struct schedule *s, enum order order, const struct delassus *W);
 void schedule_free(struct schedule *s);
+
+/* Whether schedule_bodies() of contacts between the same bodies, of which the same move, in the same order
+   would give s again. False also when memory is short. */
+bool schedule_holds(const struct schedule *s, const struct contacts *contacts,
+                    const struct packing *packing);
 
 #endif

@@ -130,10 +130,10 @@ int crew_follow(void)
     return 0;
 }
 
-int crew_step(struct frame *f, struct neighbours *near, bool other_bodies, const struct step_opt *o,
+int crew_step(struct frame *f, struct step_memory *m, bool other_bodies, const struct step_opt *o,
               struct why *why)
 {
-    (void)near;
+    (void)m;
     if (!crew.begun)
         begin(next(f->elsewhere ? BEGIN_ROWS : BEGIN), &f->packing);
     else if (other_bodies)

@@ -345,7 +345,7 @@ static int step_by_first(struct stride *y, struct packing *whole, struct contact
     if (solved) roll_found(&roll, &y->part, &s, all);
     y->alone += !solved;
     if (!t->me) {
-        if (!solved && step_solve_contacts(whole, all, o, rep, why)) return why->status;
+        if (!solved && step_solve_contacts(whole, all, NULL, o, rep, why)) return why->status;
         if (step_move(whole, all, o, rep, why)) return why->status;
         settings_copy_motion(&y->part.p, whole);
     }

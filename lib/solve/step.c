@@ -32,13 +32,13 @@ static int check_solver(const struct problem *p, const struct solver *global, st
         global->name);
 }
 
-int step_solve_contacts(const struct packing *pack, struct contacts *s, const struct step_opt *o,
-                        struct report *rep, struct why *why)
+int step_solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
+                        const struct step_opt *o, struct report *rep, struct why *why)
 {
     struct problem p;
     if (!o->warm) contacts_free_found(s);
     if (prepare_packing(&p, pack, s, step_sweeps(o->solve.global), o->alpha, o->solve.method->rho,
-                        o->order, why))
+                        o->order, kept, why))
         return why->status;
     rep->step = pack->step + 1;
     rep->t = pack->t + pack->dt;
@@ -56,7 +56,7 @@ int step_solve_contacts(const struct packing *pack, struct contacts *s, const st
 int step_solve(const struct packing *pack, struct contacts *s, const struct step_opt *o,
                struct report *rep, struct why *why)
 {
-    if (step_solve_contacts(pack, s, o, rep, why)) return why->status;
+    if (step_solve_contacts(pack, s, NULL, o, rep, why)) return why->status;
     return step_balance(pack, s, o, rep, why);
 }
 
@@ -114,10 +114,18 @@ int step_move(struct packing *p, struct contacts *s, const struct step_opt *o, s
     return why->status;
 }
 
-int step_advance(struct packing *p, struct contacts *s, struct neighbours *near,
+void step_forget(struct step_memory *m)
+{
+    neighbours_free(&m->near);
+    plan_free(m->plan);
+    *m = (struct step_memory){ 0 };
+}
+
+int step_advance(struct packing *p, struct contacts *s, struct step_memory *m,
                  const struct step_opt *o, struct report *rep, struct why *why)
 {
-    if (step_detect(p, s, near, o, rep, why) || step_solve_contacts(p, s, o, rep, why))
+    if (step_detect(p, s, m ? &m->near : NULL, o, rep, why) ||
+        step_solve_contacts(p, s, m ? &m->plan : NULL, o, rep, why))
         return why->status;
     return step_move(p, s, o, rep, why);
 }

@@ -6,6 +6,7 @@
 #define NSD_STEP_H
 
 #include "bodies/neighbours.h"
+#include "problem/plan.h"
 #include "solve/solver.h"
 
 struct step_opt {
@@ -16,6 +17,13 @@ struct step_opt {
     bool bare; /* nobody reads the report's balance of this step: it is left out */
     struct solve_opt solve;
 };
+
+/* What a run keeps from step to step, empty at first: not to find it anew. Results are the same without. */
+struct step_memory {
+    struct neighbours near;
+    struct plan *plan;
+};
+void step_forget(struct step_memory *m); /* all; m is empty again */
 
 /* Does this solver make sweeps alone of what bonds and moments hold together? Others want a W. */
 bool step_sweeps(const struct solver *global);
@@ -32,18 +40,17 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
 
 /*
  * One whole step. s: in, the contacts of the last step (none at first), to start from if warm; out,
- * those of this one. near: neighbours kept from the steps before (empty at first), or NULL. Where
- * the solve diverged (its error is not finite) nothing moves.
+ * those of this one. m may be NULL. Where the solve diverged (its error is not finite) nothing moves.
  */
-int step_advance(struct packing *p, struct contacts *s, struct neighbours *near,
+int step_advance(struct packing *p, struct contacts *s, struct step_memory *m,
                  const struct step_opt *o, struct report *rep, struct why *why);
 
 /* Its parts. The contacts, with their last reactions if warm */
 int step_detect(struct packing *p, struct contacts *s, struct neighbours *near,
                 const struct step_opt *o, struct report *rep, struct why *why);
-/* found[], and the report of the solve */
-int step_solve_contacts(const struct packing *pack, struct contacts *s, const struct step_opt *o,
-                        struct report *rep, struct why *why);
+/* found[], and the report of the solve; kept: of problem_prepare_again(), or NULL */
+int step_solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
+                        const struct step_opt *o, struct report *rep, struct why *why);
 /* The balances alone; or the balances and the motion */
 int step_balance(const struct packing *p, const struct contacts *s, const struct step_opt *o,
                  struct report *rep, struct why *why);
