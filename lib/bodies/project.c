@@ -8,7 +8,7 @@
 #include <stdlib.h>
 
 enum {
-    SOME = 2048, /* contacts that are worth a thread */
+    SOME = 2048, /* contacts or bodies that are worth a thread */
     SWEEPS = 10  /* a step, at most: a tenth of what its solve costs */
 };
 
@@ -50,7 +50,7 @@ static struct part part_of(const struct packing *p, const struct contact *c)
 
 /* The displacements sought: of bodies, and along the axes of freedoms beyond theirs */
 struct displacements {
-    vec3 *d; /* [n] m */
+    struct displaced *d; /* [n] */
     struct freedoms freedoms;
     double *z; /* [freedoms.n] m */
 };
@@ -64,17 +64,17 @@ static double opens(const struct displacements *o, int32_t k, const struct conta
 }
 
 /* Changes lambda and d so that this gap is 0, or lambda is; returns whether that changed much. */
-static bool relax(const struct packing *p, struct part *k, const struct contact *c,
-                  struct displacements *o)
+static bool relax(struct part *k, const struct contact *c, struct displacements *o)
 {
-    vec3 *d = o->d;
-    double gap = k->gap + v3_dot(k->n, d[k->b]) - (k->a < 0 ? 0 : v3_dot(k->n, d[k->a]));
+    struct displaced *a = k->a < 0 ? NULL : &o->d[k->a], *b = &o->d[k->b];
+    double gap = k->gap + v3_dot(k->n, b->d) - (a ? v3_dot(k->n, a->d) : 0);
     for (int32_t f = 0; f < o->freedoms.n; f++) gap += opens(o, f, c) * o->z[f];
+    if (k->lambda == 0 && gap >= 0) return false; // as most are, without a quotient to wait for
     double lambda = dmax(0, k->lambda - gap / k->w), more = lambda - k->lambda;
     if (more == 0) return false;
     k->lambda = lambda;
-    d[k->b] = v3_axpy(d[k->b], more * inverse_mass(p, k->b), k->n);
-    if (k->a >= 0) d[k->a] = v3_axpy(d[k->a], -more * inverse_mass(p, k->a), k->n);
+    b->d = v3_axpy(b->d, more * b->im, k->n);
+    if (a) a->d = v3_axpy(a->d, -more * a->im, k->n);
     for (int32_t f = 0; f < o->freedoms.n; f++)
         o->z[f] += more * opens(o, f, c) / o->freedoms.f[f].mass;
     return fabs(more) * k->w > ENOUGH * k->slop;
@@ -115,9 +115,29 @@ static bool parts_make(const struct packing *p, const struct contacts *s,
     return m.any;
 }
 
+/* Bodies that are displaced, or about to be */
+struct shifting {
+    struct packing *p;
+    struct displaced *d;
+};
+
+static void begin_some(void *arg, int64_t first, int64_t end)
+{
+    const struct shifting *y = arg;
+    for (int64_t i = first; i < end; i++)
+        y->d[i] = (struct displaced){ { 0, 0, 0 }, inverse_mass(y->p, (int32_t)i) };
+}
+
+static void shift_some(void *arg, int64_t first, int64_t end)
+{
+    const struct shifting *y = arg;
+    for (int64_t i = first; i < end; i++) y->p->x[i] = v3_add(y->p->x[i], y->d[i].d);
+}
+
 static void displace(struct packing *p, const struct displacements *o)
 {
-    for (int64_t i = 0; i < p->n; i++) p->x[i] = v3_add(p->x[i], o->d[i]);
+    struct shifting y = { p, o->d };
+    team_share(team_size(), p->n, SOME, shift_some, &y);
     for (int32_t k = 0; k < o->freedoms.n; k++) freedom_displace(&o->freedoms.f[k], p, o->z[k]);
 }
 
@@ -129,7 +149,7 @@ int project_apart(struct packing *p, const struct contacts *s, struct why *why)
 int project_shared(struct packing *p, const struct contacts *s, const struct project_share *share,
                    struct why *why)
 {
-    struct displacements o = { .d = calloc((size_t)p->n + 1, sizeof *o.d) };
+    struct displacements o = { .d = malloc(((size_t)p->n + 1) * sizeof *o.d) };
     struct part *part = malloc(((size_t)s->n + 1) * sizeof *part);
     bool room = part && o.d && !freedoms_init(&o.freedoms, p, p->cell.edge, why);
     room = room && (o.z = calloc((size_t)o.freedoms.n + 1, sizeof *o.z));
@@ -137,11 +157,13 @@ int project_shared(struct packing *p, const struct contacts *s, const struct pro
     bool more = room && parts_make(p, s, &o, part);
     if (share) more = share->any(share->with, more);
     bool moves = more;
+    struct shifting y = { p, o.d };
+    if (more) team_share(team_size(), p->n, SOME, begin_some, &y);
     for (int64_t i = 0; share && i < s->n; i++) part[i].w *= share->brake[i];
     for (int sweep = 0; more && sweep < SWEEPS; sweep++) {
         more = false;
         for (int64_t i = 0; i < s->n; i++)
-            if (part[i].w > 0 && relax(p, &part[i], &s->c[i], &o)) more = true;
+            if (part[i].w > 0 && relax(&part[i], &s->c[i], &o)) more = true;
         if (share) more = share->after_sweep(share->with, o.d, more);
     }
     if (moves) displace(p, &o);

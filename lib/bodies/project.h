@@ -22,6 +22,12 @@
 #include "bodies/contact.h"
 #include "bodies/packing.h"
 
+/* A body, with what a sweep reads and changes of it side by side */
+struct displaced {
+    vec3 d;    /* m */
+    double im; /* 1/kg; 0: it does not move */
+};
+
 /* Of a packing of which several processes have a part each, by contacts that each is in one of: what is asked
    of the others */
 struct project_share {
@@ -29,9 +35,9 @@ struct project_share {
     const double *brake; /* [contacts] by which a contact's step is shortened, at least 1 */
     /* Is it so in any process? */
     bool (*any)(void *with, bool here);
-    /* The processes' displacements d[n] (m) since the last time are added up; more: is another sweep worth
+    /* The processes' displacements of d[n] since the last time are added up; more: is another sweep worth
        it here? Returns whether it is to any. */
-    bool (*after_sweep)(void *with, vec3 *d, bool more);
+    bool (*after_sweep)(void *with, struct displaced *d, bool more);
 };
 int project_shared(struct packing *p, const struct contacts *s, const struct project_share *share,
                    struct why *why);

@@ -261,10 +261,10 @@ static double *moment_of(void *impulses, int32_t body)
     return &sum->moment[body].x;
 }
 
-static double *vector_of(void *vectors, int32_t body)
+static double *displacement_of(void *displaced, int32_t body)
 {
-    vec3 *v = vectors;
-    return &v[body].x;
+    struct displaced *d = displaced;
+    return &d[body].d.x;
 }
 
 /* Displacements that are being sought */
@@ -279,10 +279,10 @@ static bool in_any(void *with, bool here)
     return talk_most(a->b->part->talk, here) > 0;
 }
 
-static bool after_sweep(void *with, vec3 *d, bool more)
+static bool after_sweep(void *with, struct displaced *d, bool more)
 {
     struct apart *a = with;
-    add_up(a->b, 3, vector_of, d, a->since);
+    add_up(a->b, 3, displacement_of, d, a->since);
     return in_any(with, more);
 }
 
