@@ -217,9 +217,9 @@ struct survey {
     _Atomic bool turned; /* t1 is to be loaded: not what contact_basis() makes, or not far */
 };
 
-static bool same_bits(vec3 a, vec3 b)
+static bool same(vec3 a, vec3 b)
 {
-    return !memcmp(&a, &b, sizeof a);
+    return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
 static void survey_some(void *arg, int64_t first, int64_t end)
@@ -233,7 +233,7 @@ static void survey_some(void *arg, int64_t first, int64_t end)
         copies += 2 - packing_movable(y->p, c->a, c->b, moves);
         shaped |= contact_shaped(y->p, c);
         struct contact made = { 0 };
-        if (!turned) contact_basis(&made, 3, c->n), turned = !same_bits(made.t1, c->t1);
+        if (!turned) contact_basis(&made, 3, c->n), turned = !same(made.t1, c->t1);
         rebounds |= c->en > 0 || c->et > 0 || offset_in(y->p, c) ||
                     (y->s->tie && y->s->tie[i].offset > 0) ||
                     (y->moving_images && contact_shifted(c));

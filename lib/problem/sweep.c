@@ -84,7 +84,7 @@ ALWAYS_INLINE void make_local(const struct problem *p, const struct bundle *c, i
     l->rho = kind.method == METHOD_exact ? splat(1) : vload(p->rho[bundle] + k);
     for (int i = 0; i < 9 && kind.full; i++) W[i] = vload(p->block[bundle][i] + k);
     for (int i = 0; i < 3; i++) l->r[i] = vload(c->r[i] + k), l->v[i] = s->v[i];
-    if (!kind.full && p->w_of_bodies)
+    if (!kind.given_by_W && !kind.full && p->w_of_bodies)
         weigh(p, c, k, s, l->w);
     else
         for (int i = 0; i < 3; i++) l->w[i] = kind.full ? W[4 * i] : vload(p->w[bundle][i > 0] + k);

@@ -47,7 +47,7 @@ ALWAYS_INLINE void fetch_ahead(const struct problem *p, int64_t i)
     if (p->bundles < FAR_BUNDLES || i + BUNDLES_AHEAD >= p->bundles) return;
     int64_t ahead = i + BUNDLES_AHEAD;
     fetch_lines(&p->bundle[ahead], sizeof *p->bundle);
-    if (p->block) fetch_lines(&p->block[ahead], sizeof *p->block);
+    if (p->full) fetch_lines(&p->block[ahead], sizeof *p->block);
     if (!p->body) return;
     if (p->tangent) fetch_lines(&p->tangent[ahead], sizeof *p->tangent);
     if (p->lever) fetch_lines(&p->lever[ahead], sizeof *p->lever);
