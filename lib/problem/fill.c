@@ -192,8 +192,7 @@ static void lever_go_beyond(struct problem *p, int64_t i, const struct contact *
     struct beyond_levers *y = slot_turn(p, i);
     const struct body a = lighter(p, r->a[k], slower), b = lighter(p, r->b[k], slower);
     double h = p->dt, seen = t->offset > 0 ? t->offset : offset_of(p->packing, c, 0);
-    double(*block)[BUNDLE] = p->block[i / BUNDLE],
-    *w[2] = { p->w[i / BUNDLE][0] + k, p->w[i / BUNDLE][1] + k };
+    double(*block)[BUNDLE] = p->block[i / BUNDLE], (*w)[BUNDLE] = p->w[i / BUNDLE];
     double *rho = &p->rho[i / BUNDLE][k], W[9], K[2] = { h * h * t->stiff[0], h * h * t->stiff[1] };
     for (int j = 0; j < 9; j++) W[j] = block[j][k];
     for (int j = 0; j < 2; j++) x->K[j][k] = K[j];
@@ -204,7 +203,7 @@ static void lever_go_beyond(struct problem *p, int64_t i, const struct contact *
         beyond_levers_bond(block, y, k, K);
         for (int j = 0; j < 9; j++) hat[j] = block[j][k];
         double lambda = local_lambda_max(hat);
-        for (int j = 0; j < 2; j++) *w[j] = lambda, r->iw[j][k] = 1 / lambda;
+        for (int j = 0; j < 2; j++) w[j][k] = lambda, r->iw[j][k] = 1 / lambda;
         if (!(alpha > 0)) *rho = lambda > 0 ? rho_factor / lambda : 1;
     }
     for (int j = 0; j < 3; j++) x->z[j][k] = x->a[j][k]; // p = 0
@@ -213,7 +212,7 @@ static void lever_go_beyond(struct problem *p, int64_t i, const struct contact *
     set_turning(y->Ra, k, p->packing, c->a, c, half);
     set_turning(y->Rb, k, p->packing, c->b, c, half);
     x->length[k] = beyond_levers_turn(&p->lever[i / BUNDLE], block, y, k, W, K, a.ii, b.ii);
-    x->rho[k] = *rho * *w[0] / y->lambda[k];
+    x->rho[k] = *rho * w[0][k] / y->lambda[k];
 }
 
 void fill_slot(const struct filling *f, int64_t i, double slower)

@@ -46,8 +46,7 @@ struct problem {
     bool w_of_bodies;           /* sweeps make w of the masses and arms rather than load it */
     double (*rho)[BUNDLE];      /* [bundles] kg: the step of the projections */
     double (*block)[9][BUNDLE]; /* [bundles] kg^-1: W_cc, full; NULL: between balls */
-    struct tangents
-        *tangent; /* [bundles]; NULL: to be made of n, as contact_basis() makes it in space */
+    struct tangents *tangent;   /* [bundles]; NULL: t1 as contact_basis() makes it of n, in space */
     struct rebound *rebound;    /* [bundles]; NULL: e_n = e_t = 0 everywhere, and no offset */
     struct levers *lever;       /* [bundles]; NULL: balls, or given by W */
     struct beyond_levers *turn; /* [bundles] the same between bodies with levers; else NULL */
