@@ -59,7 +59,12 @@ SAN_WIDTH_2 := -fno-sanitize=null,alignment,object-size,pointer-overflow
 SAN_WIDTH_4 := -fno-sanitize=all
 SAN_WIDTH_8 := -fno-sanitize=all
 
-LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/cli/main.c lib/ranks/%.c $(WIDE:%=lib/problem/%.c),$(wildcard lib/*/*.c))) \
+# Tests build some tools again, by other compilers and sanitizers. WITHOUT: rooms that those do not call; IDLE:
+# widths that they do not run, but link: -O0 takes a second where -O1 takes ten.
+WITHOUT ?=
+IDLE    ?=
+
+LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/cli/main.c lib/ranks/%.c $(WITHOUT:%=lib/%/%.c) $(WIDE:%=lib/problem/%.c),$(wildcard lib/*/*.c))) \
          $(foreach w,$(WIDE),$(WIDTHS:%=$B/lib/problem/$w-%.o))
 TOOLS := $(patsubst tools/%.c,$B/%,$(wildcard tools/*.c))
 
@@ -106,7 +111,7 @@ $B/lib/draw/page_parts.o: $(wildcard lib/draw/page/*)
 define compile_wide
 $B/lib/problem/$1-%.o: lib/problem/$1.c Makefile
 	@mkdir -p $$(@D)
-	$$(CC) $$(CPPFLAGS) $$(NSD_CFLAGS) $$(CFLAGS:-O2=-O3) $(if $(SAN),$$(SAN_WIDTH_$$*)) -DLANES=$$* $$(WIDTH_$$*) -MMD -MP -c -o $$@ $$<
+	$$(CC) $$(CPPFLAGS) $$(NSD_CFLAGS) $$(CFLAGS:-O2=-O3) $(if $(SAN),$$(SAN_WIDTH_$$*)) -DLANES=$$* $$(WIDTH_$$*) $$(if $$(filter $$*,$$(IDLE)),-O0) -MMD -MP -c -o $$@ $$<
 endef
 $(foreach w,$(WIDE),$(eval $(call compile_wide,$w)))
 
@@ -194,18 +199,19 @@ FUZZ    := document problem scene
 FUZZCC  := clang
 FUZZSAN := -fsanitize=address,undefined -fno-sanitize-recover=undefined
 F       := build/fuzz
-# nsd's own readers: not the command line, nor what hands files to libassimp
-FLIB    := $(patsubst $B/%,$F/%,$(filter-out $B/lib/cli/% $B/lib/scene/mesh_file.o,$(LIB)))
+# nsd's own readers and what solves: not the command line, nor what shows, nor what hands files to libassimp
+FLIB    := $(patsubst $B/%,$F/%,$(filter-out $(foreach r,cli draw export measure,$B/lib/$r/%) $B/lib/scene/mesh_file.o,$(LIB)))
 
 $F/lib/%.o: lib/%.c
 	@mkdir -p $(@D)
 	$(FUZZCC) $(CPPFLAGS) $(NSD_CFLAGS) -O1 -g1 $(FUZZSAN) -fsanitize=fuzzer-no-link -MMD -MP -c -o $@ $<
 
-# No bytes of a file come here but as checked numbers: without the sanitizers, which take minutes to build.
+# No bytes of a file come here but as checked numbers: without the sanitizers, which take minutes to build, and
+# without optimisation, which would take longer than all that the few contacts of a file need.
 define fuzz_wide
 $F/lib/problem/$1-%.o: lib/problem/$1.c Makefile
 	@mkdir -p $$(@D)
-	$$(FUZZCC) $$(CPPFLAGS) $$(NSD_CFLAGS) -O1 -DLANES=$$* $$(WIDTH_$$*) -MMD -MP -c -o $$@ $$<
+	$$(FUZZCC) $$(CPPFLAGS) $$(NSD_CFLAGS) -O0 -DLANES=$$* $$(WIDTH_$$*) -MMD -MP -c -o $$@ $$<
 endef
 $(foreach w,$(WIDE),$(eval $(call fuzz_wide,$w)))
 
