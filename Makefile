@@ -199,8 +199,9 @@ FUZZ    := document problem scene
 FUZZCC  := clang
 FUZZSAN := -fsanitize=address,undefined -fno-sanitize-recover=undefined
 F       := build/fuzz
-# nsd's own readers and what solves: not the command line, nor what shows, nor what hands files to libassimp
-FLIB    := $(patsubst $B/%,$F/%,$(filter-out $(foreach r,cli draw export measure,$B/lib/$r/%) $B/lib/scene/mesh_file.o,$(LIB)))
+# nsd's own readers and what solves: not the command line, nor what draws and exports, nor what hands files to
+# libassimp
+FLIB    := $(patsubst $B/%,$F/%,$(filter-out $(foreach r,cli draw export,$B/lib/$r/%) $B/lib/scene/mesh_file.o,$(LIB)))
 
 $F/lib/%.o: lib/%.c
 	@mkdir -p $(@D)
