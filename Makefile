@@ -59,7 +59,12 @@ SAN_WIDTH_2 := -fno-sanitize=null,alignment,object-size,pointer-overflow
 SAN_WIDTH_4 := -fno-sanitize=all
 SAN_WIDTH_8 := -fno-sanitize=all
 
-LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/cli/main.c lib/ranks/%.c $(WIDE:%=lib/problem/%.c),$(wildcard lib/*/*.c))) \
+# Tests build some tools again, by other compilers and sanitizers. WITHOUT: rooms that those do not call; IDLE:
+# widths that they do not run, but link: -O0 takes a second where -O1 takes ten.
+WITHOUT ?=
+IDLE    ?=
+
+LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/cli/main.c lib/ranks/%.c $(WITHOUT:%=lib/%/%.c) $(WIDE:%=lib/problem/%.c),$(wildcard lib/*/*.c))) \
          $(foreach w,$(WIDE),$(WIDTHS:%=$B/lib/problem/$w-%.o))
 TOOLS := $(patsubst tools/%.c,$B/%,$(wildcard tools/*.c))
 
@@ -106,7 +111,7 @@ $B/lib/draw/page_parts.o: $(wildcard lib/draw/page/*)
 define compile_wide
 $B/lib/problem/$1-%.o: lib/problem/$1.c Makefile
 	@mkdir -p $$(@D)
-	$$(CC) $$(CPPFLAGS) $$(NSD_CFLAGS) $$(CFLAGS:-O2=-O3) $(if $(SAN),$$(SAN_WIDTH_$$*)) -DLANES=$$* $$(WIDTH_$$*) -MMD -MP -c -o $$@ $$<
+	$$(CC) $$(CPPFLAGS) $$(NSD_CFLAGS) $$(CFLAGS:-O2=-O3) $(if $(SAN),$$(SAN_WIDTH_$$*)) -DLANES=$$* $$(WIDTH_$$*) $$(if $$(filter $$*,$$(IDLE)),-O0) -MMD -MP -c -o $$@ $$<
 endef
 $(foreach w,$(WIDE),$(eval $(call compile_wide,$w)))
 
@@ -135,16 +140,23 @@ setup-run setup-paper setup-wall setup-check:
 
 PROVE := prove -j2 --timer
 
+# The longest first: one that begins last leaves a core idle while it ends
+LONG  := $(patsubst %,tests/%.t,lint paper compilers examples gallery threads mpi install laws badinput wall solvers types \
+         shapes failures export boundary) $(patsubst %,$B/tests/%_test,kill shapes)
+TESTS := $(LONG) $(filter-out $(LONG),$(CTEST) $(wildcard tests/*.t))
+
+# What looks into inner loops has, under the sanitizers, those of the width that is instrumented.
+NARROW := $(if $(SAN),$(patsubst %,$B/tests/%_test,laws local shapes solver step))
+
 test: tests
-	PATH="$(CURDIR)/$B:$$PATH" $(PROVE) $(CTEST) tests/*.t
+	PATH="$(CURDIR)/$B:$$PATH" $(PROVE) $(filter-out $(NARROW),$(TESTS))
+	$(if $(NARROW),NSD_LANES=2 $(PROVE) $(NARROW))
 
-SAN_NARROW := laws local shapes solver step
-
-# The same again under ASan and UBSan first, loops thinned; the plain run, whole, has the last word.
+# The same again under ASan and UBSan first, loops thinned; the plain run, whole, has the last word. In all
+# twenty minutes on two cores (CONTRIBUTING.md).
 check: setup-check
 	$(MAKE) -j2 SAN=1 tests
 	NSD_QUICK=1 $(MAKE) SAN=1 test
-	NSD_QUICK=1 NSD_LANES=2 $(PROVE) $(SAN_NARROW:%=build/san/tests/%_test)
 	$(MAKE) -j2 tests
 	$(MAKE) fuzz-corpus
 	$(MAKE) test
@@ -194,18 +206,20 @@ FUZZ    := document problem scene
 FUZZCC  := clang
 FUZZSAN := -fsanitize=address,undefined -fno-sanitize-recover=undefined
 F       := build/fuzz
-# nsd's own readers: not the command line, nor what hands files to libassimp
-FLIB    := $(patsubst $B/%,$F/%,$(filter-out $B/lib/cli/% $B/lib/scene/mesh_file.o,$(LIB)))
+# nsd's own readers and what solves: not the command line, nor what draws and exports, nor what hands files to
+# libassimp
+FLIB    := $(patsubst $B/%,$F/%,$(filter-out $(foreach r,cli draw export,$B/lib/$r/%) $B/lib/scene/mesh_file.o,$(LIB)))
 
 $F/lib/%.o: lib/%.c
 	@mkdir -p $(@D)
 	$(FUZZCC) $(CPPFLAGS) $(NSD_CFLAGS) -O1 -g1 $(FUZZSAN) -fsanitize=fuzzer-no-link -MMD -MP -c -o $@ $<
 
-# No bytes of a file come here but as checked numbers: without the sanitizers, which take minutes to build.
+# No bytes of a file come here but as checked numbers: without the sanitizers, which take minutes to build, and
+# without optimisation, which would take longer than all that the few contacts of a file need.
 define fuzz_wide
 $F/lib/problem/$1-%.o: lib/problem/$1.c Makefile
 	@mkdir -p $$(@D)
-	$$(FUZZCC) $$(CPPFLAGS) $$(NSD_CFLAGS) -O1 -DLANES=$$* $$(WIDTH_$$*) -MMD -MP -c -o $$@ $$<
+	$$(FUZZCC) $$(CPPFLAGS) $$(NSD_CFLAGS) -O0 -DLANES=$$* $$(WIDTH_$$*) -MMD -MP -c -o $$@ $$<
 endef
 $(foreach w,$(WIDE),$(eval $(call fuzz_wide,$w)))
 
@@ -257,17 +271,26 @@ lint-manuals:
 lint-scripts:
 	shellcheck $(SCRIPTS)
 
+# With the names by which compilers for this machine choose between texts; of all combinations, which nobody
+# compiles, cppcheck would look at twelve. Then what is compiled for wider vectors.
+CPPCHECK := cppcheck --quiet --error-exitcode=1 --std=c11 --enable=warning,performance,portability \
+            --inline-suppr --suppress=missingIncludeSystem -D__x86_64__ -D__SSE2__ -Ilib
+
 lint-cppcheck:
-	cppcheck --quiet --error-exitcode=1 --std=c11 --enable=warning,performance,portability \
-	    --inline-suppr --suppress=missingIncludeSystem -Ilib lib tools
+	$(CPPCHECK) lib tools
+	$(CPPCHECK) -D__AVX__ -DLANES=4 $(WIDE:%=lib/problem/%.c)
+	$(CPPCHECK) -D__AVX__ -DLANES=8 $(WIDE:%=lib/problem/%.c)
 
 TIDY := $(patsubst %.c,lint-tidy-%,$(notdir $(filter-out $(if $(MPI_PC),,lib/ranks/%),$(wildcard lib/*/*.c tools/*.c))))
+
+# STATES: how many states of a function the analyzer looks at, if not its own 225000
+STATES ?=
 
 lint-tidy: $(TIDY)
 
 $(TIDY): lint-tidy-%:
 	clang-tidy --quiet $(wildcard lib/*/$*.c tools/$*.c) -- -std=gnu11 -DNSD_VERSION='"$(VERSION)"' \
-	    -Ilib $(PC) $(MPI_PC:-I%=-isystem %) 2>/dev/null
+	    -Ilib $(PC) $(MPI_PC:-I%=-isystem %) $(STATES:%=-Xclang -analyzer-config -Xclang max-nodes=%) 2>/dev/null
 
 # ---- what is made for others ----
 

@@ -33,7 +33,7 @@ ok "the last frame alone" cmp <(nsd-export --last --to vtp "$tmp/out.h5") "$tmp/
 ok "a part alone" cmp <(nsd-export --last --part contacts --to vtp "$tmp/out.h5") "$tmp/vtp/contacts-00014.vtp"
 grows()
 {
-    nsd-gen 20 | nsd-step -n $((quick ? 600 : 3000)) 2>/dev/null | nsd-export -o "$tmp/live/" &
+    nsd-gen 20 | nsd-step -n $((quick ? 600 : 1000)) 2>/dev/null | nsd-export -o "$tmp/live/" &
     /usr/bin/python3 tests/export.py growing "$tmp/live"
     local s=$?
     wait

@@ -102,7 +102,7 @@ const struct cli_tool tool = {
     "Draws a packing as PNG: the last frame, another, a series or a film.", tables,
     "  nsd-gen 500 | nsd-view > balls.png\n"
     "  nsd-view -c speed --every 10 -o 'film%05d.png' out.h5\n"
-    "  nsd-view --every 1 -o film.mp4 out.h5\n"
+    "  nsd-view --every 1 --size 360x640 -o film.mp4 out.h5\n"
 };
 
 /* ---- what options say ---- */

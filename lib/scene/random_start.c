@@ -181,11 +181,12 @@ static double push_pair(struct start *s, int64_t a, int64_t b)
 /* Back into the box, where it has left it */
 static void push_in(struct start *s, int64_t i)
 {
-    double r = radius(s, i) * (1 + FURTHER), *x[3] = { &s->p.x[i].x, &s->p.x[i].y, &s->p.x[i].z };
-    for (int k = 0; k < s->dim; k++) {
+    double r = radius(s, i) * (1 + FURTHER), x[3] = { s->p.x[i].x, s->p.x[i].y, s->p.x[i].z };
+    for (int k = 0; k < (s->dim == 2 ? 2 : 3); k++) {
         double lo = s->box->lo[k] + r, hi = s->box->hi[k] - r;
-        *x[k] = hi > lo ? fmin(fmax(*x[k], lo), hi) : 0.5 * (lo + hi);
+        x[k] = hi > lo ? fmin(fmax(x[k], lo), hi) : 0.5 * (lo + hi);
     }
+    s->p.x[i] = v3(x[0], x[1], x[2]);
 }
 
 /* Sweeps over the pairs until no overlap is above `most` (smaller radii); *left: the largest. */
