@@ -384,8 +384,7 @@ enum { BODIES = 12, CONTACTS = 30 };
 struct made {
     struct problem p;
     struct body body[BODIES], free[BODIES];
-    struct bundle bundle[(CONTACTS + BUNDLE - 1) / BUNDLE];
-    struct tangents tangent[(CONTACTS + BUNDLE - 1) / BUNDLE];
+    struct near_bundle bundle[(CONTACTS + BUNDLE - 1) / BUNDLE];
     struct rebound rebound[(CONTACTS + BUNDLE - 1) / BUNDLE];
     double u[(CONTACTS + BUNDLE - 1) / BUNDLE][3][BUNDLE];
     int32_t contact[CONTACTS + BUNDLE];
@@ -397,7 +396,7 @@ static void cross(const double a[3], const double b[3], double c[3])
         c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-static void make_frame(int d, struct bundle *c, struct tangents *t, int i)
+static void make_frame(int d, struct bundle *c, struct beside *t, int i)
 {
     const double z[3] = { 0, 0, 1 };
     double other[3] = { noise(), noise(), noise() }, n[3], t1[3];
@@ -418,9 +417,8 @@ static void make(struct made *m, int d, int64_t n)
 {
     *m = (struct made){ .p = { .d = d, .n = n, .dt = 1, .bundles = (n + BUNDLE - 1) / BUNDLE } };
     m->p.slots = m->p.bundles * BUNDLE;
-    m->p.bundle = m->bundle, m->p.rebound = m->rebound, m->p.contact = m->contact,
-    m->p.bodies = BODIES, m->p.body = m->body, m->p.u = m->u;
-    m->p.tangent = m->tangent;
+    m->p.near = true, m->p.bundle = &m->bundle[0].bundle, m->p.rebound = m->rebound,
+    m->p.contact = m->contact, m->p.bodies = BODIES, m->p.body = m->body, m->p.u = m->u;
     for (int64_t i = n; i < m->p.slots; i++) m->contact[i] = -1;
     for (int i = 0; i < BODIES; i++) {
         struct body *b = &m->body[i];
@@ -440,7 +438,7 @@ static void make(struct made *m, int d, int64_t n)
         while (a == b || a == 3);
         if (i == 5) a = 0, b = 1;
         c->a[k] = body_place(a), c->b[k] = body_place(b);
-        make_frame(d, c, &m->tangent[i / BUNDLE], k);
+        make_frame(d, c, &m->bundle[i / BUNDLE].beside, k);
         c->la[k] = noise(), c->lb[k] = noise(), c->mu[k] = fabs(noise());
         for (int j = 0; j < 2; j++) slot_rebound(&m->p, i)->s[j][k] = 1 / (1 + e[j]);
         for (int j = 0; j < d; j++) {

@@ -200,7 +200,7 @@ static void test_halves(const struct problem *q, const struct packing *p)
         int part = g < h->beyond ? BORDER : g < h->inside ? OUTSIDE : INSIDE;
         if (g >= h->rim && g < h->rest) part = RIM;
         *(part < INSIDE ? &ours : &theirs) += 1;
-        const int32_t *both[2] = { q->bundle[i].a, q->bundle[i].b };
+        const int32_t *both[2] = { bundle_at(q, i)->a, bundle_at(q, i)->b };
         for (int k = 0; k < 2 * BUNDLE; k++)
             if (both[k % 2][k / 2] < p->n) parts[both[k % 2][k / 2]] |= part;
     }

@@ -178,6 +178,19 @@ ALWAYS_INLINE vm is_finite(vd a)
 }
 
 /*
+ * Computes *a here, in its place among others that are pinned. Compilers move what they compute to where
+ * it is used, and of two transpositions that they mix more is live than there are registers.
+ */
+ALWAYS_INLINE void pin(vd *a)
+{
+#if LANES > 1 && LANES < 8 && defined __x86_64__
+    __asm__ volatile("" : "+x"(*a));
+#else
+    (void)a;
+#endif
+}
+
+/*
  * transpose() exchanges x[i][j] and x[j][i] in stages of EXCHANGE, which makes two vectors of two:
  * low and high list their lanes, counted through both. Machines have instructions for these lists.
  */

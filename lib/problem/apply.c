@@ -46,12 +46,11 @@ static void apply_bodies(const struct problem *p, struct apply *a, const double 
     for (int64_t i = 0; i < p->bodies; i++)
         memset(a->body[i].v, 0, sizeof a->body[i].v), memset(a->body[i].w, 0, sizeof a->body[i].w);
     for (int64_t i = 0; i < p->slots; i++)
-        if (p->contact[i] >= 0)
-            problem_push(p, a->body, slot_bundle(p, i), slot_lane(i), x + 3 * i);
+        if (p->contact[i] >= 0) problem_push(p, a->body, i / BUNDLE, slot_lane(i), x + 3 * i);
     for (int64_t i = 0; i < p->slots; i++) {
         const struct rebound *e = slot_rebound(p, i);
         if (p->contact[i] < 0) continue;
-        problem_velocity(p, a->body, slot_bundle(p, i), NULL, slot_lane(i), y + 3 * i);
+        problem_velocity(p, a->body, i / BUNDLE, NULL, slot_lane(i), y + 3 * i);
         for (int k = 0; e && k < 3; k++) y[3 * i + k] *= e->s[k > 0][slot_lane(i)];
     }
 }

@@ -29,11 +29,10 @@ static void assembly_velocity(const struct assembly *A, struct body *body, doubl
     int d = A->p->d;
     assert(d == 2 || d == 3);
     for (int64_t c = 0; c < A->p->n; c++) {
-        const struct bundle *bundle = assembly_bundle(A, c);
         const struct rebound *e = slot_rebound(A->p, A->slot[c]);
         int lane = slot_lane(A->slot[c]);
         double u[3];
-        problem_velocity(A->p, body, bundle, e, lane, u);
+        problem_velocity(A->p, body, A->slot[c] / BUNDLE, e, lane, u);
         for (int k = 0; k < d; k++) *out++ = e ? u[k] / e->s[k > 0][lane] : u[k];
     }
 }
@@ -105,7 +104,7 @@ static bool assembly_vectors(struct assembly *A)
         if (p->contact[i] < 0) continue;
         slot_get(p, i, r, u);
         const double back[3] = { -r[0], -r[1], -r[2] };
-        problem_push(p, A->free, slot_bundle(p, i), slot_lane(i), back);
+        problem_push(p, A->free, i / BUNDLE, slot_lane(i), back);
     }
     for (int64_t i = 0; i < p->bodies; i++) {
         still[i] = A->free[i];
@@ -149,7 +148,7 @@ static void jacobian(const struct assembly *A, int64_t contact, int end, double 
     const struct levers *g = A->p->lever ? &A->p->lever[A->slot[contact] / BUNDLE] : NULL;
     int i = slot_lane(A->slot[contact]);
     double sign = end ? 1 : -1, l = end ? c->lb[i] : c->la[i], n[3], t1[3], t2[3];
-    bundle_basis(c, bundle_tangents(A->p, c), i, n, t1, t2);
+    bundle_basis(c, bundle_beside(A->p, c), i, n, t1, t2);
     for (int k = 0; k < 3; k++) {
         J[0][k] = sign * n[k], J[0][3 + k] = 0;
         J[1][k] = sign * t1[k], J[1][3 + k] = -l * t2[k];

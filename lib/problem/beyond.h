@@ -83,7 +83,7 @@ static inline bool beyond_rolls(const struct beyond *x, int lane)
 struct beyond_lane {
     int i;
     const struct bundle *c;
-    const struct tangents *t; /* NULL: none */
+    const struct beside *t; /* NULL: none */
     struct beyond *x;
     const struct beyond_levers *y; /* NULL: all bodies are balls */
     struct body *body;             /* that the places of c are in */

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 enum {
-    OF_BUNDLE = 5,
+    OF_BUNDLE = 7,
     OF_LEVERS = 9,
     OF_BEYOND = 6,
     OF_TURN = 4 * 9 + ROLLING * ROLLING + 1,
@@ -20,6 +20,7 @@ static int numbers(const struct problem *p, int64_t slot, double *at[OF_SLOT])
     int64_t bundle = slot / BUNDLE;
     int k = slot_lane(slot), n = 0;
     for (int j = 0; j < 2; j++) at[n++] = &p->w[bundle][j][k], at[n++] = &c->iw[j][k];
+    for (int j = 0; j < 2 && p->near; j++) at[n++] = &bundle_beside(p, c)->w[j][k];
     at[n++] = &p->rho[bundle][k];
     for (int j = 0; j < 9 && p->lever; j++) at[n++] = &p->block[bundle][j][k];
     if (!p->beyond) return n;

@@ -6,7 +6,7 @@
  * Each quantity of a bundle fills a cache line; lane k belongs to contact k. Functions that work on
  * LANES lanes at once are given the first, k. A sweep over many contacts takes as long as it takes
  * to read their bundles, so what can be computed meanwhile (t1, t2, W~_cc of balls) or is seldom
- * needed stands elsewhere (problem/problem.h: tangent, w, rho, block, u, rebound).
+ * needed stands elsewhere (problem/problem.h: w, rho, block, u, rebound).
  *
  * A lane without a contact (at the end of a group) has rho = 0 and w = 1: its contact separates,
  * and is not counted.
@@ -27,9 +27,14 @@ struct bundle {
     int32_t a[BUNDLE], b[BUNDLE]; /* places of bodies; given by W: a is the contact, -1: none */
 };
 
-/* t1 of a bundle, where it is not what contact_basis() makes of n in space */
-struct tangents {
-    double t1[3][BUNDLE];
+/* What may stand behind a bundle, to be loaded rather than computed */
+struct beside {
+    double t1[3][BUNDLE]; /* else as contact_basis() makes it of n, in space */
+    double w[2][BUNDLE];  /* kg^-1: as in problem/problem.h; else of masses and arms */
+};
+struct near_bundle {
+    struct bundle bundle;
+    struct beside beside;
 };
 
 /* Newton's impact law in a bundle, the velocity d by which an image moves faster than its body, and
@@ -93,6 +98,7 @@ ALWAYS_INLINE void bodies_load(struct bodies *m, struct body *body, const int32_
         for (int i = 0; i < LANES; i++) x[k + i] = vload(body_at(body, place[i]) + k);
         transpose(x + k);
     }
+    for (int k = 0; k < 8; k++) pin(&x[k]);
     for (int k = 0; k < 3; k++) moves->v[k] = x[k], moves->w[k] = x[3 + k];
     m->im = x[6], m->ii = x[7];
 }
@@ -112,7 +118,7 @@ ALWAYS_INLINE void bodies_add(struct body *body, const int32_t *place, const str
  * The bases, which are cheaper to compute than to load: t2 = n x t1, and, where t is NULL, t1 as
  * contact_basis() makes it, to the bit [Duff et al. 2017].
  */
-ALWAYS_INLINE void bundle_basis(const struct bundle *c, const struct tangents *t, int k, vd n[3],
+ALWAYS_INLINE void bundle_basis(const struct bundle *c, const struct beside *t, int k, vd n[3],
                                 vd t1[3], vd t2[3])
 {
     for (int i = 0; i < 3; i++) n[i] = vload(c->n[i] + k);
@@ -126,7 +132,7 @@ ALWAYS_INLINE void bundle_basis(const struct bundle *c, const struct tangents *t
 }
 
 /* u~ from the bodies' velocities, or u where e is NULL; and t1 and t2, which bundle_push() needs again */
-ALWAYS_INLINE void bundle_velocity(const struct bundle *c, const struct tangents *t,
+ALWAYS_INLINE void bundle_velocity(const struct bundle *c, const struct beside *t,
                                    const struct rebound *e, int k, const struct twist *a,
                                    const struct twist *b, vd u[3], vd t1[3], vd t2[3])
 {

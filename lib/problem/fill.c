@@ -44,7 +44,8 @@ static void set_basis(struct problem *p, int64_t i, const struct contact *c)
     struct bundle *r = slot_bundle(p, i);
     int k = slot_lane(i);
     for (int j = 0; j < 3; j++) r->n[j][k] = n[j];
-    for (int j = 0; j < 3 && p->tangent; j++) p->tangent[i / BUNDLE].t1[j][k] = t1[j];
+    struct beside *beside = bundle_beside(p, r);
+    for (int j = 0; j < 3 && beside; j++) beside->t1[j][k] = t1[j];
     r->mu[k] = c->mu;
 }
 
@@ -121,7 +122,7 @@ static void lever_init(struct problem *p, int64_t i, const struct packing *pack,
     for (int j = 0; j < 2; j++) p->w[i / BUNDLE][j][k] = lambda, r->iw[j][k] = 1 / lambda;
     p->rho[i / BUNDLE][k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / W[0] : rho_factor / lambda;
     if (!e) return;
-    problem_velocity(p, p->body, r, NULL, k, u); // u^-
+    problem_velocity(p, p->body, i / BUNDLE, NULL, k, u); // u^-
     double before[3] = { 0 }, after[3] = { 0 };
     if (contact_shifted(c))
         image_velocity(cell->before, c, before), image_velocity(cell->after, c, after);
@@ -231,6 +232,9 @@ void fill_slot(const struct filling *f, int64_t i, double slower)
         lever_go_beyond(p, i, law, tie, f->alpha, f->rho_factor, slower, f->half);
     else if (p->beyond && tie)
         slot_go_beyond(p, i, law, tie, f->alpha, f->rho_factor, slower);
+    struct beside *beside = bundle_beside(p, slot_bundle(p, i));
+    for (int j = 0, k = slot_lane(i); j < 2 && beside; j++)
+        beside->w[j][k] = p->w[i / BUNDLE][j][k];
 }
 
 void fill_bundles(void *arg, int64_t first, int64_t end)

@@ -15,18 +15,19 @@ ALWAYS_INLINE void raise_to(double *slot, vd a)
 }
 
 /* u~ of the motion that r makes: from the bodies, or W r + q */
-ALWAYS_INLINE void motion_velocity(const struct problem *p, const struct bundle *c, int k, vd u[3])
+ALWAYS_INLINE void motion_velocity(const struct problem *p, int64_t i, int k, vd u[3])
 {
+    const struct bundle *c = bundle_at(p, i);
     if (!p->W) {
-        problem_velocity(p, p->body, c, bundle_rebound(p, c), k, u);
+        problem_velocity(p, p->body, i, bundle_rebound(p, i), k, u);
         return;
     }
     struct local l = { 0 };
     vd W[9], r[3];
-    for (int i = 0; i < 9; i++) W[i] = vload(p->block[c - p->bundle][i] + k);
-    for (int i = 0; i < 3; i++) r[i] = vload(c->r[i] + k);
+    for (int j = 0; j < 9; j++) W[j] = vload(p->block[i][j] + k);
+    for (int j = 0; j < 3; j++) r[j] = vload(c->r[j] + k);
     l.W = W;
-    blocks_gather(p, c, k, l.b);
+    blocks_gather(p, i, k, l.b);
     local_velocity(&l, r, u);
 }
 
@@ -35,7 +36,7 @@ static void velocities(struct problem *p, int64_t first, int64_t end)
     for (int64_t i = first; i < end; i++)
         for (int k = 0; k < BUNDLE; k += LANES) {
             vd u[3];
-            motion_velocity(p, &p->bundle[i], k, u);
+            motion_velocity(p, i, k, u);
             for (int j = 0; j < 3; j++) vstore(p->u[i][j] + k, u[j]);
         }
 }
@@ -73,7 +74,7 @@ ALWAYS_INLINE vd natural2(vd mu, const vd r[3], vd rho, const vd u[3])
 ALWAYS_INLINE void add_natural(struct sums *s, const struct problem *p, int64_t bundle, int k,
                                const vd u[3])
 {
-    const struct bundle *c = &p->bundle[bundle];
+    const struct bundle *c = bundle_at(p, bundle);
     vd lambda = bundle_lambda(p, bundle, k), mu = vload(c->mu + k), r[3];
     vd rho = pick(lt(splat(0), lambda), 1.0 / lambda, splat(1));
     for (int i = 0; i < 3; i++) r[i] = vload(c->r[i] + k);
@@ -112,8 +113,7 @@ ALWAYS_INLINE void add_bonds(struct sums *s, const struct problem *p, int64_t bu
 static void judge_rolling(struct sums *s, const struct problem *p, int64_t i, int k,
                           const double u[3])
 {
-    const struct bundle *c = &p->bundle[i];
-    const struct rebound *e = bundle_rebound(p, c);
+    const struct rebound *e = bundle_rebound(p, i);
     const double scale[2] = { e ? e->s[0][k] : 1, e ? e->s[1][k] : 1 };
     double v[ROLLING], on[ROLLING], far = 0, r2 = 0;
     struct rolling q;
@@ -136,8 +136,8 @@ static void judge_moments(const struct problem *p, int64_t i, bool believes, enu
     for (int k = 0; k < BUNDLE; k += LANES) {
         vd u[3];
         double lane[3][LANES];
-        motion_velocity(p, &p->bundle[i], k, u);
-        add_terms(&one, &p->bundle[i], p->u[i], k, believes, u);
+        motion_velocity(p, i, k, u);
+        add_terms(&one, bundle_at(p, i), p->u[i], k, believes, u);
         add_natural(&one, p, i, k, u);
         for (int j = 0; j < 3; j++) vstore(lane[j], u[j]);
         for (int j = 0; j < LANES; j++) {
@@ -171,8 +171,8 @@ static void judge(const struct problem *p, int64_t first, int64_t end, bool beli
         }
         for (int k = 0; k < BUNDLE; k += LANES) {
             vd u[3];
-            motion_velocity(p, &p->bundle[i], k, u);
-            if (which & ERR_TERMS) add_terms(s, &p->bundle[i], p->u[i], k, believes, u);
+            motion_velocity(p, i, k, u);
+            if (which & ERR_TERMS) add_terms(s, bundle_at(p, i), p->u[i], k, believes, u);
             if (which & ERR_NATURAL) add_natural(s, p, i, k, u);
             if (p->beyond) add_bonds(s, p, i, k, which, u);
         }

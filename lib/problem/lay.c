@@ -32,26 +32,34 @@ void *lay_lines(int64_t n, size_t size)
     return p;
 }
 
-bool lay_bundles(struct problem *p, const struct plan *l)
+bool lay_plan(struct problem *p, const struct plan *l)
 {
     p->groups = l->schedule.groups, p->group = l->group;
     p->bundles = l->bundles, p->slots = l->slots, p->contact = l->contact;
     p->seat = l->seat;
-    p->bundle = lay_lines(p->bundles, sizeof *p->bundle);
-    p->w = lay_lines(p->bundles, sizeof *p->w);
-    p->rho = lay_lines(p->bundles, sizeof *p->rho);
-    p->u = lay_lines(p->bundles, sizeof *p->u);
-    if (!p->bundle || !p->w || !p->rho || !p->u) return false;
     if (l->schedule.rest && !(p->split = lay_lines(1, sizeof *p->split))) return false;
     if (p->split)
         *p->split = (struct two_thread_split){
             l->schedule.beyond, l->schedule.inside, l->schedule.rim, l->schedule.rest, 0, 0
         };
+    return true;
+}
+
+bool lay_bundles(struct problem *p)
+{
+    p->bundle = lay_lines(p->bundles, p->near ? sizeof(struct near_bundle) : sizeof *p->bundle);
+    p->w = lay_lines(p->bundles, sizeof *p->w);
+    p->rho = lay_lines(p->bundles, sizeof *p->rho);
+    p->u = lay_lines(p->bundles, sizeof *p->u);
+    if (!p->bundle || !p->w || !p->rho || !p->u) return false;
     for (int64_t g = 0; g < p->groups; g++)
         for (int64_t i = p->group[g + 1] * BUNDLE - 1;
              i >= p->group[g] * BUNDLE && p->contact[i] < 0; i--)
-            for (int k = 0; k < 2; k++)
-                p->w[i / BUNDLE][k][slot_lane(i)] = slot_bundle(p, i)->iw[k][slot_lane(i)] = 1;
+            for (int j = 0, k = slot_lane(i); j < 2; j++) {
+                struct bundle *c = slot_bundle(p, i);
+                p->w[i / BUNDLE][j][k] = c->iw[j][k] = 1;
+                if (p->near) bundle_beside(p, c)->w[j][k] = 1;
+            }
     return true;
 }
 

@@ -15,8 +15,9 @@ struct problem;
  */
 void *lay_lines(int64_t n, size_t size);
 
-/* Bundles that the plan has, which p then borrows. False when memory is short. */
-bool lay_bundles(struct problem *p, const struct plan *l);
+/* What p borrows of the plan; then the bundles, once it is known what they need. False when memory is short. */
+bool lay_plan(struct problem *p, const struct plan *l);
+bool lay_bundles(struct problem *p);
 
 /* Tells the slots their bodies, and makes the copies of those that do not move. p->seat and the packing's in
    p->body are set. */

@@ -19,7 +19,7 @@ struct levers {
 };
 
 /* As bundle_velocity() */
-ALWAYS_INLINE void levers_velocity(const struct bundle *c, const struct tangents *t,
+ALWAYS_INLINE void levers_velocity(const struct bundle *c, const struct beside *t,
                                    const struct levers *g, const struct rebound *e, int k,
                                    const struct twist *a, const struct twist *b, vd u[3], vd t1[3],
                                    vd t2[3])

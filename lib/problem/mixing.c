@@ -11,7 +11,7 @@ enum { WITH_BESIDE = 3 + BESIDE_R };
 
 ALWAYS_INLINE double *component(const struct problem *p, int64_t i, int l)
 {
-    if (l < 3) return p->bundle[i].r[l];
+    if (l < 3) return bundle_at(p, i)->r[l];
     return l < 6 ? p->beyond[i].z[l - 3] : p->beyond[i].m[l - 6];
 }
 
@@ -93,7 +93,7 @@ ALWAYS_INLINE void react_beside(struct problem *p, int64_t i, int k, const vd x[
     }
     for (int j = 0; j < LANES; j++) {
         if (!beyond_rolls(y, k + j)) continue;
-        double rn = p->bundle[i].r[0][k + j], most = y->mu_r[k + j] * rn;
+        double rn = bundle_at(p, i)->r[0][k + j], most = y->mu_r[k + j] * rn;
         double t2 = m[1][j] * m[1][j] + m[2][j] * m[2][j], pivot = y->mu_p[k + j] * rn;
         double s = t2 > most * most ? most / sqrt(t2) : 1;
         m[0][j] = m[0][j] > pivot ? pivot : m[0][j] < -pivot ? -pivot : m[0][j];
@@ -111,7 +111,7 @@ ALWAYS_INLINE void react_text(int d, int depth, struct problem *p, const struct 
     for (int64_t i = first; i < end; i++) {
         fetch_ahead(p, i);
         for (int k = 0; k < BUNDLE; k += LANES) {
-            struct bundle *c = &p->bundle[i];
+            struct bundle *c = bundle_at(p, i);
             vd x[WITH_BESIDE] = { splat(0), splat(0), splat(0) }, r[3], dr[3];
             double dm[LANES][3];
             for (int l = 0; l < d; l++) {
@@ -142,7 +142,7 @@ ALWAYS_INLINE void react_text(int d, int depth, struct problem *p, const struct 
             if (p->W)
                 blocks_scatter(p, c, k);
             else
-                problem_push(p, p->body, c, k, dr);
+                problem_push(p, p->body, i, k, dr);
             for (int l = 0; l < LANES && d == WITH_BESIDE; l++) {
                 const struct beyond_lane at = slot_beyond(p, i * BUNDLE + k + l);
                 if (beyond_rolls(at.x, at.i)) beyond_push(&at, dm[l]);

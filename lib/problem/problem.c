@@ -23,7 +23,8 @@ enum {
 };
 
 static_assert(sizeof(struct body) == 64, "a body is a cache line");
-static_assert(sizeof(struct bundle) % 64 == 0, "lanes begin a cache line");
+static_assert(sizeof(struct bundle) % 64 == 0 && sizeof(struct near_bundle) % 64 == 0,
+              "lanes begin a cache line");
 static_assert(sizeof(struct levers) % 64 == 0, "lanes begin a cache line");
 
 static int no_memory(struct problem *p, struct why *why)
@@ -37,7 +38,7 @@ void problem_free(struct problem *p)
     free(p->bundle), free(p->rebound), free(p->u), free(p->body);
     free(p->split), free(p->pull), free(p->beyond), free(p->in_W);
     free(p->lever), free(p->spin), free(p->turn);
-    free(p->w), free(p->rho), free(p->block), free(p->tangent);
+    free(p->w), free(p->rho), free(p->block);
     plan_free(p->plan);
     delassus_free(&p->sorted);
     brake_free(p->brake);
@@ -103,7 +104,7 @@ void problem_set_free_motion(struct problem *p)
     if (p->shared) p->shared->begin(p->shared, p);
     for (int64_t i = 0; p->pull && i < p->slots; i++) {
         const double pulled[3] = { -p->pull[i], 0, 0 };
-        if (p->pull[i] > 0) problem_push(p, p->body, slot_bundle(p, i), slot_lane(i), pulled);
+        if (p->pull[i] > 0) problem_push(p, p->body, i / BUNDLE, slot_lane(i), pulled);
     }
     if (p->shared && p->pull) p->shared->settle(p->shared, p);
 }
@@ -152,7 +153,7 @@ static void take_found(struct problem *p, int64_t i, const struct contacts *s)
     int k = slot_lane(i);
     double r[3] = { c->r[0], c->r[1], c->r[2] };
     if (p->pull) r[0] += p->pull[i];
-    problem_push(p, p->body, slot_bundle(p, i), k, r);
+    problem_push(p, p->body, i / BUNDLE, k, r);
     for (int j = 0; x && j < 3; j++) {
         x->z[j][k] = -x->K[j > 0][k] * c->u[j];
         r[j] -= x->z[j][k] - x->a[j][k];
@@ -181,7 +182,7 @@ static void measure_some(void *arg, int64_t first, int64_t end)
     for (int64_t i = BUNDLE * first; i < BUNDLE * end; i++) {
         double q[3] = { 0 };
         if (p->contact[i] >= 0)
-            problem_velocity(p, p->body, slot_bundle(p, i), slot_rebound(p, i), slot_lane(i), q);
+            problem_velocity(p, p->body, i / BUNDLE, slot_rebound(p, i), slot_lane(i), q);
         m->q2[i] = q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
     }
 }
@@ -270,7 +271,7 @@ static int prepare(struct problem *p, const struct packing *pack, const struct c
     if (shared) p->n = shared->contacts;
     if (p->bodies > BODIES_MAX) return why_set(why, EX_DATAERR, "more than %d bodies", BODIES_MAX);
     p->body = lay_lines(p->bodies, sizeof *p->body);
-    bool room = p->body && lay_bundles(p, plan);
+    bool room = p->body && lay_plan(p, plan);
     quat *half = NULL;
     if (anywhere(p, found.shaped) && room) {
         p->full = true;
@@ -280,10 +281,9 @@ static int prepare(struct problem *p, const struct packing *pack, const struct c
     }
     if (anywhere(p, found.rebounds) && room)
         room = (p->rebound = lay_lines(p->bundles, sizeof *p->rebound)) != NULL;
-    if (found.turned && room)
-        room = (p->tangent = lay_lines(p->bundles, sizeof *p->tangent)) != NULL;
     room = room && set_pulls(p, s) && lay_out_beyond(p, s);
-    p->w_of_bodies = found.far && !p->lever && !p->beyond && !(shared && shared->slower);
+    p->near = found.turned || p->lever || p->beyond || (shared && shared->slower);
+    room = room && lay_bundles(p);
     if (!room) return free(half), no_memory(p, why);
     team_share(team_size(), pack->n, SOME, set_some, p);
     lay_seats(p, plan, s);
@@ -384,8 +384,8 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
 {
     *p = (struct problem){ .d = W->d, .n = W->n, .W = W, .dt = 1, .scale_v = 1, .scale_r = 1 };
     p->plan = plan_of_blocks(order, W);
-    bool room =
-        p->plan && lay_bundles(p, p->plan) && (p->block = lay_lines(p->bundles, sizeof *p->block));
+    bool room = p->plan && lay_plan(p, p->plan) && lay_bundles(p) &&
+                (p->block = lay_lines(p->bundles, sizeof *p->block));
     if (!room || delassus_sort(&p->sorted, W, p->slots, p->contact, why)) return no_memory(p, why);
     for (int64_t c = 0; c < W->n; c++) p->full = p->full || !like_balls(W->diag + 9 * c);
     double trace = 0;
@@ -429,9 +429,9 @@ struct beyond_levers *slot_turn(const struct problem *p, int64_t i)
 struct beyond_lane slot_beyond(const struct problem *p, int64_t i)
 {
     const struct bundle *c = slot_bundle(p, i);
-    return (struct beyond_lane){ slot_lane(i),          c,
-                                 bundle_tangents(p, c), &p->beyond[i / BUNDLE],
-                                 slot_turn(p, i),       p->body };
+    return (struct beyond_lane){ slot_lane(i),        c,
+                                 bundle_beside(p, c), &p->beyond[i / BUNDLE],
+                                 slot_turn(p, i),     p->body };
 }
 
 void slot_get(const struct problem *p, int64_t i, double r[3], double u[3])

@@ -40,13 +40,12 @@ struct problem {
     int d;
     int64_t n;                  /* contacts, of all processes */
     int64_t bundles, slots;     /* slots: 8 a bundle, some without a contact */
-    struct bundle *bundle;      /* [bundles] in the order of the sweep */
+    struct bundle *bundle;      /* [bundles] in the order of the sweep: see bundle_at() */
+    bool near;                  /* they have their struct beside behind them */
     double (*w)[2][BUNDLE];     /* [bundles] kg^-1: W~_cc, normal and tangential; of a full W_cc,
                                lambda_max twice */
-    bool w_of_bodies;           /* sweeps make w of the masses and arms rather than load it */
     double (*rho)[BUNDLE];      /* [bundles] kg: the step of the projections */
     double (*block)[9][BUNDLE]; /* [bundles] kg^-1: W_cc, full; NULL: between balls */
-    struct tangents *tangent;   /* [bundles]; NULL: t1 as contact_basis() makes it of n, in space */
     struct rebound *rebound;    /* [bundles]; NULL: e_n = e_t = 0 everywhere, and no offset */
     struct levers *lever;       /* [bundles]; NULL: balls, or given by W */
     struct beyond_levers *turn; /* [bundles] the same between bodies with levers; else NULL */
@@ -122,10 +121,21 @@ int problem_team(const struct problem *p, int threads);
 /* Stores r, u and the status of each contact of a packing in s->found; -1 when memory is short. */
 int problem_store(const struct problem *p, struct contacts *s);
 
+/* Bundle i, and what is behind it (NULL: nothing). It is so of all but balls without anything beyond that are
+   too many for a near cache, and of problems given by W. */
+ALWAYS_INLINE struct bundle *bundle_at(const struct problem *p, int64_t i)
+{
+    return p->near ? &((struct near_bundle *)p->bundle)[i].bundle : &p->bundle[i];
+}
+ALWAYS_INLINE struct beside *bundle_beside(const struct problem *p, const struct bundle *c)
+{
+    return p->near ? &((struct near_bundle *)c)->beside : NULL;
+}
+
 /* The bundle and the lane of slot i, its impact law (NULL: none), its r (N s) and u (m/s) */
 static inline struct bundle *slot_bundle(const struct problem *p, int64_t i)
 {
-    return &p->bundle[i / BUNDLE];
+    return bundle_at(p, i / BUNDLE);
 }
 static inline int slot_lane(int64_t i)
 {
@@ -164,15 +174,10 @@ static inline double slot_lambda(const struct problem *p, int64_t i)
     return w[0][k] > w[1][k] ? w[0][k] : w[1][k];
 }
 
-/* What a bundle of the problem has beside it: its impact law, its t1 (NULL: none) */
-ALWAYS_INLINE const struct rebound *bundle_rebound(const struct problem *p, const struct bundle *c)
+/* The impact law of bundle i; NULL: none */
+ALWAYS_INLINE const struct rebound *bundle_rebound(const struct problem *p, int64_t i)
 {
-    return p->rebound ? p->rebound + (c - p->bundle) : NULL;
-}
-ALWAYS_INLINE const struct tangents *bundle_tangents(const struct problem *p,
-                                                     const struct bundle *c)
-{
-    return p->tangent ? p->tangent + (c - p->bundle) : NULL;
+    return p->rebound ? &p->rebound[i] : NULL;
 }
 
 /* u~ of lanes k.. of c from the velocities of body[], or u where e is NULL; between balls */
@@ -183,7 +188,7 @@ ALWAYS_INLINE void body_velocity(const struct problem *p, struct body *body, con
     struct twist ma, mb;
     vd t1[3], t2[3];
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
-    bundle_velocity(c, bundle_tangents(p, c), e, k, &ma, &mb, u, t1, t2);
+    bundle_velocity(c, bundle_beside(p, c), e, k, &ma, &mb, u, t1, t2);
 }
 
 /* Adds to the velocities of body[] what a change dr of the reactions makes of them. */
@@ -194,38 +199,40 @@ ALWAYS_INLINE void body_push(const struct problem *p, struct body *body, const s
     struct twist ma, mb;
     vd n[3], t1[3], t2[3];
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
-    bundle_basis(c, bundle_tangents(p, c), k, n, t1, t2);
+    bundle_basis(c, bundle_beside(p, c), k, n, t1, t2);
     bundle_push(c, k, t1, t2, dr, body, &a, &b);
 }
 
-/* Both, whether the problem has levers or not */
-ALWAYS_INLINE void problem_velocity(const struct problem *p, struct body *body,
-                                    const struct bundle *c, const struct rebound *e, int k, vd u[3])
+/* Both for bundle i, whether the problem has levers or not */
+ALWAYS_INLINE void problem_velocity(const struct problem *p, struct body *body, int64_t i,
+                                    const struct rebound *e, int k, vd u[3])
 {
     struct bodies a, b;
     struct twist ma, mb;
     vd t1[3], t2[3];
+    const struct bundle *c = bundle_at(p, i);
     if (!p->lever) {
         body_velocity(p, body, c, e, k, u);
         return;
     }
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
-    levers_velocity(c, bundle_tangents(p, c), &p->lever[c - p->bundle], e, k, &ma, &mb, u, t1, t2);
+    levers_velocity(c, bundle_beside(p, c), &p->lever[i], e, k, &ma, &mb, u, t1, t2);
 }
 
-ALWAYS_INLINE void problem_push(const struct problem *p, struct body *body, const struct bundle *c,
-                                int k, const vd dr[3])
+ALWAYS_INLINE void problem_push(const struct problem *p, struct body *body, int64_t i, int k,
+                                const vd dr[3])
 {
     struct bodies a, b;
     struct twist ma, mb;
     vd n[3], t1[3], t2[3];
+    const struct bundle *c = bundle_at(p, i);
     if (!p->lever) {
         body_push(p, body, c, k, dr);
         return;
     }
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
-    bundle_basis(c, bundle_tangents(p, c), k, n, t1, t2);
-    levers_push(c, &p->lever[c - p->bundle], k, t1, t2, dr, body, &a, &b);
+    bundle_basis(c, bundle_beside(p, c), k, n, t1, t2);
+    levers_push(c, &p->lever[i], k, t1, t2, dr, body, &a, &b);
 }
 
 #endif

@@ -26,17 +26,24 @@ struct counts {
     vd change, newton, safeguarded, gave_up;
 };
 
+/* What contacts have beside their bundles */
+enum beyond_what { NOTHING, BONDS, MOMENTS };
+
 /* Of which kind the problem is: a constant where the sweep is to have a text of its own for it */
 struct kind {
     enum method_id method;
     method_text *solve;
     bool given_by_W, full; /* full, but not given by W: with levers */
-    enum beyond_what {
-        NOTHING,
-        BONDS,
-        MOMENTS
-    } beyond; /* what contacts have beside their bundles */
+    bool far;              /* t1 and w are computed, not loaded: of balls without anything beyond */
+    enum beyond_what beyond;
 };
+
+/* bundle_at(), with the kind a constant */
+ALWAYS_INLINE struct bundle *bundle_of(const struct problem *p, int64_t i, const struct kind kind)
+{
+    if (kind.far || kind.given_by_W) return &p->bundle[i];
+    return &((struct near_bundle *)p->bundle)[i].bundle;
+}
 
 /* What is loaded of LANES slots before they are solved */
 struct loaded {
@@ -45,28 +52,31 @@ struct loaded {
     vd v[3];         /* m/s: u~ with the present r; given by W: b_c */
 };
 
-ALWAYS_INLINE void load_slots(const struct problem *p, const struct bundle *c, int k,
+ALWAYS_INLINE void load_slots(const struct problem *p, int64_t bundle, int k,
                               const struct kind kind, struct loaded *s)
 {
+    const struct bundle *c = bundle_of(p, bundle, kind);
     if (kind.given_by_W) {
-        blocks_gather(p, c, k, s->v);
+        blocks_gather(p, bundle, k, s->v);
         return;
     }
     struct twist a, b;
-    const struct tangents *t = bundle_tangents(p, c);
-    const struct rebound *e = bundle_rebound(p, c);
+    vd t1[3];
+    const struct beside *t = kind.far ? NULL : &((const struct near_bundle *)c)->beside;
+    const struct rebound *e = p->rebound ? &p->rebound[bundle] : NULL;
     bodies_load(&s->a, p->body, c->a + k, &a), bodies_load(&s->b, p->body, c->b + k, &b);
     if (kind.full)
-        levers_velocity(c, t, &p->lever[c - p->bundle], e, k, &a, &b, s->v, s->t1, s->t2);
+        levers_velocity(c, t, &p->lever[bundle], e, k, &a, &b, s->v, t1, s->t2);
     else
-        bundle_velocity(c, t, e, k, &a, &b, s->v, s->t1, s->t2);
+        bundle_velocity(c, t, e, k, &a, &b, s->v, t1, s->t2);
+    for (int i = 0; i < 3 && kind.far; i++) s->t1[i] = t1[i]; // what can be loaded is not kept
 }
 
 /* w of lanes k.. between balls, of nothing that is loaded for it: to the bit what stands in p->w */
-ALWAYS_INLINE void weigh(const struct problem *p, const struct bundle *c, int k,
+ALWAYS_INLINE void weigh(const struct problem *p, int64_t bundle, const struct bundle *c, int k,
                          const struct loaded *s, vd w[3])
 {
-    const struct rebound *e = bundle_rebound(p, c);
+    const struct rebound *e = p->rebound ? &p->rebound[bundle] : NULL;
     vd la = vload(c->la + k), lb = vload(c->lb + k), im = s->a.im + s->b.im;
     vd it = im + la * la * s->a.ii + lb * lb * s->b.ii;
     w[0] = e ? vload(e->s[0] + k) * im : im;
@@ -74,20 +84,25 @@ ALWAYS_INLINE void weigh(const struct problem *p, const struct bundle *c, int k,
 }
 
 /* The local problems of LANES slots; l->W points to W[9]. exact has no use for rho. */
-ALWAYS_INLINE void make_local(const struct problem *p, const struct bundle *c, int k,
+ALWAYS_INLINE void make_local(const struct problem *p, int64_t bundle, int k,
                               const struct kind kind, const struct loaded *s, vd W[9],
                               struct local *l)
 {
-    int64_t bundle = c - p->bundle;
+    const struct bundle *c = bundle_of(p, bundle, kind);
     l->d = p->d, l->W = kind.full ? W : NULL;
     l->mu = vload(c->mu + k);
     l->rho = kind.method == METHOD_exact ? splat(1) : vload(p->rho[bundle] + k);
     for (int i = 0; i < 9 && kind.full; i++) W[i] = vload(p->block[bundle][i] + k);
     for (int i = 0; i < 3; i++) l->r[i] = vload(c->r[i] + k), l->v[i] = s->v[i];
-    if (!kind.given_by_W && !kind.full && p->w_of_bodies)
-        weigh(p, c, k, s, l->w);
+    if (kind.far)
+        weigh(p, bundle, c, k, s, l->w);
     else
-        for (int i = 0; i < 3; i++) l->w[i] = kind.full ? W[4 * i] : vload(p->w[bundle][i > 0] + k);
+        for (int i = 0; i < 3; i++)
+            l->w[i] = kind.full
+                          ? W[4 * i]
+                          : vload((kind.given_by_W ? p->w[bundle]
+                                                   : ((struct near_bundle *)c)->beside.w)[i > 0] +
+                                  k);
     for (int i = 0; i < 3; i++) {
         l->iw[i] = kind.full ? splat(0) : vload(c->iw[i > 0] + k);
         l->b[i] = kind.given_by_W || kind.full ? s->v[i] : l->v[i] - l->w[i] * l->r[i];
@@ -136,12 +151,13 @@ ALWAYS_INLINE void bond_follow(struct beyond *x, int k, const struct local *l, v
 }
 
 /* The lanes with rolling friction, anew; before: their u~ of the last sweep; dm: the changes of their moments */
-ALWAYS_INLINE void roll_lanes(struct problem *p, const struct bundle *c, int k,
-                              enum method_id method, const struct sweep_opt *o, const vd before[3],
-                              struct local *l, double dm[LANES][3])
+ALWAYS_INLINE void roll_lanes(struct problem *p, int64_t bundle, int k, enum method_id method,
+                              const struct sweep_opt *o, const vd before[3], struct local *l,
+                              double dm[LANES][3])
 {
-    const struct rebound *e = bundle_rebound(p, c);
-    int64_t slot = (c - p->bundle) * BUNDLE + k;
+    const struct rebound *e = bundle_rebound(p, bundle);
+    const struct bundle *c = bundle_at(p, bundle);
+    int64_t slot = bundle * BUNDLE + k;
     double b[3][LANES], r[3][LANES], w[3][LANES], u[3][LANES];
     double steps[LANES], safe[LANES], gave[LANES];
     for (int j = 0; j < 3; j++) vstore(b[j], l->b[j]), vstore(r[j], l->r[j]), vstore(w[j], l->w[j]);
@@ -205,15 +221,21 @@ ALWAYS_INLINE void store_solution(struct bundle *c, int k, double (*belief)[BUND
 }
 
 /* Passes the change on to the bodies, or r to W->r. */
-ALWAYS_INLINE void pass_on(struct problem *p, const struct bundle *c, int k, const struct kind kind,
+ALWAYS_INLINE void pass_on(struct problem *p, int64_t bundle, int k, const struct kind kind,
                            const struct loaded *s, const vd dr[3])
 {
+    const struct bundle *c = bundle_of(p, bundle, kind);
+    vd t1[3];
+    for (int i = 0; i < 3 && !kind.given_by_W; i++)
+        t1[i] = kind.far
+                    ? s->t1[i]
+                    : vload(((struct near_bundle *)c)->beside.t1[i] + k); // not kept in between
     if (kind.given_by_W)
         blocks_scatter(p, c, k);
     else if (kind.full)
-        levers_push(c, &p->lever[c - p->bundle], k, s->t1, s->t2, dr, p->body, &s->a, &s->b);
+        levers_push(c, &p->lever[bundle], k, t1, s->t2, dr, p->body, &s->a, &s->b);
     else
-        bundle_push(c, k, s->t1, s->t2, dr, p->body, &s->a, &s->b);
+        bundle_push(c, k, t1, s->t2, dr, p->body, &s->a, &s->b);
 }
 
 /*
@@ -226,9 +248,9 @@ ALWAYS_INLINE void solve_bundles(struct problem *p, int64_t first, int64_t end,
 {
     if (first == end) return;
     struct loaded s[2], *now = &s[0], *next = &s[1];
-    load_slots(p, &p->bundle[first], 0, kind, now);
+    load_slots(p, first, 0, kind, now);
     for (int64_t i = first; i < end; i++) {
-        struct bundle *c = &p->bundle[i];
+        struct bundle *c = bundle_of(p, i, kind);
         double(*belief)[BUNDLE] = o->keep ? p->u[i] : NULL;
         fetch_ahead(p, i);
         for (int k = 0; k < BUNDLE; k += LANES) {
@@ -236,17 +258,17 @@ ALWAYS_INLINE void solve_bundles(struct problem *p, int64_t first, int64_t end,
             struct beyond *x = kind.beyond ? &p->beyond[i] : NULL;
             vd W[9], dr[3];
             double dm[LANES][3];
-            make_local(p, c, k, kind, now, W, &l);
+            make_local(p, i, k, kind, now, W, &l);
             if (kind.beyond) bond_local(x, kind.full ? &p->turn[i] : NULL, k, &l);
             solve_relaxed(&l, c, k, kind, o);
-            if (kind.beyond == MOMENTS) roll_lanes(p, c, k, kind.method, o, now->v, &l, dm);
+            if (kind.beyond == MOMENTS) roll_lanes(p, i, k, kind.method, o, now->v, &l, dm);
             store_solution(c, k, belief, &l, dr, t);
             if (kind.beyond) bond_follow(x, k, &l, dr);
             if (k + LANES < BUNDLE)
-                load_slots(p, c, k + LANES, kind, next);
+                load_slots(p, i, k + LANES, kind, next);
             else if (i + 1 < end)
-                load_slots(p, c + 1, 0, kind, next);
-            pass_on(p, c, k, kind, now, dr);
+                load_slots(p, i + 1, 0, kind, next);
+            pass_on(p, i, k, kind, now, dr);
             for (int j = 0; j < LANES && kind.beyond == MOMENTS; j++) {
                 const struct beyond_lane at = slot_beyond(p, i * BUNDLE + k + j);
                 if (beyond_rolls(at.x, at.i)) beyond_push(&at, dm[j]);
@@ -294,13 +316,28 @@ typedef void kind_text(struct problem *p, int me, int threads, const struct swee
     static void name(struct problem *p, int me, int threads, const struct sweep_opt *o,            \
                      enum method_id method, method_text *solve, struct tally *t)                   \
     {                                                                                              \
-        sweep(p, me, threads, o, (struct kind){ method, solve, given_by_W, full, beyond }, t);     \
+        sweep(p, me, threads, o, (struct kind){ method, solve, given_by_W, full, false, beyond },  \
+              t);                                                                                  \
     }
 DEFINE_KIND(sweep_moments, false, false, MOMENTS)
 DEFINE_KIND(sweep_levers_moments, false, true, MOMENTS)
 DEFINE_KIND(sweep_diagonals, true, false, NOTHING)
 
+/* A text of its own for a method and a kind of problem */
+#define DEFINE_TEXT(name, what, given_by_W, full, far, beyond)                                     \
+    static __attribute__((noinline)) void what##_by_##name(                                        \
+        struct problem *p, int me, int threads, const struct sweep_opt *o, struct tally *t)        \
+    {                                                                                              \
+        const struct kind kind = { METHOD_##name, name##_solve, given_by_W, full, far, beyond };   \
+        sweep(p, me, threads, o, kind, t);                                                         \
+    }
+
 #define DEFINE_SWEEP(name)                                                                         \
+    DEFINE_TEXT(name, balls, false, false, false, NOTHING)                                         \
+    DEFINE_TEXT(name, far_balls, false, false, true, NOTHING)                                      \
+    DEFINE_TEXT(name, bonds, false, false, false, BONDS)                                           \
+    DEFINE_TEXT(name, levers, false, true, false, NOTHING)                                         \
+    DEFINE_TEXT(name, blocks, true, true, false, NOTHING)                                          \
     static void name##_full(struct local *l, const struct local_opt *o)                            \
     {                                                                                              \
         if (l->W) name##_solve(l, o);                                                              \
@@ -312,25 +349,22 @@ DEFINE_KIND(sweep_diagonals, true, false, NOTHING)
     static void sweep_##name(struct problem *p, int me, int threads, const struct sweep_opt *o,    \
                              struct tally *t)                                                      \
     {                                                                                              \
-        const enum method_id id = METHOD_##name;                                                   \
-        const struct kind balls = { id, name##_solve, false, false, NOTHING };                     \
-        const struct kind bonds = { id, name##_solve, false, false, BONDS };                       \
-        const struct kind levers = { id, name##_solve, false, true, NOTHING };                     \
-        const struct kind blocks = { id, name##_solve, true, true, NOTHING };                      \
         if (p->turn)                                                                               \
-            sweep_levers_moments(p, me, threads, o, id, name##_full, t);                           \
+            sweep_levers_moments(p, me, threads, o, METHOD_##name, name##_full, t);                \
         else if (p->rolls)                                                                         \
-            sweep_moments(p, me, threads, o, id, name##_diagonal, t);                              \
+            sweep_moments(p, me, threads, o, METHOD_##name, name##_diagonal, t);                   \
         else if (p->W && !p->full)                                                                 \
-            sweep_diagonals(p, me, threads, o, id, name##_diagonal, t);                            \
+            sweep_diagonals(p, me, threads, o, METHOD_##name, name##_diagonal, t);                 \
         else if (p->lever)                                                                         \
-            sweep(p, me, threads, o, levers, t);                                                   \
+            levers_by_##name(p, me, threads, o, t);                                                \
         else if (p->W)                                                                             \
-            sweep(p, me, threads, o, blocks, t);                                                   \
+            blocks_by_##name(p, me, threads, o, t);                                                \
         else if (p->beyond)                                                                        \
-            sweep(p, me, threads, o, bonds, t);                                                    \
+            bonds_by_##name(p, me, threads, o, t);                                                 \
+        else if (p->near)                                                                          \
+            balls_by_##name(p, me, threads, o, t);                                                 \
         else                                                                                       \
-            sweep(p, me, threads, o, balls, t);                                                    \
+            far_balls_by_##name(p, me, threads, o, t);                                             \
     }
 EACH_METHOD(DEFINE_SWEEP)
 
@@ -342,11 +376,11 @@ ALWAYS_INLINE void push_group(struct problem *p, int64_t first, int64_t end, voi
     for (int64_t i = first; i < end; i++) {
         fetch_ahead(p, i);
         for (int k = 0; k < BUNDLE; k += LANES) {
-            const struct bundle *c = &p->bundle[i];
+            const struct bundle *c = bundle_at(p, i);
             vd r[3] = { vload(c->r[0] + k), vload(c->r[1] + k), vload(c->r[2] + k) };
             for (int j = 0; j < 3 && p->beyond; j++)
                 r[j] += vload(p->beyond[i].z[j] + k) - vload(p->beyond[i].a[j] + k);
-            problem_push(p, p->body, c, k, r);
+            problem_push(p, p->body, i, k, r);
         }
         for (int k = 0; k < BUNDLE && p->rolls; k++) {
             const struct beyond_lane at = slot_beyond(p, i * BUNDLE + k);

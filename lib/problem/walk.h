@@ -46,20 +46,20 @@ ALWAYS_INLINE void fetch_ahead(const struct problem *p, int64_t i)
 {
     if (p->bundles < FAR_BUNDLES || i + BUNDLES_AHEAD >= p->bundles) return;
     int64_t ahead = i + BUNDLES_AHEAD;
-    fetch_lines(&p->bundle[ahead], sizeof *p->bundle);
+    fetch_lines(bundle_at(p, ahead), p->near ? sizeof(struct near_bundle) : sizeof *p->bundle);
     if (p->full) fetch_lines(&p->block[ahead], sizeof *p->block);
     if (!p->body) return;
-    if (p->tangent) fetch_lines(&p->tangent[ahead], sizeof *p->tangent);
     if (p->lever) fetch_lines(&p->lever[ahead], sizeof *p->lever);
-    fetch_bodies_to_second_level(p, &p->bundle[i + BODIES_AHEAD]);
-    fetch_bodies(p, &p->bundle[i + BODIES_NEXT]);
+    fetch_bodies_to_second_level(p, bundle_at(p, i + BODIES_AHEAD));
+    fetch_bodies(p, bundle_at(p, i + BODIES_NEXT));
 }
 
 /* b_c of lanes k.. of a problem given by W, from the present r of all others */
-ALWAYS_INLINE void blocks_gather(const struct problem *p, const struct bundle *c, int k, vd b[3])
+ALWAYS_INLINE void blocks_gather(const struct problem *p, int64_t bundle, int k, vd b[3])
 {
+    const struct bundle *c = bundle_at(p, bundle);
     double sum[3][LANES] = { 0 }, one[4];
-    int64_t slot = (c - p->bundle) * BUNDLE + k;
+    int64_t slot = bundle * BUNDLE + k;
     for (int i = 0; i < LANES && c->a[k + i] >= 0; i++) {
         delassus_gather(&p->sorted, slot + i, p->sorted.q, p->W->r, one);
         for (int j = 0; j < p->d; j++) sum[j][i] = one[j];
@@ -108,7 +108,7 @@ ALWAYS_INLINE void begin_leg(const struct problem *p, const struct leg *leg, int
     if (!leg->done) return;
     team_await(leg->after, atomic_load_explicit(leg->done, memory_order_relaxed) + me);
     for (int64_t i = p->group[leg->first]; i < p->group[leg->end]; i++)
-        fetch_bodies(p, &p->bundle[i]);
+        fetch_bodies(p, bundle_at(p, i));
 }
 
 /* Only this thread writes the count; an atomic addition would wait for all stores before it. */

@@ -100,7 +100,7 @@ static void remember_start(struct anderson *a)
     const struct problem *p = a->s->p;
     double *x = a->m.df[a->m.next];
     for (int64_t i = 0; i < p->bundles; i++, x += mixing_width(p) * BUNDLE) {
-        memcpy(x, p->bundle[i].r, (size_t)(p->beyond ? 3 : p->d) * BUNDLE * sizeof *x);
+        memcpy(x, bundle_at(p, i)->r, (size_t)(p->beyond ? 3 : p->d) * BUNDLE * sizeof *x);
         if (!p->beyond) continue;
         memcpy(x + 3 * BUNDLE, p->beyond[i].z, sizeof p->beyond[i].z);
         memcpy(x + 6 * BUNDLE, p->beyond[i].m, sizeof p->beyond[i].m);
