@@ -11,21 +11,21 @@ enum {
 };
 
 /* Makes bundles of the schedule's groups; each group begins a new one. False when memory is short. */
-static bool bundle_groups(struct plan *l, const struct schedule *sweep)
+static bool bundle_groups(struct plan *l, const struct schedule *by)
 {
-    l->group = malloc((size_t)(sweep->groups + 1) * sizeof *l->group);
+    l->group = malloc((size_t)(by->groups + 1) * sizeof *l->group);
     if (!l->group) return false;
-    for (int64_t g = 0; g < sweep->groups; g++) {
+    for (int64_t g = 0; g < by->groups; g++) {
         l->group[g] = l->bundles;
-        l->bundles += (sweep->group[g + 1] - sweep->group[g] + BUNDLE - 1) / BUNDLE;
+        l->bundles += (by->group[g + 1] - by->group[g] + BUNDLE - 1) / BUNDLE;
     }
-    l->group[sweep->groups] = l->bundles;
+    l->group[by->groups] = l->bundles;
     l->slots = l->bundles * BUNDLE;
     if (!(l->contact = malloc((size_t)(l->slots + 1) * sizeof *l->contact))) return false;
-    for (int64_t g = 0; g < sweep->groups; g++) {
-        int64_t first = sweep->group[g], n = sweep->group[g + 1] - first;
+    for (int64_t g = 0; g < by->groups; g++) {
+        int64_t first = by->group[g], n = by->group[g + 1] - first;
         int64_t at = l->group[g] * BUNDLE, end = l->group[g + 1] * BUNDLE;
-        for (int64_t i = 0; i < n; i++) l->contact[at++] = (int32_t)sweep->sequence[first + i];
+        for (int64_t i = 0; i < n; i++) l->contact[at++] = (int32_t)by->sequence[first + i];
         for (; at < end; at++) l->contact[at] = -1;
     }
     return true;
@@ -103,16 +103,16 @@ static void seat_some(void *arg, int64_t first, int64_t end)
 }
 
 /* The plan's parts, by a schedule whose sequence and groups are not kept; false when memory is short */
-static bool make(struct making *m, const struct schedule *sweep)
+static bool make(struct making *m, const struct schedule *by)
 {
     struct plan *l = m->l;
     int threads = team_size();
-    l->schedule.groups = sweep->groups;
-    l->schedule.beyond = sweep->beyond, l->schedule.inside = sweep->inside;
-    l->schedule.rim = sweep->rim, l->schedule.rest = sweep->rest;
+    l->schedule.groups = by->groups;
+    l->schedule.beyond = by->beyond, l->schedule.inside = by->inside;
+    l->schedule.rim = by->rim, l->schedule.rest = by->rest;
     l->pair = malloc((size_t)(l->n + 1) * sizeof *l->pair);
     l->moves = malloc((size_t)(l->bodies + 1) * sizeof *l->moves);
-    if (!l->pair || !l->moves || !bundle_groups(l, sweep)) return false;
+    if (!l->pair || !l->moves || !bundle_groups(l, by)) return false;
     team_share(threads, l->n, SOME, remember_pairs, m);
     team_share(threads, l->bodies, SOME, remember_moving, m);
     l->seats = malloc((size_t)(l->slots + 1) * sizeof *l->seats);
@@ -120,6 +120,7 @@ static bool make(struct making *m, const struct schedule *sweep)
     if (!l->seats || !m->copies || !find_seats(l)) return false;
     team_share(threads, l->bundles, SOME / BUNDLE, count_copies, m);
     for (int64_t k = 0; k < l->bundles; k++) m->copies[k + 1] += m->copies[k];
+    l->copies = m->copies[l->bundles];
     team_share(threads, l->bundles, SOME / BUNDLE, seat_some, m);
     return true;
 }
@@ -127,27 +128,27 @@ static bool make(struct making *m, const struct schedule *sweep)
 struct plan *plan_of_contacts(enum order order, const struct contacts *s, const struct packing *p,
                               const struct schedule *given)
 {
-    struct schedule sweep = { 0 };
+    struct schedule by = { 0 };
     struct plan *l = malloc(sizeof *l);
-    if (!l || (!given && schedule_bodies(&sweep, order, s, p))) return free(l), NULL;
+    if (!l || (!given && schedule_bodies(&by, order, s, p))) return free(l), NULL;
     *l = (struct plan){ .order = order, .n = s->n, .bodies = p->n };
     struct making m = { .l = l, .s = s, .p = p };
-    bool made = make(&m, given ? given : &sweep);
-    l->schedule.key = sweep.key, l->schedule.zone = sweep.zone;
-    sweep.key = NULL, sweep.zone = NULL;
-    schedule_free(&sweep), free(m.copies);
+    bool made = make(&m, given ? given : &by);
+    l->schedule.key = by.key, l->schedule.zone = by.zone;
+    by.key = NULL, by.zone = NULL;
+    schedule_free(&by), free(m.copies);
     if (made) return l;
     return plan_free(l), NULL;
 }
 
 struct plan *plan_of_blocks(enum order order, const struct delassus *W)
 {
-    struct schedule sweep;
+    struct schedule by;
     struct plan *l = malloc(sizeof *l);
-    if (!l || schedule_blocks(&sweep, order, W)) return free(l), NULL;
-    *l = (struct plan){ .order = order, .n = W->n, .schedule = { .groups = sweep.groups } };
-    bool made = bundle_groups(l, &sweep);
-    schedule_free(&sweep);
+    if (!l || schedule_blocks(&by, order, W)) return free(l), NULL;
+    *l = (struct plan){ .order = order, .n = W->n, .schedule = { .groups = by.groups } };
+    bool made = bundle_groups(l, &by);
+    schedule_free(&by);
     if (made) return l;
     return plan_free(l), NULL;
 }

@@ -11,9 +11,8 @@
 #include "problem/schedule.h"
 
 struct plan {
-    struct schedule
-        schedule; /* without its sequence and its groups, which are in contact and group */
-    int64_t bundles, slots; /* slots: 8 a bundle, some without a contact */
+    struct schedule schedule; /* without sequence and groups: contact and group have them */
+    int64_t bundles, slots;   /* slots: 8 a bundle, some without a contact */
     int64_t *group; /* [schedule.groups + 1] bundles group[g] .. group[g+1]-1 may be done at once */
     int32_t *contact; /* [slots] slot i is contact[i]; -1: none */
     /* Of a packing */
@@ -21,6 +20,7 @@ struct plan {
     /* [slots] indices in body[]: of bodies that move their seats; behind `nobody` of each half, which are
        bodies and bodies + 1, copies of bodies that do not */
     int32_t (*seats)[2];
+    int64_t copies; /* so many */
     /* What it was made of beside what the schedule has */
     enum order order;
     int64_t n, bodies;  /* contacts, bodies */

@@ -1,4 +1,4 @@
-/* problem/problem.c: the bundles of a packing and of a given W [problem/problem.h]. */
+/* problem/problem.c: the bundles of a packing [problem/problem.h]. */
 #include "problem/problem.h"
 
 #include "base/team.h"
@@ -13,7 +13,6 @@
 #include "problem/shared.h"
 
 #include <assert.h>
-#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -213,7 +212,6 @@ struct survey {
     const struct contacts *s;
     bool far; /* bundles do not stay in a near cache: what can be computed is not loaded */
     bool moving_images; /* images move otherwise than their bodies, now or at the end of the step */
-    _Atomic int64_t copies;        /* of bodies that do not move */
     _Atomic bool shaped, rebounds; /* u~ is anything but u */
     _Atomic bool turned; /* t1 is to be loaded: not what contact_basis() makes, or not far */
 };
@@ -227,11 +225,8 @@ static void survey_some(void *arg, int64_t first, int64_t end)
 {
     struct survey *y = arg;
     bool shaped = false, rebounds = false, turned = !y->far || y->p->dim == 2;
-    int64_t copies = 0;
-    int32_t moves[2];
     for (int64_t i = first; i < end; i++) {
         const struct contact *c = &y->s->c[i];
-        copies += 2 - packing_movable(y->p, c->a, c->b, moves);
         shaped |= contact_shaped(y->p, c);
         struct contact made = { 0 };
         if (!turned) contact_basis(&made, 3, c->n), turned = !same(made.t1, c->t1);
@@ -239,7 +234,6 @@ static void survey_some(void *arg, int64_t first, int64_t end)
                     (y->s->tie && y->s->tie[i].offset > 0) ||
                     (y->moving_images && contact_shifted(c));
     }
-    y->copies += copies;
     if (shaped) y->shaped = true;
     if (rebounds) y->rebounds = true;
     if (turned) y->turned = true;
@@ -266,7 +260,7 @@ static int prepare(struct problem *p, const struct packing *pack, const struct c
     survey(&found, pack, s, &cell);
     *p = (struct problem){ .d = pack->dim, .n = s->n, .dt = pack->dt, .packing = pack };
     // those of the packing, the copies, and for the lanes without a contact one `nobody` in each half
-    p->bodies = pack->n + 2 + found.copies;
+    p->bodies = pack->n + 2 + plan->copies;
     p->shared = shared;
     if (shared) p->n = shared->contacts;
     if (p->bodies > BODIES_MAX) return why_set(why, EX_DATAERR, "more than %d bodies", BODIES_MAX);
@@ -368,57 +362,6 @@ int64_t problem_bundles(const struct problem *p)
 bool problem_halves(const struct problem *p)
 {
     return p->shared ? p->shared->halves : p->split != NULL;
-}
-
-/* Whether D[9] is diag(w_n, w_t, w_t) to rounding, as between balls. */
-static bool like_balls(const double D[9])
-{
-    double noise = 16 * DBL_EPSILON * fmin(D[0], D[4]), most = fabs(D[8] - D[4]);
-    for (int i = 0; i < 9; i++)
-        if (i % 4 > 0) most = fmax(most, fabs(D[i]));
-    return most < noise;
-}
-
-int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha, double rho_factor,
-                             enum order order, struct why *why)
-{
-    *p = (struct problem){ .d = W->d, .n = W->n, .W = W, .dt = 1, .scale_v = 1, .scale_r = 1 };
-    p->plan = plan_of_blocks(order, W);
-    bool room = p->plan && lay_plan(p, p->plan) && lay_bundles(p) &&
-                (p->block = lay_lines(p->bundles, sizeof *p->block));
-    if (!room || delassus_sort(&p->sorted, W, p->slots, p->contact, why)) return no_memory(p, why);
-    for (int64_t c = 0; c < W->n; c++) p->full = p->full || !like_balls(W->diag + 9 * c);
-    double trace = 0;
-    for (int64_t i = 0; i < p->slots; i++) {
-        int64_t c = p->contact[i];
-        struct bundle *r = slot_bundle(p, i);
-        int k = slot_lane(i);
-        r->a[k] = (int32_t)c;
-        for (int j = 0; j < 9; j++)
-            p->block[i / BUNDLE][j][k] = c < 0 ? j % 4 == 0 : W->diag[9 * c + j / 3 + 3 * (j % 3)];
-        if (c < 0) continue;
-        const double *D = W->diag + 9 * c, *q = W->q + W->d * c;
-        double lambda = local_lambda_max(D);
-        r->mu[k] = W->mu[c];
-        for (int j = 0; j < 2; j++) {
-            p->w[i / BUNDLE][j][k] = p->full ? lambda : D[4 * j];
-            r->iw[j][k] = 1 / p->w[i / BUNDLE][j][k];
-        }
-        p->rho[i / BUNDLE][k] = lambda <= 0             ? 1
-                                : alpha > 0 && D[0] > 0 ? alpha / D[0]
-                                                        : rho_factor / lambda;
-        for (int j = 0; j < W->d; j++) {
-            r->r[j][k] = W->r[W->d * c + j];
-            p->norm_q += q[j] * q[j];
-            trace += D[4 * j];
-        }
-    }
-    // there is no g and no m: the unit of velocity is the root mean square of q, that of mass 1
-    // over the mean of W_ii
-    p->norm_q = sqrt(p->norm_q);
-    if (p->norm_q > 0) p->scale_v = p->norm_q / sqrt((double)(W->d * W->n));
-    p->scale_r = trace > 0 ? p->scale_v * (double)(W->d * W->n) / trace : p->scale_v;
-    return 0;
 }
 
 struct beyond_levers *slot_turn(const struct problem *p, int64_t i)

@@ -45,6 +45,11 @@ ALWAYS_INLINE struct bundle *bundle_of(const struct problem *p, int64_t i, const
     return &((struct near_bundle *)p->bundle)[i].bundle;
 }
 
+ALWAYS_INLINE const struct beside *beside_of(const struct bundle *c)
+{
+    return &((const struct near_bundle *)c)->beside;
+}
+
 /* What is loaded of LANES slots before they are solved */
 struct loaded {
     struct bodies a, b;
@@ -62,8 +67,8 @@ ALWAYS_INLINE void load_slots(const struct problem *p, int64_t bundle, int k,
     }
     struct twist a, b;
     vd t1[3];
-    const struct beside *t = kind.far ? NULL : &((const struct near_bundle *)c)->beside;
-    const struct rebound *e = p->rebound ? &p->rebound[bundle] : NULL;
+    const struct beside *t = kind.far ? NULL : beside_of(c);
+    const struct rebound *e = bundle_rebound(p, bundle);
     bodies_load(&s->a, p->body, c->a + k, &a), bodies_load(&s->b, p->body, c->b + k, &b);
     if (kind.full)
         levers_velocity(c, t, &p->lever[bundle], e, k, &a, &b, s->v, t1, s->t2);
@@ -76,7 +81,7 @@ ALWAYS_INLINE void load_slots(const struct problem *p, int64_t bundle, int k,
 ALWAYS_INLINE void weigh(const struct problem *p, int64_t bundle, const struct bundle *c, int k,
                          const struct loaded *s, vd w[3])
 {
-    const struct rebound *e = p->rebound ? &p->rebound[bundle] : NULL;
+    const struct rebound *e = bundle_rebound(p, bundle);
     vd la = vload(c->la + k), lb = vload(c->lb + k), im = s->a.im + s->b.im;
     vd it = im + la * la * s->a.ii + lb * lb * s->b.ii;
     w[0] = e ? vload(e->s[0] + k) * im : im;
@@ -94,16 +99,12 @@ ALWAYS_INLINE void make_local(const struct problem *p, int64_t bundle, int k,
     l->rho = kind.method == METHOD_exact ? splat(1) : vload(p->rho[bundle] + k);
     for (int i = 0; i < 9 && kind.full; i++) W[i] = vload(p->block[bundle][i] + k);
     for (int i = 0; i < 3; i++) l->r[i] = vload(c->r[i] + k), l->v[i] = s->v[i];
-    if (kind.far)
-        weigh(p, bundle, c, k, s, l->w);
-    else
-        for (int i = 0; i < 3; i++)
-            l->w[i] = kind.full
-                          ? W[4 * i]
-                          : vload((kind.given_by_W ? p->w[bundle]
-                                                   : ((struct near_bundle *)c)->beside.w)[i > 0] +
-                                  k);
+    if (kind.far) weigh(p, bundle, c, k, s, l->w);
     for (int i = 0; i < 3; i++) {
+        if (kind.full) l->w[i] = W[4 * i];
+        if (kind.given_by_W && !kind.full) l->w[i] = vload(p->w[bundle][i > 0] + k);
+        if (!kind.given_by_W && !kind.full && !kind.far)
+            l->w[i] = vload(beside_of(c)->w[i > 0] + k);
         l->iw[i] = kind.full ? splat(0) : vload(c->iw[i > 0] + k);
         l->b[i] = kind.given_by_W || kind.full ? s->v[i] : l->v[i] - l->w[i] * l->r[i];
     }
@@ -227,9 +228,7 @@ ALWAYS_INLINE void pass_on(struct problem *p, int64_t bundle, int k, const struc
     const struct bundle *c = bundle_of(p, bundle, kind);
     vd t1[3];
     for (int i = 0; i < 3 && !kind.given_by_W; i++)
-        t1[i] = kind.far
-                    ? s->t1[i]
-                    : vload(((struct near_bundle *)c)->beside.t1[i] + k); // not kept in between
+        t1[i] = kind.far ? s->t1[i] : vload(beside_of(c)->t1[i] + k); // not kept in between
     if (kind.given_by_W)
         blocks_scatter(p, c, k);
     else if (kind.full)

@@ -1,0 +1,61 @@
+/* problem/problem_of_W.c: the bundles of a problem given by W [problem/problem.h]. */
+#include "problem/laying.h"
+#include "problem/plan.h"
+#include "problem/problem.h"
+
+#include <float.h>
+#include <math.h>
+
+/* Whether D[9] is diag(w_n, w_t, w_t) to rounding, as between balls. */
+static bool like_balls(const double D[9])
+{
+    double noise = 16 * DBL_EPSILON * fmin(D[0], D[4]), most = fabs(D[8] - D[4]);
+    for (int i = 0; i < 9; i++)
+        if (i % 4 > 0) most = fmax(most, fabs(D[i]));
+    return most < noise;
+}
+
+int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha, double rho_factor,
+                             enum order order, struct why *why)
+{
+    *p = (struct problem){ .d = W->d, .n = W->n, .W = W, .dt = 1, .scale_v = 1, .scale_r = 1 };
+    p->plan = plan_of_blocks(order, W);
+    bool room = p->plan && lay_plan(p, p->plan) && lay_bundles(p) &&
+                (p->block = lay_lines(p->bundles, sizeof *p->block));
+    if (!room || delassus_sort(&p->sorted, W, p->slots, p->contact, why)) {
+        problem_free(p);
+        return why_set(why, EX_SOFTWARE, "no memory for the contact problem");
+    }
+    for (int64_t c = 0; c < W->n; c++) p->full = p->full || !like_balls(W->diag + 9 * c);
+    double trace = 0;
+    for (int64_t i = 0; i < p->slots; i++) {
+        int64_t c = p->contact[i];
+        struct bundle *r = slot_bundle(p, i);
+        int k = slot_lane(i);
+        r->a[k] = (int32_t)c;
+        for (int j = 0; j < 9; j++)
+            p->block[i / BUNDLE][j][k] = c < 0 ? j % 4 == 0 : W->diag[9 * c + j / 3 + 3 * (j % 3)];
+        if (c < 0) continue;
+        const double *D = W->diag + 9 * c, *q = W->q + W->d * c;
+        double lambda = local_lambda_max(D);
+        r->mu[k] = W->mu[c];
+        for (int j = 0; j < 2; j++) {
+            p->w[i / BUNDLE][j][k] = p->full ? lambda : D[4 * j];
+            r->iw[j][k] = 1 / p->w[i / BUNDLE][j][k];
+        }
+        p->rho[i / BUNDLE][k] = lambda <= 0             ? 1
+                                : alpha > 0 && D[0] > 0 ? alpha / D[0]
+                                                        : rho_factor / lambda;
+        for (int j = 0; j < W->d; j++) {
+            r->r[j][k] = W->r[W->d * c + j];
+            p->norm_q += q[j] * q[j];
+            trace += D[4 * j];
+        }
+    }
+    // there is no g and no m: the unit of velocity is the root mean square of q, that of mass 1
+    // over the mean of W_ii
+    p->norm_q = sqrt(p->norm_q);
+    if (p->norm_q > 0) p->scale_v = p->norm_q / sqrt((double)(W->d * W->n));
+    p->scale_r = trace > 0 ? p->scale_v * (double)(W->d * W->n) / trace : p->scale_v;
+    return 0;
+}
