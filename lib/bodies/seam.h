@@ -3,16 +3,17 @@
  * side. A body that slides on one part meets the rim of the next, which lies in the same plane, with a
  * normal along that plane; where the law sees gaps it would be stopped there. Such a contact is none.
  *
- * A contact of body s with part B, of normal n towards s, is dropped where s also touches a part E, and
+ * A contact e of body s with a part E gives a plane P through its place on E, across its normal m, and s lies
+ * above P. Another contact of s, with part B and of normal n, is dropped where
  *
- *     the place lies on E, to a tolerance, and n leads from there into E;
- *     no other place of these two with that normal is above E's plane on the side of s;
- *     and B does not rise above it there by more than 30 degrees.
+ *     n is not along m;
+ *     no place of s and B with that normal is above P;
+ *     and B does not rise above P there by more than 30 degrees:
  *
- * What rises is a wall or a step, and is met as it would be without E: a step that is higher than the
- * tolerance is not flush. Ends of surfaces, ridges and grooves are as they were: n leads into no surface there.
- * B and E may be one mesh, whose triangles do not share all corners. The tolerance is the larger of the weld
- * tolerances of both [bodies/boundary.h] and 1e-5 of the radius of s.
+ * s passes above B as it passes above P. A wall or a step that rises is met as it would be without E; ends of
+ * surfaces, ridges and grooves are as they were. Above is by more than the larger of the weld tolerances of E and B
+ * [bodies/boundary.h] and 1e-5 of the radius of s: a lower step is climbed. B and E may be one mesh, whose
+ * triangles do not share all corners.
  */
 #ifndef NSD_SEAM_H
 #define NSD_SEAM_H
