@@ -80,8 +80,22 @@ static struct {
     double approach;              /* m/s: of bodies in these steps, the largest */
     int64_t fell_back;            /* steps that were solved otherwise than asked */
     int64_t abandoned;            /* steps whose solver knew no further way */
+    int64_t passed, first_passed; /* bodies that have gone through something; the first's step, */
+    char what_passed[80];         /* and who it is, and through what */
     double seconds;
 } total;
+
+/* Of a report of bodies that have gone through something, the first */
+static void count_passed(const struct report *r)
+{
+    int32_t w = -1 - r->passed_through;
+    if (r->passed && !total.passed) {
+        total.first_passed = r->step;
+        snprintf(total.what_passed, sizeof total.what_passed, "body %d through %s %d", r->passed_id,
+                 w >= 0 ? "wall" : "body", w >= 0 ? w : r->passed_through);
+    }
+    total.passed = r->passed;
+}
 
 static void count(const struct report *r)
 {
@@ -117,6 +131,11 @@ static void summary(int64_t made)
         warn("%lld steps NOT CONVERGED, the first is step %lld; the largest %s is %.3g, not %g",
              (long long)total.missed, (long long)total.first_missed, options_error(total.criterion),
              total.worst, total.eps);
+    if (total.passed)
+        warn("%lld times a body has GONE THROUGH a wall or a fixed body that it should have met, "
+             "first in step "
+             "%lld %s: a smaller dt finds such contacts",
+             (long long)total.passed, (long long)total.first_passed, total.what_passed);
     if (total.growing)
         warn("in %lld of them reactions grow without end, and bodies still approach at up to %.3g "
              "m/s",
@@ -190,6 +209,7 @@ static bool advance(struct run *r, int64_t k)
     if (crew_step(f, &r->memory, r->other_bodies, &r->o, &why)) die_why(&why);
     f->reported = f->moved = true;
     count(rep);
+    count_passed(rep);
     options_log(rep);
     return isfinite(rep->err.paper.eps_glob);
 }
@@ -356,5 +376,5 @@ int tool_main(int argc, char **argv)
     if (told) warn("%s", told);
     frame_free(&r.f);
     reader_close(in);
-    return made < steps || (options.strict && total.missed);
+    return made < steps || (options.strict && (total.missed || total.passed));
 }

@@ -248,6 +248,12 @@ static const struct column layout_report[] = {
     { 0 },
 };
 
+/* The same where there is what bodies may go through */
+static const struct column layout_passed[] = {
+    { "passed", "1", COLUMN_I64, 1, offsetof(struct report, passed) },
+    { 0 },
+};
+
 /* /nsd/flow/NAME/value [F][pours], or [removals]: members of struct passage */
 static const struct column layout_poured[] = {
     { "poured", "1", COLUMN_I64, 1, offsetof(struct passage, bodies) },

@@ -34,6 +34,7 @@ int report_rows_open(struct report_rows *r, struct source *source, struct why *w
     count_rows(r, layout_report);
     count_rows(r, layout_balance);
     count_rows(r, layout_bond_balance);
+    count_rows(r, layout_passed);
     return why->status;
 }
 
@@ -43,7 +44,7 @@ static int check_report(const struct report *rep, const char *group, struct why 
     uint8_t converged;
     memcpy(&converged, &rep->converged, 1);
     if (rep->sweeps < 0 || rep->err.contacts < 0 || rep->newton < 0 || rep->safeguarded < 0 ||
-        rep->gave_up < 0)
+        rep->gave_up < 0 || rep->passed < 0)
         return why_set(why, EX_DATAERR, "%s: a number of things is negative", group);
     if (converged > 1) return why_set(why, EX_DATAERR, "%s/converged: is %d", group, converged);
     return 0;
@@ -89,8 +90,15 @@ static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
     if (tied && table_read_columns(r->source, r->group, "/value", layout_bond_balance, at, n,
                                    r->ahead.row, sizeof *r->ahead.row, why))
         return why->status;
-    for (int64_t i = 0; i < n; i++)
-        r->ahead.row[i].balanced = balanced, r->ahead.row[i].tied = tied;
+    snprintf(time, sizeof time, "%s/passed/value", r->group);
+    bool watched = source_has(r->source, time);
+    if (watched && table_read_columns(r->source, r->group, "/value", layout_passed, at, n,
+                                      r->ahead.row, sizeof *r->ahead.row, why))
+        return why->status;
+    for (int64_t i = 0; i < n; i++) {
+        struct report *rep = &r->ahead.row[i];
+        rep->balanced = balanced, rep->tied = tied, rep->watched = watched;
+    }
     r->ahead.n = n;
     return 0;
 }
@@ -157,7 +165,8 @@ int report_rows_write(struct table_write *s, const struct report *rep, struct wh
                             why) ||
         table_write_clock(s, solver, true, &rep->step, solver, layout_report, why) ||
         table_write_clock(s, solver, false, &rep->t, solver, layout_report, why) ||
-        (rep->balanced && write_balance(s, rep, first, why)))
+        (rep->balanced && write_balance(s, rep, first, why)) ||
+        (rep->watched && write_table(s, layout_passed, rep, first, why)))
         return why->status;
     if (first &&
         (h5_attr_text(s->file, solver, "method", rep->method, why) ||
