@@ -79,12 +79,18 @@ static bool comes(const struct way *y, int64_t k, struct contact *c, double sign
     return true;
 }
 
-/* Adds those of `found` at place k that come; sign: of normals towards the body. Returns how many, -1: memory is short. */
+/* Adds those of `found` at place k that come, where one of them has no gap there; sign: of normals towards the body.
+   Returns how many, -1: memory is short. */
 static int64_t add_coming(struct contacts *out, int64_t first, int64_t end, const struct way *y,
                           int64_t k, const struct contacts *found, double sign)
 {
     int64_t n = 0;
-    for (int64_t l = 0; l < found->n; l++) {
+    bool touches = false;
+    for (int64_t l = 0; l < found->n && !touches; l++) {
+        struct contact c = found->c[l];
+        touches = c.gap <= 0 && comes(y, k, &c, sign, out->c + first, end - first);
+    }
+    for (int64_t l = 0; l < found->n && touches; l++) {
         struct contact c = found->c[l];
         if (!comes(y, k, &c, sign, out->c + first, end - first)) continue;
         struct contact *to = contacts_add(out, c.a, c.b);
@@ -138,10 +144,11 @@ static bool touch_ball(struct contacts *found, const struct beside *s, int64_t k
     struct touch touch[TOUCHES_MOST];
     double r = p->radius[i];
     vec3 c = v3_axpy(s->c, (double)k, s->step);
-    int n = surface ? surface_touches(surface, c, r, touch)
+    double most = r + s->y->thick;
+    int n = surface ? surface_touches(surface, c, most, touch)
                     : boundary_nearest(&p->wall[s->w], p->dim, c, r, touch);
     for (int l = 0; l < n; l++) {
-        if (!(touch[l].distance <= r)) continue;
+        if (!(touch[l].distance <= most)) continue;
         struct contact *to = contacts_add(found, -1 - s->w, (int32_t)i);
         if (!to) return false;
         contact_basis(to, p->dim, quat_turn(s->pose.q, touch[l].n));
@@ -159,7 +166,7 @@ static bool look_at(struct beside *s, int64_t k)
     struct contacts found = { 0 };
     vec3 ahead = v3_scale((double)k, s->y->step);
     bool good = o->shaped && packing_shape(o->p, s->y->i)
-                    ? detect_shapes_wall(&found, o->shaped, s->w, s->y->i, o->t, 0,
+                    ? detect_shapes_wall(&found, o->shaped, s->w, s->y->i, o->t, s->y->thick,
                                          surface_of(o->surface, o->p, s->w), ahead)
                     : touch_ball(&found, s, k);
     int64_t n = good ? add_coming(s->out, s->first, s->end, s->y, k, &found, 1) : -1;
@@ -256,7 +263,8 @@ static bool meet_hull(struct contacts *out, int64_t sorted, const struct swift *
         vec3 ahead = v3_scale((double)k, y->step);
         struct contacts found = { 0 };
         if (v3_norm(v3_sub(v3_add(o->x[y->i], ahead), o->x[f])) > reach) continue;
-        bool good = detect_shapes_pair(&found, o->shaped, a, b, none, v3_scale(sign, ahead), 0);
+        bool good =
+            detect_shapes_pair(&found, o->shaped, a, b, none, v3_scale(sign, ahead), y->thick);
         for (int64_t l = 0; l < found.n && y->i == b; l++)
             found.c[l].x = v3_sub(found.c[l].x, ahead);
         n = good ? add_coming(out, first, end, y, k, &found, sign) : -1;

@@ -3,8 +3,8 @@
  * on one side of a sheet at one step and on the other at the next.
  *
  * Its way in the step, relative to a boundary, (v + g dt - v_wall) dt, is looked at in places no farther apart than
- * it is thick. The first of them at which it touches what it did not touch before makes contacts now, with the
- * gap along their normals that it has now: it gets as far as there in this step, or where the law sees no gaps
+ * it is thick. The first of them at which it touches what it did not touch before makes contacts now, with all that
+ * is nearer there than it is thick, and with the gaps along their normals that it has now: it gets as far as there in this step, or where the law sees no gaps
  * [bodies/overlap.h] it stops, or rebounds, at most one step's way early. Their features tell them, for they are
  * contacts however wide the gap is. The same is done where a body would meet hulls that are fixed.
  *
