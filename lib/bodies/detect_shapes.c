@@ -168,6 +168,8 @@ static bool meet_convex(struct contacts *out, const struct placed *s, int32_t w,
 
 /* Of the radius: a corner there is the same place */
 static const double SAME_PLACE = 1e-3;
+/* 1 - cosine: of two normals that are one */
+static const double ALONG = 1e-12;
 /* Sine: a face that lies on a surface to this is next to its rim, too */
 static const double ALONG_SURFACE = 1e-3;
 
@@ -198,13 +200,28 @@ static bool leads_away(const struct rim *r, const struct pose *pose, vec3 n)
     return true;
 }
 
-static bool is_there(const struct place *place, int n, vec3 x, double near)
+/* Is one of place[n] where f is? Of other rims, those beyond the first `corners`, with the same normal */
+static bool is_there(const struct place *place, int corners, int n, const struct place *f,
+                     double near)
 {
     for (int k = 0; k < n; k++) {
-        vec3 d = v3_sub(place[k].x, x);
-        if (v3_dot(d, d) < near * near) return true;
+        vec3 d = v3_sub(place[k].x, f->x);
+        if (v3_dot(d, d) < near * near && (k < corners || v3_dot(place[k].n, f->n) > 1 - ALONG))
+            return true;
     }
     return false;
+}
+
+/* Does the surface go on flat beyond the place x of a rim? Its triangles do not share their corners there. */
+static bool goes_on(const struct rim *r, const struct wall *wall, const struct pose *pose,
+                    const struct surface *surface, vec3 x, double beyond)
+{
+    if (!surface) return false;
+    vec3 c = v3_sub(quat_turn_back(pose->q, v3_sub(x, pose->shift)), wall->x);
+    double step = fmax(beyond, 10 * surface->weld);
+    for (int k = 0; k < r->sides; k++)
+        if (!surface_is_at(surface, v3_axpy(c, -step, r->into[k]), 2 * surface->weld)) return false;
+    return true;
 }
 
 /* Adds where the rims of a boundary meet a core and no corner does; returns how many places there are. */
@@ -229,7 +246,8 @@ static int meet_rims(struct place *place, int count, const struct packing *p,
             struct place *f = &found[l];
             if (!leads_away(r, pose, f->n)) continue;
             f->x = v3_axpy(f->x, -0.5 * f->gap, f->n); // on the rim
-            if (is_there(place, corners, f->x, near)) continue;
+            if (is_there(place, corners, count, f, near)) continue;
+            if (goes_on(r, wall, pose, surface, f->x, near)) continue;
             int end = p->dim == 2 ? 0 : meet_end(f);
             f->feature = end >= 0 && !cut[end] ? RIM_KEY | RIM_END | r->corner[end]
                                                : RIM_KEY | (r->key % (RIM_END / 4) * 4 + l);

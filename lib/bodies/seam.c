@@ -149,16 +149,9 @@ static bool wall_is_at(const struct seams *o, int32_t w, vec3 x, double near)
     const struct wall *wall = &o->p->wall[w];
     struct pose pose = wall_pose(o->p, wall, o->t);
     vec3 c = described(wall, &pose, x), at;
-    struct surface_walk walk;
-    struct surface_branch leaf;
     if (wall->shape != BOUNDARY_MESH)
         return nearest_place(o, wall, c, &at) && v3_norm(v3_sub(c, at)) <= near;
-    const struct surface *s = &o->surface[w];
-    surface_walk_begin(&walk, s->n);
-    while (surface_walk_next(&walk, s->box, c, near, &leaf))
-        for (int32_t i = leaf.lo; i < leaf.hi; i++)
-            if (v3_norm(v3_sub(c, surface_nearest(s, s->order[i], c))) <= near) return true;
-    return false;
+    return surface_is_at(&o->surface[w], c, near);
 }
 
 /* ---- one contact ---- */
@@ -192,21 +185,31 @@ static bool are_near(const struct seams *o, const struct side *f, const struct s
     return v3_norm(d) <= o->p->radius[f->other] + o->p->radius[e->other];
 }
 
-/* Does the plane of contact e keep s above the meeting, or is that with a rim inside a flat surface? */
+/* Contacts c and e of body s with two walls have one normal: is c with a rim where the other wall goes on flat, or
+   where e is, which comes first? */
+static bool goes_without(const struct meeting *w, const struct side *f, const struct contact *e,
+                         const struct side *g, double near)
+{
+    const struct contact *c = &w->all->c[w->i];
+    double height = v3_dot(g->n, v3_sub(f->x, g->x));
+    bool again = e < c && v3_norm(v3_sub(f->x, g->x)) <= near;
+    if (again && e->mu == c->mu && e->en == c->en && e->et == c->et) return true;
+    return c->feature >= RIM_END && fabs(height) <= near &&
+           wall_is_at(w->o, -1 - g->other, f->x, near);
+}
+
+/* Does the plane of contact e keep s above the meeting, or is that inside a flat surface? */
 static bool passes_above(const struct meeting *w, const struct side *f, const struct contact *e)
 {
     const struct seams *o = w->o;
-    const struct contact *c = &w->all->c[w->i];
     const struct side g = side_of(o, e, f->s);
     bool parallel = v3_dot(f->n, g.n) > 1 - ALONG;
     bool walls = f->other < 0 && g.other < 0 && f->other != g.other;
-    if (parallel && !(walls && c->feature >= RIM_END)) return false;
-    if (!are_near(o, f, &g)) return false;
+    if ((parallel && !walls) || !are_near(o, f, &g)) return false;
     double near = dmax(FLUSH * o->p->radius[f->s], dmax(weld_of(o, f->other), weld_of(o, g.other)));
     double plane = v3_dot(g.n, g.x), level = plane + near;
     if (!is_below(w, f, g.n, level)) return false;
-    if (parallel)
-        return v3_dot(g.n, f->x) >= plane - near && wall_is_at(o, -1 - g.other, f->x, near);
+    if (parallel) return goes_without(w, f, e, &g, near);
     if (bottom_of(o, f->s, g.n) < plane + dmin(e->gap, 0) - near) return false;
     return !(f->other < 0 ? wall_rises(o, f, g.n, level, near) : body_rises(o, f, g.n, level));
 }
