@@ -71,19 +71,21 @@ static double bottom_of(const struct seams *o, int32_t s, vec3 m)
 
 /* ---- does it rise? ---- */
 
-/* Of a body: the corners that are foremost towards s are above the height `level` (m) along m. */
+/* Of a body: of the corners that are foremost across m towards s one is above the height `level` (m) along m. */
 static bool body_rises(const struct seams *o, const struct side *f, vec3 m, double level)
 {
+    vec3 front_of = v3_axpy(f->n, -v3_dot(f->n, m), m);
+    front_of = v3_scale(1 / v3_norm(front_of), front_of);
     double front = -INFINITY, slack = FOREMOST * o->p->radius[f->other];
     int32_t cores = cores_of(o, f->other);
     for (int32_t k = 0; k < cores; k++) {
         const struct core c = core_of(o, f->other, k);
-        front = dmax(front, core_top(&c, f->n) + c.round);
+        front = dmax(front, core_top(&c, front_of) + c.round);
     }
     for (int32_t k = 0; k < cores; k++) {
         const struct core c = core_of(o, f->other, k);
         for (int32_t i = 0; i < c.n; i++)
-            if (v3_dot(f->n, c.v[i]) + c.round >= front - slack &&
+            if (v3_dot(front_of, c.v[i]) + c.round >= front - slack &&
                 v3_dot(m, v3_add(c.v[i], f->away)) + c.round > level)
                 return true;
     }
@@ -97,21 +99,26 @@ static bool leads_up(vec3 from, vec3 to, vec3 m, double level)
     return v3_dot(to, m) > level && v3_dot(way, m) > RISES * v3_norm(way);
 }
 
-/* Of a mesh: all of its elements at c, as it is described; d lies above the level. */
-static bool mesh_rises(const struct surface *s, vec3 c, vec3 d, vec3 m, double level, double near)
+/* Of a mesh: an element at c across n or, where there is none, all elements at c; as it is described. d lies above the
+   level, c as far as `depth` below it. */
+static bool mesh_rises(const struct surface *s, vec3 c, vec3 d, vec3 n, vec3 m, double level,
+                       double near, double depth)
 {
     struct surface_walk walk;
     struct surface_branch leaf;
-    bool any = false;
+    bool any = false, all = true;
     surface_walk_begin(&walk, s->n);
-    while (surface_walk_next(&walk, s->box, c, near, &leaf))
+    while (surface_walk_next(&walk, s->box, c, near + depth, &leaf))
         for (int32_t i = leaf.lo; i < leaf.hi; i++) {
-            vec3 at = surface_nearest(s, s->order[i], c);
-            if (!(v3_norm(v3_sub(c, at)) <= near)) continue;
-            any = true;
-            if (!leads_up(at, surface_nearest(s, s->order[i], d), m, level)) return false;
+            int32_t e = s->order[i];
+            vec3 at = surface_nearest(s, e, c);
+            double away = v3_norm(v3_sub(c, at));
+            if (!(away <= near + depth)) continue;
+            bool up = leads_up(at, surface_nearest(s, e, d), m, level);
+            if (up && fabs(v3_dot(n, surface_normal(s, e))) > 1 - ALONG) return true;
+            if (away <= near) any = true, all &= up;
         }
-    return any;
+    return any && all;
 }
 
 /* The place of wall w next to c, as it is described; false: none */
@@ -139,19 +146,23 @@ static bool wall_rises(const struct seams *o, const struct side *f, vec3 m, doub
     vec3 d = v3_axpy(c, depth + ahead, n);
     level = v3_dot(n, c) + depth + 3 * near;
     if (w->shape == BOUNDARY_MESH)
-        return mesh_rises(&o->surface[-1 - f->other], c, d, n, level, near);
+        return mesh_rises(&o->surface[-1 - f->other], c, d, quat_turn_back(pose.q, f->n), n, level,
+                          near, dmax(depth, 0));
     return nearest_place(o, w, c, &at) && nearest_place(o, w, d, &to) && leads_up(at, to, n, level);
 }
 
-/* Does wall w lie at x, to `near`? */
-static bool wall_is_at(const struct seams *o, int32_t w, vec3 x, double near)
+/* Does wall w lie at x, to `near`, across n? */
+static bool wall_is_at(const struct seams *o, int32_t w, vec3 x, vec3 n, double near)
 {
     const struct wall *wall = &o->p->wall[w];
     struct pose pose = wall_pose(o->p, wall, o->t);
     vec3 c = described(wall, &pose, x), at;
-    if (wall->shape != BOUNDARY_MESH)
-        return nearest_place(o, wall, c, &at) && v3_norm(v3_sub(c, at)) <= near;
-    return surface_is_at(&o->surface[w], c, near);
+    n = quat_turn_back(pose.q, n);
+    if (wall->shape == BOUNDARY_MESH) return surface_is_at(&o->surface[w], c, &n, near);
+    bool flat = wall->shape == BOUNDARY_PLANE || wall->shape == BOUNDARY_RECTANGLE ||
+                wall->shape == BOUNDARY_DISC;
+    return flat && fabs(v3_dot(n, wall->n)) > 1 - ALONG && nearest_place(o, wall, c, &at) &&
+           v3_norm(v3_sub(c, at)) <= near;
 }
 
 /* ---- one contact ---- */
@@ -195,7 +206,8 @@ static bool goes_without(const struct meeting *w, const struct side *f, const st
     bool again = e < c && v3_norm(v3_sub(f->x, g->x)) <= near;
     if (again && e->mu == c->mu && e->en == c->en && e->et == c->et) return true;
     return c->feature >= RIM_END && fabs(height) <= near &&
-           wall_is_at(w->o, -1 - g->other, f->x, near);
+           wall_is_at(w->o, -1 - f->other, f->x, f->n, near) &&
+           wall_is_at(w->o, -1 - g->other, f->x, f->n, near);
 }
 
 /* Does the plane of contact e keep s above the meeting, or is that inside a flat surface? */
