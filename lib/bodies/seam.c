@@ -1,6 +1,7 @@
 #include "bodies/seam.h"
 
 #include "bodies/detect_shapes.h"
+#include "bodies/gjk.h"
 #include "bodies/rim.h"
 #include "bodies/surface_tree.h"
 #include "bodies/swift.h"
@@ -9,12 +10,11 @@
 #include <string.h>
 
 /* Of the radius of the body that slides: */
-static const double FLUSH = 1e-5,    /* the tolerance, at least; */
-    AHEAD = 0.1,                     /* how far a surface is followed to see whether it rises; */
-    LEVEL = 0.01;                    /* how much gaps of one meeting differ */
-static const double ALONG = 1e-6;    /* 1 - cosine: of normals that are one */
-static const double RISES = 0.5;     /* sine of 30 degrees */
-static const double FOREMOST = 1e-3; /* of the radius of B: corners of the face that is met */
+static const double FLUSH = 1e-5, /* the tolerance, at least; */
+    AHEAD = 0.1,                  /* how far a surface is followed to see whether it rises; */
+    LEVEL = 0.01;                 /* how much gaps of one meeting differ */
+static const double ALONG = 1e-6; /* 1 - cosine: of normals that are one */
+static const double RISES = 0.5;  /* sine of 30 degrees */
 
 /* All contacts of every body: of[first[i]] .. of[first[i+1]-1] */
 struct lists {
@@ -71,32 +71,27 @@ static double bottom_of(const struct seams *o, int32_t s, vec3 m)
 
 /* ---- does it rise? ---- */
 
-/* Of a body: of the corners that are foremost across m towards s one is above the height `level` (m) along m. */
-static bool body_rises(const struct seams *o, const struct side *f, vec3 m, double level)
-{
-    vec3 front_of = v3_axpy(f->n, -v3_dot(f->n, m), m);
-    front_of = v3_scale(1 / v3_norm(front_of), front_of);
-    double front = -INFINITY, slack = FOREMOST * o->p->radius[f->other];
-    int32_t cores = cores_of(o, f->other);
-    for (int32_t k = 0; k < cores; k++) {
-        const struct core c = core_of(o, f->other, k);
-        front = dmax(front, core_top(&c, front_of) + c.round);
-    }
-    for (int32_t k = 0; k < cores; k++) {
-        const struct core c = core_of(o, f->other, k);
-        for (int32_t i = 0; i < c.n; i++)
-            if (v3_dot(front_of, c.v[i]) + c.round >= front - slack &&
-                v3_dot(m, v3_add(c.v[i], f->away)) + c.round > level)
-                return true;
-    }
-    return false;
-}
-
 /* Does the way from one place of a surface to another lead up along m by more than 30 degrees, to above `level`? */
 static bool leads_up(vec3 from, vec3 to, vec3 m, double level)
 {
     vec3 way = v3_sub(to, from);
     return v3_dot(to, m) > level && v3_dot(way, m) > RISES * v3_norm(way);
+}
+
+/* Of a body, at the place of f: towards d, which lies above the level. */
+static bool body_rises(const struct seams *o, const struct side *f, vec3 d, vec3 m, double level)
+{
+    vec3 x = v3_sub(d, f->away);
+    const struct core point = { .n = 1, .v = &x, .centre = x };
+    for (int32_t k = 0; k < cores_of(o, f->other); k++) {
+        const struct core c = core_of(o, f->other, k);
+        const struct nearest near = gjk_nearest(&c, &point);
+        vec3 to = d;
+        if (near.distance > c.round)
+            to = v3_axpy(v3_add(near.a, f->away), c.round / near.distance, v3_sub(x, near.a));
+        if (leads_up(f->x, to, m, level)) return true;
+    }
+    return false;
 }
 
 /* Of a mesh: an element at c across n or, where there is none, all elements at c; as it is described. d lies above the
@@ -136,12 +131,14 @@ static vec3 described(const struct wall *w, const struct pose *pose, vec3 x)
     return v3_sub(quat_turn_back(pose->q, v3_sub(x, pose->shift)), w->x);
 }
 
-static bool wall_rises(const struct seams *o, const struct side *f, vec3 m, double level,
-                       double near)
+/* Does what s meets rise there above the height `level` (m) along m? */
+static bool rises(const struct seams *o, const struct side *f, vec3 m, double level, double near)
 {
+    double depth = level - v3_dot(m, f->x), ahead = dmax(AHEAD * o->p->radius[f->s], 10 * near);
+    if (f->other >= 0)
+        return body_rises(o, f, v3_axpy(f->x, depth + ahead, m), m, level + 3 * near);
     const struct wall *w = &o->p->wall[-1 - f->other];
     struct pose pose = wall_pose(o->p, w, o->t);
-    double depth = level - v3_dot(m, f->x), ahead = dmax(AHEAD * o->p->radius[f->s], 10 * near);
     vec3 c = described(w, &pose, f->x), n = quat_turn_back(pose.q, m), at, to;
     vec3 d = v3_axpy(c, depth + ahead, n);
     level = v3_dot(n, c) + depth + 3 * near;
@@ -223,7 +220,7 @@ static bool passes_above(const struct meeting *w, const struct side *f, const st
     if (!is_below(w, f, g.n, level)) return false;
     if (parallel) return goes_without(w, f, e, &g, near);
     if (bottom_of(o, f->s, g.n) < plane + dmin(e->gap, 0) - near) return false;
-    return !(f->other < 0 ? wall_rises(o, f, g.n, level, near) : body_rises(o, f, g.n, level));
+    return !rises(o, f, g.n, level, near);
 }
 
 /* Is contact i of body s at a seam? */
