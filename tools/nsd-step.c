@@ -132,9 +132,9 @@ static void summary(int64_t made)
              (long long)total.missed, (long long)total.first_missed, options_error(total.criterion),
              total.worst, total.eps);
     if (total.passed)
-        warn("%lld times a body has GONE THROUGH a wall or a fixed body that it should have met, "
-             "first in step "
-             "%lld %s: a smaller dt finds such contacts",
+        warn("%lld times a body has GONE THROUGH what it should have met, first in step %lld: %s; "
+             "a smaller dt "
+             "finds it",
              (long long)total.passed, (long long)total.first_passed, total.what_passed);
     if (total.growing)
         warn("in %lld of them reactions grow without end, and bodies still approach at up to %.3g "
