@@ -303,7 +303,7 @@ static void copy_all(struct reader *in, struct writer *out, struct frame *f)
 static void start_in_place(struct run *r, struct reader *in, const char *path)
 {
     struct why why = { 0 };
-    if (writer_open_over(&r->out, path, &why)) die_why(&why);
+    if (writer_open(&r->out, path, WRITER_IN_PLACE, &why)) die_why(&why);
     copy_all(in, r->out, &r->f);
     double theta = r->f.packing.theta;
     options_theta(&r->f.packing, false);
@@ -359,8 +359,9 @@ int tool_main(int argc, char **argv)
         start_in_place(&r, in, argv[0]);
     else
         start(&r, in);
-    options_log_open(argc, argv, output);
     count_steps(&r.f.packing);
+    if (steps && writer_begin(r.out, &r.f, &why)) die_why(&why);
+    options_log_open(argc, argv, output);
     int64_t made = run(&r);
     if (writer_close(r.out, &why)) die_why(&why);
     options_log_close();
