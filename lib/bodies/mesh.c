@@ -177,6 +177,10 @@ int surface_init(struct surface *s, const struct mesh *m, int32_t first, int32_t
     good = good && meet(s);
     if (good) grow(s, room, 0, n, 0);
     free(room);
+    for (int32_t v = 0; good && v < 3 * n; v++)
+        if (s->star[v + 1] - s->star[v] > STAR_MOST)
+            return why_set(why, EX_DATAERR, "a mesh: more than %d elements meet at a corner",
+                           STAR_MOST);
     return good ? 0 : why_set(why, EX_SOFTWARE, "no memory for a surface of %d elements", n);
 }
 
@@ -253,12 +257,18 @@ static bool is_there(const struct surface *s, int32_t e, int part, int32_t v, in
 
 /* Whether the place on an edge or at a corner of element e is a minimum that e reports, the first of
    those that meet there */
-static bool is_minimum(const struct surface *s, int32_t e, int part, vec3 c)
+static bool is_minimum(const struct surface *s, int32_t e, int part, vec3 c, int *looked)
 {
     int k = part < 3 ? part : part - 3;
     int32_t v = s->corner[3 * e + k], w = part < 3 ? s->corner[3 * e + (k + 1) % 3] : v;
+    if (s->star[w + 1] - s->star[w] <
+        s->star[v + 1] - s->star[v]) { // at the hub of a fan are all of it
+        int32_t hub = v;
+        v = w, w = hub;
+    }
     for (int32_t i = s->star[v]; i < s->star[v + 1]; i++) {
         int32_t other = s->member[i];
+        ++*looked;
         if (other == e || which_corner(s, other, w) < 0) continue;
         struct place at = near_element(s, other, c);
         if (!is_there(s, other, at.part, v, w)) return false;
@@ -267,14 +277,17 @@ static bool is_minimum(const struct surface *s, int32_t e, int part, vec3 c)
     return true;
 }
 
-static void look_at(const struct surface *s, int32_t e, vec3 c, double most, struct touch *touch,
-                    int *n)
+/* Returns how many elements were looked at for it, of those at its corners each. */
+static int look_at(const struct surface *s, int32_t e, vec3 c, double most, struct touch *touch,
+                   int *n)
 {
     struct place at = near_element(s, e, c);
     vec3 d = v3_sub(c, at.x);
     double distance = v3_norm(d);
-    if (!(distance <= most) || (at.part < 6 && !is_minimum(s, e, at.part, c)) || *n == TOUCHES_MOST)
-        return;
+    int looked = 1;
+    if (!(distance <= most)) return looked;
+    bool minimum = at.part == 6 || is_minimum(s, e, at.part, c, &looked);
+    if (!minimum || *n == TOUCHES_MOST) return looked;
     vec3 up = v3_cross(v3_sub(s->at[e][1], s->at[e][0]), v3_sub(s->at[e][2], s->at[e][0]));
     if (v3_dot(up, up) == 0) { // a segment
         vec3 ab = v3_sub(s->at[e][1], s->at[e][0]);
@@ -282,6 +295,7 @@ static void look_at(const struct surface *s, int32_t e, vec3 c, double most, str
     }
     vec3 n_of = distance > 0 ? v3_scale(1 / distance, d) : v3_scale(1 / v3_norm(up), up);
     touch[(*n)++] = (struct touch){ n_of, distance, SURFACE_FEATURES * e + at.part };
+    return looked;
 }
 
 static int by_feature(const void *a, const void *b)
@@ -296,8 +310,12 @@ int surface_touches(const struct surface *s, vec3 c, double most, struct touch t
     struct surface_branch leaf;
     int n = 0;
     surface_walk_begin(&walk, s->n);
+    int64_t seen = 0;
+    if (s->seen && *s->seen > s->seen_most) return 0;
     while (surface_walk_next(&walk, s->box, c, most, &leaf))
-        for (int32_t i = leaf.lo; i < leaf.hi; i++) look_at(s, s->order[i], c, most, touch, &n);
+        for (int32_t i = leaf.lo; i < leaf.hi; i++)
+            seen += look_at(s, s->order[i], c, most, touch, &n);
+    if (s->seen) *s->seen += seen;
     qsort(touch, (size_t)n, sizeof *touch, by_feature);
     return n;
 }

@@ -19,7 +19,6 @@ struct report_rows {
                                takes longer than its answer; or NULL */
         double *time;       /* [n] s */
         int64_t first, n;
-        int64_t last; /* the row that was wanted last; -1: none yet */
     } ahead;
 };
 
