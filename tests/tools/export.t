@@ -13,7 +13,7 @@ other() # "what is true" MODULE ...: as tests/support/export.py has it, where Py
 }
 
 nsd-gen 60 >"$tmp/gen.h5"
-nsd-step -n 900 --every 60 --contacts "$tmp/gen.h5" >"$tmp/out.h5" 2>/dev/null
+stock run60 >"$tmp/out.h5"
 nsd-step -n 6 --forces "$tmp/out.h5" >"$tmp/each.h5" 2>/dev/null
 
 # ---- VTK ----

@@ -3,7 +3,7 @@
 # shellcheck source=tests/support/tap.sh disable=SC2317 # functions called by name
 . tests/support/tap.sh
 
-nsd-gen 60 | nsd-step -n 900 --every 30 --contacts >"$tmp/out.h5" 2>/dev/null
+stock run60 >"$tmp/out.h5"
 nsd-web -o "$tmp/out.html" "$tmp/out.h5" 2>/dev/null
 
 ok "the same file, the same page" cmp "$tmp/out.html" <(nsd-web "$tmp/out.h5" 2>/dev/null)
