@@ -182,7 +182,7 @@ const struct cli_option options_run[] = {
     { CLI_TEXT, 0, "log", &options.log, "FILE", .silent = true,
       .help = "write one JSON line for each solve, with its seconds" },
     { CLI_FLAG, 'e', "strict", &options.strict, .silent = true,
-      .help = "exit with 1 when a solve has not converged" },
+      .help = "exit with 1 when a solve has not converged, or a run fails otherwise" },
     { 0 },
 };
 
@@ -315,7 +315,7 @@ void options_log_open(int files, char *const *file, const char *output)
     if (!log_file) die(EX_IOERR, "%s: %s", options.log, strerror(errno));
 }
 
-void options_log(const struct report *rep)
+void options_log(const struct report *rep, const struct account *account)
 {
     if (!log_file) return;
     json_t *j = json_report(rep);
@@ -323,6 +323,7 @@ void options_log(const struct report *rep)
     json_object_set_new(j, "elapsed", json_number(rep->elapsed));
     json_object_set_new(j, "detection", json_number(rep->detection));
     json_object_set_new(j, "work", json_number(rep->work));
+    if (account) json_object_set_new(j, "account", json_account(account));
     int failed =
         json_dumpf(j, log_file, JSON_COMPACT) || fputc('\n', log_file) == EOF || fflush(log_file);
     json_decref(j);
