@@ -311,12 +311,18 @@ void options_log_open(int files, char *const *file, const char *output)
         if (reader_reads(files, file, options.log))
             die_usage("--log: %s is also the input", options.log);
     }
-    log_file = fopen(options.log, "w");
-    if (!log_file) die(EX_IOERR, "%s: %s", options.log, strerror(errno));
+}
+
+/* With the first line, when input has been read: one that cannot be costs nobody his log. */
+static void log_begin(void)
+{
+    if (options.log && !log_file && !(log_file = fopen(options.log, "w")))
+        die(EX_IOERR, "%s: %s", options.log, strerror(errno));
 }
 
 void options_log(const struct report *rep, const struct account *account)
 {
+    log_begin();
     if (!log_file) return;
     json_t *j = json_report(rep);
     json_object_set_new(j, "seconds", json_number(rep->seconds));
@@ -332,6 +338,7 @@ void options_log(const struct report *rep, const struct account *account)
 
 void options_log_close(void)
 {
+    log_begin();
     if (log_file && fclose(log_file)) die(EX_IOERR, "%s: %s", options.log, strerror(errno));
     log_file = NULL;
 }

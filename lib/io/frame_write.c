@@ -44,6 +44,10 @@ static int write_parameters(hid_t file, const struct frame *f, struct why *why)
         h5_attr(file, "/nsd", "seed", H5T_NATIVE_INT64, -1, &seed, why) ||
         (p->overlap && h5_attr_text(file, "/nsd", "overlap", overlap_name[p->overlap], why)))
         return why->status;
+    const double origin[2] = { p->t0, (double)p->step0 };
+    if ((p->t0 != 0 || p->step0) &&
+        h5_attr(file, "/nsd", "time_origin", H5T_NATIVE_DOUBLE, 2, origin, why))
+        return why->status;
     return p->scene ? h5_write_text(file, "/nsd/scene", p->scene, why) : 0;
 }
 

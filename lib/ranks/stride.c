@@ -335,7 +335,7 @@ static int step_by_first(struct stride *y, struct packing *whole, struct contact
     if (detect(y, whole, all, &roll, &s, o, why)) return why->status;
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
     if (!t->me) {
-        rep->step = whole->step + 1, rep->t = whole->t + whole->dt;
+        rep->step = whole->step + 1, rep->t = packing_next_time(whole);
         rep->err.max_overlap = contacts_max_overlap(all);
         if (depth_of(&rep->depth, whole, all, NULL, why)) return why->status;
     }
@@ -402,7 +402,7 @@ static int step_by_all(struct stride *y, struct packing *whole, struct contacts 
     const bool bare = told[0];
     detect_here(y, whole, &s, o, &reach);
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
-    rep->step = y->part.p.step + 1, rep->t = y->part.p.t + y->part.p.dt;
+    rep->step = y->part.p.step + 1, rep->t = packing_next_time(&y->part.p);
     rep->err.max_overlap = talk_most(t, contacts_max_overlap(&s));
     measure_depth(y, &s, &rep->depth);
     rep->balanced = !bare, rep->tied = false;

@@ -42,7 +42,7 @@ int step_solve_contacts(const struct packing *pack, struct contacts *s, struct p
                         o->order, kept, why))
         return why->status;
     rep->step = pack->step + 1;
-    rep->t = pack->t + pack->dt;
+    rep->t = packing_next_time(pack);
     rep->err.max_overlap = contacts_max_overlap(s);
     if (check_solver(&p, o->solve.global, why)) return problem_free(&p), why->status;
     int failed = solve_problem(&p, &o->solve, rep);

@@ -299,11 +299,12 @@ static void test_velocity(void)
         struct pose before = drives_pose(&d, 0, 4, t - h), after = drives_pose(&d, 0, 4, t + h);
         struct pose now = drives_pose(&d, 0, 4, t);
         vec3 v = v3_scale(1 / (2 * h), v3_sub(pose_of(&after, x), pose_of(&before, x)));
-        vec3 found = drives_velocity(&d, 0, 4, t - h, 2 * h, pose_of(&now, x));
+        vec3 found =
+            drives_velocity(&d, 0, 4, (struct drive_step){ t - h, t + h, 2 * h }, pose_of(&now, x));
         off = fmax(off, v3_norm(v3_sub(v, found)));
         vec3 turned =
             v3_scale(1 / (2 * h), v3_sub(quat_turn(after.q, other), quat_turn(before.q, other)));
-        vec3 w = drives_spin(&d, 0, 4, t - h, 2 * h);
+        vec3 w = drives_spin(&d, 0, 4, (struct drive_step){ t - h, t + h, 2 * h });
         spin = fmax(spin, v3_norm(v3_sub(turned, v3_cross(w, quat_turn(now.q, other)))));
     }
     ok(off < 1e-7, "velocities are the differences of places, to %.1g m/s", off);
