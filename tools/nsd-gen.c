@@ -144,8 +144,12 @@ int tool_main(int argc, char **argv)
     }
     for (int64_t g = 0; g < scene.groups; g++)
         if (scene.bodies[g].from == SCENE_DOCUMENT) read_document(&scene.bodies[g], dir);
-    if (mesh_files_read(&scene, &files, &why) || scene_build(&frame.packing, &scene, dir, &why))
-        die_why(&why);
+    if (mesh_files_read(&scene, &files, &why)) die_why(&why);
+    for (int32_t k = 0; k < scene.meshes; k++)
+        if (scene.mesh_file[k].left_out)
+            warn("%s: left out: %d triangles that have no area, or the corners of another",
+                 scene.mesh_file[k].file, scene.mesh_file[k].left_out);
+    if (scene_build(&frame.packing, &scene, dir, &why)) die_why(&why);
     if (frame_note(&frame, cli_history(), &why) || writer_frame(out, &frame, &why) ||
         writer_close(out, &why))
         die_why(&why);

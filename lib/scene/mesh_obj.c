@@ -43,8 +43,7 @@ static int read_index(struct words *w, struct word word, int64_t *corner)
     int64_t i = strtoll(first.s, &end, 10);
     if (!first.n || end != first.s + first.n || !i)
         return word_fault(w, word, "is no number of a corner (1 is the first, -1 the last)");
-    for (int k = first.n; k < word.n; k++)
-        if (!strchr("/-0123456789", word.s[k])) return word_fault(w, word, "is no corner A/B/C");
+    if (!word_has_only(word, "/+-0123456789")) return word_fault(w, word, "is no corner A/B/C");
     *corner = i > 0 ? i - 1 : w->soup->corners + i;
     return 0;
 }

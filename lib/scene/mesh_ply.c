@@ -297,6 +297,7 @@ static int read(struct soup *s, const char *bytes, int64_t n)
     if (go_through(&p, VERTEX)) return 1;
     p.w = body, s->at = line;
     if (go_through(&p, FACE)) return 1;
+    if (p.form != ASCII) s->unit = NULL;
     if (p.form != ASCII && p.w.at < p.w.end)
         return soup_fault(s, "%lld bytes behind the last element", (long long)(p.w.end - p.w.at));
     return p.form == ASCII && words_any(&p.w, &rest)

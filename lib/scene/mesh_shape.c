@@ -8,6 +8,8 @@
 /* Of the hull's volume: the surface has it to this. Single precision makes 1e-7 of it, HULL_FLAT 1e-6. */
 static const double CONVEX = 1e-5;
 
+enum { CORNERS_MOST = 1 << 20 /* whose hull takes ten seconds */ };
+
 static int no_memory(struct why *why)
 {
     return why_set(why, EX_SOFTWARE, "no memory for a mesh");
@@ -91,6 +93,8 @@ static int judge_convex(const struct mesh *m, const struct shape *s, struct why 
 
 int mesh_shape(struct shape *s, const struct mesh *m, bool hull, struct why *why)
 {
+    if (m->vertices > CORNERS_MOST)
+        return why_set(why, EX_DATAERR, "has more than %d corners", CORNERS_MOST);
     if (mesh_check(m, 3, why) || (!hull && judge_closed(m, why)) ||
         hull_of_points(s, 3, m->vertices, m->vertex, why))
         return why->status;

@@ -65,8 +65,15 @@ bool words_any(struct words *w, struct word *word)
 bool word_is(struct word word, const char *what)
 {
     for (int k = 0; k < word.n; k++)
-        if (tolower((unsigned char)word.s[k]) != what[k]) return false; // what ends with a 0
+        if (!what[k] || tolower((unsigned char)word.s[k]) != what[k]) return false;
     return !what[word.n];
+}
+
+bool word_has_only(struct word word, const char *letters)
+{
+    for (int k = 0; k < word.n; k++)
+        if (!word.s[k] || !strchr(letters, word.s[k])) return false;
+    return true;
 }
 
 int word_fault(struct words *w, struct word word, const char *trouble)
@@ -77,9 +84,7 @@ int word_fault(struct words *w, struct word word, const char *trouble)
 int word_number(struct words *w, struct word word, double *x)
 {
     char *end = NULL;
-    bool decimal = word.n < NUMBER_MOST;
-    for (int k = 0; decimal && k < word.n; k++)
-        decimal = strchr("+-.0123456789eE", word.s[k]); // no nan, inf, 0x1
+    bool decimal = word.n < NUMBER_MOST && word_has_only(word, "+-.0123456789eE"); // no nan, 0x1
     if (decimal) *x = strtod(word.s, &end);
     if (!decimal || end != word.s + word.n)
         return word_fault(w, word, "is no finite decimal number");

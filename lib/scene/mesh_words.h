@@ -30,6 +30,7 @@ bool words_line(struct words *w);
 bool words_any(struct words *w, struct word *word);
 /* Letters may be of either case. */
 bool word_is(struct word word, const char *what);
+bool word_has_only(struct word word, const char *letters);
 /* A fault: "WORD" trouble */
 int word_fault(struct words *w, struct word word, const char *trouble);
 

@@ -86,17 +86,17 @@ int soup_polygon(struct soup *s, const int64_t *corner, int64_t n)
         x[kept] = at, number[kept++] = (int32_t)corner[k];
     }
     while (kept > 1 && same_place(x[kept - 1], x[0])) kept--;
-    if (make_room(s, n - 2) || kept < 3) return s->why->status;
+    if (make_room(s, n - 2)) return s->why->status;
     int32_t(*t)[3] = s->triangle + s->triangles;
     const char *trouble = NULL;
-    if (kept == 3)
-        t[0][0] = 0, t[0][1] = 1, t[0][2] = 2, triangles = 1;
+    if (kept <= 3)
+        t[0][0] = 0, t[0][1] = 1, t[0][2] = 2, triangles = kept == 3;
     else
         trouble = ears_cut(x, kept, t, &triangles, &s->work);
     if (trouble) return soup_fault(s, "%s", trouble);
     for (int32_t i = 0; i < triangles; i++)
         for (int k = 0; k < 3; k++) t[i][k] = number[t[i][k]];
-    s->triangles += triangles;
+    s->triangles += triangles, s->flat += (int32_t)n - 2 - triangles;
     return 0;
 }
 
@@ -254,7 +254,7 @@ static int add_to(struct mesh *to, struct soup *s, double scale)
 
 int soup_mesh(struct mesh *to, struct soup *s, double scale, int32_t *left_out)
 {
-    int32_t all = s->triangles;
+    int32_t all = s->triangles + s->flat;
     s->unit = NULL;
     if (join_corners(s) || mark_repeated(s)) return s->why->status;
     leave_out(s, scale);

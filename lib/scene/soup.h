@@ -24,6 +24,7 @@ struct soup {
     int32_t corners, triangles, corner_room, triangle_room;
     vec3 *corner;           /* [corners] in the file's unit of length */
     int32_t (*triangle)[3]; /* [triangles] */
+    int32_t flat;           /* triangles of polygons that have no area, and are not among them */
     int64_t work;           /* left to concave polygons [scene/ears.h] */
 };
 
