@@ -176,14 +176,15 @@ static int make_shape(struct shape *s, const struct hull *h, const struct loops 
 /* Of the points those that are apart, from the first one, in units of the extent */
 static int take_points(struct hull *h, int64_t n, const vec3 *x, struct why *why)
 {
-    double size = 0;
-    for (int64_t i = 0; i < n; i++) size = fmax(size, v3_norm(v3_sub(x[i], x[0])));
+    double size = thin_extent(x, n);
     if (!(size > 0)) return is_flat(why);
     if (!isfinite(size)) return why_set(why, EX_DATAERR, "its points are beyond all numbers");
     h->kept = malloc(((size_t)n + 1) * sizeof *h->kept);
     h->x = malloc(((size_t)n + 1) * sizeof *h->x);
     if (!h->kept || !h->x) return no_memory(why);
-    if (thin_out(h->kept, &h->n, x, n, HULL_APART * size, why)) return why->status;
+    if (thin_out(h->kept, x, n, HULL_APART * size, why)) return why->status;
+    for (int32_t i = 0; i < n; i++)
+        if (h->kept[i] == i) h->kept[h->n++] = i; // not behind what is read
     for (int64_t i = 0; i < h->n; i++) h->x[i] = v3_scale(1 / size, v3_sub(x[h->kept[i]], x[0]));
     return h->n > h->dim ? 0 : is_flat(why);
 }

@@ -2,6 +2,7 @@
 
 #include "bodies/solid.h"
 #include "scene/hull.h"
+#include "scene/thin.h"
 
 #include <stdlib.h>
 
@@ -48,19 +49,26 @@ static int judge_sides(const struct side *side, int32_t n, struct why *why)
     return 0;
 }
 
-/* Is every side that of two triangles, once either way? */
+/* Is every side that of two triangles, once either way? Corners as near as those of a hull may be are one. */
 static int judge_closed(const struct mesh *m, struct why *why)
 {
     struct side *side = malloc((3 * (size_t)m->elements + 1) * sizeof *side);
-    if (!side) return no_memory(why);
-    for (int32_t i = 0; i < m->elements; i++)
-        for (int k = 0; k < 3; k++) {
-            int32_t a = m->element[i][k], b = m->element[i][(k + 1) % 3];
-            side[3 * i + k] = (struct side){ a < b ? a : b, a < b ? b : a, a > b, i };
+    int32_t *to = malloc(((size_t)m->vertices + 1) * sizeof *to), n = 0;
+    double apart = HULL_APART * thin_extent(m->vertex, m->vertices);
+    if (!side || !to) no_memory(why);
+    if (!why->status && !thin_out(to, m->vertex, m->vertices, apart, why)) {
+        for (int32_t i = 0; i < m->elements; i++) {
+            const int32_t *e = m->element[i], c[3] = { to[e[0]], to[e[1]], to[e[2]] };
+            if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue; // has become a line
+            for (int k = 0; k < 3; k++) {
+                int32_t p = c[k], q = c[(k + 1) % 3];
+                side[n++] = (struct side){ p < q ? p : q, p < q ? q : p, p > q, i };
+            }
         }
-    qsort(side, 3 * (size_t)m->elements, sizeof *side, by_vertices);
-    judge_sides(side, 3 * m->elements, why);
-    free(side);
+        qsort(side, (size_t)n, sizeof *side, by_vertices);
+        judge_sides(side, n, why);
+    }
+    free(side), free(to);
     return why->status;
 }
 

@@ -102,7 +102,9 @@ static int64_t size_of(const char *bytes)
 static int read_binary(struct soup *s, const char *bytes, int64_t n)
 {
     if (n < HEADER)
-        return soup_fault(s, "neither an STL of text nor a binary one: %lld bytes", (long long)n);
+        return soup_fault(s, "no STL: %lld bytes that do not begin with solid", (long long)n);
+    if (!memchr(bytes, 0, HEADER))
+        return soup_fault(s, "no STL: text that does not begin with solid");
     int64_t size = size_of(bytes), triangles = (size - HEADER) / TRIANGLE;
     if (n < size)
         return soup_fault(s,

@@ -7,10 +7,11 @@
 
 #include <stdint.h>
 
-/* kept[0 .. *n_kept-1], ascending: points of which no two are within `apart` (m) of each other, and within that
-   of every other point. Of the cells of a grid as wide, the first point in each is taken, unless one in a cell
-   before is near. Time n log n. Returns 0 or EX_SOFTWARE. */
-int thin_out(int32_t *kept, int64_t *n_kept, const vec3 *x, int64_t n, double apart,
-             struct why *why);
+/* The largest distance of n points from the first one, m */
+double thin_extent(const vec3 *x, int64_t n);
+/* to[i] = the point that stands for point i, and is within `apart` (m) of it; itself for those that stay, of which
+   no two are as near. Of each cell of a grid as wide the first point stays, unless one of a cell before is near.
+   Time n log n. Returns 0 or EX_SOFTWARE. */
+int thin_out(int32_t *to, const vec3 *x, int64_t n, double apart, struct why *why);
 
 #endif

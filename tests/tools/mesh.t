@@ -39,6 +39,14 @@ awk 'BEGIN { n = 4000; for (i = 0; i < n; i++) { r = i % 2 ? 1 : 0.5; printf "v 
     printf "f"; for (i = 1; i <= n; i++) printf " %d", i; print "" }' >star.obj
 is "a star of 4000 corners" "$(area star.obj)" "3998 $(awk 'BEGIN { printf "%.9f", 2000 * 0.5 * sin(6.283185307179586 / 4000) }')"
 
+grain() # FILE: the mass of the grain
+{
+    echo "{\"dt\": 1e-3, \"shapes\": {\"it\": {\"mesh\": {\"file\": \"$1\"}}}, \"bodies\": [{\"x\": [0, 0, 0], \"shape\": \"it\", \"density\": 1}]}" >bad.json
+    nsd-gen bad.json | nsd-info -p | jq .mass
+}
+awk '/vertex/ { $1 = "vertex"; for (k = 2; k <= 4; k++) $k = sprintf("%.17g", $k + 1e-8 * ((NR * 7 + k) % 5)) } { print }' text.stl >noisy.stl
+is "corners that differ by some 1e-8 close a grain" "$(grain noisy.stl | jq '(. - 2.197 | fabs) < 1e-6')" true
+
 # ---- what is refused ----
 
 bad() # NAME FILE PATTERN < CONTENT
@@ -60,7 +68,7 @@ bad "words behind the end" a.stl 'line 10: "more" where solid' < <(stl '0 0 0' '
 bad "a binary STL with 3 bytes behind it" a.stl '3 bytes behind' < <(cat binary.stl; printf '\0\0\0')
 bad "noise" a.stl '' < <(head -c 3000 /dev/urandom)
 bad "one word" a.stl 'line 1: ends without endsolid' < <(printf 'solid')
-bad "an empty file" a.stl 'neither an STL of text nor a binary one' < <(:)
+bad "an empty file" a.stl 'no STL: 0 bytes' < <(:)
 obj() { printf 'v %s\n' '0 0 0' '1 0 0' '1 1 0' '0 1 0' '0.5 0.5 0.9'; printf '%s\n' "$@"; }
 bad "a corner that is not there" a.obj 'line 6: .* not there \(6 of 5\)' < <(obj 'f 1 2 6')
 bad "one before the first" a.obj 'line 6: .*not there' < <(obj 'f 1 2 -6')
