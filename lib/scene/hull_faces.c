@@ -29,18 +29,11 @@ static int loops_alloc(struct loops *l, int32_t faces, int32_t corners, struct w
 
 /* ---- faces grow ---- */
 
-/* Is facet f, which has a face across from its point k, in the plane n . x = at of that? A splinter is, if that is
-   its longest side: it has no plane of its own. */
-static bool belongs(const struct facet *f, int k, vec3 n, double at, const vec3 *x, double flat)
+static bool in_plane(const struct facet *f, vec3 n, double at, const vec3 *x, double flat)
 {
-    double longest = 0, side[3];
     bool in = true;
-    for (int i = 0; i < 3; i++) {
-        in &= fabs(v3_dot(n, x[f->point[i]]) - at) < flat;
-        side[i] = v3_norm(v3_sub(x[f->point[(i + 1) % 3]], x[f->point[(i + 2) % 3]]));
-        longest = fmax(longest, side[i]);
-    }
-    return in || (side[k] == longest && f->area < flat * longest);
+    for (int k = 0; k < 3; k++) in &= fabs(v3_dot(n, x[f->point[k]]) - at) < flat;
+    return in;
 }
 
 /* Gives a facet, and all that are joined to it in its plane, to one face; stack: room for all facets */
@@ -56,8 +49,7 @@ static void grow(struct facet *facet, int32_t seed, int32_t face, const vec3 *x,
         for (int k = 0; k < 3; k++) {
             int32_t next = facet[f].next[k];
             struct facet *g = &facet[next];
-            int back = g->next[0] == f ? 0 : g->next[1] == f ? 1 : 2;
-            if (g->face >= 0 || !belongs(g, back, normal, at, x, flat)) continue;
+            if (g->face >= 0 || !in_plane(g, normal, at, x, flat)) continue;
             g->face = face, stack[n++] = next;
         }
     }

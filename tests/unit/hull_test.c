@@ -143,7 +143,8 @@ static void noisy(const struct body *b)
             if (noise < 1e-4 * least || why.status == EX_SOFTWARE) {
                 failed += why.status != 0;
                 coarse += !(fabs(volume / b->volume - 1) < 1e-9 + 30 * noise / least);
-                cut += noise < 1e-8 && (s.faces != b->faces || s.vertices != b->vertices);
+                cut += noise < 1e-8 && s.faces != b->faces;
+                cut += noise < 1e-6 && s.vertices != b->vertices;
             }
             if (why.status) strcpy(said, why.text);
             shape_free(&s);
