@@ -223,13 +223,12 @@ bench-compare:
 
 # Targets of clang's libFuzzer, SECONDS each; what they find new stays in build/fuzz/corpus.
 SECONDS := 600
-FUZZ    := document problem scene
+FUZZ    := document problem scene mesh
 FUZZCC  := clang
 FUZZSAN := -fsanitize=address,undefined -fno-sanitize-recover=undefined
 F       := build/fuzz
-# nsd's own readers and what solves: not the command line, nor what draws and exports, nor what hands files to
-# libassimp
-FLIB    := $(patsubst $B/%,$F/%,$(filter-out $(foreach r,cli draw export,$B/lib/$r/%) $B/lib/scene/mesh_file.o,$(LIB)))
+# nsd's own readers and what solves: not the command line, nor what draws and exports
+FLIB    := $(patsubst $B/%,$F/%,$(filter-out $(foreach r,cli draw export,$B/lib/$r/%),$(LIB)))
 
 $F/lib/%.o: lib/%.c
 	@mkdir -p $(@D)
