@@ -132,6 +132,10 @@ static void count(const struct report *r)
 
 static void summary(int64_t made)
 {
+    char worst[80] = "";
+    if (!(total.worst <= total.eps)) // not only those that have no solution
+        snprintf(worst, sizeof worst, "; the largest %s is %.3g, not %g",
+                 options_error(total.criterion), total.worst, total.eps);
     warn("%lld steps, %lld sweeps, %.3g s in the solver", (long long)made, (long long)total.sweeps,
          total.seconds);
     if (total.safeguarded || total.gave_up)
@@ -142,12 +146,12 @@ static void summary(int64_t made)
     if (total.abandoned)
         warn("%lld steps were given up before their limits", (long long)total.abandoned);
     if (total.missed)
-        warn("%lld steps NOT CONVERGED, the first is step %lld; the largest %s is %.3g, not %g",
-             (long long)total.missed, (long long)total.first_missed, options_error(total.criterion),
-             total.worst, total.eps);
+        warn("%lld steps NOT CONVERGED, the first is step %lld%s", (long long)total.missed,
+             (long long)total.first_missed, worst);
     if (total.growing)
-        warn("in %lld of them reactions grow without end, and bodies still approach at up to %.3g "
-             "m/s",
+        warn("%lld of them have no solution: reactions grow without end, and bodies still approach "
+             "at "
+             "up to %.3g m/s",
              (long long)total.growing, total.approach);
 }
 

@@ -37,10 +37,11 @@ struct usual {
 
 /* nsd's own choice. --help shows it from here; nsd-solve(1) and nsd-step(1) repeat it. */
 static const struct usual usual = {
-    .packing = CRITERION_NATURAL, // scale-free: the same sweeps for balls of 10 um and of 1 m
+    .packing = CRITERION_VELOCITY, // it sees every contact, however small its reaction
     .fclib = CRITERION_NATURAL,
     .eps[CRITERION_GLOB] = 1e-10,   // a sum of m/s, m/s, N and W: the paper's
     .eps[CRITERION_SCALED] = 1e-3,  // costs as much as the next, or more
+    .eps[CRITERION_VELOCITY] = 1,   // g dt; while that is cheap a thousandth [solve/solver.c]
     .eps[CRITERION_NATURAL] = 1e-4, // the loosest with which overlaps do not grow [nsd-methods(7)]
     .fclib_eps = 1e-10,     // one problem deserves its solution: all that we have take a second
     .nlgs_sweeps = 5000,    // the paper's
@@ -61,7 +62,7 @@ static const struct usual usual = {
 static const struct usual paper = {
     .packing = CRITERION_GLOB,
     .fclib = CRITERION_GLOB,
-    .eps = { 1e-10, 1e-10, 1e-10 },
+    .eps = { 1e-10, 1e-10, 1e-10, 1e-10 },
     .fclib_eps = 1e-10,
     .nlgs_sweeps = 5000,
     .sweeps = 5000,

@@ -3,6 +3,7 @@
 #include "io/account_rows.h"
 #include "io/h5.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,6 +34,7 @@ int report_rows_open(struct report_rows *r, struct source *source, struct why *w
     if (source_shape(r->source, path, shape) > 0 && shape[0] < (uint64_t)r->solves)
         r->solves = (int64_t)shape[0];
     count_rows(r, layout_report);
+    count_rows(r, layout_velocity);
     count_rows(r, layout_balance);
     count_rows(r, layout_bond_balance);
     return why->status;
@@ -43,8 +45,8 @@ static int check_report(const struct report *rep, const char *group, struct why 
 {
     uint8_t converged;
     memcpy(&converged, &rep->converged, 1);
-    if (rep->sweeps < 0 || rep->err.contacts < 0 || rep->newton < 0 || rep->safeguarded < 0 ||
-        rep->gave_up < 0)
+    if (rep->sweeps < 0 || rep->err.contacts < 0 || rep->err.wedged < 0 || rep->newton < 0 ||
+        rep->safeguarded < 0 || rep->gave_up < 0)
         return why_set(why, EX_DATAERR, "%s: a number of things is negative", group);
     if (converged > 1) return why_set(why, EX_DATAERR, "%s/converged: is %d", group, converged);
     return 0;
@@ -82,6 +84,13 @@ static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
         source_rows(r->source, time, COLUMN_F64, at, n, 1, r->ahead.time, why) ||
         account_rows_read(r->source, r->group, at, n, r->ahead.account, why))
         return why->status;
+    snprintf(time, sizeof time, "%s/velocity/value", r->group);
+    bool velocity = source_has(r->source, time);
+    if (velocity && table_read_columns(r->source, r->group, "/value", layout_velocity, at, n,
+                                       r->ahead.row, sizeof *r->ahead.row, why))
+        return why->status;
+    for (int64_t i = 0; i < n && !velocity; i++)
+        r->ahead.row[i].err.velocity = r->ahead.row[i].err.velocity_error = NAN; // not known
     snprintf(time, sizeof time, "%s/dissipation/value", r->group);
     bool balanced = source_has(r->source, "/particles/all") && source_has(r->source, time);
     if (balanced && table_read_columns(r->source, r->group, "/value", layout_balance, at, n,
@@ -160,6 +169,8 @@ int report_rows_write(struct table_write *s, const struct report *rep, struct wh
                             why) ||
         table_write_clock(s, solver, true, &rep->step, solver, layout_report, why) ||
         table_write_clock(s, solver, false, &rep->t, solver, layout_report, why) ||
+        (rep->criterion == CRITERION_VELOCITY &&
+         write_table(s, layout_velocity, rep, first, why)) ||
         (rep->balanced && write_balance(s, rep, first, why)))
         return why->status;
     if (first &&
