@@ -82,7 +82,34 @@ static struct {
     int64_t fell_back;            /* steps that were solved otherwise than asked */
     int64_t abandoned;            /* steps whose solver knew no further way */
     double seconds;
+    struct account account; /* of this run */
 } total;
+
+/* What has gone worse than it may, when it first does */
+static void account(struct frame *f)
+{
+    char text[160];
+    account_add(&f->account, &f->report);
+    unsigned news = account_add(&total.account, &f->report);
+    for (int k = 0; k < ACCOUNT_ROWS; k++) {
+        if (!(news & 1U << k)) continue;
+        account_says(&total.account, (enum account_row)k, text, sizeof text);
+        warn("%s: %s", text, account_watched[k].cure);
+    }
+}
+
+/* The last line of a run: "worst: overlap 1.3e-05 of a radius (step 70, bodies 3 and 8), ..." */
+static void say_worst(void)
+{
+    char text[160 * ACCOUNT_ROWS] = "";
+    size_t n = 0;
+    for (int k = 0; k < ACCOUNT_ROWS && total.account.steps; k++) {
+        n += (size_t)snprintf(text + n, sizeof text - n, k ? ", " : "worst: ");
+        account_says(&total.account, (enum account_row)k, text + n, sizeof text - n);
+        n = strlen(text);
+    }
+    if (n) warn("%s", text);
+}
 
 static void count(const struct report *r)
 {
@@ -105,6 +132,10 @@ static void count(const struct report *r)
 
 static void summary(int64_t made)
 {
+    char worst[80] = "";
+    if (!(total.worst <= total.eps)) // not only those that have no solution
+        snprintf(worst, sizeof worst, "; the largest %s is %.3g, not %g",
+                 options_error(total.criterion), total.worst, total.eps);
     warn("%lld steps, %lld sweeps, %.3g s in the solver", (long long)made, (long long)total.sweeps,
          total.seconds);
     if (total.safeguarded || total.gave_up)
@@ -115,12 +146,12 @@ static void summary(int64_t made)
     if (total.abandoned)
         warn("%lld steps were given up before their limits", (long long)total.abandoned);
     if (total.missed)
-        warn("%lld steps NOT CONVERGED, the first is step %lld; the largest %s is %.3g, not %g",
-             (long long)total.missed, (long long)total.first_missed, options_error(total.criterion),
-             total.worst, total.eps);
+        warn("%lld steps NOT CONVERGED, the first is step %lld%s", (long long)total.missed,
+             (long long)total.first_missed, worst);
     if (total.growing)
-        warn("in %lld of them reactions grow without end, and bodies still approach at up to %.3g "
-             "m/s",
+        warn("%lld of them have no solution: reactions grow without end, and bodies still approach "
+             "at "
+             "up to %.3g m/s",
              (long long)total.growing, total.approach);
 }
 
@@ -199,8 +230,10 @@ static bool advance(struct run *r, int64_t k)
     if (crew_step(f, &r->memory, r->other_bodies, &r->o, &why)) die_why(&why);
     f->reported = f->moved = true;
     count(rep);
-    options_log(rep);
-    return isfinite(rep->err.paper.eps_glob);
+    account(f);
+    bool good = isfinite(rep->err.paper.eps_glob);
+    options_log(rep, k == steps || !good ? &total.account : NULL);
+    return good;
 }
 
 static void write_frame(struct run *r)
@@ -368,7 +401,8 @@ int tool_main(int argc, char **argv)
     const char *told = crew_leave();
     summary(made);
     if (told) warn("%s", told);
+    say_worst();
     frame_free(&r.f);
     reader_close(in);
-    return made < steps || (options.strict && total.missed);
+    return made < steps || (options.strict && account_fails(&total.account));
 }

@@ -107,8 +107,8 @@ int move_step(struct packing *p, const struct contacts *s, struct why *why)
 static void unmove_by(struct packing *p, struct impulses *sum)
 {
     vec3 gain[3];
-    move_freedoms(p, sum, true);
     for (int k = 0; k < 3; k++) gain[k] = p->cell.rate[k];
+    move_freedoms(p, sum, true);
     cell_unmove(&p->cell, p->t - p->dt, p->dt, p->theta);
     for (int k = 0; k < 3; k++) gain[k] = v3_sub(gain[k], p->cell.rate[k]);
     cell_flow_init(&sum->flow, &p->cell, sum->edge, gain);

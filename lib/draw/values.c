@@ -1,6 +1,8 @@
 /* draw/values.c: sums over contacts, and a table read [draw/values.h]. */
 #include "draw/values.h"
 
+#include "base/mark.h"
+
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,6 +45,7 @@ static int read_names(struct values *v, char *line, const char *path, const char
 {
     int k = 0;
     *c = (struct columns){ -1, -1, -1 };
+    line += mark_length(line, strlen(line));
     line += strspn(line, "# \t");
     for (char *name = strtok(line, blank); name; name = strtok(NULL, blank), k++) {
         if (!strcmp(name, "id")) c->id = k;

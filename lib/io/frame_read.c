@@ -323,7 +323,8 @@ static int read_foreign(struct frame_read *r, struct frame *f, struct why *why)
         if (!f->u) return why_set(why, EX_SOFTWARE, "no memory for the solution");
         if (source_read(source, "/solution/u", COLUMN_F64, n, f->u, why)) return why->status;
     }
-    return report_rows_read(&r->reports, 0, r->frames == 1, &f->report, &f->reported, why);
+    return report_rows_read(&r->reports, 0, r->frames == 1, &f->report, &f->account, &f->reported,
+                            why);
 }
 
 int frame_read_moment(struct frame_read *r, int64_t k, struct frame *f, struct why *why)
@@ -340,5 +341,6 @@ int frame_read_moment(struct frame_read *r, int64_t k, struct frame *f, struct w
     }
     f->packed = true;
     if (contact_rows_read(&r->contacts, f, why)) return why->status;
-    return report_rows_read(&r->reports, r->step[k], r->frames == 1, &f->report, &f->reported, why);
+    return report_rows_read(&r->reports, r->step[k], r->frames == 1, &f->report, &f->account,
+                            &f->reported, why);
 }

@@ -1,5 +1,6 @@
 #include "io/frame_write.h"
 
+#include "io/account_rows.h"
 #include "io/boundary_tables.h"
 #include "io/cell_tables.h"
 #include "io/contact_rows.h"
@@ -139,7 +140,8 @@ int frame_write_moment(struct table_write *s, const struct frame *f, struct why 
         (boundary_tables_write(s, &f->packing, why) || law_tables_write(s, &f->packing, why)))
         return why->status;
     if (f->packed && f->detected && contact_rows_write(s, f, why)) return why->status;
-    return f->reported ? report_rows_write(s, &f->report, why) : 0;
+    if (!f->reported || report_rows_write(s, &f->report, why)) return why->status;
+    return f->packed ? account_rows_write(s, &f->account, why) : 0;
 }
 
 int frame_write_step(struct table_write *s, const struct frame *f, struct why *why)

@@ -36,6 +36,7 @@ int step_solve_contacts(const struct packing *pack, struct contacts *s, struct p
                         const struct step_opt *o, struct report *rep, struct why *why)
 {
     struct problem p;
+    if (depth_of(&rep->depth, pack, s, NULL, why)) return why->status;
     if (!o->warm) contacts_free_found(s);
     if (prepare_packing(&p, pack, s, step_sweeps(o->solve.global), o->alpha, o->solve.method->rho,
                         o->order, kept, why))

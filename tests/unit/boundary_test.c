@@ -192,7 +192,7 @@ static void test_minima(void)
         struct mesh m;
         struct surface s;
         sheet(&m, 8, of[k].height);
-        must(mesh_check(&m, 3, &why) || surface_init(&s, &m, 0, m.elements, &why), &why);
+        must(mesh_check(&m, 3, &why) || surface_init(&s, &m, 0, m.elements, 0, &why), &why);
         bool good = true;
         for (int i = 0; i < 200; i++) { // above inner points, edges and corners
             double y = i % 3 == 0 ? draw(0.3, 0.7) : i % 3 == 1 ? 0.5 : 0.5 + 1e-17;
@@ -230,7 +230,7 @@ static void test_distance(void)
     struct touch t[TOUCHES_MOST];
     double off = 0;
     sheet(&m, 6, hills);
-    must(surface_init(&s, &m, 0, m.elements, &why), &why);
+    must(surface_init(&s, &m, 0, m.elements, 0, &why), &why);
     for (int i = 0; i < 60; i++) {
         vec3 c = v3(draw(-0.2, 1.2), draw(-0.2, 1.2), draw(-0.4, 0.4));
         double least = INFINITY, found = INFINITY;
@@ -253,13 +253,13 @@ static void test_tree(void)
     struct touch t[TOUCHES_MOST], one[TOUCHES_MOST];
     bool good = true;
     sheet(&m, 70, hills);
-    must(surface_init(&s, &m, 0, m.elements, &why), &why);
+    must(surface_init(&s, &m, 0, m.elements, 0, &why), &why);
     for (int i = 0; i < 20; i++) {
         vec3 c = v3(draw(0, 1), draw(0, 1), draw(-0.2, 0.2));
         double least = INFINITY, found = INFINITY;
         for (int32_t e = 0; e < m.elements; e++) {
             struct surface alone;
-            must(surface_init(&alone, &m, e, 1, &why), &why);
+            must(surface_init(&alone, &m, e, 1, 0, &why), &why);
             if (surface_touches(&alone, c, 1, one)) least = fmin(least, one[0].distance);
             surface_free(&alone);
         }
