@@ -17,10 +17,11 @@
 #include <unistd.h>
 
 enum {
-    OPTIONS = 64, /* room for a tool's options */
-    OF_ALL = 3,   /* options of every tool */
-    LEFT = 28,    /* characters of --help's left column */
-    HELP = 1000,  /* what getopt_long returns: beyond all letters */
+    MESSAGE = 8192, /* bytes of a message: names of files are at most 4096 */
+    OPTIONS = 64,   /* room for a tool's options */
+    OF_ALL = 3,     /* options of every tool */
+    LEFT = 28,      /* characters of --help's left column */
+    HELP = 1000,    /* what getopt_long returns: beyond all letters */
     VERSION,
     UNPACK,
     FIRST_LONG /* + the option's index */
@@ -32,10 +33,11 @@ static const void *given[OPTIONS]; /* the variables that were set, NULL between 
 
 static void message(const char *format, va_list ap)
 {
+    char text[MESSAGE];
+    vsnprintf(text, sizeof text, format, ap);
+    why_plain(text);
     progress_end();
-    fprintf(stderr, "%s: ", tool.name);
-    vfprintf(stderr, format, ap);
-    fputc('\n', stderr);
+    fprintf(stderr, "%s: %s\n", tool.name, text);
 }
 
 void die(int status, const char *format, ...)

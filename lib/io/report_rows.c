@@ -37,6 +37,7 @@ int report_rows_open(struct report_rows *r, struct source *source, struct why *w
     count_rows(r, layout_velocity);
     count_rows(r, layout_balance);
     count_rows(r, layout_bond_balance);
+    r->solves = account_rows_count(source, r->group, r->solves);
     if (!why->status) r->solves = table_read_rising(r->solved, r->solves);
     return why->status;
 }
