@@ -186,6 +186,7 @@ const char *ears_cut(const vec3 *x, int32_t n, int32_t (*triangle)[3], int32_t *
 {
     struct polygon p;
     *triangles = 0;
+    if (n < 3) return NULL;
     if (n > POLYGON_CORNERS_MOST) return "a polygon of more than 4096 corners";
     vec3 normal = newell_normal(x, n);
     p.n = n, p.blunts = 0, p.extent = 0;
