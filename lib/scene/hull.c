@@ -91,7 +91,7 @@ static int ask_qhull(struct hull *h, struct why *why)
     }
     for (int64_t i = 0; i < h->n; i++) {
         const double of[3] = { h->x[i].x, h->x[i].y, h->x[i].z };
-        for (int k = 0; k < h->dim; k++) flat[h->dim * i + k] = of[k];
+        for (int k = 0; k < 3 && k < h->dim; k++) flat[h->dim * i + k] = of[k];
     }
     char command[] = "qhull QJ";
     qh_zero(qh, silent);
