@@ -92,6 +92,7 @@ int values_read(struct values *v, const char *path, const char *column, struct w
         else if (line[strspn(line, blank)] && *line != '#')
             read_row(v, line, path, number, &c, why);
     }
+    if (!why->status && ferror(in)) why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
     if (!why->status && !v->name) why_set(why, EX_DATAERR, "%s: empty", path);
     free(line), fclose(in);
     if (v->n) qsort(v->row, (size_t)v->n, sizeof *v->row, compare);

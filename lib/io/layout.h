@@ -248,6 +248,14 @@ static const struct column layout_report[] = {
     { 0 },
 };
 
+/* The same where the criterion is velocity */
+static const struct column layout_velocity[] = {
+    { "velocity", "1", COLUMN_F64, 1, offsetof(struct report, err.velocity) },
+    { "velocity_error", "m s-1", COLUMN_F64, 1, offsetof(struct report, err.velocity_error) },
+    { "wedged", "1", COLUMN_I64, 1, offsetof(struct report, err.wedged) },
+    { 0 },
+};
+
 /* /nsd/flow/NAME/value [F][pours], or [removals]: members of struct passage */
 static const struct column layout_poured[] = {
     { "poured", "1", COLUMN_I64, 1, offsetof(struct passage, bodies) },

@@ -251,6 +251,15 @@ static void survey(struct survey *y, const struct packing *p, const struct conta
     team_share(team_size(), s->n, SOME, survey_some, y);
 }
 
+/* The sum of x[slots] of all processes, in one order always */
+static double sum_of_slots(const struct problem *p, const double *x)
+{
+    double sum = 0;
+    if (p->shared) return p->shared->sum_along(p->shared, p, x);
+    for (int64_t i = 0; i < p->slots; i++) sum += x[i];
+    return sum;
+}
+
 static int prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
                    double alpha, double rho_factor, const struct plan *plan, struct shared *shared,
                    struct why *why)
@@ -301,10 +310,10 @@ static int prepare(struct problem *p, const struct packing *pack, const struct c
     struct measuring m = { p, malloc((size_t)(p->slots + 1) * sizeof *m.q2) };
     if (!m.q2) return no_memory(p, why);
     team_share(team_size(), p->bundles, SOME / BUNDLE, measure_some, &m);
-    if (shared) p->norm_q = shared->sum_along(shared, p, m.q2);
-    for (int64_t i = 0; i < p->slots && !shared; i++) p->norm_q += m.q2[i]; // in one order always
+    p->norm_q = sqrt(sum_of_slots(p, m.q2));
+    for (int64_t i = 0; i < p->slots; i++) m.q2[i] = sqrt(m.q2[i]);
+    problem_set_unit(p, sum_of_slots(p, m.q2));
     free(m.q2);
-    p->norm_q = sqrt(p->norm_q);
     for (int64_t i = 0; s->found && i < p->slots; i++)
         if (p->contact[i] >= 0) take_found(p, i, s);
     if (shared && s->found) shared->settle(shared, p);

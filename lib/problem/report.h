@@ -6,11 +6,18 @@
 #define NSD_REPORT_H
 
 #include "bodies/balance.h"
+#include "bodies/depth.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
-enum criterion { CRITERION_GLOB, CRITERION_SCALED, CRITERION_NATURAL, CRITERION_COUNT };
+enum criterion {
+    CRITERION_GLOB,
+    CRITERION_SCALED,
+    CRITERION_NATURAL,
+    CRITERION_VELOCITY,
+    CRITERION_COUNT
+};
 extern const char *const criterion_name[CRITERION_COUNT]; /* as documents and logs have them */
 
 /* The paper's error and its four terms, each the mean over the contacts [estimator, corrected]. */
@@ -32,7 +39,11 @@ struct err {
     double natural;              /* |r - P(r - rho_a u^)| / |r|, rho_a = 1/lambda_max(W_aa) */
     double natural_siconos;      /* |r - P(r - u^)| / |q|, step 1: not scale-free */
     double natural_q;            /* |(r - P(r - rho_a u^))/rho_a| / |q| */
-    double stray; /* the same over max(|q|, sqrt(n) g dt); 0 for a problem given by W */
+    double velocity_error;       /* m/s: the largest |(r - P(r - rho_a u^))/rho_a| of a contact */
+    double velocity;             /* the same over the scene's own velocity [problem/problem.h] */
+    int64_t wedged; /* contacts that are left out of these, for their reactions grow without end */
+    double
+        stray; /* natural_q's over max(|q|, sqrt(n) g dt); given by W: velocity_error over the mean |q| */
 };
 
 struct report {
@@ -44,6 +55,7 @@ struct report {
     bool balanced;          /* balance is known: where there is a packing */
     bool tied;              /* its terms of bonds too: where pairs have other laws */
     struct balance balance; /* of the step that the reactions make */
+    struct depth depth;     /* of the contacts of a packing */
     enum criterion criterion;
     double eps;     /* what was asked */
     int32_t sweeps; /* or steps of cg */

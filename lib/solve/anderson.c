@@ -42,6 +42,7 @@ enum {
 #define LEAP_GROWTH 2.0   /* the same in a leap */
 #define RIDGE       1e-14 /* added to the scaled normal equations' diagonal of 1 */
 #define LEAP_FIRST  8.0   /* the first leap, in multiples of f */
+#define LEAP_MOST   1e15  /* and the longest: where f is 0, so is what is added */
 #define OMEGA_BALLS 1.6   /* omega of every other sweep of balls by default; 1.7 is slower */
 
 struct anderson {
@@ -318,7 +319,7 @@ static int leap(struct anderson *a)
     double now = measure(a);
     bool well = now <= LEAP_GROWTH * a->before;
     if (!well) a->reach = fmax(a->reach / 4, 2);
-    if (well && a->before < INFINITY) a->reach *= 2;
+    if (well && a->before < INFINITY) a->reach = fmin(2 * a->reach, LEAP_MOST);
     a->begin = well ? begin_leap : begin_taken_back, a->before = well ? now : INFINITY;
     if (a->left <= 0) start_mixing(a);
     a->left -= LEAP_SWEEPS;

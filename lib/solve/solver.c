@@ -5,11 +5,23 @@
 #include "problem/apply.h"
 #include "problem/judge.h"
 #include "problem/shared.h"
+#include "solve/prices.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/*
+ * With CRITERION_VELOCITY a solve aims at AIM at first, where that is less than eps, and is content with eps after ENOUGH sweeps, or
+ * as many as cost CHEAP ns where that is more. So small problems are solved well, a pile at rest is solved better
+ * from step to step until one or two sweeps are left of each, and what flows costs what eps costs.
+ */
+#define AIM   1e-3
+#define CHEAP 1e6
+enum { ENOUGH = 20 };
+
+static const char no_solution[] = "no solution: reactions grow without end";
 
 #define PACE 1e-9 /* s on the wall per priced ns, before any Newton step was timed */
 
@@ -46,9 +58,14 @@ double solve_judge(struct solve *s)
     return s->value;
 }
 
+double solve_target(const struct solve *s)
+{
+    return s->rep->sweeps < s->enough ? fmin(AIM, s->o->eps) : s->o->eps;
+}
+
 bool solve_met(const struct solve *s)
 {
-    return s->value <= s->o->eps;
+    return s->value <= solve_target(s);
 }
 
 double solve_seconds_left(const struct solve *s)
@@ -179,6 +196,8 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
     struct solve s = { .p = p, .o = o, .rep = rep, .start = wall };
     s.believes = o->method->believes, s.value = INFINITY, s.renewed = true;
     s.best.value = INFINITY, s.pace = PACE;
+    if (o->criterion == CRITERION_VELOCITY)
+        s.enough = (int32_t)fmax(ENOUGH, CHEAP / price_sweep(p));
     rep->criterion = o->criterion, rep->eps = o->eps;
     rep->sweeps = 0, rep->newton = rep->safeguarded = rep->gave_up = 0;
     rep->work = 0, rep->fallback = rep->given_up = NULL;
@@ -200,7 +219,9 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
     err_eval(&rep->err, p, s.believes, ERR_ALL, o->threads);
     rep->err.max_overlap = overlap;
     if (rep->history && rep->sweeps) rep->history[rep->sweeps - 1] = rep->err.paper;
-    rep->converged = !p->n || err_value(&rep->err, o->criterion, o->eps) <= o->eps;
+    bool wedged = rep->err.wedged && (o->criterion == CRITERION_VELOCITY || !p->packing);
+    rep->converged = !p->n || (!wedged && err_value(&rep->err, o->criterion, o->eps) <= o->eps);
+    if (wedged) rep->given_up = no_solution;
     rep->seconds = report_seconds(CLOCK_CPU) - cpu;
     rep->elapsed = report_seconds(CLOCK_WALL) - wall;
     return 0;

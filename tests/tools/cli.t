@@ -6,9 +6,7 @@
 tools=(nsd-gen nsd-detect nsd-solve nsd-move nsd-step nsd-err nsd-info nsd-cat nsd-view)
 step() { nsd-step "$@" 2>/dev/null; }
 
-nsd-gen 20 |
-    step -n 600 --every 600 --eps 1e-8 |
-    nsd-cat --last >"$tmp/heap.h5"
+stock heap20 >"$tmp/heap.h5"
 nsd-detect "$tmp/heap.h5" >"$tmp/contacts.h5"
 
 # ---- help and version ----
