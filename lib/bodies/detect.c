@@ -13,8 +13,11 @@
 #include <string.h>
 
 enum {
-    SOME = 512,  /* bodies whose places on a curved boundary are worth a thread: 50 us of work, */
-    MANY = 16384 /* and bodies at a plane, or pairs */
+    SOME = 512,   /* bodies whose places on a curved boundary are worth a thread: 50 us of work, */
+    MANY = 16384, /* and bodies at a plane, or pairs */
+    ELEMENTS_BODY =
+        4096, /* elements of meshes near a body: one ten times as wide as they are has 600 */
+    ELEMENTS_LEAST = 1 << 26 /* and those that all may have: a second's work */
 };
 
 /* A place where ball i meets wall w, in space; false when memory is short. */
@@ -194,6 +197,28 @@ static bool add_pairs(struct contacts *out, const struct sought *o, int64_t firs
     return true;
 }
 
+/* The elements of meshes that bodies have for neighbours are counted: no heap has so many near each body,
+   and elements that crowd would keep the search busy for hours. */
+static void count_elements(struct neighbours *near, const struct packing *p, _Atomic int64_t *seen)
+{
+    for (int32_t w = 0; near->surface && w < p->walls; w++)
+        near->surface[w].seen = seen,
+        near->surface[w].seen_most = ELEMENTS_LEAST + ELEMENTS_BODY * p->n;
+}
+
+static int check_crowd(struct neighbours *near, const struct packing *p, int64_t seen,
+                       struct why *why)
+{
+    int64_t most = ELEMENTS_LEAST + ELEMENTS_BODY * p->n;
+    for (int32_t w = 0; near->surface && w < p->walls; w++) near->surface[w].seen = NULL;
+    if (seen <= most) return 0;
+    return why_set(
+        why, EX_DATAERR,
+        "bodies have more than %lld elements of meshes near them: a mesh much finer than the "
+        "bodies, or crowded",
+        (long long)most);
+}
+
 /* The bodies at x and q, the cell's edges at edge (m), the walls where they are at time t (s) */
 static int detect(struct contacts *out, const struct packing *p, const vec3 *x, const quat *q,
                   const vec3 edge[3], double t, double gap, struct neighbours *kept,
@@ -204,9 +229,11 @@ static int detect(struct contacts *out, const struct packing *p, const vec3 *x, 
     const vec3 *edges = cell_repeats(&p->cell) ? edge : NULL;
     struct sought o = { p, x, edges, t, gap, near, shaped, 0 };
     bool stored = true;
+    _Atomic int64_t seen = 0;
     out->n = 0, contacts_free_found(out), contacts_free_tie(out);
     int e = neighbours_find(near, p, x, edge, gap, kept, why);
     if (!e) e = neighbours_surfaces(near, p, why);
+    if (!e) count_elements(near, p, &seen);
     if (!e && shaped) e = placed_init(shaped, p, x, q, why);
     for (o.wall = p->walls - 1; !e && stored && o.wall >= 0; o.wall--) {
         const struct wall *wall = &p->wall[o.wall];
@@ -219,6 +246,7 @@ static int detect(struct contacts *out, const struct packing *p, const vec3 *x, 
     const struct seams seams = { p, x, edges, t, shaped, near->surface };
     if (!e && stored) e = seams_drop(out, &seams, why);
     placed_free(&placed);
+    if (!e) e = check_crowd(near, p, seen, why);
     neighbours_free(&once);
     return e || stored ? e : why_set(why, EX_SOFTWARE, "no memory for the contacts");
 }

@@ -378,16 +378,12 @@ int packing_check(const struct packing *p, struct why *why)
         const char *trouble = wall_trouble(p, &p->wall[i]);
         if (trouble) return why_set(why, EX_DATAERR, "wall %d: %s", i, trouble);
     }
-    for (int32_t i = 0; i < p->drives.n; i++) {
-        const char *trouble = drive_trouble(&p->drives, i, p->walls, p->dim);
-        if (trouble) return why_set(why, EX_DATAERR, "drive %d: %s", i, trouble);
-    }
-    for (int32_t i = 0; i < p->pushes.n; i++) {
-        const char *trouble = drive_trouble(&p->pushes, i, p->walls, p->dim);
-        if (!trouble && !p->wall[p->pushes.drive[i].boundary].load.way)
-            trouble = "its boundary yields to no load";
-        if (trouble) return why_set(why, EX_DATAERR, "push %d: %s", i, trouble);
-    }
+    if (drives_check(&p->drives, p->walls, p->dim, "drive", why) ||
+        drives_check(&p->pushes, p->walls, p->dim, "push", why))
+        return why->status;
+    for (int32_t i = 0; i < p->pushes.n; i++)
+        if (!p->wall[p->pushes.drive[i].boundary].load.way)
+            return why_set(why, EX_DATAERR, "push %d: its boundary yields to no load", i);
     if (mesh_check(&p->mesh, p->dim, why)) return why->status;
     if (bonds_check(&p->bonds, p->dim, p->n, p->walls, why)) return why->status;
     return check_cell(p, why);

@@ -24,7 +24,7 @@ static void count_rows(struct report_rows *r, const struct column *columns)
 
 int report_rows_open(struct report_rows *r, struct source *source, struct why *why)
 {
-    *r = (struct report_rows){ .source = source, .ahead.last = -1 };
+    *r = (struct report_rows){ .source = source };
     char path[80];
     r->group = source_has(r->source, LAYOUT_REPORT) ? LAYOUT_REPORT : LAYOUT_REPORT_0_1;
     snprintf(path, sizeof path, "%s/step", r->group);
@@ -37,6 +37,7 @@ int report_rows_open(struct report_rows *r, struct source *source, struct why *w
     count_rows(r, layout_velocity);
     count_rows(r, layout_balance);
     count_rows(r, layout_bond_balance);
+    if (!why->status) r->solves = table_read_rising(r->solved, r->solves);
     return why->status;
 }
 
@@ -112,7 +113,7 @@ int report_rows_read(struct report_rows *r, int64_t step, bool alone, struct rep
 {
     const char *group = r->group;
     alone = alone && r->solves == 1;
-    int64_t at = alone ? 0 : table_read_row(r->solved, r->solves, step, r->ahead.last + 1);
+    int64_t at = alone ? 0 : table_read_row(r->solved, r->solves, step);
     *there = at >= 0;
     if (at < 0) return 0;
     bool is_read = at >= r->ahead.first && at < r->ahead.first + r->ahead.n;
@@ -120,7 +121,6 @@ int report_rows_read(struct report_rows *r, int64_t step, bool alone, struct rep
     *rep = r->ahead.row[at - r->ahead.first], *account = r->ahead.account[at - r->ahead.first];
     if (check_report(rep, group, why)) return why->status;
     rep->step = r->solved[at], rep->t = r->ahead.time[at - r->ahead.first];
-    r->ahead.last = at;
     char *method = source_text(r->source, group, "method", why);
     char *criterion = source_text(r->source, group, "criterion", why);
     rep->options = source_text(r->source, group, "options", why);
@@ -130,6 +130,8 @@ int report_rows_read(struct report_rows *r, int64_t step, bool alone, struct rep
     free(method), free(criterion);
     if (why->status || source_attribute(r->source, group, "eps", COLUMN_F64, -1, &rep->eps, why))
         return why->status;
+    if (!(rep->eps >= 0 && isfinite(rep->eps)))
+        return why_set(why, EX_DATAERR, "%s@eps: neither 0 nor a positive number", group);
     return read_history(r->source, group, rep, why);
 }
 

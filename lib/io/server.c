@@ -23,7 +23,7 @@ enum { SANITIZED = 0 };
 enum {
     SPARE_MEMORY = 1 << 28, /* bytes: libhdf5, its caches, and a packed chunk */
     MEMORY_RATIO = 4,       /* and so many times the document */
-    SPARE_SECONDS = 10,     /* of the processor, for an answer: a good one takes milliseconds, */
+    SPARE_SECONDS = 4,      /* of the processor, for an answer: a good one takes milliseconds, */
     RATE = 10000000,        /* and bytes a second: a tenth of what gzip unpacks */
     SLOWER = SANITIZED ? 10 : 1
 };

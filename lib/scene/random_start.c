@@ -10,7 +10,9 @@ enum {
     TRIES = 20000, /* places tried for a grain: at these densities it takes a dozen */
     SWEEPS = 100,  /* over the pairs at most, after a growth */
     LAST = 20000,  /* and in the end */
-    STEPS = 24     /* growths from loose to dense */
+    STEPS = 24,    /* growths from loose to dense */
+    FILL_MOST =
+        1 << 21 /* grains that a share of the box may come to: 1 GB. More have to be counted. */
 };
 static const double LOOSE[4] = { 0, 0, 0.4, 0.28 }; /* [dim] share of the box */
 static const double FURTHER = 1e-4; /* radii: what pairs are pushed beyond touching */
@@ -276,7 +278,7 @@ static double draw_radii(struct grains *out, const struct scene_bodies *b, int d
                          struct why *why)
 {
     double room = box_volume(&b->box, dim), filled = 0;
-    int64_t most = b->phi > 0 ? 100000000 : b->count;
+    int64_t most = b->phi > 0 ? FILL_MOST : b->count;
     for (int64_t i = 0; i < most; i++) {
         struct grain g = grain_at(v3(0, 0, 0), scene_size_draw(&b->size, rng));
         double v = b->form.fill * volume(dim, g.r);
@@ -287,6 +289,12 @@ static double draw_radii(struct grains *out, const struct scene_bodies *b, int d
         filled += v;
         if (b->phi > 0 && filled >= b->phi * room) break;
     }
+    if (b->phi > 0 && out->n == FILL_MOST && filled < b->phi * room)
+        why_set(
+            why, EX_DATAERR,
+            "phi %g takes more than %d grains of such radii, these fill %.2g: larger ones, or a "
+            "smaller box",
+            b->phi, FILL_MOST, filled / room);
     return filled / (b->form.fill * room);
 }
 
