@@ -39,6 +39,7 @@ static void evaluate(struct solve *s)
     struct err e;
     err_eval(&e, s->p, s->believes, err_terms_of(s->o->criterion), s->o->threads);
     s->value = err_value(&e, s->o->criterion, s->o->eps);
+    s->wedged = e.wedged > 0;
 }
 
 static void renew(struct solve *s)
