@@ -50,7 +50,7 @@ static char *slurp(FILE *f, size_t *n)
 }
 
 /* Reads the scene in a file, or in standard input (-), and sets the directory of its tables. */
-static void read_scene(struct scene *s, const char *path, char **dir)
+static void read_scene(struct scene *s, const char *path, char **dir, struct scene_files *files)
 {
     bool standard = !strcmp(path, "-");
     const char *name = standard ? "standard input" : path;
@@ -66,8 +66,8 @@ static void read_scene(struct scene *s, const char *path, char **dir)
         *dir = copy ? strdup(dirname(copy)) : NULL;
         free(copy);
     }
-    const struct scene_files files = { *dir, mesh_file_read };
-    scene_parse(s, text, n, &files, &why);
+    files->dir = *dir;
+    scene_parse(s, text, n, files, &why);
     free(text);
     if (why.status) die(why.status, "%s:%s", name, why.text);
 }
@@ -131,6 +131,7 @@ int tool_main(int argc, char **argv)
     struct writer *out;
     struct why why = { 0 };
     char *dir = NULL;
+    struct scene_files files = { .read_mesh = mesh_file_read };
     if (argc != 1 || !*argv[0]) die_usage("one operand: a number of balls, or a scene");
     if (writer_open(&out, NULL, WRITER_STREAM, &why)) die_why(&why);
     double n;
@@ -139,12 +140,16 @@ int tool_main(int argc, char **argv)
             die_usage("%s: not a number of balls (0 to %d)", argv[0], INT32_MAX);
         if (scene_paper(&scene, (int)dim, (int64_t)n, &why)) die_why(&why);
     } else {
-        read_scene(&scene, argv[0], &dir);
+        read_scene(&scene, argv[0], &dir, &files);
     }
     for (int64_t g = 0; g < scene.groups; g++)
         if (scene.bodies[g].from == SCENE_DOCUMENT) read_document(&scene.bodies[g], dir);
-    if (mesh_files_read(&scene, dir, &why) || scene_build(&frame.packing, &scene, dir, &why))
-        die_why(&why);
+    if (mesh_files_read(&scene, &files, &why)) die_why(&why);
+    for (int32_t k = 0; k < scene.meshes; k++)
+        if (scene.mesh_file[k].left_out)
+            warn("%s: left out: %d triangles that have no area, or the corners of another",
+                 scene.mesh_file[k].file, scene.mesh_file[k].left_out);
+    if (scene_build(&frame.packing, &scene, dir, &why)) die_why(&why);
     if (frame_note(&frame, cli_history(), &why) || writer_frame(out, &frame, &why) ||
         writer_close(out, &why))
         die_why(&why);

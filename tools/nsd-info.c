@@ -189,6 +189,7 @@ static void show_moment(const struct frame *f)
         json_object_update(j, r);
         json_decref(r);
     }
+    if (f->account.steps) json_object_set_new(j, "account", json_account(&f->account));
     json_line(j);
 }
 

@@ -74,7 +74,7 @@ static void solve(struct frame *f, const char *where)
     f->reported = true;
     f->forces |= forces;
     all_converged &= f->report.converged;
-    options_log(&f->report);
+    options_log(&f->report, NULL);
     options_summary(where, &f->report);
 }
 

@@ -8,6 +8,7 @@
 #include "io/writer.h"
 #include "scene/flow.h"
 
+#include <float.h>
 #include <malloc.h>
 #include <math.h>
 #include <stdio.h>
@@ -81,7 +82,34 @@ static struct {
     int64_t fell_back;            /* steps that were solved otherwise than asked */
     int64_t abandoned;            /* steps whose solver knew no further way */
     double seconds;
+    struct account account; /* of this run */
 } total;
+
+/* What has gone worse than it may, when it first does */
+static void account(struct frame *f)
+{
+    char text[160];
+    account_add(&f->account, &f->report);
+    unsigned news = account_add(&total.account, &f->report);
+    for (int k = 0; k < ACCOUNT_ROWS; k++) {
+        if (!(news & 1U << k)) continue;
+        account_says(&total.account, (enum account_row)k, text, sizeof text);
+        warn("%s: %s", text, account_watched[k].cure);
+    }
+}
+
+/* The last line of a run: "worst: overlap 1.3e-05 of a radius (step 70, bodies 3 and 8), ..." */
+static void say_worst(void)
+{
+    char text[160 * ACCOUNT_ROWS] = "";
+    size_t n = 0;
+    for (int k = 0; k < ACCOUNT_ROWS && total.account.steps; k++) {
+        n += (size_t)snprintf(text + n, sizeof text - n, k ? ", " : "worst: ");
+        account_says(&total.account, (enum account_row)k, text + n, sizeof text - n);
+        n = strlen(text);
+    }
+    if (n) warn("%s", text);
+}
 
 static void count(const struct report *r)
 {
@@ -173,13 +201,21 @@ static void flow(struct run *r)
     if (flow_step(&r->flow, &r->f.packing, &r->f.contacts, &r->other_bodies, &why)) die_why(&why);
 }
 
-/* Is the frame after the k-th step of this run one to keep, at time t? By seconds: the first at or after
-   each multiple of them, wherever the run began. */
-static bool is_kept(double t, double dt, int64_t k)
+/* s: what a time that is given in seconds may differ from that of its step: a part of dt, and the roundings
+   of dt, of its product with the step, and of the time given */
+static double slack(const struct packing *p, double t)
+{
+    return 1e-6 * p->dt + 4 * DBL_EPSILON * fabs(t);
+}
+
+/* Is the frame after a step, the k-th of this run, one to keep? By seconds: the first at or after each
+   multiple of them, wherever the run began. */
+static bool is_kept(const struct packing *p, int64_t step, int64_t k)
 {
     if (every.steps) return k % every.steps == 0;
-    double now = t / every.seconds, before = (t - dt) / every.seconds;
-    return floor(now + 1e-6) > floor(before + 1e-6); // times are sums of dt, with their rounding
+    double now = packing_time(p, step), before = packing_time(p, step - 1);
+    return floor((now + slack(p, now)) / every.seconds) >
+           floor((before + slack(p, before)) / every.seconds);
 }
 
 /* Makes one step, the k-th; false where its solve has diverged, and the bodies have not moved. */
@@ -190,12 +226,14 @@ static bool advance(struct run *r, int64_t k)
     struct report *rep = &f->report;
     flow(r);
     const struct packing *p = &f->packing;
-    r->o.bare = !options.log && k < steps && !is_kept(p->t + p->dt, p->dt, k);
+    r->o.bare = !options.log && k < steps && !is_kept(p, p->step + 1, k);
     if (crew_step(f, &r->memory, r->other_bodies, &r->o, &why)) die_why(&why);
     f->reported = f->moved = true;
     count(rep);
-    options_log(rep);
-    return isfinite(rep->err.paper.eps_glob);
+    account(f);
+    bool good = isfinite(rep->err.paper.eps_glob);
+    options_log(rep, k == steps || !good ? &total.account : NULL);
+    return good;
 }
 
 static void write_frame(struct run *r)
@@ -209,7 +247,7 @@ static void write_frame(struct run *r)
 /* Writes the last step that could be made, the k-th, without its contacts, unless it is written. */
 static void keep_last(struct run *r, int64_t k)
 {
-    if (k && is_kept(r->f.packing.t, r->f.packing.dt, k)) return;
+    if (k && is_kept(&r->f.packing, r->f.packing.step, k)) return;
     r->f.reported = r->f.detected = false;
     write_frame(r);
 }
@@ -243,7 +281,7 @@ static int64_t run(struct run *r)
     while (made < steps && (good = advance(r, made + 1))) {
         made++;
         tell(&r->f.report, made, since);
-        if (is_kept(r->f.packing.t, r->f.packing.dt, made) || made == steps) write_frame(r);
+        if (is_kept(&r->f.packing, r->f.packing.step, made) || made == steps) write_frame(r);
     }
     if (!good) {
         warn("step %lld: the solve diverged, the run ends before it", (long long)r->f.report.step);
@@ -256,14 +294,18 @@ static int64_t run(struct run *r)
     return made;
 }
 
-/* How many steps --until wants, of a packing at this time */
+/* How many steps --until wants, of a packing at this time: up to the first whose time reaches it, which
+   depends on where the time is counted from and not on where this run began */
 static void count_steps(const struct packing *p)
 {
     if (!cli_given(&until)) return;
-    double n =
-        ceil((until - p->t) / p->dt - 1e-6); // a time that is a sum of dt is reached, not passed
+    double n = ceil((until - p->t) / p->dt), reached = until - slack(p, until);
     if (n > 1e15) die_usage("--until %g: more than 1e15 steps of %g s", until, p->dt);
-    steps = n > 0 ? (int64_t)n : 0;
+    steps = n > 0 ? (int64_t)n : 0; // but for rounding
+    while (steps && packing_time(p, p->step + steps - 1) >= reached) steps--;
+    while (packing_time(p, p->step + steps) < reached &&
+           !packing_check_clock(p, &(struct why){ 0 }))
+        steps++;
 }
 
 /* ---- from where, and where to ---- */
@@ -294,7 +336,7 @@ static void copy_all(struct reader *in, struct writer *out, struct frame *f)
 static void start_in_place(struct run *r, struct reader *in, const char *path)
 {
     struct why why = { 0 };
-    if (writer_open_over(&r->out, path, &why)) die_why(&why);
+    if (writer_open(&r->out, path, WRITER_IN_PLACE, &why)) die_why(&why);
     copy_all(in, r->out, &r->f);
     double theta = r->f.packing.theta;
     options_theta(&r->f.packing, false);
@@ -350,15 +392,17 @@ int tool_main(int argc, char **argv)
         start_in_place(&r, in, argv[0]);
     else
         start(&r, in);
-    options_log_open(argc, argv, output);
     count_steps(&r.f.packing);
+    if (steps && writer_begin(r.out, &r.f, &why)) die_why(&why);
+    options_log_open(argc, argv, output);
     int64_t made = run(&r);
     if (writer_close(r.out, &why)) die_why(&why);
     options_log_close();
     const char *told = crew_leave();
     summary(made);
     if (told) warn("%s", told);
+    say_worst();
     frame_free(&r.f);
     reader_close(in);
-    return made < steps || (options.strict && total.missed);
+    return made < steps || (options.strict && account_fails(&total.account));
 }

@@ -71,7 +71,10 @@ struct work {
     double held, free;
 };
 
-/* What freedoms and the cell add to it: an edge that yields has its speed in the cell's rate. */
+/*
+ * What freedoms and the cell add to it. Of an edge that yields the contact sees the mean rate by the shift; the
+ * freedom gets what it sees by J, and the rest is the bodies', which follow the flow.
+ */
 static void add_beyond(struct work *w, const struct packing *p, const struct impulses *sum,
                        const struct contact *c, vec3 f)
 {
@@ -79,9 +82,12 @@ static void add_beyond(struct work *w, const struct packing *p, const struct imp
     w->held += 0.5 * v3_dot(f, twice);
     for (int32_t k = 0; k < sum->freedoms.n; k++) {
         const struct freedom *freedom = &sum->freedoms.f[k];
-        double along = v3_dot(f, freedom_direction(freedom, c));
-        w->free += along * (freedom->speed + 0.5 * impulses_change(sum, p, k));
-        if (freedom->boundary < 0) w->held -= along * freedom->speed;
+        double half = 0.5 * impulses_change(sum, p, k);
+        double got = v3_dot(f, freedom_direction(freedom, p, c, sum->ahead, sum->edge)) *
+                     (freedom->speed + half);
+        w->free += got;
+        if (!freedom_common(freedom)) continue;
+        w->held += c->shift[freedom->edge] * v3_dot(f, freedom->axis) * half - got;
     }
 }
 

@@ -5,6 +5,7 @@
 #include "bodies/anchor.h"
 #include "bodies/detect_shapes.h"
 #include "bodies/kinematics.h"
+#include "bodies/seam.h"
 #include "bodies/tie.h"
 #include "bodies/top.h"
 
@@ -215,6 +216,8 @@ static int detect(struct contacts *out, const struct packing *p, const vec3 *x, 
             find_all(out, &o, p->n, plane && !shaped ? MANY : SOME, plane ? add_plane : add_shape);
     }
     if (!e && stored) stored = find_all(out, &o, near->n, shaped ? SOME : MANY, add_pairs);
+    const struct seams seams = { p, x, edges, t, shaped, near->surface };
+    if (!e && stored) e = seams_drop(out, &seams, why);
     placed_free(&placed);
     neighbours_free(&once);
     return e || stored ? e : why_set(why, EX_SOFTWARE, "no memory for the contacts");

@@ -109,7 +109,7 @@ bool detect_shapes_pair(struct contacts *out, const struct placed *s, int32_t a,
 /* ---- boundaries ---- */
 
 /* Where a corner of body i, rounded by `round` (m), meets the surface; n points to the body's side. Where the
-   boundary ends only what is round meets it by its corners: of sharp bodies, edges and faces meet rims
+   boundary ends or bends only what is round meets it by its corners: of sharp bodies, edges and faces meet rims
    [meet_rims()]. Returns how many places. */
 static int near_surface(const struct placed *s, const struct wall *wall, const struct pose *pose,
                         const struct surface *surface, int64_t i, vec3 v, double round, double gap,
@@ -124,7 +124,8 @@ static int near_surface(const struct placed *s, const struct wall *wall, const s
     int kept = 0;
     for (int k = 0; k < n; k++) {
         bool end = boundary_ends_at(wall, p->dim, surface, c, &touch[k]);
-        if (end && round == 0) continue;
+        bool bends = round == 0 && surface && surface_bends(surface, p->dim, touch[k].feature);
+        if (round == 0 && (end || bends)) continue;
         touch[kept++] = touch[k];
         struct touch *t = &touch[kept - 1];
         vec3 place = v3_axpy(c, -t->distance, t->n);

@@ -128,23 +128,24 @@ struct pose drives_pose(const struct drives *d, int32_t first, int32_t n, double
 }
 
 /* rad/s or m/s: the mean over a step */
-static double mean_speed(const struct drives *d, const struct drive *k, double t, double dt)
+static double mean_speed(const struct drives *d, const struct drive *k, struct drive_step s)
 {
-    if (k->signal == DRIVE_SPEED && t + k->clock >= k->from && t + dt + k->clock <= k->until)
+    if (k->signal == DRIVE_SPEED && s.t + k->clock >= k->from && s.then + k->clock <= k->until)
         return k->value; // to the bit
-    return (drive_way(d, k, t + dt) - drive_way(d, k, t)) / dt;
+    return (drive_way(d, k, s.then) - drive_way(d, k, s.t)) / s.dt;
 }
 
 /* The last drive is undone first: x is where its motion has brought the material. */
-vec3 drives_velocity(const struct drives *d, int32_t first, int32_t n, double t, double dt, vec3 x)
+vec3 drives_velocity(const struct drives *d, int32_t first, int32_t n, struct drive_step step,
+                     vec3 x)
 {
     vec3 v = v3(0, 0, 0);
     quat later = { 1, 0, 0, 0 };
     for (int32_t i = first + n - 1; i >= first; i--) {
         const struct drive *k = &d->drive[i];
-        double speed = mean_speed(d, k, t, dt);
+        double speed = mean_speed(d, k, step);
         vec3 axis = quat_turn(later, k->axis);
-        struct pose one = drive_pose(d, k, t + dt / 2);
+        struct pose one = drive_pose(d, k, step.t + step.dt / 2);
         if (k->turns) {
             vec3 arm = quat_turn(later, v3_sub(x, k->point));
             v = v3_axpy(v, speed, v3_cross(axis, arm));
@@ -158,15 +159,15 @@ vec3 drives_velocity(const struct drives *d, int32_t first, int32_t n, double t,
     return v;
 }
 
-vec3 drives_spin(const struct drives *d, int32_t first, int32_t n, double t, double dt)
+vec3 drives_spin(const struct drives *d, int32_t first, int32_t n, struct drive_step step)
 {
     vec3 w = v3(0, 0, 0);
     quat later = { 1, 0, 0, 0 };
     for (int32_t i = first + n - 1; i >= first; i--) {
         const struct drive *k = &d->drive[i];
         if (!k->turns) continue;
-        w = v3_axpy(w, mean_speed(d, k, t, dt), quat_turn(later, k->axis));
-        later = quat_mul(later, drive_pose(d, k, t + dt / 2).q);
+        w = v3_axpy(w, mean_speed(d, k, step), quat_turn(later, k->axis));
+        later = quat_mul(later, drive_pose(d, k, step.t + step.dt / 2).q);
     }
     return w;
 }

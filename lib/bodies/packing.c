@@ -157,6 +157,7 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     if (packing_alloc_walls(to, p->walls, why) || packing_alloc_kinds(to, p->kinds, why)) goto fail;
     size_t n = (size_t)p->n, k2 = (size_t)p->kinds * (size_t)p->kinds;
     to->step = p->step, to->t = p->t, to->dt = p->dt, to->theta = p->theta, to->g = p->g;
+    to->t0 = p->t0, to->step0 = p->step0;
     to->overlap = p->overlap;
     to->seed = p->seed;
     if (cell_copy(&to->cell, &p->cell) || (p->image && packing_alloc_images(to, why))) goto fail;
@@ -199,6 +200,24 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
 fail:
     packing_free(to);
     return why_set(why, EX_SOFTWARE, "no memory for a copy of the packing");
+}
+
+void packing_count_from(struct packing *p, double t0, int64_t step0)
+{
+    p->t0 = t0, p->step0 = step0;
+    if (packing_time(p, p->step) != p->t) p->t0 = p->t, p->step0 = p->step;
+}
+
+int packing_check_clock(const struct packing *p, struct why *why)
+{
+    double t = fmax(fabs(p->t), fabs(packing_next_time(p)));
+    double grain = nextafter(t, INFINITY) - t;
+    if (grain <= p->dt) return 0;
+    return why_set(
+        why, EX_DATAERR,
+        "dt = %g s does not change a time of %g s, where numbers are %.2g s apart: begin "
+        "at an earlier time, or with a longer dt",
+        p->dt, p->t, grain);
 }
 
 double packing_mean_mass(const struct packing *p)

@@ -127,6 +127,21 @@ static bool surface_ends(const struct surface *s, int dim, int32_t feature)
     return elements_at(s, s->corner[3 * e + part], s->corner[3 * e + (part + 1) % 3]) == 1;
 }
 
+bool surface_bends(const struct surface *s, int dim, int32_t feature)
+{
+    int32_t e = feature / SURFACE_FEATURES, part = feature % SURFACE_FEATURES;
+    if (part == 6) return false;
+    int k = part < 3 ? part : part - 3;
+    int32_t v = s->corner[3 * e + k], w = part < 3 ? s->corner[3 * e + (k + 1) % 3] : v;
+    vec3 n = surface_normal(s, e);
+    for (int32_t i = s->star[v]; i < s->star[v + 1]; i++) {
+        int32_t other = s->member[i];
+        if (!has_corner(s, other, dim == 2 ? v : w)) continue;
+        if (v3_norm(v3_cross(n, surface_normal(s, other))) > FLAT) return true;
+    }
+    return false;
+}
+
 bool boundary_ends_at(const struct wall *w, int dim, const struct surface *surface, vec3 c,
                       const struct touch *t)
 {

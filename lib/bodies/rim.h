@@ -33,5 +33,7 @@ int rims_near(const struct wall *w, int dim, const struct surface *surface, vec3
    other side. */
 bool boundary_ends_at(const struct wall *w, int dim, const struct surface *surface, vec3 c,
                       const struct touch *t);
+/* Do the elements that meet at a feature of a surface lie in different planes? Then rims are there. */
+bool surface_bends(const struct surface *s, int dim, int32_t feature);
 
 #endif

@@ -1,5 +1,6 @@
 #include "cli/cli.h"
 
+#include "base/output.h"
 #include "io/reader.h"
 
 #include <ctype.h>
@@ -103,10 +104,17 @@ void progress_end(void)
     progress_shown = false;
 }
 
+static bool stdout_named; /* a file that had a name when the tool began */
+
 void finish_stdout(void)
 {
-    if (ferror(stdout) || fflush(stdout) || (fclose(stdout) && errno != EBADF))
+    bool bad = ferror(stdout), removed = stdout_named && output_removed(STDOUT_FILENO);
+    if (fflush(stdout) || (!bad && fclose(stdout) && errno != EBADF))
         die(EX_IOERR, "standard output: %s", strerror(errno));
+    if (bad)
+        die(EX_IOERR,
+            "standard output: not all was written (disk full?)"); // errno is of something else
+    if (removed) die(EX_IOERR, "standard output: another program has removed it");
 }
 
 const char *cli_history(void)
@@ -263,6 +271,7 @@ int cli_parse(int argc, char **argv)
         }
     json_t *value[OPTIONS] = { NULL };
     int c;
+    stdout_named = !output_removed(STDOUT_FILENO);
     size_t size = ((size_t)argc + 1) * sizeof *argv;
     if (!(arguments = malloc(size))) die(EX_SOFTWARE, "no memory");
     memcpy(arguments, argv, size);

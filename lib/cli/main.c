@@ -42,6 +42,7 @@ int main(int argc, char **argv)
 {
     guard_standard_descriptors();
     signal(SIGPIPE, SIG_DFL);
+    signal(SIGXFSZ, SIG_IGN); // a file that may not grow is said as a full disk is: EFBIG
     json_set_alloc_funcs(json_memory, free);
     if (argc == 3 && !strcmp(argv[1], "--completion")) return completion(argv[2]);
     int first = cli_parse(argc, argv);

@@ -183,7 +183,7 @@ const struct cli_option options_run[] = {
     { CLI_TEXT, 0, "log", &options.log, "FILE", .silent = true,
       .help = "write one JSON line for each solve, with its seconds" },
     { CLI_FLAG, 'e', "strict", &options.strict, .silent = true,
-      .help = "exit with 1 when a solve has not converged" },
+      .help = "exit with 1 when a solve has not converged, or a run fails otherwise" },
     { 0 },
 };
 
@@ -313,18 +313,25 @@ void options_log_open(int files, char *const *file, const char *output)
         if (reader_reads(files, file, options.log))
             die_usage("--log: %s is also the input", options.log);
     }
-    log_file = fopen(options.log, "w");
-    if (!log_file) die(EX_IOERR, "%s: %s", options.log, strerror(errno));
 }
 
-void options_log(const struct report *rep)
+/* With the first line, when input has been read: one that cannot be costs nobody his log. */
+static void log_begin(void)
 {
+    if (options.log && !log_file && !(log_file = fopen(options.log, "w")))
+        die(EX_IOERR, "%s: %s", options.log, strerror(errno));
+}
+
+void options_log(const struct report *rep, const struct account *account)
+{
+    log_begin();
     if (!log_file) return;
     json_t *j = json_report(rep);
     json_object_set_new(j, "seconds", json_number(rep->seconds));
     json_object_set_new(j, "elapsed", json_number(rep->elapsed));
     json_object_set_new(j, "detection", json_number(rep->detection));
     json_object_set_new(j, "work", json_number(rep->work));
+    if (account) json_object_set_new(j, "account", json_account(account));
     int failed =
         json_dumpf(j, log_file, JSON_COMPACT) || fputc('\n', log_file) == EOF || fflush(log_file);
     json_decref(j);
@@ -333,6 +340,7 @@ void options_log(const struct report *rep)
 
 void options_log_close(void)
 {
+    log_begin();
     if (log_file && fclose(log_file)) die(EX_IOERR, "%s: %s", options.log, strerror(errno));
     log_file = NULL;
 }

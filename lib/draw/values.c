@@ -1,6 +1,8 @@
 /* draw/values.c: sums over contacts, and a table read [draw/values.h]. */
 #include "draw/values.h"
 
+#include "base/mark.h"
+
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -37,6 +39,7 @@ static int read_names(struct values *v, char *line, const char *path, const char
 {
     int k = 0;
     *c = (struct columns){ -1, -1, -1 };
+    line += mark_length(line, strlen(line));
     line += strspn(line, "# \t");
     for (char *name = strtok(line, blank); name; name = strtok(NULL, blank), k++) {
         if (!strcmp(name, "id")) c->id = k;
@@ -89,6 +92,7 @@ int values_read(struct values *v, const char *path, const char *column, struct w
         else if (line[strspn(line, blank)] && *line != '#')
             read_row(v, line, path, number, &c, why);
     }
+    if (!why->status && ferror(in)) why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
     if (!why->status && !v->name) why_set(why, EX_DATAERR, "%s: empty", path);
     free(line), fclose(in);
     if (v->n) qsort(v->row, (size_t)v->n, sizeof *v->row, compare);

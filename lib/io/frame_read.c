@@ -36,6 +36,11 @@ static int count_frames(struct frame_read *r, struct why *why)
     }
     if (source_shape(r->source, "/particles/all/id/value", shape) == 2)
         n = n < (int64_t)shape[0] ? n : (int64_t)shape[0];
+    const int64_t most = (int64_t)1 << STEPS_LOG2;
+    for (int64_t k = 0; k < n; k++)
+        if (r->step[k] < -most || r->step[k] > most)
+            return why_set(why, EX_DATAERR, "/particles/all/position/step: %lld is out of range",
+                           (long long)r->step[k]);
     // a killed writer may have made room for a step without setting it
     for (r->frames = n > 0; r->frames < n; r->frames++)
         if (r->step[r->frames] <= r->step[r->frames - 1]) break;
@@ -135,6 +140,20 @@ static int read_parameters(struct source *doc, struct packing *p, struct why *wh
     return why->status;
 }
 
+/* Step and time of frame k, and from where its time is counted: a document whose time is step dt need not
+   say it, and what one says that contradicts its times is not believed. */
+static void read_clock(struct frame_read *r, int64_t k, struct packing *p)
+{
+    const double most = (double)((int64_t)1 << STEPS_LOG2);
+    double origin[2] = { 0 };
+    struct why none = { 0 };
+    if (source_attribute(r->source, "/nsd", "time_origin", COLUMN_F64, 2, origin, &none) ||
+        !(fabs(origin[1]) <= most))
+        origin[0] = origin[1] = 0;
+    p->step = r->step[k], p->t = r->time[k];
+    packing_count_from(p, origin[0], (int64_t)origin[1]);
+}
+
 /* Bodies as they are in every frame, and where they are in frame k */
 static int read_bodies(struct frame_read *r, int64_t k, struct packing *p, struct why *why)
 {
@@ -164,7 +183,7 @@ static int read_settings(struct frame_read *r, int64_t k, struct packing *p, str
         boundary_tables_read(r->source, k, p, why) || flow_tables_read(r->source, k, p, why) ||
         law_tables_read(r->source, k, p, why))
         return why->status;
-    p->step = r->step[k], p->t = r->time[k];
+    read_clock(r, k, p);
     return cell_tables_read(r->source, k, r->repeats, p, why) || packing_check(p, why) ? why->status
                                                                                        : 0;
 }
@@ -277,7 +296,7 @@ static int read_packing(struct frame_read *r, int64_t k, struct packing *p, stru
         (row ? roster_read(r->source, k, row, p, why) : read_bodies(r, k, p, why)) ||
         flow_tables_read(r->source, k, p, why) || law_tables_read(r->source, k, p, why))
         goto end;
-    p->step = r->step[k], p->t = r->time[k];
+    read_clock(r, k, p);
     if (packing_varies(p) && (r->repeats[0] || r->repeats[1] || r->repeats[2]))
         why_set(why, EX_DATAERR, "bodies that come and go in a cell that repeats: not known");
     else if (!cell_tables_read(r->source, k, r->repeats, p, why) && !packing_check(p, why))
@@ -300,7 +319,8 @@ static int read_foreign(struct frame_read *r, struct frame *f, struct why *why)
         if (!f->u) return why_set(why, EX_SOFTWARE, "no memory for the solution");
         if (source_read(source, "/solution/u", COLUMN_F64, n, f->u, why)) return why->status;
     }
-    return report_rows_read(&r->reports, 0, r->frames == 1, &f->report, &f->reported, why);
+    return report_rows_read(&r->reports, 0, r->frames == 1, &f->report, &f->account, &f->reported,
+                            why);
 }
 
 int frame_read_moment(struct frame_read *r, int64_t k, struct frame *f, struct why *why)
@@ -316,5 +336,6 @@ int frame_read_moment(struct frame_read *r, int64_t k, struct frame *f, struct w
     }
     f->packed = true;
     if (contact_rows_read(&r->contacts, f, why)) return why->status;
-    return report_rows_read(&r->reports, r->step[k], r->frames == 1, &f->report, &f->reported, why);
+    return report_rows_read(&r->reports, r->step[k], r->frames == 1, &f->report, &f->account,
+                            &f->reported, why);
 }

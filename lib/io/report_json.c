@@ -75,6 +75,25 @@ json_t *json_report(const struct report *r)
     return j;
 }
 
+json_t *json_account(const struct account *a)
+{
+    json_t *j = json_pack("{s:I}", "steps", (json_int_t)a->steps);
+    for (int k = 0; k < ACCOUNT_ROWS; k++) {
+        const struct watched *w = &account_watched[k];
+        const struct account_entry *e = &a->worst[k];
+        json_t *row = json_object();
+        json_object_set_new(row, "value", json_number(e->value));
+        json_object_set_new(row, "step", json_integer((json_int_t)e->step));
+        if (w->bodies) json_object_set_new(row, "bodies", json_array());
+        for (int i = 0; i < w->bodies && e->value != 0; i++)
+            json_array_append_new(json_object_get(row, "bodies"),
+                                  json_integer((json_int_t)e->bodies[i]));
+        json_object_set_new(row, "fails", json_boolean(account_row_fails(a, (enum account_row)k)));
+        json_object_set_new(j, w->name, row);
+    }
+    return j;
+}
+
 void json_line(json_t *j)
 {
     json_dumpf(j, stdout, JSON_COMPACT);

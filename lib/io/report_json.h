@@ -5,7 +5,7 @@
 #define NSD_REPORT_JSON_H
 
 #include "base/json.h"
-#include "problem/report.h"
+#include "solve/account.h"
 
 /*
  * contacts, eps_glob, motion, proj, bipotential, penetration, scaled {...}, max_penetration,
@@ -18,6 +18,8 @@ json_t *json_err(const struct err *err);
  * momentum, impulse } [bodies/balance.h]
  */
 json_t *json_report(const struct report *report);
+/* steps, and for each row { value, step, bodies: [...], fails } */
+json_t *json_account(const struct account *account);
 
 /* Prints one compact line on stdout and frees the value. */
 void json_line(json_t *value);

@@ -1,5 +1,6 @@
 #include "io/report_rows.h"
 
+#include "io/account_rows.h"
 #include "io/h5.h"
 
 #include <math.h>
@@ -69,17 +70,19 @@ static int read_history(struct source *doc, const char *group, struct report *re
 static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
 {
     char time[80];
-    free(r->ahead.row), free(r->ahead.time);
+    free(r->ahead.row), free(r->ahead.account), free(r->ahead.time);
     int64_t n = r->solves - at < AHEAD ? r->solves - at : AHEAD;
     r->ahead.first = at, r->ahead.n = 0;
     r->ahead.row = calloc((size_t)n, sizeof *r->ahead.row);
+    r->ahead.account = calloc((size_t)n, sizeof *r->ahead.account);
     r->ahead.time = calloc((size_t)n, sizeof *r->ahead.time);
-    if (!r->ahead.row || !r->ahead.time)
+    if (!r->ahead.row || !r->ahead.account || !r->ahead.time)
         return why_set(why, EX_SOFTWARE, "no memory for %s", r->group);
     snprintf(time, sizeof time, "%s/time", r->group);
     if (table_read_columns(r->source, r->group, "/value", layout_report, at, n, r->ahead.row,
                            sizeof *r->ahead.row, why) ||
-        source_rows(r->source, time, COLUMN_F64, at, n, 1, r->ahead.time, why))
+        source_rows(r->source, time, COLUMN_F64, at, n, 1, r->ahead.time, why) ||
+        account_rows_read(r->source, r->group, at, n, r->ahead.account, why))
         return why->status;
     snprintf(time, sizeof time, "%s/velocity/value", r->group);
     bool velocity = source_has(r->source, time);
@@ -105,7 +108,7 @@ static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
 }
 
 int report_rows_read(struct report_rows *r, int64_t step, bool alone, struct report *rep,
-                     bool *there, struct why *why)
+                     struct account *account, bool *there, struct why *why)
 {
     const char *group = r->group;
     alone = alone && r->solves == 1;
@@ -114,7 +117,7 @@ int report_rows_read(struct report_rows *r, int64_t step, bool alone, struct rep
     if (at < 0) return 0;
     bool is_read = at >= r->ahead.first && at < r->ahead.first + r->ahead.n;
     if (!is_read && read_ahead(r, at, why)) return why->status;
-    *rep = r->ahead.row[at - r->ahead.first];
+    *rep = r->ahead.row[at - r->ahead.first], *account = r->ahead.account[at - r->ahead.first];
     if (check_report(rep, group, why)) return why->status;
     rep->step = r->solved[at], rep->t = r->ahead.time[at - r->ahead.first];
     r->ahead.last = at;
@@ -132,7 +135,7 @@ int report_rows_read(struct report_rows *r, int64_t step, bool alone, struct rep
 
 void report_rows_close(struct report_rows *r)
 {
-    free(r->solved), free(r->ahead.row), free(r->ahead.time);
+    free(r->solved), free(r->ahead.row), free(r->ahead.account), free(r->ahead.time);
     *r = (struct report_rows){ 0 };
 }
 

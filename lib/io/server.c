@@ -218,7 +218,7 @@ void server_run(int line, struct shared *shared, int files, char *const *file, u
     served_start();
     if (!stream_open(&s.stream, files, file, &why)) serve(&s);
 #ifdef NSD_COVERAGE
-    malloc_trim(0); // tells tests/preload/nomemory.c that what follows is not ours
+    malloc_trim(0); // tells tests/support/preload/failing_allocations.c that what follows is not ours
     __gcov_dump();
 #endif
     _exit(0);

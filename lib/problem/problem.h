@@ -148,6 +148,13 @@ static inline struct bundle *slot_bundle(const struct problem *p, int64_t i)
 {
     return bundle_at(p, i / BUNDLE);
 }
+/* How many contacts a bundle has */
+static inline int bundle_contacts(const struct problem *p, int64_t bundle)
+{
+    int n = 0;
+    for (int k = 0; k < BUNDLE; k++) n += p->contact[bundle * BUNDLE + k] >= 0;
+    return n;
+}
 static inline int slot_lane(int64_t i)
 {
     return (int)(i % BUNDLE);

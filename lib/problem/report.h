@@ -6,6 +6,7 @@
 #define NSD_REPORT_H
 
 #include "bodies/balance.h"
+#include "bodies/depth.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -54,6 +55,7 @@ struct report {
     bool balanced;          /* balance is known: where there is a packing */
     bool tied;              /* its terms of bonds too: where pairs have other laws */
     struct balance balance; /* of the step that the reactions make */
+    struct depth depth;     /* of the contacts of a packing */
     enum criterion criterion;
     double eps;     /* what was asked */
     int32_t sweeps; /* or steps of cg */

@@ -331,8 +331,9 @@ static int step_by_first(struct stride *y, struct packing *whole, struct contact
     if (detect(y, whole, all, &roll, &s, o, why)) return why->status;
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
     if (!t->me) {
-        rep->step = whole->step + 1, rep->t = whole->t + whole->dt;
+        rep->step = whole->step + 1, rep->t = packing_next_time(whole);
         rep->err.max_overlap = contacts_max_overlap(all);
+        if (depth_of(&rep->depth, whole, all, NULL, why)) return why->status;
     }
     if (blocks)
         solve_in_blocks(y, &b, whole, &s, o, rep, why), blocks_free(&b);
@@ -363,6 +364,28 @@ static void tell_contacts(struct stride *y, struct contacts *all, const struct c
     roll_free(&roll);
 }
 
+/* How deep they are, to all: a body counts where it is this rank's own, with all its contacts. Of ranks with
+   the same depth the pair of the largest ids stands. */
+static void measure_depth(struct stride *y, const struct contacts *s, struct depth *d)
+{
+    struct talk *t = y->part.talk;
+    struct why why = { 0 };
+    bool *own = talk_new(t, y->part.p.n, sizeof *own);
+    for (int64_t i = 0; i < y->part.p.n; i++) own[i] = y->part.owner[i] == t->me;
+    if (depth_of(d, &y->part.p, s, own, &why)) fail(y, &why);
+    free(own);
+    const double most = talk_most(t, d->deepest), none = -1e300;
+    bool here = d->deepest == most;
+    for (int k = 0; k < 2; k++) {
+        double id = talk_most(t, here ? d->pair[k] : none);
+        here = here && d->pair[k] == id;
+        d->pair[k] = (int32_t)id;
+    }
+    double first = talk_most(t, d->wedged ? -d->wedged_id : none);
+    d->wedged = talk_sum(t, d->wedged), d->wedged_id = d->wedged ? (int32_t)-first : 0;
+    d->deepest = most;
+}
+
 static int step_by_all(struct stride *y, struct packing *whole, struct contacts *all,
                        const struct step_opt *o, struct report *rep, struct why *why)
 {
@@ -375,8 +398,9 @@ static int step_by_all(struct stride *y, struct packing *whole, struct contacts 
     const bool bare = told[0];
     detect_here(y, whole, &s, o, &reach);
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
-    rep->step = y->part.p.step + 1, rep->t = y->part.p.t + y->part.p.dt;
+    rep->step = y->part.p.step + 1, rep->t = packing_next_time(&y->part.p);
     rep->err.max_overlap = talk_most(t, contacts_max_overlap(&s));
+    measure_depth(y, &s, &rep->depth);
     rep->balanced = !bare, rep->tied = false;
     solve_in_blocks(y, &b, whole, &s, o, rep, why);
     bool moves = isfinite(rep->err.paper.eps_glob);

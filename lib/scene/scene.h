@@ -213,7 +213,8 @@ struct scene_removal {
 struct scene_mesh {
     int32_t wall;
     char *file;
-    double scale; /* m a unit of the file */
+    double scale;     /* m a unit of the file */
+    int32_t left_out; /* triangles of the file that are not in the mesh */
 };
 
 /* What a shape was before it was brought to its own axes and unit [bodies/solid.h] */
@@ -262,9 +263,9 @@ struct scene {
     struct shapes shapes;      /* of grains */
     struct scene_solid *solid; /* [shapes.n] */
 
-    const struct scene_files *files; /* while it is parsed */
-    bool rewritten;                  /* the JSON, which now has what was in files */
-    char *text;                      /* the JSON, without blanks outside strings */
+    struct scene_files *files; /* while it is parsed */
+    bool rewritten;            /* the JSON, which now has what was in files */
+    char *text;                /* the JSON, without blanks outside strings */
 };
 
 /* Cells of a lattice along each axis, filled along x, then y, then z; and their edges (m). */
@@ -276,14 +277,15 @@ struct scene_lattice scene_lattice(const struct scene_bodies *b, int dim);
 /* Who reads the triangles of a file, `scale` m a unit of it, and adds them to a mesh. What parses scenes
    out of documents has none: those name no files. */
 struct scene_files {
-    const char *dir; /* that names are relative to; NULL: the current folder */
-    int (*read_mesh)(struct mesh *to, const char *dir, const char *name, double scale,
-                     struct why *why);
+    const char *dir;    /* that names are relative to; NULL: the current folder */
+    int64_t mesh_bytes; /* read so far: all files of a scene draw on one account */
+    int (*read_mesh)(struct mesh *to, struct scene_files *files, const char *name, double scale,
+                     int32_t *left_out, struct why *why);
 };
 
 /* files: NULL where shapes of grains must not be in files; the scene's text then has what was in them.
    Returns 0, EX_DATAERR, EX_NOINPUT or EX_SOFTWARE; *s needs to be freed only after 0. */
-int scene_parse(struct scene *s, const char *text, size_t length, const struct scene_files *files,
+int scene_parse(struct scene *s, const char *text, size_t length, struct scene_files *files,
                 struct why *why);
 void scene_free(struct scene *s);
 /* A file that the scene names, where names are relative to dir (NULL: to the current folder); to be freed.

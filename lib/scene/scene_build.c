@@ -210,7 +210,7 @@ static bool goes_beyond(const struct scene *s)
 
 static int set_parameters(struct packing *p, const struct scene *s, struct why *why)
 {
-    p->dt = s->dt, p->theta = s->theta, p->g = s->g, p->seed = s->seed, p->t = s->t;
+    p->dt = s->dt, p->theta = s->theta, p->g = s->g, p->seed = s->seed, p->t = p->t0 = s->t;
     if (packing_alloc_passages(p, s->pours, s->removals, why) || set_shapes(p, s, why))
         return why->status;
     if (packing_alloc_walls(p, s->walls, why) || packing_alloc_kinds(p, s->kinds, why))
@@ -284,7 +284,7 @@ static void add_affine_flow(struct packing *p)
 static int check_packing(const struct packing *p, const struct scene *s, const struct grains *list,
                          struct why *why)
 {
-    if (packing_check(p, why)) return why->status;
+    if (packing_check(p, why) || packing_check_clock(p, why)) return why->status;
     if (s->overlap) return 0;
     bool *settled = from_documents(p, s, list);
     if (!settled) return why_set(why, EX_SOFTWARE, "no memory to look for overlaps");

@@ -77,7 +77,7 @@ static int read_scene(jnode o, struct scene *s)
     return 0;
 }
 
-int scene_parse(struct scene *s, const char *text, size_t length, const struct scene_files *files,
+int scene_parse(struct scene *s, const char *text, size_t length, struct scene_files *files,
                 struct why *why)
 {
     struct json_doc t;

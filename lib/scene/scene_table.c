@@ -1,4 +1,5 @@
 /* scene/scene_table.c: tables of bodies: text, a line a body, columns that the first line names. */
+#include "base/mark.h"
 #include "scene/grains.h"
 
 #include <ctype.h>
@@ -217,11 +218,12 @@ static int read_lines(struct table *t, FILE *f, struct grains *out, struct why *
 {
     char line[LINE] = "";
     for (t->line = 1; !why->status && next_line(f, line, t, why); t->line++) {
-        char *s = line + strspn(line, " \t\r\v\f");
+        char *s = line + (t->line == 1 ? mark_length(line, strlen(line)) : 0);
+        s += strspn(s, " \t\r\v\f");
         if (t->line == 1 && *s == '#')
             read_names(t, s + 1, why);
         else
-            read_line(t, line, out, why);
+            read_line(t, s, out, why);
     }
     return why->status;
 }

@@ -36,12 +36,13 @@ int step_solve_contacts(const struct packing *pack, struct contacts *s, struct p
                         const struct step_opt *o, struct report *rep, struct why *why)
 {
     struct problem p;
+    if (depth_of(&rep->depth, pack, s, NULL, why)) return why->status;
     if (!o->warm) contacts_free_found(s);
     if (prepare_packing(&p, pack, s, step_sweeps(o->solve.global), o->alpha, o->solve.method->rho,
                         o->order, kept, why))
         return why->status;
     rep->step = pack->step + 1;
-    rep->t = pack->t + pack->dt;
+    rep->t = packing_next_time(pack);
     rep->err.max_overlap = contacts_max_overlap(s);
     if (check_solver(&p, o->solve.global, why)) return problem_free(&p), why->status;
     int failed = solve_problem(&p, &o->solve, rep);
