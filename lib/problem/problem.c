@@ -252,6 +252,17 @@ static void survey(struct survey *y, const struct packing *p, const struct conta
     team_share(team_size(), s->n, SOME, survey_some, y);
 }
 
+/*
+ * g dt, or a part of the mean |u~_free| where that is more: while much collides, errors of g dt would be a
+ * thousandth of what the contacts change. A mean, so that one impact on a pile does not blur the rest.
+ */
+#define UNIT_OF_SPEED 0.2
+
+void problem_set_unit(struct problem *p, double sum)
+{
+    p->unit = fmax(p->fall, UNIT_OF_SPEED * sum / (double)(p->n ? p->n : 1));
+}
+
 /* The sum of x[slots] of all processes, in one order always */
 static double sum_of_slots(const struct problem *p, const double *x)
 {
