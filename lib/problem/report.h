@@ -43,7 +43,7 @@ struct err {
     double velocity;             /* the same over the scene's own velocity [problem/problem.h] */
     int64_t wedged; /* contacts that are left out of these, for their reactions grow without end */
     double
-        stray; /* natural_q's over max(|q|, sqrt(n) g dt); given by W: velocity_error over the mean |q| */
+        stray; /* natural_q's over max(|q|, sqrt(n) g dt); of an FCLIB problem velocity */
 };
 
 struct report {

@@ -294,16 +294,12 @@ static int detect(struct stride *y, struct packing *whole, struct contacts *all,
                   struct contacts *s, const struct step_opt *o, struct why *why)
 {
     struct talk *t = y->part.talk;
-    struct contacts before = { 0 };
     double reach;
-    if (o->warm) before = *all, *all = (struct contacts){ 0 };
-    if (!t->me) packing_tidy(whole, &before);
+    if (!t->me) memory_set(&whole->memory, o->warm), packing_tidy(whole, NULL);
     detect_here(y, whole, s, o, &reach);
     roll_call(roll, &y->part, s, all);
     int e = y->part.p.law ? choose_by_laws(y, whole, roll, s, all, o, reach, why) : 0;
-    if (!e && !t->me && o->warm && contacts_match(all, &before))
-        e = why_set(why, EX_SOFTWARE, "no memory for the last reactions");
-    contacts_free(&before);
+    if (!e && !t->me && o->warm) e = memory_give(&whole->memory, all, packing_rolls(whole), why);
     if (!e && (y->part.p.law || o->warm)) roll_tell_laws(roll, &y->part, s, all);
     return e;
 }

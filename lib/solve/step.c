@@ -84,16 +84,12 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
 int step_detect(struct packing *p, struct contacts *s, struct neighbours *near,
                 const struct step_opt *o, struct report *rep, struct why *why)
 {
-    struct contacts before = { 0 };
-    if (o->warm) before = *s, *s = (struct contacts){ 0 };
     double cpu = report_seconds(CLOCK_CPU);
-    packing_tidy(p, &before);
+    memory_set(&p->memory, o->warm);
+    packing_tidy(p, NULL);
     int e = detect_contacts(s, p, o->gap, near, why);
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
-    if (!e && o->warm && contacts_match(s, &before))
-        e = why_set(why, EX_SOFTWARE, "no memory for the last reactions");
-    contacts_free(&before);
-    return e;
+    return e || !o->warm ? e : memory_give(&p->memory, s, packing_rolls(p), why);
 }
 
 int step_balance(const struct packing *p, const struct contacts *s, const struct step_opt *o,
