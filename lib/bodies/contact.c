@@ -83,6 +83,27 @@ struct contact *contacts_add(struct contacts *s, int32_t a, int32_t b)
     return c;
 }
 
+void contacts_settle(struct contacts *out)
+{
+    int64_t k = out->n - 1;
+    struct contact new = out->c[k];
+    const struct contact_key key = contact_key(&new);
+    for (; k > 0; k--) {
+        const struct contact *c = &out->c[k - 1];
+        if (c->a != new.a || c->b != new.b) break;
+        int order = contact_key_order(contact_key(c), key);
+        if (order < 0) break;
+        if (order == 0) {
+            if (new.gap < c->gap) out->c[k - 1] = new;
+            memmove(&out->c[k], &out->c[k + 1], (size_t)(out->n - 1 - k) * sizeof *out->c);
+            out->n--;
+            return;
+        }
+        out->c[k] = *c;
+    }
+    out->c[k] = new;
+}
+
 void contact_basis(struct contact *c, int dim, vec3 n)
 {
     c->n = n;

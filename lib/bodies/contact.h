@@ -99,6 +99,9 @@ void contacts_free_found(struct contacts *contacts);
 int contacts_copy(struct contacts *to, const struct contacts *from);
 /* Appends a contact, zero but for a and b; NULL when memory is short. */
 struct contact *contacts_add(struct contacts *contacts, int32_t a, int32_t b);
+/* Sorts the new last contact among those of its pair, of which each key is there once: the deeper of two is
+   kept. */
+void contacts_settle(struct contacts *contacts);
 /* Makes room for so many more; false when memory is short. */
 bool contacts_reserve(struct contacts *contacts, int64_t more);
 

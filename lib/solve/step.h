@@ -56,5 +56,9 @@ int step_balance(const struct packing *p, const struct contacts *s, const struct
                  struct report *rep, struct why *why);
 int step_move(struct packing *p, struct contacts *s, const struct step_opt *o, struct report *rep,
               struct why *why);
+/* After it: adds to the report which of the first n bodies have gone through something. surface: [walls] of those
+   that are meshes */
+void step_watch(const struct packing *p, int64_t n, const struct surface *surface,
+                struct report *rep);
 
 #endif
