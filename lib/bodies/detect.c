@@ -297,7 +297,7 @@ double detect_reach(const struct packing *p, double gap)
    the bodies to touch. */
 static bool meets(const struct packing *p, const struct contact *c)
 {
-    double approach = -opening_of(p, c), calm = packing_calm(p);
+    double approach = -opening_of(p, c, (1 - p->theta) * p->dt), calm = packing_calm(p);
     return c->gap <= p->dt * (approach + calm) && (c->en == 0 || approach <= calm);
 }
 
