@@ -393,7 +393,7 @@ int tool_main(int argc, char **argv)
     else
         start(&r, in);
     count_steps(&r.f.packing);
-    if (steps && writer_begin(r.out, &r.f, &why)) die_why(&why);
+    if (steps && !in_place && writer_begin(r.out, &r.f, &why)) die_why(&why);
     options_log_open(argc, argv, output);
     int64_t made = run(&r);
     if (writer_close(r.out, &why)) die_why(&why);
