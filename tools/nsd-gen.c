@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 static int64_t dim = 3;
 
@@ -126,6 +127,8 @@ static void read_document(struct scene_bodies *b, const char *dir)
 {
     struct frame f = { 0 };
     char *path = scene_path(dir, b->file);
+    if (path && access(path, F_OK) && !access(b->file, F_OK)) // as nsd-info --scene has it
+        strcpy(path, b->file);
     b->document = malloc(sizeof *b->document);
     if (!path || !b->document) die(EX_SOFTWARE, "no memory for a document");
     read_frame(&f, path, b->frame);

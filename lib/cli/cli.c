@@ -79,16 +79,25 @@ void progress_lines(double seconds)
     between_lines = seconds;
 }
 
-void progress(const char *format, ...)
+/* s of real time: when a line was shown last, or nothing yet when it was asked first */
+static double progress_last;
+
+bool progress_due(void)
 {
-    static double last;
     struct timespec t;
     bool terminal = isatty(STDERR_FILENO);
-    if (!terminal && !(between_lines > 0)) return;
+    if (!terminal && !(between_lines > 0)) return false;
     clock_gettime(CLOCK_MONOTONIC, &t);
     double now = (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-    if (now - last < (terminal ? 0.1 : between_lines)) return;
-    last = now;
+    if (progress_last == 0) progress_last = now; // what is done at once needs no line
+    if (now - progress_last < (terminal ? 0.1 : between_lines)) return false;
+    progress_last = now;
+    return true;
+}
+
+void progress_now(const char *format, ...)
+{
+    bool terminal = isatty(STDERR_FILENO);
     va_list ap;
     va_start(ap, format);
     fprintf(stderr, terminal ? "\r\033[K%s: " : "%s: ", tool.name);

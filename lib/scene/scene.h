@@ -248,6 +248,7 @@ struct scene {
 
     int32_t walls;
     struct wall *wall;    /* [walls] */
+    int32_t *wall_item;   /* [walls] which of "walls" each comes from: a box is several */
     struct drives drives; /* of them */
     struct drives pushes; /* of their loads */
     struct mesh mesh;     /* of those that are meshes */
