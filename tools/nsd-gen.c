@@ -137,6 +137,16 @@ static void read_document(struct scene_bodies *b, const char *dir)
     free(path);
 }
 
+/* As a reason, for the name is out of a file */
+static void say_left_out(const struct scene_mesh *m)
+{
+    struct why why = { 0 };
+    why_set(&why, EX_DATAERR,
+            "%s: left out: %d triangles that have no area, or the corners of another", m->file,
+            m->left_out);
+    if (m->left_out) warn("%s", why.text);
+}
+
 int tool_main(int argc, char **argv)
 {
     struct scene scene;
@@ -158,10 +168,7 @@ int tool_main(int argc, char **argv)
     for (int64_t g = 0; g < scene.groups; g++)
         if (scene.bodies[g].from == SCENE_DOCUMENT) read_document(&scene.bodies[g], dir);
     if (mesh_files_read(&scene, &files, &why)) die_why(&why);
-    for (int32_t k = 0; k < scene.meshes; k++)
-        if (scene.mesh_file[k].left_out)
-            warn("%s: left out: %d triangles that have no area, or the corners of another",
-                 scene.mesh_file[k].file, scene.mesh_file[k].left_out);
+    for (int32_t k = 0; k < scene.meshes; k++) say_left_out(&scene.mesh_file[k]);
     if (scene_build(&frame.packing, &scene, dir, &why)) die_why(&why);
     if (frame_note(&frame, cli_history(), &why) || writer_frame(out, &frame, &why) ||
         writer_close(out, &why))

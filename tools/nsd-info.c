@@ -293,7 +293,7 @@ static void add_tie(json_t *j, const struct tie *t)
 
 static void show_contacts(const struct frame *f)
 {
-    static const char *const status[] = { "free", "stick", "slide" };
+    static const char *const status[] = { "free", "stick", "slide", "wedged" };
     shown = true;
     for (int64_t i = 0; i < f->contacts.n; i++) {
         const struct contact *c = &f->contacts.c[i];
@@ -318,7 +318,7 @@ static void show_contacts(const struct frame *f)
             json_object_set_new(j, "u", json_numbers(found->u, 3));
             if (f->contacts.moment)
                 json_object_set_new(j, "moment", json_numbers(f->contacts.moment[i], 3));
-            json_object_set_new(j, "status", json_string(status[found->status % 3]));
+            json_object_set_new(j, "status", json_string(status[found->status % 4]));
         }
         json_line(j);
     }

@@ -78,6 +78,16 @@ static void show(int32_t sweeps, double value)
     progress("%d sweeps, %.2g", sweeps, value);
 }
 
+/* The reactions to start from: those of the last step; with --warm those that the document has already */
+static void start_from(struct frame *f, const struct step_opt *o)
+{
+    struct why why = { 0 };
+    struct memory *m = &f->packing.memory;
+    memory_set(m, o->warm);
+    if (!o->warm || (cli_given(&options.warm) && f->contacts.found)) return;
+    if (memory_give(m, &f->contacts, packing_rolls(&f->packing), &why)) die_why(&why);
+}
+
 static void solve(struct frame *f, const char *where)
 {
     struct why why = { 0 };
@@ -89,8 +99,7 @@ static void solve(struct frame *f, const char *where)
     if (!f->foreign) {
         options_theta(&f->packing, true);
         options_overlap(&f->packing, true);
-        if (options.warm && !f->contacts.found && f->contacts.n)
-            warn("%s: no reactions to start from, starting from 0", where);
+        start_from(f, &o);
         if (step_solve(&f->packing, &f->contacts, &o, &f->report, &why)) die_why(&why);
     } else {
         struct delassus *W = &f->problem.W;

@@ -513,7 +513,7 @@ int tool_main(int argc, char **argv)
     else
         start(&r, in);
     count_steps(&r.f.packing);
-    if (steps && writer_begin(r.out, &r.f, &why)) die_why(&why);
+    if (steps && !in_place && writer_begin(r.out, &r.f, &why)) die_why(&why);
     options_log_open(argc, argv, output);
     save_begin(&r, in_place ? argv[0] : output);
     if (r.save_path && reader_reads(argc, argv, r.save_path))

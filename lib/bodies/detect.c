@@ -6,6 +6,7 @@
 #include "bodies/detect_shapes.h"
 #include "bodies/kinematics.h"
 #include "bodies/seam.h"
+#include "bodies/swift.h"
 #include "bodies/tie.h"
 #include "bodies/top.h"
 
@@ -107,7 +108,8 @@ static bool add_plane(struct contacts *out, const struct sought *o, int64_t firs
         struct touch touch = { n, v3_dot(v3_sub(x[i], at), n), 0 };
         if (!(touch.distance - p->radius[i] <= gap) || p->mass[i] == 0) continue;
         if (o->shaped && packing_shape(p, i)) {
-            if (!detect_shapes_wall(out, o->shaped, w, i, o->t, gap, NULL)) return false;
+            if (!detect_shapes_wall(out, o->shaped, w, i, o->t, gap, NULL, v3(0, 0, 0)))
+                return false;
             continue;
         }
         if (!add_touch(out, p, w, i, x[i], &touch)) return false;
@@ -115,33 +117,44 @@ static bool add_plane(struct contacts *out, const struct sought *o, int64_t firs
     return true;
 }
 
-/* The same of any other shape. Balls are brought to where the shape is described, and what they touch
+/* Body i and a wall of any other shape. A ball is brought to where the shape is described, and what it touches
    back from there. */
-static bool add_shape(struct contacts *out, const struct sought *o, int64_t first, int64_t end)
+static bool add_body(struct contacts *out, const struct sought *o, const struct pose *pose,
+                     const struct surface *surface, int64_t i)
 {
     const struct packing *p = o->p;
     const int32_t w = o->wall;
-    const vec3 *x = o->x;
-    const double gap = o->gap;
     const struct wall *wall = &p->wall[w];
-    const struct surface *surface = wall->shape == BOUNDARY_MESH ? &o->near->surface[w] : NULL;
-    struct pose pose = wall_pose(p, wall, o->t);
+    double r = p->radius[i];
     struct touch touch[TOUCHES_MOST];
+    if (o->shaped && packing_shape(p, i))
+        return detect_shapes_wall(out, o->shaped, w, i, o->t, o->gap, surface, v3(0, 0, 0));
+    vec3 c = v3_sub(quat_turn_back(pose->q, v3_sub(o->x[i], pose->shift)), wall->x);
+    int n = surface ? surface_touches(surface, c, r + o->gap, touch)
+                    : boundary_nearest(wall, p->dim, c, r, touch);
+    for (int k = 0; k < n; k++) {
+        if (!(touch[k].distance - r <= o->gap)) continue;
+        touch[k].n = quat_turn(pose->q, touch[k].n);
+        if (!add_touch(out, p, w, i, o->x[i], &touch[k])) return false;
+    }
+    return true;
+}
+
+static bool add_shape(struct contacts *out, const struct sought *o, int64_t first, int64_t end)
+{
+    const struct packing *p = o->p;
+    const struct wall *wall = &p->wall[o->wall];
+    const struct surface *surface =
+        wall->shape == BOUNDARY_MESH ? &o->near->surface[o->wall] : NULL;
+    const struct swift swift = { p, o->x, o->t, o->shaped, o->near->surface };
+    const double most = swift_beside(p, o->wall);
+    struct pose pose = wall_pose(p, wall, o->t);
     for (int64_t i = first; i < end; i++) {
-        double r = p->radius[i];
-        vec3 c = v3_sub(quat_turn_back(pose.q, v3_sub(x[i], pose.shift)), wall->x);
         if (p->mass[i] == 0) continue;
-        if (o->shaped && packing_shape(p, i)) {
-            if (!detect_shapes_wall(out, o->shaped, w, i, o->t, gap, surface)) return false;
-            continue;
-        }
-        int n = surface ? surface_touches(surface, c, r + gap, touch)
-                        : boundary_nearest(wall, p->dim, c, r, touch);
-        for (int k = 0; k < n; k++) {
-            if (!(touch[k].distance - r <= gap)) continue;
-            touch[k].n = quat_turn(pose.q, touch[k].n);
-            if (!add_touch(out, p, w, i, x[i], &touch[k])) return false;
-        }
+        int64_t before = out->n;
+        if (!add_body(out, o, &pose, surface, i)) return false;
+        if (swift_is(p, i, most) && !swift_meets_wall(out, before, &swift, o->wall, i))
+            return false;
     }
     return true;
 }
@@ -244,7 +257,9 @@ static int detect(struct contacts *out, const struct packing *p, const vec3 *x, 
     }
     if (!e && stored) stored = find_all(out, &o, near->n, shaped ? SOME : MANY, add_pairs);
     const struct seams seams = { p, x, edges, t, shaped, near->surface };
+    const struct swift swift = { p, x, t, shaped, near->surface };
     if (!e && stored) e = seams_drop(out, &seams, why);
+    if (!e && stored) stored = swift_meet_hulls(out, &swift);
     placed_free(&placed);
     if (!e) e = check_crowd(near, p, seen, why);
     neighbours_free(&once);
@@ -282,7 +297,7 @@ double detect_reach(const struct packing *p, double gap)
    the bodies to touch. */
 static bool meets(const struct packing *p, const struct contact *c)
 {
-    double approach = -opening_of(p, c), calm = packing_calm(p);
+    double approach = -opening_of(p, c, (1 - p->theta) * p->dt), calm = packing_calm(p);
     return c->gap <= p->dt * (approach + calm) && (c->en == 0 || approach <= calm);
 }
 
@@ -294,7 +309,8 @@ static void keep_meeting(struct contacts *s, const struct packing *p, double gap
     bool sees = overlap_sees_gaps(p->overlap);
     for (int64_t i = 0; i < s->n; i++) {
         bool held = s->tie && tie_holds(&s->tie[i]);
-        if (!(s->c[i].gap <= gap || held || (sees && meets(p, &s->c[i])))) continue;
+        bool ahead = swift_ahead(&s->c[i]);
+        if (!(s->c[i].gap <= gap || held || ahead || (sees && meets(p, &s->c[i])))) continue;
         if (s->tie) s->tie[n] = s->tie[i];
         s->c[n++] = s->c[i];
     }

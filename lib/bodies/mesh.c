@@ -355,6 +355,31 @@ static int by_feature(const void *a, const void *b)
     return (p->feature > q->feature) - (p->feature < q->feature);
 }
 
+bool surface_is_at(const struct surface *s, vec3 c, double near)
+{
+    struct surface_walk walk;
+    struct surface_branch leaf;
+    surface_walk_begin(&walk, s->n);
+    while (surface_walk_next(&walk, s->box, c, near, &leaf))
+        for (int32_t i = leaf.lo; i < leaf.hi; i++)
+            if (v3_norm(v3_sub(c, surface_nearest(s, s->order[i], c))) <= near) return true;
+    return false;
+}
+
+/* Leaves the first of those at one place; returns how many are left. */
+static int leave_one(const struct surface *s, struct touch *touch, int n)
+{
+    int kept = 0;
+    for (int k = 0; k < n; k++) {
+        bool again = false;
+        for (int l = 0; l < kept && !again; l++)
+            again = v3_dot(touch[l].n, touch[k].n) > 1 - 1e-12 &&
+                    fabs(touch[l].distance - touch[k].distance) <= s->weld;
+        if (!again) touch[kept++] = touch[k];
+    }
+    return kept;
+}
+
 int surface_touches(const struct surface *s, vec3 c, double most, struct touch touch[TOUCHES_MOST])
 {
     struct surface_walk walk;
@@ -368,5 +393,5 @@ int surface_touches(const struct surface *s, vec3 c, double most, struct touch t
             seen += look_at(s, s->order[i], c, most, touch, &n);
     if (s->seen) *s->seen += seen;
     qsort(touch, (size_t)n, sizeof *touch, by_feature);
-    return n;
+    return leave_one(s, touch, n);
 }

@@ -64,9 +64,12 @@ enum {
     TOUCHES_MOST = 64 /* of a ball and a surface: beyond it the last ones are left out */
 };
 /* The places at most `most` (m) from c (m, from the boundary's point of reference) at which the distance has
-   a minimum, sorted by feature; returns how many. t.n points from the place to c. */
+   a minimum, sorted by feature; returns how many. t.n points from the place to c. Triangles that lie on each
+   other have one. */
 int surface_touches(const struct surface *s, vec3 c, double most, struct touch touch[TOUCHES_MOST]);
 
+/* Does the surface lie at c, to `near` (m)? */
+bool surface_is_at(const struct surface *s, vec3 c, double near);
 /* Of an element: its unit normal, in the plane across the segment; its place next to c */
 vec3 surface_normal(const struct surface *s, int32_t e);
 vec3 surface_nearest(const struct surface *s, int32_t e, vec3 c);

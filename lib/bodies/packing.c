@@ -53,6 +53,7 @@ void packing_free(struct packing *p)
     free(p->poured), free(p->removed);
     events_free(&p->events);
     bonds_free(&p->bonds);
+    memory_free(&p->memory);
     cell_free(&p->cell);
     kinds_free(p);
     memset(p, 0, sizeof *p);
@@ -182,7 +183,8 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     memcpy(to->et, p->et, k2 * sizeof *p->et);
     if (p->law && packing_alloc_laws(to, why)) goto fail;
     if (p->law) memcpy(to->law, p->law, k2 * sizeof *p->law);
-    if (bonds_copy(&to->bonds, &p->bonds, why)) goto fail;
+    if (bonds_copy(&to->bonds, &p->bonds, why) || memory_copy(&to->memory, &p->memory, why))
+        goto fail;
     for (int32_t i = 0; i < p->kinds; i++) {
         free(to->kind_name[i]);
         if (!(to->kind_name[i] = strdup(p->kind_name[i]))) goto fail;

@@ -15,6 +15,7 @@
 #include "bodies/contact.h"
 #include "bodies/drive.h"
 #include "bodies/law.h"
+#include "bodies/memory.h"
 #include "bodies/mesh.h"
 #include "bodies/overlap.h"
 #include "bodies/passage.h"
@@ -63,6 +64,8 @@ struct packing {
     double *en, *et;    /* [kinds * kinds], symmetric: normal and tangential restitution */
     struct law *law;    /* [kinds * kinds], symmetric: what is beyond these; NULL: nothing */
     struct bonds bonds; /* what lasts of pairs by these laws */
+
+    struct memory memory; /* the reactions that the next step starts from */
 
     /* Grains come and go [scene/flow.h] where there are pours or removals. */
     int32_t pours, removals;

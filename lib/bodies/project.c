@@ -43,7 +43,8 @@ static struct part part_of(const struct packing *p, const struct contact *c)
     return (struct part){ .a = c->a,
                           .b = c->b,
                           .n = c->n,
-                          .gap = dmax(-MOST * small, c->gap + p->dt * opening_of(p, c) + slop),
+                          .gap = dmax(-MOST * small,
+                                      c->gap + p->dt * opening_of(p, c, -p->theta * p->dt) + slop),
                           .w = inverse_mass(p, c->a) + inverse_mass(p, c->b),
                           .slop = slop };
 }

@@ -280,7 +280,7 @@ int solid_of(struct solid *out, const struct shape *s, int dim, struct why *why)
 {
     struct shape near = *s;
     vec3 o = near_to(s);
-    near.vertex = malloc(((size_t)s->vertices + 1) * sizeof *near.vertex);
+    near.vertex = calloc((size_t)s->vertices + 1, sizeof *near.vertex);
     if (!near.vertex) return why_set(why, EX_SOFTWARE, "no memory for a shape");
     for (int32_t i = 0; i < s->vertices; i++) near.vertex[i] = v3_sub(s->vertex[i], o);
     integrate(out, &near, dim, why);

@@ -51,7 +51,7 @@ static const struct usual usual = {
     .nlgs_order = ORDER_NATURAL, // the paper's
     .order = ORDER_COLOUR,       // eight contacts at once, on any number of threads
     .relax = 0,                  // each solver has measured its own
-    .warm = false,               // as the paper: a step does not depend on the one before
+    .warm = true,                // of CRITERION_VELOCITY; others start from 0, as the paper
     .newton = NEWTON_LINESEARCH, // plain steps run in circles at some contacts
     .newton_eps = 1e-13,         // about a thousand roundings: as if it were exact
     .newton_max = 100,           // after which the exact solution stands in
@@ -226,12 +226,13 @@ struct step_opt options_step(double dt, bool foreign)
     bool nlgs = solver == &solver_nlgs;
     int criterion = OPTION(criterion, (int)(foreign ? u->fclib : u->packing));
     double eps = OPTION(eps, foreign ? u->fclib_eps : u->eps[criterion]);
+    const enum order order = (enum order)OPTION(order, (int)(nlgs ? u->nlgs_order : u->order));
     int32_t sweeps = nlgs ? u->nlgs_sweeps : eps < u->tight ? u->tight_sweeps : u->sweeps;
     return (struct step_opt){
         .gap = o->gap,
         .alpha = o->alpha,
-        .order = (enum order)OPTION(order, (int)(nlgs ? u->nlgs_order : u->order)),
-        .warm = OPTION(warm, u->warm),
+        .order = order,
+        .warm = OPTION(warm, u->warm && criterion == CRITERION_VELOCITY && order != ORDER_BLOCK),
         .solve = { .global = solver,
                    .method = o->method ? methods[o->method - 1] : &local_exact,
                    .local = { .plain = OPTION(newton, (int)u->newton) == NEWTON_PLAIN,

@@ -53,6 +53,7 @@ int frame_read_open(struct frame_read *r, struct source *source, struct why *why
     *r = (struct frame_read){ .source = source, .frames = 1 };
     if (source_has(source, "/particles/all")) {
         if (count_frames(r, why) || cell_tables_open(source, r->repeats, why)) return why->status;
+        if (memory_rows_open(&r->memory, source, why)) return why->status;
         if (source_has(source, "/contacts") && contact_rows_open(&r->contacts, source, why))
             return why->status;
     } else if (!fclib_in(source)) {
@@ -65,6 +66,7 @@ void frame_read_close(struct frame_read *r)
 {
     free(r->step), free(r->time);
     contact_rows_close(&r->contacts);
+    memory_rows_close(&r->memory);
     report_rows_close(&r->reports);
     *r = (struct frame_read){ 0 };
 }
@@ -303,8 +305,8 @@ static int read_packing(struct frame_read *r, int64_t k, struct packing *p, stru
     read_clock(r, k, p);
     if (packing_varies(p) && (r->repeats[0] || r->repeats[1] || r->repeats[2]))
         why_set(why, EX_DATAERR, "bodies that come and go in a cell that repeats: not known");
-    else if (!cell_tables_read(r->source, k, r->repeats, p, why))
-        packing_check(p, why);
+    else if (!cell_tables_read(r->source, k, r->repeats, p, why) && !packing_check(p, why))
+        memory_rows_read(&r->memory, p, why);
 end:
     free(row);
     return why->status;

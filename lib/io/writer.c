@@ -321,6 +321,7 @@ static int reserve(struct writer *s, const struct frame *f, struct why *why)
         n += (hsize_t)s->roster.rows + 2 * s->doc.chunk_bodies;
     if (f->detected) rows = (hsize_t)f->contacts.n + CHUNK_CONTACTS;
     rows += (hsize_t)f->packing.events.n + (hsize_t)f->packing.bonds.n;
+    rows += (hsize_t)f->packing.memory.n;
     // 128 bytes a body, and as many of its motion, 256 a contact, and the tables that may grow
     hsize_t frame = 256 * n + 256 * rows + (1 << 17);
     struct stat st; // HDF5 sometimes cuts the reserve off

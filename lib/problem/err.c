@@ -215,7 +215,7 @@ void err_eval(struct err *e, const struct problem *p, bool believes, enum err_te
         e->wedged = (int64_t)bundle_sum(all.wedged);
         if (!(e->velocity_error <= ROUNDING * p->speed))
             e->velocity = ratio(e->velocity_error, p->unit);
-        if (!p->packing) e->stray = ratio(e->velocity_error, p->unit / UNIT_OF_SPEED);
+        if (!p->packing) e->stray = ratio(e->velocity_error, p->unit);
     }
 }
 

@@ -110,15 +110,18 @@ static int32_t count_turns(const struct polygon *p)
     return turns;
 }
 
+/* Are a and b on different sides of the line from c to d, and not as near as rounding puts them? */
+static bool parted(const struct polygon *p, int32_t a, int32_t b, int32_t c, int32_t d)
+{
+    double least = LINE * p->extent, x = left_of(p, c, d, a), y = left_of(p, c, d, b);
+    return (x > least && y < -least) || (x < -least && y > least);
+}
+
 /* Do the sides from a and from b cross, each within the other? Touching is none. */
 static bool sides_cross(const struct polygon *p, int32_t a, int32_t b)
 {
     int32_t c = p->next[a], d = p->next[b];
-    double least = LINE * p->extent;
-    double ab = left_of(p, a, c, b), ad = left_of(p, a, c, d), ba = left_of(p, b, d, a),
-           bc = left_of(p, b, d, c);
-    return ((ab > least && ad < -least) || (ab < -least && ad > least)) &&
-           ((ba > least && bc < -least) || (ba < -least && bc > least));
+    return parted(p, b, d, a, c) && parted(p, a, c, b, d);
 }
 
 static bool crosses_itself(const struct polygon *p)
@@ -186,6 +189,7 @@ const char *ears_cut(const vec3 *x, int32_t n, int32_t (*triangle)[3], int32_t *
 {
     struct polygon p;
     *triangles = 0;
+    if (n < 3) return NULL;
     if (n > POLYGON_CORNERS_MOST) return "a polygon of more than 4096 corners";
     vec3 normal = newell_normal(x, n);
     p.n = n, p.blunts = 0, p.extent = 0;

@@ -303,6 +303,7 @@ int flow_step(const struct flow *f, struct packing *p, struct contacts *last, bo
         why_set(why, EX_SOFTWARE, "no memory for bodies that come and go");
     else if (!remove_bodies(f, p, row, why)) {
         follow_bonds(&p->bonds, row);
+        memory_follow(&p->memory, row);
         if (last) follow(last, row);
     }
     for (int32_t k = 0; k < f->scene.pours && !why->status; k++)

@@ -47,7 +47,7 @@ static struct facet facet_of(qhT *qh, facetT *f, const int32_t *number)
     int k = 0, l = 0;
     // cppcheck-suppress legacyUninitvar ; the loops set them
     FOREACHvertex_(f->vertices) if (k < 3) to.point[k++] = qh_pointid(qh, vertex->point);
-    // cppcheck-suppress legacyUninitvar
+    // cppcheck-suppress uninitvar
     FOREACHneighbor_(f) if (l < 3) to.next[l++] = number[neighbor->id];
     if (f->toporient) turn_over(&to);
     return to;
@@ -82,7 +82,7 @@ static void turn_outward(struct hull *h)
 static int ask_qhull(struct hull *h, struct why *why)
 {
     qhT state, *qh = &state;
-    double *flat = malloc((size_t)h->n * 3 * sizeof *flat);
+    double *flat = malloc(((size_t)h->n * 3 + 1) * sizeof *flat);
     FILE *silent = fopen("/dev/null", "w");
     if (!flat || !silent) {
         free(flat);
@@ -91,7 +91,7 @@ static int ask_qhull(struct hull *h, struct why *why)
     }
     for (int64_t i = 0; i < h->n; i++) {
         const double of[3] = { h->x[i].x, h->x[i].y, h->x[i].z };
-        for (int k = 0; k < h->dim; k++) flat[h->dim * i + k] = of[k];
+        for (int k = 0; k < 3 && k < h->dim; k++) flat[h->dim * i + k] = of[k];
     }
     char command[] = "qhull QJ";
     qh_zero(qh, silent);
@@ -180,7 +180,7 @@ static int take_points(struct hull *h, int64_t n, const vec3 *x, struct why *why
     if (!(size > 0)) return is_flat(why);
     if (!isfinite(size)) return why_set(why, EX_DATAERR, "its points are beyond all numbers");
     h->kept = malloc(((size_t)n + 1) * sizeof *h->kept);
-    h->x = malloc(((size_t)n + 1) * sizeof *h->x);
+    h->x = calloc((size_t)n + 1, sizeof *h->x);
     if (!h->kept || !h->x) return no_memory(why);
     if (thin_out(h->kept, x, n, HULL_APART * size, why)) return why->status;
     for (int32_t i = 0; i < n; i++)

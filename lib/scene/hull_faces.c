@@ -145,7 +145,7 @@ int hull_faces(struct loops *l, struct facet *facet, int32_t facets, const vec3 
 {
     int32_t faces = join(facet, facets, x, flat), sides = 0;
     struct side *side = malloc((3 * (size_t)facets + 1) * sizeof *side);
-    int32_t *of = malloc(((size_t)n + 1) * sizeof *of);
+    int32_t *of = calloc((size_t)n + 1, sizeof *of);
     if (faces < 0 || !side || !of || loops_alloc(l, faces, 3 * facets, why)) no_memory(why);
     for (int32_t i = 0; i < facets && !why->status; i++)
         for (int k = 0; k < 3; k++) {

@@ -17,7 +17,7 @@ enum bytes_type {
     BYTES_F64,
     BYTES_TYPES
 };
-static const int8_t bytes_size[BYTES_TYPES] = { 1, 1, 2, 2, 4, 4, 4, 8 };
+static const uint8_t bytes_size[BYTES_TYPES] = { 1, 1, 2, 2, 4, 4, 4, 8 };
 
 /* Exact: a double has them all. */
 static inline double bytes_number(const void *at, enum bytes_type type, bool big_endian)

@@ -12,8 +12,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const int64_t CONCAVE_WORK = (int64_t)1 << 31; /* some seconds */
-
 static const struct mesh_format *const formats[] = { &mesh_ply, &mesh_stl, &mesh_obj };
 
 enum { FORMATS = sizeof formats / sizeof formats[0] };
@@ -28,15 +26,16 @@ static const struct mesh_format *format_of(const char *name, const char *bytes, 
     return NULL;
 }
 
-int mesh_bytes_read(struct mesh *to, const char *name, const char *bytes, int64_t n, double scale,
-                    int32_t *left_out, struct why *why)
+int mesh_bytes_read(struct mesh *to, struct scene_files *files, const char *name, const char *bytes,
+                    int64_t n, double scale, int32_t *left_out, struct why *why)
 {
-    struct soup s = { .name = name, .why = why, .work = CONCAVE_WORK };
+    struct soup s = { .name = name, .why = why, .work = MESH_WORK_MOST - files->mesh_work };
     const struct mesh_format *format = format_of(name, bytes, n);
     if (!format)
         return why_set(why, EX_DATAERR, "%s: neither STL, OBJ nor PLY: write it as one of these",
                        name);
     if (!format->read(&s, bytes, n)) soup_mesh(to, &s, scale, left_out);
+    files->mesh_work = MESH_WORK_MOST - s.work;
     soup_free(&s);
     return why->status;
 }
@@ -84,7 +83,7 @@ static int read_path(struct mesh *to, struct scene_files *files, const char *pat
     files->mesh_bytes += size;
     char *bytes = slurp(fd, path, size, &n, why);
     close(fd);
-    if (!why->status) mesh_bytes_read(to, path, bytes, n, scale, left_out, why);
+    if (!why->status) mesh_bytes_read(to, files, path, bytes, n, scale, left_out, why);
     free(bytes);
     return why->status;
 }

@@ -8,17 +8,20 @@
 
 #include "scene/scene.h"
 
-enum { MESH_BYTES_MOST = 1 << 30 /* of a file, and of all files of a scene */ };
+enum {
+    MESH_BYTES_MOST = 1 << 30, /* of all files of a scene */
+    MESH_WORK_MOST = 1 << 30   /* for concave polygons [scene/ears.h]: some seconds */
+};
 
-/* Adds the triangles of a file, whose name is relative to files->dir and whose unit is `scale` m, and takes its
-   bytes from those that are left; *left_out: triangles that are not there [scene/soup.h]. Returns 0, EX_NOINPUT,
+/* Adds the triangles of a file, whose name is relative to files->dir and whose unit is `scale` m, and adds
+   to its accounts; *left_out: triangles that are not there [scene/soup.h]. Returns 0, EX_NOINPUT,
    EX_DATAERR or EX_SOFTWARE. */
 int mesh_file_read(struct mesh *to, struct scene_files *files, const char *name, double scale,
                    int32_t *left_out, struct why *why);
 /* Reads the files of all meshes of the scene, and adds their triangles, as above. */
 int mesh_files_read(struct scene *s, struct scene_files *files, struct why *why);
 /* The same of n bytes, as a file of this name has them, with a 0 behind them */
-int mesh_bytes_read(struct mesh *to, const char *name, const char *bytes, int64_t n, double scale,
-                    int32_t *left_out, struct why *why);
+int mesh_bytes_read(struct mesh *to, struct scene_files *files, const char *name, const char *bytes,
+                    int64_t n, double scale, int32_t *left_out, struct why *why);
 
 #endif

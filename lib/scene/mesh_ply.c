@@ -222,7 +222,7 @@ static int pass_over(struct ply *p, enum bytes_type type)
 /* A list: into corner[] its first numbers, one more than a polygon may have; *n: how many there are */
 static int next_list(struct ply *p, const struct property *q, int64_t corner[], int64_t *n)
 {
-    double count, x;
+    double count = 0, x = 0;
     if (next_number(p, q->count, &count)) return 1;
     if (count < 0) return soup_fault(p->soup, "a list of %g numbers", count);
     *n = (int64_t)count;

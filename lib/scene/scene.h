@@ -278,8 +278,10 @@ struct scene_lattice scene_lattice(const struct scene_bodies *b, int dim);
 /* Who reads the triangles of a file, `scale` m a unit of it, and adds them to a mesh. What parses scenes
    out of documents has none: those name no files. */
 struct scene_files {
-    const char *dir;    /* that names are relative to; NULL: the current folder */
-    int64_t mesh_bytes; /* read so far: all files of a scene draw on one account */
+    const char *dir; /* that names are relative to; NULL: the current folder */
+    int64_t
+        mesh_bytes; /* read so far, and comparisons that concave polygons took: one account for all */
+    int64_t mesh_work;
     int (*read_mesh)(struct mesh *to, struct scene_files *files, const char *name, double scale,
                      int32_t *left_out, struct why *why);
 };

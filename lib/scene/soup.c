@@ -1,5 +1,5 @@
 /* scene/soup.c: polygons gathered, and made a mesh [scene/soup.h]. */
-#define _GNU_SOURCE // qsort_r
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): qsort_r
 #include "scene/soup.h"
 
 #include "scene/ears.h"

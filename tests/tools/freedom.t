@@ -114,11 +114,12 @@ ok "detect | solve | move and step give the same bits" same_particles "$tmp/part
 step -j 4 -n 20 "$tmp/last-cell.h5" >"$tmp/j4.h5"
 step -j 1 -n 20 "$tmp/last-cell.h5" >"$tmp/j1.h5"
 ok "-j 4 gives the same bytes" cmp "$tmp/j4.h5" "$tmp/j1.h5"
-is "and nsd-err agrees" "$(natural "$tmp/squeezed.h5")" true
+# a projection displaces edges, which nsd-err does not undo; without gravity it also keeps a packing rattling
+is "and nsd-err agrees" "$(natural --overlap gap "$tmp/squeezed.h5")" true
 
 # Love's formula: the mean stress of a packing at rest is that of the forces and branches over its volume.
 jq '.cell.stress = {pressure: 20, mass: 0.02} | .bodies[0].count = 81' "$tmp/cell.json" | nsd-gen - |
-    step -n 3000 --every 3000 --contacts -o "$tmp/rest.h5"
+    step --overlap gap -n 3000 --every 3000 --contacts -o "$tmp/rest.h5"
 pressure()
 {
     local area

@@ -28,13 +28,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static const char *const name[] = { "m.stl", "m.obj", "m.ply", "m" };
     struct mesh m = { 0 };
+    struct scene_files files = { 0 };
     struct why why = { 0 };
     int32_t left_out = 0;
     if (size < 1) return -1;
     char *text = malloc(size); // one byte less, and a zero: none is behind it
     if (!text) abort();
     memcpy(text, data + 1, size - 1), text[size - 1] = 0;
-    int e = mesh_bytes_read(&m, name[data[0] % 4], text, (int64_t)size - 1, 1, &left_out, &why);
+    int e =
+        mesh_bytes_read(&m, &files, name[data[0] % 4], text, (int64_t)size - 1, 1, &left_out, &why);
     free(text);
     if (e && (!why.status || !why.text[0] || strchr(why.text, '\n'))) abort();
     if (!e && (left_out < 0 || m.elements < 1 || mesh_check(&m, 3, &why))) abort();
