@@ -16,7 +16,7 @@ int memory_rows_open(struct memory_rows *r, struct source *source, struct why *w
 {
     int64_t n, m;
     uint64_t shape[4];
-    *r = (struct memory_rows){ .source = source, .last = -1 };
+    *r = (struct memory_rows){ .source = source };
     if (!source_has(source, group)) return 0;
     r->step = table_read_steps(source, "/nsd/memory/step", &r->blocks, why);
     if (why->status) return why->status;
@@ -24,14 +24,14 @@ int memory_rows_open(struct memory_rows *r, struct source *source, struct why *w
     m = source_shape(source, "/nsd/memory/count", shape) == 1 ? (int64_t)shape[0] : 0;
     if (r->blocks > n) r->blocks = n; // a killed writer may have extended only some columns
     if (r->blocks > m) r->blocks = m;
+    r->blocks = table_read_rising(r->step, r->blocks);
     return 0;
 }
 
 int memory_rows_read(struct memory_rows *r, struct packing *p, struct why *why)
 {
-    int64_t at = table_read_row(r->step, r->blocks, p->step, r->last + 1), start, count;
+    int64_t at = table_read_row(r->step, r->blocks, p->step), start, count;
     if (at < 0) return 0;
-    r->last = at;
     if (table_read_span(r->source, group, "body", 2, at, &start, &count, why)) return why->status;
     struct memory *m = &p->memory;
     m->recall = calloc((size_t)count + 1, sizeof *m->recall);

@@ -13,7 +13,6 @@ struct memory_rows {
     struct source *source;
     int64_t *step; /* [blocks] of the frames that have one */
     int64_t blocks;
-    int64_t last; /* the block that was read last; -1: none yet */
 };
 
 int memory_rows_open(struct memory_rows *rows, struct source *source, struct why *why);

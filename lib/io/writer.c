@@ -508,7 +508,7 @@ static int begin_again(struct writer *s, struct why *why)
 
 int writer_begin(struct writer *s, const struct frame *f, struct why *why)
 {
-    if (!s->trajectory || s->waits || (s->output && s->output->old >= 0)) return 0;
+    if (!s->trajectory || s->frames || s->waits || (s->output && s->output->old >= 0)) return 0;
     if (trajectory_frame(s, f, why)) trajectory_fails(s);
     return why->status ? why->status : begin_again(s, why);
 }
