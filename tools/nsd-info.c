@@ -293,7 +293,7 @@ static void add_tie(json_t *j, const struct tie *t)
 
 static void show_contacts(const struct frame *f)
 {
-    static const char *const status[] = { "free", "stick", "slide", "wedged" };
+    static const char *const status[] = { "free", "stick", "slide", "jammed" };
     shown = true;
     for (int64_t i = 0; i < f->contacts.n; i++) {
         const struct contact *c = &f->contacts.c[i];

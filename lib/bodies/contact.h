@@ -27,7 +27,7 @@ struct found {
 };
 
 /* A status beyond the law's: the contact has no solution, its reaction has grown without end [problem/judge.h]. */
-enum { STATUS_WEDGED = 3 };
+enum { STATUS_JAMMED = 3 };
 
 /* Of a contact's tie: what is kept of it, and what is new in this step */
 enum { TIE_WET = 1, TIE_BONDED = 2, TIE_NEW_BRIDGE = 4, TIE_STATES = 8 };

@@ -55,7 +55,7 @@ int memory_keep(struct memory *m, const struct contacts *s, struct why *why)
     if (!now.recall) return why_set(why, EX_SOFTWARE, "no memory for the last reactions");
     for (int64_t i = 0, from = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
-        if (s->found[i].r[0] == 0 || s->found[i].status == STATUS_WEDGED) continue;
+        if (s->found[i].r[0] == 0 || s->found[i].status == STATUS_JAMMED) continue;
         const struct contact_key k = contact_key(c);
         vec3 r = contact_in_space(c, s->found[i].r);
         double part = trust(r, find(m, k, &from));

@@ -272,7 +272,7 @@ static const struct column layout_report[] = {
 static const struct column layout_velocity[] = {
     { "velocity", "1", COLUMN_F64, 1, offsetof(struct report, err.velocity) },
     { "velocity_error", "m s-1", COLUMN_F64, 1, offsetof(struct report, err.velocity_error) },
-    { "wedged", "1", COLUMN_I64, 1, offsetof(struct report, err.wedged) },
+    { "jammed", "1", COLUMN_I64, 1, offsetof(struct report, err.jammed) },
     { 0 },
 };
 

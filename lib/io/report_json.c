@@ -27,7 +27,7 @@ static void set_err(json_t *j, const struct err *e)
     json_object_set_new(j, "natural_q", json_number(e->natural_q));
     json_object_set_new(j, "velocity", json_number(e->velocity));
     json_object_set_new(j, "velocity_error", json_number(e->velocity_error));
-    json_object_set_new(j, "wedged", json_integer(e->wedged));
+    json_object_set_new(j, "jammed", json_integer(e->jammed));
 }
 
 json_t *json_err(const struct err *e)

@@ -47,7 +47,7 @@ static int check_report(const struct report *rep, const char *group, struct why 
 {
     uint8_t converged;
     memcpy(&converged, &rep->converged, 1);
-    if (rep->sweeps < 0 || rep->err.contacts < 0 || rep->err.wedged < 0 || rep->newton < 0 ||
+    if (rep->sweeps < 0 || rep->err.contacts < 0 || rep->err.jammed < 0 || rep->newton < 0 ||
         rep->safeguarded < 0 || rep->gave_up < 0)
         return why_set(why, EX_DATAERR, "%s: a number of things is negative", group);
     if (converged > 1) return why_set(why, EX_DATAERR, "%s/converged: is %d", group, converged);

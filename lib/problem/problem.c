@@ -448,7 +448,7 @@ static void store_some(void *arg, int64_t first, int64_t end)
         for (int k = 0; k < 3 && problem_undivided(p); k++)
             c->u[k] /= 1 + (k ? law->et : law->en); // it is D u~
         c->status = (int8_t)local_status(slot_bundle(p, i)->mu[slot_lane(i)], c->r);
-        if (slot_lambda(p, i) * c->r[0] > WEDGED * p->unit) c->status = STATUS_WEDGED;
+        if (slot_lambda(p, i) * c->r[0] > JAMMED * p->unit) c->status = STATUS_JAMMED;
         double x[BESIDE_R];
         if (p->beyond) slot_get_beyond(p, i, x);
         for (int k = 0; k < 3 && p->beyond; k++) {

@@ -41,7 +41,7 @@ struct err {
     double natural_q;            /* |(r - P(r - rho_a u^))/rho_a| / |q| */
     double velocity_error;       /* m/s: the largest |(r - P(r - rho_a u^))/rho_a| of a contact */
     double velocity;             /* the same over the scene's own velocity [problem/problem.h] */
-    int64_t wedged; /* contacts that are left out of these, for their reactions grow without end */
+    int64_t jammed; /* contacts that are left out of these, for their reactions grow without end */
     double
         stray; /* natural_q's over max(|q|, sqrt(n) g dt); of an FCLIB problem velocity */
 };

@@ -41,7 +41,7 @@ static void evaluate(struct solve *s)
     struct err e;
     err_eval(&e, s->p, s->believes, err_terms_of(s->o->criterion), s->o->threads);
     s->value = err_value(&e, s->o->criterion, s->o->eps);
-    s->wedged = e.wedged > 0;
+    s->jammed = e.jammed > 0;
 }
 
 static void renew(struct solve *s)
@@ -224,9 +224,9 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
     err_eval(&rep->err, p, s.believes, ERR_ALL, o->threads);
     rep->err.max_overlap = overlap;
     if (rep->history && rep->sweeps) rep->history[rep->sweeps - 1] = rep->err.paper;
-    bool wedged = rep->err.wedged && (o->criterion == CRITERION_VELOCITY || !p->packing);
-    rep->converged = !p->n || (!wedged && err_value(&rep->err, o->criterion, o->eps) <= o->eps);
-    if (wedged) rep->given_up = no_solution;
+    bool jammed = rep->err.jammed && (o->criterion == CRITERION_VELOCITY || !p->packing);
+    rep->converged = !p->n || (!jammed && err_value(&rep->err, o->criterion, o->eps) <= o->eps);
+    if (jammed) rep->given_up = no_solution;
     rep->seconds = report_seconds(CLOCK_CPU) - cpu;
     rep->elapsed = report_seconds(CLOCK_WALL) - wall;
     return 0;

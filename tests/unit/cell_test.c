@@ -252,9 +252,9 @@ static void test_cuts(int dim, double e)
     packing_tidy(&q, NULL);
     int64_t moved = 0;
     for (int64_t i = 0; i < q.n; i++) moved += memcmp(&q.x[i], &p.x[i], sizeof p.x[i]) != 0;
-    double d = apart(&p, &q, &o, 300, &n);
+    double d = apart(&p, &q, &o, 200, &n);
     ok(d < 1e-8 && n > p.n / 10 && moved > p.n / 4,
-       "%dD, e %g: 300 steps of shear do not depend on the cell's origin (%.1e m, %lld contacts)",
+       "%dD, e %g: 200 steps of shear do not depend on the cell's origin (%.1e m, %lld contacts)",
        dim, e, d, (long long)n);
     packing_free(&p), packing_free(&q);
 
@@ -266,6 +266,7 @@ static void test_cuts(int dim, double e)
     q.cell.edge[1] = v3_axpy(q.cell.edge[1], -1, q.cell.edge[0]);
     memset(q.image, 0, (size_t)q.n * sizeof *q.image);
     memset(p.image, 0, (size_t)p.n * sizeof *p.image);
+    memory_free(&p.memory), memory_free(&q.memory); // its shifts count the other edges
     d = apart(&p, &q, &o, 100, &n);
     ok(fabs(p.cell.edge[1].x + 0.18 * side) < 1e-9 && fabs(q.cell.edge[1].x + 0.18 * side) < 1e-9,
        "%dD: one of two cells has been cut, the other not", dim);
