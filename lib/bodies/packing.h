@@ -190,11 +190,6 @@ static inline vec3 packing_predict(const struct packing *p, int64_t i)
     return v3_axpy(p->x[i], (1 - p->theta) * p->dt, p->v[i]);
 }
 
-/* m/s: no contact at rest approaches faster, whatever gravity did to both bodies in a step. */
-static inline double packing_calm(const struct packing *p)
-{
-    return 2 * p->dt * v3_norm(p->g);
-}
 /* The acceleration of the flow that the cell's edges make, in the step to come */
 struct cell_flow packing_flow(const struct packing *p);
 
