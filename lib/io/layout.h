@@ -57,6 +57,11 @@ static const struct column layout_boundary[] = {
     { "until", "s", COLUMN_F64, 1, offsetof(struct wall, until) },
     { 0 },
 };
+/* The same where any has a weld tolerance of its own */
+static const struct column layout_weld[] = {
+    { "weld", "m", COLUMN_F64, 1, offsetof(struct wall, weld) },
+    { 0 },
+};
 static const struct column layout_plane[] = {
     { "point", "m", COLUMN_F64, 3, offsetof(struct wall, x) },
     { "normal", "1", COLUMN_F64, 3, offsetof(struct wall, n) },

@@ -83,7 +83,7 @@
  *   in the plane one of
  *   { segment: [[x, y], [x, y]] }      { polygon: { points: [[x, y], ...], closed } }
  *   { circle: { center, radius, side } }  { arc: { center, radius, along, arc, side } }
- *   with velocity vector [0], kind ["wall"], drives [ DRIVE ], until s, and all but the box load:
+ *   with velocity vector [0], kind ["wall"], drives [ DRIVE ], until s, weld m, and all but the box load:
  *   Bodies stay on the side that the normal points to; in a box they stay inside.
  *   side inside [that] | outside | both. A boundary may yield to a load, on top of its motion:
  *   { along: vector, mass: kg, force: N [0], speed: m/s [0], travel: m [0] }  free along the vector
