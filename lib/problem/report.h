@@ -43,6 +43,7 @@ struct report {
     struct err err;
     bool balanced;          /* balance is known: where there is a packing */
     bool tied;              /* its terms of bonds too: where pairs have other laws */
+    bool may_gain;          /* and of impacts that gain: where they may */
     struct balance balance; /* of the step that the reactions make */
     enum criterion criterion;
     double eps;     /* what was asked */
