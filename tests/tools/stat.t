@@ -67,6 +67,11 @@ v = f["fields/momentum/value"][-1].sum(0) * cell / p["particles/all/mass"][:].su
 assert np.abs(v - [1, 0, 1]).max() < 1e-6, v' "$@"
 }
 ok "fields have the mass and the momentum of the bodies" mass "$tmp/few-fields.h5" "$tmp/few.h5"
+# a lattice that moves with a cell until this is oblique: at the border images count with their own velocities
+jq -n '{ dim: 2, dt: 1e-3, gravity: [0, 0], density: 1, cell: { lengths: [10, 10], gradient: [[0, 2], [0, -0.5]] },
+    bodies: [range(100) | { x: [(. % 10) + 0.5, (. / 10 | floor) + 0.5], radius: 0.3 }] }' | nsd-gen - |
+    step -n 250 --every 250 --contacts -o "$tmp/lattice.h5"
+ok "images move as their cell does, in fields and layers" truth images "$tmp/lattice.h5" "$tmp/lattice-fields.h5"
 status 74 "fields in a folder that is not there" nsd-stat -f "$tmp/none/fields.h5" "$tmp/few.h5"
 status 65 "fields without bodies" nsd-stat -f "$tmp/none.h5" <(nsd-gen - <<<'{"dt": 1}')
 status 65 "fields on a grid of too many points" nsd-stat --spacing 1e-6 -f "$tmp/none.h5" "$tmp/few.h5"
