@@ -127,9 +127,15 @@ def scattered(document):
 
 
 def slope(document, degrees):
-    """A heap whose surface is a plane."""
+    """A heap whose surface is a plane, and no cone."""
     s = stat("-m", "surface", document)[-1]["surface"]
     close(s["angle"], float(degrees), 2e-2)
+    assert s["cone"] is None, s
+
+
+def cone(document, degrees):
+    s = stat("-m", "surface", document)[-1]["surface"]
+    close(s["cone"], float(degrees), 4e-2)
 
 
 def flow(document, rate):
@@ -161,6 +167,20 @@ def fields(document, made):
     weight = (rho[..., None] * d["g"])[15:-15, 15:-15, 15:-15]
     left = np.sqrt((inner ** 2).sum(-1).mean() / (weight ** 2).sum(-1).mean())
     assert left < 0.01, left
+
+
+def tied(document):
+    """Pairs in tension count, what ties store is stored and not dissipated, friction has its limit in the push."""
+    q = h5py.File(document)["nsd/solver"]
+    pulls, used = 0, 0
+    for k, s in enumerate(stat("-m", "energy,coordination,friction,normal_forces", document)):
+        close(s["energy"]["stored"], q["bond_energy/value"][k], 1e-9)
+        close(s["energy"]["dissipated"], q["dissipation/value"][k], 1e-6, abs(q["bond_change/value"][k]))
+        assert s["friction"]["contacts"] == s["coordination"]["contacts"]
+        used = max(used, s["friction"]["mobilised"] or 0)
+    d = last(document)
+    pulls = (d["reaction"][:, 0] < 0).sum()
+    assert pulls > 5 and s["coordination"]["contacts"] == len(d["gap"]) and used <= 1, (pulls, used)
 
 
 def images(document, made):
