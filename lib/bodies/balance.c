@@ -1,6 +1,7 @@
 /* bodies/balance.c: energy and momentum, summed over bodies and contacts [bodies/balance.h]. */
 #include "bodies/balance.h"
 
+#include "bodies/freedom.h"
 #include "bodies/tie.h"
 #include "bodies/top.h"
 
