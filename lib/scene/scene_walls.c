@@ -157,8 +157,13 @@ static int read_wall(jnode o, struct scene *s, struct scene_box *box, bool *boxe
 int scene_read_walls(jnode a, struct scene *s, struct scene_box *box, bool *boxed)
 {
     size_t n;
-    if (json_node_array(a, &n) || !(s->wall = scene_alloc(a, 6 * n, sizeof *s->wall))) return 1;
-    for (size_t i = 0; i < n; i++)
+    if (json_node_array(a, &n) || !(s->wall = scene_alloc(a, 6 * n, sizeof *s->wall)) ||
+        !(s->wall_item = scene_alloc(a, 6 * n, sizeof *s->wall_item)))
+        return 1;
+    for (size_t i = 0; i < n; i++) {
+        int32_t first = s->walls;
         if (read_wall(json_node_item(&a, i), s, box, boxed)) return 1;
+        for (int32_t k = first; k < s->walls; k++) s->wall_item[k] = (int32_t)i;
+    }
     return 0;
 }
