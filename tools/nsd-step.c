@@ -59,7 +59,7 @@ static const struct cli_option own[] = {
     { CLI_ABOVE, 0, "progress", &lines, "S", .max = 1e9, .silent = true,
       .help = "say how far it is every S seconds, on no terminal too [terminal]" },
     { CLI_TEXT, 0, "save", &save, "TIME", .silent = true,
-      .help = "keep the state in OUTPUT.save every TIME of real time, as 10min [never]" },
+      .help = "keep a checkpoint in OUTPUT.save every TIME, as 10min [never]" },
     { CLI_TEXT, 'o', "output", &output, "FILE", "write to FILE [standard output]", .silent = true },
     { 0 },
 };
