@@ -4,6 +4,7 @@
 #include "base/team.h"
 #include "bodies/anchor.h"
 #include "bodies/detect_shapes.h"
+#include "bodies/freedom.h"
 #include "bodies/kinematics.h"
 #include "bodies/seam.h"
 #include "bodies/swift.h"
@@ -274,43 +275,61 @@ int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3
     return detect(out, p, x, p->q, edge, t, gap, kept, why);
 }
 
-/*
- * m: how far apart two bodies may be that touch before the next step's contacts are sought, where
- * the law sees gaps: the way of the fastest in a step, twice; not more than half the smallest
- * radius, so that lists of neighbours stay short where something flies off.
- */
-static double meeting_reach(const struct packing *p)
+/* What decides which pairs that do not touch the law sees */
+struct sight {
+    bool meets;  /* those that approach, too */
+    double calm; /* m/s */
+    double near; /* m: what loads may close in a step */
+    double most; /* m: half the smallest radius, so that lists of neighbours stay short where
+                    something flies off */
+};
+
+static struct sight sight_of(const struct packing *p)
+{
+    return (struct sight){ overlap_meets(p->overlap), freedoms_calm(p), p->dt * freedoms_speed(p),
+                           0.5 * packing_whole(p).small };
+}
+
+/* m: how far apart two bodies may be that touch before the next step's contacts are sought: those that
+   are near, and where pairs meet the way of the fastest in a step, twice */
+static double seeing_reach(const struct packing *p)
 {
     const struct whole all = packing_whole(p);
+    const struct sight o = sight_of(p);
     double speed = p->shape ? all.top_speed : all.speed; // a corner is faster than its body
     for (int32_t w = 0; w < p->walls; w++) speed = fmax(speed, wall_top_speed(p, &p->wall[w]));
-    return fmin(p->dt * (2 * speed + packing_calm(p)), 0.5 * all.small);
+    double near = fmin(OVERLAP_NEAR * all.large + o.near, o.most);
+    return o.meets ? fmax(near, fmin(p->dt * (2 * speed + o.calm), o.most)) : near;
 }
 
 double detect_reach(const struct packing *p, double gap)
 {
-    double reach = overlap_sees_gaps(p->overlap) ? fmax(gap, meeting_reach(p)) : gap;
+    double reach = overlap_sees_gaps(p->overlap) ? fmax(gap, seeing_reach(p)) : gap;
     return p->law ? fmax(reach, ties_reach(p)) : reach;
 }
 
-/* Whether a pair with a gap above `gap` may close it. Where it would rebound, the impact waits for
-   the bodies to touch. */
-static bool meets(const struct packing *p, const struct contact *c)
+/* Whether the law sees a pair with a gap above that of a contact. Where it would rebound from afar, the
+   impact waits for the bodies to touch. */
+static bool is_seen(const struct packing *p, const struct sight *o, const struct contact *c)
 {
-    double approach = -opening_of(p, c, (1 - p->theta) * p->dt), calm = packing_calm(p);
-    return c->gap <= p->dt * (approach + calm) && (c->en == 0 || approach <= calm);
+    double small = c->a < 0 ? p->radius[c->b] : fmin(p->radius[c->a], p->radius[c->b]);
+    if (c->gap <= OVERLAP_NEAR * small) return true;
+    double approach = -opening_of(p, c, (1 - p->theta) * p->dt);
+    if (c->en > 0 && approach > o->calm) return false;
+    return c->gap <= o->near || (o->meets && c->gap <= p->dt * (approach + o->calm));
 }
 
-/* Keeps the contacts with at most this gap, those that may close theirs where the law sees gaps, and
-   those that other laws hold. */
-static void keep_meeting(struct contacts *s, const struct packing *p, double gap)
+/* Keeps the contacts with at most this gap, those that the law sees besides, and those that other laws
+   hold. */
+static void keep_seen(struct contacts *s, const struct packing *p, double gap)
 {
     int64_t n = 0;
     bool sees = overlap_sees_gaps(p->overlap);
+    const struct sight o = sight_of(p);
     for (int64_t i = 0; i < s->n; i++) {
         bool held = s->tie && tie_holds(&s->tie[i]);
-        bool ahead = swift_ahead(&s->c[i]);
-        if (!(s->c[i].gap <= gap || held || ahead || (sees && meets(p, &s->c[i])))) continue;
+        bool seen = sees && is_seen(p, &o, &s->c[i]);
+        if (!(s->c[i].gap <= gap || held || swift_ahead(&s->c[i]) || seen)) continue;
         if (s->tie) s->tie[n] = s->tie[i];
         s->c[n++] = s->c[i];
     }
@@ -385,7 +404,7 @@ int detect_choose(struct contacts *s, const struct packing *p, double gap, doubl
 {
     int e = p->law && p->shape && p->bonds.n ? add_anchored(s, p, why) : 0;
     if (!e && p->law) e = ties_find(s, p, why);
-    if (!e && reach > gap) keep_meeting(s, p, gap);
+    if (!e && reach > gap) keep_seen(s, p, gap);
     return e;
 }
 

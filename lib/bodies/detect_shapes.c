@@ -99,6 +99,52 @@ static bool over_face(const struct wall *wall, const struct surface *surface, st
     return true;
 }
 
+/* Of the radius: a corner there is the same place */
+static const double SAME_PLACE = 1e-3;
+
+/* A corner c (m, from the wall's point of reference) and the middle of its body */
+struct corner {
+    const struct wall *wall;
+    const struct surface *surface;
+    int dim;
+    vec3 c, middle;
+};
+
+static bool is_between(const struct corner *o, vec3 a, vec3 b)
+{
+    return boundary_between(o->wall, o->dim, o->surface, a, b);
+}
+
+/* Has the corner gone through the boundary at t? Its normal then leads to the middle, and it is at a negative
+   distance. */
+static void turn_to_middle(const struct corner *o, struct touch *t)
+{
+    if (v3_dot(t->n, v3_sub(o->middle, v3_axpy(o->c, -t->distance, t->n))) >= 0) return;
+    t->n = v3_scale(-1, t->n), t->distance *= -1;
+}
+
+/* The corner has gone through a surface: where it is nearest. Of its other places those remain that are seen from
+   just before there, turned if it has gone through them, too. Returns how many remain. */
+static int turn_touches(const struct corner *o, struct touch *t, int n, double radius)
+{
+    int nearest = 0, kept = 0;
+    for (int k = 1; k < n; k++)
+        if (fabs(t[k].distance) < fabs(t[nearest].distance)) nearest = k;
+    if (!n) return 0;
+    turn_to_middle(o, &t[nearest]);
+    double before = 2 * o->surface->weld + SAME_PLACE * SAME_PLACE * radius;
+    vec3 from = v3_axpy(o->c, before - t[nearest].distance, t[nearest].n);
+    bool through = is_between(o, o->middle, from);
+    for (int k = 0; k < n; k++) {
+        vec3 place = v3_axpy(o->c, -t[k].distance, t[k].n);
+        vec3 to = v3_axpy(place, SAME_PLACE, v3_sub(o->c, place));
+        if (k != nearest && is_between(o, from, to)) continue;
+        if (k != nearest && through) turn_to_middle(o, &t[k]);
+        t[kept++] = t[k];
+    }
+    return kept;
+}
+
 /* Where a corner of body i, rounded by `round` (m), meets the surface; n points to the body's side. Where the
    boundary ends or bends only what is round meets it by its corners: of sharp bodies, edges and faces meet rims
    [meet_rims()]. Returns how many places. */
@@ -112,21 +158,31 @@ static int near_surface(const struct placed *s, const struct wall *wall, const s
     double r = p->radius[i];
     int n = surface ? surface_touches(surface, c, round + gap + r, touch)
                     : boundary_nearest(wall, p->dim, c, r, touch);
-    int kept = 0;
-    for (int k = 0; k < n; k++) {
-        bool end = boundary_ends_at(wall, p->dim, surface, c, &touch[k]);
-        bool bends = round == 0 && surface && surface_bends(surface, p->dim, touch[k].feature);
-        if (round == 0 && (bends || (end && !over_face(wall, surface, &touch[k])))) continue;
-        touch[kept++] = touch[k];
-        struct touch *t = &touch[kept - 1];
-        vec3 place = v3_axpy(c, -t->distance, t->n);
-        bool two_sided = surface || wall->side == BOUNDARY_BOTH ||
-                         wall->shape == BOUNDARY_RECTANGLE || wall->shape == BOUNDARY_DISC;
-        if (two_sided && !end && v3_dot(t->n, v3_sub(middle, place)) < 0 &&
-            boundary_between(wall, p->dim, surface, middle, c))
-            t->n = v3_scale(-1, t->n), t->distance *= -1;
-        t->n = quat_turn(pose->q, t->n);
+    struct touch found[TOUCHES_MOST];
+    struct touch groove[TOUCHES_MOST];
+    const struct corner o = { wall, surface, p->dim, c, middle };
+    const bool through = surface && n > 0 && is_between(&o, middle, c);
+    int kept = 0, grooves = 0;
+    memcpy(found, touch, (size_t)n * sizeof *touch);
+    for (int k = 0; k < n && kept < TOUCHES_MOST; k++) {
+        struct touch *t = &touch[kept], *f = &found[k];
+        bool end = boundary_ends_at(wall, p->dim, surface, c, f);
+        if (round == 0 && end && !over_face(wall, surface, f)) continue;
+        if (round == 0 && surface && surface_bends(surface, p->dim, f->feature)) {
+            if (through)
+                grooves += surface_groove(surface, p->dim, f, c, middle, groove + grooves,
+                                          TOUCHES_MOST - grooves);
+            continue;
+        }
+        *t = *f, kept++;
+        bool two_sided = wall->side == BOUNDARY_BOTH || wall->shape == BOUNDARY_RECTANGLE ||
+                         wall->shape == BOUNDARY_DISC;
+        if (!surface && two_sided && (!end || round == 0) && is_between(&o, middle, c))
+            turn_to_middle(&o, t);
     }
+    if (through) kept = turn_touches(&o, touch, kept, r);
+    for (int k = 0; k < grooves && kept < TOUCHES_MOST; k++) touch[kept++] = groove[k];
+    for (int k = 0; k < kept; k++) touch[k].n = quat_turn(pose->q, touch[k].n);
     return kept;
 }
 
@@ -166,8 +222,6 @@ static bool meet_convex(struct contacts *out, const struct placed *s, int32_t w,
     return true;
 }
 
-/* Of the radius: a corner there is the same place */
-static const double SAME_PLACE = 1e-3;
 /* 1 - cosine: of two normals that are one */
 static const double ALONG = 1e-12;
 /* Sine: a face that lies on a surface to this is next to its rim, too */
@@ -220,7 +274,8 @@ static bool goes_on(const struct rim *r, const struct wall *wall, const struct p
     vec3 c = v3_sub(quat_turn_back(pose->q, v3_sub(x, pose->shift)), wall->x);
     double step = fmax(beyond, 10 * surface->weld);
     for (int k = 0; k < r->sides; k++)
-        if (!surface_is_at(surface, v3_axpy(c, -step, r->into[k]), 2 * surface->weld)) return false;
+        if (!surface_is_at(surface, v3_axpy(c, -step, r->into[k]), NULL, 2 * surface->weld))
+            return false;
     return true;
 }
 

@@ -355,14 +355,16 @@ static int by_feature(const void *a, const void *b)
     return (p->feature > q->feature) - (p->feature < q->feature);
 }
 
-bool surface_is_at(const struct surface *s, vec3 c, double near)
+bool surface_is_at(const struct surface *s, vec3 c, const vec3 *n, double near)
 {
     struct surface_walk walk;
     struct surface_branch leaf;
     surface_walk_begin(&walk, s->n);
     while (surface_walk_next(&walk, s->box, c, near, &leaf))
         for (int32_t i = leaf.lo; i < leaf.hi; i++)
-            if (v3_norm(v3_sub(c, surface_nearest(s, s->order[i], c))) <= near) return true;
+            if (v3_norm(v3_sub(c, surface_nearest(s, s->order[i], c))) <= near &&
+                (!n || fabs(v3_dot(*n, surface_normal(s, s->order[i]))) > 1 - 1e-6))
+                return true;
     return false;
 }
 

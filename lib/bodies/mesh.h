@@ -68,8 +68,8 @@ enum {
    other have one. */
 int surface_touches(const struct surface *s, vec3 c, double most, struct touch touch[TOUCHES_MOST]);
 
-/* Does the surface lie at c, to `near` (m)? */
-bool surface_is_at(const struct surface *s, vec3 c, double near);
+/* Does the surface lie at c, to `near` (m)? n: across this unit vector; NULL: in any direction */
+bool surface_is_at(const struct surface *s, vec3 c, const vec3 *n, double near);
 /* Of an element: its unit normal, in the plane across the segment; its place next to c */
 vec3 surface_normal(const struct surface *s, int32_t e);
 vec3 surface_nearest(const struct surface *s, int32_t e, vec3 c);

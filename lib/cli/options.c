@@ -294,7 +294,9 @@ void options_overlap(struct packing *p, bool detected)
         now = p->shape ? OVERLAP_GAP_PROJECT : usual.overlap; // corners that open
     if (options.paper) now = paper.overlap;
     now = OPTION(overlap, (int)now - 1) + 1;
-    if (detected && overlap_sees_gaps(was) != overlap_sees_gaps(now))
+    bool others = overlap_sees_gaps(was) != overlap_sees_gaps(now) ||
+                  overlap_meets(was) != overlap_meets(now);
+    if (detected && others)
         die_usage("--overlap: the contacts were detected with %s; give it to nsd-detect",
                   overlap_name[was ? was : OVERLAP_KEEP]);
     p->overlap = now;

@@ -57,6 +57,11 @@ static const struct column layout_boundary[] = {
     { "until", "s", COLUMN_F64, 1, offsetof(struct wall, until) },
     { 0 },
 };
+/* The same where any has a weld tolerance of its own */
+static const struct column layout_weld[] = {
+    { "weld", "m", COLUMN_F64, 1, offsetof(struct wall, weld) },
+    { 0 },
+};
 static const struct column layout_plane[] = {
     { "point", "m", COLUMN_F64, 3, offsetof(struct wall, x) },
     { "normal", "1", COLUMN_F64, 3, offsetof(struct wall, n) },
@@ -141,6 +146,12 @@ static const struct column layout_law[] = {
     { "beta", "1", COLUMN_F64, 1, offsetof(struct law, beta) },
     { "made", "s", COLUMN_F64, 1, offsetof(struct law, made) },
     { "forever", "1", COLUMN_F64, 1, offsetof(struct law, forever) },
+    { 0 },
+};
+
+/* The same where it is said of some pair whether its impacts are bounded */
+static const struct column layout_impact[] = {
+    { "impact", "1", COLUMN_F64, 1, offsetof(struct law, impact) },
     { 0 },
 };
 
@@ -321,6 +332,12 @@ static const struct column layout_bond_balance[] = {
     { "bond_change", "J", COLUMN_F64, 1, offsetof(struct report, balance.bond_change) },
     { "bond_energy", "J", COLUMN_F64, 1, offsetof(struct report, balance.bond_energy) },
     { "broken", "J", COLUMN_F64, 1, offsetof(struct report, balance.broken) },
+    { 0 },
+};
+
+/* The same where impacts may gain energy */
+static const struct column layout_gain_balance[] = {
+    { "impact_gain", "J", COLUMN_F64, 1, offsetof(struct report, balance.gained) },
     { 0 },
 };
 

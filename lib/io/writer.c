@@ -198,6 +198,12 @@ static int write_all(struct writer *s, const unsigned char *bytes, size_t size, 
                : 0;
 }
 
+int64_t writer_size(const struct writer *s)
+{
+    struct stat st;
+    return fstat(s->fd, &st) || !S_ISREG(st.st_mode) ? 0 : (int64_t)st.st_size;
+}
+
 bool writer_passes(const struct writer *s)
 {
     return !s->trajectory;
@@ -508,7 +514,8 @@ static int begin_again(struct writer *s, struct why *why)
 
 int writer_begin(struct writer *s, const struct frame *f, struct why *why)
 {
-    if (!s->trajectory || s->frames || s->waits || (s->output && s->output->old >= 0)) return 0;
+    bool begun = s->frames || s->waits || (s->output && s->output->old >= 0);
+    if (!s->trajectory || begun) return 0;
     if (trajectory_frame(s, f, why)) trajectory_fails(s);
     return why->status ? why->status : begin_again(s, why);
 }

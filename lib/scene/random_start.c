@@ -138,7 +138,7 @@ static vec3 draw_place(const struct start *s, int64_t i, gsl_rng *rng)
     return v3(x[0], x[1], x[2]);
 }
 
-static int add_one_by_one(struct start *s, gsl_rng *rng, struct why *why)
+static int add_one_by_one(struct start *s, double phi, gsl_rng *rng, struct why *why)
 {
     struct placed t;
     if (!placed_alloc(&t, s)) {
@@ -151,8 +151,11 @@ static int add_one_by_one(struct start *s, gsl_rng *rng, struct why *why)
             s->p.x[i] = draw_place(s, i, rng);
         } while (!is_free(&t, s, i, s->p.x[i]) && ++tries < TRIES);
         if (tries == TRIES)
-            why_set(why, EX_DATAERR, "no room for body %lld of %lld in %d tries", (long long)i,
-                    (long long)s->p.n, TRIES);
+            why_set(
+                why, EX_DATAERR,
+                "no room for body %lld of %lld in %d tries, which are to fill %.3g of the box: a "
+                "smaller phi or count, or a wider box",
+                (long long)i, (long long)s->p.n, TRIES, phi);
         struct level *l = &t.level[level_of(s, i)];
         int64_t c[3];
         cell_of(l, s, s->p.x[i], c);
@@ -341,7 +344,7 @@ int random_start(struct grains *out, const struct scene_bodies *b, int dim, gsl_
         why_set(why, EX_DATAERR, "a random start cannot fill %g of its box", phi);
     if (!why->status && !sort_radii(&s, out, why)) {
         if (phi > LOOSE[dim]) s.scale = pow(LOOSE[dim] / phi, 1.0 / dim);
-        if (!add_one_by_one(&s, rng, why) && s.scale < 1) grow(&s, phi, why);
+        if (!add_one_by_one(&s, phi, rng, why) && s.scale < 1) grow(&s, phi, why);
         for (int64_t i = 0; i < out->n && !why->status; i++) out->g[s.from[i]].x = s.p.x[i];
     }
     packing_free(&s.p);
