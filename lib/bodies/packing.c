@@ -98,6 +98,22 @@ bool packing_rolls(const struct packing *p)
     return false;
 }
 
+bool packing_may_gain(const struct packing *p)
+{
+    for (int32_t k = 0; k < p->kinds * p->kinds; k++)
+        if (p->mu[k] > 0 && p->en[k] > 0) return true;
+    return false;
+}
+
+bool packing_bounds(const struct packing *p, const struct contact *c)
+{
+    const int32_t k = packing_pair(p, c->a, c->b);
+    const double law = p->law ? p->law[k].impact : IMPACT_DEFAULT;
+    bool shaped = p->shape && (p->shape[c->b] > 0 || (c->a >= 0 && p->shape[c->a] > 0));
+    return p->mu[k] > 0 && p->en[k] > 0 &&
+           (law == IMPACT_BOUNDED || (law == IMPACT_DEFAULT && shaped));
+}
+
 int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals, struct why *why)
 {
     free(p->poured), free(p->removed);

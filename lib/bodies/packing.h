@@ -116,6 +116,10 @@ static inline bool packing_varies(const struct packing *p)
 
 /* Has any pair of kinds rolling or pivoting friction? */
 bool packing_rolls(const struct packing *p);
+/* May an impact gain energy [bodies/balance.h]? It wants restitution and friction. */
+bool packing_may_gain(const struct packing *p);
+/* Is Newton's law to be bounded for the contact [solve/rebound.h]? */
+bool packing_bounds(const struct packing *p, const struct contact *c);
 
 /* Room for n bodies; those beyond the present ones are at rest at the origin, their id -1. Fewer: the
    last ones are cut off. Returns 0 or EX_SOFTWARE, where nothing has changed. */

@@ -149,6 +149,12 @@ static const struct column layout_law[] = {
     { 0 },
 };
 
+/* The same where it is said of some pair whether its impacts are bounded */
+static const struct column layout_impact[] = {
+    { "impact", "1", COLUMN_F64, 1, offsetof(struct law, impact) },
+    { 0 },
+};
+
 /* /nsd/bonds/NAME [B][width], of frame k rows start[k] .. start[k] + count[k] - 1: members of struct
    bond */
 static const struct column layout_bonds[] = {
@@ -326,6 +332,12 @@ static const struct column layout_bond_balance[] = {
     { "bond_change", "J", COLUMN_F64, 1, offsetof(struct report, balance.bond_change) },
     { "bond_energy", "J", COLUMN_F64, 1, offsetof(struct report, balance.bond_energy) },
     { "broken", "J", COLUMN_F64, 1, offsetof(struct report, balance.broken) },
+    { 0 },
+};
+
+/* The same where impacts may gain energy */
+static const struct column layout_gain_balance[] = {
+    { "impact_gain", "J", COLUMN_F64, 1, offsetof(struct report, balance.gained) },
     { 0 },
 };
 

@@ -37,6 +37,7 @@ int report_rows_open(struct report_rows *r, struct source *source, struct why *w
     count_rows(r, layout_velocity);
     count_rows(r, layout_balance);
     count_rows(r, layout_bond_balance);
+    count_rows(r, layout_gain_balance);
     r->solves = account_rows_count(source, r->group, r->solves);
     if (!why->status) r->solves = table_read_rising(r->solved, r->solves);
     return why->status;
@@ -103,8 +104,14 @@ static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
     if (tied && table_read_columns(r->source, r->group, "/value", layout_bond_balance, at, n,
                                    r->ahead.row, sizeof *r->ahead.row, why))
         return why->status;
+    snprintf(time, sizeof time, "%s/impact_gain/value", r->group);
+    bool may_gain = balanced && source_has(r->source, time);
+    if (may_gain && table_read_columns(r->source, r->group, "/value", layout_gain_balance, at, n,
+                                       r->ahead.row, sizeof *r->ahead.row, why))
+        return why->status;
     for (int64_t i = 0; i < n; i++)
-        r->ahead.row[i].balanced = balanced, r->ahead.row[i].tied = tied;
+        r->ahead.row[i].balanced = balanced, r->ahead.row[i].tied = tied,
+        r->ahead.row[i].may_gain = may_gain;
     r->ahead.n = n;
     return 0;
 }
@@ -161,7 +168,8 @@ static int write_balance(struct table_write *s, const struct report *rep, bool f
                          struct why *why)
 {
     if (write_table(s, layout_balance, rep, first, why)) return why->status;
-    return rep->tied ? write_table(s, layout_bond_balance, rep, first, why) : 0;
+    if (rep->tied && write_table(s, layout_bond_balance, rep, first, why)) return why->status;
+    return rep->may_gain ? write_table(s, layout_gain_balance, rep, first, why) : 0;
 }
 
 int report_rows_write(struct table_write *s, const struct report *rep, struct why *why)

@@ -54,6 +54,7 @@ struct report {
     struct err err;
     bool balanced;          /* balance is known: where there is a packing */
     bool tied;              /* its terms of bonds too: where pairs have other laws */
+    bool may_gain;          /* and of impacts that gain: where they may */
     struct balance balance; /* of the step that the reactions make */
     struct depth depth;     /* of the contacts of a packing */
     enum criterion criterion;

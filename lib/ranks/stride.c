@@ -272,9 +272,19 @@ static bool is_shared(const struct packing *p, const struct step_opt *o)
     return step_sweeps(o->solve.global) && !freedoms_in(p);
 }
 
+/* May impacts be bounded, by the first rank, which then has all contacts? */
+static bool bounds_impacts(const struct packing *p)
+{
+    bool said = false;
+    for (int32_t k = 0; p->law && k < p->kinds * p->kinds; k++)
+        said = said || p->law[k].impact == IMPACT_BOUNDED;
+    return packing_may_gain(p) && (p->shape || said);
+}
+
 bool stride_scatters(const struct packing *p, const struct step_opt *o)
 {
-    return o->order == ORDER_BLOCK && is_shared(p, o) && !p->law && !o->warm && !packing_varies(p);
+    return o->order == ORDER_BLOCK && is_shared(p, o) && !p->law && !o->warm &&
+           !packing_varies(p) && !bounds_impacts(p);
 }
 
 /* The pairs here that are contacts, or may be by laws */
@@ -344,7 +354,9 @@ static int step_by_first(struct stride *y, struct packing *whole, struct contact
     if (solved) roll_found(&roll, &y->part, &s, all);
     y->alone += !solved;
     if (!t->me) {
-        if (!solved && step_solve_contacts(whole, all, NULL, o, rep, why)) return why->status;
+        int e = solved ? step_bound_impacts(whole, all, NULL, o, rep, why)
+                       : step_solve_contacts(whole, all, NULL, o, rep, why);
+        if (e) return e;
         if (step_move(whole, all, o, rep, why)) return why->status;
         step_watch(whole, whole->n, y->near.surface, rep);
         settings_copy_motion(&y->part.p, whole);
@@ -417,7 +429,7 @@ static int step_by_all(struct stride *y, struct packing *whole, struct contacts 
     rep->step = y->part.p.step + 1, rep->t = packing_next_time(&y->part.p);
     rep->err.max_overlap = talk_most(t, contacts_max_overlap(&s));
     measure_depth(y, &s, &rep->depth);
-    rep->balanced = !bare, rep->tied = false;
+    rep->balanced = !bare, rep->tied = false, rep->may_gain = packing_may_gain(&y->part.p);
     solve_in_blocks(y, &b, whole, &s, o, rep, why);
     bool moves = isfinite(rep->err.paper.eps_glob);
     if (moves) {

@@ -101,7 +101,8 @@
  *   origin   vector [0]
  *   gradient MATRIX, 1/s, or [ { t: s, L: MATRIX } ], linear between and constant outside [0]: of
  *            velocity; the edges move with it, d edge/dt = L edge. MATRIX [[L_xx, L_xy], ...]
- *   affine   true | false [false]: at the start bodies have the velocity L (x - origin) as well
+ *   affine   true | false [true with a gradient and no document]: at the start bodies have the
+ *            velocity L (x - origin) as well
  *   stress   { pressure: Pa, mass: kg } or { target: MATRIX, mass: kg }: what edges yield to, as
  *            bodies of this mass; compression is positive, N/m in the plane. Number [i][j]: component
  *            i of edge j yields; null: it moves by the gradient. A pressure is one on the diagonal,

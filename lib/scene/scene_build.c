@@ -205,7 +205,9 @@ static int set_shapes(struct packing *p, const struct scene *s, struct why *why)
 static bool goes_beyond(const struct scene *s)
 {
     for (int32_t k = 0; k < s->kinds * s->kinds; k++)
-        if (law_ties(&s->law[k].beyond) || law_rolls(&s->law[k].beyond)) return true;
+        if (law_ties(&s->law[k].beyond) || law_rolls(&s->law[k].beyond) ||
+            s->law[k].beyond.impact > 0)
+            return true;
     return false;
 }
 

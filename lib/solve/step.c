@@ -6,6 +6,7 @@
 #include "bodies/swift.h"
 #include "bodies/tidy.h"
 #include "problem/prepare.h"
+#include "solve/rebound.h"
 
 #include <stdlib.h>
 
@@ -14,6 +15,7 @@ static int sum_up(const struct packing *pack, const struct contacts *s, const st
                   struct report *rep, struct impulses *sum, struct why *why)
 {
     rep->balanced = !o->bare, rep->tied = pack->law != NULL;
+    rep->may_gain = packing_may_gain(pack);
     if (impulses_init(sum, pack, s, false, why)) return why->status;
     return o->bare ? 0 : balance_step(&rep->balance, pack, s, sum, NULL, why);
 }
@@ -33,12 +35,16 @@ static int check_solver(const struct problem *p, const struct solver *global, st
         global->name);
 }
 
-int step_solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
-                        const struct step_opt *o, struct report *rep, struct why *why)
+/* The contacts as they are, from the reactions that they have */
+static int solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
+                          const struct step_opt *o, struct report *rep, struct why *why)
 {
     struct problem p;
+<<<<<<< HEAD
     if (depth_of(&rep->depth, pack, s, NULL, why)) return why->status;
     if (!o->warm) contacts_free_found(s);
+=======
+>>>>>>> frame
     if (prepare_packing(&p, pack, s, step_sweeps(o->solve.global), o->alpha, o->solve.method->rho,
                         o->order, kept, why))
         return why->status;
@@ -53,6 +59,31 @@ int step_solve_contacts(const struct packing *pack, struct contacts *s, struct p
         why_set(why, EX_SOFTWARE, "no memory for the solution");
     problem_free(&p);
     return failed ? why->status : 0;
+}
+
+int step_bound_impacts(const struct packing *pack, struct contacts *s, struct plan **kept,
+                       const struct step_opt *o, struct report *rep, struct why *why)
+{
+    struct rebound_search *search = NULL;
+    bool again = true;
+    while (!rebound_reduce(&search, pack, s, &again, why) && again) {
+        const struct report before = *rep;
+        if (solve_contacts(pack, s, kept, o, rep, why)) break;
+        rep->seconds += before.seconds, rep->elapsed += before.elapsed, rep->work += before.work;
+        if (o->solve.history) continue; // which is of the last solve
+        rep->sweeps += before.sweeps, rep->newton += before.newton;
+        rep->safeguarded += before.safeguarded, rep->gave_up += before.gave_up;
+    }
+    rebound_free(search);
+    return why->status;
+}
+
+int step_solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
+                        const struct step_opt *o, struct report *rep, struct why *why)
+{
+    if (!o->warm) contacts_free_found(s);
+    if (solve_contacts(pack, s, kept, o, rep, why)) return why->status;
+    return step_bound_impacts(pack, s, kept, o, rep, why);
 }
 
 int step_solve(const struct packing *pack, struct contacts *s, const struct step_opt *o,
@@ -70,7 +101,7 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
         for (int64_t i = 0; i < W->d * W->n; i++) W->r[i] = 0;
     if (problem_prepare_delassus(&p, W, o->alpha, o->solve.method->rho, o->order, why))
         return why->status;
-    rep->balanced = rep->tied = false;
+    rep->balanced = rep->tied = rep->may_gain = false;
     int failed = solve_problem(&p, &o->solve, rep);
     for (int64_t i = 0; i < p.slots; i++) {
         double r[3], v[3];

@@ -48,9 +48,12 @@ int step_advance(struct packing *p, struct contacts *s, struct step_memory *m,
 /* Its parts. The contacts, with their last reactions if warm */
 int step_detect(struct packing *p, struct contacts *s, struct neighbours *near,
                 const struct step_opt *o, struct report *rep, struct why *why);
-/* found[], and the report of the solve; kept: of problem_prepare_again(), or NULL */
+/* found[], and the report of the solve; kept: of problem_prepare_again(), or NULL. Impacts that would gain energy
+   are solved anew with less restitution [solve/rebound.h]; and this alone, of contacts that are solved. */
 int step_solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
                         const struct step_opt *o, struct report *rep, struct why *why);
+int step_bound_impacts(const struct packing *pack, struct contacts *s, struct plan **kept,
+                       const struct step_opt *o, struct report *rep, struct why *why);
 /* The balances alone; or the balances and the motion */
 int step_balance(const struct packing *p, const struct contacts *s, const struct step_opt *o,
                  struct report *rep, struct why *why);

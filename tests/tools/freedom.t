@@ -166,6 +166,7 @@ pushed()
 like "a force by table, with a mean" \
     "$(pushed '{"table": [[0.05, 0], [0.1, 40], [0.15, -10]], "mean": 3}' |
         jq '(.speed - (0.2 * 3 + 0.05 * 20 + 0.05 * 15 - 0.05 * 10) / 2 | fabs) < 1e-12')" true
+is "nsd-info -w shows it as it then is" "$(nsd-info --last -w "$tmp/pushed.h5" | jq 'select(.load).load.force')" -7
 # the middle of a step is wrong for its mean by (pi f dt)^2/6 = 1.6e-6
 like "a force by sine, against the integral" \
     "$(pushed '{"amplitude": 6, "frequency": 1, "phase": 0.4, "mean": 1}' |
