@@ -1,17 +1,20 @@
-# make            build everything        make check      set up, then every test
-# make demo       set up, build, 500 balls, a picture     make install   PREFIX, DESTDIR
+# make            build everything        make check      set up, build, the tests of a user and of each change
+# make demo       set up, build, 500 balls, a picture     make check-all  those and all others (tests/README.md)
+# make install    PREFIX, DESTDIR         V=1: print the commands
 # make bench      what it costs (bench/README.md)         make bench-compare   beside the last kept results
 # make bench-solvers   all solvers over a collection of problems, Siconos' beside them
 # make rest       what is done about overlap: columns and piles that rest (nsd-methods(7))
 # make paper      every table and figure of the paper     QUICK=1        the same in minutes
 # make wall       what holds up the solvers on large piles QUICK=1      one pile, in a minute
 # make gallery    experiments beside what is published     QUICK=1       small, in minutes
-# make docs       the manuals as HTML, in docs/man        make deb       Debian packages, in build/deb
+# make docs       the manuals as HTML, in build/man       make deb       Debian packages, in build/deb
 #
 # Objects, tools and tests are under build/; SAN=1 makes the same with ASan and UBSan in build/san/,
 # at -O1: the sanitizers treble the code, and -O3 of that takes minutes.
 
 VERSION := 1.0
+# $(call Q,CC,FILE) before a command: a line that names the file instead of the command; V=1: the command
+Q        = $(if $(V),,@printf '%-4s%s\n' $1 $2;)
 PREFIX  ?= /usr/local
 DESTDIR ?=
 CC      ?= cc
@@ -81,29 +84,30 @@ MPI_H5 := $(if $(PARALLEL),$(shell pkg-config --cflags-only-I hdf5-openmpi))
 MPI_PL := $(if $(PARALLEL),$(subst hdf5/serial,hdf5/openmpi,$(PL)),$(PL))
 RANKS  := $(if $(MPI_PC),$(patsubst lib/%.c,$B/lib/%.o,$(wildcard lib/ranks/*.c)))
 MPI    := $(if $(MPI_PC),$B/nsd-step-mpi)
-CTEST := $(patsubst tests/%.c,$B/tests/%,$(wildcard tests/*_test.c))
+CTEST := $(patsubst tests/%.c,$B/tests/%,$(wildcard tests/*/*_test.c))
 
 all: $(TOOLS) $(MPI)
 
-$B/tests/fclib_test: TESTLIBS += -lfclib
+$B/tests/unit/fclib_test: TESTLIBS += -lfclib
 
-# The calls that tests/failing.h makes fail: those of the library go through it.
+WRAPPED := $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw changed_objects)
+# The calls that tests/support/failing_library_calls.h makes fail: those of the library go through it.
 FAILING := malloc calloc realloc strdup strndup malloc_trim H5Fcreate H5Fflush H5Fget_filesize H5Fget_file_image \
            H5Fget_vfd_handle H5Fset_libver_bounds H5LTopen_file_image H5Gcreate2 H5Lcreate_hard H5Oopen \
            H5Dcreate2 H5Dopen2 H5Dwrite H5Dread H5Dset_extent H5Dget_space H5Dget_type H5Dget_create_plist \
            H5Acreate_by_name H5Awrite H5Aread H5Aopen H5Aopen_by_name H5Aiterate2 H5Aget_space H5Aget_type \
            H5Tcopy H5Screate H5Screate_simple H5Fclose H5Gclose H5Dclose H5Aclose
-$B/tests/failing_test $B/tests/failing_draw_test $B/tests/changed_test: TESTLIBS += $(FAILING:%=-Wl,--wrap=%)
+$(WRAPPED): TESTLIBS += $(FAILING:%=-Wl,--wrap=%)
 # Those of the libraries among themselves do not: these are shared ones here.
-$B/tests/failing_test $B/tests/failing_draw_test $B/tests/changed_test: NSD_LDLIBS := \
+$(WRAPPED): NSD_LDLIBS := \
     -lhdf5_hl -lklu -lcholmod -lqhull_r $(shell pkg-config --libs $(LIBS) 2>/dev/null) -lm
 
 $B/libnsd.a: $(LIB)
-	rm -f $@ && ar rcs $@ $^
+	$(call Q,AR,$@)rm -f $@ && ar rcs $@ $^
 
 $B/lib/%.o: lib/%.c Makefile
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
 # The page of nsd-web is part of the program.
 $B/lib/draw/page_parts.o: $(wildcard lib/draw/page/*)
@@ -111,59 +115,76 @@ $B/lib/draw/page_parts.o: $(wildcard lib/draw/page/*)
 define compile_wide
 $B/lib/problem/$1-%.o: lib/problem/$1.c Makefile
 	@mkdir -p $$(@D)
-	$$(CC) $$(CPPFLAGS) $$(NSD_CFLAGS) $$(CFLAGS:-O2=-O3) $(if $(SAN),$$(SAN_WIDTH_$$*)) -DLANES=$$* $$(WIDTH_$$*) $$(if $$(filter $$*,$$(IDLE)),-O0) -MMD -MP -c -o $$@ $$<
+	$$(call Q,CC,$$<)$$(CC) $$(CPPFLAGS) $$(NSD_CFLAGS) $$(CFLAGS:-O2=-O3) $(if $(SAN),$$(SAN_WIDTH_$$*)) -DLANES=$$* $$(WIDTH_$$*) $$(if $$(filter $$*,$$(IDLE)),-O0) -MMD -MP -c -o $$@ $$<
 endef
 $(foreach w,$(WIDE),$(eval $(call compile_wide,$w)))
 
 $B/tools/%.o: tools/%.c Makefile
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
 $B/%: $B/tools/%.o $B/lib/cli/main.o $B/libnsd.a
-	$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(NSD_LDLIBS)
+	$(call Q,LD,$@)$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(NSD_LDLIBS)
 
 $B/tests/%: tests/%.c $B/libnsd.a Makefile
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -o $@ $< $B/libnsd.a $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS) $(TESTLIBS)
+	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) -Itests/support $(CFLAGS) -MMD -MP -o $@ $< $B/libnsd.a $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS) $(TESTLIBS)
 
 # ranks/company.c stands for cli/crew.c, which the archive then is not asked for.
 $(RANKS): NSD_CFLAGS := $(MPI_H5) $(NSD_CFLAGS) $(MPI_PC)
 $B/nsd-step-mpi: $B/tools/nsd-step.o $B/lib/cli/main.o $(RANKS) $B/libnsd.a
-	$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(MPI_PL) $(MPI_LD)
+	$(call Q,LD,$@)$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(MPI_PL) $(MPI_LD)
 
 tests: $(TOOLS) $(MPI) $(CTEST)
 
 # ---- set-up, checks, the demonstration ----
 
-setup-run setup-paper setup-wall setup-check:
+setup-run setup-paper setup-wall setup-check setup-all:
 	scripts/setup.sh $(@:setup-%=%)
 
-PROVE := prove -j2 --timer
-
-# The longest first: one that begins last leaves a core idle while it ends
-LONG  := $(patsubst %,tests/%.t,lint paper compilers examples gallery threads mpi install laws badinput wall solvers types \
-         shapes failures export boundary) $(patsubst %,$B/tests/%_test,kill shapes)
-TESTS := $(LONG) $(filter-out $(LONG),$(CTEST) $(wildcard tests/*.t))
-
+# tests/README.md has the table of the two tiers. scripts/prove.sh runs the files, the longest first: one that
+# begins last leaves a core idle while it ends.
+FIRST := $(patsubst %,tests/%.t,tools/examples whole/laws whole/solvers hostile/wrong_input whole/shapes tools/stat tools/types \
+         tools/export tools/grains tools/view tools/pipeline tools/boundary) $B/tests/unit/shapes_test
+# What make check leaves to make check-all: it builds again, needs what only a maintainer has, or takes minutes.
+REST  := $(patsubst %,tests/%.t,project/lint whole/paper project/compilers whole/gallery project/thread_sanitizer whole/mpi \
+         project/install whole/wall tools/web_in_browser hostile/failing_system_calls hostile/failing_allocations) \
+         $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw killed_writer)
+TESTS := $(FIRST) $(filter-out $(FIRST) $(REST),$(CTEST) $(wildcard tests/*/*.t))
+# What the sanitizers would not see more of: it looks at texts, or makes others' experiments.
+PLAIN := $(filter-out tests/whole/mpi.t tests/whole/wall.t tests/tools/% tests/hostile/% $B/tests/%,$(REST)) $(patsubst %,tests/%.t,project/layers project/docs tools/examples tools/campaign whole/rest)
 # What looks into inner loops has, under the sanitizers, those of the width that is instrumented.
-NARROW := $(if $(SAN),$(patsubst %,$B/tests/%_test,laws local shapes solver step))
+NARROW := $(if $(SAN),$(patsubst %,$B/tests/unit/%_test,laws local shapes solver step))
 
+PROVE := PATH="$(CURDIR)/$B:$$PATH" scripts/prove.sh
+
+# make test: the tests of make check, of what is built; SAN=1: all that the sanitizers run
 test: tests
-	PATH="$(CURDIR)/$B:$$PATH" $(PROVE) $(filter-out $(NARROW),$(TESTS))
+	$(PROVE) $(filter-out $(NARROW) $(if $(SAN),$(PLAIN)),$(TESTS) $(if $(SAN),$(REST)))
 	$(if $(NARROW),NSD_LANES=2 $(PROVE) $(NARROW))
 
-# The same again under ASan and UBSan first, loops thinned; the plain run, whole, has the last word. In all
-# twenty minutes on two cores (CONTRIBUTING.md).
+test-rest: tests
+	$(PROVE) $(REST)
+
 check: setup-check
-	$(MAKE) -j2 SAN=1 tests
-	NSD_QUICK=1 $(MAKE) SAN=1 test
 	$(MAKE) -j2 tests
-	$(MAKE) fuzz-corpus
 	$(MAKE) test
 
+# All that make check leaves out; loops are thinned under ASan and UBSan.
+check-rest: setup-all
+	$(MAKE) -j2 tests
+	$(MAKE) -j2 SAN=1 tests
+	NSD_THIN=1 $(MAKE) SAN=1 test
+	$(MAKE) fuzz-corpus
+	$(MAKE) test-rest
+
+check-all: check
+	$(MAKE) check-rest
+
 demo: setup-run
-	$(MAKE) -j2 all
-	PATH="$(CURDIR)/build:$$PATH" scripts/demo.sh
+	@echo 'building, some two minutes:'
+	@bash -o pipefail -c "$(MAKE) --no-print-directory -j2 all | awk -f scripts/count.awk"
+	@PATH="$(CURDIR)/build:$$PATH" scripts/demo.sh
 
 # scripts/paper.mk says what is made; paper-keep puts it where readers find it, docs/paper.
 paper paper-keep: setup-paper
@@ -202,13 +223,12 @@ bench-compare:
 
 # Targets of clang's libFuzzer, SECONDS each; what they find new stays in build/fuzz/corpus.
 SECONDS := 600
-FUZZ    := document problem scene
+FUZZ    := document problem scene mesh
 FUZZCC  := clang
 FUZZSAN := -fsanitize=address,undefined -fno-sanitize-recover=undefined
 F       := build/fuzz
-# nsd's own readers and what solves: not the command line, nor what draws and exports, nor what hands files to
-# libassimp
-FLIB    := $(patsubst $B/%,$F/%,$(filter-out $(foreach r,cli draw export,$B/lib/$r/%) $B/lib/scene/mesh_file.o,$(LIB)))
+# nsd's own readers and what solves: not the command line, nor what draws and exports
+FLIB    := $(patsubst $B/%,$F/%,$(filter-out $(foreach r,cli draw export,$B/lib/$r/%),$(LIB)))
 
 $F/lib/%.o: lib/%.c
 	@mkdir -p $(@D)
@@ -223,39 +243,47 @@ $F/lib/problem/$1-%.o: lib/problem/$1.c Makefile
 endef
 $(foreach w,$(WIDE),$(eval $(call fuzz_wide,$w)))
 
-$F/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/child.c $(FLIB) Makefile
+$F/fuzz_%: tests/hostile/fuzz/fuzz_%.c tests/hostile/fuzz/child.c $(FLIB) Makefile
 	@mkdir -p $(@D)
-	$(FUZZCC) $(CPPFLAGS) $(NSD_CFLAGS) -O1 -g1 $(FUZZSAN) -fsanitize=fuzzer -Itests/fuzz -o $@ \
-	    $< tests/fuzz/child.c $(FLIB) $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS)
+	$(FUZZCC) $(CPPFLAGS) $(NSD_CFLAGS) -O1 -g1 $(FUZZSAN) -fsanitize=fuzzer -Itests/hostile/fuzz -o $@ \
+	    $< tests/hostile/fuzz/child.c $(FLIB) $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS)
 
 fuzz: $(FUZZ:%=$F/fuzz_%)
-	tests/fuzz/run.sh $(SECONDS) $(FUZZ)
+	tests/hostile/fuzz/run.sh $(SECONDS) $(FUZZ)
 
-# The kept corpus once, as a test: $F/fuzz_TARGET runs files that it is given and ends.
-fuzz-corpus: $(FUZZ:%=$F/fuzz_%)
-	for t in $(FUZZ); do ASAN_OPTIONS=detect_leaks=0:handle_segv=0 $F/fuzz_$$t tests/fuzz/corpus/$$t/* >/dev/null 2>&1 || exit 1; done
+# The kept corpus once, as a test, by the library that has the sanitizers already
+$B/tests/hostile/fuzz_%: tests/hostile/fuzz/fuzz_%.c tests/hostile/fuzz/replay.c tests/hostile/fuzz/child.c $B/libnsd.a
+	@mkdir -p $(@D)
+	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -Itests/hostile/fuzz -o $@ $^ $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS)
+
+corpus: $(FUZZ:%=$B/tests/hostile/fuzz_%)
+
+fuzz-corpus:
+	$(MAKE) -j2 SAN=1 corpus
+	for t in $(FUZZ); do ASAN_OPTIONS=detect_leaks=0:handle_segv=0:allocator_may_return_null=1 \
+	    build/san/tests/hostile/fuzz_$$t tests/hostile/fuzz/corpus/$$t/* || exit 1; done
 
 # Branches that the tests take, by folder (gcovr); below the bounds it fails. What is inlined counts once.
 # Not in make check: it builds everything again and takes a quarter of an hour.
 COVERAGE_FLAGS := -O2 -g -fno-early-inlining -fno-tree-vectorize --coverage -DNSD_COVERAGE \
                   -fprofile-update=prefer-atomic
-COVERAGE_TESTS := $(filter-out $(patsubst %,tests/%.t,compilers docs floors install lint threads),$(wildcard tests/*.t))
+COVERAGE_TESTS := $(wildcard tests/tools/*.t tests/whole/*.t tests/hostile/*.t)
 coverage:
 	$(MAKE) -j2 CFLAGS="$(COVERAGE_FLAGS)" LDFLAGS=--coverage B=build/coverage tests
 	find build/coverage -name '*.gcda' -delete
-	-PATH="$(CURDIR)/build/coverage:$$PATH" NSD_QUICK=1 NSD_RUNS=100 $(PROVE) build/coverage/tests/*_test $(COVERAGE_TESTS)
+	-PATH="$(CURDIR)/build/coverage:$$PATH" NSD_THIN=1 NSD_RUNS=100 prove -j2 build/coverage/tests/*/*_test $(COVERAGE_TESTS)
 	scripts/coverage.sh build/coverage
 
 # Lists of prerequisites come with the objects: make shall not look for ways to make them (sweep-8.d from
 # sweep-8.d.o, which it compiles with LANES=8.d, each time).
 %.d: ;
 -include $(wildcard $F/lib/*/*.d)
-.PHONY: fuzz fuzz-corpus coverage
+.PHONY: fuzz fuzz-corpus corpus coverage
 
 # ---- style ----
 
-SOURCES := $(wildcard lib/*/*.[ch] tools/*.c tests/*.[ch])
-SCRIPTS := $(wildcard scripts/*.sh bench/*.sh tests/*.sh tests/*.t) .ci/run
+SOURCES := $(wildcard lib/*/*.[ch] tools/*.c tests/*/*.[ch])
+SCRIPTS := $(wildcard scripts/*.sh bench/*.sh tests/*/*.sh tests/*/*.t) .ci/run
 
 format:
 	clang-format -i $(SOURCES)
@@ -294,20 +322,26 @@ $(TIDY): lint-tidy-%:
 
 # ---- what is made for others ----
 
-# The manuals as HTML, kept in the repository; tests/docs.t asks whether they are current.
-DOCS := $(patsubst man/%,docs/man/%.html,$(wildcard man/*))
+# The manuals as HTML, in build/man
+MANUALS := $(wildcard man/*)
 
 # Links to manuals that are not ours become plain text.
-BAR   := $(subst $() ,|,$(notdir $(wildcard man/*)))
+BAR   := $(subst $() ,|,$(notdir $(MANUALS)))
 LINKS := 's/(class="Xr") href="(($(BAR))[.]html)/\1 HREF="\2/g; s|<a class="Xr" href="[^"]*">([^<]*)</a>|\1|g; s| HREF=| href=|g'
 
-docs: $(DOCS) docs/man/index.html
+docs: $(MANUALS:man/%=build/man/%.html) build/man/index.html build/man/style.css
 
-docs/man/%.html: man/% docs/man/style.css
+build/man/%.html: man/%
+	@mkdir -p $(@D)
 	mandoc -T html -O style=style.css,man=%N.%S.html $< | sed -E $(LINKS) > $@
 
-docs/man/index.html: scripts/man-index.sh $(wildcard man/*)
-	scripts/man-index.sh man/* > $@
+build/man/index.html: scripts/man/index.sh $(MANUALS)
+	@mkdir -p $(@D)
+	scripts/man/index.sh $(MANUALS) > $@
+
+build/man/style.css: scripts/man/style.css
+	@mkdir -p $(@D)
+	cp $< $@
 
 # Completion in bash and zsh, out of each tool's table of options
 COMPLETIONS := $(foreach t,$(notdir $(TOOLS)),$B/completion/bash/$t $B/completion/zsh/_$t)
@@ -353,6 +387,7 @@ install-dev: $B/libnsd.a
 	install -m 644 $B/libnsd.a $(DESTDIR)$(LIBDIR)
 	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|; s|@HDF5@|$(HDF5)|' nsd.pc.in \
 	    > $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc
+	chmod 644 $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc
 
 uninstall:
 	cd $(TO)/bin && rm -f $(notdir $(TOOLS)) nsd-step-mpi
@@ -370,8 +405,8 @@ deb:
 clean:
 	rm -rf build demo
 
--include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*.d)
+-include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs completions install install-tools install-dev uninstall deb clean setup-run setup-paper setup-wall setup-check
+.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs completions install install-tools install-dev uninstall deb clean setup-run setup-paper setup-wall setup-check setup-all test-rest check-rest check-all
 .SECONDARY:

@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
-# setup.sh run|paper|wall|check: see that what nsd needs is there; install it where that is allowed, else name
+# setup.sh run|check|paper|wall|all: see that what nsd needs is there; install it where that is allowed, else name
 # the line that does.
 set -euo pipefail
 
+# run: the build and the demonstration; check: make check; all: make check-all
 run=(build-essential pkg-config libhdf5-dev hdf5-tools libgsl-dev libjansson-dev zlib1g-dev libpng-dev
-    libcairo2-dev libsuitesparse-dev libassimp-dev libqhull-dev jq gnuplot-nox)
+    libcairo2-dev libsuitesparse-dev libqhull-dev jq gnuplot-nox)
 paper=("${run[@]}" pandoc)
 wall=("${run[@]}" python3-h5py python3-scipy)
-check=("${paper[@]}" "${wall[@]}" perl mandoc shellcheck cppcheck clang libomp-dev libclang-rt-dev
+check=("${wall[@]}" perl)
+all=("${check[@]}" pandoc mandoc shellcheck cppcheck clang libomp-dev libclang-rt-dev
     clang-tidy clang-format libfclib-dev gcovr
     openmpi-bin libopenmpi-dev libhdf5-openmpi-dev libtrilinos-zoltan-dev
     debhelper lintian zsh parallel python3-vtk9 python3-ase python3-mdanalysis
@@ -18,7 +20,8 @@ run) packages=("${run[@]}") ;;
 paper) packages=("${paper[@]}") ;;
 wall) packages=("${wall[@]}") ;;
 check) packages=("${check[@]}") ;;
-*) echo "usage: setup.sh run|paper|wall|check" >&2; exit 64 ;;
+all) packages=("${all[@]}") ;;
+*) echo "usage: setup.sh run|check|paper|wall|all" >&2; exit 64 ;;
 esac
 
 if ! command -v dpkg-query >/dev/null; then

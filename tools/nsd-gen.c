@@ -11,6 +11,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 static int64_t dim = 3;
 
@@ -33,14 +35,23 @@ const struct cli_tool tool = {
     "  jq '.mu = 0.5' scenes/paper/example3.json | nsd-gen - > rough.h5\n"
 };
 
+enum {
+    MOST_PIPED = 1 << 26
+}; /* bytes of a scene that is no file, whose size says how long it is */
+
 /* All of a file, n bytes, to be freed; NULL when memory is short. */
-static char *slurp(FILE *f, size_t *n)
+static char *slurp(FILE *f, const char *name, size_t *n)
 {
+    struct stat st;
+    bool file = !fstat(fileno(f), &st) && S_ISREG(st.st_mode);
     size_t room = 1 << 16;
     char *text = malloc(room);
     for (*n = 0; text;) {
         *n += fread(text + *n, 1, room - *n, f);
         if (*n < room) break;
+        if (!file && *n >= MOST_PIPED)
+            die(EX_DATAERR, "%s: more than %d MB for a scene (endless?): put it into a file", name,
+                MOST_PIPED >> 20);
         room *= 2;
         char *more = realloc(text, room);
         if (!more) free(text);
@@ -50,14 +61,14 @@ static char *slurp(FILE *f, size_t *n)
 }
 
 /* Reads the scene in a file, or in standard input (-), and sets the directory of its tables. */
-static void read_scene(struct scene *s, const char *path, char **dir)
+static void read_scene(struct scene *s, const char *path, char **dir, struct scene_files *files)
 {
     bool standard = !strcmp(path, "-");
     const char *name = standard ? "standard input" : path;
     struct why why = { 0 };
     size_t n;
     FILE *f = standard ? stdin : fopen(path, "r");
-    char *text = f ? slurp(f, &n) : NULL;
+    char *text = f ? slurp(f, name, &n) : NULL;
     if (!f || ferror(f)) die(EX_NOINPUT, "%s: %s", name, strerror(errno));
     if (!text) die(EX_SOFTWARE, "%s: no memory", name);
     if (!standard) {
@@ -66,8 +77,8 @@ static void read_scene(struct scene *s, const char *path, char **dir)
         *dir = copy ? strdup(dirname(copy)) : NULL;
         free(copy);
     }
-    const struct scene_files files = { *dir, mesh_file_read };
-    scene_parse(s, text, n, &files, &why);
+    files->dir = *dir;
+    scene_parse(s, text, n, files, &why);
     free(text);
     if (why.status) die(why.status, "%s:%s", name, why.text);
 }
@@ -116,12 +127,24 @@ static void read_document(struct scene_bodies *b, const char *dir)
 {
     struct frame f = { 0 };
     char *path = scene_path(dir, b->file);
+    if (path && access(path, F_OK) && !access(b->file, F_OK)) // as nsd-info --scene has it
+        strcpy(path, b->file);
     b->document = malloc(sizeof *b->document);
     if (!path || !b->document) die(EX_SOFTWARE, "no memory for a document");
     read_frame(&f, path, b->frame);
     *b->document = f.packing, f.packing = (struct packing){ 0 };
     frame_free(&f);
     free(path);
+}
+
+/* As a reason, for the name is out of a file */
+static void say_left_out(const struct scene_mesh *m)
+{
+    struct why why = { 0 };
+    why_set(&why, EX_DATAERR,
+            "%s: left out: %d triangles that have no area, or the corners of another", m->file,
+            m->left_out);
+    if (m->left_out) warn("%s", why.text);
 }
 
 int tool_main(int argc, char **argv)
@@ -131,6 +154,7 @@ int tool_main(int argc, char **argv)
     struct writer *out;
     struct why why = { 0 };
     char *dir = NULL;
+    struct scene_files files = { .read_mesh = mesh_file_read };
     if (argc != 1 || !*argv[0]) die_usage("one operand: a number of balls, or a scene");
     if (writer_open(&out, NULL, WRITER_STREAM, &why)) die_why(&why);
     double n;
@@ -139,12 +163,13 @@ int tool_main(int argc, char **argv)
             die_usage("%s: not a number of balls (0 to %d)", argv[0], INT32_MAX);
         if (scene_paper(&scene, (int)dim, (int64_t)n, &why)) die_why(&why);
     } else {
-        read_scene(&scene, argv[0], &dir);
+        read_scene(&scene, argv[0], &dir, &files);
     }
     for (int64_t g = 0; g < scene.groups; g++)
         if (scene.bodies[g].from == SCENE_DOCUMENT) read_document(&scene.bodies[g], dir);
-    if (mesh_files_read(&scene, dir, &why) || scene_build(&frame.packing, &scene, dir, &why))
-        die_why(&why);
+    if (mesh_files_read(&scene, &files, &why)) die_why(&why);
+    for (int32_t k = 0; k < scene.meshes; k++) say_left_out(&scene.mesh_file[k]);
+    if (scene_build(&frame.packing, &scene, dir, &why)) die_why(&why);
     if (frame_note(&frame, cli_history(), &why) || writer_frame(out, &frame, &why) ||
         writer_close(out, &why))
         die_why(&why);

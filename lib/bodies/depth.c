@@ -49,7 +49,7 @@ int depth_of(struct depth *d, const struct packing *p, const struct contacts *s,
     for (int64_t i = 0; i < s->n; i++) {
         if (s->c[i].gap >= 0) continue; // as most are, without a quotient
         double depth = radii(p, &s->c[i]);
-        deep += depth > WEDGED;
+        deep += depth > DEPTH_WEDGED;
         if (depth > d->deepest) d->deepest = depth, most = i;
     }
     if (most >= 0) {
@@ -62,7 +62,7 @@ int depth_of(struct depth *d, const struct packing *p, const struct contacts *s,
     int64_t n = 0;
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
-        if (!(c->gap < 0 && radii(p, c) > WEDGED)) continue;
+        if (!(c->gap < 0 && radii(p, c) > DEPTH_WEDGED)) continue;
         if (p->mass[c->b] > 0) side[n++] = (struct side){ c->b, c->n };
         if (c->a >= 0 && p->mass[c->a] > 0) side[n++] = (struct side){ c->a, v3_scale(-1, c->n) };
     }

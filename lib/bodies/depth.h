@@ -2,7 +2,7 @@
  * bodies/depth.h: how deep bodies are in one another, in radii of the smaller: that of the ball around
  * it where a grain has a shape.
  *
- * A body is wedged where two of its contacts are deeper than WEDGED and their normals point against each
+ * A body is wedged where two of its contacts are deeper than DEPTH_WEDGED and their normals point against each
  * other: neither velocities nor displacements free it without what holds it.
  */
 #ifndef NSD_DEPTH_H
@@ -12,7 +12,7 @@
 #include "bodies/packing.h"
 
 /* Radii: as deep as a run fails for [solve/account.h]; what an impact leaves for a step is less */
-#define WEDGED 0.1
+#define DEPTH_WEDGED 0.1
 
 struct depth {
     double deepest;    /* radii; 0: nothing overlaps */

@@ -1,6 +1,8 @@
 /* bodies/freedom.c: the freedoms of a step, from loads and back [bodies/freedom.h]. */
 #include "bodies/freedom.h"
 
+#include "bodies/kinematics.h"
+
 #include <stdlib.h>
 
 bool freedoms_in(const struct packing *p)
@@ -24,11 +26,13 @@ static struct freedom wall_freedom(const struct packing *p, int32_t w)
 }
 
 /* Component i of edge k, where the face across is area[k] */
-static struct freedom edge_freedom(const struct cell *c, int k, int i, const vec3 area[3])
+static struct freedom edge_freedom(const struct cell *c, int k, int i, const vec3 inverse[3],
+                                   const vec3 area[3])
 {
     const double *row = c->stress[i], rate[3] = { c->rate[k].x, c->rate[k].y, c->rate[k].z };
     return (struct freedom){ .boundary = -1,
                              .edge = k,
+                             .inverse = inverse[k],
                              .axis = v3(i == 0, i == 1, i == 2),
                              .mass = c->mass[k][i],
                              .force = -v3_dot(v3(row[0], row[1], row[2]), area[k]),
@@ -36,12 +40,12 @@ static struct freedom edge_freedom(const struct cell *c, int k, int i, const vec
 }
 
 /* m^2, of discs m: the faces across the edges, to the side that they go */
-static void face_areas(const struct packing *p, const vec3 edge[3], vec3 area[3])
+static void face_areas(const struct packing *p, const vec3 edge[3], const vec3 inverse[3],
+                       vec3 area[3])
 {
     double volume = v3_dot(edge[0], v3_cross(edge[1], edge[2]));
     if (p->dim == 2) volume /= v3_norm(edge[2]); // which only closes the cell
-    cell_inverse(edge, area);
-    for (int k = 0; k < 3; k++) area[k] = v3_scale(fabs(volume), area[k]);
+    for (int k = 0; k < 3; k++) area[k] = v3_scale(fabs(volume), inverse[k]);
 }
 
 int freedoms_init(struct freedoms *list, const struct packing *p, const vec3 half[3],
@@ -53,11 +57,12 @@ int freedoms_init(struct freedoms *list, const struct packing *p, const vec3 hal
     if (!list->f) return why_set(why, EX_SOFTWARE, "no memory for the loads");
     for (int32_t w = 0; w < p->walls; w++)
         if (p->wall[w].load.way) list->f[list->n++] = wall_freedom(p, w);
-    vec3 area[3];
-    face_areas(p, half, area);
+    vec3 inverse[3], area[3];
+    cell_inverse(half, inverse);
+    face_areas(p, half, inverse, area);
     for (int k = 0; k < 9; k++)
         if (p->cell.mass[k / 3][k % 3] > 0)
-            list->f[list->n++] = edge_freedom(&p->cell, k / 3, k % 3, area);
+            list->f[list->n++] = edge_freedom(&p->cell, k / 3, k % 3, inverse, area);
     return 0;
 }
 
@@ -65,17 +70,18 @@ int freedoms_init(struct freedoms *list, const struct packing *p, const vec3 hal
 static double fastest(const struct packing *p, bool had)
 {
     double most = 0;
-    vec3 area[3];
+    vec3 inverse[3], area[3];
     for (int32_t w = 0; w < p->walls; w++) {
         if (p->wall[w].load.way != LOAD_GLIDES) continue;
         struct freedom f = wall_freedom(p, w);
         most = dmax(most, had * fabs(f.speed) + p->dt * fabs(f.force) / f.mass);
     }
     if (!cell_yields(&p->cell)) return most;
-    face_areas(p, p->cell.edge, area);
+    cell_inverse(p->cell.edge, inverse);
+    face_areas(p, p->cell.edge, inverse, area);
     for (int k = 0; k < 9; k++) {
         if (!(p->cell.mass[k / 3][k % 3] > 0)) continue;
-        struct freedom f = edge_freedom(&p->cell, k / 3, k % 3, area);
+        struct freedom f = edge_freedom(&p->cell, k / 3, k % 3, inverse, area);
         most = dmax(most, had * fabs(f.speed) + p->dt * fabs(f.force) / f.mass);
     }
     return most;
@@ -102,11 +108,29 @@ void freedoms_free(struct freedoms *list)
     *list = (struct freedoms){ 0 };
 }
 
-vec3 freedom_direction(const struct freedom *f, const struct contact *c)
+/* Edges from the cell's origin to body i where contacts act; 0 of one that does not follow */
+static double edges_to(const struct freedom *f, const struct packing *p, int32_t i, double ahead)
 {
-    vec3 none = v3(0, 0, 0);
-    if (f->boundary < 0) return c->shift[f->edge] ? v3_scale(c->shift[f->edge], f->axis) : none;
-    if (c->a != -1 - f->boundary) return none;
+    if (i < 0 || !(p->mass[i] > 0)) return 0;
+    return v3_dot(f->inverse, v3_sub(v3_axpy(p->x[i], ahead, p->v[i]), p->cell.origin));
+}
+
+/* Edges from a to b, as far as they follow: along the branch, if both do */
+static double edges_between(const struct freedom *f, const struct packing *p,
+                            const struct contact *c, double ahead, const vec3 edge[3])
+{
+    if (c->a >= 0 && p->mass[c->a] > 0 && p->mass[c->b] > 0) {
+        struct arms o = arm_vectors(p, c, ahead, edge);
+        return v3_dot(f->inverse, v3_sub(o.a, o.b));
+    }
+    return c->shift[f->edge] + edges_to(f, p, c->b, ahead) - edges_to(f, p, c->a, ahead);
+}
+
+vec3 freedom_direction(const struct freedom *f, const struct packing *p, const struct contact *c,
+                       double ahead, const vec3 edge[3])
+{
+    if (freedom_common(f)) return v3_scale(edges_between(f, p, c, ahead, edge), f->axis);
+    if (c->a != -1 - f->boundary) return v3(0, 0, 0);
     return v3_scale(-1, f->turns ? v3_cross(f->axis, v3_sub(c->x, f->point)) : f->axis);
 }
 
@@ -129,16 +153,25 @@ static void edge_move(struct packing *p, const struct freedom *f, double change,
 
 void freedom_move(const struct freedom *f, struct packing *p, double change, bool back)
 {
-    if (f->boundary < 0)
+    if (freedom_common(f))
         edge_move(p, f, change, back);
     else
         wall_move(p, &p->wall[f->boundary].load, change, back);
 }
 
-void freedom_displace(const struct freedom *f, struct packing *p, double way)
+void freedoms_displace(const struct freedoms *list, struct packing *p, const double *way)
 {
-    if (f->boundary < 0)
-        p->cell.edge[f->edge] = v3_axpy(p->cell.edge[f->edge], way, f->axis);
-    else
-        p->wall[f->boundary].load.travel += way;
+    vec3 gain[3] = { 0 };
+    struct cell_flow flow;
+    for (int32_t k = 0; k < list->n; k++) {
+        const struct freedom *f = &list->f[k];
+        if (freedom_common(f))
+            gain[f->edge] = v3_axpy(gain[f->edge], way[k], f->axis);
+        else
+            p->wall[f->boundary].load.travel += way[k];
+    }
+    cell_flow_init(&flow, &p->cell, p->cell.edge, gain);
+    for (int64_t i = 0; flow.changes && i < p->n; i++)
+        if (p->mass[i] > 0) p->x[i] = v3_add(p->x[i], cell_flow_gain(&flow, p->x[i]));
+    for (int k = 0; k < 3; k++) p->cell.edge[k] = v3_add(p->cell.edge[k], gain[k]);
 }

@@ -12,6 +12,16 @@
  * masses and the stress of its cell [bodies/cell.h]: on component i of edge k acts - (stress
  * A_k)_i, where A_k, the face that the other two edges span, has its normal to the side of the
  * edge.
+ *
+ * All bodies follow the flow of an edge: when component i of edge k gains ds, a body at x gains
+ * y_k ds along i, where y_k counts edges from the cell's origin to x. A contact then feels the edge
+ * by its branch, the vector d from the centre of a to that of the image of b,
+ *
+ *     J_c = (d . inverse_k) i,   sum of J_c^T r_c = (sum of r_c (x) d_c) inverse_k,
+ *
+ * which is the contacts' stress times the face: neither the place of the border nor that of the
+ * origin matters, and the bodies' momentum relative to the flow is kept [Parrinello & Rahman 1981].
+ * A body of mass 0 does not follow; where one takes part, J_c counts the other body from the origin.
  */
 #ifndef NSD_FREEDOM_H
 #define NSD_FREEDOM_H
@@ -23,6 +33,7 @@
 struct freedom {
     int32_t boundary; /* the boundary that it moves; -1: the cell's edge */
     int edge;         /* of the cell; it yields along an axis of space */
+    vec3 inverse;     /* 1/m: counts edges, inverse . d, where the contacts act */
     bool turns;       /* about the axis, not along it */
     vec3 axis, point; /* unit vector; m: a point on the axis, of the predicted position */
     double mass;      /* kg, or kg m^2 */
@@ -50,9 +61,17 @@ double freedoms_speed(const struct packing *p);
 /* m/s: no contact at rest approaches faster, whatever gravity and loads did to both bodies in a step. */
 double freedoms_calm(const struct packing *p);
 
-/* Of the packing's contact c: the velocity of b relative to a per unit speed: -axis for a boundary
-   that glides, -axis x (x_c - point) for one that turns, shift axis for an edge; 0 for others. */
-vec3 freedom_direction(const struct freedom *f, const struct contact *c);
+/* Do all bodies and contacts feel it? Of an edge of the cell. */
+static inline bool freedom_common(const struct freedom *f)
+{
+    return f->boundary < 0;
+}
+
+/* Of the packing's contact c, whose bodies are `ahead` (s) from where it acts, the cell's edges (m) there:
+   the velocity of b relative to a per unit speed: -axis for a boundary that glides, -axis x (x_c - point)
+   for one that turns, (inverse . d) axis for an edge; 0 for others. */
+vec3 freedom_direction(const struct freedom *f, const struct packing *p, const struct contact *c,
+                       double ahead, const vec3 edge[3]);
 
 /*
  * The speed changes where the contacts act, at the predicted position. A boundary also makes its
@@ -60,7 +79,8 @@ vec3 freedom_direction(const struct freedom *f, const struct contact *c);
  * the rest, dt rate, is the motion of the cell. back: the inverse.
  */
 void freedom_move(const struct freedom *f, struct packing *p, double change, bool back);
-/* What it moves is displaced by this way (m) along its axis, without a velocity. */
-void freedom_displace(const struct freedom *f, struct packing *p, double way);
+/* What they move is displaced by way[n] (m) along their axes, without a velocity: boundaries, edges, and the
+   bodies that follow these. */
+void freedoms_displace(const struct freedoms *list, struct packing *p, const double *way);
 
 #endif

@@ -56,8 +56,22 @@ static void sum_yields(struct impulses *sum, const struct packing *p, const stru
     for (int64_t i = 0; i < s->n && sum->freedoms.n; i++) {
         struct push o = push_of(p, sum->ahead, sum->edge, &s->c[i], s->found[i].r);
         for (int32_t k = 0; k < sum->freedoms.n; k++)
-            sum->yield[k] += v3_dot(freedom_direction(&sum->freedoms.f[k], &s->c[i]), o.f);
+            sum->yield[k] += v3_dot(
+                freedom_direction(&sum->freedoms.f[k], p, &s->c[i], sum->ahead, sum->edge), o.f);
     }
+}
+
+/* What the cell's rates gain in the step, by its gradient and by its freedoms */
+static void find_flow(struct impulses *sum, const struct packing *p)
+{
+    vec3 gain[3];
+    for (int k = 0; k < 3; k++) gain[k] = v3_sub(sum->next[k], p->cell.rate[k]);
+    for (int32_t k = 0; k < sum->freedoms.n; k++) {
+        const struct freedom *f = &sum->freedoms.f[k];
+        if (!freedom_common(f)) continue;
+        gain[f->edge] = v3_axpy(gain[f->edge], impulses_change(sum, p, k), f->axis);
+    }
+    cell_flow_init(&sum->flow, &p->cell, sum->edge, gain);
 }
 
 int impulses_init(struct impulses *sum, const struct packing *p, const struct contacts *s,
@@ -67,7 +81,6 @@ int impulses_init(struct impulses *sum, const struct packing *p, const struct co
     *sum = (struct impulses){ .ahead = ended ? -p->theta * p->dt : (1 - p->theta) * p->dt };
     cell_predict(&p->cell, sum->ahead, sum->edge);
     if (!ended) cell_next_rate(&p->cell, p->t, p->dt, p->theta, sum->next);
-    if (!ended) sum->flow = packing_flow(p);
     if (freedoms_init(&sum->freedoms, p, sum->edge, why)) return why->status;
     sum->force = calloc(n, sizeof *sum->force), sum->moment = calloc(n, sizeof *sum->moment);
     sum->yield = calloc((size_t)sum->freedoms.n + 1, sizeof *sum->yield);
@@ -76,6 +89,7 @@ int impulses_init(struct impulses *sum, const struct packing *p, const struct co
     struct summing y = { sum, p, s, s->n < SOME ? 1 : team_size() };
     team_share(team_size(), y.parts, 1, sum_bodies, &y);
     sum_yields(sum, p, s);
+    if (!ended) find_flow(sum, p);
     return 0;
 }
 

@@ -23,7 +23,7 @@ struct impulses {
     double ahead;             /* s: from the packing to where the contacts act */
     vec3 edge[3];             /* m: of the cell there */
     vec3 next[3];             /* m/s: rates of the cell at the end of the step, but for freedoms */
-    struct cell_flow flow;    /* what that makes of the bodies' velocities */
+    struct cell_flow flow;    /* what these, and the freedoms, make of the bodies' velocities */
 };
 
 /* The bodies are `ahead` (s) from where the contact acts, and the cell has these edges (m) there. */

@@ -31,7 +31,7 @@ static double bend_of(const struct packing *p, const struct contact *c)
     vec3 at = v3_sub(quat_turn_back(pose.q, v3_sub(x, pose.shift)), w->x);
     struct touch t;
     if (!boundary_nearest(w, p->dim, at, r, &t)) return 0;
-    double bend = c->gap + p->dt * opening_of(p, c) - (t.distance - r);
+    double bend = c->gap + p->dt * opening_of(p, c, (1 - p->theta) * p->dt) - (t.distance - r);
     return fmin(fmax(0, bend), BEND_MOST * r);
 }
 

@@ -53,7 +53,7 @@ static struct part part_of(const struct packing *p, const struct contact *c)
 {
     double small = c->a < 0 ? p->radius[c->b] : dmin(p->radius[c->a], p->radius[c->b]);
     double slop = SLOP * small + v3_norm(p->g) * p->dt * p->dt;
-    double gap = c->gap + p->dt * opening_of(p, c) + slop;
+    double gap = c->gap + p->dt * opening_of(p, c, -p->theta * p->dt) + slop;
     return (struct part){ .a = c->a,
                           .b = c->b,
                           .n = c->n,
@@ -71,18 +71,20 @@ struct displacements {
 
 /* How much freedom k opens a contact, per m along its axis; one that turns does not, to first
    order */
-static double opens(const struct displacements *o, int32_t k, const struct contact *c)
+static double opens(const struct displacements *o, int32_t k, const struct packing *p,
+                    const struct contact *c)
 {
     const struct freedom *f = &o->freedoms.f[k];
-    return f->turns ? 0 : v3_dot(c->n, freedom_direction(f, c));
+    return f->turns ? 0 : v3_dot(c->n, freedom_direction(f, p, c, 0, p->cell.edge));
 }
 
 /* Changes lambda and d so that this gap is 0, or lambda is; returns whether that changed much. */
-static bool relax(struct part *k, const struct contact *c, struct displacements *o)
+static bool relax(struct part *k, const struct packing *p, const struct contact *c,
+                  struct displacements *o)
 {
     struct displaced *a = k->a < 0 ? NULL : &o->d[k->a], *b = &o->d[k->b];
     double gap = k->gap + v3_dot(k->n, b->d) - (a ? v3_dot(k->n, a->d) : 0);
-    for (int32_t f = 0; f < o->freedoms.n; f++) gap += opens(o, f, c) * o->z[f];
+    for (int32_t f = 0; f < o->freedoms.n; f++) gap += opens(o, f, p, c) * o->z[f];
     if (k->lambda == 0 && gap >= 0) return false; // as most are, without a quotient to wait for
     double lambda = dmax(0, k->lambda - gap / k->w), more = lambda - k->lambda;
     if (more == 0) return false;
@@ -90,7 +92,7 @@ static bool relax(struct part *k, const struct contact *c, struct displacements 
     b->d = v3_axpy(b->d, more * b->im, k->n);
     if (a) a->d = v3_axpy(a->d, -more * a->im, k->n);
     for (int32_t f = 0; f < o->freedoms.n; f++)
-        o->z[f] += more * opens(o, f, c) / o->freedoms.f[f].mass;
+        o->z[f] += more * opens(o, f, p, c) / o->freedoms.f[f].mass;
     return fabs(more) * k->w > ENOUGH * k->slop;
 }
 
@@ -112,7 +114,7 @@ static void make_some(void *arg, int64_t first, int64_t end)
         const struct contact *c = &m->s->c[i];
         m->part[i] = part_of(m->p, c);
         for (int32_t k = 0; k < o->freedoms.n; k++) {
-            double J = opens(o, k, c);
+            double J = opens(o, k, m->p, c);
             m->part[i].w += J * J / o->freedoms.f[k].mass;
         }
         any |= m->part[i].gap < 0;
@@ -151,8 +153,8 @@ static void shift_some(void *arg, int64_t first, int64_t end)
 static void displace(struct packing *p, const struct displacements *o)
 {
     struct shifting y = { p, o->d };
+    freedoms_displace(&o->freedoms, p, o->z);
     team_share(team_size(), p->n, SOME, shift_some, &y);
-    for (int32_t k = 0; k < o->freedoms.n; k++) freedom_displace(&o->freedoms.f[k], p, o->z[k]);
 }
 
 int project_apart(struct packing *p, const struct contacts *s, struct why *why)
@@ -177,7 +179,7 @@ int project_shared(struct packing *p, const struct contacts *s, const struct pro
     for (int sweep = 0; more && sweep < SWEEPS; sweep++) {
         more = false;
         for (int64_t i = 0; i < s->n; i++)
-            if (part[i].w > 0 && relax(&part[i], &s->c[i], &o)) more = true;
+            if (part[i].w > 0 && relax(&part[i], p, &s->c[i], &o)) more = true;
         if (share) more = share->after_sweep(share->with, o.d, more);
     }
     if (moves) displace(p, &o);

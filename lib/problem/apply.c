@@ -80,5 +80,6 @@ void problem_react(struct problem *p, const double *r, int threads)
         for (int k = 0; k < 3; k++) slot_bundle(p, i)->r[k][slot_lane(i)] = r[3 * i + k];
         for (int k = 0; k < p->d && p->W; k++) p->W->r[p->d * c + k] = r[3 * i + k];
     }
+    if (p->W) delassus_begin(p->W);
     problem_renew(p, threads);
 }

@@ -157,13 +157,22 @@ static void jacobian(const struct assembly *A, int64_t contact, int end, double 
     }
 }
 
+/* Whose freedoms are in the blocks of W: of all, or of those that not all contacts have in common */
+enum blocks_of { ALL, NOT_COMMON };
+
+static bool in_blocks(const struct couplings *y, const struct coupling *of, enum blocks_of which)
+{
+    return which == ALL || !freedom_common(&y->freedoms.f[of->freedom]);
+}
+
 /* B += J_c J_b^T / m over the freedoms that c and b share */
-static void add_shared(const struct couplings *y, int64_t c, int64_t b, double B[3][3])
+static void add_shared(const struct couplings *y, int64_t c, int64_t b, enum blocks_of which,
+                       double B[3][3])
 {
     for (int64_t k = y->first[c]; k < y->first[c + 1]; k++)
         for (int64_t l = y->first[b]; l < y->first[b + 1]; l++) {
             const struct coupling *of_c = &y->of[k], *of_b = &y->of[l];
-            if (of_c->freedom != of_b->freedom) continue;
+            if (of_c->freedom != of_b->freedom || !in_blocks(y, of_c, which)) continue;
             double m = y->freedoms.f[of_c->freedom].mass;
             for (int i = 0; i < 3; i++)
                 for (int j = 0; j < 3; j++) B[i][j] += of_c->J[i] * of_b->J[j] / m;
@@ -172,7 +181,8 @@ static void add_shared(const struct couplings *y, int64_t c, int64_t b, double B
 
 /* B = W_cb, the sum of J_c M^-1 J_b^T over the movable bodies and the freedoms that c and b
    share */
-static void assembly_block(const struct assembly *A, int64_t c, int64_t b, double B[3][3])
+static void assembly_block(const struct assembly *A, int64_t c, int64_t b, enum blocks_of which,
+                           double B[3][3])
 {
     memset(B, 0, 9 * sizeof **B);
     for (int s = 0; s < 4; s++) {
@@ -186,7 +196,7 @@ static void assembly_block(const struct assembly *A, int64_t c, int64_t b, doubl
                 B[i][j] += im * (J[i][0] * K[j][0] + J[i][1] * K[j][1] + J[i][2] * K[j][2]) +
                            ii * (J[i][3] * K[j][3] + J[i][4] * K[j][4] + J[i][5] * K[j][5]);
     }
-    if (A->p->coupling) add_shared(A->p->coupling, c, b, B);
+    if (A->p->coupling) add_shared(A->p->coupling, c, b, which, B);
 }
 
 /* The contacts of a body or a freedom, ascending, while they are being merged with others */
@@ -209,7 +219,8 @@ static struct queue queue_of(const struct lists *lists, int64_t owner, const str
 
 /* near[] = the contacts that share a movable body or a freedom with c, c too, ascending; returns
    how many. */
-static int64_t assembly_neighbours(const struct assembly *A, int64_t c, int64_t *near)
+static int64_t assembly_neighbours(const struct assembly *A, int64_t c, enum blocks_of which,
+                                   int64_t *near)
 {
     const struct couplings *y = A->p->coupling;
     struct queue q[2 + COUPLINGS_MAX];
@@ -218,7 +229,8 @@ static int64_t assembly_neighbours(const struct assembly *A, int64_t c, int64_t 
     for (int s = 0; s < 2; s++)
         if (A->end[2 * c + s] >= 0) q[queues++] = queue_of(&A->of, A->end[2 * c + s], NULL);
     for (int64_t k = y ? y->first[c] : 0; y && k < y->first[c + 1]; k++)
-        q[queues++] = queue_of(&A->yield, y->of[k].freedom, y->of);
+        if (in_blocks(y, &y->of[k], which))
+            q[queues++] = queue_of(&A->yield, y->of[k].freedom, y->of);
     for (;;) {
         int64_t next = INT64_MAX;
         for (int k = 0; k < queues; k++) {
@@ -237,10 +249,10 @@ static void fill_W(const struct assembly *A, struct stored *W, int64_t *near)
     int d = A->p->d;
     int64_t k = 0;
     for (int64_t c = 0; c < A->p->n; c++) {
-        int64_t count = assembly_neighbours(A, c, near);
+        int64_t count = assembly_neighbours(A, c, ALL, near);
         for (int64_t b = 0; b < count; b++) {
             double B[3][3];
-            assembly_block(A, c, near[b], B);
+            assembly_block(A, c, near[b], ALL, B);
             for (int i = 0; i < d; i++)
                 for (int j = 0; j < d; j++) {
                     int64_t e = k + (i * count + b) * d + j;
@@ -257,7 +269,7 @@ int assembly_W(const struct assembly *A, struct stored *W, struct why *why)
     *W = (struct stored){ 0 };
     int64_t *near = malloc((size_t)(n + 1) * sizeof *near);
     if (!near) return short_of_memory(why);
-    for (int64_t c = 0; c < n; c++) blocks += assembly_neighbours(A, c, near);
+    for (int64_t c = 0; c < n; c++) blocks += assembly_neighbours(A, c, ALL, near);
     int e = 0;
     if (n * d > INT32_MAX || blocks * d * d > INT32_MAX)
         e = why_set(why, EX_DATAERR, "/fclib_local/W: too large for the 32-bit indices of FCLIB");
@@ -269,22 +281,41 @@ int assembly_W(const struct assembly *A, struct stored *W, struct why *why)
     return e;
 }
 
+/* J m^-1/2 of the freedoms that all contacts have in common */
+static int assembly_common(const struct assembly *A, struct delassus *W, struct why *why)
+{
+    const struct couplings *y = A->p->coupling;
+    int32_t columns = 0, walls = 0; // the walls' come first
+    for (int32_t k = 0; y && k < y->freedoms.n; k++)
+        *(freedom_common(&y->freedoms.f[k]) ? &columns : &walls) += 1;
+    if (!columns) return 0;
+    if (delassus_alloc_common(W, columns, why)) return why->status;
+    for (int64_t i = 0; i < y->n; i++) {
+        const struct coupling *of = &y->of[i];
+        if (!freedom_common(&y->freedoms.f[of->freedom])) continue;
+        double root = 1 / sqrt(y->freedoms.f[of->freedom].mass);
+        for (int k = 0; k < W->d; k++)
+            W->J[columns * (W->d * of->contact + k) + of->freedom - walls] = of->J[k] * root;
+    }
+    return 0;
+}
+
 int assembly_blocks(const struct assembly *A, struct delassus *W, struct why *why)
 {
     int d = A->p->d;
     int64_t n = A->p->n, blocks = 0;
     int64_t *near = malloc((size_t)(n + 1) * sizeof *near);
     if (!near) return short_of_memory(why);
-    for (int64_t c = 0; c < n; c++) blocks += assembly_neighbours(A, c, near);
-    if (!delassus_alloc(W, d, n, blocks, why)) {
+    for (int64_t c = 0; c < n; c++) blocks += assembly_neighbours(A, c, NOT_COMMON, near);
+    if (!delassus_alloc(W, d, n, blocks, why) && !assembly_common(A, W, why)) {
         blocks = 0;
         for (int64_t c = 0; c < n; c++) {
             W->mu[c] = assembly_bundle(A, c)->mu[slot_lane(A->slot[c])];
             for (int k = 0; k < d; k++) W->q[d * c + k] = A->q[d * c + k];
-            int64_t count = assembly_neighbours(A, c, near);
+            int64_t count = assembly_neighbours(A, c, NOT_COMMON, near);
             for (int64_t b = 0; b < count; b++) {
                 double rows[3][3], B[9];
-                assembly_block(A, c, near[b], rows);
+                assembly_block(A, c, near[b], NOT_COMMON, rows);
                 for (int k = 0; k < d * d; k++) B[k] = rows[k % d][k / d];
                 if (near[b] == c) {
                     delassus_set_diag(W, c, B);

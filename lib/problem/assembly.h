@@ -37,7 +37,8 @@ struct assembly {
 int assembly_init(struct assembly *A, const struct problem *p, struct why *why);
 /* W by rows */
 int assembly_W(const struct assembly *A, struct stored *W, struct why *why);
-/* W block by block, with q, mu and r = 0; nothing to free where it fails */
+/* W block by block, with q, mu and r = 0, and what all contacts have in common in J; nothing to free where it
+   fails */
 int assembly_blocks(const struct assembly *A, struct delassus *W, struct why *why);
 /* M and H by columns, and f[M->n] */
 int assembly_MH(const struct assembly *A, struct stored *M, struct stored *H, double **f,

@@ -23,10 +23,12 @@ static bool add(struct couplings *c, int64_t *room, const struct coupling *one)
 }
 
 /* Appends those of contact i; false when memory is short. */
-static bool add_contact(struct couplings *c, int64_t *room, const struct contact *t, int64_t i)
+static bool add_contact(struct couplings *c, int64_t *room, const struct packing *p,
+                        const vec3 half[3], const struct contact *t, int64_t i)
 {
+    const double ahead = (1 - p->theta) * p->dt;
     for (int32_t k = 0; k < c->freedoms.n; k++) {
-        vec3 g = freedom_direction(&c->freedoms.f[k], t);
+        vec3 g = freedom_direction(&c->freedoms.f[k], p, t, ahead, half);
         if (v3_dot(g, g) == 0) continue;
         const struct coupling one = {
             k, (int32_t)i, { v3_dot(t->n, g), v3_dot(t->t1, g), v3_dot(contact_t2(t), g) }
@@ -47,7 +49,7 @@ int couplings_init(struct couplings *c, const struct packing *p, const struct co
     c->first = calloc((size_t)s->n + 1, sizeof *c->first);
     bool good = c->first != NULL;
     for (int64_t i = 0; good && i < s->n; i++) {
-        good = add_contact(c, &room, &s->c[i], i);
+        good = add_contact(c, &room, p, half, &s->c[i], i);
         c->first[i + 1] = c->n;
     }
     if (good) return 0;
@@ -60,6 +62,7 @@ double couplings_pairs(const struct couplings *c)
     double pairs = 0;
     for (int32_t k = 0; k < c->freedoms.n; k++) {
         double contacts = 0;
+        if (freedom_common(&c->freedoms.f[k])) continue;
         for (int64_t i = 0; i < c->n; i++) contacts += c->of[i].freedom == k;
         pairs += contacts * contacts;
     }

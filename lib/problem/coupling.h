@@ -33,7 +33,7 @@ int couplings_init(struct couplings *c, const struct packing *p, const struct co
                    struct why *why);
 void couplings_free(struct couplings *c);
 
-/* How many pairs of contacts share a freedom, each contact with itself too; a pair counts for each
+/* How many pairs of contacts share a boundary's freedom, each contact with itself too; a pair counts for each
    freedom that it shares. */
 double couplings_pairs(const struct couplings *c);
 

@@ -88,6 +88,14 @@ int delassus_alloc(struct delassus *W, int d, int64_t n, int64_t blocks, struct 
     return room ? 0 : no_memory(W, n, why);
 }
 
+int delassus_alloc_common(struct delassus *W, int common, struct why *why)
+{
+    W->J = calloc((size_t)(W->n * W->d * common) + 1, sizeof *W->J);
+    if (!W->J) return no_memory(W, W->n, why);
+    W->common = common;
+    return 0;
+}
+
 int delassus_init(struct delassus *W, int d, int64_t n, int64_t entries, const int32_t *row,
                   const int32_t *col, const double *x, const double *q, const double *mu,
                   struct why *why)
@@ -116,7 +124,7 @@ int delassus_init(struct delassus *W, int d, int64_t n, int64_t entries, const i
 void delassus_free(struct delassus *W)
 {
     free(W->first), free(W->col), free(W->block), free(W->diag);
-    free(W->q), free(W->mu), free(W->r);
+    free(W->q), free(W->mu), free(W->r), free(W->J);
     *W = (struct delassus){ 0 };
 }
 
@@ -153,6 +161,15 @@ static void subtract_product(int d, const double *B, const double *x, double *y)
         for (int i = 0; i < d; i++) y[i] -= B[d * j + i] * x[j];
 }
 
+/* q -= J J^T r */
+static void subtract_common(struct delassus *W)
+{
+    double sum[COMMON_MAX] = { 0 };
+    delassus_common(W, W->r, sum);
+    for (int64_t i = 0; i < W->d * W->n; i++)
+        for (int k = 0; k < W->common; k++) W->q[i] -= W->J[W->common * i + k] * sum[k];
+}
+
 int delassus_subset(struct delassus *to, const struct delassus *W, int64_t n,
                     const int32_t *contact, const int32_t *of, const double *r, const double *v,
                     struct why *why)
@@ -161,6 +178,10 @@ int delassus_subset(struct delassus *to, const struct delassus *W, int64_t n,
     int64_t blocks = 0;
     for (int64_t i = 0; i < n; i++) blocks += W->first[contact[i] + 1] - W->first[contact[i]];
     if (delassus_alloc(to, d, n, blocks, why)) return why->status;
+    if (W->common && delassus_alloc_common(to, W->common, why)) return why->status;
+    const int64_t row = d * W->common; // numbers of J of a contact
+    for (int64_t i = 0; i < n && row; i++)
+        memcpy(to->J + row * i, W->J + row * contact[i], (size_t)row * sizeof *to->J);
     for (int64_t i = 0; i < n; i++) {
         int64_t c = contact[i], at = to->first[i];
         double *q = to->q + d * i;
@@ -179,12 +200,15 @@ int delassus_subset(struct delassus *to, const struct delassus *W, int64_t n,
         }
         to->first[i + 1] = at;
     }
+    subtract_common(to);
     return 0;
 }
 
 void delassus_apply(const struct delassus *W, const double *x, const double *q, double *v)
 {
     int d = W->d;
+    double sum[COMMON_MAX] = { 0 };
+    delassus_common(W, x, sum);
     for (int64_t c = 0; c < W->n; c++) {
         const double *D = W->diag + 9 * c;
         double b[4];
@@ -192,6 +216,26 @@ void delassus_apply(const struct delassus *W, const double *x, const double *q, 
         for (int i = 0; i < d; i++) {
             v[d * c + i] = b[i];
             for (int j = 0; j < d; j++) v[d * c + i] += D[i + 3 * j] * x[d * c + j];
+            for (int k = 0; k < W->common; k++)
+                v[d * c + i] += W->J[W->common * (d * c + i) + k] * sum[k];
         }
     }
+}
+
+void delassus_common(const struct delassus *W, const double *x, double *sum)
+{
+    for (int k = 0; k < W->common; k++) sum[k] = 0;
+    for (int64_t i = 0; i < W->d * W->n; i++)
+        for (int k = 0; k < W->common; k++) sum[k] += W->J[W->common * i + k] * x[i];
+}
+
+void delassus_own(const struct delassus *W, int64_t c, double times, double D[9])
+{
+    const int d = W->d;
+    memcpy(D, W->diag + 9 * c, 9 * sizeof *D);
+    for (int k = 0; k < W->common; k++)
+        for (int j = 0; j < d; j++)
+            for (int i = 0; i < d; i++)
+                D[i + 3 * j] +=
+                    times * W->J[W->common * (d * c + i) + k] * W->J[W->common * (d * c + j) + k];
 }

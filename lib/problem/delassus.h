@@ -6,6 +6,15 @@
  *
  * W block-sparse, n x n blocks of d x d. The diagonal blocks are stored apart, since the sweep
  * needs u_c = W_cc r_c + b_c with b_c = q_c + the sum over the others.
+ *
+ * What all contacts have in common, such as an edge of a cell that yields to a stress, would fill W. It is
+ * kept apart as well, a few columns J:
+ *
+ *     W = blocks + J J^T,     J J^T r by the sums J^T r.
+ *
+ * A sweep solves the contacts of a bundle at once, with the sums as they were before. This is sound if each
+ * of the k contacts counts its own part k times, W^_cc = W_cc + (k - 1) J_c J_c^T, since
+ * (sum of k numbers)^2 <= k times the sum of their squares.
  */
 #ifndef NSD_DELASSUS_H
 #define NSD_DELASSUS_H
@@ -15,20 +24,31 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+enum {
+    COMMON_MAX = 9 /* columns of J: the components of a cell's edges */
+};
+
 struct delassus {
     int d;          /* 2 or 3 */
     int64_t n;      /* contacts */
     int64_t *first; /* [n + 1] off-diagonal blocks of row c: first[c] .. first[c+1]-1 */
     int32_t *col;   /* [blocks] their columns, ascending */
     double *block;  /* [blocks][d*d] column-major, kg^-1; 4 more numbers may be read */
-    double *diag;   /* [n][9] W_cc, column-major, padded to 3 x 3 as law/local.h has it for d = 2 */
-    double *q;      /* [n*d] m/s */
-    double *mu;     /* [n] */
-    double *r;      /* [n*d] N s: the reactions that the sweep reads */
+    double *
+        diag; /* [n][9] W_cc without J, column-major, padded to 3 x 3 as law/local.h has it for d = 2 */
+    double *q;  /* [n*d] m/s */
+    double *mu; /* [n] */
+    double *r;  /* [n*d] N s: the reactions that the sweep reads */
+    int common; /* columns of J */
+    double *J;  /* [n*d][common] kg^(-1/2) */
+    double sum[COMMON_MAX],
+        next[COMMON_MAX]; /* kg^(1/2) m/s: J^T r before the group in hand, and by now */
 };
 
 /* Arrays for this many blocks, all zero. Returns 0, or EX_SOFTWARE with nothing to free. */
 int delassus_alloc(struct delassus *W, int d, int64_t n, int64_t blocks, struct why *why);
+/* J with so many columns, all zero. Returns 0, or EX_SOFTWARE with all of W freed. */
+int delassus_alloc_common(struct delassus *W, int common, struct why *why);
 
 /* W_cc = B, d x d by columns; in the plane with the third row and column of law/local.h. */
 void delassus_set_diag(struct delassus *W, int64_t c, const double *B);
@@ -71,6 +91,40 @@ static inline double delassus_entries(const struct delassus *W)
 
 /* v = W x + q, of [n*d] numbers each; one more number behind x may be read. */
 void delassus_apply(const struct delassus *W, const double *x, const double *q, double *v);
+
+/* D[9] = diag of contact c with `times` its part J_c J_c^T */
+void delassus_own(const struct delassus *W, int64_t c, double times, double D[9]);
+/* sum[common] = J^T x */
+void delassus_common(const struct delassus *W, const double *x, double *sum);
+/* sum and next of W->r; and at the end of a group sum = next */
+static inline void delassus_begin(struct delassus *W)
+{
+    delassus_common(W, W->r, W->sum);
+    for (int k = 0; k < W->common; k++) W->next[k] = W->sum[k];
+}
+static inline void delassus_end_group(struct delassus *W)
+{
+    for (int k = 0; k < W->common; k++) W->sum[k] = W->next[k];
+}
+/* b[d] += J_c (sum - times J_c^T r_c): of a contact that counts its own part so often, what the rest is */
+static inline void delassus_add_common(const struct delassus *W, int64_t c, double times, double *b)
+{
+    const int n = W->common, d = W->d;
+    const double *J = W->J + d * n * c, *r = W->r + d * c;
+    for (int k = 0; k < n; k++) {
+        double own = 0;
+        for (int i = 0; i < d; i++) own += J[n * i + k] * r[i];
+        for (int i = 0; i < d; i++) b[i] += J[n * i + k] * (W->sum[k] - times * own);
+    }
+}
+/* next += J_c^T (r - r_c), before r_c becomes r[d] */
+static inline void delassus_change_common(struct delassus *W, int64_t c, const double *r)
+{
+    const int n = W->common, d = W->d;
+    const double *J = W->J + d * n * c;
+    for (int k = 0; k < n; k++)
+        for (int i = 0; i < d; i++) W->next[k] += J[n * i + k] * (r[i] - W->r[d * c + i]);
+}
 
 /* Four numbers from a column of d: the surplus ends up in b[d..], which is never read. */
 typedef double column __attribute__((vector_size(32), may_alias, aligned(8)));

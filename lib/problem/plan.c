@@ -141,13 +141,23 @@ struct plan *plan_of_contacts(enum order order, const struct contacts *s, const 
     return plan_free(l), NULL;
 }
 
+/* Every bundle becomes a group: contacts that have something in common are solved eight at a time. */
+static bool part_bundles(struct plan *l)
+{
+    int64_t *group = realloc(l->group, (size_t)(l->bundles + 1) * sizeof *group);
+    if (!group) return false;
+    for (int64_t g = 0; g <= l->bundles; g++) group[g] = g;
+    l->group = group, l->schedule.groups = l->bundles;
+    return true;
+}
+
 struct plan *plan_of_blocks(enum order order, const struct delassus *W)
 {
     struct schedule by;
     struct plan *l = malloc(sizeof *l);
     if (!l || schedule_blocks(&by, order, W)) return free(l), NULL;
     *l = (struct plan){ .order = order, .n = W->n, .schedule = { .groups = by.groups } };
-    bool made = bundle_groups(l, &by);
+    bool made = bundle_groups(l, &by) && (!W->common || part_bundles(l));
     schedule_free(&by);
     if (made) return l;
     return plan_free(l), NULL;

@@ -77,6 +77,7 @@ struct problem {
     double scale_v; /* m/s: the unit of velocities in scaled errors, g dt */
     double scale_r; /* N s: that of reactions, m g dt */
     double fall;    /* m/s: |g| dt */
+    double unit;    /* m/s: the scene's own velocity, in which CRITERION_VELOCITY counts */
     double norm_q;  /* m/s: |u~_free| of all contacts, |q| */
     double speed;   /* m/s: the fastest point before the step, plus g dt; 0: there is only W */
 };
@@ -114,6 +115,9 @@ void slot_set_beyond(struct problem *p, int64_t i, const double x[BESIDE_R]);
    of the cell's edges gains, and what cohesion pulls. */
 void problem_set_free_motion(struct problem *p);
 
+/* Sets the unit of CRITERION_VELOCITY from the sum of |u~_free| of all contacts. */
+void problem_set_unit(struct problem *p, double sum);
+
 /* How many of these threads are to share a sweep: all where the groups are large enough, else two
    where the order has halves, else one */
 int problem_team(const struct problem *p, int threads);
@@ -136,6 +140,13 @@ ALWAYS_INLINE struct beside *bundle_beside(const struct problem *p, const struct
 static inline struct bundle *slot_bundle(const struct problem *p, int64_t i)
 {
     return bundle_at(p, i / BUNDLE);
+}
+/* How many contacts a bundle has */
+static inline int bundle_contacts(const struct problem *p, int64_t bundle)
+{
+    int n = 0;
+    for (int k = 0; k < BUNDLE; k++) n += p->contact[bundle * BUNDLE + k] >= 0;
+    return n;
 }
 static inline int slot_lane(int64_t i)
 {

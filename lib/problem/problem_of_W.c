@@ -26,36 +26,43 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
         problem_free(p);
         return why_set(why, EX_SOFTWARE, "no memory for the contact problem");
     }
+    p->full = W->common > 0;
     for (int64_t c = 0; c < W->n; c++) p->full = p->full || !like_balls(W->diag + 9 * c);
-    double trace = 0;
+    delassus_begin(W);
+    double trace = 0, speeds = 0;
     for (int64_t i = 0; i < p->slots; i++) {
         int64_t c = p->contact[i];
         struct bundle *r = slot_bundle(p, i);
         int k = slot_lane(i);
+        double D[9], seen[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 }; // W_cc, and what the sweep solves
         r->a[k] = (int32_t)c;
-        for (int j = 0; j < 9; j++)
-            p->block[i / BUNDLE][j][k] = c < 0 ? j % 4 == 0 : W->diag[9 * c + j / 3 + 3 * (j % 3)];
+        if (c >= 0)
+            delassus_own(W, c, 1, D), delassus_own(W, c, bundle_contacts(p, i / BUNDLE), seen);
+        for (int j = 0; j < 9; j++) p->block[i / BUNDLE][j][k] = seen[j / 3 + 3 * (j % 3)];
         if (c < 0) continue;
-        const double *D = W->diag + 9 * c, *q = W->q + W->d * c;
-        double lambda = local_lambda_max(D);
+        const double *q = W->q + W->d * c;
+        double lambda = local_lambda_max(D), step = local_lambda_max(seen);
         r->mu[k] = W->mu[c];
         for (int j = 0; j < 2; j++) {
             p->w[i / BUNDLE][j][k] = p->full ? lambda : D[4 * j];
             r->iw[j][k] = 1 / p->w[i / BUNDLE][j][k];
         }
         p->rho[i / BUNDLE][k] = lambda <= 0             ? 1
-                                : alpha > 0 && D[0] > 0 ? alpha / D[0]
-                                                        : rho_factor / lambda;
+                                : alpha > 0 && D[0] > 0 ? alpha / seen[0]
+                                                        : rho_factor / step;
+        double q2 = 0;
         for (int j = 0; j < W->d; j++) {
             r->r[j][k] = W->r[W->d * c + j];
-            p->norm_q += q[j] * q[j];
+            p->norm_q += q[j] * q[j], q2 += q[j] * q[j];
             trace += D[4 * j];
         }
+        speeds += sqrt(q2);
     }
     // there is no g and no m: the unit of velocity is the root mean square of q, that of mass 1
     // over the mean of W_ii
     p->norm_q = sqrt(p->norm_q);
     if (p->norm_q > 0) p->scale_v = p->norm_q / sqrt((double)(W->d * W->n));
+    problem_set_unit(p, speeds);
     p->scale_r = trace > 0 ? p->scale_v * (double)(W->d * W->n) / trace : p->scale_v;
     return 0;
 }

@@ -60,8 +60,10 @@ ALWAYS_INLINE void blocks_gather(const struct problem *p, int64_t bundle, int k,
     const struct bundle *c = bundle_at(p, bundle);
     double sum[3][LANES] = { 0 }, one[4];
     int64_t slot = bundle * BUNDLE + k;
+    const int together = p->W->common ? bundle_contacts(p, bundle) : 0;
     for (int i = 0; i < LANES && c->a[k + i] >= 0; i++) {
         delassus_gather(&p->sorted, slot + i, p->sorted.q, p->W->r, one);
+        if (p->W->common) delassus_add_common(p->W, c->a[k + i], together, one);
         for (int j = 0; j < p->d; j++) sum[j][i] = one[j];
     }
     for (int j = 0; j < 3; j++) b[j] = vload(sum[j]);
@@ -70,9 +72,11 @@ ALWAYS_INLINE void blocks_gather(const struct problem *p, int64_t bundle, int k,
 /* r of lanes k.. into W->r, where the other contacts will read it */
 ALWAYS_INLINE void blocks_scatter(struct problem *p, const struct bundle *c, int k)
 {
-    for (int i = 0; i < LANES; i++)
-        for (int j = 0; j < p->d && c->a[k + i] >= 0; j++)
-            p->W->r[p->d * c->a[k + i] + j] = c->r[j][k + i];
+    for (int i = 0; i < LANES && c->a[k + i] >= 0; i++) {
+        const double r[3] = { c->r[0][k + i], c->r[1][k + i], c->r[2][k + i] };
+        if (p->W->common) delassus_change_common(p->W, c->a[k + i], r);
+        for (int j = 0; j < p->d; j++) p->W->r[p->d * c->a[k + i] + j] = r[j];
+    }
 }
 
 /* Groups that a thread sweeps without waiting in between */
@@ -130,11 +134,15 @@ ALWAYS_INLINE void walk(struct problem *p, int me, int threads, walk_text *each,
     bool by_halves = p->split && threads == 2;
     int legs = legs_of_thread(p, me, by_halves, leg), share = by_halves ? 1 : threads,
         mine = by_halves ? 0 : me;
+    const bool common =
+        p->W && p->W->common; // every bundle is a group, and one thread has them all
+    if (common) delassus_begin(p->W);
     for (int k = 0; k < legs; k++) {
         begin_leg(p, &leg[k], me);
         for (int64_t g = leg[k].first; g < leg[k].end; g++) {
             int64_t first = p->group[g], n = p->group[g + 1] - first;
             each(p, first + n * mine / share, first + n * (mine + 1) / share, task);
+            if (common) delassus_end_group(p->W);
             if (share > 1) team_meet();
             if (!p->shared) continue;
             if (mine == 0) p->shared->after_group(p->shared, p, g);

@@ -31,7 +31,10 @@ static int copy_W(struct delassus *W, const struct delassus *V, struct why *why)
     W->col = malloc((size_t)(blocks + 1) * sizeof *W->col);
     W->block = copy(V->block, blocks * d * d), W->diag = copy(V->diag, 9 * n);
     W->q = copy(V->q, n * d), W->mu = copy(V->mu, n), W->r = copy(V->r, n * d);
-    if (!W->first || !W->col || !W->block || !W->diag || !W->q || !W->mu || !W->r)
+    W->common = V->common;
+    if (W->common) W->J = copy(V->J, n * d * W->common);
+    if (!W->first || !W->col || !W->block || !W->diag || !W->q || !W->mu || !W->r ||
+        (W->common && !W->J))
         return why_set(why, EX_SOFTWARE, "out of memory");
     memcpy(W->first, V->first, (size_t)(n + 1) * sizeof *W->first);
     if (blocks) memcpy(W->col, V->col, (size_t)blocks * sizeof *W->col);
@@ -44,12 +47,15 @@ static void scale(struct scaled *a)
     int d = W->d, dd = d * d;
     double trace = 0;
     for (int64_t c = 0; c < W->n; c++) {
-        double lambda = local_lambda_max(W->diag + 9 * c);
+        double D[9];
+        delassus_own(W, c, 1, D);
+        double lambda = local_lambda_max(D);
         a->s[c] = lambda > 0 ? 1 / sqrt(lambda) : 1;
     }
     for (int64_t c = 0; c < W->n; c++) {
         for (int k = 0; k < 9; k++) W->diag[9 * c + k] *= a->s[c] * a->s[c];
         for (int k = 0; k < d; k++) W->q[d * c + k] *= a->s[c], trace += W->diag[9 * c + 4 * k];
+        for (int k = 0; k < d * W->common; k++) W->J[d * W->common * c + k] *= a->s[c];
         for (int64_t e = W->first[c]; e < W->first[c + 1]; e++)
             for (int k = 0; k < dd; k++) W->block[dd * e + k] *= a->s[c] * a->s[W->col[e]];
     }

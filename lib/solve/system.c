@@ -37,6 +37,10 @@ struct system {
     size_t *columns;         /* holds their columns[] */
     int *order;              /* holds their order[] */
     double *l, *d, *t;       /* [rows][rows] of one face: Q' L T, Q' D M, work space */
+    double *Z;               /* [common][n d] A^-1 L J; NULL: nothing in common */
+    double small[COMMON_MAX * COMMON_MAX]; /* 1 + J^T Z, its factors and their order */
+    size_t small_order[COMMON_MAX];
+    int small_sign; /* of its determinant */
 };
 
 void system_free(struct system *s)
@@ -45,7 +49,7 @@ void system_free(struct system *s)
     faces_free(&s->faces), lu_free(s->lu);
     free(s->entries), free(s->w), free(s->y), free(s->b), free(s->r), free(s->x);
     free(s->reduced), free(s->room), free(s->columns), free(s->order);
-    free(s->l), free(s->d), free(s->t), free(s);
+    free(s->l), free(s->d), free(s->t), free(s->Z), free(s);
 }
 
 static double *doubles(int64_t n)
@@ -96,9 +100,10 @@ struct system *system_new(const struct scaled *w, double bytes, bool *too_large)
     s->l = doubles(rows_max * rows_max), s->d = doubles(rows_max * rows_max),
     s->t = doubles(rows_max * rows_max);
     s->reduced = calloc((size_t)f->n + 1, sizeof *s->reduced);
+    s->Z = doubles((int64_t)w->size * w->W.common);
     s->lu = lu_new(f->size, f->first, f->col, bytes, too_large);
     if (!s->entries || !s->w || !s->y || !s->b || !s->r || !s->x || !s->room || !s->order ||
-        !s->columns || !s->l || !s->d || !s->t || !s->reduced || !s->lu) {
+        !s->columns || !s->l || !s->d || !s->t || !s->Z || !s->reduced || !s->lu) {
         system_free(s);
         return NULL;
     }
@@ -321,8 +326,8 @@ static void recover(struct system *s, const struct face *f, const struct reduced
     store(s, f, xf, x);
 }
 
-/* x = (L W + D)^-1 b, to the accuracy of the factors */
-static bool substitute(struct system *s, const double *b, double *x)
+/* x = A^-1 b, to the accuracy of the factors */
+static bool substitute_blocks(struct system *s, const double *b, double *x)
 {
     const struct faces *F = &s->faces;
     bool reduced = F->size < s->a->size;
@@ -347,6 +352,58 @@ static bool substitute(struct system *s, const double *b, double *x)
         else
             store(s, f, s->w + f->at, x);
     }
+    return true;
+}
+
+/* The factors of 1 + J^T Z as GSL has them */
+static gsl_matrix_view small_of(struct system *s)
+{
+    return view(s->small, s->a->W.common, s->a->W.common);
+}
+
+/* Z and the factors of 1 + J^T Z; false where these are singular */
+static bool factorise_common(struct system *s)
+{
+    const struct delassus *W = &s->a->W;
+    const int n = W->common, d = W->d;
+    const int64_t size = s->a->size;
+    s->small_sign = 1;
+    if (!n) return true;
+    for (int k = 0; k < n; k++) {
+        for (int64_t i = 0; i < size; i++) {
+            const double *L = s->L + 9 * (i / d) + 3 * (i % d);
+            s->r[i] = 0;
+            for (int j = 0; j < d; j++) s->r[i] += L[j] * W->J[n * (i - i % d + j) + k];
+        }
+        if (!substitute_blocks(s, s->r, s->Z + size * k)) return false;
+    }
+    for (int k = 0; k < n; k++) {
+        double part[COMMON_MAX];
+        delassus_common(W, s->Z + size * k, part);
+        for (int i = 0; i < n; i++) s->small[n * i + k] = (i == k) + part[i];
+    }
+    gsl_matrix_view A = small_of(s);
+    gsl_permutation P = { (size_t)n, s->small_order };
+    gsl_linalg_LU_decomp(&A.matrix, &P, &s->small_sign);
+    s->small_sign = gsl_linalg_LU_sgndet(&A.matrix, s->small_sign);
+    return s->small_sign != 0;
+}
+
+/* x = (L W + D)^-1 b, to the accuracy of the factors */
+static bool substitute(struct system *s, const double *b, double *x)
+{
+    const int n = s->a->W.common;
+    const int64_t size = s->a->size;
+    if (!substitute_blocks(s, b, x)) return false;
+    if (!n) return true;
+    double y[COMMON_MAX];
+    delassus_common(&s->a->W, x, y);
+    gsl_matrix_view A = small_of(s);
+    gsl_permutation P = { (size_t)n, s->small_order };
+    gsl_vector_view v = gsl_vector_view_array(y, (size_t)n);
+    gsl_linalg_LU_svx(&A.matrix, &P, &v.vector);
+    for (int k = 0; k < n; k++)
+        for (int64_t i = 0; i < size; i++) x[i] -= s->Z[size * k + i] * y[k];
     return true;
 }
 
@@ -394,10 +451,11 @@ bool system_solve_again(struct system *s, double *x)
 bool system_solve(struct system *s, const double *L, const double *D, double *x)
 {
     s->L = L, s->D = D;
-    return assemble(s) && lu_factorise(s->lu, s->entries) && system_solve_again(s, x);
+    return assemble(s) && lu_factorise(s->lu, s->entries) && factorise_common(s) &&
+           system_solve_again(s, x);
 }
 
 int system_sign(const struct system *s)
 {
-    return s->sign * lu_sign(s->lu);
+    return s->sign * lu_sign(s->lu) * s->small_sign;
 }

@@ -12,6 +12,11 @@
  *
  * and the rows of the triangle then give n. D need not be regular for that. In a wall of bricks
  * with 4 contacts a face this halves the unknowns, and takes an eighth of the time.
+ *
+ * What all contacts have in common, W = blocks + J J^T, would fill the matrix, and is added by the
+ * formula of Sherman, Morrison and Woodbury: with A = L blocks + D and Z = A^-1 L J
+ *
+ *     x = A^-1 b - Z (1 + J^T Z)^-1 J^T A^-1 b.
  */
 #ifndef NSD_SYSTEM_H
 #define NSD_SYSTEM_H

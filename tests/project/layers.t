@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# The house stands as lib/README.md draws it: every file is in a room, is named there, and includes only
+# files of its own floor or of floors below, without a circle.
+# shellcheck source=tests/support/tap.sh
+. tests/support/tap.sh
+
+# "## 5 problem" opens a floor; "- `sweep.h .c`" or "- `sweep.h`" names a module of it.
+mapfile -t rooms < <(awk '/^## [0-9]+ / { print $3 }' lib/README.md)
+floor_of() # room: its number; nothing where there is no such room
+{
+    awk -v room="$1" '/^## [0-9]+ / && $3 == room { print $2 }' lib/README.md
+}
+
+modules() { find lib -name '*.[ch]' | sed 's/\.[ch]$//' | sort -u; }
+includes() # of a file or several, "room/name.h" a line
+{
+    sed -n 's/^ *# *include "\(.*\)"$/\1/p' "$@"
+}
+
+no_room() { find lib -name '*.[ch]' | awk -F/ -v rooms=" ${rooms[*]} " 'NF != 3 || !index(rooms, " " $2 " ")'; }
+unnamed() # modules that the README does not name in their room
+{
+    awk '/^## [0-9]+ / { room = $3 } /^- `/ { n = split($0, w, "`"); for (i = 2; i < n; i += 2) { split(w[i], name, "."); print "lib/" room "/" name[1] } }' lib/README.md | sort -u |
+        comm -3 - <(modules)
+}
+foreign() # includes of ours that are no file of a room
+{
+    local f i
+    for f in lib/*/*.[ch]; do
+        for i in $(includes "$f"); do [ -f "lib/$i" ] || echo "$f: $i"; done
+    done
+}
+upwards()
+{
+    local f i
+    for f in lib/*/*.[ch]; do
+        for i in $(includes "$f"); do
+            [ "$(floor_of "${i%%/*}")" -le "$(floor_of "$(basename "$(dirname "$f")")")" ] || echo "$f: $i"
+        done
+    done
+}
+circles() # in room $1, by modules: x.h and x.c are one
+{
+    local m i
+    for m in $(modules | grep "^lib/$1/"); do
+        for i in $(includes "$m".[ch] | grep "^$1/"); do
+            [ "lib/${i%.h}" = "$m" ] || echo "$m lib/${i%.h}"
+        done
+    done | { tsort >/dev/null; } 2>&1
+}
+
+nothing() # COMMAND ...: prints nothing
+{
+    "$@" >"$tmp/said" 2>&1 || true
+    [ ! -s "$tmp/said" ] || { cat "$tmp/said"; return 1; }
+}
+
+ok "there are floors" [ "${#rooms[@]}" -ge 9 ]
+ok "every file is in a room" nothing no_room
+ok "lib/README.md names every module, and no other" nothing unnamed
+ok "every include of ours names a file by its room" nothing foreign
+ok "no include looks up" nothing upwards
+for room in "${rooms[@]}"; do
+    ok "no circle in $room/" nothing circles "$room"
+done
+done_testing

@@ -1,0 +1,80 @@
+#!/usr/bin/env bash
+# No thread is where another writes: the tools are built again with clang's ThreadSanitizer.
+# shellcheck source=tests/support/tap.sh
+. tests/support/tap.sh
+
+if ! command -v clang >/dev/null; then
+    echo "1..0 # SKIP no clang"
+    exit 0
+fi
+
+built=build/tsan flags=(-O1 -g1 -fsanitize=thread -DNSD_STEADY) tools=(nsd-solve nsd-step nsd-view)
+ok "the tools build" make -j2 SAN= B=$built CC=clang CFLAGS="${flags[*]}" LDFLAGS=-fsanitize=thread \
+    "WITHOUT=export" "IDLE=4 8" "${tools[@]/#/$built/}"
+
+export NSD_LANES=2 # the sanitizer sees no access of more than 16 bytes
+export TSAN_OPTIONS=ignore_noninstrumented_modules=1:abort_on_error=1
+
+# ---- is anyone watching? ----
+
+cat >"$tmp/race.c" <<'EOF'
+#include "base/team.h"
+#include <stdio.h>
+
+static int64_t n;
+
+static void count(void *lock, int me, int threads)
+{
+    (void)me, (void)threads;
+    for (int k = 0; k < 1000; k++) {
+#ifdef ORDERED
+        team_meet();
+        if (me == k % threads)
+#endif
+            n++;
+    }
+}
+
+int main(void)
+{
+    for (int k = 0; k < 10; k++) team_do(2, count, NULL);
+    return !n;
+}
+EOF
+clang -Ilib "${flags[@]}" -o "$tmp/race" "$tmp/race.c" lib/base/team.c
+clang -Ilib "${flags[@]}" -DORDERED -o "$tmp/ordered" "$tmp/race.c" lib/base/team.c
+status 134 "a race is seen" "$tmp/race"
+status 0 "and none where there is none" "$tmp/ordered"
+
+# ---- a lattice, with groups worth a second thread, its W alone, and a heap that only halves are for ----
+
+jq -n '{ dt: 1e-3, gravity: [0.3, 0.2, -9.81], walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
+         bodies: [range(5120) | { radius: 0.5, x: [. % 16, (. / 16 | floor) % 16, 0.5 + (. / 256 | floor)] }] }' |
+    nsd-gen - | nsd-detect --gap 1e-6 --fclib=local >"$tmp/lattice.h5"
+foreign "$tmp/lattice.h5" "$tmp/lattice.hdf5"
+h5copy -i "$tmp/lattice.hdf5" -o "$tmp/given.h5" -s /fclib_local -d /fclib_local
+nsd-gen 200 | nsd-step -n 900 --every 900 --eps 1e-6 2>/dev/null | nsd-cat --last >"$tmp/heap.h5"
+nsd-detect "$tmp/heap.h5" >"$tmp/contacts.h5"
+
+solve() # DOCUMENT ARGUMENT ...
+{
+    local document=$1 j
+    shift
+    for j in 2 4; do
+        status 0 "$document, $*: $j threads" $built/nsd-solve "$@" -j $j "$tmp/$document.h5"
+    done
+}
+for method in exact sbp sal ebp eal; do
+    for document in lattice given; do
+        solve $document -m $method --order colour --max-sweeps 8
+    done
+    solve contacts -m $method --order halves --max-sweeps 30
+done
+for document in lattice contacts given; do
+    solve $document --global anderson --max-sweeps 30
+    solve $document --max-sweeps 100
+done
+status 0 "whole steps in halves" $built/nsd-step -m exact --order halves --relax 1.5 --warm -j 2 -n 50 "$tmp/heap.h5"
+status 0 "whole steps by auto" $built/nsd-step -j 4 -n 20 "$tmp/heap.h5"
+status 0 "a picture" $built/nsd-view -j 4 "$tmp/heap.h5"
+done_testing

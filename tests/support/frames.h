@@ -1,0 +1,135 @@
+/*
+ * tests/support/frames.h: a solved frame of each scene of tests/support/failing_library_calls.h and a problem from elsewhere, in memory
+ * and in files.
+ */
+#ifndef NSD_FRAMES_H
+#define NSD_FRAMES_H
+
+#include "failing_library_calls.h"
+
+#include "io/reader.h"
+#include "io/source.h"
+#include "io/writer.h"
+#include "scene/flow.h"
+#include "solve/step.h"
+
+static struct frame frame[SCENES + 1]; /* one of each, solved; and a foreign problem, also solved */
+static char *document[SCENES + 1]; /* files that have them, with things that nsd does not know */
+static struct problem problem[SCENES]; /* of their contacts */
+
+static struct step_opt options(const struct solver *solver)
+{
+    return (struct step_opt){ .solve = { .global = solver,
+                                         .method = &local_exact,
+                                         .criterion = CRITERION_NATURAL,
+                                         .eps = 1e-10,
+                                         .max_sweeps = 200,
+                                         .history = true,
+                                         .threads = 1,
+                                         .local = { .newton_eps = 1e-13, .newton_max = 100 } } };
+}
+
+static int step(struct packing *p, struct contacts *s, const struct solver *solver,
+                struct report *rep, struct why *why)
+{
+    struct flow flow;
+    struct step_memory memory = { 0 };
+    struct step_opt o = options(solver);
+    bool changed;
+    if (flow_read(&flow, p, why)) return why->status;
+    if (!flow_step(&flow, p, s, &changed, why)) step_advance(p, s, &memory, &o, rep, why);
+    step_forget(&memory), flow_free(&flow);
+    return why->status;
+}
+
+/* ---- the documents ---- */
+
+/* The document without its header, as a file from elsewhere, with some things more in it */
+static char *foreign(const char *path, const char *to)
+{
+    static unsigned char bytes[1 << 22];
+    struct why why = { 0 };
+    const hsize_t shape[2] = { 2, 3 }, one = 1;
+    const double six[6] = { 1, 2, 3, 4, 5, 6 };
+    const int32_t whole = 7;
+    FILE *f = fopen(path, "r");
+    size_t n = f ? fread(bytes, 1, sizeof bytes, f) : 0;
+    if (f) fclose(f);
+    unlink(path);
+    if (n <= DOCUMENT_USERBLOCK || !(f = fopen(to, "w"))) exit(1);
+    fwrite(bytes + DOCUMENT_USERBLOCK, 1, n - DOCUMENT_USERBLOCK, f);
+    fclose(f);
+    hid_t file = H5Fopen(to, H5F_ACC_RDWR, H5P_DEFAULT);
+    must(h5_write(file, "/mine/six", H5T_NATIVE_DOUBLE, 2, shape, six, "m", &why) ||
+             h5_write(file, "/mine/one", H5T_NATIVE_INT32, 1, &one, &whole, NULL, &why) ||
+             h5_write_text(file, "/mine/text", "some words", &why) ||
+             h5_attr(file, "/mine", "six", H5T_NATIVE_DOUBLE, 6, six, &why) ||
+             h5_attr_text(file, "/mine/six", "by", "hand", &why),
+         &why);
+    H5Fclose(file);
+    return (char *)to;
+}
+
+static void make_frame(int k)
+{
+    struct why why = { 0 };
+    struct frame *f = &frame[k];
+    must(build(&f->packing, k, &why), &why);
+    for (int i = 0; i < 3; i++) {
+        report_free(&f->report);
+        must(step(&f->packing, &f->contacts, &solver_nlgs, &f->report, &why), &why);
+    }
+    f->report.options = strdup("{}");
+    f->packed = f->detected = f->reported = f->moved = f->forces = true;
+    f->history = strdup("{\"command\": \"a test\"}\n");
+    must(problem_prepare(&problem[k], &f->packing, &f->contacts, 0, 1, ORDER_NATURAL, &why), &why);
+    now = k;
+    const char *path = fresh(".h5");
+    struct writer *w;
+    must(writer_open(&w, path, WRITER_STREAM, &why) || writer_frame(w, f, &why) ||
+             writer_close(w, &why),
+         &why);
+    document[k] = foreign(path, fresh(".hdf5"));
+}
+
+/* The problem of the first frame, as a global one from elsewhere, with a solution */
+static void make_foreign(void)
+{
+    struct why why = { 0 };
+    struct reader *r;
+    bool more;
+    char *path = (char *)fresh(".hdf5");
+    hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    must(file < 0 || fclib_write_problem(&problem[0], true, file, &why), &why);
+    H5Fclose(file);
+    must(reader_open(&r, 1, &path, &why), &why);
+    reader_copies(r);
+    must(reader_next(r, NULL, &frame[SCENES], &more, &why), &why);
+    frame[SCENES].u = calloc((size_t)(frame[SCENES].problem.W.n * 3) + 1, sizeof(double));
+    reader_close(r);
+    unlink(path);
+    struct writer *w;
+    path = (char *)fresh(".h5");
+    must(writer_open(&w, path, WRITER_STREAM, &why) || writer_frame(w, &frame[SCENES], &why) ||
+             writer_close(w, &why),
+         &why);
+    document[SCENES] = foreign(path, fresh(".hdf5"));
+}
+
+/* A copy in memory; what is changed there stays there. */
+static hid_t open_copy(const char *path)
+{
+    hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_fapl_core(access, 1 << 16, false);
+    hid_t file = H5Fopen(path, H5F_ACC_RDWR, access);
+    H5Pclose(access);
+    return file;
+}
+
+static void make_frames(void)
+{
+    for (int k = 0; k < SCENES; k++) make_frame(k);
+    make_foreign();
+}
+
+#endif

@@ -1,0 +1,217 @@
+#!/usr/bin/env bash
+# Command lines: help, version, statuses, the log; and that the clock is in no document.
+# shellcheck source=tests/support/tap.sh disable=SC2317 # functions called by name
+. tests/support/tap.sh
+
+tools=(nsd-gen nsd-detect nsd-solve nsd-move nsd-step nsd-err nsd-info nsd-cat nsd-view)
+step() { nsd-step "$@" 2>/dev/null; }
+
+stock heap20 >"$tmp/heap.h5"
+nsd-detect "$tmp/heap.h5" >"$tmp/contacts.h5"
+
+# ---- help and version ----
+
+for tool in "${tools[@]}"; do
+    status 0 "$tool --help" "$tool" --help
+    help=$(<"$tmp/out")
+    is "says nothing on stderr" "$(cat "$tmp/err")" ""
+    like "begins with how to use it" "$help" "^usage: $tool "
+    like "names the manual" "$help" "man $tool"
+    is "has no line longer than 100 characters" "$(awk 'length > 100' "$tmp/out")" ""
+    # an option with an argument either has its default in brackets or is off without it
+    grep -o '^  *\(-., \)\?--[a-z-]* [^ ]*[A-Z|][^ ]*' "$tmp/out" | grep -o -e '--[a-z-]*' >"$tmp/options" || true
+    while read -r option; do
+        case $option in
+        --newton-abs | --log | --fclib) continue ;;
+        esac
+        like "$tool $option: the default is in brackets" "$(grep -A 1 -e "$option " <<<"$help" | tr '\n' ' ')" '\[[^]]+\]'
+    done <"$tmp/options"
+    refuses 64 "$tool --help=x" "$tool" --help=x
+    status 0 "$tool --version" "$tool" --version
+    like "says the version" "$(cat "$tmp/out")" "^$tool \(nsd\) [0-9]+\.[0-9]+$"
+done
+for tool in "${tools[@]}"; do
+    "$tool" --help | grep -o -E '^ +(-., )?--[a-z-]+' | grep -o -e '--.*' | sort -u >"$tmp/options"
+    for shell in bash zsh; do
+        status 0 "$tool --completion $shell" "$tool" --completion $shell
+        is "has every option of --help" "$(while read -r option; do grep -q -e "$option" "$tmp/out" || echo "$option"; done <"$tmp/options")" ""
+    done
+    refuses 64 "$tool --completion of another shell" "$tool" --completion fish
+done
+ok "bash reads what it is to complete with" bash -n <(nsd-step --completion bash)
+mentions() # tool option default
+{
+    "$1" --help | tr '\n' ' ' | grep -q -e "$2[ ,].*$3"
+}
+while read -r tool option default; do
+    ok "$tool --help has $option $default" mentions "$tool" "$option" "$default"
+done <<'END'
+nsd-gen --dim \[3\]
+nsd-detect --gap \[0\]
+nsd-detect --theta 0\.5\]
+nsd-detect --overlap keep|gap|push|project|gap-project.*project\]
+nsd-detect --fclib local|global
+nsd-solve --method auto|sbp|.*\[auto\]
+nsd-solve --global auto|nlgs|.*\[nlgs with -m
+nsd-solve --max-seconds .
+nsd-solve --eps \[1; 1e-10 for FCLIB\]
+nsd-solve --criterion glob|scaled|natural|velocity.*\[velocity; natural for FCLIB\]
+nsd-solve --max-sweeps \[5000
+nsd-solve --alpha \[1\.75
+nsd-solve --newton plain|linesearch.*\[linesearch\]
+nsd-solve --newton-eps \[1e-13\]
+nsd-solve --newton-max \[100\]
+nsd-solve --relax \[1\]
+nsd-solve --order \[natural for nlgs
+nsd-solve --theta \[
+nsd-solve --warm \[
+nsd-solve --history .
+nsd-solve --threads \[1\]
+nsd-solve --log .
+nsd-solve --strict .
+nsd-step --steps \[1\]
+nsd-step --every \[1\]
+nsd-step --contacts .
+nsd-step --warm .
+nsd-step --output \[standard output\]
+nsd-info --steps \[all\]
+nsd-info --last .
+nsd-cat --steps \[all\]
+nsd-cat --last .
+nsd-view --step \[the very last frame\]
+nsd-view --colour radius|speed|kind|id.*\[radius\]
+nsd-view --camera \[30,15\]
+nsd-view --samples \[3\]
+nsd-view --plain .
+END
+
+# ---- the command line ----
+
+solve() { nsd-solve "$@" 2>/dev/null; }
+ok "options may stand behind the operands" cmp <(solve -m sbp "$tmp/contacts.h5") <(solve "$tmp/contacts.h5" -m sbp)
+ok "-msbp and --method=sbp are the same" cmp <(solve -msbp "$tmp/contacts.h5") <(solve --method=sbp "$tmp/contacts.h5")
+ok "the last of two wins" cmp <(solve -m sbp -m eal "$tmp/contacts.h5") <(solve -m eal "$tmp/contacts.h5")
+status 0 "-- ends the options" nsd-info -- "$tmp/heap.h5"
+cp "$tmp/contacts.h5" "$tmp/-e"
+dash() { (cd "$tmp" && nsd-info -- -e); }
+ok "so that a file may be called -e" dash
+
+solve -m eal --max-sweeps 77 --eps 1e-9 "$tmp/contacts.h5" >"$tmp/solved.h5"
+ok "the document's history has the options given" jq -e -s '.[0].history[-1].options ==
+    {method: "eal", eps: 1e-9, "max-sweeps": 77}' <(nsd-info "$tmp/solved.h5")
+is "and the command before, and the one before that" \
+    "$(nsd-info "$tmp/solved.h5" | jq -c -s '.[0].history | map(.command)')" \
+    '["nsd-gen","nsd-step","nsd-detect","nsd-solve"]'
+
+# ---- statuses ----
+
+status 0 "a problem that converges: 0" nsd-solve -e "$tmp/contacts.h5"
+is "one line on stderr" "$(wc -l <"$tmp/err")" 1
+like "sums it up" "$(cat "$tmp/err")" '^nsd-solve: .*contacts.h5: [0-9]+ contacts, auto: [0-9]+ sweeps, velocity [0-9.e-]+, '
+status 0 "one that does not: 0" nsd-solve --eps 1e-3 --max-sweeps 1 "$tmp/contacts.h5"
+mv "$tmp/out" "$tmp/lenient.h5"
+like "with a warning" "$(cat "$tmp/err")" 'velocity [0-9.e-]+, [0-9.e-]+ s: NOT CONVERGED to 0.001$'
+for e in -e --strict; do
+    status 1 "and 1 under $e" nsd-solve $e --eps 1e-3 --max-sweeps 1 "$tmp/contacts.h5"
+    like "with a warning" "$(cat "$tmp/err")" 'NOT CONVERGED'
+    ok "and the document is written, the same" cmp "$tmp/out" "$tmp/lenient.h5"
+done
+ok "the report has it" jq -e -s '.[-1].converged == false' <(nsd-info "$tmp/lenient.h5")
+status 0 "nsd-step that does not converge: 0" nsd-step -n 3 --eps 1e-3 --max-sweeps 1 "$tmp/heap.h5"
+like "with a warning" "$(cat "$tmp/err")" '3 steps NOT CONVERGED, the first is step 601; the largest velocity is [0-9.e-]+, not 0.001'
+status 1 "and 1 under -e" nsd-step -e -n 3 --eps 1e-3 --max-sweeps 1 "$tmp/heap.h5"
+is "and all frames are written" "$(nsd-info "$tmp/out" | jq -c -n '[inputs | select(.step != null).step]')" "[601,602,603]"
+cat "$tmp/contacts.h5" "$tmp/contacts.h5" >"$tmp/two.h5"
+status 0 "nsd-solve -e of two problems" nsd-solve -e "$tmp/two.h5"
+is "a line each" "$(wc -l <"$tmp/err")" 2
+status 1 "nsd-solve -e of two problems not converged" nsd-solve -e --eps 1e-3 --max-sweeps 1 "$tmp/two.h5"
+is "both are written" "$(nsd-info "$tmp/out" | jq -s '[.[] | select(.frames)] | length')" 2
+
+# ---- defaults, and the paper's ----
+
+asked() { nsd-info "$1" | jq -c 'select(.options).options | [.global, .local, .criterion, .eps, .max_sweeps, .order, .relax, .warm]'; }
+paper='["nlgs","sbp","glob",1e-10,5000,"natural",1,false]'
+solve --paper -m sbp "$tmp/contacts.h5" >"$tmp/paper.h5"
+is "--paper is the paper's protocol" "$(asked "$tmp/paper.h5")" "$paper"
+is "the report has the method" "$(nsd-info --last "$tmp/paper.h5" | jq -r .method)" sbp
+step -n 1 -m sbp --paper "$tmp/heap.h5" >"$tmp/paper.h5"
+is "of nsd-step too" "$(asked "$tmp/paper.h5")" "$paper"
+while read -r want options; do
+    for line in "--paper -m sbp $options" "$options -m sbp --paper"; do
+        # shellcheck disable=SC2086 # words
+        is "nsd-solve $line: what is given wins" "$(solve $line "$tmp/contacts.h5" | asked -)" "$want"
+    done
+done <<'END'
+["nlgs","sbp","natural",1e-09,7,"colour",1.5,true] --criterion natural --eps 1e-9 --max-sweeps 7 --order colour --relax 1.5 --warm
+["auto","sbp","glob",1e-10,5000,"natural",1,false] --global auto
+END
+for line in "" "-m auto" "--global nlgs"; do
+    # shellcheck disable=SC2086 # words
+    refuses 64 "nsd-solve --paper $line" nsd-solve --paper $line --log "$tmp/solve.log" "$tmp/contacts.h5"
+    like "wants a method" "$(cat "$tmp/err")" '^nsd-solve: --paper: wants a local method, -m sbp\|sal\|ebp\|eal\|exact'
+    ok "and leaves the log alone" [ ! -e "$tmp/solve.log" ]
+done
+refuses 64 "nsd-step --paper" nsd-step --paper "$tmp/heap.h5"
+# What --help has in brackets is what goes: nsd's choice for a packing
+bracket() { nsd-solve --help | tr '\n' ' ' | grep -o -e "--$1 [^]]*\]" | sed 's/.*\[//; s/[];,].*//; s/ for nlgs//; s/ nlgs//'; }
+solve -m sbp "$tmp/contacts.h5" >"$tmp/usual.h5"
+for key in criterion eps max-sweeps order relax newton newton-eps newton-max; do
+    is "the default in --help's brackets goes: --$key" "$(nsd-info "$tmp/usual.h5" |
+        jq -r "select(.options).options.\"${key/-/_}\"")" "$(bracket $key)"
+done
+
+# ---- the log ----
+
+keys='step time contacts sweeps eps_glob motion proj bipotential penetration max_penetration newton seconds'
+nsd-solve -m eal --log "$tmp/solve.log" "$tmp/two.h5" >/dev/null 2>&1
+step -m eal -n 5 --log "$tmp/step.log" "$tmp/heap.h5" >/dev/null
+for log in solve:2 step:5; do
+    is "nsd-${log%:*} --log writes one line a solve" "$(wc -l <"$tmp/${log%:*}.log")" "${log#*:}"
+    for key in $keys; do
+        ok "nsd-${log%:*} --log: each line has the number $key" \
+            jq -e -n "[inputs.$key | numbers] | length == ${log#*:}" "$tmp/${log%:*}.log"
+    done
+done
+is "in the order of the steps" "$(jq -c -n '[inputs.step]' "$tmp/step.log")" "[601,602,603,604,605]"
+step -m eal -n 5 "$tmp/heap.h5" >"$tmp/five.h5"
+row='select(.sweeps != null) | [.step, .sweeps, .eps_glob, .contacts]'
+ok "and has what the document has" cmp <(jq -c "$row" "$tmp/step.log") <(nsd-info "$tmp/five.h5" | jq -c "$row")
+refuses 74 "a log that cannot be opened: 74" nsd-step --log "$tmp/missing/log" "$tmp/heap.h5"
+status 74 "a log that cannot be written: 74" nsd-step --log /dev/full "$tmp/heap.h5"
+nsd-solve --history "$tmp/contacts.h5" >"$tmp/history.h5" 2>/dev/null
+is "--history keeps the terms of every sweep" "$(nsd-info --history "$tmp/history.h5" | wc -l)" \
+    "$(nsd-info "$tmp/history.h5" | jq -s '.[-1].sweeps')"
+ok "the last of them is the report's" jq -e -s '.[0].eps_glob == .[1].eps_glob' \
+    <(nsd-info --history --last "$tmp/history.h5" | tail -n 1) <(nsd-info "$tmp/history.h5" | tail -n 1)
+
+# ---- the clock ----
+
+run()
+{
+    nsd-gen 20 >"$1.gen"
+    nsd-detect "$tmp/heap.h5" >"$1.detect"
+    nsd-detect --fclib=global "$tmp/heap.h5" >"$1.fclib"
+    solve --history --log "$1.log" "$tmp/contacts.h5" >"$1.solve"
+    nsd-move "$1.solve" >"$1.move"
+    step -n 5 --contacts --log "$1.log" "$tmp/heap.h5" >"$1.step"
+    step -n 5 --contacts -j 2 "$tmp/heap.h5" | cat >"$1.stream"
+    nsd-cat "$1.stream" >"$1.cat"
+    nsd-info "$1.stream" >"$1.info"
+    nsd-err "$1.stream" >"$1.err"
+    nsd-view "$1.stream" >"$1.view" 2>/dev/null
+}
+run "$tmp/now"
+sleep 1.1
+run "$tmp/later"
+for what in gen detect fclib solve move step stream cat info err view; do
+    ok "$what: a second later the bytes are the same" cmp "$tmp/now.$what" "$tmp/later.$what"
+done
+ok "threads and logs are in no document" cmp "$tmp/now.cat" "$tmp/now.step"
+elsewhere()
+{
+    cp "$tmp/heap.h5" "$tmp/renamed.h5" && (cd / && TZ=Asia/Tokyo LC_ALL=C.UTF-8 nsd-detect "$tmp/renamed.h5")
+}
+status 0 "a document from elsewhere, and from another time zone" elsewhere
+ok "has the same bytes" cmp "$tmp/out" "$tmp/now.detect"
+
+done_testing

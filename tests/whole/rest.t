@@ -1,0 +1,177 @@
+#!/usr/bin/env bash
+# What is done about overlap (--overlap): piles that rest keep theirs bounded, nothing gains energy, balls
+# bounce as high as they should, and the chain of tools does what nsd-step does.
+# shellcheck source=tests/support/tap.sh disable=SC2317 # functions called by name
+. tests/support/tap.sh
+
+modes=(keep gap push project gap-project)
+radius=0.005
+
+scene() { nsd-gen - >"$tmp/$1.h5"; } # NAME < JSON
+step() { nsd-step "$@" 2>/dev/null; }
+moments() { nsd-info "$@" | jq -c 'select(.step != null)'; }
+holds() { jq -e -n "$@" >/dev/null; } # a jq program that says true
+
+# ---- a column of ten balls: overlap over time ----
+
+jq -n --argjson r $radius '{ dt: 1e-4, mu: 0.5, bodies: [range(10) | { x: [0, 0, $r * (2 * . + 1)], radius: $r }],
+    walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }] }' | scene column
+slop=$(jq -n "9.81 * 1e-8 + 1e-6 * $radius") # what a projection leaves, m
+for mode in "${modes[@]}"; do
+    step --cold --overlap "$mode" -n 10000 --every 5000 "$tmp/column.h5" >"$tmp/column-$mode.h5"
+    mapfile -t overlap < <(moments "$tmp/column-$mode.h5" | jq .max_overlap)
+    case $mode in
+    keep | gap) ok "$mode: the overlap of a column grows with the steps" \
+        holds "${overlap[1]} > 1.3 * ${overlap[0]} and ${overlap[1]} > 2e-5 * $radius" ;;
+    push) ok "push: that of a column stays below 1e-6 r" holds "${overlap[1]} <= 1e-6 * $radius" ;;
+    *) ok "$mode: that of a column stays within the slop" holds "${overlap[1]} <= 1.05 * $slop" ;;
+    esac
+done
+drift() # MODE: how far the top ball has moved against the start, m
+{
+    nsd-info -p --last "$tmp/column-$1.h5" |
+        jq -s "map(select(.id == 9)) | .[-1].x | (.[0] | fabs) + (.[1] | fabs) + ((.[2] - 19 * $radius) | fabs)"
+}
+ok "project: its top does not sink" holds "$(drift project) <= 10 * $slop"
+ok "keep: its top sinks further" holds "$(drift keep) > 2 * $(drift project)"
+
+# ---- the paper's rule is what it was ----
+
+nsd-gen 20 >"$tmp/twenty.h5"
+bits() { nsd-info -p --last "$1" | jq -S -c 'select(.x) | [.step, .id, .x, .v, .w, .q]' | sha256sum | cut -c 1-32; }
+is "--paper: 20 balls after 400 steps have the bits that they had before there was --overlap" \
+    "$(step --paper -m ebp -n 400 --every 400 "$tmp/twenty.h5" >"$tmp/paper.h5" && bits "$tmp/paper.h5")" \
+    "$(sed -n 's/^paper //p' tests/support/golden/rest)"
+is "so with --overlap keep" \
+    "$(step --overlap keep -n 400 --every 400 "$tmp/twenty.h5" >"$tmp/keep.h5" && bits "$tmp/keep.h5")" \
+    "$(sed -n 's/^keep //p' tests/support/golden/rest)"
+ok "project gives others" [ "$(step -n 400 --every 400 "$tmp/twenty.h5" >"$tmp/p.h5" && bits "$tmp/p.h5")" != "$(bits "$tmp/keep.h5")" ]
+is "--paper keeps, whatever the document says" \
+    "$(step --paper -m ebp -n 1 "$tmp/p.h5" | nsd-info - | jq -r '.overlap // empty')" keep
+is "the document says what is done" "$(nsd-info "$tmp/p.h5" | jq -r '.overlap // empty')" project
+
+# ---- one step: by its parts and as a whole; threads ----
+
+step -n 300 --every 300 --overlap keep "$tmp/twenty.h5" >"$tmp/falling.h5"
+parts() # MODE: three steps
+{
+    nsd-cat --last "$tmp/falling.h5" >"$tmp/0.h5"
+    for k in 1 2 3; do
+        nsd-detect --overlap "$1" "$tmp/$((k - 1)).h5" | nsd-solve 2>/dev/null | nsd-move >"$tmp/$k.h5"
+    done
+    step --overlap "$1" -n 3 --every 3 "$tmp/falling.h5" | nsd-cat --last >"$tmp/whole.h5"
+    same_particles "$tmp/3.h5" "$tmp/whole.h5"
+}
+for mode in "${modes[@]}"; do
+    ok "$mode: three times detect | solve | move and step -n 3 give the same bits" parts "$mode"
+done
+chain_paper()
+{
+    nsd-cat --last "$tmp/falling.h5" | nsd-detect | nsd-solve --paper -m ebp 2>/dev/null | nsd-move >"$tmp/3.h5"
+    step --paper -m ebp -n 1 "$tmp/falling.h5" | nsd-cat --last >"$tmp/whole.h5"
+    same_particles "$tmp/3.h5" "$tmp/whole.h5"
+}
+ok "so with --paper, which nsd-solve hands on to nsd-move" chain_paper
+nsd-gen 500 | step -n 300 --every 300 | nsd-cat --last >"$tmp/pile.h5"
+threads() { cmp <(step -j 1 "$@" "$tmp/pile.h5") <(step -j 2 "$@" "$tmp/pile.h5"); }
+judged() # MODE: what nsd-err finds of frames that have been moved is what their solves reported
+{
+    step --overlap "$1" -n 3 --contacts "$tmp/pile.h5" >"$tmp/judged.h5" &&
+        paste <(nsd-err "$tmp/judged.h5" | jq .natural_q) <(moments "$tmp/judged.h5" | jq 'select(.natural_q).natural_q') |
+        awk '{ d = $1 - $2; if (d * d > 1e-20 || $2 == "") exit 1; n++ } END { exit n != 3 }'
+}
+for mode in "${modes[@]}"; do
+    ok "$mode: 1 and 2 threads give the same bytes" threads --overlap "$mode" -n 5
+    ok "$mode: nsd-err finds what the steps reported" judged "$mode"
+done
+
+# ---- balls that bounce ----
+
+tops() # MODE E: heights of the first three bounces over those of the closed form, 1 m e^(2 n)
+{
+    jq -n --argjson e "$2" --argjson r $radius '{ dt: 1e-4, e_n: $e, bodies: [{ x: [0, 0, 1 + $r], radius: $r }],
+        walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }] }' | nsd-gen - | step --overlap "$1" -n 24000 --every 5 >"$tmp/bounces.h5"
+    nsd-info -p "$tmp/bounces.h5" |
+        jq -r 'select(.x) | .x[2] - 0.005' |
+        awk -v e="$2" 'NR > 2 && b > a && b >= $1 && n < 3 { n++; print b / e ^ (2 * n) } { a = b; b = $1 }'
+}
+for e in 0.5 0.9; do
+    for mode in "${modes[@]}"; do
+        ok "$mode: with e_n = $e a ball's first bounces are as high as they should, to 0.4 %" \
+            holds "[$(tops "$mode" $e | paste -sd ,)] | length == 3 and all(. > 0.996 and . < 1.004)"
+    done
+done
+superball() # MODE: how much less than 3/7 v it leaves with
+{
+    echo '{ "dt": 0.01, "gravity": [0, 0, 0], "mu": 10, "e_n": 1, "e_t": 1, "walls": [{ "point": [0, 0, 0], "normal": [0, 0, 1] }],
+        "bodies": [{ "x": [0, 0, 1], "radius": 1, "v": [1, 0, -1] }] }' | nsd-gen - | step --overlap "$1" --eps 1e-13 |
+        nsd-info -p - | jq 'select(.v) | 1 - .v[0] * 7 / 3'
+}
+ok "keep: a superball leaves with 1 % less than 3/7 v, its arm being short" holds "$(superball keep) | . > 0.009 and . < 0.010"
+for mode in "${modes[@]:1}"; do
+    ok "$mode: it leaves with 3/7 v" holds "$(superball "$mode") | fabs < 1e-12"
+done
+cradle() # MODE: speeds of five balls in a row, after
+{
+    jq -n '{ dt: 1e-4, gravity: [0, 0, 0], e_n: 1, bodies: [range(5) | { x: [. * 0.0101, 0, 0], radius: 0.005,
+        v: [if . == 0 then 1 else 0 end, 0, 0] }] }' | nsd-gen - | step --overlap "$1" -n 100 --every 100 |
+        nsd-info -p - | jq -s -c 'map(select(.x)) | .[-5:] | map(.v[0] | . * 1e9 | round / 1e9 | fabs)'
+}
+for mode in keep project; do
+    is "$mode: of a row with gaps the last ball alone leaves" "$(cradle "$mode")" "[0,0,0,0,1]"
+done
+
+# ---- energy ----
+
+# What an impact has let sink below a surface is lifted in some steps: the rises of ten at a time.
+rises() # SCENE MODE: the rises of energy from ten steps to ten steps, added up, over the first energy
+{
+    step --overlap "$2" -n 600 "$tmp/$1.h5" >"$tmp/rises.h5"
+    nsd-info "$tmp/rises.h5" |
+        jq -n '[inputs | select(.step != null) | .kinetic_energy + .potential_energy] |
+            . as $e | [range(10; length; 10) | $e[.] - $e[. - 10] | select(. > 0)] | add / $e[0]'
+}
+jq -n '{ dt: 5e-5, mu: 0.3, e_n: 0.7, bodies: [{ count: 20, radius: { uniform: [2.5e-4, 5e-4] } }],
+    walls: [{ box: { x: [-1e-3, 1e-3], y: [-1e-3, 1e-3], z: [0, null] } }] }' | scene bouncing
+# A projection lifts what an impact has let sink below the surface: m g v dt/2 each.
+declare -A most=([keep]=1e-6 [gap]=1e-5 [push]=1e-5 [project]=1e-4 [gap-project]=1e-4)
+for mode in "${modes[@]}"; do
+    ok "$mode: 20 balls that fall gain at most ${most[$mode]} of their energy in all" \
+        holds "$(rises twenty "$mode") <= ${most[$mode]}"
+done
+for mode in keep project; do
+    ok "$mode: so do balls that bounce" holds "$(rises bouncing "$mode") <= ${most[$mode]}"
+done
+echo '{ "dt": 1e-4, "gravity": [0, 0, 0], "overlap": true, "bodies": [{ "x": [0, 0, 0], "radius": 0.01, "mass": 1 },
+    { "x": [0.019, 0, 0], "radius": 0.01, "mass": 3 }] }' | scene pair
+step -n 60 "$tmp/pair.h5" | nsd-cat --last >"$tmp/apart.h5"
+place() { nsd-info -p "$tmp/apart.h5" | jq "select(.id == $1).x[0]"; }
+is "two balls that overlap are left without a velocity" \
+    "$(nsd-info -p "$tmp/apart.h5" | jq -s -c 'map(select(.v).v | map(fabs)) | add | max')" 0
+ok "apart, to the slop" holds "$(place 1) - $(place 0) | . > 0.02 - 1.1e-8 and . < 0.02"
+ok "and with their centre of mass where it was" holds "$(place 0) + 3 * $(place 1) - 0.057 | fabs < 1e-16"
+echo '{ "dt": 1e-4, "overlap": true, "bodies": [{ "x": [0, 0, 0.01], "radius": 0.01, "fixed": true },
+    { "x": [0, 0, 0.011], "radius": 0.01 }], "walls": [{ "point": [0, 0, 0], "normal": [0, 0, 1] }] }' | scene deep
+step -n 1 "$tmp/deep.h5" >"$tmp/first.h5"
+ok "what overlaps deeply is moved by a tenth of its radius in a step, and not more" \
+    holds "$(nsd-info -p "$tmp/first.h5" | jq -s 'map(select(.id == 1)) | .[-1].x[2] - 0.011') | . > 0.0009 and . < 0.0011"
+
+# ---- a ball that rests on a slope, in the notch of two others ----
+
+jq -n --argjson r $radius '{ dim: 2, dt: 1e-4, mu: 0.6, gravity: [0.98, -9.76], bodies: [{ x: [0, $r], radius: $r, fixed: true },
+    { x: [2 * $r, $r], radius: $r, fixed: true }, { x: [$r, $r + (3 | sqrt) * $r], radius: $r }] }' | scene notch
+for mode in "${modes[@]}"; do
+    step --overlap "$mode" -n 5000 --every 5000 "$tmp/notch.h5" >"$tmp/rests.h5"
+    ok "$mode: a ball in a notch on a slope stays" \
+        holds "$(nsd-info -p --last "$tmp/rests.h5" | jq -s -c "map(select(.id == 2)) | .[-1].x") as \$x |
+            ((\$x[0] - $radius) | fabs) + ((\$x[1] - $radius * (1 + (3 | sqrt))) | fabs) <= 1e-4 * $radius"
+done
+
+# ---- what may not be ----
+
+refuses 64 "a way that there is not" nsd-step --overlap magic "$tmp/twenty.h5"
+nsd-detect --overlap gap "$tmp/falling.h5" >"$tmp/gaps.h5"
+refuses 64 "contacts that were detected for gaps solved without" nsd-solve --overlap project "$tmp/gaps.h5"
+refuses 64 "or with --paper" nsd-solve --paper -m ebp "$tmp/gaps.h5"
+
+done_testing
