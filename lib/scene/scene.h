@@ -7,7 +7,7 @@
  *
  *   title     string
  *   dim       3 | 2                    [3] balls in space, or discs in the plane z = 0
- *   dt        number > 0               (needed) s
+ *   dt        number > 0 | "auto"      (needed) s; auto: by scene/time_step.h
  *   theta     0..1                     [0.5] of the theta-method
  *   gravity   vector                   [9.81 down the last axis] m/s^2
  *   seed      integer 0..2^32-1        [1] of the random numbers
@@ -235,7 +235,7 @@ struct scene_cell {
 
 struct scene {
     int dim;
-    double dt, theta;
+    double dt, theta; /* dt 0: "auto" */
     vec3 g;
     uint64_t seed;
     bool overlap;

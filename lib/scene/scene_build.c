@@ -8,6 +8,7 @@
 #include "scene/orientation.h"
 #include "scene/random_start.h"
 #include "scene/shelves.h"
+#include "scene/time_step.h"
 
 #include <gsl/gsl_rng.h>
 #include <stdio.h>
@@ -320,6 +321,19 @@ static int name_wall(const struct scene *s, struct why *why)
     return why->status;
 }
 
+/* The dt of a scene that leaves it to us */
+static int set_dt(struct packing *p, const struct scene *s, struct why *why)
+{
+    struct time_step t;
+    if (s->dt > 0) return 0;
+    time_step_of(&t, s, p);
+    p->dt = t.best;
+    return isfinite(p->dt) && p->dt > 0
+               ? 0
+               : why_set(why, EX_DATAERR, "dt: auto: nothing in the scene moves, by which a time "
+                                          "step could be chosen: give a number of seconds");
+}
+
 /* Are the numbers in range, and do no bodies overlap, unless the scene allows it? */
 static int check_packing(const struct packing *p, const struct scene *s, const struct grains *list,
                          struct why *why)
@@ -441,7 +455,7 @@ static int build_packing(struct packing *p, const struct scene *s, const struct 
         !fill_groups(p, s, list, rng, why)) {
         if (s->cell.affine) add_affine_flow(p);
         packing_tidy(p, NULL);
-        check_packing(p, s, list, why);
+        if (!set_dt(p, s, why)) check_packing(p, s, list, why);
     }
     gsl_rng_free(rng);
     if (why->status) packing_free(p);

@@ -40,11 +40,6 @@ static int solve_contacts(const struct packing *pack, struct contacts *s, struct
                           const struct step_opt *o, struct report *rep, struct why *why)
 {
     struct problem p;
-<<<<<<< HEAD
-    if (depth_of(&rep->depth, pack, s, NULL, why)) return why->status;
-    if (!o->warm) contacts_free_found(s);
-=======
->>>>>>> frame
     if (prepare_packing(&p, pack, s, step_sweeps(o->solve.global), o->alpha, o->solve.method->rho,
                         o->order, kept, why))
         return why->status;
@@ -81,6 +76,7 @@ int step_bound_impacts(const struct packing *pack, struct contacts *s, struct pl
 int step_solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
                         const struct step_opt *o, struct report *rep, struct why *why)
 {
+    if (depth_of(&rep->depth, pack, s, NULL, why)) return why->status;
     if (!o->warm) contacts_free_found(s);
     if (solve_contacts(pack, s, kept, o, rep, why)) return why->status;
     return step_bound_impacts(pack, s, kept, o, rep, why);
