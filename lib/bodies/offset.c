@@ -23,9 +23,9 @@ static bool gap_of(const struct packing *p, const struct contact *c, vec3 x, dou
     const struct pose pose = wall_pose(p, w, t);
     struct touch touch;
     vec3 at = v3_sub(quat_turn_back(pose.q, v3_sub(x, pose.shift)), w->x);
-    bool there = boundary_nearest(w, p->dim, at, p->radius[c->b], &touch) > 0;
+    if (!boundary_nearest(w, p->dim, at, p->radius[c->b], &touch)) return false;
     *gap = touch.distance - p->radius[c->b];
-    return there;
+    return true;
 }
 
 /*
@@ -42,7 +42,7 @@ static double bend_of(const struct packing *p, const struct contact *c)
     if (!gap_of(p, c, x, p->t + ahead, &here) ||
         !gap_of(p, c, v3_axpy(x, p->dt, p->v[c->b]), p->t + ahead + p->dt, &next))
         return 0;
-    double bend = here + p->dt * OPENING - next;
+    double bend = here + p->dt * opening_of(p, c, ahead) - next;
     return fmin(fmax(0, bend), BEND_MOST * p->radius[c->b]);
 }
 
