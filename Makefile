@@ -147,7 +147,7 @@ setup-run setup-paper setup-wall setup-check setup-all:
 FIRST := $(patsubst %,tests/%.t,tools/examples hostile/wrong_input whole/wall whole/solvers tools/types whole/shapes \
          hostile/failing_system_calls tools/export tools/boundary) $(patsubst %,$B/tests/%_test,hostile/killed_writer unit/shapes)
 # What make check leaves to make check-all: it builds again, needs what only a maintainer has, or takes minutes.
-REST  := $(patsubst %,tests/%.t,project/lint whole/paper project/compilers whole/gallery project/thread_sanitizer whole/mpi \
+REST  := $(patsubst %,tests/%.t,project/lint whole/paper whole/paper_page project/compilers whole/gallery project/thread_sanitizer whole/mpi \
          project/install)
 TESTS := $(FIRST) $(filter-out $(FIRST) $(REST),$(CTEST) $(wildcard tests/*/*.t))
 # What the sanitizers would not see more of: it looks at texts, or makes others' experiments.
