@@ -144,14 +144,15 @@ setup-run setup-paper setup-wall setup-check setup-all:
 
 # tests/README.md has the table of the two tiers. scripts/prove.sh runs the files, the longest first: one that
 # begins last leaves a core idle while it ends.
-FIRST := $(patsubst %,tests/%.t,tools/examples hostile/wrong_input whole/wall whole/solvers tools/types whole/shapes \
-         hostile/failing_system_calls tools/export tools/boundary) $(patsubst %,$B/tests/%_test,hostile/killed_writer unit/shapes)
+FIRST := $(patsubst %,tests/%.t,tools/examples whole/laws whole/solvers hostile/wrong_input whole/shapes tools/stat tools/types \
+         tools/export tools/grains tools/view tools/pipeline tools/boundary) $B/tests/unit/shapes_test
 # What make check leaves to make check-all: it builds again, needs what only a maintainer has, or takes minutes.
 REST  := $(patsubst %,tests/%.t,project/lint whole/paper whole/paper_page project/compilers whole/gallery project/thread_sanitizer whole/mpi \
-         project/install)
+         project/install whole/wall tools/web_in_browser hostile/failing_system_calls hostile/failing_allocations) \
+         $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw killed_writer)
 TESTS := $(FIRST) $(filter-out $(FIRST) $(REST),$(CTEST) $(wildcard tests/*/*.t))
 # What the sanitizers would not see more of: it looks at texts, or makes others' experiments.
-PLAIN := $(filter-out tests/whole/mpi.t,$(REST)) $(patsubst %,tests/%.t,project/layers project/docs tools/examples tools/campaign whole/rest)
+PLAIN := $(filter-out tests/whole/mpi.t tests/whole/wall.t tests/tools/% tests/hostile/% $B/tests/%,$(REST)) $(patsubst %,tests/%.t,project/layers project/docs tools/examples tools/campaign whole/rest)
 # What looks into inner loops has, under the sanitizers, those of the width that is instrumented.
 NARROW := $(if $(SAN),$(patsubst %,$B/tests/unit/%_test,laws local shapes solver step))
 
@@ -181,8 +182,9 @@ check-all: check
 	$(MAKE) check-rest
 
 demo: setup-run
-	$(MAKE) -j2 all
-	PATH="$(CURDIR)/build:$$PATH" scripts/demo.sh
+	@echo 'building, some two minutes:'
+	@bash -o pipefail -c "$(MAKE) --no-print-directory -j2 all | awk -f scripts/count.awk"
+	@PATH="$(CURDIR)/build:$$PATH" scripts/demo.sh
 
 # scripts/paper.mk says what is made; paper-keep puts it where readers find it, docs/paper.
 paper paper-keep: setup-paper
@@ -221,13 +223,12 @@ bench-compare:
 
 # Targets of clang's libFuzzer, SECONDS each; what they find new stays in build/fuzz/corpus.
 SECONDS := 600
-FUZZ    := document problem scene
+FUZZ    := document problem scene mesh
 FUZZCC  := clang
 FUZZSAN := -fsanitize=address,undefined -fno-sanitize-recover=undefined
 F       := build/fuzz
-# nsd's own readers and what solves: not the command line, nor what draws and exports, nor what hands files to
-# libassimp
-FLIB    := $(patsubst $B/%,$F/%,$(filter-out $(foreach r,cli draw export,$B/lib/$r/%) $B/lib/scene/mesh_file.o,$(LIB)))
+# nsd's own readers and what solves: not the command line, nor what draws and exports
+FLIB    := $(patsubst $B/%,$F/%,$(filter-out $(foreach r,cli draw export,$B/lib/$r/%),$(LIB)))
 
 $F/lib/%.o: lib/%.c
 	@mkdir -p $(@D)
@@ -386,6 +387,7 @@ install-dev: $B/libnsd.a
 	install -m 644 $B/libnsd.a $(DESTDIR)$(LIBDIR)
 	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|; s|@HDF5@|$(HDF5)|' nsd.pc.in \
 	    > $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc
+	chmod 644 $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc
 
 uninstall:
 	cd $(TO)/bin && rm -f $(notdir $(TOOLS)) nsd-step-mpi

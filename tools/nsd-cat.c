@@ -28,7 +28,7 @@ const struct cli_tool tool = {
 int tool_main(int argc, char **argv)
 {
     struct reader *in;
-    struct writer *out = NULL; // opened with the first frame: a bad input must not empty the output
+    struct writer *out = NULL; // opened with the first frame
     struct frame f = { 0 };
     struct range range;
     struct why why = { 0 };
@@ -39,7 +39,7 @@ int tool_main(int argc, char **argv)
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
     reader_copies(in);
     if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
-    enum writer_kind kind = stream || last ? WRITER_STREAM : WRITER_TRAJECTORY;
+    enum writer_kind kind = stream || last ? WRITER_STREAM : WRITER_COPY;
     while (!(last ? reader_last(in, &f, &more, &why) : reader_find(in, &range, &more, &why)) &&
            more) {
         bool whole = !last && reader_whole(in);

@@ -1,4 +1,5 @@
 /* nsd-export: frames as files of other programs: ParaView, OVITO, ASE, tables, triangles. */
+#include "base/output.h"
 #include "cli/cli.h"
 #include "cli/tool_filter.h"
 #include "export/format.h"
@@ -57,24 +58,25 @@ const struct cli_tool tool = { "nsd-export", "[FILE ...]",
 /* A file that is written: moments in it so far, and what its first had */
 struct sheaf {
     FILE *out;
-    const char *name;
+    struct output file; /* where that is no standard output */
     int64_t moments;
     bool contacts, solved;
 };
 
 static void sheaf_open(struct sheaf *s, const char *name)
 {
-    *s = (struct sheaf){ name ? fopen(name, "w") : stdout, name ? name : "standard output",
-                         .moments = 0 };
-    if (!s->out) die(EX_IOERR, "%s: %s", name, strerror(errno));
+    struct why why = { 0 };
+    *s = (struct sheaf){ .out = stdout };
+    if (name && !(s->out = output_stream(&s->file, name, &why))) die_why(&why);
 }
 
 static void sheaf_close(struct sheaf *s)
 {
+    struct why why = { 0 };
     if (s->out == stdout)
         finish_stdout();
-    else if (ferror(s->out) | fclose(s->out))
-        die(EX_IOERR, "%s: not written (disk full?)", s->name);
+    else if (output_stream_close(&s->file, s->out, &why))
+        die_why(&why);
     s->out = NULL;
 }
 
@@ -173,6 +175,7 @@ static void directory_add(const struct format *format, enum part what, const str
     size_t room = strlen(output) + 64;
     char *path = memory_of(room), name[64];
     struct pvd *list = &directory.list[what];
+    directory_make(output);
     if (format->collected && !list->out) {
         snprintf(path, room, "%s/%s.pvd", output, part_name[what]);
         if (pvd_begin(list, path, &why)) die_why(&why);
@@ -242,7 +245,6 @@ static void run(struct reader *in, const struct format *format, enum target targ
     bool more;
     if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
     if (last && steps) die_usage("--last and --steps exclude each other");
-    if (target == TARGET_DIRECTORY) directory_make(output);
     if (target == TARGET_FILE) sheaf_open(&single, output);
     int64_t k = 0;
     if (last && !reader_last(in, &f, &more, &why) && more)

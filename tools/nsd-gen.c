@@ -1,9 +1,11 @@
 /* nsd-gen: builds a packing, the paper's N balls or what a scene says. */
+#include "base/json.h"
 #include "cli/cli.h"
 #include "io/reader.h"
 #include "io/writer.h"
 #include "scene/mesh_file.h"
 #include "scene/scene_build.h"
+#include "scene/time_step.h"
 
 #include <errno.h>
 #include <libgen.h>
@@ -11,12 +13,19 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define FAR 4 /* times the suggested time step: a scene's own is said to be too long from there */
 
 static int64_t dim = 3;
+static bool check;
 
 static const struct cli_option own[] = {
     { CLI_INT, 'd', "dim", &dim, "2|3", .min = 2, .max = 3,
       .help = "with N: 3 makes balls, 2 discs in the plane [3]" },
+    { CLI_FLAG, 0, "check", &check,
+      .help = "write no document, but which time step and masses suit it, and why, as JSON" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
@@ -31,16 +40,26 @@ const struct cli_tool tool = {
     "  nsd-gen scenes/column.json | nsd-step -n 1000 > out.h5\n"
     "  nsd-info --scene out.h5 | jq '.gravity = [3, 0, -9.81]' | nsd-gen - > tilted.h5\n"
     "  jq '.mu = 0.5' scenes/paper/example3.json | nsd-gen - > rough.h5\n"
+    "  nsd-gen --check scenes/drum.json | jq .dt\n"
 };
 
+enum {
+    MOST_PIPED = 1 << 26
+}; /* bytes of a scene that is no file, whose size says how long it is */
+
 /* All of a file, n bytes, to be freed; NULL when memory is short. */
-static char *slurp(FILE *f, size_t *n)
+static char *slurp(FILE *f, const char *name, size_t *n)
 {
+    struct stat st;
+    bool file = !fstat(fileno(f), &st) && S_ISREG(st.st_mode);
     size_t room = 1 << 16;
     char *text = malloc(room);
     for (*n = 0; text;) {
         *n += fread(text + *n, 1, room - *n, f);
         if (*n < room) break;
+        if (!file && *n >= MOST_PIPED)
+            die(EX_DATAERR, "%s: more than %d MB for a scene (endless?): put it into a file", name,
+                MOST_PIPED >> 20);
         room *= 2;
         char *more = realloc(text, room);
         if (!more) free(text);
@@ -50,14 +69,14 @@ static char *slurp(FILE *f, size_t *n)
 }
 
 /* Reads the scene in a file, or in standard input (-), and sets the directory of its tables. */
-static void read_scene(struct scene *s, const char *path, char **dir)
+static void read_scene(struct scene *s, const char *path, char **dir, struct scene_files *files)
 {
     bool standard = !strcmp(path, "-");
     const char *name = standard ? "standard input" : path;
     struct why why = { 0 };
     size_t n;
     FILE *f = standard ? stdin : fopen(path, "r");
-    char *text = f ? slurp(f, &n) : NULL;
+    char *text = f ? slurp(f, name, &n) : NULL;
     if (!f || ferror(f)) die(EX_NOINPUT, "%s: %s", name, strerror(errno));
     if (!text) die(EX_SOFTWARE, "%s: no memory", name);
     if (!standard) {
@@ -66,8 +85,8 @@ static void read_scene(struct scene *s, const char *path, char **dir)
         *dir = copy ? strdup(dirname(copy)) : NULL;
         free(copy);
     }
-    const struct scene_files files = { *dir, mesh_file_read };
-    scene_parse(s, text, n, &files, &why);
+    files->dir = *dir;
+    scene_parse(s, text, n, files, &why);
     free(text);
     if (why.status) die(why.status, "%s:%s", name, why.text);
 }
@@ -116,6 +135,8 @@ static void read_document(struct scene_bodies *b, const char *dir)
 {
     struct frame f = { 0 };
     char *path = scene_path(dir, b->file);
+    if (path && access(path, F_OK) && !access(b->file, F_OK)) // as nsd-info --scene has it
+        strcpy(path, b->file);
     b->document = malloc(sizeof *b->document);
     if (!path || !b->document) die(EX_SOFTWARE, "no memory for a document");
     read_frame(&f, path, b->frame);
@@ -124,29 +145,109 @@ static void read_document(struct scene_bodies *b, const char *dir)
     free(path);
 }
 
+/* As a reason, for the name is out of a file */
+static void say_left_out(const struct scene_mesh *m)
+{
+    struct why why = { 0 };
+    why_set(&why, EX_DATAERR,
+            "%s: left out: %d triangles that have no area, or the corners of another", m->file,
+            m->left_out);
+    if (m->left_out) warn("%s", why.text);
+}
+
+/* ---- what suits a scene ---- */
+
+static json_t *limits_json(const struct time_step *t)
+{
+    json_t *list = json_array();
+    for (int k = 0; k < LIMITS; k++) {
+        const struct time_step_limit *l = &time_step_limit[k];
+        if (!isfinite(t->dt[k])) continue;
+        json_array_append_new(list, json_pack("{s:s, s:o, s:s, s:o, s:s, s:s}", "limit", l->name,
+                                              "dt", json_number(t->dt[k]), "rule", l->rule, "value",
+                                              json_number(t->x[k]), "units", l->units, "of", l->of));
+        warn("%-9s %-24s with r = %.3g m and %.3g %s, the %s: dt <= %.3g s", l->name, l->rule,
+             t->radius, t->x[k], l->units, l->of, t->dt[k]);
+    }
+    return list;
+}
+
+/* A mass that yields, with the one that is suggested; k: of the wall, or of the cell's edge */
+static void add_mass(json_t *list, const char *of, int k, double has, double mass, const char *rule)
+{
+    json_array_append_new(list, json_pack("{s:i, s:o, s:o, s:s}", of, k, "mass", json_number(mass),
+                                          "has", json_number(has), "rule", rule));
+    warn("%s %d: a mass of %.2g kg, %s; it has %.3g", of, k, mass, rule, has);
+}
+
+static json_t *masses_json(const struct packing *p)
+{
+    json_t *list = json_array();
+    for (int32_t k = 0; k < p->walls; k++) {
+        const struct wall *w = &p->wall[k];
+        double mass = w->load.way == LOAD_GLIDES ? time_step_wall_mass(p, w) : 0;
+        if (mass > 0)
+            add_mass(list, "wall", k, w->load.mass, mass, "one layer of the grains on it");
+    }
+    for (int k = 0; k < 3; k++) {
+        double has = 0;
+        for (int i = 0; i < 3; i++) has = fmax(has, p->cell.mass[k][i]);
+        if (has > 0)
+            add_mass(list, "edge", k, has, time_step_edge_mass(p), "3/(4 pi^2) of all grains");
+    }
+    return list;
+}
+
+/* On standard output as a line of JSON; for people on standard error */
+static void tell(const struct scene *s, const struct packing *p)
+{
+    struct time_step t;
+    time_step_of(&t, s, p);
+    json_t *limits = limits_json(&t), *masses = masses_json(p);
+    json_t *j = json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "dt", json_number(t.best), "by",
+                          t.by < 0 ? json_null() : json_string(time_step_limit[t.by].name), "scene",
+                          s->dt > 0 ? json_real(s->dt) : json_string("auto"), "radius",
+                          json_number(t.radius), "limits", limits, "masses", masses);
+    if (t.by < 0)
+        warn("dt: nothing moves by which a time step could be suggested");
+    else
+        warn("dt = %.2g s is suggested, by %s", t.best, time_step_limit[t.by].name);
+    if (s->dt > FAR * t.best)
+        warn("warning: dt = %g s of the scene is %.2g times that: \"dt\": \"auto\" takes the "
+             "suggestion",
+             s->dt, s->dt / t.best);
+    if (json_dumpf(j, stdout, JSON_COMPACT) || putchar('\n') == EOF || fflush(stdout))
+        die(EX_IOERR, "standard output: %s", strerror(errno));
+    json_decref(j);
+}
+
 int tool_main(int argc, char **argv)
 {
     struct scene scene;
     struct frame frame = { .packed = true };
-    struct writer *out;
+    struct writer *out = NULL;
     struct why why = { 0 };
     char *dir = NULL;
+    struct scene_files files = { .read_mesh = mesh_file_read };
     if (argc != 1 || !*argv[0]) die_usage("one operand: a number of balls, or a scene");
-    if (writer_open(&out, NULL, WRITER_STREAM, &why)) die_why(&why);
+    if (!check && writer_open(&out, NULL, WRITER_STREAM, &why)) die_why(&why);
     double n;
     if (is_number(argv[0], &n)) {
         if (!(n >= 0 && n <= INT32_MAX && n == floor(n)))
             die_usage("%s: not a number of balls (0 to %d)", argv[0], INT32_MAX);
         if (scene_paper(&scene, (int)dim, (int64_t)n, &why)) die_why(&why);
     } else {
-        read_scene(&scene, argv[0], &dir);
+        read_scene(&scene, argv[0], &dir, &files);
     }
     for (int64_t g = 0; g < scene.groups; g++)
         if (scene.bodies[g].from == SCENE_DOCUMENT) read_document(&scene.bodies[g], dir);
-    if (mesh_files_read(&scene, dir, &why) || scene_build(&frame.packing, &scene, dir, &why))
-        die_why(&why);
-    if (frame_note(&frame, cli_history(), &why) || writer_frame(out, &frame, &why) ||
-        writer_close(out, &why))
+    if (mesh_files_read(&scene, &files, &why)) die_why(&why);
+    for (int32_t k = 0; k < scene.meshes; k++) say_left_out(&scene.mesh_file[k]);
+    if (scene_build(&frame.packing, &scene, dir, &why)) die_why(&why);
+    if (check)
+        tell(&scene, &frame.packing);
+    else if (frame_note(&frame, cli_history(), &why) || writer_frame(out, &frame, &why) ||
+             writer_close(out, &why))
         die_why(&why);
     free(dir);
     scene_free(&scene);

@@ -189,6 +189,7 @@ static void show_moment(const struct frame *f)
         json_object_update(j, r);
         json_decref(r);
     }
+    if (f->account.steps) json_object_set_new(j, "account", json_account(&f->account));
     json_line(j);
 }
 
@@ -294,7 +295,7 @@ static void add_tie(json_t *j, const struct tie *t)
 
 static void show_contacts(const struct frame *f)
 {
-    static const char *const status[] = { "free", "stick", "slide" };
+    static const char *const status[] = { "free", "stick", "slide", "jammed" };
     shown = true;
     for (int64_t i = 0; i < f->contacts.n; i++) {
         const struct contact *c = &f->contacts.c[i];
@@ -319,7 +320,7 @@ static void show_contacts(const struct frame *f)
             json_object_set_new(j, "u", json_numbers(found->u, 3));
             if (f->contacts.moment)
                 json_object_set_new(j, "moment", json_numbers(f->contacts.moment[i], 3));
-            json_object_set_new(j, "status", json_string(status[found->status % 3]));
+            json_object_set_new(j, "status", json_string(status[found->status % 4]));
         }
         json_line(j);
     }

@@ -1,4 +1,5 @@
 /* nsd-stat: numbers of frames: fraction, stress, forces, profiles, distributions; and fields. */
+#include "base/output.h"
 #include "cli/cli.h"
 #include "cli/tool_filter.h"
 #include "export/vti.h"
@@ -256,10 +257,11 @@ static void write_vti(const struct packing *p)
                  (long long)coarse.frames, at + 4);
     else
         snprintf(name, sizeof name, "%s", fields_to);
-    FILE *out = fopen(name, "w");
-    if (!out) die(EX_IOERR, "%s: %s", name, strerror(errno));
-    vti_write(out, &coarse.fields, p->step, p->t);
-    if (ferror(out) | fclose(out)) die(EX_IOERR, "%s: not written (disk full?)", name);
+    struct output file;
+    struct why why = { 0 };
+    FILE *out = output_stream(&file, name, &why);
+    if (out) vti_write(out, &coarse.fields, p->step, p->t);
+    if (!out || output_stream_close(&file, out, &why)) die_why(&why);
 }
 
 static void add_fields(const struct snapshot *s, struct why *why)

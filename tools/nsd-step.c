@@ -8,10 +8,14 @@
 #include "io/writer.h"
 #include "scene/flow.h"
 
+#include <float.h>
 #include <malloc.h>
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -24,7 +28,7 @@ static int64_t steps = 1;
 static struct cli_every every = { 1, 0 };
 static double until, lines; /* s: of the motion; of real time */
 static bool contacts, forces, in_place;
-static const char *output;
+static const char *output, *save;
 
 /* By index: options.cut */
 static struct cli_choice cut_choice(int index)
@@ -55,6 +59,8 @@ static const struct cli_option own[] = {
       .help = "append to FILE; also where standard output is a terminal" },
     { CLI_ABOVE, 0, "progress", &lines, "S", .max = 1e9, .silent = true,
       .help = "say how far it is every S seconds, on no terminal too [terminal]" },
+    { CLI_TEXT, 0, "save", &save, "TIME", .silent = true,
+      .help = "keep a checkpoint in OUTPUT.save every TIME, as 10min [never]" },
     { CLI_TEXT, 'o', "output", &output, "FILE", "write to FILE [standard output]", .silent = true },
     { 0 },
 };
@@ -81,7 +87,42 @@ static struct {
     int64_t fell_back;            /* steps that were solved otherwise than asked */
     int64_t abandoned;            /* steps whose solver knew no further way */
     double seconds;
+    struct account account; /* of this run */
 } total;
+
+/* Would words get between the frames? */
+static bool words_are_output(void)
+{
+    struct stat out, err;
+    return !output && !in_place && !fstat(STDOUT_FILENO, &out) && !fstat(STDERR_FILENO, &err) &&
+           S_ISREG(out.st_mode) && out.st_dev == err.st_dev && out.st_ino == err.st_ino;
+}
+
+/* What has gone worse than it may, when it first does */
+static void account(struct frame *f)
+{
+    char text[160];
+    account_add(&f->account, &f->report);
+    unsigned news = account_add(&total.account, &f->report);
+    for (int k = 0; k < ACCOUNT_ROWS; k++) {
+        if (!(news & 1U << k) || words_are_output()) continue;
+        account_says(&total.account, (enum account_row)k, text, sizeof text);
+        warn("%s: %s", text, account_watched[k].cure);
+    }
+}
+
+/* The last line of a run: "worst: overlap 1.3e-05 of a radius (step 70, bodies 3 and 8), ..." */
+static void say_worst(void)
+{
+    char text[160 * ACCOUNT_ROWS] = "";
+    size_t n = 0;
+    for (int k = 0; k < ACCOUNT_ROWS && total.account.steps; k++) {
+        n += (size_t)snprintf(text + n, sizeof text - n, k ? ", " : "worst: ");
+        account_says(&total.account, (enum account_row)k, text + n, sizeof text - n);
+        n = strlen(text);
+    }
+    if (n) warn("%s", text);
+}
 
 static void count(const struct report *r)
 {
@@ -104,6 +145,10 @@ static void count(const struct report *r)
 
 static void summary(int64_t made)
 {
+    char worst[80] = "";
+    if (!(total.worst <= total.eps)) // not only those that have no solution
+        snprintf(worst, sizeof worst, "; the largest %s is %.3g, not %g",
+                 options_error(total.criterion), total.worst, total.eps);
     warn("%lld steps, %lld sweeps, %.3g s in the solver", (long long)made, (long long)total.sweeps,
          total.seconds);
     if (total.safeguarded || total.gave_up)
@@ -114,12 +159,12 @@ static void summary(int64_t made)
     if (total.abandoned)
         warn("%lld steps were given up before their limits", (long long)total.abandoned);
     if (total.missed)
-        warn("%lld steps NOT CONVERGED, the first is step %lld; the largest %s is %.3g, not %g",
-             (long long)total.missed, (long long)total.first_missed, options_error(total.criterion),
-             total.worst, total.eps);
+        warn("%lld steps NOT CONVERGED, the first is step %lld%s", (long long)total.missed,
+             (long long)total.first_missed, worst);
     if (total.growing)
-        warn("in %lld of them reactions grow without end, and bodies still approach at up to %.3g "
-             "m/s",
+        warn("%lld of them have no solution: reactions grow without end, and bodies still approach "
+             "at "
+             "up to %.3g m/s",
              (long long)total.growing, total.approach);
 }
 
@@ -132,10 +177,40 @@ static double seconds_now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* "step 120, 12 % of 1000, 35/s, 0:25 left: 812 contacts, 40 sweeps, natural 9e-05" */
-static void tell(const struct report *r, int64_t made, double since)
+/* s: over which the speed of a run is taken, once or twice: piles grow, and with them the time of a step */
+static const double RECENT = 15;
+
+/* Steps made up to a moment of real time */
+struct mark {
+    double at;
+    int64_t made;
+};
+
+/* Steps a second, lately */
+static double speed(int64_t made)
 {
-    double rate = (double)made / fmax(seconds_now() - since, 1e-9);
+    static struct mark older, newer;
+    double now = seconds_now();
+    if (newer.at == 0) older = newer = (struct mark){ now, made - 1 };
+    if (now - newer.at > RECENT) older = newer, newer = (struct mark){ now, made };
+    return (double)(made - older.made) / fmax(now - older.at, 1e-9);
+}
+
+/* MB: that the process has in memory now */
+static double memory_now(void)
+{
+    unsigned long long all = 0, here = 0;
+    FILE *f = fopen("/proc/self/statm", "r");
+    if (f && fscanf(f, "%llu %llu", &all, &here) != 2) here = 0;
+    if (f) fclose(f);
+    return 1e-6 * (double)here * (double)sysconf(_SC_PAGESIZE);
+}
+
+/* "step 120, 12 % of 1000, 35/s, 0:25 left: 812 contacts, 40 sweeps, natural 9e-05, 25 MB of memory, 3.1 MB written" */
+static void tell(const struct report *r, int64_t made, const struct writer *out)
+{
+    double rate = speed(made);
+    if (!progress_due()) return;
     double left = (double)(steps - made) / rate, hours = floor(left / 3600);
     double minutes = floor(left / 60) - 60 * hours;
     char clock[40];
@@ -143,10 +218,31 @@ static void tell(const struct report *r, int64_t made, double since)
         snprintf(clock, sizeof clock, "%.0f:%02.0f h", hours, minutes);
     else
         snprintf(clock, sizeof clock, "%.0f:%02.0f", minutes, floor(left - 60 * minutes));
-    progress("step %lld, %.0f %% of %lld, %.3g/s, %s left: %lld contacts, %d sweeps, %s %.2g",
-             (long long)r->step, floor(100.0 * (double)made / (double)steps), (long long)steps,
-             rate, clock, (long long)r->err.contacts, r->sweeps, options_error(r->criterion),
-             err_of(&r->err, r->criterion));
+    progress_now("step %lld, %.0f %% of %lld, %.3g/s, %s left: %lld contacts, %d sweeps, %s %.2g, "
+                 "%.3g MB of memory, %.3g MB written",
+                 (long long)r->step, floor(100.0 * (double)made / (double)steps), (long long)steps,
+                 rate, clock, (long long)r->err.contacts, r->sweeps, options_error(r->criterion),
+                 err_of(&r->err, r->criterion), memory_now(), 1e-6 * (double)writer_size(out));
+}
+
+/* ---- the end that comes from outside ---- */
+
+static volatile sig_atomic_t stopped_by; /* the signal, or 0 */
+
+static void stop(int number)
+{
+    stopped_by = number;
+    signal(number, SIG_DFL); // the next one does not wait for a step
+}
+
+/* Where mpirun has started several, it stops them by SIGTERM also when one has died, and no step can be made. */
+static void take_signals(void)
+{
+    static const int signals[] = { SIGINT, SIGTERM, SIGHUP };
+    struct sigaction act = { .sa_handler = stop, .sa_flags = SA_RESTART }, was;
+    for (int k = 0; k < 3 && !crew_started(); k++)
+        if (!sigaction(signals[k], NULL, &was) && was.sa_handler != SIG_IGN)
+            sigaction(signals[k], &act, NULL);
 }
 
 /* ---- the run ---- */
@@ -160,7 +256,68 @@ struct run {
     struct step_memory memory;
     bool other_bodies; /* than in the step before */
     struct step_opt o;
+    double saved;    /* s of real time: when the state was saved last */
+    char *save_path; /* where; NULL: nowhere */
 };
+
+/* ---- checkpoints ---- */
+
+static double save_every; /* s of real time */
+
+/* "90s", "10min", "2h" */
+static void parse_save(void)
+{
+    static const struct {
+        const char *name;
+        double seconds;
+    } units[] = { { "s", 1 }, { "min", 60 }, { "h", 3600 }, { NULL, 0 } };
+    char *end;
+    double x = strtod(save, &end);
+    for (int k = 0; units[k].name && end != save; k++)
+        if (!strcmp(end, units[k].name)) save_every = x * units[k].seconds;
+    if (!(save_every > 0 && save_every < 1e9))
+        die_usage("--save: '%s' is no time as 90s, 10min or 2h", save);
+}
+
+static void save_begin(struct run *r, const char *path)
+{
+    if (!save) return;
+    if (!path) die_usage("--save wants -o FILE or -i, beside which the state is kept");
+    size_t room = strlen(path) + sizeof ".save";
+    if (!(r->save_path = malloc(room))) die(EX_SOFTWARE, "no memory");
+    snprintf(r->save_path, room, "%s.save", path);
+    r->saved = seconds_now();
+}
+
+static bool save_due(const struct run *r)
+{
+    return r->save_path && seconds_now() - r->saved >= save_every;
+}
+
+/* The state as a document of its own, which takes the place of the one before in one stroke */
+static void save_state(struct run *r)
+{
+    struct why why = { 0 };
+    struct writer *out;
+    struct frame f = r->f;
+    f.detected = f.detected || options.warm; // a warm step begins with these
+    bool behind = r->behind;
+    if (behind_close(r->behind, &why)) die_why(&why); // libhdf5 has one user at a time
+    r->behind = NULL;
+    if (writer_open(&out, r->save_path, WRITER_COPY, &why) || writer_frame(out, &f, &why) ||
+        writer_close(out, &why))
+        die_why(&why);
+    if (behind) behind_open(&r->behind, r->out, &(struct why){ 0 });
+    r->saved = seconds_now();
+}
+
+static void save_end(struct run *r)
+{
+    if (r->save_path) unlink(r->save_path); // what the output has, too
+    free(r->save_path);
+}
+
+/* ---- steps ---- */
 
 /* Bodies come and go, as the step begins. */
 static void flow(struct run *r)
@@ -169,29 +326,39 @@ static void flow(struct run *r)
     if (flow_step(&r->flow, &r->f.packing, &r->f.contacts, &r->other_bodies, &why)) die_why(&why);
 }
 
-/* Is the frame after the k-th step of this run one to keep, at time t? By seconds: the first at or after
-   each multiple of them, wherever the run began. */
-static bool is_kept(double t, double dt, int64_t k)
+/* s: what a time that is given in seconds may differ from that of its step: a part of dt, and the roundings
+   of dt, of its product with the step, and of the time given */
+static double slack(const struct packing *p, double t)
+{
+    return 1e-6 * p->dt + 4 * DBL_EPSILON * fabs(t);
+}
+
+/* Is the frame after a step, the k-th of this run, one to keep? By seconds: the first at or after each
+   multiple of them, wherever the run began. */
+static bool is_kept(const struct packing *p, int64_t step, int64_t k)
 {
     if (every.steps) return k % every.steps == 0;
-    double now = t / every.seconds, before = (t - dt) / every.seconds;
-    return floor(now + 1e-6) > floor(before + 1e-6); // times are sums of dt, with their rounding
+    double now = packing_time(p, step), before = packing_time(p, step - 1);
+    return floor((now + slack(p, now)) / every.seconds) >
+           floor((before + slack(p, before)) / every.seconds);
 }
 
 /* Makes one step, the k-th; false where its solve has diverged, and the bodies have not moved. */
-static bool advance(struct run *r, int64_t k)
+static bool advance(struct run *r, int64_t k, bool saves)
 {
     struct why why = { 0 };
     struct frame *f = &r->f;
     struct report *rep = &f->report;
     flow(r);
     const struct packing *p = &f->packing;
-    r->o.bare = !options.log && k < steps && !is_kept(p->t + p->dt, p->dt, k);
+    r->o.bare = !options.log && !saves && k < steps && !is_kept(p, p->step + 1, k);
     if (crew_step(f, &r->memory, r->other_bodies, &r->o, &why)) die_why(&why);
     f->reported = f->moved = true;
     count(rep);
-    options_log(rep);
-    return isfinite(rep->err.paper.eps_glob);
+    account(f);
+    bool good = isfinite(rep->err.paper.eps_glob);
+    options_log(rep, k == steps || !good ? &total.account : NULL);
+    return good;
 }
 
 static void write_frame(struct run *r)
@@ -205,7 +372,7 @@ static void write_frame(struct run *r)
 /* Writes the last step that could be made, the k-th, without its contacts, unless it is written. */
 static void keep_last(struct run *r, int64_t k)
 {
-    if (k && is_kept(r->f.packing.t, r->f.packing.dt, k)) return;
+    if (k && is_kept(&r->f.packing, r->f.packing.step, k)) return;
     r->f.reported = r->f.detected = false;
     write_frame(r);
 }
@@ -230,16 +397,19 @@ static int64_t run(struct run *r)
 {
     int64_t made = 0;
     bool good = true;
-    double since = seconds_now();
     struct why why = { 0 };
     begin(r);
     // where there is no other thread, this one writes; and with others, who have the bodies
     if (options.threads > 1 && steps && !r->f.elsewhere)
         behind_open(&r->behind, r->out, &(struct why){ 0 });
-    while (made < steps && (good = advance(r, made + 1))) {
+    while (made < steps) {
+        if (stopped_by) steps = made + 1; // the next one is the last, and its frame is kept
+        bool saves = save_due(r);
+        if (!(good = advance(r, made + 1, saves))) break;
         made++;
-        tell(&r->f.report, made, since);
-        if (is_kept(r->f.packing.t, r->f.packing.dt, made) || made == steps) write_frame(r);
+        tell(&r->f.report, made, r->out);
+        if (is_kept(&r->f.packing, r->f.packing.step, made) || made == steps) write_frame(r);
+        if (saves) save_state(r);
     }
     if (!good) {
         warn("step %lld: the solve diverged, the run ends before it", (long long)r->f.report.step);
@@ -252,14 +422,18 @@ static int64_t run(struct run *r)
     return made;
 }
 
-/* How many steps --until wants, of a packing at this time */
+/* How many steps --until wants, of a packing at this time: up to the first whose time reaches it, which
+   depends on where the time is counted from and not on where this run began */
 static void count_steps(const struct packing *p)
 {
     if (!cli_given(&until)) return;
-    double n =
-        ceil((until - p->t) / p->dt - 1e-6); // a time that is a sum of dt is reached, not passed
+    double n = ceil((until - p->t) / p->dt), reached = until - slack(p, until);
     if (n > 1e15) die_usage("--until %g: more than 1e15 steps of %g s", until, p->dt);
-    steps = n > 0 ? (int64_t)n : 0;
+    steps = n > 0 ? (int64_t)n : 0; // but for rounding
+    while (steps && packing_time(p, p->step + steps - 1) >= reached) steps--;
+    while (packing_time(p, p->step + steps) < reached &&
+           !packing_check_clock(p, &(struct why){ 0 }))
+        steps++;
 }
 
 /* ---- from where, and where to ---- */
@@ -290,7 +464,7 @@ static void copy_all(struct reader *in, struct writer *out, struct frame *f)
 static void start_in_place(struct run *r, struct reader *in, const char *path)
 {
     struct why why = { 0 };
-    if (writer_open_over(&r->out, path, &why)) die_why(&why);
+    if (writer_open(&r->out, path, WRITER_IN_PLACE, &why)) die_why(&why);
     copy_all(in, r->out, &r->f);
     double theta = r->f.packing.theta;
     options_theta(&r->f.packing, false);
@@ -331,6 +505,7 @@ int tool_main(int argc, char **argv)
     keep_memory();
     if (!crew_join()) return crew_follow();
     if (cli_given(&until) && cli_given(&steps)) die_usage("-n and --until exclude each other");
+    if (save) parse_save();
     if (in_place && output) die_usage("-i and -o exclude each other");
     if (in_place && !file) die_usage("-i: one FILE, to which it appends");
     if (file && !output && isatty(STDOUT_FILENO) && !crew_started()) in_place = true;
@@ -346,15 +521,28 @@ int tool_main(int argc, char **argv)
         start_in_place(&r, in, argv[0]);
     else
         start(&r, in);
-    options_log_open(argc, argv, output);
     count_steps(&r.f.packing);
+    if (steps && !in_place && writer_begin(r.out, &r.f, &why)) die_why(&why);
+    options_log_open(argc, argv, output);
+    save_begin(&r, in_place ? argv[0] : output);
+    if (r.save_path && reader_reads(argc, argv, r.save_path))
+        die_usage("--save: %s is also the input", r.save_path);
+    take_signals();
+    const int64_t wanted = steps;
     int64_t made = run(&r);
     if (writer_close(r.out, &why)) die_why(&why);
+    save_end(&r);
     options_log_close();
     const char *told = crew_leave();
     summary(made);
     if (told) warn("%s", told);
-    frame_free(&r.f);
+    say_worst();
     reader_close(in);
-    return made < steps || (options.strict && total.missed);
+    if (stopped_by && made < wanted) {
+        warn("stopped by signal %d after step %lld, which is kept", (int)stopped_by,
+             (long long)r.f.packing.step);
+        return 128 + stopped_by;
+    }
+    frame_free(&r.f);
+    return made < steps || (options.strict && account_fails(&total.account));
 }

@@ -1,5 +1,5 @@
 /* nsd-web: a trajectory as one page that plays it in a browser. */
-#include "base/unfinished.h"
+#include "base/output.h"
 #include "bodies/energy.h"
 #include "cli/cli.h"
 #include "cli/tool_filter.h"
@@ -155,16 +155,14 @@ int tool_main(int argc, char **argv)
     struct reader *in;
     struct page page = { 0 };
     struct why why = { 0 };
-    struct unfinished unfinished = { 0 };
+    struct output file;
     FILE *out = stdout, *lines = stat ? fopen(stat, "r") : NULL;
     if (stat && !lines) die(EX_NOINPUT, "%s: cannot be opened", stat);
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
     if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
-    if (output && !(out = fopen(output, "w"))) die(EX_IOERR, "%s: cannot be written", output);
-    if (output) unfinished_begin(&unfinished, output, fileno(out));
+    if (output && !(out = output_stream(&file, output, &why))) die_why(&why);
     run(in, &page, out, lines);
-    if (output && fclose(out)) die(EX_IOERR, "%s: not written", output);
-    unfinished_done(&unfinished);
+    if (output && output_stream_close(&file, out, &why)) die_why(&why);
     if (!output) finish_stdout();
     page_free(&page);
     if (lines) fclose(lines);

@@ -1,6 +1,7 @@
 /* bodies/balance.c: energy and momentum, summed over bodies and contacts [bodies/balance.h]. */
 #include "bodies/balance.h"
 
+#include "bodies/freedom.h"
 #include "bodies/tie.h"
 #include "bodies/top.h"
 
@@ -167,7 +168,7 @@ static struct gain gain_of(const struct packing *p, const struct contacts *s, in
         const double *r = s->found[i].r, push[3] = { r[0], 0, 0 }, rub[3] = { 0, r[1], r[2] };
         double approach = -opening_of(p, c, sum->ahead);
         struct work n = work_of(p, c, push, sum, mean), t = work_of(p, c, rub, sum, mean);
-        impact = impact || (c->en > 0 && r[0] > 0 && approach > packing_calm(p));
+        impact = impact || (c->en > 0 && r[0] > 0 && approach > freedoms_calm(p));
         normal += n.held + n.free, rest += t.held + t.free, scale += r[0] * fabs(approach);
     }
     if (!impact || !(rest > 0)) return (struct gain){ fmin(normal, 0) + fmin(rest, 0), 0 };

@@ -56,6 +56,8 @@ struct wall {
     vec3 along;          /* unit vector across n, for shapes that have a direction there */
     double size[3];      /* m */
     double arc;          /* rad */
+    double weld; /* m: places nearer than this are one, where parts of a surface meet; 0: the
+                            default [bodies/mesh.h] */
     int32_t first_element, elements; /* of the packing's mesh */
     int32_t first_drive, drives;
     int32_t first_push, pushes; /* what the force of its load is in time, besides its constant */

@@ -47,7 +47,7 @@ static const char *table_trouble(const struct drives *d, const struct drive *k)
     return NULL;
 }
 
-const char *drive_trouble(const struct drives *d, int32_t k, int32_t boundaries, int dim)
+static const char *drive_trouble(const struct drives *d, int32_t k, int32_t boundaries, int dim)
 {
     const struct drive *s = &d->drive[k];
     if (s->boundary < 0 || s->boundary >= boundaries) return "it moves no boundary";
@@ -64,6 +64,22 @@ const char *drive_trouble(const struct drives *d, int32_t k, int32_t boundaries,
     bool leaves = s->turns ? s->axis.x != 0 || s->axis.y != 0 : s->axis.z != 0;
     if (dim == 2 && (leaves || s->point.z != 0)) return "it leaves the plane, and dim is 2";
     return s->signal == DRIVE_TABLE ? table_trouble(d, s) : NULL;
+}
+
+int drives_check(const struct drives *d, int32_t boundaries, int dim, const char *what,
+                 struct why *why)
+{
+    int64_t rows = 0; // of all tables: none is another's, too
+    for (int32_t k = 0, of_one = 0; k < d->n; k++) {
+        const struct drive *s = &d->drive[k];
+        of_one = k && s->boundary == s[-1].boundary ? of_one + 1 : 1;
+        rows += s->signal == DRIVE_TABLE && s->rows > 0 ? s->rows : 0;
+        const char *trouble = of_one > DRIVES_MOST ? "more than a boundary may have"
+                              : rows > d->rows     ? "its table is not there, or another's"
+                                                   : drive_trouble(d, k, boundaries, dim);
+        if (trouble) return why_set(why, EX_DATAERR, "%s %d: %s", what, k, trouble);
+    }
+    return 0;
 }
 
 /* Not libm's, whose last bits differ between machines */
@@ -128,23 +144,24 @@ struct pose drives_pose(const struct drives *d, int32_t first, int32_t n, double
 }
 
 /* rad/s or m/s: the mean over a step */
-static double mean_speed(const struct drives *d, const struct drive *k, double t, double dt)
+static double mean_speed(const struct drives *d, const struct drive *k, struct drive_step s)
 {
-    if (k->signal == DRIVE_SPEED && t + k->clock >= k->from && t + dt + k->clock <= k->until)
+    if (k->signal == DRIVE_SPEED && s.t + k->clock >= k->from && s.then + k->clock <= k->until)
         return k->value; // to the bit
-    return (drive_way(d, k, t + dt) - drive_way(d, k, t)) / dt;
+    return (drive_way(d, k, s.then) - drive_way(d, k, s.t)) / s.dt;
 }
 
 /* The last drive is undone first: x is where its motion has brought the material. */
-vec3 drives_velocity(const struct drives *d, int32_t first, int32_t n, double t, double dt, vec3 x)
+vec3 drives_velocity(const struct drives *d, int32_t first, int32_t n, struct drive_step step,
+                     vec3 x)
 {
     vec3 v = v3(0, 0, 0);
     quat later = { 1, 0, 0, 0 };
     for (int32_t i = first + n - 1; i >= first; i--) {
         const struct drive *k = &d->drive[i];
-        double speed = mean_speed(d, k, t, dt);
+        double speed = mean_speed(d, k, step);
         vec3 axis = quat_turn(later, k->axis);
-        struct pose one = drive_pose(d, k, t + dt / 2);
+        struct pose one = drive_pose(d, k, step.t + step.dt / 2);
         if (k->turns) {
             vec3 arm = quat_turn(later, v3_sub(x, k->point));
             v = v3_axpy(v, speed, v3_cross(axis, arm));
@@ -158,15 +175,15 @@ vec3 drives_velocity(const struct drives *d, int32_t first, int32_t n, double t,
     return v;
 }
 
-vec3 drives_spin(const struct drives *d, int32_t first, int32_t n, double t, double dt)
+vec3 drives_spin(const struct drives *d, int32_t first, int32_t n, struct drive_step step)
 {
     vec3 w = v3(0, 0, 0);
     quat later = { 1, 0, 0, 0 };
     for (int32_t i = first + n - 1; i >= first; i--) {
         const struct drive *k = &d->drive[i];
         if (!k->turns) continue;
-        w = v3_axpy(w, mean_speed(d, k, t, dt), quat_turn(later, k->axis));
-        later = quat_mul(later, drive_pose(d, k, t + dt / 2).q);
+        w = v3_axpy(w, mean_speed(d, k, step), quat_turn(later, k->axis));
+        later = quat_mul(later, drive_pose(d, k, step.t + step.dt / 2).q);
     }
     return w;
 }

@@ -2,7 +2,7 @@
  * bodies/drive.h: motions that are prescribed, each a signal in time along or about an axis.
  *
  * The way s(t) is closed in t, so that a boundary is where its time says, however it came there.
- * Over a step the velocity is the mean, (s(t + dt) - s(t))/dt: bodies at rest on a boundary then
+ * Over a step the velocity is the mean, (s(then) - s(t))/dt: bodies at rest on a boundary then
  * stay on it, whatever its acceleration.
  *
  * The same signals say what the force of a load is in time [bodies/load.h]; then the way is a force, N
@@ -51,8 +51,11 @@ int drives_alloc(struct drives *d, int32_t n, int32_t rows, struct why *why);
 void drives_free(struct drives *d);
 /* to = a copy; EX_SOFTWARE with nothing to free */
 int drives_copy(struct drives *to, const struct drives *from, struct why *why);
-/* NULL, or what is wrong with drive k, in a packing of so many boundaries */
-const char *drive_trouble(const struct drives *d, int32_t k, int32_t boundaries, int dim);
+enum { DRIVES_MOST = 1000 }; /* of one boundary: each place of it asks them all */
+/* Are all of them drives, in a packing of so many boundaries? what: they are called in messages. Returns 0 or
+   EX_DATAERR. */
+int drives_check(const struct drives *d, int32_t boundaries, int dim, const char *what,
+                 struct why *why);
 
 /* m, rad: the way at the packing's time t (s) */
 double drive_way(const struct drives *d, const struct drive *k, double t);
@@ -71,9 +74,15 @@ static inline vec3 pose_of(const struct pose *p, vec3 x)
 
 /* What drives first .. first+n-1 have made of a boundary at time t (s), one after the other */
 struct pose drives_pose(const struct drives *d, int32_t first, int32_t n, double t);
-/* m/s: the mean velocity from t to t + dt of the material that is at x (m) midway */
-vec3 drives_velocity(const struct drives *d, int32_t first, int32_t n, double t, double dt, vec3 x);
+/* A time step from t to `then`, which is t + dt but for its rounding [packing_time()] */
+struct drive_step {
+    double t, then, dt; /* s */
+};
+/* m/s: the mean velocity in the step of the material that is at x (m) midway: dt times it is the way
+   from where drives_pose() is at t to where it is then. */
+vec3 drives_velocity(const struct drives *d, int32_t first, int32_t n, struct drive_step step,
+                     vec3 x);
 /* rad/s: its mean angular velocity */
-vec3 drives_spin(const struct drives *d, int32_t first, int32_t n, double t, double dt);
+vec3 drives_spin(const struct drives *d, int32_t first, int32_t n, struct drive_step step);
 
 #endif

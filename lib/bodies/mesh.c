@@ -112,71 +112,114 @@ static int32_t grow(struct surface *s, struct keyed *room, int32_t lo, int32_t h
 
 /* ---- which elements meet at a corner ---- */
 
-struct placed {
-    vec3 x;
+/* A corner, and where it lies along a direction that no plane of a drawing is across */
+struct along {
+    double key;
     int32_t corner;
 };
 
-static int by_place(const void *a, const void *b)
+static int by_along(const void *a, const void *b)
 {
-    const struct placed *p = a, *q = b;
-    if (p->x.x != q->x.x) return p->x.x < q->x.x ? -1 : 1;
-    if (p->x.y != q->x.y) return p->x.y < q->x.y ? -1 : 1;
-    if (p->x.z != q->x.z) return p->x.z < q->x.z ? -1 : 1;
+    const struct along *p = a, *q = b;
+    if (p->key != q->key) return p->key < q->key ? -1 : 1;
     return (p->corner > q->corner) - (p->corner < q->corner);
 }
 
-static bool same_place(vec3 a, vec3 b)
+/* The first of the corners that are one with c */
+static int32_t first_of(int32_t *corner, int32_t c)
 {
-    return a.x == b.x && a.y == b.y && a.z == b.z;
+    while (corner[c] != c) c = corner[c] = corner[corner[c]];
+    return c;
 }
 
-/* corner[c] = the first of the corners that lie where c does: an STL file has a vertex once a
-   triangle. */
+/* corner[c] = the first of the corners that are one with c, where all of them then lie */
 static bool weld(struct surface *s)
 {
-    int32_t n = 3 * s->n;
-    struct placed *p = malloc(((size_t)n + 1) * sizeof *p);
+    const vec3 direction = { 0.7548776662466927, 0.5698402909980532, 0.3247179572447460 };
+    int32_t n = 3 * s->elements;
+    struct along *p = malloc(((size_t)n + 1) * sizeof *p);
     if (!p) return false;
-    for (int32_t c = 0; c < n; c++) p[c] = (struct placed){ s->at[c / 3][c % 3], c };
-    qsort(p, (size_t)n, sizeof *p, by_place);
+    for (int32_t c = 0; c < n; c++) {
+        p[c] = (struct along){ v3_dot(direction, s->at[c / 3][c % 3]), c };
+        s->corner[c] = c;
+    }
+    qsort(p, (size_t)n, sizeof *p, by_along);
+    double reach = s->weld * v3_norm(direction);
     for (int32_t i = 0; i < n; i++)
-        s->corner[p[i].corner] =
-            i && same_place(p[i].x, p[i - 1].x) ? s->corner[p[i - 1].corner] : p[i].corner;
+        for (int32_t j = i - 1; j >= 0 && p[i].key - p[j].key <= reach; j--) {
+            int32_t c = p[i].corner, d = p[j].corner;
+            int32_t a = first_of(s->corner, c), b = first_of(s->corner, d);
+            vec3 way = v3_sub(s->at[c / 3][c % 3], s->at[d / 3][d % 3]);
+            if (a != b && v3_norm(way) <= s->weld) s->corner[a > b ? a : b] = a > b ? b : a;
+        }
     free(p);
+    for (int32_t c = 0; c < n; c++) {
+        int32_t first = s->corner[c] = first_of(s->corner, c);
+        s->at[c / 3][c % 3] = s->at[first / 3][first % 3];
+    }
     return true;
 }
 
-/* corner[], star[] and member[] */
-static bool meet(struct surface *s)
+/* Has element e still an extent? Of a triangle all corners differ, of a segment two. */
+static bool extends(const struct surface *s, const struct mesh *m, int32_t first, int32_t e)
 {
-    int32_t n = 3 * s->n;
-    s->corner = calloc((size_t)n + 1, sizeof *s->corner);
-    s->star = calloc((size_t)n + 2, sizeof *s->star);
-    s->member = calloc((size_t)n + 1, sizeof *s->member);
-    if (!s->corner || !s->star || !s->member || !weld(s)) return false;
-    for (int32_t c = 0; c < n; c++) s->star[s->corner[c] + 2]++;
+    const int32_t *c = &s->corner[3 * e], *v = m->element[first + e];
+    bool segment = v[1] == v[2];
+    return c[0] != c[1] && c[0] != c[2] && (segment || c[1] != c[2]);
+}
+
+/* star[] and member[], of the elements in order[] */
+static void meet(struct surface *s)
+{
+    int32_t n = 3 * s->elements;
+    for (int32_t i = 0; i < s->n; i++)
+        for (int k = 0; k < 3; k++) s->star[s->corner[3 * s->order[i] + k] + 2]++;
     for (int32_t v = 0; v < n; v++) s->star[v + 2] += s->star[v + 1];
     // star[v+1] is now where v begins, and moves to where v ends
-    for (int32_t c = 0; c < n; c++) s->member[s->star[s->corner[c] + 1]++] = c / 3;
-    return true;
+    for (int32_t i = 0; i < s->n; i++)
+        for (int k = 0; k < 3; k++)
+            s->member[s->star[s->corner[3 * s->order[i] + k] + 1]++] = s->order[i];
 }
 
-int surface_init(struct surface *s, const struct mesh *m, int32_t first, int32_t n, struct why *why)
+/* m: that of a surface for which none was asked */
+static double usual_weld(const struct surface *s)
 {
-    *s = (struct surface){ .n = n };
+    vec3 lo = v3(INFINITY, INFINITY, INFINITY), hi = v3_scale(-1, lo);
+    for (int32_t c = 0; c < 3 * s->elements; c++)
+        lo = v3_min(lo, s->at[c / 3][c % 3]), hi = v3_max(hi, s->at[c / 3][c % 3]);
+    return s->elements ? WELD_USUAL * v3_norm(v3_sub(hi, lo)) : 0;
+}
+
+static bool surface_alloc(struct surface *s)
+{
+    size_t n = (size_t)s->elements;
+    s->at = malloc((n + 1) * sizeof *s->at);
+    s->order = malloc((n + 1) * sizeof *s->order);
+    s->box = malloc((2 * n + 1) * sizeof *s->box);
+    s->corner = calloc(3 * n + 1, sizeof *s->corner);
+    s->star = calloc(3 * n + 2, sizeof *s->star);
+    s->member = calloc(3 * n + 1, sizeof *s->member);
+    return s->at && s->order && s->box && s->corner && s->star && s->member;
+}
+
+int surface_init(struct surface *s, const struct mesh *m, int32_t first, int32_t n, double weld_at,
+                 struct why *why)
+{
+    *s = (struct surface){ .elements = n };
     struct keyed *room = malloc(((size_t)n + 1) * sizeof *room);
-    s->at = malloc(((size_t)n + 1) * sizeof *s->at);
-    s->order = malloc(((size_t)n + 1) * sizeof *s->order);
-    s->box = malloc((2 * (size_t)n + 1) * sizeof *s->box);
-    bool good = room && s->at && s->order && s->box;
-    for (int32_t i = 0; good && i < n; i++) {
-        s->order[i] = i;
+    bool good = room && surface_alloc(s);
+    for (int32_t i = 0; good && i < n; i++)
         for (int k = 0; k < 3; k++) s->at[i][k] = m->vertex[m->element[first + i][k]];
-    }
-    good = good && meet(s);
-    if (good) grow(s, room, 0, n, 0);
+    if (good) s->weld = weld_at > 0 ? weld_at : usual_weld(s);
+    good = good && weld(s);
+    for (int32_t i = 0; good && i < n; i++)
+        if (extends(s, m, first, i)) s->order[s->n++] = i;
+    if (good) meet(s), grow(s, room, 0, s->n, 0);
     free(room);
+    for (int32_t v = 0; good && v < 3 * n; v++)
+        if (s->star[v + 1] - s->star[v] > STAR_MOST)
+            return why_set(why, EX_DATAERR, "a mesh: more than %d elements meet at a corner",
+                           STAR_MOST);
     return good ? 0 : why_set(why, EX_SOFTWARE, "no memory for a surface of %d elements", n);
 }
 
@@ -253,12 +296,18 @@ static bool is_there(const struct surface *s, int32_t e, int part, int32_t v, in
 
 /* Whether the place on an edge or at a corner of element e is a minimum that e reports, the first of
    those that meet there */
-static bool is_minimum(const struct surface *s, int32_t e, int part, vec3 c)
+static bool is_minimum(const struct surface *s, int32_t e, int part, vec3 c, int *looked)
 {
     int k = part < 3 ? part : part - 3;
     int32_t v = s->corner[3 * e + k], w = part < 3 ? s->corner[3 * e + (k + 1) % 3] : v;
+    // at the hub of a fan is all of it
+    if (s->star[w + 1] - s->star[w] < s->star[v + 1] - s->star[v]) {
+        int32_t hub = v;
+        v = w, w = hub;
+    }
     for (int32_t i = s->star[v]; i < s->star[v + 1]; i++) {
         int32_t other = s->member[i];
+        ++*looked;
         if (other == e || which_corner(s, other, w) < 0) continue;
         struct place at = near_element(s, other, c);
         if (!is_there(s, other, at.part, v, w)) return false;
@@ -267,21 +316,37 @@ static bool is_minimum(const struct surface *s, int32_t e, int part, vec3 c)
     return true;
 }
 
-static void look_at(const struct surface *s, int32_t e, vec3 c, double most, struct touch *touch,
-                    int *n)
+vec3 surface_normal(const struct surface *s, int32_t e)
+{
+    const vec3 *x = s->at[e];
+    vec3 ab = v3_sub(x[1], x[0]), up = v3_cross(ab, v3_sub(x[2], x[0]));
+    if (s->corner[3 * e + 1] == s->corner[3 * e + 2]) up = v3(-ab.y, ab.x, 0);
+    return v3_scale(1 / v3_norm(up), up);
+}
+
+vec3 surface_nearest(const struct surface *s, int32_t e, vec3 c)
+{
+    return near_element(s, e, c).x;
+}
+
+/* Returns how many elements were looked at for it, of those at its corners each. */
+static int look_at(const struct surface *s, int32_t e, vec3 c, double most, struct touch *touch,
+                   int *n)
 {
     struct place at = near_element(s, e, c);
     vec3 d = v3_sub(c, at.x);
     double distance = v3_norm(d);
-    if (!(distance <= most) || (at.part < 6 && !is_minimum(s, e, at.part, c)) || *n == TOUCHES_MOST)
-        return;
-    vec3 up = v3_cross(v3_sub(s->at[e][1], s->at[e][0]), v3_sub(s->at[e][2], s->at[e][0]));
-    if (v3_dot(up, up) == 0) { // a segment
-        vec3 ab = v3_sub(s->at[e][1], s->at[e][0]);
-        up = v3(-ab.y, ab.x, 0);
-    }
-    vec3 n_of = distance > 0 ? v3_scale(1 / distance, d) : v3_scale(1 / v3_norm(up), up);
-    touch[(*n)++] = (struct touch){ n_of, distance, SURFACE_FEATURES * e + at.part };
+    int looked = 1;
+    if (!(distance <= most)) return looked;
+    bool minimum = at.part == 6 || is_minimum(s, e, at.part, c, &looked);
+    if (!minimum || *n == TOUCHES_MOST) return looked;
+    struct touch *t = &touch[(*n)++];
+    *t = (struct touch){ .distance = distance, .feature = SURFACE_FEATURES * e + at.part };
+    vec3 up = surface_normal(s, e); // where d is rounding
+    t->n = distance > s->weld  ? v3_scale(1 / distance, d)
+           : v3_dot(up, d) < 0 ? v3_scale(-1, up)
+                               : up;
+    return looked;
 }
 
 static int by_feature(const void *a, const void *b)
@@ -290,14 +355,45 @@ static int by_feature(const void *a, const void *b)
     return (p->feature > q->feature) - (p->feature < q->feature);
 }
 
+bool surface_is_at(const struct surface *s, vec3 c, const vec3 *n, double near)
+{
+    struct surface_walk walk;
+    struct surface_branch leaf;
+    surface_walk_begin(&walk, s->n);
+    while (surface_walk_next(&walk, s->box, c, near, &leaf))
+        for (int32_t i = leaf.lo; i < leaf.hi; i++)
+            if (v3_norm(v3_sub(c, surface_nearest(s, s->order[i], c))) <= near &&
+                (!n || fabs(v3_dot(*n, surface_normal(s, s->order[i]))) > 1 - 1e-6))
+                return true;
+    return false;
+}
+
+/* Leaves the first of those at one place; returns how many are left. */
+static int leave_one(const struct surface *s, struct touch *touch, int n)
+{
+    int kept = 0;
+    for (int k = 0; k < n; k++) {
+        bool again = false;
+        for (int l = 0; l < kept && !again; l++)
+            again = v3_dot(touch[l].n, touch[k].n) > 1 - 1e-12 &&
+                    fabs(touch[l].distance - touch[k].distance) <= s->weld;
+        if (!again) touch[kept++] = touch[k];
+    }
+    return kept;
+}
+
 int surface_touches(const struct surface *s, vec3 c, double most, struct touch touch[TOUCHES_MOST])
 {
     struct surface_walk walk;
     struct surface_branch leaf;
     int n = 0;
     surface_walk_begin(&walk, s->n);
+    int64_t seen = 0;
+    if (s->seen && *s->seen > s->seen_most) return 0;
     while (surface_walk_next(&walk, s->box, c, most, &leaf))
-        for (int32_t i = leaf.lo; i < leaf.hi; i++) look_at(s, s->order[i], c, most, touch, &n);
+        for (int32_t i = leaf.lo; i < leaf.hi; i++)
+            seen += look_at(s, s->order[i], c, most, touch, &n);
+    if (s->seen) *s->seen += seen;
     qsort(touch, (size_t)n, sizeof *touch, by_feature);
-    return n;
+    return leave_one(s, touch, n);
 }

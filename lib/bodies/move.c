@@ -86,13 +86,15 @@ static void move_some(void *arg, int64_t first, int64_t end)
 int move_by(struct packing *p, const struct contacts *s, const struct impulses *sum,
             struct why *why)
 {
-    if (p->law && ties_keep(p, s, why)) return why->status;
+    if (packing_check_clock(p, why) || (p->law && ties_keep(p, s, why)) ||
+        memory_keep(&p->memory, s, why))
+        return why->status;
     struct moving m = { p, sum };
     team_share(team_size(), p->n, SOME, move_some, &m);
     cell_move(&p->cell, p->dt, p->theta, sum->next);
     move_freedoms(p, sum, false);
     p->step++;
-    p->t += p->dt;
+    p->t = packing_time(p, p->step);
     return overlap_projects(p->overlap) ? project_apart(p, s, why) : 0;
 }
 
@@ -114,7 +116,7 @@ static void unmove_by(struct packing *p, struct impulses *sum)
     cell_flow_init(&sum->flow, &p->cell, sum->edge, gain);
     for (int64_t i = 0; i < p->n; i++) body_unmove(p, &sum->flow, i, sum->force[i], sum->moment[i]);
     p->step--;
-    p->t -= p->dt;
+    p->t = packing_time(p, p->step);
 }
 
 int move_back(struct packing *p, const struct contacts *s, struct why *why)

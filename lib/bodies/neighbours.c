@@ -241,7 +241,8 @@ int neighbours_surfaces(struct neighbours *s, const struct packing *p, struct wh
     for (int32_t w = 0; w < p->walls; w++) {
         const struct wall *wall = &p->wall[w];
         if (wall->shape == BOUNDARY_MESH &&
-            surface_init(&s->surface[w], &p->mesh, wall->first_element, wall->elements, why))
+            surface_init(&s->surface[w], &p->mesh, wall->first_element, wall->elements, wall->weld,
+                         why))
             return why->status;
     }
     return 0;

@@ -53,6 +53,7 @@ void packing_free(struct packing *p)
     free(p->poured), free(p->removed);
     events_free(&p->events);
     bonds_free(&p->bonds);
+    memory_free(&p->memory);
     cell_free(&p->cell);
     kinds_free(p);
     memset(p, 0, sizeof *p);
@@ -172,6 +173,7 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     if (packing_alloc_walls(to, p->walls, why) || packing_alloc_kinds(to, p->kinds, why)) goto fail;
     size_t n = (size_t)p->n, k2 = (size_t)p->kinds * (size_t)p->kinds;
     to->step = p->step, to->t = p->t, to->dt = p->dt, to->theta = p->theta, to->g = p->g;
+    to->t0 = p->t0, to->step0 = p->step0;
     to->overlap = p->overlap;
     to->seed = p->seed;
     if (cell_copy(&to->cell, &p->cell) || (p->image && packing_alloc_images(to, why))) goto fail;
@@ -197,7 +199,8 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     memcpy(to->et, p->et, k2 * sizeof *p->et);
     if (p->law && packing_alloc_laws(to, why)) goto fail;
     if (p->law) memcpy(to->law, p->law, k2 * sizeof *p->law);
-    if (bonds_copy(&to->bonds, &p->bonds, why)) goto fail;
+    if (bonds_copy(&to->bonds, &p->bonds, why) || memory_copy(&to->memory, &p->memory, why))
+        goto fail;
     for (int32_t i = 0; i < p->kinds; i++) {
         free(to->kind_name[i]);
         if (!(to->kind_name[i] = strdup(p->kind_name[i]))) goto fail;
@@ -213,6 +216,24 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
 fail:
     packing_free(to);
     return why_set(why, EX_SOFTWARE, "no memory for a copy of the packing");
+}
+
+void packing_count_from(struct packing *p, double t0, int64_t step0)
+{
+    p->t0 = t0, p->step0 = step0;
+    if (packing_time(p, p->step) != p->t) p->t0 = p->t, p->step0 = p->step;
+}
+
+int packing_check_clock(const struct packing *p, struct why *why)
+{
+    double t = fmax(fabs(p->t), fabs(packing_next_time(p)));
+    double grain = nextafter(t, INFINITY) - t;
+    if (grain <= p->dt) return 0;
+    return why_set(
+        why, EX_DATAERR,
+        "dt = %g s does not change a time of %g s, where numbers are %.2g s apart: begin "
+        "at an earlier time, or with a longer dt",
+        p->dt, p->t, grain);
 }
 
 double packing_mean_mass(const struct packing *p)
@@ -375,16 +396,12 @@ int packing_check(const struct packing *p, struct why *why)
         const char *trouble = wall_trouble(p, &p->wall[i]);
         if (trouble) return why_set(why, EX_DATAERR, "wall %d: %s", i, trouble);
     }
-    for (int32_t i = 0; i < p->drives.n; i++) {
-        const char *trouble = drive_trouble(&p->drives, i, p->walls, p->dim);
-        if (trouble) return why_set(why, EX_DATAERR, "drive %d: %s", i, trouble);
-    }
-    for (int32_t i = 0; i < p->pushes.n; i++) {
-        const char *trouble = drive_trouble(&p->pushes, i, p->walls, p->dim);
-        if (!trouble && !p->wall[p->pushes.drive[i].boundary].load.way)
-            trouble = "its boundary yields to no load";
-        if (trouble) return why_set(why, EX_DATAERR, "push %d: %s", i, trouble);
-    }
+    if (drives_check(&p->drives, p->walls, p->dim, "drive", why) ||
+        drives_check(&p->pushes, p->walls, p->dim, "push", why))
+        return why->status;
+    for (int32_t i = 0; i < p->pushes.n; i++)
+        if (!p->wall[p->pushes.drive[i].boundary].load.way)
+            return why_set(why, EX_DATAERR, "push %d: its boundary yields to no load", i);
     if (mesh_check(&p->mesh, p->dim, why)) return why->status;
     if (bonds_check(&p->bonds, p->dim, p->n, p->walls, why)) return why->status;
     return check_cell(p, why);

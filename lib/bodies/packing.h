@@ -15,6 +15,7 @@
 #include "bodies/contact.h"
 #include "bodies/drive.h"
 #include "bodies/law.h"
+#include "bodies/memory.h"
 #include "bodies/mesh.h"
 #include "bodies/overlap.h"
 #include "bodies/passage.h"
@@ -29,7 +30,9 @@ struct packing {
     int dim;      /* 2 or 3 */
     int64_t n;    /* bodies */
     int64_t step; /* steps made since the packing was built */
-    double t, dt; /* s */
+    double t, dt; /* s; t = t0 + (step - step0) dt, which no step adds up: packing_time() */
+    double t0;    /* s: the time at step0, from which the time is counted with this dt */
+    int64_t step0;
     double theta; /* of the theta-method; 1/2 is the paper's midpoint */
     vec3 g;       /* m/s^2 */
     uint64_t seed;
@@ -61,6 +64,8 @@ struct packing {
     double *en, *et;    /* [kinds * kinds], symmetric: normal and tangential restitution */
     struct law *law;    /* [kinds * kinds], symmetric: what is beyond these; NULL: nothing */
     struct bonds bonds; /* what lasts of pairs by these laws */
+
+    struct memory memory; /* the reactions that the next step starts from */
 
     /* Grains come and go [scene/flow.h] where there are pours or removals. */
     int32_t pours, removals;
@@ -125,6 +130,30 @@ int packing_alloc_images(struct packing *p, struct why *why);
 /* shape[n], all balls, in place of the old one. Returns 0 or EX_SOFTWARE. */
 int packing_alloc_shapes(struct packing *p, struct why *why);
 
+/*
+ * The time is a function of the step, with one rounding of the product and one of the sum: it does not
+ * depend on where a run was interrupted, and does not drift.
+ */
+enum {
+    STEPS_LOG2 = 53
+}; /* a step beyond 2^53, up or down, is no exact double: files with one are refused */
+/* s: the time of a step */
+static inline double packing_time(const struct packing *p, int64_t step)
+{
+    return p->t0 + (double)(step - p->step0) * p->dt;
+}
+/* s: the time when the step in hand has been made */
+static inline double packing_next_time(const struct packing *p)
+{
+    return packing_time(p, p->step + 1);
+}
+/* Counts from (t0, step0) if that gives the packing its time, as it is where nobody has changed t, step
+   or dt since; else from its own time and step. */
+void packing_count_from(struct packing *p, double t0, int64_t step0);
+/* Does dt still change the time, or is it less than the distance of t to the next number? Returns 0 or
+   EX_DATAERR. */
+int packing_check_clock(const struct packing *p, struct why *why);
+
 /* to = a deep copy of from; to need not be initialised. Returns 0 or EX_SOFTWARE. */
 int packing_copy(struct packing *to, const struct packing *from, struct why *why);
 
@@ -165,11 +194,6 @@ static inline vec3 packing_predict(const struct packing *p, int64_t i)
     return v3_axpy(p->x[i], (1 - p->theta) * p->dt, p->v[i]);
 }
 
-/* m/s: no contact at rest approaches faster, whatever gravity did to both bodies in a step. */
-static inline double packing_calm(const struct packing *p)
-{
-    return 2 * p->dt * v3_norm(p->g);
-}
 /* The acceleration of the flow that the cell's edges make, in the step to come */
 struct cell_flow packing_flow(const struct packing *p);
 

@@ -248,7 +248,7 @@ static void add_faces(struct sums *t, const struct shape *s, int dim)
     }
 }
 
-int solid_of(struct solid *out, const struct shape *s, int dim, struct why *why)
+static int integrate(struct solid *out, const struct shape *s, int dim, struct why *why)
 {
     struct sums t = { 0 };
     bool lines = s->form == SHAPE_CLUMP ? overlapping(s) : s->form == SHAPE_HULL && s->round > 0;
@@ -263,6 +263,30 @@ int solid_of(struct solid *out, const struct shape *s, int dim, struct why *why)
     memcpy(out->second, t.second, sizeof out->second);
     add_outer(out->second, -t.volume, c, c);
     return 0;
+}
+
+/* The middle of the vertices where the origin is far from them, for there differences of large numbers would be
+   taken; else the origin, so that what is described about it keeps its bits */
+static vec3 near_to(const struct shape *s)
+{
+    vec3 lo = v3(INFINITY, INFINITY, INFINITY), hi = v3_scale(-1, lo);
+    for (int32_t i = 0; i < s->vertices; i++)
+        lo = v3_min(lo, s->vertex[i]), hi = v3_max(hi, s->vertex[i]);
+    vec3 middle = v3_scale(0.5, v3_add(lo, hi));
+    return v3_norm(middle) > 2 * v3_norm(v3_sub(hi, lo)) ? middle : v3(0, 0, 0);
+}
+
+int solid_of(struct solid *out, const struct shape *s, int dim, struct why *why)
+{
+    struct shape near = *s;
+    vec3 o = near_to(s);
+    near.vertex = calloc((size_t)s->vertices + 1, sizeof *near.vertex);
+    if (!near.vertex) return why_set(why, EX_SOFTWARE, "no memory for a shape");
+    for (int32_t i = 0; i < s->vertices; i++) near.vertex[i] = v3_sub(s->vertex[i], o);
+    integrate(out, &near, dim, why);
+    out->centre = v3_add(out->centre, o);
+    free(near.vertex);
+    return why->status;
 }
 
 /* ---- principal axes ---- */

@@ -2,6 +2,7 @@
 #include "bodies/tie.h"
 
 #include "bodies/anchor.h"
+#include "bodies/freedom.h"
 #include "bodies/kinematics.h"
 #include "bodies/offset.h"
 
@@ -86,7 +87,7 @@ static void set_bond(struct tie *t, const struct packing *p, const struct contac
 static double offset_apart(const struct packing *p, const struct contact *c)
 {
     double approach = -opening_of(p, c, (1 - p->theta) * p->dt);
-    bool impact = c->en > 0 && approach > packing_calm(p);
+    bool impact = c->en > 0 && approach > freedoms_calm(p);
     return c->gap / p->dt + (impact ? 2 * approach : 0);
 }
 

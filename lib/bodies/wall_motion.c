@@ -37,6 +37,11 @@ vec3 wall_normal(const struct packing *p, const struct wall *w, double t)
     return only_glides(w) ? w->n : quat_turn(wall_pose(p, w, t).q, w->n);
 }
 
+static struct drive_step step_of(const struct packing *p)
+{
+    return (struct drive_step){ p->t, packing_next_time(p), p->dt };
+}
+
 vec3 wall_held(const struct packing *p, const struct wall *w, vec3 x)
 {
     if (!w->drives) return w->v;
@@ -50,7 +55,7 @@ vec3 wall_held(const struct packing *p, const struct wall *w, vec3 x)
         q = quat_rotation(v3_scale(travel, l->axis));
         y = v3_add(l->point, quat_turn_back(q, v3_sub(y, l->point)));
     }
-    vec3 v = drives_velocity(&p->drives, w->first_drive, w->drives, p->t, p->dt, y);
+    vec3 v = drives_velocity(&p->drives, w->first_drive, w->drives, step_of(p), y);
     return v3_add(w->v, l->way == LOAD_TURNS ? quat_turn(q, v) : v);
 }
 
@@ -65,7 +70,7 @@ vec3 wall_velocity(const struct packing *p, const struct wall *w, vec3 x)
 
 vec3 wall_spin(const struct packing *p, const struct wall *w)
 {
-    vec3 s = drives_spin(&p->drives, w->first_drive, w->drives, p->t, p->dt);
+    vec3 s = drives_spin(&p->drives, w->first_drive, w->drives, step_of(p));
     return w->load.way == LOAD_TURNS ? v3_axpy(s, w->load.speed, w->load.axis) : s;
 }
 

@@ -37,10 +37,11 @@ struct usual {
 
 /* nsd's own choice. --help shows it from here; nsd-solve(1) and nsd-step(1) repeat it. */
 static const struct usual usual = {
-    .packing = CRITERION_NATURAL, // scale-free: the same sweeps for balls of 10 um and of 1 m
+    .packing = CRITERION_VELOCITY, // it sees every contact, however small its reaction
     .fclib = CRITERION_NATURAL,
     .eps[CRITERION_GLOB] = 1e-10,   // a sum of m/s, m/s, N and W: the paper's
     .eps[CRITERION_SCALED] = 1e-3,  // costs as much as the next, or more
+    .eps[CRITERION_VELOCITY] = 1,   // g dt; while that is cheap a thousandth [solve/solver.c]
     .eps[CRITERION_NATURAL] = 1e-4, // the loosest with which overlaps do not grow [nsd-methods(7)]
     .fclib_eps = 1e-10,     // one problem deserves its solution: all that we have take a second
     .nlgs_sweeps = 5000,    // the paper's
@@ -50,7 +51,7 @@ static const struct usual usual = {
     .nlgs_order = ORDER_NATURAL, // the paper's
     .order = ORDER_COLOUR,       // eight contacts at once, on any number of threads
     .relax = 0,                  // each solver has measured its own
-    .warm = false,               // as the paper: a step does not depend on the one before
+    .warm = true,                // of CRITERION_VELOCITY; others start from 0, as the paper
     .newton = NEWTON_LINESEARCH, // plain steps run in circles at some contacts
     .newton_eps = 1e-13,         // about a thousand roundings: as if it were exact
     .newton_max = 100,           // after which the exact solution stands in
@@ -61,7 +62,7 @@ static const struct usual usual = {
 static const struct usual paper = {
     .packing = CRITERION_GLOB,
     .fclib = CRITERION_GLOB,
-    .eps = { 1e-10, 1e-10, 1e-10 },
+    .eps = { 1e-10, 1e-10, 1e-10, 1e-10 },
     .fclib_eps = 1e-10,
     .nlgs_sweeps = 5000,
     .sweeps = 5000,
@@ -182,7 +183,7 @@ const struct cli_option options_run[] = {
     { CLI_TEXT, 0, "log", &options.log, "FILE", .silent = true,
       .help = "write one JSON line for each solve, with its seconds" },
     { CLI_FLAG, 'e', "strict", &options.strict, .silent = true,
-      .help = "exit with 1 when a solve has not converged" },
+      .help = "exit with 1 when a solve has not converged, or a run fails otherwise" },
     { 0 },
 };
 
@@ -225,12 +226,13 @@ struct step_opt options_step(double dt, bool foreign)
     bool nlgs = solver == &solver_nlgs;
     int criterion = OPTION(criterion, (int)(foreign ? u->fclib : u->packing));
     double eps = OPTION(eps, foreign ? u->fclib_eps : u->eps[criterion]);
+    const enum order order = (enum order)OPTION(order, (int)(nlgs ? u->nlgs_order : u->order));
     int32_t sweeps = nlgs ? u->nlgs_sweeps : eps < u->tight ? u->tight_sweeps : u->sweeps;
     return (struct step_opt){
         .gap = o->gap,
         .alpha = o->alpha,
-        .order = (enum order)OPTION(order, (int)(nlgs ? u->nlgs_order : u->order)),
-        .warm = OPTION(warm, u->warm),
+        .order = order,
+        .warm = OPTION(warm, u->warm && criterion == CRITERION_VELOCITY && order != ORDER_BLOCK),
         .solve = { .global = solver,
                    .method = o->method ? methods[o->method - 1] : &local_exact,
                    .local = { .plain = OPTION(newton, (int)u->newton) == NEWTON_PLAIN,
@@ -292,7 +294,9 @@ void options_overlap(struct packing *p, bool detected)
         now = p->shape ? OVERLAP_GAP_PROJECT : usual.overlap; // corners that open
     if (options.paper) now = paper.overlap;
     now = OPTION(overlap, (int)now - 1) + 1;
-    if (detected && overlap_sees_gaps(was) != overlap_sees_gaps(now))
+    bool others = overlap_sees_gaps(was) != overlap_sees_gaps(now) ||
+                  overlap_meets(was) != overlap_meets(now);
+    if (detected && others)
         die_usage("--overlap: the contacts were detected with %s; give it to nsd-detect",
                   overlap_name[was ? was : OVERLAP_KEEP]);
     p->overlap = now;
@@ -311,18 +315,25 @@ void options_log_open(int files, char *const *file, const char *output)
         if (reader_reads(files, file, options.log))
             die_usage("--log: %s is also the input", options.log);
     }
-    log_file = fopen(options.log, "w");
-    if (!log_file) die(EX_IOERR, "%s: %s", options.log, strerror(errno));
 }
 
-void options_log(const struct report *rep)
+/* With the first line, when input has been read: one that cannot be costs nobody his log. */
+static void log_begin(void)
 {
+    if (options.log && !log_file && !(log_file = fopen(options.log, "w")))
+        die(EX_IOERR, "%s: %s", options.log, strerror(errno));
+}
+
+void options_log(const struct report *rep, const struct account *account)
+{
+    log_begin();
     if (!log_file) return;
     json_t *j = json_report(rep);
     json_object_set_new(j, "seconds", json_number(rep->seconds));
     json_object_set_new(j, "elapsed", json_number(rep->elapsed));
     json_object_set_new(j, "detection", json_number(rep->detection));
     json_object_set_new(j, "work", json_number(rep->work));
+    if (account) json_object_set_new(j, "account", json_account(account));
     int failed =
         json_dumpf(j, log_file, JSON_COMPACT) || fputc('\n', log_file) == EOF || fflush(log_file);
     json_decref(j);
@@ -331,6 +342,7 @@ void options_log(const struct report *rep)
 
 void options_log_close(void)
 {
+    log_begin();
     if (log_file && fclose(log_file)) die(EX_IOERR, "%s: %s", options.log, strerror(errno));
     log_file = NULL;
 }

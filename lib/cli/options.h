@@ -6,6 +6,7 @@
 #define NSD_OPTIONS_H
 
 #include "cli/cli.h"
+#include "solve/account.h"
 #include "solve/step.h"
 
 /* What was given; cli_given() says which of them were. */
@@ -53,11 +54,11 @@ void options_overlap(struct packing *packing, bool detected);
 
 /*
  * --log: opens the file at once; then a line of JSON for each solve, with the clock's seconds,
- * which no document has. Ends the tool where it cannot be written, and where it is one of the files
+ * which no document has, and in the last of a run its account. Ends the tool where it cannot be written, and where it is one of the files
  * that the tool reads or its output (NULL: standard output).
  */
 void options_log_open(int files, char *const *file, const char *output);
-void options_log(const struct report *report);
+void options_log(const struct report *report, const struct account *account); /* or NULL */
 void options_log_close(void);
 
 /* What a report's criterion is called: eps_glob, scaled or natural. */

@@ -1,10 +1,9 @@
 /* draw/film.c: a pipe into ffmpeg [draw/film.h]. */
 #include "draw/film.h"
 
-#include "base/unfinished.h"
+#include "base/output.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
 #include <stdio.h>
@@ -16,11 +15,12 @@
 extern char **environ;
 
 struct film {
-    char *path, *other; /* its name, and the one until it is whole */
+    char *path,
+        *url; /* its name; and what ffmpeg calls the new file: with a colon a name is a protocol */
     int rate, width, height;
     FILE *pipe; /* NULL until the first picture, whose size ffmpeg must know */
     pid_t child;
-    struct unfinished unfinished; /* the other */
+    struct output output;
 };
 
 static const char *ending(const char *path)
@@ -46,26 +46,24 @@ bool film_possible(void)
     return false;
 }
 
+static void film_free(struct film *f)
+{
+    if (f) free(f->path), free(f->url);
+    free(f);
+}
+
 int film_open(struct film **film, const char *path, int rate, struct why *why)
 {
     struct film *f = calloc(1, sizeof *f);
-    size_t room = strlen(path) + 16;
-    if (f) f->path = strdup(path), f->other = malloc(room), f->rate = rate;
-    if (!f || !f->path || !f->other) {
-        if (f) free(f->path), free(f->other);
-        free(f);
-        return why_set(why, EX_SOFTWARE, "no memory");
-    }
-    snprintf(f->other, room, "%.*s.part%s", (int)(ending(path) - path), path, ending(path));
-    int fd =
-        open(f->other, O_WRONLY | O_CREAT | O_CLOEXEC, 0666); // trouble is told before the work
-    if (fd < 0) {
-        why_set(why, EX_IOERR, "%s: %s", path, strerror(errno));
-        free(f->path), free(f->other), free(f);
-        return why->status;
-    }
-    unfinished_begin(&f->unfinished, f->other, fd);
-    close(fd);
+    if (f) f->path = strdup(path), f->rate = rate;
+    if (!f || !f->path) return film_free(f), why_set(why, EX_SOFTWARE, "no memory");
+    if (output_open(&f->output, f->path, why)) return film_free(f), why->status;
+    if (!f->output.at) // a film is written back and forth
+        why_set(why, EX_IOERR, "%s: not a regular file", path);
+    else if (!(f->url = malloc(strlen(f->output.at) + 16)))
+        why_set(why, EX_SOFTWARE, "no memory");
+    if (why->status) return output_drop(&f->output), film_free(f), why->status;
+    sprintf(f->url, "file:%s", f->output.at);
     *film = f;
     return 0;
 }
@@ -102,7 +100,9 @@ static int start(struct film *f, struct why *why)
                                      "0",
                                      "-vf",
                                      "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-                                     f->other,
+                                     "-f",
+                                     webm ? "webm" : "mp4",
+                                     f->url,
                                      NULL };
     int end[2];
     posix_spawn_file_actions_t actions;
@@ -144,10 +144,10 @@ int film_close(struct film *f, struct why *why)
     while (written && waitpid(f->child, &status, 0) < 0 && errno == EINTR) {
     }
     if (written && status) why_set(why, EX_IOERR, "%s: ffmpeg failed", f->path);
-    if (written && !why->status && rename(f->other, f->path))
-        why_set(why, EX_IOERR, "%s: %s", f->path, strerror(errno));
-    if (why->status || !written) unlink(f->other);
-    unfinished_done(&f->unfinished);
-    free(f->path), free(f->other), free(f);
+    if (written)
+        output_close(&f->output, why);
+    else
+        output_drop(&f->output);
+    film_free(f);
     return why->status;
 }

@@ -14,8 +14,8 @@ bool film_name(const char *path);
 bool film_possible(void);
 
 /*
- * A film of so many pictures a second, all of the first one's size. It is written under another name
- * and renamed by film_close(). EX_IOERR where ffmpeg cannot be started or fails, EX_SOFTWARE.
+ * A film of so many pictures a second, all of the first one's size. It takes its place in
+ * film_close() [base/output.h]. EX_IOERR where ffmpeg cannot be started or fails, EX_SOFTWARE.
  */
 int film_open(struct film **film, const char *path, int rate, struct why *why);
 int film_add(struct film *film, const struct picture *p, struct why *why);

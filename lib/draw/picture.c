@@ -1,6 +1,8 @@
 /* draw/picture.c: PNG by libpng, and its way into a file. */
 #include "draw/picture.h"
 
+#include "base/output.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <png.h>
@@ -8,7 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 int picture_init(struct picture *p, int width, int height, struct why *why)
@@ -101,45 +102,13 @@ static int write_open(int fd, const struct bytes_out *b, const char *name, struc
     return why->status;
 }
 
-/* Writes under another name in the same folder, then renames. */
-static int write_renamed(const char *path, const char *name, const struct bytes_out *b,
-                         struct why *why)
-{
-    const char *slash = strrchr(path, '/');
-    int folder = slash ? (int)(slash - path) + 1 : 0;
-    size_t room = (size_t)folder + sizeof ".nsd-XXXXXX";
-    char *other = malloc(room);
-    if (!other) return why_set(why, EX_SOFTWARE, "no memory");
-    snprintf(other, room, "%.*s.nsd-XXXXXX", folder, path);
-    int fd = mkstemp(other);
-    bool made = fd >= 0, good = made && write_all(fd, b);
-    mode_t mask =
-        umask(0); // mkstemp lets only the owner read; a picture is as readable as other files
-    umask(mask);
-    good = good && !fchmod(fd, 0666 & ~mask);
-    int trouble = errno;
-    if (made && close(fd) && good) good = false, trouble = errno;
-    if (good && rename(other, path)) good = false, trouble = errno;
-    if (!good) why_set(why, EX_IOERR, "%s: %s", name, strerror(trouble));
-    if (!good && made) unlink(other);
-    free(other);
-    return why->status;
-}
-
 int bytes_write(const struct bytes_out *b, const char *path, struct why *why)
 {
-    struct stat st;
-    char *real = path ? realpath(path, NULL) : NULL; // a symbolic link is followed, not replaced
-    bool special = real && !stat(real, &st) && !S_ISREG(st.st_mode);
-    int fd = !path ? STDOUT_FILENO : special ? open(real, O_WRONLY | O_CLOEXEC) : -1;
-    if (special && fd < 0)
-        why_set(why, EX_IOERR, "%s: %s", path, strerror(errno));
-    else if (fd >= 0)
-        write_open(fd, b, path ? path : "standard output", why);
-    else
-        write_renamed(real ? real : path, path, b, why);
-    free(real);
-    return why->status;
+    struct output o;
+    if (!path) return write_open(STDOUT_FILENO, b, "standard output", why);
+    if (output_open(&o, path, why)) return why->status;
+    if (!write_all(o.fd, b)) why_set(why, EX_IOERR, "%s: %s", path, strerror(errno));
+    return output_close(&o, why);
 }
 
 int picture_write(const struct picture *p, const char *path, struct why *why)

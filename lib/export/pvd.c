@@ -10,8 +10,8 @@ static const char tail[] = "</Collection>\n</VTKFile>\n";
 
 int pvd_begin(struct pvd *l, const char *path, struct why *why)
 {
-    l->out = fopen(path, "w");
-    if (!l->out) return why_set(why, EX_IOERR, "%s: %s", path, strerror(errno));
+    l->out = output_stream(&l->file, path, why);
+    if (!l->out) return why->status;
     fprintf(l->out, "%s%s", head, tail);
     return 0;
 }
@@ -22,12 +22,12 @@ int pvd_add(struct pvd *l, const char *name, double time, struct why *why)
         return why_set(why, EX_IOERR, "%s.pvd: %s", name, strerror(errno));
     fprintf(l->out, "<DataSet timestep=\"%.17g\" part=\"0\" file=\"%s\"/>\n%s", time, name, tail);
     if (fflush(l->out)) return why_set(why, EX_IOERR, "%s: its list: %s", name, strerror(errno));
-    return 0;
+    return output_place(&l->file, why); // there is something whole in it, with the first
 }
 
 int pvd_end(struct pvd *l, struct why *why)
 {
-    bool bad = l->out && (ferror(l->out) || fclose(l->out));
+    if (l->out) output_stream_close(&l->file, l->out, why);
     l->out = NULL;
-    return bad ? why_set(why, EX_IOERR, "a list of files was not written") : 0;
+    return why->status;
 }

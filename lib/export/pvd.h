@@ -5,13 +5,11 @@
 #ifndef NSD_PVD_H
 #define NSD_PVD_H
 
-#include "base/why.h"
-
-#include <stdbool.h>
-#include <stdio.h>
+#include "base/output.h"
 
 struct pvd {
     FILE *out; /* NULL: not begun */
+    struct output file;
 };
 
 /* Begins the list in a file of this name. EX_IOERR: it cannot be written. */

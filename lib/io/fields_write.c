@@ -1,18 +1,15 @@
 #include "io/fields_write.h"
 
-#include "base/unfinished.h"
+#include "base/output.h"
 #include "io/table_write.h"
 
-#include <errno.h>
-#include <fcntl.h>
+#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 struct fields_file {
     const char *path;
     struct table_write tables;
-    struct unfinished unfinished;
+    struct output output;
 };
 
 static int write_head(hid_t file, const struct fields *f, const char *history, struct why *why)
@@ -46,13 +43,12 @@ int fields_file_open(struct fields_file **out, const char *path, const struct fi
     if (!s) return why_set(why, EX_SOFTWARE, "no memory");
     h5_start();
     s->path = path, s->tables.growing = true;
-    int fd = open(path, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (fd < 0) return why_set(why, EX_IOERR, "%s: %s", path, strerror(errno));
-    unfinished_begin(&s->unfinished, path, fd);
-    close(fd);
+    if (output_open(&s->output, path, why)) return why->status;
+    char open_already[40];
+    snprintf(open_already, sizeof open_already, "/proc/self/fd/%d", s->output.fd);
     hid_t plist = H5Pcreate(H5P_FILE_CREATE);
     H5Pset_obj_track_times(plist, false);
-    s->tables.file = H5Fcreate(path, H5F_ACC_TRUNC, plist, H5P_DEFAULT);
+    s->tables.file = H5Fcreate(open_already, H5F_ACC_TRUNC, plist, H5P_DEFAULT);
     H5Pclose(plist);
     if (s->tables.file < 0) return why_set(why, EX_IOERR, "%s: cannot be written", path);
     return write_head(s->tables.file, fields, history, why);
@@ -85,7 +81,7 @@ int fields_file_close(struct fields_file *s, struct why *why)
 {
     if (table_write_close(&s->tables) | (H5Fclose(s->tables.file) < 0))
         why_set(why, EX_IOERR, "%s: cannot be written (disk full?)", s->path);
-    why->status ? unfinished_drop(&s->unfinished) : unfinished_done(&s->unfinished);
+    output_close(&s->output, why);
     free(s);
     return why->status;
 }

@@ -8,7 +8,7 @@
 
 #include "io/fclib.h"
 #include "io/unknown.h"
-#include "problem/report.h"
+#include "solve/account.h"
 
 struct elsewhere;
 
@@ -23,6 +23,7 @@ struct frame {
         *elsewhere; /* who has its bodies [io/elsewhere.h], borrowed; NULL: the packing */
     struct contacts contacts;
     struct report report;
+    struct account account; /* of the trajectory so far, by the runs that have made it */
 
     bool foreign; /* problem is valid, and there is no packing */
     struct fclib problem;

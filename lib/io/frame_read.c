@@ -13,6 +13,7 @@
 #include <string.h>
 
 enum {
+    KINDS_MOST = 4096, /* of material: tables of pairs have a row for two of them */
     BLOCK =
         2 * 8192 /* bodies that are read at once where others take them: two chunks of nsd's own */
 };
@@ -36,6 +37,11 @@ static int count_frames(struct frame_read *r, struct why *why)
     }
     if (source_shape(r->source, "/particles/all/id/value", shape) == 2)
         n = n < (int64_t)shape[0] ? n : (int64_t)shape[0];
+    const int64_t most = (int64_t)1 << STEPS_LOG2;
+    for (int64_t k = 0; k < n; k++)
+        if (r->step[k] < -most || r->step[k] > most)
+            return why_set(why, EX_DATAERR, "/particles/all/position/step: %lld is out of range",
+                           (long long)r->step[k]);
     // a killed writer may have made room for a step without setting it
     for (r->frames = n > 0; r->frames < n; r->frames++)
         if (r->step[r->frames] <= r->step[r->frames - 1]) break;
@@ -47,6 +53,7 @@ int frame_read_open(struct frame_read *r, struct source *source, struct why *why
     *r = (struct frame_read){ .source = source, .frames = 1 };
     if (source_has(source, "/particles/all")) {
         if (count_frames(r, why) || cell_tables_open(source, r->repeats, why)) return why->status;
+        if (memory_rows_open(&r->memory, source, why)) return why->status;
         if (source_has(source, "/contacts") && contact_rows_open(&r->contacts, source, why))
             return why->status;
     } else if (!fclib_in(source)) {
@@ -59,6 +66,7 @@ void frame_read_close(struct frame_read *r)
 {
     free(r->step), free(r->time);
     contact_rows_close(&r->contacts);
+    memory_rows_close(&r->memory);
     report_rows_close(&r->reports);
     *r = (struct frame_read){ 0 };
 }
@@ -83,6 +91,10 @@ static int read_material(struct source *doc, struct packing *p, struct why *why)
     int32_t kinds = 0;
     for (const char *c = names; c && *c; c++) kinds += *c == '\n';
     if (why->status) return why->status;
+    if (kinds > KINDS_MOST) {
+        free(names);
+        return why_set(why, EX_DATAERR, "/nsd/material@kinds: more than %d kinds", KINDS_MOST);
+    }
     if (!kinds) {
         free(names);
         return why_set(why, EX_DATAERR, "/nsd/material@kinds: no kinds of material");
@@ -133,6 +145,20 @@ static int read_parameters(struct source *doc, struct packing *p, struct why *wh
     return why->status;
 }
 
+/* Step and time of frame k, and from where its time is counted: a document whose time is step dt need not
+   say it, and what one says that contradicts its times is not believed. */
+static void read_clock(struct frame_read *r, int64_t k, struct packing *p)
+{
+    const double most = (double)((int64_t)1 << STEPS_LOG2);
+    double origin[2] = { 0 };
+    struct why none = { 0 };
+    if (source_attribute(r->source, "/nsd", "time_origin", COLUMN_F64, 2, origin, &none) ||
+        !(fabs(origin[1]) <= most))
+        origin[0] = origin[1] = 0;
+    p->step = r->step[k], p->t = r->time[k];
+    packing_count_from(p, origin[0], (int64_t)origin[1]);
+}
+
 /* Bodies as they are in every frame, and where they are in frame k */
 static int read_bodies(struct frame_read *r, int64_t k, struct packing *p, struct why *why)
 {
@@ -162,7 +188,7 @@ static int read_settings(struct frame_read *r, int64_t k, struct packing *p, str
         boundary_tables_read(r->source, k, p, why) || flow_tables_read(r->source, k, p, why) ||
         law_tables_read(r->source, k, p, why))
         return why->status;
-    p->step = r->step[k], p->t = r->time[k];
+    read_clock(r, k, p);
     return cell_tables_read(r->source, k, r->repeats, p, why) || packing_check(p, why) ? why->status
                                                                                        : 0;
 }
@@ -230,7 +256,8 @@ static int hand_over(struct frame_read *r, int64_t k, const struct packing *p, i
     for (int64_t first = 0; first < n && !why->status; first += BLOCK) {
         block.n = n - first < BLOCK ? n - first : BLOCK;
         if (read_block(r, k, first, &block, why) || packing_check_bodies(&block, first, why) ||
-            r->elsewhere->take(r->elsewhere, &block, first, why) || source_unload(r->source, why))
+            r->elsewhere->take(r->elsewhere, &block, first, why) || source_unload(r->source, why) ||
+            source_frame(r->source, why)) // the block is gone
             break;
         for (int64_t i = 0; i < block.n; i++)
             most = most < block.radius[i] ? block.radius[i] : most;
@@ -275,11 +302,11 @@ static int read_packing(struct frame_read *r, int64_t k, struct packing *p, stru
         (row ? roster_read(r->source, k, row, p, why) : read_bodies(r, k, p, why)) ||
         flow_tables_read(r->source, k, p, why) || law_tables_read(r->source, k, p, why))
         goto end;
-    p->step = r->step[k], p->t = r->time[k];
+    read_clock(r, k, p);
     if (packing_varies(p) && (r->repeats[0] || r->repeats[1] || r->repeats[2]))
         why_set(why, EX_DATAERR, "bodies that come and go in a cell that repeats: not known");
-    else if (!cell_tables_read(r->source, k, r->repeats, p, why))
-        packing_check(p, why);
+    else if (!cell_tables_read(r->source, k, r->repeats, p, why) && !packing_check(p, why))
+        memory_rows_read(&r->memory, p, why);
 end:
     free(row);
     return why->status;
@@ -298,11 +325,13 @@ static int read_foreign(struct frame_read *r, struct frame *f, struct why *why)
         if (!f->u) return why_set(why, EX_SOFTWARE, "no memory for the solution");
         if (source_read(source, "/solution/u", COLUMN_F64, n, f->u, why)) return why->status;
     }
-    return report_rows_read(&r->reports, 0, r->frames == 1, &f->report, &f->reported, why);
+    return report_rows_read(&r->reports, 0, r->frames == 1, &f->report, &f->account, &f->reported,
+                            why);
 }
 
 int frame_read_moment(struct frame_read *r, int64_t k, struct frame *f, struct why *why)
 {
+    if (source_frame(r->source, why)) return why->status;
     f->history = source_text(r->source, "/nsd/history", NULL, why);
     if (why->status) return why->status;
     if (!r->step) return read_foreign(r, f, why);
@@ -314,5 +343,6 @@ int frame_read_moment(struct frame_read *r, int64_t k, struct frame *f, struct w
     }
     f->packed = true;
     if (contact_rows_read(&r->contacts, f, why)) return why->status;
-    return report_rows_read(&r->reports, r->step[k], r->frames == 1, &f->report, &f->reported, why);
+    return report_rows_read(&r->reports, r->step[k], r->frames == 1, &f->report, &f->account,
+                            &f->reported, why);
 }

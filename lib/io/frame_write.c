@@ -1,11 +1,13 @@
 #include "io/frame_write.h"
 
+#include "io/account_rows.h"
 #include "io/boundary_tables.h"
 #include "io/cell_tables.h"
 #include "io/contact_rows.h"
 #include "io/flow_tables.h"
 #include "io/h5.h"
 #include "io/law_tables.h"
+#include "io/memory_rows.h"
 #include "io/report_rows.h"
 #include "io/roster.h"
 #include "io/shape_tables.h"
@@ -42,6 +44,10 @@ static int write_parameters(hid_t file, const struct frame *f, struct why *why)
         h5_attr(file, "/nsd", "gravity", H5T_NATIVE_DOUBLE, 3, g, why) ||
         h5_attr(file, "/nsd", "seed", H5T_NATIVE_INT64, -1, &seed, why) ||
         (p->overlap && h5_attr_text(file, "/nsd", "overlap", overlap_name[p->overlap], why)))
+        return why->status;
+    const double origin[2] = { p->t0, (double)p->step0 };
+    if ((p->t0 != 0 || p->step0) &&
+        h5_attr(file, "/nsd", "time_origin", H5T_NATIVE_DOUBLE, 2, origin, why))
         return why->status;
     return p->scene ? h5_write_text(file, "/nsd/scene", p->scene, why) : 0;
 }
@@ -132,10 +138,12 @@ int frame_write_moment(struct table_write *s, const struct frame *f, struct why 
          write_particles_clock(s, false, &f->packing, why) || flow_write(s, &f->packing, why)))
         return why->status;
     if (f->packed &&
-        (boundary_tables_write(s, &f->packing, why) || law_tables_write(s, &f->packing, why)))
+        (boundary_tables_write(s, &f->packing, why) || law_tables_write(s, &f->packing, why) ||
+         memory_rows_write(s, &f->packing, why)))
         return why->status;
     if (f->packed && f->detected && contact_rows_write(s, f, why)) return why->status;
-    return f->reported ? report_rows_write(s, &f->report, why) : 0;
+    if (!f->reported || report_rows_write(s, &f->report, why)) return why->status;
+    return f->packed ? account_rows_write(s, &f->account, why) : 0;
 }
 
 int frame_write_step(struct table_write *s, const struct frame *f, struct why *why)

@@ -57,6 +57,11 @@ static const struct column layout_boundary[] = {
     { "until", "s", COLUMN_F64, 1, offsetof(struct wall, until) },
     { 0 },
 };
+/* The same where any has a weld tolerance of its own */
+static const struct column layout_weld[] = {
+    { "weld", "m", COLUMN_F64, 1, offsetof(struct wall, weld) },
+    { 0 },
+};
 static const struct column layout_plane[] = {
     { "point", "m", COLUMN_F64, 3, offsetof(struct wall, x) },
     { "normal", "1", COLUMN_F64, 3, offsetof(struct wall, n) },
@@ -164,7 +169,27 @@ static const struct column layout_bonds[] = {
     { 0 },
 };
 
-/* The same where there are shapes */
+/* /nsd/memory/NAME [K][width], of each frame that has it `count` rows from `start` on: members of struct recall; with
+   features, shifts and moments where contacts have any */
+static const struct column layout_memory[] = {
+    { "body", "1", COLUMN_I32, 2, offsetof(struct recall, a) },
+    { "impulse", "N s", COLUMN_F64, 3, offsetof(struct recall, r) },
+    { 0 },
+};
+static const struct column layout_memory_features[] = {
+    { "feature", "1", COLUMN_I32, 1, offsetof(struct recall, feature) },
+    { 0 },
+};
+static const struct column layout_memory_shifts[] = {
+    { "shift", "1", COLUMN_I8, 3, offsetof(struct recall, shift) },
+    { 0 },
+};
+static const struct column layout_memory_moments[] = {
+    { "moment", "N m s", COLUMN_F64, 3, offsetof(struct recall, m) },
+    { 0 },
+};
+
+/* Of bonds where there are shapes */
 static const struct column layout_anchors[] = {
     { "area", "m2", COLUMN_F64, 1, offsetof(struct bond, area) },
     { "anchor_a", "m", COLUMN_F64, 3, offsetof(struct bond, at_a) },
@@ -251,6 +276,14 @@ static const struct column layout_report[] = {
     { "newton", "1", COLUMN_I64, 1, offsetof(struct report, newton) },
     { "safeguarded", "1", COLUMN_I64, 1, offsetof(struct report, safeguarded) },
     { "gave_up", "1", COLUMN_I64, 1, offsetof(struct report, gave_up) },
+    { 0 },
+};
+
+/* The same where the criterion is velocity */
+static const struct column layout_velocity[] = {
+    { "velocity", "1", COLUMN_F64, 1, offsetof(struct report, err.velocity) },
+    { "velocity_error", "m s-1", COLUMN_F64, 1, offsetof(struct report, err.velocity_error) },
+    { "jammed", "1", COLUMN_I64, 1, offsetof(struct report, err.jammed) },
     { 0 },
 };
 

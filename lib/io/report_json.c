@@ -25,6 +25,9 @@ static void set_err(json_t *j, const struct err *e)
     json_object_set_new(j, "natural", json_number(e->natural));
     json_object_set_new(j, "natural_siconos", json_number(e->natural_siconos));
     json_object_set_new(j, "natural_q", json_number(e->natural_q));
+    json_object_set_new(j, "velocity", json_number(e->velocity));
+    json_object_set_new(j, "velocity_error", json_number(e->velocity_error));
+    json_object_set_new(j, "jammed", json_integer(e->jammed));
 }
 
 json_t *json_err(const struct err *e)
@@ -69,7 +72,27 @@ json_t *json_report(const struct report *r)
     json_object_set_new(j, "newton", json_integer(r->newton));
     json_object_set_new(j, "safeguarded", json_integer(r->safeguarded));
     json_object_set_new(j, "gave_up", json_integer(r->gave_up));
+    if (r->watched) json_object_set_new(j, "passed", json_integer(r->passed));
     if (r->balanced) json_object_set_new(j, "balance", balance(&r->balance, r->tied, r->may_gain));
+    return j;
+}
+
+json_t *json_account(const struct account *a)
+{
+    json_t *j = json_pack("{s:I}", "steps", (json_int_t)a->steps);
+    for (int k = 0; k < ACCOUNT_ROWS; k++) {
+        const struct watched *w = &account_watched[k];
+        const struct account_entry *e = &a->worst[k];
+        json_t *row = json_object();
+        json_object_set_new(row, "value", json_number(e->value));
+        json_object_set_new(row, "step", json_integer((json_int_t)e->step));
+        if (w->bodies) json_object_set_new(row, "bodies", json_array());
+        for (int i = 0; i < w->bodies && e->value != 0; i++)
+            json_array_append_new(json_object_get(row, "bodies"),
+                                  json_integer((json_int_t)e->bodies[i]));
+        json_object_set_new(row, "fails", json_boolean(account_row_fails(a, (enum account_row)k)));
+        json_object_set_new(j, w->name, row);
+    }
     return j;
 }
 

@@ -5,11 +5,11 @@
 #define NSD_REPORT_JSON_H
 
 #include "base/json.h"
-#include "problem/report.h"
+#include "solve/account.h"
 
 /*
  * contacts, eps_glob, motion, proj, bipotential, penetration, scaled {...}, max_penetration,
- * max_penetration_true, max_overlap, natural, natural_siconos, natural_q
+ * max_penetration_true, max_overlap, natural, natural_siconos, natural_q, velocity, velocity_error, jammed
  */
 json_t *json_err(const struct err *err);
 /*
@@ -18,6 +18,8 @@ json_t *json_err(const struct err *err);
  * momentum, impulse } [bodies/balance.h]
  */
 json_t *json_report(const struct report *report);
+/* steps, and for each row { value, step, bodies: [...], fails } */
+json_t *json_account(const struct account *account);
 
 /* Prints one compact line on stdout and frees the value. */
 void json_line(json_t *value);

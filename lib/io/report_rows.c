@@ -1,7 +1,9 @@
 #include "io/report_rows.h"
 
+#include "io/account_rows.h"
 #include "io/h5.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +24,7 @@ static void count_rows(struct report_rows *r, const struct column *columns)
 
 int report_rows_open(struct report_rows *r, struct source *source, struct why *why)
 {
-    *r = (struct report_rows){ .source = source, .ahead.last = -1 };
+    *r = (struct report_rows){ .source = source };
     char path[80];
     r->group = source_has(r->source, LAYOUT_REPORT) ? LAYOUT_REPORT : LAYOUT_REPORT_0_1;
     snprintf(path, sizeof path, "%s/step", r->group);
@@ -32,9 +34,12 @@ int report_rows_open(struct report_rows *r, struct source *source, struct why *w
     if (source_shape(r->source, path, shape) > 0 && shape[0] < (uint64_t)r->solves)
         r->solves = (int64_t)shape[0];
     count_rows(r, layout_report);
+    count_rows(r, layout_velocity);
     count_rows(r, layout_balance);
     count_rows(r, layout_bond_balance);
     count_rows(r, layout_gain_balance);
+    r->solves = account_rows_count(source, r->group, r->solves);
+    if (!why->status) r->solves = table_read_rising(r->solved, r->solves);
     return why->status;
 }
 
@@ -43,8 +48,8 @@ static int check_report(const struct report *rep, const char *group, struct why 
 {
     uint8_t converged;
     memcpy(&converged, &rep->converged, 1);
-    if (rep->sweeps < 0 || rep->err.contacts < 0 || rep->newton < 0 || rep->safeguarded < 0 ||
-        rep->gave_up < 0)
+    if (rep->sweeps < 0 || rep->err.contacts < 0 || rep->err.jammed < 0 || rep->newton < 0 ||
+        rep->safeguarded < 0 || rep->gave_up < 0)
         return why_set(why, EX_DATAERR, "%s: a number of things is negative", group);
     if (converged > 1) return why_set(why, EX_DATAERR, "%s/converged: is %d", group, converged);
     return 0;
@@ -68,18 +73,27 @@ static int read_history(struct source *doc, const char *group, struct report *re
 static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
 {
     char time[80];
-    free(r->ahead.row), free(r->ahead.time);
+    free(r->ahead.row), free(r->ahead.account), free(r->ahead.time);
     int64_t n = r->solves - at < AHEAD ? r->solves - at : AHEAD;
     r->ahead.first = at, r->ahead.n = 0;
     r->ahead.row = calloc((size_t)n, sizeof *r->ahead.row);
+    r->ahead.account = calloc((size_t)n, sizeof *r->ahead.account);
     r->ahead.time = calloc((size_t)n, sizeof *r->ahead.time);
-    if (!r->ahead.row || !r->ahead.time)
+    if (!r->ahead.row || !r->ahead.account || !r->ahead.time)
         return why_set(why, EX_SOFTWARE, "no memory for %s", r->group);
     snprintf(time, sizeof time, "%s/time", r->group);
     if (table_read_columns(r->source, r->group, "/value", layout_report, at, n, r->ahead.row,
                            sizeof *r->ahead.row, why) ||
-        source_rows(r->source, time, COLUMN_F64, at, n, 1, r->ahead.time, why))
+        source_rows(r->source, time, COLUMN_F64, at, n, 1, r->ahead.time, why) ||
+        account_rows_read(r->source, r->group, at, n, r->ahead.account, why))
         return why->status;
+    snprintf(time, sizeof time, "%s/velocity/value", r->group);
+    bool velocity = source_has(r->source, time);
+    if (velocity && table_read_columns(r->source, r->group, "/value", layout_velocity, at, n,
+                                       r->ahead.row, sizeof *r->ahead.row, why))
+        return why->status;
+    for (int64_t i = 0; i < n && !velocity; i++)
+        r->ahead.row[i].err.velocity = r->ahead.row[i].err.velocity_error = NAN; // not known
     snprintf(time, sizeof time, "%s/dissipation/value", r->group);
     bool balanced = source_has(r->source, "/particles/all") && source_has(r->source, time);
     if (balanced && table_read_columns(r->source, r->group, "/value", layout_balance, at, n,
@@ -103,19 +117,18 @@ static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
 }
 
 int report_rows_read(struct report_rows *r, int64_t step, bool alone, struct report *rep,
-                     bool *there, struct why *why)
+                     struct account *account, bool *there, struct why *why)
 {
     const char *group = r->group;
     alone = alone && r->solves == 1;
-    int64_t at = alone ? 0 : table_read_row(r->solved, r->solves, step, r->ahead.last + 1);
+    int64_t at = alone ? 0 : table_read_row(r->solved, r->solves, step);
     *there = at >= 0;
     if (at < 0) return 0;
     bool is_read = at >= r->ahead.first && at < r->ahead.first + r->ahead.n;
     if (!is_read && read_ahead(r, at, why)) return why->status;
-    *rep = r->ahead.row[at - r->ahead.first];
+    *rep = r->ahead.row[at - r->ahead.first], *account = r->ahead.account[at - r->ahead.first];
     if (check_report(rep, group, why)) return why->status;
     rep->step = r->solved[at], rep->t = r->ahead.time[at - r->ahead.first];
-    r->ahead.last = at;
     char *method = source_text(r->source, group, "method", why);
     char *criterion = source_text(r->source, group, "criterion", why);
     rep->options = source_text(r->source, group, "options", why);
@@ -125,12 +138,14 @@ int report_rows_read(struct report_rows *r, int64_t step, bool alone, struct rep
     free(method), free(criterion);
     if (why->status || source_attribute(r->source, group, "eps", COLUMN_F64, -1, &rep->eps, why))
         return why->status;
+    if (!(rep->eps >= 0 && isfinite(rep->eps)))
+        return why_set(why, EX_DATAERR, "%s@eps: neither 0 nor a positive number", group);
     return read_history(r->source, group, rep, why);
 }
 
 void report_rows_close(struct report_rows *r)
 {
-    free(r->solved), free(r->ahead.row), free(r->ahead.time);
+    free(r->solved), free(r->ahead.row), free(r->ahead.account), free(r->ahead.time);
     *r = (struct report_rows){ 0 };
 }
 
@@ -165,6 +180,8 @@ int report_rows_write(struct table_write *s, const struct report *rep, struct wh
                             why) ||
         table_write_clock(s, solver, true, &rep->step, solver, layout_report, why) ||
         table_write_clock(s, solver, false, &rep->t, solver, layout_report, why) ||
+        (rep->criterion == CRITERION_VELOCITY &&
+         write_table(s, layout_velocity, rep, first, why)) ||
         (rep->balanced && write_balance(s, rep, first, why)))
         return why->status;
     if (first &&

@@ -7,6 +7,7 @@
 
 #include "io/table_read.h"
 #include "io/table_write.h"
+#include "solve/account.h"
 
 /* The reports of a document that is read */
 struct report_rows {
@@ -17,20 +18,20 @@ struct report_rows {
     struct {
         struct report *row; /* [n] reports from `first` on, read at once: a question of the document
                                takes longer than its answer; or NULL */
-        double *time;       /* [n] s */
+        struct account *account; /* [n] */
+        double *time;            /* [n] s */
         int64_t first, n;
-        int64_t last; /* the row that was wanted last; -1: none yet */
     } ahead;
 };
 
 int report_rows_open(struct report_rows *rows, struct source *source, struct why *why);
 void report_rows_close(struct report_rows *rows);
 /*
- * The report on the solve that led to this step, if there is one. alone: the document has one frame;
+ * The report on the solve that led to this step, if there is one, and the account up to there. alone: the document has one frame;
  * its one report is that, for nsd-solve reports on the step that is still to be made.
  */
 int report_rows_read(struct report_rows *rows, int64_t step, bool alone, struct report *report,
-                     bool *there, struct why *why);
+                     struct account *account, bool *there, struct why *why);
 
 /* The next row; texts and history are written with the first. */
 int report_rows_write(struct table_write *tables, const struct report *report, struct why *why);

@@ -1,7 +1,7 @@
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): F_OFD_SETLK
 #include "io/writer.h"
 
-#include "base/unfinished.h"
+#include "base/output.h"
 #include "io/frame_write.h"
 #include "io/h5.h"
 #include "io/roster.h"
@@ -22,8 +22,6 @@ enum {
         1 << 22,     /* bytes reserved at a time: posix_fallocate costs a tenth of a frame */
     ALIGN_FROM = 64, /* bytes: the smallest thing aligned; an index's head has 72 */
 };
-
-static const off_t LOCKED = (off_t)1 << 62; /* the byte that a writer locks */
 
 static const char CUT_OFF[] = "has been cut off by another program";
 
@@ -53,10 +51,11 @@ struct writer {
     int64_t frames;               /* that are finished */
     off_t end;                    /* of the file, at the last flush */
     off_t start, size;            /* of a stream's document in hand; start -1: of a pipe */
-    /* a trajectory that takes a file's place, until it has: */
-    int old;                      /* the file, open and locked; else -1 */
-    char *place, *elsewhere;      /* its path, and that of the new one */
-    struct unfinished unfinished; /* the file, before there is anything in it */
+    struct output file[2];        /* two, because writer_begin makes one before */
+    struct output *output;        /* the file; NULL: standard output */
+    struct output *begun;         /* the one that has its place until there is a frame; or NULL */
+    bool waits;                   /* it takes its place when it is told to, or closed */
+    bool linked;                  /* the file had a name when it was opened */
 };
 
 static int output_failed(const struct writer *s, struct why *why, const char *trouble)
@@ -64,30 +63,23 @@ static int output_failed(const struct writer *s, struct why *why, const char *tr
     return why_set(why, EX_IOERR, "%s: %s", s->name, trouble);
 }
 
-/*
- * A regular file has one writer: the second is refused, or has to wait where it only appends. The lock
- * belongs to what the shell opened, so that { a; b; } > f is one writer. HDF5's own, of flock, is
- * not taken: it would keep readers out, too (h5py of a growing trajectory). Only a byte beyond all data is locked:
- * MPI-IO may lock the bytes that the processes of one run write together.
- */
-static int take_hold(struct writer *s, int how, struct why *why)
+/* What kind of file it is that has been opened */
+static int look_at(struct writer *s, enum writer_kind kind, struct why *why)
 {
-    struct flock lock = { .l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = LOCKED, .l_len = 1 };
     struct stat st;
-    if (fstat(s->fd, &st) || !S_ISREG(st.st_mode)) return 0; // /dev/null has any number
-    while (fcntl(s->fd, how, &lock)) {
-        if (errno == EINTR) continue;
-        if (errno == EACCES || errno == EAGAIN)
-            return output_failed(s, why, "another program is writing it");
-        return 0; // no file that can be locked
-    }
+    bool regular = !fstat(s->fd, &st) && S_ISREG(st.st_mode);
+    char again[40];
+    s->append = fcntl(s->fd, F_GETFL) & O_APPEND;
+    s->linked = regular && st.st_nlink;
+    if (!s->append && output_lock(s->fd, F_OFD_SETLK, s->name, why)) return why->status;
+    if (isatty(s->fd))
+        return why_set(why, EX_USAGE,
+                       "%s is a terminal: documents are binary, use > FILE or a pipe", s->name);
+    snprintf(again, sizeof again, "/proc/self/fd/%d", s->fd);
+    if (regular && !st.st_size && !s->append && kind != WRITER_STREAM)
+        s->disk = open(again, O_RDWR | O_CLOEXEC);
+    s->trajectory = s->disk >= 0;
     return 0;
-}
-
-static void let_go(const struct writer *s)
-{
-    struct flock lock = { .l_type = F_UNLCK, .l_whence = SEEK_SET, .l_start = LOCKED, .l_len = 1 };
-    fcntl(s->fd, F_OFD_SETLK, &lock);
 }
 
 int writer_open(struct writer **out, const char *path, enum writer_kind kind, struct why *why)
@@ -95,82 +87,26 @@ int writer_open(struct writer **out, const char *path, enum writer_kind kind, st
     struct writer *s = *out = calloc(1, sizeof *s);
     if (!s) return why_set(why, EX_SOFTWARE, "no memory");
     h5_start();
-    s->doc.file = s->disk = s->old = -1;
+    s->doc.file = s->disk = -1;
     s->name = path ? path : "standard output";
-    s->fd = path ? open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666) : STDOUT_FILENO;
-    if (s->fd < 0) return output_failed(s, why, strerror(errno));
-    s->append = fcntl(s->fd, F_GETFL) & O_APPEND;
-    if (!s->append && take_hold(s, F_OFD_SETLK, why)) return why->status;
-    if (path) unfinished_begin(&s->unfinished, path, s->fd);
-    struct stat st;
-    if (path && !fstat(s->fd, &st) && S_ISREG(st.st_mode) && ftruncate(s->fd, 0))
+    s->fd = STDOUT_FILENO;
+    if (!path) return look_at(s, kind, why);
+    if (kind == WRITER_IN_PLACE && access(path, F_OK))
         return output_failed(s, why, strerror(errno));
-    if (isatty(s->fd))
-        return why_set(why, EX_USAGE,
-                       "%s is a terminal: documents are binary, use > FILE or a pipe", s->name);
-    bool own = !fstat(s->fd, &st) && S_ISREG(st.st_mode) && !st.st_size && !s->append;
-    char again[40];
-    snprintf(again, sizeof again, "/proc/self/fd/%d", s->fd);
-    if (own && kind == WRITER_TRAJECTORY) s->disk = open(again, O_RDWR | O_CLOEXEC);
-    s->trajectory = s->disk >= 0;
-    return 0;
-}
-
-/* ---- in the place of another file ---- */
-
-/* The new file is unfinished until it has its place. (One without a name, O_TMPFILE, libhdf5 does not
-   open.) */
-
-/* A file in the folder of s->place; the one writer that has s->place locked may use its name. */
-static int open_beside(struct writer *s, mode_t mode, struct why *why)
-{
-    char *folder = strdup(s->place);
-    size_t room = strlen(s->place) + 32;
-    s->elsewhere = malloc(room);
-    if (folder && s->elsewhere) {
-        const char *name = strrchr(s->place, '/') + 1; // of an absolute path
-        snprintf(s->elsewhere, room, "%s/.%s.nsd-new", dirname(folder), name);
-        s->fd = open(s->elsewhere, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, mode);
-    }
-    bool allocated = folder && s->elsewhere;
-    free(folder);
-    if (!allocated) return why_set(why, EX_SOFTWARE, "no memory");
-    if (s->fd < 0) return output_failed(s, why, strerror(errno));
-    unfinished_begin(&s->unfinished, s->elsewhere, s->fd);
-    return 0;
-}
-
-int writer_open_over(struct writer **out, const char *path, struct why *why)
-{
-    struct stat st;
-    struct writer *s = *out = calloc(1, sizeof *s);
-    if (!s) return why_set(why, EX_SOFTWARE, "no memory");
-    h5_start();
-    s->doc.file = s->disk = s->fd = -1;
-    s->name = path;
-    s->place = realpath(path, NULL); // a link stays one
-    s->old = s->place ? open(s->place, O_RDWR | O_CLOEXEC) : -1;
-    if (s->old < 0 || fstat(s->old, &st)) return output_failed(s, why, strerror(errno));
-    if (!S_ISREG(st.st_mode)) return output_failed(s, why, "not a regular file");
-    s->fd = s->old;
-    if (take_hold(s, F_OFD_SETLK, why) || open_beside(s, st.st_mode & 0777, why) ||
-        take_hold(s, F_OFD_SETLK, why))
-        return why->status;
-    char again[40];
-    snprintf(again, sizeof again, "/proc/self/fd/%d", s->fd);
-    s->disk = open(again, O_RDWR | O_CLOEXEC);
-    s->trajectory = s->disk >= 0;
-    return s->trajectory ? 0 : output_failed(s, why, strerror(errno));
+    s->output = &s->file[0];
+    if (output_open(s->output, path, why)) return why->status;
+    s->fd = s->output->fd;
+    s->waits = kind == WRITER_IN_PLACE || (kind == WRITER_COPY && s->output->old >= 0);
+    if (kind == WRITER_IN_PLACE && s->output->old < 0)
+        return output_failed(s, why, "not a regular file");
+    return look_at(s, kind, why);
 }
 
 int writer_take_place(struct writer *s, struct why *why)
 {
-    if (fsync(s->fd) || rename(s->elsewhere, s->place)) // on disk before the old one goes
-        return output_failed(s, why, strerror(errno));
-    close(s->old);
-    s->old = -1;
-    unfinished_done(&s->unfinished);
-    return 0;
+    if (fsync(s->fd)) return output_failed(s, why, strerror(errno)); // before the old one goes
+    s->waits = false;
+    return output_place(s->output, why);
 }
 
 static int64_t bodies_of(const struct frame *f)
@@ -207,12 +143,21 @@ static hid_t create(const char *path, hid_t access)
     return file;
 }
 
+/* There is something whole in it. */
+static int is_there(struct writer *s, struct why *why)
+{
+    if (s->waits || (s->output && output_place(s->output, why))) return why->status;
+    if (s->begun) output_keep(s->begun);
+    s->begun = NULL;
+    return 0;
+}
+
 /* ---- a stream ---- */
 
 /* A document begins: others that append wait, so that documents stay whole. */
 static int document_begin(struct writer *s, struct why *why)
 {
-    if (s->append && take_hold(s, F_OFD_SETLKW, why)) return why->status;
+    if (s->append && output_lock(s->fd, F_OFD_SETLKW, s->name, why)) return why->status;
     s->start = lseek(s->fd, 0, s->append ? SEEK_END : SEEK_CUR);
     s->size = 0;
     return 0;
@@ -239,7 +184,7 @@ static int document_bytes(void *to, const void *bytes, size_t size, struct why *
 static int document_end(struct writer *s, struct why *why)
 {
     struct stat st;
-    if (s->append) let_go(s);
+    if (s->append) output_unlock(s->fd);
     if (s->start >= 0 && !fstat(s->fd, &st) && S_ISREG(st.st_mode) &&
         st.st_size < s->start + s->size)
         return output_failed(s, why, CUT_OFF);
@@ -251,6 +196,12 @@ static int write_all(struct writer *s, const unsigned char *bytes, size_t size, 
     return document_begin(s, why) || document_bytes(s, bytes, size, why) || document_end(s, why)
                ? why->status
                : 0;
+}
+
+int64_t writer_size(const struct writer *s)
+{
+    struct stat st;
+    return fstat(s->fd, &st) || !S_ISREG(st.st_mode) ? 0 : (int64_t)st.st_size;
 }
 
 bool writer_passes(const struct writer *s)
@@ -266,9 +217,7 @@ int writer_pass(struct writer *s, struct reader *from, struct why *why)
         if (s->start >= 0 && ftruncate(s->fd, s->start)) return why->status;
         return why->status;
     }
-    if (document_end(s, why)) return why->status;
-    unfinished_done(&s->unfinished);
-    return 0;
+    return document_end(s, why) || is_there(s, why) ? why->status : 0;
 }
 
 /* Writes a document of the core driver straight from libhdf5's memory, with its header. */
@@ -372,6 +321,7 @@ static int reserve(struct writer *s, const struct frame *f, struct why *why)
         n += (hsize_t)s->roster.rows + 2 * s->doc.chunk_bodies;
     if (f->detected) rows = (hsize_t)f->contacts.n + CHUNK_CONTACTS;
     rows += (hsize_t)f->packing.events.n + (hsize_t)f->packing.bonds.n;
+    rows += (hsize_t)f->packing.memory.n;
     // 128 bytes a body, and as many of its motion, 256 a contact, and the tables that may grow
     hsize_t frame = 256 * n + 256 * rows + (1 << 17);
     struct stat st; // HDF5 sometimes cuts the reserve off
@@ -452,7 +402,7 @@ static int trajectory_begin(struct writer *s, const struct frame *f, struct why 
     char path[40];
     snprintf(path, sizeof path, "/proc/self/fd/%d", s->disk);
     hid_t access = H5Pcreate(H5P_FILE_ACCESS); // no padding at the file's end
-    H5Pset_file_locking(access, false, true);  // take_hold has seen to it
+    H5Pset_file_locking(access, false, true);  // output_lock has seen to it
     H5Pset_meta_block_size(access, 0), H5Pset_small_data_block_size(access, 0);
     H5Pset_alignment(access, ALIGN_FROM, DOCUMENT_USERBLOCK); // the most that HDF5 allows
     s->doc = (struct table_write){ .file = create(path, access), .growing = true };
@@ -523,6 +473,12 @@ static int trajectory_close(struct writer *s, struct why *why)
     return 0;
 }
 
+/* Half a first frame is nothing; HDF5 writes no more, for h5_start has told it so. */
+static void trajectory_fails(const struct writer *s)
+{
+    if (!s->frames && ftruncate(s->disk, 0)) return; // there is nothing more that can be done
+}
+
 int writer_frame(struct writer *s, const struct frame *f, struct why *why)
 {
     if (f->packed && packing_check(&f->packing, why))
@@ -530,23 +486,51 @@ int writer_frame(struct writer *s, const struct frame *f, struct why *why)
     if (!f->packed && s->doc.file < 0)
         s->trajectory = false; // an FCLIB problem is a document of its own
     int e = s->trajectory ? trajectory_frame(s, f, why) : stream_frame(s, f, why);
-    if (!e && s->old < 0) unfinished_done(&s->unfinished);
-    if (!e || !s->trajectory) return e;
-    // half a first frame is nothing; HDF5 writes no more, for h5_start has told it so
-    if (!s->frames && ftruncate(s->disk, 0)) return why->status;
+    if (!e) return is_there(s, why);
+    if (s->trajectory) trajectory_fails(s);
     return why->status;
+}
+
+/* The document is whole and closed, and has its place; the one with the frames will take it. */
+static int begin_again(struct writer *s, struct why *why)
+{
+    if (trajectory_close(s, why)) return why->status;
+    roster_free(&s->roster);
+    s->doc = (struct table_write){ .file = -1 };
+    s->frames = 0, s->contacts = false;
+    if (!s->output) { // it will be written over
+        s->begun = &s->file[0];
+        output_borrow(s->begun, s->fd, s->name);
+        return lseek(s->fd, 0, SEEK_SET) ? output_failed(s, why, strerror(errno)) : 0;
+    }
+    if (output_place_for_now(s->output, why)) return why->status;
+    output_unlock(s->fd);
+    close(s->disk);
+    s->begun = s->output, s->output = &s->file[1], s->disk = -1;
+    if (output_open(s->output, s->name, why)) return why->status;
+    s->fd = s->output->fd;
+    return look_at(s, WRITER_TRAJECTORY, why);
+}
+
+int writer_begin(struct writer *s, const struct frame *f, struct why *why)
+{
+    bool begun = s->frames || s->waits || (s->output && s->output->old >= 0);
+    if (!s->trajectory || begun) return 0;
+    if (trajectory_frame(s, f, why)) trajectory_fails(s);
+    return why->status ? why->status : begin_again(s, why);
 }
 
 int writer_close(struct writer *s, struct why *why)
 {
     int e = s->doc.file >= 0 ? trajectory_close(s, why) : 0;
-    if (s->old >= 0 && s->unfinished.path) unlink(s->elsewhere); // it has not got its place
-    unfinished_done(&s->unfinished);
+    if (!e && s->linked && output_removed(s->fd))
+        e = output_failed(s, why, "another program has removed it");
     if (s->disk >= 0) close(s->disk);
-    if (s->old >= 0) close(s->old);
-    free(s->place), free(s->elsewhere);
     roster_free(&s->roster);
-    if (close(s->fd) && !e) e = output_failed(s, why, strerror(errno));
+    if (s->begun) output_drop(s->begun);
+    if (!s->output && close(s->fd) && !e) e = output_failed(s, why, strerror(errno));
+    if (s->output && e) output_drop(s->output);
+    if (s->output && !e) e = output_close(s->output, why);
     free(s);
     return e;
 }

@@ -11,23 +11,24 @@
 struct writer;
 
 enum writer_kind {
-    WRITER_STREAM,    /* one document for each frame, written when it is whole */
-    WRITER_TRAJECTORY /* one growing document, where the output is a regular file of its own */
+    WRITER_STREAM,     /* one document for each frame, written when it is whole */
+    WRITER_TRAJECTORY, /* one growing document, where the output is a regular file of its own */
+    WRITER_COPY,       /* the same; the place of a file it takes when it is whole */
+    WRITER_IN_PLACE /* the same; the place of the file that there is it takes when it is told to */
 };
 
 /*
- * Opens `path`, or standard output when that is NULL. A trajectory on standard output needs an
+ * Opens `path`, or standard output when that is NULL. A file at `path` stays as it is until the first frame is
+ * whole [base/output.h]. A trajectory on standard output needs an
  * empty regular file there; elsewhere, and under >>, it becomes a stream. EX_USAGE: standard
  * output is a terminal; EX_IOERR: the output cannot be written.
  */
 int writer_open(struct writer **writer, const char *path, enum writer_kind kind, struct why *why);
 
 /*
- * A trajectory that shall take the place of the file at `path`, which stays as it is, and locked,
- * until writer_take_place: the new one is then there in one stroke, and grows on. Killed before, it
- * has left nothing. EX_IOERR: the file cannot be written, or another program is writing it.
+ * A trajectory of WRITER_IN_PLACE takes its place now, in one stroke, and grows on. Killed before, it has left
+ * the file as it was.
  */
-int writer_open_over(struct writer **writer, const char *path, struct why *why);
 int writer_take_place(struct writer *writer, struct why *why);
 
 /*
@@ -37,6 +38,15 @@ int writer_take_place(struct writer *writer, struct why *why);
  * copied. FCLIB problems go into streams only.
  */
 int writer_frame(struct writer *writer, const struct frame *frame, struct why *why);
+
+/*
+ * Before the first frame: from where the run begins. It is the output, where there is none yet, until there is a
+ * frame, so that a run that is killed before leaves a document that another one can begin with.
+ */
+int writer_begin(struct writer *writer, const struct frame *frame, struct why *why);
+
+/* Bytes of the file that is written; 0: it is none */
+int64_t writer_size(const struct writer *writer);
 
 /* Do frames become documents of their own? Then one that has come as such may go on as it is: */
 bool writer_passes(const struct writer *writer);

@@ -11,7 +11,7 @@ enum {
     BLOCK = 64,        /* bundles of one partial sum: the bits do not depend on the threads */
     PARALLEL_FROM = 8, /* blocks that are worth a second thread */
     STRIPE = 16,       /* blocks whose partial sums are held at a time */
-    SHARED_TERMS = 8   /* sums of struct sums */
+    SHARED_TERMS = 9   /* sums of struct sums */
 };
 
 #define ROUNDING (16 * DBL_EPSILON) /* of the top speed: smaller errors are rounding */
@@ -25,8 +25,10 @@ static void sums_add(struct sums *t, const struct sums *s)
         t->bipotential[k] += s->bipotential[k], t->penetration[k] += s->penetration[k];
         t->natural2[k] += s->natural2[k], t->siconos2[k] += s->siconos2[k];
         t->velocity2[k] += s->velocity2[k], t->r2[k] += s->r2[k];
+        t->jammed[k] += s->jammed[k];
         t->max_pen[k] = fmax(t->max_pen[k], s->max_pen[k]);
         t->max_true[k] = fmax(t->max_true[k], s->max_true[k]);
+        t->max_velocity2[k] = fmax(t->max_velocity2[k], s->max_velocity2[k]);
     }
 }
 
@@ -78,7 +80,7 @@ static void take_terms(const struct sums *s, int k, double term[SHARED_TERMS])
 {
     const double t[SHARED_TERMS] = { s->motion[k],      s->proj[k],     s->bipotential[k],
                                      s->penetration[k], s->natural2[k], s->siconos2[k],
-                                     s->velocity2[k],   s->r2[k] };
+                                     s->velocity2[k],   s->r2[k],       s->jammed[k] };
     for (int j = 0; j < SHARED_TERMS; j++) term[j] = t[j];
 }
 
@@ -89,6 +91,7 @@ static void sums_negate(struct sums *s)
         s->bipotential[k] = -s->bipotential[k], s->penetration[k] = -s->penetration[k];
         s->natural2[k] = -s->natural2[k], s->siconos2[k] = -s->siconos2[k];
         s->velocity2[k] = -s->velocity2[k], s->r2[k] = -s->r2[k];
+        s->jammed[k] = -s->jammed[k];
     }
 }
 
@@ -109,7 +112,7 @@ static void judge_shared(const struct problem *p, bool believes, enum err_terms 
     const int parts =
         p->beyond && !p->rolls ? 2 : 1; // what the sweep's text adds of a slot at once
     double(*term)[SHARED_TERMS] = malloc((size_t)(p->slots + 1) * (size_t)parts * sizeof *term);
-    double out[SHARED_TERMS][BUNDLE], most[2] = { 0 };
+    double out[SHARED_TERMS][BUNDLE], most[3] = { 0 };
     if (!term) {
         shared->fail(shared);
         return;
@@ -127,6 +130,7 @@ static void judge_shared(const struct problem *p, bool believes, enum err_terms 
             take_terms(&s, k, term[(BUNDLE * i + k) * parts + parts - 1]);
         most[0] = fmax(most[0], bundle_max(s.max_pen));
         most[1] = fmax(most[1], bundle_max(s.max_true));
+        most[2] = fmax(most[2], bundle_max(s.max_velocity2));
     }
     shared->judging(shared, (struct problem *)p, false);
     shared->sum(shared, p, BLOCK, parts, SHARED_TERMS, term[0], out[0]);
@@ -136,9 +140,11 @@ static void judge_shared(const struct problem *p, bool believes, enum err_terms 
         all->bipotential[k] = out[2][k], all->penetration[k] = out[3][k];
         all->natural2[k] = out[4][k], all->siconos2[k] = out[5][k];
         all->velocity2[k] = out[6][k], all->r2[k] = out[7][k];
+        all->jammed[k] = out[8][k];
     }
     all->max_pen[0] = shared->most(shared, most[0]);
     all->max_true[0] = shared->most(shared, most[1]);
+    all->max_velocity2[0] = shared->most(shared, most[2]);
 }
 
 static void judge_blocks(const struct problem *p, bool believes, enum err_terms which, int threads,
@@ -165,7 +171,7 @@ static void judge_and_add(const struct problem *p, bool believes, enum err_terms
     shared->judging(shared, (struct problem *)p, false);
     double *const sum[SHARED_TERMS] = { all->motion,      all->proj,     all->bipotential,
                                         all->penetration, all->natural2, all->siconos2,
-                                        all->velocity2,   all->r2 };
+                                        all->velocity2,   all->r2,       all->jammed };
     double x[SHARED_TERMS];
     for (int j = 0; j < SHARED_TERMS; j++) x[j] = bundle_sum(sum[j]);
     shared->add(shared, x, SHARED_TERMS);
@@ -173,7 +179,9 @@ static void judge_and_add(const struct problem *p, bool believes, enum err_terms
         for (int k = 0; k < BUNDLE; k++) sum[j][k] = k ? 0 : x[j];
     double pen = shared->most(shared, bundle_max(all->max_pen));
     double true_pen = shared->most(shared, bundle_max(all->max_true));
-    for (int k = 0; k < BUNDLE; k++) all->max_pen[k] = pen, all->max_true[k] = true_pen;
+    double off2 = shared->most(shared, bundle_max(all->max_velocity2));
+    for (int k = 0; k < BUNDLE; k++)
+        all->max_pen[k] = pen, all->max_true[k] = true_pen, all->max_velocity2[k] = off2;
 }
 
 void err_eval(struct err *e, const struct problem *p, bool believes, enum err_terms which,
@@ -203,14 +211,20 @@ void err_eval(struct err *e, const struct problem *p, bool believes, enum err_te
         if (p->packing) e->stray = ratio(off, fmax(p->norm_q, contacts * p->fall));
         e->natural_siconos = p->norm_q > 0 ? siconos / p->norm_q : siconos;
         e->natural_q = ratio(off, p->norm_q);
+        e->velocity_error = isfinite(off) ? sqrt(bundle_max(all.max_velocity2)) : off;
+        e->jammed = (int64_t)bundle_sum(all.jammed);
+        if (!(e->velocity_error <= ROUNDING * p->speed))
+            e->velocity = ratio(e->velocity_error, p->unit);
+        if (!p->packing) e->stray = ratio(e->velocity_error, p->unit);
     }
 }
 
 double err_of(const struct err *e, enum criterion c)
 {
-    return c == CRITERION_GLOB     ? e->paper.eps_glob
-           : c == CRITERION_SCALED ? e->scaled.eps_glob
-                                   : e->natural;
+    return c == CRITERION_GLOB       ? e->paper.eps_glob
+           : c == CRITERION_SCALED   ? e->scaled.eps_glob
+           : c == CRITERION_VELOCITY ? e->velocity
+                                     : e->natural;
 }
 
 double err_value(const struct err *e, enum criterion c, double eps)
@@ -222,5 +236,5 @@ double err_value(const struct err *e, enum criterion c, double eps)
 
 enum err_terms err_terms_of(enum criterion c)
 {
-    return c == CRITERION_NATURAL ? ERR_NATURAL : ERR_TERMS;
+    return c == CRITERION_NATURAL || c == CRITERION_VELOCITY ? ERR_NATURAL : ERR_TERMS;
 }

@@ -71,6 +71,17 @@ ALWAYS_INLINE vd natural2(vd mu, const vd r[3], vd rho, const vd u[3])
     return d * d;
 }
 
+/* off2: the square of the velocity by which contacts miss the law; push2: that of lambda r */
+ALWAYS_INLINE void add_velocity(struct sums *s, double unit, int k, vd off2, vd push2)
+{
+    vd seen2 = larger(off2, ROUNDING_OF_R * ROUNDING_OF_R * push2);
+    vm jammed = lt(splat(JAMMED * JAMMED * unit * unit), push2) &
+                lt(splat(MISSES * MISSES * unit * unit), seen2);
+    add_to(s->velocity2 + k, off2);
+    raise_to(s->max_velocity2 + k, pick(jammed, splat(0), seen2));
+    add_to(s->jammed + k, pick(jammed, splat(1), splat(0)));
+}
+
 ALWAYS_INLINE void add_natural(struct sums *s, const struct problem *p, int64_t bundle, int k,
                                const vd u[3])
 {
@@ -80,9 +91,10 @@ ALWAYS_INLINE void add_natural(struct sums *s, const struct problem *p, int64_t 
     for (int i = 0; i < 3; i++) r[i] = vload(c->r[i] + k);
     vd n2 = natural2(mu, r, rho, u);
     add_to(s->natural2 + k, n2);
-    add_to(s->velocity2 + k, n2 / (rho * rho));
+    vd r2 = dot3(r, r);
+    add_velocity(s, p->unit, k, n2 / (rho * rho), r2 / (rho * rho));
     add_to(s->siconos2 + k, natural2(mu, r, splat(1), u));
-    add_to(s->r2 + k, dot3(r, r));
+    add_to(s->r2 + k, r2);
 }
 
 /* What an inconsistent pull of the bond means: e = p + a + K u~, of which s e, or S^T e, would be taken back */
@@ -105,7 +117,7 @@ ALWAYS_INLINE void add_bonds(struct sums *s, const struct problem *p, int64_t bu
     vd n2 = dot3(off, off);
     if (which & ERR_TERMS) add_to(s->motion + k, lambda * norm3(off));
     if (!(which & ERR_NATURAL)) return;
-    add_to(s->natural2 + k, n2), add_to(s->velocity2 + k, n2 * lambda * lambda);
+    add_to(s->natural2 + k, n2), add_velocity(s, p->unit, k, n2 * lambda * lambda, splat(0));
     add_to(s->siconos2 + k, n2), add_to(s->r2 + k, dot3(pull, pull));
 }
 
@@ -124,7 +136,8 @@ static void judge_rolling(struct sums *s, const struct problem *p, int64_t i, in
         far += (q.x[j] - on[j]) * (q.x[j] - on[j]), r2 += q.x[j] * q.x[j];
     double lambda = rolling_lambda(&q), n2 = rolling_natural2(&q, 1 / lambda, q.x, v);
     s->proj[k] = sqrt(far), s->bipotential[k] = fabs(rolling_bipotential(&q, q.x, v));
-    s->natural2[k] = n2, s->velocity2[k] = n2 * lambda * lambda, s->r2[k] = r2;
+    s->natural2[k] = n2, s->r2[k] = r2;
+    s->velocity2[k] = s->max_velocity2[k] = n2 * lambda * lambda;
     s->siconos2[k] = rolling_natural2(&q, 1, q.x, v);
 }
 
@@ -156,6 +169,9 @@ static void judge_moments(const struct problem *p, int64_t i, bool believes, enu
         if (which & ERR_NATURAL) {
             s->natural2[k] += one.natural2[k], s->siconos2[k] += one.siconos2[k];
             s->velocity2[k] += one.velocity2[k], s->r2[k] += one.r2[k];
+            s->jammed[k] += one.jammed[k];
+            if (one.max_velocity2[k] > s->max_velocity2[k])
+                s->max_velocity2[k] = one.max_velocity2[k];
         }
     }
 }

@@ -91,6 +91,7 @@ static void describe(struct problem *p, const struct problem *bodies, const stru
 {
     p->packing = bodies->packing;
     p->dt = bodies->dt, p->fall = bodies->fall, p->speed = bodies->speed;
+    p->unit = fmax(p->unit, p->fall);
     p->scale_v = bodies->scale_v, p->scale_r = bodies->scale_r;
     for (int64_t i = 0; s->found && i < p->slots; i++) {
         if (p->contact[i] < 0) continue;

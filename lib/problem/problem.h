@@ -77,6 +77,7 @@ struct problem {
     double scale_v; /* m/s: the unit of velocities in scaled errors, g dt */
     double scale_r; /* N s: that of reactions, m g dt */
     double fall;    /* m/s: |g| dt */
+    double unit;    /* m/s: the scene's own velocity, in which CRITERION_VELOCITY counts */
     double norm_q;  /* m/s: |u~_free| of all contacts, |q| */
     double speed;   /* m/s: the fastest point before the step, plus g dt; 0: there is only W */
 };
@@ -113,6 +114,9 @@ void slot_set_beyond(struct problem *p, int64_t i, const double x[BESIDE_R]);
 /* Sets the bodies of a packing to v_free, their velocities before the step plus dt g, what the flow
    of the cell's edges gains, and what cohesion pulls. */
 void problem_set_free_motion(struct problem *p);
+
+/* Sets the unit of CRITERION_VELOCITY from the sum of |u~_free| of all contacts. */
+void problem_set_unit(struct problem *p, double sum);
 
 /* How many of these threads are to share a sweep: all where the groups are large enough, else two
    where the order has halves, else one */

@@ -29,7 +29,7 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
     p->full = W->common > 0;
     for (int64_t c = 0; c < W->n; c++) p->full = p->full || !like_balls(W->diag + 9 * c);
     delassus_begin(W);
-    double trace = 0;
+    double trace = 0, speeds = 0;
     for (int64_t i = 0; i < p->slots; i++) {
         int64_t c = p->contact[i];
         struct bundle *r = slot_bundle(p, i);
@@ -50,16 +50,19 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
         p->rho[i / BUNDLE][k] = lambda <= 0             ? 1
                                 : alpha > 0 && D[0] > 0 ? alpha / seen[0]
                                                         : rho_factor / step;
+        double q2 = 0;
         for (int j = 0; j < W->d; j++) {
             r->r[j][k] = W->r[W->d * c + j];
-            p->norm_q += q[j] * q[j];
+            p->norm_q += q[j] * q[j], q2 += q[j] * q[j];
             trace += D[4 * j];
         }
+        speeds += sqrt(q2);
     }
     // there is no g and no m: the unit of velocity is the root mean square of q, that of mass 1
     // over the mean of W_ii
     p->norm_q = sqrt(p->norm_q);
     if (p->norm_q > 0) p->scale_v = p->norm_q / sqrt((double)(W->d * W->n));
+    problem_set_unit(p, speeds);
     p->scale_r = trace > 0 ? p->scale_v * (double)(W->d * W->n) / trace : p->scale_v;
     return 0;
 }

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-const char *const criterion_name[] = { "glob", "scaled", "natural" };
+const char *const criterion_name[] = { "glob", "scaled", "natural", "velocity" };
 
 double report_seconds(enum report_clock clock)
 {

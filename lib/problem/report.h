@@ -6,11 +6,18 @@
 #define NSD_REPORT_H
 
 #include "bodies/balance.h"
+#include "bodies/depth.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
-enum criterion { CRITERION_GLOB, CRITERION_SCALED, CRITERION_NATURAL, CRITERION_COUNT };
+enum criterion {
+    CRITERION_GLOB,
+    CRITERION_SCALED,
+    CRITERION_NATURAL,
+    CRITERION_VELOCITY,
+    CRITERION_COUNT
+};
 extern const char *const criterion_name[CRITERION_COUNT]; /* as documents and logs have them */
 
 /* The paper's error and its four terms, each the mean over the contacts [estimator, corrected]. */
@@ -32,7 +39,11 @@ struct err {
     double natural;              /* |r - P(r - rho_a u^)| / |r|, rho_a = 1/lambda_max(W_aa) */
     double natural_siconos;      /* |r - P(r - u^)| / |q|, step 1: not scale-free */
     double natural_q;            /* |(r - P(r - rho_a u^))/rho_a| / |q| */
-    double stray; /* the same over max(|q|, sqrt(n) g dt); 0 for a problem given by W */
+    double velocity_error;       /* m/s: the largest |(r - P(r - rho_a u^))/rho_a| of a contact */
+    double velocity;             /* the same over the scene's own velocity [problem/problem.h] */
+    int64_t jammed; /* contacts that are left out of these, for their reactions grow without end */
+    double
+        stray; /* natural_q's over max(|q|, sqrt(n) g dt); of an FCLIB problem velocity */
 };
 
 struct report {
@@ -45,13 +56,17 @@ struct report {
     bool tied;              /* its terms of bonds too: where pairs have other laws */
     bool may_gain;          /* and of impacts that gain: where they may */
     struct balance balance; /* of the step that the reactions make */
+    struct depth depth;     /* of the contacts of a packing */
     enum criterion criterion;
     double eps;     /* what was asked */
     int32_t sweeps; /* or steps of cg */
     bool converged;
-    int64_t newton;       /* Newton steps in all */
-    int64_t safeguarded;  /* local solves that ended with the exact solution instead */
-    int64_t gave_up;      /* local solves that did not satisfy the law */
+    int64_t newton;      /* Newton steps in all */
+    int64_t safeguarded; /* local solves that ended with the exact solution instead */
+    int64_t gave_up;     /* local solves that did not satisfy the law */
+    bool watched;        /* passed is known: there is what bodies may go through [bodies/swift.h] */
+    int64_t passed; /* bodies that went through a boundary or a fixed hull in this step */
+    int32_t passed_id, passed_through; /* the last; and a wall -1-w, or the number of a body */
     double work;          /* ns, counted and not timed, of the whole solve [solve/prices.h] */
     const char *fallback; /* why the solver asked for could not go on, and swept instead; or NULL */
     const char *given_up; /* why it ended before its limits, a literal; or NULL */

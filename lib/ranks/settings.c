@@ -93,7 +93,8 @@ static void take_cell(struct talk *t, struct parcel *o, struct cell *c)
 /* Numbers that are not pointers */
 struct numbers {
     int64_t step;
-    double t, dt, theta;
+    double t, dt, theta, t0;
+    int64_t step0;
     vec3 g;
     uint64_t seed;
     int32_t dim, overlap, kinds, has_law, has_shape, has_image, first_id;
@@ -105,6 +106,7 @@ static void put(struct talk *t, struct parcel *o, const struct packing *p)
     int64_t k2 = (int64_t)p->kinds * p->kinds;
     memset(&n, 0, sizeof n); // its gaps, too: parcels are compared by nobody, but read by valgrind
     n.step = p->step, n.t = p->t, n.dt = p->dt, n.theta = p->theta, n.g = p->g, n.seed = p->seed;
+    n.t0 = p->t0, n.step0 = p->step0;
     n.dim = p->dim, n.overlap = (int32_t)p->overlap, n.kinds = p->kinds, n.first_id = p->first_id;
     n.has_law = p->law != NULL, n.has_shape = p->shape != NULL, n.has_image = p->image != NULL;
     parcel_put(t, o, &n, sizeof n);
@@ -129,6 +131,7 @@ static void take(struct talk *t, struct parcel *o, struct packing *p)
     packing_free(p);
     if (packing_init(p, n.dim, 0, &why) || packing_alloc_kinds(p, n.kinds, &why)) fail(t, &why);
     p->step = n.step, p->t = n.t, p->dt = n.dt, p->theta = n.theta, p->g = n.g, p->seed = n.seed;
+    p->t0 = n.t0, p->step0 = n.step0;
     p->overlap = (enum overlap)n.overlap, p->first_id = n.first_id;
     free(p->wall);
     p->walls = (int32_t)parcel_take_array(t, o, &p->wall, sizeof *p->wall);

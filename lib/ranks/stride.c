@@ -3,6 +3,7 @@
 
 #include "bodies/detect.h"
 #include "bodies/freedom.h"
+#include "bodies/swift.h"
 #include "bodies/tidy.h"
 #include "problem/prepare.h"
 #include "ranks/blocks.h"
@@ -72,7 +73,8 @@ static void find_contacts(struct stride *y, double gap, double reach, struct con
 {
     struct part *part = &y->part;
     struct why why = { 0 };
-    if (part_deal(part, reach)) neighbours_free(&y->near);
+    double ahead = talk_most(part->talk, swift_reach(&part->p));
+    if (part_deal(part, fmax(reach, ahead))) neighbours_free(&y->near);
     if (detect_near(s, &part->p, reach, &y->near, &why)) fail(y, &why);
     bool *keep = talk_new(part->talk, s->n, sizeof *keep);
     for (int64_t i = 0; i < s->n; i++) keep[i] = part_has(part, &s->c[i]);
@@ -304,16 +306,12 @@ static int detect(struct stride *y, struct packing *whole, struct contacts *all,
                   struct contacts *s, const struct step_opt *o, struct why *why)
 {
     struct talk *t = y->part.talk;
-    struct contacts before = { 0 };
     double reach;
-    if (o->warm) before = *all, *all = (struct contacts){ 0 };
-    if (!t->me) packing_tidy(whole, &before);
+    if (!t->me) memory_set(&whole->memory, o->warm), packing_tidy(whole, NULL);
     detect_here(y, whole, s, o, &reach);
     roll_call(roll, &y->part, s, all);
     int e = y->part.p.law ? choose_by_laws(y, whole, roll, s, all, o, reach, why) : 0;
-    if (!e && !t->me && o->warm && contacts_match(all, &before))
-        e = why_set(why, EX_SOFTWARE, "no memory for the last reactions");
-    contacts_free(&before);
+    if (!e && !t->me && o->warm) e = memory_give(&whole->memory, all, packing_rolls(whole), why);
     if (!e && (y->part.p.law || o->warm)) roll_tell_laws(roll, &y->part, s, all);
     return e;
 }
@@ -345,8 +343,9 @@ static int step_by_first(struct stride *y, struct packing *whole, struct contact
     if (detect(y, whole, all, &roll, &s, o, why)) return why->status;
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
     if (!t->me) {
-        rep->step = whole->step + 1, rep->t = whole->t + whole->dt;
+        rep->step = whole->step + 1, rep->t = packing_next_time(whole);
         rep->err.max_overlap = contacts_max_overlap(all);
+        if (depth_of(&rep->depth, whole, all, NULL, why)) return why->status;
     }
     if (blocks)
         solve_in_blocks(y, &b, whole, &s, o, rep, why), blocks_free(&b);
@@ -359,6 +358,7 @@ static int step_by_first(struct stride *y, struct packing *whole, struct contact
                        : step_solve_contacts(whole, all, NULL, o, rep, why);
         if (e) return e;
         if (step_move(whole, all, o, rep, why)) return why->status;
+        step_watch(whole, whole->n, y->near.surface, rep);
         settings_copy_motion(&y->part.p, whole);
     }
     settings_follow(t, &y->part.p);
@@ -379,6 +379,41 @@ static void tell_contacts(struct stride *y, struct contacts *all, const struct c
     roll_free(&roll);
 }
 
+/* How deep they are, to all: a body counts where it is this rank's own, with all its contacts. Of ranks with
+   the same depth the pair of the largest ids stands. */
+static void measure_depth(struct stride *y, const struct contacts *s, struct depth *d)
+{
+    struct talk *t = y->part.talk;
+    struct why why = { 0 };
+    bool *own = talk_new(t, y->part.p.n, sizeof *own);
+    for (int64_t i = 0; i < y->part.p.n; i++) own[i] = y->part.owner[i] == t->me;
+    if (depth_of(d, &y->part.p, s, own, &why)) fail(y, &why);
+    free(own);
+    const double most = talk_most(t, d->deepest), none = -1e300;
+    bool here = d->deepest == most;
+    for (int k = 0; k < 2; k++) {
+        double id = talk_most(t, here ? d->pair[k] : none);
+        here = here && d->pair[k] == id;
+        d->pair[k] = (int32_t)id;
+    }
+    double first = talk_most(t, d->wedged ? -d->wedged_id : none);
+    d->wedged = talk_sum(t, d->wedged), d->wedged_id = d->wedged ? (int32_t)-first : 0;
+    d->deepest = most;
+}
+
+/* Which bodies of all ranks have gone through something */
+static void watch_here(struct stride *y, struct report *rep)
+{
+    struct talk *t = y->part.talk;
+    step_watch(&y->part.p, y->part.own, y->near.surface, rep);
+    int64_t here = rep->passed, all = talk_sum(t, here);
+    double first = -talk_most(t, here ? -(double)rep->passed_id : -INFINITY);
+    bool mine = here && rep->passed_id == first;
+    double through = talk_most(t, mine ? rep->passed_through : -INFINITY);
+    rep->passed = all;
+    if (all) rep->passed_id = (int32_t)first, rep->passed_through = (int32_t)through;
+}
+
 static int step_by_all(struct stride *y, struct packing *whole, struct contacts *all,
                        const struct step_opt *o, struct report *rep, struct why *why)
 {
@@ -391,14 +426,16 @@ static int step_by_all(struct stride *y, struct packing *whole, struct contacts 
     const bool bare = told[0];
     detect_here(y, whole, &s, o, &reach);
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
-    rep->step = y->part.p.step + 1, rep->t = y->part.p.t + y->part.p.dt;
+    rep->step = y->part.p.step + 1, rep->t = packing_next_time(&y->part.p);
     rep->err.max_overlap = talk_most(t, contacts_max_overlap(&s));
+    measure_depth(y, &s, &rep->depth);
     rep->balanced = !bare, rep->tied = false, rep->may_gain = packing_may_gain(&y->part.p);
     solve_in_blocks(y, &b, whole, &s, o, rep, why);
     bool moves = isfinite(rep->err.paper.eps_glob);
     if (moves) {
         if (!bare && told[1]) tell_contacts(y, all, &s);
         blocks_move(&b, &s, bare ? NULL : &rep->balance);
+        watch_here(y, rep);
         if (!t->me) settings_copy_motion(whole, &y->part.p);
     }
     rep->balanced = !bare && moves;

@@ -1,22 +1,21 @@
-/* scene/hull.c: qhull asked, and its triangles joined to faces [scene/hull.h]. */
+/* scene/hull.c: qhull asked, and a shape made of its answer [scene/hull.h]. */
 #include "scene/hull.h"
+
+#include "scene/hull_faces.h"
+#include "scene/thin.h"
 
 #include <libqhull_r/qhull_ra.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A triangle of the hull */
-struct facet {
-    int32_t point[3];
-    vec3 n; /* outward, and where its plane is along it */
-    double at, area;
-};
-
-/* What qhull says of the hull: its triangles (none in the plane), and which points are corners */
-struct answer {
-    int64_t facets;
-    struct facet *facet;
-    bool *corner; /* [points] */
+/* A hull while it is made */
+struct hull {
+    int dim;
+    int64_t n;
+    int32_t *kept; /* [n] of all points those that are looked at, */
+    vec3 *x;       /* [n] and where they are: from the first, in units of the extent */
+    int32_t facets;
+    struct facet *facet; /* [facets] of these points */
 };
 
 static int no_memory(struct why *why)
@@ -24,94 +23,91 @@ static int no_memory(struct why *why)
     return why_set(why, EX_SOFTWARE, "no memory for a hull");
 }
 
-static struct facet facet_of(qhT *qh, facetT *f, const vec3 *x)
+static int is_flat(struct why *why)
 {
-    struct facet to = { .n = v3(f->normal[0], f->normal[1], f->normal[2]), .at = -f->offset };
+    return why_set(why, EX_DATAERR, "is flat: its points have no volume");
+}
+
+/* ---- qhull ---- */
+
+static void turn_over(struct facet *f)
+{
+    int32_t point = f->point[0], next = f->next[0];
+    f->point[0] = f->point[1], f->point[1] = point;
+    f->next[0] = f->next[1], f->next[1] = next;
+}
+
+/* Points and neighbours, each across from a point, are in an order of which qhull says whether it is that of all
+   others, or the opposite one. */
+static struct facet facet_of(qhT *qh, facetT *f, const int32_t *number)
+{
+    struct facet to = { .face = -1 };
     vertexT *vertex, **vertexp;
-    int k = 0;
-    // cppcheck-suppress legacyUninitvar ; the loop sets it
+    facetT *neighbor, **neighborp;
+    int k = 0, l = 0;
+    // cppcheck-suppress legacyUninitvar ; the loops set them
     FOREACHvertex_(f->vertices) if (k < 3) to.point[k++] = qh_pointid(qh, vertex->point);
-    vec3 a = x[to.point[0]];
-    to.area = v3_norm(v3_cross(v3_sub(x[to.point[1]], a), v3_sub(x[to.point[2]], a)));
+    // cppcheck-suppress uninitvar
+    FOREACHneighbor_(f) if (l < 3) to.next[l++] = number[neighbor->id];
+    if (f->toporient) turn_over(&to);
     return to;
 }
 
-static int ask_qhull(struct answer *a, int dim, int64_t n, const vec3 *x, struct why *why)
+static int take_facets(struct hull *h, qhT *qh, struct why *why)
+{
+    facetT *facet;
+    int32_t *number = calloc((size_t)qh->facet_id + 1, sizeof *number), n = 0;
+    h->facet = malloc(((size_t)qh->num_facets + 1) * sizeof *h->facet);
+    if (!number || !h->facet) no_memory(why);
+    // cppcheck-suppress uninitvar ; the loop sets it
+    FORALLfacets if (!why->status) number[facet->id] = n++;
+    // cppcheck-suppress uninitvar
+    FORALLfacets if (!why->status) h->facet[h->facets++] = facet_of(qh, facet, number);
+    free(number);
+    return why->status;
+}
+
+/* All are turned alike: outward, if their volume, in the plane their area, is positive. */
+static void turn_outward(struct hull *h)
+{
+    double volume = 0;
+    for (int32_t i = 0; i < h->facets; i++) {
+        const int32_t *p = h->facet[i].point;
+        vec3 area = v3_cross(h->x[p[0]], h->x[p[1]]);
+        volume += h->dim == 2 ? area.z : v3_dot(area, h->x[p[2]]);
+    }
+    for (int32_t i = 0; i < h->facets && volume < 0; i++) turn_over(&h->facet[i]);
+}
+
+static int ask_qhull(struct hull *h, struct why *why)
 {
     qhT state, *qh = &state;
-    double *flat = malloc((size_t)n * 3 * sizeof *flat);
+    double *flat = malloc(((size_t)h->n * 3 + 1) * sizeof *flat);
     FILE *silent = fopen("/dev/null", "w");
     if (!flat || !silent) {
         free(flat);
         if (silent) fclose(silent);
         return no_memory(why);
     }
-    for (int64_t i = 0; i < n; i++) {
-        const double of[3] = { x[i].x, x[i].y, x[i].z };
-        for (int k = 0; k < dim; k++) flat[dim * i + k] = of[k];
+    for (int64_t i = 0; i < h->n; i++) {
+        const double of[3] = { h->x[i].x, h->x[i].y, h->x[i].z };
+        for (int k = 0; k < 3 && k < h->dim; k++) flat[h->dim * i + k] = of[k];
     }
-    char command[] = "qhull Qt";
+    char command[] = "qhull QJ";
     qh_zero(qh, silent);
-    bool flat_points = qh_new_qhull(qh, dim, (int)n, flat, False, command, NULL, silent) != 0;
-    if (!flat_points) {
-        facetT *facet;
-        vertexT *vertex;
-        a->facet = malloc(((size_t)qh->num_facets + 1) * sizeof *a->facet);
-        a->corner = calloc((size_t)n, sizeof *a->corner);
-        if (!a->facet || !a->corner) no_memory(why);
-        // cppcheck-suppress uninitvar ; the loop sets it
-        FORALLfacets if (a->facet && dim == 3) a->facet[a->facets++] = facet_of(qh, facet, x);
-        // cppcheck-suppress legacyUninitvar ; so does this
-        FORALLvertices if (a->corner) a->corner[qh_pointid(qh, vertex->point)] = true;
-    }
+    if (qh_new_qhull(qh, h->dim, (int)h->n, flat, False, command, NULL, silent))
+        is_flat(why);
+    else if (!take_facets(h, qh, why))
+        turn_outward(h);
     int left, total;
     qh_freeqhull(qh, !qh_ALL);
     qh_memfreeshort(qh, &left, &total);
     free(flat);
     fclose(silent);
-    if (flat_points) why_set(why, EX_DATAERR, "is flat: its points have no volume");
     return why->status;
 }
 
-/* Corners of a plane, while they are sorted around its normal */
-struct around {
-    double angle;
-    int32_t vertex;
-};
-
-static int by_angle(const void *one, const void *other)
-{
-    const struct around *a = one, *b = other;
-    return (a->angle > b->angle) - (a->angle < b->angle);
-}
-
-/* The vertices within `flat` of the plane n . x = at, counterclockwise from the first; returns how many. */
-static int32_t gather_face(const struct shape *s, vec3 normal, double at, double flat,
-                           struct around *a)
-{
-    int32_t n = 0;
-    vec3 middle = v3(0, 0, 0), e = v3_across(normal), f = v3_cross(normal, e);
-    for (int32_t i = 0; i < s->vertices; i++)
-        if (fabs(v3_dot(normal, s->vertex[i]) - at) < flat) {
-            a[n++].vertex = i;
-            middle = v3_add(middle, s->vertex[i]);
-        }
-    middle = v3_scale(1.0 / n, middle);
-    for (int32_t k = 0; k < n; k++) {
-        vec3 d = v3_sub(s->vertex[a[k].vertex], middle);
-        a[k].angle = atan2(v3_dot(d, f), v3_dot(d, e));
-    }
-    qsort(a, (size_t)n, sizeof *a, by_angle);
-    int32_t first = 0;
-    for (int32_t k = 1; k < n; k++)
-        if (a[k].vertex < a[first].vertex) first = k;
-    struct around *copy = malloc(((size_t)n + 1) * sizeof *copy);
-    if (!copy) return -1;
-    for (int32_t k = 0; k < n; k++) copy[k] = a[(first + k) % n];
-    memcpy(a, copy, (size_t)n * sizeof *a);
-    free(copy);
-    return n;
-}
+/* ---- the shape ---- */
 
 /* Does face (first place, length) a come before b? By corners, the shorter first where all are the same */
 static bool comes_before(const struct shape *s, const int32_t a[2], const int32_t b[2])
@@ -147,113 +143,62 @@ static int sort_faces(struct shape *s, struct why *why)
     return why->status;
 }
 
-static int by_area(const void *one, const void *other)
+/* Points that are corners, numbered: number[i] from 0, -1 those that are none */
+static int32_t count_corners(const struct loops *l, int64_t points, int32_t *number)
 {
-    const struct facet *a = one, *b = other;
-    if (a->area != b->area) return a->area > b->area ? -1 : 1;
-    for (int k = 0; k < 3; k++)
-        if (a->point[k] != b->point[k]) return a->point[k] < b->point[k] ? -1 : 1;
-    return 0;
+    int32_t n = 0;
+    for (int64_t i = 0; i < points; i++) number[i] = -1;
+    for (int32_t i = 0; i < l->first[l->faces]; i++) number[l->corner[i]] = 0;
+    for (int64_t i = 0; i < points; i++)
+        if (number[i] == 0) number[i] = n++;
+    return n;
 }
 
-/* Is a triangle in the plane of a face that is there? */
-static bool is_covered(const struct facet *f, const struct facet *face, int32_t faces,
-                       const vec3 *x, double flat)
-{
-    for (int32_t k = 0; k < faces; k++) {
-        bool in = true;
-        for (int c = 0; c < 3; c++)
-            in = in && fabs(v3_dot(face[k].n, x[f->point[c]]) - face[k].at) < flat;
-        if (in) return true;
-    }
-    return false;
-}
-
-/* Leaves out vertices of fewer than three faces: rounding has put them beside an edge or a face. */
-static int drop_between(struct shape *s, struct why *why)
-{
-    int32_t *of = calloc((size_t)s->vertices + 1, sizeof *of), n = 0, corners = 0, first = 0;
-    if (!of) return no_memory(why);
-    for (int32_t i = 0; i < s->corners; i++) of[s->corner[i]]++;
-    for (int32_t i = 0; i < s->vertices; i++) {
-        bool stays = of[i] >= 3;
-        of[i] = stays ? n : -1;
-        if (stays) s->vertex[n++] = s->vertex[i];
-    }
-    for (int32_t f = 0; f < s->faces; f++) {
-        int32_t end = s->first[f + 1];
-        for (int32_t i = first; i < end; i++)
-            if (of[s->corner[i]] >= 0) s->corner[corners++] = of[s->corner[i]];
-        first = end, s->first[f + 1] = corners;
-    }
-    s->vertices = n, s->corners = corners;
-    free(of);
-    return 0;
-}
-
-/* The largest triangles know their planes best. */
-static int make_faces(struct shape *s, const struct answer *a, const vec3 *x, double flat,
+static int make_shape(struct shape *s, const struct hull *h, const struct loops *l, const vec3 *x,
                       struct why *why)
 {
-    struct around *around = malloc(((size_t)s->vertices + 1) * sizeof *around);
-    if (!around) return no_memory(why);
-    qsort(a->facet, (size_t)a->facets, sizeof *a->facet, by_area);
-    for (int64_t k = 0; k < a->facets && !why->status; k++) {
-        const struct facet f = a->facet[k];
-        if (is_covered(&f, a->facet, s->faces, x, flat)) continue;
-        int32_t n = gather_face(s, f.n, f.at, flat, around);
-        if (n < 0) no_memory(why);
-        if (n < 3) continue;
-        if (s->faces + 1 > 2 * s->vertices || s->corners + n > 6 * s->vertices) {
-            why_set(why, EX_DATAERR, "is flat to rounding");
-            break;
-        }
-        a->facet[s->faces] = f; // faces are no more than what has been looked at
-        for (int32_t i = 0; i < n; i++) s->corner[s->corners++] = around[i].vertex;
-        s->first[++s->faces] = s->corners;
+    int32_t *number = malloc(((size_t)h->n + 1) * sizeof *number), corners = l->first[l->faces];
+    int32_t n = number ? count_corners(l, h->n, number) : 0;
+    if (!number) no_memory(why);
+    if (n > SHAPE_VERTICES_MOST)
+        why_set(why, EX_DATAERR, "its hull has more than %d corners", SHAPE_VERTICES_MOST);
+    if (!why->status && !shape_alloc(s, n, l->faces, corners, why)) {
+        for (int64_t i = 0; i < h->n; i++)
+            if (number[i] >= 0) s->vertex[number[i]] = x[h->kept[i]];
+        for (int32_t f = 0; f <= l->faces; f++) s->first[f] = l->first[f];
+        for (int32_t i = 0; i < corners; i++) s->corner[i] = number[l->corner[i]];
+        sort_faces(s, why);
     }
-    free(around);
-    return why->status ? why->status : drop_between(s, why);
+    free(number);
+    return why->status;
 }
 
-/* In the plane the loop of all corners */
-static int make_loop(struct shape *s, struct why *why)
+/* Of the points those that are apart, from the first one, in units of the extent */
+static int take_points(struct hull *h, int64_t n, const vec3 *x, struct why *why)
 {
-    struct around *around = malloc(((size_t)s->vertices + 1) * sizeof *around);
-    if (!around) return no_memory(why);
-    int32_t n = gather_face(s, v3(0, 0, 1), 0, INFINITY, around);
-    for (int32_t i = 0; i < n; i++) s->corner[i] = around[i].vertex;
-    s->faces = 1, s->corners = s->first[1] = n;
-    free(around);
-    return n < 0 ? no_memory(why) : 0;
+    double size = thin_extent(x, n);
+    if (!(size > 0)) return is_flat(why);
+    if (!isfinite(size)) return why_set(why, EX_DATAERR, "its points are beyond all numbers");
+    h->kept = malloc(((size_t)n + 1) * sizeof *h->kept);
+    h->x = calloc((size_t)n + 1, sizeof *h->x);
+    if (!h->kept || !h->x) return no_memory(why);
+    if (thin_out(h->kept, x, n, HULL_APART * size, why)) return why->status;
+    for (int32_t i = 0; i < n; i++)
+        if (h->kept[i] == i) h->kept[h->n++] = i; // not behind what is read
+    for (int64_t i = 0; i < h->n; i++) h->x[i] = v3_scale(1 / size, v3_sub(x[h->kept[i]], x[0]));
+    return h->n > h->dim ? 0 : is_flat(why);
 }
 
-int hull_of_points(struct shape *s, int dim, int64_t n, const vec3 *x, double flat, struct why *why)
+int hull_of_points(struct shape *s, int dim, int64_t n, const vec3 *x, struct why *why)
 {
-    struct answer a = { 0 };
-    double size = 0;
-    for (int64_t i = 0; i < n; i++) size = fmax(size, v3_norm(v3_sub(x[i], x[0])));
-    if (n <= dim || !(size > 0))
-        return why_set(why, EX_DATAERR, "is flat: its points have no volume");
-    char *name = s->name;
-    int32_t corners = 0, form = s->form;
-    double round = s->round;
-    if (!ask_qhull(&a, dim, n, x, why)) {
-        for (int64_t i = 0; i < n; i++) corners += a.corner[i];
-        if (corners > SHAPE_VERTICES_MOST)
-            why_set(why, EX_DATAERR, "its hull has more than %d corners", SHAPE_VERTICES_MOST);
-        else if (!shape_alloc(s, corners, 2 * corners, 6 * corners, why)) {
-            s->name = name, s->form = form, s->round = round;
-            s->vertices = s->faces = s->corners = 0;
-            for (int64_t i = 0; i < n; i++)
-                if (a.corner[i]) s->vertex[s->vertices++] = x[i];
-            if (dim == 2)
-                make_loop(s, why);
-            else if (!make_faces(s, &a, x, flat * size, why))
-                sort_faces(s, why);
-            if (!why->status && dim == 3) s->first[s->faces] = s->corners;
-        }
-    }
-    free(a.facet), free(a.corner);
+    struct hull h = { .dim = dim };
+    struct loops l = { 0 };
+    if (n <= dim) return is_flat(why);
+    if (!take_points(&h, n, x, why) && !ask_qhull(&h, why) &&
+        !(dim == 2 ? hull_loop : hull_faces)(&l, h.facet, h.facets, h.x, (int32_t)h.n, HULL_FLAT,
+                                             why))
+        make_shape(s, &h, &l, x, why);
+    loops_free(&l);
+    free(h.kept), free(h.x), free(h.facet);
     return why->status;
 }

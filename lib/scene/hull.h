@@ -1,20 +1,24 @@
 /*
- * scene/hull.h: convex hulls, by qhull: the faces of a shape from points. Triangles in one plane
- * become one face, and points that are no corners of three faces are left out.
+ * scene/hull.h: convex hulls, by qhull: the faces of a shape from points.
+ *
+ * Points may be noisy, and several in one place. Points as near each other as HULL_APART are one. qhull then
+ * triangulates, of points moved by some 1e-11 of the extent at random, always alike, so that none are exactly in
+ * a plane: what it says is which triangles there are, and which are next to each other. Neighbours that are
+ * within HULL_FLAT of a plane, that of the largest, are one face; and corners of two faces only, and faces of two
+ * corners, are none. So faces close, whatever rounding and noise say of each single one.
  */
 #ifndef NSD_HULL_H
 #define NSD_HULL_H
 
 #include "bodies/shape.h"
 
-/* Points are in a plane to this part of the extent: numbers as they are written, and those of files in
-   single precision, whose last bit is 6e-8 of the largest. */
-static const double HULL_FLAT = 1e-8, HULL_FLAT_SINGLE = 2e-7;
+/* Of the extent: what is closer to a plane is in it, as are the corners of files in single precision, whose last
+   bit is 6e-8 of the largest; what is closer together is one point, for a shape's faces are flat to 1e-6. */
+static const double HULL_FLAT = 2e-7, HULL_APART = 1e-6;
 
 /* s's vertices, faces and corners from n points (m; in the plane z = 0): corners in the order of the
-   points, faces in that of their corners; points within `flat` of the extent of a plane are in it.
-   Returns 0, EX_DATAERR where the points have no volume, or EX_SOFTWARE. */
-int hull_of_points(struct shape *s, int dim, int64_t n, const vec3 *point, double flat,
-                   struct why *why);
+   points, faces in that of their corners. Returns 0, EX_DATAERR where the points have no volume, or
+   EX_SOFTWARE. */
+int hull_of_points(struct shape *s, int dim, int64_t n, const vec3 *point, struct why *why);
 
 #endif

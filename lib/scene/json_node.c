@@ -1,6 +1,8 @@
 /* scene/json_node.c: nodes, their places in the text, and the checks of keys and values. */
 #include "scene/json_node.h"
 
+#include "base/mark.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,7 +29,9 @@ static int refuse_zero(const char *text, size_t length, struct why *why)
 int json_doc_parse(struct json_doc *t, const char *text, size_t length, struct why *why)
 {
     json_error_t e;
+    size_t mark = mark_length(text, length);
     *t = (struct json_doc){ .why = why };
+    text += mark, length -= mark;
     if (refuse_zero(text, length, why)) return why->status;
     t->root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &e);
     if (!t->root) {

@@ -1,18 +1,27 @@
 /*
- * scene/mesh_file.h: triangles from files of other programs, STL, OBJ, PLY and what else libassimp
- * reads. That is loaded with the first file: it takes longer than nsd-gen needs for a scene without one.
+ * scene/mesh_file.h: triangles from files of other programs, STL, OBJ and PLY [scene/mesh_format.h]. What the
+ * bytes are says which format it is, and the name only where they do not. Readers are nsd's own: they read one
+ * file and no other, keep double precision, and refuse what is not as its format says.
  */
 #ifndef NSD_MESH_FILE_H
 #define NSD_MESH_FILE_H
 
 #include "scene/scene.h"
 
-/* Adds the triangles of a file, whose name is relative to dir (NULL: the current folder) and whose unit is
-   `scale` m; those without an area are left out. Returns 0, EX_NOINPUT, EX_DATAERR or EX_SOFTWARE. */
-int mesh_file_read(struct mesh *to, const char *dir, const char *name, double scale,
-                   struct why *why);
-/* Reads the files of all meshes of the scene, whose names are relative to dir (NULL: the current
-   folder), and adds their triangles, as above. */
-int mesh_files_read(struct scene *s, const char *dir, struct why *why);
+enum {
+    MESH_BYTES_MOST = 1 << 30, /* of all files of a scene */
+    MESH_WORK_MOST = 1 << 30   /* for concave polygons [scene/ears.h]: some seconds */
+};
+
+/* Adds the triangles of a file, whose name is relative to files->dir and whose unit is `scale` m, and adds
+   to its accounts; *left_out: triangles that are not there [scene/soup.h]. Returns 0, EX_NOINPUT,
+   EX_DATAERR or EX_SOFTWARE. */
+int mesh_file_read(struct mesh *to, struct scene_files *files, const char *name, double scale,
+                   int32_t *left_out, struct why *why);
+/* Reads the files of all meshes of the scene, and adds their triangles, as above. */
+int mesh_files_read(struct scene *s, struct scene_files *files, struct why *why);
+/* The same of n bytes, as a file of this name has them, with a 0 behind them */
+int mesh_bytes_read(struct mesh *to, struct scene_files *files, const char *name, const char *bytes,
+                    int64_t n, double scale, int32_t *left_out, struct why *why);
 
 #endif

@@ -2,45 +2,18 @@
 
 #include "bodies/solid.h"
 #include "scene/hull.h"
+#include "scene/thin.h"
 
 #include <stdlib.h>
 
-/* Of the hull's volume: the surface has it to this. Single precision makes 1e-7 of it. */
+/* Of the hull's volume: the surface has it to this. Single precision makes 1e-7 of it, HULL_FLAT 1e-6. */
 static const double CONVEX = 1e-5;
+
+enum { CORNERS_MOST = 1 << 20 /* whose hull takes ten seconds */ };
 
 static int no_memory(struct why *why)
 {
     return why_set(why, EX_SOFTWARE, "no memory for a mesh");
-}
-
-struct corner {
-    vec3 x;
-    int32_t vertex;
-};
-
-static int by_place(const void *one, const void *other)
-{
-    const struct corner *a = one, *b = other;
-    if (a->x.x != b->x.x) return a->x.x < b->x.x ? -1 : 1;
-    if (a->x.y != b->x.y) return a->x.y < b->x.y ? -1 : 1;
-    if (a->x.z != b->x.z) return a->x.z < b->x.z ? -1 : 1;
-    return (a->vertex > b->vertex) - (a->vertex < b->vertex);
-}
-
-/* to[v] = the first of the vertices that lie where v does: an STL file has one once a triangle. */
-static int weld(int32_t *to, const struct mesh *m, struct why *why)
-{
-    struct corner *c = malloc(((size_t)m->vertices + 1) * sizeof *c);
-    if (!c) return no_memory(why);
-    for (int32_t i = 0; i < m->vertices; i++) c[i] = (struct corner){ m->vertex[i], i };
-    qsort(c, (size_t)m->vertices, sizeof *c, by_place);
-    for (int32_t i = 0; i < m->vertices; i++) {
-        bool same =
-            i && c[i].x.x == c[i - 1].x.x && c[i].x.y == c[i - 1].x.y && c[i].x.z == c[i - 1].x.z;
-        to[c[i].vertex] = same ? to[c[i - 1].vertex] : c[i].vertex;
-    }
-    free(c);
-    return 0;
 }
 
 /* A side of a triangle, from the lesser vertex to the greater or back */
@@ -76,19 +49,26 @@ static int judge_sides(const struct side *side, int32_t n, struct why *why)
     return 0;
 }
 
-/* Is every side that of two triangles, once either way? */
-static int judge_closed(const struct mesh *m, const int32_t *place, struct why *why)
+/* Is every side that of two triangles, once either way? Corners as near as those of a hull may be are one. */
+static int judge_closed(const struct mesh *m, struct why *why)
 {
     struct side *side = malloc((3 * (size_t)m->elements + 1) * sizeof *side);
-    if (!side) return no_memory(why);
-    for (int32_t i = 0; i < m->elements; i++)
-        for (int k = 0; k < 3; k++) {
-            int32_t a = place[m->element[i][k]], b = place[m->element[i][(k + 1) % 3]];
-            side[3 * i + k] = (struct side){ a < b ? a : b, a < b ? b : a, a > b, i };
+    int32_t *to = malloc(((size_t)m->vertices + 1) * sizeof *to), n = 0;
+    double apart = HULL_APART * thin_extent(m->vertex, m->vertices);
+    if (!side || !to) no_memory(why);
+    if (!why->status && !thin_out(to, m->vertex, m->vertices, apart, why)) {
+        for (int32_t i = 0; i < m->elements; i++) {
+            const int32_t *e = m->element[i], c[3] = { to[e[0]], to[e[1]], to[e[2]] };
+            if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue; // has become a line
+            for (int k = 0; k < 3; k++) {
+                int32_t p = c[k], q = c[(k + 1) % 3];
+                side[n++] = (struct side){ p < q ? p : q, p < q ? q : p, p > q, i };
+            }
         }
-    qsort(side, 3 * (size_t)m->elements, sizeof *side, by_vertices);
-    judge_sides(side, 3 * m->elements, why);
-    free(side);
+        qsort(side, (size_t)n, sizeof *side, by_vertices);
+        judge_sides(side, n, why);
+    }
+    free(side), free(to);
     return why->status;
 }
 
@@ -121,19 +101,10 @@ static int judge_convex(const struct mesh *m, const struct shape *s, struct why 
 
 int mesh_shape(struct shape *s, const struct mesh *m, bool hull, struct why *why)
 {
-    int32_t *place = malloc(((size_t)m->vertices + 1) * sizeof *place), n = 0;
-    vec3 *x = malloc(((size_t)m->vertices + 1) * sizeof *x);
-    bool *used = calloc((size_t)m->vertices + 1, sizeof *used);
-    if (!place || !x || !used)
-        no_memory(why);
-    else if (!mesh_check(m, 3, why) && !weld(place, m, why) &&
-             (hull || !judge_closed(m, place, why))) {
-        for (int32_t i = 0; i < m->elements; i++)
-            for (int k = 0; k < 3; k++) used[place[m->element[i][k]]] = true;
-        for (int32_t i = 0; i < m->vertices; i++)
-            if (used[i]) x[n++] = m->vertex[i];
-        if (!hull_of_points(s, 3, n, x, HULL_FLAT_SINGLE, why) && !hull) judge_convex(m, s, why);
-    }
-    free(place), free(x), free(used);
-    return why->status;
+    if (m->vertices > CORNERS_MOST)
+        return why_set(why, EX_DATAERR, "has more than %d corners", CORNERS_MOST);
+    if (mesh_check(m, 3, why) || (!hull && judge_closed(m, why)) ||
+        hull_of_points(s, 3, m->vertices, m->vertex, why))
+        return why->status;
+    return hull ? 0 : judge_convex(m, s, why);
 }

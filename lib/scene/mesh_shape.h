@@ -2,8 +2,7 @@
  * scene/mesh_shape.h: the convex shape of a grain from the triangles of a file [scene/mesh_file.h].
  *
  * The triangles are to be the surface of a convex body as they stand: closed, each edge the side of two
- * of them, once either way; outward; with the volume of their convex hull to 1e-5. Corners of triangles
- * that lie in one place are one. What is taken is then the hull, whose faces are as large as they can be,
+ * of them, once either way, corners within 1e-6 of the extent being one; outward; with the volume of their convex hull to 1e-5. What is taken is then the hull, whose faces are as large as they can be,
  * not triangles. Or the hull of the corners is wanted, and of the triangles nothing is asked.
  */
 #ifndef NSD_MESH_SHAPE_H

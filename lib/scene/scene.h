@@ -7,7 +7,7 @@
  *
  *   title     string
  *   dim       3 | 2                    [3] balls in space, or discs in the plane z = 0
- *   dt        number > 0               (needed) s
+ *   dt        number > 0 | "auto"      (needed) s; auto: by scene/time_step.h
  *   theta     0..1                     [0.5] of the theta-method
  *   gravity   vector                   [9.81 down the last axis] m/s^2
  *   seed      integer 0..2^32-1        [1] of the random numbers
@@ -83,7 +83,7 @@
  *   in the plane one of
  *   { segment: [[x, y], [x, y]] }      { polygon: { points: [[x, y], ...], closed } }
  *   { circle: { center, radius, side } }  { arc: { center, radius, along, arc, side } }
- *   with velocity vector [0], kind ["wall"], drives [ DRIVE ], until s, and all but the box load:
+ *   with velocity vector [0], kind ["wall"], drives [ DRIVE ], until s, weld m, and all but the box load:
  *   Bodies stay on the side that the normal points to; in a box they stay inside.
  *   side inside [that] | outside | both. A boundary may yield to a load, on top of its motion:
  *   { along: vector, mass: kg, force: N [0], speed: m/s [0], travel: m [0] }  free along the vector
@@ -214,7 +214,8 @@ struct scene_removal {
 struct scene_mesh {
     int32_t wall;
     char *file;
-    double scale; /* m a unit of the file */
+    double scale;     /* m a unit of the file */
+    int32_t left_out; /* triangles of the file that are not in the mesh */
 };
 
 /* What a shape was before it was brought to its own axes and unit [bodies/solid.h] */
@@ -234,7 +235,7 @@ struct scene_cell {
 
 struct scene {
     int dim;
-    double dt, theta;
+    double dt, theta; /* dt 0: "auto" */
     vec3 g;
     uint64_t seed;
     bool overlap;
@@ -248,6 +249,7 @@ struct scene {
 
     int32_t walls;
     struct wall *wall;    /* [walls] */
+    int32_t *wall_item;   /* [walls] which of "walls" each comes from: a box is several */
     struct drives drives; /* of them */
     struct drives pushes; /* of their loads */
     struct mesh mesh;     /* of those that are meshes */
@@ -263,9 +265,9 @@ struct scene {
     struct shapes shapes;      /* of grains */
     struct scene_solid *solid; /* [shapes.n] */
 
-    const struct scene_files *files; /* while it is parsed */
-    bool rewritten;                  /* the JSON, which now has what was in files */
-    char *text;                      /* the JSON, without blanks outside strings */
+    struct scene_files *files; /* while it is parsed */
+    bool rewritten;            /* the JSON, which now has what was in files */
+    char *text;                /* the JSON, without blanks outside strings */
 };
 
 /* Cells of a lattice along each axis, filled along x, then y, then z; and their edges (m). */
@@ -278,13 +280,16 @@ struct scene_lattice scene_lattice(const struct scene_bodies *b, int dim);
    out of documents has none: those name no files. */
 struct scene_files {
     const char *dir; /* that names are relative to; NULL: the current folder */
-    int (*read_mesh)(struct mesh *to, const char *dir, const char *name, double scale,
-                     struct why *why);
+    int64_t
+        mesh_bytes; /* read so far, and comparisons that concave polygons took: one account for all */
+    int64_t mesh_work;
+    int (*read_mesh)(struct mesh *to, struct scene_files *files, const char *name, double scale,
+                     int32_t *left_out, struct why *why);
 };
 
 /* files: NULL where shapes of grains must not be in files; the scene's text then has what was in them.
    Returns 0, EX_DATAERR, EX_NOINPUT or EX_SOFTWARE; *s needs to be freed only after 0. */
-int scene_parse(struct scene *s, const char *text, size_t length, const struct scene_files *files,
+int scene_parse(struct scene *s, const char *text, size_t length, struct scene_files *files,
                 struct why *why);
 void scene_free(struct scene *s);
 /* A file that the scene names, where names are relative to dir (NULL: to the current folder); to be freed.

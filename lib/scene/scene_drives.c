@@ -72,9 +72,22 @@ static int read_axis(jnode o, int dim, struct drive *d)
            scene_read_direction(json_node_key(&o, "axis"), dim, &d->axis);
 }
 
+/* "since_from": the drive's clock shows 0 at `from`, by which a sine without a phase begins where the
+   boundary is. */
+static int read_clock(jnode o, struct drive *d)
+{
+    bool since = false;
+    if (json_node_bool(json_node_key(&o, "since_from"), &since)) return 1;
+    if (!since) return 0;
+    if (json_node_need(&o, "from")) return 1;
+    d->clock = -d->from, d->until -= d->from, d->from = 0;
+    return 0;
+}
+
 static int read_drive(jnode o, struct scene *s, int32_t wall)
 {
-    static const char *const keys[] = { "speed", "amplitude frequency phase", "table" };
+    static const char *const keys[] = { "speed", "amplitude frequency phase since_from",
+                                        "table since_from" };
     struct drive d = { .boundary = wall, .until = INFINITY };
     int which = json_node_choice(o, "speed amplitude table");
     char names[100];
@@ -90,7 +103,7 @@ static int read_drive(jnode o, struct scene *s, int32_t wall)
         return 1;
     if (!(d.from <= d.until))
         return json_node_fault(json_node_key(&o, "until"), "must not lie before its beginning");
-    return add_signal(o, &s->drives, d);
+    return read_clock(o, &d) || add_signal(o, &s->drives, d);
 }
 
 int scene_read_drives(jnode a, struct scene *s, int32_t wall)

@@ -36,6 +36,16 @@ static bool takes_documents(jnode bodies)
     return any;
 }
 
+/* A number, or "auto" */
+static int read_dt(jnode n, double *dt)
+{
+    static const char *const words[] = { "auto", NULL };
+    int word;
+    if (!json_is_string(n.json)) return json_node_number(n, J_POSITIVE, dt);
+    *dt = 0;
+    return json_node_word(n, words, &word);
+}
+
 static int read_scene(jnode o, struct scene *s)
 {
     int64_t dim = 3, seed = 1;
@@ -50,7 +60,7 @@ static int read_scene(jnode o, struct scene *s)
         json_node_need(&o, "dt") || json_node_text(json_node_key(&o, "title"), &title) ||
         json_node_integer(json_node_key(&o, "dim"), 2, 3, &dim) ||
         json_node_integer(json_node_key(&o, "seed"), 0, UINT32_MAX, &seed) ||
-        json_node_number(json_node_key(&o, "dt"), J_POSITIVE, &s->dt) ||
+        read_dt(json_node_key(&o, "dt"), &s->dt) ||
         json_node_number(json_node_key(&o, "theta"), J_UNIT, &s->theta) ||
         json_node_number(json_node_key(&o, "density"), J_POSITIVE, &density) ||
         json_node_number(json_node_key(&o, "time"), J_ANY, &s->t) || scene_read_law(&o, &law) ||
@@ -77,7 +87,7 @@ static int read_scene(jnode o, struct scene *s)
     return 0;
 }
 
-int scene_parse(struct scene *s, const char *text, size_t length, const struct scene_files *files,
+int scene_parse(struct scene *s, const char *text, size_t length, struct scene_files *files,
                 struct why *why)
 {
     struct json_doc t;

@@ -108,7 +108,7 @@ static int read_hull(jnode o, struct shape *s, int dim)
     vec3 *x = read_points(points, dim, (size_t)dim + 1, POINTS_MOST, &n);
     struct why why = { 0 };
     if (!x) return 1;
-    hull_of_points(s, dim, (int64_t)n, x, HULL_FLAT, &why);
+    hull_of_points(s, dim, (int64_t)n, x, &why);
     free(x);
     if (why.status == EX_DATAERR) return json_node_fault(points, "%s", why.text);
     return why.status ? why_set(o.in->why, why.status, "%s", why.text) : 0;
@@ -217,6 +217,7 @@ static int read_mesh(jnode o, struct shape *s, struct scene *scene)
     const char *name = NULL;
     double scale = 1;
     bool hull = false;
+    int32_t left_out = 0;
     struct mesh mesh = { 0 };
     struct why why = { 0 };
     jnode m = json_node_key(&o, "mesh");
@@ -226,9 +227,10 @@ static int read_mesh(jnode o, struct shape *s, struct scene *scene)
         json_node_bool(json_node_key(&m, "hull"), &hull))
         return 1;
     if (!scene->files) return json_node_fault(m, "no files are read for what is in a document");
-    if (!scene->files->read_mesh(&mesh, scene->files->dir, name, scale, &why) &&
+    if (!scene->files->read_mesh(&mesh, scene->files, name, scale, &left_out, &why) &&
         mesh_shape(s, &mesh, hull, &why) && why.status == EX_DATAERR)
-        json_node_fault(m, "%s: %s%s", name, why.text,
+        json_node_fault(m, "%s: %s%s%s", name, why.text,
+                        left_out ? ", without the triangles of no area or repeated" : "",
                         hull ? "" : " (\"hull\": true asks for less)");
     else if (why.status)
         json_node_fault(m, "%s", why.text);
@@ -286,7 +288,7 @@ static int read_superquadric(jnode o, struct shape *s, int dim)
             }
         }
     struct why why = { 0 };
-    hull_of_points(s, dim, count, x, HULL_FLAT_SINGLE, &why);
+    hull_of_points(s, dim, count, x, &why);
     free(x);
     if (why.status == EX_DATAERR) return json_node_fault(q, "%s", why.text);
     return why.status ? why_set(o.in->why, why.status, "%s", why.text) : 0;

@@ -42,6 +42,7 @@ enum {
 #define LEAP_GROWTH 2.0   /* the same in a leap */
 #define RIDGE       1e-14 /* added to the scaled normal equations' diagonal of 1 */
 #define LEAP_FIRST  8.0   /* the first leap, in multiples of f */
+#define LEAP_MOST   1e15  /* and the longest: where f is 0, so is what is added */
 #define OMEGA_BALLS 1.6   /* omega of every other sweep of balls by default; 1.7 is slower */
 
 struct anderson {
@@ -289,7 +290,8 @@ static void start_mixing(struct anderson *a)
 static void stop_mixing(struct anderson *a)
 {
     if (a->least_f2 <= a->run_f2 / 2) a->run = RUN_FIRST, a->run_f2 = a->least_f2;
-    a->phase = a->leap_next ? leap : alone, a->begin = begin_plain, a->before = INFINITY;
+    a->phase = a->leap_next && !a->s->jammed ? leap : alone, a->begin = begin_plain,
+    a->before = INFINITY;
     a->left = a->run, a->reach = LEAP_FIRST;
     a->leap_next = !a->leap_next;
     a->run = a->run < RUN_MAX ? 2 * a->run : RUN_MAX;
@@ -318,9 +320,9 @@ static int leap(struct anderson *a)
     double now = measure(a);
     bool well = now <= LEAP_GROWTH * a->before;
     if (!well) a->reach = fmax(a->reach / 4, 2);
-    if (well && a->before < INFINITY) a->reach *= 2;
+    if (well && a->before < INFINITY) a->reach = fmin(2 * a->reach, LEAP_MOST);
     a->begin = well ? begin_leap : begin_taken_back, a->before = well ? now : INFINITY;
-    if (a->left <= 0) start_mixing(a);
+    if (a->left <= 0 || a->s->jammed) start_mixing(a);
     a->left -= LEAP_SWEEPS;
     return 0;
 }

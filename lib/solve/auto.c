@@ -72,7 +72,7 @@ static double sweeps_to_come(const struct strategy *a, double value)
 {
     int32_t now = a->s->rep->sweeps;
     double p = log(a->older.value / value) / log((double)now / a->older.sweeps);
-    return p > 0.1 ? now * (pow(value / a->s->o->eps, 1 / p) - 1) : INFINITY;
+    return p > 0.1 ? now * (pow(value / solve_target(a->s), 1 / p) - 1) : INFINITY;
 }
 
 /* The price of the sweeps to come, `more`, over this price (ns): at most SURE, and 0 below 1 */
@@ -113,7 +113,7 @@ static int in_subsets(struct strategy *a, double vain)
             double before = now;
             if (anderson_sweeps(a->sweeps, SETTLE)) return -1;
             now = anderson_best_value(a->sweeps);
-            more = SETTLE * log(now / s->o->eps) / log(before / now);
+            more = SETTLE * log(now / solve_target(s)) / log(before / now);
         } while (!solve_over(s) && more > 0 && more * a->price < cost);
         anderson_restore_best(a->sweeps);
         if (!(s->value < best / 4)) a->vain += cost, a->contacts += a->contacts / 5;
@@ -180,7 +180,8 @@ static int make_ready(struct strategy *a)
 static bool pays(const struct strategy *a, double more, double price)
 {
     const struct solve *s = a->s;
-    int steps = anderson_best_value(a->sweeps) > FAR * s->o->eps ? STEPS_IF_FAR : STEPS_TO_KNOW;
+    int steps =
+        anderson_best_value(a->sweeps) > FAR * solve_target(s) ? STEPS_IF_FAR : STEPS_TO_KNOW;
     return price <= AFFORD &&
            gain(a, more, STEPS_TO_END * price) * s->rep->sweeps * a->price >= steps * price;
 }

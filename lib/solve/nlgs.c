@@ -82,7 +82,8 @@ static int judged_sweep(struct solve *s, double omega, int32_t unjudged, bool la
     s->believes = s->o->method->believes;
     int32_t n = s->rep->sweeps + unjudged + 1;
     bool sure = s->o->history || s->o->every_sweep || n <= w->judge_all_until ||
-                n - w->last_judged >= CHECK_EVERY || n >= s->o->max_sweeps || last;
+                n - w->last_judged >= CHECK_EVERY || n >= s->o->max_sweeps || n == s->enough ||
+                last;
     bool keep =
         sure ||
         w->change <= (problem_bundles(s->p) < FAR_BUNDLES ? CHEAP_FORESIGHT : FORESIGHT) * w->due;
@@ -93,7 +94,8 @@ static int judged_sweep(struct solve *s, double omega, int32_t unjudged, bool la
     solve_judge(s);
     // criterion and change fall together, roughly: judge again half way to eps (on a logarithmic
     // scale), and after every sweep when near
-    w->due = s->value < 1.3 * s->o->eps ? INFINITY : change * sqrt(s->o->eps / s->value);
+    double target = solve_target(s);
+    w->due = s->value < 1.3 * target ? INFINITY : change * sqrt(target / s->value);
     w->last_judged = n, w->just_judged = true;
     return solve_met(s) || solve_spent(s) || !isfinite(s->value);
 }

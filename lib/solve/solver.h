@@ -38,6 +38,8 @@ struct solve {
     bool renewed;       /* nothing was added to the velocities since they were last made anew */
     int32_t renewed_at; /* sweeps made when they were */
     double value;       /* the criterion of the iterate when it was last judged */
+    bool jammed;        /* so were contacts: nothing is to make their reactions grow faster */
+    int32_t enough;     /* sweeps after which eps suffices; before them a part of it is aimed at */
 
     const struct solve_opt *o;
     struct report *rep;
@@ -76,7 +78,9 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
  * calls progress.
  */
 double solve_judge(struct solve *s);
-/* The value is at most eps. */
+/* What the value has to reach: eps; of CRITERION_VELOCITY less, as long as sweeps are cheap */
+double solve_target(const struct solve *s);
+/* The value has reached it. */
 bool solve_met(const struct solve *s);
 /* No sweeps or no seconds are left. */
 bool solve_spent(const struct solve *s);

@@ -3,6 +3,7 @@
 
 #include "bodies/detect.h"
 #include "bodies/move.h"
+#include "bodies/swift.h"
 #include "bodies/tidy.h"
 #include "problem/prepare.h"
 #include "solve/rebound.h"
@@ -43,7 +44,7 @@ static int solve_contacts(const struct packing *pack, struct contacts *s, struct
                         o->order, kept, why))
         return why->status;
     rep->step = pack->step + 1;
-    rep->t = pack->t + pack->dt;
+    rep->t = packing_next_time(pack);
     rep->err.max_overlap = contacts_max_overlap(s);
     if (check_solver(&p, o->solve.global, why)) return problem_free(&p), why->status;
     int failed = solve_problem(&p, &o->solve, rep);
@@ -75,6 +76,7 @@ int step_bound_impacts(const struct packing *pack, struct contacts *s, struct pl
 int step_solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
                         const struct step_opt *o, struct report *rep, struct why *why)
 {
+    if (depth_of(&rep->depth, pack, s, NULL, why)) return why->status;
     if (!o->warm) contacts_free_found(s);
     if (solve_contacts(pack, s, kept, o, rep, why)) return why->status;
     return step_bound_impacts(pack, s, kept, o, rep, why);
@@ -110,16 +112,12 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
 int step_detect(struct packing *p, struct contacts *s, struct neighbours *near,
                 const struct step_opt *o, struct report *rep, struct why *why)
 {
-    struct contacts before = { 0 };
-    if (o->warm) before = *s, *s = (struct contacts){ 0 };
     double cpu = report_seconds(CLOCK_CPU);
-    packing_tidy(p, &before);
+    memory_set(&p->memory, o->warm);
+    packing_tidy(p, NULL);
     int e = detect_contacts(s, p, o->gap, near, why);
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
-    if (!e && o->warm && contacts_match(s, &before))
-        e = why_set(why, EX_SOFTWARE, "no memory for the last reactions");
-    contacts_free(&before);
-    return e;
+    return e || !o->warm ? e : memory_give(&p->memory, s, packing_rolls(p), why);
 }
 
 int step_balance(const struct packing *p, const struct contacts *s, const struct step_opt *o,
@@ -148,11 +146,25 @@ void step_forget(struct step_memory *m)
     *m = (struct step_memory){ 0 };
 }
 
+void step_watch(const struct packing *p, int64_t n, const struct surface *surface,
+                struct report *rep)
+{
+    struct passed passed;
+    rep->watched = swift_watches(p);
+    swift_passed(&passed, p, n, surface);
+    rep->passed = passed.n;
+    if (passed.n) rep->passed_id = passed.id, rep->passed_through = passed.through;
+}
+
 int step_advance(struct packing *p, struct contacts *s, struct step_memory *m,
                  const struct step_opt *o, struct report *rep, struct why *why)
 {
-    if (step_detect(p, s, m ? &m->near : NULL, o, rep, why) ||
-        step_solve_contacts(p, s, m ? &m->plan : NULL, o, rep, why))
+    struct neighbours once = { 0 }, *near = m ? &m->near : NULL;
+    if (step_detect(p, s, near, o, rep, why) ||
+        step_solve_contacts(p, s, m ? &m->plan : NULL, o, rep, why) || step_move(p, s, o, rep, why))
         return why->status;
-    return step_move(p, s, o, rep, why);
+    if (!neighbours_surfaces(near ? near : &once, p, why))
+        step_watch(p, p->n, (near ? near : &once)->surface, rep);
+    neighbours_free(&once);
+    return why->status;
 }

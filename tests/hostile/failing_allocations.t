@@ -10,11 +10,7 @@ if grep -q __asan_init "$(command -v nsd-gen)"; then
 fi
 cc -O1 -shared -fPIC -o "$tmp/nomemory.so" tests/support/preload/failing_allocations.c
 
-nsd-gen 4 |
-    nsd-step -n 400 --every 400 2>/dev/null |
-    nsd-cat --last |
-    nsd-detect |
-    nsd-solve 2>/dev/null >"$tmp/solved.h5"
+stock solved4 >"$tmp/solved.h5"
 nsd-detect --fclib=local "$tmp/solved.h5" >"$tmp/local.h5"
 nsd-detect --fclib=global "$tmp/solved.h5" >"$tmp/global.h5"
 nsd-step -m sbp -n 3 --contacts "$tmp/solved.h5" >"$tmp/run.h5" 2>/dev/null

@@ -62,7 +62,7 @@ static int write_over(uint32_t *crc, struct why *why)
     struct writer *w = NULL;
     const char *path = fresh(".h5");
     close(open(path, O_WRONLY | O_CREAT, 0666));
-    if (!writer_open_over(&w, path, why) && !writer_frame(w, &frame[now], why))
+    if (!writer_open(&w, path, WRITER_IN_PLACE, why) && !writer_frame(w, &frame[now], why))
         writer_take_place(w, why);
     if (w) writer_close(w, why);
     *crc = crc_of(path);

@@ -14,11 +14,8 @@ if grep -q __asan_init "$(command -v nsd-gen)" || ! $f nsd-gen 1 >/dev/null 2>&1
 fi
 
 heap=$tmp/heap.h5 solved=$tmp/solved.h5
-nsd-gen 4 |
-    nsd-step -n 400 --every 400 2>/dev/null |
-    nsd-cat --last >"$heap"
-nsd-detect "$heap" |
-    nsd-solve 2>/dev/null >"$solved"
+stock heap4 >"$heap"
+stock solved4 >"$solved"
 nsd-step -m sbp -n 3 -o "$tmp/run.h5" "$heap" 2>/dev/null
 
 # What is run: $f is the preload, $o the output. Those into a document, first, are read again.

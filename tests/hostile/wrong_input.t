@@ -8,11 +8,7 @@ stride=1
 [ -z "$thin" ] || stride=6
 
 # A document that every reader takes
-nsd-gen 4 |
-    nsd-step -n 400 --every 400 2>/dev/null |
-    nsd-cat --last |
-    nsd-detect |
-    nsd-solve 2>/dev/null >"$tmp/good.h5"
+stock solved4 >"$tmp/good.h5"
 size=$(wc -c <"$tmp/good.h5")
 mapfile -t byte < <(od -An -v -tu1 -w1 "$tmp/good.h5")
 # try TOOL FILE [pipe]: sets s, leaves FILE.out and FILE.err; what libhdf5 leaks of damaged files is its own.

@@ -160,6 +160,13 @@ header()
 # foreign DOCUMENT FILE: the HDF5 file in it, without our header
 foreign() { tail -c +513 "$1" >"$2"; }
 
+# stock NAME: a packing or a problem of tests/support/stock.mk, on standard output
+stock()
+{
+    [ -x build/nsd-step ] && PATH=$PWD/build:$PATH env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL \
+        make -s -f tests/support/stock.mk "build/stock/$1.h5" >&2 && cat "build/stock/$1.h5"
+}
+
 have_h5py() { /usr/bin/python3 -c 'import h5py' 2>/dev/null; }
 
 done_testing()

@@ -12,12 +12,8 @@ step() { nsd-step "$@" 2>/dev/null; }
 solve() { nsd-solve "$@" 2>/dev/null; }
 
 # Packings with contacts: 20 balls in a heap, 4 of the paper's example 2, 20 discs
-nsd-gen 20 |
-    step -n 600 --every 600 --eps 1e-8 |
-    nsd-cat --last >"$tmp/heap.h5"
-nsd-gen 4 |
-    step -n 400 --every 400 |
-    nsd-cat --last >"$tmp/four.h5"
+stock heap20 >"$tmp/heap.h5"
+stock heap4 >"$tmp/four.h5"
 nsd-gen -d 2 20 |
     step -n 600 --every 600 --eps 1e-8 |
     nsd-cat --last >"$tmp/discs.h5"

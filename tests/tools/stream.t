@@ -12,9 +12,7 @@ step() { nsd-step "$@" 2>/dev/null; }
 steps() { nsd-info "$@" | jq -c -n '[inputs | select(.step != null).step]'; }
 documents() { nsd-info "$@" | jq -c -n '[inputs | select(.frames).frames]'; }
 
-nsd-gen 20 |
-    step -n 500 --every 500 --eps 1e-8 |
-    nsd-cat --last >"$tmp/heap.h5"
+stock heap20 >"$tmp/heap.h5"
 nsd-detect "$tmp/heap.h5" >"$tmp/contacts.h5"
 nsd-solve "$tmp/contacts.h5" >"$tmp/solved.h5" 2>/dev/null
 commands=("nsd-gen 20" "nsd-detect $tmp/heap.h5" "nsd-solve $tmp/contacts.h5" "nsd-move $tmp/solved.h5"
@@ -94,7 +92,7 @@ is "nsd-step >> f appends a document a frame" "$(documents "$tmp/appended.h5")" 
     nsd-gen 4
 } >"$tmp/both.h5"
 is "{ nsd-step; nsd-step; nsd-gen; } > f: a trajectory, and what comes after it" "$(steps "$tmp/both.h5")" \
-    "[501,502,503,501,502,0]"
+    "[601,602,603,601,602,0]"
 like "h5ls opens the first" "$(h5ls "$tmp/both.h5/particles/all/position")" 'value +Dataset \{3/Inf, 20, 3\}'
 : >"$tmp/empty.h5"
 step -n 3 "$tmp/heap.h5" >>"$tmp/empty.h5"
@@ -117,24 +115,24 @@ ok "cat a b c | nsd-detect: three documents" several nsd-detect "[1,1,1]" "$tmp/
 ok "cat a b c | nsd-solve" several nsd-solve "[1,1,1]" "$a" "$s" "$tmp/b.h5"
 ok "cat a b c | nsd-move" several nsd-move "[1,1,1]" "$s" "$s" "$s"
 ok "cat a b c | nsd-err" several nsd-err lines "$s" "$s" "$s"
-step -n 1 "$tmp/heap.h5" | cat >"$tmp/501.h5"
-step -n 1 "$tmp/501.h5" | cat >"$tmp/502.h5"
-ok "cat a b c | nsd-cat: a trajectory" several nsd-cat "[3]" "$s" "$tmp/501.h5" "$tmp/502.h5"
+step -n 1 "$tmp/heap.h5" | cat >"$tmp/601.h5"
+step -n 1 "$tmp/601.h5" | cat >"$tmp/602.h5"
+ok "cat a b c | nsd-cat: a trajectory" several nsd-cat "[3]" "$s" "$tmp/601.h5" "$tmp/602.h5"
 refuses_trajectory() { nsd-cat "$@" >"$tmp/refused.h5"; }
-refuses 65 "a trajectory's steps increase" refuses_trajectory "$tmp/501.h5" "$tmp/501.h5"
-is "and the frame before is left" "$(steps "$tmp/refused.h5")" "[501]"
-refuses 65 "a trajectory's frames have the same bodies" refuses_trajectory "$tmp/two.h5" "$tmp/501.h5"
+refuses 65 "a trajectory's steps increase" refuses_trajectory "$tmp/601.h5" "$tmp/601.h5"
+is "and the frame before is left" "$(steps "$tmp/refused.h5")" "[601]"
+refuses 65 "a trajectory's frames have the same bodies" refuses_trajectory "$tmp/two.h5" "$tmp/601.h5"
 mixed() # frames with reactions and frames without: a trajectory that reads, or none
 {
     local s=0
     nsd-cat "$@" >"$tmp/mixed.h5" 2>"$tmp/err" || s=$?
     if [ $s = 65 ]; then one_line 65 "$tmp/err"; else nsd-info "$tmp/mixed.h5" && nsd-info -c --last "$tmp/mixed.h5"; fi
 }
-nsd-detect "$tmp/501.h5" >"$tmp/501c.h5"
-nsd-solve "$tmp/501c.h5" >"$tmp/501s.h5" 2>/dev/null
-ok "nsd-cat of solved contacts and of others" mixed "$s" "$tmp/501c.h5"
-ok "nsd-cat of contacts and of solved ones" mixed "$a" "$tmp/501s.h5"
-ok "nsd-cat of a packing and of contacts" mixed "$tmp/heap.h5" "$tmp/501c.h5"
+nsd-detect "$tmp/601.h5" >"$tmp/601c.h5"
+nsd-solve "$tmp/601c.h5" >"$tmp/601s.h5" 2>/dev/null
+ok "nsd-cat of solved contacts and of others" mixed "$s" "$tmp/601c.h5"
+ok "nsd-cat of contacts and of solved ones" mixed "$a" "$tmp/601s.h5"
+ok "nsd-cat of a packing and of contacts" mixed "$tmp/heap.h5" "$tmp/601c.h5"
 ok "cat a b c | nsd-step: from the last" several "nsd-step -n 2" "[2]" "$s" "$a" "$tmp/heap.h5"
 is "- is standard input, between files" "$(nsd-gen 4 | documents "$tmp/two.h5" - "$tmp/heap.h5")" "[1,1,1,1]"
 trickle()
@@ -166,16 +164,16 @@ ok "a file is read from where its descriptor stands" cmp <(offset "$tmp/three.h5
 step -n 10 "$tmp/heap.h5" >"$tmp/ten.h5"
 step -n 10 "$tmp/heap.h5" | cat >"$tmp/ten.stream"
 for ten in ten.h5 ten.stream; do
-    is "$ten: nsd-cat --last is the last frame" "$(nsd-cat --last "$tmp/$ten" | steps)" "[510]"
-    is "$ten: nsd-cat --steps 503" "$(nsd-cat --steps 503 "$tmp/$ten" | steps)" "[503]"
-    is "$ten: nsd-cat --steps 508:" "$(nsd-cat --steps 508: "$tmp/$ten" | steps)" "[508,509,510]"
-    is "$ten: nsd-cat --steps :502" "$(nsd-cat --steps :502 "$tmp/$ten" | steps)" "[501,502]"
-    is "$ten: nsd-cat --steps 501:510:4" "$(nsd-cat --steps 501:510:4 "$tmp/$ten" | steps)" "[501,505,509]"
-    is "$ten: nsd-info --steps 501:510:4" "$(steps --steps 501:510:4 "$tmp/$ten")" "[501,505,509]"
-    is "$ten: nsd-info --last" "$(steps --last "$tmp/$ten")" "[510]"
+    is "$ten: nsd-cat --last is the last frame" "$(nsd-cat --last "$tmp/$ten" | steps)" "[610]"
+    is "$ten: nsd-cat --steps 603" "$(nsd-cat --steps 603 "$tmp/$ten" | steps)" "[603]"
+    is "$ten: nsd-cat --steps 608:" "$(nsd-cat --steps 608: "$tmp/$ten" | steps)" "[608,609,610]"
+    is "$ten: nsd-cat --steps :602" "$(nsd-cat --steps :602 "$tmp/$ten" | steps)" "[601,602]"
+    is "$ten: nsd-cat --steps 601:610:4" "$(nsd-cat --steps 601:610:4 "$tmp/$ten" | steps)" "[601,605,609]"
+    is "$ten: nsd-info --steps 601:610:4" "$(steps --steps 601:610:4 "$tmp/$ten")" "[601,605,609]"
+    is "$ten: nsd-info --last" "$(steps --last "$tmp/$ten")" "[610]"
     refuses 65 "$ten: nsd-cat --steps of steps that are not there" nsd-cat --steps 900: "$tmp/$ten"
 done
-is "nsd-step --every 4 keeps every fourth, and the last" "$(step -n 10 --every 4 "$tmp/heap.h5" | steps)" "[504,508,510]"
+is "nsd-step --every 4 keeps every fourth, and the last" "$(step -n 10 --every 4 "$tmp/heap.h5" | steps)" "[604,608,610]"
 
 # ---- the output is the input ----
 
@@ -234,7 +232,7 @@ done
 
 # ---- a full file system ----
 
-frames_of() { steps "$1" | jq -e 'length >= 1 and . == [range(501; 501 + length)]'; }
+frames_of() { steps "$1" | jq -e 'length >= 1 and . == [range(601; 601 + length)]'; }
 
 mkdir "$small"
 if mount -t tmpfs -o size=1m none "$small" 2>/dev/null; then

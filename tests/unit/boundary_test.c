@@ -192,7 +192,7 @@ static void test_minima(void)
         struct mesh m;
         struct surface s;
         sheet(&m, 8, of[k].height);
-        must(mesh_check(&m, 3, &why) || surface_init(&s, &m, 0, m.elements, &why), &why);
+        must(mesh_check(&m, 3, &why) || surface_init(&s, &m, 0, m.elements, 0, &why), &why);
         bool good = true;
         for (int i = 0; i < 200; i++) { // above inner points, edges and corners
             double y = i % 3 == 0 ? draw(0.3, 0.7) : i % 3 == 1 ? 0.5 : 0.5 + 1e-17;
@@ -230,7 +230,7 @@ static void test_distance(void)
     struct touch t[TOUCHES_MOST];
     double off = 0;
     sheet(&m, 6, hills);
-    must(surface_init(&s, &m, 0, m.elements, &why), &why);
+    must(surface_init(&s, &m, 0, m.elements, 0, &why), &why);
     for (int i = 0; i < 60; i++) {
         vec3 c = v3(draw(-0.2, 1.2), draw(-0.2, 1.2), draw(-0.4, 0.4));
         double least = INFINITY, found = INFINITY;
@@ -253,13 +253,13 @@ static void test_tree(void)
     struct touch t[TOUCHES_MOST], one[TOUCHES_MOST];
     bool good = true;
     sheet(&m, 70, hills);
-    must(surface_init(&s, &m, 0, m.elements, &why), &why);
+    must(surface_init(&s, &m, 0, m.elements, 0, &why), &why);
     for (int i = 0; i < 20; i++) {
         vec3 c = v3(draw(0, 1), draw(0, 1), draw(-0.2, 0.2));
         double least = INFINITY, found = INFINITY;
         for (int32_t e = 0; e < m.elements; e++) {
             struct surface alone;
-            must(surface_init(&alone, &m, e, 1, &why), &why);
+            must(surface_init(&alone, &m, e, 1, 0, &why), &why);
             if (surface_touches(&alone, c, 1, one)) least = fmin(least, one[0].distance);
             surface_free(&alone);
         }
@@ -299,11 +299,12 @@ static void test_velocity(void)
         struct pose before = drives_pose(&d, 0, 4, t - h), after = drives_pose(&d, 0, 4, t + h);
         struct pose now = drives_pose(&d, 0, 4, t);
         vec3 v = v3_scale(1 / (2 * h), v3_sub(pose_of(&after, x), pose_of(&before, x)));
-        vec3 found = drives_velocity(&d, 0, 4, t - h, 2 * h, pose_of(&now, x));
+        vec3 found =
+            drives_velocity(&d, 0, 4, (struct drive_step){ t - h, t + h, 2 * h }, pose_of(&now, x));
         off = fmax(off, v3_norm(v3_sub(v, found)));
         vec3 turned =
             v3_scale(1 / (2 * h), v3_sub(quat_turn(after.q, other), quat_turn(before.q, other)));
-        vec3 w = drives_spin(&d, 0, 4, t - h, 2 * h);
+        vec3 w = drives_spin(&d, 0, 4, (struct drive_step){ t - h, t + h, 2 * h });
         spin = fmax(spin, v3_norm(v3_sub(turned, v3_cross(w, quat_turn(now.q, other)))));
     }
     ok(off < 1e-7, "velocities are the differences of places, to %.1g m/s", off);

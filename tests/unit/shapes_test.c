@@ -125,7 +125,7 @@ static void hulls_by_sampling(void)
     struct shape s = { .form = SHAPE_HULL };
     struct why why = { 0 };
     for (int i = 0; i < 12; i++) x[i] = noise3();
-    hull_of_points(&s, 3, 12, x, HULL_FLAT, &why);
+    hull_of_points(&s, 3, 12, x, &why);
     struct solid o;
     solid_of(&o, &s, 3, &why);
     double inside = 0, xx = 0, n = 200000;

@@ -1,0 +1,38 @@
+/*
+ * scene/hull_faces.h: the triangles of a convex hull joined to faces [scene/hull.h]. Triangles next to each other
+ * that are in one plane become one face. Then corners that only two faces have, and faces of two corners, are left
+ * out until there are none: each step leaves a closed surface closed.
+ */
+#ifndef NSD_HULL_FACES_H
+#define NSD_HULL_FACES_H
+
+#include "base/vec.h"
+#include "base/why.h"
+
+#include <stdint.h>
+
+/* A triangle of the hull; in the plane a segment, which has two points */
+struct facet {
+    int32_t point[3]; /* counterclockwise seen from outside */
+    int32_t next[3];  /* the facet across from each of them */
+    int32_t face;     /* that it belongs to; -1: to none yet */
+    vec3 n;           /* outward */
+    double area;      /* twice */
+};
+
+/* Loops of points: of face f corner[first[f]] .. corner[first[f + 1] - 1], from the least on */
+struct loops {
+    int32_t faces;
+    int32_t *first, *corner;
+};
+
+/* The faces of facets of n points x; in a plane: what is closer to it than `flat`. Returns 0, EX_DATAERR where
+   no body is left, or EX_SOFTWARE; loops_free() in any case. */
+int hull_faces(struct loops *l, struct facet *facet, int32_t facets, const vec3 *x, int32_t n,
+               double flat, struct why *why);
+/* The same in the plane: one loop, of segments. */
+int hull_loop(struct loops *l, struct facet *facet, int32_t facets, const vec3 *x, int32_t n,
+              double flat, struct why *why);
+void loops_free(struct loops *l);
+
+#endif

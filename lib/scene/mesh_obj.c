@@ -1,0 +1,92 @@
+/*
+ * scene/mesh_obj.c: Wavefront's OBJ. [Wavefront, Advanced Visualizer 3.0, appendix B1]
+ *
+ *     v X Y Z          a corner; behind it a weight or a colour may stand
+ *     f A B C ...      a polygon of corners: A is A/texture/normal, from 1; -1 is the last one so far
+ *
+ * Lines, points, names, materials and words unknown are passed over; curves and free-form surfaces are not:
+ * without them the surface has holes. The format has no end: of a file that is cut off between two lines
+ * nothing tells.
+ */
+#include "scene/mesh_format.h"
+
+#include "scene/ears.h"
+#include "scene/mesh_words.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static bool is_among(struct word word, const char *const *list)
+{
+    for (; *list; list++)
+        if (word_is(word, *list)) return true;
+    return false;
+}
+
+static int read_corner(struct words *w)
+{
+    double x[3], more;
+    struct word word;
+    for (int k = 0; k < 3; k++)
+        if (words_number(w, &x[k])) return 1;
+    while (words_next(w, &word))
+        if (word_number(w, word, &more)) return 1;
+    return soup_corner(w->soup, v3(x[0], x[1], x[2]));
+}
+
+/* A, A/B, A//C or A/B/C: A, from 0 */
+static int read_index(struct words *w, struct word word, int64_t *corner)
+{
+    const char *slash = memchr(word.s, '/', (size_t)word.n);
+    struct word first = { word.s, slash ? (int)(slash - word.s) : word.n };
+    char *end;
+    int64_t i = strtoll(first.s, &end, 10);
+    if (!first.n || end != first.s + first.n || !i)
+        return word_fault(w, word, "is no number of a corner (1 is the first, -1 the last)");
+    if (!word_has_only(word, "/+-0123456789")) return word_fault(w, word, "is no corner A/B/C");
+    *corner = i > 0 ? i - 1 : w->soup->corners + i;
+    return 0;
+}
+
+static int read_face(struct words *w)
+{
+    int64_t corner[POLYGON_CORNERS_MOST + 1], n = 0;
+    struct word word;
+    while (n <= POLYGON_CORNERS_MOST && words_next(w, &word))
+        if (read_index(w, word, &corner[n++])) return 1;
+    return soup_polygon(w->soup, corner, n);
+}
+
+static const char *const curved[] = { "cstype", "curv", "curv2", "surf", "bzp",
+                                      "bsp",    "cdc",  "cdp",   "res",  NULL };
+
+static int read(struct soup *s, const char *bytes, int64_t n)
+{
+    struct words w = words_of(s, bytes, n);
+    w.joined = w.comments = true;
+    do {
+        struct word word;
+        if (!words_next(&w, &word)) continue;
+        if (word_is(word, "v") ? read_corner(&w)
+            : word_is(word, "f") || word_is(word, "fo")
+                ? read_face(&w)
+                : is_among(word, curved) &&
+                      word_fault(&w, word, "is free-form geometry: write the surface as polygons"))
+            return 1;
+    } while (words_line(&w));
+    return 0;
+}
+
+static bool looks(const char *bytes, int64_t n)
+{
+    static const char *const usual[] = { "v", "vt", "vn",     "vp",     "f", "g",
+                                         "o", "s",  "mtllib", "usemtl", NULL };
+    struct soup none = { 0 };
+    struct words w = words_of(&none, bytes, n);
+    struct word word;
+    w.comments = true;
+    return !memchr(bytes, 0, (size_t)(n < 512 ? n : 512)) && words_any(&w, &word) &&
+           is_among(word, usual);
+}
+
+const struct mesh_format mesh_obj = { "OBJ", ".obj", looks, read };

@@ -1,0 +1,43 @@
+/*
+ * scene/soup.h: the polygons of a file as its format gives them, one after another, and the mesh that they
+ * become: of triangles, with corners that lie in exactly one place joined, and without corners of none.
+ *
+ * Left out are triangles without any area, which cover nothing, and all but the first of those that have the
+ * same three corners.
+ */
+#ifndef NSD_SOUP_H
+#define NSD_SOUP_H
+
+#include "bodies/mesh.h"
+
+enum {
+    SOUP_TRIANGLES_MOST = 1 << 24, /* of a file; as many as documents of 1 GB have */
+    SOUP_CORNERS_MOST = 3 << 24
+};
+
+struct soup {
+    const char *name; /* of the file */
+    const char *unit; /* what is counted where it is read: "line", "triangle" */
+    int64_t at;       /* and the number of the one that is read, from 1 */
+    struct why *why;
+    bool single; /* corners are of 32 bits */
+    int32_t corners, triangles, corner_room, triangle_room;
+    vec3 *corner;           /* [corners] in the file's unit of length */
+    int32_t (*triangle)[3]; /* [triangles] */
+    int32_t flat;           /* triangles of polygons that have no area, and are not among them */
+    int64_t work;           /* left to concave polygons [scene/ears.h] */
+};
+
+/* Each returns 0 or the status of a fault. The fault names the file and the place in it. */
+int soup_fault(struct soup *s, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* At least one more corner; in an order of the format's own */
+int soup_corner(struct soup *s, vec3 x);
+/* A polygon of n corners, which are checked to be there */
+int soup_polygon(struct soup *s, const int64_t *corner, int64_t n);
+
+/* Adds the triangles to a mesh, a unit of the file `scale` m; *left_out: how many are not, see above. Refused
+   are numbers too coarse for what they describe: far from the origin those of 32 bits are. */
+int soup_mesh(struct mesh *to, struct soup *s, double scale, int32_t *left_out);
+void soup_free(struct soup *s);
+
+#endif

@@ -1,0 +1,371 @@
+/* scene/time_step.c: limits of the time step [scene/time_step.h]. */
+#include "scene/time_step.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LASTING 0.002 /* of the smallest radius: what an acceleration may bring in a step */
+#define PASSING 0.1   /* of it: what an impact may */
+#define TURN 0.02     /* rad a step */
+#define PERIOD 200    /* steps a period */
+/* Solid fractions of what has fallen, by dimension: how far the highest grains fall */
+static const double SETTLED[4] = { 0, 0, 0.8, 0.6 };
+/* To see how far, each horizontal direction is cut into so many parts at most, of so many of the largest
+   radii at least. */
+enum { COLUMNS = 16, WIDE = 6 };
+
+const struct time_step_limit time_step_limit[LIMITS] = {
+    [LIMIT_GRAVITY] = { "gravity", "acceleration", "m s-2", "g dt^2 <= 0.002 r", BY_ACCELERATION,
+                        LASTING },
+    [LIMIT_PRESSURE] = { "pressure", "acceleration of a grain, P d^2/m, in the plane P d/m",
+                         "m s-2", "P d^2/m dt^2 <= 0.002 r", BY_ACCELERATION, LASTING },
+    [LIMIT_LOAD] = { "load", "acceleration of a wall, F/M", "m s-2", "F/M dt^2 <= 0.002 r",
+                     BY_ACCELERATION, LASTING },
+    [LIMIT_STRAIN] = { "strain", "rate", "s-1", "L 2 r dt <= 0.002 r", BY_RATE, LASTING / 2 },
+    [LIMIT_SPEED] = { "speed", "of grains at the start or poured, relative to the cell's flow",
+                      "m s-1", "v dt <= 0.1 r", BY_SPEED, PASSING },
+    [LIMIT_FALL] = { "fall", "speed after the fall, sqrt(v^2 + 2 g h)", "m s-1", "v dt <= 0.1 r",
+                     BY_SPEED, PASSING },
+    [LIMIT_WALL] = { "wall", "speed of walls", "m s-1", "v dt <= 0.1 r", BY_SPEED, PASSING },
+    [LIMIT_TURN] = { "turn", "angular velocity of walls", "rad s-1", "w dt <= 0.02", BY_RATE,
+                     TURN },
+    [LIMIT_PERIOD] = { "period", "frequency of drives", "Hz", "f dt <= 1/200", BY_RATE,
+                       1.0 / PERIOD },
+};
+
+/* ---- grains ---- */
+
+/* Radii: half the thickness of the ellipsoid with these moments, of dim 2 of the disc with this area */
+static double thinness(const struct shape *s, int dim)
+{
+    if (!s) return 1;
+    if (dim == 2) return sqrt(s->volume / M_PI);
+    double all = s->moment[0] + s->moment[1] + s->moment[2], least = 1;
+    for (int k = 0; k < 3; k++) // twice the mean of x_k^2, which is h^2/5 of an ellipsoid
+        least = dmin(least, (all - 2 * s->moment[k]) / 2);
+    return sqrt(5 * dmax(least, 0));
+}
+
+static double smallest(const struct scene *s, const struct packing *p)
+{
+    double r = INFINITY;
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->mass[i] > 0) r = dmin(r, p->radius[i] * thinness(packing_shape(p, i), p->dim));
+    for (int32_t k = 0; k < s->pours; k++) {
+        int32_t shape = s->pour[k].form.shape;
+        r = dmin(r, s->pour[k].size.min * thinness(shape ? &s->shapes.s[shape] : NULL, p->dim));
+    }
+    return r;
+}
+
+/* a^dim */
+static double power(double a, int dim)
+{
+    return dim == 1 ? a : dim == 2 ? a * a : a * a * a;
+}
+
+/* m^2/kg, in the plane m/kg: of the grain that a pressure accelerates most */
+static double lightest(const struct packing *p)
+{
+    double most = 0;
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->mass[i] > 0) most = dmax(most, power(2 * p->radius[i], p->dim - 1) / p->mass[i]);
+    return most;
+}
+
+/* ---- the flow of a cell ---- */
+
+/* 1/s: the edges' own rates, as a velocity gradient */
+static void flow_of(const struct cell *c, vec3 inverse[3], double L[3][3])
+{
+    cell_inverse(c->edge, inverse);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            double sum = 0;
+            for (int k = 0; k < 3; k++) {
+                const double rate[3] = { c->rate[k].x, c->rate[k].y, c->rate[k].z };
+                const double u[3] = { inverse[k].x, inverse[k].y, inverse[k].z };
+                sum += rate[i] * u[j];
+            }
+            L[i][j] = sum;
+        }
+}
+
+static double norm_of(double L[3][3])
+{
+    double sum = 0;
+    for (int k = 0; k < 9; k++) sum += L[k / 3][k % 3] * L[k / 3][k % 3];
+    return sqrt(sum);
+}
+
+static double strain_of(const struct cell *c)
+{
+    vec3 inverse[3];
+    double L[3][3], most;
+    if (!cell_repeats(c)) return 0;
+    flow_of(c, inverse, L);
+    most = norm_of(L);
+    for (int32_t m = 0; m < c->gradients; m++) {
+        memcpy(L, c->gradient[m].L, sizeof L);
+        most = dmax(most, norm_of(L));
+    }
+    return most;
+}
+
+/* ---- speeds ---- */
+
+static double start_speed(const struct scene *s, const struct packing *p)
+{
+    vec3 inverse[3];
+    double most = 0;
+    cell_inverse(p->cell.edge, inverse);
+    for (int64_t i = 0; i < p->n; i++) {
+        vec3 v = p->v[i], d = v3_sub(p->x[i], p->cell.origin);
+        for (int k = 0; k < 3 && cell_repeats(&p->cell); k++)
+            v = v3_axpy(v, -v3_dot(inverse[k], d), p->cell.rate[k]);
+        double spin = packing_shape(p, i) ? p->radius[i] * v3_norm(p->w[i]) : 0;
+        most = dmax(most, v3_norm(v) + spin);
+    }
+    for (int32_t k = 0; k < s->pours; k++) most = dmax(most, v3_norm(s->pour[k].v));
+    return most;
+}
+
+/* m: how high x is, along up, above the nearest plane below it; INFINITY: there is none */
+static double above_planes(const struct packing *p, vec3 x, vec3 up)
+{
+    double least = INFINITY;
+    for (int32_t k = 0; k < p->walls; k++) {
+        const struct wall *w = &p->wall[k];
+        if (w->shape != BOUNDARY_PLANE || !wall_there(w, p->t)) continue;
+        vec3 n = wall_normal(p, w, p->t);
+        double slope = v3_dot(n, up), h = v3_dot(n, v3_sub(x, wall_at(p, w, p->t)));
+        if (slope > 0.5 && h >= 0) least = dmin(least, h / slope);
+    }
+    return least;
+}
+
+/* Two unit vectors across a third; in the plane the second is z */
+static void across(int dim, vec3 n, vec3 side[2])
+{
+    vec3 z = v3(0, 0, 1);
+    side[0] = dim == 2 || fabs(n.z) < 0.5 ? v3_cross(n, z) : v3_cross(n, v3(1, 0, 0));
+    side[0] = v3_scale(1 / v3_norm(side[0]), side[0]);
+    side[1] = v3_cross(n, side[0]);
+}
+
+/* m: from where to where the bodies reach in a direction */
+static void extent(const struct packing *p, vec3 n, double range[2])
+{
+    range[0] = INFINITY, range[1] = -INFINITY;
+    for (int64_t i = 0; i < p->n; i++) {
+        double at = v3_dot(p->x[i], n);
+        range[0] = dmin(range[0], at - p->radius[i]);
+        range[1] = dmax(range[1], at + p->radius[i]);
+    }
+}
+
+/* A column of bodies: where it ends, and how much they are */
+struct column {
+    double top, bottom; /* m */
+    double volume;      /* m^3, in the plane m^2 */
+};
+
+static double volume_of(const struct packing *p, int64_t i)
+{
+    const struct shape *s = packing_shape(p, i);
+    double unit = s ? s->volume : p->dim == 2 ? M_PI : 4 * M_PI / 3;
+    return unit * power(p->radius[i], p->dim);
+}
+
+static void column_add(struct column *c, const struct packing *p, int64_t i, vec3 up)
+{
+    double z = v3_dot(p->x[i], up), r = p->radius[i], h = above_planes(p, p->x[i], up);
+    c->top = dmax(c->top, z + r);
+    c->bottom = dmin(c->bottom, z - (isfinite(h) ? h : r));
+    c->volume += volume_of(p, i);
+}
+
+/* m: how far the highest bodies fall until they rest on those below them, or on planes */
+static double fall_of_bodies(const struct packing *p, vec3 up)
+{
+    struct column column[COLUMNS * COLUMNS];
+    double large = packing_whole(p).large, from[2] = { 0 }, width[2] = { 1, 1 }, most = 0;
+    int n[2] = { 1, 1 };
+    vec3 side[2];
+    across(p->dim, up, side);
+    for (int a = 0; a < p->dim - 1; a++) {
+        double range[2];
+        extent(p, side[a], range);
+        from[a] = range[0];
+        n[a] = (int)dmax(1, dmin(COLUMNS, (range[1] - range[0]) / (WIDE * large)));
+        width[a] = (range[1] - range[0]) / n[a];
+    }
+    for (int k = 0; k < n[0] * n[1]; k++) column[k] = (struct column){ -INFINITY, INFINITY, 0 };
+    for (int64_t i = 0; i < p->n; i++) {
+        int at[2] = { 0, 0 };
+        for (int a = 0; a < p->dim - 1; a++)
+            at[a] = (int)dmin(n[a] - 1, (v3_dot(p->x[i], side[a]) - from[a]) / width[a]);
+        column_add(&column[at[0] * n[1] + at[1]], p, i, up);
+    }
+    for (int k = 0; k < n[0] * n[1]; k++) {
+        double settled = column[k].volume / (SETTLED[p->dim] * width[0] * width[1]);
+        if (settled > 0) most = dmax(most, column[k].top - column[k].bottom - settled);
+    }
+    return most;
+}
+
+/* m: from the highest place of an opening to a plane, or to the lowest body */
+static double fall_of_pour(const struct scene_pour *pour, const struct packing *p, vec3 up)
+{
+    vec3 x = pour->center, reach = v3(0, 0, 0);
+    double range[2], low;
+    if (!pour->disc) {
+        const double *lo = pour->box.lo, *hi = pour->box.hi;
+        x = v3((lo[0] + hi[0]) / 2, (lo[1] + hi[1]) / 2, p->dim == 2 ? 0 : (lo[2] + hi[2]) / 2);
+        reach = v3_sub(v3(hi[0], hi[1], p->dim == 2 ? 0 : hi[2]), x);
+    }
+    double h = above_planes(p, x, up);
+    extent(p, up, range);
+    low = isfinite(h) ? h : dmax(0, p->n ? v3_dot(x, up) - range[0] : 0);
+    return low + fabs(up.x * reach.x) + fabs(up.y * reach.y) + fabs(up.z * reach.z);
+}
+
+static double fall_speed(const struct scene *s, const struct packing *p, double start)
+{
+    double g = v3_norm(p->g);
+    if (!(g > 0)) return 0;
+    vec3 up = v3_scale(-1 / g, p->g);
+    double h = fall_of_bodies(p, up);
+    for (int32_t k = 0; k < s->pours; k++) h = dmax(h, fall_of_pour(&s->pour[k], p, up));
+    return h > 0 ? sqrt(start * start + 2 * g * h) : 0;
+}
+
+/* ---- walls and what pushes them ---- */
+
+/* N, N m: the largest that the load of a wall comes to */
+static double load_most(const struct packing *p, const struct wall *w)
+{
+    double most = fabs(w->load.force);
+    for (int32_t i = w->first_push; i < w->first_push + w->pushes; i++) {
+        const struct drive *k = &p->pushes.drive[i];
+        double one = fabs(k->value);
+        for (int32_t r = 0; r < k->rows; r++)
+            one = dmax(one, fabs(p->pushes.row[k->first + r].s));
+        most += one;
+    }
+    return most;
+}
+
+/* m^2, in the plane m: the face that a wall can press on, as wide as the bodies are */
+static double pressed_area(const struct packing *p, vec3 axis)
+{
+    vec3 side[2];
+    double area = 1, range[2];
+    across(p->dim, axis, side);
+    for (int a = 0; a < p->dim - 1; a++) {
+        extent(p, side[a], range);
+        area *= range[1] - range[0];
+    }
+    return area;
+}
+
+/* Pa, in the plane N/m */
+static double pressure_of(const struct packing *p)
+{
+    double most = 0;
+    if (cell_yields(&p->cell))
+        for (int k = 0; k < 9; k++) most = dmax(most, fabs(p->cell.stress[k / 3][k % 3]));
+    for (int32_t k = 0; k < p->walls && p->n; k++) {
+        const struct wall *w = &p->wall[k];
+        if (w->load.way == LOAD_GLIDES)
+            most = dmax(most, load_most(p, w) / pressed_area(p, w->load.axis));
+    }
+    return most;
+}
+
+/* m/s^2: of a wall by its load; of one that turns, of what is farthest from the axis */
+static double load_acceleration(const struct packing *p)
+{
+    double most = 0;
+    for (int32_t k = 0; k < p->walls; k++) {
+        const struct wall *w = &p->wall[k];
+        double arm = w->load.way == LOAD_GLIDES ? 1 : 0;
+        for (int64_t i = 0; i < p->n && w->load.way == LOAD_TURNS; i++)
+            arm = dmax(arm, v3_norm(v3_cross(w->load.axis, v3_sub(p->x[i], w->load.point))));
+        if (w->load.way) most = dmax(most, arm * load_most(p, w) / w->load.mass);
+    }
+    return most;
+}
+
+static void of_walls(struct time_step *t, const struct packing *p)
+{
+    for (int32_t k = 0; k < p->walls; k++)
+        t->x[LIMIT_WALL] = dmax(t->x[LIMIT_WALL], wall_top_speed(p, &p->wall[k]));
+    for (int32_t k = 0; k < p->drives.n; k++) {
+        const struct drive *d = &p->drives.drive[k];
+        if (d->turns) t->x[LIMIT_TURN] = dmax(t->x[LIMIT_TURN], drive_top_speed(&p->drives, d));
+        if (d->signal == DRIVE_SINE)
+            t->x[LIMIT_PERIOD] = dmax(t->x[LIMIT_PERIOD], fabs(d->frequency));
+    }
+    for (int32_t k = 0; k < p->pushes.n; k++)
+        if (p->pushes.drive[k].signal == DRIVE_SINE)
+            t->x[LIMIT_PERIOD] = dmax(t->x[LIMIT_PERIOD], fabs(p->pushes.drive[k].frequency));
+}
+
+double time_step_wall_mass(const struct packing *p, const struct wall *w)
+{
+    double mass = 0, face = 0;
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->mass[i] > 0) mass += p->mass[i], face += power(2 * p->radius[i], p->dim - 1);
+    return face > 0 ? mass / face * pressed_area(p, w->load.axis) : 0;
+}
+
+double time_step_edge_mass(const struct packing *p)
+{
+    double mass = 0;
+    for (int64_t i = 0; i < p->n; i++) mass += p->mass[i];
+    return 3 / (4 * M_PI * M_PI) * mass;
+}
+
+/* ---- the step ---- */
+
+static double limit_dt(const struct time_step_limit *l, double r, double x)
+{
+    if (!(x > 0)) return INFINITY;
+    switch (l->way) {
+    case BY_ACCELERATION:
+        return sqrt(l->share * r / x);
+    case BY_SPEED:
+        return l->share * r / x;
+    default:
+        return l->share / x;
+    }
+}
+
+static double rounded(double dt)
+{
+    char text[40];
+    if (!isfinite(dt)) return dt;
+    snprintf(text, sizeof text, "%.15e", dt); // d.ddddddddddddddde-NN
+    char *rest = strchr(text, 'e');
+    memmove(text + 3, rest, strlen(rest) + 1);
+    return strtod(text, NULL);
+}
+
+void time_step_of(struct time_step *t, const struct scene *s, const struct packing *p)
+{
+    *t = (struct time_step){ .radius = smallest(s, p), .by = -1, .best = INFINITY };
+    t->x[LIMIT_GRAVITY] = v3_norm(p->g);
+    t->x[LIMIT_PRESSURE] = pressure_of(p) * lightest(p);
+    t->x[LIMIT_LOAD] = load_acceleration(p);
+    t->x[LIMIT_STRAIN] = strain_of(&p->cell);
+    t->x[LIMIT_SPEED] = start_speed(s, p);
+    t->x[LIMIT_FALL] = fall_speed(s, p, t->x[LIMIT_SPEED]);
+    of_walls(t, p);
+    for (int k = 0; k < LIMITS; k++) {
+        t->dt[k] = isfinite(t->radius) ? limit_dt(&time_step_limit[k], t->radius, t->x[k]) : INFINITY;
+        if (t->dt[k] < t->best) t->best = t->dt[k], t->by = k;
+    }
+    t->best = rounded(t->best);
+}

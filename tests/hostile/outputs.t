@@ -1,0 +1,123 @@
+#!/usr/bin/env bash
+# Outputs: what the user has stays as it is until there is something whole to take its place.
+. tests/support/tap.sh
+
+cd "$tmp"
+nsd-gen 50 >good.h5
+head -c 10000 good.h5 >cut.h5
+nsd-gen 20 | nsd-step -n 3 >t.h5 2>/dev/null
+kill_at() { sleep "$1" && kill "-$2" "$3" && { wait "$3" || echo $?; } 2>/dev/null; }
+left() { find . -name '.*nsd*' | wc -l; }
+
+# ---- a bad input costs nothing ----
+
+keeps() # FILE COMMAND ...: it is refused, and the file is what it was
+{
+    local file=$1
+    shift
+    echo PRECIOUS >"$file"
+    refuses 65 "$1 of a file cut short" "$@"
+    is "leaves $file" "$(cat "$file")" PRECIOUS
+    rm -f "$file"
+}
+keeps x.csv nsd-export -o x.csv cut.h5
+keeps x.html nsd-web -o x.html cut.h5
+keeps x.png nsd-view -o x.png cut.h5
+keeps x.h5 nsd-step -o x.h5 cut.h5
+keeps x.h5 nsd-cat -o x.h5 cut.h5
+keeps x.log nsd-step --log x.log cut.h5
+keeps x.log nsd-solve --log x.log cut.h5
+keeps_fields() { keeps "$1" eval "nsd-stat -f $1 cut.h5"; }
+keeps_fields x.h5
+keeps_fields x.vti
+keeps x.h5 nsd-cat -o x.h5 good.h5 cut.h5
+mkdir dir
+keeps dir/grains.pvd nsd-export -o dir/ cut.h5
+refuses 65 "nsd-export into a folder that is not there" nsd-export -o made/ cut.h5
+ok "makes none" test ! -e made
+is "and nothing else is left" "$(left)" 0
+
+# ---- films ----
+
+if command -v ffmpeg >/dev/null; then
+    keeps x.mp4 nsd-view --every 1 -o x.mp4 cut.h5
+    echo PRECIOUS >film.part.mp4
+    ok "a film" nsd-view --every 1 --size 64x64 -o film.mp4 t.h5
+    is "leaves film.part.mp4, which is the user's" "$(cat film.part.mp4)" PRECIOUS
+    ok "a name with a colon is no protocol" nsd-view --every 1 --size 64x64 -o a:b.webm t.h5
+    ok "but a film" test -s a:b.webm
+else
+    skip "films" "no ffmpeg"
+fi
+
+# ---- rights, links, devices ----
+
+echo >old.csv && chmod 640 old.csv && ln -s old.csv link.csv
+ok "an output through a link" nsd-export -o link.csv t.h5
+ok "is where the link points, with the rights that were there" test -L link.csv -a "$(stat -c %a old.csv)" = 640 -a -s old.csv
+mkdir there && ln -s there/new.csv nowhere.csv && ln -s nowhere.csv again.csv
+ok "a link that leads nowhere is followed" nsd-export -o again.csv t.h5
+ok "to where it would" test -L again.csv -a -L nowhere.csv -a -s there/new.csv
+ok "/dev/stdout is no file" eval 'nsd-export -o /dev/stdout -t csv t.h5 | cmp - old.csv'
+mkfifo pipe
+ok "nor is a pipe" eval 'nsd-export -o pipe -t csv t.h5 & cmp pipe old.csv && wait'
+for tool in nsd-view nsd-web 'nsd-export -t csv'; do refuses 74 "$tool to a full disk" eval "$tool -o /dev/full t.h5"; done
+for n in 1 40; do # within the buffer, and beyond
+    # shellcheck disable=SC2046
+    refuses 74 "nsd-export of $n documents to a full disk" eval "nsd-export -t csv $(printf 't.h5 %.0s' $(seq $n)) >/dev/full"
+    like "says that it is full" "$(cat err)" "No space left|disk full"
+done
+refuses 74 "nsd-view into a folder that is not there" nsd-view -o no/x.png t.h5
+
+# ---- SIGXFSZ ----
+
+limited() { (ulimit -f 8 && "$@"); }
+refuses 74 "nsd-step into a file that may not grow" limited nsd-step -n 5 -o limited.h5 good.h5
+refuses 74 "nsd-view" limited nsd-view -o limited.png --size 900x900 good.h5
+refuses 74 "nsd-export" eval 'limited nsd-export -o limited.csv t.h5 t.h5 t.h5'
+ok "leave nothing" eval '[ ! -e limited.h5 ] && [ ! -e limited.png ] && [ ! -e limited.csv ] && [ "$(left)" = 0 ]'
+
+# ---- files that are removed ----
+
+removed() # COMMAND: its output is removed while it writes
+{
+    eval "$1 2>removed.err &"
+    local pid=$!
+    for ((w = 0; w < 500; w++)); do if [ "$(stat -c %s u.h5 2>/dev/null || echo 0)" -gt 200000 ]; then break; fi; sleep 0.01; done
+    rm u.h5
+    wait $pid
+}
+status 74 "nsd-step whose -o is removed" removed 'nsd-step -n 3000 -o u.h5 good.h5'
+like "says so" "$(cat removed.err)" 'u.h5: another program has removed it'
+status 74 "nsd-step whose output is removed" removed 'nsd-step -n 3000 good.h5 >u.h5'
+nameless() { /usr/bin/python3 -c 'import os, subprocess, sys
+f = os.open(".", os.O_TMPFILE | os.O_RDWR)
+sys.exit(subprocess.call(["nsd-export", "-t", "csv", "t.h5"], stdout=f) or os.fstat(f).st_size < 1000)'; }
+ok "a file that never had a name is one" nameless
+
+# ---- a run that is killed before its first frame ----
+
+begun() # OUTPUT ...: killed with 9, it has left a document from which one can begin
+{
+    nsd-step -n 100000000 --every 100000000 "${@:2}" good.h5 2>/dev/null >"${out:-/dev/null}" &
+    local pid=$!
+    for ((w = 0; w < 500; w++)); do if [ -s "$1" ]; then break; fi; sleep 0.01; done
+    sleep 0.1
+    kill -9 $pid
+    wait $pid 2>/dev/null
+    cmp <(nsd-info -p --last "$1") <(nsd-info -p good.h5) && nsd-step -n 2 "$1" 2>/dev/null | nsd-info >/dev/null
+}
+ok "leaves its start, by -o" begun start.h5 -o start.h5
+out=start2.h5
+ok "and by >" begun start2.h5
+ok "which is not in a run that has frames" eval 'nsd-step -n 2 -o start.h5 good.h5 2>/dev/null && nsd-info start.h5 | jq -s -e "map(.step)[1:] == [1, 2]"'
+nan() { echo '{"dt": 1, "bodies": [{"x": [1e308, 0, 0], "radius": 1, "v": [1e308, 0, 0]}]}' | nsd-gen - | nsd-step "$@"; }
+refuses 65 "a run that fails before its first frame" nan -o start3.h5
+ok "leaves nothing" test ! -e start3.h5
+
+# ---- tables ----
+
+mkdir folder
+refuses 66 "--values: a folder is no table" nsd-view --values folder -o v.png good.h5
+
+done_testing
