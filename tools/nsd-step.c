@@ -139,7 +139,7 @@ static void count(const struct report *r)
     double error = err_of(&r->err, r->criterion);
     if (!(error <= total.worst)) total.worst = error; // also where it is not a number
     total.criterion = r->criterion, total.eps = r->eps;
-    if (!(error <= r->eps)) return;
+    if (!(error <= r->eps) && !r->err.jammed) return;
     total.growing++, total.approach = fmax(total.approach, r->err.max_penetration_true);
 }
 
