@@ -1,4 +1,5 @@
 /* nsd-step: makes many steps: detects, solves and moves in a loop. */
+#include "bodies/adapt.h"
 #include "cli/cli.h"
 #include "cli/crew.h"
 #include "cli/options.h"
@@ -12,6 +13,7 @@
 #include <malloc.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -21,11 +23,13 @@ enum {
     KEEP_MEMORY = 1 << 28 /* bytes that are kept */
 };
 
-static int64_t steps = 1;
+static int64_t steps = 1, expected; /* to make; as far as can be foreseen, where dt adapts */
 static struct cli_every every = { 1, 0 };
 static double until, lines; /* s: of the motion; of real time */
 static bool contacts, forces, in_place;
 static const char *output;
+static const char *dt; /* as it is given: a number, or auto:TOL */
+static double tol;     /* radii: TOL; 0: dt does not adapt */
 
 /* By index: options.cut */
 static struct cli_choice cut_choice(int index)
@@ -41,6 +45,10 @@ static const struct cli_option own[] = {
     { CLI_INT, 'n', "steps", &steps, "N", "steps to make [1]", .max = 1e15 },
     { CLI_REAL, 0, "until", &until, "T", "or steps until the time is T, s [by -n]", .min = -1e300,
       .max = 1e300 },
+    { CLI_TEXT, 0, "dt", &dt, "DT|auto:TOL",
+      "another time step, s; or halved and doubled so that overlaps grow by at most TOL of a "
+      "radius "
+      "in a step [the document's]" },
     { CLI_EVERY, 0, "every", &every, "K|Ts",
       "keep every K-th step, or one every T s of its time, and the last [1]", .max = 1e15 },
     { CLI_FLAG, 0, "contacts", &contacts, .help = "keep each frame's contacts too" },
@@ -69,7 +77,8 @@ const struct cli_tool tool = { "nsd-step", "[FILE ...]",
                                tables,
                                "  nsd-gen 500 | nsd-step -n 1000 > out.h5\n"
                                "  nsd-step -n 100 --eps 1e-8 -o more.h5 out.h5\n"
-                               "  nsd-step -n 100 --in-place out.h5\n" };
+                               "  nsd-step -n 100 --in-place out.h5\n"
+                               "  nsd-step --until 1 --dt auto:0.01 -o more.h5 out.h5\n" };
 
 static struct {
     int64_t sweeps, safeguarded, gave_up;
@@ -168,7 +177,7 @@ static double seconds_now(void)
 static void tell(const struct report *r, int64_t made, double since)
 {
     double rate = (double)made / fmax(seconds_now() - since, 1e-9);
-    double left = (double)(steps - made) / rate, hours = floor(left / 3600);
+    double left = (double)(expected - made) / rate, hours = floor(left / 3600);
     double minutes = floor(left / 60) - 60 * hours;
     char clock[40];
     if (hours >= 1)
@@ -176,9 +185,9 @@ static void tell(const struct report *r, int64_t made, double since)
     else
         snprintf(clock, sizeof clock, "%.0f:%02.0f", minutes, floor(left - 60 * minutes));
     progress("step %lld, %.0f %% of %lld, %.3g/s, %s left: %lld contacts, %d sweeps, %s %.2g",
-             (long long)r->step, floor(100.0 * (double)made / (double)steps), (long long)steps,
-             rate, clock, (long long)r->err.contacts, r->sweeps, options_error(r->criterion),
-             err_of(&r->err, r->criterion));
+             (long long)r->step, floor(100.0 * (double)made / (double)expected),
+             (long long)expected, rate, clock, (long long)r->err.contacts, r->sweeps,
+             options_error(r->criterion), err_of(&r->err, r->criterion));
 }
 
 /* ---- the run ---- */
@@ -190,7 +199,8 @@ struct run {
     struct behind *behind; /* NULL: one thread makes the steps, and writes */
     struct flow flow;
     struct step_memory memory;
-    bool other_bodies; /* than in the step before */
+    struct neighbours ahead; /* of where bodies would be at the end of a step */
+    bool other_bodies;       /* than in the step before */
     struct step_opt o;
 };
 
@@ -218,21 +228,43 @@ static bool is_kept(const struct packing *p, int64_t step, int64_t k)
            floor((before + slack(p, before)) / every.seconds);
 }
 
+/* dt of the step to come. Impulses of the step before are those of its dt: forces go on. */
+static void adapt(struct run *r)
+{
+    struct why why = { 0 };
+    struct packing *p = &r->f.packing;
+    double had = p->dt;
+    if (!(tol > 0)) return;
+    if (adapt_step(p, tol, &r->ahead, &why)) die_why(&why);
+    if (p->dt == had) return;
+    contacts_scale_found(&r->f.contacts, p->dt / had);
+    r->o.solve.local.newton_abs *= p->dt / had;
+}
+
+/* Does the run end with this step, the k-th? */
+static bool is_last(const struct packing *p, int64_t step, int64_t k)
+{
+    return k == steps ||
+           (tol > 0 && cli_given(&until) && packing_time(p, step) >= until - slack(p, until));
+}
+
 /* Makes one step, the k-th; false where its solve has diverged, and the bodies have not moved. */
 static bool advance(struct run *r, int64_t k)
 {
     struct why why = { 0 };
     struct frame *f = &r->f;
     struct report *rep = &f->report;
+    adapt(r);
     flow(r);
     const struct packing *p = &f->packing;
-    r->o.bare = !options.log && k < steps && !is_kept(p, p->step + 1, k);
+    bool last = is_last(p, p->step + 1, k);
+    r->o.bare = !options.log && !last && !is_kept(p, p->step + 1, k);
     if (crew_step(f, &r->memory, r->other_bodies, &r->o, &why)) die_why(&why);
     f->reported = f->moved = true;
     count(rep);
     account(f);
     bool good = isfinite(rep->err.paper.eps_glob);
-    options_log(rep, k == steps || !good ? &total.account : NULL);
+    options_log(rep, last || !good ? &total.account : NULL);
     return good;
 }
 
@@ -278,17 +310,21 @@ static int64_t run(struct run *r)
     // where there is no other thread, this one writes; and with others, who have the bodies
     if (options.threads > 1 && steps && !r->f.elsewhere)
         behind_open(&r->behind, r->out, &(struct why){ 0 });
-    while (made < steps && (good = advance(r, made + 1))) {
-        made++;
+    bool ends = !steps;
+    while (!ends && (good = advance(r, made + 1))) {
+        const struct packing *p = &r->f.packing;
+        ends = is_last(p, p->step, ++made);
         tell(&r->f.report, made, since);
-        if (is_kept(&r->f.packing, r->f.packing.step, made) || made == steps) write_frame(r);
+        if (is_kept(p, p->step, made) || ends) write_frame(r);
     }
+    if (ends) steps = made;
     if (!good) {
         warn("step %lld: the solve diverged, the run ends before it", (long long)r->f.report.step);
         keep_last(r, made);
     }
     if (!steps && !in_place) write_frame(r);
     step_forget(&r->memory);
+    neighbours_free(&r->ahead);
     flow_free(&r->flow);
     if (behind_close(r->behind, &why)) die_why(&why);
     return made;
@@ -298,6 +334,7 @@ static int64_t run(struct run *r)
    depends on where the time is counted from and not on where this run began */
 static void count_steps(const struct packing *p)
 {
+    expected = steps;
     if (!cli_given(&until)) return;
     double n = ceil((until - p->t) / p->dt), reached = until - slack(p, until);
     if (n > 1e15) die_usage("--until %g: more than 1e15 steps of %g s", until, p->dt);
@@ -306,9 +343,50 @@ static void count_steps(const struct packing *p)
     while (packing_time(p, p->step + steps) < reached &&
            !packing_check_clock(p, &(struct why){ 0 }))
         steps++;
+    expected = steps;
+    if (steps && tol > 0) steps = INT64_MAX; // is_last() sees when
 }
 
 /* ---- from where, and where to ---- */
+
+/* --dt, and its TOL */
+static double read_dt(void)
+{
+    static const char word[] = "auto:";
+    bool adapts = dt && !strncmp(dt, word, sizeof word - 1);
+    const char *number = adapts ? dt + sizeof word - 1 : dt;
+    char *end = NULL;
+    double x = dt ? strtod(number, &end) : 0;
+    if (dt && (end == number || *end || !(x > 0 && x <= (adapts ? 1 : DBL_MAX))))
+        die_usage(
+            "--dt: '%s' is neither a number of seconds above 0 nor auto:TOL, TOL a share of a "
+            "radius above 0 and at most 1",
+            dt);
+    if (adapts && crew_size() > 1)
+        die_usage("--dt auto: one process alone adapts its time step, and here are %d: nsd-step -j "
+                  "has threads",
+                  crew_size());
+    if (adapts) tol = x;
+    return adapts ? 0 : x;
+}
+
+/* Sets the time step of --dt; path: of a trajectory that the run is appended to, else NULL. */
+static void set_dt(struct packing *p, double asked, const char *path)
+{
+    struct why why = { 0 };
+    if (path && tol > 0 && !p->adapts)
+        die_usage("--dt: %s has one time step for all its frames: -o FILE goes on with others",
+                  path);
+    if (tol > 0) p->adapts = true;
+    if (!(asked > 0)) return;
+    if (path && asked != packing_whole_dt(p))
+        die_usage("--dt: %s has %g s, and a trajectory has one: -o FILE goes on with another", path,
+                  packing_whole_dt(p));
+    if (!path) p->adapts = false;
+    p->halved = 0;
+    packing_set_dt(p, asked);
+    if (packing_check_clock(p, &why)) die_why(&why);
+}
 
 /* The frames of the file go into the one that takes its place, the last one stays in f. */
 static void copy_all(struct reader *in, struct writer *out, struct frame *f)
@@ -333,12 +411,13 @@ static void copy_all(struct reader *in, struct writer *out, struct frame *f)
     if (!frames) die(EX_DATAERR, "%s: no frame to start from", reader_where(in));
 }
 
-static void start_in_place(struct run *r, struct reader *in, const char *path)
+static void start_in_place(struct run *r, struct reader *in, const char *path, double asked)
 {
     struct why why = { 0 };
     if (writer_open(&r->out, path, WRITER_IN_PLACE, &why)) die_why(&why);
     copy_all(in, r->out, &r->f);
     double theta = r->f.packing.theta;
+    set_dt(&r->f.packing, asked, path);
     options_theta(&r->f.packing, false);
     options_overlap(&r->f.packing, false);
     if (theta != r->f.packing.theta)
@@ -346,13 +425,14 @@ static void start_in_place(struct run *r, struct reader *in, const char *path)
     if (writer_take_place(r->out, &why)) die_why(&why);
 }
 
-static void start(struct run *r, struct reader *in)
+static void start(struct run *r, struct reader *in, double asked)
 {
     struct why why = { 0 };
     bool more;
     if (reader_last(in, &r->f, &more, &why)) die_why(&why);
     if (!more) die(EX_DATAERR, "%s: no frame to start from", reader_where(in));
     tool_wants_packing(&r->f, reader_where(in));
+    set_dt(&r->f.packing, asked, NULL);
     options_theta(&r->f.packing, false);
     options_overlap(&r->f.packing, false);
     if (writer_open(&r->out, output, WRITER_TRAJECTORY, &why)) die_why(&why);
@@ -376,6 +456,7 @@ int tool_main(int argc, char **argv)
     options_check();
     keep_memory();
     if (!crew_join()) return crew_follow();
+    double asked = read_dt();
     if (cli_given(&until) && cli_given(&steps)) die_usage("-n and --until exclude each other");
     if (in_place && output) die_usage("-i and -o exclude each other");
     if (in_place && !file) die_usage("-i: one FILE, to which it appends");
@@ -389,9 +470,9 @@ int tool_main(int argc, char **argv)
     if (output && reader_reads(argc, argv, output))
         die_usage("%s: is also the input; -i appends to it", output);
     if (in_place)
-        start_in_place(&r, in, argv[0]);
+        start_in_place(&r, in, argv[0], asked);
     else
-        start(&r, in);
+        start(&r, in, asked);
     count_steps(&r.f.packing);
     if (steps && writer_begin(r.out, &r.f, &why)) die_why(&why);
     options_log_open(argc, argv, output);

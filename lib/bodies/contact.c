@@ -22,6 +22,15 @@ void contacts_free_found(struct contacts *s)
     s->found = NULL, s->moment = NULL;
 }
 
+void contacts_scale_found(struct contacts *s, double factor)
+{
+    for (int64_t i = 0; i < s->n; i++)
+        for (int k = 0; k < 3; k++) {
+            if (s->found) s->found[i].r[k] *= factor;
+            if (s->moment) s->moment[i][k] *= factor;
+        }
+}
+
 void contacts_free_tie(struct contacts *s)
 {
     free(s->tie);

@@ -90,6 +90,8 @@ int contacts_alloc_moment(struct contacts *contacts);
 /* tie[n], all zero, in place of the old ones; -1 when memory is short. */
 int contacts_alloc_tie(struct contacts *contacts);
 void contacts_free_tie(struct contacts *contacts);
+/* Reactions, and moments, times a factor; nothing where there are none */
+void contacts_scale_found(struct contacts *contacts, double factor);
 /* found and moment */
 void contacts_free_found(struct contacts *contacts);
 /* to = a deep copy of from; to need not be initialised; -1 when memory is short. */
