@@ -387,6 +387,7 @@ install-dev: $B/libnsd.a
 	install -m 644 $B/libnsd.a $(DESTDIR)$(LIBDIR)
 	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|; s|@HDF5@|$(HDF5)|' nsd.pc.in \
 	    > $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc
+	chmod 644 $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc
 
 uninstall:
 	cd $(TO)/bin && rm -f $(notdir $(TOOLS)) nsd-step-mpi

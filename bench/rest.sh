@@ -11,7 +11,7 @@ jq -n '{ dt: 1e-4, mu: 0.5, bodies: [range(10) | { x: [0, 0, 0.005 * (2 * . + 1)
     walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }] }' | nsd-gen - > "$work/column.h5"
 nsd-gen 500 > "$work/start.h5"
 
-run() { nsd-step "$@" 2> /dev/null; }
+run() { nsd-step --criterion natural "$@" 2> /dev/null; }
 moments() { nsd-info "$1" | jq -c 'select(.step != null)'; }
 
 column() # MODE: the largest overlap of the column, over r, after a hundredth, a tenth and all of the steps

@@ -16,7 +16,7 @@ view=(nsd-view --bare --size 560x1300 '--box=-0.0032,0.0032,-0.0032,0.0032,0,0.0
 nsd-info "$dir/out.h5" |
     jq -r 'select(.step != null)
            | [.step, .contacts, .sweeps, .natural, .max_penetration_true] | @tsv' > "$dir/steps.tsv"
-gnuplot -e "dir='$dir'" scripts/demo.gp
+gnuplot -e "dir='${dir//\'/\'\'}'" scripts/demo.gp
 
 nsd-web --title "500 balls fall into a box" --every 5 -o "$dir/out.html" "$dir/out.h5"
 

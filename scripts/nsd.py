@@ -65,7 +65,7 @@ class Contacts:
 
     @cached_property
     def normal_force(self):
-        """N: the part of the force along the normal; it never pulls."""
+        """N: the part of the force along the normal; negative where cohesion, liquid or bonds pull."""
         return None if self.reaction is None else self.reaction[:, 0] / self._dt
 
     @cached_property

@@ -36,7 +36,7 @@ $(OUT)/README.md: $(P)/page.py $(OUT)/map.svg $(OUT)/spectrum.svg $(SIZES:%=$(OU
 $(OUT)/%/pile.h5: $(P)/pile.jq
 	@echo "wall: $*" >&2
 	mkdir -p $(@D)
-	jq -n --argjson n $* -f $(P)/pile.jq | nsd-gen - | nsd-step -n 450 --every 450 2>$(@D)/step.log | nsd-cat --last | nsd-detect >$@
+	jq -n --argjson n $* -f $(P)/pile.jq | nsd-gen - | nsd-step --criterion natural -n 450 --every 450 2>$(@D)/step.log | nsd-cat --last | nsd-detect >$@
 
 $(OUT)/%/global.h5: $(OUT)/%/pile.h5
 	nsd-detect --fclib=global <$< >$@
@@ -44,13 +44,13 @@ $(OUT)/%/global.h5: $(OUT)/%/pile.h5
 # sweeps without mixing or relaxation, each a continuation of the one before
 define sweeps
 $$(OUT)/%/sweeps-$(1).h5: $$(OUT)/%/$(if $(2),sweeps-$(2),pile).h5
-	nsd-solve --warm --global nlgs -m exact --order colour --eps 1e-13 --max-sweeps $(if $(2),$$$$(($(1) - $(2))),$(1)) $$< >$$@ 2>/dev/null
+	nsd-solve --criterion natural --warm --global nlgs -m exact --order colour --eps 1e-13 --max-sweeps $(if $(2),$$$$(($(1) - $(2))),$(1)) $$< >$$@ 2>/dev/null
 endef
 before :=
 $(foreach k,$(EACH),$(eval $(call sweeps,$k,$(before)))$(eval before := $k))
 
 $(OUT)/%/auto.h5: $(OUT)/%/pile.h5
-	nsd-solve --eps 1e-8 $< >$@ 2>$(@D)/auto.log
+	nsd-solve --criterion natural --eps 1e-8 $< >$@ 2>$(@D)/auto.log
 
 $(OUT)/%/follow.jsonl: $(OUT)/%/global.h5 $(EACH:%=$(OUT)/\%/sweeps-%.h5) $(P)/wall.py
 	$(P)/wall.py follow $< $(EACH:%=$(OUT)/$*/sweeps-%.h5) >$@
@@ -68,11 +68,11 @@ $(OUT)/%/steps.jsonl: $(OUT)/%/global.h5 $(OUT)/%/sweeps-$(END).h5 $(P)/wall.py
 # step 217 of four balls of the paper's example 2, another seed: they wedge themselves in
 $(OUT)/jam/jam.h5: scenes/paper/example2.json
 	mkdir -p $(@D)
-	jq '.seed = 7' $< | nsd-gen - | nsd-step -n 217 --overlap keep 2>/dev/null | nsd-cat --steps 217 | nsd-detect --overlap keep >$@
+	jq '.seed = 7' $< | nsd-gen - | nsd-step --criterion natural -n 217 --overlap keep 2>/dev/null | nsd-cat --steps 217 | nsd-detect --overlap keep >$@
 $(OUT)/jam/eps-%.h5: $(OUT)/jam/jam.h5
-	nsd-solve --global nlgs -m exact --eps $* --max-sweeps 1000000 $< >$@ 2>/dev/null
+	nsd-solve --criterion natural --global nlgs -m exact --eps $* --max-sweeps 1000000 $< >$@ 2>/dev/null
 $(OUT)/jam/eps-auto.h5: $(OUT)/jam/jam.h5
-	nsd-solve --eps 1e-10 $< >$@ 2>/dev/null
+	nsd-solve --criterion natural --eps 1e-10 $< >$@ 2>/dev/null
 $(OUT)/jam/follow.jsonl: $(OUT)/jam/global.h5 $(EPS:%=$(OUT)/jam/eps-%.h5) $(OUT)/jam/eps-auto.h5 $(P)/wall.py
 	$(P)/wall.py follow $< $(EPS:%=$(OUT)/jam/eps-%.h5) $(OUT)/jam/eps-auto.h5 >$@
 $(OUT)/jam/global.h5: $(OUT)/jam/jam.h5

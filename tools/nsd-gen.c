@@ -13,6 +13,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #define FAR 4 /* times the suggested time step: a scene's own is said to be too long from there */
 
@@ -41,14 +43,23 @@ const struct cli_tool tool = {
     "  nsd-gen --check scenes/drum.json | jq .dt\n"
 };
 
+enum {
+    MOST_PIPED = 1 << 26
+}; /* bytes of a scene that is no file, whose size says how long it is */
+
 /* All of a file, n bytes, to be freed; NULL when memory is short. */
-static char *slurp(FILE *f, size_t *n)
+static char *slurp(FILE *f, const char *name, size_t *n)
 {
+    struct stat st;
+    bool file = !fstat(fileno(f), &st) && S_ISREG(st.st_mode);
     size_t room = 1 << 16;
     char *text = malloc(room);
     for (*n = 0; text;) {
         *n += fread(text + *n, 1, room - *n, f);
         if (*n < room) break;
+        if (!file && *n >= MOST_PIPED)
+            die(EX_DATAERR, "%s: more than %d MB for a scene (endless?): put it into a file", name,
+                MOST_PIPED >> 20);
         room *= 2;
         char *more = realloc(text, room);
         if (!more) free(text);
@@ -65,7 +76,7 @@ static void read_scene(struct scene *s, const char *path, char **dir, struct sce
     struct why why = { 0 };
     size_t n;
     FILE *f = standard ? stdin : fopen(path, "r");
-    char *text = f ? slurp(f, &n) : NULL;
+    char *text = f ? slurp(f, name, &n) : NULL;
     if (!f || ferror(f)) die(EX_NOINPUT, "%s: %s", name, strerror(errno));
     if (!text) die(EX_SOFTWARE, "%s: no memory", name);
     if (!standard) {
@@ -124,6 +135,8 @@ static void read_document(struct scene_bodies *b, const char *dir)
 {
     struct frame f = { 0 };
     char *path = scene_path(dir, b->file);
+    if (path && access(path, F_OK) && !access(b->file, F_OK)) // as nsd-info --scene has it
+        strcpy(path, b->file);
     b->document = malloc(sizeof *b->document);
     if (!path || !b->document) die(EX_SOFTWARE, "no memory for a document");
     read_frame(&f, path, b->frame);

@@ -234,14 +234,16 @@ static void show_events(const struct packing *p)
     }
 }
 
-static json_t *load(const struct load *l)
+/* The force is what acts in the step that begins where the packing is, tables and sines too. */
+static json_t *load(const struct packing *p, const struct wall *w)
 {
+    const struct load *l = &w->load;
     json_t *j = json_object();
     bool turns = l->way == LOAD_TURNS;
     json_object_set_new(j, turns ? "about" : "along", json_vec(l->axis));
     if (turns) json_object_set_new(j, "point", json_vec(l->point));
     json_object_set_new(j, "mass", json_number(l->mass));
-    json_object_set_new(j, turns ? "torque" : "force", json_number(l->force));
+    json_object_set_new(j, turns ? "torque" : "force", json_number(wall_force(p, w)));
     json_object_set_new(j, "speed", json_number(l->speed));
     json_object_set_new(j, "travel", json_number(l->travel));
     return j;
@@ -271,7 +273,7 @@ static void show_walls(const struct packing *p)
         if (v3_norm(spin) > 0) json_object_set_new(j, "spin", json_vec(spin));
         if (w->shape != BOUNDARY_PLANE) json_object_set_new(j, "size", sizes(w));
         if (!wall_there(w, p->t)) json_object_set_new(j, "gone", json_true());
-        if (w->load.way) json_object_set_new(j, "load", load(&w->load));
+        if (w->load.way) json_object_set_new(j, "load", load(p, w));
         json_line(j);
     }
 }
@@ -294,7 +296,7 @@ static void add_tie(json_t *j, const struct tie *t)
 
 static void show_contacts(const struct frame *f)
 {
-    static const char *const status[] = { "free", "stick", "slide" };
+    static const char *const status[] = { "free", "stick", "slide", "jammed" };
     shown = true;
     for (int64_t i = 0; i < f->contacts.n; i++) {
         const struct contact *c = &f->contacts.c[i];
@@ -319,7 +321,7 @@ static void show_contacts(const struct frame *f)
             json_object_set_new(j, "u", json_numbers(found->u, 3));
             if (f->contacts.moment)
                 json_object_set_new(j, "moment", json_numbers(f->contacts.moment[i], 3));
-            json_object_set_new(j, "status", json_string(status[found->status % 3]));
+            json_object_set_new(j, "status", json_string(status[found->status % 4]));
         }
         json_line(j);
     }

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static bool forces;
+static bool forces, verbose;
 
 static const struct cli_option own[] = {
     { CLI_REAL, 0, "theta", &options.theta, "T", .max = 1,
@@ -19,6 +19,8 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 0, "history", &options.history,
       .help = "keep the error terms of every sweep in the document" },
     { CLI_FLAG, 0, "forces", &forces, .help = "add the contacts' forces, in N and in space" },
+    { CLI_FLAG, 'v', "verbose", &verbose, .silent = true,
+      .help = "a line for each document on standard error [for those that did not converge]" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { options_solve, own, options_run, NULL };
@@ -33,12 +35,57 @@ const struct cli_tool tool = {
     "  nsd-solve KaplasTower-i1061-4.hdf5 | nsd-err | jq .natural\n"
 };
 
-static bool all_converged = true;
+/* ---- what is said of a stream ---- */
+
+static struct {
+    int64_t documents, missed; /* those that did not converge */
+    int64_t contacts, sweeps;
+    double worst, seconds; /* the largest error, and in which criterion */
+    enum criterion criterion;
+    struct report only; /* of the first document */
+    char where[300];
+    bool said; /* a line of its own */
+} total;
+
+static void count(const char *where, const struct report *r)
+{
+    double error = err_of(&r->err, r->criterion);
+    total.said = verbose || !r->converged || r->fallback || r->given_up;
+    if (total.said) options_summary(where, r);
+    if (!total.documents) total.criterion = r->criterion;
+    if (!total.documents++) total.only = *r, snprintf(total.where, sizeof total.where, "%s", where);
+    total.missed += !r->converged;
+    total.contacts += r->err.contacts, total.sweeps += r->sweeps, total.seconds += r->seconds;
+    if (!(error <= total.worst)) total.worst = error, total.criterion = r->criterion;
+}
+
+/* One line of one document is that of the stream. */
+static void summary(void)
+{
+    char missed[60] = "";
+    if (total.documents == 1 && !total.said) options_summary(total.where, &total.only);
+    if (total.documents < 2) return;
+    if (total.missed)
+        snprintf(missed, sizeof missed, ": %lld NOT CONVERGED", (long long)total.missed);
+    warn("%lld documents, %lld contacts, %lld sweeps, largest %s %.3g, %.3g s%s",
+         (long long)total.documents, (long long)total.contacts, (long long)total.sweeps,
+         options_error(total.criterion), total.worst, total.seconds, missed);
+}
 
 /* The solver calls it at every evaluation of the criterion. */
 static void show(int32_t sweeps, double value)
 {
     progress("%d sweeps, %.2g", sweeps, value);
+}
+
+/* The reactions to start from: those of the last step; with --warm those that the document has already */
+static void start_from(struct frame *f, const struct step_opt *o)
+{
+    struct why why = { 0 };
+    struct memory *m = &f->packing.memory;
+    memory_set(m, o->warm);
+    if (!o->warm || (cli_given(&options.warm) && f->contacts.found)) return;
+    if (memory_give(m, &f->contacts, packing_rolls(&f->packing), &why)) die_why(&why);
 }
 
 static void solve(struct frame *f, const char *where)
@@ -52,8 +99,7 @@ static void solve(struct frame *f, const char *where)
     if (!f->foreign) {
         options_theta(&f->packing, true);
         options_overlap(&f->packing, true);
-        if (options.warm && !f->contacts.found && f->contacts.n)
-            warn("%s: no reactions to start from, starting from 0", where);
+        start_from(f, &o);
         if (step_solve(&f->packing, &f->contacts, &o, &f->report, &why)) die_why(&why);
     } else {
         struct delassus *W = &f->problem.W;
@@ -64,9 +110,8 @@ static void solve(struct frame *f, const char *where)
     }
     f->reported = true;
     f->forces |= forces;
-    all_converged &= f->report.converged;
     options_log(&f->report, NULL);
-    options_summary(where, &f->report);
+    count(where, &f->report);
 }
 
 int tool_main(int argc, char **argv)
@@ -75,5 +120,6 @@ int tool_main(int argc, char **argv)
     options_log_open(argc, argv, NULL);
     tool_filter(argc, argv, solve);
     options_log_close();
-    return options.strict && !all_converged;
+    summary();
+    return options.strict && total.missed;
 }

@@ -12,6 +12,7 @@
 #include <float.h>
 #include <malloc.h>
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,7 +28,7 @@ static int64_t steps = 1, expected; /* to make; as far as can be foreseen, where
 static struct cli_every every = { 1, 0 };
 static double until, lines; /* s: of the motion; of real time */
 static bool contacts, forces, in_place;
-static const char *output;
+static const char *output, *save;
 static const char *dt; /* as it is given: a number, or auto:TOL */
 static double tol;     /* radii: TOL; 0: dt does not adapt */
 
@@ -46,7 +47,7 @@ static const struct cli_option own[] = {
     { CLI_REAL, 0, "until", &until, "T", "or steps until the time is T, s [by -n]", .min = -1e300,
       .max = 1e300 },
     { CLI_TEXT, 0, "dt", &dt, "DT|auto:TOL",
-      "another time step, s; or halved and doubled so that overlaps grow by at most TOL of a "
+      .help = "another time step, s; or halved and doubled so that overlaps grow by at most TOL of a "
       "radius "
       "in a step [the document's]" },
     { CLI_EVERY, 0, "every", &every, "K|Ts",
@@ -64,6 +65,8 @@ static const struct cli_option own[] = {
       .help = "append to FILE; also where standard output is a terminal" },
     { CLI_ABOVE, 0, "progress", &lines, "S", .max = 1e9, .silent = true,
       .help = "say how far it is every S seconds, on no terminal too [terminal]" },
+    { CLI_TEXT, 0, "save", &save, "TIME", .silent = true,
+      .help = "keep the state in OUTPUT.save every TIME of real time, as 10min [never]" },
     { CLI_TEXT, 'o', "output", &output, "FILE", "write to FILE [standard output]", .silent = true },
     { 0 },
 };
@@ -78,7 +81,7 @@ const struct cli_tool tool = { "nsd-step", "[FILE ...]",
                                "  nsd-gen 500 | nsd-step -n 1000 > out.h5\n"
                                "  nsd-step -n 100 --eps 1e-8 -o more.h5 out.h5\n"
                                "  nsd-step -n 100 --in-place out.h5\n"
-                               "  nsd-step --until 1 --dt auto:0.01 -o more.h5 out.h5\n" };
+                               "  nsd-step -n 100 --dt auto:0.01 -o more.h5 out.h5\n" };
 
 static struct {
     int64_t sweeps, safeguarded, gave_up;
@@ -89,6 +92,7 @@ static struct {
     int64_t growing;              /* of those the ones whose reactions grow and only seem good */
     double approach;              /* m/s: of bodies in these steps, the largest */
     int64_t fell_back;            /* steps that were solved otherwise than asked */
+    int64_t shortest;             /* times that dt has become the least that it may be */
     int64_t abandoned;            /* steps whose solver knew no further way */
     double seconds;
     struct account account; /* of this run */
@@ -173,10 +177,40 @@ static double seconds_now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* "step 120, 12 % of 1000, 35/s, 0:25 left: 812 contacts, 40 sweeps, natural 9e-05" */
-static void tell(const struct report *r, int64_t made, double since)
+/* s: over which the speed of a run is taken, once or twice: piles grow, and with them the time of a step */
+static const double RECENT = 15;
+
+/* Steps made up to a moment of real time */
+struct mark {
+    double at;
+    int64_t made;
+};
+
+/* Steps a second, lately */
+static double speed(int64_t made)
 {
-    double rate = (double)made / fmax(seconds_now() - since, 1e-9);
+    static struct mark older, newer;
+    double now = seconds_now();
+    if (newer.at == 0) older = newer = (struct mark){ now, made - 1 };
+    if (now - newer.at > RECENT) older = newer, newer = (struct mark){ now, made };
+    return (double)(made - older.made) / fmax(now - older.at, 1e-9);
+}
+
+/* MB: that the process has in memory now */
+static double memory_now(void)
+{
+    unsigned long long all = 0, here = 0;
+    FILE *f = fopen("/proc/self/statm", "r");
+    if (f && fscanf(f, "%llu %llu", &all, &here) != 2) here = 0;
+    if (f) fclose(f);
+    return 1e-6 * (double)here * (double)sysconf(_SC_PAGESIZE);
+}
+
+/* "step 120, 12 % of 1000, 35/s, 0:25 left: 812 contacts, 40 sweeps, natural 9e-05, 25 MB of memory, 3.1 MB written" */
+static void tell(const struct report *r, int64_t made, const struct writer *out)
+{
+    double rate = speed(made);
+    if (!progress_due()) return;
     double left = (double)(expected - made) / rate, hours = floor(left / 3600);
     double minutes = floor(left / 60) - 60 * hours;
     char clock[40];
@@ -184,10 +218,32 @@ static void tell(const struct report *r, int64_t made, double since)
         snprintf(clock, sizeof clock, "%.0f:%02.0f h", hours, minutes);
     else
         snprintf(clock, sizeof clock, "%.0f:%02.0f", minutes, floor(left - 60 * minutes));
-    progress("step %lld, %.0f %% of %lld, %.3g/s, %s left: %lld contacts, %d sweeps, %s %.2g",
-             (long long)r->step, floor(100.0 * (double)made / (double)expected),
-             (long long)expected, rate, clock, (long long)r->err.contacts, r->sweeps,
-             options_error(r->criterion), err_of(&r->err, r->criterion));
+    progress_now("step %lld, %.0f %% of %lld, %.3g/s, %s left: %lld contacts, %d sweeps, %s %.2g, "
+                 "%.3g MB of memory, %.3g MB written",
+                 (long long)r->step, floor(100.0 * (double)made / (double)expected),
+                 (long long)expected, rate, clock, (long long)r->err.contacts, r->sweeps,
+                 options_error(r->criterion), err_of(&r->err, r->criterion), memory_now(),
+                 1e-6 * (double)writer_size(out));
+}
+
+/* ---- the end that comes from outside ---- */
+
+static volatile sig_atomic_t stopped_by; /* the signal, or 0 */
+
+static void stop(int number)
+{
+    stopped_by = number;
+    signal(number, SIG_DFL); // the next one does not wait for a step
+}
+
+/* Where mpirun has started several, it stops them by SIGTERM also when one has died, and no step can be made. */
+static void take_signals(void)
+{
+    static const int signals[] = { SIGINT, SIGTERM, SIGHUP };
+    struct sigaction act = { .sa_handler = stop, .sa_flags = SA_RESTART }, was;
+    for (int k = 0; k < 3 && !crew_started(); k++)
+        if (!sigaction(signals[k], NULL, &was) && was.sa_handler != SIG_IGN)
+            sigaction(signals[k], &act, NULL);
 }
 
 /* ---- the run ---- */
@@ -202,7 +258,68 @@ struct run {
     struct neighbours ahead; /* of where bodies would be at the end of a step */
     bool other_bodies;       /* than in the step before */
     struct step_opt o;
+    double saved;    /* s of real time: when the state was saved last */
+    char *save_path; /* where; NULL: nowhere */
 };
+
+/* ---- checkpoints ---- */
+
+static double save_every; /* s of real time */
+
+/* "90s", "10min", "2h" */
+static void parse_save(void)
+{
+    static const struct {
+        const char *name;
+        double seconds;
+    } units[] = { { "s", 1 }, { "min", 60 }, { "h", 3600 }, { NULL, 0 } };
+    char *end;
+    double x = strtod(save, &end);
+    for (int k = 0; units[k].name && end != save; k++)
+        if (!strcmp(end, units[k].name)) save_every = x * units[k].seconds;
+    if (!(save_every > 0 && save_every < 1e9))
+        die_usage("--save: '%s' is no time as 90s, 10min or 2h", save);
+}
+
+static void save_begin(struct run *r, const char *path)
+{
+    if (!save) return;
+    if (!path) die_usage("--save wants -o FILE or -i, beside which the state is kept");
+    size_t room = strlen(path) + sizeof ".save";
+    if (!(r->save_path = malloc(room))) die(EX_SOFTWARE, "no memory");
+    snprintf(r->save_path, room, "%s.save", path);
+    r->saved = seconds_now();
+}
+
+static bool save_due(const struct run *r)
+{
+    return r->save_path && seconds_now() - r->saved >= save_every;
+}
+
+/* The state as a document of its own, which takes the place of the one before in one stroke */
+static void save_state(struct run *r)
+{
+    struct why why = { 0 };
+    struct writer *out;
+    struct frame f = r->f;
+    f.detected = f.detected || options.warm; // a warm step begins with these
+    bool behind = r->behind;
+    if (behind_close(r->behind, &why)) die_why(&why); // libhdf5 has one user at a time
+    r->behind = NULL;
+    if (writer_open(&out, r->save_path, WRITER_COPY, &why) || writer_frame(out, &f, &why) ||
+        writer_close(out, &why))
+        die_why(&why);
+    if (behind) behind_open(&r->behind, r->out, &(struct why){ 0 });
+    r->saved = seconds_now();
+}
+
+static void save_end(struct run *r)
+{
+    if (r->save_path) unlink(r->save_path); // what the output has, too
+    free(r->save_path);
+}
+
+/* ---- steps ---- */
 
 /* Bodies come and go, as the step begins. */
 static void flow(struct run *r)
@@ -228,7 +345,7 @@ static bool is_kept(const struct packing *p, int64_t step, int64_t k)
            floor((before + slack(p, before)) / every.seconds);
 }
 
-/* dt of the step to come. Impulses of the step before are those of its dt: forces go on. */
+/* dt of the step to come */
 static void adapt(struct run *r)
 {
     struct why why = { 0 };
@@ -237,19 +354,28 @@ static void adapt(struct run *r)
     if (!(tol > 0)) return;
     if (adapt_step(p, tol, &r->ahead, &why)) die_why(&why);
     if (p->dt == had) return;
-    contacts_scale_found(&r->f.contacts, p->dt / had);
+    if (p->halved == ADAPT_MOST && !total.shortest++)
+        warn("step %lld: dt is %.3g s, and is not halved any more: bodies that are jammed, or too "
+             "fast "
+             "for that",
+             (long long)p->step + 1, p->dt);
     r->o.solve.local.newton_abs *= p->dt / had;
+}
+
+/* Does dt adapt until a time, and is it this step's? How many steps that takes nobody knows before. */
+static bool is_then(const struct packing *p, int64_t step)
+{
+    return tol > 0 && cli_given(&until) && packing_time(p, step) >= until - slack(p, until);
 }
 
 /* Does the run end with this step, the k-th? */
 static bool is_last(const struct packing *p, int64_t step, int64_t k)
 {
-    return k == steps ||
-           (tol > 0 && cli_given(&until) && packing_time(p, step) >= until - slack(p, until));
+    return k == steps || is_then(p, step);
 }
 
 /* Makes one step, the k-th; false where its solve has diverged, and the bodies have not moved. */
-static bool advance(struct run *r, int64_t k)
+static bool advance(struct run *r, int64_t k, bool saves)
 {
     struct why why = { 0 };
     struct frame *f = &r->f;
@@ -258,7 +384,7 @@ static bool advance(struct run *r, int64_t k)
     flow(r);
     const struct packing *p = &f->packing;
     bool last = is_last(p, p->step + 1, k);
-    r->o.bare = !options.log && !last && !is_kept(p, p->step + 1, k);
+    r->o.bare = !options.log && !saves && !last && !is_kept(p, p->step + 1, k);
     if (crew_step(f, &r->memory, r->other_bodies, &r->o, &why)) die_why(&why);
     f->reported = f->moved = true;
     count(rep);
@@ -304,18 +430,21 @@ static int64_t run(struct run *r)
 {
     int64_t made = 0;
     bool good = true;
-    double since = seconds_now();
     struct why why = { 0 };
     begin(r);
     // where there is no other thread, this one writes; and with others, who have the bodies
     if (options.threads > 1 && steps && !r->f.elsewhere)
         behind_open(&r->behind, r->out, &(struct why){ 0 });
     bool ends = !steps;
-    while (!ends && (good = advance(r, made + 1))) {
+    while (!ends) {
+        if (stopped_by) steps = made + 1; // the next one is the last, and its frame is kept
+        bool saves = save_due(r);
+        if (!(good = advance(r, made + 1, saves))) break;
         const struct packing *p = &r->f.packing;
         ends = is_last(p, p->step, ++made);
-        tell(&r->f.report, made, since);
+        tell(&r->f.report, made, r->out);
         if (is_kept(p, p->step, made) || ends) write_frame(r);
+        if (saves) save_state(r);
     }
     if (ends) steps = made;
     if (!good) {
@@ -344,7 +473,7 @@ static void count_steps(const struct packing *p)
            !packing_check_clock(p, &(struct why){ 0 }))
         steps++;
     expected = steps;
-    if (steps && tol > 0) steps = INT64_MAX; // is_last() sees when
+    if (steps && tol > 0) steps = INT64_MAX; // is_then() sees
 }
 
 /* ---- from where, and where to ---- */
@@ -383,6 +512,7 @@ static void set_dt(struct packing *p, double asked, const char *path)
         die_usage("--dt: %s has %g s, and a trajectory has one: -o FILE goes on with another", path,
                   packing_whole_dt(p));
     if (!path) p->adapts = false;
+    memory_scale(&p->memory, asked / p->dt);
     p->halved = 0;
     packing_set_dt(p, asked);
     if (packing_check_clock(p, &why)) die_why(&why);
@@ -458,6 +588,7 @@ int tool_main(int argc, char **argv)
     if (!crew_join()) return crew_follow();
     double asked = read_dt();
     if (cli_given(&until) && cli_given(&steps)) die_usage("-n and --until exclude each other");
+    if (save) parse_save();
     if (in_place && output) die_usage("-i and -o exclude each other");
     if (in_place && !file) die_usage("-i: one FILE, to which it appends");
     if (file && !output && isatty(STDOUT_FILENO) && !crew_started()) in_place = true;
@@ -474,16 +605,27 @@ int tool_main(int argc, char **argv)
     else
         start(&r, in, asked);
     count_steps(&r.f.packing);
-    if (steps && writer_begin(r.out, &r.f, &why)) die_why(&why);
+    if (steps && !in_place && writer_begin(r.out, &r.f, &why)) die_why(&why);
     options_log_open(argc, argv, output);
+    save_begin(&r, in_place ? argv[0] : output);
+    if (r.save_path && reader_reads(argc, argv, r.save_path))
+        die_usage("--save: %s is also the input", r.save_path);
+    take_signals();
+    const int64_t wanted = steps;
     int64_t made = run(&r);
     if (writer_close(r.out, &why)) die_why(&why);
+    save_end(&r);
     options_log_close();
     const char *told = crew_leave();
     summary(made);
     if (told) warn("%s", told);
     say_worst();
-    frame_free(&r.f);
     reader_close(in);
+    if (stopped_by && made < wanted && !is_then(&r.f.packing, r.f.packing.step)) {
+        warn("stopped by signal %d after step %lld, which is kept", (int)stopped_by,
+             (long long)r.f.packing.step);
+        return 128 + stopped_by;
+    }
+    frame_free(&r.f);
     return made < steps || (options.strict && account_fails(&total.account));
 }

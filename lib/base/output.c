@@ -4,13 +4,17 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { NAME_KEPT = 200 }; /* bytes of a name that are in that of the new file: 255 are allowed */
+enum {
+    NAME_KEPT = 200, /* bytes of a name that are in that of the new file: 255 are allowed */
+    LINKS_MOST = 40  /* links that lead to one another, as the system has it */
+};
 
 static const off_t LOCKED = (off_t)1 << 62; /* the byte that a writer locks */
 
@@ -147,6 +151,25 @@ static int open_beside(struct output *o, struct why *why)
     return 0;
 }
 
+/* Where a file of this name would be made: a link that leads nowhere is followed, too. To be freed; NULL: no
+   memory */
+static char *follow(const char *path)
+{
+    char *at = strdup(path), link[PATH_MAX];
+    for (int k = 0; at && k < LINKS_MOST; k++) {
+        ssize_t n = readlink(at, link, sizeof link - 1);
+        if (n < 0) break;
+        link[n] = 0;
+        const char *slash = *link == '/' ? NULL : strrchr(at, '/');
+        int folder = slash ? (int)(slash - at) + 1 : 0;
+        char *next = malloc((size_t)folder + (size_t)n + 1);
+        if (next) sprintf(next, "%.*s%s", folder, at, link);
+        free(at);
+        at = next;
+    }
+    return at;
+}
+
 /* Is this the name of something that is open already, whatever that is? */
 static bool is_open_already(const char *path)
 {
@@ -171,7 +194,7 @@ static int open_new(struct output *o, const char *path, struct why *why)
     if (there) o->old = open(o->target, O_RDWR | O_CLOEXEC);
     if (there && o->old < 0) return failed(o, why, errno);
     if (there && output_lock(o->old, F_OFD_SETLK, o->name, why)) return why->status;
-    if (!there && !(o->target = strdup(path))) return why_set(why, EX_SOFTWARE, "no memory");
+    if (!there && !(o->target = follow(path))) return why_set(why, EX_SOFTWARE, "no memory");
     return open_beside(o, why);
 }
 

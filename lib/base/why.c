@@ -2,9 +2,33 @@
 #include "base/why.h"
 
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 #undef why_set // which is what the analyser takes for it
+
+/* How many bytes the UTF-8 character at s has, with the number in *is; 0: it is none */
+static int character(const unsigned char *s, unsigned *is)
+{
+    int n = *s < 0x80 ? 1 : *s < 0xc2 ? 0 : *s < 0xe0 ? 2 : *s < 0xf0 ? 3 : *s < 0xf5 ? 4 : 0;
+    *is = n < 2 ? *s : *s & (0x7fU >> n);
+    for (int k = 1; k < n; k++) {
+        if ((s[k] & 0xc0) != 0x80) return 0;
+        *is = *is << 6 | (s[k] & 0x3f);
+    }
+    return n;
+}
+
+void why_plain(char *text)
+{
+    for (unsigned char *s = (unsigned char *)text; *s;) {
+        unsigned is;
+        int n = character(s, &is);
+        bool moves = !n || is < ' ' || (is >= 0x7f && is < 0xa0); // C0, DEL, C1
+        for (int k = 0; k < (n ? n : 1); k++, s++)
+            if (moves) *s = '?';
+    }
+}
 
 int why_set(struct why *why, int status, const char *format, ...)
 {
@@ -13,8 +37,6 @@ int why_set(struct why *why, int status, const char *format, ...)
     va_start(ap, format);
     vsnprintf(why->text, sizeof why->text, format, ap);
     va_end(ap);
-    for (char *c = why->text; *c;
-         c++) // names out of files are in it: nothing that moves a terminal
-        if ((unsigned char)*c < ' ' || *c == 127) *c = '?';
+    why_plain(why->text);
     return why->status = status;
 }

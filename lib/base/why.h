@@ -20,6 +20,10 @@ struct why {
 int why_set(struct why *why, int status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Names out of files are in messages: control characters, C1 too, and bytes that are no UTF-8 become '?', for
+   they may move a terminal. */
+void why_plain(char *text);
+
 /* What the static analyser, which sees one file at a time, has to know of it */
 #ifdef __clang_analyzer__
 void why_said(const char *format, ...);

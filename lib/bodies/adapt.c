@@ -25,10 +25,11 @@ static int new_overlap(double *most, const struct packing *p, struct neighbours 
     struct contacts met = { 0 };
     *most = 0;
     end.theta = 0, end.law = NULL, end.overlap = OVERLAP_KEEP, end.bonds = (struct bonds){ 0 };
+    end.memory = (struct memory){ 0 };
     if (detect_contacts(&met, &end, 0, near, why)) return why->status;
     for (int64_t i = 0; i < met.n; i++) {
         const struct contact *c = &met.c[i];
-        double come = dmin(-c->gap, -p->dt * opening_of(p, c));
+        double come = dmin(-c->gap, -p->dt * opening_of(p, c, p->dt));
         *most = dmax(*most, come / packing_smaller_radius(p, c));
     }
     contacts_free(&met);
@@ -37,9 +38,10 @@ static int new_overlap(double *most, const struct packing *p, struct neighbours 
 
 static void change(struct packing *p, int halved)
 {
-    double dt = ldexp(p->dt, p->halved - halved);
+    double factor = ldexp(1, p->halved - halved);
     p->halved = halved;
-    packing_set_dt(p, dt);
+    packing_set_dt(p, factor * p->dt);
+    memory_scale(&p->memory, factor);
 }
 
 /* Is what the step would bring within tol radii? */
@@ -63,7 +65,7 @@ int adapt_step(struct packing *p, double tol, struct neighbours *near, struct wh
         if (calm) return 0;
         change(p, had);
     }
-    while (!is_calm(&calm, p, tol, near, why) && !calm && p->halved < HALVED_MOST)
+    while (!is_calm(&calm, p, tol, near, why) && !calm && p->halved < ADAPT_MOST)
         change(p, p->halved + 1);
     return why->status;
 }

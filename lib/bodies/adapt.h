@@ -25,6 +25,10 @@
 #include "bodies/neighbours.h"
 #include "bodies/packing.h"
 
+/* So many times dt is halved at most, to 1.5e-5 of it: impacts that go by a radius in a step then stay below any
+   TOL that makes sense, and what is jammed between walls does not stop a run for good. */
+enum { ADAPT_MOST = 16 };
+
 /* dt of the step to come, tol a share of a radius; near: neighbours that are kept from one call to the next.
    Returns 0, or EX_SOFTWARE. */
 int adapt_step(struct packing *p, double tol, struct neighbours *near, struct why *why);

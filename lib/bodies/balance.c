@@ -1,6 +1,7 @@
 /* bodies/balance.c: energy and momentum, summed over bodies and contacts [bodies/balance.h]. */
 #include "bodies/balance.h"
 
+#include "bodies/freedom.h"
 #include "bodies/tie.h"
 #include "bodies/top.h"
 
@@ -116,32 +117,106 @@ static void add_moment(struct work *w, const struct packing *p, const struct con
         *(p->mass[c->a] > 0 ? &w->free : &w->held) -= v3_dot(m, mean[c->a].w);
 }
 
+/* Of the reaction r of contact i, without its moment */
+static struct work work_of(const struct packing *p, const struct contact *c, const double r[3],
+                           const struct impulses *sum, const struct mean *mean)
+{
+    const struct push o = push_of(p, sum->ahead, sum->edge, c, r);
+    const struct mean *mb = &mean[c->b];
+    struct work w = { 0 };
+    bool a_moves = c->a >= 0 && p->mass[c->a] > 0, b_moves = p->mass[c->b] > 0;
+    *(b_moves ? &w.free : &w.held) += v3_dot(o.f, mb->v) + push_turns_b(&o, mb->w);
+    if (c->a >= 0) {
+        const struct mean *ma = &mean[c->a];
+        *(a_moves ? &w.free : &w.held) += push_turns_a(&o, ma->w) - v3_dot(o.f, ma->v);
+    } else {
+        w.held -= v3_dot(o.f, wall_held(p, &p->wall[-1 - c->a], c->x));
+    }
+    if (sum->freedoms.n || cell_repeats(&p->cell)) add_beyond(&w, p, sum, c, o.f);
+    return w;
+}
+
 static void add_contacts(struct balance *b, const struct packing *p, const struct contacts *s,
                          const struct impulses *sum, const struct mean *mean)
 {
-    bool beyond = sum->freedoms.n || cell_repeats(&p->cell);
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
         const double *r = s->found[i].r;
         if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
-        const struct push o = push_of(p, sum->ahead, sum->edge, c, r);
-        const struct mean *mb = &mean[c->b];
-        struct work w = { 0 };
-        bool a_moves = c->a >= 0 && p->mass[c->a] > 0, b_moves = p->mass[c->b] > 0;
-        *(b_moves ? &w.free : &w.held) += v3_dot(o.f, mb->v) + push_turns_b(&o, mb->w);
-        if (c->a >= 0) {
-            const struct mean *ma = &mean[c->a];
-            *(a_moves ? &w.free : &w.held) += push_turns_a(&o, ma->w) - v3_dot(o.f, ma->v);
-        } else {
-            w.held -= v3_dot(o.f, wall_held(p, &p->wall[-1 - c->a], c->x));
-        }
-        if (beyond) add_beyond(&w, p, sum, c, o.f);
+        struct work w = work_of(p, c, r, sum, mean);
         if (s->moment) add_moment(&w, p, c, s->moment[i], mean);
         b->drives -= w.held;
         b->dissipation -= w.held + w.free;
-        if (!a_moves && b_moves) add_to(b->impulse, 1, o.f);
-        if (a_moves && !b_moves) add_to(b->impulse, -1, o.f);
+        bool a_moves = c->a >= 0 && p->mass[c->a] > 0, b_moves = p->mass[c->b] > 0;
+        if (a_moves == b_moves) continue;
+        vec3 f = contact_in_space(c, r);
+        add_to(b->impulse, b_moves ? 1 : -1, f);
     }
+}
+
+/*
+ * Of the pair whose contacts are first .. end-1. Restitution never gives more than the approach had: its part counts
+ * where it takes energy, lest what a solve leaves of it be called a gain.
+ */
+static struct gain gain_of(const struct packing *p, const struct contacts *s, int64_t first,
+                           int64_t end, const struct impulses *sum, const struct mean *mean)
+{
+    double normal = 0, rest = 0, scale = 0;
+    bool impact = false;
+    for (int64_t i = first; i < end; i++) {
+        const struct contact *c = &s->c[i];
+        const double *r = s->found[i].r, push[3] = { r[0], 0, 0 }, rub[3] = { 0, r[1], r[2] };
+        double approach = -opening_of(p, c, sum->ahead);
+        struct work n = work_of(p, c, push, sum, mean), t = work_of(p, c, rub, sum, mean);
+        impact = impact || (c->en > 0 && r[0] > 0 && approach > freedoms_calm(p));
+        normal += n.held + n.free, rest += t.held + t.free, scale += r[0] * fabs(approach);
+    }
+    if (!impact || !(rest > 0)) return (struct gain){ fmin(normal, 0) + fmin(rest, 0), 0 };
+    return (struct gain){ fmin(normal, 0) + rest, scale };
+}
+
+/* The first contact after i that is of another pair */
+int64_t balance_next_pair(const struct contacts *s, int64_t i)
+{
+    int64_t k = i + 1;
+    while (k < s->n && s->c[k].a == s->c[i].a && s->c[k].b == s->c[i].b) k++;
+    return k;
+}
+
+static void find_gains(struct gain *gain, const struct packing *p, const struct contacts *s,
+                       const struct impulses *sum, const struct mean *mean)
+{
+    for (int64_t i = 0, next; i < s->n; i = next) {
+        next = balance_next_pair(s, i);
+        gain[i] = gain_of(p, s, i, next, sum, mean);
+        for (int64_t k = i + 1; k < next; k++) gain[k] = (struct gain){ 0, 0 };
+    }
+}
+
+int balance_gains(struct gain *gain, const struct packing *p, const struct contacts *s,
+                  const struct impulses *sum, struct why *why)
+{
+    struct mean *mean = malloc(((size_t)p->n + 1) * sizeof *mean);
+    struct balance unwanted = { 0 };
+    if (!mean) return why_set(why, EX_SOFTWARE, "no memory for the balances");
+    add_bodies(&unwanted, p, sum, NULL, mean);
+    find_gains(gain, p, s, sum, mean);
+    free(mean);
+    return 0;
+}
+
+/* Of all impacts that gain; false when memory is short. */
+static bool add_gains(struct balance *b, const struct packing *p, const struct contacts *s,
+                      const struct impulses *sum, const struct mean *mean)
+{
+    if (!packing_may_gain(p)) return true;
+    struct gain *gain = malloc(((size_t)s->n + 1) * sizeof *gain);
+    if (!gain) return false;
+    find_gains(gain, p, s, sum, mean);
+    for (int64_t i = 0; i < s->n; i++)
+        if (gain[i].work > GAIN_LEAST * gain[i].scale) b->gained += gain[i].work;
+    free(gain);
+    return true;
 }
 
 int balance_step(struct balance *b, const struct packing *p, const struct contacts *s,
@@ -154,6 +229,7 @@ int balance_step(struct balance *b, const struct packing *p, const struct contac
     add_freedoms(b, p, sum);
     add_contacts(b, p, s, sum, mean);
     add_ties(b, p, s);
+    bool good = add_gains(b, p, s, sum, mean);
     free(mean);
-    return 0;
+    return good ? 0 : why_set(why, EX_SOFTWARE, "no memory for the balances");
 }

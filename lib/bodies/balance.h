@@ -23,6 +23,10 @@
  * the cell repeats, T- is not T+ of the step before: a body that is replaced by its image has
  * another velocity.
  *
+ * An impact under Newton's law with friction may gain energy [Kane 1984]: a rod that strikes a floor at an angle and
+ * whose tip reverses its slip. gained is what impacts have gained, the pairs of which approached with restitution and
+ * whose friction did more work than restitution took; solve/rebound.h bounds it.
+ *
  * Without restitution a contact that holds has u+ = 0 and dissipates -r . u-/2, which is negative
  * where the step has begun with separating bodies; over an impact it is what the law takes.
  */
@@ -39,6 +43,7 @@ struct balance {
     /* J, where pairs are tied [bodies/tie.h]: of what is stored, in the step; what is stored then; what
        broken bonds and joining liquid have given up, in the step */
     double bond_change, bond_energy, broken;
+    double gained;      /* J: by impacts, in the step; a part of -dissipation */
     double momentum[3]; /* N s: of the bodies, after the step */
     double impulse[3];  /* N s: of boundaries and fixed bodies on the others, in the step */
 };
@@ -47,5 +52,18 @@ struct balance {
    given, too. Bodies count where of[n] is true; NULL: all. Returns 0 or EX_SOFTWARE. */
 int balance_step(struct balance *b, const struct packing *p, const struct contacts *s,
                  const struct impulses *sum, const bool *of, struct why *why);
+
+/* What the impact of a pair of bodies has gained, beside the energy that its approach could give up */
+struct gain {
+    double work,
+        scale; /* J: of its contacts, which are from this on; work > 0: gained. 0, 0: no impact */
+};
+/* gain[s->n], at the first contact of each pair. Returns 0 or EX_SOFTWARE. */
+int balance_gains(struct gain *gain, const struct packing *p, const struct contacts *s,
+                  const struct impulses *sum, struct why *why);
+/* The first contact after i that is of another pair; the images of one body count as one. */
+int64_t balance_next_pair(const struct contacts *s, int64_t i);
+/* Less than this part of the scale is rounding, or what the solve leaves. */
+#define GAIN_LEAST 1e-10
 
 #endif

@@ -54,6 +54,7 @@ const char *boundary_trouble(const struct wall *w, int dim)
         if (w->shape == BOUNDARY_CYLINDER && (w->n.z != 1 || w->size[2] != 0))
             return "in the plane a cylinder is a circle around z";
     }
+    if (!(w->weld >= 0 && isfinite(w->weld))) return "its weld tolerance is out of range";
     if (!(w->arc >= 0 && w->arc < 2 * M_PI)) return "its arc is out of range";
     bool directed = w->shape == BOUNDARY_RECTANGLE || (is_round(w) && w->arc > 0);
     if (directed &&

@@ -22,15 +22,6 @@ void contacts_free_found(struct contacts *s)
     s->found = NULL, s->moment = NULL;
 }
 
-void contacts_scale_found(struct contacts *s, double factor)
-{
-    for (int64_t i = 0; i < s->n; i++)
-        for (int k = 0; k < 3; k++) {
-            if (s->found) s->found[i].r[k] *= factor;
-            if (s->moment) s->moment[i][k] *= factor;
-        }
-}
-
 void contacts_free_tie(struct contacts *s)
 {
     free(s->tie);
@@ -92,6 +83,27 @@ struct contact *contacts_add(struct contacts *s, int32_t a, int32_t b)
     return c;
 }
 
+void contacts_settle(struct contacts *out)
+{
+    int64_t k = out->n - 1;
+    struct contact new = out->c[k];
+    const struct contact_key key = contact_key(&new);
+    for (; k > 0; k--) {
+        const struct contact *c = &out->c[k - 1];
+        if (c->a != new.a || c->b != new.b) break;
+        int order = contact_key_order(contact_key(c), key);
+        if (order < 0) break;
+        if (order == 0) {
+            if (new.gap < c->gap) out->c[k - 1] = new;
+            memmove(&out->c[k], &out->c[k + 1], (size_t)(out->n - 1 - k) * sizeof *out->c);
+            out->n--;
+            return;
+        }
+        out->c[k] = *c;
+    }
+    out->c[k] = new;
+}
+
 void contact_basis(struct contact *c, int dim, vec3 n)
 {
     c->n = n;
@@ -102,16 +114,6 @@ void contact_basis(struct contact *c, int dim, vec3 n)
     // [Duff et al. 2017]: without a branch, and |sign + n_z| >= 1
     double sign = copysign(1, n.z), a = -sign / (sign + n.z);
     c->t1 = v3(1 + n.x * n.x * a, n.x * n.y * a, -sign * n.x);
-}
-
-static bool same_pair(const struct contact *c, const struct contact *d)
-{
-    return c->a == d->a && c->b == d->b;
-}
-
-static bool same_place(const struct contact *c, const struct contact *d)
-{
-    return c->feature == d->feature && !memcmp(c->shift, d->shift, sizeof c->shift);
 }
 
 static double deepest(void *arg, int64_t first, int64_t end)
@@ -125,35 +127,6 @@ static double deepest(void *arg, int64_t first, int64_t end)
 double contacts_max_overlap(const struct contacts *s)
 {
     return team_most(team_size(), s->n, SOME, deepest, (void *)s);
-}
-
-/* r of c = what `was` in the basis of o */
-static void turn_into(const struct contact *c, const struct contact *o, const double was[3],
-                      double r[3])
-{
-    vec3 t = v3_axpy(v3_scale(was[1], o->t1), was[2], contact_t2(o));
-    r[0] = was[0], r[1] = v3_dot(t, c->t1), r[2] = v3_dot(t, contact_t2(c));
-}
-
-int contacts_match(struct contacts *new, const struct contacts *old)
-{
-    int64_t k = 0;
-    if (!old->found) return 0;
-    if (contacts_alloc_found(new) || (old->moment && contacts_alloc_moment(new))) return -1;
-    for (int64_t i = 0; i < new->n; i++) {
-        const struct contact *c = &new->c[i];
-        double *r = new->found[i].r;
-        while (k < old->n && (old->c[k].a < c->a || (old->c[k].a == c->a && old->c[k].b < c->b)))
-            k++;
-        int64_t l = k; // the pair's contacts: their order may have changed with the cell's cut
-        while (l < old->n && same_pair(&old->c[l], c) && !same_place(&old->c[l], c)) l++;
-        if (l == old->n || !same_pair(&old->c[l], c)) continue;
-        const struct contact *o = &old->c[l];
-        const double *was = old->found[l].r;
-        turn_into(c, o, was, r);
-        if (old->moment) turn_into(c, o, old->moment[l], new->moment[i]);
-    }
-    return 0;
 }
 
 static const char *contact_trouble(const struct contact *c, const struct found *found,

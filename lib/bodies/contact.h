@@ -26,6 +26,9 @@ struct found {
     int8_t status; /* enum local_status */
 };
 
+/* A status beyond the law's: the contact has no solution, its reaction has grown without end [problem/judge.h]. */
+enum { STATUS_JAMMED = 3 };
+
 /* Of a contact's tie: what is kept of it, and what is new in this step */
 enum { TIE_WET = 1, TIE_BONDED = 2, TIE_NEW_BRIDGE = 4, TIE_STATES = 8 };
 
@@ -90,14 +93,15 @@ int contacts_alloc_moment(struct contacts *contacts);
 /* tie[n], all zero, in place of the old ones; -1 when memory is short. */
 int contacts_alloc_tie(struct contacts *contacts);
 void contacts_free_tie(struct contacts *contacts);
-/* Reactions, and moments, times a factor; nothing where there are none */
-void contacts_scale_found(struct contacts *contacts, double factor);
 /* found and moment */
 void contacts_free_found(struct contacts *contacts);
 /* to = a deep copy of from; to need not be initialised; -1 when memory is short. */
 int contacts_copy(struct contacts *to, const struct contacts *from);
 /* Appends a contact, zero but for a and b; NULL when memory is short. */
 struct contact *contacts_add(struct contacts *contacts, int32_t a, int32_t b);
+/* Sorts the new last contact among those of its pair, of which each key is there once: the deeper of two is
+   kept. */
+void contacts_settle(struct contacts *contacts);
 /* Makes room for so many more; false when memory is short. */
 bool contacts_reserve(struct contacts *contacts, int64_t more);
 
@@ -119,10 +123,6 @@ static inline vec3 contact_in_space(const struct contact *c, const double r[3])
     vec3 normal = v3_scale(r[0], c->n);
     return v3_axpy(v3_axpy(normal, r[1], c->t1), r[2], contact_t2(c));
 }
-
-/* new->found[].r = the reactions of old (and moments, where it has any), turned into the bases of new, for pairs that are in both,
-   and 0 for others. Leaves new as it is when old is not solved. -1 when memory is short. */
-int contacts_match(struct contacts *new, const struct contacts *old);
 
 /* m: the deepest overlap, 0 where there is none */
 double contacts_max_overlap(const struct contacts *contacts);

@@ -4,8 +4,10 @@
 #include "base/team.h"
 #include "bodies/anchor.h"
 #include "bodies/detect_shapes.h"
+#include "bodies/freedom.h"
 #include "bodies/kinematics.h"
 #include "bodies/seam.h"
+#include "bodies/swift.h"
 #include "bodies/tie.h"
 #include "bodies/top.h"
 
@@ -13,8 +15,11 @@
 #include <string.h>
 
 enum {
-    SOME = 512,  /* bodies whose places on a curved boundary are worth a thread: 50 us of work, */
-    MANY = 16384 /* and bodies at a plane, or pairs */
+    SOME = 512,   /* bodies whose places on a curved boundary are worth a thread: 50 us of work, */
+    MANY = 16384, /* and bodies at a plane, or pairs */
+    ELEMENTS_BODY =
+        4096, /* elements of meshes near a body: one ten times as wide as they are has 600 */
+    ELEMENTS_LEAST = 1 << 26 /* and those that all may have: a second's work */
 };
 
 /* A place where ball i meets wall w, in space; false when memory is short. */
@@ -104,7 +109,8 @@ static bool add_plane(struct contacts *out, const struct sought *o, int64_t firs
         struct touch touch = { n, v3_dot(v3_sub(x[i], at), n), 0 };
         if (!(touch.distance - p->radius[i] <= gap) || p->mass[i] == 0) continue;
         if (o->shaped && packing_shape(p, i)) {
-            if (!detect_shapes_wall(out, o->shaped, w, i, o->t, gap, NULL)) return false;
+            if (!detect_shapes_wall(out, o->shaped, w, i, o->t, gap, NULL, v3(0, 0, 0)))
+                return false;
             continue;
         }
         if (!add_touch(out, p, w, i, x[i], &touch)) return false;
@@ -112,33 +118,44 @@ static bool add_plane(struct contacts *out, const struct sought *o, int64_t firs
     return true;
 }
 
-/* The same of any other shape. Balls are brought to where the shape is described, and what they touch
+/* Body i and a wall of any other shape. A ball is brought to where the shape is described, and what it touches
    back from there. */
-static bool add_shape(struct contacts *out, const struct sought *o, int64_t first, int64_t end)
+static bool add_body(struct contacts *out, const struct sought *o, const struct pose *pose,
+                     const struct surface *surface, int64_t i)
 {
     const struct packing *p = o->p;
     const int32_t w = o->wall;
-    const vec3 *x = o->x;
-    const double gap = o->gap;
     const struct wall *wall = &p->wall[w];
-    const struct surface *surface = wall->shape == BOUNDARY_MESH ? &o->near->surface[w] : NULL;
-    struct pose pose = wall_pose(p, wall, o->t);
+    double r = p->radius[i];
     struct touch touch[TOUCHES_MOST];
+    if (o->shaped && packing_shape(p, i))
+        return detect_shapes_wall(out, o->shaped, w, i, o->t, o->gap, surface, v3(0, 0, 0));
+    vec3 c = v3_sub(quat_turn_back(pose->q, v3_sub(o->x[i], pose->shift)), wall->x);
+    int n = surface ? surface_touches(surface, c, r + o->gap, touch)
+                    : boundary_nearest(wall, p->dim, c, r, touch);
+    for (int k = 0; k < n; k++) {
+        if (!(touch[k].distance - r <= o->gap)) continue;
+        touch[k].n = quat_turn(pose->q, touch[k].n);
+        if (!add_touch(out, p, w, i, o->x[i], &touch[k])) return false;
+    }
+    return true;
+}
+
+static bool add_shape(struct contacts *out, const struct sought *o, int64_t first, int64_t end)
+{
+    const struct packing *p = o->p;
+    const struct wall *wall = &p->wall[o->wall];
+    const struct surface *surface =
+        wall->shape == BOUNDARY_MESH ? &o->near->surface[o->wall] : NULL;
+    const struct swift swift = { p, o->x, o->t, o->shaped, o->near->surface };
+    const double most = swift_beside(p, o->wall);
+    struct pose pose = wall_pose(p, wall, o->t);
     for (int64_t i = first; i < end; i++) {
-        double r = p->radius[i];
-        vec3 c = v3_sub(quat_turn_back(pose.q, v3_sub(x[i], pose.shift)), wall->x);
         if (p->mass[i] == 0) continue;
-        if (o->shaped && packing_shape(p, i)) {
-            if (!detect_shapes_wall(out, o->shaped, w, i, o->t, gap, surface)) return false;
-            continue;
-        }
-        int n = surface ? surface_touches(surface, c, r + gap, touch)
-                        : boundary_nearest(wall, p->dim, c, r, touch);
-        for (int k = 0; k < n; k++) {
-            if (!(touch[k].distance - r <= gap)) continue;
-            touch[k].n = quat_turn(pose.q, touch[k].n);
-            if (!add_touch(out, p, w, i, x[i], &touch[k])) return false;
-        }
+        int64_t before = out->n;
+        if (!add_body(out, o, &pose, surface, i)) return false;
+        if (swift_is(p, i, most) && !swift_meets_wall(out, before, &swift, o->wall, i))
+            return false;
     }
     return true;
 }
@@ -194,6 +211,28 @@ static bool add_pairs(struct contacts *out, const struct sought *o, int64_t firs
     return true;
 }
 
+/* The elements of meshes that bodies have for neighbours are counted: no heap has so many near each body,
+   and elements that crowd would keep the search busy for hours. */
+static void count_elements(struct neighbours *near, const struct packing *p, _Atomic int64_t *seen)
+{
+    for (int32_t w = 0; near->surface && w < p->walls; w++)
+        near->surface[w].seen = seen,
+        near->surface[w].seen_most = ELEMENTS_LEAST + ELEMENTS_BODY * p->n;
+}
+
+static int check_crowd(struct neighbours *near, const struct packing *p, int64_t seen,
+                       struct why *why)
+{
+    int64_t most = ELEMENTS_LEAST + ELEMENTS_BODY * p->n;
+    for (int32_t w = 0; near->surface && w < p->walls; w++) near->surface[w].seen = NULL;
+    if (seen <= most) return 0;
+    return why_set(
+        why, EX_DATAERR,
+        "bodies have more than %lld elements of meshes near them: a mesh much finer than the "
+        "bodies, or crowded",
+        (long long)most);
+}
+
 /* The bodies at x and q, the cell's edges at edge (m), the walls where they are at time t (s) */
 static int detect(struct contacts *out, const struct packing *p, const vec3 *x, const quat *q,
                   const vec3 edge[3], double t, double gap, struct neighbours *kept,
@@ -204,9 +243,11 @@ static int detect(struct contacts *out, const struct packing *p, const vec3 *x, 
     const vec3 *edges = cell_repeats(&p->cell) ? edge : NULL;
     struct sought o = { p, x, edges, t, gap, near, shaped, 0 };
     bool stored = true;
+    _Atomic int64_t seen = 0;
     out->n = 0, contacts_free_found(out), contacts_free_tie(out);
     int e = neighbours_find(near, p, x, edge, gap, kept, why);
     if (!e) e = neighbours_surfaces(near, p, why);
+    if (!e) count_elements(near, p, &seen);
     if (!e && shaped) e = placed_init(shaped, p, x, q, why);
     for (o.wall = p->walls - 1; !e && stored && o.wall >= 0; o.wall--) {
         const struct wall *wall = &p->wall[o.wall];
@@ -217,8 +258,11 @@ static int detect(struct contacts *out, const struct packing *p, const vec3 *x, 
     }
     if (!e && stored) stored = find_all(out, &o, near->n, shaped ? SOME : MANY, add_pairs);
     const struct seams seams = { p, x, edges, t, shaped, near->surface };
+    const struct swift swift = { p, x, t, shaped, near->surface };
     if (!e && stored) e = seams_drop(out, &seams, why);
+    if (!e && stored) stored = swift_meet_hulls(out, &swift);
     placed_free(&placed);
+    if (!e) e = check_crowd(near, p, seen, why);
     neighbours_free(&once);
     return e || stored ? e : why_set(why, EX_SOFTWARE, "no memory for the contacts");
 }
@@ -231,42 +275,61 @@ int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3
     return detect(out, p, x, p->q, edge, t, gap, kept, why);
 }
 
-/*
- * m: how far apart two bodies may be that touch before the next step's contacts are sought, where
- * the law sees gaps: the way of the fastest in a step, twice; not more than half the smallest
- * radius, so that lists of neighbours stay short where something flies off.
- */
-static double meeting_reach(const struct packing *p)
+/* What decides which pairs that do not touch the law sees */
+struct sight {
+    bool meets;  /* those that approach, too */
+    double calm; /* m/s */
+    double near; /* m: what loads may close in a step */
+    double most; /* m: half the smallest radius, so that lists of neighbours stay short where
+                    something flies off */
+};
+
+static struct sight sight_of(const struct packing *p)
+{
+    return (struct sight){ overlap_meets(p->overlap), freedoms_calm(p), p->dt * freedoms_speed(p),
+                           0.5 * packing_whole(p).small };
+}
+
+/* m: how far apart two bodies may be that touch before the next step's contacts are sought: those that
+   are near, and where pairs meet the way of the fastest in a step, twice */
+static double seeing_reach(const struct packing *p)
 {
     const struct whole all = packing_whole(p);
+    const struct sight o = sight_of(p);
     double speed = p->shape ? all.top_speed : all.speed; // a corner is faster than its body
     for (int32_t w = 0; w < p->walls; w++) speed = fmax(speed, wall_top_speed(p, &p->wall[w]));
-    return fmin(p->dt * (2 * speed + packing_calm(p)), 0.5 * all.small);
+    double near = fmin(OVERLAP_NEAR * all.large + o.near, o.most);
+    return o.meets ? fmax(near, fmin(p->dt * (2 * speed + o.calm), o.most)) : near;
 }
 
 double detect_reach(const struct packing *p, double gap)
 {
-    double reach = overlap_sees_gaps(p->overlap) ? fmax(gap, meeting_reach(p)) : gap;
+    double reach = overlap_sees_gaps(p->overlap) ? fmax(gap, seeing_reach(p)) : gap;
     return p->law ? fmax(reach, ties_reach(p)) : reach;
 }
 
-/* Whether a pair with a gap above `gap` may close it. Where it would rebound, the impact waits for
-   the bodies to touch. */
-static bool meets(const struct packing *p, const struct contact *c)
+/* Whether the law sees a pair with a gap above that of a contact. Where it would rebound from afar, the
+   impact waits for the bodies to touch. */
+static bool is_seen(const struct packing *p, const struct sight *o, const struct contact *c)
 {
-    double approach = -opening_of(p, c), calm = packing_calm(p);
-    return c->gap <= p->dt * (approach + calm) && (c->en == 0 || approach <= calm);
+    double small = c->a < 0 ? p->radius[c->b] : fmin(p->radius[c->a], p->radius[c->b]);
+    if (c->gap <= OVERLAP_NEAR * small) return true;
+    double approach = -opening_of(p, c, (1 - p->theta) * p->dt);
+    if (c->en > 0 && approach > o->calm) return false;
+    return c->gap <= o->near || (o->meets && c->gap <= p->dt * (approach + o->calm));
 }
 
-/* Keeps the contacts with at most this gap, those that may close theirs where the law sees gaps, and
-   those that other laws hold. */
-static void keep_meeting(struct contacts *s, const struct packing *p, double gap)
+/* Keeps the contacts with at most this gap, those that the law sees besides, and those that other laws
+   hold. */
+static void keep_seen(struct contacts *s, const struct packing *p, double gap)
 {
     int64_t n = 0;
     bool sees = overlap_sees_gaps(p->overlap);
+    const struct sight o = sight_of(p);
     for (int64_t i = 0; i < s->n; i++) {
         bool held = s->tie && tie_holds(&s->tie[i]);
-        if (!(s->c[i].gap <= gap || held || (sees && meets(p, &s->c[i])))) continue;
+        bool seen = sees && is_seen(p, &o, &s->c[i]);
+        if (!(s->c[i].gap <= gap || held || swift_ahead(&s->c[i]) || seen)) continue;
         if (s->tie) s->tie[n] = s->tie[i];
         s->c[n++] = s->c[i];
     }
@@ -341,7 +404,7 @@ int detect_choose(struct contacts *s, const struct packing *p, double gap, doubl
 {
     int e = p->law && p->shape && p->bonds.n ? add_anchored(s, p, why) : 0;
     if (!e && p->law) e = ties_find(s, p, why);
-    if (!e && reach > gap) keep_meeting(s, p, gap);
+    if (!e && reach > gap) keep_seen(s, p, gap);
     return e;
 }
 

@@ -3,6 +3,7 @@
 #include "bodies/between.h"
 #include "bodies/meet.h"
 #include "bodies/rim.h"
+#include "bodies/surface_tree.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -10,33 +11,9 @@
 enum {
     CORNERS = 256,     /* of a body that are near a boundary, at most: of more the first */
     RIMS = 64,         /* of a boundary that are near a body, likewise */
-    RIM_KEY = 1 << 30, /* features of rims; */
-    RIM_END = 1 << 29, /* with it, of their ends. Those of corners are below both. */
+    RIM_KEY = 1 << 30, /* features of rims; with RIM_END of their ends */
     MOVED_MOST = 256   /* corners of a body that is met as an image without memory of its own */
 };
-
-/* Sorts the new last contact among those of its pair, of which each key is there once: the deeper of
-   two is kept. */
-static void settle(struct contacts *out)
-{
-    int64_t k = out->n - 1;
-    struct contact new = out->c[k];
-    const struct contact_key key = contact_key(&new);
-    for (; k > 0; k--) {
-        const struct contact *c = &out->c[k - 1];
-        if (c->a != new.a || c->b != new.b) break;
-        int order = contact_key_order(contact_key(c), key);
-        if (order < 0) break;
-        if (order == 0) {
-            if (new.gap < c->gap) out->c[k - 1] = new;
-            memmove(&out->c[k], &out->c[k + 1], (size_t)(out->n - 1 - k) * sizeof *out->c);
-            out->n--;
-            return;
-        }
-        out->c[k] = *c;
-    }
-    out->c[k] = new;
-}
 
 static bool add(struct contacts *out, const struct placed *s, int32_t a, int32_t b,
                 const int8_t shift[3], const struct place *place)
@@ -50,7 +27,7 @@ static bool add(struct contacts *out, const struct placed *s, int32_t a, int32_t
     c->gap = place->gap, c->x = place->x, c->feature = place->feature;
     for (int k = 0; k < 3; k++) c->shift[k] = shift[k];
     packing_set_law(p, c);
-    settle(out);
+    contacts_settle(out);
     return true;
 }
 
@@ -108,6 +85,66 @@ bool detect_shapes_pair(struct contacts *out, const struct placed *s, int32_t a,
 
 /* ---- boundaries ---- */
 
+/* Is the place t of the end of a boundary below a corner, to its weld tolerance? The normal of t is then that of
+   the face: two walls may end there in one flat surface. */
+static bool over_face(const struct wall *wall, const struct surface *surface, struct touch *t)
+{
+    vec3 n = wall->n, d = v3_scale(t->distance, t->n);
+    double near = 2 * WELD_USUAL * boundary_reach(wall);
+    if (surface) n = surface_normal(surface, t->feature / SURFACE_FEATURES), near = surface->weld;
+    if (!surface && (wall->weld > 0 || wall->shape != BOUNDARY_RECTANGLE)) near = wall->weld;
+    double height = v3_dot(d, n);
+    if (!(v3_norm(v3_axpy(d, -height, n)) <= near)) return false;
+    t->n = height < 0 ? v3_scale(-1, n) : n, t->distance = fabs(height);
+    return true;
+}
+
+/* Of the radius: a corner there is the same place */
+static const double SAME_PLACE = 1e-3;
+
+/* A corner c (m, from the wall's point of reference) and the middle of its body */
+struct corner {
+    const struct wall *wall;
+    const struct surface *surface;
+    int dim;
+    vec3 c, middle;
+};
+
+static bool is_between(const struct corner *o, vec3 a, vec3 b)
+{
+    return boundary_between(o->wall, o->dim, o->surface, a, b);
+}
+
+/* Has the corner gone through the boundary at t? Its normal then leads to the middle, and it is at a negative
+   distance. */
+static void turn_to_middle(const struct corner *o, struct touch *t)
+{
+    if (v3_dot(t->n, v3_sub(o->middle, v3_axpy(o->c, -t->distance, t->n))) >= 0) return;
+    t->n = v3_scale(-1, t->n), t->distance *= -1;
+}
+
+/* The corner has gone through a surface: where it is nearest. Of its other places those remain that are seen from
+   just before there, turned if it has gone through them, too. Returns how many remain. */
+static int turn_touches(const struct corner *o, struct touch *t, int n, double radius)
+{
+    int nearest = 0, kept = 0;
+    for (int k = 1; k < n; k++)
+        if (fabs(t[k].distance) < fabs(t[nearest].distance)) nearest = k;
+    if (!n) return 0;
+    turn_to_middle(o, &t[nearest]);
+    double before = 2 * o->surface->weld + SAME_PLACE * SAME_PLACE * radius;
+    vec3 from = v3_axpy(o->c, before - t[nearest].distance, t[nearest].n);
+    bool through = is_between(o, o->middle, from);
+    for (int k = 0; k < n; k++) {
+        vec3 place = v3_axpy(o->c, -t[k].distance, t[k].n);
+        vec3 to = v3_axpy(place, SAME_PLACE, v3_sub(o->c, place));
+        if (k != nearest && is_between(o, from, to)) continue;
+        if (k != nearest && through) turn_to_middle(o, &t[k]);
+        t[kept++] = t[k];
+    }
+    return kept;
+}
+
 /* Where a corner of body i, rounded by `round` (m), meets the surface; n points to the body's side. Where the
    boundary ends or bends only what is round meets it by its corners: of sharp bodies, edges and faces meet rims
    [meet_rims()]. Returns how many places. */
@@ -121,21 +158,31 @@ static int near_surface(const struct placed *s, const struct wall *wall, const s
     double r = p->radius[i];
     int n = surface ? surface_touches(surface, c, round + gap + r, touch)
                     : boundary_nearest(wall, p->dim, c, r, touch);
-    int kept = 0;
-    for (int k = 0; k < n; k++) {
-        bool end = boundary_ends_at(wall, p->dim, surface, c, &touch[k]);
-        bool bends = round == 0 && surface && surface_bends(surface, p->dim, touch[k].feature);
-        if (round == 0 && (end || bends)) continue;
-        touch[kept++] = touch[k];
-        struct touch *t = &touch[kept - 1];
-        vec3 place = v3_axpy(c, -t->distance, t->n);
-        bool two_sided = surface || wall->side == BOUNDARY_BOTH ||
-                         wall->shape == BOUNDARY_RECTANGLE || wall->shape == BOUNDARY_DISC;
-        if (two_sided && !end && v3_dot(t->n, v3_sub(middle, place)) < 0 &&
-            boundary_between(wall, p->dim, surface, middle, c))
-            t->n = v3_scale(-1, t->n), t->distance *= -1;
-        t->n = quat_turn(pose->q, t->n);
+    struct touch found[TOUCHES_MOST];
+    struct touch groove[TOUCHES_MOST];
+    const struct corner o = { wall, surface, p->dim, c, middle };
+    const bool through = surface && n > 0 && is_between(&o, middle, c);
+    int kept = 0, grooves = 0;
+    memcpy(found, touch, (size_t)n * sizeof *touch);
+    for (int k = 0; k < n && kept < TOUCHES_MOST; k++) {
+        struct touch *t = &touch[kept], *f = &found[k];
+        bool end = boundary_ends_at(wall, p->dim, surface, c, f);
+        if (round == 0 && end && !over_face(wall, surface, f)) continue;
+        if (round == 0 && surface && surface_bends(surface, p->dim, f->feature)) {
+            if (through)
+                grooves += surface_groove(surface, p->dim, f, c, middle, groove + grooves,
+                                          TOUCHES_MOST - grooves);
+            continue;
+        }
+        *t = *f, kept++;
+        bool two_sided = wall->side == BOUNDARY_BOTH || wall->shape == BOUNDARY_RECTANGLE ||
+                         wall->shape == BOUNDARY_DISC;
+        if (!surface && two_sided && (!end || round == 0) && is_between(&o, middle, c))
+            turn_to_middle(&o, t);
     }
+    if (through) kept = turn_touches(&o, touch, kept, r);
+    for (int k = 0; k < grooves && kept < TOUCHES_MOST; k++) touch[kept++] = groove[k];
+    for (int k = 0; k < kept; k++) touch[k].n = quat_turn(pose->q, touch[k].n);
     return kept;
 }
 
@@ -175,8 +222,8 @@ static bool meet_convex(struct contacts *out, const struct placed *s, int32_t w,
     return true;
 }
 
-/* Of the radius: a corner there is the same place */
-static const double SAME_PLACE = 1e-3;
+/* 1 - cosine: of two normals that are one */
+static const double ALONG = 1e-12;
 /* Sine: a face that lies on a surface to this is next to its rim, too */
 static const double ALONG_SURFACE = 1e-3;
 
@@ -207,13 +254,29 @@ static bool leads_away(const struct rim *r, const struct pose *pose, vec3 n)
     return true;
 }
 
-static bool is_there(const struct place *place, int n, vec3 x, double near)
+/* Is one of place[n] where f is? Of other rims, those beyond the first `corners`, with the same normal */
+static bool is_there(const struct place *place, int corners, int n, const struct place *f,
+                     double near)
 {
     for (int k = 0; k < n; k++) {
-        vec3 d = v3_sub(place[k].x, x);
-        if (v3_dot(d, d) < near * near) return true;
+        vec3 d = v3_sub(place[k].x, f->x);
+        if (v3_dot(d, d) < near * near && (k < corners || v3_dot(place[k].n, f->n) > 1 - ALONG))
+            return true;
     }
     return false;
+}
+
+/* Does the surface go on flat beyond the place x of a rim? Its triangles do not share their corners there. */
+static bool goes_on(const struct rim *r, const struct wall *wall, const struct pose *pose,
+                    const struct surface *surface, vec3 x, double beyond)
+{
+    if (!surface) return false;
+    vec3 c = v3_sub(quat_turn_back(pose->q, v3_sub(x, pose->shift)), wall->x);
+    double step = fmax(beyond, 10 * surface->weld);
+    for (int k = 0; k < r->sides; k++)
+        if (!surface_is_at(surface, v3_axpy(c, -step, r->into[k]), NULL, 2 * surface->weld))
+            return false;
+    return true;
 }
 
 /* Adds where the rims of a boundary meet a core and no corner does; returns how many places there are. */
@@ -238,7 +301,8 @@ static int meet_rims(struct place *place, int count, const struct packing *p,
             struct place *f = &found[l];
             if (!leads_away(r, pose, f->n)) continue;
             f->x = v3_axpy(f->x, -0.5 * f->gap, f->n); // on the rim
-            if (is_there(place, corners, f->x, near)) continue;
+            if (is_there(place, corners, count, f, near)) continue;
+            if (goes_on(r, wall, pose, surface, f->x, near)) continue;
             int end = p->dim == 2 ? 0 : meet_end(f);
             f->feature = end >= 0 && !cut[end] ? RIM_KEY | RIM_END | r->corner[end]
                                                : RIM_KEY | (r->key % (RIM_END / 4) * 4 + l);
@@ -249,16 +313,17 @@ static int meet_rims(struct place *place, int count, const struct packing *p,
 }
 
 bool detect_shapes_wall(struct contacts *out, const struct placed *s, int32_t w, int64_t i,
-                        double t, double gap, const struct surface *surface)
+                        double t, double gap, const struct surface *surface, vec3 ahead)
 {
     static const int8_t none[3] = { 0, 0, 0 };
     const struct packing *p = s->p;
     const struct wall *wall = &p->wall[w];
-    const struct pose pose = wall_pose(p, wall, t);
+    struct pose pose = wall_pose(p, wall, t);
     bool plane = wall->shape == BOUNDARY_PLANE;
     vec3 at = wall_at(p, wall, t), n = wall_normal(p, wall, t), ends[2];
     struct core boundary;
     double reach = p->radius[i] + fmax(gap, 0);
+    pose.shift = v3_sub(pose.shift, ahead);
     if (plane && v3_dot(v3_sub(s->x[i], at), n) > reach) return true;
     if (convex_boundary(p, wall, &pose, s->x[i], 2 * reach, ends, &boundary))
         return meet_convex(out, s, w, i, &boundary, gap);

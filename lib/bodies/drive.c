@@ -47,7 +47,7 @@ static const char *table_trouble(const struct drives *d, const struct drive *k)
     return NULL;
 }
 
-const char *drive_trouble(const struct drives *d, int32_t k, int32_t boundaries, int dim)
+static const char *drive_trouble(const struct drives *d, int32_t k, int32_t boundaries, int dim)
 {
     const struct drive *s = &d->drive[k];
     if (s->boundary < 0 || s->boundary >= boundaries) return "it moves no boundary";
@@ -64,6 +64,22 @@ const char *drive_trouble(const struct drives *d, int32_t k, int32_t boundaries,
     bool leaves = s->turns ? s->axis.x != 0 || s->axis.y != 0 : s->axis.z != 0;
     if (dim == 2 && (leaves || s->point.z != 0)) return "it leaves the plane, and dim is 2";
     return s->signal == DRIVE_TABLE ? table_trouble(d, s) : NULL;
+}
+
+int drives_check(const struct drives *d, int32_t boundaries, int dim, const char *what,
+                 struct why *why)
+{
+    int64_t rows = 0; // of all tables: none is another's, too
+    for (int32_t k = 0, of_one = 0; k < d->n; k++) {
+        const struct drive *s = &d->drive[k];
+        of_one = k && s->boundary == s[-1].boundary ? of_one + 1 : 1;
+        rows += s->signal == DRIVE_TABLE && s->rows > 0 ? s->rows : 0;
+        const char *trouble = of_one > DRIVES_MOST ? "more than a boundary may have"
+                              : rows > d->rows     ? "its table is not there, or another's"
+                                                   : drive_trouble(d, k, boundaries, dim);
+        if (trouble) return why_set(why, EX_DATAERR, "%s %d: %s", what, k, trouble);
+    }
+    return 0;
 }
 
 /* Not libm's, whose last bits differ between machines */

@@ -51,8 +51,11 @@ int drives_alloc(struct drives *d, int32_t n, int32_t rows, struct why *why);
 void drives_free(struct drives *d);
 /* to = a copy; EX_SOFTWARE with nothing to free */
 int drives_copy(struct drives *to, const struct drives *from, struct why *why);
-/* NULL, or what is wrong with drive k, in a packing of so many boundaries */
-const char *drive_trouble(const struct drives *d, int32_t k, int32_t boundaries, int dim);
+enum { DRIVES_MOST = 1000 }; /* of one boundary: each place of it asks them all */
+/* Are all of them drives, in a packing of so many boundaries? what: they are called in messages. Returns 0 or
+   EX_DATAERR. */
+int drives_check(const struct drives *d, int32_t boundaries, int dim, const char *what,
+                 struct why *why);
 
 /* m, rad: the way at the packing's time t (s) */
 double drive_way(const struct drives *d, const struct drive *k, double t);

@@ -66,6 +66,42 @@ int freedoms_init(struct freedoms *list, const struct packing *p, const vec3 hal
     return 0;
 }
 
+/* m/s: |had speed| + dt |force|/mass, the most of all that glide */
+static double fastest(const struct packing *p, bool had)
+{
+    double most = 0;
+    vec3 inverse[3], area[3];
+    for (int32_t w = 0; w < p->walls; w++) {
+        if (p->wall[w].load.way != LOAD_GLIDES) continue;
+        struct freedom f = wall_freedom(p, w);
+        most = dmax(most, had * fabs(f.speed) + p->dt * fabs(f.force) / f.mass);
+    }
+    if (!cell_yields(&p->cell)) return most;
+    cell_inverse(p->cell.edge, inverse);
+    face_areas(p, p->cell.edge, inverse, area);
+    for (int k = 0; k < 9; k++) {
+        if (!(p->cell.mass[k / 3][k % 3] > 0)) continue;
+        struct freedom f = edge_freedom(&p->cell, k / 3, k % 3, inverse, area);
+        most = dmax(most, had * fabs(f.speed) + p->dt * fabs(f.force) / f.mass);
+    }
+    return most;
+}
+
+double freedoms_gain(const struct packing *p)
+{
+    return fastest(p, false);
+}
+
+double freedoms_speed(const struct packing *p)
+{
+    return fastest(p, true);
+}
+
+double freedoms_calm(const struct packing *p)
+{
+    return 2 * (p->dt * v3_norm(p->g) + freedoms_gain(p));
+}
+
 void freedoms_free(struct freedoms *list)
 {
     free(list->f);

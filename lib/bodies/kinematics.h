@@ -54,13 +54,16 @@ static inline struct arms arm_vectors(const struct packing *p, const struct cont
     return o;
 }
 
-/* m/s: n . (v_b - v_a), with the velocities that the bodies have now; which is u_n */
-static inline double opening_of(const struct packing *p, const struct contact *c)
+/* m/s: n . (v_b - v_a), with the velocities that the bodies have now, `ahead` (s) from where the contact acts;
+   which is u_n */
+static inline double opening_of(const struct packing *p, const struct contact *c, double ahead)
 {
     vec3 va = c->a < 0 ? wall_velocity(p, &p->wall[-1 - c->a], c->x) : p->v[c->a];
     vec3 vb = v3_add(p->v[c->b], cell_shift(p->cell.rate, c->shift));
-    if (contact_shaped(p, c)) { // arms from where the bodies are: half a step makes no difference
-        struct arms o = arm_vectors(p, c, 0, p->cell.edge);
+    if (contact_shaped(p, c)) {
+        vec3 edge[3];
+        cell_predict(&p->cell, ahead, edge);
+        struct arms o = arm_vectors(p, c, ahead, edge);
         vb = v3_add(vb, v3_cross(p->w[c->b], o.b));
         if (c->a >= 0) va = v3_add(va, v3_cross(p->w[c->a], o.a));
     }

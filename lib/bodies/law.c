@@ -32,6 +32,8 @@ const char *law_trouble(const struct law *l)
         return "the stiffness of a bond must be positive";
     if (!(l->beta >= 0 && l->beta <= 1)) return "beta must lie in [0, 1]";
     if (!isfinite(l->made)) return "the time of bonds is not finite";
+    if (!(l->impact >= 0 && l->impact < IMPACT_LAWS) || l->impact != floor(l->impact))
+        return "an impact is Newton's or bounded: 0, 1 or 2";
     return l->forever == 0 || l->forever == 1 ? NULL : "bonds are made at a time or for ever";
 }
 

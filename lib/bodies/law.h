@@ -20,6 +20,10 @@
 
 #include <stdbool.h>
 
+/* Whether restitution is reduced where an impact would gain energy [solve/rebound.h]: of grains that are no balls,
+   whose impacts gain by themselves; never; always */
+enum impact_law { IMPACT_DEFAULT, IMPACT_NEWTON, IMPACT_BOUNDED, IMPACT_LAWS };
+
 struct law {
     double cohesion, range; /* N, m */
 
@@ -34,6 +38,8 @@ struct law {
     double beta;    /* intensity of a bond that is made */
     double made;    /* s: the time at which pairs that touch are bonded */
     double forever; /* 1: whenever bodies meet, instead */
+
+    double impact; /* enum impact_law */
 };
 
 /* What is wrong with the numbers, or NULL */

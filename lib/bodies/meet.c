@@ -306,7 +306,8 @@ static int at_parameters(const struct core *a, const struct core *b, double s, d
     return 1;
 }
 
-/* Segments side by side meet in two places, at the ends of what they have in common. */
+/* Segments side by side meet in two places, at the ends of what they have in common: where one of them ends, next
+   to that end, whichever of them is a. */
 static int meet_segments(const struct core *a, const struct core *b, double reach,
                          struct place *out)
 {
@@ -324,10 +325,11 @@ static int meet_segments(const struct core *a, const struct core *b, double reac
         return at_parameters(a, b, s, t, BY_NEAREST, reach, out);
     }
     double lo = clamp(dw / dd), hi = clamp((dw + de) / dd);
-    int count = at_parameters(a, b, lo, clamp((lo * de - ew) / ee), BY_CORNER, reach, out);
+    double t_lo = lo > 0 && lo < 1 ? 0 : clamp((lo * de - ew) / ee);
+    double t_hi = hi > 0 && hi < 1 ? 1 : clamp((hi * de - ew) / ee);
+    int count = at_parameters(a, b, lo, t_lo, BY_CORNER, reach, out);
     if (fabs(hi - lo) < 1e-9) return count;
-    return count +
-           at_parameters(a, b, hi, clamp((hi * de - ew) / ee), BY_CORNER + 1, reach, out + count);
+    return count + at_parameters(a, b, hi, t_hi, BY_CORNER + 1, reach, out + count);
 }
 
 /* The corner of c that is farthest along n, and the one that falls off least on the way there; false:

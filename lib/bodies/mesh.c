@@ -216,6 +216,10 @@ int surface_init(struct surface *s, const struct mesh *m, int32_t first, int32_t
         if (extends(s, m, first, i)) s->order[s->n++] = i;
     if (good) meet(s), grow(s, room, 0, s->n, 0);
     free(room);
+    for (int32_t v = 0; good && v < 3 * n; v++)
+        if (s->star[v + 1] - s->star[v] > STAR_MOST)
+            return why_set(why, EX_DATAERR, "a mesh: more than %d elements meet at a corner",
+                           STAR_MOST);
     return good ? 0 : why_set(why, EX_SOFTWARE, "no memory for a surface of %d elements", n);
 }
 
@@ -292,12 +296,18 @@ static bool is_there(const struct surface *s, int32_t e, int part, int32_t v, in
 
 /* Whether the place on an edge or at a corner of element e is a minimum that e reports, the first of
    those that meet there */
-static bool is_minimum(const struct surface *s, int32_t e, int part, vec3 c)
+static bool is_minimum(const struct surface *s, int32_t e, int part, vec3 c, int *looked)
 {
     int k = part < 3 ? part : part - 3;
     int32_t v = s->corner[3 * e + k], w = part < 3 ? s->corner[3 * e + (k + 1) % 3] : v;
+    // at the hub of a fan is all of it
+    if (s->star[w + 1] - s->star[w] < s->star[v + 1] - s->star[v]) {
+        int32_t hub = v;
+        v = w, w = hub;
+    }
     for (int32_t i = s->star[v]; i < s->star[v + 1]; i++) {
         int32_t other = s->member[i];
+        ++*looked;
         if (other == e || which_corner(s, other, w) < 0) continue;
         struct place at = near_element(s, other, c);
         if (!is_there(s, other, at.part, v, w)) return false;
@@ -319,22 +329,24 @@ vec3 surface_nearest(const struct surface *s, int32_t e, vec3 c)
     return near_element(s, e, c).x;
 }
 
-static void look_at(const struct surface *s, int32_t e, vec3 c, double most, struct touch *touch,
-                    int *n)
+/* Returns how many elements were looked at for it, of those at its corners each. */
+static int look_at(const struct surface *s, int32_t e, vec3 c, double most, struct touch *touch,
+                   int *n)
 {
     struct place at = near_element(s, e, c);
     vec3 d = v3_sub(c, at.x);
     double distance = v3_norm(d);
-    if (!(distance <= most) || (at.part < 6 && !is_minimum(s, e, at.part, c)) || *n == TOUCHES_MOST)
-        return;
+    int looked = 1;
+    if (!(distance <= most)) return looked;
+    bool minimum = at.part == 6 || is_minimum(s, e, at.part, c, &looked);
+    if (!minimum || *n == TOUCHES_MOST) return looked;
     struct touch *t = &touch[(*n)++];
     *t = (struct touch){ .distance = distance, .feature = SURFACE_FEATURES * e + at.part };
-    if (distance > s->weld) {
-        t->n = v3_scale(1 / distance, d);
-        return;
-    }
-    vec3 up = surface_normal(s, e); // d is rounding
-    t->n = v3_dot(up, d) < 0 ? v3_scale(-1, up) : up;
+    vec3 up = surface_normal(s, e); // where d is rounding
+    t->n = distance > s->weld  ? v3_scale(1 / distance, d)
+           : v3_dot(up, d) < 0 ? v3_scale(-1, up)
+                               : up;
+    return looked;
 }
 
 static int by_feature(const void *a, const void *b)
@@ -343,14 +355,45 @@ static int by_feature(const void *a, const void *b)
     return (p->feature > q->feature) - (p->feature < q->feature);
 }
 
+bool surface_is_at(const struct surface *s, vec3 c, const vec3 *n, double near)
+{
+    struct surface_walk walk;
+    struct surface_branch leaf;
+    surface_walk_begin(&walk, s->n);
+    while (surface_walk_next(&walk, s->box, c, near, &leaf))
+        for (int32_t i = leaf.lo; i < leaf.hi; i++)
+            if (v3_norm(v3_sub(c, surface_nearest(s, s->order[i], c))) <= near &&
+                (!n || fabs(v3_dot(*n, surface_normal(s, s->order[i]))) > 1 - 1e-6))
+                return true;
+    return false;
+}
+
+/* Leaves the first of those at one place; returns how many are left. */
+static int leave_one(const struct surface *s, struct touch *touch, int n)
+{
+    int kept = 0;
+    for (int k = 0; k < n; k++) {
+        bool again = false;
+        for (int l = 0; l < kept && !again; l++)
+            again = v3_dot(touch[l].n, touch[k].n) > 1 - 1e-12 &&
+                    fabs(touch[l].distance - touch[k].distance) <= s->weld;
+        if (!again) touch[kept++] = touch[k];
+    }
+    return kept;
+}
+
 int surface_touches(const struct surface *s, vec3 c, double most, struct touch touch[TOUCHES_MOST])
 {
     struct surface_walk walk;
     struct surface_branch leaf;
     int n = 0;
     surface_walk_begin(&walk, s->n);
+    int64_t seen = 0;
+    if (s->seen && *s->seen > s->seen_most) return 0;
     while (surface_walk_next(&walk, s->box, c, most, &leaf))
-        for (int32_t i = leaf.lo; i < leaf.hi; i++) look_at(s, s->order[i], c, most, touch, &n);
+        for (int32_t i = leaf.lo; i < leaf.hi; i++)
+            seen += look_at(s, s->order[i], c, most, touch, &n);
+    if (s->seen) *s->seen += seen;
     qsort(touch, (size_t)n, sizeof *touch, by_feature);
-    return n;
+    return leave_one(s, touch, n);
 }

@@ -46,9 +46,12 @@ struct surface {
     struct surface_box *box; /* of a tree over order[] */
     int32_t *corner;         /* [3 elements] numbers of corners, of those at one place the first */
     int32_t *star, *member;  /* of corner v: elements member[star[v]] .. member[star[v+1]-1] */
+    _Atomic int64_t *seen;   /* borrowed: counts elements that surface_touches looks at; or NULL */
+    int64_t seen_most;       /* beyond it there are no touches */
 };
 
-/* weld: m; 0: WELD_USUAL. Returns 0, or EX_SOFTWARE; surface_free() in any case. */
+/* weld: m; 0: WELD_USUAL. Returns 0, EX_SOFTWARE, or EX_DATAERR: too many elements at a corner;
+   surface_free() in any case. */
 int surface_init(struct surface *s, const struct mesh *m, int32_t first, int32_t n, double weld,
                  struct why *why);
 void surface_free(struct surface *s);
@@ -57,12 +60,16 @@ void surface_free(struct surface *s);
 #define WELD_USUAL 1e-6
 
 enum {
+    STAR_MOST = 4096, /* elements that meet at a corner: to look at all pairs has to end */
     TOUCHES_MOST = 64 /* of a ball and a surface: beyond it the last ones are left out */
 };
 /* The places at most `most` (m) from c (m, from the boundary's point of reference) at which the distance has
-   a minimum, sorted by feature; returns how many. t.n points from the place to c. */
+   a minimum, sorted by feature; returns how many. t.n points from the place to c. Triangles that lie on each
+   other have one. */
 int surface_touches(const struct surface *s, vec3 c, double most, struct touch touch[TOUCHES_MOST]);
 
+/* Does the surface lie at c, to `near` (m)? n: across this unit vector; NULL: in any direction */
+bool surface_is_at(const struct surface *s, vec3 c, const vec3 *n, double near);
 /* Of an element: its unit normal, in the plane across the segment; its place next to c */
 vec3 surface_normal(const struct surface *s, int32_t e);
 vec3 surface_nearest(const struct surface *s, int32_t e, vec3 c);

@@ -86,7 +86,9 @@ static void move_some(void *arg, int64_t first, int64_t end)
 int move_by(struct packing *p, const struct contacts *s, const struct impulses *sum,
             struct why *why)
 {
-    if (packing_check_clock(p, why) || (p->law && ties_keep(p, s, why))) return why->status;
+    if (packing_check_clock(p, why) || (p->law && ties_keep(p, s, why)) ||
+        memory_keep(&p->memory, s, why))
+        return why->status;
     struct moving m = { p, sum };
     team_share(team_size(), p->n, SOME, move_some, &m);
     cell_move(&p->cell, p->dt, p->theta, sum->next);

@@ -1,5 +1,6 @@
 /*
- * bodies/offset.h: what the contact law sees of a gap, as a velocity:
+ * bodies/offset.h: what the contact law sees of a gap, and of a wall that bends towards a body on its
+ * way, as a velocity:
  *
  *     u~ = D^-1 (u + E u^- + law n)
  *

@@ -53,6 +53,7 @@ void packing_free(struct packing *p)
     free(p->poured), free(p->removed);
     events_free(&p->events);
     bonds_free(&p->bonds);
+    memory_free(&p->memory);
     cell_free(&p->cell);
     kinds_free(p);
     memset(p, 0, sizeof *p);
@@ -95,6 +96,22 @@ bool packing_rolls(const struct packing *p)
     for (int32_t k = 0; p->law && k < p->kinds * p->kinds; k++)
         if (law_rolls(&p->law[k])) return true;
     return false;
+}
+
+bool packing_may_gain(const struct packing *p)
+{
+    for (int32_t k = 0; k < p->kinds * p->kinds; k++)
+        if (p->mu[k] > 0 && p->en[k] > 0) return true;
+    return false;
+}
+
+bool packing_bounds(const struct packing *p, const struct contact *c)
+{
+    const int32_t k = packing_pair(p, c->a, c->b);
+    const double law = p->law ? p->law[k].impact : IMPACT_DEFAULT;
+    bool shaped = p->shape && (p->shape[c->b] > 0 || (c->a >= 0 && p->shape[c->a] > 0));
+    return p->mu[k] > 0 && p->en[k] > 0 &&
+           (law == IMPACT_BOUNDED || (law == IMPACT_DEFAULT && shaped));
 }
 
 int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals, struct why *why)
@@ -182,7 +199,8 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     memcpy(to->et, p->et, k2 * sizeof *p->et);
     if (p->law && packing_alloc_laws(to, why)) goto fail;
     if (p->law) memcpy(to->law, p->law, k2 * sizeof *p->law);
-    if (bonds_copy(&to->bonds, &p->bonds, why)) goto fail;
+    if (bonds_copy(&to->bonds, &p->bonds, why) || memory_copy(&to->memory, &p->memory, why))
+        goto fail;
     for (int32_t i = 0; i < p->kinds; i++) {
         free(to->kind_name[i]);
         if (!(to->kind_name[i] = strdup(p->kind_name[i]))) goto fail;
@@ -393,16 +411,12 @@ int packing_check(const struct packing *p, struct why *why)
         const char *trouble = wall_trouble(p, &p->wall[i]);
         if (trouble) return why_set(why, EX_DATAERR, "wall %d: %s", i, trouble);
     }
-    for (int32_t i = 0; i < p->drives.n; i++) {
-        const char *trouble = drive_trouble(&p->drives, i, p->walls, p->dim);
-        if (trouble) return why_set(why, EX_DATAERR, "drive %d: %s", i, trouble);
-    }
-    for (int32_t i = 0; i < p->pushes.n; i++) {
-        const char *trouble = drive_trouble(&p->pushes, i, p->walls, p->dim);
-        if (!trouble && !p->wall[p->pushes.drive[i].boundary].load.way)
-            trouble = "its boundary yields to no load";
-        if (trouble) return why_set(why, EX_DATAERR, "push %d: %s", i, trouble);
-    }
+    if (drives_check(&p->drives, p->walls, p->dim, "drive", why) ||
+        drives_check(&p->pushes, p->walls, p->dim, "push", why))
+        return why->status;
+    for (int32_t i = 0; i < p->pushes.n; i++)
+        if (!p->wall[p->pushes.drive[i].boundary].load.way)
+            return why_set(why, EX_DATAERR, "push %d: its boundary yields to no load", i);
     if (mesh_check(&p->mesh, p->dim, why)) return why->status;
     if (bonds_check(&p->bonds, p->dim, p->n, p->walls, why)) return why->status;
     return check_cell(p, why);

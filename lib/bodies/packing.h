@@ -15,6 +15,7 @@
 #include "bodies/contact.h"
 #include "bodies/drive.h"
 #include "bodies/law.h"
+#include "bodies/memory.h"
 #include "bodies/mesh.h"
 #include "bodies/overlap.h"
 #include "bodies/passage.h"
@@ -34,8 +35,8 @@ struct packing {
     int64_t step0;
     bool adapts;    /* dt is of this step: that of the document, halved so many times */
     int32_t halved; /* 0 .. HALVED_MOST */
-    double theta; /* of the theta-method; 1/2 is the paper's midpoint */
-    vec3 g;       /* m/s^2 */
+    double theta;   /* of the theta-method; 1/2 is the paper's midpoint */
+    vec3 g;         /* m/s^2 */
     uint64_t seed;
     enum overlap overlap;
 
@@ -65,6 +66,8 @@ struct packing {
     double *en, *et;    /* [kinds * kinds], symmetric: normal and tangential restitution */
     struct law *law;    /* [kinds * kinds], symmetric: what is beyond these; NULL: nothing */
     struct bonds bonds; /* what lasts of pairs by these laws */
+
+    struct memory memory; /* the reactions that the next step starts from */
 
     /* Grains come and go [scene/flow.h] where there are pours or removals. */
     int32_t pours, removals;
@@ -115,6 +118,10 @@ static inline bool packing_varies(const struct packing *p)
 
 /* Has any pair of kinds rolling or pivoting friction? */
 bool packing_rolls(const struct packing *p);
+/* May an impact gain energy [bodies/balance.h]? It wants restitution and friction. */
+bool packing_may_gain(const struct packing *p);
+/* Is Newton's law to be bounded for the contact [solve/rebound.h]? */
+bool packing_bounds(const struct packing *p, const struct contact *c);
 
 /* Room for n bodies; those beyond the present ones are at rest at the origin, their id -1. Fewer: the
    last ones are cut off. Returns 0 or EX_SOFTWARE, where nothing has changed. */
@@ -199,11 +206,6 @@ static inline vec3 packing_predict(const struct packing *p, int64_t i)
     return v3_axpy(p->x[i], (1 - p->theta) * p->dt, p->v[i]);
 }
 
-/* m/s: no contact at rest approaches faster, whatever gravity did to both bodies in a step. */
-static inline double packing_calm(const struct packing *p)
-{
-    return 2 * p->dt * v3_norm(p->g);
-}
 /* The acceleration of the flow that the cell's edges make, in the step to come */
 struct cell_flow packing_flow(const struct packing *p);
 

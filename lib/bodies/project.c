@@ -17,6 +17,13 @@ enum {
 /* Of the smaller radius: what a contact is moved apart in a step, at most; normals turn
    otherwise */
 #define MOST 0.1
+/*
+ * Of the smaller radius, and of the overlap: what a contact is moved apart, at least. More opens others so
+ * far that the next step does not know them, and under a pressure each of these becomes an overlap. Two
+ * bodies that are moved apart by twice OVERLAP_NEAR go by that each.
+ */
+#define LITTLE (2 * OVERLAP_NEAR)
+#define SHARE  0.25
 /* Of the slop: changes that are not worth another sweep */
 #define ENOUGH 0.01
 
@@ -35,15 +42,22 @@ static double inverse_mass(const struct packing *p, int32_t i)
     return i >= 0 && p->mass[i] > 0 ? 1 / p->mass[i] : 0;
 }
 
+/* m: as much of what overlaps as a step may remove */
+static double removed(double overlap, double small)
+{
+    return dmin(overlap, dmin(dmax(LITTLE * small, SHARE * overlap), MOST * small));
+}
+
 /* The part of a contact; the slop is what gravity overlaps in a step, and more than rounding. */
 static struct part part_of(const struct packing *p, const struct contact *c)
 {
     double small = c->a < 0 ? p->radius[c->b] : dmin(p->radius[c->a], p->radius[c->b]);
     double slop = SLOP * small + v3_norm(p->g) * p->dt * p->dt;
+    double gap = c->gap + p->dt * opening_of(p, c, -p->theta * p->dt) + slop;
     return (struct part){ .a = c->a,
                           .b = c->b,
                           .n = c->n,
-                          .gap = dmax(-MOST * small, c->gap + p->dt * opening_of(p, c) + slop),
+                          .gap = gap < 0 ? -removed(-gap, small) : gap,
                           .w = inverse_mass(p, c->a) + inverse_mass(p, c->b),
                           .slop = slop };
 }

@@ -127,19 +127,56 @@ static bool surface_ends(const struct surface *s, int dim, int32_t feature)
     return elements_at(s, s->corner[3 * e + part], s->corner[3 * e + (part + 1) % 3]) == 1;
 }
 
-bool surface_bends(const struct surface *s, int dim, int32_t feature)
+/* The corners v and w of a feature that is no inside; w = v at a corner, and in the plane */
+static void ends_of(const struct surface *s, int dim, int32_t feature, int32_t *v, int32_t *w)
 {
     int32_t e = feature / SURFACE_FEATURES, part = feature % SURFACE_FEATURES;
-    if (part == 6) return false;
-    int k = part < 3 ? part : part - 3;
-    int32_t v = s->corner[3 * e + k], w = part < 3 ? s->corner[3 * e + (k + 1) % 3] : v;
-    vec3 n = surface_normal(s, e);
+    *v = s->corner[3 * e + (part < 3 ? part : part - 3)];
+    *w = part < 3 && dim == 3 ? s->corner[3 * e + (part + 1) % 3] : *v;
+}
+
+bool surface_bends(const struct surface *s, int dim, int32_t feature)
+{
+    int32_t v, w;
+    if (feature % SURFACE_FEATURES == 6) return false;
+    ends_of(s, dim, feature, &v, &w);
+    vec3 n = surface_normal(s, feature / SURFACE_FEATURES);
     for (int32_t i = s->star[v]; i < s->star[v + 1]; i++) {
-        int32_t other = s->member[i];
-        if (!has_corner(s, other, dim == 2 ? v : w)) continue;
-        if (v3_norm(v3_cross(n, surface_normal(s, other))) > FLAT) return true;
+        int32_t e = s->member[i];
+        if (has_corner(s, e, w) && v3_norm(v3_cross(n, surface_normal(s, e))) > FLAT) return true;
     }
     return false;
+}
+
+/* Does another element at the corners v and w rise above the plane through x across n? */
+static bool another_rises(const struct surface *s, int32_t v, int32_t w, vec3 x, vec3 n)
+{
+    for (int32_t i = s->star[v]; i < s->star[v + 1]; i++) {
+        if (!has_corner(s, s->member[i], w)) continue;
+        for (int k = 0; k < 3; k++) {
+            vec3 d = v3_sub(s->at[s->member[i]][k], x);
+            if (v3_dot(d, n) > FLAT * v3_norm(d)) return true;
+        }
+    }
+    return false;
+}
+
+int surface_groove(const struct surface *s, int dim, const struct touch *t, vec3 c, vec3 middle,
+                   struct touch *out, int most)
+{
+    int32_t v, w;
+    int n = 0;
+    ends_of(s, dim, t->feature, &v, &w);
+    for (int32_t i = s->star[v]; i < s->star[v + 1] && n < most; i++) {
+        int32_t e = s->member[i];
+        vec3 x = v3_axpy(c, -t->distance, t->n), up = surface_normal(s, e);
+        bool again = (i > s->star[v] && s->member[i - 1] == e) || !has_corner(s, e, w);
+        if (v3_dot(up, v3_sub(middle, x)) < 0) up = v3_scale(-1, up);
+        for (int k = 0; k < n; k++) again |= v3_norm(v3_cross(out[k].n, up)) <= FLAT;
+        if (again || !another_rises(s, v, w, x, up)) continue;
+        out[n++] = (struct touch){ up, v3_dot(up, v3_sub(c, x)), SURFACE_FEATURES * e + 6 };
+    }
+    return n;
 }
 
 bool boundary_ends_at(const struct wall *w, int dim, const struct surface *surface, vec3 c,

@@ -35,5 +35,9 @@ bool boundary_ends_at(const struct wall *w, int dim, const struct surface *surfa
                       const struct touch *t);
 /* Do the elements that meet at a feature of a surface lie in different planes? Then rims are there. */
 bool surface_bends(const struct surface *s, int dim, int32_t feature);
+/* In a groove, seen from the point `middle`, there are none: those elements at the feature t above which others rise, as
+   they are next to c behind them. Returns how many, of more than `most` the first. */
+int surface_groove(const struct surface *s, int dim, const struct touch *t, vec3 c, vec3 middle,
+                   struct touch *out, int most);
 
 #endif

@@ -1,18 +1,20 @@
 #include "bodies/seam.h"
 
+#include "bodies/detect_shapes.h"
+#include "bodies/gjk.h"
 #include "bodies/rim.h"
 #include "bodies/surface_tree.h"
+#include "bodies/swift.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 /* Of the radius of the body that slides: */
-static const double FLUSH = 1e-5,    /* the tolerance, at least; */
-    AHEAD = 0.1,                     /* how far a surface is followed to see whether it rises; */
-    LEVEL = 0.01;                    /* how much gaps of one meeting differ */
-static const double ALONG = 1e-6;    /* 1 - cosine: of normals that are one */
-static const double RISES = 0.5;     /* sine of 30 degrees */
-static const double FOREMOST = 1e-3; /* of the radius of B: corners of the face that is met */
+static const double FLUSH = 1e-5, /* the tolerance, at least; */
+    AHEAD = 0.1,                  /* how far a surface is followed to see whether it rises; */
+    LEVEL = 0.01;                 /* how much gaps of one meeting differ */
+static const double ALONG = 1e-6; /* 1 - cosine: of normals that are one */
+static const double RISES = 0.5;  /* sine of 30 degrees */
 
 /* All contacts of every body: of[first[i]] .. of[first[i+1]-1] */
 struct lists {
@@ -69,63 +71,95 @@ static double bottom_of(const struct seams *o, int32_t s, vec3 m)
 
 /* ---- does it rise? ---- */
 
-/* Of a body: the corners that are foremost towards s are above the height `level` (m) along m. */
-static bool body_rises(const struct seams *o, const struct side *f, vec3 m, double level)
+/* Does the way from one place of a surface to another lead up along m by more than 30 degrees, to above `level`? */
+static bool leads_up(vec3 from, vec3 to, vec3 m, double level)
 {
-    double front = -INFINITY, slack = FOREMOST * o->p->radius[f->other];
-    int32_t cores = cores_of(o, f->other);
-    for (int32_t k = 0; k < cores; k++) {
+    vec3 way = v3_sub(to, from);
+    return v3_dot(to, m) > level && v3_dot(way, m) > RISES * v3_norm(way);
+}
+
+/* Of a body, at the place of f: towards d, which lies above the level. */
+static bool body_rises(const struct seams *o, const struct side *f, vec3 d, vec3 m, double level)
+{
+    vec3 x = v3_sub(d, f->away);
+    const struct core point = { .n = 1, .v = &x, .centre = x };
+    for (int32_t k = 0; k < cores_of(o, f->other); k++) {
         const struct core c = core_of(o, f->other, k);
-        front = dmax(front, core_top(&c, f->n) + c.round);
-    }
-    for (int32_t k = 0; k < cores; k++) {
-        const struct core c = core_of(o, f->other, k);
-        for (int32_t i = 0; i < c.n; i++)
-            if (v3_dot(f->n, c.v[i]) + c.round >= front - slack &&
-                v3_dot(m, v3_add(c.v[i], f->away)) + c.round > level)
-                return true;
+        const struct nearest near = gjk_nearest(&c, &point);
+        vec3 to = d;
+        if (near.distance > c.round)
+            to = v3_axpy(v3_add(near.a, f->away), c.round / near.distance, v3_sub(x, near.a));
+        if (leads_up(f->x, to, m, level)) return true;
     }
     return false;
 }
 
-/* From the place of a surface next to c to the one next to d: is that up along m by more than 30 degrees? */
-static bool leads_up(vec3 from, vec3 to, vec3 m, double near)
-{
-    vec3 way = v3_sub(to, from);
-    return v3_dot(way, m) > dmax(RISES * v3_norm(way), 4 * near);
-}
-
-/* Of a mesh: all of its elements at c, as it is described */
-static bool mesh_rises(const struct surface *s, vec3 c, vec3 m, double ahead, double near)
+/* Of a mesh: an element at c across n or, where there is none, all elements at c; as it is described. d lies above the
+   level, c as far as `depth` below it. */
+static bool mesh_rises(const struct surface *s, vec3 c, vec3 d, vec3 n, vec3 m, double level,
+                       double near, double depth)
 {
     struct surface_walk walk;
     struct surface_branch leaf;
-    bool any = false;
+    bool any = false, all = true;
     surface_walk_begin(&walk, s->n);
-    while (surface_walk_next(&walk, s->box, c, near, &leaf))
+    while (surface_walk_next(&walk, s->box, c, near + depth, &leaf))
         for (int32_t i = leaf.lo; i < leaf.hi; i++) {
-            vec3 at = surface_nearest(s, s->order[i], c);
-            if (!(v3_norm(v3_sub(c, at)) <= near)) continue;
-            any = true;
-            if (!leads_up(at, surface_nearest(s, s->order[i], v3_axpy(c, ahead, m)), m, near))
-                return false;
+            int32_t e = s->order[i];
+            vec3 at = surface_nearest(s, e, c);
+            double away = v3_norm(v3_sub(c, at));
+            if (!(away <= near + depth)) continue;
+            bool up = leads_up(at, surface_nearest(s, e, d), m, level);
+            if (up && fabs(v3_dot(n, surface_normal(s, e))) > 1 - ALONG) return true;
+            if (away <= near) any = true, all &= up;
         }
-    return any;
+    return any && all;
 }
 
-static bool wall_rises(const struct seams *o, const struct side *f, vec3 m, double near)
+/* The place of wall w next to c, as it is described; false: none */
+static bool nearest_place(const struct seams *o, const struct wall *w, vec3 c, vec3 *at)
 {
+    struct touch t;
+    if (!boundary_nearest(w, o->p->dim, c, INFINITY, &t)) return false;
+    *at = v3_axpy(c, -t.distance, t.n);
+    return true;
+}
+
+/* Where x is for wall w as it is described */
+static vec3 described(const struct wall *w, const struct pose *pose, vec3 x)
+{
+    return v3_sub(quat_turn_back(pose->q, v3_sub(x, pose->shift)), w->x);
+}
+
+/* Does what s meets rise there above the height `level` (m) along m? */
+static bool rises(const struct seams *o, const struct side *f, vec3 m, double level, double near)
+{
+    double depth = level - v3_dot(m, f->x), ahead = dmax(AHEAD * o->p->radius[f->s], 10 * near);
+    if (f->other >= 0)
+        return body_rises(o, f, v3_axpy(f->x, depth + ahead, m), m, level + 3 * near);
     const struct wall *w = &o->p->wall[-1 - f->other];
     struct pose pose = wall_pose(o->p, w, o->t);
-    vec3 c = v3_sub(quat_turn_back(pose.q, v3_sub(f->x, pose.shift)), w->x);
-    double ahead = dmax(AHEAD * o->p->radius[f->s], 10 * near);
-    m = quat_turn_back(pose.q, m);
-    if (w->shape == BOUNDARY_MESH) return mesh_rises(&o->surface[-1 - f->other], c, m, ahead, near);
-    struct touch t, u;
-    vec3 d = v3_axpy(c, ahead, m);
-    return boundary_nearest(w, o->p->dim, c, INFINITY, &t) &&
-           boundary_nearest(w, o->p->dim, d, INFINITY, &u) &&
-           leads_up(v3_axpy(c, -t.distance, t.n), v3_axpy(d, -u.distance, u.n), m, near);
+    vec3 c = described(w, &pose, f->x), n = quat_turn_back(pose.q, m), at, to;
+    vec3 d = v3_axpy(c, depth + ahead, n);
+    level = v3_dot(n, c) + depth + 3 * near;
+    if (w->shape == BOUNDARY_MESH)
+        return mesh_rises(&o->surface[-1 - f->other], c, d, quat_turn_back(pose.q, f->n), n, level,
+                          near, dmax(depth, 0));
+    return nearest_place(o, w, c, &at) && nearest_place(o, w, d, &to) && leads_up(at, to, n, level);
+}
+
+/* Does wall w lie at x, to `near`, across n? */
+static bool wall_is_at(const struct seams *o, int32_t w, vec3 x, vec3 n, double near)
+{
+    const struct wall *wall = &o->p->wall[w];
+    struct pose pose = wall_pose(o->p, wall, o->t);
+    vec3 c = described(wall, &pose, x), at;
+    n = quat_turn_back(pose.q, n);
+    if (wall->shape == BOUNDARY_MESH) return surface_is_at(&o->surface[w], c, &n, near);
+    bool flat = wall->shape == BOUNDARY_PLANE || wall->shape == BOUNDARY_RECTANGLE ||
+                wall->shape == BOUNDARY_DISC;
+    return flat && fabs(v3_dot(n, wall->n)) > 1 - ALONG && nearest_place(o, wall, c, &at) &&
+           v3_norm(v3_sub(c, at)) <= near;
 }
 
 /* ---- one contact ---- */
@@ -159,17 +193,34 @@ static bool are_near(const struct seams *o, const struct side *f, const struct s
     return v3_norm(d) <= o->p->radius[f->other] + o->p->radius[e->other];
 }
 
-/* Does the plane of contact e keep s above the meeting? */
+/* Contacts c and e of body s with two walls have one normal: is c with a rim where the other wall goes on flat, or
+   where e is, which comes first? */
+static bool goes_without(const struct meeting *w, const struct side *f, const struct contact *e,
+                         const struct side *g, double near)
+{
+    const struct contact *c = &w->all->c[w->i];
+    double height = v3_dot(g->n, v3_sub(f->x, g->x));
+    bool again = e < c && v3_norm(v3_sub(f->x, g->x)) <= near;
+    if (again && e->mu == c->mu && e->en == c->en && e->et == c->et) return true;
+    return c->feature >= RIM_END && fabs(height) <= near &&
+           wall_is_at(w->o, -1 - f->other, f->x, f->n, near) &&
+           wall_is_at(w->o, -1 - g->other, f->x, f->n, near);
+}
+
+/* Does the plane of contact e keep s above the meeting, or is that inside a flat surface? */
 static bool passes_above(const struct meeting *w, const struct side *f, const struct contact *e)
 {
     const struct seams *o = w->o;
     const struct side g = side_of(o, e, f->s);
-    if (v3_dot(f->n, g.n) > 1 - ALONG || !are_near(o, f, &g)) return false;
+    bool parallel = v3_dot(f->n, g.n) > 1 - ALONG;
+    bool walls = f->other < 0 && g.other < 0 && f->other != g.other;
+    if ((parallel && !walls) || !are_near(o, f, &g)) return false;
     double near = dmax(FLUSH * o->p->radius[f->s], dmax(weld_of(o, f->other), weld_of(o, g.other)));
     double plane = v3_dot(g.n, g.x), level = plane + near;
     if (!is_below(w, f, g.n, level)) return false;
+    if (parallel) return goes_without(w, f, e, &g, near);
     if (bottom_of(o, f->s, g.n) < plane + dmin(e->gap, 0) - near) return false;
-    return !(f->other < 0 ? wall_rises(o, f, g.n, near) : body_rises(o, f, g.n, level));
+    return !rises(o, f, g.n, level, near);
 }
 
 /* Is contact i of body s at a seam? */
@@ -187,13 +238,14 @@ static bool at_seam(const struct meeting *w, const struct lists *l, int32_t s)
 /* Can it be one with the rim of a wall, or of a body? */
 static bool may_be(const struct seams *o, const struct contact *c)
 {
+    if (swift_ahead(c)) return false;
     if (c->a >= 0) return packing_shape(o->p, c->a) || packing_shape(o->p, c->b);
     int32_t w = -1 - c->a;
     const struct wall *wall = &o->p->wall[w];
+    if (packing_shape(o->p, c->b)) return wall->shape != BOUNDARY_PLANE;
     if (wall->shape == BOUNDARY_RECTANGLE || wall->shape == BOUNDARY_DISC)
         return fabs(v3_dot(c->n, wall_normal(o->p, wall, o->t))) < 1 - ALONG;
     if (wall->shape != BOUNDARY_MESH) return false;
-    if (packing_shape(o->p, c->b)) return true;
     struct touch t = { .feature = c->feature };
     return boundary_ends_at(wall, o->p->dim, &o->surface[w], v3(0, 0, 0), &t);
 }

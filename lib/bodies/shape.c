@@ -254,6 +254,13 @@ static const char *polygon_trouble(struct shape *s)
     return turned < 3 * M_PI ? NULL : "turns around more than once";
 }
 
+/* By Euler's formula no polyhedron has more. */
+static const char *count_trouble(const struct shape *s, int dim)
+{
+    bool many = dim == 3 && (s->faces > 2 * s->vertices || s->corners > 6 * s->vertices);
+    return many ? "has more faces than its vertices allow" : NULL;
+}
+
 static const char *index_trouble(const struct shape *s)
 {
     if (s->first[0] != 0 || s->first[s->faces] != s->corners) return "its faces have no corners";
@@ -272,7 +279,7 @@ int shape_finish(struct shape *s, int dim, struct why *why)
     if (!trouble) trouble = number_trouble(s, dim);
     if (trouble) return why_set(why, EX_DATAERR, "%s", trouble);
     if (s->form != SHAPE_HULL) return 0;
-    if (s->faces < 1 || (trouble = index_trouble(s)))
+    if (s->faces < 1 || (trouble = count_trouble(s, dim)) || (trouble = index_trouble(s)))
         return why_set(why, EX_DATAERR, "%s", trouble ? trouble : "has no faces");
     size_t normals = (size_t)(s->faces > s->vertices ? s->faces : s->vertices);
     free(s->normal), free(s->edge);

@@ -23,6 +23,10 @@ static void recount(struct packing *p, struct contacts *s, int32_t n, int to, in
         int8_t *shift = p->bonds.bond[i].shift;
         shift[from] = clamp(shift[from] + (int64_t)n * shift[to]);
     }
+    for (int64_t i = 0; i < p->memory.n; i++) {
+        int8_t *shift = p->memory.recall[i].shift;
+        shift[from] = clamp(shift[from] + (int64_t)n * shift[to]);
+    }
 }
 
 /* The image of b that a meets, when both have been brought back into the cell */
@@ -50,6 +54,11 @@ void packing_tidy(struct packing *p, struct contacts *s)
         follow(p, inverse, x->a, x->b, x->shift);
     }
     bonds_sort(&p->bonds);
+    for (int64_t i = 0; i < p->memory.n; i++) {
+        struct recall *x = &p->memory.recall[i];
+        follow(p, inverse, x->a, x->b, x->shift);
+    }
+    memory_sort(&p->memory);
     for (int64_t i = 0; i < p->n; i++) {
         int32_t w[3];
         cell_wraps(c, inverse, p->x[i], w);

@@ -42,6 +42,14 @@ static inline bool tie_holds(const struct tie *t)
     return t->pull > 0 || t->beta > 0;
 }
 
+/* out[3] (N s): r*, the push of one surface on the other, which is on Coulomb's law: r less p. dt: s */
+static inline void tie_push(double dt, const struct tie *t, const struct found *f, double out[3])
+{
+    double way = t->jump[0] + dt * (f->u[0] - t->offset);
+    out[0] = f->r[0] + dt * (t->pull + t->stiff[0] * way);
+    for (int k = 1; k < 3; k++) out[k] = f->r[k] + dt * t->stiff[1] * (t->jump[k] + dt * f->u[k]);
+}
+
 /* What has become of a tie when the step is over */
 struct tie_end {
     double gap, slip[2]; /* m */

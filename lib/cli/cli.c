@@ -17,10 +17,11 @@
 #include <unistd.h>
 
 enum {
-    OPTIONS = 64, /* room for a tool's options */
-    OF_ALL = 3,   /* options of every tool */
-    LEFT = 28,    /* characters of --help's left column */
-    HELP = 1000,  /* what getopt_long returns: beyond all letters */
+    MESSAGE = 8192, /* bytes of a message: names of files are at most 4096 */
+    OPTIONS = 64,   /* room for a tool's options */
+    OF_ALL = 3,     /* options of every tool */
+    LEFT = 28,      /* characters of --help's left column */
+    HELP = 1000,    /* what getopt_long returns: beyond all letters */
     VERSION,
     UNPACK,
     FIRST_LONG /* + the option's index */
@@ -32,10 +33,11 @@ static const void *given[OPTIONS]; /* the variables that were set, NULL between 
 
 static void message(const char *format, va_list ap)
 {
+    char text[MESSAGE];
+    vsnprintf(text, sizeof text, format, ap);
+    why_plain(text);
     progress_end();
-    fprintf(stderr, "%s: ", tool.name);
-    vfprintf(stderr, format, ap);
-    fputc('\n', stderr);
+    fprintf(stderr, "%s: %s\n", tool.name, text);
 }
 
 void die(int status, const char *format, ...)
@@ -79,16 +81,25 @@ void progress_lines(double seconds)
     between_lines = seconds;
 }
 
-void progress(const char *format, ...)
+/* s of real time: when a line was shown last, or nothing yet when it was asked first */
+static double progress_last;
+
+bool progress_due(void)
 {
-    static double last;
     struct timespec t;
     bool terminal = isatty(STDERR_FILENO);
-    if (!terminal && !(between_lines > 0)) return;
+    if (!terminal && !(between_lines > 0)) return false;
     clock_gettime(CLOCK_MONOTONIC, &t);
     double now = (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-    if (now - last < (terminal ? 0.1 : between_lines)) return;
-    last = now;
+    if (progress_last == 0) progress_last = now; // what is done at once needs no line
+    if (now - progress_last < (terminal ? 0.1 : between_lines)) return false;
+    progress_last = now;
+    return true;
+}
+
+void progress_now(const char *format, ...)
+{
+    bool terminal = isatty(STDERR_FILENO);
     va_list ap;
     va_start(ap, format);
     fprintf(stderr, terminal ? "\r\033[K%s: " : "%s: ", tool.name);

@@ -83,8 +83,11 @@ void die_usage(const char *format, ...) __attribute__((noreturn, format(printf, 
 void die_why(const struct why *why) __attribute__((noreturn));
 void warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* One line that is overwritten, at most ten times a second, only when stderr is a terminal. */
-void progress(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* One line that is overwritten, at most ten times a second, only when stderr is a terminal: is it time for one?
+   Then it is printed. */
+bool progress_due(void);
+void progress_now(const char *format, ...) __attribute__((format(printf, 1, 2)));
+#define progress(...) (progress_due() ? progress_now(__VA_ARGS__) : (void)0)
 /* Elsewhere, too: a line of its own every so many seconds of real time */
 void progress_lines(double seconds);
 void progress_end(void);

@@ -1,4 +1,5 @@
 /* cli/main.c: the only main(), of every tool; the tool itself is in tool_main(). */
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): on_exit
 #include "cli/cli.h"
 #include "cli/completion.h"
 
@@ -38,8 +39,20 @@ static int completion(const char *shell)
     return 0;
 }
 
+/* libhdf5 ends the program with 255 where it has no memory to begin with. No tool of ours does. */
+static void on_end(int status, void *unused)
+{
+    static const char text[] = ": no memory (libhdf5 gave up)\n";
+    (void)unused;
+    if ((status & 0xff) != 255) return;
+    ssize_t said = write(STDERR_FILENO, tool.name, strlen(tool.name));
+    said += write(STDERR_FILENO, text, sizeof text - 1);
+    _exit(said ? EX_SOFTWARE : EX_IOERR);
+}
+
 int main(int argc, char **argv)
 {
+    on_exit(on_end, NULL); // after all others
     guard_standard_descriptors();
     signal(SIGPIPE, SIG_DFL);
     signal(SIGXFSZ, SIG_IGN); // a file that may not grow is said as a full disk is: EFBIG

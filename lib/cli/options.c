@@ -51,7 +51,7 @@ static const struct usual usual = {
     .nlgs_order = ORDER_NATURAL, // the paper's
     .order = ORDER_COLOUR,       // eight contacts at once, on any number of threads
     .relax = 0,                  // each solver has measured its own
-    .warm = false,               // as the paper: a step does not depend on the one before
+    .warm = true,                // of CRITERION_VELOCITY; others start from 0, as the paper
     .newton = NEWTON_LINESEARCH, // plain steps run in circles at some contacts
     .newton_eps = 1e-13,         // about a thousand roundings: as if it were exact
     .newton_max = 100,           // after which the exact solution stands in
@@ -226,12 +226,13 @@ struct step_opt options_step(double dt, bool foreign)
     bool nlgs = solver == &solver_nlgs;
     int criterion = OPTION(criterion, (int)(foreign ? u->fclib : u->packing));
     double eps = OPTION(eps, foreign ? u->fclib_eps : u->eps[criterion]);
+    const enum order order = (enum order)OPTION(order, (int)(nlgs ? u->nlgs_order : u->order));
     int32_t sweeps = nlgs ? u->nlgs_sweeps : eps < u->tight ? u->tight_sweeps : u->sweeps;
     return (struct step_opt){
         .gap = o->gap,
         .alpha = o->alpha,
-        .order = (enum order)OPTION(order, (int)(nlgs ? u->nlgs_order : u->order)),
-        .warm = OPTION(warm, u->warm),
+        .order = order,
+        .warm = OPTION(warm, u->warm && criterion == CRITERION_VELOCITY && order != ORDER_BLOCK),
         .solve = { .global = solver,
                    .method = o->method ? methods[o->method - 1] : &local_exact,
                    .local = { .plain = OPTION(newton, (int)u->newton) == NEWTON_PLAIN,
@@ -293,7 +294,9 @@ void options_overlap(struct packing *p, bool detected)
         now = p->shape ? OVERLAP_GAP_PROJECT : usual.overlap; // corners that open
     if (options.paper) now = paper.overlap;
     now = OPTION(overlap, (int)now - 1) + 1;
-    if (detected && overlap_sees_gaps(was) != overlap_sees_gaps(now))
+    bool others = overlap_sees_gaps(was) != overlap_sees_gaps(now) ||
+                  overlap_meets(was) != overlap_meets(now);
+    if (detected && others)
         die_usage("--overlap: the contacts were detected with %s; give it to nsd-detect",
                   overlap_name[was ? was : OVERLAP_KEEP]);
     p->overlap = now;

@@ -6,8 +6,14 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static const char blank[] = " \t\r\n,";
+
+enum {
+    LINE = 1 << 20,      /* bytes of a line */
+    MOST_PIPED = 1 << 22 /* lines of a table that is no file: 100 MB of memory */
+};
 
 /* ---- the table ---- */
 
@@ -83,11 +89,20 @@ int values_read(struct values *v, const char *path, const char *column, struct w
 {
     FILE *in = fopen(path, "r");
     struct columns c = { -1, -1, -1 };
-    char *line = NULL;
-    size_t room = 0;
+    char *line = malloc(LINE);
+    struct stat st;
+    if (in && !line) why_set(why, EX_SOFTWARE, "no memory");
+    if (!in) free(line);
     if (!in) return why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
-    for (int64_t number = 1; !why->status && getline(&line, &room, in) >= 0; number++) {
-        if (number == 1)
+    bool file = !fstat(fileno(in), &st) && S_ISREG(st.st_mode);
+    for (int64_t number = 1; !why->status && fgets(line, LINE, in); number++) {
+        if (strlen(line) == LINE - 1)
+            why_set(why, EX_DATAERR, "%s:%lld: a line of more than %d bytes", path,
+                    (long long)number, LINE - 2);
+        else if (!file && number > MOST_PIPED)
+            why_set(why, EX_DATAERR, "%s: too many lines for a pipe (endless?): put it into a file",
+                    path);
+        else if (number == 1)
             read_names(v, line, path, column, &c, why);
         else if (line[strspn(line, blank)] && *line != '#')
             read_row(v, line, path, number, &c, why);

@@ -9,6 +9,9 @@
 #include "io/table_write.h"
 #include "solve/account.h"
 
+/* For how many of n reports there is a row of all: a writer, or one that was killed, may have got no further. */
+int64_t account_rows_count(const struct source *source, const char *group, int64_t n);
+
 /* Rows start .. start+n-1, into account[n]; what the document does not have is 0. group: that of the
    reports. Returns 0, EX_DATAERR or EX_SOFTWARE. */
 int account_rows_read(struct source *source, const char *group, int64_t start, int64_t n,

@@ -107,6 +107,8 @@ int boundary_tables_read(struct source *r, int64_t k, struct packing *p, struct 
         table_read_columns(r, body, "", layout_plane, 0, n, p->wall, sizeof *p->wall, why) ||
         (source_has(r, BOUNDARY "/body/shape") &&
          table_read_columns(r, body, "", layout_boundary, 0, n, p->wall, sizeof *p->wall, why)) ||
+        (source_has(r, BOUNDARY "/body/weld") &&
+         table_read_columns(r, body, "", layout_weld, 0, n, p->wall, sizeof *p->wall, why)) ||
         read_loads(r, BOUNDARY "/load", k, p, why) || read_drives(r, p, why) ||
         read_mesh(r, p, why))
         return why->status;
@@ -120,6 +122,13 @@ static bool any_shapes(const struct packing *p)
 {
     for (int32_t w = 0; w < p->walls; w++)
         if (p->wall[w].shape != BOUNDARY_PLANE || p->wall[w].until < INFINITY) return true;
+    return false;
+}
+
+static bool any_welds(const struct packing *p)
+{
+    for (int32_t w = 0; w < p->walls; w++)
+        if (p->wall[w].weld > 0) return true;
     return false;
 }
 
@@ -191,6 +200,8 @@ int boundary_tables_write_static(struct table_write *s, const struct packing *p,
                              why) &&
         !(any_shapes(p) && table_write_columns(s, body, "", layout_boundary, p->walls, p->wall,
                                                sizeof *p->wall, 0, why)) &&
+        !(any_welds(p) && table_write_columns(s, body, "", layout_weld, p->walls, p->wall,
+                                              sizeof *p->wall, 0, why)) &&
         !write_drives(s, p, why) && !write_mesh(s, p, why) && any_loads(p))
         table_write_columns(s, BOUNDARY "/load", "", layout_loads, p->walls, p->wall,
                             sizeof *p->wall, 0, why);

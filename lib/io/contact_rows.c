@@ -9,12 +9,12 @@
 int contact_rows_open(struct contact_rows *r, struct source *source, struct why *why)
 {
     int64_t n, m, l;
-    *r = (struct contact_rows){ .source = source, .last = -1 };
+    *r = (struct contact_rows){ .source = source };
     r->step = table_read_steps(source, "/contacts/step", &n, why);
     r->start = table_read_steps(source, "/contacts/start", &m, why);
     r->count = table_read_steps(source, "/contacts/count", &l, why);
     n = n < m ? n : m; // a killed writer may have extended only some columns
-    r->blocks = n < l ? n : l;
+    r->blocks = why->status ? 0 : table_read_rising(r->step, n < l ? n : l);
     return why->status;
 }
 
@@ -44,7 +44,7 @@ static int check_order(const struct contacts *s, struct why *why)
                        same_pair ? "feature and shift" : "bodies");
     }
     for (int64_t i = 0; s->found && i < s->n; i++)
-        if (s->found[i].status < LOCAL_FREE || s->found[i].status > LOCAL_SLIDE)
+        if (s->found[i].status < LOCAL_FREE || s->found[i].status > STATUS_JAMMED)
             return why_set(why, EX_DATAERR, "contact %lld: status is %d", (long long)i,
                            s->found[i].status);
     return 0;
@@ -75,10 +75,9 @@ static int read_moments(struct source *r, int64_t first, struct contacts *s, str
 
 int contact_rows_read(struct contact_rows *r, struct frame *f, struct why *why)
 {
-    int64_t at = table_read_row(r->step, r->blocks, f->packing.step, r->last + 1), first;
+    int64_t at = table_read_row(r->step, r->blocks, f->packing.step), first;
     struct contacts *s = &f->contacts;
     if (at < 0) return 0;
-    r->last = at;
     first = r->start[at], s->n = r->count[at];
     if (first < 0 || s->n < 0 || first > INT32_MAX || s->n > INT32_MAX)
         return why_set(why, EX_DATAERR, "/contacts: start or count is out of range");

@@ -15,7 +15,6 @@ struct contact_rows {
     int64_t *start; /* [blocks] the first row of each, */
     int64_t *count; /* [blocks] and the number of rows */
     int64_t blocks;
-    int64_t last; /* the block that was read last; -1: none yet */
 };
 
 int contact_rows_open(struct contact_rows *rows, struct source *source, struct why *why);

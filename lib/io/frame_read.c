@@ -13,6 +13,7 @@
 #include <string.h>
 
 enum {
+    KINDS_MOST = 4096, /* of material: tables of pairs have a row for two of them */
     BLOCK =
         2 * 8192 /* bodies that are read at once where others take them: two chunks of nsd's own */
 };
@@ -52,6 +53,7 @@ int frame_read_open(struct frame_read *r, struct source *source, struct why *why
     *r = (struct frame_read){ .source = source, .frames = 1 };
     if (source_has(source, "/particles/all")) {
         if (count_frames(r, why) || cell_tables_open(source, r->repeats, why)) return why->status;
+        if (memory_rows_open(&r->memory, source, why)) return why->status;
         if (source_has(source, "/contacts") && contact_rows_open(&r->contacts, source, why))
             return why->status;
     } else if (!fclib_in(source)) {
@@ -64,6 +66,7 @@ void frame_read_close(struct frame_read *r)
 {
     free(r->step), free(r->time);
     contact_rows_close(&r->contacts);
+    memory_rows_close(&r->memory);
     report_rows_close(&r->reports);
     *r = (struct frame_read){ 0 };
 }
@@ -88,6 +91,10 @@ static int read_material(struct source *doc, struct packing *p, struct why *why)
     int32_t kinds = 0;
     for (const char *c = names; c && *c; c++) kinds += *c == '\n';
     if (why->status) return why->status;
+    if (kinds > KINDS_MOST) {
+        free(names);
+        return why_set(why, EX_DATAERR, "/nsd/material@kinds: more than %d kinds", KINDS_MOST);
+    }
     if (!kinds) {
         free(names);
         return why_set(why, EX_DATAERR, "/nsd/material@kinds: no kinds of material");
@@ -269,7 +276,8 @@ static int hand_over(struct frame_read *r, int64_t k, const struct packing *p, i
     for (int64_t first = 0; first < n && !why->status; first += BLOCK) {
         block.n = n - first < BLOCK ? n - first : BLOCK;
         if (read_block(r, k, first, &block, why) || packing_check_bodies(&block, first, why) ||
-            r->elsewhere->take(r->elsewhere, &block, first, why) || source_unload(r->source, why))
+            r->elsewhere->take(r->elsewhere, &block, first, why) || source_unload(r->source, why) ||
+            source_frame(r->source, why)) // the block is gone
             break;
         for (int64_t i = 0; i < block.n; i++)
             most = most < block.radius[i] ? block.radius[i] : most;
@@ -317,8 +325,8 @@ static int read_packing(struct frame_read *r, int64_t k, struct packing *p, stru
         goto end;
     if (packing_varies(p) && (r->repeats[0] || r->repeats[1] || r->repeats[2]))
         why_set(why, EX_DATAERR, "bodies that come and go in a cell that repeats: not known");
-    else if (!cell_tables_read(r->source, k, r->repeats, p, why))
-        packing_check(p, why);
+    else if (!cell_tables_read(r->source, k, r->repeats, p, why) && !packing_check(p, why))
+        memory_rows_read(&r->memory, p, why);
 end:
     free(row);
     return why->status;
@@ -343,6 +351,7 @@ static int read_foreign(struct frame_read *r, struct frame *f, struct why *why)
 
 int frame_read_moment(struct frame_read *r, int64_t k, struct frame *f, struct why *why)
 {
+    if (source_frame(r->source, why)) return why->status;
     f->history = source_text(r->source, "/nsd/history", NULL, why);
     if (why->status) return why->status;
     if (!r->step) return read_foreign(r, f, why);

@@ -7,6 +7,7 @@
 
 #include "io/contact_rows.h"
 #include "io/frame.h"
+#include "io/memory_rows.h"
 #include "io/report_rows.h"
 
 /* An open document, and what it holds of each moment */
@@ -17,6 +18,7 @@ struct frame_read {
     double *time;    /* [frames] s; else NULL */
     bool repeats[3]; /* the box's edges */
     struct contact_rows contacts;
+    struct memory_rows memory;
     struct report_rows reports;
     struct elsewhere *elsewhere; /* who may take the bodies, else NULL; borrowed */
 };

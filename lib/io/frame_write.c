@@ -7,6 +7,7 @@
 #include "io/flow_tables.h"
 #include "io/h5.h"
 #include "io/law_tables.h"
+#include "io/memory_rows.h"
 #include "io/report_rows.h"
 #include "io/roster.h"
 #include "io/shape_tables.h"
@@ -157,7 +158,8 @@ int frame_write_moment(struct table_write *s, const struct frame *f, struct why 
                       write_time_step(s, &f->packing, why) || flow_write(s, &f->packing, why)))
         return why->status;
     if (f->packed &&
-        (boundary_tables_write(s, &f->packing, why) || law_tables_write(s, &f->packing, why)))
+        (boundary_tables_write(s, &f->packing, why) || law_tables_write(s, &f->packing, why) ||
+         memory_rows_write(s, &f->packing, why)))
         return why->status;
     if (f->packed && f->detected && contact_rows_write(s, f, why)) return why->status;
     if (!f->reported || report_rows_write(s, &f->report, why)) return why->status;

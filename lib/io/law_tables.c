@@ -22,22 +22,28 @@ static int check_symmetric(const struct packing *p, const struct column *c, cons
     return 0;
 }
 
-static int read_laws(struct source *s, struct packing *p, struct why *why)
+static int read_columns(struct source *s, const struct column *columns, struct packing *p,
+                        struct why *why)
 {
     int64_t n = (int64_t)p->kinds * p->kinds;
     double *table = malloc((size_t)n * sizeof *table + 1);
     if (!table) return why_set(why, EX_SOFTWARE, "no memory for the laws");
-    if (!packing_alloc_laws(p, why))
-        for (const struct column *c = layout_law; !why->status && c->name; c++) {
-            char path[80];
-            snprintf(path, sizeof path, "%s/%s", law, c->name);
-            if (source_read(s, path, COLUMN_F64, (uint64_t)n, table, why) ||
-                check_symmetric(p, c, table, why))
-                break;
-            column_scatter(c, n, table, p->law, sizeof *p->law);
-        }
+    for (const struct column *c = columns; !why->status && c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "%s/%s", law, c->name);
+        if (source_read(s, path, COLUMN_F64, (uint64_t)n, table, why) ||
+            check_symmetric(p, c, table, why))
+            break;
+        column_scatter(c, n, table, p->law, sizeof *p->law);
+    }
     free(table);
     return why->status;
+}
+
+static int read_laws(struct source *s, struct packing *p, struct why *why)
+{
+    if (packing_alloc_laws(p, why) || read_columns(s, layout_law, p, why)) return why->status;
+    return source_has(s, "/nsd/law/impact") ? read_columns(s, layout_impact, p, why) : 0;
 }
 
 static int read_bonds(struct source *s, int64_t k, struct packing *p, struct why *why)
@@ -64,14 +70,14 @@ int law_tables_read(struct source *s, int64_t k, struct packing *p, struct why *
 
 /* ---- to a document ---- */
 
-int law_tables_write_static(hid_t file, const struct packing *p, struct why *why)
+static int write_columns(hid_t file, const struct column *columns, const struct packing *p,
+                         struct why *why)
 {
     int64_t n = (int64_t)p->kinds * p->kinds;
     const hsize_t square[2] = { (hsize_t)p->kinds, (hsize_t)p->kinds };
-    if (!p->law) return 0;
     double *table = malloc((size_t)n * sizeof *table + 1);
     if (!table) return why_set(why, EX_SOFTWARE, "no memory for the laws");
-    for (const struct column *c = layout_law; !why->status && c->name; c++) {
+    for (const struct column *c = columns; !why->status && c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "%s/%s", law, c->name);
         column_gather(c, n, p->law, sizeof *p->law, table);
@@ -79,6 +85,15 @@ int law_tables_write_static(hid_t file, const struct packing *p, struct why *why
     }
     free(table);
     return why->status;
+}
+
+int law_tables_write_static(hid_t file, const struct packing *p, struct why *why)
+{
+    bool impact = false;
+    if (!p->law) return 0;
+    for (int32_t k = 0; k < p->kinds * p->kinds; k++) impact = impact || p->law[k].impact > 0;
+    if (write_columns(file, layout_law, p, why)) return why->status;
+    return impact ? write_columns(file, layout_impact, p, why) : 0;
 }
 
 int law_tables_write(struct table_write *s, const struct packing *p, struct why *why)

@@ -57,6 +57,11 @@ static const struct column layout_boundary[] = {
     { "until", "s", COLUMN_F64, 1, offsetof(struct wall, until) },
     { 0 },
 };
+/* The same where any has a weld tolerance of its own */
+static const struct column layout_weld[] = {
+    { "weld", "m", COLUMN_F64, 1, offsetof(struct wall, weld) },
+    { 0 },
+};
 static const struct column layout_plane[] = {
     { "point", "m", COLUMN_F64, 3, offsetof(struct wall, x) },
     { "normal", "1", COLUMN_F64, 3, offsetof(struct wall, n) },
@@ -144,6 +149,12 @@ static const struct column layout_law[] = {
     { 0 },
 };
 
+/* The same where it is said of some pair whether its impacts are bounded */
+static const struct column layout_impact[] = {
+    { "impact", "1", COLUMN_F64, 1, offsetof(struct law, impact) },
+    { 0 },
+};
+
 /* /nsd/bonds/NAME [B][width], of frame k rows start[k] .. start[k] + count[k] - 1: members of struct
    bond */
 static const struct column layout_bonds[] = {
@@ -158,7 +169,27 @@ static const struct column layout_bonds[] = {
     { 0 },
 };
 
-/* The same where there are shapes */
+/* /nsd/memory/NAME [K][width], of each frame that has it `count` rows from `start` on: members of struct recall; with
+   features, shifts and moments where contacts have any */
+static const struct column layout_memory[] = {
+    { "body", "1", COLUMN_I32, 2, offsetof(struct recall, a) },
+    { "impulse", "N s", COLUMN_F64, 3, offsetof(struct recall, r) },
+    { 0 },
+};
+static const struct column layout_memory_features[] = {
+    { "feature", "1", COLUMN_I32, 1, offsetof(struct recall, feature) },
+    { 0 },
+};
+static const struct column layout_memory_shifts[] = {
+    { "shift", "1", COLUMN_I8, 3, offsetof(struct recall, shift) },
+    { 0 },
+};
+static const struct column layout_memory_moments[] = {
+    { "moment", "N m s", COLUMN_F64, 3, offsetof(struct recall, m) },
+    { 0 },
+};
+
+/* Of bonds where there are shapes */
 static const struct column layout_anchors[] = {
     { "area", "m2", COLUMN_F64, 1, offsetof(struct bond, area) },
     { "anchor_a", "m", COLUMN_F64, 3, offsetof(struct bond, at_a) },
@@ -255,7 +286,7 @@ static const struct column layout_report[] = {
 static const struct column layout_velocity[] = {
     { "velocity", "1", COLUMN_F64, 1, offsetof(struct report, err.velocity) },
     { "velocity_error", "m s-1", COLUMN_F64, 1, offsetof(struct report, err.velocity_error) },
-    { "wedged", "1", COLUMN_I64, 1, offsetof(struct report, err.wedged) },
+    { "jammed", "1", COLUMN_I64, 1, offsetof(struct report, err.jammed) },
     { 0 },
 };
 
@@ -304,6 +335,12 @@ static const struct column layout_bond_balance[] = {
     { "bond_change", "J", COLUMN_F64, 1, offsetof(struct report, balance.bond_change) },
     { "bond_energy", "J", COLUMN_F64, 1, offsetof(struct report, balance.bond_energy) },
     { "broken", "J", COLUMN_F64, 1, offsetof(struct report, balance.broken) },
+    { 0 },
+};
+
+/* The same where impacts may gain energy */
+static const struct column layout_gain_balance[] = {
+    { "impact_gain", "J", COLUMN_F64, 1, offsetof(struct report, balance.gained) },
     { 0 },
 };
 

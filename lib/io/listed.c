@@ -1,7 +1,27 @@
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): qsort_r
 #include "io/listed.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+static int by_path(const void *one, const void *other, void *objects)
+{
+    const struct listed *l = objects, *a = &l[*(const int64_t *)one],
+                        *b = &l[*(const int64_t *)other];
+    int order = (int)a->object.attribute - (int)b->object.attribute;
+    if (!order) order = strcmp(a->path, b->path);
+    return order ? order : (a > b) - (a < b);
+}
+
+static int sort(struct list *s, struct why *why)
+{
+    if (!(s->sorted = malloc(((size_t)s->count + 1) * sizeof *s->sorted)))
+        return why_set(why, EX_SOFTWARE, "no memory for a list of objects");
+    for (int64_t k = 0; k < s->count; k++) s->sorted[k] = k;
+    qsort_r(s->sorted, (size_t)s->count, sizeof *s->sorted, by_path, s->object);
+    return 0;
+}
 
 int list_open(struct list *s, unsigned char *bytes, uint64_t size, struct why *why)
 {
@@ -19,33 +39,40 @@ int list_open(struct list *s, unsigned char *bytes, uint64_t size, struct why *w
             return why_set(why, EX_DATAERR, "no list of objects");
         s->object[s->count] = l;
     }
-    return 0;
+    return sort(s, why);
 }
 
 void list_free(struct list *s)
 {
-    free(s->bytes), free(s->object);
+    free(s->bytes), free(s->object), free(s->sorted);
     *s = (struct list){ 0 };
+}
+
+/* The one of this path, PATH@NAME of an attribute */
+static const struct listed *find(const struct list *s, const char *path, bool attribute)
+{
+    for (int64_t lo = 0, hi = s->count; lo < hi;) {
+        int64_t k = lo + (hi - lo) / 2;
+        const struct listed *l = &s->object[s->sorted[k]];
+        int order = attribute - (int)l->object.attribute;
+        if (!order) order = strcmp(path, l->path);
+        if (!order) return l;
+        *(order > 0 ? &lo : &hi) = order > 0 ? k + 1 : k;
+    }
+    return NULL;
 }
 
 const struct listed *list_find(const struct list *s, const char *path)
 {
-    for (int64_t k = 0; k < s->count; k++)
-        if (!s->object[k].object.attribute && !strcmp(s->object[k].path, path))
-            return &s->object[k];
-    return NULL;
+    return find(s, path, false);
 }
 
 const struct listed *list_attribute(const struct list *s, const char *path, const char *name)
 {
-    size_t n = strlen(path);
-    for (int64_t k = 0; k < s->count; k++) {
-        const struct listed *l = &s->object[k];
-        if (l->object.attribute && l->object.data && !strncmp(l->path, path, n) &&
-            l->path[n] == '@' && !strcmp(l->path + n + 1, name))
-            return l;
-    }
-    return NULL;
+    char whole[OBJECT_PATH + OBJECT_NAME];
+    snprintf(whole, sizeof whole, "%s@%s", path, name);
+    const struct listed *l = find(s, whole, true);
+    return l && l->object.data ? l : NULL;
 }
 
 /* Number k of what came with the list, as an integer and as a real. */

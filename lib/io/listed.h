@@ -19,6 +19,7 @@ struct listed {
 struct list {
     unsigned char *bytes; /* a sequence of objects */
     struct listed *object;
+    int64_t *sorted; /* [count] objects, then attributes, by their paths */
     int64_t count;
 };
 

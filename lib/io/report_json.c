@@ -27,7 +27,7 @@ static void set_err(json_t *j, const struct err *e)
     json_object_set_new(j, "natural_q", json_number(e->natural_q));
     json_object_set_new(j, "velocity", json_number(e->velocity));
     json_object_set_new(j, "velocity_error", json_number(e->velocity_error));
-    json_object_set_new(j, "wedged", json_integer(e->wedged));
+    json_object_set_new(j, "jammed", json_integer(e->jammed));
 }
 
 json_t *json_err(const struct err *e)
@@ -37,7 +37,7 @@ json_t *json_err(const struct err *e)
     return j;
 }
 
-static json_t *balance(const struct balance *b, bool tied)
+static json_t *balance(const struct balance *b, bool tied, bool may_gain)
 {
     json_t *j = json_object();
     json_object_set_new(j, "kinetic", json_number(b->kinetic));
@@ -52,6 +52,7 @@ static json_t *balance(const struct balance *b, bool tied)
         json_object_set_new(j, "bond_energy", json_number(b->bond_energy));
         json_object_set_new(j, "broken", json_number(b->broken));
     }
+    if (may_gain) json_object_set_new(j, "gained", json_number(b->gained));
     json_object_set_new(j, "momentum", json_numbers(b->momentum, 3));
     json_object_set_new(j, "impulse", json_numbers(b->impulse, 3));
     return j;
@@ -71,7 +72,8 @@ json_t *json_report(const struct report *r)
     json_object_set_new(j, "newton", json_integer(r->newton));
     json_object_set_new(j, "safeguarded", json_integer(r->safeguarded));
     json_object_set_new(j, "gave_up", json_integer(r->gave_up));
-    if (r->balanced) json_object_set_new(j, "balance", balance(&r->balance, r->tied));
+    if (r->watched) json_object_set_new(j, "passed", json_integer(r->passed));
+    if (r->balanced) json_object_set_new(j, "balance", balance(&r->balance, r->tied, r->may_gain));
     return j;
 }
 

@@ -9,7 +9,7 @@
 
 /*
  * contacts, eps_glob, motion, proj, bipotential, penetration, scaled {...}, max_penetration,
- * max_penetration_true, max_overlap, natural, natural_siconos, natural_q, velocity, velocity_error, wedged
+ * max_penetration_true, max_overlap, natural, natural_siconos, natural_q, velocity, velocity_error, jammed
  */
 json_t *json_err(const struct err *err);
 /*

@@ -24,7 +24,7 @@ static void count_rows(struct report_rows *r, const struct column *columns)
 
 int report_rows_open(struct report_rows *r, struct source *source, struct why *why)
 {
-    *r = (struct report_rows){ .source = source, .ahead.last = -1 };
+    *r = (struct report_rows){ .source = source };
     char path[80];
     r->group = source_has(r->source, LAYOUT_REPORT) ? LAYOUT_REPORT : LAYOUT_REPORT_0_1;
     snprintf(path, sizeof path, "%s/step", r->group);
@@ -37,6 +37,9 @@ int report_rows_open(struct report_rows *r, struct source *source, struct why *w
     count_rows(r, layout_velocity);
     count_rows(r, layout_balance);
     count_rows(r, layout_bond_balance);
+    count_rows(r, layout_gain_balance);
+    r->solves = account_rows_count(source, r->group, r->solves);
+    if (!why->status) r->solves = table_read_rising(r->solved, r->solves);
     return why->status;
 }
 
@@ -45,7 +48,7 @@ static int check_report(const struct report *rep, const char *group, struct why 
 {
     uint8_t converged;
     memcpy(&converged, &rep->converged, 1);
-    if (rep->sweeps < 0 || rep->err.contacts < 0 || rep->err.wedged < 0 || rep->newton < 0 ||
+    if (rep->sweeps < 0 || rep->err.contacts < 0 || rep->err.jammed < 0 || rep->newton < 0 ||
         rep->safeguarded < 0 || rep->gave_up < 0)
         return why_set(why, EX_DATAERR, "%s: a number of things is negative", group);
     if (converged > 1) return why_set(why, EX_DATAERR, "%s/converged: is %d", group, converged);
@@ -101,8 +104,14 @@ static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
     if (tied && table_read_columns(r->source, r->group, "/value", layout_bond_balance, at, n,
                                    r->ahead.row, sizeof *r->ahead.row, why))
         return why->status;
+    snprintf(time, sizeof time, "%s/impact_gain/value", r->group);
+    bool may_gain = balanced && source_has(r->source, time);
+    if (may_gain && table_read_columns(r->source, r->group, "/value", layout_gain_balance, at, n,
+                                       r->ahead.row, sizeof *r->ahead.row, why))
+        return why->status;
     for (int64_t i = 0; i < n; i++)
-        r->ahead.row[i].balanced = balanced, r->ahead.row[i].tied = tied;
+        r->ahead.row[i].balanced = balanced, r->ahead.row[i].tied = tied,
+        r->ahead.row[i].may_gain = may_gain;
     r->ahead.n = n;
     return 0;
 }
@@ -112,7 +121,7 @@ int report_rows_read(struct report_rows *r, int64_t step, bool alone, struct rep
 {
     const char *group = r->group;
     alone = alone && r->solves == 1;
-    int64_t at = alone ? 0 : table_read_row(r->solved, r->solves, step, r->ahead.last + 1);
+    int64_t at = alone ? 0 : table_read_row(r->solved, r->solves, step);
     *there = at >= 0;
     if (at < 0) return 0;
     bool is_read = at >= r->ahead.first && at < r->ahead.first + r->ahead.n;
@@ -120,7 +129,6 @@ int report_rows_read(struct report_rows *r, int64_t step, bool alone, struct rep
     *rep = r->ahead.row[at - r->ahead.first], *account = r->ahead.account[at - r->ahead.first];
     if (check_report(rep, group, why)) return why->status;
     rep->step = r->solved[at], rep->t = r->ahead.time[at - r->ahead.first];
-    r->ahead.last = at;
     char *method = source_text(r->source, group, "method", why);
     char *criterion = source_text(r->source, group, "criterion", why);
     rep->options = source_text(r->source, group, "options", why);
@@ -130,6 +138,8 @@ int report_rows_read(struct report_rows *r, int64_t step, bool alone, struct rep
     free(method), free(criterion);
     if (why->status || source_attribute(r->source, group, "eps", COLUMN_F64, -1, &rep->eps, why))
         return why->status;
+    if (!(rep->eps >= 0 && isfinite(rep->eps)))
+        return why_set(why, EX_DATAERR, "%s@eps: neither 0 nor a positive number", group);
     return read_history(r->source, group, rep, why);
 }
 
@@ -158,7 +168,8 @@ static int write_balance(struct table_write *s, const struct report *rep, bool f
                          struct why *why)
 {
     if (write_table(s, layout_balance, rep, first, why)) return why->status;
-    return rep->tied ? write_table(s, layout_bond_balance, rep, first, why) : 0;
+    if (rep->tied && write_table(s, layout_bond_balance, rep, first, why)) return why->status;
+    return rep->may_gain ? write_table(s, layout_gain_balance, rep, first, why) : 0;
 }
 
 int report_rows_write(struct table_write *s, const struct report *rep, struct why *why)

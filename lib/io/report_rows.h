@@ -21,7 +21,6 @@ struct report_rows {
         struct account *account; /* [n] */
         double *time;            /* [n] s */
         int64_t first, n;
-        int64_t last; /* the row that was wanted last; -1: none yet */
     } ahead;
 };
 

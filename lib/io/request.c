@@ -6,6 +6,8 @@
 #include <string.h>
 #include <sys/socket.h>
 
+enum { ANSWER = 4096 /* an answer takes as long as so many bytes of it */ };
+
 int sink_bytes(struct sink *sink, struct reply *reply, const void *bytes, size_t size)
 {
     reply->there = true, reply->size = size;
@@ -26,6 +28,10 @@ static int taker_begin(struct sink *sink, const struct reply *reply)
     struct taker *t = (struct taker *)sink;
     t->reply = *reply;
     t->reply.text[sizeof t->reply.text - 1] = 0;
+    if (t->budget &&
+        (budget_draw(t->budget, ANSWER, t->why) || budget_draw(t->budget, reply->work, t->why) ||
+         (!t->pour && budget_draw(t->budget, reply->size, t->why))))
+        return t->why->status;
     if (t->pour) t->size = reply->size;
     if (!t->out && !t->pour) {
         t->size = reply->size;

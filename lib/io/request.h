@@ -5,6 +5,7 @@
 #ifndef NSD_REQUEST_H
 #define NSD_REQUEST_H
 
+#include "io/budget.h"
 #include "io/h5.h"
 #include "io/object.h"
 
@@ -42,6 +43,7 @@ struct reply {
     bool foreign, unfinished;
     int64_t number;    /* of the document in its file */
     uint64_t document; /* its bytes */
+    uint64_t work;     /* bytes that had to be unpacked for it, and are not kept */
     bool plain;        /* its datasets are in one piece each, not in chunks */
     char text[400];    /* status 0, REQUEST_NEXT: the name of its file; else the reason */
 };
@@ -68,6 +70,7 @@ struct taker {
     int (*pour)(void *to, const void *bytes, size_t size, struct why *why);
     void *out; /* or what pour() wants to know */
     uint64_t size, done;
+    struct budget *budget; /* which the answer draws on; NULL: none */
     struct reply reply;
     struct why *why;
 };

@@ -66,6 +66,7 @@ static int answer_block(struct served *s, const struct entry *e, const struct re
     if (served_stored(e, stored * o->size, why)) return why->status;
     hid_t set = served_set(s, e, why);
     if (set < 0) return why->status;
+    if (set != e->set) reply.work = e->chunk;
     int bad = sink->begin(sink, &reply) ||
               put_block(set, column_native(q->type), (int)o->rank, first, count, sink);
     if (set != e->set) H5Dclose(set);

@@ -1,5 +1,7 @@
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): qsort_r
 #include "io/served.h"
 
+#include "io/budget.h"
 #include "io/element.h"
 
 #include <stdio.h>
@@ -10,8 +12,6 @@ enum {
     MOST_OBJECTS = 100000,   /* in a document; a group within itself would have endless ones */
     MOST_DEPTH = 32,         /* groups within groups */
     OPEN_SETS = 256,         /* datasets that stay open once they were looked at */
-    LEAST_LIMIT = 1 << 26,   /* bytes: 64 MiB that any document may unpack to */
-    LIMIT_RATIO = 64,        /* or so many times its own size: packed tables rarely reach 20 */
     FREE_FILL = 1 << 20,     /* bytes of a dataset that need not be stored: h5py leaves zeros out */
     UNPACKED_CACHE = 1 << 25 /* bytes of unpacked chunks that are kept: a row of them of a table */
 };
@@ -53,12 +53,13 @@ static int check_storage(hid_t plist, struct entry *e, struct why *why)
 }
 
 /* A packed chunk has to stay in the cache while its pieces are handed out; other data bypass it. */
-static hid_t open_again(hid_t set, hid_t plist, const struct entry *e)
+static hid_t open_again(hid_t set, hid_t plist, struct entry *e)
 {
     hsize_t chunk[H5S_MAX_RANK], bytes = e->object.size ? e->object.size : 16;
     int rank = H5Pget_layout(plist) == H5D_CHUNKED ? H5Pget_chunk(plist, H5S_MAX_RANK, chunk) : 0;
     for (int k = 0; k < rank; k++) bytes *= chunk[k];
     if (!e->packed) return set;
+    e->chunk = bytes;
     bytes = 2 * bytes > UNPACKED_CACHE ? 2 * bytes : UNPACKED_CACHE;
     hid_t file = H5Iget_file_id(set), access = H5Pcreate(H5P_DATASET_ACCESS);
     H5Pset_chunk_cache(access, 521, bytes, 1);
@@ -66,6 +67,17 @@ static hid_t open_again(hid_t set, hid_t plist, const struct entry *e)
     set = H5Dopen2(file, e->path, access);
     H5Pclose(access), H5Fclose(file);
     return set;
+}
+
+/* Under each of its names a dataset is read anew. */
+static int count_bytes(struct served *s, const struct entry *e, struct why *why)
+{
+    if (__builtin_add_overflow(s->unpacked, e->bytes, &s->unpacked)) s->unpacked = UINT64_MAX;
+    if (s->unpacked <= s->limit) return 0;
+    return why_set(why, EX_DATAERR,
+                   "%s: with it %llu MB are said to be in %llu kB (--unpack allows more)", e->path,
+                   (unsigned long long)(s->unpacked / 1000000),
+                   (unsigned long long)(s->size / 1000 + 1));
 }
 
 static int look_at_shape(struct served *s, hid_t set, struct entry *e, struct why *why)
@@ -82,18 +94,12 @@ static int look_at_shape(struct served *s, hid_t set, struct entry *e, struct wh
     e->object.rank = rank > OBJECT_RANK ? OBJECT_RANK + 1 : (uint32_t)rank;
     if (class == H5S_NULL || rank > OBJECT_RANK) e->object.kind = OBJECT_OTHER;
     if (rank <= OBJECT_RANK) memcpy(e->shape, shape, (size_t)rank * sizeof *shape);
-    uint64_t bytes = element;
+    e->bytes = element;
     for (int k = 0; k < rank; k++)
-        if (__builtin_mul_overflow(bytes, shape[k], &bytes)) bytes = UINT64_MAX;
+        if (__builtin_mul_overflow(e->bytes, shape[k], &e->bytes)) e->bytes = UINT64_MAX;
     e->stored = H5Dget_storage_size(set);
     if (e->stored > s->size) e->stored = s->size;
-    if (__builtin_add_overflow(s->unpacked, bytes, &s->unpacked)) s->unpacked = UINT64_MAX;
-    if (s->unpacked > s->limit)
-        return why_set(why, EX_DATAERR,
-                       "%s: with it %llu MB are said to be in %llu kB (--unpack allows more)",
-                       e->path, (unsigned long long)(s->unpacked / 1000000),
-                       (unsigned long long)(s->size / 1000 + 1));
-    return 0;
+    return count_bytes(s, e, why);
 }
 
 static int look_at_dataset(struct served *s, hid_t set, struct entry *e, struct why *why)
@@ -172,7 +178,8 @@ static herr_t look_at_link(hid_t from, const char *name, const H5L_info_t *info,
     struct entry *e = add_entry(w, name);
     if (!e) return -1;
     if (info->type == H5L_TYPE_HARD) e->address = info->u.address;
-    if (info->type == H5L_TYPE_HARD && known_already(w->served, e)) return 0;
+    if (info->type == H5L_TYPE_HARD && known_already(w->served, e))
+        return count_bytes(w->served, e, w->why) ? -1 : 0;
     hid_t object = H5Oopen(from, name, H5P_DEFAULT);
     if (object < 0 && info->type == H5L_TYPE_SOFT) { // it leads nowhere
         free(e->path), w->served->count--;
@@ -189,16 +196,30 @@ static herr_t look_at_link(hid_t from, const char *name, const H5L_info_t *info,
     return w->why->status ? -1 : 0;
 }
 
+static int by_path(const void *one, const void *other, void *entries)
+{
+    const struct entry *e = entries;
+    return strcmp(e[*(const int64_t *)one].path, e[*(const int64_t *)other].path);
+}
+
+static int sort_entries(struct served *s, struct why *why)
+{
+    if (!(s->sorted = malloc(((size_t)s->count + 1) * sizeof *s->sorted)))
+        return why_set(why, EX_SOFTWARE, "no memory for a list of objects");
+    for (int64_t k = 0; k < s->count; k++) s->sorted[k] = k;
+    qsort_r(s->sorted, (size_t)s->count, sizeof *s->sorted, by_path, s->entry);
+    return 0;
+}
+
 int served_open(struct served *s, hid_t file, uint64_t size, uint64_t limit, struct why *why)
 {
-    uint64_t usual = size > LEAST_LIMIT / LIMIT_RATIO ? size * LIMIT_RATIO : LEAST_LIMIT;
-    *s = (struct served){ .file = file, .size = size, .limit = limit > usual ? limit : usual };
+    *s = (struct served){ .file = file, .size = size, .limit = budget_unpacked(size, limit) };
     struct walk root = { s, "", 0, why };
     hid_t group = H5Gopen2(file, "/", H5P_DEFAULT);
     if (group < 0) return why_set(why, EX_DATAERR, "/: cannot be opened (damaged?)");
     look_into_group(&root, group, "");
     H5Gclose(group);
-    return why->status;
+    return why->status ? why->status : sort_entries(s, why);
 }
 
 void served_close(struct served *s)
@@ -207,15 +228,19 @@ void served_close(struct served *s)
         if (s->entry[k].owner) H5Dclose(s->entry[k].set);
         free(s->entry[k].path);
     }
-    free(s->entry);
+    free(s->entry), free(s->sorted);
     if (s->file >= 0) H5Fclose(s->file);
     *s = (struct served){ .file = -1 };
 }
 
 struct entry *served_find(const struct served *s, const char *path, struct why *why)
 {
-    for (int64_t k = 0; k < s->count; k++)
-        if (!strcmp(s->entry[k].path, path)) return &s->entry[k];
+    for (int64_t lo = 0, hi = s->sorted ? s->count : 0; lo < hi;) {
+        int64_t k = lo + (hi - lo) / 2;
+        int order = strcmp(s->entry[s->sorted[k]].path, path);
+        if (!order) return &s->entry[s->sorted[k]];
+        *(order < 0 ? &lo : &hi) = order < 0 ? k + 1 : k;
+    }
     return why_set(why, EX_DATAERR, "%s: no such dataset", path), NULL;
 }
 

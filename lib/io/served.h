@@ -20,7 +20,9 @@ struct entry {
     bool owner;      /* it is closed here, not under another name */
     struct object object;
     hsize_t shape[OBJECT_RANK];
-    uint64_t stored; /* bytes that the file has of it, packed or not */
+    uint64_t bytes;  /* that it holds */
+    uint64_t stored; /* of them bytes that the file has, packed or not */
+    uint64_t chunk;  /* bytes of an unpacked chunk, where it is packed */
     bool packed;     /* by a filter */
 };
 
@@ -33,6 +35,7 @@ struct served {
     bool chunked;        /* some dataset is in chunks, as those of a trajectory are */
     int64_t count, room; /* of entries */
     struct entry *entry; /* what is in it, in the order of a walk by names */
+    int64_t *sorted;     /* [count] the entries by their paths */
 };
 
 /* Once in a process that serves: no plugins, no links into other files. */

@@ -8,6 +8,8 @@
 
 #define SHAPE "/nsd/shape"
 
+enum { PER_BYTE = 16 }; /* vertices that are seen behind a face while a byte is read */
+
 /* What all shapes have, a row each: numbers, and how many of the rows of vertices and corners */
 struct row {
     int32_t form, vertices, faces, corners;
@@ -59,8 +61,8 @@ static void listing_drop(struct listing *l)
 }
 
 /* The shape of a row, and the lists from `at` on, which moves on; nothing to free where it fails */
-static int make_shape(struct shape *s, const struct row *row, const struct listing *l,
-                      struct listing *at, int dim, struct why *why)
+static int make_shape(struct source *r, struct shape *s, const struct row *row,
+                      const struct listing *l, struct listing *at, int dim, struct why *why)
 {
     if (row->vertices < 0 || row->faces < 0 || row->corners < 0 ||
         (uint64_t)row->vertices > l->vertices - at->vertices ||
@@ -69,6 +71,8 @@ static int make_shape(struct shape *s, const struct row *row, const struct listi
         (row->vertices && !(l->vertex && l->ball)) || (row->faces && !l->face) ||
         (row->corners && !l->corner))
         return why_set(why, EX_DATAERR, "more vertices or faces than there are");
+    if (source_draw(r, (uint64_t)row->vertices * (uint64_t)row->faces / PER_BYTE, why))
+        return why->status; // of each face all vertices are behind
     if (shape_alloc(s, row->vertices, row->faces, row->corners, why)) return why->status;
     s->form = row->form, s->round = row->round, s->volume = row->volume;
     memcpy(s->moment, row->moment, sizeof s->moment);
@@ -87,8 +91,8 @@ static int make_shape(struct shape *s, const struct row *row, const struct listi
 }
 
 /* Rows 1, 2 ... of the table; row 0 is the ball, which stands in no list. names: a line each */
-static int make_shapes(struct packing *p, const struct row *row, int32_t n, const char *names,
-                       const struct listing *l, struct why *why)
+static int make_shapes(struct source *r, struct packing *p, const struct row *row, int32_t n,
+                       const char *names, const struct listing *l, struct why *why)
 {
     struct listing at = { 0 };
     for (int32_t k = 0; k < n && !why->status; k++) {
@@ -99,7 +103,7 @@ static int make_shapes(struct packing *p, const struct row *row, int32_t n, cons
             return why_set(why, EX_DATAERR, SHAPE "@names: fewer names than shapes");
         char *name = strndup(names, (size_t)(end - names));
         names = end + 1;
-        make_shape(&s, &row[k], l, &at, p->dim, &trouble);
+        make_shape(r, &s, &row[k], l, &at, p->dim, &trouble);
         if (trouble.status)
             why_set(why, trouble.status, SHAPE ": \"%s\": %s", name ? name : "", trouble.text);
         if (trouble.status) free(name);
@@ -124,7 +128,7 @@ int shape_tables_read(struct source *r, struct packing *p, struct why *why)
     if (!why->status &&
         !table_read_columns(r, SHAPE, "", layout_rows, 0, (int64_t)n[0], row, sizeof *row, why) &&
         !read_lists(r, &l, why))
-        make_shapes(p, row, (int32_t)n[0], names, &l, why);
+        make_shapes(r, p, row, (int32_t)n[0], names, &l, why);
     listing_drop(&l);
     free(row), free(names);
     return why->status ? why->status : packing_alloc_shapes(p, why);

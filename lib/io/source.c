@@ -16,8 +16,9 @@ struct source {
     struct child *child; /* NULL: the file is our own */
     struct served own;
     char where[300], name[300];
-    struct list list; /* the document's objects */
-    bool large;       /* the document takes memory that is worth giving back */
+    struct list list;     /* the document's objects */
+    struct budget budget; /* of the document */
+    bool large;           /* the document takes memory that is worth giving back */
 };
 
 static uint64_t limit;
@@ -53,6 +54,7 @@ static int ask(struct source *s, const struct request *q, struct taker *t, struc
 {
     void *given = t->out;
     int e;
+    t->budget = s->child && q->op != REQUEST_NEXT ? &s->budget : NULL;
     taker_start(t, why);
     if (!s->child)
         e = serve_answer(&s->own, q, &t->sink, why);
@@ -96,6 +98,7 @@ int source_next(struct source *s, struct source_document *d, bool *more, struct 
                                    t.reply.foreign,  t.reply.unfinished,
                                    t.reply.document, t.reply.plain };
     *more = true;
+    budget_open(&s->budget, t.reply.document, limit);
     s->large = t.reply.document > LARGE;
     return list_open(&s->list, t.out, t.size, why);
 }
@@ -119,6 +122,16 @@ const struct object *source_object(const struct source *s, int64_t k, const char
     if (k >= s->list.count) return NULL;
     *path = s->list.object[k].path, *shape = s->list.object[k].shape;
     return &s->list.object[k].object;
+}
+
+int source_draw(struct source *s, uint64_t work, struct why *why)
+{
+    return s->child ? budget_draw(&s->budget, work, why) : 0;
+}
+
+int source_frame(struct source *s, struct why *why)
+{
+    return s->child ? budget_frame(&s->budget, why) : 0;
 }
 
 /* ---- requests ---- */
@@ -157,7 +170,7 @@ int source_rows(struct source *s, const char *path, enum column_type type, int64
         for (uint32_t k = 1; k < l->object.rank; k++) row *= l->shape[k];
         if (row == (uint64_t)width && (uint64_t)start + (uint64_t)n <= l->shape[0] &&
             listed_numbers(l, (uint64_t)(start * width), (uint64_t)(n * width), type, out))
-            return 0;
+            return source_draw(s, t.size, why);
     }
     q.type = type, q.start = start, q.n = n, q.width = width;
     return ask(s, &q, &t, why);
@@ -177,7 +190,7 @@ int source_part(struct source *s, const char *path, enum column_type type, int64
         if (numbers == (uint64_t)width && (uint64_t)row < l->shape[0] &&
             (uint64_t)first + (uint64_t)n <= l->shape[1] &&
             listed_numbers(l, before * numbers, (uint64_t)n * numbers, type, out))
-            return 0;
+            return source_draw(s, t.size, why);
     }
     q.type = type, q.start = row, q.from = first, q.n = n, q.width = width;
     return ask(s, &q, &t, why);
@@ -193,6 +206,7 @@ void *source_read_all(struct source *s, const char *path, enum column_type type,
     const struct listed *l = list_find(&s->list, path);
     if (l && l->object.data && l->object.size) {
         uint64_t n = l->object.data / l->object.size;
+        if (source_draw(s, 8 * n, why)) return NULL;
         void *out = calloc(n + 1, 8);
         if (!out) return why_set(why, EX_SOFTWARE, "%s: no memory", path), NULL;
         *count = n;
@@ -228,6 +242,7 @@ char *source_text(struct source *s, const char *path, const char *name, struct w
         name ? list_attribute(&s->list, path, name) : list_find(&s->list, path);
     if (!name && !l) return NULL;
     if (l && l->object.kind == OBJECT_TEXT && !l->object.rank && l->object.data) {
+        if (source_draw(s, l->object.data, why)) return NULL;
         char *text = strndup(l->data, l->object.data);
         if (!text) why_set(why, EX_SOFTWARE, "%s: no memory", path);
         return text;

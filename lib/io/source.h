@@ -38,6 +38,11 @@ struct source_document {
     bool plain;       /* its datasets are in one piece each, not in chunks */
 };
 
+/* Work on what is in the document that takes as long as so many bytes of it would. EX_DATAERR: too much */
+int source_draw(struct source *source, uint64_t work, struct why *why);
+/* Another frame of it is begun [io/budget.h]. */
+int source_frame(struct source *source, struct why *why);
+
 /* How the pieces of a document go on; 0, or why not. */
 typedef int (*source_sink)(void *to, const void *bytes, size_t size, struct why *why);
 

@@ -44,9 +44,19 @@ int64_t *table_read_steps(struct source *source, const char *path, int64_t *n, s
     return steps;
 }
 
-int64_t table_read_row(const int64_t *steps, int64_t n, int64_t step, int64_t guess)
+int64_t table_read_rising(const int64_t *steps, int64_t n)
 {
-    if (guess < n && steps[guess] == step) return guess;
-    while (--n >= 0 && steps[n] != step) continue;
-    return n;
+    int64_t rising = n > 0;
+    while (rising < n && steps[rising] > steps[rising - 1]) rising++;
+    return rising;
+}
+
+int64_t table_read_row(const int64_t *steps, int64_t n, int64_t step)
+{
+    int64_t lo = 0, hi = n; // steps[lo - 1] < step <= steps[hi]
+    while (lo < hi) {
+        int64_t middle = lo + (hi - lo) / 2;
+        *(steps[middle] < step ? &lo : &hi) = steps[middle] < step ? middle + 1 : middle;
+    }
+    return lo < n && steps[lo] == step ? lo : -1;
 }

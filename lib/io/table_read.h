@@ -23,7 +23,9 @@ int table_read_span(struct source *source, const char *group, const char *one, i
 
 /* A dataset of steps, *n of them; to be freed. NULL: not there, or no memory. */
 int64_t *table_read_steps(struct source *source, const char *path, int64_t *n, struct why *why);
-/* The row of a step; looked for at `guess`, where it mostly is, then from the end on; -1: none */
-int64_t table_read_row(const int64_t *steps, int64_t n, int64_t step, int64_t guess);
+/* How many of n steps rise, from the first on: a killed writer may have made room for one without setting it. */
+int64_t table_read_rising(const int64_t *steps, int64_t n);
+/* The row of a step among n that rise; -1: none */
+int64_t table_read_row(const int64_t *steps, int64_t n, int64_t step);
 
 #endif

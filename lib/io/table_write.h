@@ -33,6 +33,7 @@ struct table_write {
     int64_t contacts;         /* rows of /contacts so far */
     int64_t events;           /* rows of /nsd/flow/events so far */
     int64_t bonds;            /* rows of /nsd/bonds so far */
+    int64_t memory;           /* rows of /nsd/memory so far */
 };
 
 /*

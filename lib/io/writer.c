@@ -199,6 +199,12 @@ static int write_all(struct writer *s, const unsigned char *bytes, size_t size, 
                : 0;
 }
 
+int64_t writer_size(const struct writer *s)
+{
+    struct stat st;
+    return fstat(s->fd, &st) || !S_ISREG(st.st_mode) ? 0 : (int64_t)st.st_size;
+}
+
 bool writer_passes(const struct writer *s)
 {
     return !s->trajectory;
@@ -316,6 +322,7 @@ static int reserve(struct writer *s, const struct frame *f, struct why *why)
         n += (hsize_t)s->roster.rows + 2 * s->doc.chunk_bodies;
     if (f->detected) rows = (hsize_t)f->contacts.n + CHUNK_CONTACTS;
     rows += (hsize_t)f->packing.events.n + (hsize_t)f->packing.bonds.n;
+    rows += (hsize_t)f->packing.memory.n;
     // 128 bytes a body, and as many of its motion, 256 a contact, and the tables that may grow
     hsize_t frame = 256 * n + 256 * rows + (1 << 17);
     struct stat st; // HDF5 sometimes cuts the reserve off
@@ -515,7 +522,8 @@ static int begin_again(struct writer *s, struct why *why)
 
 int writer_begin(struct writer *s, const struct frame *f, struct why *why)
 {
-    if (!s->trajectory || s->waits || (s->output && s->output->old >= 0)) return 0;
+    bool begun = s->frames || s->waits || (s->output && s->output->old >= 0);
+    if (!s->trajectory || begun) return 0;
     if (trajectory_frame(s, f, why)) trajectory_fails(s);
     return why->status ? why->status : begin_again(s, why);
 }

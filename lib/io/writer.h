@@ -45,6 +45,9 @@ int writer_frame(struct writer *writer, const struct frame *frame, struct why *w
  */
 int writer_begin(struct writer *writer, const struct frame *frame, struct why *why);
 
+/* Bytes of the file that is written; 0: it is none */
+int64_t writer_size(const struct writer *writer);
+
 /* Do frames become documents of their own? Then one that has come as such may go on as it is: */
 bool writer_passes(const struct writer *writer);
 /* the document that the reader has found, and of which reader_whole() is true. */

@@ -14,7 +14,7 @@ struct push {
 
 static const struct quantity quantities[] = {
     { "boundary", "1", 1, "its number; -1: all bodies that are fixed" },
-    { "contacts", "1", 1, "that push" },
+    { "contacts", "1", 1, "that push or pull" },
     { "force", "N", 3, "of the bodies on it" },
     { "torque", "N m", 3, "of that about --point" },
     { "normal", "N", 1, "sum of normal forces" },
@@ -27,7 +27,7 @@ static void add(struct push *to, const struct snapshot *s, int64_t i, double sig
     const struct contact *c = &s->s->c[i];
     const double *r = s->s->found[i].r;
     vec3 f = v3_scale(sign, branch_force(s->p, s->s, i));
-    to->contacts += r[0] > 0;
+    to->contacts += branch_counts(s->s, i);
     to->force = v3_add(to->force, f);
     to->torque = v3_add(to->torque, v3_cross(v3_sub(c->x, s->asked->point), f));
     to->normal += r[0] / s->p->dt;

@@ -9,6 +9,7 @@
 #define NSD_BRANCH_H
 
 #include "bodies/kinematics.h"
+#include "bodies/tie.h"
 
 /* m: how far the centres of a and b are from the contact's point; a boundary's is 0, and b's then
    the whole distance to it. */
@@ -52,10 +53,11 @@ static inline vec3 branch_force(const struct packing *p, const struct contacts *
     return v3_scale(1 / p->dt, contact_in_space(&s->c[i], s->found[i].r));
 }
 
-/* Does contact i count? Solved: it pushes; else the bodies touch. */
+/* Does contact i count? Solved: it pushes or pulls; else the bodies touch. And what a tie holds does. */
 static inline bool branch_counts(const struct contacts *s, int64_t i)
 {
-    return s->found ? s->found[i].r[0] > 0 : s->c[i].gap <= 0;
+    if (s->tie && tie_holds(&s->tie[i])) return true;
+    return s->found ? s->found[i].r[0] != 0 : s->c[i].gap <= 0;
 }
 
 #endif

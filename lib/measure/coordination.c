@@ -8,7 +8,7 @@
 
 static const struct quantity quantities[] = {
     { "bodies", "1", 1, "that move, their centres in the region" },
-    { "contacts", "1", 1, "of the frame: that push; not solved: that touch" },
+    { "contacts", "1", 1, "of the frame: that push or pull; not solved: that touch" },
     { "z", "1", 1, "contacts of a body, mean of all" },
     { "z_mechanical", "1", 1, "mean of those with more than one (Thornton 2000)" },
     { "z_without_rattlers", "1", 1, "mean of those that bear, among themselves" },

@@ -1,4 +1,5 @@
 /* measure/energies.c: energies, and what a step takes of them. */
+#include "bodies/tie.h"
 #include "bodies/top.h"
 #include "measure/branch.h"
 #include "measure/measures.h"
@@ -10,9 +11,10 @@ static const struct quantity quantities[] = {
     { "kinetic", "J", 1, "of translation" },
     { "rotation", "J", 1, "of rotation" },
     { "potential", "J", 1, "- m g.x, zero at the origin" },
-    { "stored", "J", 1, "in contacts: rigid bodies store none" },
+    { "stored", "J", 1, "in cohesion, liquid and bonds; rigid bodies store none" },
     { "total", "J", 1, "of these four" },
-    { "dissipated", "J", 1, "by contacts in the step that they belong to" },
+    { "dissipated", "J", 1,
+      "by contacts in the step that they belong to, without what ties store" },
     { "impact", "J", 1, "of that, by normal velocities" },
     { "friction", "J", 1, "of that, by tangential ones" },
     { "boundaries", "J", 1, "work of boundaries on bodies in that step" },
@@ -21,10 +23,10 @@ static const struct quantity quantities[] = {
 
 /* What contacts take in the step is minus their work on the relative velocity, - r . u, u the mean of
    those before and after it. */
-static int add_step(double **at, const struct snapshot *s, struct why *why)
+static int add_step(double **at, const struct snapshot *s, double *stored, struct why *why)
 {
     struct step_motion m;
-    double impact = 0, friction = 0, boundaries = 0;
+    double impact = 0, friction = 0, boundaries = 0, kept = 0;
     if (step_motion_init(&m, s, why)) {
         step_motion_free(&m);
         return why->status;
@@ -34,12 +36,18 @@ static int add_step(double **at, const struct snapshot *s, struct why *why)
         const double *r = s->s->found[i].r;
         double u[3];
         int times = region_holds(&s->region, c->x);
+        if (s->s->tie && times) {
+            const struct packing *start = s->moved ? &m.other : s->p;
+            struct tie_end end = tie_end(start, c, &s->s->tie[i], &s->s->found[i]);
+            struct tie_account a = tie_account(start, c, &s->s->tie[i], &end);
+            *stored += times * a.stored, kept += times * (a.change + a.broken);
+        }
         step_motion_at(&m, c, u);
         impact -= times * r[0] * u[0], friction -= times * (r[1] * u[1] + r[2] * u[2]);
         if (c->a < 0)
             boundaries += times * v3_dot(contact_in_space(c, r), step_motion_boundary(&m, c));
     }
-    put(at, impact + friction), put(at, impact), put(at, friction), put(at, boundaries);
+    put(at, impact + friction - kept), put(at, impact), put(at, friction), put(at, boundaries);
     step_motion_free(&m);
     return 0;
 }
@@ -55,10 +63,15 @@ static int of(struct table *t, const struct snapshot *s, struct why *why)
         rotation += times * 0.5 * top_energy2(p, i, p->q[i], p->w[i]);
         potential -= times * p->mass[i] * v3_dot(p->g, p->x[i]);
     }
-    put(&at, kinetic), put(&at, rotation), put(&at, potential), put(&at, 0);
-    put(&at, kinetic + rotation + potential);
-    if (s->s && (s->s->found || !s->s->n)) return add_step(&at, s, why);
-    table_null(t, "no dissipation: the document has no solved contacts");
+    double *step = at + 5, stored = 0;
+    bool solved = s->s && (s->s->found || !s->s->n);
+    if (solved && add_step(&step, s, &stored, why)) return why->status;
+    if (!solved) {
+        table_null(t, "no dissipation: the document has no solved contacts");
+        if (p->law) stored = NAN;
+    }
+    put(&at, kinetic), put(&at, rotation), put(&at, potential), put(&at, stored);
+    put(&at, kinetic + rotation + potential + stored);
     return 0;
 }
 

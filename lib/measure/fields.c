@@ -199,16 +199,20 @@ void fields_set(struct fields *f, const struct snapshot *s)
         memset(f->x[k], 0,
                (size_t)fields_points(f) * (size_t)field_quantity[k].width * sizeof(double));
     for (int64_t i = 0; i < p->n; i++) {
-        const struct body b = { p->mass[i], grain_volume(p, i), p->v[i] };
-        vec3 x = v3_axpy(p->x[i], ahead, p->v[i]);
-        struct region_walk w = region_walk(&r, x, CUT * f->width);
-        for (vec3 y; region_next(&w, &r, x, &y);) add_body(f, p->dim, y, &b);
+        const double margin = CUT * f->width + fabs(ahead) * v3_norm(p->v[i]);
+        struct region_walk w = region_walk(&r, p->x[i], margin);
+        for (vec3 y; region_next(&w, &r, p->x[i], &y);) {
+            vec3 v = v3_add(p->v[i], region_rate(&w, &r)); // an image moves as its cell does
+            const struct body b = { p->mass[i], grain_volume(p, i), v };
+            add_body(f, p->dim, v3_axpy(y, ahead, v), &b);
+        }
     }
     for (int64_t i = 0; solved && i < s->s->n; i++) {
         vec3 x = branch_from(p, &s->s->c[i]), l = branch_way(p, &s->s->c[i]);
         struct region_walk w = region_walk(&r, x, CUT * f->width + v3_norm(l));
         for (vec3 y; region_next(&w, &r, x, &y);)
-            add_contact(f, p->dim, y, l, branch_force(p, s->s, i));
+            add_contact(f, p->dim, v3_axpy(y, ahead, region_rate(&w, &r)), l,
+                        branch_force(p, s->s, i));
     }
     for (int64_t i = 0; !solved && i < 9 * fields_points(f); i++) f->x[FIELD_CONTACTS][i] = NAN;
     finish(f);

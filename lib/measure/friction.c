@@ -7,10 +7,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Does contact i push, in the region? */
+/* Does contact i push or pull, in the region? */
 static bool pushes(const struct snapshot *s, int64_t i)
 {
-    return s->s->found[i].r[0] > 0 && region_holds(&s->region, s->s->c[i].x);
+    return branch_counts(s->s, i) && region_holds(&s->region, s->s->c[i].x);
 }
 
 /* N: the tangential force */
@@ -25,17 +25,39 @@ static double normal(const struct snapshot *s, int64_t i)
     return s->s->found[i].r[0] / s->p->dt;
 }
 
-/* How much of the friction that there could be there is, 0 to 1; NaN without any */
+/* Of the force: less of a push beside a pull is what the solve leaves */
+static const double TIE_NOISE = 1e-3;
+
+/* N: how much of friction there is, and how much there could be: of the push of the surfaces, which a tie that pulls
+   the bodies together adds to */
+struct rub {
+    double is, most;
+};
+
+static struct rub rub_of(const struct snapshot *s, int64_t i)
+{
+    const struct found *f = &s->s->found[i];
+    const bool tied = s->s->tie && tie_holds(&s->s->tie[i]);
+    double dt = s->p->dt, r[3] = { f->r[0], f->r[1], f->r[2] };
+    if (tied) tie_push(dt, &s->s->tie[i], f, r);
+    double is = hypot(r[1], r[2]) / dt, most = s->s->c[i].mu * r[0] / dt;
+    if (!tied) return (struct rub){ is, most };
+    // what is a difference of push and pull has the error of both
+    if (r[0] <= TIE_NOISE * fabs(f->r[0])) return (struct rub){ 0, 0 };
+    return (struct rub){ fmin(is, most), most };
+}
+
 static double mobilised(const struct snapshot *s, int64_t i)
 {
-    double most = s->s->c[i].mu * normal(s, i);
-    return most > 0 ? tangential(s, i) / most : NAN;
+    struct rub rub = rub_of(s, i);
+    return rub.most > 0 ? rub.is / rub.most : NAN;
 }
 
 static const struct quantity quantities[] = {
-    { "contacts", "1", 1, "that push, their points in the region" },
+    { "contacts", "1", 1, "that push or pull, their points in the region" },
     { "sliding", "1", 1, "of them, that slide" },
-    { "mobilised", "1", 1, "mean of |f_t| / (mu f_n), of those with friction" },
+    { "mobilised", "1", 1,
+      "mean of |f_t| / (mu f_n), of those with friction, the pull of ties left out" },
     { "ratio", "1", 1, "sum of |f_t| over sum of mu f_n" },
     { "normal_mean", "N", 1, "normal force, mean" },
     { "normal_most", "N", 1, "the largest" },
@@ -47,16 +69,17 @@ static const struct quantity quantities[] = {
 
 struct sums {
     int64_t contacts, sliding, rough;
-    double mobilised, tangential, limit, normal, normal_most, tangential_most;
+    double mobilised, tangential, rub, limit, normal, normal_most, tangential_most;
 };
 
 static void add(struct sums *m, const struct snapshot *s, int64_t i)
 {
-    double fn = normal(s, i), ft = tangential(s, i), part = mobilised(s, i);
+    double fn = normal(s, i), ft = tangential(s, i);
+    struct rub rub = rub_of(s, i);
     m->contacts++, m->sliding += s->s->found[i].status == LOCAL_SLIDE;
-    m->normal += fn, m->tangential += ft, m->limit += s->s->c[i].mu * fn;
+    m->normal += fn, m->tangential += ft, m->rub += rub.is, m->limit += rub.most;
     m->normal_most = fmax(m->normal_most, fn), m->tangential_most = fmax(m->tangential_most, ft);
-    if (part >= 0) m->rough++, m->mobilised += part;
+    if (rub.most > 0) m->rough++, m->mobilised += rub.is / rub.most;
 }
 
 static int of(struct table *t, const struct snapshot *s, struct why *why)
@@ -71,12 +94,12 @@ static int of(struct table *t, const struct snapshot *s, struct why *why)
         if (pushes(s, i)) square += (normal(s, i) - mean) * (normal(s, i) - mean);
     put(&at, n), put(&at, (double)m.sliding);
     if (!m.contacts) {
-        table_null(t, "no contact pushes");
+        table_null(t, "no contact pushes or pulls");
         return 0;
     }
     if (!m.rough) table_null(t, "no contact has friction");
     put(&at, m.rough ? m.mobilised / (double)m.rough : NAN);
-    put(&at, m.rough ? m.tangential / m.limit : NAN);
+    put(&at, m.rough ? m.rub / m.limit : NAN);
     put(&at, mean), put(&at, m.normal_most), put(&at, sqrt(square / n) / mean);
     put(&at, m.tangential / n), put(&at, m.tangential_most);
     return 0;
@@ -93,7 +116,7 @@ const struct measure measure_friction = {
 
 /* ---- distributions ---- */
 
-/* Rows of a histogram of what value() says of the contacts that push; over its mean where `by_mean`,
+/* Rows of a histogram of what value() says of the contacts that count; over its mean where `by_mean`,
    up to `most`, 0: the largest */
 static int distribution(struct table *t, const struct snapshot *s,
                         double (*value)(const struct snapshot *, int64_t), bool by_mean,
@@ -108,7 +131,7 @@ static int distribution(struct table *t, const struct snapshot *s,
     }
     double mean = n ? sum / (double)n : 0, unit = by_mean ? mean : 1;
     if (!(mean > 0) || !isfinite(sum)) {
-        table_null(t, n ? "all are zero" : "no contact pushes");
+        table_null(t, n ? "all are zero" : "no contact pushes or pulls");
         free(x);
         return 0;
     }

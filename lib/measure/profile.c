@@ -28,12 +28,12 @@ static double solid(const struct packing *p, const struct region *r)
     return sum;
 }
 
-/* The whole velocity: the flow that moving_of leaves out comes back, by the layer's bodies. */
+/* The whole velocity: the flow that moving_of leaves out comes back, by the images in the layer. */
 static vec3 velocity(const struct packing *p, const struct region *r, double mass)
 {
     vec3 sum = v3(0, 0, 0);
     for (int64_t i = 0; i < p->n; i++)
-        if (p->mass[i] > 0 && region_holds(r, p->x[i])) sum = v3_axpy(sum, p->mass[i], p->v[i]);
+        if (p->mass[i] > 0) sum = v3_axpy(sum, p->mass[i], region_velocities(r, p->x[i], p->v[i]));
     return v3_scale(1 / mass, sum);
 }
 

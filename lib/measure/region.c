@@ -47,6 +47,15 @@ bool region_next(struct region_walk *w, const struct region *r, vec3 x, vec3 *im
     return true;
 }
 
+vec3 region_rate(const struct region_walk *w, const struct region *r)
+{
+    const int edges[3] = { w->at[0], w->at[1], w->at[2] - 1 };
+    vec3 rate = v3(0, 0, 0);
+    for (int k = 0; k < 3; k++)
+        if (edges[k]) rate = v3_axpy(rate, edges[k], r->period.cell->rate[k]);
+    return rate;
+}
+
 /* ---- making regions ---- */
 
 static void reach(const struct packing *p, double lo[3], double hi[3])
@@ -197,6 +206,16 @@ int region_holds(const struct region *r, vec3 x)
     struct region_walk w = region_walk(r, x, 0);
     for (vec3 y; region_next(&w, r, x, &y);) n += inside(r, y);
     return n;
+}
+
+vec3 region_velocities(const struct region *r, vec3 x, vec3 v)
+{
+    vec3 sum = v3(0, 0, 0);
+    if (r->all) return v;
+    struct region_walk w = region_walk(r, x, 0);
+    for (vec3 y; region_next(&w, r, x, &y);)
+        if (inside(r, y)) sum = v3_add(sum, v3_add(v, region_rate(&w, r)));
+    return sum;
 }
 
 static double one_ball(const struct region *r, vec3 x, double radius)

@@ -45,9 +45,13 @@ struct region_walk {
 };
 struct region_walk region_walk(const struct region *r, vec3 x, double margin);
 bool region_next(struct region_walk *w, const struct region *r, vec3 x, vec3 *image);
+/* m/s: how much faster than the body the image is that region_next() has found last */
+vec3 region_rate(const struct region_walk *w, const struct region *r);
 
 /* How many images of the point are in the region: 0 or 1 where nothing repeats */
 int region_holds(const struct region *r, vec3 x);
+/* m/s: the sum of their velocities, of a body at x whose own is v */
+vec3 region_velocities(const struct region *r, vec3 x, vec3 v);
 /* m^3, m^2: the volume in the region of a ball of this radius (m) at x */
 double region_ball(const struct region *r, vec3 x, double radius);
 /* The part in the region of the way from x to x + l, 0 to 1; 1 where it holds all */

@@ -34,7 +34,11 @@ static vec3 boundary(const struct step_motion *m, const struct packing *p, const
 static vec3 relative(const struct step_motion *m, const struct packing *p, const struct contact *c)
 {
     if (contact_shaped(p, c)) {
-        struct arms arm = arm_vectors(p, c, 0, p->cell.edge);
+        bool before = p->step < (p == m->p ? m->other.step : m->p->step);
+        double ahead = (before ? 1 - p->theta : -p->theta) * p->dt; // to where the contact acts
+        vec3 edge[3];
+        cell_predict(&p->cell, ahead, edge);
+        struct arms arm = arm_vectors(p, c, ahead, edge);
         vec3 of_b = v3_add(p->v[c->b], v3_cross(p->w[c->b], arm.b));
         vec3 of_a = c->a < 0 ? boundary(m, p, c) : v3_add(p->v[c->a], v3_cross(p->w[c->a], arm.a));
         return v3_add(v3_sub(of_b, of_a), cell_shift(p->cell.rate, c->shift));

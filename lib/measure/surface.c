@@ -109,24 +109,35 @@ static bool plane(const struct top *top, int64_t n, int dim, double slope[2], do
     return true;
 }
 
-/* How much the surface falls with the distance from its axis; NaN: the points do not say */
-static double flank(const struct top *top, int64_t n)
+/* Of the least squares' variance about a plane: a cone is one about which the flanks scatter less than this. A bed
+   or a drum's slope scatters about the best cone as about a plane, or more. */
+static const double NEARER_TO_CONE = 0.5;
+
+/* How much the surface falls with the distance from its axis; NaN: the points do not say, or lie on a plane, h =
+   mean + slope . (a, b), as well as on a cone */
+static double flank(const struct top *top, int64_t n, const double slope[2])
 {
     struct mean m = mean_of(top, n);
     double least = INFINITY, most = -INFINITY, count = 0, r = 0, h = 0, rr = 0, rh = 0;
+    double off_plane = 0, off_cone = 0;
     for (int64_t k = 0; k < n; k++) least = fmin(least, top[k].h), most = fmax(most, top[k].h);
     double from = least + 0.2 * (most - least), to = least + 0.8 * (most - least);
-    for (int pass = 0; pass < 2; pass++)
+    for (int pass = 0; pass < 3; pass++)
         for (int64_t k = 0; k < n; k++) {
-            double d = hypot(top[k].a - m.a, top[k].b - m.b);
+            double a = top[k].a - m.a, b = top[k].b - m.b, d = hypot(a, b);
             if (!(top[k].h >= from && top[k].h <= to)) continue;
-            if (!pass)
+            double e = top[k].h - m.h - slope[0] * a - slope[1] * b;
+            double c = top[k].h - h / count - rh / rr * (d - r / count); // in the last pass
+            if (pass == 0)
                 count++, r += d, h += top[k].h;
-            else
+            else if (pass == 1)
                 rr += (d - r / count) * (d - r / count),
                     rh += (d - r / count) * (top[k].h - h / count);
+            else
+                off_plane += e * e, off_cone += c * c;
         }
-    return count > 2 && rr > 0 ? -rh / rr : NAN;
+    bool cone = count > 2 && rr > 0 && off_cone < NEARER_TO_CONE * off_plane;
+    return cone ? -rh / rr : NAN;
 }
 
 static double degrees(double slope)
@@ -152,8 +163,8 @@ static void fill(double *at, struct table *t, const struct snapshot *s, const st
     else
         at += 3, table_null(t, "a level surface falls nowhere");
     put(&at, spread);
-    double cone = flank(top, n);
-    if (!isfinite(cone)) table_null(t, "no flanks for a cone");
+    double cone = flank(top, n, slope);
+    if (!isfinite(cone)) table_null(t, "no cone: the surface is as near to a plane");
     put(&at, degrees(cone));
     for (int64_t k = 1; k < n; k++)
         if (top[k].h > top[apex].h) apex = k;

@@ -25,7 +25,7 @@ static void sums_add(struct sums *t, const struct sums *s)
         t->bipotential[k] += s->bipotential[k], t->penetration[k] += s->penetration[k];
         t->natural2[k] += s->natural2[k], t->siconos2[k] += s->siconos2[k];
         t->velocity2[k] += s->velocity2[k], t->r2[k] += s->r2[k];
-        t->wedged[k] += s->wedged[k];
+        t->jammed[k] += s->jammed[k];
         t->max_pen[k] = fmax(t->max_pen[k], s->max_pen[k]);
         t->max_true[k] = fmax(t->max_true[k], s->max_true[k]);
         t->max_velocity2[k] = fmax(t->max_velocity2[k], s->max_velocity2[k]);
@@ -80,7 +80,7 @@ static void take_terms(const struct sums *s, int k, double term[SHARED_TERMS])
 {
     const double t[SHARED_TERMS] = { s->motion[k],      s->proj[k],     s->bipotential[k],
                                      s->penetration[k], s->natural2[k], s->siconos2[k],
-                                     s->velocity2[k],   s->r2[k],       s->wedged[k] };
+                                     s->velocity2[k],   s->r2[k],       s->jammed[k] };
     for (int j = 0; j < SHARED_TERMS; j++) term[j] = t[j];
 }
 
@@ -91,7 +91,7 @@ static void sums_negate(struct sums *s)
         s->bipotential[k] = -s->bipotential[k], s->penetration[k] = -s->penetration[k];
         s->natural2[k] = -s->natural2[k], s->siconos2[k] = -s->siconos2[k];
         s->velocity2[k] = -s->velocity2[k], s->r2[k] = -s->r2[k];
-        s->wedged[k] = -s->wedged[k];
+        s->jammed[k] = -s->jammed[k];
     }
 }
 
@@ -140,7 +140,7 @@ static void judge_shared(const struct problem *p, bool believes, enum err_terms 
         all->bipotential[k] = out[2][k], all->penetration[k] = out[3][k];
         all->natural2[k] = out[4][k], all->siconos2[k] = out[5][k];
         all->velocity2[k] = out[6][k], all->r2[k] = out[7][k];
-        all->wedged[k] = out[8][k];
+        all->jammed[k] = out[8][k];
     }
     all->max_pen[0] = shared->most(shared, most[0]);
     all->max_true[0] = shared->most(shared, most[1]);
@@ -171,7 +171,7 @@ static void judge_and_add(const struct problem *p, bool believes, enum err_terms
     shared->judging(shared, (struct problem *)p, false);
     double *const sum[SHARED_TERMS] = { all->motion,      all->proj,     all->bipotential,
                                         all->penetration, all->natural2, all->siconos2,
-                                        all->velocity2,   all->r2,       all->wedged };
+                                        all->velocity2,   all->r2,       all->jammed };
     double x[SHARED_TERMS];
     for (int j = 0; j < SHARED_TERMS; j++) x[j] = bundle_sum(sum[j]);
     shared->add(shared, x, SHARED_TERMS);
@@ -212,10 +212,10 @@ void err_eval(struct err *e, const struct problem *p, bool believes, enum err_te
         e->natural_siconos = p->norm_q > 0 ? siconos / p->norm_q : siconos;
         e->natural_q = ratio(off, p->norm_q);
         e->velocity_error = isfinite(off) ? sqrt(bundle_max(all.max_velocity2)) : off;
-        e->wedged = (int64_t)bundle_sum(all.wedged);
+        e->jammed = (int64_t)bundle_sum(all.jammed);
         if (!(e->velocity_error <= ROUNDING * p->speed))
             e->velocity = ratio(e->velocity_error, p->unit);
-        if (!p->packing) e->stray = ratio(e->velocity_error, p->unit / UNIT_OF_SPEED);
+        if (!p->packing) e->stray = ratio(e->velocity_error, p->unit);
     }
 }
 

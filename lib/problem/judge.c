@@ -75,11 +75,11 @@ ALWAYS_INLINE vd natural2(vd mu, const vd r[3], vd rho, const vd u[3])
 ALWAYS_INLINE void add_velocity(struct sums *s, double unit, int k, vd off2, vd push2)
 {
     vd seen2 = larger(off2, ROUNDING_OF_R * ROUNDING_OF_R * push2);
-    vm wedged = lt(splat(WEDGED * WEDGED * unit * unit), push2) &
+    vm jammed = lt(splat(JAMMED * JAMMED * unit * unit), push2) &
                 lt(splat(MISSES * MISSES * unit * unit), seen2);
     add_to(s->velocity2 + k, off2);
-    raise_to(s->max_velocity2 + k, pick(wedged, splat(0), seen2));
-    add_to(s->wedged + k, pick(wedged, splat(1), splat(0)));
+    raise_to(s->max_velocity2 + k, pick(jammed, splat(0), seen2));
+    add_to(s->jammed + k, pick(jammed, splat(1), splat(0)));
 }
 
 ALWAYS_INLINE void add_natural(struct sums *s, const struct problem *p, int64_t bundle, int k,
@@ -169,7 +169,7 @@ static void judge_moments(const struct problem *p, int64_t i, bool believes, enu
         if (which & ERR_NATURAL) {
             s->natural2[k] += one.natural2[k], s->siconos2[k] += one.siconos2[k];
             s->velocity2[k] += one.velocity2[k], s->r2[k] += one.r2[k];
-            s->wedged[k] += one.wedged[k];
+            s->jammed[k] += one.jammed[k];
             if (one.max_velocity2[k] > s->max_velocity2[k])
                 s->max_velocity2[k] = one.max_velocity2[k];
         }

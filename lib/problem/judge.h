@@ -13,17 +13,17 @@ struct sums {
     double natural2[BUNDLE], siconos2[BUNDLE], velocity2[BUNDLE], r2[BUNDLE];
     double max_pen[BUNDLE], max_true[BUNDLE];
     double
-        max_velocity2[BUNDLE]; /* m^2/s^2: the largest term of velocity2, but of wedged contacts */
-    double wedged[BUNDLE];     /* contacts whose reactions grow without end */
+        max_velocity2[BUNDLE]; /* m^2/s^2: the largest term of velocity2, but of jammed contacts */
+    double jammed[BUNDLE];     /* contacts whose reactions grow without end */
 };
 
 /*
- * A contact is wedged where its reaction alone would change its velocity by more than WEDGED units [struct
+ * A contact is jammed where its reaction alone would change its velocity by more than JAMMED units [struct
  * problem] and it misses the law by more than MISSES of them all the same: the bodies cannot give way. Masses that
  * differ by a factor of 1e6 make 4e6 units of a contact at rest; leaps along the growth [solve/anderson.c] soon
  * make 1e9 and more of one that has no solution.
  */
-#define WEDGED 1e9
+#define JAMMED 1e9
 #define MISSES 1e-3
 /* Of |lambda r|: below it, what a contact seems to miss the law by is rounding. */
 #define ROUNDING_OF_R 3.6e-15

@@ -7,6 +7,7 @@
 #include "bodies/top.h"
 #include "problem/braking.h"
 #include "problem/filling.h"
+#include "problem/judge.h"
 #include "problem/laying.h"
 #include "problem/plan.h"
 #include "problem/schedule.h"
@@ -251,6 +252,17 @@ static void survey(struct survey *y, const struct packing *p, const struct conta
     team_share(team_size(), s->n, SOME, survey_some, y);
 }
 
+/*
+ * g dt, or a part of the mean |u~_free| where that is more: while much collides, errors of g dt would be a
+ * thousandth of what the contacts change. A mean, so that one impact on a pile does not blur the rest.
+ */
+#define UNIT_OF_SPEED 0.2
+
+void problem_set_unit(struct problem *p, double sum)
+{
+    p->unit = fmax(p->fall, UNIT_OF_SPEED * sum / (double)(p->n ? p->n : 1));
+}
+
 /* The sum of x[slots] of all processes, in one order always */
 static double sum_of_slots(const struct problem *p, const double *x)
 {
@@ -436,6 +448,7 @@ static void store_some(void *arg, int64_t first, int64_t end)
         for (int k = 0; k < 3 && problem_undivided(p); k++)
             c->u[k] /= 1 + (k ? law->et : law->en); // it is D u~
         c->status = (int8_t)local_status(slot_bundle(p, i)->mu[slot_lane(i)], c->r);
+        if (slot_lambda(p, i) * c->r[0] > JAMMED * p->unit) c->status = STATUS_JAMMED;
         double x[BESIDE_R];
         if (p->beyond) slot_get_beyond(p, i, x);
         for (int k = 0; k < 3 && p->beyond; k++) {

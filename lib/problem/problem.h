@@ -115,15 +115,8 @@ void slot_set_beyond(struct problem *p, int64_t i, const double x[BESIDE_R]);
    of the cell's edges gains, and what cohesion pulls. */
 void problem_set_free_motion(struct problem *p);
 
-/*
- * The unit of CRITERION_VELOCITY: g dt, or a part of the mean |u~_free| of the contacts where that is more: `sum`
- * over their number. A mean, so that one impact on a pile does not blur the rest.
- */
-#define UNIT_OF_SPEED 0.05 /* the part: flows without gravity are solved like those with it */
-static inline void problem_set_unit(struct problem *p, double sum)
-{
-    p->unit = fmax(p->fall, UNIT_OF_SPEED * sum / (double)(p->n ? p->n : 1));
-}
+/* Sets the unit of CRITERION_VELOCITY from the sum of |u~_free| of all contacts. */
+void problem_set_unit(struct problem *p, double sum);
 
 /* How many of these threads are to share a sweep: all where the groups are large enough, else two
    where the order has halves, else one */

@@ -41,9 +41,9 @@ struct err {
     double natural_q;            /* |(r - P(r - rho_a u^))/rho_a| / |q| */
     double velocity_error;       /* m/s: the largest |(r - P(r - rho_a u^))/rho_a| of a contact */
     double velocity;             /* the same over the scene's own velocity [problem/problem.h] */
-    int64_t wedged; /* contacts that are left out of these, for their reactions grow without end */
+    int64_t jammed; /* contacts that are left out of these, for their reactions grow without end */
     double
-        stray; /* natural_q's over max(|q|, sqrt(n) g dt); given by W: velocity_error over the mean |q| */
+        stray; /* natural_q's over max(|q|, sqrt(n) g dt); of an FCLIB problem velocity */
 };
 
 struct report {
@@ -54,15 +54,19 @@ struct report {
     struct err err;
     bool balanced;          /* balance is known: where there is a packing */
     bool tied;              /* its terms of bonds too: where pairs have other laws */
+    bool may_gain;          /* and of impacts that gain: where they may */
     struct balance balance; /* of the step that the reactions make */
     struct depth depth;     /* of the contacts of a packing */
     enum criterion criterion;
     double eps;     /* what was asked */
     int32_t sweeps; /* or steps of cg */
     bool converged;
-    int64_t newton;       /* Newton steps in all */
-    int64_t safeguarded;  /* local solves that ended with the exact solution instead */
-    int64_t gave_up;      /* local solves that did not satisfy the law */
+    int64_t newton;      /* Newton steps in all */
+    int64_t safeguarded; /* local solves that ended with the exact solution instead */
+    int64_t gave_up;     /* local solves that did not satisfy the law */
+    bool watched;        /* passed is known: there is what bodies may go through [bodies/swift.h] */
+    int64_t passed; /* bodies that went through a boundary or a fixed hull in this step */
+    int32_t passed_id, passed_through; /* the last; and a wall -1-w, or the number of a body */
     double work;          /* ns, counted and not timed, of the whole solve [solve/prices.h] */
     const char *fallback; /* why the solver asked for could not go on, and swept instead; or NULL */
     const char *given_up; /* why it ended before its limits, a literal; or NULL */

@@ -123,6 +123,7 @@ static void begin(struct part *y, struct talk *t, struct territory *space,
     if (!t->me) {
         struct packing none = *settings;
         none.n = 0, none.events.n = 0, none.bonds.n = 0, none.scene = NULL;
+        none.memory = (struct memory){ 0 };
         if (packing_copy(&y->p, &none, &why)) fail(y, &why);
     }
     settings_spread(t, &y->p);

@@ -3,6 +3,7 @@
 
 #include "bodies/detect.h"
 #include "bodies/freedom.h"
+#include "bodies/swift.h"
 #include "bodies/tidy.h"
 #include "problem/prepare.h"
 #include "ranks/blocks.h"
@@ -72,7 +73,8 @@ static void find_contacts(struct stride *y, double gap, double reach, struct con
 {
     struct part *part = &y->part;
     struct why why = { 0 };
-    if (part_deal(part, reach)) neighbours_free(&y->near);
+    double ahead = talk_most(part->talk, swift_reach(&part->p));
+    if (part_deal(part, fmax(reach, ahead))) neighbours_free(&y->near);
     if (detect_near(s, &part->p, reach, &y->near, &why)) fail(y, &why);
     bool *keep = talk_new(part->talk, s->n, sizeof *keep);
     for (int64_t i = 0; i < s->n; i++) keep[i] = part_has(part, &s->c[i]);
@@ -270,9 +272,19 @@ static bool is_shared(const struct packing *p, const struct step_opt *o)
     return step_sweeps(o->solve.global) && !freedoms_in(p);
 }
 
+/* May impacts be bounded, by the first rank, which then has all contacts? */
+static bool bounds_impacts(const struct packing *p)
+{
+    bool said = false;
+    for (int32_t k = 0; p->law && k < p->kinds * p->kinds; k++)
+        said = said || p->law[k].impact == IMPACT_BOUNDED;
+    return packing_may_gain(p) && (p->shape || said);
+}
+
 bool stride_scatters(const struct packing *p, const struct step_opt *o)
 {
-    return o->order == ORDER_BLOCK && is_shared(p, o) && !p->law && !o->warm && !packing_varies(p);
+    return o->order == ORDER_BLOCK && is_shared(p, o) && !p->law && !o->warm &&
+           !packing_varies(p) && !bounds_impacts(p);
 }
 
 /* The pairs here that are contacts, or may be by laws */
@@ -294,16 +306,12 @@ static int detect(struct stride *y, struct packing *whole, struct contacts *all,
                   struct contacts *s, const struct step_opt *o, struct why *why)
 {
     struct talk *t = y->part.talk;
-    struct contacts before = { 0 };
     double reach;
-    if (o->warm) before = *all, *all = (struct contacts){ 0 };
-    if (!t->me) packing_tidy(whole, &before);
+    if (!t->me) memory_set(&whole->memory, o->warm), packing_tidy(whole, NULL);
     detect_here(y, whole, s, o, &reach);
     roll_call(roll, &y->part, s, all);
     int e = y->part.p.law ? choose_by_laws(y, whole, roll, s, all, o, reach, why) : 0;
-    if (!e && !t->me && o->warm && contacts_match(all, &before))
-        e = why_set(why, EX_SOFTWARE, "no memory for the last reactions");
-    contacts_free(&before);
+    if (!e && !t->me && o->warm) e = memory_give(&whole->memory, all, packing_rolls(whole), why);
     if (!e && (y->part.p.law || o->warm)) roll_tell_laws(roll, &y->part, s, all);
     return e;
 }
@@ -346,8 +354,11 @@ static int step_by_first(struct stride *y, struct packing *whole, struct contact
     if (solved) roll_found(&roll, &y->part, &s, all);
     y->alone += !solved;
     if (!t->me) {
-        if (!solved && step_solve_contacts(whole, all, NULL, o, rep, why)) return why->status;
+        int e = solved ? step_bound_impacts(whole, all, NULL, o, rep, why)
+                       : step_solve_contacts(whole, all, NULL, o, rep, why);
+        if (e) return e;
         if (step_move(whole, all, o, rep, why)) return why->status;
+        step_watch(whole, whole->n, y->near.surface, rep);
         settings_copy_motion(&y->part.p, whole);
     }
     settings_follow(t, &y->part.p);
@@ -390,6 +401,19 @@ static void measure_depth(struct stride *y, const struct contacts *s, struct dep
     d->deepest = most;
 }
 
+/* Which bodies of all ranks have gone through something */
+static void watch_here(struct stride *y, struct report *rep)
+{
+    struct talk *t = y->part.talk;
+    step_watch(&y->part.p, y->part.own, y->near.surface, rep);
+    int64_t here = rep->passed, all = talk_sum(t, here);
+    double first = -talk_most(t, here ? -(double)rep->passed_id : -INFINITY);
+    bool mine = here && rep->passed_id == first;
+    double through = talk_most(t, mine ? rep->passed_through : -INFINITY);
+    rep->passed = all;
+    if (all) rep->passed_id = (int32_t)first, rep->passed_through = (int32_t)through;
+}
+
 static int step_by_all(struct stride *y, struct packing *whole, struct contacts *all,
                        const struct step_opt *o, struct report *rep, struct why *why)
 {
@@ -405,12 +429,13 @@ static int step_by_all(struct stride *y, struct packing *whole, struct contacts 
     rep->step = y->part.p.step + 1, rep->t = packing_next_time(&y->part.p);
     rep->err.max_overlap = talk_most(t, contacts_max_overlap(&s));
     measure_depth(y, &s, &rep->depth);
-    rep->balanced = !bare, rep->tied = false;
+    rep->balanced = !bare, rep->tied = false, rep->may_gain = packing_may_gain(&y->part.p);
     solve_in_blocks(y, &b, whole, &s, o, rep, why);
     bool moves = isfinite(rep->err.paper.eps_glob);
     if (moves) {
         if (!bare && told[1]) tell_contacts(y, all, &s);
         blocks_move(&b, &s, bare ? NULL : &rep->balance);
+        watch_here(y, rep);
         if (!t->me) settings_copy_motion(whole, &y->part.p);
     }
     rep->balanced = !bare && moves;

@@ -7,7 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TRIES = 16 }; /* places for a grain in a step */
+enum {
+    TRIES = 16,        /* places for a grain in a step */
+    POURED_MOST = 2000 /* grains of a pour in a step, each of which looks at all others */
+};
 
 /* The scene's shapes are the first of the packing's. */
 static bool same_shapes(const struct scene *s, const struct packing *p)
@@ -300,12 +303,14 @@ int flow_step(const struct flow *f, struct packing *p, struct contacts *last, bo
         why_set(why, EX_SOFTWARE, "no memory for bodies that come and go");
     else if (!remove_bodies(f, p, row, why)) {
         follow_bonds(&p->bonds, row);
+        memory_follow(&p->memory, row);
         if (last) follow(last, row);
     }
     for (int32_t k = 0; k < f->scene.pours && !why->status; k++)
-        while (!why->status && is_due(&f->scene.pour[k], &p->poured[k], p->t) &&
-               pour_one(&f->scene, p, k, rng, why))
-            ;
+        for (int n = 0; n < POURED_MOST && !why->status; n++)
+            if (!is_due(&f->scene.pour[k], &p->poured[k], p->t) ||
+                !pour_one(&f->scene, p, k, rng, why))
+                break;
     *changed = p->events.n > before;
     free(row);
     gsl_rng_free(rng);

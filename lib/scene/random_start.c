@@ -10,7 +10,9 @@ enum {
     TRIES = 20000, /* places tried for a grain: at these densities it takes a dozen */
     SWEEPS = 100,  /* over the pairs at most, after a growth */
     LAST = 20000,  /* and in the end */
-    STEPS = 24     /* growths from loose to dense */
+    STEPS = 24,    /* growths from loose to dense */
+    FILL_MOST =
+        1 << 21 /* grains that a share of the box may come to: 1 GB. More have to be counted. */
 };
 static const double LOOSE[4] = { 0, 0, 0.4, 0.28 }; /* [dim] share of the box */
 static const double FURTHER = 1e-4; /* radii: what pairs are pushed beyond touching */
@@ -136,7 +138,7 @@ static vec3 draw_place(const struct start *s, int64_t i, gsl_rng *rng)
     return v3(x[0], x[1], x[2]);
 }
 
-static int add_one_by_one(struct start *s, gsl_rng *rng, struct why *why)
+static int add_one_by_one(struct start *s, double phi, gsl_rng *rng, struct why *why)
 {
     struct placed t;
     if (!placed_alloc(&t, s)) {
@@ -149,8 +151,11 @@ static int add_one_by_one(struct start *s, gsl_rng *rng, struct why *why)
             s->p.x[i] = draw_place(s, i, rng);
         } while (!is_free(&t, s, i, s->p.x[i]) && ++tries < TRIES);
         if (tries == TRIES)
-            why_set(why, EX_DATAERR, "no room for body %lld of %lld in %d tries", (long long)i,
-                    (long long)s->p.n, TRIES);
+            why_set(
+                why, EX_DATAERR,
+                "no room for body %lld of %lld in %d tries, which are to fill %.3g of the box: a "
+                "smaller phi or count, or a wider box",
+                (long long)i, (long long)s->p.n, TRIES, phi);
         struct level *l = &t.level[level_of(s, i)];
         int64_t c[3];
         cell_of(l, s, s->p.x[i], c);
@@ -276,7 +281,7 @@ static double draw_radii(struct grains *out, const struct scene_bodies *b, int d
                          struct why *why)
 {
     double room = box_volume(&b->box, dim), filled = 0;
-    int64_t most = b->phi > 0 ? 100000000 : b->count;
+    int64_t most = b->phi > 0 ? FILL_MOST : b->count;
     for (int64_t i = 0; i < most; i++) {
         struct grain g = grain_at(v3(0, 0, 0), scene_size_draw(&b->size, rng));
         double v = b->form.fill * volume(dim, g.r);
@@ -287,6 +292,12 @@ static double draw_radii(struct grains *out, const struct scene_bodies *b, int d
         filled += v;
         if (b->phi > 0 && filled >= b->phi * room) break;
     }
+    if (b->phi > 0 && out->n == FILL_MOST && filled < b->phi * room)
+        why_set(
+            why, EX_DATAERR,
+            "phi %g takes more than %d grains of such radii, these fill %.2g: larger ones, or a "
+            "smaller box",
+            b->phi, FILL_MOST, filled / room);
     return filled / (b->form.fill * room);
 }
 
@@ -333,7 +344,7 @@ int random_start(struct grains *out, const struct scene_bodies *b, int dim, gsl_
         why_set(why, EX_DATAERR, "a random start cannot fill %g of its box", phi);
     if (!why->status && !sort_radii(&s, out, why)) {
         if (phi > LOOSE[dim]) s.scale = pow(LOOSE[dim] / phi, 1.0 / dim);
-        if (!add_one_by_one(&s, rng, why) && s.scale < 1) grow(&s, phi, why);
+        if (!add_one_by_one(&s, phi, rng, why) && s.scale < 1) grow(&s, phi, why);
         for (int64_t i = 0; i < out->n && !why->status; i++) out->g[s.from[i]].x = s.p.x[i];
     }
     packing_free(&s.p);

@@ -22,7 +22,7 @@ void scene_free(struct scene *s)
     drives_free(&s->drives), drives_free(&s->pushes), mesh_free(&s->mesh);
     for (int32_t k = 0; k < s->meshes; k++) free(s->mesh_file[k].file);
     free(s->mesh_file);
-    free(s->kind), free(s->law), free(s->bodies), free(s->wall), free(s->text);
+    free(s->kind), free(s->law), free(s->bodies), free(s->wall), free(s->wall_item), free(s->text);
     *s = (struct scene){ 0 };
 }
 

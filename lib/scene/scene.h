@@ -83,7 +83,7 @@
  *   in the plane one of
  *   { segment: [[x, y], [x, y]] }      { polygon: { points: [[x, y], ...], closed } }
  *   { circle: { center, radius, side } }  { arc: { center, radius, along, arc, side } }
- *   with velocity vector [0], kind ["wall"], drives [ DRIVE ], until s, and all but the box load:
+ *   with velocity vector [0], kind ["wall"], drives [ DRIVE ], until s, weld m, and all but the box load:
  *   Bodies stay on the side that the normal points to; in a box they stay inside.
  *   side inside [that] | outside | both. A boundary may yield to a load, on top of its motion:
  *   { along: vector, mass: kg, force: N [0], speed: m/s [0], travel: m [0] }  free along the vector
@@ -101,7 +101,8 @@
  *   origin   vector [0]
  *   gradient MATRIX, 1/s, or [ { t: s, L: MATRIX } ], linear between and constant outside [0]: of
  *            velocity; the edges move with it, d edge/dt = L edge. MATRIX [[L_xx, L_xy], ...]
- *   affine   true | false [false]: at the start bodies have the velocity L (x - origin) as well
+ *   affine   true | false [true with a gradient and no document]: at the start bodies have the
+ *            velocity L (x - origin) as well
  *   stress   { pressure: Pa, mass: kg } or { target: MATRIX, mass: kg }: what edges yield to, as
  *            bodies of this mass; compression is positive, N/m in the plane. Number [i][j]: component
  *            i of edge j yields; null: it moves by the gradient. A pressure is one on the diagonal,
@@ -248,6 +249,7 @@ struct scene {
 
     int32_t walls;
     struct wall *wall;    /* [walls] */
+    int32_t *wall_item;   /* [walls] which of "walls" each comes from: a box is several */
     struct drives drives; /* of them */
     struct drives pushes; /* of their loads */
     struct mesh mesh;     /* of those that are meshes */

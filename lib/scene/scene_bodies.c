@@ -60,12 +60,29 @@ static int read_lattice(jnode o, const struct scene *s, bool boxed, struct scene
     return check_lattice(&o, s->dim, b);
 }
 
+/* The cell as a box, where its edges are along the axes */
+static int cell_as_box(jnode o, const struct scene_cell *of, int dim, struct scene_box *b)
+{
+    const struct cell *c = &of->cell;
+    double length[3] = { c->edge[0].x, c->edge[1].y, c->edge[2].z };
+    double from[3] = { c->origin.x, c->origin.y, c->origin.z };
+    bool along = true;
+    for (int k = 0; k < dim; k++) {
+        along = along && length[k] > 0 && v3_norm(c->edge[k]) == length[k];
+        b->lo[k] = from[k], b->hi[k] = from[k] + length[k];
+    }
+    if (of->goes_on)
+        return json_node_fault(o, "wants a box: the cell's edges come with a document");
+    return along ? 0 : json_node_fault(o, "wants a box: the cell is oblique");
+}
+
 static int read_random(jnode o, const struct scene *s, bool boxed, struct scene_bodies *b)
 {
     jnode how = json_node_key(&o, "random"), box = json_node_key(&o, "box");
     if (json_node_only(o, "random radius size shape orientation box thermal v w kind density mass "
                           "fixed") ||
-        (!boxed && json_node_need(&o, "box")) || scene_read_sizes(o, s, &b->form, &b->size) ||
+        (!boxed && !s->cell.given && json_node_need(&o, "box")) ||
+        scene_read_sizes(o, s, &b->form, &b->size) ||
         json_node_number(json_node_key(&o, "thermal"), J_NOT_NEGATIVE, &b->thermal))
         return 1;
     int which = json_node_choice(how, "phi count");
@@ -74,6 +91,7 @@ static int read_random(jnode o, const struct scene *s, bool boxed, struct scene_
         json_node_integer(json_node_key(&how, "count"), 0, INT32_MAX, &b->count))
         return 1;
     if (box.json && scene_read_box(box, s->dim, &b->box)) return 1;
+    if (!box.json && s->cell.given && cell_as_box(o, &s->cell, s->dim, &b->box)) return 1;
     for (int i = 0; i < s->dim; i++) {
         double width = b->box.hi[i] - b->box.lo[i];
         if (!isfinite(width))

@@ -11,6 +11,7 @@
 #include "scene/time_step.h"
 
 #include <gsl/gsl_rng.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -205,7 +206,9 @@ static int set_shapes(struct packing *p, const struct scene *s, struct why *why)
 static bool goes_beyond(const struct scene *s)
 {
     for (int32_t k = 0; k < s->kinds * s->kinds; k++)
-        if (law_ties(&s->law[k].beyond) || law_rolls(&s->law[k].beyond)) return true;
+        if (law_ties(&s->law[k].beyond) || law_rolls(&s->law[k].beyond) ||
+            s->law[k].beyond.impact > 0)
+            return true;
     return false;
 }
 
@@ -240,7 +243,13 @@ fail:
    bodies a little in one another, which are a start all the same, and in walls that have not moved. */
 static const double ROUNDING = 1e-6, LEFT_BY_A_RUN = 0.1;
 
-/* Which bodies are a document's; NULL when memory is short. */
+/* A document's bodies, or a table's, which some program has printed to so many digits */
+static bool may_be_settled(const struct scene_bodies *b)
+{
+    return b->from == SCENE_DOCUMENT || b->from == SCENE_TABLE;
+}
+
+/* Which bodies are those; NULL when memory is short. */
 static bool *from_documents(const struct packing *p, const struct scene *s,
                             const struct grains *list)
 {
@@ -248,25 +257,44 @@ static bool *from_documents(const struct packing *p, const struct scene *s,
     int64_t first = 0;
     for (int64_t g = 0; settled && g < s->groups; g++) {
         int64_t n = is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count;
-        for (int64_t i = 0; i < n; i++) settled[first + i] = s->bodies[g].from == SCENE_DOCUMENT;
+        for (int64_t i = 0; i < n; i++) settled[first + i] = may_be_settled(&s->bodies[g]);
         first += n;
     }
     return settled;
 }
 
-static int check_overlap(const struct packing *p, const bool *settled, struct why *why)
+/* "bodies[1]", "walls[1]": what the scene says of a row, -1 - i of a wall; "" of one that it does not say */
+static const char *place_of(const struct scene *s, const struct grains *list, int32_t row,
+                            char text[40])
+{
+    int64_t g = 0, end = 0;
+    *text = 0;
+    if (row < 0 && s->has_walls) snprintf(text, 40, ", walls[%d]", s->wall_item[-1 - row]);
+    for (; row >= 0 && g < s->groups; g++) {
+        end += is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count;
+        if (row < end) break;
+    }
+    if (row >= 0) snprintf(text, 40, "bodies[%lld]", (long long)g);
+    return text;
+}
+
+static int check_overlap(const struct packing *p, const struct scene *s, const struct grains *list,
+                         const bool *settled, struct why *why)
 {
     struct contacts found = { 0 };
+    const char *cure = "; \"overlap\": true allows it)";
+    char a[40], b[40];
     int e = detect_contacts_at(&found, p, p->x, p->t, 0, NULL, why);
     for (int64_t i = 0; !e && i < found.n; i++) {
         const struct contact *c = &found.c[i];
         double r = packing_smaller_radius(p, c);
         bool by_run = settled[c->b] && (c->a < 0 || settled[c->a]);
         if (c->gap >= -(by_run ? LEFT_BY_A_RUN : ROUNDING) * r) continue;
-        e = c->a < 0 ? why_set(why, EX_DATAERR, "body %d is %.3g m deep in wall %d", c->b, -c->gap,
-                               -1 - c->a)
-                     : why_set(why, EX_DATAERR, "bodies %d and %d overlap by %.3g m", c->a, c->b,
-                               -c->gap);
+        place_of(s, list, c->a, a), place_of(s, list, c->b, b);
+        e = c->a < 0 ? why_set(why, EX_DATAERR, "body %d is %.3g m deep in wall %d (%s%s%s", c->b,
+                               -c->gap, -1 - c->a, b, a, cure)
+                     : why_set(why, EX_DATAERR, "bodies %d and %d overlap by %.3g m (%s, %s%s",
+                               c->a, c->b, -c->gap, a, b, cure);
     }
     contacts_free(&found);
     return e;
@@ -279,6 +307,18 @@ static void add_affine_flow(struct packing *p)
     cell_flow_init(&f, &p->cell, p->cell.edge, p->cell.rate);
     for (int64_t i = 0; f.changes && i < p->n; i++)
         if (p->mass[i] > 0) p->v[i] = v3_add(p->v[i], cell_flow_gain(&f, p->x[i]));
+}
+
+/* "wall 5: ..." becomes "walls[1]: wall 5: ...", as the scene has it. */
+static int name_wall(const struct scene *s, struct why *why)
+{
+    char text[sizeof why->text];
+    int w;
+    if (!s->has_walls || sscanf(why->text, "wall %d:", &w) != 1 || w < 0 || w >= s->walls)
+        return why->status;
+    memcpy(text, why->text, sizeof text);
+    snprintf(why->text, sizeof why->text, "walls[%d]: %.370s", s->wall_item[w], text);
+    return why->status;
 }
 
 /* The dt of a scene that leaves it to us */
@@ -298,11 +338,12 @@ static int set_dt(struct packing *p, const struct scene *s, struct why *why)
 static int check_packing(const struct packing *p, const struct scene *s, const struct grains *list,
                          struct why *why)
 {
-    if (packing_check(p, why) || packing_check_clock(p, why)) return why->status;
+    if (packing_check(p, why)) return name_wall(s, why);
+    if (packing_check_clock(p, why)) return why->status;
     if (s->overlap) return 0;
     bool *settled = from_documents(p, s, list);
     if (!settled) return why_set(why, EX_SOFTWARE, "no memory to look for overlaps");
-    check_overlap(p, settled, why);
+    check_overlap(p, s, list, settled, why);
     free(settled);
     return why->status;
 }
@@ -337,6 +378,14 @@ static int take_walls(struct packing *p, const struct scene *s, const struct sce
     for (int32_t k = 0; k < p->drives.n; k++) p->drives.drive[k].clock += from->t - s->t;
     for (int32_t k = 0; k < p->pushes.n; k++) p->pushes.drive[k].clock += from->t - s->t;
     return 0;
+}
+
+/* A scene at the time of its first document counts its time as that does: it goes on with the same bits. */
+static void inherit_clock(struct packing *p, const struct scene *s)
+{
+    const struct packing *from = NULL;
+    for (int64_t g = 0; g < s->groups && !from; g++) from = s->bodies[g].document;
+    if (from) packing_count_from(p, from->t0, from->step0 - from->step);
 }
 
 static int inherit_walls(struct packing *p, const struct scene *s, struct why *why)
@@ -401,14 +450,25 @@ static int build_packing(struct packing *p, const struct scene *s, const struct 
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     if (!rng) why_set(why, EX_SOFTWARE, "no memory for random numbers");
     if (rng) gsl_rng_set(rng, s->seed);
-    if (rng && !set_parameters(p, s, why) && !inherit_walls(p, s, why) &&
-        !inherit_cell(p, s, why) && !fill_groups(p, s, list, rng, why)) {
+    if (rng && !set_parameters(p, s, why)) inherit_clock(p, s);
+    if (rng && !why->status && !inherit_walls(p, s, why) && !inherit_cell(p, s, why) &&
+        !fill_groups(p, s, list, rng, why)) {
         if (s->cell.affine) add_affine_flow(p);
         packing_tidy(p, NULL);
         if (!set_dt(p, s, why)) check_packing(p, s, list, why);
     }
     gsl_rng_free(rng);
     if (why->status) packing_free(p);
+    return why->status;
+}
+
+/* Which group it is, in front of the reason of a failure */
+static int in_group(int64_t g, int failed, struct why *why)
+{
+    char text[sizeof why->text];
+    if (!failed) return 0;
+    memcpy(text, why->text, sizeof text);
+    snprintf(why->text, sizeof why->text, "bodies[%lld]: %.370s", (long long)g, text);
     return why->status;
 }
 
@@ -424,9 +484,9 @@ static int list_group(struct grains *out, const struct scene *s, int64_t g, cons
     case SCENE_DOCUMENT:
         return grains_of_document(out, s, b, why);
     case SCENE_SHELVES:
-        return shelves_fill(out, b, s->dim, rng, why);
+        return in_group(g, shelves_fill(out, b, s->dim, rng, why), why);
     case SCENE_RANDOM:
-        return random_start(out, b, s->dim, rng, why);
+        return in_group(g, random_start(out, b, s->dim, rng, why), why);
     default:
         return 0;
     }

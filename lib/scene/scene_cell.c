@@ -142,6 +142,8 @@ int scene_read_cell(jnode o, int dim, double t, bool documents, struct scene_cel
     out->given = true;
     out->repeats = json_node_key(&o, "repeats").json;
     out->origin = json_node_key(&o, "origin").json;
+    out->affine =
+        !documents && json_node_key(&o, "gradient").json; // or the border would be a slip plane
     out->goes_on =
         documents && !json_node_key(&o, "edges").json && !json_node_key(&o, "lengths").json;
     if (json_node_only(o, "edges lengths repeats origin gradient affine stress") ||

@@ -2,6 +2,8 @@
    law is an object of its own, which takes the place of the one for all pairs. */
 #include "scene/scene_read.h"
 
+#include <string.h>
+
 static int read_cohesion(jnode o, struct law *l)
 {
     if (!o.json) return 0;
@@ -59,10 +61,21 @@ static int read_adhesion(jnode o, double t, struct law *l)
     return 0;
 }
 
+static int read_impact(jnode o, struct law *l)
+{
+    const char *name = NULL;
+    if (!o.json) return 0;
+    if (json_node_text(o, &name)) return 1;
+    l->impact = !strcmp(name, "newton") ? IMPACT_NEWTON : IMPACT_BOUNDED;
+    if (l->impact == IMPACT_NEWTON || !strcmp(name, "bounded")) return 0;
+    return json_node_fault(o, "wants \"newton\" or \"bounded\"");
+}
+
 int scene_read_laws(const jnode *o, double t, struct law *l)
 {
     return read_cohesion(json_node_key(o, "cohesion"), l) ||
            read_capillary(json_node_key(o, "capillary"), l) ||
            read_rolling(json_node_key(o, "rolling"), l) ||
-           read_adhesion(json_node_key(o, "adhesion"), t, l);
+           read_adhesion(json_node_key(o, "adhesion"), t, l) ||
+           read_impact(json_node_key(o, "impact"), l);
 }

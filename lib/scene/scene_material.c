@@ -63,7 +63,7 @@ static int read_pair(jnode o, struct scene *s, bool *given)
 {
     size_t n;
     int32_t k[2] = { 0 };
-    if (json_node_only(o, "pair mu e_n e_t cohesion capillary rolling adhesion") ||
+    if (json_node_only(o, "pair mu e_n e_t impact cohesion capillary rolling adhesion") ||
         json_node_need(&o, "pair"))
         return 1;
     jnode pair = json_node_key(&o, "pair");

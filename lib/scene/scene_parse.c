@@ -56,7 +56,7 @@ static int read_scene(jnode o, struct scene *s)
     struct scene_box box = { 0 };
     if (json_node_only(o, "title dim dt theta gravity seed density mu e_n e_t kinds pairs time "
                           "overlap bodies walls pour remove cell shapes cohesion capillary rolling "
-                          "adhesion") ||
+                          "adhesion impact") ||
         json_node_need(&o, "dt") || json_node_text(json_node_key(&o, "title"), &title) ||
         json_node_integer(json_node_key(&o, "dim"), 2, 3, &dim) ||
         json_node_integer(json_node_key(&o, "seed"), 0, UINT32_MAX, &seed) ||

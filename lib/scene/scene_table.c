@@ -10,9 +10,11 @@
 #include <sys/stat.h>
 
 enum {
-    LINE = 4096,         /* bytes of a line, a comment's too */
-    MOST_ROWS = 1 << 27, /* bodies of a table */
-    COLUMNS = 24         /* of a line */
+    LINE = 4096,          /* bytes of a line, a comment's too */
+    MOST_ROWS = 1 << 27,  /* bodies of a table, */
+    MOST_PIPED = 1 << 20, /* and of one that comes through a pipe: a quarter of a GB */
+    MOST_LINES = 1 << 24, /* lines of that, comments and empty ones too */
+    COLUMNS = 24          /* of a line */
 };
 
 enum column {
@@ -49,7 +51,8 @@ struct table {
     int n;                       /* columns */
     enum column column[COLUMNS]; /* [n] */
     bool has[NAMES];
-    bool named; /* by its first line */
+    bool named;   /* by its first line */
+    bool endless; /* perhaps: it is no file, whose size says how long it is */
 };
 
 static int fault(const struct table *t, struct why *why, const char *trouble, const char *word)
@@ -194,7 +197,10 @@ static int read_line(struct table *t, char *line, struct grains *out, struct why
     if (!n) return 0;
     if (word || n != t->n)
         return t->named ? fault(t, why, "not as many words as columns", NULL) : fault_usual(t, why);
-    if (out->n == MOST_ROWS) return fault(t, why, "a table of too many bodies (endless?)", NULL);
+    if (out->n == MOST_ROWS) return fault(t, why, "a table of too many bodies", NULL);
+    if (t->endless && out->n == MOST_PIPED)
+        return fault(t, why, "too many bodies for a pipe (endless?): put the table into a file",
+                     NULL);
     if (make_grain(t, x, &g, why)) return why->status;
     g.kind = kind;
     return grains_add(out, &g, why);
@@ -218,6 +224,9 @@ static int read_lines(struct table *t, FILE *f, struct grains *out, struct why *
 {
     char line[LINE] = "";
     for (t->line = 1; !why->status && next_line(f, line, t, why); t->line++) {
+        if (t->endless && t->line > MOST_LINES)
+            return fault(t, why, "too many lines for a pipe (endless?): put the table into a file",
+                         NULL);
         char *s = line + (t->line == 1 ? mark_length(line, strlen(line)) : 0);
         s += strspn(s, " \t\r\v\f");
         if (t->line == 1 && *s == '#')
@@ -235,8 +244,10 @@ static int read_table(struct grains *out, const struct scene *s, const char *pat
     usual_columns(&t);
     FILE *f = fopen(path, "r");
     if (!f) return why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
-    if (!fstat(fileno(f), &st) && (S_ISCHR(st.st_mode) || S_ISBLK(st.st_mode)))
+    if (fstat(fileno(f), &st)) st.st_mode = 0;
+    if (S_ISCHR(st.st_mode) || S_ISBLK(st.st_mode))
         why_set(why, EX_NOINPUT, "%s: a device is no table", path);
+    t.endless = !S_ISREG(st.st_mode);
     if (!why->status) read_lines(&t, f, out, why);
     if (!why->status && ferror(f)) why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
     fclose(f);

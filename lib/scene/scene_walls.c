@@ -87,7 +87,7 @@ static int read_load(jnode o, struct scene *s, struct wall *w)
 /* ---- what is common to all shapes ---- */
 
 /* What all shapes have besides their own keys */
-#define COMMON "velocity kind drives until"
+#define COMMON "velocity kind drives until weld"
 
 /* Adds a wall, and its drives. */
 static int add_wall(jnode o, struct scene *s, struct wall w)
@@ -143,7 +143,8 @@ static int read_wall(jnode o, struct scene *s, struct scene_box *box, bool *boxe
     int which = json_node_choice(o, s->dim == 2 ? plane_shapes : space_shapes);
     if (which < 0 || json_node_vector(json_node_key(&o, "velocity"), s->dim, &w.v) ||
         scene_read_kind(json_node_key(&o, "kind"), s, &w.kind) ||
-        json_node_number(json_node_key(&o, "until"), J_ANY, &w.until))
+        json_node_number(json_node_key(&o, "until"), J_ANY, &w.until) ||
+        json_node_number(json_node_key(&o, "weld"), J_NOT_NEGATIVE, &w.weld))
         return 1;
     if (which == 0) return read_plane(o, s, w);
     if (which == 1) return read_box(o, s, w, box, boxed);
@@ -156,8 +157,13 @@ static int read_wall(jnode o, struct scene *s, struct scene_box *box, bool *boxe
 int scene_read_walls(jnode a, struct scene *s, struct scene_box *box, bool *boxed)
 {
     size_t n;
-    if (json_node_array(a, &n) || !(s->wall = scene_alloc(a, 6 * n, sizeof *s->wall))) return 1;
-    for (size_t i = 0; i < n; i++)
+    if (json_node_array(a, &n) || !(s->wall = scene_alloc(a, 6 * n, sizeof *s->wall)) ||
+        !(s->wall_item = scene_alloc(a, 6 * n, sizeof *s->wall_item)))
+        return 1;
+    for (size_t i = 0; i < n; i++) {
+        int32_t first = s->walls;
         if (read_wall(json_node_item(&a, i), s, box, boxed)) return 1;
+        for (int32_t k = first; k < s->walls; k++) s->wall_item[k] = (int32_t)i;
+    }
     return 0;
 }

@@ -5,10 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LASTING 0.002 /* of the smallest radius: what an acceleration may bring in a step */
-#define PASSING 0.05  /* of it: what a body may move before an impact */
-#define TURN    0.02  /* rad a step */
-#define PERIOD  200   /* steps a period */
+#define LASTING                                                                                    \
+    (2 * OVERLAP_NEAR) /* of the smallest radius: what an acceleration may bring in a step */
+#define PASSING 0.05   /* of it: what a body may move before an impact */
+#define TURN    0.02   /* rad a step */
+#define PERIOD  200    /* steps a period */
 /* Solid fractions of what has fallen, by dimension: how far the highest grains fall */
 static const double SETTLED[4] = { 0, 0, 0.8, 0.6 };
 /* To see how far, each horizontal direction is cut into so many parts at most, of so many of the largest
@@ -228,6 +229,10 @@ static double volume_of(const struct packing *p, int64_t i)
 static void column_add(struct column *c, const struct packing *p, int64_t i, vec3 up, double low)
 {
     double z = v3_dot(p->x[i], up), r = p->radius[i], h = above_planes(p, p->x[i], up);
+    if (!(p->mass[i] > 0)) { // does not fall, but stops what does
+        c->bottom = dmin(c->bottom, z + r);
+        return;
+    }
     c->top = dmax(c->top, z + r);
     c->bottom = dmin(c->bottom, isfinite(h) ? z - h : dmin(z - r, low));
     c->volume += volume_of(p, i);

@@ -7,8 +7,9 @@
  * smallest:
  *
  *     a lasting acceleration a, of which a resting contact gets some in every step:
- *         a dt^2 <= 0.002 r        a thousandth of a diameter: 0.3 % of the solid fraction, which has
- *                                  lengths in the third power
+ *         a dt^2 <= 0.002 r        what a projection takes of an overlap in a step at least; as the slop of
+ *                                  gravity [bodies/project.h] a thousandth of a diameter, 0.3 % of the
+ *                                  solid fraction, which has lengths in the third power
  *     a lasting rate of strain L, by which neighbours approach with L 2 r:
  *         L 2 r dt <= 0.002 r
  *     a passing impact at velocity v, whose overlap is taken back in the steps that follow:

@@ -22,6 +22,12 @@ static double wedged(const struct report *r, double bodies[2])
     return (double)r->depth.wedged;
 }
 
+static double passed(const struct report *r, double bodies[2])
+{
+    bodies[0] = r->passed_id, bodies[1] = r->passed_through;
+    return r->watched ? (double)r->passed : 0;
+}
+
 static double unconverged(const struct report *r, double bodies[2])
 {
     (void)bodies;
@@ -30,11 +36,13 @@ static double unconverged(const struct report *r, double bodies[2])
 
 const struct watched account_watched[ACCOUNT_ROWS] = {
     [ACCOUNT_OVERLAP] = { "overlap", "1", "overlap %.3g of a radius", false, 2, 0.01, 0.1, overlap,
-                          "a smaller dt leaves less" },
+                          "a smaller dt leaves less: --dt, or --dt auto:0.01" },
     [ACCOUNT_APPROACH] = { "approach", "m s-1", "approach %.3g m/s", false, 0, INFINITY, INFINITY,
                            approach, "" },
     [ACCOUNT_WEDGED] = { "wedged", "1", "%.0f wedged", false, 1, 0, 0, wedged,
                          "held from two sides, deeper than 0.1 of its radius" },
+    [ACCOUNT_PASSED] = { "passed", "1", "%.0f went through a wall or a fixed body", true, 2, 0, 0,
+                         passed, "a smaller dt finds such contacts" },
     [ACCOUNT_UNCONVERGED] = { "unconverged", "1", "%.0f steps not converged", true, 0, INFINITY, 0,
                               unconverged, "" },
 };

@@ -290,7 +290,8 @@ static void start_mixing(struct anderson *a)
 static void stop_mixing(struct anderson *a)
 {
     if (a->least_f2 <= a->run_f2 / 2) a->run = RUN_FIRST, a->run_f2 = a->least_f2;
-    a->phase = a->leap_next ? leap : alone, a->begin = begin_plain, a->before = INFINITY;
+    a->phase = a->leap_next && !a->s->jammed ? leap : alone, a->begin = begin_plain,
+    a->before = INFINITY;
     a->left = a->run, a->reach = LEAP_FIRST;
     a->leap_next = !a->leap_next;
     a->run = a->run < RUN_MAX ? 2 * a->run : RUN_MAX;
@@ -321,7 +322,7 @@ static int leap(struct anderson *a)
     if (!well) a->reach = fmax(a->reach / 4, 2);
     if (well && a->before < INFINITY) a->reach = fmin(2 * a->reach, LEAP_MOST);
     a->begin = well ? begin_leap : begin_taken_back, a->before = well ? now : INFINITY;
-    if (a->left <= 0) start_mixing(a);
+    if (a->left <= 0 || a->s->jammed) start_mixing(a);
     a->left -= LEAP_SWEEPS;
     return 0;
 }

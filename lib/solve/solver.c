@@ -13,12 +13,14 @@
 #include <string.h>
 
 /*
- * With CRITERION_VELOCITY a solve aims at AIM at first, where that is less than eps, and is content with eps after ENOUGH sweeps, or
- * as many as cost CHEAP ns where that is more. So small problems are solved well, a pile at rest is solved better
- * from step to step until one or two sweeps are left of each, and what flows costs what eps costs.
+ * With CRITERION_VELOCITY a solve aims at AIM g dt at first, where that is less than eps, and is content with eps
+ * after ENOUGH sweeps, or as many as cost CHEAP ns where these are more. So small problems are solved well, a pile
+ * that comes to rest is solved better from step to step until one or two sweeps are left of each, and what flows
+ * costs what eps costs.
  */
-#define AIM   1e-3
-#define CHEAP 1e6
+#define AIM            1e-3 /* a pile at rest keeps less than 1e-6 m g d a ball, which 1e-2 does not reach */
+#define AIM_WEIGHTLESS 1e-4 /* without gravity, of the unit */
+#define CHEAP          1e6  /* ns: 50 sweeps of 2000 contacts */
 enum { ENOUGH = 20 };
 
 static const char no_solution[] = "no solution: reactions grow without end";
@@ -39,6 +41,7 @@ static void evaluate(struct solve *s)
     struct err e;
     err_eval(&e, s->p, s->believes, err_terms_of(s->o->criterion), s->o->threads);
     s->value = err_value(&e, s->o->criterion, s->o->eps);
+    s->jammed = e.jammed > 0;
 }
 
 static void renew(struct solve *s)
@@ -60,7 +63,9 @@ double solve_judge(struct solve *s)
 
 double solve_target(const struct solve *s)
 {
-    return s->rep->sweeps < s->enough ? fmin(AIM, s->o->eps) : s->o->eps;
+    const struct problem *p = s->p;
+    double fine = p->fall > 0 ? AIM * p->fall / p->unit : AIM_WEIGHTLESS;
+    return s->rep->sweeps < s->enough ? fmin(fine, s->o->eps) : s->o->eps;
 }
 
 bool solve_met(const struct solve *s)
@@ -219,9 +224,9 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
     err_eval(&rep->err, p, s.believes, ERR_ALL, o->threads);
     rep->err.max_overlap = overlap;
     if (rep->history && rep->sweeps) rep->history[rep->sweeps - 1] = rep->err.paper;
-    bool wedged = rep->err.wedged && (o->criterion == CRITERION_VELOCITY || !p->packing);
-    rep->converged = !p->n || (!wedged && err_value(&rep->err, o->criterion, o->eps) <= o->eps);
-    if (wedged) rep->given_up = no_solution;
+    bool jammed = rep->err.jammed && (o->criterion == CRITERION_VELOCITY || !p->packing);
+    rep->converged = !p->n || (!jammed && err_value(&rep->err, o->criterion, o->eps) <= o->eps);
+    if (jammed) rep->given_up = no_solution;
     rep->seconds = report_seconds(CLOCK_CPU) - cpu;
     rep->elapsed = report_seconds(CLOCK_WALL) - wall;
     return 0;

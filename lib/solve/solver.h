@@ -38,6 +38,7 @@ struct solve {
     bool renewed;       /* nothing was added to the velocities since they were last made anew */
     int32_t renewed_at; /* sweeps made when they were */
     double value;       /* the criterion of the iterate when it was last judged */
+    bool jammed;        /* so were contacts: nothing is to make their reactions grow faster */
     int32_t enough;     /* sweeps after which eps suffices; before them a part of it is aimed at */
 
     const struct solve_opt *o;

@@ -3,8 +3,10 @@
 
 #include "bodies/detect.h"
 #include "bodies/move.h"
+#include "bodies/swift.h"
 #include "bodies/tidy.h"
 #include "problem/prepare.h"
+#include "solve/rebound.h"
 
 #include <stdlib.h>
 
@@ -13,6 +15,7 @@ static int sum_up(const struct packing *pack, const struct contacts *s, const st
                   struct report *rep, struct impulses *sum, struct why *why)
 {
     rep->balanced = !o->bare, rep->tied = pack->law != NULL;
+    rep->may_gain = packing_may_gain(pack);
     if (impulses_init(sum, pack, s, false, why)) return why->status;
     return o->bare ? 0 : balance_step(&rep->balance, pack, s, sum, NULL, why);
 }
@@ -32,12 +35,11 @@ static int check_solver(const struct problem *p, const struct solver *global, st
         global->name);
 }
 
-int step_solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
-                        const struct step_opt *o, struct report *rep, struct why *why)
+/* The contacts as they are, from the reactions that they have */
+static int solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
+                          const struct step_opt *o, struct report *rep, struct why *why)
 {
     struct problem p;
-    if (depth_of(&rep->depth, pack, s, NULL, why)) return why->status;
-    if (!o->warm) contacts_free_found(s);
     if (prepare_packing(&p, pack, s, step_sweeps(o->solve.global), o->alpha, o->solve.method->rho,
                         o->order, kept, why))
         return why->status;
@@ -52,6 +54,32 @@ int step_solve_contacts(const struct packing *pack, struct contacts *s, struct p
         why_set(why, EX_SOFTWARE, "no memory for the solution");
     problem_free(&p);
     return failed ? why->status : 0;
+}
+
+int step_bound_impacts(const struct packing *pack, struct contacts *s, struct plan **kept,
+                       const struct step_opt *o, struct report *rep, struct why *why)
+{
+    struct rebound_search *search = NULL;
+    bool again = true;
+    while (!rebound_reduce(&search, pack, s, &again, why) && again) {
+        const struct report before = *rep;
+        if (solve_contacts(pack, s, kept, o, rep, why)) break;
+        rep->seconds += before.seconds, rep->elapsed += before.elapsed, rep->work += before.work;
+        if (o->solve.history) continue; // which is of the last solve
+        rep->sweeps += before.sweeps, rep->newton += before.newton;
+        rep->safeguarded += before.safeguarded, rep->gave_up += before.gave_up;
+    }
+    rebound_free(search);
+    return why->status;
+}
+
+int step_solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
+                        const struct step_opt *o, struct report *rep, struct why *why)
+{
+    if (depth_of(&rep->depth, pack, s, NULL, why)) return why->status;
+    if (!o->warm) contacts_free_found(s);
+    if (solve_contacts(pack, s, kept, o, rep, why)) return why->status;
+    return step_bound_impacts(pack, s, kept, o, rep, why);
 }
 
 int step_solve(const struct packing *pack, struct contacts *s, const struct step_opt *o,
@@ -69,7 +97,7 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
         for (int64_t i = 0; i < W->d * W->n; i++) W->r[i] = 0;
     if (problem_prepare_delassus(&p, W, o->alpha, o->solve.method->rho, o->order, why))
         return why->status;
-    rep->balanced = rep->tied = false;
+    rep->balanced = rep->tied = rep->may_gain = false;
     int failed = solve_problem(&p, &o->solve, rep);
     for (int64_t i = 0; i < p.slots; i++) {
         double r[3], v[3];
@@ -84,16 +112,12 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
 int step_detect(struct packing *p, struct contacts *s, struct neighbours *near,
                 const struct step_opt *o, struct report *rep, struct why *why)
 {
-    struct contacts before = { 0 };
-    if (o->warm) before = *s, *s = (struct contacts){ 0 };
     double cpu = report_seconds(CLOCK_CPU);
-    packing_tidy(p, &before);
+    memory_set(&p->memory, o->warm);
+    packing_tidy(p, NULL);
     int e = detect_contacts(s, p, o->gap, near, why);
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
-    if (!e && o->warm && contacts_match(s, &before))
-        e = why_set(why, EX_SOFTWARE, "no memory for the last reactions");
-    contacts_free(&before);
-    return e;
+    return e || !o->warm ? e : memory_give(&p->memory, s, packing_rolls(p), why);
 }
 
 int step_balance(const struct packing *p, const struct contacts *s, const struct step_opt *o,
@@ -122,11 +146,25 @@ void step_forget(struct step_memory *m)
     *m = (struct step_memory){ 0 };
 }
 
+void step_watch(const struct packing *p, int64_t n, const struct surface *surface,
+                struct report *rep)
+{
+    struct passed passed;
+    rep->watched = swift_watches(p);
+    swift_passed(&passed, p, n, surface);
+    rep->passed = passed.n;
+    if (passed.n) rep->passed_id = passed.id, rep->passed_through = passed.through;
+}
+
 int step_advance(struct packing *p, struct contacts *s, struct step_memory *m,
                  const struct step_opt *o, struct report *rep, struct why *why)
 {
-    if (step_detect(p, s, m ? &m->near : NULL, o, rep, why) ||
-        step_solve_contacts(p, s, m ? &m->plan : NULL, o, rep, why))
+    struct neighbours once = { 0 }, *near = m ? &m->near : NULL;
+    if (step_detect(p, s, near, o, rep, why) ||
+        step_solve_contacts(p, s, m ? &m->plan : NULL, o, rep, why) || step_move(p, s, o, rep, why))
         return why->status;
-    return step_move(p, s, o, rep, why);
+    if (!neighbours_surfaces(near ? near : &once, p, why))
+        step_watch(p, p->n, (near ? near : &once)->surface, rep);
+    neighbours_free(&once);
+    return why->status;
 }

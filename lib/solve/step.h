@@ -13,7 +13,8 @@ struct step_opt {
     double gap;   /* m: a contact is a pair with at most this gap */
     double alpha; /* > 0: rho = alpha m_red; else the method's default */
     enum order order;
-    bool warm; /* start from the reactions of the contacts given, else from 0 */
+    bool
+        warm; /* start from the reactions of the contacts given, those of the packing's memory; else from 0 */
     bool bare; /* nobody reads the report's balance of this step: it is left out */
     struct solve_opt solve;
 };
@@ -39,8 +40,7 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
                         struct why *why);
 
 /*
- * One whole step. s: in, the contacts of the last step (none at first), to start from if warm; out,
- * those of this one. m may be NULL. Where the solve diverged (its error is not finite) nothing moves.
+ * One whole step; if warm, from the packing's memory. s: the contacts of this step, in place of others. m may be NULL. Where the solve diverged (its error is not finite) nothing moves.
  */
 int step_advance(struct packing *p, struct contacts *s, struct step_memory *m,
                  const struct step_opt *o, struct report *rep, struct why *why);
@@ -48,13 +48,20 @@ int step_advance(struct packing *p, struct contacts *s, struct step_memory *m,
 /* Its parts. The contacts, with their last reactions if warm */
 int step_detect(struct packing *p, struct contacts *s, struct neighbours *near,
                 const struct step_opt *o, struct report *rep, struct why *why);
-/* found[], and the report of the solve; kept: of problem_prepare_again(), or NULL */
+/* found[], and the report of the solve; kept: of problem_prepare_again(), or NULL. Impacts that would gain energy
+   are solved anew with less restitution [solve/rebound.h]; and this alone, of contacts that are solved. */
 int step_solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
                         const struct step_opt *o, struct report *rep, struct why *why);
+int step_bound_impacts(const struct packing *pack, struct contacts *s, struct plan **kept,
+                       const struct step_opt *o, struct report *rep, struct why *why);
 /* The balances alone; or the balances and the motion */
 int step_balance(const struct packing *p, const struct contacts *s, const struct step_opt *o,
                  struct report *rep, struct why *why);
 int step_move(struct packing *p, struct contacts *s, const struct step_opt *o, struct report *rep,
               struct why *why);
+/* After it: adds to the report which of the first n bodies have gone through something. surface: [walls] of those
+   that are meshes */
+void step_watch(const struct packing *p, int64_t n, const struct surface *surface,
+                struct report *rep);
 
 #endif

@@ -378,9 +378,9 @@ static bool factorise_common(struct system *s)
         if (!substitute_blocks(s, s->r, s->Z + size * k)) return false;
     }
     for (int k = 0; k < n; k++) {
-        double column[COMMON_MAX];
-        delassus_common(W, s->Z + size * k, column);
-        for (int i = 0; i < n; i++) s->small[n * i + k] = (i == k) + column[i];
+        double part[COMMON_MAX];
+        delassus_common(W, s->Z + size * k, part);
+        for (int i = 0; i < n; i++) s->small[n * i + k] = (i == k) + part[i];
     }
     gsl_matrix_view A = small_of(s);
     gsl_permutation P = { (size_t)n, s->small_order };

@@ -55,6 +55,9 @@ fi
 echo >old.csv && chmod 640 old.csv && ln -s old.csv link.csv
 ok "an output through a link" nsd-export -o link.csv t.h5
 ok "is where the link points, with the rights that were there" test -L link.csv -a "$(stat -c %a old.csv)" = 640 -a -s old.csv
+mkdir there && ln -s there/new.csv nowhere.csv && ln -s nowhere.csv again.csv
+ok "a link that leads nowhere is followed" nsd-export -o again.csv t.h5
+ok "to where it would" test -L again.csv -a -L nowhere.csv -a -s there/new.csv
 ok "/dev/stdout is no file" eval 'nsd-export -o /dev/stdout -t csv t.h5 | cmp - old.csv'
 mkfifo pipe
 ok "nor is a pipe" eval 'nsd-export -o pipe -t csv t.h5 & cmp pipe old.csv && wait'

@@ -127,9 +127,15 @@ def scattered(document):
 
 
 def slope(document, degrees):
-    """A heap whose surface is a plane."""
+    """A heap whose surface is a plane, and no cone."""
     s = stat("-m", "surface", document)[-1]["surface"]
     close(s["angle"], float(degrees), 2e-2)
+    assert s["cone"] is None, s
+
+
+def cone(document, degrees):
+    s = stat("-m", "surface", document)[-1]["surface"]
+    close(s["cone"], float(degrees), 4e-2)
 
 
 def flow(document, rate):
@@ -161,6 +167,42 @@ def fields(document, made):
     weight = (rho[..., None] * d["g"])[15:-15, 15:-15, 15:-15]
     left = np.sqrt((inner ** 2).sum(-1).mean() / (weight ** 2).sum(-1).mean())
     assert left < 0.01, left
+
+
+def tied(document):
+    """Pairs in tension count, what ties store is stored and not dissipated, friction has its limit in the push."""
+    q = h5py.File(document)["nsd/solver"]
+    pulls, used = 0, 0
+    for k, s in enumerate(stat("-m", "energy,coordination,friction,normal_forces", document)):
+        close(s["energy"]["stored"], q["bond_energy/value"][k], 1e-9)
+        close(s["energy"]["dissipated"], q["dissipation/value"][k], 1e-6, abs(q["bond_change/value"][k]))
+        assert s["friction"]["contacts"] == s["coordination"]["contacts"]
+        used = max(used, s["friction"]["mobilised"] or 0)
+    d = last(document)
+    pulls = (d["reaction"][:, 0] < 0).sum()
+    assert pulls > 5 and s["coordination"]["contacts"] == len(d["gap"]) and used <= 1, (pulls, used)
+
+
+def images(document, made):
+    """Images move as their cell does: fields of a lattice by brute force, over many images; layers by the flow."""
+    s = stat("-m", "profile", "--layers", "y:5", "--width", "0.6", "-f", made, document)[-1]["profile"]
+    f, d = h5py.File(made)["fields"], h5py.File(document)
+    n, at, h, w = f["points"][:], f["origin"][:], f["spacing"][:], f.attrs["width"]
+    part, box = d["particles/all"], d["particles/all/box"]
+    x, v = part["position/value"][-1][:, :2], part["velocity/value"][-1][:, :2]
+    edges, rate = box["edges/value"][-1][:2, :2], box["rate/value"][-1][:2, :2]
+    points = np.stack(np.meshgrid(at[0] + np.arange(n[0]) * h[0], at[1] + np.arange(n[1]) * h[1]), -1).reshape(-1, 2)
+    mass, momentum = 0, 0
+    for k in np.ndindex(9, 9):
+        far = np.array(k) - 4
+        phi = np.exp(-((points[:, None] - x - far @ edges) ** 2).sum(-1) / w ** 2)
+        phi[phi < np.exp(-16)] = 0
+        mass, momentum = mass + phi.sum(1), momentum + phi @ (v + far @ rate)
+    found = f["velocity/value"][-1][:, :2]
+    assert np.abs(found - momentum / mass[:, None]).max() < 1e-2 * np.abs(found).max()
+    L = np.linalg.solve(edges, rate).T
+    for y, u in zip(s["at"], s["velocity"]):
+        close(u[0], L[0, 1] * y, 1e-9, 1), close(u[1], L[1, 1] * y, 1e-9, 1)
 
 
 def table(document):

@@ -54,8 +54,8 @@ nsd-detect --fclib local|global
 nsd-solve --method auto|sbp|.*\[auto\]
 nsd-solve --global auto|nlgs|.*\[nlgs with -m
 nsd-solve --max-seconds .
-nsd-solve --eps \[0.0001; 1e-10 for FCLIB\]
-nsd-solve --criterion glob|scaled|natural.*\[natural\]
+nsd-solve --eps \[1; 1e-10 for FCLIB\]
+nsd-solve --criterion glob|scaled|natural|velocity.*\[velocity; natural for FCLIB\]
 nsd-solve --max-sweeps \[5000
 nsd-solve --alpha \[1\.75
 nsd-solve --newton plain|linesearch.*\[linesearch\]
@@ -107,24 +107,24 @@ is "and the command before, and the one before that" \
 
 status 0 "a problem that converges: 0" nsd-solve -e "$tmp/contacts.h5"
 is "one line on stderr" "$(wc -l <"$tmp/err")" 1
-like "sums it up" "$(cat "$tmp/err")" '^nsd-solve: .*contacts.h5: [0-9]+ contacts, auto: [0-9]+ sweeps, natural [0-9.e-]+, '
-status 0 "one that does not: 0" nsd-solve --max-sweeps 1 "$tmp/contacts.h5"
+like "sums it up" "$(cat "$tmp/err")" '^nsd-solve: .*contacts.h5: [0-9]+ contacts, auto: [0-9]+ sweeps, velocity [0-9.e-]+, '
+status 0 "one that does not: 0" nsd-solve --eps 1e-3 --max-sweeps 1 "$tmp/contacts.h5"
 mv "$tmp/out" "$tmp/lenient.h5"
-like "with a warning" "$(cat "$tmp/err")" 'natural [0-9.e-]+, [0-9.e-]+ s: NOT CONVERGED to 0.0001$'
+like "with a warning" "$(cat "$tmp/err")" 'velocity [0-9.e-]+, [0-9.e-]+ s: NOT CONVERGED to 0.001$'
 for e in -e --strict; do
-    status 1 "and 1 under $e" nsd-solve $e --max-sweeps 1 "$tmp/contacts.h5"
+    status 1 "and 1 under $e" nsd-solve $e --eps 1e-3 --max-sweeps 1 "$tmp/contacts.h5"
     like "with a warning" "$(cat "$tmp/err")" 'NOT CONVERGED'
     ok "and the document is written, the same" cmp "$tmp/out" "$tmp/lenient.h5"
 done
 ok "the report has it" jq -e -s '.[-1].converged == false' <(nsd-info "$tmp/lenient.h5")
-status 0 "nsd-step that does not converge: 0" nsd-step -n 3 --max-sweeps 1 "$tmp/heap.h5"
-like "with a warning" "$(cat "$tmp/err")" '3 steps NOT CONVERGED, the first is step 601; the largest natural is [0-9.e-]+, not 0.0001'
-status 1 "and 1 under -e" nsd-step -e -n 3 --max-sweeps 1 "$tmp/heap.h5"
+status 0 "nsd-step that does not converge: 0" nsd-step -n 3 --eps 1e-3 --max-sweeps 1 "$tmp/heap.h5"
+like "with a warning" "$(cat "$tmp/err")" '3 steps NOT CONVERGED, the first is step 601; the largest velocity is [0-9.e-]+, not 0.001'
+status 1 "and 1 under -e" nsd-step -e -n 3 --eps 1e-3 --max-sweeps 1 "$tmp/heap.h5"
 is "and all frames are written" "$(nsd-info "$tmp/out" | jq -c -n '[inputs | select(.step != null).step]')" "[601,602,603]"
 cat "$tmp/contacts.h5" "$tmp/contacts.h5" >"$tmp/two.h5"
 status 0 "nsd-solve -e of two problems" nsd-solve -e "$tmp/two.h5"
 is "a line each" "$(wc -l <"$tmp/err")" 2
-status 1 "nsd-solve -e of two problems not converged" nsd-solve -e --max-sweeps 1 "$tmp/two.h5"
+status 1 "nsd-solve -e of two problems not converged" nsd-solve -e --eps 1e-3 --max-sweeps 1 "$tmp/two.h5"
 is "both are written" "$(nsd-info "$tmp/out" | jq -s '[.[] | select(.frames)] | length')" 2
 
 # ---- defaults, and the paper's ----

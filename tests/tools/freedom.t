@@ -114,11 +114,12 @@ ok "detect | solve | move and step give the same bits" same_particles "$tmp/part
 step -j 4 -n 20 "$tmp/last-cell.h5" >"$tmp/j4.h5"
 step -j 1 -n 20 "$tmp/last-cell.h5" >"$tmp/j1.h5"
 ok "-j 4 gives the same bytes" cmp "$tmp/j4.h5" "$tmp/j1.h5"
-is "and nsd-err agrees" "$(natural "$tmp/squeezed.h5")" true
+# a projection displaces edges, which nsd-err does not undo; without gravity it also keeps a packing rattling
+is "and nsd-err agrees" "$(natural --overlap gap "$tmp/squeezed.h5")" true
 
 # Love's formula: the mean stress of a packing at rest is that of the forces and branches over its volume.
 jq '.cell.stress = {pressure: 20, mass: 0.02} | .bodies[0].count = 81' "$tmp/cell.json" | nsd-gen - |
-    step -n 3000 --every 3000 --contacts -o "$tmp/rest.h5"
+    step --overlap gap -n 3000 --every 3000 --contacts -o "$tmp/rest.h5"
 pressure()
 {
     local area
@@ -165,6 +166,7 @@ pushed()
 like "a force by table, with a mean" \
     "$(pushed '{"table": [[0.05, 0], [0.1, 40], [0.15, -10]], "mean": 3}' |
         jq '(.speed - (0.2 * 3 + 0.05 * 20 + 0.05 * 15 - 0.05 * 10) / 2 | fabs) < 1e-12')" true
+is "nsd-info -w shows it as it then is" "$(nsd-info --last -w "$tmp/pushed.h5" | jq 'select(.load).load.force')" -7
 # the middle of a step is wrong for its mean by (pi f dt)^2/6 = 1.6e-6
 like "a force by sine, against the integral" \
     "$(pushed '{"amplitude": 6, "frequency": 1, "phase": 0.4, "mean": 1}' |

@@ -234,7 +234,7 @@ refuses 64 "--every wants steps or seconds" nsd-step --every 3m small.h5
 refuses 64 "and more than none" nsd-step --every 0s small.h5
 refuses 64 "-n and --until exclude each other" nsd-step -n 3 --until 1 small.h5
 nsd-step -n 3000 --progress 0.02 --every 1000 small.h5 2>said >/dev/null
-like "--progress says how far it is, how fast, and how long it takes" "$(head -n 1 said)" \
+like "--progress says how far it is, how fast, and how long it takes" "$(grep -m 1 ' left: ' said)" \
     '^nsd-step: step [0-9]+, [0-9]+ % of 3000, [0-9.e+]+/s, [0-9]+:[0-9][0-9] left: [0-9]+ contacts'
 
 # ---- in place ----

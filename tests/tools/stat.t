@@ -67,6 +67,11 @@ v = f["fields/momentum/value"][-1].sum(0) * cell / p["particles/all/mass"][:].su
 assert np.abs(v - [1, 0, 1]).max() < 1e-6, v' "$@"
 }
 ok "fields have the mass and the momentum of the bodies" mass "$tmp/few-fields.h5" "$tmp/few.h5"
+# a lattice that moves with a cell until this is oblique: at the border images count with their own velocities
+jq -n '{ dim: 2, dt: 1e-3, gravity: [0, 0], density: 1, cell: { lengths: [10, 10], gradient: [[0, 2], [0, -0.5]] },
+    bodies: [range(100) | { x: [(. % 10) + 0.5, (. / 10 | floor) + 0.5], radius: 0.3 }] }' | nsd-gen - |
+    step -n 250 --every 250 --contacts -o "$tmp/lattice.h5"
+ok "images move as their cell does, in fields and layers" truth images "$tmp/lattice.h5" "$tmp/lattice-fields.h5"
 status 74 "fields in a folder that is not there" nsd-stat -f "$tmp/none/fields.h5" "$tmp/few.h5"
 status 65 "fields without bodies" nsd-stat -f "$tmp/none.h5" <(nsd-gen - <<<'{"dt": 1}')
 status 65 "fields on a grid of too many points" nsd-stat --spacing 1e-6 -f "$tmp/none.h5" "$tmp/few.h5"
@@ -90,6 +95,19 @@ for degrees in 10 25; do
         nsd-gen - >"$tmp/slope.h5"
     ok "a surface at $degrees degrees" truth slope "$tmp/slope.h5" $degrees
 done
+jq -n '(30 * 3.141592653589793 / 180 | sin / cos) as $t | { dt: 1, overlap: true, bodies: [range(-12; 13) as $i | range(-12; 13) as $j |
+    ($i * $i + $j * $j | sqrt) as $d | select($d <= 12) | { x: [$i, $j, -$t * $d], radius: 0.5 }] }' | nsd-gen - >"$tmp/cone.h5"
+ok "and a cone of 30 degrees" truth cone "$tmp/cone.h5" 30
+
+# ---- ties ----
+
+# bonded, wet and cohesive discs that a gravity of its own pulls apart from the floor that holds them
+tied() { jq -n "$1"' + { dim: 2, dt: 1e-4, mu: 0.5, gravity: [2, 9.81], density: 1000, walls: [{ point: [0, 0], normal: [0, 1] }],
+    bodies: [range(16) | { x: [0.002 * (. % 4), 0.001 + 0.00199999 * (. / 4 | floor)], radius: 0.001 }], overlap: true }' | nsd-gen - |
+    step -n 60 --every 20 --contacts --eps 1e-10 --max-sweeps 100000 -o "$tmp/tied.h5" && truth tied "$tmp/tied.h5"; }
+ok "bonds: pairs in tension count, and store" tied '{ adhesion: { c_n: 1e7, w: 10, forever: true, area: 1e-3, beta: 0.9 } }'
+ok "liquid: the same" tied '{ capillary: { volume: 1e-11, tension: 0.072 } }'
+ok "cohesion: the same" tied '{ cohesion: { force: 0.4, range: 1e-5 } }'
 jq -n '{ dt: 0.1, gravity: [0, 0, 0], bodies: [range(10) | { x: [0.1 * ., 0, 0], radius: 0.01, v: [0.3, 0, 0] }] }' |
     nsd-gen - | step -n 10 >"$tmp/row.h5"
 ok "three balls have crossed a plane" truth flow "$tmp/row.h5" 3

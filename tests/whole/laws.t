@@ -369,7 +369,7 @@ shaped() # LAWS STEPS: bricks, rods, clumps and balls that fall into a box
 }
 methods=(sbp sal ebp eal exact)
 shaped '{ cohesion: { force: 5e-3, range: 1e-4 }, capillary: { volume: 1e-9, tension: 0.07 } }' 300
-shaped '{ rolling: { mu_r: 1e-4, mu_p: 5e-5 } }' 350
+shaped '{ rolling: { mu_r: 1e-4, mu_p: 5e-5 } }' 380
 whole shaped.h5
 [ -z "$thin" ] || methods=(exact)
 shaped '{ adhesion: { c_n: 1e9, c_t: 5e8, w: 5e-4, forever: true }, rolling: { mu_r: 1e-4, mu_p: 5e-5 } }' 500

@@ -1,0 +1,84 @@
+#include "io/memory_rows.h"
+
+#include "io/h5.h"
+
+#include <stdlib.h>
+
+static const char group[] = "/nsd/memory";
+
+/* Has a row of this packing a feature? */
+static bool features(const struct packing *p)
+{
+    return p->mesh.elements || p->shape;
+}
+
+int memory_rows_open(struct memory_rows *r, struct source *source, struct why *why)
+{
+    int64_t n, m;
+    uint64_t shape[4];
+    *r = (struct memory_rows){ .source = source };
+    if (!source_has(source, group)) return 0;
+    r->step = table_read_steps(source, "/nsd/memory/step", &r->blocks, why);
+    if (why->status) return why->status;
+    n = source_shape(source, "/nsd/memory/start", shape) == 1 ? (int64_t)shape[0] : 0;
+    m = source_shape(source, "/nsd/memory/count", shape) == 1 ? (int64_t)shape[0] : 0;
+    if (r->blocks > n) r->blocks = n; // a killed writer may have extended only some columns
+    if (r->blocks > m) r->blocks = m;
+    r->blocks = table_read_rising(r->step, r->blocks);
+    return 0;
+}
+
+int memory_rows_read(struct memory_rows *r, struct packing *p, struct why *why)
+{
+    int64_t at = table_read_row(r->step, r->blocks, p->step), start, count;
+    if (at < 0) return 0;
+    if (table_read_span(r->source, group, "body", 2, at, &start, &count, why)) return why->status;
+    struct memory *m = &p->memory;
+    m->recall = calloc((size_t)count + 1, sizeof *m->recall);
+    if (!m->recall) return why_set(why, EX_SOFTWARE, "no memory for the last reactions");
+    m->on = true, m->n = count, m->room = count + 1;
+    struct source *s = r->source;
+    const size_t size = sizeof *m->recall;
+    if (table_read_columns(s, group, "", layout_memory, start, count, m->recall, size, why) ||
+        (features(p) && table_read_columns(s, group, "", layout_memory_features, start, count,
+                                           m->recall, size, why)) ||
+        (cell_repeats(&p->cell) && table_read_columns(s, group, "", layout_memory_shifts, start,
+                                                      count, m->recall, size, why)) ||
+        (packing_rolls(p) && table_read_columns(s, group, "", layout_memory_moments, start, count,
+                                                m->recall, size, why)))
+        return why->status;
+    return memory_check(m, p->n, p->walls, why);
+}
+
+void memory_rows_close(struct memory_rows *r)
+{
+    free(r->step);
+    *r = (struct memory_rows){ 0 };
+}
+
+/* ---- to a document ---- */
+
+int memory_rows_write(struct table_write *s, const struct packing *p, struct why *why)
+{
+    const struct memory *m = &p->memory;
+    const hsize_t one = 1;
+    const size_t size = sizeof *m->recall;
+    if (!m->on) return 0;
+    if (table_write_rows(s, "/nsd/memory/start", COLUMN_I64, 1, &one, CHUNK_FRAMES, &s->memory,
+                         NULL, why) ||
+        table_write_rows(s, "/nsd/memory/count", COLUMN_I64, 1, &one, CHUNK_FRAMES, &m->n, NULL,
+                         why) ||
+        table_write_columns(s, group, "", layout_memory, m->n, m->recall, size, CHUNK_CONTACTS,
+                            why) ||
+        (features(p) && table_write_columns(s, group, "", layout_memory_features, m->n, m->recall,
+                                            size, CHUNK_CONTACTS, why)) ||
+        (cell_repeats(&p->cell) && table_write_columns(s, group, "", layout_memory_shifts, m->n,
+                                                       m->recall, size, CHUNK_CONTACTS, why)) ||
+        (packing_rolls(p) && table_write_columns(s, group, "", layout_memory_moments, m->n,
+                                                 m->recall, size, CHUNK_CONTACTS, why)) ||
+        table_write_rows(s, "/nsd/memory/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &p->step, NULL,
+                         why))
+        return why->status;
+    if (s->growing) s->memory += m->n;
+    return 0;
+}
