@@ -20,7 +20,7 @@ static const struct cli_option own[] = {
       .help = "keep the error terms of every sweep in the document" },
     { CLI_FLAG, 0, "forces", &forces, .help = "add the contacts' forces, in N and in space" },
     { CLI_FLAG, 'v', "verbose", &verbose, .silent = true,
-      .help = "a line for each document on standard error [for those that did not converge]" },
+      .help = "print a line for each document [where one did not converge]" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { options_solve, own, options_run, NULL };

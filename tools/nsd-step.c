@@ -16,6 +16,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -65,7 +66,7 @@ static const struct cli_option own[] = {
     { CLI_ABOVE, 0, "progress", &lines, "S", .max = 1e9, .silent = true,
       .help = "say how far it is every S seconds, on no terminal too [terminal]" },
     { CLI_TEXT, 0, "save", &save, "TIME", .silent = true,
-      .help = "keep the state in OUTPUT.save every TIME of real time, as 10min [never]" },
+      .help = "keep a checkpoint in OUTPUT.save every TIME, as 10min [never]" },
     { CLI_TEXT, 'o', "output", &output, "FILE", "write to FILE [standard output]", .silent = true },
     { 0 },
 };
@@ -97,6 +98,14 @@ static struct {
     struct account account; /* of this run */
 } total;
 
+/* Would words get between the frames? */
+static bool words_are_output(void)
+{
+    struct stat out, err;
+    return !output && !in_place && !fstat(STDOUT_FILENO, &out) && !fstat(STDERR_FILENO, &err) &&
+           S_ISREG(out.st_mode) && out.st_dev == err.st_dev && out.st_ino == err.st_ino;
+}
+
 /* What has gone worse than it may, when it first does */
 static void account(struct frame *f)
 {
@@ -104,7 +113,7 @@ static void account(struct frame *f)
     account_add(&f->account, &f->report);
     unsigned news = account_add(&total.account, &f->report);
     for (int k = 0; k < ACCOUNT_ROWS; k++) {
-        if (!(news & 1U << k)) continue;
+        if (!(news & 1U << k) || words_are_output()) continue;
         account_says(&total.account, (enum account_row)k, text, sizeof text);
         warn("%s: %s", text, account_watched[k].cure);
     }

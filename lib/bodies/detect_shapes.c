@@ -123,6 +123,13 @@ static void turn_to_middle(const struct corner *o, struct touch *t)
     t->n = v3_scale(-1, t->n), t->distance *= -1;
 }
 
+/* Is the corner on the side of the middle at t, or has it gone through there? At an end neither may be. */
+static bool is_before(const struct corner *o, const struct touch *t)
+{
+    vec3 place = v3_axpy(o->c, -t->distance, t->n);
+    return v3_dot(t->n, v3_sub(o->middle, place)) >= 0 || is_between(o, o->middle, o->c);
+}
+
 /* The corner has gone through a surface: where it is nearest. Of its other places those remain that are seen from
    just before there, turned if it has gone through them, too. Returns how many remain. */
 static int turn_touches(const struct corner *o, struct touch *t, int n, double radius)
@@ -167,7 +174,7 @@ static int near_surface(const struct placed *s, const struct wall *wall, const s
     for (int k = 0; k < n && kept < TOUCHES_MOST; k++) {
         struct touch *t = &touch[kept], *f = &found[k];
         bool end = boundary_ends_at(wall, p->dim, surface, c, f);
-        if (round == 0 && end && !over_face(wall, surface, f)) continue;
+        if (round == 0 && end && !(over_face(wall, surface, f) && is_before(&o, f))) continue;
         if (round == 0 && surface && surface_bends(surface, p->dim, f->feature)) {
             if (through)
                 grooves += surface_groove(surface, p->dim, f, c, middle, groove + grooves,

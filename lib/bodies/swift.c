@@ -376,7 +376,7 @@ void swift_passed(struct passed *s, const struct packing *p, int64_t n,
     *s = (struct passed){ 0 };
     for (int32_t w = 0; w < p->walls; w++)
         if (p->wall[w].shape != BOUNDARY_PLANE) speed = dmax(speed, swift_beside(p, w));
-    if (speed == 0 && first == p->n) return;
+    if (!swift_watches(p)) return;
     for (int64_t i = 0; i < n; i++) {
         if (!swift_is(p, i, dmax(speed, most))) continue;
         for (int32_t w = 0; w < p->walls; w++) {

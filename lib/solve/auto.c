@@ -9,6 +9,7 @@
  */
 #include "problem/shared.h"
 #include "solve/anderson.h"
+#include "solve/even.h"
 #include "solve/ipm.h"
 #include "solve/nlgs.h"
 #include "solve/prices.h"
@@ -279,6 +280,11 @@ static int sweep_and_choose(struct strategy *a)
 static int run(struct solve *s)
 {
     if (s->p->beyond) return solver_anderson.run(s); // W is none that could be factorised
+    if (even_concerns(s->p)) {
+        struct shared *others = s->p->shared;
+        if (others && others->may_want) return others->wants_whole = true, 0;
+        if (!others && even_start(s)) return -1;
+    }
     struct strategy a = { .s = s,
                           .sweeps = anderson_new(s),
                           .price = price_sweep(s->p),

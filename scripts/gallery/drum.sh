@@ -39,7 +39,7 @@ if [ -z "${QUICK:-}" ]; then
         cell: {lengths: [1, 0.015, 1], repeats: [false, true, false]},
         pairs: [{pair: ["ball", "wall"], mu: 0.95}],
         walls: [{cylinder: {point: [0, 0, 0], axis: [0, 1, 0], radius: 0.03}, drives: [{about: [0, 0, 0], axis: [0, -1, 0], speed: 3}]}],
-        bodies: [{count: 800, radius: {uniform: [1.4e-3, 1.6e-3]}, box: {x: [-0.02, 0.02], y: [0, 0.015], z: [-0.021, null]}}]}' |
+        bodies: [{random: {count: 800}, radius: {uniform: [1.4e-3, 1.6e-3]}, box: {x: [-0.0205, 0.0205], y: [0, 0.015], z: [-0.0205, 0.0205]}}]}' |
         nsd-gen - | step balls.h5 --until "$end" --every 0.05s
     angle balls.h5 >"$out/balls.tsv"
 fi

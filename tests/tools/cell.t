@@ -39,8 +39,8 @@ worst=$(nsd-err "$tmp/kept.h5" | jq -s 'map(.natural) | max')
 like "nsd-err judges kept steps as the solver did ($worst)" "$(jq -n "$worst < 1.01e-4")" true
 like 'shifts tell contacts across the border' \
     "$(nsd-info -c "$tmp/kept.h5" | jq -s 'map(select(.shift != [0, 0, 0])) | length')" '^[0-9]{2,}$'
-is 'the stress of a shear is symmetric to 5 %, and pushes' \
-    "$(nsd-step --overlap keep --contacts -n 20 "$tmp/dense.h5" 2>/dev/null | nsd-info --last | jq '.stress | (.[0][1] - .[1][0] | fabs) < 0.05 * .[0][0] and .[1][1] > 0')" true
+is 'the stress of a shear is symmetric to 5 % on the average of 200 steps, and pushes' \
+    "$(nsd-step --overlap keep --contacts -n 200 --every 2 "$tmp/dense.h5" 2>/dev/null | nsd-info | jq -s 'map(select(.stress).stress) | [range(2) as $i | [range(2) as $k | map(.[$i][$k]) | add]] | (.[0][1] - .[1][0] | fabs) < 0.05 * .[0][0] and .[1][1] > 0')" true
 nsd-cat --stream "$tmp/kept.h5" | nsd-cat -o "$tmp/again.h5"
 ok 'a stream joined again is the trajectory' same_particles "$tmp/kept.h5" "$tmp/again.h5"
 is 'and its contacts' "$(nsd-info -c "$tmp/kept.h5" | cksum)" "$(nsd-info -c "$tmp/again.h5" | cksum)"

@@ -467,4 +467,19 @@ else
     skip 'documents with damaged shapes' 'no h5py'
 fi
 
+# ---- a box between two plates ----
+
+# 1 kg between a fixed plate and one that presses with F, mu = 0.5: held while 2 mu F > m g, else it falls by what is
+# missing; of all solutions with the same forces, the one in which it does not turn
+between() # DIM F: velocity along gravity after 0.2 s, and the largest spin
+{
+    jq -n --argjson d "$1" --argjson F "$2" '{ dim: $d, dt: 1e-3, mu: 0.5, shapes: { b: { box: [0.2, 0.16, 0.12][:$d] } },
+        bodies: [{ x: [0, 0, 0][:$d], shape: "b", mass: 1 }], walls: [{ point: [-0.1, 0, 0][:$d], normal: [1, 0, 0][:$d] },
+            { point: [0.1, 0, 0][:$d], normal: [-1, 0, 0][:$d], load: { along: [1, 0, 0][:$d], mass: 1, force: -$F } }] }' | nsd-gen - |
+        nsd-step -n 200 --every 200 2>/dev/null | nsd-info --last -p | jq -c --argjson d "$1" '[.v[$d - 1], (.w | map(fabs) | max)]'
+}
+for d in 2 3; do
+    like "a box between two plates stays (${d}D)" "$(between $d 9.9 | jq 'map(fabs) | max < 1e-3')" true
+    like "or slides without a turn (${d}D)" "$(between $d 8 | jq '(.[0] + 0.2 * 1.81 | fabs) < 1e-3 and .[1] < 1e-6')" true
+done
 done_testing

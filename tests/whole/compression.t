@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Compression without gravity, by what nsd-step does about overlap by default: packings end at solid fractions
 # that are known and without overlaps, whatever presses them; and balls go round in what is concave.
-# shellcheck source=tests/tap.sh disable=SC2317 # functions called by name
-. tests/tap.sh
+# shellcheck source=tests/support/tap.sh disable=SC2317 # functions called by name
+. tests/support/tap.sh
 
 if [ -n "$quick" ]; then
     echo "1..0 # SKIP the plain run presses packings"

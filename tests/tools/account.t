@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # The account of a run: what nsd-step says in its last line, in the log and in documents is what the scene
 # makes it, and decides the exit status under -e.
-# shellcheck source=tests/tap.sh disable=SC2317 # functions called by name
-. tests/tap.sh
+# shellcheck source=tests/support/tap.sh disable=SC2317 # functions called by name
+. tests/support/tap.sh
 
 account() { nsd-info --last "$1" | jq -c "select(.account).account | $2"; }
 
