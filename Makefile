@@ -147,7 +147,7 @@ setup-run setup-paper setup-wall setup-check setup-all:
 FIRST := $(patsubst %,tests/%.t,tools/examples whole/laws whole/solvers hostile/wrong_input whole/shapes tools/stat tools/types \
          tools/export tools/grains tools/view tools/pipeline tools/boundary) $B/tests/unit/shapes_test
 # What make check leaves to make check-all: it builds again, needs what only a maintainer has, or takes minutes.
-REST  := $(patsubst %,tests/%.t,project/lint whole/paper project/compilers whole/gallery project/thread_sanitizer whole/mpi \
+REST  := $(patsubst %,tests/%.t,project/lint whole/paper whole/paper_page project/compilers whole/gallery project/thread_sanitizer whole/mpi \
          project/install whole/wall tools/web_in_browser hostile/failing_system_calls hostile/failing_allocations) \
          $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw killed_writer)
 TESTS := $(FIRST) $(filter-out $(FIRST) $(REST),$(CTEST) $(wildcard tests/*/*.t))

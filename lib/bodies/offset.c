@@ -16,18 +16,6 @@ static bool may_bend(const struct packing *p, const struct contact *c)
     return round && !packing_shape(p, c->b);
 }
 
-/* m: between the contact's ball, were it at x, and its wall at time t; false: it has left that */
-static bool gap_of(const struct packing *p, const struct contact *c, vec3 x, double t, double *gap)
-{
-    const struct wall *w = &p->wall[-1 - c->a];
-    const struct pose pose = wall_pose(p, w, t);
-    struct touch touch;
-    vec3 at = v3_sub(quat_turn_back(pose.q, v3_sub(x, pose.shift)), w->x);
-    if (!boundary_nearest(w, p->dim, at, p->radius[c->b], &touch)) return false;
-    *gap = touch.distance - p->radius[c->b];
-    return true;
-}
-
 /*
  * m, at least 0: how much smaller the gap of a ball is a step on, with the velocities that it and the wall
  * have, than their opening says: on a concave wall v_t^2 dt^2/2 over the difference of the radii. With
@@ -36,14 +24,16 @@ static bool gap_of(const struct packing *p, const struct contact *c, vec3 x, dou
  */
 static double bend_of(const struct packing *p, const struct contact *c)
 {
-    double here, next, ahead = (1 - p->theta) * p->dt;
-    vec3 x = packing_predict(p, c->b);
-    // of its own gap here, not the contact's: a step that is judged later begins where bodies were moved apart
-    if (!gap_of(p, c, x, p->t + ahead, &here) ||
-        !gap_of(p, c, v3_axpy(x, p->dt, p->v[c->b]), p->t + ahead + p->dt, &next))
-        return 0;
-    double bend = here + p->dt * opening_of(p, c, ahead) - next;
-    return fmin(fmax(0, bend), BEND_MOST * p->radius[c->b]);
+    const struct wall *w = &p->wall[-1 - c->a];
+    const double r = p->radius[c->b], ahead = (1 - p->theta) * p->dt;
+    const struct pose pose = wall_pose(p, w, p->t + ahead + p->dt);
+    // from the contact's own place: a step that is judged later begins where bodies were moved apart
+    vec3 x = v3_axpy(v3_axpy(c->x, c->gap + r, c->n), p->dt, p->v[c->b]);
+    vec3 at = v3_sub(quat_turn_back(pose.q, v3_sub(x, pose.shift)), w->x);
+    struct touch t;
+    if (!boundary_nearest(w, p->dim, at, r, &t)) return 0;
+    double bend = c->gap + p->dt * opening_of(p, c, ahead) - (t.distance - r);
+    return fmin(fmax(0, bend), BEND_MOST * r);
 }
 
 bool offset_in(const struct packing *pack, const struct contact *c)

@@ -4,11 +4,6 @@
 # shellcheck source=tests/support/tap.sh disable=SC2317 # functions called by name
 . tests/support/tap.sh
 
-if [ -n "$quick" ]; then
-    echo "1..0 # SKIP the plain run presses packings"
-    exit 0
-fi
-
 holds() { jq -e -n "$@" >/dev/null; } # a jq program that says true
 # Of the last frame: the solid fraction, the largest overlap over the radius
 end() { nsd-info --last "$1" | jq -c "select(.sweeps) | [$2, .max_overlap / 0.005]"; }
