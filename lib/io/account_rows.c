@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdio.h>
 
+static const char home[] = "/nsd/account";
+
 /* A column each, from the table of what is watched */
 struct columns {
     struct column c[ACCOUNT_ROWS + 2];
@@ -18,39 +20,38 @@ static struct columns columns(void)
 }
 
 /* Counts and steps that are some; ids are only shown */
-static int check(const struct account *a, const char *group, struct why *why)
+static int check(const struct account *a, struct why *why)
 {
     const double most = 9007199254740992; // 2^53: integers beyond it are none that are exact
-    if (a->steps < 0) return why_set(why, EX_DATAERR, "%s/steps: is negative", group);
+    if (a->steps < 0) return why_set(why, EX_DATAERR, "%s/steps: is negative", home);
     for (int k = 0; k < ACCOUNT_ROWS; k++) {
         const struct account_entry *e = &a->worst[k];
         bool good = !(e->value < 0) && e->step >= 0 && e->step <= most &&
                     fabs(e->bodies[0]) <= most && fabs(e->bodies[1]) <= most;
         if (!good)
-            return why_set(why, EX_DATAERR, "%s/%s: a number is out of range", group,
+            return why_set(why, EX_DATAERR, "%s/%s: a number is out of range", home,
                            account_watched[k].name);
     }
     return 0;
 }
 
-int64_t account_rows_count(const struct source *source, const char *group, int64_t n)
+int64_t account_rows_count(const struct source *source, int64_t n)
 {
     struct columns t = columns();
     for (const struct column *c = t.c; c->name; c++) {
         char path[80];
         uint64_t shape[4];
-        snprintf(path, sizeof path, "%s/account/%s/value", group, c->name);
+        snprintf(path, sizeof path, "%s/%s/value", home, c->name);
         if (source_shape(source, path, shape) > 0 && shape[0] < (uint64_t)n) n = (int64_t)shape[0];
     }
     return n;
 }
 
-int account_rows_read(struct source *source, const char *group, int64_t start, int64_t n,
-                      struct account *account, struct why *why)
+int account_rows_read(struct source *source, int64_t start, int64_t n, struct account *account,
+                      struct why *why)
 {
     struct columns t = columns();
-    char home[40], path[80];
-    snprintf(home, sizeof home, "%s/account", group);
+    char path[80];
     for (const struct column *c = t.c; c->name; c++) {
         const struct column one[] = { *c, { 0 } };
         snprintf(path, sizeof path, "%s/%s/value", home, c->name);
@@ -60,15 +61,14 @@ int account_rows_read(struct source *source, const char *group, int64_t start, i
             return why->status;
     }
     for (int64_t i = 0; i < n; i++)
-        if (check(&account[i], home, why)) return why->status;
+        if (check(&account[i], why)) return why->status;
     return 0;
 }
 
 int account_rows_write(struct table_write *s, const struct account *account, struct why *why)
 {
-    static const char home[] = LAYOUT_REPORT "/account";
     struct columns t = columns();
-    bool first = !table_write_grows(s, LAYOUT_REPORT "/account/steps/value");
+    bool first = !table_write_grows(s, "/nsd/account/steps/value");
     if (table_write_columns(s, home, "/value", t.c, 1, account, sizeof *account, CHUNK_FRAMES, why))
         return why->status;
     if (first && (table_write_link(s, LAYOUT_REPORT "/step", "step", home, t.c, why) ||

@@ -38,7 +38,7 @@ int report_rows_open(struct report_rows *r, struct source *source, struct why *w
     count_rows(r, layout_balance);
     count_rows(r, layout_bond_balance);
     count_rows(r, layout_gain_balance);
-    r->solves = account_rows_count(source, r->group, r->solves);
+    r->solves = account_rows_count(source, r->solves);
     if (!why->status) r->solves = table_read_rising(r->solved, r->solves);
     return why->status;
 }
@@ -85,7 +85,7 @@ static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
     if (table_read_columns(r->source, r->group, "/value", layout_report, at, n, r->ahead.row,
                            sizeof *r->ahead.row, why) ||
         source_rows(r->source, time, COLUMN_F64, at, n, 1, r->ahead.time, why) ||
-        account_rows_read(r->source, r->group, at, n, r->ahead.account, why))
+        account_rows_read(r->source, at, n, r->ahead.account, why))
         return why->status;
     snprintf(time, sizeof time, "%s/velocity/value", r->group);
     bool velocity = source_has(r->source, time);

@@ -31,8 +31,8 @@ static const struct {
 } looked_through[] = {
     { "", { "h5md", "nsd", "particles", "walls", "contacts", "observables", "solution" } },
     { "/nsd",
-      { "history", "scene", "material", "solver", "flow", "cell", "shape", "law", "bonds",
-        "memory", "time_step" } },
+      { "history", "scene", "material", "solver", "account", "flow", "cell", "shape", "law",
+        "bonds", "memory", "time_step" } },
     { "/particles", { "all", "boundary" } },
     { "/particles/boundary",
       { "body", "load", "drive", "push", "mesh", "position", "orientation", "velocity",

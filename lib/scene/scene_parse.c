@@ -39,11 +39,11 @@ static bool takes_documents(jnode bodies)
 /* A number, or "auto" */
 static int read_dt(jnode n, double *dt)
 {
-    static const char *const words[] = { "auto", NULL };
-    int word;
     if (!json_is_string(n.json)) return json_node_number(n, J_POSITIVE, dt);
     *dt = 0;
-    return json_node_word(n, words, &word);
+    return strcmp(json_string_value(n.json), "auto")
+               ? json_node_fault(n, "wants a number of seconds, or \"auto\"")
+               : 0;
 }
 
 static int read_scene(jnode o, struct scene *s)
