@@ -150,7 +150,9 @@ FIRST := $(patsubst %,tests/%.t,tools/examples whole/laws whole/solvers hostile/
 REST  := $(patsubst %,tests/%.t,project/lint whole/paper project/compilers whole/gallery project/thread_sanitizer whole/mpi \
          project/install whole/wall tools/web_in_browser hostile/failing_system_calls hostile/failing_allocations) \
          $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw killed_writer)
-TESTS := $(FIRST) $(filter-out $(FIRST) $(REST),$(CTEST) $(wildcard tests/*/*.t))
+# Whether docs/paper is what this code makes: make paper-keep runs it. The page that is kept is older.
+PAGE  := tests/whole/paper_page.t
+TESTS := $(FIRST) $(filter-out $(FIRST) $(REST) $(PAGE),$(CTEST) $(wildcard tests/*/*.t))
 # What the sanitizers would not see more of: it looks at texts, or makes others' experiments.
 PLAIN := $(filter-out tests/whole/mpi.t tests/whole/wall.t tests/tools/% tests/hostile/% $B/tests/%,$(REST)) $(patsubst %,tests/%.t,project/layers project/docs tools/examples tools/campaign whole/rest)
 # What looks into inner loops has, under the sanitizers, those of the width that is instrumented.
@@ -190,6 +192,7 @@ demo: setup-run
 paper paper-keep: setup-paper
 	$(MAKE) -j2 all
 	$(MAKE) -f scripts/paper.mk $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc)) $(@:paper%=all%)
+	$(if $(filter paper-keep,$@),PATH="$(CURDIR)/$B:$$PATH" prove $(PAGE))
 
 # scripts/wall.mk says what is measured; wall-keep puts the page into docs/wall.
 wall wall-keep: setup-wall

@@ -82,7 +82,8 @@ class Frame:
         self._all = file["particles/all"]
         self.step = int(self._all["position/step"][row])
         self.time = float(self._all["position/time"][row])  # s
-        self.dt = float(file["nsd"].attrs["dt"])  # s
+        adapts = "nsd/time_step" in file
+        self.dt = float(file["nsd/time_step/value"][row] if adapts else file["nsd"].attrs["dt"])  # s
         self.gravity = np.array(file["nsd"].attrs["gravity"])  # m/s^2
 
     def __repr__(self):

@@ -163,9 +163,10 @@ static json_t *limits_json(const struct time_step *t)
     for (int k = 0; k < LIMITS; k++) {
         const struct time_step_limit *l = &time_step_limit[k];
         if (!isfinite(t->dt[k])) continue;
-        json_array_append_new(list, json_pack("{s:s, s:o, s:s, s:o, s:s, s:s}", "limit", l->name,
-                                              "dt", json_number(t->dt[k]), "rule", l->rule, "value",
-                                              json_number(t->x[k]), "units", l->units, "of", l->of));
+        json_array_append_new(list,
+                              json_pack("{s:s, s:o, s:s, s:o, s:s, s:s}", "limit", l->name, "dt",
+                                        json_number(t->dt[k]), "rule", l->rule, "value",
+                                        json_number(t->x[k]), "units", l->units, "of", l->of));
         warn("%-9s %-24s with r = %.3g m and %.3g %s, the %s: dt <= %.3g s", l->name, l->rule,
              t->radius, t->x[k], l->units, l->of, t->dt[k]);
     }

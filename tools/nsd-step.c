@@ -1,4 +1,5 @@
 /* nsd-step: makes many steps: detects, solves and moves in a loop. */
+#include "bodies/adapt.h"
 #include "cli/cli.h"
 #include "cli/crew.h"
 #include "cli/options.h"
@@ -24,11 +25,13 @@ enum {
     KEEP_MEMORY = 1 << 28 /* bytes that are kept */
 };
 
-static int64_t steps = 1;
+static int64_t steps = 1, expected; /* to make; as far as can be foreseen, where dt adapts */
 static struct cli_every every = { 1, 0 };
 static double until, lines; /* s: of the motion; of real time */
 static bool contacts, forces, in_place;
 static const char *output, *save;
+static const char *dt; /* as it is given: a number, or auto:TOL */
+static double tol;     /* radii: TOL; 0: dt does not adapt */
 
 /* By index: options.cut */
 static struct cli_choice cut_choice(int index)
@@ -44,6 +47,9 @@ static const struct cli_option own[] = {
     { CLI_INT, 'n', "steps", &steps, "N", "steps to make [1]", .max = 1e15 },
     { CLI_REAL, 0, "until", &until, "T", "or steps until the time is T, s [by -n]", .min = -1e300,
       .max = 1e300 },
+    { CLI_TEXT, 0, "dt", &dt, "DT|auto:TOL",
+      .help = "another time step, s; auto: halved where overlaps would grow by more than TOL of a "
+              "radius [the document's]" },
     { CLI_EVERY, 0, "every", &every, "K|Ts",
       "keep every K-th step, or one every T s of its time, and the last [1]", .max = 1e15 },
     { CLI_FLAG, 0, "contacts", &contacts, .help = "keep each frame's contacts too" },
@@ -74,7 +80,8 @@ const struct cli_tool tool = { "nsd-step", "[FILE ...]",
                                tables,
                                "  nsd-gen 500 | nsd-step -n 1000 > out.h5\n"
                                "  nsd-step -n 100 --eps 1e-8 -o more.h5 out.h5\n"
-                               "  nsd-step -n 100 --in-place out.h5\n" };
+                               "  nsd-step -n 100 --in-place out.h5\n"
+                               "  nsd-step -n 100 --dt auto:0.01 -o more.h5 out.h5\n" };
 
 static struct {
     int64_t sweeps, safeguarded, gave_up;
@@ -85,6 +92,7 @@ static struct {
     int64_t growing;              /* of those the ones whose reactions grow and only seem good */
     double approach;              /* m/s: of bodies in these steps, the largest */
     int64_t fell_back;            /* steps that were solved otherwise than asked */
+    int64_t shortest;             /* times that dt has become the least that it may be */
     int64_t abandoned;            /* steps whose solver knew no further way */
     double seconds;
     struct account account; /* of this run */
@@ -139,7 +147,7 @@ static void count(const struct report *r)
     double error = err_of(&r->err, r->criterion);
     if (!(error <= total.worst)) total.worst = error; // also where it is not a number
     total.criterion = r->criterion, total.eps = r->eps;
-    if (!(error <= r->eps)) return;
+    if (!(error <= r->eps) && !r->err.jammed) return;
     total.growing++, total.approach = fmax(total.approach, r->err.max_penetration_true);
 }
 
@@ -211,7 +219,7 @@ static void tell(const struct report *r, int64_t made, const struct writer *out)
 {
     double rate = speed(made);
     if (!progress_due()) return;
-    double left = (double)(steps - made) / rate, hours = floor(left / 3600);
+    double left = (double)(expected - made) / rate, hours = floor(left / 3600);
     double minutes = floor(left / 60) - 60 * hours;
     char clock[40];
     if (hours >= 1)
@@ -220,9 +228,10 @@ static void tell(const struct report *r, int64_t made, const struct writer *out)
         snprintf(clock, sizeof clock, "%.0f:%02.0f", minutes, floor(left - 60 * minutes));
     progress_now("step %lld, %.0f %% of %lld, %.3g/s, %s left: %lld contacts, %d sweeps, %s %.2g, "
                  "%.3g MB of memory, %.3g MB written",
-                 (long long)r->step, floor(100.0 * (double)made / (double)steps), (long long)steps,
-                 rate, clock, (long long)r->err.contacts, r->sweeps, options_error(r->criterion),
-                 err_of(&r->err, r->criterion), memory_now(), 1e-6 * (double)writer_size(out));
+                 (long long)r->step, floor(100.0 * (double)made / (double)expected),
+                 (long long)expected, rate, clock, (long long)r->err.contacts, r->sweeps,
+                 options_error(r->criterion), err_of(&r->err, r->criterion), memory_now(),
+                 1e-6 * (double)writer_size(out));
 }
 
 /* ---- the end that comes from outside ---- */
@@ -254,7 +263,8 @@ struct run {
     struct behind *behind; /* NULL: one thread makes the steps, and writes */
     struct flow flow;
     struct step_memory memory;
-    bool other_bodies; /* than in the step before */
+    struct neighbours ahead; /* of where bodies would be at the end of a step */
+    bool other_bodies;       /* than in the step before */
     struct step_opt o;
     double saved;    /* s of real time: when the state was saved last */
     char *save_path; /* where; NULL: nowhere */
@@ -343,21 +353,52 @@ static bool is_kept(const struct packing *p, int64_t step, int64_t k)
            floor((before + slack(p, before)) / every.seconds);
 }
 
+/* dt of the step to come */
+static void adapt(struct run *r)
+{
+    struct why why = { 0 };
+    struct packing *p = &r->f.packing;
+    double had = p->dt;
+    if (!(tol > 0)) return;
+    if (adapt_step(p, tol, &r->ahead, &why)) die_why(&why);
+    if (p->dt == had) return;
+    if (p->halved == ADAPT_MOST && !total.shortest++)
+        warn("step %lld: dt is %.3g s, and is not halved any more: bodies that are jammed, or too "
+             "fast "
+             "for that",
+             (long long)p->step + 1, p->dt);
+    r->o.solve.local.newton_abs *= p->dt / had;
+}
+
+/* Does dt adapt until a time, and is it this step's? How many steps that takes nobody knows before. */
+static bool is_then(const struct packing *p, int64_t step)
+{
+    return tol > 0 && cli_given(&until) && packing_time(p, step) >= until - slack(p, until);
+}
+
+/* Does the run end with this step, the k-th? */
+static bool is_last(const struct packing *p, int64_t step, int64_t k)
+{
+    return k == steps || is_then(p, step);
+}
+
 /* Makes one step, the k-th; false where its solve has diverged, and the bodies have not moved. */
 static bool advance(struct run *r, int64_t k, bool saves)
 {
     struct why why = { 0 };
     struct frame *f = &r->f;
     struct report *rep = &f->report;
+    adapt(r);
     flow(r);
     const struct packing *p = &f->packing;
-    r->o.bare = !options.log && !saves && k < steps && !is_kept(p, p->step + 1, k);
+    bool last = is_last(p, p->step + 1, k);
+    r->o.bare = !options.log && !saves && !last && !is_kept(p, p->step + 1, k);
     if (crew_step(f, &r->memory, r->other_bodies, &r->o, &why)) die_why(&why);
     f->reported = f->moved = true;
     count(rep);
     account(f);
     bool good = isfinite(rep->err.paper.eps_glob);
-    options_log(rep, k == steps || !good ? &total.account : NULL);
+    options_log(rep, last || !good ? &total.account : NULL);
     return good;
 }
 
@@ -402,21 +443,25 @@ static int64_t run(struct run *r)
     // where there is no other thread, this one writes; and with others, who have the bodies
     if (options.threads > 1 && steps && !r->f.elsewhere)
         behind_open(&r->behind, r->out, &(struct why){ 0 });
-    while (made < steps) {
+    bool ends = !steps;
+    while (!ends) {
         if (stopped_by) steps = made + 1; // the next one is the last, and its frame is kept
         bool saves = save_due(r);
         if (!(good = advance(r, made + 1, saves))) break;
-        made++;
+        const struct packing *p = &r->f.packing;
+        ends = is_last(p, p->step, ++made);
         tell(&r->f.report, made, r->out);
-        if (is_kept(&r->f.packing, r->f.packing.step, made) || made == steps) write_frame(r);
+        if (is_kept(p, p->step, made) || ends) write_frame(r);
         if (saves) save_state(r);
     }
+    if (ends) steps = made;
     if (!good) {
         warn("step %lld: the solve diverged, the run ends before it", (long long)r->f.report.step);
         keep_last(r, made);
     }
     if (!steps && !in_place) write_frame(r);
     step_forget(&r->memory);
+    neighbours_free(&r->ahead);
     flow_free(&r->flow);
     if (behind_close(r->behind, &why)) die_why(&why);
     return made;
@@ -426,6 +471,7 @@ static int64_t run(struct run *r)
    depends on where the time is counted from and not on where this run began */
 static void count_steps(const struct packing *p)
 {
+    expected = steps;
     if (!cli_given(&until)) return;
     double n = ceil((until - p->t) / p->dt), reached = until - slack(p, until);
     if (n > 1e15) die_usage("--until %g: more than 1e15 steps of %g s", until, p->dt);
@@ -434,9 +480,51 @@ static void count_steps(const struct packing *p)
     while (packing_time(p, p->step + steps) < reached &&
            !packing_check_clock(p, &(struct why){ 0 }))
         steps++;
+    expected = steps;
+    if (steps && tol > 0) steps = INT64_MAX; // is_then() sees
 }
 
 /* ---- from where, and where to ---- */
+
+/* --dt, and its TOL */
+static double read_dt(void)
+{
+    static const char word[] = "auto:";
+    bool adapts = dt && !strncmp(dt, word, sizeof word - 1);
+    const char *number = adapts ? dt + sizeof word - 1 : dt;
+    char *end = NULL;
+    double x = dt ? strtod(number, &end) : 0;
+    if (dt && (end == number || *end || !(x > 0 && x <= (adapts ? 1 : DBL_MAX))))
+        die_usage(
+            "--dt: '%s' is neither a number of seconds above 0 nor auto:TOL, TOL a share of a "
+            "radius above 0 and at most 1",
+            dt);
+    if (adapts && crew_size() > 1)
+        die_usage("--dt auto: one process alone adapts its time step, and here are %d: nsd-step -j "
+                  "has threads",
+                  crew_size());
+    if (adapts) tol = x;
+    return adapts ? 0 : x;
+}
+
+/* Sets the time step of --dt; path: of a trajectory that the run is appended to, else NULL. */
+static void set_dt(struct packing *p, double asked, const char *path)
+{
+    struct why why = { 0 };
+    if (path && tol > 0 && !p->adapts)
+        die_usage("--dt: %s has one time step for all its frames: -o FILE goes on with others",
+                  path);
+    if (tol > 0) p->adapts = true;
+    if (!(asked > 0)) return;
+    if (path && asked != packing_whole_dt(p))
+        die_usage("--dt: %s has %g s, and a trajectory has one: -o FILE goes on with another", path,
+                  packing_whole_dt(p));
+    if (!path) p->adapts = false;
+    memory_scale(&p->memory, asked / p->dt);
+    p->halved = 0;
+    packing_set_dt(p, asked);
+    if (packing_check_clock(p, &why)) die_why(&why);
+}
 
 /* The frames of the file go into the one that takes its place, the last one stays in f. */
 static void copy_all(struct reader *in, struct writer *out, struct frame *f)
@@ -461,12 +549,13 @@ static void copy_all(struct reader *in, struct writer *out, struct frame *f)
     if (!frames) die(EX_DATAERR, "%s: no frame to start from", reader_where(in));
 }
 
-static void start_in_place(struct run *r, struct reader *in, const char *path)
+static void start_in_place(struct run *r, struct reader *in, const char *path, double asked)
 {
     struct why why = { 0 };
     if (writer_open(&r->out, path, WRITER_IN_PLACE, &why)) die_why(&why);
     copy_all(in, r->out, &r->f);
     double theta = r->f.packing.theta;
+    set_dt(&r->f.packing, asked, path);
     options_theta(&r->f.packing, false);
     options_overlap(&r->f.packing, false);
     if (theta != r->f.packing.theta)
@@ -474,13 +563,14 @@ static void start_in_place(struct run *r, struct reader *in, const char *path)
     if (writer_take_place(r->out, &why)) die_why(&why);
 }
 
-static void start(struct run *r, struct reader *in)
+static void start(struct run *r, struct reader *in, double asked)
 {
     struct why why = { 0 };
     bool more;
     if (reader_last(in, &r->f, &more, &why)) die_why(&why);
     if (!more) die(EX_DATAERR, "%s: no frame to start from", reader_where(in));
     tool_wants_packing(&r->f, reader_where(in));
+    set_dt(&r->f.packing, asked, NULL);
     options_theta(&r->f.packing, false);
     options_overlap(&r->f.packing, false);
     if (writer_open(&r->out, output, WRITER_TRAJECTORY, &why)) die_why(&why);
@@ -504,6 +594,7 @@ int tool_main(int argc, char **argv)
     options_check();
     keep_memory();
     if (!crew_join()) return crew_follow();
+    double asked = read_dt();
     if (cli_given(&until) && cli_given(&steps)) die_usage("-n and --until exclude each other");
     if (save) parse_save();
     if (in_place && output) die_usage("-i and -o exclude each other");
@@ -518,9 +609,9 @@ int tool_main(int argc, char **argv)
     if (output && reader_reads(argc, argv, output))
         die_usage("%s: is also the input; -i appends to it", output);
     if (in_place)
-        start_in_place(&r, in, argv[0]);
+        start_in_place(&r, in, argv[0], asked);
     else
-        start(&r, in);
+        start(&r, in, asked);
     count_steps(&r.f.packing);
     if (steps && !in_place && writer_begin(r.out, &r.f, &why)) die_why(&why);
     options_log_open(argc, argv, output);
@@ -538,7 +629,7 @@ int tool_main(int argc, char **argv)
     if (told) warn("%s", told);
     say_worst();
     reader_close(in);
-    if (stopped_by && made < wanted) {
+    if (stopped_by && made < wanted && !is_then(&r.f.packing, r.f.packing.step)) {
         warn("stopped by signal %d after step %lld, which is kept", (int)stopped_by,
              (long long)r.f.packing.step);
         return 128 + stopped_by;

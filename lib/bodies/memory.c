@@ -95,6 +95,14 @@ static int compare(const void *x, const void *y)
     return contact_key_order(recall_key(x), recall_key(y));
 }
 
+void memory_scale(struct memory *m, double factor)
+{
+    for (int64_t i = 0; i < m->n; i++) {
+        m->recall[i].r = v3_scale(factor, m->recall[i].r);
+        m->recall[i].m = v3_scale(factor, m->recall[i].m);
+    }
+}
+
 void memory_sort(struct memory *m)
 {
     if (m->n) qsort(m->recall, (size_t)m->n, sizeof *m->recall, compare);

@@ -43,6 +43,8 @@ int memory_keep(struct memory *m, const struct contacts *s, struct why *why);
 /* s->found (and moment, where any is wanted) = what is remembered, in the bases of the contacts, and 0 for new
    ones. Returns 0 or EX_SOFTWARE. */
 int memory_give(const struct memory *m, struct contacts *s, bool moments, struct why *why);
+/* Impulses of steps that were `factor` times as long: forces go on where dt changes. */
+void memory_scale(struct memory *m, double factor);
 /* Back into order, after keys have changed */
 void memory_sort(struct memory *m);
 /* Bodies have new rows, in the same order; row[] < 0: gone */

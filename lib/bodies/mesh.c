@@ -194,7 +194,7 @@ static bool surface_alloc(struct surface *s)
 {
     size_t n = (size_t)s->elements;
     s->at = malloc((n + 1) * sizeof *s->at);
-    s->order = malloc((n + 1) * sizeof *s->order);
+    s->order = calloc(n + 1, sizeof *s->order);
     s->box = malloc((2 * n + 1) * sizeof *s->box);
     s->corner = calloc(3 * n + 1, sizeof *s->corner);
     s->star = calloc(3 * n + 2, sizeof *s->star);

@@ -173,7 +173,7 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     if (packing_alloc_walls(to, p->walls, why) || packing_alloc_kinds(to, p->kinds, why)) goto fail;
     size_t n = (size_t)p->n, k2 = (size_t)p->kinds * (size_t)p->kinds;
     to->step = p->step, to->t = p->t, to->dt = p->dt, to->theta = p->theta, to->g = p->g;
-    to->t0 = p->t0, to->step0 = p->step0;
+    to->t0 = p->t0, to->step0 = p->step0, to->adapts = p->adapts, to->halved = p->halved;
     to->overlap = p->overlap;
     to->seed = p->seed;
     if (cell_copy(&to->cell, &p->cell) || (p->image && packing_alloc_images(to, why))) goto fail;
@@ -222,6 +222,21 @@ void packing_count_from(struct packing *p, double t0, int64_t step0)
 {
     p->t0 = t0, p->step0 = step0;
     if (packing_time(p, p->step) != p->t) p->t0 = p->t, p->step0 = p->step;
+}
+
+/* Is the step n steps before this one exact as a double? */
+static bool packing_step_fits(int64_t step, double n)
+{
+    return fabs((double)step - n) <= (double)((int64_t)1 << STEPS_LOG2);
+}
+
+void packing_set_dt(struct packing *p, double dt)
+{
+    double n = nearbyint((p->t - p->t0) / dt);
+    p->dt = dt;
+    if (fabs(n) < (double)((int64_t)1 << STEPS_LOG2) && packing_step_fits(p->step, n))
+        p->step0 = p->step - (int64_t)n;
+    packing_count_from(p, p->t0, p->step0);
 }
 
 int packing_check_clock(const struct packing *p, struct why *why)

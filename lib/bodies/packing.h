@@ -33,8 +33,10 @@ struct packing {
     double t, dt; /* s; t = t0 + (step - step0) dt, which no step adds up: packing_time() */
     double t0;    /* s: the time at step0, from which the time is counted with this dt */
     int64_t step0;
-    double theta; /* of the theta-method; 1/2 is the paper's midpoint */
-    vec3 g;       /* m/s^2 */
+    bool adapts;    /* dt is of this step: that of the document, halved so many times */
+    int32_t halved; /* 0 .. HALVED_MOST */
+    double theta;   /* of the theta-method; 1/2 is the paper's midpoint */
+    vec3 g;         /* m/s^2 */
     uint64_t seed;
     enum overlap overlap;
 
@@ -147,6 +149,16 @@ static inline double packing_next_time(const struct packing *p)
 {
     return packing_time(p, p->step + 1);
 }
+enum { HALVED_MOST = 30 }; /* a billionth */
+/* s: the time step that all frames of a document have, or halve */
+static inline double packing_whole_dt(const struct packing *p)
+{
+    return ldexp(p->dt, p->halved);
+}
+/* Goes on with another dt from the packing's time on, counted from the same t0 where that gives the same
+   times. With half of a dt it always does, and with twice a dt after an even number of steps: times that are
+   multiples of both are the same double. */
+void packing_set_dt(struct packing *p, double dt);
 /* Counts from (t0, step0) if that gives the packing its time, as it is where nobody has changed t, step
    or dt since; else from its own time and step. */
 void packing_count_from(struct packing *p, double t0, int64_t step0);

@@ -36,6 +36,12 @@ static struct side side_of(const struct seams *o, const struct contact *c, int32
     return f;
 }
 
+/* Is it a body that moves by contacts? */
+static bool moves(const struct seams *o, int32_t who)
+{
+    return who >= 0 && o->p->mass[who] > 0;
+}
+
 static double weld_of(const struct seams *o, int32_t who)
 {
     if (who >= 0) return FLUSH * o->p->radius[who];
@@ -212,6 +218,7 @@ static bool passes_above(const struct meeting *w, const struct side *f, const st
 {
     const struct seams *o = w->o;
     const struct side g = side_of(o, e, f->s);
+    if (moves(o, f->other) || moves(o, g.other)) return false; // they are parts of no surface
     bool parallel = v3_dot(f->n, g.n) > 1 - ALONG;
     bool walls = f->other < 0 && g.other < 0 && f->other != g.other;
     if ((parallel && !walls) || !are_near(o, f, &g)) return false;
@@ -227,7 +234,7 @@ static bool passes_above(const struct meeting *w, const struct side *f, const st
 static bool at_seam(const struct meeting *w, const struct lists *l, int32_t s)
 {
     const struct side f = side_of(w->o, &w->all->c[w->i], s);
-    if (w->o->p->mass[s] == 0) return false;
+    if (!moves(w->o, s)) return false;
     for (int64_t k = l->first[s]; k < l->first[s + 1]; k++)
         if (passes_above(w, &f, &w->all->c[l->of[k]])) return true;
     return false;
@@ -239,7 +246,7 @@ static bool at_seam(const struct meeting *w, const struct lists *l, int32_t s)
 static bool may_be(const struct seams *o, const struct contact *c)
 {
     if (swift_ahead(c)) return false;
-    if (c->a >= 0) return packing_shape(o->p, c->a) || packing_shape(o->p, c->b);
+    if (c->a >= 0) return !moves(o, c->a) || !moves(o, c->b);
     int32_t w = -1 - c->a;
     const struct wall *wall = &o->p->wall[w];
     if (packing_shape(o->p, c->b)) return wall->shape != BOUNDARY_PLANE;

@@ -1,5 +1,5 @@
 /*
- * bodies/seam.h: seams of surfaces that are assembled of several parts: triangles, walls, bodies side by
+ * bodies/seam.h: seams of surfaces that are assembled of several parts: triangles, walls, fixed bodies side by
  * side. A body that slides on one part meets the rim of the next, which lies in the same plane, with a
  * normal along that plane; where the law sees gaps it would be stopped there. Such a contact is none.
  *

@@ -368,7 +368,7 @@ void options_summary(const char *where, const struct report *r)
         snprintf(trouble, sizeof trouble, ", %lld local solves safeguarded, %lld given up",
                  (long long)r->safeguarded, (long long)r->gave_up);
     if (!r->converged) snprintf(missed, sizeof missed, ": NOT CONVERGED to %g", r->eps);
-    if (!r->converged && error <= r->eps) // the map is relative to reactions that grow without end
+    if (!r->converged && (error <= r->eps || r->err.jammed)) // the map is relative to reactions that grow without end
         snprintf(growing, sizeof growing, ", bodies still approach at %.3g m/s",
                  r->err.max_penetration_true);
     warn("%s: %lld contacts, %s: %d sweeps%s, %s %.3g%s%s, %.3g s%s", where,

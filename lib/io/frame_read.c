@@ -145,9 +145,27 @@ static int read_parameters(struct source *doc, struct packing *p, struct why *wh
     return why->status;
 }
 
+/* The dt of frame k, where each has its own: the document's, halved. Times are counted from t0 all the
+   same. */
+static int read_time_step(struct frame_read *r, int64_t k, double t0, struct packing *p,
+                          struct why *why)
+{
+    double dt;
+    int halved = 0;
+    if (source_rows(r->source, LAYOUT_TIME_STEP, COLUMN_F64, k, 1, 1, &dt, why)) return why->status;
+    bool good = dt > 0 && frexp(p->dt / dt, &halved) == 0.5 && halved >= 1 &&
+                halved <= HALVED_MOST + 1 && ldexp(dt, halved - 1) == p->dt;
+    if (!good)
+        return why_set(why, EX_DATAERR, LAYOUT_TIME_STEP ": not /nsd@dt, halved at most %d times",
+                       HALVED_MOST);
+    p->adapts = true, p->halved = halved - 1, p->t0 = t0;
+    packing_set_dt(p, dt);
+    return 0;
+}
+
 /* Step and time of frame k, and from where its time is counted: a document whose time is step dt need not
    say it, and what one says that contradicts its times is not believed. */
-static void read_clock(struct frame_read *r, int64_t k, struct packing *p)
+static int read_clock(struct frame_read *r, int64_t k, struct packing *p, struct why *why)
 {
     const double most = (double)((int64_t)1 << STEPS_LOG2);
     double origin[2] = { 0 };
@@ -157,6 +175,7 @@ static void read_clock(struct frame_read *r, int64_t k, struct packing *p)
         origin[0] = origin[1] = 0;
     p->step = r->step[k], p->t = r->time[k];
     packing_count_from(p, origin[0], (int64_t)origin[1]);
+    return source_has(r->source, LAYOUT_TIME_STEP) ? read_time_step(r, k, origin[0], p, why) : 0;
 }
 
 /* Bodies as they are in every frame, and where they are in frame k */
@@ -188,9 +207,10 @@ static int read_settings(struct frame_read *r, int64_t k, struct packing *p, str
         boundary_tables_read(r->source, k, p, why) || flow_tables_read(r->source, k, p, why) ||
         law_tables_read(r->source, k, p, why))
         return why->status;
-    read_clock(r, k, p);
-    return cell_tables_read(r->source, k, r->repeats, p, why) || packing_check(p, why) ? why->status
-                                                                                       : 0;
+    return read_clock(r, k, p, why) || cell_tables_read(r->source, k, r->repeats, p, why) ||
+                   packing_check(p, why)
+               ? why->status
+               : 0;
 }
 
 /* Are all datasets of n bodies there, and of their shape? (What is not says read_bodies.) */
@@ -300,9 +320,9 @@ static int read_packing(struct frame_read *r, int64_t k, struct packing *p, stru
         read_material(r->source, p, why) || shape_tables_read(r->source, p, why) ||
         boundary_tables_read(r->source, k, p, why) ||
         (row ? roster_read(r->source, k, row, p, why) : read_bodies(r, k, p, why)) ||
-        flow_tables_read(r->source, k, p, why) || law_tables_read(r->source, k, p, why))
+        flow_tables_read(r->source, k, p, why) || law_tables_read(r->source, k, p, why) ||
+        read_clock(r, k, p, why))
         goto end;
-    read_clock(r, k, p);
     if (packing_varies(p) && (r->repeats[0] || r->repeats[1] || r->repeats[2]))
         why_set(why, EX_DATAERR, "bodies that come and go in a cell that repeats: not known");
     else if (!cell_tables_read(r->source, k, r->repeats, p, why) && !packing_check(p, why))

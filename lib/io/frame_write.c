@@ -38,8 +38,9 @@ static int write_parameters(hid_t file, const struct frame *f, struct why *why)
     if (f->foreign) return 0;
     const double g[3] = { p->g.x, p->g.y, p->g.z };
     int64_t seed = (int64_t)p->seed;
+    double dt = packing_whole_dt(p);
     if (h5_attr(file, "/nsd", "dim", H5T_NATIVE_INT, -1, &p->dim, why) ||
-        h5_attr(file, "/nsd", "dt", H5T_NATIVE_DOUBLE, -1, &p->dt, why) ||
+        h5_attr(file, "/nsd", "dt", H5T_NATIVE_DOUBLE, -1, &dt, why) ||
         h5_attr(file, "/nsd", "theta", H5T_NATIVE_DOUBLE, -1, &p->theta, why) ||
         h5_attr(file, "/nsd", "gravity", H5T_NATIVE_DOUBLE, 3, g, why) ||
         h5_attr(file, "/nsd", "seed", H5T_NATIVE_INT64, -1, &seed, why) ||
@@ -131,11 +132,30 @@ static int write_particles_clock(struct table_write *s, bool step, const struct 
     return table_write_link(s, from, step ? "step" : "time", particles, layout_cell, why);
 }
 
+static int write_time_step(struct table_write *s, const struct packing *p, struct why *why)
+{
+    const hsize_t one = 1;
+    return p->adapts ? table_write_rows(s, LAYOUT_TIME_STEP, COLUMN_F64, 1, &one, CHUNK_FRAMES,
+                                        &p->dt, "s", why)
+                     : 0;
+}
+
+/* After the first frame's step: its clock is that of the particles. */
+static int link_time_step(struct table_write *s, const struct packing *p, struct why *why)
+{
+    static const struct column it[] = { { .name = "time_step" }, { 0 } };
+    const char *step = "/particles/all/position/step", *time = "/particles/all/position/time";
+    return p->adapts && (table_write_link(s, step, "step", "/nsd", it, why) ||
+                         table_write_link(s, time, "time", "/nsd", it, why))
+               ? why->status
+               : 0;
+}
+
 int frame_write_moment(struct table_write *s, const struct frame *f, struct why *why)
 {
-    if (f->packed &&
-        (write_motion(s, &f->packing, why) || cell_tables_write(s, &f->packing, why) ||
-         write_particles_clock(s, false, &f->packing, why) || flow_write(s, &f->packing, why)))
+    if (f->packed && (write_motion(s, &f->packing, why) || cell_tables_write(s, &f->packing, why) ||
+                      write_particles_clock(s, false, &f->packing, why) ||
+                      write_time_step(s, &f->packing, why) || flow_write(s, &f->packing, why)))
         return why->status;
     if (f->packed &&
         (boundary_tables_write(s, &f->packing, why) || law_tables_write(s, &f->packing, why) ||
@@ -151,5 +171,6 @@ int frame_write_step(struct table_write *s, const struct frame *f, struct why *w
     if (!f->packed) return 0;
     bool first = !table_write_grows(s, "/particles/all/position/step");
     if (write_particles_clock(s, true, &f->packing, why)) return why->status;
-    return first ? flow_link(s, &f->packing, why) : 0;
+    if (!first) return 0;
+    return link_time_step(s, &f->packing, why) || flow_link(s, &f->packing, why) ? why->status : 0;
 }

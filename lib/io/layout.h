@@ -253,6 +253,9 @@ static const struct column layout_found[] = {
  * The group of the solver's reports. Not among H5MD's /observables: readers take each member of that
  * for an element with a value in every frame. LAYOUT_REPORT_0_1: where it was until nsd 0.1.
  */
+/* Where the time step adapts, each frame's: [F], s */
+#define LAYOUT_TIME_STEP "/nsd/time_step/value"
+
 #define LAYOUT_REPORT     "/nsd/solver"
 #define LAYOUT_REPORT_0_1 "/observables/solver"
 

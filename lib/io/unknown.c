@@ -32,7 +32,7 @@ static const struct {
     { "", { "h5md", "nsd", "particles", "walls", "contacts", "observables", "solution" } },
     { "/nsd",
       { "history", "scene", "material", "solver", "account", "flow", "cell", "shape", "law",
-        "bonds", "memory" } },
+        "bonds", "memory", "time_step" } },
     { "/particles", { "all", "boundary" } },
     { "/particles/boundary",
       { "body", "load", "drive", "push", "mesh", "position", "orientation", "velocity",

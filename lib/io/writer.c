@@ -30,6 +30,7 @@ struct shared {
     int dim;
     int64_t n;
     double dt, theta;
+    bool adapts;
     enum overlap overlap;
     uint32_t
         crc; /* of their radii and masses; 0 where bodies come and go: io/roster.c sees to it */
@@ -363,15 +364,19 @@ static uint32_t cell_crc(const struct cell *c)
 static struct shared shared_of(const struct frame *f)
 {
     const struct packing *p = &f->packing;
-    if (packing_varies(p))
-        return (
-            struct shared){ p->dim, 0, p->dt, p->theta, p->overlap, 0, p->pours, p->removals, 0 };
-    uint32_t crc = document_crc(0, p->radius, (size_t)p->n * sizeof *p->radius);
-    crc = document_crc(crc, p->mass, (size_t)p->n * sizeof *p->mass);
+    struct shared o = { .dim = p->dim,
+                        .dt = packing_whole_dt(p),
+                        .theta = p->theta,
+                        .adapts = p->adapts,
+                        .overlap = p->overlap };
+    o.pours = p->pours, o.removals = p->removals;
+    if (packing_varies(p)) return o;
+    o.n = bodies_of(f), o.cell = cell_crc(&p->cell);
+    o.crc = document_crc(0, p->radius, (size_t)p->n * sizeof *p->radius);
+    o.crc = document_crc(o.crc, p->mass, (size_t)p->n * sizeof *p->mass);
     size_t pairs = p->law ? (size_t)p->kinds * (size_t)p->kinds : 0;
-    if (pairs) crc = document_crc(crc, p->law, pairs * sizeof *p->law);
-    return (struct shared){ p->dim, bodies_of(f),      p->dt, p->theta, p->overlap, crc, 0,
-                            0,      cell_crc(&p->cell) };
+    if (pairs) o.crc = document_crc(o.crc, p->law, pairs * sizeof *p->law);
+    return o;
 }
 
 /* What is stored only with the first frame has to be true of all. */
@@ -385,6 +390,9 @@ static int check_same(const struct writer *s, const struct frame *f, struct why 
                        (long long)p.n);
     if (p.dim != q.dim || p.dt != q.dt || p.theta != q.theta)
         return why_set(why, EX_DATAERR, "dim, dt or theta differ from the trajectory's");
+    if (p.adapts != q.adapts)
+        return why_set(why, EX_DATAERR,
+                       "frames with a time step of their own and others in one trajectory");
     if (p.overlap && q.overlap && p.overlap != q.overlap) // that of a scene is not said yet
         return why_set(why, EX_DATAERR, "overlap differs from the trajectory's");
     if (p.crc != q.crc) return why_set(why, EX_DATAERR, "other bodies than the trajectory's");

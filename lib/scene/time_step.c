@@ -5,10 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LASTING 0.002 /* of the smallest radius: what an acceleration may bring in a step */
-#define PASSING 0.1   /* of it: what an impact may */
-#define TURN 0.02     /* rad a step */
-#define PERIOD 200    /* steps a period */
+#define LASTING                                                                                    \
+    (2 * OVERLAP_NEAR) /* of the smallest radius: what an acceleration may bring in a step */
+#define PASSING 0.05   /* of it: what a body may move before an impact */
+#define TURN    0.02   /* rad a step */
+#define PERIOD  200    /* steps a period */
 /* Solid fractions of what has fallen, by dimension: how far the highest grains fall */
 static const double SETTLED[4] = { 0, 0, 0.8, 0.6 };
 /* To see how far, each horizontal direction is cut into so many parts at most, of so many of the largest
@@ -16,18 +17,21 @@ static const double SETTLED[4] = { 0, 0, 0.8, 0.6 };
 enum { COLUMNS = 16, WIDE = 6 };
 
 const struct time_step_limit time_step_limit[LIMITS] = {
-    [LIMIT_GRAVITY] = { "gravity", "acceleration", "m s-2", "g dt^2 <= 0.002 r", BY_ACCELERATION,
+    [LIMIT_GRAVITY] = { "gravity", "gravity", "m s-2", "g dt^2 <= 0.002 r", BY_ACCELERATION,
                         LASTING },
-    [LIMIT_PRESSURE] = { "pressure", "acceleration of a grain, P d^2/m, in the plane P d/m",
-                         "m s-2", "P d^2/m dt^2 <= 0.002 r", BY_ACCELERATION, LASTING },
-    [LIMIT_LOAD] = { "load", "acceleration of a wall, F/M", "m s-2", "F/M dt^2 <= 0.002 r",
-                     BY_ACCELERATION, LASTING },
-    [LIMIT_STRAIN] = { "strain", "rate", "s-1", "L 2 r dt <= 0.002 r", BY_RATE, LASTING / 2 },
-    [LIMIT_SPEED] = { "speed", "of grains at the start or poured, relative to the cell's flow",
-                      "m s-1", "v dt <= 0.1 r", BY_SPEED, PASSING },
-    [LIMIT_FALL] = { "fall", "speed after the fall, sqrt(v^2 + 2 g h)", "m s-1", "v dt <= 0.1 r",
+    [LIMIT_PRESSURE] = { "pressure", "acceleration of a grain by the pressure", "m s-2",
+                         "a dt^2 <= 0.002 r", BY_ACCELERATION, LASTING },
+    [LIMIT_LOAD] = { "load", "acceleration of a wall or an edge by its load", "m s-2",
+                     "a dt^2 <= 0.002 r", BY_ACCELERATION, LASTING },
+    [LIMIT_STRAIN] = { "strain", "rate of strain of the cell", "s-1", "L 2 r dt <= 0.002 r",
+                       BY_RATE, LASTING / 2 },
+    [LIMIT_SPEED] = { "speed", "speed of grains at the start", "m s-1", "v dt <= 0.05 r", BY_SPEED,
+                      PASSING },
+    [LIMIT_FALL] = { "fall", "speed of grains after their fall", "m s-1", "v dt <= 0.05 r",
                      BY_SPEED, PASSING },
-    [LIMIT_WALL] = { "wall", "speed of walls", "m s-1", "v dt <= 0.1 r", BY_SPEED, PASSING },
+    [LIMIT_STROKE] = { "stroke", "speed of a wall when its load has pressed the grains together",
+                       "m s-1", "v dt <= 0.05 r", BY_SPEED, PASSING },
+    [LIMIT_WALL] = { "wall", "speed of walls", "m s-1", "v dt <= 0.05 r", BY_SPEED, PASSING },
     [LIMIT_TURN] = { "turn", "angular velocity of walls", "rad s-1", "w dt <= 0.02", BY_RATE,
                      TURN },
     [LIMIT_PERIOD] = { "period", "frequency of drives", "Hz", "f dt <= 1/200", BY_RATE,
@@ -145,6 +149,49 @@ static double above_planes(const struct packing *p, vec3 x, vec3 up)
     return least;
 }
 
+/* m: how low, along up, a surface that ends somewhere reaches; INFINITY: it does not end */
+static double lowest_of(const struct packing *p, const struct wall *w, vec3 up)
+{
+    struct pose at = wall_pose(p, w, p->t);
+    vec3 x = wall_at(p, w, p->t), n = wall_normal(p, w, p->t), a = quat_turn(at.q, w->along);
+    double tilt = sqrt(dmax(0, 1 - v3_dot(n, up) * v3_dot(n, up))), low = INFINITY;
+    switch (w->shape) {
+    case BOUNDARY_RECTANGLE:
+        return v3_dot(x, up) -
+               (w->size[0] * fabs(v3_dot(a, up)) + w->size[1] * fabs(v3_dot(v3_cross(n, a), up))) /
+                   2;
+    case BOUNDARY_DISC:
+        return v3_dot(x, up) - w->size[1] * tilt;
+    case BOUNDARY_CYLINDER:
+    case BOUNDARY_CONE:
+        for (int end = 0; end < 2 && (w->size[2] > 0 || tilt == 1); end++) {
+            double r = w->size[w->shape == BOUNDARY_CONE && end];
+            low = dmin(low, v3_dot(v3_axpy(x, end * w->size[2], n), up) - r * tilt);
+        }
+        return low;
+    case BOUNDARY_SPHERE:
+        return v3_dot(x, up) - w->size[0];
+    case BOUNDARY_MESH:
+        for (int32_t k = 0; k < w->elements; k++)
+            for (int c = 0; c < p->dim; c++) {
+                vec3 v = p->mesh.vertex[p->mesh.element[w->first_element + k][c]];
+                low = dmin(low, v3_dot(v3_add(x, quat_turn(at.q, v)), up));
+            }
+        return low;
+    default:
+        return INFINITY;
+    }
+}
+
+/* m: the lowest place of all of them */
+static double lowest_surface(const struct packing *p, vec3 up)
+{
+    double low = INFINITY;
+    for (int32_t k = 0; k < p->walls; k++)
+        if (wall_there(&p->wall[k], p->t)) low = dmin(low, lowest_of(p, &p->wall[k], up));
+    return low;
+}
+
 /* Two unit vectors across a third; in the plane the second is z */
 static void across(int dim, vec3 n, vec3 side[2])
 {
@@ -178,19 +225,25 @@ static double volume_of(const struct packing *p, int64_t i)
     return unit * power(p->radius[i], p->dim);
 }
 
-static void column_add(struct column *c, const struct packing *p, int64_t i, vec3 up)
+/* low: m, where surfaces end below */
+static void column_add(struct column *c, const struct packing *p, int64_t i, vec3 up, double low)
 {
     double z = v3_dot(p->x[i], up), r = p->radius[i], h = above_planes(p, p->x[i], up);
+    if (!(p->mass[i] > 0)) { // does not fall, but stops what does
+        c->bottom = dmin(c->bottom, z + r);
+        return;
+    }
     c->top = dmax(c->top, z + r);
-    c->bottom = dmin(c->bottom, z - (isfinite(h) ? h : r));
+    c->bottom = dmin(c->bottom, isfinite(h) ? z - h : dmin(z - r, low));
     c->volume += volume_of(p, i);
 }
 
-/* m: how far the highest bodies fall until they rest on those below them, or on planes */
+/* m: how far the highest bodies fall until they rest on those below them, or on walls */
 static double fall_of_bodies(const struct packing *p, vec3 up)
 {
     struct column column[COLUMNS * COLUMNS];
-    double large = packing_whole(p).large, from[2] = { 0 }, width[2] = { 1, 1 }, most = 0;
+    double large = packing_whole(p).large, low = lowest_surface(p, up), from[2] = { 0 },
+           width[2] = { 1, 1 }, most = 0;
     int n[2] = { 1, 1 };
     vec3 side[2];
     across(p->dim, up, side);
@@ -206,7 +259,7 @@ static double fall_of_bodies(const struct packing *p, vec3 up)
         int at[2] = { 0, 0 };
         for (int a = 0; a < p->dim - 1; a++)
             at[a] = (int)dmin(n[a] - 1, (v3_dot(p->x[i], side[a]) - from[a]) / width[a]);
-        column_add(&column[at[0] * n[1] + at[1]], p, i, up);
+        column_add(&column[at[0] * n[1] + at[1]], p, i, up, low);
     }
     for (int k = 0; k < n[0] * n[1]; k++) {
         double settled = column[k].volume / (SETTLED[p->dim] * width[0] * width[1]);
@@ -250,8 +303,7 @@ static double load_most(const struct packing *p, const struct wall *w)
     for (int32_t i = w->first_push; i < w->first_push + w->pushes; i++) {
         const struct drive *k = &p->pushes.drive[i];
         double one = fabs(k->value);
-        for (int32_t r = 0; r < k->rows; r++)
-            one = dmax(one, fabs(p->pushes.row[k->first + r].s));
+        for (int32_t r = 0; r < k->rows; r++) one = dmax(one, fabs(p->pushes.row[k->first + r].s));
         most += one;
     }
     return most;
@@ -284,18 +336,31 @@ static double pressure_of(const struct packing *p)
     return most;
 }
 
-/* m/s^2: of a wall by its load; of one that turns, of what is farthest from the axis */
-static double load_acceleration(const struct packing *p)
+/* What loads do: m/s^2, of a wall or an edge; of one that turns, of the body that is farthest from the
+   axis. And the m/s that a wall then has which glides. */
+static void of_loads(struct time_step *t, const struct packing *p)
 {
-    double most = 0;
-    for (int32_t k = 0; k < p->walls; k++) {
+    for (int32_t k = 0; k < p->walls && p->n; k++) {
         const struct wall *w = &p->wall[k];
-        double arm = w->load.way == LOAD_GLIDES ? 1 : 0;
+        double force = load_most(p, w), arm = 1, h;
+        if (!w->load.way) continue;
         for (int64_t i = 0; i < p->n && w->load.way == LOAD_TURNS; i++)
-            arm = dmax(arm, v3_norm(v3_cross(w->load.axis, v3_sub(p->x[i], w->load.point))));
-        if (w->load.way) most = dmax(most, arm * load_most(p, w) / w->load.mass);
+            arm =
+                dmax(i ? arm : 0, v3_norm(v3_cross(w->load.axis, v3_sub(p->x[i], w->load.point))));
+        t->x[LIMIT_LOAD] = dmax(t->x[LIMIT_LOAD], arm * force / w->load.mass);
+        if (w->load.way != LOAD_GLIDES) continue;
+        h = fall_of_bodies(p, v3_scale(w->load.force > 0 ? -1 : 1, w->load.axis));
+        t->x[LIMIT_STROKE] = dmax(t->x[LIMIT_STROKE], sqrt(2 * h * force / w->load.mass));
     }
-    return most;
+    double height[3], size = 1;
+    cell_heights(&p->cell, height);
+    for (int k = 0; k < p->dim; k++) size *= height[k];
+    for (int k = 0; k < 9; k++) {
+        double mass = p->cell.mass[k % 3][k / 3]; // component k / 3 of edge k % 3
+        if (!(mass > 0)) continue;
+        double force = fabs(p->cell.stress[k / 3][k % 3]) * size / height[k % 3];
+        t->x[LIMIT_LOAD] = dmax(t->x[LIMIT_LOAD], force / mass);
+    }
 }
 
 static void of_walls(struct time_step *t, const struct packing *p)
@@ -358,13 +423,14 @@ void time_step_of(struct time_step *t, const struct scene *s, const struct packi
     *t = (struct time_step){ .radius = smallest(s, p), .by = -1, .best = INFINITY };
     t->x[LIMIT_GRAVITY] = v3_norm(p->g);
     t->x[LIMIT_PRESSURE] = pressure_of(p) * lightest(p);
-    t->x[LIMIT_LOAD] = load_acceleration(p);
+    of_loads(t, p);
     t->x[LIMIT_STRAIN] = strain_of(&p->cell);
     t->x[LIMIT_SPEED] = start_speed(s, p);
     t->x[LIMIT_FALL] = fall_speed(s, p, t->x[LIMIT_SPEED]);
     of_walls(t, p);
     for (int k = 0; k < LIMITS; k++) {
-        t->dt[k] = isfinite(t->radius) ? limit_dt(&time_step_limit[k], t->radius, t->x[k]) : INFINITY;
+        t->dt[k] =
+            isfinite(t->radius) ? limit_dt(&time_step_limit[k], t->radius, t->x[k]) : INFINITY;
         if (t->dt[k] < t->best) t->best = t->dt[k], t->by = k;
     }
     t->best = rounded(t->best);

@@ -7,19 +7,23 @@
  * smallest:
  *
  *     a lasting acceleration a, of which a resting contact gets some in every step:
- *         a dt^2 <= 0.002 r        a thousandth of a diameter: 0.3 % of the solid fraction, which has
- *                                  lengths in the third power
+ *         a dt^2 <= 0.002 r        what a projection takes of an overlap in a step at least; as the slop of
+ *                                  gravity [bodies/project.h] a thousandth of a diameter, 0.3 % of the
+ *                                  solid fraction, which has lengths in the third power
  *     a lasting rate of strain L, by which neighbours approach with L 2 r:
  *         L 2 r dt <= 0.002 r
  *     a passing impact at velocity v, whose overlap is taken back in the steps that follow:
- *         v dt <= 0.1 r            as deep as bodies may be in one another [bodies/depth.h]
+ *         v dt <= 0.05 r           two that meet are then in one another by no more than the 0.1 r at which
+ *                                  a run fails [bodies/depth.h]
  *     a wall that turns with w, whose normals are those of the middle of the step:
  *         w dt <= 0.02             an error of (w dt)^2 / 8 of its radius
  *     a drive of frequency f, which moves by a chord in each step:
  *         f dt <= 1/200            an error of (2 pi f dt)^2 / 8 = 0.01 % of its amplitude
  *
  * The accelerations are gravity; the one that a pressure P gives a grain, P d^2/m (in the plane P d/m), so
- * that dt is 0.032 sqrt(m/(P d)); and a load's own, F/M.
+ * that dt is 0.032 sqrt(m/(P d)); and a load's own, F/M, of a wall or of an edge of the cell. The impacts are
+ * those of what has a velocity at the start, what falls, and what a load drives: the way h that is left until
+ * grains lie at a solid fraction of 0.6, in the plane 0.8, gives sqrt(v^2 + 2 a h).
  */
 #ifndef NSD_TIME_STEP_H
 #define NSD_TIME_STEP_H
@@ -33,6 +37,7 @@ enum time_step_row {
     LIMIT_STRAIN,
     LIMIT_SPEED,
     LIMIT_FALL,
+    LIMIT_STROKE,
     LIMIT_WALL,
     LIMIT_TURN,
     LIMIT_PERIOD,

@@ -36,7 +36,7 @@ static double unconverged(const struct report *r, double bodies[2])
 
 const struct watched account_watched[ACCOUNT_ROWS] = {
     [ACCOUNT_OVERLAP] = { "overlap", "1", "overlap %.3g of a radius", false, 2, 0.01, 0.1, overlap,
-                          "a smaller dt leaves less" },
+                          "a smaller dt leaves less: --dt, or --dt auto:0.01" },
     [ACCOUNT_APPROACH] = { "approach", "m s-1", "approach %.3g m/s", false, 0, INFINITY, INFINITY,
                            approach, "" },
     [ACCOUNT_WEDGED] = { "wedged", "1", "%.0f wedged", false, 1, 0, 0, wedged,

@@ -129,6 +129,13 @@ ok_each()
 # /particles, or another group, as text, bits and shapes and attributes, of a document's only frame
 dump() { h5dump -m %.17g -g "${2-/particles}" "$1" | tail -n +2; }
 
+# What a solve reports, without the account of the run [nsd-format(5)], which a chain of tools does not keep
+dump_solver()
+{
+    dump "$1" /nsd/solver | awk '{ match($0, /^ */) } !end && /GROUP "account"/ { end = RLENGTH }
+        !end; end && /^ *}$/ && RLENGTH == end { end = 0 }'
+}
+
 same_particles() { cmp <(dump "$1") <(dump "$2"); }
 
 # poke FILE OFFSET BYTE ...: bytes written over, each a number

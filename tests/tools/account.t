@@ -16,7 +16,7 @@ row='(.overlap | [(.value * 1e9 | round) / 1e9, .step, .bodies, .fails]), .wedge
 pair 0.05
 status 0 "5 % of a radius are no failure" nsd-step -e --overlap keep -n 3 "$tmp/pair.h5"
 is "a line says them at once" "$(head -n 1 "$tmp/err")" \
-    "nsd-step: overlap 0.05 of a radius (step 1, bodies 1 and 2): a smaller dt leaves less"
+    "nsd-step: overlap 0.05 of a radius (step 1, bodies 1 and 2): a smaller dt leaves less: --dt, or --dt auto:0.01"
 is "and the last line" "$(tail -n 1 "$tmp/err")" \
     "nsd-step: worst: overlap 0.05 of a radius (step 1, bodies 1 and 2), approach 0 m/s, 0 wedged, 0 went through a wall or a fixed body, 0 steps not converged"
 is "the document has them, in the smaller radius" "$(account "$tmp/out" "$row" | paste -sd ' ')" '[0.05,1,[1,2],false] 0 0'

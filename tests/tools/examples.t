@@ -103,6 +103,8 @@ claim()
     # packings
     'nsd-gen 500 > balls.h5') bodies balls.h5 500 ;;
     'nsd-gen -d 2 2000 > discs.h5') bodies discs.h5 '2000 and .dim == 2' ;;
+    'nsd-gen --check scenes/'*' | jq .dt') output 'length == 1 and .[0] > 0' ;;
+    'nsd-gen --check scenes/press.json | '*) grep -qE '^pressure\s[0-9.e-]+$' stdout ;;
     'nsd-gen scenes/column.json > column.h5') bodies column.h5 '.bodies and .bodies > 100' ;;
     *'.mu = 0.5'*'{"file": "balls.txt"}'*'> rough.h5')
         bodies rough.h5 300 && settings rough.h5 '.material | all(.mu == 0.5)' && frames rough.h5 ".[-1] == $2" ;;

@@ -131,8 +131,9 @@ for j in 2 3; do
 done
 # stderr has the summary alone, also of the thread that writes
 nsd-gen 20 | nsd-step -n 3 -j 2 -o "$tmp/told.h5" 2>"$tmp/told"
-ok "two threads say no more than one" cmp <(sed "s/[^ ]* s in/T s in/" "$tmp/told") \
-    <(echo "nsd-step: 3 steps, 0 sweeps, T s in the solver")
+nsd-gen 20 | nsd-step -n 3 -j 1 -o "$tmp/one.h5" 2>"$tmp/alone"
+ok "two threads say no more than one" cmp <(sed "s/[^ ]* s in/T s in/" "$tmp/told") <(sed "s/[^ ]* s in/T s in/" "$tmp/alone")
+is "two lines: the steps, and what went worst" "$(wc -l <"$tmp/told")" 2
 # In a cell two bricks long each meets the next one twice: both times by the same thread
 jq -n '{ dt: 1e-4, gravity: [0, 0, 0], shapes: { brick: { box: [1.001, 1.001, 1.001] } }, overlap: true,
          cell: { lengths: [2, 20, 20] }, bodies: [range(800) |

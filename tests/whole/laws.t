@@ -24,10 +24,11 @@ whole()
     nsd-detect "$tmp/$1" | solve >"$tmp/solved.h5"
     nsd-move "$tmp/solved.h5" >"$tmp/parts.h5"
     step -n 1 "$tmp/$1" | cat >"$tmp/one.h5"
-    for group in /particles /nsd/bonds /nsd/law /nsd/solver; do
+    for group in /particles /nsd/bonds /nsd/law; do
         ok "$1: detect | solve | move and step give the same bits of $group" \
             cmp <(dump "$tmp/parts.h5" $group) <(dump "$tmp/one.h5" $group)
     done
+    ok "$1: and of /nsd/solver" cmp <(dump_solver "$tmp/parts.h5") <(dump_solver "$tmp/one.h5")
     step -n 20 -j 1 -o "$tmp/j1.h5" "$tmp/$1"
     for j in "${threads[@]}"; do
         step -n 20 -j "$j" -o "$tmp/j$j.h5" "$tmp/$1"
@@ -66,7 +67,7 @@ ceiling 1.001 >"$tmp/holds.h5"
 ceiling 0.999 >"$tmp/falls.h5"
 height() { nsd-info --last -p "$1" | jq '.x[2]'; }
 for m in sbp sal ebp eal exact; do
-    step -m $m --eps 1e-10 -n 50 -o "$tmp/held.h5" "$tmp/holds.h5"
+    step -m $m --criterion natural --eps 1e-10 -n 50 -o "$tmp/held.h5" "$tmp/holds.h5"
     like "-m $m: a ball hangs from a ceiling by a little more than its weight" \
         "$(height "$tmp/held.h5" | jq '(. + 0.01 | fabs) < 1e-12')" true
     rm "$tmp/held.h5"
@@ -113,7 +114,7 @@ like "wet grains: energy is balanced in every step" "$(misfit "$tmp/wet.log" | j
 like "wet grains: nothing dissipates less than nothing" "$(jq -s 'map(.balance.dissipation) | min > -1e-12' "$tmp/wet.log")" true
 whole wet.h5
 for g in auto nlgs anderson cg prox ipm; do
-    nsd-detect "$tmp/wet.h5" | solve --global $g --eps 1e-6 >"$tmp/g.h5"
+    nsd-detect "$tmp/wet.h5" | solve --global $g --criterion natural --eps 1e-6 >"$tmp/g.h5"
     like "wet grains: --global $g solves them" "$(nsd-err "$tmp/g.h5" | jq '.natural <= 1e-6')" true
 done
 # FORM PACKING CONTACTS: "true" where the problem that FCLIB gets has the velocities of these contacts, more than 20
@@ -125,7 +126,7 @@ import h5py, sys
 with h5py.File(sys.argv[1], 'r') as a, h5py.File(sys.argv[2], 'w') as b:
     a.copy(sys.argv[3], b)
 PYTHON
-    solve --eps 1e-10 "$tmp/problem.h5" | nsd-info -c >"$tmp/foreign"
+    solve --criterion natural --eps 1e-10 "$tmp/problem.h5" | nsd-info -c >"$tmp/foreign"
     nsd-info -c "$3" | jq -s --slurpfile f "$tmp/foreign" \
         '[., $f] | transpose | map(.[0].u[0] * (1 + .[0].e_n) - .[1].u[0] | fabs) | length > 20 and max < 1e-6'
 }
@@ -146,10 +147,10 @@ slope()
 slope 0.1 0.101 >"$tmp/stays.h5"
 slope 0.1 0.04 >"$tmp/rolls.h5"
 for m in sbp sal ebp eal exact auto; do
-    step -m $m --eps 1e-10 -n 100 "$tmp/stays.h5" >"$tmp/stayed.h5"
+    step -m $m --criterion natural --eps 1e-10 -n 100 "$tmp/stays.h5" >"$tmp/stayed.h5"
     like "-m $m: a ball stays on a slope of less than mu_r/R" \
         "$(nsd-info --last -p "$tmp/stayed.h5" | jq '(.v | map(fabs) | max) < 1e-9')" true
-    step -m $m --eps 1e-10 -n 100 "$tmp/rolls.h5" >"$tmp/rolled.h5"
+    step -m $m --criterion natural --eps 1e-10 -n 100 "$tmp/rolls.h5" >"$tmp/rolled.h5"
     like "-m $m: and rolls down a steeper one with 5/7 (g sin - mu_r/R g cos)" \
         "$(nsd-info --last -p "$tmp/rolled.h5" | jq '(.v[0] / (0.1 * 5 / 7 * 9.81 * 0.06) - 1 | fabs) < 1e-9')" true
     rm "$tmp/stayed.h5" "$tmp/rolled.h5"
@@ -161,7 +162,7 @@ for how in '{ v: [0.1, 0, 0], w: [0, 10, 0] }|.x[0] / (7 * 0.1 * 0.1 / (10 * 0.0
         bodies: [{ x: [0, 0, 0.01], radius: 0.01 } + '"$motion"'] }' | nsd-gen - >"$tmp/moves.h5"
     n=1000
     [[ $what != .w* ]] || n=100
-    step -n $n --every $n --log "$tmp/moves.log" "$tmp/moves.h5" >"$tmp/moved.h5"
+    step --eps 1e-10 -n $n --every $n --log "$tmp/moves.log" "$tmp/moves.h5" >"$tmp/moved.h5"
     like "a ball that moves as $motion ends as the closed form says" \
         "$(nsd-info --last -p "$tmp/moved.h5" | jq "($what - 1 | fabs) < $tolerance")" true
     like "and its energy is balanced" "$(misfit "$tmp/moves.log" | jq '. < 1e-12')" true
@@ -177,7 +178,7 @@ rm "$tmp/some.h5"
 like "rolling grains: energy is balanced in every step" "$(misfit "$tmp/rolling.log" | jq '. < 1e-12')" true
 whole rolling.h5
 for m in sbp sal ebp eal exact; do
-    nsd-detect "$tmp/rolling.h5" | solve -m $m --eps 1e-8 --max-sweeps 100000 >"$tmp/m.h5"
+    nsd-detect "$tmp/rolling.h5" | solve -m $m --criterion natural --eps 1e-8 --max-sweeps 100000 >"$tmp/m.h5"
     like "rolling grains: -m $m solves them" "$(nsd-err "$tmp/m.h5" | jq '.natural < 2e-8')" true
 done
 nsd-detect "$tmp/rolling.h5" >"$tmp/contacts.h5"
@@ -186,7 +187,7 @@ for g in cg prox ipm; do
     like "and who can" "$(cat "$tmp/err")" "auto, anderson and nlgs"
 done
 for g in anderson auto; do
-    solve --global $g --eps 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/g.h5"
+    solve --global $g --criterion natural --eps 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/g.h5"
     like "rolling grains: --global $g solves them" "$(nsd-err "$tmp/g.h5" | jq '.natural < 2e-8')" true
     like "in fewer sweeps than Gauss-Seidel" "$(jq -n --argjson a "$(nsd-info "$tmp/g.h5" | tail -n 1)" \
         --argjson b "$(nsd-info "$tmp/m.h5" | tail -n 1)" '$a.sweeps < $b.sweeps')" true
@@ -234,7 +235,7 @@ like "viscosity makes it cost more" "$(pull 1e-7 '[1,0,0]' 1e-5 | jq '.[1] > 2.2
 jq -n '{ dt: 1e-3, mu: 0.3, adhesion: { c_n: 1e12, w: 1e9, area: 1e-4 },
     bodies: [{ x: [0, 0, 0], radius: 0.01, fixed: true }, { x: [0, 0, -0.02], radius: 0.01, density: 1e4 }] }' | nsd-gen - >"$tmp/weld.h5"
 for m in sbp sal ebp eal exact; do
-    step -m $m --eps 1e-10 -n 20 "$tmp/weld.h5" >"$tmp/welded.h5"
+    step -m $m --criterion natural --eps 1e-10 -n 20 "$tmp/weld.h5" >"$tmp/welded.h5"
     like "-m $m: a welded ball hangs, its bond as long as its weight makes it" "$(nsd-info --last -p "$tmp/welded.h5" |
         jq -s '(4 / 3 * 3.141592653589793e-6 * 1e4 * 9.81 / 1e8) as $d | (-0.02 - .[1].x[2] - $d | fabs) < 0.01 * $d')" true
     rm "$tmp/welded.h5"
@@ -245,7 +246,7 @@ beam()
 {
     jq -n --argjson n "$1" '{ dim: 2, dt: 1, density: (4 / 3.141592653589793), gravity: [0, -1], adhesion: { c_n: 1e9, w: 1e6, area: 1 },
         bodies: [range(0; $n + 1) as $i | range(0; 2) as $j | { x: [$i, $j], radius: 0.5, fixed: ($i == 0) }] }' | nsd-gen - >"$tmp/beam.h5"
-    step --global ipm --eps 1e-10 -n 4 "$tmp/beam.h5" >"$tmp/bent.h5"
+    step --global ipm --criterion natural --eps 1e-10 -n 4 "$tmp/beam.h5" >"$tmp/bent.h5"
     nsd-info --last -p "$tmp/bent.h5" | jq -s --argjson n "$1" 'map(select(.x[0] > $n - 0.5).x[1]) | (1 - add) / 2 / (2 * pow($n; 4) / 8e9) - 1'
     rm "$tmp/bent.h5"
 }
@@ -258,7 +259,7 @@ for part in 1.02 0.98; do
     jq -n --argjson part $part '6 as $n | { dim: 2, dt: 1, density: (4 / 3.141592653589793), gravity: [0, -1],
         adhesion: { c_n: 1e9, w: ($part * $n * $n | . * . / 1e9), area: 1 },
         bodies: [range(0; $n + 1) as $i | range(0; 2) as $j | { x: [$i, $j], radius: 0.5, fixed: ($i == 0) }] }' | nsd-gen - |
-        step --overlap keep --global prox --eps 1e-8 -n 6 --every 6 --log "$tmp/breaks.log" -o "$tmp/breaks.h5"
+        step --overlap keep --global prox --criterion natural --eps 1e-8 -n 6 --every 6 --log "$tmp/breaks.log" -o "$tmp/breaks.h5"
     like "a bonded beam breaks where a bond bears S sqrt(w c_n), not below: $part" \
         "$(jq -s 'map(.balance.broken) | add > 0' "$tmp/breaks.log")" "$(jq -n "$part < 1")"
     rm "$tmp/breaks.h5"
@@ -292,11 +293,11 @@ like "bonded grains: energy is balanced in every step" "$(misfit "$tmp/bonded.lo
 whole bonded.h5
 nsd-detect "$tmp/bonded.h5" >"$tmp/contacts.h5"
 for m in sbp sal ebp eal exact; do
-    solve -m $m --eps 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/m.h5"
+    solve -m $m --criterion natural --eps 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/m.h5"
     like "bonded grains: -m $m solves them" "$(nsd-err "$tmp/m.h5" | jq '.natural < 1e-7')" true
 done
 for g in auto anderson cg prox ipm; do
-    solve --global $g --eps 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/g.h5"
+    solve --global $g --criterion natural --eps 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/g.h5"
     like "bonded grains: --global $g solves them" "$(nsd-err "$tmp/g.h5" | jq '.natural < 1e-7')" true
     like "and finds the same velocities" "$(jq -n --slurpfile a <(nsd-info -c "$tmp/m.h5") --slurpfile b <(nsd-info -c "$tmp/g.h5") \
         '[$a, $b] | transpose | map(.[0].u[0] - .[1].u[0] | fabs) | length > 20 and max < 1e-6')" true
@@ -321,7 +322,7 @@ jq -n '{ dt: 2e-3, mu: 0.3, density: 1000, shapes: { brick: { box: [0.2, 0.1, 0.
     adhesion: { c_n: 1e8, c_t: 5e7, w: 1e9, area: 1e-3 },
     bodies: [{ x: [0, 0, 0], shape: "brick", fixed: true }, { x: [0.03, 0, -0.1], shape: "brick" }] }' | nsd-gen - >"$tmp/weld.h5"
 for m in sbp sal ebp eal exact; do
-    step -m $m --eps 1e-10 -n 300 --every 300 --contacts --log "$tmp/weld.log" "$tmp/weld.h5" >"$tmp/welded.h5"
+    step -m $m --criterion natural --eps 1e-10 -n 300 --every 300 --contacts --log "$tmp/weld.log" "$tmp/weld.h5" >"$tmp/welded.h5"
     # the four springs: a force m g, and its moment about the middle of the bond, 15 mm off the centre of mass
     like "-m $m: a brick hangs from its bond" "$(nsd-info -c "$tmp/welded.h5" | jq -s '(2 * 9.81) as $f | (map(.r[0]) | add / -2e-3) as $pull |
         length == 4 and all(.beta == 1) and ($pull / $f - 1 | fabs) < 1e-3 and
@@ -332,7 +333,7 @@ for w in 2.1 0.95; do # what comes at once stretches a spring up to twice as far
     jq -n --argjson w $w '{ dt: 1e-4, mu: 0.3, density: 1000, shapes: { cube: { box: [0.1, 0.1, 0.1] } },
         adhesion: { c_n: 1e12, c_t: 1e12, w: (($w * 9.81 / 1e-3) as $s | $s * $s / 1e12), area: 1e-3 },
         bodies: [{ x: [0, 0, 0], shape: "cube", fixed: true }, { x: [0, 0, -0.1], shape: "cube", density: 1000 }] }' | nsd-gen - >"$tmp/weld.h5"
-    step --global prox --eps 1e-8 -n 100 --every 100 --contacts "$tmp/weld.h5" >"$tmp/welded.h5"
+    step --global prox --criterion natural --eps 1e-8 -n 100 --every 100 --contacts "$tmp/weld.h5" >"$tmp/welded.h5"
     like "a cube hangs from a bond of $w times its weight, or does not" \
         "$(nsd-info --last -p "$tmp/welded.h5" | jq -s '.[1].x[2] > -0.1001')" "$(jq -n "$w > 1")"
 done
@@ -341,7 +342,7 @@ jq -n '{ dt: 1e-3, mu: 0.3, density: 1000, cell: { lengths: [0.5, 0.5, 1], repea
     shapes: { brick: { box: [0.2, 0.1, 0.1] } }, adhesion: { c_n: 1e9, c_t: 5e8, w: 1e9, area: 1e-3 },
     walls: [{ point: [0, 0, 0], normal: [0, 0, 1], velocity: [2, -1, 0] }],
     bodies: [{ x: [0.1, 0.1, 0.05], shape: "brick", v: [2, -1, 0] }] }' | nsd-gen - |
-    step --eps 1e-10 -n 500 --every 500 --contacts -o "$tmp/ride.h5"
+    step --criterion natural --eps 1e-10 -n 500 --every 500 --contacts -o "$tmp/ride.h5"
 like "a brick rides on the floor that it is bonded to, through the border of a cell that repeats" \
     "$(nsd-info --last -p "$tmp/ride.h5" | jq '.image == [2, -1, 0] and ([.x[0] - 0.1, .x[1] - 0.1, .x[2] - 0.05, .w[]] | map(fabs) | max < 1e-9)')" true
 like "by its four bonds alone, none of them stretched" \
@@ -363,7 +364,7 @@ shaped() # LAWS STEPS: bricks, rods, clumps and balls that fall into a box
     like "and more than 30 contacts are left" "$(nsd-info -c "$tmp/contacts.h5" | jq -s 'length > 30')" true
     local m
     for m in "${methods[@]}"; do
-        solve -m "$m" --global anderson --eps 1e-7 --max-sweeps 20000 "$tmp/contacts.h5" >"$tmp/m.h5"
+        solve -m "$m" --global anderson --criterion natural --eps 1e-7 --max-sweeps 20000 "$tmp/contacts.h5" >"$tmp/m.h5"
         like "shaped grains with $1: -m $m solves them" "$(nsd-err "$tmp/m.h5" | jq '.natural < 1e-6')" true
     done
 }
@@ -384,7 +385,7 @@ twice() # BODIES
     jq -n '{ dt: 1e-4, mu: 0.4, density: 2500, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }], shapes: { brick: { box: [0.01, 0.01, 0.01] } },
         rolling: { mu_r: 2e-4, mu_p: 1e-4 }, adhesion: { c_n: 1e10, c_t: 5e9, w: 1e-3, area: 1e-6, forever: true },
         bodies: ([{ count: 20, radius: 0.002, box: { x: [0, 0.02], y: [0, 0.02], z: [0, null] }, v: [0.05, 0, -0.3] }] + '"$1"') }' | nsd-gen - |
-        step --global nlgs --eps 1e-11 --overlap keep -n 60 --every 60 --log "$tmp/twice.log" | nsd-info --last -p | jq -c 'select(.radius == 0.002) | .x'
+        step --global nlgs --criterion natural --eps 1e-11 --overlap keep -n 60 --every 60 --log "$tmp/twice.log" | nsd-info --last -p | jq -c 'select(.radius == 0.002) | .x'
 }
 if [ -z "$thin" ]; then # a minute each under the sanitizers, of sweeps that are run elsewhere
     twice '[]' >"$tmp/numbers"
@@ -411,7 +412,7 @@ for grain in disc box; do
         walls: [{ circle: { center: [0, 0], radius: 0.03 }, drives: [{ about: [0, 0], speed: 6 }] }],
         bodies: [{ random: { count: 40 }, radius: { uniform: [1.4e-3, 1.6e-3] }, box: { x: [-0.02, 0.02], y: [-0.02, 0.02] } } +
             if $grain == "box" then { shape: "box" } else {} end] }' | nsd-gen - |
-        step -n 250 --every 250 --eps 1e-3 --log "$tmp/turns.log" -o "$tmp/turned.h5"
+        step -n 250 --every 250 --criterion natural --eps 1e-3 --log "$tmp/turns.log" -o "$tmp/turned.h5"
     like "a drum of $grain grains that roll, hold together and break: energy is balanced in every step" \
         "$(misfit "$tmp/turns.log" | jq '. < 1e-12')" true
     like "and the drum has done work, and bonds have broken" \

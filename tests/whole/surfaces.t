@@ -59,7 +59,7 @@ plane='{"point": [0, 0, 0], "normal": [0, 0, 1]}'
 patch='{"rectangle": {"center": [1.2, 0, 0], "normal": [0, 0, 1], "sides": [0.3, 0.4]}}'
 for grain in box turned prism ball capsule; do
     for way in gap-project push project; do
-        [ -n "$quick" ] && [ "$way" != gap-project ] && continue
+        [ "$way" = gap-project ] || [ "$grain" = box ] || continue
         truth=$(slide $grain $way "$plane")
         seam() { is "$way: a $grain passes $1" "$(alike "$(slide $grain $way "${@:2}")" "$truth")" true; }
         seam 'from rectangle to rectangle, 1e-7 apart and higher' "$(rect -1 1 0)" "$(rect 1.0000001 3 1e-7)"
@@ -112,7 +112,7 @@ s=0
 nsd-step -e -n 2 "$tmp/fast-in.h5" >"$tmp/fast.h5" 2>"$tmp/err" || s=$?
 is 'what goes through gives status 1 under -e' $s 1
 ok 'and a line that says who, where and when' grep -q '1 went through a wall or a fixed body (step 1, bodies 0 and wall 0)' "$tmp/err"
-is 'and is counted in the document' "$(nsd-info --last "$tmp/fast.h5" | jq 'select(.passed) | .passed')" 1
+is 'and is counted in the document' "$(nsd-info --last "$tmp/fast.h5" | jq 'select(.account).account.passed.value')" 1
 
 # a weld tolerance of a scene is kept
 jq -cn --argjson r "$(rect -1 1 0)" '{dt: 1e-3, walls: [$r + {weld: 1e-3}]}' >"$tmp/weld.json"

@@ -1,0 +1,135 @@
+#!/usr/bin/env bash
+# The time step: what suits a scene, another one for a run, and one that adapts.
+. tests/support/tap.sh
+
+step() { nsd-step "$@" 2>/dev/null; }
+checked() { jq -nc "$1" | nsd-gen --check - 2>/dev/null | jq -c "$2"; }
+near() { ok "$1" eval "jq -n -e '(($2) / ($3) - 1 | fabs) < 1e-9'"; }
+limit() { echo ".limits[] | select(.limit == \"$1\").dt"; }
+root="$PWD"
+cd "$tmp"
+
+# ---- suggestions, against numbers by hand ----
+
+ball='{dt: 1e-5, bodies: [{x: [0, 0, 0.1], radius: 1e-3}], walls: [{point: [0, 0, 0], normal: [0, 0, 1]}]}'
+near "gravity: sqrt(0.002 r / g)" "$(checked "$ball" "$(limit gravity)")" '0.002e-3 / 9.81 | sqrt'
+# it falls until its column of (2 r)^2 is filled to 0.6 by 4/3 pi r^3
+near "a fall: 0.05 r / sqrt(2 g h)" "$(checked "$ball" "$(limit fall)")" \
+    '0.05e-3 / (2 * 9.81 * (0.101 - 4 / 3 * 3.14159265358979324 * 1e-9 / (0.6 * 4e-6)) | sqrt)'
+is "the least counts, by its first two digits" "$(checked "$ball" '.dt == 3.5e-5 and .by == "fall"')" true
+near "a start with 2 m/s" "$(checked "$ball"' | .gravity = [0, 0, 0] | .bodies[0].v = [0, 2, 0]' .dt)" 2.5e-5
+drum='{dt: 1, dim: 2, gravity: [0, 0], bodies: [{x: [0, -0.05], radius: 1e-3}],
+    walls: [{circle: {center: [0, 0], radius: 0.1}, drives: [{about: [0, 0], speed: 2}]}]}'
+near "a drum's wall where the discs are: 0.05 r / (w R)" "$(checked "$drum" "$(limit wall)")" 5e-4
+near "its turn: 0.02 / w" "$(checked "$drum" "$(limit turn)")" 0.01
+near "a drive of 50 Hz: 1/200 of its period" \
+    "$(checked "$ball"' | .walls[0].drives = [{along: [0, 0, 1], amplitude: 1e-9, frequency: 50}]' "$(limit period)")" 1e-4
+cell='{dt: 1, dim: 2, gravity: [0, 0], density: 1000, bodies: [{x: [0.1, 0.1], radius: 0.01}],
+    cell: {lengths: [0.2, 0.4], stress: {pressure: 100, mass: 3}}}'
+near "a pressure: sqrt(0.001 m / P) of discs" "$(checked "$cell" "$(limit pressure)")" '0.001 * 1000 * 3.14159265358979324 * 1e-4 / 100 | sqrt'
+near "and of its edge, sqrt(0.002 r M / F)" "$(checked "$cell" "$(limit load)")" '0.002 * 0.01 * 3 / (100 * 0.4) | sqrt'
+near "an edge's mass is 3/(4 pi^2) of all" "$(checked "$cell" '.masses[0].mass')" '3 / (4 * 3.14159265358979324) * 1000 * 1e-4'
+near "simple shear at 5/s: 0.001 / L" \
+    "$(checked "$cell"' | .cell = {lengths: [0.2, 0.4], gradient: [[0, 5], [0, 0]], affine: true}' "$(limit strain)")" 2e-4
+is "the flow itself is no approach" \
+    "$(checked "$cell"' | .cell = {lengths: [0.2, 0.4], gradient: [[0, 5], [0, 0]], affine: true}' .by)" '"strain"'
+piston='{dt: 1e-3, gravity: [0, 0, 0], bodies: [{x: [0, 0, 0.01], radius: 0.01}, {x: [0.06, 0.02, 0.01], radius: 0.01}],
+    walls: [{point: [0, 0, 0.05], normal: [0, 0, -1], load: {along: [0, 0, 1], mass: 0.5, force: -4}}]}'
+near "a piston: its force over the face that the balls span" "$(checked "$piston" '.limits[] | select(.limit == "pressure").value')" \
+    '4 / (0.08 * 0.04) * 4e-4 / (2500 * 4 / 3 * 3.14159265358979324 * 1e-6)'
+near "and a mass of one layer" "$(checked "$piston" '.masses[] | select(.wall == 0).mass')" \
+    '2500 * 4 / 3 * 3.14159265358979324 * 1e-6 / 4e-4 * 0.08 * 0.04'
+is "of dt too long by far it warns" "$(jq -nc "$ball"' | .dt = 1e-2' | nsd-gen --check - 2>&1 >/dev/null | grep -c 'warning: dt = 0.01 s')" 1
+ok "and ends with 0, without a document" eval "jq -nc '$ball | .dt = 1e-2' | nsd-gen --check - 2>/dev/null | jq -e .dt >/dev/null"
+ok "all scenes have a suggestion" eval 'for scene in "$root"/scenes/{drum,silo,press,shear}.json; do nsd-gen --check $scene 2>/dev/null | jq -e ".dt > 0" || exit 1; done >/dev/null'
+
+jq -nc "$ball"' | .dt = "auto"' >auto.json
+nsd-gen auto.json >auto.h5
+is "\"auto\" takes it" "$(nsd-info auto.h5 | jq -s '.[0].dt == 3.5e-5')" true
+is "the document says what was asked" "$(nsd-info --scene auto.h5 | jq .dt)" '"auto"'
+refuses 65 "where nothing moves auto is refused" eval "jq -nc '$ball | .gravity = [0, 0, 0] | .dt = \"auto\"' | nsd-gen -"
+refuses 65 "and so is another word" eval "jq -nc '$ball | .dt = \"fast\"' | nsd-gen -"
+
+# ---- another dt ----
+
+now() { nsd-info --last "$1" | jq -c '[.step, .time]'; }
+echo '{"dt": 1e-3, "gravity": [0, 0, 0], "bodies": [{"x": [0, 0, 0], "v": [1, 0, 0], "radius": 0.1}]}' | nsd-gen - | step -n 10 --every 10 >ten.h5
+step -n 20 --dt 5e-4 --every 20 ten.h5 >half.h5
+is "--dt: 20 steps of half a dt are 10 of a whole" "$(now half.h5)" '[30,0.02]'
+is "which the document has then" "$(nsd-info half.h5 | jq -s '.[0].dt')" 0.0005
+step -n 10 --dt 5e-4 ten.h5 | step -n 10 --every 10 >pieces.h5
+ok "in pieces the same bits" cmp <(nsd-info -p --last half.h5) <(nsd-info -p --last pieces.h5)
+step --until 1 --dt 3e-4 --every 10000 ten.h5 >third.h5
+is "--until with another dt" "$(nsd-info --last third.h5 | jq '.step == 3310 and (.time - 1 | fabs) < 1e-15')" true
+for bad in 0 -1 nan inf 1e-3s '' auto auto: auto:0 auto:-1 auto:2 auto:nan; do
+    refuses 64 "--dt '$bad' is refused" nsd-step --dt "$bad" ten.h5
+done
+step -n 1 -o one.h5 ten.h5
+refuses 64 "in place a trajectory has one dt" nsd-step -i --dt 5e-4 one.h5
+refuses 64 "also one that adapts is refused" nsd-step -i --dt auto:0.01 one.h5
+refuses 65 "one that does not change the time" nsd-step --dt 1e-30 ten.h5
+
+# ---- one that adapts ----
+
+impact='{dt: 4e-3, bodies: [{x: [0, 0, 0.2], radius: 0.01}, {x: [0, 0.001, 0.15], radius: 0.02}, {x: [0.1, 0, 0.3], radius: 0.015}],
+    mu: 0.3, e_n: 0.5, walls: [{point: [0, 0, 0], normal: [0, 0, 1]}]}'
+jq -nc "$impact" | nsd-gen - >start.h5
+step --until 0.4 -o whole.h5 --dt auto:0.01 start.h5
+deepest() { nsd-info --last "$1" | jq '.account.overlap.value'; }
+dts() { nsd-info "$1" | jq -c 'select(.step) | .dt'; }
+ok "no impact goes deeper than TOL" eval "jq -n -e '$(deepest whole.h5) > 0 and $(deepest whole.h5) <= 0.01'"
+step --until 0.4 -o plain.h5 start.h5
+ok "which it does with one dt" eval "jq -n -e '$(deepest plain.h5) > 0.1'"
+ok "dt is the scene's, halved" eval "dts whole.h5 | jq -s -e 'all(. == 0.004 or ((0.004 / .) | log2 | . == floor))'"
+ok "it is halved and doubled" eval "dts whole.h5 | jq -s -e '. as \$d | (map(select(. < 1e-3)) | length > 2) and (map(select(. == 0.004)) | length > 2) and any(range(1; length); \$d[.] > \$d[. - 1])'"
+is "the run ends at its time" "$(nsd-info --last whole.h5 | jq .time)" 0.4
+is "times are multiples of their dt, to the bit" "$(nsd-info whole.h5 | jq -c 'select(.step) | (.time / .dt | round) * .dt == .time' | sort -u)" true
+step --until 0.4 --dt auto:0.01 -j 2 -o threads.h5 start.h5
+ok "two threads give the same bytes" cmp whole.h5 threads.h5
+for at in 0.1 0.197 0.25; do
+    step --until $at --dt auto:0.01 -o first.h5 start.h5
+    step --until 0.4 --dt auto:0.01 -o rest.h5 first.h5
+    ok "a run interrupted at $at s goes on with the same bits" cmp <(nsd-info -p --last whole.h5) <(nsd-info -p --last rest.h5)
+    step --until 0.4 --dt auto:0.01 -i first.h5
+    ok "also in place" cmp <(nsd-info whole.h5 | jq -c 'select(.step) | [.step, .time, .dt, .kinetic_energy]') <(nsd-info first.h5 | jq -c 'select(.step) | [.step, .time, .dt, .kinetic_energy]')
+done
+step --until 0.4 --dt auto:0.01 <start.h5 | cat >stream.h5
+ok "and through a pipe" cmp <(nsd-info -p --last whole.h5) <(nsd-info -p --last stream.h5)
+nsd-cat stream.h5 >packed.h5
+ok "which nsd-cat packs" cmp <(dts whole.h5) <(dts packed.h5)
+step -n 3 -o fixed.h5 first.h5
+is "without --dt the last one stays" "$(dts fixed.h5 | sort -u)" "$(dts first.h5 | tail -n 1)"
+step --until 0.4 --dt auto:0.01 --every 0.05s -o kept.h5 start.h5
+is "--every in seconds" "$(nsd-info kept.h5 | jq -c 'select(.step) | .time * 100 | floor' | jq -sc .)" '[5,10,15,20,25,30,35,40]'
+
+# a ball at rest: forces are by the dt of each step
+jq -nc '{dt: 1e-3, bodies: [{x: [0, 0, 0.01], radius: 0.01, mass: 1}, {x: [1, 0, 0.3], radius: 0.01, v: [0, 0, -3]}], walls: [{point: [0, 0, 0], normal: [0, 0, 1]}]}' |
+    nsd-gen - | step --until 0.12 --dt auto:0.01 --forces -o rest.h5
+ok "a weight stays a weight while dt changes" eval \
+    "[ \$(dts rest.h5 | sort -u | wc -l) -gt 2 ] && { nsd-info rest.h5 | jq -c 'select(.dt)'; nsd-info --contacts rest.h5; } |
+        jq -s -e 'map(select(.dt)) as \$frames | [.[] | select(.body == [-1, 0]) | . as \$c | .r[0] / (\$frames[] | select(.step == \$c.step).dt)] | length > 100 and all(. - 9.81 | fabs < 1e-6)'"
+
+if have_h5py; then
+    foreign whole.h5 set.h5
+    for bad in 3e-3 0 'float("nan")' 8e-3 1e-300; do
+        cp set.h5 bad.h5 && /usr/bin/python3 -c "import h5py
+h5py.File('bad.h5', 'r+')['nsd/time_step/value'][-1] = $bad"
+        refuses 65 "a frame's dt of $bad is refused" nsd-step bad.h5
+    done
+    ok "nsd.py has the frame's dt" env PYTHONPATH="$root/scripts" /usr/bin/python3 -c "import nsd
+assert nsd.last('whole.h5').dt == $(dts whole.h5 | tail -n 1)"
+else
+    skip "frames that others have written" "no h5py"
+fi
+if command -v mpirun >/dev/null && [ -x "$root/build/nsd-step-mpi" ]; then
+    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+    like "several processes refuse it" "$(mpirun --oversubscribe -n 2 nsd-step --dt auto:0.01 -o mpi.h5 start.h5 2>&1 || true)" \
+        'one process alone adapts'
+    mpirun --oversubscribe -n 2 nsd-step --until 0.4 --dt 1e-3 -o mpi.h5 start.h5 2>/dev/null
+    step --until 0.4 --dt 1e-3 -o one.h5 start.h5
+    ok "and make the same steps of another dt" cmp one.h5 mpi.h5
+else
+    skip "several processes" "no MPI"
+fi
+
+done_testing
