@@ -25,7 +25,7 @@ static const struct cli_option own[] = {
     { CLI_INT, 'd', "dim", &dim, "2|3", .min = 2, .max = 3,
       .help = "with N: 3 makes balls, 2 discs in the plane [3]" },
     { CLI_FLAG, 0, "check", &check,
-      .help = "write no document, but which time step and masses suit it, and why, as JSON" },
+      .help = "print the time step and masses that suit the scene, as JSON" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };

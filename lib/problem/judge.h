@@ -23,7 +23,6 @@ struct sums {
  * differ by a factor of 1e6 make 4e6 units of a contact at rest; leaps along the growth [solve/anderson.c] soon
  * make 1e9 and more of one that has no solution.
  */
-#define JAMMED 1e9
 #define MISSES 1e-3
 /* Of |lambda r|: below it, what a contact seems to miss the law by is rounding. */
 #define ROUNDING_OF_R 3.6e-15

@@ -7,7 +7,6 @@
 #include "bodies/top.h"
 #include "problem/braking.h"
 #include "problem/filling.h"
-#include "problem/judge.h"
 #include "problem/laying.h"
 #include "problem/plan.h"
 #include "problem/schedule.h"

@@ -78,8 +78,10 @@ struct problem {
     double scale_r; /* N s: that of reactions, m g dt */
     double fall;    /* m/s: |g| dt */
     double unit;    /* m/s: the scene's own velocity, in which CRITERION_VELOCITY counts */
-    double norm_q;  /* m/s: |u~_free| of all contacts, |q| */
-    double speed;   /* m/s: the fastest point before the step, plus g dt; 0: there is only W */
+#define JAMMED                                                                                     \
+    1e9 /* units: what a contact's reaction makes of its velocity where it has no end [problem/judge.h] */
+    double norm_q; /* m/s: |u~_free| of all contacts, |q| */
+    double speed;  /* m/s: the fastest point before the step, plus g dt; 0: there is only W */
 };
 
 /*
