@@ -42,8 +42,7 @@ struct err {
     double velocity_error;       /* m/s: the largest |(r - P(r - rho_a u^))/rho_a| of a contact */
     double velocity;             /* the same over the scene's own velocity [problem/problem.h] */
     int64_t jammed; /* contacts that are left out of these, for their reactions grow without end */
-    double
-        stray; /* natural_q's over max(|q|, sqrt(n) g dt); of an FCLIB problem velocity */
+    double stray;   /* natural_q's over max(|q|, sqrt(n) g dt); of an FCLIB problem velocity */
 };
 
 struct report {
@@ -65,7 +64,7 @@ struct report {
     int64_t safeguarded; /* local solves that ended with the exact solution instead */
     int64_t gave_up;     /* local solves that did not satisfy the law */
     bool watched;        /* passed is known: there is what bodies may go through [bodies/swift.h] */
-    int64_t passed; /* bodies that went through a boundary or a fixed hull in this step */
+    int64_t passed;      /* bodies that went through a boundary or a fixed hull in this step */
     int32_t passed_id, passed_through; /* the last; and a wall -1-w, or the number of a body */
     double work;          /* ns, counted and not timed, of the whole solve [solve/prices.h] */
     const char *fallback; /* why the solver asked for could not go on, and swept instead; or NULL */
