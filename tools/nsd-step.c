@@ -48,7 +48,7 @@ static const struct cli_option own[] = {
     { CLI_REAL, 0, "until", &until, "T", "or steps until the time is T, s [by -n]", .min = -1e300,
       .max = 1e300 },
     { CLI_TEXT, 0, "dt", &dt, "DT|auto:TOL",
-      .help = "time step, s; auto adapts it to overlaps of TOL radii [the document's]" },
+      .help = "time step, s; auto: by overlaps of TOL radii [the document's]" },
     { CLI_EVERY, 0, "every", &every, "K|Ts",
       "keep every K-th step, or one every T s of its time, and the last [1]", .max = 1e15 },
     { CLI_FLAG, 0, "contacts", &contacts, .help = "keep each frame's contacts too" },

@@ -2,7 +2,6 @@
 
 #include "io/h5.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 
 static const char group[] = "/nsd/memory";
@@ -11,17 +10,6 @@ static const char group[] = "/nsd/memory";
 static bool features(const struct packing *p)
 {
     return p->mesh.elements || p->shape;
-}
-
-/* Are the datasets of these columns there? Of a document that grows some may be made only now. */
-static bool has_all(struct source *s, const struct column *c)
-{
-    char path[80];
-    for (; c->name; c++) {
-        snprintf(path, sizeof path, "%s/%s", group, c->name);
-        if (!source_has(s, path)) return false;
-    }
-    return true;
 }
 
 int memory_rows_open(struct memory_rows *r, struct source *source, struct why *why)
@@ -44,10 +32,7 @@ int memory_rows_read(struct memory_rows *r, struct packing *p, struct why *why)
 {
     int64_t at = table_read_row(r->step, r->blocks, p->step), start = 0, count = 0;
     // before its first contact a document has no rows
-    bool any = has_all(r->source, layout_memory) &&
-               (!features(p) || has_all(r->source, layout_memory_features)) &&
-               (!cell_repeats(&p->cell) || has_all(r->source, layout_memory_shifts)) &&
-               (!packing_rolls(p) || has_all(r->source, layout_memory_moments));
+    bool any = source_has(r->source, "/nsd/memory/body");
     if (at < 0) return 0;
     if (any && table_read_span(r->source, group, "body", 2, at, &start, &count, why))
         return why->status;

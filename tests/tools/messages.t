@@ -69,14 +69,5 @@ like "but letters stay" "$(cat said)" 'red\?\[0m\?\?xé'
 refuses 65 "a file's name" nsd-info "$(printf 'no\033file')"
 ok "is plain, too" eval '! grep -q "$(printf "\033")" err'
 
-# ---- what others write meanwhile ----
-
-nsd-step -n 100000000 -o growing.h5 six.h5 2>/dev/null &
-pid=$!
-for ((w = 0; w < 500; w++)); do if [ -e growing.h5 ]; then break; fi; sleep 0.01; done
-look() { for ((k = 0; k < 25; k++)); do nsd-info --last growing.h5 >/dev/null || return 1; done; }
-ok "a reader beside a fast writer finds whole frames" look
-kill -9 $pid
-wait $pid 2>/dev/null || true
 
 done_testing

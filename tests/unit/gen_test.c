@@ -478,7 +478,7 @@ static void test_bad_scenes(void)
         { "[1]", "1:1: wants an object {...}" },
         { "{}", "1:1: dt: is missing" },
         { "{\"dt\": 0}", "1:2: dt: must be positive" },
-        { "{\n \"dt\": \"1\"}", "2:2: dt: wants a number" },
+        { "{\n \"dt\": \"1\"}", "2:2: dt: wants a number of seconds, or \"auto\"" },
         { "{\"dt\": 1, \"mu\": -0.1}", "1:11: mu: must not be negative" },
         { "{\"dt\": 1, \"e_n\": 1.5}", "1:11: e_n: must lie in [0, 1]" },
         { "{\"dt\": 1, \"dim\": 4}", "1:11: dim: must lie in [2, 3]" },
