@@ -292,7 +292,8 @@ void options_overlap(struct packing *p, bool detected)
     enum overlap was = p->overlap, now = was;
     if (!was && !detected)
         now = p->shape ? OVERLAP_GAP_PROJECT : usual.overlap; // corners that open
-    if (options.paper) now = paper.overlap;
+    if (options.paper && !detected)
+        now = paper.overlap; // contacts keep the rule by which they were found
     now = OPTION(overlap, (int)now - 1) + 1;
     bool others = overlap_sees_gaps(was) != overlap_sees_gaps(now) ||
                   overlap_meets(was) != overlap_meets(now);
@@ -368,7 +369,8 @@ void options_summary(const char *where, const struct report *r)
         snprintf(trouble, sizeof trouble, ", %lld local solves safeguarded, %lld given up",
                  (long long)r->safeguarded, (long long)r->gave_up);
     if (!r->converged) snprintf(missed, sizeof missed, ": NOT CONVERGED to %g", r->eps);
-    if (!r->converged && (error <= r->eps || r->err.jammed)) // the map is relative to reactions that grow without end
+    if (!r->converged && (error <= r->eps ||
+                          r->err.jammed)) // the map is relative to reactions that grow without end
         snprintf(growing, sizeof growing, ", bodies still approach at %.3g m/s",
                  r->err.max_penetration_true);
     warn("%s: %lld contacts, %s: %d sweeps%s, %s %.3g%s%s, %.3g s%s", where,
