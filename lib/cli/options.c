@@ -292,14 +292,13 @@ void options_overlap(struct packing *p, bool detected)
     enum overlap was = p->overlap, now = was;
     if (!was && !detected)
         now = p->shape ? OVERLAP_GAP_PROJECT : usual.overlap; // corners that open
-    if (options.paper && !detected)
-        now = paper.overlap; // contacts keep the rule by which they were found
+    if (options.paper) now = paper.overlap;
     now = OPTION(overlap, (int)now - 1) + 1;
     bool others = overlap_sees_gaps(was) != overlap_sees_gaps(now) ||
                   overlap_meets(was) != overlap_meets(now);
     if (detected && others)
-        die_usage("--overlap: the contacts were detected with %s; give it to nsd-detect",
-                  overlap_name[was ? was : OVERLAP_KEEP]);
+        die_usage("--overlap %s: the contacts were detected with %s: nsd-detect --overlap %s",
+                  overlap_name[now], overlap_name[was ? was : OVERLAP_KEEP], overlap_name[now]);
     p->overlap = now;
 }
 

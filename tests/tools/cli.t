@@ -127,11 +127,12 @@ is "one line for both" "$(wc -l <"$tmp/err")" 1
 status 1 "nsd-solve -e of two problems not converged" nsd-solve -e --eps 1e-3 --max-sweeps 1 "$tmp/two.h5"
 is "both are written" "$(nsd-info "$tmp/out" | jq -s '[.[] | select(.frames)] | length')" 2
 
-# ---- defaults, and the paper's ----
+# ---- defaults, and the paper's: contacts that are found without gaps ----
 
+nsd-detect --overlap keep "$tmp/heap.h5" >"$tmp/keep.h5"
 asked() { nsd-info "$1" | jq -c 'select(.options).options | [.global, .local, .criterion, .eps, .max_sweeps, .order, .relax, .warm]'; }
 paper='["nlgs","sbp","glob",1e-10,5000,"natural",1,false]'
-solve --paper -m sbp "$tmp/contacts.h5" >"$tmp/paper.h5"
+solve --paper -m sbp "$tmp/keep.h5" >"$tmp/paper.h5"
 is "--paper is the paper's protocol" "$(asked "$tmp/paper.h5")" "$paper"
 is "the report has the method" "$(nsd-info --last "$tmp/paper.h5" | jq -r .method)" sbp
 step -n 1 -m sbp --paper "$tmp/heap.h5" >"$tmp/paper.h5"
@@ -139,7 +140,7 @@ is "of nsd-step too" "$(asked "$tmp/paper.h5")" "$paper"
 while read -r want options; do
     for line in "--paper -m sbp $options" "$options -m sbp --paper"; do
         # shellcheck disable=SC2086 # words
-        is "nsd-solve $line: what is given wins" "$(solve $line "$tmp/contacts.h5" | asked -)" "$want"
+        is "nsd-solve $line: what is given wins" "$(solve $line "$tmp/keep.h5" | asked -)" "$want"
     done
 done <<'END'
 ["nlgs","sbp","natural",1e-09,7,"colour",1.5,true] --criterion natural --eps 1e-9 --max-sweeps 7 --order colour --relax 1.5 --warm
@@ -147,7 +148,7 @@ done <<'END'
 END
 for line in "" "-m auto" "--global nlgs"; do
     # shellcheck disable=SC2086 # words
-    refuses 64 "nsd-solve --paper $line" nsd-solve --paper $line --log "$tmp/solve.log" "$tmp/contacts.h5"
+    refuses 64 "nsd-solve --paper $line" nsd-solve --paper $line --log "$tmp/solve.log" "$tmp/keep.h5"
     like "wants a method" "$(cat "$tmp/err")" '^nsd-solve: --paper: wants a local method, -m sbp\|sal\|ebp\|eal\|exact'
     ok "and leaves the log alone" [ ! -e "$tmp/solve.log" ]
 done

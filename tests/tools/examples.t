@@ -135,7 +135,7 @@ claim()
     # contacts
     'nsd-cat --last out.h5 | nsd-detect > contacts.h5') touching contacts.h5 && frames contacts.h5 '. == [1000]' ;;
     'nsd-cat --steps 700 out.h5 | nsd-detect > contacts.h5') touching contacts.h5 && frames contacts.h5 '. == [700]' ;;
-    'nsd-info -c contacts.h5 | jq .gap') output "length > 100 and all(. <= 0) and length == $(nsd-info --last contacts.h5 | jq .contacts)" ;;
+    'nsd-info -c contacts.h5 | jq .gap') output "length > 100 and all(. <= 5e-7) and min < 0 and length == $(nsd-info --last contacts.h5 | jq .contacts)" ;;
     *'nsd-detect --gap 1e-4'*'jq .contacts' | 'nsd-info contacts.h5 | jq '*'.contacts'*) output '.[0] > 0' ;;
     'nsd-detect --fclib=local '*'> problem.h5') fclib problem.h5 ;;
     'h5dump -n contacts.h5') grep -q /contacts/frame stdout ;;
@@ -146,6 +146,7 @@ claim()
         output 'length == 1 and .[0] > 0 and .[0] <= 1e-4' ;;
     *'| nsd-err | jq .self_stress') output 'length == 1 and .[0] > 0.001 and .[0] < 0.3' ;;
     'nsd-solve -m eal < contacts.h5 > solved.h5') converged solved.h5 ;;
+    *'nsd-detect --overlap keep > keep.h5') settings keep.h5 '.overlap == "keep"' && touching keep.h5 ;;
     'nsd-solve --paper'*'> paper.h5')
         settings paper.h5 '.options | .global == "nlgs" and .order == "natural" and .alpha' && grep -q 'NOT CONVERGED' stderr ;;
     'for m in '*) output 'map(.[0]) == ["sbp", "sal", "ebp", "eal", "exact"] and all(.[1] <= 1e-4)' ;;
