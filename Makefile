@@ -162,7 +162,7 @@ PROVE := PATH="$(CURDIR)/$B:$$PATH" scripts/prove.sh
 
 # make test: the tests of make check, of what is built; SAN=1: all that the sanitizers run
 test: tests
-	$(PROVE) $(filter-out $(NSD_LATER) $(NARROW) $(if $(SAN),$(PLAIN)),$(TESTS) $(if $(SAN),$(REST)))
+	$(PROVE) $(filter-out $(NARROW) $(if $(SAN),$(PLAIN)),$(TESTS) $(if $(SAN),$(REST)))
 	$(if $(NARROW),NSD_LANES=2 $(PROVE) $(NARROW))
 
 test-rest: tests
