@@ -25,10 +25,7 @@ enum {
     MEMORY_RATIO = 4,       /* and so many times the document */
     SPARE_SECONDS = 4,      /* of the processor, for an answer: a good one takes milliseconds, */
     RATE = 10000000,        /* and bytes a second: a tenth of what gzip unpacks */
-    SLOWER = SANITIZED ? 10 : 1,
-    TRIES =
-        0, /* at an unfinished document that contradicts itself: more take longer than a writer leaves it alone */
-    PAUSE = 1000 /* us: after the first, then longer: 0.3 s in all */
+    SLOWER = SANITIZED ? 10 : 1
 };
 
 /* ---- bounds ---- */
@@ -125,19 +122,6 @@ static int open_image(struct server *s, const struct image *im, struct why *why)
     return served_open(&s->served, file, im->size, s->limit, why);
 }
 
-/*
- * What a writer is writing may contradict itself for a moment, while its pages arrive one after the other. Such
- * a document is looked at again, some ms later; false: it is no such one, or has had its time.
- */
-static bool another_try(struct server *s, struct image *im, int tries, const struct why *why)
-{
-    struct why none = { 0 };
-    if (why->status != EX_DATAERR || !im->unfinished || tries == TRIES) return false;
-    usleep(PAUSE << (tries < 5 ? tries : 5));
-    served_close(&s->served);
-    return !stream_again(s->stream, im, &none);
-}
-
 /* The next document, and all that is in it */
 static int answer_next(struct server *s, struct why *why)
 {
@@ -152,12 +136,7 @@ static int answer_next(struct server *s, struct why *why)
              im.number > 1 ? "%.250s: document %lld" : "%.250s", im.name, (long long)im.number);
     bound_memory(im.size, s->limit), bound_time(im.size, s->limit);
     size_t size = 0;
-    void *objects = NULL;
-    for (int try = 0; !objects; try++) {
-        *why = (struct why){ 0 };
-        if (!open_image(s, &im, why)) objects = serve_objects(&s->served, &size, why);
-        if (!objects && !another_try(s, &im, try, why)) break;
-    }
+    void *objects = open_image(s, &im, why) ? NULL : serve_objects(&s->served, &size, why);
     if (!objects) {
         char text[sizeof why->text];
         memcpy(text, why->text, sizeof text);
@@ -205,15 +184,7 @@ static void serve(struct server *s)
         struct why why = { 0 };
         if (n == 1) continue; // the last pieces are not waited for
         if (n != sizeof q) break;
-        s->sent = 0;
-        int failed = answer(s, &q, &why);
-        for (int try = 0; failed && s->image.bytes && !s->sent; try++) {
-            struct why again = { 0 };
-            if (!another_try(s, &s->image, try, &why)) break;
-            failed = open_image(s, &s->image, &again) || answer(s, &q, &again);
-            if (failed) why = again;
-        }
-        if (!failed) continue;
+        if (!answer(s, &q, &why)) continue;
         s->reply = (struct reply){ .status = why.status ? why.status : EX_SOFTWARE };
         snprintf(s->reply.text, sizeof s->reply.text, "%s", why.text);
         if (!send_reply(s)) break;
@@ -247,8 +218,8 @@ void server_run(int line, struct shared *shared, int files, char *const *file, u
     served_start();
     if (!stream_open(&s.stream, files, file, &why)) serve(&s);
 #ifdef NSD_COVERAGE
-    malloc_trim(
-        0); // tells tests/support/preload/failing_allocations.c that what follows is not ours
+    // tells tests/support/preload/failing_allocations.c that what follows is not ours
+    malloc_trim(0);
     __gcov_dump();
 #endif
     _exit(0);

@@ -286,20 +286,3 @@ int stream_next(struct stream *s, struct image *im, struct why *why)
         file_close(s);
     }
 }
-
-int stream_again(struct stream *s, struct image *im, struct why *why)
-{
-    struct stat st;
-    if (!im->unfinished || !s->map || im->bytes < s->map || im->bytes >= s->map + s->size) return 1;
-    size_t at = (size_t)(im->bytes - s->map);
-    if (fstat(s->fd, &st) || (size_t)st.st_size < at + DOCUMENT_USERBLOCK) return 1;
-    munmap(s->map, s->size);
-    s->size = (size_t)st.st_size;
-    s->map = mmap(NULL, s->size, PROT_READ | PROT_WRITE, MAP_PRIVATE, s->fd, 0);
-    if (s->map == MAP_FAILED) {
-        s->map = NULL;
-        return why_set(why, EX_NOINPUT, "%s: %s", s->name, strerror(errno));
-    }
-    im->bytes = s->map + at, im->size = s->size - at, s->at = s->size;
-    return 0;
-}

@@ -53,7 +53,4 @@ void stream_unload(const struct stream *stream);
 void stream_release(struct stream *stream);
 void stream_close(struct stream *stream);
 
-/* The same document, unfinished and in a file, as it is by now. Not 0: it is none, or cannot be had. */
-int stream_again(struct stream *stream, struct image *image, struct why *why);
-
 #endif
