@@ -17,7 +17,7 @@ sed -nE 's/^\[[0-9:]+\] ([^ ]+) \.+ .* ([0-9]+) ms .*/\2 \1/p' "$tap/log" |
     awk '{ printf "%7.1f  %s\n", $1 / 1000, $2 }'
 
 # "ok 7 - name # SKIP reason" of a test, "1..0 # SKIP reason" of a whole file
-(cd "$tap" && grep -r -E '^(ok .*|1\.\.0) # SKIP ' . || true) |
+(cd "$tap" && { grep -r -E '^(ok .*|1\.\.0) # SKIP ' . || true; }) |
     sed -E 's,^\./,,; s/:(ok [0-9]+ - |1\.\.0 )/: /; s/ # SKIP /: /; s/:  *: /: /' |
     sort >"$tap/skipped"
 echo

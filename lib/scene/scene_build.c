@@ -330,8 +330,9 @@ static int set_dt(struct packing *p, const struct scene *s, struct why *why)
     p->dt = t.best;
     return isfinite(p->dt) && p->dt > 0
                ? 0
-               : why_set(why, EX_DATAERR, "dt: auto: nothing in the scene moves, by which a time "
-                                          "step could be chosen: give a number of seconds");
+               : why_set(why, EX_DATAERR,
+                         "dt: auto: nothing in the scene moves, by which a time "
+                         "step could be chosen: give a number of seconds");
 }
 
 /* Are the numbers in range, and do no bodies overlap, unless the scene allows it? */

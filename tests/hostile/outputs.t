@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Outputs: what the user has stays as it is until there is something whole to take its place.
+# shellcheck source=tests/support/tap.sh disable=SC2016 # text for jq and eval; options
 . tests/support/tap.sh
 
 cd "$tmp"

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Messages: they name the place in the scene and the cure, and move no terminal; streams have one line.
+# shellcheck source=tests/support/tap.sh disable=SC2016 # text for jq and eval; options
 . tests/support/tap.sh
 
 cd "$tmp"

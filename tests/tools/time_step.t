@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # The time step: what suits a scene, another one for a run, and one that adapts.
+# shellcheck source=tests/support/tap.sh disable=SC2016 # text for jq and eval; options
 . tests/support/tap.sh
 
 step() { nsd-step "$@" 2>/dev/null; }

@@ -343,7 +343,8 @@ static void test_scene(const struct scene_text *s)
         run(&p, steps);
         double d = difference(&first, &p, t);
         // another order is another rounding of every solve, which what collides and what rests enlarges
-        ok(d < (t->there == renumber ? 1e-6 : 1e-8), "%s %s: the same (%.1e m)", s->name, t->name, d);
+        ok(d < (t->there == renumber ? 1e-6 : 1e-8), "%s %s: the same (%.1e m)", s->name, t->name,
+           d);
         packing_free(&p);
     }
     packing_free(&start), packing_free(&first);

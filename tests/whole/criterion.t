@@ -1,6 +1,7 @@
 #!/bin/bash
 # The default criterion sees every contact, and the default start is the last step's reactions: impacts, mass ratios,
 # wedged grains, rest, and runs that are resumed
+# shellcheck source=tests/support/tap.sh disable=SC2016,SC2086 # text for jq and eval; options
 . tests/support/tap.sh
 
 # JSON lines of the last frame's bodies
