@@ -57,9 +57,11 @@ static char *slurp(FILE *f, const char *name, size_t *n)
     for (*n = 0; text;) {
         *n += fread(text + *n, 1, room - *n, f);
         if (*n < room) break;
-        if (!file && *n >= MOST_PIPED)
+        if (!file && *n >= MOST_PIPED) {
+            free(text);
             die(EX_DATAERR, "%s: more than %d MB for a scene (endless?): put it into a file", name,
                 MOST_PIPED >> 20);
+        }
         room *= 2;
         char *more = realloc(text, room);
         if (!more) free(text);
@@ -77,6 +79,7 @@ static void read_scene(struct scene *s, const char *path, char **dir, struct sce
     size_t n;
     FILE *f = standard ? stdin : fopen(path, "r");
     char *text = f ? slurp(f, name, &n) : NULL;
+    if (f && ferror(f)) free(text), text = NULL;
     if (!f || ferror(f)) die(EX_NOINPUT, "%s: %s", name, strerror(errno));
     if (!text) die(EX_SOFTWARE, "%s: no memory", name);
     if (!standard) {

@@ -628,11 +628,11 @@ int tool_main(int argc, char **argv)
     if (told) warn("%s", told);
     say_worst();
     reader_close(in);
-    if (stopped_by && made < wanted && !is_then(&r.f.packing, r.f.packing.step)) {
+    bool stopped = stopped_by && made < wanted && !is_then(&r.f.packing, r.f.packing.step);
+    if (stopped)
         warn("stopped by signal %d after step %lld, which is kept", (int)stopped_by,
              (long long)r.f.packing.step);
-        return 128 + stopped_by;
-    }
     frame_free(&r.f);
+    if (stopped) return 128 + stopped_by;
     return made < steps || (options.strict && account_fails(&total.account));
 }

@@ -67,7 +67,7 @@ static int cell_as_box(jnode o, const struct scene_cell *of, int dim, struct sce
     double length[3] = { c->edge[0].x, c->edge[1].y, c->edge[2].z };
     double from[3] = { c->origin.x, c->origin.y, c->origin.z };
     bool along = true;
-    for (int k = 0; k < dim; k++) {
+    for (int k = 0; k < (dim == 2 ? 2 : 3); k++) {
         along = along && length[k] > 0 && v3_norm(c->edge[k]) == length[k];
         b->lo[k] = from[k], b->hi[k] = from[k] + length[k];
     }

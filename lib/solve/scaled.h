@@ -51,7 +51,8 @@ static inline void scaled_load(int d, const double *x, double out[3])
 }
 static inline void scaled_store(int d, const double in[3], double *x)
 {
-    for (int k = 0; k < d; k++) x[k] = in[k];
+    x[0] = in[0], x[1] = in[1];
+    if (d == 3) x[2] = in[2];
 }
 
 #endif
