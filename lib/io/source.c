@@ -40,7 +40,7 @@ void source_close(struct source *s)
 {
     if (!s) return;
     child_close(s->child);
-    if (!s->child && s->own.sorted) s->own.file = -1, served_close(&s->own);
+    if (!s->child && (s->own.count || s->own.sorted)) s->own.file = -1, served_close(&s->own);
     list_free(&s->list);
     free(s);
 }
