@@ -97,6 +97,7 @@ blocks() # FILE K EPS ARGUMENT ...: to the criterion, and moving as the order of
     local file=$1 k=$2 eps=$3
     shift 3
     rm -f "$tmp"/one.h5 "$tmp"/block.h5
+    set -- --criterion natural "$@"
     nsd-step "$@" --eps "$eps" -o "$tmp/one.h5" "$file" &&
         ranks "$k" "$@" --eps "$eps" --contacts --order block -o "$tmp/block.h5" "$file" || return 1
     jq -n --argjson e "$(natural "$tmp/block.h5")" --argjson eps "$eps" -e '($e | type) == "number" and $e <= $eps' && /usr/bin/python3 - "$eps" "$tmp/one.h5" "$tmp/block.h5" <<'EOF'

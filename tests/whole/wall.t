@@ -14,10 +14,10 @@ is "a disc at rest: 1/3" "$(resting 2 | jq '. - 1/3 | fabs < 1e-14')" true
 
 # ---- four balls that wedge themselves in: reactions grow, nothing moves ----
 
-jq '.seed = 7' scenes/paper/example2.json | nsd-gen - | nsd-step -n 217 --overlap keep 2>/dev/null |
+jq '.seed = 7' scenes/paper/example2.json | nsd-gen - | nsd-step -n 217 --overlap keep --criterion natural 2>/dev/null |
     nsd-cat --steps 217 | nsd-detect --overlap keep >"$tmp/jam.h5"
 for eps in 1e-4 1e-5 1e-6; do
-    nsd-solve --global nlgs -m exact --eps $eps --max-sweeps 1000000 "$tmp/jam.h5" >"$tmp/jam-$eps.h5" 2>/dev/null
+    nsd-solve --global nlgs -m exact --criterion natural --eps $eps --max-sweeps 1000000 "$tmp/jam.h5" >"$tmp/jam-$eps.h5" 2>/dev/null
     nsd-err "$tmp/jam-$eps.h5" >"$tmp/jam-$eps"
 done
 like "self-stress falls as eps does" "$(jq -s 'map(.self_stress) | [.[0] / .[1], .[1] / .[2]] | all(. > 8 and . < 12)' "$tmp"/jam-1e-[456])" '^true$'
@@ -48,12 +48,12 @@ if [ -n "$thin" ]; then
     skip "sweeps of 8000 balls" "they are made without sanitizers"
 elif [ -e "$problems/piles/pile8000.h5" ]; then
     nsd-detect "$problems/piles/pile8000.h5" >"$tmp/pile.h5"
-    status 1 "they are given up" nsd-solve --strict --eps 1e-8 "$tmp/pile.h5"
+    status 1 "they are given up" nsd-solve --strict --criterion natural --eps 1e-8 "$tmp/pile.h5"
     cp "$tmp/out" "$tmp/given-up.h5"
     like "nsd-solve says so" "$(cat "$tmp/err")" 'given up: the sweeps wander'
     like "long before the limit, with the best that they found" \
         "$(nsd-info "$tmp/given-up.h5" | jq -c 'select(.sweeps) | [.sweeps < 50000, .converged, .natural < 1e-5]')" '^\[true,false,true\]$'
-    NSD_LANES=2 nsd-solve -j 2 --eps 1e-8 "$tmp/pile.h5" >"$tmp/again.h5" 2>/dev/null
+    NSD_LANES=2 nsd-solve -j 2 --criterion natural --eps 1e-8 "$tmp/pile.h5" >"$tmp/again.h5" 2>/dev/null
     ok "at the same sweep for any threads and width" cmp "$tmp/given-up.h5" "$tmp/again.h5"
     status 0 "the default is not concerned" nsd-solve --strict "$tmp/pile.h5"
 else
