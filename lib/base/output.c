@@ -238,15 +238,20 @@ int output_place(struct output *o, struct why *why)
     return why->status;
 }
 
+/* Asks the file system what it says of the data when a file is closed, while the lock is kept. */
+static bool closes(int fd)
+{
+    int copy = fcntl(fd, F_DUPFD_CLOEXEC, 0);
+    return copy >= 0 && !close(copy);
+}
+
 int output_close(struct output *o, struct why *why)
 {
     if (output_removed(o->fd))
         why_set(why, EX_IOERR, "%s: another program has removed it", o->name);
-    if (why->status) return output_drop(o), why->status;
-    output_place(o, why);
-    int fd = o->fd;
-    o->fd = -1;
-    if (close(fd)) failed(o, why, errno);
+    else if (!why->status && !closes(o->fd))
+        failed(o, why, errno);
+    if (why->status || output_place(o, why)) return output_drop(o), why->status;
     forget(o);
     return why->status;
 }

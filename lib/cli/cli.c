@@ -120,11 +120,10 @@ static bool stdout_named; /* a file that had a name when the tool began */
 void finish_stdout(void)
 {
     bool bad = ferror(stdout), removed = stdout_named && output_removed(STDOUT_FILENO);
-    if (fflush(stdout) || (!bad && fclose(stdout) && errno != EBADF))
+    if (bad) // errno is of something else
+        die(EX_IOERR, "standard output: not all was written (disk full?)");
+    if (fflush(stdout) || (fclose(stdout) && errno != EBADF))
         die(EX_IOERR, "standard output: %s", strerror(errno));
-    if (bad)
-        die(EX_IOERR,
-            "standard output: not all was written (disk full?)"); // errno is of something else
     if (removed) die(EX_IOERR, "standard output: another program has removed it");
 }
 

@@ -2,6 +2,8 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdio_ext.h>
+#include <stdlib.h>
 
 static void set_terms(json_t *j, const struct terms *t)
 {
@@ -98,7 +100,9 @@ json_t *json_account(const struct account *a)
 
 void json_line(json_t *j)
 {
-    json_dumpf(j, stdout, JSON_COMPACT);
-    putchar('\n');
+    char *text = ferror(stdout) ? NULL : json_dumps(j, JSON_COMPACT);
+    if (text && fputs(text, stdout) != EOF) putchar('\n');
+    if (ferror(stdout)) __fpurge(stdout); // nothing comes after a piece that is missing
+    free(text);
     json_decref(j);
 }

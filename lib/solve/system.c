@@ -415,7 +415,7 @@ static double residual(struct system *s, const double *x)
     scaled_product(s->a, x, s->r);
     for (int64_t c = 0; c < s->a->W.n; c++) {
         const double *L = s->L + 9 * c, *D = s->D + 9 * c;
-        double v[3], e[3], z[3];
+        double v[3], e[3] = { 0 }, z[3];
         scaled_load(d, s->r + d * c, v), scaled_load(d, x + d * c, z);
         for (int i = 0; i < d; i++) {
             e[i] = s->b[d * c + i];
