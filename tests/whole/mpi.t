@@ -113,10 +113,12 @@ print("positions differ by", far, "velocities by", off, "of", top)
 sys.exit(not (off < 100 * float(sys.argv[1]) * top and far < 1e-7))
 EOF
 }
+# grains that still move: a pile at rest has several solutions, and each order of sweeps finds its own
+nsd-gen 300 | nsd-step -n 400 --every 400 2>/dev/null | nsd-cat --last >"$tmp/moving.h5"
 # positions that overlap are moved apart by ten sweeps, which end where they end: so without, or one step
-ok "blocks on 2: the motion of one process, to the criterion" blocks "$tmp/heap.h5" 2 1e-8 -n 5 --overlap keep
-[ -n "$thin" ] || ok "on 8" blocks "$tmp/heap.h5" 8 1e-8 -n 5 --overlap keep
-three=1 ok "with bodies moved apart" blocks "$tmp/heap.h5" 3 1e-8 -n 1
+ok "blocks on 2: the motion of one process, to the criterion" blocks "$tmp/moving.h5" 2 1e-8 -n 5 --overlap keep
+[ -n "$thin" ] || ok "on 8" blocks "$tmp/moving.h5" 8 1e-8 -n 5 --overlap keep
+three=1 ok "with bodies moved apart" blocks "$tmp/moving.h5" 3 1e-8 -n 1
 ok "over a floor that is shaken, in a cell that repeats" blocks "$tmp/vibrated.h5" 3 1e-8 -n 2 --overlap keep
 ok "in a cell that is sheared" blocks "$tmp/shear.h5" 3 1e-8 -n 2 --overlap keep
 ok "with clumps, capsules, hulls" blocks "$tmp/rubble.h5" 2 1e-8 -n 1 --overlap gap
@@ -324,7 +326,7 @@ else
 fi
 jq -n '{ dim: 2, dt: 1e-3, walls: [{ normal: [0, 1], point: [0, 0] }], bodies: [{ x: [0, 0.01], radius: 0.01 }] }' | nsd-gen - >"$tmp/disc.h5"
 ok "of one disc" same "$tmp/disc.h5" 3 -n 2 --cut hypergraph
-ok "and in blocks" blocks "$tmp/heap.h5" 3 1e-8 -n 2 --overlap keep --cut hypergraph
+ok "and in blocks" blocks "$tmp/moving.h5" 3 1e-8 -n 2 --overlap keep --cut hypergraph
 
 # ---- what goes wrong ----
 
