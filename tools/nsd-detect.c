@@ -31,7 +31,7 @@ const struct cli_tool tool = {
     "Finds the contacts in the predicted position q + dt/2 qdot, with bases and gaps.\n"
     "Reads packings (every frame of a trajectory), writes each with its contacts.",
     tables,
-    "  nsd-gen 500 | nsd-step -n 900 | nsd-cat --last | nsd-detect > contacts.h5\n"
+    "  nsd-gen 500 | nsd-step -n 900 --every 900 | nsd-cat --last | nsd-detect > contacts.h5\n"
     "  nsd-detect --fclib=local < packing.h5 > problem.h5\n"
 };
 

@@ -78,7 +78,7 @@ const struct cli_tool tool = { "nsd-step", "[FILE ...]",
                                "disk as soon as it is made; to a pipe: one document a frame.",
                                tables,
                                "  nsd-gen 500 | nsd-step -n 1000 > out.h5\n"
-                               "  nsd-step -n 100 --eps 1e-8 -o more.h5 out.h5\n"
+                               "  nsd-step -n 100 -o more.h5 out.h5\n"
                                "  nsd-step -n 100 --in-place out.h5\n"
                                "  nsd-step -n 100 --dt auto:0.01 -o more.h5 out.h5\n" };
 

@@ -77,8 +77,8 @@ assert np.allclose(np.abs(q[:, 2]), np.abs(np.sin(half)), atol=1e-12)
 assert np.allclose(b["angular_velocity/value"][:, 0], [0, 3, 0])
 assert b["position/value"].shape == (len(t), 3, 3)
 END
-step -n $steps "$tmp/drum.h5" | nsd-cat --last >"$tmp/last.h5"
-step -n $steps "$tmp/mesh.h5" | nsd-cat --last >"$tmp/last-mesh.h5"
+step -n $steps --every $steps "$tmp/drum.h5" | nsd-cat --last >"$tmp/last.h5"
+step -n $steps --every $steps "$tmp/mesh.h5" | nsd-cat --last >"$tmp/last-mesh.h5"
 
 # ---- the pipeline, threads, resuming ----
 
@@ -117,10 +117,10 @@ plane() # JQ of a wall
     jq -n --argjson wall "$1" '{ dim: 2, dt: 1e-4, mu: 0.4, walls: [$wall], density: 2500,
         bodies: [{ count: 30, radius: { uniform: [0.9e-3, 1e-3] }, box: { x: [-5e-3, 5e-3], y: [2e-4, null] } }] }'
 }
-plane '{"point": [0, 0], "normal": [0, 1]}' | nsd-gen - | step -n $steps --eps 1e-11 --max-sweeps 100000 | nsd-cat --last | nsd-info -p >"$tmp/plane"
+plane '{"point": [0, 0], "normal": [0, 1]}' | nsd-gen - | step -n $steps --every $steps --eps 1e-11 --max-sweeps 100000 | nsd-cat --last | nsd-info -p >"$tmp/plane"
 for wall in '{"segment": [[-0.1, 0], [0.1, 0]]}' '{"polygon": {"points": [[-0.1, 0], [0, 0], [0.1, 0], [0.1, -0.1]]}}' \
     '{"polygon": {"points": [[-0.1, 0], [-0.001, 0], [0.0003, 0], [0.1, 0]], "closed": false}}'; do
-    plane "$wall" | nsd-gen - | step -n $steps --eps 1e-11 --max-sweeps 100000 | nsd-cat --last | nsd-info -p >"$tmp/other"
+    plane "$wall" | nsd-gen - | step -n $steps --every $steps --eps 1e-11 --max-sweeps 100000 | nsd-cat --last | nsd-info -p >"$tmp/other"
     like "discs fall on it as on a line: ${wall:0:40}" "$(jq -s '[.[] | .x[0:2]] | (length / 2) as $n |
         [range($n) as $i | range(2) as $k | .[$i][$k] - .[$i + $n][$k] | fabs] | max < 1e-7' "$tmp/plane" "$tmp/other")" true
 done
@@ -143,7 +143,7 @@ jq '.walls[2].until = 0.005' scenes/silo.json | nsd-gen - >"$tmp/silo.h5"
 is "a gate vanishes at its time" "$(step -n 60 --every 10 "$tmp/silo.h5" | nsd-info -w | jq -c 'select(.wall == 2).gone' | tr '\n' ' ')" \
     'null null null null true true '
 jq -n --argjson drive '{"along": [0, 0, 1], "table": [[0.2, 1], [0.4, 2], [0.5, 0]]}' "$one" | nsd-gen - |
-    step -n 300 | nsd-cat --last >"$tmp/moved.h5"
+    step -n 300 --every 300 | nsd-cat --last >"$tmp/moved.h5"
 jq -n --arg f "$tmp/moved.h5" '{ dt: 1e-3, gravity: [0, 0, 0], bodies: [{ document: $f }] }' | nsd-gen - >"$tmp/again.h5"
 is "a scene takes boundaries from a document, and their drives go on" \
     "$(step -n 200 --every 100 "$tmp/again.h5" | nsd-info -w | jq -c '.point[2] * 1e9 | round / 1e9' | tr '\n' ' ')" '2 0 '

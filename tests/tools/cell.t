@@ -8,7 +8,7 @@ scene() { jq "${1-.}" scenes/shear.json >"$tmp/scene.json"; }
 
 scene '.bodies[0].count = 144 | .bodies[0].radius.uniform = [0.02, 0.04] | .dt = 2e-3'
 nsd-gen "$tmp/scene.json" >"$tmp/start.h5"
-nsd-step -n 900 "$tmp/start.h5" 2>/dev/null | nsd-cat --last >"$tmp/dense.h5"
+nsd-step -n 900 --every 900 "$tmp/start.h5" 2>/dev/null | nsd-cat --last >"$tmp/dense.h5"
 like 'a dense cell under shear has contacts' "$(nsd-detect "$tmp/dense.h5" | nsd-info --last | jq .contacts)" '^[0-9]{2,3}$'
 
 # ---- the pipeline, threads, resuming ----
@@ -28,9 +28,9 @@ nsd-step -j 1 -n 200 --every 50 "$tmp/dense.h5" >"$tmp/j1.h5" 2>/dev/null
 ok '1 and 2 threads give the same bytes' cmp "$tmp/j1.h5" "$tmp/j2.h5"
 ok '1 and 4 threads give the same bytes' cmp "$tmp/j1.h5" "$tmp/j4.h5"
 
-nsd-step -n 300 "$tmp/dense.h5" 2>/dev/null | nsd-cat --last >"$tmp/whole.h5"
+nsd-step -n 300 --every 300 "$tmp/dense.h5" 2>/dev/null | nsd-cat --last >"$tmp/whole.h5"
 nsd-step -n 170 --every 10 "$tmp/dense.h5" >"$tmp/half.h5" 2>/dev/null
-nsd-step -n 130 "$tmp/half.h5" 2>/dev/null | nsd-cat --last >"$tmp/rest.h5"
+nsd-step -n 130 --every 130 "$tmp/half.h5" 2>/dev/null | nsd-cat --last >"$tmp/rest.h5"
 ok 'a run that goes on from its file is the run, to the bit' same_particles "$tmp/whole.h5" "$tmp/rest.h5"
 
 nsd-step --contacts -n 20 "$tmp/dense.h5" >"$tmp/kept.h5" 2>/dev/null

@@ -284,7 +284,7 @@ kill -9 $runs
 wait $runs 2>/dev/null || true
 ok "killed, it has left whole frames, the old ones among them" \
     eval 'every_frame raced.h5 "length > 12 and .[9].step == 100 and .[10].step == 200" && cmp <(nsd-info -p --steps 100 raced.h5) <(nsd-info -p --last base.h5)'
-ok "and it goes on" eval 'nsd-step -n 10 --every 10 -i raced.h5 2>/dev/null && nsd-info raced.h5 >/dev/null'
+ok "and it goes on" eval 'nsd-step -n 10 -i raced.h5 2>/dev/null && nsd-info raced.h5 >/dev/null'
 
 # Killed at any moment: while it copies, as it takes the place, as it grows
 killed() # I: after I/1000 s

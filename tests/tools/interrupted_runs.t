@@ -46,7 +46,7 @@ kill -9 $pid
 wait $pid 2>/dev/null || true
 k=$(nsd-info --last killed.h5.save | jq .step)
 ok "--save keeps the state while the run goes on" [ "$k" -gt 0 ]
-nsd-step -n 50 --every 50 -o resumed.h5 killed.h5.save 2>/dev/null
+nsd-step -n 50 -o resumed.h5 killed.h5.save 2>/dev/null
 nsd-step -n $((k + 50)) --every $((k + 50)) -o whole.h5 start.h5 2>/dev/null
 ok "from which another goes on with the same bits" cmp <(last resumed.h5) <(last whole.h5)
 nsd-step -n 1000 --every 500 --save 0.01s -j 2 -o saved.h5 start.h5 2>/dev/null

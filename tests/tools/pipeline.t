@@ -30,7 +30,7 @@ is "and every step is in the file" "$(h5ls "$tmp/long.h5/particles/all/position"
 last()
 {
     nsd-gen 500 |
-        nsd-step -m sbp -n $frames |
+        nsd-step -m sbp -n $frames --every $frames |
         nsd-cat --last |
         nsd-detect >"$tmp/last.h5" && h5dump -n "$tmp/last.h5"
 }

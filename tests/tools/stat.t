@@ -48,7 +48,7 @@ ok "also where boundaries move" truth balances "$tmp/shaken.h5"
 step -n 60 --every 30 --contacts -o "$tmp/shear.h5" <(jq '.bodies[0].count = 144 | .bodies[0].radius.uniform = [0.02, 0.04] | .dt = 2e-3' scenes/shear.json | nsd-gen -)
 ok "and where a cell's edges do" truth balances "$tmp/shear.h5"
 if [ -z "${NSD_THIN-}" ]; then
-    nsd-gen 500 | step -n 3000 | nsd-cat --last | step -n 2 --contacts --eps 1e-7 --max-sweeps 20000 -o "$tmp/pile.h5"
+    nsd-gen 500 | step -n 3000 --every 3000 | nsd-cat --last | step -n 2 --contacts --eps 1e-7 --max-sweeps 20000 -o "$tmp/pile.h5"
     ok "fields: div stress = rho (g - a) in a settled pile" truth fields "$tmp/pile.h5" "$tmp/fields.h5"
 fi
 

@@ -54,11 +54,11 @@ refuses 65 "and so is another word" eval "jq -nc '$ball | .dt = \"fast\"' | nsd-
 # ---- another dt ----
 
 now() { nsd-info --last "$1" | jq -c '[.step, .time]'; }
-echo '{"dt": 1e-3, "gravity": [0, 0, 0], "bodies": [{"x": [0, 0, 0], "v": [1, 0, 0], "radius": 0.1}]}' | nsd-gen - | step -n 10 --every 10 >ten.h5
+echo '{"dt": 1e-3, "gravity": [0, 0, 0], "bodies": [{"x": [0, 0, 0], "v": [1, 0, 0], "radius": 0.1}]}' | nsd-gen - | step -n 10 >ten.h5
 step -n 20 --dt 5e-4 --every 20 ten.h5 >half.h5
 is "--dt: 20 steps of half a dt are 10 of a whole" "$(now half.h5)" '[30,0.02]'
 is "which the document has then" "$(nsd-info half.h5 | jq -s '.[0].dt')" 0.0005
-step -n 10 --dt 5e-4 ten.h5 | step -n 10 --every 10 >pieces.h5
+step -n 10 --dt 5e-4 ten.h5 | step -n 10 >pieces.h5
 ok "in pieces the same bits" cmp <(nsd-info -p --last half.h5) <(nsd-info -p --last pieces.h5)
 step --until 1 --dt 3e-4 --every 10000 ten.h5 >third.h5
 is "--until with another dt" "$(nsd-info --last third.h5 | jq '.step == 3310 and (.time - 1 | fabs) < 1e-15')" true

@@ -18,7 +18,7 @@ jq -n '{dt: 5e-5, gravity: [0, 0, -9.8], density: 2500, mu: 0.3, e_n: 0.4, overl
         [range(-3; 3) as $i | range(-3; 3) as $j |
             {x: [0.002 * $i + 0.001, 0.002 * $j + 0.001, 0.0024142], radius: 0.001}] +
         [{x: [2e-4, 1e-4, 0.0134], radius: 0.01, v: [0, 0, -2], kind: "steel"}])}' | nsd-gen - >"$tmp/bed.h5"
-rebound() { nsd-step "$@" -n 60 --every 60 "$tmp/bed.h5" 2>/dev/null | bodies | jq 'select(.radius > 0.009).v[2]'; }
+rebound() { nsd-step "$@" -n 60 "$tmp/bed.h5" 2>/dev/null | bodies | jq 'select(.radius > 0.009).v[2]'; }
 exact=$(rebound --cold --criterion natural --eps 1e-9)
 for o in "" --cold "--order natural" "--global prox"; do
     up=$(rebound $o)
@@ -30,7 +30,7 @@ for e in 0 0.5 0.9; do
     jq -n --argjson e $e '{dt: 5e-5, density: 2500, mu: 0.3, e_n: $e, overlap: true,
         walls: [{point: [0, 0, 0], normal: [0, 0, 1]}], bodies: ([range(4) | {x: [0, 0, 0.001 + 0.002 * .], radius: 0.001}] +
         [{x: [5e-5, 0, 0.00901], radius: 0.001, v: [0, 0, -2]}])}' | nsd-gen - >"$tmp/column.h5"
-    top() { nsd-step "$@" -n 10 --every 10 "$tmp/column.h5" 2>/dev/null | bodies | jq -s '.[-1].v[2]'; }
+    top() { nsd-step "$@" -n 10 "$tmp/column.h5" 2>/dev/null | bodies | jq -s '.[-1].v[2]'; }
     exact=$(top --cold --criterion natural --eps 1e-11) up=$(top)
     ok "the top ball of a column, e_n $e: $exact m/s, by default $up" near "$up" "$exact" 0.02
 done
@@ -39,7 +39,7 @@ done
 jq -n '{dt: 1e-4, gravity: [0, 0, 0], density: 2500, mu: 0.3, e_n: 0.5, overlap: true,
     bodies: ([range(3) as $i | range(3) as $j | range(3) as $k | {x: [0.002 * $i, 0.002 * $j, 0.002 * $k], radius: 0.001}] +
     [{x: [-0.0031, 0.0011, 0.0023], radius: 0.002, v: [1, 0.1, 0]}])}' | nsd-gen - >"$tmp/cluster.h5"
-after() { nsd-step "$@" -n 40 --every 40 "$tmp/cluster.h5" 2>/dev/null; }
+after() { nsd-step "$@" -n 40 "$tmp/cluster.h5" 2>/dev/null; }
 sum() { nsd-info --last -p | jq -s -c "[.[] | . as \$b | $1] | add"; }
 mass='($b.radius | . * . * .)'
 is "its momentum is kept" "$(after | sum "$mass * \$b.v[0]" | jq '. * 1e15 | round')" \
@@ -76,7 +76,7 @@ jq -n '{dt: 5e-4, density: 2500, mu: 0.5, e_n: 0.3, overlap: true, walls: [{box:
     bodies: ([{x: [0, 0, 0.01], radius: 0.01}] + [range(-4; 5) as $i | range(-4; 5) as $j | range(3) as $k |
     {x: [0.0045 * $i, 0.0045 * $j, 0.002 + 0.0043 * $k], radius: 0.002}
     | select((.x | .[0] * .[0] + .[1] * .[1] + (.[2] - 0.01) * (.[2] - 0.01)) > 1.44e-4)])}' | nsd-gen - >"$tmp/wedge.h5"
-status 1 "a wedged ball: 1 under -e" nsd-step -e -n 30 --every 30 --contacts "$tmp/wedge.h5"
+status 1 "a wedged ball: 1 under -e" nsd-step -e -n 30 --contacts "$tmp/wedge.h5"
 like "and it says why" "$(cat "$tmp/err")" 'no solution: reactions grow without end'
 report=$(nsd-info --last "$tmp/out" | jq -s -c '.[-1] | [.jammed > 0, .velocity <= 1, .converged]')
 is "its contacts are told apart, and the others meet the criterion" "$report" '[true,true,false]'
@@ -123,7 +123,7 @@ ok "for $sweeps sweeps a step" below "$sweeps" 41
 travels() # name file options of the step
 {
     local name=$1 in=$2 half=$tmp/half.h5
-    nsd-step -n 8 --every 8 "$in" 2>/dev/null >"$tmp/whole.h5"
+    nsd-step -n 8 "$in" 2>/dev/null >"$tmp/whole.h5"
     particles() { nsd-info --last -p "$@"; }
     ok "$name: a run that is resumed has the same bits" cmp <(particles "$tmp/whole.h5") \
         <(nsd-step -n 3 "$in" 2>/dev/null | nsd-step -n 5 2>/dev/null | particles)

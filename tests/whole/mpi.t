@@ -55,7 +55,7 @@ three=1 ok "300 balls: the bytes of one process on $all" same "$tmp/heap.h5" "$a
 ok "in the natural order, by nlgs" same "$tmp/heap.h5" 3 -n 5 -m sbp --order natural --max-sweeps 30
 ok "by Anderson's acceleration, to a tight criterion" same "$tmp/heap.h5" 3 -n 3 --global anderson --eps 1e-7
 [ -n "$thin" ] || ok "by another criterion, with warm starts" same "$tmp/heap.h5" 3 -n 5 --criterion scaled --warm
-jq '.seed = 7' scenes/paper/example2.json | nsd-gen - | nsd-step -n 216 --overlap keep 2>/dev/null | nsd-cat --last >"$tmp/jam.h5"
+jq '.seed = 7' scenes/paper/example2.json | nsd-gen - | nsd-step -n 216 --every 216 --overlap keep 2>/dev/null | nsd-cat --last >"$tmp/jam.h5"
 alone=1 ok "where auto goes on with Newton's method, which the first makes alone" same "$tmp/jam.h5" 2 -n 1 --overlap keep --eps 1e-10
 alone=1 ok "as the interior point method" same "$tmp/heap.h5" 2 -n 1 --global ipm
 
@@ -138,7 +138,7 @@ overlaps() # FILE: m, the largest of the last frames
 moved_apart() # after as many steps overlaps are as small as those of one process
 {
     rm -f "$tmp"/[ab].h5
-    nsd-step -n 60 --every 60 -o "$tmp/a.h5" "$tmp/heap.h5" && ranks 4 -n 60 --every 60 --order block -o "$tmp/b.h5" "$tmp/heap.h5" &&
+    nsd-step -n 60 -o "$tmp/a.h5" "$tmp/heap.h5" && ranks 4 -n 60 --order block -o "$tmp/b.h5" "$tmp/heap.h5" &&
         jq -n --argjson a "$(overlaps "$tmp/a.h5")" --argjson b "$(overlaps "$tmp/b.h5")" -e '($b | type) == "number" and $b <= 1.5 * $a'
 }
 [ -n "$thin" ] || ok "and their overlaps do not grow" moved_apart
@@ -147,7 +147,7 @@ frames_alike() # the same processes: the same bytes; and as many frames as may b
 {
     rm -f "$tmp"/[abc].h5
     for f in a b; do ranks 3 -n 6 --order block -o "$tmp/$f.h5" "$tmp/heap.h5" || return 1; done
-    ranks 3 -n 6 --every 6 --order block -o "$tmp/c.h5" "$tmp/heap.h5" && cmp "$tmp/a.h5" "$tmp/b.h5" &&
+    ranks 3 -n 6 --order block -o "$tmp/c.h5" "$tmp/heap.h5" && cmp "$tmp/a.h5" "$tmp/b.h5" &&
         last_of "$tmp/a.h5" >"$tmp/a" && last_of "$tmp/c.h5" >"$tmp/c" && cmp "$tmp/a" "$tmp/c"
 }
 [ -n "$thin" ] || ok "as many processes give the same bytes, whatever frames are kept" frames_alike
@@ -317,7 +317,7 @@ EOF
 if [ -z "$thin" ]; then
     ok "a heap that slides across the parts: the bytes of one process" same "$tmp/slide.h5" 3 -n 120 --every 120
     ok "and it is cut anew, so that the work stays even" even 1.15 1.5 2
-    ok "the same in cells of a grid, by a hypergraph" same "$tmp/slide.h5" 4 -n 60 --every 60 --cut hypergraph
+    ok "the same in cells of a grid, by a hypergraph" same "$tmp/slide.h5" 4 -n 60 --cut hypergraph
     ok "as even" even 1.2 1.5 2
     ok "a drum that turns through them: the bytes of one process" same "$tmp/drum.h5" 3 -n 25 --every 25
     ok "and the work stays even" even 1.15 1.3 1

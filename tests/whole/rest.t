@@ -59,7 +59,7 @@ parts() # MODE: three steps
     for k in 1 2 3; do
         nsd-detect --overlap "$1" "$tmp/$((k - 1)).h5" | nsd-solve 2>/dev/null | nsd-move >"$tmp/$k.h5"
     done
-    step --overlap "$1" -n 3 --every 3 "$tmp/falling.h5" | nsd-cat --last >"$tmp/whole.h5"
+    step --overlap "$1" -n 3 "$tmp/falling.h5" | nsd-cat --last >"$tmp/whole.h5"
     same_particles "$tmp/3.h5" "$tmp/whole.h5"
 }
 for mode in "${modes[@]}"; do
@@ -90,7 +90,7 @@ done
 tops() # MODE E: heights of the first three bounces over those of the closed form, 1 m e^(2 n)
 {
     jq -n --argjson e "$2" --argjson r $radius '{ dt: 1e-4, e_n: $e, bodies: [{ x: [0, 0, 1 + $r], radius: $r }],
-        walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }] }' | nsd-gen - | step --overlap "$1" -n 24000 --every 5 >"$tmp/bounces.h5"
+        walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }] }' | nsd-gen - | step --overlap "$1" -n 24000 --every 20 >"$tmp/bounces.h5"
     nsd-info -p "$tmp/bounces.h5" |
         jq -r 'select(.x) | .x[2] - 0.005' |
         awk -v e="$2" 'NR > 2 && b > a && b >= $1 && n < 3 { n++; print b / e ^ (2 * n) } { a = b; b = $1 }'

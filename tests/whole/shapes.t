@@ -257,7 +257,7 @@ fi
 
 jq '.bodies |= map(.count = ([.count, 14] | min)) | .bodies[1].box.z[0] = 0.9 | .bodies[2].box.z[0] = 1.7 | .bodies[3].box.z[0] = 2.5' \
     scenes/rubble.json | nsd-gen - >"$tmp/rubble.h5"
-nsd-step -n 800 --warm "$tmp/rubble.h5" 2>/dev/null | nsd-cat --last >"$tmp/heap.h5"
+nsd-step -n 800 --every 800 "$tmp/rubble.h5" 2>/dev/null | nsd-cat --last >"$tmp/heap.h5"
 like 'a heap of stones, cubes, rounded bricks and clumps has contacts' "$(nsd-detect "$tmp/heap.h5" | nsd-info --last | jq .contacts)" '^[0-9]{2,4}$'
 is 'whose overlaps are small' "$(nsd-detect "$tmp/heap.h5" | nsd-info --last -c | jq -s 'map(.gap) | min > -2e-3')" true
 for j in 2 4; do
@@ -310,10 +310,10 @@ printf '{"dt": 1e-3, "mu": 0.4, "shapes": {"stone": {"points": [[0.9,0.1,0.2],[-
     "walls": [{"point": [0, 0, 0], "normal": [0, 0, 1]}], "bodies": [{"x": [0.5, 0, 0.1], "shape": "stone", "size": 0.05}],
     "pour": [{"rate": 100, "opening": {"disc": {"center": [0, 0, 0.6], "normal": [0, 0, 1], "radius": 0.1}}, "shape": "stone",
         "orientation": "random", "size": {"uniform": [0.03, 0.05]}, "v": [0, 0, -1], "count": 30}]}' | nsd-gen - >"$tmp/pour.h5"
-nsd-step -n 500 "$tmp/pour.h5" 2>/dev/null | nsd-cat --last >"$tmp/whole.h5"
+nsd-step -n 500 --every 500 "$tmp/pour.h5" 2>/dev/null | nsd-cat --last >"$tmp/whole.h5"
 is 'stones pour in' "$(nsd-info --last -p "$tmp/whole.h5" | jq -s 'map(.shape == "stone") | [length, all] | tojson')" '"[31,true]"'
 nsd-step -n 230 "$tmp/pour.h5" 2>/dev/null >"$tmp/half.h5"
-nsd-step -n 270 -j 2 "$tmp/half.h5" 2>/dev/null | nsd-cat --last >"$tmp/rest.h5"
+nsd-step -n 270 --every 270 -j 2 "$tmp/half.h5" 2>/dev/null | nsd-cat --last >"$tmp/rest.h5"
 ok 'a run of them that goes on is the run, to the bit' same_particles "$tmp/whole.h5" "$tmp/rest.h5"
 
 # ---- shapes that are none ----
@@ -349,7 +349,7 @@ printf '{"dt": 1e-3, "shapes": {%s}, "bodies": [{"x": [0, 0, 0], "shape": "cube"
 refuses 65 'two grains in one place' nsd-gen "$tmp/bad.json"
 printf '{"dt": 1e-3, "mu": 0.5, "shapes": {"needle": {"box": [1, 0.001, 0.001]}, "plate": {"box": [1, 1, 0.001]}}, "walls": [{"point": [0,0,0], "normal": [0,0,1]}],
     "bodies": [{"x": [0, 0, 0.001], "shape": "needle"}, {"x": [2, 2, 0.3], "shape": "plate", "orientation": [0.3, 0, 0]}]}' |
-    nsd-gen - | nsd-step -n 800 --every 800 --warm 2>/dev/null | nsd-info --last -p >"$tmp/thin"
+    nsd-gen - | nsd-step -n 800 --every 800 2>/dev/null | nsd-info --last -p >"$tmp/thin"
 is 'a needle and a plate of 1000 : 1 lie flat' "$(jq -s 'map(.x[2] < 0.002 and .x[2] > 0.0004) | all' "$tmp/thin")" true
 
 # ---- shapes in files ----
