@@ -22,6 +22,8 @@
 QUICK ?=
 OUT   ?= build/paper$(if $(QUICK),-quick)
 P     := scripts/paper
+# make takes a blank for the end of a name, the shell a quote for its own
+$(if $(findstring ',$(OUT))$(word 2,$(OUT)),$(error paper.mk: OUT=$(OUT): the name of the folder has a blank or a quote))
 export PATH := $(CURDIR)/build:$(PATH)
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
