@@ -35,9 +35,9 @@ run() # RANKS SIDE ARGUMENT ...: said on standard error, and the log in $tmp/log
     shift 2
     rm -f "$tmp/out.h5"
     if [ "$k" = 1 ]; then
-        nsd-step --gap 1e-8 --every 1000 --log "$tmp/log" -o "$tmp/out.h5" "$@" "$f" 2>&1
+        nsd-step --criterion natural --gap 1e-8 --every 1000 --log "$tmp/log" -o "$tmp/out.h5" "$@" "$f" 2>&1
     else
-        mpirun --oversubscribe --bind-to none -n "$k" nsd-step --gap 1e-8 --every 1000 --log "$tmp/log" -o "$tmp/out.h5" "$@" "$f" 2>&1
+        mpirun --oversubscribe --bind-to none -n "$k" nsd-step --criterion natural --gap 1e-8 --every 1000 --log "$tmp/log" -o "$tmp/out.h5" "$@" "$f" 2>&1
     fi
 }
 said() { sed -n "s/.*ranks: \([^ ]*\) bytes in \([^ ]*\) messages.*memory \([^ ]*\) MB, of the largest \([^ ]*\) MB.*/\1 \2 \3 \4/p"; }
@@ -71,7 +71,7 @@ memory() # ORDER SIDE: MB of all, of the largest: one process, and 2, 4, 8
     f=$(cube "$2")
     one=$(/usr/bin/python3 -c 'import resource, subprocess, sys
 subprocess.run(sys.argv[1:], stderr=subprocess.DEVNULL)
-print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)' nsd-step --gap 1e-8 -n 1 --every 1000 --order "$1" --eps 1e-2 -o "$tmp/one.h5" "$f")
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)' nsd-step --criterion natural --gap 1e-8 -n 1 --every 1000 --order "$1" --eps 1e-2 -o "$tmp/one.h5" "$f")
     for k in 2 4 8; do
         read -r _bytes _many all most < <(run "$k" "$2" -n 1 --order "$1" --eps 1e-2 | said)
         echo "$1 $(($2 * $2 * $2)) $k $one $all $most"

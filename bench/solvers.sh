@@ -204,7 +204,7 @@ awk -F'\t' -v OFS='\t' -v floor="$floor" '
 # Drawn of Siconos: those that solve most to 1e-12, then to 1e-8; not those in 2D only
 drawn=$(awk -F'\t' '/^siconos-/ && !/^siconos-2d/ { print $8 + 0 "\t" $5 + 0 "\t" $1 }' "$work/table" |
     sort -k1,1nr -k2,2nr | head -n 7 | cut -f 3 | paste -sd' ')
-gnuplot -e "data='$work/profile'; out='$results/$name.svg'; ours='$solvers'; theirs='$drawn'" bench/solvers.gp
+gnuplot -e "data='${work//\'/\'\'}/profile'; out='$results/$name.svg'; ours='$solvers'; theirs='$drawn'" bench/solvers.gp
 
 {
     echo "# Solvers over ${#files[@]} FCLIB problems"

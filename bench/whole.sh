@@ -2,6 +2,7 @@
 # whole.sh [RUNS]: what is around the sweep: the start of tools, pipes, threads on whole steps, also beside a
 # program that wants a core, the step outside the sweep, and what a contact costs where the bus brings it. The
 # least of RUNS [5], beside that of another build (OTHER=DIR, the last that landed) in turn with it. Leaves bench/results/MACHINE/whole.{tsv,md}.
+# Steps are those of the results kept: to 1e-4 of the natural map, cold but where a row says warm.
 # shellcheck disable=SC2016 # commands that another shell expands
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -31,11 +32,11 @@ row()
 }
 
 nsd-gen 1000000 > "$work/million.h5"
-nsd-gen 500 | nsd-step -n 800 --every 800 2> /dev/null | nsd-cat --last > "$work/pile.h5"
-nsd-step --warm -n 3000 --every 3000 "$work/pile.h5" 2> /dev/null | nsd-cat --last > "$work/rest.h5"
+nsd-gen 500 | nsd-step --criterion natural -n 800 --every 800 2> /dev/null | nsd-cat --last > "$work/pile.h5"
+nsd-step --criterion natural --warm -n 3000 --every 3000 "$work/pile.h5" 2> /dev/null | nsd-cat --last > "$work/rest.h5"
 heap 16 > "$work/flat.h5"
 for n in 200 2000; do heap $n | nsd-detect > "$work/heap$n.h5"; done
-nsd-gen 100000 | nsd-step -n 700 --every 700 2> /dev/null | nsd-cat --last > "$work/column.h5"
+nsd-gen 100000 | nsd-step --criterion natural -n 700 --every 700 2> /dev/null | nsd-cat --last > "$work/column.h5"
 jq -n '{ dt: 1e-5, gravity: [0.3, 0.2, -9.81], walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }], bodies:
     [range(27000) | { radius: 0.0005, x: [. % 30 / 1000, (. / 30 | floor) % 30 / 1000, 0.0005 + (. / 900 | floor) / 1000] }] }' |
     nsd-gen - > "$work/cube.h5"
@@ -46,9 +47,9 @@ start='TIMEFORMAT="%U %S"; { time for k in 1 2 3 4 5 6 7 8 9 10; do TOOL --versi
 pipe='TIMEFORMAT=%R; { time cat "$work/million.h5" | CHAIN > /dev/null; } 2>&1'
 four='TIMEFORMAT=%R; { time cat "$work/million.h5"{,,,} | CHAIN > /dev/null; } 2>&1'
 # seconds on the wall of nsd-step
-steps='TIMEFORMAT=%R; { time nsd-step -j THREADS -n STEPS --every STEPS "$work/FILE.h5" > /dev/null 2>&1; } 2>&1'
+steps='TIMEFORMAT=%R; { time nsd-step --criterion natural -j THREADS -n STEPS --every STEPS "$work/FILE.h5" > /dev/null 2>&1; } 2>&1'
 # the share of nsd-step's time that is not the solver's, %
-outside='TIMEFORMAT=%R; t=$({ time nsd-step -j 2 -n 200 --every 200 --log "$work/log" "$work/column.h5" > /dev/null 2>&1; } 2>&1)
+outside='TIMEFORMAT=%R; t=$({ time nsd-step --criterion natural -j 2 -n 200 --every 200 --log "$work/log" "$work/column.h5" > /dev/null 2>&1; } 2>&1)
     jq -s --argjson t "$t" "100 * (1 - (map(.elapsed) | add) / \$t)" "$work/log"'
 # ns a contact and sweep: what sweeps beyond the first 40, each of which is judged, take
 sweep='for n in 40 SWEEPS; do nsd-solve -m exact -j THREADS --order colour --criterion glob --eps 0 --max-sweeps $n --log "$work/log$n" "$work/FILE.h5" \
@@ -71,7 +72,7 @@ rows()
             "while :; do :; done & trap 'kill \$!' EXIT; ${n//THREADS/2}"
     done
     row "2000 steps, 500 warm balls at rest" s "" \
-        'TIMEFORMAT=%R; { time nsd-step --warm -n 2000 --every 2000 "$work/rest.h5" > /dev/null 2>&1; } 2>&1'
+        'TIMEFORMAT=%R; { time nsd-step --criterion natural --warm -n 2000 --every 2000 "$work/rest.h5" > /dev/null 2>&1; } 2>&1'
     row "200 steps, column, -j 2: outside the solver" % 40 "$outside"
     for file in heap200:340 heap2000:90; do
         tiles=${file%:*} tiles=${tiles#heap} n=${sweep//SWEEPS/${file#*:}} n=${n//FILE/${file%:*}}

@@ -11,6 +11,8 @@ KEEP  ?= docs/gallery
 P     := scripts/gallery
 ALL   := drum silo plane-shear triaxial collapse incline vibrated isotropic repose wet-column wet-drum
 ONLY  ?= $(ALL)
+# make takes a blank for the end of a name, the shell a quote for its own
+$(if $(findstring ',$(OUT))$(word 2,$(OUT)),$(error gallery.mk: OUT=$(OUT): the name of the folder has a blank or a quote))
 export PATH := $(CURDIR)/build:$(PATH)
 export QUICK
 SHELL := /bin/bash

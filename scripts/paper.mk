@@ -8,8 +8,8 @@
 #   plain-A   table 4: alpha A, the plain Newton
 #   line-A    the same with nsd's line search
 #   bond      nsd's, with bonds of BOND weights wherever grains touch
-# Always Gauss-Seidel, the paper's criterion, its tolerance and its limit of sweeps, and nothing done about overlap,
-# whatever the tools' defaults.
+# Always the paper's protocol, whatever the tools' defaults: nsd-detect --overlap keep; nsd-solve and nsd-step --paper,
+# which is Gauss-Seidel from 0, the paper's criterion, nothing done about overlap.
 #
 #   runs/*.h5, *.log   the last two frames of a run; a line for each of its solves
 #   runs.json          a line for each run: what the tables are made from
@@ -22,6 +22,8 @@
 QUICK ?=
 OUT   ?= build/paper$(if $(QUICK),-quick)
 P     := scripts/paper
+# make takes a blank for the end of a name, the shell a quote for its own
+$(if $(findstring ',$(OUT))$(word 2,$(OUT)),$(error paper.mk: OUT=$(OUT): the name of the folder has a blank or a quote))
 export PATH := $(CURDIR)/build:$(PATH)
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
@@ -51,11 +53,10 @@ n_example3 := $(if $(QUICK),600,1000)
 n_alpha    := 500
 n_rest     := $(if $(QUICK),2000,6000)
 cap        := $(if $(QUICK),500,5000)
-nlgs       := --global nlgs --criterion glob --overlap keep
-limits_example1 := $(nlgs) --eps 1e-10 --max-sweeps 5000
-limits_example2 := $(nlgs) --eps 1e-12 --max-sweeps $(cap)
-limits_example3 := $(nlgs) --eps 1e-12 --max-sweeps $(cap)
-limits_alpha    := $(nlgs) --eps 1e-8 --max-sweeps $(cap)
+limits_example1 := --paper --eps 1e-10 --max-sweeps 5000
+limits_example2 := --paper --eps 1e-12 --max-sweeps $(cap)
+limits_example3 := --paper --eps 1e-12 --max-sweeps $(cap)
+limits_alpha    := --paper --eps 1e-8 --max-sweeps $(cap)
 
 all_of  = $(METHODS:%=$1_nsd_%) $1_nsd_exact $(METHODS:%=$1_paper_%)
 TABLES := $(foreach s,$(filter-out example2%,$(DIMS)),$(call all_of,$s))
@@ -103,7 +104,7 @@ $(OUT)/runs/%.h5 $(OUT)/runs/%.log: | $(OUT)/runs
 	@$(packing) | nsd-step -m $(method) -n $(steps) $(options) --every $$(($(steps) - 1)) \
 	    --log $(@D)/$*.part -o $(@D)/$*.h5 2> $(@D)/$*.err || [ $$? = 1 ]
 	@mv $(@D)/$*.part $(@D)/$*.log
-	@echo "paper: $$(find $(@D) -name '*.log' | wc -l) of $(words $(RUNS) $(BONDED)): $*: $$(tail -n 1 $(@D)/$*.err)" >&2
+	@echo "paper: $$(find $(@D) -name '*.log' | wc -l) of $(words $(RUNS) $(BONDED)): $*: $$(grep -m 1 ' sweeps, ' $(@D)/$*.err)" >&2
 
 $(OUT)/runs/%.json: $(OUT)/runs/%.h5 $(OUT)/runs/%.log $P/summary.jq
 	@jq -s -c -f $P/summary.jq --arg run $* --argjson steps $(steps) $(@D)/$*.log \
@@ -155,7 +156,7 @@ $(OUT)/adhesion-same.json: $(BOND_SAME:%=$(OUT)/adhesion-same/%.json)
 # 500 sweeps of the last problem of example 3, the methods in turn, ROUND_METHOD
 $(OUT)/adhesion-times/%.json: $(OUT)/adhesion.json | $(OUT)/adhesion-times
 	@$(call last_problem_of,$(OUT)/runs/example3_bond_exact.h5,$(n_example3)) | \
-	    nsd-solve -m $(call part,2) $(nlgs) --max-sweeps 500 --eps 0 --log $@.part > /dev/null 2>&1
+	    nsd-solve -m $(call part,2) --paper --max-sweeps 500 --eps 0 --log $@.part > /dev/null 2>&1
 	@jq -s -c '{ method: "$(call part,2)", round: $(call part,1), seconds: (map(.seconds) | add) }' $@.part > $@
 	@rm $@.part
 
@@ -193,7 +194,7 @@ $(foreach r,$(rounds_example1),$(eval $(call timed,$r)))
 define timed_sweeps
 $(OUT)/times/sweeps-$1/%.json: $(OUT)/runs.json | $(OUT)/times/sweeps-$1
 	@$$(call last_problem,$(OUT)/runs/$$(scene)_nsd_exact.h5) | \
-	    nsd-solve -m $$(method) $$(options_$$(settings)) $(nlgs) --max-sweeps 500 --eps 0 --log $$@.part > /dev/null 2>&1
+	    nsd-solve -m $$(method) $$(options_$$(settings)) --paper --max-sweeps 500 --eps 0 --log $$@.part > /dev/null 2>&1
 	@$$(call seconds,sweeps,$1) $$@.part > $$@
 	@rm $$@.part
 endef
@@ -225,7 +226,7 @@ $(OUT)/tables/same.tsv: $(OUT)/same.json $P/same.jq $P/stats.jq | $(OUT)/tables
 # contacts that stick, sought from 0.06 s on: a ball rolls after 62 ms, a disc after 73.
 DTS    := 1e-3 5e-4 2e-4 1e-4 $(if $(QUICK),,5e-5 2e-5 1e-5)
 CLOSED := $(foreach s,example1 example1-2d,$(foreach m,$(METHODS) exact,$(DTS:%=$s_$m_%)))
-go      = nsd-step -m $(call part,2) $(nlgs) --eps 1e-14 --max-sweeps 5000 -n $$(jq -n '$1 / $(call part,3) | round')
+go      = nsd-step -m $(call part,2) --paper --eps 1e-14 --max-sweeps 5000 -n $$(jq -n '$1 / $(call part,3) | round')
 throw   = jq -f $P/closed-scene.jq --argjson dt $(call part,3) scenes/paper/$(scene).json | nsd-gen - | $(call go,$1)
 
 $(OUT)/closed/%.tsv: $P/closed-scene.jq $P/closed.jq | $(OUT)/closed
@@ -250,7 +251,8 @@ PNG  := $(foreach s,$(DIMS),$s-start $s-end) $(PILED_UP:%=%-rest)
 
 # The law: one-contact problems that nsd-solve solved, on the graphs.
 $(OUT)/data/%.tsv: $P/laws.jq | $(OUT)/data
-	@jq -n -f $P/laws.jq --arg law $* | nsd-gen - | nsd-detect --gap 1e-4 | nsd-solve -m exact $(nlgs) --eps 1e-10 --max-sweeps 5000 2> /dev/null | \
+	@jq -n -f $P/laws.jq --arg law $* | nsd-gen - | nsd-detect --overlap keep --gap 1e-4 | \
+	    nsd-solve -m exact --paper --eps 1e-10 --max-sweeps 5000 2> /dev/null | \
 	    nsd-info --contacts | \
 	    jq -r '[.u[], .r[]] | @tsv' > $@
 
@@ -305,7 +307,7 @@ $(DIMS:%=$(OUT)/figures/%-end.png): $(OUT)/figures/%-end.png: $(OUT)/runs.json |
 
 # The pile goes on until it rests: warm and relaxed, for speed, and not as the paper has it
 $(OUT)/rest/%.h5: $(OUT)/runs/%_nsd_exact.h5 | $(OUT)/rest
-	@nsd-cat --last $< | nsd-step -m exact $(nlgs) --eps 1e-6 --max-sweeps 5000 --warm --relax 1.5 --order colour \
+	@nsd-cat --last $< | nsd-step -m exact --paper --eps 1e-6 --max-sweeps 5000 --warm --relax 1.5 --order colour \
 	    -n $(n_rest) --every $(n_rest) -o $@ 2> /dev/null
 
 $(OUT)/figures/%-rest.png: $(OUT)/rest/%.h5 | $(OUT)/figures

@@ -19,6 +19,8 @@ EACH  := 1000 2000 4000 $(if $(QUICK),,8000 16000 32000 64000 128000 256000)# sw
 END   := $(if $(QUICK),4000,64000)# where the law is made linear, and proximal steps begin
 COUNT := $(if $(QUICK),20,60)# eigenvalues
 EPS   := 1e-4 1e-5 1e-6 1e-7
+# make takes a blank for the end of a name, the shell a quote for its own
+$(if $(findstring ',$(OUT))$(word 2,$(OUT)),$(error wall.mk: OUT=$(OUT): the name of the folder has a blank or a quote))
 export PATH := $(CURDIR)/build:$(PATH)
 export OMP_NUM_THREADS := 1
 SHELL := /bin/bash

@@ -1,6 +1,6 @@
 # A campaign over mu and seeds, by make: make -j 8 -f campaign.mk SCENE=pile.json. What is killed goes on
 # where it was: each run is a file, and a run that was cut off goes on from its last frame.
-here  := $(dir $(realpath $(lastword $(MAKEFILE_LIST))))
+here  := $(shell dirname "$$(realpath "$(strip $(MAKEFILE_LIST))")")
 MU    ?= 0.1 0.3 0.5 0.7
 SEEDS ?= 1 2 3
 SCENE ?= scene.json
@@ -13,10 +13,10 @@ RUNS := $(foreach m,$(MU),$(foreach s,$(SEEDS),runs/mu-$m-seed-$s.h5))
 all: campaign.png
 
 $(RUNS): runs/%.h5: $(SCENE)
-	$(here)run.sh $(subst -seed-, ,$(patsubst mu-%,%,$*))
+	"$(here)/run.sh" $(subst -seed-, ,$(patsubst mu-%,%,$*))
 
 campaign.tsv: $(RUNS)
-	$(here)table.sh $^ > $@.part && mv $@.part $@
+	"$(here)/table.sh" $^ > $@.part && mv $@.part $@
 
 campaign.png: campaign.tsv
-	gnuplot -e "table='$<'; picture='$@.part'" $(here)plot.gp && mv $@.part $@
+	gnuplot -e "table='$<'; picture='$@.part'" "$(here)/plot.gp" && mv $@.part $@

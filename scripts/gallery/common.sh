@@ -40,7 +40,7 @@ angle() { nsd-stat -m surface "$out/$1" | jq -s '.[length / 2 | floor:] | map(.s
 picture() { nsd-view -o "$out/picture.png" "$@"; }
 
 # The curve, by NAME.gp, from the tables in the folder
-curve() { gnuplot -e "dir = '${out//\'/\'\'}'; quick = ${QUICK:+1}${QUICK:-0}" "$P/style.gp" "$P/$name.gp"; }
+curve() { (cd "$out" && gnuplot -e "dir = '${out//\'/\'\'}'; quick = ${QUICK:+1}${QUICK:-0}" "$P/style.gp" "$P/$name.gp"); }
 
 # results: rows of the table come in; result.json goes out
 results() { jq -s --arg name "$name" --argjson quick "$(pick true false)" '{name: $name, quick: $quick, rows: .}' >"$out/result.json"; }

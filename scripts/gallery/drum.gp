@@ -8,5 +8,5 @@ set ylabel "depth, mm"
 set yrange [*:0] reverse
 set yrange [45:0]
 set key bottom right noreverse Right
-plot for [f in system("ls -v " . dir . "/layer-*.tsv")] f using 2:(1000*$1) with linespoints title f[strstrt(f, "layer-")+6:strlen(f)-4] . " rad/s"
+plot for [f in system("ls -v layer-*.tsv")] dir . "/" . f using 2:(1000*$1) with linespoints title f[7:strlen(f)-4] . " rad/s"
 unset multiplot

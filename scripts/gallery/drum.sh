@@ -11,15 +11,15 @@ radius=$(jq -n "0.105 * $scale")
 # of the frames; in m and m/s. UP: the axis that points up
 layer()
 {
-    nsd-info -p "$1" | jq -rs --argjson angle "$2" --argjson up "$3" --argjson r "$radius" '($angle * 3.141592653589793 / 180) as $a |
+    nsd-info -p "$1" | with '($angle * 3.141592653589793 / 180) as $a |
         (map(.step) | max / 2) as $half | 0.003 as $d |
         # the drum turns counterclockwise, and the surface falls to the left
         map(select(.step > $half) | [.step, .x[0] * ($a | cos) + .x[$up] * ($a | sin), -.x[0] * ($a | sin) + .x[$up] * ($a | cos),
             -(.v[0] * ($a | cos) + .v[$up] * ($a | sin))] | select(.[1] > -0.2 * $r and .[1] < 0.2 * $r)) |
-        # the surface: above it are a few of a frame
+        # the surface: above it are a few of a frame. Rows along the wall hold twice as many as those inside
         group_by(.[2] / ($d / 2) | floor) | map({y: (map(.[2]) | add / length), v: (map(.[3]) | add / length), n: length}) |
-        (map(.n) | max) as $most | map(select(.n > 0.6 * $most)) | (map(.y) | max) as $top |
-        .[] | [$top - .y, .v] | @tsv'
+        (map(.n) | median) as $usual | map(select(.n > 0.6 * $usual)) | (map(.y) | max) as $top |
+        .[] | [$top - .y, .v] | @tsv' -rs --argjson angle "$2" --argjson up "$3" --argjson r "$radius"
 }
 
 echo "froude angle" >"$out/angle.tsv"

@@ -3,7 +3,8 @@
 # go on where they were.
 . tests/support/tap.sh
 
-campaign=$PWD/scripts/campaign
+campaign="$tmp/the user's campaign" # a folder as users name them
+cp -r scripts/campaign "$campaign"
 cat >"$tmp/pile.json" <<'END'
 { "dim": 2, "dt": 2e-4, "e_n": 0.1,
   "walls": [{ "point": [0, 0], "normal": [0, 1] }, { "point": [0, 0], "normal": [1, 0] }, { "point": [0.04, 0], "normal": [-1, 0] }],
@@ -46,7 +47,7 @@ ok "from where it was" cmp <(frames "$tmp/make") <(frames "$tmp/killed")
 
 if command -v parallel >/dev/null; then
     # shellcheck disable=SC2086 # words
-    (cd "$tmp/parallel" && parallel --will-cite -j2 "$campaign/run.sh" ::: $MU ::: $SEEDS) >/dev/null 2>&1
+    (cd "$tmp/parallel" && parallel --will-cite -q -j2 "$campaign/run.sh" ::: $MU ::: $SEEDS) >/dev/null 2>&1
     ok "GNU parallel makes the same runs" cmp <(frames "$tmp/make") <(frames "$tmp/parallel")
 else
     skip "GNU parallel makes the same runs" "no parallel"
