@@ -7,6 +7,8 @@
 
 const char *const overlap_name[OVERLAP_COUNT] = { "",     "keep",    "gap",
                                                   "push", "project", "gap-project" };
+/* Boundaries that bodies may have: each body asks each, which takes up to 40 ns; for many bodies, and for few */
+enum { BOUNDARIES_BODY = 4096, BOUNDARIES_LEAST = 1 << 26 };
 enum { IMAGES_MOST = 1 << 30 }; /* so that sums and differences of images are numbers too */
 
 static void *array(int64_t n, size_t size)
@@ -407,6 +409,11 @@ int packing_check(const struct packing *p, struct why *why)
         if (trouble) return why_set(why, EX_DATAERR, pair, a, b, trouble);
     }
     if (check_bodies(p, 0, why)) return why->status;
+    if (p->walls > BOUNDARIES_BODY && (p->walls - BOUNDARIES_BODY) * p->n > BOUNDARIES_LEAST)
+        return why_set(
+            why, EX_DATAERR,
+            "%lld bodies and %d boundaries: more than %d for each body: make a mesh of them",
+            (long long)p->n, p->walls, BOUNDARIES_BODY);
     for (int32_t i = 0; i < p->walls; i++) {
         const char *trouble = wall_trouble(p, &p->wall[i]);
         if (trouble) return why_set(why, EX_DATAERR, "wall %d: %s", i, trouble);

@@ -32,18 +32,36 @@ void shape_free(struct shape *s)
 void shapes_free(struct shapes *t)
 {
     for (int32_t k = 0; k < t->n; k++) shape_free(&t->s[k]);
-    free(t->s);
+    free(t->s), free(t->sorted);
     *t = (struct shapes){ 0 };
+}
+
+/* How many rows have names before this one; `equal`: or this one */
+static int32_t names_before(const struct shapes *t, const char *name, bool equal)
+{
+    int32_t lo = 0, hi = t->n;
+    while (lo < hi) {
+        int32_t middle = lo + (hi - lo) / 2;
+        int order = strcmp(t->s[t->sorted[middle]].name, name);
+        *(order < 0 || (equal && !order) ? &lo : &hi) =
+            order < 0 || (equal && !order) ? middle + 1 : middle;
+    }
+    return lo;
 }
 
 static int append(struct shapes *t, struct shape *s, struct why *why)
 {
     struct shape *more = realloc(t->s, ((size_t)t->n + 1) * sizeof *more);
     if (more) t->s = more;
-    if (!more || !s->name) {
+    int32_t *sorted = realloc(t->sorted, ((size_t)t->n + 1) * sizeof *sorted);
+    if (sorted) t->sorted = sorted;
+    if (!more || !sorted || !s->name) {
         shape_free(s);
         return why_set(why, EX_SOFTWARE, "no memory for the shapes");
     }
+    int32_t at = names_before(t, s->name, true);
+    memmove(&sorted[at + 1], &sorted[at], (size_t)(t->n - at) * sizeof *sorted);
+    sorted[at] = t->n;
     t->s[t->n++] = *s;
     *s = (struct shape){ 0 };
     return 0;
@@ -66,9 +84,8 @@ int shapes_add(struct shapes *t, int dim, struct shape *s, struct why *why)
 
 int32_t shapes_find(const struct shapes *t, const char *name)
 {
-    for (int32_t k = 0; k < t->n; k++)
-        if (!strcmp(t->s[k].name, name)) return k;
-    return -1;
+    int32_t at = names_before(t, name, false);
+    return at < t->n && !strcmp(t->s[t->sorted[at]].name, name) ? t->sorted[at] : -1;
 }
 
 bool shape_same(const struct shape *a, const struct shape *b)
@@ -116,7 +133,12 @@ int shapes_copy(struct shapes *to, const struct shapes *from, struct why *why)
     *to = (struct shapes){ 0 };
     if (!from->n) return 0;
     to->s = calloc((size_t)from->n, sizeof *to->s);
-    if (!to->s) return why_set(why, EX_SOFTWARE, "no memory for the shapes");
+    to->sorted = calloc((size_t)from->n, sizeof *to->sorted);
+    if (!to->s || !to->sorted) {
+        shapes_free(to);
+        return why_set(why, EX_SOFTWARE, "no memory for the shapes");
+    }
+    memcpy(to->sorted, from->sorted, (size_t)from->n * sizeof *to->sorted);
     for (; to->n < from->n; to->n++)
         if (copy_one(&to->s[to->n], &from->s[to->n], why)) {
             to->n++;

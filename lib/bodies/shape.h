@@ -54,6 +54,7 @@ struct shape {
 struct shapes {
     int32_t n;       /* 0: all grains are balls */
     struct shape *s; /* [n] s[0] is the ball */
+    int32_t *sorted; /* [n] rows by their names */
 };
 
 void shapes_free(struct shapes *t);

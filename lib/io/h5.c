@@ -4,6 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum {
+    ATTRIBUTE_MOST = 65000 /* bytes of a text: HDF5 has 64 KiB for an attribute and what it is */
+};
+
 void h5_start(void)
 {
     H5dont_atexit();
@@ -158,6 +162,9 @@ int h5_attr(hid_t place, const char *path, const char *name, hid_t type, int cou
 
 int h5_attr_text(hid_t place, const char *path, const char *name, const char *text, struct why *why)
 {
+    if (strlen(text) > ATTRIBUTE_MOST)
+        return why_set(why, EX_DATAERR, "%s@%s: %zu bytes, and a document has room for %d", path,
+                       name, strlen(text), ATTRIBUTE_MOST);
     hid_t type = text_type(text);
     int e = write_attr(place, path, name, type, type, 0, NULL, text, why);
     H5Tclose(type);

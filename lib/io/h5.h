@@ -52,6 +52,7 @@ int h5_attr(hid_t place, const char *path, const char *name, hid_t type, int cou
 /* The same of any shape */
 int h5_attr_shaped(hid_t place, const char *path, const char *name, hid_t type, int rank,
                    const hsize_t *shape, const void *data, struct why *why);
+/* A text; EX_DATAERR: longer than HDF5 has room for */
 int h5_attr_text(hid_t place, const char *path, const char *name, const char *text,
                  struct why *why);
 

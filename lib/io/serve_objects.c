@@ -10,7 +10,8 @@
 enum {
     SMALL_DATA = 1 << 16,   /* bytes of a dataset that are sent with the list of objects; */
     SMALL_LINKED = 1 << 12, /* of one under a second name, for step and time have forty; */
-    MOST_SENT = 1 << 20     /* and in all */
+    MOST_SENT = 1 << 20,    /* and in all */
+    MOST_ATTRIBUTES = 1000  /* of an object: to copy n takes libhdf5 n^2 */
 };
 
 /* Objects that are gathered, and whose attributes they are */
@@ -18,6 +19,7 @@ struct gathered {
     struct objects objects;
     const char *path; /* of the object whose attributes they are */
     bool group;       /* they go under "path@name" */
+    int count;        /* that it has so far */
     struct why *why;
 };
 
@@ -73,6 +75,9 @@ static herr_t gather_attribute(hid_t from, const char *name, const H5A_info_t *i
 {
     (void)info;
     struct gathered *g = data;
+    if (g->count++ == MOST_ATTRIBUTES)
+        return why_set(g->why, EX_DATAERR, "%s: more than %d attributes", g->path, MOST_ATTRIBUTES),
+               -1;
     hid_t attr = H5Aopen(from, name, H5P_DEFAULT);
     if (attr < 0)
         return why_set(g->why, EX_DATAERR, "%s@%s: cannot be opened (damaged?)", g->path, name), -1;
@@ -133,7 +138,7 @@ static void *small_data(const struct served *s, const struct entry *e, struct ob
 static int add_group_attributes(struct served *s, const char *path, struct gathered *g)
 {
     hid_t group = H5Gopen2(s->file, *path ? path : "/", H5P_DEFAULT);
-    g->path = path, g->group = true;
+    g->path = path, g->group = true, g->count = 0;
     if (group < 0 || H5Aiterate2(group, H5_INDEX_NAME, H5_ITER_INC, NULL, gather_attribute, g) < 0)
         why_set(g->why, EX_DATAERR, "%s: attributes cannot be read (damaged?)", path);
     if (group >= 0) H5Gclose(group);

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -26,6 +27,12 @@ enum {
     SPARE_SECONDS = 4,      /* of the processor, for an answer: a good one takes milliseconds, */
     RATE = 10000000,        /* and bytes a second: a tenth of what gzip unpacks */
     SLOWER = SANITIZED ? 10 : 1
+};
+
+enum {
+    TRIES = 3,     /* more at a document that is being written, */
+    PAUSE = 20000, /* us before each */
+    AT_END = 40 /* where HDF5's superblock, its version 0, says in 8 bytes how long the file is */
 };
 
 /* ---- bounds ---- */
@@ -113,13 +120,55 @@ static int server_put(struct sink *sink, size_t size)
 
 /* ---- requests ---- */
 
+/*
+ * A document that is being written [io/writer.c]: libhdf5 learns once, now, where it ends, and then comes upon what
+ * has been added since and lies beyond. Its end is therefore said to be that of all that may be looked at, in our
+ * copy of a page of it. Returns how many bytes there are; where what is said to be there is not: as it is.
+ */
+static size_t look_ahead(const struct server *s, const struct image *im, unsigned char **end)
+{
+    static const unsigned char version_0[9] = "\x89HDF\r\n\x1a\n";
+    unsigned char *superblock = im->bytes + DOCUMENT_USERBLOCK;
+    uint64_t said = 0;
+    if (im->room == im->size || im->size < DOCUMENT_USERBLOCK + AT_END + 8 ||
+        memcmp(superblock, version_0, sizeof version_0) != 0)
+        return im->size;
+    for (int k = 0; k < 8; k++) said |= (uint64_t)superblock[AT_END + k] << 8 * k;
+    if (said > stream_grown(s->stream, im)) return im->size;
+    *end = superblock + AT_END;
+    for (int k = 0; k < 8; k++) (*end)[k] = (unsigned char)((uint64_t)im->room >> 8 * k);
+    return im->room;
+}
+
+/* The page is the file's again. */
+static void look_back(unsigned char *end)
+{
+    const uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE), skip = (uintptr_t)end % page;
+    if (end) madvise(end - skip, page, MADV_DONTNEED);
+}
+
 static int open_image(struct server *s, const struct image *im, struct why *why)
 {
-    hid_t file = H5LTopen_file_image(im->bytes, im->size,
+    unsigned char *end = NULL;
+    size_t size = look_ahead(s, im, &end);
+    hid_t file = H5LTopen_file_image(im->bytes, size,
                                      H5LT_FILE_IMAGE_DONT_COPY | H5LT_FILE_IMAGE_DONT_RELEASE);
+    look_back(end);
     if (file < 0)
         return why_set(why, EX_DATAERR, "not a readable HDF5 file (truncated or damaged)");
-    return served_open(&s->served, file, im->size, s->limit, why);
+    // a writer shows a frame's step after all else: what is looked at later is there for each step that is
+    hid_t step = im->unfinished ? H5Dopen2(file, "/particles/all/position/step", H5P_DEFAULT) : -1;
+    int status = served_open(&s->served, file, im->size, s->limit, why);
+    if (step >= 0) H5Dclose(step);
+    return status;
+}
+
+/* A block that was read while it was being written contradicts its checksum: a moment later it does not. */
+static bool is_torn(const struct server *s, const struct image *im, const struct why *why)
+{
+    if (why->status != EX_DATAERR || !im->unfinished || !stream_changed(s->stream)) return false;
+    usleep(PAUSE);
+    return true;
 }
 
 /* The next document, and all that is in it */
@@ -137,6 +186,10 @@ static int answer_next(struct server *s, struct why *why)
     bound_memory(im.size, s->limit), bound_time(im.size, s->limit);
     size_t size = 0;
     void *objects = open_image(s, &im, why) ? NULL : serve_objects(&s->served, &size, why);
+    for (int try = 0; !objects && try < TRIES && is_torn(s, &im, why); try++) {
+        served_close(&s->served), *why = (struct why){ 0 };
+        objects = open_image(s, &im, why) ? NULL : serve_objects(&s->served, &size, why);
+    }
     if (!objects) {
         char text[sizeof why->text];
         memcpy(text, why->text, sizeof text);

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 static const unsigned char MAGIC[8] = "\x89NSD\r\n\x1a\n", HDF5[8] = "\x89HDF\r\n\x1a\n";
@@ -15,9 +16,10 @@ static const unsigned char MAGIC[8] = "\x89NSD\r\n\x1a\n", HDF5[8] = "\x89HDF\r\
 enum { AT_VERSION = 8, AT_FLAGS = 12, AT_LENGTH = 16, AT_CRC = 24, AT_HEADER_CRC = 28 };
 
 enum {
-    LARGE = 1 << 26, /* bytes: a document from here on outweighs the tool, and is not kept */
-    PIPE = 1 << 20,  /* bytes that a pipe shall hold, the most that is anybody's: fewer waits */
-    PIECE = 1 << 19  /* bytes whose checksum is taken while they are in a core's second cache */
+    LARGE = 1 << 26,  /* bytes: a document from here on outweighs the tool, and is not kept */
+    GROWTH = 1 << 26, /* bytes by which an unfinished document may grow while it is read */
+    PIPE = 1 << 20,   /* bytes that a pipe shall hold, the most that is anybody's: fewer waits */
+    PIECE = 1 << 19   /* bytes whose checksum is taken while they are in a core's second cache */
 };
 
 static void store(unsigned char *p, uint64_t x, int bytes)
@@ -47,14 +49,16 @@ struct stream {
     int files, next; /* next: the file to open after the current one */
     char *const *file;
     const char *name;
-    int fd;                        /* -1: none open */
-    int64_t in_file;               /* documents found in it so far */
-    unsigned char *map;            /* a whole regular file; NULL: a pipe */
-    size_t size, at;               /* of the map, and how much of it is read */
+    int fd;                  /* -1: none open */
+    int64_t in_file;         /* documents found in it so far */
+    struct timespec written; /* when it was last, as it was opened */
+    unsigned char *map;      /* a whole regular file; NULL: a pipe */
+    size_t size, at;         /* of that file when it was opened, and how much of it is read */
+    size_t mapped;           /* bytes of the map, and of addresses behind it for what will grow */
     unsigned char *buffer, *spare; /* a pipe's document, and the one before it */
     size_t room, spare_room;
     unsigned char *old; /* the map of the file before */
-    size_t old_size;
+    size_t old_mapped;
 };
 
 int stream_open(struct stream **out, int files, char *const *file, struct why *why)
@@ -70,10 +74,10 @@ int stream_open(struct stream **out, int files, char *const *file, struct why *w
 
 static void file_close(struct stream *s)
 {
-    if (s->old && s->map) munmap(s->old, s->old_size);
-    if (s->map) s->old = s->map, s->old_size = s->size;
+    if (s->old && s->map) munmap(s->old, s->old_mapped);
+    if (s->map) s->old = s->map, s->old_mapped = s->mapped;
     if (s->fd > 0) close(s->fd);
-    s->map = NULL, s->size = s->at = 0, s->fd = -1;
+    s->map = NULL, s->size = s->mapped = s->at = 0, s->fd = -1;
 }
 
 static void buffer_free(struct stream *s)
@@ -110,7 +114,7 @@ void stream_close(struct stream *s)
 {
     if (!s) return;
     file_close(s);
-    if (s->old) munmap(s->old, s->old_size);
+    if (s->old) munmap(s->old, s->old_mapped);
     buffer_free(s);
     swap_buffers(s);
     buffer_free(s);
@@ -145,7 +149,8 @@ static int file_open(struct stream *s, struct why *why)
     if (S_ISFIFO(st.st_mode)) fcntl(s->fd, F_SETPIPE_SZ, PIPE); // or it stays as it is
     off_t at = S_ISREG(st.st_mode) ? lseek(s->fd, 0, SEEK_CUR) : -1;
     if (at < 0 || st.st_size <= at) return 0; // a pipe, or an empty file
-    s->size = (size_t)st.st_size, s->at = (size_t)at;
+    s->size = (size_t)st.st_size, s->at = (size_t)at, s->written = st.st_mtim;
+    s->mapped = s->size;
     s->map = mmap(NULL, s->size, PROT_READ | PROT_WRITE, MAP_PRIVATE, s->fd, 0);
     if (s->map != MAP_FAILED) return 0;
     s->map = NULL;
@@ -210,6 +215,15 @@ static int read_all(struct stream *s, struct image *im, size_t *have, size_t wan
     return 0;
 }
 
+/* Addresses for what a writer adds to the file while we read it; without them: as it was when it was opened */
+static void let_grow(struct stream *s, struct image *im)
+{
+    void *more = s->map ? mremap(s->map, s->mapped, s->size + GROWTH, MREMAP_MAYMOVE) : MAP_FAILED;
+    if (more == MAP_FAILED) return;
+    s->map = more, s->mapped = s->size + GROWTH;
+    im->bytes = s->map + s->at, im->room = im->size + GROWTH;
+}
+
 /* A document with our header: checks that and finds its size. */
 static int read_own(struct stream *s, struct image *im, size_t have, struct why *why)
 {
@@ -229,8 +243,8 @@ static int read_own(struct stream *s, struct image *im, size_t have, struct why 
     if (im->unfinished ? peek(s, &im->bytes, &have, want, why)
                        : read_all(s, im, &have, want, &is, why))
         return why->status;
-    im->size = have;
-    if (im->unfinished) return 0;
+    im->size = im->room = have;
+    if (im->unfinished) return let_grow(s, im), 0;
     if (have < want)
         return why_set(why, EX_DATAERR, "%s: document %lld: truncated, %zu of %zu bytes", s->name,
                        (long long)s->in_file + 1, have, want);
@@ -245,7 +259,7 @@ static int read_foreign(struct stream *s, struct image *im, size_t have, struct 
 {
     im->foreign = true;
     if (peek(s, &im->bytes, &have, SIZE_MAX, why)) return why->status;
-    im->size = have;
+    im->size = im->room = have;
     return 0;
 }
 
@@ -285,4 +299,21 @@ int stream_next(struct stream *s, struct image *im, struct why *why)
         }
         file_close(s);
     }
+}
+
+size_t stream_grown(const struct stream *s, const struct image *im)
+{
+    struct stat st;
+    size_t at = s->at - im->size; // where the document begins
+    if (im->room == im->size || fstat(s->fd, &st) || (size_t)st.st_size < at) return im->size;
+    size_t now = (size_t)st.st_size - at;
+    return now < im->room ? now : im->room;
+}
+
+bool stream_changed(const struct stream *s)
+{
+    struct stat st;
+    return s->map && !fstat(s->fd, &st) &&
+           ((size_t)st.st_size != s->size || st.st_mtim.tv_sec != s->written.tv_sec ||
+            st.st_mtim.tv_nsec != s->written.tv_nsec);
 }

@@ -31,8 +31,9 @@ struct image {
     int64_t number;       /* its place in that file, from 1 */
     unsigned char *bytes; /* NULL: the stream has ended */
     size_t size;          /* bytes */
-    bool foreign;         /* an HDF5 file without our header */
-    bool unfinished;      /* no checksum vouches for it */
+    size_t room; /* bytes that may be looked at: more than size where the file may grow into them */
+    bool foreign;    /* an HDF5 file without our header */
+    bool unfinished; /* no checksum vouches for it */
 };
 
 struct stream;
@@ -47,6 +48,10 @@ int stream_open(struct stream **stream, int files, char *const *file, struct why
  * EX_DATAERR: it is empty or not a document, truncated, damaged or of a newer version.
  */
 int stream_next(struct stream *stream, struct image *image, struct why *why);
+/* Bytes that the current document has by now: more than its size, if another program writes it */
+size_t stream_grown(const struct stream *stream, const struct image *image);
+/* Has anybody written to the file in hand since it was opened? */
+bool stream_changed(const struct stream *stream);
 /* Pages of a large file that have been read leave memory; when wanted they are read again. */
 void stream_unload(const struct stream *stream);
 /* The current document is no longer needed: the memory of a large one from a pipe is freed. */

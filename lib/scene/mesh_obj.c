@@ -4,9 +4,9 @@
  *     v X Y Z          a corner; behind it a weight or a colour may stand
  *     f A B C ...      a polygon of corners: A is A/texture/normal, from 1; -1 is the last one so far
  *
- * Lines, points, names, materials and words unknown are passed over; curves and free-form surfaces are not:
- * without them the surface has holes. The format has no end: of a file that is cut off between two lines
- * nothing tells.
+ * Lines, points, names, materials and words unknown are passed over; curves, free-form surfaces and other files
+ * (call) are not: without them the surface has holes. The format has no end: of a file that is cut off between
+ * two lines nothing tells.
  */
 #include "scene/mesh_format.h"
 
@@ -43,7 +43,10 @@ static int read_index(struct words *w, struct word word, int64_t *corner)
     int64_t i = strtoll(first.s, &end, 10);
     if (!first.n || end != first.s + first.n || !i)
         return word_fault(w, word, "is no number of a corner (1 is the first, -1 the last)");
-    if (!word_has_only(word, "/+-0123456789")) return word_fault(w, word, "is no corner A/B/C");
+    int slashes = 0;
+    for (int k = 0; k < word.n; k++) slashes += word.s[k] == '/';
+    if (slashes > 2 || !word_has_only(word, "/+-0123456789"))
+        return word_fault(w, word, "is no corner A/B/C");
     *corner = i > 0 ? i - 1 : w->soup->corners + i;
     return 0;
 }
@@ -67,9 +70,10 @@ static int read(struct soup *s, const char *bytes, int64_t n)
     do {
         struct word word;
         if (!words_next(&w, &word)) continue;
-        if (word_is(word, "v") ? read_corner(&w)
-            : word_is(word, "f") || word_is(word, "fo")
-                ? read_face(&w)
+        if (word_is(word, "v")                          ? read_corner(&w)
+            : word_is(word, "f") || word_is(word, "fo") ? read_face(&w)
+            : word_is(word, "call")
+                ? word_fault(&w, word, "names another file, and no other is read")
                 : is_among(word, curved) &&
                       word_fault(&w, word, "is free-form geometry: write the surface as polygons"))
             return 1;

@@ -38,6 +38,25 @@ echo '{"dt": 1e-3, "bodies": [{"random": {"phi": 0.3}, "box": {"x": [0, 1], "y":
     "radius": {"sieve": [[2e-4, 0], [4e-4, 1]]}}]}' >sieve.json
 refuses 65 "a sieve in mm that were m" ends nsd-gen sieve.json
 like "says what to do" "$(cat err)" "larger ones, or a smaller box"
+jq -n '{ dt: 1e-3, shapes: [range(20000) | { key: "shape \(.)", value: { points: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]] } }] | from_entries,
+    bodies: [range(20000) | { x: [3 * ., 0, 0], radius: 1, shape: "shape \(.)" }] }' >shapes.json
+refuses 65 "20 000 shapes" ends nsd-gen shapes.json
+like "says that their names are too long" "$(cat err)" "/nsd/shape@names: .* bytes"
+jq -n '{ dt: 1e-3, kinds: [range(1001) | { key: "k\(.)", value: { density: 1 } }] | from_entries, bodies: [] }' >kinds.json
+refuses 65 "1001 kinds" ends nsd-gen kinds.json
+jq -n '{ dt: 1e-3, shapes: { round: { points: [range(4500) | (1 - (2 * . + 1) / 4500) as $z | (2.39996 * .) as $a |
+    (1 - $z * $z | sqrt) as $r | [$r * ($a | cos), $r * ($a | sin), $z]] } }, bodies: [{ x: [0, 0, 0], radius: 1, shape: "round" }] }' >round.json
+refuses 65 "a hull of 4500 corners" ends nsd-gen round.json
+like "says so" "$(cat err)" "more than 4096 corners"
+mesh() { echo "{\"dt\": 1e-3, \"overlap\": true, $1}" >mesh.json; }
+awk 'BEGIN { for (k = 0; k <= 2^20; k++) print "v", cos(k), sin(k), k; print "f 1 2 3\nf", 2^20 + 1, "1 2" }' >many.obj
+mesh '"shapes": {"many": {"mesh": {"file": "many.obj", "hull": true}}}, "bodies": [{"x": [0, 0, 0], "radius": 1, "shape": "many"}]'
+refuses 65 "a grain of 2^20 + 1 corners" ends nsd-gen mesh.json
+awk 'BEGIN { for (j = 0; j < 65; j++) { f = "f"; for (i = 0; i < 4096; i++) { r = i % 2 ? 1 : 0.5; a = 6.283185307179586 * i / 4096
+    print "v", r * cos(a), r * sin(a), j; f = f " " (4096 * j + i + 1) } print f } }' OFMT=%.12g >stars.obj
+mesh '"walls": [{"mesh": {"file": "stars.obj"}}]'
+refuses 65 "65 stars of 4096 corners" ends nsd-gen mesh.json
+like "says so" "$(cat err)" "too many concave polygons"
 echo '{"dt": 1e-3, "gravity": [0, 0, 0], "time": 0, "pour": [{"rate": 1e30, "radius": 1e-6,
     "opening": {"box": {"x": [0, 1], "y": [0, 1], "z": [0, 1]}}}]}' >pour.json
 nsd-gen pour.json >pour.h5
@@ -61,6 +80,13 @@ fan()
 fan 20000 20
 nsd-gen fan.json >fan.h5
 refuses 65 "20 000 triangles at a corner" ends nsd-detect fan.h5
+awk 'BEGIN { m = 320; for (i = 0; i <= m; i++) for (j = 0; j <= m; j++) print "v", i / m, j / m, 0
+    for (i = 0; i < m; i++) for (j = 0; j < m; j++) { a = i * (m + 1) + j + 1; print "f", a, a + m + 1, a + m + 2, a + 1 } }' >fine.obj
+jq -n '{ dt: 1e-3, overlap: true, walls: [{ mesh: { file: "fine.obj" } }],
+    bodies: [range(400) | { x: [0.5 + 0.001 * ., 0.5, 2], radius: 2.5 }] }' >fine.json
+nsd-gen fine.json >fine.h5
+refuses 65 "400 balls each near 204 800 triangles" ends nsd-detect fine.h5
+like "says so" "$(cat err)" "elements of meshes near them"
 fan 4000 300
 nsd-gen fan.json >fan.h5
 status 0 "300 balls over 4000 triangles at a corner" ends nsd-detect fan.h5
@@ -145,10 +171,59 @@ for n, w in ('position', 3), ('velocity', 3), ('angular_velocity', 3), ('orienta
     put('/particles/all/%s/value' % n, np.zeros((F, 1, w), 'i1'))"
 refused "a document of frames alone"
 
+make bad.h5 base.h5 "
+for k in range(1001): f['/nsd'].attrs['mine%d' % k] = k"
+refused "1001 attributes of a group"
+like "says so" "$(cat err)" "/nsd: more than 1000 attributes"
+make bad.h5 base.h5 "
+d = f.create_dataset('mine', data=np.zeros(2))
+for k in range(60000): d.attrs['a%d' % k] = k"
+refuses 65 "60 000 attributes of an object that nobody knows" ends nsd-cat bad.h5
 make many.h5 base.h5 "
 for k in range(20000): f.create_dataset('mine%05d' % k, data=np.zeros(2))"
 status 0 "20 000 objects that nobody knows" ends nsd-cat -o copied.h5 many.h5
 is "are copied" "$(h5ls copied.h5 | grep -c mine)" 20000
+
+soon_in() # SECONDS COMMAND ...: of the processor
+{
+    [ -n "$sanitized" ] || ulimit -t "$1"
+    timeout 60 "${@:2}"
+}
+names="
+def shapes(N):
+    g = f['/nsd/shape']; n = f.create_group('/nsd/more')
+    for k in g:
+        a = np.concatenate([g[k][()]] * N)
+        n.create_dataset(k, data=a, chunks=(min(len(a), 1 << 16),) + a.shape[1:], compression='gzip', shuffle=True)
+        for x in g[k].attrs: n[k].attrs[x] = g[k].attrs[x]
+    del f['/nsd/shape']
+    n.attrs.create('names', np.bytes_(''.join('s%05d\n' % k for k in range(N)).encode()))
+    f.move('/nsd/more', '/nsd/shape')"
+make bad.h5 base.h5 "$names
+shapes(65534)"
+refused_or_not() { (soon_in 5 nsd-info bad.h5 >/dev/null); }
+ok "65 534 shapes take no minute" refused_or_not
+make bad.h5 base.h5 "$names
+shapes(65536)"
+refused "65 536 shapes"
+make bad.h5 base.h5 "
+f['/nsd/material'].attrs['kinds'] = ''.join('k%d\n' % k for k in range(4097))"
+refused "4097 kinds"
+like "says so" "$(cat err)" "more than 4096 kinds"
+make bad.h5 base.h5 "
+def more(path, axis, n):
+    a = np.repeat(f[path][()], n, axis); at = dict(f[path].attrs); put(path, a)
+    for k in at: f[path].attrs[k] = at[k]
+def each(group, n):
+    paths = []
+    f[group].visititems(lambda name, o: (isinstance(o, h5py.Dataset) and paths.append((group + '/' + name, o.shape))) or None)
+    for path, shape in paths:
+        if not path.endswith('step') and not path.endswith('time') and not '/drive/' in path:
+            more(path, 0 if len(shape) == 1 or not path.endswith('value') else 1, n)
+each('/particles/all', 20000); each('/particles/boundary', 20000)
+put('/particles/all/id', np.arange(20000))"
+refused "20 000 bodies in 20 000 boundaries"
+like "says so" "$(cat err)" "20000 boundaries: more than 4096 for each body"
 
 make steps.h5 frames.h5 "
 F = 30000

@@ -81,6 +81,8 @@ bad "a polygon that crosses itself" a.obj 'line 6: .*crosses itself' < <(obj 'f 
 bad "one that is not flat" a.obj 'line 6: .*not flat' < <(obj 'f 1 2 5 4')
 bad "a corner of two coordinates" a.obj 'line 7: a number is missing' < <(obj 'f 1 2 3' 'v 1 1')
 bad "curves" a.obj 'line 7: "cstype" is free-form' < <(obj 'f 1 2 3' 'cstype bezier')
+bad "another file" a.obj 'line 7: "call" names another file' < <(obj 'f 1 2 3' 'call more.obj')
+bad "a corner of four numbers" a.obj 'line 6: "1/1/1/1" is no corner' < <(obj 'f 1/1/1/1 2 3')
 bad "points alone" a.obj 'no triangles' < <(obj)
 bad "a polygon of 1e5 corners" a.obj 'line 7: a polygon of more than 4096' < <(obj; printf 'f '; seq -s ' ' 1 100000)
 bad "one of 5000" a.obj 'line 5001: a polygon of more than 4096' < <(for i in {1..5000}; do echo "v $i 0 0"; done; echo f {1..5000})
