@@ -148,11 +148,9 @@ FIRST := $(patsubst %,tests/%.t,tools/examples whole/laws whole/solvers hostile/
          tools/export tools/grains tools/view tools/pipeline tools/boundary) $B/tests/unit/shapes_test
 # What make check leaves to make check-all: it builds again, needs what only a maintainer has, or takes minutes.
 REST  := $(patsubst %,tests/%.t,project/lint whole/paper project/compilers whole/gallery project/thread_sanitizer whole/mpi \
-         project/install whole/wall tools/web_in_browser hostile/failing_system_calls hostile/failing_allocations) \
+         project/install whole/wall whole/paper_page tools/web_in_browser hostile/failing_system_calls hostile/failing_allocations) \
          $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw killed_writer)
-# Whether docs/paper is what this code makes: make paper-keep runs it. The page that is kept is older.
-PAGE  := tests/whole/paper_page.t
-TESTS := $(FIRST) $(filter-out $(FIRST) $(REST) $(PAGE),$(CTEST) $(wildcard tests/*/*.t))
+TESTS := $(FIRST) $(filter-out $(FIRST) $(REST),$(CTEST) $(wildcard tests/*/*.t))
 # What the sanitizers would not see more of: it looks at texts, or makes others' experiments.
 PLAIN := $(filter-out tests/whole/mpi.t tests/whole/wall.t tests/tools/% tests/hostile/% $B/tests/%,$(REST)) $(patsubst %,tests/%.t,project/layers project/docs tools/examples tools/campaign whole/rest)
 # What looks into inner loops has, under the sanitizers, those of the width that is instrumented.
@@ -193,7 +191,7 @@ demo: setup-run
 paper paper-keep: setup-paper
 	$(MAKE) -j2 all
 	$(MAKE) -f scripts/paper.mk $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc)) $(@:paper%=all%)
-	$(if $(filter paper-keep,$@),PATH="$(CURDIR)/$B:$$PATH" prove $(PAGE))
+	$(if $(filter paper-keep,$@),PATH="$(CURDIR)/$B:$$PATH" prove tests/whole/paper_page.t)
 
 # scripts/wall.mk says what is measured; wall-keep puts the page into docs/wall.
 wall wall-keep: setup-wall
