@@ -184,7 +184,7 @@ claim()
     'nsd-'*'nsd-view'*'.png' | 'nsd-view '*'> '*.png) png "${1##* }" ;;
     'nsd-view '*"'film%04d.png' out.h5") png film0000.png 360x640 && series "$(frames out.h5 length)" film*.png ;;
     'nsd-view '*"'film%05d.png' out.h5") png film00000.png && series 10 film*.png ;;
-    'nsd-step'*'| nsd-web > run.html') page run.html "$2" ;;
+    'nsd-step'*'| nsd-web > run.html') page run.html 100 ;;
     'nsd-web out.h5 > out.html') page out.html "$(frames out.h5 length)" ;;
     'nsd-web --every 10 '*' -o heap.html out.h5') page heap.html 10 && grep -q '<title>A heap' heap.html ;;
     'nsd-view '*'-o film.mp4 out.h5') [ -s film.mp4 ] || [ -s film-00000.png ] ;;
