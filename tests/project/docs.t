@@ -55,10 +55,12 @@ ok "and a heading that is missing" broken '^\.Sh EXIT STATUS' '.Sh STATUS'
 tools() { for t in tools/*.c; do basename "$t" .c; done; }
 of_help() { "$1" --help | sed -n '/^Examples/q; s/^ *\(-., \)\{0,1\}\(--[a-z0-9-]*\).*/\2/p' | sort -u; }
 of_manual() { sed -n '/^\.Sh OPTIONS/,/^\.Sh EXIT/s/^\.It //p' "$1" | grep '^Fl' | grep -oE ' -[a-z0-9][a-z0-9-]+' | sed 's/^ /-/' | sort -u; }
+of_synopsis() { sed -n '/^\.Sh SYNOPSIS/,/^\.Sh DESCRIPTION/p' "$1" | grep -oE 'Fl -[a-z0-9][a-z0-9-]+' | sed 's/^Fl /-/' | sort -u; }
 short_of_help() { "$1" --help | sed -n '/^Examples/q; s/^ *\(-.\), \(--[a-z0-9-]*\).*/\1 \2/p' | sort -u; }
 short_of_manual() { sed -n '/^\.Sh OPTIONS/,/^\.Sh EXIT/s/^\.It Fl \(.\) , -\([a-z0-9-]*\).*/-\1 --\2/p' "$1" | sort -u; }
 for tool in $(tools); do
     is "$tool(1) has the options of --help, and no other" "$(of_manual "man/$tool.1")" "$(of_help "$tool")"
+    is "and no other in its synopsis" "$(comm -23 <(of_synopsis "man/$tool.1") <(of_help "$tool"))" ""
     is "and their letters" "$(short_of_manual "man/$tool.1")" "$(short_of_help "$tool")"
 done
 strangers() # references to pages of ours that do not exist
