@@ -49,19 +49,29 @@ static int32_t names_before(const struct shapes *t, const char *name, bool equal
     return lo;
 }
 
+/* Room for one more; false: no memory */
+static bool grow(struct shapes *t)
+{
+    if (t->n < t->room) return true;
+    int32_t room = t->n + t->n / 2 + 8;
+    struct shape *s = realloc(t->s, (size_t)room * sizeof *s);
+    if (s) t->s = s;
+    int32_t *sorted = realloc(t->sorted, (size_t)room * sizeof *sorted);
+    if (sorted) t->sorted = sorted;
+    if (!s || !sorted) return false;
+    t->room = room;
+    return true;
+}
+
 static int append(struct shapes *t, struct shape *s, struct why *why)
 {
-    struct shape *more = realloc(t->s, ((size_t)t->n + 1) * sizeof *more);
-    if (more) t->s = more;
-    int32_t *sorted = realloc(t->sorted, ((size_t)t->n + 1) * sizeof *sorted);
-    if (sorted) t->sorted = sorted;
-    if (!more || !sorted || !s->name) {
+    if (!s->name || !grow(t)) {
         shape_free(s);
         return why_set(why, EX_SOFTWARE, "no memory for the shapes");
     }
     int32_t at = names_before(t, s->name, true);
-    memmove(&sorted[at + 1], &sorted[at], (size_t)(t->n - at) * sizeof *sorted);
-    sorted[at] = t->n;
+    memmove(&t->sorted[at + 1], &t->sorted[at], (size_t)(t->n - at) * sizeof *t->sorted);
+    t->sorted[at] = t->n;
     t->s[t->n++] = *s;
     *s = (struct shape){ 0 };
     return 0;
@@ -138,6 +148,7 @@ int shapes_copy(struct shapes *to, const struct shapes *from, struct why *why)
         shapes_free(to);
         return why_set(why, EX_SOFTWARE, "no memory for the shapes");
     }
+    to->room = from->n;
     memcpy(to->sorted, from->sorted, (size_t)from->n * sizeof *to->sorted);
     for (; to->n < from->n; to->n++)
         if (copy_one(&to->s[to->n], &from->s[to->n], why)) {

@@ -53,6 +53,7 @@ struct shape {
 
 struct shapes {
     int32_t n;       /* 0: all grains are balls */
+    int32_t room;    /* rows that the arrays below have memory for */
     struct shape *s; /* [n] s[0] is the ball */
     int32_t *sorted; /* [n] rows by their names */
 };
