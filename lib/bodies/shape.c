@@ -145,7 +145,8 @@ int shapes_copy(struct shapes *to, const struct shapes *from, struct why *why)
     to->s = calloc((size_t)from->n, sizeof *to->s);
     to->sorted = calloc((size_t)from->n, sizeof *to->sorted);
     if (!to->s || !to->sorted) {
-        shapes_free(to);
+        free(to->s), free(to->sorted);
+        *to = (struct shapes){ 0 };
         return why_set(why, EX_SOFTWARE, "no memory for the shapes");
     }
     to->room = from->n;
