@@ -40,7 +40,9 @@ static int compare_bonds(const void *x, const void *y)
 
 void bonds_sort(struct bonds *s)
 {
-    if (s->n) qsort(s->bond, (size_t)s->n, sizeof *s->bond, compare_bonds);
+    int64_t i = 1; // mostly they are sorted
+    while (i < s->n && compare_bonds(&s->bond[i - 1], &s->bond[i]) <= 0) i++;
+    if (i < s->n) qsort(s->bond, (size_t)s->n, sizeof *s->bond, compare_bonds);
 }
 
 const struct bond *bonds_find(const struct bonds *s, const struct contact *c, int64_t *from)

@@ -312,7 +312,7 @@ double detect_reach(const struct packing *p, double gap)
    impact waits for the bodies to touch. */
 static bool is_seen(const struct packing *p, const struct sight *o, const struct contact *c)
 {
-    double small = c->a < 0 ? p->radius[c->b] : fmin(p->radius[c->a], p->radius[c->b]);
+    double small = c->a < 0 ? p->radius[c->b] : dmin(p->radius[c->a], p->radius[c->b]);
     if (c->gap <= OVERLAP_NEAR * small) return true;
     double approach = -opening_of(p, c, (1 - p->theta) * p->dt);
     if (c->en > 0 && approach > o->calm) return false;

@@ -105,7 +105,9 @@ void memory_scale(struct memory *m, double factor)
 
 void memory_sort(struct memory *m)
 {
-    if (m->n) qsort(m->recall, (size_t)m->n, sizeof *m->recall, compare);
+    int64_t i = 1; // mostly they are sorted
+    while (i < m->n && compare(&m->recall[i - 1], &m->recall[i]) <= 0) i++;
+    if (i < m->n) qsort(m->recall, (size_t)m->n, sizeof *m->recall, compare);
 }
 
 void memory_follow(struct memory *m, const int32_t *row)

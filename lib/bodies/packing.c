@@ -267,13 +267,13 @@ struct whole packing_whole(const struct packing *p)
     struct whole all = { .small = INFINITY, .apart = -INFINITY };
     for (int64_t i = 0; i < p->n; i++) {
         double speed = v3_norm(p->v[i]);
-        all.speed = fmax(all.speed, speed);
-        all.top_speed = fmax(all.top_speed, speed + p->radius[i] * v3_norm(p->w[i]));
-        all.small = fmin(all.small, p->radius[i]), all.large = fmax(all.large, p->radius[i]);
+        all.speed = dmax(all.speed, speed);
+        all.top_speed = dmax(all.top_speed, speed + p->radius[i] * v3_norm(p->w[i]));
+        all.small = dmin(all.small, p->radius[i]), all.large = dmax(all.large, p->radius[i]);
     }
     for (int64_t i = 0; i < p->bonds.n; i++)
         if (p->bonds.bond[i].beta > 0 && !bond_anchored(&p->bonds.bond[i]))
-            all.apart = fmax(all.apart, p->bonds.bond[i].gap);
+            all.apart = dmax(all.apart, p->bonds.bond[i].gap);
     return all;
 }
 

@@ -4,12 +4,15 @@
 #include "base/team.h"
 #include "bodies/freedom.h"
 #include "bodies/kinematics.h"
+#include "bodies/levels.h"
 
 #include <stdlib.h>
 
 enum {
     SOME = 2048, /* contacts or bodies that are worth a thread */
-    SWEEPS = 10  /* a step, at most: a tenth of what its solve costs */
+    LEVEL_LEAST =
+        64,     /* contacts of a mean level from which threads share it: 0.5 us for each of two */
+    SWEEPS = 10 /* per step, at most: a tenth of what its solve costs */
 };
 
 /* Of the smaller radius: contacts keep an overlap, so that rounding does not open them */
@@ -79,7 +82,7 @@ static double opens(const struct displacements *o, int32_t k, const struct packi
 }
 
 /* Changes lambda and d so that this gap is 0, or lambda is; returns whether that changed much. */
-static bool relax(struct part *k, const struct packing *p, const struct contact *c,
+static inline bool relax(struct part *k, const struct packing *p, const struct contact *c,
                   struct displacements *o)
 {
     struct displaced *a = k->a < 0 ? NULL : &o->d[k->a], *b = &o->d[k->b];
@@ -157,6 +160,61 @@ static void displace(struct packing *p, const struct displacements *o)
     team_share(team_size(), p->n, SOME, shift_some, &y);
 }
 
+/* Sweeps over the parts */
+struct relaxing {
+    const struct packing *p;
+    const struct contacts *s;
+    struct displacements *o;
+    struct part *part;
+    const struct levels *levels;
+    int sweeps;           /* at most */
+    _Atomic bool more[3]; /* whether a sweep has changed much: of every third one */
+};
+
+/* One sweep in the order of the contacts; returns whether it has changed much */
+static bool sweep(const struct relaxing *y)
+{
+    bool more = false;
+    for (int64_t i = 0; i < y->s->n; i++)
+        if (y->part[i].w > 0 && relax(&y->part[i], y->p, &y->s->c[i], y->o)) more = true;
+    return more;
+}
+
+/* All sweeps, each level of which the threads share */
+static void sweep_levels(void *arg, int me, int threads)
+{
+    struct relaxing *y = arg;
+    const struct levels *l = y->levels;
+    for (int k = 0; k < y->sweeps; k++) {
+        bool more = false;
+        for (int64_t g = 0; g < l->n; g++) {
+            int64_t first = l->first[g], n = l->first[g + 1] - first;
+            for (int64_t j = first + n * me / threads; j < first + n * (me + 1) / threads; j++) {
+                int32_t i = l->contact[j];
+                if (y->part[i].w > 0 && relax(&y->part[i], y->p, &y->s->c[i], y->o)) more = true;
+            }
+            if (g == l->n - 1) {
+                if (me == 0) y->more[(k + 1) % 3] = false; // which all have read, two sweeps ago
+                if (more) y->more[k % 3] = true;
+            }
+            team_meet();
+        }
+        if (!y->more[k % 3]) return;
+    }
+}
+
+/* By all threads, where levels are large enough; false where one thread shall do it */
+static bool relax_in_threads(struct relaxing *y)
+{
+    struct levels l = { 0 };
+    bool shared = team_size() > 1 && y->s->n >= SOME && !y->o->freedoms.n &&
+                  !levels_init(&l, y->s, y->p->n) && y->s->n >= LEVEL_LEAST * l.n;
+    y->levels = &l;
+    if (shared) team_do(team_size(), sweep_levels, y);
+    levels_free(&l);
+    return shared;
+}
+
 int project_apart(struct packing *p, const struct contacts *s, struct why *why)
 {
     return project_shared(p, s, NULL, why);
@@ -176,10 +234,10 @@ int project_shared(struct packing *p, const struct contacts *s, const struct pro
     struct shifting y = { p, o.d };
     if (more) team_share(team_size(), p->n, SOME, begin_some, &y);
     for (int64_t i = 0; share && i < s->n; i++) part[i].w *= share->brake[i];
-    for (int sweep = 0; more && sweep < SWEEPS; sweep++) {
-        more = false;
-        for (int64_t i = 0; i < s->n; i++)
-            if (part[i].w > 0 && relax(&part[i], p, &s->c[i], &o)) more = true;
+    struct relaxing all = { .p = p, .s = s, .o = &o, .part = part, .sweeps = SWEEPS };
+    if (more && !share && relax_in_threads(&all)) more = false;
+    for (int k = 0; more && k < SWEEPS; k++) {
+        more = sweep(&all);
         if (share) more = share->after_sweep(share->with, o.d, more);
     }
     if (moves) displace(p, &o);
