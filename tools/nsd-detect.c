@@ -43,7 +43,7 @@ static void add_problem(struct frame *f)
     if (!f->export) die(EX_SOFTWARE, "no memory for the contact problem");
     if (problem_prepare(f->export, &f->packing, &f->contacts, 0, 1, ORDER_NATURAL, &why))
         die_why(&why);
-    if (f->export->rolls) die(EX_DATAERR, "rolling friction has no place in an FCLIB problem");
+    if (f->export->kind.rolls) die(EX_DATAERR, "rolling friction has no place in an FCLIB problem");
     f->export_global = form == FORM_GLOBAL;
 }
 

@@ -1,63 +1,81 @@
-/* problem/brake.c: two sets of numbers for a slot [problem/braking.h]. */
-#include "problem/braking.h"
+/* problem/brake.c: two sets of numbers for a slot [problem/brake.h]. */
+#include "problem/brake.h"
 
+#include "problem/lay.h"
 #include "problem/problem.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-enum {
-    OF_BUNDLE = 7,
-    OF_LEVERS = 9,
-    OF_BEYOND = 6,
-    OF_TURN = 4 * 9 + ROLLING * ROLLING + 1,
-    OF_SLOT = OF_BUNDLE + OF_LEVERS + OF_BEYOND + OF_TURN
-};
-
-/* at[]: where the numbers are that lighter bodies change; returns how many. */
-static int numbers(const struct problem *p, int64_t slot, double *at[OF_SLOT])
+/* Rows of doubles, a lane's each, in an element of an array */
+static int rows(const struct problem *p, int which)
 {
-    struct bundle *c = slot_bundle(p, slot);
-    int64_t bundle = slot / BUNDLE;
-    int k = slot_lane(slot), n = 0;
-    for (int j = 0; j < 2; j++) at[n++] = &p->w[bundle][j][k], at[n++] = &c->iw[j][k];
-    for (int j = 0; j < 2 && p->near; j++) at[n++] = &bundle_beside(p, c)->w[j][k];
-    at[n++] = &p->rho[bundle][k];
-    for (int j = 0; j < 9 && p->lever; j++) at[n++] = &p->block[bundle][j][k];
-    if (!p->beyond) return n;
-    struct beyond *x = &p->beyond[bundle];
-    at[n++] = &x->s[0][k], at[n++] = &x->s[1][k];
-    at[n++] = &x->k[k], at[n++] = &x->wr[k], at[n++] = &x->length[k], at[n++] = &x->rho[k];
-    struct beyond_levers *y = slot_turn(p, slot);
-    if (!y) return n;
-    for (int j = 0; j < 9; j++) {
-        at[n++] = &y->S[j][k], at[n++] = &y->V[j][k];
-        at[n++] = &y->Ra[j][k], at[n++] = &y->Rb[j][k];
+    size_t row = BUNDLE * sizeof(double);
+    return p->kind.arrays >> which & 1 ? (int)(lay_array(p, (enum array)which).size / row) : 0;
+}
+
+/* All numbers of a slot, whatever they are; returns how many. at[]: where they are, or NULL */
+static int numbers(const struct problem *p, int64_t slot, double **at)
+{
+    int n = 0;
+    for (int k = 0; k < ARRAYS; k++) {
+        const struct array_of a = rows(p, k) ? lay_array(p, (enum array)k) : (struct array_of){ 0 };
+        double *x = at && a.x ? (double *)((char *)a.x + slot / BUNDLE * (int64_t)a.size) : NULL;
+        for (int j = 0; j < rows(p, k); j++, n++)
+            if (at) at[n] = &x[j * BUNDLE + slot_lane(slot)];
     }
-    for (int j = 0; j < ROLLING * ROLLING; j++) at[n++] = &y->W[j][k];
-    at[n++] = &y->lambda[k];
     return n;
+}
+
+/* Where the numbers are that lighter bodies change */
+static void changed(const struct problem *p, const struct brake *b, int64_t slot, double **all,
+                    double **at)
+{
+    numbers(p, slot, all);
+    for (int j = 0; j < b->width; j++) at[j] = all[b->number[j]];
+}
+
+/* The numbers of the slots before they are held: other[n][all] becomes other[n][width], of those that have changed
+   in any slot. */
+static int keep_changed(const struct problem *p, struct brake *b, int all, double **at)
+{
+    bool *differs = calloc((size_t)all + 1, sizeof *differs);
+    b->number = malloc((size_t)(all + 1) * sizeof *b->number);
+    if (!differs || !b->number) return free(differs), -1;
+    for (int64_t i = 0; i < b->n; i++) {
+        numbers(p, b->slot[i], at);
+        for (int j = 0; j < all; j++)
+            if (memcmp(at[j], &b->other[i * all + j], sizeof *at[j])) differs[j] = true;
+    }
+    for (int j = 0; j < all; j++)
+        if (differs[j]) b->number[b->width++] = j;
+    for (int64_t i = 0; i < b->n; i++)
+        for (int j = 0; j < b->width; j++)
+            b->other[i * b->width + j] = b->other[i * all + b->number[j]];
+    free(differs);
+    return 0;
 }
 
 int brake_make(struct problem *p, const struct filling *f, const double *slower)
 {
     struct brake *b = p->brake = calloc(1, sizeof *b);
-    double *at[OF_SLOT];
+    const int all = numbers(p, 0, NULL);
     int64_t n = 0;
     for (int64_t i = 0; i < p->slots; i++) n += p->contact[i] >= 0 && slower[p->contact[i]] > 1;
     if (!b) return -1;
     b->slot = malloc((size_t)(n + 1) * sizeof *b->slot);
-    b->width = p->slots ? numbers(p, 0, at) : 0;
-    b->other = malloc((size_t)(n + 1) * (size_t)(b->width + 1) * sizeof *b->other);
-    if (!b->slot || !b->other) return -1;
+    b->other = malloc((size_t)(n + 1) * (size_t)all * sizeof *b->other);
+    b->at = malloc(2 * (size_t)all * sizeof *b->at);
+    if (!b->slot || !b->other || !b->at) return -1;
     for (int64_t i = 0; i < p->slots; i++) {
         if (p->contact[i] < 0 || !(slower[p->contact[i]] > 1)) continue;
-        numbers(p, i, at);
-        for (int j = 0; j < b->width; j++) b->other[b->n * b->width + j] = *at[j];
+        numbers(p, i, b->at);
+        for (int j = 0; j < all; j++) b->other[b->n * all + j] = *b->at[j];
         fill_slot(f, i, slower[p->contact[i]]);
         b->slot[b->n++] = i;
     }
-    b->held = true;
-    return 0;
+    b->held = true, b->all = all;
+    return keep_changed(p, b, all, b->at);
 }
 
 void brake_hold(struct problem *p, bool hold)
@@ -65,8 +83,8 @@ void brake_hold(struct problem *p, bool hold)
     struct brake *b = p->brake;
     if (!b || b->held == hold) return;
     for (int64_t i = 0; i < b->n; i++) {
-        double *at[OF_SLOT];
-        numbers(p, b->slot[i], at);
+        double **at = b->at + b->all;
+        changed(p, b, b->slot[i], b->at, at);
         for (int j = 0; j < b->width; j++) {
             double *other = &b->other[i * b->width + j], x = *other;
             *other = *at[j], *at[j] = x;
@@ -77,6 +95,6 @@ void brake_hold(struct problem *p, bool hold)
 
 void brake_free(struct brake *b)
 {
-    if (b) free(b->slot), free(b->other);
+    if (b) free(b->slot), free(b->other), free(b->number), free(b->at);
     free(b);
 }

@@ -100,7 +100,7 @@ static void judge_unbonded(const struct problem *p, int64_t bundle, bool believe
                            enum err_terms which, struct sums *s)
 {
     struct problem unbonded = *p;
-    unbonded.beyond = NULL;
+    unbonded.kind = problem_kinds[p->kind.plain];
     judge_widest()->judge(&unbonded, bundle, bundle + 1, believes, which, s);
 }
 
@@ -110,7 +110,7 @@ static void judge_shared(const struct problem *p, bool believes, enum err_terms 
 {
     struct shared *shared = p->shared;
     const int parts =
-        p->beyond && !p->rolls ? 2 : 1; // what the sweep's text adds of a slot at once
+        p->kind.beyond && !p->kind.rolls ? 2 : 1; // what the sweep's text adds of a slot at once
     double(*term)[SHARED_TERMS] = malloc((size_t)(p->slots + 1) * (size_t)parts * sizeof *term);
     double out[SHARED_TERMS][BUNDLE], most[3] = { 0 };
     if (!term) {

@@ -1,5 +1,5 @@
-/* problem/fill.c: slots of balls, with levers, and what bonds and moments add [problem/filling.h]. */
-#include "problem/filling.h"
+/* problem/fill.c: slots of balls, with levers, and what bonds and moments add [problem/fill.h]. */
+#include "problem/fill.h"
 
 #include "bodies/kinematics.h"
 #include "bodies/offset.h"
@@ -49,11 +49,16 @@ static void set_basis(struct problem *p, int64_t i, const struct contact *c)
     r->mu[k] = c->mu;
 }
 
-/* Fills slot i except for the reaction. The bodies still have their velocities before the step. */
-static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
-                      const struct lattice *cell, const struct contact *c, const struct tie *tie,
-                      double alpha, double rho_factor, double slower)
+/* All but the reaction. The bodies still have their velocities before the step. */
+void fill_ball(const struct slot_filling *f)
 {
+    struct problem *p = f->of->p;
+    const struct packing *pack = p->packing;
+    const struct lattice *cell = f->of->cell;
+    const struct contact *c = f->c;
+    const struct tie *tie = f->tie;
+    const int64_t i = f->i;
+    const double alpha = f->of->alpha, rho_factor = f->of->rho_factor;
     const double en[3] = { c->en, c->et, c->et }, s[2] = { 1 / (1 + c->en), 1 / (1 + c->et) };
     struct bundle *r = slot_bundle(p, i);
     struct rebound *e = slot_rebound(p, i);
@@ -61,7 +66,7 @@ static void slot_init(struct problem *p, int64_t i, const struct packing *pack,
     int k = slot_lane(i);
     set_basis(p, i, c);
     arms_of(pack, c, (1 - pack->theta) * pack->dt, cell->edge, &r->la[k], &r->lb[k]);
-    const struct body a = lighter(p, r->a[k], slower), b = lighter(p, r->b[k], slower);
+    const struct body a = lighter(p, r->a[k], f->slower), b = lighter(p, r->b[k], f->slower);
     double u[3], im = a.im + b.im;
     double it = im + r->la[k] * r->la[k] * a.ii + r->lb[k] * r->lb[k] * b.ii;
     body_velocity(p, p->body, r, NULL, k, u); // u^-
@@ -97,10 +102,16 @@ static void set_rows(double G[9][BUNDLE], int k, const struct packing *pack, int
 }
 
 /* Fills the slot's levers, W_cc and rho; its rebound, undivided: u + E u^- + d, with D law */
-static void lever_init(struct problem *p, int64_t i, const struct packing *pack,
-                       const struct lattice *cell, const struct contact *c, const struct tie *tie,
-                       double alpha, double rho_factor, double slower, const quat *half)
+void fill_lever(const struct slot_filling *f)
 {
+    struct problem *p = f->of->p;
+    const struct packing *pack = p->packing;
+    const struct lattice *cell = f->of->cell;
+    const struct contact *c = f->c;
+    const struct tie *tie = f->tie;
+    const int64_t i = f->i;
+    const quat *half = f->of->half;
+    const double alpha = f->of->alpha, rho_factor = f->of->rho_factor;
     const double en[3] = { c->en, c->et, c->et };
     struct bundle *r = slot_bundle(p, i);
     struct levers *g = &p->lever[i / BUNDLE];
@@ -109,7 +120,7 @@ static void lever_init(struct problem *p, int64_t i, const struct packing *pack,
     struct arms arm = arm_vectors(pack, c, (1 - pack->theta) * pack->dt, cell->edge);
     set_basis(p, i, c);
     set_rows(g->Ga, k, pack, c->a, arm.a, c, half), set_rows(g->Gb, k, pack, c->b, arm.b, c, half);
-    const struct body a = lighter(p, r->a[k], slower), b = lighter(p, r->b[k], slower);
+    const struct body a = lighter(p, r->a[k], f->slower), b = lighter(p, r->b[k], f->slower);
     double W[9], u[3];
     for (int j = 0; j < 9; j++) {
         W[j] = j % 4 == 0 ? a.im + b.im : 0;
@@ -137,15 +148,21 @@ static void lever_init(struct problem *p, int64_t i, const struct packing *pack,
     for (int j = 0; j < 2; j++) e->s[j][k] = 1;
 }
 
-/* Beyond W~, rho and the offset, which slot_init() has set: the bond's part, and that of moments */
-static void slot_go_beyond(struct problem *p, int64_t i, const struct contact *c,
-                           const struct tie *t, double alpha, double rho_factor, double slower)
+/* The same, and beyond W~, rho and the offset the bond's part, and that of moments */
+void fill_bond(const struct slot_filling *f)
 {
+    struct problem *p = f->of->p;
+    const struct contact *c = f->c;
+    const struct tie *t = f->tie;
+    const int64_t i = f->i;
+    const double alpha = f->of->alpha, rho_factor = f->of->rho_factor;
+    fill_ball(f);
+    if (!t) return;
     int k = slot_lane(i);
     struct bundle *r = slot_bundle(p, i);
     struct beyond *x = &p->beyond[i / BUNDLE];
     const struct rebound *e = slot_rebound(p, i);
-    const struct body a = lighter(p, r->a[k], slower), b = lighter(p, r->b[k], slower);
+    const struct body a = lighter(p, r->a[k], f->slower), b = lighter(p, r->b[k], f->slower);
     double h = p->dt, seen = t->offset > 0 ? t->offset : offset_of(p->packing, c, 0);
     double(*w)[BUNDLE] = p->w[i / BUNDLE], wt = w[1][k] / (e ? e->s[1][k] : 1);
     for (int j = 0; j < 2; j++) {
@@ -182,16 +199,22 @@ static void set_turning(double R[9][BUNDLE], int k, const struct packing *pack, 
     }
 }
 
-/* The same beyond what lever_init() has set */
-static void lever_go_beyond(struct problem *p, int64_t i, const struct contact *c,
-                            const struct tie *t, double alpha, double rho_factor, double slower,
-                            const quat *half)
+/* The same for levers */
+void fill_lever_bond(const struct slot_filling *f)
 {
+    struct problem *p = f->of->p;
+    const struct contact *c = f->c;
+    const struct tie *t = f->tie;
+    const int64_t i = f->i;
+    const quat *half = f->of->half;
+    const double alpha = f->of->alpha, rho_factor = f->of->rho_factor;
+    fill_lever(f);
+    if (!t) return;
     int k = slot_lane(i);
     struct bundle *r = slot_bundle(p, i);
     struct beyond *x = &p->beyond[i / BUNDLE];
     struct beyond_levers *y = slot_turn(p, i);
-    const struct body a = lighter(p, r->a[k], slower), b = lighter(p, r->b[k], slower);
+    const struct body a = lighter(p, r->a[k], f->slower), b = lighter(p, r->b[k], f->slower);
     double h = p->dt, seen = t->offset > 0 ? t->offset : offset_of(p->packing, c, 0);
     double(*block)[BUNDLE] = p->block[i / BUNDLE], (*w)[BUNDLE] = p->w[i / BUNDLE];
     double *rho = &p->rho[i / BUNDLE][k], W[9], K[2] = { h * h * t->stiff[0], h * h * t->stiff[1] };
@@ -222,16 +245,8 @@ void fill_slot(const struct filling *f, int64_t i, double slower)
     int32_t c = p->contact[i];
     for (int j = 0; j < 2 && c < 0 && p->rebound; j++) slot_rebound(p, i)->s[j][slot_lane(i)] = 1;
     if (c < 0) return;
-    const struct contact *law = &f->s->c[c];
-    const struct tie *tie = f->s->tie ? &f->s->tie[c] : NULL;
-    if (p->lever)
-        lever_init(p, i, p->packing, f->cell, law, tie, f->alpha, f->rho_factor, slower, f->half);
-    else
-        slot_init(p, i, p->packing, f->cell, law, tie, f->alpha, f->rho_factor, slower);
-    if (p->turn && tie)
-        lever_go_beyond(p, i, law, tie, f->alpha, f->rho_factor, slower, f->half);
-    else if (p->beyond && tie)
-        slot_go_beyond(p, i, law, tie, f->alpha, f->rho_factor, slower);
+    p->kind.fill(
+        &(struct slot_filling){ f, i, &f->s->c[c], f->s->tie ? &f->s->tie[c] : NULL, slower });
     struct beside *beside = bundle_beside(p, slot_bundle(p, i));
     for (int j = 0, k = slot_lane(i); j < 2 && beside; j++)
         beside->w[j][k] = p->w[i / BUNDLE][j][k];

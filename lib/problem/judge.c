@@ -18,7 +18,7 @@ ALWAYS_INLINE void raise_to(double *slot, vd a)
 ALWAYS_INLINE void motion_velocity(const struct problem *p, int64_t i, int k, vd u[3])
 {
     const struct bundle *c = bundle_at(p, i);
-    if (!p->W) {
+    if (!p->kind.given_by_W) {
         problem_velocity(p, p->body, i, bundle_rebound(p, i), k, u);
         return;
     }
@@ -181,7 +181,7 @@ static void judge(const struct problem *p, int64_t first, int64_t end, bool beli
 {
     for (int64_t i = first; i < end; i++) {
         fetch_ahead(p, i);
-        if (p->rolls) {
+        if (p->kind.rolls) {
             judge_moments(p, i, believes, which, s);
             continue;
         }
@@ -190,7 +190,7 @@ static void judge(const struct problem *p, int64_t first, int64_t end, bool beli
             motion_velocity(p, i, k, u);
             if (which & ERR_TERMS) add_terms(s, bundle_at(p, i), p->u[i], k, believes, u);
             if (which & ERR_NATURAL) add_natural(s, p, i, k, u);
-            if (p->beyond) add_bonds(s, p, i, k, which, u);
+            if (p->kind.beyond) add_bonds(s, p, i, k, which, u);
         }
     }
 }

@@ -1,9 +1,10 @@
-/* problem/lay.c: the memory of bundles and bodies [problem/laying.h]. */
-#include "problem/laying.h"
+/* problem/lay.c: the memory of bundles and bodies [problem/lay.h]. */
+#include "problem/lay.h"
 
 #include "base/team.h"
 #include "problem/problem.h"
 
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -45,21 +46,46 @@ bool lay_plan(struct problem *p, const struct plan *l)
     return true;
 }
 
+#define ARRAY_PLACE(name) { offsetof(struct problem, name), sizeof *((struct problem *)0)->name },
+static const struct {
+    size_t at, size; /* of the member in struct problem; bytes of an element */
+} arrays[ARRAYS] = { EACH_ARRAY(ARRAY_PLACE) };
+
+struct array_of lay_array(const struct problem *p, enum array which)
+{
+    struct array_of a = { .size = which == ARRAY_bundle ? bundle_size(p) : arrays[which].size };
+    memcpy(&a.x, (const char *)p + arrays[which].at, sizeof a.x);
+    return a;
+}
+
+static bool lay_one(struct problem *p, enum array which)
+{
+    void *x = lay_lines(p->bundles, lay_array(p, which).size);
+    memcpy((char *)p + arrays[which].at, &x, sizeof x);
+    return x != NULL;
+}
+
+void lay_free(struct problem *p)
+{
+    for (int k = 0; k < ARRAYS; k++) free(lay_array(p, (enum array)k).x);
+}
+
 bool lay_bundles(struct problem *p)
 {
-    p->bundle = lay_lines(p->bundles, p->near ? sizeof(struct near_bundle) : sizeof *p->bundle);
-    p->w = lay_lines(p->bundles, sizeof *p->w);
-    p->rho = lay_lines(p->bundles, sizeof *p->rho);
-    p->u = lay_lines(p->bundles, sizeof *p->u);
-    if (!p->bundle || !p->w || !p->rho || !p->u) return false;
+    for (int k = 0; k < ARRAYS; k++)
+        if (p->kind.arrays >> k & 1 && !lay_one(p, (enum array)k)) return false;
     for (int64_t g = 0; g < p->groups; g++)
         for (int64_t i = p->group[g + 1] * BUNDLE - 1;
              i >= p->group[g] * BUNDLE && p->contact[i] < 0; i--)
             for (int j = 0, k = slot_lane(i); j < 2; j++) {
                 struct bundle *c = slot_bundle(p, i);
                 p->w[i / BUNDLE][j][k] = c->iw[j][k] = 1;
-                if (p->near) bundle_beside(p, c)->w[j][k] = 1;
+                if (p->kind.near) bundle_beside(p, c)->w[j][k] = 1;
             }
+    for (int64_t i = 0; p->beyond && i < p->slots; i++)
+        for (int j = 0; j < 2; j++) p->beyond[i / BUNDLE].s[j][slot_lane(i)] = 1;
+    for (int64_t i = 0; p->turn && i < p->slots; i++)
+        for (int j = 0; j < 9; j += 4) p->turn[i / BUNDLE].S[j][slot_lane(i)] = 1;
     return true;
 }
 
@@ -75,7 +101,7 @@ static void copy_body(const struct problem *p, int32_t i, const vec3 *x, struct 
     const struct wall *wall = &pack->wall[-1 - i];
     vec3 v = wall_velocity(pack, wall, *x);
     *copy = (struct body){ .v = { v.x, v.y, v.z } };
-    if (!p->rolls) return; // its arm is 0: that it turns matters to moments only
+    if (!p->kind.rolls) return; // its arm is 0: that it turns matters to moments only
     vec3 w = wall_spin(pack, wall);
     copy->w[0] = w.x, copy->w[1] = w.y, copy->w[2] = w.z;
 }
@@ -96,7 +122,7 @@ static void seat_some(void *arg, int64_t first, int64_t end)
         const int32_t *seat = y->plan->seats[i];
         int k = slot_lane(i);
         r->a[k] = body_place(seat[0]), r->b[k] = body_place(seat[1]);
-        for (int j = 0; j < 9 && p->lever; j += 4) // of a lane without a contact
+        for (int j = 0; j < 9 && p->kind.levers; j += 4) // of a lane without a contact
             p->block[i / BUNDLE][j][k] = 1;
         if (p->contact[i] < 0) continue;
         const struct contact *c = &y->s->c[p->contact[i]];

@@ -27,9 +27,9 @@ ALWAYS_INLINE vd weight(const struct problem *p, int64_t i, int k, int l, vd lam
 #define BY_SHAPE(p, m, text, ...)                                                                  \
     do {                                                                                           \
         bool all = (m)->depth == MIXING_DEPTH;                                                     \
-        if ((p)->beyond && all)                                                                    \
+        if ((p)->kind.beyond && all)                                                               \
             text(WITH_BESIDE, MIXING_DEPTH, __VA_ARGS__);                                          \
-        else if ((p)->beyond)                                                                      \
+        else if ((p)->kind.beyond)                                                                 \
             text(WITH_BESIDE, MIXING_DEPTH_MANY, __VA_ARGS__);                                     \
         else if ((p)->d == 3 && all)                                                               \
             text(3, MIXING_DEPTH, __VA_ARGS__);                                                    \
@@ -139,7 +139,7 @@ ALWAYS_INLINE void react_text(int d, int depth, struct problem *p, const struct 
                     vstore(from + at, vload(component(p, i, l) + k));
                 }
             }
-            if (p->W)
+            if (p->kind.given_by_W)
                 blocks_scatter(p, c, k);
             else
                 problem_push(p, p->body, i, k, dr);

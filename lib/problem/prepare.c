@@ -48,7 +48,7 @@ static struct delassus *assemble(const struct problem *bodies, const struct cont
 {
     struct delassus *W = calloc(1, sizeof *W);
     if (!W) return why_set(why, EX_SOFTWARE, "no memory for the contact problem"), NULL;
-    int e = bodies->beyond ? bonded_blocks(bodies, W, why) : assemble_free(bodies, W, why);
+    int e = bodies->kind.beyond ? bonded_blocks(bodies, W, why) : assemble_free(bodies, W, why);
     if (e) return free(W), NULL;
     for (int64_t i = 0; s->found && i < bodies->slots; i++) {
         int64_t c = bodies->contact[i];
@@ -112,7 +112,7 @@ static int prepare_by_W(struct problem *p, const struct packing *pack, const str
     unsolved.found = NULL;
     if (problem_prepare(&bodies, pack, &unsolved, alpha, rho_factor, ORDER_NATURAL, why))
         return why->status;
-    if (bodies.rolls) {
+    if (bodies.kind.rolls) {
         problem_free(&bodies);
         return why_set(why, EX_DATAERR,
                        "rolling friction where loads push contacts, or by another "

@@ -5,9 +5,9 @@
 #include "bodies/kinematics.h"
 #include "bodies/offset.h"
 #include "bodies/top.h"
-#include "problem/braking.h"
-#include "problem/filling.h"
-#include "problem/laying.h"
+#include "problem/brake.h"
+#include "problem/fill.h"
+#include "problem/lay.h"
 #include "problem/plan.h"
 #include "problem/schedule.h"
 #include "problem/shared.h"
@@ -34,10 +34,8 @@ static int no_memory(struct problem *p, struct why *why)
 
 void problem_free(struct problem *p)
 {
-    free(p->bundle), free(p->rebound), free(p->u), free(p->body);
-    free(p->split), free(p->pull), free(p->beyond), free(p->in_W);
-    free(p->lever), free(p->spin), free(p->turn);
-    free(p->w), free(p->rho), free(p->block);
+    lay_free(p);
+    free(p->body), free(p->split), free(p->pull), free(p->in_W), free(p->spin);
     plan_free(p->plan);
     delassus_free(&p->sorted);
     brake_free(p->brake);
@@ -123,27 +121,6 @@ static bool find_spins(struct problem *p, const struct packing *pack, quat **hal
     return true;
 }
 
-/* Allocates what bonds and moments need, where there are any; false when memory is short. */
-static bool lay_out_beyond(struct problem *p, const struct contacts *s)
-{
-    bool any = false;
-    for (int64_t i = 0; s->tie && i < s->n; i++) {
-        const struct tie *t = &s->tie[i];
-        p->rolls = p->rolls || t->mu_r > 0 || t->mu_p > 0;
-        any = any || t->stiff[0] > 0 || t->stiff[1] > 0;
-    }
-    p->rolls = anywhere(p, p->rolls), any = anywhere(p, any);
-    if (!any && !p->rolls) return true;
-    p->beyond = lay_lines(p->bundles, sizeof *p->beyond);
-    for (int64_t i = 0; p->beyond && i < p->slots; i++)
-        for (int j = 0; j < 2; j++) p->beyond[i / BUNDLE].s[j][slot_lane(i)] = 1;
-    if (!p->beyond || !p->lever) return p->beyond != NULL;
-    p->turn = lay_lines(p->bundles, sizeof *p->turn);
-    for (int64_t i = 0; p->turn && i < p->slots; i++)
-        for (int j = 0; j < 9; j += 4) p->turn[i / BUNDLE].S[j][slot_lane(i)] = 1;
-    return p->turn != NULL;
-}
-
 /* The reactions found, as r* and what is beyond it; the bodies get them. */
 static void take_found(struct problem *p, int64_t i, const struct contacts *s)
 {
@@ -160,7 +137,7 @@ static void take_found(struct problem *p, int64_t i, const struct contacts *s)
     }
     const struct contact *law = &s->c[p->contact[i]];
     double u[3] = { c->u[0], c->u[1], c->u[2] };
-    for (int j = 0; j < 3 && p->lever; j++) u[j] *= 1 + (j ? law->et : law->en);
+    for (int j = 0; j < 3 && p->kind.levers; j++) u[j] *= 1 + (j ? law->et : law->en);
     slot_set(p, i, r, u);
     if (!x || !beyond_rolls(x, k)) return;
     const double m[3] = { x->m[0][k], x->m[1][k], x->m[2][k] };
@@ -213,7 +190,8 @@ struct survey {
     bool far; /* bundles do not stay in a near cache: what can be computed is not loaded */
     bool moving_images; /* images move otherwise than their bodies, now or at the end of the step */
     _Atomic bool shaped, rebounds; /* u~ is anything but u */
-    _Atomic bool turned; /* t1 is to be loaded: not what contact_basis() makes, or not far */
+    _Atomic bool turned;       /* t1 is to be loaded: not what contact_basis() makes, or not far */
+    _Atomic bool bonds, rolls; /* stiff ties; rolling friction */
 };
 
 static bool same(vec3 a, vec3 b)
@@ -225,6 +203,7 @@ static void survey_some(void *arg, int64_t first, int64_t end)
 {
     struct survey *y = arg;
     bool shaped = false, rebounds = false, turned = !y->far || y->p->dim == 2;
+    bool bonds = false, rolls = false;
     for (int64_t i = first; i < end; i++) {
         const struct contact *c = &y->s->c[i];
         shaped |= contact_shaped(y->p, c);
@@ -233,10 +212,15 @@ static void survey_some(void *arg, int64_t first, int64_t end)
         rebounds |= c->en > 0 || c->et > 0 || offset_in(y->p, c) ||
                     (y->s->tie && y->s->tie[i].offset > 0) ||
                     (y->moving_images && contact_shifted(c));
+        const struct tie *t = y->s->tie ? &y->s->tie[i] : NULL;
+        bonds |= t && (t->stiff[0] > 0 || t->stiff[1] > 0);
+        rolls |= t && (t->mu_r > 0 || t->mu_p > 0);
     }
     if (shaped) y->shaped = true;
     if (rebounds) y->rebounds = true;
     if (turned) y->turned = true;
+    if (bonds) y->bonds = true;
+    if (rolls) y->rolls = true;
 }
 
 static void survey(struct survey *y, const struct packing *p, const struct contacts *s,
@@ -286,18 +270,13 @@ static int prepare(struct problem *p, const struct packing *pack, const struct c
     if (p->bodies > BODIES_MAX) return why_set(why, EX_DATAERR, "more than %d bodies", BODIES_MAX);
     p->body = lay_lines(p->bodies, sizeof *p->body);
     bool room = p->body && lay_plan(p, plan);
+    bool levers = anywhere(p, found.shaped), rebounds = anywhere(p, found.rebounds);
+    bool bonds = anywhere(p, found.bonds), rolls = anywhere(p, found.rolls);
+    bool near = found.turned || (shared && shared->slower);
+    p->kind = *kind_of_bodies(levers, bonds, rolls, near);
+    if (rebounds) p->kind.arrays |= HAS_rebound;
     quat *half = NULL;
-    if (anywhere(p, found.shaped) && room) {
-        p->full = true;
-        p->lever = lay_lines(p->bundles, sizeof *p->lever);
-        p->block = lay_lines(p->bundles, sizeof *p->block);
-        room = p->lever && p->block && find_spins(p, pack, &half);
-    }
-    if (anywhere(p, found.rebounds) && room)
-        room = (p->rebound = lay_lines(p->bundles, sizeof *p->rebound)) != NULL;
-    room = room && set_pulls(p, s) && lay_out_beyond(p, s);
-    p->near = found.turned || p->lever || p->beyond || (shared && shared->slower);
-    room = room && lay_bundles(p);
+    room = room && set_pulls(p, s) && lay_bundles(p) && (!levers || find_spins(p, pack, &half));
     if (!room) return free(half), no_memory(p, why);
     team_share(team_size(), pack->n, SOME, set_some, p);
     lay_seats(p, plan, s);
@@ -464,7 +443,7 @@ static void store_some(void *arg, int64_t first, int64_t end)
 int problem_store(const struct problem *p, struct contacts *s)
 {
     struct storing o = { p, s };
-    if (contacts_alloc_found(s) || (p->rolls && contacts_alloc_moment(s))) return -1;
+    if (contacts_alloc_found(s) || (p->kind.rolls && contacts_alloc_moment(s))) return -1;
     team_share(team_size(), p->bundles, SOME / BUNDLE, store_some, &o);
     return 0;
 }

@@ -25,6 +25,7 @@
 #include "problem/bundle.h"
 #include "problem/coupling.h"
 #include "problem/delassus.h"
+#include "problem/kind.h"
 #include "problem/levers.h"
 #include "problem/schedule.h"
 
@@ -37,11 +38,11 @@ struct brake;
 struct plan;
 
 struct problem {
+    struct problem_kind kind; /* a row of problem_kinds: which arrays there are */
     int d;
     int64_t n;                  /* contacts, of all processes */
     int64_t bundles, slots;     /* slots: 8 a bundle, some without a contact */
     struct bundle *bundle;      /* [bundles] in the order of the sweep: see bundle_at() */
-    bool near;                  /* they have their struct beside behind them */
     double (*w)[2][BUNDLE];     /* [bundles] kg^-1: W~_cc, normal and tangential; of a full W_cc,
                                lambda_max twice */
     double (*rho)[BUNDLE];      /* [bundles] kg: the step of the projections */
@@ -50,7 +51,6 @@ struct problem {
     struct levers *lever;       /* [bundles]; NULL: balls, or given by W */
     struct beyond_levers *turn; /* [bundles] the same between bodies with levers; else NULL */
     struct beyond *beyond;  /* [bundles]; NULL: no contact is bonded, none has rolling friction */
-    bool rolls;             /* some contact has it */
     struct beyond *in_W;    /* [bundles] K and a of bonds that W has in it; NULL: none */
     double (*u)[3][BUNDLE]; /* [bundles] m/s: what the local method believes */
     int32_t *contact;       /* [slots] slot i is contact[i] of the packing or of W; -1: none */
@@ -72,7 +72,6 @@ struct problem {
     struct delassus *W;            /* NULL: given by bodies */
     struct delassus *own;          /* W where the problem is to free it, else NULL: W is borrowed */
     struct delassus sorted;        /* given by W: its block rows in the order of the slots */
-    bool full;                     /* some W_cc is more than diag(w_n, w_t, w_t) */
     double dt;      /* s: the paper's forces are r / dt; 1 where there are no steps */
     double scale_v; /* m/s: the unit of velocities in scaled errors, g dt */
     double scale_r; /* N s: that of reactions, m g dt */
@@ -131,11 +130,17 @@ int problem_store(const struct problem *p, struct contacts *s);
    too many for a near cache, and of problems given by W. */
 ALWAYS_INLINE struct bundle *bundle_at(const struct problem *p, int64_t i)
 {
-    return p->near ? &((struct near_bundle *)p->bundle)[i].bundle : &p->bundle[i];
+    return p->kind.near ? &((struct near_bundle *)p->bundle)[i].bundle : &p->bundle[i];
 }
 ALWAYS_INLINE struct beside *bundle_beside(const struct problem *p, const struct bundle *c)
 {
-    return p->near ? &((struct near_bundle *)c)->beside : NULL;
+    return p->kind.near ? &((struct near_bundle *)c)->beside : NULL;
+}
+
+/* Bytes from one bundle to the next */
+static inline size_t bundle_size(const struct problem *p)
+{
+    return p->kind.near ? sizeof(struct near_bundle) : sizeof(struct bundle);
 }
 
 /* The bundle and the lane of slot i, its impact law (NULL: none), its r (N s) and u (m/s) */
@@ -171,7 +176,7 @@ bool problem_halves(const struct problem *p);
 /* Whether u in the slots is D u~ */
 static inline bool problem_undivided(const struct problem *p)
 {
-    return p->W || p->lever;
+    return p->kind.given_by_W || p->kind.levers;
 }
 
 /* The largest eigenvalue of W~_cc: 1/rho_a of the natural map; of lanes k.. of bundle i, of slot i */
@@ -224,7 +229,7 @@ ALWAYS_INLINE void problem_velocity(const struct problem *p, struct body *body, 
     struct twist ma, mb;
     vd t1[3], t2[3];
     const struct bundle *c = bundle_at(p, i);
-    if (!p->lever) {
+    if (!p->kind.levers) {
         body_velocity(p, body, c, e, k, u);
         return;
     }
@@ -239,7 +244,7 @@ ALWAYS_INLINE void problem_push(const struct problem *p, struct body *body, int6
     struct twist ma, mb;
     vd n[3], t1[3], t2[3];
     const struct bundle *c = bundle_at(p, i);
-    if (!p->lever) {
+    if (!p->kind.levers) {
         body_push(p, body, c, k, dr);
         return;
     }

@@ -1,5 +1,5 @@
 /* problem/problem_of_W.c: the bundles of a problem given by W [problem/problem.h]. */
-#include "problem/laying.h"
+#include "problem/lay.h"
 #include "problem/plan.h"
 #include "problem/problem.h"
 
@@ -19,15 +19,15 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
                              enum order order, struct why *why)
 {
     *p = (struct problem){ .d = W->d, .n = W->n, .W = W, .dt = 1, .scale_v = 1, .scale_r = 1 };
+    bool full = W->common > 0;
+    for (int64_t c = 0; c < W->n; c++) full = full || !like_balls(W->diag + 9 * c);
+    p->kind = problem_kinds[full ? KIND_BLOCKS : KIND_DIAGONALS];
     p->plan = plan_of_blocks(order, W);
-    bool room = p->plan && lay_plan(p, p->plan) && lay_bundles(p) &&
-                (p->block = lay_lines(p->bundles, sizeof *p->block));
+    bool room = p->plan && lay_plan(p, p->plan) && lay_bundles(p);
     if (!room || delassus_sort(&p->sorted, W, p->slots, p->contact, why)) {
         problem_free(p);
         return why_set(why, EX_SOFTWARE, "no memory for the contact problem");
     }
-    p->full = W->common > 0;
-    for (int64_t c = 0; c < W->n; c++) p->full = p->full || !like_balls(W->diag + 9 * c);
     delassus_begin(W);
     double trace = 0, speeds = 0;
     for (int64_t i = 0; i < p->slots; i++) {
@@ -44,7 +44,7 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
         double lambda = local_lambda_max(D), step = local_lambda_max(seen);
         r->mu[k] = W->mu[c];
         for (int j = 0; j < 2; j++) {
-            p->w[i / BUNDLE][j][k] = p->full ? lambda : D[4 * j];
+            p->w[i / BUNDLE][j][k] = full ? lambda : D[4 * j];
             r->iw[j][k] = 1 / p->w[i / BUNDLE][j][k];
         }
         p->rho[i / BUNDLE][k] = lambda <= 0             ? 1

@@ -22,7 +22,7 @@ struct shared {
     double mean_mass;          /* kg: of all bodies that move */
     int64_t *copies;           /* [n_copies] pairs first, end of bundles that another counts */
     int64_t n_copies;
-    /* [contacts here] steps are shorter by this factor, at least 1 [problem/braking.h]; NULL: none is */
+    /* [contacts here] steps are shorter by this factor, at least 1 [problem/brake.h]; NULL: none is */
     const double *slower;
     bool may_want;    /* set before the solve: one process could begin anew with all contacts */
     bool wants_whole; /* set by a solver, which then ends: only such a process goes on from here */

@@ -26,22 +26,20 @@ struct counts {
     vd change, newton, safeguarded, gave_up;
 };
 
-/* What contacts have beside their bundles */
-enum beyond_what { NOTHING, BONDS, MOMENTS };
-
-/* Of which kind the problem is: a constant where the sweep is to have a text of its own for it */
-struct kind {
+/* A kernel: a method and a kind of problem, both constants */
+struct kernel {
     enum method_id method;
     method_text *solve;
-    bool given_by_W, full; /* full, but not given by W: with levers */
-    bool far;              /* t1 and w are computed, not loaded: of balls without anything beyond */
-    enum beyond_what beyond;
+    enum problem_kind_id id;
 };
+#define IS(kernel, what) (problem_kinds[(kernel).id].what)
+#define FAR(kernel)      (!IS(kernel, near) && !IS(kernel, given_by_W)) /* t1 and w are computed */
 
 /* bundle_at(), with the kind a constant */
-ALWAYS_INLINE struct bundle *bundle_of(const struct problem *p, int64_t i, const struct kind kind)
+ALWAYS_INLINE struct bundle *bundle_of(const struct problem *p, int64_t i,
+                                       const struct kernel kernel)
 {
-    if (kind.far || kind.given_by_W) return &p->bundle[i];
+    if (!IS(kernel, near)) return &p->bundle[i];
     return &((struct near_bundle *)p->bundle)[i].bundle;
 }
 
@@ -58,23 +56,24 @@ struct loaded {
 };
 
 ALWAYS_INLINE void load_slots(const struct problem *p, int64_t bundle, int k,
-                              const struct kind kind, struct loaded *s)
+                              const struct kernel kernel, struct loaded *s)
 {
-    const struct bundle *c = bundle_of(p, bundle, kind);
-    if (kind.given_by_W) {
+    const struct bundle *c = bundle_of(p, bundle, kernel);
+    if (IS(kernel, given_by_W)) {
         blocks_gather(p, bundle, k, s->v);
         return;
     }
     struct twist a, b;
     vd t1[3];
-    const struct beside *t = kind.far ? NULL : beside_of(c);
+    const struct beside *t = IS(kernel, near) ? beside_of(c) : NULL;
     const struct rebound *e = bundle_rebound(p, bundle);
     bodies_load(&s->a, p->body, c->a + k, &a), bodies_load(&s->b, p->body, c->b + k, &b);
-    if (kind.full)
+    if (IS(kernel, levers))
         levers_velocity(c, t, &p->lever[bundle], e, k, &a, &b, s->v, t1, s->t2);
     else
         bundle_velocity(c, t, e, k, &a, &b, s->v, t1, s->t2);
-    for (int i = 0; i < 3 && kind.far; i++) s->t1[i] = t1[i]; // what can be loaded is not kept
+    for (int i = 0; i < 3 && !IS(kernel, near); i++)
+        s->t1[i] = t1[i]; // what can be loaded is not kept
 }
 
 /* w of lanes k.. between balls, of nothing that is loaded for it: to the bit what stands in p->w */
@@ -90,26 +89,26 @@ ALWAYS_INLINE void weigh(const struct problem *p, int64_t bundle, const struct b
 
 /* The local problems of LANES slots; l->W points to W[9]. exact has no use for rho. */
 ALWAYS_INLINE void make_local(const struct problem *p, int64_t bundle, int k,
-                              const struct kind kind, const struct loaded *s, vd W[9],
+                              const struct kernel kernel, const struct loaded *s, vd W[9],
                               struct local *l)
 {
-    const struct bundle *c = bundle_of(p, bundle, kind);
-    l->d = p->d, l->W = kind.full ? W : NULL;
+    const struct bundle *c = bundle_of(p, bundle, kernel);
+    l->d = p->d, l->W = IS(kernel, full) ? W : NULL;
     l->mu = vload(c->mu + k);
-    l->rho = kind.method == METHOD_exact ? splat(1) : vload(p->rho[bundle] + k);
-    for (int i = 0; i < 9 && kind.full; i++) W[i] = vload(p->block[bundle][i] + k);
+    l->rho = kernel.method == METHOD_exact ? splat(1) : vload(p->rho[bundle] + k);
+    for (int i = 0; i < 9 && IS(kernel, full); i++) W[i] = vload(p->block[bundle][i] + k);
     for (int i = 0; i < 3; i++) l->r[i] = vload(c->r[i] + k), l->v[i] = s->v[i];
-    if (kind.far) weigh(p, bundle, c, k, s, l->w);
+    if (FAR(kernel)) weigh(p, bundle, c, k, s, l->w);
     for (int i = 0; i < 3; i++) {
-        if (kind.full) l->w[i] = W[4 * i];
-        if (kind.given_by_W && !kind.full) l->w[i] = vload(p->w[bundle][i > 0] + k);
-        if (!kind.given_by_W && !kind.full && !kind.far)
-            l->w[i] = vload(beside_of(c)->w[i > 0] + k);
-        l->iw[i] = kind.full ? splat(0) : vload(c->iw[i > 0] + k);
-        l->b[i] = kind.given_by_W || kind.full ? s->v[i] : l->v[i] - l->w[i] * l->r[i];
+        if (IS(kernel, full)) l->w[i] = W[4 * i];
+        if (IS(kernel, given_by_W) && !IS(kernel, full)) l->w[i] = vload(p->w[bundle][i > 0] + k);
+        if (IS(kernel, near) && !IS(kernel, full)) l->w[i] = vload(beside_of(c)->w[i > 0] + k);
+        l->iw[i] = IS(kernel, full) ? splat(0) : vload(c->iw[i > 0] + k);
+        l->b[i] =
+            IS(kernel, given_by_W) || IS(kernel, full) ? s->v[i] : l->v[i] - l->w[i] * l->r[i];
     }
-    for (int i = 0; i < 3 && kind.full && !kind.given_by_W; i++) l->b[i] -= dot3(W + 3 * i, l->r);
-    if (kind.given_by_W) local_velocity(l, l->r, l->v);
+    for (int i = 0; i < 3 && IS(kernel, levers); i++) l->b[i] -= dot3(W + 3 * i, l->r);
+    if (IS(kernel, given_by_W)) local_velocity(l, l->r, l->v);
 }
 
 /*
@@ -186,11 +185,11 @@ ALWAYS_INLINE void roll_lanes(struct problem *p, int64_t bundle, int k, enum met
  * [projected SOR], at no cost; other methods go past their new reaction, and back onto the cone.
  */
 ALWAYS_INLINE void solve_relaxed(struct local *l, const struct bundle *c, int k,
-                                 const struct kind kind, const struct sweep_opt *o)
+                                 const struct kernel kernel, const struct sweep_opt *o)
 {
-    bool within = kind.method == METHOD_exact && !kind.full;
+    bool within = kernel.method == METHOD_exact && !IS(kernel, full);
     l->relax = within ? o->relax : 1;
-    kind.solve(l, &o->local);
+    kernel.solve(l, &o->local);
     if (within || o->relax == 1) return;
     vd tau[3];
     for (int i = 0; i < 3; i++) {
@@ -222,16 +221,16 @@ ALWAYS_INLINE void store_solution(struct bundle *c, int k, double (*belief)[BUND
 }
 
 /* Passes the change on to the bodies, or r to W->r. */
-ALWAYS_INLINE void pass_on(struct problem *p, int64_t bundle, int k, const struct kind kind,
+ALWAYS_INLINE void pass_on(struct problem *p, int64_t bundle, int k, const struct kernel kernel,
                            const struct loaded *s, const vd dr[3])
 {
-    const struct bundle *c = bundle_of(p, bundle, kind);
+    const struct bundle *c = bundle_of(p, bundle, kernel);
     vd t1[3];
-    for (int i = 0; i < 3 && !kind.given_by_W; i++)
-        t1[i] = kind.far ? s->t1[i] : vload(beside_of(c)->t1[i] + k); // not kept in between
-    if (kind.given_by_W)
+    for (int i = 0; i < 3 && !IS(kernel, given_by_W); i++)
+        t1[i] = IS(kernel, near) ? vload(beside_of(c)->t1[i] + k) : s->t1[i]; // not kept in between
+    if (IS(kernel, given_by_W))
         blocks_scatter(p, c, k);
-    else if (kind.full)
+    else if (IS(kernel, levers))
         levers_push(c, &p->lever[bundle], k, t1, s->t2, dr, p->body, &s->a, &s->b);
     else
         bundle_push(c, k, t1, s->t2, dr, p->body, &s->a, &s->b);
@@ -242,33 +241,33 @@ ALWAYS_INLINE void pass_on(struct problem *p, int64_t bundle, int k, const struc
  * and quotients of these are being computed, which saves a quarter of the time.
  */
 ALWAYS_INLINE void solve_bundles(struct problem *p, int64_t first, int64_t end,
-                                 const struct sweep_opt *o, const struct kind kind,
+                                 const struct sweep_opt *o, const struct kernel kernel,
                                  struct counts *t)
 {
     if (first == end) return;
     struct loaded s[2], *now = &s[0], *next = &s[1];
-    load_slots(p, first, 0, kind, now);
+    load_slots(p, first, 0, kernel, now);
     for (int64_t i = first; i < end; i++) {
-        struct bundle *c = bundle_of(p, i, kind);
+        struct bundle *c = bundle_of(p, i, kernel);
         double(*belief)[BUNDLE] = o->keep ? p->u[i] : NULL;
         fetch_ahead(p, i);
         for (int k = 0; k < BUNDLE; k += LANES) {
             struct local l;
-            struct beyond *x = kind.beyond ? &p->beyond[i] : NULL;
+            struct beyond *x = IS(kernel, beyond) ? &p->beyond[i] : NULL;
             vd W[9], dr[3];
             double dm[LANES][3];
-            make_local(p, i, k, kind, now, W, &l);
-            if (kind.beyond) bond_local(x, kind.full ? &p->turn[i] : NULL, k, &l);
-            solve_relaxed(&l, c, k, kind, o);
-            if (kind.beyond == MOMENTS) roll_lanes(p, i, k, kind.method, o, now->v, &l, dm);
+            make_local(p, i, k, kernel, now, W, &l);
+            if (IS(kernel, beyond)) bond_local(x, IS(kernel, levers) ? &p->turn[i] : NULL, k, &l);
+            solve_relaxed(&l, c, k, kernel, o);
+            if (IS(kernel, rolls)) roll_lanes(p, i, k, kernel.method, o, now->v, &l, dm);
             store_solution(c, k, belief, &l, dr, t);
-            if (kind.beyond) bond_follow(x, k, &l, dr);
+            if (IS(kernel, beyond)) bond_follow(x, k, &l, dr);
             if (k + LANES < BUNDLE)
-                load_slots(p, i, k + LANES, kind, next);
+                load_slots(p, i, k + LANES, kernel, next);
             else if (i + 1 < end)
-                load_slots(p, i + 1, 0, kind, next);
-            pass_on(p, i, k, kind, now, dr);
-            for (int j = 0; j < LANES && kind.beyond == MOMENTS; j++) {
+                load_slots(p, i + 1, 0, kernel, next);
+            pass_on(p, i, k, kernel, now, dr);
+            for (int j = 0; j < LANES && IS(kernel, rolls); j++) {
                 const struct beyond_lane at = slot_beyond(p, i * BUNDLE + k + j);
                 if (beyond_rolls(at.x, at.i)) beyond_push(&at, dm[j]);
             }
@@ -281,7 +280,7 @@ ALWAYS_INLINE void solve_bundles(struct problem *p, int64_t first, int64_t end,
 /* What solve_group() needs to know */
 struct task {
     const struct sweep_opt *o;
-    struct kind kind;
+    struct kernel kernel;
     struct counts *count;
 };
 
@@ -290,53 +289,56 @@ ALWAYS_INLINE void solve_group(struct problem *p, int64_t first, int64_t end, vo
     const struct task *t = task;
     struct counts other = { splat(0), splat(0), splat(0), splat(0) }; // another process counts them
     bool copies = p->shared && first < end && shared_is_copy(p->shared, first);
-    solve_bundles(p, first, end, t->o, t->kind, copies ? &other : t->count);
+    solve_bundles(p, first, end, t->o, t->kernel, copies ? &other : t->count);
 }
 
 ALWAYS_INLINE void sweep(struct problem *p, int me, int threads, const struct sweep_opt *o,
-                         const struct kind kind, struct tally *t)
+                         const struct kernel kernel, struct tally *t)
 {
     struct counts c = { splat(0), splat(0), splat(0), splat(0) };
-    struct task task = { o, kind, &c };
+    struct task task = { o, kernel, &c };
     walk(p, me, threads, solve_group, &task);
     raise_to(t->change, c.change), add_to(t->newton, c.newton);
     add_to(t->safeguarded, c.safeguarded), add_to(t->gave_up, c.gave_up);
 }
 
 /*
- * A text for each kind of problem and each method, which is inlined. Problems of three kinds share one text,
- * which calls its method: those with moments, whose lanes are solved one by one, and the rare W_cc that are
- * all diagonal. A call costs a third of a contact of balls, a text seconds to compile.
+ * A kernel for each kind of problem and each method, which is inlined. Kinds of three sorts share a kernel that
+ * calls its method: those with moments, whose lanes are solved one by one, and the rare W_cc that are all
+ * diagonal. A call costs a third of a contact of balls, a kernel seconds to compile.
  */
-typedef void kind_text(struct problem *p, int me, int threads, const struct sweep_opt *o,
-                       enum method_id method, method_text *solve, struct tally *t);
+typedef void shared_kernel(struct problem *p, int me, int threads, const struct sweep_opt *o,
+                           enum method_id method, method_text *solve, struct tally *t);
 
-#define DEFINE_KIND(name, given_by_W, full, beyond)                                                \
+#define DEFINE_SHARED(name, id)                                                                    \
     static void name(struct problem *p, int me, int threads, const struct sweep_opt *o,            \
                      enum method_id method, method_text *solve, struct tally *t)                   \
     {                                                                                              \
-        sweep(p, me, threads, o, (struct kind){ method, solve, given_by_W, full, false, beyond },  \
-              t);                                                                                  \
+        sweep(p, me, threads, o, (struct kernel){ method, solve, id }, t);                         \
     }
-DEFINE_KIND(sweep_moments, false, false, MOMENTS)
-DEFINE_KIND(sweep_levers_moments, false, true, MOMENTS)
-DEFINE_KIND(sweep_diagonals, true, false, NOTHING)
+DEFINE_SHARED(moments, KIND_MOMENTS)
+DEFINE_SHARED(levers_moments, KIND_LEVERS_MOMENTS) // with bonds alone, too: no lane of theirs rolls
+DEFINE_SHARED(diagonals, KIND_DIAGONALS)
 
-/* A text of its own for a method and a kind of problem */
-#define DEFINE_TEXT(name, what, given_by_W, full, far, beyond)                                     \
-    static __attribute__((noinline)) void what##_by_##name(                                        \
+#define DEFINE_KERNEL(method, what, id)                                                            \
+    static __attribute__((noinline)) void what##_by_##method(                                      \
         struct problem *p, int me, int threads, const struct sweep_opt *o, struct tally *t)        \
     {                                                                                              \
-        const struct kind kind = { METHOD_##name, name##_solve, given_by_W, full, far, beyond };   \
-        sweep(p, me, threads, o, kind, t);                                                         \
+        sweep(p, me, threads, o, (struct kernel){ METHOD_##method, method##_solve, id }, t);       \
+    }
+#define DEFINE_CALL(method, what, solve)                                                           \
+    static void what##_by_##method(struct problem *p, int me, int threads,                         \
+                                   const struct sweep_opt *o, struct tally *t)                     \
+    {                                                                                              \
+        what(p, me, threads, o, METHOD_##method, solve, t);                                        \
     }
 
-#define DEFINE_SWEEP(name)                                                                         \
-    DEFINE_TEXT(name, balls, false, false, false, NOTHING)                                         \
-    DEFINE_TEXT(name, far_balls, false, false, true, NOTHING)                                      \
-    DEFINE_TEXT(name, bonds, false, false, false, BONDS)                                           \
-    DEFINE_TEXT(name, levers, false, true, false, NOTHING)                                         \
-    DEFINE_TEXT(name, blocks, true, true, false, NOTHING)                                          \
+#define DEFINE_SWEEPS(name)                                                                        \
+    DEFINE_KERNEL(name, far_balls, KIND_FAR_BALLS)                                                 \
+    DEFINE_KERNEL(name, balls, KIND_BALLS)                                                         \
+    DEFINE_KERNEL(name, bonds, KIND_BONDS)                                                         \
+    DEFINE_KERNEL(name, levers, KIND_LEVERS)                                                       \
+    DEFINE_KERNEL(name, blocks, KIND_BLOCKS)                                                       \
     static void name##_full(struct local *l, const struct local_opt *o)                            \
     {                                                                                              \
         if (l->W) name##_solve(l, o);                                                              \
@@ -345,27 +347,21 @@ DEFINE_KIND(sweep_diagonals, true, false, NOTHING)
     {                                                                                              \
         if (!l->W) name##_solve(l, o);                                                             \
     }                                                                                              \
-    static void sweep_##name(struct problem *p, int me, int threads, const struct sweep_opt *o,    \
-                             struct tally *t)                                                      \
-    {                                                                                              \
-        if (p->turn)                                                                               \
-            sweep_levers_moments(p, me, threads, o, METHOD_##name, name##_full, t);                \
-        else if (p->rolls)                                                                         \
-            sweep_moments(p, me, threads, o, METHOD_##name, name##_diagonal, t);                   \
-        else if (p->W && !p->full)                                                                 \
-            sweep_diagonals(p, me, threads, o, METHOD_##name, name##_diagonal, t);                 \
-        else if (p->lever)                                                                         \
-            levers_by_##name(p, me, threads, o, t);                                                \
-        else if (p->W)                                                                             \
-            blocks_by_##name(p, me, threads, o, t);                                                \
-        else if (p->beyond)                                                                        \
-            bonds_by_##name(p, me, threads, o, t);                                                 \
-        else if (p->near)                                                                          \
-            balls_by_##name(p, me, threads, o, t);                                                 \
-        else                                                                                       \
-            far_balls_by_##name(p, me, threads, o, t);                                             \
-    }
-EACH_METHOD(DEFINE_SWEEP)
+    DEFINE_CALL(name, moments, name##_diagonal)                                                    \
+    DEFINE_CALL(name, levers_moments, name##_full)                                                 \
+    DEFINE_CALL(name, diagonals, name##_diagonal)
+EACH_METHOD(DEFINE_SWEEPS)
+
+#define SWEEPS_OF(name)                                                                            \
+    { [KIND_FAR_BALLS] = far_balls_by_##name,                                                      \
+      [KIND_BALLS] = balls_by_##name,                                                              \
+      [KIND_BONDS] = bonds_by_##name,                                                              \
+      [KIND_MOMENTS] = moments_by_##name,                                                          \
+      [KIND_LEVERS] = levers_by_##name,                                                            \
+      [KIND_LEVERS_BONDS] = levers_moments_by_##name,                                              \
+      [KIND_LEVERS_MOMENTS] = levers_moments_by_##name,                                            \
+      [KIND_BLOCKS] = blocks_by_##name,                                                            \
+      [KIND_DIAGONALS] = diagonals_by_##name },
 
 /* ---- velocities from the reactions ---- */
 
@@ -377,11 +373,11 @@ ALWAYS_INLINE void push_group(struct problem *p, int64_t first, int64_t end, voi
         for (int k = 0; k < BUNDLE; k += LANES) {
             const struct bundle *c = bundle_at(p, i);
             vd r[3] = { vload(c->r[0] + k), vload(c->r[1] + k), vload(c->r[2] + k) };
-            for (int j = 0; j < 3 && p->beyond; j++)
+            for (int j = 0; j < 3 && p->kind.beyond; j++)
                 r[j] += vload(p->beyond[i].z[j] + k) - vload(p->beyond[i].a[j] + k);
             problem_push(p, p->body, i, k, r);
         }
-        for (int k = 0; k < BUNDLE && p->rolls; k++) {
+        for (int k = 0; k < BUNDLE && p->kind.rolls; k++) {
             const struct beyond_lane at = slot_beyond(p, i * BUNDLE + k);
             const double m[3] = { at.x->m[0][k], at.x->m[1][k], at.x->m[2][k] };
             if (beyond_rolls(at.x, k)) beyond_push(&at, m);
@@ -396,8 +392,7 @@ static void push(struct problem *p, int me, int threads)
 
 /* ---- the table ---- */
 
-#define ENTRY_OF(name)  sweep_##name,
 #define SWEEP_(lanes)   sweep_##lanes
 #define SWEEP_OF(lanes) SWEEP_(lanes)
 extern const struct sweep SWEEP_OF(LANES);
-const struct sweep SWEEP_OF(LANES) = { LANES, { EACH_METHOD(ENTRY_OF) }, push };
+const struct sweep SWEEP_OF(LANES) = { LANES, { EACH_METHOD(SWEEPS_OF) }, push };

@@ -29,8 +29,8 @@ typedef void sweep_text(struct problem *p, int me, int threads, const struct swe
 /* The loops for one vector width */
 struct sweep {
     int lanes;
-    sweep_text
-        *sweep[METHOD_COUNT]; /* one local solve a slot, r passed on at once to bodies or W */
+    /* One local solve per slot, r passed on at once to the bodies or W */
+    sweep_text *sweep[METHOD_COUNT][PROBLEM_KINDS];
     /* Adds to the bodies' velocities what all reactions make of them. Shared by threads as a sweep
        is. */
     void (*push)(struct problem *p, int me, int threads);

@@ -46,10 +46,10 @@ ALWAYS_INLINE void fetch_ahead(const struct problem *p, int64_t i)
 {
     if (p->bundles < FAR_BUNDLES || i + BUNDLES_AHEAD >= p->bundles) return;
     int64_t ahead = i + BUNDLES_AHEAD;
-    fetch_lines(bundle_at(p, ahead), p->near ? sizeof(struct near_bundle) : sizeof *p->bundle);
-    if (p->full) fetch_lines(&p->block[ahead], sizeof *p->block);
+    fetch_lines(bundle_at(p, ahead), bundle_size(p));
+    if (p->kind.full) fetch_lines(&p->block[ahead], sizeof *p->block);
     if (!p->body) return;
-    if (p->lever) fetch_lines(&p->lever[ahead], sizeof *p->lever);
+    if (p->kind.levers) fetch_lines(&p->lever[ahead], sizeof *p->lever);
     fetch_bodies_to_second_level(p, bundle_at(p, i + BODIES_AHEAD));
     fetch_bodies(p, bundle_at(p, i + BODIES_NEXT));
 }

@@ -5,7 +5,7 @@
 
 #include "bodies/move.h"
 #include "bodies/project.h"
-#include "problem/braking.h"
+#include "problem/brake.h"
 
 #include <stdlib.h>
 #include <string.h>

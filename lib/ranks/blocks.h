@@ -8,7 +8,7 @@
  * send back what the bodies then move with: v = v_free + M^-1 P r holds for all.
  *
  * A body that k ranks push at once would be pushed too far: its contacts are solved by steps that are k times
- * shorter [problem/braking.h].
+ * shorter [problem/brake.h].
  */
 #ifndef NSD_BLOCKS_H
 #define NSD_BLOCKS_H

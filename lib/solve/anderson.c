@@ -101,8 +101,8 @@ static void remember_start(struct anderson *a)
     const struct problem *p = a->s->p;
     double *x = a->m.df[a->m.next];
     for (int64_t i = 0; i < p->bundles; i++, x += mixing_width(p) * BUNDLE) {
-        memcpy(x, bundle_at(p, i)->r, (size_t)(p->beyond ? 3 : p->d) * BUNDLE * sizeof *x);
-        if (!p->beyond) continue;
+        memcpy(x, bundle_at(p, i)->r, (size_t)(p->kind.beyond ? 3 : p->d) * BUNDLE * sizeof *x);
+        if (!p->kind.beyond) continue;
         memcpy(x + 3 * BUNDLE, p->beyond[i].z, sizeof p->beyond[i].z);
         memcpy(x + 6 * BUNDLE, p->beyond[i].m, sizeof p->beyond[i].m);
     }
@@ -134,7 +134,7 @@ static void take_terms(const struct anderson *a, int64_t slot, double *term)
     int k = slot_lane(slot);
     int width = mixing_width(p);
     double lambda = slot_lambda(p, slot);
-    double length = p->beyond ? p->beyond[slot / BUNDLE].length[k] : 0;
+    double length = p->kind.beyond ? p->beyond[slot / BUNDLE].length[k] : 0;
     for (int l = 0; l < width; l++) {
         int64_t at = (slot / BUNDLE * width + l) * BUNDLE + k;
         double w = l < 6 ? lambda : length > 0 ? lambda / (length * length) : 0; // 6 on: moments
@@ -358,7 +358,7 @@ struct anderson *anderson_new(struct solve *s)
     size_t size = (size_t)(s->p->slots * mixing_width(s->p)),
            bytes = (size_t)(1 + 2 * depth(a)) * size * sizeof(double);
     for (int k = 0; k < 2; k++)
-        a->omega[k] = s->o->relax > 0 ? s->o->relax : k || s->p->full ? 1 : OMEGA_BALLS;
+        a->omega[k] = s->o->relax > 0 ? s->o->relax : k || s->p->kind.full ? 1 : OMEGA_BALLS;
     a->room = aligned_alloc(64, bytes); // each vector is whole cache lines
     a->sums = malloc((size_t)(chunks(s->p) + 1) * sizeof *a->sums);
     if (!a->room || !a->sums || solve_best_init(&a->since, s->p)) {

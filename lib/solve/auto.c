@@ -155,7 +155,7 @@ static int try_again(struct strategy *a)
 static int factorise(struct strategy *a)
 {
     struct solve *s = a->s;
-    if (s->p->full) newton_polish(&a->w, s, 1e-4, 2);
+    if (s->p->kind.full) newton_polish(&a->w, s, 1e-4, 2);
     ipm_solve(&a->w, s);
     if (solve_over(s)) return 0;
     solve_restore_best(s);
@@ -279,7 +279,7 @@ static int sweep_and_choose(struct strategy *a)
 
 static int run(struct solve *s)
 {
-    if (s->p->beyond) return solver_anderson.run(s); // W is none that could be factorised
+    if (s->p->kind.beyond) return solver_anderson.run(s); // W is none that could be factorised
     if (even_concerns(s->p)) {
         struct shared *others = s->p->shared;
         if (others && others->may_want) return others->wants_whole = true, 0;

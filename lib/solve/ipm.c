@@ -186,7 +186,7 @@ static void ipm_free(struct ipm *m)
 
 static bool ipm_init(struct ipm *m, struct newton *w, struct solve *s, double gap, double fold_gap)
 {
-    *m = (struct ipm){ .full = s->p->full, .fold_gap = fold_gap };
+    *m = (struct ipm){ .full = s->p->kind.full, .fold_gap = fold_gap };
     if (!central_init(&m->c, w, s, gap, gap == GAP_COLD)) return false;
     m->kept = calloc((size_t)w->a.W.n + 1, sizeof *m->kept);
     if (!m->kept) ipm_free(m);

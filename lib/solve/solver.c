@@ -134,7 +134,7 @@ static int64_t end_of_ru(const struct problem *p)
 
 int solve_best_init(struct best *b, const struct problem *p)
 {
-    return best_init(b, end_of_ru(p) + (p->beyond ? BESIDE_R * p->slots : 0));
+    return best_init(b, end_of_ru(p) + (p->kind.beyond ? BESIDE_R * p->slots : 0));
 }
 
 /* Slots that are kept */
@@ -150,7 +150,7 @@ static void keep_some(void *arg, int64_t first, int64_t end)
     double *u = k->r + 3 * p->slots, unwanted[3] = { 0 };
     for (int64_t i = first; i < end; i++)
         slot_get(p, i, k->r + 3 * i, with_u(p) ? u + 3 * i : unwanted);
-    for (int64_t i = first; p->beyond && i < end; i++)
+    for (int64_t i = first; p->kind.beyond && i < end; i++)
         slot_get_beyond(p, i, k->r + end_of_ru(p) + BESIDE_R * i);
 }
 
@@ -174,7 +174,7 @@ void solve_best_restore(struct solve *s, const struct best *b)
     struct problem *p = s->p;
     if (!b->x || !(b->value < INFINITY) || s->value <= b->value) return;
     const double *r = b->x, *u = r + 3 * p->slots;
-    for (int64_t i = 0; p->beyond && i < p->slots; i++)
+    for (int64_t i = 0; p->kind.beyond && i < p->slots; i++)
         slot_set_beyond(p, i, r + end_of_ru(p) + BESIDE_R * i);
     solve_react(s, r);
     s->value = b->value, s->believes = with_u(p) && u[3 * p->slots] != 0;

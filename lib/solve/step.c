@@ -28,7 +28,7 @@ bool step_sweeps(const struct solver *global)
 /* Refuses what the solver asked for cannot solve. */
 static int check_solver(const struct problem *p, const struct solver *global, struct why *why)
 {
-    if (!p->rolls || step_sweeps(global)) return 0;
+    if (!p->kind.rolls || step_sweeps(global)) return 0;
     return why_set(
         why, EX_DATAERR,
         "%s does not solve contacts with rolling friction: --global auto, anderson and nlgs do",

@@ -156,7 +156,7 @@ static void test_given(const struct packing *p, const struct contacts *s, const 
             must(problem_prepare_delassus(&shape, &W, 0, 1, ORDER_NATURAL, &why), &why);
             must(step_solve_delassus(&W, u, &o, &rep, &why), &why);
             double far = apart(&W, r);
-            ok(shape.full == (k == 1) && far < 1e-9,
+            ok(shape.kind.full == (k == 1) && far < 1e-9,
                "%s, %s: the reactions of %s W are those of the bodies: %.1e", what,
                methods[m]->name, k ? "a full" : "the", far);
             problem_free(&shape), delassus_free(&W), report_free(&rep);

@@ -1,14 +1,24 @@
 /*
- * problem/filling.h: the slots of a packing's problem, all but their reactions: local bases, arms,
+ * problem/fill.h: the slots of a packing's problem, all but their reactions: local bases, arms,
  * W~_cc and rho, and what the law sees besides u. fill.c fills them, for problem.c.
  */
-#ifndef NSD_FILLING_H
-#define NSD_FILLING_H
+#ifndef NSD_FILL_H
+#define NSD_FILL_H
 
 #include "bodies/contact.h"
 #include "bodies/packing.h"
 
 struct problem;
+struct filling;
+
+/* A slot to be filled */
+struct slot_filling {
+    const struct filling *of;
+    int64_t i;
+    const struct contact *c;
+    const struct tie *tie; /* NULL: none */
+    double slower;         /* W~_cc is so many times what it is, at least 1 [problem/brake.h] */
+};
 
 /* The cell's edges where the contacts act (m), and their rates before and after the step (m/s) */
 struct lattice {
@@ -26,7 +36,7 @@ struct filling {
 };
 
 /* Fills a slot, which knows its bodies: these still have their velocities before the step. slower: W~_cc is so
-   many times what it is, at least 1 [problem/braking.h]. */
+   many times what it is, at least 1 [problem/brake.h]. */
 void fill_slot(const struct filling *f, int64_t slot, double slower);
 /* Bundles first .. end-1 of a struct filling, as a part of a team's work */
 void fill_bundles(void *filling, int64_t first, int64_t end);
