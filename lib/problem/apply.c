@@ -2,7 +2,7 @@
 #include "problem/apply.h"
 
 #include "base/team.h"
-#include "problem/sweep.h"
+#include "problem/backend.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -62,7 +62,7 @@ void problem_apply(const struct problem *p, struct apply *a, const double *x, do
 
 static void push(void *problem, int me, int threads)
 {
-    sweep_widest()->push(problem, me, threads);
+    backend_widest()->sweep->push(problem, me, threads);
 }
 
 void problem_renew(struct problem *p, int threads)

@@ -1,7 +1,6 @@
 /* problem/brake.c: two sets of numbers for a slot [problem/brake.h]. */
 #include "problem/brake.h"
 
-#include "problem/lay.h"
 #include "problem/problem.h"
 
 #include <stdlib.h>
@@ -11,7 +10,7 @@
 static int rows(const struct problem *p, int which)
 {
     size_t row = BUNDLE * sizeof(double);
-    return p->kind.arrays >> which & 1 ? (int)(lay_array(p, (enum array)which).size / row) : 0;
+    return p->kind.arrays >> which & 1 ? (int)(problem_array(p, (enum array)which).size / row) : 0;
 }
 
 /* All numbers of a slot, whatever they are; returns how many. at[]: where they are, or NULL */
@@ -19,7 +18,8 @@ static int numbers(const struct problem *p, int64_t slot, double **at)
 {
     int n = 0;
     for (int k = 0; k < ARRAYS; k++) {
-        const struct array_of a = rows(p, k) ? lay_array(p, (enum array)k) : (struct array_of){ 0 };
+        const struct array_of a =
+            rows(p, k) ? problem_array(p, (enum array)k) : (struct array_of){ 0 };
         double *x = at && a.x ? (double *)((char *)a.x + slot / BUNDLE * (int64_t)a.size) : NULL;
         for (int j = 0; j < rows(p, k); j++, n++)
             if (at) at[n] = &x[j * BUNDLE + slot_lane(slot)];
@@ -27,55 +27,54 @@ static int numbers(const struct problem *p, int64_t slot, double **at)
     return n;
 }
 
-/* Where the numbers are that lighter bodies change */
-static void changed(const struct problem *p, const struct brake *b, int64_t slot, double **all,
-                    double **at)
+/* A brake of n slots, in one piece: what is found of it is freed with the problem. */
+static struct brake *brake_new(int64_t n, int all)
 {
-    numbers(p, slot, all);
-    for (int j = 0; j < b->width; j++) at[j] = all[b->number[j]];
+    size_t slots = (size_t)n * sizeof(int64_t), numbers = (size_t)n * (size_t)all * sizeof(double),
+           places = (size_t)all * sizeof(double *), which = (size_t)all * sizeof(int);
+    struct brake *b = calloc(1, sizeof *b + slots + numbers + places + which);
+    if (!b) return NULL;
+    b->slot = (int64_t *)(b + 1);
+    b->other = (double *)((char *)b->slot + slots);
+    b->at = (double **)((char *)b->other + numbers);
+    b->number = (int *)((char *)b->at + places);
+    b->all = all;
+    return b;
 }
 
-/* The numbers of the slots before they are held: other[n][all] becomes other[n][width], of those that have changed
-   in any slot. */
-static int keep_changed(const struct problem *p, struct brake *b, int all, double **at)
+/* other[n][all], the numbers of the slots before they are held, becomes other[n][width], of those that have
+   changed in any slot. */
+static void keep_changed(const struct problem *p, struct brake *b)
 {
-    bool *differs = calloc((size_t)all + 1, sizeof *differs);
-    b->number = malloc((size_t)(all + 1) * sizeof *b->number);
-    if (!differs || !b->number) return free(differs), -1;
+    for (int j = 0; j < b->all; j++) b->number[j] = 0;
     for (int64_t i = 0; i < b->n; i++) {
-        numbers(p, b->slot[i], at);
-        for (int j = 0; j < all; j++)
-            if (memcmp(at[j], &b->other[i * all + j], sizeof *at[j])) differs[j] = true;
+        numbers(p, b->slot[i], b->at);
+        for (int j = 0; j < b->all; j++)
+            if (memcmp(b->at[j], &b->other[i * b->all + j], sizeof(double))) b->number[j] = 1;
     }
-    for (int j = 0; j < all; j++)
-        if (differs[j]) b->number[b->width++] = j;
+    for (int j = 0; j < b->all; j++)
+        if (b->number[j]) b->number[b->width++] = j;
     for (int64_t i = 0; i < b->n; i++)
         for (int j = 0; j < b->width; j++)
-            b->other[i * b->width + j] = b->other[i * all + b->number[j]];
-    free(differs);
-    return 0;
+            b->other[i * b->width + j] = b->other[i * b->all + b->number[j]];
 }
 
 int brake_make(struct problem *p, const struct filling *f, const double *slower)
 {
-    struct brake *b = p->brake = calloc(1, sizeof *b);
-    const int all = numbers(p, 0, NULL);
     int64_t n = 0;
     for (int64_t i = 0; i < p->slots; i++) n += p->contact[i] >= 0 && slower[p->contact[i]] > 1;
+    struct brake *b = p->brake = brake_new(n, numbers(p, 0, NULL));
     if (!b) return -1;
-    b->slot = malloc((size_t)(n + 1) * sizeof *b->slot);
-    b->other = malloc((size_t)(n + 1) * (size_t)all * sizeof *b->other);
-    b->at = malloc(2 * (size_t)all * sizeof *b->at);
-    if (!b->slot || !b->other || !b->at) return -1;
     for (int64_t i = 0; i < p->slots; i++) {
         if (p->contact[i] < 0 || !(slower[p->contact[i]] > 1)) continue;
         numbers(p, i, b->at);
-        for (int j = 0; j < all; j++) b->other[b->n * all + j] = *b->at[j];
+        for (int j = 0; j < b->all; j++) b->other[b->n * b->all + j] = *b->at[j];
         fill_slot(f, i, slower[p->contact[i]]);
         b->slot[b->n++] = i;
     }
-    b->held = true, b->all = all;
-    return keep_changed(p, b, all, b->at);
+    b->held = true;
+    keep_changed(p, b);
+    return 0;
 }
 
 void brake_hold(struct problem *p, bool hold)
@@ -83,18 +82,11 @@ void brake_hold(struct problem *p, bool hold)
     struct brake *b = p->brake;
     if (!b || b->held == hold) return;
     for (int64_t i = 0; i < b->n; i++) {
-        double **at = b->at + b->all;
-        changed(p, b, b->slot[i], b->at, at);
+        numbers(p, b->slot[i], b->at);
         for (int j = 0; j < b->width; j++) {
-            double *other = &b->other[i * b->width + j], x = *other;
-            *other = *at[j], *at[j] = x;
+            double *here = b->at[b->number[j]], *other = &b->other[i * b->width + j], x = *other;
+            *other = *here, *here = x;
         }
     }
     b->held = hold;
-}
-
-void brake_free(struct brake *b)
-{
-    if (b) free(b->slot), free(b->other), free(b->number), free(b->at);
-    free(b);
 }

@@ -20,7 +20,7 @@ struct brake {
     int width;     /* numbers of a slot that lighter bodies change, found by filling it twice, */
     int *number;   /* [width] and which of all they are */
     int all;       /* numbers of a slot */
-    double **at;   /* [2 all] work space: where they are */
+    double **at;   /* [all] work space: where they are */
 };
 
 /* p->brake of contacts with slower[contact] > 1; they are held. To be called when the slots are filled, as
@@ -28,6 +28,5 @@ struct brake {
 int brake_make(struct problem *p, const struct filling *f, const double *slower);
 /* Whether the sweeps' numbers are to be in the slots, or the true ones; p->brake may be NULL. */
 void brake_hold(struct problem *p, bool hold);
-void brake_free(struct brake *b);
 
 #endif

@@ -2,6 +2,7 @@
 #include "problem/err.h"
 
 #include "base/team.h"
+#include "problem/backend.h"
 #include "problem/shared.h"
 
 #include <float.h>
@@ -64,7 +65,7 @@ static void judge_block(const struct problem *p, bool believes, enum err_terms w
 {
     int64_t from = block * BLOCK, to = from + BLOCK;
     *s = (struct sums){ 0 };
-    judge_widest()->judge(p, from, to < p->bundles ? to : p->bundles, believes, which, s);
+    backend_widest()->judge->judge(p, from, to < p->bundles ? to : p->bundles, believes, which, s);
 }
 
 /* Blocks from .. to-1 of a stripe */
@@ -101,7 +102,7 @@ static void judge_unbonded(const struct problem *p, int64_t bundle, bool believe
 {
     struct problem unbonded = *p;
     unbonded.kind = problem_kinds[p->kind.plain];
-    judge_widest()->judge(&unbonded, bundle, bundle + 1, believes, which, s);
+    backend_widest()->judge->judge(&unbonded, bundle, bundle + 1, believes, which, s);
 }
 
 /* Of a problem that processes share */
@@ -125,7 +126,7 @@ static void judge_shared(const struct problem *p, bool believes, enum err_terms 
         for (int k = 0; k < BUNDLE && parts == 2; k++)
             take_terms(&s, k, term[(BUNDLE * i + k) * parts]);
         if (parts == 2) sums_negate(&s); // so that what is added to them first leaves 0
-        judge_widest()->judge(p, i, i + 1, believes, which, &s);
+        backend_widest()->judge->judge(p, i, i + 1, believes, which, &s);
         for (int k = 0; k < BUNDLE; k++)
             take_terms(&s, k, term[(BUNDLE * i + k) * parts + parts - 1]);
         most[0] = fmax(most[0], bundle_max(s.max_pen));

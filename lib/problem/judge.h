@@ -38,8 +38,4 @@ struct judge {
     void (*velocities)(struct problem *p, int64_t first, int64_t end);
 };
 
-/* The loops for the widest vectors that the machine has, of at most NSD_LANES lanes
-   [problem/sweep_dispatch.c] */
-const struct judge *judge_widest(void);
-
 #endif

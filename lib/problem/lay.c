@@ -4,7 +4,6 @@
 #include "base/team.h"
 #include "problem/problem.h"
 
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -46,28 +45,11 @@ bool lay_plan(struct problem *p, const struct plan *l)
     return true;
 }
 
-#define ARRAY_PLACE(name) { offsetof(struct problem, name), sizeof *((struct problem *)0)->name },
-static const struct {
-    size_t at, size; /* of the member in struct problem; bytes of an element */
-} arrays[ARRAYS] = { EACH_ARRAY(ARRAY_PLACE) };
-
-struct array_of lay_array(const struct problem *p, enum array which)
-{
-    struct array_of a = { .size = which == ARRAY_bundle ? bundle_size(p) : arrays[which].size };
-    memcpy(&a.x, (const char *)p + arrays[which].at, sizeof a.x);
-    return a;
-}
-
 static bool lay_one(struct problem *p, enum array which)
 {
-    void *x = lay_lines(p->bundles, lay_array(p, which).size);
-    memcpy((char *)p + arrays[which].at, &x, sizeof x);
+    void *x = lay_lines(p->bundles, problem_array(p, which).size);
+    problem_set_array(p, which, x);
     return x != NULL;
-}
-
-void lay_free(struct problem *p)
-{
-    for (int k = 0; k < ARRAYS; k++) free(lay_array(p, (enum array)k).x);
 }
 
 bool lay_bundles(struct problem *p)

@@ -5,7 +5,6 @@
 #define NSD_LAY_H
 
 #include "bodies/contact.h"
-#include "problem/kind.h"
 #include "problem/plan.h"
 
 struct problem;
@@ -16,18 +15,9 @@ struct problem;
  */
 void *lay_lines(int64_t n, size_t size);
 
-/* An array of a problem that has one element per bundle: x[bundles], each of so many bytes; NULL: none */
-struct array_of {
-    void *x;
-    size_t size;
-};
-struct array_of lay_array(const struct problem *p, enum array which);
-
-/* What p borrows of the plan; then the arrays of p->kind, once it is chosen. False when memory is short, with
-   what is allocated to be freed by lay_free(). */
+/* What p borrows of the plan; then the arrays of p->kind, once it is chosen. False when memory is short. */
 bool lay_plan(struct problem *p, const struct plan *l);
 bool lay_bundles(struct problem *p);
-void lay_free(struct problem *p);
 
 /* Tells the slots their bodies, and makes the copies of those that do not move. p->seat and the packing's in
    p->body are set. */

@@ -57,8 +57,4 @@ struct mixing_loops {
                   const double gamma[MIXING_DEPTH]);
 };
 
-/* The loops for the widest vectors that the machine has and NSD_LANES allows
-   [problem/sweep_dispatch.c] */
-const struct mixing_loops *mixing_widest(void);
-
 #endif

@@ -1,23 +1,17 @@
-/* problem/problem.c: the bundles of a packing [problem/problem.h]. */
+/* problem/problem.c: the slots of a problem, and what is kept for each bundle [problem/problem.h]. */
 #include "problem/problem.h"
 
 #include "base/team.h"
-#include "bodies/kinematics.h"
-#include "bodies/offset.h"
-#include "bodies/top.h"
-#include "problem/brake.h"
-#include "problem/fill.h"
-#include "problem/lay.h"
 #include "problem/plan.h"
-#include "problem/schedule.h"
 #include "problem/shared.h"
 
 #include <assert.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum {
-    SOME = 4096,       /* bodies, contacts or slots that are worth a thread: 100 us of work */
+    SOME = 4096,       /* slots that are worth a thread: 100 us of work */
     PARALLEL_FROM = 64 /* bundles a group, on average, that are worth more than one thread */
 };
 
@@ -26,213 +20,34 @@ static_assert(sizeof(struct bundle) % 64 == 0 && sizeof(struct near_bundle) % 64
               "lanes begin a cache line");
 static_assert(sizeof(struct levers) % 64 == 0, "lanes begin a cache line");
 
-static int no_memory(struct problem *p, struct why *why)
+#define ARRAY_PLACE(name) { offsetof(struct problem, name), sizeof *((struct problem *)0)->name },
+static const struct {
+    size_t at, size; /* of the member in struct problem; bytes of an element */
+} arrays[ARRAYS] = { EACH_ARRAY(ARRAY_PLACE) };
+
+struct array_of problem_array(const struct problem *p, enum array which)
 {
-    problem_free(p);
-    return why_set(why, EX_SOFTWARE, "no memory for the contact problem");
+    struct array_of a = { .size = which == ARRAY_bundle ? bundle_size(p) : arrays[which].size };
+    memcpy(&a.x, (const char *)p + arrays[which].at, sizeof a.x);
+    return a;
+}
+
+void problem_set_array(struct problem *p, enum array which, void *x)
+{
+    memcpy((char *)p + arrays[which].at, &x, sizeof x);
 }
 
 void problem_free(struct problem *p)
 {
-    lay_free(p);
+    for (int k = 0; k < ARRAYS; k++) free(problem_array(p, (enum array)k).x);
     free(p->body), free(p->split), free(p->pull), free(p->in_W), free(p->spin);
     plan_free(p->plan);
     delassus_free(&p->sorted);
-    brake_free(p->brake);
+    free(p->brake);
     if (p->own) delassus_free(p->own);
     if (p->coupling) couplings_free(p->coupling);
     free(p->own), free(p->coupling);
     *p = (struct problem){ 0 };
-}
-
-/* Sets bodies first .. end-1, with their velocities before the step. */
-static void set_some(void *arg, int64_t first, int64_t end)
-{
-    struct problem *p = arg;
-    const struct packing *pack = p->packing;
-    for (int64_t i = first; i < end; i++) {
-        vec3 v = pack->v[i], w = p->spin ? p->spin[i] : pack->w[i];
-        p->body[p->seat[i]] = (struct body){ { v.x, v.y, v.z },
-                                             { w.x, w.y, w.z },
-                                             pack->mass[i] > 0 ? 1 / pack->mass[i] : 0,
-                                             pack->mass[i] > 0 ? 1 / pack->inertia[i] : 0 };
-        if (p->spin && pack->mass[i] > 0) p->body[p->seat[i]].ii = 1;
-    }
-}
-
-static void free_some(void *arg, int64_t first, int64_t end)
-{
-    struct problem *p = arg;
-    const struct packing *pack = p->packing;
-    const vec3 fall = v3_scale(pack->dt, pack->g);
-    const struct cell_flow flow = packing_flow(pack);
-    for (int64_t i = first; i < end; i++) {
-        struct body *b = &p->body[p->seat[i]];
-        vec3 dv = fall;
-        if (!(b->im > 0)) continue;
-        if (flow.changes) dv = v3_add(dv, cell_flow_gain(&flow, packing_predict(pack, i)));
-        b->v[0] = pack->v[i].x + dv.x, b->v[1] = pack->v[i].y + dv.y, b->v[2] = pack->v[i].z + dv.z;
-        vec3 w = p->spin ? p->spin[i] : pack->w[i];
-        b->w[0] = w.x, b->w[1] = w.y, b->w[2] = w.z;
-    }
-}
-
-/* Is it so of any contact of any process? One text of the sweep serves them all. */
-static bool anywhere(const struct problem *p, bool here)
-{
-    return p->shared ? p->shared->most(p->shared, here) > 0 : here;
-}
-
-/* N s: of the contacts' ties */
-static bool set_pulls(struct problem *p, const struct contacts *s)
-{
-    bool any = false;
-    for (int64_t i = 0; s->tie && i < s->n; i++) any = any || s->tie[i].pull > 0;
-    if (!anywhere(p, any)) return true;
-    p->pull = calloc((size_t)p->slots + 1, sizeof *p->pull);
-    for (int64_t i = 0; p->pull && i < p->slots; i++)
-        if (s->tie && p->contact[i] >= 0) p->pull[i] = p->dt * s->tie[p->contact[i]].pull;
-    return p->pull != NULL;
-}
-
-void problem_set_free_motion(struct problem *p)
-{
-    team_share(team_size(), p->packing->n, SOME, free_some, p);
-    if (p->shared) p->shared->begin(p->shared, p);
-    for (int64_t i = 0; p->pull && i < p->slots; i++) {
-        const double pulled[3] = { -p->pull[i], 0, 0 };
-        if (p->pull[i] > 0) problem_push(p, p->body, i / BUNDLE, slot_lane(i), pulled);
-    }
-    if (p->shared && p->pull) p->shared->settle(p->shared, p);
-}
-
-/* half[n] = the orientations in which contacts act, and p->spin; false when memory is short. */
-static bool find_spins(struct problem *p, const struct packing *pack, quat **half)
-{
-    *half = calloc((size_t)pack->n + 1, sizeof **half);
-    p->spin = calloc((size_t)pack->n + 1, sizeof *p->spin);
-    if (!*half || !p->spin) return false;
-    for (int64_t i = 0; i < pack->n; i++) {
-        p->spin[i] = pack->w[i];
-        if (!(pack->mass[i] > 0)) continue;
-        (*half)[i] = top_is(pack, i) ? top_predict(pack, i) : pack->q[i];
-        p->spin[i] = top_root(pack, i, (*half)[i], top_predict_spin(pack, i, (*half)[i]));
-    }
-    return true;
-}
-
-/* The reactions found, as r* and what is beyond it; the bodies get them. */
-static void take_found(struct problem *p, int64_t i, const struct contacts *s)
-{
-    const struct found *c = &s->found[p->contact[i]];
-    struct beyond *x = p->beyond ? &p->beyond[i / BUNDLE] : NULL;
-    int k = slot_lane(i);
-    double r[3] = { c->r[0], c->r[1], c->r[2] };
-    if (p->pull) r[0] += p->pull[i];
-    problem_push(p, p->body, i / BUNDLE, k, r);
-    for (int j = 0; x && j < 3; j++) {
-        x->z[j][k] = -x->K[j > 0][k] * c->u[j];
-        r[j] -= x->z[j][k] - x->a[j][k];
-        if (s->moment) x->m[j][k] = s->moment[p->contact[i]][j];
-    }
-    const struct contact *law = &s->c[p->contact[i]];
-    double u[3] = { c->u[0], c->u[1], c->u[2] };
-    for (int j = 0; j < 3 && p->kind.levers; j++) u[j] *= 1 + (j ? law->et : law->en);
-    slot_set(p, i, r, u);
-    if (!x || !beyond_rolls(x, k)) return;
-    const double m[3] = { x->m[0][k], x->m[1][k], x->m[2][k] };
-    const struct beyond_lane at = slot_beyond(p, i);
-    beyond_push(&at, m);
-}
-
-/* What the free motion makes of the slots */
-struct measuring {
-    struct problem *p;
-    double *q2; /* [slots] m^2/s^2: |q|^2 */
-};
-
-static void measure_some(void *arg, int64_t first, int64_t end)
-{
-    const struct measuring *m = arg;
-    const struct problem *p = m->p;
-    for (int64_t i = BUNDLE * first; i < BUNDLE * end; i++) {
-        double q[3] = { 0 };
-        if (p->contact[i] >= 0)
-            problem_velocity(p, p->body, i / BUNDLE, slot_rebound(p, i), slot_lane(i), q);
-        m->q2[i] = q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
-    }
-}
-
-static double fastest(void *arg, int64_t first, int64_t end)
-{
-    const struct packing *p = arg;
-    double most = 0;
-    for (int64_t i = first; i < end; i++)
-        most = dmax(most, v3_norm(p->v[i]) + p->radius[i] * v3_norm(p->w[i]));
-    return most;
-}
-
-/* m/s: the speed of the fastest point of a body or wall, plus g dt. The velocities at contacts are
-   differences of such speeds, and have their rounding. */
-static double top_speed(const struct packing *p)
-{
-    double most = team_most(team_size(), p->n, SOME, fastest, (void *)p), images = 0;
-    for (int32_t k = 0; k < p->walls; k++) most = fmax(most, wall_top_speed(p, &p->wall[k]));
-    for (int k = 0; k < 3; k++) images += p->cell.repeats[k] ? v3_norm(p->cell.rate[k]) : 0;
-    most += images;
-    return most + p->dt * v3_norm(p->g);
-}
-
-/* What there is among the contacts, in any of them */
-struct survey {
-    const struct packing *p;
-    const struct contacts *s;
-    bool far; /* bundles do not stay in a near cache: what can be computed is not loaded */
-    bool moving_images; /* images move otherwise than their bodies, now or at the end of the step */
-    _Atomic bool shaped, rebounds; /* u~ is anything but u */
-    _Atomic bool turned;       /* t1 is to be loaded: not what contact_basis() makes, or not far */
-    _Atomic bool bonds, rolls; /* stiff ties; rolling friction */
-};
-
-static bool same(vec3 a, vec3 b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
-static void survey_some(void *arg, int64_t first, int64_t end)
-{
-    struct survey *y = arg;
-    bool shaped = false, rebounds = false, turned = !y->far || y->p->dim == 2;
-    bool bonds = false, rolls = false;
-    for (int64_t i = first; i < end; i++) {
-        const struct contact *c = &y->s->c[i];
-        shaped |= contact_shaped(y->p, c);
-        struct contact made = { 0 };
-        if (!turned) contact_basis(&made, 3, c->n), turned = !same(made.t1, c->t1);
-        rebounds |= c->en > 0 || c->et > 0 || offset_in(y->p, c) ||
-                    (y->s->tie && y->s->tie[i].offset > 0) ||
-                    (y->moving_images && contact_shifted(c));
-        const struct tie *t = y->s->tie ? &y->s->tie[i] : NULL;
-        bonds |= t && (t->stiff[0] > 0 || t->stiff[1] > 0);
-        rolls |= t && (t->mu_r > 0 || t->mu_p > 0);
-    }
-    if (shaped) y->shaped = true;
-    if (rebounds) y->rebounds = true;
-    if (turned) y->turned = true;
-    if (bonds) y->bonds = true;
-    if (rolls) y->rolls = true;
-}
-
-static void survey(struct survey *y, const struct packing *p, const struct contacts *s,
-                   const struct lattice *cell)
-{
-    double most = 0;
-    for (int k = 0; k < 3; k++)
-        most = fmax(most, fmax(v3_norm(cell->before[k]), v3_norm(cell->after[k])));
-    *y = (struct survey){
-        .p = p, .s = s, .far = s->n >= FAR_BUNDLES * BUNDLE, .moving_images = most > 0
-    };
-    team_share(team_size(), s->n, SOME, survey_some, y);
 }
 
 /*
@@ -244,113 +59,6 @@ static void survey(struct survey *y, const struct packing *p, const struct conta
 void problem_set_unit(struct problem *p, double sum)
 {
     p->unit = fmax(p->fall, UNIT_OF_SPEED * sum / (double)(p->n ? p->n : 1));
-}
-
-/* The sum of x[slots] of all processes, in one order always */
-static double sum_of_slots(const struct problem *p, const double *x)
-{
-    double sum = 0;
-    if (p->shared) return p->shared->sum_along(p->shared, p, x);
-    for (int64_t i = 0; i < p->slots; i++) sum += x[i];
-    return sum;
-}
-
-static int prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
-                   double alpha, double rho_factor, const struct plan *plan, struct shared *shared,
-                   struct why *why)
-{
-    const struct lattice cell = lattice_of(pack);
-    struct survey found;
-    survey(&found, pack, s, &cell);
-    *p = (struct problem){ .d = pack->dim, .n = s->n, .dt = pack->dt, .packing = pack };
-    // those of the packing, the copies, and for the lanes without a contact one `nobody` in each half
-    p->bodies = pack->n + 2 + plan->copies;
-    p->shared = shared;
-    if (shared) p->n = shared->contacts;
-    if (p->bodies > BODIES_MAX) return why_set(why, EX_DATAERR, "more than %d bodies", BODIES_MAX);
-    p->body = lay_lines(p->bodies, sizeof *p->body);
-    bool room = p->body && lay_plan(p, plan);
-    bool levers = anywhere(p, found.shaped), rebounds = anywhere(p, found.rebounds);
-    bool bonds = anywhere(p, found.bonds), rolls = anywhere(p, found.rolls);
-    bool near = found.turned || (shared && shared->slower);
-    p->kind = *kind_of_bodies(levers, bonds, rolls, near);
-    if (rebounds) p->kind.arrays |= HAS_rebound;
-    quat *half = NULL;
-    room = room && set_pulls(p, s) && lay_bundles(p) && (!levers || find_spins(p, pack, &half));
-    if (!room) return free(half), no_memory(p, why);
-    team_share(team_size(), pack->n, SOME, set_some, p);
-    lay_seats(p, plan, s);
-    struct filling f = { p, s, &cell, alpha, rho_factor, half };
-    team_share(team_size(), p->bundles, SOME / BUNDLE, fill_bundles, &f);
-    room = !shared || !shared->slower || !brake_make(p, &f, shared->slower);
-    free(half);
-    if (!room) return no_memory(p, why);
-    if (freedoms_in(pack)) {
-        if (!(p->coupling = calloc(1, sizeof *p->coupling))) return no_memory(p, why);
-        if (couplings_init(p->coupling, pack, s, why)) return problem_free(p), why->status;
-    }
-
-    double g = v3_norm(pack->g);
-    p->fall = g * pack->dt;
-    p->scale_v = (g > 0 ? g : 9.81) * pack->dt;
-    p->scale_r = p->scale_v * (shared ? shared->mean_mass : packing_mean_mass(pack));
-    p->speed = top_speed(pack);
-    if (shared) p->speed = shared->most(shared, p->speed);
-    problem_set_free_motion(p);
-    struct measuring m = { p, malloc((size_t)(p->slots + 1) * sizeof *m.q2) };
-    if (!m.q2) return no_memory(p, why);
-    team_share(team_size(), p->bundles, SOME / BUNDLE, measure_some, &m);
-    p->norm_q = sqrt(sum_of_slots(p, m.q2));
-    for (int64_t i = 0; i < p->slots; i++) m.q2[i] = sqrt(m.q2[i]);
-    problem_set_unit(p, sum_of_slots(p, m.q2));
-    free(m.q2);
-    for (int64_t i = 0; s->found && i < p->slots; i++)
-        if (p->contact[i] >= 0) take_found(p, i, s);
-    if (shared && s->found) shared->settle(shared, p);
-    return 0;
-}
-
-/* With a plan of the problem's own */
-static int prepare_with(struct problem *p, const struct packing *pack, const struct contacts *s,
-                        double alpha, double rho_factor, struct plan *plan, struct shared *shared,
-                        struct why *why)
-{
-    *p = (struct problem){ 0 };
-    if (!plan) return no_memory(p, why);
-    int e = prepare(p, pack, s, alpha, rho_factor, plan, shared, why);
-    if (e)
-        plan_free(plan);
-    else
-        p->plan = plan;
-    return e;
-}
-
-int problem_prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
-                    double alpha, double rho_factor, enum order order, struct why *why)
-{
-    struct plan *plan = plan_of_contacts(order, s, pack, NULL);
-    return prepare_with(p, pack, s, alpha, rho_factor, plan, NULL, why);
-}
-
-int problem_prepare_again(struct problem *p, const struct packing *pack, const struct contacts *s,
-                          double alpha, double rho_factor, enum order order, struct plan **kept,
-                          struct why *why)
-{
-    if (!*kept || !plan_holds(*kept, order, s, pack)) {
-        plan_free(*kept);
-        *kept = plan_of_contacts(order, s, pack, NULL);
-    }
-    *p = (struct problem){ 0 };
-    if (!*kept) return no_memory(p, why);
-    return prepare(p, pack, s, alpha, rho_factor, *kept, NULL, why);
-}
-
-int problem_prepare_shared(struct problem *p, const struct packing *pack, const struct contacts *s,
-                           double alpha, double rho_factor, const struct schedule *order,
-                           struct shared *shared, struct why *why)
-{
-    struct plan *plan = plan_of_contacts(ORDER_COLOUR, s, pack, order);
-    return prepare_with(p, pack, s, alpha, rho_factor, plan, shared, why);
 }
 
 int64_t problem_bundles(const struct problem *p)

@@ -137,6 +137,14 @@ ALWAYS_INLINE struct beside *bundle_beside(const struct problem *p, const struct
     return p->kind.near ? &((struct near_bundle *)c)->beside : NULL;
 }
 
+/* An array of a problem that has one element per bundle: x[bundles], of `size` bytes each; NULL: not of its kind */
+struct array_of {
+    void *x;
+    size_t size;
+};
+struct array_of problem_array(const struct problem *p, enum array which);
+void problem_set_array(struct problem *p, enum array which, void *x); /* x is freed with p */
+
 /* Bytes from one bundle to the next */
 static inline size_t bundle_size(const struct problem *p)
 {

@@ -36,9 +36,4 @@ struct sweep {
     void (*push)(struct problem *p, int me, int threads);
 };
 
-/* The loops for the widest vectors that the machine has, of at most NSD_LANES lanes */
-const struct sweep *sweep_widest(void);
-/* From now on at most this many lanes, or the next smaller number that there is; for the tests */
-void sweep_narrow(int lanes);
-
 #endif

@@ -20,7 +20,7 @@
 #include "solve/anderson.h"
 
 #include "base/team.h"
-#include "problem/mixing.h"
+#include "problem/backend.h"
 #include "problem/shared.h"
 #include "solve/nlgs.h"
 #include "solve/prices.h"
@@ -117,8 +117,8 @@ static void measure_chunk(const struct anderson *a, int64_t chunk)
     struct mixing_sums *t = &a->sums[chunk];
     *t = (struct mixing_sums){ 0 };
     for (int64_t i = chunk * CHUNK_BUNDLES; i < end; i += CACHED_BUNDLES)
-        mixing_widest()->measure(p, &a->m, i, i + CACHED_BUNDLES < end ? i + CACHED_BUNDLES : end,
-                                 t);
+        backend_widest()->mixing->measure(p, &a->m, i,
+                                          i + CACHED_BUNDLES < end ? i + CACHED_BUNDLES : end, t);
 }
 
 static void measure_chunks(void *arg, int64_t first, int64_t end)
@@ -157,7 +157,7 @@ static void measure_shared(const struct anderson *a, struct mixing_sums *t)
         p->shared->fail(p->shared);
         return;
     }
-    mixing_widest()->measure(p, &a->m, 0, p->bundles, &here);
+    backend_widest()->mixing->measure(p, &a->m, 0, p->bundles, &here);
     for (int64_t i = 0; i < p->slots; i++) take_terms(a, i, term + size * i);
     p->shared->sum(p->shared, p, CHUNK_BUNDLES, mixing_width(p), n, term, out[0]);
     for (int k = 0; k < BUNDLE; k++) {
@@ -236,7 +236,7 @@ struct jump {
 static void jump(void *arg, int me, int threads)
 {
     const struct jump *j = arg;
-    mixing_widest()->react(j->a->s->p, me, threads, &j->a->m, j->leap, j->gamma);
+    backend_widest()->mixing->react(j->a->s->p, me, threads, &j->a->m, j->leap, j->gamma);
 }
 
 static void react(struct anderson *a, double leap, const double gamma[MIXING_DEPTH])

@@ -21,7 +21,7 @@
  * the last ten is shortened; and the bounds are held for up to a hundred steps, not for one.
  */
 #include "problem/apply.h"
-#include "problem/judge.h"
+#include "problem/backend.h"
 #include "solve/prices.h"
 #include "solve/solver.h"
 
@@ -138,7 +138,7 @@ static bool advance(struct cg *a, const double *p, double step, double *fall)
         for (int k = 0; k < 3; k++) a->x[3 * i + k] = a->scale[i] * r[k];
     }
     solve_react(a->s, a->x);
-    judge_widest()->velocities(prob, 0, prob->bundles);
+    backend_widest()->judge->velocities(prob, 0, prob->bundles);
     for (int64_t i = 0; i < prob->slots; i++) {
         double r[3], u[3];
         if (prob->contact[i] < 0) continue;

@@ -5,8 +5,8 @@
 #include "solve/nlgs.h"
 
 #include "base/team.h"
+#include "problem/backend.h"
 #include "problem/shared.h"
-#include "problem/sweep.h"
 #include "solve/prices.h"
 
 #include <pthread.h>
@@ -59,7 +59,7 @@ static double sweep(struct solve *s, double omega, int32_t unjudged, bool keep)
 {
     const struct solve_opt *o = s->o;
     struct round r = { .p = s->p,
-                       .text = sweep_widest()->sweep[o->method->id][s->p->kind.id],
+                       .text = backend_widest()->sweep->sweep[o->method->id][s->p->kind.id],
                        .quiet = { o->local, omega, false },
                        .last = { o->local, omega, keep },
                        .sweeps = unjudged + 1,

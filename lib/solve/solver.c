@@ -3,7 +3,7 @@
 
 #include "base/team.h"
 #include "problem/apply.h"
-#include "problem/judge.h"
+#include "problem/backend.h"
 #include "problem/shared.h"
 #include "solve/prices.h"
 
@@ -213,7 +213,7 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
     best_free(&s.best);
     if (failed) return -1;
     renew(&s);
-    if (!s.believes) judge_widest()->velocities(p, 0, p->bundles);
+    if (!s.believes) backend_widest()->judge->velocities(p, 0, p->bundles);
     if (p->shared) {
         struct shared *all = p->shared;
         rep->newton = all->count(all, rep->newton);

@@ -1,6 +1,6 @@
 /* The solvers of a whole problem end where Gauss-Seidel ends, and in the same bytes on any machine. */
 #include "bodies/detect.h"
-#include "problem/sweep.h"
+#include "problem/backend.h"
 #include "scene/scene_build.h"
 #include "solve/arc.h"
 #include "solve/ipm.h"
@@ -108,11 +108,11 @@ static void test_bytes(const struct packing *p, const struct contacts *s, const 
     struct report rep = { 0 };
     for (int k = 0; k < TESTED; k++) {
         struct step_opt o = options(tested[k], 1e-9, 300);
-        sweep_narrow(2);
+        backend_narrow(2);
         struct contacts first = solve(p, s, &o, &rep);
         bool good = true;
         for (int way = 0; way < 9; way++) {
-            sweep_narrow(lanes[way % 3]);
+            backend_narrow(lanes[way % 3]);
             o.solve.threads = 1 << way / 3;
             struct contacts c = solve(p, s, &o, &rep);
             good &= same(&first, &c);

@@ -4,7 +4,7 @@
  * are not those of balls.
  */
 #include "bodies/detect.h"
-#include "problem/sweep.h"
+#include "problem/backend.h"
 #include "scene/scene_build.h"
 #include "solve/scaled.h"
 #include "solve/step.h"
@@ -80,10 +80,10 @@ static bool same_everywhere(const struct packing *p, const struct contacts *s, s
 {
     static const int lanes[] = { 2, 4, 8 };
     bool good = true;
-    sweep_narrow(2);
+    backend_narrow(2);
     struct print first = solve(p, s, &o);
     for (int k = 0; k < 9; k++) {
-        sweep_narrow(lanes[k % 3]);
+        backend_narrow(lanes[k % 3]);
         o.solve.threads = 1 << k / 3;
         struct print r = solve(p, s, &o);
         good &= same(&first, &r);

@@ -1,0 +1,37 @@
+/* problem/backend.c: the table of backends, and the choice [problem/backend.h]. */
+#include "problem/backend.h"
+
+#include <stdlib.h>
+
+extern const struct sweep sweep_2, sweep_4, sweep_8;
+extern const struct judge judge_2, judge_4, judge_8;
+extern const struct mixing_loops mixing_2, mixing_4, mixing_8;
+
+static const struct backend backends[] = { { 2, &sweep_2, &judge_2, &mixing_2 },
+                                           { 4, &sweep_4, &judge_4, &mixing_4 },
+                                           { 8, &sweep_8, &judge_8, &mixing_8 } };
+
+static const struct backend *chosen;
+
+/* Whether the machine has vectors of that many doubles */
+static bool has(int lanes)
+{
+#ifdef __x86_64__
+    if (lanes == 4) return __builtin_cpu_supports("avx2");
+    if (lanes == 8) return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq");
+#endif
+    return lanes == 2;
+}
+
+void backend_narrow(int lanes)
+{
+    for (size_t k = 0; k < sizeof backends / sizeof *backends; k++)
+        if (!k || (backends[k].lanes <= lanes && has(backends[k].lanes))) chosen = &backends[k];
+}
+
+const struct backend *backend_widest(void)
+{
+    const char *most = chosen ? NULL : getenv("NSD_LANES");
+    if (!chosen) backend_narrow(most ? atoi(most) : BUNDLE);
+    return chosen;
+}
