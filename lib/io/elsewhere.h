@@ -9,7 +9,7 @@
 #include "io/layout.h"
 
 enum {
-    ELSEWHERE_PLACES = 16 /* datasets of bodies, at most: io/layout.h has fewer columns */
+    ELSEWHERE_PLACES = BODY_COLUMNS /* datasets of bodies, at most */
 };
 
 /* A dataset of all bodies that has been made, and no numbers in it */

@@ -9,13 +9,11 @@
 #ifndef NSD_H5_H
 #define NSD_H5_H
 
+#include "base/column.h"
 #include "base/why.h"
 
 #include <hdf5.h>
 #include <stdbool.h>
-
-/* Types of numbers that nsd reads and writes */
-enum column_type { COLUMN_F64, COLUMN_I64, COLUMN_I32, COLUMN_I8 };
 
 static inline hid_t column_native(enum column_type t)
 {
@@ -23,11 +21,6 @@ static inline hid_t column_native(enum column_type t)
            : t == COLUMN_I64 ? H5T_NATIVE_INT64
            : t == COLUMN_I32 ? H5T_NATIVE_INT32
                              : H5T_NATIVE_INT8;
-}
-
-static inline size_t column_size(enum column_type t)
-{
-    return t == COLUMN_I8 ? 1 : t == COLUMN_I32 ? 4 : 8;
 }
 
 /* The type of memory for plain numbers: class 'i' signed, 'u' unsigned, 'f' real, of size bytes. */

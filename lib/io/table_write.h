@@ -45,10 +45,10 @@ int table_write_rows(struct table_write *tables, const char *path, enum column_t
                      const hsize_t *shape, hsize_t chunk_rows, const void *data, const char *units,
                      struct why *why);
 
-/* A column of bodies, as a dataset or, where they move, a frame of one; its numbers follow where the
-   bodies are elsewhere. */
-int table_write_bodies(struct table_write *tables, const char *path, const struct column *column,
-                       bool move, const struct packing *p, struct why *why);
+/* The columns of bodies that all frames share, or the frame's values of those that move; their numbers follow
+   where the bodies are elsewhere. */
+int table_write_bodies(struct table_write *tables, bool moving, const struct packing *p,
+                       struct why *why);
 
 /* Does the dataset grow already? Answered without libhdf5, which would have to look the path up. */
 bool table_write_grows(const struct table_write *tables, const char *path);

@@ -133,12 +133,8 @@ static void check_bodies(const struct rows *r, const struct part *y)
     int64_t bad = INT64_MAX, least;
     struct why why = { 0 };
     for (int64_t i = 0; y && i < y->p.n && bad == INT64_MAX; i++) {
-        struct packing one = y->p;
+        struct packing one = packing_with_bodies(&y->p, &y->p, i, 1);
         if (y->owner[i] != y->talk->me) continue;
-        one.n = 1, one.radius += i, one.mass += i, one.inertia += i, one.kind += i, one.id += i;
-        one.x += i, one.q += i, one.v += i, one.w += i;
-        if (one.shape) one.shape += i;
-        if (one.image) one.image += i;
         if (packing_check_bodies(&one, y->row[i], &why)) bad = y->row[i];
     }
     MPI_Allreduce(&bad, &least, 1, MPI_INT64_T, MPI_MIN, r->talk->comm);
@@ -185,7 +181,7 @@ int files_fill(const struct rows *r, const struct part *y, hid_t file, const cha
     for (int k = 0; k < places; k++) {
         const struct column c = { NULL, NULL, (enum column_type)o[k].type, o[k].width,
                                   o[k].offset };
-        char *data = talk_new(t, h.n, (size_t)c.width * column_size(c.type));
+        char *data = talk_new(t, h.n, column_bytes(&c));
         haul_column(&h, &c, data);
         if (!by_all)
             good &= write_by_first(r, file, &o[k], data);

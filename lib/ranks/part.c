@@ -16,19 +16,9 @@
    contact is solved a hundred times. Its half of each contact comes on top. */
 #define A_BODY 0.1f
 
-/* A body on its way */
+/* A body on its way: this, then its row of each column that the packing has */
 struct traveller {
-    double radius, mass, inertia;
-    vec3 x, v, w;
-    quat q;
-    int32_t row, owner, id, kind, shape, load, image[3], unused;
-};
-
-/* Where a body is and how it moves */
-struct state {
-    vec3 x, v, w;
-    quat q;
-    int32_t image[3], unused;
+    int32_t row, owner, load;
 };
 
 static void fail(const struct part *y, const struct why *why)
@@ -36,32 +26,30 @@ static void fail(const struct part *y, const struct why *why)
     talk_fail(y->talk, why->status, why->text);
 }
 
-static struct traveller traveller_of(const struct packing *p, int64_t i, int32_t row, int32_t owner,
-                                     int32_t load)
+/* What a body has of all columns, or of those that move, into a parcel and out of one */
+static void put_body(struct talk *t, struct parcel *to, const struct packing *p, int64_t i,
+                     bool moving)
 {
-    struct traveller b;
-    memset(&b, 0, sizeof b);
-    b.radius = p->radius[i], b.mass = p->mass[i], b.inertia = p->inertia[i];
-    b.x = p->x[i], b.v = p->v[i], b.w = p->w[i], b.q = p->q[i];
-    b.row = row, b.owner = owner, b.id = p->id[i], b.kind = p->kind[i];
-    b.shape = p->shape ? p->shape[i] : 0, b.load = load;
-    for (int k = 0; k < 3 && p->image; k++) b.image[k] = p->image[i][k];
-    return b;
+    for (const struct body_column *b = body_columns; b->column.name; b++)
+        if (column_array(&b->column, p) && (!moving || b->traits & BODY_MOVES))
+            parcel_put(t, to, column_row(&b->column, p, i), column_bytes(&b->column));
 }
 
-static struct state state_of(const struct packing *p, int64_t i)
+static void take_body(struct talk *t, struct parcel *from, struct packing *p, int64_t i,
+                      bool moving)
 {
-    struct state s;
-    memset(&s, 0, sizeof s);
-    s.x = p->x[i], s.v = p->v[i], s.w = p->w[i], s.q = p->q[i];
-    for (int k = 0; k < 3 && p->image; k++) s.image[k] = p->image[i][k];
-    return s;
+    for (const struct body_column *b = body_columns; b->column.name; b++)
+        if (column_array(&b->column, p) && (!moving || b->traits & BODY_MOVES))
+            parcel_take(t, from, column_row(&b->column, p, i), column_bytes(&b->column));
 }
 
-static void set_state(struct packing *p, int64_t i, const struct state *s)
+/* Bytes of a traveller with all that follows it */
+static size_t traveller_bytes(const struct packing *p)
 {
-    p->x[i] = s->x, p->v[i] = s->v, p->w[i] = s->w, p->q[i] = s->q;
-    for (int k = 0; k < 3 && p->image; k++) p->image[i][k] = s->image[k];
+    size_t bytes = sizeof(struct traveller);
+    for (const struct body_column *b = body_columns; b->column.name; b++)
+        if (column_array(&b->column, p)) bytes += column_bytes(&b->column);
+    return bytes;
 }
 
 void borders_free(const struct talk *t, struct border *b)
@@ -76,7 +64,6 @@ static void resize(struct part *y, int64_t n)
     struct why why = { 0 };
     struct packing *p = &y->p;
     if (packing_resize(p, n, &why)) fail(y, &why);
-    if (p->image && packing_alloc_images(p, &why)) fail(y, &why);
     free(y->row), free(y->owner), free(y->dealt), free(y->load);
     y->row = talk_new(y->talk, n, sizeof *y->row),
     y->owner = talk_new(y->talk, n, sizeof *y->owner);
@@ -84,16 +71,11 @@ static void resize(struct part *y, int64_t n)
     y->load = talk_new(y->talk, n, sizeof *y->load);
 }
 
-static void set_body(struct part *y, int64_t i, const struct traveller *b)
+/* What is known of a body that has been copied into row i of y->p */
+static void set_body(struct part *y, int64_t i, struct traveller b)
 {
-    struct packing *p = &y->p;
-    p->radius[i] = b->radius, p->mass[i] = b->mass, p->inertia[i] = b->inertia;
-    p->x[i] = b->x, p->v[i] = b->v, p->w[i] = b->w, p->q[i] = b->q;
-    p->id[i] = b->id, p->kind[i] = b->kind;
-    if (p->shape) p->shape[i] = b->shape;
-    for (int k = 0; k < 3 && p->image; k++) p->image[i][k] = b->image[k];
-    y->row[i] = b->row, y->owner[i] = b->owner, y->load[i] = b->load;
-    y->dealt[i] = b->x;
+    y->row[i] = b.row, y->owner[i] = b.owner, y->load[i] = b.load;
+    y->dealt[i] = y->p.x[i];
 }
 
 /* These bodies, of rows from `first` on, are this rank's own. */
@@ -102,8 +84,8 @@ static void take_own(struct part *y, const struct packing *p, int64_t n, int64_t
     y->all = talk_sum(y->talk, n);
     resize(y, n);
     for (int64_t i = 0; i < n; i++) {
-        struct traveller b = traveller_of(p, i, (int32_t)(first + i), y->talk->me, 0);
-        set_body(y, i, &b);
+        packing_copy_body(&y->p, i, p, i);
+        set_body(y, i, (struct traveller){ (int32_t)(first + i), y->talk->me, 0 });
     }
     y->own = n;
     y->margin = -1; // they are to be dealt
@@ -230,10 +212,17 @@ static void mark_ranks(const struct part *y, const vec3 x, double half, int *met
             }
 }
 
+/* A traveller that has come: where it lies in its parcel */
+struct arrival {
+    struct traveller body;
+    struct parcel *parcel;
+    size_t at; /* of its columns */
+};
+
 static int by_row(const void *a, const void *b)
 {
-    const struct traveller *x = a, *y = b;
-    return x->row < y->row ? -1 : x->row > y->row;
+    const struct arrival *x = a, *y = b;
+    return x->body.row < y->body.row ? -1 : x->body.row > y->body.row;
 }
 
 /* The lists of bodies that are here and elsewhere: a copy's rank tells the owner. */
@@ -300,9 +289,10 @@ static void send_bodies(struct part *y, double reach, struct parcel *out)
         memset(mark, 0, (size_t)t->n * sizeof *mark);
         mark_ranks(y, y->p.x[i], y->p.radius[i] + y->whole.large + reach + y->margin, met, mark);
         mark[owner] = true;
-        struct traveller b = traveller_of(&y->p, i, y->row[i], owner, y->load[i]);
+        const struct traveller b = { y->row[i], owner, y->load[i] };
         for (int q = 0; q < t->n; q++)
-            if (mark[q]) parcel_put(t, &out[q], &b, sizeof b);
+            if (mark[q])
+                parcel_put(t, &out[q], &b, sizeof b), put_body(t, &out[q], &y->p, i, false);
     }
     free(met), free(mark);
 }
@@ -323,20 +313,27 @@ bool part_deal(struct part *y, double reach)
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
     send_bodies(y, reach, out);
     talk_exchange(t, out, in);
+    const size_t bytes = traveller_bytes(&y->p);
     int64_t n = 0, k = 0;
-    for (int q = 0; q < t->n; q++) n += (int64_t)(in[q].size / sizeof(struct traveller));
-    struct traveller *b = talk_new(t, n, sizeof *b);
+    for (int q = 0; q < t->n; q++) n += (int64_t)(in[q].size / bytes);
+    struct arrival *b = talk_new(t, n, sizeof *b);
     for (int q = 0; q < t->n; q++)
-        while (in[q].at < in[q].size) parcel_take(t, &in[q], &b[k++], sizeof *b);
-    parcels_free(t, out), parcels_free(t, in);
+        for (size_t at = 0; at < in[q].size; at += bytes, k++) {
+            in[q].at = at;
+            parcel_take(t, &in[q], &b[k].body, sizeof b[k].body);
+            b[k].parcel = &in[q], b[k].at = in[q].at;
+        }
     qsort(b, (size_t)n, sizeof *b, by_row);
     resize(y, n);
     y->own = 0;
     for (int64_t i = 0; i < n; i++) {
-        set_body(y, i, &b[i]);
-        y->own += b[i].owner == t->me;
+        b[i].parcel->at = b[i].at;
+        take_body(t, b[i].parcel, &y->p, i, false);
+        set_body(y, i, b[i].body);
+        y->own += b[i].body.owner == t->me;
     }
     free(b);
+    parcels_free(t, out), parcels_free(t, in);
     find_borders(y);
     give_back();
     return true;
@@ -366,15 +363,10 @@ void part_follow(struct part *y, const struct packing *whole)
         while (in[q].at < in[q].size) {
             int32_t row;
             parcel_take(t, &in[q], &row, sizeof row);
-            struct state s = state_of(whole, row);
-            parcel_put(t, &out[q], &s, sizeof s);
+            put_body(t, &out[q], whole, row, true);
         }
     talk_scatter(t, out, &mine);
-    for (int64_t i = 0; i < y->p.n; i++) {
-        struct state s;
-        parcel_take(t, &mine, &s, sizeof s);
-        set_state(&y->p, i, &s);
-    }
+    for (int64_t i = 0; i < y->p.n; i++) take_body(t, &mine, &y->p, i, true);
     parcel_free(&mine), parcels_free(t, in), parcels_free(t, out);
 }
 
@@ -384,16 +376,13 @@ void part_collect(const struct part *y, struct packing *whole)
     struct parcel mine = { 0 }, *in = parcels_new(t);
     for (int64_t i = 0; i < y->p.n; i++) {
         if (y->owner[i] != t->me) continue;
-        struct state s = state_of(&y->p, i);
-        parcel_put(t, &mine, &y->row[i], sizeof *y->row), parcel_put(t, &mine, &s, sizeof s);
+        parcel_put(t, &mine, &y->row[i], sizeof *y->row), put_body(t, &mine, &y->p, i, true);
     }
     talk_gather(t, &mine, in);
     for (int q = 0; q < t->n && !t->me; q++)
         while (in[q].at < in[q].size) {
             int32_t row;
-            struct state s;
-            parcel_take(t, &in[q], &row, sizeof row), parcel_take(t, &in[q], &s, sizeof s);
-            set_state(whole, row, &s);
+            parcel_take(t, &in[q], &row, sizeof row), take_body(t, &in[q], whole, row, true);
         }
     parcels_free(t, in);
 }
@@ -403,16 +392,11 @@ void part_refresh(struct part *y)
     struct talk *t = y->talk;
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
     for (int q = 0; q < t->n; q++)
-        for (int64_t k = 0; k < y->lent[q].n; k++) {
-            struct state s = state_of(&y->p, y->lent[q].body[k]);
-            parcel_put(t, &out[q], &s, sizeof s);
-        }
+        for (int64_t k = 0; k < y->lent[q].n; k++)
+            put_body(t, &out[q], &y->p, y->lent[q].body[k], true);
     talk_exchange(t, out, in);
     for (int q = 0; q < t->n; q++)
-        for (int64_t k = 0; k < y->here[q].n; k++) {
-            struct state s;
-            parcel_take(t, &in[q], &s, sizeof s);
-            set_state(&y->p, y->here[q].body[k], &s);
-        }
+        for (int64_t k = 0; k < y->here[q].n; k++)
+            take_body(t, &in[q], &y->p, y->here[q].body[k], true);
     parcels_free(t, out), parcels_free(t, in);
 }

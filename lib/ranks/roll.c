@@ -102,7 +102,8 @@ void roll_tell(const struct roll *l, const struct part *y, const struct contacts
 
 /* What laws make of a contact, and what it starts from */
 struct law_record {
-    double mu, en, et, r[3], u[3], moment[3];
+    EACH_PAIR_COLUMN(PAIR_NUMBER) // mu, en, et
+    double r[3], u[3], moment[3];
     struct tie tie;
 };
 
@@ -115,7 +116,9 @@ void roll_tell_laws(const struct roll *l, const struct part *y, struct contacts 
                       *to = talk_new(t, s->n, sizeof *to);
     MPI_Bcast(has, 3, MPI_INT32_T, 0, t->comm);
     for (int64_t i = 0; i < l->n && !t->me; i++) {
-        of[i].mu = all->c[i].mu, of[i].en = all->c[i].en, of[i].et = all->c[i].et;
+#define PUT(member, ...) of[i].member = all->c[i].member;
+        EACH_PAIR_COLUMN(PUT)
+#undef PUT
         for (int k = 0; k < 3 && all->found; k++)
             of[i].r[k] = all->found[i].r[k], of[i].u[k] = all->found[i].u[k];
         for (int k = 0; k < 3 && all->moment; k++) of[i].moment[k] = all->moment[i][k];
@@ -126,7 +129,9 @@ void roll_tell_laws(const struct roll *l, const struct part *y, struct contacts 
         (has[2] && contacts_alloc_tie(s)))
         talk_fail(t, EX_SOFTWARE, "no memory for the contacts");
     for (int64_t i = 0; i < s->n; i++) {
-        s->c[i].mu = to[i].mu, s->c[i].en = to[i].en, s->c[i].et = to[i].et;
+#define TAKE(member, ...) s->c[i].member = to[i].member;
+        EACH_PAIR_COLUMN(TAKE)
+#undef TAKE
         for (int k = 0; k < 3 && has[0]; k++)
             s->found[i].r[k] = to[i].r[k], s->found[i].u[k] = to[i].u[k];
         for (int k = 0; k < 3 && has[1]; k++) s->moment[i][k] = to[i].moment[k];

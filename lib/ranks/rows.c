@@ -7,23 +7,9 @@
 /* What is said of a block in front of it */
 struct block {
     int64_t first, n, all;
-    int32_t dim, has_shape, has_image, unused;
+    int32_t dim;
+    uint32_t optional; /* packing_optional() */
 };
-
-/* What a body has: column k of all tables; NULL: there is no such */
-static const struct column *column_of(int k)
-{
-    static const int bodies = sizeof layout_bodies / sizeof *layout_bodies - 1,
-                     motion = sizeof layout_motion / sizeof *layout_motion - 1;
-    if (k < bodies) return &layout_bodies[k];
-    if (k < bodies + motion) return &layout_motion[k - bodies];
-    return k == bodies + motion ? layout_cell : NULL; // its images
-}
-
-static size_t bytes_of(const struct column *c)
-{
-    return (size_t)c->width * column_size(c->type);
-}
 
 static void fail(const struct talk *t, const struct why *why)
 {
@@ -37,9 +23,7 @@ static void make_room(struct rows *r, const struct block *b)
     rows_free(r);
     *r = (struct rows){ .talk = t, .all = b->all, .first = rows_begin(b->all, t->n, t->me) };
     int64_t n = rows_begin(b->all, t->n, t->me + 1) - r->first;
-    if (packing_init(&r->p, b->dim, n, &why) ||
-        (b->has_shape && packing_alloc_shapes(&r->p, &why)) ||
-        (b->has_image && packing_alloc_images(&r->p, &why)))
+    if (packing_init(&r->p, b->dim, n, &why) || packing_alloc_optional(&r->p, b->optional, &why))
         fail(t, &why);
 }
 
@@ -59,23 +43,20 @@ void rows_take(struct rows *r, struct talk *t, const struct packing *block, int6
     struct parcel *out = parcels_new(t), mine = { 0 };
     int64_t from, end;
     const struct column *c;
-    if (!t->me)
-        b = (struct block){ first, block->n, all, block->dim, !!block->shape, !!block->image, 0 };
+    if (!t->me) b = (struct block){ first, block->n, all, block->dim, packing_optional(block) };
     MPI_Bcast(&b, sizeof b, MPI_BYTE, 0, t->comm);
     r->talk = t;
     if (!b.first) make_room(r, &b);
     for (int q = 0; q < t->n && !t->me; q++)
-        for (int k = 0; common(&b, t, q, &from, &end) && (c = column_of(k)); k++)
-            if (column_array(c, block))
-                parcel_put(t, &out[q],
-                           (char *)column_array(c, block) + (size_t)(from - first) * bytes_of(c),
-                           (size_t)(end - from) * bytes_of(c));
+        for (int k = 0; common(&b, t, q, &from, &end) && k < BODY_COLUMNS; k++)
+            if (column_array(c = &body_columns[k].column, block))
+                parcel_put(t, &out[q], column_row(c, block, from - first),
+                           (size_t)(end - from) * column_bytes(c));
     talk_scatter(t, out, &mine);
-    for (int k = 0; common(&b, t, t->me, &from, &end) && (c = column_of(k)); k++)
-        if (column_array(c, &r->p))
-            parcel_take(t, &mine,
-                        (char *)column_array(c, &r->p) + (size_t)(from - r->first) * bytes_of(c),
-                        (size_t)(end - from) * bytes_of(c));
+    for (int k = 0; common(&b, t, t->me, &from, &end) && k < BODY_COLUMNS; k++)
+        if (column_array(c = &body_columns[k].column, &r->p))
+            parcel_take(t, &mine, column_row(c, &r->p, from - r->first),
+                        (size_t)(end - from) * column_bytes(c));
     for (int64_t i = 0; i < b.n && !t->me; i++)
         r->mass += block->mass[i], r->heavy += block->mass[i] > 0;
     parcel_free(&mine), parcels_free(t, out);
@@ -108,7 +89,7 @@ static int holder_of(const struct rows *r, int32_t row)
 static void send_off(const struct haul *h, const struct column *c, struct parcel *out)
 {
     const struct part *y = h->part;
-    size_t bytes = c ? bytes_of(c) : 0;
+    size_t bytes = c ? column_bytes(c) : 0;
     const char *from = c ? column_array(c, &y->p) : NULL;
     for (int64_t i = 0; i < y->p.n; i++) {
         if (y->owner[i] != y->talk->me) continue;
@@ -149,7 +130,7 @@ void haul_begin(struct haul *h, const struct rows *r, const struct part *y)
 void haul_column(struct haul *h, const struct column *c, void *to)
 {
     struct talk *t = h->rows->talk;
-    size_t bytes = bytes_of(c);
+    size_t bytes = column_bytes(c);
     if (!h->part) {
         memcpy(to, column_array(c, &h->rows->p), (size_t)h->n * bytes);
         return;

@@ -97,7 +97,8 @@ struct numbers {
     int64_t step0;
     vec3 g;
     uint64_t seed;
-    int32_t dim, overlap, kinds, has_law, has_shape, has_image, first_id;
+    int32_t dim, overlap, kinds, has_law, first_id;
+    uint32_t optional; /* packing_optional() */
 };
 
 static void put(struct talk *t, struct parcel *o, const struct packing *p)
@@ -108,7 +109,7 @@ static void put(struct talk *t, struct parcel *o, const struct packing *p)
     n.step = p->step, n.t = p->t, n.dt = p->dt, n.theta = p->theta, n.g = p->g, n.seed = p->seed;
     n.t0 = p->t0, n.step0 = p->step0;
     n.dim = p->dim, n.overlap = (int32_t)p->overlap, n.kinds = p->kinds, n.first_id = p->first_id;
-    n.has_law = p->law != NULL, n.has_shape = p->shape != NULL, n.has_image = p->image != NULL;
+    n.has_law = p->law != NULL, n.optional = packing_optional(p);
     parcel_put(t, o, &n, sizeof n);
     parcel_put_array(t, o, p->wall, p->walls, sizeof *p->wall);
     put_drives(t, o, &p->drives), put_drives(t, o, &p->pushes);
@@ -117,9 +118,9 @@ static void put(struct talk *t, struct parcel *o, const struct packing *p)
     put_cell(t, o, &p->cell);
     put_shapes(t, o, &p->shapes);
     for (int32_t k = 0; k < p->kinds; k++) put_text(t, o, p->kind_name[k]);
-    parcel_put_array(t, o, p->mu, k2, sizeof *p->mu);
-    parcel_put_array(t, o, p->en, k2, sizeof *p->en);
-    parcel_put_array(t, o, p->et, k2, sizeof *p->et);
+#define PUT(member, ...) parcel_put_array(t, o, p->member, k2, sizeof *p->member);
+    EACH_PAIR_COLUMN(PUT)
+#undef PUT
     if (p->law) parcel_put_array(t, o, p->law, k2, sizeof *p->law);
 }
 
@@ -141,13 +142,11 @@ static void take(struct talk *t, struct parcel *o, struct packing *p)
     take_cell(t, o, &p->cell);
     take_shapes(t, o, &p->shapes, p->dim);
     for (int32_t k = 0; k < p->kinds; k++) free(p->kind_name[k]), p->kind_name[k] = take_text(t, o);
-    free(p->mu), free(p->en), free(p->et);
-    parcel_take_array(t, o, &p->mu, sizeof *p->mu);
-    parcel_take_array(t, o, &p->en, sizeof *p->en);
-    parcel_take_array(t, o, &p->et, sizeof *p->et);
+#define TAKE(member, ...) free(p->member), parcel_take_array(t, o, &p->member, sizeof *p->member);
+    EACH_PAIR_COLUMN(TAKE)
+#undef TAKE
     if (n.has_law) parcel_take_array(t, o, &p->law, sizeof *p->law);
-    if (n.has_shape && packing_alloc_shapes(p, &why)) fail(t, &why);
-    if (n.has_image && packing_alloc_images(p, &why)) fail(t, &why);
+    if (packing_alloc_optional(p, n.optional, &why)) fail(t, &why);
 }
 
 void settings_spread(struct talk *t, struct packing *p)

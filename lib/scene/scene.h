@@ -138,7 +138,7 @@ struct scene_kind {
 };
 
 struct scene_law {
-    double mu, en, et;
+    EACH_PAIR_COLUMN(PAIR_NUMBER) /* mu, en, et */
     struct law beyond;
 };
 

@@ -230,8 +230,11 @@ static int set_parameters(struct packing *p, const struct scene *s, struct why *
         free(p->kind_name[k]);
         if (!(p->kind_name[k] = strdup(s->kind[k].name))) goto fail;
     }
-    for (int32_t k = 0; k < s->kinds * s->kinds; k++)
-        p->mu[k] = s->law[k].mu, p->en[k] = s->law[k].en, p->et[k] = s->law[k].et;
+    for (int32_t k = 0; k < s->kinds * s->kinds; k++) {
+#define SET(member, ...) p->member[k] = s->law[k].member;
+        EACH_PAIR_COLUMN(SET)
+#undef SET
+    }
     if (goes_beyond(s) && packing_alloc_laws(p, why)) return why->status;
     for (int32_t k = 0; p->law && k < s->kinds * s->kinds; k++) p->law[k] = s->law[k].beyond;
     if ((p->scene = strdup(s->text))) return 0;
