@@ -31,7 +31,7 @@ static void add_flow(struct balance *b, const struct packing *p, const struct im
 static void add_bodies(struct balance *of_all, const struct packing *p, const struct impulses *sum,
                        const bool *of, struct mean *mean)
 {
-    double before = (1 - p->theta) * p->dt, after = p->theta * p->dt;
+    double before = step_ahead(p), after = step_after(p);
     struct balance none = { 0 }; // of those that do not count
     for (int64_t i = 0; i < p->n; i++) {
         struct balance *b = !of || of[i] ? of_all : &none;

@@ -183,13 +183,13 @@ static void keep_yielding(const struct cell *c, vec3 rate[3])
     }
 }
 
-void cell_next_rate(const struct cell *c, double t, double dt, double theta, vec3 out[3])
+void cell_next_rate(const struct cell *c, double end_time, double ahead, double after, vec3 out[3])
 {
     double L[3][3];
     vec3 half[3], end[3];
-    cell_gradient_at(c, t + dt, L);
-    cell_predict(c, (1 - theta) * dt, half);
-    solve(L, theta * dt, half, end);
+    cell_gradient_at(c, end_time, L);
+    cell_predict(c, ahead, half);
+    solve(L, after, half, end);
     for (int k = 0; k < 3; k++) out[k] = times(L, end[k]);
     keep_yielding(c, out);
 }
@@ -215,27 +215,27 @@ void cell_flow_init(struct cell_flow *f, const struct cell *c, const vec3 half[3
     if (f->changes) cell_inverse(half, f->inverse);
 }
 
-void cell_move(struct cell *c, double dt, double theta, const vec3 next[3])
+void cell_move(struct cell *c, double ahead, double after, const vec3 next[3])
 {
     for (int k = 0; k < 3; k++) {
-        c->edge[k] = v3_axpy(c->edge[k], (1 - theta) * dt, c->rate[k]);
-        c->edge[k] = v3_axpy(c->edge[k], theta * dt, next[k]);
+        c->edge[k] = v3_axpy(c->edge[k], ahead, c->rate[k]);
+        c->edge[k] = v3_axpy(c->edge[k], after, next[k]);
         c->rate[k] = next[k];
     }
 }
 
-void cell_unmove(struct cell *c, double t, double dt, double theta)
+void cell_unmove(struct cell *c, double t, double ahead, double after)
 {
     double L[3][3];
     vec3 half[3], edge[3], rate[3];
     cell_gradient_at(c, t, L);
-    cell_predict(c, -theta * dt, half);
-    solve(L, -(1 - theta) * dt, half, edge);
+    cell_predict(c, -after, half);
+    solve(L, -ahead, half, edge);
     for (int k = 0; k < 3; k++) rate[k] = times(L, edge[k]);
     keep_yielding(c, rate);
     for (int k = 0; k < 3; k++) {
         c->rate[k] = rate[k];
-        c->edge[k] = v3_axpy(half[k], -(1 - theta) * dt, rate[k]);
+        c->edge[k] = v3_axpy(half[k], -ahead, rate[k]);
     }
 }
 

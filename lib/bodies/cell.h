@@ -93,13 +93,14 @@ void cell_gradient_at(const struct cell *c, double t, double L[3][3]);
 void cell_set_rate(struct cell *c, double t);
 /* out[3] (m): the edges half a step on, where the contacts act: after `ahead` s at their rates */
 void cell_predict(const struct cell *c, double ahead, vec3 out[3]);
-/* out[3] (m/s): the rates at the end of the step from time t by the gradient; components that yield
-   keep theirs, to which forces and contacts add */
-void cell_next_rate(const struct cell *c, double t, double dt, double theta, vec3 out[3]);
+/* out[3] (m/s): the rates at the end of a step, at end_time (s), by the gradient; components that yield keep
+   theirs, to which forces and contacts add. ahead, after (s): the parts of the step before and after the
+   contacts act */
+void cell_next_rate(const struct cell *c, double end_time, double ahead, double after, vec3 out[3]);
 /* The edges through a step, at whose end their rates are next[3]; and back to time t, to rounding,
    where what yields had the rates that it has. */
-void cell_move(struct cell *c, double dt, double theta, const vec3 next[3]);
-void cell_unmove(struct cell *c, double t, double dt, double theta);
+void cell_move(struct cell *c, double ahead, double after, const vec3 next[3]);
+void cell_unmove(struct cell *c, double t, double ahead, double after);
 
 /* The acceleration of the flow in the step from time t */
 struct cell_flow {

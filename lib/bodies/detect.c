@@ -314,7 +314,7 @@ static bool is_seen(const struct packing *p, const struct sight *o, const struct
 {
     double small = c->a < 0 ? p->radius[c->b] : fmin(p->radius[c->a], p->radius[c->b]);
     if (c->gap <= OVERLAP_NEAR * small) return true;
-    double approach = -opening_of(p, c, (1 - p->theta) * p->dt);
+    double approach = -opening_of(p, c, step_ahead(p));
     if (c->en > 0 && approach > o->calm) return false;
     return c->gap <= o->near || (o->meets && c->gap <= p->dt * (approach + o->calm));
 }
@@ -366,7 +366,7 @@ static void predict_some(void *arg, int64_t first, int64_t end)
 
 static int predict(struct prediction *m, const struct packing *p, struct why *why)
 {
-    double ahead = (1 - p->theta) * p->dt;
+    double ahead = step_ahead(p);
     *m = (struct prediction){ .x = malloc(((size_t)p->n + 1) * sizeof *m->x), .t = p->t + ahead };
     if (p->shape) m->q = malloc(((size_t)p->n + 1) * sizeof *m->q);
     if (!m->x || (p->shape && !m->q)) {

@@ -78,9 +78,9 @@ int impulses_init(struct impulses *sum, const struct packing *p, const struct co
                   bool ended, struct why *why)
 {
     size_t n = (size_t)p->n + 1;
-    *sum = (struct impulses){ .ahead = ended ? -p->theta * p->dt : (1 - p->theta) * p->dt };
+    *sum = (struct impulses){ .ahead = ended ? -step_after(p) : step_ahead(p) };
     cell_predict(&p->cell, sum->ahead, sum->edge);
-    if (!ended) cell_next_rate(&p->cell, p->t, p->dt, p->theta, sum->next);
+    if (!ended) cell_next_rate(&p->cell, p->t + p->dt, step_ahead(p), step_after(p), sum->next);
     if (freedoms_init(&sum->freedoms, p, sum->edge, why)) return why->status;
     sum->force = calloc(n, sizeof *sum->force), sum->moment = calloc(n, sizeof *sum->moment);
     sum->yield = calloc((size_t)sum->freedoms.n + 1, sizeof *sum->yield);

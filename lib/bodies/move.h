@@ -16,7 +16,7 @@
    wants it [bodies/project.h]; step and t advance. Returns 0 or EX_SOFTWARE. */
 int move_step(struct packing *p, const struct contacts *s, struct why *why);
 
-/* The same where the sums of the reactions are there already. */
+/* The same where the sums of the reactions are there already; bodies are not moved apart. */
 int move_by(struct packing *p, const struct contacts *s, const struct impulses *sum,
             struct why *why);
 

@@ -479,8 +479,8 @@ struct cell_flow packing_flow(const struct packing *p)
 {
     struct cell_flow f;
     vec3 half[3], gain[3];
-    cell_predict(&p->cell, (1 - p->theta) * p->dt, half);
-    cell_next_rate(&p->cell, p->t, p->dt, p->theta, gain);
+    cell_predict(&p->cell, step_ahead(p), half);
+    cell_next_rate(&p->cell, p->t + p->dt, step_ahead(p), step_after(p), gain);
     for (int k = 0; k < 3; k++) gain[k] = v3_sub(gain[k], p->cell.rate[k]);
     cell_flow_init(&f, &p->cell, half, gain);
     return f;

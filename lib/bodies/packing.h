@@ -207,10 +207,23 @@ double wall_force(const struct packing *p, const struct wall *w);
    within that of the bodies */
 double wall_top_speed(const struct packing *p, const struct wall *w);
 
+/*
+ * The theta method: the contacts of a step act where bodies are after step_ahead() at their first velocities,
+ * and the rest, step_after(), goes by the velocities that the reactions make. No other place knows theta.
+ */
+/* s: (1 - theta) dt, and theta dt */
+static inline double step_ahead(const struct packing *p)
+{
+    return (1 - p->theta) * p->dt;
+}
+static inline double step_after(const struct packing *p)
+{
+    return p->theta * p->dt;
+}
 /* m: the position at which contacts are detected, q + (1 - theta) dt qdot [globalmapapp1]. */
 static inline vec3 packing_predict(const struct packing *p, int64_t i)
 {
-    return v3_axpy(p->x[i], (1 - p->theta) * p->dt, p->v[i]);
+    return v3_axpy(p->x[i], step_ahead(p), p->v[i]);
 }
 
 /* The acceleration of the flow that the cell's edges make, in the step to come */

@@ -53,7 +53,7 @@ static struct part part_of(const struct packing *p, const struct contact *c)
 {
     double small = c->a < 0 ? p->radius[c->b] : dmin(p->radius[c->a], p->radius[c->b]);
     double slop = SLOP * small + v3_norm(p->g) * p->dt * p->dt;
-    double gap = c->gap + p->dt * opening_of(p, c, -p->theta * p->dt) + slop;
+    double gap = c->gap + p->dt * opening_of(p, c, -step_after(p)) + slop;
     return (struct part){ .a = c->a,
                           .b = c->b,
                           .n = c->n,

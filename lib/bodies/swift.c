@@ -382,15 +382,15 @@ void swift_passed(struct passed *s, const struct packing *p, int64_t n,
         for (int32_t w = 0; w < p->walls; w++) {
             const struct wall *wall = &p->wall[w];
             if (wall->shape == BOUNDARY_PLANE || !wall_there(wall, p->t)) continue;
-            vec3 way = v3_scale(p->dt, v3_sub(p->v[i], wall_velocity(p, wall, p->x[i])));
-            vec3 from = v3_axpy(p->x[i], -p->theta, way);
-            if (through_wall(p, surface, w, from, v3_add(from, way))) note(s, p->id[i], -1 - w);
+            vec3 v = v3_sub(p->v[i], wall_velocity(p, wall, p->x[i]));
+            vec3 from = v3_axpy(p->x[i], -step_after(p), v), to = v3_axpy(from, p->dt, v);
+            if (through_wall(p, surface, w, from, to)) note(s, p->id[i], -1 - w);
         }
         for (int64_t f = first; f < p->n; f++) {
             if (!is_fixed_hull(p, f)) continue;
-            vec3 way = v3_scale(p->dt, v3_sub(p->v[i], p->v[f]));
-            vec3 from = v3_axpy(p->x[i], -p->theta, way);
-            if (through_hull(p, f, from, v3_add(from, way))) note(s, p->id[i], p->id[f]);
+            vec3 v = v3_sub(p->v[i], p->v[f]);
+            vec3 from = v3_axpy(p->x[i], -step_after(p), v), to = v3_axpy(from, p->dt, v);
+            if (through_hull(p, f, from, to)) note(s, p->id[i], p->id[f]);
         }
     }
 }

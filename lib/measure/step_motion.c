@@ -35,7 +35,7 @@ static vec3 relative(const struct step_motion *m, const struct packing *p, const
 {
     if (contact_shaped(p, c)) {
         bool before = p->step < (p == m->p ? m->other.step : m->p->step);
-        double ahead = (before ? 1 - p->theta : -p->theta) * p->dt; // to where the contact acts
+        double ahead = before ? step_ahead(p) : -step_after(p); // to where the contact acts
         vec3 edge[3];
         cell_predict(&p->cell, ahead, edge);
         struct arms arm = arm_vectors(p, c, ahead, edge);

@@ -286,19 +286,21 @@ static bool after_sweep(void *with, struct displaced *d, bool more)
     return in_any(with, more);
 }
 
-static void move_apart(struct blocks *b, const struct contacts *s)
+void blocks_move_apart(struct blocks *b, const struct contacts *s)
 {
     struct talk *t = b->part->talk;
     struct why why = { 0 };
+    part_refresh(b->part);
+    if (!overlap_projects(b->part->p.overlap)) return;
     struct apart a = { b, letters(t, b->touched, 3) };
     const struct project_share share = { &a, b->slower, in_any, after_sweep };
     if (project_shared(&b->part->p, s, &share, &why)) talk_fail(t, why.status, why.text);
     letters_free(t, a.since);
+    part_refresh(b->part);
 }
 
-/* Each rank's own bodies, and the contacts that it counts */
-static void tell_balance(struct blocks *b, const struct contacts *s, const struct impulses *sum,
-                         struct balance *told)
+void blocks_balance(struct blocks *b, const struct contacts *s, const struct impulses *sum,
+                    struct balance *told)
 {
     struct part *y = b->part;
     struct why why = { 0 };
@@ -309,28 +311,13 @@ static void tell_balance(struct blocks *b, const struct contacts *s, const struc
     add(&b->shared, (double *)told, sizeof *told / sizeof(double)); // it has nothing else
 }
 
-void blocks_move(struct blocks *b, const struct contacts *s, struct balance *told)
+void blocks_add_impulses(struct blocks *b, struct impulses *sum)
 {
-    struct talk *t = b->part->talk;
-    struct packing *p = &b->part->p;
-    struct why why = { 0 };
-    struct impulses sum;
-    double **none = letters(t, b->touched, 3); // since nothing was pushed
-    const enum overlap overlap = p->overlap;
-    if (impulses_init(&sum, p, s, false, &why)) talk_fail(t, why.status, why.text);
-    add_up(b, 3, impulse_of, &sum, none);
-    letters_free(t, none), none = letters(t, b->touched, 3);
-    add_up(b, 3, moment_of, &sum, none);
-    letters_free(t, none);
-    if (told) tell_balance(b, s, &sum, told);
-    p->overlap = OVERLAP_KEEP;
-    if (move_by(p, s, &sum, &why)) talk_fail(t, why.status, why.text);
-    p->overlap = overlap;
-    impulses_free(&sum);
-    part_refresh(b->part);
-    if (!overlap_projects(overlap)) return;
-    move_apart(b, s);
-    part_refresh(b->part);
+    double **none = letters(b->part->talk, b->touched, 3); // since nothing was pushed
+    add_up(b, 3, impulse_of, sum, none);
+    letters_free(b->part->talk, none), none = letters(b->part->talk, b->touched, 3);
+    add_up(b, 3, moment_of, sum, none);
+    letters_free(b->part->talk, none);
 }
 
 void blocks_free(struct blocks *b)

@@ -331,40 +331,65 @@ static void balance_load(struct stride *y, const struct contacts *s)
 
 /* ---- a step whose motion the first rank makes ---- */
 
+/* The first rank's step, in which others help it to find and solve contacts */
+struct by_first {
+    struct step_makers makers; /* first: it is what the functions below are given */
+    struct stride *y;
+    struct roll roll;
+    struct contacts here;
+};
+
+static int detect_by_first(struct step_makers *m, struct packing *whole, struct contacts *all,
+                           const struct step_opt *o, struct why *why)
+{
+    struct by_first *f = (struct by_first *)m;
+    return detect(f->y, whole, all, &f->roll, &f->here, o, why);
+}
+
+static int solve_by_first(struct step_makers *m, const struct packing *whole, struct contacts *all,
+                          const struct step_opt *o, struct report *rep, struct why *why)
+{
+    struct by_first *f = (struct by_first *)m;
+    struct stride *y = f->y;
+    struct blocks b;
+    bool solved = is_shared(&y->part.p, o), blocks = solved && o->order == ORDER_BLOCK;
+    if (blocks)
+        solve_in_blocks(y, &b, whole, &f->here, o, rep, why), blocks_free(&b);
+    else if (solved)
+        solved = solve_in_order(y, whole, &f->roll, &f->here, all, o, rep, why);
+    if (solved) roll_found(&f->roll, &y->part, &f->here, all);
+    y->alone += !solved;
+    if (m->helps) return 0;
+    return solved ? step_bound_impacts(whole, all, NULL, o, rep, why)
+                  : step_solve_contacts(whole, all, NULL, o, rep, why);
+}
+
+static int watch_by_first(struct step_makers *m, const struct packing *whole, struct report *rep,
+                          struct why *why)
+{
+    (void)why;
+    step_watch(whole, whole->n, ((struct by_first *)m)->y->near.surface, rep);
+    return 0;
+}
+
 static int step_by_first(struct stride *y, struct packing *whole, struct contacts *all,
                          const struct step_opt *o, struct report *rep, struct why *why)
 {
     struct talk *t = y->part.talk;
-    struct roll roll;
-    struct contacts s = { 0 };
-    struct blocks b;
-    bool solved = is_shared(&y->part.p, o), blocks = solved && o->order == ORDER_BLOCK;
-    double cpu = report_seconds(CLOCK_CPU);
-    if (detect(y, whole, all, &roll, &s, o, why)) return why->status;
-    rep->detection = report_seconds(CLOCK_CPU) - cpu;
-    if (!t->me) {
-        rep->step = whole->step + 1, rep->t = packing_next_time(whole);
-        rep->err.max_overlap = contacts_max_overlap(all);
-        if (depth_of(&rep->depth, whole, all, NULL, why)) return why->status;
-    }
-    if (blocks)
-        solve_in_blocks(y, &b, whole, &s, o, rep, why), blocks_free(&b);
-    else if (solved)
-        solved = solve_in_order(y, whole, &roll, &s, all, o, rep, why);
-    if (solved) roll_found(&roll, &y->part, &s, all);
-    y->alone += !solved;
-    if (!t->me) {
-        int e = solved ? step_bound_impacts(whole, all, NULL, o, rep, why)
-                       : step_solve_contacts(whole, all, NULL, o, rep, why);
-        if (e) return e;
-        if (step_move(whole, all, o, rep, why)) return why->status;
-        step_watch(whole, whole->n, y->near.surface, rep);
-        settings_copy_motion(&y->part.p, whole);
-    }
+    struct by_first f = { .makers = { .helps = t->me,
+                                      .detect = detect_by_first,
+                                      .measure = step_measure_whole,
+                                      .solve = solve_by_first,
+                                      .balance = step_balance_whole,
+                                      .move_apart = step_move_apart_whole,
+                                      .watch = watch_by_first },
+                          .y = y };
+    if (step_make(&f.makers, whole, all, o, rep, why)) return why->status;
+    if (!t->me) settings_copy_motion(&y->part.p, whole);
     settings_follow(t, &y->part.p);
     part_follow(&y->part, whole);
-    balance_load(y, &s);
-    roll_free(&roll), contacts_free(&s);
+    balance_load(y, &f.here);
+    roll_free(&f.roll), contacts_free(&f.here);
     return 0;
 }
 
@@ -414,35 +439,107 @@ static void watch_here(struct stride *y, struct report *rep)
     if (all) rep->passed_id = (int32_t)first, rep->passed_through = (int32_t)through;
 }
 
+/* The step of all ranks, each with its own bodies and contacts */
+struct by_all {
+    struct step_makers makers; /* first: it is what the functions below are given */
+    struct stride *y;
+    struct packing *whole;
+    struct contacts *all; /* NULL: nobody wants those of all */
+    struct blocks blocks;
+};
+
+static int detect_by_all(struct step_makers *m, struct packing *p, struct contacts *s,
+                         const struct step_opt *o, struct why *why)
+{
+    struct by_all *a = (struct by_all *)m;
+    double reach;
+    (void)p, (void)why;
+    detect_here(a->y, a->whole, s, o, &reach);
+    return 0;
+}
+
+static int measure_by_all(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                          struct report *rep, struct why *why)
+{
+    struct stride *y = ((struct by_all *)m)->y;
+    (void)p, (void)why;
+    rep->err.max_overlap = talk_most(y->part.talk, contacts_max_overlap(s));
+    measure_depth(y, s, &rep->depth);
+    return 0;
+}
+
+static bool diverged(const struct report *rep)
+{
+    return !isfinite(rep->err.paper.eps_glob);
+}
+
+static int solve_by_all(struct step_makers *m, const struct packing *p, struct contacts *s,
+                        const struct step_opt *o, struct report *rep, struct why *why)
+{
+    struct by_all *a = (struct by_all *)m;
+    (void)p;
+    solve_in_blocks(a->y, &a->blocks, a->whole, s, o, rep, why);
+    if (a->all && !o->bare && !diverged(rep)) tell_contacts(a->y, a->all, s);
+    return why->status;
+}
+
+static void add_impulses_by_all(struct step_makers *m, struct impulses *sum)
+{
+    blocks_add_impulses(&((struct by_all *)m)->blocks, sum);
+}
+
+static int balance_by_all(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                          const struct impulses *sum, struct balance *b, struct why *why)
+{
+    (void)p, (void)why;
+    blocks_balance(&((struct by_all *)m)->blocks, s, sum, b);
+    return 0;
+}
+
+static int move_apart_by_all(struct step_makers *m, struct packing *p, const struct contacts *s,
+                             struct why *why)
+{
+    (void)p, (void)why;
+    blocks_move_apart(&((struct by_all *)m)->blocks, s);
+    return 0;
+}
+
+static int watch_by_all(struct step_makers *m, const struct packing *p, struct report *rep,
+                        struct why *why)
+{
+    (void)p, (void)why;
+    if (diverged(rep))
+        rep->balanced = false;
+    else
+        watch_here(((struct by_all *)m)->y, rep);
+    return 0;
+}
+
 static int step_by_all(struct stride *y, struct packing *whole, struct contacts *all,
                        const struct step_opt *o, struct report *rep, struct why *why)
 {
     struct talk *t = y->part.talk;
     struct contacts s = { 0 };
-    struct blocks b;
-    double reach, cpu = report_seconds(CLOCK_CPU);
     int told[2] = { o->bare, y->contacts };
     MPI_Bcast(told, 2, MPI_INT, 0, t->comm);
-    const bool bare = told[0];
-    detect_here(y, whole, &s, o, &reach);
-    rep->detection = report_seconds(CLOCK_CPU) - cpu;
-    rep->step = y->part.p.step + 1, rep->t = packing_next_time(&y->part.p);
-    rep->err.max_overlap = talk_most(t, contacts_max_overlap(&s));
-    measure_depth(y, &s, &rep->depth);
-    rep->balanced = !bare, rep->tied = false, rep->may_gain = packing_may_gain(&y->part.p);
-    solve_in_blocks(y, &b, whole, &s, o, rep, why);
-    bool moves = isfinite(rep->err.paper.eps_glob);
-    if (moves) {
-        if (!bare && told[1]) tell_contacts(y, all, &s);
-        blocks_move(&b, &s, bare ? NULL : &rep->balance);
-        watch_here(y, rep);
-        if (!t->me) settings_copy_motion(whole, &y->part.p);
-    }
-    rep->balanced = !bare && moves;
+    struct step_opt of_first = *o;
+    of_first.bare = told[0];
+    struct by_all a = { .makers = { .detect = detect_by_all,
+                                    .measure = measure_by_all,
+                                    .solve = solve_by_all,
+                                    .add_impulses = add_impulses_by_all,
+                                    .balance = balance_by_all,
+                                    .move_apart = move_apart_by_all,
+                                    .watch = watch_by_all },
+                        .y = y,
+                        .whole = whole,
+                        .all = told[1] ? all : NULL };
+    if (step_make(&a.makers, &y->part.p, &s, &of_first, rep, why)) fail(y, why);
+    if (!t->me && !diverged(rep)) settings_copy_motion(whole, &y->part.p);
     // a run that diverges ends, and keeps this
-    if (!y->scattered && (!bare || !moves)) part_collect(&y->part, whole);
+    if (!y->scattered && (!of_first.bare || diverged(rep))) part_collect(&y->part, whole);
     balance_load(y, &s);
-    blocks_free(&b);
+    blocks_free(&a.blocks);
     contacts_free(&s);
     return 0;
 }

@@ -223,7 +223,7 @@ static bool is_free(struct crowd *c, const struct scene_pour *o, vec3 x, quat q,
 {
     int64_t last = c->p.n - 1;
     struct contacts met = { 0 };
-    double ahead = (1 - c->p.theta) * c->p.dt;
+    double ahead = step_ahead(&c->p);
     c->p.radius[last] = r, c->p.mass[last] = 1, c->p.kind[last] = o->kind;
     c->p.q[last] = q;
     if (c->p.shape) c->p.shape[last] = o->form.shape;
