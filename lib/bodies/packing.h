@@ -11,17 +11,17 @@
 #include "base/why.h"
 #include "bodies/body_columns.h"
 #include "bodies/bond.h"
-#include "bodies/boundary.h"
-#include "bodies/cell.h"
 #include "bodies/contact.h"
-#include "bodies/drive.h"
 #include "bodies/law.h"
 #include "bodies/memory.h"
-#include "bodies/mesh.h"
 #include "bodies/overlap.h"
 #include "bodies/pair_columns.h"
 #include "bodies/passage.h"
-#include "bodies/shape.h"
+#include "geometry/boundary.h"
+#include "geometry/cell.h"
+#include "geometry/drive.h"
+#include "geometry/mesh.h"
+#include "geometry/shape.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -111,7 +111,7 @@ static inline bool packing_varies(const struct packing *p)
 
 /* Has any pair of kinds rolling or pivoting friction? */
 bool packing_rolls(const struct packing *p);
-/* May an impact gain energy [bodies/balance.h]? It wants restitution and friction. */
+/* May an impact gain energy [motion/balance.h]? It wants restitution and friction. */
 bool packing_may_gain(const struct packing *p);
 /* Is Newton's law to be bounded for the contact [solve/rebound.h]? */
 bool packing_bounds(const struct packing *p, const struct contact *c);

@@ -1,7 +1,7 @@
 /* draw/images.c: bodies on either side of the cell's border, and the border [draw/images.h]. */
 #include "draw/images.h"
 
-#include "bodies/tidy.h"
+#include "bodies/wrap.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -60,7 +60,7 @@ int images_append(struct packing *p, int64_t **of, struct why *why)
     struct packing q;
     *of = NULL;
     if (!cell_repeats(&p->cell)) return 0;
-    packing_tidy(p, NULL);
+    packing_wrap(p, NULL);
     int64_t n = fill(NULL, NULL, p);
     if (packing_init(&q, p->dim, n, why)) return why->status;
     uint32_t optional = packing_optional(p) & ~(1u << BODY_image);

@@ -1,6 +1,6 @@
 #include "io/cell_tables.h"
 
-#include "io/h5.h"
+#include "hdf5/h5.h"
 
 #include <stdlib.h>
 #include <string.h>

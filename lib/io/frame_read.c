@@ -2,7 +2,7 @@
 
 #include "io/boundary_tables.h"
 #include "io/cell_tables.h"
-#include "io/elsewhere.h"
+#include "io/distributed.h"
 #include "io/flow_tables.h"
 #include "io/law_tables.h"
 #include "io/roster.h"
@@ -265,8 +265,8 @@ static int hand_over(struct frame_read *r, int64_t k, const struct packing *p, i
         struct packing block =
             packing_with_bodies(p, &room, 0, n - first < BLOCK ? n - first : BLOCK);
         if (read_bodies(r, k, first, &block, why) || packing_check_bodies(&block, first, why) ||
-            r->elsewhere->take(r->elsewhere, &block, first, why) || source_unload(r->source, why) ||
-            source_frame(r->source, why)) // the block is gone
+            r->distributed->take(r->distributed, &block, first, why) ||
+            source_unload(r->source, why) || source_frame(r->source, why)) // the block is gone
             break;
         for (int64_t i = 0; i < block.n; i++)
             most = most < block.radius[i] ? block.radius[i] : most;
@@ -281,13 +281,13 @@ static bool are_wanted(struct frame_read *r, int64_t k, struct packing *p)
 {
     struct why none = { 0 };
     uint64_t shape[4];
-    if (!r->elsewhere || source_has(r->source, "/particles/all/id/value") ||
+    if (!r->distributed || source_has(r->source, "/particles/all/id/value") ||
         source_shape(r->source, "/particles/all/radius", shape) != 1)
         return false;
     int64_t n = shape[0] > INT32_MAX ? 0 : (int64_t)shape[0];
     bool good =
         !read_settings(r, k, 0, p, &none) && !packing_check(p, &none) && n && has_columns(r, p, n);
-    if (good && r->elsewhere->wants(r->elsewhere, p, n)) return true;
+    if (good && r->distributed->wants(r->distributed, p, n)) return true;
     packing_free(p);
     return false;
 }
@@ -340,8 +340,8 @@ int frame_read_moment(struct frame_read *r, int64_t k, struct frame *f, struct w
     if (why->status) return why->status;
     if (!r->step) return read_foreign(r, f, why);
     if (are_wanted(r, k, &f->packing)) {
-        f->elsewhere = r->elsewhere;
-        if (hand_over(r, k, &f->packing, f->elsewhere->n, why)) return why->status;
+        f->distributed = r->distributed;
+        if (hand_over(r, k, &f->packing, f->distributed->n, why)) return why->status;
     } else if (read_packing(r, k, &f->packing, why)) {
         return why->status;
     }

@@ -1,17 +1,17 @@
 #include "io/frame_write.h"
 
+#include "hdf5/h5.h"
+#include "hdf5/stream.h"
 #include "io/account_rows.h"
 #include "io/boundary_tables.h"
 #include "io/cell_tables.h"
 #include "io/contact_rows.h"
 #include "io/flow_tables.h"
-#include "io/h5.h"
 #include "io/law_tables.h"
 #include "io/memory_rows.h"
 #include "io/report_rows.h"
 #include "io/roster.h"
 #include "io/shape_tables.h"
-#include "io/stream.h"
 #include "io/unknown.h"
 
 #include <stdio.h>

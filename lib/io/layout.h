@@ -5,8 +5,8 @@
 #ifndef NSD_LAYOUT_H
 #define NSD_LAYOUT_H
 
+#include "hdf5/h5.h"
 #include "io/frame.h"
-#include "io/h5.h"
 
 #include <stddef.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 #include "io/roster.h"
 
-#include "io/h5.h"
+#include "hdf5/h5.h"
 #include "scene/flow.h"
 
 #include <stdio.h>

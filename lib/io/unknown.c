@@ -1,8 +1,8 @@
 #include "io/unknown.h"
 
 #include "bodies/body_columns.h"
-#include "io/element.h"
-#include "io/source.h"
+#include "hdf5/element.h"
+#include "hdf5/source.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "measure/step_motion.h"
 
-#include "bodies/move.h"
 #include "measure/branch.h"
+#include "motion/move.h"
 
 int step_motion_init(struct step_motion *m, const struct snapshot *s, struct why *why)
 {

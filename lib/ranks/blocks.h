@@ -13,7 +13,7 @@
 #ifndef NSD_BLOCKS_H
 #define NSD_BLOCKS_H
 
-#include "bodies/balance.h"
+#include "motion/balance.h"
 #include "problem/problem.h"
 #include "problem/shared.h"
 #include "ranks/part.h"

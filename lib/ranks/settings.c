@@ -4,12 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void put_text(struct talk *t, struct parcel *o, const char *text)
+static void put_text(struct comm *t, struct parcel *o, const char *text)
 {
     parcel_put_array(t, o, text, text ? (int64_t)strlen(text) + 1 : 0, 1);
 }
 
-static char *take_text(struct talk *t, struct parcel *o)
+static char *take_text(struct comm *t, struct parcel *o)
 {
     char *text;
     if (parcel_take_array(t, o, &text, 1)) return text;
@@ -17,20 +17,20 @@ static char *take_text(struct talk *t, struct parcel *o)
     return NULL;
 }
 
-static void put_drives(struct talk *t, struct parcel *o, const struct drives *d)
+static void put_drives(struct comm *t, struct parcel *o, const struct drives *d)
 {
     parcel_put_array(t, o, d->drive, d->n, sizeof *d->drive);
     parcel_put_array(t, o, d->row, d->rows, sizeof *d->row);
 }
 
-static void take_drives(struct talk *t, struct parcel *o, struct drives *d)
+static void take_drives(struct comm *t, struct parcel *o, struct drives *d)
 {
     drives_free(d);
     d->n = (int32_t)parcel_take_array(t, o, &d->drive, sizeof *d->drive);
     d->rows = (int32_t)parcel_take_array(t, o, &d->row, sizeof *d->row);
 }
 
-static void put_shapes(struct talk *t, struct parcel *o, const struct shapes *list)
+static void put_shapes(struct comm *t, struct parcel *o, const struct shapes *list)
 {
     parcel_put(t, o, &list->n, sizeof list->n);
     for (int32_t k = 1; k < list->n; k++) {
@@ -47,12 +47,12 @@ static void put_shapes(struct talk *t, struct parcel *o, const struct shapes *li
     }
 }
 
-static void fail(struct talk *t, const struct why *why)
+static void fail(struct comm *t, const struct why *why)
 {
-    talk_fail(t, why->status, why->text);
+    comm_fail(t, why->status, why->text);
 }
 
-static void take_shapes(struct talk *t, struct parcel *o, struct shapes *list, int dim)
+static void take_shapes(struct comm *t, struct parcel *o, struct shapes *list, int dim)
 {
     int32_t n;
     struct why why = { 0 };
@@ -77,13 +77,13 @@ static void take_shapes(struct talk *t, struct parcel *o, struct shapes *list, i
     }
 }
 
-static void put_cell(struct talk *t, struct parcel *o, const struct cell *c)
+static void put_cell(struct comm *t, struct parcel *o, const struct cell *c)
 {
     parcel_put(t, o, c, sizeof *c);
     parcel_put_array(t, o, c->gradient, c->gradients, sizeof *c->gradient);
 }
 
-static void take_cell(struct talk *t, struct parcel *o, struct cell *c)
+static void take_cell(struct comm *t, struct parcel *o, struct cell *c)
 {
     cell_free(c);
     parcel_take(t, o, c, sizeof *c);
@@ -101,7 +101,7 @@ struct numbers {
     uint32_t optional; /* packing_optional() */
 };
 
-static void put(struct talk *t, struct parcel *o, const struct packing *p)
+static void put(struct comm *t, struct parcel *o, const struct packing *p)
 {
     struct numbers n;
     int64_t k2 = (int64_t)p->kinds * p->kinds;
@@ -124,7 +124,7 @@ static void put(struct talk *t, struct parcel *o, const struct packing *p)
     if (p->law) parcel_put_array(t, o, p->law, k2, sizeof *p->law);
 }
 
-static void take(struct talk *t, struct parcel *o, struct packing *p)
+static void take(struct comm *t, struct parcel *o, struct packing *p)
 {
     struct numbers n;
     struct why why = { 0 };
@@ -149,11 +149,11 @@ static void take(struct talk *t, struct parcel *o, struct packing *p)
     if (packing_alloc_optional(p, n.optional, &why)) fail(t, &why);
 }
 
-void settings_spread(struct talk *t, struct packing *p)
+void settings_spread(struct comm *t, struct packing *p)
 {
     struct parcel o = { 0 };
     if (!t->me) put(t, &o, p);
-    talk_spread(t, &o);
+    comm_spread(t, &o);
     if (t->me) take(t, &o, p);
     parcel_free(&o);
 }
@@ -167,7 +167,7 @@ void settings_copy_motion(struct packing *to, const struct packing *from)
     for (int32_t w = 0; w < to->walls && w < from->walls; w++) to->wall[w] = from->wall[w];
 }
 
-void settings_follow(struct talk *t, struct packing *p)
+void settings_follow(struct comm *t, struct packing *p)
 {
     struct parcel o = { 0 };
     struct {
@@ -182,7 +182,7 @@ void settings_follow(struct talk *t, struct packing *p)
         parcel_put(t, &o, &now, sizeof now);
         parcel_put(t, &o, p->wall, (size_t)p->walls * sizeof *p->wall);
     }
-    talk_spread(t, &o);
+    comm_spread(t, &o);
     if (t->me) {
         parcel_take(t, &o, &now, sizeof now);
         p->step = now.step, p->t = now.t, p->cell.origin = now.origin;

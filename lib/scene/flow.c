@@ -1,6 +1,6 @@
 #include "scene/flow.h"
 
-#include "bodies/detect.h"
+#include "detect/detect.h"
 #include "scene/counter.h"
 #include "scene/orientation.h"
 

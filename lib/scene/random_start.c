@@ -1,6 +1,6 @@
 #include "scene/random_start.h"
 
-#include "bodies/neighbours.h"
+#include "detect/neighbours.h"
 
 #include <stdlib.h>
 #include <string.h>

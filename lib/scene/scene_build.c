@@ -1,8 +1,8 @@
 /* scene/scene_build.c: groups of bodies, the check for overlaps: a packing from a scene. */
 #include "scene/scene_build.h"
 
-#include "bodies/detect.h"
-#include "bodies/tidy.h"
+#include "bodies/wrap.h"
+#include "detect/detect.h"
 #include "scene/counter.h"
 #include "scene/grains.h"
 #include "scene/orientation.h"
@@ -458,7 +458,7 @@ static int build_packing(struct packing *p, const struct scene *s, const struct 
     if (rng && !why->status && !inherit_walls(p, s, why) && !inherit_cell(p, s, why) &&
         !fill_groups(p, s, list, rng, why)) {
         if (s->cell.affine) add_affine_flow(p);
-        packing_tidy(p, NULL);
+        packing_wrap(p, NULL);
         if (!set_dt(p, s, why)) check_packing(p, s, list, why);
     }
     gsl_rng_free(rng);

@@ -1,11 +1,11 @@
 /* solve/step.c: a step from one state of a packing to the next [solve/step.h]. */
 #include "solve/step.h"
 
-#include "bodies/detect.h"
-#include "bodies/move.h"
-#include "bodies/project.h"
-#include "bodies/swift.h"
-#include "bodies/tidy.h"
+#include "bodies/wrap.h"
+#include "detect/detect.h"
+#include "detect/swift.h"
+#include "motion/move.h"
+#include "motion/project.h"
 #include "problem/prepare.h"
 #include "solve/rebound.h"
 
@@ -197,7 +197,7 @@ static int detect_alone(struct step_makers *m, struct packing *p, struct contact
 {
     struct step_memory *kept = ((struct alone *)m)->memory;
     memory_set(&p->memory, o->warm);
-    packing_tidy(p, NULL);
+    packing_wrap(p, NULL);
     if (detect_contacts(s, p, o->gap, kept ? &kept->near : NULL, why)) return why->status;
     return o->warm ? memory_give(&p->memory, s, packing_rolls(p), why) : 0;
 }

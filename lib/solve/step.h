@@ -5,9 +5,9 @@
 #ifndef NSD_STEP_H
 #define NSD_STEP_H
 
-#include "bodies/balance.h"
-#include "bodies/impulse.h"
-#include "bodies/neighbours.h"
+#include "detect/neighbours.h"
+#include "motion/balance.h"
+#include "motion/impulse.h"
 #include "problem/plan.h"
 #include "solve/solver.h"
 
