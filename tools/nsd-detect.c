@@ -1,9 +1,9 @@
 /* nsd-detect: finds the contacts of packings. */
-#include "bodies/detect.h"
-#include "bodies/tidy.h"
+#include "bodies/wrap.h"
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/tool_filter.h"
+#include "detect/detect.h"
 #include "scene/flow.h"
 
 #include <stdlib.h>
@@ -65,7 +65,7 @@ static void detect(struct frame *f, const char *where)
     options_theta(&f->packing, false);
     options_overlap(&f->packing, false);
     flow(&f->packing);
-    packing_tidy(&f->packing, NULL);
+    packing_wrap(&f->packing, NULL);
     if (detect_contacts(&f->contacts, &f->packing, options.gap, NULL, &why)) die_why(&why);
     f->detected = true, f->reported = f->moved = false;
     f->stale = true;

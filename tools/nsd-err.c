@@ -1,8 +1,8 @@
 /* nsd-err: says how good a solution is, recomputed from the problem and the reactions. */
-#include "bodies/move.h"
 #include "cli/cli.h"
 #include "io/reader.h"
 #include "io/report_json.h"
+#include "motion/move.h"
 #include "problem/err.h"
 #include "problem/prepare.h"
 #include "problem/self_stress.h"

@@ -84,7 +84,7 @@ static void sheaf_add(struct sheaf *s, const struct format *format, enum part wh
                       const struct frame *f)
 {
     struct why why = { 0 };
-    struct moment m = { &f->packing, f->detected ? &f->contacts : NULL, (int)detail };
+    struct export_frame m = { &f->packing, f->detected ? &f->contacts : NULL, (int)detail };
     bool solved = m.contacts && m.contacts->found;
     if (s->moments && !format->joins)
         die_usage("a %s file holds one frame: --last, --steps, or a series -o 'f%%05d.%s'",

@@ -1,7 +1,7 @@
 /* nsd-move: makes the second half of a step: moves the bodies by the reactions. */
-#include "bodies/move.h"
 #include "cli/cli.h"
 #include "cli/tool_filter.h"
+#include "motion/move.h"
 
 static const struct cli_option *const tables[] = { NULL };
 

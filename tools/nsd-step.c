@@ -1,12 +1,12 @@
 /* nsd-step: makes many steps: detects, solves and moves in a loop. */
-#include "bodies/adapt.h"
 #include "cli/cli.h"
-#include "cli/crew.h"
 #include "cli/options.h"
+#include "cli/processes.h"
 #include "cli/tool_filter.h"
-#include "io/behind.h"
+#include "io/background_writer.h"
 #include "io/reader.h"
 #include "io/writer.h"
+#include "motion/adapt.h"
 #include "scene/flow.h"
 
 #include <float.h>
@@ -248,7 +248,7 @@ static void take_signals(void)
 {
     static const int signals[] = { SIGINT, SIGTERM, SIGHUP };
     struct sigaction act = { .sa_handler = stop, .sa_flags = SA_RESTART }, was;
-    for (int k = 0; k < 3 && !crew_started(); k++)
+    for (int k = 0; k < 3 && !processes_started(); k++)
         if (!sigaction(signals[k], NULL, &was) && was.sa_handler != SIG_IGN)
             sigaction(signals[k], &act, NULL);
 }
@@ -259,7 +259,7 @@ static void take_signals(void)
 struct run {
     struct frame f;
     struct writer *out;
-    struct behind *behind; /* NULL: one thread makes the steps, and writes */
+    struct background_writer *background; /* NULL: one thread makes the steps, and writes */
     struct flow flow;
     struct step_memory memory;
     struct neighbours ahead; /* of where bodies would be at the end of a step */
@@ -310,13 +310,13 @@ static void save_state(struct run *r)
     struct writer *out;
     struct frame f = r->f;
     f.detected = f.detected || options.warm; // a warm step begins with these
-    bool behind = r->behind;
-    if (behind_close(r->behind, &why)) die_why(&why); // libhdf5 has one user at a time
-    r->behind = NULL;
+    bool background = r->background;
+    if (background_close(r->background, &why)) die_why(&why); // libhdf5 has one user at a time
+    r->background = NULL;
     if (writer_open(&out, r->save_path, WRITER_COPY, &why) || writer_frame(out, &f, &why) ||
         writer_close(out, &why))
         die_why(&why);
-    if (behind) behind_open(&r->behind, r->out, &(struct why){ 0 });
+    if (background) background_open(&r->background, r->out, &(struct why){ 0 });
     r->saved = seconds_now();
 }
 
@@ -392,7 +392,7 @@ static bool advance(struct run *r, int64_t k, bool saves)
     const struct packing *p = &f->packing;
     bool last = is_last(p, p->step + 1, k);
     r->o.bare = !options.log && !saves && !last && !is_kept(p, p->step + 1, k);
-    if (crew_step(f, &r->memory, r->other_bodies, &r->o, &why)) die_why(&why);
+    if (processes_step(f, &r->memory, r->other_bodies, &r->o, &why)) die_why(&why);
     f->reported = f->moved = true;
     count(rep);
     account(f);
@@ -404,7 +404,8 @@ static bool advance(struct run *r, int64_t k, bool saves)
 static void write_frame(struct run *r)
 {
     struct why why = { 0 };
-    if ((r->behind ? behind_frame(r->behind, &r->f, &why) : writer_frame(r->out, &r->f, &why)))
+    if ((r->background ? background_frame(r->background, &r->f, &why)
+                       : writer_frame(r->out, &r->f, &why)))
         die_why(&why);
     r->f.packing.events.n = 0; // they are written
 }
@@ -440,8 +441,8 @@ static int64_t run(struct run *r)
     struct why why = { 0 };
     begin(r);
     // where there is no other thread, this one writes; and with others, who have the bodies
-    if (options.threads > 1 && steps && !r->f.elsewhere)
-        behind_open(&r->behind, r->out, &(struct why){ 0 });
+    if (options.threads > 1 && steps && !r->f.distributed)
+        background_open(&r->background, r->out, &(struct why){ 0 });
     bool ends = !steps;
     while (!ends) {
         if (stopped_by) steps = made + 1; // the next one is the last, and its frame is kept
@@ -462,7 +463,7 @@ static int64_t run(struct run *r)
     step_forget(&r->memory);
     neighbours_free(&r->ahead);
     flow_free(&r->flow);
-    if (behind_close(r->behind, &why)) die_why(&why);
+    if (background_close(r->background, &why)) die_why(&why);
     return made;
 }
 
@@ -498,10 +499,10 @@ static double read_dt(void)
             "--dt: '%s' is neither a number of seconds above 0 nor auto:TOL, TOL a share of a "
             "radius above 0 and at most 1",
             dt);
-    if (adapts && crew_size() > 1)
+    if (adapts && processes_size() > 1)
         die_usage("--dt auto: one process alone adapts its time step, and here are %d: nsd-step -j "
                   "has threads",
-                  crew_size());
+                  processes_size());
     if (adapts) tol = x;
     return adapts ? 0 : x;
 }
@@ -592,19 +593,19 @@ int tool_main(int argc, char **argv)
     bool file = argc == 1 && strcmp(argv[0], "-") != 0;
     options_check();
     keep_memory();
-    if (!crew_join()) return crew_follow();
+    if (!processes_join()) return processes_follow();
     double asked = read_dt();
     if (cli_given(&until) && cli_given(&steps)) die_usage("-n and --until exclude each other");
     if (save) parse_save();
     if (in_place && output) die_usage("-i and -o exclude each other");
     if (in_place && !file) die_usage("-i: one FILE, to which it appends");
-    if (file && !output && isatty(STDOUT_FILENO) && !crew_started()) in_place = true;
-    if (crew_started() && !output && !in_place)
+    if (file && !output && isatty(STDOUT_FILENO) && !processes_started()) in_place = true;
+    if (processes_started() && !output && !in_place)
         die_usage("under mpirun the output goes to a file: -o FILE, or -i");
     progress_lines(lines);
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
     reader_copies(in);
-    reader_hands_over(in, crew_elsewhere(contacts || forces));
+    reader_hands_over(in, processes_take_bodies(contacts || forces));
     if (output && reader_reads(argc, argv, output))
         die_usage("%s: is also the input; -i appends to it", output);
     if (in_place)
@@ -623,7 +624,7 @@ int tool_main(int argc, char **argv)
     if (writer_close(r.out, &why)) die_why(&why);
     save_end(&r);
     options_log_close();
-    const char *told = crew_leave();
+    const char *told = processes_leave();
     summary(made);
     if (told) warn("%s", told);
     say_worst();

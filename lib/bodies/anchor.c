@@ -107,7 +107,7 @@ int anchors_place(struct contacts *s, const struct packing *p, const vec3 *x, co
 
 void anchor_bond(struct bond *b, const struct packing *p, const struct contact *c, double area)
 {
-    double ahead = (1 - p->theta) * p->dt;
+    double ahead = step_ahead(p);
     vec3 edge[3], half = v3_scale(0.5 * c->gap, c->n);
     cell_predict(&p->cell, ahead, edge);
     vec3 on_a = v3_sub(c->x, half), on_b = v3_add(c->x, half);

@@ -138,9 +138,10 @@ static const char *contact_trouble(const struct contact *c, const struct found *
     if (!(fabs(v3_dot(c->n, c->n) - 1) < 1e-6 && fabs(v3_dot(c->t1, c->t1) - 1) < 1e-6 &&
           fabs(v3_dot(c->n, c->t1)) < 1e-6))
         return "frame is not orthonormal";
-    if (!(c->mu >= 0 && isfinite(c->mu))) return "mu must not be negative";
-    if (!(c->en >= 0 && c->en <= 1 && c->et >= 0 && c->et <= 1))
-        return "restitution must lie in [0, 1]";
+#define CHECK(member, name, unit, key, most, range)                                                \
+    if (!(c->member >= 0 && c->member <= most && isfinite(c->member))) return name " " range;
+    EACH_PAIR_COLUMN(CHECK)
+#undef CHECK
     for (int k = 0; found && k < 3; k++)
         if (!isfinite(found->r[k]) || !isfinite(found->u[k]))
             return "reaction or velocity is not finite";

@@ -4,6 +4,7 @@
 
 #include "base/vec.h"
 #include "base/why.h"
+#include "bodies/pair_columns.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -16,7 +17,7 @@ struct contact {
     vec3 x;          /* m: the point of contact, between the bodies at their predicted positions */
     vec3 n, t1;      /* of the right-handed basis (n, t1, t2); in the plane t1 = z x n, t2 = z */
     double gap;      /* m, predicted; < 0: overlap */
-    double mu, en, et; /* friction; normal and tangential restitution */
+    EACH_PAIR_COLUMN(PAIR_NUMBER) /* mu, en, et: of the kinds of its bodies */
 };
 
 /* What a solver finds at a contact. Apart, so that it takes memory only after a solve. */

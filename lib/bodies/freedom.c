@@ -136,7 +136,7 @@ vec3 freedom_direction(const struct freedom *f, const struct packing *p, const s
 
 static void wall_move(const struct packing *p, struct load *l, double change, bool back)
 {
-    double after = p->theta * p->dt * change;
+    double after = step_after(p) * change;
     if (back) l->speed -= change;
     double way = p->dt * l->speed + after;
     l->travel += back ? -way : way;
@@ -147,7 +147,7 @@ static void edge_move(struct packing *p, const struct freedom *f, double change,
 {
     double sign = back ? -1 : 1;
     vec3 *rate = &p->cell.rate[f->edge], *edge = &p->cell.edge[f->edge];
-    *edge = v3_axpy(*edge, sign * p->theta * p->dt * change, f->axis);
+    *edge = v3_axpy(*edge, sign * step_after(p) * change, f->axis);
     *rate = v3_axpy(*rate, sign * change, f->axis);
 }
 

@@ -8,8 +8,8 @@
  *
  *     s+ = s + (dt f + J^T r)/m.
  *
- * They are gathered anew for each step, from the loads of the packing [bodies/load.h] and the
- * masses and the stress of its cell [bodies/cell.h]: on component i of edge k acts - (stress
+ * They are gathered anew for each step, from the loads of the packing [geometry/load.h] and the
+ * masses and the stress of its cell [geometry/cell.h]: on component i of edge k acts - (stress
  * A_k)_i, where A_k, the face that the other two edges span, has its normal to the side of the
  * edge.
  *

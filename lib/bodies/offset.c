@@ -25,7 +25,7 @@ static bool may_bend(const struct packing *p, const struct contact *c)
 static double bend_of(const struct packing *p, const struct contact *c)
 {
     const struct wall *w = &p->wall[-1 - c->a];
-    const double r = p->radius[c->b], ahead = (1 - p->theta) * p->dt;
+    const double r = p->radius[c->b], ahead = step_ahead(p);
     const struct pose pose = wall_pose(p, w, p->t + ahead + p->dt);
     // from the contact's own place: a step that is judged later begins where bodies were moved apart
     vec3 x = v3_axpy(v3_axpy(c->x, c->gap + r, c->n), p->dt, p->v[c->b]);

@@ -5,7 +5,7 @@
  *     gap          u_n + max(0, g)/dt >= 0: bodies that are apart may close the gap g, not more
  *                  [Jean 1999, the quasi-shock law of LMGC90]
  *     push         u_n + g/dt >= 0: an overlap is left with a velocity
- *     project      bodies are moved apart after the step, without a velocity [bodies/project.h]; the
+ *     project      bodies are moved apart after the step, without a velocity [motion/project.h]; the
  *                  law sees the gaps of those that are near, as with gap
  *     gap-project  gap and project
  *

@@ -16,40 +16,82 @@ static void *array(int64_t n, size_t size)
     return calloc(n > 0 ? (size_t)n : 1, size);
 }
 
+#define ROW(ctype, member, type, width, name, unit, traits)                                        \
+    { { name, unit, COLUMN_##type, width, offsetof(struct packing, member) }, traits },
+const struct body_column body_columns[] = { EACH_BODY_COLUMN(ROW){ { 0 }, 0 } };
+#undef ROW
+
+static bool is_optional(const struct body_column *b)
+{
+    return b->traits & (BODY_OPTIONAL | BODY_BY_SETTINGS);
+}
+
+static void free_column(struct packing *p, const struct column *c)
+{
+    free(column_array(c, p));
+    column_set_array(c, p, NULL);
+}
+
+int packing_alloc_column(struct packing *p, int column, struct why *why)
+{
+    const struct column *c = &body_columns[column].column;
+    free_column(p, c);
+    column_set_array(c, p, array(p->n, column_bytes(c)));
+    return column_array(c, p) ? 0
+                              : why_set(why, EX_SOFTWARE, "no memory for %lld bodies' %s",
+                                        (long long)p->n, c->name);
+}
+
+uint32_t packing_optional(const struct packing *p)
+{
+    uint32_t set = 0;
+    for (int k = 0; k < BODY_COLUMNS; k++)
+        if (is_optional(&body_columns[k]) && column_array(&body_columns[k].column, p))
+            set |= 1u << k;
+    return set;
+}
+
+int packing_alloc_optional(struct packing *p, uint32_t set, struct why *why)
+{
+    for (int k = 0; k < BODY_COLUMNS; k++)
+        if ((set & 1u << k) && packing_alloc_column(p, k, why)) return why->status;
+    return 0;
+}
+
+/* Bodies first .. n - 1, whose arrays are zero */
+static void set_default(struct packing *p, int64_t first)
+{
+    for (int64_t i = first; i < p->n; i++) p->id[i] = -1, p->q[i].w = 1;
+}
+
 int packing_init(struct packing *p, int dim, int64_t n, struct why *why)
 {
     *p = (struct packing){ .dim = dim, .n = n, .theta = 0.5, .cell = cell_none() };
-    p->radius = array(n, sizeof *p->radius);
-    p->mass = array(n, sizeof *p->mass);
-    p->inertia = array(n, sizeof *p->inertia);
-    p->id = array(n, sizeof *p->id);
-    p->kind = array(n, sizeof *p->kind);
-    p->x = array(n, sizeof *p->x);
-    p->q = array(n, sizeof *p->q);
-    p->v = array(n, sizeof *p->v);
-    p->w = array(n, sizeof *p->w);
-    bool allocated =
-        p->radius && p->mass && p->inertia && p->id && p->kind && p->x && p->q && p->v && p->w;
-    if (!allocated || packing_alloc_walls(p, 0, why) || packing_alloc_kinds(p, 1, why)) {
+    for (int k = 0; k < BODY_COLUMNS && !why->status; k++)
+        if (!is_optional(&body_columns[k])) packing_alloc_column(p, k, why);
+    if (why->status || packing_alloc_walls(p, 0, why) || packing_alloc_kinds(p, 1, why)) {
         packing_free(p);
-        return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
+        return why->status;
     }
-    for (int64_t i = 0; i < n; i++) p->id[i] = (int32_t)i, p->q[i].w = 1;
+    set_default(p, 0);
+    for (int64_t i = 0; i < n; i++) p->id[i] = (int32_t)i;
     return 0;
 }
 
 static void kinds_free(struct packing *p)
 {
     for (int32_t k = 0; p->kind_name && k < p->kinds; k++) free(p->kind_name[k]);
-    free(p->kind_name), free(p->mu), free(p->en), free(p->et), free(p->law);
-    p->kind_name = NULL, p->mu = p->en = p->et = NULL, p->law = NULL, p->kinds = 0;
+    free(p->kind_name), free(p->law);
+    p->kind_name = NULL, p->law = NULL, p->kinds = 0;
+#define FREE(member, ...) free(p->member), p->member = NULL;
+    EACH_PAIR_COLUMN(FREE)
+#undef FREE
 }
 
 void packing_free(struct packing *p)
 {
-    free(p->radius), free(p->mass), free(p->inertia), free(p->id), free(p->kind);
-    free(p->x), free(p->q), free(p->v), free(p->w);
-    free(p->wall), free(p->scene), free(p->image), free(p->shape);
+    for (int k = 0; k < BODY_COLUMNS; k++) free_column(p, &body_columns[k].column);
+    free(p->wall), free(p->scene);
     shapes_free(&p->shapes);
     drives_free(&p->drives), drives_free(&p->pushes), mesh_free(&p->mesh);
     free(p->poured), free(p->removed);
@@ -74,10 +116,12 @@ int packing_alloc_kinds(struct packing *p, int32_t k, struct why *why)
 {
     kinds_free(p);
     p->kind_name = array(k, sizeof *p->kind_name);
-    p->mu = array((int64_t)k * k, sizeof *p->mu);
-    p->en = array((int64_t)k * k, sizeof *p->en);
-    p->et = array((int64_t)k * k, sizeof *p->et);
-    bool allocated = p->kind_name && p->mu && p->en && p->et;
+    bool allocated = p->kind_name;
+#define ALLOC(member, ...)                                                                         \
+    p->member = array((int64_t)k * k, sizeof *p->member);                                          \
+    allocated = allocated && p->member;
+    EACH_PAIR_COLUMN(ALLOC)
+#undef ALLOC
     for (p->kinds = 0; allocated && p->kinds < k; p->kinds++) {
         char name[16];
         snprintf(name, sizeof name, "%d", p->kinds);
@@ -125,48 +169,42 @@ int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals, s
     return p->poured && p->removed ? 0 : why_set(why, EX_SOFTWARE, "no memory for passages");
 }
 
-/* The array that *at points to has n elements of `size` bytes, those from `had` on zero; false: it
-   is as it was. */
-static bool resize(void *at, int64_t had, int64_t n, size_t size)
-{
-    void *old;
-    memcpy(&old, at, sizeof old);
-    char *more = realloc(old, (n > 0 ? (size_t)n : 1) * size);
-    if (!more) return false;
-    if (n > had) memset(more + (size_t)had * size, 0, (size_t)(n - had) * size);
-    memcpy(at, &more, sizeof more);
-    return true; // cppcheck-suppress memleak ; it is *at now
-}
-
 int packing_resize(struct packing *p, int64_t n, struct why *why)
 {
+    for (const struct body_column *b = body_columns; b->column.name; b++) {
+        const struct column *c = &b->column;
+        size_t bytes = column_bytes(c);
+        char *old = column_array(c, p);
+        if (!old && is_optional(b)) continue;
+        char *more = realloc(old, (n > 0 ? (size_t)n : 1) * bytes);
+        if (!more) return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
+        if (n > p->n) memset(more + (size_t)p->n * bytes, 0, (size_t)(n - p->n) * bytes);
+        column_set_array(c, p, more);
+    }
     int64_t had = p->n;
-    if (!resize(&p->radius, had, n, sizeof *p->radius) ||
-        !resize(&p->mass, had, n, sizeof *p->mass) ||
-        !resize(&p->inertia, had, n, sizeof *p->inertia) ||
-        !resize(&p->id, had, n, sizeof *p->id) || !resize(&p->kind, had, n, sizeof *p->kind) ||
-        !resize(&p->x, had, n, sizeof *p->x) || !resize(&p->q, had, n, sizeof *p->q) ||
-        !resize(&p->v, had, n, sizeof *p->v) || !resize(&p->w, had, n, sizeof *p->w))
-        return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
-    if (p->shape && !resize(&p->shape, had, n, sizeof *p->shape))
-        return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
-    for (int64_t i = had; i < n; i++) p->id[i] = -1, p->q[i].w = 1;
     p->n = n;
+    set_default(p, had);
     return 0;
 }
 
-int packing_alloc_images(struct packing *p, struct why *why)
+void packing_copy_body(struct packing *p, int64_t to, const struct packing *from, int64_t i)
 {
-    free(p->image);
-    p->image = array(p->n, sizeof *p->image);
-    return p->image ? 0 : why_set(why, EX_SOFTWARE, "no memory for the images");
+    for (const struct body_column *b = body_columns; b->column.name; b++)
+        if (column_array(&b->column, p) && column_array(&b->column, from))
+            memcpy(column_row(&b->column, p, to), column_row(&b->column, from, i),
+                   column_bytes(&b->column));
 }
 
-int packing_alloc_shapes(struct packing *p, struct why *why)
+struct packing packing_with_bodies(const struct packing *p, const struct packing *bodies,
+                                   int64_t first, int64_t n)
 {
-    free(p->shape);
-    p->shape = array(p->n, sizeof *p->shape);
-    return p->shape ? 0 : why_set(why, EX_SOFTWARE, "no memory for the shapes");
+    struct packing q = *p;
+    q.n = n;
+    for (const struct body_column *b = body_columns; b->column.name; b++)
+        column_set_array(&b->column, &q,
+                         column_array(&b->column, bodies) ? column_row(&b->column, bodies, first)
+                                                          : NULL);
+    return q;
 }
 
 int packing_copy(struct packing *to, const struct packing *p, struct why *why)
@@ -178,27 +216,20 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     to->t0 = p->t0, to->step0 = p->step0, to->adapts = p->adapts, to->halved = p->halved;
     to->overlap = p->overlap;
     to->seed = p->seed;
-    if (cell_copy(&to->cell, &p->cell) || (p->image && packing_alloc_images(to, why))) goto fail;
-    if (p->image) memcpy(to->image, p->image, n * sizeof *p->image);
-    if (shapes_copy(&to->shapes, &p->shapes, why) || (p->shape && packing_alloc_shapes(to, why)))
+    if (cell_copy(&to->cell, &p->cell) || shapes_copy(&to->shapes, &p->shapes, why) ||
+        packing_alloc_optional(to, packing_optional(p), why))
         goto fail;
-    if (p->shape) memcpy(to->shape, p->shape, n * sizeof *p->shape);
-    memcpy(to->radius, p->radius, n * sizeof *p->radius);
-    memcpy(to->mass, p->mass, n * sizeof *p->mass);
-    memcpy(to->inertia, p->inertia, n * sizeof *p->inertia);
-    memcpy(to->id, p->id, n * sizeof *p->id);
-    memcpy(to->kind, p->kind, n * sizeof *p->kind);
-    memcpy(to->x, p->x, n * sizeof *p->x);
-    memcpy(to->q, p->q, n * sizeof *p->q);
-    memcpy(to->v, p->v, n * sizeof *p->v);
-    memcpy(to->w, p->w, n * sizeof *p->w);
+    for (const struct body_column *b = body_columns; b->column.name; b++)
+        if (column_array(&b->column, p))
+            memcpy(column_array(&b->column, to), column_array(&b->column, p),
+                   n * column_bytes(&b->column));
     memcpy(to->wall, p->wall, (size_t)p->walls * sizeof *p->wall);
     if (drives_copy(&to->drives, &p->drives, why) || drives_copy(&to->pushes, &p->pushes, why) ||
         mesh_copy(&to->mesh, &p->mesh, why))
         goto fail;
-    memcpy(to->mu, p->mu, k2 * sizeof *p->mu);
-    memcpy(to->en, p->en, k2 * sizeof *p->en);
-    memcpy(to->et, p->et, k2 * sizeof *p->et);
+#define COPY(member, ...) memcpy(to->member, p->member, k2 * sizeof *p->member);
+    EACH_PAIR_COLUMN(COPY)
+#undef COPY
     if (p->law && packing_alloc_laws(to, why)) goto fail;
     if (p->law) memcpy(to->law, p->law, k2 * sizeof *p->law);
     if (bonds_copy(&to->bonds, &p->bonds, why) || memory_copy(&to->memory, &p->memory, why))
@@ -277,16 +308,23 @@ struct whole packing_whole(const struct packing *p)
     return all;
 }
 
+/* What is wrong with a column's real numbers of body i, or NULL */
+static const char *number_trouble(const struct body_column *b, const struct packing *p, int64_t i)
+{
+    const double *x = column_row(&b->column, p, i);
+    for (int k = 0; k < b->column.width; k++) {
+        if ((b->traits & BODY_POSITIVE) && !(x[k] > 0 && isfinite(x[k])))
+            return "must be positive and finite";
+        if ((b->traits & BODY_NOT_NEGATIVE) && !(x[k] >= 0 && isfinite(x[k])))
+            return "must be finite and not negative";
+        if (!isfinite(x[k])) return "is not finite";
+    }
+    return NULL;
+}
+
 static const char *body_trouble(const struct packing *p, int64_t i)
 {
-    if (!(p->radius[i] > 0 && isfinite(p->radius[i]))) return "radius must be positive and finite";
-    if (!(p->mass[i] >= 0 && isfinite(p->mass[i]))) return "mass must be finite and not negative";
-    if (!(p->inertia[i] >= 0 && isfinite(p->inertia[i])))
-        return "inertia must be finite and not negative";
     if (p->mass[i] > 0 && !(p->inertia[i] > 0)) return "inertia must be positive where mass is";
-    if (!v3_finite(p->x[i])) return "position is not finite";
-    if (!v3_finite(p->v[i])) return "velocity is not finite";
-    if (!v3_finite(p->w[i])) return "angular velocity is not finite";
     quat q = p->q[i];
     if (!(fabs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1) < 1e-6))
         return "orientation is not a unit quaternion";
@@ -375,8 +413,15 @@ static int check_cell(const struct packing *p, struct why *why)
 static int check_bodies(const struct packing *p, int64_t first, struct why *why)
 {
     for (int64_t i = 0; i < p->n; i++) {
-        const char *trouble = body_trouble(p, i);
-        if (trouble)
+        const char *trouble = NULL;
+        for (const struct body_column *b = body_columns; b->column.name && !trouble; b++) {
+            bool real = b->column.type == COLUMN_F64 && column_array(&b->column, p);
+            trouble = real ? number_trouble(b, p, i) : NULL;
+            if (trouble)
+                return why_set(why, EX_DATAERR, "body %lld: %s %s", (long long)(first + i),
+                               b->column.name, trouble);
+        }
+        if ((trouble = body_trouble(p, i)))
             return why_set(why, EX_DATAERR, "body %lld: %s", (long long)(first + i), trouble);
     }
     return 0;
@@ -401,11 +446,12 @@ int packing_check(const struct packing *p, struct why *why)
     for (int32_t i = 0; i < p->kinds * p->kinds; i++) {
         const char *pair = "the material of kinds %s and %s: %s";
         const char *a = p->kind_name[i / p->kinds], *b = p->kind_name[i % p->kinds];
-        if (!(p->mu[i] >= 0 && isfinite(p->mu[i])))
-            return why_set(why, EX_DATAERR, pair, a, b, "mu must not be negative");
-        if (!(p->en[i] >= 0 && p->en[i] <= 1 && p->et[i] >= 0 && p->et[i] <= 1))
-            return why_set(why, EX_DATAERR, pair, a, b, "restitution must lie in [0, 1]");
         const char *trouble = p->law ? law_trouble(&p->law[i]) : NULL;
+#define CHECK(member, name, unit, key, most, range)                                                \
+    if (!(p->member[i] >= 0 && p->member[i] <= most && isfinite(p->member[i])))                    \
+        trouble = name " " range;
+        EACH_PAIR_COLUMN(CHECK)
+#undef CHECK
         if (trouble) return why_set(why, EX_DATAERR, pair, a, b, trouble);
     }
     if (check_bodies(p, 0, why)) return why->status;
@@ -433,8 +479,8 @@ struct cell_flow packing_flow(const struct packing *p)
 {
     struct cell_flow f;
     vec3 half[3], gain[3];
-    cell_predict(&p->cell, (1 - p->theta) * p->dt, half);
-    cell_next_rate(&p->cell, p->t, p->dt, p->theta, gain);
+    cell_predict(&p->cell, step_ahead(p), half);
+    cell_next_rate(&p->cell, p->t + p->dt, step_ahead(p), step_after(p), gain);
     for (int k = 0; k < 3; k++) gain[k] = v3_sub(gain[k], p->cell.rate[k]);
     cell_flow_init(&f, &p->cell, half, gain);
     return f;

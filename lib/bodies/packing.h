@@ -9,17 +9,19 @@
 
 #include "base/vec.h"
 #include "base/why.h"
+#include "bodies/body_columns.h"
 #include "bodies/bond.h"
-#include "bodies/boundary.h"
-#include "bodies/cell.h"
 #include "bodies/contact.h"
-#include "bodies/drive.h"
 #include "bodies/law.h"
 #include "bodies/memory.h"
-#include "bodies/mesh.h"
 #include "bodies/overlap.h"
+#include "bodies/pair_columns.h"
 #include "bodies/passage.h"
-#include "bodies/shape.h"
+#include "geometry/boundary.h"
+#include "geometry/cell.h"
+#include "geometry/drive.h"
+#include "geometry/mesh.h"
+#include "geometry/shape.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -40,16 +42,8 @@ struct packing {
     uint64_t seed;
     enum overlap overlap;
 
-    double *radius;      /* [n] m */
-    double *mass;        /* [n] kg; 0: immovable or prescribed */
-    double *inertia;     /* [n] kg m^2; the mean of the principal moments */
-    int32_t *id;         /* [n] a number that stays with the body */
-    int32_t *kind;       /* [n] row of the material tables */
-    vec3 *x;             /* [n] m */
-    quat *q;             /* [n] orientation */
-    vec3 *v, *w;         /* [n] m/s, rad/s */
-    int32_t *shape;      /* [n] row of shapes; NULL: all are balls */
-    int32_t (*image)[3]; /* [n] edges to add to x for the way gone; NULL: nothing repeats */
+    EACH_BODY_COLUMN(
+        BODY_POINTER) /* radius, mass, inertia, id, kind, shape, x, v, w, q, image: [n] */
 
     struct shapes shapes; /* of bodies; radius is that of the ball around them */
 
@@ -61,9 +55,8 @@ struct packing {
     struct cell cell;
 
     int32_t kinds;
-    char **kind_name;   /* [kinds] */
-    double *mu;         /* [kinds * kinds], symmetric: friction */
-    double *en, *et;    /* [kinds * kinds], symmetric: normal and tangential restitution */
+    char **kind_name;              /* [kinds] */
+    EACH_PAIR_COLUMN(PAIR_POINTER) /* mu, en, et: [kinds * kinds], symmetric */
     struct law *law;    /* [kinds * kinds], symmetric: what is beyond these; NULL: nothing */
     struct bonds bonds; /* what lasts of pairs by these laws */
 
@@ -118,19 +111,33 @@ static inline bool packing_varies(const struct packing *p)
 
 /* Has any pair of kinds rolling or pivoting friction? */
 bool packing_rolls(const struct packing *p);
-/* May an impact gain energy [bodies/balance.h]? It wants restitution and friction. */
+/* May an impact gain energy [motion/balance.h]? It wants restitution and friction. */
 bool packing_may_gain(const struct packing *p);
 /* Is Newton's law to be bounded for the contact [solve/rebound.h]? */
 bool packing_bounds(const struct packing *p, const struct contact *c);
 
 /* Room for n bodies; those beyond the present ones are at rest at the origin, their id -1. Fewer: the
-   last ones are cut off. Returns 0 or EX_SOFTWARE, where nothing has changed. */
+   last ones are cut off. Returns 0 or EX_SOFTWARE; then n is as before. */
 int packing_resize(struct packing *p, int64_t n, struct why *why);
-/* image[n], all zero, in place of the old one. Returns 0 or EX_SOFTWARE. */
-int packing_alloc_images(struct packing *p, struct why *why);
-
-/* shape[n], all balls, in place of the old one. Returns 0 or EX_SOFTWARE. */
-int packing_alloc_shapes(struct packing *p, struct why *why);
+/* The array of a column, all zero, in place of the old one. Returns 0 or EX_SOFTWARE. */
+int packing_alloc_column(struct packing *p, int column, struct why *why);
+/* The optional arrays that p has, bit k for body_columns[k]; and those of such a set, all zero */
+uint32_t packing_optional(const struct packing *p);
+int packing_alloc_optional(struct packing *p, uint32_t columns, struct why *why);
+/* shape[n], all balls; image[n], all zero */
+static inline int packing_alloc_shapes(struct packing *p, struct why *why)
+{
+    return packing_alloc_column(p, BODY_shape, why);
+}
+static inline int packing_alloc_images(struct packing *p, struct why *why)
+{
+    return packing_alloc_column(p, BODY_image, why);
+}
+/* Body `to` of p = body i of from, all numbers that both have */
+void packing_copy_body(struct packing *p, int64_t to, const struct packing *from, int64_t i);
+/* p with n bodies and arrays of `bodies`, from row `first` on; all is borrowed, from both. */
+struct packing packing_with_bodies(const struct packing *p, const struct packing *bodies,
+                                   int64_t first, int64_t n);
 
 /*
  * The time is a function of the step, with one rounding of the product and one of the sum: it does not
@@ -200,10 +207,23 @@ double wall_force(const struct packing *p, const struct wall *w);
    within that of the bodies */
 double wall_top_speed(const struct packing *p, const struct wall *w);
 
+/*
+ * The theta method: the contacts of a step act where bodies are after step_ahead() at their first velocities,
+ * and the rest, step_after(), goes by the velocities that the reactions make. No other place knows theta.
+ */
+/* s: (1 - theta) dt, and theta dt */
+static inline double step_ahead(const struct packing *p)
+{
+    return (1 - p->theta) * p->dt;
+}
+static inline double step_after(const struct packing *p)
+{
+    return p->theta * p->dt;
+}
 /* m: the position at which contacts are detected, q + (1 - theta) dt qdot [globalmapapp1]. */
 static inline vec3 packing_predict(const struct packing *p, int64_t i)
 {
-    return v3_axpy(p->x[i], (1 - p->theta) * p->dt, p->v[i]);
+    return v3_axpy(p->x[i], step_ahead(p), p->v[i]);
 }
 
 /* The acceleration of the flow that the cell's edges make, in the step to come */
@@ -219,7 +239,9 @@ static inline int32_t packing_pair(const struct packing *p, int32_t a, int32_t b
 static inline void packing_set_law(const struct packing *p, struct contact *c)
 {
     int32_t k = packing_pair(p, c->a, c->b);
-    c->mu = p->mu[k], c->en = p->en[k], c->et = p->et[k];
+#define SET(member, ...) c->member = p->member[k];
+    EACH_PAIR_COLUMN(SET)
+#undef SET
 }
 
 /* m: of the bodies of a contact */

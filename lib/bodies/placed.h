@@ -1,13 +1,13 @@
 /*
  * bodies/placed.h: shaped bodies where contacts are sought: the corners of all in space, and the
- * normals of hulls. Made once for a search; a body is then its cores [bodies/core.h], a clump one for
+ * normals of hulls. Made once for a search; a body is then its cores [geometry/core.h], a clump one for
  * each of its balls, all other bodies one.
  */
 #ifndef NSD_PLACED_H
 #define NSD_PLACED_H
 
-#include "bodies/core.h"
 #include "bodies/packing.h"
+#include "geometry/core.h"
 
 struct placed {
     const struct packing *p;

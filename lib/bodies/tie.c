@@ -86,7 +86,7 @@ static void set_bond(struct tie *t, const struct packing *p, const struct contac
 /* m/s: an impact that rebounds waits for the bodies to touch */
 static double offset_apart(const struct packing *p, const struct contact *c)
 {
-    double approach = -opening_of(p, c, (1 - p->theta) * p->dt);
+    double approach = -opening_of(p, c, step_ahead(p));
     bool impact = c->en > 0 && approach > freedoms_calm(p);
     return c->gap / p->dt + (impact ? 2 * approach : 0);
 }
@@ -166,7 +166,7 @@ static double opening_after(const struct packing *p, const struct contact *c, co
                             const struct found *found)
 {
     if (t->offset > 0) return found->u[0] - t->offset;
-    double before = opening_of(p, c, (1 - p->theta) * p->dt);
+    double before = opening_of(p, c, step_ahead(p));
     return (1 + c->en) * found->u[0] - c->en * before - offset_of(p, c, before);
 }
 

@@ -59,7 +59,7 @@ quat top_turn(const struct packing *p, int64_t i, quat q, vec3 L, double dt)
 
 quat top_predict(const struct packing *p, int64_t i)
 {
-    double ahead = (1 - p->theta) * p->dt;
+    double ahead = step_ahead(p);
     if (top_is(p, i)) return top_turn(p, i, p->q[i], top_momentum(p, i, p->q[i], p->w[i]), ahead);
     return quat_mul(quat_rotation(v3_scale(ahead, p->w[i])), p->q[i]);
 }

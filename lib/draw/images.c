@@ -1,7 +1,7 @@
 /* draw/images.c: bodies on either side of the cell's border, and the border [draw/images.h]. */
 #include "draw/images.h"
 
-#include "bodies/tidy.h"
+#include "bodies/wrap.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -32,10 +32,8 @@ static bool shift_of(const struct cell *c, int k, int8_t shift[3])
 /* Body `to` of q = body i of p, moved */
 static void copy_body(struct packing *q, int64_t to, const struct packing *p, int64_t i, vec3 by)
 {
-    q->x[to] = v3_add(p->x[i], by), q->q[to] = p->q[i], q->v[to] = p->v[i], q->w[to] = p->w[i];
-    q->radius[to] = p->radius[i], q->mass[to] = p->mass[i], q->inertia[to] = p->inertia[i];
-    q->id[to] = p->id[i], q->kind[to] = p->kind[i];
-    if (p->shape) q->shape[to] = p->shape[i];
+    packing_copy_body(q, to, p, i);
+    q->x[to] = v3_add(p->x[i], by);
 }
 
 /* Fills q, or counts only where it is NULL: the bodies, then their images. */
@@ -62,10 +60,11 @@ int images_append(struct packing *p, int64_t **of, struct why *why)
     struct packing q;
     *of = NULL;
     if (!cell_repeats(&p->cell)) return 0;
-    packing_tidy(p, NULL);
+    packing_wrap(p, NULL);
     int64_t n = fill(NULL, NULL, p);
     if (packing_init(&q, p->dim, n, why)) return why->status;
-    if (p->shape && packing_alloc_shapes(&q, why)) {
+    uint32_t optional = packing_optional(p) & ~(1u << BODY_image);
+    if (packing_alloc_optional(&q, optional, why)) {
         packing_free(&q);
         return why->status;
     }
@@ -76,14 +75,10 @@ int images_append(struct packing *p, int64_t **of, struct why *why)
     }
     fill(&q, *of, p);
     // all that a packing has beside its bodies changes hands
-    struct packing all = *p;
-    all.n = n, all.x = q.x, all.q = q.q, all.v = q.v, all.w = q.w, all.radius = q.radius;
-    all.mass = q.mass, all.inertia = q.inertia, all.id = q.id, all.kind = q.kind, all.image = NULL;
-    all.shape = q.shape, q.shape = p->shape;
-    q.n = p->n, q.x = p->x, q.q = p->q, q.v = p->v, q.w = p->w, q.radius = p->radius;
-    q.mass = p->mass, q.inertia = p->inertia, q.id = p->id, q.kind = p->kind, q.image = p->image;
+    struct packing all = packing_with_bodies(p, &q, 0, n),
+                   rest = packing_with_bodies(&q, p, 0, p->n);
     *p = all;
-    packing_free(&q);
+    packing_free(&rest);
     return 0;
 }
 

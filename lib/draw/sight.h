@@ -2,12 +2,12 @@
  * draw/sight.h: what a line of sight meets of a shape, exactly: rounded hulls are seen as the union of
  * their core, the prisms on its faces, and the tubes and balls along its edges.
  *
- * All is in the shape's own axes and unit [bodies/shape.h].
+ * All is in the shape's own axes and unit [geometry/shape.h].
  */
 #ifndef NSD_SIGHT_H
 #define NSD_SIGHT_H
 
-#include "bodies/shape.h"
+#include "geometry/shape.h"
 
 struct sight {
     vec3 from, along; /* the line: from + t along, a unit vector; the viewer is at t = infinity */

@@ -6,7 +6,7 @@
 #define NSD_FORMAT_H
 
 #include "base/why.h"
-#include "export/moment.h"
+#include "export/export_frame.h"
 
 #include <stdio.h>
 
@@ -21,7 +21,8 @@ struct format {
      * Writes a moment; `first` of its file. 0 also where the disk is full: ferror(out) tells. Returns
      * EX_SOFTWARE when memory is short.
      */
-    int (*write)(FILE *out, const struct moment *m, enum part part, bool first, struct why *why);
+    int (*write)(FILE *out, const struct export_frame *m, enum part part, bool first,
+                 struct why *why);
 };
 
 extern const struct format format_vtp, format_vtu, format_xyz, format_lammps, format_csv,

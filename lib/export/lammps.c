@@ -35,7 +35,7 @@ static void put_tilted(FILE *out, const struct box *b)
 static void put_box(FILE *out, const struct packing *p)
 {
     struct box b;
-    moment_box(&b, p);
+    export_frame_box(&b, p);
     const vec3 *e = b.edge, o = b.origin;
     bool restricted = is_restricted(e);
     if (restricted && e[1].x == 0 && e[2].x == 0 && e[2].y == 0) {
@@ -54,7 +54,8 @@ static void put_box(FILE *out, const struct packing *p)
         fprintf(out, "%.17g %.17g %.17g %.17g\n", e[k].x, e[k].y, e[k].z, from[k]);
 }
 
-static int dump(FILE *out, const struct moment *m, enum part part, bool first, struct why *why)
+static int dump(FILE *out, const struct export_frame *m, enum part part, bool first,
+                struct why *why)
 {
     const struct packing *p = m->packing;
     (void)part, (void)first, (void)why;

@@ -10,11 +10,11 @@ void sheet_free(struct sheet *s)
     *s = (struct sheet){ 0 };
 }
 
-int sheet_of(struct sheet *s, enum part part, const struct moment *m, struct why *why)
+int sheet_of(struct sheet *s, enum part part, const struct export_frame *m, struct why *why)
 {
-    static int (*const fill[PART_COUNT])(struct sheet *, const struct moment *, struct why *) = {
-        sheet_grains, sheet_contacts, sheet_boundary, sheet_box, sheet_surfaces
-    };
+    static int (*const fill[PART_COUNT])(
+        struct sheet *, const struct export_frame *,
+        struct why *) = { sheet_grains, sheet_contacts, sheet_boundary, sheet_box, sheet_surfaces };
     *s = (struct sheet){ .shape = SHEET_POINT };
     if (fill[part](s, m, why)) sheet_free(s);
     return why->status;

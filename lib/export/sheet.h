@@ -6,7 +6,7 @@
 #define NSD_SHEET_H
 
 #include "base/why.h"
-#include "export/moment.h"
+#include "export/export_frame.h"
 
 enum { SHEET_COLUMNS = 24 };
 
@@ -33,7 +33,7 @@ struct sheet {
 };
 
 /* s = a part of a moment, of as many cells as there are such things. Returns 0 or EX_SOFTWARE. */
-int sheet_of(struct sheet *s, enum part part, const struct moment *m, struct why *why);
+int sheet_of(struct sheet *s, enum part part, const struct export_frame *m, struct why *why);
 void sheet_free(struct sheet *s);
 
 static inline int64_t sheet_rows(const struct sheet *s)
@@ -43,11 +43,11 @@ static inline int64_t sheet_rows(const struct sheet *s)
 
 /* ---- for those who fill one: export/sheet_*.c ---- */
 
-int sheet_grains(struct sheet *s, const struct moment *m, struct why *why);
-int sheet_contacts(struct sheet *s, const struct moment *m, struct why *why);
-int sheet_boundary(struct sheet *s, const struct moment *m, struct why *why);
-int sheet_surfaces(struct sheet *s, const struct moment *m, struct why *why);
-int sheet_box(struct sheet *s, const struct moment *m, struct why *why);
+int sheet_grains(struct sheet *s, const struct export_frame *m, struct why *why);
+int sheet_contacts(struct sheet *s, const struct export_frame *m, struct why *why);
+int sheet_boundary(struct sheet *s, const struct export_frame *m, struct why *why);
+int sheet_surfaces(struct sheet *s, const struct export_frame *m, struct why *why);
+int sheet_box(struct sheet *s, const struct export_frame *m, struct why *why);
 
 /* One cell more, of these corners. */
 int sheet_add(struct sheet *s, int corners, const vec3 *x, struct why *why);

@@ -72,7 +72,7 @@ static int add_columns(struct sheet *s, const struct owners *o, const struct pac
     return 0;
 }
 
-int sheet_boundary(struct sheet *s, const struct moment *m, struct why *why)
+int sheet_boundary(struct sheet *s, const struct export_frame *m, struct why *why)
 {
     const struct packing *p = m->packing;
     struct region region = { 0 };

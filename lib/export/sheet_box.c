@@ -1,13 +1,13 @@
 /* export/sheet_box.c: the cell as the lines along its edges; none where nothing repeats. */
 #include "export/sheet.h"
 
-int sheet_box(struct sheet *s, const struct moment *m, struct why *why)
+int sheet_box(struct sheet *s, const struct export_frame *m, struct why *why)
 {
     const struct cell *c = &m->packing->cell;
     struct box b;
     s->shape = SHEET_LINE;
     if (!cell_repeats(c)) return 0;
-    moment_box(&b, m->packing);
+    export_frame_box(&b, m->packing);
     for (int k = 0; k < 3; k++)
         for (int corner = 0; corner < 4; corner++) {
             vec3 from = b.origin;

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-static int add_lines(struct sheet *s, const struct moment *m, struct why *why)
+static int add_lines(struct sheet *s, const struct export_frame *m, struct why *why)
 {
     const struct packing *p = m->packing;
     for (int64_t i = 0; i < m->contacts->n; i++) {
@@ -23,7 +23,7 @@ static void put(double *out, int64_t i, vec3 x)
     out[3 * i] = x.x, out[3 * i + 1] = x.y, out[3 * i + 2] = x.z;
 }
 
-static int add_forces(struct sheet *s, const struct moment *m, struct why *why)
+static int add_forces(struct sheet *s, const struct export_frame *m, struct why *why)
 {
     const double dt = m->packing->dt;
     int32_t *status = sheet_whole(s, "status", "", why);
@@ -40,7 +40,7 @@ static int add_forces(struct sheet *s, const struct moment *m, struct why *why)
     return 0;
 }
 
-int sheet_contacts(struct sheet *s, const struct moment *m, struct why *why)
+int sheet_contacts(struct sheet *s, const struct export_frame *m, struct why *why)
 {
     const struct packing *p = m->packing;
     s->shape = SHEET_LINE;

@@ -4,7 +4,7 @@
 #include <string.h>
 
 /* contacts[i], force[i] = how many contacts of grain i push, and the sum of their forces (N) */
-static int add_contacts(struct sheet *s, const struct moment *m, struct why *why)
+static int add_contacts(struct sheet *s, const struct export_frame *m, struct why *why)
 {
     const struct packing *p = m->packing;
     const struct contacts *t = m->contacts;
@@ -25,7 +25,7 @@ static int add_contacts(struct sheet *s, const struct moment *m, struct why *why
     return 0;
 }
 
-int sheet_grains(struct sheet *s, const struct moment *m, struct why *why)
+int sheet_grains(struct sheet *s, const struct export_frame *m, struct why *why)
 {
     const struct packing *p = m->packing;
     const size_t n = (size_t)p->n;

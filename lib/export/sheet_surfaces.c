@@ -51,7 +51,7 @@ static void add_columns(struct sheet *s, const int32_t *of, const struct packing
     }
 }
 
-int sheet_surfaces(struct sheet *s, const struct moment *m, struct why *why)
+int sheet_surfaces(struct sheet *s, const struct export_frame *m, struct why *why)
 {
     const struct packing *p = m->packing;
     struct cells c = { .s = s, .why = why };

@@ -54,7 +54,7 @@ static int64_t polygon_triangles(const struct sheet *s)
     return n;
 }
 
-static int stl(FILE *out, const struct moment *m, enum part part, bool first, struct why *why)
+static int stl(FILE *out, const struct export_frame *m, enum part part, bool first, struct why *why)
 {
     const struct packing *p = m->packing;
     struct facets b;

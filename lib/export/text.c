@@ -20,7 +20,8 @@ static void put_names(FILE *out, const struct sheet *s, char by)
     putc('\n', out);
 }
 
-static void put_row(FILE *out, const struct moment *m, const struct sheet *s, int64_t row, char by)
+static void put_row(FILE *out, const struct export_frame *m, const struct sheet *s, int64_t row,
+                    char by)
 {
     fprintf(out, "%" PRId64 "%c%.17g", m->packing->step, by, m->packing->t);
     if (s->of_points) {
@@ -38,7 +39,7 @@ static void put_row(FILE *out, const struct moment *m, const struct sheet *s, in
     putc('\n', out);
 }
 
-static int put(FILE *out, const struct moment *m, enum part part, bool first, char by,
+static int put(FILE *out, const struct export_frame *m, enum part part, bool first, char by,
                struct why *why)
 {
     struct sheet s;
@@ -49,12 +50,12 @@ static int put(FILE *out, const struct moment *m, enum part part, bool first, ch
     return 0;
 }
 
-static int csv(FILE *out, const struct moment *m, enum part part, bool first, struct why *why)
+static int csv(FILE *out, const struct export_frame *m, enum part part, bool first, struct why *why)
 {
     return put(out, m, part, first, ',', why);
 }
 
-static int tsv(FILE *out, const struct moment *m, enum part part, bool first, struct why *why)
+static int tsv(FILE *out, const struct export_frame *m, enum part part, bool first, struct why *why)
 {
     return put(out, m, part, first, '\t', why);
 }

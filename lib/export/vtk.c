@@ -35,7 +35,7 @@ static void put_block(FILE *out, const struct block *b)
     if (b->size) fwrite(b->data, 1, b->size, out);
 }
 
-static void open_file(FILE *out, const char *type, const struct moment *m)
+static void open_file(FILE *out, const char *type, const struct export_frame *m)
 {
     const uint16_t one = 1;
     const char *order = *(const char *)&one ? "LittleEndian" : "BigEndian";
@@ -83,7 +83,7 @@ static void close_file(FILE *out, const char *type, const struct block *b, int b
     fprintf(out, "\n</AppendedData>\n</VTKFile>\n");
 }
 
-static void write_poly(FILE *out, const struct moment *m, const struct sheet *s)
+static void write_poly(FILE *out, const struct export_frame *m, const struct sheet *s)
 {
     struct block b[BLOCKS];
     int blocks = list_blocks(b, s);
@@ -101,7 +101,8 @@ static void write_poly(FILE *out, const struct moment *m, const struct sheet *s)
     close_file(out, "PolyData", b, blocks);
 }
 
-static int write_cells(FILE *out, const struct moment *m, const struct sheet *s, struct why *why)
+static int write_cells(FILE *out, const struct export_frame *m, const struct sheet *s,
+                       struct why *why)
 {
     struct block b[BLOCKS];
     int blocks = list_blocks(b, s);
@@ -122,7 +123,7 @@ static int write_cells(FILE *out, const struct moment *m, const struct sheet *s,
     return 0;
 }
 
-static int vtp(FILE *out, const struct moment *m, enum part part, bool first, struct why *why)
+static int vtp(FILE *out, const struct export_frame *m, enum part part, bool first, struct why *why)
 {
     struct sheet s;
     (void)first;
@@ -132,7 +133,7 @@ static int vtp(FILE *out, const struct moment *m, enum part part, bool first, st
     return 0;
 }
 
-static int vtu(FILE *out, const struct moment *m, enum part part, bool first, struct why *why)
+static int vtu(FILE *out, const struct export_frame *m, enum part part, bool first, struct why *why)
 {
     struct sheet s;
     (void)first;

@@ -13,7 +13,7 @@ static void put_cell(FILE *out, const struct packing *p)
     struct box b;
     const bool *r = p->cell.repeats;
     if (cell_repeats(&p->cell)) {
-        moment_box(&b, p);
+        export_frame_box(&b, p);
         const vec3 *e = b.edge;
         fprintf(out,
                 "Lattice=\"%.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g\" "
@@ -24,7 +24,8 @@ static void put_cell(FILE *out, const struct packing *p)
     fprintf(out, "pbc=\"%c %c %c\" ", r[0] ? 'T' : 'F', r[1] ? 'T' : 'F', r[2] ? 'T' : 'F');
 }
 
-static int write_xyz(FILE *out, const struct moment *m, enum part part, bool first, struct why *why)
+static int write_xyz(FILE *out, const struct export_frame *m, enum part part, bool first,
+                     struct why *why)
 {
     const struct packing *p = m->packing;
     (void)part, (void)first, (void)why;

@@ -1,6 +1,6 @@
 #include "io/boundary_tables.h"
 
-#include "io/h5.h"
+#include "hdf5/h5.h"
 #include "io/table_read.h"
 
 #include <stdio.h>

@@ -5,7 +5,7 @@
 #ifndef NSD_BOUNDARY_TABLES_H
 #define NSD_BOUNDARY_TABLES_H
 
-#include "io/source.h"
+#include "hdf5/source.h"
 #include "io/table_write.h"
 
 /* Those of frame k, whose time p has */

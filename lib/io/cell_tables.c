@@ -1,6 +1,6 @@
 #include "io/cell_tables.h"
 
-#include "io/h5.h"
+#include "hdf5/h5.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -78,8 +78,7 @@ static int read_drive(struct source *doc, struct cell *c, struct why *why)
 int cell_tables_read(struct source *source, int64_t k, const bool repeats[3], struct packing *p,
                      struct why *why)
 {
-    const char *origin = "/particles/all/box/origin", *rate = "/particles/all/box/rate/value",
-               *image = "/particles/all/image/value";
+    const char *origin = "/particles/all/box/origin", *rate = "/particles/all/box/rate/value";
     struct cell *c = &p->cell;
     memcpy(c->repeats, repeats, sizeof c->repeats);
     if (!cell_repeats(c)) return 0;
@@ -88,11 +87,8 @@ int cell_tables_read(struct source *source, int64_t k, const bool repeats[3], st
         (source_has(source, origin) && source_read(source, origin, COLUMN_F64, 3, &c->origin, why)))
         return why->status;
     cell_set_rate(c, p->t);
-    if (source_has(source, rate) && source_rows(source, rate, COLUMN_F64, k, 1, 9, c->rate, why))
-        return why->status;
-    return p->n && source_has(source, image)
-               ? source_rows(source, image, COLUMN_I32, k, 1, 3 * p->n, p->image, why)
-               : 0;
+    return source_has(source, rate) ? source_rows(source, rate, COLUMN_F64, k, 1, 9, c->rate, why)
+                                    : 0;
 }
 
 /* ---- to a document ---- */
@@ -151,9 +147,8 @@ int cell_tables_write(struct table_write *s, const struct packing *p, struct why
         char path[80];
         snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
         const hsize_t shape[3] = { 1, 3, 3 };
-        if (c == layout_cell ? table_write_bodies(s, path, c, true, p, why)
-                             : table_write_rows(s, path, c->type, 3, shape, CHUNK_FRAMES,
-                                                (const char *)&p->cell + c->offset, c->units, why))
+        if (table_write_rows(s, path, c->type, 3, shape, CHUNK_FRAMES,
+                             (const char *)&p->cell + c->offset, c->units, why))
             return why->status;
     }
     return 0;

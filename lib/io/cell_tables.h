@@ -5,7 +5,7 @@
 #ifndef NSD_CELL_TABLES_H
 #define NSD_CELL_TABLES_H
 
-#include "io/source.h"
+#include "hdf5/source.h"
 #include "io/table_write.h"
 
 /* Which edges of a document's box are periodic */

@@ -1,7 +1,7 @@
 #include "io/contact_rows.h"
 
-#include "io/elsewhere.h"
-#include "io/h5.h"
+#include "hdf5/h5.h"
+#include "io/distributed.h"
 #include "law/local.h"
 
 #include <stdlib.h>
@@ -110,7 +110,7 @@ int contact_rows_read(struct contact_rows *r, struct frame *f, struct why *why)
                                       s->found, sizeof *s->found, why)) ||
         (solved && packing_rolls(&f->packing) && read_moments(r->source, first, s, why)))
         return why->status;
-    int64_t n = f->elsewhere ? f->elsewhere->n : f->packing.n;
+    int64_t n = f->distributed ? f->distributed->n : f->packing.n;
     if (contacts_check(s, n, f->packing.walls, why) || check_order(s, why) ||
         check_shifts(s, &f->packing.cell, why))
         return why->status;

@@ -1,6 +1,6 @@
 /* io/fclib.c: the reading half of io/fclib.h; io/fclib_write.c is the other. */
 #include "io/fclib.h"
-#include "io/source.h"
+#include "hdf5/source.h"
 
 #include <math.h>
 #include <stdlib.h>

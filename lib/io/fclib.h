@@ -2,7 +2,7 @@
  * io/fclib.h: frictional contact problems in the FCLIB format, in and out: local and global, in two
  * and three dimensions, as libfclib 3 reads and writes them. No file is trusted: every length,
  * index and number is checked. The names here differ from libfclib's own, so that one program may
- * link both. Problems are read from a source (io/source.h) and written to a `file`, an hid_t of
+ * link both. Problems are read from a source (hdf5/source.h) and written to a `file`, an hid_t of
  * libhdf5.
  */
 #ifndef NSD_FCLIB_H

@@ -1,6 +1,6 @@
 /* io/fclib_write.c: the writing half of io/fclib.h: solutions, and the problem of a packing. */
+#include "hdf5/h5.h"
 #include "io/fclib.h"
-#include "io/h5.h"
 #include "problem/assembly.h"
 #include "problem/bonded.h"
 

@@ -5,7 +5,7 @@
 #ifndef NSD_FLOW_TABLES_H
 #define NSD_FLOW_TABLES_H
 
-#include "io/source.h"
+#include "hdf5/source.h"
 #include "io/table_write.h"
 
 /* A frame's part; nothing where bodies stay. */

@@ -10,7 +10,7 @@
 #include "io/unknown.h"
 #include "solve/account.h"
 
-struct elsewhere;
+struct distributed;
 
 struct frame {
     bool packed;   /* packing is valid, */
@@ -19,8 +19,8 @@ struct frame {
     bool moved;    /* the contacts' reactions have led to this packing, not from it */
     bool forces;   /* reactions are written as forces in space, too */
     struct packing packing;
-    struct elsewhere
-        *elsewhere; /* who has its bodies [io/elsewhere.h], borrowed; NULL: the packing */
+    struct distributed
+        *distributed; /* who has its bodies [io/distributed.h], borrowed; NULL: the packing */
     struct contacts contacts;
     struct report report;
     struct account account; /* of the trajectory so far, by the runs that have made it */

@@ -2,7 +2,7 @@
 
 #include "io/boundary_tables.h"
 #include "io/cell_tables.h"
-#include "io/elsewhere.h"
+#include "io/distributed.h"
 #include "io/flow_tables.h"
 #include "io/law_tables.h"
 #include "io/roster.h"
@@ -18,6 +18,12 @@ enum {
         2 * 8192 /* bodies that are read at once where others take them: two chunks of nsd's own */
 };
 
+/* Does the document have no dataset of a column that it may lack? */
+static bool may_lack(const struct source *s, const struct body_column *b, const char *path)
+{
+    return (b->traits & BODY_OPTIONAL) && !source_has(s, path);
+}
+
 /* Steps and times of the frames. A frame counts when all of its motion is there. */
 static int count_frames(struct frame_read *r, struct why *why)
 {
@@ -27,12 +33,13 @@ static int count_frames(struct frame_read *r, struct why *why)
     r->time = source_read_all(r->source, "/particles/all/position/time", COLUMN_F64, &m, why);
     if (!r->step || !r->time) return why->status;
     n = n < (int64_t)m ? n : (int64_t)m;
-    for (const struct column *c = layout_motion; c->name; c++) {
+    for (const struct body_column *b = body_columns; b->column.name; b++) {
         char path[80];
-        snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
+        layout_body_path(b, path);
+        if (!(b->traits & BODY_MOVES) || b->traits & BODY_OPTIONAL) continue;
         if (source_shape(r->source, path, shape) != 3)
             return why_set(why, EX_DATAERR, "%s: no dataset of shape frames x bodies x %d", path,
-                           c->width);
+                           b->column.width);
         n = n < (int64_t)shape[0] ? n : (int64_t)shape[0];
     }
     if (source_shape(r->source, "/particles/all/id/value", shape) == 2)
@@ -178,39 +185,54 @@ static int read_clock(struct frame_read *r, int64_t k, struct packing *p, struct
     return source_has(r->source, LAYOUT_TIME_STEP) ? read_time_step(r, k, origin[0], p, why) : 0;
 }
 
-/* Bodies as they are in every frame, and where they are in frame k */
-static int read_bodies(struct frame_read *r, int64_t k, struct packing *p, struct why *why)
+/* The bodies of frame k in rows first .. first + p->n - 1, into p; first -1: all rows that there are */
+static int read_bodies(struct frame_read *r, int64_t k, int64_t first, struct packing *p,
+                       struct why *why)
 {
-    for (const struct column *c = layout_bodies; c->name; c++) {
+    for (const struct body_column *b = body_columns; b->column.name; b++) {
+        const struct column *c = &b->column;
+        void *to = column_array(c, p);
         char path[80];
-        if (!column_array(c, p)) continue;
-        snprintf(path, sizeof path, "/particles/all/%s", c->name);
-        if (source_rows(r->source, path, c->type, 0, p->n, c->width, column_array(c, p), why))
-            return why->status;
+        layout_body_path(b, path);
+        if (!to || may_lack(r->source, b, path)) continue;
+        if (!(b->traits & BODY_MOVES))
+            source_rows(r->source, path, c->type, first < 0 ? 0 : first, p->n, c->width, to, why);
+        else if (first < 0)
+            source_rows(r->source, path, c->type, k, 1, p->n * c->width, to, why);
+        else
+            source_part(r->source, path, c->type, k, first, p->n, c->width, to, why);
+        if (why->status) return why->status;
     }
-    for (const struct column *c = layout_motion; c->name; c++) {
+    return 0;
+}
+
+/* Columns that are there where the document has them */
+static int alloc_optional(struct frame_read *r, struct packing *p, struct why *why)
+{
+    for (int k = 0; k < BODY_COLUMNS; k++) {
         char path[80];
-        snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
-        if (source_rows(r->source, path, c->type, k, 1, p->n * c->width, column_array(c, p), why))
+        layout_body_path(&body_columns[k], path);
+        if (body_columns[k].traits & BODY_OPTIONAL && !column_array(&body_columns[k].column, p) &&
+            !(body_columns[k].traits & BODY_BY_SETTINGS) && source_has(r->source, path) &&
+            packing_alloc_column(p, k, why))
             return why->status;
     }
     return 0;
 }
 
-/* All of frame k but its bodies, of which p has none; they may be elsewhere. */
-static int read_settings(struct frame_read *r, int64_t k, struct packing *p, struct why *why)
+/* All of frame k but the numbers of its n bodies */
+static int read_settings(struct frame_read *r, int64_t k, int64_t n, struct packing *p,
+                         struct why *why)
 {
     int dim;
     if (source_attribute(r->source, "/nsd", "dim", COLUMN_I32, -1, &dim, why) ||
-        packing_init(p, dim, 0, why) || read_parameters(r->source, p, why) ||
+        packing_init(p, dim, n, why) || read_parameters(r->source, p, why) ||
         read_material(r->source, p, why) || shape_tables_read(r->source, p, why) ||
         boundary_tables_read(r->source, k, p, why) || flow_tables_read(r->source, k, p, why) ||
-        law_tables_read(r->source, k, p, why))
+        law_tables_read(r->source, k, p, why) || read_clock(r, k, p, why) ||
+        cell_tables_read(r->source, k, r->repeats, p, why))
         return why->status;
-    return read_clock(r, k, p, why) || cell_tables_read(r->source, k, r->repeats, p, why) ||
-                   packing_check(p, why)
-               ? why->status
-               : 0;
+    return alloc_optional(r, p, why);
 }
 
 /* Are all datasets of n bodies there, and of their shape? (What is not says read_bodies.) */
@@ -218,66 +240,33 @@ static bool has_columns(const struct frame_read *r, const struct packing *p, int
 {
     uint64_t shape[4];
     char path[80];
-    for (const struct column *c = layout_bodies; c->name; c++) {
-        snprintf(path, sizeof path, "/particles/all/%s", c->name);
-        if (column_array(c, p) &&
-            (source_shape(r->source, path, shape) != 1 || (int64_t)shape[0] != n))
+    for (const struct body_column *b = body_columns; b->column.name; b++) {
+        bool moves = b->traits & BODY_MOVES, wide = b->column.width > 1;
+        layout_body_path(b, path);
+        if (!column_array(&b->column, p) || may_lack(r->source, b, path)) continue;
+        int rank = source_shape(r->source, path, shape);
+        if (rank != (moves ? 3 : 1 + wide) || (int64_t)shape[moves] != n ||
+            ((moves || wide) && shape[1 + moves] != (uint64_t)b->column.width))
             return false;
     }
-    for (const struct column *c = layout_motion; c->name; c++) {
-        snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
-        if (source_shape(r->source, path, shape) != 3 || (int64_t)shape[1] != n ||
-            shape[2] != (uint64_t)c->width)
-            return false;
-    }
-    const char *image = "/particles/all/image/value";
-    return !source_has(r->source, image) ||
-           (source_shape(r->source, image, shape) == 3 && (int64_t)shape[1] == n && shape[2] == 3);
-}
-
-/* Bodies first .. first + b->n - 1, into b */
-static int read_block(struct frame_read *r, int64_t k, int64_t first, struct packing *b,
-                      struct why *why)
-{
-    const struct column *image = layout_cell;
-    char path[80];
-    for (const struct column *c = layout_bodies; c->name; c++) {
-        snprintf(path, sizeof path, "/particles/all/%s", c->name);
-        if (column_array(c, b) &&
-            source_rows(r->source, path, c->type, first, b->n, c->width, column_array(c, b), why))
-            return why->status;
-    }
-    for (const struct column *c = layout_motion; c->name; c++) {
-        snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
-        if (source_part(r->source, path, c->type, k, first, b->n, c->width, column_array(c, b),
-                        why))
-            return why->status;
-    }
-    snprintf(path, sizeof path, "/particles/all/%s/value", image->name);
-    if (b->image && source_has(r->source, path) &&
-        source_part(r->source, path, image->type, k, first, b->n, image->width, b->image, why))
-        return why->status;
-    return 0;
+    return true;
 }
 
 /* The n bodies of frame k on their way to those who have them; p has all else. */
 static int hand_over(struct frame_read *r, int64_t k, const struct packing *p, int64_t n,
                      struct why *why)
 {
-    struct packing room, block = *p; // what is not of bodies is the same, and borrowed
+    struct packing room;
     double most = 0;
     if (packing_init(&room, p->dim, n < BLOCK ? n : BLOCK, why) ||
-        (p->shape && packing_alloc_shapes(&room, why)) ||
-        (p->image && packing_alloc_images(&room, why)))
+        packing_alloc_optional(&room, packing_optional(p), why))
         return packing_free(&room), why->status;
-    block.radius = room.radius, block.mass = room.mass, block.inertia = room.inertia;
-    block.id = room.id, block.kind = room.kind, block.shape = room.shape, block.image = room.image;
-    block.x = room.x, block.q = room.q, block.v = room.v, block.w = room.w;
     for (int64_t first = 0; first < n && !why->status; first += BLOCK) {
-        block.n = n - first < BLOCK ? n - first : BLOCK;
-        if (read_block(r, k, first, &block, why) || packing_check_bodies(&block, first, why) ||
-            r->elsewhere->take(r->elsewhere, &block, first, why) || source_unload(r->source, why) ||
-            source_frame(r->source, why)) // the block is gone
+        struct packing block =
+            packing_with_bodies(p, &room, 0, n - first < BLOCK ? n - first : BLOCK);
+        if (read_bodies(r, k, first, &block, why) || packing_check_bodies(&block, first, why) ||
+            r->distributed->take(r->distributed, &block, first, why) ||
+            source_unload(r->source, why) || source_frame(r->source, why)) // the block is gone
             break;
         for (int64_t i = 0; i < block.n; i++)
             most = most < block.radius[i] ? block.radius[i] : most;
@@ -292,12 +281,13 @@ static bool are_wanted(struct frame_read *r, int64_t k, struct packing *p)
 {
     struct why none = { 0 };
     uint64_t shape[4];
-    if (!r->elsewhere || source_has(r->source, "/particles/all/id/value") ||
+    if (!r->distributed || source_has(r->source, "/particles/all/id/value") ||
         source_shape(r->source, "/particles/all/radius", shape) != 1)
         return false;
     int64_t n = shape[0] > INT32_MAX ? 0 : (int64_t)shape[0];
-    bool good = !read_settings(r, k, p, &none) && n && has_columns(r, p, n);
-    if (good && r->elsewhere->wants(r->elsewhere, p, n)) return true;
+    bool good =
+        !read_settings(r, k, 0, p, &none) && !packing_check(p, &none) && n && has_columns(r, p, n);
+    if (good && r->distributed->wants(r->distributed, p, n)) return true;
     packing_free(p);
     return false;
 }
@@ -305,10 +295,8 @@ static bool are_wanted(struct frame_read *r, int64_t k, struct packing *p)
 static int read_packing(struct frame_read *r, int64_t k, struct packing *p, struct why *why)
 {
     uint64_t shape[4];
-    int dim;
     int64_t n = 0, *row;
     if (roster_find(r->source, k, &row, &n, why)) goto end;
-    if (source_attribute(r->source, "/nsd", "dim", COLUMN_I32, -1, &dim, why)) goto end;
     // no memory is allocated for bodies without positions
     if (source_shape(r->source, "/particles/all/position/value", shape) != 3 ||
         (row ? (int64_t)shape[1] < n : (int64_t)shape[1] != n)) {
@@ -316,16 +304,12 @@ static int read_packing(struct frame_read *r, int64_t k, struct packing *p, stru
                 (long long)n);
         goto end;
     }
-    if (packing_init(p, dim, n, why) || read_parameters(r->source, p, why) ||
-        read_material(r->source, p, why) || shape_tables_read(r->source, p, why) ||
-        boundary_tables_read(r->source, k, p, why) ||
-        (row ? roster_read(r->source, k, row, p, why) : read_bodies(r, k, p, why)) ||
-        flow_tables_read(r->source, k, p, why) || law_tables_read(r->source, k, p, why) ||
-        read_clock(r, k, p, why))
+    if (read_settings(r, k, n, p, why) ||
+        (row ? roster_read(r->source, k, row, p, why) : read_bodies(r, k, -1, p, why)))
         goto end;
-    if (packing_varies(p) && (r->repeats[0] || r->repeats[1] || r->repeats[2]))
+    if (packing_varies(p) && cell_repeats(&p->cell))
         why_set(why, EX_DATAERR, "bodies that come and go in a cell that repeats: not known");
-    else if (!cell_tables_read(r->source, k, r->repeats, p, why) && !packing_check(p, why))
+    else if (!packing_check(p, why))
         memory_rows_read(&r->memory, p, why);
 end:
     free(row);
@@ -356,8 +340,8 @@ int frame_read_moment(struct frame_read *r, int64_t k, struct frame *f, struct w
     if (why->status) return why->status;
     if (!r->step) return read_foreign(r, f, why);
     if (are_wanted(r, k, &f->packing)) {
-        f->elsewhere = r->elsewhere;
-        if (hand_over(r, k, &f->packing, f->elsewhere->n, why)) return why->status;
+        f->distributed = r->distributed;
+        if (hand_over(r, k, &f->packing, f->distributed->n, why)) return why->status;
     } else if (read_packing(r, k, &f->packing, why)) {
         return why->status;
     }

@@ -20,7 +20,7 @@ struct frame_read {
     struct contact_rows contacts;
     struct memory_rows memory;
     struct report_rows reports;
-    struct elsewhere *elsewhere; /* who may take the bodies, else NULL; borrowed */
+    struct distributed *distributed; /* who may take the bodies, else NULL; borrowed */
 };
 
 /* The source's document; it stays the source's. EX_DATAERR: there are no frames in it. */

@@ -1,17 +1,17 @@
 #include "io/frame_write.h"
 
+#include "hdf5/h5.h"
+#include "hdf5/stream.h"
 #include "io/account_rows.h"
 #include "io/boundary_tables.h"
 #include "io/cell_tables.h"
 #include "io/contact_rows.h"
 #include "io/flow_tables.h"
-#include "io/h5.h"
 #include "io/law_tables.h"
 #include "io/memory_rows.h"
 #include "io/report_rows.h"
 #include "io/roster.h"
 #include "io/shape_tables.h"
-#include "io/stream.h"
 #include "io/unknown.h"
 
 #include <stdio.h>
@@ -74,12 +74,7 @@ static int write_material(hid_t file, const struct packing *p, struct why *why)
 
 static int write_bodies(struct table_write *s, const struct packing *p, struct why *why)
 {
-    for (const struct column *c = layout_bodies; c->name && !s->roster; c++) {
-        char path[80];
-        if (!column_array(c, p)) continue;
-        snprintf(path, sizeof path, "/particles/all/%s", c->name);
-        if (table_write_bodies(s, path, c, false, p, why)) return why->status;
-    }
+    if (!s->roster && table_write_bodies(s, false, p, why)) return why->status;
     return boundary_tables_write_static(s, p, why);
 }
 
@@ -96,13 +91,7 @@ static int write_roster(struct table_write *s, const struct packing *p, struct w
 
 static int write_motion(struct table_write *s, const struct packing *p, struct why *why)
 {
-    if (s->roster) return write_roster(s, p, why);
-    for (const struct column *c = layout_motion; c->name; c++) {
-        char path[80];
-        snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
-        if (table_write_bodies(s, path, c, true, p, why)) return why->status;
-    }
-    return 0;
+    return s->roster ? write_roster(s, p, why) : table_write_bodies(s, true, p, why);
 }
 
 int frame_write_static(struct table_write *s, const struct frame *f, struct why *why)
@@ -126,10 +115,17 @@ static int write_particles_clock(struct table_write *s, bool step, const struct 
     const char *from = step ? "/particles/all/position/step" : "/particles/all/position/time";
     bool linked = table_write_grows(s, from);
     const void *value = step ? (const void *)&p->step : (const void *)&p->t;
-    if (table_write_clock(s, position, step, value, particles, layout_motion, why))
-        return why->status;
+    const char *name = step ? "step" : "time";
+    static const struct column none[] = { { 0 } };
+    if (table_write_clock(s, position, step, value, particles, none, why)) return why->status;
+    for (const struct body_column *b = body_columns; b->column.name && !linked; b++) {
+        const struct column it[] = { b->column, { 0 } };
+        if (b->traits & BODY_MOVES && column_array(&b->column, p) &&
+            table_write_link(s, from, name, particles, it, why))
+            return why->status;
+    }
     if (linked || !cell_repeats(&p->cell)) return 0;
-    return table_write_link(s, from, step ? "step" : "time", particles, layout_cell, why);
+    return table_write_link(s, from, name, particles, layout_cell, why);
 }
 
 static int write_time_step(struct table_write *s, const struct packing *p, struct why *why)

@@ -5,7 +5,7 @@
 #ifndef NSD_LAW_TABLES_H
 #define NSD_LAW_TABLES_H
 
-#include "io/source.h"
+#include "hdf5/source.h"
 #include "io/table_write.h"
 
 /* The laws, and the bonds of frame k; nothing where there is no such group. packing_check() looks at

@@ -5,43 +5,24 @@
 #ifndef NSD_LAYOUT_H
 #define NSD_LAYOUT_H
 
+#include "hdf5/h5.h"
 #include "io/frame.h"
-#include "io/h5.h"
 
 #include <stddef.h>
+#include <stdio.h>
 
-struct column {
-    const char *name, *units;
-    enum column_type type;
-    int width;     /* numbers in a row of the dataset */
-    size_t offset; /* in the struct: of the numbers, or of the pointer to them */
-};
+/* The dataset of a column of bodies, /particles/all/NAME [N][width], or where the bodies move NAME/value
+   [F][N][width]; a row of width 1 has no dimension of its own, but in NAME/value [bodies/body_columns.h]. */
+static inline void layout_body_path(const struct body_column *b, char path[80])
+{
+    snprintf(path, 80, "/particles/all/%s%s", b->column.name,
+             b->traits & BODY_MOVES ? "/value" : "");
+}
 
-/* /particles/all/NAME/value [F][N][width]: pointers in struct packing */
-static const struct column layout_motion[] = {
-    { "position", "m", COLUMN_F64, 3, offsetof(struct packing, x) },
-    { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct packing, v) },
-    { "angular_velocity", "rad s-1", COLUMN_F64, 3, offsetof(struct packing, w) },
-    { "orientation", "1", COLUMN_F64, 4, offsetof(struct packing, q) },
-    { 0 },
-};
-
-/* The same where the cell repeats: a pointer in struct packing; members of struct cell, [F][3][3] */
+/* Where the cell is periodic: members of struct cell, [F][3][3] */
 static const struct column layout_cell[] = {
-    { "image", "1", COLUMN_I32, 3, offsetof(struct packing, image) },
     { "box/edges", "m", COLUMN_F64, 9, offsetof(struct cell, edge) },
     { "box/rate", "m s-1", COLUMN_F64, 9, offsetof(struct cell, rate) },
-    { 0 },
-};
-
-/* /particles/all/NAME [N]: pointers in struct packing; shape: not where all are balls */
-static const struct column layout_bodies[] = {
-    { "radius", "m", COLUMN_F64, 1, offsetof(struct packing, radius) },
-    { "mass", "kg", COLUMN_F64, 1, offsetof(struct packing, mass) },
-    { "inertia", "kg m2", COLUMN_F64, 1, offsetof(struct packing, inertia) },
-    { "id", "1", COLUMN_I32, 1, offsetof(struct packing, id) },
-    { "species", "1", COLUMN_I32, 1, offsetof(struct packing, kind) },
-    { "shape", "1", COLUMN_I32, 1, offsetof(struct packing, shape) },
     { 0 },
 };
 
@@ -123,10 +104,11 @@ static const struct column layout_boundary_motion[] = {
 
 /* /nsd/material/NAME [kinds][kinds]: pointers in struct packing */
 static const struct column layout_material[] = {
-    { "mu", "1", COLUMN_F64, 1, offsetof(struct packing, mu) },
-    { "en", "1", COLUMN_F64, 1, offsetof(struct packing, en) },
-    { "et", "1", COLUMN_F64, 1, offsetof(struct packing, et) },
-    { 0 },
+#define MATERIAL(member, name, unit, ...)                                                          \
+    { name, unit, COLUMN_F64, 1, offsetof(struct packing, member) },
+    EACH_PAIR_COLUMN(MATERIAL)
+#undef MATERIAL
+        { 0 },
 };
 
 /* /nsd/law/NAME [kinds][kinds] where any pair has a law beyond these: members of struct law */
@@ -204,10 +186,11 @@ static const struct column layout_contacts[] = {
     { "body", "1", COLUMN_I32, 2, offsetof(struct contact, a) },
     { "point", "m", COLUMN_F64, 3, offsetof(struct contact, x) },
     { "gap", "m", COLUMN_F64, 1, offsetof(struct contact, gap) },
-    { "mu", "1", COLUMN_F64, 1, offsetof(struct contact, mu) },
-    { "en", "1", COLUMN_F64, 1, offsetof(struct contact, en) },
-    { "et", "1", COLUMN_F64, 1, offsetof(struct contact, et) },
-    { 0 },
+#define NUMBER(member, name, unit, ...)                                                            \
+    { name, unit, COLUMN_F64, 1, offsetof(struct contact, member) },
+    EACH_PAIR_COLUMN(NUMBER)
+#undef NUMBER
+        { 0 },
 };
 
 /* The same where the cell repeats */
@@ -343,13 +326,5 @@ static const struct column layout_gain_balance[] = {
     { "impact_gain", "J", COLUMN_F64, 1, offsetof(struct report, balance.gained) },
     { 0 },
 };
-
-/* The array that the struct's member of this column points to */
-void *column_array(const struct column *column, const void *structure);
-/* A column's numbers out of an array of n structs, and back into one. */
-void column_gather(const struct column *column, int64_t n, const void *structs, size_t stride,
-                   void *out);
-void column_scatter(const struct column *column, int64_t n, const void *in, void *structs,
-                    size_t stride);
 
 #endif

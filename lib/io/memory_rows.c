@@ -1,6 +1,6 @@
 #include "io/memory_rows.h"
 
-#include "io/h5.h"
+#include "hdf5/h5.h"
 
 #include <stdlib.h>
 

@@ -16,11 +16,11 @@ enum {
 struct reader {
     struct source *source;
     struct frame_read doc;
-    struct unknown *unknown;     /* of the open document, where it is wanted */
-    bool copies;                 /* it is */
-    struct elsewhere *elsewhere; /* who may take bodies */
-    int64_t next;                /* the frame that reader_take reads next */
-    bool whole;                  /* the open document may go on as it is */
+    struct unknown *unknown;         /* of the open document, where it is wanted */
+    bool copies;                     /* it is */
+    struct distributed *distributed; /* who may take bodies */
+    int64_t next;                    /* the frame that reader_take reads next */
+    bool whole;                      /* the open document may go on as it is */
 };
 
 int reader_open(struct reader **out, int files, char *const *file, struct why *why)
@@ -40,9 +40,9 @@ void reader_copies(struct reader *r)
     r->copies = true;
 }
 
-void reader_hands_over(struct reader *r, struct elsewhere *to)
+void reader_hands_over(struct reader *r, struct distributed *to)
 {
-    r->elsewhere = to;
+    r->distributed = to;
 }
 
 const char *reader_loses(const struct reader *r)
@@ -109,7 +109,7 @@ int reader_document(struct reader *r, int64_t *frames, struct why *why)
     if (source_next(r->source, &d, &more, why)) return why->status;
     if (!more) return 0;
     if (frame_read_open(&r->doc, r->source, why)) return name_document(r, why);
-    r->doc.elsewhere = r->elsewhere;
+    r->doc.distributed = r->distributed;
     if (r->copies && unknown_read(&r->unknown, r->source, r->doc.frames <= 1, why))
         return name_document(r, why);
     *frames = r->doc.frames;

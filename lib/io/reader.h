@@ -6,8 +6,8 @@
 #define NSD_READER_H
 
 #include "base/range.h"
+#include "hdf5/source.h"
 #include "io/frame.h"
-#include "io/source.h"
 
 struct reader;
 
@@ -22,8 +22,8 @@ void reader_unpack(double bytes);
 /* Frames shall bring along what nsd does not know in their documents, for a writer to copy. */
 void reader_copies(struct reader *reader);
 
-/* Bodies of frames may go to others [io/elsewhere.h]; NULL: they stay. */
-void reader_hands_over(struct reader *reader, struct elsewhere *to);
+/* Bodies of frames may go to others [io/distributed.h]; NULL: they stay. */
+void reader_hands_over(struct reader *reader, struct distributed *to);
 
 /* Something in the open document that depends on time and that nsd does not know, so that frames
    do not bring it along: its path, or NULL. */

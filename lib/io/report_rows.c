@@ -1,7 +1,7 @@
 #include "io/report_rows.h"
 
+#include "hdf5/h5.h"
 #include "io/account_rows.h"
-#include "io/h5.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 #include "io/roster.h"
 
-#include "io/h5.h"
+#include "hdf5/h5.h"
 #include "scene/flow.h"
 
 #include <stdio.h>
@@ -74,18 +74,24 @@ static int64_t row_of(struct roster *r, const struct packing *p, int64_t i, int6
     return r->rows++;
 }
 
+/* Has the column a dataset of [frames][rows]? That of ids says which bodies a frame has. */
+static bool moves(const struct body_column *b)
+{
+    return b->traits & BODY_MOVES || b == &body_columns[BODY_id];
+}
+
 /* The tables of bodies go on with those from `first` on, the last ones of the packing. */
 static int write_new(struct table_write *s, const struct packing *p, int64_t first, struct why *why)
 {
     const hsize_t n = (hsize_t)(p->n - first);
-    for (const struct column *c = layout_bodies; c->name; c++) {
+    for (const struct body_column *b = body_columns; b->column.name; b++) {
+        const struct column *c = &b->column;
+        const hsize_t shape[2] = { n, (hsize_t)c->width };
         char path[80];
-        if (!strcmp(c->name, "id")) continue; // a dataset of frames x rows
-        if (!column_array(c, p)) continue;
-        snprintf(path, sizeof path, "/particles/all/%s", c->name);
-        const char *data = column_array(c, p);
-        if (table_write_rows(s, path, c->type, 1, &n, s->chunk_bodies,
-                             data + (size_t)first * column_size(c->type), c->units, why))
+        if (moves(b) || !column_array(c, p)) continue;
+        layout_body_path(b, path);
+        if (table_write_rows(s, path, c->type, c->width == 1 ? 1 : 2, shape, s->chunk_bodies,
+                             column_row(c, p, first), c->units, why))
             return why->status;
     }
     return 0;
@@ -116,36 +122,39 @@ int roster_enter(struct roster *r, struct table_write *s, const struct packing *
 }
 
 static int write_spread(struct roster *r, struct table_write *s, const char *path,
-                        enum column_type type, int width, const void *data, const int64_t *row,
-                        int64_t n, const char *units, struct why *why)
+                        const struct column *c, const void *data, const int64_t *row, int64_t n,
+                        struct why *why)
 {
-    size_t number = column_size(type), bytes = (size_t)width * number;
+    size_t number = column_size(c->type), bytes = column_bytes(c);
     char *all = malloc((size_t)r->width * bytes);
     if (!all) return why_set(why, EX_SOFTWARE, "no memory for %s", path);
     const double none = NAN;
     const int32_t nobody = -1;
-    const void *empty = type == COLUMN_F64 ? (const void *)&none : (const void *)&nobody;
-    for (size_t k = 0; k < (size_t)r->width * (size_t)width; k++)
+    const void *empty = c->type == COLUMN_F64 ? (const void *)&none : (const void *)&nobody;
+    for (size_t k = 0; k < (size_t)r->width * (size_t)c->width; k++)
         memcpy(all + k * number, empty, number);
     for (int64_t i = 0; i < n; i++)
         memcpy(all + (size_t)row[i] * bytes, (const char *)data + (size_t)i * bytes, bytes);
-    const hsize_t shape[3] = { 1, (hsize_t)r->width, (hsize_t)width };
-    int e = table_write_rows(s, path, type, width == 1 ? 2 : 3, shape, 1, all, units, why);
+    const hsize_t shape[3] = { 1, (hsize_t)r->width, (hsize_t)c->width };
+    int e = table_write_rows(s, path, c->type, c->width == 1 ? 2 : 3, shape, 1, all, c->units, why);
     free(all);
     return e;
+}
+
+static void moving_path(const struct body_column *b, char path[80])
+{
+    snprintf(path, 80, "/particles/all/%s/value", b->column.name);
 }
 
 int roster_write(struct roster *r, struct table_write *s, const struct packing *p,
                  const int64_t *row, struct why *why)
 {
-    if (write_spread(r, s, "/particles/all/id/value", COLUMN_I32, 1, p->id, row, p->n, "1", why))
-        return why->status;
-    for (const struct column *c = layout_motion; c->name; c++) {
+    for (const struct body_column *b = body_columns; b->column.name; b++) {
+        const void *data = column_array(&b->column, p);
         char path[80];
-        snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
-        if (write_spread(r, s, path, c->type, c->width, column_array(c, p), row, p->n, c->units,
-                         why))
-            return why->status;
+        if (!moves(b) || !data) continue;
+        moving_path(b, path);
+        if (write_spread(r, s, path, &b->column, data, row, p->n, why)) return why->status;
     }
     return 0;
 }
@@ -203,18 +212,17 @@ static int read_spread(struct source *s, const char *path, const struct column *
 int roster_read(struct source *source, int64_t k, const int64_t *row, struct packing *p,
                 struct why *why)
 {
-    for (const struct column *c = layout_bodies; c->name; c++) {
+    for (const struct body_column *b = body_columns; b->column.name; b++) {
+        const struct column *c = &b->column;
         char path[80];
-        bool moves = !strcmp(c->name, "id");
         if (!column_array(c, p)) continue;
-        snprintf(path, sizeof path, "/particles/all/%s%s", c->name, moves ? "/value" : "");
-        if (read_spread(source, path, c, moves ? k : -1, row, p->n, column_array(c, p), why))
+        if (moves(b))
+            moving_path(b, path);
+        else
+            layout_body_path(b, path);
+        if (b->traits & BODY_OPTIONAL && !source_has(source, path)) continue;
+        if (read_spread(source, path, c, moves(b) ? k : -1, row, p->n, column_array(c, p), why))
             return why->status;
-    }
-    for (const struct column *c = layout_motion; c->name; c++) {
-        char path[80];
-        snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
-        if (read_spread(source, path, c, k, row, p->n, column_array(c, p), why)) return why->status;
     }
     return 0;
 }

@@ -7,7 +7,7 @@
 #ifndef NSD_ROSTER_H
 #define NSD_ROSTER_H
 
-#include "io/source.h"
+#include "hdf5/source.h"
 #include "io/table_write.h"
 
 struct roster {

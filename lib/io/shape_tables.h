@@ -5,7 +5,7 @@
 #ifndef NSD_SHAPE_TABLES_H
 #define NSD_SHAPE_TABLES_H
 
-#include "io/source.h"
+#include "hdf5/source.h"
 #include "io/table_write.h"
 
 /* The table, checked; the bodies' rows are among the tables of bodies. */

@@ -5,8 +5,8 @@
 #ifndef NSD_TABLE_READ_H
 #define NSD_TABLE_READ_H
 
+#include "hdf5/source.h"
 #include "io/layout.h"
-#include "io/source.h"
 
 /*
  * Rows start .. start+n-1 of all columns of a table, from the datasets group/NAMEtail into n

@@ -1,6 +1,6 @@
 #include "io/table_write.h"
 
-#include "io/h5.h"
+#include "hdf5/h5.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -117,21 +117,35 @@ static int64_t last_frame(const struct table_write *s, const char *path)
     return (int64_t)size[0] - 1;
 }
 
-int table_write_bodies(struct table_write *s, const char *path, const struct column *c, bool move,
-                       const struct packing *p, struct why *why)
+static int write_body_column(struct table_write *s, const struct body_column *b,
+                             const struct packing *p, struct why *why)
 {
-    const hsize_t n = (hsize_t)(s->elsewhere ? s->elsewhere->n : p->n);
+    const struct column *c = &b->column;
+    const hsize_t n = (hsize_t)(s->distributed ? s->distributed->n : p->n);
     const hsize_t shape[3] = { 1, n, (hsize_t)c->width };
-    const void *data = s->elsewhere ? NULL : column_array(c, p);
-    if (move ? table_write_rows(s, path, c->type, 3, shape, 1, data, c->units, why)
-             : h5_write(s->file, path, column_native(c->type), 1, &n, data, c->units, why))
+    const void *data = s->distributed ? NULL : column_array(c, p);
+    bool moves = b->traits & BODY_MOVES;
+    char path[80];
+    layout_body_path(b, path);
+    if (moves ? table_write_rows(s, path, c->type, 3, shape, 1, data, c->units, why)
+              : h5_write(s->file, path, column_native(c->type), c->width == 1 ? 1 : 2, shape + 1,
+                         data, c->units, why))
         return why->status;
-    if (!s->elsewhere) return 0;
-    if (s->places == ELSEWHERE_PLACES)
+    if (!s->distributed) return 0;
+    if (s->places == DISTRIBUTED_PLACES)
         return why_set(why, EX_SOFTWARE, "%s: too many columns", path);
     struct unfilled *o = &s->place[s->places++];
-    *o = (struct unfilled){ .column = c, .frame = move ? last_frame(s, path) : -1 };
+    *o = (struct unfilled){ .column = c, .frame = moves ? last_frame(s, path) : -1 };
     snprintf(o->path, sizeof o->path, "%s", path);
+    return 0;
+}
+
+int table_write_bodies(struct table_write *s, bool moving, const struct packing *p, struct why *why)
+{
+    for (const struct body_column *b = body_columns; b->column.name; b++)
+        if (column_array(&b->column, p) && !(b->traits & BODY_MOVES) == !moving &&
+            write_body_column(s, b, p, why))
+            return why->status;
     return 0;
 }
 

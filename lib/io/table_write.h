@@ -5,7 +5,7 @@
 #ifndef NSD_TABLE_WRITE_H
 #define NSD_TABLE_WRITE_H
 
-#include "io/elsewhere.h"
+#include "io/distributed.h"
 
 enum {
     GROWING_DATASETS = 128, /* at once; the tables of io/layout.h have fewer columns than that */
@@ -22,8 +22,8 @@ struct table_write {
     hsize_t most_bodies, chunk_bodies;
     struct roster *roster; /* the bodies then, else NULL; the writer's */
     /* Who has the bodies, else NULL; and the datasets that have been made for them, and are not filled */
-    struct elsewhere *elsewhere;
-    struct unfilled place[ELSEWHERE_PLACES];
+    struct distributed *distributed;
+    struct unfilled place[DISTRIBUTED_PLACES];
     int places;
     struct {
         char path[80];
@@ -45,10 +45,10 @@ int table_write_rows(struct table_write *tables, const char *path, enum column_t
                      const hsize_t *shape, hsize_t chunk_rows, const void *data, const char *units,
                      struct why *why);
 
-/* A column of bodies, as a dataset or, where they move, a frame of one; its numbers follow where the
-   bodies are elsewhere. */
-int table_write_bodies(struct table_write *tables, const char *path, const struct column *column,
-                       bool move, const struct packing *p, struct why *why);
+/* The columns of bodies that all frames share, or the frame's values of those that move; their numbers follow
+   where the bodies are distributed. */
+int table_write_bodies(struct table_write *tables, bool moving, const struct packing *p,
+                       struct why *why);
 
 /* Does the dataset grow already? Answered without libhdf5, which would have to look the path up. */
 bool table_write_grows(const struct table_write *tables, const char *path);

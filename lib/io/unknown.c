@@ -1,7 +1,8 @@
 #include "io/unknown.h"
 
-#include "io/element.h"
-#include "io/source.h"
+#include "bodies/body_columns.h"
+#include "hdf5/element.h"
+#include "hdf5/source.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -37,9 +38,7 @@ static const struct {
     { "/particles/boundary",
       { "body", "load", "drive", "push", "mesh", "position", "orientation", "velocity",
         "angular_velocity", "step", "time" } },
-    { "/particles/all",
-      { "box", "position", "velocity", "angular_velocity", "orientation", "radius", "mass",
-        "inertia", "id", "species", "image", "shape" } },
+    { "/particles/all", { "box" } }, // and body_columns[]
     { "/walls", { "plane", "load" } },
     { "/observables", { "solver" } },
 };
@@ -62,6 +61,9 @@ static bool is_unknown(const char *path)
         if (!name) continue;
         for (const char *const *k = looked_through[g].known; *k; k++)
             if (!strcmp(*k, name)) return false;
+        for (const struct body_column *b = body_columns; b->column.name; b++)
+            if (!strcmp(looked_through[g].group, "/particles/all") && !strcmp(b->column.name, name))
+                return false;
         return true;
     }
     return false;

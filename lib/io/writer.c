@@ -2,10 +2,10 @@
 #include "io/writer.h"
 
 #include "base/output.h"
+#include "hdf5/h5.h"
+#include "hdf5/stream.h"
 #include "io/frame_write.h"
-#include "io/h5.h"
 #include "io/roster.h"
-#include "io/stream.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -112,7 +112,7 @@ int writer_take_place(struct writer *s, struct why *why)
 
 static int64_t bodies_of(const struct frame *f)
 {
-    return f->elsewhere ? f->elsewhere->n : f->packing.n;
+    return f->distributed ? f->distributed->n : f->packing.n;
 }
 
 /* The numbers of bodies that others have */
@@ -120,8 +120,9 @@ static int fill(struct table_write *t, const char *path, struct why *why)
 {
     int places = t->places;
     t->places = 0;
-    return t->elsewhere ? t->elsewhere->give(t->elsewhere, t->file, path, t->place, places, why)
-                        : 0;
+    return t->distributed
+               ? t->distributed->give(t->distributed, t->file, path, t->place, places, why)
+               : 0;
 }
 
 /* Where another process finds the trajectory */
@@ -241,7 +242,7 @@ static int stream_frame(struct writer *s, const struct frame *f, struct why *why
     hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     size_t step = (size_t)bodies_of(f) * 32;
     H5Pset_fapl_core(access, step < 1 << 16 ? 1 << 16 : step, false);
-    struct table_write doc = { .file = create("document", access), .elsewhere = f->elsewhere };
+    struct table_write doc = { .file = create("document", access), .distributed = f->distributed };
     H5Pclose(access);
     if (doc.file < 0) return why_set(why, EX_SOFTWARE, "no memory for the document");
     int e = frame_write_static(&doc, f, why) || frame_write_moment(&doc, f, why) ||
@@ -427,7 +428,7 @@ static int trajectory_begin(struct writer *s, const struct frame *f, struct why 
     if (why->status || reserve(s, f, why)) return why->status;
     s->first = shared_of(f);
     s->step = f->packing.step - 1;
-    s->doc.elsewhere = f->elsewhere;
+    s->doc.distributed = f->distributed;
     return write_header(s, 0, 0, why) || frame_write_static(&s->doc, f, why) ? why->status : 0;
 }
 
@@ -435,7 +436,7 @@ static int trajectory_begin(struct writer *s, const struct frame *f, struct why 
 static int fill_frame(struct writer *s, const struct frame *f, struct why *why)
 {
     char path[PATH_MAX];
-    if (!f->elsewhere) return 0;
+    if (!f->distributed) return 0;
     return fill(&s->doc, find_path(s, path) ? path : NULL, why) || reserve(s, f, why) ? why->status
                                                                                       : 0;
 }

@@ -194,7 +194,7 @@ void fields_set(struct fields *f, const struct snapshot *s)
     const struct packing *p = s->p;
     const struct region r = grid_region(f, p);
     const bool solved = s->s && (s->s->found || !s->s->n);
-    const double ahead = !s->s ? 0 : s->moved ? -p->theta * p->dt : (1 - p->theta) * p->dt;
+    const double ahead = !s->s ? 0 : s->moved ? -step_after(p) : step_ahead(p);
     for (int k = 0; k < FIELD_COUNT; k++)
         memset(f->x[k], 0,
                (size_t)fields_points(f) * (size_t)field_quantity[k].width * sizeof(double));

@@ -1,6 +1,6 @@
 #include "measure/near.h"
 
-#include "bodies/grid.h"
+#include "detect/grid.h"
 
 #include <math.h>
 #include <stdlib.h>

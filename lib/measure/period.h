@@ -2,7 +2,7 @@
 #ifndef NSD_PERIOD_H
 #define NSD_PERIOD_H
 
-#include "bodies/cell.h"
+#include "geometry/cell.h"
 
 /* A cell, and the inverse of its edges; an edge that does not repeat is taken upright to the others. */
 struct period {

@@ -1,7 +1,7 @@
 #include "measure/step_motion.h"
 
-#include "bodies/move.h"
 #include "measure/branch.h"
+#include "motion/move.h"
 
 int step_motion_init(struct step_motion *m, const struct snapshot *s, struct why *why)
 {
@@ -35,7 +35,7 @@ static vec3 relative(const struct step_motion *m, const struct packing *p, const
 {
     if (contact_shaped(p, c)) {
         bool before = p->step < (p == m->p ? m->other.step : m->p->step);
-        double ahead = (before ? 1 - p->theta : -p->theta) * p->dt; // to where the contact acts
+        double ahead = before ? step_ahead(p) : -step_after(p); // to where the contact acts
         vec3 edge[3];
         cell_predict(&p->cell, ahead, edge);
         struct arms arm = arm_vectors(p, c, ahead, edge);

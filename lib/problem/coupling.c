@@ -26,7 +26,7 @@ static bool add(struct couplings *c, int64_t *room, const struct coupling *one)
 static bool add_contact(struct couplings *c, int64_t *room, const struct packing *p,
                         const vec3 half[3], const struct contact *t, int64_t i)
 {
-    const double ahead = (1 - p->theta) * p->dt;
+    const double ahead = step_ahead(p);
     for (int32_t k = 0; k < c->freedoms.n; k++) {
         vec3 g = freedom_direction(&c->freedoms.f[k], p, t, ahead, half);
         if (v3_dot(g, g) == 0) continue;
@@ -44,7 +44,7 @@ int couplings_init(struct couplings *c, const struct packing *p, const struct co
     int64_t room = 0;
     *c = (struct couplings){ 0 };
     vec3 half[3];
-    cell_predict(&p->cell, (1 - p->theta) * p->dt, half);
+    cell_predict(&p->cell, step_ahead(p), half);
     if (freedoms_init(&c->freedoms, p, half, why)) return why->status;
     c->first = calloc((size_t)s->n + 1, sizeof *c->first);
     bool good = c->first != NULL;

@@ -24,9 +24,9 @@ static void add_offset(struct rebound *e, int k, const struct packing *pack,
 struct lattice lattice_of(const struct packing *pack)
 {
     struct lattice l;
-    cell_predict(&pack->cell, (1 - pack->theta) * pack->dt, l.edge);
+    cell_predict(&pack->cell, step_ahead(pack), l.edge);
     for (int k = 0; k < 3; k++) l.before[k] = pack->cell.rate[k];
-    cell_next_rate(&pack->cell, pack->t, pack->dt, pack->theta, l.after);
+    cell_next_rate(&pack->cell, pack->t + pack->dt, step_ahead(pack), step_after(pack), l.after);
     return l;
 }
 
@@ -65,7 +65,7 @@ void fill_ball(const struct slot_filling *f)
     double(*w)[BUNDLE] = p->w[i / BUNDLE];
     int k = slot_lane(i);
     set_basis(p, i, c);
-    arms_of(pack, c, (1 - pack->theta) * pack->dt, cell->edge, &r->la[k], &r->lb[k]);
+    arms_of(pack, c, step_ahead(pack), cell->edge, &r->la[k], &r->lb[k]);
     const struct body a = lighter(p, r->a[k], f->slower), b = lighter(p, r->b[k], f->slower);
     double u[3], im = a.im + b.im;
     double it = im + r->la[k] * r->la[k] * a.ii + r->lb[k] * r->lb[k] * b.ii;
@@ -117,7 +117,7 @@ void fill_lever(const struct slot_filling *f)
     struct levers *g = &p->lever[i / BUNDLE];
     struct rebound *e = slot_rebound(p, i);
     int k = slot_lane(i);
-    struct arms arm = arm_vectors(pack, c, (1 - pack->theta) * pack->dt, cell->edge);
+    struct arms arm = arm_vectors(pack, c, step_ahead(pack), cell->edge);
     set_basis(p, i, c);
     set_rows(g->Ga, k, pack, c->a, arm.a, c, half), set_rows(g->Gb, k, pack, c->b, arm.b, c, half);
     const struct body a = lighter(p, r->a[k], f->slower), b = lighter(p, r->b[k], f->slower);

@@ -5,8 +5,8 @@
 #ifndef NSD_REPORT_H
 #define NSD_REPORT_H
 
-#include "bodies/balance.h"
-#include "bodies/depth.h"
+#include "detect/depth.h"
+#include "motion/balance.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -63,7 +63,7 @@ struct report {
     int64_t newton;      /* Newton steps in all */
     int64_t safeguarded; /* local solves that ended with the exact solution instead */
     int64_t gave_up;     /* local solves that did not satisfy the law */
-    bool watched;        /* passed is known: there is what bodies may go through [bodies/swift.h] */
+    bool watched;        /* passed is known: there is what bodies may go through [detect/swift.h] */
     int64_t passed;      /* bodies that went through a boundary or a fixed hull in this step */
     int32_t passed_id, passed_through; /* the last; and a wall -1-w, or the number of a body */
     double work;          /* ns, counted and not timed, of the whole solve [solve/prices.h] */

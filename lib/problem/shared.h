@@ -13,10 +13,9 @@
 #include <stdint.h>
 
 struct problem;
-struct talk; /* how the processes reach each other: ranks/talk.h */
 
 struct shared {
-    struct talk *talk;         /* borrowed */
+    void *with;                /* of the functions below: how they reach the other processes */
     int64_t contacts, bundles; /* of all processes */
     bool halves;               /* the order of all contacts has halves */
     double mean_mass;          /* kg: of all bodies that move */

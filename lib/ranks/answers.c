@@ -5,28 +5,29 @@
 
 static double most(struct shared *s, double x)
 {
-    return talk_most(s->talk, x);
+    return comm_most(s->with, x);
 }
 
 static int64_t count(struct shared *s, int64_t n)
 {
-    return talk_sum(s->talk, n);
+    return comm_sum(s->with, n);
 }
 
 static double agree(struct shared *s, double x)
 {
-    double since = talk_busy();
-    MPI_Bcast(&x, 1, MPI_DOUBLE, 0, s->talk->comm);
-    talk_waited(s->talk, since);
+    double since = comm_busy();
+    struct comm *t = s->with;
+    MPI_Bcast(&x, 1, MPI_DOUBLE, 0, t->mpi);
+    comm_waited(t, since);
     return x;
 }
 
 static void fail(struct shared *s)
 {
-    talk_fail(s->talk, EX_SOFTWARE, "no memory to solve the contacts");
+    comm_fail(s->with, EX_SOFTWARE, "no memory to solve the contacts");
 }
 
-void answers_alike(struct shared *s, struct talk *t)
+void answers_alike(struct shared *s, struct comm *t)
 {
-    s->talk = t, s->most = most, s->count = count, s->agree = agree, s->fail = fail;
+    s->with = t, s->most = most, s->count = count, s->agree = agree, s->fail = fail;
 }

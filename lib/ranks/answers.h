@@ -3,9 +3,9 @@
 #define NSD_ANSWERS_H
 
 #include "problem/shared.h"
-#include "ranks/talk.h"
+#include "ranks/comm.h"
 
-/* Sets s->talk, most, count, agree and fail. */
-void answers_alike(struct shared *s, struct talk *t);
+/* Sets s->with, most, count, agree and fail. */
+void answers_alike(struct shared *s, struct comm *t);
 
 #endif

@@ -7,7 +7,7 @@
 #include <trilinos/zoltan.h>
 
 struct bisection {
-    struct talk *talk;
+    struct comm *comm;
     struct Zoltan_Struct *zz;
     int64_t n; /* while space is being cut */
     const vec3 *x;
@@ -27,7 +27,7 @@ static void list(void *arg, int gids, int lids, ZOLTAN_ID_PTR gid, ZOLTAN_ID_PTR
     const struct bisection *y = arg;
     (void)gids, (void)lids, (void)weights;
     for (int64_t i = 0; i < y->n; i++) {
-        gid[2 * i] = (ZOLTAN_ID_TYPE)y->talk->me, gid[2 * i + 1] = (ZOLTAN_ID_TYPE)i;
+        gid[2 * i] = (ZOLTAN_ID_TYPE)y->comm->me, gid[2 * i + 1] = (ZOLTAN_ID_TYPE)i;
         lid[i] = (ZOLTAN_ID_TYPE)i;
         weight[i] = y->weight[i];
     }
@@ -53,15 +53,15 @@ static void places(void *arg, int gids, int lids, int n, ZOLTAN_ID_PTR gid, ZOLT
     *error = ZOLTAN_OK;
 }
 
-static void *begin(struct talk *t)
+static void *begin(struct comm *t)
 {
     static const char *const set[][2] = { { "LB_METHOD", "RCB" },       { "KEEP_CUTS", "1" },
                                           { "NUM_GID_ENTRIES", "2" },   { "NUM_LID_ENTRIES", "1" },
                                           { "OBJ_WEIGHT_DIM", "1" },    { "RETURN_LISTS", "NONE" },
                                           { "IMBALANCE_TOL", "1.02" },  { "RCB_OUTPUT_LEVEL", "0" },
                                           { "REDUCE_DIMENSIONS", "0" }, { NULL, NULL } };
-    struct bisection *y = talk_new(t, 1, sizeof *y);
-    y->talk = t, y->zz = territory_zoltan(t, set);
+    struct bisection *y = comm_new(t, 1, sizeof *y);
+    y->comm = t, y->zz = territory_zoltan(t, set);
     Zoltan_Set_Num_Obj_Fn(y->zz, count, y), Zoltan_Set_Obj_List_Fn(y->zz, list, y);
     Zoltan_Set_Num_Geom_Fn(y->zz, dimensions, y), Zoltan_Set_Geom_Multi_Fn(y->zz, places, y);
     return y;
@@ -83,7 +83,7 @@ static void cut(void *made, int64_t n, const vec3 *x, const float *weight)
     y->n = n, y->x = x, y->weight = weight;
     if (n > INT32_MAX || Zoltan_LB_Partition(y->zz, &changes, &gids, &lids, &in, &a, &b, &p1, &p2,
                                              &out, &c, &d, &p3, &p4) != ZOLTAN_OK)
-        talk_fail(y->talk, EX_SOFTWARE, "Zoltan finds no cuts");
+        comm_fail(y->comm, EX_SOFTWARE, "Zoltan finds no cuts");
     Zoltan_LB_Free_Part(&a, &b, &p1, &p2), Zoltan_LB_Free_Part(&c, &d, &p3, &p4);
 }
 
@@ -93,7 +93,7 @@ static int owner(const void *made, vec3 x)
     double at[3] = { x.x, x.y, x.z };
     int rank, part;
     if (Zoltan_LB_Point_PP_Assign(y->zz, at, &rank, &part) != ZOLTAN_OK)
-        talk_fail(y->talk, EX_SOFTWARE, "Zoltan knows no owner of a point");
+        comm_fail(y->comm, EX_SOFTWARE, "Zoltan knows no owner of a point");
     return rank;
 }
 
@@ -102,7 +102,7 @@ static int meets(const void *made, vec3 lo, vec3 hi, int *rank)
     const struct bisection *y = made;
     int n = 0;
     if (Zoltan_LB_Box_Assign(y->zz, lo.x, lo.y, lo.z, hi.x, hi.y, hi.z, rank, &n) != ZOLTAN_OK)
-        talk_fail(y->talk, EX_SOFTWARE, "Zoltan knows no ranks of a box");
+        comm_fail(y->comm, EX_SOFTWARE, "Zoltan knows no ranks of a box");
     return n;
 }
 

@@ -3,8 +3,8 @@
 
 #include "ranks/answers.h"
 
-#include "bodies/move.h"
-#include "bodies/project.h"
+#include "motion/move.h"
+#include "motion/project.h"
 #include "problem/brake.h"
 
 #include <stdlib.h>
@@ -30,33 +30,33 @@ static double *twist_of(void *problem, int32_t body)
 }
 
 /* What goes to each rank and comes from it: so many numbers for each body of the lists */
-static void post(struct talk *t, int width, const struct border *go_list, double **go,
+static void post(struct comm *t, int width, const struct border *go_list, double **go,
                  const struct border *come_list, double **come)
 {
-    MPI_Request *r = talk_new(t, 2 * t->n, sizeof(MPI_Request));
+    MPI_Request *r = comm_new(t, 2 * t->n, sizeof(MPI_Request));
     int n = 0;
     for (int q = 0; q < t->n; q++)
         if (come_list[q].n)
-            MPI_Irecv(come[q], (int)(width * come_list[q].n), MPI_DOUBLE, q, TAG, t->comm, &r[n++]);
+            MPI_Irecv(come[q], (int)(width * come_list[q].n), MPI_DOUBLE, q, TAG, t->mpi, &r[n++]);
     for (int q = 0; q < t->n; q++) {
         if (!go_list[q].n) continue;
-        MPI_Isend(go[q], (int)(width * go_list[q].n), MPI_DOUBLE, q, TAG, t->comm, &r[n++]);
+        MPI_Isend(go[q], (int)(width * go_list[q].n), MPI_DOUBLE, q, TAG, t->mpi, &r[n++]);
         t->bytes += width * go_list[q].n * (int64_t)sizeof(double), t->messages++;
     }
-    double since = talk_busy();
+    double since = comm_busy();
     MPI_Waitall(n, r, MPI_STATUSES_IGNORE);
-    talk_waited(t, since);
+    comm_waited(t, since);
     free(r);
 }
 
-static double **letters(const struct talk *t, const struct border *b, int width)
+static double **letters(const struct comm *t, const struct border *b, int width)
 {
-    double **v = talk_new(t, t->n, sizeof *v);
-    for (int q = 0; q < t->n; q++) v[q] = talk_new(t, width * b[q].n, sizeof **v);
+    double **v = comm_new(t, t->n, sizeof *v);
+    for (int q = 0; q < t->n; q++) v[q] = comm_new(t, width * b[q].n, sizeof **v);
     return v;
 }
 
-static void letters_free(const struct talk *t, double **v)
+static void letters_free(const struct comm *t, double **v)
 {
     for (int q = 0; v && q < t->n; q++) free(v[q]);
     free(v);
@@ -64,7 +64,7 @@ static void letters_free(const struct talk *t, double **v)
 
 static void remember(struct blocks *b, int width, place_text *at, void *arg, double **since)
 {
-    for (int q = 0; q < b->part->talk->n; q++)
+    for (int q = 0; q < b->part->comm->n; q++)
         for (int64_t k = 0; k < b->touched[q].n; k++)
             memcpy(since[q] + width * k, at(arg, b->touched[q].body[k]),
                    (size_t)width * sizeof **since);
@@ -73,7 +73,7 @@ static void remember(struct blocks *b, int width, place_text *at, void *arg, dou
 /* Copies' changes since[] are added to the bodies, in the order of ranks; copies become what these are. */
 static void add_up(struct blocks *b, int width, place_text *at, void *arg, double **since)
 {
-    struct talk *t = b->part->talk;
+    struct comm *t = b->part->comm;
     double **here = letters(t, b->touched, width), **there = letters(t, b->pushed, width);
     const size_t size = (size_t)width * sizeof(double);
     for (int q = 0; q < t->n; q++)
@@ -121,10 +121,10 @@ static void judging(struct shared *s, struct problem *p, bool begins)
 
 static void add(struct shared *s, double *x, int n)
 {
-    struct talk *t = of(s)->part->talk;
-    double *all = talk_new(t, (int64_t)n * t->n, sizeof *all), since = talk_busy();
-    MPI_Allgather(x, n, MPI_DOUBLE, all, n, MPI_DOUBLE, t->comm);
-    talk_waited(t, since);
+    struct comm *t = of(s)->part->comm;
+    double *all = comm_new(t, (int64_t)n * t->n, sizeof *all), since = comm_busy();
+    MPI_Allgather(x, n, MPI_DOUBLE, all, n, MPI_DOUBLE, t->mpi);
+    comm_waited(t, since);
     for (int j = 0; j < n; j++) x[j] = 0;
     for (int q = 0; q < t->n; q++)
         for (int j = 0; j < n; j++) x[j] += all[q * n + j];
@@ -145,19 +145,19 @@ static double sum_along(struct shared *s, const struct problem *p, const double 
 static void find_borders(struct blocks *b, const struct contacts *s)
 {
     const struct part *y = b->part;
-    struct talk *t = y->talk;
+    struct comm *t = y->comm;
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
-    bool *is = talk_new(t, y->p.n, sizeof *is);
+    bool *is = comm_new(t, y->p.n, sizeof *is);
     for (int64_t i = 0; i < s->n; i++) {
         int32_t a = s->c[i].a;
         if (a >= 0 && y->owner[a] != t->me && y->p.mass[a] > 0) is[a] = true;
     }
-    b->touched = talk_new(t, t->n, sizeof *b->touched);
-    b->pushed = talk_new(t, t->n, sizeof *b->pushed);
-    b->since = talk_new(t, t->n, sizeof *b->since);
+    b->touched = comm_new(t, t->n, sizeof *b->touched);
+    b->pushed = comm_new(t, t->n, sizeof *b->pushed);
+    b->since = comm_new(t, t->n, sizeof *b->since);
     for (int q = 0; q < t->n; q++) {
         struct border *to = &b->touched[q];
-        to->body = talk_new(t, y->here[q].n, sizeof *to->body);
+        to->body = comm_new(t, y->here[q].n, sizeof *to->body);
         for (int64_t k = 0; k < y->here[q].n; k++) {
             int32_t body = y->here[q].body[k];
             if (!is[body]) continue;
@@ -165,19 +165,19 @@ static void find_borders(struct blocks *b, const struct contacts *s)
             to->body[to->n++] = body;
             parcel_put(t, &out[q], &place, sizeof place);
         }
-        b->since[q] = talk_new(t, TWIST * to->n, sizeof **b->since);
+        b->since[q] = comm_new(t, TWIST * to->n, sizeof **b->since);
     }
     free(is);
-    talk_exchange(t, out, in);
+    comm_exchange(t, out, in);
     for (int q = 0; q < t->n; q++) {
         struct border *from = &b->pushed[q];
         int64_t n = (int64_t)(in[q].size / sizeof(int32_t));
-        from->body = talk_new(t, n, sizeof *from->body);
+        from->body = comm_new(t, n, sizeof *from->body);
         for (; from->n < n; from->n++) {
             int32_t place;
             parcel_take(t, &in[q], &place, sizeof place);
             if (place < 0 || place >= y->lent[q].n)
-                talk_fail(t, EX_SOFTWARE, "ranks disagree about a border");
+                comm_fail(t, EX_SOFTWARE, "ranks disagree about a border");
             from->body[from->n] = y->lent[q].body[place];
         }
     }
@@ -188,8 +188,8 @@ static void find_borders(struct blocks *b, const struct contacts *s)
 static int32_t *count_ranks(const struct blocks *b)
 {
     const struct part *y = b->part;
-    struct talk *t = y->talk;
-    int32_t *ranks = talk_new(t, y->p.n, sizeof *ranks);
+    struct comm *t = y->comm;
+    int32_t *ranks = comm_new(t, y->p.n, sizeof *ranks);
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
     for (int64_t i = 0; i < y->p.n; i++) ranks[i] = 1;
     for (int q = 0; q < t->n; q++)
@@ -197,7 +197,7 @@ static int32_t *count_ranks(const struct blocks *b)
     for (int q = 0; q < t->n; q++)
         for (int64_t k = 0; k < b->pushed[q].n; k++)
             parcel_put(t, &out[q], &ranks[b->pushed[q].body[k]], sizeof *ranks);
-    talk_exchange(t, out, in);
+    comm_exchange(t, out, in);
     for (int q = 0; q < t->n; q++)
         for (int64_t k = 0; k < b->touched[q].n; k++)
             parcel_take(t, &in[q], &ranks[b->touched[q].body[k]], sizeof *ranks);
@@ -208,7 +208,7 @@ static int32_t *count_ranks(const struct blocks *b)
 static void find_slower(struct blocks *b, const struct contacts *s)
 {
     int32_t *ranks = count_ranks(b);
-    b->slower = talk_new(b->part->talk, s->n, sizeof *b->slower);
+    b->slower = comm_new(b->part->comm, s->n, sizeof *b->slower);
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
         int32_t k = ranks[c->b];
@@ -221,7 +221,7 @@ static void find_slower(struct blocks *b, const struct contacts *s)
 
 void blocks_begin(struct blocks *b, struct part *y, const struct contacts *s, enum order order)
 {
-    struct talk *t = y->talk;
+    struct comm *t = y->comm;
     *b = (struct blocks){ .part = y };
     b->shared = (struct shared){ .after_group = after_group,
                                  .begin = begin,
@@ -233,18 +233,18 @@ void blocks_begin(struct blocks *b, struct part *y, const struct contacts *s, en
     find_borders(b, s);
     find_slower(b, s);
     if (schedule_bodies(&b->plan, order, s, &y->p))
-        talk_fail(t, EX_SOFTWARE, "no memory for the order of the contacts");
+        comm_fail(t, EX_SOFTWARE, "no memory for the order of the contacts");
     // a rank's threads share groups
     b->plan.beyond = b->plan.inside = b->plan.rim = b->plan.rest = 0;
     // one without a contact, in which the exchange is made all the same
     if (!b->plan.groups) {
         free(b->plan.group);
-        b->plan.group = talk_new(t, 2, sizeof *b->plan.group), b->plan.groups = 1;
+        b->plan.group = comm_new(t, 2, sizeof *b->plan.group), b->plan.groups = 1;
     }
     int64_t bundles = 0;
     for (int64_t g = 0; g < b->plan.groups; g++)
         bundles += (b->plan.group[g + 1] - b->plan.group[g] + BUNDLE - 1) / BUNDLE;
-    b->shared.contacts = talk_sum(t, s->n), b->shared.bundles = talk_sum(t, bundles);
+    b->shared.contacts = comm_sum(t, s->n), b->shared.bundles = comm_sum(t, bundles);
 }
 
 /* ---- the motion ---- */
@@ -276,7 +276,7 @@ struct apart {
 static bool in_any(void *with, bool here)
 {
     const struct apart *a = with;
-    return talk_most(a->b->part->talk, here) > 0;
+    return comm_most(a->b->part->comm, here) > 0;
 }
 
 static bool after_sweep(void *with, struct displaced *d, bool more)
@@ -286,56 +286,43 @@ static bool after_sweep(void *with, struct displaced *d, bool more)
     return in_any(with, more);
 }
 
-static void move_apart(struct blocks *b, const struct contacts *s)
+void blocks_move_apart(struct blocks *b, const struct contacts *s)
 {
-    struct talk *t = b->part->talk;
+    struct comm *t = b->part->comm;
     struct why why = { 0 };
+    part_refresh(b->part);
+    if (!overlap_projects(b->part->p.overlap)) return;
     struct apart a = { b, letters(t, b->touched, 3) };
     const struct project_share share = { &a, b->slower, in_any, after_sweep };
-    if (project_shared(&b->part->p, s, &share, &why)) talk_fail(t, why.status, why.text);
+    if (project_shared(&b->part->p, s, &share, &why)) comm_fail(t, why.status, why.text);
     letters_free(t, a.since);
+    part_refresh(b->part);
 }
 
-/* Each rank's own bodies, and the contacts that it counts */
-static void tell_balance(struct blocks *b, const struct contacts *s, const struct impulses *sum,
-                         struct balance *told)
+void blocks_balance(struct blocks *b, const struct contacts *s, const struct impulses *sum,
+                    struct balance *told)
 {
     struct part *y = b->part;
     struct why why = { 0 };
-    bool *own = talk_new(y->talk, y->p.n, sizeof *own);
-    for (int64_t i = 0; i < y->p.n; i++) own[i] = y->owner[i] == y->talk->me;
-    if (balance_step(told, &y->p, s, sum, own, &why)) talk_fail(y->talk, why.status, why.text);
+    bool *own = comm_new(y->comm, y->p.n, sizeof *own);
+    for (int64_t i = 0; i < y->p.n; i++) own[i] = y->owner[i] == y->comm->me;
+    if (balance_step(told, &y->p, s, sum, own, &why)) comm_fail(y->comm, why.status, why.text);
     free(own);
     add(&b->shared, (double *)told, sizeof *told / sizeof(double)); // it has nothing else
 }
 
-void blocks_move(struct blocks *b, const struct contacts *s, struct balance *told)
+void blocks_add_impulses(struct blocks *b, struct impulses *sum)
 {
-    struct talk *t = b->part->talk;
-    struct packing *p = &b->part->p;
-    struct why why = { 0 };
-    struct impulses sum;
-    double **none = letters(t, b->touched, 3); // since nothing was pushed
-    const enum overlap overlap = p->overlap;
-    if (impulses_init(&sum, p, s, false, &why)) talk_fail(t, why.status, why.text);
-    add_up(b, 3, impulse_of, &sum, none);
-    letters_free(t, none), none = letters(t, b->touched, 3);
-    add_up(b, 3, moment_of, &sum, none);
-    letters_free(t, none);
-    if (told) tell_balance(b, s, &sum, told);
-    p->overlap = OVERLAP_KEEP;
-    if (move_by(p, s, &sum, &why)) talk_fail(t, why.status, why.text);
-    p->overlap = overlap;
-    impulses_free(&sum);
-    part_refresh(b->part);
-    if (!overlap_projects(overlap)) return;
-    move_apart(b, s);
-    part_refresh(b->part);
+    double **none = letters(b->part->comm, b->touched, 3); // since nothing was pushed
+    add_up(b, 3, impulse_of, sum, none);
+    letters_free(b->part->comm, none), none = letters(b->part->comm, b->touched, 3);
+    add_up(b, 3, moment_of, sum, none);
+    letters_free(b->part->comm, none);
 }
 
 void blocks_free(struct blocks *b)
 {
-    const struct talk *t = b->part->talk;
+    const struct comm *t = b->part->comm;
     borders_free(t, b->touched), borders_free(t, b->pushed);
     letters_free(t, b->since);
     free(b->slower);

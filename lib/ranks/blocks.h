@@ -13,7 +13,7 @@
 #ifndef NSD_BLOCKS_H
 #define NSD_BLOCKS_H
 
-#include "bodies/balance.h"
+#include "motion/balance.h"
 #include "problem/problem.h"
 #include "problem/shared.h"
 #include "ranks/part.h"
@@ -32,12 +32,15 @@ struct blocks {
 
 /* s: the contacts that this rank counts, and no others. */
 void blocks_begin(struct blocks *b, struct part *y, const struct contacts *s, enum order order);
-/*
- * After the solve: the bodies here move by the contacts' reactions, those at borders by what the owners have
- * summed up, and are moved apart where the packing wants it; copies become what the bodies are. told: the
- * balances of the step, added up in the order of ranks; NULL: they are not asked for.
- */
-void blocks_move(struct blocks *b, const struct contacts *s, struct balance *told);
+/* After the solve. The sums of the contacts' reactions on bodies at borders become those of all ranks, added by
+   the owners. */
+void blocks_add_impulses(struct blocks *b, struct impulses *sum);
+/* The balances of the step: of each rank's own bodies and contacts, added up in the order of ranks */
+void blocks_balance(struct blocks *b, const struct contacts *s, const struct impulses *sum,
+                    struct balance *told);
+/* After the motion: copies become what the bodies are, and bodies that overlap are moved apart, where the packing
+   wants it. */
+void blocks_move_apart(struct blocks *b, const struct contacts *s);
 void blocks_free(struct blocks *b);
 
 #endif

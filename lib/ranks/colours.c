@@ -39,7 +39,7 @@ static void judging(struct shared *s, struct problem *p, bool begins)
 
 static const struct tally_order *tally(struct colours *c, const struct problem *p)
 {
-    if (!c->tallied) tally_begin(&c->tally, c->part->talk, p, c->slot, c->shared.bundles);
+    if (!c->tallied) tally_begin(&c->tally, c->part->comm, p, c->slot, c->shared.bundles);
     c->tallied = true;
     return &c->tally;
 }
@@ -48,13 +48,13 @@ static void sum(struct shared *s, const struct problem *p, int64_t chunk, int pa
                 const double *term, double *out)
 {
     struct colours *c = of(s);
-    tally_sum(tally(c, p), c->part->talk, s->bundles, chunk, parts, terms, term, out);
+    tally_sum(tally(c, p), c->part->comm, s->bundles, chunk, parts, terms, term, out);
 }
 
 static double sum_along(struct shared *s, const struct problem *p, const double *term)
 {
     struct colours *c = of(s);
-    return tally_along(tally(c, p), c->part->talk, s->bundles, term);
+    return tally_along(tally(c, p), c->part->comm, s->bundles, term);
 }
 
 /* ---- the order ---- */
@@ -67,13 +67,13 @@ struct holders {
 
 static void holders_find(struct holders *h, const struct part *y)
 {
-    const struct talk *t = y->talk;
-    h->first = talk_new(t, y->p.n + 1, sizeof *h->first);
+    const struct comm *t = y->comm;
+    h->first = comm_new(t, y->p.n + 1, sizeof *h->first);
     for (int q = 0; q < t->n; q++)
         for (int64_t k = 0; k < y->lent[q].n; k++) h->first[y->lent[q].body[k] + 2]++;
     for (int64_t i = 0; i <= y->p.n; i++) h->first[i + 1] += h->first[i];
     // first[i + 1] is where the next rank of body i goes, and in the end where body i + 1 begins
-    h->rank = talk_new(t, h->first[y->p.n + 1], sizeof *h->rank);
+    h->rank = comm_new(t, h->first[y->p.n + 1], sizeof *h->rank);
     for (int q = 0; q < t->n; q++)
         for (int64_t k = 0; k < y->lent[q].n; k++) h->rank[h->first[y->lent[q].body[k] + 1]++] = q;
 }
@@ -84,7 +84,7 @@ static int told(const struct part *y, const struct holders *h, int32_t i, int32_
                 int32_t *rank)
 {
     int n = 0;
-    if (i < 0 || y->owner[i] != y->talk->me || !(y->p.mass[i] > 0)) return 0;
+    if (i < 0 || y->owner[i] != y->comm->me || !(y->p.mass[i] > 0)) return 0;
     for (int64_t k = h->first[i]; k < h->first[i + 1]; k++)
         if (other < 0 || y->owner[other] != h->rank[k]) rank[n++] = h->rank[k];
     return n;
@@ -102,20 +102,20 @@ static int by_walk(const void *a, const void *b)
     return x->slot < y->slot ? -1 : x->slot > y->slot;
 }
 
-static void lay_plan(struct colours *c, const struct talk *t, int64_t groups, int64_t n,
+static void lay_plan(struct colours *c, const struct comm *t, int64_t groups, int64_t n,
                      struct stop *stop)
 {
     struct schedule *plan = &c->plan;
     int64_t bundles = 0;
     qsort(stop, (size_t)n, sizeof *stop, by_walk);
     plan->groups = PARTS * groups;
-    plan->sequence = talk_new(t, n, sizeof *plan->sequence);
-    plan->group = talk_new(t, plan->groups + 1, sizeof *plan->group);
+    plan->sequence = comm_new(t, n, sizeof *plan->sequence);
+    plan->group = comm_new(t, plan->groups + 1, sizeof *plan->group);
     for (int64_t i = 0; i < n; i++) {
         plan->sequence[i] = stop[i].contact;
         plan->group[stop[i].group + 1]++;
     }
-    c->shared.copies = talk_new(t, 2 * groups, sizeof *c->shared.copies);
+    c->shared.copies = comm_new(t, 2 * groups, sizeof *c->shared.copies);
     for (int64_t g = 0; g < plan->groups; g++) {
         int64_t more = (plan->group[g + 1] + BUNDLE - 1) / BUNDLE;
         if (g % PARTS == COPIES && more) {
@@ -138,12 +138,12 @@ static int by_errand(const void *a, const void *b)
 void colours_begin(struct colours *c, struct part *y, const struct contacts *s,
                    const struct verdict *verdict, int64_t groups, int64_t bundles)
 {
-    struct talk *t = y->talk;
+    struct comm *t = y->comm;
     struct holders h;
     int64_t errands = 0, room = 0;
     struct errand *errand = NULL;
-    int32_t *rank = talk_new(t, t->n, sizeof *rank);
-    struct stop *stop = talk_new(t, s->n, sizeof *stop);
+    int32_t *rank = comm_new(t, t->n, sizeof *rank);
+    struct stop *stop = comm_new(t, s->n, sizeof *stop);
     *c = (struct colours){ .part = y };
     c->shared = (struct shared){ .bundles = bundles,
                                  .may_want = true,
@@ -154,7 +154,7 @@ void colours_begin(struct colours *c, struct part *y, const struct contacts *s,
                                  .sum = sum,
                                  .sum_along = sum_along };
     answers_alike(&c->shared, t);
-    c->slot = talk_new(t, s->n, sizeof *c->slot);
+    c->slot = comm_new(t, s->n, sizeof *c->slot);
     holders_find(&h, y);
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *k = &s->c[i];
@@ -166,7 +166,7 @@ void colours_begin(struct colours *c, struct part *y, const struct contacts *s,
             if (errands + n > room) {
                 room = 2 * room + n + 256;
                 errand = realloc(errand, (size_t)room * sizeof *errand);
-                if (!errand) talk_fail(t, EX_SOFTWARE, "no memory for the borders");
+                if (!errand) comm_fail(t, EX_SOFTWARE, "no memory for the borders");
             }
             for (int m = 0; m < n; m++)
                 errand[errands++] = (struct errand){ verdict[i].group, rank[m], body[j] };

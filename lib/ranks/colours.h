@@ -16,7 +16,7 @@
 
 #include "problem/problem.h"
 #include "problem/shared.h"
-#include "ranks/roll.h"
+#include "ranks/contact_list.h"
 #include "ranks/tally.h"
 #include "ranks/wires.h"
 

@@ -49,14 +49,14 @@ static bool write_rows(hid_t file, const struct target *o, int64_t first, int64_
 /* The first writes what the others send it, one after the other. */
 static bool write_by_first(const struct rows *r, hid_t file, const struct target *o, void *mine)
 {
-    struct talk *t = r->talk;
+    struct comm *t = r->comm;
     size_t bytes = (size_t)o->width * column_size((enum column_type)o->type);
     bool good = true;
     for (int q = 0; q < t->n; q++) {
         int64_t first = rows_begin(r->all, t->n, q), n = rows_begin(r->all, t->n, q + 1) - first;
         struct parcel out = { 0 }, *in = parcels_new(t);
         if (q && q == t->me) parcel_put(t, &out, mine, (size_t)n * bytes);
-        if (q) talk_gather(t, &out, in);
+        if (q) comm_gather(t, &out, in);
         if (!t->me)
             good = good && write_rows(file, o, first, n, H5P_DEFAULT, q ? in[q].bytes : mine);
         parcels_free(t, in);
@@ -81,7 +81,7 @@ enum {
 };
 
 /* Closes what MPI has not been told to keep: none of it changes what the first has of the file. */
-static hid_t open_by_all(const struct talk *t, const char *path)
+static hid_t open_by_all(const struct comm *t, const char *path)
 {
     char size[20];
     MPI_Info info;
@@ -89,7 +89,7 @@ static hid_t open_by_all(const struct talk *t, const char *path)
     snprintf(size, sizeof size, "%d", LOCAL_BUFFER);
     MPI_Info_create(&info);
     MPI_Info_set(info, "cb_buffer_size", size);
-    H5Pset_fapl_mpio(access, t->comm, info);
+    H5Pset_fapl_mpio(access, t->mpi, info);
     H5Pset_all_coll_metadata_ops(access, true);
     hid_t file = H5Fopen(path, H5F_ACC_RDWR, access);
     H5Pclose(access);
@@ -104,7 +104,7 @@ static hid_t collective(void)
     return transfer;
 }
 #else
-static hid_t open_by_all(const struct talk *t, const char *path)
+static hid_t open_by_all(const struct comm *t, const char *path)
 {
     (void)t, (void)path;
     return -1;
@@ -117,13 +117,13 @@ static hid_t collective(void)
 #endif
 
 /* Do all ranks see the same file there? */
-static bool all_see(const struct talk *t, const char *path)
+static bool all_see(const struct comm *t, const char *path)
 {
     struct stat st;
     int64_t here = *path && !stat(path, &st) ? (int64_t)st.st_ino : -1, first = here;
-    MPI_Bcast(&first, 1, MPI_INT64_T, 0, t->comm);
+    MPI_Bcast(&first, 1, MPI_INT64_T, 0, t->mpi);
     int same = here >= 0 && here == first, all;
-    MPI_Allreduce(&same, &all, 1, MPI_INT, MPI_MIN, t->comm);
+    MPI_Allreduce(&same, &all, 1, MPI_INT, MPI_MIN, t->mpi);
     return all;
 }
 
@@ -133,20 +133,16 @@ static void check_bodies(const struct rows *r, const struct part *y)
     int64_t bad = INT64_MAX, least;
     struct why why = { 0 };
     for (int64_t i = 0; y && i < y->p.n && bad == INT64_MAX; i++) {
-        struct packing one = y->p;
-        if (y->owner[i] != y->talk->me) continue;
-        one.n = 1, one.radius += i, one.mass += i, one.inertia += i, one.kind += i, one.id += i;
-        one.x += i, one.q += i, one.v += i, one.w += i;
-        if (one.shape) one.shape += i;
-        if (one.image) one.image += i;
+        struct packing one = packing_with_bodies(&y->p, &y->p, i, 1);
+        if (y->owner[i] != y->comm->me) continue;
         if (packing_check_bodies(&one, y->row[i], &why)) bad = y->row[i];
     }
-    MPI_Allreduce(&bad, &least, 1, MPI_INT64_T, MPI_MIN, r->talk->comm);
-    if (bad == least && bad < INT64_MAX) talk_fail(r->talk, why.status, why.text);
-    if (least < INT64_MAX) MPI_Barrier(r->talk->comm);
+    MPI_Allreduce(&bad, &least, 1, MPI_INT64_T, MPI_MIN, r->comm->mpi);
+    if (bad == least && bad < INT64_MAX) comm_fail(r->comm, why.status, why.text);
+    if (least < INT64_MAX) MPI_Barrier(r->comm->mpi);
 }
 
-static struct target *spread_targets(struct talk *t, char path[PATH_MAX],
+static struct target *spread_targets(struct comm *t, char path[PATH_MAX],
                                      const struct unfilled *place, int *places, bool *gather)
 {
     struct parcel o = { 0 };
@@ -159,20 +155,20 @@ static struct target *spread_targets(struct talk *t, char path[PATH_MAX],
         x.offset = c->offset;
         parcel_put(t, &o, &x, sizeof x);
     }
-    talk_spread(t, &o);
+    comm_spread(t, &o);
     *places = (int)(o.size / sizeof(struct target));
-    struct target *all = talk_new(t, *places, sizeof *all);
+    struct target *all = comm_new(t, *places, sizeof *all);
     for (int k = 0; k < *places; k++) parcel_take(t, &o, &all[k], sizeof *all);
     parcel_free(&o);
-    MPI_Bcast(path, PATH_MAX, MPI_CHAR, 0, t->comm);
-    MPI_Bcast(gather, 1, MPI_C_BOOL, 0, t->comm);
+    MPI_Bcast(path, PATH_MAX, MPI_CHAR, 0, t->mpi);
+    MPI_Bcast(gather, 1, MPI_C_BOOL, 0, t->mpi);
     return all;
 }
 
 int files_fill(const struct rows *r, const struct part *y, hid_t file, const char *path,
                const struct unfilled *place, int places, bool gather, struct why *why)
 {
-    struct talk *t = r->talk;
+    struct comm *t = r->comm;
     struct haul h;
     char where[PATH_MAX] = "";
     if (!t->me && path) snprintf(where, sizeof where, "%s", path);
@@ -180,12 +176,12 @@ int files_fill(const struct rows *r, const struct part *y, hid_t file, const cha
     struct target *o = spread_targets(t, where, place, &places, &gather);
     bool by_all = !gather && files_parallel() && all_see(t, where);
     hid_t ours = by_all ? open_by_all(t, where) : -1, transfer = by_all ? collective() : -1;
-    bool good = talk_most(t, by_all && ours < 0) == 0;
+    bool good = comm_most(t, by_all && ours < 0) == 0;
     haul_begin(&h, r, y);
     for (int k = 0; k < places; k++) {
         const struct column c = { NULL, NULL, (enum column_type)o[k].type, o[k].width,
                                   o[k].offset };
-        char *data = talk_new(t, h.n, (size_t)c.width * column_size(c.type));
+        char *data = comm_new(t, h.n, column_bytes(&c));
         haul_column(&h, &c, data);
         if (!by_all)
             good &= write_by_first(r, file, &o[k], data);
@@ -198,6 +194,6 @@ int files_fill(const struct rows *r, const struct part *y, hid_t file, const cha
     if (transfer > 0) H5Pclose(transfer);
     if (ours >= 0) good &= H5Fclose(ours) >= 0;
     int mine = good, all;
-    MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, t->comm);
+    MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, t->mpi);
     return all ? 0 : why_set(why, EX_IOERR, "bodies cannot be written (disk full?)");
 }

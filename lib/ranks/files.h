@@ -6,10 +6,10 @@
 #ifndef NSD_FILES_H
 #define NSD_FILES_H
 
-#include "io/elsewhere.h"
+#include "io/distributed.h"
 #include "ranks/rows.h"
 
-/* Collective. file, path, place[places] of the first rank, as in struct elsewhere; y NULL: the bodies lie in the
+/* Collective. file, path, place[places] of the first rank, as in struct distributed; y NULL: the bodies lie in the
    rows. gather: the first is to write. Returns 0, or at the first EX_IOERR; EX_DATAERR: what no reader accepts. */
 int files_fill(const struct rows *r, const struct part *y, hid_t file, const char *path,
                const struct unfilled *place, int places, bool gather, struct why *why);

@@ -22,7 +22,7 @@ enum {
 };
 
 struct cells {
-    struct talk *talk;
+    struct comm *comm;
     struct Zoltan_Struct *zz;
     vec3 lo;        /* m: a corner of the grid */
     double side;    /* m: of a cell */
@@ -70,7 +70,7 @@ static int around(const struct cells *c, int64_t cell, int64_t near[AROUND])
 
 static bool is_asked(const struct cells *c, int64_t cell)
 {
-    return c->home[cell] == c->talk->me;
+    return c->home[cell] == c->comm->me;
 }
 
 static int count(void *arg, int *error)
@@ -150,7 +150,7 @@ static void edge_weights(void *arg, int gids, int lids, int n, int weights, ZOLT
     *error = ZOLTAN_OK;
 }
 
-static void *begin(struct talk *t)
+static void *begin(struct comm *t)
 {
     static const char *const set[][2] = { { "LB_METHOD", "HYPERGRAPH" },
                                           { "HYPERGRAPH_PACKAGE", "PHG" },
@@ -163,8 +163,8 @@ static void *begin(struct talk *t)
                                           { "IMBALANCE_TOL", "1.02" },
                                           { "SEED", "1" },
                                           { NULL, NULL } };
-    struct cells *c = talk_new(t, 1, sizeof *c);
-    c->talk = t, c->zz = territory_zoltan(t, set);
+    struct cells *c = comm_new(t, 1, sizeof *c);
+    c->comm = t, c->zz = territory_zoltan(t, set);
     Zoltan_Set_Num_Obj_Fn(c->zz, count, c), Zoltan_Set_Obj_List_Fn(c->zz, list, c);
     Zoltan_Set_HG_Size_CS_Fn(c->zz, edge_sizes, c), Zoltan_Set_HG_CS_Fn(c->zz, edges, c);
     Zoltan_Set_HG_Size_Edge_Wts_Fn(c->zz, weight_sizes, c);
@@ -190,14 +190,14 @@ static void end(void *made)
 /* The grid around the points of all ranks */
 static void lay_grid(struct cells *c, int64_t n, const vec3 *x)
 {
-    struct talk *t = c->talk;
+    struct comm *t = c->comm;
     double most[6] = { -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY }, all[6];
     for (int64_t i = 0; i < n; i++) {
         const double p[3] = { x[i].x, x[i].y, x[i].z };
         for (int k = 0; k < 3; k++)
             most[k] = fmax(most[k], -p[k]), most[3 + k] = fmax(most[3 + k], p[k]);
     }
-    MPI_Allreduce(most, all, 6, MPI_DOUBLE, MPI_MAX, t->comm);
+    MPI_Allreduce(most, all, 6, MPI_DOUBLE, MPI_MAX, t->mpi);
     double size[3], longest = 0;
     for (int k = 0; k < 3; k++) {
         size[k] = all[k] + all[3 + k];
@@ -220,22 +220,22 @@ static void lay_grid(struct cells *c, int64_t n, const vec3 *x)
 /* What is in each cell, of all ranks */
 static void weigh(struct cells *c, int64_t n, const vec3 *x, const float *weight)
 {
-    struct talk *t = c->talk;
-    c->work = talk_new(t, c->n, sizeof *c->work), c->count = talk_new(t, c->n, sizeof *c->count);
+    struct comm *t = c->comm;
+    c->work = comm_new(t, c->n, sizeof *c->work), c->count = comm_new(t, c->n, sizeof *c->count);
     for (int64_t i = 0; i < n; i++) {
         int64_t at[3];
         place(c, x[i], at);
         c->work[cell_at(c, at)] += (int64_t)(WEIGHT_UNITS * weight[i] + 0.5f);
         c->count[cell_at(c, at)]++;
     }
-    MPI_Allreduce(MPI_IN_PLACE, c->work, (int)c->n, MPI_INT64_T, MPI_SUM, t->comm);
-    MPI_Allreduce(MPI_IN_PLACE, c->count, (int)c->n, MPI_INT64_T, MPI_SUM, t->comm);
+    MPI_Allreduce(MPI_IN_PLACE, c->work, (int)c->n, MPI_INT64_T, MPI_SUM, t->mpi);
+    MPI_Allreduce(MPI_IN_PLACE, c->count, (int)c->n, MPI_INT64_T, MPI_SUM, t->mpi);
 }
 
 /* Cells in which nothing is go with the nearest, cell by cell outwards. */
 static void spread(struct cells *c)
 {
-    int64_t *queue = talk_new(c->talk, c->n, sizeof *queue), first = 0, end = 0, near[AROUND];
+    int64_t *queue = comm_new(c->comm, c->n, sizeof *queue), first = 0, end = 0, near[AROUND];
     for (int64_t i = 0; i < c->n; i++)
         if (c->owner[i] >= 0) queue[end++] = i;
     if (!end) c->owner[0] = 0, queue[end++] = 0;
@@ -252,27 +252,27 @@ static void spread(struct cells *c)
 /* Asks Zoltan whose the occupied cells are. */
 static void share_out(struct cells *c)
 {
-    struct talk *t = c->talk;
+    struct comm *t = c->comm;
     int changes, gids, lids, in, out;
     ZOLTAN_ID_PTR in_gid = NULL, in_lid = NULL, gid = NULL, lid = NULL;
     int *in_rank = NULL, *in_part = NULL, *rank = NULL, *part = NULL;
     if (Zoltan_LB_Partition(c->zz, &changes, &gids, &lids, &in, &in_gid, &in_lid, &in_rank,
                             &in_part, &out, &gid, &lid, &rank, &part) != ZOLTAN_OK)
-        talk_fail(t, EX_SOFTWARE, "Zoltan finds no cuts");
+        comm_fail(t, EX_SOFTWARE, "Zoltan finds no cuts");
     for (int k = 0; k < out; k++) c->owner[gid[k]] = part[k];
     Zoltan_LB_Free_Part(&in_gid, &in_lid, &in_rank, &in_part);
     Zoltan_LB_Free_Part(&gid, &lid, &rank, &part);
-    MPI_Allreduce(MPI_IN_PLACE, c->owner, (int)c->n, MPI_INT, MPI_MAX, t->comm);
+    MPI_Allreduce(MPI_IN_PLACE, c->owner, (int)c->n, MPI_INT, MPI_MAX, t->mpi);
 }
 
 static void cut(void *made, int64_t n, const vec3 *x, const float *weight)
 {
     struct cells *c = made;
-    struct talk *t = c->talk;
+    struct comm *t = c->comm;
     forget(c);
     lay_grid(c, n, x);
     weigh(c, n, x, weight);
-    c->owner = talk_new(t, c->n, sizeof *c->owner), c->home = talk_new(t, c->n, sizeof *c->home);
+    c->owner = comm_new(t, c->n, sizeof *c->owner), c->home = comm_new(t, c->n, sizeof *c->home);
     int64_t occupied = 0, next = 0;
     for (int64_t i = 0; i < c->n; i++) occupied += c->count[i] > 0;
     for (int64_t i = 0; i < c->n; i++) {

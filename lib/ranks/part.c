@@ -16,55 +16,43 @@
    contact is solved a hundred times. Its half of each contact comes on top. */
 #define A_BODY 0.1f
 
-/* A body on its way */
+/* A body on its way: this, then its row of each column that the packing has */
 struct traveller {
-    double radius, mass, inertia;
-    vec3 x, v, w;
-    quat q;
-    int32_t row, owner, id, kind, shape, load, image[3], unused;
-};
-
-/* Where a body is and how it moves */
-struct state {
-    vec3 x, v, w;
-    quat q;
-    int32_t image[3], unused;
+    int32_t row, owner, load;
 };
 
 static void fail(const struct part *y, const struct why *why)
 {
-    talk_fail(y->talk, why->status, why->text);
+    comm_fail(y->comm, why->status, why->text);
 }
 
-static struct traveller traveller_of(const struct packing *p, int64_t i, int32_t row, int32_t owner,
-                                     int32_t load)
+/* What a body has of all columns, or of those that move, into a parcel and out of one */
+static void put_body(struct comm *t, struct parcel *to, const struct packing *p, int64_t i,
+                     bool moving)
 {
-    struct traveller b;
-    memset(&b, 0, sizeof b);
-    b.radius = p->radius[i], b.mass = p->mass[i], b.inertia = p->inertia[i];
-    b.x = p->x[i], b.v = p->v[i], b.w = p->w[i], b.q = p->q[i];
-    b.row = row, b.owner = owner, b.id = p->id[i], b.kind = p->kind[i];
-    b.shape = p->shape ? p->shape[i] : 0, b.load = load;
-    for (int k = 0; k < 3 && p->image; k++) b.image[k] = p->image[i][k];
-    return b;
+    for (const struct body_column *b = body_columns; b->column.name; b++)
+        if (column_array(&b->column, p) && (!moving || b->traits & BODY_MOVES))
+            parcel_put(t, to, column_row(&b->column, p, i), column_bytes(&b->column));
 }
 
-static struct state state_of(const struct packing *p, int64_t i)
+static void take_body(struct comm *t, struct parcel *from, struct packing *p, int64_t i,
+                      bool moving)
 {
-    struct state s;
-    memset(&s, 0, sizeof s);
-    s.x = p->x[i], s.v = p->v[i], s.w = p->w[i], s.q = p->q[i];
-    for (int k = 0; k < 3 && p->image; k++) s.image[k] = p->image[i][k];
-    return s;
+    for (const struct body_column *b = body_columns; b->column.name; b++)
+        if (column_array(&b->column, p) && (!moving || b->traits & BODY_MOVES))
+            parcel_take(t, from, column_row(&b->column, p, i), column_bytes(&b->column));
 }
 
-static void set_state(struct packing *p, int64_t i, const struct state *s)
+/* Bytes of a traveller with all that follows it */
+static size_t traveller_bytes(const struct packing *p)
 {
-    p->x[i] = s->x, p->v[i] = s->v, p->w[i] = s->w, p->q[i] = s->q;
-    for (int k = 0; k < 3 && p->image; k++) p->image[i][k] = s->image[k];
+    size_t bytes = sizeof(struct traveller);
+    for (const struct body_column *b = body_columns; b->column.name; b++)
+        if (column_array(&b->column, p)) bytes += column_bytes(&b->column);
+    return bytes;
 }
 
-void borders_free(const struct talk *t, struct border *b)
+void borders_free(const struct comm *t, struct border *b)
 {
     for (int q = 0; b && q < t->n; q++) free(b[q].body);
     free(b);
@@ -76,34 +64,28 @@ static void resize(struct part *y, int64_t n)
     struct why why = { 0 };
     struct packing *p = &y->p;
     if (packing_resize(p, n, &why)) fail(y, &why);
-    if (p->image && packing_alloc_images(p, &why)) fail(y, &why);
     free(y->row), free(y->owner), free(y->dealt), free(y->load);
-    y->row = talk_new(y->talk, n, sizeof *y->row),
-    y->owner = talk_new(y->talk, n, sizeof *y->owner);
-    y->dealt = talk_new(y->talk, n, sizeof *y->dealt),
-    y->load = talk_new(y->talk, n, sizeof *y->load);
+    y->row = comm_new(y->comm, n, sizeof *y->row),
+    y->owner = comm_new(y->comm, n, sizeof *y->owner);
+    y->dealt = comm_new(y->comm, n, sizeof *y->dealt),
+    y->load = comm_new(y->comm, n, sizeof *y->load);
 }
 
-static void set_body(struct part *y, int64_t i, const struct traveller *b)
+/* What is known of a body that has been copied into row i of y->p */
+static void set_body(struct part *y, int64_t i, struct traveller b)
 {
-    struct packing *p = &y->p;
-    p->radius[i] = b->radius, p->mass[i] = b->mass, p->inertia[i] = b->inertia;
-    p->x[i] = b->x, p->v[i] = b->v, p->w[i] = b->w, p->q[i] = b->q;
-    p->id[i] = b->id, p->kind[i] = b->kind;
-    if (p->shape) p->shape[i] = b->shape;
-    for (int k = 0; k < 3 && p->image; k++) p->image[i][k] = b->image[k];
-    y->row[i] = b->row, y->owner[i] = b->owner, y->load[i] = b->load;
-    y->dealt[i] = b->x;
+    y->row[i] = b.row, y->owner[i] = b.owner, y->load[i] = b.load;
+    y->dealt[i] = y->p.x[i];
 }
 
 /* These bodies, of rows from `first` on, are this rank's own. */
 static void take_own(struct part *y, const struct packing *p, int64_t n, int64_t first)
 {
-    y->all = talk_sum(y->talk, n);
+    y->all = comm_sum(y->comm, n);
     resize(y, n);
     for (int64_t i = 0; i < n; i++) {
-        struct traveller b = traveller_of(p, i, (int32_t)(first + i), y->talk->me, 0);
-        set_body(y, i, &b);
+        packing_copy_body(&y->p, i, p, i);
+        set_body(y, i, (struct traveller){ (int32_t)(first + i), y->comm->me, 0 });
     }
     y->own = n;
     y->margin = -1; // they are to be dealt
@@ -112,14 +94,14 @@ static void take_own(struct part *y, const struct packing *p, int64_t n, int64_t
 /* At first the first rank owns all bodies. */
 static void take_all(struct part *y, const struct packing *whole)
 {
-    take_own(y, whole, y->talk->me ? 0 : whole->n, 0);
+    take_own(y, whole, y->comm->me ? 0 : whole->n, 0);
 }
 
-static void begin(struct part *y, struct talk *t, struct territory *space,
+static void begin(struct part *y, struct comm *t, struct territory *space,
                   const struct packing *settings)
 {
     struct why why = { 0 };
-    *y = (struct part){ .talk = t, .territory = space };
+    *y = (struct part){ .comm = t, .territory = space };
     if (!t->me) {
         struct packing none = *settings;
         none.n = 0, none.events.n = 0, none.bonds.n = 0, none.scene = NULL;
@@ -130,7 +112,7 @@ static void begin(struct part *y, struct talk *t, struct territory *space,
     y->p.whole = &y->whole;
 }
 
-void part_begin(struct part *y, struct talk *t, struct territory *space,
+void part_begin(struct part *y, struct comm *t, struct territory *space,
                 const struct packing *whole)
 {
     begin(y, t, space, whole);
@@ -138,13 +120,13 @@ void part_begin(struct part *y, struct talk *t, struct territory *space,
     part_recut(y);
 }
 
-void part_begin_rows(struct part *y, struct talk *t, struct territory *space,
+void part_begin_rows(struct part *y, struct comm *t, struct territory *space,
                      const struct packing *settings, const struct packing *rows, int64_t first,
                      int64_t all)
 {
     begin(y, t, space, settings);
     take_own(y, rows, rows->n, first);
-    if (y->all != all) talk_fail(t, EX_SOFTWARE, "ranks disagree about rows of bodies");
+    if (y->all != all) comm_fail(t, EX_SOFTWARE, "ranks disagree about rows of bodies");
     part_recut(y);
 }
 
@@ -155,7 +137,7 @@ void part_begin_again(struct part *y, const struct packing *whole)
 
 void part_free(struct part *y)
 {
-    borders_free(y->talk, y->lent), borders_free(y->talk, y->here);
+    borders_free(y->comm, y->lent), borders_free(y->comm, y->here);
     free(y->row), free(y->owner), free(y->dealt), free(y->load);
     packing_free(&y->p);
     territory_free(y->territory);
@@ -168,7 +150,7 @@ void part_measure(struct part *y)
     p->whole = NULL;
     struct whole w = packing_whole(p);
     double most[5] = { w.speed, w.top_speed, -w.small, w.large, w.apart }, all[5];
-    MPI_Allreduce(most, all, 5, MPI_DOUBLE, MPI_MAX, y->talk->comm);
+    MPI_Allreduce(most, all, 5, MPI_DOUBLE, MPI_MAX, y->comm->mpi);
     y->whole = (struct whole){ all[0], all[1], -all[2], all[3], all[4] };
     p->whole = &y->whole;
 }
@@ -182,18 +164,18 @@ double part_imbalance(struct part *y, const struct contacts *s)
         if (s->c[i].a >= 0) y->load[s->c[i].a]++;
         mine += part_counts(y, &s->c[i]);
     }
-    double most = talk_most(y->talk, (double)mine);
-    int64_t all = talk_sum(y->talk, mine);
-    return all ? most * y->talk->n / (double)all : 1;
+    double most = comm_most(y->comm, (double)mine);
+    int64_t all = comm_sum(y->comm, mine);
+    return all ? most * y->comm->n / (double)all : 1;
 }
 
 void part_recut(struct part *y)
 {
     int64_t n = 0;
-    vec3 *x = talk_new(y->talk, y->own, sizeof *x);
-    float *weight = talk_new(y->talk, y->own, sizeof *weight);
+    vec3 *x = comm_new(y->comm, y->own, sizeof *x);
+    float *weight = comm_new(y->comm, y->own, sizeof *weight);
     for (int64_t i = 0; i < y->p.n; i++)
-        if (y->owner[i] == y->talk->me)
+        if (y->owner[i] == y->comm->me)
             x[n] = y->p.x[i], weight[n++] = A_BODY + 0.5f * (float)y->load[i];
     territory_cut(y->territory, n, x, weight);
     free(x), free(weight);
@@ -209,9 +191,9 @@ static bool is_due(const struct part *y)
     for (int k = 0; k < 3; k++) due = due || (y->p.cell.repeats[k] && cell_moves(&y->p.cell, k));
     for (int64_t i = 0; i < y->p.n && !due; i++) {
         vec3 d = v3_sub(packing_predict(&y->p, i), y->dealt[i]);
-        due = y->owner[i] == y->talk->me && !(v3_norm(d) <= 0.49 * y->margin);
+        due = y->owner[i] == y->comm->me && !(v3_norm(d) <= 0.49 * y->margin);
     }
-    return talk_most(y->talk, due) > 0;
+    return comm_most(y->comm, due) > 0;
 }
 
 /* The ranks that have a copy of a body which is at x, and those of its images: mark[] is set. */
@@ -230,23 +212,30 @@ static void mark_ranks(const struct part *y, const vec3 x, double half, int *met
             }
 }
 
+/* A traveller that has come: where it lies in its parcel */
+struct arrival {
+    struct traveller body;
+    struct parcel *parcel;
+    size_t at; /* of its columns */
+};
+
 static int by_row(const void *a, const void *b)
 {
-    const struct traveller *x = a, *y = b;
-    return x->row < y->row ? -1 : x->row > y->row;
+    const struct arrival *x = a, *y = b;
+    return x->body.row < y->body.row ? -1 : x->body.row > y->body.row;
 }
 
 /* The lists of bodies that are here and elsewhere: a copy's rank tells the owner. */
 static void find_borders(struct part *y)
 {
-    struct talk *t = y->talk;
+    struct comm *t = y->comm;
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
     borders_free(t, y->lent), borders_free(t, y->here);
-    y->lent = talk_new(t, t->n, sizeof *y->lent), y->here = talk_new(t, t->n, sizeof *y->here);
+    y->lent = comm_new(t, t->n, sizeof *y->lent), y->here = comm_new(t, t->n, sizeof *y->here);
     for (int64_t i = 0; i < y->p.n; i++)
         if (y->owner[i] != t->me) y->here[y->owner[i]].n++;
     for (int q = 0; q < t->n; q++) {
-        y->here[q].body = talk_new(t, y->here[q].n, sizeof *y->here[q].body);
+        y->here[q].body = comm_new(t, y->here[q].n, sizeof *y->here[q].body);
         y->here[q].n = 0;
     }
     for (int64_t i = 0; i < y->p.n; i++) {
@@ -255,18 +244,18 @@ static void find_borders(struct part *y)
         b->body[b->n++] = (int32_t)i;
         parcel_put(t, &out[y->owner[i]], &y->row[i], sizeof *y->row);
     }
-    talk_exchange(t, out, in);
+    comm_exchange(t, out, in);
     for (int q = 0; q < t->n; q++) {
         struct border *b = &y->lent[q];
         int64_t at = 0;
         b->n = (int64_t)(in[q].size / sizeof *y->row);
-        b->body = talk_new(t, b->n, sizeof *b->body);
+        b->body = comm_new(t, b->n, sizeof *b->body);
         for (int64_t k = 0; k < b->n; k++) { // both lists ascend
             int32_t row;
             parcel_take(t, &in[q], &row, sizeof row);
             while (at < y->p.n && y->row[at] < row) at++;
             if (at == y->p.n || y->row[at] != row)
-                talk_fail(t, EX_SOFTWARE, "ranks disagree: a copy of a body that is not here");
+                comm_fail(t, EX_SOFTWARE, "ranks disagree: a copy of a body that is not here");
             b->body[k] = (int32_t)at;
         }
     }
@@ -276,8 +265,8 @@ static void find_borders(struct part *y)
 static double mean_radius(const struct part *y)
 {
     double sum = 0, all;
-    for (int64_t i = 0; i < y->p.n; i++) sum += y->owner[i] == y->talk->me ? y->p.radius[i] : 0;
-    MPI_Allreduce(&sum, &all, 1, MPI_DOUBLE, MPI_SUM, y->talk->comm);
+    for (int64_t i = 0; i < y->p.n; i++) sum += y->owner[i] == y->comm->me ? y->p.radius[i] : 0;
+    MPI_Allreduce(&sum, &all, 1, MPI_DOUBLE, MPI_SUM, y->comm->mpi);
     return y->all ? all / (double)y->all : 0;
 }
 
@@ -291,18 +280,19 @@ static double choose_margin(const struct part *y)
 
 static void send_bodies(struct part *y, double reach, struct parcel *out)
 {
-    struct talk *t = y->talk;
-    int *met = talk_new(t, t->n, sizeof *met);
-    bool *mark = talk_new(t, t->n, sizeof *mark);
+    struct comm *t = y->comm;
+    int *met = comm_new(t, t->n, sizeof *met);
+    bool *mark = comm_new(t, t->n, sizeof *mark);
     for (int64_t i = 0; i < y->p.n; i++) {
         if (y->owner[i] != t->me) continue;
         int owner = territory_owner(y->territory, y->p.x[i]);
         memset(mark, 0, (size_t)t->n * sizeof *mark);
         mark_ranks(y, y->p.x[i], y->p.radius[i] + y->whole.large + reach + y->margin, met, mark);
         mark[owner] = true;
-        struct traveller b = traveller_of(&y->p, i, y->row[i], owner, y->load[i]);
+        const struct traveller b = { y->row[i], owner, y->load[i] };
         for (int q = 0; q < t->n; q++)
-            if (mark[q]) parcel_put(t, &out[q], &b, sizeof b);
+            if (mark[q])
+                parcel_put(t, &out[q], &b, sizeof b), put_body(t, &out[q], &y->p, i, false);
     }
     free(met), free(mark);
 }
@@ -317,26 +307,33 @@ static void give_back(void)
 
 bool part_deal(struct part *y, double reach)
 {
-    struct talk *t = y->talk;
+    struct comm *t = y->comm;
     if (!is_due(y)) return false;
     y->margin = choose_margin(y), y->deals++;
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
     send_bodies(y, reach, out);
-    talk_exchange(t, out, in);
+    comm_exchange(t, out, in);
+    const size_t bytes = traveller_bytes(&y->p);
     int64_t n = 0, k = 0;
-    for (int q = 0; q < t->n; q++) n += (int64_t)(in[q].size / sizeof(struct traveller));
-    struct traveller *b = talk_new(t, n, sizeof *b);
+    for (int q = 0; q < t->n; q++) n += (int64_t)(in[q].size / bytes);
+    struct arrival *b = comm_new(t, n, sizeof *b);
     for (int q = 0; q < t->n; q++)
-        while (in[q].at < in[q].size) parcel_take(t, &in[q], &b[k++], sizeof *b);
-    parcels_free(t, out), parcels_free(t, in);
+        for (size_t at = 0; at < in[q].size; at += bytes, k++) {
+            in[q].at = at;
+            parcel_take(t, &in[q], &b[k].body, sizeof b[k].body);
+            b[k].parcel = &in[q], b[k].at = in[q].at;
+        }
     qsort(b, (size_t)n, sizeof *b, by_row);
     resize(y, n);
     y->own = 0;
     for (int64_t i = 0; i < n; i++) {
-        set_body(y, i, &b[i]);
-        y->own += b[i].owner == t->me;
+        b[i].parcel->at = b[i].at;
+        take_body(t, b[i].parcel, &y->p, i, false);
+        set_body(y, i, b[i].body);
+        y->own += b[i].body.owner == t->me;
     }
     free(b);
+    parcels_free(t, out), parcels_free(t, in);
     find_borders(y);
     give_back();
     return true;
@@ -358,61 +355,48 @@ int32_t part_find(const struct part *y, int32_t row)
 
 void part_follow(struct part *y, const struct packing *whole)
 {
-    struct talk *t = y->talk;
+    struct comm *t = y->comm;
     struct parcel rows = { 0 }, mine = { 0 }, *in = parcels_new(t), *out = parcels_new(t);
     parcel_put(t, &rows, y->row, (size_t)y->p.n * sizeof *y->row);
-    talk_gather(t, &rows, in);
+    comm_gather(t, &rows, in);
     for (int q = 0; q < t->n && !t->me; q++)
         while (in[q].at < in[q].size) {
             int32_t row;
             parcel_take(t, &in[q], &row, sizeof row);
-            struct state s = state_of(whole, row);
-            parcel_put(t, &out[q], &s, sizeof s);
+            put_body(t, &out[q], whole, row, true);
         }
-    talk_scatter(t, out, &mine);
-    for (int64_t i = 0; i < y->p.n; i++) {
-        struct state s;
-        parcel_take(t, &mine, &s, sizeof s);
-        set_state(&y->p, i, &s);
-    }
+    comm_scatter(t, out, &mine);
+    for (int64_t i = 0; i < y->p.n; i++) take_body(t, &mine, &y->p, i, true);
     parcel_free(&mine), parcels_free(t, in), parcels_free(t, out);
 }
 
 void part_collect(const struct part *y, struct packing *whole)
 {
-    struct talk *t = y->talk;
+    struct comm *t = y->comm;
     struct parcel mine = { 0 }, *in = parcels_new(t);
     for (int64_t i = 0; i < y->p.n; i++) {
         if (y->owner[i] != t->me) continue;
-        struct state s = state_of(&y->p, i);
-        parcel_put(t, &mine, &y->row[i], sizeof *y->row), parcel_put(t, &mine, &s, sizeof s);
+        parcel_put(t, &mine, &y->row[i], sizeof *y->row), put_body(t, &mine, &y->p, i, true);
     }
-    talk_gather(t, &mine, in);
+    comm_gather(t, &mine, in);
     for (int q = 0; q < t->n && !t->me; q++)
         while (in[q].at < in[q].size) {
             int32_t row;
-            struct state s;
-            parcel_take(t, &in[q], &row, sizeof row), parcel_take(t, &in[q], &s, sizeof s);
-            set_state(whole, row, &s);
+            parcel_take(t, &in[q], &row, sizeof row), take_body(t, &in[q], whole, row, true);
         }
     parcels_free(t, in);
 }
 
 void part_refresh(struct part *y)
 {
-    struct talk *t = y->talk;
+    struct comm *t = y->comm;
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
     for (int q = 0; q < t->n; q++)
-        for (int64_t k = 0; k < y->lent[q].n; k++) {
-            struct state s = state_of(&y->p, y->lent[q].body[k]);
-            parcel_put(t, &out[q], &s, sizeof s);
-        }
-    talk_exchange(t, out, in);
+        for (int64_t k = 0; k < y->lent[q].n; k++)
+            put_body(t, &out[q], &y->p, y->lent[q].body[k], true);
+    comm_exchange(t, out, in);
     for (int q = 0; q < t->n; q++)
-        for (int64_t k = 0; k < y->here[q].n; k++) {
-            struct state s;
-            parcel_take(t, &in[q], &s, sizeof s);
-            set_state(&y->p, y->here[q].body[k], &s);
-        }
+        for (int64_t k = 0; k < y->here[q].n; k++)
+            take_body(t, &in[q], &y->p, y->here[q].body[k], true);
     parcels_free(t, out), parcels_free(t, in);
 }

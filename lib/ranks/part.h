@@ -17,10 +17,10 @@ struct border {
 };
 
 /* Of all ranks; not collective */
-void borders_free(const struct talk *t, struct border *b);
+void borders_free(const struct comm *t, struct border *b);
 
 struct part {
-    struct talk *talk;
+    struct comm *comm;
     struct territory *territory;
     struct packing p; /* own bodies and copies */
     int64_t all;      /* bodies of the whole */
@@ -39,12 +39,12 @@ struct part {
 
 /* The first rank's packing becomes parts: its bodies are copied from it, and it stays as it is. Those of the
    others are not looked at. space is taken over. Collective, as all that follows. */
-void part_begin(struct part *y, struct talk *t, struct territory *space,
+void part_begin(struct part *y, struct comm *t, struct territory *space,
                 const struct packing *whole);
 void part_free(struct part *y);
 /* The same where each rank has some rows of the bodies, those from `first` on: they become its own. settings:
    the first rank's packing, all but its bodies. */
-void part_begin_rows(struct part *y, struct talk *t, struct territory *space,
+void part_begin_rows(struct part *y, struct comm *t, struct territory *space,
                      const struct packing *settings, const struct packing *rows, int64_t first,
                      int64_t all);
 /* The same of a packing that has other bodies than before */
@@ -73,12 +73,12 @@ int32_t part_find(const struct part *y, int32_t row);
 /* Whose is the contact of this rank's packing? That of b counts it. */
 static inline bool part_counts(const struct part *y, const struct contact *c)
 {
-    return y->owner[c->b] == y->talk->me;
+    return y->owner[c->b] == y->comm->me;
 }
 /* Has this rank a body in it? */
 static inline bool part_has(const struct part *y, const struct contact *c)
 {
-    return part_counts(y, c) || (c->a >= 0 && y->owner[c->a] == y->talk->me);
+    return part_counts(y, c) || (c->a >= 0 && y->owner[c->a] == y->comm->me);
 }
 
 #endif

@@ -7,44 +7,28 @@
 /* What is said of a block in front of it */
 struct block {
     int64_t first, n, all;
-    int32_t dim, has_shape, has_image, unused;
+    int32_t dim;
+    uint32_t optional; /* packing_optional() */
 };
 
-/* What a body has: column k of all tables; NULL: there is no such */
-static const struct column *column_of(int k)
+static void fail(const struct comm *t, const struct why *why)
 {
-    static const int bodies = sizeof layout_bodies / sizeof *layout_bodies - 1,
-                     motion = sizeof layout_motion / sizeof *layout_motion - 1;
-    if (k < bodies) return &layout_bodies[k];
-    if (k < bodies + motion) return &layout_motion[k - bodies];
-    return k == bodies + motion ? layout_cell : NULL; // its images
-}
-
-static size_t bytes_of(const struct column *c)
-{
-    return (size_t)c->width * column_size(c->type);
-}
-
-static void fail(const struct talk *t, const struct why *why)
-{
-    talk_fail(t, why->status, why->text);
+    comm_fail(t, why->status, why->text);
 }
 
 static void make_room(struct rows *r, const struct block *b)
 {
-    struct talk *t = r->talk;
+    struct comm *t = r->comm;
     struct why why = { 0 };
     rows_free(r);
-    *r = (struct rows){ .talk = t, .all = b->all, .first = rows_begin(b->all, t->n, t->me) };
+    *r = (struct rows){ .comm = t, .all = b->all, .first = rows_begin(b->all, t->n, t->me) };
     int64_t n = rows_begin(b->all, t->n, t->me + 1) - r->first;
-    if (packing_init(&r->p, b->dim, n, &why) ||
-        (b->has_shape && packing_alloc_shapes(&r->p, &why)) ||
-        (b->has_image && packing_alloc_images(&r->p, &why)))
+    if (packing_init(&r->p, b->dim, n, &why) || packing_alloc_optional(&r->p, b->optional, &why))
         fail(t, &why);
 }
 
 /* Rows first .. end - 1 that a block and rank k both have; false: none */
-static bool common(const struct block *b, const struct talk *t, int k, int64_t *first, int64_t *end)
+static bool common(const struct block *b, const struct comm *t, int k, int64_t *first, int64_t *end)
 {
     *first = rows_begin(b->all, t->n, k), *end = rows_begin(b->all, t->n, k + 1);
     if (*first < b->first) *first = b->first;
@@ -52,30 +36,27 @@ static bool common(const struct block *b, const struct talk *t, int k, int64_t *
     return *first < *end;
 }
 
-void rows_take(struct rows *r, struct talk *t, const struct packing *block, int64_t first,
+void rows_take(struct rows *r, struct comm *t, const struct packing *block, int64_t first,
                int64_t all)
 {
     struct block b = { 0 };
     struct parcel *out = parcels_new(t), mine = { 0 };
     int64_t from, end;
     const struct column *c;
-    if (!t->me)
-        b = (struct block){ first, block->n, all, block->dim, !!block->shape, !!block->image, 0 };
-    MPI_Bcast(&b, sizeof b, MPI_BYTE, 0, t->comm);
-    r->talk = t;
+    if (!t->me) b = (struct block){ first, block->n, all, block->dim, packing_optional(block) };
+    MPI_Bcast(&b, sizeof b, MPI_BYTE, 0, t->mpi);
+    r->comm = t;
     if (!b.first) make_room(r, &b);
     for (int q = 0; q < t->n && !t->me; q++)
-        for (int k = 0; common(&b, t, q, &from, &end) && (c = column_of(k)); k++)
-            if (column_array(c, block))
-                parcel_put(t, &out[q],
-                           (char *)column_array(c, block) + (size_t)(from - first) * bytes_of(c),
-                           (size_t)(end - from) * bytes_of(c));
-    talk_scatter(t, out, &mine);
-    for (int k = 0; common(&b, t, t->me, &from, &end) && (c = column_of(k)); k++)
-        if (column_array(c, &r->p))
-            parcel_take(t, &mine,
-                        (char *)column_array(c, &r->p) + (size_t)(from - r->first) * bytes_of(c),
-                        (size_t)(end - from) * bytes_of(c));
+        for (int k = 0; common(&b, t, q, &from, &end) && k < BODY_COLUMNS; k++)
+            if (column_array(c = &body_columns[k].column, block))
+                parcel_put(t, &out[q], column_row(c, block, from - first),
+                           (size_t)(end - from) * column_bytes(c));
+    comm_scatter(t, out, &mine);
+    for (int k = 0; common(&b, t, t->me, &from, &end) && k < BODY_COLUMNS; k++)
+        if (column_array(c = &body_columns[k].column, &r->p))
+            parcel_take(t, &mine, column_row(c, &r->p, from - r->first),
+                        (size_t)(end - from) * column_bytes(c));
     for (int64_t i = 0; i < b.n && !t->me; i++)
         r->mass += block->mass[i], r->heavy += block->mass[i] > 0;
     parcel_free(&mine), parcels_free(t, out);
@@ -84,7 +65,7 @@ void rows_take(struct rows *r, struct talk *t, const struct packing *block, int6
 void rows_deal(struct rows *r, struct part *y, struct territory *space,
                const struct packing *settings)
 {
-    part_begin_rows(y, r->talk, space, settings, &r->p, r->first, r->all);
+    part_begin_rows(y, r->comm, space, settings, &r->p, r->first, r->all);
     packing_free(&r->p);
 }
 
@@ -98,9 +79,9 @@ void rows_free(struct rows *r)
 /* The rank that has a row */
 static int holder_of(const struct rows *r, int32_t row)
 {
-    int k = (int)((int64_t)row * r->talk->n / r->all);
-    while (rows_begin(r->all, r->talk->n, k) > row) k--;
-    while (rows_begin(r->all, r->talk->n, k + 1) <= row) k++;
+    int k = (int)((int64_t)row * r->comm->n / r->all);
+    while (rows_begin(r->all, r->comm->n, k) > row) k--;
+    while (rows_begin(r->all, r->comm->n, k + 1) <= row) k++;
     return k;
 }
 
@@ -108,55 +89,55 @@ static int holder_of(const struct rows *r, int32_t row)
 static void send_off(const struct haul *h, const struct column *c, struct parcel *out)
 {
     const struct part *y = h->part;
-    size_t bytes = c ? bytes_of(c) : 0;
+    size_t bytes = c ? column_bytes(c) : 0;
     const char *from = c ? column_array(c, &y->p) : NULL;
     for (int64_t i = 0; i < y->p.n; i++) {
-        if (y->owner[i] != y->talk->me) continue;
+        if (y->owner[i] != y->comm->me) continue;
         struct parcel *to = &out[holder_of(h->rows, y->row[i])];
         if (c)
-            parcel_put(y->talk, to, from + (size_t)i * bytes, bytes);
+            parcel_put(y->comm, to, from + (size_t)i * bytes, bytes);
         else
-            parcel_put(y->talk, to, &y->row[i], sizeof *y->row);
+            parcel_put(y->comm, to, &y->row[i], sizeof *y->row);
     }
 }
 
 void haul_begin(struct haul *h, const struct rows *r, const struct part *y)
 {
-    struct talk *t = r->talk;
+    struct comm *t = r->comm;
     int64_t n = 0;
     *h = (struct haul){ .rows = r, .part = y };
     h->n = rows_begin(r->all, t->n, t->me + 1) - r->first;
     if (!y) return;
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
     send_off(h, NULL, out);
-    talk_exchange(t, out, in);
-    h->at = talk_new(t, t->n, sizeof *h->at);
+    comm_exchange(t, out, in);
+    h->at = comm_new(t, t->n, sizeof *h->at);
     for (int q = 0; q < t->n; q++) {
         int64_t many = (int64_t)(in[q].size / sizeof(int32_t));
-        h->at[q] = talk_new(t, many, sizeof **h->at);
+        h->at[q] = comm_new(t, many, sizeof **h->at);
         for (int64_t i = 0; i < many; i++, n++) {
             int32_t row;
             parcel_take(t, &in[q], &row, sizeof row);
             h->at[q][i] = row - r->first;
             if (row < r->first || row - r->first >= h->n)
-                talk_fail(t, EX_SOFTWARE, "ranks disagree about rows of bodies");
+                comm_fail(t, EX_SOFTWARE, "ranks disagree about rows of bodies");
         }
     }
-    if (n != h->n) talk_fail(t, EX_SOFTWARE, "ranks disagree about rows of bodies");
+    if (n != h->n) comm_fail(t, EX_SOFTWARE, "ranks disagree about rows of bodies");
     parcels_free(t, out), parcels_free(t, in);
 }
 
 void haul_column(struct haul *h, const struct column *c, void *to)
 {
-    struct talk *t = h->rows->talk;
-    size_t bytes = bytes_of(c);
+    struct comm *t = h->rows->comm;
+    size_t bytes = column_bytes(c);
     if (!h->part) {
         memcpy(to, column_array(c, &h->rows->p), (size_t)h->n * bytes);
         return;
     }
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
     send_off(h, c, out);
-    talk_exchange(t, out, in);
+    comm_exchange(t, out, in);
     for (int q = 0; q < t->n; q++)
         for (int64_t i = 0; in[q].at < in[q].size; i++)
             parcel_take(t, &in[q], (char *)to + (size_t)h->at[q][i] * bytes, bytes);
@@ -165,7 +146,7 @@ void haul_column(struct haul *h, const struct column *c, void *to)
 
 void haul_end(struct haul *h)
 {
-    for (int q = 0; h->at && q < h->rows->talk->n; q++) free(h->at[q]);
+    for (int q = 0; h->at && q < h->rows->comm->n; q++) free(h->at[q]);
     free(h->at);
     *h = (struct haul){ 0 };
 }

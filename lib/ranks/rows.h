@@ -10,7 +10,7 @@
 #include "io/layout.h"
 
 struct rows {
-    struct talk *talk;
+    struct comm *comm;
     int64_t all, first; /* bodies of the whole; the first row here */
     struct packing p;   /* the rows here, until they are dealt: bodies and nothing else */
     double mass,
@@ -26,7 +26,7 @@ static inline int64_t rows_begin(int64_t all, int ranks, int k)
 
 /* The first rank's block of rows, of a packing with `all` bodies, comes to those who have them; in the others it
    is not looked at. From row 0 on; what was there before is dropped then. Collective, as all that follows. */
-void rows_take(struct rows *r, struct talk *t, const struct packing *block, int64_t first,
+void rows_take(struct rows *r, struct comm *t, const struct packing *block, int64_t first,
                int64_t all);
 /* They become a part's own bodies, of which the first has all else in `settings`. */
 void rows_deal(struct rows *r, struct part *y, struct territory *space,

@@ -4,12 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void put_text(struct talk *t, struct parcel *o, const char *text)
+static void put_text(struct comm *t, struct parcel *o, const char *text)
 {
     parcel_put_array(t, o, text, text ? (int64_t)strlen(text) + 1 : 0, 1);
 }
 
-static char *take_text(struct talk *t, struct parcel *o)
+static char *take_text(struct comm *t, struct parcel *o)
 {
     char *text;
     if (parcel_take_array(t, o, &text, 1)) return text;
@@ -17,20 +17,20 @@ static char *take_text(struct talk *t, struct parcel *o)
     return NULL;
 }
 
-static void put_drives(struct talk *t, struct parcel *o, const struct drives *d)
+static void put_drives(struct comm *t, struct parcel *o, const struct drives *d)
 {
     parcel_put_array(t, o, d->drive, d->n, sizeof *d->drive);
     parcel_put_array(t, o, d->row, d->rows, sizeof *d->row);
 }
 
-static void take_drives(struct talk *t, struct parcel *o, struct drives *d)
+static void take_drives(struct comm *t, struct parcel *o, struct drives *d)
 {
     drives_free(d);
     d->n = (int32_t)parcel_take_array(t, o, &d->drive, sizeof *d->drive);
     d->rows = (int32_t)parcel_take_array(t, o, &d->row, sizeof *d->row);
 }
 
-static void put_shapes(struct talk *t, struct parcel *o, const struct shapes *list)
+static void put_shapes(struct comm *t, struct parcel *o, const struct shapes *list)
 {
     parcel_put(t, o, &list->n, sizeof list->n);
     for (int32_t k = 1; k < list->n; k++) {
@@ -47,12 +47,12 @@ static void put_shapes(struct talk *t, struct parcel *o, const struct shapes *li
     }
 }
 
-static void fail(struct talk *t, const struct why *why)
+static void fail(struct comm *t, const struct why *why)
 {
-    talk_fail(t, why->status, why->text);
+    comm_fail(t, why->status, why->text);
 }
 
-static void take_shapes(struct talk *t, struct parcel *o, struct shapes *list, int dim)
+static void take_shapes(struct comm *t, struct parcel *o, struct shapes *list, int dim)
 {
     int32_t n;
     struct why why = { 0 };
@@ -77,13 +77,13 @@ static void take_shapes(struct talk *t, struct parcel *o, struct shapes *list, i
     }
 }
 
-static void put_cell(struct talk *t, struct parcel *o, const struct cell *c)
+static void put_cell(struct comm *t, struct parcel *o, const struct cell *c)
 {
     parcel_put(t, o, c, sizeof *c);
     parcel_put_array(t, o, c->gradient, c->gradients, sizeof *c->gradient);
 }
 
-static void take_cell(struct talk *t, struct parcel *o, struct cell *c)
+static void take_cell(struct comm *t, struct parcel *o, struct cell *c)
 {
     cell_free(c);
     parcel_take(t, o, c, sizeof *c);
@@ -97,10 +97,11 @@ struct numbers {
     int64_t step0;
     vec3 g;
     uint64_t seed;
-    int32_t dim, overlap, kinds, has_law, has_shape, has_image, first_id;
+    int32_t dim, overlap, kinds, has_law, first_id;
+    uint32_t optional; /* packing_optional() */
 };
 
-static void put(struct talk *t, struct parcel *o, const struct packing *p)
+static void put(struct comm *t, struct parcel *o, const struct packing *p)
 {
     struct numbers n;
     int64_t k2 = (int64_t)p->kinds * p->kinds;
@@ -108,7 +109,7 @@ static void put(struct talk *t, struct parcel *o, const struct packing *p)
     n.step = p->step, n.t = p->t, n.dt = p->dt, n.theta = p->theta, n.g = p->g, n.seed = p->seed;
     n.t0 = p->t0, n.step0 = p->step0;
     n.dim = p->dim, n.overlap = (int32_t)p->overlap, n.kinds = p->kinds, n.first_id = p->first_id;
-    n.has_law = p->law != NULL, n.has_shape = p->shape != NULL, n.has_image = p->image != NULL;
+    n.has_law = p->law != NULL, n.optional = packing_optional(p);
     parcel_put(t, o, &n, sizeof n);
     parcel_put_array(t, o, p->wall, p->walls, sizeof *p->wall);
     put_drives(t, o, &p->drives), put_drives(t, o, &p->pushes);
@@ -117,13 +118,13 @@ static void put(struct talk *t, struct parcel *o, const struct packing *p)
     put_cell(t, o, &p->cell);
     put_shapes(t, o, &p->shapes);
     for (int32_t k = 0; k < p->kinds; k++) put_text(t, o, p->kind_name[k]);
-    parcel_put_array(t, o, p->mu, k2, sizeof *p->mu);
-    parcel_put_array(t, o, p->en, k2, sizeof *p->en);
-    parcel_put_array(t, o, p->et, k2, sizeof *p->et);
+#define PUT(member, ...) parcel_put_array(t, o, p->member, k2, sizeof *p->member);
+    EACH_PAIR_COLUMN(PUT)
+#undef PUT
     if (p->law) parcel_put_array(t, o, p->law, k2, sizeof *p->law);
 }
 
-static void take(struct talk *t, struct parcel *o, struct packing *p)
+static void take(struct comm *t, struct parcel *o, struct packing *p)
 {
     struct numbers n;
     struct why why = { 0 };
@@ -141,20 +142,18 @@ static void take(struct talk *t, struct parcel *o, struct packing *p)
     take_cell(t, o, &p->cell);
     take_shapes(t, o, &p->shapes, p->dim);
     for (int32_t k = 0; k < p->kinds; k++) free(p->kind_name[k]), p->kind_name[k] = take_text(t, o);
-    free(p->mu), free(p->en), free(p->et);
-    parcel_take_array(t, o, &p->mu, sizeof *p->mu);
-    parcel_take_array(t, o, &p->en, sizeof *p->en);
-    parcel_take_array(t, o, &p->et, sizeof *p->et);
+#define TAKE(member, ...) free(p->member), parcel_take_array(t, o, &p->member, sizeof *p->member);
+    EACH_PAIR_COLUMN(TAKE)
+#undef TAKE
     if (n.has_law) parcel_take_array(t, o, &p->law, sizeof *p->law);
-    if (n.has_shape && packing_alloc_shapes(p, &why)) fail(t, &why);
-    if (n.has_image && packing_alloc_images(p, &why)) fail(t, &why);
+    if (packing_alloc_optional(p, n.optional, &why)) fail(t, &why);
 }
 
-void settings_spread(struct talk *t, struct packing *p)
+void settings_spread(struct comm *t, struct packing *p)
 {
     struct parcel o = { 0 };
     if (!t->me) put(t, &o, p);
-    talk_spread(t, &o);
+    comm_spread(t, &o);
     if (t->me) take(t, &o, p);
     parcel_free(&o);
 }
@@ -168,7 +167,7 @@ void settings_copy_motion(struct packing *to, const struct packing *from)
     for (int32_t w = 0; w < to->walls && w < from->walls; w++) to->wall[w] = from->wall[w];
 }
 
-void settings_follow(struct talk *t, struct packing *p)
+void settings_follow(struct comm *t, struct packing *p)
 {
     struct parcel o = { 0 };
     struct {
@@ -183,7 +182,7 @@ void settings_follow(struct talk *t, struct packing *p)
         parcel_put(t, &o, &now, sizeof now);
         parcel_put(t, &o, p->wall, (size_t)p->walls * sizeof *p->wall);
     }
-    talk_spread(t, &o);
+    comm_spread(t, &o);
     if (t->me) {
         parcel_take(t, &o, &now, sizeof now);
         p->step = now.step, p->t = now.t, p->cell.origin = now.origin;

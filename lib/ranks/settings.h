@@ -6,13 +6,13 @@
 #define NSD_SETTINGS_H
 
 #include "bodies/packing.h"
-#include "ranks/talk.h"
+#include "ranks/comm.h"
 
 /* Collective. Of the first rank's packing; in the others *p is made, with no bodies: freed before. */
-void settings_spread(struct talk *t, struct packing *p);
+void settings_spread(struct comm *t, struct packing *p);
 /* Time, boundaries and edges of the first rank's packing become those of the others', which are otherwise
    the same. */
-void settings_follow(struct talk *t, struct packing *p);
+void settings_follow(struct comm *t, struct packing *p);
 /* The same of two packings of one rank */
 void settings_copy_motion(struct packing *to, const struct packing *from);
 

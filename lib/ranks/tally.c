@@ -21,24 +21,24 @@ static int by_place(const void *a, const void *b)
 }
 
 /* owner[chunks]: the rank that has most of a chunk */
-static int *chunk_owners(struct talk *t, const struct item *item, int64_t n, int64_t chunks)
+static int *chunk_owners(struct comm *t, const struct item *item, int64_t n, int64_t chunks)
 {
     struct {
         int n, rank;
-    } *count = talk_new(t, chunks, sizeof *count), *most = talk_new(t, chunks, sizeof *most);
-    int *owner = talk_new(t, chunks, sizeof *owner);
+    } *count = comm_new(t, chunks, sizeof *count), *most = comm_new(t, chunks, sizeof *most);
+    int *owner = comm_new(t, chunks, sizeof *owner);
     for (int64_t k = 0; k < chunks; k++) count[k].rank = t->me;
     for (int64_t i = 0; i < n; i++) count[item[i].place / BUNDLE / OWNED].n++;
-    MPI_Allreduce(count, most, (int)chunks, MPI_2INT, MPI_MAXLOC, t->comm);
+    MPI_Allreduce(count, most, (int)chunks, MPI_2INT, MPI_MAXLOC, t->mpi);
     for (int64_t k = 0; k < chunks; k++) owner[k] = most[k].rank;
     free(count), free(most);
     return owner;
 }
 
-void tally_begin(struct tally_order *o, struct talk *t, const struct problem *p,
+void tally_begin(struct tally_order *o, struct comm *t, const struct problem *p,
                  const int64_t *slot, int64_t bundles)
 {
-    struct item *item = talk_new(t, p->slots, sizeof *item);
+    struct item *item = comm_new(t, p->slots, sizeof *item);
     *o = (struct tally_order){ 0 };
     for (int64_t i = 0; i < p->slots; i++)
         if (p->contact[i] >= 0 && slot[p->contact[i]] >= 0)
@@ -48,18 +48,18 @@ void tally_begin(struct tally_order *o, struct talk *t, const struct problem *p,
     free(owner);
     qsort(item, (size_t)o->n, sizeof *item, by_place);
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
-    o->mine = talk_new(t, o->n, sizeof *o->mine);
-    o->out = talk_new(t, t->n, sizeof *o->out), o->in = talk_new(t, t->n, sizeof *o->in);
+    o->mine = comm_new(t, o->n, sizeof *o->mine);
+    o->out = comm_new(t, t->n, sizeof *o->out), o->in = comm_new(t, t->n, sizeof *o->in);
     for (int64_t i = 0; i < o->n; i++) {
         o->mine[i] = item[i].slot, o->out[item[i].rank]++;
         parcel_put(t, &out[item[i].rank], &item[i].place, sizeof item->place);
     }
-    talk_exchange(t, out, in);
+    comm_exchange(t, out, in);
     for (int q = 0; q < t->n; q++) {
         o->in[q] = (int)(in[q].size / sizeof(int64_t));
         o->got += o->in[q];
     }
-    free(item), item = talk_new(t, o->got, sizeof *item);
+    free(item), item = comm_new(t, o->got, sizeof *item);
     int64_t k = 0;
     for (int q = 0; q < t->n; q++)
         for (int i = 0; i < o->in[q]; i++, k++) {
@@ -67,7 +67,7 @@ void tally_begin(struct tally_order *o, struct talk *t, const struct problem *p,
             parcel_take(t, &in[q], &item[k].place, sizeof item->place);
         }
     qsort(item, (size_t)o->got, sizeof *item, by_place);
-    o->at = talk_new(t, o->got, sizeof *o->at), o->where = talk_new(t, o->got, sizeof *o->where);
+    o->at = comm_new(t, o->got, sizeof *o->at), o->where = comm_new(t, o->got, sizeof *o->where);
     for (int64_t i = 0; i < o->got; i++) o->at[i] = item[i].slot, o->where[i] = item[i].place;
     free(item);
     parcels_free(t, out), parcels_free(t, in);
@@ -80,13 +80,13 @@ void tally_free(struct tally_order *o)
 }
 
 /* What has come, [got][terms], from term[slots][terms] of all ranks */
-static double *bring(const struct tally_order *o, struct talk *t, int terms, const double *term)
+static double *bring(const struct tally_order *o, struct comm *t, int terms, const double *term)
 {
-    double *go = talk_new(t, o->n * terms, sizeof *go),
-           *come = talk_new(t, o->got * terms, sizeof *come);
-    int *count = talk_new(t, 4 * t->n, sizeof *count);
+    double *go = comm_new(t, o->n * terms, sizeof *go),
+           *come = comm_new(t, o->got * terms, sizeof *come);
+    int *count = comm_new(t, 4 * t->n, sizeof *count);
     if (o->n > INT32_MAX / terms || o->got > INT32_MAX / terms)
-        talk_fail(t, EX_SOFTWARE,
+        comm_fail(t, EX_SOFTWARE,
                   "a sum over more numbers than MPI counts: more ranks, or --order block");
     for (int64_t i = 0; i < o->n; i++)
         memcpy(go + i * terms, term + o->mine[i] * terms, (size_t)terms * sizeof *go);
@@ -97,21 +97,21 @@ static double *bring(const struct tally_order *o, struct talk *t, int terms, con
         if (q == t->me || !count[q]) continue;
         t->bytes += (int64_t)count[q] * (int64_t)sizeof *go, t->messages++;
     }
-    double since = talk_busy();
-    MPI_Alltoallv(go, count, from, MPI_DOUBLE, come, in, to, MPI_DOUBLE, t->comm);
-    talk_waited(t, since);
+    double since = comm_busy();
+    MPI_Alltoallv(go, count, from, MPI_DOUBLE, come, in, to, MPI_DOUBLE, t->mpi);
+    comm_waited(t, since);
     free(go), free(count);
     return come;
 }
 
 /* Adds the chunks up, one after the other. */
-static void add_chunks(struct talk *t, struct parcel *mine, int64_t chunks, size_t size,
+static void add_chunks(struct comm *t, struct parcel *mine, int64_t chunks, size_t size,
                        double *out)
 {
     struct parcel *in = parcels_new(t);
-    talk_gather(t, mine, in);
+    comm_gather(t, mine, in);
     memset(out, 0, size * sizeof *out);
-    double *all = t->me ? NULL : talk_new(t, chunks * (int64_t)size, sizeof *all);
+    double *all = t->me ? NULL : comm_new(t, chunks * (int64_t)size, sizeof *all);
     for (int q = 0; q < t->n && !t->me; q++)
         while (in[q].at < in[q].size) {
             int64_t k;
@@ -122,16 +122,16 @@ static void add_chunks(struct talk *t, struct parcel *mine, int64_t chunks, size
         for (size_t j = 0; j < size; j++) out[j] += all[k * (int64_t)size + (int64_t)j];
     free(all);
     parcels_free(t, in);
-    double since = talk_busy();
-    MPI_Bcast(out, (int)size, MPI_DOUBLE, 0, t->comm);
-    talk_waited(t, since);
+    double since = comm_busy();
+    MPI_Bcast(out, (int)size, MPI_DOUBLE, 0, t->mpi);
+    comm_waited(t, since);
 }
 
-void tally_sum(const struct tally_order *o, struct talk *t, int64_t bundles, int64_t chunk,
+void tally_sum(const struct tally_order *o, struct comm *t, int64_t bundles, int64_t chunk,
                int parts, int terms, const double *term, double *out)
 {
     const size_t size = (size_t)terms * BUNDLE;
-    double *come = bring(o, t, parts * terms, term), *sum = talk_new(t, (int64_t)size, sizeof *sum);
+    double *come = bring(o, t, parts * terms, term), *sum = comm_new(t, (int64_t)size, sizeof *sum);
     struct parcel mine = { 0 };
     for (int64_t i = 0; i < o->got; i++) {
         int64_t k = o->where[i] / BUNDLE / chunk, lane = o->where[i] % BUNDLE;
@@ -145,7 +145,7 @@ void tally_sum(const struct tally_order *o, struct talk *t, int64_t bundles, int
     add_chunks(t, &mine, (bundles + chunk - 1) / chunk, size, out);
 }
 
-double tally_along(const struct tally_order *o, struct talk *t, int64_t bundles, const double *term)
+double tally_along(const struct tally_order *o, struct comm *t, int64_t bundles, const double *term)
 {
     double *come = bring(o, t, 1, term), sum = 0;
     struct parcel mine = { 0 }, *in = parcels_new(t);
@@ -154,8 +154,8 @@ double tally_along(const struct tally_order *o, struct talk *t, int64_t bundles,
         parcel_put(t, &mine, &come[o->at[i]], sizeof *come);
     }
     free(come);
-    talk_gather(t, &mine, in);
-    double *all = t->me ? NULL : talk_new(t, bundles * BUNDLE, sizeof *all);
+    comm_gather(t, &mine, in);
+    double *all = t->me ? NULL : comm_new(t, bundles * BUNDLE, sizeof *all);
     for (int q = 0; q < t->n && !t->me; q++)
         while (in[q].at < in[q].size) {
             int64_t slot;
@@ -165,8 +165,8 @@ double tally_along(const struct tally_order *o, struct talk *t, int64_t bundles,
     for (int64_t i = 0; i < bundles * BUNDLE && !t->me; i++) sum += all[i];
     free(all);
     parcels_free(t, in);
-    double since = talk_busy();
-    MPI_Bcast(&sum, 1, MPI_DOUBLE, 0, t->comm);
-    talk_waited(t, since);
+    double since = comm_busy();
+    MPI_Bcast(&sum, 1, MPI_DOUBLE, 0, t->mpi);
+    comm_waited(t, since);
     return sum;
 }

@@ -6,7 +6,7 @@
 #define NSD_TALLY_H
 
 #include "problem/problem.h"
-#include "ranks/talk.h"
+#include "ranks/comm.h"
 
 struct tally_order {
     int64_t n;
@@ -20,13 +20,13 @@ struct tally_order {
 
 /* slot[contacts of this rank]: in the order of all and its `bundles`; -1: another counts it.
    Collective, as all that follows. */
-void tally_begin(struct tally_order *o, struct talk *t, const struct problem *p,
+void tally_begin(struct tally_order *o, struct comm *t, const struct problem *p,
                  const int64_t *slot, int64_t bundles);
 void tally_free(struct tally_order *o);
 /* As in struct shared */
-void tally_sum(const struct tally_order *o, struct talk *t, int64_t bundles, int64_t chunk,
+void tally_sum(const struct tally_order *o, struct comm *t, int64_t bundles, int64_t chunk,
                int parts, int terms, const double *term, double *out);
-double tally_along(const struct tally_order *o, struct talk *t, int64_t bundles,
+double tally_along(const struct tally_order *o, struct comm *t, int64_t bundles,
                    const double *term);
 
 #endif

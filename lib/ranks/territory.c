@@ -13,9 +13,9 @@ struct territory {
     void *made;
 };
 
-struct territory *territory_new(struct talk *t, int way)
+struct territory *territory_new(struct comm *t, int way)
 {
-    struct territory *y = talk_new(t, 1, sizeof *y);
+    struct territory *y = comm_new(t, 1, sizeof *y);
     *y = (struct territory){ ways[way], ways[way]->begin(t) };
     return y;
 }
@@ -41,12 +41,12 @@ int territory_meets(const struct territory *y, vec3 lo, vec3 hi, int *rank)
     return y->way->meets(y->made, lo, hi, rank);
 }
 
-struct Zoltan_Struct *territory_zoltan(struct talk *t, const char *const set[][2])
+struct Zoltan_Struct *territory_zoltan(struct comm *t, const char *const set[][2])
 {
     struct Zoltan_Struct *zz = NULL;
     float version;
-    if (Zoltan_Initialize(0, NULL, &version) != ZOLTAN_OK || !(zz = Zoltan_Create(t->comm)))
-        talk_fail(t, EX_SOFTWARE, "Zoltan does not begin");
+    if (Zoltan_Initialize(0, NULL, &version) != ZOLTAN_OK || !(zz = Zoltan_Create(t->mpi)))
+        comm_fail(t, EX_SOFTWARE, "Zoltan does not begin");
     Zoltan_Set_Param(zz, "DEBUG_LEVEL", "0");
     for (int k = 0; set[k][0]; k++) Zoltan_Set_Param(zz, set[k][0], set[k][1]);
     return zz;

@@ -6,12 +6,12 @@
 #define NSD_TERRITORY_H
 
 #include "base/vec.h"
-#include "ranks/talk.h"
+#include "ranks/comm.h"
 
 struct territory;
 
 /* way: 0 by bisection, 1 by the hypergraph */
-struct territory *territory_new(struct talk *t, int way);
+struct territory *territory_new(struct comm *t, int way);
 void territory_free(struct territory *y);
 /* New cuts, so that the weights of the points x[n] of all ranks are shared out evenly. Collective. */
 void territory_cut(struct territory *y, int64_t n, const vec3 *x, const float *weight);
@@ -21,7 +21,7 @@ int territory_meets(const struct territory *y, vec3 lo, vec3 hi, int *rank);
 
 /* A way: the same of what its begin() has made */
 struct cuts {
-    void *(*begin)(struct talk *t);
+    void *(*begin)(struct comm *t);
     void (*end)(void *made);
     void (*cut)(void *made, int64_t n, const vec3 *x, const float *weight);
     int (*owner)(const void *made, vec3 x);
@@ -30,6 +30,6 @@ struct cuts {
 extern const struct cuts cuts_bisection, cuts_hypergraph;
 
 /* Zoltan, with these parameters, pairs of a name and a value up to a NULL */
-struct Zoltan_Struct *territory_zoltan(struct talk *t, const char *const set[][2]);
+struct Zoltan_Struct *territory_zoltan(struct comm *t, const char *const set[][2]);
 
 #endif

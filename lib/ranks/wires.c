@@ -17,8 +17,8 @@ static struct wire *wire_to(struct wires *w, int rank)
         if (w->wire[k].rank == rank) return &w->wire[k];
     struct wire *x = &w->wire[w->n++];
     x->rank = rank;
-    x->go = talk_new(w->talk, w->groups + 1, sizeof *x->go);
-    x->come = talk_new(w->talk, w->groups + 1, sizeof *x->come);
+    x->go = comm_new(w->comm, w->groups + 1, sizeof *x->go);
+    x->come = comm_new(w->comm, w->groups + 1, sizeof *x->come);
     return x;
 }
 
@@ -37,14 +37,14 @@ static void take_list(struct wires *w, const struct part *y, struct parcel *in, 
     if (!in->size) return;
     struct wire *x = wire_to(w, rank);
     int64_t most = (int64_t)(in->size / (sizeof(int64_t) + sizeof(int32_t)));
-    x->come_body = talk_new(w->talk, most, sizeof *x->come_body);
+    x->come_body = comm_new(w->comm, most, sizeof *x->come_body);
     while (in->at < in->size) {
         int64_t g;
         int32_t row;
-        parcel_take(w->talk, in, &g, sizeof g), parcel_take(w->talk, in, &row, sizeof row);
+        parcel_take(w->comm, in, &g, sizeof g), parcel_take(w->comm, in, &row, sizeof row);
         int32_t body = part_find(y, row);
         if (body < 0 || g < 0 || g >= w->groups)
-            talk_fail(w->talk, EX_SOFTWARE,
+            comm_fail(w->comm, EX_SOFTWARE,
                       "ranks disagree: a velocity of a body that is not here");
         x->come_body[n++] = body, x->come[g + 1]++;
     }
@@ -53,29 +53,29 @@ static void take_list(struct wires *w, const struct part *y, struct parcel *in, 
 void wires_lay(struct wires *w, const struct part *y, int64_t groups, int64_t n,
                const struct errand *errand)
 {
-    struct talk *t = y->talk;
+    struct comm *t = y->comm;
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
-    *w = (struct wires){ .talk = t, .groups = groups };
-    w->wire = talk_new(t, t->n, sizeof *w->wire);
-    w->request = talk_new(t, 2 * t->n, sizeof(MPI_Request));
-    int64_t *many = talk_new(t, t->n, sizeof *many), *next = talk_new(t, t->n, sizeof *next);
+    *w = (struct wires){ .comm = t, .groups = groups };
+    w->wire = comm_new(t, t->n, sizeof *w->wire);
+    w->request = comm_new(t, 2 * t->n, sizeof(MPI_Request));
+    int64_t *many = comm_new(t, t->n, sizeof *many), *next = comm_new(t, t->n, sizeof *next);
     for (int64_t i = 0; i < n; i++) many[errand[i].rank]++;
     for (int64_t i = 0; i < n; i++) {
         struct wire *x = wire_to(w, errand[i].rank);
-        if (!x->go_body) x->go_body = talk_new(t, many[x->rank], sizeof *x->go_body);
+        if (!x->go_body) x->go_body = comm_new(t, many[x->rank], sizeof *x->go_body);
         x->go_body[next[x->rank]++] = errand[i].body, x->go[errand[i].group + 1]++;
         parcel_put(t, &out[x->rank], &errand[i].group, sizeof errand->group);
         parcel_put(t, &out[x->rank], &y->row[errand[i].body], sizeof *y->row);
     }
     free(many), free(next);
-    talk_exchange(t, out, in);
+    comm_exchange(t, out, in);
     for (int q = 0; q < t->n; q++) take_list(w, y, &in[q], q);
     parcels_free(t, out), parcels_free(t, in);
     for (int k = 0; k < w->n; k++) {
         struct wire *x = &w->wire[k];
         for (int64_t g = 0; g < groups; g++) x->go[g + 1] += x->go[g], x->come[g + 1] += x->come[g];
-        x->go_v = talk_new(t, TWIST * largest(x->go, groups), sizeof *x->go_v);
-        x->come_v = talk_new(t, TWIST * largest(x->come, groups), sizeof *x->come_v);
+        x->go_v = comm_new(t, TWIST * largest(x->go, groups), sizeof *x->go_v);
+        x->come_v = comm_new(t, TWIST * largest(x->come, groups), sizeof *x->come_v);
     }
 }
 
@@ -109,7 +109,7 @@ void wires_send(struct wires *w, const struct problem *p, int64_t g)
         struct wire *x = &w->wire[k];
         int64_t n = x->come[g + 1] - x->come[g];
         if (n)
-            MPI_Irecv(x->come_v, (int)(TWIST * n), MPI_DOUBLE, x->rank, TAG, w->talk->comm,
+            MPI_Irecv(x->come_v, (int)(TWIST * n), MPI_DOUBLE, x->rank, TAG, w->comm->mpi,
                       &w->request[w->requests++]);
     }
     for (int k = 0; k < w->n; k++) {
@@ -118,18 +118,18 @@ void wires_send(struct wires *w, const struct problem *p, int64_t g)
         if (!n) continue;
         for (int64_t i = 0; i < n; i++)
             read_twist(p, x->go_body[x->go[g] + i], x->go_v + TWIST * i);
-        MPI_Isend(x->go_v, (int)(TWIST * n), MPI_DOUBLE, x->rank, TAG, w->talk->comm,
+        MPI_Isend(x->go_v, (int)(TWIST * n), MPI_DOUBLE, x->rank, TAG, w->comm->mpi,
                   &w->request[w->requests++]);
-        w->talk->bytes += TWIST * n * (int64_t)sizeof(double), w->talk->messages++;
+        w->comm->bytes += TWIST * n * (int64_t)sizeof(double), w->comm->messages++;
     }
 }
 
 void wires_wait(struct wires *w, struct problem *p, int64_t g)
 {
     if (!w->requests) return;
-    double since = talk_busy();
+    double since = comm_busy();
     MPI_Waitall(w->requests, w->request, MPI_STATUSES_IGNORE);
-    talk_waited(w->talk, since);
+    comm_waited(w->comm, since);
     w->requests = 0;
     for (int k = 0; k < w->n; k++) {
         const struct wire *x = &w->wire[k];
@@ -140,7 +140,7 @@ void wires_wait(struct wires *w, struct problem *p, int64_t g)
 
 void wires_refresh(const struct part *y, struct problem *p)
 {
-    struct talk *t = y->talk;
+    struct comm *t = y->comm;
     double v[TWIST];
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
     for (int q = 0; q < t->n; q++)
@@ -148,7 +148,7 @@ void wires_refresh(const struct part *y, struct problem *p)
             read_twist(p, y->lent[q].body[k], v);
             parcel_put(t, &out[q], v, sizeof v);
         }
-    talk_exchange(t, out, in);
+    comm_exchange(t, out, in);
     for (int q = 0; q < t->n; q++)
         for (int64_t k = 0; k < y->here[q].n; k++) {
             parcel_take(t, &in[q], v, sizeof v);

@@ -17,7 +17,7 @@ struct wire {
 };
 
 struct wires {
-    struct talk *talk;
+    struct comm *comm;
     int64_t groups;
     int n;
     struct wire *wire; /* [n] */

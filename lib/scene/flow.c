@@ -1,6 +1,6 @@
 #include "scene/flow.h"
 
-#include "bodies/detect.h"
+#include "detect/detect.h"
 #include "scene/counter.h"
 #include "scene/orientation.h"
 
@@ -73,15 +73,6 @@ static int32_t taken_by(const struct flow *f, const struct packing *p, int64_t i
     return -1;
 }
 
-static void copy_body(struct packing *p, int64_t from, int64_t to)
-{
-    p->radius[to] = p->radius[from], p->mass[to] = p->mass[from];
-    p->inertia[to] = p->inertia[from], p->id[to] = p->id[from], p->kind[to] = p->kind[from];
-    p->x[to] = p->x[from], p->q[to] = p->q[from];
-    if (p->shape) p->shape[to] = p->shape[from];
-    p->v[to] = p->v[from], p->w[to] = p->w[from];
-}
-
 /* Removes, and tells in row[i] where body i is now, -1: gone. */
 static int remove_bodies(const struct flow *f, struct packing *p, int32_t *row, struct why *why)
 {
@@ -90,7 +81,7 @@ static int remove_bodies(const struct flow *f, struct packing *p, int32_t *row, 
         int32_t k = taken_by(f, p, i);
         row[i] = k < 0 ? (int32_t)kept : -1;
         if (k < 0) {
-            copy_body(p, i, kept++);
+            packing_copy_body(p, kept++, p, i);
             continue;
         }
         p->removed[k].bodies++, p->removed[k].mass += p->mass[i];
@@ -232,7 +223,7 @@ static bool is_free(struct crowd *c, const struct scene_pour *o, vec3 x, quat q,
 {
     int64_t last = c->p.n - 1;
     struct contacts met = { 0 };
-    double ahead = (1 - c->p.theta) * c->p.dt;
+    double ahead = step_ahead(&c->p);
     c->p.radius[last] = r, c->p.mass[last] = 1, c->p.kind[last] = o->kind;
     c->p.q[last] = q;
     if (c->p.shape) c->p.shape[last] = o->form.shape;

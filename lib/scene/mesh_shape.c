@@ -1,6 +1,6 @@
 #include "scene/mesh_shape.h"
 
-#include "bodies/solid.h"
+#include "geometry/solid.h"
 #include "scene/hull.h"
 #include "scene/thin.h"
 

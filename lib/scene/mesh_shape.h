@@ -8,8 +8,8 @@
 #ifndef NSD_MESH_SHAPE_H
 #define NSD_MESH_SHAPE_H
 
-#include "bodies/mesh.h"
-#include "bodies/shape.h"
+#include "geometry/mesh.h"
+#include "geometry/shape.h"
 
 /* s's vertices (m), faces and corners. hull: of the corners, whatever the triangles are. Returns 0,
    EX_DATAERR with what is wrong with the surface, or EX_SOFTWARE. */

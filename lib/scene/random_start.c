@@ -1,6 +1,6 @@
 #include "scene/random_start.h"
 
-#include "bodies/neighbours.h"
+#include "detect/neighbours.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -216,8 +216,8 @@ static int push_apart(struct start *s, struct neighbours *near, double most, int
             fresh = true;
         }
         *left = 0;
-        for (int64_t i = 0; i < near->n; i++)
-            *left = fmax(*left, push_pair(s, near->pair[i].a, near->pair[i].b));
+        for (int64_t i = 0; i < near->list.n; i++)
+            *left = fmax(*left, push_pair(s, near->list.pair[i].a, near->list.pair[i].b));
         for (int64_t i = 0; i < s->p.n; i++) push_in(s, i);
         if (*left <= most) break;
     }
@@ -230,8 +230,8 @@ static int worst(const struct start *s, struct neighbours *near, double *left, s
 {
     *left = 0;
     if (neighbours_find(near, &s->p, s->p.x, s->p.cell.edge, 0, false, why)) return why->status;
-    for (int64_t i = 0; i < near->n; i++) {
-        int64_t a = near->pair[i].a, b = near->pair[i].b;
+    for (int64_t i = 0; i < near->list.n; i++) {
+        int64_t a = near->list.pair[i].a, b = near->list.pair[i].b;
         double r = s->p.radius[a] + s->p.radius[b];
         double gap = v3_norm(v3_sub(s->p.x[a], s->p.x[b])) - r;
         *left = fmax(*left, -gap / fmin(s->p.radius[a], s->p.radius[b]));

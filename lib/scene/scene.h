@@ -93,7 +93,7 @@
  *   Its weight is a force like others: gravity does not pull at boundaries.
  *
  * DRIVE { along: vector } or { about: point, axis: vector }, with speed, or amplitude, frequency and
- *   phase, or table [[t, way], ...]; from, until s [bodies/drive.h]
+ *   phase, or table [[t, way], ...]; from, until s [geometry/drive.h]
  *
  * CELL { edges: [vector, ...] or lengths: vector [the first document's], repeats, origin, gradient, affine, stress }
  *   edges    dim of them, the cell's from its origin; lengths: along x, y, z
@@ -138,7 +138,7 @@ struct scene_kind {
 };
 
 struct scene_law {
-    double mu, en, et;
+    EACH_PAIR_COLUMN(PAIR_NUMBER) /* mu, en, et */
     struct law beyond;
 };
 
@@ -218,7 +218,7 @@ struct scene_mesh {
     int32_t left_out; /* triangles of the file that are not in the mesh */
 };
 
-/* What a shape was before it was brought to its own axes and unit [bodies/solid.h] */
+/* What a shape was before it was brought to its own axes and unit [geometry/solid.h] */
 struct scene_solid {
     double reach; /* m */
     vec3 centre;  /* m */

@@ -1,8 +1,8 @@
 /* scene/scene_build.c: groups of bodies, the check for overlaps: a packing from a scene. */
 #include "scene/scene_build.h"
 
-#include "bodies/detect.h"
-#include "bodies/tidy.h"
+#include "bodies/wrap.h"
+#include "detect/detect.h"
 #include "scene/counter.h"
 #include "scene/grains.h"
 #include "scene/orientation.h"
@@ -230,8 +230,11 @@ static int set_parameters(struct packing *p, const struct scene *s, struct why *
         free(p->kind_name[k]);
         if (!(p->kind_name[k] = strdup(s->kind[k].name))) goto fail;
     }
-    for (int32_t k = 0; k < s->kinds * s->kinds; k++)
-        p->mu[k] = s->law[k].mu, p->en[k] = s->law[k].en, p->et[k] = s->law[k].et;
+    for (int32_t k = 0; k < s->kinds * s->kinds; k++) {
+#define SET(member, ...) p->member[k] = s->law[k].member;
+        EACH_PAIR_COLUMN(SET)
+#undef SET
+    }
     if (goes_beyond(s) && packing_alloc_laws(p, why)) return why->status;
     for (int32_t k = 0; p->law && k < s->kinds * s->kinds; k++) p->law[k] = s->law[k].beyond;
     if ((p->scene = strdup(s->text))) return 0;
@@ -455,7 +458,7 @@ static int build_packing(struct packing *p, const struct scene *s, const struct 
     if (rng && !why->status && !inherit_walls(p, s, why) && !inherit_cell(p, s, why) &&
         !fill_groups(p, s, list, rng, why)) {
         if (s->cell.affine) add_affine_flow(p);
-        packing_tidy(p, NULL);
+        packing_wrap(p, NULL);
         if (!set_dt(p, s, why)) check_packing(p, s, list, why);
     }
     gsl_rng_free(rng);

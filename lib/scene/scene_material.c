@@ -6,9 +6,12 @@
 
 int scene_read_law(const jnode *o, struct scene_law *l)
 {
-    return json_node_number(json_node_key(o, "mu"), J_NOT_NEGATIVE, &l->mu) ||
-           json_node_number(json_node_key(o, "e_n"), J_UNIT, &l->en) ||
-           json_node_number(json_node_key(o, "e_t"), J_UNIT, &l->et);
+#define READ(member, name, unit, key, most, range)                                                 \
+    if (json_node_number(json_node_key(o, key), most == 1 ? J_UNIT : J_NOT_NEGATIVE, &l->member))  \
+        return 1;
+    EACH_PAIR_COLUMN(READ)
+#undef READ
+    return 0;
 }
 
 static int32_t find_kind(const struct scene *s, const char *name)
@@ -63,7 +66,8 @@ static int read_pair(jnode o, struct scene *s, bool *given)
 {
     size_t n;
     int32_t k[2] = { 0 };
-    if (json_node_only(o, "pair mu e_n e_t impact cohesion capillary rolling adhesion") ||
+    if (json_node_only(
+            o, "pair" EACH_PAIR_COLUMN(PAIR_KEY) " impact cohesion capillary rolling adhesion") ||
         json_node_need(&o, "pair"))
         return 1;
     jnode pair = json_node_key(&o, "pair");

@@ -54,7 +54,10 @@ static int read_scene(jnode o, struct scene *s)
     const char *title;
     struct scene_law law = { 0 };
     struct scene_box box = { 0 };
-    if (json_node_only(o, "title dim dt theta gravity seed density mu e_n e_t kinds pairs time "
+    if (json_node_only(
+            o,
+            "title dim dt theta gravity seed density" EACH_PAIR_COLUMN(
+                PAIR_KEY) " kinds pairs time "
                           "overlap bodies walls pour remove cell shapes cohesion capillary rolling "
                           "adhesion impact") ||
         json_node_need(&o, "dt") || json_node_text(json_node_key(&o, "title"), &title) ||

@@ -1,5 +1,5 @@
 /* scene/scene_solids.c: "shapes" of grains from their JSON, and the shape of a group. */
-#include "bodies/solid.h"
+#include "geometry/solid.h"
 #include "scene/hull.h"
 #include "scene/mesh_shape.h"
 #include "scene/scene_read.h"

@@ -17,7 +17,7 @@ enum {
     COLUMNS = 24          /* of a line */
 };
 
-enum column {
+enum heading {
     X,
     Y,
     Z,
@@ -48,8 +48,8 @@ struct table {
     const char *path;
     int64_t line; /* its number, from 1 */
     const struct scene *scene;
-    int n;                       /* columns */
-    enum column column[COLUMNS]; /* [n] */
+    int n;                        /* columns */
+    enum heading column[COLUMNS]; /* [n] */
     bool has[NAMES];
     bool named;   /* by its first line */
     bool endless; /* perhaps: it is no file, whose size says how long it is */
@@ -81,7 +81,7 @@ static int name_index(const char *word)
     return -1;
 }
 
-static bool of_space(enum column c)
+static bool of_space(enum heading c)
 {
     return c == Z || c == VZ || c == WX || c == WY;
 }
@@ -91,10 +91,10 @@ static int add_column(struct table *t, char *word, struct why *why)
     int k = name_index(word);
     if (k < 0) return fault(t, why, "no column is called", word);
     if (t->has[k]) return fault(t, why, "named twice: the column", word);
-    if (t->scene->dim == 2 && of_space((enum column)k))
+    if (t->scene->dim == 2 && of_space((enum heading)k))
         return fault(t, why, "the scene's dim is 2, there is no column", word);
     t->has[k] = true;
-    t->column[t->n++] = (enum column)k; // at most NAMES, for none comes twice
+    t->column[t->n++] = (enum heading)k; // at most NAMES, for none comes twice
     return 0;
 }
 
@@ -120,7 +120,7 @@ static int read_names(struct table *t, char *line, struct why *why)
 
 static void usual_columns(struct table *t)
 {
-    static const enum column usual[] = { X, Y, Z, R };
+    static const enum heading usual[] = { X, Y, Z, R };
     t->n = 0;
     for (int k = 0; k < 4; k++)
         if (t->scene->dim == 3 || usual[k] != Z)
@@ -134,7 +134,7 @@ static int fault_usual(const struct table *t, struct why *why)
     return fault(t, why, t->scene->dim == 2 ? "wants x y r" : "wants x y z r", NULL);
 }
 
-static int read_number(const struct table *t, enum column c, const char *word, double *x,
+static int read_number(const struct table *t, enum heading c, const char *word, double *x,
                        struct why *why)
 {
     char *end, text[80];
@@ -190,7 +190,7 @@ static int read_line(struct table *t, char *line, struct grains *out, struct why
     if (comment) *comment = 0;
     for (; (word = next_word(&at)); n++) {
         if (n == t->n) break;
-        enum column c = t->column[n];
+        enum heading c = t->column[n];
         if (c == KIND ? read_kind(t, word, &kind, why) : read_number(t, c, word, &x[c], why))
             return why->status;
     }

@@ -213,7 +213,7 @@ static void extent(const struct packing *p, vec3 n, double range[2])
 }
 
 /* A column of bodies: where it ends, and how much they are */
-struct column {
+struct stack {
     double top, bottom; /* m */
     double volume;      /* m^3, in the plane m^2 */
 };
@@ -226,7 +226,7 @@ static double volume_of(const struct packing *p, int64_t i)
 }
 
 /* low: m, where surfaces end below */
-static void column_add(struct column *c, const struct packing *p, int64_t i, vec3 up, double low)
+static void column_add(struct stack *c, const struct packing *p, int64_t i, vec3 up, double low)
 {
     double z = v3_dot(p->x[i], up), r = p->radius[i], h = above_planes(p, p->x[i], up);
     if (!(p->mass[i] > 0)) { // does not fall, but stops what does
@@ -241,7 +241,7 @@ static void column_add(struct column *c, const struct packing *p, int64_t i, vec
 /* m: how far the highest bodies fall until they rest on those below them, or on walls */
 static double fall_of_bodies(const struct packing *p, vec3 up)
 {
-    struct column column[COLUMNS * COLUMNS];
+    struct stack column[COLUMNS * COLUMNS];
     double large = packing_whole(p).large, low = lowest_surface(p, up), from[2] = { 0 },
            width[2] = { 1, 1 }, most = 0;
     int n[2] = { 1, 1 };
@@ -254,7 +254,7 @@ static double fall_of_bodies(const struct packing *p, vec3 up)
         n[a] = (int)dmax(1, dmin(COLUMNS, (range[1] - range[0]) / (WIDE * large)));
         width[a] = (range[1] - range[0]) / n[a];
     }
-    for (int k = 0; k < n[0] * n[1]; k++) column[k] = (struct column){ -INFINITY, INFINITY, 0 };
+    for (int k = 0; k < n[0] * n[1]; k++) column[k] = (struct stack){ -INFINITY, INFINITY, 0 };
     for (int64_t i = 0; i < p->n; i++) {
         int at[2] = { 0, 0 };
         for (int a = 0; a < p->dim - 1; a++)

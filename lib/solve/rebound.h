@@ -13,7 +13,7 @@
 #ifndef NSD_REBOUND_H
 #define NSD_REBOUND_H
 
-#include "bodies/balance.h"
+#include "motion/balance.h"
 
 struct rebound_search;
 

@@ -1,24 +1,15 @@
 /* solve/step.c: a step from one state of a packing to the next [solve/step.h]. */
 #include "solve/step.h"
 
-#include "bodies/detect.h"
-#include "bodies/move.h"
-#include "bodies/swift.h"
-#include "bodies/tidy.h"
+#include "bodies/wrap.h"
+#include "detect/detect.h"
+#include "detect/swift.h"
+#include "motion/move.h"
+#include "motion/project.h"
 #include "problem/prepare.h"
 #include "solve/rebound.h"
 
 #include <stdlib.h>
-
-/* The reactions' sums and the balances they make; sum is to be freed in any case. */
-static int sum_up(const struct packing *pack, const struct contacts *s, const struct step_opt *o,
-                  struct report *rep, struct impulses *sum, struct why *why)
-{
-    rep->balanced = !o->bare, rep->tied = pack->law != NULL;
-    rep->may_gain = packing_may_gain(pack);
-    if (impulses_init(sum, pack, s, false, why)) return why->status;
-    return o->bare ? 0 : balance_step(&rep->balance, pack, s, sum, NULL, why);
-}
 
 bool step_sweeps(const struct solver *global)
 {
@@ -43,9 +34,6 @@ static int solve_contacts(const struct packing *pack, struct contacts *s, struct
     if (prepare_packing(&p, pack, s, step_sweeps(o->solve.global), o->alpha, o->solve.method->rho,
                         o->order, kept, why))
         return why->status;
-    rep->step = pack->step + 1;
-    rep->t = packing_next_time(pack);
-    rep->err.max_overlap = contacts_max_overlap(s);
     if (check_solver(&p, o->solve.global, why)) return problem_free(&p), why->status;
     int failed = solve_problem(&p, &o->solve, rep);
     if (failed)
@@ -76,17 +64,40 @@ int step_bound_impacts(const struct packing *pack, struct contacts *s, struct pl
 int step_solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
                         const struct step_opt *o, struct report *rep, struct why *why)
 {
-    if (depth_of(&rep->depth, pack, s, NULL, why)) return why->status;
     if (!o->warm) contacts_free_found(s);
     if (solve_contacts(pack, s, kept, o, rep, why)) return why->status;
     return step_bound_impacts(pack, s, kept, o, rep, why);
 }
 
+/* What is reported of a step before its solve */
+static int begin(struct step_makers *m,
+                 int measure(struct step_makers *m, const struct packing *p,
+                             const struct contacts *s, struct report *rep, struct why *why),
+                 const struct packing *p, const struct contacts *s, struct report *rep,
+                 struct why *why)
+{
+    rep->step = p->step + 1, rep->t = packing_next_time(p);
+    return measure(m, p, s, rep, why);
+}
+
+/* What the report's balances say of a step, and whether there are any */
+static bool account_for(struct report *rep, const struct packing *p, const struct step_opt *o)
+{
+    rep->balanced = !o->bare, rep->tied = p->law != NULL, rep->may_gain = packing_may_gain(p);
+    return rep->balanced;
+}
+
 int step_solve(const struct packing *pack, struct contacts *s, const struct step_opt *o,
                struct report *rep, struct why *why)
 {
-    if (step_solve_contacts(pack, s, NULL, o, rep, why)) return why->status;
-    return step_balance(pack, s, o, rep, why);
+    struct impulses sum = { 0 };
+    if (begin(NULL, step_measure_whole, pack, s, rep, why) ||
+        step_solve_contacts(pack, s, NULL, o, rep, why))
+        return why->status;
+    if (!impulses_init(&sum, pack, s, false, why) && account_for(rep, pack, o))
+        step_balance_whole(NULL, pack, s, &sum, &rep->balance, why);
+    impulses_free(&sum);
+    return why->status;
 }
 
 int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o, struct report *rep,
@@ -109,36 +120,6 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
     return failed ? why_set(why, EX_SOFTWARE, "no memory to solve the contacts") : 0;
 }
 
-int step_detect(struct packing *p, struct contacts *s, struct neighbours *near,
-                const struct step_opt *o, struct report *rep, struct why *why)
-{
-    double cpu = report_seconds(CLOCK_CPU);
-    memory_set(&p->memory, o->warm);
-    packing_tidy(p, NULL);
-    int e = detect_contacts(s, p, o->gap, near, why);
-    rep->detection = report_seconds(CLOCK_CPU) - cpu;
-    return e || !o->warm ? e : memory_give(&p->memory, s, packing_rolls(p), why);
-}
-
-int step_balance(const struct packing *p, const struct contacts *s, const struct step_opt *o,
-                 struct report *rep, struct why *why)
-{
-    struct impulses sum = { 0 };
-    sum_up(p, s, o, rep, &sum, why);
-    impulses_free(&sum);
-    return why->status;
-}
-
-int step_move(struct packing *p, struct contacts *s, const struct step_opt *o, struct report *rep,
-              struct why *why)
-{
-    struct impulses sum = { 0 };
-    if (!sum_up(p, s, o, rep, &sum, why) && isfinite(rep->err.paper.eps_glob))
-        move_by(p, s, &sum, why);
-    impulses_free(&sum);
-    return why->status;
-}
-
 void step_forget(struct step_memory *m)
 {
     neighbours_free(&m->near);
@@ -156,15 +137,97 @@ void step_watch(const struct packing *p, int64_t n, const struct surface *surfac
     if (passed.n) rep->passed_id = passed.id, rep->passed_through = passed.through;
 }
 
-int step_advance(struct packing *p, struct contacts *s, struct step_memory *m,
-                 const struct step_opt *o, struct report *rep, struct why *why)
+int step_measure_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                       struct report *rep, struct why *why)
 {
-    struct neighbours once = { 0 }, *near = m ? &m->near : NULL;
-    if (step_detect(p, s, near, o, rep, why) ||
-        step_solve_contacts(p, s, m ? &m->plan : NULL, o, rep, why) || step_move(p, s, o, rep, why))
+    (void)m;
+    rep->err.max_overlap = contacts_max_overlap(s);
+    return depth_of(&rep->depth, p, s, NULL, why);
+}
+
+int step_balance_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                       const struct impulses *sum, struct balance *b, struct why *why)
+{
+    (void)m;
+    return balance_step(b, p, s, sum, NULL, why);
+}
+
+int step_move_apart_whole(struct step_makers *m, struct packing *p, const struct contacts *s,
+                          struct why *why)
+{
+    (void)m;
+    return overlap_projects(p->overlap) ? project_apart(p, s, why) : 0;
+}
+
+/* The balances and the motion */
+static int move(struct step_makers *m, struct packing *p, const struct contacts *s,
+                const struct step_opt *o, struct report *rep, struct why *why)
+{
+    struct impulses sum = { 0 };
+    if (impulses_init(&sum, p, s, false, why)) goto end;
+    if (m->add_impulses) m->add_impulses(m, &sum);
+    if (account_for(rep, p, o) && m->balance(m, p, s, &sum, &rep->balance, why)) goto end;
+    if (isfinite(rep->err.paper.eps_glob) && !move_by(p, s, &sum, why)) m->move_apart(m, p, s, why);
+end:
+    impulses_free(&sum);
+    return why->status;
+}
+
+int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
+              const struct step_opt *o, struct report *rep, struct why *why)
+{
+    double cpu = report_seconds(CLOCK_CPU);
+    if (m->detect(m, p, s, o, why)) return why->status;
+    rep->detection = report_seconds(CLOCK_CPU) - cpu;
+    if (!m->helps && begin(m, m->measure, p, s, rep, why)) return why->status;
+    if (m->solve(m, p, s, o, rep, why) || m->helps || move(m, p, s, o, rep, why))
         return why->status;
-    if (!neighbours_surfaces(near ? near : &once, p, why))
-        step_watch(p, p->n, (near ? near : &once)->surface, rep);
+    return m->watch(m, p, rep, why);
+}
+
+/* ---- a process alone ---- */
+
+struct alone {
+    struct step_makers makers; /* first: it is what the functions below are given */
+    struct step_memory *memory;
+};
+
+static int detect_alone(struct step_makers *m, struct packing *p, struct contacts *s,
+                        const struct step_opt *o, struct why *why)
+{
+    struct step_memory *kept = ((struct alone *)m)->memory;
+    memory_set(&p->memory, o->warm);
+    packing_wrap(p, NULL);
+    if (detect_contacts(s, p, o->gap, kept ? &kept->near : NULL, why)) return why->status;
+    return o->warm ? memory_give(&p->memory, s, packing_rolls(p), why) : 0;
+}
+
+static int solve_alone(struct step_makers *m, const struct packing *p, struct contacts *s,
+                       const struct step_opt *o, struct report *rep, struct why *why)
+{
+    struct step_memory *kept = ((struct alone *)m)->memory;
+    return step_solve_contacts(p, s, kept ? &kept->plan : NULL, o, rep, why);
+}
+
+static int watch_alone(struct step_makers *m, const struct packing *p, struct report *rep,
+                       struct why *why)
+{
+    struct step_memory *kept = ((struct alone *)m)->memory;
+    struct neighbours once = { 0 }, *near = kept ? &kept->near : &once;
+    if (!neighbours_surfaces(near, p, why)) step_watch(p, p->n, near->surface, rep);
     neighbours_free(&once);
     return why->status;
+}
+
+int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept,
+                 const struct step_opt *o, struct report *rep, struct why *why)
+{
+    struct alone a = { { .detect = detect_alone,
+                         .measure = step_measure_whole,
+                         .solve = solve_alone,
+                         .balance = step_balance_whole,
+                         .move_apart = step_move_apart_whole,
+                         .watch = watch_alone },
+                       kept };
+    return step_make(&a.makers, p, s, o, rep, why);
 }

@@ -5,7 +5,9 @@
 #ifndef NSD_STEP_H
 #define NSD_STEP_H
 
-#include "bodies/neighbours.h"
+#include "detect/neighbours.h"
+#include "motion/balance.h"
+#include "motion/impulse.h"
 #include "problem/plan.h"
 #include "solve/solver.h"
 
@@ -45,20 +47,53 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
 int step_advance(struct packing *p, struct contacts *s, struct step_memory *m,
                  const struct step_opt *o, struct report *rep, struct why *why);
 
-/* Its parts. The contacts, with their last reactions if warm */
-int step_detect(struct packing *p, struct contacts *s, struct neighbours *near,
-                const struct step_opt *o, struct report *rep, struct why *why);
+/*
+ * What a step asks of those who make it: one process, or the ranks of a run (ranks/rank_step.h). Each returns 0
+ * or a status, with the reason in why.
+ */
+struct step_makers {
+    /* This process has no packing of its own: it takes part in finding and solving contacts, and another one
+       reports and moves. */
+    bool helps;
+    /* The contacts, with their last reactions if warm */
+    int (*detect)(struct step_makers *m, struct packing *p, struct contacts *s,
+                  const struct step_opt *o, struct why *why);
+    /* rep->err.max_overlap and rep->depth */
+    int (*measure)(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                   struct report *rep, struct why *why);
+    /* found[], and the report of the solve */
+    int (*solve)(struct step_makers *m, const struct packing *p, struct contacts *s,
+                 const struct step_opt *o, struct report *rep, struct why *why);
+    /* The sums of the reactions become those of all who push a body; NULL: they are. */
+    void (*add_impulses)(struct step_makers *m, struct impulses *sum);
+    /* The balances of the step */
+    int (*balance)(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                   const struct impulses *sum, struct balance *b, struct why *why);
+    /* Bodies that overlap are moved apart, where the packing wants it. */
+    int (*move_apart)(struct step_makers *m, struct packing *p, const struct contacts *s,
+                      struct why *why);
+    /* Which bodies have gone through something; once the step is made */
+    int (*watch)(struct step_makers *m, const struct packing *p, struct report *rep,
+                 struct why *why);
+};
+/* The step by these makers */
+int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
+              const struct step_opt *o, struct report *rep, struct why *why);
+/* What one process does: a process that has a whole packing */
+int step_measure_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                       struct report *rep, struct why *why);
+int step_balance_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                       const struct impulses *sum, struct balance *b, struct why *why);
+int step_move_apart_whole(struct step_makers *m, struct packing *p, const struct contacts *s,
+                          struct why *why);
+
+/* Parts of it. */
 /* found[], and the report of the solve; kept: of problem_prepare_again(), or NULL. Impacts that would gain energy
    are solved anew with less restitution [solve/rebound.h]; and this alone, of contacts that are solved. */
 int step_solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
                         const struct step_opt *o, struct report *rep, struct why *why);
 int step_bound_impacts(const struct packing *pack, struct contacts *s, struct plan **kept,
                        const struct step_opt *o, struct report *rep, struct why *why);
-/* The balances alone; or the balances and the motion */
-int step_balance(const struct packing *p, const struct contacts *s, const struct step_opt *o,
-                 struct report *rep, struct why *why);
-int step_move(struct packing *p, struct contacts *s, const struct step_opt *o, struct report *rep,
-              struct why *why);
 /* After it: adds to the report which of the first n bodies have gone through something. surface: [walls] of those
    that are meshes */
 void step_watch(const struct packing *p, int64_t n, const struct surface *surface,

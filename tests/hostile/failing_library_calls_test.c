@@ -245,7 +245,7 @@ static int coarse(uint32_t *crc, struct why *why)
 
 static int export_all(uint32_t *crc, struct why *why)
 {
-    const struct moment m = { &frame[now].packing, &frame[now].contacts, 1 };
+    const struct export_frame m = { &frame[now].packing, &frame[now].contacts, 1 };
     *crc = 0;
     for (int k = 0; !why->status && format_at(k); k++)
         for (int part = 0; part < PART_COUNT; part++) {

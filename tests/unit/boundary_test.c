@@ -1,8 +1,8 @@
 /* What must hold of boundaries: the nearest place of each shape by a search over its surface, meshes by
    all of their triangles, motions by finite differences, and motion on them by closed solutions. */
-#include "bodies/detect.h"
-#include "bodies/mesh.h"
-#include "bodies/move.h"
+#include "detect/detect.h"
+#include "geometry/mesh.h"
+#include "motion/move.h"
 #include "solve/step.h"
 #include "tap.h"
 

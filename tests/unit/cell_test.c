@@ -1,7 +1,7 @@
 /* What must hold where the cell repeats: detection among images, and motion that knows no border. */
-#include "bodies/detect.h"
-#include "bodies/move.h"
-#include "bodies/tidy.h"
+#include "detect/detect.h"
+#include "motion/move.h"
+#include "bodies/wrap.h"
 #include "problem/assembly.h"
 #include "scene/scene_build.h"
 #include "solve/step.h"
@@ -106,7 +106,7 @@ static void cloud(struct packing *p, int dim, int64_t n, double ratio, double la
     }
     for (int k = 0; k < dim; k++)
         p->cell.rate[k] = v3(uniform(-1, 1), uniform(-1, 1), dim == 2 ? 0 : uniform(-1, 1));
-    packing_tidy(p, NULL);
+    packing_wrap(p, NULL);
 }
 
 /* Every pair and every image of it by brute force, in the order that detection promises; how many are
@@ -249,7 +249,7 @@ static void test_cuts(int dim, double e)
     struct packing start;
     must(packing_copy(&start, &p, &why) || packing_copy(&q, &p, &why), &why);
     q.cell.origin = v3(0.313, 0.117, dim == 2 ? 0 : 0.41);
-    packing_tidy(&q, NULL);
+    packing_wrap(&q, NULL);
     int64_t moved = 0;
     for (int64_t i = 0; i < q.n; i++) moved += memcmp(&q.x[i], &p.x[i], sizeof p.x[i]) != 0;
     double d = apart(&p, &q, &o, 200, &n);
@@ -307,7 +307,7 @@ static void test_neighbours(int dim)
         vec3 was = near.listed ? near.listed[0] : v3(NAN, 0, 0);
         double lean = p.cell.edge[1].x;
         must(step_advance(&p, &s, NULL, &o, &rep, &why), &why);
-        packing_tidy(&p, &s);
+        packing_wrap(&p, &s);
         cuts += p.cell.edge[1].x < lean;
         must(detect_contacts(&kept, &p, 0, &near, &why) ||
                  detect_contacts(&anew, &p, 0, NULL, &why),
@@ -332,7 +332,7 @@ static void test_back(int dim)
     struct contacts s = { 0 };
     struct step_opt o = sweeps(30);
     dense(&p, &s, dim, 0.5);
-    packing_tidy(&p, &s);
+    packing_wrap(&p, &s);
     must(packing_copy(&q, &p, &why), &why);
     run(&q, &s, &o, 1);
     must(move_back(&q, &s, &why), &why);
@@ -356,7 +356,7 @@ static void test_assembly(int dim)
     struct assembly A;
     dense(&p, &s, dim, 0.5);
     p.g = v3(0, -3, 0);
-    packing_tidy(&p, &s);
+    packing_wrap(&p, &s);
     must(detect_contacts(&t, &p, 0, NULL, &why) ||
              problem_prepare(&q, &p, &t, 0, 1, ORDER_NATURAL, &why) || assembly_init(&A, &q, &why),
          &why);
@@ -425,7 +425,7 @@ static void test_collision(void)
                 p[k].v[i] = v3_scale(i ? -1 : 1, v3_add(d, v3(0.1, 0.05, -0.1)));
                 p[k].w[i] = w[i];
             }
-            packing_tidy(&p[k], NULL);
+            packing_wrap(&p[k], NULL);
             run(&p[k], &s, &o, 80);
             contacts_free(&s);
         }

@@ -1,8 +1,8 @@
 /* What must hold of loads: closed solutions, the same problem by all solvers, W by brute force, and the
    balances of energy and momentum. */
-#include "bodies/detect.h"
-#include "bodies/move.h"
-#include "bodies/tidy.h"
+#include "detect/detect.h"
+#include "motion/move.h"
+#include "bodies/wrap.h"
 #include "problem/assembly.h"
 #include "problem/prepare.h"
 #include "scene/scene_build.h"
@@ -421,7 +421,7 @@ static void test_balance(const struct place *where, int dim, double e)
     for (int64_t i = 0; i < p.n; i++) mass += p.mass[i];
     for (int k = 0; k < 50; k++) {
         const struct balance b = rep.balance, *n = &rep.balance;
-        packing_tidy(&p, NULL); // as the step would begin
+        packing_wrap(&p, NULL); // as the step would begin
         must(packing_copy(&was, &p, &why), &why);
         run(&p, &s, &o, 1, &rep);
         // a body that has left the cell is replaced by an image of another velocity

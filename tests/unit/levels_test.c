@@ -1,8 +1,8 @@
 /* tests/unit/levels_test.c: contacts by levels are visited as they are in their order, and by threads at once. */
 #include "base/team.h"
-#include "bodies/detect.h"
-#include "bodies/levels.h"
-#include "bodies/project.h"
+#include "detect/detect.h"
+#include "motion/levels.h"
+#include "motion/project.h"
 #include "tap.h"
 
 #include <gsl/gsl_rng.h>

@@ -1,5 +1,5 @@
 /* tests/unit/plan_test.c: a plan is kept where, and only where, a new one would be the same. */
-#include "bodies/detect.h"
+#include "detect/detect.h"
 #include "problem/plan.h"
 #include "scene/scene_build.h"
 #include "solve/step.h"

@@ -1,5 +1,5 @@
 /* The solvers of a whole problem end where Gauss-Seidel ends, and in the same bytes on any machine. */
-#include "bodies/detect.h"
+#include "detect/detect.h"
 #include "problem/backend.h"
 #include "scene/scene_build.h"
 #include "solve/arc.h"

@@ -1,6 +1,6 @@
 /* What must hold of whole steps: detection, momentum, energy, closed solutions, agreement. */
-#include "bodies/detect.h"
-#include "bodies/move.h"
+#include "detect/detect.h"
+#include "motion/move.h"
 #include "scene/scene_build.h"
 #include "solve/step.h"
 #include "tap.h"

@@ -3,7 +3,7 @@
  * the same reactions whether a problem is given by bodies, by its W, or by a W whose diagonal blocks
  * are not those of balls.
  */
-#include "bodies/detect.h"
+#include "detect/detect.h"
 #include "problem/backend.h"
 #include "scene/scene_build.h"
 #include "solve/scaled.h"

@@ -7,7 +7,7 @@
 #define _GNU_SOURCE
 #include "fuzz.h"
 #include "io/reader.h"
-#include "io/stream.h"
+#include "hdf5/stream.h"
 #include "io/writer.h"
 
 #include <fcntl.h>

@@ -5,7 +5,7 @@
  */
 #include "fuzz.h"
 #include "io/fclib.h"
-#include "io/source.h"
+#include "hdf5/source.h"
 #include "solve/step.h"
 
 #include <stdlib.h>

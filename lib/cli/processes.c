@@ -1,0 +1,72 @@
+/* cli/processes.c: a process alone, or on its way to become one of several [cli/processes.h]. */
+#include "cli/processes.h"
+
+#include "cli/cli.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* What the starters of MPI programs say to them: Open MPI, and those who speak PMI */
+static int ranks_started(void)
+{
+    const char *said = getenv("OMPI_COMM_WORLD_SIZE");
+    if (!said) said = getenv("PMI_SIZE");
+    return said ? atoi(said) : 0;
+}
+
+bool processes_started(void)
+{
+    return ranks_started() > 0;
+}
+
+/* PATH-mpi of this program's PATH */
+static bool beside(char path[PATH_MAX])
+{
+    static const char end[] = "-mpi";
+    ssize_t n = readlink("/proc/self/exe", path, PATH_MAX - sizeof end);
+    if (n < 1) return false;
+    memcpy(path + n, end, sizeof end);
+    return true;
+}
+
+bool processes_join(void)
+{
+    char path[PATH_MAX];
+    int ranks = ranks_started();
+    if (ranks < 2) return true;
+    if (beside(path)) execv(path, cli_arguments());
+    die(EX_UNAVAILABLE, "%d processes were started together, and this nsd-step has no MPI: %s",
+        ranks, strerror(errno));
+}
+
+int processes_size(void)
+{
+    return 1;
+}
+
+int processes_follow(void)
+{
+    return 0;
+}
+
+struct distributed *processes_take_bodies(bool contacts)
+{
+    (void)contacts;
+    return NULL;
+}
+
+int processes_step(struct frame *f, struct step_memory *m, bool other_bodies,
+                   const struct step_opt *o, struct why *why)
+{
+    if (other_bodies) step_forget(m);
+    return step_advance(&f->packing, &f->contacts, m, o, &f->report, why);
+}
+
+const char *processes_leave(void)
+{
+    return NULL;
+}

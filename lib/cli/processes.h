@@ -1,0 +1,33 @@
+/*
+ * cli/processes.h: the processes of a run that mpirun has started together. One leads: it reads, writes and speaks;
+ * the others make the steps with it. There are two texts of this: cli/processes.c for a process alone, and
+ * ranks/mpi_processes.c, with MPI, in nsd-step-mpi.
+ */
+#ifndef NSD_PROCESSES_H
+#define NSD_PROCESSES_H
+
+#include "io/distributed.h"
+#include "solve/step.h"
+
+/*
+ * To be called first: does this process lead? Alone: yes; but where mpirun has started several it becomes
+ * nsd-step-mpi, and ends the tool where there is none.
+ */
+bool processes_join(void);
+/* Has mpirun, or its like, started this process? Its standard output is no terminal then, whatever it seems. */
+bool processes_started(void);
+/* How many there are */
+int processes_size(void);
+/* Those who do not lead: makes the steps until processes_leave(), and returns the exit status. */
+int processes_follow(void);
+/* The leader: who takes the bodies of what it reads, where no process shall have all of them; contacts: of steps
+   that are kept they are wanted. NULL: nobody */
+struct distributed *processes_take_bodies(bool contacts);
+/* The leader: step_advance() of a frame by all. other_bodies: its packing has others than after the step
+   before. */
+int processes_step(struct frame *f, struct step_memory *m, bool other_bodies,
+                   const struct step_opt *o, struct why *why);
+/* The leader, in the end: the others are done. A word of what they have told each other, or NULL */
+const char *processes_leave(void);
+
+#endif

@@ -1,0 +1,66 @@
+/*
+ * detect/swift.h: bodies that move in a step by more than they are thick. Where contacts are sought such a body is
+ * on one side of a sheet at one step and on the other at the next.
+ *
+ * Its way in the step, relative to a boundary, (v + g dt - v_wall) dt, is looked at in places no farther apart than
+ * it is thick. The first of them at which it touches what it did not touch before makes contacts now, with all that
+ * is nearer there than it is thick, and with the gaps along their normals that it has now: it gets as far as there in this step, or where the law sees no gaps
+ * [bodies/overlap.h] it stops, or rebounds, at most one step's way early. Their features tell them, for they are
+ * contacts however wide the gap is. The same is done where a body would meet hulls that are fixed.
+ *
+ * What still gets through is counted after the step.
+ */
+#ifndef NSD_SWIFT_H
+#define NSD_SWIFT_H
+
+#include "bodies/contact.h"
+#include "bodies/placed.h"
+#include "detect/neighbours.h"
+
+/* Features of such contacts, of boundaries and of bodies: no others lie between one of these and its double. */
+enum { AHEAD_OF_WALL = 1 << 29, AHEAD_OF_BODY = 1 << 30 };
+static inline bool swift_ahead(const struct contact *c)
+{
+    return c->a < 0 ? c->feature >= AHEAD_OF_WALL && c->feature < AHEAD_OF_BODY
+                    : c->feature >= AHEAD_OF_BODY;
+}
+
+/* What a search along ways knows [detect/detect.c] */
+struct swift {
+    const struct packing *p;
+    const vec3 *x;                 /* [p->n] m: where contacts are sought */
+    double t;                      /* s */
+    const struct placed *shaped;   /* NULL: all are balls */
+    const struct surface *surface; /* [p->walls] of meshes */
+};
+
+/* m: the radius of a ball inside the body, around its centre; of a clump that of the smallest ball */
+double swift_thickness(const struct packing *p, int64_t i);
+/* Does body i go farther in a step than that, relative to what has at most the velocity `most` (m/s)? */
+bool swift_is(const struct packing *p, int64_t i, double most);
+/* m/s: that of wall w, with what gravity adds to a body's */
+double swift_beside(const struct packing *p, int32_t w);
+/* m: how far any body goes in a step that may meet a fixed hull ahead; 0: none is so fast. Who has some of the bodies
+   has to know of fixed hulls as far. */
+double swift_reach(const struct packing *p);
+
+/* Adds what body i meets ahead of wall w, which is no plane, besides the contacts out->c[first ...] of these two.
+   False when memory is short. */
+bool swift_meets_wall(struct contacts *out, int64_t first, const struct swift *o, int32_t w,
+                      int64_t i);
+/* Adds what bodies meet ahead of fixed hulls, and sorts all contacts again. */
+bool swift_meet_hulls(struct contacts *out, const struct swift *o);
+
+/* Bodies that have gone through a boundary or a fixed hull without meeting it */
+struct passed {
+    int64_t n;
+    int32_t id,
+        through; /* of the one with the lowest number: what it went through, a wall -1-w or a body's number */
+};
+/* Is there anything of that kind, a boundary that is no plane or a fixed hull? */
+bool swift_watches(const struct packing *p);
+/* Of the packing's first n bodies, after a step */
+void swift_passed(struct passed *s, const struct packing *p, int64_t n,
+                  const struct surface *surface);
+
+#endif

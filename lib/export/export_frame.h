@@ -1,0 +1,30 @@
+/*
+ * export/export_frame.h: what is exported of one moment, and the parts of it: grains, contacts, boundaries,
+ * the cell, the surfaces of grains that are no balls. Files of other programs take either a part as a sheet (export/sheet.h), or the grains.
+ */
+#ifndef NSD_EXPORT_FRAME_H
+#define NSD_EXPORT_FRAME_H
+
+#include "bodies/contact.h"
+#include "bodies/packing.h"
+
+enum part { PART_GRAINS, PART_CONTACTS, PART_BOUNDARY, PART_CELL, PART_SURFACES, PART_COUNT };
+extern const char *const part_name[PART_COUNT];
+
+struct export_frame {
+    const struct packing *packing;
+    const struct contacts *contacts; /* NULL: there are none in the document */
+    int detail;                      /* of balls made of triangles: 20 * 4^detail of them */
+};
+
+/*
+ * A box around all: the cell where it repeats, and along its other edges, or without any, as far as
+ * the grains reach. In the plane it is one metre thick, the discs in its middle.
+ */
+struct box {
+    bool repeats[3];
+    vec3 origin, edge[3]; /* m */
+};
+void export_frame_box(struct box *box, const struct packing *packing);
+
+#endif

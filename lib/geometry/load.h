@@ -1,0 +1,27 @@
+/*
+ * geometry/load.h: what a boundary yields to that is free along or about one axis: a force, as a
+ * piston at constant pressure, or a torque.
+ *
+ * How it moves besides is prescribed: the load's speed adds to the boundary's own velocity.
+ */
+#ifndef NSD_LOAD_H
+#define NSD_LOAD_H
+
+#include "base/vec.h"
+
+#include <stdint.h>
+
+/* A plane turns about its normal, in which it stays the plane that it is. */
+enum load_way { LOAD_NONE, LOAD_GLIDES, LOAD_TURNS, LOAD_WAYS };
+
+struct load {
+    int32_t way;   /* enum load_way */
+    vec3 axis;     /* unit vector */
+    vec3 point;    /* m: a point on the axis, of one that turns */
+    double mass;   /* kg that move along the axis; kg m^2 about it */
+    double force;  /* N along the axis, N m about it; its weight is in it. Pushes add to it. */
+    double speed;  /* m/s, rad/s */
+    double travel; /* m, rad: how far it has come */
+};
+
+#endif

@@ -1,0 +1,158 @@
+#include "hdf5/child.h"
+
+#include "hdf5/server.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+struct child {
+    pid_t pid; /* 0: none; -1: it has ended */
+    int line;  /* a socket to it; -1: it is gone */
+    struct shared *shared;
+    struct child *next; /* of those that are running */
+};
+
+static struct child *running;
+
+/* Waits for its end; false where that has been seen before. */
+static bool wait_for(const struct child *c, int *status)
+{
+    pid_t got = -1;
+    while (c->pid > 0 && (got = waitpid(c->pid, status, 0)) < 0 && errno == EINTR) continue;
+    return got > 0;
+}
+
+/* Ends the process, and takes its status off the system's list. */
+static void bury(struct child *c)
+{
+    if (c->line >= 0) close(c->line);
+#ifndef NSD_COVERAGE
+    if (c->pid > 0) kill(c->pid, SIGKILL); // it may be waiting for a pipe
+#endif
+    wait_for(c, NULL);
+    c->pid = 0, c->line = -1;
+}
+
+/* A tool that dies by exit() closes nothing. */
+static void bury_all(void)
+{
+    for (struct child *c = running; c; c = c->next) bury(c);
+}
+
+static void enlist(struct child *c)
+{
+    static bool registered;
+    c->next = running, running = c;
+    if (!registered) registered = !atexit(bury_all);
+}
+
+static int no_child(struct why *why, const char *trouble)
+{
+    return why_set(why, EX_SOFTWARE, "no process to read with: %s", trouble);
+}
+
+int child_start(struct child **out, int files, char *const *file, uint64_t limit, struct why *why)
+{
+    struct child *c = *out = calloc(1, sizeof *c);
+    int line[2];
+    if (!c) return why_set(why, EX_SOFTWARE, "no memory");
+    c->line = -1;
+    c->shared =
+        mmap(NULL, sizeof *c->shared, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (c->shared == MAP_FAILED) {
+        c->shared = NULL;
+        return no_child(why, strerror(errno));
+    }
+    if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, line))
+        return no_child(why, strerror(errno));
+    pid_t parent = getpid();
+    c->pid = fork();
+    if (c->pid == 0) {
+        close(line[0]);
+        for (struct child *k = running; k; k = k->next)
+            if (k->line >= 0) close(k->line); // they hang up when the tool does
+        server_run(line[1], c->shared, files, file, limit, parent);
+    }
+    int trouble = errno;
+    close(line[1]);
+    if (c->pid < 0) {
+        close(line[0]);
+        return c->pid = 0, no_child(why, strerror(trouble));
+    }
+    c->line = line[0];
+    enlist(c);
+    return 0;
+}
+
+void child_close(struct child *c)
+{
+    if (!c) return;
+    bury(c);
+    for (struct child **k = &running; *k; k = &(*k)->next)
+        if (*k == c) {
+            *k = c->next;
+            break;
+        }
+    if (c->shared) munmap(c->shared, sizeof *c->shared);
+    free(c);
+}
+
+bool child_lost(const struct child *c)
+{
+    return c->line < 0;
+}
+
+/* The child is gone: why. */
+static int child_gone(struct child *c, struct why *why)
+{
+    int status = 0;
+    close(c->line); // should it live it ends now
+    bool known = wait_for(c, &status);
+    int signal = known && WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    c->line = -1, c->pid = -1;
+    c->shared->where[sizeof c->shared->where - 1] = 0;
+    const char *where = c->shared->where[0] ? c->shared->where : "input";
+    if (signal == SIGBUS)
+        return why_set(why, EX_DATAERR, "%.250s: has become shorter while it was read", where);
+    if (signal == SIGXCPU)
+        return why_set(why, EX_DATAERR, "%.250s: takes too long to read: damaged, or made to",
+                       where);
+    if (signal == SIGKILL)
+        return why_set(why, EX_SOFTWARE, "%.250s: reading it was killed (no memory?)", where);
+    return why_set(why, EX_DATAERR, "%.250s: libhdf5 breaks down over it (%s): damaged, or made to",
+                   where, signal ? strsignal(signal) : "it ended");
+}
+
+/* All pieces of an answer, out of shared memory */
+static int take(struct child *c, struct taker *t, struct why *why)
+{
+    struct reply r;
+    bool begun = false;
+    for (uint64_t pieces = 0;; pieces++) {
+        if (line_receive(c->line, &r, sizeof r) != sizeof r) return child_gone(c, why);
+        r.text[sizeof r.text - 1] = 0;
+        if (r.status) return why_set(why, r.status, "%s", r.text);
+        if (!begun && t->sink.begin(&t->sink, &r)) return why->status;
+        begun = true;
+        if (r.here > REQUEST_PIECE || r.here > t->size - t->done || (!r.here && t->done < t->size))
+            return why_set(why, EX_DATAERR, "%.250s: an answer of another size", c->shared->where);
+        const unsigned char *piece = c->shared->piece[pieces % 2];
+        if (t->pour ? t->pour(t->out, piece, (size_t)r.here, why) : 0) return why->status;
+        if (r.here && t->out && !t->pour) memcpy((char *)t->out + t->done, piece, (size_t)r.here);
+        t->done += r.here;
+        if (t->done == t->size) return 0;
+        if (!line_send(c->line, "", 1)) return child_gone(c, why);
+    }
+}
+
+int child_ask(struct child *c, const struct request *q, struct taker *t, struct why *why)
+{
+    if (!line_send(c->line, q, sizeof *q)) return child_gone(c, why);
+    return take(c, t, why);
+}

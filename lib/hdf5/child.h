@@ -1,0 +1,23 @@
+/*
+ * hdf5/child.h: the tool's end of the process that reads (hdf5/server.h). Whatever becomes of that, the tool goes
+ * on, and says which document it was (EX_DATAERR); and none outlives its tool, or is left to be buried by
+ * others.
+ */
+#ifndef NSD_CHILD_H
+#define NSD_CHILD_H
+
+#include "hdf5/request.h"
+
+struct child;
+
+/* A new process for the documents of these files. limit: as of served_open. */
+int child_start(struct child **child, int files, char *const *file, uint64_t limit,
+                struct why *why);
+void child_close(struct child *child);
+/* Has it ended? */
+bool child_lost(const struct child *child);
+/* Asks, and takes all pieces of the answer. EX_DATAERR also where the child broke down over it. */
+int child_ask(struct child *child, const struct request *request, struct taker *taker,
+              struct why *why);
+
+#endif

@@ -1,0 +1,172 @@
+#include "hdf5/h5.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    ATTRIBUTE_MOST = 65000 /* bytes of a text: HDF5 has 64 KiB for an attribute and what it is */
+};
+
+void h5_start(void)
+{
+    H5dont_atexit();
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+}
+
+bool h5_has(hid_t place, const char *path)
+{
+    return H5Oexists_by_name(place, path, H5P_DEFAULT) > 0;
+}
+
+hid_t h5_plain(char class, size_t size)
+{
+    if (class == 'f') return size == 4 ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE;
+    if (class == 'i')
+        return size == 1   ? H5T_NATIVE_INT8
+               : size == 2 ? H5T_NATIVE_INT16
+               : size == 4 ? H5T_NATIVE_INT32
+                           : H5T_NATIVE_INT64;
+    return size == 1   ? H5T_NATIVE_UINT8
+           : size == 2 ? H5T_NATIVE_UINT16
+           : size == 4 ? H5T_NATIVE_UINT32
+                       : H5T_NATIVE_UINT64;
+}
+
+hid_t h5_dataset_plist(void)
+{
+    hid_t plist = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_obj_track_times(plist, false);
+    return plist;
+}
+
+void h5_fill_later(hid_t plist)
+{
+    H5Pset_alloc_time(plist, H5D_ALLOC_TIME_EARLY), H5Pset_fill_time(plist, H5D_FILL_TIME_NEVER);
+}
+
+/* Makes the groups above an object. */
+static int make_parents(hid_t place, const char *path, struct why *why)
+{
+    const char *slash = strrchr(path, '/');
+    if (!slash || slash == path) return 0;
+    char *parent = strndup(path, (size_t)(slash - path));
+    int e = parent ? h5_group(place, parent, why) : why_set(why, EX_SOFTWARE, "out of memory");
+    free(parent);
+    return e;
+}
+
+int h5_group(hid_t place, const char *path, struct why *why)
+{
+    H5O_info_t info;
+    hid_t group = -1;
+    bool there = H5Oget_info_by_name2(place, path, &info, H5O_INFO_BASIC, H5P_DEFAULT) >= 0;
+    if (!there) {
+        if (make_parents(place, path, why)) return why->status;
+        hid_t plist = H5Pcreate(H5P_GROUP_CREATE);
+        H5Pset_obj_track_times(plist, false);
+        group = H5Gcreate2(place, path, H5P_DEFAULT, plist, H5P_DEFAULT);
+        H5Pclose(plist);
+    }
+    bool good = there ? info.type == H5O_TYPE_GROUP : group >= 0 && H5Gclose(group) >= 0;
+    return good ? 0 : why_set(why, EX_IOERR, "%s: cannot make the group", path);
+}
+
+static int write_data(hid_t place, const char *path, hid_t memory, hid_t disk, hid_t space,
+                      const void *data, const char *units, struct why *why)
+{
+    if (make_parents(place, path, why)) return why->status;
+    hid_t plist = h5_dataset_plist();
+    if (!data && H5Sget_simple_extent_npoints(space) > 0) h5_fill_later(plist);
+    hid_t set = H5Dcreate2(place, path, disk, space, H5P_DEFAULT, plist, H5P_DEFAULT);
+    H5Pclose(plist);
+    bool bad = set < 0;
+    if (!bad && data && H5Sget_simple_extent_npoints(space) > 0)
+        bad = H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0;
+    if (!bad && units) bad = h5_attr_text(set, ".", "units", units, why);
+    if (set >= 0) bad |= H5Dclose(set) < 0;
+    return bad ? why_set(why, EX_IOERR, "%s: cannot be written", path) : 0;
+}
+
+/* The type on disk for this type of memory. To be closed. */
+static hid_t little_endian(hid_t type)
+{
+    hid_t disk = H5Tcopy(type);
+    H5Tset_order(disk, H5T_ORDER_LE);
+    return disk;
+}
+
+/* A C string of just this length with its zero, as libfclib stores and expects it. To be closed. */
+static hid_t text_type(const char *text)
+{
+    hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, strlen(text) + 1);
+    H5Tset_cset(type, H5T_CSET_UTF8);
+    return type;
+}
+
+int h5_write(hid_t place, const char *path, hid_t type, int rank, const hsize_t *shape,
+             const void *data, const char *units, struct why *why)
+{
+    hid_t disk = little_endian(type);
+    hid_t space = rank ? H5Screate_simple(rank, shape, NULL) : H5Screate(H5S_SCALAR);
+    int e = write_data(place, path, type, disk, space, data, units, why);
+    H5Sclose(space);
+    H5Tclose(disk);
+    return e;
+}
+
+int h5_write_text(hid_t place, const char *path, const char *text, struct why *why)
+{
+    hid_t type = text_type(text), space = H5Screate(H5S_SCALAR);
+    int e = write_data(place, path, type, type, space, text, NULL, why);
+    H5Sclose(space);
+    H5Tclose(type);
+    return e;
+}
+
+static hid_t make_attr(hid_t place, const char *path, const char *name, hid_t disk, hid_t space)
+{
+    return H5Acreate_by_name(place, path, name, disk, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+}
+
+static int write_attr(hid_t place, const char *path, const char *name, hid_t memory, hid_t disk,
+                      int rank, const hsize_t *shape, const void *data, struct why *why)
+{
+    hid_t space = rank ? H5Screate_simple(rank, shape, NULL) : H5Screate(H5S_SCALAR);
+    hsize_t count = (hsize_t)H5Sget_simple_extent_npoints(space);
+    hid_t attr = make_attr(place, path, name, disk, space);
+    if (attr < 0 && H5Adelete_by_name(place, path, name, H5P_DEFAULT) >= 0)
+        attr = make_attr(place, path, name, disk, space);
+    bool bad = attr < 0 || (count != 0 && H5Awrite(attr, memory, data) < 0);
+    if (attr >= 0) bad |= H5Aclose(attr) < 0;
+    H5Sclose(space);
+    return bad ? why_set(why, EX_IOERR, "%s@%s: cannot be written", path, name) : 0;
+}
+
+int h5_attr_shaped(hid_t place, const char *path, const char *name, hid_t type, int rank,
+                   const hsize_t *shape, const void *data, struct why *why)
+{
+    hid_t disk = little_endian(type);
+    int e = write_attr(place, path, name, type, disk, rank, shape, data, why);
+    H5Tclose(disk);
+    return e;
+}
+
+int h5_attr(hid_t place, const char *path, const char *name, hid_t type, int count,
+            const void *data, struct why *why)
+{
+    hsize_t shape = (hsize_t)count;
+    return h5_attr_shaped(place, path, name, type, count < 0 ? 0 : 1, &shape, data, why);
+}
+
+int h5_attr_text(hid_t place, const char *path, const char *name, const char *text, struct why *why)
+{
+    if (strlen(text) > ATTRIBUTE_MOST)
+        return why_set(why, EX_DATAERR, "%s@%s: %zu bytes, and a document has room for %d", path,
+                       name, strlen(text), ATTRIBUTE_MOST);
+    hid_t type = text_type(text);
+    int e = write_attr(place, path, name, type, type, 0, NULL, text, why);
+    H5Tclose(type);
+    return e;
+}

@@ -1,0 +1,57 @@
+/*
+ * hdf5/h5.h: what nsd asks of libhdf5 to write single objects (datasets, texts, groups, attributes),
+ * each failure with its reason; hdf5/serve.h reads them. No other room knows HDF5. Object times are
+ * never stored, so that the same data give the same bytes.
+ *
+ * `place` is an open file or group and `path` a name in it. `type` is a type of memory, such as
+ * H5T_NATIVE_DOUBLE.
+ */
+#ifndef NSD_H5_H
+#define NSD_H5_H
+
+#include "base/column.h"
+#include "base/why.h"
+
+#include <hdf5.h>
+#include <stdbool.h>
+
+static inline hid_t column_native(enum column_type t)
+{
+    return t == COLUMN_F64   ? H5T_NATIVE_DOUBLE
+           : t == COLUMN_I64 ? H5T_NATIVE_INT64
+           : t == COLUMN_I32 ? H5T_NATIVE_INT32
+                             : H5T_NATIVE_INT8;
+}
+
+/* The type of memory for plain numbers: class 'i' signed, 'u' unsigned, 'f' real, of size bytes. */
+hid_t h5_plain(char class, size_t size);
+
+/* Called in each thread before anything else of libhdf5: it shall print nothing, and close nothing by itself. */
+void h5_start(void);
+
+bool h5_has(hid_t place, const char *path);
+
+/* A new dataset of fixed shape, little-endian on disk, with @units unless that is NULL. data NULL: room is
+   made for the numbers, and nothing is written there. */
+int h5_write(hid_t place, const char *path, hid_t type, int rank, const hsize_t *shape,
+             const void *data, const char *units, struct why *why);
+int h5_write_text(hid_t place, const char *path, const char *text, struct why *why);
+/* Makes the group, and those above it, unless it is there. */
+int h5_group(hid_t place, const char *path, struct why *why);
+
+/* Attributes of `count` numbers; count < 0 stands for a scalar. */
+int h5_attr(hid_t place, const char *path, const char *name, hid_t type, int count,
+            const void *data, struct why *why);
+/* The same of any shape */
+int h5_attr_shaped(hid_t place, const char *path, const char *name, hid_t type, int rank,
+                   const hsize_t *shape, const void *data, struct why *why);
+/* A text; EX_DATAERR: longer than HDF5 has room for */
+int h5_attr_text(hid_t place, const char *path, const char *name, const char *text,
+                 struct why *why);
+
+/* A property list for new datasets, without object times. To be closed. */
+hid_t h5_dataset_plist(void);
+/* Datasets with this list get all of their place on the disk as they are made, or grow, and nothing into it. */
+void h5_fill_later(hid_t plist);
+
+#endif

@@ -1,0 +1,23 @@
+/*
+ * hdf5/server.h: the process that reads: a child of the tool, which opens the files and asks libhdf5
+ * (hdf5/serve.h), with bounds on its memory and time. Requests come over a socket, answers go back over it,
+ * and their data through shared memory.
+ */
+#ifndef NSD_SERVER_H
+#define NSD_SERVER_H
+
+#include "hdf5/request.h"
+
+#include <sys/types.h>
+
+/* What parent and child share. */
+struct shared {
+    char where[300]; /* the document in hand, for messages when the child is gone */
+    unsigned char piece[2][REQUEST_PIECE];
+};
+
+/* The child's life: answers until the line is closed, and ends. limit: as of served_open. */
+void server_run(int line, struct shared *shared, int files, char *const *file, uint64_t limit,
+                pid_t parent) __attribute__((noreturn));
+
+#endif

@@ -1,0 +1,69 @@
+/*
+ * motion/balance.h: the balances of energy and momentum over one step.
+ *
+ * The equation of motion M (v+ - v-) = dt F + H r times the mean velocity is, to rounding and
+ * whatever r is [Kelvin & Tait 1867, art. 308: an impulse works by the mean of the velocities
+ * before and after it]:
+ *
+ *     T+ - T- = gravity + loads + drives - dissipation
+ *
+ *     gravity      dt sum m g . (v+ + v-)/2
+ *     loads        dt sum f (s+ + s-)/2, of the freedoms [bodies/freedom.h]
+ *     drives       - sum r . w: w is what the motions that are prescribed (boundaries, fixed
+ *                  bodies, the cell) are in the velocity of the contact, their mean over the
+ *                  step; and what the flow of the cell does to bodies
+ *     dissipation  - sum r . (u+ + u-)/2
+ *
+ * and where pairs are tied [bodies/tie.h] what their energy takes is no dissipation:
+ *
+ *     T+ - T- = gravity + loads + drives - dissipation - bond_change - broken
+ *
+ * Each of the four is a sum of its own, none a difference of the others. Momentum changes by the
+ * weight, dt sum m g, and by the impulse of boundaries, fixed bodies and the cell's flow. Where
+ * the cell repeats, T- is not T+ of the step before: a body that is replaced by its image has
+ * another velocity.
+ *
+ * An impact under Newton's law with friction may gain energy [Kane 1984]: a rod that strikes a floor at an angle and
+ * whose tip reverses its slip. gained is what impacts have gained, the pairs of which approached with restitution and
+ * whose friction did more work than restitution took; solve/rebound.h bounds it.
+ *
+ * Without restitution a contact that holds has u+ = 0 and dissipates -r . u-/2, which is negative
+ * where the step has begun with separating bodies; over an impact it is what the law takes.
+ */
+#ifndef NSD_BALANCE_H
+#define NSD_BALANCE_H
+
+#include "motion/impulse.h"
+
+struct balance {
+    double kinetic;   /* J: after the step; of the bodies and of what loads move */
+    double change;    /* J: of kinetic, in the step */
+    double potential; /* J: - sum m g . x, after the step, of the bodies */
+    double gravity, drives, loads, dissipation; /* J: in the step */
+    /* J, where pairs are tied [bodies/tie.h]: of what is stored, in the step; what is stored then; what
+       broken bonds and joining liquid have given up, in the step */
+    double bond_change, bond_energy, broken;
+    double gained;      /* J: by impacts, in the step; a part of -dissipation */
+    double momentum[3]; /* N s: of the bodies, after the step */
+    double impulse[3];  /* N s: of boundaries and fixed bodies on the others, in the step */
+};
+
+/* Of the step that begins where the packing is, by the reactions of its contacts, whose sums are
+   given, too. Bodies count where of[n] is true; NULL: all. Returns 0 or EX_SOFTWARE. */
+int balance_step(struct balance *b, const struct packing *p, const struct contacts *s,
+                 const struct impulses *sum, const bool *of, struct why *why);
+
+/* What the impact of a pair of bodies has gained, beside the energy that its approach could give up */
+struct gain {
+    double work,
+        scale; /* J: of its contacts, which are from this on; work > 0: gained. 0, 0: no impact */
+};
+/* gain[s->n], at the first contact of each pair. Returns 0 or EX_SOFTWARE. */
+int balance_gains(struct gain *gain, const struct packing *p, const struct contacts *s,
+                  const struct impulses *sum, struct why *why);
+/* The first contact after i that is of another pair; the images of one body count as one. */
+int64_t balance_next_pair(const struct contacts *s, int64_t i);
+/* Less than this part of the scale is rounding, or what the solve leaves. */
+#define GAIN_LEAST 1e-10
+
+#endif

@@ -1,0 +1,128 @@
+/* move.c: see motion/move.h. */
+#include "motion/move.h"
+
+#include "base/team.h"
+#include "bodies/tie.h"
+#include "bodies/top.h"
+#include "motion/project.h"
+
+#include <stdlib.h>
+
+enum {
+    SOME = 1024 /* bodies that are worth a thread: 100 us of work */
+};
+
+static quat turn(quat q, double dt, vec3 w)
+{
+    return quat_mul(quat_rotation(v3_scale(dt, w)), q);
+}
+
+/* The parts of a step in the order in which bodies take them: forward, or back to before it */
+struct way {
+    double first, then; /* s */
+    double sign;        /* of what gravity and reactions add to velocities */
+};
+
+static struct way way_of(const struct packing *p, bool back)
+{
+    if (back) return (struct way){ -step_after(p), -step_ahead(p), -1 };
+    return (struct way){ step_ahead(p), step_after(p), 1 };
+}
+
+/* A body that keeps its angular momentum, not its angular velocity [bodies/top.h] */
+static void top_move(struct packing *p, const struct way *y, int64_t i, vec3 moment)
+{
+    vec3 L = top_momentum(p, i, p->q[i], p->w[i]);
+    p->q[i] = top_turn(p, i, p->q[i], L, y->first);
+    L = v3_axpy(L, y->sign, moment);
+    p->q[i] = top_turn(p, i, p->q[i], L, y->then);
+    p->w[i] = top_spin(p, i, p->q[i], L);
+}
+
+/* Body i through the step, with its impulse and moment, which act between its parts. */
+static void body_move(struct packing *p, const struct cell_flow *flow, const struct way *y,
+                      int64_t i, vec3 force, vec3 moment)
+{
+    bool top = top_is(p, i);
+    if (top) top_move(p, y, i, moment);
+    p->x[i] = v3_axpy(p->x[i], y->first, p->v[i]);
+    if (!top) p->q[i] = turn(p->q[i], y->first, p->w[i]);
+    if (p->mass[i] > 0) {
+        p->v[i] = v3_axpy(v3_axpy(p->v[i], y->sign * p->dt, p->g), y->sign / p->mass[i], force);
+        if (flow->changes) p->v[i] = v3_axpy(p->v[i], y->sign, cell_flow_gain(flow, p->x[i]));
+        if (!top) p->w[i] = v3_axpy(p->w[i], y->sign / p->inertia[i], moment);
+    }
+    p->x[i] = v3_axpy(p->x[i], y->then, p->v[i]);
+    if (!top) p->q[i] = quat_unit(turn(p->q[i], y->then, p->w[i]));
+}
+
+static void move_freedoms(struct packing *p, const struct impulses *sum, bool back)
+{
+    for (int32_t k = 0; k < sum->freedoms.n; k++)
+        freedom_move(&sum->freedoms.f[k], p, impulses_change(sum, p, k), back);
+}
+
+/* Bodies that move */
+struct moving {
+    struct packing *p;
+    const struct impulses *sum;
+    struct way way;
+};
+
+static void move_some(void *arg, int64_t first, int64_t end)
+{
+    const struct moving *m = arg;
+    for (int64_t i = first; i < end; i++)
+        body_move(m->p, &m->sum->flow, &m->way, i, m->sum->force[i], m->sum->moment[i]);
+}
+
+static void move_bodies(struct packing *p, const struct impulses *sum, bool back)
+{
+    struct moving m = { p, sum, way_of(p, back) };
+    team_share(team_size(), p->n, SOME, move_some, &m);
+}
+
+int move_by(struct packing *p, const struct contacts *s, const struct impulses *sum,
+            struct why *why)
+{
+    if (packing_check_clock(p, why) || (p->law && ties_keep(p, s, why)) ||
+        memory_keep(&p->memory, s, why))
+        return why->status;
+    move_bodies(p, sum, false);
+    cell_move(&p->cell, step_ahead(p), step_after(p), sum->next);
+    move_freedoms(p, sum, false);
+    p->step++;
+    p->t = packing_time(p, p->step);
+    return 0;
+}
+
+int move_step(struct packing *p, const struct contacts *s, struct why *why)
+{
+    struct impulses sum;
+    if (!impulses_init(&sum, p, s, false, why) && !move_by(p, s, &sum, why) &&
+        overlap_projects(p->overlap))
+        project_apart(p, s, why);
+    impulses_free(&sum);
+    return why->status;
+}
+
+static void unmove_by(struct packing *p, struct impulses *sum)
+{
+    vec3 gain[3];
+    for (int k = 0; k < 3; k++) gain[k] = p->cell.rate[k];
+    move_freedoms(p, sum, true);
+    cell_unmove(&p->cell, p->t - p->dt, step_ahead(p), step_after(p));
+    for (int k = 0; k < 3; k++) gain[k] = v3_sub(gain[k], p->cell.rate[k]);
+    cell_flow_init(&sum->flow, &p->cell, sum->edge, gain);
+    move_bodies(p, sum, true);
+    p->step--;
+    p->t = packing_time(p, p->step);
+}
+
+int move_back(struct packing *p, const struct contacts *s, struct why *why)
+{
+    struct impulses sum;
+    if (!impulses_init(&sum, p, s, true, why)) unmove_by(p, &sum);
+    impulses_free(&sum);
+    return why->status;
+}

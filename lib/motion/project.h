@@ -1,0 +1,48 @@
+/*
+ * motion/project.h: moves bodies that overlap apart, without giving them a velocity: the direct
+ * projection of Siconos [Acary 2013].
+ *
+ * After a step, contact c will at the next predicted position have the gap
+ *
+ *     g_c + dt u_n,   u_n = n . (v_b - v_a) of the new velocities,
+ *
+ * to first order, and for balls it does not depend on rotations. Displacements d = M^-1 P lambda,
+ * lambda >= 0 along the normals, are sought with
+ *
+ *     g_c + dt u_n + n . (d_b - d_a) >= -slop,   and = -slop where lambda_c > 0:
+ *
+ * (and what freedoms beyond the bodies' open [bodies/freedom.h]: pistons and edges that yield
+ * give way, other walls do not) of all that part the bodies, the least in the norm of M. A few
+ * Gauss-Seidel sweeps, the same on every machine; what they leave is left to the next step. An
+ * impact that rebounds out of its overlap in time is not touched.
+ */
+#ifndef NSD_PROJECT_H
+#define NSD_PROJECT_H
+
+#include "bodies/contact.h"
+#include "bodies/packing.h"
+
+/* A body, with what a sweep reads and changes of it side by side */
+struct displaced {
+    vec3 d;    /* m */
+    double im; /* 1/kg; 0: it does not move */
+};
+
+/* Of a packing of which several processes have a part each, by contacts that each is in one of: what is asked
+   of the others */
+struct project_share {
+    void *with;
+    const double *brake; /* [contacts] by which a contact's step is shortened, at least 1 */
+    /* Is it so in any process? */
+    bool (*any)(void *with, bool here);
+    /* The processes' displacements of d[n] since the last time are added up; more: is another sweep worth
+       it here? Returns whether it is to any. */
+    bool (*after_sweep)(void *with, struct displaced *d, bool more);
+};
+int project_shared(struct packing *p, const struct contacts *s, const struct project_share *share,
+                   struct why *why);
+
+/* The bodies after their step by these contacts. Returns 0 or EX_SOFTWARE. */
+int project_apart(struct packing *p, const struct contacts *s, struct why *why);
+
+#endif

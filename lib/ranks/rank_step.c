@@ -1,0 +1,557 @@
+/* ranks/rank_step.c: one time step of all ranks [ranks/rank_step.h]. */
+#include "ranks/rank_step.h"
+
+#include "bodies/freedom.h"
+#include "bodies/wrap.h"
+#include "detect/detect.h"
+#include "detect/swift.h"
+#include "problem/prepare.h"
+#include "ranks/blocks.h"
+#include "ranks/colours.h"
+#include "ranks/contact_list.h"
+#include "ranks/settings.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    CUT_AFTER = 20, /* steps that cuts are left alone, */
+    LOST_MOST = 2   /* unless so many steps' work was lost since by what they became worse */
+};
+/* Contacts of the rank that has most over the mean: from here on cuts are made anew. */
+#define IMBALANCE 1.1
+
+void rank_step_begin(struct rank_step *y, struct comm *t, struct territory *space,
+                     const struct packing *whole, struct rows *rows)
+{
+    int varies = packing_varies(whole);
+    MPI_Bcast(&varies, 1, MPI_INT, 0, t->mpi);
+    // the first cuts know no contacts
+    *y = (struct rank_step){ .varies = varies, .scattered = rows, .since = -CUT_AFTER };
+    if (!rows) {
+        part_begin(&y->part, t, space, whole);
+        return;
+    }
+    y->mean_mass = rows->heavy > 0 ? rows->mass / rows->heavy : 1;
+    MPI_Bcast(&y->mean_mass, 1, MPI_DOUBLE, 0, t->mpi);
+    rows_deal(rows, &y->part, space, whole);
+}
+
+void rank_step_begin_again(struct rank_step *y, const struct packing *whole)
+{
+    neighbours_free(&y->near);
+    part_begin_again(&y->part, whole);
+}
+
+void rank_step_free(struct rank_step *y)
+{
+    neighbours_free(&y->near);
+    part_free(&y->part);
+}
+
+static void fail(const struct rank_step *y, const struct why *why)
+{
+    comm_fail(y->part.comm, why->status, why->text);
+}
+
+/* Keeps the contacts for which keep[] is true, with all that is known of them. */
+static void sift(struct contacts *s, const bool *keep)
+{
+    int64_t n = 0;
+    for (int64_t i = 0; i < s->n; i++) {
+        if (!keep[i]) continue;
+        if (s->tie) s->tie[n] = s->tie[i];
+        if (s->found) s->found[n] = s->found[i];
+        if (s->moment) memcpy(s->moment[n], s->moment[i], sizeof *s->moment);
+        s->c[n++] = s->c[i];
+    }
+    s->n = n;
+}
+
+/* The pairs within reach in which this rank has a body: contacts, but where laws decide what is one */
+static void find_contacts(struct rank_step *y, double gap, double reach, struct contacts *s)
+{
+    struct part *part = &y->part;
+    struct why why = { 0 };
+    double ahead = comm_most(part->comm, swift_reach(&part->p));
+    if (part_deal(part, fmax(reach, ahead))) neighbours_free(&y->near);
+    if (detect_near(s, &part->p, reach, &y->near, &why)) fail(y, &why);
+    bool *keep = comm_new(part->comm, s->n, sizeof *keep);
+    for (int64_t i = 0; i < s->n; i++) keep[i] = part_has(part, &s->c[i]);
+    sift(s, keep);
+    free(keep);
+    if (!part->p.law && detect_choose(s, &part->p, gap, reach, &why)) fail(y, &why);
+}
+
+/* Which of `before` laws have left in `all`, into of[before->n]; `added`: what they have put there besides */
+static void compare(struct comm *t, const struct contacts *before, const struct contacts *all,
+                    struct verdict *of, struct parcel *added)
+{
+    int64_t k = 0;
+    for (int64_t i = 0; i <= before->n; i++) {
+        int order = -1;
+        while (k < all->n) {
+            order = i < before->n ? contact_compare(&all->c[k], &before->c[i]) : -1;
+            if (order >= 0) break;
+            parcel_put(t, added, &all->c[k++], sizeof *all->c);
+        }
+        if (i == before->n) break;
+        of[i].row = before->c[i].b, of[i].keep = k < all->n && order == 0;
+        k += of[i].keep;
+    }
+}
+
+/* Puts those of `added`, by rows of the whole, into s in which this rank has a body. */
+static void insert(const struct rank_step *y, struct contacts *s, struct parcel *added)
+{
+    struct comm *t = y->part.comm;
+    struct contacts both = { 0 };
+    int64_t n = (int64_t)(added->size / sizeof(struct contact)), i = 0;
+    both.c = comm_new(t, s->n + n, sizeof *both.c), both.room = s->n + n;
+    for (; n > 0; n--) {
+        struct contact c;
+        parcel_take(t, added, &c, sizeof c);
+        int32_t a = c.a < 0 ? c.a : part_find(&y->part, c.a), b = part_find(&y->part, c.b);
+        bool here = b >= 0 && (c.a < 0 || a >= 0); // else neither body is this rank's
+        c.a = a, c.b = b;
+        if (!here || !part_has(&y->part, &c)) continue;
+        while (i < s->n && contact_compare(&s->c[i], &c) < 0) both.c[both.n++] = s->c[i++];
+        both.c[both.n++] = c;
+    }
+    while (i < s->n) both.c[both.n++] = s->c[i++];
+    contacts_free(s);
+    *s = both;
+}
+
+/* Bonds between shapes are contacts where detection finds none [bodies/anchor.h]: these become known to the
+   ranks that have their bodies, and the list is gathered again. */
+static void add_to_all(struct rank_step *y, struct contact_list *list, struct contacts *s,
+                       const struct contacts *all, struct parcel *added)
+{
+    struct comm *t = y->part.comm;
+    struct contacts again = { 0 };
+    comm_spread(t, added);
+    if (!added->size) return;
+    insert(y, s, added);
+    contact_list_free(list);
+    contact_list_gather(list, &y->part, s, &again);
+    bool alike = t->me || again.n == all->n;
+    for (int64_t i = 0; !t->me && alike && i < all->n; i++)
+        alike = !contact_compare(&again.c[i], &all->c[i]);
+    if (!alike) comm_fail(t, EX_SOFTWARE, "ranks disagree about the contacts of bonds");
+    contacts_free(&again);
+}
+
+/* The first rank chooses by the laws which of `all` are contacts, and adds others; then all ranks have these. */
+static int choose_by_laws(struct rank_step *y, const struct packing *whole,
+                          struct contact_list *list, struct contacts *s, struct contacts *all,
+                          const struct step_opt *o, double reach, struct why *why)
+{
+    struct comm *t = y->part.comm;
+    struct contacts before = { 0 };
+    struct parcel added = { 0 };
+    struct verdict *of = comm_new(t, t->me ? 0 : list->n, sizeof *of),
+                   *mine = comm_new(t, s->n, sizeof *mine);
+    if (!t->me) {
+        if (contacts_copy(&before, all))
+            return free(of), free(mine), why_set(why, EX_SOFTWARE, "no memory for the contacts");
+        if (detect_choose(all, whole, o->gap, reach, why)) return free(of), free(mine), why->status;
+        compare(t, &before, all, of, &added);
+    }
+    contact_list_tell(list, &y->part, s, of, mine);
+    int64_t n = 0;
+    for (int64_t i = 0; i < list->n && !t->me; i++)
+        if (of[i].keep) list->whose[n++] = list->whose[i];
+    list->n = t->me ? 0 : n;
+    MPI_Bcast(&list->n, 1, MPI_INT64_T, 0, t->mpi);
+    bool *keep = comm_new(t, s->n, sizeof *keep);
+    for (int64_t i = 0; i < s->n; i++) keep[i] = mine[i].keep;
+    sift(s, keep);
+    free(keep), free(of), free(mine);
+    contacts_free(&before);
+    add_to_all(y, list, s, all, &added);
+    parcel_free(&added);
+    return 0;
+}
+
+/* The order of all, by the first: of[list->n], and its groups, bundles and halves in size[] */
+static int order_all(const struct rank_step *y, const struct packing *whole,
+                     const struct contacts *all, enum order order, struct verdict *of,
+                     int64_t size[3], struct why *why)
+{
+    struct schedule plan = { 0 };
+    if (!y->part.comm->me && schedule_bodies(&plan, order, all, whole))
+        return why_set(why, EX_SOFTWARE, "no memory for the order of the contacts");
+    size[0] = plan.groups, size[1] = 0, size[2] = plan.rest > 0;
+    for (int64_t g = 0; g < plan.groups; g++) {
+        int64_t first = plan.group[g], n = plan.group[g + 1] - first;
+        for (int64_t i = 0; i < n; i++) {
+            int64_t c = plan.sequence[first + i];
+            of[c] = (struct verdict){ size[1] * BUNDLE + i, g, 1, all->c[c].b };
+        }
+        size[1] += (n + BUNDLE - 1) / BUNDLE;
+    }
+    schedule_free(&plan);
+    MPI_Bcast(size, 3, MPI_INT64_T, 0, y->part.comm->mpi);
+    return 0;
+}
+
+/* kg: as one process adds it */
+static double mean_mass(const struct rank_step *y, const struct packing *whole)
+{
+    if (y->scattered) return y->mean_mass;
+    double mean = y->part.comm->me ? 0 : packing_mean_mass(whole);
+    MPI_Bcast(&mean, 1, MPI_DOUBLE, 0, y->part.comm->mpi);
+    return mean;
+}
+
+/* Prepared, solved and stored, by all ranks */
+static void solve(struct rank_step *y, struct problem *p, struct contacts *s,
+                  const struct step_opt *o, struct report *rep)
+{
+    int64_t bytes = y->part.comm->bytes, messages = y->part.comm->messages;
+    double since = comm_busy() - y->part.comm->waited;
+    if (solve_problem(p, &o->solve, rep) || problem_store(p, s))
+        comm_fail(y->part.comm, EX_SOFTWARE, "no memory to solve the contacts");
+    y->sweeps += rep->sweeps;
+    y->busy[0] += comm_busy() - y->part.comm->waited - since;
+    y->solved[0] += y->part.comm->bytes - bytes;
+    y->solved[1] += y->part.comm->messages - messages;
+}
+
+/* In the order of all; returns whether it is solved: else one process has to have all of it. */
+static bool solve_in_order(struct rank_step *y, const struct packing *whole,
+                           const struct contact_list *list, struct contacts *s,
+                           const struct contacts *all, const struct step_opt *o, struct report *rep,
+                           struct why *why)
+{
+    struct comm *t = y->part.comm;
+    int64_t size[3];
+    struct colours c;
+    struct problem p;
+    struct verdict *of = comm_new(t, t->me ? 0 : list->n, sizeof *of),
+                   *mine = comm_new(t, s->n, sizeof *mine);
+    if (order_all(y, whole, all, o->order, of, size, why)) fail(y, why);
+    contact_list_tell(list, &y->part, s, of, mine);
+    free(of);
+    colours_begin(&c, &y->part, s, mine, size[0], size[1]);
+    free(mine);
+    c.shared.contacts = list->n, c.shared.halves = size[2];
+    c.shared.mean_mass = mean_mass(y, whole);
+    if (problem_prepare_shared(&p, &y->part.p, s, o->alpha, o->solve.method->rho, &c.plan,
+                               &c.shared, why))
+        fail(y, why);
+    solve(y, &p, s, o, rep);
+    bool solved = !c.shared.wants_whole;
+    problem_free(&p);
+    colours_free(&c);
+    return solved;
+}
+
+/* Each rank its own; *b is to be freed. */
+static void solve_in_blocks(struct rank_step *y, struct blocks *b, const struct packing *whole,
+                            struct contacts *s, const struct step_opt *o, struct report *rep,
+                            struct why *why)
+{
+    struct problem p;
+    bool *keep = comm_new(y->part.comm, s->n, sizeof *keep);
+    for (int64_t i = 0; i < s->n; i++) keep[i] = part_counts(&y->part, &s->c[i]);
+    sift(s, keep);
+    free(keep);
+    blocks_begin(b, &y->part, s, o->order);
+    b->shared.mean_mass = mean_mass(y, whole);
+    if (problem_prepare_shared(&p, &y->part.p, s, o->alpha, o->solve.method->rho, &b->plan,
+                               &b->shared, why))
+        fail(y, why);
+    solve(y, &p, s, o, rep);
+    problem_free(&p);
+}
+
+/* Can ranks solve it together? */
+static bool is_shared(const struct packing *p, const struct step_opt *o)
+{
+    return step_sweeps(o->solve.global) && !freedoms_in(p);
+}
+
+/* May impacts be bounded, by the first rank, which then has all contacts? */
+static bool bounds_impacts(const struct packing *p)
+{
+    bool said = false;
+    for (int32_t k = 0; p->law && k < p->kinds * p->kinds; k++)
+        said = said || p->law[k].impact == IMPACT_BOUNDED;
+    return packing_may_gain(p) && (p->shape || said);
+}
+
+bool rank_step_scatters(const struct packing *p, const struct step_opt *o)
+{
+    return o->order == ORDER_BLOCK && is_shared(p, o) && !p->law && !o->warm &&
+           !packing_varies(p) && !bounds_impacts(p);
+}
+
+/* The pairs here that are contacts, or may be by laws */
+static void detect_here(struct rank_step *y, const struct packing *whole, struct contacts *s,
+                        const struct step_opt *o, double *reach)
+{
+    // of the widest gap only a bond knows, and bonds are the first's
+    double apart = y->part.comm->me ? 0 : packing_whole(whole).apart;
+    packing_wrap(&y->part.p, NULL);
+    part_measure(&y->part);
+    MPI_Bcast(&apart, 1, MPI_DOUBLE, 0, y->part.comm->mpi);
+    y->part.whole.apart = apart;
+    *reach = comm_most(y->part.comm, detect_reach(&y->part.p, o->gap));
+    find_contacts(y, o->gap, *reach, s);
+}
+
+/* The contacts here in s, those of all in `all`, and what they start from */
+static int detect(struct rank_step *y, struct packing *whole, struct contacts *all,
+                  struct contact_list *list, struct contacts *s, const struct step_opt *o,
+                  struct why *why)
+{
+    struct comm *t = y->part.comm;
+    double reach;
+    if (!t->me) memory_set(&whole->memory, o->warm), packing_wrap(whole, NULL);
+    detect_here(y, whole, s, o, &reach);
+    contact_list_gather(list, &y->part, s, all);
+    int e = y->part.p.law ? choose_by_laws(y, whole, list, s, all, o, reach, why) : 0;
+    if (!e && !t->me && o->warm) e = memory_give(&whole->memory, all, packing_rolls(whole), why);
+    if (!e && (y->part.p.law || o->warm)) contact_list_tell_laws(list, &y->part, s, all);
+    return e;
+}
+
+static void balance_load(struct rank_step *y, const struct contacts *s)
+{
+    double imbalance = part_imbalance(&y->part, s);
+    y->worst = fmax(y->worst, imbalance), y->uneven += imbalance;
+    y->steps++;
+    if (y->steps == y->since + 1) y->fresh = imbalance, y->lost = 0;
+    y->lost += imbalance - y->fresh;
+    if (imbalance <= IMBALANCE) return;
+    if (y->steps - y->since < CUT_AFTER && y->lost <= LOST_MOST) return;
+    part_recut(&y->part);
+    y->since = y->steps;
+}
+
+/* ---- a step whose motion the first rank makes ---- */
+
+/* The first rank's step, in which others help it to find and solve contacts */
+struct by_first {
+    struct step_makers makers; /* first: it is what the functions below are given */
+    struct rank_step *y;
+    struct contact_list list;
+    struct contacts here;
+};
+
+static int detect_by_first(struct step_makers *m, struct packing *whole, struct contacts *all,
+                           const struct step_opt *o, struct why *why)
+{
+    struct by_first *f = (struct by_first *)m;
+    return detect(f->y, whole, all, &f->list, &f->here, o, why);
+}
+
+static int solve_by_first(struct step_makers *m, const struct packing *whole, struct contacts *all,
+                          const struct step_opt *o, struct report *rep, struct why *why)
+{
+    struct by_first *f = (struct by_first *)m;
+    struct rank_step *y = f->y;
+    struct blocks b;
+    bool solved = is_shared(&y->part.p, o), blocks = solved && o->order == ORDER_BLOCK;
+    if (blocks)
+        solve_in_blocks(y, &b, whole, &f->here, o, rep, why), blocks_free(&b);
+    else if (solved)
+        solved = solve_in_order(y, whole, &f->list, &f->here, all, o, rep, why);
+    if (solved) contact_list_found(&f->list, &y->part, &f->here, all);
+    y->alone += !solved;
+    if (m->helps) return 0;
+    return solved ? step_bound_impacts(whole, all, NULL, o, rep, why)
+                  : step_solve_contacts(whole, all, NULL, o, rep, why);
+}
+
+static int watch_by_first(struct step_makers *m, const struct packing *whole, struct report *rep,
+                          struct why *why)
+{
+    (void)why;
+    step_watch(whole, whole->n, ((struct by_first *)m)->y->near.surface, rep);
+    return 0;
+}
+
+static int step_by_first(struct rank_step *y, struct packing *whole, struct contacts *all,
+                         const struct step_opt *o, struct report *rep, struct why *why)
+{
+    struct comm *t = y->part.comm;
+    struct by_first f = { .makers = { .helps = t->me,
+                                      .detect = detect_by_first,
+                                      .measure = step_measure_whole,
+                                      .solve = solve_by_first,
+                                      .balance = step_balance_whole,
+                                      .move_apart = step_move_apart_whole,
+                                      .watch = watch_by_first },
+                          .y = y };
+    if (step_make(&f.makers, whole, all, o, rep, why)) return why->status;
+    if (!t->me) settings_copy_motion(&y->part.p, whole);
+    settings_follow(t, &y->part.p);
+    part_follow(&y->part, whole);
+    balance_load(y, &f.here);
+    contact_list_free(&f.list), contacts_free(&f.here);
+    return 0;
+}
+
+/* ---- a step that each rank makes with its own, and the first hears of where a frame is kept ---- */
+
+/* The contacts of all and their reactions, for the frame that the first keeps */
+static void tell_contacts(struct rank_step *y, struct contacts *all, const struct contacts *s)
+{
+    struct contact_list list;
+    contact_list_gather(&list, &y->part, s, all);
+    contact_list_found(&list, &y->part, s, all);
+    contact_list_free(&list);
+}
+
+/* How deep they are, to all: a body counts where it is this rank's own, with all its contacts. Of ranks with
+   the same depth the pair of the largest ids stands. */
+static void measure_depth(struct rank_step *y, const struct contacts *s, struct depth *d)
+{
+    struct comm *t = y->part.comm;
+    struct why why = { 0 };
+    bool *own = comm_new(t, y->part.p.n, sizeof *own);
+    for (int64_t i = 0; i < y->part.p.n; i++) own[i] = y->part.owner[i] == t->me;
+    if (depth_of(d, &y->part.p, s, own, &why)) fail(y, &why);
+    free(own);
+    const double most = comm_most(t, d->deepest), none = -1e300;
+    bool here = d->deepest == most;
+    for (int k = 0; k < 2; k++) {
+        double id = comm_most(t, here ? d->pair[k] : none);
+        here = here && d->pair[k] == id;
+        d->pair[k] = (int32_t)id;
+    }
+    double first = comm_most(t, d->wedged ? -d->wedged_id : none);
+    d->wedged = comm_sum(t, d->wedged), d->wedged_id = d->wedged ? (int32_t)-first : 0;
+    d->deepest = most;
+}
+
+/* Which bodies of all ranks have gone through something */
+static void watch_here(struct rank_step *y, struct report *rep)
+{
+    struct comm *t = y->part.comm;
+    step_watch(&y->part.p, y->part.own, y->near.surface, rep);
+    int64_t here = rep->passed, all = comm_sum(t, here);
+    double first = -comm_most(t, here ? -(double)rep->passed_id : -INFINITY);
+    bool mine = here && rep->passed_id == first;
+    double through = comm_most(t, mine ? rep->passed_through : -INFINITY);
+    rep->passed = all;
+    if (all) rep->passed_id = (int32_t)first, rep->passed_through = (int32_t)through;
+}
+
+/* The step of all ranks, each with its own bodies and contacts */
+struct by_all {
+    struct step_makers makers; /* first: it is what the functions below are given */
+    struct rank_step *y;
+    struct packing *whole;
+    struct contacts *all; /* NULL: nobody wants those of all */
+    struct blocks blocks;
+};
+
+static int detect_by_all(struct step_makers *m, struct packing *p, struct contacts *s,
+                         const struct step_opt *o, struct why *why)
+{
+    struct by_all *a = (struct by_all *)m;
+    double reach;
+    (void)p, (void)why;
+    detect_here(a->y, a->whole, s, o, &reach);
+    return 0;
+}
+
+static int measure_by_all(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                          struct report *rep, struct why *why)
+{
+    struct rank_step *y = ((struct by_all *)m)->y;
+    (void)p, (void)why;
+    rep->err.max_overlap = comm_most(y->part.comm, contacts_max_overlap(s));
+    measure_depth(y, s, &rep->depth);
+    return 0;
+}
+
+static bool diverged(const struct report *rep)
+{
+    return !isfinite(rep->err.paper.eps_glob);
+}
+
+static int solve_by_all(struct step_makers *m, const struct packing *p, struct contacts *s,
+                        const struct step_opt *o, struct report *rep, struct why *why)
+{
+    struct by_all *a = (struct by_all *)m;
+    (void)p;
+    solve_in_blocks(a->y, &a->blocks, a->whole, s, o, rep, why);
+    if (a->all && !o->bare && !diverged(rep)) tell_contacts(a->y, a->all, s);
+    return why->status;
+}
+
+static void add_impulses_by_all(struct step_makers *m, struct impulses *sum)
+{
+    blocks_add_impulses(&((struct by_all *)m)->blocks, sum);
+}
+
+static int balance_by_all(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                          const struct impulses *sum, struct balance *b, struct why *why)
+{
+    (void)p, (void)why;
+    blocks_balance(&((struct by_all *)m)->blocks, s, sum, b);
+    return 0;
+}
+
+static int move_apart_by_all(struct step_makers *m, struct packing *p, const struct contacts *s,
+                             struct why *why)
+{
+    (void)p, (void)why;
+    blocks_move_apart(&((struct by_all *)m)->blocks, s);
+    return 0;
+}
+
+static int watch_by_all(struct step_makers *m, const struct packing *p, struct report *rep,
+                        struct why *why)
+{
+    (void)p, (void)why;
+    if (diverged(rep))
+        rep->balanced = false;
+    else
+        watch_here(((struct by_all *)m)->y, rep);
+    return 0;
+}
+
+static int step_by_all(struct rank_step *y, struct packing *whole, struct contacts *all,
+                       const struct step_opt *o, struct report *rep, struct why *why)
+{
+    struct comm *t = y->part.comm;
+    struct contacts s = { 0 };
+    int told[2] = { o->bare, y->contacts };
+    MPI_Bcast(told, 2, MPI_INT, 0, t->mpi);
+    struct step_opt of_first = *o;
+    of_first.bare = told[0];
+    struct by_all a = { .makers = { .detect = detect_by_all,
+                                    .measure = measure_by_all,
+                                    .solve = solve_by_all,
+                                    .add_impulses = add_impulses_by_all,
+                                    .balance = balance_by_all,
+                                    .move_apart = move_apart_by_all,
+                                    .watch = watch_by_all },
+                        .y = y,
+                        .whole = whole,
+                        .all = told[1] ? all : NULL };
+    if (step_make(&a.makers, &y->part.p, &s, &of_first, rep, why)) fail(y, why);
+    if (!t->me && !diverged(rep)) settings_copy_motion(whole, &y->part.p);
+    // a run that diverges ends, and keeps this
+    if (!y->scattered && (!of_first.bare || diverged(rep))) part_collect(&y->part, whole);
+    balance_load(y, &s);
+    blocks_free(&a.blocks);
+    contacts_free(&s);
+    return 0;
+}
+
+int rank_step_make(struct rank_step *y, struct packing *whole, struct contacts *all,
+                   const struct step_opt *o, struct report *rep, struct why *why)
+{
+    bool by_all = rank_step_scatters(&y->part.p, o) && !y->varies;
+    double since = comm_busy() - y->part.comm->waited;
+    int e = (by_all ? step_by_all : step_by_first)(y, whole, all, o, rep, why);
+    y->busy[1] += comm_busy() - y->part.comm->waited - since;
+    return e;
+}
