@@ -3,7 +3,7 @@
 
 make peers: nsd beside LIGGGHTS and Yade, where these are installed, on the jobs of bench/peers/jobs.py. A job's run that is
 in DIR/JOB/VARIANT.json is not made again: remove the file to repeat it. The page is DIR/README.md, made by page.py from
-these files alone. NSD_STARTS: a folder as ../shared/benchmarks, for the starts that Dosta et al. have published.
+these files alone. NSD_STARTS: a folder as ../shared/benchmarks, for starts that others have made. LIGGGHTS, YADE: other names of these programs. N_JOB, T_JOB: another number of balls, s.
 
   cost    CPU and wall seconds, memory and observables of each code   check   nsd beside its own dt/4 with eps 1e-6
   rest    a pile at rest over 1e5 steps                               growth  CPU against the number of balls
@@ -141,7 +141,7 @@ def cost(name, quick, out, rounds):
             elif len(runs(v)) <= k:
                 # two threads go as far as one came
                 alone = runs(v[:-2])[-1]["span"] if v.endswith("-2") and runs(v[:-2]) else span
-                result = one(name, v, scene, document, about, min(span, alone), folder, [], bound=3 * BOUND if v.endswith("-2") else None)
+                result = one(name, v, scene, document, about, min(span, alone), folder, [], BOUND if v in ("nsd", "nsd-2", "liggghts-soft") else BOUND / 3)
                 curve = result.pop("series")
                 kept = json.load(open(path[v])) if k and os.path.exists(path[v]) else {"series": curve, "runs": []}
                 kept.update(variant=v, balls=count)
@@ -161,7 +161,7 @@ def gather(out, quick):
     machine = subprocess.run(["bash", "-c", "cd '%s' && . bench/common.sh && machine && echo $results" % ROOT], capture_output=True,
                              text=True, check=True).stdout.split("\n")
     result = {"machine": machine[0], "name": os.path.basename(machine[1]), "quick": quick,
-              "versions": [codes.version(c) for c in codes.INSTALLED if codes.installed(c)], "jobs": {}}
+              "versions": [codes.version(c) for c in codes.PROGRAM if codes.installed(c)], "jobs": {}}
     for name in JOBS:
         variants = {}
         for v in VARIANTS:
@@ -169,7 +169,8 @@ def gather(out, quick):
             if os.path.exists(path):
                 variants[v] = json.load(open(path))
         if "nsd" in variants:
-            result["jobs"][name] = {"balls": variants["nsd"]["balls"], "variants": variants}
+            result["jobs"][name] = {"title": JOBS[name].title, "label": JOBS[name].label, "published": JOBS[name].balls[0],
+                                      "balls": variants["nsd"]["balls"], "variants": variants}
             if os.path.exists(os.path.join(out, name, "profile.json")):
                 result["jobs"][name]["profile"] = json.load(open(os.path.join(out, name, "profile.json")))
     checks = [json.load(open(path)) for path in (os.path.join(out, "check", name + ".json") for name in JOBS) if os.path.exists(path)]
@@ -208,7 +209,7 @@ if __name__ == "__main__":
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--out")
     parser.add_argument("--jobs", default=",".join(JOBS))
-    parser.add_argument("--bound", type=float, help="CPU seconds of a run")
+    parser.add_argument("--bound", type=float, help="CPU seconds of a run of nsd and of LIGGGHTS, soft; others get a third")
     parser.add_argument("--rounds", type=int, default=1)
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--sizes", default="1000,3000,10000,30000,100000")

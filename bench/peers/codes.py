@@ -17,17 +17,17 @@ sys.path.insert(0, os.path.join(HERE, "..", "..", "scripts"))
 import nsd  # noqa: E402
 import liggghts  # noqa: E402
 
-INSTALLED = {"nsd": "nsd-step", "liggghts": "liggghts", "yade": "yade"}
+PROGRAM = {"nsd": "nsd-step", "liggghts": os.environ.get("LIGGGHTS", "liggghts"), "yade": os.environ.get("YADE", "yade")}
 FRAMES = 40  # of a run
 
 
 def installed(code):
-    return shutil.which(INSTALLED[code]) is not None
+    return shutil.which(PROGRAM[code]) is not None
 
 
 def version(code):
     """As it calls itself."""
-    said = subprocess.run({"nsd": ["nsd-step", "--version"], "liggghts": ["liggghts", "-help"], "yade": ["yade", "--version"]}[code],
+    said = subprocess.run({"nsd": ["nsd-step", "--version"], "liggghts": [PROGRAM["liggghts"], "-help"], "yade": [PROGRAM["yade"], "--version"]}[code],
                           capture_output=True, text=True, timeout=60).stdout.splitlines()
     said = said[0].replace("LIGGGHTS (Version LIGGGHTS-PUBLIC ", "LIGGGHTS ").split(",")[0] if said else code
     return said.replace("nsd-step (nsd)", "nsd").replace("version: ", "").strip()
@@ -139,7 +139,7 @@ def run_nsd(folder, start, span, options, threads, bound, **_):
 def run_liggghts(folder, start, span, scene, modulus, threads, bound, velocities, **_):
     balls = balls_of(start)
     dt, every = liggghts.write(folder, scene, balls, modulus, span, FRAMES, velocities, threads)
-    command = ["liggghts", "-in", "in", "-log", "log"]
+    command = [PROGRAM["liggghts"], "-in", "in", "-log", "log"]
     if threads > 1:
         command = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1", "-n", str(threads)] + command
     cost = timed(command, folder, bound)
@@ -181,7 +181,7 @@ def run_yade(folder, start, span, scene, modulus, threads, bound, **_):
              side=scene["walls"][0]["box"]["x"][1])
     dt = liggghts.time_step(balls, modulus)
     frame = max(1, round(span / FRAMES / dt))
-    cost = timed(["yade", "-n", "-x", "-j", str(threads), os.path.join(HERE, "settling.yade.py"), repr(modulus), repr(dt), str(round(span / dt)),
+    cost = timed([PROGRAM["yade"], "-n", "-x", "-j", str(threads), os.path.join(HERE, "settling.yade.py"), repr(modulus), repr(dt), str(round(span / dt)),
                   str(frame)], folder, bound)
     with open(os.path.join(folder, "frames.txt")) as f:
         lines = [json.loads(line) for line in f]

@@ -1,12 +1,16 @@
 """The jobs of make peers, a table: how the start is made, what is run, what is observed.
 
+Starts that others have made, if the folder NSD_STARTS (../shared/benchmarks) has them, are further jobs, NAME-given.
+
 A job's scenes are nsd's (nsd-gen(1)); liggghts.py translates the scene that is run, so that both codes have the same
 walls, materials and, from the same document, the same balls. Drums lie along x: LIGGGHTS 3.8 swaps two components of a
 ycylinder that rotates.
 """
+import gzip
 import math
+import os
 import random
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Callable
 
 GRAINS = {"uniform": [1.5e-3, 2.5e-3]}  # m, of the first four jobs
@@ -34,7 +38,7 @@ class Job:
     scenes: Callable  # N, seed -> the scene of the start, what the run's scene has instead, numbers for observe
     modulus: tuple = (5e6, 1e8)  # Pa, of LIGGGHTS: soft, stiff
     yade: bool = False
-    given: Callable = None  # rows of a table of bodies, from a start that others have published, see GIVEN
+    given: str = None  # file of a start that others have made, in the folder NSD_STARTS
 
 
 def drum(count, seed):
@@ -125,8 +129,8 @@ def penetration(count, seed):
              "bodies": [{"random": {"count": count}, "radius": 1e-3, "kind": "M1",
                          "box": {"x": [-x, x], "y": [-y, y], "z": [floor, floor + height]}}]}
     top = floor + count * 4.18879e-9 / 0.6 / (4 * x * y)
-    # as far above the bed as in the paper with 25 000
-    ball = {"x": [0, 0, 0.06 + top - (-0.0606)], "radius": 0.01, "v": [0, 0, -5], "kind": "steel"}
+    # as far above the bed as in the paper: 25 000 beads reach to -0.0605632 m, the ball is at 0.06 m
+    ball = {"x": [0, 0, top + 0.1205632], "radius": 0.01, "v": [0, 0, -5], "kind": "steel"}
     return start, {"more": [ball]}, {"top": top}
 
 
@@ -146,6 +150,31 @@ JOBS = {
     "penetration": Job("Dosta's penetration, a steel ball into 25 000 of 2 mm", (25000, 3000), (2e-5, 1e-4), 0.15,
                        (0.06, 0.04), "depth", "height of the ball, m", penetration, modulus=(1e8, 1e9)),
 }
+
+
+STARTS = os.environ.get("NSD_STARTS", os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "shared", "benchmarks"))
+
+
+def given(job, path, axes, shift):
+    """The job with the balls of a table x y z r [kind]: its axes as ours, -1 the opposite of x, and shifted along the first."""
+    def scenes(count, seed):
+        start, run, about = job.scenes(count, seed)
+        with (gzip.open if path.endswith(".gz") else open)(path, "rt") as f:
+            rows = [line.split() for line in f if not line.startswith("#")]
+        table = "# x y z r" + " kind" * (len(rows[0]) > 4) + "\n"
+        for row in rows:
+            x = [float(row[c]) if c >= 0 else -float(row[0]) for c in axes]
+            table += " ".join(["%.12g" % (x[0] + shift), "%.12g" % x[1], "%.12g" % x[2], *row[3:]]) + "\n"
+        return {**start, "overlap": True, "table": table, "bodies": [{"file": "TABLE"}]}, run, about
+
+    return replace(job, title=job.title + ", a start by others", balls=(job.balls[0],) * 2, settle=0, scenes=scenes, given=path)
+
+
+# drums lie along y there, and turn the other way or the same
+for name, path, axes, shift in (("drum", "peers/drum5k.tab.gz", (1, -1, 2), 0), ("dosta-drum", "dosta2024/drum.txt", (1, 0, 2), 0.03),
+                                 ("penetration", "dosta2024/penetration25.txt", (0, 1, 2), 0)):
+    if os.path.exists(os.path.join(STARTS, path)):
+        JOBS[name + "-given"] = given(JOBS[name], os.path.join(STARTS, path), axes, shift)
 
 # The number that --mode check compares, where it is not the plotted one
 COMPARED = {"dosta-drum": "rising", "dosta-silo": "out", "penetration": "depth"}

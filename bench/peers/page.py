@@ -6,9 +6,6 @@ import os
 import subprocess
 import sys
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from jobs import JOBS  # noqa: E402
-
 ROWS = {  # variant: how it is called, how it is drawn
     "nsd": ("nsd, defaults", 1), "nsd-2": ("nsd, defaults, 2 threads", 0), "nsd-auto": ("nsd, dt auto", 2),
     "liggghts-soft": ("LIGGGHTS, soft", 3), "liggghts-soft-2": ("LIGGGHTS, soft, 2 processes", 0),
@@ -56,11 +53,11 @@ def at(curve, t):
 
 def job_section(name, job, quick):
     variants = job["variants"]
-    out = [f"## {JOBS[name].title}", ""]
-    if job["balls"] != JOBS[name].balls[0]:
+    out = [f"## {job['title']}", ""]
+    if job["balls"] != job["published"]:
         out += [f"Run here with {job['balls']} balls.", ""]
     common = min(v["series"]["t"][-1] for k, v in variants.items() if v.get("series") and k in ("nsd", "liggghts-soft"))
-    out += [row("code", "dt, s", "simulated, s", "CPU s/s", "wall s/s", "MiB", f"{JOBS[name].label.split(',')[0]} at {text(common)} s"),
+    out += [row("code", "dt, s", "simulated, s", "CPU s/s", "wall s/s", "MiB", f"{job['label'].split(',')[0]} at {text(common)} s"),
             row("---", "---", "---", "---", "---", "---", "---")]
     for key, (title, _) in ROWS.items():
         v = variants.get(key)
@@ -82,7 +79,7 @@ def job_section(name, job, quick):
             + (f", {own['unconverged']} steps have not converged." if own.get("unconverged") else ".")]
     if job.get("profile"):
         out += ["", "Of nsd's CPU: " + ", ".join(f"{f} {share:.0f} %" for f, share in job["profile"]) + "."]
-    return out + ["", f"![{JOBS[name].label} over time]({name}.svg)", ""]
+    return out + ["", f"![{job['label']} over time]({name}.svg)", ""]
 
 
 def check_section(check):
@@ -100,10 +97,13 @@ def check_section(check):
 
 def rest_section(rest):
     out = ["## A pile at rest", "",
-           f"{rest['balls']} balls of the settling job, {rest['settle']} s to settle, then {rest['steps']} steps of {rest['dt']} s.", "",
-           row("steps", "kinetic energy, m g d a ball", "largest displacement, d", "root mean square, d", "largest overlap, r"), row(*["---"] * 5)]
+           f"{rest['balls']} balls of the settling job, {rest['settle']} s to settle, then {rest['steps']} steps of {rest['dt']} s. "
+           f"{rest['loose']} balls touch fewer than three others or walls: such a ball may roll on the floor for ever, for nothing brakes rolling. "
+           "Displacements are from the beginning of these steps, held: of the other balls.", "",
+           row("steps", "kinetic energy, m g d a ball", "displacement, held: median, d", "held: largest, d", "any ball: largest, d", "largest overlap, r"),
+           row(*["---"] * 6)]
     for r in rest["rows"]:
-        out.append(row(text(r["step"], 7), text(r["kinetic"]), text(r["largest"]), text(r["rms"]), text(r["overlap"])))
+        out.append(row(text(r["step"], 7), text(r["kinetic"]), text(r["median"]), text(r["held"]), text(r["largest"]), text(r["overlap"])))
     return out + [""]
 
 
@@ -167,12 +167,12 @@ def plot(name, job, folder):
     colour = {1: "#1b6ca8", 2: "#7fb2d8", 3: "#c8402c", 4: "#e8a090", 5: "#4a7d3a"}
 
     def curves(column, low=""):
-        return "plot " + ", ".join(f"'{path}.dat' index {k} using 1:{column} with linespoints pt {style + 3} ps 0.4 lw 1.5 lc rgb '{colour[style]}' title '{title}'"
+        return "plot " + ", ".join(f"'{path}.dat' index {k} using 1:{column} with lines lw {2 if style in (1, 3) else 1.3} lc rgb '{colour[style]}' title '{title}'"
                                    for k, (title, style, _) in enumerate(drawn)) + "; "
 
     if two:
         script += "set multiplot layout 2,1; "
-    script += f"set ylabel '{JOBS[name].label}'; " + curves(2)
+    script += f"set ylabel '{job['label']}'; " + curves(2)
     if two:
         script += "set logscale y; set format y '10^{%T}'; set ylabel 'kinetic energy, m g d a ball'; " + curves(3)
     subprocess.run(["gnuplot", "-e", script], check=True)
