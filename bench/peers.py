@@ -1,12 +1,15 @@
 #!/usr/bin/python3
-"""peers.py [--quick] [--out DIR] [--jobs A,B] [--bound S] [--rounds N] [--mode cost|check|rest|growth|page ...]
+"""peers.py [--quick] [--out DIR] [--jobs A,B] [--variants A,B] [--bound S] [--rounds N] [--mode cost|check|...]
 
 make peers: nsd beside LIGGGHTS and Yade, where these are installed, on the jobs of bench/peers/jobs.py. A job's run that is
 in DIR/JOB/VARIANT.json is not made again: remove the file to repeat it. The page is DIR/README.md, made by page.py from
 these files alone. NSD_STARTS: a folder as ../shared/benchmarks, for starts that others have made. LIGGGHTS, YADE: other names of these programs. N_JOB, T_JOB: another number of balls, s.
 
-  cost    CPU and wall seconds, memory and observables of each code   check   nsd beside its own dt/4 with eps 1e-6
-  rest    a pile at rest over 1e5 steps                               growth  CPU against the number of balls
+  cost    CPU and wall seconds, memory and observables of each code   check   nsd beside its own dt/4 with a small eps
+  natural the same with the natural map 1e-6, of few balls
+  effort  what dt and eps cost and change: QUICK's jobs               growth  CPU against the number of balls
+  rest    a pile at rest over 1e5 steps                               profile where nsd's CPU goes, by perf
+  page    DIR's page, of what is there                                keep    that in docs/peers
 """
 import argparse
 import json
@@ -61,7 +64,7 @@ def prepare(name, count, seed, quick, folder):
     job = JOBS[name]
     start, run, about = job.scenes(count, seed)
     dt = job.dt[quick]
-    start["dt"] = min(1e-3, max(dt, 2.5e-4))
+    start["dt"] = job.start_dt
     os.makedirs(folder, exist_ok=True)
     settled = os.path.join(folder, "settled.h5")
     if not os.path.exists(settled):
@@ -120,12 +123,12 @@ def one(name, variant, scene, document, about, span, folder, options, bound=None
     return result
 
 
-def cost(name, quick, out, rounds):
+def cost(name, quick, out, rounds, chosen):
     job = JOBS[name]
     count = int(os.environ.get("N_" + name.upper().replace("-", "_"), job.balls[quick]))
     span = float(os.environ.get("T_" + name.upper().replace("-", "_"), job.span[quick]))
     folder = os.path.join(out, name)
-    todo = [v for v, (code, _, _) in VARIANTS.items() if code != "yade" or job.yade]
+    todo = [v for v, (code, _, _) in VARIANTS.items() if (code != "yade" or job.yade) and v in chosen]
     path = {v: os.path.join(folder, v + ".json") for v in todo}
 
     def runs(v):
@@ -173,9 +176,11 @@ def gather(out, quick):
                                       "balls": variants["nsd"]["balls"], "variants": variants}
             if os.path.exists(os.path.join(out, name, "profile.json")):
                 result["jobs"][name]["profile"] = json.load(open(os.path.join(out, name, "profile.json")))
-    checks = [json.load(open(path)) for path in (os.path.join(out, "check", name + ".json") for name in JOBS) if os.path.exists(path)]
-    if checks:
-        result["check"] = checks
+    for key in "check", "effort":
+        found = [json.load(open(path)) for path in (os.path.join(out, key, name + more) for more in (".json", "-natural.json") for name in JOBS)
+                 if os.path.exists(path)]
+        if found:
+            result[key] = found
     for key in "rest", "growth":
         if os.path.exists(os.path.join(out, key + ".json")):
             result[key] = json.load(open(os.path.join(out, key + ".json")))
@@ -209,6 +214,7 @@ if __name__ == "__main__":
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--out")
     parser.add_argument("--jobs", default=",".join(JOBS))
+    parser.add_argument("--variants", default=",".join(VARIANTS))
     parser.add_argument("--bound", type=float, help="CPU seconds of a run of nsd and of LIGGGHTS, soft; others get a third")
     parser.add_argument("--rounds", type=int, default=1)
     parser.add_argument("--seeds", type=int, default=3)
@@ -219,8 +225,11 @@ if __name__ == "__main__":
     OUT = os.path.abspath(args.out or os.path.join("build", "peers" + ("-quick" if args.quick else "")))
     peers = sys.modules[__name__]
     each = {
-        "cost": lambda name: cost(name, int(QUICK), OUT, args.rounds),
-        "check": lambda name: kept(os.path.join(OUT, "check", name + ".json"), lambda: selfcheck.check(name, peers, args.seeds)),
+        "cost": lambda name: cost(name, int(QUICK), OUT, args.rounds, args.variants.split(",")),
+        "check": lambda name: kept(os.path.join(OUT, "check", name + ".json"), lambda: selfcheck.check(name, peers, args.seeds, False)),
+        "natural": lambda name: name in selfcheck.SMALL and kept(os.path.join(OUT, "check", name + "-natural.json"),
+                                                                 lambda: selfcheck.check(name, peers, args.seeds, True)),
+        "effort": lambda name: kept(os.path.join(OUT, "effort", name + ".json"), lambda: selfcheck.effort(name, peers, args.seeds)),
         "profile": lambda name: kept(os.path.join(OUT, name, "profile.json"),
                                      lambda: selfcheck.profile(name, peers, JOBS[name].balls[int(QUICK)])),
     }
@@ -231,8 +240,9 @@ if __name__ == "__main__":
         "keep": lambda: keep(OUT, QUICK),
     }
     wrong = [j for j in args.jobs.split(",") if j not in JOBS] + [m for m in args.mode.split(",") if m not in each and m not in once]
+    wrong += [v for v in args.variants.split(",") if v not in VARIANTS]
     if wrong:
-        parser.exit(64, f"peers: no job or mode {', '.join(wrong)}: jobs are {', '.join(JOBS)}; modes {', '.join([*each, *once])}\n")
+        parser.exit(64, f"peers: no job, variant or mode {', '.join(wrong)}: jobs are {', '.join(JOBS)}; variants {', '.join(VARIANTS)}; modes {', '.join([*each, *once])}\n")
     for mode in args.mode.split(","):
         for job_name in args.jobs.split(",") if mode in each else ():
             each[mode](job_name)

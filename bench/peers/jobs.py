@@ -30,7 +30,7 @@ DOSTA = {
 class Job:
     title: str
     balls: tuple  # number of balls: as published, QUICK
-    dt: tuple  # s: of nsd, and to make the start
+    dt: tuple  # s: of nsd
     settle: float  # s, for which the start falls
     span: tuple  # s of the run: full, QUICK
     observe: str  # a function of observe.py
@@ -38,6 +38,7 @@ class Job:
     scenes: Callable  # N, seed -> the scene of the start, what the run's scene has instead, numbers for observe
     modulus: tuple = (5e6, 1e8)  # Pa, of LIGGGHTS: soft, stiff
     yade: bool = False
+    start_dt: float = 1e-3  # s: with which the start is made
     given: str = None  # file of a start that others have made, in the folder NSD_STARTS
 
 
@@ -94,7 +95,7 @@ def dosta_drum(count, seed):
                 "box": {"x": [0, length], "y": [-0.8 * radius, 0.8 * radius], "z": [low * radius, high * radius]}}
 
     start = {**DOSTA, "seed": seed, "walls": shapes,
-             "bodies": [group(large, "M2", 2e-3, -0.58, 0), group(count - large, "M1", 1e-3, 0.02, 0.58)]}
+             "bodies": [group(large, "M2", 2e-3, -0.58, 0.1), group(count - large, "M1", 1e-3, 0.12, 0.59)]}
     return start, {"walls": [{**shape, "drives": [axis]} for shape in shapes]}, {}
 
 
@@ -121,16 +122,17 @@ def dosta_silo(count, seed):
 
 
 def penetration(count, seed):
-    """A steel ball of 20 mm with 5 m/s; with fewer beads the box is narrower."""
+    """A steel ball of 20 mm into 2 mm beads, as after the paper's flight from 0.06 m with 5 m/s; with fewer beads the box is
+    narrower."""
     scale = min(1, max(0.5, math.sqrt(count / 25000)))
     x, y, floor = 0.049 * scale, 0.03 * scale, -0.0902431
     height = count * 4.18879e-9 / 0.3 / (4 * x * y)
     start = {**DOSTA, "seed": seed, "walls": [{"box": {"x": [-x, x], "y": [-y, y], "z": [floor, None]}}],
              "bodies": [{"random": {"count": count}, "radius": 1e-3, "kind": "M1",
                          "box": {"x": [-x, x], "y": [-y, y], "z": [floor, floor + height]}}]}
-    top = floor + count * 4.18879e-9 / 0.6 / (4 * x * y)
-    # as far above the bed as in the paper: 25 000 beads reach to -0.0605632 m, the ball is at 0.06 m
-    ball = {"x": [0, 0, top + 0.1205632], "radius": 0.01, "v": [0, 0, -5], "kind": "steel"}
+    top = floor + count * 4.18879e-9 / 0.58 / (4 * x * y)
+    flight = 0.06 - (-0.0605 + 0.01)  # m
+    ball = {"x": [0, 0, top + 0.0115], "radius": 0.01, "v": [0, 0, -math.sqrt(5 ** 2 + 2 * 9.8 * flight)], "kind": "steel"}
     return start, {"more": [ball]}, {"top": top}
 
 
@@ -144,11 +146,11 @@ JOBS = {
     "settling": Job("Settling, 10 000 balls of 3 to 5 mm", (10000, 1000), (1e-3, 1e-3), 0, (0.5, 0.3), "bed",
                     "solid fraction", settling, yade=True),
     "dosta-drum": Job("Dosta's drum, 8000 balls of 4 mm and 30 000 of 2 mm", (38000, 3000), (2.5e-4, 5e-4), 0.25,
-                      (0.25, 0.05), "risen", "large balls in the rising quadrant", dosta_drum),
+                      (0.25, 0.05), "risen", "large balls in the rising quadrant", dosta_drum, start_dt=5e-4),
     "dosta-silo": Job("Dosta's silo, 100 000 balls of 4 mm, large orifice", (100000, 6000), (5e-4, 1e-3), 0.25,
                       (0.15, 0.05), "inside", "balls above the orifice", dosta_silo),
-    "penetration": Job("Dosta's penetration, a steel ball into 25 000 of 2 mm", (25000, 3000), (2e-5, 1e-4), 0.15,
-                       (0.06, 0.04), "depth", "height of the ball, m", penetration, modulus=(1e8, 1e9)),
+    "penetration": Job("Dosta's penetration, a steel ball into 25 000 of 2 mm", (25000, 3000), (2e-5, 2e-5), 0.15,
+                       (0.02, 0.01), "depth", "height of the ball, m", penetration, start_dt=2.5e-4),
 }
 
 
@@ -167,7 +169,13 @@ def given(job, path, axes, shift):
             table += " ".join(["%.12g" % (x[0] + shift), "%.12g" % x[1], "%.12g" % x[2], *row[3:]]) + "\n"
         return {**start, "overlap": True, "table": table, "bodies": [{"file": "TABLE"}]}, run, about
 
-    return replace(job, title=job.title + ", a start by others", balls=(job.balls[0],) * 2, settle=0, scenes=scenes, given=path)
+    def from_above(count, seed):  # the whole flight
+        start, run, about = scenes(count, seed)
+        if "more" in run:
+            run["more"][0].update(x=[0, 0, 0.06], v=[0, 0, -5])
+        return start, run, about
+
+    return replace(job, title=job.title + ", a start by others", balls=(job.balls[0],) * 2, settle=0, scenes=from_above, given=path)
 
 
 # drums lie along y there, and turn the other way or the same

@@ -83,16 +83,29 @@ def job_section(name, job, quick):
 
 
 def check_section(check):
-    out = ["## nsd against itself: defaults, and a quarter of dt with eps 1e-6", "",
-           "The same start with `--dt` a quarter and `--criterion natural --eps 1e-6`; the mean of the observable over the second half of "
+    out = ["## nsd against itself: defaults, and a quarter of dt with a small eps", "",
+           "The same start with `--dt` a quarter and the options that are named; the mean of the observable over the second half of "
            "the run, relative to that of the finer run, and the scatter between seeds (the standard deviation of one run's). "
            "A difference below the scatter is none.", "",
-           row("job", "balls", "observable", "seeds", "defaults", "finer", "difference", "its error by the seeds", "scatter of a run", "CPU, finer / defaults"),
-           row(*["---"] * 10)]
+           row("job", "balls", "finer", "observable", "seeds", "with defaults", "finer", "difference", "its error by the seeds", "scatter of a run", "CPU, finer / defaults"),
+           row(*["---"] * 11)]
     for c in check:
-        out.append(row(c["job"], text(c["balls"]), c["observable"], text(c["seeds"]), text(c["default"], 4), text(c["fine"], 4),
+        out.append(row(c["job"], text(c["balls"]), f"`{c['options']}`", c["observable"], text(c["seeds"]), text(c["default"], 4), text(c["fine"], 4),
                        f"{100 * c['difference']:+.2f} %", f"{100 * c['error']:.2f} %", f"{100 * c['scatter']:.2f} %", text(c["cost"])))
     return out + [""]
+
+
+def effort_section(efforts):
+    out = ["## What dt and eps cost, and what they change", "",
+           "The jobs of the table above, means over the seeds with the error of the mean.", ""]
+    for e in efforts:
+        out += [f"{e['job']}, {e['balls']} balls, {e['seeds']} seeds:", "",
+                row("option", e["observable"], "CPU s/s", "sweeps a step", "largest overlap, r"), row(*["---"] * 5)]
+        for r in e["rows"]:
+            out.append(row((f"`--{r['what']} {text(r['value'])}`") + (", default" if r["default"] else ""), f"{text(r['found'], 4)} +- {text(r['error'], 2)}",
+                           text(r["cpu"]), text(r["sweeps"]), text(r["overlap"])))
+        out.append("")
+    return out
 
 
 def rest_section(rest):
@@ -143,7 +156,7 @@ def page(results):
                 f"Slower than it with dt auto: " + (", ".join(auto) or "none") + ". More memory: " + (", ".join(memory) or "none") + ".", ""]
         for name, job in jobs.items():
             out += job_section(name, job, r["quick"])
-        for key, section in (("check", check_section), ("rest", rest_section), ("growth", growth_section)):
+        for key, section in (("check", check_section), ("effort", effort_section), ("rest", rest_section), ("growth", growth_section)):
             if r.get(key):
                 out += section(r[key])
     return "\n".join(out)

@@ -8,7 +8,10 @@ import codes
 import numpy as np
 from jobs import COMPARED, JOBS
 
-FINE = ["--criterion", "natural", "--eps", "1e-6"]
+# The finer run: a tenth of the default's eps, in a velocity |g| dt that a quarter of dt makes a quarter
+FINE = ["--eps", "0.1"]
+# and by the natural map, which takes 20 000 sweeps a step from some thousand balls on: number of balls by job
+NATURAL, SMALL = ["--criterion", "natural", "--eps", "1e-6"], {"settling": 200, "drum": 200}
 
 
 def compared(name, curve):
@@ -18,16 +21,17 @@ def compared(name, curve):
     return key, float(np.mean(half))
 
 
-def check(name, peers, seeds):
+def check(name, peers, seeds, natural):
     """The mean difference of defaults and fine over seeds, with its error, and the scatter of one run."""
     job = JOBS[name]
-    count, span = job.balls[1], job.span[1]
+    count, fine_options = (SMALL[name], NATURAL) if natural else (job.balls[1], FINE)
+    span = job.span[1]
     default, fine, cost = [], [], [0, 0]
     for seed in range(1, seeds + 1):
-        folder = os.path.join(peers.OUT, "check", f"{name}-{seed}")
+        folder = os.path.join(peers.OUT, "check", f"{name}-{count}-{seed}")
         scene, document, about = peers.prepare(name, count, seed, 1, folder)
         pair = []
-        for k, options in enumerate(([], ["--dt", repr(scene["dt"] / 4), *FINE])):
+        for k, options in enumerate(([], ["--dt", repr(scene["dt"] / 4), *fine_options])):
             result = peers.one(name, "nsd", scene, document, about, span, folder, options, bound=20 * peers.BOUND)
             if result["cut"]:
                 raise RuntimeError(f"{name}: stopped at the bound of {20 * peers.BOUND} s: a larger --bound")
@@ -36,10 +40,35 @@ def check(name, peers, seeds):
         default.append(pair[0][1])
         fine.append(pair[1][1])
     difference = np.array(default) / np.array(fine) - 1
-    return {"job": name, "balls": count, "observable": pair[0][0], "seeds": seeds, "default": float(np.mean(default)),
+    return {"job": name, "balls": count, "options": " ".join(fine_options), "observable": pair[0][0], "seeds": seeds, "default": float(np.mean(default)),
             "fine": float(np.mean(fine)), "difference": float(difference.mean()),
             "error": float(difference.std(ddof=1) / seeds ** 0.5), "scatter": float(np.std(default, ddof=1) / abs(np.mean(default))),
             "cost": cost[1] / cost[0]}
+
+
+# What the effort is varied by: dt over the job's, or eps
+SETTINGS = [("dt", 2), ("dt", 1), ("dt", 0.5), ("dt", 0.25), ("eps", 10), ("eps", 3), ("eps", 0.3), ("eps", 0.1), ("eps", 0.01)]
+
+
+def effort(name, peers, seeds):
+    """The observable, the CPU and the largest overlap by dt and by eps, means over seeds."""
+    job = JOBS[name]
+    rows = []
+    for what, value in SETTINGS:
+        found, cpu, sweeps, overlap = [], 0, 0, 0
+        for seed in range(1, seeds + 1):
+            scene, document, about = peers.prepare(name, job.balls[1], seed, 1, os.path.join(peers.OUT, "check", f"{name}-{job.balls[1]}-{seed}"))
+            options = ["--dt", repr(scene["dt"] * value)] if what == "dt" else ["--eps", repr(value)]
+            result = peers.one(name, "nsd", scene, document, about, job.span[1], os.path.join(peers.OUT, "effort", name), options,
+                               bound=20 * peers.BOUND)
+            found.append(compared(name, result["series"])[1])
+            cpu += result["cpu"] / result["span"] / seeds
+            sweeps += result["sweeps"] / seeds
+            overlap = max(overlap, result["overlap"])
+        rows.append({"what": what, "value": scene["dt"] * value if what == "dt" else value, "default": (what, value) == ("dt", 1),
+                     "found": float(np.mean(found)), "error": float(np.std(found, ddof=1) / seeds ** 0.5), "cpu": cpu, "sweeps": sweeps,
+                     "overlap": overlap})
+    return {"job": name, "balls": job.balls[1], "seeds": seeds, "observable": compared(name, result["series"])[0], "rows": rows}
 
 
 def rest(peers, balls=500, settle=3.0, steps=100000):

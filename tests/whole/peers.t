@@ -100,5 +100,5 @@ before=$(cksum "$tmp/peers/settling/nsd.json")
 ok "again" peers --mode cost
 is "what is there is not made again" "$(cksum "$tmp/peers/settling/nsd.json")" "$before"
 status 64 "an unknown job" bench/peers.py --jobs drumm --out "$tmp/none"
-like "and the jobs are named" "$(cat "$tmp/err")" '^peers: no job or mode drumm: jobs are drum,'
+like "and the jobs are named" "$(cat "$tmp/err")" '^peers: no job, variant or mode drumm: jobs are drum,'
 done_testing
