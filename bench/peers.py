@@ -111,7 +111,7 @@ def one(name, variant, scene, document, about, span, folder, options, bound=None
     if other.get("auto"):
         extra += ["--dt", repr(suggested(scene))]
     given = {"options": extra} if code == "nsd" else {"scene": scene, "modulus": job.modulus[other["modulus"]],
-                                                      "velocities": True}
+                                                      "velocities": True, "skin": job.skin}
     say(f"{name}: {variant}, {span} s")
     cost, frames = codes.RUN[code](work, document, span, threads=threads, bound=bound or BOUND, **given)
     result = {"variant": variant, "code": code, "threads": threads, **{k: v if v is None else number(v) for k, v in cost.items()},
@@ -144,7 +144,13 @@ def cost(name, quick, out, rounds, chosen):
             elif len(runs(v)) <= k:
                 # two threads go as far as one came
                 alone = runs(v[:-2])[-1]["span"] if v.endswith("-2") and runs(v[:-2]) else span
-                result = one(name, v, scene, document, about, min(span, alone), folder, [], BOUND if v in ("nsd", "nsd-2", "liggghts-soft") else BOUND / 3)
+                try:
+                    result = one(name, v, scene, document, about, min(span, alone), folder, [],
+                                 BOUND if v in ("nsd", "nsd-2", "liggghts-soft") else BOUND / 3)
+                except codes.TooSlow as why:
+                    save(path[v], {"variant": v, "balls": count, "runs": [], "why": str(why)})
+                    say(f"{name}: {v}: {why}")
+                    continue
                 curve = result.pop("series")
                 kept = json.load(open(path[v])) if k and os.path.exists(path[v]) else {"series": curve, "runs": []}
                 kept.update(variant=v, balls=count)

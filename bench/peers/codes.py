@@ -88,6 +88,10 @@ def timed(command, folder, bound):
     return {"cpu": max(cpu, used.ru_utime + used.ru_stime), "wall": wall, "memory": memory, "cut": stopped is not None}
 
 
+class TooSlow(Exception):
+    """Nothing was simulated before the bound."""
+
+
 def gen(scene, folder, name):
     """A document of a scene; its table, if it has one, beside it."""
     scene = dict(scene)
@@ -122,7 +126,9 @@ def run_nsd(folder, start, span, options, threads, bound, **_):
         every = max(1, round(span / FRAMES / float(options[options.index("--dt") + 1])))
     cost = timed(["nsd-step", "-j", str(threads), "--until", repr(span), "--every", str(every), "--log", log, "-o", out, *options, start],
                  folder, bound)
-    lines = [json.loads(line) for line in open(log)]
+    lines = [json.loads(line) for line in open(log)] if os.path.exists(log) else []
+    if not lines:
+        raise TooSlow(f"not a step in {bound:.3g} CPU s")
     cost.update(dt=lines[0].get("dt", dt) if "--dt" not in options else float(options[options.index("--dt") + 1]),
                 span=lines[-1]["time"], steps=len(lines), sweeps=sum(line["sweeps"] for line in lines) / len(lines),
                 overlap=lines[-1]["account"]["overlap"]["value"],
@@ -136,9 +142,9 @@ def run_nsd(folder, start, span, options, threads, bound, **_):
     return cost, ((t, {"x": f.x, "v": f.v, "radius": f.radius, "mass": f.mass}) for t, f in frames())
 
 
-def run_liggghts(folder, start, span, scene, modulus, threads, bound, velocities, **_):
+def run_liggghts(folder, start, span, scene, modulus, threads, bound, velocities, skin=None, **_):
     balls = balls_of(start)
-    dt, every = liggghts.write(folder, scene, balls, modulus, span, FRAMES, velocities, threads)
+    dt, every = liggghts.write(folder, scene, balls, modulus, span, FRAMES, velocities, threads, skin)
     command = [PROGRAM["liggghts"], "-in", "in", "-log", "log"]
     if threads > 1:
         command = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1", "-n", str(threads)] + command
@@ -152,6 +158,8 @@ def run_liggghts(folder, start, span, scene, modulus, threads, bound, velocities
             rows.append(int(word[0]))
         elif line.startswith("ERROR"):
             raise RuntimeError(line)
+    if not rows or not rows[-1]:
+        raise TooSlow(f"no {max(1, every // 5)} steps in {bound:.3g} CPU s")
     cost.update(dt=dt, span=rows[-1] * dt, steps=rows[-1])
 
     def frames():
@@ -183,8 +191,10 @@ def run_yade(folder, start, span, scene, modulus, threads, bound, **_):
     frame = max(1, round(span / FRAMES / dt))
     cost = timed([PROGRAM["yade"], "-n", "-x", "-j", str(threads), os.path.join(HERE, "settling.yade.py"), repr(modulus), repr(dt), str(round(span / dt)),
                   str(frame)], folder, bound)
-    with open(os.path.join(folder, "frames.txt")) as f:
-        lines = [json.loads(line) for line in f]
+    text = os.path.join(folder, "frames.txt")
+    lines = [json.loads(line) for line in open(text)] if os.path.exists(text) else []
+    if not lines or not lines[-1]["step"]:
+        raise TooSlow(f"no {frame} steps in {bound:.3g} CPU s")
     cost.update(dt=dt, span=lines[-1]["step"] * dt, steps=lines[-1]["step"])
 
     def frames():

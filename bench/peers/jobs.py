@@ -39,6 +39,7 @@ class Job:
     modulus: tuple = (5e6, 1e8)  # Pa, of LIGGGHTS: soft, stiff
     yade: bool = False
     start_dt: float = 1e-3  # s: with which the start is made
+    skin: float = None  # m: of LIGGGHTS' lists of neighbours, where a quarter of a diameter is dear
     given: str = None  # file of a start that others have made, in the folder NSD_STARTS
 
 
@@ -150,7 +151,7 @@ JOBS = {
     "dosta-silo": Job("Dosta's silo, 100 000 balls of 4 mm, large orifice", (100000, 6000), (5e-4, 1e-3), 0.25,
                       (0.15, 0.05), "inside", "balls above the orifice", dosta_silo),
     "penetration": Job("Dosta's penetration, a steel ball into 25 000 of 2 mm", (25000, 3000), (2e-5, 2e-5), 0.15,
-                       (0.02, 0.01), "depth", "height of the ball, m", penetration, start_dt=2.5e-4),
+                       (0.02, 0.01), "depth", "height of the ball, m", penetration, skin=3e-3, start_dt=2.5e-4),
 }
 
 

@@ -102,7 +102,7 @@ def walls(scene, folder, kind, radius, box):
     return lines
 
 
-def write(folder, scene, balls, modulus, span, frames, velocities, processes):
+def write(folder, scene, balls, modulus, span, frames, velocities, processes, skin=None):
     """data, in, wall*.stl into the folder; gives dt and the steps between frames."""
     kinds = sorted(set(balls["kind"])) + ["wall"]
     type_of = {name: k + 1 for k, name in enumerate(kinds)}
@@ -110,6 +110,7 @@ def write(folder, scene, balls, modulus, span, frames, velocities, processes):
     every = max(1, round(span / frames / dt))
     widest = 2 * balls["radius"].max()
     small = 2 * balls["radius"].min()
+    usual = (widest + small) / 2 if widest < 3 * small else small
     box = [[balls["x"][:, c].min() - widest, balls["x"][:, c].max() + widest] for c in range(3)]
     radius = max([w["cylinder"]["radius"] for w in scene["walls"] if "cylinder" in w], default=0)
     repeats = scene["cell"]["repeats"] if "cell" in scene else [False] * 3
@@ -146,11 +147,12 @@ def write(folder, scene, balls, modulus, span, frames, velocities, processes):
     gravity = -scene["gravity"][2]
     with open(os.path.join(folder, "in"), "w") as f:
         f.write("\n".join([
-            "atom_style granular", f"atom_modify map array sort 1000 {1.5 * widest if widest < 3 * small else 1.5 * small:.6g}",
+            "atom_style granular", f"atom_modify map array sort 1000 {1.5 * usual:.6g}",
             "communicate single vel yes", "boundary " + " ".join("p" if r else "f" for r in repeats), "newton off", "units si",
             f"processors {'1 2 1' if repeats[0] else '2 1 1'}" if processes > 1 else "",
-            "read_data data", f"neighbor {0.25 * (small + widest if widest < 3 * small else 2 * small) / 2:.6g} bin",
-            "neigh_modify delay 0",
+            "read_data data", f"neighbor {skin or 0.25 * usual:.6g} bin",
+            # bins are as large as the largest ball needs, unless they are told
+            "neigh_modify delay 0" + (f" binsize {1.5 * usual:.6g}" if widest > 3 * small else ""),
             f"fix e all property/global youngsModulus peratomtype {' '.join(['%g' % modulus] * n)}",
             f"fix nu all property/global poissonsRatio peratomtype {' '.join([str(NU)] * n)}",
             f"fix cor all property/global coefficientRestitution peratomtypepair {n} {matrix(1)}",

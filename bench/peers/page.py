@@ -56,7 +56,7 @@ def job_section(name, job, quick):
     out = [f"## {job['title']}", ""]
     if job["balls"] != job["published"]:
         out += [f"Run here with {job['balls']} balls.", ""]
-    common = min(v["series"]["t"][-1] for k, v in variants.items() if v.get("series") and k in ("nsd", "liggghts-soft"))
+    common = min([v["series"]["t"][-1] for k, v in variants.items() if v.get("series") and k in ("nsd", "liggghts-soft")], default=0)
     out += [row("code", "dt, s", "simulated, s", "CPU s/s", "wall s/s", "MiB", f"{job['label'].split(',')[0]} at {text(common)} s"),
             row("---", "---", "---", "---", "---", "---", "---")]
     for key, (title, _) in ROWS.items():
@@ -73,6 +73,8 @@ def job_section(name, job, quick):
         out.append(row(title, text(last["dt"]), text(last["span"]) + (", cut" if last["cut"] else ""), text(cpu) if cpu else "unknown",
                        text(per_second(v, "wall")), text(max(r["memory"] for r in v["runs"])), text(at(v["series"], common), 4)))
     r = ratio(variants)
+    if not variants["nsd"]["runs"]:
+        return out + [""]
     own = variants["nsd"]["runs"][-1]
     out += ["", f"nsd needs {text(r, 2)} of the CPU of LIGGGHTS, soft{'' if r is None or r <= GOAL else ', more than ' + str(GOAL)}. " if r else "",
             f"Its steps take {text(own['sweeps'])} sweeps; the largest overlap is {text(own['overlap'])} of a radius"
@@ -122,20 +124,20 @@ def rest_section(rest):
 
 def growth_section(growth):
     out = ["## CPU against the number of balls", "",
-           "Settling beds, the same steps for each size from the moment at which they are at rest, defaults. "
-           f"CPU grows as N^{text(growth['exponent'])} (least squares of the logarithms).", "",
-           row("balls", "steps", "CPU, ms a step", "us a ball and step", "sweeps a step"), row(*["---"] * 5)]
+           "The settling job with defaults, until three times the time in which the highest balls fall, and then some steps of the bed. CPU of a step "
+           f"grows as N^{text(growth['falling'])} while the bed forms, and as N^{text(growth['exponent'])} then (least squares of the logarithms).", "",
+           row("balls", "forming: CPU, us a ball and step", "bed: CPU, us a ball and step", "bed: sweeps a step", "bed: steps"), row(*["---"] * 5)]
     for r in growth["rows"]:
-        out.append(row(text(r["balls"], 7), text(r["steps"]), text(1e3 * r["cpu"] / r["steps"]), text(1e6 * r["cpu"] / r["steps"] / r["balls"]),
-                       text(r["sweeps"])))
+        out.append(row(text(r["balls"], 7), text(1e6 * r["falling"] / r["balls"]), text(1e6 * r["cpu"] / r["steps"] / r["balls"]),
+                       text(r["sweeps"]), text(r["steps"])))
     return out + [""]
 
 
 def page(results):
     out = ["# nsd beside LIGGGHTS and Yade", "",
            "`make peers` runs seven jobs with each code from the same start, with the same geometry, friction and restitution, and writes this page "
-           "(`QUICK=1`: small ones, in minutes). LIGGGHTS and Yade are optional Debian packages. All run at this machine's ordinary load, in turn; CPU is user "
-           "and system time, of a physical second. nsd has no option but `-j`; \"dt auto\" is the time step that nsd-gen(1) `--check` suggests. "
+           "(`QUICK=1`: small ones, in minutes). LIGGGHTS and Yade are optional Debian packages. CPU is user and system time of a physical second, "
+           "wall its real time, which counts only where the machine has nothing else to do. nsd has no option but `-j`; \"dt auto\" is the time step that nsd-gen(1) `--check` suggests. "
            "LIGGGHTS and Yade have Hertz's contacts with tangential history, nu 0.3, and 0.2 of Rayleigh's time for dt. \"cut\": "
            "stopped at a bound of CPU seconds; the cost is that of the time that it simulated.", ""]
     for r in results:
@@ -150,7 +152,7 @@ def page(results):
         loses = [f"{name} ({text(ratio(job['variants']), 2)})" for name, job in jobs.items() if (ratio(job["variants"]) or 0) > GOAL]
         auto = [f"{name} ({text(ratio(job['variants'], 'nsd-auto'), 2)})" for name, job in jobs.items() if (ratio(job["variants"], "nsd-auto") or 0) > 1]
         memory = [f"{name} ({text(job['variants']['nsd']['runs'][-1]['memory'])} and {text(job['variants']['liggghts-soft']['runs'][-1]['memory'])} MiB)"
-                  for name, job in jobs.items() if job["variants"].get("liggghts-soft", {}).get("runs")
+                  for name, job in jobs.items() if job["variants"].get("liggghts-soft", {}).get("runs") and job["variants"]["nsd"]["runs"]
                   and job["variants"]["nsd"]["runs"][-1]["memory"] > job["variants"]["liggghts-soft"]["runs"][-1]["memory"]]
         out += ["", f"More than {GOAL} of the CPU of LIGGGHTS, soft: " + (", ".join(loses) or "none") + ". "
                 f"Slower than it with dt auto: " + (", ".join(auto) or "none") + ". More memory: " + (", ".join(memory) or "none") + ".", ""]
