@@ -207,7 +207,7 @@ gallery gallery-keep: setup-run
 # bench/peers/jobs.py says what is run; peers-keep puts the page into docs/peers. ARGS: options of bench/peers.py
 peers peers-keep: setup-wall
 	$(MAKE) -j2 all
-	PATH="$(CURDIR)/$B:$$PATH" bench/peers.py $(if $(QUICK),--quick) --mode cost,$(if $(QUICK),,check$(,)natural$(,)effort$(,)rest$(,)growth$(,)profile$(,))$(if $(filter peers-keep,$@),keep,page) $(ARGS)
+	PATH="$(CURDIR)/$B:$$PATH" bench/peers.py $(if $(QUICK),--quick) --mode cost,$(if $(QUICK),,check$(,)effort$(,)rest$(,)growth$(,)profile$(,))$(if $(filter peers-keep,$@),keep,page) $(ARGS)
 
 bench: all
 	bench/run.sh

@@ -3,10 +3,10 @@
 
 make peers: nsd beside LIGGGHTS and Yade, where these are installed, on the jobs of bench/peers/jobs.py. A job's run that is
 in DIR/JOB/VARIANT.json is not made again: remove the file to repeat it. The page is DIR/README.md, made by page.py from
-these files alone. NSD_STARTS: a folder as ../shared/benchmarks, for starts that others have made. LIGGGHTS, YADE: other names of these programs. N_JOB, T_JOB: another number of balls, s.
+these files alone. In the environment: NSD_STARTS, a folder with starts that others have made [../shared/benchmarks]; LIGGGHTS, YADE,
+other names of these programs; N_JOB, T_JOB, another number of balls, another span in s, as N_DOSTA_SILO=10000.
 
   cost    CPU and wall seconds, memory and observables of each code   check   nsd beside its own dt/4 with a small eps
-  natural the same with the natural map 1e-6, of few balls
   effort  what dt and eps cost and change: QUICK's jobs               growth  CPU against the number of balls
   rest    a pile at rest over 1e5 steps                               profile where nsd's CPU goes, by perf
   page    DIR's page, of what is there                                keep    that in docs/peers
@@ -183,8 +183,7 @@ def gather(out, quick):
             if os.path.exists(os.path.join(out, name, "profile.json")):
                 result["jobs"][name]["profile"] = json.load(open(os.path.join(out, name, "profile.json")))
     for key in "check", "effort":
-        found = [json.load(open(path)) for path in (os.path.join(out, key, name + more) for more in (".json", "-natural.json") for name in JOBS)
-                 if os.path.exists(path)]
+        found = [json.load(open(path)) for path in (os.path.join(out, key, name + ".json") for name in JOBS) if os.path.exists(path)]
         if found:
             result[key] = found
     for key in "rest", "growth":
@@ -232,10 +231,8 @@ if __name__ == "__main__":
     peers = sys.modules[__name__]
     each = {
         "cost": lambda name: cost(name, int(QUICK), OUT, args.rounds, args.variants.split(",")),
-        "check": lambda name: kept(os.path.join(OUT, "check", name + ".json"), lambda: selfcheck.check(name, peers, args.seeds, False)),
-        "natural": lambda name: name in selfcheck.SMALL and kept(os.path.join(OUT, "check", name + "-natural.json"),
-                                                                 lambda: selfcheck.check(name, peers, args.seeds, True)),
-        "effort": lambda name: kept(os.path.join(OUT, "effort", name + ".json"), lambda: selfcheck.effort(name, peers, args.seeds)),
+        "check": lambda name: JOBS[name].given or kept(os.path.join(OUT, "check", name + ".json"), lambda: selfcheck.check(name, peers, args.seeds)),
+        "effort": lambda name: name in selfcheck.VARIED and kept(os.path.join(OUT, "effort", name + ".json"), lambda: selfcheck.effort(name, peers, args.seeds)),
         "profile": lambda name: kept(os.path.join(OUT, name, "profile.json"),
                                      lambda: selfcheck.profile(name, peers, JOBS[name].balls[int(QUICK)])),
     }
