@@ -158,7 +158,7 @@ JOBS = {
 STARTS = os.environ.get("NSD_STARTS", os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "shared", "benchmarks"))
 
 
-def given(job, path, axes, shift):
+def given(job, path, axes, shift, span):
     """The job with the balls of a table x y z r [kind]: its axes as ours, -1 the opposite of x, and shifted along the first."""
     def scenes(count, seed):
         start, run, about = job.scenes(count, seed)
@@ -176,14 +176,15 @@ def given(job, path, axes, shift):
             run["more"][0].update(x=[0, 0, 0.06], v=[0, 0, -5])
         return start, run, about
 
-    return replace(job, title=job.title + ", a start by others", balls=(job.balls[0],) * 2, settle=0, scenes=from_above, given=path)
+    return replace(job, title=job.title + ", a start by others", balls=(job.balls[0],) * 2, settle=0, span=span or job.span, scenes=from_above, given=path)
 
 
 # drums lie along y there, and turn the other way or the same
-for name, path, axes, shift in (("drum", "peers/drum5k.tab.gz", (1, -1, 2), 0), ("dosta-drum", "dosta2024/drum.txt", (1, 0, 2), 0.03),
-                                 ("penetration", "dosta2024/penetration25.txt", (0, 1, 2), 0)):
+for name, path, axes, shift, span in (("drum", "peers/drum5k.tab.gz", (1, -1, 2), 0, None),
+                                       ("dosta-drum", "dosta2024/drum.txt", (1, 0, 2), 0.03, None),
+                                       ("penetration", "dosta2024/penetration25.txt", (0, 1, 2), 0, (0.04, 0.01))):
     if os.path.exists(os.path.join(STARTS, path)):
-        JOBS[name + "-given"] = given(JOBS[name], os.path.join(STARTS, path), axes, shift)
+        JOBS[name + "-given"] = given(JOBS[name], os.path.join(STARTS, path), axes, shift, span)
 
 # The number that --mode check compares, where it is not the plotted one
 COMPARED = {"dosta-drum": "rising", "dosta-silo": "out", "penetration": "depth"}

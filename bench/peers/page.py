@@ -76,9 +76,11 @@ def job_section(name, job, quick):
     if not variants["nsd"]["runs"]:
         return out + [""]
     own = variants["nsd"]["runs"][-1]
-    out += ["", f"nsd needs {text(r, 2)} of the CPU of LIGGGHTS, soft{'' if r is None or r <= GOAL else ', more than ' + str(GOAL)}. " if r else "",
-            f"Its steps take {text(own['sweeps'])} sweeps; the largest overlap is {text(own['overlap'])} of a radius"
-            + (f", {own['unconverged']} steps have not converged." if own.get("unconverged") else ".")]
+    out.append("")
+    if r:
+        out.append(f"nsd needs {text(r, 2)} of the CPU of LIGGGHTS, soft{'' if r <= GOAL else f', more than {GOAL}'}.")
+    out.append(f"Its steps take {text(own['sweeps'])} sweeps; the largest overlap is {text(own['overlap'])} of a radius"
+               + (f"; {own['unconverged']} steps have not converged." if own.get("unconverged") else "."))
     if job.get("profile"):
         out += ["", "Of nsd's CPU: " + ", ".join(f"{f} {share:.0f} %" for f, share in job["profile"]) + "."]
     return out + ["", f"![{job['label']} over time]({name}.svg)", ""]
