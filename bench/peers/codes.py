@@ -80,7 +80,7 @@ def timed(command, folder, bound):
         except BaseException:
             os.killpg(child.pid, signal.SIGTERM)
             raise
-        wall = (stopped or time.monotonic()) - start
+        wall = time.monotonic() - start  # a step that was begun is ended, and counts
         child.returncode = os.waitstatus_to_exitcode(status)
     if child.returncode and stopped is None:
         raise RuntimeError(f"{' '.join(command)} ended with {child.returncode}:\n" + open(os.path.join(folder, "said")).read()[-2000:])
@@ -126,13 +126,13 @@ def run_nsd(folder, start, span, options, threads, bound, **_):
         every = max(1, round(span / FRAMES / float(options[options.index("--dt") + 1])))
     cost = timed(["nsd-step", "-j", str(threads), "--until", repr(span), "--every", str(every), "--log", log, "-o", out, *options, start],
                  folder, bound)
-    lines = [json.loads(line) for line in open(log)] if os.path.exists(log) else []
+    # what was killed has no account, and may have half of a line
+    lines = [json.loads(line) for line in open(log) if line.endswith("}\n")] if os.path.exists(log) else []
     if not lines:
         raise TooSlow(f"not a step in {bound:.3g} CPU s")
     cost.update(dt=lines[0].get("dt", dt) if "--dt" not in options else float(options[options.index("--dt") + 1]),
                 span=lines[-1]["time"], steps=len(lines), sweeps=sum(line["sweeps"] for line in lines) / len(lines),
-                overlap=lines[-1]["account"]["overlap"]["value"],
-                unconverged=lines[-1]["account"]["unconverged"]["value"])
+                **{key: lines[-1].get("account", {}).get(key, {}).get("value") for key in ("overlap", "unconverged")})
 
     def frames():
         yield 0.0, nsd.last(start)

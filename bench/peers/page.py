@@ -27,16 +27,28 @@ def row(*cells):
     return "| " + " | ".join(cells) + " |"
 
 
+FEW = 10  # steps: a run of fewer says nothing of its cost
+
+
 def per_second(kept, what):
-    """Seconds of a physical second, the least of the rounds; None where it was not run or not found."""
-    runs = [r[what] / r["span"] for r in kept.get("runs", []) if r["span"] and r[what] is not None]
+    """Seconds of a physical second, the least of the rounds; None where it was not run or came to a few steps only."""
+    runs = [r[what] / r["span"] for r in kept.get("runs", []) if r["steps"] >= FEW]
     return min(runs) if runs else None
+
+
+def cost_text(kept):
+    """CPU of a physical second, or why there is none."""
+    if not kept.get("runs"):
+        return kept.get("why", "")
+    r = kept["runs"][-1]
+    return text(per_second(kept, "cpu")) or f"{r['steps']} step{'s' * (r['steps'] > 1)} in {text(r['cpu'])} s"
 
 
 def ratio(variants, a="nsd", b="liggghts-soft"):
     """CPU of a over that of b, by sums over the rounds that both have."""
     pair = [(per_second({"runs": [p]}, "cpu"), per_second({"runs": [q]}, "cpu"))
-            for p, q in zip(variants.get(a, {}).get("runs", []), variants.get(b, {}).get("runs", []))]
+            for p, q in zip(variants.get(a, {}).get("runs", []), variants.get(b, {}).get("runs", []))
+            if min(p["steps"], q["steps"]) >= FEW]
     return sum(p for p, _ in pair) / sum(q for _, q in pair) if pair else None
 
 
@@ -69,8 +81,7 @@ def job_section(name, job, quick):
         last = v["runs"][-1]
         if "modulus" in last:
             title += f" ({last['modulus']:.0e} Pa)".replace("e+0", "e")
-        cpu = per_second(v, "cpu")
-        out.append(row(title, text(last["dt"]), text(last["span"]) + (", cut" if last["cut"] else ""), text(cpu) if cpu else "unknown",
+        out.append(row(title, text(last["dt"]), text(last["span"]) + (", cut" if last["cut"] else ""), cost_text(v),
                        text(per_second(v, "wall")), text(max(r["memory"] for r in v["runs"])), text(at(v["series"], common), 4)))
     r = ratio(variants)
     if not variants["nsd"]["runs"]:
@@ -79,7 +90,7 @@ def job_section(name, job, quick):
     out.append("")
     if r:
         out.append(f"nsd needs {text(r, 2)} of the CPU of LIGGGHTS, soft{'' if r <= GOAL else f', more than {GOAL}'}.")
-    out.append(f"Its steps take {text(own['sweeps'])} sweeps; the largest overlap is {text(own['overlap'])} of a radius"
+    out.append(f"Its steps take {text(own['sweeps'])} sweeps; the largest overlap is {text(own['overlap']) or 'unknown'} of a radius"
                + (f"; {own['unconverged']} steps have not converged." if own.get("unconverged") else "."))
     if job.get("profile"):
         out += ["", "Of nsd's CPU: " + ", ".join(f"{f} {share:.0f} %" for f, share in job["profile"]) + "."]
@@ -148,8 +159,7 @@ def page(results):
                 row("job", "balls", "nsd", "nsd, dt auto", "LIGGGHTS, soft", "LIGGGHTS, stiff", "nsd / soft", "dt auto / soft", "nsd / stiff"), row(*["---"] * 9)]
         for name, job in jobs.items():
             v = job["variants"]
-            out.append(row(name, text(job["balls"], 7), *(text(per_second(v.get(k, {}), "cpu")) or v.get(k, {}).get("why", "") for k in
-                                                       ("nsd", "nsd-auto", "liggghts-soft", "liggghts-stiff")),
+            out.append(row(name, text(job["balls"], 7), *(cost_text(v.get(k, {})) for k in ("nsd", "nsd-auto", "liggghts-soft", "liggghts-stiff")),
                            *(text(q, 2) if q else "" for q in (ratio(v), ratio(v, "nsd-auto"), ratio(v, "nsd", "liggghts-stiff")))))
         loses = [f"{name} ({text(ratio(job['variants']), 2)})" for name, job in jobs.items() if (ratio(job["variants"]) or 0) > GOAL]
         auto = [f"{name} ({text(ratio(job['variants'], 'nsd-auto'), 2)})" for name, job in jobs.items() if (ratio(job["variants"], "nsd-auto") or 0) > 1]
