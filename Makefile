@@ -7,6 +7,7 @@
 # make paper      every table and figure of the paper     QUICK=1        the same in minutes
 # make wall       what holds up the solvers on large piles QUICK=1      one pile, in a minute
 # make gallery    experiments beside what is published     QUICK=1       small, in minutes
+# make peers      seven jobs by nsd, LIGGGHTS and Yade    QUICK=1        small, in minutes
 # make docs       the manuals as HTML, in build/man       make deb       Debian packages, in build/deb
 #
 # Objects, tools and tests are under build/; SAN=1 makes the same with ASan and UBSan in build/san/,
@@ -202,6 +203,11 @@ wall wall-keep: setup-wall
 gallery gallery-keep: setup-run
 	$(MAKE) -j2 all
 	$(MAKE) -f scripts/gallery.mk $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc)) $(if $(filter gallery-keep,$@),keep,all)
+
+# bench/peers/jobs.py says what is run; peers-keep puts the page into docs/peers. ARGS: options of bench/peers.py
+peers peers-keep: setup-wall
+	$(MAKE) -j2 all
+	PATH="$(CURDIR)/$B:$$PATH" bench/peers.py $(if $(QUICK),--quick) --mode cost,$(if $(QUICK),,check$(,)effort$(,)rest$(,)growth$(,)profile$(,))$(if $(filter peers-keep,$@),keep,page) $(ARGS)
 
 bench: all
 	bench/run.sh
@@ -410,5 +416,5 @@ clean:
 -include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs completions install install-tools install-dev uninstall deb clean setup-run setup-paper setup-wall setup-check setup-all test-rest check-rest check-all
+.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs completions install install-tools install-dev uninstall deb clean setup-run setup-paper setup-wall setup-check setup-all test-rest check-rest check-all
 .SECONDARY:

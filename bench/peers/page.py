@@ -1,0 +1,216 @@
+#!/usr/bin/python3
+"""page.py RESULTS.json ... [--plots DIR]: the page of make peers, from kept results, one file a machine (peers.py --mode
+keep); with --plots the curves as well, DIR/JOB.svg of the first file, by gnuplot. It runs nothing and measures nothing."""
+import json
+import os
+import subprocess
+import sys
+
+ROWS = {  # variant: how it is called, how it is drawn
+    "nsd": ("nsd, defaults", 1), "nsd-2": ("nsd, defaults, 2 threads", 0), "nsd-auto": ("nsd, dt auto", 2),
+    "liggghts-soft": ("LIGGGHTS, soft", 3), "liggghts-soft-2": ("LIGGGHTS, soft, 2 processes", 0),
+    "liggghts-stiff": ("LIGGGHTS, stiff", 4), "yade-soft": ("Yade, soft", 5), "yade-soft-2": ("Yade, soft, 2 threads", 0),
+}
+GOAL = 0.4  # CPU of nsd over LIGGGHTS'
+
+
+def text(x, digits=3):
+    if x is None:
+        return ""
+    if isinstance(x, str):
+        return x
+    shown = "%.*g" % (digits, x)
+    return "%.*e" % (digits - 1, x) if "e" in shown and abs(x) < 1 else ("%d" % round(x) if "e" in shown else shown)
+
+
+def row(*cells):
+    return "| " + " | ".join(cells) + " |"
+
+
+FEW = 10  # steps: a run of fewer says nothing of its cost
+
+
+def per_second(kept, what):
+    """Seconds of a physical second, the least of the rounds; None where it was not run or came to a few steps only."""
+    runs = [r[what] / r["span"] for r in kept.get("runs", []) if r["steps"] >= FEW]
+    return min(runs) if runs else None
+
+
+def cost_text(kept):
+    """CPU of a physical second, or why there is none."""
+    if not kept.get("runs"):
+        return kept.get("why", "")
+    r = kept["runs"][-1]
+    return text(per_second(kept, "cpu")) or f"{r['steps']} step{'s' * (r['steps'] > 1)} in {text(r['cpu'])} s"
+
+
+def ratio(variants, a="nsd", b="liggghts-soft"):
+    """CPU of a over that of b, by sums over the rounds that both have."""
+    pair = [(per_second({"runs": [p]}, "cpu"), per_second({"runs": [q]}, "cpu"))
+            for p, q in zip(variants.get(a, {}).get("runs", []), variants.get(b, {}).get("runs", []))
+            if min(p["steps"], q["steps"]) >= FEW]
+    return sum(p for p, _ in pair) / sum(q for _, q in pair) if pair else None
+
+
+def at(curve, t):
+    """The plotted number at a time, linear between frames."""
+    name = [key for key in curve if key != "t"][0]
+    times, values = curve["t"], curve[name]
+    for k in range(1, len(times)):
+        if times[k] >= t * (1 - 1e-9):
+            share = (t - times[k - 1]) / (times[k] - times[k - 1])
+            return values[k - 1] + share * (values[k] - values[k - 1])
+    return None
+
+
+def job_section(name, job, quick):
+    variants = job["variants"]
+    out = [f"## {job['title']}", ""]
+    if job["balls"] != job["published"]:
+        out += [f"Run here with {job['balls']} balls.", ""]
+    common = min([v["series"]["t"][-1] for k, v in variants.items() if v.get("series") and k in ("nsd", "liggghts-soft")], default=0)
+    out += [row("code", "dt, s", "simulated, s", "CPU s/s", "wall s/s", "MiB", f"{job['label'].split(',')[0]} at {text(common)} s"),
+            row("---", "---", "---", "---", "---", "---", "---")]
+    for key, (title, _) in ROWS.items():
+        v = variants.get(key)
+        if v is None:
+            continue
+        if not v.get("runs"):
+            out.append(row(title, v.get("why", "not run"), "", "", "", "", ""))
+            continue
+        last = v["runs"][-1]
+        if "modulus" in last:
+            title += f" ({last['modulus']:.0e} Pa)".replace("e+0", "e")
+        out.append(row(title, text(last["dt"]), text(last["span"]) + (", cut" if last["cut"] else ""), cost_text(v),
+                       text(per_second(v, "wall")), text(max(r["memory"] for r in v["runs"])), text(at(v["series"], common), 4)))
+    r = ratio(variants)
+    if not variants["nsd"]["runs"]:
+        return out + [""]
+    own = variants["nsd"]["runs"][-1]
+    out.append("")
+    if r:
+        out.append(f"nsd needs {text(r, 2)} of the CPU of LIGGGHTS, soft{'' if r <= GOAL else f', more than {GOAL}'}.")
+    out.append(f"Its steps take {text(own['sweeps'])} sweeps; the largest overlap is {text(own['overlap']) or 'unknown'} of a radius"
+               + (f"; {own['unconverged']} steps have not converged." if own.get("unconverged") else "."))
+    if job.get("profile"):
+        out += ["", "Of nsd's CPU: " + ", ".join(f"{f} {share:.0f} %" for f, share in job["profile"]) + "."]
+    return out + ["", f"![{job['label']} over time]({name}.svg)", ""]
+
+
+def check_section(check):
+    out = ["## nsd against itself: defaults, and a quarter of dt with a small eps", "",
+           "The same start with `--dt` a quarter and the options that are named; the mean of the observable over the second half of "
+           "the run, relative to that of the finer run, and the scatter between seeds (the standard deviation of one run's). "
+           "A difference below the scatter is none.", "",
+           row("job", "balls", "finer", "observable", "seeds", "with defaults", "finer", "difference", "its error by the seeds", "scatter of a run", "CPU, finer / defaults"),
+           row(*["---"] * 11)]
+    for c in check:
+        out.append(row(c["job"], text(c["balls"]), f"`{c['options']}`", c["observable"], text(c["seeds"]), text(c["default"], 4), text(c["fine"], 4),
+                       f"{100 * c['difference']:+.2f} %", f"{100 * c['error']:.2f} %", f"{100 * c['scatter']:.2f} %", text(c["cost"])))
+    return out + [""]
+
+
+def effort_section(efforts):
+    out = ["## What dt and eps cost, and what they change", "",
+           "The jobs of the table above, means over the seeds with the error of the mean.", ""]
+    for e in efforts:
+        out += [f"{e['job']}, {e['balls']} balls, {e['seeds']} seeds:", "",
+                row("option", e["observable"], "CPU s/s", "sweeps a step", "largest overlap, r"), row(*["---"] * 5)]
+        for r in e["rows"]:
+            out.append(row((f"`--{r['what']} {text(r['value'])}`") + (", default" if r["default"] else ""), f"{text(r['found'], 4)} +- {text(r['error'], 2)}",
+                           text(r["cpu"]), text(r["sweeps"]), text(r["overlap"])))
+        out.append("")
+    return out
+
+
+def rest_section(rest):
+    out = ["## A pile at rest", "",
+           f"{rest['balls']} balls of the settling job, {rest['settle']} s to settle, then {rest['steps']} steps of {rest['dt']} s. "
+           f"{rest['loose']} balls touch fewer than three others or walls: such a ball may roll on the floor for ever, for nothing brakes rolling. "
+           "Displacements are from the beginning of these steps, held: of the other balls.", "",
+           row("steps", "kinetic energy, m g d a ball", "displacement, held: median, d", "held: largest, d", "any ball: largest, d", "largest overlap, r"),
+           row(*["---"] * 6)]
+    for r in rest["rows"]:
+        out.append(row(text(r["step"], 7), text(r["kinetic"]), text(r["median"]), text(r["held"]), text(r["largest"]), text(r["overlap"])))
+    return out + [""]
+
+
+def growth_section(growth):
+    out = ["## CPU against the number of balls", "",
+           "The settling job with defaults, until three times the time in which the highest balls fall, and then some steps of the bed. CPU of a step "
+           f"grows as N^{text(growth['falling'])} while the bed forms, and as N^{text(growth['exponent'])} then (least squares of the logarithms).", "",
+           row("balls", "forming: CPU, us a ball and step", "bed: CPU, us a ball and step", "bed: sweeps a step", "bed: steps"), row(*["---"] * 5)]
+    for r in growth["rows"]:
+        out.append(row(text(r["balls"], 7), text(1e6 * r["falling"] / r["balls"]), text(1e6 * r["cpu"] / r["steps"] / r["balls"]),
+                       text(r["sweeps"]), text(r["steps"])))
+    return out + [""]
+
+
+def page(results):
+    out = ["# nsd beside LIGGGHTS and Yade", "",
+           "`make peers` runs seven jobs with each code from the same start, with the same geometry, friction and restitution, and writes this page "
+           "(`QUICK=1`: small ones, in minutes). LIGGGHTS and Yade are optional Debian packages. CPU is user and system time of a physical second, "
+           "wall its real time, which counts only where the machine has nothing else to do. nsd has no option but `-j`; \"dt auto\" is the time step that nsd-gen(1) `--check` suggests. "
+           "LIGGGHTS and Yade have Hertz's contacts with tangential history, nu 0.3, and 0.2 of Rayleigh's time for dt. \"cut\": "
+           "stopped at a bound of CPU seconds; the cost is that of the time that it simulated.", ""]
+    for r in results:
+        jobs = r["jobs"]
+        out += [f"## {r['machine']}", "", "; ".join(r["versions"]) + "." + (" Small jobs (QUICK=1)." if r["quick"] else ""), "",
+                row("job", "balls", "nsd", "nsd, dt auto", "LIGGGHTS, soft", "LIGGGHTS, stiff", "nsd / soft", "dt auto / soft", "nsd / stiff"), row(*["---"] * 9)]
+        for name, job in jobs.items():
+            v = job["variants"]
+            out.append(row(name, text(job["balls"], 7), *(cost_text(v.get(k, {})) for k in ("nsd", "nsd-auto", "liggghts-soft", "liggghts-stiff")),
+                           *(text(q, 2) if q else "" for q in (ratio(v), ratio(v, "nsd-auto"), ratio(v, "nsd", "liggghts-stiff")))))
+        loses = [f"{name} ({text(ratio(job['variants']), 2)})" for name, job in jobs.items() if (ratio(job["variants"]) or 0) > GOAL]
+        auto = [f"{name} ({text(ratio(job['variants'], 'nsd-auto'), 2)})" for name, job in jobs.items() if (ratio(job["variants"], "nsd-auto") or 0) > 1]
+        memory = [f"{name} ({text(job['variants']['nsd']['runs'][-1]['memory'])} and {text(job['variants']['liggghts-soft']['runs'][-1]['memory'])} MiB)"
+                  for name, job in jobs.items() if job["variants"].get("liggghts-soft", {}).get("runs") and job["variants"]["nsd"]["runs"]
+                  and job["variants"]["nsd"]["runs"][-1]["memory"] > job["variants"]["liggghts-soft"]["runs"][-1]["memory"]]
+        out += ["", f"More than {GOAL} of the CPU of LIGGGHTS, soft: " + (", ".join(loses) or "none") + ". "
+                f"Slower than it with dt auto: " + (", ".join(auto) or "none") + ". More memory: " + (", ".join(memory) or "none") + ".", ""]
+        for name, job in jobs.items():
+            out += job_section(name, job, r["quick"])
+        for key, section in (("check", check_section), ("effort", effort_section), ("rest", rest_section), ("growth", growth_section)):
+            if r.get(key):
+                out += section(r[key])
+    return "\n".join(out)
+
+
+def plot(name, job, folder):
+    drawn, data = [], ""
+    for key, (title, style) in ROWS.items():
+        curve = job["variants"].get(key, {}).get("series")
+        if not style or not curve:
+            continue
+        names = [k for k in curve if k != "t"]
+        data += "".join(" ".join(map(str, values)) + "\n" for values in zip(curve["t"], *(curve[k] for k in names))) + "\n\n"
+        drawn.append((title, style, len(names)))
+    path = os.path.join(folder, name)
+    with open(path + ".dat", "w") as f:
+        f.write(data)
+    two = name == "settling"  # the second observable below the first
+    script = f"set terminal svg size 640,{720 if two else 400} background 'white' font 'sans,13'; set output '{path}.svg'; "
+    script += "set grid lc rgb '#dddddd'; set key outside top center horizontal; set xlabel 'time, s'; "
+    colour = {1: "#1b6ca8", 2: "#7fb2d8", 3: "#c8402c", 4: "#e8a090", 5: "#4a7d3a"}
+
+    def curves(column, low=""):
+        return "plot " + ", ".join(f"'{path}.dat' index {k} using 1:{column} with lines lw {2 if style in (1, 3) else 1.3} lc rgb '{colour[style]}' title '{title}'"
+                                   for k, (title, style, _) in enumerate(drawn)) + "; "
+
+    if two:
+        script += "set multiplot layout 2,1; "
+    script += f"set ylabel '{job['label']}'; " + curves(2)
+    if two:
+        script += "set logscale y; set format y '10^{%T}'; set ylabel 'kinetic energy, m g d a ball'; " + curves(3)
+    subprocess.run(["gnuplot", "-e", script], check=True)
+    os.remove(path + ".dat")
+
+
+if __name__ == "__main__":
+    arguments = sys.argv[1:]
+    plots = arguments.pop(arguments.index("--plots") + 1) if "--plots" in arguments else None
+    kept = [json.load(open(path)) for path in arguments if path != "--plots"]
+    print(page(kept))
+    if plots:
+        for job_name, its in kept[0]["jobs"].items():
+            plot(job_name, its, plots)
