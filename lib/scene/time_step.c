@@ -1,6 +1,8 @@
 /* scene/time_step.c: limits of the time step [scene/time_step.h]. */
 #include "scene/time_step.h"
 
+#include "detect/detect.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +17,8 @@ static const double SETTLED[4] = { 0, 0, 0.8, 0.6 };
 /* To see how far, each horizontal direction is cut into so many parts at most, of so many of the largest
    radii at least. */
 enum { COLUMNS = 16, WIDE = 6 };
+#define TOUCHING 0.05 /* of the smallest radius: the gap across which a body rests on another */
+#define BELOW    0.2 /* the vertical part of the normal with which a wall carries a body, at least */
 
 const struct time_step_limit time_step_limit[LIMITS] = {
     [LIMIT_GRAVITY] = { "gravity", "gravity", "m s-2", "g dt^2 <= 0.002 r", BY_ACCELERATION,
@@ -212,9 +216,56 @@ static void extent(const struct packing *p, vec3 n, double range[2])
     }
 }
 
-/* A column of bodies: where it ends, and how much they are */
+/* ---- what rests already ---- */
+
+/* One body on another, or on a wall */
+struct support {
+    double z;             /* m: the centre of the upper one */
+    int32_t upper, lower; /* lower < 0: a wall */
+};
+
+static int by_height(const void *x, const void *y)
+{
+    const struct support *a = x, *b = y;
+    return a->z < b->z ? -1 : a->z > b->z ? 1 : a->upper - b->upper;
+}
+
+/* The supports that contacts are; returns how many */
+static int64_t supports_of(const struct packing *p, const struct contacts *s, vec3 up,
+                           struct support *on)
+{
+    int64_t n = 0;
+    for (int64_t i = 0; i < s->n; i++) {
+        const struct contact *c = &s->c[i];
+        double rise = v3_dot(c->n, up);
+        if (c->a < 0 && rise < BELOW) continue;
+        int32_t upper = rise < 0 ? c->a : c->b, lower = rise < 0 ? c->b : c->a;
+        on[n++] = (struct support){ v3_dot(p->x[upper], up), upper, lower };
+    }
+    return n;
+}
+
+/* rests[n] = whether a body rests on walls, on bodies that do not move, or on others that rest. Where memory is
+   short, or contacts cannot be found, none does. */
+static void find_resting(const struct packing *p, vec3 up, double gap, bool *rests)
+{
+    struct contacts s = { 0 };
+    struct why why = { 0 };
+    bool found = !detect_contacts_at(&s, p, p->x, p->t, gap, NULL, &why);
+    struct support *on = found ? malloc((size_t)(s.n + 1) * sizeof *on) : NULL;
+    int64_t n = on ? supports_of(p, &s, up, on) : 0;
+    if (n) qsort(on, (size_t)n, sizeof *on, by_height);
+    for (int64_t i = 0; i < p->n; i++) rests[i] = p->mass[i] == 0;
+    for (int64_t i = 0; i < n; i++)
+        if (on[i].lower < 0 || rests[on[i].lower]) rests[on[i].upper] = true;
+    free(on);
+    contacts_free(&s);
+}
+
+/* A column of bodies: where those end that fall, and how much they are */
 struct stack {
     double top, bottom; /* m */
+    double floor;       /* m: the top of what rests */
     double volume;      /* m^3, in the plane m^2 */
 };
 
@@ -226,9 +277,14 @@ static double volume_of(const struct packing *p, int64_t i)
 }
 
 /* low: m, where surfaces end below */
-static void column_add(struct stack *c, const struct packing *p, int64_t i, vec3 up, double low)
+static void column_add(struct stack *c, const struct packing *p, int64_t i, vec3 up, double low,
+                       bool rests)
 {
     double z = v3_dot(p->x[i], up), r = p->radius[i], h = above_planes(p, p->x[i], up);
+    if (rests && p->mass[i] > 0) {
+        c->floor = dmax(c->floor, z + r);
+        return;
+    }
     if (!(p->mass[i] > 0)) { // does not fall, but stops what does
         c->bottom = dmin(c->bottom, z + r);
         return;
@@ -254,17 +310,22 @@ static double fall_of_bodies(const struct packing *p, vec3 up)
         n[a] = (int)dmax(1, dmin(COLUMNS, (range[1] - range[0]) / (WIDE * large)));
         width[a] = (range[1] - range[0]) / n[a];
     }
-    for (int k = 0; k < n[0] * n[1]; k++) column[k] = (struct stack){ -INFINITY, INFINITY, 0 };
+    for (int k = 0; k < n[0] * n[1]; k++)
+        column[k] = (struct stack){ -INFINITY, INFINITY, -INFINITY, 0 };
+    bool *rests = calloc((size_t)p->n + 1, sizeof *rests);
+    if (rests) find_resting(p, up, TOUCHING * packing_whole(p).small, rests);
     for (int64_t i = 0; i < p->n; i++) {
         int at[2] = { 0, 0 };
         for (int a = 0; a < p->dim - 1; a++)
             at[a] = (int)dmin(n[a] - 1, (v3_dot(p->x[i], side[a]) - from[a]) / width[a]);
-        column_add(&column[at[0] * n[1] + at[1]], p, i, up, low);
+        column_add(&column[at[0] * n[1] + at[1]], p, i, up, low, rests && rests[i]);
     }
     for (int k = 0; k < n[0] * n[1]; k++) {
         double settled = column[k].volume / (SETTLED[p->dim] * width[0] * width[1]);
-        if (settled > 0) most = dmax(most, column[k].top - column[k].bottom - settled);
+        double bottom = dmax(column[k].floor, column[k].bottom);
+        if (settled > 0) most = dmax(most, column[k].top - bottom - settled);
     }
+    free(rests);
     return most;
 }
 

@@ -17,6 +17,14 @@ near "gravity: sqrt(0.002 r / g)" "$(checked "$ball" "$(limit gravity)")" '0.002
 # it falls until its column of (2 r)^2 is filled to 0.6 by 4/3 pi r^3
 near "a fall: 0.05 r / sqrt(2 g h)" "$(checked "$ball" "$(limit fall)")" \
     '0.05e-3 / (2 * 9.81 * (0.101 - 4 / 3 * 3.14159265358979324 * 1e-9 / (0.6 * 4e-6)) | sqrt)'
+# two balls that touch each other and the wall of a round drum of 0.1 m; a third falls on them
+second='(1 / 99 | asin * 2 | [0.099 * sin, -0.099 * cos])'
+rest="$second"' as $at | {dt: 1e-5, walls: [{cylinder: {point: [0, 0, 0], axis: [0, 1, 0], radius: 0.1}}],
+    bodies: [{x: [0, 0, -0.099], radius: 1e-3}, {x: [$at[0], 0, $at[1]], radius: 1e-3}]}'
+is "balls that rest in a round drum do not fall" "$(checked "$rest" '[.limits[] | select(.limit == "fall")] | length')" 0
+near "a ball above them falls, on them" \
+    "$(checked "$rest"' | .bodies += [{x: [0, 0, -0.09], radius: 1e-3}]' "$(limit fall)")" \
+    "$second"' as $at | 0.05e-3 / (2 * 9.81 * (-0.09 - $at[1] - 4 / 3 * 3.14159265358979324 * 1e-9 / (0.6 * 2e-3 * ($at[0] + 2e-3))) | sqrt)'
 is "the least counts, by its first two digits" "$(checked "$ball" '.dt == 3.5e-5 and .by == "fall"')" true
 near "a start with 2 m/s" "$(checked "$ball"' | .gravity = [0, 0, 0] | .bodies[0].v = [0, 2, 0]' .dt)" 2.5e-5
 drum='{dt: 1, dim: 2, gravity: [0, 0], bodies: [{x: [0, -0.05], radius: 1e-3}],
