@@ -25,7 +25,7 @@ B       := build$(if $(SAN),/san)
 , := ,
 # Debian's hdf5.pc is that of whichever flavour was installed last.
 HDF5 := $(if $(shell pkg-config --exists hdf5-serial 2>/dev/null && echo 1),hdf5-serial,hdf5)
-LIBS := $(HDF5) gsl jansson zlib libpng cairo
+LIBS := $(HDF5) gsl jansson zlib libdeflate libpng cairo
 PC   := $(shell pkg-config --cflags $(LIBS) 2>/dev/null)
 
 # Archives of the libraries where there are some, of which a tool gets what it calls: shared ones load others,
@@ -40,7 +40,7 @@ SPARSE  := $(if $(METIS),$(foreach l,klu btf cholmod camd ccolamd colamd amd sui
 # and qhull's has another name than its shared library
 QHULL   := $(firstword $(if $(SHARED),,$(foreach d,$(FOLDERS),$(wildcard $dlibqhullstatic_r.a))) -lqhull_r)
 PL      := $(foreach l,hdf5_hl hdf5 gsl gslcblas jansson,$(call library,$l)) $(SPARSE) $(QHULL) $(call library,cairo) \
-           $(shell pkg-config $(if $(SHARED),,--static) --libs $(HDF5) cairo zlib libpng 2>/dev/null) \
+           $(shell pkg-config $(if $(SHARED),,--static) --libs $(HDF5) cairo zlib libdeflate libpng 2>/dev/null) \
            $(foreach l,sz,$(if $(wildcard $(FOLDERS:%=%lib$l.so)),-l$l)) -lm
 
 # No contraction to FMA: the same bytes on every machine.

@@ -4,7 +4,7 @@
 set -euo pipefail
 
 # run: the build and the demonstration; check: make check; all: make check-all
-run=(build-essential pkg-config libhdf5-dev hdf5-tools libgsl-dev libjansson-dev zlib1g-dev libpng-dev
+run=(build-essential pkg-config libhdf5-dev hdf5-tools libgsl-dev libjansson-dev zlib1g-dev libdeflate-dev libpng-dev
     libcairo2-dev libsuitesparse-dev libqhull-dev jq gnuplot-nox)
 paper=("${run[@]}" pandoc)
 wall=("${run[@]}" python3-h5py python3-scipy)

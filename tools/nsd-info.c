@@ -4,6 +4,7 @@
 #include "cli/cli.h"
 #include "io/reader.h"
 #include "io/report_json.h"
+#include "measure/stress.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -133,31 +134,17 @@ static json_t *three(const vec3 e[3])
     return list;
 }
 
-/*
- * Pa, in the plane N/m: the mean stress by the contacts, compression positive: the sum of
- * force x branch over the cell's volume, the branch from centre to centre.
- */
-static json_t *stress(const struct packing *p, const struct contacts *s)
+/* Pa, in the plane N/m: that of the contacts, as nsd-stat has it [measure/stress.h] */
+static json_t *stress(const struct frame *f)
 {
-    const vec3 *e = p->cell.edge;
-    double volume = fabs(v3_dot(e[0], v3_cross(e[1], e[2])));
-    if (p->dim == 2) volume /= fabs(e[2].z);
-    vec3 sum[3] = { { 0, 0, 0 } };
-    for (int64_t i = 0; i < s->n; i++) {
-        const struct contact *c = &s->c[i];
-        const double *r = s->found[i].r;
-        if (c->a < 0) continue;
-        vec3 f = v3_axpy(v3_axpy(v3_scale(r[0], c->n), r[1], c->t1), r[2], contact_t2(c));
-        double length = p->radius[c->a] + p->radius[c->b] + c->gap;
-        vec3 branch = v3_scale(length / (p->dt * volume), c->n);
-        if (contact_shaped(p, c)) {
-            vec3 b = v3_add(p->x[c->b], cell_shift(p->cell.edge, c->shift));
-            branch = v3_scale(1 / (p->dt * volume), v3_sub(b, p->x[c->a]));
-        }
-        sum[0] = v3_axpy(sum[0], f.x, branch), sum[1] = v3_axpy(sum[1], f.y, branch);
-        sum[2] = v3_axpy(sum[2], f.z, branch);
-    }
-    return three(sum);
+    static const struct asked all = { .axis = -1 };
+    struct snapshot s;
+    vec3 row[3];
+    snapshot_init(&s, &f->packing, &f->contacts, f->moved, &all);
+    struct tensor T = stress_contacts(&s, &s.whole);
+    tensor_scale(&T, 1 / s.whole.volume);
+    for (int k = 0; k < 3; k++) row[k] = v3(T.x[k][0], T.x[k][1], T.x[k][2]);
+    return three(row);
 }
 
 static void show_moment(const struct frame *f)
@@ -181,8 +168,7 @@ static void show_moment(const struct frame *f)
     if (f->packed && cell_repeats(&f->packing.cell)) {
         json_object_set_new(j, "edges", three(f->packing.cell.edge));
         json_object_set_new(j, "rates", three(f->packing.cell.rate));
-        if (f->detected && f->contacts.found)
-            json_object_set_new(j, "stress", stress(&f->packing, &f->contacts));
+        if (f->detected && f->contacts.found) json_object_set_new(j, "stress", stress(f));
     }
     if (f->reported) {
         json_t *r = json_report(&f->report);

@@ -87,11 +87,6 @@ static double fastest(const struct packing *p, bool had)
     return most;
 }
 
-double freedoms_gain(const struct packing *p)
-{
-    return fastest(p, false);
-}
-
 double freedoms_speed(const struct packing *p)
 {
     return fastest(p, true);
@@ -99,7 +94,7 @@ double freedoms_speed(const struct packing *p)
 
 double freedoms_calm(const struct packing *p)
 {
-    return 2 * (p->dt * v3_norm(p->g) + freedoms_gain(p));
+    return 2 * (p->dt * v3_norm(p->g) + fastest(p, false));
 }
 
 void freedoms_free(struct freedoms *list)

@@ -54,9 +54,7 @@ int freedoms_init(struct freedoms *list, const struct packing *p, const vec3 hal
                   struct why *why);
 void freedoms_free(struct freedoms *list);
 
-/* m/s: the largest that loads alone give in a step to what they move along an axis; and with it what the
-   fastest of these has */
-double freedoms_gain(const struct packing *p);
+/* m/s: the largest that what loads move along an axis has at the end of a step by them alone */
 double freedoms_speed(const struct packing *p);
 /* m/s: no contact at rest approaches faster, whatever gravity and loads did to both bodies in a step. */
 double freedoms_calm(const struct packing *p);

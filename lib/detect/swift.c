@@ -11,7 +11,8 @@ enum { STEPS_MOST = 4096 }; /* places of a way: what is faster goes without, and
 static const double CLOSING = 1e-3; /* of the thickness: less closes no gap in the step */
 static const double ALIKE = 1e-6;   /* 1 - cosine: of normals that are one */
 
-double swift_thickness(const struct packing *p, int64_t i)
+/* m */
+static double swift_thickness(const struct packing *p, int64_t i)
 {
     const struct shape *s = packing_shape(p, i);
     double least = INFINITY;

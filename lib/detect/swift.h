@@ -34,9 +34,8 @@ struct swift {
     const struct surface *surface; /* [p->walls] of meshes */
 };
 
-/* m: the radius of a ball inside the body, around its centre; of a clump that of the smallest ball */
-double swift_thickness(const struct packing *p, int64_t i);
-/* Does body i go farther in a step than that, relative to what has at most the velocity `most` (m/s)? */
+/* Does body i go farther in a step than it is thick, relative to what has at most the velocity `most` (m/s)?
+   The thickness is the radius of a ball inside the body, around its centre; of a clump that of the smallest ball. */
 bool swift_is(const struct packing *p, int64_t i, double most);
 /* m/s: that of wall w, with what gravity adds to a body's */
 double swift_beside(const struct packing *p, int32_t w);

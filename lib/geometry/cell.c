@@ -141,7 +141,8 @@ bool cell_moves(const struct cell *c, int k)
     return moves;
 }
 
-void cell_gradient_at(const struct cell *c, double t, double L[3][3])
+/* The velocity gradient at time t (s) */
+static void cell_gradient_at(const struct cell *c, double t, double L[3][3])
 {
     const struct cell_gradient *g = c->gradient;
     int32_t n = c->gradients, k = 0;

@@ -87,8 +87,6 @@ void cell_heights(const struct cell *c, double height[3]);
 bool cell_yields(const struct cell *c);
 /* Does edge k move, or may it at some time? */
 bool cell_moves(const struct cell *c, int k);
-/* The velocity gradient at time t (s) */
-void cell_gradient_at(const struct cell *c, double t, double L[3][3]);
 /* rate = those of the gradient at time t (s); of what yields 0 */
 void cell_set_rate(struct cell *c, double t);
 /* out[3] (m): the edges half a step on, where the contacts act: after `ahead` s at their rates */

@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const drive_signal_name[] = { "speed", "sine", "table", NULL };
-
 int drives_alloc(struct drives *d, int32_t n, int32_t rows, struct why *why)
 {
     drives_free(d);

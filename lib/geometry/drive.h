@@ -20,7 +20,6 @@
 /* DRIVE_SPEED: s = value t, from `from` on. DRIVE_SINE: s = value sin(2 pi frequency t + phase).
    DRIVE_TABLE: s linear between the rows of a table, constant before and after. */
 enum drive_signal { DRIVE_SPEED, DRIVE_SINE, DRIVE_TABLE, DRIVE_SIGNALS };
-extern const char *const drive_signal_name[DRIVE_SIGNALS + 1]; /* the last one NULL */
 
 struct drive {
     int32_t boundary;    /* that it moves, or pushes */

@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const shape_form_name[SHAPE_FORMS] = { "ball", "clump", "capsule", "hull" };
-
 /* Of the radius: faces are flat, and vertices behind them, to this: files of triangles are written in
    single precision, and what overlaps at rest does so by 1e-4. */
 static const double FLAT = 1e-6;

@@ -17,7 +17,6 @@
 #include <stdint.h>
 
 enum shape_form { SHAPE_BALL, SHAPE_CLUMP, SHAPE_CAPSULE, SHAPE_HULL, SHAPE_FORMS };
-extern const char *const shape_form_name[SHAPE_FORMS];
 
 enum {
     SHAPE_VERTICES_MOST = 4096, /* of one shape, so that keys of contacts are 32 bits wide */

@@ -110,17 +110,6 @@ static bool buffer_grow(struct stream *s, size_t room)
     return true;
 }
 
-void stream_close(struct stream *s)
-{
-    if (!s) return;
-    file_close(s);
-    if (s->old) munmap(s->old, s->old_mapped);
-    buffer_free(s);
-    swap_buffers(s);
-    buffer_free(s);
-    free(s);
-}
-
 void stream_unload(const struct stream *s)
 {
     if (s->map && s->size > LARGE) madvise(s->map, s->size, MADV_DONTNEED); // the pages are clean

@@ -56,6 +56,5 @@ bool stream_changed(const struct stream *stream);
 void stream_unload(const struct stream *stream);
 /* The current document is no longer needed: the memory of a large one from a pipe is freed. */
 void stream_release(struct stream *stream);
-void stream_close(struct stream *stream);
 
 #endif

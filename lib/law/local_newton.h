@@ -198,7 +198,7 @@ ALWAYS_INLINE void newton_solve(struct local *l, const struct local_opt *opt,
     for (int i = 0; i < 3; i++) l->r[i] = x.p[i];
 }
 
-/* Z, A, B and the branch at (r, v), for ebp_linearise and eal_linearise: free A = I, sticking 0 */
+/* Z, A, B and the branch at (r, v), as eal_linearise() has them: free A = I, sticking 0 */
 ALWAYS_INLINE enum local_status newton_linearise(vd mu, vd rho, const vd r[3], const vd v[3],
                                                  struct newton_formulation form, vd Z[3],
                                                  vd A[3][3], vd B[3][3])

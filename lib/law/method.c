@@ -1,14 +1,8 @@
-/* law/method.c: the table of the local methods, and each of them in one lane. */
+/* law/method.c: the table of the local methods. */
 #include "law/method.h"
 
 #include "base/eigen.h"
 #include "law/local_eal.h"
-#include "law/local_ebp.h"
-#include "law/local_exact.h"
-#include "law/local_sal.h"
-#include "law/local_sbp.h"
-
-#include <string.h>
 
 const struct method local_sbp = { METHOD_sbp, "sbp",
                                   "standard bi-potential: one projected step of Uzawa", 1.75,
@@ -26,34 +20,6 @@ const struct method local_exact = { METHOD_exact, "exact",
 
 #define METHOD(name) &local_##name,
 const struct method *const methods[] = { EACH_METHOD(METHOD) NULL };
-
-const struct method *method_find(const char *name)
-{
-    for (const struct method *const *m = methods; *m; m++)
-        if (!strcmp((*m)->name, name)) return *m;
-    return NULL;
-}
-
-void method_solve(const struct method *m, struct local *l, const struct local_opt *opt)
-{
-    local_velocity(l, l->r, l->v);
-    l->relax = 1;
-    switch (m->id) {
-#define CASE(name)                                                                                 \
-    case METHOD_##name:                                                                            \
-        name##_solve(l, opt);                                                                      \
-        break;
-        EACH_METHOD(CASE)
-    case METHOD_COUNT:
-        break;
-    }
-}
-
-enum local_status ebp_linearise(double mu, double rho, const double r[3], const double v[3],
-                                double Z[3], double A[3][3], double B[3][3])
-{
-    return newton_linearise(mu, rho, r, v, EBP, Z, A, B);
-}
 
 enum local_status eal_linearise(double mu, double rho, const double r[3], const double v[3],
                                 double Z[3], double A[3][3], double B[3][3])

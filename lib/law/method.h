@@ -20,18 +20,12 @@ struct method {
 /* In the order of their ids, NULL at the end */
 extern const struct method *const methods[];
 extern const struct method local_sbp, local_sal, local_ebp, local_eal, local_exact;
-const struct method *method_find(const char *name); /* NULL when there is none */
-
-/* Solves one contact alone, in one lane, without relaxation; sets l->v = W r + b first. */
-#if LANES == 1
-void method_solve(const struct method *m, struct local *l, const struct local_opt *opt);
 
 /*
- * Z and its derivatives A = dZ/dr, B = dZ/dv at (r, v), as the Newton of EBP and EAL has them
- * [errorpred, predbipo; corrected]; returns the branch. For the tests, which check the derivatives.
+ * Z and its derivatives A = dZ/dr, B = dZ/dv at (r, v), as the Newton of EAL has them [errorpred; corrected];
+ * returns the branch.
  */
-enum local_status ebp_linearise(double mu, double rho, const double r[3], const double v[3],
-                                double Z[3], double A[3][3], double B[3][3]);
+#if LANES == 1
 enum local_status eal_linearise(double mu, double rho, const double r[3], const double v[3],
                                 double Z[3], double A[3][3], double B[3][3]);
 #endif

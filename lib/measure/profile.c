@@ -3,9 +3,6 @@
 #include "measure/measures.h"
 #include "measure/stress.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 static const struct quantity quantities[] = {
     { "from", "m", 1, "where the layer begins, or the shell's inner radius" },
     { "to", "m", 1, "where it ends" },
@@ -37,14 +34,13 @@ static vec3 velocity(const struct packing *p, const struct region *r, double mas
     return v3_scale(1 / mass, sum);
 }
 
-static int add_layer(struct table *t, const struct snapshot *s, const struct region *r, double from,
-                     double to, struct why *why)
+static void add_layer(struct table *t, const struct snapshot *s, const struct region *r, double *at,
+                      const void *none)
 {
     struct moving m;
-    double *at = table_row(t, why);
-    if (!at) return why->status;
+    (void)none;
     moving_of(&m, s, r);
-    put(&at, from), put(&at, to), put(&at, 0.5 * (from + to)), put(&at, (double)m.bodies);
+    put(&at, 0.5 * (at[-2] + at[-1])), put(&at, (double)m.bodies);
     put(&at, solid(s->p, r) / r->volume);
     if (m.bodies) {
         double *next = at;
@@ -56,30 +52,17 @@ static int add_layer(struct table *t, const struct snapshot *s, const struct reg
     at += 7;
     if (!s->s || (!s->s->found && s->s->n)) {
         table_null(t, "no stress: the document has no solved contacts");
-        return 0;
+        return;
     }
     struct tensor T = stress_contacts(s, r);
     for (int k = 0; k < 9; k++) T.x[k / 3][k % 3] += m.kinetic.x[k / 3][k % 3];
     tensor_scale(&T, 1 / r->volume);
     put(&at, tensor_trace(&T) / s->p->dim), put_tensor(&at, &T);
-    return 0;
 }
 
 static int of(struct table *t, const struct snapshot *s, struct why *why)
 {
-    const char *reason = NULL;
-    int64_t n = s->asked->layers;
-    int axis = snapshot_axis(s);
-    struct region *layer = calloc((size_t)n + 1, sizeof *layer);
-    if (!layer) return why_set(why, EX_SOFTWARE, "no memory for layers");
-    if (!snapshot_layers(s, layer, &reason)) table_null(t, "%s", reason);
-    for (int64_t i = 0; !reason && i < n; i++) {
-        double from = axis == 3 ? layer[i].inner : layer[i].lo[axis];
-        double to = axis == 3 ? layer[i].outer : layer[i].hi[axis];
-        if (add_layer(t, s, &layer[i], from, to, why)) break;
-    }
-    free(layer);
-    return why->status;
+    return snapshot_layers(s, t, add_layer, NULL, why);
 }
 
 const struct measure measure_profile = {

@@ -4,7 +4,6 @@
 #include "measure/measures.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 static const struct quantity quantities[] = {
     { "from", "m", 1, "where the layer begins, or the shell's inner radius" },
@@ -26,42 +25,28 @@ static double mean_radius(const struct snapshot *s)
     return n > 0 ? sum / n : NAN;
 }
 
-static int add_layer(struct table *t, const struct snapshot *s, const struct region *layer,
-                     double from, double to, double mean, struct why *why)
+static void add_layer(struct table *t, const struct snapshot *s, const struct region *layer,
+                      double *at, const void *with)
 {
-    double n = 0, sum = 0, least = INFINITY, most = 0, volume = 0, large = 0;
-    double *at = table_row(t, why);
-    if (!at) return why->status;
+    double n = 0, sum = 0, least = INFINITY, most = 0, volume = 0, large = 0,
+           mean = *(const double *)with;
     for (int64_t i = 0; i < s->p->n; i++) {
         double r = s->p->radius[i], v = grain_volume(s->p, i);
         if (!(s->p->mass[i] > 0) || !region_holds(layer, s->p->x[i])) continue;
         n++, sum += r, least = fmin(least, r), most = fmax(most, r);
         volume += v, large += r > mean ? v : 0;
     }
-    put(&at, from), put(&at, to), put(&at, n);
+    put(&at, n);
     if (n > 0)
         put(&at, sum / n), put(&at, least), put(&at, most), put(&at, large / volume);
     else
         table_null(t, "layers without bodies have no sizes");
-    return 0;
 }
 
 static int of(struct table *t, const struct snapshot *s, struct why *why)
 {
-    const char *reason = NULL;
-    int64_t n = s->asked->layers;
-    int axis = snapshot_axis(s);
-    double mean = mean_radius(s);
-    struct region *layer = calloc((size_t)n + 1, sizeof *layer);
-    if (!layer) return why_set(why, EX_SOFTWARE, "no memory for layers");
-    if (!snapshot_layers(s, layer, &reason)) table_null(t, "%s", reason);
-    for (int64_t i = 0; !reason && i < n; i++) {
-        double from = axis == 3 ? layer[i].inner : layer[i].lo[axis];
-        double to = axis == 3 ? layer[i].outer : layer[i].hi[axis];
-        if (add_layer(t, s, &layer[i], from, to, mean, why)) break;
-    }
-    free(layer);
-    return why->status;
+    const double mean = mean_radius(s);
+    return snapshot_layers(s, t, add_layer, &mean, why);
 }
 
 const struct measure measure_sizes = {

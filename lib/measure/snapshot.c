@@ -1,6 +1,7 @@
 #include "measure/snapshot.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 void snapshot_init(struct snapshot *s, const struct packing *p, const struct contacts *contacts,
                    bool moved, const struct asked *asked)
@@ -21,14 +22,28 @@ int snapshot_axis(const struct snapshot *s)
     return axis;
 }
 
-bool snapshot_layers(const struct snapshot *s, struct region *layer, const char **reason)
+int snapshot_layers(const struct snapshot *s, struct table *t, layer_function *add,
+                    const void *with, struct why *why)
 {
+    const char *reason = NULL;
+    int64_t n = s->asked->layers;
     int axis = snapshot_axis(s);
-    if (axis < 3 && axis >= s->p->dim) {
-        *reason = "in the plane there are no layers along z";
-        return false;
-    }
+    struct region *layer = calloc((size_t)n + 1, sizeof *layer);
+    if (!layer) return why_set(why, EX_SOFTWARE, "no memory for layers");
     if (axis == 3)
-        return region_shells(layer, s->asked->layers, &s->region, s->p, s->asked->point, reason);
-    return region_layers(layer, s->asked->layers, &s->region, s->p, axis, reason);
+        region_shells(layer, n, &s->region, s->p, s->asked->point, &reason);
+    else if (axis < s->p->dim)
+        region_layers(layer, n, &s->region, s->p, axis, &reason);
+    else
+        reason = "in the plane there are no layers along z";
+    if (reason) table_null(t, "%s", reason);
+    for (int64_t i = 0; !reason && i < n; i++) {
+        double *at = table_row(t, why);
+        if (!at) break;
+        put(&at, axis == 3 ? layer[i].inner : layer[i].lo[axis]);
+        put(&at, axis == 3 ? layer[i].outer : layer[i].hi[axis]);
+        add(t, s, &layer[i], at, with);
+    }
+    free(layer);
+    return why->status;
 }

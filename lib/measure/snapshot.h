@@ -9,6 +9,7 @@
 #include "bodies/packing.h"
 #include "measure/kept.h"
 #include "measure/region.h"
+#include "measure/table.h"
 
 /* What the user asks for beside the measures' names; the same for all frames */
 struct asked {
@@ -37,8 +38,12 @@ struct snapshot {
 void snapshot_init(struct snapshot *s, const struct packing *p, const struct contacts *contacts,
                    bool moved, const struct asked *asked);
 
-/* The layers asked for, layer[asked->layers]; false, with a reason, where they are not possible. */
-bool snapshot_layers(const struct snapshot *s, struct region *layer, const char **reason);
+/* A row of t for each layer asked for: its beginning and end (m), and what add() puts behind them, at `at`; a reason
+   in t where there are no such layers. Returns 0 or EX_SOFTWARE. */
+typedef void layer_function(struct table *t, const struct snapshot *s, const struct region *layer,
+                            double *at, const void *with);
+int snapshot_layers(const struct snapshot *s, struct table *t, layer_function *add,
+                    const void *with, struct why *why);
 /* The axis of layers: the asked one, or the one nearest to up */
 int snapshot_axis(const struct snapshot *s);
 

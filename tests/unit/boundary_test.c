@@ -315,7 +315,7 @@ static void test_velocity(void)
 static struct step_opt options(void)
 {
     return (struct step_opt){ .solve = { .global = &solver_nlgs,
-                                         .method = method_find("exact"),
+                                         .method = &local_exact,
                                          .criterion = CRITERION_NATURAL,
                                          .eps = 1e-12,
                                          .max_sweeps = 20000,
