@@ -61,6 +61,8 @@ struct sheaf {
     struct output file; /* where that is no standard output */
     int64_t moments;
     bool contacts, solved;
+    const struct format *format; /* of the moments in it */
+    void *kept;                  /* by that, until the end */
 };
 
 static void sheaf_open(struct sheaf *s, const char *name)
@@ -73,6 +75,7 @@ static void sheaf_open(struct sheaf *s, const char *name)
 static void sheaf_close(struct sheaf *s)
 {
     struct why why = { 0 };
+    if (s->moments && s->format->end && s->format->end(s->out, s->kept, &why)) die_why(&why);
     if (s->out == stdout)
         finish_stdout();
     else if (output_stream_close(&s->file, s->out, &why))
@@ -84,7 +87,7 @@ static void sheaf_add(struct sheaf *s, const struct format *format, enum part wh
                       const struct frame *f)
 {
     struct why why = { 0 };
-    struct moment m = { &f->packing, f->detected ? &f->contacts : NULL, (int)detail };
+    struct moment m = { &f->packing, f->detected ? &f->contacts : NULL, (int)detail, &s->kept };
     bool solved = m.contacts && m.contacts->found;
     if (s->moments && !format->joins)
         die_usage("a %s file holds one frame: --last, --steps, or a series -o 'f%%05d.%s'",
@@ -97,7 +100,7 @@ static void sheaf_add(struct sheaf *s, const struct format *format, enum part wh
     if (s->moments && what == PART_CONTACTS && s->solved != solved)
         die(EX_DATAERR, "step %lld: contacts solved and unsolved in one table",
             (long long)f->packing.step);
-    if (!s->moments) s->solved = solved;
+    if (!s->moments) s->solved = solved, s->format = format;
     if (format->write(s->out, &m, what, !s->moments, &why))
         die(why.status, "step %lld: %s", (long long)f->packing.step, why.text);
     s->moments++;

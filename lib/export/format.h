@@ -22,10 +22,13 @@ struct format {
      * EX_SOFTWARE when memory is short.
      */
     int (*write)(FILE *out, const struct moment *m, enum part part, bool first, struct why *why);
+    /* What comes behind the last moment of a file, by what `write` has kept (*m->kept), which it frees; NULL:
+       nothing does. */
+    int (*end)(FILE *out, void *kept, struct why *why);
 };
 
 extern const struct format format_vtp, format_vtu, format_xyz, format_lammps, format_csv,
-    format_tsv, format_stl;
+    format_tsv, format_stl, format_gsd;
 
 /* The k-th from 0; NULL behind the last. */
 const struct format *format_at(int k);

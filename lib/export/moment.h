@@ -15,6 +15,7 @@ struct moment {
     const struct packing *packing;
     const struct contacts *contacts; /* NULL: there are none in the document */
     int detail;                      /* of balls made of triangles: 20 * 4^detail of them */
+    void **kept;                     /* what a format keeps from moment to moment of its file */
 };
 
 /*
