@@ -87,5 +87,178 @@ def gsd_shapes(document, path):
         assert seen == {1, 2, 3}, seen
 
 
+# ---- VTKHDF ----
+
+TOPOLOGIES = "Vertices", "Lines", "Polygons", "Strips"
+
+
+def text_of(group, name):
+    """VTK takes only text of fixed length in ASCII."""
+    import h5py
+    kind = h5py.check_string_dtype(group.attrs.get_id(name).dtype)
+    assert kind.encoding == "ascii" and kind.length, kind
+    return group.attrs[name].decode()
+
+
+def check_structure(block, composite=False):
+    """Literally what VTK's specification asks of temporal PolyData."""
+    assert text_of(block, "Type") == "PolyData"
+    version = block.attrs["Version"]
+    assert version.dtype.kind == "i" and version.shape == (2,) and version[0] == 2
+    steps = block["Steps"]
+    F = int(steps.attrs["NSteps"])
+    parts = len(block["NumberOfPoints"])
+    assert steps["Values"].shape == (F,) and np.all(np.diff(steps["Values"][()]) > 0)
+    for name, shape in dict(PartOffsets=(F,), NumberOfParts=(F,), PointOffsets=(F,), CellOffsets=(F, 4),
+                            ConnectivityIdOffsets=(F, 4)).items():
+        assert steps[name].shape == shape and steps[name].dtype.kind == "i", name
+    assert block["Points"].ndim == 2 and block["Points"].shape[1] == 3
+    for name in TOPOLOGIES:
+        cells, ids = block[name]["NumberOfCells"][()], block[name]["NumberOfConnectivityIds"][()]
+        assert cells.shape == ids.shape == (parts,)
+        assert block[name]["Offsets"].shape == (np.sum(cells + 1),)  # sum of (S(i) + 1)
+        assert block[name]["Connectivity"].shape == (ids.sum(),)
+    for name, array in block.get("PointData", {}).items():
+        offsets = steps.get("PointDataOffsets/" + name)
+        at = steps["PointOffsets"][()] if offsets is None else offsets[()]
+        n = np.array([block["NumberOfPoints"][p] for p in steps["PartOffsets"][()]])
+        assert at.shape == (F,) and np.all(at + n <= len(array)), name
+    return F
+
+
+def vtk_step(block, f):
+    """Step f as vtkHDFReader of VTK 9.3 (where part p has p entries of Offsets before it) reads PolyData, and of
+    VTK 9.5, which counts the parts before by their cells; both have to agree."""
+    steps = block["Steps"]
+    part, parts = int(steps["PartOffsets"][f]), int(steps["NumberOfParts"][f])
+    assert parts == 1
+    n, at = int(block["NumberOfPoints"][part]), int(steps["PointOffsets"][f])
+    out = {"points": block["Points"][at:at + n]}
+    starts = [int(k) for k in steps["CellOffsets"][f]]
+    count = 0
+    for k, name in enumerate(TOPOLOGIES):
+        sizes = block[name]["NumberOfCells"][()]
+        cells, ids = int(sizes[part]), int(block[name]["NumberOfConnectivityIds"][part])
+        before, total = 0, 0
+        for size in sizes[:part]:
+            if total >= starts[k]:
+                break
+            before, total = before + 1, total + size
+        first = int(steps["ConnectivityIdOffsets"][f][k])
+        connectivity = block[name]["Connectivity"][first:first + ids]
+        if cells:
+            assert before == part or not starts[k], (before, part)
+            offsets = block[name]["Offsets"][starts[k] + before:][:cells + 1]
+            assert np.array_equal(offsets, block[name]["Offsets"][starts[k] + part:][:cells + 1])
+            assert offsets[0] == 0 and offsets[-1] == ids and np.all(np.diff(offsets) > 0)
+            assert connectivity.min() >= 0 and connectivity.max() < n
+            out[name] = np.split(connectivity, offsets[1:-1])
+        count += cells
+    for kind, size, start in ("PointData", n, at), ("CellData", count, sum(starts)):
+        for name, array in block.get(kind, {}).items():
+            offsets = steps.get(f"{kind}Offsets/{name}")
+            first = start if offsets is None else int(offsets[f])
+            out[name] = array[first:first + size]
+            assert len(out[name]) == size
+    return out
+
+
+def same(a, b):
+    assert np.array_equal(np.asarray(a), np.asarray(b)), (a, b)
+
+
+def check_grains(block, frames):
+    for f, frame in enumerate(frames):
+        s = vtk_step(block, f)
+        assert block["Steps/Values"][f] == frame.time
+        same(s["points"], frame.x)
+        same(np.concatenate(s.get("Vertices", [np.zeros(0)])), np.arange(len(frame.id)))
+        for name, value in dict(radius=frame.radius, mass=frame.mass, id=frame.id, kind=frame.kind, velocity=frame.v,
+                                angular_velocity=frame.w, orientation=frame.q).items():
+            same(s[name], value)
+
+
+def vtkhdf(document):
+    """/VTKHDF of grains alone."""
+    frames = list(nsd.frames(document))
+    block = frames[0].file["VTKHDF"]
+    assert check_structure(block) == len(frames)
+    check_grains(block, frames)
+
+
+def not_stored_twice(document):
+    """Where bodies stay: hard links and virtual datasets in this very file."""
+    import h5py
+    with h5py.File(document) as f:
+        for name, other in dict(radius="radius", mass="mass", id="id", kind="species").items():
+            assert f["VTKHDF/PointData/" + name] == f["particles/all/" + other]
+        for name in "Points", "PointData/velocity", "PointData/orientation", "PointData/angular_velocity":
+            set_ = f["VTKHDF/" + name]
+            assert set_.is_virtual and all(s.file_name == "." for s in set_.virtual_sources())
+
+
+def volume_of(points, polygons):
+    total = 0.0
+    for p in polygons:
+        x = points[p].astype(float)
+        for k in range(1, len(p) - 1):
+            total += np.dot(x[0], np.cross(x[k], x[k + 1])) / 6
+    return total
+
+
+def blocks(document, density):
+    """The collection: grains, surfaces that hold the grains' mass, and walls; VTK's order of the blocks."""
+    import h5py
+    frames = list(nsd.frames(document))
+    top = frames[0].file["VTKHDF"]
+    assert text_of(top, "Type") == "PartitionedDataSetCollection" and list(top.attrs["Version"]) == [2, 1]
+    flags = h5py.h5p.CRT_ORDER_TRACKED | h5py.h5p.CRT_ORDER_INDEXED
+    for group in top, top["Assembly"]:
+        assert group.id.get_create_plist().get_link_creation_order() == flags
+    for k, name in enumerate(("grains", "surfaces", "boundary")):
+        assert top[name].attrs["Index"] == k
+        assert isinstance(top["Assembly"].get(name, getlink=True), h5py.SoftLink)
+        assert check_structure(top[name]) == len(frames)
+        assert top["Assembly/" + name] == top[name]
+    check_grains(top["grains"], frames)
+    for f, frame in enumerate(frames):
+        s, shape = vtk_step(top["surfaces"], f), vtk_step(top["grains"], f)["shape"]
+        for i in np.flatnonzero(shape):
+            mine = [p for p, owner in zip(s["Polygons"], s["id"]) if owner == frame.id[i]]
+            near(volume_of(s["points"], mine) * density, frame.mass[i], frame.mass[i], 1e-5)
+        walls = vtk_step(top["boundary"], f)
+        assert len(walls.get("Polygons", [])) == len(walls["boundary"]) > 0
+
+
+def vtk_reads(document, copy):
+    """VTK 9.1 knows no PolyData. What it knows of VTKHDF is the unstructured grid: with our points, behind the 512
+    bytes, as virtual dataset and by the hard links."""
+    import shutil
+    import h5py
+    import vtk
+    from vtk.util.numpy_support import vtk_to_numpy
+    frame = nsd.last(document)
+    shutil.copy(document, copy)
+    with h5py.File(copy, "r+") as f:
+        assert f.userblock_size == 512
+        top, n = f["VTKHDF"], len(frame.id)
+        assert top["Steps"].attrs["NSteps"] == 1
+        for name, value in ("Type", np.bytes_("UnstructuredGrid")), ("Version", np.array([1, 0])):
+            del top.attrs[name]
+            top.attrs[name] = value
+        for name in "Connectivity", "Offsets", "NumberOfCells", "NumberOfConnectivityIds":
+            top[name] = top["Vertices/" + name]
+        top["Types"] = np.ones(n, np.uint8)  # VTK_VERTEX
+    reader = vtk.vtkHDFReader()
+    assert reader.CanReadFile(copy)
+    reader.SetFileName(copy)
+    reader.Update()
+    out = reader.GetOutput()
+    same(vtk_to_numpy(out.GetPoints().GetData()), frame.x)
+    assert out.GetNumberOfCells() == n
+    for name, value in dict(radius=frame.radius, id=frame.id, velocity=frame.v, orientation=frame.q).items():
+        same(vtk_to_numpy(out.GetPointData().GetArray(name)), value)
+
+
 if __name__ == "__main__":
-    globals()[sys.argv[1]](*sys.argv[2:])
+    globals()[sys.argv[1]](*[float(a) if a.replace(".", "", 1).isdigit() else a for a in sys.argv[2:]])

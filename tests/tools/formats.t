@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Formats that other programs open, each by a reader that is not ours: HOOMD's GSD by python3-gsd.
+# Formats that other programs open, each by a reader that is not ours: HOOMD's GSD by python3-gsd; /VTKHDF by h5py,
+# against VTK's specification and as its reader goes about it, and by VTK itself as far as Debian's, 9.1, knows it.
 # shellcheck source=tests/support/tap.sh disable=SC2317,SC2016 # functions called by name; jq's variables
 . tests/support/tap.sh
 
@@ -31,4 +32,26 @@ pipe() { nsd-export --to gsd "$1" | cat; return "${PIPESTATUS[0]}"; }
 refuses 64 "GSD has its index behind all frames: not into a pipe" pipe "$tmp/balls.h5"
 jq '.cell.gradient = [[0, 0], [1, 0]]' scenes/shear.json | nsd-gen - | nsd-step -n 100 --every 100 >"$tmp/turned.h5" 2>/dev/null
 refuses 65 "a cell whose first edge has left x is no box of GSD" nsd-export --last -o "$tmp/none.gsd" "$tmp/turned.h5"
+
+# ---- /VTKHDF in a document ----
+
+nsd-cat --vtk grains "$tmp/balls.h5" >"$tmp/balls.v.h5"
+other "/VTKHDF of balls is as VTK's specification has it, and its numbers the document's" h5py vtkhdf "$tmp/balls.v.h5"
+other "nothing of it is stored twice" h5py not_stored_twice "$tmp/balls.v.h5"
+nsd-cat --vtk grains --last "$tmp/balls.h5" >"$tmp/one.v.h5"
+other "of one frame, too" h5py vtkhdf "$tmp/one.v.h5"
+other "VTK 9.1 reads a copy that says it is an unstructured grid" vtk vtk_reads "$tmp/one.v.h5" "$tmp/grid.h5"
+jq '.pour[0].from = 0.005' scenes/pour.json | nsd-gen - | nsd-step -n 400 --every 50 >"$tmp/pour.h5" 2>/dev/null
+is "a run begins without a grain" "$(nsd-info "$tmp/pour.h5" | jq -s 'map(select(.step != null).bodies) | [.[0] == 0, last > 0]' -c)" "[true,true]"
+nsd-cat --vtk grains "$tmp/pour.h5" >"$tmp/pour.v.h5"
+other "grains that come and go have a part each frame" h5py vtkhdf "$tmp/pour.v.h5"
+jq '.bodies = (.bodies[:2] | map(.count = 6))' scenes/rubble.json | nsd-gen - | nsd-step -n 8 --every 2 2>/dev/null >"$tmp/rubble.h5"
+nsd-cat --vtk all "$tmp/rubble.h5" >"$tmp/rubble.v.h5"
+density=$(jq '.density // 2500' scenes/rubble.json)
+other "with surfaces it is a collection; they hold the grains' mass" h5py blocks "$tmp/rubble.v.h5" "$density"
+nsd-cat "$tmp/balls.v.h5" >"$tmp/again.h5"
+ok "a copy without it has the bytes of the first" cmp "$tmp/again.h5" "$tmp/balls.h5"
+ok "through a pipe it is in each document" sh -c "nsd-cat --vtk grains --stream '$tmp/balls.h5' | nsd-cat --vtk grains > '$tmp/piped.h5'"
+ok "and a trajectory of them has the same bytes" cmp "$tmp/piped.h5" "$tmp/balls.v.h5"
+ok "a run goes on from it" sh -c "nsd-step -n 1 '$tmp/balls.v.h5' 2>/dev/null | nsd-info >'$tmp/info'"
 done_testing
