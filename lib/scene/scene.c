@@ -12,7 +12,8 @@ void scene_free(struct scene *s)
         struct scene_bodies *b = &s->bodies[i];
         scene_size_free(&b->size);
         if (b->document) packing_free(b->document);
-        free(b->document), free(b->file);
+        for (int32_t k = 0; k < b->types; k++) free(b->type[k].name);
+        free(b->document), free(b->file), free(b->type);
     }
     for (int32_t i = 0; i < s->pours; i++) scene_size_free(&s->pour[i].size);
     free(s->pour), free(s->removal);

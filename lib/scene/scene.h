@@ -34,6 +34,10 @@
  *                                      # begins a comment, the first may name columns, see below
  *   { document: string, frame: integer, at_rest: true | false }      the bodies of a document
  *                                      [nsd-format(5)]: frame [-1], -1 is the last, 0 the first
+ *   { import: string, frame, at_rest, types: { "1": NAME, ... }, repeats: [true | false, ...] }   the balls of a
+ *                                      file of another program [import/import_file.h]: types are its numbers of
+ *                                      materials [the kind of that name; "ball" where there is one type], repeats
+ *                                      along which edges its box is periodic [as it says, else none]
  *   a relative name starts at the scene
  * with, for each of its bodies,
  *   v vector [0] m/s; w vector, or a number where dim is 2 [0] rad/s; kind NAME ["ball"];
@@ -169,6 +173,13 @@ struct scene_bodies {
     double phi;    /* SCENE_RANDOM: share of the box that is filled; 0: count bodies */
     int64_t frame; /* SCENE_DOCUMENT: from 0, or from the end: -1 is the last */
     bool at_rest;  /* SCENE_DOCUMENT: without its velocities */
+    bool foreign;  /* SCENE_DOCUMENT: the file is another program's */
+    bool has_repeats, repeats[3];
+    int32_t types; /* kinds that its types are */
+    struct scene_type {
+        char *name; /* as the file counts it: "1" */
+        int32_t kind;
+    } * type;                                            /* [types] */
     bool has_v, has_w, has_kind, has_density, has_fixed; /* given for all bodies of the group */
     /* SCENE_DOCUMENT: the frame, which whoever can read documents puts here before the scene is
        built; owned */
