@@ -143,9 +143,11 @@ static void read_frame(struct frame *f, char *path, int64_t k)
 static void read_foreign(struct scene_bodies *b, int space, const char *path)
 {
     struct why why = { 0 };
+    struct import_said said;
     struct import_wish wish = { .dim = space, .frame = b->frame, .has_repeats = b->has_repeats };
     for (int k = 0; k < 3; k++) wish.repeats[k] = b->repeats[k];
-    if (import_file(b->document, path, &wish, &why)) die_why(&why);
+    if (import_file(b->document, path, &wish, &said, &why)) die_why(&why);
+    b->unsaid = !said.masses;
 }
 
 static void read_document(struct scene_bodies *b, int space, const char *dir)
@@ -168,21 +170,38 @@ static void read_document(struct scene_bodies *b, int space, const char *dir)
 
 /* ---- the file of another program alone ---- */
 
-/* {"dt": "auto", "kinds": {"1": {}, ...}, "bodies": [{"import": FILE}]}, with the kinds that the file has */
-static void scene_around(struct scene *s, struct packing *p, const char *path)
+/* What the file says of each pair of kinds */
+static json_t *pairs_json(const struct packing *p)
+{
+    json_t *list = json_array();
+    for (int32_t i = 0; i < p->kinds; i++)
+        for (int32_t j = i; j < p->kinds; j++) {
+            const int32_t k = i * p->kinds + j;
+            json_array_append_new(list, json_pack("{s:[s, s], s:f, s:f, s:f}", "pair",
+                                                  p->kind_name[i], p->kind_name[j], "mu", p->mu[k],
+                                                  "e_n", p->en[k], "e_t", p->et[k]));
+        }
+    return list;
+}
+
+/* A scene of the file alone, with the kinds that it has, and its time step, gravity and friction where it says them */
+static void scene_around(struct scene *s, struct packing *p, const struct import_said *said,
+                         const char *path)
 {
     struct why why = { 0 };
     json_t *kinds = json_object();
-    for (int32_t k = 0; k < p->kinds; k++)
+    for (int32_t k = 0; k < p->kinds && (p->kinds > 1 || said->laws); k++)
         json_object_set_new(kinds, p->kind_name[k], json_object());
-    if (p->kinds < 2) json_object_clear(kinds);
     json_t *scene =
-        json_pack("{s:s, s:o, s:[{s:s}]}", "dt", "auto", "kinds", kinds, "bodies", "import", path);
+        json_pack("{s:o, s:o, s:[{s:s}]}", "dt", said->dt ? json_real(p->dt) : json_string("auto"),
+                  "kinds", kinds, "bodies", "import", path);
+    if (said->gravity) json_object_set_new(scene, "gravity", json_vec(p->g));
+    if (said->laws) json_object_set_new(scene, "pairs", pairs_json(p));
     char *text = scene ? json_dumps(scene, JSON_COMPACT) : NULL;
     if (!text) die(EX_DATAERR, "%s: a name that is no UTF-8", path);
     if (scene_parse(s, text, strlen(text), NULL, &why)) die_why(&why);
     free(text), json_decref(scene);
-    s->bodies[0].document = p;
+    s->bodies[0].document = p, s->bodies[0].unsaid = !said->masses;
 }
 
 static void read_from(struct scene *s, const char *path)
@@ -190,9 +209,10 @@ static void read_from(struct scene *s, const char *path)
     struct why why = { 0 };
     struct packing *p = calloc(1, sizeof *p);
     const struct import_wish wish = { .dim = (int)dim, .frame = -1 };
+    struct import_said said;
     if (!p) die(EX_SOFTWARE, "no memory for a packing");
-    if (import_file(p, path, &wish, &why)) die_why(&why);
-    scene_around(s, p, path);
+    if (import_file(p, path, &wish, &said, &why)) die_why(&why);
+    scene_around(s, p, &said, path);
 }
 
 /* As a reason, for the name is out of a file */

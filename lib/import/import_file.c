@@ -1,6 +1,7 @@
 #include "import/import_file.h"
 
 #include "import/import_format.h"
+#include "import/ondem_read.h"
 #include "io/bounded.h"
 
 #include <errno.h>
@@ -195,8 +196,15 @@ static int open_plain(const char *path, int64_t *size, struct why *why)
 }
 
 int import_file(struct packing *p, const char *path, const struct import_wish *wish,
-                struct why *why)
+                struct import_said *said, struct why *why)
 {
+    *said = (struct import_said){ 0 };
+    if (ondem_looks(path)) {
+        if (wish->frame != -1 && wish->frame != 0)
+            return why_set(why, EX_DATAERR, "%s: no frame %lld: there is one", path,
+                           (long long)wish->frame);
+        return ondem_read(p, path, wish->dim, said, why);
+    }
     struct work f = { .path = path, .frame = wish->frame };
     void *answer = NULL;
     size_t n = 0;

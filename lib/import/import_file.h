@@ -7,6 +7,7 @@
 #define NSD_IMPORT_FILE_H
 
 #include "bodies/packing.h"
+#include "import/imported.h"
 
 /* Which frame of it, and what it does not say itself */
 struct import_wish {
@@ -18,11 +19,12 @@ struct import_wish {
 };
 
 /*
- * p = the balls of the file at path. Kinds are named by the file's numbers for them, "1", "2" ...; a mass that is 0 is
- * not said; the cell is the box, where it is periodic. Returns 0, EX_DATAERR, EX_NOINPUT or EX_SOFTWARE.
+ * p = the balls of the file at path; ON-DEM's also have other shapes and walls. Kinds are named by the file's numbers
+ * for them, "1", "2" ..., ON-DEM's by their labels; masses as *said has
+ * it; the cell is the box, where it is periodic. Returns 0, EX_DATAERR, EX_NOINPUT or EX_SOFTWARE.
  */
 int import_file(struct packing *p, const char *path, const struct import_wish *wish,
-                struct why *why);
+                struct import_said *said, struct why *why);
 
 /* Of n bytes with a 0 behind them, as of a file of this name, in this process: for who tests the readers */
 int import_bytes(struct packing *p, const char *name, const char *bytes, int64_t n,

@@ -10,6 +10,7 @@ enum {
     VERTICES = 0,
     LINES = 1,
     POLYGONS = 2,
+    MINOR = 1,        /* of the version 2.1 of VTKHDF, the first with collections */
     PARTS_MOST = 4,   /* with the grains */
     CHUNK_ROWS = 4096 /* of what grows: 96 KiB of points */
 };
@@ -89,8 +90,7 @@ static int failed(const char *path, struct why *why)
 
 /* ---- groups, and datasets that grow ---- */
 
-/* VTK lists blocks in the order in which they were made. */
-static int ordered_group(hid_t file, const char *path, struct why *why)
+int vtkhdf_group(hid_t file, const char *path, struct why *why)
 {
     if (h5_has(file, path)) return 0;
     hid_t plist = H5Pcreate(H5P_GROUP_CREATE);
@@ -114,9 +114,9 @@ static int ascii(hid_t file, const char *path, const char *name, const char *tex
     return good ? 0 : failed(path, why);
 }
 
-static int type_of(hid_t file, const char *path, const char *type, struct why *why)
+int vtkhdf_type(hid_t file, const char *path, const char *type, int minor, struct why *why)
 {
-    const int64_t version[2] = { 2, 1 };
+    const int64_t version[2] = { 2, minor };
     return ascii(file, path, "Type", type, why) ||
            h5_attr(file, path, "Version", H5T_NATIVE_INT64, 2, version, why);
 }
@@ -330,13 +330,13 @@ static int begin_blocks(struct vtkhdf *v, hid_t file, const struct packing *p, s
 {
     v->varies = packing_varies(p), v->bodies = p->n, v->shapes = p->shape != NULL;
     v->block[0].name = v->parts ? grains_block : grains_alone;
-    if (ordered_group(file, "/VTKHDF", why) || (v->parts && ordered_group(file, grains_block, why)))
+    if (vtkhdf_group(file, "/VTKHDF", why) || (v->parts && vtkhdf_group(file, grains_block, why)))
         return why->status;
     for (int k = 0; v->parts && k < v->parts->count; k++) {
         v->block[1 + k].name = v->parts->name[k];
         v->block[1 + k].single = single_will_do(p);
         v->block[1 + k].topology = POLYGONS;
-        if (ordered_group(file, v->parts->name[k], why)) return why->status;
+        if (vtkhdf_group(file, v->parts->name[k], why)) return why->status;
     }
     return 0;
 }
@@ -509,19 +509,19 @@ static int end_block(struct block *b, hid_t file, struct why *why)
 /* The collection: the order of its blocks, and under which names VTK shows them */
 static int collect(const struct vtkhdf *v, hid_t file, struct why *why)
 {
-    if (ordered_group(file, "/VTKHDF/Assembly", why)) return why->status;
+    if (vtkhdf_group(file, "/VTKHDF/Assembly", why)) return why->status;
     for (int k = 0; k <= v->parts->count; k++) {
         const char *block = v->block[k].name;
         char path[120];
         snprintf(path, sizeof path, "/VTKHDF/Assembly/%s", strrchr(block, '/') + 1);
         int32_t index = k;
-        if (type_of(file, block, "PolyData", why) ||
+        if (vtkhdf_type(file, block, "PolyData", MINOR, why) ||
             h5_attr(file, block, "Index", H5T_NATIVE_INT32, -1, &index, why))
             return why->status;
         if (H5Lcreate_soft(block, file, path, H5P_DEFAULT, H5P_DEFAULT) < 0)
             return failed(path, why);
     }
-    return type_of(file, "/VTKHDF", "PartitionedDataSetCollection", why);
+    return vtkhdf_type(file, "/VTKHDF", "PartitionedDataSetCollection", MINOR, why);
 }
 
 int vtkhdf_end(struct vtkhdf *v, hid_t file, struct why *why)
@@ -531,7 +531,8 @@ int vtkhdf_end(struct vtkhdf *v, hid_t file, struct why *why)
         for (int k = 1; !bad && v->parts && k <= v->parts->count; k++)
             bad = end_block(&v->block[k], file, why);
         if (!bad)
-            bad = v->parts ? collect(v, file, why) : type_of(file, grains_alone, "PolyData", why);
+            bad = v->parts ? collect(v, file, why)
+                           : vtkhdf_type(file, grains_alone, "PolyData", MINOR, why);
     }
     reset(v);
     return why->status;

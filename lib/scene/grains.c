@@ -34,10 +34,10 @@ static int32_t kind_named(const struct scene *s, const char *name)
     return -1;
 }
 
-/* The kind of a body of another program's file: as "types" has it, else of that name, else the only one */
-static int32_t kind_of_type(const struct scene *s, const struct scene_bodies *b, int32_t k)
+int32_t grains_kind(const struct scene *s, const struct scene_bodies *b, int32_t k)
 {
     const struct packing *p = b->document;
+    if (!b->foreign) return kind_named(s, p->kind_name[k]);
     for (int32_t i = 0; i < b->types; i++)
         if (!strcmp(b->type[i].name, p->kind_name[k])) return b->type[i].kind;
     int32_t kind = kind_named(s, p->kind_name[k]);
@@ -54,10 +54,8 @@ static int add_body(struct grains *out, const struct scene *s, const struct scen
     g.has_v = g.has_w = true;
     if (!b->at_rest) g.v = p->v[i], g.w = p->w[i];
     g.weighs = true, g.mass = p->mass[i], g.inertia = p->inertia[i], g.fixed = p->mass[i] == 0;
-    if (b->foreign && g.mass == 0) g.weighs = g.fixed = false; // it is not said
-    g.kind = b->has_kind  ? b->kind
-             : b->foreign ? kind_of_type(s, b, p->kind[i])
-                          : kind_named(s, p->kind_name[p->kind[i]]);
+    if (b->unsaid && g.mass == 0) g.weighs = g.fixed = false;
+    g.kind = b->has_kind ? b->kind : grains_kind(s, b, p->kind[i]);
     if (g.kind < 0 && b->foreign)
         return why_set(why, EX_DATAERR,
                        "%s: ball %lld is of type %s: which kind is that? \"types\": {\"%s\": NAME}",

@@ -260,5 +260,102 @@ def vtk_reads(document, copy):
         same(vtk_to_numpy(out.GetPointData().GetArray(name)), value)
 
 
+# ---- ON-DEM ----
+
+def ondem(document, path):
+    """As ON-DEM's working group describes it (layout of October 2026), column by column."""
+    import h5py
+    frame = nsd.last(document)
+    with h5py.File(path) as f:
+        top, scene = f["VTKHDF"], f["ONDEM/Scene"]
+        assert text_of(top, "Type") == "MultiBlockDataSet" and list(top.attrs["Version"]) == [2, 5]
+        assert [n for n in scene["display_group_names"].asstr()] == list(top["Assembly"]) == ["Points", "Others"]
+        names = list(scene["shape_names"].asstr())
+        assert scene.attrs["time"] == frame.time and scene.attrs["iteration"] == frame.step
+        same(scene["gravity"], frame.gravity)
+        columns, rows = None, {}
+        for name in top["Assembly"]:
+            assert isinstance(top["Assembly"].get(name, getlink=True), h5py.SoftLink)
+            block = top["Assembly"][name]
+            assert text_of(block, "Type") == "PolyData" and block["Points"].dtype == np.float64
+            n = int(block["NumberOfPoints"][0])
+            for topology in TOPOLOGIES:
+                cells = n if topology == "Vertices" else 0
+                assert block[topology]["NumberOfCells"][0] == block[topology]["NumberOfConnectivityIds"][0] == cells
+                same(block[topology]["Connectivity"], np.arange(cells)), same(block[topology]["Offsets"], np.arange(cells + 1))
+            data = block["PointData"]
+            assert columns in (None, set(data)), "each block has the same columns"
+            columns = set(data)
+            assert data["orientation"].attrs["order"] == "wxyz"
+            for i in range(n):
+                row = {k: v[i] for k, v in data.items()}
+                row["x"], row["group"], row["shape"] = block["Points"][i], name, names[row["shape_type"]]
+                rows[int(row["body_id"])] = row
+        for i, id_ in enumerate(frame.id):
+            r = rows[id_]
+            same(r["x"], frame.x[i]), same(r["velocity"], frame.v[i]), same(r["angular_velocity"], frame.w[i])
+            same(r["orientation"], frame.q[i]), same(r["mass"], frame.mass[i])
+            assert r["clump_id"] == -1 and r["blocked_dofs"] == (0 if frame.mass[i] else 63)
+            near(np.trace(r["inertia"].reshape(3, 3)) / 3, frame.inertia[i], frame.inertia[i], 1e-14)
+            assert (r["group"] == "Points") == (r["shape"] == "sphere")
+            assert r["radius"] == frame.radius[i] if r["shape"] == "sphere" else np.isnan(r["radius"])
+            if r["shape"] == "box":
+                near(np.prod(r["dimensions"]), r["volume"], r["volume"], 1e-12)
+            if r["shape"] == "clump":
+                members = [m for m in rows.values() if m["clump_id"] == id_]
+                assert len(members) > 1
+                for m in members:
+                    away = turn(frame.q[i:i + 1], m["clump_relative_position"][None])[0]
+                    near(m["x"], frame.x[i] + away, 1, 1e-14)
+                    near(m["velocity"], frame.v[i] + np.cross(frame.w[i], away), 1, 1e-14)
+        for r in rows.values():
+            if r["shape"] == "wall":
+                assert r["wall_axis"] in (0, 1, 2) and abs(r["wall_sense"]) == 1
+        for key, m in f["ONDEM/Materials"].items():
+            assert m["id"][()] == int(key) and m["shear_friction"][()] == f["nsd/material/mu"][int(key), int(key)]
+        if frame.contacts is not None:
+            it, c = f["ONDEM/Interactions/hard_contact"], frame.contacts
+            push = np.flatnonzero((c.force ** 2).sum(1) > 0)
+            assert it.attrs["count"] == len(push) > 0
+            near(it["normal_force"], -c.normal_force[push], 0, 1e-12)  # positive in traction
+            total = it["shear_force"][()] - it["normal_force"][()][:, None] * it["normal"][()]
+            near(total, c.force[push], np.abs(c.force).max(), 1e-12)
+            assert set(it["id1"]) | set(it["id2"]) <= set(rows)
+
+
+def ondem_foreign(path):
+    """A file as another program would write it, without nsd's extension: two spheres, a box, two walls."""
+    import h5py
+    with h5py.File(path, "w") as f:
+        top = f.create_group("VTKHDF", track_order=True)
+        text = h5py.string_dtype()
+        names = np.array(["facet", "wall", "box", "sphere"], dtype=object)
+        scene = f.create_group("ONDEM/Scene")
+        scene.attrs["time"], scene.attrs["timestep"], scene.attrs["iteration"] = 1.5, 1e-5, 7
+        scene["gravity"] = [0.0, 1.0, -9.0]
+        scene.create_dataset("shape_names", data=names, dtype=text)
+        for k, mu in (4, 0.3), (9, 0.5):
+            m = f.create_group(f"ONDEM/Materials/{k}")
+            m["id"], m["density"], m["shear_friction"], m["label"] = k, 2600.0, mu, np.bytes_(f"rock{k}")
+        nan = np.nan
+        for name, rows in dict(Points=[(5, 3, 4, 0, [0, 0, 1], 0.1, [nan] * 3, 0), (2, 3, 9, 0, [1, 0, 1], 0.2, [nan] * 3, 0)],
+                               Others=[(3, 2, 4, 0, [2, 0, 1], nan, [0.2, 0.3, 0.4], 0), (7, 1, 9, 63, [0, 0, 0], nan, [nan] * 3, 2),
+                                       (8, 1, 9, 63, [0, 3, 0], nan, [nan] * 3, 1)]).items():
+            b = top.create_group(name, track_order=True)
+            n = len(rows)
+            b["NumberOfPoints"], b["Points"] = [n], np.array([r[4] for r in rows], float)
+            d = b.create_group("PointData")
+            d["body_id"], d["shape_type"] = [r[0] for r in rows], [r[1] for r in rows]
+            d["material_id"], d["blocked_dofs"] = [r[2] for r in rows], [r[3] for r in rows]
+            d["clump_id"] = [-1] * n
+            d["radius"], d["dimensions"] = [r[5] for r in rows], [r[6] for r in rows]
+            d["mass"], d["inertia"] = np.full(n, 2.0), np.tile(np.diag([0.1, 0.1, 0.1]).ravel(), (n, 1))
+            d["velocity"], d["angular_velocity"] = np.tile([1.0, 2, 3], (n, 1)), np.zeros((n, 3))
+            q = d.create_dataset("orientation", data=np.tile([1.0, 0, 0, 0], (n, 1)))
+            q.attrs["order"] = "wxyz"
+            d["wall_axis"] = [r[7] if r[1] == 1 else -1 for r in rows]
+            d["wall_sense"] = [-1 if r[0] == 8 else 1 if r[1] == 1 else -1 for r in rows]
+
+
 if __name__ == "__main__":
     globals()[sys.argv[1]](*[float(a) if a.replace(".", "", 1).isdigit() else a for a in sys.argv[2:]])
