@@ -199,16 +199,16 @@ int import_file(struct packing *p, const char *path, const struct import_wish *w
                 struct import_said *said, struct why *why)
 {
     *said = (struct import_said){ 0 };
-    if (ondem_looks(path)) {
-        if (wish->frame != -1 && wish->frame != 0)
-            return why_set(why, EX_DATAERR, "%s: no frame %lld: there is one", path,
-                           (long long)wish->frame);
-        return ondem_read(p, path, wish->dim, said, why);
-    }
     struct work f = { .path = path, .frame = wish->frame };
     void *answer = NULL;
     size_t n = 0;
     if ((f.fd = open_plain(path, &f.size, why)) < 0) return why->status;
+    if (ondem_looks(f.fd)) {
+        close(f.fd);
+        if (wish->frame == -1 || wish->frame == 0) return ondem_read(p, path, wish->dim, said, why);
+        return why_set(why, EX_DATAERR, "%s: no frame %lld: there is one", path,
+                       (long long)wish->frame);
+    }
     bounded_run(read_open, &f, path, (uint64_t)f.size, &answer, &n, why);
     close(f.fd);
     if (why->status) return why->status;

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { FIXED = 63, BLOCKS_MOST = 64, MATERIALS_MOST = 4096, PATH = 300 };
 
@@ -40,15 +41,11 @@ static int fault(const struct file *f, const char *place, const char *trouble)
     return why_set(f->why, EX_DATAERR, "%.150s: %.100s: %.120s", f->path, place, trouble);
 }
 
-bool ondem_looks(const char *path)
+bool ondem_looks(int fd)
 {
     static const char magic[8] = "\x89HDF\r\n\x1a\n";
     char bytes[8] = { 0 };
-    FILE *f = fopen(path, "rb");
-    bool is = f && fread(bytes, 1, sizeof bytes, f) == sizeof bytes &&
-              !memcmp(bytes, magic, sizeof magic);
-    if (f) fclose(f);
-    return is;
+    return pread(fd, bytes, sizeof bytes, 0) == sizeof bytes && !memcmp(bytes, magic, sizeof magic);
 }
 
 /* ---- lists ---- */
