@@ -225,6 +225,17 @@ static void say_left_out(const struct scene_mesh *m)
     if (m->left_out) warn("%s", why.text);
 }
 
+static void say_fit(const struct scene_fit *f)
+{
+    struct why why = { 0 };
+    why_set(
+        &why, EX_DATAERR,
+        "shape \"%s\": %d balls: volume %+.2g, distance %.2g of the radius around it, moments %.2g "
+        "of their sum",
+        f->shape, f->balls, f->volume, f->distance, f->moments);
+    warn("%s", why.text);
+}
+
 /* ---- what suits a scene ---- */
 
 static json_t *limits_json(const struct time_step *t)
@@ -269,6 +280,19 @@ static json_t *masses_json(const struct packing *p)
     return list;
 }
 
+static json_t *fits_json(const struct scene *s)
+{
+    json_t *list = json_array();
+    for (int32_t k = 0; k < s->fits; k++) {
+        const struct scene_fit *f = &s->fit[k];
+        json_array_append_new(list, json_pack("{s:s, s:i, s:o, s:o, s:o}", "shape", f->shape,
+                                              "balls", f->balls, "volume", json_number(f->volume),
+                                              "distance", json_number(f->distance), "moments",
+                                              json_number(f->moments)));
+    }
+    return list;
+}
+
 /* On standard output as a line of JSON; for people on standard error */
 static void tell(const struct scene *s, const struct packing *p)
 {
@@ -279,6 +303,7 @@ static void tell(const struct scene *s, const struct packing *p)
                           t.by < 0 ? json_null() : json_string(time_step_limit[t.by].name), "scene",
                           s->dt > 0 ? json_real(s->dt) : json_string("auto"), "radius",
                           json_number(t.radius), "limits", limits, "masses", masses);
+    if (s->fits) json_object_set_new(j, "clumps", fits_json(s));
     if (t.by < 0)
         warn("dt: nothing moves by which a time step could be suggested");
     else
@@ -320,6 +345,7 @@ int tool_main(int argc, char **argv)
             read_document(&scene.bodies[g], scene.dim, dir);
     if (mesh_files_read(&scene, &files, &why)) die_why(&why);
     for (int32_t k = 0; k < scene.meshes; k++) say_left_out(&scene.mesh_file[k]);
+    for (int32_t k = 0; k < scene.fits; k++) say_fit(&scene.fit[k]);
     if (scene_build(&frame.packing, &scene, dir, &why)) die_why(&why);
     if (check)
         tell(&scene, &frame.packing);

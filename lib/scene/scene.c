@@ -22,7 +22,8 @@ void scene_free(struct scene *s)
     free(s->solid);
     drives_free(&s->drives), drives_free(&s->pushes), mesh_free(&s->mesh);
     for (int32_t k = 0; k < s->meshes; k++) free(s->mesh_file[k].file);
-    free(s->mesh_file);
+    for (int32_t k = 0; k < s->fits; k++) free(s->fit[k].shape);
+    free(s->mesh_file), free(s->fit);
     free(s->kind), free(s->law), free(s->bodies), free(s->wall), free(s->wall_item), free(s->text);
     *s = (struct scene){ 0 };
 }

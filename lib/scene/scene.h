@@ -75,7 +75,9 @@
  *   { polygon: [[x, y], ...] }                     in the plane, convex, counterclockwise
  *     these with round m [0]: all points within that of it
  *   { capsule: { length, radius } }                length between the centres of its ends, along x
- *   { balls: [[x, y, z, r], ...] }                 a clump; in the plane [x, y, r]
+ *   { balls: [[x, y, z, r], ...] }                 a clump; in the plane [x, y, r]. In space with solid
+ *                                                  { volume, centre, inertia: MATRIX }: what it stands for, of density 1
+ *   { mesh: { file, scale }, clump: { balls: integer, error: 0..1 } }     balls that fill a closed surface
  *
  * BOX { x: [from, to], y: [from, to], z: [from, to] }: null is open, and so is an axis left out.
  *
@@ -237,6 +239,13 @@ struct scene_solid {
     quat turn;    /* from its axes to those it was described in */
 };
 
+/* How well balls fill a surface: of shape NAME, for who tells it [scene/clump_fit.h] */
+struct scene_fit {
+    char *shape;
+    int32_t balls;
+    double volume, distance, moments; /* errors, relative */
+};
+
 struct scene_cell {
     bool given;   /* else that of the first document is taken, unless there shall be none */
     bool none;    /* null is given */
@@ -276,6 +285,8 @@ struct scene {
     struct scene_cell cell;
     struct shapes shapes;      /* of grains */
     struct scene_solid *solid; /* [shapes.n] */
+    int32_t fits;
+    struct scene_fit *fit; /* [fits] clumps that were fitted to surfaces */
 
     struct scene_files *files; /* while it is parsed */
     bool rewritten;            /* the JSON, which now has what was in files */
