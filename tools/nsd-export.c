@@ -83,11 +83,21 @@ static void sheaf_close(struct sheaf *s)
     s->out = NULL;
 }
 
+static int64_t exported; /* frames */
+
+/* Of a frame that is long to write */
+static void show_rows(int64_t done, int64_t of)
+{
+    progress("%lld frames, and %.0f %% of one", (long long)exported,
+             100 * (double)done / (double)of);
+}
+
 static void sheaf_add(struct sheaf *s, const struct format *format, enum part what,
                       const struct frame *f)
 {
     struct why why = { 0 };
-    struct moment m = { &f->packing, f->detected ? &f->contacts : NULL, (int)detail, &s->kept };
+    struct moment m = { &f->packing, f->detected ? &f->contacts : NULL, (int)detail, &s->kept,
+                        show_rows };
     bool solved = m.contacts && m.contacts->found;
     if (s->moments && !format->joins)
         die_usage("a %s file holds one frame: --last, --steps, or a series -o 'f%%05d.%s'",
@@ -254,8 +264,10 @@ static void run(struct reader *in, const struct format *format, enum target targ
         export(format, target, &f, reader_where(in), k++);
     while (!last && !reader_next(in, steps ? &range : NULL, &f, &more, &why) && more) {
         export(format, target, &f, reader_where(in), k++);
+        exported = k;
         progress("%lld frames", (long long)k);
     }
+    progress_end();
     if (why.status) die_why(&why);
     if (!k) die(EX_DATAERR, "%s: no such frame", reader_where(in));
     if (!shown)

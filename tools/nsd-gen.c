@@ -146,7 +146,9 @@ static void read_foreign(struct scene_bodies *b, int space, const char *path)
     struct import_said said;
     struct import_wish wish = { .dim = space, .frame = b->frame, .has_repeats = b->has_repeats };
     for (int k = 0; k < 3; k++) wish.repeats[k] = b->repeats[k];
+    progress("reading %s", path);
     if (import_file(b->document, path, &wish, &said, &why)) die_why(&why);
+    progress_end();
     b->unsaid = !said.masses;
 }
 
@@ -211,7 +213,9 @@ static void read_from(struct scene *s, const char *path)
     const struct import_wish wish = { .dim = (int)dim, .frame = -1 };
     struct import_said said;
     if (!p) die(EX_SOFTWARE, "no memory for a packing");
+    progress("reading %s", path);
     if (import_file(p, path, &wish, &said, &why)) die_why(&why);
+    progress_end();
     scene_around(s, p, &said, path);
 }
 

@@ -196,15 +196,22 @@ static int add_walls(struct rows *b, const struct packing *p, int64_t *id, struc
 
 /* ---- datasets ---- */
 
-/* A dataset PATH/NAME of n rows, gathered from structs */
-static int put_column(hid_t file, const char *path, bool whole, int width, int64_t n,
+/* Which of the structs are meant, in their order; NULL: all */
+struct choice {
+    int64_t n;
+    const int64_t *row;
+};
+
+/* A dataset of n rows, gathered from structs */
+static int put_column(hid_t file, const char *path, bool whole, int width, struct choice of,
                       const char *first, size_t stride, struct why *why)
 {
-    const hsize_t shape[2] = { (hsize_t)n, (hsize_t)width };
+    const hsize_t shape[2] = { (hsize_t)of.n, (hsize_t)width };
     const size_t row = (size_t)width * 8;
-    char *out = malloc((size_t)n * row + 1);
+    char *out = malloc((size_t)of.n * row + 1);
     if (!out) return why_set(why, EX_SOFTWARE, "no memory for an export");
-    for (int64_t i = 0; i < n; i++) memcpy(out + (size_t)i * row, first + (size_t)i * stride, row);
+    for (int64_t i = 0; i < of.n; i++)
+        memcpy(out + (size_t)i * row, first + (size_t)(of.row ? of.row[i] : i) * stride, row);
     h5_write(file, path, whole ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, width > 1 ? 2 : 1, shape,
              out, NULL, why);
     free(out);
@@ -278,27 +285,26 @@ static bool is_used(const struct rows *b, int c)
     return false;
 }
 
-static int put_block(hid_t file, int group, const struct rows *all, const struct rows *b,
-                     struct why *why)
+static int put_block(hid_t file, int group, const struct rows *b, struct choice of, struct why *why)
 {
     char block[60], path[160];
     const hsize_t one = 1;
+    const char *rows = b->row ? (const char *)b->row : "";
     snprintf(block, sizeof block, "/VTKHDF/%s", group_names[group]);
     snprintf(path, sizeof path, "%s/NumberOfPoints", block);
     if (vtkhdf_group(file, block, why) || vtkhdf_type(file, block, "PolyData", MINOR, why) ||
-        h5_write(file, path, H5T_NATIVE_INT64, 1, &one, &b->n, NULL, why))
+        h5_write(file, path, H5T_NATIVE_INT64, 1, &one, &of.n, NULL, why))
         return why->status;
     snprintf(path, sizeof path, "%s/Points", block);
-    if (put_column(file, path, false, 3, b->n, b->n ? (const char *)b->row[0].x : "",
-                   sizeof *b->row, why) ||
-        put_cells(file, block, "Vertices", b->n, why) || put_cells(file, block, "Lines", 0, why) ||
+    if (put_column(file, path, false, 3, of, rows + offsetof(struct row, x), sizeof *b->row, why) ||
+        put_cells(file, block, "Vertices", of.n, why) || put_cells(file, block, "Lines", 0, why) ||
         put_cells(file, block, "Polygons", 0, why) || put_cells(file, block, "Strips", 0, why))
         return why->status;
     for (int k = 0; k < COLUMNS; k++) {
-        if (!columns[k].always && !is_used(all, k)) continue;
+        if (!columns[k].always && !is_used(b, k)) continue;
         snprintf(path, sizeof path, "%s/PointData/%s", block, columns[k].name);
-        if (put_column(file, path, columns[k].whole, columns[k].width, b->n,
-                       b->n ? (const char *)b->row + columns[k].at : "", sizeof *b->row, why) ||
+        if (put_column(file, path, columns[k].whole, columns[k].width, of, rows + columns[k].at,
+                       sizeof *b->row, why) ||
             (columns[k].width == 4 && put_attribute(file, path, "order", "wxyz", why)))
             return why->status;
     }
@@ -308,19 +314,20 @@ static int put_block(hid_t file, int group, const struct rows *all, const struct
                : 0;
 }
 
-static int put_blocks(hid_t file, const struct rows *all, struct why *why)
+static int put_blocks(hid_t file, const struct rows *b, struct why *why)
 {
-    struct rows part[2] = { { 0 } };
-    if (vtkhdf_group(file, "/VTKHDF", why) ||
-        vtkhdf_type(file, "/VTKHDF", "MultiBlockDataSet", MINOR, why) ||
-        vtkhdf_group(file, "/VTKHDF/Assembly", why))
-        return why->status;
-    for (int64_t i = 0; i < all->n && !why->status; i++) {
-        struct row *r = add_row(&part[all->row[i].shape_type != SPHERE], why);
-        if (r) *r = all->row[i];
+    int64_t *row = malloc(((size_t)b->n + 1) * sizeof *row);
+    if (!row) return why_set(why, EX_SOFTWARE, "no memory for an export");
+    if (!vtkhdf_group(file, "/VTKHDF", why) &&
+        !vtkhdf_type(file, "/VTKHDF", "MultiBlockDataSet", MINOR, why))
+        vtkhdf_group(file, "/VTKHDF/Assembly", why);
+    for (int group = 0; group < 2 && !why->status; group++) {
+        struct choice of = { 0, row };
+        for (int64_t i = 0; i < b->n; i++)
+            if ((b->row[i].shape_type != SPHERE) == group) row[of.n++] = i;
+        put_block(file, group, b, of, why);
     }
-    for (int k = 0; k < 2 && !why->status; k++) put_block(file, k, all, &part[k], why);
-    free(part[0].row), free(part[1].row);
+    free(row);
     return why->status;
 }
 
@@ -420,8 +427,9 @@ static int put_contacts(hid_t file, const struct packing *p, const struct contac
     for (size_t k = 0; k < sizeof of_contacts / sizeof *of_contacts && !why->status; k++) {
         char path[120];
         snprintf(path, sizeof path, "%s/%s", group, of_contacts[k].name);
-        put_column(file, path, of_contacts[k].whole, of_contacts[k].width, n,
-                   (const char *)list + of_contacts[k].at, sizeof *list, why);
+        put_column(file, path, of_contacts[k].whole, of_contacts[k].width,
+                   (struct choice){ n, NULL }, (const char *)list + of_contacts[k].at, sizeof *list,
+                   why);
     }
     free(list);
     return why->status;
