@@ -22,7 +22,7 @@ static const struct cli_option own[] = {
     { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
     { CLI_FLAG, 0, "stream", &stream, .help = "one document a frame, also into a file" },
     { CLI_CHOICE, 0, "vtk", &vtk, .choice = vtk_choice, .silent = true,
-      .help = "add /VTKHDF, by which ParaView and pyvista open the document itself [no]" },
+      .help = "add /VTKHDF, by which ParaView opens the document itself [no]" },
     { CLI_TEXT, 'o', "output", &output, "FILE", .help = "write to FILE [standard output]",
       .silent = true },
     { 0 },

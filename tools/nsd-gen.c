@@ -27,7 +27,7 @@ static const struct cli_option own[] = {
     { CLI_INT, 'd', "dim", &dim, "2|3", .min = 2, .max = 3,
       .help = "with N: 3 makes balls, 2 discs in the plane [3]" },
     { CLI_TEXT, 0, "from", &from, "FILE",
-      .help = "the balls of a LAMMPS, LIGGGHTS, Yade or ON-DEM file, in place of N or a scene" },
+      .help = "the balls of a LAMMPS, LIGGGHTS, Yade or ON-DEM file, no scene" },
     { CLI_FLAG, 0, "check", &check,
       .help = "print the time step and masses that suit the scene, as JSON" },
     { 0 },

@@ -74,7 +74,7 @@ static int write_data(FILE *out, const struct moment *m, enum part part, bool fi
 }
 
 const struct format format_lammps_data = {
-    .name = "lammps-data",
+    .name = "data",
     .ending = "data",
     .help = "LAMMPS' and LIGGGHTS' data file: balls",
     .write = write_data,
