@@ -53,17 +53,17 @@ static int read_open(void *with, struct bounded *to, struct why *why)
     while (n < f->size) {
         ssize_t more = read(f->fd, bytes + n, (size_t)(f->size - n));
         if (more < 0 && errno == EINTR) continue;
-        if (more < 0)
-            return why_set(why, EX_NOINPUT, "%s: cannot be read: %s", f->path, strerror(errno));
-        if (!more) break;
+        if (more < 0) why_set(why, EX_NOINPUT, "%s: cannot be read: %s", f->path, strerror(errno));
+        if (more <= 0) break;
         n += more;
     }
     bytes[n] = 0;
-    return read_bytes(&it, f->path, bytes, n, f->frame, why) ||
-                   bounded_put(to, &it.head, sizeof it.head, why) ||
-                   bounded_put(to, it.ball, (size_t)it.head.n * sizeof *it.ball, why)
-               ? why->status
-               : 0;
+    if (!why->status && !read_bytes(&it, f->path, bytes, n, f->frame, why) &&
+        !bounded_put(to, &it.head, sizeof it.head, why))
+        bounded_put(to, it.ball, (size_t)it.head.n * sizeof *it.ball, why);
+    imported_free(&it);
+    free(bytes);
+    return why->status;
 }
 
 /* ---- what comes of it ---- */

@@ -32,14 +32,20 @@ static bool looks(const char *bytes, int64_t n)
     return false;
 }
 
+/* A ball, by its id */
+struct ref {
+    int32_t id;
+    struct imported_ball *ball;
+};
+
 struct data {
     struct imported *to;
     struct words *w;
     int64_t atoms;
     double lo[3], hi[3], tilt[3];
     bool has[3];
-    bool read;                           /* the section Atoms */
-    const struct imported_ball **sorted; /* [atoms] by id, for Velocities */
+    bool read;          /* the section Atoms */
+    struct ref *sorted; /* [atoms] by id, for Velocities */
 };
 
 static bool is_section(struct word word)
@@ -147,8 +153,7 @@ static int read_atoms(struct data *d)
 
 static int by_id(const void *one, const void *other)
 {
-    const struct imported_ball *a = *(const struct imported_ball *const *)one,
-                               *b = *(const struct imported_ball *const *)other;
+    const struct ref *a = one, *b = other;
     return (a->id > b->id) - (a->id < b->id);
 }
 
@@ -157,7 +162,8 @@ static int sort_balls(struct data *d)
     d->sorted = malloc(((size_t)d->atoms + 1) * sizeof *d->sorted);
     if (!d->sorted)
         return why_set(d->w->soup->why, EX_SOFTWARE, "no memory for the balls of a file");
-    for (int64_t i = 0; i < d->atoms; i++) d->sorted[i] = &d->to->ball[i];
+    for (int64_t i = 0; i < d->atoms; i++)
+        d->sorted[i] = (struct ref){ d->to->ball[i].id, &d->to->ball[i] };
     qsort(d->sorted, (size_t)d->atoms, sizeof *d->sorted, by_id);
     return 0;
 }
@@ -179,11 +185,10 @@ static int read_velocities(struct data *d)
         for (int k = 0; k < n; k++)
             if (words_number(d->w, &x[k])) return d->w->soup->why->status;
         bool whole = x[0] >= 0 && x[0] <= INT32_MAX && x[0] == (double)(int32_t)x[0];
-        struct imported_ball key = { .id = whole ? (int32_t)x[0] : -1 }, *of = &key;
-        struct imported_ball **b =
-            bsearch(&of, d->sorted, (size_t)d->atoms, sizeof *d->sorted, by_id);
-        if (!b) return word_fault(d->w, word, "is the id of no atom");
-        (*b)->v = v3(x[1], x[2], x[3]), (*b)->w = v3(x[4], x[5], x[6]);
+        const struct ref key = { whole ? (int32_t)x[0] : -1, NULL };
+        const struct ref *r = bsearch(&key, d->sorted, (size_t)d->atoms, sizeof *r, by_id);
+        if (!r) return word_fault(d->w, word, "is the id of no atom");
+        r->ball->v = v3(x[1], x[2], x[3]), r->ball->w = v3(x[4], x[5], x[6]);
     }
     return 0;
 }

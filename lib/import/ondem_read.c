@@ -388,8 +388,9 @@ static int by_id(const void *one, const void *other)
 }
 
 /* array[k] = what was at place[k].was */
-static void gather(void *array, size_t size, const struct place *place, int64_t n, char *room)
+static void gather(void *array, size_t size, const struct place *place, int64_t n, quat *space)
 {
+    char *room = (char *)space;
     for (int64_t k = 0; array && k < n; k++)
         memcpy(room + (size_t)k * size, (char *)array + (size_t)place[k].was * size, size);
     if (array && n) memcpy(array, room, (size_t)n * size);
@@ -400,7 +401,7 @@ static int sort_bodies(struct file *f)
     struct packing *p = f->p;
     const int64_t n = p->n;
     struct place *place = malloc(((size_t)n + 1) * sizeof *place);
-    char *room = malloc(((size_t)n + 1) * sizeof *p->q);
+    quat *room = malloc(((size_t)n + 1) * sizeof *room);
     if (!place || !room) why_set(f->why, EX_SOFTWARE, "no memory for the bodies");
     for (int64_t k = 0; !f->why->status && k < n; k++) place[k] = (struct place){ p->id[k], k };
     if (!f->why->status) {

@@ -279,8 +279,10 @@ static bool is_used(const struct rows *b, int c)
 {
     for (int64_t i = 0; i < b->n; i++) {
         const char *at = (const char *)&b->row[i] + columns[c].at;
-        if (columns[c].whole ? *(const int64_t *)at != -1 : !isnan(*(const double *)at))
-            return true;
+        int64_t whole;
+        double real;
+        memcpy(&whole, at, sizeof whole), memcpy(&real, at, sizeof real);
+        if (columns[c].whole ? whole != -1 : !isnan(real)) return true;
     }
     return false;
 }

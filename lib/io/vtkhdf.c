@@ -162,7 +162,8 @@ static int append(hid_t file, const char *path, hid_t memory, hid_t disk, int wi
                H5Dwrite(set, memory, from, to, H5P_DEFAULT, data) >= 0;
         H5Sclose(to), H5Sclose(from);
     }
-    return (H5Dclose(set) >= 0) & good ? 0 : failed(path, why);
+    if (H5Dclose(set) < 0) good = false;
+    return good ? 0 : failed(path, why);
 }
 
 static int append_to(const struct block *b, hid_t file, const char *name, hid_t memory, int width,
@@ -205,7 +206,7 @@ static int add_part(struct block *b, int64_t points, int64_t cells, int64_t corn
         if (!more) return why_set(why, EX_SOFTWARE, "no memory for /VTKHDF");
         b->part = more, b->parts_room = room;
     }
-    b->part[b->parts++] = (struct extent){ points, cells, corners };
+    if (b->part) b->part[b->parts++] = (struct extent){ points, cells, corners };
     return 0;
 }
 
@@ -450,7 +451,7 @@ static int link_grains(const struct vtkhdf *v, hid_t file, struct why *why)
     for (int64_t f = 0; !bad && f < F; f++) zero[f] = 1;
     bad = bad || put_steps(file, block, "Steps/NumberOfParts", 1, F, zero, why);
     for (int64_t f = 0; !bad && f < F; f++) zero[f] = f * N;
-    bad = bad || put_steps(file, block, "Steps/PointOffsets", 1, F, zero, why);
+    if (!bad) put_steps(file, block, "Steps/PointOffsets", 1, F, zero, why);
     free(zero), free(number);
     return why->status;
 }
@@ -530,9 +531,10 @@ int vtkhdf_end(struct vtkhdf *v, hid_t file, struct why *why)
         int bad = v->varies ? end_block(&v->block[0], file, why) : link_grains(v, file, why);
         for (int k = 1; !bad && v->parts && k <= v->parts->count; k++)
             bad = end_block(&v->block[k], file, why);
-        if (!bad)
-            bad = v->parts ? collect(v, file, why)
-                           : vtkhdf_type(file, grains_alone, "PolyData", MINOR, why);
+        if (!bad && v->parts)
+            collect(v, file, why);
+        else if (!bad)
+            vtkhdf_type(file, grains_alone, "PolyData", MINOR, why);
     }
     reset(v);
     return why->status;

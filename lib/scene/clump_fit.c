@@ -291,7 +291,7 @@ static int prepare(struct fit *f, const struct solid *of, int32_t balls, struct 
             f->reach = fmax(f->reach,
                             v3_norm(v3_sub(f->mesh->vertex[f->mesh->element[e][k]], of->centre)));
     f->centre = malloc((size_t)balls * sizeof *f->centre);
-    f->radius = malloc((size_t)balls * sizeof *f->radius);
+    f->radius = calloc((size_t)balls, sizeof *f->radius);
     f->field = malloc((size_t)f->grid.points * sizeof *f->field);
     f->sorted = malloc((size_t)f->grid.points * sizeof *f->sorted);
     f->covered = malloc((size_t)f->grid.points);

@@ -294,9 +294,11 @@ static int note_fit(jnode o, struct scene *scene, const struct clump_errors *e)
     struct scene_fit *more = realloc(scene->fit, (size_t)(scene->fits + 1) * sizeof *more);
     if (!more) return why_set(o.in->why, EX_SOFTWARE, "no memory for a shape");
     scene->fit = more;
-    char *name = strdup(o.key ? o.key : "");
-    if (!name) return why_set(o.in->why, EX_SOFTWARE, "no memory for a shape");
-    more[scene->fits++] = (struct scene_fit){ name, e->balls, e->volume, e->distance, e->moments };
+    struct scene_fit *f = &more[scene->fits];
+    *f = (struct scene_fit){ strdup(o.key ? o.key : ""), e->balls, e->volume, e->distance,
+                             e->moments };
+    if (!f->shape) return why_set(o.in->why, EX_SOFTWARE, "no memory for a shape");
+    scene->fits++;
     return 0;
 }
 
