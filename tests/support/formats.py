@@ -230,6 +230,18 @@ def blocks(document, density):
         assert len(walls.get("Polygons", [])) == len(walls["boundary"]) > 0
 
 
+def collection(document):
+    """The blocks of any scene can be read, step by step."""
+    frames = list(nsd.frames(document))
+    top = frames[0].file["VTKHDF"]
+    for name in "grains", "surfaces", "boundary":
+        assert check_structure(top[name]) == len(frames)
+        for f in range(len(frames)):
+            step = vtk_step(top[name], f)
+            assert name != "boundary" or f < len(frames) - 1 or len(step["boundary"]) > 0
+    check_grains(top["grains"], frames)
+
+
 def vtk_reads(document, copy):
     """VTK 9.1 knows no PolyData. What it knows of VTKHDF is the unstructured grid: with our points, behind the 512
     bytes, as virtual dataset and by the hard links."""

@@ -49,6 +49,10 @@ jq '.bodies = (.bodies[:2] | map(.count = 6))' scenes/rubble.json | nsd-gen - | 
 nsd-cat --vtk all "$tmp/rubble.h5" >"$tmp/rubble.v.h5"
 density=$(jq '.density // 2500' scenes/rubble.json)
 other "with surfaces it is a collection; they hold the grains' mass" h5py blocks "$tmp/rubble.v.h5" "$density"
+for scene in drum silo cards pour; do # lines of the plane, grains that come, capsules or cards, an empty start
+    nsd-gen "scenes/$scene.json" | nsd-step -n 60 --every 20 2>/dev/null | nsd-cat --vtk all >"$tmp/$scene.v.h5"
+    other "$scene: each step of each block" h5py collection "$tmp/$scene.v.h5"
+done
 nsd-cat "$tmp/balls.v.h5" >"$tmp/again.h5"
 ok "a copy without it has the bytes of the first" cmp "$tmp/again.h5" "$tmp/balls.h5"
 ok "through a pipe it is in each document" sh -c "nsd-cat --vtk grains --stream '$tmp/balls.h5' | nsd-cat --vtk grains > '$tmp/piped.h5'"
