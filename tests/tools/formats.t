@@ -177,6 +177,22 @@ jq -n --arg f "$tmp/y2.txt" '{dt: 1e-4, bodies: [{import: $f}]}' >"$tmp/types.js
 refuses 65 "a type that is no kind of the scene is asked for" nsd-gen "$tmp/types.json"
 like "with the cure" "$(cat "$tmp/err")" '"types": \{"0": NAME\}'
 
+# ---- many balls: a fifth of a million in a fifth of 2 GB ----
+
+within() { (ulimit -v 420000 && "$@"); }
+if [ -z "$thin" ]; then
+    nsd-gen 200000 >"$tmp/many.h5"
+    for to in vtp lammps csv gsd data ondem; do
+        ok "200 000 balls become $to" within nsd-export --to "$to" -o "$tmp/many.$to" "$tmp/many.h5"
+    done
+    for from in lammps data ondem; do
+        ok "and come back from $from" within nsd-gen --from "$tmp/many.$from" >"$tmp/none"
+    done
+    ok "are drawn" within nsd-view -o "$tmp/many.png" "$tmp/many.h5"
+    ok "and measured" within nsd-stat "$tmp/many.h5"
+    rm "$tmp"/many.*
+fi
+
 # ---- hostile files ----
 
 head -c 900 "$tmp/sheared.lammpstrj" >"$tmp/a.lammpstrj" # one line of atoms is cut
