@@ -231,7 +231,7 @@ bench-compare:
 
 # Targets of clang's libFuzzer, SECONDS each; what they find new stays in build/fuzz/corpus.
 SECONDS := 600
-FUZZ    := document problem scene mesh
+FUZZ    := document problem scene mesh import
 FUZZCC  := clang
 FUZZSAN := -fsanitize=address,undefined -fno-sanitize-recover=undefined
 F       := build/fuzz

@@ -12,7 +12,7 @@ check=("${wall[@]}" perl)
 all=("${check[@]}" pandoc mandoc shellcheck cppcheck clang libomp-dev libclang-rt-dev
     clang-tidy clang-format libfclib-dev gcovr
     openmpi-bin libopenmpi-dev libhdf5-openmpi-dev libtrilinos-zoltan-dev
-    debhelper lintian zsh parallel python3-vtk9 python3-ase python3-mdanalysis
+    debhelper lintian zsh parallel python3-vtk9 python3-ase python3-mdanalysis python3-gsd liggghts
     ffmpeg chromium chromium-driver python3-selenium)
 
 case "${1:-run}" in

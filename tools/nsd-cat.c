@@ -1,15 +1,28 @@
 /* nsd-cat: joins, cuts and thins streams and trajectories, and turns one into the other. */
 #include "cli/cli.h"
+#include "export/vtk_parts.h"
 #include "io/reader.h"
 #include "io/writer.h"
 
 static bool last, stream;
 static const char *steps, *output;
+static int vtk;
+
+static struct cli_choice vtk_choice(int k)
+{
+    static const struct cli_choice parts[] = {
+        { "grains", "as points: VTK 9.3, ParaView 5.12" },
+        { "all", "also other shapes and walls as surfaces, in blocks: VTK 9.4, ParaView 6.0" },
+    };
+    return k < 2 ? parts[k] : (struct cli_choice){ 0 };
+}
 
 static const struct cli_option own[] = {
     { CLI_FLAG, 'l', "last", &last, .help = "only the very last frame" },
     { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
     { CLI_FLAG, 0, "stream", &stream, .help = "one document a frame, also into a file" },
+    { CLI_CHOICE, 0, "vtk", &vtk, .choice = vtk_choice, .silent = true,
+      .help = "add /VTKHDF, by which ParaView opens the document itself [no]" },
     { CLI_TEXT, 'o', "output", &output, "FILE", .help = "write to FILE [standard output]",
       .silent = true },
     { 0 },
@@ -23,6 +36,7 @@ const struct cli_tool tool = {
     tables,
     "  nsd-cat --last out.h5 | nsd-detect > contacts.h5\n"
     "  nsd-cat --steps 0:1000:100 out.h5 > thin.h5\n"
+    "  nsd-cat --vtk grains out.h5 > paraview.h5\n"
 };
 
 int tool_main(int argc, char **argv)
@@ -44,7 +58,9 @@ int tool_main(int argc, char **argv)
            more) {
         bool whole = !last && reader_whole(in);
         if (!last && !whole && reader_take(in, &f, &why)) break;
-        if (!out && writer_open(&out, output, kind, &why)) break;
+        if (!out && (writer_open(&out, output, kind, &why) ||
+                     (cli_given(&vtk) && writer_vtk(out, vtk ? &vtk_parts : NULL, &why))))
+            break;
         if (whole && writer_passes(out)) {
             if (writer_pass(out, in, &why)) break;
         } else {

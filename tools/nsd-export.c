@@ -61,6 +61,8 @@ struct sheaf {
     struct output file; /* where that is no standard output */
     int64_t moments;
     bool contacts, solved;
+    const struct format *format; /* of the moments in it */
+    void *kept;                  /* by that, until the end */
 };
 
 static void sheaf_open(struct sheaf *s, const char *name)
@@ -73,6 +75,7 @@ static void sheaf_open(struct sheaf *s, const char *name)
 static void sheaf_close(struct sheaf *s)
 {
     struct why why = { 0 };
+    if (s->moments && s->format->end && s->format->end(s->out, s->kept, &why)) die_why(&why);
     if (s->out == stdout)
         finish_stdout();
     else if (output_stream_close(&s->file, s->out, &why))
@@ -80,11 +83,21 @@ static void sheaf_close(struct sheaf *s)
     s->out = NULL;
 }
 
+static int64_t exported; /* frames */
+
+/* Of a frame that is long to write */
+static void show_rows(int64_t done, int64_t of)
+{
+    progress("%lld frames, and %.0f %% of one", (long long)exported,
+             100 * (double)done / (double)of);
+}
+
 static void sheaf_add(struct sheaf *s, const struct format *format, enum part what,
                       const struct frame *f)
 {
     struct why why = { 0 };
-    struct export_frame m = { &f->packing, f->detected ? &f->contacts : NULL, (int)detail };
+    struct export_frame m = { &f->packing, f->detected ? &f->contacts : NULL, (int)detail, &s->kept,
+                        show_rows };
     bool solved = m.contacts && m.contacts->found;
     if (s->moments && !format->joins)
         die_usage("a %s file holds one frame: --last, --steps, or a series -o 'f%%05d.%s'",
@@ -97,7 +110,7 @@ static void sheaf_add(struct sheaf *s, const struct format *format, enum part wh
     if (s->moments && what == PART_CONTACTS && s->solved != solved)
         die(EX_DATAERR, "step %lld: contacts solved and unsolved in one table",
             (long long)f->packing.step);
-    if (!s->moments) s->solved = solved;
+    if (!s->moments) s->solved = solved, s->format = format;
     if (format->write(s->out, &m, what, !s->moments, &why))
         die(why.status, "step %lld: %s", (long long)f->packing.step, why.text);
     s->moments++;
@@ -251,8 +264,10 @@ static void run(struct reader *in, const struct format *format, enum target targ
         export(format, target, &f, reader_where(in), k++);
     while (!last && !reader_next(in, steps ? &range : NULL, &f, &more, &why) && more) {
         export(format, target, &f, reader_where(in), k++);
+        exported = k;
         progress("%lld frames", (long long)k);
     }
+    progress_end();
     if (why.status) die_why(&why);
     if (!k) die(EX_DATAERR, "%s: no such frame", reader_where(in));
     if (!shown)

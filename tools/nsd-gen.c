@@ -1,6 +1,7 @@
 /* nsd-gen: builds a packing, the paper's N balls or what a scene says. */
 #include "base/json.h"
 #include "cli/cli.h"
+#include "import/import_file.h"
 #include "io/reader.h"
 #include "io/writer.h"
 #include "scene/mesh_file.h"
@@ -20,10 +21,13 @@
 
 static int64_t dim = 3;
 static bool check;
+static const char *from;
 
 static const struct cli_option own[] = {
     { CLI_INT, 'd', "dim", &dim, "2|3", .min = 2, .max = 3,
       .help = "with N: 3 makes balls, 2 discs in the plane [3]" },
+    { CLI_TEXT, 0, "from", &from, "FILE",
+      .help = "the balls of a LAMMPS, LIGGGHTS, Yade or ON-DEM file, no scene" },
     { CLI_FLAG, 0, "check", &check,
       .help = "print the time step and masses that suit the scene, as JSON" },
     { 0 },
@@ -31,7 +35,7 @@ static const struct cli_option own[] = {
 static const struct cli_option *const tables[] = { own, NULL };
 
 const struct cli_tool tool = {
-    "nsd-gen", "N | SCENE.json | -",
+    "nsd-gen", "N | SCENE.json | - | --from FILE",
     "Builds a packing: N balls of the paper's sedimentation (500: its example 3, 4: its example "
     "2),\n"
     "or what a scene says. Reads JSON, writes a document.",
@@ -40,6 +44,7 @@ const struct cli_tool tool = {
     "  nsd-gen scenes/column.json | nsd-step -n 1000 > out.h5\n"
     "  nsd-info --scene out.h5 | jq '.gravity = [3, 0, -9.81]' | nsd-gen - > tilted.h5\n"
     "  jq '.mu = 0.5' scenes/paper/example3.json | nsd-gen - > rough.h5\n"
+    "  nsd-gen --from dump.liggghts | nsd-step -n 1000 > out.h5\n"
     "  nsd-gen --check scenes/drum.json | jq .dt\n"
 };
 
@@ -134,18 +139,84 @@ static void read_frame(struct frame *f, char *path, int64_t k)
     reader_close(in);
 }
 
-static void read_document(struct scene_bodies *b, const char *dir)
+/* The balls of another program's file, which the scene's group wishes for */
+static void read_foreign(struct scene_bodies *b, int space, const char *path)
+{
+    struct why why = { 0 };
+    struct import_said said;
+    struct import_wish wish = { .dim = space, .frame = b->frame, .has_repeats = b->has_repeats };
+    for (int k = 0; k < 3; k++) wish.repeats[k] = b->repeats[k];
+    progress("reading %s", path);
+    if (import_file(b->document, path, &wish, &said, &why)) die_why(&why);
+    progress_end();
+    b->unsaid = !said.masses;
+}
+
+static void read_document(struct scene_bodies *b, int space, const char *dir)
 {
     struct frame f = { 0 };
     char *path = scene_path(dir, b->file);
     if (path && access(path, F_OK) && !access(b->file, F_OK)) // as nsd-info --scene has it
         strcpy(path, b->file);
-    b->document = malloc(sizeof *b->document);
+    b->document = calloc(1, sizeof *b->document);
     if (!path || !b->document) die(EX_SOFTWARE, "no memory for a document");
-    read_frame(&f, path, b->frame);
-    *b->document = f.packing, f.packing = (struct packing){ 0 };
-    frame_free(&f);
+    if (b->foreign)
+        read_foreign(b, space, path);
+    else {
+        read_frame(&f, path, b->frame);
+        *b->document = f.packing, f.packing = (struct packing){ 0 };
+        frame_free(&f);
+    }
     free(path);
+}
+
+/* ---- the file of another program alone ---- */
+
+/* What the file says of each pair of kinds */
+static json_t *pairs_json(const struct packing *p)
+{
+    json_t *list = json_array();
+    for (int32_t i = 0; i < p->kinds; i++)
+        for (int32_t j = i; j < p->kinds; j++) {
+            const int32_t k = i * p->kinds + j;
+            json_array_append_new(list, json_pack("{s:[s, s], s:f, s:f, s:f}", "pair",
+                                                  p->kind_name[i], p->kind_name[j], "mu", p->mu[k],
+                                                  "e_n", p->en[k], "e_t", p->et[k]));
+        }
+    return list;
+}
+
+/* A scene of the file alone, with the kinds that it has, and its time step, gravity and friction where it says them */
+static void scene_around(struct scene *s, struct packing *p, const struct import_said *said,
+                         const char *path)
+{
+    struct why why = { 0 };
+    json_t *kinds = json_object();
+    for (int32_t k = 0; k < p->kinds && (p->kinds > 1 || said->laws); k++)
+        json_object_set_new(kinds, p->kind_name[k], json_object());
+    json_t *scene =
+        json_pack("{s:o, s:o, s:[{s:s}]}", "dt", said->dt ? json_real(p->dt) : json_string("auto"),
+                  "kinds", kinds, "bodies", "import", path);
+    if (said->gravity) json_object_set_new(scene, "gravity", json_vec(p->g));
+    if (said->laws) json_object_set_new(scene, "pairs", pairs_json(p));
+    char *text = scene ? json_dumps(scene, JSON_COMPACT) : NULL;
+    if (!text) die(EX_DATAERR, "%s: a name that is no UTF-8", path);
+    if (scene_parse(s, text, strlen(text), NULL, &why)) die_why(&why);
+    free(text), json_decref(scene);
+    s->bodies[0].document = p, s->bodies[0].unsaid = !said->masses;
+}
+
+static void read_from(struct scene *s, const char *path)
+{
+    struct why why = { 0 };
+    struct packing *p = calloc(1, sizeof *p);
+    const struct import_wish wish = { .dim = (int)dim, .frame = -1 };
+    struct import_said said;
+    if (!p) die(EX_SOFTWARE, "no memory for a packing");
+    progress("reading %s", path);
+    if (import_file(p, path, &wish, &said, &why)) die_why(&why);
+    progress_end();
+    scene_around(s, p, &said, path);
 }
 
 /* As a reason, for the name is out of a file */
@@ -156,6 +227,17 @@ static void say_left_out(const struct scene_mesh *m)
             "%s: left out: %d triangles that have no area, or the corners of another", m->file,
             m->left_out);
     if (m->left_out) warn("%s", why.text);
+}
+
+static void say_fit(const struct scene_fit *f)
+{
+    struct why why = { 0 };
+    why_set(
+        &why, EX_DATAERR,
+        "shape \"%s\": %d balls: volume %+.2g, distance %.2g of the radius around it, moments %.2g "
+        "of their sum",
+        f->shape, f->balls, f->volume, f->distance, f->moments);
+    warn("%s", why.text);
 }
 
 /* ---- what suits a scene ---- */
@@ -202,6 +284,19 @@ static json_t *masses_json(const struct packing *p)
     return list;
 }
 
+static json_t *fits_json(const struct scene *s)
+{
+    json_t *list = json_array();
+    for (int32_t k = 0; k < s->fits; k++) {
+        const struct scene_fit *f = &s->fit[k];
+        json_array_append_new(list, json_pack("{s:s, s:i, s:o, s:o, s:o}", "shape", f->shape,
+                                              "balls", f->balls, "volume", json_number(f->volume),
+                                              "distance", json_number(f->distance), "moments",
+                                              json_number(f->moments)));
+    }
+    return list;
+}
+
 /* On standard output as a line of JSON; for people on standard error */
 static void tell(const struct scene *s, const struct packing *p)
 {
@@ -212,6 +307,7 @@ static void tell(const struct scene *s, const struct packing *p)
                           t.by < 0 ? json_null() : json_string(time_step_limit[t.by].name), "scene",
                           s->dt > 0 ? json_real(s->dt) : json_string("auto"), "radius",
                           json_number(t.radius), "limits", limits, "masses", masses);
+    if (s->fits) json_object_set_new(j, "clumps", fits_json(s));
     if (t.by < 0)
         warn("dt: nothing moves by which a time step could be suggested");
     else
@@ -233,10 +329,15 @@ int tool_main(int argc, char **argv)
     struct why why = { 0 };
     char *dir = NULL;
     struct scene_files files = { .read_mesh = mesh_file_read };
-    if (argc != 1 || !*argv[0]) die_usage("one operand: a number of balls, or a scene");
+    if (from && argc) die_usage("--from takes the place of %s", argv[0]);
+    if (!from && (argc != 1 || !*argv[0])) die_usage("one operand: a number of balls, or a scene");
+    if (from && dim != 3)
+        die_usage("--from has balls; discs are a scene's: \"dim\": 2, \"import\"");
     if (!check && writer_open(&out, NULL, WRITER_STREAM, &why)) die_why(&why);
     double n;
-    if (is_number(argv[0], &n)) {
+    if (from)
+        read_from(&scene, from);
+    else if (is_number(argv[0], &n)) {
         if (!(n >= 0 && n <= INT32_MAX && n == floor(n)))
             die_usage("%s: not a number of balls (0 to %d)", argv[0], INT32_MAX);
         if (scene_paper(&scene, (int)dim, (int64_t)n, &why)) die_why(&why);
@@ -244,9 +345,11 @@ int tool_main(int argc, char **argv)
         read_scene(&scene, argv[0], &dir, &files);
     }
     for (int64_t g = 0; g < scene.groups; g++)
-        if (scene.bodies[g].from == SCENE_DOCUMENT) read_document(&scene.bodies[g], dir);
+        if (scene.bodies[g].from == SCENE_DOCUMENT && !from)
+            read_document(&scene.bodies[g], scene.dim, dir);
     if (mesh_files_read(&scene, &files, &why)) die_why(&why);
     for (int32_t k = 0; k < scene.meshes; k++) say_left_out(&scene.mesh_file[k]);
+    for (int32_t k = 0; k < scene.fits; k++) say_fit(&scene.fit[k]);
     if (scene_build(&frame.packing, &scene, dir, &why)) die_why(&why);
     if (check)
         tell(&scene, &frame.packing);

@@ -328,8 +328,12 @@ static void run(struct reader *in)
     if (last && steps) die_usage("--last and --steps exclude each other");
     if (tsv) head_tsv();
     if (last && !reader_last(in, &f, &more, &why) && more) show(&f, reader_where(in), k++, &why);
-    while (!last && !why.status && !reader_next(in, steps ? &range : NULL, &f, &more, &why) && more)
+    while (!last && !why.status && !reader_next(in, steps ? &range : NULL, &f, &more, &why) &&
+           more) {
         show(&f, reader_where(in), k++, &why);
+        progress("%lld frames", (long long)k);
+    }
+    progress_end();
     if (coarse.file && !why.status) fields_file_close(coarse.file, &why);
     if (why.status) die_why(&why);
     if (!k) die(EX_DATAERR, "%s: no such frame", reader_where(in));

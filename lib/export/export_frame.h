@@ -15,7 +15,15 @@ struct export_frame {
     const struct packing *packing;
     const struct contacts *contacts; /* NULL: there are none in the document */
     int detail;                      /* of balls made of triangles: 20 * 4^detail of them */
+    void **kept;                     /* what a format keeps from moment to moment of its file */
+    void (*tell)(int64_t done, int64_t of); /* how far it is, for who looks on; NULL: nobody does */
 };
+
+/* Row `done` of so many is to be written: once in a while that is told. */
+static inline void moment_tell(const struct export_frame *m, int64_t done, int64_t of)
+{
+    if (m->tell && done % 4096 == 0) m->tell(done, of);
+}
 
 /*
  * A box around all: the cell where it repeats, and along its other edges, or without any, as far as

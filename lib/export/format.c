@@ -4,8 +4,8 @@
 
 /* NULL ends it; the first is that of a directory. */
 static const struct format *const formats[] = {
-    &format_vtp, &format_vtu, &format_xyz, &format_lammps,
-    &format_csv, &format_tsv, &format_stl, NULL,
+    &format_vtp, &format_vtu, &format_xyz,         &format_lammps, &format_csv, &format_tsv,
+    &format_stl, &format_gsd, &format_lammps_data, &format_ondem,  NULL,
 };
 
 const struct format *format_at(int k)

@@ -23,10 +23,13 @@ struct format {
      */
     int (*write)(FILE *out, const struct export_frame *m, enum part part, bool first,
                  struct why *why);
+    /* What comes behind the last frame of a file, by what `write` has kept (*m->kept), which it frees; NULL:
+       nothing does. */
+    int (*end)(FILE *out, void *kept, struct why *why);
 };
 
 extern const struct format format_vtp, format_vtu, format_xyz, format_lammps, format_csv,
-    format_tsv, format_stl;
+    format_tsv, format_stl, format_gsd, format_lammps_data, format_ondem;
 
 /* The k-th from 0; NULL behind the last. */
 const struct format *format_at(int k);

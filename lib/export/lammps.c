@@ -65,6 +65,7 @@ static int dump(FILE *out, const struct export_frame *m, enum part part, bool fi
     fprintf(out, "ITEM: ATOMS id type x y z vx vy vz omegax omegay omegaz radius mass "
                  "quati quatj quatk quatw\n");
     for (int64_t i = 0; i < p->n; i++) {
+        moment_tell(m, i, p->n);
         const vec3 x = p->x[i], v = p->v[i], w = p->w[i];
         const quat q = p->q[i];
         fprintf(out, "%" PRId32 " %" PRId32 " %.17g %.17g %.17g %.17g %.17g %.17g ", p->id[i],

@@ -70,7 +70,10 @@ static int stl(FILE *out, const struct export_frame *m, enum part part, bool fir
     if (n > UINT32_MAX) why_set(why, EX_DATAERR, "more triangles than STL can count");
     fprintf(out, "%-80s", "nsd: balls and walls in m");
     for (int k = 0; k < 4; k++) putc((int)(n >> 8 * k & 255), out);
-    for (int64_t i = 0; i < grains && !why->status; i++) facets_of(&b, p, i, put_fan, out);
+    for (int64_t i = 0; i < grains && !why->status; i++) {
+        moment_tell(m, i, grains);
+        facets_of(&b, p, i, put_fan, out);
+    }
     put_polygons(out, &walls);
     sheet_free(&walls);
     facets_free(&b);

@@ -45,7 +45,10 @@ static int put(FILE *out, const struct export_frame *m, enum part part, bool fir
     struct sheet s;
     if (sheet_of(&s, part, m, why)) return why->status;
     if (first) put_names(out, &s, by);
-    for (int64_t row = 0; row < sheet_rows(&s); row++) put_row(out, m, &s, row, by);
+    for (int64_t row = 0; row < sheet_rows(&s); row++) {
+        moment_tell(m, row, sheet_rows(&s));
+        put_row(out, m, &s, row, by);
+    }
     sheet_free(&s);
     return 0;
 }

@@ -36,6 +36,7 @@ static int write_xyz(FILE *out, const struct export_frame *m, enum part part, bo
             "angular_velocity:R:3:orientation:R:4 Step=%" PRId64 " Time=%.17g\n",
             p->step, p->t);
     for (int64_t i = 0; i < p->n; i++) {
+        moment_tell(m, i, p->n);
         const vec3 x = p->x[i], v = p->v[i], w = p->w[i];
         const quat q = p->q[i];
         fprintf(out, "X %.17g %.17g %.17g %" PRId32 " %" PRId32 " %.17g %.17g ", x.x, x.y, x.z,

@@ -355,7 +355,14 @@ static void even_out(double m[3])
 int solid_settle(struct shape *s, int dim, double *reach, vec3 *centre, quat *turn, struct why *why)
 {
     struct solid o = { 0 };
-    if (solid_of(&o, s, dim, why)) return why->status;
+    return solid_of(&o, s, dim, why) ? why->status
+                                     : solid_settle_as(s, dim, &o, reach, centre, turn, why);
+}
+
+int solid_settle_as(struct shape *s, int dim, const struct solid *of, double *reach, vec3 *centre,
+                    quat *turn, struct why *why)
+{
+    struct solid o = *of;
     if (!v3_finite(o.centre)) return why_set(why, EX_DATAERR, "has no volume");
     *centre = o.centre;
     *reach = 0;

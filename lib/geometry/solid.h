@@ -32,4 +32,9 @@ int solid_of(struct solid *out, const struct shape *s, int dim, struct why *why)
 int solid_settle(struct shape *s, int dim, double *reach, vec3 *centre, quat *turn,
                  struct why *why);
 
+/* The same of a shape that has the volume, centre and moments of something else, such as the surface that its balls
+   fill. */
+int solid_settle_as(struct shape *s, int dim, const struct solid *of, double *reach, vec3 *centre,
+                    quat *turn, struct why *why);
+
 #endif

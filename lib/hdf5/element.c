@@ -4,7 +4,9 @@
 #include <string.h>
 
 enum {
-    MOST_TEXT = 1 << 28 /* bytes of a string */
+    MOST_TEXT = 1 << 28, /* bytes of a string */
+    MOST_LINES = 4096,   /* strings of a list, */
+    MOST_LINE = 4096     /* and bytes of each */
 };
 
 void element_describe(hid_t disk, struct object *o)
@@ -95,5 +97,46 @@ char *element_text(hid_t set, hid_t attr, size_t *length, bool *no_memory)
     if (out) *length = strlen(out);
     H5Sclose(space);
     H5Tclose(disk);
+    return out;
+}
+
+/* n strings of variable length, or of `width` bytes each, one after another */
+static char *join(char *const *variable, const char *fixed, size_t width, hssize_t n)
+{
+    char *out = malloc((size_t)n * (MOST_LINE + 1) + 1), *to = out;
+    for (hssize_t k = 0; out && k < n; k++) {
+        const char *from = variable ? variable[k] : fixed + (size_t)k * width;
+        size_t most = variable || width > MOST_LINE ? MOST_LINE : width;
+        size_t length = from ? strnlen(from, most) : 0;
+        if (length) memcpy(to, from, length);
+        for (size_t i = 0; i < length; i++)
+            if (to[i] == '\n') to[i] = '?';
+        to += length, *to++ = '\n';
+    }
+    if (out) *to = 0;
+    return out;
+}
+
+char *element_lines(hid_t set, size_t *length, bool *no_memory)
+{
+    hid_t disk = H5Dget_type(set), space = H5Dget_space(set);
+    hssize_t n = space < 0 ? -1 : H5Sget_simple_extent_npoints(space);
+    bool strings = disk >= 0 && H5Tget_class(disk) == H5T_STRING && n >= 0 && n <= MOST_LINES;
+    bool variable = strings && H5Tis_variable_str(disk) > 0;
+    size_t width = strings && !variable ? H5Tget_size(disk) : sizeof(char *);
+    char *out = NULL, **list = strings && width <= MOST_LINE ? calloc((size_t)n + 1, width) : NULL;
+    if (list) {
+        hid_t type = H5Tcopy(H5T_C_S1);
+        H5Tset_size(type, H5T_VARIABLE), H5Tset_cset(type, H5Tget_cset(disk));
+        if (H5Dread(set, variable ? type : disk, H5S_ALL, H5S_ALL, H5P_DEFAULT, list) >= 0)
+            *no_memory = !(
+                out = join(variable ? list : NULL, variable ? NULL : (const char *)list, width, n));
+        for (hssize_t k = 0; variable && k < n; k++) H5free_memory(list[k]);
+        H5Tclose(type);
+    }
+    free(list);
+    if (out) *length = strlen(out);
+    if (space >= 0) H5Sclose(space);
+    if (disk >= 0) H5Tclose(disk);
     return out;
 }

@@ -20,5 +20,7 @@ hid_t element_transfer(void);
 hid_t element_type(const struct object *object);
 /* A scalar string of fixed or variable length as a new C string; of set and attr, one is -1. */
 char *element_text(hid_t set, hid_t attr, size_t *length, bool *no_memory);
+/* A list of strings as one, each ended by a newline; NULL also where they are too many. */
+char *element_lines(hid_t set, size_t *length, bool *no_memory);
 
 #endif

@@ -139,7 +139,9 @@ static int answer_text(struct served *s, const struct request *q, struct sink *s
         is_text = e->object.kind == OBJECT_TEXT;
         if (is_text && served_stored(e, e->object.size, why)) return why->status;
         hid_t set = is_text ? served_set(s, e, why) : -1;
-        if (set >= 0) text = element_text(set, -1, &length, &no_memory);
+        if (set >= 0)
+            text = q->n ? element_lines(set, &length, &no_memory)
+                        : element_text(set, -1, &length, &no_memory);
         if (set >= 0 && set != e->set) H5Dclose(set);
     }
     if (no_memory) why_set(why, EX_SOFTWARE, "%s: no memory", path);

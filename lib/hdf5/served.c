@@ -167,9 +167,18 @@ static bool known_already(struct served *s, struct entry *e)
     return false;
 }
 
+/* /VTKHDF of a document of nsd's is for VTK alone, whatever is in it: it is not opened. In ON-DEM's files it has
+   the bodies. */
+static bool is_for_vtk(const struct walk *w, hid_t root, const char *name)
+{
+    return !*w->path && !strcmp(name, "VTKHDF") && H5Lexists(root, "nsd", H5P_DEFAULT) > 0 &&
+           H5Lexists(root, "ONDEM", H5P_DEFAULT) <= 0;
+}
+
 static herr_t look_at_link(hid_t from, const char *name, const H5L_info_t *info, void *data)
 {
     struct walk *w = data;
+    if (is_for_vtk(w, from, name)) return 0;
     if (info->type != H5L_TYPE_HARD && info->type != H5L_TYPE_SOFT)
         return why_set(w->why, EX_DATAERR, "%s/%.200s: a link into another file", w->path, name),
                -1;

@@ -253,6 +253,16 @@ char *source_text(struct source *s, const char *path, const char *name, struct w
     return t.out;
 }
 
+char *source_lines(struct source *s, const char *path, struct why *why)
+{
+    struct request q = request_of(REQUEST_TEXT, path);
+    struct taker t = { 0 };
+    q.n = 1;
+    if (!list_find(&s->list, path) || ask(s, &q, &t, why)) return NULL;
+    if (!t.reply.there) free(t.out), t.out = NULL;
+    return t.out;
+}
+
 int source_attribute(struct source *s, const char *path, const char *name, enum column_type type,
                      int count, void *out, struct why *why)
 {

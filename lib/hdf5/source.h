@@ -85,6 +85,8 @@ void *source_read_all(struct source *source, const char *path, enum column_type 
                       uint64_t *count, struct why *why);
 /* A scalar string, of an attribute unless name is NULL. NULL: there is none, or failure. */
 char *source_text(struct source *source, const char *path, const char *name, struct why *why);
+/* A list of strings, each ended by a newline, of a dataset. NULL: there is none, or failure. */
+char *source_lines(struct source *source, const char *path, struct why *why);
 /* `count` numbers of an attribute; count < 0: a scalar. */
 int source_attribute(struct source *source, const char *path, const char *name,
                      enum column_type type, int count, void *out, struct why *why);

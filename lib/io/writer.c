@@ -57,6 +57,7 @@ struct writer {
     struct output *begun;         /* the one that has its place until there is a frame; or NULL */
     bool waits;                   /* it takes its place when it is told to, or closed */
     bool linked;                  /* the file had a name when it was opened */
+    struct vtkhdf *vtk;           /* what VTK shall find in its documents; NULL: nothing */
 };
 
 static int output_failed(const struct writer *s, struct why *why, const char *trouble)
@@ -208,7 +209,22 @@ int64_t writer_size(const struct writer *s)
 
 bool writer_passes(const struct writer *s)
 {
-    return !s->trajectory;
+    return !s->trajectory && !s->vtk;
+}
+
+int writer_vtk(struct writer *s, const struct vtkhdf_parts *parts, struct why *why)
+{
+    return vtkhdf_begin(&s->vtk, parts, why);
+}
+
+/* What VTK finds of a frame that the document has, which is its last where no others follow */
+static int for_vtk(struct writer *s, hid_t file, const struct frame *f, bool last, struct why *why)
+{
+    if (!s->vtk || !f->packed) return 0;
+    if (f->distributed)
+        return why_set(why, EX_USAGE,
+                       "several processes make no /VTKHDF: nsd-cat --vtk does, after");
+    return vtkhdf_frame(s->vtk, file, &f->packing, why) || (last && vtkhdf_end(s->vtk, file, why));
 }
 
 int writer_pass(struct writer *s, struct reader *from, struct why *why)
@@ -250,7 +266,8 @@ static int stream_frame(struct writer *s, const struct frame *f, struct why *why
             (f->export && fclib_write_problem(f->export, f->export_global, doc.file, why)) ||
             (f->foreign && f->u &&
              fclib_store_solution(&f->problem, doc.file, f->u, f->problem.W.r, why)) ||
-            fill(&doc, NULL, why) || write_image(s, doc.file, why);
+            fill(&doc, NULL, why) || for_vtk(s, doc.file, f, true, why) ||
+            write_image(s, doc.file, why);
     H5Fclose(doc.file);
     return e ? why->status : 0;
 }
@@ -450,7 +467,8 @@ static int trajectory_frame(struct writer *s, const struct frame *f, struct why 
     if (first ? trajectory_begin(s, f, why) : reserve(s, f, why)) return why->status;
     if (check_same(s, f, why)) return why->status;
     if (frame_write_moment(&s->doc, f, why) || flush(s, why) || fill_frame(s, f, why) ||
-        frame_write_step(&s->doc, f, why) || flush(s, why))
+        frame_write_step(&s->doc, f, why) || flush(s, why) ||
+        for_vtk(s, s->doc.file, f, false, why))
         return why->status;
     s->step = f->packing.step, s->frames++;
     if (f->detected) s->contacts = true, s->solved = f->contacts.found, s->moved = f->moved;
@@ -460,6 +478,7 @@ static int trajectory_frame(struct writer *s, const struct frame *f, struct why 
 static int trajectory_close(struct writer *s, struct why *why)
 {
     hsize_t size;
+    if (s->vtk && vtkhdf_end(s->vtk, s->doc.file, why)) return why->status;
     int failed = table_write_close(&s->doc) || H5Fget_filesize(s->doc.file, &size) < 0;
     if (H5Fclose(s->doc.file) < 0 || failed)
         return output_failed(s, why, "cannot be written (full?)");
@@ -535,7 +554,7 @@ int writer_close(struct writer *s, struct why *why)
     if (!e && s->linked && output_removed(s->fd))
         e = output_failed(s, why, "another program has removed it");
     if (s->disk >= 0) close(s->disk);
-    roster_free(&s->roster);
+    roster_free(&s->roster), vtkhdf_free(s->vtk);
     if (s->begun) output_drop(s->begun);
     if (!s->output && close(s->fd) && !e) e = output_failed(s, why, strerror(errno));
     if (s->output && e) output_drop(s->output);

@@ -7,6 +7,7 @@
 
 #include "io/frame.h"
 #include "io/reader.h"
+#include "io/vtkhdf.h"
 
 struct writer;
 
@@ -44,6 +45,9 @@ int writer_frame(struct writer *writer, const struct frame *frame, struct why *w
  * frame, so that a run that is killed before leaves a document that another one can begin with.
  */
 int writer_begin(struct writer *writer, const struct frame *frame, struct why *why);
+
+/* Before the first frame: its documents have /VTKHDF [io/vtkhdf.h]; parts: NULL: with the grains alone. */
+int writer_vtk(struct writer *writer, const struct vtkhdf_parts *parts, struct why *why);
 
 /* Bytes of the file that is written; 0: it is none */
 int64_t writer_size(const struct writer *writer);

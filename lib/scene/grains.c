@@ -34,6 +34,16 @@ static int32_t kind_named(const struct scene *s, const char *name)
     return -1;
 }
 
+int32_t grains_kind(const struct scene *s, const struct scene_bodies *b, int32_t k)
+{
+    const struct packing *p = b->document;
+    if (!b->foreign) return kind_named(s, p->kind_name[k]);
+    for (int32_t i = 0; i < b->types; i++)
+        if (!strcmp(b->type[i].name, p->kind_name[k])) return b->type[i].kind;
+    int32_t kind = kind_named(s, p->kind_name[k]);
+    return kind < 0 && p->kinds == 1 && !b->types ? 0 : kind;
+}
+
 static int add_body(struct grains *out, const struct scene *s, const struct scene_bodies *b,
                     int64_t i, struct why *why)
 {
@@ -44,7 +54,12 @@ static int add_body(struct grains *out, const struct scene *s, const struct scen
     g.has_v = g.has_w = true;
     if (!b->at_rest) g.v = p->v[i], g.w = p->w[i];
     g.weighs = true, g.mass = p->mass[i], g.inertia = p->inertia[i], g.fixed = p->mass[i] == 0;
-    g.kind = b->has_kind ? b->kind : kind_named(s, p->kind_name[p->kind[i]]);
+    if (b->unsaid && g.mass == 0) g.weighs = g.fixed = false;
+    g.kind = b->has_kind ? b->kind : grains_kind(s, b, p->kind[i]);
+    if (g.kind < 0 && b->foreign)
+        return why_set(why, EX_DATAERR,
+                       "%s: ball %lld is of type %s: which kind is that? \"types\": {\"%s\": NAME}",
+                       b->file, (long long)i, p->kind_name[p->kind[i]], p->kind_name[p->kind[i]]);
     if (g.kind < 0)
         return why_set(why, EX_DATAERR, "%s: body %lld is of kind \"%s\": name it under \"kinds\"",
                        b->file, (long long)i, p->kind_name[p->kind[i]]);

@@ -36,6 +36,9 @@ void grains_free(struct grains *list);
    EX_DATAERR with file:line, EX_NOINPUT or EX_SOFTWARE. */
 int grains_of_table(struct grains *out, const struct scene *s, const char *dir, const char *name,
                     struct why *why);
+/* The scene's kind for kind k of a document: of its name; of another program's file as "types" has it, else of its
+   name, else the first, where it has just one. -1: none */
+int32_t grains_kind(const struct scene *s, const struct scene_bodies *b, int32_t k);
 /* scene/grains.c: those of a document's frame: EX_DATAERR where a kind is none of the scene's. */
 int grains_of_document(struct grains *out, const struct scene *s, const struct scene_bodies *b,
                        struct why *why);

@@ -50,7 +50,7 @@ static int judge_sides(const struct side *side, int32_t n, struct why *why)
 }
 
 /* Is every side that of two triangles, once either way? Corners as near as those of a hull may be are one. */
-static int judge_closed(const struct mesh *m, struct why *why)
+int mesh_closed(const struct mesh *m, struct why *why)
 {
     struct side *side = malloc((3 * (size_t)m->elements + 1) * sizeof *side);
     int32_t *to = malloc(((size_t)m->vertices + 1) * sizeof *to), n = 0;
@@ -103,7 +103,7 @@ int mesh_shape(struct shape *s, const struct mesh *m, bool hull, struct why *why
 {
     if (m->vertices > CORNERS_MOST)
         return why_set(why, EX_DATAERR, "has more than %d corners", CORNERS_MOST);
-    if (mesh_check(m, 3, why) || (!hull && judge_closed(m, why)) ||
+    if (mesh_check(m, 3, why) || (!hull && mesh_closed(m, why)) ||
         hull_of_points(s, 3, m->vertices, m->vertex, why))
         return why->status;
     return hull ? 0 : judge_convex(m, s, why);

@@ -15,4 +15,7 @@
    EX_DATAERR with what is wrong with the surface, or EX_SOFTWARE. */
 int mesh_shape(struct shape *s, const struct mesh *m, bool hull, struct why *why);
 
+/* Is every side of a triangle that of two, once either way? Returns 0, EX_DATAERR or EX_SOFTWARE. */
+int mesh_closed(const struct mesh *m, struct why *why);
+
 #endif

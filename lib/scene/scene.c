@@ -12,7 +12,8 @@ void scene_free(struct scene *s)
         struct scene_bodies *b = &s->bodies[i];
         scene_size_free(&b->size);
         if (b->document) packing_free(b->document);
-        free(b->document), free(b->file);
+        for (int32_t k = 0; k < b->types; k++) free(b->type[k].name);
+        free(b->document), free(b->file), free(b->type);
     }
     for (int32_t i = 0; i < s->pours; i++) scene_size_free(&s->pour[i].size);
     free(s->pour), free(s->removal);
@@ -21,7 +22,8 @@ void scene_free(struct scene *s)
     free(s->solid);
     drives_free(&s->drives), drives_free(&s->pushes), mesh_free(&s->mesh);
     for (int32_t k = 0; k < s->meshes; k++) free(s->mesh_file[k].file);
-    free(s->mesh_file);
+    for (int32_t k = 0; k < s->fits; k++) free(s->fit[k].shape);
+    free(s->mesh_file), free(s->fit);
     free(s->kind), free(s->law), free(s->bodies), free(s->wall), free(s->wall_item), free(s->text);
     *s = (struct scene){ 0 };
 }

@@ -34,6 +34,10 @@
  *                                      # begins a comment, the first may name columns, see below
  *   { document: string, frame: integer, at_rest: true | false }      the bodies of a document
  *                                      [nsd-format(5)]: frame [-1], -1 is the last, 0 the first
+ *   { import: string, frame, at_rest, types: { "1": NAME, ... }, repeats: [true | false, ...] }   the balls of a
+ *                                      file of another program [import/import_file.h]: types are its numbers of
+ *                                      materials [the kind of that name; "ball" where there is one type], repeats
+ *                                      along which edges its box is periodic [as it says, else none]
  *   a relative name starts at the scene
  * with, for each of its bodies,
  *   v vector [0] m/s; w vector, or a number where dim is 2 [0] rad/s; kind NAME ["ball"];
@@ -71,7 +75,9 @@
  *   { polygon: [[x, y], ...] }                     in the plane, convex, counterclockwise
  *     these with round m [0]: all points within that of it
  *   { capsule: { length, radius } }                length between the centres of its ends, along x
- *   { balls: [[x, y, z, r], ...] }                 a clump; in the plane [x, y, r]
+ *   { balls: [[x, y, z, r], ...] }                 a clump; in the plane [x, y, r]. In space with solid
+ *                                                  { volume, centre, inertia: MATRIX }: what it stands for, of density 1
+ *   { mesh: { file, scale }, clump: { balls: integer, error: 0..1 } }     balls that fill a closed surface
  *
  * BOX { x: [from, to], y: [from, to], z: [from, to] }: null is open, and so is an axis left out.
  *
@@ -169,6 +175,14 @@ struct scene_bodies {
     double phi;    /* SCENE_RANDOM: share of the box that is filled; 0: count bodies */
     int64_t frame; /* SCENE_DOCUMENT: from 0, or from the end: -1 is the last */
     bool at_rest;  /* SCENE_DOCUMENT: without its velocities */
+    bool foreign;  /* SCENE_DOCUMENT: the file is another program's, */
+    bool unsaid;   /* which need not say masses: 0 is none */
+    bool has_repeats, repeats[3];
+    int32_t types; /* kinds that its types are */
+    struct scene_type {
+        char *name; /* as the file counts it: "1" */
+        int32_t kind;
+    } * type;                                            /* [types] */
     bool has_v, has_w, has_kind, has_density, has_fixed; /* given for all bodies of the group */
     /* SCENE_DOCUMENT: the frame, which whoever can read documents puts here before the scene is
        built; owned */
@@ -225,6 +239,13 @@ struct scene_solid {
     quat turn;    /* from its axes to those it was described in */
 };
 
+/* How well balls fill a surface: of shape NAME, for who tells it [scene/clump_fit.h] */
+struct scene_fit {
+    char *shape;
+    int32_t balls;
+    double volume, distance, moments; /* errors, relative */
+};
+
 struct scene_cell {
     bool given;   /* else that of the first document is taken, unless there shall be none */
     bool none;    /* null is given */
@@ -264,6 +285,8 @@ struct scene {
     struct scene_cell cell;
     struct shapes shapes;      /* of grains */
     struct scene_solid *solid; /* [shapes.n] */
+    int32_t fits;
+    struct scene_fit *fit; /* [fits] clumps that were fitted to surfaces */
 
     struct scene_files *files; /* while it is parsed */
     bool rewritten;            /* the JSON, which now has what was in files */

@@ -116,6 +116,53 @@ static int read_document(jnode o, struct scene_bodies *b)
     return b->file ? 0 : why_set(o.in->why, EX_SOFTWARE, "no memory for a file name");
 }
 
+/* "types": which kind each type of the file is */
+static int read_types(jnode o, const struct scene *s, struct scene_bodies *b)
+{
+    const char *name;
+    json_t *value;
+    if (!o.json) return 0;
+    if (!json_is_object(o.json)) return json_node_fault(o, "wants an object {\"1\": NAME, ...}");
+    if (!(b->type = scene_alloc(o, json_object_size(o.json), sizeof *b->type))) return 1;
+    json_object_foreach(o.json, name, value)
+    {
+        jnode n = json_node_key(&o, name);
+        if (!strcmp(name, "comment")) continue;
+        if (!*name || strspn(name, "0123456789") != strlen(name))
+            return json_node_fault(n, "types are whole numbers");
+        if (scene_read_kind(n, s, &b->type[b->types].kind)) return 1;
+        if (!(b->type[b->types++].name = strdup(name)))
+            return why_set(o.in->why, EX_SOFTWARE, "no memory for the types of a file");
+    }
+    return 0;
+}
+
+static int read_repeats(jnode o, int dim, struct scene_bodies *b)
+{
+    size_t n;
+    if (!o.json) return 0;
+    if (json_node_array(o, &n)) return 1;
+    if (n != (size_t)dim) return json_node_fault(o, "wants %d of true and false", dim);
+    b->has_repeats = true;
+    for (size_t k = 0; k < n; k++)
+        if (json_node_bool(json_node_item(&o, k), &b->repeats[k])) return 1;
+    return 0;
+}
+
+static int read_import(jnode o, const struct scene *s, struct scene_bodies *b)
+{
+    const char *name = NULL;
+    if (json_node_only(o, "import frame at_rest types repeats v w kind density mass fixed") ||
+        json_node_text(json_node_key(&o, "import"), &name) ||
+        json_node_integer(json_node_key(&o, "frame"), -1000000000, 1000000000, &b->frame) ||
+        json_node_bool(json_node_key(&o, "at_rest"), &b->at_rest) ||
+        read_types(json_node_key(&o, "types"), s, b) ||
+        read_repeats(json_node_key(&o, "repeats"), s->dim, b))
+        return 1;
+    b->foreign = true, b->file = strdup(name);
+    return b->file ? 0 : why_set(o.in->why, EX_SOFTWARE, "no memory for a file name");
+}
+
 static int read_one(jnode o, const struct scene *s, struct scene_bodies *b)
 {
     b->count = 1;
@@ -172,11 +219,11 @@ static int read_common(jnode o, const struct scene *s, struct scene_bodies *b)
 static int read_group(jnode o, const struct scene *s, const struct scene_box *box,
                       struct scene_bodies *b)
 {
-    static const enum scene_source from[] = { SCENE_ONE, SCENE_LATTICE, SCENE_TABLE, SCENE_DOCUMENT,
-                                              SCENE_RANDOM };
+    static const enum scene_source from[] = { SCENE_ONE,      SCENE_LATTICE, SCENE_TABLE,
+                                              SCENE_DOCUMENT, SCENE_RANDOM,  SCENE_DOCUMENT };
     *b = (struct scene_bodies){ .spacing = 1.05, .jitter = 1, .frame = -1, .form = { .fill = 1 } };
     if (box) b->box = *box;
-    int which = json_node_choice(o, "x count file document random");
+    int which = json_node_choice(o, "x count file document random import");
     if (which < 0) return 1;
     b->from = from[which];
     if (from[which] != SCENE_TABLE && from[which] != SCENE_DOCUMENT &&
@@ -186,6 +233,7 @@ static int read_group(jnode o, const struct scene *s, const struct scene_box *bo
               : which == 1 ? read_lattice(o, s, box, b)
               : which == 2 ? read_table(o, b)
               : which == 3 ? read_document(o, b)
+              : which == 5 ? read_import(o, s, b)
                            : read_random(o, s, box, b);
     return bad || read_common(o, s, b);
 }

@@ -352,13 +352,6 @@ static int check_packing(const struct packing *p, const struct scene *s, const s
     return why->status;
 }
 
-static int32_t kind_named(const struct scene *s, const char *name)
-{
-    for (int32_t k = 0; k < s->kinds; k++)
-        if (!strcmp(s->kind[k].name, name)) return k;
-    return -1;
-}
-
 /* The walls of a document, where they were at its time when it is the scene's. */
 static int take_walls(struct packing *p, const struct scene *s, const struct scene_bodies *b,
                       struct why *why)
@@ -370,7 +363,7 @@ static int take_walls(struct packing *p, const struct scene *s, const struct sce
         *w = from->wall[i];
         w->x = v3_axpy(w->x, from->t - s->t, w->v);
         w->until -= from->t - s->t;
-        w->kind = kind_named(s, from->kind_name[from->wall[i].kind]);
+        w->kind = grains_kind(s, b, from->wall[i].kind);
         if (w->kind < 0)
             return why_set(why, EX_DATAERR,
                            "%s: wall %d is of kind \"%s\": name it under \"kinds\"", b->file, i,

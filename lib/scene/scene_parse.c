@@ -32,7 +32,8 @@ static bool takes_documents(jnode bodies)
 {
     bool any = false;
     for (size_t k = 0; k < json_array_size(bodies.json); k++)
-        any = any || json_object_get(json_array_get(bodies.json, k), "document");
+        any = any || json_object_get(json_array_get(bodies.json, k), "document") ||
+              json_object_get(json_array_get(bodies.json, k), "import");
     return any;
 }
 

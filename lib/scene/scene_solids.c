@@ -1,5 +1,6 @@
 /* scene/scene_solids.c: "shapes" of grains from their JSON, and the shape of a group. */
 #include "geometry/solid.h"
+#include "scene/clump_fit.h"
 #include "scene/hull.h"
 #include "scene/mesh_shape.h"
 #include "scene/scene_read.h"
@@ -211,8 +212,118 @@ static int rewrite(jnode o, const struct shape *s, struct scene *scene)
     return bad ? why_set(o.in->why, EX_SOFTWARE, "no memory for the scene's text") : 0;
 }
 
-/* A polyhedron from the triangles of a file */
-static int read_mesh(jnode o, struct shape *s, struct scene *scene)
+/* ---- a clump that has the moments of something else ---- */
+
+/* Moments of inertia about the centre, of density 1, and back: second = tr(inertia)/2 1 - inertia */
+static void turn_moments(double to[3][3], double of[3][3], double share)
+{
+    const double trace = of[0][0] + of[1][1] + of[2][2];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) to[i][j] = (i == j ? share * trace : 0) - of[i][j];
+}
+
+/* "solid": what the balls of a clump stand for: its volume, m^3, its centre, m, and its inertia about that, m^5 */
+static int read_solid(jnode o, struct solid *as)
+{
+    jnode n = json_node_key(&o, "solid"), rows = json_node_key(&n, "inertia");
+    double inertia[3][3];
+    size_t length;
+    if (!n.json) return 0;
+    if (json_node_only(n, "volume centre inertia") || json_node_need(&n, "volume centre inertia") ||
+        json_node_number(json_node_key(&n, "volume"), J_POSITIVE, &as->volume) ||
+        json_node_vector(json_node_key(&n, "centre"), 3, &as->centre) ||
+        json_node_array(rows, &length))
+        return 1;
+    if (length != 3) return json_node_fault(rows, "wants three rows of three numbers");
+    for (size_t i = 0; i < 3; i++) {
+        vec3 row = v3(0, 0, 0);
+        if (json_node_vector(json_node_item(&rows, i), 3, &row)) return 1;
+        inertia[i][0] = row.x, inertia[i][1] = row.y, inertia[i][2] = row.z;
+    }
+    turn_moments(as->second, inertia, 0.5);
+    double(*S)[3] = as->second;
+    const double minor = S[0][0] * S[1][1] - S[0][1] * S[1][0];
+    const double det = S[0][0] * (S[1][1] * S[2][2] - S[1][2] * S[2][1]) -
+                       S[0][1] * (S[1][0] * S[2][2] - S[1][2] * S[2][0]) +
+                       S[0][2] * (S[1][0] * S[2][1] - S[1][1] * S[2][0]);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < i; j++)
+            if (S[i][j] != S[j][i]) return json_node_fault(rows, "must be symmetric");
+    return S[0][0] > 0 && minor > 0 && det > 0
+               ? 0
+               : json_node_fault(rows,
+                                 "is the inertia of no body: each principal moment must be less "
+                                 "than the sum of the others");
+}
+
+/* The balls in place of the keys "mesh" and "clump", and how well they fit as a comment */
+static int rewrite_clump(jnode o, const struct shape *s, const struct solid *of,
+                         const struct clump_errors *e, struct scene *scene)
+{
+    json_t *balls = json_array(), *rows = json_array();
+    double inertia[3][3];
+    char fit[200];
+    bool bad = false;
+    double second[3][3];
+    memcpy(second, of->second, sizeof second);
+    turn_moments(inertia, second, 1);
+    for (int32_t i = 0; i < s->vertices; i++)
+        bad |=
+            json_array_append_new(balls, json_pack("[f, f, f, f]", s->vertex[i].x, s->vertex[i].y,
+                                                   s->vertex[i].z, s->ball[i])) != 0;
+    for (int i = 0; i < 3; i++)
+        bad |= json_array_append_new(
+                   rows, json_pack("[f, f, f]", inertia[i][0], inertia[i][1], inertia[i][2])) != 0;
+    json_t *solid = json_pack("{s:f, s:[f, f, f], s:o}", "volume", of->volume, "centre",
+                              of->centre.x, of->centre.y, of->centre.z, "inertia", rows);
+    snprintf(fit, sizeof fit,
+             "%d balls fitted to a surface: volume %+.2g, distance %.2g of the radius around it, "
+             "moments %.2g of their sum",
+             (int)e->balls, e->volume, e->distance, e->moments);
+    bad |= !solid || json_object_set_new(o.json, "balls", balls) ||
+           json_object_set_new(o.json, "solid", solid) || json_object_del(o.json, "mesh") ||
+           json_object_del(o.json, "clump") ||
+           json_object_set_new(o.json, "comment", json_string(fit));
+    scene->rewritten = true;
+    return bad ? why_set(o.in->why, EX_SOFTWARE, "no memory for the scene's text") : 0;
+}
+
+/* How well the balls of shape NAME fit, for who tells it */
+static int note_fit(jnode o, struct scene *scene, const struct clump_errors *e)
+{
+    struct scene_fit *more = realloc(scene->fit, (size_t)(scene->fits + 1) * sizeof *more);
+    if (!more) return why_set(o.in->why, EX_SOFTWARE, "no memory for a shape");
+    scene->fit = more;
+    struct scene_fit *f = &more[scene->fits];
+    *f = (struct scene_fit){ strdup(o.key ? o.key : ""), e->balls, e->volume, e->distance,
+                             e->moments };
+    if (!f->shape) return why_set(o.in->why, EX_SOFTWARE, "no memory for a shape");
+    scene->fits++;
+    return 0;
+}
+
+/* "clump": balls in the surface of a mesh */
+static int read_clump(jnode o, struct shape *s, const struct mesh *mesh, const char *file,
+                      struct solid *as, struct scene *scene)
+{
+    jnode c = json_node_key(&o, "clump");
+    int64_t balls = 0;
+    double error = 0;
+    struct clump_errors errors = { 0 };
+    struct why why = { 0 };
+    if (json_node_only(c, "balls error") || json_node_need(&c, "balls") ||
+        json_node_integer(json_node_key(&c, "balls"), 1, CLUMP_BALLS_MOST, &balls) ||
+        json_node_number(json_node_key(&c, "error"), J_UNIT, &error))
+        return 1;
+    clump_fit(s, as, mesh, (int32_t)balls, error, &errors, &why);
+    if (why.status == EX_DATAERR) return json_node_fault(c, "%s: %s", file, why.text);
+    if (why.status) return why_set(o.in->why, why.status, "%s", why.text);
+    if (rewrite_clump(o, s, as, &errors, scene) || note_fit(o, scene, &errors)) return 1;
+    return read_solid(o, as); // as who reads the rewritten scene gets it
+}
+
+/* A polyhedron, or a clump, from the triangles of a file */
+static int read_mesh(jnode o, struct shape *s, struct solid *as, struct scene *scene)
 {
     const char *name = NULL;
     double scale = 1;
@@ -227,7 +338,14 @@ static int read_mesh(jnode o, struct shape *s, struct scene *scene)
         json_node_bool(json_node_key(&m, "hull"), &hull))
         return 1;
     if (!scene->files) return json_node_fault(m, "no files are read for what is in a document");
-    if (!scene->files->read_mesh(&mesh, scene->files, name, scale, &left_out, &why) &&
+    const bool clump = json_node_key(&o, "clump").json;
+    if (clump && hull) return json_node_fault(m, "hull: a clump has none");
+    if (clump && !scene->files->read_mesh(&mesh, scene->files, name, scale, &left_out, &why)) {
+        int bad = read_clump(o, s, &mesh, name, as, scene);
+        mesh_free(&mesh);
+        return bad;
+    }
+    if (!clump && !scene->files->read_mesh(&mesh, scene->files, name, scale, &left_out, &why) &&
         mesh_shape(s, &mesh, hull, &why) && why.status == EX_DATAERR)
         json_node_fault(m, "%s: %s%s%s", name, why.text,
                         left_out ? ", without the triangles of no area or repeated" : "",
@@ -294,7 +412,7 @@ static int read_superquadric(jnode o, struct shape *s, int dim)
     return why.status ? why_set(o.in->why, why.status, "%s", why.text) : 0;
 }
 
-static int read_form(jnode o, struct shape *s, struct scene *scene)
+static int read_form(jnode o, struct shape *s, struct solid *as, struct scene *scene)
 {
     int dim = scene->dim;
     static const char plane[] = "box capsule balls points regular superquadric polygon",
@@ -302,29 +420,39 @@ static int read_form(jnode o, struct shape *s, struct scene *scene)
     int which = json_node_choice(o, dim == 2 ? plane : space);
     if (which < 0) return 1;
     bool rounded = which != 1 && which != 2;
-    char keys[120];
-    snprintf(keys, sizeof keys, "%s%s%s", dim == 2 ? plane : space, dim == 3 ? " faces" : "",
-             rounded ? " round" : "");
+    bool clump = which == 7 && json_node_key(&o, "clump").json;
+    char keys[140];
+    snprintf(keys, sizeof keys, "%s%s%s", dim == 2 ? plane : space,
+             dim == 3 ? " faces clump solid" : "", rounded && !clump ? " round" : "");
     s->form = SHAPE_HULL;
     if (json_node_only(o, keys)) return 1;
     if ((dim == 2 || which != 6) && json_node_key(&o, "faces").json)
         return json_node_fault(json_node_key(&o, "faces"), "goes with vertices");
+    for (int k = 0; k < 2 && dim == 3; k++) {
+        jnode extra = json_node_key(&o, k ? "solid" : "clump");
+        if (extra.json && which != (k ? 2 : 7))
+            return json_node_fault(extra, "goes with %s", k ? "balls" : "mesh");
+    }
     return which == 0   ? read_box(o, s, dim)
            : which == 1 ? read_capsule(o, s)
-           : which == 2 ? read_balls(o, s, dim)
+           : which == 2 ? read_balls(o, s, dim) || (dim == 3 && read_solid(o, as))
            : which == 3 ? read_hull(o, s, dim)
            : which == 4 ? read_regular(o, s, dim)
            : which == 5 ? read_superquadric(o, s, dim)
-           : which == 7 ? read_mesh(o, s, scene)
+           : which == 7 ? read_mesh(o, s, as, scene)
            : dim == 2   ? read_polygon(o, s)
                         : read_polyhedron(o, s);
 }
 
 /* What was read, in its own axes and unit; a fault of the shape is reported at its place. */
-static int settle(jnode o, struct shape *s, int dim, struct scene_solid *solid)
+static int settle(jnode o, struct shape *s, const struct solid *as, int dim,
+                  struct scene_solid *solid)
 {
     struct why why = { 0 };
-    solid_settle(s, dim, &solid->reach, &solid->centre, &solid->turn, &why);
+    if (as->volume > 0)
+        solid_settle_as(s, dim, as, &solid->reach, &solid->centre, &solid->turn, &why);
+    else
+        solid_settle(s, dim, &solid->reach, &solid->centre, &solid->turn, &why);
     if (!why.status) shape_finish(s, dim, &why);
     if (why.status == EX_DATAERR) return json_node_fault(o, "%s", why.text);
     return why.status ? why_set(o.in->why, why.status, "%s", why.text) : 0;
@@ -334,12 +462,13 @@ static int read_shape(jnode o, struct scene *s, const char *name)
 {
     struct shape shape = { 0 };
     struct scene_solid solid = { 0 };
-    int bad = read_form(o, &shape, s);
+    struct solid as = { 0 }; // without a volume: the shape's own
+    int bad = read_form(o, &shape, &as, s);
     bool hull = shape.form == SHAPE_HULL;
     bad = bad || (hull && json_node_number(json_node_key(&o, "round"), J_POSITIVE, &shape.round));
     for (int32_t i = 0; !bad && shape.form != SHAPE_CLUMP && i < shape.vertices; i++)
         shape.ball[i] = shape.round;
-    bad = bad || settle(o, &shape, s->dim, &solid);
+    bad = bad || settle(o, &shape, &as, s->dim, &solid);
     if (!bad && !(shape.name = strdup(name)))
         bad = why_set(o.in->why, EX_SOFTWARE, "no memory for a shape");
     if (bad) return shape_free(&shape), 1;

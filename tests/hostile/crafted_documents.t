@@ -81,6 +81,13 @@ hostile "a link through a link into another file" 'another file' four.h5 \
 hostile "a virtual dataset" '/mine: .*other files' four.h5 "virtual(f, '/mine')"
 hostile "masses that are a virtual dataset" '/particles/all/mass: .*other files' four.h5 \
     "del f[P + 'mass']; virtual(f, P + 'mass')"
+hostile "a virtual dataset that a link leads to, in the group for VTK" '/mine: .*other files' four.h5 "virtual(f, '/VTKHDF/x'); f['/mine'] = h5py.SoftLink('/VTKHDF/x')"
+hostile "and under a second name" '/mine: .*other files' four.h5 "virtual(f, '/VTKHDF/x'); f['/mine'] = f['/VTKHDF/x']"
+make bad.h5 four.h5 "virtual(f, '/VTKHDF/x'); f['/VTKHDF/y'] = h5py.ExternalLink(tmp + '/secret', '/'); f['/VTKHDF/a'] = f['/VTKHDF']; external(f, b'/VTKHDF/z', 64, h5t.STD_U8LE)"
+ok "the group for VTK is not looked into" sh -c "nsd-cat '$tmp/bad.h5' >'$tmp/copy.h5' && nsd-info '$tmp/bad.h5' >'$tmp/none'"
+ok "nor copied" sh -c "! h5ls '$tmp/copy.h5' | grep -q VTKHDF"
+make bad.h5 four.h5 "f['/VTKHDF'] = h5py.ExternalLink(tmp + '/secret', '/')"
+ok "even where it is a link into another file" sh -c "nsd-info '$tmp/bad.h5' >'$tmp/none'"
 hostile "a filter that is not built in" '/mine: .*filter' four.h5 \
     "f.create_dataset('/mine', data=np.zeros(1000), chunks=(100,), compression='lzf')"
 

@@ -245,7 +245,8 @@ static int coarse(uint32_t *crc, struct why *why)
 
 static int export_all(uint32_t *crc, struct why *why)
 {
-    const struct export_frame m = { &frame[now].packing, &frame[now].contacts, 1 };
+    void *kept = NULL;
+    const struct export_frame m = { &frame[now].packing, &frame[now].contacts, 1, &kept, NULL };
     *crc = 0;
     for (int k = 0; !why->status && format_at(k); k++)
         for (int part = 0; part < PART_COUNT; part++) {
@@ -254,7 +255,11 @@ static int export_all(uint32_t *crc, struct why *why)
             const char *path = fresh(".out");
             FILE *out = fopen(path, "w");
             if (!out) return why_set(why, EX_SOFTWARE, "no file of the test's");
-            format_at(k)->write(out, &m, (enum part)part, true, why);
+            struct why one = { 0 }; // what a format has not is no failure
+            format_at(k)->write(out, &m, (enum part)part, true, &one);
+            if (one.status && one.status != EX_DATAERR) *why = one;
+            if (kept && format_at(k)->end) format_at(k)->end(out, kept, why);
+            kept = NULL;
             fclose(out);
             uint32_t bytes = crc_of(path); // boundaries that find no memory are left out
             if (part != PART_BOUNDARY && format_at(k) != &format_stl) *crc ^= bytes;

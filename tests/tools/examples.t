@@ -42,6 +42,7 @@ ln -s "$repository/scenes" "$tmp/stock/scenes"
     nsd-step -n 1000 --every 10 --contacts a.h5 >out.h5
     nsd-step -n 10 out.h5 >more.h5
     nsd-cat --last out.h5 >packing.h5
+    nsd-export -o dump.liggghts --to lammps packing.h5
     nsd-cat --steps 700 out.h5 | nsd-detect >contacts.h5
     nsd-solve contacts.h5 >solved.h5
     cp packing.h5 edited.h5
@@ -175,6 +176,9 @@ claim()
     *'map(.sweeps) | add'*) output '.[0] > 0' ;;
     # copies
     'nsd-cat --steps 0:1000:100 out.h5 > thin.h5') frames thin.h5 '. == [range(100; 1001; 100)]' ;;
+    'nsd-cat --vtk '*' out.h5 > paraview.h5') frames paraview.h5 'length == 100' && h5ls paraview.h5/VTKHDF | grep -Eq 'Points|surfaces' ;;
+    *'nsd-cat --vtk all > bricks.h5') frames bricks.h5 'length == 100' && h5ls bricks.h5/VTKHDF/surfaces/Polygons | grep -q Connectivity ;;
+    'nsd-gen --from dump.liggghts '*) bodies out.h5 500 && frames out.h5 'length == 1000' ;;
     'nsd-cat out.h5 more.h5 > all.h5') frames all.h5 'length == 110 and .[0] == 10 and .[-1] == 1010' ;;
     'nsd-cat --stream out.h5 > stream.h5') frames stream.h5 'length == 100' && settings stream.h5 '.frames == 1' ;;
     'nsd-cat killed.h5 > whole.h5') frames whole.h5 'length >= 1' && h5dump -n whole.h5 ;;
@@ -203,6 +207,9 @@ claim()
     'nsd-export '*'> grains.csv') [ "$(wc -l <grains.csv)" = 501 ] ;;
     'nsd-export -o out.lammpstrj out.h5') [ "$(grep -c '^ITEM: ATOMS id type x y z ' out.lammpstrj)" = "$(frames out.h5 length)" ] ;;
     *'--part surfaces -o bricks.vtp') grep -q 'NumberOfPolys="390"' bricks.vtp ;; # 65 bricks of six faces
+    'nsd-export --last -o heap.data out.h5') grep -q '^500 atoms$' heap.data ;;
+    'nsd-export --last -o heap.vtkhdf out.h5') h5ls heap.vtkhdf/ONDEM | grep -q Materials ;;
+    'nsd-export -o out.gsd out.h5') [ "$(head -c 8 out.gsd | od -An -tx1 | tr -d ' ')" = df65df65df65df65 ] ;;
     'nsd-export -o out.xyz out.h5') [ "$(grep -c 'Properties=species:S:1:pos:R:3:' out.xyz)" = "$(frames out.h5 length)" ] ;;
     *'> forces.txt') table 1 "$(nsd-info --last out.h5 | jq .contacts)" forces.txt && awk '$1 < 0 { exit 1 }' forces.txt ;;
     'gnuplot '*) ;;

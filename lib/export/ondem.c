@@ -1,0 +1,25 @@
+/* export/ondem.c: ON-DEM's exchange format [io/ondem_write.h]: grains, planes across an axis, contacts; one frame. */
+#include "export/format.h"
+#include "io/ondem_write.h"
+
+#include <stdlib.h>
+
+static int write_ondem(FILE *out, const struct export_frame *m, enum part part, bool first,
+                       struct why *why)
+{
+    size_t size = 0;
+    (void)part, (void)first;
+    void *bytes = ondem_write(m->packing, m->contacts, &size, why);
+    if (!bytes) return why->status;
+    fwrite(bytes, 1, size, out);
+    free(bytes);
+    return 0;
+}
+
+const struct format format_ondem = {
+    .name = "ondem",
+    .ending = "vtkhdf",
+    .help = "ON-DEM's exchange format, for other DEM programs and ParaView",
+    .binary = true,
+    .write = write_ondem,
+};

@@ -1,0 +1,131 @@
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): memfd_create
+#include "io/bounded.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#ifdef __SANITIZE_ADDRESS__
+enum { SANITIZED = 1 };
+#else
+enum { SANITIZED = 0 };
+#endif
+
+enum {
+    SPARE_MEMORY = 1 << 28, /* bytes */
+    MEMORY_RATIO = 8,       /* and so many times the file: a grain is 200 bytes, and 30 of text */
+    SPARE_SECONDS = 4,      /* of the processor, */
+    RATE = 10000000,        /* and bytes a second: a third of what reading text takes */
+    SLOWER = SANITIZED ? 10 : 1
+};
+
+struct bounded {
+    int fd;
+};
+
+int bounded_put(struct bounded *to, const void *bytes, size_t size, struct why *why)
+{
+    for (size_t done = 0; done < size;) {
+        ssize_t n = write(to->fd, (const char *)bytes + done, size - done);
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0)
+            return why_set(why, EX_SOFTWARE, "no memory for what is read: %s", strerror(errno));
+        done += (size_t)n;
+    }
+    return 0;
+}
+
+static rlim_t address_space(void)
+{
+    unsigned long long pages = 0;
+    FILE *f = fopen("/proc/self/statm", "r");
+    if (!f || fscanf(f, "%llu", &pages) != 1) pages = 0;
+    if (f) fclose(f);
+    return (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE);
+}
+
+static void set_limit(int which, rlim_t most)
+{
+    struct rlimit r;
+    if (getrlimit(which, &r)) return;
+    r.rlim_cur = most < r.rlim_max ? most : r.rlim_max;
+    setrlimit(which, &r);
+}
+
+static void bound(uint64_t size)
+{
+    struct rusage used;
+    set_limit(RLIMIT_CORE, 0);
+    if (!SANITIZED)
+        set_limit(RLIMIT_AS, address_space() + SPARE_MEMORY + MEMORY_RATIO * (rlim_t)size);
+    if (getrusage(RUSAGE_SELF, &used)) return;
+    rlim_t now = (rlim_t)(used.ru_utime.tv_sec + used.ru_stime.tv_sec);
+    set_limit(RLIMIT_CPU, now + SLOWER * (SPARE_SECONDS + size / RATE));
+}
+
+/* The process has ended: with an answer, a reason, or broken down */
+static int judge(int status, const char *name, const struct why *said, struct why *why)
+{
+    if (WIFEXITED(status) && !WEXITSTATUS(status)) return 0;
+    if (WIFEXITED(status) && said->status) return why_set(why, said->status, "%s", said->text);
+    int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    if (signal == SIGXCPU)
+        return why_set(why, EX_DATAERR, "%.250s: takes too long to read: damaged, or made to",
+                       name);
+    if (signal == SIGKILL)
+        return why_set(why, EX_SOFTWARE, "%.250s: reading it was killed (no memory?)", name);
+    return why_set(why, EX_DATAERR, "%.250s: reading it breaks down (%s): damaged, or made to",
+                   name, signal ? strsignal(signal) : "it ended");
+}
+
+static int take(int fd, void **answer, size_t *n, struct why *why)
+{
+    struct stat st;
+    *answer = NULL, *n = 0;
+    if (fstat(fd, &st))
+        return why_set(why, EX_SOFTWARE, "what was read is lost: %s", strerror(errno));
+    if (!st.st_size) return 0;
+    void *map = mmap(NULL, (size_t)st.st_size, PROT_READ, MAP_PRIVATE, fd, 0);
+    if (map == MAP_FAILED)
+        return why_set(why, EX_SOFTWARE, "no memory for what is read: %s", strerror(errno));
+    *answer = map, *n = (size_t)st.st_size;
+    return 0;
+}
+
+int bounded_run(int (*work)(void *, struct bounded *, struct why *), void *with, const char *name,
+                uint64_t size, void **answer, size_t *n, struct why *why)
+{
+    struct bounded to = { memfd_create("answer", MFD_CLOEXEC) };
+    struct why *said =
+        mmap(NULL, sizeof *said, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    pid_t parent = getpid(), pid = to.fd < 0 || said == MAP_FAILED ? -1 : fork();
+    if (!pid) {
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        if (getppid() != parent) _exit(0);
+        bound(size);
+        _exit(work(with, &to, said) ? 1 : 0);
+    }
+    int status = 0;
+    if (pid < 0)
+        why_set(why, EX_SOFTWARE, "no process to read with: %s", strerror(errno));
+    else {
+        while (waitpid(pid, &status, 0) < 0 && errno == EINTR) continue;
+        said->text[sizeof said->text - 1] = 0;
+        if (!judge(status, name, said, why)) take(to.fd, answer, n, why);
+    }
+    if (said != MAP_FAILED) munmap(said, sizeof *said);
+    if (to.fd >= 0) close(to.fd);
+    return why->status;
+}
+
+void bounded_free(void *answer, size_t n)
+{
+    if (answer) munmap(answer, n);
+}

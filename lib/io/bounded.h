@@ -1,0 +1,27 @@
+/*
+ * io/bounded.h: work on bytes that may come from anybody, done by a process of its own that is bounded in memory
+ * and time. What breaks down there, is endless or takes all memory is a reason here (EX_DATAERR).
+ */
+#ifndef NSD_BOUNDED_H
+#define NSD_BOUNDED_H
+
+#include "base/why.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct bounded;
+
+/* The process's answer goes on with these bytes. Returns 0, or EX_SOFTWARE where there is no room. */
+int bounded_put(struct bounded *to, const void *bytes, size_t size, struct why *why);
+
+/*
+ * work(with, ...) in a new process, on a file of `size` bytes that messages call `name`: it may take 256 MiB and
+ * eight times that, and 4 s of the processor and a second for 10 MB. *answer: what it has put, *n bytes; to be given
+ * back by bounded_free. Returns 0, the work's own reason, or EX_DATAERR.
+ */
+int bounded_run(int (*work)(void *with, struct bounded *to, struct why *why), void *with,
+                const char *name, uint64_t size, void **answer, size_t *n, struct why *why);
+void bounded_free(void *answer, size_t n);
+
+#endif

@@ -1,0 +1,320 @@
+#include "scene/clump_fit.h"
+
+#include "scene/clump_grid.h"
+#include "scene/mesh_shape.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    SAMPLES_MOST = 100000, /* places of the surface by which the distance is judged */
+    DIRECTIONS = 200,      /* places of each ball */
+    CLIMBS = 20,           /* steps by which a ball moves from its point of the grid, at most */
+    ROUNDS = 3             /* of Newton for the volume: 1e-5 is left */
+};
+
+struct fit {
+    struct clump_grid grid;
+    const struct mesh *mesh;
+    double reach; /* m: of the ball around the surface */
+    int64_t samples;
+    vec3 *sample;           /* [samples] places of the surface, */
+    double *gap;            /* m: and how far each is from the nearest ball */
+    double *field, *sorted; /* [points] m: of all points of the grid */
+    bool *covered;          /* [points] */
+    int32_t balls;
+    vec3 *centre;   /* [balls] m */
+    double *radius; /* [balls] m */
+};
+
+/* ---- the surface ---- */
+
+/* By the divergence theorem; the triangles as a shape of its own, of which nothing else is asked */
+static int moments_of(struct solid *out, const struct mesh *m, struct why *why)
+{
+    struct shape s = { 0 };
+    if (shape_alloc(&s, m->vertices, m->elements, 3 * m->elements, why)) return why->status;
+    s.form = SHAPE_HULL;
+    memcpy(s.vertex, m->vertex, (size_t)m->vertices * sizeof *s.vertex);
+    for (int32_t i = 0; i < 3 * m->elements; i++) s.corner[i] = m->element[i / 3][i % 3];
+    for (int32_t f = 0; f <= m->elements; f++) s.first[f] = 3 * f;
+    solid_of(out, &s, 3, why);
+    shape_free(&s);
+    if (why->status) return why->status;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < i; j++) out->second[i][j] = out->second[j][i]; // to the last bit
+    if (out->volume < 0) return why_set(why, EX_DATAERR, "is turned inside out");
+    return out->volume > 0 && v3_finite(out->centre) ? 0
+                                                     : why_set(why, EX_DATAERR, "has no volume");
+}
+
+static double area_of(const struct mesh *m)
+{
+    double sum = 0;
+    for (int32_t i = 0; i < m->elements; i++) {
+        const int32_t *c = m->element[i];
+        sum += v3_norm(v3_cross(v3_sub(m->vertex[c[1]], m->vertex[c[0]]),
+                                v3_sub(m->vertex[c[2]], m->vertex[c[0]]))) /
+               2;
+    }
+    return sum;
+}
+
+/* Places on each triangle, apart by a distance that gives SAMPLES_MOST at most; its corners among them */
+static int sample_surface(struct fit *f, struct why *why)
+{
+    const double apart = fmax(f->grid.h, sqrt(2 * area_of(f->mesh) / SAMPLES_MOST));
+    const int64_t room = SAMPLES_MOST + (int64_t)6 * f->mesh->elements;
+    f->sample = malloc((size_t)room * sizeof *f->sample);
+    f->gap = malloc((size_t)room * sizeof *f->gap);
+    if (!f->sample || !f->gap) return why_set(why, EX_SOFTWARE, "no memory for a clump");
+    for (int32_t e = 0; e < f->mesh->elements; e++) {
+        const int32_t *c = f->mesh->element[e];
+        const vec3 a = f->mesh->vertex[c[0]], u = v3_sub(f->mesh->vertex[c[1]], a),
+                   v = v3_sub(f->mesh->vertex[c[2]], a);
+        const double longest = fmax(v3_norm(u), fmax(v3_norm(v), v3_norm(v3_sub(u, v))));
+        const int n = (int)fmin(1000, ceil(longest / apart));
+        for (int i = 0; i <= n; i++)
+            for (int j = 0; i + j <= n && f->samples < room; j++)
+                f->sample[f->samples++] = v3_axpy(v3_axpy(a, (double)i / n, u), (double)j / n, v);
+    }
+    for (int64_t k = 0; k < f->samples; k++) f->gap[k] = INFINITY;
+    return 0;
+}
+
+/* ---- the choice ---- */
+
+/* A point of the grid whose ball would fill at most `gain` points; counted when there were so many balls */
+struct candidate {
+    double gain;
+    int64_t point;
+    int32_t counted;
+};
+
+static bool is_better(const struct candidate *a, const struct candidate *b)
+{
+    return a->gain != b->gain ? a->gain > b->gain : a->point < b->point;
+}
+
+static void sift(struct candidate *heap, int64_t n, int64_t k)
+{
+    for (int64_t child; (child = 2 * k + 1) < n; k = child) {
+        if (child + 1 < n && is_better(&heap[child + 1], &heap[child])) child++;
+        if (!is_better(&heap[child], &heap[k])) return;
+        const struct candidate c = heap[k];
+        heap[k] = heap[child], heap[child] = c;
+    }
+}
+
+/* Points of the grid within a ball that no ball has filled; they are filled where `fill` */
+static int64_t count(const struct fit *f, vec3 c, double r, bool fill)
+{
+    const struct clump_grid *g = &f->grid;
+    int64_t n = 0;
+    int lo[3], hi[3];
+    const double at[3] = { c.x - g->origin.x, c.y - g->origin.y, c.z - g->origin.z };
+    for (int k = 0; k < 3; k++) {
+        lo[k] = (int)fmax(0, ceil((at[k] - r) / g->h));
+        hi[k] = (int)fmin(g->n[k] - 1, floor((at[k] + r) / g->h));
+    }
+    for (int k = lo[2]; k <= hi[2]; k++)
+        for (int j = lo[1]; j <= hi[1]; j++) {
+            const double y = j * g->h - at[1], z = k * g->h - at[2], x2 = r * r - y * y - z * z;
+            if (x2 < 0) continue;
+            const int64_t row = ((int64_t)k * g->n[1] + j) * g->n[0];
+            const int from = (int)fmax(0, ceil((at[0] - sqrt(x2)) / g->h)),
+                      to = (int)fmin(g->n[0] - 1, floor((at[0] + sqrt(x2)) / g->h));
+            for (int i = from; i <= to; i++) {
+                n += !f->covered[row + i];
+                if (fill) f->covered[row + i] = true;
+            }
+        }
+    return n;
+}
+
+/* The largest ball that touches from within near the point: by steps that halve, no farther than h */
+static vec3 climb(const struct fit *f, vec3 c, double *r)
+{
+    const vec3 from = c;
+    double step = f->grid.h / 2;
+    for (int k = 0; k < CLIMBS && step > f->grid.h / 32; k++) {
+        bool better = false;
+        for (int way = 0; way < 6 && !better; way++) {
+            const double s = way & 1 ? step : -step;
+            const vec3 to =
+                v3_add(c, v3(way / 2 == 0 ? s : 0, way / 2 == 1 ? s : 0, way / 2 == 2 ? s : 0));
+            if (v3_norm(v3_sub(to, from)) > f->grid.h) continue;
+            const double d = clump_grid_distance(&f->grid, to, *r + 2 * step);
+            if (d > *r * (1 + 1e-9)) c = to, *r = d, better = true;
+        }
+        if (!better) step /= 2;
+    }
+    return c;
+}
+
+static void take(struct fit *f, vec3 c, double r)
+{
+    f->centre[f->balls] = c, f->radius[f->balls++] = r;
+    count(f, c, r, true);
+    for (int64_t k = 0; k < f->samples; k++)
+        f->gap[k] = fmin(f->gap[k], v3_norm(v3_sub(f->sample[k], c)) - r);
+    for (int64_t k = 0; k < f->grid.points; k++)
+        f->field[k] = fmin(f->field[k], v3_norm(v3_sub(clump_grid_at(&f->grid, k), c)) - r);
+}
+
+static int by_value(const void *one, const void *other)
+{
+    const double a = *(const double *)one, b = *(const double *)other;
+    return (a > b) - (a < b);
+}
+
+/* m: by which radii have to grow so that as many points of the grid are in balls as are within the surface */
+static double growth_of(struct fit *f)
+{
+    memcpy(f->sorted, f->field, (size_t)f->grid.points * sizeof *f->sorted);
+    qsort(f->sorted, (size_t)f->grid.points, sizeof *f->sorted, by_value);
+    return fmax(0, f->sorted[f->grid.inside - 1]);
+}
+
+/* m: from places of the surface to the balls that have grown */
+static double farthest(const struct fit *f, double growth)
+{
+    double most = 0;
+    for (int64_t k = 0; k < f->samples; k++) most = fmax(most, fabs(f->gap[k] - growth));
+    return most;
+}
+
+static int choose(struct fit *f, int32_t balls, double error, struct why *why)
+{
+    const struct clump_grid *g = &f->grid;
+    struct candidate *heap = malloc((size_t)g->inside * sizeof *heap);
+    int64_t n = 0;
+    if (!heap) return why_set(why, EX_SOFTWARE, "no memory for a clump");
+    for (int64_t k = 0; k < g->points; k++) {
+        f->field[k] = INFINITY, f->covered[k] = g->depth[k] == 0; // what is outside is no gain
+        const double r = g->depth[k] / g->h + 1;
+        if (g->depth[k] > 0) heap[n++] = (struct candidate){ 4.2 * r * r * r, k, -1 };
+    }
+    for (int64_t k = n / 2; k-- > 0;) sift(heap, n, k);
+    while (f->balls < balls && n) {
+        struct candidate *top = &heap[0];
+        vec3 c = clump_grid_at(g, top->point);
+        double r = g->depth[top->point];
+        if (top->counted != f->balls) {
+            top->gain = (double)count(f, c, r, false), top->counted = f->balls;
+            sift(heap, n, 0);
+            continue;
+        }
+        if (!(top->gain > 0)) break;
+        c = climb(f, c, &r);
+        take(f, c, r);
+        if (error > 0 && farthest(f, growth_of(f)) <= error * f->reach) break;
+    }
+    free(heap);
+    return 0;
+}
+
+/* ---- the clump ---- */
+
+static int make_shape(struct shape *s, const struct fit *f, double growth, struct why *why)
+{
+    if (shape_alloc(s, f->balls, 0, 0, why)) return why->status;
+    s->form = SHAPE_CLUMP;
+    for (int32_t i = 0; i < f->balls; i++)
+        s->vertex[i] = f->centre[i], s->ball[i] = f->radius[i] + growth;
+    return 0;
+}
+
+/* The radii grow until the balls have the volume; d volume / d growth is about the surface's area. */
+static int grow(struct shape *s, struct solid *balls, struct fit *f, const struct solid *of,
+                struct why *why)
+{
+    const double area = area_of(f->mesh);
+    double growth = growth_of(f), least = INFINITY;
+    for (int32_t i = 0; i < f->balls; i++) least = fmin(least, f->radius[i]);
+    if (make_shape(s, f, growth, why)) return why->status;
+    for (int round = 0; !solid_of(balls, s, 3, why) && round < ROUNDS; round++) {
+        growth = fmax(-0.5 * least, growth + (of->volume - balls->volume) / area);
+        for (int32_t i = 0; i < f->balls; i++) s->ball[i] = f->radius[i] + growth;
+    }
+    return why->status;
+}
+
+/* The k-th of DIRECTIONS places on the unit sphere, on a spiral */
+static vec3 direction(int k)
+{
+    const double z = 1 - (2 * k + 1) / (double)DIRECTIONS, r = sqrt(1 - z * z);
+    const vec3 x = quat_turn(quat_rotation(v3(0, 0, 2.399963229728653 * k)), v3(r, 0, 0));
+    return v3(x.x, x.y, z);
+}
+
+/* m: the largest distance from places of the surface to the balls, and back */
+static double distance_of(const struct fit *f, const struct shape *s)
+{
+    double most = 0;
+    for (int64_t k = 0; k < f->samples; k++) {
+        double gap = INFINITY;
+        for (int32_t i = 0; i < s->vertices; i++)
+            gap = fmin(gap, v3_norm(v3_sub(f->sample[k], s->vertex[i])) - s->ball[i]);
+        most = fmax(most, fabs(gap));
+    }
+    for (int32_t i = 0; i < s->vertices; i++)
+        for (int k = 0; k < DIRECTIONS; k++) {
+            const vec3 x = v3_axpy(s->vertex[i], s->ball[i], direction(k));
+            bool bare = true;
+            for (int32_t j = 0; j < s->vertices && bare; j++)
+                bare = j == i || v3_norm(v3_sub(x, s->vertex[j])) >= s->ball[j];
+            if (bare) most = fmax(most, clump_grid_distance(&f->grid, x, 3 * f->reach));
+        }
+    return most;
+}
+
+static double moments_error(const struct solid *a, const struct solid *of)
+{
+    const double scale = 1 / (of->second[0][0] + of->second[1][1] + of->second[2][2]);
+    double sum = 0;
+    const vec3 d = v3_sub(a->centre, of->centre);
+    const double shift[3] = { d.x, d.y, d.z };
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            double e = a->second[i][j] + a->volume * shift[i] * shift[j] - of->second[i][j];
+            sum += e * e;
+        }
+    return sqrt(sum) * scale;
+}
+
+static int prepare(struct fit *f, const struct solid *of, int32_t balls, struct why *why)
+{
+    if (clump_grid_init(&f->grid, f->mesh, why)) return why->status;
+    for (int32_t e = 0; e < f->mesh->elements; e++)
+        for (int k = 0; k < 3; k++)
+            f->reach = fmax(f->reach,
+                            v3_norm(v3_sub(f->mesh->vertex[f->mesh->element[e][k]], of->centre)));
+    f->centre = malloc((size_t)balls * sizeof *f->centre);
+    f->radius = calloc((size_t)balls, sizeof *f->radius);
+    f->field = malloc((size_t)f->grid.points * sizeof *f->field);
+    f->sorted = malloc((size_t)f->grid.points * sizeof *f->sorted);
+    f->covered = malloc((size_t)f->grid.points);
+    if (!f->centre || !f->radius || !f->field || !f->sorted || !f->covered)
+        return why_set(why, EX_SOFTWARE, "no memory for a clump");
+    return sample_surface(f, why);
+}
+
+int clump_fit(struct shape *s, struct solid *of, const struct mesh *m, int32_t balls, double error,
+              struct clump_errors *errors, struct why *why)
+{
+    struct fit f = { .mesh = m };
+    struct solid got = { 0 };
+    if (mesh_check(m, 3, why) || mesh_closed(m, why) || moments_of(of, m, why)) return why->status;
+    if (!prepare(&f, of, balls, why) && !choose(&f, balls, error, why) &&
+        !grow(s, &got, &f, of, why))
+        *errors = (struct clump_errors){ .balls = f.balls,
+                                         .volume = got.volume / of->volume - 1,
+                                         .distance = distance_of(&f, s) / f.reach,
+                                         .moments = moments_error(&got, of) };
+    if (why->status) shape_free(s);
+    clump_grid_free(&f.grid);
+    free(f.sample), free(f.gap), free(f.field), free(f.sorted), free(f.covered);
+    free(f.centre), free(f.radius);
+    return why->status;
+}

@@ -1,0 +1,36 @@
+/*
+ * scene/clump_fit.h: balls that fill a closed surface, for grains that are not convex: a clump whose mass and moments
+ * are the surface's.
+ *
+ * Balls are chosen one after another among those that touch the surface from within, at the points of a grid of 64
+ * along the longest side: each time the one that fills most of what is still empty [greedy cover; its gain only falls,
+ * so that few have to be counted again]. Then all radii grow by the same length, so that the balls together have the
+ * volume of the surface. The same surface gives the same balls.
+ */
+#ifndef NSD_CLUMP_FIT_H
+#define NSD_CLUMP_FIT_H
+
+#include "geometry/mesh.h"
+#include "geometry/shape.h"
+#include "geometry/solid.h"
+
+enum { CLUMP_BALLS_MOST = 1000 };
+
+/* How far the balls are from the surface */
+struct clump_errors {
+    int32_t balls;
+    double volume; /* of the balls together, over that of the surface, less 1 */
+    double
+        distance; /* the largest from the one surface to the other, of the radius of the ball around */
+    double
+        moments; /* norm of the difference of int x x^T about the centre, of the surface's trace */
+};
+
+/*
+ * s = at most `balls` balls (m), fewer where the distance comes to `error`; *of: the surface's moments. Returns 0,
+ * EX_DATAERR with what is wrong with the surface, or EX_SOFTWARE.
+ */
+int clump_fit(struct shape *s, struct solid *of, const struct mesh *m, int32_t balls, double error,
+              struct clump_errors *errors, struct why *why);
+
+#endif

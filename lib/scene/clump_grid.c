@@ -1,0 +1,171 @@
+#include "scene/clump_grid.h"
+
+#include "geometry/surface_tree.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { INSIDE_LEAST = 200, CROSSINGS_MOST = 1 << 25 };
+
+/* Shares of h by which lines pass beside what surfaces have at round numbers */
+static const double ASIDE[3] = { 0.4142135623730951, 0.7320508075688772, 0.2360679774997898 };
+
+/* Where a line along x goes through a triangle; way: +1 out of the body, -1 into it */
+struct crossing {
+    int32_t line, way;
+    double x;
+};
+
+struct crossings {
+    int64_t n, room;
+    struct crossing *c;
+};
+
+static int add(struct crossings *t, struct crossing c, struct why *why)
+{
+    if (t->n == CROSSINGS_MOST)
+        return why_set(why, EX_DATAERR, "has too many triangles above one another");
+    if (t->n == t->room) {
+        int64_t room = t->room ? 2 * t->room : 4096;
+        struct crossing *more = realloc(t->c, (size_t)room * sizeof *more);
+        if (!more) return why_set(why, EX_SOFTWARE, "no memory for a clump");
+        t->c = more, t->room = room;
+    }
+    t->c[t->n++] = c;
+    return 0;
+}
+
+/* Lines lo .. hi of a row of n points from `from` that may meet [a, b] */
+static void span(double a, double b, double from, double h, int n, int *lo, int *hi)
+{
+    *lo = (int)fmax(0, fmin(n, ceil((a - from) / h)));
+    *hi = (int)fmax(-1, fmin(n - 1, floor((b - from) / h)));
+}
+
+static int cross(struct crossings *t, const struct clump_grid *g, const vec3 v[3], struct why *why)
+{
+    int j0, j1, k0, k1;
+    span(fmin(v[0].y, fmin(v[1].y, v[2].y)), fmax(v[0].y, fmax(v[1].y, v[2].y)), g->origin.y, g->h,
+         g->n[1], &j0, &j1);
+    span(fmin(v[0].z, fmin(v[1].z, v[2].z)), fmax(v[0].z, fmax(v[1].z, v[2].z)), g->origin.z, g->h,
+         g->n[2], &k0, &k1);
+    const vec3 n = v3_cross(v3_sub(v[1], v[0]), v3_sub(v[2], v[0]));
+    for (int k = k0; k <= k1 && n.x != 0; k++)
+        for (int j = j0; j <= j1; j++) {
+            const double y = g->origin.y + j * g->h, z = g->origin.z + k * g->h;
+            bool in = true;
+            for (int e = 0; e < 3; e++) {
+                const vec3 a = v[e], b = v[(e + 1) % 3];
+                const double side = (b.y - a.y) * (z - a.z) - (b.z - a.z) * (y - a.y);
+                in = in && (n.x > 0 ? side > 0 : side < 0);
+            }
+            if (!in) continue;
+            const double x = v[0].x - (n.y * (y - v[0].y) + n.z * (z - v[0].z)) / n.x;
+            if (add(t, (struct crossing){ k * g->n[1] + j, n.x > 0 ? 1 : -1, x }, why))
+                return why->status;
+        }
+    return 0;
+}
+
+static int by_place(const void *one, const void *other)
+{
+    const struct crossing *a = one, *b = other;
+    if (a->line != b->line) return a->line < b->line ? -1 : 1;
+    if (a->x != b->x) return a->x < b->x ? -1 : 1;
+    return a->way - b->way;
+}
+
+/* A line's points between where it goes in and where it comes out, all at depth -1 */
+static void fill_line(struct clump_grid *g, const struct crossing *c, int64_t n)
+{
+    int within = 0, sum = 0;
+    for (int64_t i = 0; i < n; i++) sum += c[i].way;
+    if (sum != 0) return; // it has gone through a corner
+    for (int64_t i = 0; i + 1 < n; i++) {
+        int lo, hi;
+        within -= c[i].way;
+        if (within < 1) continue;
+        span(c[i].x, c[i + 1].x, g->origin.x, g->h, g->n[0], &lo, &hi);
+        for (int k = lo; k <= hi; k++) {
+            double *at = &g->depth[(int64_t)c[i].line * g->n[0] + k];
+            g->inside += *at == 0;
+            *at = -1;
+        }
+    }
+}
+
+static int find_inside(struct clump_grid *g, struct why *why)
+{
+    struct crossings t = { 0 };
+    for (int32_t e = 0; e < g->mesh->elements && !why->status; e++) {
+        const int32_t *c = g->mesh->element[e];
+        const vec3 v[3] = { g->mesh->vertex[c[0]], g->mesh->vertex[c[1]], g->mesh->vertex[c[2]] };
+        cross(&t, g, v, why);
+    }
+    if (!why->status && t.n) qsort(t.c, (size_t)t.n, sizeof *t.c, by_place);
+    for (int64_t i = 0, end; i < t.n && !why->status; i = end) {
+        for (end = i; end < t.n && t.c[end].line == t.c[i].line;) end++;
+        fill_line(g, t.c + i, end - i);
+    }
+    free(t.c);
+    if (!why->status && g->inside < INSIDE_LEAST)
+        why_set(why, EX_DATAERR, "is too thin for balls: %lld points of a grid of %d are within it",
+                (long long)g->inside, CLUMP_GRID);
+    return why->status;
+}
+
+double clump_grid_distance(const struct clump_grid *g, vec3 c, double most)
+{
+    const struct surface *s = &g->surface;
+    struct surface_walk walk;
+    struct surface_branch leaf;
+    surface_walk_begin(&walk, s->n);
+    while (surface_walk_next(&walk, s->box, c, most, &leaf))
+        for (int32_t i = leaf.lo; i < leaf.hi; i++)
+            most = fmin(most, v3_norm(v3_sub(c, surface_nearest(s, s->order[i], c))));
+    return most;
+}
+
+/* The distances of those within; that of the point before bounds the next one's. */
+static void find_depths(struct clump_grid *g, double extent)
+{
+    double last = extent;
+    for (int64_t k = 0; k < g->points; k++) {
+        if (g->depth[k] == 0) continue;
+        bool beside = k % g->n[0] && g->depth[k - 1] != 0;
+        g->depth[k] = last = clump_grid_distance(g, clump_grid_at(g, k),
+                                                 beside ? (last + g->h) * (1 + 1e-9) : 2 * extent);
+    }
+}
+
+int clump_grid_init(struct clump_grid *g, const struct mesh *m, struct why *why)
+{
+    vec3 lo = v3(INFINITY, INFINITY, INFINITY), hi = v3_scale(-1, lo);
+    *g = (struct clump_grid){ .mesh = m };
+    for (int32_t i = 0; i < m->elements; i++)
+        for (int k = 0; k < 3; k++) {
+            lo = v3_min(lo, m->vertex[m->element[i][k]]);
+            hi = v3_max(hi, m->vertex[m->element[i][k]]);
+        }
+    const vec3 d = v3_sub(hi, lo);
+    const double extent = fmax(d.x, fmax(d.y, d.z));
+    if (!(extent > 0 && isfinite(extent))) return why_set(why, EX_DATAERR, "has no extent");
+    g->h = extent / CLUMP_GRID;
+    g->n[0] = (int)(d.x / g->h) + 1, g->n[1] = (int)(d.y / g->h) + 1,
+    g->n[2] = (int)(d.z / g->h) + 1;
+    g->origin = v3(lo.x + ASIDE[0] * g->h, lo.y + ASIDE[1] * g->h, lo.z + ASIDE[2] * g->h);
+    g->points = (int64_t)g->n[0] * g->n[1] * g->n[2];
+    g->depth = calloc((size_t)g->points, sizeof *g->depth);
+    if (!g->depth) return why_set(why, EX_SOFTWARE, "no memory for a clump");
+    if (surface_init(&g->surface, m, 0, m->elements, 0, why) || find_inside(g, why))
+        return why->status;
+    find_depths(g, v3_norm(d));
+    return 0;
+}
+
+void clump_grid_free(struct clump_grid *g)
+{
+    free(g->depth);
+    surface_free(&g->surface);
+    *g = (struct clump_grid){ 0 };
+}
