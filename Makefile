@@ -42,6 +42,9 @@ PL      := $(foreach l,hdf5_hl hdf5 gsl gslcblas jansson,$(call library,$l)) $(S
            $(shell pkg-config $(if $(SHARED),,--static) --libs $(HDF5) cairo zlib libpng 2>/dev/null) \
            $(foreach l,sz,$(if $(wildcard $(FOLDERS:%=%lib$l.so)),-l$l)) -lm
 
+# And shared ones alone, for libnsd.so
+SHARED_LIBS := -lhdf5_hl -lklu -lcholmod -lqhull_r $(shell pkg-config --libs $(LIBS) 2>/dev/null) -lm
+
 # No contraction to FMA: the same bytes on every machine.
 NSD_CFLAGS  := -std=gnu11 -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wvla \
                -ffp-contract=off -fno-math-errno -pthread -DNSD_VERSION='"$(VERSION)"' -Ilib $(PC) \
@@ -69,6 +72,11 @@ IDLE    ?=
 
 LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/cli/main.c lib/ranks/%.c $(WITHOUT:%=lib/%/%.c) $(WIDE:%=lib/problem/%.c),$(wildcard lib/*/*.c))) \
          $(foreach w,$(WIDE),$(WIDTHS:%=$B/lib/problem/$w-%.o))
+# What programs of others call, lib/api/nsd.h: without the rooms that it does not need. Every object is hidden but
+# for what that header declares; the archive has one object, in which the hidden names are local.
+PUBLIC := $(filter-out $(foreach r,cli draw export,$B/lib/$r/%),$(LIB))
+HIDDEN := -fPIC -fvisibility=hidden
+SONAME := libnsd.so.1
 TOOLS := $(patsubst tools/%.c,$B/%,$(wildcard tools/*.c))
 
 # Where there are Open MPI, whose mpicc shows its flags, and Zoltan, nsd-step-mpi: what nsd-step becomes under
@@ -86,7 +94,7 @@ RANKS  := $(if $(MPI_PC),$(patsubst lib/%.c,$B/lib/%.o,$(wildcard lib/ranks/*.c)
 MPI    := $(if $(MPI_PC),$B/nsd-step-mpi)
 CTEST := $(patsubst tests/%.c,$B/tests/%,$(wildcard tests/*/*_test.c))
 
-all: $(TOOLS) $(MPI)
+all: $(TOOLS) $(MPI) $B/libnsd.a $B/$(SONAME)
 
 $B/tests/unit/fclib_test: TESTLIBS += -lfclib
 
@@ -99,15 +107,24 @@ FAILING := malloc calloc realloc strdup strndup malloc_trim H5Fcreate H5Fflush H
            H5Tcopy H5Screate H5Screate_simple H5Fclose H5Gclose H5Dclose H5Aclose
 $(WRAPPED): TESTLIBS += $(FAILING:%=-Wl,--wrap=%)
 # Those of the libraries among themselves do not: these are shared ones here.
-$(WRAPPED): NSD_LDLIBS := \
-    -lhdf5_hl -lklu -lcholmod -lqhull_r $(shell pkg-config --libs $(LIBS) 2>/dev/null) -lm
+$(WRAPPED): NSD_LDLIBS := $(SHARED_LIBS)
 
-$B/libnsd.a: $(LIB)
+$B/internal.a: $(LIB)
 	$(call Q,AR,$@)rm -f $@ && ar rcs $@ $^
+
+$B/nsd.o: $(PUBLIC)
+	$(call Q,LD,$@)$(LD) -r -o $@ $^ && objcopy --localize-hidden $@
+
+$B/libnsd.a: $B/nsd.o
+	$(call Q,AR,$@)rm -f $@ && ar rcs $@ $^
+
+$B/$(SONAME): $(PUBLIC)
+	$(call Q,LD,$@)$(CC) -shared -Wl,-soname,$(SONAME) -Wl,-z,defs $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(SHARED_LIBS)
+	@ln -sf $(SONAME) $B/libnsd.so
 
 $B/lib/%.o: lib/%.c Makefile
 	@mkdir -p $(@D)
-	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(HIDDEN) $(CFLAGS) -MMD -MP -c -o $@ $<
 
 # The page of nsd-web is part of the program.
 $B/lib/draw/page_parts.o: $(wildcard lib/draw/page/*)
@@ -115,7 +132,7 @@ $B/lib/draw/page_parts.o: $(wildcard lib/draw/page/*)
 define compile_wide
 $B/lib/problem/$1-%.o: lib/problem/$1.c Makefile
 	@mkdir -p $$(@D)
-	$$(call Q,CC,$$<)$$(CC) $$(CPPFLAGS) $$(NSD_CFLAGS) $$(CFLAGS:-O2=-O3) $(if $(SAN),$$(SAN_WIDTH_$$*)) -DLANES=$$* $$(WIDTH_$$*) $$(if $$(filter $$*,$$(IDLE)),-O0) -MMD -MP -c -o $$@ $$<
+	$$(call Q,CC,$$<)$$(CC) $$(CPPFLAGS) $$(NSD_CFLAGS) $$(HIDDEN) $$(CFLAGS:-O2=-O3) $(if $(SAN),$$(SAN_WIDTH_$$*)) -DLANES=$$* $$(WIDTH_$$*) $$(if $$(filter $$*,$$(IDLE)),-O0) -MMD -MP -c -o $$@ $$<
 endef
 $(foreach w,$(WIDE),$(eval $(call compile_wide,$w)))
 
@@ -123,19 +140,19 @@ $B/tools/%.o: tools/%.c Makefile
 	@mkdir -p $(@D)
 	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
-$B/%: $B/tools/%.o $B/lib/cli/main.o $B/libnsd.a
+$B/%: $B/tools/%.o $B/lib/cli/main.o $B/internal.a
 	$(call Q,LD,$@)$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(NSD_LDLIBS)
 
-$B/tests/%: tests/%.c $B/libnsd.a Makefile
+$B/tests/%: tests/%.c $B/internal.a Makefile
 	@mkdir -p $(@D)
-	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) -Itests/support $(CFLAGS) -MMD -MP -o $@ $< $B/libnsd.a $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS) $(TESTLIBS)
+	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) -Itests/support $(CFLAGS) -MMD -MP -o $@ $< $B/internal.a $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS) $(TESTLIBS)
 
 # ranks/company.c stands for cli/crew.c, which the archive then is not asked for.
 $(RANKS): NSD_CFLAGS := $(MPI_H5) $(NSD_CFLAGS) $(MPI_PC)
-$B/nsd-step-mpi: $B/tools/nsd-step.o $B/lib/cli/main.o $(RANKS) $B/libnsd.a
+$B/nsd-step-mpi: $B/tools/nsd-step.o $B/lib/cli/main.o $(RANKS) $B/internal.a
 	$(call Q,LD,$@)$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(MPI_PL) $(MPI_LD)
 
-tests: $(TOOLS) $(MPI) $(CTEST)
+tests: $(TOOLS) $(MPI) $(CTEST) $B/libnsd.a $B/$(SONAME)
 
 # ---- set-up, checks, the demonstration ----
 
@@ -254,7 +271,7 @@ fuzz: $(FUZZ:%=$F/fuzz_%)
 	tests/hostile/fuzz/run.sh $(SECONDS) $(FUZZ)
 
 # The kept corpus once, as a test, by the library that has the sanitizers already
-$B/tests/hostile/fuzz_%: tests/hostile/fuzz/fuzz_%.c tests/hostile/fuzz/replay.c tests/hostile/fuzz/child.c $B/libnsd.a
+$B/tests/hostile/fuzz_%: tests/hostile/fuzz/fuzz_%.c tests/hostile/fuzz/replay.c tests/hostile/fuzz/child.c $B/internal.a
 	@mkdir -p $(@D)
 	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -Itests/hostile/fuzz -o $@ $^ $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS)
 
@@ -380,13 +397,13 @@ install-tools: all completions
 	install -m 644 $B/completion/zsh/* $(TO)/share/zsh/site-functions
 
 # The library's headers lie in the folders by which they include each other.
-install-dev: $B/libnsd.a
+install-dev: $B/internal.a
 	install -d $(DESTDIR)$(LIBDIR)/pkgconfig
 	for d in $(filter-out lib/ranks/,$(sort $(wildcard lib/*/))); do \
 	    install -d $(TO)/include/nsd/$$(basename $$d); \
 	    ! ls $$d*.h >/dev/null 2>&1 || install -m 644 $$d*.h $(TO)/include/nsd/$$(basename $$d); \
 	done
-	install -m 644 $B/libnsd.a $(DESTDIR)$(LIBDIR)
+	install -m 644 $B/internal.a $(DESTDIR)$(LIBDIR)
 	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|; s|@HDF5@|$(HDF5)|' nsd.pc.in \
 	    > $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc
 	chmod 644 $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc

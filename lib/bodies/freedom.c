@@ -99,7 +99,7 @@ double freedoms_speed(const struct packing *p)
 
 double freedoms_calm(const struct packing *p)
 {
-    return 2 * (p->dt * v3_norm(p->g) + freedoms_gain(p));
+    return 2 * (packing_most_fall(p) + freedoms_gain(p));
 }
 
 void freedoms_free(struct freedoms *list)

@@ -56,6 +56,7 @@ void packing_free(struct packing *p)
     events_free(&p->events);
     bonds_free(&p->bonds);
     memory_free(&p->memory);
+    outside_free(&p->outside);
     cell_free(&p->cell);
     kinds_free(p);
     memset(p, 0, sizeof *p);
@@ -150,6 +151,7 @@ int packing_resize(struct packing *p, int64_t n, struct why *why)
         return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
     if (p->shape && !resize(&p->shape, had, n, sizeof *p->shape))
         return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
+    if (outside_resize(&p->outside, had, n, why)) return why->status;
     for (int64_t i = had; i < n; i++) p->id[i] = -1, p->q[i].w = 1;
     p->n = n;
     return 0;
@@ -203,6 +205,7 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     if (p->law) memcpy(to->law, p->law, k2 * sizeof *p->law);
     if (bonds_copy(&to->bonds, &p->bonds, why) || memory_copy(&to->memory, &p->memory, why))
         goto fail;
+    if (outside_copy(&to->outside, &p->outside, p->n, p->walls, why)) goto fail;
     for (int32_t i = 0; i < p->kinds; i++) {
         free(to->kind_name[i]);
         if (!(to->kind_name[i] = strdup(p->kind_name[i]))) goto fail;
@@ -259,6 +262,14 @@ double packing_mean_mass(const struct packing *p)
     int64_t n = 0;
     for (int64_t i = 0; i < p->n; i++) sum += p->mass[i], n += p->mass[i] > 0;
     return n ? sum / (double)n : 1;
+}
+
+double packing_most_fall(const struct packing *p)
+{
+    double most = 0;
+    for (int64_t i = 0; p->outside.force && i < p->n; i++)
+        if (p->mass[i] > 0) most = fmax(most, v3_norm(p->outside.force[i]) / p->mass[i]);
+    return p->dt * v3_norm(p->g) + p->dt * most;
 }
 
 struct whole packing_whole(const struct packing *p)
@@ -396,6 +407,7 @@ int packing_check(const struct packing *p, struct why *why)
     if (!(p->theta >= 0 && p->theta <= 1))
         return why_set(why, EX_DATAERR, "theta must lie in [0, 1]");
     if (!v3_finite(p->g)) return why_set(why, EX_DATAERR, "gravity is not finite");
+    if (outside_check(&p->outside, p->dim, p->n, p->walls, why)) return why->status;
     if (p->dim == 2 && p->g.z != 0)
         return why_set(why, EX_DATAERR, "gravity leaves the plane, and dim is 2");
     for (int32_t i = 0; i < p->kinds * p->kinds; i++) {

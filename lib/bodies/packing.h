@@ -17,6 +17,7 @@
 #include "bodies/law.h"
 #include "bodies/memory.h"
 #include "bodies/mesh.h"
+#include "bodies/outside.h"
 #include "bodies/overlap.h"
 #include "bodies/passage.h"
 #include "bodies/shape.h"
@@ -67,7 +68,8 @@ struct packing {
     struct law *law;    /* [kinds * kinds], symmetric: what is beyond these; NULL: nothing */
     struct bonds bonds; /* what lasts of pairs by these laws */
 
-    struct memory memory; /* the reactions that the next step starts from */
+    struct memory memory;   /* the reactions that the next step starts from */
+    struct outside outside; /* what acts from outside in the step to come */
 
     /* Grains come and go [scene/flow.h] where there are pours or removals. */
     int32_t pours, removals;
@@ -199,6 +201,15 @@ double wall_force(const struct packing *p, const struct wall *w);
 /* m/s: no point of the wall within its reach is faster, nor, of a mesh or a shape without an end,
    within that of the bodies */
 double wall_top_speed(const struct packing *p, const struct wall *w);
+
+/* m/s: what gravity and forces from outside make of the velocity of body i, whose mass is above 0, in a step */
+static inline vec3 packing_fall(const struct packing *p, int64_t i)
+{
+    vec3 dv = v3_scale(p->dt, p->g);
+    return p->outside.force ? v3_axpy(dv, p->dt / p->mass[i], p->outside.force[i]) : dv;
+}
+/* m/s: no body gains more by them */
+double packing_most_fall(const struct packing *p);
 
 /* m: the position at which contacts are detected, q + (1 - theta) dt qdot [globalmapapp1]. */
 static inline vec3 packing_predict(const struct packing *p, int64_t i)

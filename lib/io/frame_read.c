@@ -5,6 +5,7 @@
 #include "io/elsewhere.h"
 #include "io/flow_tables.h"
 #include "io/law_tables.h"
+#include "io/outside_tables.h"
 #include "io/roster.h"
 #include "io/shape_tables.h"
 
@@ -208,7 +209,7 @@ static int read_settings(struct frame_read *r, int64_t k, struct packing *p, str
         law_tables_read(r->source, k, p, why))
         return why->status;
     return read_clock(r, k, p, why) || cell_tables_read(r->source, k, r->repeats, p, why) ||
-                   packing_check(p, why)
+                   outside_tables_read(r->source, p, why) || packing_check(p, why)
                ? why->status
                : 0;
 }
@@ -321,7 +322,7 @@ static int read_packing(struct frame_read *r, int64_t k, struct packing *p, stru
         boundary_tables_read(r->source, k, p, why) ||
         (row ? roster_read(r->source, k, row, p, why) : read_bodies(r, k, p, why)) ||
         flow_tables_read(r->source, k, p, why) || law_tables_read(r->source, k, p, why) ||
-        read_clock(r, k, p, why))
+        read_clock(r, k, p, why) || outside_tables_read(r->source, p, why))
         goto end;
     if (packing_varies(p) && (r->repeats[0] || r->repeats[1] || r->repeats[2]))
         why_set(why, EX_DATAERR, "bodies that come and go in a cell that repeats: not known");

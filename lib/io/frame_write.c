@@ -8,6 +8,7 @@
 #include "io/h5.h"
 #include "io/law_tables.h"
 #include "io/memory_rows.h"
+#include "io/outside_tables.h"
 #include "io/report_rows.h"
 #include "io/roster.h"
 #include "io/shape_tables.h"
@@ -159,7 +160,7 @@ int frame_write_moment(struct table_write *s, const struct frame *f, struct why 
         return why->status;
     if (f->packed &&
         (boundary_tables_write(s, &f->packing, why) || law_tables_write(s, &f->packing, why) ||
-         memory_rows_write(s, &f->packing, why)))
+         memory_rows_write(s, &f->packing, why) || outside_tables_write(s, f, why)))
         return why->status;
     if (f->packed && f->detected && contact_rows_write(s, f, why)) return why->status;
     if (!f->reported || report_rows_write(s, &f->report, why)) return why->status;

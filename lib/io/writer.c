@@ -466,7 +466,7 @@ static int trajectory_close(struct writer *s, struct why *why)
     struct stat st; // the reserve that was not needed is given back
     if (fstat(s->disk, &st) || (st.st_size > (off_t)size && ftruncate(s->disk, (off_t)size)))
         return output_failed(s, why, strerror(errno));
-    static unsigned char buffer[1 << 18];
+    unsigned char buffer[1 << 16];
     uint32_t crc = 0;
     off_t at = DOCUMENT_USERBLOCK;
     ssize_t n;

@@ -6,6 +6,7 @@
 #include "problem/mixing.h"
 #include "problem/sweep.h"
 
+#include <pthread.h>
 #include <stdlib.h>
 
 extern const struct sweep sweep_2, sweep_4, sweep_8;
@@ -29,10 +30,16 @@ void sweep_narrow(int lanes)
 #endif
 }
 
-static void choose(void)
+static void choose_first(void)
 {
     const char *most = widest.sweep ? NULL : getenv("NSD_LANES");
     if (!widest.sweep) sweep_narrow(most ? atoi(most) : BUNDLE);
+}
+
+static void choose(void)
+{
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, choose_first);
 }
 
 const struct sweep *sweep_widest(void)
