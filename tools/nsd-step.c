@@ -425,6 +425,7 @@ static void begin(struct run *r)
     if (flow_read(&r->flow, &f->packing, &why)) die_why(&why);
     if (!steps) return;
     f->packing.events.n = 0; // they belong to the frame that was read
+    outside_forget(&f->packing.outside);
     report_free(&f->report);
     f->report.options = options_json(&r->o);
     f->detected = contacts || forces;

@@ -21,6 +21,13 @@ void outside_free(struct outside *o)
     *o = (struct outside){ 0 };
 }
 
+void outside_forget(struct outside *o)
+{
+    bool steered = o->steered;
+    outside_free(o);
+    o->steered = steered;
+}
+
 int outside_alloc_forces(struct outside *o, int64_t n, struct why *why)
 {
     if (o->force) return 0;

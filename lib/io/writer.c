@@ -542,3 +542,14 @@ int writer_close(struct writer *s, struct why *why)
     free(s);
     return e;
 }
+
+void writer_drop(struct writer *s)
+{
+    if (!s) return;
+    if (s->doc.file >= 0) table_write_close(&s->doc), H5Fclose(s->doc.file);
+    if (s->disk >= 0) close(s->disk);
+    roster_free(&s->roster);
+    if (s->begun) output_drop(s->begun);
+    if (s->output) output_drop(s->output);
+    free(s);
+}

@@ -80,6 +80,7 @@ static void copy_body(struct packing *p, int64_t from, int64_t to)
     p->x[to] = p->x[from], p->q[to] = p->q[from];
     if (p->shape) p->shape[to] = p->shape[from];
     p->v[to] = p->v[from], p->w[to] = p->w[from];
+    for (int k = 0; p->image && k < 3; k++) p->image[to][k] = p->image[from][k];
 }
 
 /* Removes, and tells in row[i] where body i is now, -1: gone. */
@@ -111,6 +112,7 @@ static void follow(struct contacts *s, const int32_t *row)
         s->c[kept] = *c;
         s->c[kept].a = a, s->c[kept].b = b;
         if (s->found) s->found[kept] = s->found[i];
+        if (s->tie) s->tie[kept] = s->tie[i];
         for (int k = 0; k < 3 && s->moment; k++) s->moment[kept][k] = s->moment[i][k];
         kept++;
     }
@@ -129,6 +131,17 @@ static void follow_bonds(struct bonds *s, const int32_t *row)
         if (there) s->bond[kept++] = x;
     }
     s->n = kept;
+}
+
+int flow_drop(struct packing *p, struct contacts *last, const int32_t *row, struct why *why)
+{
+    int64_t kept = 0;
+    for (int64_t i = 0; i < p->n; i++)
+        if (row[i] >= 0) copy_body(p, i, kept++);
+    follow_bonds(&p->bonds, row);
+    memory_follow(&p->memory, row);
+    if (last) follow(last, row);
+    return packing_resize(p, kept, why);
 }
 
 /* ---- pours ---- */
