@@ -248,7 +248,7 @@ example() # SOURCE COMMAND SHOWN: in $tmp/run
     case $command in
     'make '*) make -C "$repository" --no-print-directory -n ${command#make } >stdout 2>stderr || s=$? ;;
     '{ "'*) nsd-gen - <<<"$command" >stdout 2>stderr || s=$? ;;
-    *import*nsd*) PYTHONPATH=$repository/scripts /usr/bin/python3 -c "$command" >stdout 2>stderr || s=$? ;;
+    *import*nsd*) PYTHONPATH=$repository/python /usr/bin/python3 -c "$command" >stdout 2>stderr || s=$? ;;
     import*sys.stdin*) cat a.h5 packing.h5 | /usr/bin/python3 -c "$command" >stdout 2>stderr || s=$? ;;
     import*) /usr/bin/python3 -c "$command" >stdout 2>stderr || s=$? ;;
     *) GNUTERM=dumb bash -o pipefail -c "$command" >stdout 2>stderr || s=$? ;;
