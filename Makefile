@@ -98,7 +98,7 @@ all: $(TOOLS) $(MPI) $B/libnsd.a $B/$(SONAME)
 
 $B/tests/unit/fclib_test: TESTLIBS += -lfclib
 
-WRAPPED := $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw changed_objects)
+WRAPPED := $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw failing_library_calls_api changed_objects)
 # The calls that tests/support/failing_library_calls.h makes fail: those of the library go through it.
 FAILING := malloc calloc realloc strdup strndup malloc_trim H5Fcreate H5Fflush H5Fget_filesize H5Fget_file_image \
            H5Fget_vfd_handle H5Fset_libver_bounds H5LTopen_file_image H5Gcreate2 H5Lcreate_hard H5Oopen \
@@ -166,7 +166,7 @@ FIRST := $(patsubst %,tests/%.t,tools/examples whole/laws whole/solvers hostile/
 # What make check leaves to make check-all: it builds again, needs what only a maintainer has, or takes minutes.
 REST  := $(patsubst %,tests/%.t,project/lint whole/paper project/compilers whole/gallery project/thread_sanitizer whole/mpi \
          project/install whole/wall whole/paper_page tools/web_in_browser hostile/failing_system_calls hostile/failing_allocations) \
-         $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw killed_writer)
+         $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw failing_library_calls_api killed_writer)
 TESTS := $(FIRST) $(filter-out $(FIRST) $(REST),$(CTEST) $(wildcard tests/*/*.t))
 # What the sanitizers would not see more of: it looks at texts, or makes others' experiments.
 PLAIN := $(filter-out tests/whole/mpi.t tests/whole/wall.t tests/tools/% tests/hostile/% $B/tests/%,$(REST)) $(patsubst %,tests/%.t,project/layers project/docs tools/examples tools/campaign whole/rest)
@@ -301,8 +301,8 @@ coverage:
 
 # ---- style ----
 
-SOURCES := $(wildcard lib/*/*.[ch] tools/*.c tests/*/*.[ch])
-SCRIPTS := $(wildcard scripts/*.sh bench/*.sh tests/*/*.sh tests/*/*.t) .ci/run
+SOURCES := $(wildcard lib/*/*.[ch] tools/*.c docs/*.c docs/examples/*.c tests/*/*.[ch])
+SCRIPTS := $(wildcard scripts/*.sh bench/*.sh docs/examples/*.sh tests/*/*.sh tests/*/*.t) .ci/run
 
 format:
 	clang-format -i $(SOURCES)
@@ -380,33 +380,44 @@ $B/completion/zsh/_%: $B/%
 LIBDIR ?= $(PREFIX)/lib
 TO     := $(DESTDIR)$(PREFIX)
 
-install: install-tools install-dev
+install: install-tools install-lib install-dev install-python
 
 install-tools: all completions
 	install -d $(TO)/bin $(addprefix $(TO)/share/man/man,1 5 7) $(TO)/share/nsd/scenes/paper \
 	    $(TO)/share/bash-completion/completions $(TO)/share/zsh/site-functions
 	install -m 755 $(TOOLS) $(MPI) $(TO)/bin
-	for m in man/*; do install -m 644 $$m $(TO)/share/man/man$${m##*.}; done
+	for m in $(filter-out $(PYTHON_MANUAL),$(wildcard man/*.[157])); do install -m 644 $$m $(TO)/share/man/man$${m##*.}; done
 	install -m 644 scenes/*.json $(TO)/share/nsd/scenes
 	install -m 644 scenes/paper/*.json $(TO)/share/nsd/scenes/paper
-	install -m 644 scripts/nsd.py $(TO)/share/nsd
 	install -d $(TO)/share/nsd/campaign
 	install -m 755 scripts/campaign/*.sh scripts/campaign/array.sbatch $(TO)/share/nsd/campaign
 	install -m 644 scripts/campaign/*.mk scripts/campaign/*.gp $(TO)/share/nsd/campaign
 	install -m 644 $B/completion/bash/* $(TO)/share/bash-completion/completions
 	install -m 644 $B/completion/zsh/* $(TO)/share/zsh/site-functions
 
-# The library's headers lie in the folders by which they include each other.
-install-dev: $B/internal.a
-	install -d $(DESTDIR)$(LIBDIR)/pkgconfig
-	for d in $(filter-out lib/ranks/,$(sort $(wildcard lib/*/))); do \
-	    install -d $(TO)/include/nsd/$$(basename $$d); \
-	    ! ls $$d*.h >/dev/null 2>&1 || install -m 644 $$d*.h $(TO)/include/nsd/$$(basename $$d); \
-	done
-	install -m 644 $B/internal.a $(DESTDIR)$(LIBDIR)
+install-lib: $B/$(SONAME)
+	install -d $(DESTDIR)$(LIBDIR)
+	install -m 644 $B/$(SONAME) $(DESTDIR)$(LIBDIR)/$(SONAME).0
+	ln -sf $(SONAME).0 $(DESTDIR)$(LIBDIR)/$(SONAME)
+
+# What a program with the library is built by: its only header, the archive, the link for compilers
+install-dev: $B/libnsd.a
+	install -d $(DESTDIR)$(LIBDIR)/pkgconfig $(TO)/include $(TO)/share/man/man3
+	install -m 644 lib/api/nsd.h $(TO)/include
+	install -m 644 $B/libnsd.a $(DESTDIR)$(LIBDIR)
+	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libnsd.so
+	install -m 644 man/nsd.3 $(TO)/share/man/man3
 	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|; s|@HDF5@|$(HDF5)|' nsd.pc.in \
 	    > $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc
 	chmod 644 $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc
+
+# Where python3 looks, where PREFIX is /usr; elsewhere PYTHONPATH names it.
+PYTHONDIR     ?= $(PREFIX)/lib/python3/dist-packages
+PYTHON_MANUAL := man/nsd-python.7
+install-python:
+	install -d $(DESTDIR)$(PYTHONDIR)/nsd $(TO)/share/man/man7
+	install -m 644 python/nsd/*.py python/nsd/py.typed $(DESTDIR)$(PYTHONDIR)/nsd
+	install -m 644 $(PYTHON_MANUAL) $(TO)/share/man/man7
 
 uninstall:
 	cd $(TO)/bin && rm -f $(notdir $(TOOLS)) nsd-step-mpi
@@ -414,10 +425,10 @@ uninstall:
 	for t in $(notdir $(TOOLS)); do \
 	    rm -f $(TO)/share/bash-completion/completions/$$t $(TO)/share/zsh/site-functions/_$$t; \
 	done
-	rm -rf $(TO)/share/nsd $(TO)/include/nsd
-	rm -f $(DESTDIR)$(LIBDIR)/libnsd.a $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc
+	rm -rf $(TO)/share/nsd $(TO)/include/nsd.h $(DESTDIR)$(PYTHONDIR)/nsd
+	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,libnsd.a libnsd.so $(SONAME) $(SONAME).0 pkgconfig/nsd.pc)
 
-# Debian packages in build/deb, of a copy of the sources: nsd-tools, and libnsd-dev for programs
+# Debian packages in build/deb, of a copy of the sources: nsd-tools; libnsd1, and libnsd-dev for programs; python3-nsd
 deb:
 	scripts/deb.sh
 
@@ -427,5 +438,5 @@ clean:
 -include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs completions install install-tools install-dev uninstall deb clean setup-run setup-paper setup-wall setup-check setup-all test-rest check-rest check-all
+.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-paper setup-wall setup-check setup-all test-rest check-rest check-all
 .SECONDARY:
