@@ -54,8 +54,6 @@ struct why *run_why_of_thread(void);
 
 /* r->o and r->option_json are what the options come to; the packing has theta and what is done about overlap. */
 int run_choose(struct nsd_run *r, struct why *why);
-/* Adds the line of history unless there is one. */
-int run_note(struct nsd_run *r, struct why *why);
 /* As nsd_add() */
 int run_add(struct nsd_run *r, const struct nsd_bodies *b, int32_t *id, struct why *why);
 /* Where the packing gets other bodies: a new one in place of it */

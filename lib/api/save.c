@@ -18,12 +18,32 @@ int nsd_note(struct nsd_run *r, const char *line)
     return why->status;
 }
 
-int run_note(struct nsd_run *r, struct why *why)
+/* Adds the library's line of history unless there is one. */
+static int note(struct nsd_run *r, struct why *why)
 {
     static const char line[] =
         "{\"command\":\"libnsd\",\"version\":\"" NSD_VERSION "\",\"options\":{}}";
     if (!r->noted && !frame_note(&r->f, line, why)) r->noted = true;
     return why->status;
+}
+
+/* What the run was before it was to be written */
+struct before {
+    bool noted;
+    size_t length; /* of its history */
+};
+
+static struct before before(const struct nsd_run *r)
+{
+    return (struct before){ r->noted, r->f.history ? strlen(r->f.history) : 0 };
+}
+
+/* It could not be: its history is what it was. */
+static int back(struct nsd_run *r, struct before was)
+{
+    r->noted = was.noted;
+    if (r->f.history) r->f.history[was.length] = 0;
+    return r->why.status;
 }
 
 /* The frame as it is written: nsd-step's */
@@ -41,7 +61,8 @@ int nsd_save(struct nsd_run *r, const char *path)
     struct writer *out = NULL;
     if (!why) return NSD_USAGE;
     if (!path) return why_set(why, NSD_USAGE, "a document has a path");
-    if (run_choose(r, why) || run_note(r, why)) return why->status;
+    const struct before was = before(r);
+    if (run_choose(r, why) || note(r, why)) return back(r, was);
     const struct frame f = frame_of(r);
     run_lock();
     if (writer_open(&out, path, WRITER_COPY, why) || writer_frame(out, &f, why))
@@ -49,7 +70,7 @@ int nsd_save(struct nsd_run *r, const char *path)
     else
         writer_close(out, why);
     run_unlock();
-    return why->status;
+    return why->status ? back(r, was) : 0;
 }
 
 /* The trajectory ends as it is. */
@@ -86,13 +107,14 @@ int nsd_append(struct nsd_run *r, const char *path)
                        "%.100s: bodies were added or removed since its first frame: "
                        "nsd_finish() ends it, and another one may begin",
                        path);
-    if (run_choose(r, why) || run_note(r, why)) return why->status;
-    if (!r->out && open_trajectory(r, path, why)) return why->status;
+    const struct before was = before(r);
+    if (run_choose(r, why) || note(r, why)) return back(r, was);
+    if (!r->out && open_trajectory(r, path, why)) return back(r, was);
     const struct frame f = frame_of(r);
     run_lock();
     int failed = writer_frame(r->out, &f, why);
     run_unlock();
-    if (failed) return drop(r), why->status;
+    if (failed) return drop(r), back(r, was);
     r->f.packing.events.n = 0; // they are written
     return 0;
 }

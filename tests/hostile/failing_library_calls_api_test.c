@@ -16,8 +16,9 @@ static uint32_t state(const struct nsd_run *r)
     const struct packing *p = &r->f.packing;
     const struct contacts *s = &r->f.contacts;
     const size_t n = (size_t)p->n, m = (size_t)s->n;
-    const double numbers[] = { (double)p->n, (double)p->step, p->t, p->dt,          p->t0,
-                               (double)p->step0, p->g.x,      (double)p->walls, (double)m, r->next_id };
+    const double numbers[] = { (double)p->n, (double)p->step,  p->t,   p->dt,
+                               p->t0,        (double)p->step0, p->g.x, (double)p->walls,
+                               (double)m,    r->next_id };
     uint32_t crc = add(0, numbers, sizeof numbers);
     crc = add(crc, p->x, n * sizeof *p->x), crc = add(crc, p->q, n * sizeof *p->q);
     crc = add(crc, p->v, n * sizeof *p->v), crc = add(crc, p->w, n * sizeof *p->w);
@@ -33,12 +34,14 @@ static uint32_t state(const struct nsd_run *r)
     for (size_t i = 0; i < m && s->found; i++) crc = add(crc, s->found[i].r, sizeof s->found[i].r);
     for (int t = 0; t < ACTS_TERMS && r->acts.id; t++)
         for (size_t i = 0; i < (size_t)r->acts.n; i++)
-            if (v3_norm(r->acts.force[t][i]) > 0) crc = add(crc, &r->acts.force[t][i], sizeof(vec3));
+            if (v3_norm(r->acts.force[t][i]) > 0)
+                crc = add(crc, &r->acts.force[t][i], sizeof(vec3));
     return crc;
 }
 
 /* After a call: a failure has left everything as it was, which the test tells by the status 1 where it is not so. */
-static int after(const struct nsd_run *r, int failed, uint32_t was, const char *call, struct why *why)
+static int after(const struct nsd_run *r, int failed, uint32_t was, const char *call,
+                 struct why *why)
 {
     bool on = armed;
     armed = false;
@@ -63,7 +66,9 @@ static int acted(uint32_t *crc, struct why *why)
     struct nsd_run *r = NULL;
     const char *json;
     const double x[3] = { 0, 3.5, 0 }, f[3] = { 1, 0, 0 }, radius = 0.1;
-    const struct nsd_bodies bodies = { .size = sizeof bodies, .n = 1, .position = x, .radius = &radius, .density = 1000 };
+    const struct nsd_bodies bodies = {
+        .size = sizeof bodies, .n = 1, .position = x, .radius = &radius, .density = 1000
+    };
     struct nsd_array a = { .size = sizeof a };
     int32_t id = 0;
     bool on = armed;
