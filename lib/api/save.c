@@ -1,5 +1,6 @@
 /* api/save.c: a run as documents. */
 #include "api/run.h"
+#include "io/boundary_tables.h"
 
 #include <jansson.h>
 #include <stdlib.h>
@@ -107,8 +108,16 @@ int nsd_append(struct nsd_run *r, const char *path)
                        "%.100s: bodies were added or removed since its first frame: "
                        "nsd_finish() ends it, and another one may begin",
                        path);
+    const bool moves = boundary_tables_move(&r->f.packing);
+    if (r->out && r->rests && moves)
+        return why_set(why, NSD_DATA,
+                       "%.100s: a boundary moves, and in its first frame none could: "
+                       "nsd_finish() ends it, and "
+                       "another one may begin",
+                       path);
     const struct before was = before(r);
     if (run_choose(r, why) || note(r, why)) return back(r, was);
+    r->rests = r->out ? r->rests : !moves && !r->f.packing.outside.steered;
     if (!r->out && open_trajectory(r, path, why)) return back(r, was);
     const struct frame f = frame_of(r);
     run_lock();

@@ -198,7 +198,9 @@ static int open_new(struct output *o, const char *path, struct why *why)
         o->target = NULL;
         bool regular = there && S_ISREG(st.st_mode);
         o->fd = open(path, (regular ? O_RDWR | O_TRUNC : O_WRONLY) | O_CLOEXEC);
-        return o->fd < 0 ? failed(o, why, errno) : 0;
+        if (o->fd < 0) return failed(o, why, errno);
+        o->nameless = output_removed(o->fd);
+        return 0;
     }
     if (there) o->old = open(o->target, O_RDWR | O_CLOEXEC);
     if (there && o->old < 0) return failed(o, why, errno);
@@ -256,7 +258,7 @@ static bool closes(int fd)
 
 int output_close(struct output *o, struct why *why)
 {
-    if (output_removed(o->fd))
+    if (!o->nameless && output_removed(o->fd))
         why_set(why, EX_IOERR, "%s: another program has removed it", o->name);
     else if (!why->status && !closes(o->fd))
         failed(o, why, errno);

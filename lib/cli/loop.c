@@ -325,6 +325,7 @@ bool loop_before_step(struct frame *f, struct acts *acts, bool first, struct why
 {
     struct packing *p = &f->packing;
     struct why trouble = { 0 };
+    p->outside.steered = true; // from the first frame on: later answers may move what rests
     bool stop = false, due = first || p->step % every == 0;
     json_t *answer = NULL;
     if (replay) answer = replayed(p->step + 1, first);
