@@ -42,8 +42,10 @@ PL      := $(foreach l,hdf5_hl hdf5 gsl gslcblas jansson,$(call library,$l)) $(S
            $(shell pkg-config $(if $(SHARED),,--static) --libs $(HDF5) cairo zlib libpng 2>/dev/null) \
            $(foreach l,sz,$(if $(wildcard $(FOLDERS:%=%lib$l.so)),-l$l)) -lm
 
-# And shared ones alone, for libnsd.so
-SHARED_LIBS := -lhdf5_hl -lklu -lcholmod -lqhull_r $(shell pkg-config --libs $(LIBS) 2>/dev/null) -lm
+# And shared ones alone, for libnsd.so. GSL's own BLAS comes first: libcholmod loads one with other roundings, which would
+# stand for it.
+CBLAS       := -Wl,--push-state,--no-as-needed -lgslcblas -Wl,--pop-state
+SHARED_LIBS := $(CBLAS) -lhdf5_hl -lklu -lcholmod -lqhull_r $(shell pkg-config --libs $(LIBS) 2>/dev/null) -lm
 
 # No contraction to FMA: the same bytes on every machine.
 NSD_CFLAGS  := -std=gnu11 -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wvla \
@@ -51,7 +53,7 @@ NSD_CFLAGS  := -std=gnu11 -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes 
                $(if $(SAN),-fsanitize=address$(,)undefined -fno-sanitize-recover=undefined)
 # Only the libraries that a tool calls: starting libpng, KLU and CHOLMOD costs milliseconds.
 NSD_LDFLAGS := -pthread -Wl,--as-needed $(if $(SAN),-fsanitize=address$(,)undefined)
-NSD_LDLIBS  := $(PL)
+NSD_LDLIBS  := $(if $(SHARED),$(CBLAS)) $(PL)
 
 # The inner loops once a width; without contraction, and with instructions that the others know nothing of.
 # Distributions build with -O2, at which gcc leaves loops over three components loops: three times the time.

@@ -1,3 +1,4 @@
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): close_range
 #include "io/child.h"
 
 #include "base/guest.h"
@@ -5,8 +6,10 @@
 #include "io/server.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <pthread.h>
 #include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -72,6 +75,22 @@ struct start {
     int trouble; /* errno of fork */
 };
 
+/* The files that the program has open, and may have locked, are its own: all but those that are to be read. */
+static void leave_files(const struct start *s)
+{
+    int keep[2] = { s->line[1], -1 };
+    if (s->files) sscanf(s->file[0], "/proc/self/fd/%d", &keep[1]);
+    for (int first = STDERR_FILENO + 1;;) { // up to the next one that is kept
+        int next = INT_MAX;
+        for (int k = 0; k < 2; k++)
+            if (keep[k] >= first && keep[k] < next) next = keep[k];
+        if (next > first)
+            close_range((unsigned)first, next == INT_MAX ? UINT_MAX : (unsigned)next - 1, 0);
+        if (next == INT_MAX) return;
+        first = next + 1;
+    }
+}
+
 /* Called as libhdf5 calls back, so that it does not matter with what */
 static herr_t start(hid_t plist, const char *name, void *data)
 {
@@ -81,6 +100,7 @@ static herr_t start(hid_t plist, const char *name, void *data)
     c->pid = fork();
     s->trouble = errno;
     if (c->pid) return 1; // enough
+    if (guest_is()) leave_files(s);
     close(s->line[0]);
     for (struct child *k = running; k; k = k->next)
         if (k->line >= 0) close(k->line); // they hang up when the tool does

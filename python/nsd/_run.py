@@ -323,7 +323,7 @@ class Run:
 
     def note(self, line: Mapping[str, Any] | str) -> None:
         """The run's line in the history of its documents, a JSON object; before the first is written."""
-        self._call("nsd_note", (line if isinstance(line, str) else json.dumps(line)).encode())
+        self._call("nsd_note", (line if isinstance(line, str) else json.dumps(line, separators=(",", ":"))).encode())
 
     def save(self, path: Path) -> None:
         """Writes a document of this moment, in place of what there is."""
