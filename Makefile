@@ -163,7 +163,7 @@ setup-run setup-paper setup-wall setup-check setup-all:
 
 # tests/README.md has the table of the two tiers. scripts/prove.sh runs the files, the longest first: one that
 # begins last leaves a core idle while it ends.
-FIRST := $(patsubst %,tests/%.t,tools/examples whole/laws whole/solvers hostile/wrong_input whole/shapes tools/stat tools/types \
+FIRST := $(patsubst %,tests/%.t,tools/outside tools/examples whole/laws whole/solvers hostile/wrong_input whole/shapes tools/stat tools/types \
          tools/export tools/grains tools/view tools/pipeline tools/boundary) $B/tests/unit/shapes_test
 # What make check leaves to make check-all: it builds again, needs what only a maintainer has, or takes minutes.
 REST  := $(patsubst %,tests/%.t,project/lint whole/paper project/compilers whole/gallery project/thread_sanitizer whole/mpi \
@@ -184,7 +184,7 @@ test: tests
 
 # The whole of a test of which make check runs a part is there, too.
 test-rest: tests
-	NSD_DEEP=1 $(PROVE) $(REST) tests/hostile/wrong_input.t
+	NSD_DEEP=1 $(PROVE) $(REST) tests/hostile/wrong_input.t $B/tests/unit/api_test
 
 check: setup-check
 	$(MAKE) -j2 tests

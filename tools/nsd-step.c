@@ -83,7 +83,7 @@ const struct cli_tool tool = {
     "  nsd-step -n 100 -o more.h5 out.h5\n"
     "  nsd-step -n 100 --in-place out.h5\n"
     "  nsd-step -n 100 --dt auto:0.01 -o more.h5 out.h5\n"
-    "  nsd-step -n 100 --with ./servo --with-boundaries all -o out.h5 a.h5\n"
+    "  nsd-step -n 20 --with 'jq -c --unbuffered {gravity:[1,0,-9.81]}' a.h5 > leaning.h5\n"
 };
 
 static struct {

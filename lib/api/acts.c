@@ -1,5 +1,6 @@
 #include "api/acts.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,6 +45,7 @@ int acts_copy(struct acts *to, const struct acts *from, int32_t walls, struct wh
     if (from->id && !make(to, from->n)) return no_memory(why);
     if (from->id) memcpy(to->id, from->id, n * sizeof *to->id);
     for (int t = 0; t < ACTS_TERMS; t++) {
+        to->pushes[t] = from->pushes[t], to->twists[t] = from->twists[t];
         if (from->id) memcpy(to->force[t], from->force[t], n * sizeof *to->force[t]);
         if (from->id) memcpy(to->torque[t], from->torque[t], n * sizeof *to->torque[t]);
         if (!from->push[t]) continue;
@@ -78,19 +80,48 @@ int acts_arrays(struct acts *a, const struct packing *p, struct why *why)
         for (int t = 0; t < ACTS_TERMS && i >= 0; t++)
             now.force[t][i] = a->force[t][j], now.torque[t][i] = a->torque[t][j];
     }
-    for (int t = 0; t < ACTS_TERMS; t++) now.push[t] = a->push[t], a->push[t] = NULL;
+    for (int t = 0; t < ACTS_TERMS; t++) {
+        now.push[t] = a->push[t], a->push[t] = NULL;
+        now.pushes[t] = a->pushes[t], now.twists[t] = a->twists[t];
+    }
     acts_free(a);
     *a = now;
     return 0;
+}
+
+/* sum[n] = what lasts and what acts once, as far as there is any; are all numbers finite? */
+static bool add(vec3 *sum, vec3 *const term[ACTS_TERMS], const bool is[ACTS_TERMS], int64_t n)
+{
+    double *s = (double *)sum;
+    const double *x = (const double *)term[is[ACTS_LASTING] ? ACTS_LASTING : ACTS_ONCE];
+    const double *y = (const double *)term[ACTS_ONCE];
+    const bool both = is[ACTS_LASTING] && is[ACTS_ONCE];
+    int bad = 0;
+    for (int64_t i = 0; i < 3 * n; i++) { // a loop for vectors of the processor
+        s[i] = both ? x[i] + y[i] : x[i];
+        bad |= !(fabs(s[i]) <= DBL_MAX);
+    }
+    return !bad;
+}
+
+static bool any(const bool is[ACTS_TERMS])
+{
+    return is[ACTS_ONCE] || is[ACTS_LASTING];
 }
 
 /* The sums of the bodies' forces, which are all to be finite */
 static int sum_forces(const struct acts *a, struct packing *p, struct why *why)
 {
     struct outside *o = &p->outside;
-    for (int64_t i = 0; i < p->n; i++) {
-        vec3 f = v3_add(a->force[ACTS_LASTING][i], a->force[ACTS_ONCE][i]);
-        vec3 m = v3_add(a->torque[ACTS_LASTING][i], a->torque[ACTS_ONCE][i]);
+    bool good = true;
+    if (any(a->pushes))
+        good = !outside_alloc(&o->force, p->n, why) && add(o->force, a->force, a->pushes, p->n);
+    if (any(a->twists))
+        good = !outside_alloc(&o->torque, p->n, why) &&
+               add(o->torque, a->torque, a->twists, p->n) && good;
+    if (why->status) return why->status;
+    for (int64_t i = 0; i < p->n && (!good || p->dim == 2); i++) {
+        vec3 f = o->force ? o->force[i] : v3(0, 0, 0), m = o->torque ? o->torque[i] : v3(0, 0, 0);
         if (!v3_finite(f) || !v3_finite(m))
             return why_set(why, EX_DATAERR, "the force or torque of body %d is not finite",
                            p->id[i]);
@@ -98,8 +129,8 @@ static int sum_forces(const struct acts *a, struct packing *p, struct why *why)
             return why_set(why, EX_DATAERR,
                            "the force or torque of body %d leaves the plane, and dim is 2",
                            p->id[i]);
-        o->force[i] = f, o->torque[i] = m;
     }
+    outside_measure(o, p->mass, p->n);
     return 0;
 }
 
@@ -107,9 +138,7 @@ int acts_begin(struct acts *a, struct packing *p, struct why *why)
 {
     struct outside *o = &p->outside;
     bool pushes = a->push[ACTS_LASTING] || a->push[ACTS_ONCE];
-    if (a->id &&
-        (acts_arrays(a, p, why) || outside_alloc_forces(o, p->n, why) || sum_forces(a, p, why)))
-        return why->status;
+    if (a->id && (acts_arrays(a, p, why) || sum_forces(a, p, why))) return why->status;
     if (pushes && outside_alloc_push(o, p->walls, why)) return why->status;
     for (int32_t w = 0; pushes && w < p->walls; w++) {
         o->push[w] = 0;
@@ -120,8 +149,8 @@ int acts_begin(struct acts *a, struct packing *p, struct why *why)
 
 static void zero(struct acts *a, int term, int32_t walls)
 {
-    if (a->id) memset(a->force[term], 0, (size_t)a->n * sizeof *a->force[term]);
-    if (a->id) memset(a->torque[term], 0, (size_t)a->n * sizeof *a->torque[term]);
+    if (a->pushes[term]) memset(a->force[term], 0, (size_t)a->n * sizeof *a->force[term]);
+    if (a->twists[term]) memset(a->torque[term], 0, (size_t)a->n * sizeof *a->torque[term]);
     if (a->push[term]) memset(a->push[term], 0, (size_t)walls * sizeof *a->push[term]);
 }
 
@@ -147,6 +176,7 @@ int acts_force(struct acts *a, const struct packing *p, int32_t id, vec3 force, 
                        "the force or torque of body %d leaves the plane, and dim is 2", id);
     if (acts_arrays(a, p, why)) return why->status;
     a->force[term][i] = force, a->torque[term][i] = torque;
+    a->pushes[term] = true, a->twists[term] = a->twists[term] || v3_norm(torque) > 0;
     return 0;
 }
 

@@ -17,6 +17,7 @@ struct acts {
     int64_t n;                                    /* bodies that the arrays are of */
     int32_t *id;                                  /* [n] which; NULL: there are no arrays */
     vec3 *force[ACTS_TERMS], *torque[ACTS_TERMS]; /* [n] N, N m */
+    bool pushes[ACTS_TERMS], twists[ACTS_TERMS];  /* there may be forces, torques other than 0 */
     double *push[ACTS_TERMS];                     /* [walls] N, N m; NULL: none */
 };
 

@@ -52,6 +52,7 @@ static int64_t whole(const char *text)
 static int set(struct acts *acts, bool torque, const struct packing *p, int64_t i, const json_t *x,
                struct why *why)
 {
+    (torque ? acts->twists : acts->pushes)[ACTS_LASTING] = true;
     vec3 *at = &(torque ? acts->torque : acts->force)[ACTS_LASTING][i];
     return vector(x, p->dim, at) ? 0 : wrong(why, "forces and torques are vectors [x, y, z]");
 }

@@ -161,7 +161,14 @@ static void *data_of(struct nsd_run *r, int k, int64_t n, struct why *why)
     const char *owner = t->rows == OF_BODIES ? (char *)&r->f.packing : (char *)&r->acts;
     void *data;
     if (t->make) return make(r, k, n, why);
-    if (t->rows == OF_ACTS && acts_arrays(&r->acts, &r->f.packing, why)) return NULL;
+    if (t->rows == OF_ACTS) {
+        const bool torque = t->at >= offsetof(struct acts, torque);
+        const int term = (int)((t->at - (torque ? offsetof(struct acts, torque)
+                                                : offsetof(struct acts, force))) /
+                               sizeof(vec3 *));
+        if (acts_arrays(&r->acts, &r->f.packing, why)) return NULL;
+        (torque ? r->acts.twists : r->acts.pushes)[term] = true; // what is written there acts
+    }
     memcpy(&data, owner + t->at, sizeof data);
     return data;
 }

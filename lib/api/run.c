@@ -360,8 +360,8 @@ int run_choose(struct nsd_run *r, struct why *why)
 static void swap_forces(struct outside *a, struct outside *b)
 {
     const struct outside was = *a;
-    a->force = b->force, a->torque = b->torque, a->push = b->push;
-    b->force = was.force, b->torque = was.torque, b->push = was.push;
+    a->force = b->force, a->torque = b->torque, a->push = b->push, a->most = b->most;
+    b->force = was.force, b->torque = was.torque, b->push = was.push, b->most = was.most;
 }
 
 /* dt of the step to come */

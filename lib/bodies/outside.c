@@ -28,16 +28,10 @@ void outside_forget(struct outside *o)
     o->steered = steered;
 }
 
-int outside_alloc_forces(struct outside *o, int64_t n, struct why *why)
+int outside_alloc(vec3 **to, int64_t n, struct why *why)
 {
-    if (o->force) return 0;
-    vec3 *force = zeros(n, sizeof *force), *torque = zeros(n, sizeof *torque);
-    if (!force || !torque) {
-        free(force), free(torque);
-        return no_memory(why);
-    }
-    o->force = force, o->torque = torque;
-    return 0;
+    if (!*to) *to = zeros(n, sizeof **to);
+    return *to ? 0 : no_memory(why);
 }
 
 int outside_alloc_push(struct outside *o, int32_t walls, struct why *why)
@@ -49,13 +43,14 @@ int outside_alloc_push(struct outside *o, int32_t walls, struct why *why)
 int outside_copy(struct outside *to, const struct outside *o, int64_t n, int32_t walls,
                  struct why *why)
 {
-    *to = (struct outside){ .steered = o->steered };
-    if ((o->force && outside_alloc_forces(to, n, why)) ||
+    *to = (struct outside){ .steered = o->steered, .most = o->most };
+    if ((o->force && outside_alloc(&to->force, n, why)) ||
+        (o->torque && outside_alloc(&to->torque, n, why)) ||
         (o->push && outside_alloc_push(to, walls, why)) ||
         (o->length && outside_say(to, o->words, o->length, why)))
         return outside_free(to), why->status;
     if (o->force) memcpy(to->force, o->force, (size_t)n * sizeof *o->force);
-    if (o->force) memcpy(to->torque, o->torque, (size_t)n * sizeof *o->torque);
+    if (o->torque) memcpy(to->torque, o->torque, (size_t)n * sizeof *o->torque);
     if (o->push) memcpy(to->push, o->push, (size_t)walls * sizeof *o->push);
     return 0;
 }
@@ -63,14 +58,25 @@ int outside_copy(struct outside *to, const struct outside *o, int64_t n, int32_t
 int outside_resize(struct outside *o, int64_t had, int64_t n, struct why *why)
 {
     struct outside now = { 0 };
-    if (!o->force) return 0;
-    if (outside_alloc_forces(&now, n, why)) return why->status;
     size_t keep = (size_t)(had < n ? had : n);
-    memcpy(now.force, o->force, keep * sizeof *o->force);
-    memcpy(now.torque, o->torque, keep * sizeof *o->torque);
+    if ((o->force && outside_alloc(&now.force, n, why)) ||
+        (o->torque && outside_alloc(&now.torque, n, why)))
+        return outside_free(&now), why->status;
+    if (o->force) memcpy(now.force, o->force, keep * sizeof *o->force);
+    if (o->torque) memcpy(now.torque, o->torque, keep * sizeof *o->torque);
     free(o->force), free(o->torque);
     o->force = now.force, o->torque = now.torque;
     return 0;
+}
+
+void outside_measure(struct outside *o, const double *mass, int64_t n)
+{
+    double most = 0;
+    for (int64_t i = 0; o->force && i < n; i++) {
+        double f2 = v3_dot(o->force[i], o->force[i]), m2 = mass[i] * mass[i];
+        if (m2 > 0 && f2 > most * m2) most = f2 / m2;
+    }
+    o->most = sqrt(most);
 }
 
 int outside_say(struct outside *o, const char *words, int64_t length, struct why *why)
@@ -88,11 +94,12 @@ int outside_say(struct outside *o, const char *words, int64_t length, struct why
 
 int outside_check(const struct outside *o, int dim, int64_t n, int32_t walls, struct why *why)
 {
-    for (int64_t i = 0; o->force && i < n; i++) {
+    for (int64_t i = 0; (o->force || o->torque) && i < n; i++) {
         const char *trouble = NULL;
-        if (!v3_finite(o->force[i])) trouble = "force from outside is not finite";
-        if (!v3_finite(o->torque[i])) trouble = "torque from outside is not finite";
-        if (dim == 2 && (o->force[i].z != 0 || o->torque[i].x != 0 || o->torque[i].y != 0))
+        vec3 f = o->force ? o->force[i] : v3(0, 0, 0), m = o->torque ? o->torque[i] : v3(0, 0, 0);
+        if (!v3_finite(f)) trouble = "force from outside is not finite";
+        if (!v3_finite(m)) trouble = "torque from outside is not finite";
+        if (dim == 2 && (f.z != 0 || m.x != 0 || m.y != 0))
             trouble = "force from outside leaves the plane, and dim is 2";
         if (trouble) return why_set(why, EX_DATAERR, "body %lld: %s", (long long)i, trouble);
     }

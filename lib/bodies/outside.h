@@ -16,7 +16,8 @@
 #include <stdint.h>
 
 struct outside {
-    vec3 *force, *torque; /* [n] N, N m, in space; NULL: none */
+    vec3 *force, *torque; /* [n] N, N m, in space; NULL: none, of either */
+    double most;          /* m/s^2: no body gains more by them; outside_measure() keeps it */
     double *push;         /* [walls] N, N m: added to the load of a boundary; NULL: none */
     bool steered; /* gravity, friction or the motion of a boundary may differ from frame to frame */
     int64_t length, room; /* bytes of words */
@@ -30,13 +31,15 @@ void outside_forget(struct outside *outside);
    is nothing to free. */
 int outside_copy(struct outside *to, const struct outside *from, int64_t n, int32_t walls,
                  struct why *why);
-/* force[n] and torque[n], zero, unless they exist; push[walls], likewise. Each returns 0 or EX_SOFTWARE, where nothing
+/* *to = force or torque, [n], zero, unless it exists; push[walls], likewise. Each returns 0 or EX_SOFTWARE, where nothing
    has changed. */
-int outside_alloc_forces(struct outside *outside, int64_t n, struct why *why);
+int outside_alloc(vec3 **to, int64_t n, struct why *why);
 int outside_alloc_push(struct outside *outside, int32_t walls, struct why *why);
 /* Forces of n bodies in place of those of `had`; new ones are zero. Returns 0 or EX_SOFTWARE, where nothing has
    changed. */
 int outside_resize(struct outside *outside, int64_t had, int64_t n, struct why *why);
+/* Finds `most`, of bodies with these masses (kg). */
+void outside_measure(struct outside *outside, const double *mass, int64_t n);
 /* Appends words of length bytes. Returns 0 or EX_SOFTWARE, where nothing has changed. */
 int outside_say(struct outside *outside, const char *words, int64_t length, struct why *why);
 /* Is every number finite, and in the plane where dim is 2? Returns 0 or EX_DATAERR. */

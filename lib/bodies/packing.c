@@ -264,14 +264,6 @@ double packing_mean_mass(const struct packing *p)
     return n ? sum / (double)n : 1;
 }
 
-double packing_most_fall(const struct packing *p)
-{
-    double most = 0;
-    for (int64_t i = 0; p->outside.force && i < p->n; i++)
-        if (p->mass[i] > 0) most = fmax(most, v3_norm(p->outside.force[i]) / p->mass[i]);
-    return p->dt * v3_norm(p->g) + p->dt * most;
-}
-
 struct whole packing_whole(const struct packing *p)
 {
     if (p->whole) return *p->whole;

@@ -209,7 +209,10 @@ static inline vec3 packing_fall(const struct packing *p, int64_t i)
     return p->outside.force ? v3_axpy(dv, p->dt / p->mass[i], p->outside.force[i]) : dv;
 }
 /* m/s: no body gains more by them */
-double packing_most_fall(const struct packing *p);
+static inline double packing_most_fall(const struct packing *p)
+{
+    return p->dt * v3_norm(p->g) + p->dt * p->outside.most;
+}
 
 /* m: the position at which contacts are detected, q + (1 - theta) dt qdot [globalmapapp1]. */
 static inline vec3 packing_predict(const struct packing *p, int64_t i)

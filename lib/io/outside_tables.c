@@ -51,19 +51,23 @@ static int write_span(struct table_write *s, const char *name, int64_t start, in
     return table_write_rows(s, path, COLUMN_I64, 1, &one, CHUNK_FRAMES, &count, NULL, why);
 }
 
+/* Of bodies, without which a column has 0 */
 static int write_forces(struct table_write *s, const struct packing *p, bool any, struct why *why)
 {
     int64_t n = any ? p->n : 0;
     const hsize_t shape[2] = { (hsize_t)n, 3 };
-    const vec3 none = { 0, 0, 0 };
-    if (write_span(s, "body", s->forces, n, why) ||
-        table_write_rows(s, HOME "/body/force", COLUMN_F64, 2, shape, CHUNK_CONTACTS,
-                         n ? p->outside.force : &none, "N", why) ||
-        table_write_rows(s, HOME "/body/torque", COLUMN_F64, 2, shape, CHUNK_CONTACTS,
-                         n ? p->outside.torque : &none, "N m", why))
-        return why->status;
+    vec3 *none = calloc((size_t)n + 1, sizeof *none);
+    if (!none) return why_set(why, EX_SOFTWARE, "no memory for forces");
+    const vec3 *force = any && p->outside.force ? p->outside.force : none;
+    const vec3 *torque = any && p->outside.torque ? p->outside.torque : none;
+    if (!write_span(s, "body", s->forces, n, why) &&
+        !table_write_rows(s, HOME "/body/force", COLUMN_F64, 2, shape, CHUNK_CONTACTS, force, "N",
+                          why))
+        table_write_rows(s, HOME "/body/torque", COLUMN_F64, 2, shape, CHUNK_CONTACTS, torque,
+                         "N m", why);
+    free(none);
     if (s->growing) s->forces += n;
-    return 0;
+    return why->status;
 }
 
 static int write_words(struct table_write *s, const struct outside *o, struct why *why)
@@ -83,7 +87,7 @@ int outside_tables_write(struct table_write *s, const struct frame *f, struct wh
     const struct outside *o = &p->outside;
     const hsize_t row[2] = { 1, 3 }, pairs[2] = { 1, (hsize_t)p->kinds * (hsize_t)p->kinds };
     const double g[3] = { p->g.x, p->g.y, p->g.z };
-    bool forces = f->detected && o->force && !f->elsewhere;
+    bool forces = f->detected && (o->force || o->torque) && !f->elsewhere;
     if (!o->steered && !forces && !o->length && !(f->detected && o->push)) return 0;
     if (table_write_rows(s, HOME "/step", COLUMN_I64, 1, row, CHUNK_FRAMES, &p->step, NULL, why) ||
         write_row(s, HOME "/gravity", 2, row, g, "m s-2", why) ||
@@ -149,10 +153,14 @@ static int read_forces(struct source *s, int64_t row, struct packing *p, struct 
         return why_set(why, EX_DATAERR,
                        HOME "/body/count: forces of %lld bodies, and there are %lld",
                        (long long)count, (long long)p->n);
-    if (outside_alloc_forces(&p->outside, p->n, why) ||
+    if (outside_alloc(&p->outside.force, p->n, why) ||
+        outside_alloc(&p->outside.torque, p->n, why) ||
         source_rows(s, HOME "/body/force", COLUMN_F64, start, count, 3, p->outside.force, why))
         return why->status;
-    return source_rows(s, HOME "/body/torque", COLUMN_F64, start, count, 3, p->outside.torque, why);
+    if (source_rows(s, HOME "/body/torque", COLUMN_F64, start, count, 3, p->outside.torque, why))
+        return why->status;
+    outside_measure(&p->outside, p->mass, p->n);
+    return 0;
 }
 
 static int read_words(struct source *s, int64_t row, struct outside *o, struct why *why)
