@@ -303,7 +303,7 @@ coverage:
 
 # ---- style ----
 
-SOURCES := $(wildcard lib/*/*.[ch] tools/*.c docs/*.c docs/examples/*.c tests/*/*.[ch])
+SOURCES := $(wildcard lib/*/*.[ch] tools/*.c docs/*.c docs/examples/*.c bench/*.c tests/*/*.[ch])
 SCRIPTS := $(wildcard scripts/*.sh bench/*.sh docs/examples/*.sh tests/*/*.sh tests/*/*.t) .ci/run
 
 format:
@@ -409,6 +409,8 @@ install-dev: $B/libnsd.a
 	install -m 644 $B/libnsd.a $(DESTDIR)$(LIBDIR)
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libnsd.so
 	install -m 644 man/nsd.3 $(TO)/share/man/man3
+	install -d $(TO)/share/doc/nsd/examples
+	install -m 644 docs/step.c docs/examples/* $(TO)/share/doc/nsd/examples
 	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|; s|@HDF5@|$(HDF5)|' nsd.pc.in \
 	    > $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc
 	chmod 644 $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc
@@ -427,7 +429,7 @@ uninstall:
 	for t in $(notdir $(TOOLS)); do \
 	    rm -f $(TO)/share/bash-completion/completions/$$t $(TO)/share/zsh/site-functions/_$$t; \
 	done
-	rm -rf $(TO)/share/nsd $(TO)/include/nsd.h $(DESTDIR)$(PYTHONDIR)/nsd
+	rm -rf $(TO)/share/nsd $(TO)/share/doc/nsd $(TO)/include/nsd.h $(DESTDIR)$(PYTHONDIR)/nsd
 	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,libnsd.a libnsd.so $(SONAME) $(SONAME).0 pkgconfig/nsd.pc)
 
 # Debian packages in build/deb, of a copy of the sources: nsd-tools; libnsd1, and libnsd-dev for programs; python3-nsd

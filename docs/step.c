@@ -7,8 +7,9 @@
 
 /* The settings of the run */
 static const char *const settings[][2] = {
-    { "method", "exact" },   { "criterion", "natural" }, { "eps", "1e-6" },    { "max-sweeps", "10000" },
-    { "order", "natural" },  { "warm", "true" },         { "overlap", "keep" },
+    { "method", "exact" },     { "criterion", "natural" }, { "eps", "1e-6" },
+    { "max-sweeps", "10000" }, { "order", "natural" },     { "warm", "true" },
+    { "overlap", "keep" },
 };
 
 /* The number of that name */
@@ -30,7 +31,8 @@ int main(int argc, char **argv)
     if (nsd_step(run, 200)) errx(1, "%s", nsd_error(run));
     if (nsd_read(run, "position", &position)) errx(1, "%s", nsd_error(run));
     const double *x = position.data;
-    printf("%.0f %.17g %.0f %.17g\n", number(run, "step"), number(run, "time"), number(run, "contacts"), x[2]);
+    printf("%.0f %.17g %.0f %.17g\n", number(run, "step"), number(run, "time"),
+           number(run, "contacts"), x[2]);
     nsd_close(&run);
     return 0;
 }

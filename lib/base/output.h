@@ -23,7 +23,7 @@ struct output {
     char *at;     /* where it is: beside the target, then there */
     int old;      /* the file whose place it takes, open and locked; -1: there is none */
     bool placed, listed, borrowed;
-    bool nameless; /* it had no name when it was opened: a file in memory */
+    bool nameless;       /* it had no name when it was opened: a file in memory */
     struct output *next; /* of those that are to be removed should the tool end now */
 };
 
