@@ -43,13 +43,18 @@ PL      := $(foreach l,hdf5_hl hdf5 gsl gslcblas jansson,$(call library,$l)) $(S
            $(shell pkg-config $(if $(SHARED),,--static) --libs $(HDF5) cairo zlib libdeflate libpng 2>/dev/null) \
            $(foreach l,sz,$(if $(wildcard $(FOLDERS:%=%lib$l.so)),-l$l)) -lm
 
+# And shared ones alone, for libnsd.so. GSL's own BLAS comes first: libcholmod loads one with other roundings, which would
+# stand for it.
+CBLAS       := -Wl,--push-state,--no-as-needed -lgslcblas -Wl,--pop-state
+SHARED_LIBS := $(CBLAS) -lhdf5_hl -lklu -lcholmod -lqhull_r $(shell pkg-config --libs $(LIBS) 2>/dev/null) -lm
+
 # No contraction to FMA: the same bytes on every machine.
 NSD_CFLAGS  := -std=gnu11 -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wvla \
                -ffp-contract=off -fno-math-errno -pthread -DNSD_VERSION='"$(VERSION)"' -Ilib $(PC) \
                $(if $(SAN),-fsanitize=address$(,)undefined -fno-sanitize-recover=undefined)
 # Only the libraries that a tool calls: starting libpng, KLU and CHOLMOD costs milliseconds.
 NSD_LDFLAGS := -pthread -Wl,--as-needed $(if $(SAN),-fsanitize=address$(,)undefined)
-NSD_LDLIBS  := $(PL)
+NSD_LDLIBS  := $(if $(SHARED),$(CBLAS)) $(PL)
 
 # The inner loops once a width; without contraction, and with instructions that the others know nothing of.
 # Distributions build with -O2, at which gcc leaves loops over three components loops: three times the time.
@@ -70,6 +75,11 @@ IDLE    ?=
 
 LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/cli/main.c lib/ranks/%.c $(WITHOUT:%=lib/%/%.c) $(WIDE:%=lib/problem/%.c),$(wildcard lib/*/*.c))) \
          $(foreach w,$(WIDE),$(WIDTHS:%=$B/lib/problem/$w-%.o))
+# What programs of others call, lib/api/nsd.h: without the rooms that it does not need. Every object is hidden but
+# for what that header declares; the archive has one object, in which the hidden names are local.
+PUBLIC := $(filter-out $(foreach r,cli draw export,$B/lib/$r/%),$(LIB))
+HIDDEN := -fPIC -fvisibility=hidden
+SONAME := libnsd.so.1
 TOOLS := $(patsubst tools/%.c,$B/%,$(wildcard tools/*.c))
 
 # Where there are Open MPI, whose mpicc shows its flags, and Zoltan, nsd-step-mpi: what nsd-step becomes under
@@ -87,11 +97,11 @@ RANKS  := $(if $(MPI_PC),$(patsubst lib/%.c,$B/lib/%.o,$(wildcard lib/ranks/*.c)
 MPI    := $(if $(MPI_PC),$B/nsd-step-mpi)
 CTEST := $(patsubst tests/%.c,$B/tests/%,$(wildcard tests/*/*_test.c))
 
-all: $(TOOLS) $(MPI)
+all: $(TOOLS) $(MPI) $B/libnsd.a $B/$(SONAME)
 
 $B/tests/unit/fclib_test: TESTLIBS += -lfclib
 
-WRAPPED := $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw changed_objects)
+WRAPPED := $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw failing_library_calls_api changed_objects)
 # The calls that tests/support/failing_library_calls.h makes fail: those of the library go through it.
 FAILING := malloc calloc realloc strdup strndup malloc_trim H5Fcreate H5Fflush H5Fget_filesize H5Fget_file_image \
            H5Fget_vfd_handle H5Fset_libver_bounds H5LTopen_file_image H5Gcreate2 H5Lcreate_hard H5Oopen \
@@ -100,15 +110,24 @@ FAILING := malloc calloc realloc strdup strndup malloc_trim H5Fcreate H5Fflush H
            H5Tcopy H5Screate H5Screate_simple H5Fclose H5Gclose H5Dclose H5Aclose
 $(WRAPPED): TESTLIBS += $(FAILING:%=-Wl,--wrap=%)
 # Those of the libraries among themselves do not: these are shared ones here.
-$(WRAPPED): NSD_LDLIBS := \
-    -lhdf5_hl -lklu -lcholmod -lqhull_r $(shell pkg-config --libs $(LIBS) 2>/dev/null) -lm
+$(WRAPPED): NSD_LDLIBS := $(SHARED_LIBS)
 
-$B/libnsd.a: $(LIB)
+$B/internal.a: $(LIB)
 	$(call Q,AR,$@)rm -f $@ && ar rcs $@ $^
+
+$B/nsd.o: $(PUBLIC)
+	$(call Q,LD,$@)$(LD) -r -o $@ $^ && objcopy --localize-hidden $@
+
+$B/libnsd.a: $B/nsd.o
+	$(call Q,AR,$@)rm -f $@ && ar rcs $@ $^
+
+$B/$(SONAME): $(PUBLIC)
+	$(call Q,LD,$@)$(CC) -shared -Wl,-soname,$(SONAME) -Wl,-z,defs $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(SHARED_LIBS)
+	@ln -sf $(SONAME) $B/libnsd.so
 
 $B/lib/%.o: lib/%.c Makefile
 	@mkdir -p $(@D)
-	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(HIDDEN) $(CFLAGS) -MMD -MP -c -o $@ $<
 
 # The page of nsd-web is part of the program.
 $B/lib/draw/page_parts.o: $(wildcard lib/draw/page/*)
@@ -116,7 +135,7 @@ $B/lib/draw/page_parts.o: $(wildcard lib/draw/page/*)
 define compile_wide
 $B/lib/problem/$1-%.o: lib/problem/$1.c Makefile
 	@mkdir -p $$(@D)
-	$$(call Q,CC,$$<)$$(CC) $$(CPPFLAGS) $$(NSD_CFLAGS) $$(CFLAGS:-O2=-O3) $(if $(SAN),$$(SAN_WIDTH_$$*)) -DLANES=$$* $$(WIDTH_$$*) $$(if $$(filter $$*,$$(IDLE)),-O0) -MMD -MP -c -o $$@ $$<
+	$$(call Q,CC,$$<)$$(CC) $$(CPPFLAGS) $$(NSD_CFLAGS) $$(HIDDEN) $$(CFLAGS:-O2=-O3) $(if $(SAN),$$(SAN_WIDTH_$$*)) -DLANES=$$* $$(WIDTH_$$*) $$(if $$(filter $$*,$$(IDLE)),-O0) -MMD -MP -c -o $$@ $$<
 endef
 $(foreach w,$(WIDE),$(eval $(call compile_wide,$w)))
 
@@ -124,19 +143,19 @@ $B/tools/%.o: tools/%.c Makefile
 	@mkdir -p $(@D)
 	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
-$B/%: $B/tools/%.o $B/lib/cli/main.o $B/libnsd.a
+$B/%: $B/tools/%.o $B/lib/cli/main.o $B/internal.a
 	$(call Q,LD,$@)$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(NSD_LDLIBS)
 
-$B/tests/%: tests/%.c $B/libnsd.a Makefile
+$B/tests/%: tests/%.c $B/internal.a Makefile
 	@mkdir -p $(@D)
-	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) -Itests/support $(CFLAGS) -MMD -MP -o $@ $< $B/libnsd.a $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS) $(TESTLIBS)
+	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) -Itests/support $(CFLAGS) -MMD -MP -o $@ $< $B/internal.a $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS) $(TESTLIBS)
 
 # ranks/mpi_processes.c stands for cli/processes.c, which the archive then is not asked for.
 $(RANKS): NSD_CFLAGS := $(MPI_H5) $(NSD_CFLAGS) $(MPI_PC)
-$B/nsd-step-mpi: $B/tools/nsd-step.o $B/lib/cli/main.o $(RANKS) $B/libnsd.a
+$B/nsd-step-mpi: $B/tools/nsd-step.o $B/lib/cli/main.o $(RANKS) $B/internal.a
 	$(call Q,LD,$@)$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(MPI_PL) $(MPI_LD)
 
-tests: $(TOOLS) $(MPI) $(CTEST)
+tests: $(TOOLS) $(MPI) $(CTEST) $B/libnsd.a $B/$(SONAME)
 
 # ---- set-up, checks, the demonstration ----
 
@@ -145,12 +164,12 @@ setup-run setup-paper setup-wall setup-check setup-all:
 
 # tests/README.md has the table of the two tiers. scripts/prove.sh runs the files, the longest first: one that
 # begins last leaves a core idle while it ends.
-FIRST := $(patsubst %,tests/%.t,tools/examples whole/laws whole/solvers hostile/wrong_input whole/shapes tools/stat tools/types \
+FIRST := $(patsubst %,tests/%.t,tools/outside tools/examples whole/laws whole/solvers hostile/wrong_input whole/shapes tools/stat tools/types \
          tools/export tools/grains tools/view tools/pipeline tools/boundary) $B/tests/unit/shapes_test
 # What make check leaves to make check-all: it builds again, needs what only a maintainer has, or takes minutes.
 REST  := $(patsubst %,tests/%.t,project/lint whole/paper project/compilers whole/gallery project/thread_sanitizer whole/mpi \
          project/install whole/wall whole/paper_page tools/web_in_browser hostile/failing_system_calls hostile/failing_allocations) \
-         $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw killed_writer)
+         $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw failing_library_calls_api killed_writer)
 TESTS := $(FIRST) $(filter-out $(FIRST) $(REST),$(CTEST) $(wildcard tests/*/*.t))
 # What the sanitizers would not see more of: it looks at texts, or makes others' experiments.
 PLAIN := $(filter-out tests/whole/mpi.t tests/whole/wall.t tests/tools/% tests/hostile/% $B/tests/%,$(REST)) $(patsubst %,tests/%.t,project/layers project/docs tools/examples tools/campaign whole/rest)
@@ -166,7 +185,7 @@ test: tests
 
 # The whole of a test of which make check runs a part is there, too.
 test-rest: tests
-	NSD_DEEP=1 $(PROVE) $(REST) tests/hostile/wrong_input.t
+	NSD_DEEP=1 $(PROVE) $(REST) tests/hostile/wrong_input.t $B/tests/unit/api_test
 
 check: setup-check
 	$(MAKE) -j2 tests
@@ -260,7 +279,7 @@ fuzz: $(FUZZ:%=$F/fuzz_%)
 	tests/hostile/fuzz/run.sh $(SECONDS) $(FUZZ)
 
 # The kept corpus once, as a test, by the library that has the sanitizers already
-$B/tests/hostile/fuzz_%: tests/hostile/fuzz/fuzz_%.c tests/hostile/fuzz/replay.c tests/hostile/fuzz/child.c $B/libnsd.a
+$B/tests/hostile/fuzz_%: tests/hostile/fuzz/fuzz_%.c tests/hostile/fuzz/replay.c tests/hostile/fuzz/child.c $B/internal.a
 	@mkdir -p $(@D)
 	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -Itests/hostile/fuzz -o $@ $^ $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS)
 
@@ -290,8 +309,8 @@ coverage:
 
 # ---- style ----
 
-SOURCES := $(wildcard lib/*/*.[ch] tools/*.c tests/*/*.[ch])
-SCRIPTS := $(wildcard scripts/*.sh bench/*.sh tests/*/*.sh tests/*/*.t) .ci/run
+SOURCES := $(wildcard lib/*/*.[ch] tools/*.c docs/*.c docs/examples/*.c bench/*.c tests/*/*.[ch])
+SCRIPTS := $(wildcard scripts/*.sh bench/*.sh docs/examples/*.sh tests/*/*.sh tests/*/*.t) .ci/run
 
 format:
 	clang-format -i $(SOURCES)
@@ -369,33 +388,46 @@ $B/completion/zsh/_%: $B/%
 LIBDIR ?= $(PREFIX)/lib
 TO     := $(DESTDIR)$(PREFIX)
 
-install: install-tools install-dev
+install: install-tools install-lib install-dev install-python
 
 install-tools: all completions
 	install -d $(TO)/bin $(addprefix $(TO)/share/man/man,1 5 7) $(TO)/share/nsd/scenes/paper \
 	    $(TO)/share/bash-completion/completions $(TO)/share/zsh/site-functions
 	install -m 755 $(TOOLS) $(MPI) $(TO)/bin
-	for m in man/*; do install -m 644 $$m $(TO)/share/man/man$${m##*.}; done
+	for m in $(filter-out $(PYTHON_MANUAL),$(wildcard man/*.[157])); do install -m 644 $$m $(TO)/share/man/man$${m##*.}; done
 	install -m 644 scenes/*.json $(TO)/share/nsd/scenes
 	install -m 644 scenes/paper/*.json $(TO)/share/nsd/scenes/paper
-	install -m 644 scripts/nsd.py $(TO)/share/nsd
 	install -d $(TO)/share/nsd/campaign
 	install -m 755 scripts/campaign/*.sh scripts/campaign/array.sbatch $(TO)/share/nsd/campaign
 	install -m 644 scripts/campaign/*.mk scripts/campaign/*.gp $(TO)/share/nsd/campaign
 	install -m 644 $B/completion/bash/* $(TO)/share/bash-completion/completions
 	install -m 644 $B/completion/zsh/* $(TO)/share/zsh/site-functions
 
-# The library's headers lie in the folders by which they include each other.
+install-lib: $B/$(SONAME)
+	install -d $(DESTDIR)$(LIBDIR)
+	install -m 644 $B/$(SONAME) $(DESTDIR)$(LIBDIR)/$(SONAME).0
+	ln -sf $(SONAME).0 $(DESTDIR)$(LIBDIR)/$(SONAME)
+
+# What a program with the library is built by: its only header, the archive, the link for compilers
 install-dev: $B/libnsd.a
-	install -d $(DESTDIR)$(LIBDIR)/pkgconfig
-	for d in $(filter-out lib/ranks/,$(sort $(wildcard lib/*/))); do \
-	    install -d $(TO)/include/nsd/$$(basename $$d); \
-	    ! ls $$d*.h >/dev/null 2>&1 || install -m 644 $$d*.h $(TO)/include/nsd/$$(basename $$d); \
-	done
+	install -d $(DESTDIR)$(LIBDIR)/pkgconfig $(TO)/include $(TO)/share/man/man3
+	install -m 644 lib/api/nsd.h $(TO)/include
 	install -m 644 $B/libnsd.a $(DESTDIR)$(LIBDIR)
+	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libnsd.so
+	install -m 644 man/nsd.3 $(TO)/share/man/man3
+	install -d $(TO)/share/doc/nsd/examples
+	install -m 644 docs/step.c docs/examples/* $(TO)/share/doc/nsd/examples
 	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|; s|@HDF5@|$(HDF5)|' nsd.pc.in \
 	    > $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc
 	chmod 644 $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc
+
+# Where python3 looks, where PREFIX is /usr; elsewhere PYTHONPATH names it.
+PYTHONDIR     ?= $(PREFIX)/lib/python3/dist-packages
+PYTHON_MANUAL := man/nsd-python.7
+install-python:
+	install -d $(DESTDIR)$(PYTHONDIR)/nsd $(TO)/share/man/man7
+	install -m 644 python/nsd/*.py python/nsd/py.typed $(DESTDIR)$(PYTHONDIR)/nsd
+	install -m 644 $(PYTHON_MANUAL) $(TO)/share/man/man7
 
 uninstall:
 	cd $(TO)/bin && rm -f $(notdir $(TOOLS)) nsd-step-mpi
@@ -403,10 +435,10 @@ uninstall:
 	for t in $(notdir $(TOOLS)); do \
 	    rm -f $(TO)/share/bash-completion/completions/$$t $(TO)/share/zsh/site-functions/_$$t; \
 	done
-	rm -rf $(TO)/share/nsd $(TO)/include/nsd
-	rm -f $(DESTDIR)$(LIBDIR)/libnsd.a $(DESTDIR)$(LIBDIR)/pkgconfig/nsd.pc
+	rm -rf $(TO)/share/nsd $(TO)/share/doc/nsd $(TO)/include/nsd.h $(DESTDIR)$(PYTHONDIR)/nsd
+	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,libnsd.a libnsd.so $(SONAME) $(SONAME).0 pkgconfig/nsd.pc)
 
-# Debian packages in build/deb, of a copy of the sources: nsd-tools, and libnsd-dev for programs
+# Debian packages in build/deb, of a copy of the sources: nsd-tools; libnsd1, and libnsd-dev for programs; python3-nsd
 deb:
 	scripts/deb.sh
 
@@ -416,5 +448,5 @@ clean:
 -include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs completions install install-tools install-dev uninstall deb clean setup-run setup-paper setup-wall setup-check setup-all test-rest check-rest check-all
+.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-paper setup-wall setup-check setup-all test-rest check-rest check-all
 .SECONDARY:

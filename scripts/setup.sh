@@ -8,11 +8,11 @@ run=(build-essential pkg-config libhdf5-dev hdf5-tools libgsl-dev libjansson-dev
     libcairo2-dev libsuitesparse-dev libqhull-dev jq gnuplot-nox)
 paper=("${run[@]}" pandoc)
 wall=("${run[@]}" python3-h5py python3-scipy)
-check=("${wall[@]}" perl)
+check=("${wall[@]}" python3-numpy perl)
 all=("${check[@]}" pandoc mandoc shellcheck cppcheck clang libomp-dev libclang-rt-dev
     clang-tidy clang-format libfclib-dev gcovr
     openmpi-bin libopenmpi-dev libhdf5-openmpi-dev libtrilinos-zoltan-dev
-    debhelper lintian zsh parallel python3-vtk9 python3-ase python3-mdanalysis python3-gsd liggghts
+    debhelper lintian valgrind zsh parallel python3-vtk9 python3-ase python3-mdanalysis python3-gsd liggghts
     ffmpeg chromium chromium-driver python3-selenium)
 
 case "${1:-run}" in

@@ -54,6 +54,7 @@ static void flow(struct packing *p)
     struct why why = { 0 };
     bool changed;
     p->events.n = 0;
+    outside_forget(&p->outside);
     if (flow_read(&scene, p, &why) || flow_step(&scene, p, NULL, &changed, &why)) die_why(&why);
     flow_free(&scene);
 }

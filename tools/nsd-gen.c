@@ -2,9 +2,8 @@
 #include "base/json.h"
 #include "cli/cli.h"
 #include "import/import_file.h"
-#include "io/reader.h"
+#include "import/scene_file.h"
 #include "io/writer.h"
-#include "scene/mesh_file.h"
 #include "scene/scene_build.h"
 #include "scene/time_step.h"
 
@@ -14,8 +13,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #define FAR 4 /* times the suggested time step: a scene's own is said to be too long from there */
 
@@ -48,55 +45,26 @@ const struct cli_tool tool = {
     "  nsd-gen --check scenes/drum.json | jq .dt\n"
 };
 
-enum {
-    MOST_PIPED = 1 << 26
-}; /* bytes of a scene that is no file, whose size says how long it is */
-
-/* All of a file, n bytes, to be freed; NULL when memory is short. */
-static char *slurp(FILE *f, const char *name, size_t *n)
-{
-    struct stat st;
-    bool file = !fstat(fileno(f), &st) && S_ISREG(st.st_mode);
-    size_t room = 1 << 16;
-    char *text = malloc(room);
-    for (*n = 0; text;) {
-        *n += fread(text + *n, 1, room - *n, f);
-        if (*n < room) break;
-        if (!file && *n >= MOST_PIPED) {
-            free(text);
-            die(EX_DATAERR, "%s: more than %d MB for a scene (endless?): put it into a file", name,
-                MOST_PIPED >> 20);
-        }
-        room *= 2;
-        char *more = realloc(text, room);
-        if (!more) free(text);
-        text = more;
-    }
-    return text;
-}
-
 /* Reads the scene in a file, or in standard input (-), and sets the directory of its tables. */
-static void read_scene(struct scene *s, const char *path, char **dir, struct scene_files *files)
+static void read_scene(struct scene *s, const char *path, char **dir)
 {
     bool standard = !strcmp(path, "-");
     const char *name = standard ? "standard input" : path;
     struct why why = { 0 };
     size_t n;
     FILE *f = standard ? stdin : fopen(path, "r");
-    char *text = f ? slurp(f, name, &n) : NULL;
-    if (f && ferror(f)) free(text), text = NULL;
-    if (!f || ferror(f)) die(EX_NOINPUT, "%s: %s", name, strerror(errno));
-    if (!text) die(EX_SOFTWARE, "%s: no memory", name);
+    if (!f) die(EX_NOINPUT, "%s: %s", name, strerror(errno));
+    char *text = scene_file_slurp(f, name, &n, &why);
+    if (!text) die_why(&why);
     if (!standard) {
         fclose(f);
         char *copy = strdup(path);
         *dir = copy ? strdup(dirname(copy)) : NULL;
         free(copy);
     }
-    files->dir = *dir;
-    scene_parse(s, text, n, files, &why);
+    scene_file_parse(s, text, n, name, *dir, &why);
     free(text);
-    if (why.status) die(why.status, "%s:%s", name, why.text);
+    if (why.status) die_why(&why);
 }
 
 /* "500", "1e6" and also "-5" are numbers, in range or not; all else is the name of a file. */
@@ -105,69 +73,6 @@ static bool is_number(const char *text, double *x)
     char *end;
     *x = strtod(text, &end);
     return end != text && !*end;
-}
-
-/* ---- documents that a scene takes bodies from ---- */
-
-/* How many frames there are in all documents of a file */
-static int64_t count_frames(char *path)
-{
-    struct reader *in;
-    struct why why = { 0 };
-    int64_t frames = 0, all = 0;
-    if (reader_open(&in, 1, &path, &why)) die_why(&why);
-    while (!reader_document(in, &frames, &why) && frames >= 0) all += frames;
-    if (why.status) die_why(&why);
-    reader_close(in);
-    return all;
-}
-
-/* Frame k of the file, from 0, or from the end: -1 is the last */
-static void read_frame(struct frame *f, char *path, int64_t k)
-{
-    struct reader *in;
-    struct why why = { 0 };
-    bool more = true;
-    int64_t wanted = k < -1 ? count_frames(path) + k : k;
-    if (reader_open(&in, 1, &path, &why)) die_why(&why);
-    if (k == -1) reader_last(in, f, &more, &why);
-    for (int64_t i = 0; k != -1 && i <= wanted && more && !why.status; i++)
-        reader_next(in, NULL, f, &more, &why);
-    if (why.status) die_why(&why);
-    if (!more || (k < -1 && wanted < 0)) die(EX_DATAERR, "%s: no frame %lld", path, (long long)k);
-    if (!f->packed) die(EX_DATAERR, "%s: an FCLIB problem has no bodies", path);
-    reader_close(in);
-}
-
-/* The balls of another program's file, which the scene's group wishes for */
-static void read_foreign(struct scene_bodies *b, int space, const char *path)
-{
-    struct why why = { 0 };
-    struct import_said said;
-    struct import_wish wish = { .dim = space, .frame = b->frame, .has_repeats = b->has_repeats };
-    for (int k = 0; k < 3; k++) wish.repeats[k] = b->repeats[k];
-    progress("reading %s", path);
-    if (import_file(b->document, path, &wish, &said, &why)) die_why(&why);
-    progress_end();
-    b->unsaid = !said.masses;
-}
-
-static void read_document(struct scene_bodies *b, int space, const char *dir)
-{
-    struct frame f = { 0 };
-    char *path = scene_path(dir, b->file);
-    if (path && access(path, F_OK) && !access(b->file, F_OK)) // as nsd-info --scene has it
-        strcpy(path, b->file);
-    b->document = calloc(1, sizeof *b->document);
-    if (!path || !b->document) die(EX_SOFTWARE, "no memory for a document");
-    if (b->foreign)
-        read_foreign(b, space, path);
-    else {
-        read_frame(&f, path, b->frame);
-        *b->document = f.packing, f.packing = (struct packing){ 0 };
-        frame_free(&f);
-    }
-    free(path);
 }
 
 /* ---- the file of another program alone ---- */
@@ -328,7 +233,6 @@ int tool_main(int argc, char **argv)
     struct writer *out = NULL;
     struct why why = { 0 };
     char *dir = NULL;
-    struct scene_files files = { .read_mesh = mesh_file_read };
     if (from && argc) die_usage("--from takes the place of %s", argv[0]);
     if (!from && (argc != 1 || !*argv[0])) die_usage("one operand: a number of balls, or a scene");
     if (from && dim != 3)
@@ -342,12 +246,8 @@ int tool_main(int argc, char **argv)
             die_usage("%s: not a number of balls (0 to %d)", argv[0], INT32_MAX);
         if (scene_paper(&scene, (int)dim, (int64_t)n, &why)) die_why(&why);
     } else {
-        read_scene(&scene, argv[0], &dir, &files);
+        read_scene(&scene, argv[0], &dir);
     }
-    for (int64_t g = 0; g < scene.groups; g++)
-        if (scene.bodies[g].from == SCENE_DOCUMENT && !from)
-            read_document(&scene.bodies[g], scene.dim, dir);
-    if (mesh_files_read(&scene, &files, &why)) die_why(&why);
     for (int32_t k = 0; k < scene.meshes; k++) say_left_out(&scene.mesh_file[k]);
     for (int32_t k = 0; k < scene.fits; k++) say_fit(&scene.fit[k]);
     if (scene_build(&frame.packing, &scene, dir, &why)) die_why(&why);

@@ -5,7 +5,8 @@
 #include "export/vti.h"
 #include "io/fields_write.h"
 #include "io/reader.h"
-#include "measure/measures.h"
+#include "measure/asked.h"
+#include "measure/measured.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -16,12 +17,7 @@
 static const char *names, *box, *layers, *point, *plane, *steps, *fields_to;
 static bool list, tsv, last, grains;
 static double width, spacing;
-static struct asked asked = {
-    .axis = -1,
-    .layers = 20, // a layer then has a few grains where the height has a hundred
-    .bins = 50,   // enough contacts in a bin where there are a thousand
-    .radius = INFINITY,
-};
+static struct asked asked = ASKED_DEFAULT;
 
 static const char *usual_layers(const void *to)
 {
@@ -72,23 +68,7 @@ const struct cli_tool tool = {
 
 /* ---- what is asked ---- */
 
-enum { MOST_MEASURES = 32 };
-
 static const struct measure *chosen[MOST_MEASURES + 1];
-
-/* As many finite numbers as there are, from `least` to `most`, by commas; returns how many. */
-static int numbers(const char *option, const char *text, double *x, int least, int most)
-{
-    const char *s = text;
-    char *end;
-    for (int k = 0; k < most; k++, s = end + 1) {
-        x[k] = strtod(s, &end);
-        if (end == s || !isfinite(x[k])) break;
-        if (!*end && k + 1 >= least) return k + 1;
-        if (*end != ',') break;
-    }
-    die_usage("--%s: '%s' is not %d numbers with commas between", option, text, most);
-}
 
 static void choose(const struct measure *m)
 {
@@ -99,18 +79,8 @@ static void choose(const struct measure *m)
 
 static void choose_named(const char *text)
 {
-    for (const char *s = text;; s++) {
-        size_t n = strcspn(s, ",");
-        const struct measure *m = measure_named(s, n);
-        if (n == 3 && !strncmp(s, "all", n))
-            for (int k = 0; measure_at(k); k++) choose(measure_at(k));
-        else if (!m)
-            die_usage("--measures: no '%.*s' (--list names them)", (int)n, s);
-        else
-            choose(m);
-        s += n;
-        if (!*s) return;
-    }
+    struct why why = { 0 };
+    if (measured_choose(chosen, text, &why)) die_usage("%s", why.text);
 }
 
 static void choose_all(void)
@@ -126,41 +96,16 @@ static void choose_all(void)
         die_usage("--tsv: a table has one measure of many rows, or many of one row");
 }
 
-static void parse_layers(void)
+static void parse_one(const char *name, const char *text)
 {
-    const char axes[] = "xyzr", *axis = strchr(axes, *layers);
-    char *end = NULL;
-    double n = *layers && layers[1] == ':' ? strtod(layers + 2, &end) : 0;
-    if (!*layers || !axis || !end || *end || !(n >= 1 && n <= 1e6) || n != floor(n))
-        die_usage("--layers: '%s' is not x:N, y:N, z:N or r:N", layers);
-    asked.axis = (int)(axis - axes), asked.layers = (int64_t)n;
+    struct why why = { 0 };
+    if (text && asked_set(&asked, name, text, &why)) die_usage("%s", why.text);
 }
 
 static void parse(void)
 {
-    double x[6] = { 0 };
-    if (layers) parse_layers();
-    if (point) {
-        numbers("point", point, x, 2, 3);
-        asked.point = v3(x[0], x[1], x[2]);
-    }
-    if (plane) {
-        double n[3] = { 0, 0, 0 };
-        numbers("plane", plane, n, 2, 3);
-        vec3 normal = v3(n[0], n[1], n[2]);
-        double size = v3_norm(normal);
-        if (!(size > 0 && size < INFINITY)) die_usage("--plane: '%s' is no direction", plane);
-        asked.normal = v3_scale(1 / size, normal);
-    }
-    if (box) {
-        double b[6] = { 0, 0, 0, 0, -INFINITY, INFINITY };
-        int n = numbers("box", box, b, 4, 6);
-        if (n == 5) die_usage("--box: '%s' has five numbers", box);
-        for (int k = 0; k < 3; k++) asked.lo[k] = b[2 * k], asked.hi[k] = b[2 * k + 1];
-        for (int k = 0; k < n / 2; k++)
-            if (!(asked.lo[k] < asked.hi[k])) die_usage("--box: '%s' is empty", box);
-        asked.boxed = true;
-    }
+    parse_one("layers", layers), parse_one("point", point);
+    parse_one("plane", plane), parse_one("box", box);
 }
 
 /* ---- output ---- */
@@ -204,22 +149,6 @@ static void show_tsv(const struct packing *p, const struct table *t)
             said[k] = true;
             warn("%s: step %" PRId64 ": %s", chosen[k]->name, p->step, t[k].null);
         }
-}
-
-static void show_json(const struct snapshot *s, const struct table *t)
-{
-    const char *mark = ",\"why\":{";
-    printf("{\"step\":%" PRId64 ",\"time\":", s->p->step);
-    print_number(stdout, s->p->t, "null");
-    printf(",\"bodies\":%" PRId64 ",\"contacts\":", s->p->n);
-    s->s ? printf("%" PRId64, s->s->n) : printf("null");
-    for (int k = 0; chosen[k]; k++) {
-        printf(",\"%s\":", chosen[k]->name);
-        table_json(stdout, &t[k], chosen[k]->list);
-    }
-    for (int k = 0; chosen[k]; k++)
-        if (*t[k].null) printf("%s\"%s\":\"%s\"", mark, chosen[k]->name, t[k].null), mark = ",";
-    printf("%s}\n", *mark == ',' && mark[1] ? "" : "}");
 }
 
 /* ---- fields ---- */
@@ -285,33 +214,29 @@ static void add_fields(const struct snapshot *s, struct why *why)
 
 static struct kept first, before;
 
-/* Does any measure that is asked for look at earlier frames? */
-static bool remembers(void)
-{
-    for (int k = 0; chosen[k]; k++)
-        if (chosen[k]->needs == NEEDS_BEFORE) return true;
-    return false;
-}
-
 static void show(const struct frame *f, const char *where, int64_t k, struct why *why)
 {
     struct snapshot s;
-    struct table t[MOST_MEASURES] = { 0 };
+    struct table t[MOST_MEASURES];
     tool_wants_packing(f, where);
     if (asked.boxed && f->packing.dim == 3 && !isfinite(asked.lo[2]))
         die_usage("--box: '%s' has four numbers, and the bodies are balls", box);
     snapshot_init(&s, &f->packing, f->detected ? &f->contacts : NULL, f->moved, &asked);
     if (k) s.first = &first, s.before = &before;
-    for (int i = 0; chosen[i]; i++)
-        if (measure_run(&t[i], chosen[i], &s, why)) return;
-    if (tsv)
+    if (measured_run(t, chosen, &s, why)) {
+        measured_free(t);
+        return;
+    }
+    if (tsv) {
         show_tsv(s.p, t);
-    else
-        show_json(&s, t);
-    for (int i = 0; chosen[i]; i++) table_free(&t[i]);
+    } else {
+        measured_json(stdout, &s, chosen, t);
+        putchar('\n');
+    }
+    measured_free(t);
     if (fflush(stdout)) finish_stdout(); // a line is seen when its frame is there
     if (fields_to) add_fields(&s, why);
-    if (remembers() && !why->status) {
+    if (measured_remember(chosen) && !why->status) {
         if (!k) kept_set(&first, s.p, why);
         if (!why->status) kept_set(&before, s.p, why);
     }

@@ -1,5 +1,6 @@
 /* nsd-step: makes many steps: detects, solves and moves in a loop. */
 #include "cli/cli.h"
+#include "cli/loop.h"
 #include "cli/options.h"
 #include "cli/processes.h"
 #include "cli/tool_filter.h"
@@ -69,18 +70,21 @@ static const struct cli_option own[] = {
     { CLI_TEXT, 'o', "output", &output, "FILE", "write to FILE [standard output]", .silent = true },
     { 0 },
 };
-static const struct cli_option *const tables[] = { own, options_solve, options_detect, options_run,
-                                                   NULL };
+static const struct cli_option *const tables[] = { own,         options_solve, options_detect,
+                                                   options_run, options_loop,  NULL };
 
-const struct cli_tool tool = { "nsd-step", "[FILE ...]",
-                               "Makes N time steps from the last frame that it reads. To a file: "
-                               "one trajectory, each frame on\n"
-                               "disk as soon as it is made; to a pipe: one document a frame.",
-                               tables,
-                               "  nsd-gen 500 | nsd-step -n 1000 > out.h5\n"
-                               "  nsd-step -n 100 -o more.h5 out.h5\n"
-                               "  nsd-step -n 100 --in-place out.h5\n"
-                               "  nsd-step -n 100 --dt auto:0.01 -o more.h5 out.h5\n" };
+const struct cli_tool tool = {
+    "nsd-step", "[FILE ...]",
+    "Makes N time steps from the last frame that it reads. To a file: "
+    "one trajectory, each frame on\n"
+    "disk as soon as it is made; to a pipe: one document a frame.",
+    tables,
+    "  nsd-gen 500 | nsd-step -n 1000 > out.h5\n"
+    "  nsd-step -n 100 -o more.h5 out.h5\n"
+    "  nsd-step -n 100 --in-place out.h5\n"
+    "  nsd-step -n 100 --dt auto:0.01 -o more.h5 out.h5\n"
+    "  nsd-step -n 20 --with 'jq -c --unbuffered {gravity:[1,0,-9.81]}' a.h5 > leaning.h5\n"
+};
 
 static struct {
     int64_t sweeps, safeguarded, gave_up;
@@ -264,6 +268,9 @@ struct run {
     struct step_memory memory;
     struct neighbours ahead; /* of where bodies would be at the end of a step */
     bool other_bodies;       /* than in the step before */
+    struct acts acts;        /* what a program in the loop has answered */
+    struct why ended; /* why that program has ended the run; status 0: it said so, or has not */
+    bool told_to_stop;
     struct step_opt o;
     double saved;    /* s of real time: when the state was saved last */
     char *save_path; /* where; NULL: nowhere */
@@ -391,7 +398,8 @@ static bool advance(struct run *r, int64_t k, bool saves)
     flow(r);
     const struct packing *p = &f->packing;
     bool last = is_last(p, p->step + 1, k);
-    r->o.bare = !options.log && !saves && !last && !is_kept(p, p->step + 1, k);
+    if (acts_begin(&r->acts, &f->packing, &why)) die_why(&why);
+    r->o.bare = !loop_asks() && !options.log && !saves && !last && !is_kept(p, p->step + 1, k);
     if (processes_step(f, &r->memory, r->other_bodies, &r->o, &why)) die_why(&why);
     f->reported = f->moved = true;
     count(rep);
@@ -407,7 +415,7 @@ static void write_frame(struct run *r)
     if ((r->background ? background_frame(r->background, &r->f, &why)
                        : writer_frame(r->out, &r->f, &why)))
         die_why(&why);
-    r->f.packing.events.n = 0; // they are written
+    r->f.packing.events.n = r->f.packing.outside.length = 0; // they are written
 }
 
 /* Writes the last step that could be made, the k-th, without its contacts, unless it is written. */
@@ -418,6 +426,13 @@ static void keep_last(struct run *r, int64_t k)
     write_frame(r);
 }
 
+/* The program in the loop has ended the run after k steps: the last one is kept, or what there was. */
+static void keep_stopped(struct run *r, int64_t k)
+{
+    if (k ? !is_kept(&r->f.packing, r->f.packing.step, k) : !in_place) write_frame(r);
+    steps = k ? k : 1; // and not written again
+}
+
 static void begin(struct run *r)
 {
     struct why why = { 0 };
@@ -426,6 +441,10 @@ static void begin(struct run *r)
     if (flow_read(&r->flow, &f->packing, &why)) die_why(&why);
     if (!steps) return;
     f->packing.events.n = 0; // they belong to the frame that was read
+    if (f->packing.outside.length && !loop_asks())
+        warn("a program (--with) acted on the run so far, and nothing acts on it now: --with or "
+             "--replay");
+    outside_forget(&f->packing.outside);
     report_free(&f->report);
     f->report.options = options_json(&r->o);
     f->detected = contacts || forces;
@@ -446,6 +465,10 @@ static int64_t run(struct run *r)
     bool ends = !steps;
     while (!ends) {
         if (stopped_by) steps = made + 1; // the next one is the last, and its frame is kept
+        if (loop_asks() && !loop_before_step(&r->f, &r->acts, !made, &r->ended)) {
+            r->told_to_stop = true;
+            break;
+        }
         bool saves = save_due(r);
         if (!(good = advance(r, made + 1, saves))) break;
         const struct packing *p = &r->f.packing;
@@ -455,6 +478,7 @@ static int64_t run(struct run *r)
         if (saves) save_state(r);
     }
     if (ends) steps = made;
+    if (r->told_to_stop) keep_stopped(r, made);
     if (!good) {
         warn("step %lld: the solve diverged, the run ends before it", (long long)r->f.report.step);
         keep_last(r, made);
@@ -462,6 +486,7 @@ static int64_t run(struct run *r)
     if (!steps && !in_place) write_frame(r);
     step_forget(&r->memory);
     neighbours_free(&r->ahead);
+    acts_free(&r->acts);
     flow_free(&r->flow);
     if (background_close(r->background, &why)) die_why(&why);
     return made;
@@ -592,9 +617,12 @@ int tool_main(int argc, char **argv)
     struct why why = { 0 };
     bool file = argc == 1 && strcmp(argv[0], "-") != 0;
     options_check();
+    loop_check();
     keep_memory();
     if (!processes_join()) return processes_follow();
     double asked = read_dt();
+    if (loop_asks() && processes_started())
+        die_usage("--with and --replay: one process alone, without mpirun");
     if (cli_given(&until) && cli_given(&steps)) die_usage("-n and --until exclude each other");
     if (save) parse_save();
     if (in_place && output) die_usage("-i and -o exclude each other");
@@ -618,22 +646,26 @@ int tool_main(int argc, char **argv)
     save_begin(&r, in_place ? argv[0] : output);
     if (r.save_path && reader_reads(argc, argv, r.save_path))
         die_usage("--save: %s is also the input", r.save_path);
+    if (loop_asks()) loop_open();
     take_signals();
     const int64_t wanted = steps;
     int64_t made = run(&r);
     if (writer_close(r.out, &why)) die_why(&why);
     save_end(&r);
     options_log_close();
+    loop_close();
     const char *told = processes_leave();
     summary(made);
     if (told) warn("%s", told);
     say_worst();
     reader_close(in);
+    if (r.ended.status) die_why(&r.ended);
+    if (r.told_to_stop) warn("told to stop after step %lld", (long long)r.f.packing.step);
     bool stopped = stopped_by && made < wanted && !is_then(&r.f.packing, r.f.packing.step);
     if (stopped)
         warn("stopped by signal %d after step %lld, which is kept", (int)stopped_by,
              (long long)r.f.packing.step);
     frame_free(&r.f);
     if (stopped) return 128 + stopped_by;
-    return made < steps || (options.strict && account_fails(&total.account));
+    return (made < steps && !r.told_to_stop) || (options.strict && account_fails(&total.account));
 }

@@ -2,9 +2,12 @@
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): F_OFD_SETLK
 #include "base/output.h"
 
+#include "base/guest.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +22,9 @@ enum {
 static const off_t LOCKED = (off_t)1 << 62; /* the byte that a writer locks */
 
 static struct output *list;
-static pid_t owner; /* of the list: not a child, which inherits it */
+static pthread_mutex_t list_lock =
+    PTHREAD_MUTEX_INITIALIZER; /* of the list, where there are several threads */
+static pid_t owner;            /* of the list: not a child, which inherits it */
 
 /* ---- what is left over ---- */
 
@@ -51,7 +56,8 @@ static void on_signal(int number)
 static void enlist(struct output *o)
 {
     static const int signals[] = { SIGINT, SIGTERM, SIGHUP };
-    if (!owner) {
+    pthread_mutex_lock(&list_lock);
+    if (!owner && !guest_is()) {
         atexit(remove_all);
         for (int k = 0; k < 3;
              k++) // those that the tool has not taken for itself, and that are not ignored
@@ -62,16 +68,19 @@ static void enlist(struct output *o)
     }
     owner = getpid();
     o->listed = true, o->next = list, list = o;
+    pthread_mutex_unlock(&list_lock);
 }
 
 static void unlist(struct output *o)
 {
+    pthread_mutex_lock(&list_lock);
     for (struct output **k = &list; o->listed && *k; k = &(*k)->next)
         if (*k == o) {
             *k = o->next;
             break;
         }
     o->listed = false;
+    pthread_mutex_unlock(&list_lock);
 }
 
 /* ---- one writer ---- */
@@ -189,7 +198,9 @@ static int open_new(struct output *o, const char *path, struct why *why)
         o->target = NULL;
         bool regular = there && S_ISREG(st.st_mode);
         o->fd = open(path, (regular ? O_RDWR | O_TRUNC : O_WRONLY) | O_CLOEXEC);
-        return o->fd < 0 ? failed(o, why, errno) : 0;
+        if (o->fd < 0) return failed(o, why, errno);
+        o->nameless = output_removed(o->fd);
+        return 0;
     }
     if (there) o->old = open(o->target, O_RDWR | O_CLOEXEC);
     if (there && o->old < 0) return failed(o, why, errno);
@@ -247,7 +258,7 @@ static bool closes(int fd)
 
 int output_close(struct output *o, struct why *why)
 {
-    if (output_removed(o->fd))
+    if (!o->nameless && output_removed(o->fd))
         why_set(why, EX_IOERR, "%s: another program has removed it", o->name);
     else if (!why->status && !closes(o->fd))
         failed(o, why, errno);

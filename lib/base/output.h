@@ -2,7 +2,8 @@
  * base/output.h: an output file. What a tool writes goes into a new file beside its target, hidden, which
  * takes the target's place in one stroke when there is something whole in it. Until then nothing of the
  * user's is touched; a tool that fails, or is stopped by a signal, removes the new file and leaves the
- * target as it was. What is no regular file (a pipe, a device, /dev/stdout) is written where it is.
+ * target as it was; in the program of somebody else [base/guest.h] a signal leaves the new file, which the next writer
+ * uses. What is no regular file (a pipe, a device, /dev/stdout) is written where it is.
  *
  * An output has one writer: both files are locked, and a second writer is refused.
  */
@@ -22,6 +23,7 @@ struct output {
     char *at;     /* where it is: beside the target, then there */
     int old;      /* the file whose place it takes, open and locked; -1: there is none */
     bool placed, listed, borrowed;
+    bool nameless;       /* it had no name when it was opened: a file in memory */
     struct output *next; /* of those that are to be removed should the tool end now */
 };
 

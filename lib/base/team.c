@@ -40,7 +40,6 @@ struct gate {
     }
 
 static struct {
-    int size;                   /* threads of works that are not told how many; 0: 1 */
     int workers;                /* threads that there are besides the caller's */
     bool no_more;               /* more cannot be had */
     int64_t born[THREADS_MOST]; /* works that had begun before worker k was there */
@@ -53,6 +52,11 @@ static struct {
     struct gate met;          /* meetings */
     _Atomic int here;         /* threads that have come to the next */
 } team = { .begun = GATE, .ended = GATE, .met = GATE };
+
+/* The process has one team. Of two threads that call for it, the one that comes second works alone. */
+static atomic_flag busy = ATOMIC_FLAG_INIT;
+static _Thread_local int size;     /* threads of works that are not told how many; 0: 1 */
+static _Thread_local int together; /* threads of the work in which this one takes part */
 
 /* Whether a team is worth it: of works that were watched */
 static struct {
@@ -72,12 +76,12 @@ static int64_t clock_now(clockid_t clock)
 
 void team_set_size(int threads)
 {
-    team.size = threads;
+    size = threads;
 }
 
 int team_size(void)
 {
-    return team.size > 1 ? team.size : 1;
+    return size > 1 ? size : 1;
 }
 
 int team_cores(void)
@@ -141,7 +145,7 @@ void team_await(const _Atomic int64_t *count, int64_t n)
 
 void team_meet(void)
 {
-    if (team.threads < 2) return;
+    if (together < 2) return;
     int64_t next = atomic_load(&team.met.count) + 1;
     if (atomic_fetch_add(&team.here, 1) + 1 < team.threads) {
         gate_wait(&team.met, next);
@@ -160,7 +164,9 @@ void team_meet(void)
 static void do_work(int me)
 {
     int64_t before = team.watched ? clock_now(CLOCK_THREAD_CPUTIME_ID) : 0;
+    together = team.threads;
     team.work(team.arg, me, team.threads);
+    together = 0;
     if (team.watched) atomic_fetch_add(&team.cpu, clock_now(CLOCK_THREAD_CPUTIME_ID) - before);
 }
 
@@ -175,9 +181,26 @@ static void *worker(void *arg)
     return NULL;
 }
 
+/* In the new process of a program that forks there is no worker. */
+static void forget_workers(void)
+{
+    const struct gate gate = GATE;
+    team.workers = 0, team.no_more = false, team.threads = 0;
+    team.begun = team.ended = team.met = gate;
+    atomic_store(&team.here, 0);
+    atomic_flag_clear(&busy);
+}
+
+static void watch_forks(void)
+{
+    pthread_atfork(NULL, NULL, forget_workers);
+}
+
 /* The number of threads that there are: `threads` if they can be had */
 static int gather(int threads)
 {
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, watch_forks);
     if (threads > THREADS_MOST) threads = THREADS_MOST;
     while (!team.no_more && team.workers + 1 < threads) {
         pthread_t t;
@@ -215,8 +238,10 @@ static void judge(int64_t now, int64_t wall)
 void team_do(int threads, team_work *work, void *arg)
 {
     int64_t since = threads > 1 ? clock_now(CLOCK_MONOTONIC) : 0;
-    if (threads > 1) threads = since < judgement.alone_until ? 1 : gather(threads);
+    bool mine = threads > 1 && !atomic_flag_test_and_set(&busy);
+    threads = mine && since >= judgement.alone_until ? gather(threads) : 1;
     if (threads < 2) {
+        if (mine) atomic_flag_clear(&busy);
         work(arg, 0, 1);
         return;
     }
@@ -228,6 +253,7 @@ void team_do(int threads, team_work *work, void *arg)
     team.threads = 0;
     now = clock_now(CLOCK_MONOTONIC);
     judge(now, now - since);
+    atomic_flag_clear(&busy);
 }
 
 /* ---- loops ---- */

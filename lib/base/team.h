@@ -1,7 +1,8 @@
 /*
  * base/team.h: threads that share the work of a process. Results never depend on their number, so that a team
  * may have fewer threads than asked: where none can be had or, for a while, where one waits long for another,
- * because other programs want the processor's cores.
+ * because other programs want the processor's cores. A process has one team: a thread that finds it working works
+ * alone.
  *
  * Who waits spins at first, for some tens of microseconds; then it spins on but offers its core to others all the
  * time, for half a millisecond, since between two works of a step less time passes, and to wake a thread of a
@@ -34,7 +35,8 @@ void team_share(int threads, int64_t n, int64_t least, team_part *some, void *ar
 typedef double team_look(void *arg, int64_t first, int64_t end);
 double team_most(int threads, int64_t n, int64_t least, team_look *some, void *arg);
 
-/* Threads for whatever is not told how many it may have: 1, unless the tool says otherwise; and how many */
+/* Threads for whatever the calling thread does and is not told how many it may have: 1, unless the caller says otherwise;
+   and how many */
 void team_set_size(int threads);
 int team_size(void);
 

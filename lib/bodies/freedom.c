@@ -94,7 +94,7 @@ double freedoms_speed(const struct packing *p)
 
 double freedoms_calm(const struct packing *p)
 {
-    return 2 * (p->dt * v3_norm(p->g) + fastest(p, false));
+    return 2 * (packing_most_fall(p) + fastest(p, false));
 }
 
 void freedoms_free(struct freedoms *list)

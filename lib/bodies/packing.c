@@ -98,6 +98,7 @@ void packing_free(struct packing *p)
     events_free(&p->events);
     bonds_free(&p->bonds);
     memory_free(&p->memory);
+    outside_free(&p->outside);
     cell_free(&p->cell);
     kinds_free(p);
     memset(p, 0, sizeof *p);
@@ -182,6 +183,7 @@ int packing_resize(struct packing *p, int64_t n, struct why *why)
         column_set_array(c, p, more);
     }
     int64_t had = p->n;
+    if (outside_resize(&p->outside, had, n, why)) return why->status;
     p->n = n;
     set_default(p, had);
     return 0;
@@ -234,6 +236,7 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     if (p->law) memcpy(to->law, p->law, k2 * sizeof *p->law);
     if (bonds_copy(&to->bonds, &p->bonds, why) || memory_copy(&to->memory, &p->memory, why))
         goto fail;
+    if (outside_copy(&to->outside, &p->outside, p->n, p->walls, why)) goto fail;
     for (int32_t i = 0; i < p->kinds; i++) {
         free(to->kind_name[i]);
         if (!(to->kind_name[i] = strdup(p->kind_name[i]))) goto fail;
@@ -441,6 +444,7 @@ int packing_check(const struct packing *p, struct why *why)
     if (!(p->theta >= 0 && p->theta <= 1))
         return why_set(why, EX_DATAERR, "theta must lie in [0, 1]");
     if (!v3_finite(p->g)) return why_set(why, EX_DATAERR, "gravity is not finite");
+    if (outside_check(&p->outside, p->dim, p->n, p->walls, why)) return why->status;
     if (p->dim == 2 && p->g.z != 0)
         return why_set(why, EX_DATAERR, "gravity leaves the plane, and dim is 2");
     for (int32_t i = 0; i < p->kinds * p->kinds; i++) {

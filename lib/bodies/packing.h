@@ -14,6 +14,7 @@
 #include "bodies/contact.h"
 #include "bodies/law.h"
 #include "bodies/memory.h"
+#include "bodies/outside.h"
 #include "bodies/overlap.h"
 #include "bodies/pair_columns.h"
 #include "bodies/passage.h"
@@ -60,7 +61,8 @@ struct packing {
     struct law *law;    /* [kinds * kinds], symmetric: what is beyond these; NULL: nothing */
     struct bonds bonds; /* what lasts of pairs by these laws */
 
-    struct memory memory; /* the reactions that the next step starts from */
+    struct memory memory;   /* the reactions that the next step starts from */
+    struct outside outside; /* what acts from outside in the step to come */
 
     /* Grains come and go [scene/flow.h] where there are pours or removals. */
     int32_t pours, removals;
@@ -220,6 +222,18 @@ static inline double step_after(const struct packing *p)
 {
     return p->theta * p->dt;
 }
+/* m/s: what gravity and forces from outside make of the velocity of body i, whose mass is above 0, in a step */
+static inline vec3 packing_fall(const struct packing *p, int64_t i)
+{
+    vec3 dv = v3_scale(p->dt, p->g);
+    return p->outside.force ? v3_axpy(dv, p->dt / p->mass[i], p->outside.force[i]) : dv;
+}
+/* m/s: no body gains more by them */
+static inline double packing_most_fall(const struct packing *p)
+{
+    return p->dt * v3_norm(p->g) + p->dt * p->outside.most;
+}
+
 /* m: the position at which contacts are detected, q + (1 - theta) dt qdot [globalmapapp1]. */
 static inline vec3 packing_predict(const struct packing *p, int64_t i)
 {

@@ -77,6 +77,7 @@ vec3 wall_spin(const struct packing *p, const struct wall *w)
 double wall_force(const struct packing *p, const struct wall *w)
 {
     double force = w->load.force;
+    if (p->outside.push) force += p->outside.push[w - p->wall];
     for (int32_t k = w->first_push; k < w->first_push + w->pushes; k++)
         force += drive_way(&p->pushes, &p->pushes.drive[k], p->t + p->dt / 2);
     return force;

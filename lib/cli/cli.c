@@ -3,11 +3,9 @@
 #include "base/output.h"
 #include "io/reader.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <getopt.h>
 #include <jansson.h>
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdio_ext.h>
@@ -144,14 +142,11 @@ bool cli_given(const void *to)
     return false;
 }
 
-/* The words of a choice, "a|b|c", for --help and for messages. */
+/* The words of a choice, "a|b|c", for --help. */
 static const char *words(const struct cli_option *o)
 {
     static char text[200];
-    size_t n = 0;
-    text[0] = 0;
-    for (int k = 0; o->choice(k).name && n < sizeof text; k++)
-        n += (size_t)snprintf(text + n, sizeof text - n, "%s%s", k ? "|" : "", o->choice(k).name);
+    option_words(o, text, sizeof text);
     return text;
 }
 
@@ -187,73 +182,24 @@ static void help(void)
     exit(0);
 }
 
-/* The index of a word among the choices; -1 where there is none. */
-static int index_of(const struct cli_option *o, const char *word)
-{
-    for (int k = 0; o->choice(k).name; k++)
-        if (!strcmp(o->choice(k).name, word)) return k;
-    return -1;
-}
-
-static void set_number(const struct cli_option *o, const char *text)
-{
-    char *end;
-    errno = 0;
-    double x = strtod(text, &end);
-    if (end == text || *end || !isfinite(x) || isspace((unsigned char)*text))
-        die_usage("--%s: '%s' is not a number", o->name, text);
-    bool open = o->kind == CLI_ABOVE || o->kind == CLI_BETWEEN;
-    if (open ? !(x > o->min) : !(x >= o->min))
-        die_usage("--%s: %s must be %s %g", o->name, text, open ? "above" : "at least", o->min);
-    if (o->kind == CLI_BETWEEN ? !(x < o->max) : x > o->max)
-        die_usage("--%s: %s must be %s %g", o->name, text,
-                  o->kind == CLI_BETWEEN ? "below" : "at most", o->max);
-    if (o->kind != CLI_INT) {
-        *(double *)o->to = x;
-        return;
-    }
-    if (x != floor(x)) die_usage("--%s: '%s' is not a whole number", o->name, text);
-    *(int64_t *)o->to = (int64_t)x;
-}
-
-static json_t *set_every(const struct cli_option *o, const char *text)
-{
-    struct cli_every *e = o->to;
-    char *end;
-    double x = strtod(text, &end);
-    bool seconds = !strcmp(end, "s");
-    if (end == text || (*end && !seconds) || !isfinite(x) || isspace((unsigned char)*text))
-        die_usage("--%s: '%s' is neither a number of steps nor, as 0.01s, of seconds", o->name,
-                  text);
-    if (seconds ? !(x > 0) : !(x >= 1 && x <= o->max && x == floor(x)))
-        die_usage("--%s: %s must be %s", o->name, text,
-                  seconds ? "above 0" : "a whole number, at least 1");
-    *e = (struct cli_every){ seconds ? 0 : (int64_t)x, seconds ? x : 0 };
-    return seconds ? json_string(text) : json_integer(e->steps);
-}
-
 /* Sets the option and returns its value for the history. */
 static json_t *set(const struct cli_option *o, const char *text)
 {
+    struct why why = { 0 };
+    if (option_set(o, o->to, text, &why)) die_usage("%s", why.text);
+    const struct cli_every *e = o->to;
     switch (o->kind) {
     case CLI_FLAG:
     case CLI_UNFLAG:
-        *(bool *)o->to = o->kind == CLI_FLAG;
         return json_true();
     case CLI_TEXT:
-        *(const char **)o->to = text;
-        return json_string(text);
     case CLI_CHOICE:
-        *(int *)o->to = index_of(o, text);
-        if (*(int *)o->to < 0) die_usage("--%s: '%s' is none of %s", o->name, text, words(o));
         return json_string(text);
     case CLI_EVERY:
-        return set_every(o, text);
+        return e->steps ? json_integer(e->steps) : json_string(text);
     case CLI_INT:
-        set_number(o, text);
         return json_integer(*(int64_t *)o->to);
     default:
-        set_number(o, text);
         return json_real(*(double *)o->to);
     }
 }
@@ -289,7 +235,7 @@ int cli_parse(int argc, char **argv)
     while ((c = getopt_long(argc, argv, letters, lng, NULL)) != -1) {
         if (c == HELP) help();
         if (c == UNPACK) {
-            set_number(&unpack, optarg);
+            set(&unpack, optarg);
             reader_unpack(1e9 * gigabytes);
             continue;
         }

@@ -7,47 +7,7 @@
 #ifndef NSD_CLI_H
 #define NSD_CLI_H
 
-#include "base/why.h"
-
-#include <stdbool.h>
-#include <stdint.h>
-
-enum cli_kind {
-    CLI_END,
-    CLI_FLAG,    /* bool, set */
-    CLI_UNFLAG,  /* bool, cleared */
-    CLI_INT,     /* int64_t in [min, max] */
-    CLI_REAL,    /* double in [min, max] */
-    CLI_ABOVE,   /* double in (min, max] */
-    CLI_BETWEEN, /* double in (min, max) */
-    CLI_EVERY,   /* struct cli_every: "10" steps or "0.01s" */
-    CLI_CHOICE,  /* int: the index of the word among its choices */
-    CLI_TEXT     /* const char * */
-};
-
-/* How often: every so many steps or, where that is 0, seconds of simulated time */
-struct cli_every {
-    int64_t steps;
-    double seconds;
-};
-
-/* A word that an option takes, and what it means; help may be NULL. */
-struct cli_choice {
-    const char *name, *help;
-};
-
-struct cli_option {
-    enum cli_kind kind;
-    char letter;      /* -letter, or 0 */
-    const char *name; /* --name */
-    void *to;         /* the variable that it sets */
-    const char *arg;  /* EPS, FILE ...; NULL for flags and choices */
-    const char *help; /* one line */
-    double min, max;
-    struct cli_choice (*choice)(int index); /* of a CLI_CHOICE; past the last, a name of NULL */
-    const char *(*usual)(const void *to);   /* its default for --help; NULL: help has it in [] */
-    bool silent; /* leaves the result as it is (-j, --log): not in a document's history */
-};
+#include "base/option.h"
 
 struct cli_tool {
     const char *name, *operands;            /* "nsd-detect", "[FILE ...]" */

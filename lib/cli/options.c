@@ -11,172 +11,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define MOST 1e300 /* of a number without a bound: larger than any that is meant */
-
-/* How Newton goes in a contact: the paper's way, or with its steps halved where they do harm. */
-enum newton_steps { NEWTON_PLAIN, NEWTON_LINESEARCH, NEWTON_COUNT };
-static const char *const newton_name[NEWTON_COUNT] = { "plain", "linesearch" };
-
-/* ---- what an option is when it is not given ---- */
-
-struct usual {
-    enum criterion packing, fclib; /* the criterion of packings, and of FCLIB problems */
-    double eps[CRITERION_COUNT];   /* of packings, in each criterion's own units */
-    double fclib_eps;              /* of FCLIB problems, whatever the criterion */
-    int32_t nlgs_sweeps, sweeps;   /* the limit of nlgs, and of every other solver: */
-    int32_t tight_sweeps;          /* this one where eps is below */
-    double tight;
-    enum order nlgs_order, order; /* the sweep's, likewise */
-    double relax;                 /* 0: the solver's own, in its entry of solvers[] */
-    bool warm;                    /* start from the reactions at hand, else from 0 */
-    enum newton_steps newton;
-    double newton_eps; /* of |(r, rho b)| */
-    int newton_max;    /* steps for a contact in a sweep */
-    enum overlap overlap;
-};
-
-/* nsd's own choice. --help shows it from here; nsd-solve(1) and nsd-step(1) repeat it. */
-static const struct usual usual = {
-    .packing = CRITERION_VELOCITY, // it sees every contact, however small its reaction
-    .fclib = CRITERION_NATURAL,
-    .eps[CRITERION_GLOB] = 1e-10,   // a sum of m/s, m/s, N and W: the paper's
-    .eps[CRITERION_SCALED] = 1e-3,  // costs as much as the next, or more
-    .eps[CRITERION_VELOCITY] = 1,   // g dt; while that is cheap a thousandth [solve/solver.c]
-    .eps[CRITERION_NATURAL] = 1e-4, // the loosest with which overlaps do not grow [nsd-methods(7)]
-    .fclib_eps = 1e-10,     // one problem deserves its solution: all that we have take a second
-    .nlgs_sweeps = 5000,    // the paper's
-    .sweeps = 20000,        // which one step in ten thousand does not end with
-    .tight_sweeps = 100000, // twice what the slowest of good steps took
-    .tight = 1e-6,
-    .nlgs_order = ORDER_NATURAL, // the paper's
-    .order = ORDER_COLOUR,       // eight contacts at once, on any number of threads
-    .relax = 0,                  // each solver has measured its own
-    .warm = true,                // of CRITERION_VELOCITY; others start from 0, as the paper
-    .newton = NEWTON_LINESEARCH, // plain steps run in circles at some contacts
-    .newton_eps = 1e-13,         // about a thousand roundings: as if it were exact
-    .newton_max = 100,           // after which the exact solution stands in
-    .overlap = OVERLAP_PROJECT,  // bounds overlap, adds no velocity, costs nothing [nsd-methods(7)]
-};
-
-/* --paper: the protocol of the paper's tables, which does not change with nsd's choice. */
-static const struct usual paper = {
-    .packing = CRITERION_GLOB,
-    .fclib = CRITERION_GLOB,
-    .eps = { 1e-10, 1e-10, 1e-10, 1e-10 },
-    .fclib_eps = 1e-10,
-    .nlgs_sweeps = 5000,
-    .sweeps = 5000,
-    .tight_sweeps = 5000,
-    .nlgs_order = ORDER_NATURAL,
-    .order = ORDER_NATURAL,
-    .relax = 1,
-    .warm = false,
-    .newton = NEWTON_LINESEARCH, // the paper's own Newton is asked for with --newton, --newton-abs
-    .newton_eps = 1e-13,
-    .newton_max = 100,
-    .overlap = OVERLAP_KEEP,
-};
-
-struct options options = { .threads = 1 };
-
-const char *options_usual(const void *to)
-{
-    static char text[100];
-    const struct usual *u = &usual;
-    const size_t room = sizeof text;
-    if (to == &options.eps)
-        snprintf(text, room, "%g; %g for FCLIB", u->eps[u->packing], u->fclib_eps);
-    if (to == &options.newton) return newton_name[u->newton];
-    if (to == &options.warm) return u->warm ? "warm" : "cold";
-    if (to == &options.criterion)
-        snprintf(text, room, u->packing == u->fclib ? "%s" : "%s; %s for FCLIB",
-                 criterion_name[u->packing], criterion_name[u->fclib]);
-    if (to == &options.max_sweeps)
-        snprintf(text, room, "%d nlgs, else %d; %d below %g", u->nlgs_sweeps, u->sweeps,
-                 u->tight_sweeps, u->tight);
-    if (to == &options.order)
-        snprintf(text, room, u->nlgs_order == u->order ? "%s" : "%s for nlgs, else %s",
-                 order_name[u->nlgs_order], order_name[u->order]);
-    if (to == &options.relax)
-        snprintf(text, room, u->relax > 0 ? "%g" : "%g for nlgs, else the solver's",
-                 u->relax > 0 ? u->relax : solver_nlgs.relax);
-    if (to == &options.newton_eps) snprintf(text, room, "%g", u->newton_eps);
-    if (to == &options.newton_max) snprintf(text, room, "%d", u->newton_max);
-    if (to == &options.overlap)
-        snprintf(text, room, "the document's; %s", overlap_name[u->overlap]);
-    return text;
-}
-
-/* ---- the words that options take, from the tables of what there is ---- */
-
-static struct cli_choice method_choice(int k)
-{
-    if (k == 0) return (struct cli_choice){ "auto", "no method of its own: as --global auto" };
-    const struct method *m = methods[k - 1];
-    return m ? (struct cli_choice){ m->name, m->help } : (struct cli_choice){ NULL, NULL };
-}
-
-static struct cli_choice solver_choice(int k)
-{
-    return (struct cli_choice){ solvers[k] ? solvers[k]->name : NULL, NULL };
-}
-
-static struct cli_choice criterion_choice(int k)
-{
-    return (struct cli_choice){ k < CRITERION_COUNT ? criterion_name[k] : NULL, NULL };
-}
-
-static struct cli_choice order_choice(int k)
-{
-    return (struct cli_choice){ k < ORDER_COUNT ? order_name[k] : NULL, NULL };
-}
-
-static struct cli_choice newton_choice(int k)
-{
-    return (struct cli_choice){ k < NEWTON_COUNT ? newton_name[k] : NULL, NULL };
-}
-
-struct cli_choice options_overlap_choice(int k)
-{
-    return (struct cli_choice){ k + 1 < OVERLAP_COUNT ? overlap_name[k + 1] : NULL, NULL };
-}
-
-/* ---- the options ---- */
-
-const struct cli_option options_solve[] = {
-    { CLI_FLAG, 0, "paper", &options.paper,
-      .help = "the paper's protocol instead of what is in brackets; wants -m" },
-    { CLI_CHOICE, 'm', "method", &options.method, .choice = method_choice,
-      .help = "the local method of Gauss-Seidel, which then solves [auto]" },
-    { CLI_CHOICE, 0, "global", &options.global, .choice = solver_choice,
-      .help = "the solver of all contacts together [nlgs with -m, else auto]" },
-    { CLI_REAL, 0, "eps", &options.eps, "EPS", .max = MOST,
-      .help = "stop when the criterion is at most this", .usual = options_usual },
-    { CLI_CHOICE, 0, "criterion", &options.criterion, .choice = criterion_choice,
-      .help = "what is compared with EPS", .usual = options_usual },
-    { CLI_INT, 0, "max-sweeps", &options.max_sweeps, "N", .max = 2e9,
-      .help = "give up after N sweeps", .usual = options_usual },
-    { CLI_ABOVE, 0, "max-seconds", &options.max_seconds, "S", .max = MOST,
-      .help = "give up after S seconds, with the best so far" },
-    { CLI_ABOVE, 0, "alpha", &options.alpha, "A", .max = MOST,
-      .help = "rho = A m_red [1.75 (sbp, sal) or 1 (ebp, eal) over lambda_max]" },
-    { CLI_CHOICE, 0, "newton", &options.newton, .choice = newton_choice,
-      .help = "Newton's steps in ebp and eal; plain is the paper's", .usual = options_usual },
-    { CLI_ABOVE, 0, "newton-eps", &options.newton_eps, "EPS", .max = 1,
-      .help = "stop them when |Z| is at most EPS |(r, rho b)|", .usual = options_usual },
-    { CLI_ABOVE, 0, "newton-abs", &options.newton_abs, "EPS", .max = MOST,
-      .help = "stop them as the paper does, when |Z| is at most EPS, with r in N" },
-    { CLI_INT, 0, "newton-max", &options.newton_max, "N", .min = 1, .max = 1e6,
-      .help = "make at most N of them for a contact in a sweep", .usual = options_usual },
-    { CLI_BETWEEN, 0, "relax", &options.relax, "OMEGA", .max = 2,
-      .help = "relaxation, between 0 and 2", .usual = options_usual },
-    { CLI_CHOICE, 0, "order", &options.order, .choice = order_choice,
-      .help = "of the sweep; natural is the paper's", .usual = options_usual },
-    { CLI_FLAG, 0, "every-sweep", &options.every_sweep,
-      .help = "evaluate the criterion after every sweep [when it may be met]" },
-    { 0 },
-};
-
 const struct cli_option options_run[] = {
     { CLI_INT, 'j', "threads", &options.threads, "N", .min = 1, .max = 1024, .silent = true,
       .help = "threads; they never change a result [1]" },
@@ -187,96 +21,32 @@ const struct cli_option options_run[] = {
     { 0 },
 };
 
-const struct cli_option options_detect[] = {
-    { CLI_REAL, 0, "gap", &options.gap, "G", .max = MOST,
-      .help = "a contact is a pair with a predicted gap of at most G m [0]" },
-    { CLI_REAL, 0, "theta", &options.theta, "T", .max = 1,
-      .help = "predict the position q + (1 - T) dt qdot [the document's; 0.5]" },
-    { CLI_CHOICE, 0, "overlap", &options.overlap, .choice = options_overlap_choice,
-      .help = "against overlap; keep is the paper's", .usual = options_usual },
-    { 0 },
-};
-
-/* A method that is named stands for the paper's Gauss-Seidel with it. */
-static const struct solver *global(void)
+/* The members that were given on the command line */
+static void mark_given(void)
 {
-    if (cli_given(&options.global)) return solvers[options.global];
-    return options.method ? &solver_nlgs : &solver_auto;
+    for (int t = 0; t < 2; t++)
+        for (const struct cli_option *o = t ? options_detect : options_solve; o->kind; o++)
+            if (cli_given(o->to)) options_give(&options, o->to);
+    if (cli_given(&options.warm)) options_give(&options, &options.warm);
 }
-
-/* The option where it is given, else what stands for it */
-#define OPTION(name, otherwise) (cli_given(&options.name) ? options.name : (otherwise))
 
 void options_check(void)
 {
-    char names[100] = "";
-    size_t n = 0;
+    struct why why = { 0 };
     team_set_size((int)options.threads);
-    if (!options.paper || options.method) return;
-    for (int k = 0; methods[k] && n < sizeof names; k++)
-        n += (size_t)snprintf(names + n, sizeof names - n, "%s%s", k ? "|" : "", methods[k]->name);
-    die_usage("--paper: wants a local method, -m %s", names);
+    mark_given();
+    if (options_names(&options, &why)) die_usage("%s", why.text);
 }
 
 struct step_opt options_step(double dt, bool foreign)
 {
-    const struct options *o = &options;
-    const struct usual *u = o->paper ? &paper : &usual;
-    const struct solver *solver = global();
-    bool nlgs = solver == &solver_nlgs;
-    int criterion = OPTION(criterion, (int)(foreign ? u->fclib : u->packing));
-    double eps = OPTION(eps, foreign ? u->fclib_eps : u->eps[criterion]);
-    const enum order order = (enum order)OPTION(order, (int)(nlgs ? u->nlgs_order : u->order));
-    int32_t sweeps = nlgs ? u->nlgs_sweeps : eps < u->tight ? u->tight_sweeps : u->sweeps;
-    return (struct step_opt){
-        .gap = o->gap,
-        .alpha = o->alpha,
-        .order = order,
-        .warm = OPTION(warm, u->warm && criterion == CRITERION_VELOCITY && order != ORDER_BLOCK),
-        .solve = { .global = solver,
-                   .method = o->method ? methods[o->method - 1] : &local_exact,
-                   .local = { .plain = OPTION(newton, (int)u->newton) == NEWTON_PLAIN,
-                              .newton_eps = OPTION(newton_eps, u->newton_eps),
-                              .newton_abs = o->newton_abs * dt, // forces there, impulses here
-                              .newton_max = (int)OPTION(newton_max, u->newton_max) },
-                   .criterion = (enum criterion)criterion,
-                   .eps = eps,
-                   .max_sweeps = (int32_t)OPTION(max_sweeps, sweeps),
-                   .max_seconds = o->max_seconds,
-                   .relax = OPTION(relax, u->relax > 0 ? u->relax : solver->relax),
-                   .threads = (int)o->threads,
-                   .every_sweep = o->every_sweep,
-                   .history = o->history },
-    };
+    mark_given();
+    return options_step_of(&options, dt, foreign);
 }
 
-char *options_json(const struct step_opt *o)
+char *options_json(const struct step_opt *step)
 {
-    const struct solve_opt *n = &o->solve;
-    json_t *j = json_object();
-    json_object_set_new(j, "global", json_string(n->global->name));
-    json_object_set_new(j, "local", json_string(n->method->name));
-    json_object_set_new(j, "eps", json_real(n->eps));
-    json_object_set_new(j, "criterion", json_string(criterion_name[n->criterion]));
-    json_object_set_new(j, "max_sweeps", json_integer(n->max_sweeps));
-    if (n->max_seconds > 0) json_object_set_new(j, "max_seconds", json_real(n->max_seconds));
-    if (o->alpha > 0)
-        json_object_set_new(j, "alpha", json_real(o->alpha));
-    else
-        json_object_set_new(j, "rho_lambda_max", json_real(n->method->rho));
-    json_object_set_new(
-        j, "newton", json_string(newton_name[n->local.plain ? NEWTON_PLAIN : NEWTON_LINESEARCH]));
-    if (n->local.newton_abs > 0)
-        json_object_set_new(j, "newton_abs", json_real(options.newton_abs));
-    else
-        json_object_set_new(j, "newton_eps", json_real(n->local.newton_eps));
-    json_object_set_new(j, "newton_max", json_integer(n->local.newton_max));
-    if (n->relax > 0) json_object_set_new(j, "relax", json_real(n->relax));
-    json_object_set_new(j, "order", json_string(order_name[o->order]));
-    json_object_set_new(j, "warm", json_boolean(o->warm));
-    char *text = json_dumps(j, JSON_COMPACT);
-    json_decref(j);
-    return text;
+    return options_json_of(&options, step);
 }
 
 void options_theta(struct packing *p, bool detected)
@@ -289,11 +59,9 @@ void options_theta(struct packing *p, bool detected)
 
 void options_overlap(struct packing *p, bool detected)
 {
-    enum overlap was = p->overlap, now = was;
-    if (!was && !detected)
-        now = p->shape ? OVERLAP_GAP_PROJECT : usual.overlap; // corners that open
-    if (options.paper) now = paper.overlap;
-    now = OPTION(overlap, (int)now - 1) + 1;
+    enum overlap was = p->overlap;
+    mark_given();
+    enum overlap now = options_overlap_of(&options, p, detected);
     bool others = overlap_sees_gaps(was) != overlap_sees_gaps(now) ||
                   overlap_meets(was) != overlap_meets(now);
     if (detected && others)

@@ -7,32 +7,9 @@
 
 #include "cli/cli.h"
 #include "solve/account.h"
-#include "solve/step.h"
+#include "solve/step_options.h"
 
-/* What was given; cli_given() says which of them were. */
-struct options {
-    bool paper;
-    int method;                                    /* 0: auto; else 1 + the index in methods[] */
-    int global, criterion, order, newton, overlap; /* indices among their choices */
-    double eps, alpha, newton_eps, newton_abs, max_seconds, relax;
-    double gap; /* m */
-    double theta;
-    int64_t max_sweeps, newton_max, threads;
-    bool warm, every_sweep, history, strict;
-    int cut;         /* of several processes, the way that space is cut [ranks/territory.h] */
-    const char *log; /* or NULL */
-};
-
-extern struct options options;
-extern const struct cli_option options_solve[];  /* the solver's own */
-extern const struct cli_option options_run[];    /* -j, --log, -e */
-extern const struct cli_option options_detect[]; /* --gap, --theta, --overlap */
-
-/* The words that --overlap takes */
-struct cli_choice options_overlap_choice(int index);
-
-/* The default of the member of `options` that `to` points to, as --help shows it. */
-const char *options_usual(const void *to);
+extern const struct cli_option options_run[]; /* -j, --log, -e */
 
 /* Ends the tool with EX_USAGE where options contradict each other; to be called first. */
 void options_check(void);

@@ -36,7 +36,7 @@ bool swift_is(const struct packing *p, int64_t i, double most)
 /* m/s: how fast what it meets may be, and what gravity adds */
 static double most_of(const struct packing *p, double speed)
 {
-    return speed + p->dt * v3_norm(p->g);
+    return speed + packing_most_fall(p);
 }
 
 double swift_beside(const struct packing *p, int32_t w)
@@ -55,10 +55,11 @@ struct way {
 
 static struct way way_of(const struct packing *p, int64_t i, vec3 v)
 {
-    vec3 d = v3_scale(p->dt, v3_sub(v3_axpy(p->v[i], p->dt, p->g), v));
-    double length = v3_norm(d);
     struct way y = { .i = i };
-    if (p->mass[i] == 0 || !(length > 0)) return y;
+    if (p->mass[i] == 0) return y;
+    vec3 d = v3_scale(p->dt, v3_sub(v3_add(p->v[i], packing_fall(p, i)), v));
+    double length = v3_norm(d);
+    if (!(length > 0)) return y;
     y.thick = swift_thickness(p, i);
     double n = ceil(length / y.thick);
     if (!(n > 1 && n <= STEPS_MOST)) return y;

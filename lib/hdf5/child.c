@@ -1,9 +1,15 @@
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): close_range
 #include "hdf5/child.h"
 
+#include "base/guest.h"
+#include "hdf5/h5.h"
 #include "hdf5/server.h"
 
 #include <errno.h>
+#include <limits.h>
+#include <pthread.h>
 #include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -19,6 +25,7 @@ struct child {
 };
 
 static struct child *running;
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; /* of that list */
 
 /* Waits for its end; false where that has been seen before. */
 static bool wait_for(const struct child *c, int *status)
@@ -57,10 +64,67 @@ static int no_child(struct why *why, const char *trouble)
     return why_set(why, EX_SOFTWARE, "no process to read with: %s", trouble);
 }
 
+/* What the new process is to do */
+struct start {
+    struct child *child;
+    int line[2];
+    int files;
+    char *const *file;
+    uint64_t limit;
+    pid_t parent;
+    int trouble; /* errno of fork */
+};
+
+/* The files that the program has open, and may have locked, are its own: all but those that are to be read. */
+static void leave_files(const struct start *s)
+{
+    int keep[2] = { s->line[1], -1 };
+    if (s->files) sscanf(s->file[0], "/proc/self/fd/%d", &keep[1]);
+    for (int first = STDERR_FILENO + 1;;) { // up to the next one that is kept
+        int next = INT_MAX;
+        for (int k = 0; k < 2; k++)
+            if (keep[k] >= first && keep[k] < next) next = keep[k];
+        if (next > first)
+            close_range((unsigned)first, next == INT_MAX ? UINT_MAX : (unsigned)next - 1, 0);
+        if (next == INT_MAX) return;
+        first = next + 1;
+    }
+}
+
+/* Called as libhdf5 calls back, so that it does not matter with what */
+static herr_t start(hid_t plist, const char *name, void *data)
+{
+    struct start *s = data;
+    struct child *c = s->child;
+    (void)plist, (void)name;
+    c->pid = fork();
+    s->trouble = errno;
+    if (c->pid) return 1; // enough
+    if (guest_is()) leave_files(s);
+    close(s->line[0]);
+    for (struct child *k = running; k; k = k->next)
+        if (k->line >= 0) close(k->line); // they hang up when the tool does
+    server_run(s->line[1], c->shared, s->files, s->file, s->limit, s->parent);
+}
+
+/*
+ * Another thread of a program may be in libhdf5, which it locks for itself: the lock would stay locked in the new process
+ * for ever. In what libhdf5 calls back the lock is this thread's, here and there.
+ */
+static void start_beside_threads(struct start *s)
+{
+    int from = 0;
+    if (!guest_is() || H5Piterate(H5P_FILE_ACCESS_DEFAULT, &from, start, s) != 1)
+        start(H5P_DEFAULT, "", s);
+}
+
 int child_start(struct child **out, int files, char *const *file, uint64_t limit, struct why *why)
 {
     struct child *c = *out = calloc(1, sizeof *c);
-    int line[2];
+    struct start s = {
+        .child = c, .files = files, .file = file, .limit = limit, .parent = getpid()
+    };
+    int *line = s.line;
     if (!c) return why_set(why, EX_SOFTWARE, "no memory");
     c->line = -1;
     c->shared =
@@ -71,34 +135,28 @@ int child_start(struct child **out, int files, char *const *file, uint64_t limit
     }
     if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, line))
         return no_child(why, strerror(errno));
-    pid_t parent = getpid();
-    c->pid = fork();
-    if (c->pid == 0) {
-        close(line[0]);
-        for (struct child *k = running; k; k = k->next)
-            if (k->line >= 0) close(k->line); // they hang up when the tool does
-        server_run(line[1], c->shared, files, file, limit, parent);
-    }
-    int trouble = errno;
+    pthread_mutex_lock(&lock);
+    start_beside_threads(&s);
     close(line[1]);
-    if (c->pid < 0) {
+    if (c->pid < 0)
         close(line[0]);
-        return c->pid = 0, no_child(why, strerror(trouble));
-    }
-    c->line = line[0];
-    enlist(c);
-    return 0;
+    else
+        c->line = line[0], enlist(c);
+    pthread_mutex_unlock(&lock);
+    return c->pid < 0 ? (c->pid = 0, no_child(why, strerror(s.trouble))) : 0;
 }
 
 void child_close(struct child *c)
 {
     if (!c) return;
     bury(c);
+    pthread_mutex_lock(&lock);
     for (struct child **k = &running; *k; k = &(*k)->next)
         if (*k == c) {
             *k = c->next;
             break;
         }
+    pthread_mutex_unlock(&lock);
     if (c->shared) munmap(c->shared, sizeof *c->shared);
     free(c);
 }

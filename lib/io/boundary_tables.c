@@ -139,11 +139,17 @@ static bool any_loads(const struct packing *p)
     return false;
 }
 
-static bool any_moves(const struct packing *p)
+bool boundary_tables_move(const struct packing *p)
 {
     for (int32_t w = 0; w < p->walls; w++)
         if (v3_norm(p->wall[w].v) > 0 || p->wall[w].load.way) return true;
     return p->drives.n > 0;
+}
+
+/* Or may it, in frames to come? */
+static bool any_may_move(const struct packing *p)
+{
+    return p->outside.steered || boundary_tables_move(p);
 }
 
 /* [walls]; NULL: no memory */
@@ -205,7 +211,8 @@ int boundary_tables_write_static(struct table_write *s, const struct packing *p,
         !write_drives(s, p, why) && !write_mesh(s, p, why) && any_loads(p))
         table_write_columns(s, BOUNDARY "/load", "", layout_loads, p->walls, p->wall,
                             sizeof *p->wall, 0, why);
-    if (!why->status && !any_moves(p) && (m = motions(p, why)))
+    s->at_rest = !any_may_move(p);
+    if (!why->status && s->at_rest && (m = motions(p, why)))
         table_write_columns(s, BOUNDARY, "", layout_boundary_motion, p->walls, m, sizeof *m, 0,
                             why);
     free(m);
@@ -236,7 +243,11 @@ static int write_row(struct table_write *s, const char *group, const struct colu
 
 int boundary_tables_write(struct table_write *s, const struct packing *p, struct why *why)
 {
-    if (!any_moves(p)) return 0;
+    if (!any_may_move(p) || (s->at_rest && !boundary_tables_move(p))) return 0;
+    if (s->at_rest)
+        return why_set(
+            why, EX_DATAERR,
+            "boundaries move, and in the first frame none could: begin another trajectory");
     struct boundary_motion *m = motions(p, why);
     if (m && !write_row(s, BOUNDARY, layout_boundary_motion, p->walls, m, sizeof *m, p, why) &&
         any_loads(p))

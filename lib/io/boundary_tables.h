@@ -11,6 +11,8 @@
 /* Those of frame k, whose time p has */
 int boundary_tables_read(struct source *source, int64_t k, struct packing *p, struct why *why);
 
+/* Does any boundary move? A trajectory whose first frame has none that does, and none that may, takes none later. */
+bool boundary_tables_move(const struct packing *p);
 /* What all frames share */
 int boundary_tables_write_static(struct table_write *tables, const struct packing *p,
                                  struct why *why);

@@ -5,6 +5,7 @@
 #include "io/distributed.h"
 #include "io/flow_tables.h"
 #include "io/law_tables.h"
+#include "io/outside_tables.h"
 #include "io/roster.h"
 #include "io/shape_tables.h"
 
@@ -232,6 +233,7 @@ static int read_settings(struct frame_read *r, int64_t k, int64_t n, struct pack
         law_tables_read(r->source, k, p, why) || read_clock(r, k, p, why) ||
         cell_tables_read(r->source, k, r->repeats, p, why))
         return why->status;
+    if (outside_tables_read(r->source, p, why)) return why->status;
     return alloc_optional(r, p, why);
 }
 

@@ -9,6 +9,7 @@
 #include "io/flow_tables.h"
 #include "io/law_tables.h"
 #include "io/memory_rows.h"
+#include "io/outside_tables.h"
 #include "io/report_rows.h"
 #include "io/roster.h"
 #include "io/shape_tables.h"
@@ -155,7 +156,7 @@ int frame_write_moment(struct table_write *s, const struct frame *f, struct why 
         return why->status;
     if (f->packed &&
         (boundary_tables_write(s, &f->packing, why) || law_tables_write(s, &f->packing, why) ||
-         memory_rows_write(s, &f->packing, why)))
+         memory_rows_write(s, &f->packing, why) || outside_tables_write(s, f, why)))
         return why->status;
     if (f->packed && f->detected && contact_rows_write(s, f, why)) return why->status;
     if (!f->reported || report_rows_write(s, &f->report, why)) return why->status;

@@ -34,6 +34,8 @@ struct table_write {
     int64_t events;           /* rows of /nsd/flow/events so far */
     int64_t bonds;            /* rows of /nsd/bonds so far */
     int64_t memory;           /* rows of /nsd/memory so far */
+    bool at_rest;             /* no boundary could move in the first frame */
+    int64_t forces, words;    /* rows of /nsd/outside/body, bytes of /nsd/outside/answer so far */
 };
 
 /*

@@ -28,12 +28,12 @@ struct unknown {
 /* Groups whose members are looked through, and the names in them that nsd uses */
 static const struct {
     const char *group;
-    const char *known[13];
+    const char *known[14];
 } looked_through[] = {
     { "", { "h5md", "nsd", "particles", "walls", "contacts", "observables", "solution" } },
     { "/nsd",
       { "history", "scene", "material", "solver", "account", "flow", "cell", "shape", "law",
-        "bonds", "memory", "time_step" } },
+        "bonds", "memory", "time_step", "outside" } },
     { "/particles", { "all", "boundary" } },
     { "/particles/boundary",
       { "body", "load", "drive", "push", "mesh", "position", "orientation", "velocity",

@@ -486,7 +486,7 @@ static int trajectory_close(struct writer *s, struct why *why)
     struct stat st; // the reserve that was not needed is given back
     if (fstat(s->disk, &st) || (st.st_size > (off_t)size && ftruncate(s->disk, (off_t)size)))
         return output_failed(s, why, strerror(errno));
-    static unsigned char buffer[1 << 18];
+    unsigned char buffer[1 << 16];
     uint32_t crc = 0;
     off_t at = DOCUMENT_USERBLOCK;
     ssize_t n;
@@ -561,4 +561,15 @@ int writer_close(struct writer *s, struct why *why)
     if (s->output && !e) e = output_close(s->output, why);
     free(s);
     return e;
+}
+
+void writer_drop(struct writer *s)
+{
+    if (!s) return;
+    if (s->doc.file >= 0) table_write_close(&s->doc), H5Fclose(s->doc.file);
+    if (s->disk >= 0) close(s->disk);
+    roster_free(&s->roster);
+    if (s->begun) output_drop(s->begun);
+    if (s->output) output_drop(s->output);
+    free(s);
 }

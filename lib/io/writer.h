@@ -60,4 +60,7 @@ int writer_pass(struct writer *writer, struct reader *from, struct why *why);
 /* Completes the document (lengths, checksum) and reports what the file system had held back. */
 int writer_close(struct writer *writer, struct why *why);
 
+/* Frees a writer that has failed, or NULL: whole frames that have their place stay, as those of a killed writer do. */
+void writer_drop(struct writer *writer);
+
 #endif

@@ -52,6 +52,8 @@ static void add_bodies(struct balance *of_all, const struct packing *p, const st
                                   : 0.5 * p->inertia[i] * (v3_dot(w, w) - v3_dot(p->w[i], p->w[i]));
         b->gravity += p->dt * m * v3_dot(p->g, mean[i].v);
         add_to(b->momentum, m, v);
+        if (p->outside.force) b->loads += p->dt * v3_dot(p->outside.force[i], mean[i].v);
+        if (p->outside.torque) b->loads += p->dt * v3_dot(p->outside.torque[i], mean[i].w);
     }
 }
 

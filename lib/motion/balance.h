@@ -8,7 +8,8 @@
  *     T+ - T- = gravity + loads + drives - dissipation
  *
  *     gravity      dt sum m g . (v+ + v-)/2
- *     loads        dt sum f (s+ + s-)/2, of the freedoms [bodies/freedom.h]
+ *     loads        dt sum f (s+ + s-)/2, of the freedoms [bodies/freedom.h] and of forces from outside
+ *                  [bodies/outside.h]
  *     drives       - sum r . w: w is what the motions that are prescribed (boundaries, fixed
  *                  bodies, the cell) are in the velocity of the contact, their mean over the
  *                  step; and what the flow of the cell does to bodies
@@ -19,7 +20,7 @@
  *     T+ - T- = gravity + loads + drives - dissipation - bond_change - broken
  *
  * Each of the four is a sum of its own, none a difference of the others. Momentum changes by the
- * weight, dt sum m g, and by the impulse of boundaries, fixed bodies and the cell's flow. Where
+ * weight, dt sum m g, by forces from outside and by the impulse of boundaries, fixed bodies and the cell's flow. Where
  * the cell repeats, T- is not T+ of the step before: a body that is replaced by its image has
  * another velocity.
  *

@@ -86,6 +86,10 @@ int impulses_init(struct impulses *sum, const struct packing *p, const struct co
     sum->yield = calloc((size_t)sum->freedoms.n + 1, sizeof *sum->yield);
     if (!sum->force || !sum->moment || !sum->yield)
         return why_set(why, EX_SOFTWARE, "no memory to move the bodies");
+    for (int64_t i = 0; p->outside.force && i < p->n; i++)
+        sum->force[i] = v3_scale(p->dt, p->outside.force[i]);
+    for (int64_t i = 0; p->outside.torque && i < p->n; i++)
+        sum->moment[i] = v3_scale(p->dt, p->outside.torque[i]);
     struct summing y = { sum, p, s, s->n < SOME ? 1 : team_size() };
     team_share(team_size(), y.parts, 1, sum_bodies, &y);
     sum_yields(sum, p, s);

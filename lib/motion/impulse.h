@@ -1,6 +1,6 @@
 /*
  * motion/impulse.h: what the reactions of a step give to the bodies and to the freedoms beyond
- * theirs, P r and J^T r, summed in the contacts' order.
+ * theirs, P r and J^T r, summed in the contacts' order, and forces from outside [bodies/outside.h].
  */
 #ifndef NSD_IMPULSE_H
 #define NSD_IMPULSE_H

@@ -1,6 +1,7 @@
 /* problem/backend.c: the table of backends, and the choice [problem/backend.h]. */
 #include "problem/backend.h"
 
+#include <pthread.h>
 #include <stdlib.h>
 
 extern const struct sweep sweep_2, sweep_4, sweep_8;
@@ -29,9 +30,15 @@ void backend_narrow(int lanes)
         if (!k || (backends[k].lanes <= lanes && has(backends[k].lanes))) chosen = &backends[k];
 }
 
-const struct backend *backend_widest(void)
+static void choose(void)
 {
     const char *most = chosen ? NULL : getenv("NSD_LANES");
     if (!chosen) backend_narrow(most ? atoi(most) : BUNDLE);
+}
+
+const struct backend *backend_widest(void)
+{
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, choose);
     return chosen;
 }

@@ -37,19 +37,28 @@ static void set_some(void *arg, int64_t first, int64_t end)
     }
 }
 
+/* What the torque from outside makes of the angular velocity of body i, or of what stands for it */
+static vec3 torque_gain(const struct problem *p, int64_t i)
+{
+    const struct packing *pack = p->packing;
+    vec3 moment = v3_scale(pack->dt, pack->outside.torque[i]);
+    return p->spin ? top_inverse_root(pack, i, top_predict(pack, i), moment)
+                   : v3_scale(1 / pack->inertia[i], moment);
+}
+
 static void free_some(void *arg, int64_t first, int64_t end)
 {
     struct problem *p = arg;
     const struct packing *pack = p->packing;
-    const vec3 fall = v3_scale(pack->dt, pack->g);
     const struct cell_flow flow = packing_flow(pack);
     for (int64_t i = first; i < end; i++) {
         struct body *b = &p->body[p->seat[i]];
-        vec3 dv = fall;
         if (!(b->im > 0)) continue;
+        vec3 dv = packing_fall(pack, i);
         if (flow.changes) dv = v3_add(dv, cell_flow_gain(&flow, packing_predict(pack, i)));
         b->v[0] = pack->v[i].x + dv.x, b->v[1] = pack->v[i].y + dv.y, b->v[2] = pack->v[i].z + dv.z;
         vec3 w = p->spin ? p->spin[i] : pack->w[i];
+        if (pack->outside.torque) w = v3_add(w, torque_gain(p, i));
         b->w[0] = w.x, b->w[1] = w.y, b->w[2] = w.z;
     }
 }
@@ -157,7 +166,7 @@ static double top_speed(const struct packing *p)
     for (int32_t k = 0; k < p->walls; k++) most = fmax(most, wall_top_speed(p, &p->wall[k]));
     for (int k = 0; k < 3; k++) images += p->cell.repeats[k] ? v3_norm(p->cell.rate[k]) : 0;
     most += images;
-    return most + p->dt * v3_norm(p->g);
+    return most + packing_most_fall(p);
 }
 
 /* What there is among the contacts, in any of them */

@@ -1,5 +1,6 @@
 /* problem/schedule.c: levels, colours, and the groups that they make [problem/schedule.h]. */
 #include "problem/schedule.h"
+#include "base/random.h"
 
 #include "base/team.h"
 #include "problem/bundle.h"
@@ -267,7 +268,7 @@ static void sequence_init(int64_t *sequence, int64_t n, enum order order)
 {
     for (int64_t i = 0; i < n; i++) sequence[i] = order == ORDER_REVERSE ? n - 1 - i : i;
     if (order != ORDER_RANDOM || n < 2) return;
-    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937); // a fixed seed: the same sweep every time
+    gsl_rng *rng = random_alloc(gsl_rng_mt19937); // a fixed seed: the same sweep every time
     gsl_ran_shuffle(rng, sequence, (size_t)n, sizeof *sequence);
     gsl_rng_free(rng);
 }

@@ -1,4 +1,5 @@
 #include "scene/counter.h"
+#include "base/random.h"
 
 struct state {
     uint64_t at; /* key + k g */
@@ -41,7 +42,7 @@ static const gsl_rng_type type = { "counter", 0xffffffff, 0,         sizeof(stru
 
 gsl_rng *counter_alloc(void)
 {
-    return gsl_rng_alloc(&type);
+    return random_alloc(&type);
 }
 
 void counter_start(gsl_rng *rng, uint64_t seed, enum counter_use use, uint64_t a, uint64_t b,

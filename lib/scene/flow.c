@@ -102,6 +102,7 @@ static void follow(struct contacts *s, const int32_t *row)
         s->c[kept] = *c;
         s->c[kept].a = a, s->c[kept].b = b;
         if (s->found) s->found[kept] = s->found[i];
+        if (s->tie) s->tie[kept] = s->tie[i];
         for (int k = 0; k < 3 && s->moment; k++) s->moment[kept][k] = s->moment[i][k];
         kept++;
     }
@@ -120,6 +121,17 @@ static void follow_bonds(struct bonds *s, const int32_t *row)
         if (there) s->bond[kept++] = x;
     }
     s->n = kept;
+}
+
+int flow_drop(struct packing *p, struct contacts *last, const int32_t *row, struct why *why)
+{
+    int64_t kept = 0;
+    for (int64_t i = 0; i < p->n; i++)
+        if (row[i] >= 0) packing_copy_body(p, kept++, p, i);
+    follow_bonds(&p->bonds, row);
+    memory_follow(&p->memory, row);
+    if (last) follow(last, row);
+    return packing_resize(p, kept, why);
 }
 
 /* ---- pours ---- */

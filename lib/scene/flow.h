@@ -36,4 +36,8 @@ void flow_free(struct flow *flow);
 int flow_step(const struct flow *flow, struct packing *p, struct contacts *last, bool *changed,
               struct why *why);
 
+/* Bodies are taken away by another program: row[i] is where body i goes, in the same order; < 0: it is gone. Returns 0 or
+   EX_SOFTWARE. */
+int flow_drop(struct packing *p, struct contacts *last, const int32_t *row, struct why *why);
+
 #endif

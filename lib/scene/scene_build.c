@@ -1,5 +1,6 @@
 /* scene/scene_build.c: groups of bodies, the check for overlaps: a packing from a scene. */
 #include "scene/scene_build.h"
+#include "base/random.h"
 
 #include "bodies/wrap.h"
 #include "detect/detect.h"
@@ -444,7 +445,7 @@ static int build_packing(struct packing *p, const struct scene *s, const struct 
         n += is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count;
     if (n > INT32_MAX) return why_set(why, EX_DATAERR, "more than %d bodies", INT32_MAX);
     if (packing_init(p, s->dim, n, why)) return why->status;
-    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    gsl_rng *rng = random_alloc(gsl_rng_mt19937);
     if (!rng) why_set(why, EX_SOFTWARE, "no memory for random numbers");
     if (rng) gsl_rng_set(rng, s->seed);
     if (rng && !set_parameters(p, s, why)) inherit_clock(p, s);

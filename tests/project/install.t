@@ -20,18 +20,39 @@ ok "every tool is there, with its manual and its completion" installed
 
 # ---- a program with the library ----
 
-build_step()
+config() { PKG_CONFIG_PATH=$root/lib/pkgconfig pkg-config "$@" nsd; }
+build_step() # [--static]
 {
     # shellcheck disable=SC2046 # words
-    cc -o "$tmp/step" docs/step.c $(PKG_CONFIG_PATH=$root/lib/pkgconfig pkg-config --cflags --libs nsd)
+    cc -Wall -Wextra -Werror -o "$tmp/step" docs/step.c $(config --cflags --libs "$@" | if [ $# = 0 ]; then cat; else sed "s|-lnsd|$root/lib/libnsd.a|"; fi)
 }
-ok "a program is built by pkg-config" build_step
-is "and makes the steps that nsd-step makes" "$("$tmp/step")" \
-    "$(nsd-gen 100 | nsd-step --overlap keep -n 200 --every 200 --contacts --warm -m exact --order natural --criterion natural --eps 1e-6 \
+scene=scenes/paper/example3.json
+want=$(nsd-gen $scene | nsd-step --overlap keep -n 200 --every 200 --contacts --warm -m exact --order natural --criterion natural --eps 1e-6 \
         --max-sweeps 10000 2>/dev/null >"$tmp/step.h5"
-    nsd-info --last -p "$tmp/step.h5" | head -n 1 | jq -r .x[2] >"$tmp/z"
+    nsd-info --last -p "$tmp/step.h5" | head -n 1 | jq -r ".x[2]" >"$tmp/z"
     nsd-info --last "$tmp/step.h5" | jq -r '[.step, .time, .contacts] | @tsv' | tr '\t' ' ' |
-        awk -v z="$(<"$tmp/z")" '{ printf "%d %.17g %d %.17g", $1, $2, $3, z }')"
+        awk -v z="$(<"$tmp/z")" '{ printf "%d %.17g %d %.17g", $1, $2, $3, z }')
+ok "a program that includes <err.h> is built by pkg-config" build_step
+is "and makes the steps that nsd-step makes" "$(LD_LIBRARY_PATH=$root/lib "$tmp/step" $scene)" "$want"
+ok "and with the archive" build_step --static
+is "with the same steps" "$("$tmp/step" $scene)" "$want"
+cat >"$tmp/plus.cc" <<'EOT'
+#include <nsd.h>
+int main() { nsd_run *run = nullptr; return nsd_from_scene(&run, "{\"dt\": 1e-3}", nullptr) || nsd_step(run, 1); }
+EOT
+plus()
+{
+    # shellcheck disable=SC2046 # words
+    c++ -Wall -Wextra -Werror -o "$tmp/plus" "$tmp/plus.cc" $(config --cflags --libs) && LD_LIBRARY_PATH=$root/lib "$tmp/plus"
+}
+ok "and in C++" plus
+python() { PYTHONPATH=$root/lib/python3/dist-packages /usr/bin/python3 -c "$1"; }
+if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
+    is "and in Python" "$(python "import nsd; r = nsd.Run.from_scene('$scene'); r.set(method='exact', criterion='natural', eps=1e-6, \
+max_sweeps=10000, order='natural', warm=True, overlap='keep'); r.step(200); print('%.17g' % r.position[0, 2])")" "${want##* }"
+else
+    skip "in Python" "no numpy"
+fi
 is "its version" "$(PKG_CONFIG_PATH=$root/lib/pkgconfig pkg-config --modversion nsd)" "$(nsd-gen --version | sed 's/.* //')"
 
 # ---- completion ----
@@ -85,7 +106,7 @@ fi
 refuses 64 "a shell that is not known" nsd-step --completion tcsh
 
 make -s PREFIX="$root" uninstall >/dev/null
-is "make uninstall leaves no file" "$(find "$root" -type f)" ""
+is "make uninstall leaves no file" "$(find "$root" -type f -o -type l)" ""
 
 # ---- Debian ----
 
@@ -94,29 +115,34 @@ if command -v dh >/dev/null && command -v dpkg-buildpackage >/dev/null; then
     version=$(sed -n 's/^VERSION := //p' Makefile)
     arch=$(dpkg --print-architecture)
     tools_deb=build/deb/nsd-tools_${version}_$arch.deb dev_deb=build/deb/libnsd-dev_${version}_$arch.deb
+    lib_deb=build/deb/libnsd1_${version}_$arch.deb python_deb=build/deb/python3-nsd_${version}_all.deb
     if command -v lintian >/dev/null; then
-        is "lintian says nothing" "$(lintian --allow-root --fail-on error "$tools_deb" "$dev_deb" 2>&1)" ""
+        is "lintian says nothing" "$(lintian --allow-root --fail-on error "$tools_deb" "$dev_deb" "$lib_deb" "$python_deb" 2>&1)" ""
     else
         skip "lintian says nothing" "no lintian"
     fi
     unpacked()
     {
         dpkg-deb -x "$tools_deb" "$tmp/deb" && dpkg-deb -x "$dev_deb" "$tmp/deb" &&
+            dpkg-deb -x "$lib_deb" "$tmp/deb" && dpkg-deb -x "$python_deb" "$tmp/deb" &&
             (PATH=$tmp/deb/usr/bin:$PATH && nsd-gen 4 | nsd-step -n 5 2>/dev/null | nsd-info --last | jq -e '.step == 5') &&
-            [ -s "$tmp/deb/usr/share/doc/nsd-tools/copyright" ] && [ -s "$tmp/deb/usr/lib/$(gcc -print-multiarch)/libnsd.a" ]
+            [ -s "$tmp/deb/usr/share/doc/nsd-tools/copyright" ] && [ -s "$tmp/deb/usr/lib/$(gcc -print-multiarch)/libnsd.a" ] &&
+            NSD_LIBRARY=$tmp/deb/usr/lib/$(gcc -print-multiarch)/libnsd.so.1 PYTHONPATH=$tmp/deb/usr/lib/python3/dist-packages \
+                /usr/bin/python3 -c "import nsd; nsd.Run.from_scene('scenes/press.json').step()"
     }
     ok "unpacked, the tools run" unpacked
     if [ "$(id -u)" = 0 ] && ! dpkg -s nsd-tools >/dev/null 2>&1 && [ -w /usr/bin ]; then
-        ok "installed" dpkg -i "$tools_deb" "$dev_deb"
+        ok "installed" dpkg -i "$tools_deb" "$lib_deb" "$dev_deb" "$python_deb"
         used()
         {
             # shellcheck disable=SC2046 # words
             /usr/bin/nsd-gen 4 | /usr/bin/nsd-step -n 5 2>/dev/null | /usr/bin/nsd-info --last | jq -e '.step == 5' &&
-                cc -o "$tmp/step" docs/step.c $(pkg-config --cflags --libs nsd) && "$tmp/step"
+                cc -o "$tmp/step" docs/step.c $(pkg-config --cflags --libs nsd) && "$tmp/step" $scene &&
+                /usr/bin/python3 -c "import nsd; nsd.Run.from_scene('scenes/press.json').step()"
         }
         ok "used" used
-        ok "removed" dpkg -P nsd-tools libnsd-dev
-        is "and nothing is left" "$(ls /usr/bin/nsd-gen /usr/include/nsd /usr/share/nsd 2>/dev/null)" ""
+        ok "removed" dpkg -P python3-nsd nsd-tools libnsd-dev libnsd1
+        is "and nothing is left" "$(ls /usr/bin/nsd-gen /usr/include/nsd.h /usr/share/nsd 2>/dev/null)" ""
     else
         skip "installed, used, removed" "not root, or it is installed"
     fi

@@ -210,7 +210,7 @@ enum { SCENES = sizeof scene_text / sizeof *scene_text };
 
 static int now; /* which of them a run is about */
 
-static int build(struct packing *p, int k, struct why *why)
+__attribute__((unused)) static int build(struct packing *p, int k, struct why *why)
 {
     struct scene s;
     if (scene_parse(&s, scene_text[k], strlen(scene_text[k]), NULL, why)) return why->status;

@@ -133,6 +133,8 @@ claim()
     *'nsd-step'*'nsd-cat --last > packing.h5') touching packing.h5 && frames packing.h5 'length == 1' ;;
     *'nsd-step'*'| nsd-detect > contacts.h5') touching contacts.h5 && frames contacts.h5 "length == 1 and .[0] == $2" ;;
     *'nsd-step'*'> out.h5') touching out.h5 && converged out.h5 && frames out.h5 "length == $2" ;;
+    *'--with '*'> lifted.h5') frames lifted.h5 "length == $2" && nsd-info --last -p lifted.h5 | jq -s -e '.[0].v[2] > 0 and .[1].v[2] < 0' ;;
+    'nsd-step'*'--with '*'> leaning.h5') frames leaning.h5 "length == $2" && h5ls leaning.h5/nsd/outside/answer/text ;;
     # contacts
     'nsd-cat --last out.h5 | nsd-detect > contacts.h5') touching contacts.h5 && frames contacts.h5 '. == [1000]' ;;
     'nsd-cat --steps 700 out.h5 | nsd-detect > contacts.h5') touching contacts.h5 && frames contacts.h5 '. == [700]' ;;
@@ -255,7 +257,7 @@ example() # SOURCE COMMAND SHOWN: in $tmp/run
     case $command in
     'make '*) make -C "$repository" --no-print-directory -n ${command#make } >stdout 2>stderr || s=$? ;;
     '{ "'*) nsd-gen - <<<"$command" >stdout 2>stderr || s=$? ;;
-    *import*nsd*) PYTHONPATH=$repository/scripts /usr/bin/python3 -c "$command" >stdout 2>stderr || s=$? ;;
+    *import*nsd*) PYTHONPATH=$repository/python /usr/bin/python3 -c "$command" >stdout 2>stderr || s=$? ;;
     import*sys.stdin*) cat a.h5 packing.h5 | /usr/bin/python3 -c "$command" >stdout 2>stderr || s=$? ;;
     import*) /usr/bin/python3 -c "$command" >stdout 2>stderr || s=$? ;;
     *) GNUTERM=dumb bash -o pipefail -c "$command" >stdout 2>stderr || s=$? ;;

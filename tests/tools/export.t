@@ -145,7 +145,7 @@ fi
 sed -n '/^```python/,/^```/p' README.md | grep -v '^```' >"$tmp/plot.py"
 plots()
 {
-    (cd "$tmp" && PYTHONPATH=$OLDPWD/scripts MPLBACKEND=Agg /usr/bin/python3 plot.py) &&
+    (cd "$tmp" && PYTHONPATH=$OLDPWD/python MPLBACKEND=Agg /usr/bin/python3 plot.py) &&
         [ "$(head -c 4 "$tmp/forces.png" | tail -c 3)" = PNG ]
 }
 is "ten lines of Python" "$(wc -l <"$tmp/plot.py")" 10

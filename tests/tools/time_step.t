@@ -125,7 +125,7 @@ if have_h5py; then
 h5py.File('bad.h5', 'r+')['nsd/time_step/value'][-1] = $bad"
         refuses 65 "a frame's dt of $bad is refused" nsd-step bad.h5
     done
-    ok "nsd.py has the frame's dt" env PYTHONPATH="$root/scripts" /usr/bin/python3 -c "import nsd
+    ok "nsd.py has the frame's dt" env PYTHONPATH="$root/python" /usr/bin/python3 -c "import nsd
 assert nsd.last('whole.h5').dt == $(dts whole.h5 | tail -n 1)"
 else
     skip "frames that others have written" "no h5py"

@@ -1,0 +1,267 @@
+#include "api/acts.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void acts_free(struct acts *a)
+{
+    free(a->id);
+    for (int t = 0; t < ACTS_TERMS; t++) free(a->force[t]), free(a->torque[t]), free(a->push[t]);
+    *a = (struct acts){ 0 };
+}
+
+static int no_memory(struct why *why)
+{
+    return why_set(why, EX_SOFTWARE, "no memory for forces");
+}
+
+/* Arrays of n bodies, all zero; false: none, and nothing to free */
+static bool make(struct acts *a, int64_t n)
+{
+    size_t room = (size_t)n + 1;
+    bool good = (a->id = calloc(room, sizeof *a->id));
+    a->n = n;
+    for (int t = 0; t < ACTS_TERMS; t++) {
+        a->force[t] = calloc(room, sizeof *a->force[t]);
+        a->torque[t] = calloc(room, sizeof *a->torque[t]);
+        good = good && a->force[t] && a->torque[t];
+    }
+    if (!good) acts_free(a);
+    return good;
+}
+
+static bool make_push(double **push, int32_t walls)
+{
+    if (!*push) *push = calloc((size_t)walls + 1, sizeof **push);
+    return *push;
+}
+
+int acts_copy(struct acts *to, const struct acts *from, int32_t walls, struct why *why)
+{
+    size_t n = (size_t)from->n;
+    *to = (struct acts){ 0 };
+    if (from->id && !make(to, from->n)) return no_memory(why);
+    if (from->id) memcpy(to->id, from->id, n * sizeof *to->id);
+    for (int t = 0; t < ACTS_TERMS; t++) {
+        to->pushes[t] = from->pushes[t], to->twists[t] = from->twists[t];
+        if (from->id) memcpy(to->force[t], from->force[t], n * sizeof *to->force[t]);
+        if (from->id) memcpy(to->torque[t], from->torque[t], n * sizeof *to->torque[t]);
+        if (!from->push[t]) continue;
+        if (!make_push(&to->push[t], walls)) return acts_free(to), no_memory(why);
+        memcpy(to->push[t], from->push[t], (size_t)walls * sizeof *to->push[t]);
+    }
+    return 0;
+}
+
+int64_t acts_row(const struct packing *p, int32_t id)
+{
+    int64_t lo = 0, hi = p->n; // most packings have them in order, without a gap
+    if (id >= 0 && id < p->n && p->id[id] == id) return id;
+    while (lo < hi) {
+        int64_t middle = lo + (hi - lo) / 2;
+        *(p->id[middle] < id ? &lo : &hi) = p->id[middle] < id ? middle + 1 : middle;
+    }
+    if (lo < p->n && p->id[lo] == id) return lo;
+    for (int64_t i = 0; i < p->n; i++) // a document may have them in any order
+        if (p->id[i] == id) return i;
+    return -1;
+}
+
+int acts_arrays(struct acts *a, const struct packing *p, struct why *why)
+{
+    struct acts now = { 0 };
+    if (a->id && a->n == p->n && !memcmp(a->id, p->id, (size_t)p->n * sizeof *p->id)) return 0;
+    if (!make(&now, p->n)) return no_memory(why);
+    memcpy(now.id, p->id, (size_t)p->n * sizeof *p->id);
+    for (int64_t j = 0; a->id && j < a->n; j++) {
+        int64_t i = acts_row(p, a->id[j]);
+        for (int t = 0; t < ACTS_TERMS && i >= 0; t++)
+            now.force[t][i] = a->force[t][j], now.torque[t][i] = a->torque[t][j];
+    }
+    for (int t = 0; t < ACTS_TERMS; t++) {
+        now.push[t] = a->push[t], a->push[t] = NULL;
+        now.pushes[t] = a->pushes[t], now.twists[t] = a->twists[t];
+    }
+    acts_free(a);
+    *a = now;
+    return 0;
+}
+
+/* sum[n] = what lasts and what acts once, as far as there is any; are all numbers finite? */
+static bool add(vec3 *sum, vec3 *const term[ACTS_TERMS], const bool is[ACTS_TERMS], int64_t n)
+{
+    double *s = (double *)sum;
+    const double *x = (const double *)term[is[ACTS_LASTING] ? ACTS_LASTING : ACTS_ONCE];
+    const double *y = (const double *)term[ACTS_ONCE];
+    const bool both = is[ACTS_LASTING] && is[ACTS_ONCE];
+    int bad = 0;
+    for (int64_t i = 0; i < 3 * n; i++) { // a loop for vectors of the processor
+        s[i] = both ? x[i] + y[i] : x[i];
+        bad |= !(fabs(s[i]) <= DBL_MAX);
+    }
+    return !bad;
+}
+
+static bool any(const bool is[ACTS_TERMS])
+{
+    return is[ACTS_ONCE] || is[ACTS_LASTING];
+}
+
+/* The sums of the bodies' forces, which are all to be finite */
+static int sum_forces(const struct acts *a, struct packing *p, struct why *why)
+{
+    struct outside *o = &p->outside;
+    bool good = true;
+    if (any(a->pushes))
+        good = !outside_alloc(&o->force, p->n, why) && add(o->force, a->force, a->pushes, p->n);
+    if (any(a->twists))
+        good = !outside_alloc(&o->torque, p->n, why) &&
+               add(o->torque, a->torque, a->twists, p->n) && good;
+    if (why->status) return why->status;
+    for (int64_t i = 0; i < p->n && (!good || p->dim == 2); i++) {
+        vec3 f = o->force ? o->force[i] : v3(0, 0, 0), m = o->torque ? o->torque[i] : v3(0, 0, 0);
+        if (!v3_finite(f) || !v3_finite(m))
+            return why_set(why, EX_DATAERR, "the force or torque of body %d is not finite",
+                           p->id[i]);
+        if (p->dim == 2 && (f.z != 0 || m.x != 0 || m.y != 0))
+            return why_set(why, EX_DATAERR,
+                           "the force or torque of body %d leaves the plane, and dim is 2",
+                           p->id[i]);
+    }
+    outside_measure(o, p->mass, p->n);
+    return 0;
+}
+
+int acts_begin(struct acts *a, struct packing *p, struct why *why)
+{
+    struct outside *o = &p->outside;
+    bool pushes = a->push[ACTS_LASTING] || a->push[ACTS_ONCE];
+    if (a->id && (acts_arrays(a, p, why) || sum_forces(a, p, why))) return why->status;
+    if (pushes && outside_alloc_push(o, p->walls, why)) return why->status;
+    for (int32_t w = 0; pushes && w < p->walls; w++) {
+        o->push[w] = 0;
+        for (int t = 0; t < ACTS_TERMS; t++) o->push[w] += a->push[t] ? a->push[t][w] : 0;
+    }
+    return 0;
+}
+
+static void zero(struct acts *a, int term, int32_t walls)
+{
+    if (a->pushes[term]) memset(a->force[term], 0, (size_t)a->n * sizeof *a->force[term]);
+    if (a->twists[term]) memset(a->torque[term], 0, (size_t)a->n * sizeof *a->torque[term]);
+    if (a->push[term]) memset(a->push[term], 0, (size_t)walls * sizeof *a->push[term]);
+}
+
+void acts_end(struct acts *a, int32_t walls)
+{
+    zero(a, ACTS_ONCE, walls);
+}
+
+void acts_clear(struct acts *a, int32_t walls)
+{
+    for (int t = 0; t < ACTS_TERMS; t++) zero(a, t, walls);
+}
+
+int acts_force(struct acts *a, const struct packing *p, int32_t id, vec3 force, vec3 torque,
+               enum acts_lasting term, struct why *why)
+{
+    int64_t i = acts_row(p, id);
+    if (i < 0) return why_set(why, EX_DATAERR, "there is no body %d", id);
+    if (!v3_finite(force) || !v3_finite(torque))
+        return why_set(why, EX_DATAERR, "the force or torque of body %d is not finite", id);
+    if (p->dim == 2 && (force.z != 0 || torque.x != 0 || torque.y != 0))
+        return why_set(why, EX_DATAERR,
+                       "the force or torque of body %d leaves the plane, and dim is 2", id);
+    if (acts_arrays(a, p, why)) return why->status;
+    a->force[term][i] = force, a->torque[term][i] = torque;
+    a->pushes[term] = true, a->twists[term] = a->twists[term] || v3_norm(torque) > 0;
+    return 0;
+}
+
+/* The boundary of that number, or NULL with the reason */
+static struct wall *wall_of(const struct packing *p, int64_t wall, struct why *why)
+{
+    if (wall >= 0 && wall < p->walls) return &p->wall[wall];
+    why_set(why, EX_DATAERR, "there is no boundary %lld: they are numbered from 0 to %d",
+            (long long)wall, p->walls - 1);
+    return NULL;
+}
+
+int acts_push(struct acts *a, const struct packing *p, int64_t wall, double force,
+              enum acts_lasting term, struct why *why)
+{
+    const struct wall *w = wall_of(p, wall, why);
+    if (!w) return why->status;
+    if (w->load.way == LOAD_NONE)
+        return why_set(why, EX_DATAERR,
+                       "boundary %lld does not yield to a force: give it a load in the scene",
+                       (long long)wall);
+    if (!isfinite(force))
+        return why_set(why, EX_DATAERR, "the force of boundary %lld is not finite",
+                       (long long)wall);
+    if (!make_push(&a->push[term], p->walls)) return no_memory(why);
+    a->push[term][wall] = force;
+    return 0;
+}
+
+static bool turns(const struct packing *p, const struct wall *w)
+{
+    for (int32_t k = w->first_drive; k < w->first_drive + w->drives; k++)
+        if (p->drives.drive[k].turns) return true;
+    return w->load.way == LOAD_TURNS;
+}
+
+int acts_velocity(struct packing *p, int64_t wall, vec3 v, struct why *why)
+{
+    struct wall *w = wall_of(p, wall, why);
+    if (!w) return why->status;
+    if (!v3_finite(v) || (p->dim == 2 && v.z != 0))
+        return why_set(why, EX_DATAERR, "the velocity of boundary %lld is not finite%s",
+                       (long long)wall, p->dim == 2 ? ", or leaves the plane" : "");
+    if (turns(p, w))
+        return why_set(why, EX_DATAERR,
+                       "boundary %lld turns, and what turns has the velocity of its drives",
+                       (long long)wall);
+    struct wall was = *w;
+    w->x = v3_axpy(w->x, p->t, v3_sub(w->v, v)); // x + v t is where it was
+    w->v = v;
+    if (!v3_finite(w->x)) {
+        *w = was;
+        return why_set(why, EX_DATAERR, "boundary %lld would be beyond the range of numbers",
+                       (long long)wall);
+    }
+    p->outside.steered = true;
+    return 0;
+}
+
+int acts_gravity(struct packing *p, vec3 g, struct why *why)
+{
+    if (!v3_finite(g) || (p->dim == 2 && g.z != 0))
+        return why_set(why, EX_DATAERR, "gravity is not finite%s",
+                       p->dim == 2 ? ", or leaves the plane" : "");
+    p->g = g;
+    p->outside.steered = true;
+    return 0;
+}
+
+static int32_t kind_of(const struct packing *p, const char *name, struct why *why)
+{
+    for (int32_t k = 0; k < p->kinds; k++)
+        if (!strcmp(p->kind_name[k], name)) return k;
+    why_set(why, EX_DATAERR, "there is no kind '%.100s'", name);
+    return -1;
+}
+
+int acts_friction(struct packing *p, const char *a, const char *b, double mu, struct why *why)
+{
+    int32_t k = kind_of(p, a, why), l = k < 0 ? -1 : kind_of(p, b, why);
+    if (l < 0) return why->status;
+    if (!(mu >= 0 && isfinite(mu)))
+        return why_set(why, EX_DATAERR, "a friction of %g is not a finite number of at least 0",
+                       mu);
+    p->mu[k * p->kinds + l] = p->mu[l * p->kinds + k] = mu;
+    p->outside.steered = true;
+    return 0;
+}

@@ -1,0 +1,51 @@
+/*
+ * api/acts.h: what a program does to a packing between steps. Forces last until they are changed, or act in one step;
+ * both are summed into the packing's forces from outside [bodies/outside.h] as a step begins. The rest changes the
+ * packing at once.
+ *
+ * All that fail return EX_DATAERR, EX_USAGE or EX_SOFTWARE, and leave everything as it was.
+ */
+#ifndef NSD_ACTS_H
+#define NSD_ACTS_H
+
+#include "bodies/packing.h"
+
+enum acts_lasting { ACTS_ONCE, ACTS_LASTING, ACTS_TERMS };
+
+/* All zero to begin with */
+struct acts {
+    int64_t n;                                    /* bodies that the arrays are of */
+    int32_t *id;                                  /* [n] which; NULL: there are no arrays */
+    vec3 *force[ACTS_TERMS], *torque[ACTS_TERMS]; /* [n] N, N m */
+    bool pushes[ACTS_TERMS], twists[ACTS_TERMS];  /* there may be forces, torques other than 0 */
+    double *push[ACTS_TERMS];                     /* [walls] N, N m; NULL: none */
+};
+
+void acts_free(struct acts *acts);
+/* to = a deep copy; to need not be initialised. */
+int acts_copy(struct acts *to, const struct acts *from, int32_t walls, struct why *why);
+/* The arrays exist, and are those of the packing's bodies, by their ids; new ones are zero. */
+int acts_arrays(struct acts *acts, const struct packing *p, struct why *why);
+/* A step of p begins: the sums are what acts on it from outside. EX_DATAERR: one is not finite. */
+int acts_begin(struct acts *acts, struct packing *p, struct why *why);
+/* It has been made: what acts in one step does so no more. */
+void acts_end(struct acts *acts, int32_t walls);
+/* Nothing acts any more. */
+void acts_clear(struct acts *acts, int32_t walls);
+
+/* The row of the body with this id; -1: there is none */
+int64_t acts_row(const struct packing *p, int32_t id);
+
+/* In place of what acts for so long; torque NULL: none */
+int acts_force(struct acts *acts, const struct packing *p, int32_t id, vec3 force, vec3 torque,
+               enum acts_lasting term, struct why *why);
+/* N along the axis of its load, N m about it, added to that. EX_DATAERR: the boundary has none. */
+int acts_push(struct acts *acts, const struct packing *p, int64_t wall, double force,
+              enum acts_lasting term, struct why *why);
+/* m/s: its prescribed velocity from now on; it goes on from where it is. EX_DATAERR: it turns. */
+int acts_velocity(struct packing *p, int64_t wall, vec3 v, struct why *why);
+int acts_gravity(struct packing *p, vec3 g, struct why *why);
+/* Between two kinds of material, by their names */
+int acts_friction(struct packing *p, const char *a, const char *b, double mu, struct why *why);
+
+#endif

@@ -1,0 +1,168 @@
+#include "api/answer.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+json_t *answer_parse(const char *line, size_t length, struct why *why)
+{
+    json_error_t e;
+    while (length && strchr(" \t\r\n", line[length - 1])) length--;
+    json_t *j = length == 4 && !memcmp(line, "stop", 4)
+                    ? json_pack("{s:b}", "stop", 1)
+                    : json_loadb(line, length, JSON_REJECT_DUPLICATES, &e);
+    if (!j)
+        why_set(why, EX_DATAERR, "the answer is no JSON: %.100s (column %d)",
+                length == 4 ? "no memory" : e.text, length == 4 ? 0 : e.column);
+    else if (!json_is_object(j))
+        why_set(why, EX_DATAERR, "the answer is neither a JSON object nor the word stop");
+    if (!why->status) return j;
+    json_decref(j);
+    return NULL;
+}
+
+static int wrong(struct why *why, const char *what)
+{
+    return why_set(why, EX_DATAERR, "the answer's %s", what);
+}
+
+/* As many numbers as the space has dimensions, or three */
+static bool vector(const json_t *j, int dim, vec3 *x)
+{
+    size_t n = json_array_size(j);
+    double a[3] = { 0 };
+    if (!json_is_array(j) || (n != 3 && n != (size_t)dim)) return false;
+    for (size_t k = 0; k < n; k++) {
+        if (!json_is_number(json_array_get(j, k))) return false;
+        a[k] = json_number_value(json_array_get(j, k));
+    }
+    *x = v3(a[0], a[1], a[2]);
+    return true;
+}
+
+/* A number that is a key: at least 0; -1: it is none */
+static int64_t whole(const char *text)
+{
+    char *end;
+    errno = 0;
+    long long n = strtoll(text, &end, 10);
+    return end == text || *end || errno || n < 0 || n > INT32_MAX ? -1 : n;
+}
+
+static int set(struct acts *acts, bool torque, const struct packing *p, int64_t i, const json_t *x,
+               struct why *why)
+{
+    (torque ? acts->twists : acts->pushes)[ACTS_LASTING] = true;
+    vec3 *at = &(torque ? acts->torque : acts->force)[ACTS_LASTING][i];
+    return vector(x, p->dim, at) ? 0 : wrong(why, "forces and torques are vectors [x, y, z]");
+}
+
+/* Of all bodies in their order, or of those with these ids */
+static int set_all(const json_t *j, struct acts *acts, bool torque, const struct packing *p,
+                   struct why *why)
+{
+    const char *id;
+    json_t *x;
+    if (!j) return 0;
+    if (json_is_array(j) && json_array_size(j) != (size_t)p->n)
+        return why_set(why, EX_DATAERR,
+                       "the answer has %zu forces or torques, and there are %lld bodies",
+                       json_array_size(j), (long long)p->n);
+    if (!json_is_array(j) && !json_is_object(j))
+        return wrong(why, "forces and torques are an array, or an object by ids");
+    for (size_t i = 0; json_is_array(j) && i < json_array_size(j); i++)
+        if (set(acts, torque, p, (int64_t)i, json_array_get(j, i), why)) return why->status;
+    json_object_foreach((json_t *)j, id, x)
+    {
+        int64_t number = whole(id), i = number < 0 ? -1 : acts_row(p, (int32_t)number);
+        if (i < 0)
+            return why_set(why, EX_DATAERR,
+                           "the answer has a force for body '%.40s', which is not there", id);
+        if (set(acts, torque, p, i, x, why)) return why->status;
+    }
+    return 0;
+}
+
+static int set_boundary(const json_t *j, struct acts *acts, struct packing *p, int64_t wall,
+                        struct why *why)
+{
+    const char *key;
+    json_t *x;
+    vec3 v;
+    if (!json_is_object(j)) return wrong(why, "boundaries have velocity and force");
+    json_object_foreach((json_t *)j, key, x)
+    {
+        if (!strcmp(key, "velocity")) {
+            if (!vector(x, p->dim, &v)) return wrong(why, "velocity is a vector [x, y, z]");
+            acts_velocity(p, wall, v, why);
+        } else if (!strcmp(key, "force")) {
+            if (!json_is_number(x)) return wrong(why, "force of a boundary is a number");
+            acts_push(acts, p, wall, json_number_value(x), ACTS_LASTING, why);
+        } else {
+            why_set(why, EX_DATAERR, "the answer's boundaries have no '%.40s'", key);
+        }
+        if (why->status) return why->status;
+    }
+    return 0;
+}
+
+static int set_boundaries(const json_t *j, struct acts *acts, struct packing *p, struct why *why)
+{
+    const char *key;
+    json_t *x;
+    if (!json_is_object(j)) return wrong(why, "boundaries are an object by their numbers");
+    json_object_foreach((json_t *)j, key, x) if (set_boundary(x, acts, p, whole(key), why)) break;
+    return why->status;
+}
+
+static int set_frictions(const json_t *j, struct packing *p, struct why *why)
+{
+    for (size_t k = 0; k < json_array_size(j); k++) {
+        const json_t *x = json_array_get(j, k);
+        const json_t *a = json_array_get(x, 0), *b = json_array_get(x, 1),
+                     *mu = json_array_get(x, 2);
+        if (json_array_size(x) != 3 || !json_is_string(a) || !json_is_string(b) ||
+            !json_is_number(mu))
+            return wrong(why, "friction is [[KIND, KIND, mu], ...]");
+        if (acts_friction(p, json_string_value(a), json_string_value(b), json_number_value(mu),
+                          why))
+            return why->status;
+    }
+    return json_is_array(j) ? 0 : wrong(why, "friction is [[KIND, KIND, mu], ...]");
+}
+
+int answer_apply(const json_t *answer, struct acts *acts, struct packing *p, bool *stop,
+                 struct why *why)
+{
+    const json_t *forces = json_object_get(answer, "forces");
+    const json_t *torques = json_object_get(answer, "torques");
+    const char *key;
+    json_t *x;
+    vec3 g;
+    *stop = false;
+    if ((forces || torques) && acts_arrays(acts, p, why)) return why->status;
+    acts_clear(acts, p->walls);
+    if (set_all(forces, acts, false, p, why) || set_all(torques, acts, true, p, why))
+        return why->status;
+    json_object_foreach((json_t *)answer, key, x)
+    {
+        if (!strcmp(key, "boundaries")) {
+            set_boundaries(x, acts, p, why);
+        } else if (!strcmp(key, "gravity")) {
+            if (!vector(x, p->dim, &g)) return wrong(why, "gravity is a vector [x, y, z]");
+            acts_gravity(p, g, why);
+        } else if (!strcmp(key, "friction")) {
+            set_frictions(x, p, why);
+        } else if (!strcmp(key, "stop")) {
+            if (!json_is_boolean(x)) return wrong(why, "stop is true or false");
+            *stop = json_is_true(x);
+        } else if (strcmp(key, "forces") != 0 && strcmp(key, "torques") != 0) {
+            why_set(why, EX_DATAERR,
+                    "the answer has no '%.40s': it has forces, torques, boundaries, gravity, "
+                    "friction, stop",
+                    key);
+        }
+        if (why->status) return why->status;
+    }
+    return 0;
+}

@@ -1,0 +1,131 @@
+#include "api/run.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static vec3 row3(const double *a, int64_t i)
+{
+    return a ? v3(a[3 * i], a[3 * i + 1], a[3 * i + 2]) : v3(0, 0, 0);
+}
+
+/* Body k of the arrays, as body i */
+static void set(struct packing *p, int64_t i, const struct nsd_bodies *b, int64_t k)
+{
+    double mass = 0, inertia = 0;
+    p->radius[i] = b->radius[k];
+    p->x[i] = row3(b->position, k);
+    p->v[i] = row3(b->velocity, k), p->w[i] = row3(b->angular_velocity, k);
+    if (b->orientation)
+        p->q[i] = (quat){ b->orientation[4 * k], b->orientation[4 * k + 1],
+                          b->orientation[4 * k + 2], b->orientation[4 * k + 3] };
+    p->kind[i] = b->kind ? b->kind[k] : 0;
+    packing_solid(p->dim, b->radius[k], b->mass ? 1 : b->density, &mass, &inertia);
+    if (b->mass) inertia *= b->mass[k] / mass, mass = b->mass[k];
+    if (b->inertia) inertia = b->inertia[k];
+    p->mass[i] = mass, p->inertia[i] = inertia;
+}
+
+/* Cells have an image of each body, which packing_resize() knows nothing of. */
+static int add_images(struct packing *p, int64_t n, struct why *why)
+{
+    if (!p->image) return 0;
+    int32_t(*image)[3] = calloc((size_t)n + 1, sizeof *image);
+    if (!image) return why_set(why, EX_SOFTWARE, "no memory for the images");
+    memcpy(image, p->image, (size_t)p->n * sizeof *image);
+    free(p->image);
+    p->image = image;
+    return 0;
+}
+
+static int check(const struct nsd_run *r, const struct nsd_bodies *b, struct why *why)
+{
+    if (!b || b->size < sizeof *b)
+        return why_set(why, NSD_USAGE, "bodies: size is not that of struct nsd_bodies");
+    if (b->n < 0 || b->n > INT32_MAX - r->next_id)
+        return why_set(why, NSD_DATA, "bodies: %lld of them, and there are numbers for %d",
+                       (long long)b->n, INT32_MAX - r->next_id);
+    if (b->n && (!b->position || !b->radius))
+        return why_set(why, NSD_USAGE, "bodies: they have no position or no radius");
+    if (b->n && !b->mass && !(b->density > 0 && isfinite(b->density)))
+        return why_set(why, NSD_DATA, "bodies: neither a mass nor a density above 0");
+    if (packing_varies(&r->f.packing))
+        return why_set(why, NSD_USAGE,
+                       "bodies: the scene pours or removes bodies itself, and numbers them");
+    return 0;
+}
+
+int run_add(struct nsd_run *r, const struct nsd_bodies *b, int32_t *id, struct why *why)
+{
+    struct packing p;
+    struct contacts s;
+    const int64_t had = r->f.packing.n;
+    if (check(r, b, why) || packing_copy(&p, &r->f.packing, why)) return why->status;
+    if (contacts_copy(&s, &r->f.contacts)) {
+        packing_free(&p);
+        return why_set(why, NSD_SOFTWARE, "no memory for the contacts");
+    }
+    if (!add_images(&p, had + b->n, why) && !packing_resize(&p, had + b->n, why)) {
+        for (int64_t k = 0; k < b->n; k++) {
+            p.id[had + k] = r->next_id + (int32_t)k;
+            set(&p, had + k, b, k);
+        }
+        packing_check(&p, why);
+    }
+    if (why->status) return packing_free(&p), contacts_free(&s), why->status;
+    for (int64_t k = 0; k < b->n && id; k++) id[k] = p.id[had + k];
+    r->next_id += (int32_t)b->n;
+    if (p.first_id < r->next_id) p.first_id = r->next_id;
+    if (b->n) return run_replace(r, &p, &s), 0;
+    return packing_free(&p), contacts_free(&s), 0;
+}
+
+int nsd_add(struct nsd_run *r, const struct nsd_bodies *bodies, int32_t *id)
+{
+    struct why *why = run_why(r);
+    return why ? run_add(r, bodies, id, why) : NSD_USAGE;
+}
+
+/* row[i]: where body i goes, -1: it is among those that are removed */
+static int find_rows(const struct packing *p, int64_t n, const int32_t *id, int32_t *row,
+                     struct why *why)
+{
+    int32_t kept = 0;
+    for (int64_t i = 0; i < p->n; i++) row[i] = 0;
+    for (int64_t k = 0; k < n; k++) {
+        int64_t i = acts_row(p, id[k]);
+        if (i < 0) return why_set(why, NSD_DATA, "there is no body %d", id[k]);
+        if (row[i] < 0) return why_set(why, NSD_DATA, "body %d is there twice", id[k]);
+        row[i] = -1;
+    }
+    for (int64_t i = 0; i < p->n; i++)
+        if (row[i] >= 0) row[i] = kept++;
+    return 0;
+}
+
+int nsd_remove(struct nsd_run *r, int64_t n, const int32_t *id)
+{
+    struct why *why = run_why(r);
+    struct packing p;
+    struct contacts s = { 0 };
+    if (!why) return NSD_USAGE;
+    if (n < 0 || (n && !id)) return why_set(why, NSD_USAGE, "there are no numbers of bodies");
+    if (!n) return 0;
+    if (packing_varies(&r->f.packing))
+        return why_set(why, NSD_USAGE,
+                       "bodies: the scene pours or removes bodies itself, and counts them");
+    int32_t *row = malloc(((size_t)r->f.packing.n + 1) * sizeof *row);
+    if (!row) return why_set(why, NSD_SOFTWARE, "no memory to remove bodies");
+    if (!find_rows(&r->f.packing, n, id, row, why) && !packing_copy(&p, &r->f.packing, why)) {
+        if (contacts_copy(&s, &r->f.contacts))
+            why_set(why, NSD_SOFTWARE, "no memory for the contacts");
+        else
+            flow_drop(&p, &s, row, why);
+        if (why->status)
+            packing_free(&p), contacts_free(&s);
+        else
+            run_replace(r, &p, &s);
+    }
+    free(row);
+    return why->status;
+}

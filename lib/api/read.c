@@ -1,0 +1,313 @@
+/* api/read.c: what there is of a run, as arrays, numbers and JSON. */
+#include "api/run.h"
+#include "io/report_json.h"
+#include "measure/branch.h"
+#include "measure/measured.h"
+#include "problem/err.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- arrays ---- */
+
+/* What an array is of; those of bodies are the packing's own, those of acts the run's, others are made */
+enum rows { OF_BODIES, OF_ACTS, OF_CONTACTS, OF_BOUNDARIES };
+
+struct row {
+    const char *name, *unit;
+    enum rows rows;
+    char type;
+    int width;
+    size_t at; /* of bodies: the array in struct packing; of acts: in struct acts */
+    void (*make)(const struct nsd_run *r, void *out);
+};
+
+static size_t size_of(char type)
+{
+    return type == 'd' ? sizeof(double) : type == 'i' ? sizeof(int32_t) : sizeof(int8_t);
+}
+
+static void put3(double *out, int64_t i, vec3 x)
+{
+    out[3 * i] = x.x, out[3 * i + 1] = x.y, out[3 * i + 2] = x.z;
+}
+
+static void contact_bodies(const struct nsd_run *r, void *out)
+{
+    int32_t *at = out;
+    const struct packing *p = &r->f.packing;
+    for (int64_t i = 0; i < r->f.contacts.n; i++) {
+        const struct contact *c = &r->f.contacts.c[i];
+        *at++ = c->a < 0 ? c->a : p->id[c->a], *at++ = p->id[c->b];
+    }
+}
+
+#define OF_EACH_CONTACT(name, ...)                                                                 \
+    static void name(const struct nsd_run *r, void *out)                                           \
+    {                                                                                              \
+        const struct contacts *s = &r->f.contacts;                                                 \
+        for (int64_t i = 0; i < s->n; i++) {                                                       \
+            __VA_ARGS__;                                                                           \
+        }                                                                                          \
+    }
+
+OF_EACH_CONTACT(contact_points, put3(out, i, s->c[i].x))
+OF_EACH_CONTACT(contact_normals, put3(out, i, s->c[i].n))
+OF_EACH_CONTACT(contact_gaps, ((double *)out)[i] = s->c[i].gap)
+OF_EACH_CONTACT(contact_frictions, ((double *)out)[i] = s->c[i].mu)
+OF_EACH_CONTACT(contact_forces,
+                put3(out, i, s->found ? branch_force(&r->f.packing, s, i) : v3(0, 0, 0)))
+OF_EACH_CONTACT(contact_velocities,
+                put3(out, i, s->found ? contact_in_space(&s->c[i], s->found[i].u) : v3(0, 0, 0)))
+OF_EACH_CONTACT(contact_statuses, ((int8_t *)out)[i] = s->found ? s->found[i].status : 0)
+
+#define OF_EACH_BOUNDARY(name, ...)                                                                \
+    static void name(const struct nsd_run *r, void *out)                                           \
+    {                                                                                              \
+        const struct packing *p = &r->f.packing;                                                   \
+        for (int32_t i = 0; i < p->walls; i++) {                                                   \
+            const struct wall *w = &p->wall[i];                                                    \
+            __VA_ARGS__;                                                                           \
+        }                                                                                          \
+    }
+
+OF_EACH_BOUNDARY(boundary_positions, put3(out, i, wall_at(p, w, p->t)))
+OF_EACH_BOUNDARY(boundary_normals, put3(out, i, wall_normal(p, w, p->t)))
+OF_EACH_BOUNDARY(boundary_velocities, put3(out, i, wall_velocity(p, w, wall_at(p, w, p->t))))
+OF_EACH_BOUNDARY(boundary_spins, put3(out, i, wall_spin(p, w)))
+
+/* N: of the bodies on the boundaries; and N m, of that about where they are */
+static void sum_boundaries(const struct nsd_run *r, double *out, bool torque)
+{
+    const struct packing *p = &r->f.packing;
+    const struct contacts *s = &r->f.contacts;
+    memset(out, 0, 3 * (size_t)p->walls * sizeof *out);
+    for (int64_t i = 0; s->found && i < s->n; i++) {
+        if (s->c[i].a >= 0) continue;
+        int32_t w = -1 - s->c[i].a;
+        vec3 f = v3_scale(-1, branch_force(p, s, i)), x = wall_at(p, &p->wall[w], p->t);
+        vec3 add = torque ? v3_cross(v3_sub(s->c[i].x, x), f) : f;
+        put3(out, w, v3_add(v3(out[3 * w], out[3 * w + 1], out[3 * w + 2]), add));
+    }
+}
+
+static void boundary_forces(const struct nsd_run *r, void *out)
+{
+    sum_boundaries(r, out, false);
+}
+
+static void boundary_torques(const struct nsd_run *r, void *out)
+{
+    sum_boundaries(r, out, true);
+}
+
+#define BODY(member)      OF_BODIES, 'd', 1, offsetof(struct packing, member), NULL
+#define BODY3(member)     OF_BODIES, 'd', 3, offsetof(struct packing, member), NULL
+#define ACT(member, term) OF_ACTS, 'd', 3, offsetof(struct acts, member[term]), NULL
+
+static const struct row table[] = {
+    { "position", "m", BODY3(x) },
+    { "orientation", "1", OF_BODIES, 'd', 4, offsetof(struct packing, q), NULL },
+    { "velocity", "m s-1", BODY3(v) },
+    { "angular_velocity", "rad s-1", BODY3(w) },
+    { "radius", "m", BODY(radius) },
+    { "mass", "kg", BODY(mass) },
+    { "inertia", "kg m2", BODY(inertia) },
+    { "id", "1", OF_BODIES, 'i', 1, offsetof(struct packing, id), NULL },
+    { "kind", "1", OF_BODIES, 'i', 1, offsetof(struct packing, kind), NULL },
+    { "force", "N", ACT(force, ACTS_LASTING) },
+    { "torque", "N m", ACT(torque, ACTS_LASTING) },
+    { "force_once", "N", ACT(force, ACTS_ONCE) },
+    { "torque_once", "N m", ACT(torque, ACTS_ONCE) },
+    { "contact_body", "1", OF_CONTACTS, 'i', 2, 0, contact_bodies },
+    { "contact_point", "m", OF_CONTACTS, 'd', 3, 0, contact_points },
+    { "contact_normal", "1", OF_CONTACTS, 'd', 3, 0, contact_normals },
+    { "contact_gap", "m", OF_CONTACTS, 'd', 1, 0, contact_gaps },
+    { "contact_friction", "1", OF_CONTACTS, 'd', 1, 0, contact_frictions },
+    { "contact_force", "N", OF_CONTACTS, 'd', 3, 0, contact_forces },
+    { "contact_velocity", "m s-1", OF_CONTACTS, 'd', 3, 0, contact_velocities },
+    { "contact_status", "1", OF_CONTACTS, 'b', 1, 0, contact_statuses },
+    { "boundary_position", "m", OF_BOUNDARIES, 'd', 3, 0, boundary_positions },
+    { "boundary_normal", "1", OF_BOUNDARIES, 'd', 3, 0, boundary_normals },
+    { "boundary_velocity", "m s-1", OF_BOUNDARIES, 'd', 3, 0, boundary_velocities },
+    { "boundary_angular_velocity", "rad s-1", OF_BOUNDARIES, 'd', 3, 0, boundary_spins },
+    { "boundary_force", "N", OF_BOUNDARIES, 'd', 3, 0, boundary_forces },
+    { "boundary_torque", "N m", OF_BOUNDARIES, 'd', 3, 0, boundary_torques },
+};
+enum { ROWS = sizeof table / sizeof table[0], FIRST_MADE = 13 };
+_Static_assert(ROWS - FIRST_MADE <= MADE_MOST, "there is a place for each array that is made");
+
+const char *nsd_array_name(int k)
+{
+    return k >= 0 && k < ROWS ? table[k].name : NULL;
+}
+
+/* The array, made anew in place of what it was */
+static void *make(struct nsd_run *r, int k, int64_t n, struct why *why)
+{
+    const struct row *t = &table[k];
+    void *data = calloc((size_t)n * (size_t)t->width + 1, size_of(t->type));
+    if (!data) return why_set(why, NSD_SOFTWARE, "%s: no memory", t->name), NULL;
+    t->make(r, data);
+    free(r->made[k - FIRST_MADE]);
+    return r->made[k - FIRST_MADE] = data;
+}
+
+static void *data_of(struct nsd_run *r, int k, int64_t n, struct why *why)
+{
+    const struct row *t = &table[k];
+    const char *owner = t->rows == OF_BODIES ? (char *)&r->f.packing : (char *)&r->acts;
+    void *data;
+    if (t->make) return make(r, k, n, why);
+    if (t->rows == OF_ACTS) {
+        const bool torque = t->at >= offsetof(struct acts, torque);
+        const int term = (int)((t->at - (torque ? offsetof(struct acts, torque)
+                                                : offsetof(struct acts, force))) /
+                               sizeof(vec3 *));
+        if (acts_arrays(&r->acts, &r->f.packing, why)) return NULL;
+        (torque ? r->acts.twists : r->acts.pushes)[term] = true; // what is written there acts
+    }
+    memcpy(&data, owner + t->at, sizeof data);
+    return data;
+}
+
+int nsd_read(struct nsd_run *r, const char *name, struct nsd_array *out)
+{
+    struct why *why = run_why(r);
+    int k = 0;
+    if (!why) return NSD_USAGE;
+    if (!out || out->size < sizeof *out)
+        return why_set(why, NSD_USAGE, "an array's size is not that of struct nsd_array");
+    while (k < ROWS && (!name || strcmp(table[k].name, name) != 0)) k++;
+    if (k == ROWS) return why_set(why, NSD_USAGE, "there is no array '%.60s'", name ? name : "");
+    const struct row *t = &table[k];
+    int64_t n = t->rows == OF_CONTACTS     ? r->f.contacts.n
+                : t->rows == OF_BOUNDARIES ? r->f.packing.walls
+                                           : r->f.packing.n;
+    void *data = data_of(r, k, n, why);
+    if (!data) return why->status;
+    const int64_t size = (int64_t)size_of(t->type);
+    *out = (struct nsd_array){ .size = out->size,
+                               .data = data,
+                               .unit = t->unit,
+                               .shape = { n, t->width },
+                               .stride = { size * t->width, size },
+                               .rank = t->width > 1 ? 2 : 1,
+                               .type = t->type,
+                               .writable = t->rows == OF_ACTS };
+    return 0;
+}
+
+/* ---- numbers ---- */
+
+static double number(const struct nsd_run *r, const char *name, bool *known)
+{
+    const struct packing *p = &r->f.packing;
+    const struct report *rep = &r->f.report;
+    const struct {
+        const char *name;
+        double x;
+        bool solved; /* it is of the last solve */
+    } numbers[] = {
+        { "step", (double)p->step, false },
+        { "time", p->t, false },
+        { "dt", p->dt, false },
+        { "dim", p->dim, false },
+        { "bodies", (double)p->n, false },
+        { "boundaries", p->walls, false },
+        { "contacts", (double)r->f.contacts.n, false },
+        { "sweeps", rep->sweeps, true },
+        { "converged", rep->converged, true },
+        { "error", err_of(&rep->err, rep->criterion), true },
+        { "natural", rep->err.natural, true },
+        { "max_overlap", rep->err.max_overlap, true },
+        { "max_penetration", rep->err.max_penetration_true, true },
+        { "kinetic_energy", rep->balance.kinetic, true },
+        { "seconds", rep->seconds, true },
+    };
+    *known = true;
+    for (size_t k = 0; k < sizeof numbers / sizeof numbers[0]; k++)
+        if (!strcmp(numbers[k].name, name))
+            return numbers[k].solved && !r->f.reported ? NAN : numbers[k].x;
+    *known = false;
+    return NAN;
+}
+
+int nsd_number(struct nsd_run *r, const char *name, double *x)
+{
+    struct why *why = run_why(r);
+    bool known = false;
+    if (!why) return NSD_USAGE;
+    if (!name || !x) return why_set(why, NSD_USAGE, "a number has a name and a place");
+    double found = number(r, name, &known);
+    if (!known) return why_set(why, NSD_USAGE, "there is no number '%.60s'", name);
+    *x = found;
+    return 0;
+}
+
+/* ---- JSON ---- */
+
+static int no_memory(struct why *why)
+{
+    return why_set(why, NSD_SOFTWARE, "no memory for JSON");
+}
+
+int nsd_report(struct nsd_run *r, const char **json)
+{
+    struct why *why = run_why(r);
+    if (!why) return NSD_USAGE;
+    if (!json) return why_set(why, NSD_USAGE, "there is no place for JSON");
+    if (!r->f.reported) return why_set(why, NSD_USAGE, "no step was made, and nothing was solved");
+    json_t *j = json_report(&r->f.report);
+    char *text = j ? json_dumps(j, JSON_COMPACT) : NULL;
+    json_decref(j);
+    if (!text) return no_memory(why);
+    free(r->text);
+    *json = r->text = text;
+    return 0;
+}
+
+/* What measures of ways look back to: the first moment that was measured, and the last */
+static int remember(struct nsd_run *r, struct why *why)
+{
+    const struct packing *p = &r->f.packing;
+    if (!r->remembers && kept_set(&r->first, p, why)) return why->status;
+    if (kept_set(&r->before, p, why)) return why->status;
+    r->remembers = true;
+    return 0;
+}
+
+int nsd_measure(struct nsd_run *r, const char *names, const char **json)
+{
+    struct why *why = run_why(r);
+    const struct measure *chosen[MOST_MEASURES + 1];
+    struct table t[MOST_MEASURES];
+    struct snapshot s;
+    char *text = NULL;
+    size_t size = 0;
+    if (!why) return NSD_USAGE;
+    if (!names || !json) return why_set(why, NSD_USAGE, "a measure has a name, and JSON a place");
+    const struct frame *f = &r->f;
+    if (measured_choose(chosen, names, why)) {
+        memmove(why->text, why->text + 2, strlen(why->text + 2) + 1);
+        return why->status;
+    }
+    if (r->asked.boxed && f->packing.dim == 3 && !isfinite(r->asked.lo[2]))
+        return why_set(why, NSD_USAGE, "box: it has four numbers, and the bodies are balls");
+    snapshot_init(&s, &f->packing, f->detected ? &f->contacts : NULL, f->moved, &r->asked);
+    if (r->remembers) s.first = &r->first, s.before = &r->before;
+    if (!measured_run(t, chosen, &s, why)) {
+        FILE *out = open_memstream(&text, &size);
+        if (out) measured_json(out, &s, chosen, t);
+        bool bad = !out || ferror(out);
+        if ((out && fclose(out)) || bad) no_memory(why);
+    }
+    measured_free(t);
+    if (!why->status && measured_remember(chosen)) remember(r, why);
+    if (why->status) return free(text), why->status;
+    free(r->text);
+    *json = r->text = text;
+    return 0;
+}

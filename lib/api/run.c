@@ -1,0 +1,461 @@
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): memfd_create
+/* api/run.c: a run: made, set, stepped and closed. */
+#include "api/run.h"
+
+#include "base/guest.h"
+#include "base/team.h"
+#include "motion/adapt.h"
+#include "io/reader.h"
+#include "import/scene_file.h"
+#include "problem/err.h"
+#include "scene/scene_build.h"
+
+#include <errno.h>
+#include <float.h>
+#include <gsl/gsl_errno.h>
+#include <jansson.h>
+#include <libgen.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+/* ---- reasons ---- */
+
+static _Thread_local struct why of_thread;
+
+struct why *run_why_of_thread(void)
+{
+    of_thread = (struct why){ 0 };
+    return &of_thread;
+}
+
+struct why *run_why(struct nsd_run *r)
+{
+    if (!r) {
+        why_set(run_why_of_thread(), NSD_USAGE, "there is no run: it was closed, or never made");
+        return NULL;
+    }
+    r->why = (struct why){ 0 };
+    team_set_size((int)r->options.threads);
+    return &r->why;
+}
+
+const char *nsd_error(const struct nsd_run *r)
+{
+    return r ? r->why.text : of_thread.text;
+}
+
+const char *nsd_version(void)
+{
+    return NSD_VERSION;
+}
+
+/* ---- libhdf5 ---- */
+
+static pthread_mutex_t hdf5 = PTHREAD_MUTEX_INITIALIZER;
+static H5E_auto2_t printer; /* the program's own way to print errors of libhdf5, in this thread */
+static void *printer_data;
+
+void run_lock(void)
+{
+    pthread_mutex_lock(&hdf5);
+    H5Eget_auto2(H5E_DEFAULT, &printer, &printer_data);
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+}
+
+void run_unlock(void)
+{
+    H5Eset_auto2(H5E_DEFAULT, printer, printer_data);
+    pthread_mutex_unlock(&hdf5);
+}
+
+/* ---- made ---- */
+
+static struct nsd_run *new_run(struct why *why)
+{
+    struct nsd_run *r = calloc(1, sizeof *r);
+    guest_set();
+    if (!r) return why_set(why, NSD_SOFTWARE, "no memory for a run"), NULL;
+    r->f.packed = true;
+    r->options.threads = 1;
+    r->asked = (struct asked)ASKED_DEFAULT;
+    return r;
+}
+
+/* The run with its packing: what it wants before the first step */
+static int begin(struct nsd_run *r, struct why *why)
+{
+    struct packing *p = &r->f.packing;
+    p->events.n = 0; // they belong to the frame that was read
+    outside_forget(&p->outside);
+    if (flow_read(&r->flow, p, why)) return r->flow = (struct flow){ 0 }, why->status;
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->id[i] >= r->next_id) r->next_id = p->id[i] < INT32_MAX ? p->id[i] + 1 : INT32_MAX;
+    if (p->first_id > r->next_id) r->next_id = p->first_id;
+    return packing_check(p, why);
+}
+
+/* What all constructors end with */
+static int done(struct nsd_run **out, struct nsd_run *r, struct why *why)
+{
+    if (r && !why->status) begin(r, why);
+    if (why->status) nsd_close(&r);
+    *out = r;
+    return why->status;
+}
+
+static int build(struct nsd_run *r, const char *text, size_t n, const char *name,
+                 const char *folder, struct why *why)
+{
+    struct scene scene;
+    run_lock(); // a scene may take bodies from documents
+    if (!scene_file_parse(&scene, text, n, name, folder, why)) {
+        if (scene_build(&r->f.packing, &scene, folder, why)) r->f.packing = (struct packing){ 0 };
+        scene_free(&scene);
+    }
+    run_unlock();
+    return why->status;
+}
+
+int nsd_from_scene(struct nsd_run **run, const char *text, const char *folder)
+{
+    struct why *why = run_why_of_thread();
+    *run = NULL;
+    if (!text) return why_set(why, NSD_USAGE, "there is no text of a scene");
+    struct nsd_run *r = new_run(why);
+    if (r) build(r, text, strlen(text), NULL, folder, why);
+    return done(run, r, why);
+}
+
+int nsd_from_scene_file(struct nsd_run **run, const char *path)
+{
+    struct why *why = run_why_of_thread();
+    size_t n = 0;
+    *run = NULL;
+    if (!path) return why_set(why, NSD_USAGE, "there is no path of a scene");
+    FILE *f = fopen(path, "re");
+    if (!f) return why_set(why, NSD_NO_INPUT, "%.200s: %s", path, strerror(errno));
+    char *text = scene_file_slurp(f, path, &n, why), *copy = strdup(path);
+    fclose(f);
+    struct nsd_run *r = NULL;
+    if (text && !copy) why_set(why, NSD_SOFTWARE, "%.200s: no memory", path);
+    if (text && copy && (r = new_run(why))) build(r, text, n, path, dirname(copy), why);
+    free(text), free(copy);
+    return done(run, r, why);
+}
+
+static int read_last(struct nsd_run *r, char *path, struct why *why)
+{
+    struct reader *in;
+    bool more = false;
+    run_lock();
+    if (!reader_open(&in, 1, &path, why)) {
+        reader_copies(in);
+        if (!reader_last(in, &r->f, &more, why) && !more)
+            why_set(why, NSD_DATA, "%.200s: no frame to start from", path);
+        if (!why->status && !r->f.packed)
+            why_set(why, NSD_DATA, "%.200s: an FCLIB problem has no bodies", path);
+    }
+    reader_close(in);
+    run_unlock();
+    return why->status;
+}
+
+int nsd_from_document(struct nsd_run **run, const char *path)
+{
+    struct why *why = run_why_of_thread();
+    *run = NULL;
+    if (!path || !strcmp(path, "-"))
+        return why_set(why, NSD_USAGE, "a document has a path; standard input is the program's");
+    struct nsd_run *r = new_run(why);
+    char *copy = r ? strdup(path) : NULL;
+    if (r && !copy) why_set(why, NSD_SOFTWARE, "no memory for a path");
+    if (copy) read_last(r, copy, why);
+    free(copy);
+    return done(run, r, why);
+}
+
+/* All bytes into a file in memory; its descriptor, or -1 */
+static int to_file(const void *bytes, size_t size)
+{
+    int fd = memfd_create("document", MFD_CLOEXEC);
+    const char *at = bytes;
+    while (fd >= 0 && size > 0) {
+        ssize_t n = write(fd, at, size);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return close(fd), -1;
+        at += n, size -= (size_t)n;
+    }
+    return fd;
+}
+
+/* In messages it is no file. */
+static void name_memory(struct why *why, const char *path)
+{
+    char text[sizeof why->text];
+    size_t n = strlen(path);
+    char *at = strstr(why->text, path);
+    if (!at) return;
+    snprintf(text, sizeof text, "%.*sthe document%s", (int)(at - why->text), why->text, at + n);
+    snprintf(why->text, sizeof why->text, "%s", text);
+}
+
+int nsd_from_memory(struct nsd_run **run, const void *document, size_t size)
+{
+    struct why *why = run_why_of_thread();
+    char path[40];
+    *run = NULL;
+    if (!document) return why_set(why, NSD_USAGE, "there is no document");
+    struct nsd_run *r = new_run(why);
+    int fd = r ? to_file(document, size) : -1;
+    if (r && fd < 0) why_set(why, NSD_SOFTWARE, "no memory for a document");
+    snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
+    if (fd >= 0) {
+        if (read_last(r, path, why)) name_memory(why, path);
+        close(fd);
+    }
+    return done(run, r, why);
+}
+
+int nsd_from_arrays(struct nsd_run **run, const char *scene, const char *folder,
+                    const struct nsd_bodies *bodies)
+{
+    struct nsd_run *r;
+    if (nsd_from_scene(&r, scene, folder)) return *run = NULL, of_thread.status;
+    struct why *why = run_why_of_thread();
+    if (r->f.packing.n)
+        why_set(why, NSD_DATA, "the scene has bodies of its own: arrays are for one without");
+    else
+        run_add(r, bodies, NULL, why);
+    r->other_bodies = false;
+    if (why->status) nsd_close(&r);
+    *run = r;
+    return why->status;
+}
+
+void nsd_close(struct nsd_run **run)
+{
+    struct nsd_run *r = run ? *run : NULL;
+    if (!r) return;
+    nsd_finish(r);
+    *run = NULL;
+    if (r->solved) r->f.report.options = NULL;
+    free(r->option_json);
+    run_lock();
+    frame_free(&r->f);
+    run_unlock();
+    contacts_free(&r->spare);
+    step_forget(&r->memory);
+    neighbours_free(&r->ahead);
+    flow_free(&r->flow);
+    undo_free(&r->undo), acts_free(&r->acts), outside_free(&r->last);
+    kept_free(&r->first), kept_free(&r->before);
+    for (int k = 0; k < MADE_MOST; k++) free(r->made[k]);
+    free(r->text);
+    free(r);
+}
+
+/* ---- options ---- */
+
+static const struct cli_option threads = { CLI_INT, .name = "threads", .to = &options.threads,
+                                           .min = 1, .max = 1024 };
+static const struct cli_option warm = { CLI_FLAG, .name = "warm", .to = &options.warm };
+
+static const struct cli_option *option_named(const char *name)
+{
+    if (!strcmp(name, threads.name)) return &threads;
+    if (!strcmp(name, warm.name)) return &warm;
+    for (int t = 0; t < 2; t++)
+        for (const struct cli_option *o = t ? options_detect : options_solve; o->kind; o++)
+            if (!strcmp(o->name, name)) return o;
+    return NULL;
+}
+
+/* "1e-4", "auto:0.01" */
+static int set_dt(struct nsd_run *r, const char *text, struct why *why)
+{
+    static const char word[] = "auto:";
+    struct packing *p = &r->f.packing;
+    bool adapts = !strncmp(text, word, sizeof word - 1);
+    const char *number = adapts ? text + sizeof word - 1 : text;
+    char *end;
+    double x = strtod(number, &end);
+    if (end == number || *end || !(x > 0 && x <= (adapts ? 1 : DBL_MAX)))
+        return why_set(
+            why, NSD_USAGE,
+            "dt: '%.60s' is neither a number of seconds above 0 nor auto:TOL, TOL a share "
+            "of a radius above 0 and at most 1",
+            text);
+    if (r->out) return why_set(why, NSD_USAGE, "dt: a trajectory has one: nsd_finish() ends it");
+    if (adapts) return r->tol = x, p->adapts = true, 0;
+    const struct packing was = *p;
+    p->halved = 0;
+    packing_set_dt(p, x);
+    if (packing_check_clock(p, why)) {
+        p->dt = was.dt, p->halved = was.halved, p->t0 = was.t0, p->step0 = was.step0;
+        return why->status;
+    }
+    memory_scale(&p->memory, x / was.dt);
+    r->tol = 0, p->adapts = false;
+    return 0;
+}
+
+static int set_flag(bool *to, const char *name, const char *value, struct why *why)
+{
+    const struct cli_option o = { CLI_FLAG, .name = name };
+    return option_set(&o, to, value, why);
+}
+
+static int set_option(struct nsd_run *r, const char *name, const char *value, struct why *why)
+{
+    if (!strcmp(name, "dt")) return set_dt(r, value, why);
+    if (!strcmp(name, "contacts")) return set_flag(&r->contacts, name, value, why);
+    if (!strcmp(name, "forces")) return set_flag(&r->forces, name, value, why);
+    if (asked_has(name)) return asked_set(&r->asked, name, value, why);
+    const struct cli_option *o = option_named(name);
+    if (!o) return why_set(why, NSD_USAGE, "%.60s: no such option", name);
+    struct options asked = r->options;
+    if (option_set(o, options_member(&asked, o->to), value, why)) return why->status;
+    options_give(&asked, o->to);
+    if (!strcmp(name, "theta") && r->out && asked.theta != r->f.packing.theta)
+        return why_set(why, NSD_USAGE, "theta: a trajectory has one: nsd_finish() ends it");
+    r->options = asked;
+    r->chosen = false;
+    return 0;
+}
+
+int nsd_set(struct nsd_run *r, const char *option, const char *value)
+{
+    struct why *why = run_why(r);
+    if (!why) return NSD_USAGE;
+    if (!option || !value) return why_set(why, NSD_USAGE, "an option has a name and a value");
+    if (set_option(r, option, value, why) && !strncmp(why->text, "--", 2))
+        memmove(why->text, why->text + 2, strlen(why->text + 2) + 1);
+    return why->status;
+}
+
+int run_choose(struct nsd_run *r, struct why *why)
+{
+    struct packing *p = &r->f.packing;
+    if (r->chosen) return 0;
+    if (options_names(&r->options, why)) return why->status;
+    struct step_opt o = options_step_of(&r->options, p->dt, false);
+    char *text = options_json_of(&r->options, &o);
+    if (!text) return why_set(why, NSD_SOFTWARE, "no memory for the options");
+    if (options_has(&r->options, &options.theta)) p->theta = r->options.theta;
+    p->overlap = options_overlap_of(&r->options, p, false);
+    free(r->option_json);
+    r->option_json = text, r->o = o;
+    if (r->solved) r->f.report.options = text;
+    r->chosen = r->f.stale = true;
+    return 0;
+}
+
+/* ---- steps ---- */
+
+static void swap_forces(struct outside *a, struct outside *b)
+{
+    const struct outside was = *a;
+    a->force = b->force, a->torque = b->torque, a->push = b->push, a->most = b->most;
+    b->force = was.force, b->torque = was.torque, b->push = was.push, b->most = was.most;
+}
+
+/* dt of the step to come */
+static int adapt(struct nsd_run *r, struct why *why)
+{
+    struct packing *p = &r->f.packing;
+    double had = p->dt;
+    if (!(r->tol > 0)) return 0;
+    if (adapt_step(p, r->tol, &r->ahead, why)) return why->status;
+    r->o.solve.local.newton_abs *= p->dt / had;
+    return 0;
+}
+
+/* Its contacts are r->spare, its report *rep. */
+static int advance(struct nsd_run *r, struct report *rep, struct why *why)
+{
+    struct packing *p = &r->f.packing;
+    bool changed = false;
+    if (adapt(r, why) || flow_step(&r->flow, p, NULL, &changed, why)) return why->status;
+    if (changed) step_forget(&r->memory), neighbours_free(&r->ahead);
+    if (acts_begin(&r->acts, p, why)) return why->status;
+    if (step_advance(p, &r->spare, &r->memory, &r->o, rep, why)) return why->status;
+    if (isfinite(rep->err.paper.eps_glob)) return 0;
+    return why_set(why, NSD_DIVERGED,
+                   "step %lld: the solve diverged, and the bodies have not moved",
+                   (long long)rep->step);
+}
+
+static int step_once(struct nsd_run *r, struct why *why)
+{
+    struct packing *p = &r->f.packing;
+    struct report rep = { 0 };
+    const struct step_opt o = r->o;
+    if (r->solved) rep = r->f.report;
+    rep.options = r->option_json;
+    if (undo_take(&r->undo, p, &r->acts, why)) return why->status;
+    bool whole = r->undo.whole;
+    if (!whole) swap_forces(&p->outside, &r->last);
+    if (advance(r, &rep, why)) {
+        if (!whole) swap_forces(&p->outside, &r->last);
+        undo_back(&r->undo, p, &r->acts);
+        step_forget(&r->memory), neighbours_free(&r->ahead);
+        r->o = o;
+        return why->status;
+    }
+    struct contacts had = r->f.contacts;
+    r->f.contacts = r->spare, r->spare = had;
+    if (!r->solved) report_free(&r->f.report);
+    r->f.report = rep, r->solved = true;
+    r->f.detected = r->f.reported = r->f.moved = true;
+    account_add(&r->f.account, &rep);
+    acts_end(&r->acts, p->walls);
+    return 0;
+}
+
+int nsd_step(struct nsd_run *r, int64_t n)
+{
+    struct why *why = run_why(r);
+    if (!why) return NSD_USAGE;
+    if (n < 0) return why_set(why, NSD_USAGE, "%lld steps cannot be made", (long long)n);
+    if (n && run_choose(r, why)) return why->status;
+    for (int64_t k = 0; k < n && !why->status; k++) step_once(r, why);
+    return why->status;
+}
+
+/* s: what a time may differ from that of its step, as nsd-step has it */
+static double slack(const struct packing *p, double t)
+{
+    return 1e-6 * p->dt + 4 * DBL_EPSILON * fabs(t);
+}
+
+int nsd_until(struct nsd_run *r, double t)
+{
+    struct why *why = run_why(r);
+    if (!why) return NSD_USAGE;
+    const struct packing *p = &r->f.packing;
+    if (!isfinite(t)) return why_set(why, NSD_USAGE, "a time of %g s is never reached", t);
+    if (!((t - p->t) / p->dt < 1e15))
+        return why_set(why, NSD_USAGE, "until %g s: more than 1e15 steps of %g s", t, p->dt);
+    if (run_choose(r, why)) return why->status;
+    while (!why->status && p->t < t - slack(p, t)) step_once(r, why);
+    return why->status;
+}
+
+int nsd_resizes(const struct nsd_run *r)
+{
+    return r && packing_varies(&r->f.packing);
+}
+
+void run_replace(struct nsd_run *r, struct packing *p, struct contacts *s)
+{
+    packing_free(&r->f.packing), contacts_free(&r->f.contacts);
+    r->f.packing = *p, r->f.contacts = *s;
+    step_forget(&r->memory), neighbours_free(&r->ahead);
+    outside_free(&r->last);
+    r->other_bodies = true;
+}

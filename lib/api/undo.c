@@ -1,0 +1,80 @@
+#include "api/undo.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void undo_free(struct undo *u)
+{
+    free(u->x), free(u->v), free(u->w), free(u->q), free(u->image), free(u->wall), free(u->recall);
+    if (u->whole) packing_free(&u->was), acts_free(&u->acts);
+    *u = (struct undo){ 0 };
+}
+
+/* Memory for the parts of p that a step changes */
+static int make_room(struct undo *u, const struct packing *p, struct why *why)
+{
+    size_t n = (size_t)p->n + 1;
+    if (!u->x || u->n != p->n || u->walls != p->walls || !u->image != !p->image) {
+        undo_free(u);
+        u->n = p->n, u->walls = p->walls;
+        u->x = malloc(n * sizeof *u->x), u->v = malloc(n * sizeof *u->v);
+        u->w = malloc(n * sizeof *u->w), u->q = malloc(n * sizeof *u->q);
+        u->wall = malloc(((size_t)p->walls + 1) * sizeof *u->wall);
+        u->image = p->image ? malloc(n * sizeof *u->image) : NULL;
+    }
+    if (!u->recall || u->room < p->memory.n) {
+        free(u->recall);
+        u->room = p->memory.n + p->memory.n / 2;
+        u->recall = malloc(((size_t)u->room + 1) * sizeof *u->recall);
+    }
+    if (u->x && u->v && u->w && u->q && u->wall && u->recall && (u->image || !p->image)) return 0;
+    undo_free(u);
+    return why_set(why, EX_SOFTWARE, "no memory for the state before a step");
+}
+
+/* Does a step change more than places and velocities? */
+static bool changes_more(const struct packing *p)
+{
+    return packing_varies(p) || p->law;
+}
+
+int undo_take(struct undo *u, const struct packing *p, const struct acts *acts, struct why *why)
+{
+    size_t n = (size_t)p->n;
+    if (u->whole) undo_free(u);
+    if (changes_more(p)) {
+        undo_free(u);
+        if (packing_copy(&u->was, p, why)) return u->was = (struct packing){ 0 }, why->status;
+        if (acts_copy(&u->acts, acts, p->walls, why)) return packing_free(&u->was), why->status;
+        u->whole = true;
+        return 0;
+    }
+    if (make_room(u, p, why)) return why->status;
+    memcpy(u->x, p->x, n * sizeof *u->x), memcpy(u->v, p->v, n * sizeof *u->v);
+    memcpy(u->w, p->w, n * sizeof *u->w), memcpy(u->q, p->q, n * sizeof *u->q);
+    memcpy(u->wall, p->wall, (size_t)p->walls * sizeof *u->wall);
+    if (p->image) memcpy(u->image, p->image, n * sizeof *u->image);
+    if (p->memory.n) memcpy(u->recall, p->memory.recall, (size_t)p->memory.n * sizeof *u->recall);
+    u->was = *p;
+    return 0;
+}
+
+void undo_back(struct undo *u, struct packing *p, struct acts *acts)
+{
+    size_t n = (size_t)u->n;
+    if (u->whole) {
+        packing_free(p), acts_free(acts);
+        *p = u->was, *acts = u->acts;
+        u->whole = false, u->was = (struct packing){ 0 }, u->acts = (struct acts){ 0 };
+        return;
+    }
+    memcpy(p->x, u->x, n * sizeof *u->x), memcpy(p->v, u->v, n * sizeof *u->v);
+    memcpy(p->w, u->w, n * sizeof *u->w), memcpy(p->q, u->q, n * sizeof *u->q);
+    memcpy(p->wall, u->wall, (size_t)u->walls * sizeof *u->wall);
+    if (p->image) memcpy(p->image, u->image, n * sizeof *u->image);
+    p->step = u->was.step, p->t = u->was.t, p->t0 = u->was.t0, p->step0 = u->was.step0;
+    p->dt = u->was.dt, p->halved = u->was.halved, p->cell = u->was.cell;
+    free(p->memory.recall); // another than it was, perhaps
+    p->memory = (struct memory){ u->was.memory.on, u->was.memory.n, u->room, u->recall };
+    u->recall = NULL, u->room = 0;
+}

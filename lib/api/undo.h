@@ -1,0 +1,30 @@
+/*
+ * api/undo.h: what a packing was before a step, should the step fail. Its arrays stay where they are, unless bodies come
+ * and go or bonds last.
+ */
+#ifndef NSD_UNDO_H
+#define NSD_UNDO_H
+
+#include "api/acts.h"
+
+/* All zero to begin with */
+struct undo {
+    int64_t n, room;     /* bodies; reactions there is memory for */
+    vec3 *x, *v, *w;     /* [n] */
+    quat *q;             /* [n] */
+    int32_t (*image)[3]; /* [n] */
+    struct wall *wall;
+    int32_t walls;
+    struct recall *recall; /* [room] */
+    struct packing was;    /* its numbers; or, whole, a copy */
+    bool whole;
+    struct acts acts; /* whole: a copy, too */
+};
+
+void undo_free(struct undo *undo);
+/* Remembers. Returns 0 or EX_SOFTWARE, where the packing may not be stepped. */
+int undo_take(struct undo *undo, const struct packing *p, const struct acts *acts, struct why *why);
+/* p and acts are what they were. */
+void undo_back(struct undo *undo, struct packing *p, struct acts *acts);
+
+#endif

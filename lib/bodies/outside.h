@@ -1,0 +1,49 @@
+/*
+ * bodies/outside.h: what acts on a packing from outside: a program that steps it (api/nsd.h) or that nsd-step
+ * asks (nsd-step --with). The forces enter the equation of motion beside gravity,
+ *
+ *     M (v+ - v) = dt (M g + F) + H r
+ *
+ * and those of boundaries add to their loads. All is of the step to come. A packing without any has none of the arrays.
+ */
+#ifndef NSD_OUTSIDE_H
+#define NSD_OUTSIDE_H
+
+#include "base/vec.h"
+#include "base/why.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct outside {
+    vec3 *force, *torque; /* [n] N, N m, in space; NULL: none, of either */
+    double most;          /* m/s^2: no body gains more by them; outside_measure() keeps it */
+    double *push;         /* [walls] N, N m: added to the load of a boundary; NULL: none */
+    bool steered; /* gravity, friction or the motion of a boundary may differ from frame to frame */
+    int64_t length, room; /* bytes of words */
+    char *words; /* what was answered since the last frame: JSON lines, not ended by a 0; or NULL */
+};
+
+void outside_free(struct outside *outside);
+/* The forces are of a step that has been made, and the words are written: they are gone. */
+void outside_forget(struct outside *outside);
+/* to = a deep copy for n bodies and so many walls; to need not be initialised. Returns 0 or EX_SOFTWARE, where there
+   is nothing to free. */
+int outside_copy(struct outside *to, const struct outside *from, int64_t n, int32_t walls,
+                 struct why *why);
+/* *to = force or torque, [n], zero, unless it exists; push[walls], likewise. Each returns 0 or EX_SOFTWARE, where nothing
+   has changed. */
+int outside_alloc(vec3 **to, int64_t n, struct why *why);
+int outside_alloc_push(struct outside *outside, int32_t walls, struct why *why);
+/* Forces of n bodies in place of those of `had`; new ones are zero. Returns 0 or EX_SOFTWARE, where nothing has
+   changed. */
+int outside_resize(struct outside *outside, int64_t had, int64_t n, struct why *why);
+/* Finds `most`, of bodies with these masses (kg). */
+void outside_measure(struct outside *outside, const double *mass, int64_t n);
+/* Appends words of length bytes. Returns 0 or EX_SOFTWARE, where nothing has changed. */
+int outside_say(struct outside *outside, const char *words, int64_t length, struct why *why);
+/* Is every number finite, and in the plane where dim is 2? Returns 0 or EX_DATAERR. */
+int outside_check(const struct outside *outside, int dim, int64_t n, int32_t walls,
+                  struct why *why);
+
+#endif

@@ -1,0 +1,342 @@
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): memfd_create
+#include "cli/loop.h"
+
+#include "api/answer.h"
+#include "cli/partner.h"
+#include "io/reader.h"
+#include "io/writer.h"
+#include "measure/asked.h"
+#include "measure/measured.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum {
+    ANSWER_LEAST = 1 << 20, /* bytes that an answer may have, at least, */
+    ANSWER_BODY = 512,      /* and for each body: two vectors with all their digits have 160 */
+    KEPT_MOST = 1 << 30     /* bytes of answers between two frames, which are kept in memory */
+};
+
+static const double GRACE = 0.2; /* s: for a program that has failed to end by itself */
+
+static const char *command, *replay, *boundaries, *measures;
+static int64_t every = 1;
+static double timeout = 60; /* s: a program that computes for a minute before a step is not meant */
+static bool document;
+
+const struct cli_option options_loop[] = {
+    { CLI_TEXT, 0, "with", &command, "CMD", .silent = true,
+      .help = "ask CMD before steps, by lines of JSON, what shall act" },
+    { CLI_INT, 0, "with-every", &every, "K", .min = 1, .max = 1e15, .silent = true,
+      .help = "before each K-th step, and the first [1]" },
+    { CLI_TEXT, 0, "with-boundaries", &boundaries, "all|N,...", .silent = true,
+      .help = "tell it of these boundaries [none]" },
+    { CLI_TEXT, 0, "with-measures", &measures, "A,B,...", .silent = true,
+      .help = "tell it these measures of nsd-stat [none]" },
+    { CLI_FLAG, 0, "with-document", &document, .silent = true,
+      .help = "send it a whole document, behind each line" },
+    { CLI_ABOVE, 0, "with-timeout", &timeout, "S", .max = 1e9, .silent = true,
+      .help = "end the run when it takes longer [60 s]" },
+    { CLI_TEXT, 0, "replay", &replay, "FILE", .silent = true,
+      .help = "the answers that FILE has, without a program" },
+    { 0 },
+};
+
+/* An answer of a run before */
+struct said {
+    int64_t step; /* before which */
+    json_t *answer;
+};
+
+static struct {
+    struct partner *partner;
+    const struct measure *chosen[MOST_MEASURES + 1];
+    struct asked asked;
+    struct kept first, before;
+    bool remembers;
+    struct said *said;
+    int64_t n, room; /* of them */
+    int64_t last;    /* step of the run before */
+    bool failed;
+} loop = { .asked = ASKED_DEFAULT };
+
+bool loop_asks(void)
+{
+    return command || replay;
+}
+
+/* Is the boundary among those of --with-boundaries? */
+static bool is_told(int32_t wall)
+{
+    const char *s = boundaries;
+    if (!s || !strcmp(s, "all")) return s;
+    for (char *end;; s = end + 1)
+        if (strtoll(s, &end, 10) == wall || *end != ',') return strtoll(s, NULL, 10) == wall;
+}
+
+static void check_boundaries(void)
+{
+    const char *s = boundaries;
+    if (!s || !strcmp(s, "all")) return;
+    for (char *end;; s = end + 1) {
+        long long n = strtoll(s, &end, 10);
+        if (end == s || n < 0 || n > INT32_MAX || (*end && *end != ','))
+            die_usage("--with-boundaries: '%s' is neither all nor numbers with commas between",
+                      boundaries);
+        if (!*end) return;
+    }
+}
+
+void loop_check(void)
+{
+    struct why why = { 0 };
+    if (command && replay) die_usage("--with and --replay exclude each other");
+    for (const struct cli_option *o = options_loop + 1; o->kind && o->to != &replay; o++)
+        if (cli_given(o->to) && !command) die_usage("--%s: wants --with", o->name);
+    check_boundaries();
+    if (measures && measured_choose(loop.chosen, measures, &why))
+        die_usage("--with-measures: %s", strchr(why.text, ' ') + 1);
+}
+
+/* ---- answers of a run before ---- */
+
+static void keep_line(const char *line, size_t length)
+{
+    json_t *j = json_loadb(line, length, 0, NULL), *answer = json_object_get(j, "answer");
+    json_t *step = json_object_get(j, "step");
+    if (!json_is_integer(step) || !json_is_object(answer))
+        die(EX_DATAERR, "%s: /nsd/outside/answer: not a step and an answer", replay);
+    if (loop.n == loop.room) {
+        loop.room = loop.room ? 2 * loop.room : 64;
+        loop.said = realloc(loop.said, (size_t)loop.room * sizeof *loop.said);
+        if (!loop.said) die(EX_SOFTWARE, "no memory for answers");
+    }
+    loop.said[loop.n++] = (struct said){ json_integer_value(step), json_incref(answer) };
+    json_decref(j);
+}
+
+static void keep_lines(const struct outside *o)
+{
+    for (int64_t at = 0; at < o->length;) {
+        const char *line = o->words + at, *end = memchr(line, '\n', (size_t)(o->length - at));
+        size_t length = end ? (size_t)(end - line) : (size_t)(o->length - at);
+        keep_line(line, length);
+        at += (int64_t)length + 1;
+    }
+}
+
+static void read_answers(void)
+{
+    struct reader *in;
+    struct frame f = { 0 };
+    struct why why = { 0 };
+    bool more;
+    char *path = strdup(replay);
+    if (!path) die(EX_SOFTWARE, "no memory for a path");
+    if (reader_open(&in, 1, &path, &why)) die_why(&why);
+    while (!reader_next(in, NULL, &f, &more, &why) && more)
+        if (f.packed) keep_lines(&f.packing.outside), loop.last = f.packing.step;
+    if (why.status) die_why(&why);
+    if (!loop.n) die(EX_DATAERR, "--replay: %s has no answers", replay);
+    frame_free(&f);
+    reader_close(in);
+    free(path);
+}
+
+void loop_open(void)
+{
+    struct why why = { 0 };
+    if (replay) read_answers();
+    if (command && partner_start(&loop.partner, command, &why))
+        die(why.status, "--with: %s", why.text);
+}
+
+void loop_close(void)
+{
+    partner_end(loop.partner, loop.failed ? GRACE : timeout);
+    loop.partner = NULL;
+    for (int64_t k = 0; k < loop.n; k++) json_decref(loop.said[k].answer);
+    free(loop.said);
+    kept_free(&loop.first), kept_free(&loop.before);
+}
+
+/* ---- what is told ---- */
+
+static void put_vector(FILE *out, const char *name, vec3 x)
+{
+    fprintf(out, ",\"%s\":[", name);
+    print_number(out, x.x, "null"), fputc(',', out);
+    print_number(out, x.y, "null"), fputc(',', out);
+    print_number(out, x.z, "null"), fputc(']', out);
+}
+
+/* N: what the bodies do to the boundary; found: of solved contacts */
+static vec3 force_on(const struct packing *p, const struct contacts *s, int32_t wall)
+{
+    vec3 sum = v3(0, 0, 0);
+    for (int64_t i = 0; i < s->n && s->c[i].a < 0; i++)
+        if (s->c[i].a == -1 - wall)
+            sum = v3_axpy(sum, -1 / p->dt, contact_in_space(&s->c[i], s->found[i].r));
+    return sum;
+}
+
+static void put_boundaries(FILE *out, const struct packing *p, const struct contacts *s)
+{
+    const char *mark = "";
+    fputs(",\"boundaries\":[", out);
+    for (int32_t w = 0; w < p->walls; w++) {
+        if (!is_told(w)) continue;
+        vec3 x = wall_at(p, &p->wall[w], p->t);
+        fprintf(out, "%s{\"boundary\":%d", mark, w);
+        put_vector(out, "position", x);
+        put_vector(out, "velocity", wall_velocity(p, &p->wall[w], x));
+        if (s && s->found)
+            put_vector(out, "force", force_on(p, s, w));
+        else
+            fputs(",\"force\":null", out);
+        fputc('}', out), mark = ",";
+    }
+    fputc(']', out);
+}
+
+static int put_measures(FILE *out, const struct frame *f, const struct contacts *s, struct why *why)
+{
+    struct snapshot look;
+    struct table t[MOST_MEASURES];
+    const struct packing *p = &f->packing;
+    snapshot_init(&look, p, s, f->moved, &loop.asked);
+    if (loop.remembers) look.first = &loop.first, look.before = &loop.before;
+    if (!measured_run(t, loop.chosen, &look, why)) {
+        fputs(",\"measures\":", out);
+        measured_json(out, &look, loop.chosen, t);
+    }
+    measured_free(t);
+    if (why->status || !measured_remember(loop.chosen)) return why->status;
+    if (!loop.remembers && kept_set(&loop.first, p, why)) return why->status;
+    loop.remembers = true;
+    return kept_set(&loop.before, p, why);
+}
+
+/* The document of a frame, in memory; to be freed */
+static char *document_of(const struct frame *f, size_t *size, struct why *why)
+{
+    struct writer *out;
+    struct stat st = { 0 };
+    char path[40], *bytes = NULL;
+    int fd = memfd_create("document", MFD_CLOEXEC);
+    if (fd < 0) return why_set(why, EX_SOFTWARE, "no memory for a document"), NULL;
+    snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
+    if (!writer_open(&out, path, WRITER_STREAM, why) && !writer_frame(out, f, why) &&
+        !writer_close(out, why) && !fstat(fd, &st) && (bytes = malloc((size_t)st.st_size + 1))) {
+        *size = (size_t)st.st_size;
+        for (size_t at = 0; at < *size;) {
+            ssize_t n = pread(fd, bytes + at, *size - at, (off_t)at);
+            if (n <= 0 && !(n < 0 && errno == EINTR)) break;
+            if (n > 0) at += (size_t)n;
+        }
+    }
+    if (!bytes) why_set(why, EX_SOFTWARE, "no memory for a document");
+    close(fd);
+    return bytes;
+}
+
+/* The line, and the document behind it; to be freed */
+static char *message(const struct frame *f, const struct contacts *s, size_t *length,
+                     struct why *why)
+{
+    const struct packing *p = &f->packing;
+    char *text = NULL, *bytes = NULL;
+    size_t size = 0;
+    struct frame all = *f;
+    all.detected = s != NULL;
+    if (document && !(bytes = document_of(&all, &size, why))) return NULL;
+    FILE *out = open_memstream(&text, length);
+    if (out) {
+        fprintf(out, "{\"step\":%" PRId64 ",\"time\":", p->step);
+        print_number(out, p->t, "null");
+        fputs(",\"dt\":", out), print_number(out, p->dt, "null");
+        fprintf(out, ",\"bodies\":%" PRId64, p->n);
+        if (boundaries) put_boundaries(out, p, s);
+        if (measures) put_measures(out, f, s, why);
+        if (document) fprintf(out, ",\"document\":%zu", size);
+        fputs("}\n", out);
+        fwrite(bytes, 1, size, out);
+    }
+    bool bad = !out || ferror(out);
+    if ((out && fclose(out)) || bad) why_set(why, EX_SOFTWARE, "no memory for a line");
+    free(bytes);
+    return text;
+}
+
+/* ---- a step ---- */
+
+/* For whoever repeats the run */
+static int keep(struct packing *p, const json_t *answer, struct why *why)
+{
+    json_t *j = json_pack("{s:I, s:O}", "step", (json_int_t)p->step + 1, "answer", answer);
+    char *text = j ? json_dumps(j, JSON_COMPACT | JSON_REAL_PRECISION(17)) : NULL;
+    json_decref(j);
+    if (!text) return why_set(why, EX_SOFTWARE, "no memory for an answer");
+    size_t n = strlen(text);
+    text[n] = '\n'; // in place of its end
+    if (p->outside.length + (int64_t)n > KEPT_MOST)
+        why_set(why, EX_UNAVAILABLE,
+                "more than %d MiB of answers since the last frame: keep more frames (--every)",
+                KEPT_MOST >> 20);
+    else
+        outside_say(&p->outside, text, (int64_t)n + 1, why);
+    free(text);
+    return why->status;
+}
+
+static json_t *ask(const struct frame *f, bool first, struct why *why)
+{
+    const struct packing *p = &f->packing;
+    size_t length = 0, n, most = ANSWER_LEAST + (size_t)p->n * ANSWER_BODY;
+    char *line, *text = message(f, first ? NULL : &f->contacts, &length, why);
+    json_t *answer = NULL;
+    if (!why->status && !partner_write(loop.partner, text, length, timeout, why) &&
+        !partner_line(loop.partner, &line, &n, most, timeout, why))
+        answer = answer_parse(line, n, why);
+    free(text);
+    return answer;
+}
+
+/* The last answer until the step: before the first one of a run what acts since then, later its own */
+static json_t *replayed(int64_t step, bool first)
+{
+    int64_t lo = 0, hi = loop.n; // in the order of their steps
+    while (lo < hi) {
+        int64_t middle = lo + (hi - lo) / 2;
+        *(loop.said[middle].step <= step ? &lo : &hi) =
+            loop.said[middle].step <= step ? middle + 1 : middle;
+    }
+    if (!lo || (!first && loop.said[lo - 1].step != step)) return NULL;
+    return json_incref(loop.said[lo - 1].answer);
+}
+
+bool loop_before_step(struct frame *f, struct acts *acts, bool first, struct why *why)
+{
+    struct packing *p = &f->packing;
+    struct why trouble = { 0 };
+    p->outside.steered = true; // from the first frame on: later answers may move what rests
+    bool stop = false, due = first || p->step % every == 0;
+    json_t *answer = NULL;
+    if (replay) answer = replayed(p->step + 1, first);
+    if (command && due) answer = ask(f, first, &trouble);
+    if (answer && !keep(p, answer, &trouble)) answer_apply(answer, acts, p, &stop, &trouble);
+    if (replay && !answer) stop = p->step >= loop.last;
+    json_decref(answer);
+    if (!trouble.status) return !stop;
+    loop.failed = true;
+    why_set(why, trouble.status == EX_SOFTWARE ? EX_SOFTWARE : EX_UNAVAILABLE,
+            "step %lld: --%s: %s", (long long)p->step + 1, command ? "with" : "replay",
+            trouble.text);
+    return false;
+}

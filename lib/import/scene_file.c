@@ -1,0 +1,118 @@
+#include "import/scene_file.h"
+
+#include "import/import_file.h"
+#include "io/reader.h"
+#include "scene/mesh_file.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum {
+    MOST_PIPED = 1 << 26
+}; /* bytes of a scene that is no file, whose size says how long it is */
+
+char *scene_file_slurp(FILE *f, const char *name, size_t *n, struct why *why)
+{
+    struct stat st;
+    bool file = !fstat(fileno(f), &st) && S_ISREG(st.st_mode);
+    size_t room = 1 << 16;
+    char *text = malloc(room);
+    for (*n = 0; text;) {
+        *n += fread(text + *n, 1, room - *n, f);
+        if (*n < room) break;
+        if (!file && *n >= MOST_PIPED) {
+            free(text);
+            why_set(why, EX_DATAERR,
+                    "%s: more than %d MB for a scene (endless?): put it into a file", name,
+                    MOST_PIPED >> 20);
+            return NULL;
+        }
+        room *= 2;
+        char *more = realloc(text, room);
+        if (!more) free(text);
+        text = more;
+    }
+    if (!text) return why_set(why, EX_SOFTWARE, "%s: no memory", name), NULL;
+    if (!ferror(f)) return text;
+    free(text);
+    why_set(why, EX_NOINPUT, "%s: %s", name, strerror(errno));
+    return NULL;
+}
+
+/* How many frames there are in all documents of a file; -1: trouble */
+static int64_t count_frames(char *path, struct why *why)
+{
+    struct reader *in;
+    int64_t frames = 0, all = 0;
+    if (!reader_open(&in, 1, &path, why))
+        while (!reader_document(in, &frames, why) && frames >= 0) all += frames;
+    reader_close(in);
+    return why->status ? -1 : all;
+}
+
+/* Frame k of the file, from 0, or from the end: -1 is the last */
+static int read_frame(struct frame *f, char *path, int64_t k, struct why *why)
+{
+    struct reader *in;
+    bool more = true;
+    int64_t wanted = k < -1 ? count_frames(path, why) + k : k;
+    if (why->status) return why->status;
+    if (!reader_open(&in, 1, &path, why)) {
+        if (k == -1) reader_last(in, f, &more, why);
+        for (int64_t i = 0; k != -1 && i <= wanted && more && !why->status; i++)
+            reader_next(in, NULL, f, &more, why);
+    }
+    reader_close(in);
+    if (why->status) return why->status;
+    if (!more || (k < -1 && wanted < 0))
+        return why_set(why, EX_DATAERR, "%s: no frame %lld", path, (long long)k);
+    return f->packed ? 0 : why_set(why, EX_DATAERR, "%s: an FCLIB problem has no bodies", path);
+}
+
+/* The balls of another program's file, as the scene's group asks for them */
+static int read_foreign(struct scene_bodies *b, int dim, const char *path, struct why *why)
+{
+    struct import_said said;
+    struct import_wish wish = { .dim = dim, .frame = b->frame, .has_repeats = b->has_repeats };
+    for (int k = 0; k < 3; k++) wish.repeats[k] = b->repeats[k];
+    if (import_file(b->document, path, &wish, &said, why)) return why->status;
+    b->unsaid = !said.masses;
+    return 0;
+}
+
+static int read_document(struct scene_bodies *b, int dim, const char *dir, struct why *why)
+{
+    struct frame f = { 0 };
+    char *path = scene_path(dir, b->file);
+    if (path && access(path, F_OK) && !access(b->file, F_OK)) // as nsd-info --scene has it
+        strcpy(path, b->file);
+    b->document = calloc(1, sizeof *b->document);
+    if (!path || !b->document)
+        why_set(why, EX_SOFTWARE, "no memory for a document");
+    else if (b->foreign)
+        read_foreign(b, dim, path, why);
+    else if (!read_frame(&f, path, b->frame, why))
+        *b->document = f.packing, f.packing = (struct packing){ 0 };
+    if (why->status) free(b->document), b->document = NULL;
+    frame_free(&f);
+    free(path);
+    return why->status;
+}
+
+int scene_file_parse(struct scene *s, const char *text, size_t n, const char *name, const char *dir,
+                     struct why *why)
+{
+    struct scene_files files = { .read_mesh = mesh_file_read, .dir = dir };
+    struct why trouble = { 0 };
+    if (scene_parse(s, text, n, &files, &trouble))
+        return name ? why_set(why, trouble.status, "%s:%s", name, trouble.text)
+                    : why_set(why, trouble.status, "%s", trouble.text);
+    for (int64_t g = 0; g < s->groups && !why->status; g++)
+        if (s->bodies[g].from == SCENE_DOCUMENT) read_document(&s->bodies[g], s->dim, dir, why);
+    if (!why->status) mesh_files_read(s, &files, why);
+    if (why->status) scene_free(s);
+    return why->status;
+}

@@ -1,0 +1,198 @@
+#include "io/outside_tables.h"
+
+#include "hdf5/h5.h"
+#include "io/table_read.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define HOME "/nsd/outside"
+
+/* ---- to a document ---- */
+
+static int write_row(struct table_write *s, const char *path, int rank, const hsize_t *shape,
+                     const void *data, const char *units, struct why *why)
+{
+    return table_write_rows(s, path, COLUMN_F64, rank, shape, CHUNK_FRAMES, data, units, why);
+}
+
+static int write_boundaries(struct table_write *s, const struct packing *p, struct why *why)
+{
+    const hsize_t shape[3] = { 1, (hsize_t)p->walls, 3 };
+    size_t n = (size_t)p->walls;
+    vec3 *x = calloc(2 * n + 1, sizeof *x);
+    double *push = calloc(n + 1, sizeof *push);
+    if (!x || !push) {
+        free(x), free(push);
+        return why_set(why, EX_SOFTWARE, "no memory for the boundaries");
+    }
+    for (size_t w = 0; w < n; w++) {
+        x[w] = p->wall[w].x, x[n + w] = p->wall[w].v;
+        if (p->outside.push) push[w] = p->outside.push[w];
+    }
+    if (!write_row(s, HOME "/point", 3, shape, x, "m", why) &&
+        !write_row(s, HOME "/velocity", 3, shape, x + n, "m s-1", why))
+        write_row(s, HOME "/push", 2, shape, push, "N, N m", why);
+    free(x), free(push);
+    return why->status;
+}
+
+/* start and count of the rows that belong to the frame */
+static int write_span(struct table_write *s, const char *name, int64_t start, int64_t count,
+                      struct why *why)
+{
+    const hsize_t one = 1;
+    char path[80];
+    snprintf(path, sizeof path, HOME "/%s/start", name);
+    if (table_write_rows(s, path, COLUMN_I64, 1, &one, CHUNK_FRAMES, &start, NULL, why))
+        return why->status;
+    snprintf(path, sizeof path, HOME "/%s/count", name);
+    return table_write_rows(s, path, COLUMN_I64, 1, &one, CHUNK_FRAMES, &count, NULL, why);
+}
+
+/* Of bodies, without which a column has 0 */
+static int write_forces(struct table_write *s, const struct packing *p, bool any, struct why *why)
+{
+    int64_t n = any ? p->n : 0;
+    const hsize_t shape[2] = { (hsize_t)n, 3 };
+    vec3 *none = calloc((size_t)n + 1, sizeof *none);
+    if (!none) return why_set(why, EX_SOFTWARE, "no memory for forces");
+    const vec3 *force = any && p->outside.force ? p->outside.force : none;
+    const vec3 *torque = any && p->outside.torque ? p->outside.torque : none;
+    if (!write_span(s, "body", s->forces, n, why) &&
+        !table_write_rows(s, HOME "/body/force", COLUMN_F64, 2, shape, CHUNK_CONTACTS, force, "N",
+                          why))
+        table_write_rows(s, HOME "/body/torque", COLUMN_F64, 2, shape, CHUNK_CONTACTS, torque,
+                         "N m", why);
+    free(none);
+    if (s->growing) s->forces += n;
+    return why->status;
+}
+
+static int write_words(struct table_write *s, const struct outside *o, struct why *why)
+{
+    const hsize_t length = (hsize_t)o->length;
+    if (write_span(s, "answer", s->words, o->length, why) ||
+        table_write_rows(s, HOME "/answer/text", COLUMN_I8, 1, &length, CHUNK_CONTACTS,
+                         o->length ? o->words : "", NULL, why))
+        return why->status;
+    if (s->growing) s->words += o->length;
+    return 0;
+}
+
+int outside_tables_write(struct table_write *s, const struct frame *f, struct why *why)
+{
+    const struct packing *p = &f->packing;
+    const struct outside *o = &p->outside;
+    const hsize_t row[2] = { 1, 3 }, pairs[2] = { 1, (hsize_t)p->kinds * (hsize_t)p->kinds };
+    const double g[3] = { p->g.x, p->g.y, p->g.z };
+    bool forces = f->detected && (o->force || o->torque) && !f->distributed;
+    if (!o->steered && !forces && !o->length && !(f->detected && o->push)) return 0;
+    if (table_write_rows(s, HOME "/step", COLUMN_I64, 1, row, CHUNK_FRAMES, &p->step, NULL, why) ||
+        write_row(s, HOME "/gravity", 2, row, g, "m s-2", why) ||
+        write_row(s, HOME "/friction", 2, pairs, p->mu, NULL, why) || write_boundaries(s, p, why) ||
+        write_forces(s, p, forces, why))
+        return why->status;
+    return write_words(s, o, why);
+}
+
+/* ---- from a document ---- */
+
+/* The row of the step; -1: none */
+static int64_t row_of(struct source *s, int64_t step, struct why *why)
+{
+    int64_t n = 0;
+    if (!source_has(s, HOME "/step")) return -1;
+    int64_t *steps = table_read_steps(s, HOME "/step", &n, why);
+    int64_t row = steps ? table_read_row(steps, table_read_rising(steps, n), step) : -1;
+    free(steps);
+    return row;
+}
+
+static int read_boundaries(struct source *s, int64_t row, struct packing *p, struct why *why)
+{
+    size_t n = (size_t)p->walls;
+    vec3 *x = calloc(2 * n + 1, sizeof *x);
+    if (!x) return why_set(why, EX_SOFTWARE, "no memory for the boundaries");
+    if (!source_rows(s, HOME "/point", COLUMN_F64, row, 1, 3 * p->walls, x, why) &&
+        !source_rows(s, HOME "/velocity", COLUMN_F64, row, 1, 3 * p->walls, x + n, why) &&
+        !outside_alloc_push(&p->outside, p->walls, why))
+        source_rows(s, HOME "/push", COLUMN_F64, row, 1, p->walls, p->outside.push, why);
+    bool any = false;
+    for (size_t w = 0; w < n && !why->status; w++) {
+        if (!v3_finite(x[w]) || !v3_finite(x[n + w]))
+            why_set(why, EX_DATAERR, HOME ": the motion of wall %zu is not finite", w);
+        p->wall[w].x = x[w], p->wall[w].v = x[n + w];
+        any = any || p->outside.push[w] != 0;
+    }
+    if (!any) free(p->outside.push), p->outside.push = NULL;
+    free(x);
+    return why->status;
+}
+
+/* The span of the frame, which is to be within what is stored and at most `most` long */
+static int read_span(struct source *s, const char *name, int64_t row, int64_t most, int64_t *start,
+                     int64_t *count, struct why *why)
+{
+    char path[80];
+    snprintf(path, sizeof path, HOME "/%s/start", name);
+    if (source_rows(s, path, COLUMN_I64, row, 1, 1, start, why)) return why->status;
+    snprintf(path, sizeof path, HOME "/%s/count", name);
+    if (source_rows(s, path, COLUMN_I64, row, 1, 1, count, why)) return why->status;
+    if (*start >= 0 && *count >= 0 && *count <= most) return 0;
+    return why_set(why, EX_DATAERR, "%s: %lld from %lld on is out of range", path,
+                   (long long)*count, (long long)*start);
+}
+
+static int read_forces(struct source *s, int64_t row, struct packing *p, struct why *why)
+{
+    int64_t start, count;
+    if (read_span(s, "body", row, p->n, &start, &count, why) || !count) return why->status;
+    if (count != p->n)
+        return why_set(why, EX_DATAERR,
+                       HOME "/body/count: forces of %lld bodies, and there are %lld",
+                       (long long)count, (long long)p->n);
+    if (outside_alloc(&p->outside.force, p->n, why) ||
+        outside_alloc(&p->outside.torque, p->n, why) ||
+        source_rows(s, HOME "/body/force", COLUMN_F64, start, count, 3, p->outside.force, why))
+        return why->status;
+    if (source_rows(s, HOME "/body/torque", COLUMN_F64, start, count, 3, p->outside.torque, why))
+        return why->status;
+    outside_measure(&p->outside, p->mass, p->n);
+    return 0;
+}
+
+static int read_words(struct source *s, int64_t row, struct outside *o, struct why *why)
+{
+    uint64_t shape[4];
+    int64_t start, count;
+    if (source_shape(s, HOME "/answer/text", shape) != 1)
+        return why_set(why, EX_DATAERR, HOME "/answer/text: not of one dimension");
+    if (read_span(s, "answer", row, (int64_t)shape[0], &start, &count, why) || !count)
+        return why->status;
+    if (!(o->words = malloc((size_t)count)))
+        return why_set(why, EX_SOFTWARE, "no memory for what was answered");
+    o->length = o->room = count;
+    return source_rows(s, HOME "/answer/text", COLUMN_I8, start, count, 1, o->words, why);
+}
+
+int outside_tables_read(struct source *s, struct packing *p, struct why *why)
+{
+    double g[3];
+    int64_t row = row_of(s, p->step, why);
+    if (why->status || row < 0) return why->status;
+    if (source_rows(s, HOME "/gravity", COLUMN_F64, row, 1, 3, g, why) ||
+        source_rows(s, HOME "/friction", COLUMN_F64, row, 1, (int64_t)p->kinds * p->kinds, p->mu,
+                    why) ||
+        read_boundaries(s, row, p, why) || read_forces(s, row, p, why) ||
+        read_words(s, row, &p->outside, why))
+        return why->status;
+    p->g = v3(g[0], g[1], g[2]);
+    p->outside.steered = true;
+    for (int32_t a = 0; a < p->kinds; a++)
+        for (int32_t b = 0; b < a; b++)
+            if (p->mu[a * p->kinds + b] != p->mu[b * p->kinds + a])
+                return why_set(why, EX_DATAERR, HOME "/friction: not symmetric");
+    return 0;
+}

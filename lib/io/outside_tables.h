@@ -1,0 +1,18 @@
+/*
+ * io/outside_tables.h: what has acted from outside [bodies/outside.h] in a document: gravity, friction and the motion
+ * of boundaries of frames in which they may differ, the forces of a step whose contacts are kept, and what was
+ * answered. Frames in which nothing has acted have no row.
+ */
+#ifndef NSD_OUTSIDE_TABLES_H
+#define NSD_OUTSIDE_TABLES_H
+
+#include "io/frame.h"
+#include "hdf5/source.h"
+#include "io/table_write.h"
+
+/* Into a packing that has all else of its frame, its step too. Returns 0, EX_DATAERR or EX_SOFTWARE. */
+int outside_tables_read(struct source *source, struct packing *p, struct why *why);
+/* A frame's part */
+int outside_tables_write(struct table_write *tables, const struct frame *frame, struct why *why);
+
+#endif

@@ -1,0 +1,68 @@
+"""libnsd.so.1 by ctypes: what nsd.h declares."""
+from __future__ import annotations
+
+import ctypes
+import os
+from ctypes import POINTER, c_char, c_char_p, c_double, c_int, c_int32, c_int64, c_size_t, c_void_p
+from pathlib import Path
+
+
+class Bodies(ctypes.Structure):
+    _fields_ = [("size", c_size_t), ("n", c_int64), ("position", c_void_p), ("radius", c_void_p),
+                ("orientation", c_void_p), ("velocity", c_void_p), ("angular_velocity", c_void_p),
+                ("mass", c_void_p), ("inertia", c_void_p), ("kind", c_void_p), ("density", c_double)]
+
+
+class Array(ctypes.Structure):
+    _fields_ = [("size", c_size_t), ("data", c_void_p), ("unit", c_char_p), ("shape", c_int64 * 2),
+                ("stride", c_int64 * 2), ("rank", c_int32), ("type", c_char), ("writable", c_char)]
+
+
+RUN = c_void_p
+VECTOR = POINTER(c_double)
+_functions = {  # name: what it takes; each returns a status but for those below
+    "nsd_from_scene": (POINTER(RUN), c_char_p, c_char_p),
+    "nsd_from_scene_file": (POINTER(RUN), c_char_p),
+    "nsd_from_document": (POINTER(RUN), c_char_p),
+    "nsd_from_memory": (POINTER(RUN), c_char_p, c_size_t),
+    "nsd_from_arrays": (POINTER(RUN), c_char_p, c_char_p, POINTER(Bodies)),
+    "nsd_set": (RUN, c_char_p, c_char_p),
+    "nsd_step": (RUN, c_int64),
+    "nsd_until": (RUN, c_double),
+    "nsd_read": (RUN, c_char_p, POINTER(Array)),
+    "nsd_resizes": (RUN,),
+    "nsd_number": (RUN, c_char_p, POINTER(c_double)),
+    "nsd_report": (RUN, POINTER(c_char_p)),
+    "nsd_measure": (RUN, c_char_p, POINTER(c_char_p)),
+    "nsd_force": (RUN, c_int32, VECTOR, VECTOR, c_int),
+    "nsd_boundary_force": (RUN, c_int32, c_double, c_int),
+    "nsd_boundary_velocity": (RUN, c_int32, VECTOR),
+    "nsd_gravity": (RUN, VECTOR),
+    "nsd_friction": (RUN, c_char_p, c_char_p, c_double),
+    "nsd_add": (RUN, POINTER(Bodies), c_void_p),
+    "nsd_remove": (RUN, c_int64, c_void_p),
+    "nsd_note": (RUN, c_char_p),
+    "nsd_save": (RUN, c_char_p),
+    "nsd_append": (RUN, c_char_p),
+    "nsd_finish": (RUN,),
+}
+
+
+def _load() -> ctypes.CDLL:
+    """NSD_LIBRARY; else that beside which the module is installed or built; else the system's."""
+    here = Path(__file__).resolve()
+    near = [here.parents[3] / "libnsd.so.1", here.parents[2] / "build" / "libnsd.so.1"]
+    named = os.environ.get("NSD_LIBRARY")
+    found = named or next((str(path) for path in near if path.exists()), "libnsd.so.1")
+    library = ctypes.CDLL(found)
+    for name, takes in _functions.items():
+        function = getattr(library, name)
+        function.argtypes, function.restype = takes, c_int
+    library.nsd_close.argtypes, library.nsd_close.restype = (POINTER(RUN),), None
+    library.nsd_error.argtypes, library.nsd_error.restype = (RUN,), c_char_p
+    library.nsd_version.argtypes, library.nsd_version.restype = (), c_char_p
+    library.nsd_array_name.argtypes, library.nsd_array_name.restype = (c_int,), c_char_p
+    return library
+
+
+library = _load()

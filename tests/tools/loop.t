@@ -1,0 +1,121 @@
+#!/usr/bin/env bash
+# nsd-step --with: what the program is told, what its answers do, that they are kept and done again, and how a run ends with
+# a program that fails.
+# shellcheck source=tests/support/tap.sh disable=SC2154,SC2317,SC2016 # tap.sh sets tmp; functions called by name; text for other shells
+. tests/support/tap.sh
+
+cat >"$tmp/ball.json" <<'EOT'
+{ "dt": 1e-3, "gravity": [0, 0, 0], "density": 1000, "bodies": [{ "x": [0, 0, 1], "radius": 0.1 }, { "x": [5, 0, 1], "radius": 0.1 }],
+  "walls": [{ "point": [0, 0, 0], "normal": [0, 0, 1], "load": { "along": [0, 0, 1], "mass": 2 } },
+            { "point": [0, 0, 9], "normal": [0, 0, -1], "velocity": [0, 0, -1] }] }
+EOT
+nsd-gen "$tmp/ball.json" >"$tmp/ball.h5"
+quiet() { nsd-step "$@" 2>/dev/null; }
+number() { nsd-info --last "$@" 2>/dev/null; }
+near() # X Y: equal to 1e-12
+{
+    jq -ne --argjson x "$1" --argjson y "$2" '($x - $y | fabs) <= 1e-12 * (1 + ($y | fabs))'
+}
+
+# ---- what answers do, by closed forms ----
+
+answering() { printf 'while read -r line; do echo %q; done' "$1"; } # JSON: a program that always says so
+
+quiet -n 100 --with "$(answering '{"forces":{"0":[1,0,0]},"torques":{"1":[0,0,0.01]}}')" "$tmp/ball.h5" >"$tmp/forces.h5"
+m=$(number -p "$tmp/ball.h5" | jq -s '.[0].mass')
+ok "a force: v = F t/m" near "$(number -p "$tmp/forces.h5" | jq -s '.[0].v[0]')" "$(jq -n "0.1 / $m")"
+ok "a torque: w = T t/(2/5 m r^2)" near "$(number -p "$tmp/forces.h5" | jq -s '.[1].w[2]')" "$(jq -n "0.01 * 0.1 / (0.4 * $m * 0.01)")"
+is "and nothing on the other" "$(number -p "$tmp/forces.h5" | jq -sc '[.[1].v, .[0].w]')" '[[0,0,0],[0,0,0]]'
+quiet -n 100 --with "$(answering '{"boundaries":{"0":{"force":3},"1":{"velocity":[0,0,-2]}},"gravity":[0,0,-4]}')" "$tmp/ball.h5" >"$tmp/walls.h5"
+place() { /usr/bin/python3 -c 'import h5py, sys; f = h5py.File(sys.argv[1]); print(f["particles/boundary/" + sys.argv[2] + "/value"][-1, int(sys.argv[3]), 2])' "$@"; }
+if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
+    ok "a force on a boundary with a load: v = F t/m" near "$(place "$tmp/walls.h5" velocity 0)" 0.15
+    ok "a boundary's velocity: x = v t" near "$(place "$tmp/walls.h5" position 1)" 8.8
+else
+    skip "boundaries" "no h5py"
+fi
+ok "gravity: v = g t" near "$(number -p "$tmp/walls.h5" | jq -s '.[0].v[2]')" -0.4
+quiet -n 30 --with-every 10 --with 'n=0; while read -r l; do n=$((n + 1)); echo "{\"forces\":{\"0\":[$n,0,0]}}"; done' "$tmp/ball.h5" >"$tmp/every.h5"
+ok "before each tenth step: forces act until the next answer" near "$(number -p "$tmp/every.h5" | jq -s '.[0].v[0]')" "$(jq -n "(1 + 2 + 3) * 0.01 / $m")"
+quiet -n 3 --with "$(answering '{"forces":[[0,0,1],[0,0,2]]}')" "$tmp/ball.h5" >"$tmp/all.h5"
+is "forces of all bodies in their order" "$(number -p "$tmp/all.h5" | jq -sc '.[1].v[2] / .[0].v[2]')" 2
+
+# ---- what it is told ----
+
+tell() { quiet "$@" --with "tee -a $tmp/told | jq -c --unbuffered '{}'" "$tmp/ball.h5" >"$tmp/plain.h5"; }
+tell -n 3 --with-boundaries all --with-measures energy,fraction
+is "a line before each step" "$(jq -c '[.step, .time, .dt, .bodies]' "$tmp/told" | paste -sd ' ')" "[0,0,0.001,2] [1,0.001,0.001,2] [2,0.002,0.001,2]"
+is "boundaries, and where they are" "$(jq -c 'select(.step == 2).boundaries | map([.boundary, .position[2], .velocity[2], .force])' "$tmp/told")" "[[0,0,0,[0,0,0]],[1,8.998,-1,[0,0,0]]]"
+is "measures, as nsd-stat has them" "$(jq -c 'select(.step == 2).measures | [.energy.kinetic, (.fraction | type)]' "$tmp/told")" '[0,"object"]'
+quiet -n 3 "$tmp/ball.h5" >"$tmp/alone.h5"
+is "one that changes nothing changes no bit" "$(number -p "$tmp/plain.h5")" "$(number -p "$tmp/alone.h5")"
+rm "$tmp/told"
+tell -n 1 --with-boundaries 1
+is "some boundaries alone" "$(jq -c '.boundaries | map(.boundary)' "$tmp/told")" "[1]"
+cat >"$tmp/reads" <<'EOT'
+while IFS= read -r line; do
+    head -c "$(printf '%s' "$line" | jq .document)" >>"$1"
+    echo '{}'
+done
+EOT
+quiet -n 3 --with-document --with "bash $tmp/reads $tmp/documents" "$tmp/ball.h5" >"$tmp/plain.h5"
+is "whole documents" "$(nsd-info "$tmp/documents" | jq -sc 'map(select(.step != null).step)')" "[0,1,2]"
+
+# ---- stop, and failures: whole frames, and the step by its name ----
+
+stops() # NAME PROGRAM FRAMES STATUS MESSAGE [OPTION ...]
+{
+    local name=$1 program=$2 frames=$3 want=$4 message=$5
+    shift 5
+    status "$want" "$name: status $want" nsd-step -n 5 "$@" --with "$program" -o "$tmp/end.h5" "$tmp/ball.h5"
+    like "$name: the message" "$(<"$tmp/err")" "$message"
+    is "$name: whole frames" "$(nsd-info "$tmp/end.h5" | jq -sc 'map(select(.step != null).step)')" "$frames"
+}
+stops "stop" 'read -r l; echo "{}"; read -r l; echo stop' "[1]" 0 'told to stop after step 1'
+stops "stop as JSON" 'read -r l; echo "{}"; read -r l; echo "{\"stop\":true}"' "[1]" 0 'told to stop after step 1'
+stops "a program that ends" 'read -r l; echo "{}"; read -r l; echo "{}"; exit 7' "[1,2]" 69 'step 3: --with: the program has ended, with status 7'
+stops "a program that is killed" 'read -r l; echo "{}"; kill -9 $$' "[1]" 69 'step 2: --with: the program was killed'
+stops "a program that there is not" "$tmp/nothing" "[0]" 69 'step 1: --with: the program has ended, with status 127'
+stops "a program that hangs" 'read -r l; echo "{}"; sleep 60' "[1]" 69 'step 2: --with: the program has not answered for 0.3 s' --with-timeout 0.3
+stops "a program that speaks without end" 'read -r l; echo "{}"; yes x | tr -d "\n"' "[1]" 69 'step 2: --with: the program.s answer has more than'
+stops "a program that dribbles" 'while :; do printf " "; sleep 0.05; done' "[0]" 69 'step 1: --with: the program has not answered for 0.3 s' --with-timeout 0.3
+stops "nonsense" 'echo hello; cat >/dev/null' "[0]" 69 'step 1: --with: the answer is no JSON'
+for answer in '[1]:neither a JSON object' '{"force":{}}:no .force.' '{"forces":{"7":[0,0,1]}}:body .7., which is not there' \
+    '{"forces":{"-1":[0,0,1]}}:body .-1.' '{"forces":{"0":[1]}}:vectors' '{"forces":[[0,0,1]]}:1 forces or torques, and there are 2' \
+    '{"forces":{"0":[1e999,0,0]}}:no JSON' '{"forces":{"0":["1",0,0]}}:vectors' '{"boundaries":{"9":{"force":1}}}:no boundary 9' \
+    '{"boundaries":{"1":{"force":1}}}:does not yield' '{"boundaries":{"0":{"speed":1}}}:no .speed.' '{"gravity":9.81}:gravity is a vector' \
+    '{"friction":[["ball","cheese",1]]}:no kind .cheese' '{"friction":[["ball","wall",-1]]}:friction of -1' '{"stop":1}:stop is true or false' \
+    '{"gravity":[0,0,1],"gravity":[0,0,2]}:no JSON'; do
+    stops "the answer ${answer%:*}" "$(answering "${answer%:*}")" "[0]" 69 "step 1: --with: .*${answer##*:}"
+done
+refuses 64 "--with-every alone" nsd-step --with-every 2 "$tmp/ball.h5"
+refuses 64 "--with and --replay" nsd-step --with cat --replay "$tmp/ball.h5" "$tmp/ball.h5"
+refuses 64 "boundaries that are no numbers" nsd-step --with cat --with-boundaries 1,x "$tmp/ball.h5"
+refuses 64 "a measure that there is not" nsd-step --with cat --with-measures beauty "$tmp/ball.h5"
+refuses 65 "a document without answers" nsd-step --replay "$tmp/ball.h5" "$tmp/ball.h5"
+
+# ---- the same again ----
+
+nsd-gen 40 >"$tmp/heap.h5"
+program='jq -c --unbuffered "{forces: {\"3\": [(.step | . * 1e-7), 0, 2e-5]}, gravity: [(.time * 100), 0, -9.81], friction: [[\"ball\", \"wall\", (.step % 7 / 10)]],
+    boundaries: {\"0\": {velocity: [0, 0, (.time | sin * 1e-3)]}}}"'
+for how in "" "--contacts" "--every 7" "-j 2"; do
+    # shellcheck disable=SC2086 # words
+    quiet -n 50 $how --with "$program" -o "$tmp/acted.h5" "$tmp/heap.h5" &&
+        quiet -n 50 $how --replay "$tmp/acted.h5" -o "$tmp/again.h5" "$tmp/heap.h5"
+    ok "replayed ${how:-as it is}: the same bytes" cmp "$tmp/acted.h5" "$tmp/again.h5"
+done
+quiet -n 50 --with "$program" "$tmp/heap.h5" | nsd-cat >"$tmp/piped.h5"
+quiet -n 50 --with "$program" "$tmp/heap.h5" >"$tmp/acted.h5"
+ok "packed from a stream: the same bytes" cmp "$tmp/piped.h5" "$tmp/acted.h5"
+quiet -n 23 --with "$program" "$tmp/heap.h5" >"$tmp/part.h5"
+quiet -n 27 --with "$program" --in-place "$tmp/part.h5"
+is "a run that was acted on resumes with the same bits" "$(number -p "$tmp/part.h5")" "$(number -p "$tmp/acted.h5")"
+quiet -n 50 --replay "$tmp/part.h5" "$tmp/heap.h5" >"$tmp/again.h5"
+is "and is replayed as a whole" "$(number -p "$tmp/again.h5")" "$(number -p "$tmp/acted.h5")"
+nsd-step -n 1 -o "$tmp/more.h5" "$tmp/acted.h5" 2>"$tmp/err"
+like "a run that goes on without its program says so" "$(<"$tmp/err")" "nothing acts on it now: --with or --replay"
+quiet -n 5 --contacts --with "$program" "$tmp/acted.h5" >"$tmp/judged.h5"
+worst=$(nsd-err "$tmp/judged.h5" | jq -s 'map(.velocity) | max')
+ok "nsd-err judges it with the forces that acted" jq -ne "$worst <= 1.01"
+done_testing

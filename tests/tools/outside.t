@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# docs/examples: programs that step, read and act on runs, each with its figure beside the closed form that it prints; and
+# the Python module by itself.
+# shellcheck source=tests/support/tap.sh disable=SC2154,SC2317 # tap.sh sets tmp; functions called by name
+. tests/support/tap.sh
+
+export PYTHONPATH=$PWD/python
+[ -z "${NSD_LIBRARY-}" ] || unset NSD_LIBRARY
+library=$(dirname "$(command -v nsd-gen)")/libnsd.so.1
+within() # TOLERANCE KEY: each line of $tmp/lines has this key within it of what is expected
+{
+    jq -es --argjson tolerance "$1" --arg key "$2" \
+        'length > 0 and all(.[]; (.[$key] / .expected - 1 | fabs) <= $tolerance)' "$tmp/lines"
+}
+case_of() # CASE: its line alone
+{
+    jq -c --arg case "$1" 'select(.case == $case)' "$tmp/all" >"$tmp/lines"
+}
+
+cc -Ilib/api -o "$tmp/fluid" docs/examples/fluid.c "$library" -lm -Wl,-rpath,"$(dirname "$library")"
+"$tmp/fluid" >"$tmp/lines"
+ok "fluid.c: balls sink at the velocity of Schiller and Naumann, to 1 %" within 0.01 velocity
+
+bash docs/examples/hold.sh >"$tmp/lines"
+ok "hold.sh: a piston comes to rest as the damped spring that jq makes of it, to 1 %" within 0.01 place
+
+if grep -q __asan_init "$(command -v nsd-gen)"; then
+    skip "Python" "its interpreter has no sanitizer"
+elif ! /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
+    skip "Python" "no numpy"
+else
+    export NSD_LIBRARY=$library
+    /usr/bin/python3 docs/examples/fluid.py >"$tmp/all"
+    case_of terminal
+    ok "fluid.py: a ball sinks at the velocity of Schiller and Naumann, to 1 %" within 0.01 velocity
+    case_of fluidised
+    ok "fluid.py: a bed is fluidised at the velocity of Ergun, to 10 %" within 0.1 velocity
+    /usr/bin/python3 docs/examples/servo.py >"$tmp/lines"
+    ok "servo.py: stresses are those of the built-in load, to 1 %" within 0.01 stress
+    /usr/bin/python3 docs/examples/rocks.py >"$tmp/lines"
+    ok "rocks.py: rocks slide as far as friction lets them, to 0.1 %" within 0.001 way
+    if /usr/bin/python3 -c 'import scipy' 2>/dev/null; then
+        /usr/bin/python3 docs/examples/repose.py >"$tmp/lines"
+        ok "repose.py: the friction of an angle of repose, to 1 %" within 0.01 mu
+    else
+        skip "repose.py" "no scipy"
+    fi
+    /usr/bin/python3 tests/support/outside.py "$tmp" >"$tmp/python" 2>"$tmp/err" || true
+    while read -r line; do
+        case $line in
+        'ok '*) tap_result 0 "${line#ok }" ;;
+        *) tap_result 1 "${line#not ok }" ;;
+        esac
+    done <"$tmp/python"
+    is "and nothing else is said" "$(<"$tmp/err")" ""
+fi
+done_testing

@@ -1,0 +1,502 @@
+/* A run in a program (api/nsd.h): closed forms of what acts on it, documents, threads, bad input, calls at random. */
+#include "api/nsd.h"
+#include "tap.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static char folder[] = "/tmp/nsd_api.XXXXXX";
+
+static const char *path_of(const char *name)
+{
+    static char path[4][100];
+    static int k;
+    snprintf(path[++k % 4], sizeof path[0], "%s/%s", folder, name);
+    return path[k % 4];
+}
+
+static void must(int failed, const struct nsd_run *r)
+{
+    if (!failed) return;
+    printf("Bail out! %s\n", nsd_error(r));
+    exit(1);
+}
+
+static struct nsd_run *scene(const char *text)
+{
+    struct nsd_run *r;
+    must(nsd_from_scene(&r, text, NULL), NULL);
+    return r;
+}
+
+/* The numbers of an array; n: of rows */
+static const double *array(struct nsd_run *r, const char *name, int64_t *n)
+{
+    struct nsd_array a = { .size = sizeof a };
+    must(nsd_read(r, name, &a), r);
+    if (n) *n = a.shape[0];
+    return a.data;
+}
+
+static double number(struct nsd_run *r, const char *name)
+{
+    double x = NAN;
+    must(nsd_number(r, name, &x), r);
+    return x;
+}
+
+static bool close_to(double x, double y)
+{
+    return fabs(x - y) <= 1e-12 * (1 + fabs(y));
+}
+
+/* ---- closed forms ---- */
+
+static const char free_bodies[] =
+    "{\"dt\":1e-3,\"gravity\":[0,0,-2],\"density\":1000,\"shapes\":{\"brick\":{\"box\":[1,2,3]}},"
+    "\"bodies\":[{\"x\":[0,0,0],\"radius\":0.1},{\"x\":[9,0,0],\"shape\":\"brick\",\"size\":0.1},"
+    "{\"x\":[18,0,0],\"radius\":0.1,\"fixed\":true}]}";
+
+static void test_forces(void)
+{
+    struct nsd_run *r = scene(free_bodies);
+    const double *x = array(r, "position", NULL), *v = array(r, "velocity", NULL);
+    const double *w = array(r, "angular_velocity", NULL);
+    const double *m = array(r, "mass", NULL), *I = array(r, "inertia", NULL);
+    const double f[3] = { 3, 0, 1 }, torque[3] = { 0, 0, 0.5 }, t = 0.1;
+    must(nsd_force(r, 0, f, torque, NSD_LASTING) || nsd_force(r, 2, f, torque, NSD_LASTING) ||
+             nsd_force(r, 1, f, NULL, NSD_ONCE) || nsd_step(r, 100),
+         r);
+    ok(close_to(v[0], f[0] / m[0] * t) && close_to(v[2], (f[2] / m[0] - 2) * t) &&
+           close_to(x[0], f[0] / m[0] * t * t / 2) && close_to(w[2], torque[2] / I[0] * t),
+       "a force and a torque that last: x = F t^2/(2 m), w = T t/I");
+    ok(close_to(v[3], f[0] / m[1] * 1e-3) && close_to(v[5], f[2] / m[1] * 1e-3 - 2 * t),
+       "a force that acts once: v = F dt/m");
+    ok(v[6] == 0 && w[8] == 0 && x[6] == 18, "a fixed body feels none");
+    ok(x == array(r, "position", NULL) && v == array(r, "velocity", NULL),
+       "arrays of bodies stay where they are");
+    double *force = (double *)(uintptr_t)array(r, "force", NULL);
+    must(force[0] != f[0] || force[1] != 0 || force[2] != f[2], r);
+    const double before = v[0];
+    memset(force, 0, 9 * sizeof *force);
+    force[1] = 7;
+    must(nsd_step(r, 1), r);
+    ok(v[0] == before && close_to(v[1], 7 / m[0] * 1e-3),
+       "what is written into the array force acts");
+    double kinetic = 0, loads;
+    kinetic = number(r, "kinetic_energy");
+    must(nsd_step(r, 1), r);
+    const char *json;
+    must(nsd_report(r, &json), r);
+    const char *at = strstr(json, "\"loads\":"), *gravity = strstr(json, "\"gravity\":");
+    loads = at && gravity ? atof(at + 8) + atof(gravity + 10) : NAN;
+    ok(fabs(number(r, "kinetic_energy") - kinetic - loads) < 1e-12 * (1 + kinetic),
+       "the balance has the work of forces");
+    nsd_close(&r);
+}
+
+/* A brick with three moments of inertia, turned about a principal axis */
+static void test_top(void)
+{
+    struct nsd_run *r = scene("{\"dt\":1e-3,\"gravity\":[0,0,0],\"density\":1000,\"shapes\":{"
+                              "\"brick\":{\"box\":[1,2,3]}},"
+                              "\"bodies\":[{\"x\":[0,0,0],\"shape\":\"brick\",\"size\":0.1}]}");
+    const double *w = array(r, "angular_velocity", NULL), *m = array(r, "mass", NULL);
+    const double torque[3] = { 1e-3, 0, 0 };
+    const double I = m[0] / 12 * 0.01 * (4 + 9) / 1; // sides 0.1, 0.2, 0.3 m
+    must(nsd_force(r, 0, NULL, torque, NSD_LASTING) || nsd_step(r, 100), r);
+    double unit = 12 * 1e-3 * 0.1 / (w[0] * m[0] * 13); // the square of its size
+    ok(fabs(w[1]) < 1e-15 && fabs(w[2]) < 1e-15 && w[0] > 0 &&
+           (close_to(w[0], 1e-3 * 0.1 / I) || close_to(unit, 0.01)),
+       "a torque about a principal axis of a brick: w = T t/I");
+    nsd_close(&r);
+}
+
+static void test_boundaries(void)
+{
+    struct nsd_run *r =
+        scene("{\"dt\":1e-3,\"gravity\":[0,0,0],\"bodies\":[{\"x\":[0,0,5],\"radius\":0.1}],"
+              "\"walls\":[{\"point\":[0,0,0],\"normal\":[0,0,1],\"velocity\":[0,0,0.5]},"
+              "{\"point\":[0,0,9],\"normal\":[0,0,-1],\"load\":{\"along\":[0,0,1],\"mass\":2,"
+              "\"force\":1}}]}");
+    const double v[3] = { 0, 0, -0.25 };
+    must(nsd_step(r, 100) || nsd_boundary_velocity(r, 0, v) ||
+             nsd_boundary_force(r, 1, 3, NSD_LASTING) || nsd_step(r, 100),
+         r);
+    const double *x = array(r, "boundary_position", NULL), *u = array(r, "boundary_velocity", NULL);
+    ok(close_to(x[2], 0.5 * 0.1 - 0.25 * 0.1) && close_to(u[2], -0.25),
+       "a boundary goes on from where it is with another velocity");
+    ok(close_to(u[5], (1 * 0.2 + 3 * 0.1) / 2), "a force on a boundary adds to that of its load");
+    nsd_close(&r);
+}
+
+/* ---- documents ---- */
+
+static const char heap[] =
+    "{\"dt\":1e-4,\"mu\":0.3,\"bodies\":[{\"count\":40,\"radius\":{\"uniform\":[4e-4,5e-4]},"
+    "\"box\":{\"x\":[0,5e-3],\"y\":[0,5e-3],\"z\":[0,4e-3]}}],"
+    "\"walls\":[{\"box\":{\"x\":[0,5e-3],\"y\":[0,5e-3],\"z\":[0,null]}},"
+    "{\"point\":[0,0,6e-3],\"normal\":[0,0,-1],\"load\":{\"along\":[0,0,1],\"mass\":1e-4,\"force\":"
+    "-0.02}}]}";
+
+/* Acts on the run as a function of its step, n times */
+static int act(struct nsd_run *r, int n)
+{
+    int64_t bodies;
+    struct nsd_array a = { .size = sizeof a };
+    for (int k = 0; k < n; k++) {
+        if (nsd_read(r, "force", &a)) return 1;
+        bodies = a.shape[0];
+        const double step = number(r, "step"), *v = array(r, "velocity", NULL);
+        double *f = a.data;
+        for (int64_t i = 0; i < 3 * bodies; i++) f[i] = -1e-4 * v[i] * (1 + sin(step));
+        const double g[3] = { sin(0.1 * step), 0, -9.81 }, up[3] = { 0, 0, 0.01 * cos(step) };
+        if (nsd_gravity(r, g) || nsd_boundary_velocity(r, 5, up) ||
+            nsd_friction(r, "ball", "wall", step < 20 ? 0.3 : 0.1) || nsd_step(r, 1))
+            return 1;
+    }
+    return 0;
+}
+
+static bool same(struct nsd_run *a, struct nsd_run *b)
+{
+    static const char *const names[] = { "position",          "velocity",
+                                         "orientation",       "angular_velocity",
+                                         "boundary_position", "boundary_velocity" };
+    bool equal = number(a, "time") == number(b, "time");
+    for (int k = 0; k < 6; k++) {
+        int64_t n, m;
+        const double *x = array(a, names[k], &n), *y = array(b, names[k], &m);
+        equal = equal && n == m && !memcmp(x, y, (size_t)n * (k == 2 ? 4 : 3) * sizeof *x);
+    }
+    return equal;
+}
+
+static void test_resume(void)
+{
+    struct nsd_run *whole = scene(heap), *half = scene(heap), *rest, *frames;
+    const char *path = path_of("half.h5"), *trajectory = path_of("frames.h5");
+    must(act(whole, 40), whole);
+    must(act(half, 23) || nsd_save(half, path), half);
+    must(nsd_append(half, trajectory) || act(half, 2) || nsd_append(half, trajectory) ||
+             nsd_finish(half),
+         half);
+    must(nsd_from_document(&rest, path) || nsd_from_document(&frames, trajectory), NULL);
+    must(act(rest, 17), rest);
+    must(act(frames, 15), frames);
+    ok(same(whole, rest), "a run that was acted on resumes from a document bit for bit");
+    ok(same(whole, frames), "and from the last frame of a trajectory");
+    FILE *f = fopen(path, "r");
+    static char bytes[1 << 22];
+    size_t n = f ? fread(bytes, 1, sizeof bytes, f) : 0;
+    if (f) fclose(f);
+    struct nsd_run *memory;
+    must(nsd_from_memory(&memory, bytes, n), NULL);
+    must(act(memory, 17), memory);
+    ok(same(whole, memory), "and from a document in memory");
+    nsd_close(&whole), nsd_close(&half), nsd_close(&rest), nsd_close(&frames), nsd_close(&memory);
+}
+
+/* Bodies as arrays are those of the scene. */
+static void test_arrays(void)
+{
+    struct nsd_run *a = scene(heap), *b;
+    struct nsd_bodies all = { .size = sizeof all };
+    all.position = array(a, "position", &all.n), all.radius = array(a, "radius", NULL);
+    all.velocity = array(a, "velocity", NULL), all.mass = array(a, "mass", NULL);
+    all.orientation = array(a, "orientation", NULL), all.inertia = array(a, "inertia", NULL);
+    char text[sizeof heap];
+    const char *from = strstr(heap, "\"bodies\""), *to = strstr(heap, "\"walls\"");
+    snprintf(text, sizeof text, "%.*s%s", (int)(from - heap), heap, to);
+    must(nsd_from_arrays(&b, text, NULL, &all), NULL);
+    must(nsd_step(a, 60), a), must(nsd_step(b, 60), b);
+    ok(same(a, b), "a run from arrays is that of the scene that has these bodies");
+    const int32_t gone[2] = { 3, 17 };
+    must(nsd_remove(b, 2, gone), b);
+    int64_t n;
+    const double *x = array(b, "position", &n), *y = array(a, "position", NULL);
+    bool kept =
+        n == 38 && !memcmp(x, y, 9 * sizeof *x) && !memcmp(x + 9, y + 12, 13 * 3 * sizeof *x);
+    int32_t id = -1;
+    const double at[3] = { 2.5e-3, 2.5e-3, 5e-3 }, radius = 2e-4;
+    const struct nsd_bodies one = {
+        .size = sizeof one, .n = 1, .position = at, .radius = &radius, .density = 2500
+    };
+    must(nsd_add(b, &one, &id) || nsd_step(b, 5), b);
+    ok(kept && id == 40 && number(b, "bodies") == 39,
+       "bodies go, others keep their numbers, and a new one gets a new number");
+    nsd_close(&a), nsd_close(&b);
+}
+
+/* ---- threads ---- */
+
+static void *one_run(void *arg)
+{
+    struct nsd_run *r = scene(heap);
+    must(nsd_set(r, "threads", "2") || act(r, 40) || nsd_save(r, path_of(arg)), r);
+    return r;
+}
+
+static void test_threads(void)
+{
+    pthread_t t[2];
+    void *r[3] = { one_run("a.h5") };
+    static char names[2][8] = { "b.h5", "c.h5" };
+    for (int k = 0; k < 2; k++)
+        if (pthread_create(&t[k], NULL, one_run, names[k])) exit(1);
+    for (int k = 0; k < 2; k++) pthread_join(t[k], &r[k + 1]);
+    ok(same(r[0], r[1]) && same(r[0], r[2]), "two runs in two threads are what one alone is");
+    for (int k = 0; k < 3; k++) {
+        struct nsd_run *one = r[k];
+        nsd_close(&one);
+    }
+}
+
+/* ---- bad input ---- */
+
+static void test_errors(void)
+{
+    struct nsd_run *r = scene(heap), *none = NULL, *twin = scene(heap);
+    struct nsd_array a = { .size = sizeof a }, small = { .size = 3 };
+    const double bad[3] = { NAN, 0, 0 }, f[3] = { 0, 0, 1 };
+    const int32_t ids[2] = { 3, 3 };
+    struct nsd_bodies b = { .size = sizeof b, .n = 1 }, negative = { .size = sizeof b, .n = -1 };
+    const struct {
+        int got, want;
+        const char *what;
+    } calls[] = {
+        { nsd_step(none, 1), NSD_USAGE, "no run" },
+        { nsd_step(r, -1), NSD_USAGE, "steps back" },
+        { nsd_until(r, INFINITY), NSD_USAGE, "until never" },
+        { nsd_until(r, 1e300), NSD_USAGE, "too many steps" },
+        { nsd_set(r, "eps", "small"), NSD_USAGE, "no number" },
+        { nsd_set(r, "epsilon", "1"), NSD_USAGE, "no option" },
+        { nsd_set(r, NULL, "1"), NSD_USAGE, "no name" },
+        { nsd_set(r, "dt", "-1"), NSD_USAGE, "no time step" },
+        { nsd_read(r, "speed", &a), NSD_USAGE, "no array" },
+        { nsd_read(r, "position", &small), NSD_USAGE, "an array of another version" },
+        { nsd_force(r, 99, f, NULL, NSD_ONCE), NSD_DATA, "no body" },
+        { nsd_force(r, -1, f, NULL, NSD_ONCE), NSD_DATA, "a negative body" },
+        { nsd_force(r, 0, bad, NULL, NSD_ONCE), NSD_DATA, "a force that is nan" },
+        { nsd_force(r, 0, f, NULL, (enum nsd_term)7), NSD_USAGE, "a force of no term" },
+        { nsd_gravity(r, bad), NSD_DATA, "gravity that is nan" },
+        { nsd_boundary_force(r, 0, 1, NSD_ONCE), NSD_DATA, "a boundary without a load" },
+        { nsd_boundary_force(r, 77, 1, NSD_ONCE), NSD_DATA, "no boundary" },
+        { nsd_boundary_velocity(r, -1, f), NSD_DATA, "a negative boundary" },
+        { nsd_friction(r, "ball", "cheese", 0.1), NSD_DATA, "no kind" },
+        { nsd_friction(r, "ball", "wall", -1), NSD_DATA, "negative friction" },
+        { nsd_add(r, &b, NULL), NSD_USAGE, "bodies without a place" },
+        { nsd_add(r, &negative, NULL), NSD_DATA, "less than no bodies" },
+        { nsd_remove(r, 2, ids), NSD_DATA, "a body twice" },
+        { nsd_measure(r, "beauty", &(const char *){ NULL }), NSD_USAGE, "no measure" },
+        { nsd_report(r, &(const char *){ NULL }), NSD_USAGE, "no report yet" },
+        { nsd_save(r, "/nowhere/a.h5"), NSD_OUTPUT, "no folder" },
+        { nsd_note(r, "no JSON"), NSD_DATA, "history that is no JSON" },
+        { nsd_from_scene(&none, "{", NULL), NSD_DATA, "half a scene" },
+        { nsd_from_document(&none, "/nowhere.h5"), NSD_NO_INPUT, "no document" },
+        { nsd_from_memory(&none, "hello", 5), NSD_DATA, "another document" },
+    };
+    for (size_t k = 0; k < sizeof calls / sizeof calls[0]; k++)
+        ok(calls[k].got == calls[k].want, "%s: status %d", calls[k].what, calls[k].want);
+    must(nsd_read(r, "force", &a), r);
+    ((double *)a.data)[4] = NAN;
+    ok(nsd_step(r, 1) == NSD_DATA && strstr(nsd_error(r), "body 1 is not finite"),
+       "nan in the array force: %s", nsd_error(r));
+    ((double *)a.data)[4] = 0;
+    must(nsd_step(r, 20), r), must(nsd_step(twin, 20), twin);
+    ok(same(r, twin), "and the run goes on as if nothing had been asked");
+    nsd_close(&r), nsd_close(&twin), nsd_close(&none), nsd_close(NULL);
+}
+
+/* ---- calls at random ---- */
+
+static uint64_t seed = 20260101;
+
+static uint32_t draw(uint32_t n)
+{
+    seed = seed * 6364136223846793005u + 1442695040888963407u;
+    return (uint32_t)(seed >> 33) % n;
+}
+
+/* Small numbers, and now and then one that is none */
+static double some(void)
+{
+    static const double odd[] = { 0, -0.0, 1e308, -1e308, 1e-320, NAN, INFINITY, -1 };
+    return draw(20) ? 1e-3 * ((double)draw(2001) - 1000) : odd[draw(8)];
+}
+
+static const char *const words[] = { "eps",
+                                     "method",
+                                     "threads",
+                                     "warm",
+                                     "dt",
+                                     "contacts",
+                                     "forces",
+                                     "layers",
+                                     "box",
+                                     "overlap",
+                                     "theta",
+                                     "1e-6",
+                                     "sbp",
+                                     "2",
+                                     "true",
+                                     "false",
+                                     "1e-3",
+                                     "auto:0.01",
+                                     "z:3",
+                                     "0,1,0,1",
+                                     "gap",
+                                     "keep",
+                                     "project",
+                                     "0.5",
+                                     "position",
+                                     "force",
+                                     "force_once",
+                                     "torque",
+                                     "contact_force",
+                                     "boundary_force",
+                                     "contact_body",
+                                     "id",
+                                     "ball",
+                                     "wall",
+                                     "stress",
+                                     "energy",
+                                     "all",
+                                     "displacement",
+                                     "step",
+                                     "natural",
+                                     "",
+                                     NULL };
+enum { WORDS = sizeof words / sizeof words[0] };
+
+static const char *const scenes[] = {
+    "{\"dt\":1e-3,\"mu\":0.3,\"bodies\":[{\"count\":4,\"radius\":0.1,\"box\":{\"x\":[-1,1],\"y\":[-"
+    "1,1],\"z\":[0,null]}}],"
+    "\"walls\":[{\"point\":[0,0,0],\"normal\":[0,0,1]},{\"point\":[0,0,4],\"normal\":[0,0,-1],"
+    "\"load\":{\"along\":[0,0,1],\"mass\":1}}]}",
+    "{\"dim\":2,\"dt\":1e-3,\"cell\":{\"lengths\":[2,2]},\"bodies\":[{\"x\":[0,0],\"radius\":0.4},{"
+    "\"x\":[1,1],\"radius\":0.4}]}",
+    "{\"dt\":1e-3,\"walls\":[{\"point\":[0,0,-1],\"normal\":[0,0,1]}],\"pour\":[{\"rate\":300,"
+    "\"radius\":0.1,\"count\":5,"
+    "\"opening\":{\"disc\":{\"center\":[0,0,3],\"normal\":[0,0,1],\"radius\":2}}}]}",
+    "{\"dt\":1e-3}",
+    "{",
+    "{\"dt\":0}"
+};
+
+static void call(struct nsd_run **run)
+{
+    struct nsd_run *r = *run;
+    const double x[12] = { some(), some(), some(), some(), some(), some(),
+                           some(), some(), some(), some(), some(), some() };
+    const int32_t id[2] = { (int32_t)draw(9) - 1, (int32_t)draw(9) - 1 };
+    const char *word = words[draw(WORDS)], *other = words[draw(WORDS)], *json;
+    struct nsd_array a = { .size = draw(9) ? sizeof a : draw(99) };
+    double number;
+    int32_t new[2];
+    struct nsd_bodies b = { .size = draw(9) ? sizeof b : draw(99),
+                            .n = draw(3),
+                            .position = x,
+                            .radius = x + 6,
+                            .velocity = draw(2) ? x + 3 : NULL,
+                            .mass = draw(3) ? NULL : x + 2,
+                            .density = some(),
+                            .kind = draw(3) ? NULL : id };
+    switch (draw(20)) {
+    case 0:
+        nsd_step(r, draw(4));
+        break;
+    case 1:
+        nsd_step(r, (int64_t)draw(3) - 1);
+        break;
+    case 2:
+        nsd_set(r, word, other);
+        break;
+    case 3:
+        if (!nsd_read(r, word, &a) && a.writable && a.shape[0])
+            ((double *)a.data)[draw((uint32_t)(3 * a.shape[0]))] = some();
+        break;
+    case 4:
+        nsd_force(r, id[0], x, draw(2) ? x + 3 : NULL, (enum nsd_term)draw(3));
+        break;
+    case 5:
+        nsd_boundary_force(r, id[0], x[0], (enum nsd_term)draw(3));
+        break;
+    case 6:
+        nsd_boundary_velocity(r, id[0], x);
+        break;
+    case 7:
+        nsd_gravity(r, draw(9) ? x : NULL);
+        break;
+    case 8:
+        nsd_friction(r, word, other, x[0]);
+        break;
+    case 9:
+        nsd_add(r, draw(9) ? &b : NULL, draw(2) ? new : NULL);
+        break;
+    case 10:
+        nsd_remove(r, (int64_t)draw(4) - 1 > 2 ? 2 : draw(3), id);
+        break;
+    case 11:
+        nsd_measure(r, word, &json);
+        break;
+    case 12:
+        nsd_report(r, &json);
+        break;
+    case 13:
+        nsd_number(r, word, &number);
+        break;
+    case 14:
+        nsd_until(r, draw(2) ? x[0] * 1e-2 : x[0]);
+        break;
+    case 15:
+        if (!draw(12)) nsd_append(r, path_of(draw(2) ? "x.h5" : "y.h5"));
+        break;
+    case 16:
+        if (!draw(12)) nsd_save(r, path_of("z.h5"));
+        break;
+    case 17:
+        if (!draw(8)) nsd_finish(r);
+        break;
+    case 18:
+        if (!draw(12)) nsd_close(run);
+        break;
+    default:
+        if (draw(12)) break;
+        nsd_close(run);
+        draw(4) ? nsd_from_scene(run, scenes[draw(6)], NULL)
+                : nsd_from_document(run, path_of("z.h5"));
+    }
+}
+
+static void test_random(void)
+{
+    const int sequences = getenv("NSD_DEEP") ? 100000 : getenv("NSD_THIN") ? 100 : 2000;
+    int64_t made = 0, failed = 0;
+    for (int k = 0; k < sequences; k++) {
+        struct nsd_run *run = NULL;
+        made += !nsd_from_scene(&run, scenes[draw(6)], NULL);
+        for (int calls = (int)draw(40); calls > 0; calls--) {
+            call(&run);
+            failed += *nsd_error(run) != 0;
+        }
+        nsd_close(&run);
+    }
+    ok(made > sequences / 2 && failed > sequences,
+       "%d sequences of calls at random end in statuses", sequences);
+}
+
+int main(void)
+{
+    if (!mkdtemp(folder)) return 1;
+    test_forces(), test_top(), test_boundaries();
+    test_resume(), test_arrays(), test_threads(), test_errors(), test_random();
+    char command[100];
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    if (system(command)) return 1;
+    return tap_done();
+}
