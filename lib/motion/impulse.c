@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 enum {
-    SOME = 8192 /* contacts that are worth a thread: 200 us of work */
+    CONTACTS_PER_THREAD = 8192 /* the fewest contacts that are worth a thread: 200 us of work */
 };
 
 static void push_b(struct impulses *sum, int32_t b, const struct push *o)
@@ -86,7 +86,7 @@ int impulses_init(struct impulses *sum, const struct packing *p, const struct co
     sum->yield = calloc((size_t)sum->freedoms.n + 1, sizeof *sum->yield);
     if (!sum->force || !sum->moment || !sum->yield)
         return why_set(why, EX_SOFTWARE, "no memory to move the bodies");
-    struct summing y = { sum, p, s, s->n < SOME ? 1 : team_size() };
+    struct summing y = { sum, p, s, s->n < CONTACTS_PER_THREAD ? 1 : team_size() };
     team_share(team_size(), y.parts, 1, sum_bodies, &y);
     sum_yields(sum, p, s);
     if (!ended) find_flow(sum, p);

@@ -1,11 +1,8 @@
 /* problem/sweep.c: the sweep [problem/sweep.h]. Compiled with LANES = 2, 4, 8. */
 #include "problem/sweep.h"
 
-#include "law/local_eal.h"
-#include "law/local_ebp.h"
-#include "law/local_exact.h"
-#include "law/local_sal.h"
-#include "law/local_sbp.h"
+#define METHOD_CODE
+#include "law/method.h"
 #include "problem/walk.h"
 
 typedef void method_text(struct local *, const struct local_opt *);
@@ -331,7 +328,7 @@ DEFINE_KIND(sweep_diagonals, true, false, NOTHING)
         sweep(p, me, threads, o, kind, t);                                                         \
     }
 
-#define DEFINE_SWEEP(name)                                                                         \
+#define DEFINE_SWEEP(name, ...)                                                                    \
     DEFINE_TEXT(name, balls, false, false, false, NOTHING)                                         \
     DEFINE_TEXT(name, far_balls, false, false, true, NOTHING)                                      \
     DEFINE_TEXT(name, bonds, false, false, false, BONDS)                                           \
@@ -396,8 +393,8 @@ static void push(struct problem *p, int me, int threads)
 
 /* ---- the table ---- */
 
-#define ENTRY_OF(name)  sweep_##name,
-#define SWEEP_(lanes)   sweep_##lanes
-#define SWEEP_OF(lanes) SWEEP_(lanes)
+#define ENTRY_OF(name, ...) sweep_##name,
+#define SWEEP_(lanes)       sweep_##lanes
+#define SWEEP_OF(lanes)     SWEEP_(lanes)
 extern const struct sweep SWEEP_OF(LANES);
 const struct sweep SWEEP_OF(LANES) = { LANES, { EACH_METHOD(ENTRY_OF) }, push };
