@@ -4,8 +4,8 @@
 
 #include <math.h>
 
-/* The larger and the smaller of both, a unless b is that: what is not a number in b is passed over. libm's
-   fmax and fmin are calls, which loops over all bodies feel. */
+/* The larger and the smaller of two numbers. Where b is NaN the result is a. Inline, because libm's fmax and fmin are
+   calls, which cost time in loops over all bodies. */
 static inline double dmax(double a, double b)
 {
     return b > a ? b : a;

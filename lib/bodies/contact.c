@@ -7,7 +7,8 @@
 #include <string.h>
 
 enum {
-    SOME = 16384 /* contacts that are worth a thread: 100 us of looking at each */
+    CONTACTS_PER_THREAD =
+        16384 /* the fewest contacts that are worth a thread: 100 us of looking at each */
 };
 
 void contacts_free(struct contacts *s)
@@ -126,7 +127,7 @@ static double deepest(void *arg, int64_t first, int64_t end)
 
 double contacts_max_overlap(const struct contacts *s)
 {
-    return team_most(team_size(), s->n, SOME, deepest, (void *)s);
+    return team_most(team_size(), s->n, CONTACTS_PER_THREAD, deepest, (void *)s);
 }
 
 static const char *contact_trouble(const struct contact *c, const struct found *found,

@@ -14,7 +14,9 @@ static void make_room(const struct table_write *s, const char *path, enum column
 {
     const double none = NAN;
     const int32_t nobody = -1;
-    if (!s->most_bodies || rank < 2 || strncmp(path, "/particles/all/", 15) != 0) return;
+    size_t n = strlen(path);
+    bool frames = !strncmp(path, "/particles/all/", 15) && !strcmp(path + n - 6, "/value");
+    if (!s->most_bodies || rank < 2 || !frames) return;
     most[1] = s->most_bodies, chunk[1] = s->chunk_bodies;
     H5Pset_fill_value(plist, column_native(type),
                       type == COLUMN_F64 ? (const void *)&none : (const void *)&nobody);

@@ -34,7 +34,7 @@ static void add(struct push *to, const struct snapshot *s, int64_t i, double sig
     to->tangential += hypot(r[1], r[2]) / s->p->dt;
 }
 
-static int of(struct table *t, const struct snapshot *s, struct why *why)
+static int boundaries_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     const struct packing *p = s->p;
     bool fixed = false;
@@ -67,5 +67,5 @@ const struct measure measure_boundaries = {
     .quantity = quantities,
     .list = true,
     .needs = NEEDS_FORCES,
-    .of = of,
+    .rows = boundaries_rows,
 };

@@ -34,7 +34,7 @@ static double mean(const struct snapshot *s, const int32_t *count, int least, in
     return *n ? (double)sum / (double)*n : NAN;
 }
 
-static int of(struct table *t, const struct snapshot *s, struct why *why)
+static int coordination_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     int64_t bodies, bearing, more, contacts = 0;
     double *at = table_row(t, why);
@@ -63,7 +63,7 @@ const struct measure measure_coordination = {
     .quantity = quantities,
     .usual = true,
     .needs = NEEDS_CONTACTS,
-    .of = of,
+    .rows = coordination_rows,
 };
 
 /* ---- how many bodies have how many ---- */
@@ -75,7 +75,7 @@ static const struct quantity numbers[] = {
     { 0 },
 };
 
-static int of_numbers(struct table *t, const struct snapshot *s, struct why *why)
+static int coordination_number_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     int32_t *count = counts_of(s), most = 0;
     int64_t all = 0;
@@ -105,5 +105,5 @@ const struct measure measure_contact_numbers = {
     .quantity = numbers,
     .list = true,
     .needs = NEEDS_CONTACTS,
-    .of = of_numbers,
+    .rows = coordination_number_rows,
 };

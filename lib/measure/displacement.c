@@ -19,7 +19,7 @@ static bool displacement(const struct snapshot *s, int64_t i, vec3 *d)
     return then;
 }
 
-static int of(struct table *t, const struct snapshot *s, struct why *why)
+static int displacement_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     double n = 0, square[3] = { 0, 0, 0 }, *at = table_row(t, why);
     vec3 drift = v3(0, 0, 0), d;
@@ -54,5 +54,5 @@ const struct measure measure_displacement = {
     .help = "mean square displacement since the first frame",
     .quantity = quantities,
     .needs = NEEDS_BEFORE,
-    .of = of,
+    .rows = displacement_rows,
 };

@@ -50,7 +50,7 @@ static void fill(double *at, const struct packing *p, int64_t i, const int32_t *
     put_tensor(&at, &T[i]);
 }
 
-static int of(struct table *t, const struct snapshot *s, struct why *why)
+static int each_grain_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     bool solved = s->s && (s->s->found || !s->s->n);
     int32_t *count = s->s ? counts_of(s) : NULL;
@@ -73,5 +73,5 @@ const struct measure measure_grains = {
     .help = "each body: stress, contacts, speed",
     .quantity = quantities,
     .list = true,
-    .of = of,
+    .rows = each_grain_rows,
 };

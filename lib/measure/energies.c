@@ -52,7 +52,7 @@ static int add_step(double **at, const struct snapshot *s, double *stored, struc
     return 0;
 }
 
-static int of(struct table *t, const struct snapshot *s, struct why *why)
+static int energies_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     const struct packing *p = s->p;
     double kinetic = 0, rotation = 0, potential = 0, *at = table_row(t, why);
@@ -80,5 +80,5 @@ const struct measure measure_energy = {
     .help = "energies; what a step dissipates",
     .quantity = quantities,
     .usual = true,
-    .of = of,
+    .rows = energies_rows,
 };

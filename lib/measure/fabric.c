@@ -12,7 +12,7 @@ static const struct quantity quantities[] = {
     { 0 },
 };
 
-static int of(struct table *t, const struct snapshot *s, struct why *why)
+static int fabric_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     struct tensor F = { { { 0 } } };
     double n = 0, value[3], *at = table_row(t, why);
@@ -41,5 +41,5 @@ const struct measure measure_fabric = {
     .help = "fabric tensor: which way contacts point",
     .quantity = quantities,
     .needs = NEEDS_CONTACTS,
-    .of = of,
+    .rows = fabric_rows,
 };

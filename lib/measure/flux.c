@@ -49,7 +49,7 @@ static int add_events(struct crossed *n, const struct snapshot *s, struct why *w
     return 0;
 }
 
-static int of(struct table *t, const struct snapshot *s, struct why *why)
+static int flux_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     const struct packing *p = s->p;
     struct crossed n = { { 0, 0 }, { 0, 0 } };
@@ -81,5 +81,5 @@ const struct measure measure_flux = {
     .help = "bodies that cross a plane or an orifice",
     .quantity = quantities,
     .needs = NEEDS_BEFORE,
-    .of = of,
+    .rows = flux_rows,
 };

@@ -12,7 +12,7 @@ static const struct quantity quantities[] = {
     { 0 },
 };
 
-static int of(struct table *t, const struct snapshot *s, struct why *why)
+static int fraction_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     const struct packing *p = s->p;
     const struct region *r = &s->region;
@@ -36,5 +36,5 @@ const struct measure measure_fraction = {
     .help = "volume fraction, void ratio, volumes",
     .quantity = quantities,
     .usual = true,
-    .of = of,
+    .rows = fraction_rows,
 };

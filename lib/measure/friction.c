@@ -82,7 +82,7 @@ static void add(struct sums *m, const struct snapshot *s, int64_t i)
     if (rub.most > 0) m->rough++, m->mobilised += rub.is / rub.most;
 }
 
-static int of(struct table *t, const struct snapshot *s, struct why *why)
+static int friction_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     struct sums m = { 0 };
     double square = 0, *at = table_row(t, why);
@@ -111,7 +111,7 @@ const struct measure measure_friction = {
     .quantity = quantities,
     .usual = true,
     .needs = NEEDS_FORCES,
-    .of = of,
+    .rows = friction_rows,
 };
 
 /* ---- distributions ---- */
@@ -147,15 +147,15 @@ static int distribution(struct table *t, const struct snapshot *s,
 static const struct quantity of_force[] = { HISTOGRAM_QUANTITIES("1", "in mean forces"), { 0 } };
 static const struct quantity of_part[] = { HISTOGRAM_QUANTITIES("1", "|f_t| / (mu f_n)"), { 0 } };
 
-static int of_normal(struct table *t, const struct snapshot *s, struct why *why)
+static int normal_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     return distribution(t, s, normal, true, 0, why);
 }
-static int of_tangential(struct table *t, const struct snapshot *s, struct why *why)
+static int tangential_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     return distribution(t, s, tangential, true, 0, why);
 }
-static int of_mobilised(struct table *t, const struct snapshot *s, struct why *why)
+static int mobilised_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     return distribution(t, s, mobilised, false, 1, why);
 }
@@ -166,7 +166,7 @@ const struct measure measure_normal_forces = {
     .quantity = of_force,
     .list = true,
     .needs = NEEDS_FORCES,
-    .of = of_normal,
+    .rows = normal_rows,
 };
 
 const struct measure measure_tangential_forces = {
@@ -175,7 +175,7 @@ const struct measure measure_tangential_forces = {
     .quantity = of_force,
     .list = true,
     .needs = NEEDS_FORCES,
-    .of = of_tangential,
+    .rows = tangential_rows,
 };
 
 const struct measure measure_mobilised = {
@@ -184,5 +184,5 @@ const struct measure measure_mobilised = {
     .quantity = of_part,
     .list = true,
     .needs = NEEDS_FORCES,
-    .of = of_mobilised,
+    .rows = mobilised_rows,
 };

@@ -45,7 +45,7 @@ int measure_run(struct table *t, const struct measure *m, const struct snapshot 
         table_null(t, "%s", lack);
         return 0;
     }
-    if (m->of(t, s, why)) return why->status;
+    if (m->rows(t, s, why)) return why->status;
     for (int64_t i = 0; i < t->rows * t->width; i++)
         if (!isfinite(t->x[i])) table_null(t, "beyond the range of numbers");
     return 0;

@@ -26,7 +26,7 @@ struct measure {
     enum needs needs;
     /* Fills the table. A number that there is not is left NaN, with the reason by table_null().
        Returns 0 or EX_SOFTWARE. */
-    int (*of)(struct table *t, const struct snapshot *s, struct why *why);
+    int (*rows)(struct table *t, const struct snapshot *s, struct why *why);
 };
 
 extern const struct measure measure_fraction, measure_coordination, measure_contact_numbers,

@@ -137,7 +137,7 @@ static const char *impossible(const struct snapshot *s, const struct scatter *a,
     return NULL;
 }
 
-static int of(struct table *t, const struct snapshot *s, struct why *why)
+static int pairs_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     const struct packing *p = s->p;
     struct scatter a = { .size = { INFINITY, INFINITY, INFINITY } };
@@ -168,5 +168,5 @@ const struct measure measure_pairs = {
     .help = "pair correlation g(r)",
     .quantity = quantities,
     .list = true,
-    .of = of,
+    .rows = pairs_rows,
 };

@@ -60,7 +60,7 @@ static void add_layer(struct table *t, const struct snapshot *s, const struct re
     put(&at, tensor_trace(&T) / s->p->dim), put_tensor(&at, &T);
 }
 
-static int of(struct table *t, const struct snapshot *s, struct why *why)
+static int profile_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     return snapshot_layers(s, t, add_layer, NULL, why);
 }
@@ -70,5 +70,5 @@ const struct measure measure_profile = {
     .help = "layers: fraction, velocity, temperature, stress",
     .quantity = quantities,
     .list = true,
-    .of = of,
+    .rows = profile_rows,
 };

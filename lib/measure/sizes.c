@@ -43,7 +43,7 @@ static void add_layer(struct table *t, const struct snapshot *s, const struct re
         table_null(t, "layers without bodies have no sizes");
 }
 
-static int of(struct table *t, const struct snapshot *s, struct why *why)
+static int sizes_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     const double mean = mean_radius(s);
     return snapshot_layers(s, t, add_layer, &mean, why);
@@ -54,7 +54,7 @@ const struct measure measure_sizes = {
     .help = "layers: how large their bodies are",
     .quantity = quantities,
     .list = true,
-    .of = of,
+    .rows = sizes_rows,
 };
 
 /* ---- one number for it ---- */
@@ -98,7 +98,7 @@ static void moments_of(struct moments *m, const struct snapshot *s, int axis)
     }
 }
 
-static int of_segregation(struct table *t, const struct snapshot *s, struct why *why)
+static int segregation_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     struct moments m;
     double *at = table_row(t, why);
@@ -125,5 +125,5 @@ const struct measure measure_segregation = {
     .name = "segregation",
     .help = "whether large bodies are above small ones",
     .quantity = one,
-    .of = of_segregation,
+    .rows = segregation_rows,
 };

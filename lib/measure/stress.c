@@ -57,7 +57,7 @@ static const struct quantity quantities[] = {
     { 0 },
 };
 
-static int of(struct table *t, const struct snapshot *s, struct why *why)
+static int stress_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     const struct region *r = &s->region;
     struct moving m;
@@ -85,5 +85,5 @@ const struct measure measure_stress = {
     .quantity = quantities,
     .usual = true,
     .needs = NEEDS_FORCES,
-    .of = of,
+    .rows = stress_rows,
 };

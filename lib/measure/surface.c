@@ -171,7 +171,7 @@ static void fill(double *at, struct table *t, const struct snapshot *s, const st
     put_vec(&at, v3_axpy(s->p->x[top[apex].i], s->p->radius[top[apex].i], e->up));
 }
 
-static int of(struct table *t, const struct snapshot *s, struct why *why)
+static int surface_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     double *at = table_row(t, why);
     if (!at) return why->status;
@@ -194,5 +194,5 @@ const struct measure measure_surface = {
     .name = "surface",
     .help = "angle of the free surface",
     .quantity = quantities,
-    .of = of,
+    .rows = surface_rows,
 };

@@ -12,7 +12,7 @@ static const struct quantity quantities[] = {
     { 0 },
 };
 
-static int of(struct table *t, const struct snapshot *s, struct why *why)
+static int temperature_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     struct moving m;
     double *at = table_row(t, why);
@@ -36,5 +36,5 @@ const struct measure measure_temperature = {
     .help = "mean velocity, granular temperature",
     .quantity = quantities,
     .usual = true,
-    .of = of,
+    .rows = temperature_rows,
 };

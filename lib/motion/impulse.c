@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 enum {
-    SOME = 8192 /* contacts that are worth a thread: 200 us of work */
+    CONTACTS_PER_THREAD = 8192 /* the fewest contacts that are worth a thread: 200 us of work */
 };
 
 static void push_b(struct impulses *sum, int32_t b, const struct push *o)
@@ -90,7 +90,7 @@ int impulses_init(struct impulses *sum, const struct packing *p, const struct co
         sum->force[i] = v3_scale(p->dt, p->outside.force[i]);
     for (int64_t i = 0; p->outside.torque && i < p->n; i++)
         sum->moment[i] = v3_scale(p->dt, p->outside.torque[i]);
-    struct summing y = { sum, p, s, s->n < SOME ? 1 : team_size() };
+    struct summing y = { sum, p, s, s->n < CONTACTS_PER_THREAD ? 1 : team_size() };
     team_share(team_size(), y.parts, 1, sum_bodies, &y);
     sum_yields(sum, p, s);
     if (!ended) find_flow(sum, p);

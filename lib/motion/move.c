@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 enum {
-    SOME = 1024 /* bodies that are worth a thread: 100 us of work */
+    BODIES_PER_THREAD = 1024 /* the fewest bodies that are worth a thread: 100 us of work */
 };
 
 static quat turn(quat q, double dt, vec3 w)
@@ -79,7 +79,7 @@ static void move_some(void *arg, int64_t first, int64_t end)
 static void move_bodies(struct packing *p, const struct impulses *sum, bool back)
 {
     struct moving m = { p, sum, way_of(p, back) };
-    team_share(team_size(), p->n, SOME, move_some, &m);
+    team_share(team_size(), p->n, BODIES_PER_THREAD, move_some, &m);
 }
 
 int move_by(struct packing *p, const struct contacts *s, const struct impulses *sum,

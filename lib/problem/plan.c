@@ -7,7 +7,8 @@
 #include <stdlib.h>
 
 enum {
-    SOME = 4096 /* contacts, bodies or slots that are worth a thread: 100 us of work */
+    SLOTS_PER_THREAD =
+        4096 /* the fewest contacts, bodies or slots that are worth a thread: 100 us of work */
 };
 
 /* Makes bundles of the schedule's groups; each group begins a new one. False when memory is short. */
@@ -113,15 +114,15 @@ static bool make(struct making *m, const struct schedule *by)
     l->pair = malloc((size_t)(l->n + 1) * sizeof *l->pair);
     l->moves = malloc((size_t)(l->bodies + 1) * sizeof *l->moves);
     if (!l->pair || !l->moves || !bundle_groups(l, by)) return false;
-    team_share(threads, l->n, SOME, remember_pairs, m);
-    team_share(threads, l->bodies, SOME, remember_moving, m);
+    team_share(threads, l->n, SLOTS_PER_THREAD, remember_pairs, m);
+    team_share(threads, l->bodies, SLOTS_PER_THREAD, remember_moving, m);
     l->seats = malloc((size_t)(l->slots + 1) * sizeof *l->seats);
     m->copies = calloc((size_t)l->bundles + 1, sizeof *m->copies);
     if (!l->seats || !m->copies || !find_seats(l)) return false;
-    team_share(threads, l->bundles, SOME / BUNDLE, count_copies, m);
+    team_share(threads, l->bundles, SLOTS_PER_THREAD / BUNDLE, count_copies, m);
     for (int64_t k = 0; k < l->bundles; k++) m->copies[k + 1] += m->copies[k];
     l->copies = m->copies[l->bundles];
-    team_share(threads, l->bundles, SOME / BUNDLE, seat_some, m);
+    team_share(threads, l->bundles, SLOTS_PER_THREAD / BUNDLE, seat_some, m);
     return true;
 }
 
@@ -185,9 +186,9 @@ bool plan_holds(const struct plan *l, enum order order, const struct contacts *s
 {
     if (l->order != order || l->n != s->n || l->bodies != p->n) return false;
     struct making m = { .l = (struct plan *)l, .s = s, .p = p };
-    team_share(team_size(), l->n, SOME, compare_pairs, &m);
+    team_share(team_size(), l->n, SLOTS_PER_THREAD, compare_pairs, &m);
     if (m.differs) return false;
-    team_share(team_size(), l->bodies, SOME, compare_moving, &m);
+    team_share(team_size(), l->bodies, SLOTS_PER_THREAD, compare_moving, &m);
     return !m.differs && schedule_holds(&l->schedule, s, p);
 }
 

@@ -17,10 +17,11 @@ struct plan {
     int32_t *contact; /* [slots] slot i is contact[i]; -1: none */
     /* Of a packing */
     int32_t *seat; /* [bodies] body i is body[seat[i]]; in orders before colour as in the packing */
-    /* [slots] indices in body[]: of bodies that move their seats; behind `nobody` of each half, which are
-       bodies and bodies + 1, copies of bodies that do not */
+    /* [slots] where in body[] the two bodies of a contact are. A body that moves is in its seat. Each contact has its
+       own copy of a body that does not move. The copies come after body[bodies] and body[bodies + 1], which stand for
+       "no body" in the two halves of a sweep. */
     int32_t (*seats)[2];
-    int64_t copies; /* so many */
+    int64_t copies; /* number of these copies */
     /* What it was made of beside what the schedule has */
     enum order order;
     int64_t n, bodies;  /* contacts, bodies */

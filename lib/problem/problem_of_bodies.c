@@ -63,7 +63,8 @@ static void free_some(void *arg, int64_t first, int64_t end)
     }
 }
 
-/* Is it so of any contact of any process? One text of the sweep serves them all. */
+/* Has any process such a contact, where `here` says so of this one? All processes run the same sweep, which then
+   has room for it. */
 static bool anywhere(const struct problem *p, bool here)
 {
     return p->shared ? p->shared->most(p->shared, here) > 0 : here;

@@ -20,7 +20,7 @@ enum {
     COLOUR_HALVES_FROM = 8192, /* contacts from which halves cost one thread nothing */
     ONE_BLOCK_MAX = 65536,     /* contacts that are coloured as one block, at most */
     BLOCK = 16384,             /* contacts of a block, whose bodies stay in a second-level cache */
-    SOME = 8192                /* contacts that are worth a thread */
+    CONTACTS_PER_THREAD = 8192 /* the fewest contacts that are worth a thread */
 };
 
 /*
@@ -177,7 +177,7 @@ static int place_zones(struct graph *g, const int64_t *sequence, int zones, cons
     for (int k = 0; k < zones; begin += count[k++])
         for (int64_t i = 0; i < count[k]; i += block)
             s[n++].first = begin + i, s[n - 1].n = count[k] - i < block ? count[k] - i : block;
-    team_share(g->n < SOME ? 1 : team_size(), n, 1, colour_some, &c);
+    team_share(g->n < CONTACTS_PER_THREAD ? 1 : team_size(), n, 1, colour_some, &c);
     int64_t at = 0, from = 0, end = 0;
     for (int k = 0; k < zones; k++) {
         first[k] = from, end += count[k];
@@ -236,10 +236,10 @@ static void place_some(void *arg, int64_t first, int64_t end)
 static bool find_places(const struct contacts *s, uint32_t *key)
 {
     struct places o = { s, key, s->c[0].x, s->c[0].x, 0, PTHREAD_MUTEX_INITIALIZER };
-    team_share(team_size(), s->n, SOME, bound_some, &o);
+    team_share(team_size(), s->n, CONTACTS_PER_THREAD, bound_some, &o);
     o.h = dmax(o.hi.x - o.lo.x, dmax(o.hi.y - o.lo.y, o.hi.z - o.lo.z)) / 1023;
     if (o.h > 0)
-        team_share(team_size(), s->n, SOME, place_some, &o);
+        team_share(team_size(), s->n, CONTACTS_PER_THREAD, place_some, &o);
     else
         memset(key, 0, (size_t)s->n * sizeof *key);
     return o.h > 0;
@@ -346,7 +346,7 @@ static int schedule(struct schedule *s, enum order order, struct graph *g)
     if (!g->W) g->body = malloc((size_t)(g->n + 1) * sizeof *g->body);
     int failed = !s->sequence || !g->place || (!g->W && !g->body);
     if (!failed) {
-        if (!g->W) team_share(team_size(), g->n, SOME, find_some, g);
+        if (!g->W) team_share(team_size(), g->n, CONTACTS_PER_THREAD, find_some, g);
         sequence_init(s->sequence, g->n, order);
         for (int64_t i = 0; i < g->n; i++) g->place[i] = -1;
         failed = place(s, order, g) || regroup(s, g);
@@ -385,7 +385,7 @@ static bool same_zones(const struct schedule *s, const struct contacts *contacts
     int8_t *zone = malloc((size_t)g.n + 1);
     g.body = malloc((size_t)(g.n + 1) * sizeof *g.body);
     bool same = zone && g.body;
-    if (same) team_share(team_size(), g.n, SOME, find_some, &g);
+    if (same) team_share(team_size(), g.n, CONTACTS_PER_THREAD, find_some, &g);
     same = same && !two_thread_split_divide(g.n, g.body, packing, zone) &&
            !memcmp(zone, s->zone, (size_t)g.n);
     free(zone), free(g.body);

@@ -1,11 +1,8 @@
 /* problem/sweep.c: the sweep [problem/sweep.h]. Compiled with LANES = 2, 4, 8. */
 #include "problem/sweep.h"
 
-#include "law/local_eal.h"
-#include "law/local_ebp.h"
-#include "law/local_exact.h"
-#include "law/local_sal.h"
-#include "law/local_sbp.h"
+#define METHOD_CODE
+#include "law/method.h"
 #include "problem/walk.h"
 
 typedef void method_text(struct local *, const struct local_opt *);
@@ -333,7 +330,7 @@ DEFINE_SHARED(diagonals, KIND_DIAGONALS)
         what(p, me, threads, o, METHOD_##method, solve, t);                                        \
     }
 
-#define DEFINE_SWEEPS(name)                                                                        \
+#define DEFINE_SWEEPS(name, ...)                                                                   \
     DEFINE_KERNEL(name, far_balls, KIND_FAR_BALLS)                                                 \
     DEFINE_KERNEL(name, balls, KIND_BALLS)                                                         \
     DEFINE_KERNEL(name, bonds, KIND_BONDS)                                                         \
@@ -352,7 +349,7 @@ DEFINE_SHARED(diagonals, KIND_DIAGONALS)
     DEFINE_CALL(name, diagonals, name##_diagonal)
 EACH_METHOD(DEFINE_SWEEPS)
 
-#define SWEEPS_OF(name)                                                                            \
+#define SWEEPS_OF(name, ...)                                                                       \
     { [KIND_FAR_BALLS] = far_balls_by_##name,                                                      \
       [KIND_BALLS] = balls_by_##name,                                                              \
       [KIND_BONDS] = bonds_by_##name,                                                              \

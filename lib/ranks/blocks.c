@@ -15,7 +15,7 @@ enum {
     TAG = 9
 };
 
-static struct blocks *of(struct shared *s)
+static struct blocks *blocks_of(struct shared *s)
 {
     return (struct blocks *)s;
 }
@@ -100,17 +100,17 @@ static void add_up(struct blocks *b, int width, place_text *at, void *arg, doubl
 
 static void settle(struct shared *s, struct problem *p)
 {
-    add_up(of(s), TWIST, twist_of, p, of(s)->since);
+    add_up(blocks_of(s), TWIST, twist_of, p, blocks_of(s)->since);
 }
 
 static void after_group(struct shared *s, struct problem *p, int64_t group)
 {
-    if (group == of(s)->plan.groups - 1) settle(s, p);
+    if (group == blocks_of(s)->plan.groups - 1) settle(s, p);
 }
 
 static void begin(struct shared *s, struct problem *p)
 {
-    remember(of(s), TWIST, twist_of, p, of(s)->since);
+    remember(blocks_of(s), TWIST, twist_of, p, blocks_of(s)->since);
 }
 
 static void judging(struct shared *s, struct problem *p, bool begins)
@@ -121,7 +121,7 @@ static void judging(struct shared *s, struct problem *p, bool begins)
 
 static void add(struct shared *s, double *x, int n)
 {
-    struct comm *t = of(s)->part->comm;
+    struct comm *t = blocks_of(s)->part->comm;
     double *all = comm_new(t, (int64_t)n * t->n, sizeof *all), since = comm_busy();
     MPI_Allgather(x, n, MPI_DOUBLE, all, n, MPI_DOUBLE, t->mpi);
     comm_waited(t, since);

@@ -10,14 +10,14 @@ enum { PARTS = 3, COPIES = 1, QUIET = 2 }; /* of a group, and two of them; 0: wh
 
 /* ---- what solvers ask ---- */
 
-static struct colours *of(struct shared *s)
+static struct colours *colours_of(struct shared *s)
 {
     return (struct colours *)s;
 }
 
 static void after_group(struct shared *s, struct problem *p, int64_t group)
 {
-    struct colours *c = of(s);
+    struct colours *c = colours_of(s);
     if (group % PARTS == COPIES) wires_send(&c->wires, p, group / PARTS);
     if (group % PARTS == QUIET) wires_wait(&c->wires, p, group / PARTS);
 }
@@ -29,7 +29,7 @@ static void begin(struct shared *s, struct problem *p)
 
 static void settle(struct shared *s, struct problem *p)
 {
-    wires_refresh(of(s)->part, p);
+    wires_refresh(colours_of(s)->part, p);
 }
 
 static void judging(struct shared *s, struct problem *p, bool begins)
@@ -47,13 +47,13 @@ static const struct tally_order *tally(struct colours *c, const struct problem *
 static void sum(struct shared *s, const struct problem *p, int64_t chunk, int parts, int terms,
                 const double *term, double *out)
 {
-    struct colours *c = of(s);
+    struct colours *c = colours_of(s);
     tally_sum(tally(c, p), c->part->comm, s->bundles, chunk, parts, terms, term, out);
 }
 
 static double sum_along(struct shared *s, const struct problem *p, const double *term)
 {
-    struct colours *c = of(s);
+    struct colours *c = colours_of(s);
     return tally_along(tally(c, p), c->part->comm, s->bundles, term);
 }
 

@@ -21,10 +21,11 @@ static hid_t select_rows(hid_t set, const struct target *o, int64_t first, int64
 {
     const hsize_t row = (hsize_t)first, rows = (hsize_t)n, width = (hsize_t)o->width;
     const hsize_t start[3] = { (hsize_t)o->frame, row, 0 }, count[3] = { 1, rows, width };
+    const int from = o->frame < 0; // the dataset has no frames
     hid_t space = H5Dget_space(set);
-    herr_t e = !n ? H5Sselect_none(space)
-                  : H5Sselect_hyperslab(space, H5S_SELECT_SET, o->frame < 0 ? &row : start, NULL,
-                                        o->frame < 0 ? &rows : count, NULL);
+    herr_t e =
+        !n ? H5Sselect_none(space)
+           : H5Sselect_hyperslab(space, H5S_SELECT_SET, start + from, NULL, count + from, NULL);
     if (e >= 0) return space;
     H5Sclose(space);
     return -1;

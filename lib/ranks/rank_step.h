@@ -1,15 +1,16 @@
 /*
- * ranks/rank_step.h: one time step of all ranks. Each finds the contacts of its own bodies; they are solved by
- * all, in the order of all (ranks/colours.h) or each rank's own (ranks/blocks.h). The first rank has the
- * whole packing: it says what order that is, what laws make of the contacts, sums the balances and moves the
- * bodies.
+ * ranks/rank_step.h: one time step of all ranks, solve/step.h's with other hooks. Each rank finds the contacts of its
+ * own bodies. All ranks solve them together, either in the order of one process (ranks/colours.h) or each rank in an
+ * order of its own (ranks/blocks.h).
  *
- * What only a process that has all contacts can solve the first one solves alone: loads, whose contacts all
- * depend on each other by a W of their own; other solvers than auto, nlgs and anderson; and where auto goes on
- * with Newton's method.
+ * The first rank has the whole packing. It chooses the order, applies the laws of pairs, sums the balances and moves
+ * the bodies. It also solves alone what needs all contacts in one process:
+ *   - load-controlled walls, whose contacts all depend on each other by a W of their own;
+ *   - solvers other than auto, nlgs and anderson;
+ *   - Newton's method, where auto continues with it.
  *
- * In blocks, where bodies neither come nor go and pairs have no law beyond friction and restitution, each rank moves
- * its own and sums its balances, and nobody has the whole.
+ * With the order `block`, no rank has the whole packing, and each moves its own bodies and sums its own balances. That
+ * wants a packing without inlets, outlets and laws of pairs beyond friction and restitution.
  */
 #ifndef NSD_RANK_STEP_H
 #define NSD_RANK_STEP_H
@@ -21,20 +22,22 @@
 struct rank_step {
     struct part part;
     struct neighbours near;
-    bool varies;          /* bodies come and go, at the first */
-    bool scattered;       /* nobody has the whole packing */
-    double mean_mass;     /* kg: then */
-    bool contacts;        /* the first rank wants those of steps that are kept */
-    int64_t steps, since; /* steps made; since the last cut */
-    int64_t alone;        /* steps whose contacts the first rank has solved alone */
-    /* Contacts of the rank that has most over the mean: the most of all steps, and the sum over them */
-    double worst, uneven;
-    double fresh,
-        lost; /* the same right after the last cut, and what it was more since then, added up */
-    int64_t sweeps; /* of the shared solves */
-    /* s of this processor's time in these, and in all steps, without waiting for others */
-    double busy[2];
-    int64_t solved[2]; /* bytes and messages of the shared solves, sent by this rank */
+    bool varies;      /* the packing has inlets or outlets; known to all ranks */
+    bool scattered;   /* no rank has the whole packing */
+    double mean_mass; /* kg: of its bodies, where it is scattered */
+    bool contacts;    /* the first rank writes the contacts of the frames that it keeps */
+    int64_t steps;    /* steps made */
+    int64_t since;    /* the step of the last cut */
+    int64_t alone;    /* steps whose contacts the first rank has solved alone */
+    /* The imbalance of a step is the contacts of the rank that has most, over the mean. */
+    double worst;   /* the largest of all steps */
+    double uneven;  /* the sum over all steps */
+    double fresh;   /* of the first step after the last cut */
+    double lost;    /* how much larger than that it was since, summed over the steps */
+    int64_t sweeps; /* of the solves by all ranks */
+    double busy
+        [2]; /* s of processor time, without waiting: of the solves by all ranks, of all steps */
+    int64_t solved[2]; /* bytes and messages that this rank has sent in solves by all ranks */
 };
 
 /* Collective. The first rank's packing; in others it is not looked at. space is taken over. rows: those of all

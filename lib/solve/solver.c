@@ -32,8 +32,8 @@ const struct solver *const solvers[] = { &solver_auto, &solver_nlgs, &solver_and
                                          NULL };
 
 enum {
-    SOME = 16384,      /* slots that are worth a thread: 100 us of copying */
-    RENEW_EVERY = 1000 /* sweeps: their rounding stays below 1e-13 of the velocities */
+    SLOTS_PER_THREAD = 16384, /* the fewest slots that are worth a thread: 100 us of copying */
+    RENEW_EVERY = 1000        /* sweeps: their rounding stays below 1e-13 of the velocities */
 };
 
 static void evaluate(struct solve *s)
@@ -159,7 +159,7 @@ void solve_best_offer(const struct solve *s, struct best *b)
     const struct problem *p = s->p;
     struct keeping k = { p, best_offer(b, s->value) };
     if (!k.r) return;
-    team_share(s->o->threads, p->slots, SOME, keep_some, &k);
+    team_share(s->o->threads, p->slots, SLOTS_PER_THREAD, keep_some, &k);
     if (with_u(p)) k.r[6 * p->slots] = s->believes;
 }
 

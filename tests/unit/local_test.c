@@ -3,11 +3,7 @@
  * own formulas.
  */
 #include "base/eigen.h"
-#include "law/local_eal.h"
-#include "law/local_ebp.h"
-#include "law/local_exact.h"
-#include "law/local_sal.h"
-#include "law/local_sbp.h"
+#define METHOD_CODE
 #include "law/method.h"
 #include "tap.h"
 
@@ -42,7 +38,7 @@ static void method_solve(const struct method *m, struct local *l, const struct l
     local_velocity(l, l->r, l->v);
     l->relax = 1;
     switch (m->id) {
-#define CASE(name)                                                                                 \
+#define CASE(name, ...)                                                                            \
     case METHOD_##name:                                                                            \
         name##_solve(l, opt);                                                                      \
         break;
