@@ -95,7 +95,8 @@ del f['nsd']
 for b in f['VTKHDF/Assembly'].values():
     for n in 'nsd_shape', 'nsd_radius', 'nsd_inertia': del b['PointData/' + n]"
     nsd-gen --from "$tmp/plain.vtkhdf" >"$tmp/plain.back.h5"
-    ok "a ball, a box and a clump without nsd's extension: motion, mass and inertia" h5diff -p 1e-13 --exclude-path /particles/all/shape "$tmp/plain.h5" "$tmp/plain.back.h5" /particles/all
+    ok "a ball, a box and a clump without nsd's extension: motion, mass and inertia" sh -c "for d in position/value velocity/value angular_velocity/value orientation/value radius mass inertia id
+        do h5diff -p 1e-13 '$tmp/plain.h5' '$tmp/plain.back.h5' /particles/all/\$d || exit 1; done"
     is "the clump is made of its members" "$(h5dump -d /nsd/shape/form "$tmp/plain.back.h5" | grep -m 1 -o '(0): .*')" "(0): 3, 1"
     is "friction is the lesser of two materials', as Yade has it" "$(nsd-gen --from "$tmp/foreign.vtkhdf" >"$tmp/foreign.h5"; nsd-info --scene "$tmp/foreign.h5" | jq -c '[.pairs[].mu]')" "[0.3,0.3,0.5]"
     ok "a run goes on from it" sh -c "nsd-gen --from '$tmp/foreign.vtkhdf' | nsd-step -n 3 >'$tmp/none' 2>&1"
