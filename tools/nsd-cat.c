@@ -12,7 +12,7 @@ static struct cli_choice vtk_choice(int k)
 {
     static const struct cli_choice parts[] = {
         { "grains", "as points: VTK 9.3, ParaView 5.12" },
-        { "all", "also other shapes and walls as surfaces, in blocks: VTK 9.4, ParaView 6.0" },
+        { "all", "also other shapes and walls as surfaces, in blocks: VTK 9.6, ParaView 6.1" },
     };
     return k < 2 ? parts[k] : (struct cli_choice){ 0 };
 }

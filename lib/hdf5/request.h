@@ -18,12 +18,12 @@ enum {
 /* A request; path "" is the root. */
 struct request {
     enum {
-        REQUEST_NEXT,      /* the next document of the stream; answered by its objects, see below */
-        REQUEST_ROWS,      /* rows start .. start+n-1 of width numbers; n < 0: all numbers */
-        REQUEST_PART,      /* n rows, from `from` on, of width numbers, of row start */
-        REQUEST_RAW,       /* all of a dataset of numbers or texts, in its own plain type */
-        REQUEST_TEXT,      /* a scalar string, without its zero; of an attribute if name[0]; n: a list of them */
-        REQUEST_ATTRIBUTE, /* n numbers of an attribute; n < 0: a scalar */
+        REQUEST_NEXT, /* the next document of the stream; answered by its objects, see below */
+        REQUEST_ROWS, /* rows start .. start+n-1 of width numbers; n < 0: all numbers */
+        REQUEST_PART, /* n rows, from `from` on, of width numbers, of row start */
+        REQUEST_RAW,  /* all of a dataset of numbers or texts, in its own plain type */
+        REQUEST_TEXT, /* a scalar string, without its zero; of an attribute if name[0]; n: a list of them */
+        REQUEST_ATTRIBUTE,  /* n numbers of an attribute; n < 0: a scalar */
         REQUEST_ATTRIBUTES, /* all attributes of an object, as objects with their data */
         REQUEST_IMAGE,      /* the document's own bytes, header and all */
         REQUEST_UNLOAD,     /* stream_unload */

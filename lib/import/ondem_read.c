@@ -1,5 +1,6 @@
 #include "import/ondem_read.h"
 
+#include "bodies/solid.h"
 #include "io/shape_tables.h"
 #include "hdf5/source.h"
 
@@ -23,6 +24,13 @@ struct material {
     double friction; /* NaN: not said */
 };
 
+/* A sphere that is one of a clump's */
+struct member {
+    int64_t clump, id, material;
+    vec3 x; /* m, in the axes of the clump */
+    double r;
+};
+
 struct file {
     const char *path;
     struct source *in;
@@ -32,8 +40,10 @@ struct file {
     enum shape_kind *shape; /* [kinds_of_shape] what shape_type means in this file */
     int materials;
     struct material *material;
-    int64_t n;     /* bodies so far */
-    int32_t walls; /* walls so far */
+    int64_t members, members_room;
+    struct member *member; /* [members] by their clumps */
+    int64_t n;             /* bodies so far */
+    int32_t walls;         /* walls so far */
 };
 
 static int fault(const struct file *f, const char *place, const char *trouble)
@@ -138,13 +148,14 @@ static int32_t kind_of(const struct file *f, int64_t id)
 struct block {
     const char *path;
     int64_t n;
-    double *x, *v, *w, *q, *mass, *inertia, *radius, *sides, *reach, *mean;
+    double *x, *v, *w, *q, *mass, *volume, *inertia, *radius, *sides, *reach, *mean;
     int64_t *id, *shape, *material, *clump, *dofs, *axis, *sense, *row;
 };
 
 static void block_free(struct block *b)
 {
     free(b->x), free(b->v), free(b->w), free(b->q), free(b->mass), free(b->inertia);
+    free(b->volume);
     free(b->radius), free(b->sides), free(b->reach), free(b->mean), free(b->id), free(b->shape);
     free(b->material), free(b->clump), free(b->dofs), free(b->axis), free(b->sense), free(b->row);
 }
@@ -184,6 +195,7 @@ static int read_columns(struct file *f, struct block *b)
     b->w = read_column(f, b, "PointData/angular_velocity", false, 3, false);
     b->q = read_column(f, b, "PointData/orientation", false, 4, false);
     b->mass = read_column(f, b, "PointData/mass", false, 1, false);
+    b->volume = read_column(f, b, "PointData/volume", false, 1, false);
     b->inertia = read_column(f, b, "PointData/inertia", false, 9, false);
     b->radius = read_column(f, b, "PointData/radius", false, 1, false);
     b->dofs = read_column(f, b, "PointData/blocked_dofs", true, 1, false);
@@ -202,15 +214,37 @@ static int body_fault(const struct file *f, const struct block *b, int64_t i, co
                    b->id[i], trouble);
 }
 
-/* A box of these sides, as a shape of its own; the row of one that there is */
-static int box_row(struct file *f, const double *sides, double *reach, int32_t *row)
+static bool all_finite(const double *x, int n)
+{
+    for (int k = 0; k < n; k++)
+        if (!isfinite(x[k])) return false;
+    return true;
+}
+
+/* The row of a shape that is finished: of one that there is, or its own. The shape goes with it. */
+static int keep_shape(struct file *f, struct shape *s, const char *called, int32_t *row)
 {
     struct packing *p = f->p;
+    char name[40];
+    // to compare it with each takes some ns
+    if (source_draw(f->in, 4 * (uint64_t)p->shapes.n, f->why)) return shape_free(s), f->why->status;
+    for (int32_t k = 1; k < p->shapes.n; k++)
+        if (shape_same(&p->shapes.s[k], s)) return shape_free(s), *row = k, 0;
+    snprintf(name, sizeof name, "%s %d", called, p->shapes.n ? p->shapes.n : 1);
+    if (!(s->name = strdup(name))) why_set(f->why, EX_SOFTWARE, "no memory for a shape");
+    if (f->why->status) return shape_free(s), f->why->status;
+    if (shapes_add(&p->shapes, 3, s, f->why)) return f->why->status;
+    *row = p->shapes.n - 1;
+    return 0;
+}
+
+/* A box of these sides */
+static int box_row(struct file *f, const double *sides, double *reach, int32_t *row)
+{
     const double r = 0.5 * sqrt(sides[0] * sides[0] + sides[1] * sides[1] + sides[2] * sides[2]);
     static const int32_t face[24] = { 0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4,
                                       2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6 };
-    struct shape s = { .form = SHAPE_HULL };
-    char name[40];
+    struct shape s = { 0 };
     *reach = r;
     if (shape_alloc(&s, 8, 6, 24, f->why)) return f->why->status;
     s.form = SHAPE_HULL;
@@ -225,14 +259,78 @@ static int box_row(struct file *f, const double *sides, double *reach, int32_t *
         s.moment[k] = (a * a + c * c) / 12;
     }
     if (shape_finish(&s, 3, f->why)) return shape_free(&s), f->why->status;
-    for (int32_t k = 1; k < p->shapes.n; k++)
-        if (shape_same(&p->shapes.s[k], &s)) return shape_free(&s), *row = k, 0;
-    snprintf(name, sizeof name, "box %d", p->shapes.n ? p->shapes.n : 1);
-    if (!(s.name = strdup(name))) why_set(f->why, EX_SOFTWARE, "no memory for a shape");
-    if (f->why->status) return shape_free(&s), f->why->status;
-    if (shapes_add(&p->shapes, 3, &s, f->why)) return f->why->status;
-    *row = p->shapes.n - 1;
+    return keep_shape(f, &s, "box", row);
+}
+
+/* ---- clumps: the spheres that are members of one ---- */
+
+static int by_clump(const void *one, const void *other)
+{
+    const struct member *a = one, *b = other;
+    if (a->clump != b->clump) return a->clump < b->clump ? -1 : 1;
+    return (a->id > b->id) - (a->id < b->id);
+}
+
+static int add_members(struct file *f, const struct block *b, const double *at)
+{
+    for (int64_t i = 0; i < b->n; i++) {
+        if (b->clump[i] < 0 || !b->radius || !(b->radius[i] > 0) || !all_finite(at + 3 * i, 3))
+            continue;
+        if (f->members == f->members_room) {
+            int64_t room = f->members_room ? 2 * f->members_room : 256;
+            struct member *more = realloc(f->member, (size_t)room * sizeof *more);
+            if (!more) return why_set(f->why, EX_SOFTWARE, "no memory for the clumps");
+            f->member = more, f->members_room = room;
+        }
+        f->member[f->members++] =
+            (struct member){ b->clump[i], b->id[i], b->material[i],
+                             v3(at[3 * i], at[3 * i + 1], at[3 * i + 2]), b->radius[i] };
+    }
     return 0;
+}
+
+/* The members of the clump with this id, sorted by their own */
+static const struct member *members_of(const struct file *f, int64_t clump, int64_t *n)
+{
+    int64_t lo = 0, hi = f->members;
+    while (lo < hi) {
+        int64_t k = lo + (hi - lo) / 2;
+        if (f->member[k].clump < clump)
+            lo = k + 1;
+        else
+            hi = k;
+    }
+    for (*n = 0; lo + *n < f->members && f->member[lo + *n].clump == clump;) ++*n;
+    return f->member + lo;
+}
+
+/* The balls of a clump about its centre, in its principal axes; the moments are those that the file has for it. */
+static int clump_row(struct file *f, const struct block *b, int64_t i, double *reach, int32_t *row)
+{
+    int64_t n;
+    const struct member *m = members_of(f, b->id[i], &n);
+    const double *I = b->inertia ? b->inertia + 9 * i : NULL, mass = b->mass ? b->mass[i] : 0;
+    struct shape s = { 0 };
+    struct solid balls = { 0 };
+    if (n < 1 || n > SHAPE_VERTICES_MOST)
+        return body_fault(f, b, i, "a clump without members, or with more than 4096");
+    if (!I || !(mass > 0) || !(I[0] > 0 && I[4] > 0 && I[8] > 0) ||
+        fabs(I[1]) + fabs(I[2]) + fabs(I[5]) > 1e-9 * (I[0] + I[4] + I[8]))
+        return body_fault(f, b, i, "a clump without a mass and a diagonal inertia");
+    for (int64_t k = 0; k < n; k++) *reach = fmax(*reach, v3_norm(m[k].x) + m[k].r);
+    if (shape_alloc(&s, (int32_t)n, 0, 0, f->why)) return f->why->status;
+    s.form = SHAPE_CLUMP;
+    for (int64_t k = 0; k < n; k++)
+        s.vertex[k] = v3_scale(1 / *reach, m[k].x), s.ball[k] = m[k].r / *reach;
+    for (int k = 0; k < 3; k++) s.moment[k] = I[4 * k] / (mass * *reach * *reach);
+    s.volume = b->volume ? b->volume[i] / (*reach * *reach * *reach) : 0;
+    // else by lines through the balls, which takes some ms for each
+    if (!(s.volume > 0) &&
+        (source_draw(f->in, 2000000 * (uint64_t)n, f->why) || solid_of(&balls, &s, 3, f->why)))
+        return shape_free(&s), f->why->status;
+    if (!(s.volume > 0)) s.volume = balls.volume;
+    if (shape_finish(&s, 3, f->why)) return shape_free(&s), f->why->status;
+    return keep_shape(f, &s, "clump", row);
 }
 
 static int add_wall(struct file *f, const struct block *b, int64_t i, int32_t kind)
@@ -249,13 +347,6 @@ static int add_wall(struct file *f, const struct block *b, int64_t i, int32_t ki
     *w = boundary_plane(v3(x[0], x[1], x[2]), n, kind);
     w->v = v3(v[0], v[1], v[2]);
     return 0;
-}
-
-static bool all_finite(const double *x, int n)
-{
-    for (int k = 0; k < n; k++)
-        if (!isfinite(x[k])) return false;
-    return true;
 }
 
 /* The shape's row in the packing, and the radius of the ball around the body */
@@ -277,12 +368,11 @@ static int read_shape(struct file *f, const struct block *b, int64_t i, enum sha
     if (is == BOX && b->sides && all_finite(b->sides + 3 * i, 3) && b->sides[3 * i] > 0 &&
         b->sides[3 * i + 1] > 0 && b->sides[3 * i + 2] > 0)
         return box_row(f, b->sides + 3 * i, reach, row);
+    if (is == CLUMP) return clump_row(f, b, i, reach, row);
     return body_fault(f, b, i,
                       is == BOX ? "a box without dimensions"
-                      : is == CLUMP
-                          ? "a clump: only nsd's own are read, whose shape is in /nsd/shape"
-                          : "a shape that the format does not describe: only nsd's own are "
-                            "read, in /nsd/shape");
+                                : "a shape that the format does not describe: only nsd's own are "
+                                  "read, in /nsd/shape");
 }
 
 static int add_body(struct file *f, const struct block *b, int64_t i)
@@ -293,7 +383,11 @@ static int add_body(struct file *f, const struct block *b, int64_t i)
         return body_fault(f, b, i, "shape_type is none of /ONDEM/Scene/shape_names");
     const enum shape_kind is = f->shape[b->shape[i]];
     int32_t kind = kind_of(f, b->material[i]);
-    if (kind < 0 && is == CLUMP && f->materials) kind = 0;
+    if (kind < 0 && is == CLUMP) { // that of its members
+        int64_t members;
+        const struct member *m = members_of(f, b->id[i], &members);
+        kind = members ? kind_of(f, m->material) : f->materials ? 0 : -1;
+    }
     if (kind < 0) return body_fault(f, b, i, "material_id is none of /ONDEM/Materials");
     if (is == WALL) return add_wall(f, b, i, kind);
     const int64_t dofs = b->dofs ? b->dofs[i] : 0;
@@ -355,6 +449,24 @@ static int count_block(struct file *f, const char *path)
     int64_t n = rows_of(f, path);
     f->n += n < 0 ? 0 : n;
     if (!f->why->status && f->n > INT32_MAX) fault(f, path, "too many bodies");
+    return f->why->status;
+}
+
+static int read_members(struct file *f, const char *path)
+{
+    struct block b = { .path = path, .n = rows_of(f, path) };
+    double *at = NULL;
+    if (!f->why->status)
+        at = read_column(f, &b, "PointData/clump_relative_position", false, 3, false);
+    if (at) {
+        b.clump = read_column(f, &b, "PointData/clump_id", true, 1, true);
+        b.id = read_column(f, &b, "PointData/body_id", true, 1, true);
+        b.material = read_column(f, &b, "PointData/material_id", true, 1, true);
+        b.radius = read_column(f, &b, "PointData/radius", false, 1, true);
+        if (!f->why->status) add_members(f, &b, at);
+    }
+    free(at);
+    block_free(&b);
     return f->why->status;
 }
 
@@ -479,8 +591,10 @@ static int read_open(struct file *f, int dim, struct import_said *said)
             f->path);
     if (dim != 3) return fault(f, "/ONDEM", "bodies in space, and the scene is in the plane");
     int64_t most;
-    if (read_shape_names(f) || read_materials(f) || for_blocks(f, count_block))
+    if (read_shape_names(f) || read_materials(f) || for_blocks(f, count_block) ||
+        for_blocks(f, read_members))
         return f->why->status;
+    if (f->members) qsort(f->member, (size_t)f->members, sizeof *f->member, by_clump);
     most = f->n, f->n = 0;
     struct packing *p = f->p;
     if (packing_init(p, dim, most, f->why)) return f->why->status;
@@ -522,7 +636,7 @@ int ondem_read(struct packing *p, const char *path, int dim, struct import_said 
     }
     if (why->status) packing_free(p);
     for (int k = 0; k < f.materials; k++) free(f.material[k].label);
-    free(f.material), free(f.shape);
+    free(f.material), free(f.shape), free(f.member);
     if (f.in) source_close(f.in);
     free(name);
     return why->status;

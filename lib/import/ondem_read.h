@@ -1,6 +1,6 @@
 /*
  * import/ondem_read.h: packings in ON-DEM's exchange format [io/ondem_write.h], by ours or another program: spheres,
- * boxes, and what /nsd describes: polyhedra, clumps, capsules; walls across an axis. What the scene that takes them
+ * boxes, clumps of spheres, and what /nsd describes: polyhedra, capsules; walls across an axis. What the scene that takes them
  * has itself is not read: contacts and the stiffnesses of materials.
  */
 #ifndef NSD_ONDEM_READ_H

@@ -65,7 +65,8 @@ jq '.walls = [{box: {x: [-1, 9], y: [-1, 9], z: [-2, null]}}]' <<<'{"dt": 1e-4, 
 jq --slurpfile w "$tmp/walls" '.walls = $w[0].walls | .bodies = [{x: [0, 0, 0], radius: 0.1}, {x: [1, 0, 0.1], shape: "stone", orientation: [1, 2, 3], v: [1, 2, 3], w: [3, 4, 5]},
     {x: [3, 0, 0], shape: "cube", size: 0.3, orientation: [0.2, 0, 0.1], w: [1, 0, 2]}, {x: [3, 2, 0], shape: "cube", size: 0.4, fixed: true},
     {x: [0, 3, 0], shape: "pair", size: 0.5, w: [7, 1, 0]}, {x: [2, 3, 0], shape: "rod", size: 0.5, orientation: [0, 1, 0]}] |
-    .shapes.pair = {balls: [[0, 0, 0, 1], [0.8, 0, 0, 0.7]]} | .shapes.rod = {capsule: {length: 1, radius: 0.3}}' scenes/rubble.json | nsd-gen - >"$tmp/mixed.h5"
+    .shapes.pair = {balls: [[0, 0, 0, 1], [0.8, 0, 0, 0.7]]} | .shapes.rod = {capsule: {length: 1, radius: 0.3}}' scenes/rubble.json >"$tmp/mixed.json"
+nsd-gen "$tmp/mixed.json" >"$tmp/mixed.h5"
 nsd-gen 60 | nsd-step -n 400 --every 400 --contacts >"$tmp/heap.h5" 2>/dev/null
 facts() { nsd-info -p "$1" | jq -cS 'del(.step)'; }
 for name in heap mixed; do
@@ -84,6 +85,19 @@ if has h5py; then
         '[2,"rock9","ball",2,1]
 [3,"rock4","box 1",2,1]
 [5,"rock4","ball",2,1]'
+    # our own file without what is nsd's: balls, boxes and clumps are the format's
+    jq '.bodies = [.bodies[0, 2, 4]] | del(.shapes.stone, .shapes.rod)' "$tmp/mixed.json" | nsd-gen - >"$tmp/plain.h5"
+    nsd-export -o "$tmp/plain.vtkhdf" "$tmp/plain.h5"
+    /usr/bin/python3 -c "
+import h5py
+f = h5py.File('$tmp/plain.vtkhdf', 'r+')
+del f['nsd']
+for b in f['VTKHDF/Assembly'].values():
+    for n in 'nsd_shape', 'nsd_radius', 'nsd_inertia': del b['PointData/' + n]"
+    nsd-gen --from "$tmp/plain.vtkhdf" >"$tmp/plain.back.h5"
+    ok "a ball, a box and a clump without nsd's extension: motion, mass and inertia" sh -c "for d in position/value velocity/value angular_velocity/value orientation/value radius mass inertia id
+        do h5diff -p 1e-13 '$tmp/plain.h5' '$tmp/plain.back.h5' /particles/all/\$d || exit 1; done"
+    is "the clump is made of its members" "$(h5dump -d /nsd/shape/form "$tmp/plain.back.h5" | grep -m 1 -o '(0): .*')" "(0): 3, 1"
     is "friction is the lesser of two materials', as Yade has it" "$(nsd-gen --from "$tmp/foreign.vtkhdf" >"$tmp/foreign.h5"; nsd-info --scene "$tmp/foreign.h5" | jq -c '[.pairs[].mu]')" "[0.3,0.3,0.5]"
     ok "a run goes on from it" sh -c "nsd-gen --from '$tmp/foreign.vtkhdf' | nsd-step -n 3 >'$tmp/none' 2>&1"
     spoil() { cp "$tmp/foreign.vtkhdf" "$tmp/bad.vtkhdf" && /usr/bin/python3 -c "import h5py; f = h5py.File('$tmp/bad.vtkhdf', 'r+'); $1"; }

@@ -495,8 +495,8 @@ static void test_bad_scenes(void)
         { BODY("{\"x\": [0, 0, 0]}"), "2:13: bodies[0].radius: is missing" },
         { BODY("{\"x\": [0, 0, 0], \"count\": 3}"),
           "2:13: bodies[0]: wants one of the keys x count file document random import" },
-        { BODY("7"),
-          "2:13: bodies[0]: wants an object with one of the keys x count file document random import" },
+        { BODY("7"), "2:13: bodies[0]: wants an object with one of the keys x count file document "
+                     "random import" },
         { BODY("{\"x\": [0, 0, 0], \"raduis\": 1}"),
           "2:30: bodies[0].raduis: unknown key; known here: x radius size shape orientation v w "
           "kind density mass fixed" },
