@@ -103,9 +103,9 @@ static void boundary_torques(const struct nsd_run *r, void *out)
     sum_boundaries(r, out, true);
 }
 
-#define BODY(member)      OF_BODIES, 'd', 1, offsetof(struct packing, member), NULL
-#define BODY3(member)     OF_BODIES, 'd', 3, offsetof(struct packing, member), NULL
-#define ACT(member, term) OF_ACTS, 'd', 3, offsetof(struct acts, member[term]), NULL
+#define BODY(member)    OF_BODIES, 'd', 1, offsetof(struct packing, member), NULL
+#define BODY3(member)   OF_BODIES, 'd', 3, offsetof(struct packing, member), NULL
+#define ACT(designator) OF_ACTS, 'd', 3, offsetof(struct acts, designator), NULL
 
 static const struct row table[] = {
     { "position", "m", BODY3(x) },
@@ -117,10 +117,10 @@ static const struct row table[] = {
     { "inertia", "kg m2", BODY(inertia) },
     { "id", "1", OF_BODIES, 'i', 1, offsetof(struct packing, id), NULL },
     { "kind", "1", OF_BODIES, 'i', 1, offsetof(struct packing, kind), NULL },
-    { "force", "N", ACT(force, ACTS_LASTING) },
-    { "torque", "N m", ACT(torque, ACTS_LASTING) },
-    { "force_once", "N", ACT(force, ACTS_ONCE) },
-    { "torque_once", "N m", ACT(torque, ACTS_ONCE) },
+    { "force", "N", ACT(force[ACTS_LASTING]) },
+    { "torque", "N m", ACT(torque[ACTS_LASTING]) },
+    { "force_once", "N", ACT(force[ACTS_ONCE]) },
+    { "torque_once", "N m", ACT(torque[ACTS_ONCE]) },
     { "contact_body", "1", OF_CONTACTS, 'i', 2, 0, contact_bodies },
     { "contact_point", "m", OF_CONTACTS, 'd', 3, 0, contact_points },
     { "contact_normal", "1", OF_CONTACTS, 'd', 3, 0, contact_normals },

@@ -10,12 +10,18 @@ void undo_free(struct undo *u)
     *u = (struct undo){ 0 };
 }
 
+static int no_memory(struct why *why)
+{
+    return why_set(why, EX_SOFTWARE, "no memory for the state before a step");
+}
+
 /* Memory for the parts of p that a step changes */
 static int make_room(struct undo *u, const struct packing *p, struct why *why)
 {
     size_t n = (size_t)p->n + 1;
     if (!u->x || u->n != p->n || u->walls != p->walls || !u->image != !p->image) {
         undo_free(u);
+        u->recall = NULL; // as it is; the analyzer loses sight of it
         u->n = p->n, u->walls = p->walls;
         u->x = malloc(n * sizeof *u->x), u->v = malloc(n * sizeof *u->v);
         u->w = malloc(n * sizeof *u->w), u->q = malloc(n * sizeof *u->q);
@@ -23,13 +29,14 @@ static int make_room(struct undo *u, const struct packing *p, struct why *why)
         u->image = p->image ? malloc(n * sizeof *u->image) : NULL;
     }
     if (!u->recall || u->room < p->memory.n) {
-        free(u->recall);
-        u->room = p->memory.n + p->memory.n / 2;
-        u->recall = malloc(((size_t)u->room + 1) * sizeof *u->recall);
+        int64_t room = p->memory.n + p->memory.n / 2;
+        struct recall *more = realloc(u->recall, ((size_t)room + 1) * sizeof *more);
+        if (!more) return undo_free(u), no_memory(why);
+        u->recall = more, u->room = room;
     }
     if (u->x && u->v && u->w && u->q && u->wall && u->recall && (u->image || !p->image)) return 0;
     undo_free(u);
-    return why_set(why, EX_SOFTWARE, "no memory for the state before a step");
+    return no_memory(why);
 }
 
 /* Does a step change more than places and velocities? */

@@ -32,7 +32,7 @@ static bool document;
 
 const struct cli_option options_loop[] = {
     { CLI_TEXT, 0, "with", &command, "CMD", .silent = true,
-      .help = "ask CMD before steps, by lines of JSON, what shall act" },
+      .help = "ask CMD before steps, by lines of JSON, what shall act [none]" },
     { CLI_INT, 0, "with-every", &every, "K", .min = 1, .max = 1e15, .silent = true,
       .help = "before each K-th step, and the first [1]" },
     { CLI_TEXT, 0, "with-boundaries", &boundaries, "all|N,...", .silent = true,
@@ -44,7 +44,7 @@ const struct cli_option options_loop[] = {
     { CLI_ABOVE, 0, "with-timeout", &timeout, "S", .max = 1e9, .silent = true,
       .help = "end the run when it takes longer [60 s]" },
     { CLI_TEXT, 0, "replay", &replay, "FILE", .silent = true,
-      .help = "the answers that FILE has, without a program" },
+      .help = "do what the answers in FILE say, without a program [none]" },
     { 0 },
 };
 

@@ -138,7 +138,7 @@ int partner_line(struct partner *p, char **line, size_t *n, size_t most, double 
                  struct why *why)
 {
     const double end = now() + seconds;
-    memmove(p->text, p->text + p->taken, p->text ? p->n - p->taken : 0);
+    if (p->taken) memmove(p->text, p->text + p->taken, p->n - p->taken);
     p->n -= p->taken, p->taken = 0;
     for (size_t looked = 0;;) {
         char *stop = p->n > looked ? memchr(p->text + looked, '\n', p->n - looked) : NULL;

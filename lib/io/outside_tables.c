@@ -147,7 +147,7 @@ static int read_span(struct source *s, const char *name, int64_t row, int64_t mo
 
 static int read_forces(struct source *s, int64_t row, struct packing *p, struct why *why)
 {
-    int64_t start, count;
+    int64_t start = 0, count = 0;
     if (read_span(s, "body", row, p->n, &start, &count, why) || !count) return why->status;
     if (count != p->n)
         return why_set(why, EX_DATAERR,
@@ -166,7 +166,7 @@ static int read_forces(struct source *s, int64_t row, struct packing *p, struct 
 static int read_words(struct source *s, int64_t row, struct outside *o, struct why *why)
 {
     uint64_t shape[4];
-    int64_t start, count;
+    int64_t start = 0, count = 0;
     if (source_shape(s, HOME "/answer/text", shape) != 1)
         return why_set(why, EX_DATAERR, HOME "/answer/text: not of one dimension");
     if (read_span(s, "answer", row, (int64_t)shape[0], &start, &count, why) || !count)

@@ -53,8 +53,8 @@ class _Handle:
         if status:
             _fail(status, text)
 
-    def __del__(self) -> None:
-        library.nsd_close(ctypes.byref(self.pointer))
+    def __del__(self, close: Any = library.nsd_close, byref: Any = ctypes.byref) -> None:
+        close(byref(self.pointer))  # names of the module may be gone by now
 
 
 class _Owner:
@@ -119,6 +119,40 @@ class Run:
     and keep that memory alive, also after close(). While any of them is in use bodies cannot be added or removed
     (BufferError); `.copy()` makes one of your own. Those of contacts and boundaries are copies of the last step's.
     """
+
+    # Properties, which are made from tables below
+    position: NDArray[np.float64]
+    orientation: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    angular_velocity: NDArray[np.float64]
+    radius: NDArray[np.float64]
+    mass: NDArray[np.float64]
+    inertia: NDArray[np.float64]
+    id: NDArray[np.int32]
+    kind: NDArray[np.int32]
+    force: Any  # NDArray[np.float64], to which anything like an array may be assigned
+    torque: Any
+    force_once: Any
+    torque_once: Any
+    contact_body: NDArray[np.int32]
+    contact_point: NDArray[np.float64]
+    contact_normal: NDArray[np.float64]
+    contact_gap: NDArray[np.float64]
+    contact_friction: NDArray[np.float64]
+    contact_force: NDArray[np.float64]
+    contact_velocity: NDArray[np.float64]
+    contact_status: NDArray[np.int8]
+    boundary_position: NDArray[np.float64]
+    boundary_normal: NDArray[np.float64]
+    boundary_velocity: NDArray[np.float64]
+    boundary_angular_velocity: NDArray[np.float64]
+    boundary_force: NDArray[np.float64]
+    boundary_torque: NDArray[np.float64]
+    time: float
+    dt: float
+    step_number: int
+    dim: int
+    contacts: int
 
     def __init__(self, handle: _Handle):
         self._handle: _Handle | None = handle

@@ -9,6 +9,7 @@ import threading
 import numpy as np
 
 import nsd
+import nsd._library
 
 folder = sys.argv[1]
 heap = {"dt": 1e-4, "mu": 0.3, "seed": 4,
@@ -196,4 +197,10 @@ if h5py:
     frame = nsd.last(path("last.h5"))
     again = nsd.Run.from_document(path("last.h5"))
     ok((frame.x == again.position).all(), "frames by h5py have the same places")
+names = []
+while (name := nsd._library.library.nsd_array_name(len(names))) is not None:
+    names.append(name.decode())
+ok(len(names) > 20 and all(isinstance(vars(nsd.Run).get(name), property) and vars(nsd.Run)[name].__doc__ for name in names),
+   "every array of the library is a property with a docstring")
+ok(all(x.__doc__ for name, x in vars(nsd.Run).items() if not name.startswith("_")), "every member has a docstring")
 ok(nsd.Run.from_scene(heap).set(contacts=True).measure("energy")["bodies"] == 40, "measures by their names")
