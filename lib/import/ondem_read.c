@@ -1,6 +1,6 @@
 #include "import/ondem_read.h"
 
-#include "bodies/solid.h"
+#include "geometry/solid.h"
 #include "io/shape_tables.h"
 #include "hdf5/source.h"
 
