@@ -4,7 +4,7 @@ import warnings
 
 import numpy as np
 
-sys.path.insert(0, "scripts")
+sys.path.insert(0, "python")
 import nsd  # noqa: E402
 
 warnings.simplefilter("ignore")

@@ -20,6 +20,7 @@ of_manual() # FILE SECTION: displays, their escapes undone
     awk -v section="$2" '
         /^\.Sh / { on = $0 == ".Sh " section; next }
         !on { next }
+        /^\.Bd .*-compact/ { next } # a table
         /^\.Bd / { print ""; block = 1; next }
         /^\.Ed/ { block = 0; next }
         /^\.Dl / { print "\n" substr($0, 5); next }

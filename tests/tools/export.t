@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What other programs read: nsd-export's files by VTK, ASE and MDAnalysis; documents by MDAnalysis and
-# h5py; scripts/nsd.py. The numbers are compared with the documents' own, and the forces with Newton's law.
+# h5py; import nsd. The numbers are compared with the documents' own, and the forces with Newton's law.
 # shellcheck source=tests/support/tap.sh disable=SC2317,SC2016 # functions called by name; backquotes of Markdown
 . tests/support/tap.sh
 
