@@ -35,6 +35,16 @@ void column_set_array(const struct column *column, void *structure, void *array)
 /* The address of row i of that array */
 void *column_row(const struct column *column, const void *structure, int64_t i);
 
+/* n structs, and the columns that they have */
+struct records {
+    const struct column *columns;
+    int64_t n;
+    void *structs;
+    size_t stride; /* bytes of a struct */
+};
+#define RECORDS(columns, n, structs)                                                               \
+    ((struct records){ (columns), (n), (void *)(structs), sizeof *(structs) })
+
 /* A column's numbers out of an array of n structs, and back into one. */
 void column_gather(const struct column *column, int64_t n, const void *structs, size_t stride,
                    void *out);

@@ -140,7 +140,7 @@ static const char *contact_trouble(const struct contact *c, const struct found *
           fabs(v3_dot(c->n, c->t1)) < 1e-6))
         return "frame is not orthonormal";
 #define CHECK(member, name, unit, key, most, range)                                                \
-    if (!(c->member >= 0 && c->member <= most && isfinite(c->member))) return name " " range;
+    if (!(c->member >= 0 && c->member <= (most) && isfinite(c->member))) return name " " range;
     EACH_PAIR_COLUMN(CHECK)
 #undef CHECK
     for (int k = 0; found && k < 3; k++)

@@ -452,7 +452,7 @@ int packing_check(const struct packing *p, struct why *why)
         const char *a = p->kind_name[i / p->kinds], *b = p->kind_name[i % p->kinds];
         const char *trouble = p->law ? law_trouble(&p->law[i]) : NULL;
 #define CHECK(member, name, unit, key, most, range)                                                \
-    if (!(p->member[i] >= 0 && p->member[i] <= most && isfinite(p->member[i])))                    \
+    if (!(p->member[i] >= 0 && p->member[i] <= (most) && isfinite(p->member[i])))                  \
         trouble = name " " range;
         EACH_PAIR_COLUMN(CHECK)
 #undef CHECK

@@ -56,8 +56,7 @@ int account_rows_read(struct source *source, int64_t start, int64_t n, struct ac
         const struct column one[] = { *c, { 0 } };
         snprintf(path, sizeof path, "%s/%s/value", home, c->name);
         if (!source_has(source, path)) continue; // of a version that does not watch it
-        if (table_read_columns(source, home, "/value", one, start, n, account, sizeof *account,
-                               why))
+        if (table_read_columns(source, home, "/value", start, RECORDS(one, n, account), why))
             return why->status;
     }
     for (int64_t i = 0; i < n; i++)
@@ -69,7 +68,7 @@ int account_rows_write(struct table_write *s, const struct account *account, str
 {
     struct columns t = columns();
     bool first = !table_write_grows(s, "/nsd/account/steps/value");
-    if (table_write_columns(s, home, "/value", t.c, 1, account, sizeof *account, CHUNK_FRAMES, why))
+    if (table_write_columns(s, home, "/value", RECORDS(t.c, 1, account), CHUNK_FRAMES, why))
         return why->status;
     if (first && (table_write_link(s, LAYOUT_REPORT "/step", "step", home, t.c, why) ||
                   table_write_link(s, LAYOUT_REPORT "/time", "time", home, t.c, why)))

@@ -15,7 +15,7 @@ static int read_loads(struct source *r, const char *group, int64_t k, struct pac
                       struct why *why)
 {
     if (!source_has(r, group)) return 0;
-    if (table_read_columns(r, group, "", layout_loads, 0, p->walls, p->wall, sizeof *p->wall, why))
+    if (table_read_columns(r, group, "", 0, RECORDS(layout_loads, p->walls, p->wall), why))
         return why->status;
     double *row = calloc((size_t)p->walls + 1, sizeof *row);
     if (!row) return why_set(why, EX_SOFTWARE, "no memory for the loads");
@@ -51,7 +51,7 @@ static int read_signals(struct source *r, const char *group, struct drives *d, s
     if (!source_has(r, group)) return 0;
     if (count_rows(r, boundary, 1, &n, why) || count_rows(r, rows, 2, &m, why) ||
         drives_alloc(d, n, m, why) ||
-        table_read_columns(r, group, "", layout_drive, 0, n, d->drive, sizeof *d->drive, why) ||
+        table_read_columns(r, group, "", 0, RECORDS(layout_drive, n, d->drive), why) ||
         source_rows(r, rows, COLUMN_F64, 0, m, 2, d->row, why))
         return why->status;
     for (int32_t k = 0; k < n; k++) {
@@ -92,8 +92,7 @@ static int read_planes(struct source *r, int64_t k, struct packing *p, struct wh
     int32_t n = 0;
     if (!source_has(r, "/walls/plane")) return 0;
     if (count_rows(r, "/walls/plane/point", 2, &n, why) || packing_alloc_walls(p, n, why) ||
-        table_read_columns(r, "/walls/plane", "", layout_plane, 0, n, p->wall, sizeof *p->wall,
-                           why))
+        table_read_columns(r, "/walls/plane", "", 0, RECORDS(layout_plane, n, p->wall), why))
         return why->status;
     return read_loads(r, "/walls/load", k, p, why);
 }
@@ -104,11 +103,11 @@ int boundary_tables_read(struct source *r, int64_t k, struct packing *p, struct 
     int32_t n = 0;
     if (!source_has(r, body)) return read_planes(r, k, p, why);
     if (count_rows(r, BOUNDARY "/body/point", 2, &n, why) || packing_alloc_walls(p, n, why) ||
-        table_read_columns(r, body, "", layout_plane, 0, n, p->wall, sizeof *p->wall, why) ||
+        table_read_columns(r, body, "", 0, RECORDS(layout_plane, n, p->wall), why) ||
         (source_has(r, BOUNDARY "/body/shape") &&
-         table_read_columns(r, body, "", layout_boundary, 0, n, p->wall, sizeof *p->wall, why)) ||
+         table_read_columns(r, body, "", 0, RECORDS(layout_boundary, n, p->wall), why)) ||
         (source_has(r, BOUNDARY "/body/weld") &&
-         table_read_columns(r, body, "", layout_weld, 0, n, p->wall, sizeof *p->wall, why)) ||
+         table_read_columns(r, body, "", 0, RECORDS(layout_weld, n, p->wall), why)) ||
         read_loads(r, BOUNDARY "/load", k, p, why) || read_drives(r, p, why) ||
         read_mesh(r, p, why))
         return why->status;
@@ -173,7 +172,7 @@ static int write_signals(struct table_write *s, const char *group, const struct 
     char rows[60];
     snprintf(rows, sizeof rows, "%s/row", group);
     if (!d->n) return 0;
-    if (table_write_columns(s, group, "", layout_drive, d->n, d->drive, sizeof *d->drive, 0, why))
+    if (table_write_columns(s, group, "", RECORDS(layout_drive, d->n, d->drive), 0, why))
         return why->status;
     return h5_write(s->file, rows, H5T_NATIVE_DOUBLE, 2, shape, d->row, units, why);
 }
@@ -202,19 +201,17 @@ int boundary_tables_write_static(struct table_write *s, const struct packing *p,
     struct boundary_motion *m = NULL;
     const char *body = BOUNDARY "/body";
     s->growing = false;
-    if (!table_write_columns(s, body, "", layout_plane, p->walls, p->wall, sizeof *p->wall, 0,
-                             why) &&
-        !(any_shapes(p) && table_write_columns(s, body, "", layout_boundary, p->walls, p->wall,
-                                               sizeof *p->wall, 0, why)) &&
-        !(any_welds(p) && table_write_columns(s, body, "", layout_weld, p->walls, p->wall,
-                                              sizeof *p->wall, 0, why)) &&
+    if (!table_write_columns(s, body, "", RECORDS(layout_plane, p->walls, p->wall), 0, why) &&
+        !(any_shapes(p) &&
+          table_write_columns(s, body, "", RECORDS(layout_boundary, p->walls, p->wall), 0, why)) &&
+        !(any_welds(p) &&
+          table_write_columns(s, body, "", RECORDS(layout_weld, p->walls, p->wall), 0, why)) &&
         !write_drives(s, p, why) && !write_mesh(s, p, why) && any_loads(p))
-        table_write_columns(s, BOUNDARY "/load", "", layout_loads, p->walls, p->wall,
-                            sizeof *p->wall, 0, why);
+        table_write_columns(s, BOUNDARY "/load", "", RECORDS(layout_loads, p->walls, p->wall), 0,
+                            why);
     s->at_rest = !any_may_move(p);
     if (!why->status && s->at_rest && (m = motions(p, why)))
-        table_write_columns(s, BOUNDARY, "", layout_boundary_motion, p->walls, m, sizeof *m, 0,
-                            why);
+        table_write_columns(s, BOUNDARY, "", RECORDS(layout_boundary_motion, p->walls, m), 0, why);
     free(m);
     s->growing = growing;
     return why->status;

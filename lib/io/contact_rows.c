@@ -95,19 +95,19 @@ int contact_rows_read(struct contact_rows *r, struct frame *f, struct why *why)
         return why_set(why, EX_SOFTWARE, "no memory for reactions");
     if (f->packing.law && contacts_alloc_tie(s))
         return why_set(why, EX_SOFTWARE, "no memory for the ties");
-    if (table_read_columns(r->source, "/contacts", "", layout_contacts, first, s->n, s->c,
-                           sizeof *s->c, why) ||
+    if (table_read_columns(r->source, "/contacts", "", first, RECORDS(layout_contacts, s->n, s->c),
+                           why) ||
         read_bases(r->source, first, s, why) ||
         (cell_repeats(&f->packing.cell) &&
-         table_read_columns(r->source, "/contacts", "", layout_shifts, first, s->n, s->c,
-                            sizeof *s->c, why)) ||
+         table_read_columns(r->source, "/contacts", "", first, RECORDS(layout_shifts, s->n, s->c),
+                            why)) ||
         ((f->packing.mesh.elements || f->packing.shape) &&
-         table_read_columns(r->source, "/contacts", "", layout_features, first, s->n, s->c,
-                            sizeof *s->c, why)) ||
-        (s->tie && table_read_columns(r->source, "/contacts", "", layout_ties, first, s->n, s->tie,
-                                      sizeof *s->tie, why)) ||
-        (solved && table_read_columns(r->source, "/contacts", "", layout_found, first, s->n,
-                                      s->found, sizeof *s->found, why)) ||
+         table_read_columns(r->source, "/contacts", "", first, RECORDS(layout_features, s->n, s->c),
+                            why)) ||
+        (s->tie && table_read_columns(r->source, "/contacts", "", first,
+                                      RECORDS(layout_ties, s->n, s->tie), why)) ||
+        (solved && table_read_columns(r->source, "/contacts", "", first,
+                                      RECORDS(layout_found, s->n, s->found), why)) ||
         (solved && packing_rolls(&f->packing) && read_moments(r->source, first, s, why)))
         return why->status;
     int64_t n = f->distributed ? f->distributed->n : f->packing.n;
@@ -182,19 +182,20 @@ int contact_rows_write(struct table_write *s, const struct frame *f, struct why 
                          NULL, why) ||
         table_write_rows(s, "/contacts/count", COLUMN_I64, 1, &one, CHUNK_FRAMES, &t->n, NULL,
                          why) ||
-        table_write_columns(s, "/contacts", "", layout_contacts, t->n, t->c, sizeof *t->c,
+        table_write_columns(s, "/contacts", "", RECORDS(layout_contacts, t->n, t->c),
                             CHUNK_CONTACTS, why) ||
         write_bases(s, t, why) ||
         (cell_repeats(&f->packing.cell) &&
-         table_write_columns(s, "/contacts", "", layout_shifts, t->n, t->c, sizeof *t->c,
-                             CHUNK_CONTACTS, why)) ||
+         table_write_columns(s, "/contacts", "", RECORDS(layout_shifts, t->n, t->c), CHUNK_CONTACTS,
+                             why)) ||
         ((f->packing.mesh.elements || f->packing.shape) &&
-         table_write_columns(s, "/contacts", "", layout_features, t->n, t->c, sizeof *t->c,
+         table_write_columns(s, "/contacts", "", RECORDS(layout_features, t->n, t->c),
                              CHUNK_CONTACTS, why)) ||
-        (f->packing.law && table_write_columns(s, "/contacts", "", layout_ties, t->n, t->tie,
-                                               sizeof *t->tie, CHUNK_CONTACTS, why)) ||
-        (t->found && table_write_columns(s, "/contacts", "", layout_found, t->n, t->found,
-                                         sizeof *t->found, CHUNK_CONTACTS, why)) ||
+        (f->packing.law &&
+         table_write_columns(s, "/contacts", "", RECORDS(layout_ties, t->n, t->tie), CHUNK_CONTACTS,
+                             why)) ||
+        (t->found && table_write_columns(s, "/contacts", "", RECORDS(layout_found, t->n, t->found),
+                                         CHUNK_CONTACTS, why)) ||
         (t->found && packing_rolls(&f->packing) && write_moments(s, t, why)) ||
         (forces && write_forces(s, t, f->packing.dt, why)) ||
         table_write_rows(s, "/contacts/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &f->packing.step,

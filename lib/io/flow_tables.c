@@ -36,8 +36,8 @@ int flow_write(struct table_write *s, const struct packing *p, struct why *why)
                          NULL, why) ||
         table_write_rows(s, "/nsd/flow/events/count", COLUMN_I64, 1, &one, CHUNK_FRAMES,
                          &p->events.n, NULL, why) ||
-        table_write_columns(s, events, "", layout_events, p->events.n, p->events.e,
-                            sizeof *p->events.e, CHUNK_CONTACTS, why))
+        table_write_columns(s, events, "", RECORDS(layout_events, p->events.n, p->events.e),
+                            CHUNK_CONTACTS, why))
         return why->status;
     if (s->growing) s->events += p->events.n;
     return !first ? 0 : h5_attr(s->file, flow, "first_id", H5T_NATIVE_INT32, -1, &p->first_id, why);
@@ -105,8 +105,7 @@ static int read_events(struct source *s, int64_t k, struct packing *p, struct wh
     if (!(p->events.e = calloc((size_t)count + 1, sizeof *p->events.e)))
         return why_set(why, EX_SOFTWARE, "no memory for events");
     p->events.n = count, p->events.room = count + 1;
-    if (table_read_columns(s, events, "", layout_events, start, count, p->events.e,
-                           sizeof *p->events.e, why))
+    if (table_read_columns(s, events, "", start, RECORDS(layout_events, count, p->events.e), why))
         return why->status;
     for (int64_t i = 0; i < count; i++)
         if (check_event(&p->events.e[i], why)) return why->status;

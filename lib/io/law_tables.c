@@ -53,12 +53,11 @@ static int read_bonds(struct source *s, int64_t k, struct packing *p, struct why
     p->bonds.bond = calloc((size_t)count + 1, sizeof *p->bonds.bond);
     if (!p->bonds.bond) return why_set(why, EX_SOFTWARE, "no memory for the bonds");
     p->bonds.n = count, p->bonds.room = count + 1;
-    if (table_read_columns(s, bonds, "", layout_bonds, start, count, p->bonds.bond,
-                           sizeof *p->bonds.bond, why) ||
+    if (table_read_columns(s, bonds, "", start, RECORDS(layout_bonds, count, p->bonds.bond), why) ||
         !source_has(s, "/nsd/bonds/area"))
         return why->status;
-    return table_read_columns(s, bonds, "", layout_anchors, start, count, p->bonds.bond,
-                              sizeof *p->bonds.bond, why);
+    return table_read_columns(s, bonds, "", start, RECORDS(layout_anchors, count, p->bonds.bond),
+                              why);
 }
 
 int law_tables_read(struct source *s, int64_t k, struct packing *p, struct why *why)
@@ -104,10 +103,11 @@ int law_tables_write(struct table_write *s, const struct packing *p, struct why 
                          why) ||
         table_write_rows(s, "/nsd/bonds/count", COLUMN_I64, 1, &one, CHUNK_FRAMES, &p->bonds.n,
                          NULL, why) ||
-        table_write_columns(s, bonds, "", layout_bonds, p->bonds.n, p->bonds.bond,
-                            sizeof *p->bonds.bond, CHUNK_CONTACTS, why) ||
-        (p->shape && table_write_columns(s, bonds, "", layout_anchors, p->bonds.n, p->bonds.bond,
-                                         sizeof *p->bonds.bond, CHUNK_CONTACTS, why)))
+        table_write_columns(s, bonds, "", RECORDS(layout_bonds, p->bonds.n, p->bonds.bond),
+                            CHUNK_CONTACTS, why) ||
+        (p->shape &&
+         table_write_columns(s, bonds, "", RECORDS(layout_anchors, p->bonds.n, p->bonds.bond),
+                             CHUNK_CONTACTS, why)))
         return why->status;
     if (s->growing) s->bonds += p->bonds.n;
     return 0;

@@ -42,14 +42,16 @@ int memory_rows_read(struct memory_rows *r, struct packing *p, struct why *why)
     m->on = true, m->n = count, m->room = count + 1;
     if (!any) return 0;
     struct source *s = r->source;
-    const size_t size = sizeof *m->recall;
-    if (table_read_columns(s, group, "", layout_memory, start, count, m->recall, size, why) ||
-        (features(p) && table_read_columns(s, group, "", layout_memory_features, start, count,
-                                           m->recall, size, why)) ||
-        (cell_repeats(&p->cell) && table_read_columns(s, group, "", layout_memory_shifts, start,
-                                                      count, m->recall, size, why)) ||
-        (packing_rolls(p) && table_read_columns(s, group, "", layout_memory_moments, start, count,
-                                                m->recall, size, why)))
+    if (table_read_columns(s, group, "", start, RECORDS(layout_memory, count, m->recall), why) ||
+        (features(p) &&
+         table_read_columns(s, group, "", start, RECORDS(layout_memory_features, count, m->recall),
+                            why)) ||
+        (cell_repeats(&p->cell) &&
+         table_read_columns(s, group, "", start, RECORDS(layout_memory_shifts, count, m->recall),
+                            why)) ||
+        (packing_rolls(p) &&
+         table_read_columns(s, group, "", start, RECORDS(layout_memory_moments, count, m->recall),
+                            why)))
         return why->status;
     return memory_check(m, p->n, p->walls, why);
 }
@@ -66,20 +68,22 @@ int memory_rows_write(struct table_write *s, const struct packing *p, struct why
 {
     const struct memory *m = &p->memory;
     const hsize_t one = 1;
-    const size_t size = sizeof *m->recall;
     if (!m->on) return 0;
     if (table_write_rows(s, "/nsd/memory/start", COLUMN_I64, 1, &one, CHUNK_FRAMES, &s->memory,
                          NULL, why) ||
         table_write_rows(s, "/nsd/memory/count", COLUMN_I64, 1, &one, CHUNK_FRAMES, &m->n, NULL,
                          why) ||
-        table_write_columns(s, group, "", layout_memory, m->n, m->recall, size, CHUNK_CONTACTS,
+        table_write_columns(s, group, "", RECORDS(layout_memory, m->n, m->recall), CHUNK_CONTACTS,
                             why) ||
-        (features(p) && table_write_columns(s, group, "", layout_memory_features, m->n, m->recall,
-                                            size, CHUNK_CONTACTS, why)) ||
-        (cell_repeats(&p->cell) && table_write_columns(s, group, "", layout_memory_shifts, m->n,
-                                                       m->recall, size, CHUNK_CONTACTS, why)) ||
-        (packing_rolls(p) && table_write_columns(s, group, "", layout_memory_moments, m->n,
-                                                 m->recall, size, CHUNK_CONTACTS, why)) ||
+        (features(p) &&
+         table_write_columns(s, group, "", RECORDS(layout_memory_features, m->n, m->recall),
+                             CHUNK_CONTACTS, why)) ||
+        (cell_repeats(&p->cell) &&
+         table_write_columns(s, group, "", RECORDS(layout_memory_shifts, m->n, m->recall),
+                             CHUNK_CONTACTS, why)) ||
+        (packing_rolls(p) &&
+         table_write_columns(s, group, "", RECORDS(layout_memory_moments, m->n, m->recall),
+                             CHUNK_CONTACTS, why)) ||
         table_write_rows(s, "/nsd/memory/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &p->step, NULL,
                          why))
         return why->status;

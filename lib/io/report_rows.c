@@ -82,32 +82,32 @@ static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
     if (!r->ahead.row || !r->ahead.account || !r->ahead.time)
         return why_set(why, EX_SOFTWARE, "no memory for %s", r->group);
     snprintf(time, sizeof time, "%s/time", r->group);
-    if (table_read_columns(r->source, r->group, "/value", layout_report, at, n, r->ahead.row,
-                           sizeof *r->ahead.row, why) ||
+    if (table_read_columns(r->source, r->group, "/value", at,
+                           RECORDS(layout_report, n, r->ahead.row), why) ||
         source_rows(r->source, time, COLUMN_F64, at, n, 1, r->ahead.time, why) ||
         account_rows_read(r->source, at, n, r->ahead.account, why))
         return why->status;
     snprintf(time, sizeof time, "%s/velocity/value", r->group);
     bool velocity = source_has(r->source, time);
-    if (velocity && table_read_columns(r->source, r->group, "/value", layout_velocity, at, n,
-                                       r->ahead.row, sizeof *r->ahead.row, why))
+    if (velocity && table_read_columns(r->source, r->group, "/value", at,
+                                       RECORDS(layout_velocity, n, r->ahead.row), why))
         return why->status;
     for (int64_t i = 0; i < n && !velocity; i++)
         r->ahead.row[i].err.velocity = r->ahead.row[i].err.velocity_error = NAN; // not known
     snprintf(time, sizeof time, "%s/dissipation/value", r->group);
     bool balanced = source_has(r->source, "/particles/all") && source_has(r->source, time);
-    if (balanced && table_read_columns(r->source, r->group, "/value", layout_balance, at, n,
-                                       r->ahead.row, sizeof *r->ahead.row, why))
+    if (balanced && table_read_columns(r->source, r->group, "/value", at,
+                                       RECORDS(layout_balance, n, r->ahead.row), why))
         return why->status;
     snprintf(time, sizeof time, "%s/broken/value", r->group);
     bool tied = balanced && source_has(r->source, time);
-    if (tied && table_read_columns(r->source, r->group, "/value", layout_bond_balance, at, n,
-                                   r->ahead.row, sizeof *r->ahead.row, why))
+    if (tied && table_read_columns(r->source, r->group, "/value", at,
+                                   RECORDS(layout_bond_balance, n, r->ahead.row), why))
         return why->status;
     snprintf(time, sizeof time, "%s/impact_gain/value", r->group);
     bool may_gain = balanced && source_has(r->source, time);
-    if (may_gain && table_read_columns(r->source, r->group, "/value", layout_gain_balance, at, n,
-                                       r->ahead.row, sizeof *r->ahead.row, why))
+    if (may_gain && table_read_columns(r->source, r->group, "/value", at,
+                                       RECORDS(layout_gain_balance, n, r->ahead.row), why))
         return why->status;
     for (int64_t i = 0; i < n; i++)
         r->ahead.row[i].balanced = balanced, r->ahead.row[i].tied = tied,
@@ -156,7 +156,7 @@ static int write_table(struct table_write *s, const struct column *table, const 
                        bool first, struct why *why)
 {
     const char *solver = LAYOUT_REPORT;
-    if (table_write_columns(s, solver, "/value", table, 1, rep, sizeof *rep, CHUNK_FRAMES, why))
+    if (table_write_columns(s, solver, "/value", RECORDS(table, 1, rep), CHUNK_FRAMES, why))
         return why->status;
     if (first && (table_write_link(s, LAYOUT_REPORT "/step", "step", solver, table, why) ||
                   table_write_link(s, LAYOUT_REPORT "/time", "time", solver, table, why)))
@@ -176,7 +176,7 @@ int report_rows_write(struct table_write *s, const struct report *rep, struct wh
 {
     const char *solver = LAYOUT_REPORT;
     bool first = !table_write_grows(s, LAYOUT_REPORT "/eps/value");
-    if (table_write_columns(s, solver, "/value", layout_report, 1, rep, sizeof *rep, CHUNK_FRAMES,
+    if (table_write_columns(s, solver, "/value", RECORDS(layout_report, 1, rep), CHUNK_FRAMES,
                             why) ||
         table_write_clock(s, solver, true, &rep->step, solver, layout_report, why) ||
         table_write_clock(s, solver, false, &rep->t, solver, layout_report, why) ||

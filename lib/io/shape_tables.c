@@ -126,7 +126,7 @@ int shape_tables_read(struct source *r, struct packing *p, struct why *why)
     char *names = row ? source_text(r, SHAPE, "names", why) : NULL;
     if (!row || (!names && !why->status)) why_set(why, EX_SOFTWARE, "no memory for the shapes");
     if (!why->status &&
-        !table_read_columns(r, SHAPE, "", layout_rows, 0, (int64_t)n[0], row, sizeof *row, why) &&
+        !table_read_columns(r, SHAPE, "", 0, RECORDS(layout_rows, (int64_t)n[0], row), why) &&
         !read_lists(r, &l, why))
         make_shapes(r, p, row, (int32_t)n[0], names, &l, why);
     listing_drop(&l);

@@ -3,17 +3,16 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-int table_read_columns(struct source *s, const char *group, const char *tail,
-                       const struct column *c, int64_t start, int64_t n, void *structs,
-                       size_t stride, struct why *why)
+int table_read_columns(struct source *s, const char *group, const char *tail, int64_t start,
+                       struct records o, struct why *why)
 {
-    for (; c->name; c++) {
+    for (const struct column *c = o.columns; c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "%s/%s%s", group, c->name, tail);
-        char *data = calloc((size_t)n + 1, (size_t)c->width * column_size(c->type));
+        char *data = calloc((size_t)o.n + 1, column_bytes(c));
         if (!data) return why_set(why, EX_SOFTWARE, "%s: no memory", path);
-        int e = source_rows(s, path, c->type, start, n, c->width, data, why);
-        if (!e) column_scatter(c, n, data, structs, stride);
+        int e = source_rows(s, path, c->type, start, o.n, c->width, data, why);
+        if (!e) column_scatter(c, o.n, data, o.structs, o.stride);
         free(data);
         if (e) return e;
     }

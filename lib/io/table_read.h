@@ -8,13 +8,9 @@
 #include "hdf5/source.h"
 #include "io/layout.h"
 
-/*
- * Rows start .. start+n-1 of all columns of a table, from the datasets group/NAMEtail into n
- * structs. Returns 0, EX_DATAERR or EX_SOFTWARE.
- */
-int table_read_columns(struct source *source, const char *group, const char *tail,
-                       const struct column *column, int64_t start, int64_t n, void *structs,
-                       size_t stride, struct why *why);
+/* Rows of the datasets group/NAMEtail, from `start` on, into the records. Returns 0, EX_DATAERR or EX_SOFTWARE. */
+int table_read_columns(struct source *source, const char *group, const char *tail, int64_t start,
+                       struct records records, struct why *why);
 
 /* Which rows of group/one, of that many dimensions, belong to frame k: *count from *start on, as
    group/start and group/count say. Returns 0, EX_DATAERR or EX_SOFTWARE. */

@@ -152,16 +152,15 @@ int table_write_bodies(struct table_write *s, bool moving, const struct packing 
 }
 
 int table_write_columns(struct table_write *s, const char *where, const char *tail,
-                        const struct column *c, int64_t n, const void *structs, size_t stride,
-                        hsize_t chunk_rows, struct why *why)
+                        struct records o, hsize_t chunk_rows, struct why *why)
 {
-    for (; c->name; c++) {
+    for (const struct column *c = o.columns; c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "%s/%s%s", where, c->name, tail);
-        void *data = malloc((size_t)(n + 1) * (size_t)c->width * column_size(c->type));
+        void *data = malloc((size_t)(o.n + 1) * column_bytes(c));
         if (!data) return why_set(why, EX_SOFTWARE, "no memory for %s", path);
-        column_gather(c, n, structs, stride, data);
-        hsize_t shape[2] = { (hsize_t)n, (hsize_t)c->width };
+        column_gather(c, o.n, o.structs, o.stride, data);
+        hsize_t shape[2] = { (hsize_t)o.n, (hsize_t)c->width };
         int e = table_write_rows(s, path, c->type, c->width == 1 ? 1 : 2, shape, chunk_rows, data,
                                  c->units, why);
         free(data);

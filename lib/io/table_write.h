@@ -55,10 +55,9 @@ int table_write_bodies(struct table_write *tables, bool moving, const struct pac
 /* Does the dataset grow already? Answered without libhdf5, which would have to look the path up. */
 bool table_write_grows(const struct table_write *tables, const char *path);
 
-/* All columns of a table, out of n structs, into the datasets group/NAMEtail. */
+/* The records, into the datasets group/NAMEtail */
 int table_write_columns(struct table_write *tables, const char *group, const char *tail,
-                        const struct column *column, int64_t n, const void *structs, size_t stride,
-                        hsize_t chunk_rows, struct why *why);
+                        struct records records, hsize_t chunk_rows, struct why *why);
 
 /* Hard links WHERE/COLUMN/name to the dataset `from` for all columns */
 int table_write_link(struct table_write *tables, const char *from, const char *name,

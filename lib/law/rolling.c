@@ -90,10 +90,7 @@ void rolling_solve(enum method_id method, struct rolling *q, const struct local_
         q->safeguarded = true;
         exact(q);
         return;
-    case METHOD_exact:
+    default: // exact, and methods that have no other way here
         exact(q);
-        return;
-    case METHOD_COUNT:
-        return;
     }
 }

@@ -7,7 +7,8 @@
 int scene_read_law(const jnode *o, struct scene_law *l)
 {
 #define READ(member, name, unit, key, most, range)                                                 \
-    if (json_node_number(json_node_key(o, key), most == 1 ? J_UNIT : J_NOT_NEGATIVE, &l->member))  \
+    if (json_node_number(json_node_key(o, key), (most) == 1 ? J_UNIT : J_NOT_NEGATIVE,             \
+                         &l->member))                                                              \
         return 1;
     EACH_PAIR_COLUMN(READ)
 #undef READ

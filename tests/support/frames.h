@@ -7,8 +7,8 @@
 
 #include "failing_library_calls.h"
 
-#include "io/reader.h"
 #include "hdf5/source.h"
+#include "io/reader.h"
 #include "io/writer.h"
 #include "scene/flow.h"
 #include "solve/step.h"

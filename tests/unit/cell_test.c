@@ -1,7 +1,7 @@
 /* What must hold where the cell repeats: detection among images, and motion that knows no border. */
+#include "bodies/wrap.h"
 #include "detect/detect.h"
 #include "motion/move.h"
-#include "bodies/wrap.h"
 #include "problem/assembly.h"
 #include "scene/scene_build.h"
 #include "solve/step.h"

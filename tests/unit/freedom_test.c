@@ -1,8 +1,8 @@
 /* What must hold of loads: closed solutions, the same problem by all solvers, W by brute force, and the
    balances of energy and momentum. */
+#include "bodies/wrap.h"
 #include "detect/detect.h"
 #include "motion/move.h"
-#include "bodies/wrap.h"
 #include "problem/assembly.h"
 #include "problem/prepare.h"
 #include "scene/scene_build.h"

@@ -6,8 +6,8 @@
  */
 #define _GNU_SOURCE
 #include "fuzz.h"
-#include "io/reader.h"
 #include "hdf5/stream.h"
+#include "io/reader.h"
 #include "io/writer.h"
 
 #include <fcntl.h>

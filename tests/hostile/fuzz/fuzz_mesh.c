@@ -2,8 +2,8 @@
  * Files of surfaces: bytes as a reader of STL, OBJ or PLY gets them; the first byte of the input says which
  * name the file has. What is read is made a grain, too, if it has few corners.
  */
-#include "geometry/solid.h"
 #include "fuzz.h"
+#include "geometry/solid.h"
 #include "scene/mesh_file.h"
 #include "scene/mesh_shape.h"
 

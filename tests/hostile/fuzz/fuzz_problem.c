@@ -4,8 +4,8 @@
  * that passes them is solved for some sweeps.
  */
 #include "fuzz.h"
-#include "io/fclib.h"
 #include "hdf5/source.h"
+#include "io/fclib.h"
 #include "solve/step.h"
 
 #include <stdlib.h>
