@@ -86,6 +86,17 @@ static void make_frame(int k)
     now = k;
     const char *path = fresh(".h5");
     struct writer *w;
+    // as if a program had acted on it: tables of /nsd/outside
+    struct outside *o = &f->packing.outside;
+    const char words[] = "{\"step\":1,\"answer\":{}}\n";
+    must(outside_alloc(&o->force, f->packing.n, &why) ||
+             outside_alloc(&o->torque, f->packing.n, &why) ||
+             outside_alloc_push(o, f->packing.walls, &why) ||
+             outside_say(o, words, sizeof words - 1, &why),
+         &why);
+    o->steered = true;
+    o->force[0].x = 1e-3, o->torque[0].z = 1e-4;
+    if (f->packing.walls) o->push[0] = 0.25;
     must(writer_open(&w, path, WRITER_STREAM, &why) || writer_frame(w, f, &why) ||
              writer_close(w, &why),
          &why);
