@@ -69,7 +69,7 @@ def timed(command, folder, bound):
                 if pid:
                     break
                 now = time.monotonic()
-                if now - looked > 0.1:  # not ru_maxrss, in which is what this process had when it forked
+                if now - looked > min(0.1, 0.2 * (now - start)):  # not ru_maxrss, in which is what this process had when it forked
                     cpu, memory, looked = *map(max, (cpu, memory), used_by(child.pid)), now
                 if stopped is None and (cpu > bound or now - start > 20 * bound):
                     stopped = now

@@ -50,7 +50,7 @@ is "and the Python module knows them" "$(in_python)" ""
 # ---- what runs share: each has its reason ----
 
 # team, busy, judgement: the team of the process, which one thread has at a time. list, owner, running and their locks: files and
-# readers, locked. hdf5, printer, printer_data: libhdf5, locked. guest, widest, once: set once. limit, options: the tools' own, which
+# readers, locked. hdf5, printer, printer_data: libhdf5, locked. guest, chosen, once: set once. limit, options: the tools' own, which
 # the library only reads. plist, registered: of the process that reads. of_thread, size, together: a thread's own.
 cat >"$tmp/known" <<'EOT'
 busy
@@ -74,7 +74,7 @@ size
 team
 text
 together
-widest
+chosen
 EOT
 shared() { nm "$build/nsd.o" | awk '$2 ~ /^[bBdDC]$/ && $3 !~ /[.]local|^[.]/ { sub(/[.][0-9]+$/, "", $3); print $3 }' | sort -u; }
 constant() # of them what is in .data.rel.ro or is never written: tables

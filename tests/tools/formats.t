@@ -200,7 +200,7 @@ if [ -z "$thin" ]; then
         ok "200 000 balls become $to" within nsd-export --to "$to" -o "$tmp/many.$to" "$tmp/many.h5"
     done
     for from in lammps data ondem; do
-        ok "and come back from $from" within nsd-gen --from "$tmp/many.$from" >"$tmp/none"
+        ok "and come back from $from" within eval 'nsd-gen --from "$tmp/many.$from" >"$tmp/none"'
     done
     ok "are drawn" within nsd-view -o "$tmp/many.png" "$tmp/many.h5"
     ok "and measured" within nsd-stat "$tmp/many.h5"
