@@ -8,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 
 import numpy as np
@@ -28,7 +29,7 @@ def installed(code):
 def version(code):
     """As it calls itself."""
     said = subprocess.run({"nsd": ["nsd-step", "--version"], "liggghts": [PROGRAM["liggghts"], "-help"], "yade": [PROGRAM["yade"], "--version"]}[code],
-                          capture_output=True, text=True, timeout=60).stdout.splitlines()
+                          capture_output=True, text=True, timeout=60, cwd=tempfile.gettempdir()).stdout.splitlines()  # LIGGGHTS leaves a log
     said = said[0].replace("LIGGGHTS (Version LIGGGHTS-PUBLIC ", "LIGGGHTS ").split(",")[0] if said else code
     return said.replace("nsd-step (nsd)", "nsd").replace("version: ", "").strip()
 
