@@ -59,7 +59,7 @@ int undo_take(struct undo *u, const struct packing *p, const struct acts *acts, 
     if (make_room(u, p, why)) return why->status;
     memcpy(u->x, p->x, n * sizeof *u->x), memcpy(u->v, p->v, n * sizeof *u->v);
     memcpy(u->w, p->w, n * sizeof *u->w), memcpy(u->q, p->q, n * sizeof *u->q);
-    memcpy(u->wall, p->wall, (size_t)p->walls * sizeof *u->wall);
+    if (p->walls) memcpy(u->wall, p->wall, (size_t)p->walls * sizeof *u->wall);
     if (p->image) memcpy(u->image, p->image, n * sizeof *u->image);
     if (p->memory.n) memcpy(u->recall, p->memory.recall, (size_t)p->memory.n * sizeof *u->recall);
     u->was = *p;
@@ -77,7 +77,7 @@ void undo_back(struct undo *u, struct packing *p, struct acts *acts)
     }
     memcpy(p->x, u->x, n * sizeof *u->x), memcpy(p->v, u->v, n * sizeof *u->v);
     memcpy(p->w, u->w, n * sizeof *u->w), memcpy(p->q, u->q, n * sizeof *u->q);
-    memcpy(p->wall, u->wall, (size_t)u->walls * sizeof *u->wall);
+    if (u->walls) memcpy(p->wall, u->wall, (size_t)u->walls * sizeof *u->wall);
     if (p->image) memcpy(p->image, u->image, n * sizeof *u->image);
     p->step = u->was.step, p->t = u->was.t, p->t0 = u->was.t0, p->step0 = u->was.step0;
     p->dt = u->was.dt, p->halved = u->was.halved, p->cell = u->was.cell;

@@ -266,7 +266,7 @@ static char *message(const struct frame *f, const struct contacts *s, size_t *le
         if (measures) put_measures(out, f, s, why);
         if (document) fprintf(out, ",\"document\":%zu", size);
         fputs("}\n", out);
-        fwrite(bytes, 1, size, out);
+        if (size) fwrite(bytes, 1, size, out);
     }
     bool bad = !out || ferror(out);
     if ((out && fclose(out)) || bad) why_set(why, EX_SOFTWARE, "no memory for a line");
