@@ -97,7 +97,7 @@ static void sheaf_add(struct sheaf *s, const struct format *format, enum part wh
 {
     struct why why = { 0 };
     struct export_frame m = { &f->packing, f->detected ? &f->contacts : NULL, (int)detail, &s->kept,
-                        show_rows };
+                              show_rows };
     bool solved = m.contacts && m.contacts->found;
     if (s->moments && !format->joins)
         die_usage("a %s file holds one frame: --last, --steps, or a series -o 'f%%05d.%s'",

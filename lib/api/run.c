@@ -4,9 +4,9 @@
 
 #include "base/guest.h"
 #include "base/team.h"
-#include "motion/adapt.h"
-#include "io/reader.h"
 #include "import/scene_file.h"
+#include "io/reader.h"
+#include "motion/adapt.h"
 #include "problem/err.h"
 #include "scene/scene_build.h"
 

@@ -408,7 +408,8 @@ static struct gsd *begin(FILE *out, struct why *why)
     return g;
 }
 
-static int write_gsd(FILE *out, const struct export_frame *m, enum part part, bool first, struct why *why)
+static int write_gsd(FILE *out, const struct export_frame *m, enum part part, bool first,
+                     struct why *why)
 {
     (void)part;
     if (first && !(*m->kept = begin(out, why))) return why->status;

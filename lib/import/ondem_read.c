@@ -1,8 +1,8 @@
 #include "import/ondem_read.h"
 
 #include "geometry/solid.h"
-#include "io/shape_tables.h"
 #include "hdf5/source.h"
+#include "io/shape_tables.h"
 
 #include <inttypes.h>
 #include <stdio.h>

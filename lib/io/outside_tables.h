@@ -6,8 +6,8 @@
 #ifndef NSD_OUTSIDE_TABLES_H
 #define NSD_OUTSIDE_TABLES_H
 
-#include "io/frame.h"
 #include "hdf5/source.h"
+#include "io/frame.h"
 #include "io/table_write.h"
 
 /* Into a packing that has all else of its frame, its step too. Returns 0, EX_DATAERR or EX_SOFTWARE. */

@@ -166,7 +166,7 @@ struct relaxing {
     const struct contacts *s;
     struct displacements *o;
     struct part *part;
-    const struct levels *levels;
+    struct levels levels;
     int sweeps;           /* at most */
     _Atomic bool more[3]; /* whether a sweep has changed much: of every third one */
 };
@@ -184,7 +184,7 @@ static bool sweep(const struct relaxing *y)
 static void sweep_levels(void *arg, int me, int threads)
 {
     struct relaxing *y = arg;
-    const struct levels *l = y->levels;
+    const struct levels *l = &y->levels;
     for (int k = 0; k < y->sweeps; k++) {
         bool more = false;
         for (int64_t g = 0; g < l->n; g++) {
@@ -206,12 +206,10 @@ static void sweep_levels(void *arg, int me, int threads)
 /* By all threads, where levels are large enough; false where one thread shall do it */
 static bool relax_in_threads(struct relaxing *y)
 {
-    struct levels l = { 0 };
     bool shared = team_size() > 1 && y->s->n >= SOME && !y->o->freedoms.n &&
-                  !levels_init(&l, y->s, y->p->n) && y->s->n >= LEVEL_LEAST * l.n;
-    y->levels = &l;
+                  !levels_init(&y->levels, y->s, y->p->n) && y->s->n >= LEVEL_LEAST * y->levels.n;
     if (shared) team_do(team_size(), sweep_levels, y);
-    levels_free(&l);
+    levels_free(&y->levels);
     return shared;
 }
 

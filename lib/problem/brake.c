@@ -20,7 +20,8 @@ static int numbers(const struct problem *p, int64_t slot, double **at)
     for (int k = 0; k < ARRAYS; k++) {
         const struct array_of a =
             rows(p, k) ? problem_array(p, (enum array)k) : (struct array_of){ 0 };
-        double *x = at && a.x ? (double *)((char *)a.x + slot / BUNDLE * (int64_t)a.size) : NULL;
+        void *element = at && a.x ? (char *)a.x + slot / BUNDLE * (int64_t)a.size : NULL;
+        double *x = element;
         for (int j = 0; j < rows(p, k); j++, n++)
             if (at) at[n] = &x[j * BUNDLE + slot_lane(slot)];
     }
@@ -34,10 +35,11 @@ static struct brake *brake_new(int64_t n, int all)
            places = (size_t)all * sizeof(double *), which = (size_t)all * sizeof(int);
     struct brake *b = calloc(1, sizeof *b + slots + numbers + places + which);
     if (!b) return NULL;
-    b->slot = (int64_t *)(b + 1);
-    b->other = (double *)((char *)b->slot + slots);
-    b->at = (double **)((char *)b->other + numbers);
-    b->number = (int *)((char *)b->at + places);
+    void *at = b + 1;
+    b->slot = at, at = (char *)at + slots;
+    b->other = at, at = (char *)at + numbers;
+    b->at = at, at = (char *)at + places;
+    b->number = at;
     b->all = all;
     return b;
 }
