@@ -44,6 +44,14 @@ static struct brake *brake_new(int64_t n, int all)
     return b;
 }
 
+/* Numbers are compared by their bits: a row may be of integers. */
+static uint64_t bits(double x)
+{
+    uint64_t n;
+    memcpy(&n, &x, sizeof n);
+    return n;
+}
+
 /* other[n][all], the numbers of the slots before they are held, becomes other[n][width], of those that have
    changed in any slot. */
 static void keep_changed(const struct problem *p, struct brake *b)
@@ -52,7 +60,7 @@ static void keep_changed(const struct problem *p, struct brake *b)
     for (int64_t i = 0; i < b->n; i++) {
         numbers(p, b->slot[i], b->at);
         for (int j = 0; j < b->all; j++)
-            if (memcmp(b->at[j], &b->other[i * b->all + j], sizeof(double))) b->number[j] = 1;
+            if (bits(*b->at[j]) != bits(b->other[i * b->all + j])) b->number[j] = 1;
     }
     for (int j = 0; j < b->all; j++)
         if (b->number[j]) b->number[b->width++] = j;
