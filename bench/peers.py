@@ -129,7 +129,7 @@ def cost(name, quick, out, rounds, chosen):
     span = float(os.environ.get("T_" + name.upper().replace("-", "_"), job.span[quick]))
     folder = os.path.join(out, name)
     todo = [v for v, (code, _, _) in VARIANTS.items() if (code != "yade" or job.yade) and v in chosen]
-    path = {v: os.path.join(folder, v + ".json") for v in todo}
+    path = {v: os.path.join(folder, v + ".json") for v in VARIANTS}
 
     def runs(v):
         return json.load(open(path[v]))["runs"] if os.path.exists(path[v]) else []
