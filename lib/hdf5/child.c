@@ -2,6 +2,7 @@
 #include "hdf5/child.h"
 
 #include "base/guest.h"
+#include "base/limits.h"
 #include "hdf5/h5.h"
 #include "hdf5/server.h"
 
@@ -178,11 +179,7 @@ static int child_gone(struct child *c, struct why *why)
     const char *where = c->shared->where[0] ? c->shared->where : "input";
     if (signal == SIGBUS)
         return why_set(why, EX_DATAERR, "%.250s: has become shorter while it was read", where);
-    if (signal == SIGXCPU)
-        return why_set(why, EX_DATAERR, "%.250s: takes too long to read: damaged, or made to",
-                       where);
-    if (signal == SIGKILL)
-        return why_set(why, EX_SOFTWARE, "%.250s: reading it was killed (no memory?)", where);
+    if (limits_reason(signal, where, why)) return why->status;
     return why_set(why, EX_DATAERR, "%.250s: libhdf5 breaks down over it (%s): damaged, or made to",
                    where, signal ? strsignal(signal) : "it ended");
 }

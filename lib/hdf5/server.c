@@ -1,5 +1,6 @@
 #include "hdf5/server.h"
 
+#include "base/limits.h"
 #include "hdf5/serve.h"
 #include "hdf5/stream.h"
 
@@ -11,22 +12,14 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <unistd.h>
-
-#ifdef __SANITIZE_ADDRESS__
-enum { SANITIZED = 1 };
-#else
-enum { SANITIZED = 0 };
-#endif
 
 /* What a child may take for a document. */
 enum {
     SPARE_MEMORY = 1 << 28, /* bytes: libhdf5, its caches, and a packed chunk */
     MEMORY_RATIO = 4,       /* and so many times the document */
     SPARE_SECONDS = 4,      /* of the processor, for an answer: a good one takes milliseconds, */
-    RATE = 10000000,        /* and bytes a second: a tenth of what gzip unpacks */
-    SLOWER = SANITIZED ? 10 : 1
+    RATE = 10000000         /* and bytes a second: a tenth of what gzip unpacks */
 };
 
 enum {
@@ -37,36 +30,14 @@ enum {
 
 /* ---- bounds ---- */
 
-/* The address space that the process takes now, in bytes */
-static rlim_t taken(void)
-{
-    unsigned long long pages = 0;
-    FILE *f = fopen("/proc/self/statm", "r");
-    if (!f || fscanf(f, "%llu", &pages) != 1) pages = 0;
-    if (f) fclose(f);
-    return (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE);
-}
-
-static void set_limit(int which, rlim_t most)
-{
-    struct rlimit r;
-    if (getrlimit(which, &r)) return;
-    r.rlim_cur = most < r.rlim_max ? most : r.rlim_max;
-    setrlimit(which, &r);
-}
-
 static void bound_memory(uint64_t size, uint64_t limit)
 {
-    if (SANITIZED) return; // which wants terabytes of addresses
-    set_limit(RLIMIT_AS, taken() + SPARE_MEMORY + MEMORY_RATIO * (rlim_t)size + (rlim_t)limit);
+    limits_memory(SPARE_MEMORY + MEMORY_RATIO * size + limit);
 }
 
 static void bound_time(uint64_t size, uint64_t limit)
 {
-    struct rusage used;
-    if (getrusage(RUSAGE_SELF, &used)) return;
-    rlim_t now = (rlim_t)(used.ru_utime.tv_sec + used.ru_stime.tv_sec);
-    set_limit(RLIMIT_CPU, now + SLOWER * (SPARE_SECONDS + (size + limit) / RATE));
+    limits_processor(SPARE_SECONDS + (size + limit) / RATE);
 }
 
 /* ---- answers, as messages and pieces ---- */
@@ -178,7 +149,7 @@ static int answer_next(struct server *s, struct why *why)
     struct reply reply = { 0 };
     served_close(&s->served);
     s->image.bytes = NULL;
-    set_limit(RLIMIT_AS, RLIM_INFINITY), set_limit(RLIMIT_CPU, RLIM_INFINITY);
+    limits_lift();
     if (stream_next(s->stream, &im, why)) return why->status;
     if (!im.bytes) return s->sink.begin(&s->sink, &reply);
     snprintf(s->shared->where, sizeof s->shared->where,
@@ -264,7 +235,7 @@ void server_run(int line, struct shared *shared, int files, char *const *file, u
 #else
     (void)parent;
 #endif
-    set_limit(RLIMIT_CORE, 0);
+    limits_no_core();
     int null = open("/dev/null", O_WRONLY | O_CLOEXEC);
     dup2(null, STDOUT_FILENO); // who reads our output shall not wait for this process
     if (!SANITIZED) dup2(null, STDERR_FILENO);

@@ -1,29 +1,23 @@
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): memfd_create
 #include "io/bounded.h"
 
+#include "base/limits.h"
+
 #include <errno.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#ifdef __SANITIZE_ADDRESS__
-enum { SANITIZED = 1 };
-#else
-enum { SANITIZED = 0 };
-#endif
 
 enum {
     SPARE_MEMORY = 1 << 28, /* bytes */
     MEMORY_RATIO = 8,       /* and so many times the file: a grain is 200 bytes, and 30 of text */
     SPARE_SECONDS = 4,      /* of the processor, */
-    RATE = 10000000,        /* and bytes a second: a third of what reading text takes */
-    SLOWER = SANITIZED ? 10 : 1
+    RATE = 10000000         /* and bytes a second: a third of what reading text takes */
 };
 
 struct bounded {
@@ -42,32 +36,11 @@ int bounded_put(struct bounded *to, const void *bytes, size_t size, struct why *
     return 0;
 }
 
-static rlim_t address_space(void)
-{
-    unsigned long long pages = 0;
-    FILE *f = fopen("/proc/self/statm", "r");
-    if (!f || fscanf(f, "%llu", &pages) != 1) pages = 0;
-    if (f) fclose(f);
-    return (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE);
-}
-
-static void set_limit(int which, rlim_t most)
-{
-    struct rlimit r;
-    if (getrlimit(which, &r)) return;
-    r.rlim_cur = most < r.rlim_max ? most : r.rlim_max;
-    setrlimit(which, &r);
-}
-
 static void bound(uint64_t size)
 {
-    struct rusage used;
-    set_limit(RLIMIT_CORE, 0);
-    if (!SANITIZED)
-        set_limit(RLIMIT_AS, address_space() + SPARE_MEMORY + MEMORY_RATIO * (rlim_t)size);
-    if (getrusage(RUSAGE_SELF, &used)) return;
-    rlim_t now = (rlim_t)(used.ru_utime.tv_sec + used.ru_stime.tv_sec);
-    set_limit(RLIMIT_CPU, now + SLOWER * (SPARE_SECONDS + size / RATE));
+    limits_no_core();
+    limits_memory(SPARE_MEMORY + MEMORY_RATIO * size);
+    limits_processor(SPARE_SECONDS + size / RATE);
 }
 
 /* The process has ended: with an answer, a reason, or broken down */
@@ -76,11 +49,7 @@ static int judge(int status, const char *name, const struct why *said, struct wh
     if (WIFEXITED(status) && !WEXITSTATUS(status)) return 0;
     if (WIFEXITED(status) && said->status) return why_set(why, said->status, "%s", said->text);
     int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-    if (signal == SIGXCPU)
-        return why_set(why, EX_DATAERR, "%.250s: takes too long to read: damaged, or made to",
-                       name);
-    if (signal == SIGKILL)
-        return why_set(why, EX_SOFTWARE, "%.250s: reading it was killed (no memory?)", name);
+    if (limits_reason(signal, name, why)) return why->status;
     return why_set(why, EX_DATAERR, "%.250s: reading it breaks down (%s): damaged, or made to",
                    name, signal ? strsignal(signal) : "it ended");
 }
