@@ -191,6 +191,14 @@ jq -n --arg f "$tmp/y2.txt" '{dt: 1e-4, bodies: [{import: $f}]}' >"$tmp/types.js
 refuses 65 "a type that is no kind of the scene is asked for" nsd-gen "$tmp/types.json"
 like "with the cure" "$(cat "$tmp/err")" '"types": \{"0": NAME\}'
 
+# ---- discs ----
+
+echo '{"dim": 2, "dt": 1e-4, "bodies": [{"x": [0, 0], "radius": 1}]}' | nsd-gen - >"$tmp/disc.h5"
+for to in data ondem; do
+    refuses 65 "discs are no balls: --to $to" nsd-export --to "$to" -o "$tmp/disc.$to" "$tmp/disc.h5"
+done
+like "with the cure" "$(cat "$tmp/err")" '--to gsd has discs'
+
 # ---- many balls: a fifth of a million in a fifth of 2 GB ----
 
 within() { (ulimit -v 420000 && "$@"); }
