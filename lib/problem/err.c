@@ -101,7 +101,7 @@ static void judge_unbonded(const struct problem *p, int64_t bundle, bool believe
                            enum err_terms which, struct sums *s)
 {
     struct problem unbonded = *p;
-    unbonded.kind = problem_kinds[p->kind.plain];
+    unbonded.kind = *problem_kinds[p->kind.plain];
     backend_widest()->judge->judge(&unbonded, bundle, bundle + 1, believes, which, s);
 }
 

@@ -21,7 +21,7 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
     *p = (struct problem){ .d = W->d, .n = W->n, .W = W, .dt = 1, .scale_v = 1, .scale_r = 1 };
     bool full = W->common > 0;
     for (int64_t c = 0; c < W->n; c++) full = full || !like_balls(W->diag + 9 * c);
-    p->kind = problem_kinds[full ? KIND_BLOCKS : KIND_DIAGONALS];
+    p->kind = full ? kind_BLOCKS : kind_DIAGONALS;
     p->plan = plan_of_blocks(order, W);
     bool room = p->plan && lay_plan(p, p->plan) && lay_bundles(p);
     if (!room || delassus_sort(&p->sorted, W, p->slots, p->contact, why)) {

@@ -75,7 +75,7 @@ ALWAYS_INLINE void blocks_scatter(struct problem *p, const struct bundle *c, int
     for (int i = 0; i < LANES && c->a[k + i] >= 0; i++) {
         const double r[3] = { c->r[0][k + i], c->r[1][k + i], c->r[2][k + i] };
         if (p->W->common) delassus_change_common(p->W, c->a[k + i], r);
-        for (int j = 0; j < p->d; j++) p->W->r[p->d * c->a[k + i] + j] = r[j];
+        for (int j = 0; j < 3 && j < p->d; j++) p->W->r[p->d * c->a[k + i] + j] = r[j];
     }
 }
 

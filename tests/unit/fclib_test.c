@@ -417,9 +417,8 @@ static void make(struct made *m, int d, int64_t n)
 {
     *m = (struct made){ .p = { .d = d, .n = n, .dt = 1, .bundles = (n + BUNDLE - 1) / BUNDLE } };
     m->p.slots = m->p.bundles * BUNDLE;
-    m->p.kind = problem_kinds[KIND_BALLS], m->p.bundle = &m->bundle[0].bundle,
-    m->p.rebound = m->rebound, m->p.contact = m->contact, m->p.bodies = BODIES, m->p.body = m->body,
-    m->p.u = m->u;
+    m->p.kind = kind_BALLS, m->p.bundle = &m->bundle[0].bundle, m->p.rebound = m->rebound,
+    m->p.contact = m->contact, m->p.bodies = BODIES, m->p.body = m->body, m->p.u = m->u;
     for (int64_t i = n; i < m->p.slots; i++) m->contact[i] = -1;
     for (int i = 0; i < BODIES; i++) {
         struct body *b = &m->body[i];
