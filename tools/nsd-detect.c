@@ -41,7 +41,8 @@ static void add_problem(struct frame *f)
     struct why why = { 0 };
     f->export = calloc(1, sizeof *f->export);
     if (!f->export) die(EX_SOFTWARE, "no memory for the contact problem");
-    if (problem_prepare(f->export, &f->packing, &f->contacts, 0, 1, ORDER_NATURAL, &why))
+    if (problem_prepare(f->export, &f->packing, &f->contacts,
+                        &(struct prepare_opt){ .rho_factor = 1 }, &why))
         die_why(&why);
     if (f->export->kind.rolls) die(EX_DATAERR, "rolling friction has no place in an FCLIB problem");
     f->export_global = form == FORM_GLOBAL;

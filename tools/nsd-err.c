@@ -21,7 +21,8 @@ const struct cli_tool tool = {
 static int prepare_own(struct problem *p, struct frame *f, struct why *why)
 {
     if (f->moved && move_back(&f->packing, &f->contacts, why)) return why->status;
-    if (prepare_packing(p, &f->packing, &f->contacts, true, 0, 1, ORDER_NATURAL, NULL, why))
+    if (prepare_packing(p, &f->packing, &f->contacts, true,
+                        &(struct prepare_opt){ .rho_factor = 1 }, why))
         return why->status;
     f->report.err.max_overlap = contacts_max_overlap(&f->contacts);
     return 0;
@@ -31,7 +32,8 @@ static int prepare_own(struct problem *p, struct frame *f, struct why *why)
 static int prepare_foreign(struct problem *p, struct frame *f, struct why *why)
 {
     struct delassus *W = &f->problem.W;
-    if (problem_prepare_delassus(p, W, 0, 1, ORDER_NATURAL, why)) return why->status;
+    if (problem_prepare_delassus(p, W, &(struct prepare_opt){ .rho_factor = 1 }, why))
+        return why->status;
     for (int64_t i = 0; i < p->slots; i++) {
         double r[3], u[3];
         if (p->contact[i] < 0) continue;

@@ -105,13 +105,14 @@ static void describe(struct problem *p, const struct problem *bodies, const stru
 }
 
 static int prepare_by_W(struct problem *p, const struct packing *pack, const struct contacts *s,
-                        double alpha, double rho_factor, enum order order, struct why *why)
+                        const struct prepare_opt *o, struct why *why)
 {
     struct problem bodies;
+    struct prepare_opt unordered = *o;
+    unordered.order = ORDER_NATURAL, unordered.kept = NULL;
     struct contacts unsolved = *s; // only W and q are wanted of the bodies
     unsolved.found = NULL;
-    if (problem_prepare(&bodies, pack, &unsolved, alpha, rho_factor, ORDER_NATURAL, why))
-        return why->status;
+    if (problem_prepare(&bodies, pack, &unsolved, &unordered, why)) return why->status;
     if (bodies.kind.rolls) {
         problem_free(&bodies);
         return why_set(why, EX_DATAERR,
@@ -119,7 +120,7 @@ static int prepare_by_W(struct problem *p, const struct packing *pack, const str
                        "solver than auto, anderson and nlgs: not known");
     }
     struct delassus *W = assemble(&bodies, s, why);
-    if (W && !problem_prepare_delassus(p, W, alpha, rho_factor, order, why)) {
+    if (W && !problem_prepare_delassus(p, W, o, why)) {
         p->own = W;
         if (copy_ties(p, &bodies)) {
             describe(p, &bodies, s);
@@ -143,8 +144,7 @@ static bool bonded(const struct contacts *s)
 }
 
 int prepare_packing(struct problem *p, const struct packing *pack, const struct contacts *s,
-                    bool sweeps, double alpha, double rho_factor, enum order order,
-                    struct plan **kept, struct why *why)
+                    bool sweeps, const struct prepare_opt *o, struct why *why)
 {
     bool by_W = !sweeps && bonded(s);
     if (!by_W && freedoms_in(pack)) {
@@ -153,7 +153,5 @@ int prepare_packing(struct problem *p, const struct packing *pack, const struct 
         by_W = touched.n > 0;
         couplings_free(&touched);
     }
-    if (!by_W && kept)
-        return problem_prepare_again(p, pack, s, alpha, rho_factor, order, kept, why);
-    return (by_W ? prepare_by_W : problem_prepare)(p, pack, s, alpha, rho_factor, order, why);
+    return (by_W ? prepare_by_W : problem_prepare)(p, pack, s, o, why);
 }

@@ -16,11 +16,10 @@
 
 #include "problem/problem.h"
 
-/* As problem_prepare_again(), with kept, or where that is NULL problem_prepare(). Bonds [problem/extra.h] are sweeps' own, and where it is not sweeps that solve,
-   W has them in it [problem/bonded.h]: the slots' r are then r*. EX_SOFTWARE also where W is larger
-   than the memory of the machine. */
+/* As problem_prepare(). Where it is not sweeps that solve, W has the bonds [problem/extra.h] in it
+   [problem/bonded.h]: the slots' r are then r*. EX_SOFTWARE also where W is larger than the memory of
+   the machine. */
 int prepare_packing(struct problem *p, const struct packing *pack, const struct contacts *s,
-                    bool sweeps, double alpha, double rho_factor, enum order order,
-                    struct plan **kept, struct why *why);
+                    bool sweeps, const struct prepare_opt *o, struct why *why);
 
 #endif

@@ -84,29 +84,30 @@ struct problem {
     double speed;  /* m/s: the fastest point before the step, plus g dt; 0: there is only W */
 };
 
+struct prepare_opt {
+    double alpha;      /* rho = alpha m_red; 0: */
+    double rho_factor; /* rho = rho_factor/lambda_max(W~_cc) */
+    enum order order;
+    struct plan **
+        kept; /* a plan of the caller, used where it holds, else replaced by a new one, to be freed after
+                           the problem [problem/plan.h]; *kept may be NULL. NULL: the problem has its own */
+
+    /* Of a part of a problem; both NULL: of a whole one */
+    const struct schedule *schedule; /* lays out the bundles, in place of `order` */
+    struct exchange *exchange;       /* its after_group is called for the groups of the schedule */
+};
+
 /*
  * The problem of a packing's contacts, in bundles of bodies: freedoms beyond theirs keep their
  * speed here [problem/prepare.h has the problem in which they do not]. r from the contacts where
- * they are solved, else 0, and the bodies at v_free + M^-1 P r. rho = alpha m_red where alpha >
- * 0, else rho_factor/lambda_max(W~_cc). Borrows pack. Returns 0, EX_SOFTWARE, or EX_DATAERR where
- * there are too many bodies, with nothing to free.
+ * they are solved, else 0, and the bodies at v_free + M^-1 P r. Borrows pack. Returns 0,
+ * EX_SOFTWARE, or EX_DATAERR where there are too many bodies, with nothing to free.
  */
 int problem_prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
-                    double alpha, double rho_factor, enum order order, struct why *why);
-/* The same with the plan that is kept [problem/plan.h], where it holds; else a new one is kept, to be freed
-   after p. *kept may be NULL. */
-int problem_prepare_again(struct problem *p, const struct packing *pack, const struct contacts *s,
-                          double alpha, double rho_factor, enum order order, struct plan **kept,
-                          struct why *why);
-/* The same of a part of a problem, whose bundles are laid out by the schedule: its groups are those that
-   exchange->after_group is told of. */
-int problem_prepare_distributed(struct problem *p, const struct packing *pack,
-                                const struct contacts *s, double alpha, double rho_factor,
-                                const struct schedule *order, struct exchange *exchange,
-                                struct why *why);
-/* The same for a problem given by W, which it borrows; r from W->r. */
-int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha, double rho_factor,
-                             enum order order, struct why *why);
+                    const struct prepare_opt *o, struct why *why);
+/* The same for a problem given by W, which it borrows; r from W->r. It is whole, and has a plan of its own. */
+int problem_prepare_delassus(struct problem *p, struct delassus *W, const struct prepare_opt *o,
+                             struct why *why);
 void problem_free(struct problem *p);
 
 /* What of an iterate is beyond r: z and m of a slot's contact */

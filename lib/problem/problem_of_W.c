@@ -15,14 +15,14 @@ static bool like_balls(const double D[9])
     return most < noise;
 }
 
-int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha, double rho_factor,
-                             enum order order, struct why *why)
+int problem_prepare_delassus(struct problem *p, struct delassus *W, const struct prepare_opt *o,
+                             struct why *why)
 {
     *p = (struct problem){ .d = W->d, .n = W->n, .W = W, .dt = 1, .scale_v = 1, .scale_r = 1 };
     bool full = W->common > 0;
     for (int64_t c = 0; c < W->n; c++) full = full || !like_balls(W->diag + 9 * c);
     p->kind = full ? kind_BLOCKS : kind_DIAGONALS;
-    p->plan = plan_of_blocks(order, W);
+    p->plan = plan_of_blocks(o->order, W);
     bool room = p->plan && lay_plan(p, p->plan) && lay_bundles(p);
     if (!room || delassus_sort(&p->sorted, W, p->slots, p->contact, why)) {
         problem_free(p);
@@ -47,9 +47,9 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha
             p->w[i / BUNDLE][j][k] = full ? lambda : D[4 * j];
             r->iw[j][k] = 1 / p->w[i / BUNDLE][j][k];
         }
-        p->rho[i / BUNDLE][k] = lambda <= 0             ? 1
-                                : alpha > 0 && D[0] > 0 ? alpha / seen[0]
-                                                        : rho_factor / step;
+        p->rho[i / BUNDLE][k] = lambda <= 0                ? 1
+                                : o->alpha > 0 && D[0] > 0 ? o->alpha / seen[0]
+                                                           : o->rho_factor / step;
         double q2 = 0;
         for (int j = 0; j < W->d; j++) {
             r->r[j][k] = W->r[W->d * c + j];

@@ -231,10 +231,10 @@ static double sum_of_slots(const struct problem *p, const double *x)
     return sum;
 }
 
-static int prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
-                   double alpha, double rho_factor, const struct plan *plan,
-                   struct exchange *exchange, struct why *why)
+static int prepare_by_plan(struct problem *p, const struct packing *pack, const struct contacts *s,
+                           const struct plan *plan, const struct prepare_opt *o, struct why *why)
 {
+    struct exchange *exchange = o->exchange;
     const struct lattice cell = lattice_of(pack);
     struct survey found;
     survey(&found, pack, s, &cell);
@@ -256,7 +256,7 @@ static int prepare(struct problem *p, const struct packing *pack, const struct c
     if (!room) return free(half), no_memory(p, why);
     team_share(team_size(), pack->n, PER_THREAD, set_some, p);
     lay_seats(p, plan, s);
-    struct filling f = { p, s, &cell, alpha, rho_factor, half };
+    struct filling f = { p, s, &cell, o->alpha, o->rho_factor, half };
     team_share(team_size(), p->bundles, PER_THREAD / BUNDLE, fill_bundles, &f);
     room = !exchange || !exchange->slower || !brake_make(p, &f, exchange->slower);
     free(half);
@@ -286,46 +286,23 @@ static int prepare(struct problem *p, const struct packing *pack, const struct c
     return 0;
 }
 
-/* With a plan of the problem's own */
-static int prepare_with(struct problem *p, const struct packing *pack, const struct contacts *s,
-                        double alpha, double rho_factor, struct plan *plan,
-                        struct exchange *exchange, struct why *why)
+int problem_prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
+                    const struct prepare_opt *o, struct why *why)
 {
+    const enum order order = o->schedule ? ORDER_COLOUR : o->order;
+    struct plan *plan = o->kept ? *o->kept : NULL;
+    if (!plan || !plan_holds(plan, order, s, pack)) {
+        plan_free(plan);
+        plan = plan_of_contacts(order, s, pack, o->schedule);
+    }
+    if (o->kept) *o->kept = plan;
     *p = (struct problem){ 0 };
     if (!plan) return no_memory(p, why);
-    int e = prepare(p, pack, s, alpha, rho_factor, plan, exchange, why);
+    int e = prepare_by_plan(p, pack, s, plan, o, why);
+    if (o->kept) return e;
     if (e)
         plan_free(plan);
     else
         p->plan = plan;
     return e;
-}
-
-int problem_prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
-                    double alpha, double rho_factor, enum order order, struct why *why)
-{
-    struct plan *plan = plan_of_contacts(order, s, pack, NULL);
-    return prepare_with(p, pack, s, alpha, rho_factor, plan, NULL, why);
-}
-
-int problem_prepare_again(struct problem *p, const struct packing *pack, const struct contacts *s,
-                          double alpha, double rho_factor, enum order order, struct plan **kept,
-                          struct why *why)
-{
-    if (!*kept || !plan_holds(*kept, order, s, pack)) {
-        plan_free(*kept);
-        *kept = plan_of_contacts(order, s, pack, NULL);
-    }
-    *p = (struct problem){ 0 };
-    if (!*kept) return no_memory(p, why);
-    return prepare(p, pack, s, alpha, rho_factor, *kept, NULL, why);
-}
-
-int problem_prepare_distributed(struct problem *p, const struct packing *pack,
-                                const struct contacts *s, double alpha, double rho_factor,
-                                const struct schedule *order, struct exchange *exchange,
-                                struct why *why)
-{
-    struct plan *plan = plan_of_contacts(ORDER_COLOUR, s, pack, order);
-    return prepare_with(p, pack, s, alpha, rho_factor, plan, exchange, why);
 }

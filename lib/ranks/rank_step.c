@@ -239,9 +239,11 @@ static bool solve_in_order(struct rank_step *y, const struct packing *whole,
     free(mine);
     c.exchange.contacts = list->n, c.exchange.halves = size[2];
     c.exchange.mean_mass = mean_mass(y, whole);
-    if (problem_prepare_distributed(&p, &y->part.p, s, o->alpha, o->solve.method->rho, &c.plan,
-                                    &c.exchange, why))
-        fail(y, why);
+    const struct prepare_opt form = { .alpha = o->alpha,
+                                      .rho_factor = o->solve.method->rho,
+                                      .schedule = &c.plan,
+                                      .exchange = &c.exchange };
+    if (problem_prepare(&p, &y->part.p, s, &form, why)) fail(y, why);
     solve(y, &p, s, o, rep);
     bool solved = !c.exchange.wants_whole;
     problem_free(&p);
@@ -261,9 +263,11 @@ static void solve_in_blocks(struct rank_step *y, struct blocks *b, const struct 
     free(keep);
     blocks_begin(b, &y->part, s, o->order);
     b->exchange.mean_mass = mean_mass(y, whole);
-    if (problem_prepare_distributed(&p, &y->part.p, s, o->alpha, o->solve.method->rho, &b->plan,
-                                    &b->exchange, why))
-        fail(y, why);
+    const struct prepare_opt form = { .alpha = o->alpha,
+                                      .rho_factor = o->solve.method->rho,
+                                      .schedule = &b->plan,
+                                      .exchange = &b->exchange };
+    if (problem_prepare(&p, &y->part.p, s, &form, why)) fail(y, why);
     solve(y, &p, s, o, rep);
     problem_free(&p);
 }

@@ -31,9 +31,10 @@ static int solve_contacts(const struct packing *pack, struct contacts *s, struct
                           const struct step_opt *o, struct report *rep, struct why *why)
 {
     struct problem p;
-    if (prepare_packing(&p, pack, s, step_sweeps(o->solve.global), o->alpha, o->solve.method->rho,
-                        o->order, kept, why))
-        return why->status;
+    const struct prepare_opt form = {
+        .alpha = o->alpha, .rho_factor = o->solve.method->rho, .order = o->order, .kept = kept
+    };
+    if (prepare_packing(&p, pack, s, step_sweeps(o->solve.global), &form, why)) return why->status;
     if (check_solver(&p, o->solve.global, why)) return problem_free(&p), why->status;
     int failed = solve_problem(&p, &o->solve, rep);
     if (failed)
@@ -106,8 +107,10 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
     struct problem p;
     if (!o->warm)
         for (int64_t i = 0; i < W->d * W->n; i++) W->r[i] = 0;
-    if (problem_prepare_delassus(&p, W, o->alpha, o->solve.method->rho, o->order, why))
-        return why->status;
+    const struct prepare_opt form = { .alpha = o->alpha,
+                                      .rho_factor = o->solve.method->rho,
+                                      .order = o->order };
+    if (problem_prepare_delassus(&p, W, &form, why)) return why->status;
     rep->balanced = rep->tied = rep->may_gain = false;
     int failed = solve_problem(&p, &o->solve, rep);
     for (int64_t i = 0; i < p.slots; i++) {

@@ -88,7 +88,7 @@ int step_move_apart_whole(struct step_makers *m, struct packing *p, const struct
                           struct why *why);
 
 /* Parts of it. */
-/* found[], and the report of the solve; kept: of problem_prepare_again(), or NULL. Impacts that would gain energy
+/* found[], and the report of the solve; kept: of struct prepare_opt, or NULL. Impacts that would gain energy
    are solved anew with less restitution [solve/rebound.h]; and this alone, of contacts that are solved. */
 int step_solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
                         const struct step_opt *o, struct report *rep, struct why *why);

@@ -82,7 +82,9 @@ static void make_frame(int k)
     f->report.options = strdup("{}");
     f->packed = f->detected = f->reported = f->moved = f->forces = true;
     f->history = strdup("{\"command\": \"a test\"}\n");
-    must(problem_prepare(&problem[k], &f->packing, &f->contacts, 0, 1, ORDER_NATURAL, &why), &why);
+    must(problem_prepare(&problem[k], &f->packing, &f->contacts,
+                         &(struct prepare_opt){ .rho_factor = 1 }, &why),
+         &why);
     now = k;
     const char *path = fresh(".h5");
     struct writer *w;

@@ -358,7 +358,8 @@ static void test_assembly(int dim)
     p.g = v3(0, -3, 0);
     packing_wrap(&p, &s);
     must(detect_contacts(&t, &p, 0, NULL, &why) ||
-             problem_prepare(&q, &p, &t, 0, 1, ORDER_NATURAL, &why) || assembly_init(&A, &q, &why),
+             problem_prepare(&q, &p, &t, &(struct prepare_opt){ .rho_factor = 1 }, &why) ||
+             assembly_init(&A, &q, &why),
          &why);
     double worst = 0;
     int64_t across = 0;

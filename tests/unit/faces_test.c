@@ -130,7 +130,8 @@ static struct scaled scaled(struct delassus *W, struct problem *p)
 {
     struct scaled w;
     struct why why = { 0 };
-    if (problem_prepare_delassus(p, W, 0, 1, ORDER_NATURAL, &why) || scaled_init(&w, p, &why)) {
+    if (problem_prepare_delassus(p, W, &(struct prepare_opt){ .rho_factor = 1 }, &why) ||
+        scaled_init(&w, p, &why)) {
         printf("Bail out! %s\n", why.text);
         exit(1);
     }

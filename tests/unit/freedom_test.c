@@ -377,7 +377,8 @@ static void test_W(const struct place *where, int dim)
     struct problem problem;
     where->make(&p, dim, 0);
     must(detect_contacts(&s, &p, 0, NULL, &why) || contacts_alloc_found(&s), &why);
-    must(prepare_packing(&problem, &p, &s, true, 0, 1, ORDER_NATURAL, NULL, &why), &why);
+    must(prepare_packing(&problem, &p, &s, true, &(struct prepare_opt){ .rho_factor = 1 }, &why),
+         &why);
     const struct delassus *W = problem.W;
     size_t size = (size_t)(s.n * dim) + 4;
     double *free_u = calloc(size, 8), *u = calloc(size, 8), *r = calloc(size, 8),

@@ -416,7 +416,8 @@ static void assembly_is_sweep(void)
     struct delassus W;
     struct apply a;
     detect_contacts(&s, &p, 0.5, NULL, &why);
-    prepare_packing(&q, &p, &s, true, 0, 1, ORDER_COLOUR, NULL, &why);
+    prepare_packing(&q, &p, &s, true,
+                    &(struct prepare_opt){ .rho_factor = 1, .order = ORDER_COLOUR }, &why);
     assembly_init(&A, &q, &why), assembly_blocks(&A, &W, &why);
     double *x = calloc((size_t)(3 * q.slots) + 4, sizeof *x),
            *y = calloc((size_t)(3 * q.slots) + 4, sizeof *y);

@@ -221,7 +221,10 @@ static void test_identity(const struct packing *p, const struct contacts *s)
     struct contacts copy;
     for (int order = ORDER_NATURAL; order <= ORDER_HALVES; order++) {
         must(contacts_copy(&copy, s), &why);
-        must(problem_prepare(&q, p, &copy, 0, 1, (enum order)order, &why), &why);
+        must(problem_prepare(&q, p, &copy,
+                             &(struct prepare_opt){ .rho_factor = 1, .order = (enum order)order },
+                             &why),
+             &why);
         must(problem_store(&q, &copy), &why);
         bool same = true, apart = true;
         for (int64_t i = 0; i < s->n; i++)

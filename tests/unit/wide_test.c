@@ -122,7 +122,8 @@ static struct delassus operator(const struct packing *pack, const struct contact
     struct why why = { 0 };
     struct problem p;
     struct delassus W;
-    must(problem_prepare(&p, pack, s, 0, 1, ORDER_NATURAL, &why) || scaled_assemble(&W, &p, &why),
+    must(problem_prepare(&p, pack, s, &(struct prepare_opt){ .rho_factor = 1 }, &why) ||
+             scaled_assemble(&W, &p, &why),
          &why);
     for (int64_t c = 0; c < s->n; c++)
         for (int k = 1; k < 4; k += 2) W.diag[9 * c + k] += noise * W.diag[9 * c];
@@ -153,7 +154,9 @@ static void test_given(const struct packing *p, const struct contacts *s, const 
             struct report rep = { 0 };
             struct problem shape;
             struct delassus W = operator(p, s, noise[k]);
-            must(problem_prepare_delassus(&shape, &W, 0, 1, ORDER_NATURAL, &why), &why);
+            must(problem_prepare_delassus(&shape, &W, &(struct prepare_opt){ .rho_factor = 1 },
+                                          &why),
+                 &why);
             must(step_solve_delassus(&W, u, &o, &rep, &why), &why);
             double far = apart(&W, r);
             ok(shape.kind.full == (k == 1) && far < 1e-9,
