@@ -310,12 +310,23 @@ static bool save_due(const struct run *r)
     return r->save_path && seconds_now() - r->saved >= save_every;
 }
 
+/* The frame with the forces that last, borrowed: those of a document. What a program answers is kept as it said it. */
+static struct frame with_forces(struct run *r)
+{
+    struct why why = { 0 };
+    struct frame f = r->f;
+    if (loop_asks() || !steps) return f;
+    if (r->acts.id && acts_arrays(&r->acts, &r->f.packing, &why)) die_why(&why);
+    f.packing.outside.lasts = acts_lend(&r->acts, f.packing.walls);
+    return f;
+}
+
 /* The state as a document of its own, which takes the place of the one before in one stroke */
 static void save_state(struct run *r)
 {
     struct why why = { 0 };
     struct writer *out;
-    struct frame f = r->f;
+    struct frame f = with_forces(r);
     f.detected = f.detected || options.warm; // a warm step begins with these
     bool background = r->background;
     if (background_close(r->background, &why)) die_why(&why); // libhdf5 has one user at a time
@@ -412,8 +423,9 @@ static bool advance(struct run *r, int64_t k, bool saves)
 static void write_frame(struct run *r)
 {
     struct why why = { 0 };
-    if ((r->background ? background_frame(r->background, &r->f, &why)
-                       : writer_frame(r->out, &r->f, &why)))
+    const struct frame f = with_forces(r);
+    if ((r->background ? background_frame(r->background, &f, &why)
+                       : writer_frame(r->out, &f, &why)))
         die_why(&why);
     r->f.packing.events.n = r->f.packing.outside.length = 0; // they are written
 }
@@ -444,6 +456,7 @@ static void begin(struct run *r)
     if (f->packing.outside.length && !loop_asks())
         warn("a program (--with) acted on the run so far, and nothing acts on it now: --with or "
              "--replay");
+    if (acts_take(&r->acts, &f->packing, &why)) die_why(&why);
     outside_forget(&f->packing.outside);
     report_free(&f->report);
     f->report.options = options_json(&r->o);

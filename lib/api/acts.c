@@ -147,6 +147,38 @@ int acts_begin(struct acts *a, struct packing *p, struct why *why)
     return 0;
 }
 
+int acts_take(struct acts *a, struct packing *p, struct why *why)
+{
+    struct lasting *s = &p->outside.lasts;
+    const size_t n = (size_t)p->n;
+    if ((s->force || s->torque) && acts_arrays(a, p, why)) return why->status;
+    if (s->force) memcpy(a->force[ACTS_LASTING], s->force, n * sizeof *s->force);
+    if (s->torque) memcpy(a->torque[ACTS_LASTING], s->torque, n * sizeof *s->torque);
+    a->pushes[ACTS_LASTING] = s->force, a->twists[ACTS_LASTING] = s->torque;
+    free(a->push[ACTS_LASTING]), free(s->force), free(s->torque);
+    a->push[ACTS_LASTING] = s->push;
+    *s = (struct lasting){ 0 };
+    return 0;
+}
+
+static bool any_number(const void *numbers, int64_t n)
+{
+    const double *x = numbers;
+    for (int64_t i = 0; x && i < n; i++)
+        if (x[i] != 0) return true;
+    return false;
+}
+
+struct lasting acts_lend(const struct acts *a, int32_t walls)
+{
+    const int t = ACTS_LASTING;
+    return (struct lasting){
+        .force = a->pushes[t] && any_number(a->force[t], 3 * a->n) ? a->force[t] : NULL,
+        .torque = a->twists[t] && any_number(a->torque[t], 3 * a->n) ? a->torque[t] : NULL,
+        .push = any_number(a->push[t], walls) ? a->push[t] : NULL
+    };
+}
+
 static void zero(struct acts *a, int term, int32_t walls)
 {
     if (a->pushes[term]) memset(a->force[term], 0, (size_t)a->n * sizeof *a->force[term]);

@@ -30,6 +30,10 @@ int acts_arrays(struct acts *acts, const struct packing *p, struct why *why);
 int acts_begin(struct acts *acts, struct packing *p, struct why *why);
 /* It has been made: what acts in one step does so no more. */
 void acts_end(struct acts *acts, int32_t walls);
+/* What lasts is that of a document in p, which gives it away. Returns 0 or EX_SOFTWARE. */
+int acts_take(struct acts *acts, struct packing *p, struct why *why);
+/* What of it documents of p keep, borrowed from acts, whose arrays are those of p's bodies */
+struct lasting acts_lend(const struct acts *acts, int32_t walls);
 /* Nothing acts any more. */
 void acts_clear(struct acts *acts, int32_t walls);
 

@@ -91,6 +91,7 @@ static int begin(struct nsd_run *r, struct why *why)
 {
     struct packing *p = &r->f.packing;
     p->events.n = 0; // they belong to the frame that was read
+    if (acts_take(&r->acts, p, why)) return why->status;
     outside_forget(&p->outside);
     if (flow_read(&r->flow, p, why)) return r->flow = (struct flow){ 0 }, why->status;
     for (int64_t i = 0; i < p->n; i++)

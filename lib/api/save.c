@@ -19,11 +19,14 @@ int nsd_note(struct nsd_run *r, const char *line)
     return why->status;
 }
 
-/* Adds the library's line of history unless there is one. */
-static int note(struct nsd_run *r, struct why *why)
+/* What is wanted before it: the options, forces of the bodies that there are, and the library's line of history
+   unless there is one */
+static int prepare(struct nsd_run *r, struct why *why)
 {
     static const char line[] =
         "{\"command\":\"libnsd\",\"version\":\"" NSD_VERSION "\",\"options\":{}}";
+    if (run_choose(r, why) || (r->acts.id && acts_arrays(&r->acts, &r->f.packing, why)))
+        return why->status;
     if (!r->noted && !frame_note(&r->f, line, why)) r->noted = true;
     return why->status;
 }
@@ -47,10 +50,11 @@ static int back(struct nsd_run *r, struct before was)
     return r->why.status;
 }
 
-/* The frame as it is written: nsd-step's */
+/* The frame as it is written: nsd-step's, with the forces that last, borrowed */
 static struct frame frame_of(const struct nsd_run *r)
 {
     struct frame f = r->f;
+    f.packing.outside.lasts = acts_lend(&r->acts, f.packing.walls);
     f.detected = f.detected && f.moved && (r->contacts || r->forces);
     f.forces = r->forces;
     return f;
@@ -63,7 +67,7 @@ int nsd_save(struct nsd_run *r, const char *path)
     if (!why) return NSD_USAGE;
     if (!path) return why_set(why, NSD_USAGE, "a document has a path");
     const struct before was = before(r);
-    if (run_choose(r, why) || note(r, why)) return back(r, was);
+    if (prepare(r, why)) return back(r, was);
     const struct frame f = frame_of(r);
     run_lock();
     if (writer_open(&out, path, WRITER_COPY, why) || writer_frame(out, &f, why))
@@ -116,7 +120,7 @@ int nsd_append(struct nsd_run *r, const char *path)
                        "another one may begin",
                        path);
     const struct before was = before(r);
-    if (run_choose(r, why) || note(r, why)) return back(r, was);
+    if (prepare(r, why)) return back(r, was);
     r->rests = r->out ? r->rests : !moves && !r->f.packing.outside.steered;
     if (!r->out && open_trajectory(r, path, why)) return back(r, was);
     const struct frame f = frame_of(r);

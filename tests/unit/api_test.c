@@ -13,10 +13,10 @@ static char folder[] = "/tmp/nsd_api.XXXXXX";
 
 static const char *path_of(const char *name)
 {
-    static char path[4][100];
+    static char path[6][100];
     static int k;
-    snprintf(path[++k % 4], sizeof path[0], "%s/%s", folder, name);
-    return path[k % 4];
+    snprintf(path[++k % 6], sizeof path[0], "%s/%s", folder, name);
+    return path[k % 6];
 }
 
 static void must(int failed, const struct nsd_run *r)
@@ -199,6 +199,64 @@ static void test_resume(void)
     must(act(memory, 17), memory);
     ok(same(whole, memory), "and from a document in memory");
     nsd_close(&whole), nsd_close(&half), nsd_close(&rest), nsd_close(&frames), nsd_close(&memory);
+}
+
+/* All bytes of a file, to be freed */
+static char *bytes_of(const char *path, size_t *n)
+{
+    FILE *f = fopen(path, "r");
+    char *bytes = malloc(1 << 22);
+    *n = f && bytes ? fread(bytes, 1, 1 << 22, f) : 0;
+    if (f) fclose(f);
+    return bytes;
+}
+
+static bool same_files(const char *a, const char *b)
+{
+    size_t n, m;
+    char *x = bytes_of(a, &n), *y = bytes_of(b, &m);
+    bool same = n && n == m && !memcmp(x, y, n);
+    free(x), free(y);
+    return same;
+}
+
+/* Forces that last go with documents, and those of one step do not. */
+static void test_lasting(void)
+{
+    static const char light[] =
+        "{\"dt\":1e-3,\"gravity\":[0,0,0],\"density\":1000,\"bodies\":[{\"x\":[0,0,1],\"radius\":"
+        "0.1},{\"x\":[5,0,1],\"radius\":0.1}],\"walls\":[{\"point\":[0,0,0],\"normal\":[0,0,1],"
+        "\"load\":{\"along\":[0,0,1],\"mass\":2}}]}";
+    const double f[3] = { 3, 0, 1 }, torque[3] = { 0, 0, 0.5 }, none[3] = { 0 };
+    struct nsd_run *r = scene(light), *twin = scene(light), *rest;
+    const char *path = path_of("lasting.h5"), *a = path_of("all.h5"), *b = path_of("rest.h5");
+    must(nsd_append(r, path) || nsd_force(r, 1, f, torque, NSD_LASTING) ||
+             nsd_boundary_force(r, 0, -4, NSD_LASTING) || nsd_step(r, 10) ||
+             nsd_force(r, 0, f, torque, NSD_ONCE) || nsd_append(r, path) || nsd_finish(r),
+         r);
+    must(nsd_from_document(&rest, path) || nsd_step(rest, 10) || nsd_save(rest, b), rest);
+    must(nsd_force(r, 0, none, none, NSD_ONCE) || nsd_step(r, 10) || nsd_save(r, a), r);
+    const double *m = array(rest, "mass", NULL), *v = array(rest, "velocity", NULL);
+    const double *u = array(rest, "boundary_velocity", NULL);
+    ok(close_to(v[3], f[0] / m[1] * 0.02) && close_to(v[5], f[2] / m[1] * 0.02) && v[0] == 0 &&
+           close_to(u[2], -4 * 0.02 / 2),
+       "a run that is resumed goes on with the forces that last: v = F t/m");
+    ok(same(r, rest), "and that is what the run itself does, bit for bit");
+    must(nsd_from_document(&rest, a), NULL);
+    must(nsd_force(rest, 1, none, none, NSD_LASTING) ||
+             nsd_boundary_force(rest, 0, 0, NSD_LASTING) || nsd_save(rest, b),
+         rest);
+    nsd_close(&rest), nsd_close(&r);
+    must(nsd_from_document(&rest, b), NULL);
+    const double before = array(rest, "velocity", NULL)[3];
+    must(nsd_step(rest, 3), rest);
+    ok(array(rest, "velocity", NULL)[3] == before, "what was taken back does not go with them");
+    r = scene(light);
+    must(nsd_force(r, 1, f, torque, NSD_LASTING) || nsd_force(r, 1, none, none, NSD_LASTING) ||
+             nsd_save(r, a) || nsd_save(twin, b),
+         r);
+    ok(same_files(a, b), "a document without them keeps its bytes");
+    nsd_close(&r), nsd_close(&rest), nsd_close(&twin);
 }
 
 /* Bodies as arrays are those of the scene. */
@@ -494,7 +552,7 @@ int main(void)
 {
     if (!mkdtemp(folder)) return 1;
     test_forces(), test_top(), test_boundaries();
-    test_resume(), test_arrays(), test_threads(), test_errors(), test_random();
+    test_resume(), test_lasting(), test_arrays(), test_threads(), test_errors(), test_random();
     char command[100];
     snprintf(command, sizeof command, "rm -r %s", folder);
     if (system(command)) return 1;
