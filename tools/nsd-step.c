@@ -473,7 +473,8 @@ static int64_t run(struct run *r)
     struct why why = { 0 };
     begin(r);
     // where there is no other thread, this one writes; and with others, who have the bodies
-    if (options.threads > 1 && steps && !r->f.distributed)
+    // and beside a program in the loop, which may want documents
+    if (options.threads > 1 && steps && !r->f.distributed && !loop_asks())
         background_open(&r->background, r->out, &(struct why){ 0 });
     bool ends = !steps;
     while (!ends) {

@@ -268,6 +268,17 @@ int acts_velocity(struct packing *p, int64_t wall, vec3 v, struct why *why)
     return 0;
 }
 
+int acts_motion(struct packing *p, int64_t i, bool turns, vec3 v, struct why *why)
+{
+    bool leaves = p->dim == 2 && (turns ? v.x != 0 || v.y != 0 : v.z != 0);
+    if (!v3_finite(v) || leaves)
+        return why_set(why, EX_DATAERR, "the %s of body %d %s",
+                       turns ? "angular velocity" : "velocity", p->id[i],
+                       leaves ? "leaves the plane, and dim is 2" : "is not finite");
+    (turns ? p->w : p->v)[i] = v;
+    return 0;
+}
+
 int acts_gravity(struct packing *p, vec3 g, struct why *why)
 {
     if (!v3_finite(g) || (p->dim == 2 && g.z != 0))

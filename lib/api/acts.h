@@ -48,6 +48,8 @@ int acts_push(struct acts *acts, const struct packing *p, int64_t wall, double f
               enum acts_lasting term, struct why *why);
 /* m/s: its prescribed velocity from now on; it goes on from where it is. EX_DATAERR: it turns. */
 int acts_velocity(struct packing *p, int64_t wall, vec3 v, struct why *why);
+/* m/s, rad/s: the velocity, or the angular velocity, of the body in row i */
+int acts_motion(struct packing *p, int64_t i, bool turns, vec3 v, struct why *why);
 int acts_gravity(struct packing *p, vec3 g, struct why *why);
 /* Between two kinds of material, by their names */
 int acts_friction(struct packing *p, const char *a, const char *b, double mu, struct why *why);

@@ -114,7 +114,8 @@ int outside_resize(struct outside *o, int64_t had, int64_t n, struct why *why)
     vec3 *now[ARRAYS] = { 0 };
     const size_t keep = (size_t)(had < n ? had : n);
     for (int k = 0; k < ARRAYS && !why->status; k++)
-        if (*old[k] && !outside_alloc(&now[k], n, why)) memcpy(now[k], *old[k], keep * sizeof **now);
+        if (*old[k] && !outside_alloc(&now[k], n, why))
+            memcpy(now[k], *old[k], keep * sizeof **now);
     for (int k = 0; k < ARRAYS; k++) {
         if (why->status) free(now[k]);
         if (why->status || !*old[k]) continue;
