@@ -153,8 +153,9 @@ int nsd_remove(struct nsd_run *run, int64_t n, const int32_t *id);
 int nsd_note(struct nsd_run *run, const char *line);
 /* A document of this moment, in place of what there is at `path` */
 int nsd_save(struct nsd_run *run, const char *path);
-/* One more frame of the trajectory at `path`, which the first call begins in place of what there is, and nsd_finish()
-   ends. One at a time */
+/* One more frame of the trajectory at `path`, which the first call begins, or goes on with where there is a file, and
+   nsd_finish() ends. One at a time. NSD_DATA: the file belongs to another scene, has this step or a later one already, or is
+   damaged; NSD_OUTPUT: another program or run is writing it */
 int nsd_append(struct nsd_run *run, const char *path);
 int nsd_finish(struct nsd_run *run);
 

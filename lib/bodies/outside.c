@@ -30,9 +30,10 @@ void outside_free(struct outside *o)
 
 void outside_forget(struct outside *o)
 {
-    bool steered = o->steered;
+    const struct outside had = *o;
+    o->lasts = (struct lasting){ 0 };
     outside_free(o);
-    o->steered = steered;
+    o->steered = had.steered, o->lasts = had.lasts;
 }
 
 int outside_alloc(vec3 **to, int64_t n, struct why *why)

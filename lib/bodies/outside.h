@@ -32,7 +32,7 @@ struct outside {
 };
 
 void outside_free(struct outside *outside);
-/* The forces are of a step that has been made, and the words are written: they are gone. */
+/* The forces are of a step that has been made, and the words are written: they are gone, but for those that last. */
 void outside_forget(struct outside *outside);
 /* to = a deep copy for n bodies and so many walls; to need not be initialised. Returns 0 or EX_SOFTWARE, where there
    is nothing to free. */

@@ -364,7 +364,11 @@ class Run:
         self._call("nsd_save", _bytes(path))
 
     def append(self, path: Path) -> None:
-        """Writes one more frame of the trajectory, which the first call begins."""
+        """Writes one more frame of the trajectory, which the first call begins.
+
+        Where there is a file already the run goes on with it; Error, and the file stays as it is, where it is of another scene,
+        has this step or a later one, is damaged, or is being written. Remove it to begin anew.
+        """
         self._call("nsd_append", _bytes(path))
 
     def finish(self) -> None:

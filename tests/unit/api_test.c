@@ -7,16 +7,17 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 static char folder[] = "/tmp/nsd_api.XXXXXX";
 
 static const char *path_of(const char *name)
 {
-    static char path[6][100];
+    static char path[8][100];
     static int k;
-    snprintf(path[++k % 6], sizeof path[0], "%s/%s", folder, name);
-    return path[k % 6];
+    snprintf(path[++k % 8], sizeof path[0], "%s/%s", folder, name);
+    return path[k % 8];
 }
 
 static void must(int failed, const struct nsd_run *r)
@@ -257,6 +258,96 @@ static void test_lasting(void)
          r);
     ok(same_files(a, b), "a document without them keeps its bytes");
     nsd_close(&r), nsd_close(&rest), nsd_close(&twin);
+}
+
+/* n steps, a frame every fifth */
+static void append(struct nsd_run *r, const char *path, int n)
+{
+    for (int k = 5; k <= n; k += 5) must(act(r, 5) || nsd_append(r, path), r);
+}
+
+static void write_file(const char *path, const char *bytes, size_t n)
+{
+    FILE *f = fopen(path, "w");
+    if (!f || fwrite(bytes, 1, n, f) != n || fclose(f)) exit(1);
+}
+
+/* A trajectory in two parts is that of one run. */
+static void test_append(const char *name, const char *text, const char *option, bool killed)
+{
+    const char *whole = path_of("whole.h5"), *parts = path_of("parts.h5");
+    remove(whole), remove(parts);
+    struct nsd_run *r = scene(text);
+    must(nsd_set(r, option, "true"), r);
+    append(r, whole, 40);
+    must(nsd_finish(r), r);
+    nsd_close(&r);
+    pid_t child = killed ? fork() : 0;
+    if (!child) {
+        r = scene(text);
+        must(nsd_set(r, option, "true"), r);
+        append(r, parts, 20);
+        if (killed) _exit(0); // its trajectory is not finished
+        nsd_close(&r);
+    }
+    if (killed) waitpid(child, NULL, 0);
+    must(nsd_from_document(&r, parts), NULL);
+    must(nsd_set(r, option, "true"), r);
+    append(r, parts, 20);
+    nsd_close(&r);
+    ok(same_files(whole, parts), "%s: a trajectory that goes on has the bytes of one in one piece",
+       name);
+}
+
+static void refuse(struct nsd_run *r, const char *path, int status, const char *words)
+{
+    size_t n, m;
+    char *before = bytes_of(path, &n);
+    int got = nsd_append(r, path);
+    bool said = strstr(nsd_error(r), words);
+    char *after = bytes_of(path, &m);
+    ok(got == status && said && n == m && !memcmp(before, after, n),
+       "not gone on with, and left as it is: %s", nsd_error(r));
+    free(before), free(after);
+}
+
+static void test_appends(void)
+{
+    static const char few[] = "{\"dt\":1e-3,\"mu\":0.3,\"bodies\":[{\"count\":9,\"radius\":0.1,"
+                              "\"box\":{\"x\":[0,1],\"y\":[0,"
+                              "1],\"z\":[0,1]}}],\"walls\":[{\"box\":{\"x\":[0,1],\"y\":[0,1],"
+                              "\"z\":[0,null]}},{\"point\":"
+                              "[0,0,3],\"normal\":[0,0,-1]}]}";
+    test_append("a heap", heap, "warm", false);
+    test_append("with forces", heap, "forces", false);
+    test_append("a run that was killed", few, "contacts", true);
+    const char *path = path_of("parts.h5"), *other = path_of("other.h5"), *cut = path_of("cut.h5");
+    struct nsd_run *r = scene(few), *twin;
+    refuse(r, path, NSD_DATA, "has step 5 already, and the run is at step 0: remove it");
+    must(nsd_from_document(&twin, path), NULL);
+    refuse(twin, path, NSD_DATA, "has step 40 already, and the run is at step 40");
+    must(nsd_step(twin, 5), twin);
+    remove(other);
+    struct nsd_run *stranger = scene(heap);
+    must(nsd_append(stranger, other), stranger);
+    refuse(twin, other, NSD_OUTPUT, "is writing it");
+    must(nsd_finish(stranger), stranger);
+    refuse(twin, other, NSD_DATA, "belongs to another scene");
+    size_t n;
+    char *bytes = bytes_of(path, &n);
+    write_file(cut, bytes, n / 2);
+    refuse(twin, cut, NSD_DATA, "cut.h5");
+    for (size_t k = n / 2; k < n / 2 + 64; k++) bytes[k] = (char)(bytes[k] ^ 0x5a);
+    write_file(cut, bytes, n);
+    refuse(twin, cut, NSD_DATA, "cut.h5");
+    free(bytes);
+    write_file(cut, "my notes\n", 9);
+    refuse(twin, cut, NSD_DATA, "cut.h5");
+    const int32_t gone = 3;
+    must(nsd_remove(twin, 1, &gone), twin);
+    refuse(twin, path, NSD_DATA, "8 bodies, and the trajectory has 9");
+    must(nsd_append(stranger, path_of("fresh.h5")) || nsd_finish(stranger), stranger);
+    nsd_close(&r), nsd_close(&twin), nsd_close(&stranger);
 }
 
 /* Bodies as arrays are those of the scene. */
@@ -512,7 +603,11 @@ static void call(struct nsd_run **run)
         nsd_until(r, draw(2) ? x[0] * 1e-2 : x[0]);
         break;
     case 15:
-        if (!draw(12)) nsd_append(r, path_of(draw(2) ? "x.h5" : "y.h5"));
+        if (!draw(12)) {
+            const char *path = path_of(draw(2) ? "x.h5" : "y.h5");
+            if (draw(2)) remove(path);
+            nsd_append(r, path);
+        }
         break;
     case 16:
         if (!draw(12)) nsd_save(r, path_of("z.h5"));
@@ -552,7 +647,8 @@ int main(void)
 {
     if (!mkdtemp(folder)) return 1;
     test_forces(), test_top(), test_boundaries();
-    test_resume(), test_lasting(), test_arrays(), test_threads(), test_errors(), test_random();
+    test_resume(), test_lasting(), test_appends(), test_arrays(), test_threads(), test_errors(),
+        test_random();
     char command[100];
     snprintf(command, sizeof command, "rm -r %s", folder);
     if (system(command)) return 1;
