@@ -221,7 +221,7 @@ int nsd_append(struct nsd_run *r, const char *path)
     if (r->out && strcmp(r->path, path) != 0)
         return why_set(why, NSD_USAGE, "%.100s is not finished: nsd_finish() comes before another",
                        r->path);
-    if (r->out && r->other_bodies)
+    if (r->out && r->other_bodies && !packing_varies(&r->f.packing))
         return why_set(why, NSD_DATA,
                        "%.100s: bodies were added or removed since its first frame: "
                        "nsd_finish() ends it, and another one may begin",

@@ -126,17 +126,6 @@ int outside_tables_write(struct table_write *s, const struct frame *f, struct wh
 
 /* ---- from a document ---- */
 
-/* The row of the step; -1: none */
-static int64_t row_of(struct source *s, const char *path, int64_t step, struct why *why)
-{
-    int64_t n = 0;
-    if (!source_has(s, path)) return -1;
-    int64_t *steps = table_read_steps(s, path, &n, why);
-    int64_t row = steps ? table_read_row(steps, table_read_rising(steps, n), step) : -1;
-    free(steps);
-    return row;
-}
-
 static int read_boundaries(struct source *s, int64_t row, struct packing *p, struct why *why)
 {
     size_t n = (size_t)p->walls;
@@ -209,7 +198,7 @@ static void drop_vectors(vec3 **x, int64_t n)
 static int read_lasting(struct source *s, struct packing *p, struct why *why)
 {
     struct lasting *o = &p->outside.lasts;
-    int64_t start = 0, count = 0, row = row_of(s, LASTS "/step", p->step, why);
+    int64_t start = 0, count = 0, row = table_read_row_at(s, LASTS "/step", p->step, why);
     if (why->status || row < 0 || read_span(s, "lasting", row, p->n, &start, &count, why))
         return why->status;
     if (count && count != p->n)
@@ -247,7 +236,7 @@ int outside_tables_read(struct source *s, struct packing *p, struct why *why)
 {
     double g[3];
     if (read_lasting(s, p, why)) return why->status;
-    int64_t row = row_of(s, HOME "/step", p->step, why);
+    int64_t row = table_read_row_at(s, HOME "/step", p->step, why);
     if (why->status || row < 0) return why->status;
     if (source_rows(s, HOME "/gravity", COLUMN_F64, row, 1, 3, g, why) ||
         source_rows(s, HOME "/friction", COLUMN_F64, row, 1, (int64_t)p->kinds * p->kinds, p->mu,

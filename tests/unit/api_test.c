@@ -350,6 +350,74 @@ static void test_appends(void)
     nsd_close(&r), nsd_close(&twin), nsd_close(&stranger);
 }
 
+/* A body falls, is taken out, or both, as a function of the step. */
+static void come_and_go(struct nsd_run *r, int n, const char *path)
+{
+    for (int k = 0; k < n; k++) {
+        const int step = (int)number(r, "step");
+        const double x[3] = { -2, 0, 2.5 }, radius = 0.05;
+        const struct nsd_bodies one = {
+            .size = sizeof one, .n = 1, .position = x, .radius = &radius, .density = 1000
+        };
+        int32_t id;
+        if (step % 20 == 3) must(nsd_add(r, &one, &id), r);
+        if (step % 20 == 13) {
+            struct nsd_array ids = { .size = sizeof ids };
+            must(nsd_read(r, "id", &ids), r);
+            must(nsd_remove(r, 1, (const int32_t *)ids.data + ids.shape[0] / 2), r);
+        }
+        must(nsd_step(r, 1), r);
+        if (path && step % 5 == 4) must(nsd_append(r, path), r);
+    }
+}
+
+/* Scenes that pour and remove take bodies, and give them, too. */
+static void test_flow(void)
+{
+    static const char pours[] =
+        "{\"dt\":5e-3,\"walls\":[{\"point\":[0,0,-1],\"normal\":[0,0,1]}],\"density\":1000,"
+        "\"pour\":[{\"rate\":40,\"radius\":0.1,\"density\":1000,\"count\":30,\"opening\":{\"disc\":"
+        "{"
+        "\"center\":[0,0,3],\"normal\":[0,0,1],\"radius\":1}}}],"
+        "\"remove\":[{\"below\":{\"point\":[0,0,-0.5],\"normal\":[0,0,1]}}]}";
+    const char *whole = path_of("flow.h5"), *parts = path_of("flows.h5");
+    const char *a = path_of("flow_a.h5"), *b = path_of("flow_b.h5");
+    struct nsd_run *r = scene(pours), *half = scene(pours);
+    come_and_go(r, 200, whole);
+    must(nsd_save(r, a) || nsd_finish(r), r);
+    come_and_go(half, 90, parts);
+    must(nsd_finish(half), half);
+    nsd_close(&half);
+    must(nsd_from_document(&half, parts), NULL);
+    come_and_go(half, 110, parts);
+    must(nsd_save(half, b) || nsd_finish(half), half);
+    ok(same(r, half) && same_files(whole, parts),
+       "bodies that a program adds and removes where others are poured and removed: a trajectory "
+       "that goes on has the same bytes");
+    int64_t n;
+    struct nsd_array ids = { .size = sizeof ids };
+    must(nsd_read(r, "id", &ids), r);
+    n = ids.shape[0];
+    const int32_t *id = ids.data;
+    bool rising = n > 1;
+    for (int64_t i = 1; i < n; i++) rising = rising && id[i] > id[i - 1];
+    // 30 are poured, and 10 are added; 10 are taken out, and the scene removes what falls through
+    ok(rising && id[n - 1] < 40 && id[n - 1] >= 35, "each has a number of its own, in order");
+    struct nsd_run *plain = scene(pours), *gone = scene(pours);
+    const double x[3] = { -5, 0, 2.5 }, radius = 0.05;
+    const struct nsd_bodies one = {
+        .size = sizeof one, .n = 1, .position = x, .radius = &radius, .density = 1000
+    };
+    int32_t new;
+    must(nsd_step(plain, 30), plain);
+    must(nsd_step(gone, 10) || nsd_add(gone, &one, &new) || nsd_step(gone, 10) ||
+             nsd_remove(gone, 1, &new) || nsd_step(gone, 10),
+         gone);
+    ok(same(plain, gone),
+       "a body that comes and goes far away leaves the others' motion as it was");
+    nsd_close(&r), nsd_close(&half), nsd_close(&plain), nsd_close(&gone);
+}
+
 /* Bodies as arrays are those of the scene. */
 static void test_arrays(void)
 {
@@ -647,8 +715,8 @@ int main(void)
 {
     if (!mkdtemp(folder)) return 1;
     test_forces(), test_top(), test_boundaries();
-    test_resume(), test_lasting(), test_appends(), test_arrays(), test_threads(), test_errors(),
-        test_random();
+    test_resume(), test_lasting(), test_appends(), test_flow(), test_arrays(), test_threads(),
+        test_errors(), test_random();
     char command[100];
     snprintf(command, sizeof command, "rm -r %s", folder);
     if (system(command)) return 1;
