@@ -411,7 +411,8 @@ static bool advance(struct run *r, int64_t k, bool saves)
     bool last = is_last(p, p->step + 1, k);
     if (acts_begin(&r->acts, &f->packing, &why)) die_why(&why);
     r->o.bare = !loop_asks() && !options.log && !saves && !last && !is_kept(p, p->step + 1, k);
-    if (processes_step(f, &r->memory, r->other_bodies, &r->o, &why)) die_why(&why);
+    const struct changes changes = { r->other_bodies, loop_asks() || acts_any(&r->acts) };
+    if (processes_step(f, &r->memory, changes, &r->o, &why)) die_why(&why);
     f->reported = f->moved = true;
     count(rep);
     account(f);
@@ -635,8 +636,6 @@ int tool_main(int argc, char **argv)
     keep_memory();
     if (!processes_join()) return processes_follow();
     double asked = read_dt();
-    if (loop_asks() && processes_started())
-        die_usage("--with and --replay: one process alone, without mpirun");
     if (cli_given(&until) && cli_given(&steps)) die_usage("-n and --until exclude each other");
     if (save) parse_save();
     if (in_place && output) die_usage("-i and -o exclude each other");
@@ -647,7 +646,9 @@ int tool_main(int argc, char **argv)
     progress_lines(lines);
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
     reader_copies(in);
-    reader_hands_over(in, processes_take_bodies(contacts || forces));
+    // a program in the loop wants all bodies, and their contacts, in one place
+    struct distributed *others = processes_take_bodies(contacts || forces || loop_asks());
+    reader_hands_over(in, loop_asks() ? NULL : others);
     if (output && reader_reads(argc, argv, output))
         die_usage("%s: is also the input; -i appends to it", output);
     if (in_place)

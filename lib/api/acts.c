@@ -196,6 +196,11 @@ void acts_clear(struct acts *a, int32_t walls)
     for (int t = 0; t < ACTS_TERMS; t++) zero(a, t, walls);
 }
 
+bool acts_any(const struct acts *a)
+{
+    return a->id || a->push[ACTS_LASTING] || a->push[ACTS_ONCE];
+}
+
 int acts_force(struct acts *a, const struct packing *p, int32_t id, vec3 force, vec3 torque,
                enum acts_lasting term, struct why *why)
 {

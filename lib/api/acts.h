@@ -37,6 +37,9 @@ struct lasting acts_lend(const struct acts *acts, int32_t walls);
 /* Nothing acts any more. */
 void acts_clear(struct acts *acts, int32_t walls);
 
+/* May anything act? */
+bool acts_any(const struct acts *acts);
+
 /* The row of the body with this id; -1: there is none */
 int64_t acts_row(const struct packing *p, int32_t id);
 

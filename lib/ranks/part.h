@@ -61,6 +61,9 @@ double part_imbalance(struct part *y, const struct contacts *s);
 /* New cuts, by what was noted; bodies are dealt at the next part_deal(). */
 void part_recut(struct part *y);
 
+/* What a program does to the first rank's packing as a step begins. scattered: no rank has the bodies of whole, on
+   which nothing acts then. */
+void part_act(struct part *y, const struct packing *whole, bool scattered);
 /* Where bodies are and how they move, of the first rank's whole packing; and the same back */
 void part_follow(struct part *y, const struct packing *whole);
 void part_collect(const struct part *y, struct packing *whole);
