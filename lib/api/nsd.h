@@ -139,6 +139,9 @@ int nsd_force(struct nsd_run *run, int32_t id, const double force[3], const doub
 int nsd_boundary_force(struct nsd_run *run, int32_t boundary, double force, enum nsd_term term);
 /* m/s: what is prescribed of its motion from now on */
 int nsd_boundary_velocity(struct nsd_run *run, int32_t boundary, const double velocity[3]);
+/* m/s, rad/s, in space: of the body with this id, in place of what they are; NULL: as it is */
+int nsd_velocity(struct nsd_run *run, int32_t id, const double velocity[3],
+                 const double angular_velocity[3]);
 int nsd_gravity(struct nsd_run *run, const double gravity[3]); /* m/s^2 */
 /* Between two kinds of material, by their names */
 int nsd_friction(struct nsd_run *run, const char *kind, const char *other, double mu);

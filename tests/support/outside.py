@@ -87,6 +87,12 @@ for options in ({}, {"contacts": True}, {"forces": True, "eps": 1e-6, "criterion
         again.append(path("mine.h5"))
     ok([frame.step for frame in nsd.frames(path("mine.h5"))] == [20, 40, 60, 80], f"one that has not is: {options}")
 
+with nsd.Run.from_document(path("last.h5")) as run:
+    run.throw(3, angular_velocity=[0, 0, 2])
+    run.throw(4, [0.1, 0, 0])
+    ok((run.angular_velocity[3] == [0, 0, 2]).all() and (run.velocity[4] == [0.1, 0, 0]).all(), "bodies that are thrown")
+    ok(raises(nsd.Error, "is not finite", lambda: run.throw(3, [0, np.nan, 0])), "not to nowhere")
+
 # ---- forces that last ----
 
 with nsd.Run.from_document(path("last.h5")) as run:

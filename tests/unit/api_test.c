@@ -117,6 +117,24 @@ static void test_top(void)
     nsd_close(&r);
 }
 
+static void test_velocities(void)
+{
+    struct nsd_run *r = scene(free_bodies);
+    const double *x = array(r, "position", NULL), *v = array(r, "velocity", NULL);
+    const double *w = array(r, "angular_velocity", NULL);
+    const double u[3] = { 3, 0, 1 }, spin[3] = { 0, 0, 5 }, bad[3] = { 0, NAN, 0 };
+    must(nsd_step(r, 50) || nsd_velocity(r, 0, u, spin) || nsd_velocity(r, 2, u, NULL) ||
+             nsd_step(r, 100),
+         r);
+    ok(close_to(v[0], 3) && close_to(v[2], 1 - 2 * 0.1) && close_to(x[0], 0.3) && close_to(w[2], 5),
+       "a velocity that is given: v = u + g t");
+    ok(v[6] == 3 && close_to(x[6], 18.3), "a fixed body keeps it");
+    ok(nsd_velocity(r, 0, spin, bad) == NSD_DATA && v[0] == 3 && w[2] == 5 &&
+           nsd_velocity(r, 9, u, NULL) == NSD_DATA && nsd_velocity(NULL, 0, u, u) == NSD_USAGE,
+       "one that is not finite, or of no body, leaves all as it was");
+    nsd_close(&r);
+}
+
 static void test_boundaries(void)
 {
     struct nsd_run *r =
@@ -243,6 +261,7 @@ static void test_lasting(void)
            close_to(u[2], -4 * 0.02 / 2),
        "a run that is resumed goes on with the forces that last: v = F t/m");
     ok(same(r, rest), "and that is what the run itself does, bit for bit");
+    nsd_close(&rest);
     must(nsd_from_document(&rest, a), NULL);
     must(nsd_force(rest, 1, none, none, NSD_LASTING) ||
              nsd_boundary_force(rest, 0, 0, NSD_LASTING) || nsd_save(rest, b),
@@ -623,7 +642,10 @@ static void call(struct nsd_run **run)
                             .mass = draw(3) ? NULL : x + 2,
                             .density = some(),
                             .kind = draw(3) ? NULL : id };
-    switch (draw(20)) {
+    switch (draw(21)) {
+    case 19:
+        nsd_velocity(r, id[0], draw(3) ? x : NULL, draw(3) ? x + 3 : NULL);
+        break;
     case 0:
         nsd_step(r, draw(4));
         break;
@@ -714,7 +736,7 @@ static void test_random(void)
 int main(void)
 {
     if (!mkdtemp(folder)) return 1;
-    test_forces(), test_top(), test_boundaries();
+    test_forces(), test_velocities(), test_top(), test_boundaries();
     test_resume(), test_lasting(), test_appends(), test_flow(), test_arrays(), test_threads(),
         test_errors(), test_random();
     char command[100];
