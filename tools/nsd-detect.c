@@ -67,6 +67,8 @@ static void detect(struct frame *f, const char *where)
     options_theta(&f->packing, false);
     options_overlap(&f->packing, false);
     flow(&f->packing);
+    struct packing *p = &f->packing;
+    if (outside_begin(&p->outside, p->mass, p->n, p->walls, &why)) die_why(&why);
     packing_wrap(&f->packing, NULL);
     if (detect_contacts(&f->contacts, &f->packing, options.gap, NULL, &why)) die_why(&why);
     f->detected = true, f->reported = f->moved = false;

@@ -310,12 +310,23 @@ static bool save_due(const struct run *r)
     return r->save_path && seconds_now() - r->saved >= save_every;
 }
 
+/* The frame with the forces that last, borrowed: those of a document. What a program answers is kept as it said it. */
+static struct frame with_forces(struct run *r)
+{
+    struct why why = { 0 };
+    struct frame f = r->f;
+    if (loop_asks() || !steps) return f;
+    if (r->acts.id && acts_arrays(&r->acts, &r->f.packing, &why)) die_why(&why);
+    f.packing.outside.lasts = acts_lend(&r->acts, f.packing.walls);
+    return f;
+}
+
 /* The state as a document of its own, which takes the place of the one before in one stroke */
 static void save_state(struct run *r)
 {
     struct why why = { 0 };
     struct writer *out;
-    struct frame f = r->f;
+    struct frame f = with_forces(r);
     f.detected = f.detected || options.warm; // a warm step begins with these
     bool background = r->background;
     if (background_close(r->background, &why)) die_why(&why); // libhdf5 has one user at a time
@@ -400,7 +411,8 @@ static bool advance(struct run *r, int64_t k, bool saves)
     bool last = is_last(p, p->step + 1, k);
     if (acts_begin(&r->acts, &f->packing, &why)) die_why(&why);
     r->o.bare = !loop_asks() && !options.log && !saves && !last && !is_kept(p, p->step + 1, k);
-    if (processes_step(f, &r->memory, r->other_bodies, &r->o, &why)) die_why(&why);
+    const struct changes changes = { r->other_bodies, loop_asks() || acts_any(&r->acts) };
+    if (processes_step(f, &r->memory, changes, &r->o, &why)) die_why(&why);
     f->reported = f->moved = true;
     count(rep);
     account(f);
@@ -412,8 +424,9 @@ static bool advance(struct run *r, int64_t k, bool saves)
 static void write_frame(struct run *r)
 {
     struct why why = { 0 };
-    if ((r->background ? background_frame(r->background, &r->f, &why)
-                       : writer_frame(r->out, &r->f, &why)))
+    const struct frame f = with_forces(r);
+    if ((r->background ? background_frame(r->background, &f, &why)
+                       : writer_frame(r->out, &f, &why)))
         die_why(&why);
     r->f.packing.events.n = r->f.packing.outside.length = 0; // they are written
 }
@@ -444,6 +457,7 @@ static void begin(struct run *r)
     if (f->packing.outside.length && !loop_asks())
         warn("a program (--with) acted on the run so far, and nothing acts on it now: --with or "
              "--replay");
+    if (acts_take(&r->acts, &f->packing, &why)) die_why(&why);
     outside_forget(&f->packing.outside);
     report_free(&f->report);
     f->report.options = options_json(&r->o);
@@ -460,7 +474,8 @@ static int64_t run(struct run *r)
     struct why why = { 0 };
     begin(r);
     // where there is no other thread, this one writes; and with others, who have the bodies
-    if (options.threads > 1 && steps && !r->f.distributed)
+    // and beside a program in the loop, which may want documents
+    if (options.threads > 1 && steps && !r->f.distributed && !loop_asks())
         background_open(&r->background, r->out, &(struct why){ 0 });
     bool ends = !steps;
     while (!ends) {
@@ -621,8 +636,6 @@ int tool_main(int argc, char **argv)
     keep_memory();
     if (!processes_join()) return processes_follow();
     double asked = read_dt();
-    if (loop_asks() && processes_started())
-        die_usage("--with and --replay: one process alone, without mpirun");
     if (cli_given(&until) && cli_given(&steps)) die_usage("-n and --until exclude each other");
     if (save) parse_save();
     if (in_place && output) die_usage("-i and -o exclude each other");
@@ -633,7 +646,9 @@ int tool_main(int argc, char **argv)
     progress_lines(lines);
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
     reader_copies(in);
-    reader_hands_over(in, processes_take_bodies(contacts || forces));
+    // a program in the loop wants all bodies, and their contacts, in one place
+    struct distributed *others = processes_take_bodies(contacts || forces || loop_asks());
+    reader_hands_over(in, loop_asks() ? NULL : others);
     if (output && reader_reads(argc, argv, output))
         die_usage("%s: is also the input; -i appends to it", output);
     if (in_place)

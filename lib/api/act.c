@@ -40,6 +40,20 @@ int nsd_boundary_velocity(struct nsd_run *r, int32_t boundary, const double velo
     return acts_velocity(&r->f.packing, boundary, of(velocity), why);
 }
 
+int nsd_velocity(struct nsd_run *r, int32_t id, const double velocity[3],
+                 const double angular_velocity[3])
+{
+    struct why *why = run_why(r);
+    if (!why) return NSD_USAGE;
+    struct packing *p = &r->f.packing;
+    int64_t i = acts_row(p, id);
+    if (i < 0) return why_set(why, NSD_DATA, "there is no body %d", id);
+    const vec3 had = p->v[i];
+    if (velocity && acts_motion(p, i, false, of(velocity), why)) return why->status;
+    if (angular_velocity && acts_motion(p, i, true, of(angular_velocity), why)) p->v[i] = had;
+    return why->status;
+}
+
 int nsd_gravity(struct nsd_run *r, const double gravity[3])
 {
     struct why *why = run_why(r);

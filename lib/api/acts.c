@@ -89,24 +89,59 @@ int acts_arrays(struct acts *a, const struct packing *p, struct why *why)
     return 0;
 }
 
-/* sum[n] = what lasts and what acts once, as far as there is any; are all numbers finite? */
-static bool add(vec3 *sum, vec3 *const term[ACTS_TERMS], const bool is[ACTS_TERMS], int64_t n)
+static bool any_number(const void *numbers, int64_t n)
+{
+    const double *x = numbers;
+    for (int64_t i = 0; x && i < n; i++)
+        if (x[i] != 0) return true;
+    return false;
+}
+
+/* sum[n] = what lasts and what acts once; are all numbers finite? */
+static bool add_both(vec3 *sum, const vec3 *lasting, const vec3 *once, int64_t n)
 {
     double *s = (double *)sum;
-    const double *x = (const double *)term[is[ACTS_LASTING] ? ACTS_LASTING : ACTS_ONCE];
-    const double *y = (const double *)term[ACTS_ONCE];
-    const bool both = is[ACTS_LASTING] && is[ACTS_ONCE];
+    const double *x = (const double *)lasting, *y = (const double *)once;
     int bad = 0;
     for (int64_t i = 0; i < 3 * n; i++) { // a loop for vectors of the processor
-        s[i] = both ? x[i] + y[i] : x[i];
+        s[i] = x[i] + y[i];
         bad |= !(fabs(s[i]) <= DBL_MAX);
     }
     return !bad;
 }
 
-static bool any(const bool is[ACTS_TERMS])
+/* sum[n] = x, whose squares over those of mass[n] are at most *most^2; are all squares finite? In one pass: it costs what
+   memory takes */
+static bool copy(vec3 *sum, const vec3 *x, const double *mass, int64_t n, double *most)
 {
-    return is[ACTS_ONCE] || is[ACTS_LASTING];
+    int bad = 0;
+    double most2 = 0;
+    for (int64_t i = 0; i < n; i++) {
+        double f2 = v3_dot(x[i], x[i]), m2 = mass[i] * mass[i];
+        sum[i] = x[i];
+        bad |= !(f2 <= DBL_MAX);
+        if (m2 > 0 && f2 > most2 * m2) most2 = f2 / m2;
+    }
+    *most = sqrt(most2);
+    return !bad;
+}
+
+/* *sum = the terms that may be other than 0, added; NULL: none is. *good becomes false where a number, or its square, is not
+   finite. *most: as outside.most, had this mass; -1: not found */
+static int sum_terms(vec3 **sum, vec3 *const term[ACTS_TERMS], const bool may[ACTS_TERMS],
+                     const struct packing *p, double *most, bool *good, struct why *why)
+{
+    const int64_t n = p->n;
+    bool is[ACTS_TERMS];
+    for (int t = 0; t < ACTS_TERMS; t++) is[t] = may[t] && any_number(term[t], 3 * n);
+    if (!is[ACTS_LASTING] && !is[ACTS_ONCE]) return free(*sum), *sum = NULL, 0;
+    if (outside_alloc(sum, n, why)) return why->status;
+    const vec3 *x = term[is[ACTS_LASTING] ? ACTS_LASTING : ACTS_ONCE], *y = term[ACTS_ONCE];
+    const bool both = is[ACTS_LASTING] && is[ACTS_ONCE];
+    bool finite = both ? add_both(*sum, x, y, n) : copy(*sum, x, p->mass, n, most);
+    if (both) *most = -1;
+    *good = *good && finite;
+    return 0;
 }
 
 /* The sums of the bodies' forces, which are all to be finite */
@@ -114,12 +149,10 @@ static int sum_forces(const struct acts *a, struct packing *p, struct why *why)
 {
     struct outside *o = &p->outside;
     bool good = true;
-    if (any(a->pushes))
-        good = !outside_alloc(&o->force, p->n, why) && add(o->force, a->force, a->pushes, p->n);
-    if (any(a->twists))
-        good = !outside_alloc(&o->torque, p->n, why) &&
-               add(o->torque, a->torque, a->twists, p->n) && good;
-    if (why->status) return why->status;
+    double most = 0, of_torque;
+    if (sum_terms(&o->force, a->force, a->pushes, p, &most, &good, why) ||
+        sum_terms(&o->torque, a->torque, a->twists, p, &of_torque, &good, why))
+        return why->status;
     for (int64_t i = 0; i < p->n && (!good || p->dim == 2); i++) {
         vec3 f = o->force ? o->force[i] : v3(0, 0, 0), m = o->torque ? o->torque[i] : v3(0, 0, 0);
         if (!v3_finite(f) || !v3_finite(m))
@@ -130,7 +163,8 @@ static int sum_forces(const struct acts *a, struct packing *p, struct why *why)
                            "the force or torque of body %d leaves the plane, and dim is 2",
                            p->id[i]);
     }
-    outside_measure(o, p->mass, p->n);
+    o->most = most;
+    if (most < 0) outside_measure(o, p->mass, p->n);
     return 0;
 }
 
@@ -145,6 +179,30 @@ int acts_begin(struct acts *a, struct packing *p, struct why *why)
         for (int t = 0; t < ACTS_TERMS; t++) o->push[w] += a->push[t] ? a->push[t][w] : 0;
     }
     return 0;
+}
+
+int acts_take(struct acts *a, struct packing *p, struct why *why)
+{
+    struct lasting *s = &p->outside.lasts;
+    const size_t n = (size_t)p->n;
+    if ((s->force || s->torque) && acts_arrays(a, p, why)) return why->status;
+    if (s->force) memcpy(a->force[ACTS_LASTING], s->force, n * sizeof *s->force);
+    if (s->torque) memcpy(a->torque[ACTS_LASTING], s->torque, n * sizeof *s->torque);
+    a->pushes[ACTS_LASTING] = s->force, a->twists[ACTS_LASTING] = s->torque;
+    free(a->push[ACTS_LASTING]), free(s->force), free(s->torque);
+    a->push[ACTS_LASTING] = s->push;
+    *s = (struct lasting){ 0 };
+    return 0;
+}
+
+struct lasting acts_lend(const struct acts *a, int32_t walls)
+{
+    const int t = ACTS_LASTING;
+    return (struct lasting){
+        .force = a->pushes[t] && any_number(a->force[t], 3 * a->n) ? a->force[t] : NULL,
+        .torque = a->twists[t] && any_number(a->torque[t], 3 * a->n) ? a->torque[t] : NULL,
+        .push = any_number(a->push[t], walls) ? a->push[t] : NULL
+    };
 }
 
 static void zero(struct acts *a, int term, int32_t walls)
@@ -162,6 +220,11 @@ void acts_end(struct acts *a, int32_t walls)
 void acts_clear(struct acts *a, int32_t walls)
 {
     for (int t = 0; t < ACTS_TERMS; t++) zero(a, t, walls);
+}
+
+bool acts_any(const struct acts *a)
+{
+    return a->id || a->push[ACTS_LASTING] || a->push[ACTS_ONCE];
 }
 
 int acts_force(struct acts *a, const struct packing *p, int32_t id, vec3 force, vec3 torque,
@@ -233,6 +296,17 @@ int acts_velocity(struct packing *p, int64_t wall, vec3 v, struct why *why)
                        (long long)wall);
     }
     p->outside.steered = true;
+    return 0;
+}
+
+int acts_motion(struct packing *p, int64_t i, bool turns, vec3 v, struct why *why)
+{
+    bool leaves = p->dim == 2 && (turns ? v.x != 0 || v.y != 0 : v.z != 0);
+    if (!v3_finite(v) || leaves)
+        return why_set(why, EX_DATAERR, "the %s of body %d %s",
+                       turns ? "angular velocity" : "velocity", p->id[i],
+                       leaves ? "leaves the plane, and dim is 2" : "is not finite");
+    (turns ? p->w : p->v)[i] = v;
     return 0;
 }
 

@@ -30,8 +30,15 @@ int acts_arrays(struct acts *acts, const struct packing *p, struct why *why);
 int acts_begin(struct acts *acts, struct packing *p, struct why *why);
 /* It has been made: what acts in one step does so no more. */
 void acts_end(struct acts *acts, int32_t walls);
+/* What lasts is that of a document in p, which gives it away. Returns 0 or EX_SOFTWARE. */
+int acts_take(struct acts *acts, struct packing *p, struct why *why);
+/* What of it documents of p keep, borrowed from acts, whose arrays are those of p's bodies */
+struct lasting acts_lend(const struct acts *acts, int32_t walls);
 /* Nothing acts any more. */
 void acts_clear(struct acts *acts, int32_t walls);
+
+/* May anything act? */
+bool acts_any(const struct acts *acts);
 
 /* The row of the body with this id; -1: there is none */
 int64_t acts_row(const struct packing *p, int32_t id);
@@ -44,6 +51,8 @@ int acts_push(struct acts *acts, const struct packing *p, int64_t wall, double f
               enum acts_lasting term, struct why *why);
 /* m/s: its prescribed velocity from now on; it goes on from where it is. EX_DATAERR: it turns. */
 int acts_velocity(struct packing *p, int64_t wall, vec3 v, struct why *why);
+/* m/s, rad/s: the velocity, or the angular velocity, of the body in row i */
+int acts_motion(struct packing *p, int64_t i, bool turns, vec3 v, struct why *why);
 int acts_gravity(struct packing *p, vec3 g, struct why *why);
 /* Between two kinds of material, by their names */
 int acts_friction(struct packing *p, const char *a, const char *b, double mu, struct why *why);

@@ -49,38 +49,56 @@ static int64_t whole(const char *text)
     return end == text || *end || errno || n < 0 || n > INT32_MAX ? -1 : n;
 }
 
-static int set(struct acts *acts, bool torque, const struct packing *p, int64_t i, const json_t *x,
+/* What an answer has of each body */
+enum part { FORCES, TORQUES, VELOCITIES, SPINS, PARTS };
+static const char *const part_name[PARTS] = { "forces", "torques", "velocities",
+                                              "angular_velocities" };
+
+static int set(struct acts *acts, enum part part, struct packing *p, int64_t i, const json_t *j,
                struct why *why)
 {
+    vec3 x;
+    if (!vector(j, p->dim, &x))
+        return why_set(why, EX_DATAERR, "the answer's %s are vectors [x, y, z]", part_name[part]);
+    if (part == VELOCITIES || part == SPINS) return acts_motion(p, i, part == SPINS, x, why);
+    bool torque = part == TORQUES;
     (torque ? acts->twists : acts->pushes)[ACTS_LASTING] = true;
-    vec3 *at = &(torque ? acts->torque : acts->force)[ACTS_LASTING][i];
-    return vector(x, p->dim, at) ? 0 : wrong(why, "forces and torques are vectors [x, y, z]");
+    (torque ? acts->torque : acts->force)[ACTS_LASTING][i] = x;
+    return 0;
 }
 
 /* Of all bodies in their order, or of those with these ids */
-static int set_all(const json_t *j, struct acts *acts, bool torque, const struct packing *p,
+static int set_all(const json_t *j, struct acts *acts, enum part part, struct packing *p,
                    struct why *why)
 {
     const char *id;
     json_t *x;
     if (!j) return 0;
     if (json_is_array(j) && json_array_size(j) != (size_t)p->n)
-        return why_set(why, EX_DATAERR,
-                       "the answer has %zu forces or torques, and there are %lld bodies",
-                       json_array_size(j), (long long)p->n);
+        return why_set(why, EX_DATAERR, "the answer has %zu %s, and there are %lld bodies",
+                       json_array_size(j), part_name[part], (long long)p->n);
     if (!json_is_array(j) && !json_is_object(j))
-        return wrong(why, "forces and torques are an array, or an object by ids");
+        return why_set(why, EX_DATAERR, "the answer's %s are an array, or an object by ids",
+                       part_name[part]);
     for (size_t i = 0; json_is_array(j) && i < json_array_size(j); i++)
-        if (set(acts, torque, p, (int64_t)i, json_array_get(j, i), why)) return why->status;
+        if (set(acts, part, p, (int64_t)i, json_array_get(j, i), why)) return why->status;
     json_object_foreach((json_t *)j, id, x)
     {
         int64_t number = whole(id), i = number < 0 ? -1 : acts_row(p, (int32_t)number);
         if (i < 0)
             return why_set(why, EX_DATAERR,
-                           "the answer has a force for body '%.40s', which is not there", id);
-        if (set(acts, torque, p, i, x, why)) return why->status;
+                           "the answer has %s of body '%.40s', which does not exist",
+                           part_name[part], id);
+        if (set(acts, part, p, i, x, why)) return why->status;
     }
     return 0;
+}
+
+static bool is_part(const char *key)
+{
+    for (int k = 0; k < PARTS; k++)
+        if (!strcmp(key, part_name[k])) return true;
+    return false;
 }
 
 static int set_boundary(const json_t *j, struct acts *acts, struct packing *p, int64_t wall,
@@ -134,16 +152,16 @@ static int set_frictions(const json_t *j, struct packing *p, struct why *why)
 int answer_apply(const json_t *answer, struct acts *acts, struct packing *p, bool *stop,
                  struct why *why)
 {
-    const json_t *forces = json_object_get(answer, "forces");
-    const json_t *torques = json_object_get(answer, "torques");
     const char *key;
     json_t *x;
     vec3 g;
     *stop = false;
-    if ((forces || torques) && acts_arrays(acts, p, why)) return why->status;
+    bool forces = json_object_get(answer, "forces") || json_object_get(answer, "torques");
+    if (forces && acts_arrays(acts, p, why)) return why->status;
     acts_clear(acts, p->walls);
-    if (set_all(forces, acts, false, p, why) || set_all(torques, acts, true, p, why))
-        return why->status;
+    for (int k = 0; k < PARTS; k++)
+        if (set_all(json_object_get(answer, part_name[k]), acts, (enum part)k, p, why))
+            return why->status;
     json_object_foreach((json_t *)answer, key, x)
     {
         if (!strcmp(key, "boundaries")) {
@@ -156,10 +174,10 @@ int answer_apply(const json_t *answer, struct acts *acts, struct packing *p, boo
         } else if (!strcmp(key, "stop")) {
             if (!json_is_boolean(x)) return wrong(why, "stop is true or false");
             *stop = json_is_true(x);
-        } else if (strcmp(key, "forces") != 0 && strcmp(key, "torques") != 0) {
+        } else if (!is_part(key)) {
             why_set(why, EX_DATAERR,
-                    "the answer has no '%.40s': it has forces, torques, boundaries, gravity, "
-                    "friction, stop",
+                    "the answer has no '%.40s': it has forces, torques, velocities, "
+                    "angular_velocities, boundaries, gravity, friction, stop",
                     key);
         }
         if (why->status) return why->status;

@@ -3,10 +3,12 @@
  *
  *   { "forces":  { ID: [x, y, z], ... } or [[x, y, z], ...],     N, of bodies by their ids, or of all in their order
  *     "torques": likewise,                                       N m
+ *     "velocities", "angular_velocities": likewise,              m/s, rad/s
  *     "boundaries": { NUMBER: { "velocity": [x, y, z], "force": N }, ... },
  *     "gravity": [x, y, z], "friction": [[KIND, KIND, mu], ...], "stop": true }
  *
- * or the word stop. Forces act until the next answer, all else until it is changed.
+ * or the word stop. Forces act until the next answer, all else until it is changed. A document that is answered becomes
+ * such an object.
  */
 #ifndef NSD_ANSWER_H
 #define NSD_ANSWER_H
@@ -15,11 +17,20 @@
 
 #include <jansson.h>
 
+struct frame;
+
 /* The JSON of a line, to be freed; NULL: it is none of these (EX_DATAERR), or no memory */
 json_t *answer_parse(const char *line, size_t length, struct why *why);
 /* Does it as the packing's next step is to begin. *stop: the run is to end before it. Returns 0, EX_DATAERR or EX_SOFTWARE,
    where some of it may be done. */
 int answer_apply(const json_t *answer, struct acts *acts, struct packing *p, bool *stop,
                  struct why *why);
+
+/*
+ * The answer that makes of p what the frame is: its velocities, angular velocities, gravity, friction and velocities of
+ * boundaries where they differ, and its forces that last. To be freed; NULL: the frame differs in something else, or is of
+ * another moment (EX_DATAERR), or no memory
+ */
+json_t *answer_of_frame(const struct frame *frame, const struct packing *p, struct why *why);
 
 #endif

@@ -38,20 +38,33 @@ static int add_images(struct packing *p, int64_t n, struct why *why)
     return 0;
 }
 
+/* Bodies that pours have brought */
+static int64_t poured(const struct packing *p)
+{
+    int64_t n = 0;
+    for (int32_t k = 0; k < p->pours; k++) n += p->poured[k].bodies;
+    return n;
+}
+
+/* No body had it, and no pour has brought it. */
+static int64_t next_id(const struct nsd_run *r)
+{
+    const struct packing *p = &r->f.packing;
+    const int64_t of_pours = p->first_id + poured(p);
+    return of_pours > r->next_id ? of_pours : r->next_id;
+}
+
 static int check(const struct nsd_run *r, const struct nsd_bodies *b, struct why *why)
 {
     if (!b || b->size < sizeof *b)
         return why_set(why, NSD_USAGE, "bodies: size is not that of struct nsd_bodies");
-    if (b->n < 0 || b->n > INT32_MAX - r->next_id)
-        return why_set(why, NSD_DATA, "bodies: %lld of them, and there are numbers for %d",
-                       (long long)b->n, INT32_MAX - r->next_id);
+    if (b->n < 0 || b->n > INT32_MAX - next_id(r))
+        return why_set(why, NSD_DATA, "bodies: %lld of them, and there are numbers for %lld",
+                       (long long)b->n, (long long)(INT32_MAX - next_id(r)));
     if (b->n && (!b->position || !b->radius))
         return why_set(why, NSD_USAGE, "bodies: they have no position or no radius");
     if (b->n && !b->mass && !(b->density > 0 && isfinite(b->density)))
         return why_set(why, NSD_DATA, "bodies: neither a mass nor a density above 0");
-    if (packing_varies(&r->f.packing))
-        return why_set(why, NSD_USAGE,
-                       "bodies: the scene pours or removes bodies itself, and numbers them");
     return 0;
 }
 
@@ -59,7 +72,7 @@ int run_add(struct nsd_run *r, const struct nsd_bodies *b, int32_t *id, struct w
 {
     struct packing p;
     struct contacts s;
-    const int64_t had = r->f.packing.n;
+    const int64_t had = r->f.packing.n, first = next_id(r);
     if (check(r, b, why) || packing_copy(&p, &r->f.packing, why)) return why->status;
     if (contacts_copy(&s, &r->f.contacts)) {
         packing_free(&p);
@@ -67,15 +80,16 @@ int run_add(struct nsd_run *r, const struct nsd_bodies *b, int32_t *id, struct w
     }
     if (!add_images(&p, had + b->n, why) && !packing_resize(&p, had + b->n, why)) {
         for (int64_t k = 0; k < b->n; k++) {
-            p.id[had + k] = r->next_id + (int32_t)k;
+            p.id[had + k] = (int32_t)(first + k);
             set(&p, had + k, b, k);
         }
         packing_check(&p, why);
     }
     if (why->status) return packing_free(&p), contacts_free(&s), why->status;
     for (int64_t k = 0; k < b->n && id; k++) id[k] = p.id[had + k];
-    r->next_id += (int32_t)b->n;
-    if (p.first_id < r->next_id) p.first_id = r->next_id;
+    r->next_id = (int32_t)(first + b->n);
+    const int64_t of_pours = r->next_id - poured(&p); // pours go on after the new ones
+    if (p.first_id < of_pours) p.first_id = (int32_t)of_pours;
     if (b->n) return run_replace(r, &p, &s), 0;
     return packing_free(&p), contacts_free(&s), 0;
 }
@@ -111,9 +125,6 @@ int nsd_remove(struct nsd_run *r, int64_t n, const int32_t *id)
     if (!why) return NSD_USAGE;
     if (n < 0 || (n && !id)) return why_set(why, NSD_USAGE, "there are no numbers of bodies");
     if (!n) return 0;
-    if (packing_varies(&r->f.packing))
-        return why_set(why, NSD_USAGE,
-                       "bodies: the scene pours or removes bodies itself, and counts them");
     int32_t *row = malloc(((size_t)r->f.packing.n + 1) * sizeof *row);
     if (!row) return why_set(why, NSD_SOFTWARE, "no memory to remove bodies");
     if (!find_rows(&r->f.packing, n, id, row, why) && !packing_copy(&p, &r->f.packing, why)) {

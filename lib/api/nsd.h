@@ -139,6 +139,9 @@ int nsd_force(struct nsd_run *run, int32_t id, const double force[3], const doub
 int nsd_boundary_force(struct nsd_run *run, int32_t boundary, double force, enum nsd_term term);
 /* m/s: what is prescribed of its motion from now on */
 int nsd_boundary_velocity(struct nsd_run *run, int32_t boundary, const double velocity[3]);
+/* m/s, rad/s, in space: of the body with this id, in place of what they are; NULL: as it is */
+int nsd_velocity(struct nsd_run *run, int32_t id, const double velocity[3],
+                 const double angular_velocity[3]);
 int nsd_gravity(struct nsd_run *run, const double gravity[3]); /* m/s^2 */
 /* Between two kinds of material, by their names */
 int nsd_friction(struct nsd_run *run, const char *kind, const char *other, double mu);
@@ -153,8 +156,9 @@ int nsd_remove(struct nsd_run *run, int64_t n, const int32_t *id);
 int nsd_note(struct nsd_run *run, const char *line);
 /* A document of this moment, in place of what there is at `path` */
 int nsd_save(struct nsd_run *run, const char *path);
-/* One more frame of the trajectory at `path`, which the first call begins in place of what there is, and nsd_finish()
-   ends. One at a time */
+/* One more frame of the trajectory at `path`, which the first call begins, or goes on with where there is a file, and
+   nsd_finish() ends. One at a time. NSD_DATA: the file belongs to another scene, has this step or a later one already, or is
+   damaged; NSD_OUTPUT: another program or run is writing it */
 int nsd_append(struct nsd_run *run, const char *path);
 int nsd_finish(struct nsd_run *run);
 

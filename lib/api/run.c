@@ -1,11 +1,10 @@
-#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): memfd_create
 /* api/run.c: a run: made, set, stepped and closed. */
 #include "api/run.h"
 
+#include "api/document.h"
 #include "base/guest.h"
 #include "base/team.h"
 #include "import/scene_file.h"
-#include "io/reader.h"
 #include "motion/adapt.h"
 #include "problem/err.h"
 #include "scene/scene_build.h"
@@ -20,8 +19,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 /* ---- reasons ---- */
 
@@ -91,6 +88,7 @@ static int begin(struct nsd_run *r, struct why *why)
 {
     struct packing *p = &r->f.packing;
     p->events.n = 0; // they belong to the frame that was read
+    if (acts_take(&r->acts, p, why)) return why->status;
     outside_forget(&p->outside);
     if (flow_read(&r->flow, p, why)) return r->flow = (struct flow){ 0 }, why->status;
     for (int64_t i = 0; i < p->n; i++)
@@ -148,23 +146,6 @@ int nsd_from_scene_file(struct nsd_run **run, const char *path)
     return done(run, r, why);
 }
 
-static int read_last(struct nsd_run *r, char *path, struct why *why)
-{
-    struct reader *in;
-    bool more = false;
-    run_lock();
-    if (!reader_open(&in, 1, &path, why)) {
-        reader_copies(in);
-        if (!reader_last(in, &r->f, &more, why) && !more)
-            why_set(why, NSD_DATA, "%.200s: no frame to start from", path);
-        if (!why->status && !r->f.packed)
-            why_set(why, NSD_DATA, "%.200s: an FCLIB problem has no bodies", path);
-    }
-    reader_close(in);
-    run_unlock();
-    return why->status;
-}
-
 int nsd_from_document(struct nsd_run **run, const char *path)
 {
     struct why *why = run_why_of_thread();
@@ -172,52 +153,21 @@ int nsd_from_document(struct nsd_run **run, const char *path)
     if (!path || !strcmp(path, "-"))
         return why_set(why, NSD_USAGE, "a document has a path; standard input is the program's");
     struct nsd_run *r = new_run(why);
-    char *copy = r ? strdup(path) : NULL;
-    if (r && !copy) why_set(why, NSD_SOFTWARE, "no memory for a path");
-    if (copy) read_last(r, copy, why);
-    free(copy);
+    run_lock();
+    if (r) document_read_file(&r->f, path, why);
+    run_unlock();
     return done(run, r, why);
-}
-
-/* All bytes into a file in memory; its descriptor, or -1 */
-static int to_file(const void *bytes, size_t size)
-{
-    int fd = memfd_create("document", MFD_CLOEXEC);
-    const char *at = bytes;
-    while (fd >= 0 && size > 0) {
-        ssize_t n = write(fd, at, size);
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) return close(fd), -1;
-        at += n, size -= (size_t)n;
-    }
-    return fd;
-}
-
-/* In messages it is no file. */
-static void name_memory(struct why *why, const char *path)
-{
-    char text[sizeof why->text];
-    size_t n = strlen(path);
-    char *at = strstr(why->text, path);
-    if (!at) return;
-    snprintf(text, sizeof text, "%.*sthe document%s", (int)(at - why->text), why->text, at + n);
-    snprintf(why->text, sizeof why->text, "%s", text);
 }
 
 int nsd_from_memory(struct nsd_run **run, const void *document, size_t size)
 {
     struct why *why = run_why_of_thread();
-    char path[40];
     *run = NULL;
     if (!document) return why_set(why, NSD_USAGE, "there is no document");
     struct nsd_run *r = new_run(why);
-    int fd = r ? to_file(document, size) : -1;
-    if (r && fd < 0) why_set(why, NSD_SOFTWARE, "no memory for a document");
-    snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
-    if (fd >= 0) {
-        if (read_last(r, path, why)) name_memory(why, path);
-        close(fd);
-    }
+    run_lock();
+    if (r) document_read(&r->f, document, size, why);
+    run_unlock();
     return done(run, r, why);
 }
 

@@ -1,10 +1,12 @@
 /* api/save.c: a run as documents. */
 #include "api/run.h"
 #include "io/boundary_tables.h"
+#include "io/reader.h"
 
 #include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 int nsd_note(struct nsd_run *r, const char *line)
 {
@@ -19,11 +21,14 @@ int nsd_note(struct nsd_run *r, const char *line)
     return why->status;
 }
 
-/* Adds the library's line of history unless there is one. */
-static int note(struct nsd_run *r, struct why *why)
+/* What is wanted before it: the options, forces of the bodies that there are, and the library's line of history
+   unless there is one */
+static int prepare(struct nsd_run *r, struct why *why)
 {
     static const char line[] =
         "{\"command\":\"libnsd\",\"version\":\"" NSD_VERSION "\",\"options\":{}}";
+    if (run_choose(r, why) || (r->acts.id && acts_arrays(&r->acts, &r->f.packing, why)))
+        return why->status;
     if (!r->noted && !frame_note(&r->f, line, why)) r->noted = true;
     return why->status;
 }
@@ -47,10 +52,11 @@ static int back(struct nsd_run *r, struct before was)
     return r->why.status;
 }
 
-/* The frame as it is written: nsd-step's */
+/* The frame as it is written: nsd-step's, with the forces that last, borrowed */
 static struct frame frame_of(const struct nsd_run *r)
 {
     struct frame f = r->f;
+    f.packing.outside.lasts = acts_lend(&r->acts, f.packing.walls);
     f.detected = f.detected && f.moved && (r->contacts || r->forces);
     f.forces = r->forces;
     return f;
@@ -63,7 +69,7 @@ int nsd_save(struct nsd_run *r, const char *path)
     if (!why) return NSD_USAGE;
     if (!path) return why_set(why, NSD_USAGE, "a document has a path");
     const struct before was = before(r);
-    if (run_choose(r, why) || note(r, why)) return back(r, was);
+    if (prepare(r, why)) return back(r, was);
     const struct frame f = frame_of(r);
     run_lock();
     if (writer_open(&out, path, WRITER_COPY, why) || writer_frame(out, &f, why))
@@ -72,6 +78,16 @@ int nsd_save(struct nsd_run *r, const char *path)
         writer_close(out, why);
     run_unlock();
     return why->status ? back(r, was) : 0;
+}
+
+/* A trajectory whose boundaries rest has no place for their motion. */
+static int check_motion(const struct nsd_run *r, struct why *why)
+{
+    if (!r->rests || !boundary_tables_move(&r->f.packing)) return 0;
+    return why_set(why, NSD_DATA,
+                   "%.100s: a boundary moves, and in its first frame none could: "
+                   "nsd_finish() ends it, and another one may begin",
+                   r->path);
 }
 
 /* The trajectory ends as it is. */
@@ -84,14 +100,116 @@ static void drop(struct nsd_run *r)
     r->out = NULL, r->path = NULL;
 }
 
-static int open_trajectory(struct nsd_run *r, const char *path, struct why *why)
+/* The last line of a history, with its end; NULL: there is none */
+static const char *last_line(const char *history)
 {
+    size_t n = history ? strlen(history) : 0;
+    if (!n) return NULL;
+    for (n--; n && history[n - 1] != '\n'; n--) continue;
+    return history + n;
+}
+
+/* The history of a trajectory has the run's line, too, unless it ends with that: one run in two parts leaves what
+   one in one piece does. */
+static int note_again(const struct nsd_run *r, struct frame *first, struct why *why)
+{
+    const char *line = last_line(r->f.history), *had = last_line(first->history);
+    if (!line || (had && !strcmp(line, had))) return 0;
+    char *copy = strndup(line, strcspn(line, "\n"));
+    if (!copy) return why_set(why, NSD_SOFTWARE, "no memory for the history");
+    frame_note(first, copy, why);
+    free(copy);
+    return why->status;
+}
+
+/* May the run go on with the trajectory that begins with this frame? */
+static int check_first(const struct packing *first, const struct packing *p, const char *path,
+                       struct why *why)
+{
+    bool same = !first->scene == !p->scene && (!p->scene || !strcmp(first->scene, p->scene));
+    if (!same || first->seed != p->seed || first->walls != p->walls || first->kinds != p->kinds)
+        return why_set(why, NSD_DATA, "%.200s: belongs to another scene: remove it to begin anew",
+                       path);
+    return 0;
+}
+
+/* The frames that there are go into r->out, which takes their place later. */
+static int copy_frames(struct nsd_run *r, struct reader *in, struct why *why)
+{
+    struct frame f = { 0 };
+    const struct packing *p = &r->f.packing, *q = &f.packing;
+    bool more, first = true;
+    while (!reader_next(in, NULL, &f, &more, why) && more) {
+        const char *lost = reader_loses(in);
+        if (!f.packed)
+            why_set(why, NSD_DATA, "%.200s: an FCLIB problem, and no trajectory", r->path);
+        else if (lost)
+            why_set(why, NSD_DATA, "%.200s: %.100s is not known, and depends on time", r->path,
+                    lost);
+        else if (q->step >= p->step)
+            why_set(
+                why, NSD_DATA,
+                "%.200s: has step %lld already, and the run is at step %lld: remove it to begin "
+                "anew",
+                r->path, (long long)q->step, (long long)p->step);
+        if (why->status || (first && (check_first(q, p, r->path, why) || note_again(r, &f, why))))
+            break;
+        if (first) r->rests = !boundary_tables_move(q) && !q->outside.steered;
+        first = false;
+        if (writer_frame(r->out, &f, why)) break;
+    }
+    if (!why->status && first) why_set(why, NSD_DATA, "%.200s: no frame to go on from", r->path);
+    frame_free(&f);
+    return why->status;
+}
+
+/* Is there a file at the path that has something in it? */
+static bool is_there(const char *path)
+{
+    struct stat st;
+    return !stat(path, &st) && S_ISREG(st.st_mode) && st.st_size > 0;
+}
+
+/* The trajectory of r->path, begun or with the frames that there are */
+static int open_trajectory(struct nsd_run *r, bool goes_on, struct why *why)
+{
+    struct reader *in = NULL;
+    if (writer_open(&r->out, r->path, goes_on ? WRITER_IN_PLACE : WRITER_TRAJECTORY, why) ||
+        !goes_on)
+        return why->status;
+    if (!reader_open(&in, 1, &r->path, why)) {
+        reader_copies(in);
+        copy_frames(r, in, why);
+    }
+    reader_close(in);
+    return why->status;
+}
+
+/* The first frame that this run gives to the trajectory at the path */
+static int first_frame(struct nsd_run *r, const char *path, struct why *why)
+{
+    const bool goes_on = is_there(path);
+    const struct packing *p = &r->f.packing;
     if (!(r->path = strdup(path))) return why_set(why, NSD_SOFTWARE, "no memory for a path");
+    r->rests = !boundary_tables_move(p) && !p->outside.steered;
+    r->other_bodies = false;
+    const struct frame f = frame_of(r);
     run_lock();
-    if (writer_open(&r->out, r->path, WRITER_TRAJECTORY, why)) writer_drop(r->out), r->out = NULL;
+    if (open_trajectory(r, goes_on, why) || check_motion(r, why) || writer_frame(r->out, &f, why) ||
+        (goes_on && writer_take_place(r->out, why)))
+        writer_drop(r->out), r->out = NULL;
     run_unlock();
     if (!r->out) free(r->path), r->path = NULL;
-    r->other_bodies = false;
+    return why->status;
+}
+
+static int next_frame(struct nsd_run *r, struct why *why)
+{
+    const struct frame f = frame_of(r);
+    run_lock();
+    writer_frame(r->out, &f, why);
+    run_unlock();
+    if (why->status) drop(r);
     return why->status;
 }
 
@@ -103,27 +221,15 @@ int nsd_append(struct nsd_run *r, const char *path)
     if (r->out && strcmp(r->path, path) != 0)
         return why_set(why, NSD_USAGE, "%.100s is not finished: nsd_finish() comes before another",
                        r->path);
-    if (r->out && r->other_bodies)
+    if (r->out && r->other_bodies && !packing_varies(&r->f.packing))
         return why_set(why, NSD_DATA,
                        "%.100s: bodies were added or removed since its first frame: "
                        "nsd_finish() ends it, and another one may begin",
                        path);
-    const bool moves = boundary_tables_move(&r->f.packing);
-    if (r->out && r->rests && moves)
-        return why_set(why, NSD_DATA,
-                       "%.100s: a boundary moves, and in its first frame none could: "
-                       "nsd_finish() ends it, and "
-                       "another one may begin",
-                       path);
+    if (r->out && check_motion(r, why)) return why->status;
     const struct before was = before(r);
-    if (run_choose(r, why) || note(r, why)) return back(r, was);
-    r->rests = r->out ? r->rests : !moves && !r->f.packing.outside.steered;
-    if (!r->out && open_trajectory(r, path, why)) return back(r, was);
-    const struct frame f = frame_of(r);
-    run_lock();
-    int failed = writer_frame(r->out, &f, why);
-    run_unlock();
-    if (failed) return drop(r), back(r, was);
+    if (prepare(r, why)) return back(r, was);
+    if (r->out ? next_frame(r, why) : first_frame(r, path, why)) return back(r, was);
     r->f.packing.events.n = 0; // they are written
     return 0;
 }

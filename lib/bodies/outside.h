@@ -15,17 +15,24 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* Forces that act until they are changed: they go with documents, and a step of them makes its own [api/acts.h]. */
+struct lasting {
+    vec3 *force, *torque; /* [n] N, N m, in space; NULL: none, of either */
+    double *push;         /* [walls] N, N m; NULL: none */
+};
+
 struct outside {
     vec3 *force, *torque; /* [n] N, N m, in space; NULL: none, of either */
     double most;          /* m/s^2: no body gains more by them; outside_measure() keeps it */
     double *push;         /* [walls] N, N m: added to the load of a boundary; NULL: none */
+    struct lasting lasts;
     bool steered; /* gravity, friction or the motion of a boundary may differ from frame to frame */
     int64_t length, room; /* bytes of words */
     char *words; /* what was answered since the last frame: JSON lines, not ended by a 0; or NULL */
 };
 
 void outside_free(struct outside *outside);
-/* The forces are of a step that has been made, and the words are written: they are gone. */
+/* The forces are of a step that has been made, and the words are written: they are gone, but for those that last. */
 void outside_forget(struct outside *outside);
 /* to = a deep copy for n bodies and so many walls; to need not be initialised. Returns 0 or EX_SOFTWARE, where there
    is nothing to free. */
@@ -35,6 +42,11 @@ int outside_copy(struct outside *to, const struct outside *from, int64_t n, int3
    has changed. */
 int outside_alloc(vec3 **to, int64_t n, struct why *why);
 int outside_alloc_push(struct outside *outside, int32_t walls, struct why *why);
+/* A step begins: its forces are those that last. mass[n], kg. Returns 0 or EX_SOFTWARE. */
+int outside_begin(struct outside *outside, const double *mass, int64_t n, int32_t walls,
+                  struct why *why);
+/* Bodies are removed: body i is now in row[i], in the same order; < 0: it is gone. Of those that last. */
+void outside_follow(struct outside *outside, const int32_t *row, int64_t n);
 /* Forces of n bodies in place of those of `had`; new ones are zero. Returns 0 or EX_SOFTWARE, where nothing has
    changed. */
 int outside_resize(struct outside *outside, int64_t had, int64_t n, struct why *why);

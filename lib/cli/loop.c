@@ -1,26 +1,24 @@
-#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): memfd_create
 #include "cli/loop.h"
 
 #include "api/answer.h"
+#include "api/document.h"
 #include "cli/partner.h"
+#include "hdf5/stream.h"
 #include "io/reader.h"
-#include "io/writer.h"
 #include "measure/asked.h"
 #include "measure/measured.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 enum {
-    ANSWER_LEAST = 1 << 20, /* bytes that an answer may have, at least, */
-    ANSWER_BODY = 512,      /* and for each body: two vectors with all their digits have 160 */
-    KEPT_MOST = 1 << 30     /* bytes of answers between two frames, which are kept in memory */
+    ANSWER_LEAST = 1 << 20,   /* bytes that an answer may have, at least, */
+    ANSWER_BODY = 512,        /* and for each body: four vectors with all their digits have 320 */
+    DOCUMENT_LEAST = 1 << 24, /* bytes that an answered document may have, at least, */
+    DOCUMENT_BODY = 4096,     /* and for each body: with ten contacts it has 3000 */
+    KEPT_MOST = 1 << 30       /* bytes of answers between two frames, which are kept in memory */
 };
 
 static const double GRACE = 0.2; /* s: for a program that has failed to end by itself */
@@ -32,7 +30,7 @@ static bool document;
 
 const struct cli_option options_loop[] = {
     { CLI_TEXT, 0, "with", &command, "CMD", .silent = true,
-      .help = "ask CMD before steps, by lines of JSON, what shall act [none]" },
+      .help = "ask CMD before steps, by JSON or documents, what shall act [none]" },
     { CLI_INT, 0, "with-every", &every, "K", .min = 1, .max = 1e15, .silent = true,
       .help = "before each K-th step, and the first [1]" },
     { CLI_TEXT, 0, "with-boundaries", &boundaries, "all|N,...", .silent = true,
@@ -223,39 +221,18 @@ static int put_measures(FILE *out, const struct frame *f, const struct contacts 
     return kept_set(&loop.before, p, why);
 }
 
-/* The document of a frame, in memory; to be freed */
-static char *document_of(const struct frame *f, size_t *size, struct why *why)
-{
-    struct writer *out;
-    struct stat st = { 0 };
-    char path[40], *bytes = NULL;
-    int fd = memfd_create("document", MFD_CLOEXEC);
-    if (fd < 0) return why_set(why, EX_SOFTWARE, "no memory for a document"), NULL;
-    snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
-    if (!writer_open(&out, path, WRITER_STREAM, why) && !writer_frame(out, f, why) &&
-        !writer_close(out, why) && !fstat(fd, &st) && (bytes = malloc((size_t)st.st_size + 1))) {
-        *size = (size_t)st.st_size;
-        for (size_t at = 0; at < *size;) {
-            ssize_t n = pread(fd, bytes + at, *size - at, (off_t)at);
-            if (n <= 0 && !(n < 0 && errno == EINTR)) break;
-            if (n > 0) at += (size_t)n;
-        }
-    }
-    if (!bytes) why_set(why, EX_SOFTWARE, "no memory for a document");
-    close(fd);
-    return bytes;
-}
-
 /* The line, and the document behind it; to be freed */
-static char *message(const struct frame *f, const struct contacts *s, size_t *length,
-                     struct why *why)
+static char *message(const struct frame *f, const struct contacts *s, struct acts *acts,
+                     size_t *length, struct why *why)
 {
     const struct packing *p = &f->packing;
     char *text = NULL, *bytes = NULL;
     size_t size = 0;
     struct frame all = *f;
     all.detected = s != NULL;
-    if (document && !(bytes = document_of(&all, &size, why))) return NULL;
+    if (document && acts->id && acts_arrays(acts, p, why)) return NULL;
+    if (document) all.packing.outside.lasts = acts_lend(acts, p->walls);
+    if (document && !(bytes = document_write(&all, &size, why))) return NULL;
     FILE *out = open_memstream(&text, length);
     if (out) {
         fprintf(out, "{\"step\":%" PRId64 ",\"time\":", p->step);
@@ -295,15 +272,67 @@ static int keep(struct packing *p, const json_t *answer, struct why *why)
     return why->status;
 }
 
-static json_t *ask(const struct frame *f, bool first, struct why *why)
+/* The answer that the document of the next n bytes is */
+static json_t *take_document(const struct packing *p, double n, struct why *why)
 {
-    const struct packing *p = &f->packing;
-    size_t length = 0, n, most = ANSWER_LEAST + (size_t)p->n * ANSWER_BODY;
-    char *line, *text = message(f, first ? NULL : &f->contacts, &length, why);
+    const size_t most = DOCUMENT_LEAST + (size_t)p->n * DOCUMENT_BODY;
+    char *bytes;
+    struct frame f = { 0 };
     json_t *answer = NULL;
-    if (!why->status && !partner_write(loop.partner, text, length, timeout, why) &&
-        !partner_line(loop.partner, &line, &n, most, timeout, why))
-        answer = answer_parse(line, n, why);
+    if (!(n <= (double)most))
+        why_set(why, EX_UNAVAILABLE, "the document answered has more than %zu bytes", most);
+    else if (!partner_bytes(loop.partner, &bytes, (size_t)n, why) &&
+             !document_read(&f, bytes, (size_t)n, why))
+        answer = answer_of_frame(&f, p, why);
+    frame_free(&f);
+    return answer;
+}
+
+/* A document by itself: its header says how long it is. */
+static json_t *take_bare_document(const struct packing *p, struct why *why)
+{
+    char *header;
+    if (partner_peek(loop.partner, &header, DOCUMENT_USERBLOCK, why)) return NULL;
+    int64_t n = document_length((unsigned char *)header);
+    if (n > 0) return take_document(p, (double)n, why);
+    why_set(why, EX_DATAERR,
+            "the document answered %s: a line {\"document\": BYTES} in front of it says its length",
+            n ? "has no header of nsd's" : "is unfinished");
+    return NULL;
+}
+
+/* The line, and the document that it says to follow; what the line has besides comes first. */
+static json_t *take_line(const struct packing *p, struct why *why)
+{
+    size_t n;
+    char *line;
+    if (partner_line(loop.partner, &line, &n, ANSWER_LEAST + (size_t)p->n * ANSWER_BODY, why))
+        return NULL;
+    json_t *answer = answer_parse(line, n, why), *size = json_object_get(answer, "document");
+    if (!size) return answer;
+    json_t *whole = NULL;
+    if (!json_is_integer(size) || json_integer_value(size) < 1)
+        why_set(why, EX_DATAERR, "the answer's document is a number of bytes above 0");
+    else
+        whole = take_document(p, (double)json_integer_value(size), why);
+    json_object_del(answer, "document");
+    if (whole && json_object_update(whole, answer)) why_set(why, EX_SOFTWARE, "no memory");
+    json_decref(answer);
+    return whole;
+}
+
+static json_t *ask(const struct frame *f, struct acts *acts, bool first, struct why *why)
+{
+    static const unsigned char document_begins = 0x89; // no JSON does
+    size_t length = 0;
+    char *begin, *text = message(f, first ? NULL : &f->contacts, acts, &length, why);
+    json_t *answer = NULL;
+    if (!why->status && !partner_write(loop.partner, text, length, timeout, why)) {
+        partner_expect(loop.partner, timeout);
+        if (!partner_peek(loop.partner, &begin, 1, why))
+            answer = ((unsigned char)*begin == document_begins ? take_bare_document
+                                                               : take_line)(&f->packing, why);
+    }
     free(text);
     return answer;
 }
@@ -329,8 +358,9 @@ bool loop_before_step(struct frame *f, struct acts *acts, bool first, struct why
     bool stop = false, due = first || p->step % every == 0;
     json_t *answer = NULL;
     if (replay) answer = replayed(p->step + 1, first);
-    if (command && due) answer = ask(f, first, &trouble);
-    if (answer && !keep(p, answer, &trouble)) answer_apply(answer, acts, p, &stop, &trouble);
+    if (command && due) answer = ask(f, acts, first, &trouble);
+    if (answer && !trouble.status && !keep(p, answer, &trouble))
+        answer_apply(answer, acts, p, &stop, &trouble);
     if (replay && !answer) stop = p->step >= loop.last;
     json_decref(answer);
     if (!trouble.status) return !stop;

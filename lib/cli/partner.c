@@ -22,7 +22,9 @@ struct partner {
     int to, from;   /* pipes */
     char *text;     /* what it has said */
     size_t n, room; /* bytes of it */
-    size_t taken;   /* of them the line that was given, with its end */
+    size_t taken;   /* of them those that were given */
+    double seconds; /* that an answer may take, */
+    double end;     /* and until when */
 };
 
 static double now(void)
@@ -128,18 +130,60 @@ int partner_write(struct partner *p, const void *bytes, size_t n, double seconds
 static bool grow(struct partner *p)
 {
     if (p->room - p->n > PIECE) return true;
-    char *more = realloc(p->text, p->room + 4 * PIECE);
+    size_t room = p->room + p->room / 2 + 4 * PIECE;
+    char *more = realloc(p->text, room);
     if (!more) return false;
-    p->text = more, p->room += 4 * PIECE;
+    p->text = more, p->room = room;
     return true;
 }
 
-int partner_line(struct partner *p, char **line, size_t *n, size_t most, double seconds,
-                 struct why *why)
+void partner_expect(struct partner *p, double seconds)
 {
-    const double end = now() + seconds;
+    p->seconds = seconds, p->end = now() + seconds;
+}
+
+/* What was given leaves the memory. */
+static void forget(struct partner *p)
+{
     if (p->taken) memmove(p->text, p->text + p->taken, p->n - p->taken);
     p->n -= p->taken, p->taken = 0;
+}
+
+/* Reads what there is, or waits for it. */
+static int read_more(struct partner *p, struct why *why)
+{
+    if (now() > p->end)
+        return why_set(why, EX_UNAVAILABLE,
+                       "the program has not answered for %g s (--with-timeout)", p->seconds);
+    if (!grow(p)) return why_set(why, EX_SOFTWARE, "no memory for an answer");
+    ssize_t got = read(p->from, p->text + p->n, PIECE);
+    if (got > 0) p->n += (size_t)got;
+    if (got == 0) return ended(p, why);
+    if (got > 0 || errno == EINTR) return 0;
+    if (errno != EAGAIN) return failed(why, "the program");
+    ready(p->from, POLLIN, p->end);
+    return 0;
+}
+
+int partner_peek(struct partner *p, char **bytes, size_t n, struct why *why)
+{
+    forget(p);
+    while (p->n < n)
+        if (read_more(p, why)) return why->status;
+    *bytes = p->text;
+    return 0;
+}
+
+int partner_bytes(struct partner *p, char **bytes, size_t n, struct why *why)
+{
+    if (partner_peek(p, bytes, n, why)) return why->status;
+    p->taken = n;
+    return 0;
+}
+
+int partner_line(struct partner *p, char **line, size_t *n, size_t most, struct why *why)
+{
+    forget(p);
     for (size_t looked = 0;;) {
         char *stop = p->n > looked ? memchr(p->text + looked, '\n', p->n - looked) : NULL;
         if ((stop ? (size_t)(stop - p->text) : p->n) > most)
@@ -150,16 +194,7 @@ int partner_line(struct partner *p, char **line, size_t *n, size_t most, double 
             return 0;
         }
         looked = p->n;
-        if (now() > end)
-            return why_set(why, EX_UNAVAILABLE,
-                           "the program has not answered for %g s (--with-timeout)", seconds);
-        if (!grow(p)) return why_set(why, EX_SOFTWARE, "no memory for an answer");
-        ssize_t got = read(p->from, p->text + p->n, PIECE);
-        if (got > 0) p->n += (size_t)got;
-        if (got == 0) return ended(p, why);
-        if (got > 0 || errno == EINTR) continue;
-        if (errno != EAGAIN) return failed(why, "the program");
-        ready(p->from, POLLIN, end);
+        if (read_more(p, why)) return why->status;
     }
 }
 

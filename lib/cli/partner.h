@@ -1,6 +1,6 @@
 /*
- * cli/partner.h: a program that is started once, and is written to and read from line by line, with a bound on the time
- * that it takes and on what it says.
+ * cli/partner.h: a program that is started once, and is written to and read from, by lines and by numbers of bytes, with a
+ * bound on the time that it takes and on the size of its answers.
  */
 #ifndef NSD_PARTNER_H
 #define NSD_PARTNER_H
@@ -16,10 +16,14 @@ int partner_start(struct partner **partner, const char *command, struct why *why
 /* Writes it all within so many seconds. */
 int partner_write(struct partner *partner, const void *bytes, size_t n, double seconds,
                   struct why *why);
-/* The next line, of at most so many bytes, within so many seconds. It ends with 0 in place of the end of line, and is valid until
-   the next call. */
-int partner_line(struct partner *partner, char **line, size_t *n, size_t most, double seconds,
-                 struct why *why);
+/* An answer begins: from now on it may take so many seconds. */
+void partner_expect(struct partner *partner, double seconds);
+/* The next n bytes, which stay the next; valid until the next call, as what the others give. */
+int partner_peek(struct partner *partner, char **bytes, size_t n, struct why *why);
+/* The next line, of at most `most` bytes; it ends with 0 in place of the end of line. */
+int partner_line(struct partner *partner, char **line, size_t *n, size_t most, struct why *why);
+/* The next n bytes */
+int partner_bytes(struct partner *partner, char **bytes, size_t n, struct why *why);
 /* It reads an end of file, and is waited for so long, then killed; NULL: nothing. */
 void partner_end(struct partner *partner, double seconds);
 

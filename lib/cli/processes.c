@@ -59,10 +59,10 @@ struct distributed *processes_take_bodies(bool contacts)
     return NULL;
 }
 
-int processes_step(struct frame *f, struct step_memory *m, bool other_bodies,
+int processes_step(struct frame *f, struct step_memory *m, struct changes changes,
                    const struct step_opt *o, struct why *why)
 {
-    if (other_bodies) step_forget(m);
+    if (changes.bodies) step_forget(m);
     return step_advance(&f->packing, &f->contacts, m, o, &f->report, why);
 }
 

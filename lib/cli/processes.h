@@ -23,9 +23,13 @@ int processes_follow(void);
 /* The leader: who takes the bodies of what it reads, where no process shall have all of them; contacts: of steps
    that are kept they are wanted. NULL: nobody */
 struct distributed *processes_take_bodies(bool contacts);
-/* The leader: step_advance() of a frame by all. other_bodies: its packing has others than after the step
-   before. */
-int processes_step(struct frame *f, struct step_memory *m, bool other_bodies,
+/* What has happened to the leader's packing since the step before */
+struct changes {
+    bool bodies; /* it has others */
+    bool acts;   /* a program acts on it [bodies/outside.h], or has */
+};
+/* The leader: step_advance() of a frame by all */
+int processes_step(struct frame *f, struct step_memory *m, struct changes changes,
                    const struct step_opt *o, struct why *why);
 /* The leader, in the end: the others are done. A word of what they have told each other, or NULL */
 const char *processes_leave(void);

@@ -25,6 +25,20 @@ static int write_passages(struct table_write *s, const struct column *c, int32_t
     return 0;
 }
 
+#define NUMBERS "/nsd/flow/numbers"
+
+/* Frames after bodies were added by another program than the scene's pours, which are numbered after them */
+static int write_numbers(struct table_write *s, const struct packing *p, struct why *why)
+{
+    const hsize_t one = 1;
+    if (p->first_id == s->first_id) return 0;
+    if (table_write_rows(s, NUMBERS "/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &p->step, NULL,
+                         why))
+        return why->status;
+    return table_write_rows(s, NUMBERS "/first_id", COLUMN_I32, 1, &one, CHUNK_FRAMES, &p->first_id,
+                            NULL, why);
+}
+
 int flow_write(struct table_write *s, const struct packing *p, struct why *why)
 {
     if (!packing_varies(p)) return 0;
@@ -40,7 +54,9 @@ int flow_write(struct table_write *s, const struct packing *p, struct why *why)
                             CHUNK_CONTACTS, why))
         return why->status;
     if (s->growing) s->events += p->events.n;
-    return !first ? 0 : h5_attr(s->file, flow, "first_id", H5T_NATIVE_INT32, -1, &p->first_id, why);
+    if (!first) return write_numbers(s, p, why);
+    s->first_id = p->first_id;
+    return h5_attr(s->file, flow, "first_id", H5T_NATIVE_INT32, -1, &p->first_id, why);
 }
 
 /* The clock of the particles, for columns in a group */
@@ -110,6 +126,16 @@ static int read_events(struct source *s, int64_t k, struct packing *p, struct wh
     for (int64_t i = 0; i < count; i++)
         if (check_event(&p->events.e[i], why)) return why->status;
     return 0;
+}
+
+int flow_tables_read_numbers(struct source *s, struct packing *p, struct why *why)
+{
+    if (!packing_varies(p)) return 0;
+    int64_t row = table_read_row_at(s, NUMBERS "/step", p->step, why);
+    if (why->status || row < 0) return why->status;
+    if (source_rows(s, NUMBERS "/first_id", COLUMN_I32, row, 1, 1, &p->first_id, why))
+        return why->status;
+    return p->first_id < 0 ? why_set(why, EX_DATAERR, NUMBERS "/first_id: is negative") : 0;
 }
 
 int flow_tables_read(struct source *s, int64_t k, struct packing *p, struct why *why)

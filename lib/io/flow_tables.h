@@ -15,5 +15,7 @@ int flow_link(struct table_write *tables, const struct packing *p, struct why *w
 
 /* What frame k says; nothing where there is no such group. */
 int flow_tables_read(struct source *source, int64_t k, struct packing *p, struct why *why);
+/* The number of the next body that is poured, where bodies were added besides; p has its step. */
+int flow_tables_read_numbers(struct source *source, struct packing *p, struct why *why);
 
 #endif

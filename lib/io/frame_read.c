@@ -233,7 +233,8 @@ static int read_settings(struct frame_read *r, int64_t k, int64_t n, struct pack
         pair_law_tables_read(r->source, k, p, why) || read_clock(r, k, p, why) ||
         cell_tables_read(r->source, k, r->repeats, p, why))
         return why->status;
-    if (outside_tables_read(r->source, p, why)) return why->status;
+    if (flow_tables_read_numbers(r->source, p, why) || outside_tables_read(r->source, p, why))
+        return why->status;
     return alloc_optional(r, p, why);
 }
 

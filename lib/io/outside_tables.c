@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define HOME "/nsd/outside"
+#define HOME  "/nsd/outside"
+#define LASTS HOME "/lasting"
 
 /* ---- to a document ---- */
 
@@ -81,12 +82,38 @@ static int write_words(struct table_write *s, const struct outside *o, struct wh
     return 0;
 }
 
+/* Forces that last, of frames that have them; they have their own steps. */
+static int write_lasting(struct table_write *s, const struct packing *p, struct why *why)
+{
+    const struct lasting *o = &p->outside.lasts;
+    const hsize_t one = 1, walls[2] = { 1, (hsize_t)p->walls };
+    const int64_t n = o->force || o->torque ? p->n : 0;
+    const hsize_t shape[2] = { (hsize_t)n, 3 };
+    if (!n && !o->push) return 0;
+    vec3 *none = calloc((size_t)n + 1, sizeof *none);
+    double *rest = calloc((size_t)p->walls + 1, sizeof *rest);
+    if (!none || !rest)
+        why_set(why, EX_SOFTWARE, "no memory for forces that last");
+    else if (!table_write_rows(s, LASTS "/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &p->step, NULL,
+                               why) &&
+             !write_row(s, LASTS "/push", 2, walls, o->push ? o->push : rest, "N, N m", why) &&
+             !write_span(s, "lasting", s->lasting, n, why) &&
+             !table_write_rows(s, LASTS "/force", COLUMN_F64, 2, shape, CHUNK_CONTACTS,
+                               o->force ? o->force : none, "N", why))
+        table_write_rows(s, LASTS "/torque", COLUMN_F64, 2, shape, CHUNK_CONTACTS,
+                         o->torque ? o->torque : none, "N m", why);
+    free(none), free(rest);
+    if (s->growing) s->lasting += n;
+    return why->status;
+}
+
 int outside_tables_write(struct table_write *s, const struct frame *f, struct why *why)
 {
     const struct packing *p = &f->packing;
     const struct outside *o = &p->outside;
     const hsize_t row[2] = { 1, 3 }, pairs[2] = { 1, (hsize_t)p->kinds * (hsize_t)p->kinds };
     const double g[3] = { p->g.x, p->g.y, p->g.z };
+    if (!f->distributed && write_lasting(s, p, why)) return why->status;
     bool forces = f->detected && (o->force || o->torque) && !f->distributed;
     if (!o->steered && !forces && !o->length && !(f->detected && o->push)) return 0;
     if (table_write_rows(s, HOME "/step", COLUMN_I64, 1, row, CHUNK_FRAMES, &p->step, NULL, why) ||
@@ -98,17 +125,6 @@ int outside_tables_write(struct table_write *s, const struct frame *f, struct wh
 }
 
 /* ---- from a document ---- */
-
-/* The row of the step; -1: none */
-static int64_t row_of(struct source *s, int64_t step, struct why *why)
-{
-    int64_t n = 0;
-    if (!source_has(s, HOME "/step")) return -1;
-    int64_t *steps = table_read_steps(s, HOME "/step", &n, why);
-    int64_t row = steps ? table_read_row(steps, table_read_rising(steps, n), step) : -1;
-    free(steps);
-    return row;
-}
 
 static int read_boundaries(struct source *s, int64_t row, struct packing *p, struct why *why)
 {
@@ -163,6 +179,45 @@ static int read_forces(struct source *s, int64_t row, struct packing *p, struct 
     return 0;
 }
 
+/* NULL where all are 0 */
+static void drop_zeros(double **x, int64_t n)
+{
+    for (int64_t i = 0; i < n; i++)
+        if ((*x)[i] != 0) return;
+    free(*x);
+    *x = NULL;
+}
+
+static void drop_vectors(vec3 **x, int64_t n)
+{
+    double *at = (double *)*x;
+    drop_zeros(&at, 3 * n);
+    if (!at) *x = NULL;
+}
+
+static int read_lasting(struct source *s, struct packing *p, struct why *why)
+{
+    struct lasting *o = &p->outside.lasts;
+    int64_t start = 0, count = 0, row = table_read_row_at(s, LASTS "/step", p->step, why);
+    if (why->status || row < 0 || read_span(s, "lasting", row, p->n, &start, &count, why))
+        return why->status;
+    if (count && count != p->n)
+        return why_set(why, EX_DATAERR, LASTS "/count: forces of %lld bodies, and there are %lld",
+                       (long long)count, (long long)p->n);
+    if (!(o->push = calloc((size_t)p->walls + 1, sizeof *o->push)))
+        return why_set(why, EX_SOFTWARE, "no memory for forces that last");
+    if (source_rows(s, LASTS "/push", COLUMN_F64, row, 1, p->walls, o->push, why))
+        return why->status;
+    drop_zeros(&o->push, p->walls);
+    if (!count) return 0;
+    if (outside_alloc(&o->force, p->n, why) || outside_alloc(&o->torque, p->n, why) ||
+        source_rows(s, LASTS "/force", COLUMN_F64, start, count, 3, o->force, why) ||
+        source_rows(s, LASTS "/torque", COLUMN_F64, start, count, 3, o->torque, why))
+        return why->status;
+    drop_vectors(&o->force, p->n), drop_vectors(&o->torque, p->n);
+    return 0;
+}
+
 static int read_words(struct source *s, int64_t row, struct outside *o, struct why *why)
 {
     uint64_t shape[4];
@@ -180,7 +235,8 @@ static int read_words(struct source *s, int64_t row, struct outside *o, struct w
 int outside_tables_read(struct source *s, struct packing *p, struct why *why)
 {
     double g[3];
-    int64_t row = row_of(s, p->step, why);
+    if (read_lasting(s, p, why)) return why->status;
+    int64_t row = table_read_row_at(s, HOME "/step", p->step, why);
     if (why->status || row < 0) return why->status;
     if (source_rows(s, HOME "/gravity", COLUMN_F64, row, 1, 3, g, why) ||
         source_rows(s, HOME "/friction", COLUMN_F64, row, 1, (int64_t)p->kinds * p->kinds, p->mu,

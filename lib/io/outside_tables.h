@@ -1,7 +1,7 @@
 /*
  * io/outside_tables.h: what has acted from outside [bodies/outside.h] in a document: gravity, friction and the motion
- * of boundaries of frames in which they may differ, the forces of a step whose contacts are kept, and what was
- * answered. Frames in which nothing has acted have no row.
+ * of boundaries of frames in which they may differ, the forces of a step whose contacts are kept, those that last, and
+ * what was answered. Frames in which nothing has acted have no row.
  */
 #ifndef NSD_OUTSIDE_TABLES_H
 #define NSD_OUTSIDE_TABLES_H

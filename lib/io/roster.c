@@ -113,7 +113,7 @@ int roster_enter(struct roster *r, struct table_write *s, const struct packing *
         return why_set(
             why, EX_DATAERR,
             "the trajectory has rows for %lld bodies, and more have come: a count for the "
-            "pour tells how many it takes",
+            "pour tells how many it takes, and a new trajectory has room for more",
             (long long)s->most_bodies);
     int64_t chunk = (int64_t)s->chunk_bodies;
     while (r->width < r->rows || !r->width) r->width += chunk;

@@ -59,3 +59,13 @@ int64_t table_read_row(const int64_t *steps, int64_t n, int64_t step)
     }
     return lo < n && steps[lo] == step ? lo : -1;
 }
+
+int64_t table_read_row_at(struct source *s, const char *path, int64_t step, struct why *why)
+{
+    int64_t n = 0;
+    if (!source_has(s, path)) return -1;
+    int64_t *steps = table_read_steps(s, path, &n, why);
+    int64_t row = steps ? table_read_row(steps, table_read_rising(steps, n), step) : -1;
+    free(steps);
+    return row;
+}

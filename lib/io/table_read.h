@@ -23,5 +23,7 @@ int64_t *table_read_steps(struct source *source, const char *path, int64_t *n, s
 int64_t table_read_rising(const int64_t *steps, int64_t n);
 /* The row of a step among n that rise; -1: none */
 int64_t table_read_row(const int64_t *steps, int64_t n, int64_t step);
+/* That of the step in the dataset of steps at `path`; -1: it has none, or does not exist */
+int64_t table_read_row_at(struct source *source, const char *path, int64_t step, struct why *why);
 
 #endif

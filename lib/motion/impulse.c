@@ -82,14 +82,14 @@ int impulses_init(struct impulses *sum, const struct packing *p, const struct co
     cell_predict(&p->cell, sum->ahead, sum->edge);
     if (!ended) cell_next_rate(&p->cell, p->t + p->dt, step_ahead(p), step_after(p), sum->next);
     if (freedoms_init(&sum->freedoms, p, sum->edge, why)) return why->status;
-    sum->force = calloc(n, sizeof *sum->force), sum->moment = calloc(n, sizeof *sum->moment);
+    const struct outside *o = &p->outside; // what is not 0 to begin with is not set to 0 first
+    sum->force = o->force ? malloc(n * sizeof *sum->force) : calloc(n, sizeof *sum->force);
+    sum->moment = o->torque ? malloc(n * sizeof *sum->moment) : calloc(n, sizeof *sum->moment);
     sum->yield = calloc((size_t)sum->freedoms.n + 1, sizeof *sum->yield);
     if (!sum->force || !sum->moment || !sum->yield)
         return why_set(why, EX_SOFTWARE, "no memory to move the bodies");
-    for (int64_t i = 0; p->outside.force && i < p->n; i++)
-        sum->force[i] = v3_scale(p->dt, p->outside.force[i]);
-    for (int64_t i = 0; p->outside.torque && i < p->n; i++)
-        sum->moment[i] = v3_scale(p->dt, p->outside.torque[i]);
+    for (int64_t i = 0; o->force && i < p->n; i++) sum->force[i] = v3_scale(p->dt, o->force[i]);
+    for (int64_t i = 0; o->torque && i < p->n; i++) sum->moment[i] = v3_scale(p->dt, o->torque[i]);
     struct summing y = { sum, p, s, s->n < CONTACTS_PER_THREAD ? 1 : team_size() };
     team_share(team_size(), y.parts, 1, sum_bodies, &y);
     sum_yields(sum, p, s);

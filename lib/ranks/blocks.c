@@ -311,13 +311,26 @@ void blocks_balance(struct blocks *b, const struct contacts *s, const struct imp
     add(&b->exchange, (double *)told, sizeof *told / sizeof(double)); // it has nothing else
 }
 
+/* What impulses of copies begin with, dt times their force or torque from outside (NULL: none), which their owner has, too */
+static double **begun(const struct blocks *b, const vec3 *acts)
+{
+    double **from = letters(b->part->comm, b->touched, 3);
+    for (int q = 0; acts && q < b->part->comm->n; q++)
+        for (int64_t k = 0; k < b->touched[q].n; k++) {
+            vec3 x = v3_scale(b->part->p.dt, acts[b->touched[q].body[k]]);
+            memcpy(&from[q][3 * k], &x, sizeof x);
+        }
+    return from;
+}
+
 void blocks_add_impulses(struct blocks *b, struct impulses *sum)
 {
-    double **none = letters(b->part->comm, b->touched, 3); // since nothing was pushed
-    add_up(b, 3, impulse_of, sum, none);
-    letters_free(b->part->comm, none), none = letters(b->part->comm, b->touched, 3);
-    add_up(b, 3, moment_of, sum, none);
-    letters_free(b->part->comm, none);
+    const struct outside *o = &b->part->p.outside;
+    double **from = begun(b, o->force);
+    add_up(b, 3, impulse_of, sum, from);
+    letters_free(b->part->comm, from), from = begun(b, o->torque);
+    add_up(b, 3, moment_of, sum, from);
+    letters_free(b->part->comm, from);
 }
 
 void blocks_free(struct blocks *b)

@@ -11,7 +11,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-enum word { LEAVE, BEGIN, BEGIN_ROWS, OTHER_BODIES, STEP, TAKE, FILL };
+enum word { LEAVE, BEGIN, BEGIN_ROWS, OTHER_BODIES, ACT, STEP, TAKE, FILL };
 
 static struct {
     struct comm comm;
@@ -121,6 +121,7 @@ int processes_follow(void)
         if (w == TAKE) rows_take(&self.rows, &self.comm, NULL, 0, 0);
         if (w == FILL) fill(-1, NULL, NULL, 0, &why); // the leader says what was wrong
         if (w == OTHER_BODIES) rank_step_begin_again(&self.step, &none);
+        if (w == ACT) rank_step_act(&self.step, &none);
         if (w != STEP) continue;
         const struct step_opt o = options_step(self.step.part.p.dt, false);
         rank_step_make(&self.step, &none, &s, &o, &rep, &why);
@@ -130,14 +131,15 @@ int processes_follow(void)
     return 0;
 }
 
-int processes_step(struct frame *f, struct step_memory *m, bool other_bodies,
+int processes_step(struct frame *f, struct step_memory *m, struct changes changes,
                    const struct step_opt *o, struct why *why)
 {
     (void)m;
     if (!self.begun)
         begin(next(f->distributed ? BEGIN_ROWS : BEGIN), &f->packing);
-    else if (other_bodies)
+    else if (changes.bodies)
         next(OTHER_BODIES), rank_step_begin_again(&self.step, &f->packing);
+    if (changes.acts) next(ACT), rank_step_act(&self.step, &f->packing);
     self.step.contacts = self.contacts;
     next(STEP);
     return rank_step_make(&self.step, &f->packing, &f->contacts, o, &f->report, why);

@@ -43,6 +43,11 @@ void rank_step_begin_again(struct rank_step *y, const struct packing *whole)
     subdomain_begin_again(&y->part, whole);
 }
 
+void rank_step_act(struct rank_step *y, const struct packing *whole)
+{
+    subdomain_act(&y->part, whole, y->scattered);
+}
+
 void rank_step_free(struct rank_step *y)
 {
     neighbours_free(&y->near);

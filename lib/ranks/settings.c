@@ -158,6 +158,49 @@ void settings_spread(struct comm *t, struct packing *p)
     parcel_free(&o);
 }
 
+/* *x exists where it shall, for n bodies, all zero. */
+static void keep_forces(struct comm *t, vec3 **x, bool wanted, int64_t n)
+{
+    struct why why = { 0 };
+    if (!wanted) free(*x), *x = NULL;
+    if (wanted && outside_alloc(x, n, &why)) fail(t, &why);
+}
+
+void settings_act(struct comm *t, struct packing *p, const struct packing *whole)
+{
+    struct parcel o = { 0 };
+    struct outside *to = &p->outside;
+    const struct outside *from = &whole->outside;
+    const size_t pairs = (size_t)p->kinds * (size_t)p->kinds * sizeof *p->mu;
+    const size_t walls = (size_t)p->walls;
+    struct {
+        vec3 g;
+        double most;
+        int32_t force, torque, push;
+    } now;
+    memset(&now, 0, sizeof now);
+    if (!t->me) {
+        now.g = whole->g, now.most = from->most;
+        now.force = from->force != NULL, now.torque = from->torque != NULL;
+        now.push = from->push != NULL;
+        parcel_put(t, &o, &now, sizeof now);
+        parcel_put(t, &o, whole->mu, pairs);
+        parcel_put(t, &o, whole->wall, walls * sizeof *whole->wall);
+        if (now.push) parcel_put(t, &o, from->push, walls * sizeof *from->push);
+    }
+    comm_spread(t, &o);
+    parcel_take(t, &o, &now, sizeof now);
+    parcel_take(t, &o, p->mu, pairs);
+    parcel_take(t, &o, p->wall, walls * sizeof *p->wall);
+    struct why why = { 0 };
+    if (!now.push) free(to->push), to->push = NULL;
+    if (now.push && outside_alloc_push(to, p->walls, &why)) fail(t, &why);
+    if (now.push) parcel_take(t, &o, to->push, walls * sizeof *to->push);
+    p->g = now.g, to->most = now.most;
+    keep_forces(t, &to->force, now.force, p->n), keep_forces(t, &to->torque, now.torque, p->n);
+    parcel_free(&o);
+}
+
 void settings_copy_motion(struct packing *to, const struct packing *from)
 {
     to->step = from->step, to->t = from->t;

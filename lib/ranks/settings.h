@@ -13,6 +13,9 @@ void settings_spread(struct comm *t, struct packing *p);
 /* Time, boundaries and edges of the first rank's packing become those of the others', which are otherwise
    the same. */
 void settings_follow(struct comm *t, struct packing *p);
+/* Gravity, friction, the motion of boundaries and the forces on their loads, which a program has changed, of the first
+   rank's `whole` become those of every p; and p has the arrays of forces and torques that whole has, for its bodies. */
+void settings_act(struct comm *t, struct packing *p, const struct packing *whole);
 /* The same of two packings of one rank */
 void settings_copy_motion(struct packing *to, const struct packing *from);
 

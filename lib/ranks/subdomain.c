@@ -26,6 +26,26 @@ static void fail(const struct subdomain *y, const struct why *why)
     comm_fail(y->comm, why->status, why->text);
 }
 
+/* What acts on body i from outside, where anything does */
+static void put_force(struct comm *t, struct parcel *to, const struct packing *p, int64_t i)
+{
+    const struct outside *o = &p->outside;
+    if (o->force) parcel_put(t, to, &o->force[i], sizeof *o->force);
+    if (o->torque) parcel_put(t, to, &o->torque[i], sizeof *o->torque);
+}
+
+static void take_force(struct comm *t, struct parcel *from, struct packing *p, int64_t i)
+{
+    struct outside *o = &p->outside;
+    if (o->force) parcel_take(t, from, &o->force[i], sizeof *o->force);
+    if (o->torque) parcel_take(t, from, &o->torque[i], sizeof *o->torque);
+}
+
+static size_t force_bytes(const struct packing *p)
+{
+    return (p->outside.force ? sizeof(vec3) : 0) + (p->outside.torque ? sizeof(vec3) : 0);
+}
+
 /* What a body has of all columns, or of those that move, into a parcel and out of one */
 static void put_body(struct comm *t, struct parcel *to, const struct packing *p, int64_t i,
                      bool moving)
@@ -46,7 +66,7 @@ static void take_body(struct comm *t, struct parcel *from, struct packing *p, in
 /* Bytes of a traveller with all that follows it */
 static size_t traveller_bytes(const struct packing *p)
 {
-    size_t bytes = sizeof(struct traveller);
+    size_t bytes = sizeof(struct traveller) + force_bytes(p);
     for (const struct body_column *b = body_columns; b->column.name; b++)
         if (column_array(&b->column, p)) bytes += column_bytes(&b->column);
     return bytes;
@@ -105,7 +125,7 @@ static void begin(struct subdomain *y, struct comm *t, struct territory *space,
     if (!t->me) {
         struct packing none = *settings;
         none.n = 0, none.events.n = 0, none.bonds.n = 0, none.scene = NULL;
-        none.memory = (struct memory){ 0 };
+        none.memory = (struct memory){ 0 }, none.outside = (struct outside){ 0 };
         if (packing_copy(&y->p, &none, &why)) fail(y, &why);
     }
     settings_spread(t, &y->p);
@@ -292,7 +312,8 @@ static void send_bodies(struct subdomain *y, double reach, struct parcel *out)
         const struct traveller b = { y->row[i], owner, y->load[i] };
         for (int q = 0; q < t->n; q++)
             if (mark[q])
-                parcel_put(t, &out[q], &b, sizeof b), put_body(t, &out[q], &y->p, i, false);
+                parcel_put(t, &out[q], &b, sizeof b), put_body(t, &out[q], &y->p, i, false),
+                    put_force(t, &out[q], &y->p, i);
     }
     free(met), free(mark);
 }
@@ -328,7 +349,7 @@ bool subdomain_deal(struct subdomain *y, double reach)
     y->own = 0;
     for (int64_t i = 0; i < n; i++) {
         b[i].parcel->at = b[i].at;
-        take_body(t, b[i].parcel, &y->p, i, false);
+        take_body(t, b[i].parcel, &y->p, i, false), take_force(t, b[i].parcel, &y->p, i);
         set_body(y, i, b[i].body);
         y->own += b[i].body.owner == t->me;
     }
@@ -353,7 +374,8 @@ int32_t subdomain_find(const struct subdomain *y, int32_t row)
 
 /* ---- places and motion ---- */
 
-void subdomain_follow(struct subdomain *y, const struct packing *whole)
+/* act: and what acts on them */
+static void follow(struct subdomain *y, const struct packing *whole, bool act)
 {
     struct comm *t = y->comm;
     struct parcel rows = { 0 }, mine = { 0 }, *in = parcels_new(t), *out = parcels_new(t);
@@ -364,10 +386,25 @@ void subdomain_follow(struct subdomain *y, const struct packing *whole)
             int32_t row;
             parcel_take(t, &in[q], &row, sizeof row);
             put_body(t, &out[q], whole, row, true);
+            if (act) put_force(t, &out[q], whole, row);
         }
     comm_scatter(t, out, &mine);
-    for (int64_t i = 0; i < y->p.n; i++) take_body(t, &mine, &y->p, i, true);
+    for (int64_t i = 0; i < y->p.n; i++) {
+        take_body(t, &mine, &y->p, i, true);
+        if (act) take_force(t, &mine, &y->p, i);
+    }
     parcel_free(&mine), parcels_free(t, in), parcels_free(t, out);
+}
+
+void subdomain_follow(struct subdomain *y, const struct packing *whole)
+{
+    follow(y, whole, false);
+}
+
+void subdomain_act(struct subdomain *y, const struct packing *whole, bool scattered)
+{
+    settings_act(y->comm, &y->p, whole);
+    if (!scattered) follow(y, whole, true);
 }
 
 void subdomain_collect(const struct subdomain *y, struct packing *whole)

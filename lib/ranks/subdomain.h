@@ -61,6 +61,9 @@ double subdomain_imbalance(struct subdomain *y, const struct contacts *s);
 /* New cuts, by what was noted; bodies are dealt at the next subdomain_deal(). */
 void subdomain_recut(struct subdomain *y);
 
+/* What a program does to the first rank's packing as a step begins. scattered: no rank has the bodies of whole, on
+   which nothing acts then. */
+void subdomain_act(struct subdomain *y, const struct packing *whole, bool scattered);
 /* Where bodies are and how they move, of the first rank's whole packing; and the same back */
 void subdomain_follow(struct subdomain *y, const struct packing *whole);
 void subdomain_collect(const struct subdomain *y, struct packing *whole);

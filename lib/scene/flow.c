@@ -88,6 +88,7 @@ static int remove_bodies(const struct flow *f, struct packing *p, int32_t *row, 
         note(p, i, false, k, why);
         if (why->status) return why->status; // the tool ends here
     }
+    outside_follow(&p->outside, row, p->n);
     return packing_resize(p, kept, why);
 }
 
@@ -130,6 +131,7 @@ int flow_drop(struct packing *p, struct contacts *last, const int32_t *row, stru
         if (row[i] >= 0) packing_copy_body(p, kept++, p, i);
     follow_bonds(&p->bonds, row);
     memory_follow(&p->memory, row);
+    outside_follow(&p->outside, row, p->n);
     if (last) follow(last, row);
     return packing_resize(p, kept, why);
 }

@@ -37,6 +37,7 @@ _functions = {  # name: what it takes; each returns a status but for those below
     "nsd_force": (RUN, c_int32, VECTOR, VECTOR, c_int),
     "nsd_boundary_force": (RUN, c_int32, c_double, c_int),
     "nsd_boundary_velocity": (RUN, c_int32, VECTOR),
+    "nsd_velocity": (RUN, c_int32, VECTOR, VECTOR),
     "nsd_gravity": (RUN, VECTOR),
     "nsd_friction": (RUN, c_char_p, c_char_p, c_double),
     "nsd_add": (RUN, POINTER(Bodies), c_void_p),

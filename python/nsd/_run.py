@@ -318,6 +318,10 @@ class Run:
         """Prescribes the boundary's velocity (3 numbers, m/s) from now on."""
         self._call("nsd_boundary_velocity", int(boundary), _vector(velocity, "velocity"))
 
+    def throw(self, id: int, velocity: ArrayLike | None = None, angular_velocity: ArrayLike | None = None) -> None:
+        """Gives the body with this id a velocity (3 numbers, m/s) and an angular velocity (rad/s); None: as it is."""
+        self._call("nsd_velocity", int(id), _vector(velocity, "velocity"), _vector(angular_velocity, "angular_velocity"))
+
     def gravity(self, g: ArrayLike) -> None:
         """Sets gravity, 3 numbers, m/s^2."""
         self._call("nsd_gravity", _vector(g, "gravity"))
@@ -364,7 +368,11 @@ class Run:
         self._call("nsd_save", _bytes(path))
 
     def append(self, path: Path) -> None:
-        """Writes one more frame of the trajectory, which the first call begins."""
+        """Writes one more frame of the trajectory, which the first call begins.
+
+        Where there is a file already the run goes on with it; Error, and the file stays as it is, where it is of another scene,
+        has this step or a later one, is damaged, or is being written. Remove it to begin anew.
+        """
         self._call("nsd_append", _bytes(path))
 
     def finish(self) -> None:

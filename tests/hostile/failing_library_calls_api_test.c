@@ -119,6 +119,9 @@ static int saved(uint32_t *crc, struct why *why)
     CALL("step", nsd_step(r, 1));
     CALL("append", nsd_append(r, path));
     CALL("finish", nsd_finish(r));
+    CALL("step", nsd_step(r, 1));
+    CALL("append to what there is", nsd_append(r, path));
+    CALL("finish", nsd_finish(r));
     armed = false;
     *crc = crc_of(path);
 end:

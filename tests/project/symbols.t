@@ -33,6 +33,7 @@ nsd_save
 nsd_set
 nsd_step
 nsd_until
+nsd_velocity
 nsd_version
 EOT
 is "nsd.h declares these functions: one that is gone or changed is another libnsd.so" "$(declared | grep -v '^nsd_$')" "$(<"$tmp/list")"

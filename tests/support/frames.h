@@ -98,6 +98,8 @@ static void make_frame(int k)
          &why);
     o->steered = true;
     o->force[0].x = 1e-3, o->torque[0].z = 1e-4;
+    must(outside_alloc(&o->lasts.force, f->packing.n, &why), &why);
+    o->lasts.force[0].y = 2e-3;
     if (f->packing.walls) o->push[0] = 0.25;
     must(writer_open(&w, path, WRITER_STREAM, &why) || writer_frame(w, f, &why) ||
              writer_close(w, &why),

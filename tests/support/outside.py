@@ -61,6 +61,8 @@ for options in ({}, {"contacts": True}, {"forces": True, "eps": 1e-6, "criterion
     settings = dict(options)
     if settings.pop("cold", None):
         settings["warm"] = False
+    if os.path.exists(path("mine.h5")):
+        os.remove(path("mine.h5"))
     with nsd.Run.from_document(path("begin.h5")) as run:
         run.set(**settings)
         run.note(line)
@@ -76,6 +78,37 @@ for options in ({}, {"contacts": True}, {"forces": True, "eps": 1e-6, "criterion
     ok((again.position == run.position).all() and (again.velocity == run.velocity).all(),
        f"a document has the run: {options}")
     run.close(), again.close()
+
+    with nsd.Run.from_document(path("mine.h5")) as again:
+        ok(raises(nsd.Error, "has step 60 already, and the run is at step 60", lambda: again.append(path("mine.h5"))),
+           "a trajectory that has the step is not gone on with")
+        again.set(**settings)
+        again.step(20)
+        again.append(path("mine.h5"))
+    ok([frame.step for frame in nsd.frames(path("mine.h5"))] == [20, 40, 60, 80], f"one that has not is: {options}")
+
+with nsd.Run.from_document(path("last.h5")) as run:
+    run.throw(3, angular_velocity=[0, 0, 2])
+    run.throw(4, [0.1, 0, 0])
+    ok((run.angular_velocity[3] == [0, 0, 2]).all() and (run.velocity[4] == [0.1, 0, 0]).all(), "bodies that are thrown")
+    ok(raises(nsd.Error, "is not finite", lambda: run.throw(3, [0, np.nan, 0])), "not to nowhere")
+
+# ---- forces that last ----
+
+with nsd.Run.from_document(path("last.h5")) as run:
+    run.set(warm=False)
+    run.force[3] = [1e-4, 0, 2e-5]
+    run.push_boundary(5, 1e-3)
+    run.save(path("lasting.h5"))
+    run.step()
+    position = run.position.copy()
+solved = tool("nsd-solve", input=tool("nsd-detect", path("lasting.h5")))
+for name, words in {"nsd-step": ["nsd-step", "--cold", path("lasting.h5")], "detect, solve, move": ["nsd-move"]}.items():
+    with open(path("tools.h5"), "wb") as f:
+        f.write(tool(*words, input=solved))
+    with nsd.Run.from_document(path("tools.h5")) as after:
+        ok((after.position == position).all() and (after.force[3] == [1e-4, 0, 2e-5]).all(),
+           f"{name} goes on with the forces that last in a document")
 
 # ---- arrays ----
 

@@ -7,16 +7,17 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 static char folder[] = "/tmp/nsd_api.XXXXXX";
 
 static const char *path_of(const char *name)
 {
-    static char path[4][100];
+    static char path[8][100];
     static int k;
-    snprintf(path[++k % 4], sizeof path[0], "%s/%s", folder, name);
-    return path[k % 4];
+    snprintf(path[++k % 8], sizeof path[0], "%s/%s", folder, name);
+    return path[k % 8];
 }
 
 static void must(int failed, const struct nsd_run *r)
@@ -116,6 +117,24 @@ static void test_top(void)
     nsd_close(&r);
 }
 
+static void test_velocities(void)
+{
+    struct nsd_run *r = scene(free_bodies);
+    const double *x = array(r, "position", NULL), *v = array(r, "velocity", NULL);
+    const double *w = array(r, "angular_velocity", NULL);
+    const double u[3] = { 3, 0, 1 }, spin[3] = { 0, 0, 5 }, bad[3] = { 0, NAN, 0 };
+    must(nsd_step(r, 50) || nsd_velocity(r, 0, u, spin) || nsd_velocity(r, 2, u, NULL) ||
+             nsd_step(r, 100),
+         r);
+    ok(close_to(v[0], 3) && close_to(v[2], 1 - 2 * 0.1) && close_to(x[0], 0.3) && close_to(w[2], 5),
+       "a velocity that is given: v = u + g t");
+    ok(v[6] == 3 && close_to(x[6], 18.3), "a fixed body keeps it");
+    ok(nsd_velocity(r, 0, spin, bad) == NSD_DATA && v[0] == 3 && w[2] == 5 &&
+           nsd_velocity(r, 9, u, NULL) == NSD_DATA && nsd_velocity(NULL, 0, u, u) == NSD_USAGE,
+       "one that is not finite, or of no body, leaves all as it was");
+    nsd_close(&r);
+}
+
 static void test_boundaries(void)
 {
     struct nsd_run *r =
@@ -199,6 +218,223 @@ static void test_resume(void)
     must(act(memory, 17), memory);
     ok(same(whole, memory), "and from a document in memory");
     nsd_close(&whole), nsd_close(&half), nsd_close(&rest), nsd_close(&frames), nsd_close(&memory);
+}
+
+/* All bytes of a file, to be freed */
+static char *bytes_of(const char *path, size_t *n)
+{
+    FILE *f = fopen(path, "r");
+    char *bytes = malloc(1 << 22);
+    *n = f && bytes ? fread(bytes, 1, 1 << 22, f) : 0;
+    if (f) fclose(f);
+    return bytes;
+}
+
+static bool same_files(const char *a, const char *b)
+{
+    size_t n, m;
+    char *x = bytes_of(a, &n), *y = bytes_of(b, &m);
+    bool same = n && n == m && !memcmp(x, y, n);
+    free(x), free(y);
+    return same;
+}
+
+/* Forces that last go with documents, and those of one step do not. */
+static void test_lasting(void)
+{
+    static const char light[] =
+        "{\"dt\":1e-3,\"gravity\":[0,0,0],\"density\":1000,\"bodies\":[{\"x\":[0,0,1],\"radius\":"
+        "0.1},{\"x\":[5,0,1],\"radius\":0.1}],\"walls\":[{\"point\":[0,0,0],\"normal\":[0,0,1],"
+        "\"load\":{\"along\":[0,0,1],\"mass\":2}}]}";
+    const double f[3] = { 3, 0, 1 }, torque[3] = { 0, 0, 0.5 }, none[3] = { 0 };
+    struct nsd_run *r = scene(light), *twin = scene(light), *rest;
+    const char *path = path_of("lasting.h5"), *a = path_of("all.h5"), *b = path_of("rest.h5");
+    must(nsd_append(r, path) || nsd_force(r, 1, f, torque, NSD_LASTING) ||
+             nsd_boundary_force(r, 0, -4, NSD_LASTING) || nsd_step(r, 10) ||
+             nsd_force(r, 0, f, torque, NSD_ONCE) || nsd_append(r, path) || nsd_finish(r),
+         r);
+    must(nsd_from_document(&rest, path) || nsd_step(rest, 10) || nsd_save(rest, b), rest);
+    must(nsd_force(r, 0, none, none, NSD_ONCE) || nsd_step(r, 10) || nsd_save(r, a), r);
+    const double *m = array(rest, "mass", NULL), *v = array(rest, "velocity", NULL);
+    const double *u = array(rest, "boundary_velocity", NULL);
+    ok(close_to(v[3], f[0] / m[1] * 0.02) && close_to(v[5], f[2] / m[1] * 0.02) && v[0] == 0 &&
+           close_to(u[2], -4 * 0.02 / 2),
+       "a run that is resumed goes on with the forces that last: v = F t/m");
+    ok(same(r, rest), "and that is what the run itself does, bit for bit");
+    nsd_close(&rest);
+    must(nsd_from_document(&rest, a), NULL);
+    must(nsd_force(rest, 1, none, none, NSD_LASTING) ||
+             nsd_boundary_force(rest, 0, 0, NSD_LASTING) || nsd_save(rest, b),
+         rest);
+    nsd_close(&rest), nsd_close(&r);
+    must(nsd_from_document(&rest, b), NULL);
+    const double before = array(rest, "velocity", NULL)[3];
+    must(nsd_step(rest, 3), rest);
+    ok(array(rest, "velocity", NULL)[3] == before, "what was taken back does not go with them");
+    r = scene(light);
+    must(nsd_force(r, 1, f, torque, NSD_LASTING) || nsd_force(r, 1, none, none, NSD_LASTING) ||
+             nsd_save(r, a) || nsd_save(twin, b),
+         r);
+    ok(same_files(a, b), "a document without them keeps its bytes");
+    nsd_close(&r), nsd_close(&rest), nsd_close(&twin);
+}
+
+/* n steps, a frame every fifth */
+static void append(struct nsd_run *r, const char *path, int n)
+{
+    for (int k = 5; k <= n; k += 5) must(act(r, 5) || nsd_append(r, path), r);
+}
+
+static void write_file(const char *path, const char *bytes, size_t n)
+{
+    FILE *f = fopen(path, "w");
+    if (!f || fwrite(bytes, 1, n, f) != n || fclose(f)) exit(1);
+}
+
+/* A trajectory in two parts is that of one run. */
+static void test_append(const char *name, const char *text, const char *option, bool killed)
+{
+    const char *whole = path_of("whole.h5"), *parts = path_of("parts.h5");
+    remove(whole), remove(parts);
+    struct nsd_run *r = scene(text);
+    must(nsd_set(r, option, "true"), r);
+    append(r, whole, 40);
+    must(nsd_finish(r), r);
+    nsd_close(&r);
+    pid_t child = killed ? fork() : 0;
+    if (!child) {
+        r = scene(text);
+        must(nsd_set(r, option, "true"), r);
+        append(r, parts, 20);
+        if (killed) _exit(0); // its trajectory is not finished
+        nsd_close(&r);
+    }
+    if (killed) waitpid(child, NULL, 0);
+    must(nsd_from_document(&r, parts), NULL);
+    must(nsd_set(r, option, "true"), r);
+    append(r, parts, 20);
+    nsd_close(&r);
+    ok(same_files(whole, parts), "%s: a trajectory that goes on has the bytes of one in one piece",
+       name);
+}
+
+static void refuse(struct nsd_run *r, const char *path, int status, const char *words)
+{
+    size_t n, m;
+    char *before = bytes_of(path, &n);
+    int got = nsd_append(r, path);
+    bool said = strstr(nsd_error(r), words);
+    char *after = bytes_of(path, &m);
+    ok(got == status && said && n == m && !memcmp(before, after, n),
+       "not gone on with, and left as it is: %s", nsd_error(r));
+    free(before), free(after);
+}
+
+static void test_appends(void)
+{
+    static const char few[] = "{\"dt\":1e-3,\"mu\":0.3,\"bodies\":[{\"count\":9,\"radius\":0.1,"
+                              "\"box\":{\"x\":[0,1],\"y\":[0,"
+                              "1],\"z\":[0,1]}}],\"walls\":[{\"box\":{\"x\":[0,1],\"y\":[0,1],"
+                              "\"z\":[0,null]}},{\"point\":"
+                              "[0,0,3],\"normal\":[0,0,-1]}]}";
+    test_append("a heap", heap, "warm", false);
+    test_append("with forces", heap, "forces", false);
+    test_append("a run that was killed", few, "contacts", true);
+    const char *path = path_of("parts.h5"), *other = path_of("other.h5"), *cut = path_of("cut.h5");
+    struct nsd_run *r = scene(few), *twin;
+    refuse(r, path, NSD_DATA, "has step 5 already, and the run is at step 0: remove it");
+    must(nsd_from_document(&twin, path), NULL);
+    refuse(twin, path, NSD_DATA, "has step 40 already, and the run is at step 40");
+    must(nsd_step(twin, 5), twin);
+    remove(other);
+    struct nsd_run *stranger = scene(heap);
+    must(nsd_append(stranger, other), stranger);
+    refuse(twin, other, NSD_OUTPUT, "is writing it");
+    must(nsd_finish(stranger), stranger);
+    refuse(twin, other, NSD_DATA, "belongs to another scene");
+    size_t n;
+    char *bytes = bytes_of(path, &n);
+    write_file(cut, bytes, n / 2);
+    refuse(twin, cut, NSD_DATA, "cut.h5");
+    for (size_t k = n / 2; k < n / 2 + 64; k++) bytes[k] = (char)(bytes[k] ^ 0x5a);
+    write_file(cut, bytes, n);
+    refuse(twin, cut, NSD_DATA, "cut.h5");
+    free(bytes);
+    write_file(cut, "my notes\n", 9);
+    refuse(twin, cut, NSD_DATA, "cut.h5");
+    const int32_t gone = 3;
+    must(nsd_remove(twin, 1, &gone), twin);
+    refuse(twin, path, NSD_DATA, "8 bodies, and the trajectory has 9");
+    must(nsd_append(stranger, path_of("fresh.h5")) || nsd_finish(stranger), stranger);
+    nsd_close(&r), nsd_close(&twin), nsd_close(&stranger);
+}
+
+/* A body falls, is taken out, or both, as a function of the step. */
+static void come_and_go(struct nsd_run *r, int n, const char *path)
+{
+    for (int k = 0; k < n; k++) {
+        const int step = (int)number(r, "step");
+        const double x[3] = { -2, 0, 2.5 }, radius = 0.05;
+        const struct nsd_bodies one = {
+            .size = sizeof one, .n = 1, .position = x, .radius = &radius, .density = 1000
+        };
+        int32_t id;
+        if (step % 20 == 3) must(nsd_add(r, &one, &id), r);
+        if (step % 20 == 13) {
+            struct nsd_array ids = { .size = sizeof ids };
+            must(nsd_read(r, "id", &ids), r);
+            must(nsd_remove(r, 1, (const int32_t *)ids.data + ids.shape[0] / 2), r);
+        }
+        must(nsd_step(r, 1), r);
+        if (path && step % 5 == 4) must(nsd_append(r, path), r);
+    }
+}
+
+/* Scenes that pour and remove take bodies, and give them, too. */
+static void test_flow(void)
+{
+    static const char pours[] =
+        "{\"dt\":5e-3,\"walls\":[{\"point\":[0,0,-1],\"normal\":[0,0,1]}],\"density\":1000,"
+        "\"pour\":[{\"rate\":40,\"radius\":0.1,\"density\":1000,\"count\":30,\"opening\":{\"disc\":"
+        "{"
+        "\"center\":[0,0,3],\"normal\":[0,0,1],\"radius\":1}}}],"
+        "\"remove\":[{\"below\":{\"point\":[0,0,-0.5],\"normal\":[0,0,1]}}]}";
+    const char *whole = path_of("flow.h5"), *parts = path_of("flows.h5");
+    const char *a = path_of("flow_a.h5"), *b = path_of("flow_b.h5");
+    struct nsd_run *r = scene(pours), *half = scene(pours);
+    come_and_go(r, 200, whole);
+    must(nsd_save(r, a) || nsd_finish(r), r);
+    come_and_go(half, 90, parts);
+    must(nsd_finish(half), half);
+    nsd_close(&half);
+    must(nsd_from_document(&half, parts), NULL);
+    come_and_go(half, 110, parts);
+    must(nsd_save(half, b) || nsd_finish(half), half);
+    ok(same(r, half) && same_files(whole, parts),
+       "bodies that a program adds and removes where others are poured and removed: a trajectory "
+       "that goes on has the same bytes");
+    int64_t n;
+    struct nsd_array ids = { .size = sizeof ids };
+    must(nsd_read(r, "id", &ids), r);
+    n = ids.shape[0];
+    const int32_t *id = ids.data;
+    bool rising = n > 1;
+    for (int64_t i = 1; i < n; i++) rising = rising && id[i] > id[i - 1];
+    // 30 are poured, and 10 are added; 10 are taken out, and the scene removes what falls through
+    ok(rising && id[n - 1] < 40 && id[n - 1] >= 35, "each has a number of its own, in order");
+    struct nsd_run *plain = scene(pours), *gone = scene(pours);
+    const double x[3] = { -5, 0, 2.5 }, radius = 0.05;
+    const struct nsd_bodies one = {
+        .size = sizeof one, .n = 1, .position = x, .radius = &radius, .density = 1000
+    };
+    int32_t new;
+    must(nsd_step(plain, 30), plain);
+    must(nsd_step(gone, 10) || nsd_add(gone, &one, &new) || nsd_step(gone, 10) ||
+             nsd_remove(gone, 1, &new) || nsd_step(gone, 10),
+         gone);
+    ok(same(plain, gone),
+       "a body that comes and goes far away leaves the others' motion as it was");
+    nsd_close(&r), nsd_close(&half), nsd_close(&plain), nsd_close(&gone);
 }
 
 /* Bodies as arrays are those of the scene. */
@@ -406,7 +642,10 @@ static void call(struct nsd_run **run)
                             .mass = draw(3) ? NULL : x + 2,
                             .density = some(),
                             .kind = draw(3) ? NULL : id };
-    switch (draw(20)) {
+    switch (draw(21)) {
+    case 19:
+        nsd_velocity(r, id[0], draw(3) ? x : NULL, draw(3) ? x + 3 : NULL);
+        break;
     case 0:
         nsd_step(r, draw(4));
         break;
@@ -454,7 +693,11 @@ static void call(struct nsd_run **run)
         nsd_until(r, draw(2) ? x[0] * 1e-2 : x[0]);
         break;
     case 15:
-        if (!draw(12)) nsd_append(r, path_of(draw(2) ? "x.h5" : "y.h5"));
+        if (!draw(12)) {
+            const char *path = path_of(draw(2) ? "x.h5" : "y.h5");
+            if (draw(2)) remove(path);
+            nsd_append(r, path);
+        }
         break;
     case 16:
         if (!draw(12)) nsd_save(r, path_of("z.h5"));
@@ -493,8 +736,9 @@ static void test_random(void)
 int main(void)
 {
     if (!mkdtemp(folder)) return 1;
-    test_forces(), test_top(), test_boundaries();
-    test_resume(), test_arrays(), test_threads(), test_errors(), test_random();
+    test_forces(), test_velocities(), test_top(), test_boundaries();
+    test_resume(), test_lasting(), test_appends(), test_flow(), test_arrays(), test_threads(),
+        test_errors(), test_random();
     char command[100];
     snprintf(command, sizeof command, "rm -r %s", folder);
     if (system(command)) return 1;

@@ -76,6 +76,32 @@ done <<'END'
 END
 
 unset alone
+
+# ---- a program in the loop, which the first process talks to ----
+
+# shellcheck disable=SC2016 # for another shell
+acts='jq -c --unbuffered "{forces: [range(.bodies) | [(. * 1e-8), 0, 2e-6]], torques: {\"200\": [0, 0, 1e-8]}, gravity: [(.step | sin), 0, -9.81],
+    velocities: (if .step % 4 == 1 then {\"205\": [0.01, 0, 0]} else {} end), friction: [[\"ball\", \"wall\", (.step % 7 / 10)]],
+    boundaries: {\"0\": {velocity: [0, 0, (.time | sin * 1e-3)]}}}"'
+three=1 ok "forces, torques, velocities, gravity, friction, boundaries that a program answers: the same bytes" \
+    same "$tmp/heap.h5" "$all" -n 8 --contacts --with "$acts" --with-boundaries all
+ranks 2 -n 8 --contacts --replay "$tmp/one.h5" -o "$tmp/replayed.h5" "$tmp/heap.h5" 2>/dev/null
+ok "replayed" cmp "$tmp/one.h5" "$tmp/replayed.h5"
+ok "where grains pour and are taken away" same "$tmp/pour.h5" 3 -n 20 --with 'jq -c --unbuffered "{forces: [range(.bodies) | [1e-6, 0, 0]]}"'
+alone=5 ok "on a piston under a load" same "$tmp/press.h5" 2 -n 5 --with 'jq -c --unbuffered "{boundaries: {\"5\": {force: (.step * 1e-4)}}}"'
+ends() { ranks 2 -n 5 --with 'read -r l; echo "{}"; exit 3' -o "$tmp/ended.h5" "$tmp/heap.h5"; }
+status 69 "a program that ends, ends the run of all" ends
+is "with whole frames" "$(nsd-info "$tmp/ended.h5" | jq -sc 'map(select(.step != null).step)')" "[901]"
+if /usr/bin/python3 -c 'import numpy' 2>/dev/null && ! grep -q __asan_init "$(command -v nsd-gen)"; then
+    PYTHONPATH=python NSD_LIBRARY=$(dirname "$(command -v nsd-gen)")/libnsd.so.1 /usr/bin/python3 - "$tmp/heap.h5" "$tmp/lasting.h5" <<'EOF'
+import sys, nsd
+run = nsd.Run.from_document(sys.argv[1])
+run.force[:] = [1e-6, 0, 0]
+run.save(sys.argv[2])
+EOF
+    ok "forces that last in a document" same "$tmp/lasting.h5" 3 -n 5 --contacts
+fi
+
 jq '.adhesion = { c_n: 1e9, c_t: 5e8, w: 1, eta: 1e-5, forever: true } | .capillary = { volume: 1e-11, tension: 0.07 } | .rolling = { mu_r: 1e-3, mu_p: 1e-3 }' \
     scenes/rubble.json >"$tmp/glued.json"
 after 400 "$tmp/glued.json"
@@ -131,6 +157,7 @@ ok "by Anderson's acceleration" blocks "$tmp/rolling.h5" 2 1e-6 -n 1 --global an
 ok "with bonds" blocks "$tmp/bonded.h5" 3 1e-8 -n 3 --overlap keep
 ok "with rolling friction, from the last reactions and moments" blocks "$tmp/solved.h5" 3 1e-6 -n 2 --warm --overlap keep
 ok "with grains that pour" blocks "$tmp/pour.h5" 2 1e-8 -n 3 --overlap keep
+ok "with a program in the loop" blocks "$tmp/moving.h5" 3 1e-8 -n 3 --overlap keep --with "$acts"
 overlaps() # FILE: m, the largest of the last frames
 {
     nsd-info "$1" | jq -s 'map(select(.max_overlap != null)) | last | .max_overlap'

@@ -1,0 +1,159 @@
+/* api/answer_frame.c: the answer that a whole document is [api/answer.h]. */
+#include "api/answer.h"
+#include "io/frame.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static int no_memory(struct why *why)
+{
+    return why_set(why, EX_SOFTWARE, "no memory for an answer");
+}
+
+static int other(struct why *why, const char *what)
+{
+    return why_set(why, EX_DATAERR, "the document answered has another %s than the run", what);
+}
+
+/* ---- what has to be the same ---- */
+
+/* A number of a body that is not to be changed, and is */
+static int check_column(const struct body_column *b, const struct packing *q,
+                        const struct packing *p, struct why *why)
+{
+    const size_t row = column_bytes(&b->column);
+    const char *x = column_array(&b->column, q), *y = column_array(&b->column, p);
+    if (!x && !y) return 0;
+    if (!x || !y) return other(why, b->column.name);
+    for (int64_t i = 0; i < p->n; i++)
+        if (memcmp(x + (size_t)i * row, y + (size_t)i * row, row) != 0)
+            return why_set(why, EX_DATAERR,
+                           "the document answered has another %s of body %d than the run, which "
+                           "cannot be changed",
+                           b->column.name, p->id[i]);
+    return 0;
+}
+
+static int check_boundaries(const struct packing *q, const struct packing *p, struct why *why)
+{
+    for (int32_t w = 0; w < p->walls; w++) {
+        vec3 d = v3_sub(q->wall[w].x, p->wall[w].x), v = v3_sub(q->wall[w].v, p->wall[w].v);
+        if (v3_norm(v) == 0 && v3_norm(d) != 0)
+            return why_set(why, EX_DATAERR,
+                           "the document answered has another place of boundary %d than the run, "
+                           "which cannot be changed",
+                           w);
+    }
+    return 0;
+}
+
+static int check_same(const struct frame *f, const struct packing *p, struct why *why)
+{
+    const struct packing *q = &f->packing;
+    if (q->dim != p->dim) return other(why, "dim");
+    if (q->step != p->step)
+        return why_set(why, EX_DATAERR,
+                       "the document answered is of step %lld, and the run has made step %lld",
+                       (long long)q->step, (long long)p->step);
+    if (q->t != p->t || q->dt != p->dt) return other(why, q->t != p->t ? "time" : "dt");
+    if (q->n != p->n)
+        return why_set(why, EX_DATAERR, "the document answered has %lld bodies, and there are %lld",
+                       (long long)q->n, (long long)p->n);
+    if (q->walls != p->walls) return other(why, "number of boundaries");
+    bool kinds = q->kinds == p->kinds;
+    for (int32_t k = 0; kinds && k < p->kinds; k++)
+        kinds = !strcmp(q->kind_name[k], p->kind_name[k]);
+    if (!kinds) return other(why, "list of materials");
+    for (int k = 0; k < BODY_COLUMNS; k++)
+        if (k != BODY_v && k != BODY_w && check_column(&body_columns[k], q, p, why))
+            return why->status;
+    return check_boundaries(q, p, why);
+}
+
+/* ---- what is taken ---- */
+
+static json_t *numbers(vec3 x)
+{
+    return json_pack("[f, f, f]", x.x, x.y, x.z);
+}
+
+static bool same(vec3 x, vec3 y)
+{
+    return !memcmp(&x, &y, sizeof x);
+}
+
+/* Of the bodies in which `to` differs from `from` (NULL: from 0) */
+static int put_bodies(json_t *answer, const char *name, const struct packing *p, const vec3 *to,
+                      const vec3 *from, struct why *why)
+{
+    json_t *all = NULL;
+    char id[20];
+    for (int64_t i = 0; to && i < p->n && !why->status; i++) {
+        if (from ? same(to[i], from[i]) : v3_norm(to[i]) == 0) continue;
+        snprintf(id, sizeof id, "%d", p->id[i]);
+        if (!all) all = json_object();
+        if (!all || json_object_set_new(all, id, numbers(to[i]))) no_memory(why);
+    }
+    if (why->status) return json_decref(all), why->status;
+    return all && json_object_set_new(answer, name, all) ? no_memory(why) : 0;
+}
+
+static int put_boundaries(json_t *answer, const struct packing *q, const struct packing *p,
+                          struct why *why)
+{
+    json_t *all = NULL;
+    char number[20];
+    for (int32_t w = 0; w < p->walls && !why->status; w++) {
+        const vec3 v = q->wall[w].v;
+        const double push = q->outside.lasts.push ? q->outside.lasts.push[w] : 0;
+        if (same(v, p->wall[w].v) && push == 0) continue;
+        json_t *one = json_object();
+        bool good =
+            one && (same(v, p->wall[w].v) || !json_object_set_new(one, "velocity", numbers(v)));
+        good = good && (push == 0 || !json_object_set_new(one, "force", json_real(push)));
+        snprintf(number, sizeof number, "%d", w);
+        if (!all) all = json_object();
+        if (!good || !all) {
+            json_decref(one);
+            no_memory(why);
+        } else if (json_object_set_new(all, number, one)) {
+            no_memory(why);
+        }
+    }
+    if (why->status) return json_decref(all), why->status;
+    return all && json_object_set_new(answer, "boundaries", all) ? no_memory(why) : 0;
+}
+
+static int put_frictions(json_t *answer, const struct packing *q, const struct packing *p,
+                         struct why *why)
+{
+    json_t *all = NULL;
+    for (int32_t a = 0; a < p->kinds; a++)
+        for (int32_t b = a; b < p->kinds; b++) {
+            const double mu = q->mu[a * p->kinds + b];
+            if (mu == p->mu[a * p->kinds + b]) continue;
+            if (!all) all = json_array();
+            if (!all || json_array_append_new(
+                            all, json_pack("[s, s, f]", p->kind_name[a], p->kind_name[b], mu)))
+                return json_decref(all), no_memory(why);
+        }
+    return all && json_object_set_new(answer, "friction", all) ? no_memory(why) : 0;
+}
+
+json_t *answer_of_frame(const struct frame *f, const struct packing *p, struct why *why)
+{
+    const struct packing *q = &f->packing;
+    const struct lasting *s = &q->outside.lasts;
+    json_t *answer = json_object();
+    if (!answer) return no_memory(why), NULL;
+    if (!check_same(f, p, why) && !put_bodies(answer, "forces", p, s->force, NULL, why) &&
+        !put_bodies(answer, "torques", p, s->torque, NULL, why) &&
+        !put_bodies(answer, "velocities", p, q->v, p->v, why) &&
+        !put_bodies(answer, "angular_velocities", p, q->w, p->w, why) &&
+        !put_boundaries(answer, q, p, why) && !put_frictions(answer, q, p, why) &&
+        !same(q->g, p->g) && json_object_set_new(answer, "gravity", numbers(q->g)))
+        no_memory(why);
+    if (!why->status) return answer;
+    json_decref(answer);
+    return NULL;
+}
