@@ -186,6 +186,11 @@ static json_t *masses_json(const struct packing *p)
         if (has > 0)
             add_mass(list, "edge", k, has, time_step_edge_mass(p), "3/(4 pi^2) of all grains");
     }
+    double squares = 0;
+    for (int k = 0; k < p->dim; k++) squares += v3_dot(p->cell.edge[k], p->cell.edge[k]);
+    if (p->cell.size_mass > 0)
+        add_mass(list, "size", 0, p->cell.size_mass / squares, time_step_edge_mass(p),
+                 "3/(4 pi^2) of all grains");
     return list;
 }
 
