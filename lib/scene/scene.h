@@ -122,8 +122,8 @@
  *   size, orientation as of a group of bodies }
  *   [scene/flow.h]; in the plane the disc is a segment.
  *
- * REMOVAL { outside: BOX } or { inside: BOX } or { below: { point, normal } }, with kind [any]: bodies
- *   go whose centre is there.
+ * REMOVAL { outside: BOX } or { inside: BOX } or { below: { point, normal } } [anywhere], with kind [any], id integer
+ *   or [integer, ...] [any], from, until s: bodies go whose centre is there.
  *
  * The paper's examples. The paper gives radii, mu, dt and (example 1) the initial velocity. Our
  * choices: density 2500 kg/m^3, g 9.81 m/s^2, e_n = e_t = 0, and
@@ -218,12 +218,15 @@ struct scene_pour {
     struct scene_form form;
 };
 
-/* Where grains go: bodies whose centre is there */
+/* Which grains go, and when: bodies whose centre is there */
 struct scene_removal {
-    enum scene_region { REGION_OUTSIDE, REGION_INSIDE, REGION_BELOW } region;
+    enum scene_region { REGION_OUTSIDE, REGION_INSIDE, REGION_BELOW, REGION_ALL } region;
     struct scene_box box;
     vec3 point, normal; /* m; unit vector: REGION_BELOW, on the side away from the normal */
     int32_t kind;       /* only bodies of this kind; -1: of all */
+    int32_t ids;        /* only bodies with these numbers; 0: all */
+    int32_t *id;        /* [ids], rising */
+    double from, until; /* s */
 };
 
 /* A boundary whose triangles are in a file: whoever can read it adds them, with mesh_grow(), before the

@@ -461,10 +461,6 @@ static int inherit_cell(struct packing *p, const struct scene *s, struct why *wh
     if (s->cell.goes_on && !repeats)
         return why_set(why, EX_DATAERR, "cell: has no edges, and nor has the first document");
     if (!repeats || s->cell.none || (s->cell.given && !s->cell.goes_on)) return 0;
-    if (s->pours + s->removals)
-        return why_set(why, EX_DATAERR,
-                       "bodies come and go in no cell that repeats, and the first "
-                       "document has one (\"cell\": null leaves it out)");
     if (s->cell.goes_on ? complete_cell(p, s, from) : take_cell(p, s, from))
         return why_set(why, EX_SOFTWARE, "no memory for the cell");
     return packing_alloc_images(p, why);
@@ -517,7 +513,8 @@ static int list_group(struct grains *out, const struct scene *s, int64_t g, cons
     case SCENE_SHELVES:
         return in_group(g, shelves_fill(out, b, s->dim, rng, why), why);
     case SCENE_RANDOM:
-        return in_group(g, random_start(out, b, s->dim, rng, why), why);
+        return in_group(
+            g, random_start(out, b, s->dim, b->in_cell ? &s->cell.cell : NULL, rng, why), why);
     default:
         return 0;
     }
