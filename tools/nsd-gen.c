@@ -5,6 +5,7 @@
 #include "import/scene_file.h"
 #include "io/writer.h"
 #include "scene/scene_build.h"
+#include "scene/scene_height.h"
 #include "scene/time_step.h"
 
 #include <errno.h>
@@ -186,6 +187,25 @@ static json_t *masses_json(const struct packing *p)
         if (has > 0)
             add_mass(list, "edge", k, has, time_step_edge_mass(p), "3/(4 pi^2) of all grains");
     }
+    double squares = 0;
+    for (int k = 0; k < p->dim; k++) squares += v3_dot(p->cell.edge[k], p->cell.edge[k]);
+    if (p->cell.size_mass > 0)
+        add_mass(list, "size", 0, p->cell.size_mass / squares, time_step_edge_mass(p),
+                 "3/(4 pi^2) of all grains");
+    return list;
+}
+
+/* The heights that groups take, and those of their boxes, null where these are open */
+static json_t *heights_json(const struct scene *s)
+{
+    json_t *list = json_array();
+    for (int64_t g = 0; g < s->groups; g++) {
+        double has, height = scene_height(s, g, &has);
+        if (isnan(height)) continue;
+        json_array_append_new(list, json_pack("{s:i, s:o, s:o}", "group", (int)g, "height",
+                                              json_number(height), "box", json_number(has)));
+        warn("bodies[%lld]: a height of %.4g m, in a box of %.4g m", (long long)g, height, has);
+    }
     return list;
 }
 
@@ -212,6 +232,7 @@ static void tell(const struct scene *s, const struct packing *p)
                           t.by < 0 ? json_null() : json_string(time_step_limit[t.by].name), "scene",
                           s->dt > 0 ? json_real(s->dt) : json_string("auto"), "radius",
                           json_number(t.radius), "limits", limits, "masses", masses);
+    json_object_set_new(j, "heights", heights_json(s));
     if (s->fits) json_object_set_new(j, "clumps", fits_json(s));
     if (t.by < 0)
         warn("dt: nothing moves by which a time step could be suggested");

@@ -229,7 +229,9 @@ static json_t *load(const struct packing *p, const struct wall *w)
     json_object_set_new(j, turns ? "about" : "along", json_vec(l->axis));
     if (turns) json_object_set_new(j, "point", json_vec(l->point));
     json_object_set_new(j, "mass", json_number(l->mass));
-    json_object_set_new(j, turns ? "torque" : "force", json_number(wall_force(p, w)));
+    json_object_set_new(j, turns ? "torque" : "force",
+                        json_number(wall_force(p, w, p->t + p->dt / 2)));
+    if (l->spread) json_object_set_new(j, "face", json_number(wall_face(p, w, p->t)));
     json_object_set_new(j, "speed", json_number(l->speed));
     json_object_set_new(j, "travel", json_number(l->travel));
     return j;

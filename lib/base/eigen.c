@@ -22,13 +22,26 @@ static inline void rotate(int n, double S[EIGEN_MOST][EIGEN_MOST], int p, int q)
     }
 }
 
+/* Is what is beside the diagonal so small that no rotation changes the largest entry of the diagonal, not even in
+   its last bit? */
+static inline bool settled(int n, double S[EIGEN_MOST][EIGEN_MOST])
+{
+    double most = 0, beside = 0;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j <= i; j++) {
+            double *to = i == j ? &most : &beside;
+            *to = fmax(*to, fabs(S[i][j]));
+        }
+    return beside <= 1e-20 * most;
+}
+
 /* Pairs one apart, then two apart ..., round the corner */
 static inline double largest(int n, const double *A)
 {
     double S[EIGEN_MOST][EIGEN_MOST] = { { 0 } }, most;
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++) S[i][j] = 0.5 * (A[n * i + j] + A[n * j + i]);
-    for (int round = 0; round < ROUNDS; round++)
+    for (int round = 0; round < ROUNDS && !settled(n, S); round++)
         for (int apart = 1; apart <= n / 2; apart++)
             for (int k = 1; k <= n; k++) {
                 int p = k % n, q = (k + apart) % n;

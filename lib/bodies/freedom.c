@@ -5,6 +5,8 @@
 
 #include <stdlib.h>
 
+enum { EDGE = -1, SIZE = -2 }; /* in place of a boundary */
+
 bool freedoms_in(const struct packing *p)
 {
     if (cell_yields(&p->cell)) return true;
@@ -13,7 +15,14 @@ bool freedoms_in(const struct packing *p)
     return false;
 }
 
-static struct freedom wall_freedom(const struct packing *p, int32_t w)
+/* s: of the step */
+static double middle(const struct packing *p, bool ended)
+{
+    return ended ? p->t - p->dt / 2 : p->t + p->dt / 2;
+}
+
+/* t: the middle of the step, s */
+static struct freedom wall_freedom(const struct packing *p, int32_t w, double t)
 {
     const struct load *l = &p->wall[w].load;
     return (struct freedom){ .boundary = w,
@@ -21,59 +30,84 @@ static struct freedom wall_freedom(const struct packing *p, int32_t w)
                              .axis = l->axis,
                              .point = l->point,
                              .mass = l->mass,
-                             .force = wall_force(p, &p->wall[w]),
+                             .force = wall_force(p, &p->wall[w], t),
                              .speed = l->speed };
 }
 
 /* Component i of edge k, where the face across is area[k] */
-static struct freedom edge_freedom(const struct cell *c, int k, int i, const vec3 inverse[3],
-                                   const vec3 area[3])
+static struct freedom edge_freedom(const struct packing *p, int k, int i, const vec3 inverse[3],
+                                   const vec3 area[3], double t)
 {
+    const struct cell *c = &p->cell;
     const double *row = c->stress[i], rate[3] = { c->rate[k].x, c->rate[k].y, c->rate[k].z };
-    return (struct freedom){ .boundary = -1,
-                             .edge = k,
-                             .inverse = inverse[k],
-                             .axis = v3(i == 0, i == 1, i == 2),
-                             .mass = c->mass[k][i],
-                             .force = -v3_dot(v3(row[0], row[1], row[2]), area[k]),
-                             .speed = rate[i] };
+    struct freedom f = { .boundary = EDGE,
+                         .edge = k,
+                         .inverse = inverse[k],
+                         .axis = v3(i == 0, i == 1, i == 2),
+                         .mass = c->mass[k][i],
+                         .force = -v3_dot(v3(row[0], row[1], row[2]), area[k]),
+                         .speed = rate[i] };
+    if (c->factors) f.force *= cell_factor_at(c, t);
+    f.gain[k] = f.axis;
+    return f;
+}
+
+/* m^3, of discs m^2 */
+static double volume_of(const struct packing *p, const vec3 edge[3])
+{
+    double volume = v3_dot(edge[0], v3_cross(edge[1], edge[2]));
+    if (p->dim == 2) volume /= v3_norm(edge[2]); // which only closes the cell
+    return fabs(volume);
+}
+
+/* The size, where the edges are edge[] */
+static struct freedom size_freedom(const struct packing *p, const vec3 edge[3], double t)
+{
+    const struct cell *c = &p->cell;
+    struct freedom f = { .boundary = SIZE, .mass = c->size_mass };
+    f.force = -p->dim * volume_of(p, edge) * c->mean * cell_factor_at(c, t);
+    f.speed = cell_growth(c, step_after(p));
+    for (int k = 0; k < p->dim; k++) f.gain[k] = edge[k];
+    return f;
 }
 
 /* m^2, of discs m: the faces across the edges, to the side that they go */
 static void face_areas(const struct packing *p, const vec3 edge[3], const vec3 inverse[3],
                        vec3 area[3])
 {
-    double volume = v3_dot(edge[0], v3_cross(edge[1], edge[2]));
-    if (p->dim == 2) volume /= v3_norm(edge[2]); // which only closes the cell
-    for (int k = 0; k < 3; k++) area[k] = v3_scale(fabs(volume), inverse[k]);
+    double volume = volume_of(p, edge);
+    for (int k = 0; k < 3; k++) area[k] = v3_scale(volume, inverse[k]);
 }
 
-int freedoms_init(struct freedoms *list, const struct packing *p, const vec3 half[3],
+int freedoms_init(struct freedoms *list, const struct packing *p, const vec3 half[3], bool ended,
                   struct why *why)
 {
+    const double t = middle(p, ended);
     *list = (struct freedoms){ 0 };
     if (!freedoms_in(p)) return 0;
-    list->f = calloc((size_t)p->walls + 9, sizeof *list->f);
+    list->f = calloc((size_t)p->walls + 10, sizeof *list->f);
     if (!list->f) return why_set(why, EX_SOFTWARE, "no memory for the loads");
     for (int32_t w = 0; w < p->walls; w++)
-        if (p->wall[w].load.way) list->f[list->n++] = wall_freedom(p, w);
+        if (p->wall[w].load.way) list->f[list->n++] = wall_freedom(p, w, t);
     vec3 inverse[3], area[3];
     cell_inverse(half, inverse);
     face_areas(p, half, inverse, area);
     for (int k = 0; k < 9; k++)
         if (p->cell.mass[k / 3][k % 3] > 0)
-            list->f[list->n++] = edge_freedom(&p->cell, k / 3, k % 3, inverse, area);
+            list->f[list->n++] = edge_freedom(p, k / 3, k % 3, inverse, area, t);
+    if (p->cell.size_mass > 0) list->f[list->n++] = size_freedom(p, half, t);
     return 0;
 }
 
 /* m/s: |had speed| + dt |force|/mass, the most of all that glide */
 static double fastest(const struct packing *p, bool had)
 {
+    const double t = middle(p, false);
     double most = 0;
     vec3 inverse[3], area[3];
     for (int32_t w = 0; w < p->walls; w++) {
         if (p->wall[w].load.way != LOAD_GLIDES) continue;
-        struct freedom f = wall_freedom(p, w);
+        struct freedom f = wall_freedom(p, w, t);
         most = dmax(most, had * fabs(f.speed) + p->dt * fabs(f.force) / f.mass);
     }
     if (!cell_yields(&p->cell)) return most;
@@ -81,9 +115,14 @@ static double fastest(const struct packing *p, bool had)
     face_areas(p, p->cell.edge, inverse, area);
     for (int k = 0; k < 9; k++) {
         if (!(p->cell.mass[k / 3][k % 3] > 0)) continue;
-        struct freedom f = edge_freedom(&p->cell, k / 3, k % 3, inverse, area);
+        struct freedom f = edge_freedom(p, k / 3, k % 3, inverse, area, t);
         most = dmax(most, had * fabs(f.speed) + p->dt * fabs(f.force) / f.mass);
     }
+    if (!(p->cell.size_mass > 0)) return most;
+    struct freedom f = size_freedom(p, p->cell.edge, t);
+    for (int k = 0; k < p->dim; k++)
+        most = dmax(most, v3_norm(p->cell.edge[k]) *
+                              (had * fabs(f.speed) + p->dt * fabs(f.force) / f.mass));
     return most;
 }
 
@@ -121,9 +160,28 @@ static double edges_between(const struct freedom *f, const struct packing *p,
     return c->shift[f->edge] + edges_to(f, p, c->b, ahead) - edges_to(f, p, c->a, ahead);
 }
 
+/* m: the branch, as far as its ends follow the cell's size */
+static vec3 branch_of(const struct packing *p, const struct contact *c, double ahead,
+                      const vec3 edge[3])
+{
+    if (c->a >= 0 && p->mass[c->a] > 0 && p->mass[c->b] > 0) {
+        struct arms o = arm_vectors(p, c, ahead, edge);
+        return v3_sub(o.a, o.b);
+    }
+    vec3 d = cell_shift(edge, c->shift), origin = p->cell.origin;
+    for (int end = 0; end < 2; end++) {
+        int32_t i = end ? c->b : c->a;
+        if (i < 0 || !(p->mass[i] > 0)) continue;
+        vec3 x = v3_sub(v3_axpy(p->x[i], ahead, p->v[i]), origin);
+        d = v3_axpy(d, end ? 1 : -1, x);
+    }
+    return d;
+}
+
 vec3 freedom_direction(const struct freedom *f, const struct packing *p, const struct contact *c,
                        double ahead, const vec3 edge[3])
 {
+    if (f->boundary == SIZE) return branch_of(p, c, ahead, edge);
     if (freedom_common(f)) return v3_scale(edges_between(f, p, c, ahead, edge), f->axis);
     if (c->a != -1 - f->boundary) return v3(0, 0, 0);
     return v3_scale(-1, f->turns ? v3_cross(f->axis, v3_sub(c->x, f->point)) : f->axis);
@@ -141,9 +199,12 @@ static void wall_move(const struct packing *p, struct load *l, double change, bo
 static void edge_move(struct packing *p, const struct freedom *f, double change, bool back)
 {
     double sign = back ? -1 : 1;
-    vec3 *rate = &p->cell.rate[f->edge], *edge = &p->cell.edge[f->edge];
-    *edge = v3_axpy(*edge, sign * step_after(p) * change, f->axis);
-    *rate = v3_axpy(*rate, sign * change, f->axis);
+    for (int k = 0; k < 3; k++) {
+        vec3 *rate = &p->cell.rate[k], *edge = &p->cell.edge[k];
+        if (v3_dot(f->gain[k], f->gain[k]) == 0) continue;
+        *edge = v3_axpy(*edge, sign * step_after(p) * change, f->gain[k]);
+        *rate = v3_axpy(*rate, sign * change, f->gain[k]);
+    }
 }
 
 void freedom_move(const struct freedom *f, struct packing *p, double change, bool back)
@@ -161,7 +222,7 @@ void freedoms_displace(const struct freedoms *list, struct packing *p, const dou
     for (int32_t k = 0; k < list->n; k++) {
         const struct freedom *f = &list->f[k];
         if (freedom_common(f))
-            gain[f->edge] = v3_axpy(gain[f->edge], way[k], f->axis);
+            freedom_gain(f, way[k], gain);
         else
             p->wall[f->boundary].load.travel += way[k];
     }

@@ -22,6 +22,10 @@
  * which is the contacts' stress times the face: neither the place of the border nor that of the
  * origin matters, and the bodies' momentum relative to the flow is kept [Parrinello & Rahman 1981].
  * A body of mass 0 does not follow; where one takes part, J_c counts the other body from the origin.
+ *
+ * The size of a cell that yields to a mean stress P is one freedom: all edges grow at the rate s, so that
+ * J_c = d, sum of J_c^T r_c = sum of r_c . d_c, which is dim V times the contacts' mean stress, and the force
+ * is - dim V P.
  */
 #ifndef NSD_FREEDOM_H
 #define NSD_FREEDOM_H
@@ -31,26 +35,28 @@
 #include "bodies/packing.h"
 
 struct freedom {
-    int32_t boundary; /* the boundary that it moves; -1: the cell's edge */
+    int32_t boundary; /* the boundary that it moves; -1: the cell's edge; -2: its size */
     int edge;         /* of the cell; it yields along an axis of space */
     vec3 inverse;     /* 1/m: counts edges, inverse . d, where the contacts act */
+    vec3 gain[3];     /* of the cell's rates, a unit of speed; of a boundary 0 */
     bool turns;       /* about the axis, not along it */
     vec3 axis, point; /* unit vector; m: a point on the axis, of the predicted position */
     double mass;      /* kg, or kg m^2 */
     double force;     /* N, or N m, of this step */
-    double speed;     /* m/s, or rad/s */
+    double speed;     /* m/s, or rad/s; of the size 1/s */
 };
 
 struct freedoms {
     int32_t n;
-    struct freedom *f; /* [n] boundaries first, in their order, then edges */
+    struct freedom *f; /* [n] boundaries first, in their order, then edges, or the size */
 };
 
 /* Whether the packing has any. */
 bool freedoms_in(const struct packing *p);
-/* Those of a step; speeds are those that the packing has. half: the edges of the cell where the
-   contacts act, m. Returns 0, or EX_SOFTWARE with nothing to free. */
-int freedoms_init(struct freedoms *list, const struct packing *p, const vec3 half[3],
+/* Those of a step, the one that begins where the packing is or, ended, that ends there; speeds are those that
+   the packing has. half: the edges of the cell where the contacts act, m. Returns 0, or EX_SOFTWARE with
+   nothing to free. */
+int freedoms_init(struct freedoms *list, const struct packing *p, const vec3 half[3], bool ended,
                   struct why *why);
 void freedoms_free(struct freedoms *list);
 
@@ -63,6 +69,14 @@ double freedoms_calm(const struct packing *p);
 static inline bool freedom_common(const struct freedom *f)
 {
     return f->boundary < 0;
+}
+
+/* m/s: gain[3] of the cell's edges += what a change of its speed makes of their rates */
+static inline void freedom_gain(const struct freedom *f, double change, vec3 gain[3])
+{
+    for (int k = 0; k < 3; k++)
+        if (f->gain[k].x != 0 || f->gain[k].y != 0 || f->gain[k].z != 0)
+            gain[k] = v3_axpy(gain[k], change, f->gain[k]);
 }
 
 /* Of the packing's contact c, whose bodies are `ahead` (s) from where it acts, the cell's edges (m) there:

@@ -340,6 +340,10 @@ static const char *body_trouble(const struct packing *p, int64_t i)
     return NULL;
 }
 
+enum {
+    SPREAD_MOST = 1000
+}; /* boundaries, each of which may bound the face of each that a pressure is on */
+
 static const char *load_trouble(const struct packing *p, const struct wall *w)
 {
     const struct load *l = &w->load;
@@ -353,6 +357,13 @@ static const char *load_trouble(const struct packing *p, const struct wall *w)
     bool leaves = turns ? l->axis.x != 0 || l->axis.y != 0 : l->axis.z != 0;
     if (p->dim == 2 && (leaves || l->point.z != 0))
         return "its load leaves the plane, and dim is 2";
+    if (l->spread < 0 || l->spread > 1 || (l->spread && (turns || w->shape != BOUNDARY_PLANE)))
+        return "its pressure is not on a plane that glides";
+    if (l->spread && p->walls > SPREAD_MOST)
+        return "its pressure is on one of more than 1000 boundaries: give a force";
+    if (l->spread && !(wall_face(p, w, p->t) > 0))
+        return "its pressure wants planes on all sides of its face, or a cell that repeats there: "
+               "give a force";
     if (turns && w->shape == BOUNDARY_PLANE && !(v3_norm(v3_cross(l->axis, w->n)) < 1e-6))
         return "it turns about another axis than its normal";
     return NULL;

@@ -203,8 +203,11 @@ vec3 wall_held(const struct packing *p, const struct wall *w, vec3 x);
 vec3 wall_velocity(const struct packing *p, const struct wall *w, vec3 x);
 /* rad/s: its mean angular velocity */
 vec3 wall_spin(const struct packing *p, const struct wall *w);
-/* N, N m: what its load is in the step from the packing's time, at the middle of it */
-double wall_force(const struct packing *p, const struct wall *w);
+/* m^2, in the plane m: the face of a plane across its normal, between planes upright to it and to each other, or
+   across the cell, where it repeats, at time t (s); 0: it is not bounded so. */
+double wall_face(const struct packing *p, const struct wall *w, double t);
+/* N, N m: what its load is at time t (s), the middle of a step */
+double wall_force(const struct packing *p, const struct wall *w, double t);
 /* m/s: no point of the wall within its reach is faster, nor, of a mesh or a shape without an end,
    within that of the bodies */
 double wall_top_speed(const struct packing *p, const struct wall *w);

@@ -74,12 +74,59 @@ vec3 wall_spin(const struct packing *p, const struct wall *w)
     return w->load.way == LOAD_TURNS ? v3_axpy(s, w->load.speed, w->load.axis) : s;
 }
 
-double wall_force(const struct packing *p, const struct wall *w)
+/* Of numbers that are to be at right angles to each other */
+#define UPRIGHT 1e-9
+
+/* m: from plane to plane along d, unless the cell repeats along it; 0: there are not two that face each other */
+static double width_along(const struct packing *p, vec3 d, double t)
+{
+    double lo = -INFINITY, hi = INFINITY;
+    for (int k = 0; k < 3; k++) {
+        const vec3 e = p->cell.edge[k];
+        if (p->cell.repeats[k] && v3_norm(v3_cross(e, d)) <= UPRIGHT * v3_norm(e))
+            return v3_norm(e);
+    }
+    for (int32_t i = 0; i < p->walls; i++) {
+        const struct wall *w = &p->wall[i];
+        if (w->shape != BOUNDARY_PLANE || !wall_there(w, t)) continue;
+        double along = v3_dot(wall_normal(p, w, t), d), at = v3_dot(wall_at(p, w, t), d);
+        if (along > 1 - UPRIGHT) lo = fmax(lo, at);
+        if (along < -1 + UPRIGHT) hi = fmin(hi, at);
+    }
+    return isfinite(lo) && isfinite(hi) && hi > lo ? hi - lo : 0;
+}
+
+/* A direction along which the face ends: the normal of a plane, or an edge of the cell, upright to n; false: none */
+static bool direction_across(const struct packing *p, vec3 n, double t, vec3 *d)
+{
+    for (int k = 0; k < 3; k++) {
+        const vec3 e = p->cell.edge[k];
+        *d = v3_scale(1 / v3_norm(e), e);
+        if (p->cell.repeats[k] && fabs(v3_dot(*d, n)) <= UPRIGHT) return true;
+    }
+    for (int32_t i = 0; i < p->walls; i++) {
+        if (p->wall[i].shape != BOUNDARY_PLANE) continue;
+        *d = wall_normal(p, &p->wall[i], t);
+        if (fabs(v3_dot(*d, n)) <= UPRIGHT) return true;
+    }
+    return false;
+}
+
+double wall_face(const struct packing *p, const struct wall *w, double t)
+{
+    vec3 n = wall_normal(p, w, t), d;
+    if (!direction_across(p, n, t, &d)) return 0;
+    double face = width_along(p, d, t);
+    return p->dim == 2 ? face : face * width_along(p, v3_cross(n, d), t);
+}
+
+double wall_force(const struct packing *p, const struct wall *w, double t)
 {
     double force = w->load.force;
-    if (p->outside.push) force += p->outside.push[w - p->wall];
     for (int32_t k = w->first_push; k < w->first_push + w->pushes; k++)
-        force += drive_way(&p->pushes, &p->pushes.drive[k], p->t + p->dt / 2);
+        force += drive_way(&p->pushes, &p->pushes.drive[k], t);
+    if (w->load.spread) force *= wall_face(p, w, t);
+    if (p->outside.push) force += p->outside.push[w - p->wall];
     return force;
 }
 

@@ -15,18 +15,20 @@ struct cell cell_none(void)
 
 void cell_free(struct cell *c)
 {
-    free(c->gradient);
+    free(c->gradient), free(c->factor);
     *c = cell_none();
 }
 
 int cell_copy(struct cell *to, const struct cell *from)
 {
+    size_t gradients = (size_t)from->gradients * sizeof *to->gradient;
+    size_t factors = (size_t)from->factors * sizeof *to->factor;
     *to = *from;
-    to->gradient = NULL;
-    if (!from->gradients) return 0;
-    size_t size = (size_t)from->gradients * sizeof *to->gradient;
-    if (!(to->gradient = malloc(size))) return -1;
-    memcpy(to->gradient, from->gradient, size);
+    to->gradient = NULL, to->factor = NULL;
+    if (gradients && !(to->gradient = malloc(gradients))) return -1;
+    if (factors && !(to->factor = malloc(factors))) return -1;
+    if (gradients) memcpy(to->gradient, from->gradient, gradients);
+    if (factors) memcpy(to->factor, from->factor, factors);
     return 0;
 }
 
@@ -97,6 +99,19 @@ static const char *load_trouble(const struct cell *c, int dim)
         if (dim == 2 && (i == 2 || j == 2) && (c->mass[i][j] != 0 || c->stress[i][j] != 0))
             return "its load leaves the plane, and dim is 2";
         if (c->mass[i][j] > 0 && !c->repeats[i]) return "an edge that does not repeat has a mass";
+        if (c->mass[i][j] > 0 && c->size_mass > 0)
+            return "both its size and a component of an edge yield";
+    }
+    if (!(c->size_mass >= 0 && isfinite(c->size_mass)))
+        return "the mass of its size must be finite and not negative";
+    if (!isfinite(c->mean)) return "its mean stress is not finite";
+    for (int k = 0; k < dim && c->size_mass > 0; k++)
+        if (!c->repeats[k]) return "its size yields, and an edge does not repeat";
+    for (int32_t m = 0; m < c->factors; m++) {
+        if (!isfinite(c->factor[m].t) || !isfinite(c->factor[m].x))
+            return "a factor of its load is not finite";
+        if (m && !(c->factor[m].t > c->factor[m - 1].t))
+            return "the moments of its load's factors do not increase";
     }
     return NULL;
 }
@@ -122,7 +137,35 @@ bool cell_yields(const struct cell *c)
 {
     for (int k = 0; k < 9; k++)
         if (c->mass[k / 3][k % 3] > 0) return true;
-    return false;
+    return c->size_mass > 0;
+}
+
+double cell_factor_at(const struct cell *c, double t)
+{
+    const struct cell_factor *f = c->factor;
+    int32_t n = c->factors, k = 0;
+    if (!n) return 1;
+    while (k < n && f[k].t <= t) k++; // the first later than t
+    if (k == 0 || k == n) return f[k ? n - 1 : 0].x;
+    return f[k - 1].x + (t - f[k - 1].t) / (f[k].t - f[k - 1].t) * (f[k].x - f[k - 1].x);
+}
+
+double cell_factor_most(const struct cell *c)
+{
+    double most = c->factors ? 0 : 1;
+    for (int32_t k = 0; k < c->factors; k++) most = fmax(most, fabs(c->factor[k].x));
+    return most;
+}
+
+double cell_growth(const struct cell *c, double after)
+{
+    vec3 half[3], inverse[3];
+    int dim = cell_dim(c);
+    double sum = 0;
+    for (int k = 0; k < 3; k++) half[k] = v3_axpy(c->edge[k], -after, c->rate[k]);
+    cell_inverse(half, inverse);
+    for (int k = 0; k < dim; k++) sum += v3_dot(inverse[k], c->rate[k]);
+    return sum / dim;
 }
 
 static vec3 times(double L[3][3], vec3 x)
@@ -135,7 +178,7 @@ static vec3 times(double L[3][3], vec3 x)
 bool cell_moves(const struct cell *c, int k)
 {
     bool moves = v3_norm(c->rate[k]) > 0;
-    for (int i = 0; i < 3; i++) moves = moves || c->mass[k][i] > 0;
+    for (int i = 0; i < 3; i++) moves = moves || c->mass[k][i] > 0 || c->size_mass > 0;
     for (int32_t m = 0; m < c->gradients; m++)
         moves = moves || v3_norm(times(c->gradient[m].L, c->edge[k])) > 0;
     return moves;
@@ -155,6 +198,16 @@ static void cell_gradient_at(const struct cell *c, double t, double L[3][3])
         double a = one->L[i / 3][i % 3], b = other->L[i / 3][i % 3];
         L[i / 3][i % 3] = a + share * (b - a);
     }
+    double trace = 0;
+    int dim = c->size_mass > 0 ? cell_dim(c) : 0;
+    for (int i = 0; i < dim; i++) trace += L[i][i];
+    for (int i = 0; i < dim; i++) L[i][i] -= trace / dim;
+}
+
+/* The same with the growth of a size that yields, by which all edges are longer */
+static void grow(const struct cell *c, double growth, double L[3][3])
+{
+    for (int k = 0; k < cell_dim(c); k++) L[k][k] += growth;
 }
 
 /* out[k] = the e with (1 - s L) e = edge[k] */
@@ -190,6 +243,11 @@ void cell_next_rate(const struct cell *c, double end_time, double ahead, double 
     vec3 half[3], end[3];
     cell_gradient_at(c, end_time, L);
     cell_predict(c, ahead, half);
+    if (c->size_mass > 0) {
+        grow(c, cell_growth(c, after), L);
+        for (int k = 0; k < 3; k++) out[k] = times(L, half[k]);
+        return;
+    }
     solve(L, after, half, end);
     for (int k = 0; k < 3; k++) out[k] = times(L, end[k]);
     keep_yielding(c, out);
@@ -231,7 +289,8 @@ void cell_unmove(struct cell *c, double t, double ahead, double after)
     vec3 half[3], edge[3], rate[3];
     cell_gradient_at(c, t, L);
     cell_predict(c, -after, half);
-    solve(L, -ahead, half, edge);
+    if (c->size_mass > 0) grow(c, cell_growth(c, after), L);
+    solve(L, c->size_mass > 0 ? -(ahead + after) : -ahead, half, edge);
     for (int k = 0; k < 3; k++) rate[k] = times(L, edge[k]);
     keep_yielding(c, rate);
     for (int k = 0; k < 3; k++) {

@@ -33,6 +33,12 @@ struct cell_gradient {
     double L[3][3]; /* 1/s */
 };
 
+/* By how much loads are multiplied at a moment */
+struct cell_factor {
+    double t; /* s */
+    double x;
+};
+
 struct cell {
     bool repeats[3];
     vec3 origin;  /* m: the corner from which the edges start */
@@ -48,6 +54,17 @@ struct cell {
        the surroundings press on the cell with a stress, of which column k acts on edge k. */
     double mass[3][3];   /* kg; 0: moves as the gradient says */
     double stress[3][3]; /* Pa, of discs N/m: compression is positive; [i][j], symmetric */
+
+    /* Or its size yields: all edges repeat and grow at one rate s beside a gradient whose trace is taken off,
+       rate_{k+1} = (L + s_{k+1}) q_{k+1/2}, so that contacts see it change linearly in s. The mean stress of
+       the surroundings presses on it. */
+    double size_mass; /* kg m^2: of s, 1/s; 0: it does not yield */
+    double mean;      /* Pa, of discs N/m */
+
+    /* Stress and mean are multiplied by a factor, linear in time between these moments, constant before and
+       after; none: 1. In the order of t. */
+    int32_t factors;
+    struct cell_factor *factor; /* [factors] */
 };
 
 static inline bool cell_repeats(const struct cell *c)
@@ -83,8 +100,18 @@ void cell_inverse(const vec3 edge[3], vec3 inverse[3]);
 /* m, in the plane too: distances of opposite faces */
 void cell_heights(const struct cell *c, double height[3]);
 
-/* Does any component of an edge yield? */
+/* Does any component of an edge yield, or the size? */
 bool cell_yields(const struct cell *c);
+/* By what stress and mean are multiplied at time t (s), and the most that this comes to at any time */
+double cell_factor_at(const struct cell *c, double t);
+double cell_factor_most(const struct cell *c);
+/* Directions of space in which a cell repeats whose size yields */
+static inline int cell_dim(const struct cell *c)
+{
+    return c->repeats[2] ? 3 : 2;
+}
+/* 1/s: s of a cell whose size yields; after: of the step that has made the rates, s */
+double cell_growth(const struct cell *c, double after);
 /* Does edge k move, or may it at some time? */
 bool cell_moves(const struct cell *c, int k);
 /* rate = those of the gradient at time t (s); of what yields 0 */

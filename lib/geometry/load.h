@@ -15,11 +15,14 @@
 enum load_way { LOAD_NONE, LOAD_GLIDES, LOAD_TURNS, LOAD_WAYS };
 
 struct load {
-    int32_t way;   /* enum load_way */
-    vec3 axis;     /* unit vector */
-    vec3 point;    /* m: a point on the axis, of one that turns */
-    double mass;   /* kg that move along the axis; kg m^2 about it */
-    double force;  /* N along the axis, N m about it; its weight is in it. Pushes add to it. */
+    int32_t way;  /* enum load_way */
+    vec3 axis;    /* unit vector */
+    vec3 point;   /* m: a point on the axis, of one that turns */
+    double mass;  /* kg that move along the axis; kg m^2 about it */
+    double force; /* N along the axis, N m about it; its weight is in it. Pushes add to it. */
+    int32_t
+        spread; /* 1: force and pushes are pressures, Pa, in the plane N/m, on the face that the walls
+                       beside it leave [wall_face()] */
     double speed;  /* m/s, rad/s */
     double travel; /* m, rad: how far it has come */
 };

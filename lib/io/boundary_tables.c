@@ -15,7 +15,11 @@ static int read_loads(struct source *r, const char *group, int64_t k, struct pac
                       struct why *why)
 {
     if (!source_has(r, group)) return 0;
-    if (table_read_columns(r, group, "", 0, RECORDS(layout_loads, p->walls, p->wall), why))
+    char spread[60];
+    snprintf(spread, sizeof spread, "%s/spread", group);
+    if (table_read_columns(r, group, "", 0, RECORDS(layout_loads, p->walls, p->wall), why) ||
+        (source_has(r, spread) &&
+         table_read_columns(r, group, "", 0, RECORDS(layout_spread, p->walls, p->wall), why)))
         return why->status;
     double *row = calloc((size_t)p->walls + 1, sizeof *row);
     if (!row) return why_set(why, EX_SOFTWARE, "no memory for the loads");
@@ -138,6 +142,13 @@ static bool any_loads(const struct packing *p)
     return false;
 }
 
+static bool any_spread(const struct packing *p)
+{
+    for (int32_t w = 0; w < p->walls; w++)
+        if (p->wall[w].load.spread) return true;
+    return false;
+}
+
 bool boundary_tables_move(const struct packing *p)
 {
     for (int32_t w = 0; w < p->walls; w++)
@@ -206,8 +217,11 @@ int boundary_tables_write_static(struct table_write *s, const struct packing *p,
           table_write_columns(s, body, "", RECORDS(layout_boundary, p->walls, p->wall), 0, why)) &&
         !(any_welds(p) &&
           table_write_columns(s, body, "", RECORDS(layout_weld, p->walls, p->wall), 0, why)) &&
-        !write_drives(s, p, why) && !write_mesh(s, p, why) && any_loads(p))
-        table_write_columns(s, BOUNDARY "/load", "", RECORDS(layout_loads, p->walls, p->wall), 0,
+        !write_drives(s, p, why) && !write_mesh(s, p, why) && any_loads(p) &&
+        !table_write_columns(s, BOUNDARY "/load", "", RECORDS(layout_loads, p->walls, p->wall), 0,
+                             why) &&
+        any_spread(p))
+        table_write_columns(s, BOUNDARY "/load", "", RECORDS(layout_spread, p->walls, p->wall), 0,
                             why);
     s->at_rest = !any_may_move(p);
     if (!why->status && s->at_rest && (m = motions(p, why)))

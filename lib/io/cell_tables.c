@@ -75,6 +75,24 @@ static int read_drive(struct source *doc, struct cell *c, struct why *why)
                : 0;
 }
 
+/* What its size yields to, and the factors of loads in time, where there are any */
+static int read_size(struct source *doc, struct cell *c, struct why *why)
+{
+    const char *factor = "/nsd/cell/factor";
+    uint64_t shape[4];
+    if (source_has(doc, "/nsd/cell/size_mass") &&
+        (source_read(doc, "/nsd/cell/size_mass", COLUMN_F64, 1, &c->size_mass, why) ||
+         source_read(doc, "/nsd/cell/mean", COLUMN_F64, 1, &c->mean, why)))
+        return why->status;
+    if (!source_has(doc, factor)) return 0;
+    if (source_shape(doc, factor, shape) != 2 || shape[1] != 2 || shape[0] >= 1 << 24)
+        return why_set(why, EX_DATAERR, "%s: not of shape moments x 2", factor);
+    if (!(c->factor = calloc(shape[0] + 1, sizeof *c->factor)))
+        return why_set(why, EX_SOFTWARE, "no memory for the cell's loads");
+    c->factors = (int32_t)shape[0];
+    return source_rows(doc, factor, COLUMN_F64, 0, (int64_t)shape[0], 2, c->factor, why);
+}
+
 int cell_tables_read(struct source *source, int64_t k, const bool repeats[3], struct packing *p,
                      struct why *why)
 {
@@ -82,7 +100,7 @@ int cell_tables_read(struct source *source, int64_t k, const bool repeats[3], st
     struct cell *c = &p->cell;
     memcpy(c->repeats, repeats, sizeof c->repeats);
     if (!cell_repeats(c)) return 0;
-    if (read_edges(source, k, c, why) || read_drive(source, c, why) ||
+    if (read_edges(source, k, c, why) || read_drive(source, c, why) || read_size(source, c, why) ||
         packing_alloc_images(p, why) ||
         (source_has(source, origin) && source_read(source, origin, COLUMN_F64, 3, &c->origin, why)))
         return why->status;
@@ -115,6 +133,19 @@ static int write_drive(hid_t file, const struct cell *c, struct why *why)
     return bad ? why->status : 0;
 }
 
+static int write_size(hid_t file, const struct cell *c, struct why *why)
+{
+    const hsize_t one = 1, shape[2] = { (hsize_t)c->factors, 2 };
+    if (c->size_mass > 0 &&
+        (h5_write(file, "/nsd/cell/size_mass", H5T_NATIVE_DOUBLE, 1, &one, &c->size_mass, "kg m2",
+                  why) ||
+         h5_write(file, "/nsd/cell/mean", H5T_NATIVE_DOUBLE, 1, &one, &c->mean, "Pa", why)))
+        return why->status;
+    return c->factors ? h5_write(file, "/nsd/cell/factor", H5T_NATIVE_DOUBLE, 2, shape, c->factor,
+                                 "s; 1", why)
+                      : 0;
+}
+
 int cell_tables_write_box(hid_t file, const struct cell *c, struct why *why)
 {
     const int dimension = 3; // positions have three components in the plane too
@@ -136,7 +167,7 @@ int cell_tables_write_box(hid_t file, const struct cell *c, struct why *why)
     if (e || !repeats) return e;
     return h5_write(file, "/particles/all/box/origin", H5T_NATIVE_DOUBLE, 1, &three, &c->origin,
                     "m", why) ||
-                   write_drive(file, c, why)
+                   write_drive(file, c, why) || write_size(file, c, why)
                ? why->status
                : 0;
 }

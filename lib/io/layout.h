@@ -61,6 +61,12 @@ static const struct column layout_loads[] = {
     { 0 },
 };
 
+/* The same, where the load of any is a pressure */
+static const struct column layout_spread[] = {
+    { "spread", "1", COLUMN_I32, 1, offsetof(struct wall, load.spread) },
+    { 0 },
+};
+
 /* /particles/boundary/load/NAME/value [F][B], the same */
 static const struct column layout_yield[] = {
     { "speed", "m s-1, rad s-1", COLUMN_F64, 1, offsetof(struct wall, load.speed) },

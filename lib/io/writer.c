@@ -376,6 +376,9 @@ static uint32_t cell_crc(const struct cell *c)
     crc = document_crc(crc, &c->origin, sizeof c->origin);
     crc = document_crc(crc, c->gradient, (size_t)c->gradients * sizeof *c->gradient);
     crc = document_crc(crc, c->mass, sizeof c->mass);
+    crc = document_crc(crc, &c->size_mass, sizeof c->size_mass);
+    crc = document_crc(crc, &c->mean, sizeof c->mean);
+    crc = document_crc(crc, c->factor, (size_t)c->factors * sizeof *c->factor);
     return document_crc(crc, c->stress, sizeof c->stress);
 }
 

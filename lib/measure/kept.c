@@ -15,6 +15,7 @@ int kept_set(struct kept *k, const struct packing *p, struct why *why)
 {
     struct kept_body *body = realloc(k->body, ((size_t)p->n + 1) * sizeof *body);
     if (!body) return why_set(why, EX_SOFTWARE, "no memory to remember a frame");
+    deformed_follow(&k->form, p);
     k->body = body, k->n = p->n, k->step = p->step, k->t = p->t;
     bool sorted = true;
     for (int64_t i = 0; i < p->n; i++) {

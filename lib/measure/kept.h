@@ -2,11 +2,12 @@
 #ifndef NSD_KEPT_H
 #define NSD_KEPT_H
 
-#include "bodies/packing.h"
+#include "measure/deformed.h"
 
 struct kept {
     int64_t step;
-    double t; /* s */
+    double t;             /* s */
+    struct deformed form; /* since the first frame that was kept here */
     int64_t n;
     struct kept_body {
         int32_t id;

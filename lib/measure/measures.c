@@ -4,13 +4,28 @@
 #include <string.h>
 
 static const struct measure *const measures[] = {
-    &measure_fraction,    &measure_coordination,  &measure_contact_numbers,
-    &measure_fabric,      &measure_stress,        &measure_boundaries,
-    &measure_energy,      &measure_temperature,   &measure_profile,
-    &measure_friction,    &measure_normal_forces, &measure_tangential_forces,
-    &measure_mobilised,   &measure_pairs,         &measure_sizes,
-    &measure_segregation, &measure_displacement,  &measure_surface,
-    &measure_flux,        &measure_grains,        NULL,
+    &measure_fraction,
+    &measure_coordination,
+    &measure_contact_numbers,
+    &measure_fabric,
+    &measure_stress,
+    &measure_boundaries,
+    &measure_energy,
+    &measure_temperature,
+    &measure_profile,
+    &measure_friction,
+    &measure_normal_forces,
+    &measure_tangential_forces,
+    &measure_mobilised,
+    &measure_pairs,
+    &measure_sizes,
+    &measure_segregation,
+    &measure_displacement,
+    &measure_surface,
+    &measure_flux,
+    &measure_grains,
+    &measure_strain,
+    NULL,
 };
 
 const struct measure *measure_at(int k)

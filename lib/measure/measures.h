@@ -24,6 +24,7 @@ struct measure {
     bool list;  /* a row for each layer, bin ...; else one */
     bool usual; /* among those of a command that names none */
     enum needs needs;
+    bool remembers; /* it looks at frames before this one, where there are any */
     /* Fills the table. A number that there is not is left NaN, with the reason by table_null().
        Returns 0 or EX_SOFTWARE. */
     int (*rows)(struct table *t, const struct snapshot *s, struct why *why);
@@ -33,7 +34,7 @@ extern const struct measure measure_fraction, measure_coordination, measure_cont
     measure_fabric, measure_stress, measure_boundaries, measure_energy, measure_temperature,
     measure_profile, measure_friction, measure_normal_forces, measure_tangential_forces,
     measure_mobilised, measure_pairs, measure_sizes, measure_segregation, measure_displacement,
-    measure_surface, measure_flux, measure_grains;
+    measure_surface, measure_flux, measure_grains, measure_strain;
 
 /* The k-th; NULL past the last. */
 const struct measure *measure_at(int k);

@@ -39,6 +39,36 @@ static void rotate(struct tensor *S, int i, int j)
     S->x[k][j] = S->x[j][k] = s * ki + c * kj;
 }
 
+/* The rotation of rotate(), of columns i and j of Q: S' = R^T S R, Q' = Q R */
+static void rotate_both(struct tensor *S, struct tensor *Q, int i, int j)
+{
+    double off = S->x[i][j];
+    if (off == 0) return;
+    double half = 0.5 * (S->x[j][j] - S->x[i][i]) / off;
+    double t = (half < 0 ? -1 : 1) / (fabs(half) + sqrt(half * half + 1));
+    double c = 1 / sqrt(t * t + 1), s = t * c;
+    rotate(S, i, j);
+    for (int k = 0; k < 3; k++) {
+        double ki = Q->x[k][i], kj = Q->x[k][j];
+        Q->x[k][i] = c * ki - s * kj, Q->x[k][j] = s * ki + c * kj;
+    }
+}
+
+struct tensor tensor_log(const struct tensor *T, int dim)
+{
+    struct tensor S = symmetric(T), Q = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } };
+    struct tensor L = { { { 0 } } };
+    for (int round = 0; round < 30; round++) {
+        rotate_both(&S, &Q, 0, 1);
+        if (dim == 3) rotate_both(&S, &Q, 0, 2), rotate_both(&S, &Q, 1, 2);
+    }
+    for (int k = 0; k < dim; k++) {
+        vec3 axis = v3(Q.x[0][k], Q.x[1][k], Q.x[2][k]);
+        tensor_add(&L, log(S.x[k][k]), axis, axis);
+    }
+    return L;
+}
+
 void tensor_principal(const struct tensor *T, int dim, double value[3])
 {
     struct tensor S = symmetric(T);

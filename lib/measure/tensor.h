@@ -39,5 +39,8 @@ double tensor_deviator(const struct tensor *T, int dim);
 /* Principal values of the symmetric part, the largest first; in the plane the third is 0. By
    rotations of Jacobi. */
 void tensor_principal(const struct tensor *T, int dim, double value[3]);
+/* The logarithm of the symmetric part, whose principal values are positive; in the plane that of the first two rows
+   and columns, the rest 0. */
+struct tensor tensor_log(const struct tensor *T, int dim);
 
 #endif

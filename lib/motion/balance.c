@@ -90,7 +90,7 @@ static void add_beyond(struct work *w, const struct packing *p, const struct imp
                      (freedom->speed + half);
         w->free += got;
         if (!freedom_common(freedom)) continue;
-        w->held += c->shift[freedom->edge] * v3_dot(f, freedom->axis) * half - got;
+        w->held += v3_dot(f, cell_shift(freedom->gain, c->shift)) * half - got;
     }
 }
 

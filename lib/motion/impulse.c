@@ -69,7 +69,7 @@ static void find_flow(struct impulses *sum, const struct packing *p)
     for (int32_t k = 0; k < sum->freedoms.n; k++) {
         const struct freedom *f = &sum->freedoms.f[k];
         if (!freedom_common(f)) continue;
-        gain[f->edge] = v3_axpy(gain[f->edge], impulses_change(sum, p, k), f->axis);
+        freedom_gain(f, impulses_change(sum, p, k), gain);
     }
     cell_flow_init(&sum->flow, &p->cell, sum->edge, gain);
 }
@@ -81,7 +81,7 @@ int impulses_init(struct impulses *sum, const struct packing *p, const struct co
     *sum = (struct impulses){ .ahead = ended ? -step_after(p) : step_ahead(p) };
     cell_predict(&p->cell, sum->ahead, sum->edge);
     if (!ended) cell_next_rate(&p->cell, p->t + p->dt, step_ahead(p), step_after(p), sum->next);
-    if (freedoms_init(&sum->freedoms, p, sum->edge, why)) return why->status;
+    if (freedoms_init(&sum->freedoms, p, sum->edge, ended, why)) return why->status;
     const struct outside *o = &p->outside; // what is not 0 to begin with is not set to 0 first
     sum->force = o->force ? malloc(n * sizeof *sum->force) : calloc(n, sizeof *sum->force);
     sum->moment = o->torque ? malloc(n * sizeof *sum->moment) : calloc(n, sizeof *sum->moment);

@@ -224,7 +224,7 @@ int project_shared(struct packing *p, const struct contacts *s, const struct pro
 {
     struct displacements o = { .d = malloc(((size_t)p->n + 1) * sizeof *o.d) };
     struct projected_contact *part = malloc(((size_t)s->n + 1) * sizeof *part);
-    bool room = part && o.d && !freedoms_init(&o.freedoms, p, p->cell.edge, why);
+    bool room = part && o.d && !freedoms_init(&o.freedoms, p, p->cell.edge, false, why);
     room = room && (o.z = calloc((size_t)o.freedoms.n + 1, sizeof *o.z));
     if (!room) share = NULL; // the caller ends the others, who wait
     bool more = room && parts_make(p, s, &o, part);

@@ -45,7 +45,7 @@ int couplings_init(struct couplings *c, const struct packing *p, const struct co
     *c = (struct couplings){ 0 };
     vec3 half[3];
     cell_predict(&p->cell, step_ahead(p), half);
-    if (freedoms_init(&c->freedoms, p, half, why)) return why->status;
+    if (freedoms_init(&c->freedoms, p, half, false, why)) return why->status;
     c->first = calloc((size_t)s->n + 1, sizeof *c->first);
     bool good = c->first != NULL;
     for (int64_t i = 0; good && i < s->n; i++) {

@@ -81,6 +81,7 @@ static void put_cell(struct comm *t, struct parcel *o, const struct cell *c)
 {
     parcel_put(t, o, c, sizeof *c);
     parcel_put_array(t, o, c->gradient, c->gradients, sizeof *c->gradient);
+    parcel_put_array(t, o, c->factor, c->factors, sizeof *c->factor);
 }
 
 static void take_cell(struct comm *t, struct parcel *o, struct cell *c)
@@ -88,6 +89,7 @@ static void take_cell(struct comm *t, struct parcel *o, struct cell *c)
     cell_free(c);
     parcel_take(t, o, c, sizeof *c);
     c->gradients = (int32_t)parcel_take_array(t, o, &c->gradient, sizeof *c->gradient);
+    c->factors = (int32_t)parcel_take_array(t, o, &c->factor, sizeof *c->factor);
 }
 
 /* Numbers that are not pointers */

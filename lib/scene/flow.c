@@ -58,18 +58,36 @@ static bool in_box(const struct scene_box *b, vec3 x, int dim)
     return true;
 }
 
-static bool takes(const struct scene_removal *r, const struct packing *p, int64_t i)
+static int by_number(const void *a, const void *b)
 {
-    if (r->kind >= 0 && p->kind[i] != r->kind) return false;
-    if (r->region == REGION_BELOW) return v3_dot(v3_sub(p->x[i], r->point), r->normal) < 0;
-    return in_box(&r->box, p->x[i], p->dim) == (r->region == REGION_INSIDE);
+    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return x < y ? -1 : x > y;
 }
 
-/* The removal that takes body i; -1: none does. */
-static int32_t taken_by(const struct flow *f, const struct packing *p, int64_t i)
+/* x: m, the body's place */
+static bool takes(const struct scene_removal *r, const struct packing *p, int64_t i, vec3 x)
 {
+    if (p->t < r->from || p->t > r->until) return false;
+    if (r->kind >= 0 && p->kind[i] != r->kind) return false;
+    if (r->ids && !bsearch(&p->id[i], r->id, (size_t)r->ids, sizeof *r->id, by_number))
+        return false;
+    if (r->region == REGION_ALL) return true;
+    if (r->region == REGION_BELOW) return v3_dot(v3_sub(x, r->point), r->normal) < 0;
+    return in_box(&r->box, x, p->dim) == (r->region == REGION_INSIDE);
+}
+
+/* The removal that takes body i; -1: none does. inverse: of the cell's edges, where it repeats */
+static int32_t taken_by(const struct flow *f, const struct packing *p, const vec3 inverse[3],
+                        int64_t i)
+{
+    vec3 x = p->x[i];
+    int32_t w[3] = { 0, 0, 0 };
+    // a body that has left the cell in the last step is its image inside
+    if (cell_repeats(&p->cell)) cell_wraps(&p->cell, inverse, x, w);
+    for (int k = 0; k < 3; k++)
+        if (w[k]) x = v3_axpy(x, -w[k], p->cell.edge[k]);
     for (int32_t k = 0; k < f->scene.removals; k++)
-        if (takes(&f->scene.removal[k], p, i)) return k;
+        if (takes(&f->scene.removal[k], p, i, x)) return k;
     return -1;
 }
 
@@ -77,8 +95,10 @@ static int32_t taken_by(const struct flow *f, const struct packing *p, int64_t i
 static int remove_bodies(const struct flow *f, struct packing *p, int32_t *row, struct why *why)
 {
     int64_t kept = 0;
+    vec3 inverse[3];
+    cell_inverse(p->cell.edge, inverse);
     for (int64_t i = 0; i < p->n; i++) {
-        int32_t k = taken_by(f, p, i);
+        int32_t k = taken_by(f, p, inverse, i);
         row[i] = k < 0 ? (int32_t)kept : -1;
         if (k < 0) {
             packing_copy_body(p, kept++, p, i);
@@ -188,7 +208,27 @@ static void crowd_free(struct crowd *c)
     free(c->now), free(c->then), free(c->body), free(c->p.q), free(c->p.shape);
 }
 
-static bool may_meet(const struct scene_pour *o, const struct packing *p, int64_t i)
+/* Is x, or an image of it, this near to 0? The nearest image is at most one edge from the one that is nearest in
+   edges, for these do not lean by more than one another's length [bodies/wrap.h]. */
+static bool is_near(const struct cell *c, const vec3 inverse[3], vec3 x, double most)
+{
+    int reach[3] = { 0, 0, 0 };
+    for (int k = 2; k >= 0; k--) {
+        if (!c->repeats[k]) continue;
+        reach[k] = 1;
+        x = v3_axpy(x, -rint(v3_dot(inverse[k], x)), c->edge[k]);
+    }
+    for (int a = -reach[0]; a <= reach[0]; a++)
+        for (int b = -reach[1]; b <= reach[1]; b++)
+            for (int e = -reach[2]; e <= reach[2]; e++) {
+                vec3 d = v3_axpy(v3_axpy(v3_axpy(x, a, c->edge[0]), b, c->edge[1]), e, c->edge[2]);
+                if (v3_dot(d, d) <= most * most) return true;
+            }
+    return false;
+}
+
+static bool may_meet(const struct scene_pour *o, const struct packing *p, const vec3 inverse[3],
+                     int64_t i)
 {
     vec3 middle = o->center;
     double far = o->radius;
@@ -199,9 +239,10 @@ static bool may_meet(const struct scene_pour *o, const struct packing *p, int64_
         middle = v3_scale(0.5, v3_add(lo, hi)), far = 0.5 * v3_norm(v3_sub(hi, lo));
     }
     double way = p->dt * (v3_norm(o->v) + v3_norm(p->v[i]));
+    for (int k = 0; k < 3; k++) // images have the edges' rates besides
+        if (p->cell.repeats[k]) way += 2 * p->dt * v3_norm(p->cell.rate[k]);
     double most = (far + o->size.max + p->radius[i] + way) * (1 + 1e-9);
-    vec3 d = v3_sub(p->x[i], middle);
-    return cell_repeats(&p->cell) || v3_dot(d, d) <= most * most; // images are anywhere
+    return is_near(&p->cell, inverse, v3_sub(p->x[i], middle), most);
 }
 
 static int crowd_gather(struct crowd *c, const struct packing *p, const struct scene_pour *o,
@@ -219,8 +260,10 @@ static int crowd_gather(struct crowd *c, const struct packing *p, const struct s
     if (!c->p.radius || !c->p.mass || !c->p.kind || !c->p.v || !c->now || !c->then || !c->body ||
         !c->p.q || (p->shape && !c->p.shape))
         return why_set(why, EX_SOFTWARE, "no memory to pour");
+    vec3 inverse[3];
+    cell_inverse(p->cell.edge, inverse);
     for (int64_t i = 0; i < p->n; i++) {
-        if (!may_meet(o, p, i)) continue;
+        if (!may_meet(o, p, inverse, i)) continue;
         int64_t k = c->p.n++;
         c->body[k] = i;
         c->p.radius[k] = p->radius[i], c->p.kind[k] = p->kind[i], c->p.q[k] = p->q[i];

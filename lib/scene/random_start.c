@@ -1,6 +1,7 @@
 #include "scene/random_start.h"
 
 #include "detect/neighbours.h"
+#include "scene/scene_height.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +24,11 @@ static const double REACH = 0.5;    /* mean radii: pairs this near are kept in t
 struct start {
     int dim;
     const struct scene_box *box;
+    const struct cell *cell; /* in place of the box: bodies and their images fill it; or NULL */
+    vec3 inverse[3];         /* 1/m: of its edges */
+    double height[3];        /* m: of its faces */
     struct packing p; /* radius: as they are asked for; mass: r^dim, in units of the largest */
+    double volume;    /* m^3, m^2: of the balls around them */
     double scale;     /* of the radii */
     int64_t *from;    /* [p.n] the place in the order drawn */
 };
@@ -100,6 +105,18 @@ static void placed_free(struct placed *t)
     free(t->next);
 }
 
+/* m: the middle of a grain in the cell, u edges from its origin; along those that do not repeat it stays inside
+   with this radius */
+static vec3 in_cell(const struct start *s, const double u[3], double r)
+{
+    vec3 x = s->cell->origin;
+    for (int k = 0; k < s->dim; k++) {
+        double margin = s->cell->repeats[k] ? 0 : fmin(r / s->height[k], 0.5);
+        x = v3_axpy(x, margin + u[k] * (1 - 2 * margin), s->cell->edge[k]);
+    }
+    return x;
+}
+
 /* Would grain i, no larger than those that are placed, meet one of this cell? */
 static bool meets(const struct placed *t, const struct level *l, const struct start *s, int64_t i,
                   vec3 x, const int64_t cell[3])
@@ -112,7 +129,7 @@ static bool meets(const struct placed *t, const struct level *l, const struct st
     return false;
 }
 
-static bool is_free(const struct placed *t, const struct start *s, int64_t i, vec3 x)
+static bool is_free_at(const struct placed *t, const struct start *s, int64_t i, vec3 x)
 {
     for (int k = level_of(s, i); k >= 0; k--) {
         const struct level *l = &t->level[k];
@@ -127,9 +144,32 @@ static bool is_free(const struct placed *t, const struct start *s, int64_t i, ve
     return true;
 }
 
-/* A place in the box where grain i stays inside */
+/* The same with all images of the grain that may meet one in the cell */
+static bool is_free(const struct placed *t, const struct start *s, int64_t i, vec3 x)
+{
+    int from[3] = { 0, 0, 0 }, to[3] = { 0, 0, 0 };
+    if (!s->cell) return is_free_at(t, s, i, x);
+    double reach = 2 * radius(s, 0) * (1 + FURTHER);
+    for (int k = 0; k < s->dim; k++) {
+        double at = v3_dot(s->inverse[k], v3_sub(x, s->cell->origin)) * s->height[k];
+        if (!s->cell->repeats[k]) continue;
+        to[k] = at < reach, from[k] = -(s->height[k] - at < reach);
+    }
+    for (int a = from[0]; a <= to[0]; a++)
+        for (int b = from[1]; b <= to[1]; b++)
+            for (int c = from[2]; c <= to[2]; c++) {
+                const int8_t shift[3] = { (int8_t)a, (int8_t)b, (int8_t)c };
+                if (!is_free_at(t, s, i, v3_add(x, cell_shift(s->cell->edge, shift)))) return false;
+            }
+    return true;
+}
+
+/* A place in the box, or the cell, where grain i stays inside */
 static vec3 draw_place(const struct start *s, int64_t i, gsl_rng *rng)
 {
+    double u[3] = { 0 };
+    for (int k = 0; k < s->dim && s->cell; k++) u[k] = gsl_rng_uniform(rng);
+    if (s->cell) return in_cell(s, u, s->p.radius[i] * (1 + FURTHER));
     double x[3] = { 0 }, r = s->p.radius[i] * (1 + FURTHER); // as it will be
     for (int k = 0; k < s->dim; k++) {
         double lo = s->box->lo[k] + r, hi = s->box->hi[k] - r;
@@ -168,10 +208,18 @@ static int add_one_by_one(struct start *s, double phi, gsl_rng *rng, struct why 
 
 /* ---- growth ---- */
 
-/* Pushes the pair apart, to beyond touching; returns its overlap, in radii of the smaller. */
-static double push_pair(struct start *s, int64_t a, int64_t b)
+/* m: from a to the image of b that it is near to */
+static vec3 way_of(const struct start *s, const struct pair *pair)
 {
-    vec3 d = v3_sub(s->p.x[b], s->p.x[a]);
+    vec3 d = v3_sub(s->p.x[pair->b], s->p.x[pair->a]);
+    return s->cell ? v3_add(d, cell_shift(s->cell->edge, pair->shift)) : d;
+}
+
+/* Pushes the pair apart, to beyond touching; returns its overlap, in radii of the smaller. */
+static double push_pair(struct start *s, const struct pair *pair)
+{
+    int64_t a = pair->a, b = pair->b;
+    vec3 d = way_of(s, pair);
     double touch = radius(s, a) + radius(s, b), d2 = v3_dot(d, d);
     double wanted = touch * (1 + FURTHER);
     if (d2 >= wanted * wanted) return 0;
@@ -183,9 +231,37 @@ static double push_pair(struct start *s, int64_t a, int64_t b)
     return (touch - distance) / fmin(radius(s, a), radius(s, b));
 }
 
+/* Back into the cell along edges that do not repeat */
+static void push_into_cell(struct start *s, int64_t i)
+{
+    double r = radius(s, i) * (1 + FURTHER);
+    for (int k = 0; k < s->dim; k++) {
+        if (s->cell->repeats[k]) continue;
+        double margin = fmin(r / s->height[k], 0.5);
+        double u = v3_dot(s->inverse[k], v3_sub(s->p.x[i], s->cell->origin));
+        double to = fmin(fmax(u, margin), 1 - margin);
+        if (to != u) s->p.x[i] = v3_axpy(s->p.x[i], to - u, s->cell->edge[k]);
+    }
+}
+
+/* Grains that have left the cell are their images inside. */
+static void wrap(struct start *s)
+{
+    int32_t w[3];
+    for (int64_t i = 0; i < s->p.n && s->cell; i++) {
+        cell_wraps(s->cell, s->inverse, s->p.x[i], w);
+        for (int k = 0; k < 3; k++)
+            if (w[k]) s->p.x[i] = v3_axpy(s->p.x[i], -w[k], s->cell->edge[k]);
+    }
+}
+
 /* Back into the box, where it has left it */
 static void push_in(struct start *s, int64_t i)
 {
+    if (s->cell) {
+        push_into_cell(s, i);
+        return;
+    }
     double r = radius(s, i) * (1 + FURTHER), x[3] = { s->p.x[i].x, s->p.x[i].y, s->p.x[i].z };
     for (int k = 0; k < (s->dim == 2 ? 2 : 3); k++) {
         double lo = s->box->lo[k] + r, hi = s->box->hi[k] - r;
@@ -211,13 +287,14 @@ static int push_apart(struct start *s, struct neighbours *near, double most, int
             moved = fmax(moved, v3_dot(d, d));
         }
         if (!fresh || moved > 0.2 * reach * reach) { // 0.45 reach: each of a pair
+            wrap(s);
             if (neighbours_find(near, &s->p, s->p.x, s->p.cell.edge, reach, false, why)) break;
             memcpy(listed, s->p.x, (size_t)s->p.n * sizeof *listed);
             fresh = true;
         }
         *left = 0;
         for (int64_t i = 0; i < near->list.n; i++)
-            *left = fmax(*left, push_pair(s, near->list.pair[i].a, near->list.pair[i].b));
+            *left = fmax(*left, push_pair(s, &near->list.pair[i]));
         for (int64_t i = 0; i < s->p.n; i++) push_in(s, i);
         if (*left <= most) break;
     }
@@ -226,17 +303,27 @@ static int push_apart(struct start *s, struct neighbours *near, double most, int
 }
 
 /* What overlaps in the end, all pushing done, in smaller radii */
-static int worst(const struct start *s, struct neighbours *near, double *left, struct why *why)
+static int worst(struct start *s, struct neighbours *near, double *left, struct why *why)
 {
     *left = 0;
+    wrap(s);
     if (neighbours_find(near, &s->p, s->p.x, s->p.cell.edge, 0, false, why)) return why->status;
     for (int64_t i = 0; i < near->list.n; i++) {
         int64_t a = near->list.pair[i].a, b = near->list.pair[i].b;
         double r = s->p.radius[a] + s->p.radius[b];
-        double gap = v3_norm(v3_sub(s->p.x[a], s->p.x[b])) - r;
+        double gap = v3_norm(way_of(s, &near->list.pair[i])) - r;
         *left = fmax(*left, -gap / fmin(s->p.radius[a], s->p.radius[b]));
     }
     return 0;
+}
+
+/* m: of the box, along the last axis, or of the cell, in which grains of this volume come to rest as dense as
+   they are likely to */
+static double height_of(const struct start *s, double volume)
+{
+    double area = 1;
+    for (int k = 0; k < s->dim - 1; k++) area *= s->box->hi[k] - s->box->lo[k];
+    return scene_random_height(s->dim, volume, area);
 }
 
 /* From s->scale to 1 */
@@ -253,8 +340,10 @@ static int grow(struct start *s, double phi, struct why *why)
         if (why->status || worst(s, &near, &left, why) || left == 0) break;
     }
     if (!why->status && left > 0)
-        why_set(why, EX_DATAERR, "phi %g: the grains do not go in, %.2g of a radius overlaps", phi,
-                left);
+        why_set(why, EX_DATAERR,
+                "phi %g: the grains do not go in, %.2g of a radius overlaps: they need a height of "
+                "about %.4g m along %c",
+                phi, left, height_of(s, s->volume), "xyz"[s->dim - 1]);
     neighbours_free(&near);
     return why->status;
 }
@@ -277,10 +366,10 @@ static double box_volume(const struct scene_box *b, int dim)
 
 /* The radii: `count` of them, or as many as fill phi of the box best. Returns what the balls around
    them fill, which are what is placed. */
-static double draw_radii(struct grains *out, const struct scene_bodies *b, int dim, gsl_rng *rng,
-                         struct why *why)
+static double draw_radii(struct grains *out, const struct scene_bodies *b, int dim, double room,
+                         gsl_rng *rng, struct why *why)
 {
-    double room = box_volume(&b->box, dim), filled = 0;
+    double filled = 0;
     int64_t most = b->phi > 0 ? FILL_MOST : b->count;
     for (int64_t i = 0; i < most; i++) {
         struct grain g = grain_at(v3(0, 0, 0), scene_size_draw(&b->size, rng));
@@ -335,14 +424,36 @@ static int sort_radii(struct start *s, const struct grains *g, struct why *why)
     return 0;
 }
 
-int random_start(struct grains *out, const struct scene_bodies *b, int dim, gsl_rng *rng,
-                 struct why *why)
+static double cell_volume(const struct cell *c, int dim)
 {
-    struct start s = { .dim = dim, .box = &b->box, .scale = 1 };
-    double phi = draw_radii(out, b, dim, rng, why);
+    double v = fabs(v3_dot(c->edge[0], v3_cross(c->edge[1], c->edge[2])));
+    return dim == 2 ? v / v3_norm(c->edge[2]) : v;
+}
+
+/* The grains are in this cell, at rest, for the search of pairs. */
+static int set_cell(struct start *s, struct why *why)
+{
+    if (!s->cell) return 0;
+    for (int k = 0; k < 3; k++)
+        s->p.cell.edge[k] = s->cell->edge[k], s->p.cell.repeats[k] = s->cell->repeats[k];
+    s->p.cell.origin = s->cell->origin;
+    return cell_repeats(s->cell) ? packing_alloc_images(&s->p, why) : 0;
+}
+
+int random_start(struct grains *out, const struct scene_bodies *b, int dim, const struct cell *cell,
+                 gsl_rng *rng, struct why *why)
+{
+    /* cells of the grid count from the corner of b->box, wherever the cell is */
+    struct start s = { .dim = dim, .box = &b->box, .cell = cell, .scale = 1 };
+    if (cell) cell_inverse(cell->edge, s.inverse), cell_heights(cell, s.height);
+    double room = cell ? cell_volume(cell, dim) : box_volume(&b->box, dim);
+    double phi = draw_radii(out, b, dim, room, rng, why);
+    s.volume = phi * room;
     if (!why->status && phi > 0.95)
-        why_set(why, EX_DATAERR, "a random start cannot fill %g of its box", phi);
-    if (!why->status && !sort_radii(&s, out, why)) {
+        why_set(why, EX_DATAERR,
+                "a random start cannot fill %g of its box: at %g it is %.4g m high", phi,
+                dim == 2 ? 0.82 : 0.6, height_of(&s, s.volume));
+    if (!why->status && !sort_radii(&s, out, why) && !set_cell(&s, why)) {
         if (phi > LOOSE[dim]) s.scale = pow(LOOSE[dim] / phi, 1.0 / dim);
         if (!add_one_by_one(&s, phi, rng, why) && s.scale < 1) grow(&s, phi, why);
         for (int64_t i = 0; i < out->n && !why->status; i++) out->g[s.from[i]].x = s.p.x[i];

@@ -1,6 +1,8 @@
 /*
  * scene/random_start.h: grains at random in a box, without overlap and without a lattice.
  *
+ * In a periodic cell, whose edges need not be along the axes, grains and their images fill it across the border.
+ *
  * Loose (a share of the box up to 0.28, in the plane 0.4): random sequential addition, the largest
  * first, each where it meets none that is there. Denser: that, with radii scaled down; then all
  * radii grow together towards what was asked, as in Lubachevsky & Stillinger (1990), and after every
@@ -15,9 +17,9 @@
 
 #include <gsl/gsl_rng.h>
 
-/* The group's grains, in the order drawn. Returns 0, EX_DATAERR where they do not go in, or
+/* The group's grains, in the order drawn; in its box, or, not NULL, in this cell. Returns 0, EX_DATAERR where they do not go in, or
    EX_SOFTWARE. */
-int random_start(struct grains *out, const struct scene_bodies *group, int dim, gsl_rng *rng,
-                 struct why *why);
+int random_start(struct grains *out, const struct scene_bodies *group, int dim,
+                 const struct cell *cell, gsl_rng *rng, struct why *why);
 
 #endif

@@ -16,6 +16,7 @@ void scene_free(struct scene *s)
         free(b->document), free(b->file), free(b->type);
     }
     for (int32_t i = 0; i < s->pours; i++) scene_size_free(&s->pour[i].size);
+    for (int32_t i = 0; i < s->removals; i++) free(s->removal[i].id);
     free(s->pour), free(s->removal);
     cell_free(&s->cell.cell);
     shapes_free(&s->shapes);

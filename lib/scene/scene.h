@@ -96,6 +96,8 @@
  *   { about: point, axis, mass: kg m^2, torque: N m [0], speed, travel }   about an axis there
  *   whose force or torque is a number or { table: [[t, N], ...], mean [0] } or
  *   { amplitude, frequency, phase, mean }.
+ *   A plane may have { pressure: Pa, mass, speed, travel } instead, a number or such a signal: along its normal,
+ *   times the face that the planes beside it leave. A mass that is left out is that of scene/time_step.h.
  *   Its weight is a force like others: gravity does not pull at boundaries.
  *
  * DRIVE { along: vector } or { about: point, axis: vector }, with speed, or amplitude, frequency and
@@ -109,18 +111,19 @@
  *            velocity; the edges move with it, d edge/dt = L edge. MATRIX [[L_xx, L_xy], ...]
  *   affine   true | false [true with a gradient and no document]: at the start bodies have the
  *            velocity L (x - origin) as well
- *   stress   { pressure: Pa, mass: kg } or { target: MATRIX, mass: kg }: what edges yield to, as
- *            bodies of this mass; compression is positive, N/m in the plane. Number [i][j]: component
+ *   stress   { pressure: Pa, mass: kg, factor }, { target: MATRIX, mass: kg, factor } or { mean: Pa, mass: kg,
+ *            factor }: what edges yield to, as bodies of this mass [by rule: scene/time_step.h]; compression is positive, N/m in the plane. Number [i][j]: component
  *            i of edge j yields; null: it moves by the gradient. A pressure is one on the diagonal,
- *            of edges that repeat. mass may be a MATRIX of masses, of the same shape
+ *            of edges that repeat. mass may be a MATRIX of masses, of the same shape. A mean: the size of the
+ *            cell yields, while the gradient changes its shape. factor [[t, x], ...]: multiplies the stress
  *
  * POUR { rate: bodies/s | mass_rate: kg/s, opening: { box: BOX } or { disc: { center, normal,
  *   radius } }, radius: SIZE, v, w, kind, density or mass, from [time] s, until s, count, and shape,
  *   size, orientation as of a group of bodies }
  *   [scene/flow.h]; in the plane the disc is a segment.
  *
- * REMOVAL { outside: BOX } or { inside: BOX } or { below: { point, normal } }, with kind [any]: bodies
- *   go whose centre is there.
+ * REMOVAL { outside: BOX } or { inside: BOX } or { below: { point, normal } } [anywhere], with kind [any], id integer
+ *   or [integer, ...] [any], from, until s: bodies go whose centre is there.
  *
  * The paper's examples. The paper gives radii, mu, dt and (example 1) the initial velocity. Our
  * choices: density 2500 kg/m^3, g 9.81 m/s^2, e_n = e_t = 0, and
@@ -215,12 +218,15 @@ struct scene_pour {
     struct scene_form form;
 };
 
-/* Where grains go: bodies whose centre is there */
+/* Which grains go, and when: bodies whose centre is there */
 struct scene_removal {
-    enum scene_region { REGION_OUTSIDE, REGION_INSIDE, REGION_BELOW } region;
+    enum scene_region { REGION_OUTSIDE, REGION_INSIDE, REGION_BELOW, REGION_ALL } region;
     struct scene_box box;
     vec3 point, normal; /* m; unit vector: REGION_BELOW, on the side away from the normal */
     int32_t kind;       /* only bodies of this kind; -1: of all */
+    int32_t ids;        /* only bodies with these numbers; 0: all */
+    int32_t *id;        /* [ids], rising */
+    double from, until; /* s */
 };
 
 /* A boundary whose triangles are in a file: whoever can read it adds them, with mesh_grow(), before the
@@ -251,6 +257,7 @@ struct scene_cell {
     bool none;    /* null is given */
     bool goes_on; /* edges, and what else of these is not given, are those of the first document */
     bool repeats, origin, affine;
+    bool by_rule;     /* masses of what yields are those of scene/time_step.h, not given */
     struct cell cell; /* rates are those at the start */
 };
 

@@ -1,4 +1,5 @@
 /* scene/scene_bodies.c: groups of bodies from their JSON. */
+#include "scene/scene_height.h"
 #include "scene/scene_read.h"
 
 #include <stdlib.h>
@@ -24,8 +25,22 @@ static int check_lattice(const jnode *o, int dim, const struct scene_bodies *b)
                                    2 * b->spacing * b->size.max);
     }
     if ((double)b->count <= places) return 0;
-    return json_node_fault(json_node_key(o, "count"), "%lld bodies, but the box has cells for %.0f",
-                           (long long)b->count, places);
+    return json_node_fault(
+        json_node_key(o, "count"),
+        "%lld bodies, but the box has cells for %.0f: they need a height of %.4g m "
+        "along %s",
+        (long long)b->count, places, scene_lattice_height(b, dim), axis_name[dim - 1]);
+}
+
+/* A group that fills the cell: its box is that of heights above the faces. */
+static int fill_cell(jnode o, const struct scene_cell *of, struct scene_bodies *b)
+{
+    if (of->goes_on)
+        return json_node_fault(o, "wants a box: the cell's edges come with a document");
+    b->in_cell = true;
+    cell_heights(&of->cell, b->box.hi);
+    for (int k = 0; k < 3; k++) b->box.lo[k] = 0;
+    return 0;
 }
 
 static int read_lattice(jnode o, const struct scene *s, bool boxed, struct scene_bodies *b)
@@ -48,32 +63,10 @@ static int read_lattice(jnode o, const struct scene *s, bool boxed, struct scene
     jnode box = json_node_key(&o, "box");
     if (box.json && scene_read_box(box, s->dim, &b->box)) return 1;
     if (own) b->from = SCENE_SHELVES;
-    if (!box.json && s->cell.goes_on)
-        return json_node_fault(o, "wants a box: the cell's edges come with a document");
-    if (!box.json && s->cell.given && own)
+    if (!box.json && s->cell.given && own && !s->cell.goes_on)
         return json_node_fault(o, "cells of their own want a box");
-    if (!box.json && s->cell.given) {
-        b->in_cell = true;
-        cell_heights(&s->cell.cell, b->box.hi);
-        for (int k = 0; k < 3; k++) b->box.lo[k] = 0;
-    }
+    if (!box.json && (s->cell.given || s->cell.goes_on) && fill_cell(o, &s->cell, b)) return 1;
     return check_lattice(&o, s->dim, b);
-}
-
-/* The cell as a box, where its edges are along the axes */
-static int cell_as_box(jnode o, const struct scene_cell *of, int dim, struct scene_box *b)
-{
-    const struct cell *c = &of->cell;
-    double length[3] = { c->edge[0].x, c->edge[1].y, c->edge[2].z };
-    double from[3] = { c->origin.x, c->origin.y, c->origin.z };
-    bool along = true;
-    for (int k = 0; k < (dim == 2 ? 2 : 3); k++) {
-        along = along && length[k] > 0 && v3_norm(c->edge[k]) == length[k];
-        b->lo[k] = from[k], b->hi[k] = from[k] + length[k];
-    }
-    if (of->goes_on)
-        return json_node_fault(o, "wants a box: the cell's edges come with a document");
-    return along ? 0 : json_node_fault(o, "wants a box: the cell is oblique");
 }
 
 static int read_random(jnode o, const struct scene *s, bool boxed, struct scene_bodies *b)
@@ -91,7 +84,7 @@ static int read_random(jnode o, const struct scene *s, bool boxed, struct scene_
         json_node_integer(json_node_key(&how, "count"), 0, INT32_MAX, &b->count))
         return 1;
     if (box.json && scene_read_box(box, s->dim, &b->box)) return 1;
-    if (!box.json && s->cell.given && cell_as_box(o, &s->cell, s->dim, &b->box)) return 1;
+    if (!box.json && s->cell.given && fill_cell(o, &s->cell, b)) return 1;
     for (int i = 0; i < s->dim; i++) {
         double width = b->box.hi[i] - b->box.lo[i];
         if (!isfinite(width))

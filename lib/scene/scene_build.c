@@ -393,11 +393,41 @@ static int inherit_walls(struct packing *p, const struct scene *s, struct why *w
     return 0;
 }
 
+/* Masses of what yields, by the rule where they are not given; that of a size is a multiple of the square of the
+   edges. */
+static int set_masses(struct packing *p, const struct scene *s, struct why *why)
+{
+    struct cell *c = &p->cell;
+    double mass = time_step_edge_mass(p), squares = 0;
+    bool by_rule = s->cell.given && s->cell.by_rule;
+    for (int k = 0; k < p->dim; k++) squares += v3_dot(c->edge[k], c->edge[k]);
+    if (s->cell.given && by_rule && !(mass > 0))
+        return why_set(why, EX_DATAERR,
+                       "cell.stress: no bodies move, whose mass would give the edges theirs: give "
+                       "a \"mass\", kg");
+    for (int k = 0; k < 9 && by_rule; k++)
+        if (c->mass[k / 3][k % 3] > 0) c->mass[k / 3][k % 3] = mass;
+    if (s->cell.given && c->size_mass > 0) c->size_mass = (by_rule ? mass : c->size_mass) * squares;
+    for (int32_t w = 0; w < s->walls; w++) {
+        struct load *l = &p->wall[w].load;
+        if (!l->way || l->mass > 0) continue;
+        l->mass = time_step_wall_mass(p, &p->wall[w]);
+        if (!(l->mass > 0))
+            return why_set(
+                why, EX_DATAERR,
+                "walls[%d].load: no bodies move, whose mass would give the wall its own: "
+                "give a \"mass\", kg",
+                s->wall_item[w]);
+    }
+    return 0;
+}
+
 /* The whole cell of a document, its moments as if the document's time were the scene's */
 static int take_cell(struct packing *p, const struct scene *s, const struct packing *from)
 {
     if (cell_copy(&p->cell, &from->cell)) return 1;
     for (int32_t m = 0; m < p->cell.gradients; m++) p->cell.gradient[m].t += s->t - from->t;
+    for (int32_t m = 0; m < p->cell.factors; m++) p->cell.factor[m].t += s->t - from->t;
     return 0;
 }
 
@@ -417,6 +447,9 @@ static int complete_cell(struct packing *p, const struct scene *s, const struct 
         if (c->mass[k][1] > 0) c->rate[k].y = from->cell.rate[k].y;
         if (c->mass[k][2] > 0) c->rate[k].z = from->cell.rate[k].z;
     }
+    double growth = c->size_mass > 0 ? cell_growth(&from->cell, step_after(from)) : 0;
+    for (int k = 0; k < s->dim && growth != 0; k++)
+        c->rate[k] = v3_axpy(c->rate[k], growth, c->edge[k]);
     return 0;
 }
 
@@ -428,10 +461,6 @@ static int inherit_cell(struct packing *p, const struct scene *s, struct why *wh
     if (s->cell.goes_on && !repeats)
         return why_set(why, EX_DATAERR, "cell: has no edges, and nor has the first document");
     if (!repeats || s->cell.none || (s->cell.given && !s->cell.goes_on)) return 0;
-    if (s->pours + s->removals)
-        return why_set(why, EX_DATAERR,
-                       "bodies come and go in no cell that repeats, and the first "
-                       "document has one (\"cell\": null leaves it out)");
     if (s->cell.goes_on ? complete_cell(p, s, from) : take_cell(p, s, from))
         return why_set(why, EX_SOFTWARE, "no memory for the cell");
     return packing_alloc_images(p, why);
@@ -453,7 +482,7 @@ static int build_packing(struct packing *p, const struct scene *s, const struct 
         !fill_groups(p, s, list, rng, why)) {
         if (s->cell.affine) add_affine_flow(p);
         packing_wrap(p, NULL);
-        if (!set_dt(p, s, why)) check_packing(p, s, list, why);
+        if (!set_masses(p, s, why) && !set_dt(p, s, why)) check_packing(p, s, list, why);
     }
     gsl_rng_free(rng);
     if (why->status) packing_free(p);
@@ -484,7 +513,8 @@ static int list_group(struct grains *out, const struct scene *s, int64_t g, cons
     case SCENE_SHELVES:
         return in_group(g, shelves_fill(out, b, s->dim, rng, why), why);
     case SCENE_RANDOM:
-        return in_group(g, random_start(out, b, s->dim, rng, why), why);
+        return in_group(
+            g, random_start(out, b, s->dim, b->in_cell ? &s->cell.cell : NULL, rng, why), why);
     default:
         return 0;
     }

@@ -98,11 +98,16 @@ static int set_target(jnode n, int dim, double target[3][3], bool given[3][3], s
     return 0;
 }
 
-static int read_mass(jnode n, int dim, bool yields[3][3], struct cell *c)
+/* kg, of what yields; without it the rule of scene/time_step.h */
+static int read_mass(jnode n, int dim, bool yields[3][3], struct scene_cell *out)
 {
-    double one = 0, mass[3][3] = { { 0 } };
+    struct cell *c = &out->cell;
+    double one = 1, mass[3][3] = { { 0 } };
     bool matrix = json_is_array(n.json), given[3][3] = { { false } };
-    if (matrix ? read_matrix(n, dim, mass, given) : json_node_number(n, J_POSITIVE, &one)) return 1;
+    if (!n.json) out->by_rule = true;
+    if (n.json &&
+        (matrix ? read_matrix(n, dim, mass, given) : json_node_number(n, J_POSITIVE, &one)))
+        return 1;
     for (int i = 0; i < dim; i++)
         for (int j = 0; j < dim; j++) {
             if (!yields[i][j]) continue;
@@ -114,14 +119,66 @@ static int read_mass(jnode n, int dim, bool yields[3][3], struct cell *c)
     return 0;
 }
 
-static int read_stress(jnode o, int dim, struct cell *c)
+/* [[t, x], ...]: by what the stress is multiplied */
+static int read_factor(jnode a, struct cell *c)
 {
+    size_t n = 0, two = 0;
+    if (!a.json) return 0;
+    if (json_node_array(a, &n)) return 1;
+    if (!n || n >= 1 << 24) return json_node_fault(a, "wants [[time, factor], ...]");
+    if (!(c->factor = scene_alloc(a, n, sizeof *c->factor))) return 1;
+    c->factors = (int32_t)n;
+    for (size_t k = 0; k < n; k++) {
+        struct cell_factor *f = &c->factor[k];
+        jnode pair = json_node_item(&a, k), t = json_node_item(&pair, 0);
+        if (json_node_array(pair, &two)) return 1;
+        if (two != 2) return json_node_fault(pair, "wants [time, factor]");
+        if (json_node_number(t, J_ANY, &f->t) ||
+            json_node_number(json_node_item(&pair, 1), J_ANY, &f->x))
+            return 1;
+        if (k && !(f->t > f[-1].t)) return json_node_fault(t, "times must rise");
+    }
+    return 0;
+}
+
+/* The size yields to a mean stress; the gradient gives the distortion beside it. */
+static int read_mean(jnode o, int dim, struct scene_cell *out)
+{
+    struct cell *c = &out->cell;
+    jnode mass = json_node_key(&o, "mass"), mean = json_node_key(&o, "mean");
+    double one = 1;
+    if (json_node_number(mean, J_ANY, &c->mean) ||
+        (mass.json && json_node_number(mass, J_POSITIVE, &one)))
+        return 1;
+    for (int k = 0; k < dim; k++)
+        if (!c->repeats[k])
+            return json_node_fault(mean, "edge %d does not repeat, so the size cannot yield", k);
+    for (int32_t m = 0; m < c->gradients; m++) {
+        double(*L)[3] = c->gradient[m].L, trace = 0, most = 0;
+        for (int k = 0; k < dim; k++) trace += L[k][k], most += fabs(L[k][k]);
+        if (fabs(trace) > 1e-9 * most)
+            return json_node_fault(mean,
+                                   "the gradient changes the volume at %g per s, and the mean "
+                                   "stress does: take a third of it off each of its diagonal "
+                                   "(in the plane a half)",
+                                   trace);
+    }
+    out->by_rule = !mass.json;
+    c->size_mass = one; // kg, until the edges are known
+    return 0;
+}
+
+static int read_stress(jnode o, int dim, struct scene_cell *out)
+{
+    struct cell *c = &out->cell;
     double target[3][3] = { { 0 } };
     bool yields[3][3] = { { false } };
     if (!o.json) return 0;
-    int which = json_node_choice(o, "pressure target");
-    if (which < 0 || json_node_only(o, "pressure target mass") || json_node_need(&o, "mass"))
+    int which = json_node_choice(o, "pressure target mean");
+    if (which < 0 || json_node_only(o, "pressure target mean mass factor") ||
+        read_factor(json_node_key(&o, "factor"), c))
         return 1;
+    if (which == 2) return read_mean(o, dim, out);
     jnode pressure = json_node_key(&o, "pressure"), matrix = json_node_key(&o, "target");
     if (which == 1 && read_matrix(matrix, dim, target, yields)) return 1;
     for (int k = 0; which == 0 && k < dim; k++) {
@@ -129,7 +186,7 @@ static int read_stress(jnode o, int dim, struct cell *c)
         if (json_node_number(pressure, J_ANY, &target[k][k])) return 1;
     }
     if (set_target(which == 1 ? matrix : pressure, dim, target, yields, c)) return 1;
-    return read_mass(json_node_key(&o, "mass"), dim, yields, c);
+    return read_mass(json_node_key(&o, "mass"), dim, yields, out);
 }
 
 int scene_read_cell(jnode o, int dim, double t, bool documents, struct scene_cell *out)
@@ -152,7 +209,7 @@ int scene_read_cell(jnode o, int dim, double t, bool documents, struct scene_cel
         json_node_vector(json_node_key(&o, "origin"), dim, &c->origin) ||
         read_gradient(json_node_key(&o, "gradient"), dim, c) ||
         json_node_bool(json_node_key(&o, "affine"), &out->affine) ||
-        read_stress(json_node_key(&o, "stress"), dim, c))
+        read_stress(json_node_key(&o, "stress"), dim, out))
         return 1;
     if (out->goes_on) return 0;
     cell_set_rate(c, t);

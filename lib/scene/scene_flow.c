@@ -1,6 +1,7 @@
 /* scene/scene_flow.c: "pour" and "remove" from their JSON. */
 #include "scene/scene_read.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static int read_disc(jnode o, int dim, struct scene_pour *p)
@@ -64,15 +65,56 @@ int scene_read_pours(jnode a, struct scene *s)
     return 0;
 }
 
+static int by_number(const void *a, const void *b)
+{
+    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* One number of a body, or several */
+static int read_ids(jnode a, struct scene_removal *r)
+{
+    bool many = json_is_array(a.json);
+    size_t n = 1;
+    int64_t id = 0;
+    if (!a.json) return 0;
+    if (many && json_node_array(a, &n)) return 1;
+    if (!n || n > INT32_MAX) return json_node_fault(a, "wants the numbers of bodies");
+    if (!(r->id = scene_alloc(a, n, sizeof *r->id))) return 1;
+    for (size_t k = 0; k < n; k++) {
+        if (json_node_integer(many ? json_node_item(&a, k) : a, 0, INT32_MAX, &id)) return 1;
+        r->id[r->ids++] = (int32_t)id;
+    }
+    qsort(r->id, n, sizeof *r->id, by_number);
+    return 0;
+}
+
+/* Which bodies go, wherever they are: kind and id. Names of groups would be brought to ids or kinds here. */
+static int read_which(jnode o, const struct scene *s, struct scene_removal *r)
+{
+    return scene_read_kind(json_node_key(&o, "kind"), s, &r->kind) ||
+           read_ids(json_node_key(&o, "id"), r);
+}
+
 static int read_removal(jnode o, const struct scene *s, struct scene_removal *r)
 {
     static const char *const key[] = { "outside", "inside", "below" };
-    *r = (struct scene_removal){ .kind = -1 };
-    int which = json_node_choice(o, "outside inside below");
-    if (which < 0 || json_node_only(o, "outside inside below kind") ||
-        scene_read_kind(json_node_key(&o, "kind"), s, &r->kind))
+    bool anywhere = true, any = !json_node_key(&o, "kind").json && !json_node_key(&o, "id").json;
+    *r = (struct scene_removal){ .kind = -1, .from = -INFINITY, .until = INFINITY };
+    for (int k = 0; k < 3; k++) anywhere = anywhere && !json_node_key(&o, key[k]).json;
+    if (json_node_only(o, "outside inside below kind id from until")) return 1;
+    if (anywhere && any)
+        return json_node_fault(o, "wants one of outside, inside, below, kind or id: which bodies "
+                                  "go");
+    int which = anywhere ? REGION_ALL : json_node_choice(o, "outside inside below");
+    if (which < 0 || read_which(o, s, r) ||
+        json_node_number(json_node_key(&o, "from"), J_ANY, &r->from) ||
+        json_node_number(json_node_key(&o, "until"), J_ANY, &r->until))
         return 1;
+    if (!(r->from <= r->until))
+        return json_node_fault(json_node_key(&o, "until"), "must not lie before its beginning");
     r->region = (enum scene_region)which;
+    if (anywhere) return 0;
     jnode where = json_node_key(&o, key[which]);
     if (r->region != REGION_BELOW) return scene_read_box(where, s->dim, &r->box);
     return json_node_only(where, "point normal") || json_node_need(&where, "point normal") ||

@@ -61,17 +61,37 @@ static int read_way(jnode o, int dim, const struct wall *w, bool turns, struct l
            scene_read_direction(json_node_key(&o, "axis"), dim, &l->axis);
 }
 
+/* A plane that a pressure on its face pushes along its normal */
+static int read_pressure(jnode o, struct scene *s, struct wall *w)
+{
+    struct load *l = &w->load;
+    l->way = LOAD_GLIDES, l->axis = w->n, l->spread = 1;
+    if (w->shape != BOUNDARY_PLANE)
+        return json_node_fault(json_node_key(&o, "pressure"),
+                               "only a plane has a face of known size: give along and a force");
+    if (json_node_only(o, "pressure mass speed travel") ||
+        json_node_number(json_node_key(&o, "mass"), J_POSITIVE, &l->mass) ||
+        json_node_number(json_node_key(&o, "speed"), J_ANY, &l->speed) ||
+        json_node_number(json_node_key(&o, "travel"), J_ANY, &l->travel))
+        return 1;
+    w->first_push = s->pushes.n;
+    if (scene_read_push(json_node_key(&o, "pressure"), s, s->walls, l)) return 1;
+    w->pushes = s->pushes.n - w->first_push;
+    return 0;
+}
+
 /* What it is free to do, and the force or the torque */
 static int read_load(jnode o, struct scene *s, struct wall *w)
 {
     bool plane = w->shape == BOUNDARY_PLANE;
     if (!o.json) return 0;
+    if (json_node_key(&o, "pressure").json) return read_pressure(o, s, w);
     int which = json_node_choice(o, "along about");
     if (which < 0 ||
         json_node_only(o, !which                 ? "along mass force speed travel"
                           : plane || s->dim == 2 ? "about mass torque speed travel"
                                                  : "about axis mass torque speed travel") ||
-        json_node_need(&o, "mass") ||
+        (which == 1 && json_node_need(&o, "mass")) ||
         json_node_number(json_node_key(&o, "mass"), J_POSITIVE, &w->load.mass) ||
         json_node_number(json_node_key(&o, "speed"), J_ANY, &w->load.speed) ||
         json_node_number(json_node_key(&o, "travel"), J_ANY, &w->load.travel) ||

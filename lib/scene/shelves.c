@@ -68,16 +68,26 @@ int shelves_fill(struct grains *out, const struct scene_bodies *b, int dim, gsl_
     for (int64_t i = 0; i < out->n; i++) sorted[i] = &out->g[i];
     qsort(sorted, (size_t)out->n, sizeof(struct grain *), larger_first);
     struct cursor c = { .dim = dim, .box = &b->box };
+    struct scene_box open = b->box;
+    int64_t went =
+        -1; /* bodies that found room; the others are stacked on top, to say how high they are */
+    open.hi[dim - 1] = INFINITY;
     for (int k = 0; k < dim; k++) c.at[k] = c.end[k] = b->box.lo[k];
     for (int64_t i = 0; i < out->n && !why->status; i++) {
         double edge = 2 * b->spacing * sorted[i]->r;
-        if (!place(&c, edge))
-            why_set(why, EX_DATAERR, "the box has cells for %lld of %lld bodies", (long long)i,
-                    (long long)out->n);
+        bool placed = place(&c, edge);
+        if (!placed && went < 0) went = i, c.box = &open, placed = place(&c, edge);
+        if (!placed)
+            why_set(why, EX_DATAERR, "the box is narrower than a cell of %.4g m", edge);
         else
             settle(sorted[i], &c, edge, b->jitter, rng);
         c.at[0] += edge;
     }
+    if (went >= 0 && !why->status)
+        why_set(why, EX_DATAERR,
+                "the box has cells for %lld of %lld bodies: they need a height of %.4g m along %c",
+                (long long)went, (long long)out->n, c.end[dim - 1] - b->box.lo[dim - 1],
+                "xyz"[dim - 1]);
     free(sorted);
     return why->status;
 }

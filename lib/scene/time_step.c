@@ -367,7 +367,7 @@ static double load_most(const struct packing *p, const struct wall *w)
         for (int32_t r = 0; r < k->rows; r++) one = dmax(one, fabs(p->pushes.row[k->first + r].s));
         most += one;
     }
-    return most;
+    return w->load.spread ? most * wall_face(p, w, p->t) : most;
 }
 
 /* m^2, in the plane m: the face that a wall can press on, as wide as the bodies are */
@@ -389,6 +389,8 @@ static double pressure_of(const struct packing *p)
     double most = 0;
     if (cell_yields(&p->cell))
         for (int k = 0; k < 9; k++) most = dmax(most, fabs(p->cell.stress[k / 3][k % 3]));
+    most = dmax(most, fabs(p->cell.mean));
+    if (p->cell.factors) most *= cell_factor_most(&p->cell);
     for (int32_t k = 0; k < p->walls && p->n; k++) {
         const struct wall *w = &p->wall[k];
         if (w->load.way == LOAD_GLIDES)
@@ -420,8 +422,13 @@ static void of_loads(struct time_step *t, const struct packing *p)
         double mass = p->cell.mass[k % 3][k / 3]; // component k / 3 of edge k % 3
         if (!(mass > 0)) continue;
         double force = fabs(p->cell.stress[k / 3][k % 3]) * size / height[k % 3];
+        if (p->cell.factors) force *= cell_factor_most(&p->cell);
         t->x[LIMIT_LOAD] = dmax(t->x[LIMIT_LOAD], force / mass);
     }
+    double growth = p->dim * size * fabs(p->cell.mean) * cell_factor_most(&p->cell);
+    for (int k = 0; k < p->dim && p->cell.size_mass > 0; k++)
+        t->x[LIMIT_LOAD] =
+            dmax(t->x[LIMIT_LOAD], growth / p->cell.size_mass * v3_norm(p->cell.edge[k]));
 }
 
 static void of_walls(struct time_step *t, const struct packing *p)

@@ -202,7 +202,8 @@ bad() # "what is true" FILTER REGEX
     refuses 65 "$1" nsd-gen "$tmp/bad.json"
     like "and where, is said" "$(cat "$tmp/err")" "$3"
 }
-bad "no mass is refused" 'del(.walls[1].load.mass)' 'walls\[1\].load.mass: is missing'
+bad "no mass is refused where no grain gives one" 'del(.walls[1].load.mass) | .bodies = []' 'walls\[1\].load: no bodies move.*give a "mass"'
+bad "a rotor needs its mass" '.walls[1].load = {about: [0, 0, 0], torque: 1}' 'walls\[1\].load.mass: is missing'
 bad "a mass of 0 is refused" '.walls[1].load.mass = 0' 'walls\[1\].load.mass: must be positive'
 bad "no direction is refused" '.walls[1].load.along = [0, 0, 0]' 'walls\[1\].load.along: must not be zero'
 bad "two ways are refused" '.walls[1].load.about = [0, 0, 0]' 'walls\[1\].load'

@@ -511,7 +511,8 @@ static void test_bad_scenes(void)
           "2:26: bodies[0].box: x is narrower than a cell, 2.1 m" },
         { BODY("{\"count\": 9, \"radius\": 0.2, \"box\": {\"x\": [0, 1], \"y\": [0, 1], \"z\": [0, "
                "1]}}"),
-          "2:14: bodies[0].count: 9 bodies, but the box has cells for 8" },
+          "2:14: bodies[0].count: 9 bodies, but the box has cells for 8: they need a height of "
+          "1.26 m along z" },
         { BODY("{\"count\": 1e10, " BOX ", \"radius\": 1}"),
           "2:14: bodies[0].count: must lie in [0, 2147483647]" },
         { BODY("{\"count\": 9, \"radius\": 1, \"box\": {\"x\": [1, 0]}}"),
