@@ -79,7 +79,7 @@ static json_t *numbers(vec3 x)
 
 static bool same(vec3 x, vec3 y)
 {
-    return !memcmp(&x, &y, sizeof x);
+    return x.x == y.x && x.y == y.y && x.z == y.z;
 }
 
 /* Of the bodies in which `to` differs from `from` (NULL: from 0) */

@@ -52,7 +52,8 @@ int undo_take(struct undo *u, const struct packing *p, const struct acts *acts, 
     if (changes_more(p)) {
         undo_free(u);
         if (packing_copy(&u->was, p, why)) return u->was = (struct packing){ 0 }, why->status;
-        if (acts_copy(&u->acts, acts, p->walls, why)) return packing_free(&u->was), why->status;
+        if (packing_varies(p) && acts_copy(&u->acts, acts, p->walls, why))
+            return packing_free(&u->was), why->status;
         u->whole = true;
         return 0;
     }
@@ -66,12 +67,27 @@ int undo_take(struct undo *u, const struct packing *p, const struct acts *acts, 
     return 0;
 }
 
+/* The numbers of `was` go into the arrays of p, which go into was: they stay where they are. */
+static void keep_places(struct packing *was, struct packing *p)
+{
+    for (const struct body_column *b = body_columns; b->column.name; b++) {
+        void *stays = column_array(&b->column, p), *from = column_array(&b->column, was);
+        if (!stays || !from) continue;
+        memcpy(stays, from, (size_t)was->n * column_bytes(&b->column));
+        column_set_array(&b->column, p, from), column_set_array(&b->column, was, stays);
+    }
+}
+
 void undo_back(struct undo *u, struct packing *p, struct acts *acts)
 {
     size_t n = (size_t)u->n;
     if (u->whole) {
-        packing_free(p), acts_free(acts);
-        *p = u->was, *acts = u->acts;
+        const bool varies = packing_varies(&u->was);
+        if (!varies) keep_places(&u->was, p);
+        packing_free(p);
+        *p = u->was;
+        if (varies)
+            acts_free(acts), *acts = u->acts; // else a step that fails leaves them as they are
         u->whole = false, u->was = (struct packing){ 0 }, u->acts = (struct acts){ 0 };
         return;
     }

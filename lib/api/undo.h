@@ -1,6 +1,6 @@
 /*
- * api/undo.h: what a packing was before a step, should the step fail. Its arrays stay where they are, unless bodies come
- * and go or bonds last.
+ * api/undo.h: what a packing was before a step, should the step fail. Its arrays of bodies stay where they are, unless
+ * bodies come and go.
  */
 #ifndef NSD_UNDO_H
 #define NSD_UNDO_H
@@ -18,7 +18,7 @@ struct undo {
     struct recall *recall; /* [room] */
     struct packing was;    /* its numbers; or, whole, a copy */
     bool whole;
-    struct acts acts; /* whole: a copy, too */
+    struct acts acts; /* where bodies come and go: a copy, too */
 };
 
 void undo_free(struct undo *undo);

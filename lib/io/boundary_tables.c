@@ -243,8 +243,10 @@ static int write_row(struct table_write *s, const char *group, const struct colu
         snprintf(path, sizeof path, "%s/%s/value", group, c->name);
         if (!row) return why_set(why, EX_SOFTWARE, "no memory for %s", path);
         column_gather(c, walls, structs, stride, row);
-        table_write_rows(s, path, c->type, c->width == 1 ? 2 : 3, shape, CHUNK_FRAMES, row,
-                         c->units, why);
+        table_write_rows(s,
+                         (struct dataset){ path, c->type, c->width == 1 ? 2 : 3, shape,
+                                           CHUNK_FRAMES, row, c->units },
+                         why);
         free(row);
     }
     if (why->status || table_write_clock(s, group, true, &p->step, group, table, why))

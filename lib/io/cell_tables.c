@@ -178,8 +178,10 @@ int cell_tables_write(struct table_write *s, const struct packing *p, struct why
         char path[80];
         snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
         const hsize_t shape[3] = { 1, 3, 3 };
-        if (table_write_rows(s, path, c->type, 3, shape, CHUNK_FRAMES,
-                             (const char *)&p->cell + c->offset, c->units, why))
+        if (table_write_rows(s,
+                             (struct dataset){ path, c->type, 3, shape, CHUNK_FRAMES,
+                                               (const char *)&p->cell + c->offset, c->units },
+                             why))
             return why->status;
     }
     return 0;

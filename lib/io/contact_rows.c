@@ -140,8 +140,9 @@ static int write_bases(struct table_write *s, const struct contacts *t, struct w
         const struct contact *c = &t->c[i];
         basis[i][0] = c->n, basis[i][1] = c->t1, basis[i][2] = contact_t2(c);
     }
-    int e = table_write_rows(s, "/contacts/frame", COLUMN_F64, 3, shape, CHUNK_CONTACTS, basis, "1",
-                             why);
+    int e = table_write_rows(
+        s, (struct dataset){ "/contacts/frame", COLUMN_F64, 3, shape, CHUNK_CONTACTS, basis, "1" },
+        why);
     free(basis);
     return e;
 }
@@ -152,8 +153,10 @@ static int write_moments(struct table_write *s, const struct contacts *t, struct
     const hsize_t shape[2] = { (hsize_t)t->n, 3 };
     double(*none)[3] = t->moment ? NULL : calloc((size_t)t->n + 1, sizeof *none);
     if (!t->moment && !none) return why_set(why, EX_SOFTWARE, "no memory for moments");
-    int e = table_write_rows(s, LAYOUT_MOMENT, COLUMN_F64, 2, shape, CHUNK_CONTACTS,
-                             none ? none : t->moment, "N m s", why);
+    int e = table_write_rows(s,
+                             (struct dataset){ LAYOUT_MOMENT, COLUMN_F64, 2, shape, CHUNK_CONTACTS,
+                                               none ? none : t->moment, "N m s" },
+                             why);
     free(none);
     return e;
 }
@@ -165,8 +168,8 @@ static int write_forces(struct table_write *s, const struct contacts *t, double 
     if (!force) return why_set(why, EX_SOFTWARE, "no memory for %s", LAYOUT_FORCE);
     for (int64_t i = 0; i < t->n; i++)
         force[i] = v3_scale(1 / dt, contact_in_space(&t->c[i], t->found[i].r));
-    int e =
-        table_write_rows(s, LAYOUT_FORCE, COLUMN_F64, 2, shape, CHUNK_CONTACTS, force, "N", why);
+    int e = table_write_rows(
+        s, (struct dataset){ LAYOUT_FORCE, COLUMN_F64, 2, shape, CHUNK_CONTACTS, force, "N" }, why);
     free(force);
     return e;
 }
@@ -174,14 +177,10 @@ static int write_forces(struct table_write *s, const struct contacts *t, double 
 int contact_rows_write(struct table_write *s, const struct frame *f, struct why *why)
 {
     bool first = !table_write_grows(s, "/contacts/start");
-    const hsize_t one = 1;
     const struct contacts *t = &f->contacts;
     // a column of a trajectory is one of all its contacts, or of none
     bool forces = t->found && (first ? f->forces : table_write_grows(s, LAYOUT_FORCE));
-    if (table_write_rows(s, "/contacts/start", COLUMN_I64, 1, &one, CHUNK_FRAMES, &s->contacts,
-                         NULL, why) ||
-        table_write_rows(s, "/contacts/count", COLUMN_I64, 1, &one, CHUNK_FRAMES, &t->n, NULL,
-                         why) ||
+    if (table_write_span(s, "/contacts", s->contacts, t->n, why) ||
         table_write_columns(s, "/contacts", "", RECORDS(layout_contacts, t->n, t->c),
                             CHUNK_CONTACTS, why) ||
         write_bases(s, t, why) ||
@@ -198,8 +197,7 @@ int contact_rows_write(struct table_write *s, const struct frame *f, struct why 
                                          CHUNK_CONTACTS, why)) ||
         (t->found && packing_rolls(&f->packing) && write_moments(s, t, why)) ||
         (forces && write_forces(s, t, f->packing.dt, why)) ||
-        table_write_rows(s, "/contacts/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &f->packing.step,
-                         NULL, why))
+        table_write_number(s, "/contacts/step", COLUMN_I64, &f->packing.step, NULL, why))
         return why->status;
     if (s->growing) s->contacts += t->n;
     int moved = f->moved;

@@ -57,19 +57,18 @@ int fields_file_open(struct fields_file **out, const char *path, const struct fi
 int fields_file_add(struct fields_file *s, const struct fields *f, int64_t step, double t,
                     struct why *why)
 {
-    const hsize_t one[1] = { 1 };
-    if (table_write_rows(&s->tables, "/fields/step", COLUMN_I64, 1, one, CHUNK_FRAMES, &step, NULL,
-                         why) ||
-        table_write_rows(&s->tables, "/fields/time", COLUMN_F64, 1, one, CHUNK_FRAMES, &t, "s",
-                         why))
+    if (table_write_number(&s->tables, "/fields/step", COLUMN_I64, &step, NULL, why) ||
+        table_write_number(&s->tables, "/fields/time", COLUMN_F64, &t, "s", why))
         return why->status;
     for (int k = 0; k < FIELD_COUNT; k++) {
         const struct quantity *q = &field_quantity[k];
         const hsize_t shape[3] = { 1, (hsize_t)fields_points(f), (hsize_t)q->width };
         char path[80];
         snprintf(path, sizeof path, "/fields/%s/value", q->name);
-        if (table_write_rows(&s->tables, path, COLUMN_F64, q->width == 1 ? 2 : 3, shape, 1, f->x[k],
-                             q->unit, why))
+        if (table_write_rows(&s->tables,
+                             (struct dataset){ path, COLUMN_F64, q->width == 1 ? 2 : 3, shape, 1,
+                                               f->x[k], q->unit },
+                             why))
             return why->status;
     }
     return H5Fflush(s->tables.file, H5F_SCOPE_GLOBAL) < 0

@@ -19,7 +19,8 @@ static int write_passages(struct table_write *s, const struct column *c, int32_t
         snprintf(path, sizeof path, "%s/%s/value", flow, c->name);
         column_gather(c, n, from, sizeof *from, data);
         const hsize_t shape[2] = { 1, (hsize_t)n };
-        if (table_write_rows(s, path, c->type, 2, shape, CHUNK_FRAMES, data, c->units, why))
+        if (table_write_rows(
+                s, (struct dataset){ path, c->type, 2, shape, CHUNK_FRAMES, data, c->units }, why))
             return why->status;
     }
     return 0;
@@ -30,26 +31,18 @@ static int write_passages(struct table_write *s, const struct column *c, int32_t
 /* Frames after bodies were added by another program than the scene's pours, which are numbered after them */
 static int write_numbers(struct table_write *s, const struct packing *p, struct why *why)
 {
-    const hsize_t one = 1;
     if (p->first_id == s->first_id) return 0;
-    if (table_write_rows(s, NUMBERS "/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &p->step, NULL,
-                         why))
-        return why->status;
-    return table_write_rows(s, NUMBERS "/first_id", COLUMN_I32, 1, &one, CHUNK_FRAMES, &p->first_id,
-                            NULL, why);
+    if (table_write_number(s, NUMBERS "/step", COLUMN_I64, &p->step, NULL, why)) return why->status;
+    return table_write_number(s, NUMBERS "/first_id", COLUMN_I32, &p->first_id, NULL, why);
 }
 
 int flow_write(struct table_write *s, const struct packing *p, struct why *why)
 {
     if (!packing_varies(p)) return 0;
-    const hsize_t one = 1;
     bool first = !table_write_grows(s, "/nsd/flow/events/id");
     if (write_passages(s, layout_poured, p->pours, p->poured, why) ||
         write_passages(s, layout_removed, p->removals, p->removed, why) ||
-        table_write_rows(s, "/nsd/flow/events/start", COLUMN_I64, 1, &one, CHUNK_FRAMES, &s->events,
-                         NULL, why) ||
-        table_write_rows(s, "/nsd/flow/events/count", COLUMN_I64, 1, &one, CHUNK_FRAMES,
-                         &p->events.n, NULL, why) ||
+        table_write_span(s, "/nsd/flow/events", s->events, p->events.n, why) ||
         table_write_columns(s, events, "", RECORDS(layout_events, p->events.n, p->events.e),
                             CHUNK_CONTACTS, why))
         return why->status;

@@ -131,10 +131,7 @@ static int write_particles_clock(struct table_write *s, bool step, const struct 
 
 static int write_time_step(struct table_write *s, const struct packing *p, struct why *why)
 {
-    const hsize_t one = 1;
-    return p->adapts ? table_write_rows(s, LAYOUT_TIME_STEP, COLUMN_F64, 1, &one, CHUNK_FRAMES,
-                                        &p->dt, "s", why)
-                     : 0;
+    return p->adapts ? table_write_number(s, LAYOUT_TIME_STEP, COLUMN_F64, &p->dt, "s", why) : 0;
 }
 
 /* After the first frame's step: its clock is that of the particles. */

@@ -67,12 +67,8 @@ void memory_rows_close(struct memory_rows *r)
 int memory_rows_write(struct table_write *s, const struct packing *p, struct why *why)
 {
     const struct memory *m = &p->memory;
-    const hsize_t one = 1;
     if (!m->on) return 0;
-    if (table_write_rows(s, "/nsd/memory/start", COLUMN_I64, 1, &one, CHUNK_FRAMES, &s->memory,
-                         NULL, why) ||
-        table_write_rows(s, "/nsd/memory/count", COLUMN_I64, 1, &one, CHUNK_FRAMES, &m->n, NULL,
-                         why) ||
+    if (table_write_span(s, "/nsd/memory", s->memory, m->n, why) ||
         table_write_columns(s, group, "", RECORDS(layout_memory, m->n, m->recall), CHUNK_CONTACTS,
                             why) ||
         (features(p) &&
@@ -84,8 +80,7 @@ int memory_rows_write(struct table_write *s, const struct packing *p, struct why
         (packing_rolls(p) &&
          table_write_columns(s, group, "", RECORDS(layout_memory_moments, m->n, m->recall),
                              CHUNK_CONTACTS, why)) ||
-        table_write_rows(s, "/nsd/memory/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &p->step, NULL,
-                         why))
+        table_write_number(s, "/nsd/memory/step", COLUMN_I64, &p->step, NULL, why))
         return why->status;
     if (s->growing) s->memory += m->n;
     return 0;

@@ -12,10 +12,11 @@
 
 /* ---- to a document ---- */
 
-static int write_row(struct table_write *s, const char *path, int rank, const hsize_t *shape,
-                     const void *data, const char *units, struct why *why)
+/* A row of numbers of the frame */
+static struct dataset row_of(const char *path, int rank, const hsize_t *shape, const void *data,
+                             const char *units)
 {
-    return table_write_rows(s, path, COLUMN_F64, rank, shape, CHUNK_FRAMES, data, units, why);
+    return (struct dataset){ path, COLUMN_F64, rank, shape, CHUNK_FRAMES, data, units };
 }
 
 static int write_boundaries(struct table_write *s, const struct packing *p, struct why *why)
@@ -32,24 +33,11 @@ static int write_boundaries(struct table_write *s, const struct packing *p, stru
         x[w] = p->wall[w].x, x[n + w] = p->wall[w].v;
         if (p->outside.push) push[w] = p->outside.push[w];
     }
-    if (!write_row(s, HOME "/point", 3, shape, x, "m", why) &&
-        !write_row(s, HOME "/velocity", 3, shape, x + n, "m s-1", why))
-        write_row(s, HOME "/push", 2, shape, push, "N, N m", why);
+    if (!table_write_rows(s, row_of(HOME "/point", 3, shape, x, "m"), why) &&
+        !table_write_rows(s, row_of(HOME "/velocity", 3, shape, x + n, "m s-1"), why))
+        table_write_rows(s, row_of(HOME "/push", 2, shape, push, "N, N m"), why);
     free(x), free(push);
     return why->status;
-}
-
-/* start and count of the rows that belong to the frame */
-static int write_span(struct table_write *s, const char *name, int64_t start, int64_t count,
-                      struct why *why)
-{
-    const hsize_t one = 1;
-    char path[80];
-    snprintf(path, sizeof path, HOME "/%s/start", name);
-    if (table_write_rows(s, path, COLUMN_I64, 1, &one, CHUNK_FRAMES, &start, NULL, why))
-        return why->status;
-    snprintf(path, sizeof path, HOME "/%s/count", name);
-    return table_write_rows(s, path, COLUMN_I64, 1, &one, CHUNK_FRAMES, &count, NULL, why);
 }
 
 /* Of bodies, without which a column has 0 */
@@ -61,11 +49,15 @@ static int write_forces(struct table_write *s, const struct packing *p, bool any
     if (!none) return why_set(why, EX_SOFTWARE, "no memory for forces");
     const vec3 *force = any && p->outside.force ? p->outside.force : none;
     const vec3 *torque = any && p->outside.torque ? p->outside.torque : none;
-    if (!write_span(s, "body", s->forces, n, why) &&
-        !table_write_rows(s, HOME "/body/force", COLUMN_F64, 2, shape, CHUNK_CONTACTS, force, "N",
+    if (!table_write_span(s, HOME "/body", s->forces, n, why) &&
+        !table_write_rows(s,
+                          (struct dataset){ HOME "/body/force", COLUMN_F64, 2, shape,
+                                            CHUNK_CONTACTS, force, "N" },
                           why))
-        table_write_rows(s, HOME "/body/torque", COLUMN_F64, 2, shape, CHUNK_CONTACTS, torque,
-                         "N m", why);
+        table_write_rows(s,
+                         (struct dataset){ HOME "/body/torque", COLUMN_F64, 2, shape,
+                                           CHUNK_CONTACTS, torque, "N m" },
+                         why);
     free(none);
     if (s->growing) s->forces += n;
     return why->status;
@@ -74,9 +66,11 @@ static int write_forces(struct table_write *s, const struct packing *p, bool any
 static int write_words(struct table_write *s, const struct outside *o, struct why *why)
 {
     const hsize_t length = (hsize_t)o->length;
-    if (write_span(s, "answer", s->words, o->length, why) ||
-        table_write_rows(s, HOME "/answer/text", COLUMN_I8, 1, &length, CHUNK_CONTACTS,
-                         o->length ? o->words : "", NULL, why))
+    if (table_write_span(s, HOME "/answer", s->words, o->length, why) ||
+        table_write_rows(s,
+                         (struct dataset){ HOME "/answer/text", COLUMN_I8, 1, &length,
+                                           CHUNK_CONTACTS, o->length ? o->words : "", NULL },
+                         why))
         return why->status;
     if (s->growing) s->words += o->length;
     return 0;
@@ -86,7 +80,7 @@ static int write_words(struct table_write *s, const struct outside *o, struct wh
 static int write_lasting(struct table_write *s, const struct packing *p, struct why *why)
 {
     const struct lasting *o = &p->outside.lasts;
-    const hsize_t one = 1, walls[2] = { 1, (hsize_t)p->walls };
+    const hsize_t walls[2] = { 1, (hsize_t)p->walls };
     const int64_t n = o->force || o->torque ? p->n : 0;
     const hsize_t shape[2] = { (hsize_t)n, 3 };
     if (!n && !o->push) return 0;
@@ -94,14 +88,18 @@ static int write_lasting(struct table_write *s, const struct packing *p, struct 
     double *rest = calloc((size_t)p->walls + 1, sizeof *rest);
     if (!none || !rest)
         why_set(why, EX_SOFTWARE, "no memory for forces that last");
-    else if (!table_write_rows(s, LASTS "/step", COLUMN_I64, 1, &one, CHUNK_FRAMES, &p->step, NULL,
-                               why) &&
-             !write_row(s, LASTS "/push", 2, walls, o->push ? o->push : rest, "N, N m", why) &&
-             !write_span(s, "lasting", s->lasting, n, why) &&
-             !table_write_rows(s, LASTS "/force", COLUMN_F64, 2, shape, CHUNK_CONTACTS,
-                               o->force ? o->force : none, "N", why))
-        table_write_rows(s, LASTS "/torque", COLUMN_F64, 2, shape, CHUNK_CONTACTS,
-                         o->torque ? o->torque : none, "N m", why);
+    else if (!table_write_number(s, LASTS "/step", COLUMN_I64, &p->step, NULL, why) &&
+             !table_write_rows(
+                 s, row_of(LASTS "/push", 2, walls, o->push ? o->push : rest, "N, N m"), why) &&
+             !table_write_span(s, HOME "/lasting", s->lasting, n, why) &&
+             !table_write_rows(s,
+                               (struct dataset){ LASTS "/force", COLUMN_F64, 2, shape,
+                                                 CHUNK_CONTACTS, o->force ? o->force : none, "N" },
+                               why))
+        table_write_rows(s,
+                         (struct dataset){ LASTS "/torque", COLUMN_F64, 2, shape, CHUNK_CONTACTS,
+                                           o->torque ? o->torque : none, "N m" },
+                         why);
     free(none), free(rest);
     if (s->growing) s->lasting += n;
     return why->status;
@@ -116,10 +114,10 @@ int outside_tables_write(struct table_write *s, const struct frame *f, struct wh
     if (!f->distributed && write_lasting(s, p, why)) return why->status;
     bool forces = f->detected && (o->force || o->torque) && !f->distributed;
     if (!o->steered && !forces && !o->length && !(f->detected && o->push)) return 0;
-    if (table_write_rows(s, HOME "/step", COLUMN_I64, 1, row, CHUNK_FRAMES, &p->step, NULL, why) ||
-        write_row(s, HOME "/gravity", 2, row, g, "m s-2", why) ||
-        write_row(s, HOME "/friction", 2, pairs, p->mu, NULL, why) || write_boundaries(s, p, why) ||
-        write_forces(s, p, forces, why))
+    if (table_write_number(s, HOME "/step", COLUMN_I64, &p->step, NULL, why) ||
+        table_write_rows(s, row_of(HOME "/gravity", 2, row, g, "m s-2"), why) ||
+        table_write_rows(s, row_of(HOME "/friction", 2, pairs, p->mu, NULL), why) ||
+        write_boundaries(s, p, why) || write_forces(s, p, forces, why))
         return why->status;
     return write_words(s, o, why);
 }

@@ -97,12 +97,8 @@ int pair_law_tables_write_static(hid_t file, const struct packing *p, struct why
 
 int pair_law_tables_write(struct table_write *s, const struct packing *p, struct why *why)
 {
-    const hsize_t one = 1;
     if (!p->law) return 0;
-    if (table_write_rows(s, "/nsd/bonds/start", COLUMN_I64, 1, &one, CHUNK_FRAMES, &s->bonds, NULL,
-                         why) ||
-        table_write_rows(s, "/nsd/bonds/count", COLUMN_I64, 1, &one, CHUNK_FRAMES, &p->bonds.n,
-                         NULL, why) ||
+    if (table_write_span(s, "/nsd/bonds", s->bonds, p->bonds.n, why) ||
         table_write_columns(s, bonds, "", RECORDS(layout_bonds, p->bonds.n, p->bonds.bond),
                             CHUNK_CONTACTS, why) ||
         (p->shape &&

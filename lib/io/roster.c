@@ -90,8 +90,10 @@ static int write_new(struct table_write *s, const struct packing *p, int64_t fir
         char path[80];
         if (moves(b) || !column_array(c, p)) continue;
         layout_body_path(b, path);
-        if (table_write_rows(s, path, c->type, c->width == 1 ? 1 : 2, shape, s->chunk_bodies,
-                             column_row(c, p, first), c->units, why))
+        if (table_write_rows(s,
+                             (struct dataset){ path, c->type, c->width == 1 ? 1 : 2, shape,
+                                               s->chunk_bodies, column_row(c, p, first), c->units },
+                             why))
             return why->status;
     }
     return 0;
@@ -136,7 +138,8 @@ static int write_spread(struct roster *r, struct table_write *s, const char *pat
     for (int64_t i = 0; i < n; i++)
         memcpy(all + (size_t)row[i] * bytes, (const char *)data + (size_t)i * bytes, bytes);
     const hsize_t shape[3] = { 1, (hsize_t)r->width, (hsize_t)c->width };
-    int e = table_write_rows(s, path, c->type, c->width == 1 ? 2 : 3, shape, 1, all, c->units, why);
+    int e = table_write_rows(
+        s, (struct dataset){ path, c->type, c->width == 1 ? 2 : 3, shape, 1, all, c->units }, why);
     free(all);
     return e;
 }

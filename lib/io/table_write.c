@@ -9,24 +9,26 @@
 
 /* Room for bodies to come, in datasets of [frames][bodies]; in frames before they came, their rows
    say so: their id is -1, their numbers are no numbers. */
-static void make_room(const struct table_write *s, const char *path, enum column_type type,
-                      int rank, hsize_t most[4], hsize_t chunk[4], hid_t plist)
+static void make_room(const struct table_write *s, const struct dataset *o, hsize_t most[4],
+                      hsize_t chunk[4], hid_t plist)
 {
     const double none = NAN;
     const int32_t nobody = -1;
-    size_t n = strlen(path);
-    bool frames = !strncmp(path, "/particles/all/", 15) && !strcmp(path + n - 6, "/value");
-    if (!s->most_bodies || rank < 2 || !frames) return;
+    size_t n = strlen(o->path);
+    bool frames = !strncmp(o->path, "/particles/all/", 15) && !strcmp(o->path + n - 6, "/value");
+    if (!s->most_bodies || o->rank < 2 || !frames) return;
     most[1] = s->most_bodies, chunk[1] = s->chunk_bodies;
-    H5Pset_fill_value(plist, column_native(type),
-                      type == COLUMN_F64 ? (const void *)&none : (const void *)&nobody);
+    H5Pset_fill_value(plist, column_native(o->type),
+                      o->type == COLUMN_F64 ? (const void *)&none : (const void *)&nobody);
 }
 
-static hid_t create(const struct table_write *s, const char *path, enum column_type type, int rank,
-                    const hsize_t *shape, hsize_t chunk_rows, bool later, const char *units,
-                    struct why *why)
+static hid_t create(const struct table_write *s, const struct dataset *o, struct why *why)
 {
-    hsize_t empty[4] = { 0 }, most[4] = { H5S_UNLIMITED }, chunk[4] = { chunk_rows };
+    const char *path = o->path;
+    const hsize_t *shape = o->shape;
+    const int rank = o->rank;
+    bool later = !o->data;
+    hsize_t empty[4] = { 0 }, most[4] = { H5S_UNLIMITED }, chunk[4] = { o->chunk_rows };
     for (int k = 1; k < rank; k++) {
         empty[k] = most[k] = shape[k];
         chunk[k] = shape[k] < 1 ? 1 : shape[k] > CHUNK_BODIES ? CHUNK_BODIES : shape[k];
@@ -34,7 +36,7 @@ static hid_t create(const struct table_write *s, const char *path, enum column_t
     hid_t file = s->file, plist = h5_dataset_plist();
     for (int k = 0; k < rank; k++) later = later && shape[k];
     if (later) h5_fill_later(plist);
-    make_room(s, path, type, rank, most, chunk, plist);
+    make_room(s, o, most, chunk, plist);
     char parent[80];
     snprintf(parent, sizeof parent, "%.*s", (int)(strrchr(path, '/') - path), path);
     if (h5_group(file, parent, why)) {
@@ -42,7 +44,7 @@ static hid_t create(const struct table_write *s, const char *path, enum column_t
         return -1;
     }
     hid_t space = H5Screate_simple(rank, empty, most);
-    hid_t disk = H5Tcopy(column_native(type));
+    hid_t disk = H5Tcopy(column_native(o->type));
     H5Tset_order(disk, H5T_ORDER_LE);
     H5Pset_chunk(plist, rank, chunk);
     hid_t uncached =
@@ -51,7 +53,7 @@ static hid_t create(const struct table_write *s, const char *path, enum column_t
     hid_t set = H5Dcreate2(file, path, disk, space, H5P_DEFAULT, plist, uncached);
     H5Tclose(disk), H5Pclose(plist), H5Pclose(uncached), H5Sclose(space);
     if (set < 0) return why_set(why, EX_IOERR, "%s: cannot be made", path), -1;
-    if (!units || !h5_attr_text(file, path, "units", units, why)) return set;
+    if (!o->units || !h5_attr_text(file, path, "units", o->units, why)) return set;
     H5Dclose(set);
     return -1;
 }
@@ -68,9 +70,10 @@ bool table_write_grows(const struct table_write *s, const char *path)
     return find(s, path) >= 0;
 }
 
-static int append(hid_t set, enum column_type type, int rank, const hsize_t *shape,
-                  const void *data)
+static int append(hid_t set, const struct dataset *o)
 {
+    const int rank = o->rank;
+    const hsize_t *shape = o->shape;
     hsize_t size[4], start[4] = { 0 };
     hid_t space = H5Dget_space(set);
     bool known = H5Sget_simple_extent_dims(space, size, NULL) == rank;
@@ -83,31 +86,47 @@ static int append(hid_t set, enum column_type type, int rank, const hsize_t *sha
     hid_t disk = H5Dget_space(set), memory = H5Screate_simple(rank, shape, NULL);
     bool good = disk >= 0 && memory >= 0 &&
                 H5Sselect_hyperslab(disk, H5S_SELECT_SET, start, NULL, shape, NULL) >= 0;
-    if (good && data && H5Sget_simple_extent_npoints(memory) > 0)
-        good = H5Dwrite(set, column_native(type), memory, disk, H5P_DEFAULT, data) >= 0;
+    if (good && o->data && H5Sget_simple_extent_npoints(memory) > 0)
+        good = H5Dwrite(set, column_native(o->type), memory, disk, H5P_DEFAULT, o->data) >= 0;
     if (memory >= 0) H5Sclose(memory);
     if (disk >= 0) H5Sclose(disk);
     return good ? 0 : -1;
 }
 
-int table_write_rows(struct table_write *s, const char *path, enum column_type type, int rank,
-                     const hsize_t *shape, hsize_t chunk_rows, const void *data, const char *units,
-                     struct why *why)
+int table_write_rows(struct table_write *s, struct dataset o, struct why *why)
 {
     if (!s->growing)
-        return h5_write(s->file, path, column_native(type), rank, shape, data, units, why);
-    hid_t set = find(s, path);
+        return h5_write(s->file, o.path, column_native(o.type), o.rank, o.shape, o.data, o.units,
+                        why);
+    hid_t set = find(s, o.path);
     if (set < 0) {
         if (s->count == GROWING_DATASETS)
-            return why_set(why, EX_SOFTWARE, "%s: too many datasets", path);
-        set = create(s, path, type, rank, shape, chunk_rows, !data, units, why);
+            return why_set(why, EX_SOFTWARE, "%s: too many datasets", o.path);
+        set = create(s, &o, why);
         if (set < 0) return why->status;
-        snprintf(s->open[s->count].path, sizeof s->open[0].path, "%s", path);
+        snprintf(s->open[s->count].path, sizeof s->open[0].path, "%s", o.path);
         s->open[s->count++].set = set;
     }
-    return append(set, type, rank, shape, data)
-               ? why_set(why, EX_IOERR, "%s: cannot be written (disk full?)", path)
-               : 0;
+    return append(set, &o) ? why_set(why, EX_IOERR, "%s: cannot be written (disk full?)", o.path)
+                           : 0;
+}
+
+int table_write_number(struct table_write *s, const char *path, enum column_type type,
+                       const void *number, const char *units, struct why *why)
+{
+    const hsize_t one = 1;
+    const struct dataset o = { path, type, 1, &one, CHUNK_FRAMES, number, units };
+    return table_write_rows(s, o, why);
+}
+
+int table_write_span(struct table_write *s, const char *group, int64_t start, int64_t count,
+                     struct why *why)
+{
+    char path[80];
+    snprintf(path, sizeof path, "%s/start", group);
+    if (table_write_number(s, path, COLUMN_I64, &start, NULL, why)) return why->status;
+    snprintf(path, sizeof path, "%s/count", group);
+    return table_write_number(s, path, COLUMN_I64, &count, NULL, why);
 }
 
 /* Frames that the dataset has, less one */
@@ -129,7 +148,8 @@ static int write_body_column(struct table_write *s, const struct body_column *b,
     bool moves = b->traits & BODY_MOVES;
     char path[80];
     layout_body_path(b, path);
-    if (moves ? table_write_rows(s, path, c->type, 3, shape, 1, data, c->units, why)
+    if (moves ? table_write_rows(s, (struct dataset){ path, c->type, 3, shape, 1, data, c->units },
+                                 why)
               : h5_write(s->file, path, column_native(c->type), c->width == 1 ? 1 : 2, shape + 1,
                          data, c->units, why))
         return why->status;
@@ -161,8 +181,10 @@ int table_write_columns(struct table_write *s, const char *where, const char *ta
         if (!data) return why_set(why, EX_SOFTWARE, "no memory for %s", path);
         column_gather(c, o.n, o.structs, o.stride, data);
         hsize_t shape[2] = { (hsize_t)o.n, (hsize_t)c->width };
-        int e = table_write_rows(s, path, c->type, c->width == 1 ? 1 : 2, shape, chunk_rows, data,
-                                 c->units, why);
+        int e = table_write_rows(s,
+                                 (struct dataset){ path, c->type, c->width == 1 ? 1 : 2, shape,
+                                                   chunk_rows, data, c->units },
+                                 why);
         free(data);
         if (e) return e;
     }
@@ -193,13 +215,11 @@ int table_write_link(struct table_write *s, const char *from, const char *name, 
 int table_write_clock(struct table_write *s, const char *home, bool step, const void *value,
                       const char *where, const struct column *c, struct why *why)
 {
-    const hsize_t one = 1;
     const char *name = step ? "step" : "time";
     char path[80];
     snprintf(path, sizeof path, "%s/%s", home, name);
     bool linked = table_write_grows(s, path);
-    if (table_write_rows(s, path, step ? COLUMN_I64 : COLUMN_F64, 1, &one, CHUNK_FRAMES, value,
-                         step ? NULL : "s", why))
+    if (table_write_number(s, path, step ? COLUMN_I64 : COLUMN_F64, value, step ? NULL : "s", why))
         return why->status;
     return linked ? 0 : table_write_link(s, path, name, where, c, why);
 }

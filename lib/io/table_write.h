@@ -40,13 +40,23 @@ struct table_write {
     int64_t lasting;          /* rows of /nsd/outside/lasting/force so far */
 };
 
-/*
- * Writes shape[0] rows of data: as a dataset of their own or, in a trajectory, at the end of the
- * dataset that grows there, in chunks of chunk_rows. data NULL: room is made for them on the disk, and nothing is
- * written there.
- */
-int table_write_rows(struct table_write *tables, const char *path, enum column_type type, int rank,
-                     const hsize_t *shape, hsize_t chunk_rows, const void *data, const char *units,
+/* Rows of a dataset */
+struct dataset {
+    const char *path;
+    enum column_type type;
+    int rank;
+    const hsize_t *shape; /* [rank] */
+    hsize_t chunk_rows;   /* where it grows */
+    const void *data;  /* NULL: room is made for them on the disk, and nothing is written there */
+    const char *units; /* or NULL */
+};
+/* Writes shape[0] rows: as a dataset of their own or, in a trajectory, at the end of the dataset that grows there. */
+int table_write_rows(struct table_write *tables, struct dataset rows, struct why *why);
+/* One number of the frame */
+int table_write_number(struct table_write *tables, const char *path, enum column_type type,
+                       const void *number, const char *units, struct why *why);
+/* group/start and count: the rows of the frame in the tables of the group */
+int table_write_span(struct table_write *tables, const char *group, int64_t start, int64_t count,
                      struct why *why);
 
 /* The columns of bodies that all frames share, or the frame's values of those that move; their numbers follow

@@ -153,6 +153,29 @@ static void test_boundaries(void)
     nsd_close(&r);
 }
 
+/* Arrays of bodies stay where they are, also where a step fails in which bonds might have broken. */
+static void test_places(void)
+{
+    struct nsd_run *r = scene(
+        "{\"dt\":1e-3,\"cohesion\":{\"force\":1,\"range\":1e-5},\"density\":1000,\"bodies\":[{"
+        "\"x\":[0,0,0.1],\"radius\":"
+        "0.1},{\"x\":[1,0,0.1],\"radius\":0.1}],\"walls\":[{\"point\":[0,0,0],\"normal\":[0,0,1]}]"
+        "}");
+    must(nsd_step(r, 5), r);
+    const double *x = array(r, "position", NULL), *v = array(r, "velocity", NULL);
+    double *f = (double *)(uintptr_t)array(r, "force", NULL), was[6];
+    memcpy(was, x, sizeof was);
+    f[3] = NAN;
+    int failed = nsd_step(r, 1);
+    ok(failed == NSD_DATA && x == array(r, "position", NULL) && v == array(r, "velocity", NULL) &&
+           f == array(r, "force", NULL) && isnan(f[3]) && !memcmp(x, was, sizeof was),
+       "arrays stay where they are when a step of a scene with cohesion fails");
+    f[3] = 0, f[0] = 1;
+    must(nsd_step(r, 1), r);
+    ok(v[0] > 0 && x[0] > 0 && v[3] == 0, "and the run goes on in them");
+    nsd_close(&r);
+}
+
 /* ---- documents ---- */
 
 static const char heap[] =
@@ -736,7 +759,7 @@ static void test_random(void)
 int main(void)
 {
     if (!mkdtemp(folder)) return 1;
-    test_forces(), test_velocities(), test_top(), test_boundaries();
+    test_forces(), test_velocities(), test_top(), test_boundaries(), test_places();
     test_resume(), test_lasting(), test_appends(), test_flow(), test_arrays(), test_threads(),
         test_errors(), test_random();
     char command[100];
