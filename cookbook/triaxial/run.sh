@@ -14,7 +14,7 @@ test confined '{"gradient": [[0, 0, 0], [0, 0, 0], [0, 0, -30]], "stress": {"tar
 test mean '{"gradient": [[15, 0, 0], [0, 15, 0], [0, 0, -30]], "stress": {"mean": 1e5}}'
 nsd-view --network mean.h5 >triaxial-cell.png
 gnuplot -e 'set terminal pngcairo size 1000,450; set output "triaxial.png"; set multiplot layout 1,2; set xlabel "axial strain"; set key bottom right;
-    set ylabel "q/p"; set yrange [0:1.2]; plot for [n in "confined mean"] n.".tsv" using 1:($3/$4) with lines lw 2 title n;
+    set ylabel "q/p"; set yrange [0:1.2]; plot for [n in "confined mean"] n.".tsv" using 1:(column(3)/column(4)) with lines lw 2 title n;
     set ylabel "solid fraction"; set yrange [0.54:0.68]; plot for [n in "confined mean"] n.".tsv" using 1:5 with lines lw 2 notitle'
 for n in confined mean; do # mean q/p, p (kPa) and fraction of the second half
     awk -v name=$n '{ q[NR] = $3; p[NR] = $4; f[NR] = $5 } END { for (k = int(NR / 2) + 1; k <= NR; k++) { n++; s += q[k]; r += p[k]; t += f[k] }

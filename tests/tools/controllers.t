@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Loads of laboratory tests: a cell whose size yields to a mean stress, pressures on walls, factors in time, masses
 # by rule. Balances, statics, resuming, threads, documents, errors.
-# shellcheck source=tests/support/tap.sh
+# shellcheck source=tests/support/tap.sh disable=SC2016,SC2094 # jq programs; names of tests with what is read
 . tests/support/tap.sh
 
 step() { nsd-step "$@" 2>/dev/null; }

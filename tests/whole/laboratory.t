@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Triaxial and simple shear tests in periodic cells: what is known of rigid grains, whatever the path and the masses of edges.
-# shellcheck source=tests/support/tap.sh
+# shellcheck source=tests/support/tap.sh disable=SC2016,SC2094 # jq programs; names of tests with what is read
 . tests/support/tap.sh
 
 holds() { jq -e "$@" >/dev/null; }
