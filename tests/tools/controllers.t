@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Loads of laboratory tests: a cell whose size yields to a mean stress, pressures on walls, factors in time, masses
 # by rule. Balances, statics, resuming, threads, documents, errors.
-# shellcheck source=tests/support/tap.sh
+# shellcheck source=tests/support/tap.sh disable=SC2016,SC2094 # jq programs; names of tests with what is read
 . tests/support/tap.sh
 
 step() { nsd-step "$@" 2>/dev/null; }
@@ -24,6 +24,12 @@ resumes()
     ok "$1: a run resumes to the bit" cmp <(state "$tmp/again.h5") <(state "$tmp/twenty.h5")
     step -j 4 -n 20 -o "$tmp/j4.h5" "$tmp/$1.h5"
     ok "$1: 4 threads give the bytes of one" cmp "$tmp/j4.h5" "$tmp/ten.h5"
+    if [ -x build/nsd-step-mpi ] && command -v mpirun >/dev/null; then
+        OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n 3 build/nsd-step -n 20 -o "$tmp/ranks.h5" "$tmp/$1.h5" >/dev/null 2>&1 || true
+        ok "$1: 3 processes give the bytes of one" cmp "$tmp/ranks.h5" "$tmp/ten.h5"
+    else
+        skip "$1: 3 processes give the bytes of one" "no MPI"
+    fi
     nsd-cat --last "$tmp/$1.h5" | nsd-detect | nsd-solve 2>/dev/null | nsd-move >"$tmp/parts.h5"
     nsd-cat --last "$tmp/$1.h5" | step -n 1 | cat >"$tmp/whole.h5"
     ok "$1: detect | solve | move and step give the same bits" cmp <(dump "$tmp/parts.h5") <(dump "$tmp/whole.h5")

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Inlets and outlets in periodic cells; removal by id, by kind, in time; random starts that fill a cell; the height
 # that a group needs. Sums of what comes and goes, resuming, threads, ranks, hostile scenes.
-# shellcheck source=tests/support/tap.sh
+# shellcheck source=tests/support/tap.sh disable=SC2016,SC2094 # jq programs; names of tests with what is read
 . tests/support/tap.sh
 
 step() { nsd-step "$@" 2>/dev/null; }

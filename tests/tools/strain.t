@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # nsd-stat -m strain against closed forms: cells that are sheared, compressed and recut, boxes of walls.
+# shellcheck source=tests/support/tap.sh disable=SC2016 # jq programs
 . tests/support/tap.sh
 
 strain() { nsd-stat -m strain "$@" 2>/dev/null; }
