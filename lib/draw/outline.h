@@ -14,6 +14,7 @@ enum { OUTLINE_FACETS = 64 };
 struct outline_triangle {
     vec3 corner[3];   /* m */
     int32_t boundary; /* whose it is */
+    int32_t face;     /* of a mesh its triangle, from the boundary's first one; else 0 */
 };
 
 /* In space the borders and sharp edges of shapes; in the plane all of them */

@@ -5,9 +5,11 @@
 #include "io/distributed.h"
 #include "io/flow_tables.h"
 #include "io/law_tables.h"
+#include "io/name_tables.h"
 #include "io/outside_tables.h"
 #include "io/roster.h"
 #include "io/shape_tables.h"
+#include "io/sum_tables.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -233,7 +235,9 @@ static int read_settings(struct frame_read *r, int64_t k, int64_t n, struct pack
         law_tables_read(r->source, k, p, why) || read_clock(r, k, p, why) ||
         cell_tables_read(r->source, k, r->repeats, p, why))
         return why->status;
-    if (outside_tables_read(r->source, p, why)) return why->status;
+    if (outside_tables_read(r->source, p, why) || name_tables_read(r->source, p, why) ||
+        sum_tables_read(r->source, k, p, why))
+        return why->status;
     return alloc_optional(r, p, why);
 }
 
