@@ -35,7 +35,7 @@ static bool add_line(struct outline *o, const struct placed *b, vec3 x, vec3 y)
         if (!more) return false;
         o->line = more, o->line_room = room;
     }
-    o->line[o->lines++] = (struct outline_line){ { x, y }, b->boundary };
+    o->line[o->lines++] = (struct outline_line){ { x, y }, b->boundary, 0 };
     return true;
 }
 
@@ -173,6 +173,7 @@ static bool add_mesh(struct outline *o, const struct placed *b)
             x[k] = pose_of(&b->pose, v3_add(w->x, m->vertex[m->element[e][k]]));
         if (flat) {
             good = add_line(o, b, x[0], x[1]);
+            if (good) o->line[o->lines - 1].face = e - w->first_element;
             continue;
         }
         vec3 normal = v3_cross(v3_sub(x[1], x[0]), v3_sub(x[2], x[0]));

@@ -21,6 +21,7 @@ struct outline_triangle {
 struct outline_line {
     vec3 end[2]; /* m */
     int32_t boundary;
+    int32_t face; /* in the plane, of a mesh its segment; else 0 */
 };
 
 struct outline {

@@ -36,11 +36,24 @@ static double value_of(const struct solid *s, const struct packing *p, int32_t w
     return (s->by == SURFACE_FRICTION ? x->friction : x->rub) / area;
 }
 
+/* The name by which a face was chosen; else its own; NULL: none */
+static const char *name_of(const struct chosen *c, const struct packing *p, int32_t wall,
+                           int32_t face)
+{
+    for (int32_t k = 0; c->any && k < p->names.rows; k++) {
+        const struct named *r = &p->names.row[k];
+        bool covers = !r->count || (face >= r->first && face < r->first + r->count);
+        if (c->name[r->name] && r->boundary == wall && covers) return p->names.text[r->name];
+    }
+    return names_of_face(&p->names, wall, face);
+}
+
 /* The row of the legend for a face, by its name, or the number of its wall */
-static int legend_row(struct solid *s, const struct packing *p, int32_t wall, int32_t face)
+static int legend_row(struct solid *s, const struct chosen *c, const struct packing *p,
+                      int32_t wall, int32_t face)
 {
     char name[NAME_BYTES + 12];
-    const char *own = names_of_face(&p->names, wall, face);
+    const char *own = name_of(c, p, wall, face);
     if (own)
         snprintf(name, sizeof name, "%s", own);
     else
@@ -91,7 +104,7 @@ int solid_init(struct solid *s, const struct packing *p, const char *list, enum 
             if (!chosen_face(&c, p, w, k))
                 to->r = -1;
             else if (by == SURFACE_NAME)
-                *to = s->shown[legend_row(s, p, w, k)];
+                *to = s->shown[legend_row(s, &c, p, w, k)];
             else
                 *to = palette_colour(s, paint, value_of(s, p, w, k));
         }
