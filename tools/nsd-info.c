@@ -1,8 +1,8 @@
 /* nsd-info: shows any part of a document as JSON lines, for jq and gnuplot. */
 #include "bodies/chosen.h"
 #include "bodies/energy.h"
+#include "bodies/face_of.h"
 #include "bodies/kinematics.h"
-#include "bodies/wall_faces.h"
 #include "cli/cli.h"
 #include "io/reader.h"
 #include "io/report_json.h"
@@ -316,7 +316,7 @@ static bool is_chosen(const struct packing *p, const struct wall_faces *faces,
 {
     if (chosen_body(&chosen, p, c->b)) return true;
     if (c->a >= 0) return chosen_body(&chosen, p, c->a);
-    return chosen_face(&chosen, p, -1 - c->a, wall_faces_find(faces, p, c, 0));
+    return chosen_face(&chosen, p, -1 - c->a, face_of_contact(faces, p, c, 0));
 }
 
 static void show_contacts(const struct frame *f)
@@ -326,11 +326,11 @@ static void show_contacts(const struct frame *f)
     struct wall_faces faces;
     struct why why = { 0 };
     shown = true;
-    if (wall_faces_init(&faces, p, p->names.rows > 0, &why)) die_why(&why);
+    if (face_of_init(&faces, p, p->names.rows > 0, &why)) die_why(&why);
     for (int64_t i = 0; i < f->contacts.n; i++) {
         const struct contact *c = &f->contacts.c[i];
         const char *name =
-            c->a < 0 ? names_of_face(&p->names, -1 - c->a, wall_faces_find(&faces, p, c, 0)) : NULL;
+            c->a < 0 ? names_of_face(&p->names, -1 - c->a, face_of_contact(&faces, p, c, 0)) : NULL;
         if (only && !is_chosen(p, &faces, c)) continue;
         json_t *j = json_object();
         json_object_set_new(j, "step", json_integer(f->packing.step));

@@ -647,7 +647,8 @@ int tool_main(int argc, char **argv)
             die_usage(
                 "--sums: %s keeps none, and a trajectory has them from its first frame: -o FILE",
                 argv[0]);
-        if (sums_begin(&r.f.packing, &why)) die_why(&why);
+        if (sums_begin(&r.f.packing.sums, r.f.packing.walls, r.f.packing.wall, r.f.packing.t, &why))
+            die_why(&why);
     }
     count_steps(&r.f.packing);
     if (steps && !in_place && writer_begin(r.out, &r.f, &why)) die_why(&why);

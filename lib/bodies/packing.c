@@ -471,7 +471,9 @@ int packing_check(const struct packing *p, struct why *why)
         const char *trouble = wall_trouble(p, &p->wall[i]);
         if (trouble) return why_set(why, EX_DATAERR, "wall %d: %s", i, trouble);
     }
-    if (names_check(&p->names, p->walls, p->wall, why) || sums_check(p, why)) return why->status;
+    if (names_check(&p->names, p->walls, p->wall, why) ||
+        sums_check(&p->sums, p->walls, p->wall, why))
+        return why->status;
     if (drives_check(&p->drives, p->walls, p->dim, "drive", why) ||
         drives_check(&p->pushes, p->walls, p->dim, "push", why))
         return why->status;

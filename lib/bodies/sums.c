@@ -2,6 +2,7 @@
 
 #include "bodies/wall_faces.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,16 +21,17 @@ static int alloc(struct wall_sums *s, int32_t n, struct why *why)
     return 0;
 }
 
-int sums_begin(struct packing *p, struct why *why)
+int sums_begin(struct wall_sums *s, int32_t walls, const struct wall *wall, double t,
+               struct why *why)
 {
     struct wall_faces f;
-    sums_free(&p->sums);
-    if (wall_faces_init(&f, p, false, why)) return why->status;
+    sums_free(s);
+    if (wall_faces_init(&f, walls, wall, NULL, why)) return why->status;
     const int32_t n = f.n;
     wall_faces_free(&f);
-    p->sums.since = p->t;
+    s->since = t;
     if (!n) return why_set(why, EX_DATAERR, "there are no walls, of which sums could be kept");
-    return alloc(&p->sums, n, why);
+    return alloc(s, n, why);
 }
 
 int sums_copy(struct wall_sums *to, const struct wall_sums *from, struct why *why)
@@ -41,12 +43,11 @@ int sums_copy(struct wall_sums *to, const struct wall_sums *from, struct why *wh
     return 0;
 }
 
-int sums_check(const struct packing *p, struct why *why)
+int sums_check(const struct wall_sums *s, int32_t walls, const struct wall *wall, struct why *why)
 {
-    const struct wall_sums *s = &p->sums;
     struct wall_faces f;
     if (!s->n) return 0;
-    if (wall_faces_init(&f, p, false, why)) return why->status;
+    if (wall_faces_init(&f, walls, wall, NULL, why)) return why->status;
     if (f.n != s->n || !isfinite(s->since))
         why_set(why, EX_DATAERR, "sums of %d faces, and the walls have %d", s->n, f.n);
     for (int32_t i = 0; i < s->n && !why->status; i++) {

@@ -13,8 +13,8 @@
 
 #include <stdint.h>
 
+struct wall;
 struct wall_faces;
-struct packing;
 
 struct face_sums {
     vec3 impulse;      /* N s: of the bodies on it */
@@ -33,11 +33,12 @@ struct wall_sums {
     struct wall_faces *faces; /* where contacts are found on them, once a step has asked; owned */
 };
 
-/* Sums of 0 that begin now. Returns 0, EX_DATAERR (no boundaries) or EX_SOFTWARE. */
-int sums_begin(struct packing *p, struct why *why);
+/* Sums of 0 that begin at time t (s), of these walls. Returns 0, EX_DATAERR (no walls) or EX_SOFTWARE. */
+int sums_begin(struct wall_sums *s, int32_t walls, const struct wall *wall, double t,
+               struct why *why);
 void sums_free(struct wall_sums *s);
 int sums_copy(struct wall_sums *to, const struct wall_sums *from, struct why *why);
-/* Are they of the packing's faces, and finite? Returns 0 or EX_DATAERR. */
-int sums_check(const struct packing *p, struct why *why);
+/* Are they of these walls' faces, and finite? Returns 0 or EX_DATAERR. */
+int sums_check(const struct wall_sums *s, int32_t walls, const struct wall *wall, struct why *why);
 
 #endif

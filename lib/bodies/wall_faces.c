@@ -1,7 +1,5 @@
 #include "bodies/wall_faces.h"
 
-#include "geometry/surface_tree.h"
-
 #include <stdlib.h>
 
 void wall_faces_free(struct wall_faces *f)
@@ -16,74 +14,27 @@ static bool is_mesh(const struct wall *w)
     return w->shape == BOUNDARY_MESH;
 }
 
-int wall_faces_init(struct wall_faces *f, const struct packing *p, bool meshes, struct why *why)
+int wall_faces_init(struct wall_faces *f, int32_t walls, const struct wall *wall,
+                    const struct mesh *mesh, struct why *why)
 {
-    *f = (struct wall_faces){ .walls = p->walls };
-    f->first = calloc((size_t)p->walls + 2, sizeof *f->first);
-    if (meshes && p->mesh.elements) f->surface = calloc((size_t)p->walls + 1, sizeof *f->surface);
-    if (!f->first || (meshes && p->mesh.elements && !f->surface))
+    *f = (struct wall_faces){ .walls = walls };
+    f->first = calloc((size_t)walls + 2, sizeof *f->first);
+    bool finds = mesh && mesh->elements;
+    if (finds) f->surface = calloc((size_t)walls + 1, sizeof *f->surface);
+    if (!f->first || (finds && !f->surface))
         why_set(why, EX_SOFTWARE, "no memory for the faces of boundaries");
-    for (int32_t w = 0; !why->status && w < p->walls; w++) {
-        const struct wall *wall = &p->wall[w];
-        int32_t faces = is_mesh(wall) ? wall->elements : 1;
-        if (faces > INT32_MAX - f->n) {
-            why_set(why, EX_SOFTWARE, "no memory for the faces of boundaries");
+    for (int32_t w = 0; !why->status && w < walls; w++) {
+        int32_t faces = is_mesh(&wall[w]) ? wall[w].elements : 1;
+        if (faces < 0 || faces > INT32_MAX - f->n) {
+            why_set(why, EX_DATAERR, "wall %d: %d faces", w, faces);
             break;
         }
         f->first[w] = f->n, f->n += faces;
-        if (f->surface && is_mesh(wall))
-            surface_init(&f->surface[w], &p->mesh, wall->first_element, wall->elements, wall->weld,
-                         why);
+        if (f->surface && is_mesh(&wall[w]))
+            surface_init(&f->surface[w], mesh, wall[w].first_element, wall[w].elements,
+                         wall[w].weld, why);
     }
     if (why->status) return wall_faces_free(f), why->status;
-    f->first[p->walls] = f->n;
+    f->first[walls] = f->n;
     return 0;
-}
-
-int32_t wall_faces_find(const struct wall_faces *f, const struct packing *p,
-                        const struct contact *c, double ahead)
-{
-    int32_t w = -1 - c->a, best = 0;
-    const struct wall *wall = &p->wall[w];
-    struct touch touch[TOUCHES_MOST];
-    if (!f->surface || !is_mesh(wall)) return 0;
-    // the contact's point is in the middle of what gap or overlap there is
-    struct pose pose = wall_pose(p, wall, p->t + ahead);
-    vec3 x = v3_sub(quat_turn_back(pose.q, v3_sub(c->x, pose.shift)), wall->x);
-    double reach = fabs(c->gap) + 1e-3 * p->radius[c->b];
-    int n = 0;
-    for (int k = 0; k < 8 && !n; k++, reach *= 4)
-        n = surface_touches(&f->surface[w], x, reach, touch);
-    for (int k = 1; k < n; k++)
-        if (fabs(touch[k].distance) < fabs(touch[best].distance)) best = k;
-    return n ? touch[best].feature / SURFACE_FEATURES : 0;
-}
-
-double wall_faces_area(const struct packing *p, int32_t wall, int32_t face)
-{
-    const struct wall *w = &p->wall[wall];
-    const double *s = w->size;
-    double angle = w->arc > 0 ? w->arc : 2 * M_PI;
-    bool flat = p->dim == 2;
-    switch (w->shape) {
-    case BOUNDARY_RECTANGLE:
-        return flat ? s[0] : s[0] * s[1];
-    case BOUNDARY_DISC:
-        return M_PI * (s[1] * s[1] - s[0] * s[0]);
-    case BOUNDARY_CYLINDER:
-        if (flat) return angle * s[0];
-        return s[2] > 0 ? angle * s[0] * s[2] : INFINITY;
-    case BOUNDARY_CONE:
-        return 0.5 * angle * (s[0] + s[1]) * hypot(s[2], s[1] - s[0]);
-    case BOUNDARY_SPHERE:
-        return 4 * M_PI * s[0] * s[0];
-    case BOUNDARY_MESH: {
-        const int32_t *e = p->mesh.element[w->first_element + face];
-        vec3 a = v3_sub(p->mesh.vertex[e[1]], p->mesh.vertex[e[0]]);
-        if (flat) return v3_norm(a);
-        return 0.5 * v3_norm(v3_cross(a, v3_sub(p->mesh.vertex[e[2]], p->mesh.vertex[e[0]])));
-    }
-    default:
-        return INFINITY;
-    }
 }

@@ -231,13 +231,20 @@ static bool draw_key(cairo_t *cr, double *x, double y, double end, struct rgb c,
     return true;
 }
 
-/* The kinds that bodies are of, with their colours */
-static void draw_kinds(cairo_t *cr, const struct packing *p, double x, double y, double end)
+/* The kinds, or the names of the groups, that bodies are of, with their colours */
+static void draw_classes(cairo_t *cr, const struct packing *p, bool groups, double x, double y,
+                         double end)
 {
-    bool *any = calloc((size_t)p->kinds + 1, sizeof *any);
-    for (int64_t i = 0; any && i < p->n; i++) any[p->kind[i]] = true;
-    for (int32_t k = 0; any && k < p->kinds; k++)
-        if (any[k] && !draw_key(cr, &x, y, end, paint_kind(k), p->kind_name[k])) break;
+    const int32_t n = groups ? p->names.n : p->kinds;
+    bool *any = calloc((size_t)n + 1, sizeof *any);
+    for (int64_t i = 0; any && i < p->n; i++) {
+        int32_t k = !groups ? p->kind[i] : p->group ? p->group[i] - 1 : -1;
+        if (k >= 0) any[k] = true;
+    }
+    for (int32_t k = 0; any && k < n; k++)
+        if (any[k] &&
+            !draw_key(cr, &x, y, end, paint_kind(k), groups ? p->names.text[k] : p->kind_name[k]))
+            break;
     free(any);
 }
 
@@ -310,8 +317,8 @@ void overlay_legend(cairo_t *cr, const struct overlay *o, const struct view *v,
     cairo_set_line_width(cr, fmax(1.2, 0.0016 * w));
     if (o->solid)
         draw_solid(cr, o->solid, &v->paint, 0.03 * w, top + strip + 0.3 * strip, 0.97 * w);
-    if (v->paint.by == COLOUR_KIND)
-        draw_kinds(cr, p, 0.03 * w, top + 0.58 * strip, 0.43 * w);
+    if (v->paint.by == COLOUR_KIND || v->paint.by == COLOUR_GROUP)
+        draw_classes(cr, p, v->paint.by == COLOUR_GROUP, 0.03 * w, top + 0.58 * strip, 0.43 * w);
     else
         draw_palette(cr, &v->paint, 0.03 * w, top + 0.36 * strip, 0.34 * w, 0.22 * strip);
     if (isinf(v->camera.eye)) draw_scale(cr, v, 0.54 * w, top + 0.42 * strip, 0.2 * w);

@@ -15,6 +15,7 @@ enum colour {
     COLOUR_CONTACTS, /* that push it */
     COLOUR_FORCE,    /* the sum of its normal forces */
     COLOUR_VALUE,    /* a number for each body, from elsewhere */
+    COLOUR_GROUP,    /* the name of its group */
     COLOUR_COUNT
 };
 

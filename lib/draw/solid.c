@@ -30,7 +30,7 @@ void solid_free(struct solid *s)
 static double value_of(const struct solid *s, const struct packing *p, int32_t wall, int32_t face)
 {
     const struct face_sums *x = &p->sums.face[s->faces.first[wall] + face];
-    double area = wall_faces_area(p, wall, face), span = p->t - p->sums.since;
+    double area = face_of_area(p, wall, face), span = p->t - p->sums.since;
     if (!isfinite(area) || !(area > 0)) return NAN;
     if (s->by == SURFACE_PRESSURE) return x->normal / (span * area);
     return (s->by == SURFACE_FRICTION ? x->friction : x->rub) / area;
@@ -94,7 +94,7 @@ int solid_init(struct solid *s, const struct packing *p, const char *list, enum 
     if (by != SURFACE_NAME && !p->sums.n)
         return why_set(why, EX_DATAERR, "no sums of walls (nsd-step --sums keeps them)");
     if (chosen_init(&c, p, "--solid", list, why)) return why->status;
-    if (!wall_faces_init(&s->faces, p, false, why) &&
+    if (!face_of_init(&s->faces, p, false, why) &&
         !(s->colour = calloc((size_t)s->faces.n + 1, sizeof *s->colour)))
         why_set(why, EX_SOFTWARE, "no memory for the colours of boundaries");
     if (!why->status && by != SURFACE_NAME) set_range(s, p, &c, lo, hi);

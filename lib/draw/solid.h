@@ -5,7 +5,7 @@
 #ifndef NSD_SOLID_H
 #define NSD_SOLID_H
 
-#include "bodies/wall_faces.h"
+#include "bodies/face_of.h"
 #include "draw/paint.h"
 
 enum solid_by { SURFACE_NAME, SURFACE_PRESSURE, SURFACE_FRICTION, SURFACE_RUB, SURFACE_COUNT };

@@ -3,7 +3,7 @@
  * is infinite: it is cut off where the region of the grains ends, and by the other planes.
  */
 #include "bodies/chosen.h"
-#include "bodies/wall_faces.h"
+#include "bodies/face_of.h"
 #include "draw/outline.h"
 #include "draw/walls.h"
 #include "export/sheet.h"
@@ -99,7 +99,7 @@ static int add_contacts(struct sheet *s, const struct owners *o, const struct ex
     int32_t *pushes = calloc((size_t)faces->n + 1, sizeof *pushes);
     if (!sum || !pushes) why_set(why, EX_SOFTWARE, "no memory for the forces on boundaries");
     for (int64_t i = 0; !why->status && i < t->n && t->c[i].a < 0; i++) {
-        int32_t k = faces->first[-1 - t->c[i].a] + wall_faces_find(faces, p, &t->c[i], 0);
+        int32_t k = faces->first[-1 - t->c[i].a] + face_of_contact(faces, p, &t->c[i], 0);
         sum[k] = v3_axpy(sum[k], -1 / p->dt, contact_in_space(&t->c[i], t->found[i].r));
         pushes[k] += t->found[i].r[0] > 0;
     }
@@ -125,7 +125,7 @@ static int add_sums(struct sheet *s, const struct owners *o, const struct packin
     for (int64_t k = 0; !why->status && o->of && k < s->cells; k++) {
         const struct owner of = o->of[k];
         const struct face_sums *x = &p->sums.face[faces->first[of.boundary] + of.face];
-        double area = wall_faces_area(p, of.boundary, of.face);
+        double area = face_of_area(p, of.boundary, of.face);
         put(force, k, v3_scale(by, x->impulse));
         pressure[k] = isfinite(area) ? by * x->normal / area : NAN;
         friction[k] = x->friction, rub[k] = x->rub, wear[k] = p->wall[of.boundary].wear * x->rub;
@@ -140,7 +140,7 @@ static int add_forces(struct sheet *s, const struct owners *o, const struct expo
     bool solved = m->contacts && m->contacts->found;
     struct wall_faces faces;
     if (!solved && !p->sums.n) return 0;
-    if (wall_faces_init(&faces, p, solved, why)) return why->status;
+    if (face_of_init(&faces, p, solved, why)) return why->status;
     int32_t *face = sheet_whole(s, "face", "", why);
     for (int64_t k = 0; !why->status && o->of && k < s->cells; k++) face[k] = o->of[k].face;
     if (!why->status && solved) add_contacts(s, o, m, &faces, why);

@@ -1,5 +1,6 @@
 #include "io/sum_tables.h"
 
+#include "bodies/wall_faces.h"
 #include "hdf5/h5.h"
 #include "io/layout.h"
 
@@ -18,6 +19,7 @@ static void path_of(const struct column *c, char path[80])
 int sum_tables_write_static(struct table_write *s, const struct packing *p, struct why *why)
 {
     if (!p->sums.n) return 0;
+    s->sums_since = p->sums.since;
     if (h5_group(s->file, HOME, why)) return why->status;
     return h5_attr(s->file, HOME, "since", H5T_NATIVE_DOUBLE, -1, &p->sums.since, why);
 }
@@ -28,7 +30,13 @@ static int check_kept(const struct table_write *s, const struct packing *p, stru
     char path[80];
     path_of(layout_sums, path);
     bool first = !table_write_grows(s, "/particles/all/position/step");
-    if (!s->growing || first || table_write_grows(s, path) == (p->sums.n > 0)) return 0;
+    if (!s->growing || first) return 0;
+    if (p->sums.n && p->sums.since != s->sums_since)
+        return why_set(
+            why, EX_DATAERR,
+            "sums of boundaries that began at %g s, and before at %g s: begin another trajectory",
+            p->sums.since, s->sums_since);
+    if (table_write_grows(s, path) == (p->sums.n > 0)) return 0;
     return why_set(
         why, EX_DATAERR,
         "sums of boundaries in some frames, and not in others: begin another trajectory");
@@ -59,9 +67,15 @@ int sum_tables_read(struct source *r, int64_t k, struct packing *p, struct why *
     uint64_t shape[4];
     char path[80];
     path_of(layout_sums, path);
+    struct wall_faces faces;
     if (!source_has(r, path)) return 0;
-    if (sums_begin(p, why)) return why->status;
-    const int32_t n = p->sums.n;
+    if (wall_faces_init(&faces, p->walls, p->wall, NULL, why)) return why->status;
+    const int32_t n = faces.n;
+    wall_faces_free(&faces);
+    // no memory is allocated for faces without sums
+    if (source_shape(r, path, shape) != 3 || shape[1] != (uint64_t)n)
+        return why_set(why, EX_DATAERR, "%s: not of shape frames x %d faces x 3", path, n);
+    if (sums_begin(&p->sums, p->walls, p->wall, p->t, why)) return why->status;
     double *row = calloc(3 * (size_t)n + 1, sizeof *row);
     if (!row) return why_set(why, EX_SOFTWARE, "no memory for the sums");
     for (const struct column *c = layout_sums; !why->status && c->name; c++) {

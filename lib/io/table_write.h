@@ -35,6 +35,7 @@ struct table_write {
     int64_t bonds;            /* rows of /nsd/bonds so far */
     int64_t memory;           /* rows of /nsd/memory so far */
     bool at_rest;             /* no boundary could move in the first frame */
+    double sums_since;        /* s: of its sums of boundaries [io/sum_tables.h] */
     int64_t forces, words;    /* rows of /nsd/outside/body, bytes of /nsd/outside/answer so far */
 };
 

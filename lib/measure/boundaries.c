@@ -1,6 +1,6 @@
 /* measure/boundaries.c: what pushes boundaries. */
 #include "bodies/chosen.h"
-#include "bodies/wall_faces.h"
+#include "bodies/face_of.h"
 #include "measure/branch.h"
 #include "measure/measures.h"
 
@@ -119,14 +119,14 @@ static int names_rows(struct table *t, const struct snapshot *s, struct why *why
     struct push *push = calloc((size_t)p->names.n + 1, sizeof *push);
     bool *any = calloc((size_t)p->names.n + 1, sizeof *any);
     if (!push || !any) why_set(why, EX_SOFTWARE, "no memory for the forces on boundaries");
-    if (why->status || wall_faces_init(&faces, p, true, why) ||
+    if (why->status || face_of_init(&faces, p, true, why) ||
         chosen_init(&chosen, p, "--only", *s->asked->only ? s->asked->only : NULL, why))
         goto end;
     if (!p->names.rows) table_null(t, "no wall and no part of one has a name");
     for (int32_t k = 0; k < p->names.rows; k++) any[p->names.row[k].name] = true;
     for (int64_t i = 0; i < s->s->n && s->s->c[i].a < 0; i++) {
         const struct contact *c = &s->s->c[i];
-        int32_t face = wall_faces_find(&faces, p, c, 0);
+        int32_t face = face_of_contact(&faces, p, c, 0);
         for (int32_t k = 0; k < p->names.n; k++)
             if (any[k] && is_named(&p->names, k, -1 - c->a, face)) add(&push[k], s, i, -1);
     }

@@ -1,6 +1,6 @@
 /* measure/sums.c: what bodies have done to boundaries since the frame before, over all steps [bodies/sums.h]. */
 #include "bodies/chosen.h"
-#include "bodies/wall_faces.h"
+#include "bodies/face_of.h"
 #include "measure/measures.h"
 
 #include <math.h>
@@ -63,7 +63,7 @@ static int look_init(struct look *l, const struct snapshot *s, struct why *why)
     bool same = before && before->n == p->sums.n && before->since == p->sums.since;
     *l = (struct look){ .s = s, .p = p, .from = same ? before : NULL };
     l->span = p->t - (same ? s->before->t : p->sums.since);
-    if (wall_faces_init(&l->faces, p, false, why)) return why->status;
+    if (face_of_init(&l->faces, p, false, why)) return why->status;
     if (!chosen_init(&l->chosen, p, "--only", *s->asked->only ? s->asked->only : NULL, why))
         return 0;
     look_free(l);
@@ -83,7 +83,7 @@ static void add(struct sum *to, const struct look *l, int32_t wall, int32_t face
     to->x.normal += x.normal - y->normal, to->x.tangential += x.tangential - y->tangential;
     to->x.work += x.work - y->work, to->x.friction += x.friction - y->friction;
     to->x.rub += x.rub - y->rub;
-    to->area += wall_faces_area(l->p, wall, face);
+    to->area += face_of_area(l->p, wall, face);
     to->wear += k > 0 ? k * (x.rub - y->rub) : NAN;
 }
 

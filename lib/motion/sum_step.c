@@ -1,7 +1,7 @@
 #include "motion/sum_step.h"
 
+#include "bodies/face_of.h"
 #include "bodies/top.h"
-#include "bodies/wall_faces.h"
 
 #include <stdlib.h>
 
@@ -60,13 +60,13 @@ int sum_step(struct packing *p, const struct contacts *s, const struct impulses 
     if (!p->sums.faces) {
         if (!(p->sums.faces = calloc(1, sizeof *p->sums.faces)))
             return why_set(why, EX_SOFTWARE, "no memory for the sums");
-        if (wall_faces_init(p->sums.faces, p, true, why)) return why->status;
+        if (face_of_init(p->sums.faces, p, true, why)) return why->status;
     }
     const struct wall_faces *f = p->sums.faces;
     for (int64_t i = 0; i < s->n && s->c[i].a < 0; i++) { // boundaries come first
         const double *r = s->found[i].r;
         if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
-        int32_t face = wall_faces_find(f, p, &s->c[i], sum->ahead);
+        int32_t face = face_of_contact(f, p, &s->c[i], sum->ahead);
         add(&p->sums.face[f->first[-1 - s->c[i].a] + face], p, s, i, sum);
     }
     return 0;

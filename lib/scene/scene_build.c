@@ -311,18 +311,24 @@ static bool *from_documents(const struct packing *p, const struct scene *s,
     return settled;
 }
 
-/* "bodies[1]", "walls[1]": what the scene says of a row, -1 - i of a wall; "" of one that it does not say */
+enum { PLACE = 40 + NAME_BYTES }; /* bytes of the place of a row in a scene */
+
+/* "bodies[1]", "walls[1], floor": what the scene says of a row, -1 - i of a wall; "" of one that it does not say */
 static const char *place_of(const struct scene *s, const struct grains *list, int32_t row,
-                            char text[40])
+                            char text[PLACE])
 {
     int64_t g = 0, end = 0;
     *text = 0;
-    if (row < 0 && s->has_walls) snprintf(text, 40, ", walls[%d]", s->wall_item[-1 - row]);
+    if (row < 0 && s->has_walls) {
+        const char *name = names_of_wall(&s->names, -1 - row);
+        snprintf(text, PLACE, ", walls[%d]%s%s", s->wall_item[-1 - row], name ? ", " : "",
+                 name ? name : "");
+    }
     for (; row >= 0 && g < s->groups; g++) {
         end += is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count;
         if (row < end) break;
     }
-    if (row >= 0) snprintf(text, 40, "bodies[%lld]", (long long)g);
+    if (row >= 0) snprintf(text, PLACE, "bodies[%lld]", (long long)g);
     return text;
 }
 
@@ -331,7 +337,7 @@ static int check_overlap(const struct packing *p, const struct scene *s, const s
 {
     struct contacts found = { 0 };
     const char *cure = "; \"overlap\": true allows it)";
-    char a[40], b[40];
+    char a[PLACE], b[PLACE];
     int e = detect_contacts_at(&found, p, p->x, p->t, 0, NULL, why);
     for (int64_t i = 0; !e && i < found.n; i++) {
         const struct contact *c = &found.c[i];

@@ -71,6 +71,10 @@ height() { od -An -j 20 -N 4 -t u1 --endian=big "$1" | awk '{ print $3 * 256 + $
 view --size 400x400 -c kind "$tmp/run.h5" >"$tmp/kinds.png"
 view --size 400x400 -c kind --solid floor "$tmp/run.h5" >"$tmp/both.png"
 is "pictures have the size that is asked for, with one row of legend or two" "$(height "$tmp/kinds.png") $(height "$tmp/both.png")" '400 400'
+jq -n '{ dt: 1e-3, bodies: [{ x: [-0.5, 0, 0], radius: 0.4, name: "a" }, { x: [0.5, 0, 0], radius: 0.4, name: "b" }, { x: [0, 0, 0.8], radius: 0.3 }] }' | nsd-gen - >"$tmp/groups.h5"
+view --bare --plain -c group --camera 0,90 --box -1,1,-1,1,-1,1 --size 200x200 "$tmp/groups.h5" >"$tmp/groups.png"
+read -r h1 _ h3 < <(pixel "$tmp/groups.png" 40 100) && read -r i1 _ i3 < <(pixel "$tmp/groups.png" 165 100)
+is "groups have colours of their own" "$((h3 > h1 + 30)) $((i1 > i3 + 30))" '1 1'
 refuses 65 "a name that is not there" nsd-view --solid lids "$tmp/run.h5"
 like "lists what is there" "$(cat "$tmp/err")" 'lids.*floor, lid, left, right'
 refuses 64 "a range the wrong way round" nsd-view --solid floor --surface-range 2,1 "$tmp/run.h5"
