@@ -59,7 +59,7 @@ is "and their normal forces" \
 
 # ---- a drum: its power is torque by angular velocity; the balances have the same work ----
 
-jq '.bodies[0].count = 200' scenes/drum.json | nsd-gen - | step -n 600 --warm --eps 1e-6 -o "$tmp/drum.h5"
+jq ".bodies[0].count = 100" scenes/drum.json | nsd-gen - | step -n 500 --warm -o "$tmp/drum.h5"
 spin=$(nsd-info --last -w "$tmp/drum.h5" | jq '.spin[2]')
 axis=$(nsd-info --last -w "$tmp/drum.h5" | jq -r '.point | "\(.[0]),\(.[1])"')
 ok "a drum: power = torque x angular velocity" near "$(stat --last -m sums --point "$axis" "$tmp/drum.h5" | jq '.sums.power[0]')" \
