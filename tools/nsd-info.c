@@ -28,8 +28,7 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 0, "scene", &scene,
       .help = "instead, the scene that goes on from FILE's last frame" },
     { CLI_TEXT, 0, "only", &only, "NAME,...",
-      .help = "of -p, -w and -c: these walls, parts, groups and kinds, by name or a wall's number "
-              "[all]" },
+      .help = "of -p, -w, -c: walls, parts, groups, kinds, by name or number [all]" },
     { CLI_FLAG, 'l', "last", &last, .help = "only the very last frame" },
     { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
     { 0 },

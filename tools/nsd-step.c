@@ -56,7 +56,7 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 0, "forces", &forces,
       .help = "and with them their forces, in N and in space; means --contacts" },
     { CLI_FLAG, 0, "sums", &sums,
-      .help = "keep sums over all steps of what bodies do to walls, for nsd-stat -m sums" },
+      .help = "keep sums over steps of what bodies do to walls: nsd-stat -m sums" },
     { CLI_FLAG, 'w', "warm", &options.warm,
       .help = "start each solve from the last step's reactions" },
     { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start each solve from 0, as the paper",

@@ -101,7 +101,7 @@ static const struct cli_option own[] = {
     { CLI_CHOICE, 0, "surface", &surface, .choice = surface_choice,
       .help = "what the colour of solid ones shows; of all without --solid [name]" },
     { CLI_TEXT, 0, "surface-range", &surface_range, "LO,HI",
-      .help = "numbers at the ends of their palette [0 and the largest of the frame]" },
+      .help = "numbers at the ends of their palette [0, the frame's largest]" },
     { CLI_TEXT, 0, "background", &background, "RRGGBB", .help = "its colour [ffffff]" },
     { CLI_INT, 0, "samples", &samples, "N", .min = 1, .max = 8,
       .help = "a pixel is the mean of N x N samples [3]" },
