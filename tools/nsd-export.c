@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 static int to, part = PART_GRAINS;
-static const char *output, *steps;
+static const char *output, *steps, *only;
 static bool last;
 static int64_t detail = 2;
 
@@ -36,6 +36,8 @@ static const struct cli_option own[] = {
       .help = "what of a frame [grains; in a directory all]" },
     { CLI_TEXT, 'o', "output", &output, "FILE",
       .help = "FILE, a series 'f%05d.vtp', or a directory 'DIR/' [standard output]" },
+    { CLI_TEXT, 0, "only", &only, "NAME,...",
+      .help = "of the boundary: these walls and parts, by name or number [all]" },
     { CLI_FLAG, 'l', "last", &last, .help = "only the very last frame" },
     { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
     { CLI_INT, 0, "detail", &detail, "N",
@@ -60,7 +62,7 @@ struct sheaf {
     FILE *out;
     struct output file; /* where that is no standard output */
     int64_t moments;
-    bool contacts, solved;
+    bool contacts, solved, sums;
     const struct format *format; /* of the moments in it */
     void *kept;                  /* by that, until the end */
 };
@@ -96,21 +98,25 @@ static void sheaf_add(struct sheaf *s, const struct format *format, enum part wh
                       const struct frame *f)
 {
     struct why why = { 0 };
-    struct export_frame m = { &f->packing, f->detected ? &f->contacts : NULL, (int)detail, &s->kept,
-                              show_rows };
+    struct export_frame m = { &f->packing, f->detected ? &f->contacts : NULL,
+                              (int)detail, &s->kept,
+                              only,        show_rows };
     bool solved = m.contacts && m.contacts->found;
     if (s->moments && !format->joins)
         die_usage("a %s file holds one frame: --last, --steps, or a series -o 'f%%05d.%s'",
                   format->name, format->ending);
     // the columns of a table are those of its first frame
-    if (s->moments && what == PART_GRAINS && s->solved && !solved)
+    if (s->moments && what != PART_CONTACTS && s->solved && !solved)
         die(EX_DATAERR, "step %lld: no solved contacts, and frames before it have them",
             (long long)f->packing.step);
-    if (s->moments && what == PART_GRAINS && !s->solved) m.contacts = NULL;
+    if (s->moments && what != PART_CONTACTS && !s->solved) m.contacts = NULL;
+    if (s->moments && what == PART_BOUNDARY && s->sums != (f->packing.sums.n > 0))
+        die(EX_DATAERR, "step %lld: sums of walls in some frames of one table, and not in others",
+            (long long)f->packing.step);
     if (s->moments && what == PART_CONTACTS && s->solved != solved)
         die(EX_DATAERR, "step %lld: contacts solved and unsolved in one table",
             (long long)f->packing.step);
-    if (!s->moments) s->solved = solved, s->format = format;
+    if (!s->moments) s->solved = solved, s->sums = f->packing.sums.n > 0, s->format = format;
     if (format->write(s->out, &m, what, !s->moments, &why))
         die(why.status, "step %lld: %s", (long long)f->packing.step, why.text);
     s->moments++;
@@ -243,6 +249,7 @@ static enum target target_of(const struct format **format)
     if (!*format) die_usage("--to FORMAT, or an --output whose ending says it, is wanted");
     if (!(*format)->parts && part != PART_GRAINS)
         die_usage("--part: %s has grains only", (*format)->name);
+    if (only && part != PART_BOUNDARY) die_usage("--only: of the boundary: with --part boundary");
     if (in_directory) return TARGET_DIRECTORY;
     if (output && number_in(output)) return TARGET_SERIES;
     if (!output && (*format)->binary && isatty(STDOUT_FILENO))

@@ -1,5 +1,7 @@
 /* nsd-info: shows any part of a document as JSON lines, for jq and gnuplot. */
+#include "bodies/chosen.h"
 #include "bodies/energy.h"
+#include "bodies/face_of.h"
 #include "bodies/kinematics.h"
 #include "cli/cli.h"
 #include "io/reader.h"
@@ -11,8 +13,9 @@
 #include <string.h>
 
 static bool last, particles, contacts, walls, history, events, scene;
-static const char *steps;
-static bool shown; /* whether any frame had what was asked for: contacts, a history */
+static const char *steps, *only;
+static struct chosen chosen; /* of the frame at hand, by --only */
+static bool shown;           /* whether any frame had what was asked for: contacts, a history */
 
 static const struct cli_option own[] = {
     { CLI_FLAG, 'p', "particles", &particles, .help = "instead, a line for each body" },
@@ -24,6 +27,8 @@ static const struct cli_option own[] = {
       .help = "instead, a line for each body that has come or gone" },
     { CLI_FLAG, 0, "scene", &scene,
       .help = "instead, the scene that goes on from FILE's last frame" },
+    { CLI_TEXT, 0, "only", &only, "NAME,...",
+      .help = "of -p, -w, -c: walls, parts, groups, kinds, by name or number [all]" },
     { CLI_FLAG, 'l', "last", &last, .help = "only the very last frame" },
     { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
     { 0 },
@@ -183,11 +188,14 @@ static void show_moment(const struct frame *f)
 static void show_particles(const struct packing *p)
 {
     for (int64_t i = 0; i < p->n; i++) {
+        if (!chosen_body(&chosen, p, i)) continue;
         const double q[4] = { p->q[i].w, p->q[i].x, p->q[i].y, p->q[i].z };
         json_t *j = json_object();
         json_object_set_new(j, "step", json_integer(p->step));
         json_object_set_new(j, "id", json_integer(p->id[i]));
         json_object_set_new(j, "kind", json_string(p->kind_name[p->kind[i]]));
+        if (p->group && p->group[i])
+            json_object_set_new(j, "group", json_string(p->names.text[p->group[i] - 1]));
         if (p->shape) json_object_set_new(j, "shape", json_string(p->shapes.s[p->shape[i]].name));
         json_object_set_new(j, "radius", json_number(p->radius[i]));
         json_object_set_new(j, "mass", json_number(p->mass[i]));
@@ -245,13 +253,31 @@ static json_t *sizes(const struct wall *w)
     return j;
 }
 
+/* The parts of a surface that have names: { name: [[first, last], ...] } */
+static json_t *parts(const struct packing *p, int32_t wall)
+{
+    json_t *j = json_object();
+    for (int32_t k = 0; k < p->names.rows; k++) {
+        const struct named *r = &p->names.row[k];
+        const char *name = p->names.text[r->name];
+        if (r->boundary != wall || !r->count) continue;
+        if (!json_object_get(j, name)) json_object_set_new(j, name, json_array());
+        json_array_append_new(json_object_get(j, name),
+                              json_pack("[i,i]", r->first, r->first + r->count - 1));
+    }
+    return j;
+}
+
 static void show_walls(const struct packing *p)
 {
     for (int32_t i = 0; i < p->walls; i++) {
         const struct wall *w = &p->wall[i];
+        const char *name = names_of_wall(&p->names, i);
+        if (!chosen_wall(&chosen, p, i)) continue;
         json_t *j = json_object();
         json_object_set_new(j, "step", json_integer(p->step));
         json_object_set_new(j, "wall", json_integer(i));
+        if (name) json_object_set_new(j, "name", json_string(name));
         json_object_set_new(j, "kind", json_string(p->kind_name[w->kind]));
         vec3 x = wall_at(p, w, p->t), spin = wall_spin(p, w);
         json_object_set_new(j, "shape", json_string(boundary_shape_name[w->shape]));
@@ -262,6 +288,9 @@ static void show_walls(const struct packing *p)
         if (w->shape != BOUNDARY_PLANE) json_object_set_new(j, "size", sizes(w));
         if (!wall_there(w, p->t)) json_object_set_new(j, "gone", json_true());
         if (w->load.way) json_object_set_new(j, "load", load(p, w));
+        json_t *named = parts(p, i);
+        if (json_object_size(named)) json_object_set(j, "parts", named);
+        json_decref(named);
         json_line(j);
     }
 }
@@ -282,15 +311,33 @@ static void add_tie(json_t *j, const struct contact_law *t)
     }
 }
 
+/* Is a contact of a body or of a face that is chosen? */
+static bool is_chosen(const struct packing *p, const struct wall_faces *faces,
+                      const struct contact *c)
+{
+    if (chosen_body(&chosen, p, c->b)) return true;
+    if (c->a >= 0) return chosen_body(&chosen, p, c->a);
+    return chosen_face(&chosen, p, -1 - c->a, face_of_contact(faces, p, c, 0));
+}
+
 static void show_contacts(const struct frame *f)
 {
     static const char *const status[] = { "free", "stick", "slide", "jammed" };
+    const struct packing *p = &f->packing;
+    struct wall_faces faces;
+    struct why why = { 0 };
     shown = true;
+    if (face_of_init(&faces, p, p->names.rows > 0, &why)) die_why(&why);
     for (int64_t i = 0; i < f->contacts.n; i++) {
         const struct contact *c = &f->contacts.c[i];
+        const char *name =
+            c->a < 0 ? names_of_face(&p->names, -1 - c->a, face_of_contact(&faces, p, c, 0)) : NULL;
+        if (only && !is_chosen(p, &faces, c)) continue;
         json_t *j = json_object();
         json_object_set_new(j, "step", json_integer(f->packing.step));
         json_object_set_new(j, "body", json_pack("[i,i]", c->a, c->b));
+        if (c->a < 0) json_object_set_new(j, "wall", json_integer(-1 - c->a));
+        if (name) json_object_set_new(j, "name", json_string(name));
         if (cell_repeats(&f->packing.cell))
             json_object_set_new(j, "shift",
                                 json_pack("[i,i,i]", c->shift[0], c->shift[1], c->shift[2]));
@@ -313,6 +360,7 @@ static void show_contacts(const struct frame *f)
         }
         json_line(j);
     }
+    wall_faces_free(&faces);
 }
 
 static void show_problem_contacts(const struct frame *f)
@@ -346,6 +394,8 @@ static void show_sweeps(const struct frame *f)
 
 static void show(const struct frame *f)
 {
+    struct why why = { 0 };
+    if (only && f->packed && chosen_init(&chosen, &f->packing, "--only", only, &why)) die_why(&why);
     if (particles && f->packed) show_particles(&f->packing);
     if (events && f->packed) show_events(&f->packing);
     if (walls && f->packed) show_walls(&f->packing);
@@ -353,6 +403,7 @@ static void show(const struct frame *f)
     if (contacts && f->detected) show_contacts(f);
     if (history && f->report.history) show_sweeps(f);
     if (!particles && !walls && !contacts && !history && !events) show_moment(f);
+    chosen_free(&chosen);
 }
 
 /* ---- --scene ---- */
@@ -428,6 +479,8 @@ int tool_main(int argc, char **argv)
     int64_t frames = 0;
     if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
     if (last && steps) die_usage("--last and --steps exclude each other");
+    if (only && !particles && !walls && !contacts)
+        die_usage("--only: of bodies, walls or contacts: with -p, -w or -c");
     if (scene && (argc != 1 || !strcmp(argv[0], "-")))
         die_usage("--scene: one FILE, which the scene names");
     if (reader_open(&in, argc, argv, &why)) die_why(&why);

@@ -2,6 +2,7 @@
 #include "cli/cli.h"
 #include "cli/tool_filter.h"
 #include "motion/move.h"
+#include "motion/sum_step.h"
 
 static const struct cli_option *const tables[] = { NULL };
 
@@ -16,7 +17,11 @@ static void move(struct frame *f, const char *where)
 {
     struct why why = { 0 };
     tool_wants_solution(f, where);
-    if (move_step(&f->packing, &f->contacts, &why)) die_why(&why);
+    struct impulses sum = { 0 };
+    if (f->packing.sums.n && !impulses_init(&sum, &f->packing, &f->contacts, false, &why))
+        sum_step(&f->packing, &f->contacts, &sum, &why);
+    impulses_free(&sum);
+    if (why.status || move_step(&f->packing, &f->contacts, &why)) die_why(&why);
     f->detected = false, f->stale = true;
 }
 

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *names, *box, *layers, *point, *plane, *steps, *fields_to;
+static const char *names, *only, *box, *layers, *point, *plane, *steps, *fields_to;
 static bool list, tsv, last, grains;
 static double width, spacing;
 static struct asked asked = ASKED_DEFAULT;
@@ -43,6 +43,10 @@ static const struct cli_option own[] = {
     { CLI_INT, 0, "bins", &asked.bins, "N", .help = "of distributions [50]", .min = 1, .max = 1e6 },
     { CLI_ABOVE, 0, "distance", &asked.distance, "M",
       .help = "of pairs, at most [m, three mean diameters]", .max = 1e300 },
+    { CLI_TEXT, 0, "only", &only, "NAME,...",
+      .help = "of walls: these, by name or number, and parts of them [all]" },
+    { CLI_ABOVE, 0, "wear", &asked.wear, "K",
+      .help = "Archard's coefficient, 1/Pa, of all walls [as the scene has it]", .max = 1e300 },
     { CLI_TEXT, 'f', "fields", &fields_to, "FILE",
       .help = "also coarse-grained fields: FILE.h5, or 'f%05d.vti'" },
     { CLI_ABOVE, 0, "width", &width, "M", .help = "w of their Gaussian [m, the mean diameter]",
@@ -105,7 +109,7 @@ static void parse_one(const char *name, const char *text)
 static void parse(void)
 {
     parse_one("layers", layers), parse_one("point", point);
-    parse_one("plane", plane), parse_one("box", box);
+    parse_one("plane", plane), parse_one("box", box), parse_one("only", only);
 }
 
 /* ---- output ---- */

@@ -29,7 +29,7 @@ enum {
 static int64_t steps = 1, expected; /* to make; as far as can be foreseen, where dt adapts */
 static struct cli_every every = { 1, 0 };
 static double until, lines; /* s: of the motion; of real time */
-static bool contacts, forces, in_place;
+static bool contacts, forces, sums, in_place;
 static const char *output, *save;
 static const char *dt; /* as it is given: a number, or auto:TOL */
 static double tol;     /* radii: TOL; 0: dt does not adapt */
@@ -55,6 +55,8 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 0, "contacts", &contacts, .help = "keep each frame's contacts too" },
     { CLI_FLAG, 0, "forces", &forces,
       .help = "and with them their forces, in N and in space; means --contacts" },
+    { CLI_FLAG, 0, "sums", &sums,
+      .help = "keep sums over steps of what bodies do to walls: nsd-stat -m sums" },
     { CLI_FLAG, 'w', "warm", &options.warm,
       .help = "start each solve from the last step's reactions" },
     { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start each solve from 0, as the paper",
@@ -117,19 +119,19 @@ static void account(struct frame *f)
     unsigned news = account_add(&total.account, &f->report);
     for (int k = 0; k < ACCOUNT_ROWS; k++) {
         if (!(news & 1U << k) || words_are_output()) continue;
-        account_says(&total.account, (enum account_row)k, text, sizeof text);
+        account_says(&total.account, (enum account_row)k, &f->packing.names, text, sizeof text);
         warn("%s: %s", text, account_watched[k].cure);
     }
 }
 
 /* The last line of a run: "worst: overlap 1.3e-05 of a radius (step 70, bodies 3 and 8), ..." */
-static void say_worst(void)
+static void say_worst(const struct names *names)
 {
     char text[160 * ACCOUNT_ROWS] = "";
     size_t n = 0;
     for (int k = 0; k < ACCOUNT_ROWS && total.account.steps; k++) {
         n += (size_t)snprintf(text + n, sizeof text - n, k ? ", " : "worst: ");
-        account_says(&total.account, (enum account_row)k, text + n, sizeof text - n);
+        account_says(&total.account, (enum account_row)k, names, text + n, sizeof text - n);
         n = strlen(text);
     }
     if (n) warn("%s", text);
@@ -647,7 +649,7 @@ int tool_main(int argc, char **argv)
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
     reader_copies(in);
     // a program in the loop wants all bodies, and their contacts, in one place
-    struct distributed *others = processes_take_bodies(contacts || forces || loop_asks());
+    struct distributed *others = processes_take_bodies(contacts || forces || sums || loop_asks());
     reader_hands_over(in, loop_asks() ? NULL : others);
     if (output && reader_reads(argc, argv, output))
         die_usage("%s: is also the input; -i appends to it", output);
@@ -655,6 +657,14 @@ int tool_main(int argc, char **argv)
         start_in_place(&r, in, argv[0], asked);
     else
         start(&r, in, asked);
+    if (sums && !r.f.packing.sums.n) {
+        if (in_place)
+            die_usage(
+                "--sums: %s keeps none, and a trajectory has them from its first frame: -o FILE",
+                argv[0]);
+        if (sums_begin(&r.f.packing.sums, r.f.packing.walls, r.f.packing.wall, r.f.packing.t, &why))
+            die_why(&why);
+    }
     count_steps(&r.f.packing);
     if (steps && !in_place && writer_begin(r.out, &r.f, &why)) die_why(&why);
     options_log_open(argc, argv, output);
@@ -672,7 +682,7 @@ int tool_main(int argc, char **argv)
     const char *told = processes_leave();
     summary(made);
     if (told) warn("%s", told);
-    say_worst();
+    say_worst(&r.f.packing.names);
     reader_close(in);
     if (r.ended.status) die_why(&r.ended);
     if (r.told_to_stop) warn("told to stop after step %lld", (long long)r.f.packing.step);

@@ -21,7 +21,9 @@ static bool plain, bare, svg, strays;
 static double perspective, pale;
 static struct overlay over;
 static const char *output, *range, *size, *camera = "30,15", *box, *background = "ffffff", *cut,
-                                          *table, *wanted;
+                                          *table, *wanted, *solid_names, *surface_range;
+static int surface = SURFACE_NAME;
+static struct solid solid;
 
 static struct cli_choice colour_choice(int k)
 {
@@ -41,6 +43,12 @@ static struct cli_choice boundaries_choice(int k)
                                                  { "lines", "their edges and outlines alone" },
                                                  { NULL, NULL } };
     return choices[k];
+}
+
+static struct cli_choice surface_choice(int k)
+{
+    if (k == SURFACE_COUNT) return (struct cli_choice){ NULL, NULL };
+    return (struct cli_choice){ surface_meaning[k].name, surface_meaning[k].help };
 }
 
 static const struct cli_option own[] = {
@@ -88,6 +96,12 @@ static const struct cli_option own[] = {
       .help = "only bodies with their centre in this box (m) [all]" },
     { CLI_CHOICE, 0, "boundaries", &boundaries, .choice = boundaries_choice,
       .help = "how they are drawn [glass]" },
+    { CLI_TEXT, 0, "solid", &solid_names, "NAME,...",
+      .help = "these solid and shaded, by name or number; parts too [none]" },
+    { CLI_CHOICE, 0, "surface", &surface, .choice = surface_choice,
+      .help = "what the colour of solid ones shows; of all without --solid [name]" },
+    { CLI_TEXT, 0, "surface-range", &surface_range, "LO,HI",
+      .help = "numbers at the ends of their palette [0, the frame's largest]" },
     { CLI_TEXT, 0, "background", &background, "RRGGBB", .help = "its colour [ffffff]" },
     { CLI_INT, 0, "samples", &samples, "N", .min = 1, .max = 8,
       .help = "a pixel is the mean of N x N samples [3]" },
@@ -236,10 +250,34 @@ static void set_numbers(struct view *v, const struct frame *f, const char *where
     v->paint.value = shown;
 }
 
+static bool wants_solid(void)
+{
+    return solid_names || cli_given(&surface);
+}
+
+/* The solid boundaries of a frame */
+static void set_solid(struct view *v, const struct frame *f, const char *where)
+{
+    struct why why = { 0 };
+    double x[2] = { NAN, NAN };
+    if (!wants_solid()) return;
+    if (f->packing.dim == 2)
+        die_usage(
+            "--solid, --surface: in the plane boundaries are lines, which are drawn as they are");
+    if (surface_range && (!numbers(surface_range, 2, x) || !(x[0] < x[1])))
+        die_usage("--surface-range: '%s' is not LO,HI, the first below the second", surface_range);
+    solid_free(&solid);
+    if (solid_init(&solid, &f->packing, solid_names, (enum solid_by)surface, x[0], x[1], &v->paint,
+                   &why))
+        die(why.status, "%s: %s", where, why.text);
+    v->solid = over.solid = &solid;
+}
+
 /* Before a frame is seen or drawn */
 static void set_values(struct view *v, struct frame *f, const char *where)
 {
     tool_wants_packing(f, where);
+    set_solid(v, f, where);
     set_numbers(v, f, where);
     add_images(v, f);
 }

@@ -5,6 +5,7 @@
 #include "cli/tool_filter.h"
 #include "draw/page.h"
 #include "io/reader.h"
+#include "measure/unit.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -78,12 +79,20 @@ static void add_contacts(struct page *page, const struct frame *f)
     if (f->reported) add(page, "overlap", "m", f->report.err.max_overlap);
 }
 
-/* Every number of a line of nsd-stat's, named by the keys that lead to it */
+/* Every number of a line of nsd-stat's, named by the keys that lead to it; of a vector its components */
 static void add_numbers(struct page *page, json_t *j, const char *name)
 {
     const char *key;
     json_t *value;
-    if (json_is_number(j)) add(page, name, "", json_number_value(j));
+    bool vector = json_is_array(j) && json_array_size(j) == 3;
+    if (json_is_number(j)) add(page, name, measure_unit(name, page->dim), json_number_value(j));
+    for (size_t k = 0; vector && k < 3; k++) {
+        char longer[200];
+        value = json_array_get(j, k);
+        snprintf(longer, sizeof longer, "%s.%c", name, "xyz"[k]);
+        if (json_is_number(value))
+            add(page, longer, measure_unit(name, page->dim), json_number_value(value));
+    }
     if (!json_is_object(j)) return;
     json_object_foreach(j, key, value)
     {

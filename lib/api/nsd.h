@@ -121,6 +121,9 @@ int nsd_resizes(const struct nsd_run *run);
 int nsd_number(struct nsd_run *run, const char *name, double *x);
 /* The report of the last solve as JSON, with the keys of nsd-info(1); until the next call. NSD_USAGE: no step was made. */
 int nsd_report(struct nsd_run *run, const char **json);
+/* {"kinds": [NAME, ...], "shapes": [...], "walls": [NAME or null, ...], "groups": [...]}, in their order; the text lasts as
+   long as that of nsd_report() */
+int nsd_names(struct nsd_run *run, const char **json);
 /* Measures "A,B,..." or "all" as a line of nsd-stat(1); until the next call */
 int nsd_measure(struct nsd_run *run, const char *names, const char **json);
 

@@ -269,6 +269,41 @@ int nsd_report(struct nsd_run *r, const char **json)
     return 0;
 }
 
+static json_t *names_of(const struct packing *p)
+{
+    json_t *kinds = json_array(), *shapes = json_array(), *walls = json_array(),
+           *groups = json_array();
+    bool used[NAMES_MOST] = { false };
+    for (int32_t k = 0; k < p->kinds; k++)
+        json_array_append_new(kinds, json_string(p->kind_name[k]));
+    for (int32_t k = 0; k < p->shapes.n; k++)
+        json_array_append_new(shapes, json_string(p->shapes.s[k].name));
+    for (int32_t w = 0; w < p->walls; w++) {
+        const char *name = names_of_wall(&p->names, w);
+        json_array_append_new(walls, name ? json_string(name) : json_null());
+    }
+    for (int64_t i = 0; p->group && i < p->n; i++)
+        if (p->group[i]) used[p->group[i] - 1] = true;
+    for (int32_t k = 0; k < p->names.n; k++)
+        if (used[k]) json_array_append_new(groups, json_string(p->names.text[k]));
+    return json_pack("{s:o, s:o, s:o, s:o}", "kinds", kinds, "shapes", shapes, "walls", walls,
+                     "groups", groups);
+}
+
+int nsd_names(struct nsd_run *r, const char **json)
+{
+    struct why *why = run_why(r);
+    if (!why) return NSD_USAGE;
+    if (!json) return why_set(why, NSD_USAGE, "there is no place for JSON");
+    json_t *j = names_of(&r->f.packing);
+    char *text = j ? json_dumps(j, JSON_COMPACT) : NULL;
+    json_decref(j);
+    if (!text) return no_memory(why);
+    free(r->text);
+    *json = r->text = text;
+    return 0;
+}
+
 /* What measures of ways look back to: the first moment that was measured, and the last */
 static int remember(struct nsd_run *r, struct why *why)
 {

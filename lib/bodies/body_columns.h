@@ -31,6 +31,7 @@ typedef int32_t edge_count[3];
  *   id       a number that stays with the body
  *   kind     row of the material tables
  *   shape    row of the packing's shapes; NULL: all are balls
+ *   group    1 + row of the packing's names; 0: of no group; NULL: all are
  *   q        orientation
  *   image    edges to add to x for the way that the body has gone; NULL: the cell is not periodic
  */
@@ -41,6 +42,7 @@ typedef int32_t edge_count[3];
     X(int32_t, id, I32, 1, "id", "1", 0)                                                           \
     X(int32_t, kind, I32, 1, "species", "1", 0)                                                    \
     X(int32_t, shape, I32, 1, "shape", "1", BODY_BY_SETTINGS)                                      \
+    X(int32_t, group, I32, 1, "group", "1", BODY_OPTIONAL)                                         \
     X(vec3, x, F64, 3, "position", "m", BODY_MOVES)                                                \
     X(vec3, v, F64, 3, "velocity", "m s-1", BODY_MOVES)                                            \
     X(vec3, w, F64, 3, "angular_velocity", "rad s-1", BODY_MOVES)                                  \

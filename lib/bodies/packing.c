@@ -92,7 +92,7 @@ void packing_free(struct packing *p)
 {
     for (int k = 0; k < BODY_COLUMNS; k++) free_column(p, &body_columns[k].column);
     free(p->wall), free(p->scene);
-    shapes_free(&p->shapes);
+    shapes_free(&p->shapes), names_free(&p->names), sums_free(&p->sums);
     drives_free(&p->drives), drives_free(&p->pushes), mesh_free(&p->mesh);
     free(p->poured), free(p->removed);
     events_free(&p->events);
@@ -227,7 +227,8 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
                    n * column_bytes(&b->column));
     memcpy(to->wall, p->wall, (size_t)p->walls * sizeof *p->wall);
     if (drives_copy(&to->drives, &p->drives, why) || drives_copy(&to->pushes, &p->pushes, why) ||
-        mesh_copy(&to->mesh, &p->mesh, why))
+        mesh_copy(&to->mesh, &p->mesh, why) || names_copy(&to->names, &p->names, why) ||
+        sums_copy(&to->sums, &p->sums, why))
         goto fail;
 #define COPY(member, ...) memcpy(to->member, p->member, k2 * sizeof *p->member);
     EACH_PAIR_COLUMN(COPY)
@@ -337,6 +338,7 @@ static const char *body_trouble(const struct packing *p, int64_t i)
     if (p->dim == 2 && packing_shape(p, i) && (q.x != 0 || q.y != 0))
         return "turns out of the plane, and dim is 2";
     if (p->kind[i] < 0 || p->kind[i] >= p->kinds) return "kind has no material";
+    if (p->group && (p->group[i] < 0 || p->group[i] > p->names.n)) return "group has no name";
     return NULL;
 }
 
@@ -378,6 +380,7 @@ static const char *wall_trouble(const struct packing *p, const struct wall *w)
                  w->elements > p->mesh.elements - w->first_element))
         return "its mesh is not there";
     if (w->kind < 0 || w->kind >= p->kinds) return "kind has no material";
+    if (!(w->wear >= 0 && isfinite(w->wear))) return "wear must be finite and not negative";
     return load_trouble(p, w);
 }
 
@@ -479,6 +482,9 @@ int packing_check(const struct packing *p, struct why *why)
         const char *trouble = wall_trouble(p, &p->wall[i]);
         if (trouble) return why_set(why, EX_DATAERR, "wall %d: %s", i, trouble);
     }
+    if (names_check(&p->names, p->walls, p->wall, why) ||
+        sums_check(&p->sums, p->walls, p->wall, why))
+        return why->status;
     if (drives_check(&p->drives, p->walls, p->dim, "drive", why) ||
         drives_check(&p->pushes, p->walls, p->dim, "push", why))
         return why->status;

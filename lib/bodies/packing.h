@@ -13,11 +13,13 @@
 #include "bodies/bond.h"
 #include "bodies/contact.h"
 #include "bodies/memory.h"
+#include "bodies/names.h"
 #include "bodies/outside.h"
 #include "bodies/overlap.h"
 #include "bodies/pair_columns.h"
 #include "bodies/pair_law.h"
 #include "bodies/passage.h"
+#include "bodies/sums.h"
 #include "geometry/boundary.h"
 #include "geometry/cell.h"
 #include "geometry/drive.h"
@@ -49,10 +51,12 @@ struct packing {
     struct shapes shapes; /* of bodies; radius is that of the ball around them */
 
     int32_t walls;
-    struct wall *wall;    /* [walls] */
-    struct drives drives; /* of them */
-    struct drives pushes; /* of their loads: signals that are forces, N or N m */
-    struct mesh mesh;     /* of those that are meshes */
+    struct wall *wall;     /* [walls] */
+    struct drives drives;  /* of them */
+    struct drives pushes;  /* of their loads: signals that are forces, N or N m */
+    struct mesh mesh;      /* of those that are meshes */
+    struct names names;    /* of boundaries, of parts of them and of groups of bodies */
+    struct wall_sums sums; /* over steps, of what bodies do to them */
     struct cell cell;
 
     int32_t kinds;

@@ -34,11 +34,13 @@ struct ground {
     double x[WALLS_CORNERS], y[WALLS_CORNERS]; /* of the corners */
 };
 
-/* A half-transparent facet: the plane z = plane[0] + plane[1] x + plane[2] y inside a triangle */
+/* A facet, half-transparent or solid: the plane z = plane[0] + plane[1] x + plane[2] y inside a triangle */
 struct pane {
     double x[3], y[3], plane[3];
-    float part;  /* of the light behind it that it takes [draw/glass.h] */
-    float light; /* its brightness */
+    float part;     /* of the light behind it that it takes [draw/glass.h] */
+    float light;    /* its brightness */
+    vec3 n;         /* its unit normal, to the viewer: y down */
+    struct rgb own; /* its colour where it is solid; r < 0: it is glass */
 };
 
 /* What is cut away: where side[0] x + side[1] y + side[2] z + side[3] > 0 */
@@ -70,7 +72,8 @@ struct raster {
 
 #define SHADE_REACH 2.2 /* radii: how far from its centre a ball darkens other things */
 
-enum { NOTHING = -1, GROUND = -2 }; /* what is seen; GROUND - i: floor i; i >= 0: spot i */
+enum { NOTHING = -1, GROUND = -2, SOLID = -(1 << 20) };
+/* what is seen; GROUND - i: floor i; SOLID - i: pane i; i >= 0: spot i */
 
 enum { SHADE_TILE = 8 }; /* samples: side of the squares of which shade_near knows the depths */
 

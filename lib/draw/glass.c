@@ -3,26 +3,33 @@
 
 #include <stdlib.h>
 
-static void add(struct glass *g, vec3 a, vec3 b, vec3 c)
+/* r < 0: glass */
+static struct rgb own_of(const struct solid *s, int32_t boundary, int32_t face)
+{
+    return s ? s->colour[s->faces.first[boundary] + face] : (struct rgb){ -1, 0, 0 };
+}
+
+static void add(struct glass *g, struct rgb own, vec3 a, vec3 b, vec3 c)
 {
     vec3 n = v3_cross(v3_sub(b, a), v3_sub(c, a));
     double area = v3_norm(n);
-    if (area > 0) g->facet[g->facets++] = (struct facet){ { a, b, c }, v3_scale(1 / area, n) };
+    if (area > 0) g->facet[g->facets++] = (struct facet){ { a, b, c }, v3_scale(1 / area, n), own };
 }
 
 static void add_planes(struct glass *g, const struct packing *p, const struct extent *r,
-                       vec3 toward)
+                       vec3 toward, const struct solid *solid, bool glass)
 {
     vec3 corner[WALLS_CORNERS];
     for (int i = 0; i < p->walls && i < WALLS_PANELS; i++) {
         int corners = walls_polygon(p, i, r, corner);
-        if (corners < 3 || walls_floor(p, i, toward)) continue;
-        for (int k = 2; k < corners; k++) add(g, corner[0], corner[k - 1], corner[k]);
+        struct rgb own = own_of(solid, i, 0);
+        if (corners < 3 || (own.r < 0 && (!glass || walls_floor(p, i, toward)))) continue;
+        for (int k = 2; k < corners; k++) add(g, own, corner[0], corner[k - 1], corner[k]);
     }
 }
 
 int glass_init(struct glass *g, const struct packing *p, const struct extent *r, vec3 toward,
-               struct why *why)
+               const struct solid *solid, bool glass, struct why *why)
 {
     struct outline o;
     *g = (struct glass){ 0 };
@@ -31,10 +38,11 @@ int glass_init(struct glass *g, const struct packing *p, const struct extent *r,
     int64_t room = o.triangles + (int64_t)WALLS_PANELS * WALLS_CORNERS;
     g->facet = malloc((size_t)room * sizeof *g->facet);
     if (g->facet) {
-        add_planes(g, p, r, toward);
+        add_planes(g, p, r, toward, solid, glass);
         for (int64_t i = 0; i < o.triangles; i++) {
             const vec3 *x = o.triangle[i].corner;
-            add(g, x[0], x[1], x[2]);
+            struct rgb own = own_of(solid, o.triangle[i].boundary, o.triangle[i].face);
+            if (own.r >= 0 || glass) add(g, own, x[0], x[1], x[2]);
         }
     } else
         why_set(why, EX_SOFTWARE, "no memory for the facets of the boundaries");

@@ -10,11 +10,13 @@
 #define NSD_GLASS_H
 
 #include "draw/outline.h"
+#include "draw/solid.h"
 #include "draw/walls.h"
 
 struct facet {
     vec3 corner[3]; /* m */
     vec3 n;         /* its unit normal; both sides look the same */
+    struct rgb own; /* its colour where it is solid; r < 0: it is glass */
 };
 
 struct glass {
@@ -23,10 +25,11 @@ struct glass {
 };
 
 /* The boundaries of p inside the region, at p's time, in space; none in the plane. Planes that are drawn
-   as floors where they are seen from `toward` (unit vector to the viewer) are left out. Returns 0, or
+   as floors where they are seen from `toward` (unit vector to the viewer) are left out, unless they are solid. solid: which
+   are, or NULL; glass: false: only these. Returns 0, or
    EX_SOFTWARE with nothing to free. */
 int glass_init(struct glass *g, const struct packing *p, const struct extent *r, vec3 toward,
-               struct why *why);
+               const struct solid *solid, bool glass, struct why *why);
 void glass_free(struct glass *g);
 
 /* The part of the light that a facet takes; z: the cosine between its normal and the line of sight */

@@ -14,7 +14,8 @@ struct placed {
     double reach; /* m */
 };
 
-static bool add_triangle(struct outline *o, const struct placed *b, vec3 x, vec3 y, vec3 z)
+static bool add_triangle(struct outline *o, const struct placed *b, int32_t face, vec3 x, vec3 y,
+                         vec3 z)
 {
     if (o->triangles == o->triangle_room) {
         int64_t room = 2 * o->triangle_room + 256;
@@ -22,7 +23,7 @@ static bool add_triangle(struct outline *o, const struct placed *b, vec3 x, vec3
         if (!more) return false;
         o->triangle = more, o->triangle_room = room;
     }
-    o->triangle[o->triangles++] = (struct outline_triangle){ { x, y, z }, b->boundary };
+    o->triangle[o->triangles++] = (struct outline_triangle){ { x, y, z }, b->boundary, face };
     return true;
 }
 
@@ -34,7 +35,7 @@ static bool add_line(struct outline *o, const struct placed *b, vec3 x, vec3 y)
         if (!more) return false;
         o->line = more, o->line_room = room;
     }
-    o->line[o->lines++] = (struct outline_line){ { x, y }, b->boundary };
+    o->line[o->lines++] = (struct outline_line){ { x, y }, b->boundary, 0 };
     return true;
 }
 
@@ -96,7 +97,8 @@ static bool add_grid(struct outline *o, const struct placed *b, int nu, int nv)
             double v[2] = { (double)j / nv, (double)(j + 1) / nv };
             vec3 x[4] = { point_of(b, u[0], v[0]), point_of(b, u[1], v[0]), point_of(b, u[1], v[1]),
                           point_of(b, u[0], v[1]) };
-            if (!add_triangle(o, b, x[0], x[1], x[2]) || !add_triangle(o, b, x[0], x[2], x[3]))
+            if (!add_triangle(o, b, 0, x[0], x[1], x[2]) ||
+                !add_triangle(o, b, 0, x[0], x[2], x[3]))
                 return false;
         }
     return true;
@@ -171,11 +173,12 @@ static bool add_mesh(struct outline *o, const struct placed *b)
             x[k] = pose_of(&b->pose, v3_add(w->x, m->vertex[m->element[e][k]]));
         if (flat) {
             good = add_line(o, b, x[0], x[1]);
+            if (good) o->line[o->lines - 1].face = e - w->first_element;
             continue;
         }
         vec3 normal = v3_cross(v3_sub(x[1], x[0]), v3_sub(x[2], x[0]));
         normal = v3_scale(1 / fmax(v3_norm(normal), 1e-300), normal);
-        good = add_triangle(o, b, x[0], x[1], x[2]);
+        good = add_triangle(o, b, e - w->first_element, x[0], x[1], x[2]);
         for (int k = 0; k < 3; k++) {
             vec3 from = x[k], to = x[(k + 1) % 3];
             bool rises = compare(from, to) < 0;

@@ -14,12 +14,14 @@ enum { OUTLINE_FACETS = 64 };
 struct outline_triangle {
     vec3 corner[3];   /* m */
     int32_t boundary; /* whose it is */
+    int32_t face;     /* of a mesh its triangle, from the boundary's first one; else 0 */
 };
 
 /* In space the borders and sharp edges of shapes; in the plane all of them */
 struct outline_line {
     vec3 end[2]; /* m */
     int32_t boundary;
+    int32_t face; /* in the plane, of a mesh its segment; else 0 */
 };
 
 struct outline {

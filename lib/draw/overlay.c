@@ -130,11 +130,18 @@ void overlay_bodies(cairo_t *cr, const struct overlay *o, const struct view *v,
 
 /* ---- the legend ---- */
 
+/* Pixels: of a row of the legend; words are a quarter of it, and not below 14 pixels where the picture has room */
+static int row_height(int width)
+{
+    int row = 2 * (int)(0.5 * 0.085 * width), least = width < 300 ? 44 : 56;
+    return row < least ? least : row > 110 ? 110 : row;
+}
+
 int overlay_strip(const struct overlay *o, int width)
 {
     if (!o->legend) return 0;
-    int strip = 2 * (int)(0.5 * 0.085 * width);
-    return strip < 44 ? 44 : strip > 110 ? 110 : strip;
+    int row = row_height(width);
+    return o->solid ? row + 2 * (int)(0.3 * row) : row; // a second row of half the height
 }
 
 /* A length in m as one reads it */
@@ -204,6 +211,68 @@ static void draw_palette(cairo_t *cr, const struct paint *p, double x, double y,
     write_words(cr, x + w, y + h + size, RIGHT, text);
 }
 
+/* A square of the colour, and a word; false where it would be beyond `end`, and dots are there instead. */
+static bool draw_key(cairo_t *cr, double *x, double y, double end, struct rgb c, const char *word)
+{
+    cairo_text_extents_t e;
+    double size = font_height(cr);
+    cairo_text_extents(cr, word, &e);
+    if (*x + 1.4 * size + e.x_advance > end) {
+        write_words(cr, *x, y, LEFT, "...");
+        return false;
+    }
+    cairo_save(cr);
+    overlay_colour(cr, c);
+    cairo_rectangle(cr, *x, y - 0.85 * size, 0.85 * size, 0.85 * size);
+    cairo_fill(cr);
+    cairo_restore(cr);
+    *x += 1.2 * size;
+    *x += write_words(cr, *x, y, LEFT, word) + 0.9 * size;
+    return true;
+}
+
+/* The kinds, or the names of the groups, that bodies are of, with their colours */
+static void draw_classes(cairo_t *cr, const struct packing *p, bool groups, double x, double y,
+                         double end)
+{
+    const int32_t n = groups ? p->names.n : p->kinds;
+    bool *any = calloc((size_t)n + 1, sizeof *any);
+    for (int64_t i = 0; any && i < p->n; i++) {
+        int32_t k = !groups ? p->kind[i] : p->group ? p->group[i] - 1 : -1;
+        if (k >= 0) any[k] = true;
+    }
+    for (int32_t k = 0; any && k < n; k++)
+        if (any[k] &&
+            !draw_key(cr, &x, y, end, paint_kind(k), groups ? p->names.text[k] : p->kind_name[k]))
+            break;
+    free(any);
+}
+
+/* What the colours of solid boundaries show: their names, or numbers */
+static void draw_solid(cairo_t *cr, const struct solid *s, const struct paint *paint, double x,
+                       double y, double end)
+{
+    const struct surface_meaning *m = &surface_meaning[s->by];
+    double size = font_height(cr);
+    char text[100];
+    for (int k = 0; s->by == SURFACE_NAME && k < s->named; k++)
+        if (!draw_key(cr, &x, y, end, s->shown[k], s->name[k])) return;
+    if (s->by == SURFACE_NAME) return;
+    snprintf(text, sizeof text, "%s, %s:  %.3g", m->name, m->unit, s->lo);
+    x += write_words(cr, x, y, LEFT, text) + 0.4 * size;
+    double w = 0.25 * (end - x);
+    cairo_save(cr);
+    cairo_set_antialias(cr, CAIRO_ANTIALIAS_NONE);
+    for (int i = 0; i < 256; i++) {
+        overlay_colour(cr, paint->palette[i]);
+        cairo_rectangle(cr, x + w * i / 256, y - 0.8 * size, w / 256 + 0.5, 0.8 * size);
+        cairo_fill(cr);
+    }
+    cairo_restore(cr);
+    snprintf(text, sizeof text, "%.3g", s->hi);
+    write_words(cr, x + w + 0.4 * size, y, LEFT, text);
+}
+
 static void draw_scale(cairo_t *cr, const struct view *v, double x, double y, double most)
 {
     double length = camera_round(most / v->camera.scale), w = length * v->camera.scale;
@@ -238,7 +307,7 @@ static void draw_status(cairo_t *cr, double x, double y, double size)
 void overlay_legend(cairo_t *cr, const struct overlay *o, const struct view *v,
                     const struct packing *p, int top)
 {
-    double w = v->camera.width, strip = overlay_strip(o, v->camera.width), size = 0.25 * strip;
+    double w = v->camera.width, strip = row_height(v->camera.width), size = 0.25 * strip;
     bool bright = v->background.r + v->background.g + v->background.b > 0.6F;
     double ink = bright ? 0.12 : 0.9;
     char text[60];
@@ -246,7 +315,12 @@ void overlay_legend(cairo_t *cr, const struct overlay *o, const struct view *v,
     cairo_select_font_face(cr, "@cairo:sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
     cairo_set_font_size(cr, size);
     cairo_set_line_width(cr, fmax(1.2, 0.0016 * w));
-    draw_palette(cr, &v->paint, 0.03 * w, top + 0.36 * strip, 0.34 * w, 0.22 * strip);
+    if (o->solid)
+        draw_solid(cr, o->solid, &v->paint, 0.03 * w, top + strip + 0.3 * strip, 0.97 * w);
+    if (v->paint.by == COLOUR_KIND || v->paint.by == COLOUR_GROUP)
+        draw_classes(cr, p, v->paint.by == COLOUR_GROUP, 0.03 * w, top + 0.58 * strip, 0.43 * w);
+    else
+        draw_palette(cr, &v->paint, 0.03 * w, top + 0.36 * strip, 0.34 * w, 0.22 * strip);
     if (isinf(v->camera.eye)) draw_scale(cr, v, 0.54 * w, top + 0.42 * strip, 0.2 * w);
     bool keys = o->network || o->contacts;
     snprintf(text, sizeof text, "t = %.4g s", p->t);

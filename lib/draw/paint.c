@@ -14,6 +14,7 @@ const struct colour_meaning colour_meaning[COLOUR_COUNT] = {
     [COLOUR_CONTACTS] = { .name = "contacts", .unit = "", .from_zero = true, .given = true },
     [COLOUR_FORCE] = { .name = "force", .unit = "N", .from_zero = true, .given = true },
     [COLOUR_VALUE] = { .name = "value", .unit = "", .given = true },
+    [COLOUR_GROUP] = { .name = "group", .unit = "", .classes = true },
 };
 
 /* Ten colours that are easy to tell apart [Tableau 10] */
@@ -113,9 +114,16 @@ void paint_range(struct paint *p, const struct packing *k)
     }
 }
 
+struct rgb paint_kind(int32_t kind)
+{
+    return rgb_of(ten[kind % 10]);
+}
+
 struct rgb paint_body(const struct paint *p, const struct packing *k, int64_t i)
 {
-    if (p->by == COLOUR_KIND) return rgb_of(ten[k->kind[i] % 10]);
+    if (p->by == COLOUR_KIND) return paint_kind(k->kind[i]);
+    if (p->by == COLOUR_GROUP)
+        return k->group && k->group[i] ? paint_kind(k->group[i] - 1) : rgb_of(0xb8b8b8);
     if (p->by == COLOUR_ID) return rgb_of(ten[(uint32_t)k->id[i] % 10]);
     double x = palette_value(p, k, i), t = (x - p->lo) / (p->hi - p->lo);
     if (isnan(x)) return rgb_of(0xb8b8b8);

@@ -15,6 +15,7 @@ enum colour {
     COLOUR_CONTACTS, /* that push it */
     COLOUR_FORCE,    /* the sum of its normal forces */
     COLOUR_VALUE,    /* a number for each body, from elsewhere */
+    COLOUR_GROUP,    /* the name of its group */
     COLOUR_COUNT
 };
 
@@ -52,6 +53,8 @@ void paint_init(struct paint *p, enum colour by, bool plain);
 void paint_range(struct paint *p, const struct packing *packing);
 /* The colour of body i, without marks */
 struct rgb paint_body(const struct paint *p, const struct packing *packing, int64_t i);
+/* That of a kind, where colours are kinds */
+struct rgb paint_kind(int32_t kind);
 /* The colour with marks, at a point in the body's axes: of a ball a unit vector, of a disc within
    the unit circle. own: paint_body() of it. */
 struct rgb paint_ball(const struct paint *p, struct rgb own, vec3 point);

@@ -112,8 +112,11 @@ static void draw_ground(struct band *b, const struct raster *s, int i)
     }
 }
 
-static void draw_pane(struct band *b, const struct raster *s, const struct pane *p)
+/* Pane i: one that is solid hides what is behind it, one of glass veils it. */
+static void draw_pane(struct band *b, const struct raster *s, int64_t i)
 {
+    const struct pane *p = &s->pane[i];
+    const bool solid = p->own.r >= 0;
     const double *side = s->cutting.side;
     int y0 = band_clamp(ceil(fmin(p->y[0], fmin(p->y[1], p->y[2])) - 0.5), b->y0, b->y1);
     int y1 = band_clamp(ceil(fmax(p->y[0], fmax(p->y[1], p->y[2])) - 0.5), b->y0, b->y1);
@@ -123,9 +126,14 @@ static void draw_pane(struct band *b, const struct raster *s, const struct pane 
         for (row_inside(b, p->x, p->y, 3, y, &x, &end); x < end; x++) {
             double z = p->plane[0] + p->plane[1] * (x + 0.5) + p->plane[2] * at;
             size_t k = band_at(b, x, y);
-            if (!(z > b->z[k])) continue;
+            if (!(solid ? z >= b->z[k] : z > b->z[k])) continue; // solid: also in a floor's place
             if (s->cutting.cuts && side[0] * (x + 0.5) + side[1] * at + side[2] * z + side[3] > 0)
                 continue;
+            if (solid) {
+                b->z[k] = z, b->what[k] = SOLID - i;
+                b->n[k] = (struct normal){ (float)p->n.x, (float)p->n.y, (float)p->n.z };
+                continue;
+            }
             struct veil *v = &b->veil[k];
             v->passes *= 1 - p->part, v->parts += p->part, v->lights += p->part * p->light;
         }
@@ -137,7 +145,8 @@ static double depth_beside(const struct band *b, const struct raster *s, size_t 
                            double y)
 {
     if (b->what[k] > GROUND) return b->z[k];
-    const double *plane = s->ground[GROUND - b->what[k]].plane;
+    const double *plane = b->what[k] <= SOLID ? s->pane[SOLID - b->what[k]].plane
+                                              : s->ground[GROUND - b->what[k]].plane;
     return b->z[k] - plane[1] * x - plane[2] * y;
 }
 
@@ -184,7 +193,10 @@ static void band_draw(struct band *b, const struct raster *s, struct picture *p)
     }
     for (int i = 0; i < s->grounds; i++) draw_ground(b, s, i);
     for (int64_t i = 0; i < b->spots; i++) draw_spot(b, s, b->spot[i]);
-    for (int64_t i = 0; i < s->panes; i++) draw_pane(b, s, &s->pane[i]);
+    for (int64_t i = 0; i < s->panes; i++)
+        if (s->pane[i].own.r >= 0) draw_pane(b, s, i);
+    for (int64_t i = 0; i < s->panes; i++)
+        if (s->pane[i].own.r < 0) draw_pane(b, s, i);
     for (int i = 0; i < s->edges; i++) draw_edge(b, s, &s->edge[i]);
     shade_normals(b, s);
     shade_near(b, s);

@@ -7,7 +7,7 @@ void shade_normals(struct band *b, const struct raster *s)
         for (int x = 0; x < b->width; x++) {
             size_t k = band_at(b, x, y);
             struct normal *n = &b->n[k];
-            if (b->what[k] == NOTHING) continue;
+            if (b->what[k] == NOTHING || b->what[k] <= SOLID) continue; // of these it is there
             if (b->what[k] <= GROUND) {
                 vec3 g = s->ground[GROUND - b->what[k]].n;
                 *n = (struct normal){ (float)g.x, (float)g.y, (float)g.z };
@@ -125,6 +125,16 @@ static vec3 camera_to_body(struct turn *t, const struct raster *s, int64_t body,
     return v3_axpy(v3_axpy(v3_scale(x, t->x), y, t->y), z, t->z);
 }
 
+/* A solid facet: as a ball is lit, without a reflection, which would make it flicker where it turns */
+static struct rgb solid_light(const struct band *b, const struct raster *s, size_t k)
+{
+    struct normal n = b->n[k];
+    double lambert = fmax(0, n.x * lamp.x + n.y * lamp.y + n.z * lamp.z);
+    double open = 1 / (1 + 2 * b->dark[k]);
+    double light = open * (0.40 + 0.16 * fmax(0, -n.y)) + sqrt(open) * 0.60 * lambert;
+    return scaled(s->pane[SOLID - b->what[k]].own, (float)light, 0);
+}
+
 static struct rgb ball_light(const struct band *b, const struct raster *s, size_t k, struct turn *t)
 {
     const struct spot *o = &s->spot[b->what[k]];
@@ -183,6 +193,7 @@ static struct rgb sample(const struct band *b, const struct raster *s, int x, in
     size_t k = band_at(b, x, y);
     int64_t what = b->what[k];
     struct rgb c = what == NOTHING  ? s->background
+                   : what <= SOLID  ? solid_light(b, s, k)
                    : what <= GROUND ? ground_shown(b, s, k, x + 0.5, y + 0.5)
                    : s->flat        ? disc_light(s, &s->spot[what], b->n[k].x, x + 0.5, y + 0.5, t)
                                     : ball_light(b, s, k, t);

@@ -325,6 +325,8 @@ static bool place_pane(struct pane *g, const struct view *v, const struct facet 
     if (fabs(across.z) < 1e-6) return false; // seen edgewise, it covers no sample
     g->plane[1] = -across.x / across.z, g->plane[2] = -across.y / across.z;
     g->plane[0] = at[0].z - g->plane[1] * at[0].x - g->plane[2] * at[0].y;
+    double to = n.z < 0 ? -1 : 1; // the side that is seen
+    g->n = v3(to * n.x, -to * n.y, to * n.z), g->own = f->own;
     g->part = glass_part(n.z);
     g->light = (float)(0.75 + 0.25 * fabs(n.z));
     return true;
@@ -335,8 +337,8 @@ static int place_panes(struct raster *s, const struct view *v, const struct pack
     struct glass glass;
     struct why why = { 0 };
     const struct extent r = { v3_add(v->region.lo, v->moved), v3_add(v->region.hi, v->moved) };
-    if (!v->glass) return 0;
-    if (glass_init(&glass, p, &r, v->camera.toward, &why)) return -1;
+    if (!v->glass && !v->solid) return 0;
+    if (glass_init(&glass, p, &r, v->camera.toward, v->solid, v->glass, &why)) return -1;
     s->pane = malloc((size_t)(glass.facets + 1) * sizeof *s->pane);
     for (int64_t i = 0; s->pane && i < glass.facets; i++)
         s->panes += place_pane(&s->pane[s->panes], v, &glass.facet[i]);

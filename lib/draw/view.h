@@ -13,6 +13,7 @@
 #include "draw/camera.h"
 #include "draw/paint.h"
 #include "draw/picture.h"
+#include "draw/solid.h"
 #include "draw/walls.h"
 
 struct view {
@@ -21,14 +22,15 @@ struct view {
     bool cuts;                 /* what lies beyond cut . x = cut_at (m) is cut away */
     vec3 cut;                  /* unit vector */
     double cut_at;
-    bool strays;       /* bodies far from all others count too in what the picture shows */
-    bool follows;      /* a body stays where it is in the picture: */
-    int32_t follow;    /* its id */
-    bool glass;        /* boundaries are half-transparent, not lines alone [draw/glass.h] */
-    float pale;        /* 0 to 1: how much bodies are mixed with the background */
-    int width, height; /* pixels; 0: chosen */
-    int samples;       /* a pixel is the mean of samples x samples */
-    int threads;       /* the picture does not depend on them */
+    bool strays;               /* bodies far from all others count too in what the picture shows */
+    bool follows;              /* a body stays where it is in the picture: */
+    int32_t follow;            /* its id */
+    bool glass;                /* boundaries are half-transparent, not lines alone [draw/glass.h] */
+    const struct solid *solid; /* boundaries that are solid instead; NULL: none */
+    float pale;                /* 0 to 1: how much bodies are mixed with the background */
+    int width, height;         /* pixels; 0: chosen */
+    int samples;               /* a pixel is the mean of samples x samples */
+    int threads;               /* the picture does not depend on them */
     struct rgb background;
     struct paint paint;
     bool

@@ -16,6 +16,7 @@ struct export_frame {
     const struct contacts *contacts; /* NULL: there are none in the document */
     int detail;                      /* of balls made of triangles: 20 * 4^detail of them */
     void **kept;                     /* what a format keeps from moment to moment of its file */
+    const char *only; /* names of boundaries, bodies and contacts that are wanted; NULL: all */
     void (*tell)(int64_t done, int64_t of); /* how far it is, for who looks on; NULL: nobody does */
 };
 

@@ -2,28 +2,34 @@
  * export/sheet_boundary.c: boundaries as polygons, in the plane as lines, at the moment's time. A plane
  * is infinite: it is cut off where the region of the grains ends, and by the other planes.
  */
+#include "bodies/chosen.h"
+#include "bodies/face_of.h"
 #include "draw/outline.h"
 #include "draw/walls.h"
 #include "export/sheet.h"
 
+#include <math.h>
 #include <stdlib.h>
 
-/* Which boundary each cell is of */
+/* Which boundary each cell is of, and which of its faces */
 struct owners {
-    int32_t *of;
+    struct owner {
+        int32_t boundary, face;
+    } * of;
     int64_t room;
+    struct chosen chosen; /* boundaries that are wanted */
 };
 
-static int add_cell(struct sheet *s, struct owners *o, int32_t boundary, int corners,
+static int add_cell(struct sheet *s, struct owners *o, struct owner of, int corners,
                     const vec3 *corner, struct why *why)
 {
     if (!o->of || s->cells == o->room) {
         int64_t room = 2 * o->room + 64;
-        int32_t *of = realloc(o->of, (size_t)room * sizeof *of);
-        if (!of) return why_set(why, EX_SOFTWARE, "no memory for the boundaries");
-        o->of = of, o->room = room;
+        struct owner *more = realloc(o->of, (size_t)room * sizeof *more);
+        if (!more) return why_set(why, EX_SOFTWARE, "no memory for the boundaries");
+        o->of = more, o->room = room;
     }
-    o->of[s->cells] = boundary;
+    o->of[s->cells] = of;
     return sheet_add(s, corners, corner, why);
 }
 
@@ -33,7 +39,9 @@ static int add_planes(struct sheet *s, struct owners *o, const struct packing *p
     vec3 corner[WALLS_CORNERS];
     for (int32_t i = 0; i < p->walls && i < WALLS_PANELS; i++) {
         int corners = walls_polygon(p, i, region, corner);
-        if (corners >= 2 && add_cell(s, o, i, corners, corner, why)) return why->status;
+        if (corners >= 2 && chosen_wall(&o->chosen, p, i) &&
+            add_cell(s, o, (struct owner){ i, 0 }, corners, corner, why))
+            return why->status;
     }
     return 0;
 }
@@ -43,10 +51,16 @@ static int add_outlines(struct sheet *s, struct owners *o, const struct packing 
 {
     struct outline line;
     if (outline_init(&line, p, v3_norm(v3_sub(region->hi, region->lo)), why)) return why->status;
-    for (int64_t i = 0; p->dim == 3 && i < line.triangles && !why->status; i++)
-        add_cell(s, o, line.triangle[i].boundary, 3, line.triangle[i].corner, why);
-    for (int64_t i = 0; p->dim == 2 && i < line.lines && !why->status; i++)
-        add_cell(s, o, line.line[i].boundary, 2, line.line[i].end, why);
+    for (int64_t i = 0; p->dim == 3 && i < line.triangles && !why->status; i++) {
+        const struct owner of = { line.triangle[i].boundary, line.triangle[i].face };
+        if (chosen_face(&o->chosen, p, of.boundary, of.face))
+            add_cell(s, o, of, 3, line.triangle[i].corner, why);
+    }
+    for (int64_t i = 0; p->dim == 2 && i < line.lines && !why->status; i++) {
+        const struct owner of = { line.line[i].boundary, line.line[i].face };
+        if (chosen_face(&o->chosen, p, of.boundary, of.face))
+            add_cell(s, o, of, 2, line.line[i].end, why);
+    }
     outline_free(&line);
     return why->status;
 }
@@ -64,12 +78,75 @@ static int add_columns(struct sheet *s, const struct owners *o, const struct pac
     double *v = sheet_real(s, "velocity", "xyz", why);
     if (why->status) return why->status;
     for (int64_t k = 0; o->of && k < s->cells; k++) {
-        const struct wall *w = &p->wall[o->of[k]];
+        const struct wall *w = &p->wall[o->of[k].boundary];
         vec3 x = wall_at(p, w, p->t);
-        number[k] = o->of[k], kind[k] = w->kind;
+        number[k] = o->of[k].boundary, kind[k] = w->kind;
         put(point, k, x), put(n, k, wall_normal(p, w, p->t)), put(v, k, wall_velocity(p, w, x));
     }
     return 0;
+}
+
+/* Of solved contacts: those on each cell's face, and their forces (N) on it. A face of several cells, a cylinder or a
+   sphere, has them in each. */
+static int add_contacts(struct sheet *s, const struct owners *o, const struct export_frame *m,
+                        const struct wall_faces *faces, struct why *why)
+{
+    const struct packing *p = m->packing;
+    const struct contacts *t = m->contacts;
+    int32_t *count = sheet_whole(s, "contacts", "", why);
+    double *force = sheet_real(s, "contact_force", "xyz", why);
+    vec3 *sum = calloc((size_t)faces->n + 1, sizeof *sum);
+    int32_t *pushes = calloc((size_t)faces->n + 1, sizeof *pushes);
+    if (!sum || !pushes) why_set(why, EX_SOFTWARE, "no memory for the forces on boundaries");
+    for (int64_t i = 0; !why->status && i < t->n && t->c[i].a < 0; i++) {
+        int32_t k = faces->first[-1 - t->c[i].a] + face_of_contact(faces, p, &t->c[i], 0);
+        sum[k] = v3_axpy(sum[k], -1 / p->dt, contact_in_space(&t->c[i], t->found[i].r));
+        pushes[k] += t->found[i].r[0] > 0;
+    }
+    for (int64_t k = 0; !why->status && o->of && k < s->cells; k++) {
+        int32_t face = faces->first[o->of[k].boundary] + o->of[k].face;
+        count[k] = pushes[face], put(force, k, sum[face]);
+    }
+    free(sum), free(pushes);
+    return why->status;
+}
+
+/* Of the sums over steps since they began [bodies/sums.h]: mean force (N) and pressure (Pa), work of friction and
+   normal force by way (J), volume worn away (m^3; 0 where the wall has no coefficient); nan without an area */
+static int add_sums(struct sheet *s, const struct owners *o, const struct packing *p,
+                    const struct wall_faces *faces, struct why *why)
+{
+    const double span = p->t - p->sums.since, by = span > 0 ? 1 / span : NAN;
+    double *force = sheet_real(s, "mean_force", "xyz", why);
+    double *pressure = sheet_real(s, "mean_pressure", "", why);
+    double *friction = sheet_real(s, "friction_work", "", why),
+           *rub = sheet_real(s, "rub", "", why);
+    double *wear = sheet_real(s, "wear", "", why);
+    for (int64_t k = 0; !why->status && o->of && k < s->cells; k++) {
+        const struct owner of = o->of[k];
+        const struct face_sums *x = &p->sums.face[faces->first[of.boundary] + of.face];
+        double area = face_of_area(p, of.boundary, of.face);
+        put(force, k, v3_scale(by, x->impulse));
+        pressure[k] = isfinite(area) ? by * x->normal / area : NAN;
+        friction[k] = x->friction, rub[k] = x->rub, wear[k] = p->wall[of.boundary].wear * x->rub;
+    }
+    return why->status;
+}
+
+static int add_forces(struct sheet *s, const struct owners *o, const struct export_frame *m,
+                      struct why *why)
+{
+    const struct packing *p = m->packing;
+    bool solved = m->contacts && m->contacts->found;
+    struct wall_faces faces;
+    if (!solved && !p->sums.n) return 0;
+    if (face_of_init(&faces, p, solved, why)) return why->status;
+    int32_t *face = sheet_whole(s, "face", "", why);
+    for (int64_t k = 0; !why->status && o->of && k < s->cells; k++) face[k] = o->of[k].face;
+    if (!why->status && solved) add_contacts(s, o, m, &faces, why);
+    if (!why->status && p->sums.n) add_sums(s, o, p, &faces, why);
+    wall_faces_free(&faces);
+    return why->status;
 }
 
 int sheet_boundary(struct sheet *s, const struct export_frame *m, struct why *why)
@@ -78,9 +155,10 @@ int sheet_boundary(struct sheet *s, const struct export_frame *m, struct why *wh
     struct extent region = { 0 };
     struct owners o = { 0 };
     s->shape = p->dim == 2 ? SHEET_LINE : SHEET_POLYGON;
+    if (chosen_init(&o.chosen, p, "--only", m->only, why)) return why->status;
     if (region_of(&region, p) && !add_planes(s, &o, p, &region, why))
         add_outlines(s, &o, p, &region, why);
-    if (!why->status) add_columns(s, &o, p, why);
-    free(o.of);
+    if (!why->status && !add_columns(s, &o, p, why)) add_forces(s, &o, m, why);
+    free(o.of), chosen_free(&o.chosen);
     return why->status;
 }

@@ -51,6 +51,28 @@ static void add_columns(struct sheet *s, const int32_t *of, const struct packing
     }
 }
 
+/* Of solved contacts: how many push each cell's grain, and the sum of their forces on it (N) */
+static void add_contacts(struct sheet *s, const int32_t *of, const struct export_frame *m,
+                         struct why *why)
+{
+    const struct packing *p = m->packing;
+    const struct contacts *t = m->contacts;
+    int32_t *count = sheet_whole(s, "contacts", "", why);
+    double *force = sheet_real(s, "contact_force", "xyz", why);
+    vec3 *sum = calloc((size_t)p->n + 1, sizeof *sum);
+    int32_t *pushes = calloc((size_t)p->n + 1, sizeof *pushes);
+    if (!sum || !pushes) why_set(why, EX_SOFTWARE, "no memory for the forces on grains");
+    for (int64_t i = 0; !why->status && i < t->n; i++) {
+        const struct contact *c = &t->c[i];
+        vec3 f = v3_scale(1 / p->dt, contact_in_space(c, t->found[i].r));
+        sum[c->b] = v3_add(sum[c->b], f), pushes[c->b] += t->found[i].r[0] > 0;
+        if (c->a >= 0) sum[c->a] = v3_sub(sum[c->a], f), pushes[c->a] += t->found[i].r[0] > 0;
+    }
+    for (int64_t k = 0; !why->status && of && k < s->cells; k++)
+        count[k] = pushes[of[k]], put(force, k, sum[of[k]]);
+    free(sum), free(pushes);
+}
+
 int sheet_surfaces(struct sheet *s, const struct export_frame *m, struct why *why)
 {
     const struct packing *p = m->packing;
@@ -61,6 +83,7 @@ int sheet_surfaces(struct sheet *s, const struct export_frame *m, struct why *wh
     for (c.grain = 0; c.grain < p->n && !why->status; c.grain++)
         if (packing_shape(p, c.grain)) facets_of(&f, p, c.grain, add_cell, &c);
     if (!why->status) add_columns(s, c.of, p, why);
+    if (!why->status && m->contacts && m->contacts->found) add_contacts(s, c.of, m, why);
     facets_free(&f);
     free(c.of);
     return why->status;

@@ -61,7 +61,9 @@ struct wall {
     int32_t first_element, elements; /* of the packing's mesh */
     int32_t first_drive, drives;
     int32_t first_push, pushes; /* what the force of its load is in time, besides its constant */
-    double until;               /* s: the packing's time at which it vanishes; infinite: never */
+    double
+        wear; /* 1/Pa: Archard's coefficient, volume worn away a work of normal force times way; 0: none */
+    double until; /* s: the packing's time at which it vanishes; infinite: never */
 };
 
 /* A plane that is there for ever, at rest */

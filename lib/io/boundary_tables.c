@@ -112,6 +112,8 @@ int boundary_tables_read(struct source *r, int64_t k, struct packing *p, struct 
          table_read_columns(r, body, "", 0, RECORDS(layout_boundary, n, p->wall), why)) ||
         (source_has(r, BOUNDARY "/body/weld") &&
          table_read_columns(r, body, "", 0, RECORDS(layout_weld, n, p->wall), why)) ||
+        (source_has(r, BOUNDARY "/body/wear") &&
+         table_read_columns(r, body, "", 0, RECORDS(layout_wear, n, p->wall), why)) ||
         read_loads(r, BOUNDARY "/load", k, p, why) || read_drives(r, p, why) ||
         read_mesh(r, p, why))
         return why->status;
@@ -132,6 +134,13 @@ static bool any_welds(const struct packing *p)
 {
     for (int32_t w = 0; w < p->walls; w++)
         if (p->wall[w].weld > 0) return true;
+    return false;
+}
+
+static bool any_wear(const struct packing *p)
+{
+    for (int32_t w = 0; w < p->walls; w++)
+        if (p->wall[w].wear > 0) return true;
     return false;
 }
 
@@ -217,6 +226,8 @@ int boundary_tables_write_static(struct table_write *s, const struct packing *p,
           table_write_columns(s, body, "", RECORDS(layout_boundary, p->walls, p->wall), 0, why)) &&
         !(any_welds(p) &&
           table_write_columns(s, body, "", RECORDS(layout_weld, p->walls, p->wall), 0, why)) &&
+        !(any_wear(p) &&
+          table_write_columns(s, body, "", RECORDS(layout_wear, p->walls, p->wall), 0, why)) &&
         !write_drives(s, p, why) && !write_mesh(s, p, why) && any_loads(p) &&
         !table_write_columns(s, BOUNDARY "/load", "", RECORDS(layout_loads, p->walls, p->wall), 0,
                              why) &&

@@ -4,10 +4,12 @@
 #include "io/cell_tables.h"
 #include "io/distributed.h"
 #include "io/flow_tables.h"
+#include "io/name_tables.h"
 #include "io/outside_tables.h"
 #include "io/pair_law_tables.h"
 #include "io/roster.h"
 #include "io/shape_tables.h"
+#include "io/sum_tables.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -233,7 +235,8 @@ static int read_settings(struct frame_read *r, int64_t k, int64_t n, struct pack
         pair_law_tables_read(r->source, k, p, why) || read_clock(r, k, p, why) ||
         cell_tables_read(r->source, k, r->repeats, p, why))
         return why->status;
-    if (flow_tables_read_numbers(r->source, p, why) || outside_tables_read(r->source, p, why))
+    if (flow_tables_read_numbers(r->source, p, why) || outside_tables_read(r->source, p, why) ||
+        name_tables_read(r->source, p, why) || sum_tables_read(r->source, k, p, why))
         return why->status;
     return alloc_optional(r, p, why);
 }

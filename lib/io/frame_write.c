@@ -8,11 +8,13 @@
 #include "io/contact_rows.h"
 #include "io/flow_tables.h"
 #include "io/memory_rows.h"
+#include "io/name_tables.h"
 #include "io/outside_tables.h"
 #include "io/pair_law_tables.h"
 #include "io/report_rows.h"
 #include "io/roster.h"
 #include "io/shape_tables.h"
+#include "io/sum_tables.h"
 #include "io/unknown.h"
 
 #include <stdio.h>
@@ -76,7 +78,8 @@ static int write_material(hid_t file, const struct packing *p, struct why *why)
 static int write_bodies(struct table_write *s, const struct packing *p, struct why *why)
 {
     if (!s->roster && table_write_bodies(s, false, p, why)) return why->status;
-    return boundary_tables_write_static(s, p, why);
+    if (boundary_tables_write_static(s, p, why)) return why->status;
+    return sum_tables_write_static(s, p, why);
 }
 
 /* ---- what belongs to one frame ---- */
@@ -98,11 +101,12 @@ static int write_motion(struct table_write *s, const struct packing *p, struct w
 int frame_write_static(struct table_write *s, const struct frame *f, struct why *why)
 {
     if (write_parameters(s->file, f, why)) return why->status;
-    if (f->packed && (write_material(s->file, &f->packing, why) ||
-                      shape_tables_write(s->file, &f->packing, why) ||
-                      pair_law_tables_write_static(s->file, &f->packing, why) ||
-                      cell_tables_write_box(s->file, &f->packing.cell, why) ||
-                      write_bodies(s, &f->packing, why)))
+    if (f->packed &&
+        (write_material(s->file, &f->packing, why) ||
+         shape_tables_write(s->file, &f->packing, why) || name_tables_write(s, &f->packing, why) ||
+         pair_law_tables_write_static(s->file, &f->packing, why) ||
+         cell_tables_write_box(s->file, &f->packing.cell, why) ||
+         write_bodies(s, &f->packing, why)))
         return why->status;
     return unknown_write(f->unknown, s->file, f->stale && !f->foreign, why);
 }
@@ -153,7 +157,8 @@ int frame_write_moment(struct table_write *s, const struct frame *f, struct why 
         return why->status;
     if (f->packed &&
         (boundary_tables_write(s, &f->packing, why) || pair_law_tables_write(s, &f->packing, why) ||
-         memory_rows_write(s, &f->packing, why) || outside_tables_write(s, f, why)))
+         memory_rows_write(s, &f->packing, why) || sum_tables_write(s, &f->packing, why) ||
+         outside_tables_write(s, f, why)))
         return why->status;
     if (f->packed && f->detected && contact_rows_write(s, f, why)) return why->status;
     if (!f->reported || report_rows_write(s, &f->report, why)) return why->status;

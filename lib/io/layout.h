@@ -43,11 +43,24 @@ static const struct column layout_weld[] = {
     { "weld", "m", COLUMN_F64, 1, offsetof(struct wall, weld) },
     { 0 },
 };
+/* The same where any has a coefficient of wear */
+static const struct column layout_wear[] = {
+    { "wear", "Pa-1", COLUMN_F64, 1, offsetof(struct wall, wear) },
+    { 0 },
+};
 static const struct column layout_plane[] = {
     { "point", "m", COLUMN_F64, 3, offsetof(struct wall, x) },
     { "normal", "1", COLUMN_F64, 3, offsetof(struct wall, n) },
     { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct wall, v) },
     { "species", "1", COLUMN_I32, 1, offsetof(struct wall, kind) },
+    { 0 },
+};
+
+/* /nsd/names/NAME [R][width], where any boundary has a name: members of struct named */
+static const struct column layout_names[] = {
+    { "name", "1", COLUMN_I32, 1, offsetof(struct named, name) },
+    { "boundary", "1", COLUMN_I32, 1, offsetof(struct named, boundary) },
+    { "faces", "1", COLUMN_I32, 2, offsetof(struct named, first) },
     { 0 },
 };
 
@@ -89,6 +102,18 @@ static const struct column layout_drive[] = {
     { "until", "s", COLUMN_F64, 1, offsetof(struct drive, until) },
     { "clock", "s", COLUMN_F64, 1, offsetof(struct drive, clock) },
     { "rows", "1", COLUMN_I32, 2, offsetof(struct drive, first) },
+    { 0 },
+};
+
+/* /particles/boundary/sums/NAME/value [F][faces][width] where they are kept: members of struct face_sums */
+static const struct column layout_sums[] = {
+    { "impulse", "N s", COLUMN_F64, 3, offsetof(struct face_sums, impulse) },
+    { "moment", "N m s", COLUMN_F64, 3, offsetof(struct face_sums, moment) },
+    { "normal", "N s", COLUMN_F64, 1, offsetof(struct face_sums, normal) },
+    { "tangential", "N s", COLUMN_F64, 1, offsetof(struct face_sums, tangential) },
+    { "work", "J", COLUMN_F64, 1, offsetof(struct face_sums, work) },
+    { "friction", "J", COLUMN_F64, 1, offsetof(struct face_sums, friction) },
+    { "rub", "J", COLUMN_F64, 1, offsetof(struct face_sums, rub) },
     { 0 },
 };
 

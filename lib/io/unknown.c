@@ -28,16 +28,16 @@ struct unknown {
 /* Groups whose members are looked through, and the names in them that nsd uses */
 static const struct {
     const char *group;
-    const char *known[14];
+    const char *known[18];
 } looked_through[] = {
     { "", { "h5md", "nsd", "particles", "walls", "contacts", "observables", "solution" } },
     { "/nsd",
       { "history", "scene", "material", "solver", "account", "flow", "cell", "shape", "law",
-        "bonds", "memory", "time_step", "outside" } },
+        "bonds", "memory", "time_step", "outside", "names" } },
     { "/particles", { "all", "boundary" } },
     { "/particles/boundary",
       { "body", "load", "drive", "push", "mesh", "position", "orientation", "velocity",
-        "angular_velocity", "step", "time" } },
+        "angular_velocity", "step", "time", "sums" } },
     { "/particles/all", { "box" } }, // and body_columns[]
     { "/walls", { "plane", "load" } },
     { "/observables", { "solver" } },

@@ -99,13 +99,32 @@ static int set_bins(struct asked *a, const char *name, const char *text, struct 
     return 0;
 }
 
+static int set_only(struct asked *a, const char *name, const char *text, struct why *why)
+{
+    size_t n = strlen(text);
+    if (!n || n >= sizeof a->only)
+        return why_set(why, EX_USAGE, "--%s: wants names, at most %zu bytes", name,
+                       sizeof a->only - 1);
+    memcpy(a->only, text, n + 1);
+    return 0;
+}
+
+static int set_wear(struct asked *a, const char *name, const char *text, struct why *why)
+{
+    double x = 0;
+    if (set_number(&x, name, text, why)) return why->status;
+    if (!isfinite(x)) return why_set(why, EX_USAGE, "--%s: %s must be finite", name, text);
+    a->wear = x;
+    return 0;
+}
+
 static const struct {
     const char *name;
     int (*set)(struct asked *, const char *name, const char *text, struct why *);
 } settings[] = {
     { "box", set_box },           { "layers", set_layers }, { "point", set_point },
     { "plane", set_plane },       { "radius", set_radius }, { "bins", set_bins },
-    { "distance", set_distance },
+    { "distance", set_distance }, { "only", set_only },     { "wear", set_wear },
 };
 enum { SETTINGS = sizeof settings / sizeof settings[0] };
 

@@ -1,9 +1,12 @@
 /* measure/boundaries.c: what pushes boundaries. */
+#include "bodies/chosen.h"
+#include "bodies/face_of.h"
 #include "measure/branch.h"
 #include "measure/measures.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* What bodies do to a boundary, or to all fixed bodies */
 struct push {
@@ -19,8 +22,16 @@ static const struct quantity quantities[] = {
     { "torque", "N m", 3, "of that about --point" },
     { "normal", "N", 1, "sum of normal forces" },
     { "tangential", "N", 1, "sum of tangential forces, each its size" },
+    { "name", "name", 1, "its name" },
     { 0 },
 };
+
+/* Row of the boundary's name; NaN: it has none */
+static double name_row(const struct packing *p, int32_t wall)
+{
+    const char *name = names_of_wall(&p->names, wall);
+    return name ? names_find(&p->names, name, strlen(name)) : NAN;
+}
 
 static void add(struct push *to, const struct snapshot *s, int64_t i, double sign)
 {
@@ -38,10 +49,16 @@ static int boundaries_rows(struct table *t, const struct snapshot *s, struct why
 {
     const struct packing *p = s->p;
     bool fixed = false;
+    struct chosen chosen;
+    if (chosen_init(&chosen, p, "--only", *s->asked->only ? s->asked->only : NULL, why))
+        return why->status;
     for (int64_t i = 0; i < p->n; i++) fixed = fixed || p->mass[i] == 0;
     // boundary w at [w], fixed bodies behind them
     struct push *push = calloc((size_t)p->walls + 1, sizeof *push);
-    if (!push) return why_set(why, EX_SOFTWARE, "no memory for the forces on boundaries");
+    if (!push) {
+        chosen_free(&chosen);
+        return why_set(why, EX_SOFTWARE, "no memory for the forces on boundaries");
+    }
     for (int64_t i = 0; i < s->s->n; i++) {
         const struct contact *c = &s->s->c[i];
         if (c->a < 0)
@@ -51,13 +68,15 @@ static int boundaries_rows(struct table *t, const struct snapshot *s, struct why
         if (p->mass[c->b] == 0) add(&push[p->walls], s, i, 1);
     }
     for (int32_t w = 0; w < p->walls + fixed; w++) {
+        if (w < p->walls ? !chosen_wall(&chosen, p, w) : chosen.any) continue;
         double *at = table_row(t, why);
         if (!at) break;
         put(&at, w < p->walls ? w : -1), put(&at, (double)push[w].contacts);
         put_vec(&at, push[w].force), put_vec(&at, push[w].torque);
         put(&at, push[w].normal), put(&at, push[w].tangential);
+        put(&at, w < p->walls ? name_row(p, w) : NAN);
     }
-    free(push);
+    free(push), chosen_free(&chosen);
     return why->status;
 }
 
@@ -68,4 +87,68 @@ const struct measure measure_boundaries = {
     .list = true,
     .needs = NEEDS_FORCES,
     .rows = boundaries_rows,
+};
+
+/* ---- by name ---- */
+
+static const struct quantity of_names[] = {
+    { "name", "name", 1, "of walls, or parts of them" },
+    { "contacts", "1", 1, "that push or pull" },
+    { "force", "N", 3, "of the bodies on all that has the name" },
+    { "torque", "N m", 3, "of that about --point" },
+    { "normal", "N", 1, "sum of normal forces" },
+    { "tangential", "N", 1, "sum of tangential forces, each its size" },
+    { 0 },
+};
+
+static bool is_named(const struct names *n, int32_t name, int32_t wall, int32_t face)
+{
+    for (int32_t k = 0; k < n->rows; k++) {
+        const struct named *r = &n->row[k];
+        if (r->name != name || r->boundary != wall) continue;
+        if (!r->count || (face >= r->first && face < r->first + r->count)) return true;
+    }
+    return false;
+}
+
+static int names_rows(struct table *t, const struct snapshot *s, struct why *why)
+{
+    const struct packing *p = s->p;
+    struct chosen chosen = { 0 };
+    struct wall_faces faces = { 0 };
+    struct push *push = calloc((size_t)p->names.n + 1, sizeof *push);
+    bool *any = calloc((size_t)p->names.n + 1, sizeof *any);
+    if (!push || !any) why_set(why, EX_SOFTWARE, "no memory for the forces on boundaries");
+    if (why->status || face_of_init(&faces, p, true, why) ||
+        chosen_init(&chosen, p, "--only", *s->asked->only ? s->asked->only : NULL, why))
+        goto end;
+    if (!p->names.rows) table_null(t, "no wall and no part of one has a name");
+    for (int32_t k = 0; k < p->names.rows; k++) any[p->names.row[k].name] = true;
+    for (int64_t i = 0; i < s->s->n && s->s->c[i].a < 0; i++) {
+        const struct contact *c = &s->s->c[i];
+        int32_t face = face_of_contact(&faces, p, c, 0);
+        for (int32_t k = 0; k < p->names.n; k++)
+            if (any[k] && is_named(&p->names, k, -1 - c->a, face)) add(&push[k], s, i, -1);
+    }
+    for (int32_t k = 0; k < p->names.n; k++) {
+        if (!any[k] || (chosen.any && !chosen.name[k])) continue;
+        double *at = table_row(t, why);
+        if (!at) break;
+        put(&at, k), put(&at, (double)push[k].contacts);
+        put_vec(&at, push[k].force), put_vec(&at, push[k].torque);
+        put(&at, push[k].normal), put(&at, push[k].tangential);
+    }
+end:
+    free(push), free(any);
+    wall_faces_free(&faces), chosen_free(&chosen);
+    return why->status;
+}
+
+const struct measure measure_names = {
+    .name = "names",
+    .help = "forces on walls and parts of them by their names, and their torques",
+    .quantity = of_names,
+    .list = true,
+    .needs = NEEDS_FORCES,
+    .rows = names_rows,
 };

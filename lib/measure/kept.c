@@ -22,6 +22,8 @@ int kept_set(struct kept *k, const struct packing *p, struct why *why)
         body[i] = (struct kept_body){ p->id[i], p->mass[i], kept_place(p, i) };
         sorted = sorted && (!i || body[i - 1].id < body[i].id);
     }
+    sums_free(&k->sums);
+    if (sums_copy(&k->sums, &p->sums, why)) return why->status;
     if (!sorted) qsort(body, (size_t)p->n, sizeof *body, by_id);
     return 0;
 }
@@ -29,6 +31,7 @@ int kept_set(struct kept *k, const struct packing *p, struct why *why)
 void kept_free(struct kept *k)
 {
     free(k->body);
+    sums_free(&k->sums);
     *k = (struct kept){ 0 };
 }
 

@@ -11,9 +11,10 @@ struct kept {
     int64_t n;
     struct kept_body {
         int32_t id;
-        double mass; /* kg */
-        vec3 x;      /* m: unwrapped, where the cell repeats: the way since it was built */
-    } * body;        /* [n] sorted by id */
+        double mass;       /* kg */
+        vec3 x;            /* m: unwrapped, where the cell repeats: the way since it was built */
+    } * body;              /* [n] sorted by id */
+    struct wall_sums sums; /* over steps, of boundaries */
 };
 
 /* k = the packing now, in place of what was kept; all zero to begin with. Returns 0 or EX_SOFTWARE. */

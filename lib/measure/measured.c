@@ -31,7 +31,9 @@ int measured_choose(const struct measure **chosen, const char *names, struct why
 bool measured_remember(const struct measure *const *chosen)
 {
     for (int k = 0; chosen[k]; k++)
-        if (chosen[k]->remembers || chosen[k]->needs == NEEDS_BEFORE) return true;
+        if (chosen[k]->remembers || chosen[k]->needs == NEEDS_BEFORE ||
+            chosen[k]->needs == NEEDS_SUMS)
+            return true;
     return false;
 }
 

@@ -25,6 +25,10 @@ static const struct measure *const measures[] = {
     &measure_flux,
     &measure_grains,
     &measure_strain,
+    &measure_names,
+    &measure_sums,
+    &measure_sums_by_name,
+    &measure_sums_by_face,
     NULL,
 };
 
@@ -44,6 +48,8 @@ const struct measure *measure_named(const char *name, size_t n)
 static const char *lacks(const struct snapshot *s, enum needs needs)
 {
     if (!s->p->n) return "there are no bodies";
+    if (needs == NEEDS_SUMS && !s->p->sums.n)
+        return "the document has no sums over steps: nsd-step --sums keeps them";
     if (needs == NEEDS_BEFORE && !s->before) return "there is no frame before";
     if ((needs == NEEDS_CONTACTS || needs == NEEDS_FORCES) && !s->s)
         return "the document has no contacts: nsd-step --contacts keeps them";
@@ -55,13 +61,18 @@ static const char *lacks(const struct snapshot *s, enum needs needs)
 int measure_run(struct table *t, const struct measure *m, const struct snapshot *s, struct why *why)
 {
     table_init(t, m->quantity);
+    t->names = &s->p->names;
     const char *lack = lacks(s, m->needs);
     if (lack) {
         table_null(t, "%s", lack);
         return 0;
     }
     if (m->rows(t, s, why)) return why->status;
-    for (int64_t i = 0; i < t->rows * t->width; i++)
-        if (!isfinite(t->x[i])) table_null(t, "beyond the range of numbers");
+    const struct quantity *q = m->quantity;
+    for (int k = 0, in = 0; k < t->width; k++, in++) {
+        if (in == q->width) q++, in = 0;
+        for (int64_t i = 0; i < t->rows && !quantity_is_name(q); i++)
+            if (!isfinite(t->x[i * t->width + k])) table_null(t, "beyond the range of numbers");
+    }
     return 0;
 }

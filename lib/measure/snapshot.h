@@ -21,6 +21,8 @@ struct asked {
     vec3 normal;     /* of the plane that is crossed; 0: none is asked for */
     double radius;   /* m: of the disc in it that is crossed; INFINITY: the plane */
     int64_t bins;    /* of histograms */
+    char only[256];  /* names and numbers of walls that measures of them keep to; "": all */
+    double wear;     /* 1/Pa: coefficient of wear; 0: that of each wall */
     double distance; /* m: up to which pairs are counted; 0: three mean diameters */
 };
 

@@ -87,6 +87,24 @@ static void json_value(FILE *out, const double *x, int width)
     fputc(']', out);
 }
 
+/* Names need no escapes [bodies/names.h]. */
+static void print_word(FILE *out, const struct table *t, double x, const char *quote,
+                       const char *none)
+{
+    bool is = t->names && x >= 0 && x < t->names->n;
+    fprintf(out, "%s%s%s", is ? quote : "", is ? t->names->text[(int32_t)x] : none,
+            is ? quote : "");
+}
+
+static void json_quantity(FILE *out, const struct table *t, const struct quantity *q,
+                          const double *x)
+{
+    if (quantity_is_name(q))
+        print_word(out, t, *x, "\"", "null");
+    else
+        json_value(out, x, q->width);
+}
+
 void table_json(FILE *out, const struct table *t, int list)
 {
     int at = 0;
@@ -96,10 +114,10 @@ void table_json(FILE *out, const struct table *t, int list)
     }
     for (const struct quantity *q = t->quantity; q->name; at += q++->width) {
         fprintf(out, "%c\"%s\":", q == t->quantity ? '{' : ',', q->name);
-        if (!list) json_value(out, t->x + at, q->width);
+        if (!list) json_quantity(out, t, q, t->x + at);
         for (int64_t i = 0; list && i < t->rows; i++) {
             fputc(i ? ',' : '[', out);
-            json_value(out, t->x + i * t->width + at, q->width);
+            json_quantity(out, t, q, t->x + i * t->width + at);
         }
         if (list) fputs(t->rows ? "]" : "[]", out);
     }
@@ -119,8 +137,11 @@ void table_names(FILE *out, const struct quantity *quantity, const char *prefix)
 
 void table_numbers(FILE *out, const struct table *t, int64_t row)
 {
-    for (int k = 0; k < t->width; k++) {
+    const struct quantity *q = t->quantity;
+    for (int k = 0, in = 0; k < t->width; k++, in++) {
+        if (in == q->width) q++, in = 0;
+        double x = row < t->rows ? t->x[row * t->width + k] : NAN;
         fputc('\t', out);
-        print_number(out, row < t->rows ? t->x[row * t->width + k] : NAN, "nan");
+        quantity_is_name(q) ? print_word(out, t, x, "", "-") : print_number(out, x, "nan");
     }
 }

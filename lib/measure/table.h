@@ -7,6 +7,7 @@
 
 #include "base/vec.h"
 #include "base/why.h"
+#include "bodies/names.h"
 #include "measure/quantity.h"
 #include "measure/tensor.h"
 
@@ -17,8 +18,9 @@ struct table {
     const struct quantity *quantity; /* up to one without a name */
     int width;                       /* numbers in a row */
     int64_t rows, room;
-    double *x;      /* [rows][width] */
-    char null[200]; /* why there are no numbers, or not all; "" where there are */
+    double *x;                 /* [rows][width] */
+    const struct names *names; /* of words */
+    char null[200];            /* why there are no numbers, or not all; "" where there are */
 };
 
 /* An empty one; the quantities have to last. */

@@ -295,7 +295,7 @@ static bool bounds_impacts(const struct packing *p)
 bool rank_step_scatters(const struct packing *p, const struct step_opt *o)
 {
     return o->order == ORDER_BLOCK && is_shared(p, o) && !p->law && !o->warm &&
-           !packing_varies(p) && !bounds_impacts(p);
+           !packing_varies(p) && !bounds_impacts(p) && !p->sums.n;
 }
 
 /* The pairs here that are contacts, or may be by laws */

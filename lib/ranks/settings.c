@@ -30,6 +30,23 @@ static void take_drives(struct comm *t, struct parcel *o, struct drives *d)
     d->rows = (int32_t)parcel_take_array(t, o, &d->row, sizeof *d->row);
 }
 
+static void put_names(struct comm *t, struct parcel *o, const struct names *names)
+{
+    parcel_put(t, o, &names->n, sizeof names->n);
+    for (int32_t k = 0; k < names->n; k++) put_text(t, o, names->text[k]);
+    parcel_put_array(t, o, names->row, names->rows, sizeof *names->row);
+}
+
+static void take_names(struct comm *t, struct parcel *o, struct names *names)
+{
+    int32_t n;
+    names_free(names);
+    parcel_take(t, o, &n, sizeof n);
+    names->text = comm_new(t, n, sizeof *names->text);
+    for (; names->n < n; names->n++) names->text[names->n] = take_text(t, o);
+    names->rows = (int32_t)parcel_take_array(t, o, &names->row, sizeof *names->row);
+}
+
 static void put_shapes(struct comm *t, struct parcel *o, const struct shapes *list)
 {
     parcel_put(t, o, &list->n, sizeof list->n);
@@ -117,6 +134,7 @@ static void put(struct comm *t, struct parcel *o, const struct packing *p)
     put_drives(t, o, &p->drives), put_drives(t, o, &p->pushes);
     parcel_put_array(t, o, p->mesh.vertex, p->mesh.vertices, sizeof *p->mesh.vertex);
     parcel_put_array(t, o, p->mesh.element, p->mesh.elements, sizeof *p->mesh.element);
+    put_names(t, o, &p->names);
     put_cell(t, o, &p->cell);
     put_shapes(t, o, &p->shapes);
     for (int32_t k = 0; k < p->kinds; k++) put_text(t, o, p->kind_name[k]);
@@ -141,6 +159,7 @@ static void take(struct comm *t, struct parcel *o, struct packing *p)
     take_drives(t, o, &p->drives), take_drives(t, o, &p->pushes);
     p->mesh.vertices = (int32_t)parcel_take_array(t, o, &p->mesh.vertex, sizeof *p->mesh.vertex);
     p->mesh.elements = (int32_t)parcel_take_array(t, o, &p->mesh.element, sizeof *p->mesh.element);
+    take_names(t, o, &p->names);
     take_cell(t, o, &p->cell);
     take_shapes(t, o, &p->shapes, p->dim);
     for (int32_t k = 0; k < p->kinds; k++) free(p->kind_name[k]), p->kind_name[k] = take_text(t, o);

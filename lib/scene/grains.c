@@ -51,6 +51,7 @@ static int add_body(struct grains *out, const struct scene *s, const struct scen
     struct grain g = grain_at(p->x[i], p->radius[i]);
     g.q = p->q[i], g.id = p->id[i];
     g.shape = p->shape ? p->shape[i] : 0;
+    g.group = p->group ? p->group[i] : 0;
     g.has_v = g.has_w = true;
     if (!b->at_rest) g.v = p->v[i], g.w = p->w[i];
     g.weighs = true, g.mass = p->mass[i], g.inertia = p->inertia[i], g.fixed = p->mass[i] == 0;

@@ -17,6 +17,7 @@ struct grain {
     double mass, inertia;             /* kg, kg m^2; 0: not said */
     int32_t kind, id;                 /* -1: not said */
     int32_t shape;                    /* of its document's; 0: a ball */
+    int32_t group;                    /* 1 + row of its document's names; 0: none */
     bool has_v, has_w, fixed, weighs; /* weighs: mass and inertia are said, even where they are 0 */
 };
 

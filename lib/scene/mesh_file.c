@@ -26,15 +26,48 @@ static const struct mesh_format *format_of(const char *name, const char *bytes, 
     return NULL;
 }
 
+/* Faces first .. end-1 of the surface are of this part: each of its names */
+static int give_part(struct scene_files *files, const char *part, int32_t first, int32_t end,
+                     struct why *why)
+{
+    char name[NAME_BYTES + 1];
+    for (const char *at = part, *next; *at; at = next + 1) {
+        next = strchr(at, '\n');
+        snprintf(name, sizeof name, "%.*s", (int)(next - at), at);
+        if (names_give(files->parts, name, files->wall, first, end - first, why)) break;
+    }
+    return why->status;
+}
+
+/* The parts of a surface are named: each run of triangles that are of one. */
+static int give_names(struct scene_files *files, const struct soup *s, struct why *why)
+{
+    if (!s->parts)
+        return why_set(why, EX_DATAERR, "%s: has no groups: \"parts\": [{name, faces}, ...]",
+                       s->name);
+    for (int32_t i = 0, end; i < s->triangles && !why->status; i = end) {
+        for (end = i + 1; end < s->triangles && s->part_of[end] == s->part_of[i];) end++;
+        if (s->part_of[i] >= 0) give_part(files, s->part[s->part_of[i]], i, end, why);
+    }
+    return why->status;
+}
+
 int mesh_bytes_read(struct mesh *to, struct scene_files *files, const char *name, const char *bytes,
                     int64_t n, double scale, int32_t *left_out, struct why *why)
 {
-    struct soup s = { .name = name, .why = why, .work = MESH_WORK_MOST - files->mesh_work };
+    struct soup s = {
+        .name = name, .why = why, .work = MESH_WORK_MOST - files->mesh_work, .now = -1
+    };
     const struct mesh_format *format = format_of(name, bytes, n);
     if (!format)
         return why_set(why, EX_DATAERR, "%s: neither STL, OBJ nor PLY: write it as one of these",
                        name);
-    if (!format->read(&s, bytes, n)) soup_mesh(to, &s, scale, left_out);
+    s.grouped = files->parts != NULL;
+    if (s.grouped && format != &mesh_obj)
+        why_set(why, EX_DATAERR, "%s: only OBJ files have groups: name ranges of faces instead",
+                name);
+    else if (!format->read(&s, bytes, n) && !soup_mesh(to, &s, scale, left_out) && s.grouped)
+        give_names(files, &s, why);
     files->mesh_work = MESH_WORK_MOST - s.work;
     soup_free(&s);
     return why->status;
@@ -104,6 +137,7 @@ int mesh_files_read(struct scene *s, struct scene_files *files, struct why *why)
         struct scene_mesh *m = &s->mesh_file[k];
         struct wall *w = &s->wall[m->wall];
         w->first_element = s->mesh.elements;
+        files->parts = m->groups ? &s->names : NULL, files->wall = m->wall;
         if (mesh_file_read(&s->mesh, files, m->file, m->scale, &m->left_out, why))
             return why->status;
         w->elements = s->mesh.elements - w->first_element;

@@ -4,7 +4,10 @@
  *     v X Y Z          a corner; behind it a weight or a colour may stand
  *     f A B C ...      a polygon of corners: A is A/texture/normal, from 1; -1 is the last one so far
  *
- * Lines, points, names, materials and words unknown are passed over; curves, free-form surfaces and other files
+ *     o NAME           polygons that follow are of this object
+ *     g NAME ...       and in these groups; "default" is none
+ *
+ * Lines, points, materials and words unknown are passed over; curves, free-form surfaces and other files
  * (call) are not: without them the surface has holes. The format has no end: of a file that is cut off between
  * two lines nothing tells.
  */
@@ -60,6 +63,20 @@ static int read_face(struct words *w)
     return soup_polygon(w->soup, corner, n);
 }
 
+/* The names of an object (0), or of groups (1) */
+static int read_names(struct words *w, int which)
+{
+    struct word word;
+    if (!w->soup->grouped) return 0;
+    soup_no_label(w->soup, which);
+    while (words_next(w, &word)) {
+        bool none = word_is(word, "default") || word_is(word, "(null)") || word_is(word, "off");
+        if (!none && soup_label(w->soup, which, word.s, word.n)) return 1;
+        if (!which) break;
+    }
+    return 0;
+}
+
 static const char *const curved[] = { "cstype", "curv", "curv2", "surf", "bzp",
                                       "bsp",    "cdc",  "cdp",   "res",  NULL };
 
@@ -72,6 +89,7 @@ static int read(struct soup *s, const char *bytes, int64_t n)
         if (!words_next(&w, &word)) continue;
         if (word_is(word, "v")                          ? read_corner(&w)
             : word_is(word, "f") || word_is(word, "fo") ? read_face(&w)
+            : word_is(word, "o") || word_is(word, "g")  ? read_names(&w, word_is(word, "g"))
             : word_is(word, "call")
                 ? word_fault(&w, word, "names another file, and no other is read")
                 : is_among(word, curved) &&

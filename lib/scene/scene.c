@@ -22,6 +22,7 @@ void scene_free(struct scene *s)
     shapes_free(&s->shapes);
     free(s->solid);
     drives_free(&s->drives), drives_free(&s->pushes), mesh_free(&s->mesh);
+    names_free(&s->names);
     for (int32_t k = 0; k < s->meshes; k++) free(s->mesh_file[k].file);
     for (int32_t k = 0; k < s->fits; k++) free(s->fit[k].shape);
     free(s->mesh_file), free(s->fit);

@@ -46,6 +46,7 @@
  *   shape NAME [a ball], and then orientation "random" | rotation vector, rad, or an angle where dim is
  *   2 [as described], and in place of a radius, which is that of the ball around it, size SIZE [1]: how
  *   many times as large as described. x is its centre of mass. Not for a table or a document.
+ *   name NAME [none; of a document: as it has them]: that of the group; several groups may have one
  * and for a lattice
  *   box      [the cell, in rows along its edges; else that of the first wall that is a BOX]
  *                                                      may be open only above (the last axis)
@@ -89,7 +90,9 @@
  *   in the plane one of
  *   { segment: [[x, y], [x, y]] }      { polygon: { points: [[x, y], ...], closed } }
  *   { circle: { center, radius, side } }  { arc: { center, radius, along, arc, side } }
- *   with velocity vector [0], kind ["wall"], drives [ DRIVE ], until s, weld m, and all but the box load:
+ *   with name NAME [none], velocity vector [0], kind ["wall"], drives [ DRIVE ], until s, weld m, wear 1/Pa and all
+ *   but the box load. Several walls may have one name. Mesh and polygon may have parts: "groups", of the OBJ file, or
+ *   [ { name: NAME, faces: [first, last] }, ... ], triangles or segments from 0 [bodies/names.h].
  *   Bodies stay on the side that the normal points to; in a box they stay inside.
  *   side inside [that] | outside | both. A boundary may yield to a load, on top of its motion:
  *   { along: vector, mass: kg, force: N [0], speed: m/s [0], travel: m [0] }  free along the vector
@@ -198,6 +201,7 @@ struct scene_bodies {
     double density, mass;            /* kg/m^3 or kg/m^2; kg a body, 0: from the density */
     bool fixed;
     int32_t kind;
+    int32_t group; /* 1 + row of the scene's names; 0: it has no name */
     struct scene_form form;
 };
 
@@ -235,6 +239,7 @@ struct scene_mesh {
     int32_t wall;
     char *file;
     double scale;     /* m a unit of the file */
+    bool groups;      /* the groups of the file are names of parts of the surface */
     int32_t left_out; /* triangles of the file that are not in the mesh */
 };
 
@@ -281,6 +286,7 @@ struct scene {
     struct drives drives; /* of them */
     struct drives pushes; /* of their loads */
     struct mesh mesh;     /* of those that are meshes */
+    struct names names;   /* of walls, parts of them and groups of bodies */
     int32_t meshes;
     struct scene_mesh *mesh_file; /* [meshes] those that are files */
     bool has_walls;               /* else those of the first document are taken */
@@ -313,6 +319,9 @@ struct scene_files {
     int64_t
         mesh_bytes; /* read so far, and comparisons that concave polygons took: one account for all */
     int64_t mesh_work;
+    struct names
+        *parts; /* of the mesh that is read its groups are wanted, for this wall; else NULL */
+    int32_t wall;
     int (*read_mesh)(struct mesh *to, struct scene_files *files, const char *name, double scale,
                      int32_t *left_out, struct why *why);
 };

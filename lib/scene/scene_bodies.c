@@ -49,7 +49,7 @@ static int read_lattice(jnode o, const struct scene *s, bool boxed, struct scene
     int own = 0;
     if (json_node_only(o,
                        "count radius size shape orientation box cells spacing jitter thermal v w "
-                       "kind density mass fixed") ||
+                       "kind density mass fixed name") ||
         (!boxed && !s->cell.given && json_node_need(&o, "box")) ||
         json_node_integer(json_node_key(&o, "count"), 0, INT32_MAX, &b->count) ||
         scene_read_sizes(o, s, &b->form, &b->size) ||
@@ -73,7 +73,7 @@ static int read_random(jnode o, const struct scene *s, bool boxed, struct scene_
 {
     jnode how = json_node_key(&o, "random"), box = json_node_key(&o, "box");
     if (json_node_only(o, "random radius size shape orientation box thermal v w kind density mass "
-                          "fixed") ||
+                          "fixed name") ||
         (!boxed && !s->cell.given && json_node_need(&o, "box")) ||
         scene_read_sizes(o, s, &b->form, &b->size) ||
         json_node_number(json_node_key(&o, "thermal"), J_NOT_NEGATIVE, &b->thermal))
@@ -100,7 +100,7 @@ static int read_random(jnode o, const struct scene *s, bool boxed, struct scene_
 static int read_document(jnode o, struct scene_bodies *b)
 {
     const char *name = NULL;
-    if (json_node_only(o, "document frame at_rest v w kind density mass fixed") ||
+    if (json_node_only(o, "document frame at_rest v w kind density mass fixed name") ||
         json_node_text(json_node_key(&o, "document"), &name) ||
         json_node_integer(json_node_key(&o, "frame"), -1000000000, 1000000000, &b->frame) ||
         json_node_bool(json_node_key(&o, "at_rest"), &b->at_rest))
@@ -145,7 +145,7 @@ static int read_repeats(jnode o, int dim, struct scene_bodies *b)
 static int read_import(jnode o, const struct scene *s, struct scene_bodies *b)
 {
     const char *name = NULL;
-    if (json_node_only(o, "import frame at_rest types repeats v w kind density mass fixed") ||
+    if (json_node_only(o, "import frame at_rest types repeats v w kind density mass fixed name") ||
         json_node_text(json_node_key(&o, "import"), &name) ||
         json_node_integer(json_node_key(&o, "frame"), -1000000000, 1000000000, &b->frame) ||
         json_node_bool(json_node_key(&o, "at_rest"), &b->at_rest) ||
@@ -160,7 +160,7 @@ static int read_one(jnode o, const struct scene *s, struct scene_bodies *b)
 {
     b->count = 1;
     jnode radius = json_node_key(&o, "radius"), size = json_node_key(&o, "size");
-    if (json_node_only(o, "x radius size shape orientation v w kind density mass fixed") ||
+    if (json_node_only(o, "x radius size shape orientation v w kind density mass fixed name") ||
         json_node_vector(json_node_key(&o, "x"), s->dim, &b->x))
         return 1;
     if (radius.json && size.json) return json_node_fault(size, "a radius is given too");
@@ -175,7 +175,7 @@ static int read_one(jnode o, const struct scene *s, struct scene_bodies *b)
 static int read_table(jnode o, struct scene_bodies *b)
 {
     const char *name = NULL;
-    if (json_node_only(o, "file v w kind density mass fixed") ||
+    if (json_node_only(o, "file v w kind density mass fixed name") ||
         json_node_text(json_node_key(&o, "file"), &name))
         return 1;
     b->file = strdup(name);
@@ -195,8 +195,13 @@ int scene_read_mass(const jnode *o, double *density, double *mass)
 }
 
 /* What the bodies of a group have in common */
-static int read_common(jnode o, const struct scene *s, struct scene_bodies *b)
+static int read_common(jnode o, struct scene *s, struct scene_bodies *b)
 {
+    const char *name;
+    if (scene_read_name(json_node_key(&o, "name"), s, &name) ||
+        (name && names_add(&s->names, name, &b->group, o.in->why)))
+        return 1;
+    if (name) b->group++;
     if (json_node_vector(json_node_key(&o, "v"), s->dim, &b->v) ||
         scene_read_spin(json_node_key(&o, "w"), s->dim, &b->w) ||
         scene_read_kind(json_node_key(&o, "kind"), s, &b->kind))
@@ -209,8 +214,7 @@ static int read_common(jnode o, const struct scene *s, struct scene_bodies *b)
            json_node_bool(json_node_key(&o, "fixed"), &b->fixed);
 }
 
-static int read_group(jnode o, const struct scene *s, const struct scene_box *box,
-                      struct scene_bodies *b)
+static int read_group(jnode o, struct scene *s, const struct scene_box *box, struct scene_bodies *b)
 {
     static const enum scene_source from[] = { SCENE_ONE,      SCENE_LATTICE, SCENE_TABLE,
                                               SCENE_DOCUMENT, SCENE_RANDOM,  SCENE_DOCUMENT };

@@ -35,6 +35,7 @@ static int set_body(struct packing *p, int64_t i, const struct scene_bodies *b, 
     p->mass[i] = b->fixed ? 0 : mass, p->inertia[i] = b->fixed ? 0 : inertia;
     p->kind[i] = b->kind;
     if (p->shape) p->shape[i] = b->form.shape;
+    if (p->group) p->group[i] = b->group;
     return 0;
 }
 
@@ -90,6 +91,10 @@ static int set_grain(struct packing *p, int64_t i, const struct scene *s,
     if (!b->has_density) one.density = g->density > 0 ? g->density : s->kind[one.kind].density;
     if (!b->has_density && !(b->mass > 0)) one.mass = g->mass;
     if (g->shape) one.form.shape = shapes_find(&p->shapes, b->document->shapes.s[g->shape].name);
+    if (g->group && !b->group) {
+        const char *name = b->document->names.text[g->group - 1];
+        one.group = 1 + names_find(&p->names, name, strlen(name));
+    }
     if (set_body(p, i, &one, g->x, g->r, why)) return why->status;
     p->q[i] = g->q, p->id[i] = g->id;
     if (g->weighs && !one.fixed && g->mass > 0 && one.mass == g->mass) p->inertia[i] = g->inertia;
@@ -203,6 +208,44 @@ static int set_shapes(struct packing *p, const struct scene *s, struct why *why)
     return p->shapes.n ? packing_alloc_shapes(p, why) : 0;
 }
 
+/* The scene's names, and those of bodies of documents; bodies have a group where any has. */
+static int set_names(struct packing *p, const struct scene *s, struct why *why)
+{
+    bool any = false;
+    if (names_copy(&p->names, &s->names, why)) return why->status;
+    for (int64_t g = 0; g < s->groups; g++) {
+        const struct packing *from = s->bodies[g].document;
+        int32_t which;
+        any = any || s->bodies[g].group;
+        if (!from || !from->group || s->bodies[g].group) continue;
+        for (int64_t i = 0; i < from->n; i++) {
+            if (!from->group[i]) continue;
+            any = true;
+            if (names_add(&p->names, from->names.text[from->group[i] - 1], &which, why))
+                return why->status;
+        }
+    }
+    return any ? packing_alloc_column(p, BODY_group, why) : 0;
+}
+
+/* Walls, groups of bodies and kinds have names of their own. */
+static int check_names(const struct packing *p, struct why *why)
+{
+    for (int32_t k = 0; k < p->names.n; k++)
+        for (int32_t kind = 0; kind < p->kinds; kind++)
+            if (!strcmp(p->names.text[k], p->kind_name[kind]))
+                return why_set(why, EX_DATAERR,
+                               "\"%s\" is a kind: walls and groups have other names",
+                               p->names.text[k]);
+    bool of_bodies[NAMES_MOST + 1] = { false };
+    for (int64_t i = 0; p->group && i < p->n; i++) of_bodies[p->group[i]] = p->group[i] > 0;
+    for (int32_t k = 0; k < p->names.rows; k++)
+        if (of_bodies[1 + p->names.row[k].name])
+            return why_set(why, EX_DATAERR, "\"%s\" is the name of a wall and of a group of bodies",
+                           p->names.text[p->names.row[k].name]);
+    return 0;
+}
+
 /* Has any pair of kinds a law beyond friction and restitution? */
 static bool goes_beyond(const struct scene *s)
 {
@@ -216,7 +259,8 @@ static bool goes_beyond(const struct scene *s)
 static int set_parameters(struct packing *p, const struct scene *s, struct why *why)
 {
     p->dt = s->dt, p->theta = s->theta, p->g = s->g, p->seed = s->seed, p->t = p->t0 = s->t;
-    if (packing_alloc_passages(p, s->pours, s->removals, why) || set_shapes(p, s, why))
+    if (packing_alloc_passages(p, s->pours, s->removals, why) || set_shapes(p, s, why) ||
+        set_names(p, s, why))
         return why->status;
     if (packing_alloc_walls(p, s->walls, why) || packing_alloc_kinds(p, s->kinds, why))
         return why->status;
@@ -267,18 +311,24 @@ static bool *from_documents(const struct packing *p, const struct scene *s,
     return settled;
 }
 
-/* "bodies[1]", "walls[1]": what the scene says of a row, -1 - i of a wall; "" of one that it does not say */
+enum { PLACE = 40 + NAME_BYTES }; /* bytes of the place of a row in a scene */
+
+/* "bodies[1]", "walls[1], floor": what the scene says of a row, -1 - i of a wall; "" of one that it does not say */
 static const char *place_of(const struct scene *s, const struct grains *list, int32_t row,
-                            char text[40])
+                            char text[PLACE])
 {
     int64_t g = 0, end = 0;
     *text = 0;
-    if (row < 0 && s->has_walls) snprintf(text, 40, ", walls[%d]", s->wall_item[-1 - row]);
+    if (row < 0 && s->has_walls) {
+        const char *name = names_of_wall(&s->names, -1 - row);
+        snprintf(text, PLACE, ", walls[%d]%s%s", s->wall_item[-1 - row], name ? ", " : "",
+                 name ? name : "");
+    }
     for (; row >= 0 && g < s->groups; g++) {
         end += is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count;
         if (row < end) break;
     }
-    if (row >= 0) snprintf(text, 40, "bodies[%lld]", (long long)g);
+    if (row >= 0) snprintf(text, PLACE, "bodies[%lld]", (long long)g);
     return text;
 }
 
@@ -287,7 +337,7 @@ static int check_overlap(const struct packing *p, const struct scene *s, const s
 {
     struct contacts found = { 0 };
     const char *cure = "; \"overlap\": true allows it)";
-    char a[40], b[40];
+    char a[PLACE], b[PLACE];
     int e = detect_contacts_at(&found, p, p->x, p->t, 0, NULL, why);
     for (int64_t i = 0; !e && i < found.n; i++) {
         const struct contact *c = &found.c[i];
@@ -344,6 +394,7 @@ static int check_packing(const struct packing *p, const struct scene *s, const s
                          struct why *why)
 {
     if (packing_check(p, why)) return name_wall(s, why);
+    if (check_names(p, why)) return why->status;
     if (packing_check_clock(p, why)) return why->status;
     if (s->overlap) return 0;
     bool *settled = from_documents(p, s, list);
@@ -375,6 +426,11 @@ static int take_walls(struct packing *p, const struct scene *s, const struct sce
         return why->status;
     for (int32_t k = 0; k < p->drives.n; k++) p->drives.drive[k].clock += from->t - s->t;
     for (int32_t k = 0; k < p->pushes.n; k++) p->pushes.drive[k].clock += from->t - s->t;
+    for (int32_t k = 0; k < from->names.rows; k++) {
+        const struct named *r = &from->names.row[k];
+        if (names_give(&p->names, from->names.text[r->name], r->boundary, r->first, r->count, why))
+            return why->status;
+    }
     return 0;
 }
 
@@ -482,6 +538,7 @@ static int build_packing(struct packing *p, const struct scene *s, const struct 
         !fill_groups(p, s, list, rng, why)) {
         if (s->cell.affine) add_affine_flow(p);
         packing_wrap(p, NULL);
+        names_settle(&p->names);
         if (!set_masses(p, s, why) && !set_dt(p, s, why)) check_packing(p, s, list, why);
     }
     gsl_rng_free(rng);

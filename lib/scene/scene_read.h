@@ -21,6 +21,10 @@ int scene_read_laws(const jnode *object, double t, struct pair_law *law);
 int scene_read_kinds(jnode kinds, struct scene *s, double density);
 int scene_read_pairs(jnode pairs, struct scene *s, struct scene_law law);
 int scene_read_kind(jnode name, const struct scene *s, int32_t *kind);
+/* scene/scene_names.c: a "name", *name = NULL where there is none; "parts" of the wall that comes next, and of a mesh
+   whether they are the groups of its file (groups NULL: there is no file) */
+int scene_read_name(jnode name, const struct scene *s, const char **out);
+int scene_read_parts(jnode parts, struct scene *s, bool *groups);
 
 /* scene/scene_walls.c: "walls", where *box = that of the first wall that is a box, the default of a
    lattice, and *boxed whether there is one; a BOX */

@@ -113,8 +113,9 @@ static int read_mesh(jnode o, struct scene *s, struct wall *w)
 {
     const char *name = NULL;
     struct scene_mesh m = { .wall = s->walls, .scale = 1 };
-    if (json_node_only(o, "file scale at") || json_node_need(&o, "file") ||
+    if (json_node_only(o, "file scale at parts") || json_node_need(&o, "file") ||
         json_node_text(json_node_key(&o, "file"), &name) ||
+        scene_read_parts(json_node_key(&o, "parts"), s, &m.groups) ||
         json_node_number(json_node_key(&o, "scale"), J_POSITIVE, &m.scale) ||
         json_node_vector(json_node_key(&o, "at"), 3, &w->x))
         return 1;
@@ -205,7 +206,8 @@ static int read_polygon(jnode o, struct scene *s, struct wall *w)
     size_t n = 0;
     bool closed = true;
     jnode a = json_node_key(&o, "points");
-    if (json_node_only(o, "points closed") || json_node_need(&o, "points") ||
+    if (json_node_only(o, "points closed parts") || json_node_need(&o, "points") ||
+        scene_read_parts(json_node_key(&o, "parts"), s, NULL) ||
         json_node_bool(json_node_key(&o, "closed"), &closed) || json_node_array(a, &n))
         return 1;
     if (n < 2 || n > 1 << 24) return json_node_fault(a, "wants two points or more");

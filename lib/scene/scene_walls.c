@@ -107,7 +107,7 @@ static int read_load(jnode o, struct scene *s, struct wall *w)
 /* ---- what is common to all shapes ---- */
 
 /* What all shapes have besides their own keys */
-#define COMMON "velocity kind drives until weld"
+#define COMMON "name velocity kind drives until weld wear"
 
 /* Adds a wall, and its drives. */
 static int add_wall(jnode o, struct scene *s, struct wall w)
@@ -115,6 +115,10 @@ static int add_wall(jnode o, struct scene *s, struct wall w)
     w.first_drive = s->drives.n;
     if (scene_read_drives(json_node_key(&o, "drives"), s, s->walls)) return 1;
     w.drives = s->drives.n - w.first_drive;
+    const char *name;
+    if (scene_read_name(json_node_key(&o, "name"), s, &name) ||
+        (name && names_give(&s->names, name, s->walls, 0, 0, o.in->why)))
+        return 1;
     s->wall[s->walls++] = w;
     return 0;
 }
@@ -164,7 +168,8 @@ static int read_wall(jnode o, struct scene *s, struct scene_box *box, bool *boxe
     if (which < 0 || json_node_vector(json_node_key(&o, "velocity"), s->dim, &w.v) ||
         scene_read_kind(json_node_key(&o, "kind"), s, &w.kind) ||
         json_node_number(json_node_key(&o, "until"), J_ANY, &w.until) ||
-        json_node_number(json_node_key(&o, "weld"), J_NOT_NEGATIVE, &w.weld))
+        json_node_number(json_node_key(&o, "weld"), J_NOT_NEGATIVE, &w.weld) ||
+        json_node_number(json_node_key(&o, "wear"), J_NOT_NEGATIVE, &w.wear))
         return 1;
     if (which == 0) return read_plane(o, s, w);
     if (which == 1) return read_box(o, s, w, box, boxed);

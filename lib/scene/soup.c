@@ -2,12 +2,14 @@
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): qsort_r
 #include "scene/soup.h"
 
+#include "bodies/names.h"
 #include "scene/ears.h"
 
 #include <float.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Of the extent: what numbers as coarse as this describe is another body. */
 static const double COARSE = 1e-3;
@@ -34,8 +36,9 @@ static int no_memory(struct soup *s)
 
 void soup_free(struct soup *s)
 {
-    free(s->corner), free(s->triangle);
-    s->corner = NULL, s->triangle = NULL;
+    for (int32_t k = 0; k < s->parts; k++) free(s->part[k]);
+    free(s->corner), free(s->triangle), free(s->part_of), free(s->part);
+    s->corner = NULL, s->triangle = NULL, s->part_of = NULL, s->part = NULL, s->parts = 0;
 }
 
 int soup_corner(struct soup *s, vec3 x)
@@ -62,6 +65,49 @@ static int make_room(struct soup *s, int64_t triangles)
     int32_t(*more)[3] = realloc(s->triangle, (size_t)s->triangle_room * sizeof *more);
     if (!more) return no_memory(s);
     s->triangle = more;
+    if (!s->grouped) return 0;
+    int32_t *of = realloc(s->part_of, (size_t)s->triangle_room * sizeof *of);
+    if (!of) return no_memory(s);
+    s->part_of = of;
+    return 0;
+}
+
+/* ---- parts ---- */
+
+/* Row of the part of the polygons to come, in *now; -1: of none */
+static int find_part(struct soup *s)
+{
+    char both[2 * SOUP_LABEL];
+    if (s->now >= -1) return 0;
+    snprintf(both, sizeof both, "%s%s", s->label[0], s->label[1]);
+    if ((s->work -= s->parts) < 0) return soup_fault(s, "groups that change too often");
+    for (s->now = *both ? 0 : -1; s->now >= 0 && s->now < s->parts; s->now++)
+        if (!strcmp(s->part[s->now], both)) return 0;
+    if (s->now < 0) return 0;
+    if (s->parts == SOUP_PARTS_MOST)
+        return soup_fault(s, "more than %d groups of polygons", SOUP_PARTS_MOST);
+    char **more = realloc(s->part, ((size_t)s->parts + 1) * sizeof *more);
+    if (!more) return no_memory(s);
+    s->part = more;
+    if (!(s->part[s->parts] = strdup(both))) return no_memory(s);
+    s->now = s->parts++;
+    return 0;
+}
+
+void soup_no_label(struct soup *s, int which)
+{
+    s->label[which][0] = 0, s->now = -2;
+}
+
+int soup_label(struct soup *s, int which, const char *name, int n)
+{
+    const char *trouble = name_trouble(name, (size_t)n);
+    size_t length = strlen(s->label[which]);
+    if (trouble) return soup_fault(s, "the name of a group %s", trouble);
+    if (length + (size_t)n + 2 > SOUP_LABEL) return soup_fault(s, "too many groups at once");
+    memcpy(s->label[which] + length, name, (size_t)n);
+    memcpy(s->label[which] + length + n, "\n", 2);
+    s->now = -2;
     return 0;
 }
 
@@ -86,7 +132,7 @@ int soup_polygon(struct soup *s, const int64_t *corner, int64_t n)
         x[kept] = at, number[kept++] = (int32_t)corner[k];
     }
     while (kept > 1 && same_place(x[kept - 1], x[0])) kept--;
-    if (make_room(s, n - 2)) return s->why->status;
+    if (make_room(s, n - 2) || (s->grouped && find_part(s))) return s->why->status;
     int32_t(*t)[3] = s->triangle + s->triangles;
     const char *trouble = NULL;
     if (kept <= 3)
@@ -96,6 +142,7 @@ int soup_polygon(struct soup *s, const int64_t *corner, int64_t n)
     if (trouble) return soup_fault(s, "%s", trouble);
     for (int32_t i = 0; i < triangles; i++)
         for (int k = 0; k < 3; k++) t[i][k] = number[t[i][k]];
+    for (int32_t i = 0; s->grouped && i < triangles; i++) s->part_of[s->triangles + i] = s->now;
     s->triangles += triangles, s->flat += (int32_t)n - 2 - triangles;
     return 0;
 }
@@ -195,6 +242,7 @@ static void leave_out(struct soup *s, double scale)
         const int32_t *t = s->triangle[i];
         if (t[0] < 0 || !has_area(s, t, scale)) continue;
         for (int k = 0; k < 3; k++) s->triangle[n][k] = t[k];
+        if (s->grouped) s->part_of[n] = s->part_of[i];
         n++;
     }
     s->triangles = n;

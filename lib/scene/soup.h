@@ -12,7 +12,9 @@
 
 enum {
     SOUP_TRIANGLES_MOST = 1 << 24, /* of a file; as many as documents of 1 GB have */
-    SOUP_CORNERS_MOST = 3 << 24
+    SOUP_CORNERS_MOST = 3 << 24,
+    SOUP_LABEL = 512, /* bytes of the names of an object, or of the groups that a polygon is in */
+    SOUP_PARTS_MOST = 4096,
 };
 
 struct soup {
@@ -25,7 +27,13 @@ struct soup {
     vec3 *corner;           /* [corners] in the file's unit of length */
     int32_t (*triangle)[3]; /* [triangles] */
     int32_t flat;           /* triangles of polygons that have no area, and are not among them */
-    int64_t work;           /* left to concave polygons [scene/ears.h] */
+    bool grouped;           /* which part of the surface each triangle is of is wanted, too: */
+    int32_t *part_of;       /* [triangles] -1: of none, else row of */
+    int32_t parts,
+        now;     /* how many there are, and that of the polygons to come; -2: by their label */
+    char **part; /* [parts] the names of its object and of its groups, each ended by a newline */
+    char label[2][SOUP_LABEL]; /* those of the polygons to come: of the object, of the groups */
+    int64_t work;              /* left to concave polygons [scene/ears.h], and to finding parts */
 };
 
 /* Each returns 0 or the status of a fault. The fault names the file and the place in it. */
@@ -34,6 +42,11 @@ int soup_fault(struct soup *s, const char *format, ...) __attribute__((format(pr
 int soup_corner(struct soup *s, vec3 x);
 /* A polygon of n corners, which are checked to be there */
 int soup_polygon(struct soup *s, const int64_t *corner, int64_t n);
+
+/* Polygons to come are of another object (0), or in other groups (1): of none, and one more that is named by these
+   bytes. A name that is none is a fault. */
+void soup_no_label(struct soup *s, int which);
+int soup_label(struct soup *s, int which, const char *name, int n);
 
 /* Adds the triangles to a mesh, a unit of the file `scale` m; *left_out: how many are not, see above. Refused
    are numbers too coarse for what they describe: far from the origin those of 32 bits are. */

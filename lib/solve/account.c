@@ -77,20 +77,26 @@ bool account_fails(const struct account *a)
     return false;
 }
 
-static int say_body(double id, char *text, size_t room)
+static void say_body(double id, const struct names *names, char *text, size_t room)
 {
-    return id < 0 ? snprintf(text, room, "wall %.0f", -1 - id) : snprintf(text, room, "%.0f", id);
+    const char *name = id < 0 ? names_of_wall(names, (int32_t)(-1 - id)) : NULL;
+    if (name)
+        snprintf(text, room, "wall %.0f (%s)", -1 - id, name);
+    else
+        snprintf(text, room, id < 0 ? "wall %.0f" : "%.0f", id < 0 ? -1 - id : id);
 }
 
-void account_says(const struct account *a, enum account_row row, char *text, size_t room)
+void account_says(const struct account *a, enum account_row row, const struct names *names,
+                  char *text, size_t room)
 {
     const struct watched *w = &account_watched[row];
     const struct account_entry *e = &a->worst[row];
-    char one[40], other[40] = "";
+    char one[40 + NAME_BYTES], other[40 + NAME_BYTES] = "";
     int n = snprintf(text, room, w->says, e->value);
     if (e->value == 0 || n < 0 || (size_t)n >= room) return;
     text += n, room -= (size_t)n;
-    say_body(e->bodies[0], one, sizeof one), say_body(e->bodies[1], other, sizeof other);
+    say_body(e->bodies[0], names, one, sizeof one);
+    say_body(e->bodies[1], names, other, sizeof other);
     if (w->bodies == 2)
         snprintf(text, room, " (step %.0f, bodies %s and %s)", e->step, one, other);
     else if (w->bodies == 1)

@@ -48,6 +48,7 @@ unsigned account_add(struct account *account, const struct report *report);
 bool account_row_fails(const struct account *account, enum account_row row);
 bool account_fails(const struct account *account);
 /* Writes "overlap 0.012 of a radius (step 217, bodies 3 and wall 0)" into text of that room. */
-void account_says(const struct account *account, enum account_row row, char *text, size_t room);
+void account_says(const struct account *account, enum account_row row, const struct names *names,
+                  char *text, size_t room);
 
 #endif

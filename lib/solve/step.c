@@ -6,6 +6,7 @@
 #include "detect/swift.h"
 #include "motion/move.h"
 #include "motion/project.h"
+#include "motion/sum_step.h"
 #include "problem/prepare.h"
 #include "solve/rebound.h"
 
@@ -170,7 +171,9 @@ static int move(struct step_makers *m, struct packing *p, const struct contacts 
     if (impulses_init(&sum, p, s, false, why)) goto end;
     if (m->add_impulses) m->add_impulses(m, &sum);
     if (account_for(rep, p, o) && m->balance(m, p, s, &sum, &rep->balance, why)) goto end;
-    if (isfinite(rep->err.paper.eps_glob) && !move_by(p, s, &sum, why)) m->move_apart(m, p, s, why);
+    if (isfinite(rep->err.paper.eps_glob) && !sum_step(p, s, &sum, why) &&
+        !move_by(p, s, &sum, why))
+        m->move_apart(m, p, s, why);
 end:
     impulses_free(&sum);
     return why->status;

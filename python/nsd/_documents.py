@@ -118,6 +118,76 @@ class Frame:
     kind = cached_property(lambda self: self._fixed("species"))
 
     @cached_property
+    def kind_names(self):
+        """The name of each kind: kind_names[kind[i]] is that of grain i."""
+        return _lines(self.file["nsd/material"].attrs["kinds"])
+
+    @cached_property
+    def shape(self):
+        """Of each grain the row of its shape in shape_names; all 0, balls, where the document has no shapes."""
+        return self._fixed("shape") if "shape" in self._all else np.zeros(len(self.id), np.int32)
+
+    @cached_property
+    def shape_names(self):
+        """The name of each shape; the first is the ball."""
+        return ["ball", *(_lines(self.file["nsd/shape"].attrs["names"]) if "nsd/shape" in self.file else [])]
+
+    @cached_property
+    def _vertices(self):
+        """Of each shape its vertices: corners, ends of a capsule, centres of a clump's balls, in units of its radius."""
+        if "nsd/shape" not in self.file:
+            return [np.zeros((0, 3))]
+        group = self.file["nsd/shape"]
+        ends = np.cumsum(group["vertices"][()])
+        return [np.zeros((0, 3)), *np.split(group["vertex"][()], ends[:-1])]
+
+    def corners(self, i):
+        """m: [corners, 3] where the corners of grain i (its row) are; of a capsule its ends, of a clump the centres of its
+        balls, of a ball none."""
+        w, u = self.q[i, 0], self.q[i, 1:]
+        v = self._vertices[self.shape[i]]
+        t = 2 * np.cross(u, v)
+        return self.x[i] + self.radius[i] * (v + w * t + np.cross(u, t))
+
+    @cached_property
+    def names(self):
+        """All names of walls, parts of walls and groups of grains."""
+        return _lines(self.file["nsd/names/text"][()]) if "nsd/names/text" in self.file else []
+
+    @cached_property
+    def group(self):
+        """The name of each grain's group; None: it has none."""
+        rows = self._fixed("group") if "group" in self._all else np.zeros(len(self.id), np.int32)
+        return np.array([self.names[k - 1] if k else None for k in rows], object)
+
+    @cached_property
+    def wall_names(self):
+        """The name of each wall; None: it has none."""
+        body = self.file["particles/boundary/body/point"] if "particles/boundary/body/point" in self.file else []
+        found = [None] * len(body)
+        for name, wall, (_, count) in self._named:
+            if not count:
+                found[wall] = name
+        return found
+
+    @cached_property
+    def _named(self):
+        if "nsd/names/boundary" not in self.file:
+            return []
+        group = self.file["nsd/names"]
+        return [(self.names[k], int(wall), faces) for k, wall, faces in
+                zip(group["name"][()], group["boundary"][()], group["faces"][()])]
+
+    def walls(self, name):
+        """The numbers of the walls that have this name, or a part of it, in order; a number is that wall."""
+        if isinstance(name, (int, np.integer)):
+            return [int(name)]
+        found = sorted({wall for own, wall, _ in self._named if own == name})
+        if not found:
+            raise KeyError(f"no wall '{name}', but {', '.join(dict.fromkeys(n for n, _, _ in self._named)) or 'none has a name'}")
+        return found
+
+    @cached_property
     def contacts(self):
         """The frame's contacts; None where the document does not keep them."""
         if "contacts" not in self.file:
@@ -146,6 +216,10 @@ class Frame:
             return None
         return {name: group[name]["value"][at[-1]] for name in group
                 if isinstance(group[name], h5py.Group)}
+
+
+def _lines(text):
+    return (text.decode() if isinstance(text, bytes) else str(text)).splitlines()
 
 
 def _whole(stream, size):

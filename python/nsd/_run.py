@@ -298,6 +298,22 @@ class Run:
         """What the solver reports of the last step, with the keys of nsd-info(1)."""
         return self._text("nsd_report")
 
+    @property
+    def names(self) -> dict[str, Any]:
+        """{"kinds": [...], "shapes": [...], "walls": [name or None, ...], "groups": [...]}: those of walls in their order."""
+        return self._text("nsd_names")
+
+    def walls(self, name: int | str) -> list[int]:
+        """The numbers of the walls that have this name; a number is that wall."""
+        if not isinstance(name, str):
+            return [int(name)]
+        known = self.names["walls"]
+        found = [k for k, own in enumerate(known) if own == name]
+        if not found:
+            names = ", ".join(dict.fromkeys(own for own in known if own))
+            raise ValueError(f"no wall '{name}', but {names or 'none has a name'}")
+        return found
+
     def measure(self, *names: str) -> dict[str, Any]:
         """Measures of nsd-stat(1) by their names, with its keys: run.measure("stress")["stress"]["pressure"]."""
         return self._text("nsd_measure", ",".join(names).encode())
@@ -310,13 +326,15 @@ class Run:
         self._call("nsd_force", int(id), _vector(force, "force"), _vector(torque, "torque"),
                    _ONCE if once else _LASTING)
 
-    def push_boundary(self, boundary: int, force: float, *, once: bool = False) -> None:
-        """N along the axis of the boundary's load, N m about it: added to the load."""
-        self._call("nsd_boundary_force", int(boundary), float(force), _ONCE if once else _LASTING)
+    def push_boundary(self, boundary: int | str, force: float, *, once: bool = False) -> None:
+        """N along the axis of the boundary's load, N m about it: added to the load. A name stands for each wall that has it."""
+        for wall in self.walls(boundary):
+            self._call("nsd_boundary_force", wall, float(force), _ONCE if once else _LASTING)
 
-    def move_boundary(self, boundary: int, velocity: ArrayLike) -> None:
-        """Prescribes the boundary's velocity (3 numbers, m/s) from now on."""
-        self._call("nsd_boundary_velocity", int(boundary), _vector(velocity, "velocity"))
+    def move_boundary(self, boundary: int | str, velocity: ArrayLike) -> None:
+        """Prescribes the boundary's velocity (3 numbers, m/s) from now on; a name stands for each wall that has it."""
+        for wall in self.walls(boundary):
+            self._call("nsd_boundary_velocity", wall, _vector(velocity, "velocity"))
 
     def throw(self, id: int, velocity: ArrayLike | None = None, angular_velocity: ArrayLike | None = None) -> None:
         """Gives the body with this id a velocity (3 numbers, m/s) and an angular velocity (rad/s); None: as it is."""

@@ -23,6 +23,7 @@ nsd_from_scene
 nsd_from_scene_file
 nsd_gravity
 nsd_measure
+nsd_names
 nsd_note
 nsd_number
 nsd_read

@@ -148,6 +148,8 @@ function digits(x) {
   return size !== 0 && (size < 1e-3 || size >= 1e6) ? x.toExponential(2).replace('e+', 'e')
                                                     : Number(x.toPrecision(4)).toString();
 }
+/* As many digits as the page has of it: positions are rounded to 1e-5 of the extent, and less */
+const complete = x => isFinite(x) ? Number(x.toPrecision(7)).toString() : '-';
 
 /* ---- what colours show ---- */
 
@@ -528,15 +530,15 @@ function show_picked(f) {
   const table = document.createElement('table'), v = velocity(f, i);
   row(table, 'id', f.id[i]);
   row(table, 'kind', meta.kinds[f.kind[i]]);
-  row(table, 'radius', digits(f.radius[i]) + ' m');
-  row(table, 'mass', digits(f.mass[i]) + ' kg');
-  row(table, 'position', place(f, i).slice(0, meta.dim).map(digits).join(', ') + ' m');
-  row(table, 'velocity', v.slice(0, meta.dim).map(digits).join(', ') + ' m/s');
-  row(table, 'speed', digits(norm(v)) + ' m/s');
-  row(table, 'spin', digits(spin(f, i)) + ' rad/s');
+  row(table, 'radius', complete(f.radius[i]) + ' m');
+  row(table, 'mass', complete(f.mass[i]) + ' kg');
+  row(table, 'position', place(f, i).slice(0, meta.dim).map(complete).join(', ') + ' m');
+  row(table, 'velocity', v.slice(0, meta.dim).map(complete).join(', ') + ' m/s');
+  row(table, 'speed', complete(norm(v)) + ' m/s');
+  row(table, 'spin', complete(spin(f, i)) + ' rad/s');
   if (meta.solved) {
     row(table, 'contacts that push', counts(f)[i]);
-    row(table, 'sum of normal forces', digits(forces(f)[i]) + ' N');
+    row(table, 'sum of normal forces', complete(forces(f)[i]) + ' N');
   }
   box.append(table);
 }
@@ -555,30 +557,35 @@ function show(f) {
 /* ---- curves ---- */
 
 const curves = meta.curves;
+let plot_left = 84; // pixels: where the curve begins
 for (const name in curves) by_id('curve').add(new Option(name + (curves[name].unit ? ', ' + curves[name].unit : ''), name));
 by_id('curves').hidden = meta.frames.length < 2;
 
 function plot() {
   const curve = curves[by_id('curve').value], c = by_id('plot').getContext('2d');
   if (!curve || !now) return;
-  const { width, height } = by_id('plot'), left = 84, bottom = 34, top = 10, right = 10;
+  const { width, height } = by_id('plot'), bottom = 34, top = 10, right = 10;
   const t = meta.frames.map(f => f.t), y = curve.value, real = y.filter(x => x !== null);
   let lo = Math.min(...real), hi = Math.max(...real);
   if (lo > 0 && lo < 0.5 * hi) lo = 0;
   if (!(hi > lo)) hi = lo + (Math.abs(lo) || 1);
+  c.font = '20px system-ui, sans-serif';
+  // the margin is as wide as the numbers are: none is cut off
+  const ends = [hi, lo].map(x => digits(x)), unit = curve.unit || '';
+  const left = plot_left = 12 + Math.max(...[...ends, unit].map(text => c.measureText(text).width));
   const X = s => left + (width - left - right) * (s - t[0]) / ((t[t.length - 1] - t[0]) || 1);
   const Y = s => height - bottom - (height - bottom - top) * (s - lo) / (hi - lo);
   c.clearRect(0, 0, width, height);
-  c.font = '20px system-ui, sans-serif';
   c.strokeStyle = '#c3c9d4';
   c.strokeRect(left, top, width - left - right, height - top - bottom);
   c.fillStyle = '#556';
   c.textAlign = 'right';
-  c.fillText(digits(hi), left - 6, top + 18);
-  c.fillText(digits(lo), left - 6, height - bottom);
+  c.fillText(ends[0], left - 6, top + 18);
+  c.fillText(unit, left - 6, top + 42);
+  c.fillText(ends[1], left - 6, height - bottom);
   c.fillText(digits(t[t.length - 1]) + ' s', width - right, height - 8);
   c.textAlign = 'left';
-  c.fillText(digits(t[0]), left, height - 8);
+  c.fillText(digits(t[0]) + ' s', left, height - 8);
   c.strokeStyle = '#1f4e9c';
   c.lineWidth = 2.5;
   c.beginPath();
@@ -623,6 +630,49 @@ function camera() {
   return cam;
 }
 
+/* Turns nothing, and moves the eye so that all that the trajectory fills is seen, with a margin. */
+const corners = Array.from({ length: 8 }, (_, k) =>
+  new T.Vector3(...[0, 1, 2].map(j => scale * (k >> j & 1 ? R.hi : R.lo)[j])));
+function fit() {
+  const cam = camera(), m = cam.matrixWorld.elements, tan = Math.tan(17.5 * Math.PI / 180);
+  const aspect = canvas.parentElement.clientWidth / Math.max(canvas.parentElement.clientHeight, 1);
+  const right = new T.Vector3(m[0], m[1], m[2]), above = new T.Vector3(m[4], m[5], m[6]), near = new T.Vector3(m[8], m[9], m[10]);
+  eye.to.copy(middle);
+  eye.away = Math.max(...corners.map(x => {
+    const d = x.clone().sub(middle), beside = Math.max(Math.abs(d.dot(right)) / aspect, Math.abs(d.dot(above)));
+    return 1.06 * beside / tan + (cam === perspective ? d.dot(near) : 0);
+  })) || 4.2;
+}
+
+/* ---- the address: time and view, so that it can be passed on ---- */
+
+let fitted = true; // nobody has moved the eye
+let telling = 0;
+function tell_address() {
+  const says = new URLSearchParams({ t: now ? now.m.t : 0, colour: by_id('colour').value });
+  if (!fitted) {
+    const say = { az: eye.azimuth, el: eye.elevation, away: eye.away, x: eye.to.x / scale, y: eye.to.y / scale, z: eye.to.z / scale };
+    for (const k in say) says.set(k, Number(say[k].toPrecision(6)));
+  }
+  try {
+    history.replaceState(null, '', '#' + says);
+  } catch { /* a page within another may not */ }
+}
+/* The frame at or next to the time that the address says; null: it says none. The eye is where it says. */
+function heed_address() {
+  const says = new URLSearchParams(location.hash.slice(1)), number = k => says.has(k) ? Number(says.get(k)) : NaN;
+  const view = ['az', 'el', 'away', 'x', 'y', 'z'].map(number);
+  if (colours[says.get('colour')]) by_id('colour').value = says.get('colour');
+  if (view.every(isFinite) && view[2] > 0) {
+    fitted = false;
+    eye.azimuth = view[0], eye.elevation = Math.min(Math.max(view[1], -89), 89), eye.away = Math.min(Math.max(view[2], 0.01), 40);
+    eye.to.set(view[3], view[4], view[5]).multiplyScalar(scale);
+  }
+  const t = number('t');
+  if (!isFinite(t)) return null;
+  return meta.frames.reduce((best, f, k) => Math.abs(f.t - t) < Math.abs(meta.frames[best].t - t) ? k : best, 0);
+}
+
 function axes(cam) {
   const c = by_id('axes').getContext('2d'), names = ['x', 'y', 'z'], m = cam.matrixWorldInverse.elements;
   c.clearRect(0, 0, 90, 90);
@@ -642,6 +692,7 @@ function draw() {
   const w = canvas.parentElement.clientWidth, h = canvas.parentElement.clientHeight;
   gl.setPixelRatio(Math.min(devicePixelRatio, 2));
   gl.setSize(w, h, false);
+  if (fitted) fit();
   gl.getDrawingBufferSize(line_uniforms.pixels.value);
   const cam = camera();
   gl.autoClear = true;
@@ -652,6 +703,8 @@ function draw() {
     gl.render(overlay, cam);
   }
   axes(cam);
+  clearTimeout(telling); // not for each frame that is played, of which browsers complain
+  telling = setTimeout(tell_address, 300);
 }
 
 /* v turned by the orientation of grain i, or back */
@@ -708,6 +761,7 @@ canvas.addEventListener('pointermove', e => {
   const dx = e.clientX - held.x, dy = e.clientY - held.y;
   held.x = e.clientX, held.y = e.clientY, held.far += Math.abs(dx) + Math.abs(dy);
   if (held.far < 4) return;
+  fitted = false;
   if (held.slide) {
     const cam = camera(), m = cam.matrixWorld.elements;
     const k = 2 * eye.away * Math.tan(17.5 * Math.PI / 180) / canvas.clientHeight;
@@ -730,6 +784,7 @@ canvas.addEventListener('pointerup', e => {
 canvas.addEventListener('contextmenu', e => e.preventDefault());
 canvas.addEventListener('wheel', e => {
   e.preventDefault();
+  fitted = false;
   eye.away = Math.min(Math.max(eye.away * Math.exp(0.001 * e.deltaY), 0.01), 40);
   draw();
 }, { passive: false });
@@ -765,7 +820,7 @@ by_id('frame').max = meta.frames.length - 1;
 by_id('frame').addEventListener('input', e => go(Number(e.target.value)));
 by_id('plot').addEventListener('click', e => {
   const box = e.target.getBoundingClientRect(), t = meta.frames.map(f => f.t);
-  const s = ((e.clientX - box.left) / box.width * 560 - 84) / 466;
+  const s = ((e.clientX - box.left) / box.width * 560 - plot_left) / (550 - plot_left);
   const at = t[0] + s * (t[t.length - 1] - t[0]);
   go(t.reduce((best, x, k) => Math.abs(x - at) < Math.abs(t[best] - at) ? k : best, 0));
 });
@@ -789,12 +844,23 @@ by_id('title').textContent = document.title;
 by_id('said').textContent = meta.said;
 by_id('network_line').hidden = !meta.solved;
 if (flat) by_id('perspective').parentElement.hidden = by_id('cut').parentElement.hidden = true;
-if (flat) eye.away = 3.6;
-await go(0);
+by_id('fit').addEventListener('click', () => {
+  fitted = true;
+  eye.azimuth = flat ? 0 : 30, eye.elevation = flat ? 0 : 20;
+  draw();
+});
+/* The first frame with grains, where they are poured into an empty box */
+const first_filled = Math.max(meta.frames.findIndex(f => f.n > 0), 0), asked = heed_address();
+await go(asked === null ? first_filled : asked);
+addEventListener('hashchange', () => {
+  const k = heed_address();
+  if (k !== null && k !== now.k) go(k);
+  else show(now);
+});
 requestAnimationFrame(tick);
 
 /* For those who drive the page by a program: go(k), pick(x, y) -> row, what is shown. */
-window.nsd = { meta, go, pick, draw, get frame() { return now; }, get chosen() { return chosen; },
+window.nsd = { meta, go, pick, draw, eye, get fitted() { return fitted; }, get frame() { return now; }, get chosen() { return chosen; },
   seen(i) {
     const v = new T.Vector3(...drawn(now, now.shown.row.indexOf(i))).multiplyScalar(scale).project(camera());
     const box = canvas.getBoundingClientRect();

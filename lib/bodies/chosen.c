@@ -1,0 +1,107 @@
+#include "bodies/chosen.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void chosen_free(struct chosen *c)
+{
+    free(c->wall), free(c->name), free(c->kind);
+    *c = (struct chosen){ 0 };
+}
+
+/* What there is to choose, as long as there is room */
+static void list_all(const struct packing *p, char *text, size_t room)
+{
+    size_t at = 0;
+    text[0] = 0;
+    for (int32_t k = 0; k < p->names.n + p->kinds && at < room; k++) {
+        const char *name = k < p->names.n ? p->names.text[k] : p->kind_name[k - p->names.n];
+        at += (size_t)snprintf(text + at, room - at, "%s%s", k ? ", " : "", name);
+    }
+    if (p->walls && at < room)
+        at += (size_t)snprintf(text + at, room - at, ", or a wall's number, 0 to %d", p->walls - 1);
+    if (at >= room) snprintf(text + room - 4, 4, "...");
+}
+
+static bool choose_number(struct chosen *c, const struct packing *p, const char *word, size_t n)
+{
+    long k = 0;
+    if (!n || n > 9) return false;
+    for (size_t i = 0; i < n; i++) {
+        if (word[i] < '0' || word[i] > '9') return false;
+        k = 10 * k + (word[i] - '0');
+    }
+    if (k >= p->walls) return false;
+    return c->wall[k] = true;
+}
+
+static bool choose(struct chosen *c, const struct packing *p, const char *word, size_t n)
+{
+    int32_t name = names_find(&p->names, word, n);
+    if (choose_number(c, p, word, n)) return true;
+    if (name >= 0) {
+        c->name[name] = true;
+        for (int32_t k = 0; k < p->names.rows; k++)
+            if (p->names.row[k].name == name && !p->names.row[k].count)
+                c->wall[p->names.row[k].boundary] = true;
+        return true;
+    }
+    for (int32_t k = 0; k < p->kinds; k++) {
+        if (strncmp(p->kind_name[k], word, n) != 0 || p->kind_name[k][n]) continue;
+        c->kind[k] = true;
+        for (int32_t w = 0; w < p->walls; w++) c->wall[w] = c->wall[w] || p->wall[w].kind == k;
+        return true;
+    }
+    return false;
+}
+
+int chosen_init(struct chosen *c, const struct packing *p, const char *option, const char *list,
+                struct why *why)
+{
+    *c = (struct chosen){ .any = list };
+    if (!list) return 0;
+    c->wall = calloc((size_t)p->walls + 1, sizeof *c->wall);
+    c->name = calloc((size_t)p->names.n + 1, sizeof *c->name);
+    c->kind = calloc((size_t)p->kinds + 1, sizeof *c->kind);
+    if (!c->wall || !c->name || !c->kind) why_set(why, EX_SOFTWARE, "no memory for names");
+    for (const char *s = list; !why->status; s++) {
+        size_t n = strcspn(s, ",");
+        char all[240];
+        if (!choose(c, p, s, n)) {
+            list_all(p, all, sizeof all);
+            why_set(why, EX_DATAERR, "%s: no '%.*s' here, but %s", option,
+                    (int)(n > NAME_BYTES ? NAME_BYTES : n), s, all);
+        }
+        s += n;
+        if (!*s) break;
+    }
+    if (why->status) chosen_free(c);
+    return why->status;
+}
+
+bool chosen_face(const struct chosen *c, const struct packing *p, int32_t wall, int32_t face)
+{
+    if (!c->any || c->wall[wall]) return true;
+    for (int32_t k = 0; k < p->names.rows; k++) {
+        const struct named *r = &p->names.row[k];
+        if (c->name[r->name] && r->boundary == wall && face >= r->first &&
+            face < r->first + r->count)
+            return true;
+    }
+    return false;
+}
+
+bool chosen_wall(const struct chosen *c, const struct packing *p, int32_t wall)
+{
+    if (!c->any || c->wall[wall]) return true;
+    for (int32_t k = 0; k < p->names.rows; k++)
+        if (c->name[p->names.row[k].name] && p->names.row[k].boundary == wall) return true;
+    return false;
+}
+
+bool chosen_body(const struct chosen *c, const struct packing *p, int64_t i)
+{
+    if (!c->any || c->kind[p->kind[i]]) return true;
+    return p->group && p->group[i] > 0 && c->name[p->group[i] - 1];
+}

@@ -1,0 +1,28 @@
+/*
+ * bodies/chosen.h: which boundaries, faces and bodies a list of names means: "floor,blade,3". A word is the number of
+ * a wall, or a name: of walls, of parts of them, of a group of bodies, or of a kind, which walls and bodies have.
+ */
+#ifndef NSD_CHOSEN_H
+#define NSD_CHOSEN_H
+
+#include "bodies/packing.h"
+
+struct chosen {
+    bool any;   /* a list is given; else all are chosen */
+    bool *wall; /* [walls] as a whole */
+    bool *name; /* [names.n] */
+    bool *kind; /* [kinds] */
+};
+
+/* list NULL: all. option: "--only", for the message, which lists what there is. Returns 0, EX_DATAERR or EX_SOFTWARE
+   with nothing to free. */
+int chosen_init(struct chosen *c, const struct packing *p, const char *option, const char *list,
+                struct why *why);
+void chosen_free(struct chosen *c);
+
+/* The wall, or any of its faces; the face, counted from the wall's first one; the body */
+bool chosen_wall(const struct chosen *c, const struct packing *p, int32_t wall);
+bool chosen_face(const struct chosen *c, const struct packing *p, int32_t wall, int32_t face);
+bool chosen_body(const struct chosen *c, const struct packing *p, int64_t i);
+
+#endif

@@ -1,0 +1,114 @@
+#include "draw/solid.h"
+
+#include "bodies/chosen.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const struct surface_meaning surface_meaning[SURFACE_COUNT] = {
+    [SURFACE_NAME] = { "name", "", "one colour a name" },
+    [SURFACE_PRESSURE] = { "pressure", "Pa", "the mean of the run, from sums" },
+    [SURFACE_FRICTION] = { "friction", "J/m2", "what friction took of each m2, from sums" },
+    [SURFACE_RUB] = { "rub", "J/m2",
+                      "normal force by way of each m2, from sums: wear is this by a coefficient" },
+};
+
+/* Colours of names, which differ from those of kinds: brass, steel blue, copper, moss, slate, plum */
+static const unsigned colours[] = { 0xc9b27a, 0x8fa3b8, 0xc08a6e, 0x96a77e, 0x8a8f98, 0xa88fae };
+enum { COLOURS = sizeof colours / sizeof colours[0] };
+
+void solid_free(struct solid *s)
+{
+    wall_faces_free(&s->faces);
+    free(s->colour);
+    *s = (struct solid){ 0 };
+}
+
+/* The number that a face shows; NaN where its area has no end */
+static double value_of(const struct solid *s, const struct packing *p, int32_t wall, int32_t face)
+{
+    const struct face_sums *x = &p->sums.face[s->faces.first[wall] + face];
+    double area = face_of_area(p, wall, face), span = p->t - p->sums.since;
+    if (!isfinite(area) || !(area > 0)) return NAN;
+    if (s->by == SURFACE_PRESSURE) return x->normal / (span * area);
+    return (s->by == SURFACE_FRICTION ? x->friction : x->rub) / area;
+}
+
+/* The name by which a face was chosen; else its own; NULL: none */
+static const char *name_of(const struct chosen *c, const struct packing *p, int32_t wall,
+                           int32_t face)
+{
+    for (int32_t k = 0; c->any && k < p->names.rows; k++) {
+        const struct named *r = &p->names.row[k];
+        bool covers = !r->count || (face >= r->first && face < r->first + r->count);
+        if (c->name[r->name] && r->boundary == wall && covers) return p->names.text[r->name];
+    }
+    return names_of_face(&p->names, wall, face);
+}
+
+/* The row of the legend for a face, by its name, or the number of its wall */
+static int legend_row(struct solid *s, const struct chosen *c, const struct packing *p,
+                      int32_t wall, int32_t face)
+{
+    char name[NAME_BYTES + 12];
+    const char *own = name_of(c, p, wall, face);
+    if (own)
+        snprintf(name, sizeof name, "%s", own);
+    else
+        snprintf(name, sizeof name, "wall %d", wall);
+    for (int k = 0; k < s->named; k++)
+        if (!strcmp(s->name[k], name)) return k;
+    if (s->named == SOLID_NAMES) return SOLID_NAMES - 1;
+    strcpy(s->name[s->named], name);
+    s->shown[s->named] = rgb_of(colours[s->named % COLOURS]);
+    return s->named++;
+}
+
+static void set_range(struct solid *s, const struct packing *p, const struct chosen *c, double lo,
+                      double hi)
+{
+    s->lo = lo, s->hi = hi;
+    if (!isnan(lo)) return;
+    s->lo = 0, s->hi = -INFINITY;
+    for (int32_t w = 0; w < p->walls; w++)
+        for (int32_t k = 0; k < s->faces.first[w + 1] - s->faces.first[w]; k++) {
+            double x = chosen_face(c, p, w, k) ? value_of(s, p, w, k) : NAN;
+            if (isfinite(x)) s->lo = fmin(s->lo, x), s->hi = fmax(s->hi, x);
+        }
+}
+
+static struct rgb palette_colour(const struct solid *s, const struct paint *paint, double x)
+{
+    double t = (x - s->lo) / (s->hi - s->lo);
+    if (isnan(x) || isnan(t)) return rgb_of(0xb8b8b8);
+    return paint->palette[(int)(255 * fmin(fmax(t, 0), 1) + 0.5)];
+}
+
+int solid_init(struct solid *s, const struct packing *p, const char *list, enum solid_by by,
+               double lo, double hi, const struct paint *paint, struct why *why)
+{
+    struct chosen c;
+    *s = (struct solid){ .by = by };
+    if (by != SURFACE_NAME && !p->sums.n)
+        return why_set(why, EX_DATAERR, "no sums of walls (nsd-step --sums keeps them)");
+    if (chosen_init(&c, p, "--solid", list, why)) return why->status;
+    if (!face_of_init(&s->faces, p, false, why) &&
+        !(s->colour = calloc((size_t)s->faces.n + 1, sizeof *s->colour)))
+        why_set(why, EX_SOFTWARE, "no memory for the colours of boundaries");
+    if (!why->status && by != SURFACE_NAME) set_range(s, p, &c, lo, hi);
+    for (int32_t w = 0; !why->status && w < p->walls; w++)
+        for (int32_t k = 0; k < s->faces.first[w + 1] - s->faces.first[w]; k++) {
+            struct rgb *to = &s->colour[s->faces.first[w] + k];
+            if (!chosen_face(&c, p, w, k))
+                to->r = -1;
+            else if (by == SURFACE_NAME)
+                *to = s->shown[legend_row(s, &c, p, w, k)];
+            else
+                *to = palette_colour(s, paint, value_of(s, p, w, k));
+        }
+    chosen_free(&c);
+    if (why->status) solid_free(s);
+    return why->status;
+}

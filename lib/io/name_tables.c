@@ -1,0 +1,66 @@
+#include "io/name_tables.h"
+
+#include "hdf5/h5.h"
+#include "io/table_read.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define HOME "/nsd/names"
+static const char text_path[] = HOME "/text";
+
+int name_tables_write(struct table_write *s, const struct packing *p, struct why *why)
+{
+    const struct names *names = &p->names;
+    bool growing = s->growing;
+    size_t length = 1;
+    if (!names->n) return 0;
+    for (int32_t k = 0; k < names->n; k++) length += strlen(names->text[k]) + 1;
+    char *text = calloc(length, 1), *at = text;
+    if (!text) return why_set(why, EX_SOFTWARE, "no memory for the names");
+    for (int32_t k = 0; k < names->n; k++) {
+        size_t n = strlen(names->text[k]);
+        memcpy(at, names->text[k], n), at[n] = '\n', at += n + 1;
+    }
+    s->growing = false;
+    if (!h5_write_text(s->file, text_path, text, why) && names->rows)
+        table_write_columns(s, HOME, "", RECORDS(layout_names, names->rows, names->row), 0, why);
+    s->growing = growing;
+    free(text);
+    return why->status;
+}
+
+static int read_rows(struct source *r, struct packing *p, struct why *why)
+{
+    const char *path = HOME "/boundary";
+    uint64_t shape[4];
+    if (!source_has(r, path)) return 0;
+    if (source_shape(r, path, shape) != 1 || shape[0] > NAMED_MOST)
+        return why_set(why, EX_DATAERR, "%s: not of one dimension, or of more than %d rows", path,
+                       NAMED_MOST);
+    p->names.row = calloc((size_t)shape[0] + 1, sizeof *p->names.row);
+    if (!p->names.row) return why_set(why, EX_SOFTWARE, "no memory for the names");
+    p->names.rows = (int32_t)shape[0];
+    return table_read_columns(r, HOME, "", 0, RECORDS(layout_names, p->names.rows, p->names.row),
+                              why);
+}
+
+int name_tables_read(struct source *r, struct packing *p, struct why *why)
+{
+    if (!source_has(r, text_path)) return 0;
+    char *text = source_text(r, text_path, NULL, why);
+    for (char *at = text, *end; at && *at && !why->status; at = end + 1) {
+        int32_t had = p->names.n, which;
+        if (!(end = strchr(at, '\n'))) {
+            why_set(why, EX_DATAERR, "%s: the last name does not end", text_path);
+            break;
+        }
+        *end = 0;
+        if (names_add(&p->names, at, &which, why))
+            why_set(why, EX_DATAERR, "%s: a name that is no name", text_path);
+        else if (p->names.n == had)
+            why_set(why, EX_DATAERR, "%s: \"%s\" is there twice", text_path, at);
+    }
+    free(text);
+    return why->status ? why->status : read_rows(r, p, why);
+}

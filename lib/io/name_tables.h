@@ -1,0 +1,16 @@
+/*
+ * io/name_tables.h: names of boundaries, of parts of their surfaces and of groups of bodies [bodies/names.h] in a
+ * document; nothing where there are none.
+ */
+#ifndef NSD_NAME_TABLES_H
+#define NSD_NAME_TABLES_H
+
+#include "hdf5/source.h"
+#include "io/table_write.h"
+
+/* Into a packing; packing_check() sees whether they are of its boundaries. Returns 0, EX_DATAERR or EX_SOFTWARE. */
+int name_tables_read(struct source *source, struct packing *p, struct why *why);
+/* What all frames share */
+int name_tables_write(struct table_write *tables, const struct packing *p, struct why *why);
+
+#endif

@@ -1,0 +1,93 @@
+#include "io/sum_tables.h"
+
+#include "bodies/wall_faces.h"
+#include "hdf5/h5.h"
+#include "io/layout.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#define HOME "/particles/boundary/sums"
+
+enum { FEW = 64 /* faces: a chunk has many frames of these, else one */ };
+
+static void path_of(const struct column *c, char path[80])
+{
+    snprintf(path, 80, HOME "/%s/value", c->name);
+}
+
+int sum_tables_write_static(struct table_write *s, const struct packing *p, struct why *why)
+{
+    if (!p->sums.n) return 0;
+    s->sums_since = p->sums.since;
+    if (h5_group(s->file, HOME, why)) return why->status;
+    return h5_attr(s->file, HOME, "since", H5T_NATIVE_DOUBLE, -1, &p->sums.since, why);
+}
+
+/* May the trajectory take a frame with sums, or without? They are there from its first frame on, or in none. */
+static int check_kept(const struct table_write *s, const struct packing *p, struct why *why)
+{
+    char path[80];
+    path_of(layout_sums, path);
+    bool first = !table_write_grows(s, "/particles/all/position/step");
+    if (!s->growing || first) return 0;
+    if (p->sums.n && p->sums.since != s->sums_since)
+        return why_set(
+            why, EX_DATAERR,
+            "sums of boundaries that began at %g s, and before at %g s: begin another trajectory",
+            p->sums.since, s->sums_since);
+    if (table_write_grows(s, path) == (p->sums.n > 0)) return 0;
+    return why_set(
+        why, EX_DATAERR,
+        "sums of boundaries in some frames, and not in others: begin another trajectory");
+}
+
+int sum_tables_write(struct table_write *s, const struct packing *p, struct why *why)
+{
+    const int32_t n = p->sums.n;
+    if (check_kept(s, p, why) || !n) return why->status;
+    for (const struct column *c = layout_sums; !why->status && c->name; c++) {
+        char path[80];
+        const hsize_t shape[3] = { 1, (hsize_t)n, (hsize_t)c->width };
+        double *row = malloc(((size_t)n * (size_t)c->width + 1) * sizeof *row);
+        if (!row) return why_set(why, EX_SOFTWARE, "no memory for the sums");
+        path_of(c, path);
+        column_gather(c, n, p->sums.face, sizeof *p->sums.face, row);
+        table_write_rows(s, path, c->type, c->width == 1 ? 2 : 3, shape, n < FEW ? CHUNK_FRAMES : 1,
+                         row, c->units, why);
+        free(row);
+    }
+    if (why->status || table_write_clock(s, HOME, true, &p->step, HOME, layout_sums, why))
+        return why->status;
+    return table_write_clock(s, HOME, false, &p->t, HOME, layout_sums, why);
+}
+
+int sum_tables_read(struct source *r, int64_t k, struct packing *p, struct why *why)
+{
+    uint64_t shape[4];
+    char path[80];
+    path_of(layout_sums, path);
+    struct wall_faces faces;
+    if (!source_has(r, path)) return 0;
+    if (wall_faces_init(&faces, p->walls, p->wall, NULL, why)) return why->status;
+    const int32_t n = faces.n;
+    wall_faces_free(&faces);
+    // no memory is allocated for faces without sums
+    if (source_shape(r, path, shape) != 3 || shape[1] != (uint64_t)n)
+        return why_set(why, EX_DATAERR, "%s: not of shape frames x %d faces x 3", path, n);
+    if (sums_begin(&p->sums, p->walls, p->wall, p->t, why)) return why->status;
+    double *row = calloc(3 * (size_t)n + 1, sizeof *row);
+    if (!row) return why_set(why, EX_SOFTWARE, "no memory for the sums");
+    for (const struct column *c = layout_sums; !why->status && c->name; c++) {
+        path_of(c, path);
+        int rank = source_shape(r, path, shape);
+        if (rank != (c->width == 1 ? 2 : 3) || shape[1] != (uint64_t)n ||
+            (c->width > 1 && shape[2] != (uint64_t)c->width))
+            why_set(why, EX_DATAERR, "%s: not of shape frames x %d faces", path, n);
+        else if (!source_rows(r, path, c->type, k, 1, (int64_t)n * c->width, row, why))
+            column_scatter(c, n, row, p->sums.face, sizeof *p->sums.face);
+    }
+    free(row);
+    if (why->status) return why->status;
+    return source_attribute(r, HOME, "since", COLUMN_F64, -1, &p->sums.since, why);
+}

@@ -1,0 +1,214 @@
+/* measure/sums.c: what bodies have done to boundaries since the frame before, over all steps [bodies/sums.h]. */
+#include "bodies/chosen.h"
+#include "bodies/face_of.h"
+#include "measure/measures.h"
+
+#include <math.h>
+#include <string.h>
+
+#define NUMBERS                                                                                    \
+    { "span", "s", 1, "from the frame before, or from where the sums began" },                     \
+        { "force", "N", 3, "of the bodies on it, the mean over the span" },                        \
+        { "torque", "N m", 3, "of that about --point" },                                           \
+        { "normal", "N", 1, "sum of normal forces, its mean" },                                    \
+        { "tangential", "N", 1, "sum of tangential forces, each its size, its mean" },             \
+        { "area", "m2", 1, "null where it has no end" },                                           \
+        { "pressure", "Pa", 1, "normal by area" },                                                 \
+        { "power", "W", 1, "of the bodies on it by its motion, the mean" },                        \
+        { "friction", "J", 1, "that friction on it has taken in the span" },                       \
+        { "rub", "J", 1, "normal forces by the ways that they have slid" },                        \
+        { "wear", "m3", 1, "volume worn away by Archard's law, coefficient by rub" },
+
+static const struct quantity of_walls[] = {
+    { "boundary", "1", 1, "its number" },
+    { "name", "name", 1, "its name" },
+    NUMBERS{ 0 },
+};
+static const struct quantity of_names[] = {
+    { "name", "name", 1, "of walls, or parts of them" },
+    NUMBERS{ 0 },
+};
+static const struct quantity of_faces[] = {
+    { "boundary", "1", 1, "the wall's number" },
+    { "name", "name", 1, "of the part, else of the wall" },
+    { "face", "1", 1, "a triangle, from 0; other walls are one face" },
+    NUMBERS{ 0 },
+};
+
+/* What is summed for a row: faces of one wall or of several */
+struct sum {
+    struct face_sums x;
+    double area, wear; /* m^2; m^3, NaN without a coefficient */
+};
+
+/* What a measure looks at */
+struct look {
+    const struct snapshot *s;
+    const struct packing *p;
+    struct wall_faces faces;
+    struct chosen chosen;
+    const struct wall_sums *from; /* NULL: from 0 */
+    double span;                  /* s */
+};
+
+static void look_free(struct look *l)
+{
+    wall_faces_free(&l->faces), chosen_free(&l->chosen);
+}
+
+static int look_init(struct look *l, const struct snapshot *s, struct why *why)
+{
+    const struct packing *p = s->p;
+    const struct wall_sums *before = s->before ? &s->before->sums : NULL;
+    bool same = before && before->n == p->sums.n && before->since == p->sums.since;
+    *l = (struct look){ .s = s, .p = p, .from = same ? before : NULL };
+    l->span = p->t - (same ? s->before->t : p->sums.since);
+    if (face_of_init(&l->faces, p, false, why)) return why->status;
+    if (!chosen_init(&l->chosen, p, "--only", *s->asked->only ? s->asked->only : NULL, why))
+        return 0;
+    look_free(l);
+    return why->status;
+}
+
+/* Adds a face, from which that of the frame before is taken. */
+static void add(struct sum *to, const struct look *l, int32_t wall, int32_t face)
+{
+    const int32_t i = l->faces.first[wall] + face;
+    struct face_sums x = l->p->sums.face[i];
+    const struct face_sums none = { 0 }, *y = l->from ? &l->from->face[i] : &none;
+    const double asked = l->s->asked->wear, own = l->p->wall[wall].wear,
+                 k = asked > 0 ? asked : own;
+    to->x.impulse = v3_add(to->x.impulse, v3_sub(x.impulse, y->impulse));
+    to->x.moment = v3_add(to->x.moment, v3_sub(x.moment, y->moment));
+    to->x.normal += x.normal - y->normal, to->x.tangential += x.tangential - y->tangential;
+    to->x.work += x.work - y->work, to->x.friction += x.friction - y->friction;
+    to->x.rub += x.rub - y->rub;
+    to->area += face_of_area(l->p, wall, face);
+    to->wear += k > 0 ? k * (x.rub - y->rub) : NAN;
+}
+
+static void add_faces(struct sum *to, const struct look *l, int32_t wall, int32_t first,
+                      int32_t count)
+{
+    for (int32_t k = first; k < first + count; k++) add(to, l, wall, k);
+}
+
+static int32_t count_of(const struct look *l, int32_t wall)
+{
+    return l->faces.first[wall + 1] - l->faces.first[wall];
+}
+
+static void put_sum(double **at, const struct look *l, const struct sum *sum)
+{
+    const double by = l->span > 0 ? 1 / l->span : NAN;
+    const vec3 about = v3_cross(l->s->asked->point, sum->x.impulse);
+    put(at, l->span), put_vec(at, v3_scale(by, sum->x.impulse));
+    put_vec(at, v3_scale(by, v3_sub(sum->x.moment, about)));
+    put(at, by * sum->x.normal), put(at, by * sum->x.tangential);
+    put(at, isfinite(sum->area) ? sum->area : NAN);
+    put(at, isfinite(sum->area) && sum->area > 0 ? by * sum->x.normal / sum->area : NAN);
+    put(at, by * sum->x.work), put(at, sum->x.friction), put(at, sum->x.rub), put(at, sum->wear);
+}
+
+/* Why numbers are missing */
+static void explain(struct table *t, const struct look *l)
+{
+    bool any = false;
+    for (int64_t i = 0; i < t->rows; i++)
+        for (int k = t->width - 11 - 4; k < t->width; k++)
+            any = any || !isfinite(t->x[i * t->width + k]);
+    if (!(l->span > 0)) table_null(t, "no time has passed since the sums began");
+    if (any)
+        table_null(t, "walls without an end have no area, and wear wants a coefficient: --wear, or "
+                      "the key wear of the wall");
+}
+
+static double row_of(const struct packing *p, const char *name)
+{
+    return name ? names_find(&p->names, name, strlen(name)) : NAN;
+}
+
+static int walls_rows(struct table *t, const struct snapshot *s, struct why *why)
+{
+    struct look l;
+    if (look_init(&l, s, why)) return why->status;
+    for (int32_t w = 0; w < s->p->walls; w++) {
+        struct sum sum = { 0 };
+        if (!chosen_wall(&l.chosen, s->p, w)) continue;
+        double *at = table_row(t, why);
+        if (!at) break;
+        add_faces(&sum, &l, w, 0, count_of(&l, w));
+        put(&at, w), put(&at, row_of(s->p, names_of_wall(&s->p->names, w)));
+        put_sum(&at, &l, &sum);
+    }
+    explain(t, &l);
+    look_free(&l);
+    return why->status;
+}
+
+static int names_rows(struct table *t, const struct snapshot *s, struct why *why)
+{
+    const struct names *names = &s->p->names;
+    struct look l;
+    if (look_init(&l, s, why)) return why->status;
+    if (!names->rows) table_null(t, "no wall and no part of one has a name");
+    for (int32_t k = 0, end; k < names->rows; k = end) { // rows are sorted by name
+        struct sum sum = { 0 };
+        for (end = k; end < names->rows && names->row[end].name == names->row[k].name; end++) {
+            const struct named *r = &names->row[end];
+            add_faces(&sum, &l, r->boundary, r->first,
+                      r->count ? r->count : count_of(&l, r->boundary));
+        }
+        if (l.chosen.any && !l.chosen.name[names->row[k].name]) continue;
+        double *at = table_row(t, why);
+        if (!at) break;
+        put(&at, names->row[k].name), put_sum(&at, &l, &sum);
+    }
+    explain(t, &l);
+    look_free(&l);
+    return why->status;
+}
+
+static int faces_rows(struct table *t, const struct snapshot *s, struct why *why)
+{
+    struct look l;
+    if (look_init(&l, s, why)) return why->status;
+    for (int32_t w = 0; w < s->p->walls && !why->status; w++)
+        for (int32_t k = 0; k < count_of(&l, w); k++) {
+            struct sum sum = { 0 };
+            if (!chosen_face(&l.chosen, s->p, w, k)) continue;
+            double *at = table_row(t, why);
+            if (!at) break;
+            add(&sum, &l, w, k);
+            put(&at, w), put(&at, row_of(s->p, names_of_face(&s->p->names, w, k))), put(&at, k);
+            put_sum(&at, &l, &sum);
+        }
+    explain(t, &l);
+    look_free(&l);
+    return why->status;
+}
+
+const struct measure measure_sums = {
+    .name = "sums",
+    .help = "what bodies have done to each wall, over all steps: force, pressure, work, wear",
+    .quantity = of_walls,
+    .list = true,
+    .needs = NEEDS_SUMS,
+    .rows = walls_rows,
+};
+const struct measure measure_sums_by_name = {
+    .name = "sums_by_name",
+    .help = "the same for all that has a name: walls, and parts of them",
+    .quantity = of_names,
+    .list = true,
+    .needs = NEEDS_SUMS,
+    .rows = names_rows,
+};
+const struct measure measure_sums_by_face = {
+    .name = "sums_by_face",
+    .help = "the same for each triangle of meshes, and other walls",
+    .quantity = of_faces,
+    .list = true,
+    .needs = NEEDS_SUMS,
+    .rows = faces_rows,
+};

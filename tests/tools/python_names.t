@@ -1,0 +1,62 @@
+#!/usr/bin/env bash
+# import nsd: names of kinds, shapes, walls and groups, and corners, of documents and of runs.
+. tests/support/tap.sh
+
+if ! /usr/bin/python3 -c 'import h5py, numpy' 2>/dev/null; then echo "1..0 # SKIP no h5py"; exit; fi
+export PYTHONPATH=$PWD/python NSD_LIBRARY=${NSD_LIBRARY-$PWD/build/libnsd.so.1}
+
+jq -n '{ dt: 1e-3, gravity: [0, 0, 0], kinds: { steel: {} }, shapes: { cube: { box: [0.2, 0.2, 0.2] } },
+    walls: [{ point: [0, 0, -1], normal: [0, 0, 1], name: "floor" }, { point: [-1, 0, 0], normal: [1, 0, 0], name: "side" },
+            { point: [1, 0, 0], normal: [-1, 0, 0], name: "side" }, { point: [0, 0, 1], normal: [0, 0, -1] }],
+    bodies: [{ x: [0, 0, 0], shape: "cube", size: 1, kind: "steel", orientation: [0, 0, 0.785398163397448], name: "first" },
+             { x: [0.5, 0, 0], radius: 0.1 }] }' >"$tmp/scene.json"
+nsd-gen "$tmp/scene.json" >"$tmp/a.h5"
+
+document()
+{
+    /usr/bin/python3 - "$tmp/a.h5" <<'END'
+import sys
+import numpy as np
+import nsd
+f = nsd.last(sys.argv[1])
+assert [f.kind_names[k] for k in f.kind] == ["steel", "ball"], f.kind_names
+assert [f.shape_names[k] for k in f.shape] == ["cube", "ball"], f.shape_names
+assert list(f.group) == ["first", None], f.group
+assert f.wall_names == ["floor", "side", "side", None], f.wall_names
+assert f.walls("side") == [1, 2] and f.walls(3) == [3]
+try:
+    f.walls("lid")
+    assert False
+except KeyError as e:
+    assert "floor, side" in str(e)
+# a cube turned by 45 degrees about z: corners at 0.1 sqrt(2) along the axes, 0.1 up and down
+c = f.corners(0)
+r = 0.1 * 2 ** 0.5
+want = np.array([[s * r if k == j else 0 for j in range(2)] + [z] for k in range(2) for s in (-1, 1) for z in (-0.1, 0.1)])
+assert c.shape == (8, 3) and all(np.abs(c - w).max(axis=1).min() < 1e-9 for w in want), c
+assert f.corners(1).shape == (0, 3)
+END
+}
+ok "a document's names and corners" document
+run()
+{
+    /usr/bin/python3 - "$tmp/scene.json" <<'END'
+import sys
+import nsd
+with nsd.Run.from_scene(sys.argv[1]) as run:
+    assert run.names == {"kinds": ["ball", "wall", "steel"], "shapes": ["ball", "cube"],
+                         "walls": ["floor", "side", "side", None], "groups": ["first"]}, run.names
+    run.move_boundary("side", [0, 0, 0.25])
+    assert [list(v) for v in run.boundary_velocity] == [[0, 0, 0], [0, 0, 0.25], [0, 0, 0.25], [0, 0, 0]]
+    run.set(only="side", contacts=True)
+    run.step(2)
+    assert run.measure("boundaries")["boundaries"]["boundary"] == [1, 2]
+    try:
+        run.move_boundary("lid", [0, 0, 1])
+        assert False
+    except ValueError as e:
+        assert "floor, side" in str(e)
+END
+}
+if [ -e "$NSD_LIBRARY" ]; then ok "a run's names, and walls by name" run; else skip "a run's names, and walls by name" "no library"; fi
+done_testing
