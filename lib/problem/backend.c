@@ -1,6 +1,8 @@
 /* problem/backend.c: the table of backends, and the choice [problem/backend.h]. */
 #include "problem/backend.h"
 
+#include "problem/device.h"
+
 #include <pthread.h>
 #include <stdlib.h>
 
@@ -42,3 +44,5 @@ const struct backend *backend_widest(void)
     pthread_once(&once, choose);
     return chosen;
 }
+
+const struct device_kind *const device_kinds[] = { &device_opencl, NULL };
