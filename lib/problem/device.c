@@ -1,6 +1,8 @@
 /* problem/device.c: where the iterate is, and what is asked of a device [problem/device.h]. */
 #include "problem/device.h"
 
+#include "problem/device_check.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,7 +65,8 @@ const char *device_declines(const struct problem *p)
 
 int device_hold(struct device *d, struct problem *p, enum method_id method, struct why *why)
 {
-    if (d->kind->hold(d, p, method, why)) return why->status;
+    if (device_check(d, &p->kind, method, why) || d->kind->hold(d, p, method, why))
+        return why->status;
     p->device = d;
     d->problem = p, d->here = true, d->there = false, d->kept = 0;
     return 0;

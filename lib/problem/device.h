@@ -33,11 +33,13 @@ enum {
 
 struct device {
     const struct device_kind *kind;
-    char name[200];          /* as the driver has it */
-    struct why lost;         /* status 0: it works */
-    struct problem *problem; /* whose iterate it has; NULL: none */
-    bool here, there;        /* the iterate of the host is current; that of the device is */
-    int kept;                /* iterates that are kept */
+    char name[200];                 /* as the driver has it */
+    struct why lost;                /* status 0: it works */
+    struct problem *problem;        /* whose iterate it has; NULL: none */
+    bool here, there;               /* the iterate of the host is current; that of the device is */
+    int kept;                       /* iterates that are kept */
+    bool checking;                  /* a problem of problem/device_check.h is on it */
+    unsigned checked[METHOD_COUNT]; /* bits of the kinds of problems that it has shown to solve */
     struct device_account account;
 };
 

@@ -160,7 +160,11 @@ ALWAYS_INLINE void make_local(__global const struct bundle *bundle,
 ALWAYS_INLINE void solve_relaxed(struct local *l, const double was[3], const struct local_opt *o,
                                  double relax)
 {
-    bool within = EXACT && !FULL;
+#if EXACT && !FULL
+    const bool within = true;
+#else
+    const bool within = false;
+#endif
     l->relax = within ? relax : 1;
     PASTE(METHOD, _solve)(l, o);
     if (within || relax == 1) return;
