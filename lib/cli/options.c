@@ -66,7 +66,7 @@ static struct {
 
 void options_warn_cpu(const char *where, const struct report *r)
 {
-    there.solves += device && !r->on_cpu, there.on_cpu += r->on_cpu != NULL;
+    there.solves += r->kernels > 0, there.on_cpu += r->on_cpu != NULL;
     there.to += r->bus_to, there.from += r->bus_from, there.kernels += r->kernels;
     if (r->on_cpu && r->on_cpu != there.reason)
         warn("%s: on the CPU, not on %s: %s", where, options.device, r->on_cpu);

@@ -60,7 +60,7 @@ const char *device_declines(const struct problem *p)
     if (p->kind.beyond) return "contacts have bonds";
     if (p->kind.levers) return "grains are no balls or discs";
     if (p->W && p->W->common) return "loads push contacts";
-    return p->n ? NULL : "there is no contact";
+    return NULL;
 }
 
 int device_hold(struct device *d, struct problem *p, enum method_id method, struct why *why)

@@ -22,6 +22,7 @@ enum {
 /* The arrays there. KEPT_R + k, KEPT_U + k: the iterate that is kept in place k */
 enum role {
     BUNDLES,
+    BESIDE, /* what stands behind them; none: nothing does */
     REBOUND,
     BODIES,
     FREE, /* bodies without reactions */
@@ -115,8 +116,9 @@ static bool good(struct opencl *o, int32_t error, const char *what)
 {
     struct why *lost = &o->device.lost;
     if (error && !lost->status)
-        why_set(lost, EX_UNAVAILABLE, "--device opencl: %s: %s: %s", o->device.name, what,
-                opencl_error(error));
+        why_set(lost, EX_UNAVAILABLE,
+                "--device opencl: %s: it has failed: %s: %s: start again, or leave --device out",
+                o->device.name, what, opencl_error(error));
     return !lost->status;
 }
 
@@ -260,12 +262,16 @@ static struct device *open_device(int number, struct why *why)
 
 static void report_build(struct opencl *o, void *program, int32_t error)
 {
-    char log[300] = "";
-    o->api->clGetProgramBuildInfo(program, o->id, OCL_PROGRAM_BUILD_LOG, sizeof log - 1, log, NULL);
-    log[strcspn(log, "\n")] = 0;
+    size_t n = 0;
+    o->api->clGetProgramBuildInfo(program, o->id, OCL_PROGRAM_BUILD_LOG, 0, NULL, &n);
+    char *log = calloc(n + 1, 1), *line = log ? log : "";
+    if (log) o->api->clGetProgramBuildInfo(program, o->id, OCL_PROGRAM_BUILD_LOG, n, log, NULL);
+    line += strspn(line, " \t\r\n");
     why_set(&o->device.lost, EX_UNAVAILABLE,
-            "--device opencl: %s: kernels do not compile: %s: %.150s", o->device.name,
-            opencl_error(error), log);
+            "--device opencl: %s: its driver does not compile the kernels: %s: %.*s: take another "
+            "driver, or leave --device out",
+            o->device.name, opencl_error(error), (int)strcspn(line, "\n") % 150, line);
+    free(log);
 }
 
 /* The kernels for a method and a variant; NULL where the driver does not compile them */
@@ -447,14 +453,19 @@ static bool count_contacts(struct opencl *o, const struct problem *p)
     return true;
 }
 
-/* Bundles without what may stand behind them */
+/* Bundles, and apart from them what stands behind them */
 static void give_bundles(struct opencl *o, const struct problem *p)
 {
     struct bundle *stage = o->stage;
+    struct beside *behind = o->stage;
     for (int64_t i = 0; i < p->bundles && !lost(o); i += STAGE) {
         int64_t n = p->bundles - i < STAGE ? p->bundles - i : STAGE;
         for (int64_t k = 0; k < n; k++) stage[k] = *bundle_at(p, i + k);
         put(o, BUNDLES, (size_t)i * sizeof *stage, stage, (size_t)n * sizeof *stage);
+        for (int64_t k = 0; k < n && p->kind.near; k++)
+            behind[k] = *bundle_beside(p, bundle_at(p, i + k));
+        if (p->kind.near)
+            put(o, BESIDE, (size_t)i * sizeof *behind, behind, (size_t)n * sizeof *behind);
     }
 }
 
@@ -498,7 +509,12 @@ static int hold(struct device *d, struct problem *p, enum method_id method, stru
     o->method = method, o->variant = variant_of(p);
     o->now = program_of(o, method, o->variant);
     bool room = count_contacts(o, p);
-    if (room && need(o, BUNDLES, bundles * sizeof(struct bundle))) give_bundles(o, p);
+    need(o, BUNDLES, bundles * sizeof(struct bundle));
+    if (p->kind.near)
+        need(o, BESIDE, bundles * sizeof(struct beside));
+    else
+        forget(o, BESIDE);
+    if (room) give_bundles(o, p);
     give(o, REBOUND, p->rebound, bundles * sizeof *p->rebound);
     give(o, W_CC, p->w, bundles * sizeof *p->w);
     give(o, RHO, p->rho, bundles * sizeof *p->rho);
@@ -556,8 +572,8 @@ static void download(struct device *d, struct problem *p, bool bodies)
 static uint32_t set_sweep(struct opencl *o, enum kernel_id k, const struct problem *p,
                           const struct sweep_opt *s)
 {
-    return SET(k, 0, MEMORY(BUNDLES), MEMORY(REBOUND), MEMORY(BODIES), MEMORY(R), MEMORY(U),
-               MEMORY(W_CC), MEMORY(RHO), ROWS_OF_W, INT(p->d), REAL(s->relax),
+    return SET(k, 0, MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(REBOUND), MEMORY(BODIES), MEMORY(R),
+               MEMORY(U), MEMORY(W_CC), MEMORY(RHO), ROWS_OF_W, INT(p->d), REAL(s->relax),
                REAL(s->local.newton_eps), REAL(s->local.newton_abs), INT(s->local.newton_max),
                INT(s->local.plain), INT(s->keep), MEMORY(QUESTION), MEMORY(QUESTIONS),
                MEMORY(PART));
@@ -613,9 +629,10 @@ static void renew(struct device *d, const struct problem *p)
     struct opencl *o = (struct opencl *)d;
     if (p->kind.given_by_W) return;
     copy(o, FREE, BODIES, (size_t)p->bodies * sizeof *p->body);
-    SET(PUSH, 0, MEMORY(BUNDLES), MEMORY(BODIES), MEMORY(R), MEMORY(ROW_R), INT(p->d));
+    SET(PUSH, 0, MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(BODIES), MEMORY(R), MEMORY(ROW_R),
+        INT(p->d));
     for (int64_t g = 0; g < p->groups; g++) {
-        SET(PUSH, 5, LONG(p->group[g] * BUNDLE), INT((int32_t)o->contacts[g]));
+        SET(PUSH, 6, LONG(p->group[g] * BUNDLE), INT((int32_t)o->contacts[g]));
         launch(o, PUSH, o->contacts[g]);
     }
 }
@@ -623,8 +640,8 @@ static void renew(struct device *d, const struct problem *p)
 static void velocities(struct device *d, const struct problem *p)
 {
     struct opencl *o = (struct opencl *)d;
-    SET(VELOCITIES, 0, MEMORY(BUNDLES), MEMORY(REBOUND), MEMORY(BODIES), MEMORY(R), MEMORY(U),
-        ROWS_OF_W, INT(p->d), LONG(p->slots));
+    SET(VELOCITIES, 0, MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(REBOUND), MEMORY(BODIES), MEMORY(R),
+        MEMORY(U), ROWS_OF_W, INT(p->d), LONG(p->slots));
     launch(o, VELOCITIES, p->slots);
 }
 
@@ -655,8 +672,8 @@ static void judge(struct device *d, const struct problem *p, bool believes, enum
     int64_t blocks = (p->bundles + per_block - 1) / per_block;
     double unit = p->unit;
     if (!need(o, JUDGED, (size_t)blocks * sizeof *s)) return;
-    SET(JUDGE, 0, MEMORY(BUNDLES), MEMORY(REBOUND), MEMORY(BODIES), MEMORY(R), MEMORY(U),
-        MEMORY(W_CC), ROWS_OF_W, INT(p->d), LONG(p->bundles), INT((int32_t)per_block),
+    SET(JUDGE, 0, MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(REBOUND), MEMORY(BODIES), MEMORY(R),
+        MEMORY(U), MEMORY(W_CC), ROWS_OF_W, INT(p->d), LONG(p->bundles), INT((int32_t)per_block),
         INT(believes), INT((which & ERR_TERMS) != 0), INT((which & ERR_NATURAL) != 0),
         REAL(ROUNDING_OF_R * ROUNDING_OF_R), REAL(JAMMED * JAMMED * unit * unit),
         REAL(MISSES * MISSES * unit * unit), MEMORY(JUDGED));
@@ -741,9 +758,9 @@ static void react(struct device *d, const struct problem *p, const struct mixing
                   const double gamma[MIXING_DEPTH])
 {
     struct opencl *o = (struct opencl *)d;
-    uint32_t next =
-        SET(REACT, 0, MEMORY(BUNDLES), MEMORY(BODIES), MEMORY(R), MEMORY(ROW_R), INT(p->d),
-            MEMORY(ROOM), LONG(0), LONG(o->vector), INT(m->depth), INT(m->next), REAL(leap));
+    uint32_t next = SET(REACT, 0, MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(BODIES), MEMORY(R),
+                        MEMORY(ROW_R), INT(p->d), MEMORY(ROOM), LONG(0), LONG(o->vector),
+                        INT(m->depth), INT(m->next), REAL(leap));
     for (int k = 0; k < MIXING_DEPTH; k++) next = SET(REACT, next, REAL(gamma[k]));
     for (int64_t g = 0; g < p->groups; g++) {
         SET(REACT, next, LONG(p->group[g] * BUNDLE), INT((int32_t)o->contacts[g]));

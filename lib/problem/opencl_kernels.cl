@@ -67,8 +67,11 @@ ALWAYS_INLINE void load_block(__global const double *block, int64_t slot, double
     for (int i = 0; i < 9; i++) W[i] = block[AT(slot, i, 9)];
 }
 
+/* What may stand behind a bundle, of which t1 is then no more to be computed; NULL: it is */
+#define BESIDE(slot) (beside ? &beside[(slot) / BUNDLE] : NULL)
+
 /* As motion_velocity() of problem/judge.c */
-ALWAYS_INLINE void motion_velocity(__global const struct bundle *bundle,
+ALWAYS_INLINE void motion_velocity(__global const struct bundle *bundle, __global const struct beside *beside,
                                    __global const struct rebound *rebound,
                                    __global struct body *body, const struct rows *W,
                                    __global const double *block, int64_t slot, int d,
@@ -91,12 +94,12 @@ ALWAYS_INLINE void motion_velocity(__global const struct bundle *bundle,
     struct twist ma, mb;
     double t1[3], t2[3];
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
-    bundle_velocity(c, NULL, rebound ? &rebound[slot / BUNDLE] : NULL, k, &ma, &mb, u, t1, t2);
+    bundle_velocity(c, BESIDE(slot), rebound ? &rebound[slot / BUNDLE] : NULL, k, &ma, &mb, u, t1, t2);
 #endif
 }
 
 /* Passes a change dr of r on to the bodies, or r to W's */
-ALWAYS_INLINE void pass_on(__global const struct bundle *bundle, __global struct body *body,
+ALWAYS_INLINE void pass_on(__global const struct bundle *bundle, __global const struct beside *beside, __global struct body *body,
                            __global double *row_r, int64_t slot, int d, const double r[3],
                            const double dr[3])
 {
@@ -109,7 +112,7 @@ ALWAYS_INLINE void pass_on(__global const struct bundle *bundle, __global struct
     struct twist ma, mb;
     double n[3], t1[3], t2[3];
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
-    bundle_basis(c, NULL, k, n, t1, t2);
+    bundle_basis(c, BESIDE(slot), k, n, t1, t2);
     bundle_push(c, k, t1, t2, dr, body, &a, &b);
 #endif
 }
@@ -121,7 +124,7 @@ struct counts {
 };
 
 /* The local problem as make_local() of problem/sweep.c has it */
-ALWAYS_INLINE void make_local(__global const struct bundle *bundle,
+ALWAYS_INLINE void make_local(__global const struct bundle *bundle, __global const struct beside *beside,
                               __global const struct rebound *rebound, __global struct body *body,
                               const struct rows *rows, __global const double *block,
                               __global const double *w, int64_t slot, double W[9],
@@ -145,7 +148,7 @@ ALWAYS_INLINE void make_local(__global const struct bundle *bundle,
     double t1[3], t2[3], la = c->la[k], lb = c->lb[k];
     __global const struct rebound *e = rebound ? &rebound[slot / BUNDLE] : NULL;
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
-    bundle_velocity(c, NULL, e, k, &ma, &mb, l->v, t1, t2);
+    bundle_velocity(c, BESIDE(slot), e, k, &ma, &mb, l->v, t1, t2);
     double im = a.im + b.im, it = im + la * la * a.ii + lb * lb * b.ii;
     l->w[0] = e ? e->s[0][k] * im : im;
     l->w[1] = l->w[2] = e ? e->s[1][k] * it : it;
@@ -174,13 +177,13 @@ ALWAYS_INLINE void solve_relaxed(struct local *l, const double was[3], const str
 }
 
 #define SWEEP_OF                                                                                   \
-    __global const struct bundle *bundle, __global const struct rebound *rebound,                  \
+    __global const struct bundle *bundle, __global const struct beside *beside, __global const struct rebound *rebound,                  \
         __global struct body *body, __global double *r, __global double *u,                        \
         __global const double *w, __global const double *rho, GIVEN_BY_W, int d, double relax,     \
         double newton_eps, double newton_abs, int newton_max, int plain, int keep,                 \
         __global struct question *question, __global int *questions
 #define SWEEP_WITH                                                                                 \
-    bundle, rebound, body, r, u, w, rho, row_first, row_col, row_block, row_q, row_r, block, d,    \
+    bundle, beside, rebound, body, r, u, w, rho, row_first, row_col, row_block, row_q, row_r, block, d,    \
         relax, newton_eps, newton_abs, newton_max, plain, keep, question, questions
 
 /* Solves a slot; without an answer that it needs it asks, and leaves the slot as it is. */
@@ -196,7 +199,7 @@ ALWAYS_INLINE void solve_slot(SWEEP_OF, int64_t slot, struct search *search, str
     l.mu = c->mu[k];
     l.rho = EXACT ? 1 : rho[slot];
     for (int i = 0; i < 3; i++) was[i] = l.r[i] = r[AT(slot, i, 3)];
-    make_local(bundle, rebound, body, &rows, block, w, slot, W, &l);
+    make_local(bundle, beside, rebound, body, &rows, block, w, slot, W, &l);
     solve_relaxed(&l, was, &o, relax);
     if (search->asked) {
         __global struct question *q = &question[atomic_inc(questions)];
@@ -215,7 +218,7 @@ ALWAYS_INLINE void solve_slot(SWEEP_OF, int64_t slot, struct search *search, str
     t->newton += pick(lt(0, l.rho), l.steps, 0);
     t->safeguarded += pick(l.safeguarded, 1, 0);
     t->gave_up += pick(l.gave_up, 1, 0);
-    pass_on(bundle, body, row_r, slot, d, l.r, dr);
+    pass_on(bundle, beside, body, row_r, slot, d, l.r, dr);
 }
 
 ALWAYS_INLINE struct counts sum_counts(__local const struct counts *of)
@@ -283,17 +286,17 @@ __kernel void tally_counts(__global const struct counts *part, long n, __global 
 /* ---- velocities from the reactions ---- */
 
 /* Adds to the bodies' velocities what the reactions of a group make of them */
-__kernel void push(__global const struct bundle *bundle, __global struct body *body,
+__kernel void push(__global const struct bundle *bundle, __global const struct beside *beside, __global struct body *body,
                    __global const double *r, __global double *row_r, int d, long first, int n)
 {
     int64_t slot = first + get_global_id(0);
     if (get_global_id(0) >= n) return;
     const double dr[3] = { r[AT(slot, 0, 3)], r[AT(slot, 1, 3)], r[AT(slot, 2, 3)] };
-    pass_on(bundle, body, row_r, slot, d, dr, dr);
+    pass_on(bundle, beside, body, row_r, slot, d, dr, dr);
 }
 
 /* u of the slots becomes the motion's */
-__kernel void velocities(__global const struct bundle *bundle,
+__kernel void velocities(__global const struct bundle *bundle, __global const struct beside *beside,
                          __global const struct rebound *rebound, __global struct body *body,
                          __global const double *r, __global double *u, GIVEN_BY_W, int d,
                          long slots)
@@ -303,7 +306,7 @@ __kernel void velocities(__global const struct bundle *bundle,
     const struct rows rows = ROWS;
     const double of[3] = { r[AT(slot, 0, 3)], r[AT(slot, 1, 3)], r[AT(slot, 2, 3)] };
     double v[3];
-    motion_velocity(bundle, rebound, body, &rows, block, slot, d, of, v);
+    motion_velocity(bundle, beside, rebound, body, &rows, block, slot, d, of, v);
     for (int i = 0; i < 3; i++) u[AT(slot, i, 3)] = v[i];
 }
 
@@ -342,7 +345,7 @@ enum {
     SUMS
 };
 
-__kernel void judge(__global const struct bundle *bundle, __global const struct rebound *rebound,
+__kernel void judge(__global const struct bundle *bundle, __global const struct beside *beside, __global const struct rebound *rebound,
                     __global struct body *body, __global const double *r,
                     __global const double *belief, __global const double *w, GIVEN_BY_W, int d,
                     long bundles, int per_block, int believes, int terms, int natural,
@@ -360,7 +363,7 @@ __kernel void judge(__global const struct bundle *bundle, __global const struct 
         int64_t slot = i * BUNDLE + k;
         double mu = bundle[i].mu[k], of[3], moves[3], u[3], proj[3];
         for (int j = 0; j < 3; j++) of[j] = r[AT(slot, j, 3)];
-        motion_velocity(bundle, rebound, body, &rows, block, slot, d, of, moves);
+        motion_velocity(bundle, beside, rebound, body, &rows, block, slot, d, of, moves);
         if (terms) {
             for (int j = 0; j < 3; j++) u[j] = believes ? belief[AT(slot, j, 3)] : moves[j];
             cone_project(mu, of, proj);
@@ -467,7 +470,7 @@ __kernel void products(__global const double *room, __global const double *w, in
 }
 
 /* r = x = g + leap f - sum_j gamma_j dg_j, projected onto the discs, of one group; the bodies follow */
-__kernel void react(__global const struct bundle *bundle, __global struct body *body,
+__kernel void react(__global const struct bundle *bundle, __global const struct beside *beside, __global struct body *body,
                     __global double *r, __global double *row_r, int d, __global double *room,
                     long f, long size, int depth, int next, double leap, double gamma0,
                     double gamma1, double gamma2, double gamma3, double gamma4, long first, int n)
@@ -489,5 +492,5 @@ __kernel void react(__global const struct bundle *bundle, __global struct body *
         int64_t at = AT(slot, l, d);
         room[f + (1 + 2 * next) * size + at] = was, room[f + (2 + 2 * next) * size + at] = now[l];
     }
-    pass_on(bundle, body, row_r, slot, d, now, dr);
+    pass_on(bundle, beside, body, row_r, slot, d, now, dr);
 }

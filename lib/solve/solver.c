@@ -217,7 +217,7 @@ static int go_to_device(struct problem *p, const struct solve_opt *o, struct rep
 {
     struct why why = { 0 };
     rep->on_cpu = NULL, rep->bus_to = rep->bus_from = 0, rep->kernels = 0;
-    if (!o->device) return 0;
+    if (!o->device || !p->n) return 0;
     rep->on_cpu = o->global == &solver_cg ? "cg makes no sweeps" : device_declines(p);
     if (rep->on_cpu) return 0;
     o->device->account = (struct device_account){ 0 };
