@@ -133,7 +133,7 @@ $B/lib/%.o: lib/%.c Makefile
 $B/lib/draw/page_parts.o: $(wildcard lib/draw/page/*)
 
 # So are the kernels of a device, and the headers that they share with the CPU's.
-$B/lib/problem/opencl_text.o: $(wildcard lib/problem/*.cl) lib/base/lanes.h $(wildcard lib/law/local*.h) lib/problem/bundle.h
+$B/lib/problem/opencl_text.o: $(wildcard lib/problem/opencl/*.cl) lib/base/lanes.h $(wildcard lib/law/local*.h) lib/problem/bundle.h
 
 define compile_wide
 $B/lib/problem/$1-%.o: lib/problem/$1.c Makefile

@@ -1,8 +1,6 @@
 /* problem/backend.c: the table of backends, and the choice [problem/backend.h]. */
 #include "problem/backend.h"
 
-#include "problem/device.h"
-
 #include <pthread.h>
 #include <stdlib.h>
 
@@ -44,5 +42,3 @@ const struct backend *backend_widest(void)
     pthread_once(&once, choose);
     return chosen;
 }
-
-const struct device_kind *const device_kinds[] = { &device_opencl, NULL };

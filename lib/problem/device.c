@@ -1,11 +1,12 @@
 /* problem/device.c: where the iterate is, and what is asked of a device [problem/device.h]. */
 #include "problem/device.h"
 
-#include "problem/device_check.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* The table; NULL ends it */
+static const struct device_kind *const device_kinds[] = { &device_opencl, NULL };
 
 static const struct device_kind *kind_named(const char *name, size_t n)
 {
@@ -65,8 +66,7 @@ const char *device_declines(const struct problem *p)
 
 int device_hold(struct device *d, struct problem *p, enum method_id method, struct why *why)
 {
-    if (device_check(d, &p->kind, method, why) || d->kind->hold(d, p, method, why))
-        return why->status;
+    if (d->kind->hold(d, p, method, why)) return why->status;
     p->device = d;
     d->problem = p, d->here = true, d->there = false, d->kept = 0;
     return 0;

@@ -8,7 +8,7 @@
  * A failure of the device stays: later calls do nothing, errors are NaN, so that solvers end, and device_failed() has
  * the reason. Nothing goes on elsewhere.
  *
- * Another kind of device is a file with its struct device_kind, and a row of device_kinds[] in backend.c.
+ * Another kind of device is a file with its struct device_kind, and a row of device_kinds[] in device.c.
  */
 #ifndef NSD_DEVICE_H
 #define NSD_DEVICE_H
@@ -38,7 +38,6 @@ struct device {
     struct problem *problem;        /* whose iterate it has; NULL: none */
     bool here, there;               /* the iterate of the host is current; that of the device is */
     int kept;                       /* iterates that are kept */
-    bool checking;                  /* a problem of problem/device_check.h is on it */
     unsigned checked[METHOD_COUNT]; /* bits of the kinds of problems that it has shown to solve */
     struct device_account account;
 };
@@ -70,8 +69,6 @@ struct device_kind {
     void (*react)(struct device *d, const struct problem *p, const struct mixing *m, double leap,
                   const double gamma[MIXING_DEPTH]);
 };
-/* NULL ends it. */
-extern const struct device_kind *const device_kinds[];
 extern const struct device_kind device_opencl;
 
 /* Whether this names a device, there or not: "opencl" or "opencl:1", 0 by default; else EX_USAGE */

@@ -237,14 +237,13 @@ int device_check(struct device *d, const struct problem_kind *kind, enum method_
     bool same = false;
     struct problem p;
     struct delassus W = { 0 };
-    if (d->checking || d->checked[method] & 1U << variant) return 0;
+    if (d->checked[method] & 1U << variant) return 0;
     bool made = variant ? make_blocks(&p, &W, kind->full, methods[method]->rho, &state)
                         : make_balls(&p, &state);
     const struct device_account account = d->account; // not of a solve
-    d->checking = true;
     if (!made || compare(d, &p, method, &same, why))
         why_set(why, EX_SOFTWARE, "--device: no memory");
-    d->checking = false, d->account = account;
+    d->account = account;
     if (made || !variant) problem_free(&p);
     if (made && variant) delassus_free(&W);
     if (why->status) return why->status;

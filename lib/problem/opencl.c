@@ -13,7 +13,7 @@
 #include <string.h>
 
 enum {
-    TEAM = 64,      /* work-items of a group: as in opencl_kernels.cl */
+    TEAM = 64,      /* work-items of a group: as in opencl/kernels.cl */
     STAGE = 4096,   /* bundles that are gathered for a transfer: 3 MB */
     PLATFORMS = 16, /* that are looked at */
     DEVICES = 64    /* of all platforms */
@@ -71,7 +71,7 @@ static const char *const kernel_name[KERNELS] = {
     "clear", "scatter",        "remember",     "changes", "products",   "react"
 };
 
-/* What is asked of exact_search(), and its answer: as in opencl_kernels.cl */
+/* What is asked of exact_search(), and its answer: as in opencl/kernels.cl */
 struct question {
     double W[9], b[3], mu, r[3];
     int64_t slot;

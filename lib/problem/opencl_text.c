@@ -5,7 +5,7 @@
 #include <string.h>
 
 #define EACH_TEXT(X)                                                                               \
-    X(begin, "lib/problem/opencl_begin.cl")                                                        \
+    X(begin, "lib/problem/opencl/begin.cl")                                                        \
     X(lanes, "lib/base/lanes.h")                                                                   \
     X(local, "lib/law/local.h")                                                                    \
     X(sbp, "lib/law/local_sbp.h")                                                                  \
@@ -15,7 +15,7 @@
     X(ebp, "lib/law/local_ebp.h")                                                                  \
     X(eal, "lib/law/local_eal.h")                                                                  \
     X(bundle, "lib/problem/bundle.h")                                                              \
-    X(kernels, "lib/problem/opencl_kernels.cl")
+    X(kernels, "lib/problem/opencl/kernels.cl")
 
 #define TAKE_IN(name, file)                                                                        \
     __asm__(".section .rodata\n.hidden nsd_cl_" #name "\n.globl nsd_cl_" #name "\nnsd_cl_" #name   \

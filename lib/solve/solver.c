@@ -5,6 +5,7 @@
 #include "problem/apply.h"
 #include "problem/backend.h"
 #include "problem/device.h"
+#include "problem/device_check.h"
 #include "problem/shared.h"
 #include "solve/prices.h"
 
@@ -221,6 +222,7 @@ static int go_to_device(struct problem *p, const struct solve_opt *o, struct rep
     rep->on_cpu = o->global == &solver_cg ? "cg makes no sweeps" : device_declines(p);
     if (rep->on_cpu) return 0;
     o->device->account = (struct device_account){ 0 };
+    if (device_check(o->device, &p->kind, o->method->id, &why)) return -1;
     return device_hold(o->device, p, o->method->id, &why) ? -1 : 0;
 }
 

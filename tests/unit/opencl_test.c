@@ -78,8 +78,8 @@ int main(void)
     test_numbers();
     test_errors();
 #else
-    skip("declarations", "there is no CL/cl.h: package opencl-c-headers");
+    ok(true, "declarations # SKIP there is no CL/cl.h: package opencl-c-headers");
 #endif
     test_text();
-    return done_testing();
+    return tap_done();
 }
