@@ -108,12 +108,15 @@ static bool make_blocks(struct problem *p, struct delassus *W, bool full, double
         for (int j = 0; j < 3; j++) q[3 * c + j] = number(state) - (j == 0 ? 0.5 : 0);
         for (int b = c > 0 ? c - 1 : 0; b <= c + 1 && b < CHAIN; b++)
             for (int j = 0; j < 9; j++) {
-                bool diagonal = b == c && j % 4 == 0, within = b == c && full;
-                row[n] = 3 * c + j / 3, col[n] = 3 * b + j % 3;
-                x[n++] = diagonal ? (j ? 3.5 : 1)
-                         : within ? 0.05 * (j / 3 + j % 3)
-                         : b == c ? 0
-                                  : 0.1 * number(state);
+                int across = j / 3, along = j % 3;
+                row[n] = 3 * c + across, col[n] = 3 * b + along;
+                if (b != c)
+                    x[n] = 0.1 * number(state);
+                else if (across == along)
+                    x[n] = across ? 3.5 : 1;
+                else
+                    x[n] = full ? 0.05 * (across + along) : 0;
+                n++;
             }
     }
     if (delassus_init(W, 3, CHAIN, n, row, col, x, q, mu, &why)) return false;

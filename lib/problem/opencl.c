@@ -301,51 +301,49 @@ static const struct program *program_of(struct opencl *o, enum method_id method,
 
 /* ---- launches ---- */
 
-/* Arguments in their order, each a size and a value */
+/* An argument of a kernel */
 struct argument {
     size_t size;
-    const void *value;
+    union {
+        void *memory;
+        int32_t integer;
+        int64_t whole;
+        double real;
+    } value;
 };
-#define MEMORY(role)                                                                               \
-    {                                                                                              \
-        sizeof(void *), &o->buffer[role].memory                                                    \
-    }
-#define INT(x)                                                                                     \
-    {                                                                                              \
-        sizeof(int32_t), &(int32_t)                                                                \
-        {                                                                                          \
-            x                                                                                      \
-        }                                                                                          \
-    }
-#define LONG(x)                                                                                    \
-    {                                                                                              \
-        sizeof(int64_t), &(int64_t)                                                                \
-        {                                                                                          \
-            x                                                                                      \
-        }                                                                                          \
-    }
-#define REAL(x)                                                                                    \
-    {                                                                                              \
-        sizeof(double), &(double)                                                                  \
-        {                                                                                          \
-            x                                                                                      \
-        }                                                                                          \
-    }
+
+static struct argument memory_of(const struct opencl *o, enum role role)
+{
+    return (struct argument){ sizeof(void *), { .memory = o->buffer[role].memory } };
+}
+static struct argument integer(int32_t x)
+{
+    return (struct argument){ sizeof x, { .integer = x } };
+}
+static struct argument whole(int64_t x)
+{
+    return (struct argument){ sizeof x, { .whole = x } };
+}
+static struct argument real(double x)
+{
+    return (struct argument){ sizeof x, { .real = x } };
+}
+
+#define MEMORY(role) memory_of(o, role)
 #define ROWS_OF_W                                                                                  \
     MEMORY(ROW_FIRST), MEMORY(ROW_COL), MEMORY(ROW_BLOCK), MEMORY(ROW_Q), MEMORY(ROW_R),           \
         MEMORY(BLOCK)
-#define SET(k, from, ...)                                                                          \
-    set(o, k, from, sizeof((struct argument[]){ __VA_ARGS__ }) / sizeof(struct argument),          \
-        (struct argument[]){ __VA_ARGS__ })
 
-static uint32_t set(struct opencl *o, enum kernel_id k, uint32_t from, size_t n,
-                    const struct argument *a)
+/* Sets arguments of a kernel, from this index on; returns the index after them. */
+#define SET(k, from, ...) set(o, k, from, (const struct argument[]){ __VA_ARGS__, { 0, { NULL } } })
+
+static uint32_t set(struct opencl *o, enum kernel_id k, uint32_t from, const struct argument *a)
 {
-    for (size_t i = 0; i < n && !lost(o); i++)
-        good(o,
-             o->api->clSetKernelArg(o->now->kernel[k], from + (uint32_t)i, a[i].size, a[i].value),
-             kernel_name[k]);
-    return from + (uint32_t)n;
+    for (; a->size; a++, from++)
+        if (!lost(o))
+            good(o, o->api->clSetKernelArg(o->now->kernel[k], from, a->size, &a->value),
+                 kernel_name[k]);
+    return from;
 }
 
 /* At least n work-items, in teams */
@@ -573,9 +571,9 @@ static uint32_t set_sweep(struct opencl *o, enum kernel_id k, const struct probl
                           const struct sweep_opt *s)
 {
     return SET(k, 0, MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(REBOUND), MEMORY(BODIES), MEMORY(R),
-               MEMORY(U), MEMORY(W_CC), MEMORY(RHO), ROWS_OF_W, INT(p->d), REAL(s->relax),
-               REAL(s->local.newton_eps), REAL(s->local.newton_abs), INT(s->local.newton_max),
-               INT(s->local.plain), INT(s->keep), MEMORY(QUESTION), MEMORY(QUESTIONS),
+               MEMORY(U), MEMORY(W_CC), MEMORY(RHO), ROWS_OF_W, integer(p->d), real(s->relax),
+               real(s->local.newton_eps), real(s->local.newton_abs), integer(s->local.newton_max),
+               integer(s->local.plain), integer(s->keep), MEMORY(QUESTION), MEMORY(QUESTIONS),
                MEMORY(PART));
 }
 
@@ -597,7 +595,7 @@ static void answer(struct opencl *o, int d, uint32_t next, int64_t part)
     put(o, QUESTION, 0, q, (size_t)n * sizeof *q);
     put(o, QUESTIONS, 0, &zero, sizeof zero);
     free(q);
-    SET(SWEEP_ANSWERED, next, INT(n), LONG(part));
+    SET(SWEEP_ANSWERED, next, integer(n), whole(part));
     launch(o, SWEEP_ANSWERED, 1);
 }
 
@@ -611,12 +609,13 @@ static void sweep(struct device *d, struct problem *p, const struct sweep_opt *s
     if (asks) set_sweep(o, SWEEP_ANSWERED, p, s);
     for (int64_t g = 0; g < p->groups && !lost(o); g++) {
         if (!o->contacts[g]) continue;
-        SET(SWEEP, next, LONG(p->group[g] * BUNDLE), INT((int32_t)o->contacts[g]), LONG(part));
+        SET(SWEEP, next, whole(p->group[g] * BUNDLE), integer((int32_t)o->contacts[g]),
+            whole(part));
         launch(o, SWEEP, o->contacts[g]);
         if (asks) answer(o, p->d, next, part);
         part += (o->contacts[g] + TEAM - 1) / TEAM;
     }
-    SET(TALLY_COUNTS, 0, MEMORY(PART), LONG(part), MEMORY(TALLY));
+    SET(TALLY_COUNTS, 0, MEMORY(PART), whole(part), MEMORY(TALLY));
     launch(o, TALLY_COUNTS, 1);
     take(o, TALLY, 0, &c, sizeof c);
     if (lost(o)) return;
@@ -630,9 +629,9 @@ static void renew(struct device *d, const struct problem *p)
     if (p->kind.given_by_W) return;
     copy(o, FREE, BODIES, (size_t)p->bodies * sizeof *p->body);
     SET(PUSH, 0, MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(BODIES), MEMORY(R), MEMORY(ROW_R),
-        INT(p->d));
+        integer(p->d));
     for (int64_t g = 0; g < p->groups; g++) {
-        SET(PUSH, 6, LONG(p->group[g] * BUNDLE), INT((int32_t)o->contacts[g]));
+        SET(PUSH, 6, whole(p->group[g] * BUNDLE), integer((int32_t)o->contacts[g]));
         launch(o, PUSH, o->contacts[g]);
     }
 }
@@ -641,7 +640,7 @@ static void velocities(struct device *d, const struct problem *p)
 {
     struct opencl *o = (struct opencl *)d;
     SET(VELOCITIES, 0, MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(REBOUND), MEMORY(BODIES), MEMORY(R),
-        MEMORY(U), ROWS_OF_W, INT(p->d), LONG(p->slots));
+        MEMORY(U), ROWS_OF_W, integer(p->d), whole(p->slots));
     launch(o, VELOCITIES, p->slots);
 }
 
@@ -652,8 +651,8 @@ static void sum_parts(struct opencl *o, enum role parts, int64_t n, int columns,
                       int most_end, enum role sum, double *to)
 {
     if (!need(o, sum, (size_t)columns * sizeof *to)) return;
-    SET(SUM_PARTS, 0, MEMORY(parts), LONG(n), INT(columns), INT(most_first), INT(most_end),
-        MEMORY(sum));
+    SET(SUM_PARTS, 0, MEMORY(parts), whole(n), integer(columns), integer(most_first),
+        integer(most_end), MEMORY(sum));
     launch(o, SUM_PARTS, columns);
     take(o, sum, 0, to, (size_t)columns * sizeof *to);
 }
@@ -673,10 +672,10 @@ static void judge(struct device *d, const struct problem *p, bool believes, enum
     double unit = p->unit;
     if (!need(o, JUDGED, (size_t)blocks * sizeof *s)) return;
     SET(JUDGE, 0, MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(REBOUND), MEMORY(BODIES), MEMORY(R),
-        MEMORY(U), MEMORY(W_CC), ROWS_OF_W, INT(p->d), LONG(p->bundles), INT((int32_t)per_block),
-        INT(believes), INT((which & ERR_TERMS) != 0), INT((which & ERR_NATURAL) != 0),
-        REAL(ROUNDING_OF_R * ROUNDING_OF_R), REAL(JAMMED * JAMMED * unit * unit),
-        REAL(MISSES * MISSES * unit * unit), MEMORY(JUDGED));
+        MEMORY(U), MEMORY(W_CC), ROWS_OF_W, integer(p->d), whole(p->bundles),
+        integer((int32_t)per_block), integer(believes), integer((which & ERR_TERMS) != 0),
+        integer((which & ERR_NATURAL) != 0), real(ROUNDING_OF_R * ROUNDING_OF_R),
+        real(JAMMED * JAMMED * unit * unit), real(MISSES * MISSES * unit * unit), MEMORY(JUDGED));
     launch(o, JUDGE, blocks * BUNDLE);
     sum_parts(o, JUDGED, blocks, SUM_COLUMNS, COLUMN(max_pen), COLUMN(jammed), JUDGED_SUM,
               s->motion);
@@ -700,7 +699,7 @@ static void restore(struct device *d, const struct problem *p, int place, bool u
     copy(o, (enum role)(KEPT_R + place), R, size);
     if (u) copy(o, (enum role)(KEPT_U + place), U, size);
     if (p->kind.given_by_W) {
-        SET(SCATTER, 0, MEMORY(BUNDLES), MEMORY(R), MEMORY(ROW_R), INT(p->d), LONG(p->slots));
+        SET(SCATTER, 0, MEMORY(BUNDLES), MEMORY(R), MEMORY(ROW_R), integer(p->d), whole(p->slots));
         launch(o, SCATTER, p->slots);
     }
     renew(d, p);
@@ -723,7 +722,7 @@ static int mixing(struct device *d, const struct problem *p, int depth)
     o->vector = p->slots * p->d;
     int64_t all = (1 + 2 * depth) * o->vector;
     if (!need(o, ROOM, (size_t)all * sizeof(double))) return 0; // it is lost: the solve ends
-    SET(CLEAR, 0, MEMORY(ROOM), LONG(all));
+    SET(CLEAR, 0, MEMORY(ROOM), whole(all));
     launch(o, CLEAR, all);
     return 0;
 }
@@ -731,7 +730,8 @@ static int mixing(struct device *d, const struct problem *p, int depth)
 static void remember(struct device *d, const struct problem *p, int next)
 {
     struct opencl *o = (struct opencl *)d;
-    SET(REMEMBER, 0, MEMORY(R), INT(p->d), LONG(o->vector), MEMORY(ROOM), LONG(df_at(o, next)));
+    SET(REMEMBER, 0, MEMORY(R), integer(p->d), whole(o->vector), MEMORY(ROOM),
+        whole(df_at(o, next)));
     launch(o, REMEMBER, o->vector);
 }
 
@@ -745,11 +745,12 @@ static void measure(struct device *d, const struct problem *p, const struct mixi
     struct opencl *o = (struct opencl *)d;
     int64_t chunks = (p->bundles + per_chunk - 1) / per_chunk;
     if (!need(o, MIXED, (size_t)chunks * sizeof *sums)) return;
-    SET(CHANGES, 0, MEMORY(R), INT(p->d), LONG(o->vector), MEMORY(ROOM), LONG(0),
-        LONG(dg_at(o, m->next)), LONG(df_at(o, m->next)));
+    SET(CHANGES, 0, MEMORY(R), integer(p->d), whole(o->vector), MEMORY(ROOM), whole(0),
+        whole(dg_at(o, m->next)), whole(df_at(o, m->next)));
     launch(o, CHANGES, o->vector);
-    SET(PRODUCTS, 0, MEMORY(ROOM), MEMORY(W_CC), INT(p->d), INT(m->depth), LONG(p->bundles),
-        INT((int32_t)per_chunk), LONG(0), LONG(df_at(o, m->next)), LONG(o->vector), MEMORY(MIXED));
+    SET(PRODUCTS, 0, MEMORY(ROOM), MEMORY(W_CC), integer(p->d), integer(m->depth),
+        whole(p->bundles), integer((int32_t)per_chunk), whole(0), whole(df_at(o, m->next)),
+        whole(o->vector), MEMORY(MIXED));
     launch(o, PRODUCTS, chunks * MIXING_COLUMNS);
     sum_parts(o, MIXED, chunks, MIXING_COLUMNS, 0, 0, MIXED_SUM, sums->f2);
 }
@@ -759,11 +760,11 @@ static void react(struct device *d, const struct problem *p, const struct mixing
 {
     struct opencl *o = (struct opencl *)d;
     uint32_t next = SET(REACT, 0, MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(BODIES), MEMORY(R),
-                        MEMORY(ROW_R), INT(p->d), MEMORY(ROOM), LONG(0), LONG(o->vector),
-                        INT(m->depth), INT(m->next), REAL(leap));
-    for (int k = 0; k < MIXING_DEPTH; k++) next = SET(REACT, next, REAL(gamma[k]));
+                        MEMORY(ROW_R), integer(p->d), MEMORY(ROOM), whole(0), whole(o->vector),
+                        integer(m->depth), integer(m->next), real(leap));
+    for (int k = 0; k < MIXING_DEPTH; k++) next = SET(REACT, next, real(gamma[k]));
     for (int64_t g = 0; g < p->groups; g++) {
-        SET(REACT, next, LONG(p->group[g] * BUNDLE), INT((int32_t)o->contacts[g]));
+        SET(REACT, next, whole(p->group[g] * BUNDLE), integer((int32_t)o->contacts[g]));
         launch(o, REACT, o->contacts[g]);
     }
 }

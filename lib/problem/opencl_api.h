@@ -69,6 +69,7 @@ enum {
     X(int32_t, clFinish, (void *queue))
 
 struct opencl_api {
+// NOLINTNEXTLINE(bugprone-macro-parentheses)
 #define OPENCL_CALL(result, name, arguments) result(*name) arguments;
     EACH_OPENCL_CALL(OPENCL_CALL)
 #undef OPENCL_CALL

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # --device where there is no OpenCL: what is wrong is said, and nothing is solved elsewhere.
-# shellcheck source=tests/support/tap.sh
+# shellcheck source=tests/support/tap.sh disable=SC2016 # eval expands them
 . tests/support/tap.sh
 
 nsd-gen 20 | nsd-detect >"$tmp/a.h5"

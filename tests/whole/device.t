@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # A device by OpenCL (here PoCL, which is the CPU again by another compiler) makes the sweeps: the bytes of --order
 # colour on the CPU; what it cannot solve stays on the CPU and is named; a device that fails ends the run clearly.
-# shellcheck source=tests/support/tap.sh
+# shellcheck source=tests/support/tap.sh disable=SC2016 # eval expands them
 . tests/support/tap.sh
 
 if ! nsd-solve --device list >"$tmp/list" 2>/dev/null; then
