@@ -99,8 +99,8 @@ static bool make_blocks(struct problem *p, struct delassus *W, bool full, double
                         uint64_t *state)
 {
     enum { ENTRIES = 9 * (3 * CHAIN - 2) };
-    static int32_t row[ENTRIES], col[ENTRIES];
-    static double x[ENTRIES], q[3 * CHAIN], mu[CHAIN];
+    int32_t row[ENTRIES], col[ENTRIES];
+    double x[ENTRIES], q[3 * CHAIN], mu[CHAIN];
     struct why why = { 0 };
     int n = 0;
     for (int c = 0; c < CHAIN; c++) {

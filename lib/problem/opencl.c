@@ -179,8 +179,12 @@ static int list(FILE *to, struct why *why)
     for (int k = 0; k < n; k++) {
         char name[200];
         text_of(api, device[k], platform[k], name, sizeof name);
-        fprintf(to, "opencl:%d\t%s\t%.3g GB%s\n", k, name,
-                1e-9 * (double)number_of(api, device[k], OCL_DEVICE_GLOBAL_MEM_SIZE),
+        uint64_t type = number_of(api, device[k], OCL_DEVICE_TYPE);
+        fprintf(to, "opencl:%d\t%s\t%s\t%.3g GB%s\n", k,
+                type & OCL_DEVICE_TYPE_GPU   ? "GPU"
+                : type & OCL_DEVICE_TYPE_CPU ? "CPU"
+                                             : "other",
+                name, 1e-9 * (double)number_of(api, device[k], OCL_DEVICE_GLOBAL_MEM_SIZE),
                 number_of(api, device[k], OCL_DEVICE_DOUBLE_FP_CONFIG)
                     ? ""
                     : "\tno double precision: not for nsd");

@@ -213,17 +213,19 @@ void solve_restore_best(struct solve *s)
 
 /* ---- a whole solve ---- */
 
-/* Gives the problem to the device where there is one that can solve it. */
-static int go_to_device(struct problem *p, const struct solve_opt *o, struct report *rep)
+/* The device that is to solve the problem, compared with the CPU before it does so for the first time; NULL: the CPU
+   is. -1 where the device fails */
+static int choose_device(const struct problem *p, const struct solve_opt *o, struct report *rep,
+                         struct device **device)
 {
     struct why why = { 0 };
+    *device = NULL;
     rep->on_cpu = NULL, rep->bus_to = rep->bus_from = 0, rep->kernels = 0;
     if (!o->device || !p->n) return 0;
     rep->on_cpu = o->global == &solver_cg ? "cg makes no sweeps" : device_declines(p);
     if (rep->on_cpu) return 0;
-    o->device->account = (struct device_account){ 0 };
-    if (device_check(o->device, &p->kind, o->method->id, &why)) return -1;
-    return device_hold(o->device, p, o->method->id, &why) ? -1 : 0;
+    *device = o->device, o->device->account = (struct device_account){ 0 };
+    return device_check(o->device, &p->kind, o->method->id, &why) ? -1 : 0;
 }
 
 /* The iterate comes back from it; -1 where it was lost. */
@@ -239,6 +241,9 @@ static int leave_device(struct problem *p, struct report *rep)
 
 int solve_problem(struct problem *p, const struct solve_opt *o, struct report *rep)
 {
+    struct why why = { 0 };
+    struct device *device;
+    if (choose_device(p, o, rep, &device)) return -1; // compiles kernels: no time of the solve
     double cpu = report_seconds(CLOCK_CPU), wall = report_seconds(CLOCK_WALL);
     struct solve s = { .p = p, .o = o, .rep = rep, .start = wall };
     s.believes = o->method->believes, s.value = INFINITY, s.renewed = true;
@@ -250,7 +255,7 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
     rep->work = 0, rep->fallback = rep->given_up = NULL;
     snprintf(rep->method, sizeof rep->method, "%s",
              o->global == &solver_nlgs ? o->method->name : o->global->name);
-    if (go_to_device(p, o, rep)) return -1;
+    if (device && device_hold(device, p, o->method->id, &why)) return -1;
     int failed = p->n ? o->global->run(&s) : 0;
     solve_restore_best(&s);
     best_free(&s.best);
