@@ -122,6 +122,6 @@ int tool_main(int argc, char **argv)
     tool_filter(argc, argv, solve);
     options_log_close();
     summary();
-    options_say_device();
+    options_leave_device();
     return options.strict && total.missed;
 }

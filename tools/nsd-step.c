@@ -661,7 +661,7 @@ int tool_main(int argc, char **argv)
     loop_close();
     const char *told = processes_leave();
     summary(made);
-    options_say_device();
+    options_leave_device();
     if (told) warn("%s", told);
     say_worst();
     reader_close(in);

@@ -73,14 +73,16 @@ void options_warn_cpu(const char *where, const struct report *r)
     if (r->on_cpu) there.reason = r->on_cpu;
 }
 
-void options_say_device(void)
+void options_leave_device(void)
 {
     double n = fmax((double)there.solves, 1);
     if (!device) return;
-    warn("%s: %s: %lld solves there, %lld on the CPU; a solve: %.0f kernels, %.3g MB to it, %.3g "
-         "MB from it",
-         options.device, device->name, (long long)there.solves, (long long)there.on_cpu,
-         (double)there.kernels / n, 1e-6 * there.to / n, 1e-6 * there.from / n);
+    warn("%s: %s: %lld of %lld solves; one: %.0f kernels, %.3g MB to it, %.3g MB from it",
+         options.device, device->name, (long long)there.solves,
+         (long long)(there.solves + there.on_cpu), (double)there.kernels / n, 1e-6 * there.to / n,
+         1e-6 * there.from / n);
+    device_close(device);
+    device = NULL;
 }
 
 struct step_opt options_step(double dt, bool foreign)

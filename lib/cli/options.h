@@ -46,8 +46,8 @@ void options_warn(const char *where, const struct report *r);
 
 /* To stderr, once for each reason: that the device asked for did not solve this, and why; nothing where it did */
 void options_warn_cpu(const char *where, const struct report *r);
-/* To stderr: the device that was used, and what went over the bus in a solve, on the average; nothing without one */
-void options_say_device(void);
+/* The end of the device, where one was used. To stderr: which it was, and what went over the bus in a solve, on the average */
+void options_leave_device(void);
 
 /* Says on stderr how a solve went: "1135 contacts, exact: 812 sweeps, eps_glob 9.9e-11, 0.04 s" */
 void options_summary(const char *where, const struct report *report);
