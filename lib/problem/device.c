@@ -61,7 +61,7 @@ const char *device_declines(const struct problem *p)
     if (p->kind.beyond) return "contacts have bonds";
     if (p->kind.levers) return "grains are no balls or discs";
     if (p->W && p->W->common) return "loads push contacts";
-    return NULL;
+    return p->slots > INT32_MAX ? "there are too many contacts" : NULL;
 }
 
 int device_hold(struct device *d, struct problem *p, enum method_id method, struct why *why)

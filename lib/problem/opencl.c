@@ -1,6 +1,6 @@
 /*
- * problem/opencl.c: a device by OpenCL 1.2 [problem/device.h]. A group of the schedule is a launch, and a launch waits
- * for the one before it: the queue is in order.
+ * problem/opencl.c: a device by OpenCL 1.2 [problem/device.h]. A launch solves contacts that do not depend on each
+ * other, and waits for the one before it: the queue is in order.
  */
 #include "law/local_exact.h"
 #include "problem/device.h"
@@ -22,6 +22,7 @@ enum {
 /* The arrays there. KEPT_R + k, KEPT_U + k: the iterate that is kept in place k */
 enum role {
     BUNDLES,
+    LIST,   /* of the slots, level after level */
     BESIDE, /* what stands behind them; none: nothing does */
     REBOUND,
     BODIES,
@@ -103,10 +104,12 @@ struct opencl {
     const struct program *now; /* of the problem that is held */
     enum method_id method;
     enum variant variant;
-    int64_t *contacts; /* [groups] contacts of each group */
-    int64_t parts;     /* teams of a sweep */
-    int64_t vector;    /* numbers of a vector of Anderson's */
-    void *stage;       /* [STAGE] bundles */
+    int64_t levels; /* contacts of a level are solved at once */
+    int64_t *first; /* [levels + 1] level k: list[first[k]] .. list[first[k+1]-1] */
+    int32_t *list;  /* [contacts] slots */
+    int64_t parts;  /* teams of a sweep */
+    int64_t vector; /* numbers of a vector of Anderson's */
+    void *stage;    /* [STAGE] bundles */
 };
 
 /* ---- failures ---- */
@@ -207,7 +210,7 @@ static void close_device(struct device *d)
         }
     if (o->queue) api->clReleaseCommandQueue(o->queue);
     if (o->context) api->clReleaseContext(o->context);
-    free(o->contacts), free(o->stage), free(o);
+    free(o->first), free(o->list), free(o->stage), free(o);
 }
 
 /* Whether the device can do what is asked of it, and a queue for it */
@@ -441,18 +444,65 @@ static enum variant variant_of(const struct problem *p)
     return p->kind.full ? VARIANT_BLOCKS : VARIANT_DIAGONALS;
 }
 
-/* The contacts of each group, whose empty lanes are its last */
-static bool count_contacts(struct opencl *o, const struct problem *p)
+/*
+ * The level of slot i: one after the last contact before it that shares a body that moves, as its bodies' `after` has
+ * it; given by W the group, which was made so. Colours of a large pile are those of a stretch of contacts after another
+ * [problem/schedule.c], too few at once for a device. Their contacts meet at the borders alone: levels are few and
+ * large, and each body gets its changes in the order of the groups, so the bits are the same.
+ */
+static int32_t level_of(const struct problem *p, int64_t i, int64_t group, int32_t *after)
 {
-    int64_t *n = realloc(o->contacts, (size_t)(p->groups + 1) * sizeof *n);
-    if (!n) return false;
-    o->contacts = n, o->parts = 0;
-    for (int64_t g = 0; g < p->groups; g++) {
-        int64_t first = p->group[g] * BUNDLE, end = p->group[g + 1] * BUNDLE;
-        while (end > first && p->contact[end - 1] < 0) end--;
-        n[g] = end - first, o->parts += (n[g] + TEAM - 1) / TEAM;
+    if (!p->body) return (int32_t)group;
+    const struct bundle *c = slot_bundle(p, i);
+    int64_t a = body_index(c->a[slot_lane(i)]), b = body_index(c->b[slot_lane(i)]);
+    int32_t level = after[a] > after[b] ? after[a] : after[b];
+    if (p->body[a].im > 0) after[a] = level + 1;
+    if (p->body[b].im > 0) after[b] = level + 1;
+    return level;
+}
+
+/* o->first[] and o->list[] from the level of each slot, -1: no contact */
+static void list_levels(struct opencl *o, int64_t slots, const int32_t *level)
+{
+    for (int64_t k = 0; k <= o->levels; k++) o->first[k] = 0;
+    for (int64_t i = 0; i < slots; i++)
+        if (level[i] >= 0) o->first[level[i] + 1]++;
+    o->parts = 0;
+    for (int64_t k = 0; k < o->levels; k++) {
+        o->parts += (o->first[k + 1] + TEAM - 1) / TEAM;
+        o->first[k + 1] += o->first[k];
     }
-    return true;
+    for (int64_t i = 0; i < slots; i++)
+        if (level[i] >= 0) o->list[o->first[level[i]]++] = (int32_t)i;
+    for (int64_t k = o->levels; k > 0; k--) o->first[k] = o->first[k - 1];
+    o->first[0] = 0;
+}
+
+/* Contacts that the device solves at once, level after level; false when memory is short */
+static bool make_levels(struct opencl *o, const struct problem *p)
+{
+    int32_t *level = malloc((size_t)(p->slots + 1) * sizeof *level);
+    int32_t *after = calloc((size_t)p->bodies + 1, sizeof *after);
+    int32_t *all = realloc(o->list, (size_t)(p->slots + 1) * sizeof *all);
+    if (all) o->list = all;
+    int64_t *first = realloc(o->first, (size_t)(p->groups + 2) * sizeof *first);
+    if (first) o->first = first;
+    bool room = level && after && all && first;
+    o->levels = 0;
+    for (int64_t i = 0; room && i < p->slots; i++) level[i] = -1;
+    for (int64_t g = 0; room && g < p->groups; g++)
+        for (int64_t i = p->group[g] * BUNDLE; i < p->group[g + 1] * BUNDLE; i++) {
+            level[i] = p->contact[i] < 0 ? -1 : level_of(p, i, g, after);
+            if (level[i] >= o->levels) o->levels = level[i] + 1;
+        }
+    if (room) list_levels(o, p->slots, level);
+    free(level), free(after);
+    return room;
+}
+
+static int64_t in_level(const struct opencl *o, int64_t k)
+{
+    return o->first[k + 1] - o->first[k];
 }
 
 /* Bundles, and apart from them what stands behind them */
@@ -496,10 +546,10 @@ static void give_rows(struct opencl *o, const struct problem *p)
     need(o, ROW_R, (size_t)p->n * d * sizeof *p->W->r);
 }
 
-static int64_t largest_group(const struct opencl *o, const struct problem *p)
+static int64_t largest_level(const struct opencl *o)
 {
     int64_t most = 1;
-    for (int64_t g = 0; g < p->groups; g++) most = o->contacts[g] > most ? o->contacts[g] : most;
+    for (int64_t k = 0; k < o->levels; k++) most = in_level(o, k) > most ? in_level(o, k) : most;
     return most;
 }
 
@@ -510,13 +560,14 @@ static int hold(struct device *d, struct problem *p, enum method_id method, stru
     const int32_t zero = 0;
     o->method = method, o->variant = variant_of(p);
     o->now = program_of(o, method, o->variant);
-    bool room = count_contacts(o, p);
+    bool room = make_levels(o, p);
     need(o, BUNDLES, bundles * sizeof(struct bundle));
     if (p->kind.near)
         need(o, BESIDE, bundles * sizeof(struct beside));
     else
         forget(o, BESIDE);
     if (room) give_bundles(o, p);
+    if (room) give(o, LIST, o->list, (size_t)o->first[o->levels] * sizeof *o->list);
     give(o, REBOUND, p->rebound, bundles * sizeof *p->rebound);
     give(o, W_CC, p->w, bundles * sizeof *p->w);
     give(o, RHO, p->rho, bundles * sizeof *p->rho);
@@ -528,8 +579,7 @@ static int hold(struct device *d, struct problem *p, enum method_id method, stru
     need(o, PART, (size_t)(o->parts + 1) * sizeof(struct counts));
     need(o, TALLY, sizeof(struct counts));
     if (room)
-        need(o, QUESTION,
-             (size_t)(p->kind.full ? largest_group(o, p) : 1) * sizeof(struct question));
+        need(o, QUESTION, (size_t)(p->kind.full ? largest_level(o) : 1) * sizeof(struct question));
     give(o, QUESTIONS, &zero, sizeof zero);
     if (!room) return why_set(why, EX_SOFTWARE, "--device opencl: no memory");
     return d->lost.status ? why_set(why, d->lost.status, "%s", d->lost.text) : 0;
@@ -611,13 +661,12 @@ static void sweep(struct device *d, struct problem *p, const struct sweep_opt *s
     struct counts c = { 0, 0, 0, 0 };
     int64_t part = 0;
     if (asks) set_sweep(o, SWEEP_ANSWERED, p, s);
-    for (int64_t g = 0; g < p->groups && !lost(o); g++) {
-        if (!o->contacts[g]) continue;
-        SET(SWEEP, next, whole(p->group[g] * BUNDLE), integer((int32_t)o->contacts[g]),
+    for (int64_t k = 0; k < o->levels && !lost(o); k++) {
+        SET(SWEEP, next, MEMORY(LIST), whole(o->first[k]), integer((int32_t)in_level(o, k)),
             whole(part));
-        launch(o, SWEEP, o->contacts[g]);
+        launch(o, SWEEP, in_level(o, k));
         if (asks) answer(o, p->d, next, part);
-        part += (o->contacts[g] + TEAM - 1) / TEAM;
+        part += (in_level(o, k) + TEAM - 1) / TEAM;
     }
     SET(TALLY_COUNTS, 0, MEMORY(PART), whole(part), MEMORY(TALLY));
     launch(o, TALLY_COUNTS, 1);
@@ -632,11 +681,11 @@ static void renew(struct device *d, const struct problem *p)
     struct opencl *o = (struct opencl *)d;
     if (p->kind.given_by_W) return;
     copy(o, FREE, BODIES, (size_t)p->bodies * sizeof *p->body);
-    SET(PUSH, 0, MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(BODIES), MEMORY(R), MEMORY(ROW_R),
-        integer(p->d));
-    for (int64_t g = 0; g < p->groups; g++) {
-        SET(PUSH, 6, whole(p->group[g] * BUNDLE), integer((int32_t)o->contacts[g]));
-        launch(o, PUSH, o->contacts[g]);
+    SET(PUSH, 0, MEMORY(LIST), MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(BODIES), MEMORY(R),
+        MEMORY(ROW_R), integer(p->d));
+    for (int64_t k = 0; k < o->levels; k++) {
+        SET(PUSH, 7, whole(o->first[k]), integer((int32_t)in_level(o, k)));
+        launch(o, PUSH, in_level(o, k));
     }
 }
 
@@ -763,13 +812,13 @@ static void react(struct device *d, const struct problem *p, const struct mixing
                   const double gamma[MIXING_DEPTH])
 {
     struct opencl *o = (struct opencl *)d;
-    uint32_t next = SET(REACT, 0, MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(BODIES), MEMORY(R),
-                        MEMORY(ROW_R), integer(p->d), MEMORY(ROOM), whole(0), whole(o->vector),
-                        integer(m->depth), integer(m->next), real(leap));
+    uint32_t next = SET(REACT, 0, MEMORY(LIST), MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(BODIES),
+                        MEMORY(R), MEMORY(ROW_R), integer(p->d), MEMORY(ROOM), whole(0),
+                        whole(o->vector), integer(m->depth), integer(m->next), real(leap));
     for (int k = 0; k < MIXING_DEPTH; k++) next = SET(REACT, next, real(gamma[k]));
-    for (int64_t g = 0; g < p->groups; g++) {
-        SET(REACT, next, whole(p->group[g] * BUNDLE), integer((int32_t)o->contacts[g]));
-        launch(o, REACT, o->contacts[g]);
+    for (int64_t k = 0; k < o->levels; k++) {
+        SET(REACT, next, whole(o->first[k]), integer((int32_t)in_level(o, k)));
+        launch(o, REACT, in_level(o, k));
     }
 }
 

@@ -243,13 +243,14 @@ ALWAYS_INLINE void team_counts(__local struct counts *mine, const struct counts 
     part[get_group_id(0)] = sum_counts(mine);
 }
 
-/* Slots first .. first + n - 1, of one group of the schedule; part[] from part_first on */
-__kernel void sweep(SWEEP_OF, __global struct counts *part, long first, int n, long part_first)
+/* n slots of list[] from `first` on, which do not depend on each other; part[] from part_first on */
+__kernel void sweep(SWEEP_OF, __global struct counts *part, __global const int *list, long first, int n,
+                    long part_first)
 {
     __local struct counts mine[TEAM];
     struct counts t = { 0, 0, 0, 0 };
     struct search search = { 0, 0, 0, 0, { 0, 0, 0 } };
-    if (get_global_id(0) < n) solve_slot(SWEEP_WITH, first + get_global_id(0), &search, &t);
+    if (get_global_id(0) < n) solve_slot(SWEEP_WITH, list[first + get_global_id(0)], &search, &t);
     team_counts(mine, &t, part + part_first);
 }
 
@@ -285,12 +286,12 @@ __kernel void tally_counts(__global const struct counts *part, long n, __global 
 
 /* ---- velocities from the reactions ---- */
 
-/* Adds to the bodies' velocities what the reactions of a group make of them */
-__kernel void push(__global const struct bundle *bundle, __global const struct beside *beside, __global struct body *body,
+/* Adds to the bodies' velocities what the reactions of n slots of list[] make of them */
+__kernel void push(__global const int *list, __global const struct bundle *bundle, __global const struct beside *beside, __global struct body *body,
                    __global const double *r, __global double *row_r, int d, long first, int n)
 {
-    int64_t slot = first + get_global_id(0);
     if (get_global_id(0) >= n) return;
+    int64_t slot = list[first + get_global_id(0)];
     const double dr[3] = { r[AT(slot, 0, 3)], r[AT(slot, 1, 3)], r[AT(slot, 2, 3)] };
     pass_on(bundle, beside, body, row_r, slot, d, dr, dr);
 }
@@ -469,14 +470,14 @@ __kernel void products(__global const double *room, __global const double *w, in
     out[item] = sum;
 }
 
-/* r = x = g + leap f - sum_j gamma_j dg_j, projected onto the discs, of one group; the bodies follow */
-__kernel void react(__global const struct bundle *bundle, __global const struct beside *beside, __global struct body *body,
+/* r = x = g + leap f - sum_j gamma_j dg_j, projected onto the discs, of n slots of list[]; the bodies follow */
+__kernel void react(__global const int *list, __global const struct bundle *bundle, __global const struct beside *beside, __global struct body *body,
                     __global double *r, __global double *row_r, int d, __global double *room,
                     long f, long size, int depth, int next, double leap, double gamma0,
                     double gamma1, double gamma2, double gamma3, double gamma4, long first, int n)
 {
-    int64_t slot = first + get_global_id(0);
     if (get_global_id(0) >= n) return;
+    int64_t slot = list[first + get_global_id(0)];
     const double gamma[5] = { gamma0, gamma1, gamma2, gamma3, gamma4 };
     double x[3] = { 0, 0, 0 }, now[3], dr[3];
     for (int l = 0; l < d; l++) {
