@@ -66,10 +66,8 @@ static int32_t place_in_chain(int i)
 }
 
 /* A chain of balls that fly at random; false when memory is short */
-static bool make_balls(struct problem *p, uint64_t *state)
+static bool make_balls(struct problem *p, int32_t contact[CHAIN], int64_t group[3], uint64_t *state)
 {
-    static int64_t group[] = { 0, HALF / BUNDLE, CHAIN / BUNDLE };
-    static int32_t contact[CHAIN];
     for (int i = 0; i < CHAIN; i++) contact[i] = place_in_chain(i);
     *p = (struct problem){ .kind = kind_FAR_BALLS,
                            .d = 3,
@@ -240,9 +238,11 @@ int device_check(struct device *d, const struct problem_kind *kind, enum method_
     bool same = false;
     struct problem p;
     struct delassus W = { 0 };
+    int32_t contact[CHAIN];
+    int64_t group[] = { 0, HALF / BUNDLE, CHAIN / BUNDLE };
     if (d->checked[method] & 1U << variant) return 0;
     bool made = variant ? make_blocks(&p, &W, kind->full, methods[method]->rho, &state)
-                        : make_balls(&p, &state);
+                        : make_balls(&p, contact, group, &state);
     const struct device_account account = d->account; // not of a solve
     if (!made || compare(d, &p, method, &same, why))
         why_set(why, EX_SOFTWARE, "--device: no memory");

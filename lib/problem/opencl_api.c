@@ -2,23 +2,27 @@
 #include "problem/opencl_api.h"
 
 #include <dlfcn.h>
+#include <pthread.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
 #define LOADER "libOpenCL.so.1"
 
-const struct opencl_api *opencl_api(struct why *why)
+/* Of the process, as its loader is */
+static struct opencl_api opencl_calls;
+static bool opencl_open;
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+
+static void open_loader(struct why *why)
 {
-    static struct opencl_api api;
-    static void *loader;
-    if (loader) return &api;
     void *opened = dlopen(LOADER, RTLD_NOW | RTLD_LOCAL);
     if (!opened) {
         why_set(why, EX_UNAVAILABLE,
                 "--device opencl: no OpenCL here, %s: install ocl-icd-libopencl1 and the driver of "
                 "the GPU, or leave --device out",
                 dlerror());
-        return NULL;
+        return;
     }
 #define FIND(result, name, arguments)                                                              \
     {                                                                                              \
@@ -26,13 +30,22 @@ const struct opencl_api *opencl_api(struct why *why)
         if (!at) {                                                                                 \
             why_set(why, EX_UNAVAILABLE, "--device opencl: %s has no %s: it is no OpenCL 1.2",     \
                     LOADER, #name);                                                                \
-            return NULL;                                                                           \
+            dlclose(opened);                                                                       \
+            return;                                                                                \
         }                                                                                          \
-        memcpy(&api.name, &at, sizeof at);                                                         \
+        memcpy(&opencl_calls.name, &at, sizeof at);                                                \
     }
     EACH_OPENCL_CALL(FIND)
-    loader = opened;
-    return &api;
+    opencl_open = true;
+}
+
+const struct opencl_api *opencl_api(struct why *why)
+{
+    pthread_mutex_lock(&lock);
+    if (!opencl_open) open_loader(why);
+    bool there = opencl_open;
+    pthread_mutex_unlock(&lock);
+    return there ? &opencl_calls : NULL;
 }
 
 const char *opencl_error(int32_t error)
@@ -52,7 +65,7 @@ const char *opencl_error(int32_t error)
                   { -54, "CL_INVALID_WORK_GROUP_SIZE" },
                   { -61, "CL_INVALID_BUFFER_SIZE" },
                   { -1001, "CL_PLATFORM_NOT_FOUND_KHR" } };
-    static char text[80];
+    static _Thread_local char text[80];
     for (size_t k = 0; k < sizeof names / sizeof *names; k++)
         if (names[k].error == error) {
             snprintf(text, sizeof text, "%s (%d)", names[k].name, error);
