@@ -132,6 +132,9 @@ $B/lib/%.o: lib/%.c Makefile
 # The page of nsd-web is part of the program.
 $B/lib/draw/page_parts.o: $(wildcard lib/draw/page/*)
 
+# So are the kernels of a device, and the headers that they share with the CPU's.
+$B/lib/problem/opencl_text.o: $(wildcard lib/problem/opencl/*.cl) lib/base/lanes.h $(wildcard lib/law/local*.h) lib/problem/bundle.h
+
 define compile_wide
 $B/lib/problem/$1-%.o: lib/problem/$1.c Makefile
 	@mkdir -p $$(@D)
@@ -167,7 +170,7 @@ setup-run setup-paper setup-wall setup-check setup-all:
 FIRST := $(patsubst %,tests/%.t,tools/outside tools/examples whole/laws whole/solvers hostile/wrong_input whole/shapes tools/stat tools/types \
          tools/export tools/grains tools/view tools/pipeline tools/boundary) $B/tests/unit/shapes_test
 # What make check leaves to make check-all: it builds again, needs what only a maintainer has, or takes minutes.
-REST  := $(patsubst %,tests/%.t,project/lint whole/paper project/compilers whole/gallery project/thread_sanitizer whole/mpi \
+REST  := $(patsubst %,tests/%.t,project/lint whole/paper project/compilers whole/gallery project/thread_sanitizer whole/mpi whole/device \
          project/install whole/wall whole/paper_page tools/web_in_browser hostile/failing_system_calls hostile/failing_allocations) \
          $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw failing_library_calls_api killed_writer)
 TESTS := $(FIRST) $(filter-out $(FIRST) $(REST),$(CTEST) $(wildcard tests/*/*.t))

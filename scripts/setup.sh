@@ -13,7 +13,7 @@ all=("${check[@]}" pandoc mandoc shellcheck cppcheck clang libomp-dev libclang-r
     clang-tidy clang-format libfclib-dev gcovr
     openmpi-bin libopenmpi-dev libhdf5-openmpi-dev libtrilinos-zoltan-dev
     debhelper lintian valgrind zsh parallel python3-vtk9 python3-ase python3-mdanalysis python3-gsd liggghts
-    ffmpeg chromium chromium-driver python3-selenium)
+    pocl-opencl-icd ocl-icd-libopencl1 opencl-c-headers ffmpeg chromium chromium-driver python3-selenium)
 
 case "${1:-run}" in
 run) packages=("${run[@]}") ;;

@@ -111,6 +111,7 @@ static void solve(struct frame *f, const char *where)
     f->reported = true;
     f->forces |= forces;
     options_log(&f->report, NULL);
+    options_warn_cpu(where, &f->report);
     count(where, &f->report);
 }
 
@@ -121,5 +122,6 @@ int tool_main(int argc, char **argv)
     tool_filter(argc, argv, solve);
     options_log_close();
     summary();
+    options_leave_device();
     return options.strict && total.missed;
 }

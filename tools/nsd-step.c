@@ -420,6 +420,9 @@ static bool advance(struct run *r, int64_t k, bool saves)
     account(f);
     bool good = isfinite(rep->err.paper.eps_glob);
     options_log(rep, last || !good ? &total.account : NULL);
+    char where[40];
+    snprintf(where, sizeof where, "step %lld", (long long)rep->step);
+    options_warn_cpu(where, rep);
     return good;
 }
 
@@ -638,6 +641,8 @@ int tool_main(int argc, char **argv)
     keep_memory();
     if (!processes_join()) return processes_follow();
     double asked = read_dt();
+    if (options.device && processes_started())
+        die_usage("--device: one process alone, without mpirun");
     if (cli_given(&until) && cli_given(&steps)) die_usage("-n and --until exclude each other");
     if (save) parse_save();
     if (in_place && output) die_usage("-i and -o exclude each other");
@@ -681,6 +686,7 @@ int tool_main(int argc, char **argv)
     loop_close();
     const char *told = processes_leave();
     summary(made);
+    options_leave_device();
     if (told) warn("%s", told);
     say_worst(&r.f.packing.names);
     reader_close(in);

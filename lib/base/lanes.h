@@ -26,6 +26,10 @@
 #define ALWAYS_INLINE __attribute__((always_inline)) static inline
 #endif
 
+#ifndef GLOBAL
+#define GLOBAL /* of a pointer: into the memory that all of a device's kernels see */
+#endif
+
 #if LANES == 1
 typedef double vd, vd_anywhere;
 typedef int64_t vm; /* 0 or -1 */
@@ -41,6 +45,8 @@ typedef int64_t vm __attribute__((vector_size(8 * LANES)));
 
 #define NONE ((vm){ 0 }) /* no lane */
 
+/* On a device they are macros, for pointers into each of its memories [problem/opencl/begin.cl]. */
+#ifndef vload
 ALWAYS_INLINE vd vload(const double *x)
 {
     return *(const vd_anywhere *)x;
@@ -49,6 +55,7 @@ ALWAYS_INLINE void vstore(double *x, vd a)
 {
     *(vd_anywhere *)x = a;
 }
+#endif
 ALWAYS_INLINE vd splat(double a)
 {
 #if LANES == 1

@@ -3,8 +3,10 @@
 #include "base/team.h"
 #include "io/reader.h"
 #include "io/report_json.h"
+#include "problem/device.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,12 +16,16 @@
 const struct cli_option options_run[] = {
     { CLI_INT, 'j', "threads", &options.threads, "N", .min = 1, .max = 1024, .silent = true,
       .help = "threads; they never change a result [1]" },
+    { CLI_TEXT, 0, "device", &options.device, "DEVICE", .silent = true,
+      .help = "sweep on a device: opencl, opencl:N; list: which there are [the CPU]" },
     { CLI_TEXT, 0, "log", &options.log, "FILE", .silent = true,
       .help = "write one JSON line for each solve, with its seconds" },
     { CLI_FLAG, 'e', "strict", &options.strict, .silent = true,
       .help = "exit with 1 when a solve has not converged, or a run fails otherwise" },
     { 0 },
 };
+
+static struct device *device; /* --device; NULL: none */
 
 /* The members that were given on the command line */
 static void mark_given(void)
@@ -36,12 +42,56 @@ void options_check(void)
     team_set_size((int)options.threads);
     mark_given();
     if (options_names(&options, &why)) die_usage("%s", why.text);
+    if (!options.device) return;
+    if (!strcmp(options.device, "list")) {
+        if (device_list(stdout, &why)) die_why(&why);
+        finish_stdout();
+        exit(0);
+    }
+    if (device_named(options.device, &why)) die_usage("%s", why.text);
+}
+
+/* When there is input: the processes that read it have been started, and have nothing of a driver. */
+static void open_device(void)
+{
+    struct why why = { 0 };
+    if (options.device && !device && !(device = device_open(options.device, &why))) die_why(&why);
+}
+
+static struct {
+    int64_t solves, on_cpu, kernels;
+    double to, from; /* bytes */
+    const char *reason;
+} there;
+
+void options_warn_cpu(const char *where, const struct report *r)
+{
+    there.solves += r->kernels > 0, there.on_cpu += r->on_cpu != NULL;
+    there.to += r->bus_to, there.from += r->bus_from, there.kernels += r->kernels;
+    if (r->on_cpu && r->on_cpu != there.reason)
+        warn("%s: on the CPU, not on %s: %s", where, options.device, r->on_cpu);
+    if (r->on_cpu) there.reason = r->on_cpu;
+}
+
+void options_leave_device(void)
+{
+    double n = fmax((double)there.solves, 1);
+    if (!device) return;
+    warn("%s: %s: %lld of %lld solves; one: %.0f kernels, %.3g MB to it, %.3g MB from it",
+         options.device, device->name, (long long)there.solves,
+         (long long)(there.solves + there.on_cpu), (double)there.kernels / n, 1e-6 * there.to / n,
+         1e-6 * there.from / n);
+    device_close(device);
+    device = NULL;
 }
 
 struct step_opt options_step(double dt, bool foreign)
 {
     mark_given();
-    return options_step_of(&options, dt, foreign);
+    struct step_opt o = options_step_of(&options, dt, foreign);
+    open_device();
+    o.solve.device = device;
+    return o;
 }
 
 char *options_json(const struct step_opt *step)
@@ -101,6 +151,15 @@ void options_log(const struct report *rep, const struct account *account)
     json_object_set_new(j, "elapsed", json_number(rep->elapsed));
     json_object_set_new(j, "detection", json_number(rep->detection));
     json_object_set_new(j, "work", json_number(rep->work));
+    if (device) {
+        json_t *there_too = json_object();
+        json_object_set_new(there_too, "name", json_string(device->name));
+        json_object_set_new(there_too, "bytes_to", json_number(rep->bus_to));
+        json_object_set_new(there_too, "bytes_from", json_number(rep->bus_from));
+        json_object_set_new(there_too, "kernels", json_integer(rep->kernels));
+        if (rep->on_cpu) json_object_set_new(there_too, "on_cpu", json_string(rep->on_cpu));
+        json_object_set_new(j, "device", there_too);
+    }
     if (account) json_object_set_new(j, "account", json_account(account));
     int failed =
         json_dumpf(j, log_file, JSON_COMPACT) || fputc('\n', log_file) == EOF || fflush(log_file);

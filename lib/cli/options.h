@@ -9,7 +9,7 @@
 #include "solve/account.h"
 #include "solve/step_options.h"
 
-extern const struct cli_option options_run[]; /* -j, --log, -e */
+extern const struct cli_option options_run[]; /* -j, --device, --log, -e */
 
 /* Ends the tool with EX_USAGE where options contradict each other; to be called first. */
 void options_check(void);
@@ -43,6 +43,11 @@ const char *options_error(enum criterion criterion);
 
 /* To stderr: that a solver could not do what was asked or gave up, and why; nothing where it did neither. */
 void options_warn(const char *where, const struct report *r);
+
+/* To stderr, once for each reason: that the device asked for did not solve this, and why; nothing where it did */
+void options_warn_cpu(const char *where, const struct report *r);
+/* The end of the device, where one was used. To stderr: which it was, and what went over the bus in a solve, on the average */
+void options_leave_device(void);
 
 /* Says on stderr how a solve went: "1135 contacts, exact: 812 sweeps, eps_glob 9.9e-11, 0.04 s" */
 void options_summary(const char *where, const struct report *report);

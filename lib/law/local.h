@@ -37,6 +37,9 @@ struct local {
     vd steps;       /* out: Newton steps taken; 0 for methods without a Newton */
     vm safeguarded; /* out: Newton did not converge; r is the exact solution instead */
     vm gave_up;     /* out: (u, r) does not satisfy the law; r is in the cone all the same */
+#ifdef ON_DEVICE
+    struct search *search; /* exact_search() is not there: what it is asked, or its answer */
+#endif
 };
 
 struct local_opt {

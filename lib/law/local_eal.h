@@ -57,8 +57,6 @@ ALWAYS_INLINE void eal_slip(const struct local *l, const struct newton_point *x,
     s->dn = -x->v[0] * l->iw[0];
 }
 
-#define EAL ((struct newton_formulation){ eal_residual, eal_slide, eal_chain, eal_slip })
-
 ALWAYS_INLINE void eal_solve(struct local *l, const struct local_opt *opt)
 {
     newton_solve(l, opt, EAL);

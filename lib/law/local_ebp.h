@@ -70,8 +70,6 @@ ALWAYS_INLINE void ebp_slip(const struct local *l, const struct newton_point *x,
             (l->rho * (l->w[0] + l->mu * p));
 }
 
-#define EBP ((struct newton_formulation){ ebp_residual, ebp_slide, ebp_chain, ebp_slip })
-
 ALWAYS_INLINE void ebp_solve(struct local *l, const struct local_opt *opt)
 {
     newton_solve(l, opt, EBP);

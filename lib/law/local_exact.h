@@ -177,6 +177,9 @@ ALWAYS_INLINE double lane(vd x, int i)
 }
 
 /* exact_search() lane by lane, in the lanes m; where it finds a solution */
+#ifdef ON_DEVICE
+ALWAYS_INLINE vm exact_search_lanes(const struct local *l, vm m, vm singular, vd r[3]);
+#else
 ALWAYS_INLINE vm exact_search_lanes(const struct local *l, vm m, vm singular, vd r[3])
 {
     double found[LANES], x[3][LANES];
@@ -194,6 +197,7 @@ ALWAYS_INLINE vm exact_search_lanes(const struct local *l, vm m, vm singular, vd
     for (int j = 0; j < 3; j++) r[j] = vload(x[j]);
     return lt(splat(0), vload(found));
 }
+#endif
 
 /* Take-off, no friction, stick, slide, else the search; where there is a solution */
 ALWAYS_INLINE vm exact_general(const struct local *l, vd r[3])

@@ -25,11 +25,6 @@ struct newton_point {
     vm free, stick;  /* else it slides */
 };
 
-/* tau, p, Z and the branch of x->r, x->v; A where it slides; B for any A */
-typedef void newton_residual(vd mu, vd rho, struct newton_point *x);
-typedef void newton_slide(vd mu, const struct newton_point *x, vd A[3][3]);
-typedef void newton_chain(vd mu, vd rho, const struct newton_point *x, vd A[3][3], vd B[3][3]);
-
 /*
  * The step of balls where they slide, in closed form: along n, e = tau_t/|tau_t| and q = n x e the
  * system with W = diag(w_n, w_t, w_t) decouples into
@@ -44,16 +39,26 @@ struct slip {
     vd lag, dn, dq; /* as above; dr_n, dr_q */
 };
 
-/* s->dq and s->dn */
-typedef void newton_slip(const struct local *l, const struct newton_point *x, struct slip *s);
+/* The two formulations, a constant of every call: no pointers to functions, which OpenCL C does not have */
+enum newton_formulation { EBP, EAL };
 
-/* What EBP and EAL differ in */
-struct newton_formulation {
-    newton_residual *residual;
-    newton_slide *slide;
-    newton_chain *chain;
-    newton_slip *slip;
-};
+/* What they differ in is in local_ebp.h and local_eal.h: */
+/* tau, p, Z and the branch of x->r, x->v; */
+ALWAYS_INLINE void ebp_residual(vd mu, vd rho, struct newton_point *x);
+ALWAYS_INLINE void eal_residual(vd mu, vd rho, struct newton_point *x);
+/* A where it slides; */
+ALWAYS_INLINE void ebp_slide(vd mu, const struct newton_point *x, vd A[3][3]);
+ALWAYS_INLINE void eal_slide(vd mu, const struct newton_point *x, vd A[3][3]);
+/* B for any A; */
+ALWAYS_INLINE void ebp_chain(vd mu, vd rho, const struct newton_point *x, vd A[3][3], vd B[3][3]);
+ALWAYS_INLINE void eal_chain(vd mu, vd rho, const struct newton_point *x, vd A[3][3], vd B[3][3]);
+/* s->dq and s->dn */
+ALWAYS_INLINE void ebp_slip(const struct local *l, const struct newton_point *x, struct slip *s);
+ALWAYS_INLINE void eal_slip(const struct local *l, const struct newton_point *x, struct slip *s);
+
+/* form's own function of that name */
+#define BY_FORMULATION(form, what, ...)                                                            \
+    ((form) == EBP ? ebp_##what(__VA_ARGS__) : eal_##what(__VA_ARGS__))
 
 /* 1/x, and 0 at x = 0 */
 ALWAYS_INLINE vd newton_inverse(vd x)
@@ -69,7 +74,7 @@ ALWAYS_INLINE vd slip_across(const struct local *l, const struct slip *s, vd k)
 
 /* dr = the step of a sliding ball. tau_t = 0 slides only when mu = 0; any e will do there. */
 ALWAYS_INLINE vm slip_direction(const struct local *l, const struct newton_point *x,
-                                newton_slip *slip, vd dr[3])
+                                enum newton_formulation form, vd dr[3])
 {
     struct slip s;
     vd inverse = newton_inverse(x->t);
@@ -77,7 +82,7 @@ ALWAYS_INLINE vm slip_direction(const struct local *l, const struct newton_point
     s.Z[0] = x->Z[0];
     s.Z[1] = s.e[0] * x->Z[1] + s.e[1] * x->Z[2], s.Z[2] = s.e[0] * x->Z[2] - s.e[1] * x->Z[1];
     s.lag = s.Z[1] - l->mu * s.Z[0];
-    slip(l, x, &s);
+    BY_FORMULATION(form, slip, l, x, &s);
     vd de = l->mu * s.dn - s.lag;
     dr[0] = s.dn, dr[1] = s.e[0] * de - s.e[1] * s.dq, dr[2] = s.e[1] * de + s.e[0] * s.dq;
     return is_finite(s.dn + s.dq);
@@ -88,7 +93,7 @@ ALWAYS_INLINE vm slip_direction(const struct local *l, const struct newton_point
  * (and v becomes b, not the paper's v^k). Sticking: A = 0 and Z = B v, B regular, so W dr = -v.
  */
 ALWAYS_INLINE vm newton_direction(const struct local *l, const struct newton_point *x,
-                                  struct newton_formulation form, vd dr[3])
+                                  enum newton_formulation form, vd dr[3])
 {
     vd A[3][3], B[3][3], M[3][3], stick[3], slip[3] = { 0 };
     vm regular = x->free, slide = ~(x->free | x->stick);
@@ -100,9 +105,10 @@ ALWAYS_INLINE vm newton_direction(const struct local *l, const struct newton_poi
         regular |= x->stick;
     }
     if (any(slide) && !l->W) {
-        regular |= slide & slip_direction(l, x, form.slip, slip);
+        regular |= slide & slip_direction(l, x, form, slip);
     } else if (any(slide)) {
-        form.slide(l->mu, x, A), form.chain(l->mu, l->rho, x, A, B);
+        BY_FORMULATION(form, slide, l->mu, x, A);
+        BY_FORMULATION(form, chain, l->mu, l->rho, x, A, B);
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++)
                 M[i][j] =
@@ -115,11 +121,11 @@ ALWAYS_INLINE vm newton_direction(const struct local *l, const struct newton_poi
 
 /* y = the iterate at r + s dr */
 ALWAYS_INLINE void newton_move(const struct local *l, const vd r[3], vd s, const vd dr[3],
-                               newton_residual *residual, struct newton_point *y)
+                               enum newton_formulation form, struct newton_point *y)
 {
     for (int i = 0; i < 3; i++) y->r[i] = r[i] + s * dr[i];
     local_velocity(l, y->r, y->v);
-    residual(l->mu, l->rho, y);
+    BY_FORMULATION(form, residual, l->mu, l->rho, y);
 }
 
 /* x = y in the lanes m, but for p */
@@ -145,21 +151,21 @@ ALWAYS_INLINE void newton_accept(struct newton_point *x, const struct newton_poi
  * failed. A lane that has converged or failed keeps its x while the others go on.
  */
 ALWAYS_INLINE vm newton_run(struct local *l, const struct local_opt *opt,
-                            struct newton_formulation form, struct newton_point *x)
+                            enum newton_formulation form, struct newton_point *x)
 {
     const vd rho_b2 = l->rho * l->rho * dot3(l->b, l->b);
     const double eps2 = opt->newton_eps * opt->newton_eps;
     struct newton_point y = { 0 };
     vm converged = NONE, run = ~converged;
     for (int i = 0; i < 3; i++) x->r[i] = l->r[i], x->v[i] = l->v[i];
-    form.residual(l->mu, l->rho, x);
+    BY_FORMULATION(form, residual, l->mu, l->rho, x);
     vd z2 = dot3(x->Z, x->Z);
     for (int k = 0; any(run) && (k == 0 || k < opt->newton_max); k++) {
         vd dr[3], s = splat(1);
         run &= newton_direction(l, x, form, dr);
         l->steps += pick(run, splat(1), splat(0));
         for (vm search = run; any(search); s *= 0.5) {
-            newton_move(l, x->r, s, dr, form.residual, &y);
+            newton_move(l, x->r, s, dr, form, &y);
             vd y2 = dot3(y.Z, y.Z), end2 = eps2 * (dot3(y.r, y.r) + rho_b2), least = 1.0 - 1e-4 * s;
             if (opt->newton_abs > 0) end2 = splat(opt->newton_abs * opt->newton_abs);
             vm done = search & le(y2, end2);
@@ -178,7 +184,7 @@ ALWAYS_INLINE vm newton_run(struct local *l, const struct local_opt *opt,
 
 /* l->r = proj(tau): it is in the cone and, where Newton converged, equal to r to the tolerance. */
 ALWAYS_INLINE void newton_solve(struct local *l, const struct local_opt *opt,
-                                struct newton_formulation form)
+                                enum newton_formulation form)
 {
     struct newton_point x = { 0 };
     local_clear_report(l);
@@ -200,16 +206,16 @@ ALWAYS_INLINE void newton_solve(struct local *l, const struct local_opt *opt,
 
 /* Z, A, B and the branch at (r, v), as eal_linearise() has them: free A = I, sticking 0 */
 ALWAYS_INLINE enum local_status newton_linearise(vd mu, vd rho, const vd r[3], const vd v[3],
-                                                 struct newton_formulation form, vd Z[3],
-                                                 vd A[3][3], vd B[3][3])
+                                                 enum newton_formulation form, vd Z[3], vd A[3][3],
+                                                 vd B[3][3])
 {
     struct newton_point x = { .r = { r[0], r[1], r[2] }, .v = { v[0], v[1], v[2] } };
-    form.residual(mu, rho, &x);
-    form.slide(mu, &x, A);
+    BY_FORMULATION(form, residual, mu, rho, &x);
+    BY_FORMULATION(form, slide, mu, &x, A);
     for (int i = 0; i < 3; i++) Z[i] = x.Z[i];
     for (int i = 0; i < 9; i++)
         A[i / 3][i % 3] = pick(x.free, splat(i % 4 == 0), pick(x.stick, splat(0), A[i / 3][i % 3]));
-    form.chain(mu, rho, &x, A, B);
+    BY_FORMULATION(form, chain, mu, rho, &x, A, B);
     return any(x.free) ? LOCAL_FREE : any(x.stick) ? LOCAL_STICK : LOCAL_SLIDE;
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/team.h"
 #include "problem/backend.h"
+#include "problem/device.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -68,12 +69,17 @@ static void push(void *problem, int me, int threads)
 void problem_renew(struct problem *p, int threads)
 {
     if (!p->body) return;
+    if (p->device) {
+        device_renew(p);
+        return;
+    }
     problem_set_free_motion(p);
     team_do(threads, push, p);
 }
 
 void problem_react(struct problem *p, const double *r, int threads)
 {
+    device_home(p, true);
     for (int64_t i = 0; i < p->slots; i++) {
         int64_t c = p->contact[i];
         if (c < 0) continue;

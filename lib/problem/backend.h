@@ -2,7 +2,8 @@
  * problem/backend.h: the backends, a table: kernels that solve, push, judge and mix the bundles of a problem. Each is
  * sweep.c, judge.c and mixing.c compiled for one vector width; the width changes no bit of a result.
  *
- * Another backend is a row of the table in backend.c, and the three structs of kernels that the row names.
+ * Another backend is a row of the table in backend.c, and the three structs of kernels that the row names. One that
+ * has a memory of its own is a row of the table of devices [problem/device.h].
  */
 #ifndef NSD_BACKEND_H
 #define NSD_BACKEND_H

@@ -76,9 +76,9 @@ static inline int64_t body_index(int32_t place)
 {
     return place / 8;
 }
-ALWAYS_INLINE double *body_at(struct body *body, int32_t place)
+ALWAYS_INLINE GLOBAL double *body_at(GLOBAL struct body *body, int32_t place)
 {
-    return (double *)body + place;
+    return (GLOBAL double *)body + place;
 }
 
 /* LANES bodies side by side: their 1/mass and 1/inertia */
@@ -90,8 +90,8 @@ struct twist {
     vd v[3], w[3];
 };
 
-ALWAYS_INLINE void bodies_load(struct bodies *m, struct body *body, const int32_t *place,
-                               struct twist *moves)
+ALWAYS_INLINE void bodies_load(struct bodies *m, GLOBAL struct body *body,
+                               GLOBAL const int32_t *place, struct twist *moves)
 {
     vd x[8];
     for (int k = 0; k < 8; k += LANES) {
@@ -103,10 +103,11 @@ ALWAYS_INLINE void bodies_load(struct bodies *m, struct body *body, const int32_
     m->im = x[6], m->ii = x[7];
 }
 
-ALWAYS_INLINE void bodies_add(struct body *body, const int32_t *place, const struct twist *d)
+ALWAYS_INLINE void bodies_add(GLOBAL struct body *body, GLOBAL const int32_t *place,
+                              const struct twist *d)
 {
     vd x[8] = { d->v[0], d->v[1], d->v[2], d->w[0], d->w[1], d->w[2], splat(0), splat(0) };
-    double *at[LANES];
+    GLOBAL double *at[LANES];
     for (int i = 0; i < LANES; i++) at[i] = body_at(body, place[i]);
     for (int k = 0; k < 8; k += LANES) {
         transpose(x + k);
@@ -118,8 +119,8 @@ ALWAYS_INLINE void bodies_add(struct body *body, const int32_t *place, const str
  * The bases, which are cheaper to compute than to load: t2 = n x t1, and, where t is NULL, t1 as
  * contact_basis() makes it, to the bit [Duff et al. 2017].
  */
-ALWAYS_INLINE void bundle_basis(const struct bundle *c, const struct beside *t, int k, vd n[3],
-                                vd t1[3], vd t2[3])
+ALWAYS_INLINE void bundle_basis(GLOBAL const struct bundle *c, GLOBAL const struct beside *t, int k,
+                                vd n[3], vd t1[3], vd t2[3])
 {
     for (int i = 0; i < 3; i++) n[i] = vload(c->n[i] + k);
     if (t) {
@@ -132,8 +133,8 @@ ALWAYS_INLINE void bundle_basis(const struct bundle *c, const struct beside *t, 
 }
 
 /* u~ from the bodies' velocities, or u where e is NULL; and t1 and t2, which bundle_push() needs again */
-ALWAYS_INLINE void bundle_velocity(const struct bundle *c, const struct beside *t,
-                                   const struct rebound *e, int k, const struct twist *a,
+ALWAYS_INLINE void bundle_velocity(GLOBAL const struct bundle *c, GLOBAL const struct beside *t,
+                                   GLOBAL const struct rebound *e, int k, const struct twist *a,
                                    const struct twist *b, vd u[3], vd t1[3], vd t2[3])
 {
     vd n[3], dv[3], m[3], la = vload(c->la + k), lb = vload(c->lb + k);
@@ -148,8 +149,8 @@ ALWAYS_INLINE void bundle_velocity(const struct bundle *c, const struct beside *
 }
 
 /* Adds to the bodies' velocities what a change dr (n, t1, t2) of the reactions makes of them. */
-ALWAYS_INLINE void bundle_push(const struct bundle *c, int k, const vd t1[3], const vd t2[3],
-                               const vd dr[3], struct body *body, const struct bodies *a,
+ALWAYS_INLINE void bundle_push(GLOBAL const struct bundle *c, int k, const vd t1[3], const vd t2[3],
+                               const vd dr[3], GLOBAL struct body *body, const struct bodies *a,
                                const struct bodies *b)
 {
     vd turn_a = a->ii * vload(c->la + k), turn_b = b->ii * vload(c->lb + k), im = -a->im;

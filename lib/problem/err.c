@@ -3,6 +3,7 @@
 
 #include "base/team.h"
 #include "problem/backend.h"
+#include "problem/device.h"
 #include "problem/exchange.h"
 
 #include <float.h>
@@ -193,6 +194,8 @@ void err_eval(struct err *e, const struct problem *p, bool believes, enum err_te
     if (!p->n) return;
     if (p->exchange && p->exchange->add)
         judge_and_add(p, believes, which, threads, &all);
+    else if (p->device)
+        device_judge(p, believes, which, BLOCK, &all);
     else if (p->exchange)
         judge_shared(p, believes, which, &all);
     else

@@ -35,6 +35,7 @@ enum {
 
 struct exchange;
 struct brake;
+struct device;
 struct plan;
 
 struct problem {
@@ -59,7 +60,9 @@ struct problem {
     struct plan *plan;      /* has contact, group and seat; NULL: it is kept, not of the problem */
     struct two_thread_split *split; /* NULL: the order has no halves */
     struct exchange
-        *exchange;       /* borrowed: the other processes that have a part of it; NULL: none */
+        *exchange; /* borrowed: the other processes that have a part of it; NULL: none */
+    struct device
+        *device;         /* borrowed: it has the iterate [problem/device.h]; NULL: the slots have */
     struct brake *brake; /* slots that the sweeps have to solve by shorter steps; NULL: none */
     int64_t bodies;      /* of body[]; 0: given by W */
     struct body *body;   /* [bodies] the packing's, by colours in the order in which the sweep first

@@ -69,10 +69,13 @@ struct report {
     double work;          /* ns, counted and not timed, of the whole solve [solve/prices.h] */
     const char *fallback; /* why the solver asked for could not go on, and swept instead; or NULL */
     const char *given_up; /* why it ended before its limits, a literal; or NULL */
-    double seconds;       /* s of CPU, of all threads, in the solve */
-    double elapsed;       /* s on the wall, in the solve */
-    double detection;     /* s of CPU to find the contacts, where the step did so itself */
-    struct terms *history; /* [sweeps] under --history, else NULL; to be freed */
+    const char *on_cpu;   /* why the device asked for did not solve it, a literal; or NULL */
+    double bus_to, bus_from; /* bytes to the device, and from it */
+    int64_t kernels;         /* started there */
+    double seconds;          /* s of CPU, of all threads, in the solve */
+    double elapsed;          /* s on the wall, in the solve */
+    double detection;        /* s of CPU to find the contacts, where the step did so itself */
+    struct terms *history;   /* [sweeps] under --history, else NULL; to be freed */
 };
 
 /* s on the clock: of CPU in all threads of this process; on the wall */

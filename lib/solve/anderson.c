@@ -21,6 +21,7 @@
 
 #include "base/team.h"
 #include "problem/backend.h"
+#include "problem/device.h"
 #include "problem/exchange.h"
 #include "solve/nlgs.h"
 #include "solve/prices.h"
@@ -100,6 +101,10 @@ static void remember_start(struct anderson *a)
 {
     const struct problem *p = a->s->p;
     double *x = a->m.df[a->m.next];
+    if (p->device) {
+        device_remember(a->s->p, a->m.next);
+        return;
+    }
     for (int64_t i = 0; i < p->bundles; i++, x += mixing_width(p) * BUNDLE) {
         memcpy(x, bundle_at(p, i)->r, (size_t)(p->kind.extra ? 3 : p->d) * BUNDLE * sizeof *x);
         if (!p->kind.extra) continue;
@@ -187,7 +192,9 @@ static double measure(struct anderson *a)
     int64_t n = chunks(p);
     a->s->rep->work += price_sweep(p); // with the mixing that follows
     int now = a->m.next;
-    if (p->exchange && !p->exchange->add) {
+    if (p->device) {
+        device_measure(a->s->p, &a->m, CHUNK_BUNDLES, &t);
+    } else if (p->exchange && !p->exchange->add) {
         measure_shared(a, &t);
     } else {
         team_share(a->s->o->threads, n, 1, measure_chunks, a);
@@ -243,6 +250,10 @@ static void react(struct anderson *a, double leap, const double gamma[MIXING_DEP
 {
     struct jump j = { a, leap, gamma };
     a->s->renewed = false;
+    if (a->s->p->device) {
+        device_react(a->s->p, &a->m, leap, gamma);
+        return;
+    }
     team_do(problem_team(a->s->p, a->s->o->threads), jump, &j);
 }
 
@@ -359,6 +370,7 @@ struct anderson *anderson_new(struct solve *s)
            bytes = (size_t)(1 + 2 * depth(a)) * size * sizeof(double);
     for (int k = 0; k < 2; k++)
         a->omega[k] = s->o->relax > 0 ? s->o->relax : k || s->p->kind.full ? 1 : OMEGA_BALLS;
+    if (s->p->device) bytes = 64;       // the device has the vectors
     a->room = aligned_alloc(64, bytes); // each vector is whole cache lines
     a->sums = malloc((size_t)(chunks(s->p) + 1) * sizeof *a->sums);
     if (!a->room || !a->sums || solve_best_init(&a->since, s->p)) {
@@ -367,6 +379,11 @@ struct anderson *anderson_new(struct solve *s)
     }
     anderson_restart(a);
     memset(a->room, 0, bytes);
+    if (s->p->device) {
+        if (!device_mixing(s->p, depth(a))) return a;
+        anderson_free(a);
+        return NULL;
+    }
     double *next = a->m.f = a->room;
     for (int j = 0; j < depth(a); j++) a->m.dg[j] = next += size, a->m.df[j] = next += size;
     return a;

@@ -6,7 +6,7 @@
 
 int best_init(struct best *b, int64_t size)
 {
-    *b = (struct best){ INFINITY, size, malloc(((size_t)size + 1) * sizeof *b->x) };
+    *b = (struct best){ INFINITY, size, malloc(((size_t)size + 1) * sizeof *b->x), -1 };
     return b->x ? 0 : -1;
 }
 

@@ -6,9 +6,11 @@
 
 #include "base/team.h"
 #include "problem/backend.h"
+#include "problem/device.h"
 #include "problem/exchange.h"
 #include "solve/prices.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <string.h>
@@ -53,6 +55,18 @@ static void make_round(void *arg, int me, int threads)
     pthread_mutex_unlock(&r->lock);
 }
 
+/* The same by a device; returns the change, NaN where the device is lost */
+static double sweep_there(const struct round *r)
+{
+    struct tally t = { 0 };
+    for (int32_t k = r->sweeps - 1; k >= 0; k--) {
+        memset(t.change, 0, sizeof t.change);
+        device_sweep(r->p, k ? &r->quiet : &r->last, &t);
+    }
+    double change = add_tally(r->rep, &t);
+    return r->p->device->lost.status ? NAN : change;
+}
+
 /* `unjudged` sweeps and one more, which stores u if `keep`. Counts them in the report; returns the
    largest change of a normal velocity in the last one, m/s. */
 static double sweep(struct solve *s, double omega, int32_t unjudged, bool keep)
@@ -67,6 +81,7 @@ static double sweep(struct solve *s, double omega, int32_t unjudged, bool keep)
                        .rep = s->rep };
     s->rep->sweeps += unjudged + 1, s->rep->work += (unjudged + 1) * price_sweep(s->p);
     s->renewed = false;
+    if (s->p->device) return sweep_there(&r);
     team_do(problem_team(s->p, o->threads), make_round, &r);
     return s->p->exchange ? s->p->exchange->most(s->p->exchange, r.change) : r.change;
 }

@@ -2,6 +2,7 @@
 #include "solve/scaled.h"
 
 #include "problem/assembly.h"
+#include "problem/device.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +10,7 @@
 int scaled_assemble(struct delassus *W, const struct problem *p, struct why *why)
 {
     struct assembly A = { 0 };
+    device_home((struct problem *)p, false);
     int e = assembly_init(&A, p, why);
     if (!e) e = assembly_blocks(&A, W, why);
     assembly_free(&A);
@@ -89,6 +91,7 @@ void scaled_free(struct scaled *a)
 
 void scaled_get(const struct scaled *a, const struct problem *p, double *x)
 {
+    device_home((struct problem *)p, false);
     for (int64_t i = 0; i < p->slots; i++) {
         double r[3], u[3];
         int64_t c = p->contact[i];

@@ -4,6 +4,8 @@
 #include "base/team.h"
 #include "problem/apply.h"
 #include "problem/backend.h"
+#include "problem/device.h"
+#include "problem/device_check.h"
 #include "problem/exchange.h"
 #include "solve/prices.h"
 
@@ -134,6 +136,11 @@ static int64_t end_of_ru(const struct problem *p)
 
 int solve_best_init(struct best *b, const struct problem *p)
 {
+    if (p->device) {
+        int failed = best_init(b, 0);
+        b->place = device_place(p->device);
+        return failed || b->place < 0 ? -1 : 0;
+    }
     return best_init(b, end_of_ru(p) + (p->kind.extra ? BESIDE_R * p->slots : 0));
 }
 
@@ -159,6 +166,11 @@ void solve_best_offer(const struct solve *s, struct best *b)
     const struct problem *p = s->p;
     struct keeping k = { p, best_offer(b, s->value) };
     if (!k.r) return;
+    if (p->device) {
+        b->x[0] = s->believes;
+        device_keep(s->p, b->place, with_u(p));
+        return;
+    }
     team_share(s->o->threads, p->slots, SLOTS_PER_THREAD, keep_some, &k);
     if (with_u(p)) k.r[6 * p->slots] = s->believes;
 }
@@ -173,6 +185,12 @@ void solve_best_restore(struct solve *s, const struct best *b)
 {
     struct problem *p = s->p;
     if (!b->x || !(b->value < INFINITY) || s->value <= b->value) return;
+    if (p->device) {
+        s->believes = with_u(p) && b->x[0] != 0;
+        device_restore(p, b->place, s->believes);
+        s->renewed = true, s->renewed_at = s->rep->sweeps, s->value = b->value;
+        return;
+    }
     const double *r = b->x, *u = r + 3 * p->slots;
     for (int64_t i = 0; p->kind.extra && i < p->slots; i++)
         slot_set_beyond(p, i, r + end_of_ru(p) + BESIDE_R * i);
@@ -195,8 +213,37 @@ void solve_restore_best(struct solve *s)
 
 /* ---- a whole solve ---- */
 
+/* The device that is to solve the problem, compared with the CPU before it does so for the first time; NULL: the CPU
+   is. -1 where the device fails */
+static int choose_device(const struct problem *p, const struct solve_opt *o, struct report *rep,
+                         struct device **device)
+{
+    struct why why = { 0 };
+    *device = NULL;
+    rep->on_cpu = NULL, rep->bus_to = rep->bus_from = 0, rep->kernels = 0;
+    if (!o->device || !p->n) return 0;
+    rep->on_cpu = o->global == &solver_cg ? "cg makes no sweeps" : device_declines(p);
+    if (rep->on_cpu) return 0;
+    *device = o->device, o->device->account = (struct device_account){ 0 };
+    return device_check(o->device, &p->kind, o->method->id, &why) ? -1 : 0;
+}
+
+/* The iterate comes back from it; -1 where it was lost. */
+static int leave_device(struct problem *p, struct report *rep)
+{
+    struct why why = { 0 };
+    struct device *d = p->device;
+    if (!d) return 0;
+    int failed = device_release(p, &why);
+    rep->bus_to = d->account.to, rep->bus_from = d->account.from, rep->kernels = d->account.kernels;
+    return failed ? -1 : 0;
+}
+
 int solve_problem(struct problem *p, const struct solve_opt *o, struct report *rep)
 {
+    struct why why = { 0 };
+    struct device *device;
+    if (choose_device(p, o, rep, &device)) return -1; // compiles kernels: no time of the solve
     double cpu = report_seconds(CLOCK_CPU), wall = report_seconds(CLOCK_WALL);
     struct solve s = { .p = p, .o = o, .rep = rep, .start = wall };
     s.believes = o->method->believes, s.value = INFINITY, s.renewed = true;
@@ -208,12 +255,16 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
     rep->work = 0, rep->fallback = rep->given_up = NULL;
     snprintf(rep->method, sizeof rep->method, "%s",
              o->global == &solver_nlgs ? o->method->name : o->global->name);
+    if (device && device_hold(device, p, o->method->id, &why)) return -1;
     int failed = p->n ? o->global->run(&s) : 0;
     solve_restore_best(&s);
     best_free(&s.best);
-    if (failed) return -1;
+    if (failed) return leave_device(p, rep), -1;
     renew(&s);
-    if (!s.believes) backend_widest()->judge->velocities(p, 0, p->bundles);
+    if (!s.believes && p->device)
+        device_velocities(p);
+    else if (!s.believes)
+        backend_widest()->judge->velocities(p, 0, p->bundles);
     if (p->exchange) {
         struct exchange *all = p->exchange;
         rep->newton = all->count(all, rep->newton);
@@ -223,6 +274,7 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
     double overlap = rep->err.max_overlap;
     err_eval(&rep->err, p, s.believes, ERR_ALL, o->threads);
     rep->err.max_overlap = overlap;
+    if (leave_device(p, rep)) return -1;
     if (rep->history && rep->sweeps) rep->history[rep->sweeps - 1] = rep->err.paper;
     bool jammed = rep->err.jammed && (o->criterion == CRITERION_VELOCITY || !p->packing);
     rep->converged = !p->n || (!jammed && err_value(&rep->err, o->criterion, o->eps) <= o->eps);

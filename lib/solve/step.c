@@ -7,6 +7,7 @@
 #include "motion/move.h"
 #include "motion/project.h"
 #include "motion/sum_step.h"
+#include "problem/device.h"
 #include "problem/prepare.h"
 #include "solve/rebound.h"
 
@@ -27,6 +28,14 @@ static int check_solver(const struct problem *p, const struct solver *global, st
         global->name);
 }
 
+/* Why solve_problem() has failed: the device, or memory */
+static int solve_failed(const struct solve_opt *o, struct why *why)
+{
+    const struct why *lost = o->device ? &o->device->lost : NULL;
+    if (lost && lost->status) return why_set(why, lost->status, "%s", lost->text);
+    return why_set(why, EX_SOFTWARE, "no memory to solve the contacts");
+}
+
 /* The contacts as they are, from the reactions that they have */
 static int solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
                           const struct step_opt *o, struct report *rep, struct why *why)
@@ -39,7 +48,7 @@ static int solve_contacts(const struct packing *pack, struct contacts *s, struct
     if (check_solver(&p, o->solve.global, why)) return problem_free(&p), why->status;
     int failed = solve_problem(&p, &o->solve, rep);
     if (failed)
-        why_set(why, EX_SOFTWARE, "no memory to solve the contacts");
+        solve_failed(&o->solve, why);
     else if ((failed = problem_store(&p, s)))
         why_set(why, EX_SOFTWARE, "no memory for the solution");
     problem_free(&p);
@@ -54,6 +63,8 @@ int step_bound_impacts(const struct packing *pack, struct contacts *s, struct pl
     while (!rebound_reduce(&search, pack, s, &again, why) && again) {
         const struct report before = *rep;
         if (solve_contacts(pack, s, kept, o, rep, why)) break;
+        rep->bus_to += before.bus_to, rep->bus_from += before.bus_from;
+        rep->kernels += before.kernels;
         rep->seconds += before.seconds, rep->elapsed += before.elapsed, rep->work += before.work;
         if (o->solve.history) continue; // which is of the last solve
         rep->sweeps += before.sweeps, rep->newton += before.newton;
@@ -121,7 +132,7 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
         for (int k = 0; k < W->d; k++) u[W->d * p.contact[i] + k] = v[k];
     }
     problem_free(&p);
-    return failed ? why_set(why, EX_SOFTWARE, "no memory to solve the contacts") : 0;
+    return failed ? solve_failed(&o->solve, why) : 0;
 }
 
 void step_forget(struct step_memory *m)

@@ -219,6 +219,12 @@ static const struct solver *global(const struct options *o)
 /* The option where it is given, else what stands for it */
 #define OPTION(name, otherwise) (options_has(o, &options.name) ? o->name : (otherwise))
 
+/* A device wants many contacts at once. */
+static int order_usual(const struct options *o, enum order otherwise)
+{
+    return (int)(o->device ? ORDER_COLOUR : otherwise);
+}
+
 struct step_opt options_step_of(const struct options *o, double dt, bool foreign)
 {
     const struct usual *u = o->paper ? &paper : &usual;
@@ -226,7 +232,8 @@ struct step_opt options_step_of(const struct options *o, double dt, bool foreign
     bool nlgs = solver == &solver_nlgs;
     int criterion = OPTION(criterion, (int)(foreign ? u->fclib : u->packing));
     double eps = OPTION(eps, foreign ? u->fclib_eps : u->eps[criterion]);
-    const enum order order = (enum order)OPTION(order, (int)(nlgs ? u->nlgs_order : u->order));
+    const enum order order =
+        (enum order)OPTION(order, order_usual(o, nlgs ? u->nlgs_order : u->order));
     int32_t sweeps = nlgs ? u->nlgs_sweeps : eps < u->tight ? u->tight_sweeps : u->sweeps;
     return (struct step_opt){
         .gap = o->gap,

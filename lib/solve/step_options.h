@@ -18,9 +18,10 @@ struct options {
     double theta;
     int64_t max_sweeps, newton_max, threads;
     bool warm, every_sweep, history, strict;
-    int cut;         /* of several processes, the way that space is cut [ranks/territory.h] */
-    const char *log; /* or NULL */
-    uint64_t given;  /* which of them were, by options_give() */
+    int cut;            /* of several processes, the way that space is cut [ranks/territory.h] */
+    const char *log;    /* or NULL */
+    const char *device; /* that makes the sweeps, as device_open() has it; NULL: the CPU */
+    uint64_t given;     /* which of them were, by options_give() */
 };
 
 /* That of a tool, whose members the tables name. Another one has them as far from its beginning. */

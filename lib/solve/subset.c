@@ -141,6 +141,7 @@ static int solve(struct subset *p, struct solve *s, double budget)
     struct solve_opt o = *s->o;
     o.global = &inner.solver, o.criterion = CRITERION_NATURAL, o.eps = EXACT;
     o.max_sweeps = INT32_MAX, o.every_sweep = o.history = false, o.threads = 1, o.progress = NULL;
+    o.device = NULL; // a subset is small
     if (o.max_seconds > 0) o.max_seconds = fmax(solve_seconds_left(s), 1e-9);
     if (problem_prepare_delassus(&q, V, &(struct prepare_opt){ .rho_factor = s->o->method->rho },
                                  &why))

@@ -53,7 +53,7 @@ is "and the Python module knows them" "$(in_python)" ""
 
 # team, busy, judgement: the team of the process, which one thread has at a time. list, owner, running and their locks: files and
 # readers, locked. hdf5, printer, printer_data: libhdf5, locked. guest, chosen, once: set once. limit, options: the tools' own, which
-# the library only reads. plist, registered: of the process that reads. of_thread, size, together: a thread's own.
+# the library only reads. opencl_calls, opencl_open: the loader of OpenCL, locked. plist, registered: of the process that reads. of_thread, size, together: a thread's own.
 cat >"$tmp/known" <<'EOT'
 busy
 guest
@@ -65,6 +65,8 @@ list_lock
 lock
 of_thread
 once
+opencl_calls
+opencl_open
 options
 owner
 plist

@@ -149,7 +149,7 @@ static void test_planar_formulas(const char *name, linearise *f, bool bipotentia
 }
 
 /* Where balls slide the step is in closed form: that of the whole system, of W = diag(w_n, w_t, w_t). */
-static void test_slip(const char *name, linearise *f, struct newton_formulation text)
+static void test_slip(const char *name, linearise *f, enum newton_formulation form)
 {
     double worst = 0;
     int slid = 0;
@@ -164,8 +164,8 @@ static void test_slip(const char *name, linearise *f, struct newton_formulation 
             struct newton_point x = { .r = { s.x[0], s.x[1], s.x[2] },
                                       .v = { s.x[3], s.x[4], s.x[5] } };
             for (int i = 0; i < 3; i++) l.w[i] = w[i], l.iw[i] = iw[i];
-            text.residual(l.mu, l.rho, &x);
-            newton_direction(&l, &x, text, dr[k]);
+            BY_FORMULATION(form, residual, l.mu, l.rho, &x);
+            newton_direction(&l, &x, form, dr[k]);
         }
         for (int i = 0; i < 3; i++) big = fmax(big, fabs(dr[1][i]));
         for (int i = 0; i < 3; i++) worst = fmax(worst, fabs(dr[0][i] - dr[1][i]) / big);
