@@ -246,7 +246,9 @@ static int coarse(uint32_t *crc, struct why *why)
 static int export_all(uint32_t *crc, struct why *why)
 {
     void *kept = NULL;
-    const struct export_frame m = { &frame[now].packing, &frame[now].contacts, 1, &kept, NULL, NULL };
+    const struct export_frame m = {
+        &frame[now].packing, &frame[now].contacts, 1, &kept, NULL, NULL
+    };
     *crc = 0;
     for (int k = 0; !why->status && format_at(k); k++)
         for (int part = 0; part < PART_COUNT; part++) {
