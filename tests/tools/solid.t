@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Walls with names in pictures and exports: nsd-view --solid and --surface, the legend of kinds and names, forces and sums
 # on nsd-export --part boundary and surfaces.
-# shellcheck source=tests/support/tap.sh disable=SC2317,SC2054 # functions called by name; commas are the options own
+# shellcheck source=tests/support/tap.sh disable=SC2317,SC2054,SC2016 # functions called by name; commas are of the options; eval
 . tests/support/tap.sh
 
 view() { nsd-view "$@" 2>/dev/null; }
