@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Names of walls, parts of surfaces and groups of bodies: from scenes and OBJ files into documents, through resumed
 # runs, nsd-cat, scenes out of documents and several processes; --only; sums by name; what is refused.
+# shellcheck source=tests/support/tap.sh disable=SC2016 # eval
 . tests/support/tap.sh
 
 step() { nsd-step "$@" 2>/dev/null; }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Walls with names in pictures and exports: nsd-view --solid and --surface, the legend of kinds and names, forces and sums
 # on nsd-export --part boundary and surfaces.
-# shellcheck source=tests/support/tap.sh disable=SC2317 # functions called by name
+# shellcheck source=tests/support/tap.sh disable=SC2317,SC2054,SC2016 # functions called by name; commas are of the options; eval
 . tests/support/tap.sh
 
 view() { nsd-view "$@" 2>/dev/null; }
@@ -56,13 +56,13 @@ view "${look[@]}" --surface pressure "$tmp/run.h5" >"$tmp/pressure.png"
 view "${look[@]}" --solid floor --surface pressure --surface-range 0,1000000000 "$tmp/run.h5" >"$tmp/dark.png"
 view "${look[@]}" "$tmp/run.h5" >"$tmp/glass.png"
 # corners of the picture: lower left is of the first triangle, upper right of the second; both away from the balls
-read -r a1 a2 a3 < <(pixel "$tmp/left.png" 20 150) && read -r b1 b2 b3 < <(pixel "$tmp/left.png" 180 50)
-read -r c1 c2 c3 < <(pixel "$tmp/floor.png" 180 50)
+read -r a1 _ a3 < <(pixel "$tmp/left.png" 20 150) && read -r b1 _ b3 < <(pixel "$tmp/left.png" 180 50)
+read -r c1 _ c3 < <(pixel "$tmp/floor.png" 180 50)
 is "a part is solid, and its neighbour is not" "$((a1 > a3 + 30)) $((b1 > b3 + 30))" '1 0'
 is "a name that is the whole wall's: both are" "$((c1 > c3 + 30))" 1
-read -r d1 d2 d3 < <(pixel "$tmp/pressure.png" 20 150) && read -r e1 e2 e3 < <(pixel "$tmp/pressure.png" 180 50)
+read -r d1 _ d3 < <(pixel "$tmp/pressure.png" 20 150) && read -r e1 e2 e3 < <(pixel "$tmp/pressure.png" 180 50)
 is "the largest pressure is yellow, an eighth of it is violet or blue" "$((e1 > e3 && e2 > e3)) $((d3 > d1))" '1 1'
-read -r f1 f2 f3 < <(pixel "$tmp/dark.png" 180 50)
+read -r f1 _ f3 < <(pixel "$tmp/dark.png" 180 50)
 is "--surface-range" "$((f3 > f1))" 1
 ok "without them pictures are as before: glass" eval '! cmp -s "$tmp/glass.png" "$tmp/left.png"'
 ok "threads do not change a picture" cmp "$tmp/floor.png" <(view "${look[@]}" -j 2 --solid floor "$tmp/run.h5")
