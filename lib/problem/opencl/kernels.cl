@@ -60,7 +60,8 @@ ALWAYS_INLINE void gather(const struct rows *W, int64_t slot, int d, double b[3]
     }
 }
 
-#define AT(slot, component, width) (((slot) / BUNDLE * (width) + (component)) * BUNDLE + (slot) % BUNDLE)
+#define AT(slot, component, width)                                                                 \
+    (((slot) / BUNDLE * (width) + (component)) * BUNDLE + (slot) % BUNDLE)
 
 ALWAYS_INLINE void load_block(__global const double *block, int64_t slot, double W[9])
 {
@@ -71,7 +72,8 @@ ALWAYS_INLINE void load_block(__global const double *block, int64_t slot, double
 #define BESIDE(slot) (beside ? &beside[(slot) / BUNDLE] : NULL)
 
 /* As motion_velocity() of problem/judge.c */
-ALWAYS_INLINE void motion_velocity(__global const struct bundle *bundle, __global const struct beside *beside,
+ALWAYS_INLINE void motion_velocity(__global const struct bundle *bundle,
+                                   __global const struct beside *beside,
                                    __global const struct rebound *rebound,
                                    __global struct body *body, const struct rows *W,
                                    __global const double *block, int64_t slot, int d,
@@ -94,12 +96,14 @@ ALWAYS_INLINE void motion_velocity(__global const struct bundle *bundle, __globa
     struct twist ma, mb;
     double t1[3], t2[3];
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
-    bundle_velocity(c, BESIDE(slot), rebound ? &rebound[slot / BUNDLE] : NULL, k, &ma, &mb, u, t1, t2);
+    bundle_velocity(c, BESIDE(slot), rebound ? &rebound[slot / BUNDLE] : NULL, k, &ma, &mb, u, t1,
+                    t2);
 #endif
 }
 
 /* Passes a change dr of r on to the bodies, or r to W's */
-ALWAYS_INLINE void pass_on(__global const struct bundle *bundle, __global const struct beside *beside, __global struct body *body,
+ALWAYS_INLINE void pass_on(__global const struct bundle *bundle,
+                           __global const struct beside *beside, __global struct body *body,
                            __global double *row_r, int64_t slot, int d, const double r[3],
                            const double dr[3])
 {
@@ -124,11 +128,11 @@ struct counts {
 };
 
 /* The local problem as make_local() of problem/sweep.c has it */
-ALWAYS_INLINE void make_local(__global const struct bundle *bundle, __global const struct beside *beside,
+ALWAYS_INLINE void make_local(__global const struct bundle *bundle,
+                              __global const struct beside *beside,
                               __global const struct rebound *rebound, __global struct body *body,
                               const struct rows *rows, __global const double *block,
-                              __global const double *w, int64_t slot, double W[9],
-                              struct local *l)
+                              __global const double *w, int64_t slot, double W[9], struct local *l)
 {
     __global const struct bundle *c = &bundle[slot / BUNDLE];
     int k = slot % BUNDLE;
@@ -177,14 +181,14 @@ ALWAYS_INLINE void solve_relaxed(struct local *l, const double was[3], const str
 }
 
 #define SWEEP_OF                                                                                   \
-    __global const struct bundle *bundle, __global const struct beside *beside, __global const struct rebound *rebound,                  \
-        __global struct body *body, __global double *r, __global double *u,                        \
-        __global const double *w, __global const double *rho, GIVEN_BY_W, int d, double relax,     \
-        double newton_eps, double newton_abs, int newton_max, int plain, int keep,                 \
-        __global struct question *question, __global int *questions
+    __global const struct bundle *bundle, __global const struct beside *beside,                    \
+        __global const struct rebound *rebound, __global struct body *body, __global double *r,    \
+        __global double *u, __global const double *w, __global const double *rho, GIVEN_BY_W,      \
+        int d, double relax, double newton_eps, double newton_abs, int newton_max, int plain,      \
+        int keep, __global struct question *question, __global int *questions
 #define SWEEP_WITH                                                                                 \
-    bundle, beside, rebound, body, r, u, w, rho, row_first, row_col, row_block, row_q, row_r, block, d,    \
-        relax, newton_eps, newton_abs, newton_max, plain, keep, question, questions
+    bundle, beside, rebound, body, r, u, w, rho, row_first, row_col, row_block, row_q, row_r,      \
+        block, d, relax, newton_eps, newton_abs, newton_max, plain, keep, question, questions
 
 /* Solves a slot; without an answer that it needs it asks, and leaves the slot as it is. */
 ALWAYS_INLINE void solve_slot(SWEEP_OF, int64_t slot, struct search *search, struct counts *t)
@@ -244,8 +248,8 @@ ALWAYS_INLINE void team_counts(__local struct counts *mine, const struct counts 
 }
 
 /* n slots of list[] from `first` on, which do not depend on each other; part[] from part_first on */
-__kernel void sweep(SWEEP_OF, __global struct counts *part, __global const int *list, long first, int n,
-                    long part_first)
+__kernel void sweep(SWEEP_OF, __global struct counts *part, __global const int *list, long first,
+                    int n, long part_first)
 {
     __local struct counts mine[TEAM];
     struct counts t = { 0, 0, 0, 0 };
@@ -268,7 +272,8 @@ __kernel void sweep_answered(SWEEP_OF, __global struct counts *part, int n, long
 }
 
 /* tally = the counts of a sweep; by one team */
-__kernel void tally_counts(__global const struct counts *part, long n, __global struct counts *tally)
+__kernel void tally_counts(__global const struct counts *part, long n,
+                           __global struct counts *tally)
 {
     __local struct counts mine[TEAM];
     struct counts t = { 0, 0, 0, 0 };
@@ -287,7 +292,8 @@ __kernel void tally_counts(__global const struct counts *part, long n, __global 
 /* ---- velocities from the reactions ---- */
 
 /* Adds to the bodies' velocities what the reactions of n slots of list[] make of them */
-__kernel void push(__global const int *list, __global const struct bundle *bundle, __global const struct beside *beside, __global struct body *body,
+__kernel void push(__global const int *list, __global const struct bundle *bundle,
+                   __global const struct beside *beside, __global struct body *body,
                    __global const double *r, __global double *row_r, int d, long first, int n)
 {
     if (get_global_id(0) >= n) return;
@@ -346,12 +352,12 @@ enum {
     SUMS
 };
 
-__kernel void judge(__global const struct bundle *bundle, __global const struct beside *beside, __global const struct rebound *rebound,
-                    __global struct body *body, __global const double *r,
-                    __global const double *belief, __global const double *w, GIVEN_BY_W, int d,
-                    long bundles, int per_block, int believes, int terms, int natural,
-                    double rounding2, double jammed2, double misses2,
-                    __global double *out)
+__kernel void judge(__global const struct bundle *bundle, __global const struct beside *beside,
+                    __global const struct rebound *rebound, __global struct body *body,
+                    __global const double *r, __global const double *belief,
+                    __global const double *w, GIVEN_BY_W, int d, long bundles, int per_block,
+                    int believes, int terms, int natural, double rounding2, double jammed2,
+                    double misses2, __global double *out)
 {
     int64_t which = get_global_id(0) / BUNDLE, first = which * per_block, end = first + per_block;
     int k = get_global_id(0) % BUNDLE;
@@ -426,7 +432,8 @@ __kernel void scatter(__global const struct bundle *bundle, __global const doubl
 }
 
 /* df[next] = r */
-__kernel void remember(__global const double *r, int d, long numbers, __global double *room, long df)
+__kernel void remember(__global const double *r, int d, long numbers, __global double *room,
+                       long df)
 {
     int64_t at = get_global_id(0), bundle = at / (d * BUNDLE);
     if (at < numbers) room[df + at] = r[bundle * 3 * BUNDLE + at % (d * BUNDLE)];
@@ -471,7 +478,8 @@ __kernel void products(__global const double *room, __global const double *w, in
 }
 
 /* r = x = g + leap f - sum_j gamma_j dg_j, projected onto the discs, of n slots of list[]; the bodies follow */
-__kernel void react(__global const int *list, __global const struct bundle *bundle, __global const struct beside *beside, __global struct body *body,
+__kernel void react(__global const int *list, __global const struct bundle *bundle,
+                    __global const struct beside *beside, __global struct body *body,
                     __global double *r, __global double *row_r, int d, __global double *room,
                     long f, long size, int depth, int next, double leap, double gamma0,
                     double gamma1, double gamma2, double gamma3, double gamma4, long first, int n)
