@@ -53,8 +53,10 @@ int sum_tables_write(struct table_write *s, const struct packing *p, struct why 
         if (!row) return why_set(why, EX_SOFTWARE, "no memory for the sums");
         path_of(c, path);
         column_gather(c, n, p->sums.face, sizeof *p->sums.face, row);
-        table_write_rows(s, path, c->type, c->width == 1 ? 2 : 3, shape, n < FEW ? CHUNK_FRAMES : 1,
-                         row, c->units, why);
+        table_write_rows(s,
+                         (struct dataset){ path, c->type, c->width == 1 ? 2 : 3, shape,
+                                           n < FEW ? CHUNK_FRAMES : 1, row, c->units },
+                         why);
         free(row);
     }
     if (why->status || table_write_clock(s, HOME, true, &p->step, HOME, layout_sums, why))
