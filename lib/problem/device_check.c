@@ -118,7 +118,8 @@ static bool make_blocks(struct problem *p, struct delassus *W, bool full, double
             }
     }
     if (delassus_init(W, 3, CHAIN, n, row, col, x, q, mu, &why)) return false;
-    if (!problem_prepare_delassus(p, W, 0, rho, ORDER_COLOUR, &why)) return true;
+    const struct prepare_opt form = { .rho_factor = rho, .order = ORDER_COLOUR };
+    if (!problem_prepare_delassus(p, W, &form, &why)) return true;
     delassus_free(W);
     return false;
 }
