@@ -28,7 +28,7 @@ struct glass {
    as floors where they are seen from `toward` (unit vector to the viewer) are left out, unless they are solid. solid: which
    are, or NULL; glass: false: only these. Returns 0, or
    EX_SOFTWARE with nothing to free. */
-int glass_init(struct glass *g, const struct packing *p, const struct region *r, vec3 toward,
+int glass_init(struct glass *g, const struct packing *p, const struct extent *r, vec3 toward,
                const struct solid *solid, bool glass, struct why *why);
 void glass_free(struct glass *g);
 

@@ -34,7 +34,7 @@ static int add_cell(struct sheet *s, struct owners *o, struct owner of, int corn
 }
 
 static int add_planes(struct sheet *s, struct owners *o, const struct packing *p,
-                      const struct region *region, struct why *why)
+                      const struct extent *region, struct why *why)
 {
     vec3 corner[WALLS_CORNERS];
     for (int32_t i = 0; i < p->walls && i < WALLS_PANELS; i++) {
@@ -47,7 +47,7 @@ static int add_planes(struct sheet *s, struct owners *o, const struct packing *p
 }
 
 static int add_outlines(struct sheet *s, struct owners *o, const struct packing *p,
-                        const struct region *region, struct why *why)
+                        const struct extent *region, struct why *why)
 {
     struct outline line;
     if (outline_init(&line, p, v3_norm(v3_sub(region->hi, region->lo)), why)) return why->status;
@@ -152,7 +152,7 @@ static int add_forces(struct sheet *s, const struct owners *o, const struct expo
 int sheet_boundary(struct sheet *s, const struct export_frame *m, struct why *why)
 {
     const struct packing *p = m->packing;
-    struct region region = { 0 };
+    struct extent region = { 0 };
     struct owners o = { 0 };
     s->shape = p->dim == 2 ? SHEET_LINE : SHEET_POLYGON;
     if (chosen_init(&o.chosen, p, "--only", m->only, why)) return why->status;
