@@ -56,9 +56,9 @@ void device_close(struct device *d)
 
 const char *device_declines(const struct problem *p)
 {
-    if (p->shared) return "several processes share the contacts";
+    if (p->exchange) return "several processes share the contacts";
     if (p->kind.rolls) return "contacts have rolling friction";
-    if (p->kind.beyond) return "contacts have bonds";
+    if (p->kind.extra) return "contacts have bonds";
     if (p->kind.levers) return "grains are no balls or discs";
     if (p->W && p->W->common) return "loads push contacts";
     return p->slots > INT32_MAX ? "there are too many contacts" : NULL;

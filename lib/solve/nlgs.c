@@ -7,7 +7,7 @@
 #include "base/team.h"
 #include "problem/backend.h"
 #include "problem/device.h"
-#include "problem/shared.h"
+#include "problem/exchange.h"
 #include "solve/prices.h"
 
 #include <math.h>
@@ -83,7 +83,7 @@ static double sweep(struct solve *s, double omega, int32_t unjudged, bool keep)
     s->renewed = false;
     if (s->p->device) return sweep_there(&r);
     team_do(problem_team(s->p, o->threads), make_round, &r);
-    return s->p->shared ? s->p->shared->most(s->p->shared, r.change) : r.change;
+    return s->p->exchange ? s->p->exchange->most(s->p->exchange, r.change) : r.change;
 }
 
 /*
