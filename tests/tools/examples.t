@@ -198,7 +198,7 @@ claim()
     'nsd-view '*'-o film.mp4 out.h5') [ -s film.mp4 ] || [ -s film-00000.png ] ;;
     *'nsd-view --network --svg > forces.svg') [ "$(grep -c '<path' forces.svg)" -gt 800 ] ;;
     # measures
-    *'drum.json'*'jq .surface.angle') output 'length == 3 and .[2] > 15 and .[2] < 40' ;;
+    *'drum.json'*'jq .surface.angle') output 'length >= 3 and .[-1] > 15 and .[-1] < 40' ;;
     *'nsd-stat > run.jsonl') jq -s -e "length == $2 and .[-1].stress.p > 0" run.jsonl ;;
     'nsd-stat out.h5 |'*'.fraction.fraction, .energy.kinetic'*) table 3 "$(frames out.h5 length)" ;;
     'nsd-stat --last -m profile --tsv out.h5 > profile.tsv') named 24 21 profile.tsv ;;
