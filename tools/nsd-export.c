@@ -31,23 +31,23 @@ static struct cli_choice part_choice(int k)
 
 static const struct cli_option own[] = {
     { CLI_CHOICE, 't', "to", &to, .choice = to_choice,
-      .help = "the format [by the ending of -o; vtp in a directory]" },
+      .help = "write this format [by the suffix of -o; vtp in a directory]" },
     { CLI_CHOICE, 'p', "part", &part, .choice = part_choice,
-      .help = "what of a frame [grains; in a directory all]" },
+      .help = "write this part of a frame [grains; in a directory all]" },
     { CLI_TEXT, 'o', "output", &output, "FILE",
-      .help = "FILE, a series 'f%05d.vtp', or a directory 'DIR/' [standard output]" },
-    { CLI_FLAG, 'l', "last", &last, .help = "only the very last frame" },
-    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
+      .help = "write a FILE, a series 'f%05d.vtp' or a directory 'DIR/' [stdout]" },
+    { CLI_FLAG, 'l', "last", &last, .help = "process only the last frame" },
+    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "process steps A to B, every K-th [all]" },
     { CLI_INT, 0, "detail", &detail, "N",
-      .help = "round grains have 20 * 4^N triangles in STL, surfaces [2]", .max = 6 },
+      .help = "use 20 * 4^N triangles for round grains in STL, surfaces [2]", .max = 6 },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
 
 const struct cli_tool tool = { "nsd-export", "[FILE ...]",
-                               "Writes frames as files of other programs: one file, a file a "
-                               "frame, or a directory with lists\n"
-                               "(.pvd) that ParaView plays. Units are SI, forces in N.",
+                               "Writes frames as files of other programs: one file, one file per "
+                               "frame, or a directory\n"
+                               "with lists (.pvd) that ParaView plays. Units are SI, forces in N.",
                                tables,
                                "  nsd-export -o paraview/ out.h5\n"
                                "  nsd-export --part contacts -o 'forces%05d.vtp' out.h5\n"

@@ -39,34 +39,34 @@ static struct cli_choice cut_choice(int index)
 {
     static const struct cli_choice cuts[] = {
         { "bisection", "boxes, by recursive bisection" },
-        { "hypergraph", "cells of a grid, with the fewest bodies that several have" },
+        { "hypergraph", "cells of a grid, with the fewest shared bodies" },
     };
     return index < 2 ? cuts[index] : (struct cli_choice){ 0 };
 }
 
 static const struct cli_option own[] = {
-    { CLI_INT, 'n', "steps", &steps, "N", "steps to make [1]", .max = 1e15 },
-    { CLI_REAL, 0, "until", &until, "T", "or steps until the time is T, s [by -n]", .min = -1e300,
+    { CLI_INT, 'n', "steps", &steps, "N", "make N steps [1]", .max = 1e15 },
+    { CLI_REAL, 0, "until", &until, "T", "make steps until the time is T, s [by -n]", .min = -1e300,
       .max = 1e300 },
     { CLI_TEXT, 0, "dt", &dt, "DT|auto:TOL",
-      .help = "time step, s; auto: by overlaps of TOL radii [the document's]" },
+      .help = "set the time step, s; auto: overlaps of TOL radii [document]" },
     { CLI_EVERY, 0, "every", &every, "K|Ts",
-      "keep every K-th step, or one every T s of its time, and the last [1]", .max = 1e15 },
-    { CLI_FLAG, 0, "contacts", &contacts, .help = "keep each frame's contacts too" },
+      "keep every K-th step, or one per T s of time, and the last [1]", .max = 1e15 },
+    { CLI_FLAG, 0, "contacts", &contacts, .help = "also keep the contacts of each frame" },
     { CLI_FLAG, 0, "forces", &forces,
-      .help = "and with them their forces, in N and in space; means --contacts" },
+      .help = "also keep their forces as vectors in N; implies --contacts" },
     { CLI_FLAG, 'w', "warm", &options.warm,
-      .help = "start each solve from the last step's reactions" },
-    { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start each solve from 0, as the paper",
-      .usual = options_usual },
+      .help = "start each solve from the reactions of the last step" },
+    { CLI_UNFLAG, 0, "cold", &options.warm,
+      .help = "start each solve from reactions 0, as the paper", .usual = options_usual },
     { CLI_CHOICE, 0, "cut", &options.cut, .choice = cut_choice,
-      .help = "under mpirun, how processes share out space [bisection]" },
+      .help = "divide space among MPI processes in this way [bisection]" },
     { CLI_FLAG, 'i', "in-place", &in_place, .silent = true,
-      .help = "append to FILE; also where standard output is a terminal" },
+      .help = "append to FILE; default if standard output is a terminal" },
     { CLI_ABOVE, 0, "progress", &lines, "S", .max = 1e9, .silent = true,
-      .help = "say how far it is every S seconds, on no terminal too [terminal]" },
+      .help = "report progress every S seconds [only on a terminal]" },
     { CLI_TEXT, 0, "save", &save, "TIME", .silent = true,
-      .help = "keep a checkpoint in OUTPUT.save every TIME, as 10min [never]" },
+      .help = "write a checkpoint OUTPUT.save every TIME, e.g. 10min [never]" },
     { CLI_TEXT, 'o', "output", &output, "FILE", "write to FILE [standard output]", .silent = true },
     { 0 },
 };
@@ -77,7 +77,7 @@ const struct cli_tool tool = {
     "nsd-step", "[FILE ...]",
     "Makes N time steps from the last frame that it reads. To a file: "
     "one trajectory, each frame on\n"
-    "disk as soon as it is made; to a pipe: one document a frame.",
+    "disk as soon as it is made; to a pipe: one document per frame.",
     tables,
     "  nsd-gen 500 | nsd-step -n 1000 > out.h5\n"
     "  nsd-step -n 100 -o more.h5 out.h5\n"
