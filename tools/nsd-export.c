@@ -240,7 +240,7 @@ static enum target target_of(const struct format **format)
     bool given = cli_given(&to);
     *format = given ? format_at(to) : output && !in_directory ? format_of_name(output) : NULL;
     if (in_directory && !given) *format = format_at(0);
-    if (!*format) die_usage("--to FORMAT, or an --output whose ending says it, is wanted");
+    if (!*format) die_usage("no format: give --to FORMAT, or an --output with its suffix");
     if (!(*format)->parts && part != PART_GRAINS)
         die_usage("--part: %s has grains only", (*format)->name);
     if (in_directory) return TARGET_DIRECTORY;

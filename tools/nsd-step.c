@@ -298,7 +298,7 @@ static void parse_save(void)
 static void save_begin(struct run *r, const char *path)
 {
     if (!save) return;
-    if (!path) die_usage("--save wants -o FILE or -i, beside which the state is kept");
+    if (!path) die_usage("--save requires -o FILE or -i");
     size_t room = strlen(path) + sizeof ".save";
     if (!(r->save_path = malloc(room))) die(EX_SOFTWARE, "no memory");
     snprintf(r->save_path, room, "%s.save", path);
@@ -537,12 +537,11 @@ static void set_dt(struct packing *p, double asked, const char *path)
 {
     struct why why = { 0 };
     if (path && tol > 0 && !p->adapts)
-        die_usage("--dt: %s has one time step for all its frames: -o FILE goes on with others",
-                  path);
+        die_usage("--dt: %s has one time step for all its frames: use -o FILE for others", path);
     if (tol > 0) p->adapts = true;
     if (!(asked > 0)) return;
     if (path && asked != packing_whole_dt(p))
-        die_usage("--dt: %s has %g s, and a trajectory has one: -o FILE goes on with another", path,
+        die_usage("--dt: %s has %g s, and a trajectory has one: use -o FILE for another", path,
                   packing_whole_dt(p));
     if (!path) p->adapts = false;
     memory_scale(&p->memory, asked / p->dt);
@@ -562,7 +561,8 @@ static void copy_all(struct reader *in, struct writer *out, struct frame *f)
         tool_wants_packing(&next, reader_where(in));
         const char *lost = reader_loses(in);
         if (lost)
-            die(EX_DATAERR, "%s: %s is not known, and depends on time: -o FILE goes on without it",
+            die(EX_DATAERR,
+                "%s: %s is not known, and depends on time: use -o FILE to continue without it",
                 reader_where(in), lost);
         if (!frames++ && frame_note(&next, cli_history(), &why)) break;
         if (writer_frame(out, &next, &why)) die(why.status, "%s: %s", reader_where(in), why.text);
@@ -660,7 +660,7 @@ int tool_main(int argc, char **argv)
     say_worst();
     reader_close(in);
     if (r.ended.status) die_why(&r.ended);
-    if (r.told_to_stop) warn("told to stop after step %lld", (long long)r.f.packing.step);
+    if (r.told_to_stop) warn("stopped by the program after step %lld", (long long)r.f.packing.step);
     bool stopped = stopped_by && made < wanted && !is_then(&r.f.packing, r.f.packing.step);
     if (stopped)
         warn("stopped by signal %d after step %lld, which is kept", (int)stopped_by,

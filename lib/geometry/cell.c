@@ -96,7 +96,7 @@ static const char *load_trouble(const struct cell *c, int dim)
         if (c->stress[i][j] != c->stress[j][i]) return "its stress is not symmetric";
         if (dim == 2 && (i == 2 || j == 2) && (c->mass[i][j] != 0 || c->stress[i][j] != 0))
             return "its load leaves the plane, and dim is 2";
-        if (c->mass[i][j] > 0 && !c->repeats[i]) return "an edge that does not repeat has a mass";
+        if (c->mass[i][j] > 0 && !c->repeats[i]) return "an edge that is not periodic has a mass";
     }
     return NULL;
 }

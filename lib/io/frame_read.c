@@ -310,7 +310,7 @@ static int read_packing(struct frame_read *r, int64_t k, struct packing *p, stru
         (row ? roster_read(r->source, k, row, p, why) : read_bodies(r, k, -1, p, why)))
         goto end;
     if (packing_varies(p) && cell_repeats(&p->cell))
-        why_set(why, EX_DATAERR, "bodies that come and go in a cell that repeats: not known");
+        why_set(why, EX_DATAERR, "inlets and outlets in a periodic cell are not supported");
     else if (!packing_check(p, why))
         memory_rows_read(&r->memory, p, why);
 end:

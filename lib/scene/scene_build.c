@@ -430,7 +430,7 @@ static int inherit_cell(struct packing *p, const struct scene *s, struct why *wh
     if (!repeats || s->cell.none || (s->cell.given && !s->cell.goes_on)) return 0;
     if (s->pours + s->removals)
         return why_set(why, EX_DATAERR,
-                       "bodies come and go in no cell that repeats, and the first "
+                       "a periodic cell excludes pour and remove, and the first "
                        "document has one (\"cell\": null leaves it out)");
     if (s->cell.goes_on ? complete_cell(p, s, from) : take_cell(p, s, from))
         return why_set(why, EX_SOFTWARE, "no memory for the cell");

@@ -87,7 +87,7 @@ static int read_scene(jnode o, struct scene *s)
         return 1;
     if (s->cell.given && s->pours + s->removals)
         return json_node_fault(json_node_key(&o, "cell"),
-                               "bodies come and go in no cell that repeats");
+                               "a periodic cell excludes pour and remove");
     return 0;
 }
 
