@@ -312,7 +312,7 @@ coverage:
 # ---- style ----
 
 SOURCES := $(wildcard lib/*/*.[ch] tools/*.c docs/*.c docs/examples/*.c bench/*.c tests/*/*.[ch])
-SCRIPTS := $(wildcard scripts/*.sh scripts/man/*.sh cookbook/*/run.sh bench/*.sh docs/examples/*.sh tests/*/*.sh tests/*/*.t) .ci/run
+SCRIPTS := $(wildcard scripts/*.sh scripts/man/*.sh scripts/readme/*.sh bench/*.sh docs/examples/*.sh tests/*/*.sh tests/*/*.t) .ci/run
 
 format:
 	clang-format -i $(SOURCES)
@@ -327,6 +327,7 @@ lint-manuals: $(COOKBOOK)
 
 lint-scripts:
 	shellcheck $(SCRIPTS)
+	shellcheck -S warning $(wildcard cookbook/*/*.sh)
 
 # With the names by which compilers for this machine choose between texts; of all combinations, which nobody
 # compiles, cppcheck would look at twelve. Then what is compiled for wider vectors.

@@ -33,9 +33,9 @@ struct solve_opt {
 
 /* A solve in progress */
 struct solve {
-    struct problem *p;  /* the iterate's r, u, and velocities */
-    bool believes;      /* u of the slots is a local method's own, else the motion's */
-    bool renewed;       /* nothing was added to the velocities since they were last computed again */
+    struct problem *p; /* the iterate's r, u, and velocities */
+    bool believes;     /* u of the slots is a local method's own, else the motion's */
+    bool renewed;      /* nothing was added to the velocities since they were last computed again */
     int32_t renewed_at; /* sweeps made when they were */
     double value;       /* the criterion of the iterate when it was last judged */
     bool jammed;        /* so were contacts: nothing is to make their reactions grow faster */

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# cookbook.sh DIR ...: nsd-cookbook(7), made of the directories of recipes (cookbook/README.md)
+# cookbook.sh DIR ...: nsd-cookbook(7), made of the directories of recipes (cookbook/README.md); one without about is none
 set -euo pipefail
 export LC_ALL=C
 
@@ -35,12 +35,13 @@ cp -r cookbook/drum /tmp; cd /tmp/drum; bash run.sh
 Every recipe runs within seconds at the size that is printed, and a test of nsd runs it.
 .Xr nsd-tutorial 7
 explains the steps of one recipe in detail.
-.Bl -column "triaxial" "title"
+.Bl -column "stress-strain" "title"
 EOT
-for d in "$@"; do echo ".It Pa $(basename "$d") Ta $(head -n 1 "$d/about" | text)"; done
+for d in "$@"; do [ ! -e "$d/about" ] || echo ".It Pa $(basename "$d") Ta $(head -n 1 "$d/about" | text)"; done
 echo ".El"
 echo ".Sh RECIPES"
 for d in "$@"; do
+    [ -e "$d/about" ] || continue
     echo ".Ss $(head -n 1 "$d/about" | heading)"
     tail -n +2 "$d/about" | text
     for f in "$d"/scene.json "$d"/*; do

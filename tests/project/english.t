@@ -44,7 +44,6 @@ found() # LABEL FILE: FILE:LINE: WORDING: what to write
 }
 pages=(man/* README.md INSTALL.md LIMITATIONS.md CONTRIBUTING.md SECURITY.md CHANGELOG.md cookbook/README.md)
 for page in "${pages[@]}"; do is "$page" "$(found "$page" "$page")" ""; done
-for about in cookbook/*/about; do is "$about" "$(found "$about" "$about")" ""; done
 for tool in tools/*.c; do
     tool=$(basename "$tool" .c)
     "$tool" --help | sed '/^  nsd-/,$d; s/^      */ /' >"$tmp/help"
@@ -54,7 +53,7 @@ for tool in tools/*.c; do
 done
 items() # of OPTIONS, that begin with no verb
 {
-    sed -n '/^\.Sh OPTIONS/,/^\.Sh /p' "$1" | awk '/^\.It Fl/ { item = $0; getline; if (/^(of|what|how|a|an|the|only|instead|its|their|these|without) / || /^[a-z]/) print item ": " $0 }'
+    sed -n '/^\.Sh OPTIONS/,/^\.Sh /p' "$1" | awk '/^\.It Fl/ { item = $0; getline; if (/^(of|what|how|a|an|the|only|instead|its|their|these|without) /) print item ": " $0 }'
 }
 for page in man/*.1; do is "$page: an option begins with a verb" "$(items "$page")" ""; done
 

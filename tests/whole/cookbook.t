@@ -29,6 +29,7 @@ whole() # NAME: its pictures are pictures, and its tables have numbers
 holds() { (cd "$tmp/$1" && bash check.sh >check.out 2>&1); }
 
 for d in cookbook/*/; do
+    [ -n "$(ls "$d")" ] || continue # left by git where a branch had more
     name=$(basename "$d")
     ok "$name: about has a title and some lines" described "$d"
     needs=$(grep -oE '\b(gnuplot|ffmpeg)\b' "$d/run.sh" | sort -u | head -n 1 || true)
