@@ -225,6 +225,7 @@ claim()
     'tail -n 1 angle.tsv' | 'awk '*' angle.tsv') [ -s stdout ] ;;
     'jq '*'-o fast.h5') frames fast.h5 'length == 2' ;;
     '{ "title": "A drum half full'*) bodies stdout 500 ;;
+    '{ "dt": 1e-3, "mu": 0.5, "shapes": '*) bodies stdout 300 ;;
     # without a prompt: a scene, and Python
     '{ "title": "A steel ball'*) bodies stdout 801 && nsd-info -p stdout | jq -s -e 'map(.kind) | unique == ["ball", "steel"]' ;;
     *'with h5py.File("out.h5")'*) grep -q '^100 frames, the last is step 1000' stdout && grep -q '^[1-9][0-9]* contacts, at most [0-9.]* N' stdout ;;
