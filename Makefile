@@ -408,7 +408,7 @@ install-tools: all completions
 	for m in $(filter-out $(PYTHON_MANUAL) %.3,$(MANUALS)); do install -m 644 $$m $(TO)/share/man/man$${m##*.}; done
 	install -m 644 scenes/*.json $(TO)/share/nsd/scenes
 	install -m 644 scenes/paper/*.json $(TO)/share/nsd/scenes/paper
-	for d in $(patsubst %/,%,$(wildcard cookbook/*/)); do install -d $(TO)/share/nsd/$$d && \
+	for d in $(patsubst %/about,%,$(wildcard cookbook/*/about)); do install -d $(TO)/share/nsd/$$d && \
 	    install -m 644 $$d/* $(TO)/share/nsd/$$d || exit 1; done
 	install -d $(TO)/share/nsd/campaign
 	install -m 755 scripts/campaign/*.sh scripts/campaign/array.sbatch $(TO)/share/nsd/campaign
