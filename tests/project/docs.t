@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Manuals are whole, say what --help says, and refer to what there is; versions agree.
-# shellcheck source=tests/support/tap.sh disable=SC2317 # functions called by name
+# shellcheck source=tests/support/tap.sh disable=SC2317,SC2016 # functions called by name; text for eval
 . tests/support/tap.sh
 
 unset MAKEFLAGS MFLAGS MAKELEVEL
