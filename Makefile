@@ -21,6 +21,8 @@ DESTDIR ?=
 CC      ?= cc
 CFLAGS  ?= $(if $(SAN),-O1 -g1,-O3 -g)
 B       := build$(if $(SAN),/san)
+# The manual that is made of cookbook/
+COOKBOOK := build/man/nsd-cookbook.7
 
 , := ,
 # Debian's hdf5.pc is that of whichever flavour was installed last.
@@ -97,7 +99,7 @@ RANKS  := $(if $(MPI_PC),$(patsubst lib/%.c,$B/lib/%.o,$(wildcard lib/ranks/*.c)
 MPI    := $(if $(MPI_PC),$B/nsd-step-mpi)
 CTEST := $(patsubst tests/%.c,$B/tests/%,$(wildcard tests/*/*_test.c))
 
-all: $(TOOLS) $(MPI) $B/libnsd.a $B/$(SONAME)
+all: $(TOOLS) $(MPI) $B/libnsd.a $B/$(SONAME) $(COOKBOOK)
 
 $B/tests/unit/fclib_test: TESTLIBS += -lfclib
 
@@ -158,7 +160,7 @@ $(RANKS): NSD_CFLAGS := $(MPI_H5) $(NSD_CFLAGS) $(MPI_PC)
 $B/nsd-step-mpi: $B/tools/nsd-step.o $B/lib/cli/main.o $(RANKS) $B/internal.a
 	$(call Q,LD,$@)$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(MPI_PL) $(MPI_LD)
 
-tests: $(TOOLS) $(MPI) $(CTEST) $B/libnsd.a $B/$(SONAME)
+tests: $(TOOLS) $(MPI) $(CTEST) $B/libnsd.a $B/$(SONAME) $(COOKBOOK)
 
 # ---- set-up, checks, the demonstration ----
 
@@ -171,7 +173,7 @@ FIRST := $(patsubst %,tests/%.t,tools/outside tools/examples whole/laws whole/so
          tools/export tools/grains tools/view tools/pipeline tools/boundary) $B/tests/unit/shapes_test
 # What make check leaves to make check-all: it builds again, needs what only a maintainer has, or takes minutes.
 REST  := $(patsubst %,tests/%.t,project/lint whole/paper project/compilers whole/gallery project/thread_sanitizer whole/mpi whole/device \
-         project/install whole/wall whole/paper_page tools/web_in_browser hostile/failing_system_calls hostile/failing_allocations) \
+         project/install whole/wall whole/paper_page whole/cookbook tools/web_in_browser hostile/failing_system_calls hostile/failing_allocations) \
          $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw failing_library_calls_api killed_writer)
 TESTS := $(FIRST) $(filter-out $(FIRST) $(REST),$(CTEST) $(wildcard tests/*/*.t))
 # What the sanitizers would not see more of: it looks at texts, or makes others' experiments.
@@ -313,7 +315,7 @@ coverage:
 # ---- style ----
 
 SOURCES := $(wildcard lib/*/*.[ch] tools/*.c docs/*.c docs/examples/*.c bench/*.c tests/*/*.[ch])
-SCRIPTS := $(wildcard scripts/*.sh bench/*.sh docs/examples/*.sh tests/*/*.sh tests/*/*.t) .ci/run
+SCRIPTS := $(wildcard scripts/*.sh scripts/man/*.sh scripts/readme/*.sh bench/*.sh docs/examples/*.sh tests/*/*.sh tests/*/*.t) .ci/run
 
 format:
 	clang-format -i $(SOURCES)
@@ -323,11 +325,12 @@ lint: lint-format lint-manuals lint-scripts lint-cppcheck lint-tidy
 lint-format:
 	clang-format --dry-run --Werror $(SOURCES)
 
-lint-manuals:
-	mandoc -T lint -W warning man/*
+lint-manuals: $(COOKBOOK)
+	mandoc -T lint -W warning $(MANUALS)
 
 lint-scripts:
 	shellcheck $(SCRIPTS)
+	shellcheck -s bash -S warning $(wildcard cookbook/*/*.sh)
 
 # With the names by which compilers for this machine choose between texts; of all combinations, which nobody
 # compiles, cppcheck would look at twelve. Then what is compiled for wider vectors.
@@ -353,13 +356,21 @@ $(TIDY): lint-tidy-%:
 # ---- what is made for others ----
 
 # The manuals as HTML, in build/man
-MANUALS := $(wildcard man/*)
+MANUALS := $(wildcard man/*) $(COOKBOOK)
+
+# nsd-cookbook(7) is made of cookbook/*/, whatever recipes there are
+$(COOKBOOK): scripts/man/cookbook.sh $(wildcard cookbook/* cookbook/*/*)
+	@mkdir -p $(@D)
+	scripts/man/cookbook.sh $(wildcard cookbook/*/) > $@
 
 # Links to manuals that are not ours become plain text.
 BAR   := $(subst $() ,|,$(notdir $(MANUALS)))
 LINKS := 's/(class="Xr") href="(($(BAR))[.]html)/\1 HREF="\2/g; s|<a class="Xr" href="[^"]*">([^<]*)</a>|\1|g; s| HREF=| href=|g'
 
-docs: $(MANUALS:man/%=build/man/%.html) build/man/index.html build/man/style.css
+docs: $(patsubst %,build/man/%.html,$(notdir $(MANUALS))) build/man/index.html build/man/style.css
+
+build/man/nsd-cookbook.7.html: $(COOKBOOK)
+	mandoc -T html -O style=style.css,man=%N.%S.html $< | sed -E $(LINKS) > $@
 
 build/man/%.html: man/%
 	@mkdir -p $(@D)
@@ -397,9 +408,11 @@ install-tools: all completions
 	install -d $(TO)/bin $(addprefix $(TO)/share/man/man,1 5 7) $(TO)/share/nsd/scenes/paper \
 	    $(TO)/share/bash-completion/completions $(TO)/share/zsh/site-functions
 	install -m 755 $(TOOLS) $(MPI) $(TO)/bin
-	for m in $(filter-out $(PYTHON_MANUAL),$(wildcard man/*.[157])); do install -m 644 $$m $(TO)/share/man/man$${m##*.}; done
+	for m in $(filter-out $(PYTHON_MANUAL) %.3,$(MANUALS)); do install -m 644 $$m $(TO)/share/man/man$${m##*.}; done
 	install -m 644 scenes/*.json $(TO)/share/nsd/scenes
 	install -m 644 scenes/paper/*.json $(TO)/share/nsd/scenes/paper
+	for d in $(patsubst %/about,%,$(wildcard cookbook/*/about)); do install -d $(TO)/share/nsd/$$d && \
+	    install -m 644 $$d/* $(TO)/share/nsd/$$d || exit 1; done
 	install -d $(TO)/share/nsd/campaign
 	install -m 755 scripts/campaign/*.sh scripts/campaign/array.sbatch $(TO)/share/nsd/campaign
 	install -m 644 scripts/campaign/*.mk scripts/campaign/*.gp $(TO)/share/nsd/campaign
@@ -434,7 +447,7 @@ install-python:
 
 uninstall:
 	cd $(TO)/bin && rm -f $(notdir $(TOOLS)) nsd-step-mpi
-	for m in man/*; do rm -f $(TO)/share/man/man$${m##*.}/$${m##*/}; done
+	for m in $(MANUALS); do rm -f $(TO)/share/man/man$${m##*.}/$${m##*/}; done
 	for t in $(notdir $(TOOLS)); do \
 	    rm -f $(TO)/share/bash-completion/completions/$$t $(TO)/share/zsh/site-functions/_$$t; \
 	done

@@ -11,18 +11,18 @@ static int vtk;
 static struct cli_choice vtk_choice(int k)
 {
     static const struct cli_choice parts[] = {
-        { "grains", "as points: VTK 9.3, ParaView 5.12" },
-        { "all", "also other shapes and walls as surfaces, in blocks: VTK 9.6, ParaView 6.1" },
+        { "grains", "points: VTK 9.3, ParaView 5.12" },
+        { "all", "also surfaces of shapes and walls: VTK 9.6, ParaView 6.1" },
     };
     return k < 2 ? parts[k] : (struct cli_choice){ 0 };
 }
 
 static const struct cli_option own[] = {
-    { CLI_FLAG, 'l', "last", &last, .help = "only the very last frame" },
-    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
-    { CLI_FLAG, 0, "stream", &stream, .help = "one document a frame, also into a file" },
+    { CLI_FLAG, 'l', "last", &last, .help = "process only the last frame" },
+    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "process steps A to B, every K-th [all]" },
+    { CLI_FLAG, 0, "stream", &stream, .help = "write one document per frame, also to a file" },
     { CLI_CHOICE, 0, "vtk", &vtk, .choice = vtk_choice, .silent = true,
-      .help = "add /VTKHDF, by which ParaView opens the document itself [no]" },
+      .help = "add /VTKHDF, with which ParaView opens the document [no]" },
     { CLI_TEXT, 'o', "output", &output, "FILE", .help = "write to FILE [standard output]",
       .silent = true },
     { 0 },
@@ -31,8 +31,8 @@ static const struct cli_option *const tables[] = { own, NULL };
 
 const struct cli_tool tool = {
     "nsd-cat", "[FILE ...]",
-    "Copies frames. To a file they become one trajectory, the same as nsd-step would have written\n"
-    "there; to a pipe, one document a frame.",
+    "Copies frames. To a file they become one trajectory, as nsd-step would have written it; to a\n"
+    "pipe, one document per frame.",
     tables,
     "  nsd-cat --last out.h5 | nsd-detect > contacts.h5\n"
     "  nsd-cat --steps 0:1000:100 out.h5 > thin.h5\n"

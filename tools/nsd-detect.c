@@ -21,7 +21,7 @@ static int form;
 
 static const struct cli_option own[] = {
     { CLI_CHOICE, 0, "fclib", &form, .choice = form_choice,
-      .help = "write the contact problem in the FCLIB format too" },
+      .help = "also write the contact problem in the FCLIB format" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { options_detect, own, NULL };

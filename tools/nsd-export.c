@@ -31,25 +31,25 @@ static struct cli_choice part_choice(int k)
 
 static const struct cli_option own[] = {
     { CLI_CHOICE, 't', "to", &to, .choice = to_choice,
-      .help = "the format [by the ending of -o; vtp in a directory]" },
+      .help = "write this format [by the suffix of -o; vtp in a directory]" },
     { CLI_CHOICE, 'p', "part", &part, .choice = part_choice,
-      .help = "what of a frame [grains; in a directory all]" },
+      .help = "write this part of a frame [grains; in a directory all]" },
     { CLI_TEXT, 'o', "output", &output, "FILE",
-      .help = "FILE, a series 'f%05d.vtp', or a directory 'DIR/' [standard output]" },
+      .help = "write a FILE, a series 'f%05d.vtp' or a directory 'DIR/' [stdout]" },
     { CLI_TEXT, 0, "only", &only, "NAME,...",
-      .help = "of the boundary: these walls and parts, by name or number [all]" },
-    { CLI_FLAG, 'l', "last", &last, .help = "only the very last frame" },
-    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
+      .help = "export only these walls and parts, by name or number [all]" },
+    { CLI_FLAG, 'l', "last", &last, .help = "process only the last frame" },
+    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "process steps A to B, every K-th [all]" },
     { CLI_INT, 0, "detail", &detail, "N",
-      .help = "round grains have 20 * 4^N triangles in STL, surfaces [2]", .max = 6 },
+      .help = "use 20 * 4^N triangles for round grains in STL, surfaces [2]", .max = 6 },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
 
 const struct cli_tool tool = { "nsd-export", "[FILE ...]",
-                               "Writes frames as files of other programs: one file, a file a "
-                               "frame, or a directory with lists\n"
-                               "(.pvd) that ParaView plays. Units are SI, forces in N.",
+                               "Writes frames as files of other programs: one file, one file per "
+                               "frame, or a directory\n"
+                               "with lists (.pvd) that ParaView plays. Units are SI, forces in N.",
                                tables,
                                "  nsd-export -o paraview/ out.h5\n"
                                "  nsd-export --part contacts -o 'forces%05d.vtp' out.h5\n"
@@ -246,7 +246,7 @@ static enum target target_of(const struct format **format)
     bool given = cli_given(&to);
     *format = given ? format_at(to) : output && !in_directory ? format_of_name(output) : NULL;
     if (in_directory && !given) *format = format_at(0);
-    if (!*format) die_usage("--to FORMAT, or an --output whose ending says it, is wanted");
+    if (!*format) die_usage("no format: give --to FORMAT, or an --output with its suffix");
     if (!(*format)->parts && part != PART_GRAINS)
         die_usage("--part: %s has grains only", (*format)->name);
     if (only && part != PART_BOUNDARY) die_usage("--only: of the boundary: with --part boundary");

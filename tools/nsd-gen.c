@@ -23,20 +23,20 @@ static const char *from;
 
 static const struct cli_option own[] = {
     { CLI_INT, 'd', "dim", &dim, "2|3", .min = 2, .max = 3,
-      .help = "with N: 3 makes balls, 2 discs in the plane [3]" },
+      .help = "with N, make balls (3) or discs (2) [3]" },
     { CLI_TEXT, 0, "from", &from, "FILE",
-      .help = "the balls of a LAMMPS, LIGGGHTS, Yade or ON-DEM file, no scene" },
+      .help = "read a LAMMPS, LIGGGHTS, Yade or ON-DEM file instead of a scene" },
     { CLI_FLAG, 0, "check", &check,
-      .help = "print the time step and masses that suit the scene, as JSON" },
+      .help = "print a suitable time step and masses as JSON, no document" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
 
 const struct cli_tool tool = {
     "nsd-gen", "N | SCENE.json | - | --from FILE",
-    "Builds a packing: N balls of the paper's sedimentation (500: its example 3, 4: its example "
-    "2),\n"
-    "or what a scene says. Reads JSON, writes a document.",
+    "Builds a packing from a scene, or N balls of the sedimentation of the paper (500: its "
+    "example\n"
+    "3, 4: its example 2). Reads JSON, writes a document.",
     tables,
     "  nsd-gen 500 > balls.h5\n"
     "  nsd-gen scenes/column.json | nsd-step -n 1000 > out.h5\n"

@@ -18,27 +18,25 @@ static struct chosen chosen; /* of the frame at hand, by --only */
 static bool shown;           /* whether any frame had what was asked for: contacts, a history */
 
 static const struct cli_option own[] = {
-    { CLI_FLAG, 'p', "particles", &particles, .help = "instead, a line for each body" },
-    { CLI_FLAG, 'c', "contacts", &contacts, .help = "instead, a line for each contact" },
-    { CLI_FLAG, 'w', "walls", &walls, .help = "instead, a line for each wall" },
+    { CLI_FLAG, 'p', "particles", &particles, .help = "print one line per body" },
+    { CLI_FLAG, 'c', "contacts", &contacts, .help = "print one line per contact" },
+    { CLI_FLAG, 'w', "walls", &walls, .help = "print one line per boundary" },
     { CLI_FLAG, 0, "history", &history,
-      .help = "instead, a line for each sweep that nsd-solve --history has kept" },
-    { CLI_FLAG, 0, "events", &events,
-      .help = "instead, a line for each body that has come or gone" },
+      .help = "print one line per sweep, of nsd-solve --history" },
+    { CLI_FLAG, 0, "events", &events, .help = "print one line per body that was added or removed" },
     { CLI_FLAG, 0, "scene", &scene,
-      .help = "instead, the scene that goes on from FILE's last frame" },
+      .help = "print the scene that restarts from the last frame of FILE" },
     { CLI_TEXT, 0, "only", &only, "NAME,...",
-      .help = "of -p, -w, -c: walls, parts, groups, kinds, by name or number [all]" },
-    { CLI_FLAG, 'l', "last", &last, .help = "only the very last frame" },
-    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
+      .help = "with -p, -w, -c: print only these walls, parts, groups, kinds [all]" },
+    { CLI_FLAG, 'l', "last", &last, .help = "process only the last frame" },
+    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "process steps A to B, every K-th [all]" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
 
 const struct cli_tool tool = {
     "nsd-info", "[FILE ...]",
-    "Shows what is in documents: a line of JSON for each document, then one for each frame.",
-    tables,
+    "Prints the contents of documents: one line of JSON per document, then one per frame.", tables,
     "  nsd-info out.h5 | jq -r 'select(.step != null) | [.step, .sweeps, .natural] | @tsv'\n"
     "  nsd-info --last -p out.h5 | jq -r '[.x[], .radius] | @tsv'\n"
 };

@@ -10,17 +10,17 @@ static bool forces, verbose;
 
 static const struct cli_option own[] = {
     { CLI_REAL, 0, "theta", &options.theta, "T", .max = 1,
-      .help = "must be what the contacts were detected with [the document's]" },
+      .help = "check that the contacts were detected with T [document]" },
     { CLI_CHOICE, 0, "overlap", &options.overlap, .choice = options_overlap_choice,
-      .help = "what nsd-move will do about overlap [the document's]" },
+      .help = "change how nsd-move treats overlaps [document]" },
     { CLI_FLAG, 'w', "warm", &options.warm, .help = "start from the reactions in the document" },
-    { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start from 0, as the paper",
+    { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start from reactions 0, as the paper",
       .usual = options_usual },
     { CLI_FLAG, 0, "history", &options.history,
-      .help = "keep the error terms of every sweep in the document" },
-    { CLI_FLAG, 0, "forces", &forces, .help = "add the contacts' forces, in N and in space" },
+      .help = "store the error terms of every sweep in the document" },
+    { CLI_FLAG, 0, "forces", &forces, .help = "store the forces of the contacts as vectors in N" },
     { CLI_FLAG, 'v', "verbose", &verbose, .silent = true,
-      .help = "print a line for each document [where one did not converge]" },
+      .help = "print one line per document [if it did not converge]" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { options_solve, own, options_run, NULL };

@@ -27,43 +27,45 @@ static const char *usual_layers(const void *to)
 
 static const struct cli_option own[] = {
     { CLI_TEXT, 'm', "measures", &names, "A,B,...",
-      .help = "these measures, or all [the usual ones]" },
-    { CLI_FLAG, 0, "list", &list, .help = "instead, all measures with their numbers and units" },
-    { CLI_FLAG, 'g', "grains", &grains, .help = "the measure grains as a table, for nsd-view -V" },
-    { CLI_FLAG, 't', "tsv", &tsv, .help = "a table, columns separated by tabs [JSON lines]" },
+      .help = "compute these measures, or all [the default ones]" },
+    { CLI_FLAG, 0, "list", &list, .help = "list all measures with their numbers and units" },
+    { CLI_FLAG, 'g', "grains", &grains,
+      .help = "print the measure grains as a table, for nsd-view --values" },
+    { CLI_FLAG, 't', "tsv", &tsv, .help = "print a table separated by tabs [JSON lines]" },
     { CLI_TEXT, 'b', "box", &box, "X0,X1,...",
-      .help = "only in this box; 2D: four numbers [m, all]" },
+      .help = "measure only in this box, m; 2D: four numbers [all]" },
     { CLI_TEXT, 0, "layers", &layers, "AXIS:N", .usual = usual_layers,
-      .help = "N layers along x, y or z; r: shells around z" },
-    { CLI_TEXT, 0, "point", &point, "X,Y,Z", .help = "of torques, shells, the plane [m, 0,0,0]" },
+      .help = "make N layers along x, y, z, or shells r" },
+    { CLI_TEXT, 0, "point", &point, "X,Y,Z",
+      .help = "set the point of torques, shells and the plane, m [0,0,0]" },
     { CLI_TEXT, 0, "plane", &plane, "NX,NY,NZ",
-      .help = "normal of the plane of flux, through the point" },
+      .help = "set the normal of the plane of flux through the point" },
     { CLI_ABOVE, 0, "radius", &asked.radius, "M",
-      .help = "of a disc in it around the point, an orifice [m, none]", .max = INFINITY },
-    { CLI_INT, 0, "bins", &asked.bins, "N", .help = "of distributions [50]", .min = 1, .max = 1e6 },
+      .help = "limit the plane to a disc of this radius, m [none]", .max = INFINITY },
+    { CLI_INT, 0, "bins", &asked.bins, "N", .help = "set the number of bins of distributions [50]",
+      .min = 1, .max = 1e6 },
     { CLI_ABOVE, 0, "distance", &asked.distance, "M",
-      .help = "of pairs, at most [m, three mean diameters]", .max = 1e300 },
+      .help = "set the largest distance of pairs, m [3 mean diameters]", .max = 1e300 },
     { CLI_TEXT, 0, "only", &only, "NAME,...",
-      .help = "of walls: these, by name or number, and parts of them [all]" },
+      .help = "measure only these walls and their parts, by name or number [all]" },
     { CLI_ABOVE, 0, "wear", &asked.wear, "K",
-      .help = "Archard's coefficient, 1/Pa, of all walls [as the scene has it]", .max = 1e300 },
+      .help = "set Archard's coefficient of all walls, 1/Pa [that of the scene]", .max = 1e300 },
     { CLI_TEXT, 'f', "fields", &fields_to, "FILE",
-      .help = "also coarse-grained fields: FILE.h5, or 'f%05d.vti'" },
-    { CLI_ABOVE, 0, "width", &width, "M", .help = "w of their Gaussian [m, the mean diameter]",
-      .max = 1e300 },
+      .help = "also write coarse-grained fields: FILE.h5 or 'f%05d.vti'" },
+    { CLI_ABOVE, 0, "width", &width, "M",
+      .help = "set the width w of their Gaussian, m [mean diameter]", .max = 1e300 },
     { CLI_ABOVE, 0, "spacing", &spacing, "M",
-      .help = "of their grid [m, the mean diameter, at most 32 points]", .max = 1e300 },
-    { CLI_FLAG, 'l', "last", &last, .help = "only the very last frame" },
-    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
+      .help = "set the spacing of their grid, m [mean diameter, <= 32 points]", .max = 1e300 },
+    { CLI_FLAG, 'l', "last", &last, .help = "process only the last frame" },
+    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "process steps A to B, every K-th [all]" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
 
 const struct cli_tool tool = {
     "nsd-stat", "[FILE ...]",
-    "Measures frames: a line of JSON for each, in SI units, forces in N; what cannot be measured "
-    "is\n"
-    "null, and \"why\" says why.",
+    "Measures frames: one line of JSON per frame, in SI units, forces in N. An undefined value is\n"
+    "null, and the object \"why\" gives the reason.",
     tables,
     "  nsd-stat out.h5 | jq -r '[.time, .fraction.fraction, .energy.kinetic] | @tsv'\n"
     "  nsd-stat --last -m profile --tsv out.h5 > profile.tsv\n"
@@ -119,7 +121,7 @@ static void show_list(void)
     for (int k = 0; measure_at(k); k++) {
         const struct measure *m = measure_at(k);
         printf("%s%s: %s%s\n", k ? "\n" : "", m->name, m->help,
-               m->usual  ? " (usual)"
+               m->usual  ? " (default)"
                : m->list ? " (many rows)"
                          : "");
         for (const struct quantity *q = m->quantity; q->name; q++) {

@@ -39,36 +39,36 @@ static struct cli_choice cut_choice(int index)
 {
     static const struct cli_choice cuts[] = {
         { "bisection", "boxes, by recursive bisection" },
-        { "hypergraph", "cells of a grid, with the fewest bodies that several have" },
+        { "hypergraph", "cells of a grid, with the fewest shared bodies" },
     };
     return index < 2 ? cuts[index] : (struct cli_choice){ 0 };
 }
 
 static const struct cli_option own[] = {
-    { CLI_INT, 'n', "steps", &steps, "N", "steps to make [1]", .max = 1e15 },
-    { CLI_REAL, 0, "until", &until, "T", "or steps until the time is T, s [by -n]", .min = -1e300,
+    { CLI_INT, 'n', "steps", &steps, "N", "make N steps [1]", .max = 1e15 },
+    { CLI_REAL, 0, "until", &until, "T", "make steps until the time is T, s [by -n]", .min = -1e300,
       .max = 1e300 },
     { CLI_TEXT, 0, "dt", &dt, "DT|auto:TOL",
-      .help = "time step, s; auto: by overlaps of TOL radii [the document's]" },
+      .help = "set the time step, s; auto: overlaps of TOL radii [document]" },
     { CLI_EVERY, 0, "every", &every, "K|Ts",
-      "keep every K-th step, or one every T s of its time, and the last [1]", .max = 1e15 },
-    { CLI_FLAG, 0, "contacts", &contacts, .help = "keep each frame's contacts too" },
+      "keep every K-th step, or one per T s of time, and the last [1]", .max = 1e15 },
+    { CLI_FLAG, 0, "contacts", &contacts, .help = "also keep the contacts of each frame" },
     { CLI_FLAG, 0, "forces", &forces,
-      .help = "and with them their forces, in N and in space; means --contacts" },
+      .help = "also keep their forces as vectors in N; implies --contacts" },
     { CLI_FLAG, 0, "sums", &sums,
-      .help = "keep sums over steps of what bodies do to walls: nsd-stat -m sums" },
+      .help = "keep sums over steps of forces and work on walls: nsd-stat -m sums" },
     { CLI_FLAG, 'w', "warm", &options.warm,
-      .help = "start each solve from the last step's reactions" },
-    { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start each solve from 0, as the paper",
-      .usual = options_usual },
+      .help = "start each solve from the reactions of the last step" },
+    { CLI_UNFLAG, 0, "cold", &options.warm,
+      .help = "start each solve from reactions 0, as the paper", .usual = options_usual },
     { CLI_CHOICE, 0, "cut", &options.cut, .choice = cut_choice,
-      .help = "under mpirun, how processes share out space [bisection]" },
+      .help = "divide space among MPI processes in this way [bisection]" },
     { CLI_FLAG, 'i', "in-place", &in_place, .silent = true,
-      .help = "append to FILE; also where standard output is a terminal" },
+      .help = "append to FILE; default if standard output is a terminal" },
     { CLI_ABOVE, 0, "progress", &lines, "S", .max = 1e9, .silent = true,
-      .help = "say how far it is every S seconds, on no terminal too [terminal]" },
+      .help = "report progress every S seconds [only on a terminal]" },
     { CLI_TEXT, 0, "save", &save, "TIME", .silent = true,
-      .help = "keep a checkpoint in OUTPUT.save every TIME, as 10min [never]" },
+      .help = "write a checkpoint OUTPUT.save every TIME, e.g. 10min [never]" },
     { CLI_TEXT, 'o', "output", &output, "FILE", "write to FILE [standard output]", .silent = true },
     { 0 },
 };
@@ -79,7 +79,7 @@ const struct cli_tool tool = {
     "nsd-step", "[FILE ...]",
     "Makes N time steps from the last frame that it reads. To a file: "
     "one trajectory, each frame on\n"
-    "disk as soon as it is made; to a pipe: one document a frame.",
+    "disk as soon as it is made; to a pipe: one document per frame.",
     tables,
     "  nsd-gen 500 | nsd-step -n 1000 > out.h5\n"
     "  nsd-step -n 100 -o more.h5 out.h5\n"
@@ -300,7 +300,7 @@ static void parse_save(void)
 static void save_begin(struct run *r, const char *path)
 {
     if (!save) return;
-    if (!path) die_usage("--save wants -o FILE or -i, beside which the state is kept");
+    if (!path) die_usage("--save requires -o FILE or -i");
     size_t room = strlen(path) + sizeof ".save";
     if (!(r->save_path = malloc(room))) die(EX_SOFTWARE, "no memory");
     snprintf(r->save_path, room, "%s.save", path);
@@ -557,12 +557,11 @@ static void set_dt(struct packing *p, double asked, const char *path)
 {
     struct why why = { 0 };
     if (path && tol > 0 && !p->adapts)
-        die_usage("--dt: %s has one time step for all its frames: -o FILE goes on with others",
-                  path);
+        die_usage("--dt: %s has one time step for all its frames: use -o FILE for others", path);
     if (tol > 0) p->adapts = true;
     if (!(asked > 0)) return;
     if (path && asked != packing_whole_dt(p))
-        die_usage("--dt: %s has %g s, and a trajectory has one: -o FILE goes on with another", path,
+        die_usage("--dt: %s has %g s, and a trajectory has one: use -o FILE for another", path,
                   packing_whole_dt(p));
     if (!path) p->adapts = false;
     memory_scale(&p->memory, asked / p->dt);
@@ -582,7 +581,8 @@ static void copy_all(struct reader *in, struct writer *out, struct frame *f)
         tool_wants_packing(&next, reader_where(in));
         const char *lost = reader_loses(in);
         if (lost)
-            die(EX_DATAERR, "%s: %s is not known, and depends on time: -o FILE goes on without it",
+            die(EX_DATAERR,
+                "%s: %s is not known, and depends on time: use -o FILE to continue without it",
                 reader_where(in), lost);
         if (!frames++ && frame_note(&next, cli_history(), &why)) break;
         if (writer_frame(out, &next, &why)) die(why.status, "%s: %s", reader_where(in), why.text);
@@ -691,7 +691,7 @@ int tool_main(int argc, char **argv)
     say_worst(&r.f.packing.names);
     reader_close(in);
     if (r.ended.status) die_why(&r.ended);
-    if (r.told_to_stop) warn("told to stop after step %lld", (long long)r.f.packing.step);
+    if (r.told_to_stop) warn("stopped by the program after step %lld", (long long)r.f.packing.step);
     bool stopped = stopped_by && made < wanted && !is_then(&r.f.packing, r.f.packing.step);
     if (stopped)
         warn("stopped by signal %d after step %lld, which is kept", (int)stopped_by,

@@ -28,9 +28,9 @@ static struct solid solid;
 static struct cli_choice colour_choice(int k)
 {
     if (k == COLOUR_COUNT) return (struct cli_choice){ NULL, NULL };
-    const char *about = k == COLOUR_CONTACTS ? "how many contacts push it"
-                        : k == COLOUR_FORCE  ? "the sum of its normal forces, N"
-                        : k == COLOUR_VALUE  ? "a column of --values"
+    const char *about = k == COLOUR_CONTACTS ? "number of contacts that push the body"
+                        : k == COLOUR_FORCE  ? "sum of its normal forces, N"
+                        : k == COLOUR_VALUE  ? "column of --values"
                                              : NULL;
     return (struct cli_choice){ colour_meaning[k].name, about };
 }
@@ -40,7 +40,7 @@ enum { GLASS, LINES };
 static struct cli_choice boundaries_choice(int k)
 {
     static const struct cli_choice choices[] = { { "glass", "half transparent" },
-                                                 { "lines", "their edges and outlines alone" },
+                                                 { "lines", "edges and outlines only" },
                                                  { NULL, NULL } };
     return choices[k];
 }
@@ -53,67 +53,66 @@ static struct cli_choice surface_choice(int k)
 
 static const struct cli_option own[] = {
     { CLI_INT, 's', "step", &step, "N", .max = 1e15,
-      .help = "the frame of step N [the very last frame]" },
+      .help = "draw the frame of step N [last frame]" },
     { CLI_INT, 0, "every", &every, "K", .min = 1, .max = 1e15,
-      .help = "a series: every K-th frame, numbered from 0 [one picture]" },
+      .help = "draw every K-th frame, numbered from 0 [one picture]" },
     { CLI_TEXT, 'o', "output", &output, "FILE", .silent = true,
-      .help = "write to FILE; a series: 'f%05d.png', or film.mp4 [standard output]" },
+      .help = "write to FILE; for a series 'f%05d.png' or film.mp4 [stdout]" },
     { CLI_INT, 0, "rate", &rate, "N", .min = 1, .max = 240,
-      .help = "pictures a second of a film [25]" },
-    { CLI_FLAG, 0, "svg", &svg, .help = "of discs: an SVG in place of a PNG" },
+      .help = "show N pictures per second in a film [25]" },
+    { CLI_FLAG, 0, "svg", &svg, .help = "write SVG instead of PNG; 2D only" },
     { CLI_CHOICE, 'c', "colour", &colour, .choice = colour_choice,
-      .help = "what a body's colour shows [radius]" },
+      .help = "colour bodies by this quantity [radius]" },
     { CLI_TEXT, 0, "range", &range, "LO,HI",
-      .help = "numbers at the ends of the palette [what there is; speeds from 0]" },
+      .help = "set the ends of the palette [all values; speeds from 0]" },
     { CLI_TEXT, 0, "values", &table, "FILE",
-      .help = "a table with the columns id, perhaps step, and numbers" },
-    { CLI_TEXT, 0, "column", &wanted, "NAME",
-      .help = "the column of --values that is shown [the last]" },
+      .help = "read a table with the columns id, optionally step, and numbers" },
+    { CLI_TEXT, 0, "column", &wanted, "NAME", .help = "show this column of --values [the last]" },
     { CLI_FLAG, 0, "network", &over.network,
-      .help = "forces: a line for each contact that pushes, as wide as its force" },
+      .help = "draw one line per pushing contact, its width by its force" },
     { CLI_FLAG, 0, "bonds", &over.bonds,
-      .help = "bonds: green where whole, red where they break; blue: liquid" },
+      .help = "draw bonds: green whole, red breaking, blue liquid" },
     { CLI_FLAG, 0, "contacts", &over.contacts,
-      .help = "a dot at each contact, coloured by its status" },
+      .help = "draw a dot at each contact, coloured by status" },
     { CLI_ABOVE, 0, "force", &over.force, "N", .min = 0, .max = 1e300,
-      .help = "the force of the widest line [the frame's largest]" },
+      .help = "set the force of the widest line, N [largest of the frame]" },
     { CLI_REAL, 0, "pale", &pale, "P", .min = 0, .max = 1,
-      .help = "bodies are mixed with the background, 0 to 1 [0; with --network 0.6]" },
-    { CLI_FLAG, 0, "bare", &bare,
-      .help = "without the strip that explains colours, size and time" },
-    { CLI_FLAG, 0, "plain", &plain, .help = "without the marks that show how bodies turn" },
-    { CLI_TEXT, 0, "size", &size, "WxH", .help = "pixels [the longer side 900, the other to fit]" },
+      .help = "mix bodies with the background, 0 to 1 [0; --network 0.6]" },
+    { CLI_FLAG, 0, "bare", &bare, .help = "omit the legend of colours, size and time" },
+    { CLI_FLAG, 0, "plain", &plain, .help = "omit the marks that show rotations" },
+    { CLI_TEXT, 0, "size", &size, "WxH", .help = "set the size in pixels [longer side 900]" },
     { CLI_TEXT, 0, "camera", &camera, "AZ,EL",
-      .help = "of balls: degrees about z and above the horizon [30,15]" },
+      .help = "view from AZ degrees about z, EL above the horizon; 3D [30,15]" },
     { CLI_REAL, 0, "perspective", &perspective, "DEG", .min = 0, .max = 120,
-      .help = "of balls: angle of sight, 0 for none [0]" },
+      .help = "use perspective with this angle of view; 3D [0, none]" },
     { CLI_TEXT, 0, "cut", &cut, "NX,NY,NZ,D",
-      .help = "cut away what lies beyond NX x + NY y + NZ z = D (m) [nothing]" },
+      .help = "cut away bodies beyond NX x + NY y + NZ z = D, m [nothing]" },
     { CLI_INT, 0, "follow", &follow, "ID", .min = 0, .max = INT32_MAX,
-      .help = "a series in which the body with this id stays in its place [none]" },
-    { CLI_FLAG, 0, "strays", &strays, .help = "make room for bodies far from all others too" },
+      .help = "keep the body with this id in its place in a series [none]" },
+    { CLI_FLAG, 0, "strays", &strays, .help = "include outliers in the picture" },
     { CLI_TEXT, 0, "box", &box, "X0,X1,Y0,Y1[,Z0,Z1]",
-      .help = "only bodies with their centre in this box (m) [all]" },
+      .help = "draw only bodies with their centre in this box, m [all]" },
     { CLI_CHOICE, 0, "boundaries", &boundaries, .choice = boundaries_choice,
-      .help = "how they are drawn [glass]" },
+      .help = "draw boundaries in this way [glass]" },
     { CLI_TEXT, 0, "solid", &solid_names, "NAME,...",
-      .help = "these solid and shaded, by name or number; parts too [none]" },
+      .help = "draw these walls and parts solid and shaded, by name or number [none]" },
     { CLI_CHOICE, 0, "surface", &surface, .choice = surface_choice,
-      .help = "what the colour of solid ones shows; of all without --solid [name]" },
+      .help = "colour solid walls by this; without --solid all are solid [name]" },
     { CLI_TEXT, 0, "surface-range", &surface_range, "LO,HI",
-      .help = "numbers at the ends of their palette [0, the frame's largest]" },
-    { CLI_TEXT, 0, "background", &background, "RRGGBB", .help = "its colour [ffffff]" },
+      .help = "set the ends of their palette [0, the largest of the frame]" },
+    { CLI_TEXT, 0, "background", &background, "RRGGBB",
+      .help = "set the background colour [ffffff]" },
     { CLI_INT, 0, "samples", &samples, "N", .min = 1, .max = 8,
-      .help = "a pixel is the mean of N x N samples [3]" },
+      .help = "average N x N samples per pixel [3]" },
     { CLI_INT, 'j', "threads", &threads, "N", .min = 1, .max = 1024, .silent = true,
-      .help = "threads; they never change a picture [all]" },
+      .help = "use N threads; pictures do not depend on N [all]" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
 
 const struct cli_tool tool = {
     "nsd-view", "[FILE ...]",
-    "Draws a packing as PNG: the last frame, another, a series or a film.", tables,
+    "Draws a packing as PNG: the last frame or another one, a series, or a film.", tables,
     "  nsd-gen 500 | nsd-view > balls.png\n"
     "  nsd-view -c speed --every 10 -o 'film%05d.png' out.h5\n"
     "  nsd-view --every 1 --size 360x640 -o film.mp4 out.h5\n"

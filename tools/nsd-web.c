@@ -18,24 +18,25 @@ static int64_t every = 1;
 static const char *output, *title, *stat, *steps;
 
 static const struct cli_option own[] = {
-    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "only steps A to B, every K-th [all]" },
-    { CLI_INT, 0, "every", &every, "K", .min = 1, .max = 1e15, .help = "every K-th frame [1]" },
+    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "process steps A to B, every K-th [all]" },
+    { CLI_INT, 0, "every", &every, "K", .min = 1, .max = 1e15,
+      .help = "show every K-th frame [1]" },
     { CLI_TEXT, 'o', "output", &output, "FILE", .silent = true,
       .help = "write to FILE [standard output]" },
-    { CLI_TEXT, 0, "title", &title, "TEXT", .help = "its title [the scene's, or nsd]" },
-    { CLI_TEXT, 0, "stat", &stat, "FILE",
-      .help = "curves of nsd-stat's JSON lines too, by their steps" },
+    { CLI_TEXT, 0, "title", &title, "TEXT", .help = "set the title [that of the scene, or nsd]" },
+    { CLI_TEXT, 0, "stat", &stat, "FILE", .help = "also plot the JSON lines of nsd-stat in FILE" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
 
-const struct cli_tool tool = { "nsd-web", "[FILE ...]",
-                               "Makes one HTML page, which needs no network, that plays a "
-                               "trajectory: turn it, pick a grain,\n"
-                               "see the forces. Any browser of these years with WebGL 2 shows it.",
-                               tables,
-                               "  nsd-web out.h5 > out.html\n"
-                               "  nsd-web --every 10 --title 'A heap' -o heap.html out.h5\n" };
+const struct cli_tool tool = {
+    "nsd-web", "[FILE ...]",
+    "Makes one HTML page that plays a trajectory without a network. The view can be rotated,\n"
+    "grains picked and forces shown. It needs a browser with WebGL 2.",
+    tables,
+    "  nsd-web out.h5 > out.html\n"
+    "  nsd-web --every 10 --title 'A heap' -o heap.html out.h5\n"
+};
 
 /* The scene's title, if there is one; else "nsd" */
 static char *title_of(const struct packing *p)

@@ -49,7 +49,7 @@ int acts_force(struct acts *acts, const struct packing *p, int32_t id, vec3 forc
 /* N along the axis of its load, N m about it, added to that. EX_DATAERR: the boundary has none. */
 int acts_push(struct acts *acts, const struct packing *p, int64_t wall, double force,
               enum acts_lasting term, struct why *why);
-/* m/s: its prescribed velocity from now on; it goes on from where it is. EX_DATAERR: it turns. */
+/* m/s: its prescribed velocity from now on; from its present position on. EX_DATAERR: it turns. */
 int acts_velocity(struct packing *p, int64_t wall, vec3 v, struct why *why);
 /* m/s, rad/s: the velocity, or the angular velocity, of the body in row i */
 int acts_motion(struct packing *p, int64_t i, bool turns, vec3 v, struct why *why);

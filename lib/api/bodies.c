@@ -109,7 +109,7 @@ static int find_rows(const struct packing *p, int64_t n, const int32_t *id, int3
     for (int64_t k = 0; k < n; k++) {
         int64_t i = acts_row(p, id[k]);
         if (i < 0) return why_set(why, NSD_DATA, "there is no body %d", id[k]);
-        if (row[i] < 0) return why_set(why, NSD_DATA, "body %d is there twice", id[k]);
+        if (row[i] < 0) return why_set(why, NSD_DATA, "body %d occurs twice", id[k]);
         row[i] = -1;
     }
     for (int64_t i = 0; i < p->n; i++)

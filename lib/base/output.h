@@ -1,5 +1,5 @@
 /*
- * base/output.h: an output file. What a tool writes goes into a new file beside its target, hidden, which
+ * base/output.h: an output file. What a tool writes goes into a new file next to its target, hidden, which
  * takes the target's place in one stroke when there is something whole in it. Until then nothing of the
  * user's is touched; a tool that fails, or is stopped by a signal, removes the new file and leaves the
  * target as it was; in the program of somebody else [base/guest.h] a signal leaves the new file, which the next writer
@@ -20,7 +20,7 @@ struct output {
     const char *name; /* as it was given, for messages; borrowed */
     int fd;
     char *target; /* where it belongs, links followed; NULL: it is written where it is */
-    char *at;     /* where it is: beside the target, then there */
+    char *at;     /* where it is: next to the target, then there */
     int old;      /* the file whose place it takes, open and locked; -1: there is none */
     bool placed, listed, borrowed;
     bool nameless;       /* it had no name when it was opened: a file in memory */

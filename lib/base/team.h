@@ -21,7 +21,7 @@ typedef void team_work(void *arg, int me, int threads);
    called by what they do. */
 void team_do(int threads, team_work *work, void *arg);
 
-/* Nobody in team_do goes on before all have come here. All must call it. */
+/* Nobody in team_do continues before all have arrived. All must call it. */
 void team_meet(void);
 
 /*

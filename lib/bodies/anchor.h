@@ -2,7 +2,7 @@
  * bodies/anchor.h: the places of bonds between grains of which one is no ball.
  *
  * Two balls have one contact, and it is found again in the next step. Where a brick stands on
- * another, contacts come and go with the corners and edges that happen to meet: a bond must not. It
+ * another, contacts change with the corners and edges that happen to meet: a bond must not. It
  * is anchored: it keeps the two points of the surfaces where it was made, each in its body's frame, and
  * the normal, which turns with b. They are a contact of every step while the bond lasts,
  *

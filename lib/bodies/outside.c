@@ -141,7 +141,7 @@ int outside_say(struct outside *o, const char *words, int64_t length, struct why
     if (o->length + length > o->room) {
         int64_t room = 2 * (o->length + length);
         char *more = realloc(o->words, (size_t)room);
-        if (!more) return why_set(why, EX_SOFTWARE, "no memory for what was answered");
+        if (!more) return why_set(why, EX_SOFTWARE, "no memory for the answer");
         o->words = more, o->room = room;
     }
     if (length) memcpy(o->words + o->length, words, (size_t)length);

@@ -1,6 +1,6 @@
 /*
  * bodies/outside.h: what acts on a packing from outside: a program that steps it (api/nsd.h) or that nsd-step
- * asks (nsd-step --with). The forces enter the equation of motion beside gravity,
+ * asks (nsd-step --with). The forces enter the equation of motion in addition to gravity,
  *
  *     M (v+ - v) = dt (M g + F) + H r
  *

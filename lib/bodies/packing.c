@@ -412,12 +412,12 @@ static int check_cell(const struct packing *p, struct why *why)
     for (int64_t i = 0; cell_repeats(&p->cell) && i < p->n; i++) most = fmax(most, p->radius[i]);
     if (cell_check(&p->cell, p->dim, 2 * most, why)) return why->status;
     if (cell_repeats(&p->cell) != (p->image != NULL))
-        return why_set(why, EX_DATAERR, "images without a cell that repeats, or the reverse");
+        return why_set(why, EX_DATAERR, "images without a periodic cell, or the reverse");
     if (check_images(p, 0, why)) return why->status;
     for (int32_t i = 0; cell_repeats(&p->cell) && i < p->walls; i++)
         for (int k = 0; k < 3; k++) {
             if (p->cell.repeats[k] && !repeats_along(p, &p->wall[i], p->cell.edge[k]))
-                return why_set(why, EX_DATAERR, "wall %d: the cell repeats across it", i);
+                return why_set(why, EX_DATAERR, "wall %d: crosses a periodic edge of the cell", i);
             if (p->cell.repeats[k] && cell_moves(&p->cell, k))
                 return why_set(why, EX_DATAERR,
                                "wall %d: the edges along it move, so that its bodies' images "

@@ -68,7 +68,7 @@ struct packing {
     struct memory memory;   /* the reactions that the next step starts from */
     struct outside outside; /* what acts from outside in the step to come */
 
-    /* Grains come and go [scene/flow.h] where there are pours or removals. */
+    /* Inlets and outlets act [scene/flow.h] where there are pours or removals. */
     int32_t pours, removals;
     struct passage *poured, *removed; /* [pours], [removals] */
     int32_t first_id;                 /* of the first body that is poured */
@@ -109,7 +109,7 @@ int packing_alloc_laws(struct packing *p, struct why *why);
    EX_SOFTWARE. */
 int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals, struct why *why);
 
-/* Do bodies come and go? */
+/* Are there inlets or outlets? */
 static inline bool packing_varies(const struct packing *p)
 {
     return p->pours > 0 || p->removals > 0;

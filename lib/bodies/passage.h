@@ -1,5 +1,5 @@
 /*
- * bodies/passage.h: the account of grains that come and go: how many each pour has brought and each
+ * bodies/passage.h: the account of inlets and outlets: how many each pour has brought and each
  * removal has taken, and the events since the last frame. What pours and removes is
  * scene/flow.h.
  */

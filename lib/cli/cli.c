@@ -54,7 +54,7 @@ void die_usage(const char *format, ...)
     va_start(ap, format);
     message(format, ap);
     va_end(ap);
-    fprintf(stderr, "usage: %s [OPTION ...] %s (--help tells more)\n", tool.name, tool.operands);
+    fprintf(stderr, "usage: %s [OPTION ...] %s (see --help)\n", tool.name, tool.operands);
     exit(EX_USAGE);
 }
 
@@ -173,9 +173,10 @@ static void help(void)
         if ((*t)->kind != CLI_END) printf("\n");
         for (const struct cli_option *o = *t; o->kind; o++) help_option(o);
     }
-    printf("\n  %-*s  documents may unpack to GB [64 times their size, or 0.064]\n", LEFT,
+    printf("\n  %-*s  accept documents that unpack to GB [64 times their size, >= 0.067]\n", LEFT,
            "    --unpack GB");
-    printf("  %-*s  this text\n  %-*s  the version\n", LEFT, "    --help", LEFT, "    --version");
+    printf("  %-*s  print this text\n  %-*s  print the version\n", LEFT, "    --help", LEFT,
+           "    --version");
     if (tool.more) printf("\n%s", tool.more);
     printf("\nThe manual: man %s, man 7 nsd\n", tool.name);
     finish_stdout();

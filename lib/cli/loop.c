@@ -30,19 +30,19 @@ static bool document;
 
 const struct cli_option options_loop[] = {
     { CLI_TEXT, 0, "with", &command, "CMD", .silent = true,
-      .help = "ask CMD before steps, by JSON or documents, what shall act [none]" },
+      .help = "ask CMD, by JSON or documents, for forces and changes [none]" },
     { CLI_INT, 0, "with-every", &every, "K", .min = 1, .max = 1e15, .silent = true,
-      .help = "before each K-th step, and the first [1]" },
+      .help = "ask before the first and then every K-th step [1]" },
     { CLI_TEXT, 0, "with-boundaries", &boundaries, "all|N,...", .silent = true,
-      .help = "tell it of these boundaries [none]" },
+      .help = "send these boundaries [none]" },
     { CLI_TEXT, 0, "with-measures", &measures, "A,B,...", .silent = true,
-      .help = "tell it these measures of nsd-stat [none]" },
+      .help = "send these measures of nsd-stat [none]" },
     { CLI_FLAG, 0, "with-document", &document, .silent = true,
-      .help = "send it a whole document, behind each line" },
+      .help = "send a whole document after each line" },
     { CLI_ABOVE, 0, "with-timeout", &timeout, "S", .max = 1e9, .silent = true,
-      .help = "end the run when it takes longer [60 s]" },
+      .help = "end the run if CMD takes longer than S seconds [60]" },
     { CLI_TEXT, 0, "replay", &replay, "FILE", .silent = true,
-      .help = "do what the answers in FILE say, without a program [none]" },
+      .help = "apply the answers stored in FILE, without a program [none]" },
     { 0 },
 };
 

@@ -15,13 +15,13 @@
 
 const struct cli_option options_run[] = {
     { CLI_INT, 'j', "threads", &options.threads, "N", .min = 1, .max = 1024, .silent = true,
-      .help = "threads; they never change a result [1]" },
+      .help = "use N threads; results do not depend on N [1]" },
     { CLI_TEXT, 0, "device", &options.device, "DEVICE", .silent = true,
-      .help = "sweep on a device: opencl, opencl:N; list: which there are [the CPU]" },
+      .help = "sweep on opencl or opencl:N; list prints the devices [the CPU]" },
     { CLI_TEXT, 0, "log", &options.log, "FILE", .silent = true,
-      .help = "write one JSON line for each solve, with its seconds" },
+      .help = "write one JSON line per solve, with its seconds" },
     { CLI_FLAG, 'e', "strict", &options.strict, .silent = true,
-      .help = "exit with 1 when a solve has not converged, or a run fails otherwise" },
+      .help = "exit with 1 if a solve has not converged or the account fails" },
     { 0 },
 };
 

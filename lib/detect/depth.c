@@ -58,7 +58,7 @@ int depth_of(struct depth *d, const struct packing *p, const struct contacts *s,
     }
     if (deep < 2) return 0;
     struct side *side = malloc(2 * (size_t)deep * sizeof *side);
-    if (!side) return why_set(why, EX_SOFTWARE, "no memory for what overlaps");
+    if (!side) return why_set(why, EX_SOFTWARE, "no memory for overlaps");
     int64_t n = 0;
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];

@@ -24,7 +24,7 @@ struct neighbours {
  * Makes s->list hold every pair whose gap is at most `gap` (m) with the bodies at x[n] (m) and the
  * cell's edges at edge[3] (m), and perhaps others that are near. Where the cell repeats a pair is
  * there once for each image of b that is near a. keep: s will be asked again, after a step of the same bodies; the
- * list is then made to reach further, and is made anew only when it no longer serves.
+ * list is then made to reach further, and is computed again only when it no longer serves.
  *
  * The search is detect/seek.h's. Returns 0, EX_SOFTWARE or, where bodies crowd or a body is within the gap of its
  * own image, EX_DATAERR.

@@ -1,5 +1,5 @@
 /*
- * detect/seek.h: the pairs of bodies that are near each other, sought anew; how long a list of them serves is
+ * detect/seek.h: the pairs of bodies that are near each other, searched again; how long a list of them serves is
  * the affair of detect/neighbours.c. seek.c seeks them.
  *
  * Cost is linear: bodies are sorted by size into levels of a factor of two, each level into the

@@ -3,7 +3,7 @@
  *
  * The file holds the page's program (draw/page/, with three.js) and the frames: numbers of 8 and 16
  * bits relative to each frame's extent, packed by zlib, in base64. page_begin(), page_frame() for
- * each frame, page_end(). What is written is said in draw/page.c, beside what packs it.
+ * each frame, page_end(). What is written is said in draw/page.c, with its packing.
  */
 #ifndef NSD_PAGE_H
 #define NSD_PAGE_H

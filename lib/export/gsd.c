@@ -442,7 +442,7 @@ static int end_gsd(FILE *out, void *kept, struct why *why)
 const struct format format_gsd = {
     .name = "gsd",
     .ending = "gsd",
-    .help = "HOOMD's GSD, for OVITO: grains with their shapes",
+    .help = "HOOMD GSD, for OVITO: grains with their shapes",
     .joins = true,
     .binary = true,
     .write = write_gsd,

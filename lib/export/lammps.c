@@ -79,7 +79,7 @@ static int dump(FILE *out, const struct export_frame *m, enum part part, bool fi
 const struct format format_lammps = {
     .name = "lammps",
     .ending = "lammpstrj",
-    .help = "LAMMPS' dump, for OVITO: grains",
+    .help = "LAMMPS dump, for OVITO: grains",
     .joins = true,
     .write = dump,
 };

@@ -76,6 +76,6 @@ static int write_data(FILE *out, const struct export_frame *m, enum part part, b
 const struct format format_lammps_data = {
     .name = "data",
     .ending = "data",
-    .help = "LAMMPS' and LIGGGHTS' data file: balls",
+    .help = "LAMMPS or LIGGGHTS data file: balls",
     .write = write_data,
 };

@@ -22,7 +22,7 @@ static int write_ondem(FILE *out, const struct export_frame *m, enum part part, 
 const struct format format_ondem = {
     .name = "ondem",
     .ending = "vtkhdf",
-    .help = "ON-DEM's exchange format, for other DEM programs and ParaView",
+    .help = "ON-DEM exchange format, for other DEM programs and ParaView",
     .binary = true,
     .write = write_ondem,
 };

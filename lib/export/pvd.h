@@ -1,6 +1,6 @@
 /*
  * export/pvd.h: the list of a series' files and their times that ParaView opens (.pvd). It is whole
- * after every file, so that ParaView can look on while a run goes on.
+ * after every file, so that ParaView can look on while a run continues.
  */
 #ifndef NSD_PVD_H
 #define NSD_PVD_H

@@ -83,7 +83,7 @@ static int stl(FILE *out, const struct export_frame *m, enum part part, bool fir
 const struct format format_stl = {
     .name = "stl",
     .ending = "stl",
-    .help = "triangles of balls and walls, a moment",
+    .help = "triangles of balls and walls, one frame",
     .parts = true,
     .binary = true,
     .write = stl,

@@ -66,7 +66,7 @@ static int tsv(FILE *out, const struct export_frame *m, enum part part, bool fir
 const struct format format_csv = {
     .name = "csv",
     .ending = "csv",
-    .help = "a table, by commas",
+    .help = "table separated by commas",
     .joins = true,
     .parts = true,
     .write = csv,
@@ -75,7 +75,7 @@ const struct format format_csv = {
 const struct format format_tsv = {
     .name = "tsv",
     .ending = "tsv",
-    .help = "a table, by tabs",
+    .help = "table separated by tabs",
     .joins = true,
     .parts = true,
     .write = tsv,

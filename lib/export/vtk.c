@@ -146,7 +146,7 @@ static int vtu(FILE *out, const struct export_frame *m, enum part part, bool fir
 const struct format format_vtp = {
     .name = "vtp",
     .ending = "vtp",
-    .help = "VTK's polygons and lines, for ParaView",
+    .help = "VTK polygons and lines, for ParaView",
     .parts = true,
     .binary = true,
     .collected = true,
@@ -156,7 +156,7 @@ const struct format format_vtp = {
 const struct format format_vtu = {
     .name = "vtu",
     .ending = "vtu",
-    .help = "the same as VTK's unstructured grid",
+    .help = "VTK unstructured grid, for ParaView",
     .parts = true,
     .binary = true,
     .collected = true,

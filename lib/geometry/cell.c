@@ -98,20 +98,20 @@ static const char *load_trouble(const struct cell *c, int dim)
         if (c->stress[i][j] != c->stress[j][i]) return "its stress is not symmetric";
         if (dim == 2 && (i == 2 || j == 2) && (c->mass[i][j] != 0 || c->stress[i][j] != 0))
             return "its load leaves the plane, and dim is 2";
-        if (c->mass[i][j] > 0 && !c->repeats[i]) return "an edge that does not repeat has a mass";
+        if (c->mass[i][j] > 0 && !c->repeats[i]) return "an edge that is not periodic has a mass";
         if (c->mass[i][j] > 0 && c->size_mass > 0)
-            return "both its size and a component of an edge yield";
+            return "both its size and a component of an edge are load-controlled";
     }
     if (!(c->size_mass >= 0 && isfinite(c->size_mass)))
         return "the mass of its size must be finite and not negative";
     if (!isfinite(c->mean)) return "its mean stress is not finite";
     for (int k = 0; k < dim && c->size_mass > 0; k++)
-        if (!c->repeats[k]) return "its size yields, and an edge does not repeat";
+        if (!c->repeats[k]) return "its size is load-controlled, and an edge is not periodic";
     for (int32_t m = 0; m < c->factors; m++) {
         if (!isfinite(c->factor[m].t) || !isfinite(c->factor[m].x))
             return "a factor of its load is not finite";
         if (m && !(c->factor[m].t > c->factor[m - 1].t))
-            return "the moments of its load's factors do not increase";
+            return "the times of its load's factors do not increase";
     }
     return NULL;
 }

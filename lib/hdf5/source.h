@@ -3,7 +3,7 @@
  *
  * libhdf5 crashes on damaged files, and worse is possible with files made to harm. So a child of the
  * tool opens the files and asks libhdf5 (hdf5/server.h), with bounds on its memory and time, and hands
- * over plain numbers and texts. Whatever becomes of the child, the tool goes on, and says which
+ * over plain numbers and texts. Whatever becomes of the child, the tool continues, and says which
  * document it was (EX_DATAERR).
  *
  * Paths are absolute; "" is the root.

@@ -142,8 +142,8 @@ static int file_open(struct stream *s, struct why *why)
     if (s->fd < 0 || fstat(s->fd, &st))
         return why_set(why, EX_NOINPUT, "%s: %s", s->name, strerror(errno));
     if (isatty(s->fd))
-        return why_set(why, EX_USAGE,
-                       "%s is a terminal: give a FILE, or a pipe (--help tells more)", s->name);
+        return why_set(why, EX_USAGE, "%s is a terminal: give a FILE, or a pipe (see --help)",
+                       s->name);
     if (S_ISDIR(st.st_mode)) return why_set(why, EX_NOINPUT, "%s: is a directory", s->name);
     if (S_ISFIFO(st.st_mode)) fcntl(s->fd, F_SETPIPE_SZ, PIPE); // or it stays as it is
     off_t at = S_ISREG(st.st_mode) ? lseek(s->fd, 0, SEEK_CUR) : -1;

@@ -138,7 +138,7 @@ static int set_cell(struct packing *p, const struct imported_head *h,
         any |= c->repeats[k];
     }
     if (!any) return 0;
-    if (!h->boxed) return why_set(why, EX_DATAERR, "%s: has no box that could repeat", name);
+    if (!h->boxed) return why_set(why, EX_DATAERR, "%s: has no box for a periodic cell", name);
     c->origin = h->origin;
     for (int k = 0; k < 3; k++) c->edge[k] = h->edge[k];
     if (p->dim == 2) c->edge[2] = v3(0, 0, 1), c->origin.z = 0;

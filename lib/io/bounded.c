@@ -29,8 +29,7 @@ int bounded_put(struct bounded *to, const void *bytes, size_t size, struct why *
     for (size_t done = 0; done < size;) {
         ssize_t n = write(to->fd, (const char *)bytes + done, size - done);
         if (n < 0 && errno == EINTR) continue;
-        if (n < 0)
-            return why_set(why, EX_SOFTWARE, "no memory for what is read: %s", strerror(errno));
+        if (n < 0) return why_set(why, EX_SOFTWARE, "no memory for the input: %s", strerror(errno));
         done += (size_t)n;
     }
     return 0;
@@ -58,12 +57,11 @@ static int take(int fd, void **answer, size_t *n, struct why *why)
 {
     struct stat st;
     *answer = NULL, *n = 0;
-    if (fstat(fd, &st))
-        return why_set(why, EX_SOFTWARE, "what was read is lost: %s", strerror(errno));
+    if (fstat(fd, &st)) return why_set(why, EX_SOFTWARE, "the input is lost: %s", strerror(errno));
     if (!st.st_size) return 0;
     void *map = mmap(NULL, (size_t)st.st_size, PROT_READ, MAP_PRIVATE, fd, 0);
     if (map == MAP_FAILED)
-        return why_set(why, EX_SOFTWARE, "no memory for what is read: %s", strerror(errno));
+        return why_set(why, EX_SOFTWARE, "no memory for the input: %s", strerror(errno));
     *answer = map, *n = (size_t)st.st_size;
     return 0;
 }

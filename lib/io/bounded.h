@@ -12,7 +12,7 @@
 
 struct bounded;
 
-/* The process's answer goes on with these bytes. Returns 0, or EX_SOFTWARE where there is no room. */
+/* The process's answer continues with these bytes. Returns 0, or EX_SOFTWARE where there is no room. */
 int bounded_put(struct bounded *to, const void *bytes, size_t size, struct why *why);
 
 /*

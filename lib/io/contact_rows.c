@@ -24,7 +24,7 @@ static int check_shifts(const struct contacts *s, const struct cell *cell, struc
         for (int k = 0; k < 3; k++)
             if (s->c[i].shift[k] && !cell->repeats[k])
                 return why_set(why, EX_DATAERR,
-                               "contact %lld: shift along edge %d, which does not repeat",
+                               "contact %lld: shift along edge %d, which is not periodic",
                                (long long)i, k);
     return 0;
 }

@@ -225,7 +225,7 @@ static int read_words(struct source *s, int64_t row, struct outside *o, struct w
     if (read_span(s, "answer", row, (int64_t)shape[0], &start, &count, why) || !count)
         return why->status;
     if (!(o->words = malloc((size_t)count)))
-        return why_set(why, EX_SOFTWARE, "no memory for what was answered");
+        return why_set(why, EX_SOFTWARE, "no memory for the answer");
     o->length = o->room = count;
     return source_rows(s, HOME "/answer/text", COLUMN_I8, start, count, 1, o->words, why);
 }

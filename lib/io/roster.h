@@ -1,5 +1,5 @@
 /*
- * io/roster.h: the rows of a trajectory whose bodies come and go [nsd-format(5)]. A body has one row
+ * io/roster.h: the rows of a trajectory with inlets or outlets [nsd-format(5)]. A body has one row
  * for ever, in the order of coming; in the frames without it the row's id is -1 and its numbers are
  * NaN. Datasets of [frames][rows] grow in both directions, along the rows by whole chunks, so that
  * what is on disk of earlier frames stays as it is.

@@ -17,7 +17,7 @@ enum {
 struct table_write {
     hid_t file;
     bool growing; /* a trajectory */
-    /* Where bodies come and go, its datasets of [frames][bodies]: the most bodies that they can have,
+    /* With inlets and outlets, its datasets of [frames][bodies]: the most bodies that they can have,
        and how many a chunk has; 0: as many as the first frame has, in chunks of CHUNK_BODIES */
     hsize_t most_bodies, chunk_bodies;
     struct roster *roster; /* the bodies then, else NULL; the writer's */

@@ -20,7 +20,7 @@
     X(sal, "simple augmented Lagrangian: one projected step of the gradient", 1.75, false)         \
     X(ebp, "enhanced bi-potential: Newton on r = proj(tau, cone)", 1, true)                        \
     X(eal, "enhanced augmented Lagrangian: Newton on r = proj(tau, disc)", 1, true)                \
-    X(exact, "the one-contact problem solved outright", 1, true)
+    X(exact, "exact solution of the one-contact problem", 1, true)
 
 #define METHOD_ID(name, ...) METHOD_##name,
 enum method_id { EACH_METHOD(METHOD_ID) METHOD_COUNT };

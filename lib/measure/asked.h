@@ -1,5 +1,5 @@
 /*
- * measure/asked.h: what is asked for beside the names of measures, from texts: options of nsd-stat, settings of a program.
+ * measure/asked.h: options in addition to the names of measures, from texts: options of nsd-stat, settings of a program.
  */
 #ifndef NSD_ASKED_H
 #define NSD_ASKED_H

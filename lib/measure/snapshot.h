@@ -11,7 +11,7 @@
 #include "measure/region.h"
 #include "measure/table.h"
 
-/* What the user asks for beside the measures' names; the same for all frames */
+/* What the user asks for in addition to the measures' names; the same for all frames */
 struct asked {
     bool boxed;
     double lo[3], hi[3]; /* m: the box that measures keep to */

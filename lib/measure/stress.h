@@ -5,7 +5,7 @@
 #include "measure/snapshot.h"
 #include "measure/tensor.h"
 
-/* What moves in a region: bodies whose centres are in it. Velocities are those beside the cell's flow. */
+/* What moves in a region: bodies whose centres are in it. Velocities are those relative to the flow of the cell. */
 struct moving {
     int64_t bodies;
     double mass;           /* kg */

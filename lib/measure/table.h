@@ -31,7 +31,7 @@ double *table_row(struct table *t, struct why *why);
 /* Why there are no numbers, unless a reason is there already. */
 void table_null(struct table *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Each writes at *at and goes on behind it. */
+/* Each writes at *at and continues after it. */
 void put(double **at, double x);
 void put_vec(double **at, vec3 v);
 void put_tensor(double **at, const struct tensor *T);

@@ -14,7 +14,7 @@
  *                                          the time, and never beyond the document's.
  *
  * So times stay multiples of dt, and are exact [packing_set_dt()]. Nothing but the state at the beginning of
- * a step decides: a run that goes on from a frame makes the same steps.
+ * a step decides: a run that resumes from a frame makes the same steps.
  *
  * What a body gets from others within the step it does not know: where a heavy body strikes a row of light
  * ones, more may come.

@@ -54,7 +54,7 @@ struct balance {
 int balance_step(struct balance *b, const struct packing *p, const struct contacts *s,
                  const struct impulses *sum, const bool *of, struct why *why);
 
-/* What the impact of a pair of bodies has gained, beside the energy that its approach could give up */
+/* What the impact of a pair of bodies has gained in addition to the energy that its approach could give up */
 struct gain {
     double work,
         scale; /* J: of its contacts, which are from this on; work > 0: gained. 0, 0: no impact */

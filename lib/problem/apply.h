@@ -1,6 +1,6 @@
 /*
  * problem/apply.h: the velocities that reactions make, for all contacts at once: W r, which
- * needs no assembled W, and the bodies' velocities computed anew.
+ * needs no assembled W, and the bodies' velocities computed again.
  */
 #ifndef NSD_APPLY_H
 #define NSD_APPLY_H
@@ -20,7 +20,7 @@ void apply_free(struct apply *a);
 void problem_apply(const struct problem *p, struct apply *a, const double *x, double *y);
 
 /*
- * Computes the bodies' velocities anew from the reactions alone, v_free + M^-1 P r: those to which
+ * Computes the bodies' velocities again from the reactions alone, v_free + M^-1 P r: those to which
  * every sweep has added carry the rounding of all these additions. Does nothing for a problem given
  * by W. The result has the same bits for any number of threads.
  */

@@ -68,7 +68,7 @@ void delassus_free(struct delassus *W);
 
 /*
  * Copies block rows in the order in which they will be read: row i of `to` is row row[i] of W, or
- * empty where that is -1. Only q and the blocks beside the diagonal are copied; columns are W's
+ * empty where that is -1. Only q and the off-diagonal blocks are copied; columns are W's
  * contacts. Returns 0, or EX_SOFTWARE with nothing to free.
  */
 int delassus_sort(struct delassus *to, const struct delassus *W, int64_t rows, const int32_t *row,
@@ -129,7 +129,7 @@ static inline void delassus_change_common(struct delassus *W, int64_t c, const d
 /* Four numbers from a column of d: the surplus ends up in b[d..], which is never read. */
 typedef double column __attribute__((vector_size(32), may_alias, aligned(8)));
 
-/* b[d] = q_c + the sum of W_cb r_b over the blocks beside the diagonal */
+/* b[d] = q_c + the sum of W_cb r_b over the off-diagonal blocks */
 static inline void delassus_gather(const struct delassus *W, int64_t c, const double *q,
                                    const double *r, double b[4])
 {

@@ -23,8 +23,9 @@ struct exchange {
     int64_t n_copies;
     /* [contacts here] steps are shorter by this factor, at least 1 [problem/brake.h]; NULL: none is */
     const double *slower;
-    bool may_want;    /* set before the solve: one process could begin anew with all contacts */
-    bool wants_whole; /* set by a solver, which then ends: only such a process goes on from here */
+    bool may_want; /* set before the solve: one process could start again with all contacts */
+    bool
+        wants_whole; /* set by a solver, which then ends: only such a process continues from here */
 
     /* A walk over the bundles has done with this group. */
     void (*after_group)(struct exchange *s, struct problem *p, int64_t group);

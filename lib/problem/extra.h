@@ -1,6 +1,6 @@
 /*
  * problem/extra.h: what the sweep reads of contacts that are bonded or have rolling friction,
- * beside their bundles.
+ * after their bundles.
  *
  * A bond pulls with p = - a - K u~, K = h^2 S beta^2 C, and the bodies feel r = r* + p, where r* is
  * what the local method looks for [bodies/contact_law.h]. Of its own contact it sees
@@ -79,7 +79,7 @@ static inline bool extra_rolls(const struct extra *x, int lane)
     return x->mu_r[lane] > 0 || x->mu_p[lane] > 0;
 }
 
-/* Lane i of a bundle, with what is beside it */
+/* Lane i of a bundle, with its record beside */
 struct extra_lane {
     int i;
     const struct bundle *c;

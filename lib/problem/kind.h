@@ -68,7 +68,7 @@ struct problem_kind {
     bool given_by_W; /* there are no bodies, only W */
     bool full;       /* W~_cc is more than diag(w_n, w_t, w_t) */
     bool levers;     /* lever arms are any vectors [problem/levers.h] */
-    bool near;       /* bundles have a struct beside behind them */
+    bool near;       /* bundles have a struct beside after them */
     bool extra;      /* contacts have bonds or moments [problem/extra.h] */
     bool rolls;      /* some contact has rolling friction */
     double ns;       /* of a sweep, per contact [bench/results]; of W, see solve/prices.c besides */

@@ -22,7 +22,7 @@ struct plan {
        "no body" in the two halves of a sweep. */
     int32_t (*seats)[2];
     int64_t copies; /* number of these copies */
-    /* What it was made of beside what the schedule has */
+    /* What it was made of in addition to what the schedule has */
     enum order order;
     int64_t n, bodies;  /* contacts, bodies */
     int32_t (*pair)[2]; /* [n] a, b of the contacts */

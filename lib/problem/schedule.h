@@ -37,7 +37,7 @@ struct schedule {
     int64_t groups;
     int64_t *group; /* [groups + 1] group g: sequence[group[g]] .. sequence[group[g+1]-1] */
     int64_t beyond, inside, rim, rest; /* by halves: as in struct two_thread_split; else 0 */
-    /* What it follows from beside the order and the bodies of the contacts: where these are */
+    /* What it follows from in addition to the order and the bodies of the contacts: where these are */
     uint32_t *key; /* [n] on the curve along which they are sorted; NULL: they are not */
     int8_t *zone;  /* [n] enum zone; NULL: no halves */
 };

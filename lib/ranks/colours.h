@@ -5,7 +5,7 @@
  * The order is one of all contacts, and knows of no ranks. Each rank solves, group after group, the contacts
  * in which it owns a body; those at a border are solved by both owners, alike. A body of a border may also have
  * contacts of which the rank with its copy knows nothing: after their group its owner tells that rank its
- * velocity. Groups are walked through in three parts, in each of which bundles begin anew:
+ * velocity. Groups are walked through in three parts, in each of which bundles start again:
  *
  *     3 g      own contacts after which something is to be told
  *     3 g + 1  copies: contacts that another rank counts. Then messages are sent,

@@ -33,7 +33,7 @@ struct subdomain {
     vec3 *dealt;   /* [p.n] m: where they were when they were dealt */
     int32_t *load; /* [p.n] contacts of a body when they were last counted */
     struct whole whole; /* p.whole */
-    int64_t deals;      /* how often bodies were dealt, and cut anew */
+    int64_t deals;      /* how often bodies were dealt, and divided again */
     int64_t cuts;
 };
 
@@ -50,7 +50,7 @@ void subdomain_begin_rows(struct subdomain *y, struct comm *t, struct territory 
 /* The same of a packing that has other bodies than before */
 void subdomain_begin_again(struct subdomain *y, const struct packing *whole);
 
-/* y->whole of all, anew */
+/* y->whole of all, again */
 void subdomain_measure(struct subdomain *y);
 /* Deals the bodies so that every pair with a gap of at most `reach` (m) at the predicted positions meets in
    the owners of both, now and until bodies have gone half the margin. Returns whether it had to. */

@@ -26,7 +26,7 @@ int flow_read(struct flow *f, const struct packing *p, struct why *why)
     *f = (struct flow){ 0 };
     if (!packing_varies(p)) return 0;
     if (!p->scene)
-        return why_set(why, EX_DATAERR, "bodies come and go, and there is no scene that says how");
+        return why_set(why, EX_DATAERR, "inlets or outlets, but no scene that describes them");
     if (scene_parse(&f->scene, p->scene, strlen(p->scene), NULL, why)) return why->status;
     if (f->scene.pours == p->pours && f->scene.removals == p->removals &&
         f->scene.kinds == p->kinds && f->scene.dim == p->dim && same_shapes(&f->scene, p))
@@ -348,7 +348,7 @@ int flow_step(const struct flow *f, struct packing *p, struct contacts *last, bo
     int32_t *row = malloc(((size_t)p->n + 1) * sizeof *row);
     gsl_rng *rng = counter_alloc();
     if (!row || !rng)
-        why_set(why, EX_SOFTWARE, "no memory for bodies that come and go");
+        why_set(why, EX_SOFTWARE, "no memory for inlets and outlets");
     else if (!remove_bodies(f, p, row, why)) {
         follow_bonds(&p->bonds, row);
         memory_follow(&p->memory, row);

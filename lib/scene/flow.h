@@ -1,5 +1,5 @@
 /*
- * scene/flow.h: grains that come and go at the beginning of a step: first the removals, in the scene's
+ * scene/flow.h: inlets and outlets at the beginning of a step: first the removals, in the scene's
  * order, then the pours.
  *
  * A removal takes every body whose centre is in its region. Grain n of a pour (n from 0) is due as

@@ -292,7 +292,7 @@ struct scene {
     bool has_walls;               /* else those of the first document are taken */
     double t;                     /* s: the packing's time */
 
-    int32_t pours, removals;       /* grains that come and go [scene/flow.h] */
+    int32_t pours, removals;       /* inlets and outlets [scene/flow.h] */
     struct scene_pour *pour;       /* [pours] */
     struct scene_removal *removal; /* [removals] */
     struct scene_cell cell;

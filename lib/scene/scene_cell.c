@@ -53,7 +53,7 @@ static int read_repeats(jnode a, int dim, struct cell *c)
     if (n != (size_t)dim) return json_node_fault(a, "wants true or false for %d edges", dim);
     for (size_t k = 0; k < n; k++)
         if (json_node_bool(json_node_item(&a, k), &c->repeats[k])) return 1;
-    return cell_repeats(c) ? 0 : json_node_fault(a, "no edge repeats");
+    return cell_repeats(c) ? 0 : json_node_fault(a, "no edge is periodic");
 }
 
 static int read_moment(jnode o, int dim, struct cell_gradient *g)
@@ -90,7 +90,7 @@ static int set_target(jnode n, int dim, double target[3][3], bool given[3][3], s
         for (int j = 0; j < dim; j++) {
             if (!given[i][j]) continue;
             if (!c->repeats[j])
-                return json_node_fault(n, "edge %d does not repeat, so it cannot yield", j);
+                return json_node_fault(n, "edge %d is not periodic: it cannot have a stress", j);
             if (given[j][i] && target[i][j] != target[j][i])
                 return json_node_fault(n, "a stress is symmetric");
             c->stress[i][j] = c->stress[j][i] = target[i][j];

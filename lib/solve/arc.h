@@ -6,7 +6,7 @@
  *
  *     z - y(x) = s p_0,   x o z = s g_0 (1, 0, 0),     p_0, g_0 those of the starting point
  *
- * is a curve in (x, z, s). A step corrects at a right angle to the curve's tangent and goes on
+ * is a curve in (x, z, s). A step corrects at a right angle to the curve's tangent and continues
  * along the curve to second order; s follows, and turns back where the determinant of Newton's
  * matrix changes its sign. Steps are made in tau = x - z, from which x and z with x o z = s g_0 (1,
  * 0, 0) follow exactly, so that the border of K stops no step. Their length is chosen so that the

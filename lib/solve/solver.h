@@ -1,7 +1,7 @@
 /*
  * solve/solver.h: the solvers of a whole contact problem, in one table; each has a file of its own.
  * All end at the same criterion. It counts as met only when it holds for the velocities computed
- * anew from the problem and the reactions alone.
+ * again from the problem and the reactions alone.
  *
  * The solvers share one iterate, which they change in place: the reactions in the problem's slots,
  * the velocities that they make (of the bodies, or by W), u as a local method believes it to be,
@@ -34,9 +34,9 @@ struct solve_opt {
 
 /* A solve in progress */
 struct solve {
-    struct problem *p;  /* the iterate's r, u, and velocities */
-    bool believes;      /* u of the slots is a local method's own, else the motion's */
-    bool renewed;       /* nothing was added to the velocities since they were last made anew */
+    struct problem *p; /* the iterate's r, u, and velocities */
+    bool believes;     /* u of the slots is a local method's own, else the motion's */
+    bool renewed;      /* nothing was added to the velocities since they were last computed again */
     int32_t renewed_at; /* sweeps made when they were */
     double value;       /* the criterion of the iterate when it was last judged */
     bool jammed;        /* so were contacts: nothing is to make their reactions grow faster */
@@ -75,7 +75,7 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
 
 /*
  * Judges the iterate: puts the criterion into value and returns it. Where it seems met, the
- * velocities are made anew and it is evaluated again. Keeps the iterate if it is the best, and
+ * velocities are computed again and it is evaluated again. Keeps the iterate if it is the best, and
  * calls progress.
  */
 double solve_judge(struct solve *s);

@@ -21,7 +21,7 @@ struct step_opt {
     struct solve_opt solve;
 };
 
-/* What a run keeps from step to step, empty at first: not to find it anew. Results are the same without. */
+/* What a run keeps from step to step, empty at first: not to find it again. Results are the same without. */
 struct step_memory {
     struct neighbours near;
     struct plan *plan;
@@ -89,7 +89,7 @@ int step_move_apart_whole(struct step_makers *m, struct packing *p, const struct
 
 /* Parts of it. */
 /* found[], and the report of the solve; kept: of struct prepare_opt, or NULL. Impacts that would gain energy
-   are solved anew with less restitution [solve/rebound.h]; and this alone, of contacts that are solved. */
+   are solved again with less restitution [solve/rebound.h]; and this alone, of contacts that are solved. */
 int step_solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
                         const struct step_opt *o, struct report *rep, struct why *why);
 int step_bound_impacts(const struct packing *pack, struct contacts *s, struct plan **kept,

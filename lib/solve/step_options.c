@@ -105,7 +105,7 @@ const char *options_usual(const void *to)
 
 static struct cli_choice method_choice(int k)
 {
-    if (k == 0) return (struct cli_choice){ "auto", "no method of its own: as --global auto" };
+    if (k == 0) return (struct cli_choice){ "auto", "choose the solver, as --global auto" };
     const struct method *m = methods[k - 1];
     return m ? (struct cli_choice){ m->name, m->help } : (struct cli_choice){ NULL, NULL };
 }
@@ -139,45 +139,45 @@ struct cli_choice options_overlap_choice(int k)
 
 const struct cli_option options_solve[] = {
     { CLI_FLAG, 0, "paper", &options.paper,
-      .help = "the paper's protocol instead of what is in brackets; wants -m" },
+      .help = "use the protocol of the paper instead of the defaults; requires -m" },
     { CLI_CHOICE, 'm', "method", &options.method, .choice = method_choice,
-      .help = "the local method of Gauss-Seidel, which then solves [auto]" },
+      .help = "solve by Gauss-Seidel with this local method [auto]" },
     { CLI_CHOICE, 0, "global", &options.global, .choice = solver_choice,
-      .help = "the solver of all contacts together [nlgs with -m, else auto]" },
+      .help = "solve all contacts with this solver [nlgs with -m, else auto]" },
     { CLI_REAL, 0, "eps", &options.eps, "EPS", .max = MOST,
-      .help = "stop when the criterion is at most this", .usual = options_usual },
+      .help = "stop when the criterion is at most EPS", .usual = options_usual },
     { CLI_CHOICE, 0, "criterion", &options.criterion, .choice = criterion_choice,
-      .help = "what is compared with EPS", .usual = options_usual },
+      .help = "compare this error with EPS", .usual = options_usual },
     { CLI_INT, 0, "max-sweeps", &options.max_sweeps, "N", .max = 2e9,
       .help = "give up after N sweeps", .usual = options_usual },
     { CLI_ABOVE, 0, "max-seconds", &options.max_seconds, "S", .max = MOST,
-      .help = "give up after S seconds, with the best so far" },
+      .help = "give up after S seconds, and keep the best iterate [no limit]" },
     { CLI_ABOVE, 0, "alpha", &options.alpha, "A", .max = MOST,
-      .help = "rho = A m_red [1.75 (sbp, sal) or 1 (ebp, eal) over lambda_max]" },
+      .help = "set rho = A m_red [1.75 (sbp, sal) or 1 (ebp, eal) / lambda_max]" },
     { CLI_CHOICE, 0, "newton", &options.newton, .choice = newton_choice,
-      .help = "Newton's steps in ebp and eal; plain is the paper's", .usual = options_usual },
+      .help = "choose Newton's steps in ebp and eal; plain: the paper", .usual = options_usual },
     { CLI_ABOVE, 0, "newton-eps", &options.newton_eps, "EPS", .max = 1,
-      .help = "stop them when |Z| is at most EPS |(r, rho b)|", .usual = options_usual },
+      .help = "stop Newton when |Z| <= EPS |(r, rho b)|", .usual = options_usual },
     { CLI_ABOVE, 0, "newton-abs", &options.newton_abs, "EPS", .max = MOST,
-      .help = "stop them as the paper does, when |Z| is at most EPS, with r in N" },
+      .help = "stop Newton when |Z| <= EPS with r in N, as the paper" },
     { CLI_INT, 0, "newton-max", &options.newton_max, "N", .min = 1, .max = 1e6,
-      .help = "make at most N of them for a contact in a sweep", .usual = options_usual },
+      .help = "make at most N Newton steps per contact and sweep", .usual = options_usual },
     { CLI_BETWEEN, 0, "relax", &options.relax, "OMEGA", .max = 2,
-      .help = "relaxation, between 0 and 2", .usual = options_usual },
+      .help = "relax by OMEGA, between 0 and 2", .usual = options_usual },
     { CLI_CHOICE, 0, "order", &options.order, .choice = order_choice,
-      .help = "of the sweep; natural is the paper's", .usual = options_usual },
+      .help = "order contacts; natural: the paper", .usual = options_usual },
     { CLI_FLAG, 0, "every-sweep", &options.every_sweep,
-      .help = "evaluate the criterion after every sweep [when it may be met]" },
+      .help = "evaluate the criterion after every sweep [if it may be met]" },
     { 0 },
 };
 
 const struct cli_option options_detect[] = {
     { CLI_REAL, 0, "gap", &options.gap, "G", .max = MOST,
-      .help = "a contact is a pair with a predicted gap of at most G m [0]" },
+      .help = "detect pairs with a predicted gap of at most G m [0]" },
     { CLI_REAL, 0, "theta", &options.theta, "T", .max = 1,
-      .help = "predict the position q + (1 - T) dt qdot [the document's; 0.5]" },
+      .help = "predict the position q + (1 - T) dt qdot [document, else 0.5]" },
     { CLI_CHOICE, 0, "overlap", &options.overlap, .choice = options_overlap_choice,
-      .help = "against overlap; keep is the paper's", .usual = options_usual },
+      .help = "treat overlaps; keep: the paper", .usual = options_usual },
     { 0 },
 };
 

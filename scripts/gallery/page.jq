@@ -8,8 +8,8 @@ def range_of: if .low == .high then "\(.low)" else "\(.low) to \(.high)" end;
 ($about | map({(.name): .}) | add) as $of |
 "# The gallery", "",
 "Experiments that granular physicists do, each a script of nsd\u0027s tools, jq and gnuplot: `make gallery` runs them all" +
-" (`QUICK=1`: small, in minutes). Each is held against what others have published: the range is where we take it to agree," +
-" and what lies outside is shown.", "",
+" (`QUICK=1`: small, in minutes). Each result is compared with published values. The range is our acceptance interval, wider than the published one to allow for small systems;" +
+" rows outside it are marked **differs**. Sections marked as a small run were run at reduced size.", "",
 "\(map(.rows[]) | length) comparisons, \(map(.rows[] | select(.holds)) | length) within their range.", "",
 (sort_by(.name) | sort_by($of[.name].order) | .[] | $of[.name] as $a |
     "## \($a.title)", "", $a.text, "",

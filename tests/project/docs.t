@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Manuals are whole, say what --help says, and refer to what there is; versions agree.
-# shellcheck source=tests/support/tap.sh disable=SC2317 # functions called by name
+# shellcheck source=tests/support/tap.sh disable=SC2317,SC2016 # functions called by name; text for eval
 . tests/support/tap.sh
 
 unset MAKEFLAGS MFLAGS MAKELEVEL
@@ -41,7 +41,9 @@ structure() # FILE: what is wrong with it
             if (FILENAME ~ /1$/ && heads !~ /^NAME;SYNOPSIS;DESCRIPTION;.*EXIT STATUS;.*EXAMPLES;/) complain("headings: " heads)
         }' "$1"
 }
-for manual in man/*; do is "$manual: macros, lists and headings" "$(structure "$manual")" ""; done
+ok "make: nsd-cookbook(7)" make -s build/man/nsd-cookbook.7
+pages=(man/* build/man/nsd-cookbook.7)
+for manual in "${pages[@]}"; do is "$manual: macros, lists and headings" "$(structure "$manual")" ""; done
 broken() # LINE BECOMES: a manual with one fault
 {
     sed "0,/$1/s//$2/" man/nsd-cat.1 >"$tmp/broken.1" && [ -n "$(structure "$tmp/broken.1")" ]
@@ -66,11 +68,47 @@ done
 strangers() # references to pages of ours that do not exist
 {
     local name section
-    grep -ohE 'Xr nsd[a-z-]* [0-9]' man/* README.md | sort -u | while read -r _ name section; do
-        [ -e "man/$name.$section" ] || echo "$name($section)"
+    grep -ohE 'Xr nsd[a-z-]* [0-9]' "${pages[@]}" README.md | sort -u | while read -r _ name section; do
+        [ -e "man/$name.$section" ] || [ -e "build/man/$name.$section" ] || echo "$name($section)"
     done
 }
 is "every manual that is referred to exists" "$(strangers)" ""
+
+# ---- nsd(7) and nsd-scene(5) are complete ----
+
+is "nsd(7) lists every tool" "$(sed -n '/^\.Ss The tools/,/^\.Ss Conv/s/^\.It Xr \(nsd-[a-z]*\) 1$/\1/p' man/nsd.7 | sort)" "$(tools | sort)"
+for page in "${pages[@]}"; do
+    page=${page##*/}
+    [ "$page" = nsd.7 ] || like "nsd(7) refers to $page" "$(grep -E '^\.(Xr|It Xr)' man/nsd.7 | tr '\n' ' ')" "Xr ${page%.*} ${page##*.} "
+done
+is "every page has one EXIT STATUS of one form" "$(for page in man/*.1; do
+    sed -n '/^\.Sh EXIT STATUS/,/^\.Sh EXAMPLES/p' "$page" | sed -n '2p;3p;4p' | tr '\n' '|'; echo; done | sort -u)" \
+    "$(printf '%s' '.Bl -tag -width Ds|.It 0|Success.|')"
+keys() # that the code knows: what it asks of an object of a scene
+{
+    perl -0777 -ne '
+        while (/json_node_(?:only|need|choice|key)\s*\(((?:[^()]|\([^()]*\))*)\)/g) { print "$_\n" for grep { /^[a-z][a-z_ A-Z]*$/ } $1 =~ /"([^"]*)"/g }
+        while (/(?:#define COMMON|static const char[^;=]*=|const char \*keys =)([^;\n]*(?:\n[^;\n]*)?)/g) { print "$_\n" for grep { / / } $1 =~ /"([a-zA-Z_ ]+)"/g }' lib/scene/scene_*.c |
+        tr ' ' '\n' | grep -E '^[a-zA-Z_]+$' | grep -vxE 'equal|own|string' | sort -u
+}
+undescribed() # keys that the page does not have
+{
+    local key
+    { keys; grep -oE 'X\((mu|e_[nt])\b' lib/bodies/pair_columns.h | sed 's/X(//'; } | sort -u | while read -r key; do
+        grep -qE "^\.(It )?(Va|It Va) (.* , |.* )?$key( |$)|(^|[^a-z_])$key([^a-z_]|$)" man/nsd-scene.5 || echo "$key"
+    done
+}
+ok "keys are found in the code" eval '[ "$(keys | wc -l)" -gt 100 ]'
+is "nsd-scene(5) has every key that the code knows" "$(undescribed)" ""
+tabled() # top-level keys without a row of a table: key, type, unit, default, example
+{
+    local key
+    for key in $(nsd-gen - <<<'{"?": 1}' 2>&1 | sed 's/.*known here: //'); do
+        grep -qE "^\.It Va $key Ta .* Ta .* Ta .* Ta ." man/nsd-scene.5 || echo "$key"
+    done
+}
+is "and a row for each key of a scene" "$(tabled)" ""
+is "nsd-tutorial(7)'s scene is the recipe's" "$(sed -n '/^{ "title"/,/^\.Ed/p' man/nsd-tutorial.7 | grep -v '^\.Ed')" "$(cat cookbook/drum/scene.json)"
 
 if command -v mandoc >/dev/null; then
     ok "make docs" make -s docs
@@ -97,7 +135,7 @@ fi
 missing() # files that a text links to
 {
     local f link
-    for f in README.md CONTRIBUTING.md SECURITY.md tests/README.md docs/*/README.md; do
+    for f in *.md tests/README.md cookbook/README.md docs/*/README.md; do
         grep -oE '\]\([^)#]+' "$f" | sed 's/](//' | grep -v '^http' | while read -r link; do
             [ -e "$(dirname "$f")/$link" ] || echo "$f: $link"
         done

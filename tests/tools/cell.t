@@ -107,7 +107,7 @@ fault '.cell.lengths = [1, 0]' 'cell.lengths: must be positive'
 fault '.cell = { edges: [[1, 2], [2, 4]] }' 'cell: the cell: its edges have no volume'
 fault '.cell = { edges: [[1, 2]] }' 'cell.edges: wants 2 vectors'
 fault '.cell.repeats = [true]' 'cell.repeats: wants true or false for 2 edges'
-fault '.cell.repeats = [false, false]' 'cell.repeats: no edge repeats'
+fault '.cell.repeats = [false, false]' 'cell.repeats: no edge is periodic'
 fault '.cell.gradient = [[0, 1]]' 'cell.gradient: wants 2 rows'
 fault '.cell.gradient = [[0, 1], [0, "x"]]' 'cell.gradient\[1\]\[1\]: '
 fault '.cell.gradient[2].t = 0.5' 'cell.gradient\[2\].t: must be later than the one before'
@@ -117,7 +117,7 @@ fault '.cell.stress = { target: [[1, 2], [3, 4]], mass: 1 }' 'cell.stress.target
 fault '.cell.stress = { target: [[1, null], [null, 1]], mass: [[1, 0], [0, 0]] }' \
     'cell.stress.mass: component y of edge 1 yields and needs a mass'
 fault '.cell.repeats = [true, false] | .cell.stress = { target: [[null, null], [null, 1]], mass: 1 }' \
-    'cell.stress.target: edge 1 does not repeat'
+    'cell.stress.target: edge 1 is not periodic'
 fault '.cell.affine = 1' 'cell.affine: '
 
 jq -c '.bodies = [{ x: [0.5, 0.5], radius: 0.6 }]' scenes/shear.json >"$tmp/bad.json"

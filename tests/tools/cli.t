@@ -78,7 +78,7 @@ nsd-info --steps \[all\]
 nsd-info --last .
 nsd-cat --steps \[all\]
 nsd-cat --last .
-nsd-view --step \[the very last frame\]
+nsd-view --step \[last frame\]
 nsd-view --colour radius|speed|kind|id.*\[radius\]
 nsd-view --camera \[30,15\]
 nsd-view --samples \[3\]

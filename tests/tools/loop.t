@@ -73,8 +73,8 @@ stops() # NAME PROGRAM FRAMES STATUS MESSAGE [OPTION ...]
     like "$name: the message" "$(<"$tmp/err")" "$message"
     is "$name: whole frames" "$(nsd-info "$tmp/end.h5" | jq -sc 'map(select(.step != null).step)')" "$frames"
 }
-stops "stop" 'read -r l; echo "{}"; read -r l; echo stop' "[1]" 0 'told to stop after step 1'
-stops "stop as JSON" 'read -r l; echo "{}"; read -r l; echo "{\"stop\":true}"' "[1]" 0 'told to stop after step 1'
+stops "stop" 'read -r l; echo "{}"; read -r l; echo stop' "[1]" 0 'stopped by the program after step 1'
+stops "stop as JSON" 'read -r l; echo "{}"; read -r l; echo "{\"stop\":true}"' "[1]" 0 'stopped by the program after step 1'
 stops "a program that ends" 'read -r l; echo "{}"; read -r l; echo "{}"; exit 7' "[1,2]" 69 'step 3: --with: the program has ended, with status 7'
 stops "a program that is killed" 'read -r l; echo "{}"; kill -9 $$' "[1]" 69 'step 2: --with: the program was killed'
 stops "a program that there is not" "$tmp/nothing" "[0]" 69 'step 1: --with: the program has ended, with status 127'

@@ -17,7 +17,7 @@ refuses 65 "bodies of two groups" gen "{\"dt\": 1, \"bodies\": [$ball, $above]}"
 says "have theirs" 'bodies 0 and 1 overlap by 0.1 m \(bodies\[0\], bodies\[1\]; "overlap": true allows it\)'
 refuses 65 "a wall that the cell repeats across" gen '{"dt": 1, "cell": {"lengths": [1, 1, 1]}, "bodies": [],
     "walls": [{"point": [0, 0, 0], "normal": [0, 0, 1]}]}'
-says "is named by its place" 'walls\[0\]: wall 0: the cell repeats across it'
+says "is named by its place" 'walls\[0\]: wall 0: crosses a periodic edge of the cell'
 refuses 65 "a cell of one diameter" gen '{"dt": 1, "cell": {"lengths": [1, 1, 1]}, "bodies": [{"x": [0, 0, 0], "radius": 0.5000001}]}'
 says "shows by how much" 'after 1 m .* 1.0000002 m'
 

@@ -1,0 +1,1 @@
+[ "$(grep -c '<DataSet ' paraview/grains.pvd)" = 5 ] && h5ls run.vtkhdf/VTKHDF >/dev/null && [ -s surfaces.vtp ]
