@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *names, *box, *layers, *point, *plane, *steps, *fields_to;
+static const char *names, *box, *layers, *point, *plane, *tracer, *steps, *fields_to;
 static bool list, tsv, last, grains;
 static double width, spacing;
 static struct asked asked = ASKED_DEFAULT;
@@ -43,6 +43,10 @@ static const struct cli_option own[] = {
     { CLI_INT, 0, "bins", &asked.bins, "N", .help = "of distributions [50]", .min = 1, .max = 1e6 },
     { CLI_ABOVE, 0, "distance", &asked.distance, "M",
       .help = "of pairs, at most [m, three mean diameters]", .max = 1e300 },
+    { CLI_TEXT, 0, "tracer", &tracer, "KIND",
+      .help = "of mixing: bodies of this kind, or large [first kind of several, or large]" },
+    { CLI_ABOVE, 0, "sample", &asked.sample, "M",
+      .help = "edge of the samples of mixing [m, three mean diameters]", .max = 1e300 },
     { CLI_TEXT, 'f', "fields", &fields_to, "FILE",
       .help = "also coarse-grained fields: FILE.h5, or 'f%05d.vti'" },
     { CLI_ABOVE, 0, "width", &width, "M", .help = "w of their Gaussian [m, the mean diameter]",
@@ -106,6 +110,7 @@ static void parse(void)
 {
     parse_one("layers", layers), parse_one("point", point);
     parse_one("plane", plane), parse_one("box", box);
+    parse_one("tracer", tracer);
 }
 
 /* ---- output ---- */
@@ -236,10 +241,7 @@ static void show(const struct frame *f, const char *where, int64_t k, struct why
     measured_free(t);
     if (fflush(stdout)) finish_stdout(); // a line is seen when its frame is there
     if (fields_to) add_fields(&s, why);
-    if (measured_remember(chosen) && !why->status) {
-        if (!k) kept_set(&first, s.p, why);
-        if (!why->status) kept_set(&before, s.p, why);
-    }
+    if (measured_remember(chosen) && !why->status) measured_keep(chosen, &s, &first, &before, why);
 }
 
 static void run(struct reader *in)

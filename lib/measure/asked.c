@@ -99,13 +99,31 @@ static int set_bins(struct asked *a, const char *name, const char *text, struct 
     return 0;
 }
 
+static int set_sample(struct asked *a, const char *name, const char *text, struct why *why)
+{
+    double x = 0;
+    if (set_number(&x, name, text, why)) return why->status;
+    if (!isfinite(x)) return why_set(why, EX_USAGE, "--%s: %s must be finite", name, text);
+    a->sample = x;
+    return 0;
+}
+
+static int set_tracer(struct asked *a, const char *name, const char *text, struct why *why)
+{
+    if (!*text || strlen(text) >= sizeof a->tracer)
+        return why_set(why, EX_USAGE, "--%s: '%.40s' is not the name of a kind, or large", name,
+                       text);
+    memcpy(a->tracer, text, strlen(text) + 1);
+    return 0;
+}
+
 static const struct {
     const char *name;
     int (*set)(struct asked *, const char *name, const char *text, struct why *);
 } settings[] = {
     { "box", set_box },           { "layers", set_layers }, { "point", set_point },
     { "plane", set_plane },       { "radius", set_radius }, { "bins", set_bins },
-    { "distance", set_distance },
+    { "distance", set_distance }, { "sample", set_sample }, { "tracer", set_tracer },
 };
 enum { SETTINGS = sizeof settings / sizeof settings[0] };
 

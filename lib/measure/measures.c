@@ -4,13 +4,32 @@
 #include <string.h>
 
 static const struct measure *const measures[] = {
-    &measure_fraction,    &measure_coordination,  &measure_contact_numbers,
-    &measure_fabric,      &measure_stress,        &measure_boundaries,
-    &measure_energy,      &measure_temperature,   &measure_profile,
-    &measure_friction,    &measure_normal_forces, &measure_tangential_forces,
-    &measure_mobilised,   &measure_pairs,         &measure_sizes,
-    &measure_segregation, &measure_displacement,  &measure_surface,
-    &measure_flux,        &measure_grains,        NULL,
+    &measure_fraction,
+    &measure_coordination,
+    &measure_contact_numbers,
+    &measure_fabric,
+    &measure_stress,
+    &measure_boundaries,
+    &measure_energy,
+    &measure_temperature,
+    &measure_profile,
+    &measure_friction,
+    &measure_normal_forces,
+    &measure_tangential_forces,
+    &measure_mobilised,
+    &measure_pairs,
+    &measure_sizes,
+    &measure_segregation,
+    &measure_displacement,
+    &measure_surface,
+    &measure_flux,
+    &measure_grains,
+    &measure_mixing,
+    &measure_residence,
+    &measure_departures,
+    &measure_lifetimes,
+    &measure_separations,
+    NULL,
 };
 
 const struct measure *measure_at(int k)
@@ -29,9 +48,13 @@ const struct measure *measure_named(const char *name, size_t n)
 static const char *lacks(const struct snapshot *s, enum needs needs)
 {
     if (!s->p->n) return "there are no bodies";
-    if (needs == NEEDS_BEFORE && !s->before) return "there is no frame before";
-    if ((needs == NEEDS_CONTACTS || needs == NEEDS_FORCES) && !s->s)
+    if ((needs == NEEDS_CONTACTS || needs == NEEDS_FORCES || needs == NEEDS_CONTACTS_BEFORE) &&
+        !s->s)
         return "the document has no contacts: nsd-step --contacts keeps them";
+    if ((needs == NEEDS_BEFORE || needs == NEEDS_CONTACTS_BEFORE) && !s->before)
+        return "there is no frame before";
+    if (needs == NEEDS_CONTACTS_BEFORE && !s->before->pair)
+        return "the contacts of the frame before were not looked at";
     if (needs == NEEDS_FORCES && !s->s->found && s->s->n)
         return "the contacts are not solved: nsd-solve comes before";
     return NULL;

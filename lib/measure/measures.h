@@ -12,10 +12,11 @@
 #include <stdbool.h>
 
 enum needs {
-    NEEDS_BODIES,   /* at least one */
-    NEEDS_CONTACTS, /* contacts, solved or not */
-    NEEDS_FORCES,   /* contacts that are solved */
-    NEEDS_BEFORE,   /* a frame before this one */
+    NEEDS_BODIES,          /* at least one */
+    NEEDS_CONTACTS,        /* contacts, solved or not */
+    NEEDS_FORCES,          /* contacts that are solved */
+    NEEDS_BEFORE,          /* a frame before this one */
+    NEEDS_CONTACTS_BEFORE, /* both have contacts */
 };
 
 struct measure {
@@ -33,7 +34,8 @@ extern const struct measure measure_fraction, measure_coordination, measure_cont
     measure_fabric, measure_stress, measure_boundaries, measure_energy, measure_temperature,
     measure_profile, measure_friction, measure_normal_forces, measure_tangential_forces,
     measure_mobilised, measure_pairs, measure_sizes, measure_segregation, measure_displacement,
-    measure_surface, measure_flux, measure_grains;
+    measure_surface, measure_flux, measure_grains, measure_mixing, measure_residence,
+    measure_departures, measure_lifetimes, measure_separations;
 
 /* The k-th; NULL past the last. */
 const struct measure *measure_at(int k);

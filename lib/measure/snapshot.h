@@ -22,6 +22,9 @@ struct asked {
     double radius;   /* m: of the disc in it that is crossed; INFINITY: the plane */
     int64_t bins;    /* of histograms */
     double distance; /* m: up to which pairs are counted; 0: three mean diameters */
+    char tracer
+        [64]; /* the kind whose mixing with the others is measured, or large; "": see measure/mixing.c */
+    double sample; /* m: edge of the samples of a mixture; 0: three mean diameters */
 };
 
 struct snapshot {
