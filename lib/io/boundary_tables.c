@@ -108,6 +108,8 @@ int boundary_tables_read(struct source *r, int64_t k, struct packing *p, struct 
          table_read_columns(r, body, "", 0, RECORDS(layout_boundary, n, p->wall), why)) ||
         (source_has(r, BOUNDARY "/body/weld") &&
          table_read_columns(r, body, "", 0, RECORDS(layout_weld, n, p->wall), why)) ||
+        (source_has(r, BOUNDARY "/body/belt") &&
+         table_read_columns(r, body, "", 0, RECORDS(layout_belt, n, p->wall), why)) ||
         read_loads(r, BOUNDARY "/load", k, p, why) || read_drives(r, p, why) ||
         read_mesh(r, p, why))
         return why->status;
@@ -128,6 +130,13 @@ static bool any_welds(const struct packing *p)
 {
     for (int32_t w = 0; w < p->walls; w++)
         if (p->wall[w].weld > 0) return true;
+    return false;
+}
+
+static bool any_belts(const struct packing *p)
+{
+    for (int32_t w = 0; w < p->walls; w++)
+        if (v3_norm(p->wall[w].belt) > 0) return true;
     return false;
 }
 
@@ -206,6 +215,8 @@ int boundary_tables_write_static(struct table_write *s, const struct packing *p,
           table_write_columns(s, body, "", RECORDS(layout_boundary, p->walls, p->wall), 0, why)) &&
         !(any_welds(p) &&
           table_write_columns(s, body, "", RECORDS(layout_weld, p->walls, p->wall), 0, why)) &&
+        !(any_belts(p) &&
+          table_write_columns(s, body, "", RECORDS(layout_belt, p->walls, p->wall), 0, why)) &&
         !write_drives(s, p, why) && !write_mesh(s, p, why) && any_loads(p))
         table_write_columns(s, BOUNDARY "/load", "", RECORDS(layout_loads, p->walls, p->wall), 0,
                             why);
