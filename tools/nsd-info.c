@@ -71,6 +71,8 @@ static json_t *material(const struct packing *p)
             json_t *j =
                 json_pack("{s:[s,s], s:f, s:f, s:f}", "pair", p->kind_name[a], p->kind_name[b],
                           "mu", p->mu[k], "e_n", p->en[k], "e_t", p->et[k]);
+            if (p->mu_s[k] > 0) json_object_set_new(j, "mu_s", json_real(p->mu_s[k]));
+            if (p->mu_s[k] > 0) json_object_set_new(j, "v_s", json_real(p->v_s[k]));
             if (p->law) add_law(j, &p->law[k]);
             json_array_append_new(list, j);
         }
@@ -282,6 +284,7 @@ static void show_walls(const struct packing *p)
         json_object_set_new(j, "point", json_vec(x));
         json_object_set_new(j, "normal", json_vec(wall_normal(p, w, p->t)));
         json_object_set_new(j, "velocity", json_vec(wall_velocity(p, w, x)));
+        if (v3_norm(w->belt) > 0) json_object_set_new(j, "belt", json_vec(w->belt));
         if (v3_norm(spin) > 0) json_object_set_new(j, "spin", json_vec(spin));
         if (w->shape != BOUNDARY_PLANE) json_object_set_new(j, "size", sizes(w));
         if (!wall_there(w, p->t)) json_object_set_new(j, "gone", json_true());

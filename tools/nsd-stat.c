@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *names, *only, *box, *layers, *point, *plane, *steps, *fields_to;
+static const char *names, *only, *box, *layers, *point, *plane, *tracer, *steps, *fields_to;
 static bool list, tsv, last, grains;
 static double width, spacing;
 static struct asked asked = ASKED_DEFAULT;
@@ -50,6 +50,10 @@ static const struct cli_option own[] = {
       .help = "measure only these walls and their parts, by name or number [all]" },
     { CLI_ABOVE, 0, "wear", &asked.wear, "K",
       .help = "set Archard's coefficient of all walls, 1/Pa [that of the scene]", .max = 1e300 },
+    { CLI_TEXT, 0, "tracer", &tracer, "KIND",
+      .help = "measure mixing of this kind, or of large bodies [kind of the first, or large]" },
+    { CLI_ABOVE, 0, "sample", &asked.sample, "M",
+      .help = "set the edge of the samples of mixing, m [3 mean diameters]", .max = 1e300 },
     { CLI_TEXT, 'f', "fields", &fields_to, "FILE",
       .help = "also write coarse-grained fields: FILE.h5 or 'f%05d.vti'" },
     { CLI_ABOVE, 0, "width", &width, "M",
@@ -112,6 +116,7 @@ static void parse(void)
 {
     parse_one("layers", layers), parse_one("point", point);
     parse_one("plane", plane), parse_one("box", box), parse_one("only", only);
+    parse_one("tracer", tracer);
 }
 
 /* ---- output ---- */
@@ -242,10 +247,7 @@ static void show(const struct frame *f, const char *where, int64_t k, struct why
     measured_free(t);
     if (fflush(stdout)) finish_stdout(); // a line is seen when its frame is there
     if (fields_to) add_fields(&s, why);
-    if (measured_remember(chosen) && !why->status) {
-        if (!k) kept_set(&first, s.p, why);
-        if (!why->status) kept_set(&before, s.p, why);
-    }
+    if (measured_remember(chosen) && !why->status) measured_keep(chosen, &s, &first, &before, why);
 }
 
 static void run(struct reader *in)

@@ -83,7 +83,7 @@ void nsd_close(struct nsd_run **run);
 /*
  * An option by its name and value, as nsd-step(1) has them without --: "eps", "method", "threads", "warm" ("true" or
  * "false"), "dt" ...; "contacts" and "forces" of what is saved; and those of nsd-stat(1) for nsd_measure(): "box",
- * "layers", "point", "plane", "radius", "bins", "distance".
+ * "layers", "point", "plane", "radius", "bins", "distance", "tracer", "sample".
  */
 int nsd_set(struct nsd_run *run, const char *option, const char *value);
 

@@ -304,16 +304,6 @@ int nsd_names(struct nsd_run *r, const char **json)
     return 0;
 }
 
-/* What measures of ways look back to: the first moment that was measured, and the last */
-static int remember(struct nsd_run *r, struct why *why)
-{
-    const struct packing *p = &r->f.packing;
-    if (!r->remembers && kept_set(&r->first, p, why)) return why->status;
-    if (kept_set(&r->before, p, why)) return why->status;
-    r->remembers = true;
-    return 0;
-}
-
 int nsd_measure(struct nsd_run *r, const char *names, const char **json)
 {
     struct why *why = run_why(r);
@@ -340,7 +330,10 @@ int nsd_measure(struct nsd_run *r, const char *names, const char **json)
         if ((out && fclose(out)) || bad) no_memory(why);
     }
     measured_free(t);
-    if (!why->status && measured_remember(chosen)) remember(r, why);
+    // what measures of ways look back to: the first moment that was measured, and the last
+    if (!why->status && measured_remember(chosen) &&
+        !measured_keep(chosen, &s, &r->first, &r->before, why))
+        r->remembers = true;
     if (why->status) return free(text), why->status;
     free(r->text);
     *json = r->text = text;

@@ -84,7 +84,7 @@ static void kinds_free(struct packing *p)
     free(p->kind_name), free(p->law);
     p->kind_name = NULL, p->law = NULL, p->kinds = 0;
 #define FREE(member, ...) free(p->member), p->member = NULL;
-    EACH_PAIR_COLUMN(FREE)
+    EVERY_PAIR_COLUMN(FREE)
 #undef FREE
 }
 
@@ -93,7 +93,8 @@ void packing_free(struct packing *p)
     for (int k = 0; k < BODY_COLUMNS; k++) free_column(p, &body_columns[k].column);
     free(p->wall), free(p->scene);
     shapes_free(&p->shapes), names_free(&p->names), sums_free(&p->sums);
-    drives_free(&p->drives), drives_free(&p->pushes), mesh_free(&p->mesh);
+    drives_free(&p->drives), drives_free(&p->pushes), drives_free(&p->pulls);
+    mesh_free(&p->mesh);
     free(p->poured), free(p->removed);
     events_free(&p->events);
     bonds_free(&p->bonds);
@@ -121,7 +122,7 @@ int packing_alloc_kinds(struct packing *p, int32_t k, struct why *why)
 #define ALLOC(member, ...)                                                                         \
     p->member = array((int64_t)k * k, sizeof *p->member);                                          \
     allocated = allocated && p->member;
-    EACH_PAIR_COLUMN(ALLOC)
+    EVERY_PAIR_COLUMN(ALLOC)
 #undef ALLOC
     for (p->kinds = 0; allocated && p->kinds < k; p->kinds++) {
         char name[16];
@@ -136,6 +137,13 @@ int packing_alloc_laws(struct packing *p, struct why *why)
     free(p->law);
     p->law = array((int64_t)p->kinds * p->kinds, sizeof *p->law);
     return p->law ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d kinds", p->kinds);
+}
+
+bool packing_sticks(const struct packing *p)
+{
+    for (int32_t k = 0; k < p->kinds * p->kinds; k++)
+        if (p->mu_s[k] > 0) return true;
+    return false;
 }
 
 bool packing_rolls(const struct packing *p)
@@ -217,7 +225,7 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     to->step = p->step, to->t = p->t, to->dt = p->dt, to->theta = p->theta, to->g = p->g;
     to->t0 = p->t0, to->step0 = p->step0, to->adapts = p->adapts, to->halved = p->halved;
     to->overlap = p->overlap;
-    to->seed = p->seed;
+    to->seed = p->seed, to->pulls_most = p->pulls_most;
     if (cell_copy(&to->cell, &p->cell) || shapes_copy(&to->shapes, &p->shapes, why) ||
         packing_alloc_optional(to, packing_optional(p), why))
         goto fail;
@@ -227,11 +235,11 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
                    n * column_bytes(&b->column));
     memcpy(to->wall, p->wall, (size_t)p->walls * sizeof *p->wall);
     if (drives_copy(&to->drives, &p->drives, why) || drives_copy(&to->pushes, &p->pushes, why) ||
-        mesh_copy(&to->mesh, &p->mesh, why) || names_copy(&to->names, &p->names, why) ||
-        sums_copy(&to->sums, &p->sums, why))
+        drives_copy(&to->pulls, &p->pulls, why) || mesh_copy(&to->mesh, &p->mesh, why) ||
+        names_copy(&to->names, &p->names, why) || sums_copy(&to->sums, &p->sums, why))
         goto fail;
 #define COPY(member, ...) memcpy(to->member, p->member, k2 * sizeof *p->member);
-    EACH_PAIR_COLUMN(COPY)
+    EVERY_PAIR_COLUMN(COPY)
 #undef COPY
     if (p->law && packing_alloc_laws(to, why)) goto fail;
     if (p->law) memcpy(to->law, p->law, k2 * sizeof *p->law);
@@ -381,6 +389,8 @@ static const char *wall_trouble(const struct packing *p, const struct wall *w)
         return "its mesh is not there";
     if (w->kind < 0 || w->kind >= p->kinds) return "kind has no material";
     if (!(w->wear >= 0 && isfinite(w->wear))) return "wear must be finite and not negative";
+    if (!v3_finite(w->belt)) return "belt is not finite";
+    if (p->dim == 2 && w->belt.z != 0) return "belt leaves the plane, and dim is 2";
     return load_trouble(p, w);
 }
 
@@ -468,7 +478,7 @@ int packing_check(const struct packing *p, struct why *why)
 #define CHECK(member, name, unit, key, most, range)                                                \
     if (!(p->member[i] >= 0 && p->member[i] <= (most) && isfinite(p->member[i])))                  \
         trouble = name " " range;
-        EACH_PAIR_COLUMN(CHECK)
+        EVERY_PAIR_COLUMN(CHECK)
 #undef CHECK
         if (trouble) return why_set(why, EX_DATAERR, pair, a, b, trouble);
     }
@@ -491,6 +501,7 @@ int packing_check(const struct packing *p, struct why *why)
     for (int32_t i = 0; i < p->pushes.n; i++)
         if (!p->wall[p->pushes.drive[i].boundary].load.way)
             return why_set(why, EX_DATAERR, "push %d: its boundary yields to no load", i);
+    if (pulls_check(&p->pulls, p->pulls_most, p->dim, why)) return why->status;
     if (mesh_check(&p->mesh, p->dim, why)) return why->status;
     if (bonds_check(&p->bonds, p->dim, p->n, p->walls, why)) return why->status;
     return check_cell(p, why);

@@ -19,6 +19,7 @@
 #include "bodies/pair_columns.h"
 #include "bodies/pair_law.h"
 #include "bodies/passage.h"
+#include "bodies/pull.h"
 #include "bodies/sums.h"
 #include "geometry/boundary.h"
 #include "geometry/cell.h"
@@ -54,14 +55,16 @@ struct packing {
     struct wall *wall;     /* [walls] */
     struct drives drives;  /* of them */
     struct drives pushes;  /* of their loads: signals that are forces, N or N m */
+    struct drives pulls;   /* forces and torques on bodies [bodies/pull.h] */
+    double pulls_most;     /* m/s^2: no body gains more by them */
     struct mesh mesh;      /* of those that are meshes */
     struct names names;    /* of boundaries, of parts of them and of groups of bodies */
     struct wall_sums sums; /* over steps, of what bodies do to them */
     struct cell cell;
 
     int32_t kinds;
-    char **kind_name;              /* [kinds] */
-    EACH_PAIR_COLUMN(PAIR_POINTER) /* mu, en, et: [kinds * kinds], symmetric */
+    char **kind_name;               /* [kinds] */
+    EVERY_PAIR_COLUMN(PAIR_POINTER) /* mu, en, et, mu_s, v_s: [kinds * kinds], symmetric */
     struct pair_law *law; /* [kinds * kinds], symmetric: what is beyond these; NULL: nothing */
     struct bonds bonds;   /* what lasts of pairs by these laws */
 
@@ -115,6 +118,8 @@ static inline bool packing_varies(const struct packing *p)
     return p->pours > 0 || p->removals > 0;
 }
 
+/* Has any pair of kinds static friction of its own? */
+bool packing_sticks(const struct packing *p);
 /* Has any pair of kinds rolling or pivoting friction? */
 bool packing_rolls(const struct packing *p);
 /* May an impact gain energy [motion/balance.h]? It wants restitution and friction. */
@@ -205,6 +210,8 @@ vec3 wall_normal(const struct packing *p, const struct wall *w, double t);
    prescribed, and with what its load makes of it */
 vec3 wall_held(const struct packing *p, const struct wall *w, vec3 x);
 vec3 wall_velocity(const struct packing *p, const struct wall *w, vec3 x);
+/* m/s: what its belt adds to that where its normal is n, in the step from the packing's time */
+vec3 wall_belt(const struct packing *p, const struct wall *w, vec3 n);
 /* rad/s: its mean angular velocity */
 vec3 wall_spin(const struct packing *p, const struct wall *w);
 /* m^2, in the plane m: the face of a plane across its normal, between planes upright to it and to each other, or
@@ -229,16 +236,23 @@ static inline double step_after(const struct packing *p)
 {
     return p->theta * p->dt;
 }
-/* m/s: what gravity and forces from outside make of the velocity of body i, whose mass is above 0, in a step */
+/* N; N m where `turns`: what pulls body i at time t (s), in space */
+static inline vec3 packing_pull(const struct packing *p, int64_t i, double t, bool turns)
+{
+    return pulls_on(&p->pulls, p->id[i], t, turns);
+}
+/* m/s: what gravity, pulls and forces from outside make of the velocity of body i, whose mass is above 0, in a step */
 static inline vec3 packing_fall(const struct packing *p, int64_t i)
 {
     vec3 dv = v3_scale(p->dt, p->g);
-    return p->outside.force ? v3_axpy(dv, p->dt / p->mass[i], p->outside.force[i]) : dv;
+    if (p->outside.force) dv = v3_axpy(dv, p->dt / p->mass[i], p->outside.force[i]);
+    if (!p->pulls.n) return dv;
+    return v3_axpy(dv, p->dt / p->mass[i], packing_pull(p, i, p->t + p->dt / 2, false));
 }
 /* m/s: no body gains more by them */
 static inline double packing_most_fall(const struct packing *p)
 {
-    return p->dt * v3_norm(p->g) + p->dt * p->outside.most;
+    return p->dt * v3_norm(p->g) + p->dt * (p->outside.most + p->pulls_most);
 }
 
 /* m: the position at which contacts are detected, q + (1 - theta) dt qdot [globalmapapp1]. */

@@ -68,6 +68,13 @@ vec3 wall_velocity(const struct packing *p, const struct wall *w, vec3 x)
     return v3_axpy(v, l->speed, v3_cross(l->axis, v3_sub(x, l->point)));
 }
 
+vec3 wall_belt(const struct packing *p, const struct wall *w, vec3 n)
+{
+    if (w->belt.x == 0 && w->belt.y == 0 && w->belt.z == 0) return w->belt;
+    const vec3 b = quat_turn(wall_pose(p, w, p->t + p->dt / 2).q, w->belt);
+    return v3_axpy(b, -v3_dot(b, n), n);
+}
+
 vec3 wall_spin(const struct packing *p, const struct wall *w)
 {
     vec3 s = drives_spin(&p->drives, w->first_drive, w->drives, step_of(p));

@@ -216,9 +216,8 @@ static int put_measures(FILE *out, const struct frame *f, const struct contacts 
     }
     measured_free(t);
     if (why->status || !measured_remember(loop.chosen)) return why->status;
-    if (!loop.remembers && kept_set(&loop.first, p, why)) return why->status;
     loop.remembers = true;
-    return kept_set(&loop.before, p, why);
+    return measured_keep(loop.chosen, &look, &loop.first, &loop.before, why);
 }
 
 /* The line, and the document behind it; to be freed */

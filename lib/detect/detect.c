@@ -5,6 +5,7 @@
 #include "bodies/anchor.h"
 #include "bodies/contact_law.h"
 #include "bodies/freedom.h"
+#include "bodies/friction.h"
 #include "bodies/kinematics.h"
 #include "bodies/top.h"
 #include "detect/detect_shapes.h"
@@ -406,6 +407,7 @@ int detect_choose(struct contacts *s, const struct packing *p, double gap, doubl
                   struct why *why)
 {
     int e = p->law && p->shape && p->bonds.n ? add_anchored(s, p, why) : 0;
+    if (!e) friction_choose(s, p);
     if (!e && p->law) e = contact_laws_find(s, p, why);
     if (!e && reach > gap) keep_seen(s, p, gap);
     return e;

@@ -147,10 +147,16 @@ static bool touch_ball(struct contacts *found, const struct beside *s, int64_t k
     double r = p->radius[i];
     vec3 c = v3_axpy(s->c, (double)k, s->step);
     double most = r + s->y->thick;
+    const int32_t shape = p->wall[s->w].shape;
+    const bool sheet = surface || shape == BOUNDARY_RECTANGLE || shape == BOUNDARY_DISC ||
+                       p->wall[s->w].side == BOUNDARY_BOTH;
     int n = surface ? surface_touches(surface, c, most, touch)
                     : boundary_nearest(&p->wall[s->w], p->dim, c, r, touch);
     for (int l = 0; l < n; l++) {
         if (!(touch[l].distance <= most)) continue;
+        // a centre that lies on the sheet, to rounding, is met on the side that it comes from
+        if (sheet && fabs(touch[l].distance) <= ALIKE * r && v3_dot(touch[l].n, s->step) > 0)
+            touch[l].n = v3_scale(-1, touch[l].n);
         struct contact *to = contacts_add(found, -1 - s->w, (int32_t)i);
         if (!to) return false;
         contact_basis(to, p->dim, quat_turn(s->pose.q, touch[l].n));

@@ -49,6 +49,7 @@ extern const char *const boundary_side_name[BOUNDARY_SIDES + 1]; /* the last one
 struct wall {
     vec3 x, n;    /* m: its point of reference at t = 0; unit normal or axis */
     vec3 v;       /* m/s: at time t the point is at x + v t, and where drives and load bring it */
+    vec3 belt;    /* m/s: of its surface along itself, beside its shape; turns with it */
     int32_t kind; /* row of the material tables */
     struct load load; /* that it yields to; LOAD_NONE: it does not */
 

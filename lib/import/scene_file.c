@@ -3,6 +3,7 @@
 #include "import/import_file.h"
 #include "io/reader.h"
 #include "scene/mesh_file.h"
+#include "scene/scene_parts.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -113,6 +114,7 @@ int scene_file_parse(struct scene *s, const char *text, size_t n, const char *na
     for (int64_t g = 0; g < s->groups && !why->status; g++)
         if (s->bodies[g].from == SCENE_DOCUMENT) read_document(&s->bodies[g], s->dim, dir, why);
     if (!why->status) mesh_files_read(s, &files, why);
+    if (!why->status) scene_parts_split(s, why);
     if (why->status) scene_free(s);
     return why->status;
 }

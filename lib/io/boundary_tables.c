@@ -114,6 +114,8 @@ int boundary_tables_read(struct source *r, int64_t k, struct packing *p, struct 
          table_read_columns(r, body, "", 0, RECORDS(layout_weld, n, p->wall), why)) ||
         (source_has(r, BOUNDARY "/body/wear") &&
          table_read_columns(r, body, "", 0, RECORDS(layout_wear, n, p->wall), why)) ||
+        (source_has(r, BOUNDARY "/body/belt") &&
+         table_read_columns(r, body, "", 0, RECORDS(layout_belt, n, p->wall), why)) ||
         read_loads(r, BOUNDARY "/load", k, p, why) || read_drives(r, p, why) ||
         read_mesh(r, p, why))
         return why->status;
@@ -141,6 +143,13 @@ static bool any_wear(const struct packing *p)
 {
     for (int32_t w = 0; w < p->walls; w++)
         if (p->wall[w].wear > 0) return true;
+    return false;
+}
+
+static bool any_belts(const struct packing *p)
+{
+    for (int32_t w = 0; w < p->walls; w++)
+        if (v3_norm(p->wall[w].belt) > 0) return true;
     return false;
 }
 
@@ -228,6 +237,8 @@ int boundary_tables_write_static(struct table_write *s, const struct packing *p,
           table_write_columns(s, body, "", RECORDS(layout_weld, p->walls, p->wall), 0, why)) &&
         !(any_wear(p) &&
           table_write_columns(s, body, "", RECORDS(layout_wear, p->walls, p->wall), 0, why)) &&
+        !(any_belts(p) &&
+          table_write_columns(s, body, "", RECORDS(layout_belt, p->walls, p->wall), 0, why)) &&
         !write_drives(s, p, why) && !write_mesh(s, p, why) && any_loads(p) &&
         !table_write_columns(s, BOUNDARY "/load", "", RECORDS(layout_loads, p->walls, p->wall), 0,
                              why) &&

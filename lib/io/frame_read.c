@@ -7,6 +7,7 @@
 #include "io/name_tables.h"
 #include "io/outside_tables.h"
 #include "io/pair_law_tables.h"
+#include "io/pull_tables.h"
 #include "io/roster.h"
 #include "io/shape_tables.h"
 #include "io/sum_tables.h"
@@ -81,16 +82,22 @@ void frame_read_close(struct frame_read *r)
     *r = (struct frame_read){ 0 };
 }
 
-/* Both halves of the tables say the same. */
-static int check_symmetric(const struct packing *p, struct why *why)
+/* Tables of pairs of kinds, both halves of which say the same */
+static int read_pairs(struct source *doc, const struct column *c, bool optional, struct packing *p,
+                      struct why *why)
 {
-    for (const struct column *c = layout_material; c->name; c++) {
-        const double *table = column_array(c, p);
+    const uint64_t kinds = (uint64_t)p->kinds;
+    for (; c->name; c++) {
+        char path[80];
+        double *table = column_array(c, p);
+        snprintf(path, sizeof path, "/nsd/material/%s", c->name);
+        if (optional && !source_has(doc, path)) continue;
+        if (source_read(doc, path, COLUMN_F64, kinds * kinds, table, why)) return why->status;
         for (int32_t a = 0; a < p->kinds; a++)
             for (int32_t b = 0; b < a; b++)
                 if (!(table[a * p->kinds + b] == table[b * p->kinds + a]))
-                    return why_set(why, EX_DATAERR, "/nsd/material/%s: %s and %s have two values",
-                                   c->name, p->kind_name[b], p->kind_name[a]);
+                    return why_set(why, EX_DATAERR, "%s: %s and %s have two values", path,
+                                   p->kind_name[b], p->kind_name[a]);
     }
     return 0;
 }
@@ -118,14 +125,9 @@ static int read_material(struct source *doc, struct packing *p, struct why *why)
         if (!p->kind_name[k]) e = why_set(why, EX_SOFTWARE, "no memory for the kinds");
         name = end + 1;
     }
-    for (const struct column *c = layout_material; !e && c->name; c++) {
-        char path[80];
-        snprintf(path, sizeof path, "/nsd/material/%s", c->name);
-        e = source_read(doc, path, COLUMN_F64, (uint64_t)kinds * (uint64_t)kinds,
-                        column_array(c, p), why);
-    }
     free(names);
-    return e ? e : check_symmetric(p, why);
+    if (!e) e = read_pairs(doc, layout_material, false, p, why);
+    return e ? e : read_pairs(doc, layout_optional_material, true, p, why);
 }
 
 /* What is done about overlap; a document need not say it. */
@@ -232,8 +234,8 @@ static int read_settings(struct frame_read *r, int64_t k, int64_t n, struct pack
         packing_init(p, dim, n, why) || read_parameters(r->source, p, why) ||
         read_material(r->source, p, why) || shape_tables_read(r->source, p, why) ||
         boundary_tables_read(r->source, k, p, why) || flow_tables_read(r->source, k, p, why) ||
-        pair_law_tables_read(r->source, k, p, why) || read_clock(r, k, p, why) ||
-        cell_tables_read(r->source, k, r->repeats, p, why))
+        pull_tables_read(r->source, p, why) || pair_law_tables_read(r->source, k, p, why) ||
+        read_clock(r, k, p, why) || cell_tables_read(r->source, k, r->repeats, p, why))
         return why->status;
     if (flow_tables_read_numbers(r->source, p, why) || outside_tables_read(r->source, p, why) ||
         name_tables_read(r->source, p, why) || sum_tables_read(r->source, k, p, why))

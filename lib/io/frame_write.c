@@ -11,6 +11,7 @@
 #include "io/name_tables.h"
 #include "io/outside_tables.h"
 #include "io/pair_law_tables.h"
+#include "io/pull_tables.h"
 #include "io/report_rows.h"
 #include "io/roster.h"
 #include "io/shape_tables.h"
@@ -56,15 +57,33 @@ static int write_parameters(hid_t file, const struct frame *f, struct why *why)
     return p->scene ? h5_write_text(file, "/nsd/scene", p->scene, why) : 0;
 }
 
-static int write_material(hid_t file, const struct packing *p, struct why *why)
+/* Is any of the numbers of a pair not 0? */
+static bool any_pair(const struct packing *p, const double *table)
+{
+    for (int32_t k = 0; k < p->kinds * p->kinds; k++)
+        if (table[k] != 0) return true;
+    return false;
+}
+
+static int write_pairs(hid_t file, const struct packing *p, const struct column *c, bool optional,
+                       struct why *why)
 {
     const hsize_t square[2] = { (hsize_t)p->kinds, (hsize_t)p->kinds };
-    for (const struct column *c = layout_material; c->name; c++) {
+    for (; c->name; c++) {
         char path[80];
+        if (optional && !any_pair(p, column_array(c, p))) continue;
         snprintf(path, sizeof path, "/nsd/material/%s", c->name);
         if (h5_write(file, path, H5T_NATIVE_DOUBLE, 2, square, column_array(c, p), c->units, why))
             return why->status;
     }
+    return 0;
+}
+
+static int write_material(hid_t file, const struct packing *p, struct why *why)
+{
+    if (write_pairs(file, p, layout_material, false, why) ||
+        write_pairs(file, p, layout_optional_material, true, why))
+        return why->status;
     size_t length = 1;
     for (int32_t k = 0; k < p->kinds; k++) length += strlen(p->kind_name[k]) + 1;
     char *names = calloc(length, 1);
@@ -78,7 +97,7 @@ static int write_material(hid_t file, const struct packing *p, struct why *why)
 static int write_bodies(struct table_write *s, const struct packing *p, struct why *why)
 {
     if (!s->roster && table_write_bodies(s, false, p, why)) return why->status;
-    if (boundary_tables_write_static(s, p, why)) return why->status;
+    if (boundary_tables_write_static(s, p, why) || pull_tables_write(s, p, why)) return why->status;
     return sum_tables_write_static(s, p, why);
 }
 

@@ -48,6 +48,11 @@ static const struct column layout_wear[] = {
     { "wear", "Pa-1", COLUMN_F64, 1, offsetof(struct wall, wear) },
     { 0 },
 };
+/* The same where the surface of any moves along itself */
+static const struct column layout_belt[] = {
+    { "belt", "m s-1", COLUMN_F64, 3, offsetof(struct wall, belt) },
+    { 0 },
+};
 static const struct column layout_plane[] = {
     { "point", "m", COLUMN_F64, 3, offsetof(struct wall, x) },
     { "normal", "1", COLUMN_F64, 3, offsetof(struct wall, n) },
@@ -117,6 +122,21 @@ static const struct column layout_sums[] = {
     { 0 },
 };
 
+/* /nsd/force/NAME [D][width], forces and torques on bodies: members of struct drive, and their tables in /nsd/force/row */
+static const struct column layout_pull[] = {
+    { "id", "1", COLUMN_I32, 1, offsetof(struct drive, boundary) },
+    { "turns", "1", COLUMN_I32, 1, offsetof(struct drive, turns) },
+    { "signal", "1", COLUMN_I32, 1, offsetof(struct drive, signal) },
+    { "axis", "1", COLUMN_F64, 3, offsetof(struct drive, axis) },
+    { "value", "N, N m", COLUMN_F64, 1, offsetof(struct drive, value) },
+    { "frequency", "s-1", COLUMN_F64, 1, offsetof(struct drive, frequency) },
+    { "phase", "rad", COLUMN_F64, 1, offsetof(struct drive, phase) },
+    { "from", "s", COLUMN_F64, 1, offsetof(struct drive, from) },
+    { "until", "s", COLUMN_F64, 1, offsetof(struct drive, until) },
+    { "rows", "1", COLUMN_I32, 2, offsetof(struct drive, first) },
+    { 0 },
+};
+
 /* /particles/boundary/NAME [B][width], where any moves NAME/value [F][B][width]: where they are. It
    follows from the tables above, and is not read. */
 struct boundary_motion {
@@ -137,10 +157,13 @@ static const struct column layout_boundary_motion[] = {
 static const struct column layout_material[] = {
 #define MATERIAL(member, name, unit, ...)                                                          \
     { name, unit, COLUMN_F64, 1, offsetof(struct packing, member) },
-    EACH_PAIR_COLUMN(MATERIAL)
-#undef MATERIAL
-        { 0 },
+    EACH_PAIR_COLUMN(MATERIAL){ 0 },
 };
+/* The same where any pair has another number than 0 */
+static const struct column layout_optional_material[] = {
+    EACH_OPTIONAL_PAIR_COLUMN(MATERIAL){ 0 },
+};
+#undef MATERIAL
 
 /* /nsd/law/NAME [kinds][kinds] where any pair has a law beyond these: members of struct pair_law */
 static const struct column layout_law[] = {

@@ -109,12 +109,31 @@ static int set_only(struct asked *a, const char *name, const char *text, struct 
     return 0;
 }
 
+static int set_finite(double *x, const char *name, const char *text, struct why *why)
+{
+    double given = 0;
+    if (set_number(&given, name, text, why)) return why->status;
+    if (!isfinite(given)) return why_set(why, EX_USAGE, "--%s: %s must be finite", name, text);
+    *x = given;
+    return 0;
+}
+
 static int set_wear(struct asked *a, const char *name, const char *text, struct why *why)
 {
-    double x = 0;
-    if (set_number(&x, name, text, why)) return why->status;
-    if (!isfinite(x)) return why_set(why, EX_USAGE, "--%s: %s must be finite", name, text);
-    a->wear = x;
+    return set_finite(&a->wear, name, text, why);
+}
+
+static int set_sample(struct asked *a, const char *name, const char *text, struct why *why)
+{
+    return set_finite(&a->sample, name, text, why);
+}
+
+static int set_tracer(struct asked *a, const char *name, const char *text, struct why *why)
+{
+    if (!*text || strlen(text) >= sizeof a->tracer)
+        return why_set(why, EX_USAGE, "--%s: '%.40s' is not the name of a kind, or large", name,
+                       text);
+    memcpy(a->tracer, text, strlen(text) + 1);
     return 0;
 }
 
@@ -125,6 +144,7 @@ static const struct {
     { "box", set_box },           { "layers", set_layers }, { "point", set_point },
     { "plane", set_plane },       { "radius", set_radius }, { "bins", set_bins },
     { "distance", set_distance }, { "only", set_only },     { "wear", set_wear },
+    { "sample", set_sample },     { "tracer", set_tracer },
 };
 enum { SETTINGS = sizeof settings / sizeof settings[0] };
 

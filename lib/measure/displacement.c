@@ -8,6 +8,9 @@ static const struct quantity quantities[] = {
     { "components", "m2", 3, "the same of x, y, z" },
     { "drift", "m", 3, "mean displacement" },
     { "about_drift", "m2", 1, "mean square displacement about the drift" },
+    { "diffusion", "m2/s", 1,
+      "diffusion coefficient: about_drift over twice the dimension and the time" },
+    { "along", "m2/s", 3, "the same of x, y, z" },
     { 0 },
 };
 
@@ -39,13 +42,20 @@ static int displacement_rows(struct table *t, const struct snapshot *s, struct w
     put(&at, msd);
     for (int k = 0; k < 3; k++) put(&at, square[k] / n);
     put_vec(&at, drift);
-    double about = 0;
+    double about[3] = { 0, 0, 0 }, since = s->p->t - s->first->t;
     for (int64_t i = 0; i < s->p->n; i++)
         if (displacement(s, i, &d)) {
             d = v3_sub(d, drift);
-            about += v3_dot(d, d);
+            about[0] += d.x * d.x, about[1] += d.y * d.y, about[2] += d.z * d.z;
         }
-    put(&at, about / n);
+    const double all = (about[0] + about[1] + about[2]) / n;
+    put(&at, all);
+    if (!(since > 0)) {
+        table_null(t, "no time has passed since the first frame");
+        return 0;
+    }
+    put(&at, all / (2 * s->p->dim * since));
+    for (int k = 0; k < 3; k++) put(&at, about[k] / n / (2 * since));
     return 0;
 }
 

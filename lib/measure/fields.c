@@ -9,6 +9,10 @@
 #include <string.h>
 
 static const double CUT = 4; /* widths */
+/* Sums over bodies of m phi times these, d the way from the point to a body */
+enum { MOMENT_VD = 0, MOMENT_DD = 9, MOMENT_D = 18, MOMENT_DIAMETER = 21, MOMENTS = 22 };
+static const double FLAT =
+    1e-6; /* of w^2 rho/2: bodies that lie this much in a plane have no gradient across it */
 static const int64_t MOST_POINTS = 100000000;
 static const double USUAL_CELLS = 32; /* along an axis: what a picture shows, in a moment */
 
@@ -20,6 +24,12 @@ const struct quantity field_quantity[FIELD_COUNT + 1] = {
     [FIELD_STRESS] = { "stress", "Pa", 9, "of contacts and motion, compression positive" },
     [FIELD_CONTACTS] = { "contact_stress", "Pa", 9, "of contacts" },
     [FIELD_KINETIC] = { "kinetic_stress", "Pa", 9, "of motion" },
+    [FIELD_GRADIENT] = { "velocity_gradient", "s-1", 9,
+                         "dv_i/dx_j of the affine flow that fits best" },
+    [FIELD_STRAIN_RATE] = { "strain_rate", "s-1", 9, "its symmetric part" },
+    [FIELD_SHEAR_RATE] = { "shear_rate", "s-1", 1, "size of its deviator, sqrt(2 D:D)" },
+    [FIELD_TEMPERATURE] = { "temperature", "m2 s-2", 1, "granular temperature about that flow" },
+    [FIELD_INERTIAL] = { "inertial_number", "1", 1, "shear rate times d sqrt(rho_s/p)" },
 };
 
 /* ---- the grid ---- */
@@ -63,12 +73,14 @@ int fields_init(struct fields *f, const struct snapshot *s, double width, double
         if (!(f->x[k] = calloc(numbers, sizeof *f->x[k])))
             return why_set(why, EX_SOFTWARE, "no memory for fields");
     }
-    return 0;
+    f->moment = calloc((size_t)fields_points(f) * MOMENTS, sizeof *f->moment);
+    return f->moment ? 0 : why_set(why, EX_SOFTWARE, "no memory for fields");
 }
 
 void fields_free(struct fields *f)
 {
     for (int k = 0; k < FIELD_COUNT; k++) free(f->x[k]);
+    free(f->moment);
     *f = (struct fields){ 0 };
 }
 
@@ -125,7 +137,7 @@ static double along(const struct fields *f, int dim, vec3 d, vec3 l)
 /* ---- the sums ---- */
 
 struct body {
-    double mass, volume;
+    double mass, volume, radius;
     vec3 v;
 };
 
@@ -142,12 +154,18 @@ static void add_body(struct fields *f, int dim, vec3 x, const struct body *b)
         for (int64_t j = c.from[1]; j <= c.to[1]; j++)
             for (int64_t i = c.from[0]; i <= c.to[0]; i++) {
                 int64_t at = (k * f->n[1] + j) * f->n[0] + i;
-                double phi = along(f, dim, v3_sub(point_at(f, i, j, k), x), v3(0, 0, 0));
+                const vec3 d = v3_sub(x, point_at(f, i, j, k));
+                double phi = along(f, dim, v3_scale(-1, d), v3(0, 0, 0));
                 if (phi == 0) continue;
                 double *momentum = f->x[FIELD_MOMENTUM] + 3 * at, m = phi * b->mass;
                 f->x[FIELD_DENSITY][at] += m, f->x[FIELD_FRACTION][at] += phi * b->volume;
                 momentum[0] += m * b->v.x, momentum[1] += m * b->v.y, momentum[2] += m * b->v.z;
                 add_tensor(f->x[FIELD_KINETIC] + 9 * at, m, b->v, b->v);
+                double *sum = f->moment + MOMENTS * at;
+                add_tensor(sum + MOMENT_VD, m, b->v, d), add_tensor(sum + MOMENT_DD, m, d, d);
+                sum[MOMENT_D] += m * d.x, sum[MOMENT_D + 1] += m * d.y,
+                    sum[MOMENT_D + 2] += m * d.z;
+                sum[MOMENT_DIAMETER] += 2 * m * b->radius;
             }
 }
 
@@ -179,6 +197,82 @@ static void finish(struct fields *f)
     }
 }
 
+/* The inverse of a symmetric matrix of dim dimensions whose eigenvalues are above `least`; false: one is not */
+static bool invert(double inverse[9], const double A[9], int dim, double least)
+{
+    struct tensor T;
+    double value[3];
+    for (int k = 0; k < 9; k++) T.x[k / 3][k % 3] = A[k], inverse[k] = 0;
+    tensor_principal(&T, dim, value);
+    if (!(value[dim - 1] > least)) return false;
+    if (dim == 2) {
+        double det = A[0] * A[4] - A[1] * A[3];
+        inverse[0] = A[4] / det, inverse[4] = A[0] / det;
+        inverse[1] = -A[1] / det, inverse[3] = -A[3] / det;
+        return true;
+    }
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            int a = (j + 1) % 3, b = (j + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
+            inverse[3 * i + j] = A[3 * a + c] * A[3 * b + d] - A[3 * a + d] * A[3 * b + c];
+        }
+    double det = A[0] * inverse[0] + A[1] * inverse[3] + A[2] * inverse[6];
+    for (int k = 0; k < 9; k++) inverse[k] /= det;
+    return true;
+}
+
+/* c = a b */
+static void multiply(double c[9], const double a[9], const double b[9])
+{
+    for (int k = 0; k < 9; k++) {
+        const int i = k / 3, j = k % 3;
+        c[k] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
+    }
+}
+
+/* G = C M^-1, C = sum m phi (v - V)(d - D)^T and M = sum m phi (d - D)(d - D)^T about the means: the affine flow that
+   fits best [Falk and Langer 1998]. What it leaves of sum m phi (v - V)(v - V)^T is the temperature's
+   [Artoni and Richard 2015]. NaN where the bodies within reach do not span the space. */
+static void finish_gradient(struct fields *f, int dim, int64_t i)
+{
+    const double density = f->x[FIELD_DENSITY][i], *v = f->x[FIELD_VELOCITY] + 3 * i;
+    const double *sum = f->moment + MOMENTS * i, *kinetic = f->x[FIELD_KINETIC] + 9 * i;
+    double *G = f->x[FIELD_GRADIENT] + 9 * i, *D = f->x[FIELD_STRAIN_RATE] + 9 * i;
+    double C[9], M[9], inverse[9], flow[9], trace = 0, size = 0, left = 0;
+    for (int k = 0; k < 9; k++) {
+        C[k] = sum[MOMENT_VD + k] - v[k / 3] * sum[MOMENT_D + k % 3];
+        M[k] = sum[MOMENT_DD + k] - sum[MOMENT_D + k / 3] * sum[MOMENT_D + k % 3] / density;
+    }
+    if (!(density > 0) || !invert(inverse, M, dim, FLAT * 0.5 * f->width * f->width * density)) {
+        for (int k = 0; k < 9; k++) G[k] = D[k] = NAN;
+        f->x[FIELD_SHEAR_RATE][i] = f->x[FIELD_TEMPERATURE][i] = f->x[FIELD_INERTIAL][i] = NAN;
+        return;
+    }
+    multiply(G, C, inverse);
+    const double turned[9] = { C[0], C[3], C[6], C[1], C[4], C[7], C[2], C[5], C[8] };
+    multiply(flow, G, turned); // C M^-1 C^T
+    for (int k = 0; k < 9; k++) D[k] = 0.5 * (G[k] + G[3 * (k % 3) + k / 3]);
+    for (int k = 0; k < dim; k++) trace += D[4 * k], left += kinetic[4 * k] - flow[4 * k];
+    for (int k = 0; k < 9; k++) {
+        const bool diagonal = k % 4 == 0 && k / 4 < dim;
+        const double d = D[k] - (diagonal ? trace / dim : 0);
+        size += 2 * d * d;
+    }
+    f->x[FIELD_SHEAR_RATE][i] = sqrt(size);
+    f->x[FIELD_TEMPERATURE][i] = fmax(left, 0) / (dim * density);
+}
+
+/* d and rho_s are the means by mass of the bodies within reach; p is that of contacts and motion. Where nothing presses
+   there is no inertial number. */
+static void finish_inertial(struct fields *f, int dim, int64_t i)
+{
+    const double density = f->x[FIELD_DENSITY][i], *stress = f->x[FIELD_STRESS] + 9 * i;
+    const double diameter = f->moment[MOMENTS * i + MOMENT_DIAMETER] / density;
+    const double solid = density / f->x[FIELD_FRACTION][i];
+    const double p = (stress[0] + stress[4] + (dim == 3 ? stress[8] : 0)) / dim;
+    f->x[FIELD_INERTIAL][i] = p > 0 ? f->x[FIELD_SHEAR_RATE][i] * diameter * sqrt(solid / p) : NAN;
+}
+
 /* The grid as a region, for images */
 static struct region grid_region(const struct fields *f, const struct packing *p)
 {
@@ -198,12 +292,13 @@ void fields_set(struct fields *f, const struct snapshot *s)
     for (int k = 0; k < FIELD_COUNT; k++)
         memset(f->x[k], 0,
                (size_t)fields_points(f) * (size_t)field_quantity[k].width * sizeof(double));
+    memset(f->moment, 0, (size_t)fields_points(f) * MOMENTS * sizeof *f->moment);
     for (int64_t i = 0; i < p->n; i++) {
         const double margin = CUT * f->width + fabs(ahead) * v3_norm(p->v[i]);
         struct region_walk w = region_walk(&r, p->x[i], margin);
         for (vec3 y; region_next(&w, &r, p->x[i], &y);) {
             vec3 v = v3_add(p->v[i], region_rate(&w, &r)); // an image moves as its cell does
-            const struct body b = { p->mass[i], grain_volume(p, i), v };
+            const struct body b = { p->mass[i], grain_volume(p, i), p->radius[i], v };
             add_body(f, p->dim, v3_axpy(y, ahead, v), &b);
         }
     }
@@ -216,4 +311,6 @@ void fields_set(struct fields *f, const struct snapshot *s)
     }
     for (int64_t i = 0; !solved && i < 9 * fields_points(f); i++) f->x[FIELD_CONTACTS][i] = NAN;
     finish(f);
+    for (int64_t i = 0; i < fields_points(f); i++)
+        finish_gradient(f, p->dim, i), finish_inertial(f, p->dim, i);
 }

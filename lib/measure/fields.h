@@ -6,6 +6,9 @@
  *
  * cut off at 4 w, where it is 1e-7 of its greatest. A contact's stress is f l^T times the integral of
  * phi along its branch vector l, which is a difference of two error functions.
+ *
+ * The velocity gradient is that of the affine flow which fits the velocities best by least squares with weights m phi:
+ * exact where the flow is affine, however the bodies lie. The granular temperature is about that flow.
  */
 #ifndef NSD_FIELDS_H
 #define NSD_FIELDS_H
@@ -21,6 +24,11 @@ enum field {
     FIELD_STRESS,
     FIELD_CONTACTS,
     FIELD_KINETIC,
+    FIELD_GRADIENT,
+    FIELD_STRAIN_RATE,
+    FIELD_SHEAR_RATE,
+    FIELD_TEMPERATURE,
+    FIELD_INERTIAL,
     FIELD_COUNT
 };
 /* Their names and units; one without a name ends them. */
@@ -30,6 +38,7 @@ struct fields {
     int64_t n[3];           /* points along the axes; x counts fastest */
     vec3 origin, step;      /* m: the first point, and from one to the next */
     double width;           /* m: w */
+    double *moment;         /* [points][MOMENTS] sums that the fields are made of */
     double *x[FIELD_COUNT]; /* [points][width of the quantity] */
 };
 

@@ -19,7 +19,7 @@ int kept_set(struct kept *k, const struct packing *p, struct why *why)
     k->body = body, k->n = p->n, k->step = p->step, k->t = p->t;
     bool sorted = true;
     for (int64_t i = 0; i < p->n; i++) {
-        body[i] = (struct kept_body){ p->id[i], p->mass[i], kept_place(p, i) };
+        body[i] = (struct kept_body){ p->id[i], p->mass[i], kept_place(p, i), NAN, false };
         sorted = sorted && (!i || body[i - 1].id < body[i].id);
     }
     sums_free(&k->sums);
@@ -30,7 +30,7 @@ int kept_set(struct kept *k, const struct packing *p, struct why *why)
 
 void kept_free(struct kept *k)
 {
-    free(k->body);
+    free(k->body), free(k->pair);
     sums_free(&k->sums);
     *k = (struct kept){ 0 };
 }
@@ -39,6 +39,19 @@ const struct kept_body *kept_find(const struct kept *k, int32_t id)
 {
     const struct kept_body wanted = { .id = id };
     return bsearch(&wanted, k->body, (size_t)k->n, sizeof wanted, by_id);
+}
+
+int kept_pair_order(const void *a, const void *b)
+{
+    const struct kept_pair *x = a, *y = b;
+    if (x->a != y->a) return x->a < y->a ? -1 : 1;
+    return x->b < y->b ? -1 : x->b > y->b;
+}
+
+const struct kept_pair *kept_pair_find(const struct kept *k, const struct kept_pair *pair)
+{
+    if (!k || !k->pair) return NULL;
+    return bsearch(pair, k->pair, (size_t)k->pairs, sizeof *pair, kept_pair_order);
 }
 
 vec3 kept_place(const struct packing *p, int64_t i)

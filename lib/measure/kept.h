@@ -11,9 +11,18 @@ struct kept {
     int64_t n;
     struct kept_body {
         int32_t id;
-        double mass;       /* kg */
-        vec3 x;            /* m: unwrapped, where the cell repeats: the way since it was built */
-    } * body;              /* [n] sorted by id */
+        double mass; /* kg */
+        vec3 x;      /* m: unwrapped, where the cell repeats: the way since it was built */
+        double
+            entered; /* s: when it came into the region [measure/follow.h]; NaN: it is not there */
+        bool whole;  /* it was seen to come, else it was there in the first frame */
+    } * body;        /* [n] sorted by id */
+    int64_t pairs;
+    struct kept_pair {
+        int32_t a, b;      /* ids, a < b; of boundary w a = -1-w */
+        double began;      /* s */
+        bool whole;        /* as above */
+    } * pair;              /* [pairs] that touch, sorted; NULL: not looked at */
     struct wall_sums sums; /* over steps, of boundaries */
 };
 
@@ -22,6 +31,9 @@ int kept_set(struct kept *k, const struct packing *p, struct why *why);
 void kept_free(struct kept *k);
 /* The body with this id; NULL: it was not there. */
 const struct kept_body *kept_find(const struct kept *k, int32_t id);
+/* For qsort: of kept pairs; and the pair of the same bodies, NULL: it did not touch, or k is NULL. */
+int kept_pair_order(const void *a, const void *b);
+const struct kept_pair *kept_pair_find(const struct kept *k, const struct kept_pair *pair);
 
 /* m: where body i is, with the edges added that were taken off it */
 vec3 kept_place(const struct packing *p, int64_t i);

@@ -1,5 +1,7 @@
 #include "measure/measured.h"
 
+#include "measure/follow.h"
+
 #include <inttypes.h>
 #include <string.h>
 
@@ -32,9 +34,22 @@ bool measured_remember(const struct measure *const *chosen)
 {
     for (int k = 0; chosen[k]; k++)
         if (chosen[k]->remembers || chosen[k]->needs == NEEDS_BEFORE ||
-            chosen[k]->needs == NEEDS_SUMS)
+            chosen[k]->needs == NEEDS_SUMS || chosen[k]->needs == NEEDS_CONTACTS_BEFORE)
             return true;
     return false;
+}
+
+int measured_keep(const struct measure *const *chosen, const struct snapshot *s, struct kept *first,
+                  struct kept *before, struct why *why)
+{
+    bool pairs = false;
+    struct kept now;
+    for (int k = 0; chosen[k]; k++) pairs = pairs || chosen[k]->needs == NEEDS_CONTACTS_BEFORE;
+    if (!s->first && kept_set(first, s->p, why)) return why->status;
+    if (follow(&now, s, pairs, why)) return why->status;
+    kept_free(before);
+    *before = now;
+    return 0;
 }
 
 int measured_run(struct table *t, const struct measure *const *chosen, const struct snapshot *s,

@@ -11,6 +11,10 @@ enum { MOST_MEASURES = 32 }; /* at once */
 int measured_choose(const struct measure **chosen, const char *names, struct why *why);
 /* Does any of them look at earlier frames? */
 bool measured_remember(const struct measure *const *chosen);
+/* first, before = what they look back to from the next frame on; first only where the snapshot has none. Returns 0 or
+   EX_SOFTWARE. */
+int measured_keep(const struct measure *const *chosen, const struct snapshot *s, struct kept *first,
+                  struct kept *before, struct why *why);
 /* t[MOST_MEASURES] = the chosen ones; to be freed by measured_free in any case. Returns 0 or EX_SOFTWARE. */
 int measured_run(struct table *t, const struct measure *const *chosen, const struct snapshot *s,
                  struct why *why);

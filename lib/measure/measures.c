@@ -29,6 +29,11 @@ static const struct measure *const measures[] = {
     &measure_sums,
     &measure_sums_by_name,
     &measure_sums_by_face,
+    &measure_mixing,
+    &measure_residence,
+    &measure_departures,
+    &measure_lifetimes,
+    &measure_separations,
     NULL,
 };
 
@@ -50,9 +55,13 @@ static const char *lacks(const struct snapshot *s, enum needs needs)
     if (!s->p->n) return "there are no bodies";
     if (needs == NEEDS_SUMS && !s->p->sums.n)
         return "the document has no sums over steps: nsd-step --sums keeps them";
-    if (needs == NEEDS_BEFORE && !s->before) return "there is no frame before";
-    if ((needs == NEEDS_CONTACTS || needs == NEEDS_FORCES) && !s->s)
+    if ((needs == NEEDS_CONTACTS || needs == NEEDS_FORCES || needs == NEEDS_CONTACTS_BEFORE) &&
+        !s->s)
         return "the document has no contacts: nsd-step --contacts keeps them";
+    if ((needs == NEEDS_BEFORE || needs == NEEDS_CONTACTS_BEFORE) && !s->before)
+        return "there is no frame before";
+    if (needs == NEEDS_CONTACTS_BEFORE && !s->before->pair)
+        return "the contacts of the frame before were not looked at";
     if (needs == NEEDS_FORCES && !s->s->found && s->s->n)
         return "the contacts are not solved: nsd-solve comes before";
     return NULL;

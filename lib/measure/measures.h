@@ -12,11 +12,12 @@
 #include <stdbool.h>
 
 enum needs {
-    NEEDS_BODIES,   /* at least one */
-    NEEDS_CONTACTS, /* contacts, solved or not */
-    NEEDS_FORCES,   /* contacts that are solved */
-    NEEDS_BEFORE,   /* a frame before this one */
-    NEEDS_SUMS,     /* sums over steps [bodies/sums.h], and the frame before if there is one */
+    NEEDS_BODIES,          /* at least one */
+    NEEDS_CONTACTS,        /* contacts, solved or not */
+    NEEDS_FORCES,          /* contacts that are solved */
+    NEEDS_BEFORE,          /* a frame before this one */
+    NEEDS_CONTACTS_BEFORE, /* both have contacts */
+    NEEDS_SUMS, /* sums over steps [bodies/sums.h], and the frame before if there is one */
 };
 
 struct measure {
@@ -36,7 +37,8 @@ extern const struct measure measure_fraction, measure_coordination, measure_cont
     measure_profile, measure_friction, measure_normal_forces, measure_tangential_forces,
     measure_mobilised, measure_pairs, measure_sizes, measure_segregation, measure_displacement,
     measure_surface, measure_flux, measure_grains, measure_strain, measure_names, measure_sums,
-    measure_sums_by_name, measure_sums_by_face;
+    measure_sums_by_name, measure_sums_by_face, measure_mixing, measure_residence,
+    measure_departures, measure_lifetimes, measure_separations;
 
 /* The k-th; NULL past the last. */
 const struct measure *measure_at(int k);

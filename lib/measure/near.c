@@ -31,7 +31,7 @@ bool near_init(struct near *g, const vec3 *x, int64_t n, double reach)
     }
     for (int64_t i = 0; i < n; i++) {
         const double at[3] = { x[i].x, x[i].y, x[i].z };
-        point[i].x = x[i];
+        point[i].x = x[i], point[i].of = i;
         for (int k = 0; k < 3; k++) point[i].cell[k] = grid_cell(at[k], reach);
         g->first[bucket_of(g, &point[i]) + 2]++;
     }
@@ -74,4 +74,44 @@ int64_t near_count(const struct near *g, vec3 x, int64_t *count, int64_t bins)
                 count_cell(g, b, cell, x, count, bins);
             }
     return looked;
+}
+
+/* What has been found so far, the nearest first */
+struct nearest {
+    int n, most;
+    double d2[NEAREST_MOST]; /* m^2 */
+    int64_t of[NEAREST_MOST];
+};
+
+static void keep_nearest(struct nearest *s, double d2, int64_t of)
+{
+    int k = s->n;
+    if (k == s->most && !(d2 < s->d2[k - 1] || (d2 == s->d2[k - 1] && of < s->of[k - 1]))) return;
+    if (k == s->most) k--;
+    for (; k > 0 && (d2 < s->d2[k - 1] || (d2 == s->d2[k - 1] && of < s->of[k - 1])); k--)
+        s->d2[k] = s->d2[k - 1], s->of[k] = s->of[k - 1];
+    s->d2[k] = d2, s->of[k] = of;
+    if (s->n < s->most) s->n++;
+}
+
+int near_nearest(const struct near *g, vec3 x, int most, int64_t *of, int64_t *looked)
+{
+    const int64_t c[3] = { grid_cell(x.x, g->reach), grid_cell(x.y, g->reach),
+                           grid_cell(x.z, g->reach) };
+    struct nearest s = { .most = most };
+    for (int64_t l = 0; l < 27; l++) {
+        const int64_t cell[3] = { c[0] + l % 3 - 1, c[1] + l / 3 % 3 - 1, c[2] + l / 9 - 1 };
+        const int64_t b = bucket(g, cell[0], cell[1], cell[2]);
+        *looked += g->first[b + 1] - g->first[b];
+        for (int64_t i = g->first[b]; i < g->first[b + 1]; i++) {
+            const struct near_point *p = &g->point[i];
+            const vec3 d = v3_sub(p->x, x);
+            const double d2 = v3_dot(d, d);
+            if (!(d2 < g->reach * g->reach && d2 > 0)) continue;
+            if (p->cell[0] == cell[0] && p->cell[1] == cell[1] && p->cell[2] == cell[2])
+                keep_nearest(&s, d2, p->of);
+        }
+    }
+    for (int k = 0; k < s.n; k++) of[k] = s.of[k];
+    return s.n;
 }

@@ -10,6 +10,7 @@
 struct near_point {
     vec3 x;
     int32_t cell[3];
+    int64_t of; /* its place in the x that were sorted */
 };
 
 /* Cells are hashed: a point far away costs nothing. */
@@ -28,5 +29,12 @@ void near_free(struct near *g);
  * the same place none. Returns how many it has looked at.
  */
 int64_t near_count(const struct near *g, vec3 x, int64_t *count, int64_t bins);
+
+enum { NEAREST_MOST = 16 };
+/*
+ * The points nearest to x at 0 < d < reach, the nearest first, of two as near the first in x[]: of[found], their
+ * places there; found <= most <= NEAREST_MOST. Adds to *looked how many it has looked at.
+ */
+int near_nearest(const struct near *g, vec3 x, int most, int64_t *of, int64_t *looked);
 
 #endif

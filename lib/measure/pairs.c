@@ -5,6 +5,7 @@
  */
 #include "measure/measures.h"
 #include "measure/near.h"
+#include "measure/scatter.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,56 +17,6 @@ static const struct quantity quantities[] = {
     { "g", "1", 1, "over those of bodies scattered evenly" },
     { 0 },
 };
-
-/* What is looked at: the centres, and images of them */
-struct scatter {
-    int64_t n, seekers, room; /* the first of x are the bodies, others images */
-    vec3 *x;
-    double size[3]; /* m: of the window along axes that do not repeat; INFINITY: it repeats */
-    double volume;
-};
-
-static bool add_point(struct scatter *a, vec3 x)
-{
-    if (a->n == a->room) {
-        int64_t room = 2 * a->room + 1;
-        vec3 *more = realloc(a->x, (size_t)room * sizeof *more);
-        if (!more) return false;
-        a->x = more, a->room = room;
-    }
-    a->x[a->n++] = x;
-    return true;
-}
-
-/* All images within `reach` of the cell; those of the bodies themselves, brought into it, first */
-static bool add_images(struct scatter *a, const struct period *m, double reach)
-{
-    int most[3] = { 0, 0, 0 };
-    for (int64_t i = 0; i < a->seekers; i++) {
-        vec3 d = v3_sub(a->x[i], m->cell->origin);
-        for (int k = 0; k < 3; k++)
-            if (m->cell->repeats[k])
-                a->x[i] = v3_axpy(a->x[i], -floor(v3_dot(m->inverse[k], d)), m->edge[k]);
-    }
-    for (int k = 0; k < 3; k++)
-        if (m->cell->repeats[k]) most[k] = (int)ceil(reach * v3_norm(m->inverse[k]));
-    for (int64_t i = 0; i < a->seekers; i++)
-        for (int u = -most[0]; u <= most[0]; u++)
-            for (int v = -most[1]; v <= most[1]; v++)
-                for (int w = -most[2]; w <= most[2]; w++) {
-                    if (!u && !v && !w) continue;
-                    vec3 x = v3_axpy(a->x[i], u, m->edge[0]);
-                    x = v3_axpy(v3_axpy(x, v, m->edge[1]), w, m->edge[2]);
-                    bool near = true;
-                    for (int k = 0; k < 3; k++) {
-                        double at = v3_dot(m->inverse[k], v3_sub(x, m->cell->origin));
-                        double margin = reach * v3_norm(m->inverse[k]);
-                        if (m->cell->repeats[k]) near = near && at > -margin && at < 1 + margin;
-                    }
-                    if (near && !add_point(a, x)) return false;
-                }
-    return true;
-}
 
 static void window(struct scatter *a, const struct snapshot *s)
 {
@@ -147,19 +98,20 @@ static int pairs_rows(struct table *t, const struct snapshot *s, struct why *why
     bool room = counts;
     for (int64_t i = 0; i < p->n; i++) {
         if (!(s->asked->distance > 0)) reach += 6 * p->radius[i] / (double)p->n;
-        if (region_holds(&s->region, p->x[i])) room = room && add_point(&a, p->x[i]);
+        if (region_holds(&s->region, p->x[i])) room = room && scatter_add(&a, p->x[i], i);
     }
     a.seekers = a.n;
     window(&a, s);
     const char *reason = impossible(s, &a, reach);
-    if (!reason && room && s->region.period.any) room = add_images(&a, &s->region.period, reach);
+    if (!reason && room && s->region.period.any)
+        room = scatter_images(&a, &s->region.period, reach);
     if (!reason && room) room = near_init(&g, a.x, a.n, reach);
     if (!reason && room && !count(&a, &g, counts, s->asked->bins)) reason = "bodies crowd";
     if (reason)
         table_null(t, "%s", reason);
     else if (room)
         fill(t, s, &a, reach, counts, why);
-    near_free(&g), free(a.x), free(counts);
+    near_free(&g), scatter_free(&a), free(counts);
     return room ? why->status : why_set(why, EX_SOFTWARE, "no memory for pairs of bodies");
 }
 

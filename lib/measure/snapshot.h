@@ -24,6 +24,9 @@ struct asked {
     char only[256];  /* names and numbers of walls that measures of them keep to; "": all */
     double wear;     /* 1/Pa: coefficient of wear; 0: that of each wall */
     double distance; /* m: up to which pairs are counted; 0: three mean diameters */
+    char tracer
+        [64]; /* the kind whose mixing with the others is measured, or large; "": see measure/mixing.c */
+    double sample; /* m: edge of the samples of a mixture; 0: three mean diameters */
 };
 
 struct snapshot {

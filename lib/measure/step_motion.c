@@ -27,7 +27,9 @@ static vec3 boundary(const struct step_motion *m, const struct packing *p, const
     int32_t w = -1 - c->a;
     const struct packing *start = m->p->step < m->other.step ? m->p : &m->other;
     vec3 load = v3_sub(wall_velocity(p, &p->wall[w], c->x), wall_held(p, &p->wall[w], c->x));
-    return v3_add(wall_held(start, &start->wall[w], c->x), load);
+    vec3 held =
+        v3_add(wall_held(start, &start->wall[w], c->x), wall_belt(start, &start->wall[w], c->n));
+    return v3_add(held, load);
 }
 
 /* m/s: of b relative to a, at the contact, in space */

@@ -54,6 +54,10 @@ static void add_bodies(struct balance *of_all, const struct packing *p, const st
         add_to(b->momentum, m, v);
         if (p->outside.force) b->loads += p->dt * v3_dot(p->outside.force[i], mean[i].v);
         if (p->outside.torque) b->loads += p->dt * v3_dot(p->outside.torque[i], mean[i].w);
+        if (!p->pulls.n) continue;
+        const double middle = p->t + p->dt / 2;
+        b->loads += p->dt * v3_dot(packing_pull(p, i, middle, false), mean[i].v);
+        b->loads += p->dt * v3_dot(packing_pull(p, i, middle, true), mean[i].w);
     }
 }
 
@@ -132,7 +136,8 @@ static struct work work_of(const struct packing *p, const struct contact *c, con
         const struct mean *ma = &mean[c->a];
         *(a_moves ? &w.free : &w.held) += push_turns_a(&o, ma->w) - v3_dot(o.f, ma->v);
     } else {
-        w.held -= v3_dot(o.f, wall_held(p, &p->wall[-1 - c->a], c->x));
+        const struct wall *wall = &p->wall[-1 - c->a];
+        w.held -= v3_dot(o.f, v3_add(wall_held(p, wall, c->x), wall_belt(p, wall, c->n)));
     }
     if (sum->freedoms.n || cell_repeats(&p->cell)) add_beyond(&w, p, sum, c, o.f);
     return w;

@@ -90,6 +90,11 @@ int impulses_init(struct impulses *sum, const struct packing *p, const struct co
         return why_set(why, EX_SOFTWARE, "no memory to move the bodies");
     for (int64_t i = 0; o->force && i < p->n; i++) sum->force[i] = v3_scale(p->dt, o->force[i]);
     for (int64_t i = 0; o->torque && i < p->n; i++) sum->moment[i] = v3_scale(p->dt, o->torque[i]);
+    const double middle = p->t + (ended ? -p->dt : p->dt) / 2;
+    for (int64_t i = 0; p->pulls.n && i < p->n; i++) {
+        sum->force[i] = v3_axpy(sum->force[i], p->dt, packing_pull(p, i, middle, false));
+        sum->moment[i] = v3_axpy(sum->moment[i], p->dt, packing_pull(p, i, middle, true));
+    }
     struct summing y = { sum, p, s, s->n < CONTACTS_PER_THREAD ? 1 : team_size() };
     team_share(team_size(), y.parts, 1, sum_bodies, &y);
     sum_yields(sum, p, s);

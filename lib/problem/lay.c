@@ -71,9 +71,10 @@ bool lay_bundles(struct problem *p)
     return true;
 }
 
-/* The copy of a body i (wall w: -1-w) that does not move, of a contact at x (m). A load's speed is
-   prescribed here [problem/coupling.h]. */
-static void copy_body(const struct problem *p, int32_t i, const vec3 *x, struct body *copy)
+/* The copy of a body i (wall w: -1-w) that does not move, of a contact. A load's speed is prescribed here
+   [problem/coupling.h]. */
+static void copy_body(const struct problem *p, int32_t i, const struct contact *c,
+                      struct body *copy)
 {
     const struct packing *pack = p->packing;
     if (i >= 0) {
@@ -81,7 +82,7 @@ static void copy_body(const struct problem *p, int32_t i, const vec3 *x, struct 
         return;
     }
     const struct wall *wall = &pack->wall[-1 - i];
-    vec3 v = wall_velocity(pack, wall, *x);
+    vec3 v = v3_add(wall_velocity(pack, wall, c->x), wall_belt(pack, wall, c->n));
     *copy = (struct body){ .v = { v.x, v.y, v.z } };
     if (!p->kind.rolls) return; // its arm is 0: that it turns matters to moments only
     vec3 w = wall_spin(pack, wall);
@@ -108,8 +109,8 @@ static void seat_some(void *arg, int64_t first, int64_t end)
             p->block[i / BUNDLE][j][k] = 1;
         if (p->contact[i] < 0) continue;
         const struct contact *c = &y->s->c[p->contact[i]];
-        if (seat[0] >= copies) copy_body(p, c->a, &c->x, &p->body[seat[0]]);
-        if (seat[1] >= copies) copy_body(p, c->b, &c->x, &p->body[seat[1]]);
+        if (seat[0] >= copies) copy_body(p, c->a, c, &p->body[seat[0]]);
+        if (seat[1] >= copies) copy_body(p, c->b, c, &p->body[seat[1]]);
     }
 }
 

@@ -37,11 +37,13 @@ static void set_some(void *arg, int64_t first, int64_t end)
     }
 }
 
-/* What the torque from outside makes of the angular velocity of body i, or of what stands for it */
+/* What pulls and the torque from outside make of the angular velocity of body i, or of what stands for it */
 static vec3 torque_gain(const struct problem *p, int64_t i)
 {
     const struct packing *pack = p->packing;
-    vec3 moment = v3_scale(pack->dt, pack->outside.torque[i]);
+    vec3 torque = pack->outside.torque ? pack->outside.torque[i] : v3(0, 0, 0);
+    if (pack->pulls.n) torque = v3_add(torque, packing_pull(pack, i, pack->t + pack->dt / 2, true));
+    vec3 moment = v3_scale(pack->dt, torque);
     return p->spin ? top_inverse_root(pack, i, top_predict(pack, i), moment)
                    : v3_scale(1 / pack->inertia[i], moment);
 }
@@ -58,7 +60,7 @@ static void free_some(void *arg, int64_t first, int64_t end)
         if (flow.changes) dv = v3_add(dv, cell_flow_gain(&flow, packing_predict(pack, i)));
         b->v[0] = pack->v[i].x + dv.x, b->v[1] = pack->v[i].y + dv.y, b->v[2] = pack->v[i].z + dv.z;
         vec3 w = p->spin ? p->spin[i] : pack->w[i];
-        if (pack->outside.torque) w = v3_add(w, torque_gain(p, i));
+        if (pack->outside.torque || pack->pulls.n) w = v3_add(w, torque_gain(p, i));
         b->w[0] = w.x, b->w[1] = w.y, b->w[2] = w.z;
     }
 }
@@ -164,7 +166,8 @@ static double fastest(void *arg, int64_t first, int64_t end)
 static double top_speed(const struct packing *p)
 {
     double most = team_most(team_size(), p->n, PER_THREAD, fastest, (void *)p), images = 0;
-    for (int32_t k = 0; k < p->walls; k++) most = fmax(most, wall_top_speed(p, &p->wall[k]));
+    for (int32_t k = 0; k < p->walls; k++)
+        most = fmax(most, wall_top_speed(p, &p->wall[k]) + v3_norm(p->wall[k].belt));
     for (int k = 0; k < 3; k++) images += p->cell.repeats[k] ? v3_norm(p->cell.rate[k]) : 0;
     most += images;
     return most + packing_most_fall(p);

@@ -112,7 +112,7 @@ static void take_cell(struct comm *t, struct parcel *o, struct cell *c)
 /* Numbers that are not pointers */
 struct numbers {
     int64_t step;
-    double t, dt, theta, t0;
+    double t, dt, theta, t0, pulls_most;
     int64_t step0;
     vec3 g;
     uint64_t seed;
@@ -126,12 +126,14 @@ static void put(struct comm *t, struct parcel *o, const struct packing *p)
     int64_t k2 = (int64_t)p->kinds * p->kinds;
     memset(&n, 0, sizeof n); // its gaps, too: parcels are compared by nobody, but read by valgrind
     n.step = p->step, n.t = p->t, n.dt = p->dt, n.theta = p->theta, n.g = p->g, n.seed = p->seed;
+    n.pulls_most = p->pulls_most;
     n.t0 = p->t0, n.step0 = p->step0;
     n.dim = p->dim, n.overlap = (int32_t)p->overlap, n.kinds = p->kinds, n.first_id = p->first_id;
     n.has_law = p->law != NULL, n.optional = packing_optional(p);
     parcel_put(t, o, &n, sizeof n);
     parcel_put_array(t, o, p->wall, p->walls, sizeof *p->wall);
     put_drives(t, o, &p->drives), put_drives(t, o, &p->pushes);
+    put_drives(t, o, &p->pulls);
     parcel_put_array(t, o, p->mesh.vertex, p->mesh.vertices, sizeof *p->mesh.vertex);
     parcel_put_array(t, o, p->mesh.element, p->mesh.elements, sizeof *p->mesh.element);
     put_names(t, o, &p->names);
@@ -139,7 +141,7 @@ static void put(struct comm *t, struct parcel *o, const struct packing *p)
     put_shapes(t, o, &p->shapes);
     for (int32_t k = 0; k < p->kinds; k++) put_text(t, o, p->kind_name[k]);
 #define PUT(member, ...) parcel_put_array(t, o, p->member, k2, sizeof *p->member);
-    EACH_PAIR_COLUMN(PUT)
+    EVERY_PAIR_COLUMN(PUT)
 #undef PUT
     if (p->law) parcel_put_array(t, o, p->law, k2, sizeof *p->law);
 }
@@ -152,11 +154,13 @@ static void take(struct comm *t, struct parcel *o, struct packing *p)
     packing_free(p);
     if (packing_init(p, n.dim, 0, &why) || packing_alloc_kinds(p, n.kinds, &why)) fail(t, &why);
     p->step = n.step, p->t = n.t, p->dt = n.dt, p->theta = n.theta, p->g = n.g, p->seed = n.seed;
+    p->pulls_most = n.pulls_most;
     p->t0 = n.t0, p->step0 = n.step0;
     p->overlap = (enum overlap)n.overlap, p->first_id = n.first_id;
     free(p->wall);
     p->walls = (int32_t)parcel_take_array(t, o, &p->wall, sizeof *p->wall);
     take_drives(t, o, &p->drives), take_drives(t, o, &p->pushes);
+    take_drives(t, o, &p->pulls);
     p->mesh.vertices = (int32_t)parcel_take_array(t, o, &p->mesh.vertex, sizeof *p->mesh.vertex);
     p->mesh.elements = (int32_t)parcel_take_array(t, o, &p->mesh.element, sizeof *p->mesh.element);
     take_names(t, o, &p->names);
@@ -164,7 +168,7 @@ static void take(struct comm *t, struct parcel *o, struct packing *p)
     take_shapes(t, o, &p->shapes, p->dim);
     for (int32_t k = 0; k < p->kinds; k++) free(p->kind_name[k]), p->kind_name[k] = take_text(t, o);
 #define TAKE(member, ...) free(p->member), parcel_take_array(t, o, &p->member, sizeof *p->member);
-    EACH_PAIR_COLUMN(TAKE)
+    EVERY_PAIR_COLUMN(TAKE)
 #undef TAKE
     if (n.has_law) parcel_take_array(t, o, &p->law, sizeof *p->law);
     if (packing_alloc_optional(p, n.optional, &why)) fail(t, &why);

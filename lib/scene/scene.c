@@ -21,11 +21,11 @@ void scene_free(struct scene *s)
     cell_free(&s->cell.cell);
     shapes_free(&s->shapes);
     free(s->solid);
-    drives_free(&s->drives), drives_free(&s->pushes), mesh_free(&s->mesh);
+    drives_free(&s->drives), drives_free(&s->pushes), drives_free(&s->pulls), mesh_free(&s->mesh);
     names_free(&s->names);
     for (int32_t k = 0; k < s->meshes; k++) free(s->mesh_file[k].file);
     for (int32_t k = 0; k < s->fits; k++) free(s->fit[k].shape);
-    free(s->mesh_file), free(s->fit);
+    free(s->mesh_file), free(s->fit), free(s->part);
     free(s->kind), free(s->law), free(s->bodies), free(s->wall), free(s->wall_item), free(s->text);
     *s = (struct scene){ 0 };
 }

@@ -150,7 +150,7 @@ struct scene_kind {
 };
 
 struct scene_law {
-    EACH_PAIR_COLUMN(PAIR_NUMBER) /* mu, en, et */
+    EVERY_PAIR_COLUMN(PAIR_NUMBER) /* mu, en, et, mu_s, v_s */
     struct pair_law pair_law;
 };
 
@@ -243,6 +243,14 @@ struct scene_mesh {
     int32_t left_out; /* triangles of the file that are not in the mesh */
 };
 
+/* Faces of a mesh that become a wall of their own [scene/scene_parts.h] */
+struct scene_part {
+    int32_t wall;        /* that they are of */
+    int64_t first, last; /* among its elements */
+    int32_t kind;
+    vec3 belt; /* m/s */
+};
+
 /* What a shape was before it was brought to its own axes and unit [geometry/solid.h] */
 struct scene_solid {
     double reach; /* m */
@@ -285,12 +293,15 @@ struct scene {
     int32_t *wall_item;   /* [walls] which of "walls" each comes from: a box is several */
     struct drives drives; /* of them */
     struct drives pushes; /* of their loads */
+    struct drives pulls;  /* of bodies, by their ids */
     struct mesh mesh;     /* of those that are meshes */
     struct names names;   /* of walls, parts of them and groups of bodies */
     int32_t meshes;
     struct scene_mesh *mesh_file; /* [meshes] those that are files */
-    bool has_walls;               /* else those of the first document are taken */
-    double t;                     /* s: the packing's time */
+    int32_t parts;
+    struct scene_part *part; /* [parts] */
+    bool has_walls;          /* else those of the first document are taken */
+    double t;                /* s: the packing's time */
 
     int32_t pours, removals;       /* inlets and outlets [scene/flow.h] */
     struct scene_pour *pour;       /* [pours] */

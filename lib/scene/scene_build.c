@@ -266,7 +266,7 @@ static int set_parameters(struct packing *p, const struct scene *s, struct why *
         return why->status;
     for (int32_t i = 0; i < s->walls; i++) p->wall[i] = s->wall[i];
     if (drives_copy(&p->drives, &s->drives, why) || drives_copy(&p->pushes, &s->pushes, why) ||
-        mesh_copy(&p->mesh, &s->mesh, why))
+        drives_copy(&p->pulls, &s->pulls, why) || mesh_copy(&p->mesh, &s->mesh, why))
         return why->status;
     if (s->cell.given && !s->cell.goes_on &&
         (cell_copy(&p->cell, &s->cell.cell) || packing_alloc_images(p, why)))
@@ -277,7 +277,7 @@ static int set_parameters(struct packing *p, const struct scene *s, struct why *
     }
     for (int32_t k = 0; k < s->kinds * s->kinds; k++) {
 #define SET(member, ...) p->member[k] = s->law[k].member;
-        EACH_PAIR_COLUMN(SET)
+        EVERY_PAIR_COLUMN(SET)
 #undef SET
     }
     if (goes_beyond(s) && packing_alloc_laws(p, why)) return why->status;
@@ -389,10 +389,35 @@ static int set_dt(struct packing *p, const struct scene *s, struct why *why)
                          "step could be chosen: give a number of seconds");
 }
 
+static int by_number(const void *a, const void *b)
+{
+    const int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* Are the bodies there that forces act on? */
+static int check_forces(const struct packing *p, struct why *why)
+{
+    if (!p->pulls.n) return 0;
+    int32_t *id = malloc(((size_t)p->n + 1) * sizeof *id);
+    if (!id) return why_set(why, EX_SOFTWARE, "no memory to look for the bodies of forces");
+    if (p->n) memcpy(id, p->id, (size_t)p->n * sizeof *id);
+    qsort(id, (size_t)p->n, sizeof *id, by_number);
+    for (int32_t k = 0; k < p->pulls.n && !why->status; k++) {
+        const int32_t wanted = p->pulls.drive[k].boundary;
+        if (!bsearch(&wanted, id, (size_t)p->n, sizeof *id, by_number))
+            why_set(why, EX_DATAERR, "forces: no body has the id %d (nsd-info -p shows them)",
+                    wanted);
+    }
+    free(id);
+    return why->status;
+}
+
 /* Are the numbers in range, and do no bodies overlap, unless the scene allows it? */
 static int check_packing(const struct packing *p, const struct scene *s, const struct grains *list,
                          struct why *why)
 {
+    if (check_forces(p, why)) return why->status;
     if (packing_check(p, why)) return name_wall(s, why);
     if (check_names(p, why)) return why->status;
     if (packing_check_clock(p, why)) return why->status;
@@ -539,6 +564,7 @@ static int build_packing(struct packing *p, const struct scene *s, const struct 
         if (s->cell.affine) add_affine_flow(p);
         packing_wrap(p, NULL);
         names_settle(&p->names);
+        p->pulls_most = pulls_most(&p->pulls, p->n, p->id, p->mass);
         if (!set_masses(p, s, why) && !set_dt(p, s, why)) check_packing(p, s, list, why);
     }
     gsl_rng_free(rng);

@@ -130,3 +130,80 @@ int scene_read_push(jnode o, struct scene *s, int32_t wall, struct load *l)
         return 1;
     return add_signal(o, &s->pushes, d);
 }
+
+/* ---- forces on bodies ---- */
+
+enum { PULLS_MOST = 100000 };
+
+/* Behind those of the bodies with as low an id */
+static int add_pull(jnode o, struct scene *s, struct drive d)
+{
+    if (s->pulls.n >= PULLS_MOST) return json_node_fault(o, "more than %d forces", PULLS_MOST);
+    if (add_signal(o, &s->pulls, d)) return 1;
+    for (int32_t k = s->pulls.n - 1; k > 0 && s->pulls.drive[k - 1].boundary > d.boundary; k--)
+        s->pulls.drive[k] = s->pulls.drive[k - 1], s->pulls.drive[k - 1] = d;
+    return 0;
+}
+
+/* A number, which is a table of one row */
+static int read_constant(jnode n, struct scene *s, struct drive *d)
+{
+    double value = 0;
+    struct drive_row *row;
+    if (json_node_number(n, J_ANY, &value)) return 1;
+    if (!(row = grown(n, s->pulls.row, s->pulls.rows, 1, sizeof *row))) return 1;
+    s->pulls.row = row, row[s->pulls.rows] = (struct drive_row){ 0, value };
+    d->signal = DRIVE_TABLE, d->first = s->pulls.rows++, d->rows = 1;
+    return 0;
+}
+
+/* Of each body a table of its own: documents have none that belongs to two. */
+static int read_pull(jnode n, struct scene *s, struct drive d)
+{
+    if (!json_is_object(n.json)) return read_constant(n, s, &d) || add_pull(n, s, d);
+    int which = json_node_choice(n, "amplitude table");
+    if (which < 0 || json_node_only(n, which ? "table mean" : "amplitude frequency phase mean") ||
+        read_signal(n, &s->pulls, which ? DRIVE_TABLE : DRIVE_SINE, &d) || add_pull(n, s, d))
+        return 1;
+    jnode mean = json_node_key(&n, "mean");
+    return mean.json && (read_constant(mean, s, &d) || add_pull(mean, s, d));
+}
+
+static int read_force(jnode o, struct scene *s)
+{
+    struct drive d = { .from = -INFINITY, .until = INFINITY, .axis = v3(0, 0, 1) };
+    jnode bodies = json_node_key(&o, "bodies");
+    size_t n = 0;
+    int which = json_node_choice(o, "force torque");
+    if (which < 0) return 1;
+    d.turns = which == 1;
+    if (json_node_only(o, !d.turns      ? "bodies force along from until"
+                          : s->dim == 2 ? "bodies torque from until"
+                                        : "bodies torque about from until") ||
+        json_node_need(&o, !d.turns      ? "bodies along"
+                           : s->dim == 2 ? "bodies"
+                                         : "bodies about") ||
+        scene_read_direction(json_node_key(&o, d.turns ? "about" : "along"), s->dim, &d.axis) ||
+        json_node_number(json_node_key(&o, "from"), J_ANY, &d.from) ||
+        json_node_number(json_node_key(&o, "until"), J_ANY, &d.until) ||
+        json_node_array(bodies, &n))
+        return 1;
+    if (!(d.from <= d.until))
+        return json_node_fault(json_node_key(&o, "until"), "must not lie before its beginning");
+    for (size_t i = 0; i < n; i++) {
+        int64_t id = 0;
+        if (json_node_integer(json_node_item(&bodies, i), 0, INT32_MAX - 1, &id)) return 1;
+        d.boundary = (int32_t)id;
+        if (read_pull(json_node_key(&o, d.turns ? "torque" : "force"), s, d)) return 1;
+    }
+    return 0;
+}
+
+int scene_read_forces(jnode a, struct scene *s)
+{
+    size_t n = 0;
+    if (json_node_array(a, &n)) return 1;
+    for (size_t i = 0; i < n; i++)
+        if (read_force(json_node_item(&a, i), s)) return 1;
+    return 0;
+}

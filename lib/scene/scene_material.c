@@ -10,8 +10,14 @@ int scene_read_law(const jnode *o, struct scene_law *l)
     if (json_node_number(json_node_key(o, key), (most) == 1 ? J_UNIT : J_NOT_NEGATIVE,             \
                          &l->member))                                                              \
         return 1;
-    EACH_PAIR_COLUMN(READ)
+    EVERY_PAIR_COLUMN(READ)
 #undef READ
+    if ((l->mu_s > 0) != (l->v_s > 0))
+        return json_node_fault(
+            *o, "mu_s, static friction, and v_s, the sliding speed up to which it holds (m/s), "
+                "are given together");
+    if (l->mu_s > 0 && l->mu_s < l->mu)
+        return json_node_fault(*o, "mu_s, static friction, must not be below mu");
     return 0;
 }
 
@@ -68,7 +74,7 @@ static int read_pair(jnode o, struct scene *s, bool *given)
     size_t n;
     int32_t k[2] = { 0 };
     if (json_node_only(
-            o, "pair" EACH_PAIR_COLUMN(PAIR_KEY) " impact cohesion capillary rolling adhesion") ||
+            o, "pair" EVERY_PAIR_COLUMN(PAIR_KEY) " impact cohesion capillary rolling adhesion") ||
         json_node_need(&o, "pair"))
         return 1;
     jnode pair = json_node_key(&o, "pair");

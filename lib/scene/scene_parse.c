@@ -55,12 +55,11 @@ static int read_scene(jnode o, struct scene *s)
     const char *title;
     struct scene_law law = { 0 };
     struct scene_box box = { 0 };
-    if (json_node_only(
-            o,
-            "title dim dt theta gravity seed density" EACH_PAIR_COLUMN(
-                PAIR_KEY) " kinds pairs time "
-                          "overlap bodies walls pour remove cell shapes cohesion capillary rolling "
-                          "adhesion impact") ||
+    if (json_node_only(o, "title dim dt theta gravity seed density" EVERY_PAIR_COLUMN(
+                              PAIR_KEY) " kinds pairs time "
+                                        "overlap bodies walls forces pour remove cell shapes "
+                                        "cohesion capillary rolling "
+                                        "adhesion impact") ||
         json_node_need(&o, "dt") || json_node_text(json_node_key(&o, "title"), &title) ||
         json_node_integer(json_node_key(&o, "dim"), 2, 3, &dim) ||
         json_node_integer(json_node_key(&o, "seed"), 0, UINT32_MAX, &seed) ||
@@ -83,7 +82,8 @@ static int read_scene(jnode o, struct scene *s)
         scene_read_walls(json_node_key(&o, "walls"), s, &box, &boxed) ||
         scene_read_bodies(json_node_key(&o, "bodies"), s, boxed ? &box : NULL) ||
         scene_read_pours(json_node_key(&o, "pour"), s) ||
-        scene_read_removals(json_node_key(&o, "remove"), s))
+        scene_read_removals(json_node_key(&o, "remove"), s) ||
+        scene_read_forces(json_node_key(&o, "forces"), s))
         return 1;
     return 0;
 }

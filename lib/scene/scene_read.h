@@ -37,6 +37,8 @@ int scene_read_shape_2d(jnode object, const char *common, struct scene *s, struc
 int scene_read_shape_3d(jnode object, const char *common, struct scene *s, struct wall *w);
 /* scene/scene_drives.c: "drives" of a boundary, behind those that are there */
 int scene_read_drives(jnode array, struct scene *s, int32_t wall);
+/* "forces" on bodies, in time */
+int scene_read_forces(jnode a, struct scene *s);
 /* a "force" or "torque", a number or a signal: the constant part of l, and pushes behind those that are
    there. Of l, way and axis are known. */
 int scene_read_push(jnode force, struct scene *s, int32_t wall, struct load *l);

@@ -107,7 +107,7 @@ static int read_load(jnode o, struct scene *s, struct wall *w)
 /* ---- what is common to all shapes ---- */
 
 /* What all shapes have besides their own keys */
-#define COMMON "name velocity kind drives until weld wear"
+#define COMMON "name velocity belt kind drives until weld wear"
 
 /* Adds a wall, and its drives. */
 static int add_wall(jnode o, struct scene *s, struct wall w)
@@ -135,6 +135,42 @@ static int add_box(jnode o, struct scene *s, struct wall w, const struct scene_b
             if (isfinite(side[k]) && add_wall(o, s, w)) return 1;
         }
     }
+    return 0;
+}
+
+/* Faces that are of another kind, or move along themselves otherwise, than the surface that is to be added */
+static int read_part(jnode o, struct scene *s, const struct wall *w)
+{
+    struct scene_part part = { .wall = s->walls, .kind = w->kind, .belt = w->belt };
+    jnode faces = json_node_key(&o, "faces");
+    size_t n = 0;
+    if (json_node_only(o, "faces kind belt") || json_node_need(&o, "faces") ||
+        scene_read_kind(json_node_key(&o, "kind"), s, &part.kind) ||
+        json_node_vector(json_node_key(&o, "belt"), s->dim, &part.belt) ||
+        json_node_array(faces, &n))
+        return 1;
+    if (n != 2) return json_node_fault(faces, "wants [first, last], from 0");
+    if (json_node_integer(json_node_item(&faces, 0), 0, INT32_MAX, &part.first) ||
+        json_node_integer(json_node_item(&faces, 1), part.first, INT32_MAX, &part.last))
+        return 1;
+    struct scene_part *more = realloc(s->part, ((size_t)s->parts + 1) * sizeof *more);
+    if (!more) return why_set(o.in->why, EX_SOFTWARE, "no memory for parts of a surface");
+    s->part = more, s->part[s->parts++] = part;
+    return 0;
+}
+
+static int read_materials(jnode a, struct scene *s, const struct wall *w)
+{
+    size_t n = 0;
+    if (!a.json) return 0;
+    if (w->shape != BOUNDARY_MESH)
+        return json_node_fault(a, "only a mesh or a polygon has faces; other walls have one kind");
+    if (w->load.way)
+        return json_node_fault(
+            a, "a surface with a load has one kind: its parts would move by themselves");
+    if (json_node_array(a, &n)) return 1;
+    for (size_t i = 0; i < n; i++)
+        if (read_part(json_node_item(&a, i), s, w)) return 1;
     return 0;
 }
 
@@ -166,6 +202,7 @@ static int read_wall(jnode o, struct scene *s, struct scene_box *box, bool *boxe
     struct wall w = boundary_plane(v3(0, 0, 0), v3(0, 0, 1), 1);
     int which = json_node_choice(o, s->dim == 2 ? plane_shapes : space_shapes);
     if (which < 0 || json_node_vector(json_node_key(&o, "velocity"), s->dim, &w.v) ||
+        json_node_vector(json_node_key(&o, "belt"), s->dim, &w.belt) ||
         scene_read_kind(json_node_key(&o, "kind"), s, &w.kind) ||
         json_node_number(json_node_key(&o, "until"), J_ANY, &w.until) ||
         json_node_number(json_node_key(&o, "weld"), J_NOT_NEGATIVE, &w.weld) ||
@@ -173,9 +210,11 @@ static int read_wall(jnode o, struct scene *s, struct scene_box *box, bool *boxe
         return 1;
     if (which == 0) return read_plane(o, s, w);
     if (which == 1) return read_box(o, s, w, box, boxed);
-    int e = s->dim == 2 ? scene_read_shape_2d(o, "load " COMMON, s, &w)
-                        : scene_read_shape_3d(o, "load " COMMON, s, &w);
-    if (e || read_load(json_node_key(&o, "load"), s, &w)) return 1;
+    int e = s->dim == 2 ? scene_read_shape_2d(o, "load materials " COMMON, s, &w)
+                        : scene_read_shape_3d(o, "load materials " COMMON, s, &w);
+    if (e || read_load(json_node_key(&o, "load"), s, &w) ||
+        read_materials(json_node_key(&o, "materials"), s, &w))
+        return 1;
     return add_wall(o, s, w);
 }
 

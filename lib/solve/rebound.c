@@ -63,7 +63,9 @@ static bool narrow(struct bracket *b, const struct gain *g)
 static void set(const struct packing *p, struct contacts *s, int64_t i, int64_t end, double times)
 {
     for (; i < end; i++) {
+        const double mu = s->c[i].mu;
         packing_set_law(p, &s->c[i]);
+        if (p->mu_s[packing_pair(p, s->c[i].a, s->c[i].b)] > 0) s->c[i].mu = mu;
         s->c[i].en *= times, s->c[i].et *= times;
     }
 }

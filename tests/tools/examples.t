@@ -203,6 +203,8 @@ claim()
     'nsd-stat out.h5 |'*'.fraction.fraction, .energy.kinetic'*) table 3 "$(frames out.h5 length)" ;;
     'nsd-stat --last -m profile --tsv out.h5 > profile.tsv') named 24 21 profile.tsv ;;
     'nsd-stat --last -f fields.vti out.h5') grep -aq 'Name="density"' fields.vti ;;
+    'nsd-stat -m mixing --tracer large --tsv out.h5 > lacey.tsv') named 11 101 lacey.tsv ;;
+    'nsd-stat -m departures --box -1,1,-1,1,0.002,0.005 --tsv out.h5 > stays.tsv') awk -F'\t' '$6 < 0 || NF != 8 { bad = 1 } END { exit bad || NR < 50 }' stays.tsv ;;
     'nsd-stat --last --grains out.h5 > grains.tsv') named 21 501 grains.tsv ;;
     # files of other programs
     'nsd-'*'nsd-export -o live/') listed live "$2" ;;

@@ -1,0 +1,6 @@
+#!/usr/bin/env bash
+# Lets the bed settle while the disc falls, draws the end, and prints the step, height and velocity of the disc.
+set -euo pipefail
+nsd-gen scene.json | nsd-step --until "${UNTIL:-0.7}" --every 0.02s -o intruder.h5
+nsd-view intruder.h5 >intruder.png
+nsd-info -p intruder.h5 | jq -r 'select(.id == 0) | [.step, .x[1], .v[1]] | @tsv'

@@ -1,0 +1,13 @@
+/* io/pull_tables.h: forces and torques on single bodies in a document. */
+#ifndef NSD_PULL_TABLES_H
+#define NSD_PULL_TABLES_H
+
+#include "io/table_read.h"
+#include "io/table_write.h"
+
+/* Nothing where there is no such group. packing_check() looks at them. Each returns 0, EX_DATAERR or EX_SOFTWARE; to
+   write, EX_IOERR. */
+int pull_tables_read(struct source *source, struct packing *p, struct why *why);
+int pull_tables_write(struct table_write *tables, const struct packing *p, struct why *why);
+
+#endif

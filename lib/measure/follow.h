@@ -1,0 +1,21 @@
+/*
+ * measure/follow.h: since when bodies are in the region, and pairs touch, carried from frame to frame. Times are
+ * those of frames, but those of bodies that were poured or removed, which are known.
+ */
+#ifndef NSD_FOLLOW_H
+#define NSD_FOLLOW_H
+
+#include "measure/snapshot.h"
+
+/* now = what is remembered of this frame, with times out of s->before; to be freed by kept_free. pairs: those that
+   touch as well, where the frame has contacts. Returns 0 or EX_SOFTWARE. */
+int follow(struct kept *now, const struct snapshot *s, bool pairs, struct why *why);
+/* Is a kept body in the region? */
+static inline bool follow_in(const struct kept_body *b)
+{
+    return b->entered == b->entered; // else NaN
+}
+/* s: when the body of that id was removed since the frame before; the frame's time where that is not known */
+double follow_removed(const struct snapshot *s, int32_t id);
+
+#endif

@@ -1,0 +1,84 @@
+/* measure/lifetimes.c: how long pairs touch [Silbert et al. 2007]. */
+#include "measure/follow.h"
+#include "measure/measures.h"
+
+#include <math.h>
+
+static const struct quantity quantities[] = {
+    { "since", "s", 1, "time since the frame before" },
+    { "pairs", "1", 1, "of bodies, or of a boundary and a body, that touch: push, pull" },
+    { "made", "1", 1, "of them, since the frame before" },
+    { "ended", "1", 1, "pairs that touched then and do not" },
+    { "age", "s", 1, "mean time that the pairs have touched; since the first frame at most" },
+    { "life", "s", 1, "mean time of those that ended and were seen to begin" },
+    { 0 },
+};
+
+static int lifetimes_rows(struct table *t, const struct snapshot *s, struct why *why)
+{
+    struct kept now;
+    double made = 0, ended = 0, age = 0, life = 0, whole = 0, *at = table_row(t, why);
+    if (!at || follow(&now, s, true, why)) return why->status;
+    for (int64_t k = 0; k < now.pairs; k++)
+        made += !kept_pair_find(s->before, &now.pair[k]), age += s->p->t - now.pair[k].began;
+    for (int64_t k = 0; k < s->before->pairs; k++) {
+        const struct kept_pair *c = &s->before->pair[k];
+        if (kept_pair_find(&now, c)) continue;
+        ended++;
+        if (c->whole) whole++, life += s->p->t - c->began;
+    }
+    const double n = (double)now.pairs;
+    put(&at, s->p->t - s->before->t), put(&at, n), put(&at, made), put(&at, ended);
+    if (!(n > 0)) table_null(t, "nothing touches");
+    if (!(whole > 0))
+        table_null(t, "no contact that was seen to begin has ended since the frame before");
+    put(&at, n > 0 ? age / n : NAN), put(&at, whole > 0 ? life / whole : NAN);
+    kept_free(&now);
+    return 0;
+}
+
+const struct measure measure_lifetimes = {
+    .name = "lifetimes",
+    .help = "how long contacts last",
+    .quantity = quantities,
+    .needs = NEEDS_CONTACTS_BEFORE,
+    .rows = lifetimes_rows,
+};
+
+/* ---- each of those that ended ---- */
+
+static const struct quantity each[] = {
+    { "a", "1", 1, "id of a body, or -1-w: boundary w" },
+    { "b", "1", 1, "id of the other" },
+    { "began", "s", 1, "time of the first frame in which they touched" },
+    { "ended", "s", 1, "time of the first frame in which they do not" },
+    { "life", "s", 1, "between the two" },
+    { "whole", "1", 1,
+      "1: it was seen to begin; 0: they touched in the first frame, and its life is longer" },
+    { 0 },
+};
+
+static int separations_rows(struct table *t, const struct snapshot *s, struct why *why)
+{
+    struct kept now;
+    if (follow(&now, s, true, why)) return why->status;
+    for (int64_t k = 0; k < s->before->pairs; k++) {
+        const struct kept_pair *c = &s->before->pair[k];
+        if (kept_pair_find(&now, c)) continue;
+        double *at = table_row(t, why);
+        if (!at) break;
+        put(&at, c->a), put(&at, c->b), put(&at, c->began), put(&at, s->p->t);
+        put(&at, s->p->t - c->began), put(&at, c->whole);
+    }
+    kept_free(&now);
+    return why->status;
+}
+
+const struct measure measure_separations = {
+    .name = "separations",
+    .help = "each contact that has ended since the frame before",
+    .quantity = each,
+    .list = true,
+    .needs = NEEDS_CONTACTS_BEFORE,
+    .rows = separations_rows,
+};

@@ -1,0 +1,100 @@
+/* measure/residence.c: how long bodies are in the region, and those that have left it [Danckwerts 1953]. */
+#include "measure/follow.h"
+#include "measure/measures.h"
+
+#include <math.h>
+
+static const struct quantity quantities[] = {
+    { "since", "s", 1, "time since the frame before" },
+    { "bodies", "1", 1, "that move, their centres in the region" },
+    { "entered", "1", 1, "of them, since the frame before" },
+    { "left", "1", 1, "bodies that were there and are not, or are removed" },
+    { "age", "s", 1, "mean time that those there have been there; since the first frame at most" },
+    { "stay", "s", 1, "mean time of those that left and were seen to come" },
+    { 0 },
+};
+
+/* Was it in the region, and is not now? */
+static bool gone(const struct kept *now, const struct kept_body *then)
+{
+    const struct kept_body *b = kept_find(now, then->id);
+    return follow_in(then) && !(b && follow_in(b));
+}
+
+static double left_at(const struct snapshot *s, const struct kept *now, int32_t id)
+{
+    return kept_find(now, id) ? s->p->t : follow_removed(s, id);
+}
+
+static int residence_rows(struct table *t, const struct snapshot *s, struct why *why)
+{
+    struct kept now;
+    double bodies = 0, entered = 0, left = 0, age = 0, stay = 0, whole = 0;
+    double *at = table_row(t, why);
+    if (!at || follow(&now, s, false, why)) return why->status;
+    for (int64_t k = 0; k < now.n; k++) {
+        const struct kept_body *b = &now.body[k], *then = kept_find(s->before, b->id);
+        if (!follow_in(b)) continue;
+        bodies++, age += s->p->t - b->entered, entered += !then || !follow_in(then);
+    }
+    for (int64_t k = 0; k < s->before->n; k++) {
+        const struct kept_body *b = &s->before->body[k];
+        if (!gone(&now, b)) continue;
+        left++;
+        if (b->whole) whole++, stay += left_at(s, &now, b->id) - b->entered;
+    }
+    put(&at, s->p->t - s->before->t), put(&at, bodies), put(&at, entered), put(&at, left);
+    if (!(bodies > 0)) table_null(t, "no body that moves is in the region");
+    if (!(whole > 0))
+        table_null(t, "no body that was seen to come has left since the frame before");
+    put(&at, bodies > 0 ? age / bodies : NAN), put(&at, whole > 0 ? stay / whole : NAN);
+    kept_free(&now);
+    return 0;
+}
+
+const struct measure measure_residence = {
+    .name = "residence",
+    .help = "how long bodies are in the region",
+    .quantity = quantities,
+    .needs = NEEDS_BEFORE,
+    .rows = residence_rows,
+};
+
+/* ---- each of those that left ---- */
+
+static const struct quantity each[] = {
+    { "id", "1", 1, "" },
+    { "entered", "s", 1, "time at which it came, or of the first frame" },
+    { "left", "s", 1, "time at which it left" },
+    { "stay", "s", 1, "between the two" },
+    { "whole", "1", 1,
+      "1: it was seen to come; 0: it was there in the first frame, and its stay is longer" },
+    { "removed", "1", 1, "1: it is in the document no more" },
+    { 0 },
+};
+
+static int departures_rows(struct table *t, const struct snapshot *s, struct why *why)
+{
+    struct kept now;
+    if (follow(&now, s, false, why)) return why->status;
+    for (int64_t k = 0; k < s->before->n; k++) {
+        const struct kept_body *b = &s->before->body[k];
+        if (!gone(&now, b)) continue;
+        const double left = left_at(s, &now, b->id);
+        double *at = table_row(t, why);
+        if (!at) break;
+        put(&at, b->id), put(&at, b->entered), put(&at, left), put(&at, left - b->entered);
+        put(&at, b->whole), put(&at, !kept_find(&now, b->id));
+    }
+    kept_free(&now);
+    return why->status;
+}
+
+const struct measure measure_departures = {
+    .name = "departures",
+    .help = "each body that has left the region since the frame before",
+    .quantity = each,
+    .list = true,
+    .needs = NEEDS_BEFORE,
+    .rows = departures_rows,
+};
