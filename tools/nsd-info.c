@@ -37,19 +37,19 @@ const struct cli_tool tool = {
 };
 
 /* What pairs of kinds do beyond friction and restitution */
-static void add_law(json_t *j, const struct law *l)
+static void add_law(json_t *j, const struct pair_law *l)
 {
     if (l->cohesion > 0)
         json_object_set_new(j, "cohesion",
                             json_pack("{s:f, s:f}", "force", l->cohesion, "range", l->range));
-    if (law_wets(l))
+    if (pair_law_wets(l))
         json_object_set_new(j, "capillary",
                             json_pack("{s:f, s:f, s:f}", "volume", l->volume, "tension", l->tension,
                                       "wetting", l->wetting));
-    if (law_rolls(l))
+    if (pair_law_rolls(l))
         json_object_set_new(j, "rolling",
                             json_pack("{s:f, s:f}", "mu_r", l->mu_r, "mu_p", l->mu_p));
-    if (!law_adheres(l)) return;
+    if (!pair_law_adheres(l)) return;
     json_t *a = json_pack("{s:f, s:f, s:f, s:f, s:f, s:f}", "c_n", l->cn, "c_t", l->ct, "w", l->w,
                           "eta", l->eta, "area", l->area, "beta", l->beta);
     json_object_set_new(a, l->forever ? "forever" : "made",
@@ -263,11 +263,11 @@ static void show_walls(const struct packing *p)
 }
 
 /* What other laws do at a contact */
-static void add_tie(json_t *j, const struct tie *t)
+static void add_tie(json_t *j, const struct contact_law *t)
 {
     json_object_set_new(j, "pull", json_number(t->pull));
     json_object_set_new(j, "beta", json_number(t->beta));
-    json_object_set_new(j, "wet", json_boolean(t->state & TIE_WET));
+    json_object_set_new(j, "wet", json_boolean(t->state & CONTACT_LAW_WET));
     if (t->beta > 0) {
         json_object_set_new(j, "stiffness", json_numbers(t->stiff, 2));
         json_object_set_new(j, "jump", json_numbers(t->jump, 3));
@@ -298,7 +298,7 @@ static void show_contacts(const struct frame *f)
         json_object_set_new(j, "mu", json_number(c->mu));
         json_object_set_new(j, "e_n", json_number(c->en));
         json_object_set_new(j, "e_t", json_number(c->et));
-        if (f->contacts.tie) add_tie(j, &f->contacts.tie[i]);
+        if (f->contacts.law) add_tie(j, &f->contacts.law[i]);
         const struct found *found = f->contacts.found ? &f->contacts.found[i] : NULL;
         if (found) {
             json_object_set_new(j, "r", json_numbers(found->r, 3));

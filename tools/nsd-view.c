@@ -139,7 +139,7 @@ static void set_box(struct view *v)
     for (int i = 0; i < 6; i++) v->boxed &= fabs(x[i]) < WALLS_FAR;
     if (!v->boxed || !(x[0] < x[1] && x[2] < x[3] && x[4] <= x[5]))
         die_usage("--box: '%s' is not X0,X1,Y0,Y1,Z0,Z1 (m), each first below the second", box);
-    v->region = (struct region){ { x[0], x[2], x[4] }, { x[1], x[3], x[5] } };
+    v->region = (struct extent){ { x[0], x[2], x[4] }, { x[1], x[3], x[5] } };
 }
 
 /* --cut: the plane's normal of any length, and the distance that goes with it. */

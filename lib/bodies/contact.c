@@ -13,7 +13,7 @@ enum {
 
 void contacts_free(struct contacts *s)
 {
-    free(s->c), free(s->found), free(s->tie), free(s->moment);
+    free(s->c), free(s->found), free(s->law), free(s->moment);
     *s = (struct contacts){ 0 };
 }
 
@@ -25,8 +25,8 @@ void contacts_free_found(struct contacts *s)
 
 void contacts_free_tie(struct contacts *s)
 {
-    free(s->tie);
-    s->tie = NULL;
+    free(s->law);
+    s->law = NULL;
 }
 
 int contacts_alloc_found(struct contacts *s)
@@ -36,11 +36,11 @@ int contacts_alloc_found(struct contacts *s)
     return s->found ? 0 : -1;
 }
 
-int contacts_alloc_tie(struct contacts *s)
+int contacts_alloc_laws(struct contacts *s)
 {
     contacts_free_tie(s);
-    s->tie = calloc((size_t)s->n + 1, sizeof *s->tie);
-    return s->tie ? 0 : -1;
+    s->law = calloc((size_t)s->n + 1, sizeof *s->law);
+    return s->law ? 0 : -1;
 }
 
 int contacts_alloc_moment(struct contacts *s)
@@ -56,14 +56,14 @@ int contacts_copy(struct contacts *to, const struct contacts *from)
     size_t n = (size_t)from->n;
     to->c = malloc((n + 1) * sizeof *to->c);
     if (!to->c || (from->found && contacts_alloc_found(to)) ||
-        (from->tie && contacts_alloc_tie(to)) || (from->moment && contacts_alloc_moment(to))) {
+        (from->law && contacts_alloc_laws(to)) || (from->moment && contacts_alloc_moment(to))) {
         contacts_free(to);
         return -1;
     }
     if (n) memcpy(to->c, from->c, n * sizeof *to->c);
     if (n && from->found) memcpy(to->found, from->found, n * sizeof *to->found);
     if (n && from->moment) memcpy(to->moment, from->moment, n * sizeof *to->moment);
-    if (n && from->tie) memcpy(to->tie, from->tie, n * sizeof *to->tie);
+    if (n && from->law) memcpy(to->law, from->law, n * sizeof *to->law);
     return 0;
 }
 
@@ -154,7 +154,7 @@ static bool not_negative(double x)
     return x >= 0 && isfinite(x);
 }
 
-static const char *tie_trouble(const struct tie *t)
+static const char *contact_law_trouble(const struct contact_law *t)
 {
     if (!not_negative(t->pull) || !not_negative(t->offset) || !not_negative(t->jump[0]) ||
         !isfinite(t->jump[1]) || !isfinite(t->jump[2]))
@@ -163,7 +163,7 @@ static const char *tie_trouble(const struct tie *t)
         return "its stiffness or beta is out of range";
     if (!not_negative(t->mu_r) || !not_negative(t->mu_p))
         return "mu_r and mu_p must not be negative";
-    return t->state >= 0 && t->state < TIE_STATES ? NULL : "its tie has no such state";
+    return t->state >= 0 && t->state < CONTACT_LAW_STATES ? NULL : "its tie has no such state";
 }
 
 int contacts_check(const struct contacts *s, int64_t bodies, int32_t walls, struct why *why)
@@ -172,7 +172,7 @@ int contacts_check(const struct contacts *s, int64_t bodies, int32_t walls, stru
         const char *what = contact_trouble(&s->c[i], s->found ? &s->found[i] : NULL, bodies, walls);
         for (int k = 0; k < 3 && s->moment; k++)
             if (!isfinite(s->moment[i][k])) what = "moment is not finite";
-        if (!what && s->tie) what = tie_trouble(&s->tie[i]);
+        if (!what && s->law) what = contact_law_trouble(&s->law[i]);
         if (what) return why_set(why, EX_DATAERR, "contact %lld: %s", (long long)i, what);
     }
     return 0;

@@ -31,11 +31,11 @@ struct found {
 enum { STATUS_JAMMED = 3 };
 
 /* Of a contact's tie: what is kept of it, and what is new in this step */
-enum { TIE_WET = 1, TIE_BONDED = 2, TIE_NEW_BRIDGE = 4, TIE_STATES = 8 };
+enum { CONTACT_LAW_WET = 1, CONTACT_LAW_BONDED = 2, TIE_NEW_BRIDGE = 4, CONTACT_LAW_STATES = 8 };
 
-/* What laws beyond friction and restitution do at a contact [bodies/tie.h]. Apart, so that it takes
+/* What laws beyond friction and restitution do at a contact [bodies/contact_law.h]. Apart, so that it takes
    memory only where there are such laws. */
-struct tie {
+struct contact_law {
     double pull;       /* N: f_c */
     double stiff[2];   /* N/m: S beta^2 c_n, S beta^2 c_t */
     double jump[3];    /* m: d, in the contact's basis */
@@ -83,7 +83,7 @@ struct contacts {
     struct contact *c;   /* [n] */
     struct found *found; /* [n]; NULL: not solved */
     double (*moment)[3]; /* [n] N m s: on b, in (n, t1, t2); NULL: not solved, or without moments */
-    struct tie *tie;     /* [n]; NULL: friction and restitution are all */
+    struct contact_law *law; /* [n]; NULL: friction and restitution are all */
 };
 
 void contacts_free(struct contacts *contacts);
@@ -92,7 +92,7 @@ int contacts_alloc_found(struct contacts *contacts);
 /* moment[n], likewise */
 int contacts_alloc_moment(struct contacts *contacts);
 /* tie[n], all zero, in place of the old ones; -1 when memory is short. */
-int contacts_alloc_tie(struct contacts *contacts);
+int contacts_alloc_laws(struct contacts *contacts);
 void contacts_free_tie(struct contacts *contacts);
 /* found and moment */
 void contacts_free_found(struct contacts *contacts);

@@ -141,7 +141,7 @@ int packing_alloc_laws(struct packing *p, struct why *why)
 bool packing_rolls(const struct packing *p)
 {
     for (int32_t k = 0; p->law && k < p->kinds * p->kinds; k++)
-        if (law_rolls(&p->law[k])) return true;
+        if (pair_law_rolls(&p->law[k])) return true;
     return false;
 }
 
@@ -450,7 +450,7 @@ int packing_check(const struct packing *p, struct why *why)
     for (int32_t i = 0; i < p->kinds * p->kinds; i++) {
         const char *pair = "the material of kinds %s and %s: %s";
         const char *a = p->kind_name[i / p->kinds], *b = p->kind_name[i % p->kinds];
-        const char *trouble = p->law ? law_trouble(&p->law[i]) : NULL;
+        const char *trouble = p->law ? pair_law_trouble(&p->law[i]) : NULL;
 #define CHECK(member, name, unit, key, most, range)                                                \
     if (!(p->member[i] >= 0 && p->member[i] <= (most) && isfinite(p->member[i])))                  \
         trouble = name " " range;

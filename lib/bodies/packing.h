@@ -12,11 +12,11 @@
 #include "bodies/body_columns.h"
 #include "bodies/bond.h"
 #include "bodies/contact.h"
-#include "bodies/law.h"
 #include "bodies/memory.h"
 #include "bodies/outside.h"
 #include "bodies/overlap.h"
 #include "bodies/pair_columns.h"
+#include "bodies/pair_law.h"
 #include "bodies/passage.h"
 #include "geometry/boundary.h"
 #include "geometry/cell.h"
@@ -58,8 +58,8 @@ struct packing {
     int32_t kinds;
     char **kind_name;              /* [kinds] */
     EACH_PAIR_COLUMN(PAIR_POINTER) /* mu, en, et: [kinds * kinds], symmetric */
-    struct law *law;    /* [kinds * kinds], symmetric: what is beyond these; NULL: nothing */
-    struct bonds bonds; /* what lasts of pairs by these laws */
+    struct pair_law *law; /* [kinds * kinds], symmetric: what is beyond these; NULL: nothing */
+    struct bonds bonds;   /* what lasts of pairs by these laws */
 
     struct memory memory;   /* the reactions that the next step starts from */
     struct outside outside; /* what acts from outside in the step to come */

@@ -3,9 +3,9 @@
 
 #include "base/team.h"
 #include "bodies/anchor.h"
+#include "bodies/contact_law.h"
 #include "bodies/freedom.h"
 #include "bodies/kinematics.h"
-#include "bodies/tie.h"
 #include "bodies/top.h"
 #include "detect/detect_shapes.h"
 #include "detect/seam.h"
@@ -15,8 +15,9 @@
 #include <string.h>
 
 enum {
-    SOME = 512,   /* bodies whose places on a curved boundary are worth a thread: 50 us of work, */
-    MANY = 16384, /* and bodies at a plane, or pairs */
+    PER_THREAD_CURVED =
+        512, /* bodies whose places on a curved boundary are worth a thread: 50 us of work, */
+    PER_THREAD_FLAT = 16384, /* and bodies at a plane, or pairs */
     ELEMENTS_BODY =
         4096, /* elements of meshes near a body: one ten times as wide as they are has 600 */
     ELEMENTS_LEAST = 1 << 26 /* and those that all may have: a second's work */
@@ -253,10 +254,12 @@ static int detect(struct contacts *out, const struct packing *p, const vec3 *x, 
         const struct wall *wall = &p->wall[o.wall];
         bool plane = wall->shape == BOUNDARY_PLANE;
         if (!wall_there(wall, t)) continue;
-        stored =
-            find_all(out, &o, p->n, plane && !shaped ? MANY : SOME, plane ? add_plane : add_shape);
+        stored = find_all(out, &o, p->n, plane && !shaped ? PER_THREAD_FLAT : PER_THREAD_CURVED,
+                          plane ? add_plane : add_shape);
     }
-    if (!e && stored) stored = find_all(out, &o, near->list.n, shaped ? SOME : MANY, add_pairs);
+    if (!e && stored)
+        stored = find_all(out, &o, near->list.n, shaped ? PER_THREAD_CURVED : PER_THREAD_FLAT,
+                          add_pairs);
     const struct seams seams = { p, x, edges, t, shaped, near->surface };
     const struct swift swift = { p, x, t, shaped, near->surface };
     if (!e && stored) e = seams_drop(out, &seams, why);
@@ -305,7 +308,7 @@ static double seeing_reach(const struct packing *p)
 double detect_reach(const struct packing *p, double gap)
 {
     double reach = overlap_sees_gaps(p->overlap) ? fmax(gap, seeing_reach(p)) : gap;
-    return p->law ? fmax(reach, ties_reach(p)) : reach;
+    return p->law ? fmax(reach, contact_laws_reach(p)) : reach;
 }
 
 /* Whether the law sees a pair with a gap above that of a contact. Where it would rebound from afar, the
@@ -327,10 +330,10 @@ static void keep_seen(struct contacts *s, const struct packing *p, double gap)
     bool sees = overlap_sees_gaps(p->overlap);
     const struct sight o = sight_of(p);
     for (int64_t i = 0; i < s->n; i++) {
-        bool held = s->tie && tie_holds(&s->tie[i]);
+        bool held = s->law && contact_law_holds(&s->law[i]);
         bool seen = sees && is_seen(p, &o, &s->c[i]);
         if (!(s->c[i].gap <= gap || held || swift_ahead(&s->c[i]) || seen)) continue;
-        if (s->tie) s->tie[n] = s->tie[i];
+        if (s->law) s->law[n] = s->law[i];
         s->c[n++] = s->c[i];
     }
     s->n = n;
@@ -374,7 +377,7 @@ static int predict(struct prediction *m, const struct packing *p, struct why *wh
         return why_set(why, EX_SOFTWARE, "no memory for the contacts");
     }
     struct predicting y = { p, m };
-    team_share(team_size(), p->n, MANY, predict_some, &y);
+    team_share(team_size(), p->n, PER_THREAD_FLAT, predict_some, &y);
     cell_predict(&p->cell, ahead, m->edge);
     return 0;
 }
@@ -403,7 +406,7 @@ int detect_choose(struct contacts *s, const struct packing *p, double gap, doubl
                   struct why *why)
 {
     int e = p->law && p->shape && p->bonds.n ? add_anchored(s, p, why) : 0;
-    if (!e && p->law) e = ties_find(s, p, why);
+    if (!e && p->law) e = contact_laws_find(s, p, why);
     if (!e && reach > gap) keep_seen(s, p, gap);
     return e;
 }

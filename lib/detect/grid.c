@@ -24,7 +24,7 @@ static bool grid_sort(struct grid *g)
     uint64_t buckets = 4;
     while (buckets < 2 * (uint64_t)g->n) buckets *= 2;
     g->mask = buckets - 1;
-    struct entry *sorted = malloc((size_t)g->n * sizeof *sorted);
+    struct grid_entry *sorted = malloc((size_t)g->n * sizeof *sorted);
     g->first = calloc(buckets + 2, sizeof *g->first);
     if (!sorted || !g->first) {
         free(sorted);
@@ -68,8 +68,8 @@ bool grids_build(struct grid g[LEVELS], const struct packing *p, const vec3 *at,
     }
     for (int64_t i = 0; i < p->n; i++) {
         int l = level_of(p->radius[i], rmax);
-        struct entry *e = &g[l].entry[g[l].n++];
-        *e = (struct entry){ at[i], p->radius[i], { 0 }, (int32_t)i };
+        struct grid_entry *e = &g[l].entry[g[l].n++];
+        *e = (struct grid_entry){ at[i], p->radius[i], { 0 }, (int32_t)i };
         const double x[3] = { e->x.x, e->x.y, e->x.z };
         for (int k = 0; k < 3; k++) {
             int32_t c = e->cell[k] = grid_cell(x[k], g[l].h);

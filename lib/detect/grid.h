@@ -11,7 +11,7 @@ enum {
     LEVELS = 40 /* grids, so radii down to 2^-40 of the largest; smaller ones share the last */
 };
 
-struct entry {
+struct grid_entry {
     vec3 x;          /* m: of the body */
     double r;        /* m: its radius */
     int32_t cell[3]; /* its cell along x, y, z */
@@ -23,9 +23,9 @@ struct grid {
     double h;      /* m: a cell's edge: bodies within reach are in the same or adjacent cells */
     int64_t n;     /* bodies */
     uint64_t mask; /* buckets - 1 */
-    uint64_t stride[2];  /* of the hash, along y and z; along x it is 1, for locality */
-    int64_t *first;      /* [buckets + 1] of bucket b: entry[first[b]] .. entry[first[b + 1] - 1] */
-    struct entry *entry; /* [n] sorted by bucket */
+    uint64_t stride[2]; /* of the hash, along y and z; along x it is 1, for locality */
+    int64_t *first;     /* [buckets + 1] of bucket b: entry[first[b]] .. entry[first[b + 1] - 1] */
+    struct grid_entry *entry; /* [n] sorted by bucket */
 };
 
 /* The number of the cell in which a coordinate x (m) lies, of cells h (m) wide */

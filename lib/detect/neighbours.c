@@ -12,7 +12,7 @@
 enum {
     KEEP_STEPS = 8, /* steps that a list is meant to serve, all at the speed of the fastest body; */
     KEEP_LEAST = 3, /* no list is kept that would serve fewer */
-    SOME = 16384    /* bodies whose ways are worth a thread: 100 us */
+    PER_THREAD = 16384 /* bodies whose ways are worth a thread: 100 us */
 };
 /* What a list may reach further than was asked, in mean radii: */
 static const double MIN_SPARE = 0.02, /* when (nearly) nothing moves */
@@ -126,11 +126,11 @@ static bool list_serves(const struct neighbours *s, const struct packing *p, con
                       .lo = v3(INFINITY, INFINITY, INFINITY),
                       .hi = v3(-INFINITY, -INFINITY, -INFINITY) };
     if (!s->listed || o.most < 0) return false;
-    team_share(team_size(), s->list.bodies, SOME, look_at_ways, &o);
+    team_share(team_size(), s->list.bodies, PER_THREAD, look_at_ways, &o);
     if (!o.far) return true;
     o.common = v3_scale(0.5, v3_add(o.lo, o.hi)), o.far = false;
     if (!(v3_norm(v3_sub(o.hi, o.lo)) <= 4 * o.most)) return false;
-    team_share(team_size(), s->list.bodies, SOME, look_at_ways, &o);
+    team_share(team_size(), s->list.bodies, PER_THREAD, look_at_ways, &o);
     return !o.far;
 }
 

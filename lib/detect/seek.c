@@ -45,14 +45,14 @@ static bool pairs_add(struct pairs *s, int32_t a, int32_t b, const int8_t shift[
 /* A body, or an image of it, that looks for others near it */
 struct seeker {
     const struct packing *p;
-    const struct entry *e; /* the body */
-    vec3 x;                /* m: where it looks from, */
-    int8_t shift[3];       /* so many edges from the body */
-    double reach;          /* m: the largest gap of a pair to list */
+    const struct grid_entry *e; /* the body */
+    vec3 x;                     /* m: where it looks from, */
+    int8_t shift[3];            /* so many edges from the body */
+    double reach;               /* m: the largest gap of a pair to list */
     struct pairs *out;
 };
 
-static bool near(const struct seeker *s, const struct entry *f)
+static bool near(const struct seeker *s, const struct grid_entry *f)
 {
     vec3 d = v3_sub(f->x, s->x);
     double most = s->e->r + f->r + s->reach;
@@ -64,7 +64,7 @@ static bool near(const struct seeker *s, const struct entry *f)
 static bool look_at(const struct seeker *s, const struct grid *g, int64_t first, int64_t end,
                     int64_t i0, int64_t i1, int64_t j, int64_t k)
 {
-    for (const struct entry *f = g->entry + first; f < g->entry + end; f++) {
+    for (const struct grid_entry *f = g->entry + first; f < g->entry + end; f++) {
         if (f->cell[0] < i0 || f->cell[0] > i1 || f->cell[1] != j || f->cell[2] != k) continue;
         if (!near(s, f)) continue;
         if (s->p->mass[s->e->body] == 0 && s->p->mass[f->body] == 0) continue;
@@ -255,7 +255,7 @@ static void search_some(void *arg, int64_t first, int64_t end)
     struct pairs part = { .bodies = o->out->bodies };
     bool found = true;
     for (int64_t m = first; found && m < end; m++) {
-        const struct entry *e = &g[l].entry[m];
+        const struct grid_entry *e = &g[l].entry[m];
         const struct seeker k = {
             .p = o->p, .e = e, .x = e->x, .reach = o->out->reach, .out = &part
         };

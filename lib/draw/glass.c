@@ -10,7 +10,7 @@ static void add(struct glass *g, vec3 a, vec3 b, vec3 c)
     if (area > 0) g->facet[g->facets++] = (struct facet){ { a, b, c }, v3_scale(1 / area, n) };
 }
 
-static void add_planes(struct glass *g, const struct packing *p, const struct region *r,
+static void add_planes(struct glass *g, const struct packing *p, const struct extent *r,
                        vec3 toward)
 {
     vec3 corner[WALLS_CORNERS];
@@ -21,7 +21,7 @@ static void add_planes(struct glass *g, const struct packing *p, const struct re
     }
 }
 
-int glass_init(struct glass *g, const struct packing *p, const struct region *r, vec3 toward,
+int glass_init(struct glass *g, const struct packing *p, const struct extent *r, vec3 toward,
                struct why *why)
 {
     struct outline o;

@@ -25,7 +25,7 @@ struct glass {
 /* The boundaries of p inside the region, at p's time, in space; none in the plane. Planes that are drawn
    as floors where they are seen from `toward` (unit vector to the viewer) are left out. Returns 0, or
    EX_SOFTWARE with nothing to free. */
-int glass_init(struct glass *g, const struct packing *p, const struct region *r, vec3 toward,
+int glass_init(struct glass *g, const struct packing *p, const struct extent *r, vec3 toward,
                struct why *why);
 void glass_free(struct glass *g);
 

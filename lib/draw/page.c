@@ -102,7 +102,7 @@ static void put_walls(struct chunk *b, const struct walls *w, const struct outli
     for (int i = 0; i < w->edges; i++) put_point(b, w->edge[i].a), put_point(b, w->edge[i].b);
 }
 
-static int write_walls(struct page *p, const struct packing *k, const struct region *r,
+static int write_walls(struct page *p, const struct packing *k, const struct extent *r,
                        struct why *why)
 {
     struct walls *w = malloc(sizeof *w);
@@ -265,7 +265,7 @@ static int adopt(struct page *p, const struct packing *k, struct why *why)
 
 int page_frame(struct page *p, const struct packing *k, const struct contacts *s, struct why *why)
 {
-    struct region r = { 0 };
+    struct extent r = { 0 };
     const struct contacts none = { 0 };
     if (!s || !s->found) s = &none;
     if (k->n > INT32_MAX || s->n > INT32_MAX)

@@ -42,7 +42,7 @@ struct page {
     int64_t grains, walls, shapes; /* chunks of what does not change in every frame */
     size_t grains_size, walls_size, shapes_size;
     void *grains_last, *walls_last, *shapes_last; /* the last of each, to see whether it changes */
-    struct region seen;                           /* m: of all grains and finite walls */
+    struct extent seen;                           /* m: of all grains and finite walls */
     double fastest, spin, radius[2], force, push; /* m/s, rad/s, m, N, N: of all frames */
     int most;                                     /* contacts of a grain that push */
 };

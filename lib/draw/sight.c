@@ -1,18 +1,18 @@
 #include "draw/sight.h"
 
 /* The part of the line that is in something, and the normal where it comes out */
-struct part {
+struct interval {
     double lo, hi;
     vec3 n;
 };
 
-static struct part all_of_it(void)
+static struct interval all_of_it(void)
 {
-    return (struct part){ -INFINITY, INFINITY, { 0, 0, 0 } };
+    return (struct interval){ -INFINITY, INFINITY, { 0, 0, 0 } };
 }
 
 /* What is left of it where n . x <= at */
-static void cut(struct part *k, const struct sight *l, vec3 n, double at)
+static void cut(struct interval *k, const struct sight *l, vec3 n, double at)
 {
     double slope = v3_dot(n, l->along), rest = at - v3_dot(n, l->from);
     if (slope > 1e-12) {
@@ -24,40 +24,40 @@ static void cut(struct part *k, const struct sight *l, vec3 n, double at)
     }
 }
 
-static struct part in_ball(const struct sight *l, vec3 c, double r)
+static struct interval in_ball(const struct sight *l, vec3 c, double r)
 {
     vec3 d = v3_sub(c, l->from);
     double middle = v3_dot(d, l->along), h2 = r * r - v3_dot(d, d) + middle * middle;
-    if (!(h2 > 0)) return (struct part){ INFINITY, -INFINITY, { 0, 0, 0 } };
+    if (!(h2 > 0)) return (struct interval){ INFINITY, -INFINITY, { 0, 0, 0 } };
     double h = sqrt(h2);
     vec3 x = v3_sub(v3_axpy(l->from, middle + h, l->along), c);
-    return (struct part){ middle - h, middle + h, v3_scale(1 / r, x) };
+    return (struct interval){ middle - h, middle + h, v3_scale(1 / r, x) };
 }
 
 /* In the cylinder around a segment, without round ends */
-static struct part in_tube(const struct sight *l, vec3 a, vec3 b, double r)
+static struct interval in_tube(const struct sight *l, vec3 a, vec3 b, double r)
 {
     vec3 d = v3_sub(b, a), u = v3_scale(1 / v3_norm(d), d), o = v3_sub(l->from, a);
     vec3 p = v3_axpy(l->along, -v3_dot(l->along, u), u), q = v3_axpy(o, -v3_dot(o, u), u);
     double A = v3_dot(p, p), B = v3_dot(p, q), C = v3_dot(q, q) - r * r, D = B * B - A * C;
-    if (A < 1e-12 || !(D > 0)) return (struct part){ INFINITY, -INFINITY, { 0, 0, 0 } };
-    struct part k = { (-B - sqrt(D)) / A, (-B + sqrt(D)) / A, { 0, 0, 0 } };
+    if (A < 1e-12 || !(D > 0)) return (struct interval){ INFINITY, -INFINITY, { 0, 0, 0 } };
+    struct interval k = { (-B - sqrt(D)) / A, (-B + sqrt(D)) / A, { 0, 0, 0 } };
     k.n = v3_scale(1 / r, v3_axpy(q, k.hi, p));
     cut(&k, l, u, v3_dot(u, b)), cut(&k, l, v3_scale(-1, u), -v3_dot(u, a));
     return k;
 }
 
-static struct part in_core(const struct shape *s, const struct sight *l)
+static struct interval in_core(const struct shape *s, const struct sight *l)
 {
-    struct part k = all_of_it();
+    struct interval k = all_of_it();
     for (int32_t f = 0; f < s->faces; f++)
         cut(&k, l, s->normal[f], v3_dot(s->normal[f], s->vertex[s->corner[s->first[f]]]));
     return k;
 }
 
-static struct part over_face(const struct shape *s, const struct sight *l, int32_t f)
+static struct interval over_face(const struct shape *s, const struct sight *l, int32_t f)
 {
-    struct part k = all_of_it();
+    struct interval k = all_of_it();
     vec3 n = s->normal[f];
     double at = v3_dot(n, s->vertex[s->corner[s->first[f]]]);
     for (int32_t i = s->first[f], end = s->first[f + 1]; i < end; i++) {
@@ -71,7 +71,7 @@ static struct part over_face(const struct shape *s, const struct sight *l, int32
 }
 
 /* The one that is nearest to the viewer, once what is cut away is */
-static void take(struct part *best, struct part k, const struct sight *l)
+static void take(struct interval *best, struct interval k, const struct sight *l)
 {
     if (!(k.lo < k.hi) || k.lo >= l->before) return;
     if (k.hi > l->before) k.hi = l->before, k.n = v3(0, 0, 0);
@@ -80,7 +80,7 @@ static void take(struct part *best, struct part k, const struct sight *l)
 
 bool sight_meets(const struct shape *s, const struct sight *l, double *t, vec3 *n)
 {
-    struct part best = { INFINITY, -INFINITY, { 0, 0, 0 } };
+    struct interval best = { INFINITY, -INFINITY, { 0, 0, 0 } };
     bool clump = s->form == SHAPE_CLUMP, hull = s->form == SHAPE_HULL;
     if (hull) take(&best, in_core(s, l), l);
     for (int32_t i = 0; i < s->vertices && (clump || s->round > 0); i++)

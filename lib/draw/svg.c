@@ -95,7 +95,7 @@ static int draw_walls(cairo_t *cr, const struct view *v, const struct packing *p
 {
     struct walls *b = malloc(sizeof *b);
     if (!b) return -1;
-    const struct region r = { v3_add(v->region.lo, v->moved), v3_add(v->region.hi, v->moved) };
+    const struct extent r = { v3_add(v->region.lo, v->moved), v3_add(v->region.hi, v->moved) };
     walls_build(b, p, &r);
     images_outline(b, p);
     cairo_set_source_rgb(cr, 0.2, 0.2, 0.2);

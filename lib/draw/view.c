@@ -11,7 +11,7 @@ bool view_shows(const struct view *v, const struct packing *p, int64_t i)
 {
     vec3 x = v3_sub(p->x[i], v->moved);
     if (!(v3_dot(x, x) < WALLS_FAR * WALLS_FAR) || !(p->radius[i] < WALLS_FAR)) return false;
-    const struct region *r = &v->region;
+    const struct extent *r = &v->region;
     return !v->boxed || (x.x >= r->lo.x && x.x <= r->hi.x && x.y >= r->lo.y && x.y <= r->hi.y &&
                          (p->dim == 2 || (x.z >= r->lo.z && x.z <= r->hi.z)));
 }
@@ -30,7 +30,7 @@ enum { CROWD = 20 }; /* fewer bodies have no stray one */
  * Bodies that have flown off must not shrink all others. Along each axis, those count that are no
  * farther outside the middle 96 % than these extend, twice. r = where bodies count.
  */
-static bool find_crowd(struct region *r, const struct packing *p)
+static bool find_crowd(struct extent *r, const struct packing *p)
 {
     double *x = malloc((size_t)(p->n + 1) * sizeof *x), lo[3], hi[3];
     if (!x || p->n < CROWD) {
@@ -52,7 +52,7 @@ static bool find_crowd(struct region *r, const struct packing *p)
     return true;
 }
 
-static bool within(const struct region *r, vec3 x)
+static bool within(const struct extent *r, vec3 x)
 {
     return x.x >= r->lo.x && x.x <= r->hi.x && x.y >= r->lo.y && x.y <= r->hi.y && x.z >= r->lo.z &&
            x.z <= r->hi.z;
@@ -61,7 +61,7 @@ static bool within(const struct region *r, vec3 x)
 /* The bodies that count, as a packing that borrows the walls and parameters of p. */
 static int gather_crowd(struct packing *crowd, const struct packing *p, struct why *why)
 {
-    struct region r;
+    struct extent r;
     *crowd = *p;
     crowd->x = malloc((size_t)(p->n + 1) * sizeof *crowd->x);
     crowd->radius = malloc((size_t)(p->n + 1) * sizeof *crowd->radius);
@@ -98,7 +98,7 @@ static int follow_first(struct view *v, const struct packing *p, struct why *why
 /* Extends the region and the window to the bodies of this packing. */
 static int extend_window(struct view *v, const struct packing *p, struct why *why)
 {
-    struct region r;
+    struct extent r;
     if (!region_of(&r, p))
         return why_set(why, EX_DATAERR, "neither bodies nor walls: nothing to see");
     v->region = v->started ? region_join(v->region, r) : r;
@@ -138,7 +138,7 @@ int view_extend(struct view *v, const struct packing *p, struct why *why)
 void view_fit(struct view *v, const struct packing *p)
 {
     if (v->boxed) {
-        const struct region *r = &v->region;
+        const struct extent *r = &v->region;
         for (int k = 0; k < 8; k++)
             window_add(
                 &v->window, &v->camera,
@@ -272,7 +272,7 @@ static void place_ground(struct ground *g, const struct view *v, const struct pa
         vec3 at = sample_of(v, v3_sub(f->corner[k], v->moved));
         g->x[k] = at.x, g->y[k] = at.y;
     }
-    const struct region *r = &v->region;
+    const struct extent *r = &v->region;
     double size = fmax(fmax(r->hi.x - r->lo.x, r->hi.y - r->lo.y), 1e-150);
     vec3 e = fabs(f->n.x) < 0.9 ? v3(1, 0, 0) : v3(0, 1, 0);
     vec3 along[2] = { v3_axpy(e, -v3_dot(e, f->n), f->n) };
@@ -299,7 +299,7 @@ static int place_walls(struct raster *s, const struct view *v, const struct pack
     s->ground = malloc(WALLS_PANELS * sizeof *s->ground);
     s->edge = malloc(WALLS_EDGES * sizeof *s->edge);
     bool allocated = b && s->ground && s->edge;
-    const struct region r = { v3_add(v->region.lo, v->moved), v3_add(v->region.hi, v->moved) };
+    const struct extent r = { v3_add(v->region.lo, v->moved), v3_add(v->region.hi, v->moved) };
     if (allocated) walls_build(b, p, &r), images_outline(b, p);
     for (int i = 0; allocated && i < b->panels; i++)
         if (v3_dot(b->panel[i].n, v->camera.toward) > WALLS_FACING)
@@ -334,7 +334,7 @@ static int place_panes(struct raster *s, const struct view *v, const struct pack
 {
     struct glass glass;
     struct why why = { 0 };
-    const struct region r = { v3_add(v->region.lo, v->moved), v3_add(v->region.hi, v->moved) };
+    const struct extent r = { v3_add(v->region.lo, v->moved), v3_add(v->region.hi, v->moved) };
     if (!v->glass) return 0;
     if (glass_init(&glass, p, &r, v->camera.toward, &why)) return -1;
     s->pane = malloc((size_t)(glass.facets + 1) * sizeof *s->pane);

@@ -33,7 +33,7 @@ struct view {
     struct paint paint;
     bool
         boxed; /* region is given: it fills the picture; bodies with centres outside are left out */
-    struct region region;
+    struct extent region;
 
     bool started; /* from here on set by view_extend and view_fit */
     int dim;

@@ -56,7 +56,7 @@ static double limit(const struct packing *p, int axis, double sign)
 }
 
 /* The space between the walls; along an axis that they leave open, as wide as the widest other. */
-static bool region_of_walls(struct region *r, const struct packing *p)
+static bool region_of_walls(struct extent *r, const struct packing *p)
 {
     double lo[3], hi[3], size = 0;
     bool any = false;
@@ -90,7 +90,7 @@ static bool any_finite(const struct packing *p)
 }
 
 /* Boundaries that end somewhere are shown whole; without memory for that they are not. */
-static void add_finite(struct region *r, const struct packing *p)
+static void add_finite(struct extent *r, const struct packing *p)
 {
     struct outline o;
     struct why why = { 0 };
@@ -105,7 +105,7 @@ static void add_finite(struct region *r, const struct packing *p)
     outline_free(&o);
 }
 
-bool region_of(struct region *r, const struct packing *p)
+bool region_of(struct extent *r, const struct packing *p)
 {
     const double far = 2 * WALLS_FAR;
     r->lo = v3(far, far, far), r->hi = v3(-far, -far, -far);
@@ -129,9 +129,9 @@ bool region_of(struct region *r, const struct packing *p)
     return true;
 }
 
-struct region region_join(struct region a, struct region b)
+struct extent region_join(struct extent a, struct extent b)
 {
-    return (struct region){
+    return (struct extent){
         { fmin(a.lo.x, b.lo.x), fmin(a.lo.y, b.lo.y), fmin(a.lo.z, b.lo.z) },
         { fmax(a.hi.x, b.hi.x), fmax(a.hi.y, b.hi.y), fmax(a.hi.z, b.hi.z) },
     };
@@ -162,7 +162,7 @@ static void clip(struct polygon *g, vec3 n, double c, int who)
 }
 
 /* With a tolerance, because walls often lie exactly in the sides of the region */
-static void clip_region(struct polygon *g, const struct region *r, vec3 middle, double size,
+static void clip_region(struct polygon *g, const struct extent *r, vec3 middle, double size,
                         int dim)
 {
     double tolerance = 1e-6 * size;
@@ -207,7 +207,7 @@ static void keep_polygon(struct walls *b, const struct packing *p, int i, const 
 }
 
 /* Wall i cut by the region and by all other walls; corners from the middle */
-static struct polygon wall_cut(const struct packing *p, int i, const struct region *r, vec3 middle)
+static struct polygon wall_cut(const struct packing *p, int i, const struct extent *r, vec3 middle)
 {
     double size = v3_norm(v3_sub(r->hi, r->lo));
     if (!is_plane(p, i) || !is_drawn(wall_now(p, i))) return (struct polygon){ .count = 0 };
@@ -222,7 +222,7 @@ static struct polygon wall_cut(const struct packing *p, int i, const struct regi
 }
 
 /* Lines of the other shapes; without memory for them there are none. */
-static void add_outlines(struct walls *b, const struct packing *p, const struct region *r)
+static void add_outlines(struct walls *b, const struct packing *p, const struct extent *r)
 {
     struct outline o;
     struct why why = { 0 };
@@ -233,7 +233,7 @@ static void add_outlines(struct walls *b, const struct packing *p, const struct 
     outline_free(&o);
 }
 
-void walls_build(struct walls *b, const struct packing *p, const struct region *r)
+void walls_build(struct walls *b, const struct packing *p, const struct extent *r)
 {
     b->panels = b->edges = 0;
     vec3 middle = v3_scale(0.5, v3_add(r->lo, r->hi));
@@ -250,7 +250,7 @@ bool walls_floor(const struct packing *p, int i, vec3 toward)
     return n.z >= WALLS_FLAT && v3_dot(n, toward) > WALLS_FACING;
 }
 
-int walls_polygon(const struct packing *p, int i, const struct region *r, vec3 *corner)
+int walls_polygon(const struct packing *p, int i, const struct extent *r, vec3 *corner)
 {
     vec3 middle = v3_scale(0.5, v3_add(r->lo, r->hi));
     struct polygon g = wall_cut(p, i, r, middle);

@@ -9,7 +9,7 @@
 #include "bodies/packing.h"
 
 /* m: a box with its sides along the axes */
-struct region {
+struct extent {
     vec3 lo, hi;
 };
 
@@ -45,18 +45,18 @@ struct walls {
  * r = the region to draw: that of the bodies, extended to walls across an axis where these are
  * near, else by a margin; without bodies, the space between the walls. False if there are neither.
  */
-bool region_of(struct region *r, const struct packing *p);
+bool region_of(struct extent *r, const struct packing *p);
 /* The smallest region that holds both */
-struct region region_join(struct region a, struct region b);
+struct extent region_join(struct extent a, struct extent b);
 
 /* b = the walls inside the region at the packing's time. In the plane walls are edges. */
-void walls_build(struct walls *b, const struct packing *p, const struct region *r);
+void walls_build(struct walls *b, const struct packing *p, const struct extent *r);
 
 /* Whether wall i is drawn as a floor where it is seen from `toward` (unit vector to the viewer) */
 bool walls_floor(const struct packing *p, int i, vec3 toward);
 
 /* corner[] = the corners (m) of wall i inside the region and before all other walls, at most
    WALLS_CORNERS, two in the plane; returns how many. i < WALLS_PANELS. */
-int walls_polygon(const struct packing *p, int i, const struct region *r, vec3 *corner);
+int walls_polygon(const struct packing *p, int i, const struct extent *r, vec3 *corner);
 
 #endif

@@ -70,19 +70,19 @@ struct header {
 };
 _Static_assert(sizeof(struct header) == 256, "the header of GSD");
 
-struct entry {
+struct index_entry {
     uint64_t frame, rows;
     int64_t at;
     uint32_t columns;
     uint16_t chunk;
     uint8_t type, flags;
 };
-_Static_assert(sizeof(struct entry) == 32, "an entry of GSD's index");
+_Static_assert(sizeof(struct index_entry) == 32, "an entry of GSD's index");
 
 /* A file that is written */
 struct gsd {
     int64_t at, frames, entries, room;
-    struct entry *entry;
+    struct index_entry *entry;
     struct {
         uint64_t rows, hash;
         uint32_t columns;
@@ -111,16 +111,16 @@ static int put_chunk(struct gsd *g, FILE *out, enum chunk k, int64_t rows, int64
         return 0;
     if (g->entries == g->room) {
         int64_t room = g->room ? 2 * g->room : 64;
-        struct entry *more = realloc(g->entry, (size_t)room * sizeof *more);
+        struct index_entry *more = realloc(g->entry, (size_t)room * sizeof *more);
         if (!more) return why_set(why, EX_SOFTWARE, "no memory for the index of a GSD file");
         g->entry = more, g->room = room;
     }
-    g->entry[g->entries++] = (struct entry){ .frame = (uint64_t)g->frames,
-                                             .rows = (uint64_t)rows,
-                                             .at = g->at,
-                                             .columns = (uint32_t)columns,
-                                             .chunk = (uint16_t)k,
-                                             .type = (uint8_t)chunks[k].type };
+    g->entry[g->entries++] = (struct index_entry){ .frame = (uint64_t)g->frames,
+                                                   .rows = (uint64_t)rows,
+                                                   .at = g->at,
+                                                   .columns = (uint32_t)columns,
+                                                   .chunk = (uint16_t)k,
+                                                   .type = (uint8_t)chunks[k].type };
     fwrite(data, 1, size, out);
     g->at += (int64_t)size;
     return 0;

@@ -28,7 +28,7 @@ static int add_cell(struct sheet *s, struct owners *o, int32_t boundary, int cor
 }
 
 static int add_planes(struct sheet *s, struct owners *o, const struct packing *p,
-                      const struct region *region, struct why *why)
+                      const struct extent *region, struct why *why)
 {
     vec3 corner[WALLS_CORNERS];
     for (int32_t i = 0; i < p->walls && i < WALLS_PANELS; i++) {
@@ -39,7 +39,7 @@ static int add_planes(struct sheet *s, struct owners *o, const struct packing *p
 }
 
 static int add_outlines(struct sheet *s, struct owners *o, const struct packing *p,
-                        const struct region *region, struct why *why)
+                        const struct extent *region, struct why *why)
 {
     struct outline line;
     if (outline_init(&line, p, v3_norm(v3_sub(region->hi, region->lo)), why)) return why->status;
@@ -75,7 +75,7 @@ static int add_columns(struct sheet *s, const struct owners *o, const struct pac
 int sheet_boundary(struct sheet *s, const struct export_frame *m, struct why *why)
 {
     const struct packing *p = m->packing;
-    struct region region = { 0 };
+    struct extent region = { 0 };
     struct owners o = { 0 };
     s->shape = p->dim == 2 ? SHEET_LINE : SHEET_POLYGON;
     if (region_of(&region, p) && !add_planes(s, &o, p, &region, why))

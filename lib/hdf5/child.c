@@ -21,7 +21,7 @@
 struct child {
     pid_t pid; /* 0: none; -1: it has ended */
     int line;  /* a socket to it; -1: it is gone */
-    struct shared *shared;
+    struct server_memory *shared;
     struct child *next; /* of those that are running */
 };
 

@@ -45,10 +45,10 @@ static int put_block(hid_t set, hid_t type, int rank, const hsize_t *first, cons
 }
 
 /* The numbers wanted: the dataset of a request, whose type suits it; else NULL and why */
-static const struct entry *find_numbers(const struct served *s, const struct request *q,
-                                        struct why *why)
+static const struct served_entry *find_numbers(const struct served *s, const struct request *q,
+                                               struct why *why)
 {
-    const struct entry *e = served_find(s, q->path, why);
+    const struct served_entry *e = served_find(s, q->path, why);
     if (!e || element_suits(&e->object, q->type)) return e;
     why_set(why, EX_DATAERR, "%s: %s are wanted, and it holds something else", q->path,
             element_wanted(q->type));
@@ -56,7 +56,7 @@ static const struct entry *find_numbers(const struct served *s, const struct req
 }
 
 /* The block of a dataset in which as many numbers as `stored` have to be there */
-static int answer_block(struct served *s, const struct entry *e, const struct request *q,
+static int answer_block(struct served *s, const struct served_entry *e, const struct request *q,
                         hsize_t stored, const hsize_t *first, const hsize_t *count,
                         struct sink *sink, struct why *why)
 {
@@ -78,7 +78,7 @@ static int answer_block(struct served *s, const struct entry *e, const struct re
 static int answer_rows(struct served *s, const struct request *q, struct sink *sink,
                        struct why *why)
 {
-    const struct entry *e = find_numbers(s, q, why);
+    const struct served_entry *e = find_numbers(s, q, why);
     if (!e) return why->status;
     const struct object *o = &e->object;
     hsize_t first[OBJECT_RANK] = { 0 }, count[OBJECT_RANK], row = 1,
@@ -100,7 +100,7 @@ static int answer_rows(struct served *s, const struct request *q, struct sink *s
 static int answer_part(struct served *s, const struct request *q, struct sink *sink,
                        struct why *why)
 {
-    const struct entry *e = find_numbers(s, q, why);
+    const struct served_entry *e = find_numbers(s, q, why);
     if (!e) return why->status;
     const struct object *o = &e->object;
     hsize_t first[OBJECT_RANK] = { 0 }, count[OBJECT_RANK], width = 1;
@@ -134,7 +134,7 @@ static int answer_text(struct served *s, const struct request *q, struct sink *s
         H5Aclose(attr);
     } else {
         struct why none = { 0 };
-        const struct entry *e = served_find(s, q->path, &none);
+        const struct served_entry *e = served_find(s, q->path, &none);
         if (!e) return sink->begin(sink, &reply);
         is_text = e->object.kind == OBJECT_TEXT;
         if (is_text && served_stored(e, e->object.size, why)) return why->status;
@@ -184,7 +184,7 @@ static int answer_attribute(struct served *s, const struct request *q, struct si
 
 static int answer_raw(struct served *s, const struct request *q, struct sink *sink, struct why *why)
 {
-    const struct entry *e = served_find(s, q->path, why);
+    const struct served_entry *e = served_find(s, q->path, why);
     if (!e) return why->status;
     const struct object *o = &e->object;
     hsize_t first[OBJECT_RANK] = { 0 }, points = 1;

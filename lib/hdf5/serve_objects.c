@@ -104,7 +104,7 @@ int serve_attributes(struct served *s, const struct request *q, struct sink *sin
 }
 
 /* The data of a small dataset, so that nobody needs to ask; NULL where that does not work out. */
-static void *small_data(const struct served *s, const struct entry *e, struct object *o,
+static void *small_data(const struct served *s, const struct served_entry *e, struct object *o,
                         size_t most)
 {
     struct why none = { 0 };
@@ -150,7 +150,7 @@ void *serve_objects(struct served *s, size_t *size, struct why *why)
     struct gathered g = { .why = why };
     size_t sent = 0;
     for (int64_t k = 0; k < s->count && !why->status; k++) {
-        const struct entry *e = &s->entry[k];
+        const struct served_entry *e = &s->entry[k];
         struct object o = e->object;
         size_t most = e->owner ? SMALL_DATA : SMALL_LINKED;
         o.name = (uint32_t)strlen(e->path) + 1;

@@ -31,7 +31,7 @@ struct walk {
 };
 
 /* Refuses what would make libhdf5 open other files or load code. Is the data packed? */
-static int check_storage(hid_t plist, struct entry *e, struct why *why)
+static int check_storage(hid_t plist, struct served_entry *e, struct why *why)
 {
     if (H5Pget_layout(plist) == H5D_VIRTUAL)
         return why_set(why, EX_DATAERR, "%s: a virtual dataset, of data in other files", e->path);
@@ -53,7 +53,7 @@ static int check_storage(hid_t plist, struct entry *e, struct why *why)
 }
 
 /* A packed chunk has to stay in the cache while its pieces are handed out; other data bypass it. */
-static hid_t open_again(hid_t set, hid_t plist, struct entry *e)
+static hid_t open_again(hid_t set, hid_t plist, struct served_entry *e)
 {
     hsize_t chunk[H5S_MAX_RANK], bytes = e->object.size ? e->object.size : 16;
     int rank = H5Pget_layout(plist) == H5D_CHUNKED ? H5Pget_chunk(plist, H5S_MAX_RANK, chunk) : 0;
@@ -70,7 +70,7 @@ static hid_t open_again(hid_t set, hid_t plist, struct entry *e)
 }
 
 /* Under each of its names a dataset is read anew. */
-static int count_bytes(struct served *s, const struct entry *e, struct why *why)
+static int count_bytes(struct served *s, const struct served_entry *e, struct why *why)
 {
     if (__builtin_add_overflow(s->unpacked, e->bytes, &s->unpacked)) s->unpacked = UINT64_MAX;
     if (s->unpacked <= s->limit) return 0;
@@ -80,7 +80,7 @@ static int count_bytes(struct served *s, const struct entry *e, struct why *why)
                    (unsigned long long)(s->size / 1000 + 1));
 }
 
-static int look_at_shape(struct served *s, hid_t set, struct entry *e, struct why *why)
+static int look_at_shape(struct served *s, hid_t set, struct served_entry *e, struct why *why)
 {
     hid_t disk = H5Dget_type(set), space = H5Dget_space(set);
     hsize_t shape[H5S_MAX_RANK] = { 0 };
@@ -102,7 +102,7 @@ static int look_at_shape(struct served *s, hid_t set, struct entry *e, struct wh
     return count_bytes(s, e, why);
 }
 
-static int look_at_dataset(struct served *s, hid_t set, struct entry *e, struct why *why)
+static int look_at_dataset(struct served *s, hid_t set, struct served_entry *e, struct why *why)
 {
     hid_t plist = H5Dget_create_plist(set);
     int status = plist < 0 ? why_set(why, EX_DATAERR, "%s: cannot be opened (damaged?)", e->path)
@@ -117,7 +117,7 @@ static int look_at_dataset(struct served *s, hid_t set, struct entry *e, struct 
     return status;
 }
 
-static struct entry *add_entry(struct walk *w, const char *name)
+static struct served_entry *add_entry(struct walk *w, const char *name)
 {
     struct served *s = w->served;
     if (s->count == MOST_OBJECTS)
@@ -126,13 +126,13 @@ static struct entry *add_entry(struct walk *w, const char *name)
                NULL;
     if (s->count == s->room) {
         int64_t room = s->room ? 2 * s->room : 128;
-        struct entry *more = realloc(s->entry, (size_t)room * sizeof *more);
+        struct served_entry *more = realloc(s->entry, (size_t)room * sizeof *more);
         if (!more) return why_set(w->why, EX_SOFTWARE, "no memory for a list of objects"), NULL;
         s->entry = more, s->room = room;
     }
-    struct entry *e = &s->entry[s->count];
+    struct served_entry *e = &s->entry[s->count];
     size_t length = strlen(w->path) + strlen(name) + 2;
-    *e = (struct entry){ .set = -1, .address = HADDR_UNDEF, .path = malloc(length) };
+    *e = (struct served_entry){ .set = -1, .address = HADDR_UNDEF, .path = malloc(length) };
     if (!e->path) return why_set(w->why, EX_SOFTWARE, "no memory for a list of objects"), NULL;
     snprintf(e->path, length, "%s/%s", w->path, name);
     s->count++;
@@ -154,10 +154,10 @@ static int look_into_group(struct walk *w, hid_t group, const char *path)
 }
 
 /* The same object under another name: nothing of it is looked at again. */
-static bool known_already(struct served *s, struct entry *e)
+static bool known_already(struct served *s, struct served_entry *e)
 {
     for (int64_t k = 0; k + 1 < s->count && k < OPEN_SETS; k++) {
-        const struct entry *other = &s->entry[k];
+        const struct served_entry *other = &s->entry[k];
         if (other->address != e->address || other->set < 0) continue;
         char *path = e->path;
         *e = *other;
@@ -184,7 +184,7 @@ static herr_t look_at_link(hid_t from, const char *name, const H5L_info_t *info,
                -1;
     if (!*name || strchr(name, '/') || !strcmp(name, ".") || !strcmp(name, ".."))
         return why_set(w->why, EX_DATAERR, "%s/%.200s: not a name", w->path, name), -1;
-    struct entry *e = add_entry(w, name);
+    struct served_entry *e = add_entry(w, name);
     if (!e) return -1;
     if (info->type == H5L_TYPE_HARD) e->address = info->u.address;
     if (info->type == H5L_TYPE_HARD && known_already(w->served, e))
@@ -207,7 +207,7 @@ static herr_t look_at_link(hid_t from, const char *name, const H5L_info_t *info,
 
 static int by_path(const void *one, const void *other, void *entries)
 {
-    const struct entry *e = entries;
+    const struct served_entry *e = entries;
     return strcmp(e[*(const int64_t *)one].path, e[*(const int64_t *)other].path);
 }
 
@@ -242,7 +242,7 @@ void served_close(struct served *s)
     *s = (struct served){ .file = -1 };
 }
 
-struct entry *served_find(const struct served *s, const char *path, struct why *why)
+struct served_entry *served_find(const struct served *s, const char *path, struct why *why)
 {
     for (int64_t lo = 0, hi = s->sorted ? s->count : 0; lo < hi;) {
         int64_t k = lo + (hi - lo) / 2;
@@ -253,7 +253,7 @@ struct entry *served_find(const struct served *s, const char *path, struct why *
     return why_set(why, EX_DATAERR, "%s: no such dataset", path), NULL;
 }
 
-hid_t served_set(const struct served *s, const struct entry *e, struct why *why)
+hid_t served_set(const struct served *s, const struct served_entry *e, struct why *why)
 {
     if (e->set >= 0) return e->set;
     hid_t set = H5Dopen2(s->file, e->path, H5P_DEFAULT);
@@ -262,7 +262,7 @@ hid_t served_set(const struct served *s, const struct entry *e, struct why *why)
 }
 
 /* Is as much stored as is wanted of the dataset's first bytes? What filters packed is not counted. */
-int served_stored(const struct entry *e, uint64_t bytes, struct why *why)
+int served_stored(const struct served_entry *e, uint64_t bytes, struct why *why)
 {
     if (bytes <= FREE_FILL || bytes - FREE_FILL <= e->stored) return 0;
     if (e->packed && e->stored && bytes / 1100 <= e->stored) return 0; // gzip packs 1032 to 1

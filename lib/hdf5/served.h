@@ -13,7 +13,7 @@
 #include "hdf5/object.h"
 
 /* What a walk has found under one name. */
-struct entry {
+struct served_entry {
     char *path;      /* absolute */
     haddr_t address; /* of the object in the file: several names may have one */
     hid_t set;       /* an open dataset, or -1 */
@@ -28,14 +28,14 @@ struct entry {
 
 /* An open document */
 struct served {
-    hid_t file;          /* -1: none */
-    uint64_t size;       /* bytes of the document */
-    uint64_t limit;      /* bytes that its datasets may hold in all, packed data unpacked */
-    uint64_t unpacked;   /* bytes that they do hold */
-    bool chunked;        /* some dataset is in chunks, as those of a trajectory are */
-    int64_t count, room; /* of entries */
-    struct entry *entry; /* what is in it, in the order of a walk by names */
-    int64_t *sorted;     /* [count] the entries by their paths */
+    hid_t file;                 /* -1: none */
+    uint64_t size;              /* bytes of the document */
+    uint64_t limit;             /* bytes that its datasets may hold in all, packed data unpacked */
+    uint64_t unpacked;          /* bytes that they do hold */
+    bool chunked;               /* some dataset is in chunks, as those of a trajectory are */
+    int64_t count, room;        /* of entries */
+    struct served_entry *entry; /* what is in it, in the order of a walk by names */
+    int64_t *sorted;            /* [count] the entries by their paths */
 };
 
 /* Once in a process that serves: no plugins, no links into other files. */
@@ -48,10 +48,10 @@ int served_open(struct served *served, hid_t file, uint64_t size, uint64_t limit
 void served_close(struct served *served);
 
 /* What is under this name; NULL: nothing. */
-struct entry *served_find(const struct served *served, const char *path, struct why *why);
+struct served_entry *served_find(const struct served *served, const char *path, struct why *why);
 /* Its dataset, to be closed unless it is entry->set; -1 on failure. */
-hid_t served_set(const struct served *served, const struct entry *entry, struct why *why);
+hid_t served_set(const struct served *served, const struct served_entry *entry, struct why *why);
 /* Is as much stored as is wanted of the dataset's first bytes? 0, or EX_DATAERR. */
-int served_stored(const struct entry *entry, uint64_t bytes, struct why *why);
+int served_stored(const struct served_entry *entry, uint64_t bytes, struct why *why);
 
 #endif

@@ -45,7 +45,7 @@ static void bound_time(uint64_t size, uint64_t limit)
 struct server {
     struct sink sink;
     int line;
-    struct shared *shared;
+    struct server_memory *shared;
     struct reply reply;
     uint64_t sent, pieces, acknowledged;
     uint64_t limit; /* as of served_open */
@@ -220,8 +220,8 @@ static void serve(struct server *s)
 void __gcov_dump(void);
 #endif
 
-void server_run(int line, struct shared *shared, int files, char *const *file, uint64_t limit,
-                pid_t parent)
+void server_run(int line, struct server_memory *shared, int files, char *const *file,
+                uint64_t limit, pid_t parent)
 {
     struct server s = { .sink = { server_begin, server_room, server_put },
                         .line = line,

@@ -11,13 +11,13 @@
 #include <sys/types.h>
 
 /* What parent and child share. */
-struct shared {
+struct server_memory {
     char where[300]; /* the document in hand, for messages when the child is gone */
     unsigned char piece[2][REQUEST_PIECE];
 };
 
 /* The child's life: answers until the line is closed, and ends. limit: as of served_open. */
-void server_run(int line, struct shared *shared, int files, char *const *file, uint64_t limit,
-                pid_t parent) __attribute__((noreturn));
+void server_run(int line, struct server_memory *shared, int files, char *const *file,
+                uint64_t limit, pid_t parent) __attribute__((noreturn));
 
 #endif

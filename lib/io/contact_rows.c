@@ -93,7 +93,7 @@ int contact_rows_read(struct contact_rows *r, struct frame *f, struct why *why)
     bool solved = source_has(r->source, "/contacts/reaction");
     if (solved && contacts_alloc_found(s))
         return why_set(why, EX_SOFTWARE, "no memory for reactions");
-    if (f->packing.law && contacts_alloc_tie(s))
+    if (f->packing.law && contacts_alloc_laws(s))
         return why_set(why, EX_SOFTWARE, "no memory for the ties");
     if (table_read_columns(r->source, "/contacts", "", first, RECORDS(layout_contacts, s->n, s->c),
                            why) ||
@@ -104,8 +104,8 @@ int contact_rows_read(struct contact_rows *r, struct frame *f, struct why *why)
         ((f->packing.mesh.elements || f->packing.shape) &&
          table_read_columns(r->source, "/contacts", "", first, RECORDS(layout_features, s->n, s->c),
                             why)) ||
-        (s->tie && table_read_columns(r->source, "/contacts", "", first,
-                                      RECORDS(layout_ties, s->n, s->tie), why)) ||
+        (s->law && table_read_columns(r->source, "/contacts", "", first,
+                                      RECORDS(layout_contact_laws, s->n, s->law), why)) ||
         (solved && table_read_columns(r->source, "/contacts", "", first,
                                       RECORDS(layout_found, s->n, s->found), why)) ||
         (solved && packing_rolls(&f->packing) && read_moments(r->source, first, s, why)))
@@ -192,8 +192,8 @@ int contact_rows_write(struct table_write *s, const struct frame *f, struct why 
          table_write_columns(s, "/contacts", "", RECORDS(layout_features, t->n, t->c),
                              CHUNK_CONTACTS, why)) ||
         (f->packing.law &&
-         table_write_columns(s, "/contacts", "", RECORDS(layout_ties, t->n, t->tie), CHUNK_CONTACTS,
-                             why)) ||
+         table_write_columns(s, "/contacts", "", RECORDS(layout_contact_laws, t->n, t->law),
+                             CHUNK_CONTACTS, why)) ||
         (t->found && table_write_columns(s, "/contacts", "", RECORDS(layout_found, t->n, t->found),
                                          CHUNK_CONTACTS, why)) ||
         (t->found && packing_rolls(&f->packing) && write_moments(s, t, why)) ||

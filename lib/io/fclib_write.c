@@ -103,7 +103,7 @@ static int write_bonded_MH(const struct assembly *A, hid_t file, struct why *why
 
 static int write_W(const struct assembly *A, hid_t file, struct why *why)
 {
-    if (A->p->kind.beyond) return write_bonded_W(A, file, why);
+    if (A->p->kind.extra) return write_bonded_W(A, file, why);
     struct stored W;
     int e = assembly_W(A, &W, why);
     if (!e) e = stored_write(&W, file, "/fclib_local/W", why);
@@ -113,7 +113,7 @@ static int write_W(const struct assembly *A, hid_t file, struct why *why)
 
 static int write_MH(const struct assembly *A, hid_t file, struct why *why)
 {
-    if (A->p->kind.beyond) return write_bonded_MH(A, file, why);
+    if (A->p->kind.extra) return write_bonded_MH(A, file, why);
     struct stored M, H;
     double *f;
     int e = assembly_MH(A, &M, &H, &f, why);
@@ -163,7 +163,7 @@ static int write_vectors(const struct assembly *A, bool global, hid_t file, stru
         mu[c] = slot_bundle(A->p, A->slot[c])->mu[slot_lane(A->slot[c])];
     if (!e) e = write_vector(file, group, "vectors/mu", n, mu, why);
     if (!e && global) e = write_vector(file, group, "vectors/w", n * d, A->w, why);
-    if (!e && !global && !A->p->kind.beyond)
+    if (!e && !global && !A->p->kind.extra)
         e = write_vector(file, group, "vectors/q", n * d, A->q, why);
     free(mu);
     return e;

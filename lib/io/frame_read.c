@@ -4,8 +4,8 @@
 #include "io/cell_tables.h"
 #include "io/distributed.h"
 #include "io/flow_tables.h"
-#include "io/law_tables.h"
 #include "io/outside_tables.h"
+#include "io/pair_law_tables.h"
 #include "io/roster.h"
 #include "io/shape_tables.h"
 
@@ -230,7 +230,7 @@ static int read_settings(struct frame_read *r, int64_t k, int64_t n, struct pack
         packing_init(p, dim, n, why) || read_parameters(r->source, p, why) ||
         read_material(r->source, p, why) || shape_tables_read(r->source, p, why) ||
         boundary_tables_read(r->source, k, p, why) || flow_tables_read(r->source, k, p, why) ||
-        law_tables_read(r->source, k, p, why) || read_clock(r, k, p, why) ||
+        pair_law_tables_read(r->source, k, p, why) || read_clock(r, k, p, why) ||
         cell_tables_read(r->source, k, r->repeats, p, why))
         return why->status;
     if (outside_tables_read(r->source, p, why)) return why->status;

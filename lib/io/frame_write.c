@@ -7,9 +7,9 @@
 #include "io/cell_tables.h"
 #include "io/contact_rows.h"
 #include "io/flow_tables.h"
-#include "io/law_tables.h"
 #include "io/memory_rows.h"
 #include "io/outside_tables.h"
+#include "io/pair_law_tables.h"
 #include "io/report_rows.h"
 #include "io/roster.h"
 #include "io/shape_tables.h"
@@ -100,7 +100,7 @@ int frame_write_static(struct table_write *s, const struct frame *f, struct why 
     if (write_parameters(s->file, f, why)) return why->status;
     if (f->packed && (write_material(s->file, &f->packing, why) ||
                       shape_tables_write(s->file, &f->packing, why) ||
-                      law_tables_write_static(s->file, &f->packing, why) ||
+                      pair_law_tables_write_static(s->file, &f->packing, why) ||
                       cell_tables_write_box(s->file, &f->packing.cell, why) ||
                       write_bodies(s, &f->packing, why)))
         return why->status;
@@ -155,7 +155,7 @@ int frame_write_moment(struct table_write *s, const struct frame *f, struct why 
                       write_time_step(s, &f->packing, why) || flow_write(s, &f->packing, why)))
         return why->status;
     if (f->packed &&
-        (boundary_tables_write(s, &f->packing, why) || law_tables_write(s, &f->packing, why) ||
+        (boundary_tables_write(s, &f->packing, why) || pair_law_tables_write(s, &f->packing, why) ||
          memory_rows_write(s, &f->packing, why) || outside_tables_write(s, f, why)))
         return why->status;
     if (f->packed && f->detected && contact_rows_write(s, f, why)) return why->status;

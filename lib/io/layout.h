@@ -111,29 +111,29 @@ static const struct column layout_material[] = {
         { 0 },
 };
 
-/* /nsd/law/NAME [kinds][kinds] where any pair has a law beyond these: members of struct law */
+/* /nsd/law/NAME [kinds][kinds] where any pair has a law beyond these: members of struct pair_law */
 static const struct column layout_law[] = {
-    { "cohesion", "N", COLUMN_F64, 1, offsetof(struct law, cohesion) },
-    { "range", "m", COLUMN_F64, 1, offsetof(struct law, range) },
-    { "volume", "m3", COLUMN_F64, 1, offsetof(struct law, volume) },
-    { "tension", "N m-1", COLUMN_F64, 1, offsetof(struct law, tension) },
-    { "wetting", "rad", COLUMN_F64, 1, offsetof(struct law, wetting) },
-    { "mu_r", "m", COLUMN_F64, 1, offsetof(struct law, mu_r) },
-    { "mu_p", "m", COLUMN_F64, 1, offsetof(struct law, mu_p) },
-    { "c_n", "N m-3", COLUMN_F64, 1, offsetof(struct law, cn) },
-    { "c_t", "N m-3", COLUMN_F64, 1, offsetof(struct law, ct) },
-    { "w", "J m-2", COLUMN_F64, 1, offsetof(struct law, w) },
-    { "eta", "N s m-1", COLUMN_F64, 1, offsetof(struct law, eta) },
-    { "area", "m2", COLUMN_F64, 1, offsetof(struct law, area) },
-    { "beta", "1", COLUMN_F64, 1, offsetof(struct law, beta) },
-    { "made", "s", COLUMN_F64, 1, offsetof(struct law, made) },
-    { "forever", "1", COLUMN_F64, 1, offsetof(struct law, forever) },
+    { "cohesion", "N", COLUMN_F64, 1, offsetof(struct pair_law, cohesion) },
+    { "range", "m", COLUMN_F64, 1, offsetof(struct pair_law, range) },
+    { "volume", "m3", COLUMN_F64, 1, offsetof(struct pair_law, volume) },
+    { "tension", "N m-1", COLUMN_F64, 1, offsetof(struct pair_law, tension) },
+    { "wetting", "rad", COLUMN_F64, 1, offsetof(struct pair_law, wetting) },
+    { "mu_r", "m", COLUMN_F64, 1, offsetof(struct pair_law, mu_r) },
+    { "mu_p", "m", COLUMN_F64, 1, offsetof(struct pair_law, mu_p) },
+    { "c_n", "N m-3", COLUMN_F64, 1, offsetof(struct pair_law, cn) },
+    { "c_t", "N m-3", COLUMN_F64, 1, offsetof(struct pair_law, ct) },
+    { "w", "J m-2", COLUMN_F64, 1, offsetof(struct pair_law, w) },
+    { "eta", "N s m-1", COLUMN_F64, 1, offsetof(struct pair_law, eta) },
+    { "area", "m2", COLUMN_F64, 1, offsetof(struct pair_law, area) },
+    { "beta", "1", COLUMN_F64, 1, offsetof(struct pair_law, beta) },
+    { "made", "s", COLUMN_F64, 1, offsetof(struct pair_law, made) },
+    { "forever", "1", COLUMN_F64, 1, offsetof(struct pair_law, forever) },
     { 0 },
 };
 
 /* The same where it is said of some pair whether its impacts are bounded */
 static const struct column layout_impact[] = {
-    { "impact", "1", COLUMN_F64, 1, offsetof(struct law, impact) },
+    { "impact", "1", COLUMN_F64, 1, offsetof(struct pair_law, impact) },
     { 0 },
 };
 
@@ -205,16 +205,16 @@ static const struct column layout_features[] = {
     { 0 },
 };
 
-/* The same where pairs have laws beyond friction and restitution: members of struct tie */
-static const struct column layout_ties[] = {
-    { "pull", "N", COLUMN_F64, 1, offsetof(struct tie, pull) },
-    { "stiffness", "N m-1", COLUMN_F64, 2, offsetof(struct tie, stiff) },
-    { "jump", "m", COLUMN_F64, 3, offsetof(struct tie, jump) },
-    { "beta", "1", COLUMN_F64, 1, offsetof(struct tie, beta) },
-    { "offset", "m s-1", COLUMN_F64, 1, offsetof(struct tie, offset) },
-    { "mu_r", "m", COLUMN_F64, 1, offsetof(struct tie, mu_r) },
-    { "mu_p", "m", COLUMN_F64, 1, offsetof(struct tie, mu_p) },
-    { "tie", "1", COLUMN_I8, 1, offsetof(struct tie, state) },
+/* The same where pairs have laws beyond friction and restitution: members of struct contact_law */
+static const struct column layout_contact_laws[] = {
+    { "pull", "N", COLUMN_F64, 1, offsetof(struct contact_law, pull) },
+    { "stiffness", "N m-1", COLUMN_F64, 2, offsetof(struct contact_law, stiff) },
+    { "jump", "m", COLUMN_F64, 3, offsetof(struct contact_law, jump) },
+    { "beta", "1", COLUMN_F64, 1, offsetof(struct contact_law, beta) },
+    { "offset", "m s-1", COLUMN_F64, 1, offsetof(struct contact_law, offset) },
+    { "mu_r", "m", COLUMN_F64, 1, offsetof(struct contact_law, mu_r) },
+    { "mu_p", "m", COLUMN_F64, 1, offsetof(struct contact_law, mu_p) },
+    { "tie", "1", COLUMN_I8, 1, offsetof(struct contact_law, state) },
     { 0 },
 };
 

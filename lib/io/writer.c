@@ -26,7 +26,7 @@ enum {
 static const char CUT_OFF[] = "has been cut off by another program";
 
 /* What every frame of a trajectory shares */
-struct shared {
+struct common_part {
     int dim;
     int64_t n;
     double dt, theta;
@@ -40,13 +40,13 @@ struct shared {
 
 struct writer {
     int fd;
-    const char *name;       /* the output's, for messages */
-    bool trajectory;        /* else a stream */
-    bool append;            /* opened by >>: others may append as well */
-    int disk;               /* a trajectory's file, opened again: > opens it for writing only */
-    struct table_write doc; /* a trajectory's datasets; file -1 before the first frame */
-    struct shared first;    /* what its first frame has set */
-    struct roster roster;   /* its bodies, where they come and go */
+    const char *name;         /* the output's, for messages */
+    bool trajectory;          /* else a stream */
+    bool append;              /* opened by >>: others may append as well */
+    int disk;                 /* a trajectory's file, opened again: > opens it for writing only */
+    struct table_write doc;   /* a trajectory's datasets; file -1 before the first frame */
+    struct common_part first; /* what its first frame has set */
+    struct roster roster;     /* its bodies, where they come and go */
     bool contacts, solved, moved; /* does it have contacts yet, and which kind */
     int64_t step;                 /* of the last frame */
     int64_t frames;               /* that are finished */
@@ -379,14 +379,14 @@ static uint32_t cell_crc(const struct cell *c)
     return document_crc(crc, c->stress, sizeof c->stress);
 }
 
-static struct shared shared_of(const struct frame *f)
+static struct common_part shared_of(const struct frame *f)
 {
     const struct packing *p = &f->packing;
-    struct shared o = { .dim = p->dim,
-                        .dt = packing_whole_dt(p),
-                        .theta = p->theta,
-                        .adapts = p->adapts,
-                        .overlap = p->overlap };
+    struct common_part o = { .dim = p->dim,
+                             .dt = packing_whole_dt(p),
+                             .theta = p->theta,
+                             .adapts = p->adapts,
+                             .overlap = p->overlap };
     o.pours = p->pours, o.removals = p->removals;
     if (packing_varies(p)) return o;
     o.n = bodies_of(f), o.cell = cell_crc(&p->cell);
@@ -400,7 +400,7 @@ static struct shared shared_of(const struct frame *f)
 /* What is stored only with the first frame has to be true of all. */
 static int check_same(const struct writer *s, const struct frame *f, struct why *why)
 {
-    const struct shared p = s->first, q = shared_of(f);
+    const struct common_part p = s->first, q = shared_of(f);
     if (p.pours != q.pours || p.removals != q.removals)
         return why_set(why, EX_DATAERR, "other pours or removals than the trajectory's");
     if (p.n != q.n)

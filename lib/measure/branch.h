@@ -8,8 +8,8 @@
 #ifndef NSD_BRANCH_H
 #define NSD_BRANCH_H
 
+#include "bodies/contact_law.h"
 #include "bodies/kinematics.h"
-#include "bodies/tie.h"
 
 /* m: how far the centres of a and b are from the contact's point; a boundary's is 0, and b's then
    the whole distance to it. */
@@ -56,7 +56,7 @@ static inline vec3 branch_force(const struct packing *p, const struct contacts *
 /* Does contact i count? Solved: it pushes or pulls; else the bodies touch. And what a tie holds does. */
 static inline bool branch_counts(const struct contacts *s, int64_t i)
 {
-    if (s->tie && tie_holds(&s->tie[i])) return true;
+    if (s->law && contact_law_holds(&s->law[i])) return true;
     return s->found ? s->found[i].r[0] != 0 : s->c[i].gap <= 0;
 }
 

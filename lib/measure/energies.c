@@ -1,5 +1,5 @@
 /* measure/energies.c: energies, and what a step takes of them. */
-#include "bodies/tie.h"
+#include "bodies/contact_law.h"
 #include "bodies/top.h"
 #include "measure/branch.h"
 #include "measure/measures.h"
@@ -36,10 +36,10 @@ static int add_step(double **at, const struct snapshot *s, double *stored, struc
         const double *r = s->s->found[i].r;
         double u[3];
         int times = region_holds(&s->region, c->x);
-        if (s->s->tie && times) {
+        if (s->s->law && times) {
             const struct packing *start = s->moved ? &m.other : s->p;
-            struct tie_end end = tie_end(start, c, &s->s->tie[i], &s->s->found[i]);
-            struct tie_account a = tie_account(start, c, &s->s->tie[i], &end);
+            struct contact_law_end end = contact_law_end(start, c, &s->s->law[i], &s->s->found[i]);
+            struct contact_law_account a = contact_law_account(start, c, &s->s->law[i], &end);
             *stored += times * a.stored, kept += times * (a.change + a.broken);
         }
         step_motion_at(&m, c, u);

@@ -26,7 +26,7 @@ static double normal(const struct snapshot *s, int64_t i)
 }
 
 /* Of the force: less of a push beside a pull is what the solve leaves */
-static const double TIE_NOISE = 1e-3;
+static const double CONTACT_LAW_NOISE = 1e-3;
 
 /* N: how much of friction there is, and how much there could be: of the push of the surfaces, which a tie that pulls
    the bodies together adds to */
@@ -37,13 +37,13 @@ struct rub {
 static struct rub rub_of(const struct snapshot *s, int64_t i)
 {
     const struct found *f = &s->s->found[i];
-    const bool tied = s->s->tie && tie_holds(&s->s->tie[i]);
+    const bool tied = s->s->law && contact_law_holds(&s->s->law[i]);
     double dt = s->p->dt, r[3] = { f->r[0], f->r[1], f->r[2] };
-    if (tied) tie_push(dt, &s->s->tie[i], f, r);
+    if (tied) contact_law_push(dt, &s->s->law[i], f, r);
     double is = hypot(r[1], r[2]) / dt, most = s->s->c[i].mu * r[0] / dt;
     if (!tied) return (struct rub){ is, most };
     // what is a difference of push and pull has the error of both
-    if (r[0] <= TIE_NOISE * fabs(f->r[0])) return (struct rub){ 0, 0 };
+    if (r[0] <= CONTACT_LAW_NOISE * fabs(f->r[0])) return (struct rub){ 0, 0 };
     return (struct rub){ fmin(is, most), most };
 }
 

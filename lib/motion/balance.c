@@ -1,8 +1,8 @@
 /* motion/balance.c: energy and momentum, summed over bodies and contacts [motion/balance.h]. */
 #include "motion/balance.h"
 
+#include "bodies/contact_law.h"
 #include "bodies/freedom.h"
-#include "bodies/tie.h"
 #include "bodies/top.h"
 
 #include <stdlib.h>
@@ -97,11 +97,11 @@ static void add_beyond(struct work *w, const struct packing *p, const struct imp
 /* What tied contacts store is not dissipated. */
 static void add_ties(struct balance *b, const struct packing *p, const struct contacts *s)
 {
-    for (int64_t i = 0; s->tie && i < s->n; i++) {
-        const struct tie *t = &s->tie[i];
+    for (int64_t i = 0; s->law && i < s->n; i++) {
+        const struct contact_law *t = &s->law[i];
         if (!t->state && !(t->pull > 0)) continue;
-        struct tie_end end = tie_end(p, &s->c[i], t, &s->found[i]);
-        struct tie_account a = tie_account(p, &s->c[i], t, &end);
+        struct contact_law_end end = contact_law_end(p, &s->c[i], t, &s->found[i]);
+        struct contact_law_account a = contact_law_account(p, &s->c[i], t, &end);
         b->bond_change += a.change, b->bond_energy += a.stored, b->broken += a.broken;
     }
     b->dissipation -= b->bond_change + b->broken;

@@ -15,7 +15,7 @@
  *                  step; and what the flow of the cell does to bodies
  *     dissipation  - sum r . (u+ + u-)/2
  *
- * and where pairs are tied [bodies/tie.h] what their energy takes is no dissipation:
+ * and where pairs are tied [bodies/contact_law.h] what their energy takes is no dissipation:
  *
  *     T+ - T- = gravity + loads + drives - dissipation - bond_change - broken
  *
@@ -41,7 +41,7 @@ struct balance {
     double change;    /* J: of kinetic, in the step */
     double potential; /* J: - sum m g . x, after the step, of the bodies */
     double gravity, drives, loads, dissipation; /* J: in the step */
-    /* J, where pairs are tied [bodies/tie.h]: of what is stored, in the step; what is stored then; what
+    /* J, where pairs are tied [bodies/contact_law.h]: of what is stored, in the step; what is stored then; what
        broken bonds and joining liquid have given up, in the step */
     double bond_change, bond_energy, broken;
     double gained;      /* J: by impacts, in the step; a part of -dissipation */

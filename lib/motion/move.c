@@ -2,7 +2,7 @@
 #include "motion/move.h"
 
 #include "base/team.h"
-#include "bodies/tie.h"
+#include "bodies/contact_law.h"
 #include "bodies/top.h"
 #include "motion/project.h"
 
@@ -85,7 +85,7 @@ static void move_bodies(struct packing *p, const struct impulses *sum, bool back
 int move_by(struct packing *p, const struct contacts *s, const struct impulses *sum,
             struct why *why)
 {
-    if (packing_check_clock(p, why) || (p->law && ties_keep(p, s, why)) ||
+    if (packing_check_clock(p, why) || (p->law && contact_laws_keep(p, s, why)) ||
         memory_keep(&p->memory, s, why))
         return why->status;
     move_bodies(p, sum, false);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 enum {
-    SOME = 2048, /* contacts or bodies that are worth a thread */
+    PER_THREAD = 2048, /* contacts or bodies that are worth a thread */
     LEVEL_LEAST =
         64,     /* contacts of a mean level from which threads share it: 0.5 us for each of two */
     SWEEPS = 10 /* per step, at most: a tenth of what its solve costs */
@@ -31,7 +31,7 @@ enum {
 #define ENOUGH 0.01
 
 /* One contact's part: lambda >= 0 keeps gap + n . (d_b - d_a) >= 0. */
-struct part {
+struct projected_contact {
     int32_t a, b; /* bodies; a < 0: a wall */
     vec3 n;
     double gap;    /* m: at the next predicted position, above the slop */
@@ -52,17 +52,18 @@ static double removed(double overlap, double small)
 }
 
 /* The part of a contact; the slop is what gravity overlaps in a step, and more than rounding. */
-static struct part part_of(const struct packing *p, const struct contact *c)
+static struct projected_contact projected_contact_of(const struct packing *p,
+                                                     const struct contact *c)
 {
     double small = c->a < 0 ? p->radius[c->b] : dmin(p->radius[c->a], p->radius[c->b]);
     double slop = SLOP * small + v3_norm(p->g) * p->dt * p->dt;
     double gap = c->gap + p->dt * opening_of(p, c, -step_after(p)) + slop;
-    return (struct part){ .a = c->a,
-                          .b = c->b,
-                          .n = c->n,
-                          .gap = gap < 0 ? -removed(-gap, small) : gap,
-                          .w = inverse_mass(p, c->a) + inverse_mass(p, c->b),
-                          .slop = slop };
+    return (struct projected_contact){ .a = c->a,
+                                       .b = c->b,
+                                       .n = c->n,
+                                       .gap = gap < 0 ? -removed(-gap, small) : gap,
+                                       .w = inverse_mass(p, c->a) + inverse_mass(p, c->b),
+                                       .slop = slop };
 }
 
 /* The displacements sought: of bodies, and along the axes of freedoms beyond theirs */
@@ -82,8 +83,8 @@ static double opens(const struct displacements *o, int32_t k, const struct packi
 }
 
 /* Changes lambda and d so that this gap is 0, or lambda is; returns whether that changed much. */
-static inline bool relax(struct part *k, const struct packing *p, const struct contact *c,
-                         struct displacements *o)
+static inline bool relax(struct projected_contact *k, const struct packing *p,
+                         const struct contact *c, struct displacements *o)
 {
     struct displaced *a = k->a < 0 ? NULL : &o->d[k->a], *b = &o->d[k->b];
     double gap = k->gap + v3_dot(k->n, b->d) - (a ? v3_dot(k->n, a->d) : 0);
@@ -104,7 +105,7 @@ struct making {
     const struct packing *p;
     const struct contacts *s;
     const struct displacements *o;
-    struct part *part;
+    struct projected_contact *part;
     _Atomic bool any; /* gap is below 0 */
 };
 
@@ -115,7 +116,7 @@ static void make_some(void *arg, int64_t first, int64_t end)
     bool any = false;
     for (int64_t i = first; i < end; i++) {
         const struct contact *c = &m->s->c[i];
-        m->part[i] = part_of(m->p, c);
+        m->part[i] = projected_contact_of(m->p, c);
         for (int32_t k = 0; k < o->freedoms.n; k++) {
             double J = opens(o, k, m->p, c);
             m->part[i].w += J * J / o->freedoms.f[k].mass;
@@ -127,10 +128,10 @@ static void make_some(void *arg, int64_t first, int64_t end)
 
 /* The parts; whether any gap is below 0 */
 static bool parts_make(const struct packing *p, const struct contacts *s,
-                       const struct displacements *o, struct part *part)
+                       const struct displacements *o, struct projected_contact *part)
 {
     struct making m = { p, s, o, part, false };
-    team_share(team_size(), s->n, SOME, make_some, &m);
+    team_share(team_size(), s->n, PER_THREAD, make_some, &m);
     return m.any;
 }
 
@@ -157,7 +158,7 @@ static void displace(struct packing *p, const struct displacements *o)
 {
     struct shifting y = { p, o->d };
     freedoms_displace(&o->freedoms, p, o->z);
-    team_share(team_size(), p->n, SOME, shift_some, &y);
+    team_share(team_size(), p->n, PER_THREAD, shift_some, &y);
 }
 
 /* Sweeps over the parts */
@@ -165,7 +166,7 @@ struct relaxing {
     const struct packing *p;
     const struct contacts *s;
     struct displacements *o;
-    struct part *part;
+    struct projected_contact *part;
     struct levels levels;
     int sweeps;           /* at most */
     _Atomic bool more[3]; /* whether a sweep has changed much: of every third one */
@@ -206,7 +207,7 @@ static void sweep_levels(void *arg, int me, int threads)
 /* By all threads, where levels are large enough; false where one thread shall do it */
 static bool relax_in_threads(struct relaxing *y)
 {
-    bool shared = team_size() > 1 && y->s->n >= SOME && !y->o->freedoms.n &&
+    bool shared = team_size() > 1 && y->s->n >= PER_THREAD && !y->o->freedoms.n &&
                   !levels_init(&y->levels, y->s, y->p->n) && y->s->n >= LEVEL_LEAST * y->levels.n;
     if (shared) team_do(team_size(), sweep_levels, y);
     levels_free(&y->levels);
@@ -222,7 +223,7 @@ int project_shared(struct packing *p, const struct contacts *s, const struct pro
                    struct why *why)
 {
     struct displacements o = { .d = malloc(((size_t)p->n + 1) * sizeof *o.d) };
-    struct part *part = malloc(((size_t)s->n + 1) * sizeof *part);
+    struct projected_contact *part = malloc(((size_t)s->n + 1) * sizeof *part);
     bool room = part && o.d && !freedoms_init(&o.freedoms, p, p->cell.edge, why);
     room = room && (o.z = calloc((size_t)o.freedoms.n + 1, sizeof *o.z));
     if (!room) share = NULL; // the caller ends the others, who wait
@@ -230,7 +231,7 @@ int project_shared(struct packing *p, const struct contacts *s, const struct pro
     if (share) more = share->any(share->with, more);
     bool moves = more;
     struct shifting y = { p, o.d };
-    if (more) team_share(team_size(), p->n, SOME, begin_some, &y);
+    if (more) team_share(team_size(), p->n, PER_THREAD, begin_some, &y);
     for (int64_t i = 0; share && i < s->n; i++) part[i].w *= share->brake[i];
     struct relaxing all = { .p = p, .s = s, .o = &o, .part = part, .sweeps = SWEEPS };
     if (more && !share && relax_in_threads(&all)) more = false;

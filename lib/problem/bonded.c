@@ -22,12 +22,12 @@ static int check_memory(const struct problem *p, struct why *why)
 static double stiffness(const struct assembly *A, int64_t c, int j)
 {
     int64_t i = A->slot[c];
-    return A->p->beyond[i / BUNDLE].K[j > 0][slot_lane(i)];
+    return A->p->extra[i / BUNDLE].K[j > 0][slot_lane(i)];
 }
 static double prestress(const struct assembly *A, int64_t c, int j)
 {
     int64_t i = A->slot[c];
-    return A->p->beyond[i / BUNDLE].a[j][slot_lane(i)];
+    return A->p->extra[i / BUNDLE].a[j][slot_lane(i)];
 }
 
 /* M += H K H^T, f -= H (a + K w); false when memory is short. */

@@ -3,7 +3,7 @@
 
 #include "base/team.h"
 #include "problem/backend.h"
-#include "problem/shared.h"
+#include "problem/exchange.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -12,7 +12,7 @@ enum {
     BLOCK = 64,        /* bundles of one partial sum: the bits do not depend on the threads */
     PARALLEL_FROM = 8, /* blocks that are worth a second thread */
     STRIPE = 16,       /* blocks whose partial sums are held at a time */
-    SHARED_TERMS = 9   /* sums of struct sums */
+    EXCHANGE_TERMS = 9 /* sums of struct sums */
 };
 
 #define ROUNDING (16 * DBL_EPSILON) /* of the top speed: smaller errors are rounding */
@@ -77,12 +77,12 @@ static void judge_some(void *arg, int64_t from, int64_t to)
 }
 
 /* The sums of one bundle are its lanes' terms. */
-static void take_terms(const struct sums *s, int k, double term[SHARED_TERMS])
+static void take_terms(const struct sums *s, int k, double term[EXCHANGE_TERMS])
 {
-    const double t[SHARED_TERMS] = { s->motion[k],      s->proj[k],     s->bipotential[k],
-                                     s->penetration[k], s->natural2[k], s->siconos2[k],
-                                     s->velocity2[k],   s->r2[k],       s->jammed[k] };
-    for (int j = 0; j < SHARED_TERMS; j++) term[j] = t[j];
+    const double t[EXCHANGE_TERMS] = { s->motion[k],      s->proj[k],     s->bipotential[k],
+                                       s->penetration[k], s->natural2[k], s->siconos2[k],
+                                       s->velocity2[k],   s->r2[k],       s->jammed[k] };
+    for (int j = 0; j < EXCHANGE_TERMS; j++) term[j] = t[j];
 }
 
 static void sums_negate(struct sums *s)
@@ -109,19 +109,19 @@ static void judge_unbonded(const struct problem *p, int64_t bundle, bool believe
 static void judge_shared(const struct problem *p, bool believes, enum err_terms which,
                          struct sums *all)
 {
-    struct shared *shared = p->shared;
+    struct exchange *exchange = p->exchange;
     const int parts =
-        p->kind.beyond && !p->kind.rolls ? 2 : 1; // what the sweep's text adds of a slot at once
-    double(*term)[SHARED_TERMS] = malloc((size_t)(p->slots + 1) * (size_t)parts * sizeof *term);
-    double out[SHARED_TERMS][BUNDLE], most[3] = { 0 };
+        p->kind.extra && !p->kind.rolls ? 2 : 1; // what the sweep's text adds of a slot at once
+    double(*term)[EXCHANGE_TERMS] = malloc((size_t)(p->slots + 1) * (size_t)parts * sizeof *term);
+    double out[EXCHANGE_TERMS][BUNDLE], most[3] = { 0 };
     if (!term) {
-        shared->fail(shared);
+        exchange->fail(exchange);
         return;
     }
-    shared->judging(shared, (struct problem *)p, true);
+    exchange->judging(exchange, (struct problem *)p, true);
     for (int64_t i = 0; i < p->bundles; i++) {
         struct sums s = { 0 };
-        if (shared_is_copy(shared, i)) continue;
+        if (exchange_is_copy(exchange, i)) continue;
         if (parts == 2) judge_unbonded(p, i, believes, which, &s);
         for (int k = 0; k < BUNDLE && parts == 2; k++)
             take_terms(&s, k, term[(BUNDLE * i + k) * parts]);
@@ -133,8 +133,8 @@ static void judge_shared(const struct problem *p, bool believes, enum err_terms 
         most[1] = fmax(most[1], bundle_max(s.max_true));
         most[2] = fmax(most[2], bundle_max(s.max_velocity2));
     }
-    shared->judging(shared, (struct problem *)p, false);
-    shared->sum(shared, p, BLOCK, parts, SHARED_TERMS, term[0], out[0]);
+    exchange->judging(exchange, (struct problem *)p, false);
+    exchange->sum(exchange, p, BLOCK, parts, EXCHANGE_TERMS, term[0], out[0]);
     free(term);
     for (int k = 0; k < BUNDLE; k++) {
         all->motion[k] = out[0][k], all->proj[k] = out[1][k];
@@ -143,9 +143,9 @@ static void judge_shared(const struct problem *p, bool believes, enum err_terms 
         all->velocity2[k] = out[6][k], all->r2[k] = out[7][k];
         all->jammed[k] = out[8][k];
     }
-    all->max_pen[0] = shared->most(shared, most[0]);
-    all->max_true[0] = shared->most(shared, most[1]);
-    all->max_velocity2[0] = shared->most(shared, most[2]);
+    all->max_pen[0] = exchange->most(exchange, most[0]);
+    all->max_true[0] = exchange->most(exchange, most[1]);
+    all->max_velocity2[0] = exchange->most(exchange, most[2]);
 }
 
 static void judge_blocks(const struct problem *p, bool believes, enum err_terms which, int threads,
@@ -166,21 +166,21 @@ static void judge_blocks(const struct problem *p, bool believes, enum err_terms 
 static void judge_and_add(const struct problem *p, bool believes, enum err_terms which, int threads,
                           struct sums *all)
 {
-    struct shared *shared = p->shared;
-    shared->judging(shared, (struct problem *)p, true);
+    struct exchange *exchange = p->exchange;
+    exchange->judging(exchange, (struct problem *)p, true);
     judge_blocks(p, believes, which, threads, all);
-    shared->judging(shared, (struct problem *)p, false);
-    double *const sum[SHARED_TERMS] = { all->motion,      all->proj,     all->bipotential,
-                                        all->penetration, all->natural2, all->siconos2,
-                                        all->velocity2,   all->r2,       all->jammed };
-    double x[SHARED_TERMS];
-    for (int j = 0; j < SHARED_TERMS; j++) x[j] = bundle_sum(sum[j]);
-    shared->add(shared, x, SHARED_TERMS);
-    for (int j = 0; j < SHARED_TERMS; j++)
+    exchange->judging(exchange, (struct problem *)p, false);
+    double *const sum[EXCHANGE_TERMS] = { all->motion,      all->proj,     all->bipotential,
+                                          all->penetration, all->natural2, all->siconos2,
+                                          all->velocity2,   all->r2,       all->jammed };
+    double x[EXCHANGE_TERMS];
+    for (int j = 0; j < EXCHANGE_TERMS; j++) x[j] = bundle_sum(sum[j]);
+    exchange->add(exchange, x, EXCHANGE_TERMS);
+    for (int j = 0; j < EXCHANGE_TERMS; j++)
         for (int k = 0; k < BUNDLE; k++) sum[j][k] = k ? 0 : x[j];
-    double pen = shared->most(shared, bundle_max(all->max_pen));
-    double true_pen = shared->most(shared, bundle_max(all->max_true));
-    double off2 = shared->most(shared, bundle_max(all->max_velocity2));
+    double pen = exchange->most(exchange, bundle_max(all->max_pen));
+    double true_pen = exchange->most(exchange, bundle_max(all->max_true));
+    double off2 = exchange->most(exchange, bundle_max(all->max_velocity2));
     for (int k = 0; k < BUNDLE; k++)
         all->max_pen[k] = pen, all->max_true[k] = true_pen, all->max_velocity2[k] = off2;
 }
@@ -191,9 +191,9 @@ void err_eval(struct err *e, const struct problem *p, bool believes, enum err_te
     struct sums all = { 0 };
     *e = (struct err){ .contacts = p->n };
     if (!p->n) return;
-    if (p->shared && p->shared->add)
+    if (p->exchange && p->exchange->add)
         judge_and_add(p, believes, which, threads, &all);
-    else if (p->shared)
+    else if (p->exchange)
         judge_shared(p, believes, which, &all);
     else
         judge_blocks(p, believes, which, threads, &all);

@@ -56,7 +56,7 @@ void fill_ball(const struct slot_filling *f)
     const struct packing *pack = p->packing;
     const struct lattice *cell = f->of->cell;
     const struct contact *c = f->c;
-    const struct tie *tie = f->tie;
+    const struct contact_law *law = f->law;
     const int64_t i = f->i;
     const double alpha = f->of->alpha, rho_factor = f->of->rho_factor;
     const double en[3] = { c->en, c->et, c->et }, s[2] = { 1 / (1 + c->en), 1 / (1 + c->et) };
@@ -77,8 +77,8 @@ void fill_ball(const struct slot_filling *f)
     }
     for (int j = 0; j < 3 && e; j++) e->offset[j][k] = u[j] * (en[j] / (1 + en[j]));
     for (int j = 0; j < 3 && e && contact_shifted(c); j++) e->offset[j][k] += s[j > 0] * after[j];
-    if (e && tie && tie->offset > 0)
-        e->offset[0][k] += tie->offset;
+    if (e && law && law->offset > 0)
+        e->offset[0][k] += law->offset;
     else if (e && offset_in(pack, c))
         add_offset(e, k, pack, c, u[0]);
     for (int j = 0; j < 2 && e; j++) e->s[j][k] = s[j];
@@ -108,7 +108,7 @@ void fill_lever(const struct slot_filling *f)
     const struct packing *pack = p->packing;
     const struct lattice *cell = f->of->cell;
     const struct contact *c = f->c;
-    const struct tie *tie = f->tie;
+    const struct contact_law *law = f->law;
     const int64_t i = f->i;
     const quat *half = f->of->half;
     const double alpha = f->of->alpha, rho_factor = f->of->rho_factor;
@@ -141,8 +141,8 @@ void fill_lever(const struct slot_filling *f)
         u[j] += before[j];
         e->offset[j][k] = en[j] * u[j] + after[j];
     }
-    if (tie && tie->offset > 0)
-        e->offset[0][k] += (1 + en[0]) * tie->offset;
+    if (law && law->offset > 0)
+        e->offset[0][k] += (1 + en[0]) * law->offset;
     else if (offset_in(pack, c))
         e->offset[0][k] += offset_of(pack, c, u[0]);
     for (int j = 0; j < 2; j++) e->s[j][k] = 1;
@@ -153,14 +153,14 @@ void fill_bond(const struct slot_filling *f)
 {
     struct problem *p = f->of->p;
     const struct contact *c = f->c;
-    const struct tie *t = f->tie;
+    const struct contact_law *t = f->law;
     const int64_t i = f->i;
     const double alpha = f->of->alpha, rho_factor = f->of->rho_factor;
     fill_ball(f);
     if (!t) return;
     int k = slot_lane(i);
     struct bundle *r = slot_bundle(p, i);
-    struct beyond *x = &p->beyond[i / BUNDLE];
+    struct extra *x = &p->extra[i / BUNDLE];
     const struct rebound *e = slot_rebound(p, i);
     const struct body a = lighter(p, r->a[k], f->slower), b = lighter(p, r->b[k], f->slower);
     double h = p->dt, seen = t->offset > 0 ? t->offset : offset_of(p->packing, c, 0);
@@ -175,14 +175,14 @@ void fill_bond(const struct slot_filling *f)
     for (int j = 1; j < 3; j++) x->a[j][k] = h * t->stiff[1] * t->jump[j];
     for (int j = 0; j < 3; j++) x->z[j][k] = x->a[j][k]; // p = 0
     x->mu_r[k] = t->mu_r, x->mu_p[k] = t->mu_p;
-    if (!beyond_rolls(x, k)) return;
+    if (!extra_rolls(x, k)) return;
     x->k[k] = r->lb[k] * b.ii - r->la[k] * a.ii, x->wr[k] = a.ii + b.ii;
     x->length[k] = x->wr[k] > 0 ? sqrt(wt / x->wr[k]) : 1;
     struct rolling q;
     const double s[2] = { e ? e->s[0][k] : 1, e ? e->s[1][k] : 1 }, u[3] = { 0 };
     double v[ROLLING];
-    const struct beyond_lane at = slot_beyond(p, i);
-    beyond_rolling(&at, (const double[2]){ w[0][k], w[1][k] }, s, u, &q, v);
+    const struct extra_lane at = slot_extra(p, i);
+    extra_rolling(&at, (const double[2]){ w[0][k], w[1][k] }, s, u, &q, v);
     x->rho[k] = *rho * lambda / rolling_lambda(&q);
 }
 
@@ -204,7 +204,7 @@ void fill_lever_bond(const struct slot_filling *f)
 {
     struct problem *p = f->of->p;
     const struct contact *c = f->c;
-    const struct tie *t = f->tie;
+    const struct contact_law *t = f->law;
     const int64_t i = f->i;
     const quat *half = f->of->half;
     const double alpha = f->of->alpha, rho_factor = f->of->rho_factor;
@@ -212,8 +212,8 @@ void fill_lever_bond(const struct slot_filling *f)
     if (!t) return;
     int k = slot_lane(i);
     struct bundle *r = slot_bundle(p, i);
-    struct beyond *x = &p->beyond[i / BUNDLE];
-    struct beyond_levers *y = slot_turn(p, i);
+    struct extra *x = &p->extra[i / BUNDLE];
+    struct extra_levers *y = slot_turn(p, i);
     const struct body a = lighter(p, r->a[k], f->slower), b = lighter(p, r->b[k], f->slower);
     double h = p->dt, seen = t->offset > 0 ? t->offset : offset_of(p->packing, c, 0);
     double(*block)[BUNDLE] = p->block[i / BUNDLE], (*w)[BUNDLE] = p->w[i / BUNDLE];
@@ -224,7 +224,7 @@ void fill_lever_bond(const struct slot_filling *f)
     for (int j = 1; j < 3; j++) x->a[j][k] = h * t->stiff[1] * t->jump[j];
     if (K[0] > 0 || K[1] > 0) {
         double hat[9];
-        beyond_levers_bond(block, y, k, K);
+        extra_levers_bond(block, y, k, K);
         for (int j = 0; j < 9; j++) hat[j] = block[j][k];
         double lambda = local_lambda_max(hat);
         for (int j = 0; j < 2; j++) w[j][k] = lambda, r->iw[j][k] = 1 / lambda;
@@ -232,10 +232,10 @@ void fill_lever_bond(const struct slot_filling *f)
     }
     for (int j = 0; j < 3; j++) x->z[j][k] = x->a[j][k]; // p = 0
     x->mu_r[k] = t->mu_r, x->mu_p[k] = t->mu_p;
-    if (!beyond_rolls(x, k)) return;
+    if (!extra_rolls(x, k)) return;
     set_turning(y->Ra, k, p->packing, c->a, c, half);
     set_turning(y->Rb, k, p->packing, c->b, c, half);
-    x->length[k] = beyond_levers_turn(&p->lever[i / BUNDLE], block, y, k, W, K, a.ii, b.ii);
+    x->length[k] = extra_levers_turn(&p->lever[i / BUNDLE], block, y, k, W, K, a.ii, b.ii);
     x->rho[k] = *rho * w[0][k] / y->lambda[k];
 }
 
@@ -246,7 +246,7 @@ void fill_slot(const struct filling *f, int64_t i, double slower)
     for (int j = 0; j < 2 && c < 0 && p->rebound; j++) slot_rebound(p, i)->s[j][slot_lane(i)] = 1;
     if (c < 0) return;
     p->kind.fill(
-        &(struct slot_filling){ f, i, &f->s->c[c], f->s->tie ? &f->s->tie[c] : NULL, slower });
+        &(struct slot_filling){ f, i, &f->s->c[c], f->s->law ? &f->s->law[c] : NULL, slower });
     struct beside *beside = bundle_beside(p, slot_bundle(p, i));
     for (int j = 0, k = slot_lane(i); j < 2 && beside; j++)
         beside->w[j][k] = p->w[i / BUNDLE][j][k];

@@ -16,8 +16,8 @@ struct slot_filling {
     const struct filling *of;
     int64_t i;
     const struct contact *c;
-    const struct tie *tie; /* NULL: none */
-    double slower;         /* W~_cc is so many times what it is, at least 1 [problem/brake.h] */
+    const struct contact_law *law; /* NULL: none */
+    double slower; /* W~_cc is so many times what it is, at least 1 [problem/brake.h] */
 };
 
 /* The cell's edges where the contacts act (m), and their rates before and after the step (m/s) */

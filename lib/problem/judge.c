@@ -101,8 +101,8 @@ ALWAYS_INLINE void add_natural(struct sums *s, const struct problem *p, int64_t 
 ALWAYS_INLINE void add_bonds(struct sums *s, const struct problem *p, int64_t bundle, int k,
                              enum err_terms which, const vd u[3])
 {
-    const struct beyond *x = &p->beyond[bundle];
-    const struct beyond_levers *y = p->turn ? &p->turn[bundle] : NULL;
+    const struct extra *x = &p->extra[bundle];
+    const struct extra_levers *y = p->turn ? &p->turn[bundle] : NULL;
     vd lambda = bundle_lambda(p, bundle, k), off[3], pull[3], e[3];
     for (int i = 0; i < 3; i++) {
         vd z = vload(x->z[i] + k);
@@ -129,8 +129,8 @@ static void judge_rolling(struct sums *s, const struct problem *p, int64_t i, in
     const double scale[2] = { e ? e->s[0][k] : 1, e ? e->s[1][k] : 1 };
     double v[ROLLING], on[ROLLING], far = 0, r2 = 0;
     struct rolling q;
-    const struct beyond_lane at = slot_beyond(p, i * BUNDLE + k);
-    beyond_rolling(&at, (const double[2]){ p->w[i][0][k], p->w[i][1][k] }, scale, u, &q, v);
+    const struct extra_lane at = slot_extra(p, i * BUNDLE + k);
+    extra_rolling(&at, (const double[2]){ p->w[i][0][k], p->w[i][1][k] }, scale, u, &q, v);
     rolling_project(&q, q.x, on);
     for (int j = 0; j < ROLLING; j++)
         far += (q.x[j] - on[j]) * (q.x[j] - on[j]), r2 += q.x[j] * q.x[j];
@@ -155,7 +155,7 @@ static void judge_moments(const struct problem *p, int64_t i, bool believes, enu
         for (int j = 0; j < 3; j++) vstore(lane[j], u[j]);
         for (int j = 0; j < LANES; j++) {
             const double v[3] = { lane[0][j], lane[1][j], lane[2][j] };
-            if (beyond_rolls(&p->beyond[i], k + j)) judge_rolling(&one, p, i, k + j, v);
+            if (extra_rolls(&p->extra[i], k + j)) judge_rolling(&one, p, i, k + j, v);
         }
         add_bonds(&one, p, i, k, ERR_ALL, u);
     }
@@ -190,7 +190,7 @@ static void judge(const struct problem *p, int64_t first, int64_t end, bool beli
             motion_velocity(p, i, k, u);
             if (which & ERR_TERMS) add_terms(s, bundle_at(p, i), p->u[i], k, believes, u);
             if (which & ERR_NATURAL) add_natural(s, p, i, k, u);
-            if (p->kind.beyond) add_bonds(s, p, i, k, which, u);
+            if (p->kind.extra) add_bonds(s, p, i, k, which, u);
         }
     }
 }

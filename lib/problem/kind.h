@@ -21,7 +21,7 @@
     X(u)                                                                                           \
     X(block)                                                                                       \
     X(lever)                                                                                       \
-    X(beyond)                                                                                      \
+    X(extra)                                                                                       \
     X(turn)                                                                                        \
     X(rebound)
 
@@ -37,18 +37,18 @@ enum { EACH_ARRAY(ARRAY_BIT) HAS_COMMON = HAS_bundle | HAS_w | HAS_rho | HAS_u }
 #define EACH_KIND(ROW)                                                                             \
     ROW(FAR_BALLS, FAR_BALLS, "many balls", HAS_COMMON, .ns = 10, .fill = fill_ball)               \
     ROW(BALLS, BALLS, "balls", HAS_COMMON, .near = true, .ns = 10, .fill = fill_ball)              \
-    ROW(BONDS, BALLS, "balls with bonds", HAS_COMMON | HAS_beyond, .near = true, .beyond = true,   \
+    ROW(BONDS, BALLS, "balls with bonds", HAS_COMMON | HAS_extra, .near = true, .extra = true,     \
         .ns = 45, .fill = fill_bond)                                                               \
-    ROW(MOMENTS, BALLS, "balls with rolling friction", HAS_COMMON | HAS_beyond, .near = true,      \
-        .beyond = true, .rolls = true, .ns = 115, .fill = fill_bond)                               \
+    ROW(MOMENTS, BALLS, "balls with rolling friction", HAS_COMMON | HAS_extra, .near = true,       \
+        .extra = true, .rolls = true, .ns = 115, .fill = fill_bond)                                \
     ROW(LEVERS, LEVERS, "shapes", HAS_COMMON | HAS_block | HAS_lever, .full = true,                \
         .levers = true, .near = true, .ns = 70, .fill = fill_lever)                                \
     ROW(LEVERS_BONDS, LEVERS, "shapes with bonds",                                                 \
-        HAS_COMMON | HAS_block | HAS_lever | HAS_beyond | HAS_turn, .full = true, .levers = true,  \
-        .near = true, .beyond = true, .ns = 110, .fill = fill_lever_bond)                          \
+        HAS_COMMON | HAS_block | HAS_lever | HAS_extra | HAS_turn, .full = true, .levers = true,   \
+        .near = true, .extra = true, .ns = 110, .fill = fill_lever_bond)                           \
     ROW(LEVERS_MOMENTS, LEVERS, "shapes with rolling friction",                                    \
-        HAS_COMMON | HAS_block | HAS_lever | HAS_beyond | HAS_turn, .full = true, .levers = true,  \
-        .near = true, .beyond = true, .rolls = true, .ns = 1100, .fill = fill_lever_bond)          \
+        HAS_COMMON | HAS_block | HAS_lever | HAS_extra | HAS_turn, .full = true, .levers = true,   \
+        .near = true, .extra = true, .rolls = true, .ns = 1100, .fill = fill_lever_bond)           \
     ROW(BLOCKS, BLOCKS, "given W", HAS_COMMON | HAS_block, .given_by_W = true, .full = true,       \
         .ns = 30)                                                                                  \
     ROW(DIAGONALS, DIAGONALS, "given W, diagonal W_cc", HAS_COMMON | HAS_block,                    \
@@ -69,7 +69,7 @@ struct problem_kind {
     bool full;       /* W~_cc is more than diag(w_n, w_t, w_t) */
     bool levers;     /* lever arms are any vectors [problem/levers.h] */
     bool near;       /* bundles have a struct beside after them */
-    bool beyond;     /* contacts have bonds or moments [problem/beyond.h] */
+    bool extra;      /* contacts have bonds or moments [problem/extra.h] */
     bool rolls;      /* some contact has rolling friction */
     double ns;       /* of a sweep, per contact [bench/results]; of W, see solve/prices.c besides */
     fill_text *fill; /* sets the numbers of a slot; NULL: problem_of_W.c does */

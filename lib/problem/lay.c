@@ -12,7 +12,7 @@ enum {
     HUGE_PAGE = 2 << 20, /* bytes */
     LINE = 64,           /* bytes of a cache line */
     MANY_LINES = 8192,   /* lines that are worth a thread to clear: 50 us */
-    SOME = 4096          /* slots that are worth a thread: 100 us of work */
+    PER_THREAD = 4096    /* slots that are worth a thread: 100 us of work */
 };
 
 static void clear_some(void *lines, int64_t first, int64_t end)
@@ -64,8 +64,8 @@ bool lay_bundles(struct problem *p)
                 p->w[i / BUNDLE][j][k] = c->iw[j][k] = 1;
                 if (p->kind.near) bundle_beside(p, c)->w[j][k] = 1;
             }
-    for (int64_t i = 0; p->beyond && i < p->slots; i++)
-        for (int j = 0; j < 2; j++) p->beyond[i / BUNDLE].s[j][slot_lane(i)] = 1;
+    for (int64_t i = 0; p->extra && i < p->slots; i++)
+        for (int j = 0; j < 2; j++) p->extra[i / BUNDLE].s[j][slot_lane(i)] = 1;
     for (int64_t i = 0; p->turn && i < p->slots; i++)
         for (int j = 0; j < 9; j += 4) p->turn[i / BUNDLE].S[j][slot_lane(i)] = 1;
     return true;
@@ -118,5 +118,5 @@ void lay_seats(struct problem *p, const struct plan *l, const struct contacts *s
     struct seating y = { p, l, s };
     // w of a lane without a contact is 1, where it is made of masses
     for (int64_t i = 0; i < 2; i++) p->body[p->packing->n + i].im = 0.5;
-    team_share(team_size(), p->bundles, SOME / BUNDLE, seat_some, &y);
+    team_share(team_size(), p->bundles, PER_THREAD / BUNDLE, seat_some, &y);
 }

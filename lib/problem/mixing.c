@@ -12,14 +12,14 @@ enum { WITH_BESIDE = 3 + BESIDE_R };
 ALWAYS_INLINE double *component(const struct problem *p, int64_t i, int l)
 {
     if (l < 3) return bundle_at(p, i)->r[l];
-    return l < 6 ? p->beyond[i].z[l - 3] : p->beyond[i].m[l - 6];
+    return l < 6 ? p->extra[i].z[l - 3] : p->extra[i].m[l - 6];
 }
 
 /* Its weight: of a moment that of the impulse which it is over the length of law/rolling.h */
 ALWAYS_INLINE vd weight(const struct problem *p, int64_t i, int k, int l, vd lambda)
 {
     if (l < 6) return lambda;
-    vd length = vload(p->beyond[i].length + k);
+    vd length = vload(p->extra[i].length + k);
     return pick(lt(splat(0), length), lambda / (length * length), splat(0));
 }
 
@@ -27,9 +27,9 @@ ALWAYS_INLINE vd weight(const struct problem *p, int64_t i, int k, int l, vd lam
 #define BY_SHAPE(p, m, text, ...)                                                                  \
     do {                                                                                           \
         bool all = (m)->depth == MIXING_DEPTH;                                                     \
-        if ((p)->kind.beyond && all)                                                               \
+        if ((p)->kind.extra && all)                                                                \
             text(WITH_BESIDE, MIXING_DEPTH, __VA_ARGS__);                                          \
-        else if ((p)->kind.beyond)                                                                 \
+        else if ((p)->kind.extra)                                                                  \
             text(WITH_BESIDE, MIXING_DEPTH_MANY, __VA_ARGS__);                                     \
         else if ((p)->d == 3 && all)                                                               \
             text(3, MIXING_DEPTH, __VA_ARGS__);                                                    \
@@ -85,14 +85,14 @@ struct jump {
 ALWAYS_INLINE void react_beside(struct problem *p, int64_t i, int k, const vd x[WITH_BESIDE],
                                 vd dp[3], double dm[LANES][3])
 {
-    struct beyond *y = &p->beyond[i];
+    struct extra *y = &p->extra[i];
     double m[3][LANES], was[3][LANES];
     for (int l = 0; l < 3; l++) {
         dp[l] = x[3 + l] - vload(y->z[l] + k), vstore(y->z[l] + k, x[3 + l]);
         vstore(was[l], vload(y->m[l] + k)), vstore(m[l], x[6 + l]);
     }
     for (int j = 0; j < LANES; j++) {
-        if (!beyond_rolls(y, k + j)) continue;
+        if (!extra_rolls(y, k + j)) continue;
         double rn = bundle_at(p, i)->r[0][k + j], most = y->mu_r[k + j] * rn;
         double t2 = m[1][j] * m[1][j] + m[2][j] * m[2][j], pivot = y->mu_p[k + j] * rn;
         double s = t2 > most * most ? most / sqrt(t2) : 1;
@@ -144,8 +144,8 @@ ALWAYS_INLINE void react_text(int d, int depth, struct problem *p, const struct 
             else
                 problem_push(p, p->body, i, k, dr);
             for (int l = 0; l < LANES && d == WITH_BESIDE; l++) {
-                const struct beyond_lane at = slot_beyond(p, i * BUNDLE + k + l);
-                if (beyond_rolls(at.x, at.i)) beyond_push(&at, dm[l]);
+                const struct extra_lane at = slot_extra(p, i * BUNDLE + k + l);
+                if (extra_rolls(at.x, at.i)) extra_push(&at, dm[l]);
             }
         }
     }

@@ -24,7 +24,7 @@ enum {
 /* The numbers of a slot in a vector */
 static inline int mixing_width(const struct problem *p)
 {
-    return p->kind.beyond ? 3 + BESIDE_R : p->d;
+    return p->kind.extra ? 3 + BESIDE_R : p->d;
 }
 
 struct mixing {

@@ -36,7 +36,7 @@ static int assemble_free(const struct problem *bodies, struct delassus *W, struc
 /* What the contact in a slot of `bodies` has besides the push of its surfaces, by its D u~ (m/s) */
 static void besides(const struct problem *bodies, int64_t i, const double u[3], double p[3])
 {
-    const struct beyond *x = bodies->beyond ? &bodies->beyond[i / BUNDLE] : NULL;
+    const struct extra *x = bodies->extra ? &bodies->extra[i / BUNDLE] : NULL;
     int lane = slot_lane(i);
     for (int k = 0; k < 3; k++) p[k] = x ? -x->a[k][lane] - x->K[k > 0][lane] * u[k] : 0;
     if (bodies->pull) p[0] -= bodies->pull[i];
@@ -48,7 +48,7 @@ static struct delassus *assemble(const struct problem *bodies, const struct cont
 {
     struct delassus *W = calloc(1, sizeof *W);
     if (!W) return why_set(why, EX_SOFTWARE, "no memory for the contact problem"), NULL;
-    int e = bodies->kind.beyond ? bonded_blocks(bodies, W, why) : assemble_free(bodies, W, why);
+    int e = bodies->kind.extra ? bonded_blocks(bodies, W, why) : assemble_free(bodies, W, why);
     if (e) return free(W), NULL;
     for (int64_t i = 0; s->found && i < bodies->slots; i++) {
         int64_t c = bodies->contact[i];
@@ -68,7 +68,7 @@ static bool copy_ties(struct problem *p, const struct problem *bodies)
     bool good = at != NULL;
     if (good && bodies->pull)
         good = (p->pull = calloc((size_t)p->slots + 1, sizeof *p->pull)) != NULL;
-    if (good && bodies->beyond)
+    if (good && bodies->extra)
         good = (p->in_W = calloc((size_t)p->bundles + 1, sizeof *p->in_W)) != NULL;
     for (int64_t i = 0; good && i < bodies->slots; i++)
         if (bodies->contact[i] >= 0) at[bodies->contact[i]] = i;
@@ -76,9 +76,9 @@ static bool copy_ties(struct problem *p, const struct problem *bodies)
         if (p->contact[i] < 0) continue;
         int64_t from = at[p->contact[i]];
         if (p->pull && bodies->pull) p->pull[i] = bodies->pull[from];
-        if (!p->in_W || !bodies->beyond) continue;
-        struct beyond *to = &p->in_W[i / BUNDLE];
-        const struct beyond *x = &bodies->beyond[from / BUNDLE];
+        if (!p->in_W || !bodies->extra) continue;
+        struct extra *to = &p->in_W[i / BUNDLE];
+        const struct extra *x = &bodies->extra[from / BUNDLE];
         for (int k = 0; k < 3; k++) to->a[k][slot_lane(i)] = x->a[k][slot_lane(from)];
         for (int k = 0; k < 2; k++) to->K[k][slot_lane(i)] = x->K[k][slot_lane(from)];
     }
@@ -137,8 +137,8 @@ static int prepare_by_W(struct problem *p, const struct packing *pack, const str
 
 static bool bonded(const struct contacts *s)
 {
-    for (int64_t i = 0; s->tie && i < s->n; i++)
-        if (s->tie[i].stiff[0] > 0 || s->tie[i].stiff[1] > 0) return true;
+    for (int64_t i = 0; s->law && i < s->n; i++)
+        if (s->law[i].stiff[0] > 0 || s->law[i].stiff[1] > 0) return true;
     return false;
 }
 

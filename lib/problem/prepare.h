@@ -16,7 +16,7 @@
 
 #include "problem/problem.h"
 
-/* As problem_prepare_again(), with kept, or where that is NULL problem_prepare(). Bonds [problem/beyond.h] are sweeps' own, and where it is not sweeps that solve,
+/* As problem_prepare_again(), with kept, or where that is NULL problem_prepare(). Bonds [problem/extra.h] are sweeps' own, and where it is not sweeps that solve,
    W has them in it [problem/bonded.h]: the slots' r are then r*. EX_SOFTWARE also where W is larger
    than the memory of the machine. */
 int prepare_packing(struct problem *p, const struct packing *pack, const struct contacts *s,

@@ -2,8 +2,8 @@
 #include "problem/problem.h"
 
 #include "base/team.h"
+#include "problem/exchange.h"
 #include "problem/plan.h"
-#include "problem/shared.h"
 
 #include <assert.h>
 #include <stddef.h>
@@ -11,7 +11,7 @@
 #include <string.h>
 
 enum {
-    SOME = 4096,       /* slots that are worth a thread: 100 us of work */
+    PER_THREAD = 4096, /* slots that are worth a thread: 100 us of work */
     PARALLEL_FROM = 64 /* bundles a group, on average, that are worth more than one thread */
 };
 
@@ -63,25 +63,24 @@ void problem_set_unit(struct problem *p, double sum)
 
 int64_t problem_bundles(const struct problem *p)
 {
-    return p->shared ? p->shared->bundles : p->bundles;
+    return p->exchange ? p->exchange->bundles : p->bundles;
 }
 
 bool problem_halves(const struct problem *p)
 {
-    return p->shared ? p->shared->halves : p->split != NULL;
+    return p->exchange ? p->exchange->halves : p->split != NULL;
 }
 
-struct beyond_levers *slot_turn(const struct problem *p, int64_t i)
+struct extra_levers *slot_turn(const struct problem *p, int64_t i)
 {
     return p->turn ? &p->turn[i / BUNDLE] : NULL;
 }
 
-struct beyond_lane slot_beyond(const struct problem *p, int64_t i)
+struct extra_lane slot_extra(const struct problem *p, int64_t i)
 {
     const struct bundle *c = slot_bundle(p, i);
-    return (struct beyond_lane){ slot_lane(i),        c,
-                                 bundle_beside(p, c), &p->beyond[i / BUNDLE],
-                                 slot_turn(p, i),     p->body };
+    return (struct extra_lane){ slot_lane(i),    c,      bundle_beside(p, c), &p->extra[i / BUNDLE],
+                                slot_turn(p, i), p->body };
 }
 
 void slot_get(const struct problem *p, int64_t i, double r[3], double u[3])
@@ -100,13 +99,13 @@ void slot_set(struct problem *p, int64_t i, const double r[3], const double u[3]
 
 void slot_get_beyond(const struct problem *p, int64_t i, double x[BESIDE_R])
 {
-    const struct beyond *y = &p->beyond[i / BUNDLE];
+    const struct extra *y = &p->extra[i / BUNDLE];
     for (int k = 0; k < 3; k++) x[k] = y->z[k][slot_lane(i)], x[3 + k] = y->m[k][slot_lane(i)];
 }
 
 void slot_set_beyond(struct problem *p, int64_t i, const double x[BESIDE_R])
 {
-    struct beyond *y = &p->beyond[i / BUNDLE];
+    struct extra *y = &p->extra[i / BUNDLE];
     for (int k = 0; k < 3; k++) y->z[k][slot_lane(i)] = x[k], y->m[k][slot_lane(i)] = x[3 + k];
 }
 
@@ -136,12 +135,12 @@ static void store_some(void *arg, int64_t first, int64_t end)
         c->status = (int8_t)local_status(slot_bundle(p, i)->mu[slot_lane(i)], c->r);
         if (slot_lambda(p, i) * c->r[0] > JAMMED * p->unit) c->status = STATUS_JAMMED;
         double x[BESIDE_R];
-        if (p->beyond) slot_get_beyond(p, i, x);
-        for (int k = 0; k < 3 && p->beyond; k++) {
-            c->r[k] += x[k] - p->beyond[i / BUNDLE].a[k][slot_lane(i)];
+        if (p->extra) slot_get_beyond(p, i, x);
+        for (int k = 0; k < 3 && p->extra; k++) {
+            c->r[k] += x[k] - p->extra[i / BUNDLE].a[k][slot_lane(i)];
             if (o->s->moment) o->s->moment[p->contact[i]][k] = x[3 + k];
         }
-        const struct beyond *in_W = p->in_W ? &p->in_W[i / BUNDLE] : NULL;
+        const struct extra *in_W = p->in_W ? &p->in_W[i / BUNDLE] : NULL;
         for (int k = 0; k < 3 && in_W; k++) // e = 0 where there is a bond, so that D is 1
             c->r[k] -= in_W->a[k][slot_lane(i)] + in_W->K[k > 0][slot_lane(i)] * c->u[k];
         if (p->pull) c->r[0] -= p->pull[i];
@@ -152,6 +151,6 @@ int problem_store(const struct problem *p, struct contacts *s)
 {
     struct storing o = { p, s };
     if (contacts_alloc_found(s) || (p->kind.rolls && contacts_alloc_moment(s))) return -1;
-    team_share(team_size(), p->bundles, SOME / BUNDLE, store_some, &o);
+    team_share(team_size(), p->bundles, PER_THREAD / BUNDLE, store_some, &o);
     return 0;
 }

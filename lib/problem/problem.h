@@ -21,10 +21,10 @@
 
 #include "bodies/contact.h"
 #include "bodies/packing.h"
-#include "problem/beyond.h"
 #include "problem/bundle.h"
 #include "problem/coupling.h"
 #include "problem/delassus.h"
+#include "problem/extra.h"
 #include "problem/kind.h"
 #include "problem/levers.h"
 #include "problem/schedule.h"
@@ -33,7 +33,7 @@ enum {
     FAR_BUNDLES = 1024 /* bundles, 0.8 MB: more do not stay in a near cache from sweep to sweep */
 };
 
-struct shared;
+struct exchange;
 struct brake;
 struct plan;
 
@@ -49,19 +49,20 @@ struct problem {
     double (*block)[9][BUNDLE]; /* [bundles] kg^-1: W_cc, full; NULL: between balls */
     struct rebound *rebound;    /* [bundles]; NULL: e_n = e_t = 0 everywhere, and no offset */
     struct levers *lever;       /* [bundles]; NULL: balls, or given by W */
-    struct beyond_levers *turn; /* [bundles] the same between bodies with levers; else NULL */
-    struct beyond *beyond;  /* [bundles]; NULL: no contact is bonded, none has rolling friction */
-    struct beyond *in_W;    /* [bundles] K and a of bonds that W has in it; NULL: none */
+    struct extra_levers *turn;  /* [bundles] the same between bodies with levers; else NULL */
+    struct extra *extra;    /* [bundles]; NULL: no contact is bonded, none has rolling friction */
+    struct extra *in_W;     /* [bundles] K and a of bonds that W has in it; NULL: none */
     double (*u)[3][BUNDLE]; /* [bundles] m/s: what the local method believes */
     int32_t *contact;       /* [slots] slot i is contact[i] of the packing or of W; -1: none */
     int64_t groups;         /* no two contacts of a group share a body (a block of W): */
     int64_t *group;         /* [groups + 1] bundles group[g] .. group[g+1]-1 may be done at once */
     struct plan *plan;      /* has contact, group and seat; NULL: it is kept, not of the problem */
     struct two_thread_split *split; /* NULL: the order has no halves */
-    struct shared *shared; /* borrowed: the other processes that have a part of it; NULL: none */
-    struct brake *brake;   /* slots that the sweeps have to solve by shorter steps; NULL: none */
-    int64_t bodies;        /* of body[]; 0: given by W */
-    struct body *body; /* [bodies] the packing's, by colours in the order in which the sweep first
+    struct exchange
+        *exchange;       /* borrowed: the other processes that have a part of it; NULL: none */
+    struct brake *brake; /* slots that the sweeps have to solve by shorter steps; NULL: none */
+    int64_t bodies;      /* of body[]; 0: given by W */
+    struct body *body;   /* [bodies] the packing's, by colours in the order in which the sweep first
                           meets them, and copies of what does not move; NULL: given by W */
     const struct packing *packing; /* borrowed: its velocities are those before the step; NULL:
                                       there is only W */
@@ -98,10 +99,11 @@ int problem_prepare_again(struct problem *p, const struct packing *pack, const s
                           double alpha, double rho_factor, enum order order, struct plan **kept,
                           struct why *why);
 /* The same of a part of a problem, whose bundles are laid out by the schedule: its groups are those that
-   shared->after_group is told of. */
-int problem_prepare_shared(struct problem *p, const struct packing *pack, const struct contacts *s,
-                           double alpha, double rho_factor, const struct schedule *order,
-                           struct shared *shared, struct why *why);
+   exchange->after_group is told of. */
+int problem_prepare_distributed(struct problem *p, const struct packing *pack,
+                                const struct contacts *s, double alpha, double rho_factor,
+                                const struct schedule *order, struct exchange *exchange,
+                                struct why *why);
 /* The same for a problem given by W, which it borrows; r from W->r. */
 int problem_prepare_delassus(struct problem *p, struct delassus *W, double alpha, double rho_factor,
                              enum order order, struct why *why);
@@ -171,9 +173,9 @@ static inline struct rebound *slot_rebound(const struct problem *p, int64_t i)
 {
     return p->rebound ? &p->rebound[i / BUNDLE] : NULL;
 }
-struct beyond_levers *slot_turn(const struct problem *p, int64_t i); /* NULL: balls */
+struct extra_levers *slot_turn(const struct problem *p, int64_t i); /* NULL: balls */
 /* The slot with what is beyond it, of a problem in which there is anything */
-struct beyond_lane slot_beyond(const struct problem *p, int64_t i);
+struct extra_lane slot_extra(const struct problem *p, int64_t i);
 void slot_get(const struct problem *p, int64_t i, double r[3], double u[3]);
 void slot_set(struct problem *p, int64_t i, const double r[3], const double u[3]);
 

@@ -4,16 +4,16 @@
 #include "bodies/offset.h"
 #include "bodies/top.h"
 #include "problem/brake.h"
+#include "problem/exchange.h"
 #include "problem/fill.h"
 #include "problem/lay.h"
 #include "problem/plan.h"
 #include "problem/problem.h"
-#include "problem/shared.h"
 
 #include <stdlib.h>
 
 enum {
-    SOME = 4096 /* bodies, contacts or slots that are worth a thread: 100 us of work */
+    PER_THREAD = 4096 /* bodies, contacts or slots that are worth a thread: 100 us of work */
 };
 
 static int no_memory(struct problem *p, struct why *why)
@@ -67,30 +67,30 @@ static void free_some(void *arg, int64_t first, int64_t end)
    has room for it. */
 static bool anywhere(const struct problem *p, bool here)
 {
-    return p->shared ? p->shared->most(p->shared, here) > 0 : here;
+    return p->exchange ? p->exchange->most(p->exchange, here) > 0 : here;
 }
 
 /* N s: of the contacts' ties */
 static bool set_pulls(struct problem *p, const struct contacts *s)
 {
     bool any = false;
-    for (int64_t i = 0; s->tie && i < s->n; i++) any = any || s->tie[i].pull > 0;
+    for (int64_t i = 0; s->law && i < s->n; i++) any = any || s->law[i].pull > 0;
     if (!anywhere(p, any)) return true;
     p->pull = calloc((size_t)p->slots + 1, sizeof *p->pull);
     for (int64_t i = 0; p->pull && i < p->slots; i++)
-        if (s->tie && p->contact[i] >= 0) p->pull[i] = p->dt * s->tie[p->contact[i]].pull;
+        if (s->law && p->contact[i] >= 0) p->pull[i] = p->dt * s->law[p->contact[i]].pull;
     return p->pull != NULL;
 }
 
 void problem_set_free_motion(struct problem *p)
 {
-    team_share(team_size(), p->packing->n, SOME, free_some, p);
-    if (p->shared) p->shared->begin(p->shared, p);
+    team_share(team_size(), p->packing->n, PER_THREAD, free_some, p);
+    if (p->exchange) p->exchange->begin(p->exchange, p);
     for (int64_t i = 0; p->pull && i < p->slots; i++) {
         const double pulled[3] = { -p->pull[i], 0, 0 };
         if (p->pull[i] > 0) problem_push(p, p->body, i / BUNDLE, slot_lane(i), pulled);
     }
-    if (p->shared && p->pull) p->shared->settle(p->shared, p);
+    if (p->exchange && p->pull) p->exchange->settle(p->exchange, p);
 }
 
 /* half[n] = the orientations in which contacts act, and p->spin; false when memory is short. */
@@ -112,7 +112,7 @@ static bool find_spins(struct problem *p, const struct packing *pack, quat **hal
 static void take_found(struct problem *p, int64_t i, const struct contacts *s)
 {
     const struct found *c = &s->found[p->contact[i]];
-    struct beyond *x = p->beyond ? &p->beyond[i / BUNDLE] : NULL;
+    struct extra *x = p->extra ? &p->extra[i / BUNDLE] : NULL;
     int k = slot_lane(i);
     double r[3] = { c->r[0], c->r[1], c->r[2] };
     if (p->pull) r[0] += p->pull[i];
@@ -126,10 +126,10 @@ static void take_found(struct problem *p, int64_t i, const struct contacts *s)
     double u[3] = { c->u[0], c->u[1], c->u[2] };
     for (int j = 0; j < 3 && p->kind.levers; j++) u[j] *= 1 + (j ? law->et : law->en);
     slot_set(p, i, r, u);
-    if (!x || !beyond_rolls(x, k)) return;
+    if (!x || !extra_rolls(x, k)) return;
     const double m[3] = { x->m[0][k], x->m[1][k], x->m[2][k] };
-    const struct beyond_lane at = slot_beyond(p, i);
-    beyond_push(&at, m);
+    const struct extra_lane at = slot_extra(p, i);
+    extra_push(&at, m);
 }
 
 /* What the free motion makes of the slots */
@@ -163,7 +163,7 @@ static double fastest(void *arg, int64_t first, int64_t end)
    differences of such speeds, and have their rounding. */
 static double top_speed(const struct packing *p)
 {
-    double most = team_most(team_size(), p->n, SOME, fastest, (void *)p), images = 0;
+    double most = team_most(team_size(), p->n, PER_THREAD, fastest, (void *)p), images = 0;
     for (int32_t k = 0; k < p->walls; k++) most = fmax(most, wall_top_speed(p, &p->wall[k]));
     for (int k = 0; k < 3; k++) images += p->cell.repeats[k] ? v3_norm(p->cell.rate[k]) : 0;
     most += images;
@@ -197,9 +197,9 @@ static void survey_some(void *arg, int64_t first, int64_t end)
         struct contact made = { 0 };
         if (!turned) contact_basis(&made, 3, c->n), turned = !same(made.t1, c->t1);
         rebounds |= c->en > 0 || c->et > 0 || offset_in(y->p, c) ||
-                    (y->s->tie && y->s->tie[i].offset > 0) ||
+                    (y->s->law && y->s->law[i].offset > 0) ||
                     (y->moving_images && contact_shifted(c));
-        const struct tie *t = y->s->tie ? &y->s->tie[i] : NULL;
+        const struct contact_law *t = y->s->law ? &y->s->law[i] : NULL;
         bonds |= t && (t->stiff[0] > 0 || t->stiff[1] > 0);
         rolls |= t && (t->mu_r > 0 || t->mu_p > 0);
     }
@@ -219,21 +219,21 @@ static void survey(struct survey *y, const struct packing *p, const struct conta
     *y = (struct survey){
         .p = p, .s = s, .far = s->n >= FAR_BUNDLES * BUNDLE, .moving_images = most > 0
     };
-    team_share(team_size(), s->n, SOME, survey_some, y);
+    team_share(team_size(), s->n, PER_THREAD, survey_some, y);
 }
 
 /* The sum of x[slots] of all processes, in one order always */
 static double sum_of_slots(const struct problem *p, const double *x)
 {
     double sum = 0;
-    if (p->shared) return p->shared->sum_along(p->shared, p, x);
+    if (p->exchange) return p->exchange->sum_along(p->exchange, p, x);
     for (int64_t i = 0; i < p->slots; i++) sum += x[i];
     return sum;
 }
 
 static int prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
-                   double alpha, double rho_factor, const struct plan *plan, struct shared *shared,
-                   struct why *why)
+                   double alpha, double rho_factor, const struct plan *plan,
+                   struct exchange *exchange, struct why *why)
 {
     const struct lattice cell = lattice_of(pack);
     struct survey found;
@@ -241,24 +241,24 @@ static int prepare(struct problem *p, const struct packing *pack, const struct c
     *p = (struct problem){ .d = pack->dim, .n = s->n, .dt = pack->dt, .packing = pack };
     // those of the packing, the copies, and for the lanes without a contact one `nobody` in each half
     p->bodies = pack->n + 2 + plan->copies;
-    p->shared = shared;
-    if (shared) p->n = shared->contacts;
+    p->exchange = exchange;
+    if (exchange) p->n = exchange->contacts;
     if (p->bodies > BODIES_MAX) return why_set(why, EX_DATAERR, "more than %d bodies", BODIES_MAX);
     p->body = lay_lines(p->bodies, sizeof *p->body);
     bool room = p->body && lay_plan(p, plan);
     bool levers = anywhere(p, found.shaped), rebounds = anywhere(p, found.rebounds);
     bool bonds = anywhere(p, found.bonds), rolls = anywhere(p, found.rolls);
-    bool near = found.turned || (shared && shared->slower);
+    bool near = found.turned || (exchange && exchange->slower);
     p->kind = *kind_of_bodies(levers, bonds, rolls, near);
     if (rebounds) p->kind.arrays |= HAS_rebound;
     quat *half = NULL;
     room = room && set_pulls(p, s) && lay_bundles(p) && (!levers || find_spins(p, pack, &half));
     if (!room) return free(half), no_memory(p, why);
-    team_share(team_size(), pack->n, SOME, set_some, p);
+    team_share(team_size(), pack->n, PER_THREAD, set_some, p);
     lay_seats(p, plan, s);
     struct filling f = { p, s, &cell, alpha, rho_factor, half };
-    team_share(team_size(), p->bundles, SOME / BUNDLE, fill_bundles, &f);
-    room = !shared || !shared->slower || !brake_make(p, &f, shared->slower);
+    team_share(team_size(), p->bundles, PER_THREAD / BUNDLE, fill_bundles, &f);
+    room = !exchange || !exchange->slower || !brake_make(p, &f, exchange->slower);
     free(half);
     if (!room) return no_memory(p, why);
     if (freedoms_in(pack)) {
@@ -269,31 +269,31 @@ static int prepare(struct problem *p, const struct packing *pack, const struct c
     double g = v3_norm(pack->g);
     p->fall = g * pack->dt;
     p->scale_v = (g > 0 ? g : 9.81) * pack->dt;
-    p->scale_r = p->scale_v * (shared ? shared->mean_mass : packing_mean_mass(pack));
+    p->scale_r = p->scale_v * (exchange ? exchange->mean_mass : packing_mean_mass(pack));
     p->speed = top_speed(pack);
-    if (shared) p->speed = shared->most(shared, p->speed);
+    if (exchange) p->speed = exchange->most(exchange, p->speed);
     problem_set_free_motion(p);
     struct measuring m = { p, malloc((size_t)(p->slots + 1) * sizeof *m.q2) };
     if (!m.q2) return no_memory(p, why);
-    team_share(team_size(), p->bundles, SOME / BUNDLE, measure_some, &m);
+    team_share(team_size(), p->bundles, PER_THREAD / BUNDLE, measure_some, &m);
     p->norm_q = sqrt(sum_of_slots(p, m.q2));
     for (int64_t i = 0; i < p->slots; i++) m.q2[i] = sqrt(m.q2[i]);
     problem_set_unit(p, sum_of_slots(p, m.q2));
     free(m.q2);
     for (int64_t i = 0; s->found && i < p->slots; i++)
         if (p->contact[i] >= 0) take_found(p, i, s);
-    if (shared && s->found) shared->settle(shared, p);
+    if (exchange && s->found) exchange->settle(exchange, p);
     return 0;
 }
 
 /* With a plan of the problem's own */
 static int prepare_with(struct problem *p, const struct packing *pack, const struct contacts *s,
-                        double alpha, double rho_factor, struct plan *plan, struct shared *shared,
-                        struct why *why)
+                        double alpha, double rho_factor, struct plan *plan,
+                        struct exchange *exchange, struct why *why)
 {
     *p = (struct problem){ 0 };
     if (!plan) return no_memory(p, why);
-    int e = prepare(p, pack, s, alpha, rho_factor, plan, shared, why);
+    int e = prepare(p, pack, s, alpha, rho_factor, plan, exchange, why);
     if (e)
         plan_free(plan);
     else
@@ -321,10 +321,11 @@ int problem_prepare_again(struct problem *p, const struct packing *pack, const s
     return prepare(p, pack, s, alpha, rho_factor, *kept, NULL, why);
 }
 
-int problem_prepare_shared(struct problem *p, const struct packing *pack, const struct contacts *s,
-                           double alpha, double rho_factor, const struct schedule *order,
-                           struct shared *shared, struct why *why)
+int problem_prepare_distributed(struct problem *p, const struct packing *pack,
+                                const struct contacts *s, double alpha, double rho_factor,
+                                const struct schedule *order, struct exchange *exchange,
+                                struct why *why)
 {
     struct plan *plan = plan_of_contacts(ORDER_COLOUR, s, pack, order);
-    return prepare_with(p, pack, s, alpha, rho_factor, plan, shared, why);
+    return prepare_with(p, pack, s, alpha, rho_factor, plan, exchange, why);
 }

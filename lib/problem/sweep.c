@@ -109,10 +109,10 @@ ALWAYS_INLINE void make_local(const struct problem *p, int64_t bundle, int k,
 }
 
 /*
- * The local problem of a bonded contact [problem/beyond.h]: W^ stands in the bundle already. What is
+ * The local problem of a bonded contact [problem/extra.h]: W^ stands in the bundle already. What is
  * not bonded keeps its bits.
  */
-ALWAYS_INLINE void bond_local(const struct beyond *x, const struct beyond_levers *y, int k,
+ALWAYS_INLINE void bond_local(const struct extra *x, const struct extra_levers *y, int k,
                               struct local *l)
 {
     if (y) {
@@ -136,7 +136,7 @@ ALWAYS_INLINE void bond_local(const struct beyond *x, const struct beyond_levers
 }
 
 /* dr = the change of what the bond pulls, with u~ = W^ r* + b^ */
-ALWAYS_INLINE void bond_follow(struct beyond *x, int k, const struct local *l, vd dr[3])
+ALWAYS_INLINE void bond_follow(struct extra *x, int k, const struct local *l, vd dr[3])
 {
     vd u[3];
     local_velocity(l, l->r, u);
@@ -162,13 +162,13 @@ ALWAYS_INLINE void roll_lanes(struct problem *p, int64_t bundle, int k, enum met
     vstore(steps, l->steps), vstore(safe, pick(l->safeguarded, splat(1), splat(0)));
     vstore(gave, pick(l->gave_up, splat(1), splat(0)));
     for (int i = 0; i < LANES; i++) {
-        const struct beyond_lane at = slot_beyond(p, slot + i);
-        if (!beyond_rolls(at.x, at.i)) continue;
+        const struct extra_lane at = slot_extra(p, slot + i);
+        if (!extra_rolls(at.x, at.i)) continue;
         struct rolling_lane one = { .relax = o->relax, .w = { w[0][i], w[1][i] } };
         for (int j = 0; j < 3; j++) one.b[j] = b[j][i], one.r[j] = c->r[j][k + i];
         for (int j = 0; j < 3 && p->turn; j++) one.u[j] = u[j][i];
         for (int j = 0; j < 2; j++) one.s[j] = e ? e->s[j][k + i] : 1;
-        beyond_roll(&at, method, &o->local, &one);
+        extra_roll(&at, method, &o->local, &one);
         for (int j = 0; j < 3; j++) b[j][i] = one.b[j], r[j][i] = one.r[j], dm[i][j] = one.dm[j];
         steps[i] = one.steps, safe[i] = one.safeguarded, gave[i] = one.gave_up;
     }
@@ -253,23 +253,23 @@ ALWAYS_INLINE void solve_bundles(struct problem *p, int64_t first, int64_t end,
         fetch_ahead(p, i);
         for (int k = 0; k < BUNDLE; k += LANES) {
             struct local l;
-            struct beyond *x = IS(kernel, beyond) ? &p->beyond[i] : NULL;
+            struct extra *x = IS(kernel, extra) ? &p->extra[i] : NULL;
             vd W[9], dr[3];
             double dm[LANES][3];
             make_local(p, i, k, kernel, now, W, &l);
-            if (IS(kernel, beyond)) bond_local(x, IS(kernel, levers) ? &p->turn[i] : NULL, k, &l);
+            if (IS(kernel, extra)) bond_local(x, IS(kernel, levers) ? &p->turn[i] : NULL, k, &l);
             solve_relaxed(&l, c, k, kernel, o);
             if (IS(kernel, rolls)) roll_lanes(p, i, k, kernel.method, o, now->v, &l, dm);
             store_solution(c, k, belief, &l, dr, t);
-            if (IS(kernel, beyond)) bond_follow(x, k, &l, dr);
+            if (IS(kernel, extra)) bond_follow(x, k, &l, dr);
             if (k + LANES < BUNDLE)
                 load_slots(p, i, k + LANES, kernel, next);
             else if (i + 1 < end)
                 load_slots(p, i + 1, 0, kernel, next);
             pass_on(p, i, k, kernel, now, dr);
             for (int j = 0; j < LANES && IS(kernel, rolls); j++) {
-                const struct beyond_lane at = slot_beyond(p, i * BUNDLE + k + j);
-                if (beyond_rolls(at.x, at.i)) beyond_push(&at, dm[j]);
+                const struct extra_lane at = slot_extra(p, i * BUNDLE + k + j);
+                if (extra_rolls(at.x, at.i)) extra_push(&at, dm[j]);
             }
             struct loaded *was = now;
             now = next, next = was;
@@ -288,7 +288,7 @@ ALWAYS_INLINE void solve_group(struct problem *p, int64_t first, int64_t end, vo
 {
     const struct task *t = task;
     struct counts other = { splat(0), splat(0), splat(0), splat(0) }; // another process counts them
-    bool copies = p->shared && first < end && shared_is_copy(p->shared, first);
+    bool copies = p->exchange && first < end && exchange_is_copy(p->exchange, first);
     solve_bundles(p, first, end, t->o, t->kernel, copies ? &other : t->count);
 }
 
@@ -374,14 +374,14 @@ ALWAYS_INLINE void push_group(struct problem *p, int64_t first, int64_t end, voi
         for (int k = 0; k < BUNDLE; k += LANES) {
             const struct bundle *c = bundle_at(p, i);
             vd r[3] = { vload(c->r[0] + k), vload(c->r[1] + k), vload(c->r[2] + k) };
-            for (int j = 0; j < 3 && p->kind.beyond; j++)
-                r[j] += vload(p->beyond[i].z[j] + k) - vload(p->beyond[i].a[j] + k);
+            for (int j = 0; j < 3 && p->kind.extra; j++)
+                r[j] += vload(p->extra[i].z[j] + k) - vload(p->extra[i].a[j] + k);
             problem_push(p, p->body, i, k, r);
         }
         for (int k = 0; k < BUNDLE && p->kind.rolls; k++) {
-            const struct beyond_lane at = slot_beyond(p, i * BUNDLE + k);
+            const struct extra_lane at = slot_extra(p, i * BUNDLE + k);
             const double m[3] = { at.x->m[0][k], at.x->m[1][k], at.x->m[2][k] };
-            if (beyond_rolls(at.x, k)) beyond_push(&at, m);
+            if (extra_rolls(at.x, k)) extra_push(&at, m);
         }
     }
 }

@@ -7,8 +7,8 @@
 #define NSD_WALK_H
 
 #include "base/team.h"
+#include "problem/exchange.h"
 #include "problem/problem.h"
-#include "problem/shared.h"
 
 /*
  * How many bundles ahead data are fetched: first into the second-level cache, since the first-level
@@ -144,8 +144,8 @@ ALWAYS_INLINE void walk(struct problem *p, int me, int threads, walk_text *each,
             each(p, first + n * mine / share, first + n * (mine + 1) / share, task);
             if (common) delassus_end_group(p->W);
             if (share > 1) team_meet();
-            if (!p->shared) continue;
-            if (mine == 0) p->shared->after_group(p->shared, p, g);
+            if (!p->exchange) continue;
+            if (mine == 0) p->exchange->after_group(p->exchange, p, g);
             if (share > 1) team_meet();
         }
         end_leg(&leg[k]);

@@ -3,17 +3,17 @@
 
 #include "base/why.h"
 
-static double most(struct shared *s, double x)
+static double most(struct exchange *s, double x)
 {
     return comm_most(s->with, x);
 }
 
-static int64_t count(struct shared *s, int64_t n)
+static int64_t count(struct exchange *s, int64_t n)
 {
     return comm_sum(s->with, n);
 }
 
-static double agree(struct shared *s, double x)
+static double agree(struct exchange *s, double x)
 {
     double since = comm_busy();
     struct comm *t = s->with;
@@ -22,12 +22,12 @@ static double agree(struct shared *s, double x)
     return x;
 }
 
-static void fail(struct shared *s)
+static void fail(struct exchange *s)
 {
     comm_fail(s->with, EX_SOFTWARE, "no memory to solve the contacts");
 }
 
-void answers_alike(struct shared *s, struct comm *t)
+void answers_alike(struct exchange *s, struct comm *t)
 {
     s->with = t, s->most = most, s->count = count, s->agree = agree, s->fail = fail;
 }

@@ -1,11 +1,11 @@
-/* ranks/answers.h: what solvers ask [problem/shared.h] that ranks answer alike, in whatever order they solve. */
+/* ranks/answers.h: what solvers ask [problem/exchange.h] that ranks answer alike, in whatever order they solve. */
 #ifndef NSD_ANSWERS_H
 #define NSD_ANSWERS_H
 
-#include "problem/shared.h"
+#include "problem/exchange.h"
 #include "ranks/comm.h"
 
 /* Sets s->with, most, count, agree and fail. */
-void answers_alike(struct shared *s, struct comm *t);
+void answers_alike(struct exchange *s, struct comm *t);
 
 #endif

@@ -15,7 +15,7 @@ enum {
     TAG = 9
 };
 
-static struct blocks *blocks_of(struct shared *s)
+static struct blocks *blocks_of(struct exchange *s)
 {
     return (struct blocks *)s;
 }
@@ -98,28 +98,28 @@ static void add_up(struct blocks *b, int width, place_text *at, void *arg, doubl
     remember(b, width, at, arg, since);
 }
 
-static void settle(struct shared *s, struct problem *p)
+static void settle(struct exchange *s, struct problem *p)
 {
     add_up(blocks_of(s), TWIST, twist_of, p, blocks_of(s)->since);
 }
 
-static void after_group(struct shared *s, struct problem *p, int64_t group)
+static void after_group(struct exchange *s, struct problem *p, int64_t group)
 {
     if (group == blocks_of(s)->plan.groups - 1) settle(s, p);
 }
 
-static void begin(struct shared *s, struct problem *p)
+static void begin(struct exchange *s, struct problem *p)
 {
     remember(blocks_of(s), TWIST, twist_of, p, blocks_of(s)->since);
 }
 
-static void judging(struct shared *s, struct problem *p, bool begins)
+static void judging(struct exchange *s, struct problem *p, bool begins)
 {
     (void)s;
     brake_hold(p, !begins);
 }
 
-static void add(struct shared *s, double *x, int n)
+static void add(struct exchange *s, double *x, int n)
 {
     struct comm *t = blocks_of(s)->part->comm;
     double *all = comm_new(t, (int64_t)n * t->n, sizeof *all), since = comm_busy();
@@ -131,7 +131,7 @@ static void add(struct shared *s, double *x, int n)
     free(all);
 }
 
-static double sum_along(struct shared *s, const struct problem *p, const double *term)
+static double sum_along(struct exchange *s, const struct problem *p, const double *term)
 {
     double sum = 0;
     for (int64_t i = 0; i < p->slots; i++) sum += p->contact[i] >= 0 ? term[i] : 0;
@@ -144,7 +144,7 @@ static double sum_along(struct shared *s, const struct problem *p, const double 
 /* touched[] of what the contacts push; pushed[] as the others tell */
 static void find_borders(struct blocks *b, const struct contacts *s)
 {
-    const struct part *y = b->part;
+    const struct subdomain *y = b->part;
     struct comm *t = y->comm;
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
     bool *is = comm_new(t, y->p.n, sizeof *is);
@@ -187,7 +187,7 @@ static void find_borders(struct blocks *b, const struct contacts *s)
 /* ranks[n]: how many ranks push each body at once */
 static int32_t *count_ranks(const struct blocks *b)
 {
-    const struct part *y = b->part;
+    const struct subdomain *y = b->part;
     struct comm *t = y->comm;
     int32_t *ranks = comm_new(t, y->p.n, sizeof *ranks);
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
@@ -216,20 +216,20 @@ static void find_slower(struct blocks *b, const struct contacts *s)
         b->slower[i] = k;
     }
     free(ranks);
-    b->shared.slower = b->slower;
+    b->exchange.slower = b->slower;
 }
 
-void blocks_begin(struct blocks *b, struct part *y, const struct contacts *s, enum order order)
+void blocks_begin(struct blocks *b, struct subdomain *y, const struct contacts *s, enum order order)
 {
     struct comm *t = y->comm;
     *b = (struct blocks){ .part = y };
-    b->shared = (struct shared){ .after_group = after_group,
-                                 .begin = begin,
-                                 .settle = settle,
-                                 .judging = judging,
-                                 .add = add,
-                                 .sum_along = sum_along };
-    answers_alike(&b->shared, t);
+    b->exchange = (struct exchange){ .after_group = after_group,
+                                     .begin = begin,
+                                     .settle = settle,
+                                     .judging = judging,
+                                     .add = add,
+                                     .sum_along = sum_along };
+    answers_alike(&b->exchange, t);
     find_borders(b, s);
     find_slower(b, s);
     if (schedule_bodies(&b->plan, order, s, &y->p))
@@ -244,7 +244,7 @@ void blocks_begin(struct blocks *b, struct part *y, const struct contacts *s, en
     int64_t bundles = 0;
     for (int64_t g = 0; g < b->plan.groups; g++)
         bundles += (b->plan.group[g + 1] - b->plan.group[g] + BUNDLE - 1) / BUNDLE;
-    b->shared.contacts = comm_sum(t, s->n), b->shared.bundles = comm_sum(t, bundles);
+    b->exchange.contacts = comm_sum(t, s->n), b->exchange.bundles = comm_sum(t, bundles);
 }
 
 /* ---- the motion ---- */
@@ -290,25 +290,25 @@ void blocks_move_apart(struct blocks *b, const struct contacts *s)
 {
     struct comm *t = b->part->comm;
     struct why why = { 0 };
-    part_refresh(b->part);
+    subdomain_refresh(b->part);
     if (!overlap_projects(b->part->p.overlap)) return;
     struct apart a = { b, letters(t, b->touched, 3) };
     const struct project_share share = { &a, b->slower, in_any, after_sweep };
     if (project_shared(&b->part->p, s, &share, &why)) comm_fail(t, why.status, why.text);
     letters_free(t, a.since);
-    part_refresh(b->part);
+    subdomain_refresh(b->part);
 }
 
 void blocks_balance(struct blocks *b, const struct contacts *s, const struct impulses *sum,
                     struct balance *told)
 {
-    struct part *y = b->part;
+    struct subdomain *y = b->part;
     struct why why = { 0 };
     bool *own = comm_new(y->comm, y->p.n, sizeof *own);
     for (int64_t i = 0; i < y->p.n; i++) own[i] = y->owner[i] == y->comm->me;
     if (balance_step(told, &y->p, s, sum, own, &why)) comm_fail(y->comm, why.status, why.text);
     free(own);
-    add(&b->shared, (double *)told, sizeof *told / sizeof(double)); // it has nothing else
+    add(&b->exchange, (double *)told, sizeof *told / sizeof(double)); // it has nothing else
 }
 
 void blocks_add_impulses(struct blocks *b, struct impulses *sum)

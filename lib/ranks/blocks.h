@@ -14,14 +14,14 @@
 #define NSD_BLOCKS_H
 
 #include "motion/balance.h"
+#include "problem/exchange.h"
 #include "problem/problem.h"
-#include "problem/shared.h"
-#include "ranks/part.h"
+#include "ranks/subdomain.h"
 #include "ranks/wires.h"
 
 struct blocks {
-    struct shared shared; /* first: what solvers are given leads back here */
-    struct part *part;
+    struct exchange exchange; /* first: what solvers are given leads back here */
+    struct subdomain *part;
     struct border *touched; /* [ranks] copies here of bodies of rank q that contacts here push */
     struct border *pushed;  /* [ranks] own bodies that contacts of rank q push */
     /* [ranks][touched[q].n][6] m/s, rad/s: their velocities after the last exchange */
@@ -31,7 +31,8 @@ struct blocks {
 };
 
 /* s: the contacts that this rank counts, and no others. */
-void blocks_begin(struct blocks *b, struct part *y, const struct contacts *s, enum order order);
+void blocks_begin(struct blocks *b, struct subdomain *y, const struct contacts *s,
+                  enum order order);
 /* After the solve. The sums of the contacts' reactions on bodies at borders become those of all ranks, added by
    the owners. */
 void blocks_add_impulses(struct blocks *b, struct impulses *sum);

@@ -10,48 +10,48 @@ enum { PARTS = 3, COPIES = 1, QUIET = 2 }; /* of a group, and two of them; 0: wh
 
 /* ---- what solvers ask ---- */
 
-static struct colours *colours_of(struct shared *s)
+static struct colours *colours_of(struct exchange *s)
 {
     return (struct colours *)s;
 }
 
-static void after_group(struct shared *s, struct problem *p, int64_t group)
+static void after_group(struct exchange *s, struct problem *p, int64_t group)
 {
     struct colours *c = colours_of(s);
     if (group % PARTS == COPIES) wires_send(&c->wires, p, group / PARTS);
     if (group % PARTS == QUIET) wires_wait(&c->wires, p, group / PARTS);
 }
 
-static void begin(struct shared *s, struct problem *p)
+static void begin(struct exchange *s, struct problem *p)
 {
     (void)s, (void)p;
 }
 
-static void settle(struct shared *s, struct problem *p)
+static void settle(struct exchange *s, struct problem *p)
 {
     wires_refresh(colours_of(s)->part, p);
 }
 
-static void judging(struct shared *s, struct problem *p, bool begins)
+static void judging(struct exchange *s, struct problem *p, bool begins)
 {
     (void)s, (void)p, (void)begins;
 }
 
 static const struct tally_order *tally(struct colours *c, const struct problem *p)
 {
-    if (!c->tallied) tally_begin(&c->tally, c->part->comm, p, c->slot, c->shared.bundles);
+    if (!c->tallied) tally_begin(&c->tally, c->part->comm, p, c->slot, c->exchange.bundles);
     c->tallied = true;
     return &c->tally;
 }
 
-static void sum(struct shared *s, const struct problem *p, int64_t chunk, int parts, int terms,
+static void sum(struct exchange *s, const struct problem *p, int64_t chunk, int parts, int terms,
                 const double *term, double *out)
 {
     struct colours *c = colours_of(s);
     tally_sum(tally(c, p), c->part->comm, s->bundles, chunk, parts, terms, term, out);
 }
 
-static double sum_along(struct shared *s, const struct problem *p, const double *term)
+static double sum_along(struct exchange *s, const struct problem *p, const double *term)
 {
     struct colours *c = colours_of(s);
     return tally_along(tally(c, p), c->part->comm, s->bundles, term);
@@ -65,7 +65,7 @@ struct holders {
     int32_t *rank;
 };
 
-static void holders_find(struct holders *h, const struct part *y)
+static void holders_find(struct holders *h, const struct subdomain *y)
 {
     const struct comm *t = y->comm;
     h->first = comm_new(t, y->p.n + 1, sizeof *h->first);
@@ -80,7 +80,7 @@ static void holders_find(struct holders *h, const struct part *y)
 
 /* Body i (own, and moving) of a contact whose other body is `other` (< 0: a boundary): who must be told of
    what this contact makes of it? Returns how many. */
-static int told(const struct part *y, const struct holders *h, int32_t i, int32_t other,
+static int told(const struct subdomain *y, const struct holders *h, int32_t i, int32_t other,
                 int32_t *rank)
 {
     int n = 0;
@@ -115,12 +115,12 @@ static void lay_plan(struct colours *c, const struct comm *t, int64_t groups, in
         plan->sequence[i] = stop[i].contact;
         plan->group[stop[i].group + 1]++;
     }
-    c->shared.copies = comm_new(t, 2 * groups, sizeof *c->shared.copies);
+    c->exchange.copies = comm_new(t, 2 * groups, sizeof *c->exchange.copies);
     for (int64_t g = 0; g < plan->groups; g++) {
         int64_t more = (plan->group[g + 1] + BUNDLE - 1) / BUNDLE;
         if (g % PARTS == COPIES && more) {
-            c->shared.copies[2 * c->shared.n_copies] = bundles;
-            c->shared.copies[2 * c->shared.n_copies++ + 1] = bundles + more;
+            c->exchange.copies[2 * c->exchange.n_copies] = bundles;
+            c->exchange.copies[2 * c->exchange.n_copies++ + 1] = bundles + more;
         }
         bundles += more;
         plan->group[g + 1] += plan->group[g];
@@ -135,7 +135,7 @@ static int by_errand(const void *a, const void *b)
     return x->body < y->body ? -1 : x->body > y->body;
 }
 
-void colours_begin(struct colours *c, struct part *y, const struct contacts *s,
+void colours_begin(struct colours *c, struct subdomain *y, const struct contacts *s,
                    const struct verdict *verdict, int64_t groups, int64_t bundles)
 {
     struct comm *t = y->comm;
@@ -145,21 +145,21 @@ void colours_begin(struct colours *c, struct part *y, const struct contacts *s,
     int32_t *rank = comm_new(t, t->n, sizeof *rank);
     struct stop *stop = comm_new(t, s->n, sizeof *stop);
     *c = (struct colours){ .part = y };
-    c->shared = (struct shared){ .bundles = bundles,
-                                 .may_want = true,
-                                 .after_group = after_group,
-                                 .begin = begin,
-                                 .settle = settle,
-                                 .judging = judging,
-                                 .sum = sum,
-                                 .sum_along = sum_along };
-    answers_alike(&c->shared, t);
+    c->exchange = (struct exchange){ .bundles = bundles,
+                                     .may_want = true,
+                                     .after_group = after_group,
+                                     .begin = begin,
+                                     .settle = settle,
+                                     .judging = judging,
+                                     .sum = sum,
+                                     .sum_along = sum_along };
+    answers_alike(&c->exchange, t);
     c->slot = comm_new(t, s->n, sizeof *c->slot);
     holders_find(&h, y);
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *k = &s->c[i];
         const int32_t body[2] = { k->b, k->a };
-        bool mine = part_counts(y, k), tells = false;
+        bool mine = subdomain_counts(y, k), tells = false;
         for (int j = 0; j < 2; j++) {
             int n = told(y, &h, body[j], body[1 - j], rank);
             tells = tells || n;
@@ -187,7 +187,7 @@ void colours_free(struct colours *c)
 {
     wires_free(&c->wires);
     if (c->tallied) tally_free(&c->tally);
-    free(c->slot), free(c->shared.copies);
+    free(c->slot), free(c->exchange.copies);
     schedule_free(&c->plan);
     *c = (struct colours){ 0 };
 }

@@ -14,15 +14,15 @@
 #ifndef NSD_COLOURS_H
 #define NSD_COLOURS_H
 
+#include "problem/exchange.h"
 #include "problem/problem.h"
-#include "problem/shared.h"
 #include "ranks/contact_list.h"
 #include "ranks/tally.h"
 #include "ranks/wires.h"
 
 struct colours {
-    struct shared shared; /* first: what solvers are given leads back here */
-    struct part *part;
+    struct exchange exchange; /* first: what solvers are given leads back here */
+    struct subdomain *part;
     struct wires wires;
     struct tally_order tally;
     bool tallied;  /* tally is made */
@@ -31,7 +31,7 @@ struct colours {
 };
 
 /* groups, bundles, halves, contacts: of the order of all; verdict[s->n]: of the contacts here. */
-void colours_begin(struct colours *c, struct part *y, const struct contacts *s,
+void colours_begin(struct colours *c, struct subdomain *y, const struct contacts *s,
                    const struct verdict *verdict, int64_t groups, int64_t bundles);
 void colours_free(struct colours *c);
 

@@ -31,14 +31,14 @@ static void merge(struct contact_list *l, struct comm *t, struct parcel *in, str
     free(c), free(n);
 }
 
-void contact_list_gather(struct contact_list *l, const struct part *y, const struct contacts *s,
-                         struct contacts *all)
+void contact_list_gather(struct contact_list *l, const struct subdomain *y,
+                         const struct contacts *s, struct contacts *all)
 {
     struct comm *t = y->comm;
     struct parcel mine = { 0 }, *in = parcels_new(t);
     for (int64_t i = 0; i < s->n; i++) {
         struct contact c = s->c[i];
-        if (!part_counts(y, &c)) continue;
+        if (!subdomain_counts(y, &c)) continue;
         c.b = y->row[c.b];
         if (c.a >= 0) c.a = y->row[c.a];
         parcel_put(t, &mine, &c, sizeof c);
@@ -58,7 +58,7 @@ void contact_list_free(struct contact_list *l)
 }
 
 /* Does another rank have the contact too, which this one counts? Which: the owner of a */
-static int other_rank(const struct part *y, const struct contact *c)
+static int other_rank(const struct subdomain *y, const struct contact *c)
 {
     return c->a >= 0 && y->owner[c->a] != y->comm->me ? y->owner[c->a] : -1;
 }
@@ -67,7 +67,7 @@ static int other_rank(const struct part *y, const struct contact *c)
  * Records of `size` bytes: of[l->n] at the first, to[s->n] here. From those who count a contact they go on to
  * those who have it too; both have their common contacts in the same order.
  */
-static void tell(const struct contact_list *l, const struct part *y, const struct contacts *s,
+static void tell(const struct contact_list *l, const struct subdomain *y, const struct contacts *s,
                  const void *of, void *to, size_t size)
 {
     struct comm *t = y->comm;
@@ -78,22 +78,22 @@ static void tell(const struct contact_list *l, const struct part *y, const struc
     for (int64_t i = 0; i < s->n; i++) {
         char *x = (char *)to + (size_t)i * size;
         int q = other_rank(y, &s->c[i]);
-        if (!part_counts(y, &s->c[i])) continue;
+        if (!subdomain_counts(y, &s->c[i])) continue;
         parcel_take(t, &mine, x, size);
         if (q >= 0) parcel_put(t, &out[q], x, size);
     }
     parcel_free(&mine);
     comm_exchange(t, out, in);
     for (int64_t i = 0; i < s->n; i++)
-        if (!part_counts(y, &s->c[i]))
+        if (!subdomain_counts(y, &s->c[i]))
             parcel_take(t, &in[y->owner[s->c[i].b]], (char *)to + (size_t)i * size, size);
     for (int q = 0; q < t->n; q++)
         if (in[q].at != in[q].size) comm_fail(t, EX_SOFTWARE, "ranks disagree about contacts");
     parcels_free(t, out), parcels_free(t, in);
 }
 
-void contact_list_tell(const struct contact_list *l, const struct part *y, const struct contacts *s,
-                       const struct verdict *all, struct verdict *mine)
+void contact_list_tell(const struct contact_list *l, const struct subdomain *y,
+                       const struct contacts *s, const struct verdict *all, struct verdict *mine)
 {
     tell(l, y, s, all, mine, sizeof *mine);
     for (int64_t i = 0; i < s->n; i++)
@@ -105,14 +105,14 @@ void contact_list_tell(const struct contact_list *l, const struct part *y, const
 struct law_record {
     EACH_PAIR_COLUMN(PAIR_NUMBER) // mu, en, et
     double r[3], u[3], moment[3];
-    struct tie tie;
+    struct contact_law law;
 };
 
-void contact_list_tell_laws(const struct contact_list *l, const struct part *y, struct contacts *s,
-                            const struct contacts *all)
+void contact_list_tell_laws(const struct contact_list *l, const struct subdomain *y,
+                            struct contacts *s, const struct contacts *all)
 {
     struct comm *t = y->comm;
-    int32_t has[3] = { all->found != NULL, all->moment != NULL, all->tie != NULL };
+    int32_t has[3] = { all->found != NULL, all->moment != NULL, all->law != NULL };
     struct law_record *of = comm_new(t, t->me ? 0 : l->n, sizeof *of),
                       *to = comm_new(t, s->n, sizeof *to);
     MPI_Bcast(has, 3, MPI_INT32_T, 0, t->mpi);
@@ -123,11 +123,11 @@ void contact_list_tell_laws(const struct contact_list *l, const struct part *y, 
         for (int k = 0; k < 3 && all->found; k++)
             of[i].r[k] = all->found[i].r[k], of[i].u[k] = all->found[i].u[k];
         for (int k = 0; k < 3 && all->moment; k++) of[i].moment[k] = all->moment[i][k];
-        if (all->tie) of[i].tie = all->tie[i];
+        if (all->law) of[i].law = all->law[i];
     }
     tell(l, y, s, of, to, sizeof *to);
     if ((has[0] && contacts_alloc_found(s)) || (has[1] && contacts_alloc_moment(s)) ||
-        (has[2] && contacts_alloc_tie(s)))
+        (has[2] && contacts_alloc_laws(s)))
         comm_fail(t, EX_SOFTWARE, "no memory for the contacts");
     for (int64_t i = 0; i < s->n; i++) {
 #define TAKE(member, ...) s->c[i].member = to[i].member;
@@ -136,12 +136,12 @@ void contact_list_tell_laws(const struct contact_list *l, const struct part *y, 
         for (int k = 0; k < 3 && has[0]; k++)
             s->found[i].r[k] = to[i].r[k], s->found[i].u[k] = to[i].u[k];
         for (int k = 0; k < 3 && has[1]; k++) s->moment[i][k] = to[i].moment[k];
-        if (has[2]) s->tie[i] = to[i].tie;
+        if (has[2]) s->law[i] = to[i].law;
     }
     free(of), free(to);
 }
 
-void contact_list_found(const struct contact_list *l, const struct part *y,
+void contact_list_found(const struct contact_list *l, const struct subdomain *y,
                         const struct contacts *s, struct contacts *all)
 {
     struct comm *t = y->comm;
@@ -150,7 +150,7 @@ void contact_list_found(const struct contact_list *l, const struct part *y,
     int rolls = s->moment != NULL, any;
     MPI_Allreduce(&rolls, &any, 1, MPI_INT, MPI_MAX, t->mpi);
     for (int64_t i = 0; i < s->n; i++) {
-        if (!part_counts(y, &s->c[i])) continue;
+        if (!subdomain_counts(y, &s->c[i])) continue;
         parcel_put(t, &mine, &s->found[i], sizeof s->found[i]);
         if (any) parcel_put(t, &mine, s->moment ? s->moment[i] : none, sizeof none);
     }

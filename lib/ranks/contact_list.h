@@ -5,7 +5,7 @@
 #ifndef NSD_CONTACT_LIST_H
 #define NSD_CONTACT_LIST_H
 
-#include "ranks/part.h"
+#include "ranks/subdomain.h"
 
 struct contact_list {
     int64_t n;      /* contacts of all */
@@ -22,17 +22,17 @@ struct verdict {
 
 /* all = the contacts that the ranks count, bodies by their rows in the whole; only at the first.
    Collective, as all that follows. */
-void contact_list_gather(struct contact_list *l, const struct part *y, const struct contacts *s,
-                         struct contacts *all);
+void contact_list_gather(struct contact_list *l, const struct subdomain *y,
+                         const struct contacts *s, struct contacts *all);
 void contact_list_free(struct contact_list *l);
 /* verdict[s->n] = what the first has for each of all[l->n], in all ranks that have the contact. */
-void contact_list_tell(const struct contact_list *l, const struct part *y, const struct contacts *s,
-                       const struct verdict *all, struct verdict *mine);
+void contact_list_tell(const struct contact_list *l, const struct subdomain *y,
+                       const struct contacts *s, const struct verdict *all, struct verdict *mine);
 /* The same of laws, reactions to start from and ties: into the contacts */
-void contact_list_tell_laws(const struct contact_list *l, const struct part *y, struct contacts *s,
-                            const struct contacts *all);
+void contact_list_tell_laws(const struct contact_list *l, const struct subdomain *y,
+                            struct contacts *s, const struct contacts *all);
 /* all->found (and moment) = what the ranks have found. */
-void contact_list_found(const struct contact_list *l, const struct part *y,
+void contact_list_found(const struct contact_list *l, const struct subdomain *y,
                         const struct contacts *s, struct contacts *all);
 
 #endif

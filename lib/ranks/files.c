@@ -129,7 +129,7 @@ static bool all_see(const struct comm *t, const char *path)
 }
 
 /* No reader would accept a body that is not as it should be: the first of them ends the run. */
-static void check_bodies(const struct rows *r, const struct part *y)
+static void check_bodies(const struct rows *r, const struct subdomain *y)
 {
     int64_t bad = INT64_MAX, least;
     struct why why = { 0 };
@@ -166,7 +166,7 @@ static struct target *spread_targets(struct comm *t, char path[PATH_MAX],
     return all;
 }
 
-int files_fill(const struct rows *r, const struct part *y, hid_t file, const char *path,
+int files_fill(const struct rows *r, const struct subdomain *y, hid_t file, const char *path,
                const struct unfilled *place, int places, bool gather, struct why *why)
 {
     struct comm *t = r->comm;

@@ -29,7 +29,7 @@ void rank_step_begin(struct rank_step *y, struct comm *t, struct territory *spac
     // the first cuts know no contacts
     *y = (struct rank_step){ .varies = varies, .scattered = rows, .since = -CUT_AFTER };
     if (!rows) {
-        part_begin(&y->part, t, space, whole);
+        subdomain_begin(&y->part, t, space, whole);
         return;
     }
     y->mean_mass = rows->heavy > 0 ? rows->mass / rows->heavy : 1;
@@ -40,13 +40,13 @@ void rank_step_begin(struct rank_step *y, struct comm *t, struct territory *spac
 void rank_step_begin_again(struct rank_step *y, const struct packing *whole)
 {
     neighbours_free(&y->near);
-    part_begin_again(&y->part, whole);
+    subdomain_begin_again(&y->part, whole);
 }
 
 void rank_step_free(struct rank_step *y)
 {
     neighbours_free(&y->near);
-    part_free(&y->part);
+    subdomain_free(&y->part);
 }
 
 static void fail(const struct rank_step *y, const struct why *why)
@@ -60,7 +60,7 @@ static void sift(struct contacts *s, const bool *keep)
     int64_t n = 0;
     for (int64_t i = 0; i < s->n; i++) {
         if (!keep[i]) continue;
-        if (s->tie) s->tie[n] = s->tie[i];
+        if (s->law) s->law[n] = s->law[i];
         if (s->found) s->found[n] = s->found[i];
         if (s->moment) memcpy(s->moment[n], s->moment[i], sizeof *s->moment);
         s->c[n++] = s->c[i];
@@ -71,13 +71,13 @@ static void sift(struct contacts *s, const bool *keep)
 /* The pairs within reach in which this rank has a body: contacts, but where laws decide what is one */
 static void find_contacts(struct rank_step *y, double gap, double reach, struct contacts *s)
 {
-    struct part *part = &y->part;
+    struct subdomain *part = &y->part;
     struct why why = { 0 };
     double ahead = comm_most(part->comm, swift_reach(&part->p));
-    if (part_deal(part, fmax(reach, ahead))) neighbours_free(&y->near);
+    if (subdomain_deal(part, fmax(reach, ahead))) neighbours_free(&y->near);
     if (detect_near(s, &part->p, reach, &y->near, &why)) fail(y, &why);
     bool *keep = comm_new(part->comm, s->n, sizeof *keep);
-    for (int64_t i = 0; i < s->n; i++) keep[i] = part_has(part, &s->c[i]);
+    for (int64_t i = 0; i < s->n; i++) keep[i] = subdomain_has(part, &s->c[i]);
     sift(s, keep);
     free(keep);
     if (!part->p.law && detect_choose(s, &part->p, gap, reach, &why)) fail(y, &why);
@@ -111,10 +111,11 @@ static void insert(const struct rank_step *y, struct contacts *s, struct parcel 
     for (; n > 0; n--) {
         struct contact c;
         parcel_take(t, added, &c, sizeof c);
-        int32_t a = c.a < 0 ? c.a : part_find(&y->part, c.a), b = part_find(&y->part, c.b);
+        int32_t a = c.a < 0 ? c.a : subdomain_find(&y->part, c.a),
+                b = subdomain_find(&y->part, c.b);
         bool here = b >= 0 && (c.a < 0 || a >= 0); // else neither body is this rank's
         c.a = a, c.b = b;
-        if (!here || !part_has(&y->part, &c)) continue;
+        if (!here || !subdomain_has(&y->part, &c)) continue;
         while (i < s->n && contact_compare(&s->c[i], &c) < 0) both.c[both.n++] = s->c[i++];
         both.c[both.n++] = c;
     }
@@ -236,13 +237,13 @@ static bool solve_in_order(struct rank_step *y, const struct packing *whole,
     free(of);
     colours_begin(&c, &y->part, s, mine, size[0], size[1]);
     free(mine);
-    c.shared.contacts = list->n, c.shared.halves = size[2];
-    c.shared.mean_mass = mean_mass(y, whole);
-    if (problem_prepare_shared(&p, &y->part.p, s, o->alpha, o->solve.method->rho, &c.plan,
-                               &c.shared, why))
+    c.exchange.contacts = list->n, c.exchange.halves = size[2];
+    c.exchange.mean_mass = mean_mass(y, whole);
+    if (problem_prepare_distributed(&p, &y->part.p, s, o->alpha, o->solve.method->rho, &c.plan,
+                                    &c.exchange, why))
         fail(y, why);
     solve(y, &p, s, o, rep);
-    bool solved = !c.shared.wants_whole;
+    bool solved = !c.exchange.wants_whole;
     problem_free(&p);
     colours_free(&c);
     return solved;
@@ -255,13 +256,13 @@ static void solve_in_blocks(struct rank_step *y, struct blocks *b, const struct 
 {
     struct problem p;
     bool *keep = comm_new(y->part.comm, s->n, sizeof *keep);
-    for (int64_t i = 0; i < s->n; i++) keep[i] = part_counts(&y->part, &s->c[i]);
+    for (int64_t i = 0; i < s->n; i++) keep[i] = subdomain_counts(&y->part, &s->c[i]);
     sift(s, keep);
     free(keep);
     blocks_begin(b, &y->part, s, o->order);
-    b->shared.mean_mass = mean_mass(y, whole);
-    if (problem_prepare_shared(&p, &y->part.p, s, o->alpha, o->solve.method->rho, &b->plan,
-                               &b->shared, why))
+    b->exchange.mean_mass = mean_mass(y, whole);
+    if (problem_prepare_distributed(&p, &y->part.p, s, o->alpha, o->solve.method->rho, &b->plan,
+                                    &b->exchange, why))
         fail(y, why);
     solve(y, &p, s, o, rep);
     problem_free(&p);
@@ -295,7 +296,7 @@ static void detect_here(struct rank_step *y, const struct packing *whole, struct
     // of the widest gap only a bond knows, and bonds are the first's
     double apart = y->part.comm->me ? 0 : packing_whole(whole).apart;
     packing_wrap(&y->part.p, NULL);
-    part_measure(&y->part);
+    subdomain_measure(&y->part);
     MPI_Bcast(&apart, 1, MPI_DOUBLE, 0, y->part.comm->mpi);
     y->part.whole.apart = apart;
     *reach = comm_most(y->part.comm, detect_reach(&y->part.p, o->gap));
@@ -320,14 +321,14 @@ static int detect(struct rank_step *y, struct packing *whole, struct contacts *a
 
 static void balance_load(struct rank_step *y, const struct contacts *s)
 {
-    double imbalance = part_imbalance(&y->part, s);
+    double imbalance = subdomain_imbalance(&y->part, s);
     y->worst = fmax(y->worst, imbalance), y->uneven += imbalance;
     y->steps++;
     if (y->steps == y->since + 1) y->fresh = imbalance, y->lost = 0;
     y->lost += imbalance - y->fresh;
     if (imbalance <= IMBALANCE) return;
     if (y->steps - y->since < CUT_AFTER && y->lost <= LOST_MOST) return;
-    part_recut(&y->part);
+    subdomain_recut(&y->part);
     y->since = y->steps;
 }
 
@@ -389,7 +390,7 @@ static int step_by_first(struct rank_step *y, struct packing *whole, struct cont
     if (step_make(&f.makers, whole, all, o, rep, why)) return why->status;
     if (!t->me) settings_copy_motion(&y->part.p, whole);
     settings_follow(t, &y->part.p);
-    part_follow(&y->part, whole);
+    subdomain_follow(&y->part, whole);
     balance_load(y, &f.here);
     contact_list_free(&f.list), contacts_free(&f.here);
     return 0;
@@ -539,7 +540,7 @@ static int step_by_all(struct rank_step *y, struct packing *whole, struct contac
     if (step_make(&a.makers, &y->part.p, &s, &of_first, rep, why)) fail(y, why);
     if (!t->me && !diverged(rep)) settings_copy_motion(whole, &y->part.p);
     // a run that diverges ends, and keeps this
-    if (!y->scattered && (!of_first.bare || diverged(rep))) part_collect(&y->part, whole);
+    if (!y->scattered && (!of_first.bare || diverged(rep))) subdomain_collect(&y->part, whole);
     balance_load(y, &s);
     blocks_free(&a.blocks);
     contacts_free(&s);

@@ -20,7 +20,7 @@
 #include "solve/step.h"
 
 struct rank_step {
-    struct part part;
+    struct subdomain part;
     struct neighbours near;
     bool varies;      /* the packing has inlets or outlets; known to all ranks */
     bool scattered;   /* no rank has the whole packing */

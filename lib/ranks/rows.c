@@ -62,10 +62,10 @@ void rows_take(struct rows *r, struct comm *t, const struct packing *block, int6
     parcel_free(&mine), parcels_free(t, out);
 }
 
-void rows_deal(struct rows *r, struct part *y, struct territory *space,
+void rows_deal(struct rows *r, struct subdomain *y, struct territory *space,
                const struct packing *settings)
 {
-    part_begin_rows(y, r->comm, space, settings, &r->p, r->first, r->all);
+    subdomain_begin_rows(y, r->comm, space, settings, &r->p, r->first, r->all);
     packing_free(&r->p);
 }
 
@@ -88,7 +88,7 @@ static int holder_of(const struct rows *r, int32_t row)
 /* The column's numbers of all own bodies, for those who have their rows; c NULL: their rows */
 static void send_off(const struct haul *h, const struct column *c, struct parcel *out)
 {
-    const struct part *y = h->part;
+    const struct subdomain *y = h->part;
     size_t bytes = c ? column_bytes(c) : 0;
     const char *from = c ? column_array(c, &y->p) : NULL;
     for (int64_t i = 0; i < y->p.n; i++) {
@@ -101,7 +101,7 @@ static void send_off(const struct haul *h, const struct column *c, struct parcel
     }
 }
 
-void haul_begin(struct haul *h, const struct rows *r, const struct part *y)
+void haul_begin(struct haul *h, const struct rows *r, const struct subdomain *y)
 {
     struct comm *t = r->comm;
     int64_t n = 0;

@@ -1,11 +1,11 @@
 /*
  * ranks/rows.h: the bodies as files have them: in rows, of which each rank has a block, one rank after the
- * other. So they come from a document, before they are dealt (ranks/part.h), and so they go into one.
+ * other. So they come from a document, before they are dealt (ranks/subdomain.h), and so they go into one.
  */
 #ifndef NSD_ROWS_H
 #define NSD_ROWS_H
 
-#include "ranks/part.h"
+#include "ranks/subdomain.h"
 
 #include "io/layout.h"
 
@@ -29,19 +29,19 @@ static inline int64_t rows_begin(int64_t all, int ranks, int k)
 void rows_take(struct rows *r, struct comm *t, const struct packing *block, int64_t first,
                int64_t all);
 /* They become a part's own bodies, of which the first has all else in `settings`. */
-void rows_deal(struct rows *r, struct part *y, struct territory *space,
+void rows_deal(struct rows *r, struct subdomain *y, struct territory *space,
                const struct packing *settings);
 void rows_free(struct rows *r);
 
 /* Columns of bodies on their way into rows */
 struct haul {
     const struct rows *rows;
-    const struct part *part; /* NULL: they have not been dealt, and lie in the rows */
-    int64_t n;               /* rows of this rank */
-    int64_t **at;            /* [ranks][...] which of these comes from each, in order */
+    const struct subdomain *part; /* NULL: they have not been dealt, and lie in the rows */
+    int64_t n;                    /* rows of this rank */
+    int64_t **at;                 /* [ranks][...] which of these comes from each, in order */
 };
 
-void haul_begin(struct haul *h, const struct rows *r, const struct part *y);
+void haul_begin(struct haul *h, const struct rows *r, const struct subdomain *y);
 /* to[n][width] = the column's numbers in the rows of this rank. */
 void haul_column(struct haul *h, const struct column *c, void *to);
 void haul_end(struct haul *h);

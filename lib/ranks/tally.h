@@ -23,7 +23,7 @@ struct tally_order {
 void tally_begin(struct tally_order *o, struct comm *t, const struct problem *p,
                  const int64_t *slot, int64_t bundles);
 void tally_free(struct tally_order *o);
-/* As in struct shared */
+/* As in struct exchange */
 void tally_sum(const struct tally_order *o, struct comm *t, int64_t bundles, int64_t chunk,
                int parts, int terms, const double *term, double *out);
 double tally_along(const struct tally_order *o, struct comm *t, int64_t bundles,

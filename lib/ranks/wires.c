@@ -31,7 +31,7 @@ static int64_t largest(const int64_t *first, int64_t groups)
 }
 
 /* What comes from a rank: groups and rows, as it has told */
-static void take_list(struct wires *w, const struct part *y, struct parcel *in, int rank)
+static void take_list(struct wires *w, const struct subdomain *y, struct parcel *in, int rank)
 {
     int64_t n = 0;
     if (!in->size) return;
@@ -42,7 +42,7 @@ static void take_list(struct wires *w, const struct part *y, struct parcel *in, 
         int64_t g;
         int32_t row;
         parcel_take(w->comm, in, &g, sizeof g), parcel_take(w->comm, in, &row, sizeof row);
-        int32_t body = part_find(y, row);
+        int32_t body = subdomain_find(y, row);
         if (body < 0 || g < 0 || g >= w->groups)
             comm_fail(w->comm, EX_SOFTWARE,
                       "ranks disagree: a velocity of a body that is not here");
@@ -50,7 +50,7 @@ static void take_list(struct wires *w, const struct part *y, struct parcel *in, 
     }
 }
 
-void wires_lay(struct wires *w, const struct part *y, int64_t groups, int64_t n,
+void wires_lay(struct wires *w, const struct subdomain *y, int64_t groups, int64_t n,
                const struct errand *errand)
 {
     struct comm *t = y->comm;
@@ -138,7 +138,7 @@ void wires_wait(struct wires *w, struct problem *p, int64_t g)
     }
 }
 
-void wires_refresh(const struct part *y, struct problem *p)
+void wires_refresh(const struct subdomain *y, struct problem *p)
 {
     struct comm *t = y->comm;
     double v[TWIST];

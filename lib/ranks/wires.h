@@ -6,7 +6,7 @@
 #define NSD_WIRES_H
 
 #include "problem/problem.h"
-#include "ranks/part.h"
+#include "ranks/subdomain.h"
 
 struct wire {
     int rank;
@@ -33,13 +33,13 @@ struct errand {
 
 /* Collective. errand[n], in the order of groups for each rank, of bodies that this rank owns; the others learn
    from it what will come. */
-void wires_lay(struct wires *w, const struct part *y, int64_t groups, int64_t n,
+void wires_lay(struct wires *w, const struct subdomain *y, int64_t groups, int64_t n,
                const struct errand *errand);
 void wires_free(struct wires *w);
 /* Sends what goes after group g, and waits for what comes: between them there is time for other work. */
 void wires_send(struct wires *w, const struct problem *p, int64_t g);
 void wires_wait(struct wires *w, struct problem *p, int64_t g);
 /* All copies become what their bodies are. */
-void wires_refresh(const struct part *y, struct problem *p);
+void wires_refresh(const struct subdomain *y, struct problem *p);
 
 #endif

@@ -102,7 +102,7 @@ static void follow(struct contacts *s, const int32_t *row)
         s->c[kept] = *c;
         s->c[kept].a = a, s->c[kept].b = b;
         if (s->found) s->found[kept] = s->found[i];
-        if (s->tie) s->tie[kept] = s->tie[i];
+        if (s->law) s->law[kept] = s->law[i];
         for (int k = 0; k < 3 && s->moment; k++) s->moment[kept][k] = s->moment[i][k];
         kept++;
     }

@@ -145,7 +145,7 @@ struct scene_kind {
 
 struct scene_law {
     EACH_PAIR_COLUMN(PAIR_NUMBER) /* mu, en, et */
-    struct law beyond;
+    struct pair_law pair_law;
 };
 
 struct scene_box {

@@ -207,8 +207,8 @@ static int set_shapes(struct packing *p, const struct scene *s, struct why *why)
 static bool goes_beyond(const struct scene *s)
 {
     for (int32_t k = 0; k < s->kinds * s->kinds; k++)
-        if (law_ties(&s->law[k].beyond) || law_rolls(&s->law[k].beyond) ||
-            s->law[k].beyond.impact > 0)
+        if (pair_law_attracts(&s->law[k].pair_law) || pair_law_rolls(&s->law[k].pair_law) ||
+            s->law[k].pair_law.impact > 0)
             return true;
     return false;
 }
@@ -237,7 +237,7 @@ static int set_parameters(struct packing *p, const struct scene *s, struct why *
 #undef SET
     }
     if (goes_beyond(s) && packing_alloc_laws(p, why)) return why->status;
-    for (int32_t k = 0; p->law && k < s->kinds * s->kinds; k++) p->law[k] = s->law[k].beyond;
+    for (int32_t k = 0; p->law && k < s->kinds * s->kinds; k++) p->law[k] = s->law[k].pair_law;
     if ((p->scene = strdup(s->text))) return 0;
 fail:
     return why_set(why, EX_SOFTWARE, "no memory for the scene");

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-static int read_cohesion(jnode o, struct law *l)
+static int read_cohesion(jnode o, struct pair_law *l)
 {
     if (!o.json) return 0;
     l->cohesion = l->range = 0;
@@ -13,7 +13,7 @@ static int read_cohesion(jnode o, struct law *l)
            json_node_number(json_node_key(&o, "range"), J_NOT_NEGATIVE, &l->range);
 }
 
-static int read_capillary(jnode o, struct law *l)
+static int read_capillary(jnode o, struct pair_law *l)
 {
     if (!o.json) return 0;
     l->volume = l->tension = l->wetting = 0;
@@ -28,7 +28,7 @@ static int read_capillary(jnode o, struct law *l)
                            "must be less than pi/2: a liquid that does not wet has no bridge");
 }
 
-static int read_rolling(jnode o, struct law *l)
+static int read_rolling(jnode o, struct pair_law *l)
 {
     if (!o.json) return 0;
     l->mu_r = l->mu_p = 0;
@@ -38,7 +38,7 @@ static int read_rolling(jnode o, struct law *l)
 }
 
 /* t: of the scene, s */
-static int read_adhesion(jnode o, double t, struct law *l)
+static int read_adhesion(jnode o, double t, struct pair_law *l)
 {
     bool forever = false;
     if (!o.json) return 0;
@@ -61,7 +61,7 @@ static int read_adhesion(jnode o, double t, struct law *l)
     return 0;
 }
 
-static int read_impact(jnode o, struct law *l)
+static int read_impact(jnode o, struct pair_law *l)
 {
     const char *name = NULL;
     if (!o.json) return 0;
@@ -71,7 +71,7 @@ static int read_impact(jnode o, struct law *l)
     return json_node_fault(o, "wants \"newton\" or \"bounded\"");
 }
 
-int scene_read_laws(const jnode *o, double t, struct law *l)
+int scene_read_laws(const jnode *o, double t, struct pair_law *l)
 {
     return read_cohesion(json_node_key(o, "cohesion"), l) ||
            read_capillary(json_node_key(o, "capillary"), l) ||

@@ -81,7 +81,8 @@ static int read_pair(jnode o, struct scene *s, bool *given)
     int32_t ab = k[0] * s->kinds + k[1], ba = k[1] * s->kinds + k[0];
     if (given[ab]) return json_node_fault(pair, "this pair was given before");
     given[ab] = given[ba] = true;
-    if (scene_read_law(&o, &s->law[ab]) || scene_read_laws(&o, s->t, &s->law[ab].beyond)) return 1;
+    if (scene_read_law(&o, &s->law[ab]) || scene_read_laws(&o, s->t, &s->law[ab].pair_law))
+        return 1;
     s->law[ba] = s->law[ab];
     return 0;
 }

@@ -68,7 +68,7 @@ static int read_scene(jnode o, struct scene *s)
         json_node_number(json_node_key(&o, "theta"), J_UNIT, &s->theta) ||
         json_node_number(json_node_key(&o, "density"), J_POSITIVE, &density) ||
         json_node_number(json_node_key(&o, "time"), J_ANY, &s->t) || scene_read_law(&o, &law) ||
-        scene_read_laws(&o, s->t, &law.beyond) ||
+        scene_read_laws(&o, s->t, &law.pair_law) ||
         json_node_bool(json_node_key(&o, "overlap"), &s->overlap))
         return 1;
     s->has_walls = json_node_key(&o, "walls").json;

@@ -17,7 +17,7 @@ void *scene_alloc(jnode node, size_t count, size_t size);
    give none; the NAME of a kind */
 int scene_read_law(const jnode *object, struct scene_law *law);
 /* scene/scene_laws.c: the laws beyond these; t: the time of the scene, s */
-int scene_read_laws(const jnode *object, double t, struct law *law);
+int scene_read_laws(const jnode *object, double t, struct pair_law *law);
 int scene_read_kinds(jnode kinds, struct scene *s, double density);
 int scene_read_pairs(jnode pairs, struct scene *s, struct scene_law law);
 int scene_read_kind(jnode name, const struct scene *s, int32_t *kind);

@@ -21,7 +21,7 @@
 
 #include "base/team.h"
 #include "problem/backend.h"
-#include "problem/shared.h"
+#include "problem/exchange.h"
 #include "solve/nlgs.h"
 #include "solve/prices.h"
 
@@ -101,10 +101,10 @@ static void remember_start(struct anderson *a)
     const struct problem *p = a->s->p;
     double *x = a->m.df[a->m.next];
     for (int64_t i = 0; i < p->bundles; i++, x += mixing_width(p) * BUNDLE) {
-        memcpy(x, bundle_at(p, i)->r, (size_t)(p->kind.beyond ? 3 : p->d) * BUNDLE * sizeof *x);
-        if (!p->kind.beyond) continue;
-        memcpy(x + 3 * BUNDLE, p->beyond[i].z, sizeof p->beyond[i].z);
-        memcpy(x + 6 * BUNDLE, p->beyond[i].m, sizeof p->beyond[i].m);
+        memcpy(x, bundle_at(p, i)->r, (size_t)(p->kind.extra ? 3 : p->d) * BUNDLE * sizeof *x);
+        if (!p->kind.extra) continue;
+        memcpy(x + 3 * BUNDLE, p->extra[i].z, sizeof p->extra[i].z);
+        memcpy(x + 6 * BUNDLE, p->extra[i].m, sizeof p->extra[i].m);
     }
 }
 
@@ -134,7 +134,7 @@ static void take_terms(const struct anderson *a, int64_t slot, double *term)
     int k = slot_lane(slot);
     int width = mixing_width(p);
     double lambda = slot_lambda(p, slot);
-    double length = p->kind.beyond ? p->beyond[slot / BUNDLE].length[k] : 0;
+    double length = p->kind.extra ? p->extra[slot / BUNDLE].length[k] : 0;
     for (int l = 0; l < width; l++) {
         int64_t at = (slot / BUNDLE * width + l) * BUNDLE + k;
         double w = l < 6 ? lambda : length > 0 ? lambda / (length * length) : 0; // 6 on: moments
@@ -154,12 +154,12 @@ static void measure_shared(const struct anderson *a, struct mixing_sums *t)
     double out[1 + 2 * MIXING_DEPTH][BUNDLE];
     struct mixing_sums here = { 0 };
     if (!term) {
-        p->shared->fail(p->shared);
+        p->exchange->fail(p->exchange);
         return;
     }
     backend_widest()->mixing->measure(p, &a->m, 0, p->bundles, &here);
     for (int64_t i = 0; i < p->slots; i++) take_terms(a, i, term + size * i);
-    p->shared->sum(p->shared, p, CHUNK_BUNDLES, mixing_width(p), n, term, out[0]);
+    p->exchange->sum(p->exchange, p, CHUNK_BUNDLES, mixing_width(p), n, term, out[0]);
     for (int k = 0; k < BUNDLE; k++) {
         t->f2[k] = out[0][k];
         for (int j = 0; j < depth(a); j++)
@@ -174,7 +174,7 @@ static void add_shared(const struct anderson *a, struct mixing_sums *t)
     double x[1 + 2 * MIXING_DEPTH] = { bundle_sum(t->f2) };
     for (int j = 0; j < depth(a); j++)
         x[1 + 2 * j] = bundle_sum(t->ff[j]), x[2 + 2 * j] = bundle_sum(t->fd[j]);
-    a->s->p->shared->add(a->s->p->shared, x, 1 + 2 * depth(a));
+    a->s->p->exchange->add(a->s->p->exchange, x, 1 + 2 * depth(a));
     *t = (struct mixing_sums){ .f2 = { x[0] } };
     for (int j = 0; j < depth(a); j++) t->ff[j][0] = x[1 + 2 * j], t->fd[j][0] = x[2 + 2 * j];
 }
@@ -187,12 +187,12 @@ static double measure(struct anderson *a)
     int64_t n = chunks(p);
     a->s->rep->work += price_sweep(p); // with the mixing that follows
     int now = a->m.next;
-    if (p->shared && !p->shared->add) {
+    if (p->exchange && !p->exchange->add) {
         measure_shared(a, &t);
     } else {
         team_share(a->s->o->threads, n, 1, measure_chunks, a);
         for (int64_t k = 0; k < n; k++) mixing_sums_add(&t, &a->sums[k]);
-        if (p->shared) add_shared(a, &t);
+        if (p->exchange) add_shared(a, &t);
     }
     if (a->begun) {
         a->count = a->count < depth(a) ? a->count + 1 : depth(a);

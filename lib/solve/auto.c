@@ -7,7 +7,7 @@
  * The choice rests on how fast the criterion falls, and on prices that are counted
  * [solve/prices.h].
  */
-#include "problem/shared.h"
+#include "problem/exchange.h"
 #include "solve/anderson.h"
 #include "solve/even.h"
 #include "solve/ipm.h"
@@ -262,11 +262,11 @@ static int sweep_and_choose(struct strategy *a)
         double more = a->older.sweeps ? sweeps_to_come(a, anderson_best_value(a->sweeps)) : 0;
         a->older.value = before, a->older.sweeps = had;
         if (!a->tried && gain(a, more, least) * rep->sweeps * a->price >= least) {
-            if (s->p->shared && s->p->shared->may_want) {
-                s->p->shared->wants_whole = true;
+            if (s->p->exchange && s->p->exchange->may_want) {
+                s->p->exchange->wants_whole = true;
                 break;
             }
-            if (!s->p->shared && look_for_better(a, more)) return -1;
+            if (!s->p->exchange && look_for_better(a, more)) return -1;
         }
         if (!solve_over(s) && wanders(a)) {
             s->rep->given_up = wander;
@@ -279,9 +279,9 @@ static int sweep_and_choose(struct strategy *a)
 
 static int run(struct solve *s)
 {
-    if (s->p->kind.beyond) return solver_anderson.run(s); // W is none that could be factorised
+    if (s->p->kind.extra) return solver_anderson.run(s); // W is none that could be factorised
     if (even_concerns(s->p)) {
-        struct shared *others = s->p->shared;
+        struct exchange *others = s->p->exchange;
         if (others && others->may_want) return others->wants_whole = true, 0;
         if (!others && even_start(s)) return -1;
     }

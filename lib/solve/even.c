@@ -19,7 +19,7 @@ static const double ENOUGH = 0.1;
 
 bool even_concerns(const struct problem *p)
 {
-    return p->packing && p->kind.full && !p->kind.beyond && p->n > 1 && p->n <= CONTACTS;
+    return p->packing && p->kind.full && !p->kind.extra && p->n > 1 && p->n <= CONTACTS;
 }
 
 static double norm(const double *x, int32_t n)

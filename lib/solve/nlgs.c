@@ -6,7 +6,7 @@
 
 #include "base/team.h"
 #include "problem/backend.h"
-#include "problem/shared.h"
+#include "problem/exchange.h"
 #include "solve/prices.h"
 
 #include <pthread.h>
@@ -68,7 +68,7 @@ static double sweep(struct solve *s, double omega, int32_t unjudged, bool keep)
     s->rep->sweeps += unjudged + 1, s->rep->work += (unjudged + 1) * price_sweep(s->p);
     s->renewed = false;
     team_do(problem_team(s->p, o->threads), make_round, &r);
-    return s->p->shared ? s->p->shared->most(s->p->shared, r.change) : r.change;
+    return s->p->exchange ? s->p->exchange->most(s->p->exchange, r.change) : r.change;
 }
 
 /*

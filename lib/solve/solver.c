@@ -4,7 +4,7 @@
 #include "base/team.h"
 #include "problem/apply.h"
 #include "problem/backend.h"
-#include "problem/shared.h"
+#include "problem/exchange.h"
 #include "solve/prices.h"
 
 #include <math.h>
@@ -77,7 +77,7 @@ double solve_seconds_left(const struct solve *s)
 {
     if (!(s->o->max_seconds > 0)) return INFINITY;
     double left = s->o->max_seconds - (report_seconds(CLOCK_WALL) - s->start);
-    return s->p->shared ? s->p->shared->agree(s->p->shared, left) : left;
+    return s->p->exchange ? s->p->exchange->agree(s->p->exchange, left) : left;
 }
 
 bool solve_spent(const struct solve *s)
@@ -134,7 +134,7 @@ static int64_t end_of_ru(const struct problem *p)
 
 int solve_best_init(struct best *b, const struct problem *p)
 {
-    return best_init(b, end_of_ru(p) + (p->kind.beyond ? BESIDE_R * p->slots : 0));
+    return best_init(b, end_of_ru(p) + (p->kind.extra ? BESIDE_R * p->slots : 0));
 }
 
 /* Slots that are kept */
@@ -150,7 +150,7 @@ static void keep_some(void *arg, int64_t first, int64_t end)
     double *u = k->r + 3 * p->slots, unwanted[3] = { 0 };
     for (int64_t i = first; i < end; i++)
         slot_get(p, i, k->r + 3 * i, with_u(p) ? u + 3 * i : unwanted);
-    for (int64_t i = first; p->kind.beyond && i < end; i++)
+    for (int64_t i = first; p->kind.extra && i < end; i++)
         slot_get_beyond(p, i, k->r + end_of_ru(p) + BESIDE_R * i);
 }
 
@@ -174,7 +174,7 @@ void solve_best_restore(struct solve *s, const struct best *b)
     struct problem *p = s->p;
     if (!b->x || !(b->value < INFINITY) || s->value <= b->value) return;
     const double *r = b->x, *u = r + 3 * p->slots;
-    for (int64_t i = 0; p->kind.beyond && i < p->slots; i++)
+    for (int64_t i = 0; p->kind.extra && i < p->slots; i++)
         slot_set_beyond(p, i, r + end_of_ru(p) + BESIDE_R * i);
     solve_react(s, r);
     s->value = b->value, s->believes = with_u(p) && u[3 * p->slots] != 0;
@@ -214,8 +214,8 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
     if (failed) return -1;
     renew(&s);
     if (!s.believes) backend_widest()->judge->velocities(p, 0, p->bundles);
-    if (p->shared) {
-        struct shared *all = p->shared;
+    if (p->exchange) {
+        struct exchange *all = p->exchange;
         rep->newton = all->count(all, rep->newton);
         rep->safeguarded = all->count(all, rep->safeguarded);
         rep->gave_up = all->count(all, rep->gave_up);

@@ -145,7 +145,7 @@ static void sheet(struct mesh *m, int n, double (*height)(double, double))
 {
     struct why why = { 0 };
     *m = (struct mesh){ 0 };
-    must(mesh_alloc(m, 6 * n * n, 2 * n * n, &why), &why); // corners not shared, as in STL
+    must(mesh_alloc(m, 6 * n * n, 2 * n * n, &why), &why); // corners not exchange, as in STL
     for (int e = 0; e < 2 * n * n; e++)
         for (int k = 0; k < 3; k++) {
             static const int at[2][3][2] = { { { 0, 0 }, { 1, 0 }, { 1, 1 } },

@@ -254,7 +254,7 @@ static void change_units(struct packing *p)
     for (int32_t m = 0; m < c->gradients; m++)
         for (int k = 0; k < 9; k++) c->gradient[m].L[k / 3][k % 3] /= TIME;
     for (int32_t k = 0; p->law && k < p->kinds * p->kinds; k++) {
-        struct law *l = &p->law[k];
+        struct pair_law *l = &p->law[k];
         double section = p->dim == 3 ? LENGTH * LENGTH : LENGTH; // of bonds, discs 1 m deep
         l->cohesion *= force, l->range *= LENGTH;
         l->volume *= LENGTH * LENGTH * LENGTH, l->tension *= force / LENGTH;

@@ -1,13 +1,13 @@
 /* The laws beyond friction and restitution by themselves: forces are the slopes of energies, the
    damage of a bond follows its equation. */
-#include "bodies/tie.h"
+#include "bodies/contact_law.h"
 #include "law/rolling.h"
 #include "tap.h"
 
 #include <math.h>
 
 /* The largest difference between a bridge's force and the slope of its energy, relative */
-static double slope_error(const struct law *l, double R)
+static double slope_error(const struct pair_law *l, double R)
 {
     double worst = 0, most = bridge_force(l, R, 0), end = bridge_reach(l), h = 1e-6 * end;
     for (int k = 1; k < 1000; k++) {
@@ -20,7 +20,7 @@ static double slope_error(const struct law *l, double R)
 
 static void test_bridge(void)
 {
-    const struct law l = { .volume = 2e-10, .tension = 0.072, .wetting = 0.4 };
+    const struct pair_law l = { .volume = 2e-10, .tension = 0.072, .wetting = 0.4 };
     double R = bridge_radius(1e-3, 3e-3), end = bridge_reach(&l);
     ok(fabs(R - 1.5e-3) < 1e-18, "R of two balls is their harmonic mean");
     ok(fabs(bridge_radius(1e9, 3e-3) / bridge_radius(0, 3e-3) - 1) < 1e-6,

@@ -15,7 +15,7 @@ static struct view view(int size, double azimuth, double elevation)
     v.background = rgb_of(0xffffff);
     paint_init(&v.paint, COLOUR_KIND, true);
     v.boxed = true;
-    v.region = (struct region){ { -2, -2, -2 }, { 2, 2, 2 } };
+    v.region = (struct extent){ { -2, -2, -2 }, { 2, 2, 2 } };
     return v;
 }
 
@@ -219,7 +219,7 @@ static void test_walls(void)
         struct view v = view(200, 30, -35);
         double a = sizes[i];
         for (int k = 0; k < 6; k++) p.wall[k].x = v3_scale(a, box[k][0]);
-        v.region = (struct region){ { -a, -a, -a }, { a, a, a } }, p.x[0].z = 1e20;
+        v.region = (struct extent){ { -a, -a, -a }, { a, a, a } }, p.x[0].z = 1e20;
         struct picture pic = draw(v, &p);
         ok(drawn(&pic) > 1000,
            "walls of %g m in the sides of --box have their twelve edges (%d pixels)", a,

@@ -1,5 +1,5 @@
 /*
- * bodies/law.h: what two kinds of material do to each other beyond Coulomb's friction and Newton's
+ * bodies/pair_law.h: what two kinds of material do to each other beyond Coulomb's friction and Newton's
  * restitution: a row of a table for each pair of kinds.
  *
  * Cohesion: a constant pull f_c while the gap is below a range, and liquid bridges. A bridge of
@@ -13,10 +13,10 @@
  *
  * Rolling and pivoting: the moment at a contact is within |m_t| <= mu_r r_n, |m_n| <= mu_p r_n.
  *
- * Adhesion with damage [Raous, Cangemi & Cocou 1999]: bodies/tie.h.
+ * Adhesion with damage [Raous, Cangemi & Cocou 1999]: bodies/contact_law.h.
  */
-#ifndef NSD_LAW_H
-#define NSD_LAW_H
+#ifndef NSD_PAIR_LAW_H
+#define NSD_PAIR_LAW_H
 
 #include <stdbool.h>
 
@@ -24,7 +24,7 @@
    whose impacts gain by themselves; never; always */
 enum impact_law { IMPACT_DEFAULT, IMPACT_NEWTON, IMPACT_BOUNDED, IMPACT_LAWS };
 
-struct law {
+struct pair_law {
     double cohesion, range; /* N, m */
 
     double volume, tension, wetting; /* m^3, N/m, rad: of a liquid bridge */
@@ -43,32 +43,32 @@ struct law {
 };
 
 /* What is wrong with the numbers, or NULL */
-const char *law_trouble(const struct law *law);
+const char *pair_law_trouble(const struct pair_law *law);
 
-static inline bool law_wets(const struct law *l)
+static inline bool pair_law_wets(const struct pair_law *l)
 {
     return l->volume > 0 && l->tension > 0;
 }
-static inline bool law_adheres(const struct law *l)
+static inline bool pair_law_adheres(const struct pair_law *l)
 {
     return l->w > 0;
 }
-static inline bool law_rolls(const struct law *l)
+static inline bool pair_law_rolls(const struct pair_law *l)
 {
     return l->mu_r > 0 || l->mu_p > 0;
 }
 /* Does the pair hold together over a gap? */
-static inline bool law_ties(const struct law *l)
+static inline bool pair_law_attracts(const struct pair_law *l)
 {
-    return l->cohesion > 0 || law_wets(l) || law_adheres(l);
+    return l->cohesion > 0 || pair_law_wets(l) || pair_law_adheres(l);
 }
 
 /* m: R of the bridge between bodies of these radii, or, b alone, between b and a boundary */
 double bridge_radius(double a, double b);
 /* m: where it ruptures */
-double bridge_reach(const struct law *law);
+double bridge_reach(const struct pair_law *law);
 /* N, and J (0 where it ruptures), at gap g (m); R as above */
-double bridge_force(const struct law *law, double R, double g);
-double bridge_energy(const struct law *law, double R, double g);
+double bridge_force(const struct pair_law *law, double R, double g);
+double bridge_energy(const struct pair_law *law, double R, double g);
 
 #endif

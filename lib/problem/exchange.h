@@ -1,20 +1,20 @@
 /*
- * problem/shared.h: a contact problem of which several processes have a part each, and what a part
+ * problem/exchange.h: a contact problem of which several processes have a part each, and what a part
  * asks of the others. Solvers go the same way in all of them: whatever they decide by is a number
  * that is the same everywhere.
  *
  * A process has bodies of its own and copies of others'. A contact that several have is counted by
  * one of them; in the others it lies in bundles of copies.
  */
-#ifndef NSD_SHARED_H
-#define NSD_SHARED_H
+#ifndef NSD_EXCHANGE_H
+#define NSD_EXCHANGE_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
 struct problem;
 
-struct shared {
+struct exchange {
     void *with;                /* of the functions below: how they reach the other processes */
     int64_t contacts, bundles; /* of all processes */
     bool halves;               /* the order of all contacts has halves */
@@ -28,13 +28,13 @@ struct shared {
         wants_whole; /* set by a solver, which then ends: only such a process continues from here */
 
     /* A walk over the bundles has done with this group. */
-    void (*after_group)(struct shared *s, struct problem *p, int64_t group);
+    void (*after_group)(struct exchange *s, struct problem *p, int64_t group);
     /* The bodies have their free motion; contacts are about to be pushed, slot after slot. */
-    void (*begin)(struct shared *s, struct problem *p);
+    void (*begin)(struct exchange *s, struct problem *p);
     /* They have been: copies of bodies become what the bodies are. */
-    void (*settle)(struct shared *s, struct problem *p);
+    void (*settle)(struct exchange *s, struct problem *p);
     /* Before and after the errors are computed */
-    void (*judging)(struct shared *s, struct problem *p, bool begins);
+    void (*judging)(struct exchange *s, struct problem *p, bool begins);
     /*
      * Sums are made in one of two ways: exactly one of sum and add is there, the other is NULL.
      *
@@ -42,22 +42,22 @@ struct shared {
      * lane of the bundles of the order of all, `chunk` bundles a partial sum: the bits of one process that
      * has them all.
      */
-    void (*sum)(struct shared *s, const struct problem *p, int64_t chunk, int parts, int terms,
+    void (*sum)(struct exchange *s, const struct problem *p, int64_t chunk, int parts, int terms,
                 const double *term, double *out);
     /* The sum of term[slots] along the order of all slots */
-    double (*sum_along)(struct shared *s, const struct problem *p, const double *term);
+    double (*sum_along)(struct exchange *s, const struct problem *p, const double *term);
     /* The largest of all processes' numbers; how many all have counted; what the first one says */
-    double (*most)(struct shared *s, double x);
-    int64_t (*count)(struct shared *s, int64_t n);
-    double (*agree)(struct shared *s, double x);
+    double (*most)(struct exchange *s, double x);
+    int64_t (*count)(struct exchange *s, int64_t n);
+    double (*agree)(struct exchange *s, double x);
     /* Memory is short: ends all processes, for the others wait for this one. */
-    void (*fail)(struct shared *s);
+    void (*fail)(struct exchange *s);
     /* x[n] = the sums of all processes' x, in the order of processes: other bits for another number of them */
-    void (*add)(struct shared *s, double *x, int n);
+    void (*add)(struct exchange *s, double *x, int n);
 };
 
 /* Are the contacts of this bundle counted by another process? */
-static inline bool shared_is_copy(const struct shared *s, int64_t bundle)
+static inline bool exchange_is_copy(const struct exchange *s, int64_t bundle)
 {
     int64_t lo = 0, hi = s->n_copies;
     while (lo < hi) { // the last range that begins at or before the bundle

@@ -1,5 +1,5 @@
-/* bodies/tie.c: ties made, followed over a step, and kept [bodies/tie.h]. */
-#include "bodies/tie.h"
+/* bodies/contact_law.c: ties made, followed over a step, and kept [bodies/contact_law.h]. */
+#include "bodies/contact_law.h"
 
 #include "bodies/anchor.h"
 #include "bodies/freedom.h"
@@ -12,7 +12,7 @@ static const double TOUCH = 1e-6;      /* radii: pairs not further apart touch; 
 static const double LEAST_BETA = 1e-3; /* bonds of less are broken */
 static const double MARGIN = 0.05;     /* radii: by which a step may miss the gap that it expects */
 
-static const struct law *law_of(const struct packing *p, const struct contact *c)
+static const struct pair_law *law_of(const struct packing *p, const struct contact *c)
 {
     return &p->law[packing_pair(p, c->a, c->b)];
 }
@@ -30,13 +30,13 @@ static double bridge_size(const struct packing *p, const struct contact *c)
 }
 
 /* m^2: of a bond, of all places of a pair together; discs are 1 m deep */
-static double bond_area(const struct packing *p, const struct contact *c, const struct law *l)
+static double bond_area(const struct packing *p, const struct contact *c, const struct pair_law *l)
 {
     double r = packing_smaller_radius(p, c);
     return l->area > 0 ? l->area : p->dim == 2 ? 2 * r : M_PI * r * r;
 }
 
-double ties_reach(const struct packing *p)
+double contact_laws_reach(const struct packing *p)
 {
     const struct whole all = packing_whole(p);
     double reach = 0;
@@ -65,16 +65,16 @@ struct places {
 };
 
 /* Beta and the jump of a bond that there is, or that is made in this step */
-static void set_bond(struct tie *t, const struct packing *p, const struct contact *c,
-                     const struct law *l, const struct bond *old, bool touches,
+static void set_bond(struct contact_law *t, const struct packing *p, const struct contact *c,
+                     const struct pair_law *l, const struct bond *old, bool touches,
                      const struct places *of)
 {
     bool due = fabs(p->t - l->made) < 0.5 * p->dt && !(old && old->beta > 0);
     if (touches && (l->forever ? !old && !of->broken : due)) {
-        t->beta = l->beta, t->state |= TIE_BONDED;
+        t->beta = l->beta, t->state |= CONTACT_LAW_BONDED;
     } else if (old && (old->beta > 0 || l->forever)) {
         vec3 slip = turn_along(old->n, c->n, old->slip);
-        t->beta = old->beta, t->state |= TIE_BONDED;
+        t->beta = old->beta, t->state |= CONTACT_LAW_BONDED;
         t->jump[1] = v3_dot(slip, c->t1), t->jump[2] = v3_dot(slip, contact_t2(c));
     }
     if (!(t->beta > 0)) return;
@@ -92,31 +92,31 @@ static double offset_apart(const struct packing *p, const struct contact *c)
 }
 
 /* N: of cohesion and, where the contact is wet, liquid, were the place the only one of its pair */
-static double whole_pull(const struct packing *p, const struct contact *c, const struct law *l,
+static double whole_pull(const struct packing *p, const struct contact *c, const struct pair_law *l,
                          bool wet)
 {
     double f = l->cohesion > 0 && c->gap <= fmax(l->range, touch_of(p, c)) ? l->cohesion : 0;
     return wet ? f + bridge_force(l, bridge_size(p, c), c->gap) : f;
 }
 
-static bool is_wet(const struct packing *p, const struct contact *c, const struct law *l,
+static bool is_wet(const struct packing *p, const struct contact *c, const struct pair_law *l,
                    const struct bond *old)
 {
     bool touches = c->gap <= touch_of(p, c);
-    return law_wets(l) && (touches || (old && old->wet && c->gap < bridge_reach(l)));
+    return pair_law_wets(l) && (touches || (old && old->wet && c->gap < bridge_reach(l)));
 }
 
-static void set_tie(struct tie *t, const struct packing *p, struct contact *c,
+static void set_tie(struct contact_law *t, const struct packing *p, struct contact *c,
                     const struct bond *old, const struct places *of)
 {
-    const struct law *l = law_of(p, c);
+    const struct pair_law *l = law_of(p, c);
     bool wet = is_wet(p, c, l, old);
     t->jump[0] = fmax(0, c->gap);
     t->mu_r = l->mu_r, t->mu_p = l->mu_p;
-    if (wet) t->state |= old && old->wet ? TIE_WET : TIE_WET | TIE_NEW_BRIDGE;
+    if (wet) t->state |= old && old->wet ? CONTACT_LAW_WET : CONTACT_LAW_WET | TIE_NEW_BRIDGE;
     t->pull = whole_pull(p, c, l, wet) / of->tied;
-    if (law_adheres(l)) set_bond(t, p, c, l, old, c->gap <= touch_of(p, c), of);
-    if (tie_holds(t) && c->gap > 0) t->offset = offset_apart(p, c);
+    if (pair_law_adheres(l)) set_bond(t, p, c, l, old, c->gap <= touch_of(p, c), of);
+    if (contact_law_holds(t) && c->gap > 0) t->offset = offset_apart(p, c);
     if (t->beta > 0 || t->offset > 0) c->en = c->et = 0;
     c->mu *= 1 - t->beta;
 }
@@ -136,7 +136,7 @@ static struct places count_places(const struct contacts *s, const struct packing
     struct places of = { 0, 0, bonds_broken(&p->bonds, s->c[first].a, s->c[first].b, from) };
     for (int64_t i = first; i < end; i++) {
         const struct contact *c = &s->c[i];
-        const struct law *l = law_of(p, c);
+        const struct pair_law *l = law_of(p, c);
         const struct bond *old = bonds_find(&p->bonds, c, &from);
         of.touching += c->gap <= touch_of(p, c) && !(old && bond_anchored(old));
         of.tied += whole_pull(p, c, l, is_wet(p, c, l, old)) > 0;
@@ -145,16 +145,16 @@ static struct places count_places(const struct contacts *s, const struct packing
     return of;
 }
 
-int ties_find(struct contacts *s, const struct packing *p, struct why *why)
+int contact_laws_find(struct contacts *s, const struct packing *p, struct why *why)
 {
     int64_t from = 0;
-    if (contacts_alloc_tie(s)) return why_set(why, EX_SOFTWARE, "no memory for the ties");
+    if (contacts_alloc_laws(s)) return why_set(why, EX_SOFTWARE, "no memory for the ties");
     for (int64_t i = 0, end; i < s->n; i = end) {
         struct places of = { 1, 1, false };
         end = contact_shaped(p, &s->c[i]) ? end_of_pair(s, i) : i + 1;
         if (contact_shaped(p, &s->c[i])) of = count_places(s, p, i, end, from);
         for (int64_t k = i; k < end; k++)
-            set_tie(&s->tie[k], p, &s->c[k], bonds_find(&p->bonds, &s->c[k], &from), &of);
+            set_tie(&s->law[k], p, &s->c[k], bonds_find(&p->bonds, &s->c[k], &from), &of);
     }
     return 0;
 }
@@ -162,27 +162,28 @@ int ties_find(struct contacts *s, const struct packing *p, struct why *why)
 /* ---- over the step ---- */
 
 /* m/s: u_n after the step, out of what the law has seen */
-static double opening_after(const struct packing *p, const struct contact *c, const struct tie *t,
-                            const struct found *found)
+static double opening_after(const struct packing *p, const struct contact *c,
+                            const struct contact_law *t, const struct found *found)
 {
     if (t->offset > 0) return found->u[0] - t->offset;
     double before = opening_of(p, c, step_ahead(p));
     return (1 + c->en) * found->u[0] - c->en * before - offset_of(p, c, before);
 }
 
-static double damage(double h, const struct law *l, double beta, double q)
+static double damage(double h, const struct pair_law *l, double beta, double q)
 {
     if (!(l->w < beta * q)) return beta;
     double left = fmin(beta, (h * l->w + l->eta * beta) / (h * q + l->eta));
     return left < LEAST_BETA ? 0 : left;
 }
 
-struct tie_end tie_end(const struct packing *p, const struct contact *c, const struct tie *t,
-                       const struct found *found)
+struct contact_law_end contact_law_end(const struct packing *p, const struct contact *c,
+                                       const struct contact_law *t, const struct found *found)
 {
-    const struct law *l = law_of(p, c);
-    struct tie_end e = { .gap = c->gap + p->dt * opening_after(p, c, t, found), .beta = t->beta };
-    e.wet = t->state & TIE_WET && e.gap < bridge_reach(l);
+    const struct pair_law *l = law_of(p, c);
+    struct contact_law_end e = { .gap = c->gap + p->dt * opening_after(p, c, t, found),
+                                 .beta = t->beta };
+    e.wet = t->state & CONTACT_LAW_WET && e.gap < bridge_reach(l);
     for (int k = 0; k < 2 && t->beta > 0; k++) e.slip[k] = t->jump[1 + k] + p->dt * found->u[1 + k];
     double open = fmax(0, e.gap);
     double q = l->cn * open * open + l->ct * (e.slip[0] * e.slip[0] + e.slip[1] * e.slip[1]);
@@ -191,37 +192,38 @@ struct tie_end tie_end(const struct packing *p, const struct contact *c, const s
 }
 
 /* J: of a constant pull */
-static double cohesion_energy(const struct packing *p, const struct contact *c, const struct law *l,
-                              double gap)
+static double cohesion_energy(const struct packing *p, const struct contact *c,
+                              const struct pair_law *l, double gap)
 {
     double range = fmax(l->range, touch_of(p, c));
     return gap < range ? -l->cohesion * (range - gap) : 0;
 }
 
 /* What of its pair's cohesion and liquid a contact has */
-static double share_of(const struct packing *p, const struct contact *c, const struct law *l,
-                       const struct tie *t)
+static double share_of(const struct packing *p, const struct contact *c, const struct pair_law *l,
+                       const struct contact_law *t)
 {
     if (!(t->pull > 0) || !contact_shaped(p, c)) return 1;
-    return t->pull / whole_pull(p, c, l, t->state & TIE_WET);
+    return t->pull / whole_pull(p, c, l, t->state & CONTACT_LAW_WET);
 }
 
 /* J: of the bond, were its beta still the one it began with */
-static double elastic_energy(const struct tie *t, double gap, double slip1, double slip2)
+static double elastic_energy(const struct contact_law *t, double gap, double slip1, double slip2)
 {
     double open = fmax(0, gap), slip = slip1 * slip1 + slip2 * slip2;
     return 0.5 * (t->stiff[0] * open * open + t->stiff[1] * slip);
 }
 
-struct tie_account tie_account(const struct packing *p, const struct contact *c,
-                               const struct tie *t, const struct tie_end *end)
+struct contact_law_account contact_law_account(const struct packing *p, const struct contact *c,
+                                               const struct contact_law *t,
+                                               const struct contact_law_end *end)
 {
-    const struct law *l = law_of(p, c);
-    struct tie_account a = { 0 };
+    const struct pair_law *l = law_of(p, c);
+    struct contact_law_account a = { 0 };
     double R = bridge_size(p, c), share = share_of(p, c, l, t);
     double before = share * cohesion_energy(p, c, l, c->gap);
     double after = share * cohesion_energy(p, c, l, end->gap);
-    if (t->state & TIE_WET) {
+    if (t->state & CONTACT_LAW_WET) {
         double bridge = share * bridge_energy(l, R, c->gap);
         if (t->state & TIE_NEW_BRIDGE)
             a.broken -= bridge;
@@ -251,11 +253,11 @@ static double spin_about(const struct packing *p, const struct contact *c)
 static bool bond_of(const struct packing *p, const struct contacts *s, int64_t i, struct bond *b)
 {
     const struct contact *c = &s->c[i];
-    const struct tie *t = &s->tie[i];
-    struct tie_end e = tie_end(p, c, t, &s->found[i]);
+    const struct contact_law *t = &s->law[i];
+    struct contact_law_end e = contact_law_end(p, c, t, &s->found[i]);
     // A broken bond is remembered while the pair touches, for it is not made anew. An anchored one has no
     // contact of its own in the next step: remember_broken() sees whether its pair has parted.
-    bool bonded = t->state & TIE_BONDED;
+    bool bonded = t->state & CONTACT_LAW_BONDED;
     bool rests = bonded && (e.gap <= touch_of(p, c) || contact_anchored(c));
     if (!e.wet && !(e.beta > 0) && !rests) return false;
     *b = (struct bond){ .a = c->a, .b = c->b, .feature = c->feature, .n = c->n };
@@ -280,7 +282,7 @@ static bool has_bond(const struct contact *c, const struct bonds *s, int64_t i)
 /* The place of a bond where there is a shape: that of the old one, or of this contact, with a new key, below
    all of its pair. old, from: of bonds_find() for this contact */
 static void anchor(struct bond *b, const struct packing *p, const struct contact *c,
-                   const struct tie *t, const struct bond *old, int64_t from,
+                   const struct contact_law *t, const struct bond *old, int64_t from,
                    const struct bonds *kept)
 {
     if (old && bond_anchored(old)) {
@@ -310,25 +312,27 @@ static bool remember_broken(struct bonds *kept, const struct packing *p, const s
         bool together = false;
         for (int64_t k = c; k < s->n && s->c[k].a == b->a && s->c[k].b == b->b; k++)
             together =
-                together || s->c[k].gap <= touch_of(p, &s->c[k]) || (s->tie && s->tie[k].beta > 0);
+                together || s->c[k].gap <= touch_of(p, &s->c[k]) || (s->law && s->law[k].beta > 0);
         if (together) good = bonds_add(kept, b) != NULL;
     }
     return good;
 }
 
-int ties_keep(struct packing *p, const struct contacts *s, struct why *why)
+int contact_laws_keep(struct packing *p, const struct contacts *s, struct why *why)
 {
     struct bonds kept = { 0 };
     bool good = true;
     int64_t from = 0;
-    for (int64_t i = 0; good && i < s->n && s->tie; i++) {
+    for (int64_t i = 0; good && i < s->n && s->law; i++) {
         const struct contact *c = &s->c[i];
         struct bond b;
-        if (!(s->tie[i].state & (TIE_WET | TIE_BONDED)) || !bond_of(p, s, i, &b)) continue;
-        bool bonded = s->tie[i].state & TIE_BONDED && (s->tie[i].beta > 0 || contact_anchored(c));
+        if (!(s->law[i].state & (CONTACT_LAW_WET | CONTACT_LAW_BONDED)) || !bond_of(p, s, i, &b))
+            continue;
+        bool bonded =
+            s->law[i].state & CONTACT_LAW_BONDED && (s->law[i].beta > 0 || contact_anchored(c));
         if (contact_shaped(p, c) && bonded) {
             const struct bond *old = bonds_find(&p->bonds, c, &from);
-            anchor(&b, p, c, &s->tie[i], old, from, &kept);
+            anchor(&b, p, c, &s->law[i], old, from, &kept);
         }
         good = bonds_add(&kept, &b) != NULL;
     }

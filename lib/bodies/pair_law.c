@@ -1,5 +1,5 @@
-/* bodies/law.c: the checks of a pair's law, and the liquid bridge [bodies/law.h]. */
-#include "bodies/law.h"
+/* bodies/pair_law.c: the checks of a pair's law, and the liquid bridge [bodies/pair_law.h]. */
+#include "bodies/pair_law.h"
 
 #include "base/vec.h"
 
@@ -16,7 +16,7 @@ static bool not_negative(double x)
     return x >= 0 && isfinite(x);
 }
 
-const char *law_trouble(const struct law *l)
+const char *pair_law_trouble(const struct pair_law *l)
 {
     if (!not_negative(l->cohesion) || !not_negative(l->range))
         return "cohesion and its range must not be negative";
@@ -42,14 +42,14 @@ double bridge_radius(double a, double b)
     return a > 0 ? 2 * a * b / (a + b) : 2 * b;
 }
 
-double bridge_reach(const struct law *l)
+double bridge_reach(const struct pair_law *l)
 {
-    return law_wets(l) ? (1 + l->wetting / 2) * cbrt(l->volume) : 0;
+    return pair_law_wets(l) ? (1 + l->wetting / 2) * cbrt(l->volume) : 0;
 }
 
 /* N: with which bodies that touch are pulled together. The cosine is not libm's, whose last bits differ
    between machines, as those of its hypot do. */
-static double at_touch(const struct law *l, double R)
+static double at_touch(const struct pair_law *l, double R)
 {
     return 2 * M_PI * R * l->tension * quat_rotation(v3(2 * l->wetting, 0, 0)).w;
 }
@@ -59,14 +59,14 @@ static double hypotenuse(double g, double c)
     return sqrt(g * g + c * c);
 }
 
-double bridge_force(const struct law *l, double R, double g)
+double bridge_force(const struct pair_law *l, double R, double g)
 {
     double c = sqrt(2 * l->volume / (M_PI * R));
     if (g <= 0) return at_touch(l, R);
     return g >= bridge_reach(l) ? 0 : at_touch(l, R) * (1 - g / hypotenuse(g, c));
 }
 
-double bridge_energy(const struct law *l, double R, double g)
+double bridge_energy(const struct pair_law *l, double R, double g)
 {
     double c = sqrt(2 * l->volume / (M_PI * R)), end = bridge_reach(l);
     if (g >= end) return 0;

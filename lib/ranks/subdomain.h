@@ -1,10 +1,10 @@
 /*
- * ranks/part.h: what a rank has of a packing: the bodies in its territory, which it owns, and copies of those
+ * ranks/subdomain.h: what a rank has of a packing: the bodies in its territory, which it owns, and copies of those
  * of others that may meet them. Bodies lie in the order of their rows in the whole packing, so that contacts
  * are found in the order in which one process would find them.
  */
-#ifndef NSD_PART_H
-#define NSD_PART_H
+#ifndef NSD_SUBDOMAIN_H
+#define NSD_SUBDOMAIN_H
 
 #include "bodies/contact.h"
 #include "bodies/packing.h"
@@ -19,7 +19,7 @@ struct border {
 /* Of all ranks; not collective */
 void borders_free(const struct comm *t, struct border *b);
 
-struct part {
+struct subdomain {
     struct comm *comm;
     struct territory *territory;
     struct packing p; /* own bodies and copies */
@@ -39,46 +39,46 @@ struct part {
 
 /* The first rank's packing becomes parts: its bodies are copied from it, and it stays as it is. Those of the
    others are not looked at. space is taken over. Collective, as all that follows. */
-void part_begin(struct part *y, struct comm *t, struct territory *space,
-                const struct packing *whole);
-void part_free(struct part *y);
+void subdomain_begin(struct subdomain *y, struct comm *t, struct territory *space,
+                     const struct packing *whole);
+void subdomain_free(struct subdomain *y);
 /* The same where each rank has some rows of the bodies, those from `first` on: they become its own. settings:
    the first rank's packing, all but its bodies. */
-void part_begin_rows(struct part *y, struct comm *t, struct territory *space,
-                     const struct packing *settings, const struct packing *rows, int64_t first,
-                     int64_t all);
+void subdomain_begin_rows(struct subdomain *y, struct comm *t, struct territory *space,
+                          const struct packing *settings, const struct packing *rows, int64_t first,
+                          int64_t all);
 /* The same of a packing that has other bodies than before */
-void part_begin_again(struct part *y, const struct packing *whole);
+void subdomain_begin_again(struct subdomain *y, const struct packing *whole);
 
 /* y->whole of all, again */
-void part_measure(struct part *y);
+void subdomain_measure(struct subdomain *y);
 /* Deals the bodies so that every pair with a gap of at most `reach` (m) at the predicted positions meets in
    the owners of both, now and until bodies have gone half the margin. Returns whether it had to. */
-bool part_deal(struct part *y, double reach);
+bool subdomain_deal(struct subdomain *y, double reach);
 
 /* Own bodies' contacts per rank, the largest over the mean: 1 is balanced. Notes them for the next cut. */
-double part_imbalance(struct part *y, const struct contacts *s);
-/* New cuts, by what was noted; bodies are dealt at the next part_deal(). */
-void part_recut(struct part *y);
+double subdomain_imbalance(struct subdomain *y, const struct contacts *s);
+/* New cuts, by what was noted; bodies are dealt at the next subdomain_deal(). */
+void subdomain_recut(struct subdomain *y);
 
 /* Where bodies are and how they move, of the first rank's whole packing; and the same back */
-void part_follow(struct part *y, const struct packing *whole);
-void part_collect(const struct part *y, struct packing *whole);
+void subdomain_follow(struct subdomain *y, const struct packing *whole);
+void subdomain_collect(const struct subdomain *y, struct packing *whole);
 /* Copies become what the bodies are: their places and motion. */
-void part_refresh(struct part *y);
+void subdomain_refresh(struct subdomain *y);
 
 /* The body of this rank's packing that has this row in the whole; -1: it is not here. Not collective */
-int32_t part_find(const struct part *y, int32_t row);
+int32_t subdomain_find(const struct subdomain *y, int32_t row);
 
 /* Whose is the contact of this rank's packing? That of b counts it. */
-static inline bool part_counts(const struct part *y, const struct contact *c)
+static inline bool subdomain_counts(const struct subdomain *y, const struct contact *c)
 {
     return y->owner[c->b] == y->comm->me;
 }
 /* Has this rank a body in it? */
-static inline bool part_has(const struct part *y, const struct contact *c)
+static inline bool subdomain_has(const struct subdomain *y, const struct contact *c)
 {
-    return part_counts(y, c) || (c->a >= 0 && y->owner[c->a] == y->comm->me);
+    return subdomain_counts(y, c) || (c->a >= 0 && y->owner[c->a] == y->comm->me);
 }
 
 #endif

@@ -1,5 +1,5 @@
-/* problem/beyond_levers.c: bonds and moments as matrices [problem/beyond.h]. */
-#include "problem/beyond.h"
+/* problem/extra_levers.c: bonds and moments as matrices [problem/extra.h]. */
+#include "problem/extra.h"
 
 #include "base/eigen.h"
 
@@ -16,7 +16,7 @@ static void invert(const double A[9], double C[9])
     for (int i = 0; i < 9; i++) C[i] = B[i] / det;
 }
 
-void beyond_levers_bond(double block[9][BUNDLE], struct beyond_levers *y, int i, const double K[2])
+void extra_levers_bond(double block[9][BUNDLE], struct extra_levers *y, int i, const double K[2])
 {
     double A[9], S[9], W[9];
     for (int j = 0; j < 9; j++) A[j] = (j % 4 == 0) + block[j][i] * K[j % 3 > 0];
@@ -35,8 +35,8 @@ static double dot_rows(double (*A)[BUNDLE], double (*B)[BUNDLE], int i, int j, i
     return sum;
 }
 
-double beyond_levers_turn(const struct levers *g, double block[9][BUNDLE], struct beyond_levers *y,
-                          int i, const double W[9], const double K[2], double iia, double iib)
+double extra_levers_turn(const struct levers *g, double block[9][BUNDLE], struct extra_levers *y,
+                         int i, const double W[9], const double K[2], double iia, double iib)
 {
     struct levers arm = *g; // not const, for dot_rows()
     double Z[9], wt = fmax(W[4], W[8]), length = 1, full[ROLLING * ROLLING];
@@ -77,9 +77,9 @@ double beyond_levers_turn(const struct levers *g, double block[9][BUNDLE], struc
 }
 
 /* The bodies' angular velocity relative to each other, as law/rolling.h has it */
-static void spin(const struct beyond_lane *at, double omega[3])
+static void spin(const struct extra_lane *at, double omega[3])
 {
-    const struct beyond_levers *y = at->y;
+    const struct extra_levers *y = at->y;
     int i = at->i;
     const double *wa = body_at(at->body, at->c->a[i]) + 3, *wb = body_at(at->body, at->c->b[i]) + 3;
     for (int j = 0; j < 3; j++) {
@@ -90,10 +90,10 @@ static void spin(const struct beyond_lane *at, double omega[3])
 }
 
 /* The contact without its b and x: W and limits */
-static void set_operator(const struct beyond_lane *at, struct rolling *q)
+static void set_operator(const struct extra_lane *at, struct rolling *q)
 {
-    const struct beyond *x = at->x;
-    const struct beyond_levers *y = at->y;
+    const struct extra *x = at->x;
+    const struct extra_levers *y = at->y;
     int i = at->i;
     *q = (struct rolling){ .full = true, .lambda = y->lambda[i], .rho = x->rho[i] };
     for (int j = 0; j < ROLLING * ROLLING; j++) q->W[j] = y->W[j][i];
@@ -101,19 +101,19 @@ static void set_operator(const struct beyond_lane *at, struct rolling *q)
     q->mu[2] = x->mu_r[i] / x->length[i];
 }
 
-void beyond_levers_rolling(const struct beyond_lane *at, const double u[3], struct rolling *q,
-                           double v[ROLLING])
+void extra_levers_rolling(const struct extra_lane *at, const double u[3], struct rolling *q,
+                          double v[ROLLING])
 {
     const double r[3] = { at->c->r[0][at->i], at->c->r[1][at->i], at->c->r[2][at->i] };
     set_operator(at, q);
-    beyond_impulse(at->x, at->i, r, q->x);
+    extra_impulse(at->x, at->i, r, q->x);
     for (int j = 0; j < 3; j++) v[j] = u[j];
     spin(at, v + 3);
 }
 
-void beyond_levers_push(const struct beyond_lane *at, const double dm[3])
+void extra_levers_push(const struct extra_lane *at, const double dm[3])
 {
-    const struct beyond_levers *y = at->y;
+    const struct extra_levers *y = at->y;
     int i = at->i;
     double *a = body_at(at->body, at->c->a[i]), *b = body_at(at->body, at->c->b[i]);
     double l = at->x->length[i];
@@ -125,16 +125,16 @@ void beyond_levers_push(const struct beyond_lane *at, const double dm[3])
         }
 }
 
-void beyond_levers_roll(const struct beyond_lane *at, enum method_id method,
-                        const struct local_opt *opt, struct rolling_lane *l)
+void extra_levers_roll(const struct extra_lane *at, enum method_id method,
+                       const struct local_opt *opt, struct rolling_lane *l)
 {
-    struct beyond *x = at->x;
-    const struct beyond_levers *y = at->y;
+    struct extra *x = at->x;
+    const struct extra_levers *y = at->y;
     int i = at->i;
     struct rolling q;
     double now[ROLLING], omega[3], dp[3];
     set_operator(at, &q);
-    beyond_impulse(x, i, l->r, q.x);
+    extra_impulse(x, i, l->r, q.x);
     spin(at, omega);
     for (int j = 0; j < 3; j++) { // u and omega with the bond's pull that goes with them
         now[j] = 0;
@@ -150,7 +150,7 @@ void beyond_levers_roll(const struct beyond_lane *at, enum method_id method,
         q.b[j] = now[j];
         for (int k = 0; k < ROLLING; k++) q.b[j] -= q.W[ROLLING * j + k] * q.x[k];
     }
-    beyond_solve(x, i, method, &q, opt, l);
+    extra_solve(x, i, method, &q, opt, l);
     for (int j = 0; j < 3; j++) {
         l->b[j] = q.b[j]; // that without r alone, as the vector text has it
         for (int k = 3; k < ROLLING; k++) l->b[j] += q.W[ROLLING * j + k] * q.x[k];

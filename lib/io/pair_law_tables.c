@@ -1,4 +1,4 @@
-#include "io/law_tables.h"
+#include "io/pair_law_tables.h"
 
 #include "hdf5/h5.h"
 #include "io/table_read.h"
@@ -60,7 +60,7 @@ static int read_bonds(struct source *s, int64_t k, struct packing *p, struct why
                               why);
 }
 
-int law_tables_read(struct source *s, int64_t k, struct packing *p, struct why *why)
+int pair_law_tables_read(struct source *s, int64_t k, struct packing *p, struct why *why)
 {
     if (!source_has(s, law)) return 0;
     if (read_laws(s, p, why)) return why->status;
@@ -86,7 +86,7 @@ static int write_columns(hid_t file, const struct column *columns, const struct 
     return why->status;
 }
 
-int law_tables_write_static(hid_t file, const struct packing *p, struct why *why)
+int pair_law_tables_write_static(hid_t file, const struct packing *p, struct why *why)
 {
     bool impact = false;
     if (!p->law) return 0;
@@ -95,7 +95,7 @@ int law_tables_write_static(hid_t file, const struct packing *p, struct why *why
     return impact ? write_columns(file, layout_impact, p, why) : 0;
 }
 
-int law_tables_write(struct table_write *s, const struct packing *p, struct why *why)
+int pair_law_tables_write(struct table_write *s, const struct packing *p, struct why *why)
 {
     const hsize_t one = 1;
     if (!p->law) return 0;

@@ -1,9 +1,9 @@
 /*
- * problem/beyond.h: what the sweep reads of contacts that are bonded or have rolling friction,
+ * problem/extra.h: what the sweep reads of contacts that are bonded or have rolling friction,
  * after their bundles.
  *
  * A bond pulls with p = - a - K u~, K = h^2 S beta^2 C, and the bodies feel r = r* + p, where r* is
- * what the local method looks for [bodies/tie.h]. Of its own contact it sees
+ * what the local method looks for [bodies/contact_law.h]. Of its own contact it sees
  *
  *     u~ = W^ r* + b^,   W^ = (1 + W K)^-1 W,   b^ = (1 + W K)^-1 (b - W a),
  *
@@ -14,14 +14,14 @@
  * Rolling friction adds a moment, and the relative angular velocity of the bodies, which is coupled
  * to u_t by k = l_b/I_b - l_a/I_a [law/rolling.h].
  */
-#ifndef NSD_BEYOND_H
-#define NSD_BEYOND_H
+#ifndef NSD_EXTRA_H
+#define NSD_EXTRA_H
 
 #include "law/rolling.h"
 #include "problem/levers.h"
 
 /* Lane k of each belongs to lane k of the bundle. */
-struct beyond {
+struct extra {
     double s[2][BUNDLE]; /* 1/(1 + w K), along n and across; 1: not bonded */
     double K[2][BUNDLE]; /* kg */
     double z[3][BUNDLE]; /* N s: p + a = - K u~ of the last visit, in (n, t1, t2) */
@@ -55,7 +55,7 @@ struct beyond {
  * Z has a positive number where nothing can turn: omega is 0 or given there, and the moment is at its
  * limit against it. All but S are set where there is rolling friction.
  */
-struct beyond_levers {
+struct extra_levers {
     double S[9][BUNDLE];
     double Ra[9][BUNDLE], Rb[9][BUNDLE]; /* m (kg m^2)^-1/2: component j of R_i at 3 i + j */
     double V[9][BUNDLE];                 /* kg^-1 */
@@ -74,54 +74,54 @@ struct rolling_lane {
     bool safeguarded, gave_up;
 };
 
-static inline bool beyond_rolls(const struct beyond *x, int lane)
+static inline bool extra_rolls(const struct extra *x, int lane)
 {
     return x->mu_r[lane] > 0 || x->mu_p[lane] > 0;
 }
 
 /* Lane i of a bundle, with its record beside */
-struct beyond_lane {
+struct extra_lane {
     int i;
     const struct bundle *c;
     const struct beside *t; /* NULL: none */
-    struct beyond *x;
-    const struct beyond_levers *y; /* NULL: all bodies are balls */
-    struct body *body;             /* that the places of c are in */
+    struct extra *x;
+    const struct extra_levers *y; /* NULL: all bodies are balls */
+    struct body *body;            /* that the places of c are in */
 };
 
 /* Solves a lane with its moment: l->r and x->m are the new ones, l->b that for the new moment. The
    bodies turn at their velocities of before. */
-void beyond_roll(const struct beyond_lane *at, enum method_id method, const struct local_opt *opt,
-                 struct rolling_lane *l);
+void extra_roll(const struct extra_lane *at, enum method_id method, const struct local_opt *opt,
+                struct rolling_lane *l);
 
 /* What a change dm of the moment makes of the bodies */
-void beyond_push(const struct beyond_lane *at, const double dm[3]);
+void extra_push(const struct extra_lane *at, const double dm[3]);
 
 /* The contact as one of law/rolling.h, without b; its x, and its u where u_D = (1 + e) u~ is u_n, u_t.
    w (kg^-1): w^ along n and across; between balls */
-void beyond_rolling(const struct beyond_lane *at, const double w[2], const double s[2],
-                    const double u[3], struct rolling *q, double v[ROLLING]);
+void extra_rolling(const struct extra_lane *at, const double w[2], const double s[2],
+                   const double u[3], struct rolling *q, double v[ROLLING]);
 
 /* Sets S of lane i for a bond of K[2] (kg), and puts W^ in place of the block's W. */
-void beyond_levers_bond(double block[9][BUNDLE], struct beyond_levers *y, int i, const double K[2]);
+void extra_levers_bond(double block[9][BUNDLE], struct extra_levers *y, int i, const double K[2]);
 /* Sets the rest of a lane that rolls, after its bond of K, which made W^ of the block. On entry R_a and R_b
    are those of length 1. W (kg^-1): without the bond; iia, iib: 1/inertia of both bodies in the problem's
    unknowns, 0 where one cannot move. Returns the length (m). */
-double beyond_levers_turn(const struct levers *g, double block[9][BUNDLE], struct beyond_levers *y,
-                          int i, const double W[9], const double K[2], double iia, double iib);
+double extra_levers_turn(const struct levers *g, double block[9][BUNDLE], struct extra_levers *y,
+                         int i, const double W[9], const double K[2], double iia, double iib);
 
 /* What balls and levers share. out = x of lane i: r* (N s), and the moment, turned a quarter and over the
    length. */
-void beyond_impulse(const struct beyond *x, int i, const double r[3], double out[ROLLING]);
+void extra_impulse(const struct extra *x, int i, const double r[3], double out[ROLLING]);
 /* Solves q, relaxed: the moment of lane i becomes that of q->x, and l has its change and how it was found. */
-void beyond_solve(struct beyond *x, int i, enum method_id method, struct rolling *q,
-                  const struct local_opt *opt, struct rolling_lane *l);
+void extra_solve(struct extra *x, int i, enum method_id method, struct rolling *q,
+                 const struct local_opt *opt, struct rolling_lane *l);
 
-/* As beyond_roll(), beyond_push() and beyond_rolling() */
-void beyond_levers_roll(const struct beyond_lane *at, enum method_id method,
-                        const struct local_opt *opt, struct rolling_lane *l);
-void beyond_levers_push(const struct beyond_lane *at, const double dm[3]);
-void beyond_levers_rolling(const struct beyond_lane *at, const double u[3], struct rolling *q,
-                           double v[ROLLING]);
+/* As extra_roll(), extra_push() and extra_rolling() */
+void extra_levers_roll(const struct extra_lane *at, enum method_id method,
+                       const struct local_opt *opt, struct rolling_lane *l);
+void extra_levers_push(const struct extra_lane *at, const double dm[3]);
+void extra_levers_rolling(const struct extra_lane *at, const double u[3], struct rolling *q,
+                          double v[ROLLING]);
 
 #endif

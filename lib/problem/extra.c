@@ -1,10 +1,10 @@
-/* problem/beyond.c: rolling friction, lane by lane [problem/beyond.h]. */
-#include "problem/beyond.h"
+/* problem/extra.c: rolling friction, lane by lane [problem/extra.h]. */
+#include "problem/extra.h"
 
 #include <string.h>
 
 /* The bodies' angular velocity relative to each other, in (n, t1, t2) */
-static void spin(const struct beyond_lane *at, double omega[3])
+static void spin(const struct extra_lane *at, double omega[3])
 {
     const double *wa = body_at(at->body, at->c->a[at->i]) + 3;
     const double *wb = body_at(at->body, at->c->b[at->i]) + 3;
@@ -16,10 +16,10 @@ static void spin(const struct beyond_lane *at, double omega[3])
     }
 }
 
-void beyond_push(const struct beyond_lane *at, const double dm[3])
+void extra_push(const struct extra_lane *at, const double dm[3])
 {
     if (at->y) {
-        beyond_levers_push(at, dm);
+        extra_levers_push(at, dm);
         return;
     }
     double *a = body_at(at->body, at->c->a[at->i]), *b = body_at(at->body, at->c->b[at->i]);
@@ -33,7 +33,7 @@ void beyond_push(const struct beyond_lane *at, const double dm[3])
 
 /* W, limits and step of a contact with these w^ and s of the impact law, in the units of
    law/rolling.h. Impact multiplies u by s, which changes no law; without it W is symmetric. */
-static void set_operator(const struct bundle *c, const struct beyond *x, int i, const double w[2],
+static void set_operator(const struct bundle *c, const struct extra *x, int i, const double w[2],
                          const double s[2], struct rolling *q)
 {
     double l = x->length[i];
@@ -45,15 +45,15 @@ static void set_operator(const struct bundle *c, const struct beyond *x, int i, 
     q->rho = x->rho[i];
 }
 
-void beyond_impulse(const struct beyond *x, int i, const double r[3], double out[ROLLING])
+void extra_impulse(const struct extra *x, int i, const double r[3], double out[ROLLING])
 {
     double l = x->length[i];
     for (int j = 0; j < 3; j++) out[j] = r[j];
     out[3] = x->m[0][i] / l, out[4] = -x->m[2][i] / l, out[5] = x->m[1][i] / l;
 }
 
-void beyond_solve(struct beyond *x, int i, enum method_id method, struct rolling *q,
-                  const struct local_opt *opt, struct rolling_lane *l)
+void extra_solve(struct extra *x, int i, enum method_id method, struct rolling *q,
+                 const struct local_opt *opt, struct rolling_lane *l)
 {
     double was[ROLLING], tau[ROLLING], length = x->length[i];
     memcpy(was, q->x, sizeof was);
@@ -67,38 +67,38 @@ void beyond_solve(struct beyond *x, int i, enum method_id method, struct rolling
     l->steps = q->steps, l->safeguarded = q->safeguarded, l->gave_up = q->gave_up;
 }
 
-void beyond_rolling(const struct beyond_lane *at, const double w[2], const double s[2],
-                    const double u[3], struct rolling *q, double v[ROLLING])
+void extra_rolling(const struct extra_lane *at, const double w[2], const double s[2],
+                   const double u[3], struct rolling *q, double v[ROLLING])
 {
     if (at->y) {
-        beyond_levers_rolling(at, u, q, v);
+        extra_levers_rolling(at, u, q, v);
         return;
     }
     const struct bundle *c = at->c;
-    const struct beyond *x = at->x;
+    const struct extra *x = at->x;
     int i = at->i;
     const double r[3] = { c->r[0][i], c->r[1][i], c->r[2][i] };
     double omega[3], l = x->length[i];
     set_operator(c, x, i, w, s, q);
-    beyond_impulse(x, i, r, q->x);
+    extra_impulse(x, i, r, q->x);
     spin(at, omega);
     for (int j = 0; j < 3; j++) v[j] = u[j] / s[j > 0];
     v[3] = l * omega[0], v[4] = -l * omega[2], v[5] = l * omega[1];
 }
 
-void beyond_roll(const struct beyond_lane *at, enum method_id method, const struct local_opt *opt,
-                 struct rolling_lane *l)
+void extra_roll(const struct extra_lane *at, enum method_id method, const struct local_opt *opt,
+                struct rolling_lane *l)
 {
     if (at->y) {
-        beyond_levers_roll(at, method, opt, l);
+        extra_levers_roll(at, method, opt, l);
         return;
     }
-    struct beyond *x = at->x;
+    struct extra *x = at->x;
     int i = at->i;
     struct rolling q;
     double omega[3], k = x->s[1][i] * x->k[i], length = x->length[i];
     set_operator(at->c, x, i, l->w, l->s, &q);
-    beyond_impulse(x, i, l->r, q.x);
+    extra_impulse(x, i, l->r, q.x);
     const double was[2] = { q.x[4], q.x[5] };
     spin(at, omega);
     const double turned[2] = { -omega[2], omega[1] };
@@ -110,7 +110,7 @@ void beyond_roll(const struct beyond_lane *at, enum method_id method, const stru
         double spun = turned[j] - x->k[i] * felt - x->wr[i] * turned_m;
         q.b[1 + j] = bt, q.b[4 + j] = length * spun;
     }
-    beyond_solve(x, i, method, &q, opt, l);
+    extra_solve(x, i, method, &q, opt, l);
     for (int j = 0; j < 3; j++) l->r[j] = q.x[j];
     for (int j = 0; j < 2; j++) l->b[1 + j] += l->s[1] * k * length * (q.x[4 + j] - was[j]);
 }

@@ -1,5 +1,5 @@
-/* ranks/part.c: bodies dealt, and what is told of them [ranks/part.h]. */
-#include "ranks/part.h"
+/* ranks/subdomain.c: bodies dealt, and what is told of them [ranks/subdomain.h]. */
+#include "ranks/subdomain.h"
 
 #include "ranks/settings.h"
 
@@ -21,7 +21,7 @@ struct traveller {
     int32_t row, owner, load;
 };
 
-static void fail(const struct part *y, const struct why *why)
+static void fail(const struct subdomain *y, const struct why *why)
 {
     comm_fail(y->comm, why->status, why->text);
 }
@@ -59,7 +59,7 @@ void borders_free(const struct comm *t, struct border *b)
 }
 
 /* Room for n bodies, none of them set */
-static void resize(struct part *y, int64_t n)
+static void resize(struct subdomain *y, int64_t n)
 {
     struct why why = { 0 };
     struct packing *p = &y->p;
@@ -72,14 +72,14 @@ static void resize(struct part *y, int64_t n)
 }
 
 /* What is known of a body that has been copied into row i of y->p */
-static void set_body(struct part *y, int64_t i, struct traveller b)
+static void set_body(struct subdomain *y, int64_t i, struct traveller b)
 {
     y->row[i] = b.row, y->owner[i] = b.owner, y->load[i] = b.load;
     y->dealt[i] = y->p.x[i];
 }
 
 /* These bodies, of rows from `first` on, are this rank's own. */
-static void take_own(struct part *y, const struct packing *p, int64_t n, int64_t first)
+static void take_own(struct subdomain *y, const struct packing *p, int64_t n, int64_t first)
 {
     y->all = comm_sum(y->comm, n);
     resize(y, n);
@@ -92,16 +92,16 @@ static void take_own(struct part *y, const struct packing *p, int64_t n, int64_t
 }
 
 /* At first the first rank owns all bodies. */
-static void take_all(struct part *y, const struct packing *whole)
+static void take_all(struct subdomain *y, const struct packing *whole)
 {
     take_own(y, whole, y->comm->me ? 0 : whole->n, 0);
 }
 
-static void begin(struct part *y, struct comm *t, struct territory *space,
+static void begin(struct subdomain *y, struct comm *t, struct territory *space,
                   const struct packing *settings)
 {
     struct why why = { 0 };
-    *y = (struct part){ .comm = t, .territory = space };
+    *y = (struct subdomain){ .comm = t, .territory = space };
     if (!t->me) {
         struct packing none = *settings;
         none.n = 0, none.events.n = 0, none.bonds.n = 0, none.scene = NULL;
@@ -112,39 +112,39 @@ static void begin(struct part *y, struct comm *t, struct territory *space,
     y->p.whole = &y->whole;
 }
 
-void part_begin(struct part *y, struct comm *t, struct territory *space,
-                const struct packing *whole)
+void subdomain_begin(struct subdomain *y, struct comm *t, struct territory *space,
+                     const struct packing *whole)
 {
     begin(y, t, space, whole);
     take_all(y, whole);
-    part_recut(y);
+    subdomain_recut(y);
 }
 
-void part_begin_rows(struct part *y, struct comm *t, struct territory *space,
-                     const struct packing *settings, const struct packing *rows, int64_t first,
-                     int64_t all)
+void subdomain_begin_rows(struct subdomain *y, struct comm *t, struct territory *space,
+                          const struct packing *settings, const struct packing *rows, int64_t first,
+                          int64_t all)
 {
     begin(y, t, space, settings);
     take_own(y, rows, rows->n, first);
     if (y->all != all) comm_fail(t, EX_SOFTWARE, "ranks disagree about rows of bodies");
-    part_recut(y);
+    subdomain_recut(y);
 }
 
-void part_begin_again(struct part *y, const struct packing *whole)
+void subdomain_begin_again(struct subdomain *y, const struct packing *whole)
 {
     take_all(y, whole);
 }
 
-void part_free(struct part *y)
+void subdomain_free(struct subdomain *y)
 {
     borders_free(y->comm, y->lent), borders_free(y->comm, y->here);
     free(y->row), free(y->owner), free(y->dealt), free(y->load);
     packing_free(&y->p);
     territory_free(y->territory);
-    *y = (struct part){ 0 };
+    *y = (struct subdomain){ 0 };
 }
 
-void part_measure(struct part *y)
+void subdomain_measure(struct subdomain *y)
 {
     struct packing *p = &y->p;
     p->whole = NULL;
@@ -155,21 +155,21 @@ void part_measure(struct part *y)
     p->whole = &y->whole;
 }
 
-double part_imbalance(struct part *y, const struct contacts *s)
+double subdomain_imbalance(struct subdomain *y, const struct contacts *s)
 {
     memset(y->load, 0, (size_t)y->p.n * sizeof *y->load);
     int64_t mine = 0;
     for (int64_t i = 0; i < s->n; i++) {
         y->load[s->c[i].b]++;
         if (s->c[i].a >= 0) y->load[s->c[i].a]++;
-        mine += part_counts(y, &s->c[i]);
+        mine += subdomain_counts(y, &s->c[i]);
     }
     double most = comm_most(y->comm, (double)mine);
     int64_t all = comm_sum(y->comm, mine);
     return all ? most * y->comm->n / (double)all : 1;
 }
 
-void part_recut(struct part *y)
+void subdomain_recut(struct subdomain *y)
 {
     int64_t n = 0;
     vec3 *x = comm_new(y->comm, y->own, sizeof *x);
@@ -185,7 +185,7 @@ void part_recut(struct part *y)
 /* ---- dealing ---- */
 
 /* Has any own body gone further than half the margin, at the predicted position? */
-static bool is_due(const struct part *y)
+static bool is_due(const struct subdomain *y)
 {
     bool due = y->margin < 0;
     for (int k = 0; k < 3; k++) due = due || (y->p.cell.repeats[k] && cell_moves(&y->p.cell, k));
@@ -197,7 +197,7 @@ static bool is_due(const struct part *y)
 }
 
 /* The ranks that have a copy of a body which is at x, and those of its images: mark[] is set. */
-static void mark_ranks(const struct part *y, const vec3 x, double half, int *met, bool *mark)
+static void mark_ranks(const struct subdomain *y, const vec3 x, double half, int *met, bool *mark)
 {
     const struct cell *c = &y->p.cell;
     int most[3];
@@ -226,7 +226,7 @@ static int by_row(const void *a, const void *b)
 }
 
 /* The lists of bodies that are here and elsewhere: a copy's rank tells the owner. */
-static void find_borders(struct part *y)
+static void find_borders(struct subdomain *y)
 {
     struct comm *t = y->comm;
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
@@ -262,7 +262,7 @@ static void find_borders(struct part *y)
     parcels_free(t, out), parcels_free(t, in);
 }
 
-static double mean_radius(const struct part *y)
+static double mean_radius(const struct subdomain *y)
 {
     double sum = 0, all;
     for (int64_t i = 0; i < y->p.n; i++) sum += y->owner[i] == y->comm->me ? y->p.radius[i] : 0;
@@ -271,14 +271,14 @@ static double mean_radius(const struct part *y)
 }
 
 /* m: every step must stay within half of it */
-static double choose_margin(const struct part *y)
+static double choose_margin(const struct subdomain *y)
 {
     double r = mean_radius(y), step = y->p.dt * y->whole.speed;
     double m = fmax(fmin(STEPS_AHEAD * step, MARGIN_MOST * r), MARGIN_LEAST * r);
     return fmax(m, 2.1 * step);
 }
 
-static void send_bodies(struct part *y, double reach, struct parcel *out)
+static void send_bodies(struct subdomain *y, double reach, struct parcel *out)
 {
     struct comm *t = y->comm;
     int *met = comm_new(t, t->n, sizeof *met);
@@ -305,7 +305,7 @@ static void give_back(void)
 #endif
 }
 
-bool part_deal(struct part *y, double reach)
+bool subdomain_deal(struct subdomain *y, double reach)
 {
     struct comm *t = y->comm;
     if (!is_due(y)) return false;
@@ -345,7 +345,7 @@ static int compare_rows(const void *key, const void *row)
     return x < y ? -1 : x > y;
 }
 
-int32_t part_find(const struct part *y, int32_t row)
+int32_t subdomain_find(const struct subdomain *y, int32_t row)
 {
     const int32_t *at = bsearch(&row, y->row, (size_t)y->p.n, sizeof *at, compare_rows);
     return at ? (int32_t)(at - y->row) : -1;
@@ -353,7 +353,7 @@ int32_t part_find(const struct part *y, int32_t row)
 
 /* ---- places and motion ---- */
 
-void part_follow(struct part *y, const struct packing *whole)
+void subdomain_follow(struct subdomain *y, const struct packing *whole)
 {
     struct comm *t = y->comm;
     struct parcel rows = { 0 }, mine = { 0 }, *in = parcels_new(t), *out = parcels_new(t);
@@ -370,7 +370,7 @@ void part_follow(struct part *y, const struct packing *whole)
     parcel_free(&mine), parcels_free(t, in), parcels_free(t, out);
 }
 
-void part_collect(const struct part *y, struct packing *whole)
+void subdomain_collect(const struct subdomain *y, struct packing *whole)
 {
     struct comm *t = y->comm;
     struct parcel mine = { 0 }, *in = parcels_new(t);
@@ -387,7 +387,7 @@ void part_collect(const struct part *y, struct packing *whole)
     parcels_free(t, in);
 }
 
-void part_refresh(struct part *y)
+void subdomain_refresh(struct subdomain *y)
 {
     struct comm *t = y->comm;
     struct parcel *out = parcels_new(t), *in = parcels_new(t);

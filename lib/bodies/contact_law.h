@@ -1,5 +1,5 @@
 /*
- * bodies/tie.h: what the laws of bodies/law.h do at the contacts of a step, and what they leave for
+ * bodies/contact_law.h: what the laws of bodies/pair_law.h do at the contacts of a step, and what they leave for
  * the next.
  *
  * A step begins at the predicted positions, at gap g, and the next one, h later, at g + h u_n: u is
@@ -23,27 +23,28 @@
  * Where a shape is, a pair has several places: they share its pull and the area of bonds that are made in
  * one step, and bonds keep their place [bodies/anchor.h].
  */
-#ifndef NSD_TIE_H
-#define NSD_TIE_H
+#ifndef NSD_CONTACT_LAW_H
+#define NSD_CONTACT_LAW_H
 
 #include "bodies/packing.h"
 
 /* m: contacts are to be sought up to this gap */
-double ties_reach(const struct packing *p);
+double contact_laws_reach(const struct packing *p);
 /*
- * contacts->tie[n] of contacts that have just been detected, by the laws and the bonds of the packing;
+ * contacts->law[n] of contacts that have just been detected, by the laws and the bonds of the packing;
  * bonds are made. Where adhesion holds mu is that of what is not bonded; it and a gap let nothing
  * rebound. Returns 0 or EX_SOFTWARE.
  */
-int ties_find(struct contacts *s, const struct packing *p, struct why *why);
+int contact_laws_find(struct contacts *s, const struct packing *p, struct why *why);
 /* Does anything but touch make this a contact? */
-static inline bool tie_holds(const struct tie *t)
+static inline bool contact_law_holds(const struct contact_law *t)
 {
     return t->pull > 0 || t->beta > 0;
 }
 
 /* out[3] (N s): r*, the push of one surface on the other, which is on Coulomb's law: r less p. dt: s */
-static inline void tie_push(double dt, const struct tie *t, const struct found *f, double out[3])
+static inline void contact_law_push(double dt, const struct contact_law *t, const struct found *f,
+                                    double out[3])
 {
     double way = t->jump[0] + dt * (f->u[0] - t->offset);
     out[0] = f->r[0] + dt * (t->pull + t->stiff[0] * way);
@@ -51,24 +52,25 @@ static inline void tie_push(double dt, const struct tie *t, const struct found *
 }
 
 /* What has become of a tie when the step is over */
-struct tie_end {
+struct contact_law_end {
     double gap, slip[2]; /* m */
     double beta;
     bool wet;
 };
-struct tie_end tie_end(const struct packing *p, const struct contact *c, const struct tie *t,
-                       const struct found *found);
+struct contact_law_end contact_law_end(const struct packing *p, const struct contact *c,
+                                       const struct contact_law *t, const struct found *found);
 
 /* J: what the step has changed of the energy that is stored at the contact, what is stored then, and
    what was given up by bonds that broke and by liquid that joined */
-struct tie_account {
+struct contact_law_account {
     double change, stored, broken;
 };
-struct tie_account tie_account(const struct packing *p, const struct contact *c,
-                               const struct tie *t, const struct tie_end *end);
+struct contact_law_account contact_law_account(const struct packing *p, const struct contact *c,
+                                               const struct contact_law *t,
+                                               const struct contact_law_end *end);
 
 /* p->bonds = what lasts of the contacts' ties; the bodies have not moved yet. Returns 0 or
    EX_SOFTWARE. */
-int ties_keep(struct packing *p, const struct contacts *s, struct why *why);
+int contact_laws_keep(struct packing *p, const struct contacts *s, struct why *why);
 
 #endif

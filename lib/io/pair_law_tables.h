@@ -1,0 +1,19 @@
+/*
+ * io/pair_law_tables.h: the laws beyond friction and restitution in a document, /nsd/law, and what lasts
+ * of pairs by them, /nsd/bonds [nsd-format(5)].
+ */
+#ifndef NSD_PAIR_LAW_TABLES_H
+#define NSD_PAIR_LAW_TABLES_H
+
+#include "hdf5/source.h"
+#include "io/table_write.h"
+
+/* The laws, and the bonds of frame k; nothing where there is no such group. packing_check() looks at
+   the numbers. */
+int pair_law_tables_read(struct source *source, int64_t k, struct packing *p, struct why *why);
+
+int pair_law_tables_write_static(hid_t file, const struct packing *p, struct why *why);
+/* A frame's bonds; nothing where there are no laws */
+int pair_law_tables_write(struct table_write *tables, const struct packing *p, struct why *why);
+
+#endif
