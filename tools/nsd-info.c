@@ -27,7 +27,7 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 0, "scene", &scene,
       .help = "print the scene that restarts from the last frame of FILE" },
     { CLI_TEXT, 0, "only", &only, "NAME,...",
-      .help = "with -p, -w, -c: print only these walls, parts, groups, kinds [all]" },
+      .help = "print only these walls, parts, groups, kinds; for -p, -w, -c [all]" },
     { CLI_FLAG, 'l', "last", &last, .help = "process only the last frame" },
     { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "process steps A to B, every K-th [all]" },
     { 0 },

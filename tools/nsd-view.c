@@ -95,7 +95,7 @@ static const struct cli_option own[] = {
     { CLI_CHOICE, 0, "boundaries", &boundaries, .choice = boundaries_choice,
       .help = "draw boundaries in this way [glass]" },
     { CLI_TEXT, 0, "solid", &solid_names, "NAME,...",
-      .help = "draw these walls and parts solid and shaded, by name or number [none]" },
+      .help = "draw these walls and parts solid, by name or number [none]" },
     { CLI_CHOICE, 0, "surface", &surface, .choice = surface_choice,
       .help = "colour solid walls by this; without --solid all are solid [name]" },
     { CLI_TEXT, 0, "surface-range", &surface_range, "LO,HI",

@@ -62,6 +62,7 @@ static int follow_pairs(struct kept *now, const struct snapshot *s, struct why *
 int follow(struct kept *now, const struct snapshot *s, bool pairs, struct why *why)
 {
     *now = (struct kept){ 0 };
+    if (s->before) now->form = s->before->form;
     if (kept_set(now, s->p, why)) return why->status;
     follow_bodies(now, s);
     if (pairs && s->s && follow_pairs(now, s, why)) kept_free(now);
