@@ -177,7 +177,7 @@ REST  := $(patsubst %,tests/%.t,project/lint whole/paper project/compilers whole
          $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw failing_library_calls_api killed_writer)
 TESTS := $(FIRST) $(filter-out $(FIRST) $(REST),$(CTEST) $(wildcard tests/*/*.t))
 # What the sanitizers would not see more of: it looks at texts, or makes others' experiments.
-PLAIN := $(filter-out tests/whole/mpi.t tests/whole/wall.t tests/tools/% tests/hostile/% $B/tests/%,$(REST)) $(patsubst %,tests/%.t,project/layers project/docs project/symbols tools/examples tools/campaign whole/rest)
+PLAIN := $(filter-out tests/whole/mpi.t tests/whole/wall.t tests/tools/% tests/hostile/% $B/tests/%,$(REST)) $(patsubst %,tests/%.t,project/layers project/docs project/english project/readme project/symbols tools/examples tools/campaign whole/rest)
 # What looks into inner loops has, under the sanitizers, those of the width that is instrumented.
 NARROW := $(if $(SAN),$(patsubst %,$B/tests/unit/%_test,laws local shapes solver step))
 
@@ -342,7 +342,7 @@ lint-cppcheck:
 	$(CPPCHECK) -D__AVX__ -DLANES=4 $(WIDE:%=lib/problem/%.c)
 	$(CPPCHECK) -D__AVX__ -DLANES=8 $(WIDE:%=lib/problem/%.c)
 
-TIDY := $(patsubst %.c,lint-tidy-%,$(notdir $(filter-out $(if $(MPI_PC),,lib/ranks/%),$(wildcard lib/*/*.c tools/*.c))))
+TIDY := $(sort $(patsubst %.c,lint-tidy-%,$(notdir $(filter-out $(if $(MPI_PC),,lib/ranks/%),$(wildcard lib/*/*.c tools/*.c)))))
 
 # STATES: how many states of a function the analyzer looks at, if not its own 225000
 STATES ?=
