@@ -76,10 +76,9 @@ ALWAYS_INLINE vd slip_across(const struct local *l, const struct slip *s, vd k)
 ALWAYS_INLINE vm slip_direction(const struct local *l, const struct newton_point *x,
                                 enum newton_formulation form, vd dr[3])
 {
-    struct slip s;
+    struct slip s = { .Z = { x->Z[0] } };
     vd inverse = newton_inverse(x->t);
     s.e[0] = pick(lt(splat(0), x->t), inverse * x->tau[1], splat(1)), s.e[1] = inverse * x->tau[2];
-    s.Z[0] = x->Z[0];
     s.Z[1] = s.e[0] * x->Z[1] + s.e[1] * x->Z[2], s.Z[2] = s.e[0] * x->Z[2] - s.e[1] * x->Z[1];
     s.lag = s.Z[1] - l->mu * s.Z[0];
     BY_FORMULATION(form, slip, l, x, &s);

@@ -3,7 +3,7 @@
 #include "scene/counter.h"
 
 /* Solid fractions that a random start reaches in a wide box [scene/random_start.h] */
-static const double DENSE[4] = { 0, 0, 0.82, 0.6 };
+static const double DENSE_DISCS = 0.82, DENSE_BALLS = 0.6;
 
 double scene_lattice_height(const struct scene_bodies *b, int dim)
 {
@@ -15,7 +15,7 @@ double scene_lattice_height(const struct scene_bodies *b, int dim)
 
 double scene_random_height(int dim, double volume, double area)
 {
-    return volume / (DENSE[dim] * area);
+    return volume / ((dim == 2 ? DENSE_DISCS : DENSE_BALLS) * area);
 }
 
 /* m^3, m^2: of the balls around the grains of a random start, in the order in which they are drawn */
