@@ -34,6 +34,8 @@ struct swift {
     const struct surface *surface; /* [p->walls] of meshes */
 };
 
+/* m: of a ball inside the body, around its centre; of a clump the smallest ball */
+double swift_thickness(const struct packing *p, int64_t i);
 /* Does body i go farther in a step than it is thick, relative to what has at most the velocity `most` (m/s)?
    The thickness is the radius of a ball inside the body, around its centre; of a clump that of the smallest ball. */
 bool swift_is(const struct packing *p, int64_t i, double most);
@@ -50,12 +52,15 @@ bool swift_meets_wall(struct contacts *out, int64_t first, const struct swift *o
 /* Adds what bodies meet ahead of fixed hulls, and sorts all contacts again. */
 bool swift_meet_hulls(struct contacts *out, const struct swift *o);
 
-/* Bodies that have gone through a boundary or a fixed hull without meeting it */
+/* Bodies that have gone through a boundary or another body without meeting it */
 struct passed {
     int64_t n;
-    int32_t id,
-        through; /* of the one with the lowest number: what it went through, a wall -1-w or a body's number */
+    /* of the one with the lowest number: what it went through, a wall -1-w or a body's number; of several the last */
+    int32_t id, through;
 };
+void swift_note(struct passed *s, int32_t id, int32_t through);
+/* Does the way from a to b (m, from the centre) enter a hull of radius r (m) from outside, and leave it? */
+bool swift_through_hull(const struct shape *s, int dim, double r, quat q, vec3 a, vec3 b);
 /* Is there anything of that kind, a boundary that is no plane or a fixed hull? */
 bool swift_watches(const struct packing *p);
 /* Of the packing's first n bodies, after a step */

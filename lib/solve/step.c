@@ -2,6 +2,7 @@
 #include "solve/step.h"
 
 #include "bodies/wrap.h"
+#include "detect/crossing.h"
 #include "detect/detect.h"
 #include "detect/swift.h"
 #include "motion/move.h"
@@ -142,14 +143,27 @@ void step_forget(struct step_memory *m)
     *m = (struct step_memory){ 0 };
 }
 
-void step_watch(const struct packing *p, int64_t n, const struct surface *surface,
-                struct report *rep)
+int step_watch(const struct packing *p, int64_t n, const struct surface *surface,
+               const struct fast *fast, int64_t count, struct report *rep, struct why *why)
 {
     struct passed passed;
-    rep->watched = swift_watches(p);
     swift_passed(&passed, p, n, surface);
+    if (crossing_count(&passed, p, n, fast, count, why)) return why->status;
+    rep->watched = swift_watches(p) || passed.n;
     rep->passed = passed.n;
     if (passed.n) rep->passed_id = passed.id, rep->passed_through = passed.through;
+    return 0;
+}
+
+int step_watch_whole(const struct packing *p, const struct surface *surface, struct report *rep,
+                     struct why *why)
+{
+    struct fast *fast;
+    int64_t count;
+    if (!crossing_list(&fast, &count, p, p->n, why))
+        step_watch(p, p->n, surface, fast, count, rep, why);
+    free(fast);
+    return why->status;
 }
 
 int step_measure_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
@@ -231,7 +245,7 @@ static int watch_alone(struct step_makers *m, const struct packing *p, struct re
 {
     struct step_memory *kept = ((struct alone *)m)->memory;
     struct neighbours once = { 0 }, *near = kept ? &kept->near : &once;
-    if (!neighbours_surfaces(near, p, why)) step_watch(p, p->n, near->surface, rep);
+    if (!neighbours_surfaces(near, p, why)) step_watch_whole(p, near->surface, rep, why);
     neighbours_free(&once);
     return why->status;
 }

@@ -5,6 +5,7 @@
 #ifndef NSD_STEP_H
 #define NSD_STEP_H
 
+#include "detect/crossing.h"
 #include "detect/neighbours.h"
 #include "motion/balance.h"
 #include "motion/impulse.h"
@@ -95,8 +96,11 @@ int step_solve_contacts(const struct packing *pack, struct contacts *s, struct p
 int step_bound_impacts(const struct packing *pack, struct contacts *s, struct plan **kept,
                        const struct step_opt *o, struct report *rep, struct why *why);
 /* After it: adds to the report which of the first n bodies have gone through something. surface: [walls] of those
-   that are meshes */
-void step_watch(const struct packing *p, int64_t n, const struct surface *surface,
-                struct report *rep);
+   that are meshes; fast[count]: bodies of the whole packing [detect/crossing.h] */
+int step_watch(const struct packing *p, int64_t n, const struct surface *surface,
+               const struct fast *fast, int64_t count, struct report *rep, struct why *why);
+/* The same of a whole packing */
+int step_watch_whole(const struct packing *p, const struct surface *surface, struct report *rep,
+                     struct why *why);
 
 #endif
