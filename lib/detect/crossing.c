@@ -56,10 +56,10 @@ static double size_of(const struct fast *b)
     return b->shape ? b->thick : b->radius;
 }
 
-/* Where contacts were sought */
-static vec3 begin_of(const struct packing *p, const struct fast *b)
+/* m: where the window begins */
+static vec3 begin_of(struct window window, const struct fast *b)
 {
-    return v3_axpy(b->x, -step_after(p), b->v);
+    return v3_axpy(b->x, -window.back, b->v);
 }
 
 static bool through_ball(double radii, vec3 from, vec3 way)
@@ -72,11 +72,12 @@ static bool through_ball(double radii, vec3 from, vec3 way)
 }
 
 /* Does b go through a, or a through b? */
-static bool cross(const struct packing *p, const struct fast *a, const struct fast *b)
+static bool cross(const struct packing *p, struct window window, const struct fast *a,
+                  const struct fast *b)
 {
     const struct shape *ha = hull_of(p, a), *hb = hull_of(p, b);
-    const vec3 from = v3_sub(begin_of(p, b), begin_of(p, a));
-    const vec3 way = v3_scale(p->dt, v3_sub(b->v, a->v));
+    const vec3 from = v3_sub(begin_of(window, b), begin_of(window, a));
+    const vec3 way = v3_scale(window.length, v3_sub(b->v, a->v));
     const double thick = a->thick + b->thick;
     const vec3 none = v3(0, 0, 0);
     if (!(v3_dot(way, way) > thick * thick)) return false;
@@ -88,9 +89,9 @@ static bool cross(const struct packing *p, const struct fast *a, const struct fa
 
 /* ---- all ---- */
 
-static void set_reach(struct fast *b, const struct packing *p)
+static void set_reach(struct fast *b, struct window window)
 {
-    const double from = begin_of(p, b).x, to = from + p->dt * b->v.x;
+    const double from = begin_of(window, b).x, to = from + window.length * b->v.x;
     b->lo = dmin(from, to) - b->radius, b->hi = dmax(from, to) + b->radius;
 }
 
@@ -102,8 +103,8 @@ static int by_place(const void *a, const void *b)
 }
 
 /* With the images in the cells around, sorted; NULL: no memory */
-static struct fast *with_images(const struct packing *p, const struct fast *list, int64_t count,
-                                int64_t *n)
+static struct fast *with_images(const struct packing *p, struct window window,
+                                const struct fast *list, int64_t count, int64_t *n)
 {
     int reach[3];
     int64_t images = 1;
@@ -119,7 +120,7 @@ static struct fast *with_images(const struct packing *p, const struct fast *list
                     *to = list[i];
                     to->x = v3_add(to->x, cell_shift(p->cell.edge, shift));
                     to->v = v3_add(to->v, cell_shift(p->cell.rate, shift));
-                    set_reach(to, p);
+                    set_reach(to, window);
                 }
     if (!all) return NULL;
     qsort(all, (size_t)*n, sizeof *all, by_place);
@@ -147,23 +148,23 @@ static bool is_fixed_hull(const struct packing *p, const struct fast *b)
 }
 
 int crossing_count(struct passed *s, const struct packing *p, int64_t n, const struct fast *list,
-                   int64_t count, struct why *why)
+                   int64_t count, struct window window, struct why *why)
 {
     int64_t images;
     if (!count) return 0;
-    struct fast *all = with_images(p, list, count, &images);
+    struct fast *all = with_images(p, window, list, count, &images);
     if (!all) return why_set(why, EX_SOFTWARE, "no memory for fast bodies");
     for (int64_t i = 0; i < n; i++) {
         struct fast b = body_of(p, i);
         const bool fast = is_fast(p, &b);
-        set_reach(&b, p);
+        set_reach(&b, window);
         for (int64_t k = first_beyond(all, images, b.lo); k < images && all[k].lo <= b.hi; k++) {
             const struct fast *a = &all[k];
             if (a->hi < b.lo || a->id == b.id || (fast && a->id < b.id)) continue;
             if (a->mass == 0 && b.mass == 0) continue;
             if (is_fixed_hull(p, a) || is_fixed_hull(p, &b))
                 continue; // which swift_passed() counts
-            if (cross(p, a, &b)) swift_note(s, fast ? b.id : a->id, fast ? a->id : b.id);
+            if (cross(p, window, a, &b)) swift_note(s, fast ? b.id : a->id, fast ? a->id : b.id);
         }
     }
     free(all);

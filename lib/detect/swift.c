@@ -374,7 +374,7 @@ bool swift_watches(const struct packing *p)
 }
 
 void swift_passed(struct passed *s, const struct packing *p, int64_t n,
-                  const struct surface *surface)
+                  const struct surface *surface, struct window window)
 {
     double most, speed = 0;
     int64_t first = first_fixed_hull(p, &most);
@@ -388,13 +388,15 @@ void swift_passed(struct passed *s, const struct packing *p, int64_t n,
             const struct wall *wall = &p->wall[w];
             if (wall->shape == BOUNDARY_PLANE || !wall_there(wall, p->t)) continue;
             vec3 v = v3_sub(p->v[i], wall_velocity(p, wall, p->x[i]));
-            vec3 from = v3_axpy(p->x[i], -step_after(p), v), to = v3_axpy(from, p->dt, v);
+            vec3 from = v3_axpy(p->x[i], -window.back, v);
+            vec3 to = v3_axpy(from, window.length, v);
             if (through_wall(p, surface, w, from, to)) swift_note(s, p->id[i], -1 - w);
         }
         for (int64_t f = first; f < p->n; f++) {
             if (!is_fixed_hull(p, f)) continue;
             vec3 v = v3_sub(p->v[i], p->v[f]);
-            vec3 from = v3_axpy(p->x[i], -step_after(p), v), to = v3_axpy(from, p->dt, v);
+            vec3 from = v3_axpy(p->x[i], -window.back, v);
+            vec3 to = v3_axpy(from, window.length, v);
             from = v3_sub(from, p->x[f]), to = v3_sub(to, p->x[f]);
             if (swift_through_hull(packing_shape(p, f), p->dim, p->radius[f], p->q[f], from, to))
                 swift_note(s, p->id[i], p->id[f]);

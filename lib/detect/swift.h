@@ -8,7 +8,8 @@
  * [bodies/overlap.h] it stops, or rebounds, at most one step's way early. Their features tell them, for they are
  * contacts however wide the gap is. The same is done where a body would meet hulls that are fixed.
  *
- * What still gets through is counted after the step.
+ * What still gets through is counted after the step; at the start of a run also what goes through something before
+ * the place where contacts are sought first. A contact there would leave the body where it is, behind what it met.
  */
 #ifndef NSD_SWIFT_H
 #define NSD_SWIFT_H
@@ -61,10 +62,25 @@ struct passed {
 void swift_note(struct passed *s, int32_t id, int32_t through);
 /* Does the way from a to b (m, from the centre) enter a hull of radius r (m) from outside, and leave it? */
 bool swift_through_hull(const struct shape *s, int dim, double r, quat q, vec3 a, vec3 b);
+
+/* s: a part of a step in which a body goes, or went, from x - back v by length v */
+struct window {
+    double back, length;
+};
+/* At the start of a step, to where its contacts are sought; and at its end, from there to where the next are */
+static inline struct window window_before(const struct packing *p)
+{
+    return (struct window){ 0, step_ahead(p) };
+}
+static inline struct window window_after(const struct packing *p)
+{
+    return (struct window){ step_after(p), p->dt };
+}
+
 /* Is there anything of that kind, a boundary that is no plane or a fixed hull? */
 bool swift_watches(const struct packing *p);
-/* Of the packing's first n bodies, after a step */
+/* Of the packing's first n bodies, in the window */
 void swift_passed(struct passed *s, const struct packing *p, int64_t n,
-                  const struct surface *surface);
+                  const struct surface *surface, struct window window);
 
 #endif
