@@ -48,6 +48,8 @@ is "two that go side by side are none" "$(passed "[$ball, { x: [0, 0.1, 0.25], r
 is "nor is a ball that is slower than it is thick" "$(passed '[{ x: [0, 0, 0], radius: 0.01, v: [9, 0, 0] }, { x: [0.021, 0, 0], radius: 0.01 }]')" 0
 ok "which the log names" eval "scene '[$ball, { x: [15, 0.1, 0.2], radius: 0.1 }]' && nsd-step -n 1 --log '$tmp/log' '$tmp/pass.h5' >/dev/null 2>&1; jq -e '.passed == 1' '$tmp/log' >/dev/null"
 
+is "and -e fails" "$(nsd-step -e -n 1 "$tmp/pass.h5" >/dev/null 2>&1 && echo 0 || echo $?)" 1
+
 # What lies before the place where contacts are sought first, 10 m ahead
 sheet='{ walls: [{ rectangle: { center: [5, 0, 0], normal: [1, 0, 0], sides: [2, 2] } }] }'
 is "a sheet within the first half step is passed, and counted once" "$(passed "[$ball]" "$sheet")" $'1\n(step 1, bodies 0 and wall 0)'
