@@ -11,8 +11,7 @@ enum { STEPS_MOST = 4096 }; /* places of a way: what is faster goes without, and
 static const double CLOSING = 1e-3; /* of the thickness: less closes no gap in the step */
 static const double ALIKE = 1e-6;   /* 1 - cosine: of normals that are one */
 
-/* m */
-static double swift_thickness(const struct packing *p, int64_t i)
+double swift_thickness(const struct packing *p, int64_t i)
 {
     const struct shape *s = packing_shape(p, i);
     double least = INFINITY;
@@ -346,15 +345,12 @@ static bool through_wall(const struct packing *p, const struct surface *surface,
                  : boundary_between(wall, p->dim, surface_of(surface, p, w), a, b);
 }
 
-/* Does the way from a enter hull f from outside, and leave it? */
-static bool through_hull(const struct packing *p, int64_t f, vec3 a, vec3 b)
+bool swift_through_hull(const struct shape *s, int dim, double r, quat q, vec3 a, vec3 b)
 {
-    const struct shape *s = packing_shape(p, f);
-    double in = 0, out = 1, r = p->radius[f];
-    a = quat_turn_back(p->q[f], v3_sub(a, p->x[f])),
-    b = quat_turn_back(p->q[f], v3_sub(b, p->x[f]));
-    for (int32_t k = 0; k < (p->dim == 2 ? s->corners : s->faces); k++) {
-        vec3 n = s->normal[k], v = s->vertex[s->corner[p->dim == 2 ? k : s->first[k]]];
+    double in = 0, out = 1;
+    a = quat_turn_back(q, a), b = quat_turn_back(q, b);
+    for (int32_t k = 0; k < (dim == 2 ? s->corners : s->faces); k++) {
+        vec3 n = s->normal[k], v = s->vertex[s->corner[dim == 2 ? k : s->first[k]]];
         double at = r * (v3_dot(n, v) + s->round), ha = v3_dot(n, a) - at, hb = v3_dot(n, b) - at;
         if (ha > 0 && hb > 0) return false;
         if (ha > 0) in = dmax(in, ha / (ha - hb));
@@ -363,9 +359,10 @@ static bool through_hull(const struct packing *p, int64_t f, vec3 a, vec3 b)
     return in > 0 && in < out && out < 1;
 }
 
-static void note(struct passed *s, int32_t id, int32_t through)
+void swift_note(struct passed *s, int32_t id, int32_t through)
 {
-    if (!s->n++ || id < s->id) s->id = id, s->through = through;
+    if (!s->n++ || id < s->id || (id == s->id && through > s->through))
+        s->id = id, s->through = through;
 }
 
 bool swift_watches(const struct packing *p)
@@ -377,7 +374,7 @@ bool swift_watches(const struct packing *p)
 }
 
 void swift_passed(struct passed *s, const struct packing *p, int64_t n,
-                  const struct surface *surface)
+                  const struct surface *surface, struct window window)
 {
     double most, speed = 0;
     int64_t first = first_fixed_hull(p, &most);
@@ -391,14 +388,18 @@ void swift_passed(struct passed *s, const struct packing *p, int64_t n,
             const struct wall *wall = &p->wall[w];
             if (wall->shape == BOUNDARY_PLANE || !wall_there(wall, p->t)) continue;
             vec3 v = v3_sub(p->v[i], wall_velocity(p, wall, p->x[i]));
-            vec3 from = v3_axpy(p->x[i], -step_after(p), v), to = v3_axpy(from, p->dt, v);
-            if (through_wall(p, surface, w, from, to)) note(s, p->id[i], -1 - w);
+            vec3 from = v3_axpy(p->x[i], -window.back, v);
+            vec3 to = v3_axpy(from, window.length, v);
+            if (through_wall(p, surface, w, from, to)) swift_note(s, p->id[i], -1 - w);
         }
         for (int64_t f = first; f < p->n; f++) {
             if (!is_fixed_hull(p, f)) continue;
             vec3 v = v3_sub(p->v[i], p->v[f]);
-            vec3 from = v3_axpy(p->x[i], -step_after(p), v), to = v3_axpy(from, p->dt, v);
-            if (through_hull(p, f, from, to)) note(s, p->id[i], p->id[f]);
+            vec3 from = v3_axpy(p->x[i], -window.back, v);
+            vec3 to = v3_axpy(from, window.length, v);
+            from = v3_sub(from, p->x[f]), to = v3_sub(to, p->x[f]);
+            if (swift_through_hull(packing_shape(p, f), p->dim, p->radius[f], p->q[f], from, to))
+                swift_note(s, p->id[i], p->id[f]);
         }
     }
 }

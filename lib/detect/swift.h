@@ -8,7 +8,8 @@
  * [bodies/overlap.h] it stops, or rebounds, at most one step's way early. Their features tell them, for they are
  * contacts however wide the gap is. The same is done where a body would meet hulls that are fixed.
  *
- * What still gets through is counted after the step.
+ * What still gets through is counted after the step; at the start of a run also what goes through something before
+ * the place where contacts are sought first. A contact there would leave the body where it is, behind what it met.
  */
 #ifndef NSD_SWIFT_H
 #define NSD_SWIFT_H
@@ -34,6 +35,8 @@ struct swift {
     const struct surface *surface; /* [p->walls] of meshes */
 };
 
+/* m: of a ball inside the body, around its centre; of a clump the smallest ball */
+double swift_thickness(const struct packing *p, int64_t i);
 /* Does body i go farther in a step than it is thick, relative to what has at most the velocity `most` (m/s)?
    The thickness is the radius of a ball inside the body, around its centre; of a clump that of the smallest ball. */
 bool swift_is(const struct packing *p, int64_t i, double most);
@@ -50,16 +53,34 @@ bool swift_meets_wall(struct contacts *out, int64_t first, const struct swift *o
 /* Adds what bodies meet ahead of fixed hulls, and sorts all contacts again. */
 bool swift_meet_hulls(struct contacts *out, const struct swift *o);
 
-/* Bodies that have gone through a boundary or a fixed hull without meeting it */
+/* Bodies that have gone through a boundary or another body without meeting it */
 struct passed {
     int64_t n;
-    int32_t id,
-        through; /* of the one with the lowest number: what it went through, a wall -1-w or a body's number */
+    /* of the one with the lowest number: what it went through, a wall -1-w or a body's number; of several the last */
+    int32_t id, through;
 };
+void swift_note(struct passed *s, int32_t id, int32_t through);
+/* Does the way from a to b (m, from the centre) enter a hull of radius r (m) from outside, and leave it? */
+bool swift_through_hull(const struct shape *s, int dim, double r, quat q, vec3 a, vec3 b);
+
+/* s: a part of a step in which a body goes, or went, from x - back v by length v */
+struct window {
+    double back, length;
+};
+/* At the start of a step, to where its contacts are sought; and at its end, from there to where the next are */
+static inline struct window window_before(const struct packing *p)
+{
+    return (struct window){ 0, step_ahead(p) };
+}
+static inline struct window window_after(const struct packing *p)
+{
+    return (struct window){ step_after(p), p->dt };
+}
+
 /* Is there anything of that kind, a boundary that is no plane or a fixed hull? */
 bool swift_watches(const struct packing *p);
-/* Of the packing's first n bodies, after a step */
+/* Of the packing's first n bodies, in the window */
 void swift_passed(struct passed *s, const struct packing *p, int64_t n,
-                  const struct surface *surface);
+                  const struct surface *surface, struct window window);
 
 #endif

@@ -64,7 +64,7 @@ struct report {
     int64_t safeguarded; /* local solves that ended with the exact solution instead */
     int64_t gave_up;     /* local solves that did not satisfy the law */
     bool watched;        /* passed is known: there is what bodies may go through [detect/swift.h] */
-    int64_t passed;      /* bodies that went through a boundary or a fixed hull in this step */
+    int64_t passed;      /* bodies that went through a boundary or another body in this step */
     int32_t passed_id, passed_through; /* the last; and a wall -1-w, or the number of a body */
     double work;          /* ns, counted and not timed, of the whole solve [solve/prices.h] */
     const char *fallback; /* why the solver asked for could not go on, and swept instead; or NULL */

@@ -3,6 +3,7 @@
 
 #include "bodies/freedom.h"
 #include "bodies/wrap.h"
+#include "detect/crossing.h"
 #include "detect/detect.h"
 #include "detect/swift.h"
 #include "problem/prepare.h"
@@ -376,12 +377,10 @@ static int solve_by_first(struct step_makers *m, const struct packing *whole, st
                   : step_solve_contacts(whole, all, NULL, o, rep, why);
 }
 
-static int watch_by_first(struct step_makers *m, const struct packing *whole, struct report *rep,
-                          struct why *why)
+static int watch_by_first(struct step_makers *m, const struct packing *whole, struct window window,
+                          struct report *rep, struct why *why)
 {
-    (void)why;
-    step_watch(whole, whole->n, ((struct by_first *)m)->y->near.surface, rep);
-    return 0;
+    return step_watch_whole(whole, ((struct by_first *)m)->y->near.surface, window, rep, why);
 }
 
 static int step_by_first(struct rank_step *y, struct packing *whole, struct contacts *all,
@@ -438,17 +437,47 @@ static void measure_depth(struct rank_step *y, const struct contacts *s, struct 
     d->deepest = most;
 }
 
-/* Which bodies of all ranks have gone through something */
-static void watch_here(struct rank_step *y, struct report *rep)
+/* Collective. The fast bodies of all ranks: *list of the number that is returned */
+static int64_t fast_of_all(struct rank_step *y, struct fast **list)
 {
     struct comm *t = y->part.comm;
-    step_watch(&y->part.p, y->part.own, y->near.surface, rep);
-    int64_t here = rep->passed, all = comm_sum(t, here);
-    double first = -comm_most(t, here ? -(double)rep->passed_id : -INFINITY);
-    bool mine = here && rep->passed_id == first;
-    double through = comm_most(t, mine ? rep->passed_through : -INFINITY);
-    rep->passed = all;
-    if (all) rep->passed_id = (int32_t)first, rep->passed_through = (int32_t)through;
+    struct parcel mine = { 0 }, whole = { 0 }, *in = parcels_new(t);
+    struct why why = { 0 };
+    struct fast *here;
+    int64_t count;
+    if (crossing_list(&here, &count, &y->part.p, y->part.own, &why)) fail(y, &why);
+    *list = NULL;
+    if (comm_sum(t, count) > 0) {
+        parcel_put(t, &mine, here, (size_t)count * sizeof *here);
+        comm_gather(t, &mine, in);
+        for (int r = 0; r < t->n && !t->me; r++) parcel_put(t, &whole, in[r].bytes, in[r].size);
+        comm_spread(t, &whole);
+        count = (int64_t)(whole.size / sizeof *here);
+        *list = comm_new(t, count, sizeof **list);
+        parcel_take(t, &whole, *list, whole.size);
+    }
+    free(here);
+    parcel_free(&mine), parcel_free(&whole);
+    parcels_free(t, in);
+    return count;
+}
+
+/* Which bodies of all ranks have gone through something */
+static void watch_here(struct rank_step *y, struct window window, struct report *rep)
+{
+    struct comm *t = y->part.comm;
+    struct why why = { 0 };
+    struct passed here, all;
+    struct fast *fast;
+    int64_t count = fast_of_all(y, &fast);
+    if (step_watch(&here, &y->part.p, y->part.own, y->near.surface, fast, count, window, &why))
+        fail(y, &why);
+    free(fast);
+    all.n = comm_sum(t, here.n);
+    double first = -comm_most(t, here.n ? -(double)here.id : -INFINITY);
+    double through = comm_most(t, here.n && here.id == first ? here.through : -INFINITY);
+    if (all.n) all.id = (int32_t)first, all.through = (int32_t)through;
+    step_report_passed(rep, &y->part.p, &all);
 }
 
 /* The step of all ranks, each with its own bodies and contacts */
@@ -516,14 +545,14 @@ static int move_apart_by_all(struct step_makers *m, struct packing *p, const str
     return 0;
 }
 
-static int watch_by_all(struct step_makers *m, const struct packing *p, struct report *rep,
-                        struct why *why)
+static int watch_by_all(struct step_makers *m, const struct packing *p, struct window window,
+                        struct report *rep, struct why *why)
 {
     (void)p, (void)why;
     if (diverged(rep))
         rep->balanced = false;
     else
-        watch_here(((struct by_all *)m)->y, rep);
+        watch_here(((struct by_all *)m)->y, window, rep);
     return 0;
 }
 

@@ -21,6 +21,25 @@ static bool same_shapes(const struct scene *s, const struct packing *p)
     return true;
 }
 
+/* 1 + the packing's row of a name instead of the scene's, for documents of bodies bring names of their own. Returns 0,
+   or 1: the packing does not have it. */
+static int find_group(int32_t *group, const struct scene *s, const struct packing *p)
+{
+    if (!*group) return 0;
+    const char *name = s->names.text[*group - 1];
+    *group = 1 + names_find(&p->names, name, strlen(name));
+    return !*group;
+}
+
+static int find_groups(struct scene *s, const struct packing *p)
+{
+    for (int32_t k = 0; k < s->pours; k++)
+        if (find_group(&s->pour[k].group, s, p) || (s->pour[k].group && !p->group)) return 1;
+    for (int32_t k = 0; k < s->removals; k++)
+        if (find_group(&s->removal[k].group, s, p)) return 1;
+    return 0;
+}
+
 int flow_read(struct flow *f, const struct packing *p, struct why *why)
 {
     *f = (struct flow){ 0 };
@@ -29,11 +48,12 @@ int flow_read(struct flow *f, const struct packing *p, struct why *why)
         return why_set(why, EX_DATAERR, "inlets or outlets, but no scene that describes them");
     if (scene_parse(&f->scene, p->scene, strlen(p->scene), NULL, why)) return why->status;
     if (f->scene.pours == p->pours && f->scene.removals == p->removals &&
-        f->scene.kinds == p->kinds && f->scene.dim == p->dim && same_shapes(&f->scene, p))
+        f->scene.kinds == p->kinds && f->scene.dim == p->dim && same_shapes(&f->scene, p) &&
+        !find_groups(&f->scene, p))
         return 0;
     flow_free(f);
     return why_set(why, EX_DATAERR,
-                   "the scene's pours, removals, kinds or shapes are not the packing's");
+                   "the scene's pours, removals, kinds, shapes or names are not the packing's");
 }
 
 void flow_free(struct flow *f)
@@ -69,6 +89,7 @@ static bool takes(const struct scene_removal *r, const struct packing *p, int64_
 {
     if (p->t < r->from || p->t > r->until) return false;
     if (r->kind >= 0 && p->kind[i] != r->kind) return false;
+    if (r->group && (!p->group || p->group[i] != r->group)) return false;
     if (r->ids && !bsearch(&p->id[i], r->id, (size_t)r->ids, sizeof *r->id, by_number))
         return false;
     if (r->region == REGION_ALL) return true;
@@ -309,6 +330,7 @@ static int add_grain(struct packing *p, const struct scene_pour *o, int32_t whic
     p->x[i] = x, p->v[i] = o->v, p->w[i] = o->w, p->radius[i] = r;
     p->kind[i] = o->kind, p->id[i] = (int32_t)id, p->q[i] = q;
     if (p->shape) p->shape[i] = o->form.shape;
+    if (p->group) p->group[i] = o->group;
     p->poured[which].bodies++, p->poured[which].mass += p->mass[i];
     note(p, i, true, which, why);
     return why->status;

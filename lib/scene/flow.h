@@ -20,7 +20,9 @@
 #include "scene/scene.h"
 
 struct flow {
-    struct scene scene; /* the packing's, read again; empty where nothing comes or goes */
+    struct scene
+        scene; /* the packing's, read again; empty where nothing comes or goes. Groups of pours and removals
+                           are rows of the packing's names. */
 };
 
 /* Of the scene that the packing keeps. Returns 0, EX_DATAERR (the scene is not the packing's) or

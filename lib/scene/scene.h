@@ -121,12 +121,12 @@
  *            cell yields, while the gradient changes its shape. factor [[t, x], ...]: multiplies the stress
  *
  * POUR { rate: bodies/s | mass_rate: kg/s, opening: { box: BOX } or { disc: { center, normal,
- *   radius } }, radius: SIZE, v, w, kind, density or mass, from [time] s, until s, count, and shape,
+ *   radius } }, radius: SIZE, v, w, name, kind, density or mass, from [time] s, until s, count, and shape,
  *   size, orientation as of a group of bodies }
  *   [scene/flow.h]; in the plane the disc is a segment.
  *
  * REMOVAL { outside: BOX } or { inside: BOX } or { below: { point, normal } } [anywhere], with kind [any], id integer
- *   or [integer, ...] [any], from, until s: bodies go whose centre is there.
+ *   or [integer, ...] [any], name of a group or of a pour [any], from, until s: bodies go whose centre is there.
  *
  * The paper's examples. The paper gives radii, mu, dt and (example 1) the initial velocity. Our
  * choices: density 2500 kg/m^3, g 9.81 m/s^2, e_n = e_t = 0, and
@@ -219,6 +219,7 @@ struct scene_pour {
     vec3 v, w;            /* m/s, rad/s */
     double density, mass; /* as of struct scene_bodies */
     int32_t kind;
+    int32_t group; /* 1 + row of the scene's names; 0: it has no name */
     struct scene_form form;
 };
 
@@ -230,6 +231,7 @@ struct scene_removal {
     int32_t kind;       /* only bodies of this kind; -1: of all */
     int32_t ids;        /* only bodies with these numbers; 0: all */
     int32_t *id;        /* [ids], rising */
+    int32_t group;      /* only bodies of this group, 1 + row of the scene's names; 0: of all */
     double from, until; /* s */
 };
 

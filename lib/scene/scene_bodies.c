@@ -197,12 +197,8 @@ int scene_read_mass(const jnode *o, double *density, double *mass)
 /* What the bodies of a group have in common */
 static int read_common(jnode o, struct scene *s, struct scene_bodies *b)
 {
-    const char *name;
-    if (scene_read_name(json_node_key(&o, "name"), s, &name) ||
-        (name && names_add(&s->names, name, &b->group, o.in->why)))
-        return 1;
-    if (name) b->group++;
-    if (json_node_vector(json_node_key(&o, "v"), s->dim, &b->v) ||
+    if (scene_read_group(json_node_key(&o, "name"), s, &b->group) ||
+        json_node_vector(json_node_key(&o, "v"), s->dim, &b->v) ||
         scene_read_spin(json_node_key(&o, "w"), s->dim, &b->w) ||
         scene_read_kind(json_node_key(&o, "kind"), s, &b->kind))
         return 1;

@@ -208,11 +208,12 @@ static int set_shapes(struct packing *p, const struct scene *s, struct why *why)
     return p->shapes.n ? packing_alloc_shapes(p, why) : 0;
 }
 
-/* The scene's names, and those of bodies of documents; bodies have a group where any has. */
+/* The scene's names, and those of bodies of documents; bodies have a group where any has, or will. */
 static int set_names(struct packing *p, const struct scene *s, struct why *why)
 {
     bool any = false;
     if (names_copy(&p->names, &s->names, why)) return why->status;
+    for (int32_t k = 0; k < s->pours; k++) any = any || s->pour[k].group;
     for (int64_t g = 0; g < s->groups; g++) {
         const struct packing *from = s->bodies[g].document;
         int32_t which;
@@ -228,8 +229,36 @@ static int set_names(struct packing *p, const struct scene *s, struct why *why)
     return any ? packing_alloc_column(p, BODY_group, why) : 0;
 }
 
+/* Has a document of bodies a group of that name, which may have no body left? */
+static bool has_group(const struct scene *s, const char *name)
+{
+    for (int64_t g = 0; g < s->groups; g++) {
+        const struct packing *from = s->bodies[g].document;
+        int32_t which = from ? names_find(&from->names, name, strlen(name)) : -1;
+        bool of_walls = false;
+        for (int32_t k = 0; which >= 0 && k < from->names.rows; k++)
+            of_walls = of_walls || from->names.row[k].name == which;
+        if (which >= 0 && !of_walls) return true;
+    }
+    return false;
+}
+
+/* What a removal names is a group of bodies that the scene has, or a pour. */
+static int check_removals(const struct scene *s, const bool *of_bodies, struct why *why)
+{
+    for (int32_t k = 0; k < s->removals; k++) {
+        const int32_t group = s->removal[k].group;
+        const char *name = group ? s->names.text[group - 1] : NULL;
+        if (group && !of_bodies[group] && !has_group(s, name))
+            return why_set(why, EX_DATAERR,
+                           "remove[%d].name: no group of bodies and no pour has the name \"%s\"", k,
+                           name);
+    }
+    return 0;
+}
+
 /* Walls, groups of bodies and kinds have names of their own. */
-static int check_names(const struct packing *p, struct why *why)
+static int check_names(const struct packing *p, const struct scene *s, struct why *why)
 {
     for (int32_t k = 0; k < p->names.n; k++)
         for (int32_t kind = 0; kind < p->kinds; kind++)
@@ -239,11 +268,13 @@ static int check_names(const struct packing *p, struct why *why)
                                p->names.text[k]);
     bool of_bodies[NAMES_MOST + 1] = { false };
     for (int64_t i = 0; p->group && i < p->n; i++) of_bodies[p->group[i]] = p->group[i] > 0;
+    for (int64_t g = 0; g < s->groups; g++) of_bodies[s->bodies[g].group] = s->bodies[g].group > 0;
+    for (int32_t k = 0; k < s->pours; k++) of_bodies[s->pour[k].group] = s->pour[k].group > 0;
     for (int32_t k = 0; k < p->names.rows; k++)
         if (of_bodies[1 + p->names.row[k].name])
             return why_set(why, EX_DATAERR, "\"%s\" is the name of a wall and of a group of bodies",
                            p->names.text[p->names.row[k].name]);
-    return 0;
+    return check_removals(s, of_bodies, why);
 }
 
 /* Has any pair of kinds a law beyond friction and restitution? */
@@ -419,7 +450,7 @@ static int check_packing(const struct packing *p, const struct scene *s, const s
 {
     if (check_forces(p, why)) return why->status;
     if (packing_check(p, why)) return name_wall(s, why);
-    if (check_names(p, why)) return why->status;
+    if (check_names(p, s, why)) return why->status;
     if (packing_check_clock(p, why)) return why->status;
     if (s->overlap) return 0;
     bool *settled = from_documents(p, s, list);

@@ -27,15 +27,15 @@ static int read_opening(jnode o, int dim, struct scene_pour *p)
     return 0;
 }
 
-static int read_pour(jnode o, const struct scene *s, struct scene_pour *p)
+static int read_pour(jnode o, struct scene *s, struct scene_pour *p)
 {
     int64_t count = -1;
     *p = (struct scene_pour){ .until = INFINITY, .count = INFINITY };
     int which = json_node_choice(o, "rate mass_rate");
     if (which < 0 ||
         json_node_only(
-            o, "rate mass_rate opening radius size shape orientation v w kind density mass from "
-               "until count") ||
+            o, "rate mass_rate opening radius size shape orientation v w name kind density mass "
+               "from until count") ||
         json_node_need(&o, "opening") || scene_read_form(o, s, &p->form))
         return 1;
     p->by_mass = which == 1;
@@ -44,6 +44,7 @@ static int read_pour(jnode o, const struct scene *s, struct scene_pour *p)
         scene_read_sizes(o, s, &p->form, &p->size) ||
         json_node_vector(json_node_key(&o, "v"), s->dim, &p->v) ||
         scene_read_spin(json_node_key(&o, "w"), s->dim, &p->w) ||
+        scene_read_group(json_node_key(&o, "name"), s, &p->group) ||
         scene_read_kind(json_node_key(&o, "kind"), s, &p->kind) ||
         json_node_number(json_node_key(&o, "from"), J_ANY, &p->from) ||
         json_node_number(json_node_key(&o, "until"), J_ANY, &p->until) ||
@@ -89,23 +90,25 @@ static int read_ids(jnode a, struct scene_removal *r)
     return 0;
 }
 
-/* Which bodies go, wherever they are: kind and id. Names of groups would be brought to ids or kinds here. */
-static int read_which(jnode o, const struct scene *s, struct scene_removal *r)
+/* Which bodies go, wherever they are */
+static int read_which(jnode o, struct scene *s, struct scene_removal *r)
 {
     return scene_read_kind(json_node_key(&o, "kind"), s, &r->kind) ||
+           scene_read_group(json_node_key(&o, "name"), s, &r->group) ||
            read_ids(json_node_key(&o, "id"), r);
 }
 
-static int read_removal(jnode o, const struct scene *s, struct scene_removal *r)
+static int read_removal(jnode o, struct scene *s, struct scene_removal *r)
 {
     static const char *const key[] = { "outside", "inside", "below" };
-    bool anywhere = true, any = !json_node_key(&o, "kind").json && !json_node_key(&o, "id").json;
+    bool anywhere = true, any = !json_node_key(&o, "kind").json && !json_node_key(&o, "id").json &&
+                                !json_node_key(&o, "name").json;
     *r = (struct scene_removal){ .kind = -1, .from = -INFINITY, .until = INFINITY };
     for (int k = 0; k < 3; k++) anywhere = anywhere && !json_node_key(&o, key[k]).json;
-    if (json_node_only(o, "outside inside below kind id from until")) return 1;
+    if (json_node_only(o, "outside inside below kind id name from until")) return 1;
     if (anywhere && any)
-        return json_node_fault(o, "wants one of outside, inside, below, kind or id: which bodies "
-                                  "go");
+        return json_node_fault(o, "wants one of outside, inside, below, kind, id or name: which "
+                                  "bodies go");
     int which = anywhere ? REGION_ALL : json_node_choice(o, "outside inside below");
     if (which < 0 || read_which(o, s, r) ||
         json_node_number(json_node_key(&o, "from"), J_ANY, &r->from) ||

@@ -16,6 +16,16 @@ int scene_read_name(jnode n, const struct scene *s, const char **out)
     return 0;
 }
 
+int scene_read_group(jnode n, struct scene *s, int32_t *group)
+{
+    const char *name;
+    int32_t which = -1;
+    if (scene_read_name(n, s, &name)) return 1;
+    if (name && names_add(&s->names, name, &which, n.in->why)) return 1;
+    *group = which + 1;
+    return 0;
+}
+
 static int read_part(jnode o, struct scene *s)
 {
     const char *name;

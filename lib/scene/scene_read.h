@@ -24,6 +24,8 @@ int scene_read_kind(jnode name, const struct scene *s, int32_t *kind);
 /* scene/scene_names.c: a "name", *name = NULL where there is none; "parts" of the wall that comes next, and of a mesh
    whether they are the groups of its file (groups NULL: there is no file) */
 int scene_read_name(jnode name, const struct scene *s, const char **out);
+/* The "name" of a group, added to the scene's: 1 + its row; 0: there is none */
+int scene_read_group(jnode name, struct scene *s, int32_t *group);
 int scene_read_parts(jnode parts, struct scene *s, bool *groups);
 
 /* scene/scene_walls.c: "walls", where *box = that of the first wall that is a box, the default of a

@@ -41,7 +41,7 @@ const struct watched account_watched[ACCOUNT_ROWS] = {
                            approach, "" },
     [ACCOUNT_WEDGED] = { "wedged", "1", "%.0f wedged", false, 1, 0, 0, wedged,
                          "held from two sides, deeper than 0.1 of its radius" },
-    [ACCOUNT_PASSED] = { "passed", "1", "%.0f went through a wall or a fixed body", true, 2, 0, 0,
+    [ACCOUNT_PASSED] = { "passed", "1", "%.0f went through a wall or another body", true, 2, 0, 0,
                          passed, "a smaller dt finds such contacts" },
     [ACCOUNT_UNCONVERGED] = { "unconverged", "1", "%.0f steps not converged", true, 0, INFINITY, 0,
                               unconverged, "" },

@@ -2,6 +2,7 @@
 #include "solve/step.h"
 
 #include "bodies/wrap.h"
+#include "detect/crossing.h"
 #include "detect/detect.h"
 #include "detect/swift.h"
 #include "motion/move.h"
@@ -142,14 +143,33 @@ void step_forget(struct step_memory *m)
     *m = (struct step_memory){ 0 };
 }
 
-void step_watch(const struct packing *p, int64_t n, const struct surface *surface,
-                struct report *rep)
+int step_watch(struct passed *passed, const struct packing *p, int64_t n,
+               const struct surface *surface, const struct fast *fast, int64_t count,
+               struct window window, struct why *why)
+{
+    swift_passed(passed, p, n, surface, window);
+    return crossing_count(passed, p, n, fast, count, window, why);
+}
+
+void step_report_passed(struct report *rep, const struct packing *p, const struct passed *passed)
+{
+    if (passed->n && (!rep->passed || passed->id < rep->passed_id))
+        rep->passed_id = passed->id, rep->passed_through = passed->through;
+    rep->passed += passed->n;
+    rep->watched = swift_watches(p) || rep->passed;
+}
+
+int step_watch_whole(const struct packing *p, const struct surface *surface, struct window window,
+                     struct report *rep, struct why *why)
 {
     struct passed passed;
-    rep->watched = swift_watches(p);
-    swift_passed(&passed, p, n, surface);
-    rep->passed = passed.n;
-    if (passed.n) rep->passed_id = passed.id, rep->passed_through = passed.through;
+    struct fast *fast;
+    int64_t count;
+    if (!crossing_list(&fast, &count, p, p->n, why) &&
+        !step_watch(&passed, p, p->n, surface, fast, count, window, why))
+        step_report_passed(rep, p, &passed);
+    free(fast);
+    return why->status;
 }
 
 int step_measure_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
@@ -197,9 +217,11 @@ int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
     if (m->detect(m, p, s, o, why)) return why->status;
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
     if (!m->helps && begin(m, m->measure, p, s, rep, why)) return why->status;
+    rep->passed = 0;
+    if (!m->helps && !p->step && m->watch(m, p, window_before(p), rep, why)) return why->status;
     if (m->solve(m, p, s, o, rep, why) || m->helps || move(m, p, s, o, rep, why))
         return why->status;
-    return m->watch(m, p, rep, why);
+    return m->watch(m, p, window_after(p), rep, why);
 }
 
 /* ---- a process alone ---- */
@@ -226,12 +248,12 @@ static int solve_alone(struct step_makers *m, const struct packing *p, struct co
     return step_solve_contacts(p, s, kept ? &kept->plan : NULL, o, rep, why);
 }
 
-static int watch_alone(struct step_makers *m, const struct packing *p, struct report *rep,
-                       struct why *why)
+static int watch_alone(struct step_makers *m, const struct packing *p, struct window window,
+                       struct report *rep, struct why *why)
 {
     struct step_memory *kept = ((struct alone *)m)->memory;
     struct neighbours once = { 0 }, *near = kept ? &kept->near : &once;
-    if (!neighbours_surfaces(near, p, why)) step_watch(p, p->n, near->surface, rep);
+    if (!neighbours_surfaces(near, p, why)) step_watch_whole(p, near->surface, window, rep, why);
     neighbours_free(&once);
     return why->status;
 }

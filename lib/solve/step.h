@@ -5,6 +5,7 @@
 #ifndef NSD_STEP_H
 #define NSD_STEP_H
 
+#include "detect/crossing.h"
 #include "detect/neighbours.h"
 #include "motion/balance.h"
 #include "motion/impulse.h"
@@ -72,9 +73,9 @@ struct step_makers {
     /* Bodies that overlap are moved apart, where the packing wants it. */
     int (*move_apart)(struct step_makers *m, struct packing *p, const struct contacts *s,
                       struct why *why);
-    /* Which bodies have gone through something; once the step is made */
-    int (*watch)(struct step_makers *m, const struct packing *p, struct report *rep,
-                 struct why *why);
+    /* Which bodies go through something, in a window: once the step is made, and before the first one */
+    int (*watch)(struct step_makers *m, const struct packing *p, struct window window,
+                 struct report *rep, struct why *why);
 };
 /* The step by these makers */
 int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
@@ -94,9 +95,15 @@ int step_solve_contacts(const struct packing *pack, struct contacts *s, struct p
                         const struct step_opt *o, struct report *rep, struct why *why);
 int step_bound_impacts(const struct packing *pack, struct contacts *s, struct plan **kept,
                        const struct step_opt *o, struct report *rep, struct why *why);
-/* After it: adds to the report which of the first n bodies have gone through something. surface: [walls] of those
-   that are meshes */
-void step_watch(const struct packing *p, int64_t n, const struct surface *surface,
-                struct report *rep);
+/* Which of the first n bodies go through something in the window. surface: [walls] of those that are meshes;
+   fast[count]: bodies of the whole packing [detect/crossing.h] */
+int step_watch(struct passed *passed, const struct packing *p, int64_t n,
+               const struct surface *surface, const struct fast *fast, int64_t count,
+               struct window window, struct why *why);
+/* Adds them to the report, whose number of them is 0 before the step. */
+void step_report_passed(struct report *rep, const struct packing *p, const struct passed *passed);
+/* Both, of a whole packing */
+int step_watch_whole(const struct packing *p, const struct surface *surface, struct window window,
+                     struct report *rep, struct why *why);
 
 #endif

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Inlets and outlets in periodic cells; removal by id, by kind, in time; random starts that fill a cell; the height
+# Inlets and outlets in periodic cells; removal by id, by kind, by name, in time; random starts that fill a cell; the height
 # that a group needs. Sums of what comes and goes, resuming, threads, ranks, hostile scenes.
 # shellcheck source=tests/support/tap.sh disable=SC2016,SC2094 # jq programs; names of tests with what is read
 . tests/support/tap.sh
@@ -70,10 +70,59 @@ bad() # "what is true" FILE FILTER REGEX
     refuses 65 "$1" nsd-gen "$tmp/bad.json"
     like "and where, and the cure" "$(cat "$tmp/err")" "$4"
 }
-bad "a removal of nothing said is refused" six '.remove = [{}]' 'remove\[0\]: wants one of outside, inside, below, kind or id'
+bad "a removal of nothing said is refused" six '.remove = [{}]' 'remove\[0\]: wants one of outside, inside, below, kind, id or name'
 bad "an id that is a word is refused" six '.remove = [{id: "x"}]' 'remove\[0\].id: '
 bad "no ids are refused" six '.remove = [{id: []}]' 'remove\[0\].id: wants the numbers'
 bad "an end before the beginning is refused" six '.remove = [{id: 1, from: 2, until: 1}]' 'remove\[0\].until: must not lie before'
+
+# ---- removal by name; pours that have one ----
+
+cat >"$tmp/named.json" <<'END'
+{ "dt": 5e-4, "mu": 0.3, "gravity": [0, 0, -9.81], "seed": 3,
+  "walls": [{ "box": { "x": [0, 0.03], "y": [0, 0.03], "z": [0, null] }, "name": "tray" }],
+  "bodies": [{ "x": [0.015, 0.015, 0.002], "radius": 2e-3, "name": "old" }, { "x": [0.005, 0.005, 0.002], "radius": 2e-3 }],
+  "pour": [{ "rate": 500, "opening": { "box": { "x": [0.003, 0.027], "y": [0.003, 0.027], "z": [0.03, 0.04] } },
+             "radius": 1.5e-3, "name": "new", "until": 0.1 },
+           { "rate": 300, "opening": { "box": { "x": [0.003, 0.027], "y": [0.003, 0.027], "z": [0.05, 0.06] } },
+             "radius": 1e-3, "name": "old", "until": 0.1 }],
+  "remove": [{ "name": "new", "from": 0.15, "inside": { "x": [0, 0.015] } },
+             { "name": "old", "from": 0.2 }] }
+END
+nsd-gen "$tmp/named.json" >"$tmp/named.h5"
+step -n 420 --every 20 -o "$tmp/named_run.h5" "$tmp/named.h5"
+groups() { nsd-info "${@:2}" -p "$1" | jq -s -c 'map(select(.id != null).group // "-") | group_by(.) | map({ (.[0]): length }) | add'; }
+is "the grains of a pour have its name, as bodies of a group: 51, and 31 with the one that there was" \
+    "$(groups "$tmp/named_run.h5" -s 220)" '{"-":1,"new":51,"old":32}'
+is "a group goes where and when its removal says: none is left of one, of the other none in the box" \
+    "$(nsd-info --last -p "$tmp/named_run.h5" | jq -s -c 'map(select(.id != null)) | [any(.[]; .group == "old"), any(.[]; .group == "new" and .x[0] < 0.0149), any(.[]; .group == "new"), any(.[]; .group == null)]')" \
+    '[false,false,true,true]'
+is "all that were of it are counted" "$(nsd-info --last "$tmp/named_run.h5" | jq -c 'select(.removed).removed[1].bodies')" 32
+is "--only: what has come by name" "$(nsd-info -s 220 -p --only new "$tmp/named_run.h5" | jq -s 'map(select(.id != null)) | length')" 51
+for cut in 60 250 402; do
+    step -n "$cut" --every "$cut" -o "$tmp/named_half.h5" "$tmp/named.h5"
+    step -n $((420 - cut)) --every $((420 - cut)) -o "$tmp/named_rest.h5" "$tmp/named_half.h5"
+    ok "a run that resumes at step $cut has the same bodies and groups, to the bit" \
+        cmp <(nsd-info --last -p "$tmp/named_rest.h5") <(nsd-info --last -p "$tmp/named_run.h5")
+done
+step -j 4 -n 420 --every 20 -o "$tmp/named_j4.h5" "$tmp/named.h5"
+ok "4 threads give the bytes of one, names too" cmp "$tmp/named_j4.h5" "$tmp/named_run.h5"
+if [ -x build/nsd-step-mpi ] && command -v mpirun >/dev/null; then
+    OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n 3 build/nsd-step -n 420 --every 20 -o "$tmp/named_ranks.h5" "$tmp/named.h5" >/dev/null 2>&1 || true
+    ok "3 processes give the bytes of one, names too" cmp "$tmp/named_ranks.h5" "$tmp/named_run.h5"
+else
+    skip "3 processes give the bytes of one, names too" "no MPI"
+fi
+nsd-info --scene "$tmp/named_run.h5" | nsd-gen - >"$tmp/named_again.h5" 2>"$tmp/err" && s=0 || s=$?
+is "a scene goes on from a document that has no body of the name any more" "$s" 0
+# a document's names come after the scene's: the rows are others
+jq -n --arg d "$tmp/named_half.h5" '{ dt: 5e-4, walls: [{ point: [0, 0, 0], normal: [0, 0, 1], name: "floor" }],
+    bodies: [{ document: $d }], remove: [{ name: "new" }, { name: "old" }] }' >"$tmp/taken.json"
+is "a removal names groups of a document, one without a body left" "$(nsd-gen "$tmp/taken.json" | step -n 1 | nsd-info --last -p - | jq -s 'map(select(.group == "new")) | length')" 0
+bad "a removal of an unknown name" named '.remove[0].name = "newer"' 'remove\[0\].name: no group of bodies and no pour has the name "newer"'
+bad "a removal by the name of a wall" named '.remove[0].name = "tray"' 'remove\[0\].name: no group of bodies and no pour has the name "tray"'
+bad "a removal by a name that is a kind" named '.remove[0].name = "ball"' 'remove\[0\].name: "ball" is a kind'
+bad "a pour with the name of a wall" named '.pour[0].name = "tray"' '"tray" is the name of a wall and of a group'
+bad "a pour with a name that is none" named '.pour[0].name = "1"' 'pour\[0\].name: a name is a number'
 
 # ---- random starts that fill a cell ----
 

@@ -131,7 +131,7 @@ is "which does not matter where groups are not asked for" "$s" 0
 if $python -c 'import h5py' 2>/dev/null; then
     craft() # what to do with the file f
     {
-        $python - "$tmp/start.h5" "$tmp/crafted.h5" "$1" <<'END'
+        $python - "${from:-$tmp/start.h5}" "$tmp/crafted.h5" "$1" <<'END'
 import sys, h5py
 f = h5py.File(sys.argv[1], "r")
 with h5py.File(sys.argv[2], "w") as g:
@@ -151,6 +151,16 @@ a face twice|f["nsd/names/faces"][:] = [[0, 0], [0, 0], [0, 0], [0, 0], [0, 0], 
 a control character in a name|t = f["nsd/names/text"][()]; del f["nsd/names/text"]; f["nsd/names/text"] = t.replace(b"side", b"s\x1bde")
 a name twice|t = f["nsd/names/text"][()]; del f["nsd/names/text"]; f["nsd/names/text"] = t.replace(b"right", b"left")
 a group without a name|f["particles/all/group"][0] = 77
+END
+    jq '.remove = [{ name: "first" }] | .pour = [{ rate: 1, opening: { disc: { center: [0, 0, 3], normal: [0, 0, 1], radius: 0.5 } }, radius: 0.1, name: "second" }]' \
+        "$tmp/scene.json" | nsd-gen - >"$tmp/flow.h5"
+    ok "the document of a scene that pours and removes by name runs" eval 'nsd-step -n 1 "$tmp/flow.h5" >/dev/null 2>&1'
+    while IFS='|' read -r what how; do
+        from=$tmp/flow.h5 craft "$how"
+        refuses 65 "a document whose scene pours or removes by name, $what" nsd-step -n 1 "$tmp/crafted.h5"
+    done <<'END'
+without the groups of its bodies|del f["particles/all/group"]
+without the name|t = f["nsd/names/text"][()]; del f["nsd/names/text"]; f["nsd/names/text"] = t.replace(b"first", b"third")
 END
 fi
 done_testing
