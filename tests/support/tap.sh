@@ -174,3 +174,13 @@ done_testing()
     echo "1..$tap_count"
     [ "$tap_failed" = 0 ]
 }
+
+# Can nsd-step run in several processes here?
+have_ranks() { command -v mpirun >/dev/null && [ -x "$(dirname "$(command -v nsd-step)")/nsd-step-mpi" ]; }
+# ranks N COMMAND ...: in N processes. A sanitizer does not look at the memory that MPI itself leaves behind.
+ranks() {
+    local n=$1
+    shift
+    ASAN_OPTIONS=detect_leaks=0:${ASAN_OPTIONS-} OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
+        mpirun --oversubscribe --bind-to none -n "$n" "$@"
+}

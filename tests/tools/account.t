@@ -58,9 +58,8 @@ nsd-step -n 25 --max-sweeps 2 -i "$tmp/parts.h5" 2>/dev/null
 is "a run that is resumed ends with the account of one that was not" "$(account "$tmp/parts.h5" .)" "$(account "$tmp/whole.h5" .)"
 run -j 2 "$tmp/bed.h5" >"$tmp/threads.h5"
 ok "two threads give the same bytes" cmp "$tmp/whole.h5" "$tmp/threads.h5"
-if command -v mpirun >/dev/null && [ -x "$(dirname "$(command -v nsd-step)")/nsd-step-mpi" ]; then
-    export ASAN_OPTIONS=detect_leaks=0:$ASAN_OPTIONS # MPI's own
-    mpi() { mpirun --allow-run-as-root --oversubscribe -n 2 nsd-step "$@" 2>"$tmp/err"; }
+if have_ranks; then
+    mpi() { ranks 2 nsd-step "$@" 2>"$tmp/err"; }
     mpi -n 40 --max-sweeps 2 -o "$tmp/ranks.h5" "$tmp/bed.h5"
     is "two processes give the same account" "$(account "$tmp/ranks.h5" .)" "$(account "$tmp/whole.h5" .)"
     mpi -n 1 --order block --overlap keep -o "$tmp/blocks.h5" "$tmp/wedge.h5"

@@ -83,8 +83,8 @@ ok "of 300 bodies in a sheared cell $found pass, by all pairs and images $expect
 nsd-step -n 3 --contacts -o "$tmp/many_three.h5" "$tmp/many.h5" 2>/dev/null || true
 nsd-step -j 4 -n 3 --contacts -o "$tmp/many_j4.h5" "$tmp/many.h5" 2>/dev/null || true
 ok "4 threads write the bytes of one" cmp "$tmp/many_j4.h5" "$tmp/many_three.h5"
-if [ -x "$(command -v nsd-step | sed 's/nsd-step$//')nsd-step-mpi" ] && command -v mpirun >/dev/null; then
-    OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n 3 nsd-step -n 3 --contacts -o "$tmp/many_ranks.h5" "$tmp/many.h5" 2>/dev/null || true
+if have_ranks; then
+    ranks 3 nsd-step -n 3 --contacts -o "$tmp/many_ranks.h5" "$tmp/many.h5" 2>/dev/null || true
     ok "3 processes write the bytes of one" cmp "$tmp/many_ranks.h5" "$tmp/many_three.h5"
 else
     skip "3 processes write the bytes of one" "no MPI"

@@ -19,8 +19,8 @@ every_way() # SCENE: the same bytes by threads, ranks, in pieces, and step by st
     step -n 3 "$tmp/way.h5" | nsd-info --last -p >"$tmp/three"
     nsd-detect "$tmp/way.h5" | nsd-solve 2>/dev/null | nsd-move | nsd-detect | nsd-solve 2>/dev/null | nsd-move |
         nsd-detect | nsd-solve 2>/dev/null | nsd-move | nsd-info -p | cmp - "$tmp/three" || return 1
-    [ -x build/nsd-step-mpi ] && command -v mpirun >/dev/null || return 0
-    OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n 2 nsd-step -j 1 -n 40 --every 20 \
+    have_ranks || return 0
+    ranks 2 nsd-step -j 1 -n 40 --every 20 \
         -o "$tmp/way2.h5" "$tmp/way.h5" 2>/dev/null
     nsd-info -p "$tmp/way2.h5" | cmp - "$tmp/way1"
 }

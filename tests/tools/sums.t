@@ -111,8 +111,8 @@ dump() { h5dump -d /particles/boundary/sums/rub/value -d /particles/boundary/sum
 is "to the bit in the document" "$(nsd-cat --last "$tmp/b2.h5" >"$tmp/c1.h5" && dump "$tmp/c1.h5")" "$(nsd-cat --last "$tmp/a.h5" >"$tmp/c2.h5" && dump "$tmp/c2.h5")"
 step -n 30 -j 2 -o "$tmp/two.h5" "$tmp/each.h5"
 ok "two threads give the bytes of one" cmp "$tmp/two.h5" "$tmp/a.h5"
-if [ -x "$(command -v nsd-step | sed 's/nsd-step$//')nsd-step-mpi" ] && command -v mpirun >/dev/null; then
-    OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n 2 nsd-step --sums -n 30 -o "$tmp/ranks.h5" "$tmp/each.h5" 2>/dev/null
+if have_ranks; then
+    ranks 2 nsd-step --sums -n 30 -o "$tmp/ranks.h5" "$tmp/each.h5" 2>/dev/null
     ok "two processes give the bytes of one" cmp "$tmp/ranks.h5" "$tmp/a.h5"
 else
     skip "two processes give the bytes of one" "no MPI"

@@ -130,12 +130,10 @@ assert nsd.last('whole.h5').dt == $(dts whole.h5 | tail -n 1)"
 else
     skip "frames that others have written" "no h5py"
 fi
-if command -v mpirun >/dev/null && [ -x "$root/build/nsd-step-mpi" ]; then
-    export ASAN_OPTIONS=detect_leaks=0:$ASAN_OPTIONS # MPI's own
-    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-    like "several processes refuse it" "$(mpirun --allow-run-as-root --oversubscribe -n 2 nsd-step --dt auto:0.01 -o mpi.h5 start.h5 2>&1 || true)" \
+if have_ranks; then
+    like "several processes refuse it" "$(ranks 2 nsd-step --dt auto:0.01 -o mpi.h5 start.h5 2>&1 || true)" \
         'one process alone adapts'
-    mpirun --allow-run-as-root --oversubscribe -n 2 nsd-step --until 0.4 --dt 1e-3 -o mpi.h5 start.h5 2>/dev/null
+    ranks 2 nsd-step --until 0.4 --dt 1e-3 -o mpi.h5 start.h5 2>/dev/null
     step --until 0.4 --dt 1e-3 -o one.h5 start.h5
     ok "and make the same steps of another dt" cmp one.h5 mpi.h5
 else
