@@ -432,7 +432,7 @@ static int end_gsd(FILE *out, void *kept, struct why *why)
         names += fwrite(chunks[k].name, 1, strlen(chunks[k].name) + 1, out);
     for (h.names_entries = names / NAME + 1; names < h.names_entries * NAME; names++) fputc(0, out);
     h.index = h.names + names;
-    fwrite(g->entry, sizeof *g->entry, (size_t)g->entries, out);
+    if (g->entries) fwrite(g->entry, sizeof *g->entry, (size_t)g->entries, out);
     if (!fseek(out, 0, SEEK_SET)) fwrite(&h, sizeof h, 1, out);
     free(g->entry), free(g);
     (void)why;
