@@ -412,7 +412,7 @@ install-tools: all completions
 	install -m 644 scenes/*.json $(TO)/share/nsd/scenes
 	install -m 644 scenes/paper/*.json $(TO)/share/nsd/scenes/paper
 	for d in $(patsubst %/about,%,$(wildcard cookbook/*/about)); do install -d $(TO)/share/nsd/$$d && \
-	    install -m 644 $$d/* $(TO)/share/nsd/$$d || exit 1; done
+	    install -m 644 $$d/* $(TO)/share/nsd/$$d && chmod 755 $(TO)/share/nsd/$$d/*.sh || exit 1; done
 	install -d $(TO)/share/nsd/campaign
 	install -m 755 scripts/campaign/*.sh scripts/campaign/array.sbatch $(TO)/share/nsd/campaign
 	install -m 644 scripts/campaign/*.mk scripts/campaign/*.gp $(TO)/share/nsd/campaign
