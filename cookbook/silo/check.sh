@@ -1,3 +1,4 @@
+#!/usr/bin/env bash
 # mass.tsv: time, s, and mass, g: the rate is 6 to 8 g/s, and the same early and late
 awk '{ t[NR] = $1; m[NR] = $2 } END {
     h = int((NR + 1) / 2); early = (m[h] - m[1]) / (t[h] - t[1]); late = (m[NR] - m[h]) / (t[NR] - t[h])
