@@ -437,29 +437,27 @@ static void measure_depth(struct rank_step *y, const struct contacts *s, struct 
     d->deepest = most;
 }
 
-/* Collective. The fast bodies of all ranks: *list of the number that is returned */
-static int64_t fast_of_all(struct rank_step *y, struct fast **list)
+/* Collective. The fast bodies of all ranks */
+static struct fast_list fast_of_all(struct rank_step *y)
 {
     struct comm *t = y->part.comm;
     struct parcel mine = { 0 }, whole = { 0 }, *in = parcels_new(t);
     struct why why = { 0 };
-    struct fast *here;
-    int64_t count;
-    if (crossing_list(&here, &count, &y->part.p, y->part.own, &why)) fail(y, &why);
-    *list = NULL;
-    if (comm_sum(t, count) > 0) {
-        parcel_put(t, &mine, here, (size_t)count * sizeof *here);
+    struct fast_list here, all = { 0 };
+    if (crossing_list(&here, &y->part.p, y->part.own, &why)) fail(y, &why);
+    if (comm_sum(t, here.n) > 0) {
+        parcel_put(t, &mine, here.of, (size_t)here.n * sizeof *here.of);
         comm_gather(t, &mine, in);
         for (int r = 0; r < t->n && !t->me; r++) parcel_put(t, &whole, in[r].bytes, in[r].size);
         comm_spread(t, &whole);
-        count = (int64_t)(whole.size / sizeof *here);
-        *list = comm_new(t, count, sizeof **list);
-        parcel_take(t, &whole, *list, whole.size);
+        all.n = (int64_t)(whole.size / sizeof *all.of);
+        all.of = comm_new(t, all.n, sizeof *all.of);
+        parcel_take(t, &whole, all.of, whole.size);
     }
-    free(here);
+    free(here.of);
     parcel_free(&mine), parcel_free(&whole);
     parcels_free(t, in);
-    return count;
+    return all;
 }
 
 /* Which bodies of all ranks have gone through something */
@@ -468,11 +466,11 @@ static void watch_here(struct rank_step *y, struct window window, struct report 
     struct comm *t = y->part.comm;
     struct why why = { 0 };
     struct passed here, all;
-    struct fast *fast;
-    int64_t count = fast_of_all(y, &fast);
-    if (step_watch(&here, &y->part.p, y->part.own, y->near.surface, fast, count, window, &why))
-        fail(y, &why);
-    free(fast);
+    const struct packing *p = &y->part.p;
+    struct fast_list fast = fast_of_all(y);
+    swift_passed(&here, p, y->part.own, y->near.surface, window);
+    if (crossing_count(&here, p, y->part.own, &fast, window, &why)) fail(y, &why);
+    free(fast.of);
     all.n = comm_sum(t, here.n);
     double first = -comm_most(t, here.n ? -(double)here.id : -INFINITY);
     double through = comm_most(t, here.n && here.id == first ? here.through : -INFINITY);

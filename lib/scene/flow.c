@@ -306,8 +306,8 @@ static bool is_free(struct crowd *c, const struct scene_pour *o, vec3 x, quat q,
     c->p.q[last] = q;
     if (c->p.shape) c->p.shape[last] = o->form.shape;
     c->now[last] = x, c->then[last] = v3_axpy(x, ahead, o->v);
-    bool clear = !detect_contacts_at(&met, &c->p, c->now, c->p.t, 0, NULL, why) && !met.n &&
-                 !detect_contacts_at(&met, &c->p, c->then, c->p.t + ahead, 0, NULL, why) && !met.n;
+    bool clear = !detect_contacts_at(&met, &c->p, c->now, c->p.t, 0, why) && !met.n &&
+                 !detect_contacts_at(&met, &c->p, c->then, c->p.t + ahead, 0, why) && !met.n;
     contacts_free(&met);
     return clear && !why->status;
 }

@@ -369,7 +369,7 @@ static int check_overlap(const struct packing *p, const struct scene *s, const s
     struct contacts found = { 0 };
     const char *cure = "; \"overlap\": true allows it)";
     char a[PLACE], b[PLACE];
-    int e = detect_contacts_at(&found, p, p->x, p->t, 0, NULL, why);
+    int e = detect_contacts_at(&found, p, p->x, p->t, 0, why);
     for (int64_t i = 0; !e && i < found.n; i++) {
         const struct contact *c = &found.c[i];
         double r = packing_smaller_radius(p, c);
