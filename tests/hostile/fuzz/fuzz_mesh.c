@@ -15,10 +15,8 @@ static void make_grain(const struct mesh *m, bool hull)
 {
     struct shape s = { .form = SHAPE_HULL };
     struct why why = { 0 };
-    double reach;
-    vec3 centre;
-    quat turn;
-    if (!mesh_shape(&s, m, hull, &why) && !solid_settle(&s, 3, &reach, &centre, &turn, &why))
+    struct solid_frame was;
+    if (!mesh_shape(&s, m, hull, &why) && !solid_settle(&s, 3, &was, &why))
         shape_finish(&s, 3, &why);
     if (why.status && (!why.text[0] || strchr(why.text, '\n'))) abort();
     shape_free(&s);
