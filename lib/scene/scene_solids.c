@@ -308,14 +308,15 @@ static int read_clump(jnode o, struct shape *s, const struct mesh *mesh, const c
 {
     jnode c = json_node_key(&o, "clump");
     int64_t balls = 0;
-    double error = 0;
+    struct clump_limits limits = { 0 };
     struct clump_errors errors = { 0 };
     struct why why = { 0 };
     if (json_node_only(c, "balls error") || json_node_need(&c, "balls") ||
         json_node_integer(json_node_key(&c, "balls"), 1, CLUMP_BALLS_MOST, &balls) ||
-        json_node_number(json_node_key(&c, "error"), J_UNIT, &error))
+        json_node_number(json_node_key(&c, "error"), J_UNIT, &limits.error))
         return 1;
-    clump_fit(s, as, mesh, (int32_t)balls, error, &errors, &why);
+    limits.balls = (int32_t)balls;
+    clump_fit(s, as, mesh, &limits, &errors, &why);
     if (why.status == EX_DATAERR) return json_node_fault(c, "%s: %s", file, why.text);
     if (why.status) return why_set(o.in->why, why.status, "%s", why.text);
     if (rewrite_clump(o, s, as, &errors, scene) || note_fit(o, scene, &errors)) return 1;
