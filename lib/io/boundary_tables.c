@@ -26,7 +26,7 @@ static int read_loads(struct source *r, const char *group, int64_t k, struct pac
     for (const struct column *c = layout_yield; !why->status && c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "%s/%s/value", group, c->name);
-        if (!source_rows(r, path, c->type, k, 1, p->walls, row, why))
+        if (!source_rows(r, path, (struct slab){ c->type, k, 1, p->walls }, row, why))
             column_scatter(c, p->walls, row, p->wall, sizeof *p->wall);
     }
     free(row);
@@ -56,7 +56,7 @@ static int read_signals(struct source *r, const char *group, struct drives *d, s
     if (count_rows(r, boundary, 1, &n, why) || count_rows(r, rows, 2, &m, why) ||
         drives_alloc(d, n, m, why) ||
         table_read_columns(r, group, "", 0, RECORDS(layout_drive, n, d->drive), why) ||
-        source_rows(r, rows, COLUMN_F64, 0, m, 2, d->row, why))
+        source_rows(r, rows, (struct slab){ COLUMN_F64, 0, m, 2 }, d->row, why))
         return why->status;
     for (int32_t k = 0; k < n; k++) {
         int32_t w = d->drive[k].boundary;
@@ -84,8 +84,8 @@ static int read_mesh(struct source *r, struct packing *p, struct why *why)
     if (!source_has(r, BOUNDARY "/mesh")) return 0;
     if (count_rows(r, vertex, 2, &n, why) || count_rows(r, element, 2, &m, why) ||
         mesh_alloc(&p->mesh, n, m, why) ||
-        source_rows(r, vertex, COLUMN_F64, 0, n, 3, p->mesh.vertex, why) ||
-        source_rows(r, element, COLUMN_I32, 0, m, 3, p->mesh.element, why))
+        source_rows(r, vertex, (struct slab){ COLUMN_F64, 0, n, 3 }, p->mesh.vertex, why) ||
+        source_rows(r, element, (struct slab){ COLUMN_I32, 0, m, 3 }, p->mesh.element, why))
         return why->status;
     return 0;
 }
@@ -203,7 +203,7 @@ static int write_signals(struct table_write *s, const char *group, const struct 
     if (!d->n) return 0;
     if (table_write_columns(s, group, "", RECORDS(layout_drive, d->n, d->drive), 0, why))
         return why->status;
-    return h5_write(s->file, rows, H5T_NATIVE_DOUBLE, 2, shape, d->row, units, why);
+    return h5_write(s->file, rows, h5_array(H5T_NATIVE_DOUBLE, 2, shape, d->row), units, why);
 }
 
 static int write_drives(struct table_write *s, const struct packing *p, struct why *why)
@@ -217,11 +217,11 @@ static int write_mesh(struct table_write *s, const struct packing *p, struct why
     const hsize_t vertices[2] = { (hsize_t)p->mesh.vertices, 3 },
                   elements[2] = { (hsize_t)p->mesh.elements, 3 };
     if (!p->mesh.elements) return 0;
-    if (h5_write(s->file, BOUNDARY "/mesh/vertex", H5T_NATIVE_DOUBLE, 2, vertices, p->mesh.vertex,
-                 "m", why))
+    if (h5_write(s->file, BOUNDARY "/mesh/vertex",
+                 h5_array(H5T_NATIVE_DOUBLE, 2, vertices, p->mesh.vertex), "m", why))
         return why->status;
-    return h5_write(s->file, BOUNDARY "/mesh/element", H5T_NATIVE_INT32, 2, elements,
-                    p->mesh.element, NULL, why);
+    return h5_write(s->file, BOUNDARY "/mesh/element",
+                    h5_array(H5T_NATIVE_INT32, 2, elements, p->mesh.element), NULL, why);
 }
 
 int boundary_tables_write_static(struct table_write *s, const struct packing *p, struct why *why)

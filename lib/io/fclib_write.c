@@ -18,7 +18,7 @@ static int write_array(hid_t file, const char *group, const char *name, hid_t ty
     char path[64];
     hsize_t length = (hsize_t)count;
     snprintf(path, sizeof path, "%s/%s", group, name);
-    return h5_write(file, path, type, 1, &length, x, NULL, why);
+    return h5_write(file, path, h5_vector(type, length, x), NULL, why);
 }
 
 static int write_ints(hid_t file, const char *group, const char *name, int64_t count,

@@ -80,7 +80,7 @@ static int write_columns(hid_t file, const struct column *columns, const struct 
         char path[80];
         snprintf(path, sizeof path, "%s/%s", law, c->name);
         column_gather(c, n, p->law, sizeof *p->law, table);
-        h5_write(file, path, H5T_NATIVE_DOUBLE, 2, square, table, c->units, why);
+        h5_write(file, path, h5_array(H5T_NATIVE_DOUBLE, 2, square, table), c->units, why);
     }
     free(table);
     return why->status;

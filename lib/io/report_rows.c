@@ -84,7 +84,7 @@ static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
     snprintf(time, sizeof time, "%s/time", r->group);
     if (table_read_columns(r->source, r->group, "/value", at,
                            RECORDS(layout_report, n, r->ahead.row), why) ||
-        source_rows(r->source, time, COLUMN_F64, at, n, 1, r->ahead.time, why) ||
+        source_rows(r->source, time, (struct slab){ COLUMN_F64, at, n, 1 }, r->ahead.time, why) ||
         account_rows_read(r->source, at, n, r->ahead.account, why))
         return why->status;
     snprintf(time, sizeof time, "%s/velocity/value", r->group);
@@ -136,7 +136,8 @@ int report_rows_read(struct report_rows *r, int64_t step, bool alone, struct rep
     for (int c = 0; criterion && c < CRITERION_COUNT; c++)
         if (!strcmp(criterion, criterion_name[c])) rep->criterion = c;
     free(method), free(criterion);
-    if (why->status || source_attribute(r->source, group, "eps", COLUMN_F64, -1, &rep->eps, why))
+    if (why->status || source_attribute(r->source, group, "eps",
+                                        (struct numbers){ COLUMN_F64, -1, &rep->eps }, why))
         return why->status;
     if (!(rep->eps >= 0 && isfinite(rep->eps)))
         return why_set(why, EX_DATAERR, "%s@eps: neither 0 nor a positive number", group);
@@ -187,11 +188,11 @@ int report_rows_write(struct table_write *s, const struct report *rep, struct wh
     if (first &&
         (h5_attr_text(s->file, solver, "method", rep->method, why) ||
          h5_attr_text(s->file, solver, "criterion", criterion_name[rep->criterion], why) ||
-         h5_attr(s->file, solver, "eps", H5T_NATIVE_DOUBLE, -1, &rep->eps, why) ||
+         h5_attr(s->file, solver, "eps", h5_scalar(H5T_NATIVE_DOUBLE, &rep->eps), why) ||
          h5_attr_text(s->file, solver, "options", rep->options ? rep->options : "{}", why)))
         return why->status;
     if (!rep->history || s->growing) return 0;
     const hsize_t shape[2] = { (hsize_t)rep->sweeps, 5 };
-    return h5_write(s->file, LAYOUT_REPORT "/history", H5T_NATIVE_DOUBLE, 2, shape, rep->history,
-                    "1", why);
+    return h5_write(s->file, LAYOUT_REPORT "/history",
+                    h5_array(H5T_NATIVE_DOUBLE, 2, shape, rep->history), "1", why);
 }

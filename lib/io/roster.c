@@ -183,7 +183,7 @@ int roster_find(struct source *source, int64_t k, int64_t **row, int64_t *n, str
         free(id);
         return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)rows);
     }
-    if (!source_rows(source, ids, COLUMN_I32, k, 1, rows, id, why))
+    if (!source_rows(source, ids, (struct slab){ COLUMN_I32, k, 1, rows }, id, why))
         for (int64_t i = 0; i < rows; i++)
             if (id[i] >= 0) (*row)[(*n)++] = i;
     free(id);
@@ -204,8 +204,9 @@ static int read_spread(struct source *s, const char *path, const struct column *
     size_t bytes = (size_t)c->width * column_size(c->type);
     char *all = malloc((size_t)rows * bytes + 1);
     if (!all) return why_set(why, EX_SOFTWARE, "%s: no memory", path);
-    int e = moves ? source_rows(s, path, c->type, frame, 1, rows * c->width, all, why)
-                  : source_rows(s, path, c->type, 0, rows, c->width, all, why);
+    int e =
+        moves ? source_rows(s, path, (struct slab){ c->type, frame, 1, rows * c->width }, all, why)
+              : source_rows(s, path, (struct slab){ c->type, 0, rows, c->width }, all, why);
     for (int64_t i = 0; !e && i < n; i++)
         memcpy((char *)out + (size_t)i * bytes, all + (size_t)row[i] * bytes, bytes);
     free(all);

@@ -45,7 +45,8 @@ static int read_lists(struct source *r, struct listing *l, struct why *why)
     l->vertices = n[0];
     l->vertex = calloc((size_t)n[0] + 1, sizeof *l->vertex);
     if (!l->vertex) return why_set(why, EX_SOFTWARE, "no memory for the shapes");
-    if (source_rows(r, SHAPE "/vertex", COLUMN_F64, 0, (int64_t)n[0], 3, l->vertex, why))
+    if (source_rows(r, SHAPE "/vertex", (struct slab){ COLUMN_F64, 0, (int64_t)n[0], 3 }, l->vertex,
+                    why))
         return why->status;
     l->ball = source_read_all(r, SHAPE "/ball", COLUMN_F64, &balls, why);
     l->face = source_read_all(r, SHAPE "/face", COLUMN_I32, &l->faces, why);
@@ -156,8 +157,8 @@ static int write_rows(hid_t file, const struct shapes *t, struct why *why)
         char path[80];
         snprintf(path, sizeof path, SHAPE "/%s", c->name);
         column_gather(c, (int64_t)n, row, sizeof *row, out);
-        h5_write(file, path, column_native(c->type), c->width > 1 ? 2 : 1, wide, out, c->units,
-                 why);
+        h5_write(file, path, h5_array(column_native(c->type), c->width > 1 ? 2 : 1, wide, out),
+                 c->units, why);
     }
     free(row), free(out);
     return why->status;
@@ -188,10 +189,12 @@ static int write_lists(hid_t file, const struct shapes *t, struct why *why)
     }
     bool bad =
         why->status ||
-        h5_write(file, SHAPE "/vertex", H5T_NATIVE_DOUBLE, 2, vertices, l.vertex, "1", why) ||
-        h5_write(file, SHAPE "/ball", H5T_NATIVE_DOUBLE, 1, vertices, l.ball, "1", why) ||
-        h5_write(file, SHAPE "/face", H5T_NATIVE_INT32, 1, &faces, l.face, "1", why) ||
-        h5_write(file, SHAPE "/corner", H5T_NATIVE_INT32, 1, &corners, l.corner, "1", why);
+        h5_write(file, SHAPE "/vertex", h5_array(H5T_NATIVE_DOUBLE, 2, vertices, l.vertex), "1",
+                 why) ||
+        h5_write(file, SHAPE "/ball", h5_vector(H5T_NATIVE_DOUBLE, vertices[0], l.ball), "1",
+                 why) ||
+        h5_write(file, SHAPE "/face", h5_vector(H5T_NATIVE_INT32, faces, l.face), "1", why) ||
+        h5_write(file, SHAPE "/corner", h5_vector(H5T_NATIVE_INT32, corners, l.corner), "1", why);
     listing_drop(&l);
     return bad ? why->status : 0;
 }

@@ -11,7 +11,7 @@ int table_read_columns(struct source *s, const char *group, const char *tail, in
         snprintf(path, sizeof path, "%s/%s%s", group, c->name, tail);
         char *data = calloc((size_t)o.n + 1, column_bytes(c));
         if (!data) return why_set(why, EX_SOFTWARE, "%s: no memory", path);
-        int e = source_rows(s, path, c->type, start, o.n, c->width, data, why);
+        int e = source_rows(s, path, (struct slab){ c->type, start, o.n, c->width }, data, why);
         if (!e) column_scatter(c, o.n, data, o.structs, o.stride);
         free(data);
         if (e) return e;
@@ -25,9 +25,9 @@ int table_read_span(struct source *r, const char *group, const char *one, int ra
     char path[80];
     uint64_t shape[4];
     snprintf(path, sizeof path, "%s/start", group);
-    if (source_rows(r, path, COLUMN_I64, k, 1, 1, start, why)) return why->status;
+    if (source_rows(r, path, (struct slab){ COLUMN_I64, k, 1, 1 }, start, why)) return why->status;
     snprintf(path, sizeof path, "%s/count", group);
-    if (source_rows(r, path, COLUMN_I64, k, 1, 1, count, why)) return why->status;
+    if (source_rows(r, path, (struct slab){ COLUMN_I64, k, 1, 1 }, count, why)) return why->status;
     snprintf(path, sizeof path, "%s/%s", group, one);
     if (source_shape(r, path, shape) != rank || *start < 0 || *count < 0 || *start > INT32_MAX ||
         *count > INT32_MAX || (uint64_t)(*start + *count) > shape[0])

@@ -96,8 +96,8 @@ static int append(hid_t set, const struct dataset *o)
 int table_write_rows(struct table_write *s, struct dataset o, struct why *why)
 {
     if (!s->growing)
-        return h5_write(s->file, o.path, column_native(o.type), o.rank, o.shape, o.data, o.units,
-                        why);
+        return h5_write(s->file, o.path, h5_array(column_native(o.type), o.rank, o.shape, o.data),
+                        o.units, why);
     hid_t set = find(s, o.path);
     if (set < 0) {
         if (s->count == GROWING_DATASETS)
@@ -150,8 +150,9 @@ static int write_body_column(struct table_write *s, const struct body_column *b,
     layout_body_path(b, path);
     if (moves ? table_write_rows(s, (struct dataset){ path, c->type, 3, shape, 1, data, c->units },
                                  why)
-              : h5_write(s->file, path, column_native(c->type), c->width == 1 ? 1 : 2, shape + 1,
-                         data, c->units, why))
+              : h5_write(s->file, path,
+                         h5_array(column_native(c->type), c->width == 1 ? 1 : 2, shape + 1, data),
+                         c->units, why))
         return why->status;
     if (!s->distributed) return 0;
     if (s->places == DISTRIBUTED_PLACES)

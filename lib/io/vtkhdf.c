@@ -118,7 +118,7 @@ int vtkhdf_type(hid_t file, const char *path, const char *type, int minor, struc
 {
     const int64_t version[2] = { 2, minor };
     return ascii(file, path, "Type", type, why) ||
-           h5_attr(file, path, "Version", H5T_NATIVE_INT64, 2, version, why);
+           h5_attr(file, path, "Version", h5_vector(H5T_NATIVE_INT64, 2, version), why);
 }
 
 /* The group that an object is in. HDF5 itself would make it with its time. */
@@ -366,7 +366,8 @@ static int put_steps(hid_t file, const char *block, const char *name, int width,
     char path[160];
     const hsize_t shape[2] = { (hsize_t)frames, (hsize_t)width };
     snprintf(path, sizeof path, "%s/%s", block, name);
-    return h5_write(file, path, H5T_NATIVE_INT64, width > 1 ? 2 : 1, shape, value, NULL, why);
+    return h5_write(file, path, h5_array(H5T_NATIVE_INT64, width > 1 ? 2 : 1, shape, value), NULL,
+                    why);
 }
 
 static int link_to(hid_t file, const char *from, const char *block, const char *name,
@@ -389,7 +390,7 @@ static int make_virtual(hid_t file, const char *from, const char *block, const c
     const hsize_t flat[2] = { (hsize_t)(frames * bodies), (hsize_t)width },
                   deep[3] = { (hsize_t)frames, (hsize_t)bodies, (hsize_t)width };
     if (!frames || !bodies)
-        return h5_write(file, path, H5T_NATIVE_DOUBLE, 2, flat, &frames, NULL, why);
+        return h5_write(file, path, h5_array(H5T_NATIVE_DOUBLE, 2, flat, &frames), NULL, why);
     if (make_parent(file, path, why)) return why->status;
     hid_t to = H5Screate_simple(2, flat, NULL), of = H5Screate_simple(3, deep, NULL);
     hid_t plist = h5_dataset_plist();
@@ -406,7 +407,7 @@ static int put_values(hid_t file, const char *block, int64_t frames, struct why 
     int64_t n = frames;
     snprintf(steps, sizeof steps, "%s/Steps", block);
     return h5_group(file, steps, why) ||
-           h5_attr(file, steps, "NSteps", H5T_NATIVE_INT64, -1, &n, why) ||
+           h5_attr(file, steps, "NSteps", h5_scalar(H5T_NATIVE_INT64, &n), why) ||
            link_to(file, "/particles/all/position/time", block, "Steps/Values", why);
 }
 
@@ -517,7 +518,7 @@ static int collect(const struct vtkhdf *v, hid_t file, struct why *why)
         snprintf(path, sizeof path, "/VTKHDF/Assembly/%s", strrchr(block, '/') + 1);
         int32_t index = k;
         if (vtkhdf_type(file, block, "PolyData", MINOR, why) ||
-            h5_attr(file, block, "Index", H5T_NATIVE_INT32, -1, &index, why))
+            h5_attr(file, block, "Index", h5_scalar(H5T_NATIVE_INT32, &index), why))
             return why->status;
         if (H5Lcreate_soft(block, file, path, H5P_DEFAULT, H5P_DEFAULT) < 0)
             return failed(path, why);
