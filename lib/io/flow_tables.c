@@ -109,8 +109,10 @@ static int check_event(const struct event *e, struct why *why)
 
 static int read_events(struct source *s, int64_t k, struct packing *p, struct why *why)
 {
-    int64_t start, count;
-    if (table_read_span(s, events, "id", 1, k, &start, &count, why)) return why->status;
+    struct span span;
+    if (table_read_span(s, (struct table_spans){ events, "id", 1 }, k, &span, why))
+        return why->status;
+    const int64_t start = span.start, count = span.count;
     if (!(p->events.e = calloc((size_t)count + 1, sizeof *p->events.e)))
         return why_set(why, EX_SOFTWARE, "no memory for events");
     p->events.n = count, p->events.room = count + 1;

@@ -70,7 +70,9 @@ int frame_read_open(struct frame_read *r, struct source *source, struct why *why
     } else if (!fclib_in(source)) {
         return why_set(why, EX_DATAERR, "holds neither particles nor an FCLIB problem");
     }
-    return report_rows_open(&r->reports, source, why);
+    if (report_rows_open(&r->reports, source, why)) return why->status;
+    r->reports.one_frame = r->frames == 1;
+    return 0;
 }
 
 void frame_read_close(struct frame_read *r)
@@ -339,8 +341,7 @@ static int read_foreign(struct frame_read *r, struct frame *f, struct why *why)
         if (!f->u) return why_set(why, EX_SOFTWARE, "no memory for the solution");
         if (source_read(source, "/solution/u", COLUMN_F64, n, f->u, why)) return why->status;
     }
-    return report_rows_read(&r->reports, 0, r->frames == 1, &f->report, &f->account, &f->reported,
-                            why);
+    return report_rows_read(&r->reports, 0, &f->report, &f->account, &f->reported, why);
 }
 
 int frame_read_moment(struct frame_read *r, int64_t k, struct frame *f, struct why *why)
@@ -357,6 +358,5 @@ int frame_read_moment(struct frame_read *r, int64_t k, struct frame *f, struct w
     }
     f->packed = true;
     if (contact_rows_read(&r->contacts, f, why)) return why->status;
-    return report_rows_read(&r->reports, r->step[k], r->frames == 1, &f->report, &f->account,
-                            &f->reported, why);
+    return report_rows_read(&r->reports, r->step[k], &f->report, &f->account, &f->reported, why);
 }

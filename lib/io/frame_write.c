@@ -131,7 +131,7 @@ int frame_write_static(struct table_write *s, const struct frame *f, struct why 
     return unknown_write(f->unknown, s->file, f->stale && !f->foreign, why);
 }
 
-static const char particles[] = "/particles/all", position[] = "/particles/all/position";
+static const char particles[] = "/particles/all";
 
 /* Its steps or its times, for all that a frame has of particles */
 static int write_particles_clock(struct table_write *s, bool step, const struct packing *p,
@@ -141,8 +141,8 @@ static int write_particles_clock(struct table_write *s, bool step, const struct 
     bool linked = table_write_grows(s, from);
     const void *value = step ? (const void *)&p->step : (const void *)&p->t;
     const char *name = step ? "step" : "time";
-    static const struct column none[] = { { 0 } };
-    if (table_write_clock(s, position, step, value, particles, none, why)) return why->status;
+    if (table_write_number(s, from, step ? COLUMN_I64 : COLUMN_F64, value, step ? NULL : "s", why))
+        return why->status;
     for (const struct body_column *b = body_columns; b->column.name && !linked; b++) {
         const struct column it[] = { b->column, { 0 } };
         if (b->traits & BODY_MOVES && column_array(&b->column, p) &&

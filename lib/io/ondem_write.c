@@ -202,19 +202,28 @@ struct choice {
     const int64_t *row;
 };
 
+/* A member of all structs of an array */
+struct member {
+    const char *first; /* that of the first struct */
+    size_t stride;     /* bytes of a struct */
+    bool whole;        /* of type int64_t, else double */
+    int width;         /* numbers */
+};
+
 /* A dataset of n rows, gathered from structs */
-static int put_column(hid_t file, const char *path, bool whole, int width, struct choice of,
-                      const char *first, size_t stride, struct why *why)
+static int put_column(hid_t file, const char *path, struct choice of, struct member m,
+                      struct why *why)
 {
-    const hsize_t shape[2] = { (hsize_t)of.n, (hsize_t)width };
-    const size_t row = (size_t)width * 8;
+    const hsize_t shape[2] = { (hsize_t)of.n, (hsize_t)m.width };
+    const size_t row = (size_t)m.width * 8;
     char *out = malloc((size_t)of.n * row + 1);
     if (!out) return why_set(why, EX_SOFTWARE, "no memory for an export");
     for (int64_t i = 0; i < of.n; i++)
-        memcpy(out + (size_t)i * row, first + (size_t)(of.row ? of.row[i] : i) * stride, row);
-    h5_write(file, path,
-             h5_array(whole ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, width > 1 ? 2 : 1, shape, out),
-             NULL, why);
+        memcpy(out + (size_t)i * row, m.first + (size_t)(of.row ? of.row[i] : i) * m.stride, row);
+    h5_write(
+        file, path,
+        h5_array(m.whole ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, m.width > 1 ? 2 : 1, shape, out),
+        NULL, why);
     free(out);
     return why->status;
 }
@@ -300,15 +309,17 @@ static int put_block(hid_t file, int group, const struct rows *b, struct choice 
         h5_write(file, path, h5_vector(H5T_NATIVE_INT64, 1, &of.n), NULL, why))
         return why->status;
     snprintf(path, sizeof path, "%s/Points", block);
-    if (put_column(file, path, false, 3, of, rows + offsetof(struct row, x), sizeof *b->row, why) ||
-        put_cells(file, block, "Vertices", of.n, why) || put_cells(file, block, "Lines", 0, why) ||
-        put_cells(file, block, "Polygons", 0, why) || put_cells(file, block, "Strips", 0, why))
+    const struct member points = { rows + offsetof(struct row, x), sizeof *b->row, false, 3 };
+    if (put_column(file, path, of, points, why) || put_cells(file, block, "Vertices", of.n, why) ||
+        put_cells(file, block, "Lines", 0, why) || put_cells(file, block, "Polygons", 0, why) ||
+        put_cells(file, block, "Strips", 0, why))
         return why->status;
     for (int k = 0; k < COLUMNS; k++) {
         if (!columns[k].always && !is_used(b, k)) continue;
         snprintf(path, sizeof path, "%s/PointData/%s", block, columns[k].name);
-        if (put_column(file, path, columns[k].whole, columns[k].width, of, rows + columns[k].at,
-                       sizeof *b->row, why) ||
+        const struct member m = { rows + columns[k].at, sizeof *b->row, columns[k].whole,
+                                  columns[k].width };
+        if (put_column(file, path, of, m, why) ||
             (columns[k].width == 4 && put_attribute(file, path, "order", "wxyz", why)))
             return why->status;
     }
@@ -431,9 +442,9 @@ static int put_contacts(hid_t file, const struct packing *p, const struct contac
     for (size_t k = 0; k < sizeof of_contacts / sizeof *of_contacts && !why->status; k++) {
         char path[120];
         snprintf(path, sizeof path, "%s/%s", group, of_contacts[k].name);
-        put_column(file, path, of_contacts[k].whole, of_contacts[k].width,
-                   (struct choice){ n, NULL }, (const char *)list + of_contacts[k].at, sizeof *list,
-                   why);
+        const struct member m = { (const char *)list + of_contacts[k].at, sizeof *list,
+                                  of_contacts[k].whole, of_contacts[k].width };
+        put_column(file, path, (struct choice){ n, NULL }, m, why);
     }
     free(list);
     return why->status;

@@ -148,25 +148,25 @@ static int read_boundaries(struct source *s, int64_t row, struct packing *p, str
 }
 
 /* The span of the frame, which is to be within what is stored and at most `most` long */
-static int read_span(struct source *s, const char *name, int64_t row, int64_t most, int64_t *start,
-                     int64_t *count, struct why *why)
+static int read_span(struct source *s, const char *name, int64_t row, int64_t most,
+                     struct span *span, struct why *why)
 {
+    const struct slab number = { COLUMN_I64, row, 1, 1 };
     char path[80];
     snprintf(path, sizeof path, HOME "/%s/start", name);
-    if (source_rows(s, path, (struct slab){ COLUMN_I64, row, 1, 1 }, start, why))
-        return why->status;
+    if (source_rows(s, path, number, &span->start, why)) return why->status;
     snprintf(path, sizeof path, HOME "/%s/count", name);
-    if (source_rows(s, path, (struct slab){ COLUMN_I64, row, 1, 1 }, count, why))
-        return why->status;
-    if (*start >= 0 && *count >= 0 && *count <= most) return 0;
+    if (source_rows(s, path, number, &span->count, why)) return why->status;
+    if (span->start >= 0 && span->count >= 0 && span->count <= most) return 0;
     return why_set(why, EX_DATAERR, "%s: %lld from %lld on is out of range", path,
-                   (long long)*count, (long long)*start);
+                   (long long)span->count, (long long)span->start);
 }
 
 static int read_forces(struct source *s, int64_t row, struct packing *p, struct why *why)
 {
-    int64_t start = 0, count = 0;
-    if (read_span(s, "body", row, p->n, &start, &count, why) || !count) return why->status;
+    struct span span = { 0, 0 };
+    if (read_span(s, "body", row, p->n, &span, why) || !span.count) return why->status;
+    const int64_t start = span.start, count = span.count;
     if (count != p->n)
         return why_set(why, EX_DATAERR,
                        HOME "/body/count: forces of %lld bodies, and there are %lld",
@@ -202,9 +202,11 @@ static void drop_vectors(vec3 **x, int64_t n)
 static int read_lasting(struct source *s, struct packing *p, struct why *why)
 {
     struct lasting *o = &p->outside.lasts;
-    int64_t start = 0, count = 0, row = table_read_row_at(s, LASTS "/step", p->step, why);
-    if (why->status || row < 0 || read_span(s, "lasting", row, p->n, &start, &count, why))
+    struct span span = { 0, 0 };
+    int64_t row = table_read_row_at(s, LASTS "/step", p->step, why);
+    if (why->status || row < 0 || read_span(s, "lasting", row, p->n, &span, why))
         return why->status;
+    const int64_t start = span.start, count = span.count;
     if (count && count != p->n)
         return why_set(why, EX_DATAERR, LASTS "/count: forces of %lld bodies, and there are %lld",
                        (long long)count, (long long)p->n);
@@ -227,11 +229,12 @@ static int read_lasting(struct source *s, struct packing *p, struct why *why)
 static int read_words(struct source *s, int64_t row, struct outside *o, struct why *why)
 {
     uint64_t shape[4];
-    int64_t start = 0, count = 0;
+    struct span span = { 0, 0 };
     if (source_shape(s, HOME "/answer/text", shape) != 1)
         return why_set(why, EX_DATAERR, HOME "/answer/text: not of one dimension");
-    if (read_span(s, "answer", row, (int64_t)shape[0], &start, &count, why) || !count)
+    if (read_span(s, "answer", row, (int64_t)shape[0], &span, why) || !span.count)
         return why->status;
+    const int64_t start = span.start, count = span.count;
     if (!(o->words = malloc((size_t)count)))
         return why_set(why, EX_SOFTWARE, "no memory for the answer");
     o->length = o->room = count;

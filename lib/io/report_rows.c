@@ -116,11 +116,11 @@ static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
     return 0;
 }
 
-int report_rows_read(struct report_rows *r, int64_t step, bool alone, struct report *rep,
+int report_rows_read(struct report_rows *r, int64_t step, struct report *rep,
                      struct account *account, bool *there, struct why *why)
 {
     const char *group = r->group;
-    alone = alone && r->solves == 1;
+    const bool alone = r->one_frame && r->solves == 1;
     int64_t at = alone ? 0 : table_read_row(r->solved, r->solves, step);
     *there = at >= 0;
     if (at < 0) return 0;
@@ -179,8 +179,7 @@ int report_rows_write(struct table_write *s, const struct report *rep, struct wh
     bool first = !table_write_grows(s, LAYOUT_REPORT "/eps/value");
     if (table_write_columns(s, solver, "/value", RECORDS(layout_report, 1, rep), CHUNK_FRAMES,
                             why) ||
-        table_write_clock(s, solver, true, &rep->step, solver, layout_report, why) ||
-        table_write_clock(s, solver, false, &rep->t, solver, layout_report, why) ||
+        table_write_clocks(s, solver, layout_report, rep->step, rep->t, why) ||
         (rep->criterion == CRITERION_VELOCITY &&
          write_table(s, layout_velocity, rep, first, why)) ||
         (rep->balanced && write_balance(s, rep, first, why)))

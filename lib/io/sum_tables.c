@@ -59,9 +59,7 @@ int sum_tables_write(struct table_write *s, const struct packing *p, struct why 
                          why);
         free(row);
     }
-    if (why->status || table_write_clock(s, HOME, true, &p->step, HOME, layout_sums, why))
-        return why->status;
-    return table_write_clock(s, HOME, false, &p->t, HOME, layout_sums, why);
+    return why->status ? why->status : table_write_clocks(s, HOME, layout_sums, p->step, p->t, why);
 }
 
 int sum_tables_read(struct source *r, int64_t k, struct packing *p, struct why *why)

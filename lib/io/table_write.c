@@ -213,14 +213,25 @@ int table_write_link(struct table_write *s, const char *from, const char *name, 
     return 0;
 }
 
-int table_write_clock(struct table_write *s, const char *home, bool step, const void *value,
-                      const char *where, const struct column *c, struct why *why)
+/* A number of the frame, WHERE/name, that is linked to the columns when it is first written */
+static int write_clock(struct table_write *s, const char *where, const struct column *columns,
+                       struct dataset o, struct why *why)
 {
-    const char *name = step ? "step" : "time";
     char path[80];
-    snprintf(path, sizeof path, "%s/%s", home, name);
+    snprintf(path, sizeof path, "%s/%s", where, o.path);
     bool linked = table_write_grows(s, path);
-    if (table_write_number(s, path, step ? COLUMN_I64 : COLUMN_F64, value, step ? NULL : "s", why))
-        return why->status;
-    return linked ? 0 : table_write_link(s, path, name, where, c, why);
+    if (table_write_number(s, path, o.type, o.data, o.units, why)) return why->status;
+    return linked ? 0 : table_write_link(s, path, o.path, where, columns, why);
+}
+
+int table_write_clocks(struct table_write *s, const char *where, const struct column *columns,
+                       int64_t step, double time, struct why *why)
+{
+    const struct dataset steps = { .path = "step", .type = COLUMN_I64, .data = &step };
+    const struct dataset times = {
+        .path = "time", .type = COLUMN_F64, .data = &time, .units = "s"
+    };
+    return write_clock(s, where, columns, steps, why) || write_clock(s, where, columns, times, why)
+               ? why->status
+               : 0;
 }
