@@ -266,9 +266,8 @@ static void set_solid(struct view *v, const struct frame *f, const char *where)
     if (surface_range && (!numbers(surface_range, 2, x) || !(x[0] < x[1])))
         die_usage("--surface-range: '%s' is not LO,HI, the first below the second", surface_range);
     solid_free(&solid);
-    if (solid_init(&solid, &f->packing, solid_names, (enum solid_by)surface, x[0], x[1], &v->paint,
-                   &why))
-        die(why.status, "%s: %s", where, why.text);
+    const struct solid_opt opt = { solid_names, (enum solid_by)surface, x[0], x[1], &v->paint };
+    if (solid_init(&solid, &f->packing, &opt, &why)) die(why.status, "%s: %s", where, why.text);
     v->solid = over.solid = &solid;
 }
 

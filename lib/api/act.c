@@ -21,7 +21,8 @@ int nsd_force(struct nsd_run *r, int32_t id, const double force[3], const double
     struct why *why = run_why(r);
     enum acts_lasting t = why ? term_of(term, why) : ACTS_TERMS;
     if (t == ACTS_TERMS) return NSD_USAGE;
-    return acts_force(&r->acts, &r->f.packing, id, of(force), of(torque), t, why);
+    return acts_force(&r->acts, &r->f.packing, id, (struct wrench){ of(force), of(torque) }, t,
+                      why);
 }
 
 int nsd_boundary_force(struct nsd_run *r, int32_t boundary, double force, enum nsd_term term)

@@ -126,21 +126,26 @@ static bool copy(vec3 *sum, const vec3 *x, const double *mass, int64_t n, double
     return !bad;
 }
 
-/* *sum = the terms that may be other than 0, added; NULL: none is. *good becomes false where a number, or its square, is not
-   finite. *most: as outside.most, had this mass; -1: not found */
+/* What is known of a sum */
+struct summed {
+    bool finite; /* all numbers, or their squares, are */
+    double most; /* as outside.most, had this mass; -1: not found */
+};
+
+/* *sum = the terms that may be other than 0, added; NULL: none is. */
 static int sum_terms(vec3 **sum, vec3 *const term[ACTS_TERMS], const bool may[ACTS_TERMS],
-                     const struct packing *p, double *most, bool *good, struct why *why)
+                     const struct packing *p, struct summed *of, struct why *why)
 {
     const int64_t n = p->n;
     bool is[ACTS_TERMS];
+    *of = (struct summed){ true, 0 };
     for (int t = 0; t < ACTS_TERMS; t++) is[t] = may[t] && any_number(term[t], 3 * n);
     if (!is[ACTS_LASTING] && !is[ACTS_ONCE]) return free(*sum), *sum = NULL, 0;
     if (outside_alloc(sum, n, why)) return why->status;
     const vec3 *x = term[is[ACTS_LASTING] ? ACTS_LASTING : ACTS_ONCE], *y = term[ACTS_ONCE];
     const bool both = is[ACTS_LASTING] && is[ACTS_ONCE];
-    bool finite = both ? add_both(*sum, x, y, n) : copy(*sum, x, p->mass, n, most);
-    if (both) *most = -1;
-    *good = *good && finite;
+    of->finite = both ? add_both(*sum, x, y, n) : copy(*sum, x, p->mass, n, &of->most);
+    if (both) of->most = -1;
     return 0;
 }
 
@@ -148,11 +153,11 @@ static int sum_terms(vec3 **sum, vec3 *const term[ACTS_TERMS], const bool may[AC
 static int sum_forces(const struct acts *a, struct packing *p, struct why *why)
 {
     struct outside *o = &p->outside;
-    bool good = true;
-    double most = 0, of_torque;
-    if (sum_terms(&o->force, a->force, a->pushes, p, &most, &good, why) ||
-        sum_terms(&o->torque, a->torque, a->twists, p, &of_torque, &good, why))
+    struct summed force, torque;
+    if (sum_terms(&o->force, a->force, a->pushes, p, &force, why) ||
+        sum_terms(&o->torque, a->torque, a->twists, p, &torque, why))
         return why->status;
+    const bool good = force.finite && torque.finite;
     for (int64_t i = 0; i < p->n && (!good || p->dim == 2); i++) {
         vec3 f = o->force ? o->force[i] : v3(0, 0, 0), m = o->torque ? o->torque[i] : v3(0, 0, 0);
         if (!v3_finite(f) || !v3_finite(m))
@@ -163,8 +168,8 @@ static int sum_forces(const struct acts *a, struct packing *p, struct why *why)
                            "the force or torque of body %d leaves the plane, and dim is 2",
                            p->id[i]);
     }
-    o->most = most;
-    if (most < 0) outside_measure(o, p->mass, p->n);
+    o->most = force.most;
+    if (force.most < 0) outside_measure(o, p->mass, p->n);
     return 0;
 }
 
@@ -227,9 +232,10 @@ bool acts_any(const struct acts *a)
     return a->id || a->push[ACTS_LASTING] || a->push[ACTS_ONCE];
 }
 
-int acts_force(struct acts *a, const struct packing *p, int32_t id, vec3 force, vec3 torque,
+int acts_force(struct acts *a, const struct packing *p, int32_t id, struct wrench w,
                enum acts_lasting term, struct why *why)
 {
+    const vec3 force = w.force, torque = w.torque;
     int64_t i = acts_row(p, id);
     if (i < 0) return why_set(why, EX_DATAERR, "there is no body %d", id);
     if (!v3_finite(force) || !v3_finite(torque))

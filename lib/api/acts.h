@@ -43,8 +43,12 @@ bool acts_any(const struct acts *acts);
 /* The row of the body with this id; -1: there is none */
 int64_t acts_row(const struct packing *p, int32_t id);
 
-/* In place of what acts for so long; torque NULL: none */
-int acts_force(struct acts *acts, const struct packing *p, int32_t id, vec3 force, vec3 torque,
+/* What acts on a body */
+struct wrench {
+    vec3 force, torque; /* N, N m */
+};
+/* In place of what acts on the body of this id for so long */
+int acts_force(struct acts *acts, const struct packing *p, int32_t id, struct wrench w,
                enum acts_lasting term, struct why *why);
 /* N along the axis of its load, N m about it, added to that. EX_DATAERR: the boundary has none. */
 int acts_push(struct acts *acts, const struct packing *p, int64_t wall, double force,

@@ -22,16 +22,18 @@ static vec3 nearest_image(const struct cell *cell, const vec3 edge[3], vec3 at, 
     return at;
 }
 
-/* The contact of bond b; q has no half step of balls, whose turning is constant. */
-static struct contact place(const struct packing *p, const struct bond *b, const vec3 *x,
-                            const quat *q, const vec3 edge[3], double t)
+/* The contact of bond b; at->q has no half step of balls, whose turning is constant. */
+static struct contact place(const struct packing *p, const struct bond *b,
+                            const struct positions *at)
 {
+    const vec3 *x = at->x;
+    const quat *q = at->q;
     struct contact c = { .a = b->a, .b = b->b, .feature = b->feature };
     quat qb = packing_shape(p, b->b) ? q[b->b] : top_predict(p, b->b);
-    vec3 xb = v3_add(v3_add(x[b->b], cell_shift(edge, b->shift)), quat_turn(qb, b->at_b)), xa;
+    vec3 xb = v3_add(v3_add(x[b->b], cell_shift(at->edge, b->shift)), quat_turn(qb, b->at_b)), xa;
     if (b->a < 0) {
-        const struct pose pose = wall_pose(p, &p->wall[-1 - b->a], t);
-        xa = nearest_image(&p->cell, edge, pose_of(&pose, b->at_a), xb);
+        const struct pose pose = wall_pose(p, &p->wall[-1 - b->a], at->t);
+        xa = nearest_image(&p->cell, at->edge, pose_of(&pose, b->at_a), xb);
     } else {
         quat qa = packing_shape(p, b->a) ? q[b->a] : top_predict(p, b->a);
         xa = v3_add(x[b->a], quat_turn(qa, b->at_a));
@@ -80,8 +82,8 @@ static bool merge(struct contacts *to, const struct packing *p, const struct con
     return good;
 }
 
-int anchors_place(struct contacts *s, const struct packing *p, const vec3 *x, const quat *q,
-                  const vec3 edge[3], double t, struct why *why)
+int anchors_place(struct contacts *s, const struct packing *p, const struct positions *at,
+                  struct why *why)
 {
     int64_t n = 0;
     for (int64_t i = 0; i < p->bonds.n; i++) n += bond_anchored(&p->bonds.bond[i]);
@@ -92,9 +94,9 @@ int anchors_place(struct contacts *s, const struct packing *p, const vec3 *x, co
     for (int64_t i = 0; placed && i < p->bonds.n; i++) {
         const struct bond *b = &p->bonds.bond[i];
         int32_t body[2];
-        bool there = b->a >= 0 || wall_there(&p->wall[-1 - b->a], t);
+        bool there = b->a >= 0 || wall_there(&p->wall[-1 - b->a], at->t);
         if (!there || !packing_movable(p, b->a, b->b, body)) continue;
-        if (bond_anchored(b) && (b->beta > 0 || b->wet)) placed[n++] = place(p, b, x, q, edge, t);
+        if (bond_anchored(b) && (b->beta > 0 || b->wet)) placed[n++] = place(p, b, at);
     }
     if (!placed || !merge(&both, p, s, placed, n)) {
         free(placed), contacts_free(&both);

@@ -14,14 +14,14 @@
 #ifndef NSD_ANCHOR_H
 #define NSD_ANCHOR_H
 
-#include "bodies/packing.h"
+#include "bodies/positions.h"
 
 /*
- * Puts the contacts of all anchored bonds that hold into s, which has been detected with the bodies at
- * x and q, the cell's edges at edge (m) and the boundaries at time t (s). Returns 0 or EX_SOFTWARE.
+ * Puts the contacts of all anchored bonds that hold into s, which has been detected at these positions. Returns 0 or
+ * EX_SOFTWARE.
  */
-int anchors_place(struct contacts *s, const struct packing *p, const vec3 *x, const quat *q,
-                  const vec3 edge[3], double t, struct why *why);
+int anchors_place(struct contacts *s, const struct packing *p, const struct positions *at,
+                  struct why *why);
 
 /* Is the contact that of an anchored bond? */
 static inline bool contact_anchored(const struct contact *c)

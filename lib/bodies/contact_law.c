@@ -66,9 +66,10 @@ struct places {
 
 /* Beta and the jump of a bond that there is, or that is made in this step */
 static void set_bond(struct contact_law *t, const struct packing *p, const struct contact *c,
-                     const struct pair_law *l, const struct bond *old, bool touches,
-                     const struct places *of)
+                     const struct bond *old, const struct places *of)
 {
+    const struct pair_law *l = law_of(p, c);
+    bool touches = c->gap <= touch_of(p, c);
     bool due = fabs(p->t - l->made) < 0.5 * p->dt && !(old && old->beta > 0);
     if (touches && (l->forever ? !old && !of->broken : due)) {
         t->beta = l->beta, t->state |= CONTACT_LAW_BONDED;
@@ -115,7 +116,7 @@ static void set_tie(struct contact_law *t, const struct packing *p, struct conta
     t->mu_r = l->mu_r, t->mu_p = l->mu_p;
     if (wet) t->state |= old && old->wet ? CONTACT_LAW_WET : CONTACT_LAW_WET | TIE_NEW_BRIDGE;
     t->pull = whole_pull(p, c, l, wet) / of->tied;
-    if (pair_law_adheres(l)) set_bond(t, p, c, l, old, c->gap <= touch_of(p, c), of);
+    if (pair_law_adheres(l)) set_bond(t, p, c, old, of);
     if (contact_law_holds(t) && c->gap > 0) t->offset = offset_apart(p, c);
     if (t->beta > 0 || t->offset > 0) c->en = c->et = 0;
     c->mu *= 1 - t->beta;
@@ -280,11 +281,14 @@ static bool has_bond(const struct contact *c, const struct bonds *s, int64_t i)
 }
 
 /* The place of a bond where there is a shape: that of the old one, or of this contact, with a new key, below
-   all of its pair. old, from: of bonds_find() for this contact */
-static void anchor(struct bond *b, const struct packing *p, const struct contact *c,
-                   const struct contact_law *t, const struct bond *old, int64_t from,
-                   const struct bonds *kept)
+   all of its pair. *found: as of bonds_find() */
+static void anchor(struct bond *b, const struct packing *p, const struct contacts *s, int64_t i,
+                   int64_t *found, const struct bonds *kept)
 {
+    const struct contact *c = &s->c[i];
+    const struct contact_law *t = &s->law[i];
+    const struct bond *old = bonds_find(&p->bonds, c, found);
+    int64_t from = *found;
     if (old && bond_anchored(old)) {
         b->area = old->area, b->at_a = old->at_a, b->at_b = old->at_b, b->axis = old->axis;
         return;
@@ -293,8 +297,8 @@ static void anchor(struct bond *b, const struct packing *p, const struct contact
     int32_t least = 0;
     while (has_bond(c, &p->bonds, from - 1)) from--;
     if (has_bond(c, &p->bonds, from)) least = lesser(least, p->bonds.bond[from].feature);
-    for (int64_t i = kept->n - 1; has_bond(c, kept, i); i--)
-        least = lesser(least, kept->bond[i].feature);
+    for (int64_t k = kept->n - 1; has_bond(c, kept, k); k--)
+        least = lesser(least, kept->bond[k].feature);
     b->feature = least > INT32_MIN ? least - 1 : least;
     anchor_bond(b, p, c, t->stiff[0] / (law_of(p, c)->cn * t->beta * t->beta));
 }
@@ -330,10 +334,7 @@ int contact_laws_keep(struct packing *p, const struct contacts *s, struct why *w
             continue;
         bool bonded =
             s->law[i].state & CONTACT_LAW_BONDED && (s->law[i].beta > 0 || contact_anchored(c));
-        if (contact_shaped(p, c) && bonded) {
-            const struct bond *old = bonds_find(&p->bonds, c, &from);
-            anchor(&b, p, c, &s->law[i], old, from, &kept);
-        }
+        if (contact_shaped(p, c) && bonded) anchor(&b, p, s, i, &from, &kept);
         good = bonds_add(&kept, &b) != NULL;
     }
     good = good && (!p->shape || remember_broken(&kept, p, s));

@@ -14,9 +14,11 @@ static int32_t normals_of(const struct shape *s, int dim)
     return s->form != SHAPE_HULL ? 0 : dim == 2 ? s->vertices : s->faces;
 }
 
-int placed_init(struct placed *s, const struct packing *p, const vec3 *x, const quat *q,
+int placed_init(struct placed *s, const struct packing *p, const struct positions *at,
                 struct why *why)
 {
+    const vec3 *x = at->x;
+    const quat *q = at->q;
     *s = (struct placed){ .p = p, .x = x };
     s->first = calloc((size_t)p->n + 1, sizeof *s->first);
     s->face = calloc((size_t)p->n + 1, sizeof *s->face);

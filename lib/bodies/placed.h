@@ -6,7 +6,7 @@
 #ifndef NSD_PLACED_H
 #define NSD_PLACED_H
 
-#include "bodies/packing.h"
+#include "bodies/positions.h"
 #include "geometry/core.h"
 
 struct placed {
@@ -16,8 +16,8 @@ struct placed {
     vec3 *vertex, *normal; /* m; unit vectors */
 };
 
-/* The bodies at x[n] (m) and q[n]. Returns 0, or EX_SOFTWARE with nothing to free. */
-int placed_init(struct placed *s, const struct packing *p, const vec3 *x, const quat *q,
+/* Of the bodies at these positions. Returns 0, or EX_SOFTWARE with nothing to free. */
+int placed_init(struct placed *s, const struct packing *p, const struct positions *at,
                 struct why *why);
 void placed_free(struct placed *s);
 

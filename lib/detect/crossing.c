@@ -23,22 +23,22 @@ static bool is_fast(const struct packing *p, const struct fast *b)
     return p->dt * p->dt * v3_dot(b->v, b->v) > b->thick * b->thick;
 }
 
-int crossing_list(struct fast **list, int64_t *count, const struct packing *p, int64_t n,
-                  struct why *why)
+int crossing_list(struct fast_list *list, const struct packing *p, int64_t n, struct why *why)
 {
-    *list = NULL, *count = 0;
+    *list = (struct fast_list){ 0 };
     for (int64_t i = 0; i < n; i++) {
         const struct fast b = body_of(p, i);
         if (!is_fast(p, &b)) continue;
-        if (!(*count & (*count - 1))) { // the room doubles
-            struct fast *more = realloc(*list, (size_t)(*count ? 2 * *count : 1) * sizeof *more);
+        if (!(list->n & (list->n - 1))) { // the room doubles
+            struct fast *more =
+                realloc(list->of, (size_t)(list->n ? 2 * list->n : 1) * sizeof *more);
             if (!more) {
-                free(*list), *list = NULL;
+                free(list->of), list->of = NULL;
                 return why_set(why, EX_SOFTWARE, "no memory for fast bodies");
             }
-            *list = more;
+            list->of = more;
         }
-        (*list)[(*count)++] = b;
+        list->of[list->n++] = b;
     }
     return 0;
 }
@@ -104,20 +104,20 @@ static int by_place(const void *a, const void *b)
 
 /* With the images in the cells around, sorted; NULL: no memory */
 static struct fast *with_images(const struct packing *p, struct window window,
-                                const struct fast *list, int64_t count, int64_t *n)
+                                const struct fast_list *list, int64_t *n)
 {
     int reach[3];
     int64_t images = 1;
     for (int k = 0; k < 3; k++) reach[k] = p->cell.repeats[k], images *= 1 + 2 * reach[k];
-    struct fast *all = calloc((size_t)(count * images), sizeof *all);
+    struct fast *all = calloc((size_t)(list->n * images), sizeof *all);
     *n = 0;
-    for (int64_t i = 0; all && i < count; i++)
+    for (int64_t i = 0; all && i < list->n; i++)
         for (int a = -reach[0]; a <= reach[0]; a++)
             for (int b = -reach[1]; b <= reach[1]; b++)
                 for (int c = -reach[2]; c <= reach[2]; c++) {
                     const int8_t shift[3] = { (int8_t)a, (int8_t)b, (int8_t)c };
                     struct fast *to = &all[(*n)++];
-                    *to = list[i];
+                    *to = list->of[i];
                     to->x = v3_add(to->x, cell_shift(p->cell.edge, shift));
                     to->v = v3_add(to->v, cell_shift(p->cell.rate, shift));
                     set_reach(to, window);
@@ -147,12 +147,12 @@ static bool is_fixed_hull(const struct packing *p, const struct fast *b)
     return b->mass == 0 && hull_of(p, b);
 }
 
-int crossing_count(struct passed *s, const struct packing *p, int64_t n, const struct fast *list,
-                   int64_t count, struct window window, struct why *why)
+int crossing_count(struct passed *s, const struct packing *p, int64_t n,
+                   const struct fast_list *list, struct window window, struct why *why)
 {
     int64_t images;
-    if (!count) return 0;
-    struct fast *all = with_images(p, window, list, count, &images);
+    if (!list->n) return 0;
+    struct fast *all = with_images(p, window, list, &images);
     if (!all) return why_set(why, EX_SOFTWARE, "no memory for fast bodies");
     for (int64_t i = 0; i < n; i++) {
         struct fast b = body_of(p, i);

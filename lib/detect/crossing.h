@@ -29,13 +29,17 @@ struct fast {
     double most;
 };
 
-/* Those of the packing's first n bodies: *list of *count, to be freed. Returns 0 or EX_SOFTWARE. */
-int crossing_list(struct fast **list, int64_t *count, const struct packing *p, int64_t n,
-                  struct why *why);
-/* Adds to `s` the crossings of the packing's first n bodies with those of list[count], which has all fast bodies of
+struct fast_list {
+    int64_t n;
+    struct fast *of; /* [n] to be freed */
+};
+
+/* Those of the packing's first n bodies. Returns 0 or EX_SOFTWARE. */
+int crossing_list(struct fast_list *list, const struct packing *p, int64_t n, struct why *why);
+/* Adds to `s` the crossings of the packing's first n bodies with those of the list, which has all fast bodies of
    all ranks, in any order. A pair is one of the body with the lower number where both are fast, else of the other
    one. Returns 0 or EX_SOFTWARE. */
-int crossing_count(struct passed *s, const struct packing *p, int64_t n, const struct fast *list,
-                   int64_t count, struct window window, struct why *why);
+int crossing_count(struct passed *s, const struct packing *p, int64_t n,
+                   const struct fast_list *list, struct window window, struct why *why);
 
 #endif

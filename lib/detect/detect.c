@@ -10,6 +10,7 @@
 #include "bodies/top.h"
 #include "detect/detect_shapes.h"
 #include "detect/seam.h"
+#include "detect/situation.h"
 #include "detect/swift.h"
 
 #include <stdlib.h>
@@ -38,15 +39,12 @@ static bool add_touch(struct contacts *out, const struct packing *p, int32_t w, 
     return true;
 }
 
-/* What contacts are sought of: the bodies at x, the cell's edges at edge (m; NULL: it does not repeat), the
-   boundaries where they are at time t (s) */
+/* What contacts are sought of */
 struct sought {
-    const struct packing *p;
-    const vec3 *x, *edge;
-    double t, gap;
+    struct situation all;
+    double gap; /* m */
     const struct neighbours *near;
-    const struct placed *shaped; /* NULL: all are balls */
-    int32_t wall;                /* the one in hand */
+    int32_t wall; /* the one in hand */
 };
 
 /* Adds those of first .. end-1, bodies or pairs of near ones; false when memory is short. */
@@ -102,17 +100,16 @@ static bool find_all(struct contacts *out, const struct sought *o, int64_t n, in
 
 static bool add_plane(struct contacts *out, const struct sought *o, int64_t first, int64_t end)
 {
-    const struct packing *p = o->p;
+    const struct packing *p = o->all.p;
     const int32_t w = o->wall;
-    const vec3 *x = o->x;
+    const vec3 *x = o->all.x;
     const double gap = o->gap;
-    vec3 at = wall_at(p, &p->wall[w], o->t), n = wall_normal(p, &p->wall[w], o->t);
+    vec3 at = wall_at(p, &p->wall[w], o->all.t), n = wall_normal(p, &p->wall[w], o->all.t);
     for (int64_t i = first; i < end; i++) {
         struct touch touch = { n, v3_dot(v3_sub(x[i], at), n), 0 };
         if (!(touch.distance - p->radius[i] <= gap) || p->mass[i] == 0) continue;
-        if (o->shaped && packing_shape(p, i)) {
-            if (!detect_shapes_wall(out, o->shaped, w, i, o->t, gap, NULL, v3(0, 0, 0)))
-                return false;
+        if (o->all.shaped && packing_shape(p, i)) {
+            if (!detect_shapes_wall(out, &o->all, w, i, gap, v3(0, 0, 0))) return false;
             continue;
         }
         if (!add_touch(out, p, w, i, x[i], &touch)) return false;
@@ -123,61 +120,56 @@ static bool add_plane(struct contacts *out, const struct sought *o, int64_t firs
 /* Body i and a wall of any other shape. A ball is brought to where the shape is described, and what it touches
    back from there. */
 static bool add_body(struct contacts *out, const struct sought *o, const struct pose *pose,
-                     const struct surface *surface, int64_t i)
+                     int64_t i)
 {
-    const struct packing *p = o->p;
+    const struct packing *p = o->all.p;
     const int32_t w = o->wall;
     const struct wall *wall = &p->wall[w];
+    const struct surface *surface = situation_surface(&o->all, w);
     double r = p->radius[i];
     struct touch touch[TOUCHES_MOST];
-    if (o->shaped && packing_shape(p, i))
-        return detect_shapes_wall(out, o->shaped, w, i, o->t, o->gap, surface, v3(0, 0, 0));
-    vec3 c = v3_sub(quat_turn_back(pose->q, v3_sub(o->x[i], pose->shift)), wall->x);
+    if (o->all.shaped && packing_shape(p, i))
+        return detect_shapes_wall(out, &o->all, w, i, o->gap, v3(0, 0, 0));
+    vec3 c = v3_sub(quat_turn_back(pose->q, v3_sub(o->all.x[i], pose->shift)), wall->x);
     int n = surface ? surface_touches(surface, c, r + o->gap, touch)
                     : boundary_nearest(wall, p->dim, c, r, touch);
     for (int k = 0; k < n; k++) {
         if (!(touch[k].distance - r <= o->gap)) continue;
         touch[k].n = quat_turn(pose->q, touch[k].n);
-        if (!add_touch(out, p, w, i, o->x[i], &touch[k])) return false;
+        if (!add_touch(out, p, w, i, o->all.x[i], &touch[k])) return false;
     }
     return true;
 }
 
 static bool add_shape(struct contacts *out, const struct sought *o, int64_t first, int64_t end)
 {
-    const struct packing *p = o->p;
-    const struct wall *wall = &p->wall[o->wall];
-    const struct surface *surface =
-        wall->shape == BOUNDARY_MESH ? &o->near->surface[o->wall] : NULL;
-    const struct swift swift = { p, o->x, o->t, o->shaped, o->near->surface };
+    const struct packing *p = o->all.p;
     const double most = swift_beside(p, o->wall);
-    struct pose pose = wall_pose(p, wall, o->t);
+    struct pose pose = wall_pose(p, &p->wall[o->wall], o->all.t);
     for (int64_t i = first; i < end; i++) {
         if (p->mass[i] == 0) continue;
         int64_t before = out->n;
-        if (!add_body(out, o, &pose, surface, i)) return false;
-        if (swift_is(p, i, most) && !swift_meets_wall(out, before, &swift, o->wall, i))
+        if (!add_body(out, o, &pose, i)) return false;
+        if (swift_is(p, i, most) && !swift_meets_wall(out, before, &o->all, o->wall, i))
             return false;
     }
     return true;
 }
 
-/* False when memory is short. */
-static bool add_ball_contact(struct contacts *out, const struct packing *p,
-                             const struct neighbours *near, const struct pair *pair, const vec3 *x,
-                             const vec3 edge[3], double gap, const struct placed *shaped)
+/* pair: with its shift now. False when memory is short. */
+static bool add_pair(struct contacts *out, const struct sought *o, const struct pair *pair)
 {
+    const struct packing *p = o->all.p;
+    const struct placed *shaped = o->all.shaped;
+    const vec3 *x = o->all.x;
+    const double gap = o->gap;
     int32_t a = pair->a, b = pair->b;
-    int8_t shift[3] = { 0 };
     vec3 d = v3_sub(x[b], x[a]);
-    if (edge) {
-        neighbours_shift(near, p, pair, shift);
-        d = v3_add(d, cell_shift(edge, shift));
-    }
+    if (o->all.edge) d = v3_add(d, cell_shift(o->all.edge, pair->shift));
     double radii = p->radius[a] + p->radius[b], most = radii + gap, d2 = v3_dot(d, d);
     if (d2 > most * most * (1 + 1e-12)) return true; // clearly apart: no square root needed
     if (shaped && (packing_shape(p, a) || packing_shape(p, b)))
-        return detect_shapes_pair(out, shaped, a, b, shift, v3_sub(d, v3_sub(x[b], x[a])), gap);
+        return detect_shapes_pair(out, shaped, pair, v3_sub(d, v3_sub(x[b], x[a])), gap);
     double distance = sqrt(d2), g = distance - radii;
     if (!(g <= gap)) return true;
     struct contact *c = contacts_add(out, a, b);
@@ -185,7 +177,7 @@ static bool add_ball_contact(struct contacts *out, const struct packing *p,
     // balls with the same centre: any normal will do, so b is taken to lie above a
     vec3 up = p->dim == 2 ? v3(0, 1, 0) : v3(0, 0, 1);
     contact_basis(c, p->dim, distance > 0 ? v3_scale(1 / distance, d) : up);
-    for (int k = 0; k < 3; k++) c->shift[k] = shift[k];
+    for (int k = 0; k < 3; k++) c->shift[k] = pair->shift[k];
     c->gap = g;
     c->x = v3_axpy(x[a], p->radius[a] + 0.5 * g, c->n);
     packing_set_law(p, c);
@@ -206,10 +198,11 @@ static int64_t next_bodies(const struct pairs *s, int64_t i)
 static bool add_pairs(struct contacts *out, const struct sought *o, int64_t first, int64_t end)
 {
     end = next_bodies(&o->near->list, end);
-    for (int64_t i = next_bodies(&o->near->list, first); i < end; i++)
-        if (!add_ball_contact(out, o->p, o->near, &o->near->list.pair[i], o->x, o->edge, o->gap,
-                              o->shaped))
-            return false;
+    for (int64_t i = next_bodies(&o->near->list, first); i < end; i++) {
+        struct pair pair = o->near->list.pair[i];
+        if (o->all.edge) neighbours_shift(o->near, o->all.p, &o->near->list.pair[i], pair.shift);
+        if (!add_pair(out, o, &pair)) return false;
+    }
     return true;
 }
 
@@ -235,36 +228,33 @@ static int check_crowd(struct neighbours *near, const struct packing *p, int64_t
         (long long)most);
 }
 
-/* The bodies at x and q, the cell's edges at edge (m), the walls where they are at time t (s) */
-static int detect(struct contacts *out, const struct packing *p, const vec3 *x, const quat *q,
-                  const vec3 edge[3], double t, double gap, struct neighbours *kept,
-                  struct why *why)
+static int detect(struct contacts *out, const struct packing *p, const struct positions *at,
+                  double gap, struct neighbours *kept, struct why *why)
 {
     struct placed placed = { 0 }, *shaped = p->shape ? &placed : NULL;
     struct neighbours once = { 0 }, *near = kept ? kept : &once;
-    const vec3 *edges = cell_repeats(&p->cell) ? edge : NULL;
-    struct sought o = { p, x, edges, t, gap, near, shaped, 0 };
+    const vec3 *edges = cell_repeats(&p->cell) ? at->edge : NULL;
+    struct sought o = { { p, at->x, edges, at->t, shaped, NULL }, gap, near, 0 };
     bool stored = true;
     _Atomic int64_t seen = 0;
     out->n = 0, contacts_free_found(out), contacts_free_tie(out);
-    int e = neighbours_find(near, p, x, edge, gap, kept, why);
+    int e = neighbours_find(near, p, at, gap, kept, why);
     if (!e) e = neighbours_surfaces(near, p, why);
     if (!e) count_elements(near, p, &seen);
-    if (!e && shaped) e = placed_init(shaped, p, x, q, why);
+    if (!e && shaped) e = placed_init(shaped, p, at, why);
+    o.all.surface = near->surface;
     for (o.wall = p->walls - 1; !e && stored && o.wall >= 0; o.wall--) {
         const struct wall *wall = &p->wall[o.wall];
         bool plane = wall->shape == BOUNDARY_PLANE;
-        if (!wall_there(wall, t)) continue;
+        if (!wall_there(wall, at->t)) continue;
         stored = find_all(out, &o, p->n, plane && !shaped ? PER_THREAD_FLAT : PER_THREAD_CURVED,
                           plane ? add_plane : add_shape);
     }
     if (!e && stored)
         stored = find_all(out, &o, near->list.n, shaped ? PER_THREAD_CURVED : PER_THREAD_FLAT,
                           add_pairs);
-    const struct seams seams = { p, x, edges, t, shaped, near->surface };
-    const struct swift swift = { p, x, t, shaped, near->surface };
-    if (!e && stored) e = seams_drop(out, &seams, why);
-    if (!e && stored) stored = swift_meet_hulls(out, &swift);
+    if (!e && stored) e = seams_drop(out, &o.all, why);
+    if (!e && stored) stored = swift_meet_hulls(out, &o.all);
     placed_free(&placed);
     if (!e) e = check_crowd(near, p, seen, why);
     neighbours_free(&once);
@@ -272,11 +262,11 @@ static int detect(struct contacts *out, const struct packing *p, const vec3 *x, 
 }
 
 int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3 *x, double t,
-                       double gap, struct neighbours *kept, struct why *why)
+                       double gap, struct why *why)
 {
-    vec3 edge[3];
-    cell_predict(&p->cell, t - p->t, edge);
-    return detect(out, p, x, p->q, edge, t, gap, kept, why);
+    struct positions at = { .x = x, .q = p->q, .t = t };
+    cell_predict(&p->cell, t - p->t, at.edge);
+    return detect(out, p, &at, gap, NULL, why);
 }
 
 /* What decides which pairs that do not touch the law sees */
@@ -340,12 +330,11 @@ static void keep_seen(struct contacts *s, const struct packing *p, double gap)
     s->n = n;
 }
 
-/* Where bodies and edges are when contacts are sought: at the midpoint of the step, for theta = 1/2. */
+/* Positions predicted for a step: at its midpoint, for theta = 1/2. */
 struct prediction {
-    vec3 *x;      /* [n] */
-    quat *q;      /* [n]; NULL: no body has a shape */
-    vec3 edge[3]; /* m */
-    double t;     /* s */
+    vec3 *x; /* [n] m */
+    quat *q; /* [n]; NULL: no body has a shape */
+    struct positions at;
 };
 
 static void prediction_free(struct prediction *m)
@@ -371,7 +360,7 @@ static void predict_some(void *arg, int64_t first, int64_t end)
 static int predict(struct prediction *m, const struct packing *p, struct why *why)
 {
     double ahead = step_ahead(p);
-    *m = (struct prediction){ .x = malloc(((size_t)p->n + 1) * sizeof *m->x), .t = p->t + ahead };
+    *m = (struct prediction){ .x = malloc(((size_t)p->n + 1) * sizeof *m->x) };
     if (p->shape) m->q = malloc(((size_t)p->n + 1) * sizeof *m->q);
     if (!m->x || (p->shape && !m->q)) {
         prediction_free(m);
@@ -379,7 +368,8 @@ static int predict(struct prediction *m, const struct packing *p, struct why *wh
     }
     struct predicting y = { p, m };
     team_share(team_size(), p->n, PER_THREAD_FLAT, predict_some, &y);
-    cell_predict(&p->cell, ahead, m->edge);
+    m->at = (struct positions){ .x = m->x, .q = m->q, .t = p->t + ahead };
+    cell_predict(&p->cell, ahead, m->at.edge);
     return 0;
 }
 
@@ -388,7 +378,7 @@ int detect_near(struct contacts *out, const struct packing *p, double reach,
 {
     struct prediction m;
     if (predict(&m, p, why)) return why->status;
-    int e = detect(out, p, m.x, m.q, m.edge, m.t, reach, kept, why);
+    int e = detect(out, p, &m.at, reach, kept, why);
     prediction_free(&m);
     return e;
 }
@@ -398,7 +388,7 @@ static int add_anchored(struct contacts *s, const struct packing *p, struct why 
 {
     struct prediction m;
     if (predict(&m, p, why)) return why->status;
-    int e = anchors_place(s, p, m.x, m.q, m.edge, m.t, why);
+    int e = anchors_place(s, p, &m.at, why);
     prediction_free(&m);
     return e;
 }

@@ -31,6 +31,6 @@ int detect_choose(struct contacts *s, const struct packing *p, double gap, doubl
 
 /* The same with the bodies at x[n] (m), turned as they are, walls and cell where they are at time t (s). */
 int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3 *x, double t,
-                       double gap, struct neighbours *kept, struct why *why);
+                       double gap, struct why *why);
 
 #endif

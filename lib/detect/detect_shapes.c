@@ -10,7 +10,6 @@
 
 enum {
     CORNERS = 256,     /* of a body that are near a boundary, at most: of more the first */
-    RIMS = 64,         /* of a boundary that are near a body, likewise */
     RIM_KEY = 1 << 30, /* features of rims; with RIM_END of their ends */
     MOVED_MOST = 256   /* corners of a body that is met as an image without memory of its own */
 };
@@ -47,10 +46,11 @@ static bool apart(const struct core *a, const struct core *b, double ra, double 
     return v3_dot(d, d) > most * most * (1 + 1e-12);
 }
 
-static bool meet_pair(struct contacts *out, const struct placed *s, int32_t a, int32_t b,
-                      const int8_t shift[3], vec3 away, double gap, vec3 *room)
+static bool meet_pair(struct contacts *out, const struct placed *s, const struct pair *pair,
+                      vec3 away, double gap, vec3 *room)
 {
     const struct packing *p = s->p;
+    const int32_t a = pair->a, b = pair->b;
     int32_t as = placed_cores(s, a), bs = placed_cores(s, b);
     bool image = away.x != 0 || away.y != 0 || away.z != 0, whole = as == 1 && bs == 1;
     for (int32_t i = 0; i < as; i++)
@@ -64,26 +64,47 @@ static bool meet_pair(struct contacts *out, const struct placed *s, int32_t a, i
             int n = meet_cores(p->dim, &ca, &cb, gap, place);
             for (int k = 0; k < n; k++) {
                 if (!whole) place[k].feature = (i * bs + j) * PLACES_MOST + k;
-                if (!add(out, s, a, b, shift, &place[k])) return false;
+                if (!add(out, s, a, b, pair->shift, &place[k])) return false;
             }
         }
     return true;
 }
 
-bool detect_shapes_pair(struct contacts *out, const struct placed *s, int32_t a, int32_t b,
-                        const int8_t shift[3], vec3 away, double gap)
+bool detect_shapes_pair(struct contacts *out, const struct placed *s, const struct pair *pair,
+                        vec3 away, double gap)
 {
     vec3 few[MOVED_MOST];
-    const struct shape *shape = packing_shape(s->p, b);
-    if (!shape || shape->vertices <= MOVED_MOST)
-        return meet_pair(out, s, a, b, shift, away, gap, few);
+    const struct shape *shape = packing_shape(s->p, pair->b);
+    if (!shape || shape->vertices <= MOVED_MOST) return meet_pair(out, s, pair, away, gap, few);
     vec3 *many = malloc((size_t)shape->vertices * sizeof *many);
-    bool good = many && meet_pair(out, s, a, b, shift, away, gap, many);
+    bool good = many && meet_pair(out, s, pair, away, gap, many);
     free(many);
     return good;
 }
 
 /* ---- boundaries ---- */
+
+/* A body and a boundary, whose contacts are sought */
+struct facing {
+    const struct placed *s;
+    int64_t i;
+    const struct wall *wall;
+    const struct surface *surface; /* of a mesh, else NULL */
+    struct pose pose;              /* of the boundary */
+    double gap;                    /* m: the largest */
+};
+
+/* Where x (m) is for the boundary as it is described */
+static vec3 described(const struct facing *o, vec3 x)
+{
+    return v3_sub(quat_turn_back(o->pose.q, v3_sub(x, o->pose.shift)), o->wall->x);
+}
+
+/* m: of the body and the gap around it */
+static double reach_of(const struct facing *o)
+{
+    return o->s->p->radius[o->i] + fmax(o->gap, 0);
+}
 
 /* Is the place t of the end of a boundary below a corner, to its weld tolerance? The normal of t is then that of
    the face: two walls may end there in one flat surface. */
@@ -152,33 +173,32 @@ static int turn_touches(const struct corner *o, struct touch *t, int n, double r
     return kept;
 }
 
-/* Where a corner of body i, rounded by `round` (m), meets the surface; n points to the body's side. Where the
+/* Where a corner v of the body, rounded by `round` (m), meets the surface; n points to the body's side. Where the
    boundary ends or bends only what is round meets it by its corners: of sharp bodies, edges and faces meet rims
    [meet_rims()]. Returns how many places. */
-static int near_surface(const struct placed *s, const struct wall *wall, const struct pose *pose,
-                        const struct surface *surface, int64_t i, vec3 v, double round, double gap,
+static int near_surface(const struct facing *face, vec3 v, double round,
                         struct touch touch[TOUCHES_MOST])
 {
-    const struct packing *p = s->p;
-    vec3 c = v3_sub(quat_turn_back(pose->q, v3_sub(v, pose->shift)), wall->x);
-    vec3 middle = v3_sub(quat_turn_back(pose->q, v3_sub(s->x[i], pose->shift)), wall->x);
-    double r = p->radius[i];
-    int n = surface ? surface_touches(surface, c, round + gap + r, touch)
+    const struct packing *p = face->s->p;
+    const struct wall *wall = face->wall;
+    const struct surface *surface = face->surface;
+    vec3 c = described(face, v), middle = described(face, face->s->x[face->i]);
+    double r = p->radius[face->i];
+    int n = surface ? surface_touches(surface, c, round + face->gap + r, touch)
                     : boundary_nearest(wall, p->dim, c, r, touch);
     struct touch found[TOUCHES_MOST];
-    struct touch groove[TOUCHES_MOST];
+    struct grooves grooves;
     const struct corner o = { wall, surface, p->dim, c, middle };
     const bool through = surface && n > 0 && is_between(&o, middle, c);
-    int kept = 0, grooves = 0;
+    int kept = 0;
+    grooves.n = 0;
     memcpy(found, touch, (size_t)n * sizeof *touch);
     for (int k = 0; k < n && kept < TOUCHES_MOST; k++) {
         struct touch *t = &touch[kept], *f = &found[k];
         bool end = boundary_ends_at(wall, p->dim, surface, c, f);
         if (round == 0 && end && !(over_face(wall, surface, f) && is_before(&o, f))) continue;
         if (round == 0 && surface && surface_bends(surface, p->dim, f->feature)) {
-            if (through)
-                grooves += surface_groove(surface, p->dim, f, c, middle, groove + grooves,
-                                          TOUCHES_MOST - grooves);
+            if (through) surface_groove(&grooves, surface, p->dim, f, c, middle);
             continue;
         }
         *t = *f, kept++;
@@ -188,23 +208,23 @@ static int near_surface(const struct placed *s, const struct wall *wall, const s
             turn_to_middle(&o, t);
     }
     if (through) kept = turn_touches(&o, touch, kept, r);
-    for (int k = 0; k < grooves && kept < TOUCHES_MOST; k++) touch[kept++] = groove[k];
-    for (int k = 0; k < kept; k++) touch[k].n = quat_turn(pose->q, touch[k].n);
+    for (int k = 0; k < grooves.n && kept < TOUCHES_MOST; k++) touch[kept++] = grooves.touch[k];
+    for (int k = 0; k < kept; k++) touch[k].n = quat_turn(face->pose.q, touch[k].n);
     return kept;
 }
 
-/* The outside of a sphere or an endless cylinder, as the core of a ball or capsule; false: no such
+/* The outside of a sphere or an endless cylinder, as the core of a ball or capsule with ends v; false: no such
    boundary */
-static bool convex_boundary(const struct packing *p, const struct wall *wall,
-                            const struct pose *pose, vec3 near, double reach, vec3 v[2],
-                            struct core *c)
+static bool convex_boundary(const struct facing *o, vec3 v[2], struct core *c)
 {
+    const struct packing *p = o->s->p;
+    const struct wall *wall = o->wall;
     if (wall->side != BOUNDARY_OUTSIDE || wall->arc > 0) return false;
     bool ball = wall->shape == BOUNDARY_SPHERE || (wall->shape == BOUNDARY_CYLINDER && p->dim == 2);
     bool tube = wall->shape == BOUNDARY_CYLINDER && p->dim == 3 && wall->size[2] == 0;
     if (!ball && !tube) return false;
-    vec3 x = pose_of(pose, wall->x), n = quat_turn(pose->q, wall->n);
-    double along = v3_dot(n, v3_sub(near, x));
+    vec3 x = pose_of(&o->pose, wall->x), n = quat_turn(o->pose.q, wall->n);
+    double along = v3_dot(n, v3_sub(o->s->x[o->i], x)), reach = 2 * reach_of(o);
     v[0] = tube ? v3_axpy(x, along - reach, n) : x, v[1] = v3_axpy(x, along + reach, n);
     *c = (struct core){ .n = tube ? 2 : 1, .v = v, .round = wall->size[0] };
     c->centre = tube ? v3_axpy(x, along, n) : x;
@@ -234,11 +254,11 @@ static const double ALONG = 1e-12;
 /* Sine: a face that lies on a surface to this is next to its rim, too */
 static const double ALONG_SURFACE = 1e-3;
 
-/* The part of a rim within `reach` of x, in space; returns its ends, 0: none. */
-static int place_rim(const struct rim *r, const struct wall *wall, const struct pose *pose, vec3 x,
-                     double reach, vec3 v[2], bool cut[2])
+/* The part of a rim within reach of x, in space; returns its ends, 0: none. */
+static int place_rim(const struct facing *o, const struct rim *r, vec3 x, vec3 v[2], bool cut[2])
 {
-    for (int k = 0; k < r->n; k++) v[k] = pose_of(pose, v3_add(wall->x, r->v[k]));
+    const double reach = reach_of(o);
+    for (int k = 0; k < r->n; k++) v[k] = pose_of(&o->pose, v3_add(o->wall->x, r->v[k]));
     cut[0] = cut[1] = false;
     if (r->n == 1) return 1;
     vec3 a = v[0], d = v3_sub(v[1], a), w = v3_sub(x, a);
@@ -274,11 +294,11 @@ static bool is_there(const struct place *place, int corners, int n, const struct
 }
 
 /* Does the surface go on flat beyond the place x of a rim? Its triangles do not share their corners there. */
-static bool goes_on(const struct rim *r, const struct wall *wall, const struct pose *pose,
-                    const struct surface *surface, vec3 x, double beyond)
+static bool goes_on(const struct facing *o, const struct rim *r, vec3 x, double beyond)
 {
+    const struct surface *surface = o->surface;
     if (!surface) return false;
-    vec3 c = v3_sub(quat_turn_back(pose->q, v3_sub(x, pose->shift)), wall->x);
+    vec3 c = described(o, x);
     double step = fmax(beyond, 10 * surface->weld);
     for (int k = 0; k < r->sides; k++)
         if (!surface_is_at(surface, v3_axpy(c, -step, r->into[k]), NULL, 2 * surface->weld))
@@ -286,30 +306,30 @@ static bool goes_on(const struct rim *r, const struct wall *wall, const struct p
     return true;
 }
 
-/* Adds where the rims of a boundary meet a core and no corner does; returns how many places there are. */
-static int meet_rims(struct place *place, int count, const struct packing *p,
-                     const struct wall *wall, const struct pose *pose,
-                     const struct surface *surface, const struct core *c, double radius, double gap)
+/* Adds where the rims of the boundary meet the body's core and no corner does; returns how many places there are. */
+static int meet_rims(const struct facing *o, const struct core *c, struct place *place, int count)
 {
-    struct rim rim[RIMS];
-    double reach = radius + fmax(gap, 0), near = SAME_PLACE * radius;
-    vec3 at = v3_sub(quat_turn_back(pose->q, v3_sub(c->centre, pose->shift)), wall->x);
-    int rims = rims_near(wall, p->dim, surface, at, reach, rim, RIMS), corners = count;
-    for (int k = 0; k < rims; k++) {
-        const struct rim *r = &rim[k];
+    const struct packing *p = o->s->p;
+    struct rims rims;
+    double near = SAME_PLACE * p->radius[o->i];
+    vec3 at = described(o, c->centre);
+    const int corners = count;
+    rims_near(&rims, o->wall, p->dim, o->surface, at, reach_of(o));
+    for (int k = 0; k < rims.n; k++) {
+        const struct rim *r = &rims.rim[k];
         vec3 v[2];
         bool cut[2];
         struct place found[PLACES_MOST];
-        struct core line = { .n = place_rim(r, wall, pose, c->centre, reach, v, cut), .v = v };
+        struct core line = { .n = place_rim(o, r, c->centre, v, cut), .v = v };
         if (!line.n) continue;
         line.centre = v3_scale(0.5, v3_add(v[0], v[line.n - 1]));
-        int n = meet_cores(p->dim, &line, c, gap, found);
+        int n = meet_cores(p->dim, &line, c, o->gap, found);
         for (int l = 0; l < n && count < CORNERS; l++) {
             struct place *f = &found[l];
-            if (!leads_away(r, pose, f->n)) continue;
+            if (!leads_away(r, &o->pose, f->n)) continue;
             f->x = v3_axpy(f->x, -0.5 * f->gap, f->n); // on the rim
             if (is_there(place, corners, count, f, near)) continue;
-            if (goes_on(r, wall, pose, surface, f->x, near)) continue;
+            if (goes_on(o, r, f->x, near)) continue;
             int end = p->dim == 2 ? 0 : meet_end(f);
             f->feature = end >= 0 && !cut[end] ? RIM_KEY | RIM_END | r->corner[end]
                                                : RIM_KEY | (r->key % (RIM_END / 4) * 4 + l);
@@ -319,21 +339,20 @@ static int meet_rims(struct place *place, int count, const struct packing *p,
     return count;
 }
 
-bool detect_shapes_wall(struct contacts *out, const struct placed *s, int32_t w, int64_t i,
-                        double t, double gap, const struct surface *surface, vec3 ahead)
+bool detect_shapes_wall(struct contacts *out, const struct situation *all, int32_t w, int64_t i,
+                        double gap, vec3 ahead)
 {
     static const int8_t none[3] = { 0, 0, 0 };
-    const struct packing *p = s->p;
+    const struct packing *p = all->p;
+    const struct placed *s = all->shaped;
     const struct wall *wall = &p->wall[w];
-    struct pose pose = wall_pose(p, wall, t);
+    struct facing o = { s, i, wall, situation_surface(all, w), wall_pose(p, wall, all->t), gap };
     bool plane = wall->shape == BOUNDARY_PLANE;
-    vec3 at = wall_at(p, wall, t), n = wall_normal(p, wall, t), ends[2];
+    vec3 at = wall_at(p, wall, all->t), n = wall_normal(p, wall, all->t), ends[2];
     struct core boundary;
-    double reach = p->radius[i] + fmax(gap, 0);
-    pose.shift = v3_sub(pose.shift, ahead);
-    if (plane && v3_dot(v3_sub(s->x[i], at), n) > reach) return true;
-    if (convex_boundary(p, wall, &pose, s->x[i], 2 * reach, ends, &boundary))
-        return meet_convex(out, s, w, i, &boundary, gap);
+    o.pose.shift = v3_sub(o.pose.shift, ahead);
+    if (plane && v3_dot(v3_sub(s->x[i], at), n) > reach_of(&o)) return true;
+    if (convex_boundary(&o, ends, &boundary)) return meet_convex(out, s, w, i, &boundary, gap);
     struct place place[CORNERS];
     int count = 0;
     int32_t cores = placed_cores(s, i);
@@ -345,7 +364,7 @@ bool detect_shapes_wall(struct contacts *out, const struct placed *s, int32_t w,
             if (plane)
                 touch[0] = (struct touch){ n, v3_dot(v3_sub(c.v[l], at), n), 0 };
             else
-                touches = near_surface(s, wall, &pose, surface, i, c.v[l], c.round, gap, touch);
+                touches = near_surface(&o, c.v[l], c.round, touch);
             for (int m = 0; m < touches && count < CORNERS; m++) {
                 if (!(touch[m].distance - c.round <= gap)) continue;
                 uint32_t key = (uint32_t)touch[m].feature * (uint32_t)(cores > 1 ? cores : c.n) +
@@ -357,8 +376,7 @@ bool detect_shapes_wall(struct contacts *out, const struct placed *s, int32_t w,
         }
     }
     const struct core c = placed_core(s, i, 0);
-    if (cores == 1 && !plane && (c.hull || c.n == 2))
-        count = meet_rims(place, count, p, wall, &pose, surface, &c, p->radius[i], gap);
+    if (cores == 1 && !plane && (c.hull || c.n == 2)) count = meet_rims(&o, &c, place, count);
     if (cores == 1 && plane) count = meet_few(place, count);
     for (int k = 0; k < count; k++)
         if (!add(out, s, -1 - w, (int32_t)i, none, &place[k])) return false;

@@ -13,18 +13,19 @@
 #include "bodies/contact.h"
 #include "bodies/placed.h"
 #include "detect/neighbours.h"
+#include "detect/situation.h"
 
 enum {
     RIM_END = 1 << 29 /* features of rims and their ends are not below it, those of corners are */
 };
 
-/* Contacts of bodies a and b, moved by `away` (m), with a gap of at most `gap` (m), sorted by feature.
-   shift: as of a contact. Law and point are set. False when memory is short. */
-bool detect_shapes_pair(struct contacts *out, const struct placed *s, int32_t a, int32_t b,
-                        const int8_t shift[3], vec3 away, double gap);
-/* Contacts of body i with boundary w, where it is at time t (s). ahead: not of a plane, the body is sought as far
-   (m) from where it is, and places are relative to where it is. */
-bool detect_shapes_wall(struct contacts *out, const struct placed *s, int32_t w, int64_t i,
-                        double t, double gap, const struct surface *surface, vec3 ahead);
+/* Contacts of a pair of bodies, b moved by `away` (m), with a gap of at most `gap` (m), sorted by feature.
+   pair->shift: as of a contact. Law and point are set. False when memory is short. */
+bool detect_shapes_pair(struct contacts *out, const struct placed *s, const struct pair *pair,
+                        vec3 away, double gap);
+/* Contacts of body i, which is shaped, with boundary w. ahead: not of a plane, the body is sought as far (m) from
+   where it is, and places are relative to where it is. */
+bool detect_shapes_wall(struct contacts *out, const struct situation *all, int32_t w, int64_t i,
+                        double gap, vec3 ahead);
 
 #endif

@@ -209,9 +209,10 @@ void neighbours_shift(const struct neighbours *s, const struct packing *p, const
     }
 }
 
-int neighbours_find(struct neighbours *s, const struct packing *p, const vec3 *x,
-                    const vec3 edge[3], double gap, bool keep, struct why *why)
+int neighbours_find(struct neighbours *s, const struct packing *p, const struct positions *at,
+                    double gap, bool keep, struct why *why)
 {
+    const vec3 *x = at->x, *edge = at->edge;
     size_t size = (size_t)p->n * sizeof *x;
     bool images = cell_repeats(&p->cell);
     if (images) {

@@ -6,6 +6,7 @@
 #define NSD_NEIGHBOURS_H
 
 #include "base/why.h"
+#include "bodies/positions.h"
 #include "detect/seek.h"
 
 /* All zero to begin with. */
@@ -21,16 +22,16 @@ struct neighbours {
 };
 
 /*
- * Makes s->list hold every pair whose gap is at most `gap` (m) with the bodies at x[n] (m) and the
- * cell's edges at edge[3] (m), and perhaps others that are near. Where the cell repeats a pair is
+ * Makes s->list hold every pair whose gap is at most `gap` (m) at these positions, of which centres and edges count,
+ * and perhaps others that are near. Where the cell repeats a pair is
  * there once for each image of b that is near a. keep: s will be asked again, after a step of the same bodies; the
  * list is then made to reach further, and is computed again only when it no longer serves.
  *
  * The search is detect/seek.h's. Returns 0, EX_SOFTWARE or, where bodies crowd or a body is within the gap of its
  * own image, EX_DATAERR.
  */
-int neighbours_find(struct neighbours *s, const struct packing *p, const vec3 *x,
-                    const vec3 edge[3], double gap, bool keep, struct why *why);
+int neighbours_find(struct neighbours *s, const struct packing *p, const struct positions *at,
+                    double gap, bool keep, struct why *why);
 /* The pair's shift now, bodies having been wrapped since the list was made */
 void neighbours_shift(const struct neighbours *s, const struct packing *p, const struct pair *pair,
                       int8_t shift[3]);

@@ -27,7 +27,7 @@ struct side {
     vec3 away, n, x; /* m; the normal towards s; the place on the other */
 };
 
-static struct side side_of(const struct seams *o, const struct contact *c, int32_t s)
+static struct side side_of(const struct situation *o, const struct contact *c, int32_t s)
 {
     vec3 shift = o->edge ? cell_shift(o->edge, c->shift) : v3(0, 0, 0);
     struct side f = { s, c->b, shift, v3_scale(-1, c->n), c->x };
@@ -37,12 +37,12 @@ static struct side side_of(const struct seams *o, const struct contact *c, int32
 }
 
 /* Is it a body that moves by contacts? */
-static bool moves(const struct seams *o, int32_t who)
+static bool moves(const struct situation *o, int32_t who)
 {
     return who >= 0 && o->p->mass[who] > 0;
 }
 
-static double weld_of(const struct seams *o, int32_t who)
+static double weld_of(const struct situation *o, int32_t who)
 {
     if (who >= 0) return FLUSH * o->p->radius[who];
     const struct wall *w = &o->p->wall[-1 - who];
@@ -53,19 +53,19 @@ static double weld_of(const struct seams *o, int32_t who)
 }
 
 /* Core k of body i, which may be a ball among balls */
-static struct core core_of(const struct seams *o, int32_t i, int32_t k)
+static struct core core_of(const struct situation *o, int32_t i, int32_t k)
 {
     if (o->shaped) return placed_core(o->shaped, i, k);
     return (struct core){ .n = 1, .v = &o->x[i], .round = o->p->radius[i], .centre = o->x[i] };
 }
 
-static int32_t cores_of(const struct seams *o, int32_t i)
+static int32_t cores_of(const struct situation *o, int32_t i)
 {
     return o->shaped ? placed_cores(o->shaped, i) : 1;
 }
 
 /* m: the height of the lowest point of body s along m */
-static double bottom_of(const struct seams *o, int32_t s, vec3 m)
+static double bottom_of(const struct situation *o, int32_t s, vec3 m)
 {
     double least = INFINITY;
     for (int32_t k = 0; k < cores_of(o, s); k++) {
@@ -77,15 +77,22 @@ static double bottom_of(const struct seams *o, int32_t s, vec3 m)
 
 /* ---- does it rise? ---- */
 
-/* Does the way from one place of a surface to another lead up along m by more than 30 degrees, to above `level`? */
-static bool leads_up(vec3 from, vec3 to, vec3 m, double level)
+/* Height above which a surface is to rise, in the frame in which it is looked at */
+struct height {
+    vec3 m;       /* unit vector up */
+    double level; /* m, along it */
+};
+
+/* Does the way from one place of a surface to another lead up by more than 30 degrees, to above the level? */
+static bool leads_up(vec3 from, vec3 to, const struct height *h)
 {
     vec3 way = v3_sub(to, from);
-    return v3_dot(to, m) > level && v3_dot(way, m) > RISES * v3_norm(way);
+    return v3_dot(to, h->m) > h->level && v3_dot(way, h->m) > RISES * v3_norm(way);
 }
 
 /* Of a body, at the place of f: towards d, which lies above the level. */
-static bool body_rises(const struct seams *o, const struct side *f, vec3 d, vec3 m, double level)
+static bool body_rises(const struct situation *o, const struct side *f, vec3 d,
+                       const struct height *h)
 {
     vec3 x = v3_sub(d, f->away);
     const struct core point = { .n = 1, .v = &x, .centre = x };
@@ -95,35 +102,41 @@ static bool body_rises(const struct seams *o, const struct side *f, vec3 d, vec3
         vec3 to = d;
         if (near.distance > c.round)
             to = v3_axpy(v3_add(near.a, f->away), c.round / near.distance, v3_sub(x, near.a));
-        if (leads_up(f->x, to, m, level)) return true;
+        if (leads_up(f->x, to, h)) return true;
     }
     return false;
 }
 
-/* Of a mesh: an element at c across n or, where there is none, all elements at c; as it is described. d lies above the
-   level, c as far as `depth` below it. */
-static bool mesh_rises(const struct surface *s, vec3 c, vec3 d, vec3 n, vec3 m, double level,
-                       double near, double depth)
+/* A place of a mesh, as it is described */
+struct spot {
+    vec3 c, n;          /* m; the normal of the contact there */
+    vec3 d;             /* m: the place above c that lies above the level */
+    double near, depth; /* m: tolerance; how far c lies below the level */
+};
+
+/* Of a mesh: an element at the spot across n or, where there is none, all elements there. */
+static bool mesh_rises(const struct surface *s, const struct spot *x, const struct height *h)
 {
+    const double near = x->near, depth = x->depth;
     struct surface_walk walk;
     struct surface_branch leaf;
     bool any = false, all = true;
     surface_walk_begin(&walk, s->n);
-    while (surface_walk_next(&walk, s->box, c, near + depth, &leaf))
+    while (surface_walk_next(&walk, s->box, x->c, near + depth, &leaf))
         for (int32_t i = leaf.lo; i < leaf.hi; i++) {
             int32_t e = s->order[i];
-            vec3 at = surface_nearest(s, e, c);
-            double away = v3_norm(v3_sub(c, at));
+            vec3 at = surface_nearest(s, e, x->c);
+            double away = v3_norm(v3_sub(x->c, at));
             if (!(away <= near + depth)) continue;
-            bool up = leads_up(at, surface_nearest(s, e, d), m, level);
-            if (up && fabs(v3_dot(n, surface_normal(s, e))) > 1 - ALONG) return true;
+            bool up = leads_up(at, surface_nearest(s, e, x->d), h);
+            if (up && fabs(v3_dot(x->n, surface_normal(s, e))) > 1 - ALONG) return true;
             if (away <= near) any = true, all &= up;
         }
     return any && all;
 }
 
 /* The place of wall w next to c, as it is described; false: none */
-static bool nearest_place(const struct seams *o, const struct wall *w, vec3 c, vec3 *at)
+static bool nearest_place(const struct situation *o, const struct wall *w, vec3 c, vec3 *at)
 {
     struct touch t;
     if (!boundary_nearest(w, o->p->dim, c, INFINITY, &t)) return false;
@@ -138,24 +151,24 @@ static vec3 described(const struct wall *w, const struct pose *pose, vec3 x)
 }
 
 /* Does what s meets rise there above the height `level` (m) along m? */
-static bool rises(const struct seams *o, const struct side *f, vec3 m, double level, double near)
+static bool rises(const struct situation *o, const struct side *f, vec3 m, double level,
+                  double near)
 {
     double depth = level - v3_dot(m, f->x), ahead = dmax(AHEAD * o->p->radius[f->s], 10 * near);
-    if (f->other >= 0)
-        return body_rises(o, f, v3_axpy(f->x, depth + ahead, m), m, level + 3 * near);
+    const struct height here = { m, level + 3 * near };
+    if (f->other >= 0) return body_rises(o, f, v3_axpy(f->x, depth + ahead, m), &here);
     const struct wall *w = &o->p->wall[-1 - f->other];
     struct pose pose = wall_pose(o->p, w, o->t);
     vec3 c = described(w, &pose, f->x), n = quat_turn_back(pose.q, m), at, to;
     vec3 d = v3_axpy(c, depth + ahead, n);
-    level = v3_dot(n, c) + depth + 3 * near;
-    if (w->shape == BOUNDARY_MESH)
-        return mesh_rises(&o->surface[-1 - f->other], c, d, quat_turn_back(pose.q, f->n), n, level,
-                          near, dmax(depth, 0));
-    return nearest_place(o, w, c, &at) && nearest_place(o, w, d, &to) && leads_up(at, to, n, level);
+    const struct height above = { n, v3_dot(n, c) + depth + 3 * near };
+    const struct spot spot = { c, quat_turn_back(pose.q, f->n), d, near, dmax(depth, 0) };
+    if (w->shape == BOUNDARY_MESH) return mesh_rises(&o->surface[-1 - f->other], &spot, &above);
+    return nearest_place(o, w, c, &at) && nearest_place(o, w, d, &to) && leads_up(at, to, &above);
 }
 
 /* Does wall w lie at x, to `near`, across n? */
-static bool wall_is_at(const struct seams *o, int32_t w, vec3 x, vec3 n, double near)
+static bool wall_is_at(const struct situation *o, int32_t w, vec3 x, vec3 n, double near)
 {
     const struct wall *wall = &o->p->wall[w];
     struct pose pose = wall_pose(o->p, wall, o->t);
@@ -172,7 +185,7 @@ static bool wall_is_at(const struct seams *o, int32_t w, vec3 x, vec3 n, double 
 
 /* A contact and the others of the same two bodies: first .. end-1 */
 struct meeting {
-    const struct seams *o;
+    const struct situation *o;
     const struct contacts *all;
     int64_t i, first, end;
 };
@@ -192,7 +205,7 @@ static bool is_below(const struct meeting *w, const struct side *f, vec3 m, doub
 }
 
 /* Would ranks that have B or s have E, too? Two bodies must be near each other for that. */
-static bool are_near(const struct seams *o, const struct side *f, const struct side *e)
+static bool are_near(const struct situation *o, const struct side *f, const struct side *e)
 {
     if (f->other < 0 || e->other < 0) return true;
     vec3 d = v3_sub(v3_add(o->x[f->other], f->away), v3_add(o->x[e->other], e->away));
@@ -216,7 +229,7 @@ static bool goes_without(const struct meeting *w, const struct side *f, const st
 /* Does the plane of contact e keep s above the meeting, or is that inside a flat surface? */
 static bool passes_above(const struct meeting *w, const struct side *f, const struct contact *e)
 {
-    const struct seams *o = w->o;
+    const struct situation *o = w->o;
     const struct side g = side_of(o, e, f->s);
     if (moves(o, f->other) || moves(o, g.other)) return false; // they are parts of no surface
     bool parallel = v3_dot(f->n, g.n) > 1 - ALONG;
@@ -243,7 +256,7 @@ static bool at_seam(const struct meeting *w, const struct lists *l, int32_t s)
 /* ---- all contacts ---- */
 
 /* Can it be one with the rim of a wall, or of a body? */
-static bool may_be(const struct seams *o, const struct contact *c)
+static bool may_be(const struct situation *o, const struct contact *c)
 {
     if (swift_ahead(c)) return false;
     if (c->a >= 0) return !moves(o, c->a) || !moves(o, c->b);
@@ -274,7 +287,7 @@ static bool lists_init(struct lists *l, const struct contacts *s, int64_t bodies
     return true;
 }
 
-static bool is_dropped(const struct seams *o, const struct contacts *all, const struct lists *l,
+static bool is_dropped(const struct situation *o, const struct contacts *all, const struct lists *l,
                        int64_t i)
 {
     const struct contact *c = &all->c[i];
@@ -284,7 +297,7 @@ static bool is_dropped(const struct seams *o, const struct contacts *all, const 
     return at_seam(&w, l, c->b) || (c->a >= 0 && at_seam(&w, l, c->a));
 }
 
-int seams_drop(struct contacts *s, const struct seams *o, struct why *why)
+int seams_drop(struct contacts *s, const struct situation *o, struct why *why)
 {
     struct lists lists = { 0 };
     bool *drop = NULL, good = true;

@@ -19,19 +19,9 @@
 #define NSD_SEAM_H
 
 #include "bodies/contact.h"
-#include "bodies/placed.h"
-#include "geometry/mesh.h"
-
-/* Where contacts have been found */
-struct seams {
-    const struct packing *p;
-    const vec3 *x, *edge;          /* [p->n] m; edges of the cell, NULL: it does not repeat */
-    double t;                      /* s: of the walls */
-    const struct placed *shaped;   /* NULL: all are balls */
-    const struct surface *surface; /* [p->walls] of those that are meshes */
-};
+#include "detect/situation.h"
 
 /* Drops contacts of s, sorted, at seams. Returns 0 or EX_SOFTWARE. */
-int seams_drop(struct contacts *s, const struct seams *o, struct why *why);
+int seams_drop(struct contacts *s, const struct situation *o, struct why *why);
 
 #endif

@@ -59,13 +59,19 @@ static bool near(const struct seeker *s, const struct grid_entry *f)
     return v3_dot(d, d) <= most * most * (1 + 1e-12);
 }
 
-/* Lists those of entries first .. end-1 that are in cells i0 .. i1 of line (j, k) along x. Returns
-   false, as all that look do, when memory is short. */
+/* The cells i0 .. i1 of line (j, k) along x */
+struct line {
+    int64_t i0, i1, j, k;
+};
+
+/* Lists those of entries first .. end-1 that are in the line. Returns false, as all that look do, when memory is
+   short. */
 static bool look_at(const struct seeker *s, const struct grid *g, int64_t first, int64_t end,
-                    int64_t i0, int64_t i1, int64_t j, int64_t k)
+                    struct line l)
 {
     for (const struct grid_entry *f = g->entry + first; f < g->entry + end; f++) {
-        if (f->cell[0] < i0 || f->cell[0] > i1 || f->cell[1] != j || f->cell[2] != k) continue;
+        if (f->cell[0] < l.i0 || f->cell[0] > l.i1 || f->cell[1] != l.j || f->cell[2] != l.k)
+            continue;
         if (!near(s, f)) continue;
         if (s->p->mass[s->e->body] == 0 && s->p->mass[f->body] == 0) continue;
         if (f->body == s->e->body) continue; // its image, and the wide reach of a list that is kept
@@ -74,14 +80,12 @@ static bool look_at(const struct seeker *s, const struct grid *g, int64_t first,
     return true;
 }
 
-/* The cells i0 .. i1 of line (j, k): their buckets are consecutive, the first after the last. */
-static bool look_along(const struct seeker *s, const struct grid *g, int64_t i0, int64_t i1,
-                       int64_t j, int64_t k)
+/* The buckets of a line are consecutive, the first after the last. */
+static bool look_along(const struct seeker *s, const struct grid *g, struct line l)
 {
-    uint64_t b0 = grid_bucket(g, i0, j, k), b1 = grid_bucket(g, i1, j, k);
-    if (b0 <= b1) return look_at(s, g, g->first[b0], g->first[b1 + 1], i0, i1, j, k);
-    return look_at(s, g, g->first[b0], g->n, i0, i1, j, k) &&
-           look_at(s, g, 0, g->first[b1 + 1], i0, i1, j, k);
+    uint64_t b0 = grid_bucket(g, l.i0, l.j, l.k), b1 = grid_bucket(g, l.i1, l.j, l.k);
+    if (b0 <= b1) return look_at(s, g, g->first[b0], g->first[b1 + 1], l);
+    return look_at(s, g, g->first[b0], g->n, l) && look_at(s, g, 0, g->first[b1 + 1], l);
 }
 
 /* Bodies near entry m of g in g itself: half of the cells around, so that a pair is found once. */
@@ -89,11 +93,12 @@ static bool look_here(const struct seeker *s, const struct grid *g, int64_t m)
 {
     int64_t i = s->e->cell[0], j = s->e->cell[1], k = s->e->cell[2];
     int64_t end = g->first[grid_bucket(g, i, j, k) + 1];
-    if (!look_at(s, g, m + 1, end, i, i, j, k) || !look_along(s, g, i + 1, i + 1, j, k) ||
-        !look_along(s, g, i - 1, i + 1, j + 1, k))
+    if (!look_at(s, g, m + 1, end, (struct line){ i, i, j, k }) ||
+        !look_along(s, g, (struct line){ i + 1, i + 1, j, k }) ||
+        !look_along(s, g, (struct line){ i - 1, i + 1, j + 1, k }))
         return false;
     for (int64_t l = j - 1; l <= j + 1 && s->p->dim == 3; l++)
-        if (!look_along(s, g, i - 1, i + 1, l, k + 1)) return false;
+        if (!look_along(s, g, (struct line){ i - 1, i + 1, l, k + 1 })) return false;
     return true;
 }
 
@@ -105,7 +110,7 @@ static bool look_around(const struct seeker *s, const struct grid *g)
     int64_t up = s->p->dim == 3;
     for (int64_t m = k - up; m <= k + up; m++)
         for (int64_t l = j - 1; l <= j + 1; l++)
-            if (!look_along(s, g, i - 1, i + 1, l, m)) return false;
+            if (!look_along(s, g, (struct line){ i - 1, i + 1, l, m })) return false;
     return true;
 }
 

@@ -67,33 +67,40 @@ static struct way way_of(const struct packing *p, int64_t i, vec3 v)
     return y;
 }
 
-/* Is c, found at place k of the way, one to add? Its gap is then the one that it has now. sign: of its normal, towards
-   the body; known[n]: contacts that there are. */
-static bool comes(const struct way *y, int64_t k, struct contact *c, double sign,
-                  const struct contact *known, int64_t n)
+/* A way towards something, with which the body has contacts where contacts are sought */
+struct approach {
+    const struct way *y;
+    double sign;          /* of normals, for them to point to the body */
+    struct contacts *out; /* to which new ones are added */
+    int64_t first, end;   /* those that there are */
+};
+
+/* Is c, found at place k of the way, one to add? Its gap is then the one that it has now. */
+static bool comes(const struct approach *o, int64_t k, struct contact *c)
 {
-    double closing = -sign * v3_dot(c->n, y->step);
+    const struct way *y = o->y;
+    double closing = -o->sign * v3_dot(c->n, y->step);
     if (!(closing * (double)(y->n + 1) > CLOSING * y->thick)) return false;
-    for (int64_t l = 0; l < n; l++)
-        if (v3_dot(known[l].n, c->n) > 1 - ALIKE) return false;
+    for (int64_t l = o->first; l < o->end; l++)
+        if (v3_dot(o->out->c[l].n, c->n) > 1 - ALIKE) return false;
     c->gap += closing * (double)k;
     return true;
 }
 
-/* Adds those of `found` at place k that come, where one of them has no gap there; sign: of normals towards the body.
-   Returns how many, -1: memory is short. */
-static int64_t add_coming(struct contacts *out, int64_t first, int64_t end, const struct way *y,
-                          int64_t k, const struct contacts *found, double sign)
+/* Adds those of `found` at place k that come, where one of them has no gap there. Returns how many, -1: memory is
+   short. */
+static int64_t add_coming(const struct approach *o, int64_t k, const struct contacts *found)
 {
+    struct contacts *out = o->out;
     int64_t n = 0;
     bool touches = false;
     for (int64_t l = 0; l < found->n && !touches; l++) {
         struct contact c = found->c[l];
-        touches = c.gap <= 0 && comes(y, k, &c, sign, out->c + first, end - first);
+        touches = c.gap <= 0 && comes(o, k, &c);
     }
     for (int64_t l = 0; l < found->n && touches; l++) {
         struct contact c = found->c[l];
-        if (!comes(y, k, &c, sign, out->c + first, end - first)) continue;
+        if (!comes(o, k, &c)) continue;
         struct contact *to = contacts_add(out, c.a, c.b);
         if (!to) return -1;
         *to = c, to->feature = (c.a < 0 ? AHEAD_OF_WALL : AHEAD_OF_BODY) + (int32_t)l, n++;
@@ -106,26 +113,19 @@ static int64_t add_coming(struct contacts *out, int64_t first, int64_t end, cons
 
 /* A way beside a wall, as the wall is described */
 struct beside {
-    const struct swift *o;
-    const struct way *y;
-    struct contacts *out;
-    int64_t first, end; /* contacts that there were */
+    const struct situation *o;
+    struct approach to;
     int32_t w;
     struct pose pose;
     vec3 c, step; /* m: of the body's centre */
     bool failed;
 };
 
-static const struct surface *surface_of(const struct surface *s, const struct packing *p, int32_t w)
-{
-    return p->wall[w].shape == BOUNDARY_MESH ? &s[w] : NULL;
-}
-
 /* Is the wall within `reach` of c? */
 static bool is_near(const struct beside *s, vec3 c, double reach)
 {
     const struct packing *p = s->o->p;
-    const struct surface *surface = surface_of(s->o->surface, p, s->w);
+    const struct surface *surface = situation_surface(s->o, s->w);
     struct touch t;
     if (!surface)
         return boundary_nearest(&p->wall[s->w], p->dim, c, INFINITY, &t) &&
@@ -140,12 +140,12 @@ static bool is_near(const struct beside *s, vec3 c, double reach)
 static bool touch_ball(struct contacts *found, const struct beside *s, int64_t k)
 {
     const struct packing *p = s->o->p;
-    const struct surface *surface = surface_of(s->o->surface, p, s->w);
-    const int64_t i = s->y->i;
+    const struct surface *surface = situation_surface(s->o, s->w);
+    const int64_t i = s->to.y->i;
     struct touch touch[TOUCHES_MOST];
     double r = p->radius[i];
     vec3 c = v3_axpy(s->c, (double)k, s->step);
-    double most = r + s->y->thick;
+    double most = r + s->to.y->thick;
     const int32_t shape = p->wall[s->w].shape;
     const bool sheet = surface || shape == BOUNDARY_RECTANGLE || shape == BOUNDARY_DISC ||
                        p->wall[s->w].side == BOUNDARY_BOTH;
@@ -169,14 +169,13 @@ static bool touch_ball(struct contacts *found, const struct beside *s, int64_t k
 /* Looks at place k; returns whether the search ends there. */
 static bool look_at(struct beside *s, int64_t k)
 {
-    const struct swift *o = s->o;
+    const struct situation *o = s->o;
     struct contacts found = { 0 };
-    vec3 ahead = v3_scale((double)k, s->y->step);
-    bool good = o->shaped && packing_shape(o->p, s->y->i)
-                    ? detect_shapes_wall(&found, o->shaped, s->w, s->y->i, o->t, s->y->thick,
-                                         surface_of(o->surface, o->p, s->w), ahead)
+    vec3 ahead = v3_scale((double)k, s->to.y->step);
+    bool good = o->shaped && packing_shape(o->p, s->to.y->i)
+                    ? detect_shapes_wall(&found, o, s->w, s->to.y->i, s->to.y->thick, ahead)
                     : touch_ball(&found, s, k);
-    int64_t n = good ? add_coming(s->out, s->first, s->end, s->y, k, &found, 1) : -1;
+    int64_t n = good ? add_coming(&s->to, k, &found) : -1;
     contacts_free(&found);
     s->failed = n < 0;
     return n != 0;
@@ -187,19 +186,19 @@ static bool look(struct beside *s, int64_t lo, int64_t hi)
 {
     double half = 0.5 * (double)(hi - 1 - lo);
     vec3 middle = v3_axpy(s->c, (double)lo + half, s->step);
-    if (!is_near(s, middle, s->o->p->radius[s->y->i] + half * v3_norm(s->step))) return false;
+    if (!is_near(s, middle, s->o->p->radius[s->to.y->i] + half * v3_norm(s->step))) return false;
     if (hi - lo == 1) return look_at(s, lo);
     return look(s, lo, lo + (hi - lo) / 2) || look(s, lo + (hi - lo) / 2, hi);
 }
 
-bool swift_meets_wall(struct contacts *out, int64_t first, const struct swift *o, int32_t w,
+bool swift_meets_wall(struct contacts *out, int64_t first, const struct situation *o, int32_t w,
                       int64_t i)
 {
     const struct packing *p = o->p;
     const struct wall *wall = &p->wall[w];
     const struct way y = way_of(p, i, wall_velocity(p, wall, o->x[i]));
     if (y.n < 1) return true;
-    struct beside s = { .o = o, .y = &y, .out = out, .first = first, .end = out->n, .w = w };
+    struct beside s = { .o = o, .to = { &y, 1, out, first, out->n }, .w = w };
     s.pose = wall_pose(p, wall, o->t);
     s.c = v3_sub(quat_turn_back(s.pose.q, v3_sub(o->x[i], s.pose.shift)), wall->x);
     s.step = quat_turn_back(s.pose.q, y.step);
@@ -258,23 +257,23 @@ static int64_t find_pair(const struct contact *s, int64_t n, int32_t a, int32_t 
 }
 
 /* The first place of the way of body i at which it meets hull f; false when memory is short. */
-static bool meet_hull(struct contacts *out, int64_t sorted, const struct swift *o,
+static bool meet_hull(struct contacts *out, int64_t sorted, const struct situation *o,
                       const struct way *y, int64_t f)
 {
-    static const int8_t none[3] = { 0, 0, 0 };
     const int32_t a = (int32_t)(y->i < f ? y->i : f), b = (int32_t)(y->i < f ? f : y->i);
     double reach = o->p->radius[y->i] + o->p->radius[f], sign = y->i == b ? 1 : -1;
     int64_t first = find_pair(out->c, sorted, a, b), end = first, n = 0;
     while (end < sorted && out->c[end].a == a && out->c[end].b == b) end++;
+    const struct approach to = { y, sign, out, first, end };
+    const struct pair pair = { .a = a, .b = b };
     for (int64_t k = 1; k <= y->n && n == 0; k++) {
         vec3 ahead = v3_scale((double)k, y->step);
         struct contacts found = { 0 };
         if (v3_norm(v3_sub(v3_add(o->x[y->i], ahead), o->x[f])) > reach) continue;
-        bool good =
-            detect_shapes_pair(&found, o->shaped, a, b, none, v3_scale(sign, ahead), y->thick);
+        bool good = detect_shapes_pair(&found, o->shaped, &pair, v3_scale(sign, ahead), y->thick);
         for (int64_t l = 0; l < found.n && y->i == b; l++)
             found.c[l].x = v3_sub(found.c[l].x, ahead);
-        n = good ? add_coming(out, first, end, y, k, &found, sign) : -1;
+        n = good ? add_coming(&to, k, &found) : -1;
         contacts_free(&found);
     }
     return n >= 0;
@@ -285,7 +284,7 @@ static int by_key(const void *a, const void *b)
     return contact_compare(a, b);
 }
 
-bool swift_meet_hulls(struct contacts *out, const struct swift *o)
+bool swift_meet_hulls(struct contacts *out, const struct situation *o)
 {
     const struct packing *p = o->p;
     double most;
@@ -342,7 +341,8 @@ static bool through_wall(const struct packing *p, const struct surface *surface,
     bool round = wall->shape == BOUNDARY_CYLINDER || wall->shape == BOUNDARY_CONE ||
                  wall->shape == BOUNDARY_SPHERE;
     return round ? through_round(wall, p->dim, a, b)
-                 : boundary_between(wall, p->dim, surface_of(surface, p, w), a, b);
+                 : boundary_between(wall, p->dim, wall->shape == BOUNDARY_MESH ? &surface[w] : NULL,
+                                    a, b);
 }
 
 bool swift_through_hull(const struct shape *s, int dim, double r, quat q, vec3 a, vec3 b)

@@ -16,7 +16,7 @@
 
 #include "bodies/contact.h"
 #include "bodies/placed.h"
-#include "detect/neighbours.h"
+#include "detect/situation.h"
 
 /* Features of such contacts, of boundaries and of bodies: no others lie between one of these and its double. */
 enum { AHEAD_OF_WALL = 1 << 29, AHEAD_OF_BODY = 1 << 30 };
@@ -25,15 +25,6 @@ static inline bool swift_ahead(const struct contact *c)
     return c->a < 0 ? c->feature >= AHEAD_OF_WALL && c->feature < AHEAD_OF_BODY
                     : c->feature >= AHEAD_OF_BODY;
 }
-
-/* What a search along ways knows [detect/detect.c] */
-struct swift {
-    const struct packing *p;
-    const vec3 *x;                 /* [p->n] m: where contacts are sought */
-    double t;                      /* s */
-    const struct placed *shaped;   /* NULL: all are balls */
-    const struct surface *surface; /* [p->walls] of meshes */
-};
 
 /* m: of a ball inside the body, around its centre; of a clump the smallest ball */
 double swift_thickness(const struct packing *p, int64_t i);
@@ -48,10 +39,10 @@ double swift_reach(const struct packing *p);
 
 /* Adds what body i meets ahead of wall w, which is no plane, besides the contacts out->c[first ...] of these two.
    False when memory is short. */
-bool swift_meets_wall(struct contacts *out, int64_t first, const struct swift *o, int32_t w,
+bool swift_meets_wall(struct contacts *out, int64_t first, const struct situation *o, int32_t w,
                       int64_t i);
 /* Adds what bodies meet ahead of fixed hulls, and sorts all contacts again. */
-bool swift_meet_hulls(struct contacts *out, const struct swift *o);
+bool swift_meet_hulls(struct contacts *out, const struct situation *o);
 
 /* Bodies that have gone through a boundary or another body without meeting it */
 struct passed {

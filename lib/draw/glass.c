@@ -16,37 +16,36 @@ static void add(struct glass *g, struct rgb own, vec3 a, vec3 b, vec3 c)
     if (area > 0) g->facet[g->facets++] = (struct facet){ { a, b, c }, v3_scale(1 / area, n), own };
 }
 
-static void add_planes(struct glass *g, const struct packing *p, const struct extent *r,
-                       vec3 toward, const struct solid *solid, bool glass)
+static void add_planes(struct glass *g, const struct packing *p, const struct glass_opt *o)
 {
     vec3 corner[WALLS_CORNERS];
     for (int i = 0; i < p->walls && i < WALLS_PANELS; i++) {
-        int corners = walls_polygon(p, i, r, corner);
-        struct rgb own = own_of(solid, i, 0);
-        if (corners < 3 || (own.r < 0 && (!glass || walls_floor(p, i, toward)))) continue;
+        int corners = walls_polygon(p, i, &o->region, corner);
+        struct rgb own = own_of(o->solid, i, 0);
+        if (corners < 3 || (own.r < 0 && (!o->glass || walls_floor(p, i, o->toward)))) continue;
         for (int k = 2; k < corners; k++) add(g, own, corner[0], corner[k - 1], corner[k]);
     }
 }
 
-int glass_init(struct glass *g, const struct packing *p, const struct extent *r, vec3 toward,
-               const struct solid *solid, bool glass, struct why *why)
+int glass_init(struct glass *g, const struct packing *p, const struct glass_opt *o, struct why *why)
 {
-    struct outline o;
+    const vec3 across = v3_sub(o->region.hi, o->region.lo);
+    struct outline all;
     *g = (struct glass){ 0 };
     if (p->dim == 2) return 0;
-    if (outline_init(&o, p, v3_norm(v3_sub(r->hi, r->lo)), why)) return why->status;
-    int64_t room = o.triangles + (int64_t)WALLS_PANELS * WALLS_CORNERS;
+    if (outline_init(&all, p, v3_norm(across), why)) return why->status;
+    int64_t room = all.triangles + (int64_t)WALLS_PANELS * WALLS_CORNERS;
     g->facet = malloc((size_t)room * sizeof *g->facet);
     if (g->facet) {
-        add_planes(g, p, r, toward, solid, glass);
-        for (int64_t i = 0; i < o.triangles; i++) {
-            const vec3 *x = o.triangle[i].corner;
-            struct rgb own = own_of(solid, o.triangle[i].boundary, o.triangle[i].face);
-            if (own.r >= 0 || glass) add(g, own, x[0], x[1], x[2]);
+        add_planes(g, p, o);
+        for (int64_t i = 0; i < all.triangles; i++) {
+            const vec3 *x = all.triangle[i].corner;
+            struct rgb own = own_of(o->solid, all.triangle[i].boundary, all.triangle[i].face);
+            if (own.r >= 0 || o->glass) add(g, own, x[0], x[1], x[2]);
         }
     } else
         why_set(why, EX_SOFTWARE, "no memory for the facets of the boundaries");
-    outline_free(&o);
+    outline_free(&all);
     return why->status;
 }
 

@@ -24,12 +24,19 @@ struct glass {
     struct facet *facet;
 };
 
+/* Which boundaries are drawn as facets */
+struct glass_opt {
+    struct extent region;
+    vec3 toward;               /* unit vector to the viewer */
+    const struct solid *solid; /* those that are solid; NULL: none */
+    bool glass;                /* the others, too */
+};
+
 /* The boundaries of p inside the region, at p's time, in space; none in the plane. Planes that are drawn
-   as floors where they are seen from `toward` (unit vector to the viewer) are left out, unless they are solid. solid: which
-   are, or NULL; glass: false: only these. Returns 0, or
+   as floors where the viewer sees them are left out, unless they are solid. Returns 0, or
    EX_SOFTWARE with nothing to free. */
-int glass_init(struct glass *g, const struct packing *p, const struct extent *r, vec3 toward,
-               const struct solid *solid, bool glass, struct why *why);
+int glass_init(struct glass *g, const struct packing *p, const struct glass_opt *o,
+               struct why *why);
 void glass_free(struct glass *g);
 
 /* The part of the light that a facet takes; z: the cosine between its normal and the line of sight */

@@ -75,14 +75,18 @@ static vec3 point_of(const struct placed *b, double u, double v)
     return pose_of(&b->pose, v3_add(w->x, x));
 }
 
-/* A curve of the surface, from (u0, v0) to (u1, v1), in n pieces */
-static bool add_curve(struct outline *o, const struct placed *b, double u0, double v0, double u1,
-                      double v1, int n)
+/* A line in the parameters of a surface, which is a curve in space */
+struct curve {
+    double u0, v0, u1, v1; /* from (u0, v0) to (u1, v1) */
+};
+
+/* In n pieces */
+static bool add_curve(struct outline *o, const struct placed *b, struct curve c, int n)
 {
-    vec3 last = point_of(b, u0, v0);
+    vec3 last = point_of(b, c.u0, c.v0);
     for (int i = 1; i <= n; i++) {
         double s = (double)i / n;
-        vec3 next = point_of(b, u0 + s * (u1 - u0), v0 + s * (v1 - v0));
+        vec3 next = point_of(b, c.u0 + s * (c.u1 - c.u0), c.v0 + s * (c.v1 - c.v0));
         if (!add_line(o, b, last, next)) return false;
         last = next;
     }
@@ -110,19 +114,20 @@ static bool add_shape(struct outline *o, const struct placed *b)
     bool flat = b->p->dim == 2, rectangle = w->shape == BOUNDARY_RECTANGLE;
     bool sphere = w->shape == BOUNDARY_SPHERE;
     int n = rectangle ? 1 : OUTLINE_FACETS;
-    if (flat) return add_curve(o, b, 0, 0.5, 1, 0.5, n);
+    if (flat) return add_curve(o, b, (struct curve){ 0, 0.5, 1, 0.5 }, n);
     if (!add_grid(o, b, n, sphere ? OUTLINE_FACETS / 2 : 1)) return false;
     for (int k = 0; k < 3; k++) { // borders, of a sphere three circles
         double v = sphere ? 0.25 * (k + 1) : k % 2;
         bool point = !sphere && w->shape != BOUNDARY_CYLINDER && w->size[v > 0] == 0;
         if (k == 2 && !sphere) break;
-        if ((rectangle || !point) && !add_curve(o, b, 0, v, 1, v, n)) return false;
+        if ((rectangle || !point) && !add_curve(o, b, (struct curve){ 0, v, 1, v }, n))
+            return false;
     }
     // straight lines, which show that it turns
     int lines = rectangle || w->arc > 0 ? 2 : 8, pieces = sphere ? n / 2 : 1;
     for (int k = 0; k < lines && w->shape != BOUNDARY_DISC; k++) {
         double u = lines == 2 ? k : (double)k / lines;
-        if (!add_curve(o, b, u, 0, u, 1, pieces)) return false;
+        if (!add_curve(o, b, (struct curve){ u, 0, u, 1 }, pieces)) return false;
     }
     return true;
 }

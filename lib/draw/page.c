@@ -41,16 +41,16 @@ static int write_chunk(struct page *p, char letter, int64_t number, const struct
 }
 
 /* Writes a chunk unless it is the same as the last of its kind; frees b or keeps it. */
-static int write_changed(struct page *p, char letter, int64_t *count, void **last,
-                         size_t *last_size, struct chunk *b, struct why *why)
+static int write_changed(struct page *p, char letter, struct page_kept *kept, struct chunk *b,
+                         struct why *why)
 {
-    if (*count && *last_size == b->n && !memcmp(*last, b->at, b->n)) {
+    if (kept->n && kept->size == b->n && !memcmp(kept->last, b->at, b->n)) {
         free(b->at);
         return 0;
     }
-    free(*last);
-    *last = b->at, *last_size = b->n;
-    return write_chunk(p, letter, (*count)++, b, why);
+    free(kept->last);
+    kept->last = b->at, kept->size = b->n;
+    return write_chunk(p, letter, kept->n++, b, why);
 }
 
 /* ---- what does not change in every frame ---- */
@@ -64,14 +64,14 @@ static int write_grains(struct page *p, const struct packing *k, struct why *why
     chunk_put(&b, k->id, 4 * (size_t)k->n);
     chunk_put(&b, k->kind, 4 * (size_t)k->n);
     if (k->shape) chunk_put(&b, k->shape, 4 * (size_t)k->n);
-    return write_changed(p, 'g', &p->grains, &p->grains_last, &p->grains_size, &b, why);
+    return write_changed(p, 'g', &p->grains, &b, why);
 }
 
 static int write_shapes(struct page *p, const struct packing *k, struct why *why)
 {
     struct chunk b;
     if (page_shapes(&b, k->dim, &k->shapes, why)) return free(b.at), why->status;
-    return write_changed(p, 's', &p->shapes, &p->shapes_last, &p->shapes_size, &b, why);
+    return write_changed(p, 's', &p->shapes, &b, why);
 }
 
 static void put_point(struct chunk *b, vec3 x)
@@ -118,8 +118,7 @@ static int write_walls(struct page *p, const struct packing *k, const struct ext
         walls_build(w, k, r);
         images_outline(w, k);
         if (b.at) put_walls(&b, w, &o);
-        e = b.at ? write_changed(p, 'b', &p->walls, &p->walls_last, &p->walls_size, &b, why)
-                 : no_memory(why);
+        e = b.at ? write_changed(p, 'b', &p->walls, &b, why) : no_memory(why);
         outline_free(&o);
     }
     free(w);
@@ -290,11 +289,11 @@ int page_frame(struct page *p, const struct packing *k, const struct contacts *s
     if (any) p->seen = p->frames ? region_join(p->seen, r) : r;
     if (any && walls && write_walls(p, k, &r, why)) return why->status;
     if (k->shape && write_shapes(p, k, why)) return why->status;
-    if (k->shape) m->shapes = p->shapes - 1;
+    if (k->shape) m->shapes = p->shapes.n - 1;
     if (write_grains(p, k, why) || widen(p, m, k, s, why) || write_frame(p, m, k, s, why))
         return why->status;
-    m->grains = p->grains - 1;
-    if (any && walls) m->walls = p->walls - 1;
+    m->grains = p->grains.n - 1;
+    if (any && walls) m->walls = p->walls.n - 1;
     p->frames++;
     return 0;
 }
@@ -368,7 +367,7 @@ void page_free(struct page *p)
     for (int c = 0; c < p->curves; c++)
         free(p->curve[c].name), free(p->curve[c].unit), free(p->curve[c].value);
     for (int32_t k = 0; p->kind_name && k < p->kinds; k++) free(p->kind_name[k]);
-    free(p->curve), free(p->kind_name), free(p->moment), free(p->grains_last), free(p->walls_last);
-    free(p->shapes_last);
+    free(p->curve), free(p->kind_name), free(p->moment), free(p->grains.last), free(p->walls.last);
+    free(p->shapes.last);
     *p = (struct page){ 0 };
 }

@@ -27,6 +27,13 @@ struct page_curve {
     double *value; /* [frames]; NAN: none */
 };
 
+/* Chunks of one kind, written where it changes */
+struct page_kept {
+    int64_t n;   /* how many there are */
+    void *last;  /* the last of them, */
+    size_t size; /* and its bytes */
+};
+
 /* All zero to begin with. */
 struct page {
     FILE *out;
@@ -37,11 +44,9 @@ struct page {
     int curves;
     struct page_curve *curve; /* [curves] */
     int32_t kinds;
-    char **kind_name;              /* [kinds] of the first frame */
-    bool solved;                   /* some frame has contacts with reactions */
-    int64_t grains, walls, shapes; /* chunks of what does not change in every frame */
-    size_t grains_size, walls_size, shapes_size;
-    void *grains_last, *walls_last, *shapes_last; /* the last of each, to see whether it changes */
+    char **kind_name; /* [kinds] of the first frame */
+    bool solved;      /* some frame has contacts with reactions */
+    struct page_kept grains, walls, shapes;
     struct extent seen;                           /* m: of all grains and finite walls */
     double fastest, spin, radius[2], force, push; /* m/s, rad/s, m, N, N: of all frames */
     int most;                                     /* contacts of a grain that push */

@@ -84,9 +84,14 @@ static void draw_spot(struct band *b, const struct raster *s, int64_t i)
     }
 }
 
-/* The samples of the row y, from *lo to before *hi, with their middle inside a polygon */
-static void row_inside(const struct band *b, const double *px, const double *py, int corners, int y,
-                       int *lo, int *hi)
+/* Samples of a row, from x to before end */
+struct run {
+    int x, end;
+};
+
+/* Those of the row y with their middle inside a polygon */
+static struct run row_inside(const struct band *b, const double *px, const double *py, int corners,
+                             int y)
 {
     double x0 = INFINITY, x1 = -INFINITY, at = y + 0.5;
     for (int k = 0; k < corners; k++) { // where its sides cross this row
@@ -95,16 +100,17 @@ static void row_inside(const struct band *b, const double *px, const double *py,
         double x = px[k] + (at - py[k]) / (py[l] - py[k]) * (px[l] - px[k]);
         x0 = fmin(x0, x), x1 = fmax(x1, x);
     }
-    *lo = band_clamp(ceil(x0 - 0.5), 0, b->width), *hi = band_clamp(ceil(x1 - 0.5), 0, b->width);
+    return (struct run){ band_clamp(ceil(x0 - 0.5), 0, b->width),
+                         band_clamp(ceil(x1 - 0.5), 0, b->width) };
 }
 
 static void draw_ground(struct band *b, const struct raster *s, int i)
 {
     const struct ground *g = &s->ground[i];
     for (int y = b->y0; y < b->y1; y++) {
-        int x, end;
+        const struct run run = row_inside(b, g->x, g->y, g->corners, y);
         double at = y + 0.5;
-        for (row_inside(b, g->x, g->y, g->corners, y, &x, &end); x < end; x++) {
+        for (int x = run.x; x < run.end; x++) {
             size_t k = band_at(b, x, y);
             double z = g->plane[0] + g->plane[1] * (x + 0.5) + g->plane[2] * at;
             if (z > b->z[k]) b->z[k] = z, b->what[k] = GROUND - i;
@@ -121,9 +127,9 @@ static void draw_pane(struct band *b, const struct raster *s, int64_t i)
     int y0 = band_clamp(ceil(fmin(p->y[0], fmin(p->y[1], p->y[2])) - 0.5), b->y0, b->y1);
     int y1 = band_clamp(ceil(fmax(p->y[0], fmax(p->y[1], p->y[2])) - 0.5), b->y0, b->y1);
     for (int y = y0; y < y1; y++) {
-        int x, end;
+        const struct run run = row_inside(b, p->x, p->y, 3, y);
         double at = y + 0.5;
-        for (row_inside(b, p->x, p->y, 3, y, &x, &end); x < end; x++) {
+        for (int x = run.x; x < run.end; x++) {
             double z = p->plane[0] + p->plane[1] * (x + 0.5) + p->plane[2] * at;
             size_t k = band_at(b, x, y);
             if (!(solid ? z >= b->z[k] : z > b->z[k])) continue; // solid: also in a floor's place

@@ -66,11 +66,9 @@ static int legend_row(struct solid *s, const struct chosen *c, const struct pack
     return s->named++;
 }
 
-static void set_range(struct solid *s, const struct packing *p, const struct chosen *c, double lo,
-                      double hi)
+static void set_range(struct solid *s, const struct packing *p, const struct chosen *c)
 {
-    s->lo = lo, s->hi = hi;
-    if (!isnan(lo)) return;
+    if (!isnan(s->lo)) return;
     s->lo = 0, s->hi = -INFINITY;
     for (int32_t w = 0; w < p->walls; w++)
         for (int32_t k = 0; k < s->faces.first[w + 1] - s->faces.first[w]; k++) {
@@ -86,18 +84,18 @@ static struct rgb palette_colour(const struct solid *s, const struct paint *pain
     return paint->palette[(int)(255 * fmin(fmax(t, 0), 1) + 0.5)];
 }
 
-int solid_init(struct solid *s, const struct packing *p, const char *list, enum solid_by by,
-               double lo, double hi, const struct paint *paint, struct why *why)
+int solid_init(struct solid *s, const struct packing *p, const struct solid_opt *o, struct why *why)
 {
+    const enum solid_by by = o->by;
     struct chosen c;
-    *s = (struct solid){ .by = by };
+    *s = (struct solid){ .by = by, .lo = o->lo, .hi = o->hi };
     if (by != SURFACE_NAME && !p->sums.n)
         return why_set(why, EX_DATAERR, "no sums of walls (nsd-step --sums keeps them)");
-    if (chosen_init(&c, p, "--solid", list, why)) return why->status;
+    if (chosen_init(&c, p, "--solid", o->list, why)) return why->status;
     if (!face_of_init(&s->faces, p, false, why) &&
         !(s->colour = calloc((size_t)s->faces.n + 1, sizeof *s->colour)))
         why_set(why, EX_SOFTWARE, "no memory for the colours of boundaries");
-    if (!why->status && by != SURFACE_NAME) set_range(s, p, &c, lo, hi);
+    if (!why->status && by != SURFACE_NAME) set_range(s, p, &c);
     for (int32_t w = 0; !why->status && w < p->walls; w++)
         for (int32_t k = 0; k < s->faces.first[w + 1] - s->faces.first[w]; k++) {
             struct rgb *to = &s->colour[s->faces.first[w] + k];
@@ -106,7 +104,7 @@ int solid_init(struct solid *s, const struct packing *p, const char *list, enum 
             else if (by == SURFACE_NAME)
                 *to = s->shown[legend_row(s, &c, p, w, k)];
             else
-                *to = palette_colour(s, paint, value_of(s, p, w, k));
+                *to = palette_colour(s, o->paint, value_of(s, p, w, k));
         }
     chosen_free(&c);
     if (why->status) solid_free(s);

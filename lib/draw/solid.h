@@ -28,10 +28,16 @@ struct solid {
     struct rgb shown[SOLID_NAMES]; /* and their colours */
 };
 
-/* list: names and numbers of boundaries [bodies/chosen.h]; NULL: all. lo, hi: the palette's ends, NAN: what there is.
-   Returns 0, EX_DATAERR (an unknown name, no sums) or EX_SOFTWARE with nothing to free. */
-int solid_init(struct solid *s, const struct packing *p, const char *list, enum solid_by by,
-               double lo, double hi, const struct paint *paint, struct why *why);
+struct solid_opt {
+    const char *list; /* names and numbers of boundaries [bodies/chosen.h]; NULL: all */
+    enum solid_by by;
+    double lo, hi; /* the palette's ends; NAN: those of what there is */
+    const struct paint *paint;
+};
+
+/* Returns 0, EX_DATAERR (an unknown name, no sums) or EX_SOFTWARE with nothing to free. */
+int solid_init(struct solid *s, const struct packing *p, const struct solid_opt *o,
+               struct why *why);
 void solid_free(struct solid *s);
 
 #endif

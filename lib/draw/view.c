@@ -336,9 +336,13 @@ static int place_panes(struct raster *s, const struct view *v, const struct pack
 {
     struct glass glass;
     struct why why = { 0 };
-    const struct extent r = { v3_add(v->region.lo, v->moved), v3_add(v->region.hi, v->moved) };
+    const struct glass_opt opt = { { v3_add(v->region.lo, v->moved),
+                                     v3_add(v->region.hi, v->moved) },
+                                   v->camera.toward,
+                                   v->solid,
+                                   v->glass };
     if (!v->glass && !v->solid) return 0;
-    if (glass_init(&glass, p, &r, v->camera.toward, v->solid, v->glass, &why)) return -1;
+    if (glass_init(&glass, p, &opt, &why)) return -1;
     s->pane = malloc((size_t)(glass.facets + 1) * sizeof *s->pane);
     for (int64_t i = 0; s->pane && i < glass.facets; i++)
         s->panes += place_pane(&s->pane[s->panes], v, &glass.facet[i]);

@@ -81,6 +81,7 @@ _Static_assert(sizeof(struct index_entry) == 32, "an entry of GSD's index");
 
 /* A file that is written */
 struct gsd {
+    FILE *out;
     int64_t at, frames, entries, room;
     struct index_entry *entry;
     struct {
@@ -98,8 +99,8 @@ static uint64_t hash_of(const unsigned char *b, size_t n)
     return h;
 }
 
-static int put_chunk(struct gsd *g, FILE *out, enum chunk k, int64_t rows, int64_t columns,
-                     const void *data, struct why *why)
+static int put_chunk(struct gsd *g, enum chunk k, int64_t rows, int64_t columns, const void *data,
+                     struct why *why)
 {
     const size_t size = (size_t)(rows * columns) * size_of(chunks[k].type);
     const uint64_t hash = hash_of(data, size);
@@ -121,7 +122,7 @@ static int put_chunk(struct gsd *g, FILE *out, enum chunk k, int64_t rows, int64
                                                    .columns = (uint32_t)columns,
                                                    .chunk = (uint16_t)k,
                                                    .type = (uint8_t)chunks[k].type };
-    fwrite(data, 1, size, out);
+    fwrite(data, 1, size, g->out);
     g->at += (int64_t)size;
     return 0;
 }
@@ -218,8 +219,7 @@ static void put_name(FILE *out, const struct packing *p, const struct kind *t, i
 }
 
 /* Texts as rows of one width, ended by zeros */
-static int put_texts(struct gsd *g, FILE *out, enum chunk c, char *const *text, int64_t n,
-                     struct why *why)
+static int put_texts(struct gsd *g, enum chunk c, char *const *text, int64_t n, struct why *why)
 {
     size_t width = 1;
     for (int64_t k = 0; k < n; k++)
@@ -230,13 +230,13 @@ static int put_texts(struct gsd *g, FILE *out, enum chunk c, char *const *text, 
     char *rows = calloc((size_t)n + 1, width);
     if (!rows) return why_set(why, EX_SOFTWARE, "no memory for the types of an export");
     for (int64_t k = 0; k < n; k++) strcpy(rows + (size_t)k * width, text[k]);
-    put_chunk(g, out, c, n, (int64_t)width, rows, why);
+    put_chunk(g, c, n, (int64_t)width, rows, why);
     free(rows);
     return why->status;
 }
 
-static int put_types(struct gsd *g, FILE *out, const struct packing *p, const struct kind *t,
-                     int64_t types, enum chunk c, struct why *why)
+static int put_types(struct gsd *g, const struct packing *p, const struct kind *t, int64_t types,
+                     enum chunk c, struct why *why)
 {
     char **text = calloc((size_t)types + 1, sizeof *text);
     size_t size;
@@ -247,14 +247,14 @@ static int put_types(struct gsd *g, FILE *out, const struct packing *p, const st
         if (to && c == TYPE_SHAPES) put_shape(to, p, &t[k]);
         if (!to || fclose(to)) why_set(why, EX_SOFTWARE, "no memory for the types of an export");
     }
-    if (!why->status) put_texts(g, out, c, text, types, why);
+    if (!why->status) put_texts(g, c, text, types, why);
     for (int64_t k = 0; text && k < types; k++) free(text[k]);
     free(text);
     return why->status;
 }
 
-static int put_type_ids(struct gsd *g, FILE *out, const struct packing *p, const struct kind *t,
-                        int64_t types, struct why *why)
+static int put_type_ids(struct gsd *g, const struct packing *p, const struct kind *t, int64_t types,
+                        struct why *why)
 {
     uint32_t *id = malloc(((size_t)p->n + 1) * sizeof *id);
     if (!id) return why_set(why, EX_SOFTWARE, "no memory for an export");
@@ -265,7 +265,7 @@ static int put_type_ids(struct gsd *g, FILE *out, const struct packing *p, const
                 ? (uint32_t)k.kind
                 : (uint32_t)((struct kind *)bsearch(&k, t, (size_t)types, sizeof k, by_kind) - t);
     }
-    put_chunk(g, out, TYPE_ID, p->n, 1, id, why);
+    put_chunk(g, TYPE_ID, p->n, 1, id, why);
     free(id);
     return why->status;
 }
@@ -336,8 +336,7 @@ static void numbers_of(const struct packing *p, const struct box *b, int64_t i, 
     if (c == DIAMETER) out[0] = (float)(2 * p->radius[i]);
 }
 
-static int put_numbers(struct gsd *g, FILE *out, const struct packing *p, const struct box *b,
-                       struct why *why)
+static int put_numbers(struct gsd *g, const struct packing *p, const struct box *b, struct why *why)
 {
     static const struct {
         enum chunk chunk;
@@ -351,14 +350,13 @@ static int put_numbers(struct gsd *g, FILE *out, const struct packing *p, const 
             numbers_of(p, b, i, of[k].chunk, one);
             memcpy(x + i * of[k].width, one, (size_t)of[k].width * sizeof *x);
         }
-        put_chunk(g, out, of[k].chunk, p->n, of[k].width, x, why);
+        put_chunk(g, of[k].chunk, p->n, of[k].width, x, why);
     }
     free(x);
     return why->status;
 }
 
-static int put_images(struct gsd *g, FILE *out, const struct packing *p, const struct box *b,
-                      struct why *why)
+static int put_images(struct gsd *g, const struct packing *p, const struct box *b, struct why *why)
 {
     int32_t(*image)[3] = calloc((size_t)p->n + 1, sizeof *image);
     if (!image) return why_set(why, EX_SOFTWARE, "no memory for an export");
@@ -366,12 +364,12 @@ static int put_images(struct gsd *g, FILE *out, const struct packing *p, const s
         if (p->image) memcpy(image[i], p->image[i], sizeof image[i]);
         within(b, p->x[i], image[i]);
     }
-    put_chunk(g, out, IMAGE, p->n, 3, image, why);
+    put_chunk(g, IMAGE, p->n, 3, image, why);
     free(image);
     return why->status;
 }
 
-static int put_frame(struct gsd *g, FILE *out, const struct packing *p, struct why *why)
+static int put_frame(struct gsd *g, const struct packing *p, struct why *why)
 {
     const uint64_t step = p->step < 0 ? 0 : (uint64_t)p->step;
     const uint8_t dim = (uint8_t)p->dim;
@@ -381,14 +379,12 @@ static int put_frame(struct gsd *g, FILE *out, const struct packing *p, struct w
     int64_t types = 0;
     if (box_of(box, &b, p, why)) return why->status;
     struct kind *t = list_types(p, &types, why);
-    if (t && !put_chunk(g, out, STEP, 1, 1, &step, why) &&
-        !put_chunk(g, out, DIMENSIONS, 1, 1, &dim, why) &&
-        !put_chunk(g, out, BOX, 6, 1, box, why) && !put_chunk(g, out, COUNT, 1, 1, &n, why) &&
-        !put_types(g, out, p, t, types, TYPES, why) &&
-        !put_types(g, out, p, t, types, TYPE_SHAPES, why) &&
-        !put_type_ids(g, out, p, t, types, why) && !put_numbers(g, out, p, &b, why) &&
-        !put_images(g, out, p, &b, why) && !put_chunk(g, out, TIME, 1, 1, &p->t, why))
-        put_chunk(g, out, ID, p->n, 1, p->id, why);
+    if (t && !put_chunk(g, STEP, 1, 1, &step, why) && !put_chunk(g, DIMENSIONS, 1, 1, &dim, why) &&
+        !put_chunk(g, BOX, 6, 1, box, why) && !put_chunk(g, COUNT, 1, 1, &n, why) &&
+        !put_types(g, p, t, types, TYPES, why) && !put_types(g, p, t, types, TYPE_SHAPES, why) &&
+        !put_type_ids(g, p, t, types, why) && !put_numbers(g, p, &b, why) &&
+        !put_images(g, p, &b, why) && !put_chunk(g, TIME, 1, 1, &p->t, why))
+        put_chunk(g, ID, p->n, 1, p->id, why);
     free(t);
     g->frames++;
     return why->status;
@@ -404,7 +400,7 @@ static struct gsd *begin(FILE *out, struct why *why)
         return why_set(why, EX_USAGE, "GSD goes into a file of its own: -o FILE.gsd"), NULL;
     }
     fwrite(&empty, sizeof empty, 1, out);
-    g->at = sizeof empty;
+    g->out = out, g->at = sizeof empty;
     return g;
 }
 
@@ -413,7 +409,7 @@ static int write_gsd(FILE *out, const struct export_frame *m, enum part part, bo
 {
     (void)part;
     if (first && !(*m->kept = begin(out, why))) return why->status;
-    return put_frame(*m->kept, out, m->packing, why);
+    return put_frame(*m->kept, m->packing, why);
 }
 
 /* The names and the index, and where they are */

@@ -26,6 +26,13 @@ static const double ALONG = 1e-6;    /* 1 - cosine: the shortest way is along a 
 static const double NEARLY_ACROSS = 2e-2; /* cosine: an edge that lies across the shortest way */
 static const double APART = 1e-9;         /* of the size: a distance that is one */
 
+/* Two cores, and how far apart places of theirs may be */
+struct two {
+    int dim;
+    const struct core *a, *b;
+    double reach; /* m: the largest gap */
+};
+
 /* The best axis so far */
 struct axis {
     enum { AXIS_NONE, AXIS_FACE_A, AXIS_FACE_B, AXIS_EDGES } by;
@@ -193,10 +200,13 @@ static int add_place(struct place *place, int count, const struct place *new, do
     return count + 1;
 }
 
-/* The other's face clipped to face f of `face`; n: its normal, away from it. flipped: it is b's. */
-static int by_face(int dim, const struct core *face, const struct core *other, int32_t f,
-                   bool flipped, double reach, struct place out[PLACES_MOST])
+/* The other's face clipped to the face that is the best axis; n: its normal, away from it. */
+static int by_face(const struct two *o, const struct axis *best, struct place out[PLACES_MOST])
 {
+    const int dim = o->dim;
+    const bool flipped = best->by == AXIS_FACE_B; // it is b's
+    const struct core *face = flipped ? o->b : o->a, *other = flipped ? o->a : o->b;
+    const int32_t f = best->i;
     struct clipped buffer[2][CORNERS_MOST], *now = buffer[0], *next = buffer[1];
     struct place place[CORNERS_MOST];
     vec3 n = face->normal[f], x = face->v[corner_of(face, dim, f, 0)];
@@ -215,7 +225,7 @@ static int by_face(int dim, const struct core *face, const struct core *other, i
         struct place one = { v3_axpy(now[k].x, middle - depth, n), flipped ? v3_scale(-1, n) : n,
                              depth - face->round - other->round,
                              now[k].feature + (flipped ? OF_B : 0) };
-        places = add_place(place, places, &one, reach);
+        places = add_place(place, places, &one, o->reach);
     }
     places = meet_few(place, places);
     for (int k = 0; k < places; k++) out[k] = place[k];
@@ -291,13 +301,14 @@ static double clamp(double x)
 }
 
 /* The places of two segments (or points) with parameters s and t */
-static int at_parameters(const struct core *a, const struct core *b, double s, double t,
-                         int32_t feature, double reach, struct place *out)
+static int at_parameters(const struct two *o, double s, double t, int32_t feature,
+                         struct place *out)
 {
+    const struct core *a = o->a, *b = o->b;
     vec3 p = v3_axpy(a->v[0], s, v3_sub(a->v[a->n - 1], a->v[0]));
     vec3 q = v3_axpy(b->v[0], t, v3_sub(b->v[b->n - 1], b->v[0])), d = v3_sub(q, p);
     double distance = v3_norm(d), gap = distance - a->round - b->round;
-    if (!(gap <= reach)) return 0;
+    if (!(gap <= o->reach)) return 0;
     vec3 n = v3_sub(b->centre, a->centre); // cores that cross: any way out will do
     double length = v3_norm(n);
     n = length > 0 ? v3_scale(1 / length, n) : v3(0, 1, 0);
@@ -308,28 +319,28 @@ static int at_parameters(const struct core *a, const struct core *b, double s, d
 
 /* Segments side by side meet in two places, at the ends of what they have in common: where one of them ends, next
    to that end, whichever of them is a. */
-static int meet_segments(const struct core *a, const struct core *b, double reach,
-                         struct place *out)
+static int meet_segments(const struct two *o, struct place *out)
 {
+    const struct core *a = o->a, *b = o->b;
     vec3 d = v3_sub(a->v[a->n - 1], a->v[0]), e = v3_sub(b->v[b->n - 1], b->v[0]),
          w = v3_sub(b->v[0], a->v[0]);
     double dd = v3_dot(d, d), ee = v3_dot(e, e), de = v3_dot(d, e), dw = v3_dot(d, w),
            ew = v3_dot(e, w), det = dd * ee - de * de;
     if (a->n == 1 || b->n == 1) {
         double s = a->n == 2 ? clamp(dw / dd) : 0, t = b->n == 2 ? clamp(-ew / ee) : 0;
-        return at_parameters(a, b, s, t, BY_NEAREST, reach, out);
+        return at_parameters(o, s, t, BY_NEAREST, out);
     }
     if (det > 1e-4 * dd * ee) { // crossed by more than half a degree
         double s = clamp((dw * ee - ew * de) / det), t = clamp((s * de - ew) / ee);
         s = clamp((t * de + dw) / dd);
-        return at_parameters(a, b, s, t, BY_NEAREST, reach, out);
+        return at_parameters(o, s, t, BY_NEAREST, out);
     }
     double lo = clamp(dw / dd), hi = clamp((dw + de) / dd);
     double t_lo = lo > 0 && lo < 1 ? 0 : clamp((lo * de - ew) / ee);
     double t_hi = hi > 0 && hi < 1 ? 1 : clamp((hi * de - ew) / ee);
-    int count = at_parameters(a, b, lo, t_lo, BY_CORNER, reach, out);
+    int count = at_parameters(o, lo, t_lo, BY_CORNER, out);
     if (fabs(hi - lo) < 1e-9) return count;
-    return count + at_parameters(a, b, hi, t_hi, BY_CORNER + 1, reach, out + count);
+    return count + at_parameters(o, hi, t_hi, BY_CORNER + 1, out + count);
 }
 
 /* The corner of c that is farthest along n, and the one that falls off least on the way there; false:
@@ -352,19 +363,21 @@ static bool edge_across(const struct core *c, vec3 n, vec3 v[2])
 }
 
 /* Apart along the shortest way. Edges side by side meet in two places, as segments do. */
-static int by_nearest(int dim, const struct core *a, const struct core *b, const struct nearest *o,
-                      double size, double reach, struct place *out)
+static int by_nearest(const struct two *o, const struct nearest *way, double size,
+                      struct place *out)
 {
-    vec3 n = v3_scale(1 / o->distance, v3_sub(o->b, o->a)), of_a[2], of_b[2];
-    double gap = o->distance - a->round - b->round;
-    if (dim == 3 && edge_across(a, n, of_a) && edge_across(b, v3_scale(-1, n), of_b)) {
+    const struct core *a = o->a, *b = o->b;
+    vec3 n = v3_scale(1 / way->distance, v3_sub(way->b, way->a)), of_a[2], of_b[2];
+    double gap = way->distance - a->round - b->round;
+    if (o->dim == 3 && edge_across(a, n, of_a) && edge_across(b, v3_scale(-1, n), of_b)) {
         const struct core s = { .n = 2, .v = of_a, .round = a->round, .centre = a->centre };
         const struct core t = { .n = 2, .v = of_b, .round = b->round, .centre = b->centre };
-        int count = meet_segments(&s, &t, reach, out);
+        const struct two edges = { o->dim, &s, &t, o->reach };
+        int count = meet_segments(&edges, out);
         if (count == 2 && fmin(out[0].gap, out[1].gap) < gap + ALONG * size) return count;
     }
-    out[0] = (struct place){ v3_axpy(o->a, a->round + 0.5 * gap, n), n, gap, BY_NEAREST };
-    return gap <= reach;
+    out[0] = (struct place){ v3_axpy(way->a, a->round + 0.5 * gap, n), n, gap, BY_NEAREST };
+    return gap <= o->reach;
 }
 
 /* ---- all of them ---- */
@@ -372,9 +385,10 @@ static int by_nearest(int dim, const struct core *a, const struct core *b, const
 int meet_cores(int dim, const struct core *a, const struct core *b, double reach,
                struct place out[PLACES_MOST])
 {
+    const struct two both = { dim, a, b, reach };
     struct axis best = { .by = AXIS_NONE, .gap = -INFINITY };
     double round = a->round + b->round, most = reach + round;
-    if (!a->hull && !b->hull) return meet_segments(a, b, reach, out);
+    if (!a->hull && !b->hull) return meet_segments(&both, out);
     double size = v3_norm(v3_sub(a->v[0], a->centre)) + v3_norm(v3_sub(b->v[0], b->centre));
     if (!try_faces(&best, a, b, dim, most, false)) return 0;
     struct axis of_a = best;
@@ -388,7 +402,7 @@ int meet_cores(int dim, const struct core *a, const struct core *b, double reach
         if (apart) {
             vec3 n = v3_scale(1 / o.distance, v3_sub(o.b, o.a));
             if (o.distance > most) return 0;
-            if (1 - v3_dot(n, best.n) > ALONG) return by_nearest(dim, a, b, &o, size, reach, out);
+            if (1 - v3_dot(n, best.n) > ALONG) return by_nearest(&both, &o, size, out);
         }
     }
     if (a->hull && b->hull && dim == 3 && !try_edges(&best, a, b, FACE_FIRST * size, most))
@@ -400,9 +414,8 @@ int meet_cores(int dim, const struct core *a, const struct core *b, double reach
         !try_segment(&best, b, a, false, FACE_FIRST * size, most))
         return 0;
     if (best.by == AXIS_EDGES) return by_edges(a, b, &best, out);
-    int count = best.by == AXIS_FACE_A ? by_face(dim, a, b, best.i, false, reach, out)
-                                       : by_face(dim, b, a, best.i, true, reach, out);
+    int count = by_face(&both, &best, out);
     if (count || round == 0) return count;
     const struct nearest o = gjk_nearest(a, b); // a corner beside the face
-    return o.distance > 0 ? by_nearest(dim, a, b, &o, size, reach, out) : 0;
+    return o.distance > 0 ? by_nearest(&both, &o, size, out) : 0;
 }

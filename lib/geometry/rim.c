@@ -21,22 +21,19 @@ static bool counts(const struct rim *r, vec3 c, double reach)
     return r->sides != 2 || v3_norm(v3_add(r->into[0], r->into[1])) > FLAT;
 }
 
-static int of_rectangle(const struct wall *w, int dim, vec3 c, double reach, struct rim *out,
-                        int most)
+static void of_rectangle(struct rims *out, const struct wall *w, int dim, vec3 c, double reach)
 {
     vec3 across = v3_cross(w->n, w->along), corner[4];
     double a = w->size[0] / 2, b = dim == 2 ? 0 : w->size[1] / 2;
-    int n = 0;
     for (int k = 0; k < 4; k++)
         corner[k] = v3_axpy(v3_scale(k == 1 || k == 2 ? a : -a, w->along), k > 1 ? b : -b, across);
-    for (int k = 0; k < (dim == 2 ? 2 : 4) && n < most; k++) {
+    for (int k = 0; k < (dim == 2 ? 2 : 4); k++) {
         struct rim r = { .n = dim - 1, .sides = 1, .key = k, .corner = { k, (k + 1) % 4 } };
         r.v[0] = corner[k], r.v[1] = corner[(k + 1) % 4];
         vec3 into = dim == 2 ? corner[k] : v3_add(r.v[0], r.v[1]); // of it, the middle is 0
         r.into[0] = unit(v3_scale(-1, into));
-        if (counts(&r, c, reach)) out[n++] = r;
+        if (counts(&r, c, reach)) out->rim[out->n++] = r;
     }
-    return n;
 }
 
 /* From the line or point of r into element e */
@@ -72,27 +69,28 @@ static bool of_element(const struct surface *s, int dim, int32_t e, int k, struc
     return true;
 }
 
-static int of_surface(const struct surface *s, int dim, vec3 c, double reach, struct rim *out,
-                      int most)
+static void of_surface(struct rims *out, const struct surface *s, int dim, vec3 c, double reach)
 {
     struct surface_walk walk;
     struct surface_branch leaf;
     struct rim r;
-    int n = 0;
     surface_walk_begin(&walk, s->n);
     while (surface_walk_next(&walk, s->box, c, reach, &leaf))
         for (int32_t i = leaf.lo; i < leaf.hi; i++)
             for (int k = 0; k < dim; k++)
-                if (n < most && of_element(s, dim, s->order[i], k, &r) && counts(&r, c, reach))
-                    out[n++] = r;
-    return n;
+                if (out->n < RIMS_MOST && of_element(s, dim, s->order[i], k, &r) &&
+                    counts(&r, c, reach))
+                    out->rim[out->n++] = r;
 }
 
-int rims_near(const struct wall *w, int dim, const struct surface *surface, vec3 c, double reach,
-              struct rim *out, int most)
+void rims_near(struct rims *out, const struct wall *w, int dim, const struct surface *surface,
+               vec3 c, double reach)
 {
-    if (surface) return of_surface(surface, dim, c, reach, out, most);
-    return w->shape == BOUNDARY_RECTANGLE ? of_rectangle(w, dim, c, reach, out, most) : 0;
+    out->n = 0;
+    if (surface)
+        of_surface(out, surface, dim, c, reach);
+    else if (w->shape == BOUNDARY_RECTANGLE)
+        of_rectangle(out, w, dim, c, reach);
 }
 
 /* ---- is it the end? ---- */
@@ -161,22 +159,23 @@ static bool another_rises(const struct surface *s, int32_t v, int32_t w, vec3 x,
     return false;
 }
 
-int surface_groove(const struct surface *s, int dim, const struct touch *t, vec3 c, vec3 middle,
-                   struct touch *out, int most)
+void surface_groove(struct grooves *out, const struct surface *s, int dim, const struct touch *t,
+                    vec3 c, vec3 middle)
 {
     int32_t v, w;
-    int n = 0;
+    const int first = out->n;
     ends_of(s, dim, t->feature, &v, &w);
-    for (int32_t i = s->star[v]; i < s->star[v + 1] && n < most; i++) {
+    for (int32_t i = s->star[v]; i < s->star[v + 1] && out->n < TOUCHES_MOST; i++) {
         int32_t e = s->member[i];
         vec3 x = v3_axpy(c, -t->distance, t->n), up = surface_normal(s, e);
         bool again = (i > s->star[v] && s->member[i - 1] == e) || !has_corner(s, e, w);
         if (v3_dot(up, v3_sub(middle, x)) < 0) up = v3_scale(-1, up);
-        for (int k = 0; k < n; k++) again |= v3_norm(v3_cross(out[k].n, up)) <= FLAT;
+        for (int k = first; k < out->n; k++)
+            again |= v3_norm(v3_cross(out->touch[k].n, up)) <= FLAT;
         if (again || !another_rises(s, v, w, x, up)) continue;
-        out[n++] = (struct touch){ up, v3_dot(up, v3_sub(c, x)), SURFACE_FEATURES * e + 6 };
+        out->touch[out->n++] =
+            (struct touch){ up, v3_dot(up, v3_sub(c, x)), SURFACE_FEATURES * e + 6 };
     }
-    return n;
 }
 
 bool boundary_ends_at(const struct wall *w, int dim, const struct surface *surface, vec3 c,

@@ -13,7 +13,7 @@
 
 #include <stdbool.h>
 
-enum { RIM_SIDES_MOST = 4 };
+enum { RIM_SIDES_MOST = 4, RIMS_MOST = 64 /* near a body: of more the first */ };
 
 /* As its boundary is described, before any motion */
 struct rim {
@@ -24,10 +24,14 @@ struct rim {
     int32_t key, corner[2];    /* which it is of the boundary, and its ends */
 };
 
-/* Those at most `reach` (m) from c (m, from the boundary's point of reference), of more than `most` the
-   first; returns how many. surface: of a mesh. */
-int rims_near(const struct wall *w, int dim, const struct surface *surface, vec3 c, double reach,
-              struct rim *out, int most);
+struct rims {
+    int n;
+    struct rim rim[RIMS_MOST];
+};
+
+/* Those at most `reach` (m) from c (m, from the boundary's point of reference). surface: of a mesh. */
+void rims_near(struct rims *out, const struct wall *w, int dim, const struct surface *surface,
+               vec3 c, double reach);
 
 /* Does the boundary end at the place t that is next to c (m, from its point of reference)? There it has no
    other side. */
@@ -35,9 +39,14 @@ bool boundary_ends_at(const struct wall *w, int dim, const struct surface *surfa
                       const struct touch *t);
 /* Do the elements that meet at a feature of a surface lie in different planes? Then rims are there. */
 bool surface_bends(const struct surface *s, int dim, int32_t feature);
-/* In a groove, seen from the point `middle`, there are none: those elements at the feature t above which others rise, as
-   they are next to c behind them. Returns how many, of more than `most` the first. */
-int surface_groove(const struct surface *s, int dim, const struct touch *t, vec3 c, vec3 middle,
-                   struct touch *out, int most);
+/* Elements of grooves, as they are next to a point behind them; of more than there is room for the first */
+struct grooves {
+    int n;
+    struct touch touch[TOUCHES_MOST];
+};
+/* In a groove, seen from the point `middle`, there are none: adds those elements at the feature t above which others
+   rise, as they are next to c behind them. */
+void surface_groove(struct grooves *out, const struct surface *s, int dim, const struct touch *t,
+                    vec3 c, vec3 middle);
 
 #endif

@@ -352,37 +352,35 @@ static void even_out(double m[3])
     }
 }
 
-int solid_settle(struct shape *s, int dim, double *reach, vec3 *centre, quat *turn, struct why *why)
+int solid_settle(struct shape *s, int dim, struct solid_frame *was, struct why *why)
 {
     struct solid o = { 0 };
-    return solid_of(&o, s, dim, why) ? why->status
-                                     : solid_settle_as(s, dim, &o, reach, centre, turn, why);
+    return solid_of(&o, s, dim, why) ? why->status : solid_settle_as(s, dim, &o, was, why);
 }
 
-int solid_settle_as(struct shape *s, int dim, const struct solid *of, double *reach, vec3 *centre,
-                    quat *turn, struct why *why)
+int solid_settle_as(struct shape *s, int dim, const struct solid *of, struct solid_frame *was,
+                    struct why *why)
 {
     struct solid o = *of;
+    double reach = 0;
     if (!v3_finite(o.centre)) return why_set(why, EX_DATAERR, "has no volume");
-    *centre = o.centre;
-    *reach = 0;
     for (int32_t i = 0; i < s->vertices; i++) {
         double r = s->form == SHAPE_CLUMP ? s->ball[i] : s->round;
-        *reach = fmax(*reach, v3_norm(v3_sub(s->vertex[i], o.centre)) + r);
+        reach = fmax(reach, v3_norm(v3_sub(s->vertex[i], o.centre)) + r);
     }
-    double size = dim == 2 ? *reach * *reach : *reach * *reach * *reach;
+    double size = dim == 2 ? reach * reach : reach * reach * reach;
     if (o.volume < 0) return why_set(why, EX_DATAERR, "is turned inside out");
     if (!(o.volume > FLAT * size)) return why_set(why, EX_DATAERR, "is flat: it has no volume");
-    *turn = principal_axes(o.second, dim);
-    double unit = 1 / *reach;
+    *was = (struct solid_frame){ reach, o.centre, principal_axes(o.second, dim) };
+    double unit = 1 / reach;
     for (int32_t i = 0; i < s->vertices; i++) {
-        vec3 x = v3_scale(unit, quat_turn_back(*turn, v3_sub(s->vertex[i], o.centre)));
+        vec3 x = v3_scale(unit, quat_turn_back(was->turn, v3_sub(s->vertex[i], o.centre)));
         s->vertex[i] = dim == 2 ? v3(x.x, x.y, 0) : x;
         s->ball[i] *= unit;
     }
     s->round *= unit;
     s->volume = o.volume / size;
-    double k = 1 / (o.volume * *reach * *reach), d[3];
+    double k = 1 / (o.volume * reach * reach), d[3];
     for (int i = 0; i < 3; i++) d[i] = k * o.second[i][i];
     for (int i = 0; i < 3; i++) s->moment[i] = d[(i + 1) % 3] + d[(i + 2) % 3];
     if (dim == 2) s->moment[0] = s->moment[1] = s->moment[2] = d[0] + d[1];

@@ -23,18 +23,23 @@ struct solid {
 /* Of a shape in any frame and any unit, its faces outward */
 int solid_of(struct solid *out, const struct shape *s, int dim, struct why *why);
 
+/* What a shape was before it was brought to its own axes and unit */
+struct solid_frame {
+    double reach; /* m: the radius of the ball around it */
+    vec3 centre;  /* m: of mass */
+    quat turn;    /* from its axes to those it was described in */
+};
+
 /*
  * Brings s, in metres and whatever axes it was described in, to its own axes and unit, and fills in
- * volume and moments. *reach: the radius of the ball around it, m; *centre: of mass, m; *turn: from
- * its axes to those it was described in. Axes that are principal ones already stay, so that a brick
+ * volume and moments. Axes that are principal ones already stay, so that a brick
  * described along x, y and z lies along them. Returns 0, EX_DATAERR or EX_SOFTWARE.
  */
-int solid_settle(struct shape *s, int dim, double *reach, vec3 *centre, quat *turn,
-                 struct why *why);
+int solid_settle(struct shape *s, int dim, struct solid_frame *was, struct why *why);
 
 /* The same of a shape that has the volume, centre and moments of something else, such as the surface that its balls
    fill. */
-int solid_settle_as(struct shape *s, int dim, const struct solid *of, double *reach, vec3 *centre,
-                    quat *turn, struct why *why);
+int solid_settle_as(struct shape *s, int dim, const struct solid *of, struct solid_frame *was,
+                    struct why *why);
 
 #endif

@@ -72,30 +72,6 @@ int h5_group(hid_t place, const char *path, struct why *why)
     return good ? 0 : why_set(why, EX_IOERR, "%s: cannot make the group", path);
 }
 
-static int write_data(hid_t place, const char *path, hid_t memory, hid_t disk, hid_t space,
-                      const void *data, const char *units, struct why *why)
-{
-    if (make_parents(place, path, why)) return why->status;
-    hid_t plist = h5_dataset_plist();
-    if (!data && H5Sget_simple_extent_npoints(space) > 0) h5_fill_later(plist);
-    hid_t set = H5Dcreate2(place, path, disk, space, H5P_DEFAULT, plist, H5P_DEFAULT);
-    H5Pclose(plist);
-    bool bad = set < 0;
-    if (!bad && data && H5Sget_simple_extent_npoints(space) > 0)
-        bad = H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0;
-    if (!bad && units) bad = h5_attr_text(set, ".", "units", units, why);
-    if (set >= 0) bad |= H5Dclose(set) < 0;
-    return bad ? why_set(why, EX_IOERR, "%s: cannot be written", path) : 0;
-}
-
-/* The type on disk for this type of memory. To be closed. */
-static hid_t little_endian(hid_t type)
-{
-    hid_t disk = H5Tcopy(type);
-    H5Tset_order(disk, H5T_ORDER_LE);
-    return disk;
-}
-
 /* A C string of just this length with its zero, as libfclib stores and expects it. To be closed. */
 static hid_t text_type(const char *text)
 {
@@ -105,22 +81,39 @@ static hid_t text_type(const char *text)
     return type;
 }
 
-int h5_write(hid_t place, const char *path, hid_t type, int rank, const hsize_t *shape,
-             const void *data, const char *units, struct why *why)
+/* The type on disk for this type of memory, and the space. To be closed. */
+static hid_t disk_type(const struct h5_data *data)
 {
-    hid_t disk = little_endian(type);
-    hid_t space = rank ? H5Screate_simple(rank, shape, NULL) : H5Screate(H5S_SCALAR);
-    int e = write_data(place, path, type, disk, space, data, units, why);
-    H5Sclose(space);
-    H5Tclose(disk);
-    return e;
+    hid_t disk = H5Tcopy(data->type);
+    if (H5Tget_class(disk) != H5T_STRING) H5Tset_order(disk, H5T_ORDER_LE);
+    return disk;
+}
+
+static hid_t space_of(const struct h5_data *data)
+{
+    return data->rank ? H5Screate_simple(data->rank, data->shape, NULL) : H5Screate(H5S_SCALAR);
+}
+
+int h5_write(hid_t place, const char *path, struct h5_data data, const char *units, struct why *why)
+{
+    if (make_parents(place, path, why)) return why->status;
+    hid_t disk = disk_type(&data), space = space_of(&data), plist = h5_dataset_plist();
+    bool any = H5Sget_simple_extent_npoints(space) > 0;
+    if (!data.at && any) h5_fill_later(plist);
+    hid_t set = H5Dcreate2(place, path, disk, space, H5P_DEFAULT, plist, H5P_DEFAULT);
+    bool bad = set < 0;
+    if (!bad && data.at && any)
+        bad = H5Dwrite(set, data.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.at) < 0;
+    if (!bad && units) bad = h5_attr_text(set, ".", "units", units, why);
+    if (set >= 0) bad |= H5Dclose(set) < 0;
+    H5Pclose(plist), H5Sclose(space), H5Tclose(disk);
+    return bad ? why_set(why, EX_IOERR, "%s: cannot be written", path) : 0;
 }
 
 int h5_write_text(hid_t place, const char *path, const char *text, struct why *why)
 {
-    hid_t type = text_type(text), space = H5Screate(H5S_SCALAR);
-    int e = write_data(place, path, type, type, space, text, NULL, why);
-    H5Sclose(space);
+    hid_t type = text_type(text);
+    int e = h5_write(place, path, h5_scalar(type, text), NULL, why);
     H5Tclose(type);
     return e;
 }
@@ -130,34 +123,17 @@ static hid_t make_attr(hid_t place, const char *path, const char *name, hid_t di
     return H5Acreate_by_name(place, path, name, disk, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
 }
 
-static int write_attr(hid_t place, const char *path, const char *name, hid_t memory, hid_t disk,
-                      int rank, const hsize_t *shape, const void *data, struct why *why)
+int h5_attr(hid_t place, const char *path, const char *name, struct h5_data data, struct why *why)
 {
-    hid_t space = rank ? H5Screate_simple(rank, shape, NULL) : H5Screate(H5S_SCALAR);
-    hsize_t count = (hsize_t)H5Sget_simple_extent_npoints(space);
+    hid_t disk = disk_type(&data), space = space_of(&data);
+    hssize_t count = H5Sget_simple_extent_npoints(space);
     hid_t attr = make_attr(place, path, name, disk, space);
     if (attr < 0 && H5Adelete_by_name(place, path, name, H5P_DEFAULT) >= 0)
         attr = make_attr(place, path, name, disk, space);
-    bool bad = attr < 0 || (count != 0 && H5Awrite(attr, memory, data) < 0);
+    bool bad = attr < 0 || (count != 0 && H5Awrite(attr, data.type, data.at) < 0);
     if (attr >= 0) bad |= H5Aclose(attr) < 0;
-    H5Sclose(space);
+    H5Sclose(space), H5Tclose(disk);
     return bad ? why_set(why, EX_IOERR, "%s@%s: cannot be written", path, name) : 0;
-}
-
-int h5_attr_shaped(hid_t place, const char *path, const char *name, hid_t type, int rank,
-                   const hsize_t *shape, const void *data, struct why *why)
-{
-    hid_t disk = little_endian(type);
-    int e = write_attr(place, path, name, type, disk, rank, shape, data, why);
-    H5Tclose(disk);
-    return e;
-}
-
-int h5_attr(hid_t place, const char *path, const char *name, hid_t type, int count,
-            const void *data, struct why *why)
-{
-    hsize_t shape = (hsize_t)count;
-    return h5_attr_shaped(place, path, name, type, count < 0 ? 0 : 1, &shape, data, why);
 }
 
 int h5_attr_text(hid_t place, const char *path, const char *name, const char *text, struct why *why)
@@ -166,7 +142,7 @@ int h5_attr_text(hid_t place, const char *path, const char *name, const char *te
         return why_set(why, EX_DATAERR, "%s@%s: %zu bytes, and a document has room for %d", path,
                        name, strlen(text), ATTRIBUTE_MOST);
     hid_t type = text_type(text);
-    int e = write_attr(place, path, name, type, type, 0, NULL, text, why);
+    int e = h5_attr(place, path, name, h5_scalar(type, text), why);
     H5Tclose(type);
     return e;
 }

@@ -35,7 +35,7 @@ int list_open(struct list *s, unsigned char *bytes, uint64_t size, struct why *w
             if (!more) return why_set(why, EX_SOFTWARE, "no memory for a list of objects");
             s->object = more;
         }
-        if (!object_unpack(bytes, size, &at, &l.object, &l.shape, &l.path, &l.data))
+        if (!object_unpack(bytes, size, &at, &l))
             return why_set(why, EX_DATAERR, "no list of objects");
         s->object[s->count] = l;
     }

@@ -8,14 +8,6 @@
 #include "hdf5/h5.h"
 #include "hdf5/object.h"
 
-/* One object of the list; path, shape and data point into the list's bytes. */
-struct listed {
-    struct object object;
-    const char *path;
-    const uint64_t *shape;
-    const void *data; /* object.data bytes, where they have come along */
-};
-
 struct list {
     unsigned char *bytes; /* a sequence of objects */
     struct listed *object;

@@ -50,21 +50,21 @@ static bool makes_sense(const struct object *o)
            o->rank <= OBJECT_RANK + 1;
 }
 
-bool object_unpack(const unsigned char *bytes, uint64_t size, uint64_t *at, struct object *o,
-                   const uint64_t **shape, const char **name, const void **data)
+bool object_unpack(const unsigned char *bytes, uint64_t size, uint64_t *at, struct listed *to)
 {
+    struct object *o = &to->object;
     if (size - *at < padded(sizeof *o)) return false;
     memcpy(o, bytes + *at, sizeof *o);
     if (!makes_sense(o)) return false;
     uint64_t left = size - *at - padded(sizeof *o), rank = o->rank > OBJECT_RANK ? 0 : o->rank;
-    uint64_t shapes = rank * sizeof **shape;
+    uint64_t shapes = rank * sizeof *to->shape;
     if (shapes > left || padded(o->name) > left - shapes || !o->name || o->data > left ||
         padded(o->data) > left - shapes - padded(o->name))
         return false;
     const unsigned char *p = bytes + *at + padded(sizeof *o);
-    *shape = (const uint64_t *)(const void *)p; // all is padded to 8 bytes
-    *name = (const char *)p + shapes;
-    *data = p + shapes + padded(o->name);
+    to->shape = (const uint64_t *)(const void *)p; // all is padded to 8 bytes
+    to->path = (const char *)p + shapes;
+    to->data = p + shapes + padded(o->name);
     *at += padded(sizeof *o) + shapes + padded(o->name) + padded(o->data);
-    return (*name)[o->name - 1] == 0;
+    return to->path[o->name - 1] == 0;
 }

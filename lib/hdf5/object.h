@@ -31,6 +31,14 @@ struct object {
     uint64_t data;  /* bytes of data behind it; 0 where they are to be asked for */
 };
 
+/* One of a sequence, whose bytes are borrowed */
+struct listed {
+    struct object object;
+    const uint64_t *shape; /* [object.rank] */
+    const char *path;      /* of an attribute its name, in a list of objects "path@name" */
+    const void *data;      /* [object.data] bytes, where they have come along */
+};
+
 /* A sequence of objects that grows; bytes to be freed */
 struct objects {
     unsigned char *bytes;
@@ -41,11 +49,8 @@ struct objects {
 int objects_add(struct objects *objects, const struct object *object, const void *shape,
                 const char *name, const void *data, struct why *why);
 
-/*
- * The object at bytes[*at] of such a sequence, its shape, name and data; *at moves behind it. False
- * at the end, and where the bytes are no such object.
- */
-bool object_unpack(const unsigned char *bytes, uint64_t size, uint64_t *at, struct object *object,
-                   const uint64_t **shape, const char **name, const void **data);
+/* The object at bytes[*at] of such a sequence; *at moves behind it. False at the end, and where the bytes are no such
+   object. */
+bool object_unpack(const unsigned char *bytes, uint64_t size, uint64_t *at, struct listed *to);
 
 #endif

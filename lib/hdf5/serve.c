@@ -55,20 +55,24 @@ static const struct served_entry *find_numbers(const struct served *s, const str
     return NULL;
 }
 
-/* The block of a dataset in which as many numbers as `stored` have to be there */
+/* Block of a dataset that is asked for */
+struct block {
+    hsize_t first[OBJECT_RANK], count[OBJECT_RANK];
+    hsize_t stored; /* numbers of the dataset that have to be in the file */
+};
+
 static int answer_block(struct served *s, const struct served_entry *e, const struct request *q,
-                        hsize_t stored, const hsize_t *first, const hsize_t *count,
-                        struct sink *sink, struct why *why)
+                        const struct block *b, struct sink *sink, struct why *why)
 {
     const struct object *o = &e->object;
     struct reply reply = { .there = true, .size = column_size(q->type) };
-    for (uint32_t k = 0; k < o->rank; k++) reply.size *= count[k];
-    if (served_stored(e, stored * o->size, why)) return why->status;
+    for (uint32_t k = 0; k < o->rank; k++) reply.size *= b->count[k];
+    if (served_stored(e, b->stored * o->size, why)) return why->status;
     hid_t set = served_set(s, e, why);
     if (set < 0) return why->status;
     if (set != e->set) reply.work = e->chunk;
     int bad = sink->begin(sink, &reply) ||
-              put_block(set, column_native(q->type), (int)o->rank, first, count, sink);
+              put_block(set, column_native(q->type), (int)o->rank, b->first, b->count, sink);
     if (set != e->set) H5Dclose(set);
     return bad ? why_set(why, EX_DATAERR, "%s: cannot be read as %s (damaged?)", q->path,
                          element_wanted(q->type))
@@ -81,19 +85,20 @@ static int answer_rows(struct served *s, const struct request *q, struct sink *s
     const struct served_entry *e = find_numbers(s, q, why);
     if (!e) return why->status;
     const struct object *o = &e->object;
-    hsize_t first[OBJECT_RANK] = { 0 }, count[OBJECT_RANK], row = 1,
-            rows = o->rank ? e->shape[0] : 1;
+    struct block b = { .first = { 0 } };
+    hsize_t row = 1, rows = o->rank ? e->shape[0] : 1;
     for (uint32_t k = 0; k < o->rank; k++) {
-        count[k] = e->shape[k];
-        if (k) row *= count[k];
+        b.count[k] = e->shape[k];
+        if (k) row *= b.count[k];
     }
     bool all = q->n < 0;
     if (!all && (!o->rank || q->start < 0 || rows < (hsize_t)q->start ||
                  rows - (hsize_t)q->start < (hsize_t)q->n || row != (hsize_t)q->width))
         return why_set(why, EX_DATAERR, "%s: not of %lld rows of %lld numbers", q->path,
                        (long long)(q->start + q->n), (long long)q->width);
-    if (!all) first[0] = (hsize_t)q->start, count[0] = (hsize_t)q->n, rows = count[0];
-    return answer_block(s, e, q, rows * row, first, count, sink, why);
+    if (!all) b.first[0] = (hsize_t)q->start, b.count[0] = (hsize_t)q->n, rows = b.count[0];
+    b.stored = rows * row;
+    return answer_block(s, e, q, &b, sink, why);
 }
 
 /* Of one row some rows of the dimension within it */
@@ -103,7 +108,8 @@ static int answer_part(struct served *s, const struct request *q, struct sink *s
     const struct served_entry *e = find_numbers(s, q, why);
     if (!e) return why->status;
     const struct object *o = &e->object;
-    hsize_t first[OBJECT_RANK] = { 0 }, count[OBJECT_RANK], width = 1;
+    struct block b = { .first = { 0 } };
+    hsize_t *first = b.first, *count = b.count, width = 1;
     for (uint32_t k = 0; k < o->rank; k++) {
         count[k] = e->shape[k];
         if (k > 1) width *= count[k];
@@ -112,10 +118,10 @@ static int answer_part(struct served *s, const struct request *q, struct sink *s
         count[1] < (hsize_t)q->from || count[1] - (hsize_t)q->from < (hsize_t)q->n ||
         width != (hsize_t)q->width)
         return why_set(why, EX_DATAERR, "%s: has no such part", q->path);
-    const hsize_t stored = count[1] * width;
+    b.stored = count[1] * width;
     first[0] = (hsize_t)q->start, count[0] = 1;
     first[1] = (hsize_t)q->from, count[1] = (hsize_t)q->n;
-    return answer_block(s, e, q, stored, first, count, sink, why);
+    return answer_block(s, e, q, &b, sink, why);
 }
 
 static int answer_text(struct served *s, const struct request *q, struct sink *sink,

@@ -158,9 +158,10 @@ int source_pour(struct source *s, source_sink pour, void *to, struct why *why)
     return ask(s, &q, &t, why);
 }
 
-int source_rows(struct source *s, const char *path, enum column_type type, int64_t start, int64_t n,
-                int64_t width, void *out, struct why *why)
+int source_rows(struct source *s, const char *path, struct slab rows, void *out, struct why *why)
 {
+    const enum column_type type = rows.type;
+    const int64_t start = rows.start, n = rows.n, width = rows.width;
     struct request q = request_of(REQUEST_ROWS, path);
     struct taker t = { .out = out, .size = (uint64_t)(n * width) * column_size(type) };
     if (!t.size) t.out = &q; // nothing is written there
@@ -176,9 +177,11 @@ int source_rows(struct source *s, const char *path, enum column_type type, int64
     return ask(s, &q, &t, why);
 }
 
-int source_part(struct source *s, const char *path, enum column_type type, int64_t row,
-                int64_t first, int64_t n, int64_t width, void *out, struct why *why)
+int source_part(struct source *s, const char *path, int64_t row, struct slab rows, void *out,
+                struct why *why)
 {
+    const enum column_type type = rows.type;
+    const int64_t first = rows.start, n = rows.n, width = rows.width;
     struct request q = request_of(REQUEST_PART, path);
     struct taker t = { .out = out, .size = (uint64_t)(n * width) * column_size(type) };
     if (!t.size) t.out = &q; // nothing is written there
@@ -263,50 +266,48 @@ char *source_lines(struct source *s, const char *path, struct why *why)
     return t.out;
 }
 
-int source_attribute(struct source *s, const char *path, const char *name, enum column_type type,
-                     int count, void *out, struct why *why)
+int source_attribute(struct source *s, const char *path, const char *name, struct numbers numbers,
+                     struct why *why)
 {
     struct request q = request_of(REQUEST_ATTRIBUTE, path);
-    struct taker t = { .out = out, .size = (count < 0 ? 1 : (uint64_t)count) * column_size(type) };
-    q.type = type, q.n = count;
+    uint64_t n = numbers.count < 0 ? 1 : (uint64_t)numbers.count;
+    struct taker t = { .out = numbers.to, .size = n * column_size(numbers.type) };
+    q.type = numbers.type, q.n = numbers.count;
     const struct listed *l = list_attribute(&s->list, path, name);
-    uint64_t n = count < 0 ? 1 : (uint64_t)count;
     if (l && l->object.size && l->object.data / l->object.size == n &&
-        listed_numbers(l, 0, n, type, out))
+        listed_numbers(l, 0, n, numbers.type, numbers.to))
         return 0;
     snprintf(q.name, sizeof q.name, "%s", name);
     return ask(s, &q, &t, why);
 }
 
 /* Cut into strings; false where it is something else. */
-static bool cut_texts(const struct object *o, const uint64_t *shape, const char *data, int count,
-                      char out[][16])
+static bool cut_texts(const struct listed *l, int count, char out[][16])
 {
-    if (o->kind != OBJECT_TEXT || o->rank != 1 || shape[0] != (uint64_t)count || !o->size ||
-        o->data != shape[0] * o->size)
+    const struct object *o = &l->object;
+    if (o->kind != OBJECT_TEXT || o->rank != 1 || l->shape[0] != (uint64_t)count || !o->size ||
+        o->data != l->shape[0] * o->size)
         return false;
     for (int k = 0; k < count; k++)
         snprintf(out[k], sizeof out[k], "%.*s", (int)(o->size < 15 ? o->size : 15),
-                 data + (size_t)k * o->size);
+                 (const char *)l->data + (size_t)k * o->size);
     return true;
 }
 
-int source_texts(struct source *s, const char *path, const char *name, int count, char out[][16],
-                 bool *there, struct why *why)
+bool source_texts(struct source *s, const char *path, const char *name, int count, char out[][16],
+                  struct why *why)
 {
-    const struct listed *l = list_attribute(&s->list, path, name);
-    *there = l && cut_texts(&l->object, l->shape, l->data, count, out);
-    if (l || !list_find(&s->list, path)) return 0;
+    const struct listed *known = list_attribute(&s->list, path, name);
+    if (known) return cut_texts(known, count, out);
+    if (!list_find(&s->list, path)) return false;
     uint64_t size = 0, at = 0;
-    struct object o;
-    const uint64_t *shape;
-    const char *is;
-    const void *data;
+    struct listed l;
+    bool there = false;
     unsigned char *bytes = source_attributes(s, path, &size, why); // the list was too long for it
-    while (bytes && object_unpack(bytes, size, &at, &o, &shape, &is, &data))
-        if (!strcmp(is, name)) *there = cut_texts(&o, shape, data, count, out);
+    while (bytes && object_unpack(bytes, size, &at, &l))
+        if (!strcmp(l.path, name)) there = cut_texts(&l, count, out);
     free(bytes);
-    return why->status;
+    return there;
 }
 
 void *source_raw(struct source *s, const char *path, uint64_t *size, struct why *why)

@@ -67,16 +67,20 @@ int source_shape(const struct source *source, const char *path, uint64_t shape[4
 const struct object *source_object(const struct source *source, int64_t k, const char **path,
                                    const uint64_t **shape);
 
-/*
- * Rows start .. start+n-1 of a dataset, converted to the type. A row is `width` numbers, in whatever
- * further dimensions the dataset has them. EX_DATAERR where the dataset is missing, of another shape
- * or of something other than numbers that keep their value in this type.
- */
-int source_rows(struct source *source, const char *path, enum column_type type, int64_t start,
-                int64_t n, int64_t width, void *out, struct why *why);
-/* Of row `row` of a dataset, itself rows of width numbers, those from `first` on, n of them. The same trouble */
-int source_part(struct source *source, const char *path, enum column_type type, int64_t row,
-                int64_t first, int64_t n, int64_t width, void *out, struct why *why);
+/* Rows start .. start+n-1, converted to the type. A row is `width` numbers, in whatever further dimensions the dataset
+   has them. */
+struct slab {
+    enum column_type type;
+    int64_t start, n, width;
+};
+
+/* Of a dataset. EX_DATAERR where that is missing, of another shape or of something other than numbers that keep
+   their value in this type. */
+int source_rows(struct source *source, const char *path, struct slab rows, void *out,
+                struct why *why);
+/* Of row `row` of a dataset, itself rows. The same trouble */
+int source_part(struct source *source, const char *path, int64_t row, struct slab rows, void *out,
+                struct why *why);
 /* A whole dataset of exactly `count` numbers. */
 int source_read(struct source *source, const char *path, enum column_type type, uint64_t count,
                 void *out, struct why *why);
@@ -87,15 +91,21 @@ void *source_read_all(struct source *source, const char *path, enum column_type 
 char *source_text(struct source *source, const char *path, const char *name, struct why *why);
 /* A list of strings, each ended by a newline, of a dataset. NULL: there is none, or failure. */
 char *source_lines(struct source *source, const char *path, struct why *why);
-/* `count` numbers of an attribute; count < 0: a scalar. */
+/* Numbers that are wanted, and where they go */
+struct numbers {
+    enum column_type type;
+    int count; /* < 0: a scalar */
+    void *to;
+};
+/* Those of an attribute */
 int source_attribute(struct source *source, const char *path, const char *name,
-                     enum column_type type, int count, void *out, struct why *why);
+                     struct numbers numbers, struct why *why);
 /*
- * `count` strings of fixed length of an attribute, each cut to 15 bytes. *there: false where there are
- * none, or they are something else.
+ * `count` strings of fixed length of an attribute, each cut to 15 bytes. False where there are
+ * none, they are something else, or there is trouble.
  */
-int source_texts(struct source *source, const char *path, const char *name, int count,
-                 char out[][16], bool *there, struct why *why);
+bool source_texts(struct source *source, const char *path, const char *name, int count,
+                  char out[][16], struct why *why);
 /* All of a dataset in its own plain type; to be freed. */
 void *source_raw(struct source *source, const char *path, uint64_t *size, struct why *why);
 /* All attributes of an object, as a sequence of struct object; to be freed. */

@@ -209,7 +209,8 @@ int import_file(struct packing *p, const char *path, const struct import_wish *w
         return why_set(why, EX_DATAERR, "%s: no frame %lld: there is one", path,
                        (long long)wish->frame);
     }
-    bounded_run(read_open, &f, path, (uint64_t)f.size, &answer, &n, why);
+    const struct bounded_task task = { read_open, &f, path, (uint64_t)f.size };
+    bounded_run(&task, &answer, &n, why);
     close(f.fd);
     if (why->status) return why->status;
     const struct imported_head *h = answer;

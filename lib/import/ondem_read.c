@@ -178,8 +178,9 @@ static void *read_column(struct file *f, const struct block *b, const char *name
     void *out = malloc((size_t)b->n * (size_t)width * 8 + 1);
     if (!out)
         why_set(f->why, EX_SOFTWARE, "no memory for the bodies");
-    else if (b->n &&
-             source_rows(f->in, path, whole ? COLUMN_I64 : COLUMN_F64, 0, b->n, width, out, f->why))
+    else if (b->n && source_rows(f->in, path,
+                                 (struct slab){ whole ? COLUMN_I64 : COLUMN_F64, 0, b->n, width },
+                                 out, f->why))
         free(out), out = NULL;
     return out;
 }
@@ -573,7 +574,8 @@ static int read_scene(struct file *f, struct import_said *said)
     struct packing *p = f->p;
     double dt = 0, g[3] = { NAN, NAN, NAN };
     struct why none = { 0 };
-    source_attribute(f->in, "/ONDEM/Scene", "timestep", COLUMN_F64, -1, &dt, &none);
+    source_attribute(f->in, "/ONDEM/Scene", "timestep", (struct numbers){ COLUMN_F64, -1, &dt },
+                     &none);
     if (source_has(f->in, "/ONDEM/Scene/gravity"))
         source_read(f->in, "/ONDEM/Scene/gravity", COLUMN_F64, 3, g, f->why);
     said->dt = dt > 0 && isfinite(dt), said->gravity = all_finite(g, 3), said->masses = true;

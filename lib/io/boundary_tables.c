@@ -26,7 +26,7 @@ static int read_loads(struct source *r, const char *group, int64_t k, struct pac
     for (const struct column *c = layout_yield; !why->status && c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "%s/%s/value", group, c->name);
-        if (!source_rows(r, path, c->type, k, 1, p->walls, row, why))
+        if (!source_rows(r, path, (struct slab){ c->type, k, 1, p->walls }, row, why))
             column_scatter(c, p->walls, row, p->wall, sizeof *p->wall);
     }
     free(row);
@@ -43,11 +43,25 @@ static int count_rows(struct source *r, const char *path, int rank, int32_t *n, 
     return 0;
 }
 
-/* Signals in time, in `group`, the rows of their tables in `rows`: of walls of which each counts its own
-   from the first one, at these two members of its struct */
-static int read_signals(struct source *r, const char *group, struct drives *d, struct packing *p,
-                        size_t first, size_t count, struct why *why)
+/* Signals in time of walls, of which each counts its own from the first one */
+struct signals {
+    const char *group;   /* where they are stored */
+    size_t drives;       /* where they are in struct packing, */
+    size_t first, count; /* and in struct wall the first and the number of its own */
+};
+
+static const struct signals signals_drive = { BOUNDARY "/drive", offsetof(struct packing, drives),
+                                              offsetof(struct wall, first_drive),
+                                              offsetof(struct wall, drives) },
+                            signals_push = { BOUNDARY "/push", offsetof(struct packing, pushes),
+                                             offsetof(struct wall, first_push),
+                                             offsetof(struct wall, pushes) };
+
+static int read_signals(struct source *r, const struct signals *of, struct packing *p,
+                        struct why *why)
 {
+    const char *group = of->group;
+    struct drives *d = (struct drives *)(void *)((char *)p + of->drives);
     char boundary[60], rows[60];
     int32_t n = 0, m = 0;
     snprintf(boundary, sizeof boundary, "%s/boundary", group);
@@ -56,25 +70,23 @@ static int read_signals(struct source *r, const char *group, struct drives *d, s
     if (count_rows(r, boundary, 1, &n, why) || count_rows(r, rows, 2, &m, why) ||
         drives_alloc(d, n, m, why) ||
         table_read_columns(r, group, "", 0, RECORDS(layout_drive, n, d->drive), why) ||
-        source_rows(r, rows, COLUMN_F64, 0, m, 2, d->row, why))
+        source_rows(r, rows, (struct slab){ COLUMN_F64, 0, m, 2 }, d->row, why))
         return why->status;
     for (int32_t k = 0; k < n; k++) {
         int32_t w = d->drive[k].boundary;
         if (w < 0 || w >= p->walls || (k && w < d->drive[k - 1].boundary))
             return why_set(why, EX_DATAERR, "%s: not in the order of the boundaries", boundary);
-        int32_t *had = (int32_t *)(void *)((char *)&p->wall[w] + count);
-        if (!(*had)++) *(int32_t *)(void *)((char *)&p->wall[w] + first) = k;
+        int32_t *had = (int32_t *)(void *)((char *)&p->wall[w] + of->count);
+        if (!(*had)++) *(int32_t *)(void *)((char *)&p->wall[w] + of->first) = k;
     }
     return 0;
 }
 
 static int read_drives(struct source *r, struct packing *p, struct why *why)
 {
-    if (read_signals(r, BOUNDARY "/drive", &p->drives, p, offsetof(struct wall, first_drive),
-                     offsetof(struct wall, drives), why))
-        return why->status;
-    return read_signals(r, BOUNDARY "/push", &p->pushes, p, offsetof(struct wall, first_push),
-                        offsetof(struct wall, pushes), why);
+    return read_signals(r, &signals_drive, p, why) || read_signals(r, &signals_push, p, why)
+               ? why->status
+               : 0;
 }
 
 static int read_mesh(struct source *r, struct packing *p, struct why *why)
@@ -84,8 +96,8 @@ static int read_mesh(struct source *r, struct packing *p, struct why *why)
     if (!source_has(r, BOUNDARY "/mesh")) return 0;
     if (count_rows(r, vertex, 2, &n, why) || count_rows(r, element, 2, &m, why) ||
         mesh_alloc(&p->mesh, n, m, why) ||
-        source_rows(r, vertex, COLUMN_F64, 0, n, 3, p->mesh.vertex, why) ||
-        source_rows(r, element, COLUMN_I32, 0, m, 3, p->mesh.element, why))
+        source_rows(r, vertex, (struct slab){ COLUMN_F64, 0, n, 3 }, p->mesh.vertex, why) ||
+        source_rows(r, element, (struct slab){ COLUMN_I32, 0, m, 3 }, p->mesh.element, why))
         return why->status;
     return 0;
 }
@@ -203,7 +215,7 @@ static int write_signals(struct table_write *s, const char *group, const struct 
     if (!d->n) return 0;
     if (table_write_columns(s, group, "", RECORDS(layout_drive, d->n, d->drive), 0, why))
         return why->status;
-    return h5_write(s->file, rows, H5T_NATIVE_DOUBLE, 2, shape, d->row, units, why);
+    return h5_write(s->file, rows, h5_array(H5T_NATIVE_DOUBLE, 2, shape, d->row), units, why);
 }
 
 static int write_drives(struct table_write *s, const struct packing *p, struct why *why)
@@ -217,11 +229,11 @@ static int write_mesh(struct table_write *s, const struct packing *p, struct why
     const hsize_t vertices[2] = { (hsize_t)p->mesh.vertices, 3 },
                   elements[2] = { (hsize_t)p->mesh.elements, 3 };
     if (!p->mesh.elements) return 0;
-    if (h5_write(s->file, BOUNDARY "/mesh/vertex", H5T_NATIVE_DOUBLE, 2, vertices, p->mesh.vertex,
-                 "m", why))
+    if (h5_write(s->file, BOUNDARY "/mesh/vertex",
+                 h5_array(H5T_NATIVE_DOUBLE, 2, vertices, p->mesh.vertex), "m", why))
         return why->status;
-    return h5_write(s->file, BOUNDARY "/mesh/element", H5T_NATIVE_INT32, 2, elements,
-                    p->mesh.element, NULL, why);
+    return h5_write(s->file, BOUNDARY "/mesh/element",
+                    h5_array(H5T_NATIVE_INT32, 2, elements, p->mesh.element), NULL, why);
 }
 
 int boundary_tables_write_static(struct table_write *s, const struct packing *p, struct why *why)
@@ -253,27 +265,24 @@ int boundary_tables_write_static(struct table_write *s, const struct packing *p,
     return why->status;
 }
 
-/* One row of a table of [frames][walls], of structs */
-static int write_row(struct table_write *s, const char *group, const struct column *table,
-                     int32_t walls, const void *structs, size_t stride, const struct packing *p,
-                     struct why *why)
+/* One row of a table of [frames][walls] */
+static int write_row(struct table_write *s, const char *group, struct records o,
+                     const struct packing *p, struct why *why)
 {
-    for (const struct column *c = table; !why->status && c->name; c++) {
+    for (const struct column *c = o.columns; !why->status && c->name; c++) {
         char path[80];
-        const hsize_t shape[3] = { 1, (hsize_t)walls, (hsize_t)c->width };
-        double *row = malloc(((size_t)walls * (size_t)c->width + 1) * sizeof *row);
+        const hsize_t shape[3] = { 1, (hsize_t)o.n, (hsize_t)c->width };
+        double *row = malloc(((size_t)o.n * (size_t)c->width + 1) * sizeof *row);
         snprintf(path, sizeof path, "%s/%s/value", group, c->name);
         if (!row) return why_set(why, EX_SOFTWARE, "no memory for %s", path);
-        column_gather(c, walls, structs, stride, row);
+        column_gather(c, o.n, o.structs, o.stride, row);
         table_write_rows(s,
                          (struct dataset){ path, c->type, c->width == 1 ? 2 : 3, shape,
                                            CHUNK_FRAMES, row, c->units },
                          why);
         free(row);
     }
-    if (why->status || table_write_clock(s, group, true, &p->step, group, table, why))
-        return why->status;
-    return table_write_clock(s, group, false, &p->t, group, table, why);
+    return why->status ? why->status : table_write_clocks(s, group, o.columns, p->step, p->t, why);
 }
 
 int boundary_tables_write(struct table_write *s, const struct packing *p, struct why *why)
@@ -284,9 +293,9 @@ int boundary_tables_write(struct table_write *s, const struct packing *p, struct
             why, EX_DATAERR,
             "boundaries move, and in the first frame none could: begin another trajectory");
     struct boundary_motion *m = motions(p, why);
-    if (m && !write_row(s, BOUNDARY, layout_boundary_motion, p->walls, m, sizeof *m, p, why) &&
+    if (m && !write_row(s, BOUNDARY, RECORDS(layout_boundary_motion, p->walls, m), p, why) &&
         any_loads(p))
-        write_row(s, BOUNDARY "/load", layout_yield, p->walls, p->wall, sizeof *p->wall, p, why);
+        write_row(s, BOUNDARY "/load", RECORDS(layout_yield, p->walls, p->wall), p, why);
     free(m);
     return why->status;
 }

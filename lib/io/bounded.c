@@ -66,8 +66,7 @@ static int take(int fd, void **answer, size_t *n, struct why *why)
     return 0;
 }
 
-int bounded_run(int (*work)(void *, struct bounded *, struct why *), void *with, const char *name,
-                uint64_t size, void **answer, size_t *n, struct why *why)
+int bounded_run(const struct bounded_task *task, void **answer, size_t *n, struct why *why)
 {
     struct bounded to = { memfd_create("answer", MFD_CLOEXEC) };
     struct why *said =
@@ -76,8 +75,8 @@ int bounded_run(int (*work)(void *, struct bounded *, struct why *), void *with,
     if (!pid) {
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         if (getppid() != parent) _exit(0);
-        bound(size);
-        _exit(work(with, &to, said) ? 1 : 0);
+        bound(task->size);
+        _exit(task->work(task->with, &to, said) ? 1 : 0);
     }
     int status = 0;
     if (pid < 0)
@@ -85,7 +84,7 @@ int bounded_run(int (*work)(void *, struct bounded *, struct why *), void *with,
     else {
         while (waitpid(pid, &status, 0) < 0 && errno == EINTR) continue;
         said->text[sizeof said->text - 1] = 0;
-        if (!judge(status, name, said, why)) take(to.fd, answer, n, why);
+        if (!judge(status, task->name, said, why)) take(to.fd, answer, n, why);
     }
     if (said != MAP_FAILED) munmap(said, sizeof *said);
     if (to.fd >= 0) close(to.fd);

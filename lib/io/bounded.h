@@ -15,13 +15,19 @@ struct bounded;
 /* The process's answer continues with these bytes. Returns 0, or EX_SOFTWARE where there is no room. */
 int bounded_put(struct bounded *to, const void *bytes, size_t size, struct why *why);
 
+struct bounded_task {
+    int (*work)(void *with, struct bounded *to, struct why *why);
+    void *with;
+    const char *name; /* of the file that it works on, for messages; */
+    uint64_t size;    /* and its bytes */
+};
+
 /*
- * work(with, ...) in a new process, on a file of `size` bytes that messages call `name`: it may take 256 MiB and
- * eight times that, and 4 s of the processor and a second for 10 MB. *answer: what it has put, *n bytes; to be given
+ * The task in a new process: it may take 256 MiB and eight times the file, and 4 s of the processor and a second for
+ * 10 MB. *answer: what it has put, *n bytes; to be given
  * back by bounded_free. Returns 0, the work's own reason, or EX_DATAERR.
  */
-int bounded_run(int (*work)(void *with, struct bounded *to, struct why *why), void *with,
-                const char *name, uint64_t size, void **answer, size_t *n, struct why *why);
+int bounded_run(const struct bounded_task *task, void **answer, size_t *n, struct why *why);
 void bounded_free(void *answer, size_t n);
 
 #endif

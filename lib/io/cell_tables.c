@@ -9,8 +9,8 @@ int cell_tables_open(struct source *source, bool repeats[3], struct why *why)
 {
     const char *box = "/particles/all/box";
     char boundary[3][16];
-    bool there;
-    if (source_texts(source, box, "boundary", 3, boundary, &there, why)) return why->status;
+    bool there = source_texts(source, box, "boundary", 3, boundary, why);
+    if (why->status) return why->status;
     bool edges = source_has(source, "/particles/all/box/edges");
     for (int k = 0; there && k < 3; k++) {
         repeats[k] = !strcmp(boundary[k], "periodic");
@@ -35,7 +35,8 @@ static int read_edges(struct source *source, int64_t k, struct cell *c, struct w
         int rank = source_shape(source, moving, shape);
         if (rank != 2 && rank != 3)
             return why_set(why, EX_DATAERR, "%s: not of shape frames x 3 (x 3)", moving);
-        if (source_rows(source, moving, COLUMN_F64, k, 1, rank == 2 ? 3 : 9, edge, why))
+        if (source_rows(source, moving, (struct slab){ COLUMN_F64, k, 1, rank == 2 ? 3 : 9 }, edge,
+                        why))
             return why->status;
         shape[0] = rank == 2 ? 3 : 9;
     } else {
@@ -90,7 +91,8 @@ static int read_size(struct source *doc, struct cell *c, struct why *why)
     if (!(c->factor = calloc(shape[0] + 1, sizeof *c->factor)))
         return why_set(why, EX_SOFTWARE, "no memory for the cell's loads");
     c->factors = (int32_t)shape[0];
-    return source_rows(doc, factor, COLUMN_F64, 0, (int64_t)shape[0], 2, c->factor, why);
+    return source_rows(doc, factor, (struct slab){ COLUMN_F64, 0, (int64_t)shape[0], 2 }, c->factor,
+                       why);
 }
 
 int cell_tables_read(struct source *source, int64_t k, const bool repeats[3], struct packing *p,
@@ -105,8 +107,9 @@ int cell_tables_read(struct source *source, int64_t k, const bool repeats[3], st
         (source_has(source, origin) && source_read(source, origin, COLUMN_F64, 3, &c->origin, why)))
         return why->status;
     cell_set_rate(c, p->t);
-    return source_has(source, rate) ? source_rows(source, rate, COLUMN_F64, k, 1, 9, c->rate, why)
-                                    : 0;
+    return source_has(source, rate)
+               ? source_rows(source, rate, (struct slab){ COLUMN_F64, k, 1, 9 }, c->rate, why)
+               : 0;
 }
 
 /* ---- to a document ---- */
@@ -125,24 +128,28 @@ static int write_drive(hid_t file, const struct cell *c, struct why *why)
     else
         why_set(why, EX_SOFTWARE, "no memory for the cell");
     bool bad =
-        why->status || h5_write(file, "/nsd/cell/time", H5T_NATIVE_DOUBLE, 1, shape, t, "s", why) ||
-        h5_write(file, "/nsd/cell/gradient", H5T_NATIVE_DOUBLE, 3, shape, L, "s-1", why) ||
-        h5_write(file, "/nsd/cell/mass", H5T_NATIVE_DOUBLE, 2, square, c->mass, "kg", why) ||
-        h5_write(file, "/nsd/cell/stress", H5T_NATIVE_DOUBLE, 2, square, c->stress, "Pa", why);
+        why->status ||
+        h5_write(file, "/nsd/cell/time", h5_vector(H5T_NATIVE_DOUBLE, shape[0], t), "s", why) ||
+        h5_write(file, "/nsd/cell/gradient", h5_array(H5T_NATIVE_DOUBLE, 3, shape, L), "s-1",
+                 why) ||
+        h5_write(file, "/nsd/cell/mass", h5_array(H5T_NATIVE_DOUBLE, 2, square, c->mass), "kg",
+                 why) ||
+        h5_write(file, "/nsd/cell/stress", h5_array(H5T_NATIVE_DOUBLE, 2, square, c->stress), "Pa",
+                 why);
     free(t), free(L);
     return bad ? why->status : 0;
 }
 
 static int write_size(hid_t file, const struct cell *c, struct why *why)
 {
-    const hsize_t one = 1, shape[2] = { (hsize_t)c->factors, 2 };
+    const hsize_t shape[2] = { (hsize_t)c->factors, 2 };
     if (c->size_mass > 0 &&
-        (h5_write(file, "/nsd/cell/size_mass", H5T_NATIVE_DOUBLE, 1, &one, &c->size_mass, "kg m2",
-                  why) ||
-         h5_write(file, "/nsd/cell/mean", H5T_NATIVE_DOUBLE, 1, &one, &c->mean, "Pa", why)))
+        (h5_write(file, "/nsd/cell/size_mass", h5_vector(H5T_NATIVE_DOUBLE, 1, &c->size_mass),
+                  "kg m2", why) ||
+         h5_write(file, "/nsd/cell/mean", h5_vector(H5T_NATIVE_DOUBLE, 1, &c->mean), "Pa", why)))
         return why->status;
-    return c->factors ? h5_write(file, "/nsd/cell/factor", H5T_NATIVE_DOUBLE, 2, shape, c->factor,
-                                 "s; 1", why)
+    return c->factors ? h5_write(file, "/nsd/cell/factor",
+                                 h5_array(H5T_NATIVE_DOUBLE, 2, shape, c->factor), "s; 1", why)
                       : 0;
 }
 
@@ -151,9 +158,8 @@ int cell_tables_write_box(hid_t file, const struct cell *c, struct why *why)
     const int dimension = 3; // positions have three components in the plane too
     const char none[3][5] = { "none", "none", "none" };
     const char *box = "/particles/all/box";
-    const hsize_t three = 3;
     if (h5_group(file, box, why) ||
-        h5_attr(file, box, "dimension", H5T_NATIVE_INT, -1, &dimension, why))
+        h5_attr(file, box, "dimension", h5_scalar(H5T_NATIVE_INT, &dimension), why))
         return why->status;
     char boundary[3][9] = { "none", "none", "none" };
     for (int k = 0; k < 3; k++)
@@ -161,11 +167,11 @@ int cell_tables_write_box(hid_t file, const struct cell *c, struct why *why)
     bool repeats = cell_repeats(c);
     hid_t text = H5Tcopy(H5T_C_S1);
     H5Tset_size(text, repeats ? sizeof boundary[0] : sizeof none[0]);
-    int e = h5_attr(file, box, "boundary", text, 3,
-                    repeats ? (const void *)boundary : (const void *)none, why);
+    int e = h5_attr(file, box, "boundary",
+                    h5_vector(text, 3, repeats ? (const void *)boundary : (const void *)none), why);
     H5Tclose(text);
     if (e || !repeats) return e;
-    return h5_write(file, "/particles/all/box/origin", H5T_NATIVE_DOUBLE, 1, &three, &c->origin,
+    return h5_write(file, "/particles/all/box/origin", h5_vector(H5T_NATIVE_DOUBLE, 3, &c->origin),
                     "m", why) ||
                    write_drive(file, c, why) || write_size(file, c, why)
                ? why->status

@@ -55,7 +55,8 @@ static int read_bases(struct source *r, int64_t first, struct contacts *s, struc
 {
     vec3(*basis)[3] = malloc((size_t)(s->n + 1) * sizeof *basis);
     if (!basis) return why_set(why, EX_SOFTWARE, "no memory for /contacts/frame");
-    int e = source_rows(r, "/contacts/frame", COLUMN_F64, first, s->n, 9, basis, why);
+    int e =
+        source_rows(r, "/contacts/frame", (struct slab){ COLUMN_F64, first, s->n, 9 }, basis, why);
     for (int64_t i = 0; !e && i < s->n; i++) {
         struct contact *c = &s->c[i];
         c->n = basis[i][0], c->t1 = basis[i][1];
@@ -70,7 +71,8 @@ static int read_bases(struct source *r, int64_t first, struct contacts *s, struc
 static int read_moments(struct source *r, int64_t first, struct contacts *s, struct why *why)
 {
     if (contacts_alloc_moment(s)) return why_set(why, EX_SOFTWARE, "no memory for moments");
-    return source_rows(r, LAYOUT_MOMENT, COLUMN_F64, first, s->n, 3, s->moment, why);
+    return source_rows(r, LAYOUT_MOMENT, (struct slab){ COLUMN_F64, first, s->n, 3 }, s->moment,
+                       why);
 }
 
 int contact_rows_read(struct contact_rows *r, struct frame *f, struct why *why)
@@ -115,7 +117,8 @@ int contact_rows_read(struct contact_rows *r, struct frame *f, struct why *why)
         check_shifts(s, &f->packing.cell, why))
         return why->status;
     int moved;
-    if (source_attribute(r->source, "/contacts", "moved", COLUMN_I32, -1, &moved, why))
+    if (source_attribute(r->source, "/contacts", "moved",
+                         (struct numbers){ COLUMN_I32, -1, &moved }, why))
         return why->status;
     f->moved = moved;
     f->forces = source_has(r->source, LAYOUT_FORCE);
@@ -201,5 +204,6 @@ int contact_rows_write(struct table_write *s, const struct frame *f, struct why 
         return why->status;
     if (s->growing) s->contacts += t->n;
     int moved = f->moved;
-    return !first ? 0 : h5_attr(s->file, "/contacts", "moved", H5T_NATIVE_INT, -1, &moved, why);
+    return !first ? 0
+                  : h5_attr(s->file, "/contacts", "moved", h5_scalar(H5T_NATIVE_INT, &moved), why);
 }

@@ -143,7 +143,11 @@ int fclib_read(struct fclib *F, struct source *source, struct why *why)
         return why_set(why, EX_DATAERR, "/fclib_local: there is none, and no /fclib_global");
     int e = F->global ? read_global(&R, source, why) : read_local(&R, source, why);
     if (!e && F->global) e = condense(&R.global, &F->motion, &R.W, R.q, why);
-    if (!e) e = delassus_init(&F->W, R.d, R.n, R.W.count, R.W.row, R.W.col, R.W.x, R.q, R.mu, why);
+    if (!e) e = delassus_init(&F->W, R.d, R.n, &R.W, why);
+    if (!e && R.n) {
+        memcpy(F->W.q, R.q, (size_t)(R.n * R.d) * sizeof *R.q);
+        memcpy(F->W.mu, R.mu, (size_t)R.n * sizeof *R.mu);
+    }
     raw_free(&R);
     if (e) fclib_free(F);
     return e;

@@ -11,26 +11,25 @@ static int short_of_memory(struct why *why)
     return why_set(why, EX_SOFTWARE, "out of memory for an FCLIB problem");
 }
 
-/* Writes group/name: `count` values of a native type. */
-static int write_array(hid_t file, const char *group, const char *name, hid_t type, int64_t count,
-                       const void *x, struct why *why)
+/* Writes group/name. */
+static int write_array(hid_t file, const char *group, const char *name, struct h5_data data,
+                       struct why *why)
 {
     char path[64];
-    hsize_t length = (hsize_t)count;
     snprintf(path, sizeof path, "%s/%s", group, name);
-    return h5_write(file, path, type, 1, &length, x, NULL, why);
+    return h5_write(file, path, data, NULL, why);
 }
 
 static int write_ints(hid_t file, const char *group, const char *name, int64_t count,
                       const int32_t *x, struct why *why)
 {
-    return write_array(file, group, name, H5T_NATIVE_INT32, count, x, why);
+    return write_array(file, group, name, h5_vector(H5T_NATIVE_INT32, (hsize_t)count, x), why);
 }
 
 static int write_vector(hid_t file, const char *group, const char *name, int64_t count,
                         const double *x, struct why *why)
 {
-    return write_array(file, group, name, H5T_NATIVE_DOUBLE, count, x, why);
+    return write_array(file, group, name, h5_vector(H5T_NATIVE_DOUBLE, (hsize_t)count, x), why);
 }
 
 static int remove_old(hid_t file, const char *path, struct why *why)

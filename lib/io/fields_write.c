@@ -18,21 +18,20 @@ static int write_head(hid_t file, const struct fields *f, const char *history, s
     const int64_t points[3] = { f->n[0], f->n[1], f->n[2] };
     const double origin[3] = { f->origin.x, f->origin.y, f->origin.z };
     const double step[3] = { f->step.x, f->step.y, f->step.z };
-    const hsize_t three = 3;
     int e = h5_group(file, "/h5md/author", why) || h5_group(file, "/h5md/creator", why) ||
             h5_group(file, "/nsd", why) || h5_group(file, "/fields", why);
-    if (!e) e = h5_attr(file, "/h5md", "version", H5T_NATIVE_INT32, 2, version, why);
+    if (!e) e = h5_attr(file, "/h5md", "version", h5_vector(H5T_NATIVE_INT32, 2, version), why);
     if (!e) e = h5_attr_text(file, "/h5md/author", "name", "", why);
     if (!e) e = h5_attr_text(file, "/h5md/creator", "name", "nsd", why);
     if (!e) e = h5_attr_text(file, "/h5md/creator", "version", NSD_VERSION, why);
-    if (!e) e = h5_attr(file, "/nsd", "version", H5T_NATIVE_INT32, -1, version, why);
+    if (!e) e = h5_attr(file, "/nsd", "version", h5_scalar(H5T_NATIVE_INT32, version), why);
     if (!e) e = h5_attr_text(file, "/nsd", "kind", "fields", why);
     if (!e) e = h5_write_text(file, "/nsd/history", history, why);
     if (!e) e = h5_attr_text(file, "/fields", "function", "gauss", why);
-    if (!e) e = h5_attr(file, "/fields", "width", H5T_NATIVE_DOUBLE, -1, &f->width, why);
-    if (!e) e = h5_write(file, "/fields/points", H5T_NATIVE_INT64, 1, &three, points, "1", why);
-    if (!e) e = h5_write(file, "/fields/origin", H5T_NATIVE_DOUBLE, 1, &three, origin, "m", why);
-    if (!e) h5_write(file, "/fields/spacing", H5T_NATIVE_DOUBLE, 1, &three, step, "m", why);
+    if (!e) e = h5_attr(file, "/fields", "width", h5_scalar(H5T_NATIVE_DOUBLE, &f->width), why);
+    if (!e) e = h5_write(file, "/fields/points", h5_vector(H5T_NATIVE_INT64, 3, points), "1", why);
+    if (!e) e = h5_write(file, "/fields/origin", h5_vector(H5T_NATIVE_DOUBLE, 3, origin), "m", why);
+    if (!e) h5_write(file, "/fields/spacing", h5_vector(H5T_NATIVE_DOUBLE, 3, step), "m", why);
     return why->status;
 }
 

@@ -49,7 +49,7 @@ int flow_write(struct table_write *s, const struct packing *p, struct why *why)
     if (s->growing) s->events += p->events.n;
     if (!first) return write_numbers(s, p, why);
     s->first_id = p->first_id;
-    return h5_attr(s->file, flow, "first_id", H5T_NATIVE_INT32, -1, &p->first_id, why);
+    return h5_attr(s->file, flow, "first_id", h5_scalar(H5T_NATIVE_INT32, &p->first_id), why);
 }
 
 /* The clock of the particles, for columns in a group */
@@ -90,7 +90,7 @@ static int read_passages(struct source *s, int64_t k, const struct column *c, in
         char path[80];
         int64_t data[1000];
         snprintf(path, sizeof path, "%s/%s/value", flow, c->name);
-        if (source_rows(s, path, c->type, k, 1, n, data, why)) return why->status;
+        if (source_rows(s, path, (struct slab){ c->type, k, 1, n }, data, why)) return why->status;
         column_scatter(c, n, data, to, sizeof *to);
     }
     for (int32_t i = 0; i < n; i++)
@@ -109,8 +109,10 @@ static int check_event(const struct event *e, struct why *why)
 
 static int read_events(struct source *s, int64_t k, struct packing *p, struct why *why)
 {
-    int64_t start, count;
-    if (table_read_span(s, events, "id", 1, k, &start, &count, why)) return why->status;
+    struct span span;
+    if (table_read_span(s, (struct table_spans){ events, "id", 1 }, k, &span, why))
+        return why->status;
+    const int64_t start = span.start, count = span.count;
     if (!(p->events.e = calloc((size_t)count + 1, sizeof *p->events.e)))
         return why_set(why, EX_SOFTWARE, "no memory for events");
     p->events.n = count, p->events.room = count + 1;
@@ -126,7 +128,8 @@ int flow_tables_read_numbers(struct source *s, struct packing *p, struct why *wh
     if (!packing_varies(p)) return 0;
     int64_t row = table_read_row_at(s, NUMBERS "/step", p->step, why);
     if (why->status || row < 0) return why->status;
-    if (source_rows(s, NUMBERS "/first_id", COLUMN_I32, row, 1, 1, &p->first_id, why))
+    if (source_rows(s, NUMBERS "/first_id", (struct slab){ COLUMN_I32, row, 1, 1 }, &p->first_id,
+                    why))
         return why->status;
     return p->first_id < 0 ? why_set(why, EX_DATAERR, NUMBERS "/first_id: is negative") : 0;
 }
@@ -137,7 +140,8 @@ int flow_tables_read(struct source *s, int64_t k, struct packing *p, struct why 
     int32_t pours = count_of(s, "/nsd/flow/poured/value", why);
     int32_t removals = pours < 0 ? -1 : count_of(s, "/nsd/flow/removed/value", why);
     if (removals < 0 || packing_alloc_passages(p, pours, removals, why)) return why->status;
-    if (source_attribute(s, flow, "first_id", COLUMN_I32, -1, &p->first_id, why) ||
+    if (source_attribute(s, flow, "first_id", (struct numbers){ COLUMN_I32, -1, &p->first_id },
+                         why) ||
         read_passages(s, k, layout_poured, pours, p->poured, why) ||
         read_passages(s, k, layout_removed, removals, p->removed, why))
         return why->status;

@@ -70,7 +70,9 @@ int frame_read_open(struct frame_read *r, struct source *source, struct why *why
     } else if (!fclib_in(source)) {
         return why_set(why, EX_DATAERR, "holds neither particles nor an FCLIB problem");
     }
-    return report_rows_open(&r->reports, source, why);
+    if (report_rows_open(&r->reports, source, why)) return why->status;
+    r->reports.one_frame = r->frames == 1;
+    return 0;
 }
 
 void frame_read_close(struct frame_read *r)
@@ -145,10 +147,11 @@ static int read_parameters(struct source *doc, struct packing *p, struct why *wh
 {
     double g[3];
     int64_t seed;
-    if (source_attribute(doc, "/nsd", "dt", COLUMN_F64, -1, &p->dt, why) ||
-        source_attribute(doc, "/nsd", "theta", COLUMN_F64, -1, &p->theta, why) ||
-        source_attribute(doc, "/nsd", "gravity", COLUMN_F64, 3, g, why) ||
-        source_attribute(doc, "/nsd", "seed", COLUMN_I64, -1, &seed, why))
+    if (source_attribute(doc, "/nsd", "dt", (struct numbers){ COLUMN_F64, -1, &p->dt }, why) ||
+        source_attribute(doc, "/nsd", "theta", (struct numbers){ COLUMN_F64, -1, &p->theta },
+                         why) ||
+        source_attribute(doc, "/nsd", "gravity", (struct numbers){ COLUMN_F64, 3, g }, why) ||
+        source_attribute(doc, "/nsd", "seed", (struct numbers){ COLUMN_I64, -1, &seed }, why))
         return why->status;
     p->g = v3(g[0], g[1], g[2]);
     p->seed = (uint64_t)seed;
@@ -164,7 +167,8 @@ static int read_time_step(struct frame_read *r, int64_t k, double t0, struct pac
 {
     double dt;
     int halved = 0;
-    if (source_rows(r->source, LAYOUT_TIME_STEP, COLUMN_F64, k, 1, 1, &dt, why)) return why->status;
+    if (source_rows(r->source, LAYOUT_TIME_STEP, (struct slab){ COLUMN_F64, k, 1, 1 }, &dt, why))
+        return why->status;
     bool good = dt > 0 && frexp(p->dt / dt, &halved) == 0.5 && halved >= 1 &&
                 halved <= HALVED_MOST + 1 && ldexp(dt, halved - 1) == p->dt;
     if (!good)
@@ -182,7 +186,8 @@ static int read_clock(struct frame_read *r, int64_t k, struct packing *p, struct
     const double most = (double)((int64_t)1 << STEPS_LOG2);
     double origin[2] = { 0 };
     struct why none = { 0 };
-    if (source_attribute(r->source, "/nsd", "time_origin", COLUMN_F64, 2, origin, &none) ||
+    if (source_attribute(r->source, "/nsd", "time_origin",
+                         (struct numbers){ COLUMN_F64, 2, origin }, &none) ||
         !(fabs(origin[1]) <= most))
         origin[0] = origin[1] = 0;
     p->step = r->step[k], p->t = r->time[k];
@@ -201,11 +206,13 @@ static int read_bodies(struct frame_read *r, int64_t k, int64_t first, struct pa
         layout_body_path(b, path);
         if (!to || may_lack(r->source, b, path)) continue;
         if (!(b->traits & BODY_MOVES))
-            source_rows(r->source, path, c->type, first < 0 ? 0 : first, p->n, c->width, to, why);
+            source_rows(r->source, path,
+                        (struct slab){ c->type, first < 0 ? 0 : first, p->n, c->width }, to, why);
         else if (first < 0)
-            source_rows(r->source, path, c->type, k, 1, p->n * c->width, to, why);
+            source_rows(r->source, path, (struct slab){ c->type, k, 1, p->n * c->width }, to, why);
         else
-            source_part(r->source, path, c->type, k, first, p->n, c->width, to, why);
+            source_part(r->source, path, k, (struct slab){ c->type, first, p->n, c->width }, to,
+                        why);
         if (why->status) return why->status;
     }
     return 0;
@@ -230,7 +237,7 @@ static int read_settings(struct frame_read *r, int64_t k, int64_t n, struct pack
                          struct why *why)
 {
     int dim;
-    if (source_attribute(r->source, "/nsd", "dim", COLUMN_I32, -1, &dim, why) ||
+    if (source_attribute(r->source, "/nsd", "dim", (struct numbers){ COLUMN_I32, -1, &dim }, why) ||
         packing_init(p, dim, n, why) || read_parameters(r->source, p, why) ||
         read_material(r->source, p, why) || shape_tables_read(r->source, p, why) ||
         boundary_tables_read(r->source, k, p, why) || flow_tables_read(r->source, k, p, why) ||
@@ -334,8 +341,7 @@ static int read_foreign(struct frame_read *r, struct frame *f, struct why *why)
         if (!f->u) return why_set(why, EX_SOFTWARE, "no memory for the solution");
         if (source_read(source, "/solution/u", COLUMN_F64, n, f->u, why)) return why->status;
     }
-    return report_rows_read(&r->reports, 0, r->frames == 1, &f->report, &f->account, &f->reported,
-                            why);
+    return report_rows_read(&r->reports, 0, &f->report, &f->account, &f->reported, why);
 }
 
 int frame_read_moment(struct frame_read *r, int64_t k, struct frame *f, struct why *why)
@@ -352,6 +358,5 @@ int frame_read_moment(struct frame_read *r, int64_t k, struct frame *f, struct w
     }
     f->packed = true;
     if (contact_rows_read(&r->contacts, f, why)) return why->status;
-    return report_rows_read(&r->reports, r->step[k], r->frames == 1, &f->report, &f->account,
-                            &f->reported, why);
+    return report_rows_read(&r->reports, r->step[k], &f->report, &f->account, &f->reported, why);
 }

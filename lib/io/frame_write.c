@@ -30,12 +30,12 @@ static int write_parameters(hid_t file, const struct frame *f, struct why *why)
     const int h5md[2] = { 1, 1 };
     int version = DOCUMENT_VERSION;
     if (h5_group(file, "/h5md/author", why) || h5_group(file, "/h5md/creator", why) ||
-        h5_attr(file, "/h5md", "version", H5T_NATIVE_INT, 2, h5md, why) ||
+        h5_attr(file, "/h5md", "version", h5_vector(H5T_NATIVE_INT, 2, h5md), why) ||
         h5_attr_text(file, "/h5md/author", "name", "", why) ||
         h5_attr_text(file, "/h5md/creator", "name", "nsd", why) ||
         h5_attr_text(file, "/h5md/creator", "version", NSD_VERSION, why) ||
         h5_group(file, "/nsd", why) ||
-        h5_attr(file, "/nsd", "version", H5T_NATIVE_INT, -1, &version, why) ||
+        h5_attr(file, "/nsd", "version", h5_scalar(H5T_NATIVE_INT, &version), why) ||
         h5_attr_text(file, "/nsd", "kind", f->foreign ? "problem" : "packing", why) ||
         h5_write_text(file, "/nsd/history", f->history ? f->history : "", why))
         return why->status;
@@ -43,16 +43,16 @@ static int write_parameters(hid_t file, const struct frame *f, struct why *why)
     const double g[3] = { p->g.x, p->g.y, p->g.z };
     int64_t seed = (int64_t)p->seed;
     double dt = packing_whole_dt(p);
-    if (h5_attr(file, "/nsd", "dim", H5T_NATIVE_INT, -1, &p->dim, why) ||
-        h5_attr(file, "/nsd", "dt", H5T_NATIVE_DOUBLE, -1, &dt, why) ||
-        h5_attr(file, "/nsd", "theta", H5T_NATIVE_DOUBLE, -1, &p->theta, why) ||
-        h5_attr(file, "/nsd", "gravity", H5T_NATIVE_DOUBLE, 3, g, why) ||
-        h5_attr(file, "/nsd", "seed", H5T_NATIVE_INT64, -1, &seed, why) ||
+    if (h5_attr(file, "/nsd", "dim", h5_scalar(H5T_NATIVE_INT, &p->dim), why) ||
+        h5_attr(file, "/nsd", "dt", h5_scalar(H5T_NATIVE_DOUBLE, &dt), why) ||
+        h5_attr(file, "/nsd", "theta", h5_scalar(H5T_NATIVE_DOUBLE, &p->theta), why) ||
+        h5_attr(file, "/nsd", "gravity", h5_vector(H5T_NATIVE_DOUBLE, 3, g), why) ||
+        h5_attr(file, "/nsd", "seed", h5_scalar(H5T_NATIVE_INT64, &seed), why) ||
         (p->overlap && h5_attr_text(file, "/nsd", "overlap", overlap_name[p->overlap], why)))
         return why->status;
     const double origin[2] = { p->t0, (double)p->step0 };
     if ((p->t0 != 0 || p->step0) &&
-        h5_attr(file, "/nsd", "time_origin", H5T_NATIVE_DOUBLE, 2, origin, why))
+        h5_attr(file, "/nsd", "time_origin", h5_vector(H5T_NATIVE_DOUBLE, 2, origin), why))
         return why->status;
     return p->scene ? h5_write_text(file, "/nsd/scene", p->scene, why) : 0;
 }
@@ -73,7 +73,8 @@ static int write_pairs(hid_t file, const struct packing *p, const struct column 
         char path[80];
         if (optional && !any_pair(p, column_array(c, p))) continue;
         snprintf(path, sizeof path, "/nsd/material/%s", c->name);
-        if (h5_write(file, path, H5T_NATIVE_DOUBLE, 2, square, column_array(c, p), c->units, why))
+        if (h5_write(file, path, h5_array(H5T_NATIVE_DOUBLE, 2, square, column_array(c, p)),
+                     c->units, why))
             return why->status;
     }
     return 0;
@@ -130,7 +131,7 @@ int frame_write_static(struct table_write *s, const struct frame *f, struct why 
     return unknown_write(f->unknown, s->file, f->stale && !f->foreign, why);
 }
 
-static const char particles[] = "/particles/all", position[] = "/particles/all/position";
+static const char particles[] = "/particles/all";
 
 /* Its steps or its times, for all that a frame has of particles */
 static int write_particles_clock(struct table_write *s, bool step, const struct packing *p,
@@ -140,8 +141,8 @@ static int write_particles_clock(struct table_write *s, bool step, const struct 
     bool linked = table_write_grows(s, from);
     const void *value = step ? (const void *)&p->step : (const void *)&p->t;
     const char *name = step ? "step" : "time";
-    static const struct column none[] = { { 0 } };
-    if (table_write_clock(s, position, step, value, particles, none, why)) return why->status;
+    if (table_write_number(s, from, step ? COLUMN_I64 : COLUMN_F64, value, step ? NULL : "s", why))
+        return why->status;
     for (const struct body_column *b = body_columns; b->column.name && !linked; b++) {
         const struct column it[] = { b->column, { 0 } };
         if (b->traits & BODY_MOVES && column_array(&b->column, p) &&

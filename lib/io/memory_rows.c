@@ -30,12 +30,14 @@ int memory_rows_open(struct memory_rows *r, struct source *source, struct why *w
 
 int memory_rows_read(struct memory_rows *r, struct packing *p, struct why *why)
 {
-    int64_t at = table_read_row(r->step, r->blocks, p->step), start = 0, count = 0;
+    int64_t at = table_read_row(r->step, r->blocks, p->step);
+    struct span span = { 0, 0 };
     // before its first contact a document has no rows
     bool any = source_has(r->source, "/nsd/memory/body");
     if (at < 0) return 0;
-    if (any && table_read_span(r->source, group, "body", 2, at, &start, &count, why))
+    if (any && table_read_span(r->source, (struct table_spans){ group, "body", 2 }, at, &span, why))
         return why->status;
+    const int64_t start = span.start, count = span.count;
     struct memory *m = &p->memory;
     m->recall = calloc((size_t)count + 1, sizeof *m->recall);
     if (!m->recall) return why_set(why, EX_SOFTWARE, "no memory for the last reactions");

@@ -202,18 +202,28 @@ struct choice {
     const int64_t *row;
 };
 
+/* A member of all structs of an array */
+struct member {
+    const char *first; /* that of the first struct */
+    size_t stride;     /* bytes of a struct */
+    bool whole;        /* of type int64_t, else double */
+    int width;         /* numbers */
+};
+
 /* A dataset of n rows, gathered from structs */
-static int put_column(hid_t file, const char *path, bool whole, int width, struct choice of,
-                      const char *first, size_t stride, struct why *why)
+static int put_column(hid_t file, const char *path, struct choice of, struct member m,
+                      struct why *why)
 {
-    const hsize_t shape[2] = { (hsize_t)of.n, (hsize_t)width };
-    const size_t row = (size_t)width * 8;
+    const hsize_t shape[2] = { (hsize_t)of.n, (hsize_t)m.width };
+    const size_t row = (size_t)m.width * 8;
     char *out = malloc((size_t)of.n * row + 1);
     if (!out) return why_set(why, EX_SOFTWARE, "no memory for an export");
     for (int64_t i = 0; i < of.n; i++)
-        memcpy(out + (size_t)i * row, first + (size_t)(of.row ? of.row[i] : i) * stride, row);
-    h5_write(file, path, whole ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, width > 1 ? 2 : 1, shape,
-             out, NULL, why);
+        memcpy(out + (size_t)i * row, m.first + (size_t)(of.row ? of.row[i] : i) * m.stride, row);
+    h5_write(
+        file, path,
+        h5_array(m.whole ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, m.width > 1 ? 2 : 1, shape, out),
+        NULL, why);
     free(out);
     return why->status;
 }
@@ -224,8 +234,10 @@ static int put_scalar(hid_t file, const char *group, const char *name, bool whol
     char path[160];
     const int64_t as_whole = whole ? (int64_t)value : 0;
     snprintf(path, sizeof path, "%s/%s", group, name);
-    return h5_write(file, path, whole ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, 0, NULL,
-                    whole ? (const void *)&as_whole : (const void *)&value, NULL, why);
+    return h5_write(file, path,
+                    h5_scalar(whole ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE,
+                              whole ? (const void *)&as_whole : (const void *)&value),
+                    NULL, why);
 }
 
 /* Texts of any length, as h5py has lists of them */
@@ -268,7 +280,7 @@ static int put_cells(hid_t file, const char *block, const char *name, int64_t n,
         char path[160];
         snprintf(path, sizeof path, "%s/%s/%s", block, name, part[k]);
         const hsize_t shape = (hsize_t)rows[k];
-        h5_write(file, path, H5T_NATIVE_INT64, 1, &shape, value[k], NULL, why);
+        h5_write(file, path, h5_vector(H5T_NATIVE_INT64, shape, value[k]), NULL, why);
     }
     free(number);
     return why->status;
@@ -290,23 +302,24 @@ static bool is_used(const struct rows *b, int c)
 static int put_block(hid_t file, int group, const struct rows *b, struct choice of, struct why *why)
 {
     char block[60], path[160];
-    const hsize_t one = 1;
     const char *rows = b->row ? (const char *)b->row : "";
     snprintf(block, sizeof block, "/VTKHDF/%s", group_names[group]);
     snprintf(path, sizeof path, "%s/NumberOfPoints", block);
     if (vtkhdf_group(file, block, why) || vtkhdf_type(file, block, "PolyData", MINOR, why) ||
-        h5_write(file, path, H5T_NATIVE_INT64, 1, &one, &of.n, NULL, why))
+        h5_write(file, path, h5_vector(H5T_NATIVE_INT64, 1, &of.n), NULL, why))
         return why->status;
     snprintf(path, sizeof path, "%s/Points", block);
-    if (put_column(file, path, false, 3, of, rows + offsetof(struct row, x), sizeof *b->row, why) ||
-        put_cells(file, block, "Vertices", of.n, why) || put_cells(file, block, "Lines", 0, why) ||
-        put_cells(file, block, "Polygons", 0, why) || put_cells(file, block, "Strips", 0, why))
+    const struct member points = { rows + offsetof(struct row, x), sizeof *b->row, false, 3 };
+    if (put_column(file, path, of, points, why) || put_cells(file, block, "Vertices", of.n, why) ||
+        put_cells(file, block, "Lines", 0, why) || put_cells(file, block, "Polygons", 0, why) ||
+        put_cells(file, block, "Strips", 0, why))
         return why->status;
     for (int k = 0; k < COLUMNS; k++) {
         if (!columns[k].always && !is_used(b, k)) continue;
         snprintf(path, sizeof path, "%s/PointData/%s", block, columns[k].name);
-        if (put_column(file, path, columns[k].whole, columns[k].width, of, rows + columns[k].at,
-                       sizeof *b->row, why) ||
+        const struct member m = { rows + columns[k].at, sizeof *b->row, columns[k].whole,
+                                  columns[k].width };
+        if (put_column(file, path, of, m, why) ||
             (columns[k].width == 4 && put_attribute(file, path, "order", "wxyz", why)))
             return why->status;
     }
@@ -340,12 +353,11 @@ static int put_scene(hid_t file, const struct packing *p, struct why *why)
     static const char scene[] = "/ONDEM/Scene";
     static const char *const units[] = { "m", "kg", "s" };
     const double g[3] = { p->g.x, p->g.y, p->g.z };
-    const hsize_t three = 3;
     return h5_group(file, scene, why) ||
-           h5_attr(file, scene, "time", H5T_NATIVE_DOUBLE, -1, &p->t, why) ||
-           h5_attr(file, scene, "timestep", H5T_NATIVE_DOUBLE, -1, &p->dt, why) ||
-           h5_attr(file, scene, "iteration", H5T_NATIVE_INT64, -1, &p->step, why) ||
-           h5_write(file, "/ONDEM/Scene/gravity", H5T_NATIVE_DOUBLE, 1, &three, g, NULL, why) ||
+           h5_attr(file, scene, "time", h5_scalar(H5T_NATIVE_DOUBLE, &p->t), why) ||
+           h5_attr(file, scene, "timestep", h5_scalar(H5T_NATIVE_DOUBLE, &p->dt), why) ||
+           h5_attr(file, scene, "iteration", h5_scalar(H5T_NATIVE_INT64, &p->step), why) ||
+           h5_write(file, "/ONDEM/Scene/gravity", h5_vector(H5T_NATIVE_DOUBLE, 3, g), NULL, why) ||
            put_texts(file, "/ONDEM/Scene/units", units, 3, why) ||
            put_texts(file, "/ONDEM/Scene/display_group_names", group_names, 2, why) ||
            put_texts(file, "/ONDEM/Scene/shape_names", shape_names, SHAPES, why);
@@ -425,13 +437,14 @@ static int put_contacts(hid_t file, const struct packing *p, const struct contac
         put3(it->normal, c->n), put3(it->point, c->x);
         put3(it->shear_force, v3_axpy(force, -along, c->n));
     }
-    if (!h5_group(file, group, why)) h5_attr(file, group, "count", H5T_NATIVE_INT64, -1, &n, why);
+    if (!h5_group(file, group, why))
+        h5_attr(file, group, "count", h5_scalar(H5T_NATIVE_INT64, &n), why);
     for (size_t k = 0; k < sizeof of_contacts / sizeof *of_contacts && !why->status; k++) {
         char path[120];
         snprintf(path, sizeof path, "%s/%s", group, of_contacts[k].name);
-        put_column(file, path, of_contacts[k].whole, of_contacts[k].width,
-                   (struct choice){ n, NULL }, (const char *)list + of_contacts[k].at, sizeof *list,
-                   why);
+        const struct member m = { (const char *)list + of_contacts[k].at, sizeof *list,
+                                  of_contacts[k].whole, of_contacts[k].width };
+        put_column(file, path, (struct choice){ n, NULL }, m, why);
     }
     free(list);
     return why->status;
@@ -450,21 +463,23 @@ static int put_extension(hid_t file, const struct packing *p, struct why *why)
     const hsize_t square[2] = { (hsize_t)p->kinds, (hsize_t)p->kinds }, edges[2] = { 3, 3 };
     int32_t repeats[3];
     double edge[9];
-    const hsize_t three = 3;
     if (h5_group(file, "/nsd", why) ||
-        h5_attr(file, "/nsd", "dim", H5T_NATIVE_INT, -1, &p->dim, why))
+        h5_attr(file, "/nsd", "dim", h5_scalar(H5T_NATIVE_INT, &p->dim), why))
         return why->status;
     for (int k = 0; k < 3; k++)
-        if (h5_write(file, law[k].path, H5T_NATIVE_DOUBLE, 2, square,
-                     *(double *const *)((const char *)p + law[k].at), NULL, why))
+        if (h5_write(file, law[k].path,
+                     h5_array(H5T_NATIVE_DOUBLE, 2, square,
+                              *(double *const *)((const char *)p + law[k].at)),
+                     NULL, why))
             return why->status;
     for (int k = 0; k < 3; k++)
         repeats[k] = p->cell.repeats[k], put3(edge + 3 * k, p->cell.edge[k]);
     if (cell_repeats(&p->cell) &&
-        (h5_write(file, "/nsd/cell/origin", H5T_NATIVE_DOUBLE, 1, &three, &p->cell.origin, NULL,
+        (h5_write(file, "/nsd/cell/origin", h5_vector(H5T_NATIVE_DOUBLE, 3, &p->cell.origin), NULL,
                   why) ||
-         h5_write(file, "/nsd/cell/edges", H5T_NATIVE_DOUBLE, 2, edges, edge, NULL, why) ||
-         h5_write(file, "/nsd/cell/repeats", H5T_NATIVE_INT32, 1, &three, repeats, NULL, why)))
+         h5_write(file, "/nsd/cell/edges", h5_array(H5T_NATIVE_DOUBLE, 2, edges, edge), NULL,
+                  why) ||
+         h5_write(file, "/nsd/cell/repeats", h5_vector(H5T_NATIVE_INT32, 3, repeats), NULL, why)))
         return why->status;
     return shape_tables_write(file, p, why);
 }

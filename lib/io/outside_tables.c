@@ -129,10 +129,12 @@ static int read_boundaries(struct source *s, int64_t row, struct packing *p, str
     size_t n = (size_t)p->walls;
     vec3 *x = calloc(2 * n + 1, sizeof *x);
     if (!x) return why_set(why, EX_SOFTWARE, "no memory for the boundaries");
-    if (!source_rows(s, HOME "/point", COLUMN_F64, row, 1, 3 * p->walls, x, why) &&
-        !source_rows(s, HOME "/velocity", COLUMN_F64, row, 1, 3 * p->walls, x + n, why) &&
+    if (!source_rows(s, HOME "/point", (struct slab){ COLUMN_F64, row, 1, 3 * p->walls }, x, why) &&
+        !source_rows(s, HOME "/velocity", (struct slab){ COLUMN_F64, row, 1, 3 * p->walls }, x + n,
+                     why) &&
         !outside_alloc_push(&p->outside, p->walls, why))
-        source_rows(s, HOME "/push", COLUMN_F64, row, 1, p->walls, p->outside.push, why);
+        source_rows(s, HOME "/push", (struct slab){ COLUMN_F64, row, 1, p->walls }, p->outside.push,
+                    why);
     bool any = false;
     for (size_t w = 0; w < n && !why->status; w++) {
         if (!v3_finite(x[w]) || !v3_finite(x[n + w]))
@@ -146,32 +148,36 @@ static int read_boundaries(struct source *s, int64_t row, struct packing *p, str
 }
 
 /* The span of the frame, which is to be within what is stored and at most `most` long */
-static int read_span(struct source *s, const char *name, int64_t row, int64_t most, int64_t *start,
-                     int64_t *count, struct why *why)
+static int read_span(struct source *s, const char *name, int64_t row, int64_t most,
+                     struct span *span, struct why *why)
 {
+    const struct slab number = { COLUMN_I64, row, 1, 1 };
     char path[80];
     snprintf(path, sizeof path, HOME "/%s/start", name);
-    if (source_rows(s, path, COLUMN_I64, row, 1, 1, start, why)) return why->status;
+    if (source_rows(s, path, number, &span->start, why)) return why->status;
     snprintf(path, sizeof path, HOME "/%s/count", name);
-    if (source_rows(s, path, COLUMN_I64, row, 1, 1, count, why)) return why->status;
-    if (*start >= 0 && *count >= 0 && *count <= most) return 0;
+    if (source_rows(s, path, number, &span->count, why)) return why->status;
+    if (span->start >= 0 && span->count >= 0 && span->count <= most) return 0;
     return why_set(why, EX_DATAERR, "%s: %lld from %lld on is out of range", path,
-                   (long long)*count, (long long)*start);
+                   (long long)span->count, (long long)span->start);
 }
 
 static int read_forces(struct source *s, int64_t row, struct packing *p, struct why *why)
 {
-    int64_t start = 0, count = 0;
-    if (read_span(s, "body", row, p->n, &start, &count, why) || !count) return why->status;
+    struct span span = { 0, 0 };
+    if (read_span(s, "body", row, p->n, &span, why) || !span.count) return why->status;
+    const int64_t start = span.start, count = span.count;
     if (count != p->n)
         return why_set(why, EX_DATAERR,
                        HOME "/body/count: forces of %lld bodies, and there are %lld",
                        (long long)count, (long long)p->n);
     if (outside_alloc(&p->outside.force, p->n, why) ||
         outside_alloc(&p->outside.torque, p->n, why) ||
-        source_rows(s, HOME "/body/force", COLUMN_F64, start, count, 3, p->outside.force, why))
+        source_rows(s, HOME "/body/force", (struct slab){ COLUMN_F64, start, count, 3 },
+                    p->outside.force, why))
         return why->status;
-    if (source_rows(s, HOME "/body/torque", COLUMN_F64, start, count, 3, p->outside.torque, why))
+    if (source_rows(s, HOME "/body/torque", (struct slab){ COLUMN_F64, start, count, 3 },
+                    p->outside.torque, why))
         return why->status;
     outside_measure(&p->outside, p->mass, p->n);
     return 0;
@@ -196,21 +202,25 @@ static void drop_vectors(vec3 **x, int64_t n)
 static int read_lasting(struct source *s, struct packing *p, struct why *why)
 {
     struct lasting *o = &p->outside.lasts;
-    int64_t start = 0, count = 0, row = table_read_row_at(s, LASTS "/step", p->step, why);
-    if (why->status || row < 0 || read_span(s, "lasting", row, p->n, &start, &count, why))
+    struct span span = { 0, 0 };
+    int64_t row = table_read_row_at(s, LASTS "/step", p->step, why);
+    if (why->status || row < 0 || read_span(s, "lasting", row, p->n, &span, why))
         return why->status;
+    const int64_t start = span.start, count = span.count;
     if (count && count != p->n)
         return why_set(why, EX_DATAERR, LASTS "/count: forces of %lld bodies, and there are %lld",
                        (long long)count, (long long)p->n);
     if (!(o->push = calloc((size_t)p->walls + 1, sizeof *o->push)))
         return why_set(why, EX_SOFTWARE, "no memory for forces that last");
-    if (source_rows(s, LASTS "/push", COLUMN_F64, row, 1, p->walls, o->push, why))
+    if (source_rows(s, LASTS "/push", (struct slab){ COLUMN_F64, row, 1, p->walls }, o->push, why))
         return why->status;
     drop_zeros(&o->push, p->walls);
     if (!count) return 0;
     if (outside_alloc(&o->force, p->n, why) || outside_alloc(&o->torque, p->n, why) ||
-        source_rows(s, LASTS "/force", COLUMN_F64, start, count, 3, o->force, why) ||
-        source_rows(s, LASTS "/torque", COLUMN_F64, start, count, 3, o->torque, why))
+        source_rows(s, LASTS "/force", (struct slab){ COLUMN_F64, start, count, 3 }, o->force,
+                    why) ||
+        source_rows(s, LASTS "/torque", (struct slab){ COLUMN_F64, start, count, 3 }, o->torque,
+                    why))
         return why->status;
     drop_vectors(&o->force, p->n), drop_vectors(&o->torque, p->n);
     return 0;
@@ -219,15 +229,17 @@ static int read_lasting(struct source *s, struct packing *p, struct why *why)
 static int read_words(struct source *s, int64_t row, struct outside *o, struct why *why)
 {
     uint64_t shape[4];
-    int64_t start = 0, count = 0;
+    struct span span = { 0, 0 };
     if (source_shape(s, HOME "/answer/text", shape) != 1)
         return why_set(why, EX_DATAERR, HOME "/answer/text: not of one dimension");
-    if (read_span(s, "answer", row, (int64_t)shape[0], &start, &count, why) || !count)
+    if (read_span(s, "answer", row, (int64_t)shape[0], &span, why) || !span.count)
         return why->status;
+    const int64_t start = span.start, count = span.count;
     if (!(o->words = malloc((size_t)count)))
         return why_set(why, EX_SOFTWARE, "no memory for the answer");
     o->length = o->room = count;
-    return source_rows(s, HOME "/answer/text", COLUMN_I8, start, count, 1, o->words, why);
+    return source_rows(s, HOME "/answer/text", (struct slab){ COLUMN_I8, start, count, 1 },
+                       o->words, why);
 }
 
 int outside_tables_read(struct source *s, struct packing *p, struct why *why)
@@ -236,8 +248,9 @@ int outside_tables_read(struct source *s, struct packing *p, struct why *why)
     if (read_lasting(s, p, why)) return why->status;
     int64_t row = table_read_row_at(s, HOME "/step", p->step, why);
     if (why->status || row < 0) return why->status;
-    if (source_rows(s, HOME "/gravity", COLUMN_F64, row, 1, 3, g, why) ||
-        source_rows(s, HOME "/friction", COLUMN_F64, row, 1, (int64_t)p->kinds * p->kinds, p->mu,
+    if (source_rows(s, HOME "/gravity", (struct slab){ COLUMN_F64, row, 1, 3 }, g, why) ||
+        source_rows(s, HOME "/friction",
+                    (struct slab){ COLUMN_F64, row, 1, (int64_t)p->kinds * p->kinds }, p->mu,
                     why) ||
         read_boundaries(s, row, p, why) || read_forces(s, row, p, why) ||
         read_words(s, row, &p->outside, why))

@@ -48,8 +48,10 @@ static int read_laws(struct source *s, struct packing *p, struct why *why)
 
 static int read_bonds(struct source *s, int64_t k, struct packing *p, struct why *why)
 {
-    int64_t start, count;
-    if (table_read_span(s, bonds, "body", 2, k, &start, &count, why)) return why->status;
+    struct span span;
+    if (table_read_span(s, (struct table_spans){ bonds, "body", 2 }, k, &span, why))
+        return why->status;
+    const int64_t start = span.start, count = span.count;
     p->bonds.bond = calloc((size_t)count + 1, sizeof *p->bonds.bond);
     if (!p->bonds.bond) return why_set(why, EX_SOFTWARE, "no memory for the bonds");
     p->bonds.n = count, p->bonds.room = count + 1;
@@ -80,7 +82,7 @@ static int write_columns(hid_t file, const struct column *columns, const struct 
         char path[80];
         snprintf(path, sizeof path, "%s/%s", law, c->name);
         column_gather(c, n, p->law, sizeof *p->law, table);
-        h5_write(file, path, H5T_NATIVE_DOUBLE, 2, square, table, c->units, why);
+        h5_write(file, path, h5_array(H5T_NATIVE_DOUBLE, 2, square, table), c->units, why);
     }
     free(table);
     return why->status;

@@ -13,9 +13,11 @@ int pull_tables_read(struct source *s, struct packing *p, struct why *why)
         return why_set(why, EX_DATAERR, HOME ": not a table of forces");
     if (drives_alloc(&p->pulls, (int32_t)n[0], (int32_t)m[0], why) ||
         table_read_columns(s, HOME, "", 0, RECORDS(layout_pull, p->pulls.n, p->pulls.drive), why) ||
-        source_rows(s, HOME "/row", COLUMN_F64, 0, p->pulls.rows, 2, p->pulls.row, why))
+        source_rows(s, HOME "/row", (struct slab){ COLUMN_F64, 0, p->pulls.rows, 2 }, p->pulls.row,
+                    why))
         return why->status;
-    return source_attribute(s, HOME, "acceleration", COLUMN_F64, -1, &p->pulls_most, why);
+    return source_attribute(s, HOME, "acceleration",
+                            (struct numbers){ COLUMN_F64, -1, &p->pulls_most }, why);
 }
 
 int pull_tables_write(struct table_write *t, const struct packing *p, struct why *why)
@@ -26,9 +28,9 @@ int pull_tables_write(struct table_write *t, const struct packing *p, struct why
     t->growing = false;
     if (!table_write_columns(t, HOME, "", RECORDS(layout_pull, p->pulls.n, p->pulls.drive), 0,
                              why) &&
-        !h5_write(t->file, HOME "/row", H5T_NATIVE_DOUBLE, 2, shape, p->pulls.row, "s; N, N m",
-                  why))
-        h5_attr(t->file, HOME, "acceleration", H5T_NATIVE_DOUBLE, -1, &p->pulls_most, why);
+        !h5_write(t->file, HOME "/row", h5_array(H5T_NATIVE_DOUBLE, 2, shape, p->pulls.row),
+                  "s; N, N m", why))
+        h5_attr(t->file, HOME, "acceleration", h5_scalar(H5T_NATIVE_DOUBLE, &p->pulls_most), why);
     t->growing = growing;
     return why->status;
 }

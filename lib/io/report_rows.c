@@ -84,7 +84,7 @@ static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
     snprintf(time, sizeof time, "%s/time", r->group);
     if (table_read_columns(r->source, r->group, "/value", at,
                            RECORDS(layout_report, n, r->ahead.row), why) ||
-        source_rows(r->source, time, COLUMN_F64, at, n, 1, r->ahead.time, why) ||
+        source_rows(r->source, time, (struct slab){ COLUMN_F64, at, n, 1 }, r->ahead.time, why) ||
         account_rows_read(r->source, at, n, r->ahead.account, why))
         return why->status;
     snprintf(time, sizeof time, "%s/velocity/value", r->group);
@@ -116,11 +116,11 @@ static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
     return 0;
 }
 
-int report_rows_read(struct report_rows *r, int64_t step, bool alone, struct report *rep,
+int report_rows_read(struct report_rows *r, int64_t step, struct report *rep,
                      struct account *account, bool *there, struct why *why)
 {
     const char *group = r->group;
-    alone = alone && r->solves == 1;
+    const bool alone = r->one_frame && r->solves == 1;
     int64_t at = alone ? 0 : table_read_row(r->solved, r->solves, step);
     *there = at >= 0;
     if (at < 0) return 0;
@@ -136,7 +136,8 @@ int report_rows_read(struct report_rows *r, int64_t step, bool alone, struct rep
     for (int c = 0; criterion && c < CRITERION_COUNT; c++)
         if (!strcmp(criterion, criterion_name[c])) rep->criterion = c;
     free(method), free(criterion);
-    if (why->status || source_attribute(r->source, group, "eps", COLUMN_F64, -1, &rep->eps, why))
+    if (why->status || source_attribute(r->source, group, "eps",
+                                        (struct numbers){ COLUMN_F64, -1, &rep->eps }, why))
         return why->status;
     if (!(rep->eps >= 0 && isfinite(rep->eps)))
         return why_set(why, EX_DATAERR, "%s@eps: neither 0 nor a positive number", group);
@@ -178,8 +179,7 @@ int report_rows_write(struct table_write *s, const struct report *rep, struct wh
     bool first = !table_write_grows(s, LAYOUT_REPORT "/eps/value");
     if (table_write_columns(s, solver, "/value", RECORDS(layout_report, 1, rep), CHUNK_FRAMES,
                             why) ||
-        table_write_clock(s, solver, true, &rep->step, solver, layout_report, why) ||
-        table_write_clock(s, solver, false, &rep->t, solver, layout_report, why) ||
+        table_write_clocks(s, solver, layout_report, rep->step, rep->t, why) ||
         (rep->criterion == CRITERION_VELOCITY &&
          write_table(s, layout_velocity, rep, first, why)) ||
         (rep->balanced && write_balance(s, rep, first, why)))
@@ -187,11 +187,11 @@ int report_rows_write(struct table_write *s, const struct report *rep, struct wh
     if (first &&
         (h5_attr_text(s->file, solver, "method", rep->method, why) ||
          h5_attr_text(s->file, solver, "criterion", criterion_name[rep->criterion], why) ||
-         h5_attr(s->file, solver, "eps", H5T_NATIVE_DOUBLE, -1, &rep->eps, why) ||
+         h5_attr(s->file, solver, "eps", h5_scalar(H5T_NATIVE_DOUBLE, &rep->eps), why) ||
          h5_attr_text(s->file, solver, "options", rep->options ? rep->options : "{}", why)))
         return why->status;
     if (!rep->history || s->growing) return 0;
     const hsize_t shape[2] = { (hsize_t)rep->sweeps, 5 };
-    return h5_write(s->file, LAYOUT_REPORT "/history", H5T_NATIVE_DOUBLE, 2, shape, rep->history,
-                    "1", why);
+    return h5_write(s->file, LAYOUT_REPORT "/history",
+                    h5_array(H5T_NATIVE_DOUBLE, 2, shape, rep->history), "1", why);
 }

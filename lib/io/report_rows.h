@@ -15,6 +15,9 @@ struct report_rows {
     const char *group; /* where they are */
     int64_t *solved;   /* [solves] the steps that they are on */
     int64_t solves;
+    bool
+        one_frame; /* the document has one frame: its one report is that, for nsd-solve reports on the
+                       step that is still to be made */
     struct {
         struct report *row; /* [n] reports from `first` on, read at once: a question of the document
                                takes longer than its answer; or NULL */
@@ -26,11 +29,8 @@ struct report_rows {
 
 int report_rows_open(struct report_rows *rows, struct source *source, struct why *why);
 void report_rows_close(struct report_rows *rows);
-/*
- * The report on the solve that led to this step, if there is one, and the account up to there. alone: the document has one frame;
- * its one report is that, for nsd-solve reports on the step that is still to be made.
- */
-int report_rows_read(struct report_rows *rows, int64_t step, bool alone, struct report *report,
+/* The report on the solve that led to this step, if there is one, and the account up to there */
+int report_rows_read(struct report_rows *rows, int64_t step, struct report *report,
                      struct account *account, bool *there, struct why *why);
 
 /* The next row; texts and history are written with the first. */

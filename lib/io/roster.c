@@ -123,10 +123,19 @@ int roster_enter(struct roster *r, struct table_write *s, const struct packing *
     return 0;
 }
 
-static int write_spread(struct roster *r, struct table_write *s, const char *path,
-                        const struct column *c, const void *data, const int64_t *row, int64_t n,
-                        struct why *why)
+static void moving_path(const struct body_column *b, char path[80])
 {
+    snprintf(path, 80, "/particles/all/%s/value", b->column.name);
+}
+
+/* A column of bodies that move, of body i in row[i] */
+static int write_spread(struct roster *r, struct table_write *s, const struct body_column *b,
+                        const struct packing *p, const int64_t *row, struct why *why)
+{
+    const struct column *c = &b->column;
+    const char *data = column_array(c, p);
+    char path[80];
+    moving_path(b, path);
     size_t number = column_size(c->type), bytes = column_bytes(c);
     char *all = malloc((size_t)r->width * bytes);
     if (!all) return why_set(why, EX_SOFTWARE, "no memory for %s", path);
@@ -135,8 +144,8 @@ static int write_spread(struct roster *r, struct table_write *s, const char *pat
     const void *empty = c->type == COLUMN_F64 ? (const void *)&none : (const void *)&nobody;
     for (size_t k = 0; k < (size_t)r->width * (size_t)c->width; k++)
         memcpy(all + k * number, empty, number);
-    for (int64_t i = 0; i < n; i++)
-        memcpy(all + (size_t)row[i] * bytes, (const char *)data + (size_t)i * bytes, bytes);
+    for (int64_t i = 0; i < p->n; i++)
+        memcpy(all + (size_t)row[i] * bytes, data + (size_t)i * bytes, bytes);
     const hsize_t shape[3] = { 1, (hsize_t)r->width, (hsize_t)c->width };
     int e = table_write_rows(
         s, (struct dataset){ path, c->type, c->width == 1 ? 2 : 3, shape, 1, all, c->units }, why);
@@ -144,20 +153,12 @@ static int write_spread(struct roster *r, struct table_write *s, const char *pat
     return e;
 }
 
-static void moving_path(const struct body_column *b, char path[80])
-{
-    snprintf(path, 80, "/particles/all/%s/value", b->column.name);
-}
-
 int roster_write(struct roster *r, struct table_write *s, const struct packing *p,
                  const int64_t *row, struct why *why)
 {
     for (const struct body_column *b = body_columns; b->column.name; b++) {
-        const void *data = column_array(&b->column, p);
-        char path[80];
-        if (!moves(b) || !data) continue;
-        moving_path(b, path);
-        if (write_spread(r, s, path, &b->column, data, row, p->n, why)) return why->status;
+        if (!moves(b) || !column_array(&b->column, p)) continue;
+        if (write_spread(r, s, b, p, row, why)) return why->status;
     }
     return 0;
 }
@@ -183,31 +184,39 @@ int roster_find(struct source *source, int64_t k, int64_t **row, int64_t *n, str
         free(id);
         return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)rows);
     }
-    if (!source_rows(source, ids, COLUMN_I32, k, 1, rows, id, why))
+    if (!source_rows(source, ids, (struct slab){ COLUMN_I32, k, 1, rows }, id, why))
         for (int64_t i = 0; i < rows; i++)
             if (id[i] >= 0) (*row)[(*n)++] = i;
     free(id);
     return why->status;
 }
 
-/* Rows row[n] of a column: of a frame, or of a table that all frames share (frame -1) */
-static int read_spread(struct source *s, const char *path, const struct column *c, int64_t frame,
-                       const int64_t *row, int64_t n, void *out, struct why *why)
+/* A column of p's bodies, of body i from row[i]: of frame k, or of a table that all frames share */
+static int read_spread(struct source *s, int64_t k, const int64_t *row, const struct body_column *b,
+                       struct packing *p, struct why *why)
 {
+    const struct column *c = &b->column;
+    const int64_t n = p->n;
+    char path[80], *out = column_array(c, p);
+    if (moves(b))
+        moving_path(b, path);
+    else
+        layout_body_path(b, path);
+    if (b->traits & BODY_OPTIONAL && !source_has(s, path)) return 0;
     uint64_t shape[4];
     int rank = source_shape(s, path, shape);
-    bool moves = frame >= 0;
-    if (rank < 1 + moves) return why_set(why, EX_DATAERR, "%s: no dataset of bodies", path);
-    int64_t rows = (int64_t)shape[moves], most = n ? row[n - 1] + 1 : 0; // rows ascend
+    const bool moving = moves(b);
+    if (rank < 1 + moving) return why_set(why, EX_DATAERR, "%s: no dataset of bodies", path);
+    int64_t rows = (int64_t)shape[moving], most = n ? row[n - 1] + 1 : 0; // rows ascend
     if (rows < most || rows > INT32_MAX)
         return why_set(why, EX_DATAERR, "%s: fewer rows than bodies", path);
     size_t bytes = (size_t)c->width * column_size(c->type);
     char *all = malloc((size_t)rows * bytes + 1);
     if (!all) return why_set(why, EX_SOFTWARE, "%s: no memory", path);
-    int e = moves ? source_rows(s, path, c->type, frame, 1, rows * c->width, all, why)
-                  : source_rows(s, path, c->type, 0, rows, c->width, all, why);
+    int e = moving ? source_rows(s, path, (struct slab){ c->type, k, 1, rows * c->width }, all, why)
+                   : source_rows(s, path, (struct slab){ c->type, 0, rows, c->width }, all, why);
     for (int64_t i = 0; !e && i < n; i++)
-        memcpy((char *)out + (size_t)i * bytes, all + (size_t)row[i] * bytes, bytes);
+        memcpy(out + (size_t)i * bytes, all + (size_t)row[i] * bytes, bytes);
     free(all);
     return e;
 }
@@ -216,15 +225,7 @@ int roster_read(struct source *source, int64_t k, const int64_t *row, struct pac
                 struct why *why)
 {
     for (const struct body_column *b = body_columns; b->column.name; b++) {
-        const struct column *c = &b->column;
-        char path[80];
-        if (!column_array(c, p)) continue;
-        if (moves(b))
-            moving_path(b, path);
-        else
-            layout_body_path(b, path);
-        if (b->traits & BODY_OPTIONAL && !source_has(source, path)) continue;
-        if (read_spread(source, path, c, moves(b) ? k : -1, row, p->n, column_array(c, p), why))
+        if (column_array(&b->column, p) && read_spread(source, k, row, b, p, why))
             return why->status;
     }
     return 0;

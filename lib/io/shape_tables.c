@@ -45,7 +45,8 @@ static int read_lists(struct source *r, struct listing *l, struct why *why)
     l->vertices = n[0];
     l->vertex = calloc((size_t)n[0] + 1, sizeof *l->vertex);
     if (!l->vertex) return why_set(why, EX_SOFTWARE, "no memory for the shapes");
-    if (source_rows(r, SHAPE "/vertex", COLUMN_F64, 0, (int64_t)n[0], 3, l->vertex, why))
+    if (source_rows(r, SHAPE "/vertex", (struct slab){ COLUMN_F64, 0, (int64_t)n[0], 3 }, l->vertex,
+                    why))
         return why->status;
     l->ball = source_read_all(r, SHAPE "/ball", COLUMN_F64, &balls, why);
     l->face = source_read_all(r, SHAPE "/face", COLUMN_I32, &l->faces, why);
@@ -60,10 +61,17 @@ static void listing_drop(struct listing *l)
     free(l->vertex), free(l->ball), free(l->face), free(l->corner);
 }
 
+/* Where the next shape begins in the lists */
+struct place {
+    const struct listing *of;
+    uint64_t vertices, faces, corners;
+};
+
 /* The shape of a row, and the lists from `at` on, which moves on; nothing to free where it fails */
-static int make_shape(struct source *r, struct shape *s, const struct row *row,
-                      const struct listing *l, struct listing *at, int dim, struct why *why)
+static int make_shape(struct source *r, struct shape *s, const struct row *row, struct place *at,
+                      int dim, struct why *why)
 {
+    const struct listing *l = at->of;
     if (row->vertices < 0 || row->faces < 0 || row->corners < 0 ||
         (uint64_t)row->vertices > l->vertices - at->vertices ||
         (uint64_t)row->faces > l->faces - at->faces ||
@@ -90,12 +98,20 @@ static int make_shape(struct source *r, struct shape *s, const struct row *row,
     return why->status;
 }
 
-/* Rows 1, 2 ... of the table; row 0 is the ball, which stands in no list. names: a line each */
-static int make_shapes(struct source *r, struct packing *p, const struct row *row, int32_t n,
-                       const char *names, const struct listing *l, struct why *why)
+/* The table of shapes */
+struct table {
+    int32_t n;
+    const struct row *row; /* [n] */
+    const char *names;     /* a line each */
+    struct listing lists;
+};
+
+/* Rows 1, 2 ... of the table; row 0 is the ball, which stands in no list. */
+static int make_shapes(struct source *r, struct packing *p, const struct table *t, struct why *why)
 {
-    struct listing at = { 0 };
-    for (int32_t k = 0; k < n && !why->status; k++) {
+    const char *names = t->names;
+    struct place at = { .of = &t->lists };
+    for (int32_t k = 0; k < t->n && !why->status; k++) {
         struct shape s = { 0 };
         struct why trouble = { 0 };
         const char *end = strchr(names, '\n');
@@ -103,7 +119,7 @@ static int make_shapes(struct source *r, struct packing *p, const struct row *ro
             return why_set(why, EX_DATAERR, SHAPE "@names: fewer names than shapes");
         char *name = strndup(names, (size_t)(end - names));
         names = end + 1;
-        make_shape(r, &s, &row[k], l, &at, p->dim, &trouble);
+        make_shape(r, &s, &t->row[k], &at, p->dim, &trouble);
         if (trouble.status)
             why_set(why, trouble.status, SHAPE ": \"%s\": %s", name ? name : "", trouble.text);
         if (trouble.status) free(name);
@@ -118,18 +134,18 @@ static int make_shapes(struct source *r, struct packing *p, const struct row *ro
 int shape_tables_read(struct source *r, struct packing *p, struct why *why)
 {
     uint64_t n[4];
-    struct listing l = { 0 };
+    struct table t = { 0 };
     if (!source_has(r, SHAPE)) return 0;
     if (source_shape(r, SHAPE "/form", n) != 1 || n[0] < 1 || n[0] >= SHAPES_MOST)
         return why_set(why, EX_DATAERR, SHAPE "/form: not a list of shapes");
     struct row *row = calloc((size_t)n[0], sizeof *row);
     char *names = row ? source_text(r, SHAPE, "names", why) : NULL;
     if (!row || (!names && !why->status)) why_set(why, EX_SOFTWARE, "no memory for the shapes");
-    if (!why->status &&
-        !table_read_columns(r, SHAPE, "", 0, RECORDS(layout_rows, (int64_t)n[0], row), why) &&
-        !read_lists(r, &l, why))
-        make_shapes(r, p, row, (int32_t)n[0], names, &l, why);
-    listing_drop(&l);
+    t.n = (int32_t)n[0], t.row = row, t.names = names;
+    if (!why->status && !table_read_columns(r, SHAPE, "", 0, RECORDS(layout_rows, t.n, row), why) &&
+        !read_lists(r, &t.lists, why))
+        make_shapes(r, p, &t, why);
+    listing_drop(&t.lists);
     free(row), free(names);
     return why->status ? why->status : packing_alloc_shapes(p, why);
 }
@@ -156,8 +172,8 @@ static int write_rows(hid_t file, const struct shapes *t, struct why *why)
         char path[80];
         snprintf(path, sizeof path, SHAPE "/%s", c->name);
         column_gather(c, (int64_t)n, row, sizeof *row, out);
-        h5_write(file, path, column_native(c->type), c->width > 1 ? 2 : 1, wide, out, c->units,
-                 why);
+        h5_write(file, path, h5_array(column_native(c->type), c->width > 1 ? 2 : 1, wide, out),
+                 c->units, why);
     }
     free(row), free(out);
     return why->status;
@@ -188,10 +204,12 @@ static int write_lists(hid_t file, const struct shapes *t, struct why *why)
     }
     bool bad =
         why->status ||
-        h5_write(file, SHAPE "/vertex", H5T_NATIVE_DOUBLE, 2, vertices, l.vertex, "1", why) ||
-        h5_write(file, SHAPE "/ball", H5T_NATIVE_DOUBLE, 1, vertices, l.ball, "1", why) ||
-        h5_write(file, SHAPE "/face", H5T_NATIVE_INT32, 1, &faces, l.face, "1", why) ||
-        h5_write(file, SHAPE "/corner", H5T_NATIVE_INT32, 1, &corners, l.corner, "1", why);
+        h5_write(file, SHAPE "/vertex", h5_array(H5T_NATIVE_DOUBLE, 2, vertices, l.vertex), "1",
+                 why) ||
+        h5_write(file, SHAPE "/ball", h5_vector(H5T_NATIVE_DOUBLE, vertices[0], l.ball), "1",
+                 why) ||
+        h5_write(file, SHAPE "/face", h5_vector(H5T_NATIVE_INT32, faces, l.face), "1", why) ||
+        h5_write(file, SHAPE "/corner", h5_vector(H5T_NATIVE_INT32, corners, l.corner), "1", why);
     listing_drop(&l);
     return bad ? why->status : 0;
 }

@@ -21,7 +21,7 @@ int sum_tables_write_static(struct table_write *s, const struct packing *p, stru
     if (!p->sums.n) return 0;
     s->sums_since = p->sums.since;
     if (h5_group(s->file, HOME, why)) return why->status;
-    return h5_attr(s->file, HOME, "since", H5T_NATIVE_DOUBLE, -1, &p->sums.since, why);
+    return h5_attr(s->file, HOME, "since", h5_scalar(H5T_NATIVE_DOUBLE, &p->sums.since), why);
 }
 
 /* May the trajectory take a frame with sums, or without? They are there from its first frame on, or in none. */
@@ -59,9 +59,7 @@ int sum_tables_write(struct table_write *s, const struct packing *p, struct why 
                          why);
         free(row);
     }
-    if (why->status || table_write_clock(s, HOME, true, &p->step, HOME, layout_sums, why))
-        return why->status;
-    return table_write_clock(s, HOME, false, &p->t, HOME, layout_sums, why);
+    return why->status ? why->status : table_write_clocks(s, HOME, layout_sums, p->step, p->t, why);
 }
 
 int sum_tables_read(struct source *r, int64_t k, struct packing *p, struct why *why)
@@ -86,10 +84,12 @@ int sum_tables_read(struct source *r, int64_t k, struct packing *p, struct why *
         if (rank != (c->width == 1 ? 2 : 3) || shape[1] != (uint64_t)n ||
             (c->width > 1 && shape[2] != (uint64_t)c->width))
             why_set(why, EX_DATAERR, "%s: not of shape frames x %d faces", path, n);
-        else if (!source_rows(r, path, c->type, k, 1, (int64_t)n * c->width, row, why))
+        else if (!source_rows(r, path, (struct slab){ c->type, k, 1, (int64_t)n * c->width }, row,
+                              why))
             column_scatter(c, n, row, p->sums.face, sizeof *p->sums.face);
     }
     free(row);
     if (why->status) return why->status;
-    return source_attribute(r, HOME, "since", COLUMN_F64, -1, &p->sums.since, why);
+    return source_attribute(r, HOME, "since", (struct numbers){ COLUMN_F64, -1, &p->sums.since },
+                            why);
 }

@@ -11,7 +11,7 @@ int table_read_columns(struct source *s, const char *group, const char *tail, in
         snprintf(path, sizeof path, "%s/%s%s", group, c->name, tail);
         char *data = calloc((size_t)o.n + 1, column_bytes(c));
         if (!data) return why_set(why, EX_SOFTWARE, "%s: no memory", path);
-        int e = source_rows(s, path, c->type, start, o.n, c->width, data, why);
+        int e = source_rows(s, path, (struct slab){ c->type, start, o.n, c->width }, data, why);
         if (!e) column_scatter(c, o.n, data, o.structs, o.stride);
         free(data);
         if (e) return e;
@@ -19,19 +19,21 @@ int table_read_columns(struct source *s, const char *group, const char *tail, in
     return 0;
 }
 
-int table_read_span(struct source *r, const char *group, const char *one, int rank, int64_t k,
-                    int64_t *start, int64_t *count, struct why *why)
+int table_read_span(struct source *r, struct table_spans table, int64_t k, struct span *span,
+                    struct why *why)
 {
+    const struct slab number = { COLUMN_I64, k, 1, 1 };
     char path[80];
     uint64_t shape[4];
-    snprintf(path, sizeof path, "%s/start", group);
-    if (source_rows(r, path, COLUMN_I64, k, 1, 1, start, why)) return why->status;
-    snprintf(path, sizeof path, "%s/count", group);
-    if (source_rows(r, path, COLUMN_I64, k, 1, 1, count, why)) return why->status;
-    snprintf(path, sizeof path, "%s/%s", group, one);
-    if (source_shape(r, path, shape) != rank || *start < 0 || *count < 0 || *start > INT32_MAX ||
-        *count > INT32_MAX || (uint64_t)(*start + *count) > shape[0])
-        return why_set(why, EX_DATAERR, "%s: start or count is out of range", group);
+    snprintf(path, sizeof path, "%s/start", table.group);
+    if (source_rows(r, path, number, &span->start, why)) return why->status;
+    snprintf(path, sizeof path, "%s/count", table.group);
+    if (source_rows(r, path, number, &span->count, why)) return why->status;
+    snprintf(path, sizeof path, "%s/%s", table.group, table.one);
+    if (source_shape(r, path, shape) != table.rank || span->start < 0 || span->count < 0 ||
+        span->start > INT32_MAX || span->count > INT32_MAX ||
+        (uint64_t)(span->start + span->count) > shape[0])
+        return why_set(why, EX_DATAERR, "%s: start or count is out of range", table.group);
     return 0;
 }
 

@@ -12,10 +12,18 @@
 int table_read_columns(struct source *source, const char *group, const char *tail, int64_t start,
                        struct records records, struct why *why);
 
-/* Which rows of group/one, of that many dimensions, belong to frame k: *count from *start on, as
-   group/start and group/count say. Returns 0, EX_DATAERR or EX_SOFTWARE. */
-int table_read_span(struct source *source, const char *group, const char *one, int rank, int64_t k,
-                    int64_t *start, int64_t *count, struct why *why);
+/* Rows of a table: `count` from `start` on */
+struct span {
+    int64_t start, count;
+};
+/* A table of which each frame has a span, as group/start and group/count say */
+struct table_spans {
+    const char *group, *one; /* one of its datasets is group/one, */
+    int rank;                /* of this many dimensions */
+};
+/* That of frame k. Returns 0, EX_DATAERR or EX_SOFTWARE. */
+int table_read_span(struct source *source, struct table_spans table, int64_t k, struct span *span,
+                    struct why *why);
 
 /* A dataset of steps, *n of them; to be freed. NULL: not there, or no memory. */
 int64_t *table_read_steps(struct source *source, const char *path, int64_t *n, struct why *why);

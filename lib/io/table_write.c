@@ -96,8 +96,8 @@ static int append(hid_t set, const struct dataset *o)
 int table_write_rows(struct table_write *s, struct dataset o, struct why *why)
 {
     if (!s->growing)
-        return h5_write(s->file, o.path, column_native(o.type), o.rank, o.shape, o.data, o.units,
-                        why);
+        return h5_write(s->file, o.path, h5_array(column_native(o.type), o.rank, o.shape, o.data),
+                        o.units, why);
     hid_t set = find(s, o.path);
     if (set < 0) {
         if (s->count == GROWING_DATASETS)
@@ -150,8 +150,9 @@ static int write_body_column(struct table_write *s, const struct body_column *b,
     layout_body_path(b, path);
     if (moves ? table_write_rows(s, (struct dataset){ path, c->type, 3, shape, 1, data, c->units },
                                  why)
-              : h5_write(s->file, path, column_native(c->type), c->width == 1 ? 1 : 2, shape + 1,
-                         data, c->units, why))
+              : h5_write(s->file, path,
+                         h5_array(column_native(c->type), c->width == 1 ? 1 : 2, shape + 1, data),
+                         c->units, why))
         return why->status;
     if (!s->distributed) return 0;
     if (s->places == DISTRIBUTED_PLACES)
@@ -212,14 +213,25 @@ int table_write_link(struct table_write *s, const char *from, const char *name, 
     return 0;
 }
 
-int table_write_clock(struct table_write *s, const char *home, bool step, const void *value,
-                      const char *where, const struct column *c, struct why *why)
+/* A number of the frame, WHERE/name, that is linked to the columns when it is first written */
+static int write_clock(struct table_write *s, const char *where, const struct column *columns,
+                       struct dataset o, struct why *why)
 {
-    const char *name = step ? "step" : "time";
     char path[80];
-    snprintf(path, sizeof path, "%s/%s", home, name);
+    snprintf(path, sizeof path, "%s/%s", where, o.path);
     bool linked = table_write_grows(s, path);
-    if (table_write_number(s, path, step ? COLUMN_I64 : COLUMN_F64, value, step ? NULL : "s", why))
-        return why->status;
-    return linked ? 0 : table_write_link(s, path, name, where, c, why);
+    if (table_write_number(s, path, o.type, o.data, o.units, why)) return why->status;
+    return linked ? 0 : table_write_link(s, path, o.path, where, columns, why);
+}
+
+int table_write_clocks(struct table_write *s, const char *where, const struct column *columns,
+                       int64_t step, double time, struct why *why)
+{
+    const struct dataset steps = { .path = "step", .type = COLUMN_I64, .data = &step };
+    const struct dataset times = {
+        .path = "time", .type = COLUMN_F64, .data = &time, .units = "s"
+    };
+    return write_clock(s, where, columns, steps, why) || write_clock(s, where, columns, times, why)
+               ? why->status
+               : 0;
 }

@@ -75,9 +75,9 @@ int table_write_columns(struct table_write *tables, const char *group, const cha
 /* Hard links WHERE/COLUMN/name to the dataset `from` for all columns */
 int table_write_link(struct table_write *tables, const char *from, const char *name,
                      const char *where, const struct column *columns, struct why *why);
-/* Writes HOME/step (i64) or HOME/time (f64, s), and links it to all columns in WHERE. */
-int table_write_clock(struct table_write *tables, const char *home, bool step, const void *value,
-                      const char *where, const struct column *columns, struct why *why);
+/* Writes WHERE/step and WHERE/time (s), and links them to all columns there. */
+int table_write_clocks(struct table_write *tables, const char *where, const struct column *columns,
+                       int64_t step, double time, struct why *why);
 
 /* Closes the datasets; the file stays open. Returns -1 where something could not be written. */
 int table_write_close(struct table_write *tables);

@@ -171,25 +171,23 @@ void unknown_free(struct unknown *u)
 static int write_attributes(const struct item *i, hid_t file, struct why *why)
 {
     uint64_t at = 0;
-    struct object o;
-    const uint64_t *shape;
-    const char *name;
-    const void *data;
-    while (!why->status &&
-           object_unpack(i->attributes, i->attributes_size, &at, &o, &shape, &name, &data)) {
+    struct listed l;
+    while (!why->status && object_unpack(i->attributes, i->attributes_size, &at, &l)) {
+        const struct object o = l.object;
+        const char *name = l.path;
         if (o.kind == OBJECT_OTHER || !o.size)
             return why_set(why, EX_DATAERR, "%s@%s: neither numbers nor texts: it cannot be copied",
                            i->path, name);
         hsize_t dims[OBJECT_RANK], points = 1;
-        for (uint32_t k = 0; k < o.rank; k++) points *= dims[k] = shape[k];
+        for (uint32_t k = 0; k < o.rank; k++) points *= dims[k] = l.shape[k];
         if (points * o.size != o.data)
             return why_set(why, EX_DATAERR, "%s@%s: of another size", i->path, name);
         if (o.kind == OBJECT_TEXT && !o.rank) {
-            h5_attr_text(file, i->path, name, data, why);
+            h5_attr_text(file, i->path, name, l.data, why);
             continue;
         }
         hid_t type = element_type(&o);
-        h5_attr_shaped(file, i->path, name, type, (int)o.rank, dims, data, why);
+        h5_attr(file, i->path, name, h5_array(type, (int)o.rank, dims, l.data), why);
         if (o.class == 's') H5Tclose(type);
     }
     return why->status;
@@ -204,7 +202,7 @@ static int write_item(const struct item *i, hid_t file, struct why *why)
         if (h5_write_text(file, i->path, i->text, why)) return why->status;
     } else {
         hid_t type = element_type(o);
-        h5_write(file, i->path, type, (int)o->rank, i->shape, i->data, NULL, why);
+        h5_write(file, i->path, h5_array(type, (int)o->rank, i->shape, i->data), NULL, why);
         if (o->class == 's') H5Tclose(type);
     }
     return why->status ? why->status : write_attributes(i, file, why);

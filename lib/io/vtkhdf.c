@@ -118,7 +118,7 @@ int vtkhdf_type(hid_t file, const char *path, const char *type, int minor, struc
 {
     const int64_t version[2] = { 2, minor };
     return ascii(file, path, "Type", type, why) ||
-           h5_attr(file, path, "Version", H5T_NATIVE_INT64, 2, version, why);
+           h5_attr(file, path, "Version", h5_vector(H5T_NATIVE_INT64, 2, version), why);
 }
 
 /* The group that an object is in. HDF5 itself would make it with its time. */
@@ -143,10 +143,19 @@ static hid_t make_growing(hid_t file, const char *path, hid_t disk, int width, s
     return set;
 }
 
-/* n rows more at the end of a dataset of rows, which is made where there is none */
-static int append(hid_t file, const char *path, hid_t memory, hid_t disk, int width, int64_t n,
-                  const void *data, struct why *why)
+/* Rows of numbers */
+struct added {
+    hid_t type; /* of memory */
+    int width;
+    int64_t n;
+    const void *data; /* [n][width] */
+};
+
+/* Rows at the end of a dataset of rows, which is made, of type `disk`, where there is none */
+static int append(hid_t file, const char *path, hid_t disk, struct added o, struct why *why)
 {
+    const int width = o.width;
+    const int64_t n = o.n;
     hsize_t size[2] = { 0, (hsize_t)width }, rows[2] = { (hsize_t)n, (hsize_t)width };
     hid_t set = h5_has(file, path) ? H5Dopen2(file, path, H5P_DEFAULT)
                                    : make_growing(file, path, disk, width, why);
@@ -159,19 +168,19 @@ static int append(hid_t file, const char *path, hid_t memory, hid_t disk, int wi
     if (good && n) {
         hid_t to = H5Dget_space(set), from = H5Screate_simple(width > 1 ? 2 : 1, rows, NULL);
         good = H5Sselect_hyperslab(to, H5S_SELECT_SET, start, NULL, rows, NULL) >= 0 &&
-               H5Dwrite(set, memory, from, to, H5P_DEFAULT, data) >= 0;
+               H5Dwrite(set, o.type, from, to, H5P_DEFAULT, o.data) >= 0;
         H5Sclose(to), H5Sclose(from);
     }
     if (H5Dclose(set) < 0) good = false;
     return good ? 0 : failed(path, why);
 }
 
-static int append_to(const struct block *b, hid_t file, const char *name, hid_t memory, int width,
-                     int64_t n, const void *data, struct why *why)
+static int append_to(const struct block *b, hid_t file, const char *name, struct added o,
+                     struct why *why)
 {
     char path[120];
     snprintf(path, sizeof path, "%s/%s", b->name, name);
-    return append(file, path, memory, memory, width, n, data, why);
+    return append(file, path, o.type, o, why);
 }
 
 /* ---- blocks that grow ---- */
@@ -218,8 +227,9 @@ static int append_offsets(const struct block *b, hid_t file, int64_t cells, cons
     for (int k = 0; k < TOPOLOGIES; k++) {
         char name[40];
         snprintf(name, sizeof name, "%s/Offsets", topology_name[k]);
-        if (append_to(b, file, name, H5T_NATIVE_INT64, 1, 1, &zero, why) ||
-            (k == b->topology && append_to(b, file, name, H5T_NATIVE_INT64, 1, cells, end, why)))
+        if (append_to(b, file, name, (struct added){ H5T_NATIVE_INT64, 1, 1, &zero }, why) ||
+            (k == b->topology &&
+             append_to(b, file, name, (struct added){ H5T_NATIVE_INT64, 1, cells, end }, why)))
             return why->status;
     }
     return 0;
@@ -241,7 +251,7 @@ static int append_points(struct block *b, hid_t file, int64_t n, const vec3 *x, 
     char path[120];
     snprintf(path, sizeof path, "%s/Points", b->name);
     hid_t disk = b->single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE;
-    return append(file, path, H5T_NATIVE_DOUBLE, disk, 3, n, x, why);
+    return append(file, path, disk, (struct added){ H5T_NATIVE_DOUBLE, 3, n, x }, why);
 }
 
 /* Moments without cells have the last part, which is empty: VTK 9.5 counts parts by the cells before. */
@@ -262,7 +272,8 @@ static int end_nothing(struct block *b, hid_t file, struct why *why)
     char name[40];
     snprintf(name, sizeof name, "%s/Connectivity", topology_name[b->topology]);
     return append_offsets(b, file, 0, NULL, why) || append_points(b, file, 0, NULL, why) ||
-           append_to(b, file, name, H5T_NATIVE_INT64, 1, 0, NULL, why) || add_part(b, 0, 0, 0, why);
+           append_to(b, file, name, (struct added){ H5T_NATIVE_INT64, 1, 0, NULL }, why) ||
+           add_part(b, 0, 0, 0, why);
 }
 
 /* The moment's cells; where they are those of the moment before, only their points */
@@ -285,11 +296,13 @@ static int add_cells(struct block *b, hid_t file, const struct vtkhdf_cells *c, 
         snprintf(name, sizeof name, "%s/Connectivity", topology_name[b->topology]);
         if (add_part(b, c->points, c->cells, c->corners, why) ||
             append_offsets(b, file, c->cells, c->end, why) ||
-            append_to(b, file, name, H5T_NATIVE_INT64, 1, c->corners, c->corner, why))
+            append_to(b, file, name, (struct added){ H5T_NATIVE_INT64, 1, c->corners, c->corner },
+                      why))
             return why->status;
         for (int k = 0; k < c->columns; k++) {
             snprintf(name, sizeof name, "CellData/%s", c->column[k].name);
-            if (append_to(b, file, name, H5T_NATIVE_INT32, 1, c->cells, c->column[k].value, why))
+            if (append_to(b, file, name,
+                          (struct added){ H5T_NATIVE_INT32, 1, c->cells, c->column[k].value }, why))
                 return why->status;
         }
         b->cells += c->cells, b->corners += c->corners;
@@ -310,7 +323,8 @@ static int add_grains(struct block *b, hid_t file, const struct packing *p, stru
     struct step s = { b->parts, b->points, b->cells, b->corners };
     if (!add_step(b, s, why) && !add_part(b, p->n, p->n, p->n, why) &&
         !append_offsets(b, file, p->n, number + 1, why) &&
-        !append_to(b, file, "Vertices/Connectivity", H5T_NATIVE_INT64, 1, p->n, number, why))
+        !append_to(b, file, "Vertices/Connectivity",
+                   (struct added){ H5T_NATIVE_INT64, 1, p->n, number }, why))
         append_points(b, file, p->n, p->x, why);
     free(number);
     b->points += p->n, b->cells += p->n, b->corners += p->n;
@@ -319,8 +333,10 @@ static int add_grains(struct block *b, hid_t file, const struct packing *p, stru
         const void *array = *(const void *const *)((const char *)p + columns[k].at);
         snprintf(name, sizeof name, "PointData/%s", columns[k].name);
         if (array)
-            append_to(b, file, name, columns[k].whole ? H5T_NATIVE_INT32 : H5T_NATIVE_DOUBLE,
-                      columns[k].width, p->n, array, why);
+            append_to(b, file, name,
+                      (struct added){ columns[k].whole ? H5T_NATIVE_INT32 : H5T_NATIVE_DOUBLE,
+                                      columns[k].width, p->n, array },
+                      why);
     }
     return why->status;
 }
@@ -359,14 +375,25 @@ int vtkhdf_frame(struct vtkhdf *v, hid_t file, const struct packing *p, struct w
 
 /* ---- what is told at the end ---- */
 
-/* A dataset [frames] or [frames][width] of the block's steps */
-static int put_steps(hid_t file, const char *block, const char *name, int width, int64_t frames,
-                     const int64_t *value, struct why *why)
+static struct h5_data numbers(int64_t n, const int64_t *value)
+{
+    return h5_vector(H5T_NATIVE_INT64, (hsize_t)n, value);
+}
+
+/* [n][width]; of one number a row [n] */
+static struct h5_data table(int64_t n, int width, const int64_t *value)
+{
+    const hsize_t shape[2] = { (hsize_t)n, (hsize_t)width };
+    return h5_array(H5T_NATIVE_INT64, width > 1 ? 2 : 1, shape, value);
+}
+
+/* A dataset of the block */
+static int put(hid_t file, const char *block, const char *name, struct h5_data data,
+               struct why *why)
 {
     char path[160];
-    const hsize_t shape[2] = { (hsize_t)frames, (hsize_t)width };
     snprintf(path, sizeof path, "%s/%s", block, name);
-    return h5_write(file, path, H5T_NATIVE_INT64, width > 1 ? 2 : 1, shape, value, NULL, why);
+    return h5_write(file, path, data, NULL, why);
 }
 
 static int link_to(hid_t file, const char *from, const char *block, const char *name,
@@ -379,17 +406,18 @@ static int link_to(hid_t file, const char *from, const char *block, const char *
     return good ? 0 : failed(path, why);
 }
 
-/* [frames][bodies][width] of /particles/all as [frames * bodies][width], without its numbers */
-static int make_virtual(hid_t file, const char *from, const char *block, const char *name,
-                        int64_t frames, int64_t bodies, int width, struct why *why)
+/* [frames][bodies][width] of /particles/all as [frames * bodies][width] of the grains, without its numbers */
+static int make_virtual(const struct vtkhdf *v, hid_t file, const char *from, const char *name,
+                        int width, struct why *why)
 {
+    const int64_t frames = v->frames, bodies = v->bodies;
     char path[160], source[80];
-    snprintf(path, sizeof path, "%s/%s", block, name);
+    snprintf(path, sizeof path, "%s/%s", v->block[0].name, name);
     snprintf(source, sizeof source, "/particles/all/%s/value", from);
     const hsize_t flat[2] = { (hsize_t)(frames * bodies), (hsize_t)width },
                   deep[3] = { (hsize_t)frames, (hsize_t)bodies, (hsize_t)width };
     if (!frames || !bodies)
-        return h5_write(file, path, H5T_NATIVE_DOUBLE, 2, flat, &frames, NULL, why);
+        return h5_write(file, path, h5_array(H5T_NATIVE_DOUBLE, 2, flat, &frames), NULL, why);
     if (make_parent(file, path, why)) return why->status;
     hid_t to = H5Screate_simple(2, flat, NULL), of = H5Screate_simple(3, deep, NULL);
     hid_t plist = h5_dataset_plist();
@@ -406,7 +434,7 @@ static int put_values(hid_t file, const char *block, int64_t frames, struct why 
     int64_t n = frames;
     snprintf(steps, sizeof steps, "%s/Steps", block);
     return h5_group(file, steps, why) ||
-           h5_attr(file, steps, "NSteps", H5T_NATIVE_INT64, -1, &n, why) ||
+           h5_attr(file, steps, "NSteps", h5_scalar(H5T_NATIVE_INT64, &n), why) ||
            link_to(file, "/particles/all/position/time", block, "Steps/Values", why);
 }
 
@@ -419,7 +447,7 @@ static int link_grains(const struct vtkhdf *v, hid_t file, struct why *why)
             *number = calloc((size_t)room + 1, sizeof *number);
     if (!zero || !number) why_set(why, EX_SOFTWARE, "no memory for /VTKHDF");
     for (int64_t i = 0; !why->status && i <= room; i++) number[i] = i;
-    int bad = why->status || put_steps(file, block, "NumberOfPoints", 1, 1, &N, why);
+    int bad = why->status || put(file, block, "NumberOfPoints", numbers(1, &N), why);
     for (int k = 0; k < TOPOLOGIES && !bad; k++) {
         char name[60];
         const int64_t cells = k == VERTICES ? N : 0;
@@ -429,49 +457,58 @@ static int link_grains(const struct vtkhdf *v, hid_t file, struct why *why)
         const int64_t *value[4] = { &cells, &cells, number, number };
         for (int j = 0; j < 4 && !bad; j++) {
             snprintf(name, sizeof name, "%s/%s", topology_name[k], part[j]);
-            bad = put_steps(file, block, name, 1, rows[j], value[j], why);
+            bad = put(file, block, name, numbers(rows[j], value[j]), why);
         }
     }
-    bad = bad || make_virtual(file, "position", block, "Points", F, N, 3, why) ||
+    bad = bad || make_virtual(v, file, "position", "Points", 3, why) ||
           put_values(file, block, F, why) ||
-          put_steps(file, block, "Steps/PartOffsets", 1, F, zero, why) ||
-          put_steps(file, block, "Steps/CellOffsets", TOPOLOGIES, F, zero, why) ||
-          put_steps(file, block, "Steps/ConnectivityIdOffsets", TOPOLOGIES, F, zero, why);
+          put(file, block, "Steps/PartOffsets", numbers(F, zero), why) ||
+          put(file, block, "Steps/CellOffsets", table(F, TOPOLOGIES, zero), why) ||
+          put(file, block, "Steps/ConnectivityIdOffsets", table(F, TOPOLOGIES, zero), why);
     for (int k = 0; k < VTK_COLUMNS && !bad; k++) {
         char name[60], from[60], offsets[80];
         if (!v->shapes && columns[k].at == offsetof(struct packing, shape)) continue;
         snprintf(name, sizeof name, "PointData/%s", columns[k].name);
         snprintf(from, sizeof from, "/particles/all/%s", columns[k].from);
         snprintf(offsets, sizeof offsets, "Steps/PointDataOffsets/%s", columns[k].name);
-        bad = columns[k].moves
-                  ? make_virtual(file, columns[k].from, block, name, F, N, columns[k].width, why)
-                  : link_to(file, from, block, name, why) ||
-                        put_steps(file, block, offsets, 1, F, zero, why);
+        bad = columns[k].moves ? make_virtual(v, file, columns[k].from, name, columns[k].width, why)
+                               : link_to(file, from, block, name, why) ||
+                                     put(file, block, offsets, numbers(F, zero), why);
     }
     for (int64_t f = 0; !bad && f < F; f++) zero[f] = 1;
-    bad = bad || put_steps(file, block, "Steps/NumberOfParts", 1, F, zero, why);
+    bad = bad || put(file, block, "Steps/NumberOfParts", numbers(F, zero), why);
     for (int64_t f = 0; !bad && f < F; f++) zero[f] = f * N;
-    if (!bad) put_steps(file, block, "Steps/PointOffsets", 1, F, zero, why);
+    if (!bad) put(file, block, "Steps/PointOffsets", numbers(F, zero), why);
     free(zero), free(number);
     return why->status;
 }
 
+/* A block of which the numbers of parts and moments are written, by way of value[] */
+struct ending {
+    const struct block *b;
+    hid_t file;
+    int64_t *value;
+};
+
 /* The numbers of one extent of all parts */
-static int put_parts(const struct block *b, hid_t file, const char *name, size_t member, bool there,
-                     int64_t *value, struct why *why)
+static int put_parts(const struct ending *o, const char *name, size_t member, bool there,
+                     struct why *why)
 {
+    const struct block *b = o->b;
     for (int64_t i = 0; i < b->parts; i++)
-        value[i] = there ? *(const int64_t *)((const char *)&b->part[i] + member) : 0;
-    return put_steps(file, b->name, name, 1, b->parts, value, why);
+        o->value[i] = there ? *(const int64_t *)((const char *)&b->part[i] + member) : 0;
+    return put(o->file, b->name, name, numbers(b->parts, o->value), why);
 }
 
-static int put_step_column(const struct block *b, hid_t file, const char *name, size_t member,
-                           int width, int at, int64_t *value, struct why *why)
+/* One number of all moments, in column `at` of `width`, of which the others are 0 */
+static int put_step_column(const struct ending *o, const char *name, size_t member, int width,
+                           int at, struct why *why)
 {
-    memset(value, 0, (size_t)(b->steps * width) * sizeof *value);
+    const struct block *b = o->b;
+    memset(o->value, 0, (size_t)(b->steps * width) * sizeof *o->value);
     for (int64_t f = 0; f < b->steps; f++)
-        value[f * width + at] = *(const int64_t *)((const char *)&b->step[f] + member);
-    return put_steps(file, b->name, name, width, b->steps, value, why);
+        o->value[f * width + at] = *(const int64_t *)((const char *)&b->step[f] + member);
+    return put(o->file, b->name, name, table(b->steps, width, o->value), why);
 }
 
 static int end_block(struct block *b, hid_t file, struct why *why)
@@ -480,29 +517,27 @@ static int end_block(struct block *b, hid_t file, struct why *why)
     int64_t room = TOPOLOGIES * b->steps + b->parts,
             *value = malloc(((size_t)room + 1) * sizeof *value);
     if (!value) return why_set(why, EX_SOFTWARE, "no memory for /VTKHDF");
-    int bad =
-        put_parts(b, file, "NumberOfPoints", offsetof(struct extent, points), true, value, why);
+    const struct ending o = { b, file, value };
+    int bad = put_parts(&o, "NumberOfPoints", offsetof(struct extent, points), true, why);
     for (int k = 0; k < TOPOLOGIES && !bad; k++) {
         char name[60];
         bool there = k == b->topology;
         snprintf(name, sizeof name, "%s/NumberOfCells", topology_name[k]);
-        bad = put_parts(b, file, name, offsetof(struct extent, cells), there, value, why);
+        bad = put_parts(&o, name, offsetof(struct extent, cells), there, why);
         snprintf(name, sizeof name, "%s/NumberOfConnectivityIds", topology_name[k]);
-        bad = bad || put_parts(b, file, name, offsetof(struct extent, corners), there, value, why);
+        bad = bad || put_parts(&o, name, offsetof(struct extent, corners), there, why);
         snprintf(name, sizeof name, "%s/Connectivity", topology_name[k]);
-        if (!bad && !there) bad = put_steps(file, b->name, name, 1, 0, value, why);
+        if (!bad && !there) bad = put(file, b->name, name, numbers(0, value), why);
     }
     bad = bad || put_values(file, b->name, b->steps, why) ||
-          put_step_column(b, file, "Steps/PartOffsets", offsetof(struct step, part), 1, 0, value,
-                          why) ||
-          put_step_column(b, file, "Steps/PointOffsets", offsetof(struct step, point), 1, 0, value,
-                          why) ||
-          put_step_column(b, file, "Steps/CellOffsets", offsetof(struct step, cell), TOPOLOGIES,
-                          b->topology, value, why) ||
-          put_step_column(b, file, "Steps/ConnectivityIdOffsets", offsetof(struct step, corner),
-                          TOPOLOGIES, b->topology, value, why);
+          put_step_column(&o, "Steps/PartOffsets", offsetof(struct step, part), 1, 0, why) ||
+          put_step_column(&o, "Steps/PointOffsets", offsetof(struct step, point), 1, 0, why) ||
+          put_step_column(&o, "Steps/CellOffsets", offsetof(struct step, cell), TOPOLOGIES,
+                          b->topology, why) ||
+          put_step_column(&o, "Steps/ConnectivityIdOffsets", offsetof(struct step, corner),
+                          TOPOLOGIES, b->topology, why);
     for (int64_t f = 0; !bad && f < b->steps; f++) value[f] = 1;
-    if (!bad) put_steps(file, b->name, "Steps/NumberOfParts", 1, b->steps, value, why);
+    if (!bad) put(file, b->name, "Steps/NumberOfParts", numbers(b->steps, value), why);
     free(value);
     return why->status;
 }
@@ -517,7 +552,7 @@ static int collect(const struct vtkhdf *v, hid_t file, struct why *why)
         snprintf(path, sizeof path, "/VTKHDF/Assembly/%s", strrchr(block, '/') + 1);
         int32_t index = k;
         if (vtkhdf_type(file, block, "PolyData", MINOR, why) ||
-            h5_attr(file, block, "Index", H5T_NATIVE_INT32, -1, &index, why))
+            h5_attr(file, block, "Index", h5_scalar(H5T_NATIVE_INT32, &index), why))
             return why->status;
         if (H5Lcreate_soft(block, file, path, H5P_DEFAULT, H5P_DEFAULT) < 0)
             return failed(path, why);

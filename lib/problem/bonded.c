@@ -82,13 +82,14 @@ static int fill(const struct assembly *A, struct delassus *W, struct why *why)
 {
     struct sparse w = { 0 };
     int64_t n = A->p->n, d = A->p->d;
-    double *q = malloc((size_t)(n * d + 1) * sizeof *q), *mu = malloc((size_t)(n + 1) * sizeof *mu);
-    int e = q && mu ? 0 : why_set(why, EX_SOFTWARE, "no memory for the bonds");
+    double *q = malloc((size_t)(n * d + 1) * sizeof *q);
+    int e = q ? 0 : why_set(why, EX_SOFTWARE, "no memory for the bonds");
     if (!e) e = bonded_local(A, &w, q, why);
+    if (!e) e = delassus_init(W, (int)d, n, &w, why);
+    if (!e) memcpy(W->q, q, (size_t)(n * d) * sizeof *q);
     for (int64_t c = 0; !e && c < n; c++)
-        mu[c] = slot_bundle(A->p, A->slot[c])->mu[slot_lane(A->slot[c])];
-    if (!e) e = delassus_init(W, (int)d, n, w.count, w.row, w.col, w.x, q, mu, why);
-    free(q), free(mu);
+        W->mu[c] = slot_bundle(A->p, A->slot[c])->mu[slot_lane(A->slot[c])];
+    free(q);
     sparse_free(&w);
     return e;
 }

@@ -153,16 +153,25 @@ static bool join_columns(const struct sparse *H, const struct lists *of, int32_t
     return true;
 }
 
+/* The entries of H by columns, and work space */
+struct columns {
+    struct lists of;
+    int32_t *component; /* [2 K->n] */
+    int32_t *todo;      /* [H->n] */
+    double *y;          /* [K->n] */
+};
+
 /*
  * V = K^-1 (H, 0), without its zeros. Columns with entries in different components of K share one
  * right-hand side: for a packing that takes about as many solutions as a ball has neighbours, times
  * d.
  */
 static int solve_columns(struct sparse *V, const struct sparse *H, struct factor *K,
-                         const struct lists *of, int32_t *component, int32_t *todo, double *y,
-                         struct why *why)
+                         const struct columns *s, struct why *why)
 {
-    int32_t *owner = component + K->n;
+    const struct lists *of = &s->of;
+    int32_t *component = s->component, *owner = component + K->n, *todo = s->todo;
+    double *y = s->y;
     find_components(K, component);
     for (int32_t j = 0; j < H->n; j++) todo[j] = j;
     for (int64_t left = H->n, kept; left > 0; left = kept) {
@@ -182,15 +191,13 @@ static int solve_columns(struct sparse *V, const struct sparse *H, struct factor
 static int condense_columns(struct motion *U, const struct global *P, struct factor *K,
                             struct why *why)
 {
-    struct lists of = { 0 };
-    double *y = malloc((size_t)(K->n + 1) * sizeof *y);
-    int32_t *component = calloc((size_t)(2 * K->n + 1), sizeof *component);
-    int32_t *todo = malloc((size_t)(P->H.n + 1) * sizeof *todo);
-    bool room = y && component && todo && lists_init(&of, P->H.n, P->H.count, P->H.col);
-    int e =
-        room ? solve_columns(&U->V, &P->H, K, &of, component, todo, y, why) : short_of_memory(why);
-    lists_free(&of);
-    free(todo), free(component), free(y);
+    struct columns s = { .component = calloc((size_t)(2 * K->n + 1), sizeof *s.component),
+                         .todo = malloc((size_t)(P->H.n + 1) * sizeof *s.todo),
+                         .y = malloc((size_t)(K->n + 1) * sizeof *s.y) };
+    bool room = s.y && s.component && s.todo && lists_init(&s.of, P->H.n, P->H.count, P->H.col);
+    int e = room ? solve_columns(&U->V, &P->H, K, &s, why) : short_of_memory(why);
+    lists_free(&s.of);
+    free(s.todo), free(s.component), free(s.y);
     return e;
 }
 

@@ -4,11 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* to[entries] = order[] (NULL: 0, 1, 2 ...), sorted stably by the block that index[] lies in: a
-   counting sort, with work space tally[n + 1] */
-static void sort_by_block(int64_t entries, const int32_t *index, int d, int64_t n,
+/* to[entries] = order[] (NULL: 0, 1, 2 ...), sorted stably by the block of W that index[] lies in: a
+   counting sort, with work space tally[W->n + 1] */
+static void sort_by_block(const struct delassus *W, int64_t entries, const int32_t *index,
                           const int64_t *order, int64_t *to, int64_t *tally)
 {
+    const int d = W->d;
+    const int64_t n = W->n;
     memset(tally, 0, (size_t)(n + 1) * sizeof *tally);
     for (int64_t k = 0; k < entries; k++) tally[index[k] / d + 1]++;
     for (int64_t c = 0; c < n; c++) tally[c + 1] += tally[c];
@@ -35,9 +37,11 @@ void delassus_set_diag(struct delassus *W, int64_t c, const double *B)
 }
 
 /* Puts the entries, taken in this order, into W block by block; its arrays have room for all. */
-static void gather_blocks(struct delassus *W, int64_t entries, const int64_t *order,
-                          const int32_t *row, const int32_t *col, const double *x)
+static void gather_blocks(struct delassus *W, const struct sparse *A, const int64_t *order)
 {
+    const int64_t entries = A->count;
+    const int32_t *row = A->row, *col = A->col;
+    const double *x = A->x;
     int d = W->d, dd = d * d;
     int64_t blocks = 0;
     for (int64_t k = 0; k < entries;) {
@@ -56,11 +60,11 @@ static void gather_blocks(struct delassus *W, int64_t entries, const int64_t *or
     for (int64_t c = 0; c < W->n; c++) W->first[c + 1] += W->first[c];
 }
 
-static int64_t count_blocks(int64_t entries, const int64_t *order, const int32_t *row,
-                            const int32_t *col, int d)
+static int64_t count_blocks(const struct sparse *A, const int64_t *order, int d)
 {
+    const int32_t *row = A->row, *col = A->col;
     int64_t blocks = 0;
-    for (int64_t k = 0; k < entries; k++) {
+    for (int64_t k = 0; k < A->count; k++) {
         int64_t e = order[k], f = k ? order[k - 1] : e;
         blocks += k == 0 || row[e] / d != row[f] / d || col[e] / d != col[f] / d;
     }
@@ -96,26 +100,23 @@ int delassus_alloc_common(struct delassus *W, int common, struct why *why)
     return 0;
 }
 
-int delassus_init(struct delassus *W, int d, int64_t n, int64_t entries, const int32_t *row,
-                  const int32_t *col, const double *x, const double *q, const double *mu,
-                  struct why *why)
+int delassus_init(struct delassus *W, int d, int64_t n, const struct sparse *A, struct why *why)
 {
+    const int64_t entries = A->count;
     *W = (struct delassus){ .d = d, .n = n };
     int64_t *tally = malloc((size_t)(n + 1) * sizeof *tally);
     int64_t *half = malloc((size_t)(entries + 1) * sizeof *half);
     int64_t *order = malloc((size_t)(entries + 1) * sizeof *order);
     int e = tally && half && order ? 0 : no_memory(W, n, why);
     if (!e) { // by column, then stably by row
-        sort_by_block(entries, col, d, n, NULL, half, tally);
-        sort_by_block(entries, row, d, n, half, order, tally);
-        e = delassus_alloc(W, d, n, count_blocks(entries, order, row, col, d), why);
+        sort_by_block(W, entries, A->col, NULL, half, tally);
+        sort_by_block(W, entries, A->row, half, order, tally);
+        e = delassus_alloc(W, d, n, count_blocks(A, order, d), why);
     }
     if (!e) {
         const double none[9] = { 0 };
-        if (n)
-            memcpy(W->q, q, (size_t)(n * d) * sizeof *q), memcpy(W->mu, mu, (size_t)n * sizeof *mu);
         for (int64_t c = 0; c < n; c++) delassus_set_diag(W, c, none);
-        gather_blocks(W, entries, order, row, col, x);
+        gather_blocks(W, A, order);
     }
     free(tally), free(half), free(order);
     return e;
@@ -170,10 +171,12 @@ static void subtract_common(struct delassus *W)
         for (int k = 0; k < W->common; k++) W->q[i] -= W->J[W->common * i + k] * sum[k];
 }
 
-int delassus_subset(struct delassus *to, const struct delassus *W, int64_t n,
-                    const int32_t *contact, const int32_t *of, const double *r, const double *v,
+int delassus_subset(struct delassus *to, const struct delassus *W,
+                    const struct chosen_contacts *chosen, const double *r, const double *v,
                     struct why *why)
 {
+    const int64_t n = chosen->n;
+    const int32_t *contact = chosen->contact, *of = chosen->of;
     int d = W->d, dd = d * d;
     int64_t blocks = 0;
     for (int64_t i = 0; i < n; i++) blocks += W->first[contact[i] + 1] - W->first[contact[i]];

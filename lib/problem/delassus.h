@@ -19,6 +19,7 @@
 #ifndef NSD_DELASSUS_H
 #define NSD_DELASSUS_H
 
+#include "base/sparse.h"
 #include "base/why.h"
 
 #include <stdbool.h>
@@ -57,13 +58,10 @@ void delassus_set_diag(struct delassus *W, int64_t c, const double *B);
 bool delassus_block_counts(int d, const double *B);
 
 /*
- * From the entries row[entries], col[entries], x[entries] of an (n d) x (n d) matrix in any order;
- * entries at the same place are added, blocks of zeros left out. q[n d] and mu[n] are copied, r =
- * 0. Returns 0, or EX_SOFTWARE with nothing to free. The caller has checked the indices.
+ * The blocks of A, an (n d) x (n d) matrix; those of zeros are left out. q, mu and r are 0. Returns 0, or EX_SOFTWARE
+ * with nothing to free. The caller has checked the indices.
  */
-int delassus_init(struct delassus *W, int d, int64_t n, int64_t entries, const int32_t *row,
-                  const int32_t *col, const double *x, const double *q, const double *mu,
-                  struct why *);
+int delassus_init(struct delassus *W, int d, int64_t n, const struct sparse *A, struct why *why);
 void delassus_free(struct delassus *W);
 
 /*
@@ -74,13 +72,20 @@ void delassus_free(struct delassus *W);
 int delassus_sort(struct delassus *to, const struct delassus *W, int64_t rows, const int32_t *row,
                   struct why *);
 
+/* Some of W's contacts */
+struct chosen_contacts {
+    int64_t n;
+    int32_t *contact; /* [n] ascending: contact i of them is contact[i] of W */
+    int32_t *of;      /* [W->n] the inverse of contact[]; -1: not chosen */
+};
+
 /*
- * The problem of the contacts contact[n] of W by themselves, with the reactions of all others held.
- * r and v = W r + q are given for all contacts of W. contact[] ascends; of[c] is the place of W's
- * contact c in it, or -1. to->r is taken from r. Returns 0, or EX_SOFTWARE with nothing to free.
+ * The problem of the chosen contacts by themselves, with the reactions of all others held.
+ * r and v = W r + q are given for all contacts of W. to->r is taken from r. Returns 0, or EX_SOFTWARE with nothing to
+ * free.
  */
-int delassus_subset(struct delassus *to, const struct delassus *W, int64_t n,
-                    const int32_t *contact, const int32_t *of, const double *r, const double *v,
+int delassus_subset(struct delassus *to, const struct delassus *W,
+                    const struct chosen_contacts *chosen, const double *r, const double *v,
                     struct why *why);
 
 /* The number of entries of W, in all of its blocks */

@@ -117,7 +117,9 @@ static bool make_blocks(struct problem *p, struct delassus *W, bool full, double
                 n++;
             }
     }
-    if (delassus_init(W, 3, CHAIN, n, row, col, x, q, mu, &why)) return false;
+    const struct sparse A = { .count = n, .row = row, .col = col, .x = x };
+    if (delassus_init(W, 3, CHAIN, &A, &why)) return false;
+    memcpy(W->q, q, sizeof q), memcpy(W->mu, mu, sizeof mu);
     const struct prepare_opt form = { .rho_factor = rho, .order = ORDER_COLOUR };
     if (!problem_prepare_delassus(p, W, &form, &why)) return true;
     delassus_free(W);

@@ -135,7 +135,8 @@ static void judge_shared(const struct problem *p, bool believes, enum err_terms 
         most[2] = fmax(most[2], bundle_max(s.max_velocity2));
     }
     exchange->judging(exchange, (struct problem *)p, false);
-    exchange->sum(exchange, p, BLOCK, parts, EXCHANGE_TERMS, term[0], out[0]);
+    const struct summands summands = { BLOCK, parts, EXCHANGE_TERMS, term[0] };
+    exchange->sum(exchange, p, &summands, out[0]);
     free(term);
     for (int k = 0; k < BUNDLE; k++) {
         all->motion[k] = out[0][k], all->proj[k] = out[1][k];

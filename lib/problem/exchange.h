@@ -14,6 +14,13 @@
 
 struct problem;
 
+/* What is added up */
+struct summands {
+    int64_t chunk; /* bundles of a partial sum */
+    int parts, terms;
+    const double *term; /* [slots][parts][terms] */
+};
+
 struct exchange {
     void *with;                /* of the functions below: how they reach the other processes */
     int64_t contacts, bundles; /* of all processes */
@@ -38,12 +45,11 @@ struct exchange {
     /*
      * Sums are made in one of two ways: exactly one of sum and add is there, the other is NULL.
      *
-     * out[terms][8] = the sums of term[slots][parts][terms] over all contacts, part after part, lane by
-     * lane of the bundles of the order of all, `chunk` bundles a partial sum: the bits of one process that
-     * has them all.
+     * out[terms][8] = the sums over all contacts, part after part, lane by lane of the bundles of the
+     * order of all: the bits of one process that has them all.
      */
-    void (*sum)(struct exchange *s, const struct problem *p, int64_t chunk, int parts, int terms,
-                const double *term, double *out);
+    void (*sum)(struct exchange *s, const struct problem *p, const struct summands *of,
+                double *out);
     /* The sum of term[slots] along the order of all slots */
     double (*sum_along)(struct exchange *s, const struct problem *p, const double *term);
     /* The largest of all processes' numbers; how many all have counted; what the first one says */

@@ -104,11 +104,17 @@ void extra_rolling(const struct extra_lane *at, const double w[2], const double 
 
 /* Sets S of lane i for a bond of K[2] (kg), and puts W^ in place of the block's W. */
 void extra_levers_bond(double block[9][BUNDLE], struct extra_levers *y, int i, const double K[2]);
-/* Sets the rest of a lane that rolls, after its bond of K, which made W^ of the block. On entry R_a and R_b
-   are those of length 1. W (kg^-1): without the bond; iia, iib: 1/inertia of both bodies in the problem's
-   unknowns, 0 where one cannot move. Returns the length (m). */
+/* What the turning of a lane is made of */
+struct turning {
+    double W[9]; /* kg^-1: without the bond */
+    double K[2]; /* kg: of the bond, which has made W^ of the block */
+    double iia,
+        iib; /* 1/inertia of both bodies in the problem's unknowns, 0 where one cannot move */
+};
+/* Sets the rest of lane i, which rolls, after its bond. On entry R_a and R_b are those of length 1. Returns the
+   length (m). */
 double extra_levers_turn(const struct levers *g, double block[9][BUNDLE], struct extra_levers *y,
-                         int i, const double W[9], const double K[2], double iia, double iib);
+                         int i, const struct turning *t);
 
 /* What balls and levers share. out = x of lane i: r* (N s), and the moment, turned a quarter and over the
    length. */

@@ -36,8 +36,9 @@ static double dot_rows(double (*A)[BUNDLE], double (*B)[BUNDLE], int i, int j, i
 }
 
 double extra_levers_turn(const struct levers *g, double block[9][BUNDLE], struct extra_levers *y,
-                         int i, const double W[9], const double K[2], double iia, double iib)
+                         int i, const struct turning *t)
 {
+    const double *W = t->W, *K = t->K, iia = t->iia, iib = t->iib;
     struct levers arm = *g; // not const, for dot_rows()
     double Z[9], wt = fmax(W[4], W[8]), length = 1, full[ROLLING * ROLLING];
     for (int j = 0; j < 9; j++)

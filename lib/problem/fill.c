@@ -89,10 +89,12 @@ void fill_ball(const struct slot_filling *f)
 }
 
 /* The rows G_i of a body with this arm; a boundary's (i < 0) are 0. */
-static void set_rows(double G[9][BUNDLE], int k, const struct packing *pack, int32_t i, vec3 arm,
-                     const struct contact *c, const quat *half)
+static void set_rows(const struct slot_filling *f, double G[9][BUNDLE], int32_t i, vec3 arm)
 {
-    const vec3 e[3] = { c->n, c->t1, contact_t2(c) };
+    const struct packing *pack = f->of->p->packing;
+    const quat *half = f->of->half;
+    const vec3 e[3] = { f->c->n, f->c->t1, contact_t2(f->c) };
+    const int k = slot_lane(f->i);
     for (int j = 0; j < 3 && i >= 0; j++) {
         vec3 row = v3_cross(arm, e[j]);
         if (pack->dim == 2) row = j == 2 ? v3(0, 0, 0) : v3(0, 0, row.z);
@@ -110,7 +112,6 @@ void fill_lever(const struct slot_filling *f)
     const struct contact *c = f->c;
     const struct contact_law *law = f->law;
     const int64_t i = f->i;
-    const quat *half = f->of->half;
     const double alpha = f->of->alpha, rho_factor = f->of->rho_factor;
     const double en[3] = { c->en, c->et, c->et };
     struct bundle *r = slot_bundle(p, i);
@@ -119,7 +120,7 @@ void fill_lever(const struct slot_filling *f)
     int k = slot_lane(i);
     struct arms arm = arm_vectors(pack, c, step_ahead(pack), cell->edge);
     set_basis(p, i, c);
-    set_rows(g->Ga, k, pack, c->a, arm.a, c, half), set_rows(g->Gb, k, pack, c->b, arm.b, c, half);
+    set_rows(f, g->Ga, c->a, arm.a), set_rows(f, g->Gb, c->b, arm.b);
     const struct body a = lighter(p, r->a[k], f->slower), b = lighter(p, r->b[k], f->slower);
     double W[9], u[3];
     for (int j = 0; j < 9; j++) {
@@ -217,8 +218,9 @@ void fill_lever_bond(const struct slot_filling *f)
     const struct body a = lighter(p, r->a[k], f->slower), b = lighter(p, r->b[k], f->slower);
     double h = p->dt, seen = t->offset > 0 ? t->offset : offset_of(p->packing, c, 0);
     double(*block)[BUNDLE] = p->block[i / BUNDLE], (*w)[BUNDLE] = p->w[i / BUNDLE];
-    double *rho = &p->rho[i / BUNDLE][k], W[9], K[2] = { h * h * t->stiff[0], h * h * t->stiff[1] };
-    for (int j = 0; j < 9; j++) W[j] = block[j][k];
+    struct turning turning = { .K = { h * h * t->stiff[0], h * h * t->stiff[1] } };
+    double *rho = &p->rho[i / BUNDLE][k], *K = turning.K;
+    for (int j = 0; j < 9; j++) turning.W[j] = block[j][k];
     for (int j = 0; j < 2; j++) x->K[j][k] = K[j];
     x->a[0][k] = K[0] * (t->jump[0] / h - seen);
     for (int j = 1; j < 3; j++) x->a[j][k] = h * t->stiff[1] * t->jump[j];
@@ -235,7 +237,8 @@ void fill_lever_bond(const struct slot_filling *f)
     if (!extra_rolls(x, k)) return;
     set_turning(y->Ra, k, p->packing, c->a, c, half);
     set_turning(y->Rb, k, p->packing, c->b, c, half);
-    x->length[k] = extra_levers_turn(&p->lever[i / BUNDLE], block, y, k, W, K, a.ii, b.ii);
+    turning.iia = a.ii, turning.iib = b.ii;
+    x->length[k] = extra_levers_turn(&p->lever[i / BUNDLE], block, y, k, &turning);
     x->rho[k] = *rho * w[0][k] / y->lambda[k];
 }
 

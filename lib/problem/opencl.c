@@ -699,15 +699,20 @@ static void velocities(struct device *d, const struct problem *p)
 
 /* ---- sums ---- */
 
-/* to[columns] = the sums of n parts of that many numbers, and the largest of some */
-static void sum_parts(struct opencl *o, enum role parts, int64_t n, int columns, int most_first,
-                      int most_end, enum role sum, double *to)
+/* Columns of parts: n of them, all to be added but those of which the largest is taken, most_first .. most_end-1 */
+struct columns {
+    int n, most_first, most_end;
+};
+
+/* to[c.n] = the sums of n parts of that many numbers, and the largest of some */
+static void sum_parts(struct opencl *o, enum role parts, int64_t n, struct columns c, enum role sum,
+                      double *to)
 {
-    if (!need(o, sum, (size_t)columns * sizeof *to)) return;
-    SET(SUM_PARTS, 0, MEMORY(parts), whole(n), integer(columns), integer(most_first),
-        integer(most_end), MEMORY(sum));
-    launch(o, SUM_PARTS, columns);
-    take(o, sum, 0, to, (size_t)columns * sizeof *to);
+    if (!need(o, sum, (size_t)c.n * sizeof *to)) return;
+    SET(SUM_PARTS, 0, MEMORY(parts), whole(n), integer(c.n), integer(c.most_first),
+        integer(c.most_end), MEMORY(sum));
+    launch(o, SUM_PARTS, c.n);
+    take(o, sum, 0, to, (size_t)c.n * sizeof *to);
 }
 
 #define COLUMN(member) ((int)(offsetof(struct sums, member) / sizeof(double)))
@@ -730,8 +735,8 @@ static void judge(struct device *d, const struct problem *p, bool believes, enum
         integer((which & ERR_NATURAL) != 0), real(ROUNDING_OF_R * ROUNDING_OF_R),
         real(JAMMED * JAMMED * unit * unit), real(MISSES * MISSES * unit * unit), MEMORY(JUDGED));
     launch(o, JUDGE, blocks * BUNDLE);
-    sum_parts(o, JUDGED, blocks, SUM_COLUMNS, COLUMN(max_pen), COLUMN(jammed), JUDGED_SUM,
-              s->motion);
+    const struct columns columns = { SUM_COLUMNS, COLUMN(max_pen), COLUMN(jammed) };
+    sum_parts(o, JUDGED, blocks, columns, JUDGED_SUM, s->motion);
 }
 
 /* ---- iterates that are kept ---- */
@@ -805,7 +810,7 @@ static void measure(struct device *d, const struct problem *p, const struct mixi
         whole(p->bundles), integer((int32_t)per_chunk), whole(0), whole(df_at(o, m->next)),
         whole(o->vector), MEMORY(MIXED));
     launch(o, PRODUCTS, chunks * MIXING_COLUMNS);
-    sum_parts(o, MIXED, chunks, MIXING_COLUMNS, 0, 0, MIXED_SUM, sums->f2);
+    sum_parts(o, MIXED, chunks, (struct columns){ MIXING_COLUMNS, 0, 0 }, MIXED_SUM, sums->f2);
 }
 
 static void react(struct device *d, const struct problem *p, const struct mixing *m, double leap,

@@ -44,11 +44,10 @@ static const struct tally_order *tally(struct colours *c, const struct problem *
     return &c->tally;
 }
 
-static void sum(struct exchange *s, const struct problem *p, int64_t chunk, int parts, int terms,
-                const double *term, double *out)
+static void sum(struct exchange *s, const struct problem *p, const struct summands *of, double *out)
 {
     struct colours *c = colours_of(s);
-    tally_sum(tally(c, p), c->part->comm, s->bundles, chunk, parts, terms, term, out);
+    tally_sum(tally(c, p), c->part->comm, s->bundles, of, out);
 }
 
 static double sum_along(struct exchange *s, const struct problem *p, const double *term)

@@ -143,11 +143,15 @@ static void check_bodies(const struct rows *r, const struct subdomain *y)
     if (least < INT64_MAX) MPI_Barrier(r->comm->mpi);
 }
 
-static struct target *spread_targets(struct comm *t, char path[PATH_MAX],
-                                     const struct unfilled *place, int *places, bool *gather)
+/* The datasets, how many they are, the file's path and whether it is the first that writes: as the first has it */
+static struct target *spread_targets(struct comm *t, const struct files_wish *wish, int *places,
+                                     char path[PATH_MAX], bool *gather)
 {
+    const struct unfilled *place = wish->place;
     struct parcel o = { 0 };
-    for (int k = 0; k < *places && !t->me; k++) {
+    if (!t->me && wish->path) snprintf(path, PATH_MAX, "%s", wish->path);
+    *gather = wish->gather;
+    for (int k = 0; k < wish->places && !t->me; k++) {
         const struct column *c = place[k].column;
         struct target x;
         memset(&x, 0, sizeof x);
@@ -166,15 +170,16 @@ static struct target *spread_targets(struct comm *t, char path[PATH_MAX],
     return all;
 }
 
-int files_fill(const struct rows *r, const struct subdomain *y, hid_t file, const char *path,
-               const struct unfilled *place, int places, bool gather, struct why *why)
+int files_fill(const struct rows *r, const struct subdomain *y, const struct files_wish *wish,
+               struct why *why)
 {
     struct comm *t = r->comm;
     struct haul h;
     char where[PATH_MAX] = "";
-    if (!t->me && path) snprintf(where, sizeof where, "%s", path);
+    int places;
+    bool gather;
     check_bodies(r, y);
-    struct target *o = spread_targets(t, where, place, &places, &gather);
+    struct target *o = spread_targets(t, wish, &places, where, &gather);
     bool by_all = !gather && files_parallel() && all_see(t, where);
     hid_t ours = by_all ? open_by_all(t, where) : -1, transfer = by_all ? collective() : -1;
     bool good = comm_most(t, by_all && ours < 0) == 0;
@@ -185,7 +190,7 @@ int files_fill(const struct rows *r, const struct subdomain *y, hid_t file, cons
         char *data = comm_new(t, h.n, column_bytes(&c));
         haul_column(&h, &c, data);
         if (!by_all)
-            good &= write_by_first(r, file, &o[k], data);
+            good &= write_by_first(r, wish->file, &o[k], data);
         else if (good)
             good = write_rows(ours, &o[k], r->first, h.n, transfer, data);
         free(data);

@@ -9,10 +9,18 @@
 #include "io/distributed.h"
 #include "ranks/rows.h"
 
-/* Collective. file, path, place[places] of the first rank, as in struct distributed; y NULL: the bodies lie in the
-   rows. gather: the first is to write. Returns 0, or at the first EX_IOERR; EX_DATAERR: what no reader accepts. */
-int files_fill(const struct rows *r, const struct subdomain *y, hid_t file, const char *path,
-               const struct unfilled *place, int places, bool gather, struct why *why);
+/* What is to be filled, of the first rank, as in struct distributed */
+struct files_wish {
+    hid_t file;
+    const char *path;
+    const struct unfilled *place; /* [places] */
+    int places;
+    bool gather; /* the first is to write */
+};
+/* Collective. y NULL: the bodies lie in the rows. Returns 0, or at the first EX_IOERR; EX_DATAERR: what no reader
+   accepts. */
+int files_fill(const struct rows *r, const struct subdomain *y, const struct files_wish *wish,
+               struct why *why);
 /* Is libhdf5 the one that knows MPI? */
 bool files_parallel(void);
 

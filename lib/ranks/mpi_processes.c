@@ -72,8 +72,8 @@ static void begin(enum word w, const struct packing *p)
 static int fill(hid_t file, const char *path, const struct unfilled *place, int places,
                 struct why *why)
 {
-    return files_fill(&self.rows, self.begun ? &self.step.part : NULL, file, path, place, places,
-                      getenv("NSD_GATHER") != NULL, why);
+    const struct files_wish wish = { file, path, place, places, getenv("NSD_GATHER") != NULL };
+    return files_fill(&self.rows, self.begun ? &self.step.part : NULL, &wish, why);
 }
 
 /* ---- bodies that no process has all of ---- */

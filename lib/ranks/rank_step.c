@@ -149,11 +149,19 @@ static void add_to_all(struct rank_step *y, struct contact_list *list, struct co
     contacts_free(&again);
 }
 
-/* The first rank chooses by the laws which of `all` are contacts, and adds others; then all ranks have these. */
+/* Contacts that this rank has, and those of all, which the first has */
+struct gathered {
+    struct contacts *here, *all;
+    struct contact_list *list; /* which of `all` are whose */
+};
+
+/* The first rank chooses by the laws which of all are contacts, and adds others; then all ranks have these. */
 static int choose_by_laws(struct rank_step *y, const struct packing *whole,
-                          struct contact_list *list, struct contacts *s, struct contacts *all,
-                          const struct step_opt *o, double reach, struct why *why)
+                          const struct gathered *g, const struct step_opt *o, double reach,
+                          struct why *why)
 {
+    struct contact_list *list = g->list;
+    struct contacts *s = g->here, *all = g->all;
     struct comm *t = y->part.comm;
     struct contacts before = { 0 };
     struct parcel added = { 0 };
@@ -181,11 +189,18 @@ static int choose_by_laws(struct rank_step *y, const struct packing *whole,
     return 0;
 }
 
-/* The order of all, by the first: of[list->n], and its groups, bundles and halves in size[] */
+/* The order of all contacts; all but `of` are known to all ranks */
+struct ordered {
+    struct verdict *of; /* [list->n] */
+    int64_t groups, bundles, halves;
+};
+
+/* Sets it, by the first. */
 static int order_all(const struct rank_step *y, const struct packing *whole,
-                     const struct contacts *all, enum order order, struct verdict *of,
-                     int64_t size[3], struct why *why)
+                     const struct contacts *all, enum order order, struct ordered *to,
+                     struct why *why)
 {
+    int64_t size[3];
     struct schedule plan = { 0 };
     if (!y->part.comm->me && schedule_bodies(&plan, order, all, whole))
         return why_set(why, EX_SOFTWARE, "no memory for the order of the contacts");
@@ -194,12 +209,13 @@ static int order_all(const struct rank_step *y, const struct packing *whole,
         int64_t first = plan.group[g], n = plan.group[g + 1] - first;
         for (int64_t i = 0; i < n; i++) {
             int64_t c = plan.sequence[first + i];
-            of[c] = (struct verdict){ size[1] * BUNDLE + i, g, 1, all->c[c].b };
+            to->of[c] = (struct verdict){ size[1] * BUNDLE + i, g, 1, all->c[c].b };
         }
         size[1] += (n + BUNDLE - 1) / BUNDLE;
     }
     schedule_free(&plan);
     MPI_Bcast(size, 3, MPI_INT64_T, 0, y->part.comm->mpi);
+    to->groups = size[0], to->bundles = size[1], to->halves = size[2];
     return 0;
 }
 
@@ -228,22 +244,22 @@ static void solve(struct rank_step *y, struct problem *p, struct contacts *s,
 
 /* In the order of all; returns whether it is solved: else one process has to have all of it. */
 static bool solve_in_order(struct rank_step *y, const struct packing *whole,
-                           const struct contact_list *list, struct contacts *s,
-                           const struct contacts *all, const struct step_opt *o, struct report *rep,
+                           const struct gathered *g, const struct step_opt *o, struct report *rep,
                            struct why *why)
 {
+    const struct contact_list *list = g->list;
+    struct contacts *s = g->here;
     struct comm *t = y->part.comm;
-    int64_t size[3];
     struct colours c;
     struct problem p;
-    struct verdict *of = comm_new(t, t->me ? 0 : list->n, sizeof *of),
-                   *mine = comm_new(t, s->n, sizeof *mine);
-    if (order_all(y, whole, all, o->order, of, size, why)) fail(y, why);
-    contact_list_tell(list, &y->part, s, of, mine);
-    free(of);
-    colours_begin(&c, &y->part, s, mine, size[0], size[1]);
+    struct ordered order = { .of = comm_new(t, t->me ? 0 : list->n, sizeof *order.of) };
+    struct verdict *mine = comm_new(t, s->n, sizeof *mine);
+    if (order_all(y, whole, g->all, o->order, &order, why)) fail(y, why);
+    contact_list_tell(list, &y->part, s, order.of, mine);
+    free(order.of);
+    colours_begin(&c, &y->part, s, mine, order.groups, order.bundles);
     free(mine);
-    c.exchange.contacts = list->n, c.exchange.halves = size[2];
+    c.exchange.contacts = list->n, c.exchange.halves = order.halves;
     c.exchange.mean_mass = mean_mass(y, whole);
     const struct prepare_opt form = { .alpha = o->alpha,
                                       .rho_factor = o->solve.method->rho,
@@ -259,9 +275,9 @@ static bool solve_in_order(struct rank_step *y, const struct packing *whole,
 
 /* Each rank its own; *b is to be freed. */
 static void solve_in_blocks(struct rank_step *y, struct blocks *b, const struct packing *whole,
-                            struct contacts *s, const struct step_opt *o, struct report *rep,
-                            struct why *why)
+                            struct contacts *s, const struct step_opt *o, struct report *rep)
 {
+    struct why why = { 0 };
     struct problem p;
     bool *keep = comm_new(y->part.comm, s->n, sizeof *keep);
     for (int64_t i = 0; i < s->n; i++) keep[i] = subdomain_counts(&y->part, &s->c[i]);
@@ -273,7 +289,7 @@ static void solve_in_blocks(struct rank_step *y, struct blocks *b, const struct 
                                       .rho_factor = o->solve.method->rho,
                                       .schedule = &b->plan,
                                       .exchange = &b->exchange };
-    if (problem_prepare(&p, &y->part.p, s, &form, why)) fail(y, why);
+    if (problem_prepare(&p, &y->part.p, s, &form, &why)) fail(y, &why);
     solve(y, &p, s, o, rep);
     problem_free(&p);
 }
@@ -313,17 +329,18 @@ static void detect_here(struct rank_step *y, const struct packing *whole, struct
     find_contacts(y, o->gap, *reach, s);
 }
 
-/* The contacts here in s, those of all in `all`, and what they start from */
-static int detect(struct rank_step *y, struct packing *whole, struct contacts *all,
-                  struct contact_list *list, struct contacts *s, const struct step_opt *o,
-                  struct why *why)
+/* The contacts, and what they start from */
+static int detect(struct rank_step *y, struct packing *whole, const struct gathered *g,
+                  const struct step_opt *o, struct why *why)
 {
+    struct contact_list *list = g->list;
+    struct contacts *s = g->here, *all = g->all;
     struct comm *t = y->part.comm;
     double reach;
     if (!t->me) memory_set(&whole->memory, o->warm), packing_wrap(whole, NULL);
     detect_here(y, whole, s, o, &reach);
     contact_list_gather(list, &y->part, s, all);
-    int e = y->part.p.law ? choose_by_laws(y, whole, list, s, all, o, reach, why) : 0;
+    int e = y->part.p.law ? choose_by_laws(y, whole, g, o, reach, why) : 0;
     if (!e && !t->me && o->warm) e = memory_give(&whole->memory, all, packing_rolls(whole), why);
     if (!e && (y->part.p.law || o->warm)) contact_list_tell_laws(list, &y->part, s, all);
     return e;
@@ -356,7 +373,7 @@ static int detect_by_first(struct step_makers *m, struct packing *whole, struct 
                            const struct step_opt *o, struct why *why)
 {
     struct by_first *f = (struct by_first *)m;
-    return detect(f->y, whole, all, &f->list, &f->here, o, why);
+    return detect(f->y, whole, &(struct gathered){ &f->here, all, &f->list }, o, why);
 }
 
 static int solve_by_first(struct step_makers *m, const struct packing *whole, struct contacts *all,
@@ -367,9 +384,10 @@ static int solve_by_first(struct step_makers *m, const struct packing *whole, st
     struct blocks b;
     bool solved = is_shared(&y->part.p, o), blocks = solved && o->order == ORDER_BLOCK;
     if (blocks)
-        solve_in_blocks(y, &b, whole, &f->here, o, rep, why), blocks_free(&b);
+        solve_in_blocks(y, &b, whole, &f->here, o, rep), blocks_free(&b);
     else if (solved)
-        solved = solve_in_order(y, whole, &f->list, &f->here, all, o, rep, why);
+        solved =
+            solve_in_order(y, whole, &(struct gathered){ &f->here, all, &f->list }, o, rep, why);
     if (solved) contact_list_found(&f->list, &y->part, &f->here, all);
     y->alone += !solved;
     if (m->helps) return 0;
@@ -437,29 +455,27 @@ static void measure_depth(struct rank_step *y, const struct contacts *s, struct 
     d->deepest = most;
 }
 
-/* Collective. The fast bodies of all ranks: *list of the number that is returned */
-static int64_t fast_of_all(struct rank_step *y, struct fast **list)
+/* Collective. The fast bodies of all ranks */
+static struct fast_list fast_of_all(struct rank_step *y)
 {
     struct comm *t = y->part.comm;
     struct parcel mine = { 0 }, whole = { 0 }, *in = parcels_new(t);
     struct why why = { 0 };
-    struct fast *here;
-    int64_t count;
-    if (crossing_list(&here, &count, &y->part.p, y->part.own, &why)) fail(y, &why);
-    *list = NULL;
-    if (comm_sum(t, count) > 0) {
-        parcel_put(t, &mine, here, (size_t)count * sizeof *here);
+    struct fast_list here, all = { 0 };
+    if (crossing_list(&here, &y->part.p, y->part.own, &why)) fail(y, &why);
+    if (comm_sum(t, here.n) > 0) {
+        parcel_put(t, &mine, here.of, (size_t)here.n * sizeof *here.of);
         comm_gather(t, &mine, in);
         for (int r = 0; r < t->n && !t->me; r++) parcel_put(t, &whole, in[r].bytes, in[r].size);
         comm_spread(t, &whole);
-        count = (int64_t)(whole.size / sizeof *here);
-        *list = comm_new(t, count, sizeof **list);
-        parcel_take(t, &whole, *list, whole.size);
+        all.n = (int64_t)(whole.size / sizeof *all.of);
+        all.of = comm_new(t, all.n, sizeof *all.of);
+        parcel_take(t, &whole, all.of, whole.size);
     }
-    free(here);
+    free(here.of);
     parcel_free(&mine), parcel_free(&whole);
     parcels_free(t, in);
-    return count;
+    return all;
 }
 
 /* Which bodies of all ranks have gone through something */
@@ -468,11 +484,11 @@ static void watch_here(struct rank_step *y, struct window window, struct report 
     struct comm *t = y->part.comm;
     struct why why = { 0 };
     struct passed here, all;
-    struct fast *fast;
-    int64_t count = fast_of_all(y, &fast);
-    if (step_watch(&here, &y->part.p, y->part.own, y->near.surface, fast, count, window, &why))
-        fail(y, &why);
-    free(fast);
+    const struct packing *p = &y->part.p;
+    struct fast_list fast = fast_of_all(y);
+    swift_passed(&here, p, y->part.own, y->near.surface, window);
+    if (crossing_count(&here, p, y->part.own, &fast, window, &why)) fail(y, &why);
+    free(fast.of);
     all.n = comm_sum(t, here.n);
     double first = -comm_most(t, here.n ? -(double)here.id : -INFINITY);
     double through = comm_most(t, here.n && here.id == first ? here.through : -INFINITY);
@@ -519,7 +535,7 @@ static int solve_by_all(struct step_makers *m, const struct packing *p, struct c
 {
     struct by_all *a = (struct by_all *)m;
     (void)p;
-    solve_in_blocks(a->y, &a->blocks, a->whole, s, o, rep, why);
+    solve_in_blocks(a->y, &a->blocks, a->whole, s, o, rep);
     if (a->all && !o->bare && !diverged(rep)) tell_contacts(a->y, a->all, s);
     return why->status;
 }

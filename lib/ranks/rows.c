@@ -65,7 +65,8 @@ void rows_take(struct rows *r, struct comm *t, const struct packing *block, int6
 void rows_deal(struct rows *r, struct subdomain *y, struct territory *space,
                const struct packing *settings)
 {
-    subdomain_begin_rows(y, r->comm, space, settings, &r->p, r->first, r->all);
+    subdomain_begin_rows(y, r->comm, space, settings,
+                         &(struct own_rows){ &r->p, r->first, r->all });
     packing_free(&r->p);
 }
 

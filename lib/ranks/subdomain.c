@@ -141,12 +141,11 @@ void subdomain_begin(struct subdomain *y, struct comm *t, struct territory *spac
 }
 
 void subdomain_begin_rows(struct subdomain *y, struct comm *t, struct territory *space,
-                          const struct packing *settings, const struct packing *rows, int64_t first,
-                          int64_t all)
+                          const struct packing *settings, const struct own_rows *rows)
 {
     begin(y, t, space, settings);
-    take_own(y, rows, rows->n, first);
-    if (y->all != all) comm_fail(t, EX_SOFTWARE, "ranks disagree about rows of bodies");
+    take_own(y, rows->p, rows->p->n, rows->first);
+    if (y->all != rows->all) comm_fail(t, EX_SOFTWARE, "ranks disagree about rows of bodies");
     subdomain_recut(y);
 }
 

@@ -42,11 +42,15 @@ struct subdomain {
 void subdomain_begin(struct subdomain *y, struct comm *t, struct territory *space,
                      const struct packing *whole);
 void subdomain_free(struct subdomain *y);
-/* The same where each rank has some rows of the bodies, those from `first` on: they become its own. settings:
-   the first rank's packing, all but its bodies. */
+/* Rows of the bodies that a rank has */
+struct own_rows {
+    const struct packing *p; /* of these bodies */
+    int64_t first, all;      /* the row of its first body; rows of all ranks */
+};
+/* The same where each rank has some rows of the bodies: they become its own. settings: the first rank's packing, all
+   but its bodies. */
 void subdomain_begin_rows(struct subdomain *y, struct comm *t, struct territory *space,
-                          const struct packing *settings, const struct packing *rows, int64_t first,
-                          int64_t all);
+                          const struct packing *settings, const struct own_rows *rows);
 /* The same of a packing that has other bodies than before */
 void subdomain_begin_again(struct subdomain *y, const struct packing *whole);
 

@@ -127,11 +127,14 @@ static void add_chunks(struct comm *t, struct parcel *mine, int64_t chunks, size
     comm_waited(t, since);
 }
 
-void tally_sum(const struct tally_order *o, struct comm *t, int64_t bundles, int64_t chunk,
-               int parts, int terms, const double *term, double *out)
+void tally_sum(const struct tally_order *o, struct comm *t, int64_t bundles,
+               const struct summands *of, double *out)
 {
+    const int64_t chunk = of->chunk;
+    const int parts = of->parts, terms = of->terms;
     const size_t size = (size_t)terms * BUNDLE;
-    double *come = bring(o, t, parts * terms, term), *sum = comm_new(t, (int64_t)size, sizeof *sum);
+    double *come = bring(o, t, parts * terms, of->term),
+           *sum = comm_new(t, (int64_t)size, sizeof *sum);
     struct parcel mine = { 0 };
     for (int64_t i = 0; i < o->got; i++) {
         int64_t k = o->where[i] / BUNDLE / chunk, lane = o->where[i] % BUNDLE;

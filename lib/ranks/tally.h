@@ -5,6 +5,7 @@
 #ifndef NSD_TALLY_H
 #define NSD_TALLY_H
 
+#include "problem/exchange.h"
 #include "problem/problem.h"
 #include "ranks/comm.h"
 
@@ -24,8 +25,8 @@ void tally_begin(struct tally_order *o, struct comm *t, const struct problem *p,
                  const int64_t *slot, int64_t bundles);
 void tally_free(struct tally_order *o);
 /* As in struct exchange */
-void tally_sum(const struct tally_order *o, struct comm *t, int64_t bundles, int64_t chunk,
-               int parts, int terms, const double *term, double *out);
+void tally_sum(const struct tally_order *o, struct comm *t, int64_t bundles,
+               const struct summands *of, double *out);
 double tally_along(const struct tally_order *o, struct comm *t, int64_t bundles,
                    const double *term);
 

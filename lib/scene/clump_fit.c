@@ -184,7 +184,7 @@ static double farthest(const struct fit *f, double growth)
     return most;
 }
 
-static int choose(struct fit *f, int32_t balls, double error, struct why *why)
+static int choose(struct fit *f, const struct clump_limits *limits, struct why *why)
 {
     const struct clump_grid *g = &f->grid;
     struct candidate *heap = malloc((size_t)g->inside * sizeof *heap);
@@ -196,7 +196,7 @@ static int choose(struct fit *f, int32_t balls, double error, struct why *why)
         if (g->depth[k] > 0) heap[n++] = (struct candidate){ 4.2 * r * r * r, k, -1 };
     }
     for (int64_t k = n / 2; k-- > 0;) sift(heap, n, k);
-    while (f->balls < balls && n) {
+    while (f->balls < limits->balls && n) {
         struct candidate *top = &heap[0];
         vec3 c = clump_grid_at(g, top->point);
         double r = g->depth[top->point];
@@ -208,7 +208,7 @@ static int choose(struct fit *f, int32_t balls, double error, struct why *why)
         if (!(top->gain > 0)) break;
         c = climb(f, c, &r);
         take(f, c, r);
-        if (error > 0 && farthest(f, growth_of(f)) <= error * f->reach) break;
+        if (limits->error > 0 && farthest(f, growth_of(f)) <= limits->error * f->reach) break;
     }
     free(heap);
     return 0;
@@ -300,13 +300,13 @@ static int prepare(struct fit *f, const struct solid *of, int32_t balls, struct 
     return sample_surface(f, why);
 }
 
-int clump_fit(struct shape *s, struct solid *of, const struct mesh *m, int32_t balls, double error,
-              struct clump_errors *errors, struct why *why)
+int clump_fit(struct shape *s, struct solid *of, const struct mesh *m,
+              const struct clump_limits *limits, struct clump_errors *errors, struct why *why)
 {
     struct fit f = { .mesh = m };
     struct solid got = { 0 };
     if (mesh_check(m, 3, why) || mesh_closed(m, why) || moments_of(of, m, why)) return why->status;
-    if (!prepare(&f, of, balls, why) && !choose(&f, balls, error, why) &&
+    if (!prepare(&f, of, limits->balls, why) && !choose(&f, limits, why) &&
         !grow(s, &got, &f, of, why))
         *errors = (struct clump_errors){ .balls = f.balls,
                                          .volume = got.volume / of->volume - 1,

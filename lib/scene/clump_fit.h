@@ -26,11 +26,17 @@ struct clump_errors {
         moments; /* norm of the difference of int x x^T about the centre, of the surface's trace */
 };
 
+/* When no more balls are chosen */
+struct clump_limits {
+    int32_t balls; /* at most CLUMP_BALLS_MOST */
+    double error;  /* the distance that is enough, as in struct clump_errors; 0: none */
+};
+
 /*
- * s = at most `balls` balls (m), fewer where the distance comes to `error`; *of: the surface's moments. Returns 0,
+ * s = balls (m) within the limits; *of: the surface's moments. Returns 0,
  * EX_DATAERR with what is wrong with the surface, or EX_SOFTWARE.
  */
-int clump_fit(struct shape *s, struct solid *of, const struct mesh *m, int32_t balls, double error,
-              struct clump_errors *errors, struct why *why);
+int clump_fit(struct shape *s, struct solid *of, const struct mesh *m,
+              const struct clump_limits *limits, struct clump_errors *errors, struct why *why);
 
 #endif

@@ -35,20 +35,21 @@ static int add(struct crossings *t, struct crossing c, struct why *why)
     return 0;
 }
 
-/* Lines lo .. hi of a row of n points from `from` that may meet [a, b] */
-static void span(double a, double b, double from, double h, int n, int *lo, int *hi)
+/* Of the points along an axis (0, 1, 2) those, lo .. hi, that may be in [a, b] (m) */
+static void span(const struct clump_grid *g, int axis, double a, double b, int *lo, int *hi)
 {
-    *lo = (int)fmax(0, fmin(n, ceil((a - from) / h)));
-    *hi = (int)fmax(-1, fmin(n - 1, floor((b - from) / h)));
+    const double from[3] = { g->origin.x, g->origin.y, g->origin.z };
+    const int n = g->n[axis];
+    *lo = (int)fmax(0, fmin(n, ceil((a - from[axis]) / g->h)));
+    *hi = (int)fmax(-1, fmin(n - 1, floor((b - from[axis]) / g->h)));
 }
 
 static int cross(struct crossings *t, const struct clump_grid *g, const vec3 v[3], struct why *why)
 {
     int j0, j1, k0, k1;
-    span(fmin(v[0].y, fmin(v[1].y, v[2].y)), fmax(v[0].y, fmax(v[1].y, v[2].y)), g->origin.y, g->h,
-         g->n[1], &j0, &j1);
-    span(fmin(v[0].z, fmin(v[1].z, v[2].z)), fmax(v[0].z, fmax(v[1].z, v[2].z)), g->origin.z, g->h,
-         g->n[2], &k0, &k1);
+    const vec3 lo = v3_min(v[0], v3_min(v[1], v[2])), hi = v3_max(v[0], v3_max(v[1], v[2]));
+    span(g, 1, lo.y, hi.y, &j0, &j1);
+    span(g, 2, lo.z, hi.z, &k0, &k1);
     const vec3 n = v3_cross(v3_sub(v[1], v[0]), v3_sub(v[2], v[0]));
     for (int k = k0; k <= k1 && n.x != 0; k++)
         for (int j = j0; j <= j1; j++) {
@@ -85,7 +86,7 @@ static void fill_line(struct clump_grid *g, const struct crossing *c, int64_t n)
         int lo, hi;
         within -= c[i].way;
         if (within < 1) continue;
-        span(c[i].x, c[i + 1].x, g->origin.x, g->h, g->n[0], &lo, &hi);
+        span(g, 0, c[i].x, c[i + 1].x, &lo, &hi);
         for (int k = lo; k <= hi; k++) {
             double *at = &g->depth[(int64_t)c[i].line * g->n[0] + k];
             g->inside += *at == 0;

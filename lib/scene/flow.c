@@ -295,26 +295,34 @@ static int crowd_gather(struct crowd *c, const struct packing *p, const struct s
     return 0;
 }
 
-/* Would a grain of this radius at x meet nothing, neither now nor at the predicted positions? */
-static bool is_free(struct crowd *c, const struct scene_pour *o, vec3 x, quat q, double r,
+/* A grain that is to be poured */
+struct newcomer {
+    vec3 x; /* m */
+    quat q;
+    double r; /* m: its radius */
+};
+
+/* Would it meet nothing, neither now nor at the predicted positions? */
+static bool is_free(struct crowd *c, const struct scene_pour *o, const struct newcomer *g,
                     struct why *why)
 {
     int64_t last = c->p.n - 1;
     struct contacts met = { 0 };
     double ahead = step_ahead(&c->p);
-    c->p.radius[last] = r, c->p.mass[last] = 1, c->p.kind[last] = o->kind;
-    c->p.q[last] = q;
+    c->p.radius[last] = g->r, c->p.mass[last] = 1, c->p.kind[last] = o->kind;
+    c->p.q[last] = g->q;
     if (c->p.shape) c->p.shape[last] = o->form.shape;
-    c->now[last] = x, c->then[last] = v3_axpy(x, ahead, o->v);
-    bool clear = !detect_contacts_at(&met, &c->p, c->now, c->p.t, 0, NULL, why) && !met.n &&
-                 !detect_contacts_at(&met, &c->p, c->then, c->p.t + ahead, 0, NULL, why) && !met.n;
+    c->now[last] = g->x, c->then[last] = v3_axpy(g->x, ahead, o->v);
+    bool clear = !detect_contacts_at(&met, &c->p, c->now, c->p.t, 0, why) && !met.n &&
+                 !detect_contacts_at(&met, &c->p, c->then, c->p.t + ahead, 0, why) && !met.n;
     contacts_free(&met);
     return clear && !why->status;
 }
 
-static int add_grain(struct packing *p, const struct scene_pour *o, int32_t which, vec3 x, quat q,
-                     double r, struct why *why)
+static int add_grain(struct packing *p, const struct scene_pour *o, int32_t which,
+                     const struct newcomer *g, struct why *why)
 {
+    const double r = g->r;
     int64_t i = p->n, id = p->first_id;
     for (int32_t k = 0; k < p->pours; k++) id += p->poured[k].bodies;
     if (id >= INT32_MAX) return why_set(why, EX_DATAERR, "more than %d bodies", INT32_MAX);
@@ -327,8 +335,8 @@ static int add_grain(struct packing *p, const struct scene_pour *o, int32_t whic
     if (o->mass > 0) p->inertia[i] *= o->mass / p->mass[i], p->mass[i] = o->mass;
     if (!(p->mass[i] > 0 && p->inertia[i] > 0))
         return why_set(why, EX_DATAERR, "pour %d: a radius of %g m gives no mass", which, r);
-    p->x[i] = x, p->v[i] = o->v, p->w[i] = o->w, p->radius[i] = r;
-    p->kind[i] = o->kind, p->id[i] = (int32_t)id, p->q[i] = q;
+    p->x[i] = g->x, p->v[i] = o->v, p->w[i] = o->w, p->radius[i] = r;
+    p->kind[i] = o->kind, p->id[i] = (int32_t)id, p->q[i] = g->q;
     if (p->shape) p->shape[i] = o->form.shape;
     if (p->group) p->group[i] = o->group;
     p->poured[which].bodies++, p->poured[which].mass += p->mass[i];
@@ -341,21 +349,21 @@ static bool pour_one(const struct scene *s, struct packing *p, int32_t which, gs
                      struct why *why)
 {
     const struct scene_pour *o = &s->pour[which];
-    quat q = { 1, 0, 0, 0 };
+    struct newcomer g = { .q = { 1, 0, 0, 0 } };
     struct crowd c;
     uint64_t k = (uint64_t)which, n = (uint64_t)p->poured[which].bodies;
     counter_start(rng, p->seed, COUNTER_GRAIN, k, n, 0);
-    double r = scene_size_draw(&o->size, rng);
+    g.r = scene_size_draw(&o->size, rng);
     if (o->form.shape) {
         counter_start(rng, p->seed, COUNTER_TURN, UINT64_MAX - k, n, 0); // no group has that number
-        q = orientation_draw(s, &o->form, rng);
+        g.q = orientation_draw(s, &o->form, rng);
     }
     counter_start(rng, p->seed, COUNTER_PLACE, k, n, (uint64_t)p->step);
     bool poured = false;
     crowd_gather(&c, p, o, why);
     for (int try = 0; try < TRIES && !poured && !why->status; try++) {
-        vec3 x = draw_place(o, p->dim, rng);
-        poured = is_free(&c, o, x, q, r, why) && !add_grain(p, o, which, x, q, r, why);
+        g.x = draw_place(o, p->dim, rng);
+        poured = is_free(&c, o, &g, why) && !add_grain(p, o, which, &g, why);
     }
     crowd_free(&c);
     return poured;

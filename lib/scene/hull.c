@@ -194,10 +194,11 @@ int hull_of_points(struct shape *s, int dim, int64_t n, const vec3 *x, struct wh
     struct hull h = { .dim = dim };
     struct loops l = { 0 };
     if (n <= dim) return is_flat(why);
-    if (!take_points(&h, n, x, why) && !ask_qhull(&h, why) &&
-        !(dim == 2 ? hull_loop : hull_faces)(&l, h.facet, h.facets, h.x, (int32_t)h.n, HULL_FLAT,
-                                             why))
-        make_shape(s, &h, &l, x, why);
+    if (!take_points(&h, n, x, why) && !ask_qhull(&h, why)) {
+        const struct facets all = { h.facets, h.facet, (int32_t)h.n, h.x };
+        if (!(dim == 2 ? hull_loop : hull_faces)(&l, &all, HULL_FLAT, why))
+            make_shape(s, &h, &l, x, why);
+    }
     loops_free(&l);
     free(h.kept), free(h.x), free(h.facet);
     return why->status;

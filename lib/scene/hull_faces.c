@@ -37,9 +37,10 @@ static bool in_plane(const struct facet *f, vec3 n, double at, const vec3 *x, do
 }
 
 /* Gives a facet, and all that are joined to it in its plane, to one face; stack: room for all facets */
-static void grow(struct facet *facet, int32_t seed, int32_t face, const vec3 *x, double flat,
-                 int32_t *stack)
+static void grow(const struct facets *hull, int32_t seed, int32_t face, double flat, int32_t *stack)
 {
+    struct facet *facet = hull->of;
+    const vec3 *x = hull->x;
     int32_t n = 0;
     const vec3 normal = facet[seed].n;
     const double at = v3_dot(normal, x[facet[seed].point[0]]);
@@ -68,8 +69,11 @@ static int compare_sizes(const void *one, const void *other)
 }
 
 /* The largest facets know their planes best. Returns how many faces there are; -1: no memory. */
-static int32_t join(struct facet *facet, int32_t facets, const vec3 *x, double flat)
+static int32_t join(const struct facets *hull, double flat)
 {
+    struct facet *facet = hull->of;
+    const int32_t facets = hull->n;
+    const vec3 *x = hull->x;
     int32_t *stack = malloc(((size_t)facets + 1) * sizeof *stack), faces = 0;
     struct by_size *order = malloc(((size_t)facets + 1) * sizeof *order);
     for (int32_t i = 0; i < facets && stack && order; i++) {
@@ -81,7 +85,7 @@ static int32_t join(struct facet *facet, int32_t facets, const vec3 *x, double f
     }
     if (stack && order) qsort(order, (size_t)facets, sizeof *order, compare_sizes);
     for (int32_t i = 0; i < facets && stack && order; i++)
-        if (facet[order[i].facet].face < 0) grow(facet, order[i].facet, faces++, x, flat, stack);
+        if (facet[order[i].facet].face < 0) grow(hull, order[i].facet, faces++, flat, stack);
     bool done = stack && order;
     free(stack), free(order);
     return done ? faces : -1;
@@ -140,12 +144,13 @@ static bool thin_loops(struct loops *l, int32_t *of, int32_t points)
     return n < all;
 }
 
-int hull_faces(struct loops *l, struct facet *facet, int32_t facets, const vec3 *x, int32_t n,
-               double flat, struct why *why)
+int hull_faces(struct loops *l, const struct facets *hull, double flat, struct why *why)
 {
-    int32_t faces = join(facet, facets, x, flat), sides = 0;
+    const struct facet *facet = hull->of;
+    const int32_t facets = hull->n;
+    int32_t faces = join(hull, flat), sides = 0;
     struct side *side = malloc((3 * (size_t)facets + 1) * sizeof *side);
-    int32_t *of = calloc((size_t)n + 1, sizeof *of);
+    int32_t *of = calloc((size_t)hull->points + 1, sizeof *of);
     if (faces < 0 || !side || !of || loops_alloc(l, faces, 3 * facets, why)) no_memory(why);
     for (int32_t i = 0; i < facets && !why->status; i++)
         for (int k = 0; k < 3; k++) {
@@ -154,7 +159,7 @@ int hull_faces(struct loops *l, struct facet *facet, int32_t facets, const vec3 
             side[sides++] = (struct side){ f->face, f->point[(k + 1) % 3], f->point[(k + 2) % 3] };
         }
     if (!why->status && !close_loops(l, side, sides, why)) {
-        while (thin_loops(l, of, n)) {
+        while (thin_loops(l, of, hull->points)) {
         }
         if (l->faces < 4) is_flat(why);
     }
@@ -171,9 +176,11 @@ static double off_line(vec3 a, vec3 b, vec3 c)
     return fabs(d.x * e.y - d.y * e.x) / v3_norm(d);
 }
 
-int hull_loop(struct loops *l, struct facet *facet, int32_t facets, const vec3 *x, int32_t n,
-              double flat, struct why *why)
+int hull_loop(struct loops *l, const struct facets *hull, double flat, struct why *why)
 {
+    const struct facet *facet = hull->of;
+    const int32_t facets = hull->n;
+    const vec3 *x = hull->x;
     struct side *side = malloc(((size_t)facets + 1) * sizeof *side);
     if (!side || loops_alloc(l, facets, facets, why)) no_memory(why);
     for (int32_t i = 0; i < facets && !why->status; i++)
@@ -188,7 +195,6 @@ int hull_loop(struct loops *l, struct facet *facet, int32_t facets, const vec3 *
         l->first[1] = kept;
         if (kept < 3) is_flat(why);
     }
-    (void)n;
     free(side);
     return why->status;
 }

@@ -20,19 +20,25 @@ struct facet {
     double area;      /* twice */
 };
 
+/* All of a hull */
+struct facets {
+    int32_t n;
+    struct facet *of; /* [n] */
+    int32_t points;
+    const vec3 *x; /* [points] */
+};
+
 /* Loops of points: of face f corner[first[f]] .. corner[first[f + 1] - 1], from the least on */
 struct loops {
     int32_t faces;
     int32_t *first, *corner;
 };
 
-/* The faces of facets of n points x; in a plane: what is closer to it than `flat`. Returns 0, EX_DATAERR where
+/* The faces of a hull; in a plane: what is closer to it than `flat`. Returns 0, EX_DATAERR where
    no body is left, or EX_SOFTWARE; loops_free() in any case. */
-int hull_faces(struct loops *l, struct facet *facet, int32_t facets, const vec3 *x, int32_t n,
-               double flat, struct why *why);
+int hull_faces(struct loops *l, const struct facets *hull, double flat, struct why *why);
 /* The same in the plane: one loop, of segments. */
-int hull_loop(struct loops *l, struct facet *facet, int32_t facets, const vec3 *x, int32_t n,
-              double flat, struct why *why);
+int hull_loop(struct loops *l, const struct facets *hull, double flat, struct why *why);
 void loops_free(struct loops *l);
 
 #endif

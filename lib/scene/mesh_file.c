@@ -16,11 +16,11 @@ static const struct mesh_format *const formats[] = { &mesh_ply, &mesh_stl, &mesh
 
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 
-static const struct mesh_format *format_of(const char *name, const char *bytes, int64_t n)
+static const struct mesh_format *format_of(const struct mesh_bytes *b)
 {
-    const char *dot = strrchr(name, '.');
+    const char *dot = strrchr(b->name, '.');
     for (int k = 0; k < FORMATS; k++)
-        if (formats[k]->looks(bytes, n)) return formats[k];
+        if (formats[k]->looks(b->at, b->n)) return formats[k];
     for (int k = 0; k < FORMATS && dot; k++)
         if (!strcasecmp(dot, formats[k]->ending)) return formats[k];
     return NULL;
@@ -52,21 +52,21 @@ static int give_names(struct scene_files *files, const struct soup *s, struct wh
     return why->status;
 }
 
-int mesh_bytes_read(struct mesh *to, struct scene_files *files, const char *name, const char *bytes,
-                    int64_t n, double scale, int32_t *left_out, struct why *why)
+int mesh_bytes_read(struct mesh *to, struct scene_files *files, const struct mesh_bytes *b,
+                    int32_t *left_out, struct why *why)
 {
     struct soup s = {
-        .name = name, .why = why, .work = MESH_WORK_MOST - files->mesh_work, .now = -1
+        .name = b->name, .why = why, .work = MESH_WORK_MOST - files->mesh_work, .now = -1
     };
-    const struct mesh_format *format = format_of(name, bytes, n);
+    const struct mesh_format *format = format_of(b);
     if (!format)
         return why_set(why, EX_DATAERR, "%s: neither STL, OBJ nor PLY: write it as one of these",
-                       name);
+                       b->name);
     s.grouped = files->parts != NULL;
     if (s.grouped && format != &mesh_obj)
         why_set(why, EX_DATAERR, "%s: only OBJ files have groups: name ranges of faces instead",
-                name);
-    else if (!format->read(&s, bytes, n) && !soup_mesh(to, &s, scale, left_out) && s.grouped)
+                b->name);
+    else if (!format->read(&s, b->at, b->n) && !soup_mesh(to, &s, b->scale, left_out) && s.grouped)
         give_names(files, &s, why);
     files->mesh_work = MESH_WORK_MOST - s.work;
     soup_free(&s);
@@ -116,7 +116,8 @@ static int read_path(struct mesh *to, struct scene_files *files, const char *pat
     files->mesh_bytes += size;
     char *bytes = slurp(fd, path, size, &n, why);
     close(fd);
-    if (!why->status) mesh_bytes_read(to, files, path, bytes, n, scale, left_out, why);
+    const struct mesh_bytes all = { path, bytes, n, scale };
+    if (!why->status) mesh_bytes_read(to, files, &all, left_out, why);
     free(bytes);
     return why->status;
 }

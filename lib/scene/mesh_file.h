@@ -20,8 +20,15 @@ int mesh_file_read(struct mesh *to, struct scene_files *files, const char *name,
                    int32_t *left_out, struct why *why);
 /* Reads the files of all meshes of the scene, and adds their triangles, as above. */
 int mesh_files_read(struct scene *s, struct scene_files *files, struct why *why);
-/* The same of n bytes, as a file of this name has them, with a 0 behind them */
-int mesh_bytes_read(struct mesh *to, struct scene_files *files, const char *name, const char *bytes,
-                    int64_t n, double scale, int32_t *left_out, struct why *why);
+/* What a file has */
+struct mesh_bytes {
+    const char *name;
+    const char *at; /* [n] bytes, and a 0 behind them */
+    int64_t n;
+    double scale; /* m: its unit */
+};
+/* The same of bytes */
+int mesh_bytes_read(struct mesh *to, struct scene_files *files, const struct mesh_bytes *b,
+                    int32_t *left_out, struct why *why);
 
 #endif

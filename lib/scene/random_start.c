@@ -288,7 +288,8 @@ static int push_apart(struct start *s, struct neighbours *near, double most, int
         }
         if (!fresh || moved > 0.2 * reach * reach) { // 0.45 reach: each of a pair
             wrap(s);
-            if (neighbours_find(near, &s->p, s->p.x, s->p.cell.edge, reach, false, why)) break;
+            const struct positions at = positions_now(&s->p);
+            if (neighbours_find(near, &s->p, &at, reach, false, why)) break;
             memcpy(listed, s->p.x, (size_t)s->p.n * sizeof *listed);
             fresh = true;
         }
@@ -307,7 +308,8 @@ static int worst(struct start *s, struct neighbours *near, double *left, struct 
 {
     *left = 0;
     wrap(s);
-    if (neighbours_find(near, &s->p, s->p.x, s->p.cell.edge, 0, false, why)) return why->status;
+    const struct positions at = positions_now(&s->p);
+    if (neighbours_find(near, &s->p, &at, 0, false, why)) return why->status;
     for (int64_t i = 0; i < near->list.n; i++) {
         int64_t a = near->list.pair[i].a, b = near->list.pair[i].b;
         double r = s->p.radius[a] + s->p.radius[b];

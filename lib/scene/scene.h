@@ -140,6 +140,7 @@
 
 #include "base/why.h"
 #include "bodies/packing.h"
+#include "geometry/solid.h"
 #include "scene/scene_size.h"
 
 #include <stddef.h>
@@ -253,13 +254,6 @@ struct scene_part {
     vec3 belt; /* m/s */
 };
 
-/* What a shape was before it was brought to its own axes and unit [geometry/solid.h] */
-struct scene_solid {
-    double reach; /* m */
-    vec3 centre;  /* m */
-    quat turn;    /* from its axes to those it was described in */
-};
-
 /* How well balls fill a surface: of shape NAME, for who tells it [scene/clump_fit.h] */
 struct scene_fit {
     char *shape;
@@ -310,7 +304,7 @@ struct scene {
     struct scene_removal *removal; /* [removals] */
     struct scene_cell cell;
     struct shapes shapes;      /* of grains */
-    struct scene_solid *solid; /* [shapes.n] */
+    struct solid_frame *solid; /* [shapes.n] what they were before they had their own axes */
     int32_t fits;
     struct scene_fit *fit; /* [fits] clumps that were fitted to surfaces */
 

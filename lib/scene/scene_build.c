@@ -39,11 +39,13 @@ static int set_body(struct packing *p, int64_t i, const struct scene_bodies *b, 
     return 0;
 }
 
-/* The middle of cell k of the lattice, moved at random as far as the body stays in the cell; in the
-   cell that repeats (else NULL) along its edges. */
+/* The middle of cell k of the lattice, moved at random as far as the body stays in the cell; in a
+   periodic cell along its edges. */
 static vec3 draw_place(const struct scene_bodies *b, const struct scene_lattice *l,
-                       const struct cell *c, int dim, int64_t k, double r, gsl_rng *rng)
+                       const struct packing *p, int64_t k, double r, gsl_rng *rng)
 {
+    const int dim = p->dim;
+    const struct cell *c = &p->cell;
     double x[3] = { 0 }, rest = (double)k;
     for (int i = 0; i < dim; i++) {
         bool last = i == dim - 1; // the box may be open here: no end of cells
@@ -53,7 +55,7 @@ static vec3 draw_place(const struct scene_bodies *b, const struct scene_lattice 
         x[i] = b->box.lo[i] + (cell + 0.5) * l->edge[i] + slack * (2 * gsl_rng_uniform(rng) - 1);
         rest = above;
     }
-    if (!c) return v3(x[0], x[1], x[2]);
+    if (!b->in_cell) return v3(x[0], x[1], x[2]);
     vec3 place = c->origin;
     for (int i = 0; i < dim; i++) place = v3_axpy(place, x[i] / b->box.hi[i], c->edge[i]);
     return place;
@@ -72,7 +74,7 @@ static int fill_lattice(struct packing *p, int64_t first, const struct scene_bod
     struct scene_lattice l = scene_lattice(b, p->dim);
     for (int64_t k = 0; k < b->count; k++) {
         double r = scene_size_draw(&b->size, rng);
-        vec3 x = draw_place(b, &l, b->in_cell ? &p->cell : NULL, p->dim, k, r, rng);
+        vec3 x = draw_place(b, &l, p, k, r, rng);
         if (set_body(p, first + k, b, x, r, why)) return why->status;
         if (b->thermal > 0) p->v[first + k] = v3_add(b->v, draw_velocity(b->thermal, p->dim, rng));
     }
@@ -102,14 +104,19 @@ static int set_grain(struct packing *p, int64_t i, const struct scene *s,
 }
 
 static int fill_grains(struct packing *p, int64_t first, const struct scene *s,
-                       const struct scene_bodies *b, const struct grains *list, gsl_rng *rng,
-                       struct why *why)
+                       const struct scene_bodies *b, const struct grains *list, struct why *why)
 {
-    for (int64_t k = 0; k < list->n; k++) {
+    for (int64_t k = 0; k < list->n; k++)
         if (set_grain(p, first + k, s, b, &list->g[k], why)) return why->status;
-        if (b->thermal > 0) p->v[first + k] = v3_add(b->v, draw_velocity(b->thermal, p->dim, rng));
-    }
     return 0;
+}
+
+/* Random velocities of n bodies of a group, besides that which all have */
+static void draw_velocities(struct packing *p, int64_t first, int64_t n,
+                            const struct scene_bodies *b, gsl_rng *rng)
+{
+    for (int64_t k = 0; k < n && b->thermal > 0; k++)
+        p->v[first + k] = v3_add(b->v, draw_velocity(b->thermal, p->dim, rng));
 }
 
 /* Numbers that tables and documents give, each once; the others follow the greatest of them. */
@@ -163,10 +170,11 @@ static int fill_groups(struct packing *p, const struct scene *s, const struct gr
     bool given = false;
     for (int64_t g = 0; g < s->groups; g++) {
         const struct scene_bodies *b = &s->bodies[g];
-        int bad = is_list(b)             ? fill_grains(p, first, s, b, &list[g], rng, why)
+        int bad = is_list(b)             ? fill_grains(p, first, s, b, &list[g], why)
                   : b->from == SCENE_ONE ? set_body(p, first, b, b->x, b->size.min, why)
                                          : fill_lattice(p, first, b, rng, why);
         if (bad) return bad;
+        if (is_list(b)) draw_velocities(p, first, list[g].n, b, rng);
         int64_t n = is_list(b) ? list[g].n : b->count;
         if (b->form.shape && orient_group(p, s, g, first, n, why)) return why->status;
         given |= is_list(b);
@@ -369,7 +377,7 @@ static int check_overlap(const struct packing *p, const struct scene *s, const s
     struct contacts found = { 0 };
     const char *cure = "; \"overlap\": true allows it)";
     char a[PLACE], b[PLACE];
-    int e = detect_contacts_at(&found, p, p->x, p->t, 0, NULL, why);
+    int e = detect_contacts_at(&found, p, p->x, p->t, 0, why);
     for (int64_t i = 0; !e && i < found.n; i++) {
         const struct contact *c = &found.c[i];
         double r = packing_smaller_radius(p, c);

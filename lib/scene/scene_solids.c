@@ -308,14 +308,15 @@ static int read_clump(jnode o, struct shape *s, const struct mesh *mesh, const c
 {
     jnode c = json_node_key(&o, "clump");
     int64_t balls = 0;
-    double error = 0;
+    struct clump_limits limits = { 0 };
     struct clump_errors errors = { 0 };
     struct why why = { 0 };
     if (json_node_only(c, "balls error") || json_node_need(&c, "balls") ||
         json_node_integer(json_node_key(&c, "balls"), 1, CLUMP_BALLS_MOST, &balls) ||
-        json_node_number(json_node_key(&c, "error"), J_UNIT, &error))
+        json_node_number(json_node_key(&c, "error"), J_UNIT, &limits.error))
         return 1;
-    clump_fit(s, as, mesh, (int32_t)balls, error, &errors, &why);
+    limits.balls = (int32_t)balls;
+    clump_fit(s, as, mesh, &limits, &errors, &why);
     if (why.status == EX_DATAERR) return json_node_fault(c, "%s: %s", file, why.text);
     if (why.status) return why_set(o.in->why, why.status, "%s", why.text);
     if (rewrite_clump(o, s, as, &errors, scene) || note_fit(o, scene, &errors)) return 1;
@@ -446,13 +447,13 @@ static int read_form(jnode o, struct shape *s, struct solid *as, struct scene *s
 
 /* What was read, in its own axes and unit; a fault of the shape is reported at its place. */
 static int settle(jnode o, struct shape *s, const struct solid *as, int dim,
-                  struct scene_solid *solid)
+                  struct solid_frame *solid)
 {
     struct why why = { 0 };
     if (as->volume > 0)
-        solid_settle_as(s, dim, as, &solid->reach, &solid->centre, &solid->turn, &why);
+        solid_settle_as(s, dim, as, solid, &why);
     else
-        solid_settle(s, dim, &solid->reach, &solid->centre, &solid->turn, &why);
+        solid_settle(s, dim, solid, &why);
     if (!why.status) shape_finish(s, dim, &why);
     if (why.status == EX_DATAERR) return json_node_fault(o, "%s", why.text);
     return why.status ? why_set(o.in->why, why.status, "%s", why.text) : 0;
@@ -461,7 +462,7 @@ static int settle(jnode o, struct shape *s, const struct solid *as, int dim,
 static int read_shape(jnode o, struct scene *s, const char *name)
 {
     struct shape shape = { 0 };
-    struct scene_solid solid = { 0 };
+    struct solid_frame solid = { 0 };
     struct solid as = { 0 }; // without a volume: the shape's own
     int bad = read_form(o, &shape, &as, s);
     bool hull = shape.form == SHAPE_HULL;
@@ -486,7 +487,7 @@ int scene_read_shapes(jnode o, struct scene *s)
     if (!json_is_object(o.json)) return json_node_fault(o, "wants an object {...}");
     if (count >= SHAPES_MOST) return json_node_fault(o, "more than %d shapes", SHAPES_MOST - 1);
     if (!(s->solid = scene_alloc(o, count + 1, sizeof *s->solid))) return 1;
-    s->solid[0] = (struct scene_solid){ 1, { 0, 0, 0 }, { 1, 0, 0, 0 } };
+    s->solid[0] = (struct solid_frame){ 1, { 0, 0, 0 }, { 1, 0, 0, 0 } };
     json_object_foreach(o.json, name, value)
     {
         jnode n = json_node_key(&o, name);

@@ -251,7 +251,7 @@ static void find_resting(const struct packing *p, vec3 up, double gap, bool *res
 {
     struct contacts s = { 0 };
     struct why why = { 0 };
-    bool found = !detect_contacts_at(&s, p, p->x, p->t, gap, NULL, &why);
+    bool found = !detect_contacts_at(&s, p, p->x, p->t, gap, &why);
     struct support *on = found ? malloc((size_t)(s.n + 1) * sizeof *on) : NULL;
     int64_t n = on ? supports_of(p, &s, up, on) : 0;
     if (n) qsort(on, (size_t)n, sizeof *on, by_height);

@@ -164,7 +164,8 @@ static void measure_shared(const struct anderson *a, struct mixing_sums *t)
     }
     backend_widest()->mixing->measure(p, &a->m, 0, p->bundles, &here);
     for (int64_t i = 0; i < p->slots; i++) take_terms(a, i, term + size * i);
-    p->exchange->sum(p->exchange, p, CHUNK_BUNDLES, mixing_width(p), n, term, out[0]);
+    const struct summands summands = { CHUNK_BUNDLES, mixing_width(p), n, term };
+    p->exchange->sum(p->exchange, p, &summands, out[0]);
     for (int k = 0; k < BUNDLE; k++) {
         t->f2[k] = out[0][k];
         for (int j = 0; j < depth(a); j++)

@@ -143,14 +143,6 @@ void step_forget(struct step_memory *m)
     *m = (struct step_memory){ 0 };
 }
 
-int step_watch(struct passed *passed, const struct packing *p, int64_t n,
-               const struct surface *surface, const struct fast *fast, int64_t count,
-               struct window window, struct why *why)
-{
-    swift_passed(passed, p, n, surface, window);
-    return crossing_count(passed, p, n, fast, count, window, why);
-}
-
 void step_report_passed(struct report *rep, const struct packing *p, const struct passed *passed)
 {
     if (passed->n && (!rep->passed || passed->id < rep->passed_id))
@@ -163,12 +155,12 @@ int step_watch_whole(const struct packing *p, const struct surface *surface, str
                      struct report *rep, struct why *why)
 {
     struct passed passed;
-    struct fast *fast;
-    int64_t count;
-    if (!crossing_list(&fast, &count, p, p->n, why) &&
-        !step_watch(&passed, p, p->n, surface, fast, count, window, why))
+    struct fast_list fast;
+    swift_passed(&passed, p, p->n, surface, window);
+    if (!crossing_list(&fast, p, p->n, why) &&
+        !crossing_count(&passed, p, p->n, &fast, window, why))
         step_report_passed(rep, p, &passed);
-    free(fast);
+    free(fast.of);
     return why->status;
 }
 

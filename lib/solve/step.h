@@ -95,14 +95,9 @@ int step_solve_contacts(const struct packing *pack, struct contacts *s, struct p
                         const struct step_opt *o, struct report *rep, struct why *why);
 int step_bound_impacts(const struct packing *pack, struct contacts *s, struct plan **kept,
                        const struct step_opt *o, struct report *rep, struct why *why);
-/* Which of the first n bodies go through something in the window. surface: [walls] of those that are meshes;
-   fast[count]: bodies of the whole packing [detect/crossing.h] */
-int step_watch(struct passed *passed, const struct packing *p, int64_t n,
-               const struct surface *surface, const struct fast *fast, int64_t count,
-               struct window window, struct why *why);
-/* Adds them to the report, whose number of them is 0 before the step. */
+/* Adds bodies that have gone through something to the report, whose number of them is 0 before the step. */
 void step_report_passed(struct report *rep, const struct packing *p, const struct passed *passed);
-/* Both, of a whole packing */
+/* The same of a whole packing, which is looked through. surface: [walls] of those that are meshes */
 int step_watch_whole(const struct packing *p, const struct surface *surface, struct window window,
                      struct report *rep, struct why *why);
 

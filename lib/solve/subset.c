@@ -18,12 +18,6 @@ enum {
     STEPS = 15    /* Newton steps that a subset takes, mostly: for its price */
 };
 
-struct chosen {
-    int64_t n;
-    int32_t *contact; /* [n] ascending: contact i of the subset is contact[i] of all */
-    int32_t *of;      /* [all contacts] the inverse of contact[]; -1: not chosen */
-};
-
 /* map[] = the natural map of each contact at x, whose velocity is v; returns the largest. */
 static double fill_maps(const struct scaled *a, const double *x, const double *v, double *map)
 {
@@ -45,7 +39,7 @@ static int64_t count_large(const double *map, int64_t n, double large)
 /* Chooses the contacts with a large map and as many of their neighbours, or more of these up to
    `least` in all. False where they would be too many. */
 static bool choose(const struct scaled *a, const double *map, double largest, int64_t least,
-                   bool anyhow, struct chosen *p)
+                   bool anyhow, struct chosen_contacts *p)
 {
     const struct delassus *W = &a->W;
     double large = LARGE * largest;
@@ -92,7 +86,7 @@ static int run(struct solve *s)
 
 /* A subset while it is solved */
 struct subset {
-    struct chosen chosen;
+    struct chosen_contacts chosen;
     double *x, *v, *map; /* of all contacts: x and v [n d], the natural map [n] */
     struct delassus V;   /* of those chosen */
 };
@@ -121,9 +115,7 @@ static int subset_init(struct subset *p, const struct scaled *a, const struct so
     scaled_velocity(a, p->x, p->v);
     double largest = fill_maps(a, p->x, p->v, p->map);
     if (!choose(a, p->map, largest, contacts, anyhow, &p->chosen)) return 0;
-    if (delassus_subset(&p->V, &a->W, p->chosen.n, p->chosen.contact, p->chosen.of, p->x, p->v,
-                        &why))
-        return -1;
+    if (delassus_subset(&p->V, &a->W, &p->chosen, p->x, p->v, &why)) return -1;
     double entries = delassus_entries(&p->V); // NOLINT(clang-analyzer-unix.Malloc): subset_free()
     return price_analysis(entries) + STEPS * price_newton_step(0, entries) <= budget;
 }

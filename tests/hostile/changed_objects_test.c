@@ -81,9 +81,10 @@ static void replace(hid_t file, const struct spot *p, enum change change)
     int rank = change == SEVEN ? 1 : 2;
     if (*p->name && change == TEXT) h5_attr_text(file, p->path, p->name, "words\n", &why);
     if (*p->name && change > TEXT)
-        h5_attr_shaped(file, p->path, p->name, real, rank, shape, nine, &why);
+        h5_attr(file, p->path, p->name, h5_array(real, rank, shape, nine), &why);
     if (!*p->name && change == TEXT) h5_write_text(file, p->path, "words\n", &why);
-    if (!*p->name && change > TEXT) h5_write(file, p->path, real, rank, shape, nine, NULL, &why);
+    if (!*p->name && change > TEXT)
+        h5_write(file, p->path, h5_array(real, rank, shape, nine), NULL, &why);
 }
 
 /* What a reader makes of it; and whether that is an answer */

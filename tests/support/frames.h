@@ -60,10 +60,10 @@ static char *foreign(const char *path, const char *to)
     fwrite(bytes + DOCUMENT_USERBLOCK, 1, n - DOCUMENT_USERBLOCK, f);
     fclose(f);
     hid_t file = H5Fopen(to, H5F_ACC_RDWR, H5P_DEFAULT);
-    must(h5_write(file, "/mine/six", H5T_NATIVE_DOUBLE, 2, shape, six, "m", &why) ||
-             h5_write(file, "/mine/one", H5T_NATIVE_INT32, 1, &one, &whole, NULL, &why) ||
+    must(h5_write(file, "/mine/six", h5_array(H5T_NATIVE_DOUBLE, 2, shape, six), "m", &why) ||
+             h5_write(file, "/mine/one", h5_vector(H5T_NATIVE_INT32, one, &whole), NULL, &why) ||
              h5_write_text(file, "/mine/text", "some words", &why) ||
-             h5_attr(file, "/mine", "six", H5T_NATIVE_DOUBLE, 6, six, &why) ||
+             h5_attr(file, "/mine", "six", h5_vector(H5T_NATIVE_DOUBLE, 6, six), &why) ||
              h5_attr_text(file, "/mine/six", "by", "hand", &why),
          &why);
     H5Fclose(file);

@@ -118,10 +118,13 @@ static struct delassus delassus(const struct bricks *w)
     for (int64_t i = 0; i < n; i++)
         if (w->W[i] != 0)
             row[k] = (int32_t)(i / w->size), col[k] = (int32_t)(i % w->size), x[k++] = w->W[i];
-    if (delassus_init(&W, w->d, w->n, k, row, col, x, w->q, w->mu, &why)) {
+    const struct sparse A = { .count = k, .row = row, .col = col, .x = x };
+    if (delassus_init(&W, w->d, w->n, &A, &why)) {
         printf("Bail out! %s\n", why.text);
         exit(1);
     }
+    memcpy(W.q, w->q, (size_t)w->size * sizeof *W.q);
+    memcpy(W.mu, w->mu, (size_t)w->n * sizeof *W.mu);
     free(row), free(col), free(x);
     return W;
 }

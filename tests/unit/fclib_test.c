@@ -236,7 +236,7 @@ static void put(hid_t file, const char *path, hid_t type, int64_t count, const v
     struct why why = { 0 };
     hsize_t n = (hsize_t)count;
     if (h5_has(file, path)) H5Ldelete(file, path, H5P_DEFAULT);
-    if (h5_write(file, path, type, 1, &n, x, NULL, &why)) ok(false, "put: %s", why.text);
+    if (h5_write(file, path, h5_vector(type, n, x), NULL, &why)) ok(false, "put: %s", why.text);
 }
 
 static void put_doubles(hid_t file, const char *path, int64_t count, const double *x)

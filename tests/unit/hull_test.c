@@ -119,14 +119,12 @@ static int scatter(const struct body *b, int times, double noise, double scale, 
 /* The volume, in units of scale; what is wrong is in why. */
 static double volume_of(struct shape *s, int dim, int n, double scale, struct why *why)
 {
-    double reach;
-    vec3 centre;
-    quat turn;
+    struct solid_frame was;
     *s = (struct shape){ .form = SHAPE_HULL };
-    if (hull_of_points(s, dim, n, x, why) || solid_settle(s, dim, &reach, &centre, &turn, why) ||
+    if (hull_of_points(s, dim, n, x, why) || solid_settle(s, dim, &was, why) ||
         shape_finish(s, dim, why))
         return NAN;
-    return s->volume * pow(reach / scale, dim);
+    return s->volume * pow(was.reach / scale, dim);
 }
 
 static void noisy(const struct body *b)

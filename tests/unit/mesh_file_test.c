@@ -25,7 +25,8 @@ int main(void)
     ok(bytes.status == EX_DATAERR && strstr(bytes.text, "bytes in all"),
        "there are only so many: %s", bytes.text);
     mesh.elements = SOUP_TRIANGLES_MOST;
-    mesh_bytes_read(&mesh, &files, name, text, (int64_t)strlen(text), 1, &left_out, &triangles);
+    const struct mesh_bytes all = { name, text, (int64_t)strlen(text), 1 };
+    mesh_bytes_read(&mesh, &files, &all, &left_out, &triangles);
     ok(triangles.status == EX_DATAERR, "and so many triangles: %s", triangles.text);
     mesh_free(&mesh);
     remove(name);

@@ -317,7 +317,7 @@ static void cubes_meet(void)
         "{\"x\": [0, 0, 0], \"shape\": \"c\"}, {\"x\": [0.3, 0.2, 0.99], \"shape\": \"c\"}]}");
     struct contacts s = { 0 };
     struct why why = { 0 };
-    detect_contacts_at(&s, &p, p.x, 0, 0, NULL, &why);
+    detect_contacts_at(&s, &p, p.x, 0, 0, &why);
     double area = 0;
     bool up = s.n == 4;
     for (int64_t i = 0; i < s.n; i++) {
@@ -327,12 +327,12 @@ static void cubes_meet(void)
     ok(up && near(area, 0.7 * 0.8, 1e-12),
        "cube on cube: four places at the corners of the overlap");
     p.q[1] = quat_rotation(v3(0, 0, M_PI / 4)), p.x[1] = v3(0, 0, 0.99);
-    detect_contacts_at(&s, &p, p.x, 0, 0, NULL, &why);
+    detect_contacts_at(&s, &p, p.x, 0, 0, &why);
     ok(s.n == 4, "turned by 45 degrees the overlap has eight corners, and four places are kept: %d",
        (int)s.n);
     // tipped: corners leave one by one, each with its own gap
     p.q[1] = quat_rotation(v3(0.01, 0.02, 0)), p.x[1] = v3(0, 0, 1.0);
-    detect_contacts_at(&s, &p, p.x, 0, 1, NULL, &why);
+    detect_contacts_at(&s, &p, p.x, 0, 1, &why);
     double lo = INFINITY, hi = -INFINITY;
     for (int64_t i = 0; i < s.n; i++) lo = fmin(lo, s.c[i].gap), hi = fmax(hi, s.c[i].gap);
     ok(s.n == 4 && near(hi - lo, 0.03, 0.05), "tipped, each corner has its own gap: %.3g to %.3g",
@@ -340,7 +340,7 @@ static void cubes_meet(void)
     // edge across edge
     p.q[0] = quat_rotation(v3(M_PI / 4, 0, 0)), p.q[1] = quat_rotation(v3(0, M_PI / 4, 0));
     p.x[1] = v3(0.1, -0.05, sqrt(2) - 0.01);
-    detect_contacts_at(&s, &p, p.x, 0, 0, NULL, &why);
+    detect_contacts_at(&s, &p, p.x, 0, 0, &why);
     ok(s.n == 1 && near(s.c[0].gap, -0.01, 1e-9) && fabs(s.c[0].n.z - 1) < 1e-9 &&
            fabs(s.c[0].x.x - 0.1) < 1e-9 + 1 * 0.11,
        "crossed edges meet in one place");

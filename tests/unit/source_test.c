@@ -74,19 +74,17 @@ static bool round_trip(const struct objects *s)
 static bool within(const unsigned char *bytes, size_t size)
 {
     unsigned char *copy = malloc(size + 1);
-    struct object o;
-    const uint64_t *s;
-    const char *name;
-    const void *data;
+    struct listed l;
     bool good = copy != NULL;
     if (!copy) return false;
     memcpy(copy, bytes, size);
     for (uint64_t at = 0; good && at < size;) {
         uint64_t before = at;
-        if (!object_unpack(copy, size, &at, &o, &s, &name, &data)) break;
-        const unsigned char *d = data, *n = (const unsigned char *)name;
+        if (!object_unpack(copy, size, &at, &l)) break;
+        const struct object o = l.object;
+        const unsigned char *d = l.data, *n = (const unsigned char *)l.path;
         good = at > before && at <= size && d >= copy && d + o.data <= copy + size && n >= copy &&
-               n + o.name <= copy + size && strlen(name) < o.name &&
+               n + o.name <= copy + size && strlen(l.path) < o.name &&
                (o.kind != OBJECT_NUMBERS || o.size <= 8);
     }
     free(copy);
@@ -260,7 +258,8 @@ int main(void)
     hid_t file = fd < 0 ? -1 : H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
     hsize_t n = 6;
     struct why why = { 0 };
-    bool made = file >= 0 && !h5_write(file, "/x", H5T_NATIVE_DOUBLE, 1, &n, six, NULL, &why);
+    bool made =
+        file >= 0 && !h5_write(file, "/x", h5_vector(H5T_NATIVE_DOUBLE, n, six), NULL, &why);
     ok(made && H5Fclose(file) >= 0, "a file to read");
     test_death(SIGSEGV, EX_DATAERR, "libhdf5 breaks down");
 #ifdef __SANITIZE_ADDRESS__ // which takes the signal, and ends the process itself

@@ -15,10 +15,8 @@ static void make_grain(const struct mesh *m, bool hull)
 {
     struct shape s = { .form = SHAPE_HULL };
     struct why why = { 0 };
-    double reach;
-    vec3 centre;
-    quat turn;
-    if (!mesh_shape(&s, m, hull, &why) && !solid_settle(&s, 3, &reach, &centre, &turn, &why))
+    struct solid_frame was;
+    if (!mesh_shape(&s, m, hull, &why) && !solid_settle(&s, 3, &was, &why))
         shape_finish(&s, 3, &why);
     if (why.status && (!why.text[0] || strchr(why.text, '\n'))) abort();
     shape_free(&s);
@@ -35,8 +33,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     char *text = malloc(size); // one byte less, and a zero: none is behind it
     if (!text) abort();
     memcpy(text, data + 1, size - 1), text[size - 1] = 0;
-    int e =
-        mesh_bytes_read(&m, &files, name[data[0] % 4], text, (int64_t)size - 1, 1, &left_out, &why);
+    const struct mesh_bytes all = { name[data[0] % 4], text, (int64_t)size - 1, 1 };
+    int e = mesh_bytes_read(&m, &files, &all, &left_out, &why);
     free(text);
     if (e && (!why.status || !why.text[0] || strchr(why.text, '\n'))) abort();
     if (!e && (left_out < 0 || m.elements < 1 || mesh_check(&m, 3, &why))) abort();

@@ -56,7 +56,7 @@ static void put_integers(hid_t file, const char *group, const char *name, int co
     hsize_t n = (hsize_t)count;
     for (int k = 0; k < count; k++) x[k] = integer(in);
     snprintf(path, sizeof path, "%s/%s", group, name);
-    h5_write(file, path, H5T_NATIVE_INT32, 1, &n, x, NULL, &(struct why){ 0 });
+    h5_write(file, path, h5_vector(H5T_NATIVE_INT32, n, x), NULL, &(struct why){ 0 });
 }
 
 static void put_reals(hid_t file, const char *group, const char *name, int count, struct input *in)
@@ -66,7 +66,7 @@ static void put_reals(hid_t file, const char *group, const char *name, int count
     hsize_t n = (hsize_t)count;
     for (int k = 0; k < count; k++) x[k] = real(in);
     snprintf(path, sizeof path, "%s/%s", group, name);
-    h5_write(file, path, H5T_NATIVE_DOUBLE, 1, &n, x, NULL, &(struct why){ 0 });
+    h5_write(file, path, h5_vector(H5T_NATIVE_DOUBLE, n, x), NULL, &(struct why){ 0 });
 }
 
 static void put_matrix(hid_t file, const char *group, struct input *in)
