@@ -11,6 +11,9 @@ out=$(cd "$1" && pwd)
 # pick QUICK FULL: one of them
 pick() { if [ -n "${QUICK:-}" ]; then echo "$1"; else echo "$2"; fi; }
 
+# seeds of the random numbers, one run for each; SEEDS in the environment has others
+read -ra seeds <<<"${SEEDS:-$(pick 1 '1 2 3')}"
+
 # scene NAME [jq's arguments]: scenes/NAME.json as a filter changes it. Relative names start at the folder.
 scene()
 {
@@ -42,5 +45,11 @@ picture() { nsd-view -o "$out/picture.png" "$@"; }
 # The curve, by NAME.gp, from the tables in the folder
 curve() { (cd "$out" && gnuplot -e "dir = '${out//\'/\'\'}'; quick = ${QUICK:+1}${QUICK:-0}" "$P/style.gp" "$P/$name.gp"); }
 
-# results: rows of the table come in; result.json goes out
-results() { jq -s --arg name "$name" --argjson quick "$(pick true false)" '{name: $name, quick: $quick, rows: .}' >"$out/result.json"; }
+# results: findings come in, of row() [rows.jq]; result.json goes out. A full run has one for each row of the table.
+results()
+{
+    jq -s -L "$P" --arg name "$name" --argjson quick "$(pick true false)" --argjson table "$(jq .rows "$P/$name.json")" '
+        include "rows"; (($table | map(.key)) - map(.key)) as $lacks |
+        if $quick or $lacks == [] then {name: $name, quick: $quick, rows: judged($table)}
+        else error("nothing was found for " + ($lacks | join(", "))) end' >"$out/result.json"
+}

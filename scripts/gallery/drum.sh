@@ -48,10 +48,10 @@ picture -c speed --boundaries lines "$out/drum-${speeds[1]}.h5"
 with '($angle | numbers) as $a | ($layer | numbers) as $l | ($l | map(.[1]) | max) as $fastest |
     # the layer: from its fastest row down to where a seventh of that is left
     ($l | map(select(.[1] > $fastest / 7 and .[1] < 0.95 * $fastest)) | line) as $fit | (9.81 / 0.003 | sqrt) as $rate |
-    row("velocity in the layer: how much of its variance a line explains"; $fit.r2; 0.95; 1; "1: linear"; "Renouf et al. 2005; GDR MiDi 2004"),
-    row("shear rate in the layer in sqrt(g/d)"; -$fit.b / $rate; 0.15; 0.7; "0.3 to 0.5"; "GDR MiDi 2004; Rajchenbach 2000"),
-    row("angle at the lowest speed, degrees"; $a[0][1]; 17; 29; "20 to 26 (discs)"; "Renouf et al. 2005; GDR MiDi 2004"),
-    row("angle at the highest speed less that at the lowest"; $a[-1][1] - $a[0][1]; 1; 25; "it rises with the Froude number"; "Orpe and Khakhar 2001; Renouf et al. 2005"),
-    if $ARGS.named.balls then row("angle of balls, degrees"; $ARGS.named.balls; 22; 40; "25 to 35"; "GDR MiDi 2004") else empty end' \
+    row("linear"; $fit.r2),
+    row("shear rate"; -$fit.b / $rate),
+    row("slow angle"; $a[0][1]),
+    row("rise of the angle"; $a[-1][1] - $a[0][1]),
+    if $ARGS.named.balls then row("balls"; $ARGS.named.balls) else empty end' \
     -n --rawfile angle "$out/angle.tsv" --rawfile layer "$out/layer-$fast.tsv" \
     $([ -e "$out/balls.tsv" ] && echo --argjson balls "$(cat "$out/balls.tsv")") | results

@@ -34,11 +34,11 @@ curve
 picture --network "$out/discs.h5"
 with 'def rows_of: split("\n")[1:] | map(select(. != "") | split("\t") | map(tonumber));
     ($discs | rows_of)[0] as $discs | ($balls | rows_of) as $balls |
-    row("Z of discs without friction, no rattlers"; $discs[1]; 3.85; 4.1; "4 = 2 d"; "isostaticity: Moukarzel 1998; O\u0027Hern et al. 2003"),
-    row("phi of discs without friction"; $discs[2]; 0.82; 0.86; "0.84"; "O\u0027Hern et al. 2003"),
-    row("Z of balls without friction, no rattlers"; $balls[0][1]; (if env.QUICK then 5.5 else 5.8 end); 6.1; "6 = 2 d"; "the same"),
-    row("phi of balls without friction"; $balls[0][2]; 0.62; 0.66; "0.64"; "O\u0027Hern et al. 2003"),
-    row("Z at the largest friction"; $balls[-1][1]; 3.9; (if ($balls | length) > 2 then 4.7 else 5.5 end); "4 to 4.5, from d + 1 on"; "Silbert 2010; Song et al. 2008"),
-    row("phi at the largest friction"; $balls[-1][2]; 0.54; 0.61; "0.55 to 0.58"; "the same"),
-    row("steps of mu at which Z rises"; ([range(1; $balls | length) | select($balls[.][1] > $balls[. - 1][1] + 0.05)] | length); 0; 0; "none"; "the same")' \
+    row("discs Z"; $discs[1]),
+    row("discs phi"; $discs[2]),
+    row("balls Z"; $balls[0][1]),
+    row("balls phi"; $balls[0][2]),
+    row("rough Z"; $balls[-1][1]),
+    row("rough phi"; $balls[-1][2]),
+    row("steps that rise"; ([range(1; $balls | length) | select($balls[.][1] > $balls[. - 1][1] + 0.05)] | length))' \
     -n --rawfile discs "$out/discs.tsv" --rawfile balls "$out/balls.tsv" | results

@@ -44,11 +44,11 @@ curve
 picture -c speed "$out/roll-${rolls[-1]}.h5"
 with 'def falls: [range(1; length) as $i | select(.[$i][1] < .[$i - 1][1] - 3)] | length;
     ($rolling | numbers) as $r | ($cohesion | numbers) as $c |
-    row("slope without rolling friction, degrees"; $r[0][1]; 10; 25; "lower than of balls: discs roll"; "Zhou et al. 2001; Estrada et al. 2008"),
-    row("slope at the largest rolling friction less that"; $r[-1][1] - $r[0][1]; 4; 60; "it rises with mu_r"; "Zhou et al. 2001: rolling friction is a primary reason for heaps"),
-    row("steps of mu_r that make a heap flatter by more than 3 degrees"; ($r | falls); 0; 0; "none"; "the same"),
-    (if ($r | length) > 4 then row("rise over the upper half of mu_r over that over the lower"; ($r[-1][1] - $r[-3][1]) / ($r[-3][1] - $r[0][1]); -0.3; 0.7; "below 1: where mu_r is large, sliding friction limits the strength"; "Estrada et al. 2008: two regimes") else empty end),
-    row("steepest cohesive slope less that of dry discs"; ($c[1:] | map(.[1]) | max) - $c[0][1]; 5; 70; "it rises with the Bond number"; "Restagno et al. 2004; Elekes and Parteli 2021"),
-    (if ($c | length) > 3 then row("slope at a Bond number of 1 less that of dry discs"; $c[1][1] - $c[0][1]; -3; 6; "little: cohesion matters where it exceeds the weight"; "Elekes and Parteli 2021") else empty end),
-    row("height at the largest Bond number over that of the block"; $c[-1][2]; 0.75; 1.1; "above a critical ratio of cohesion to weight heaps are irregular: here the block stands"; "the same")' \
+    row("dry"; $r[0][1]),
+    row("rolling"; $r[-1][1] - $r[0][1]),
+    row("steps that fall"; ($r | falls)),
+    (if ($r | length) > 4 then row("regimes"; ($r[-1][1] - $r[-3][1]) / ($r[-3][1] - $r[0][1])) else empty end),
+    row("cohesive"; ($c[1:] | map(.[1]) | max) - $c[0][1]),
+    (if ($c | length) > 3 then row("bond 1"; $c[1][1] - $c[0][1]) else empty end),
+    row("block"; $c[-1][2])' \
     -n --rawfile rolling "$out/rolling.tsv" --rawfile cohesion "$out/cohesion.tsv" | results

@@ -25,8 +25,20 @@ def front: sort | first(range(1; length) as $i | select(.[$i] - .[$i - 1] > 0.01
 def table: split("\n") | map(select(. != "") | split("\t")) | .[0] as $names | .[1:] |
   map([., $names] | transpose | map({(.[1]): (.[0] | tonumber? // null)}) | add);
 
-# A row: what is compared, what was found, between what it should be, and what says so
-def row($what; $found; $low; $high; $published; $source):
-  { what: $what, found: ($found | if type == "number" then digits(3) else . end),
-    holds: ($found != null and $found >= $low and $found <= $high),
-    low: $low, high: $high, published: $published, source: $source };
+# the standard error of the mean of independent values; null of one
+def error: length as $n | if $n < 2 then null else mean as $m | (map((. - $m) * (. - $m)) | add / ($n * ($n - 1)) | sqrt) end;
+# [[x, y], ...] of several seeds: [[x, mean of y, its standard error, number of values], ...] by x
+def spread: group_by(.[0]) | map([.[0][0], (map(.[1]) | mean), (map(.[1]) | error), length]);
+
+# A finding, for the row KEY of the experiment's table: one number, or one for each seed
+def row($key; $found):
+  ($found | if type == "array" then . else [.] end | map(select(. != null))) as $v |
+  { key: $key, found: ($v | mean | digits(4)), error: ($v | error | digits(2)), seeds: ($v | length) };
+
+# Findings beside what is published ($table: the rows of the experiment's .json). The mean holds where it lies
+# between low and high; a bound that is null is none.
+def judged($table):
+  map(. as $f | ($table | map(select(.key == $f.key)) | .[0] // error("no row named " + $f.key + " is in the table")) |
+    { what, found: $f.found, error: $f.error, seeds: $f.seeds,
+      holds: ($f.found != null and (.low == null or $f.found >= .low) and (.high == null or $f.found <= .high)),
+      low, high, published, source, read });

@@ -60,11 +60,11 @@ with 'def numbers: split("\n") | map(select(test("^[-0-9]")) | split("[ \t]"; nu
     ($stress | numbers | map(select(.[2] > 0.3))) as $s | ($s | map(.[2]) | add / length * 2500 * 9.81) as $weight |
     # Janssen: weight lambda (1 - exp(-z/lambda)), the lambda of least squares
     ([range(2; 120) | . / 1000 | . as $lambda | [($s | map((.[1] - $weight * $lambda * (1 - (-.[0] / $lambda | exp))) | . * .) | add), .]] | min[1]) as $lambda |
-    row("W^(2/5) against D: how much of its variance a line explains"; $l.r2; 0.98; 1.001; "1"; "Beverloo et al. 1961"),
-    row("k, where the line meets 0, in d"; -$l.a / $l.b / $d; 0.7; 2.4; "1.4"; "the same; Mankoc et al. 2007"),
-    row("C of W = C rho_b sqrt(g) (D - k d)^(5/2)"; ($l.b | pow(.; 2.5)) / (2500 * 0.59 * (9.81 | sqrt)); 0.5; 0.75; "0.58"; "the same"),
-    row("flow from 10 to 27 % over that from 27 to 45 %, middle orifice"; ($w[($w | length) / 2 | floor] | .[2] / .[3]); 0.85; 1.2; "1: it does not know the height"; "the same"),
-    row("flow of a hopper of 30 degrees over that of the flat floor"; $hop[1] / $w[($w | length) / 2 | floor][1]; 1; 1.8; "1.2 to 1.5"; "Rose and Tanaka 1959"),
-    row("Janssen: mu K, of lambda = R / (2 mu K)"; $radius / (2 * $lambda); 0.15; 0.45; "0.2 to 0.4"; "Janssen 1895; Vanel and Clement 1999"),
-    row("the deepest layer\u0027s stress over that of its weight"; ($s[-2] | .[1] / ($weight * .[0])); 0.05; 0.7; "far below 1"; "the same")' \
+    row("linear"; $l.r2),
+    row("k"; -$l.a / $l.b / $d),
+    row("C"; ($l.b | pow(.; 2.5)) / (2500 * 0.59 * (9.81 | sqrt))),
+    row("height"; ($w[($w | length) / 2 | floor] | .[2] / .[3])),
+    row("hopper"; $hop[1] / $w[($w | length) / 2 | floor][1]),
+    row("Janssen"; $radius / (2 * $lambda)),
+    row("deepest"; ($s[-2] | .[1] / ($weight * .[0])))' \
     -n --rawfile flow "$out/flow.tsv" --rawfile hopper "$out/hopper.tsv" --rawfile stress "$out/stress.tsv" --argjson radius "$(pick 0.006 0.01)" | results

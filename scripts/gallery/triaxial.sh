@@ -38,13 +38,13 @@ picture --network "$out/discs-loose.h5"
 with 'def curve: split("\n")[1:] | map(select(. != "") | split("\t") | map(tonumber));
     def late($k): curve | map(.[$k]) | .[length / 2 | floor:] | mean;
     def peak: curve | map(.[1]) | [range(2; length - 2) as $i | .[$i - 2:$i + 3] | mean] | .[:length / 2 | floor] | max;
-    def compare($dense; $loose; $name; $low; $high; $published; $source):
-        row($name + ": sin of the critical friction angle, from a dense start"; $dense | late(1); $low; $high; $published; $source),
-        row("the same from a loose start"; $loose | late(1); $low; $high; $published; $source),
-        row("its peak from the dense start over the critical one"; ($dense | peak) / ($dense | late(1)); 1.1; 2.5; "above 1"; "dilatancy: Rowe 1962; Thornton 2000"),
-        row("solid fraction lost by the dense"; ($dense | curve)[0][2] - ($dense | late(2)); 0.01; 0.1; "it dilates"; "the same"),
-        row("critical solid fraction, dense less loose"; ($dense | late(2)) - ($loose | late(2)); -0.012; 0.012; "0"; "critical state: Schofield and Wroth 1968"),
-        row("critical Z, dense less loose"; ($dense | late(3)) - ($loose | late(3)); -0.2; 0.2; "0"; "the same");
-    compare($dense; $loose; "discs, mu 0.5"; 0.23; 0.36; "0.28 to 0.3"; "Estrada et al. 2008"),
-    if $ARGS.named.dense3 then compare($ARGS.named.dense3; $ARGS.named.loose3; "balls, mu 0.3"; 0.3; 0.42; "0.34 to 0.38"; "Thornton 2000; Thornton and Zhang 2010") else empty end' \
+    def compare($dense; $loose; $name):
+        row($name + " critical"; $dense | late(1)),
+        row($name + " critical, loose"; $loose | late(1)),
+        row($name + " peak"; ($dense | peak) / ($dense | late(1))),
+        row($name + " dilation"; ($dense | curve)[0][2] - ($dense | late(2))),
+        row($name + " phi, dense less loose"; ($dense | late(2)) - ($loose | late(2))),
+        row($name + " Z, dense less loose"; ($dense | late(3)) - ($loose | late(3)));
+    compare($dense; $loose; "discs"),
+    if $ARGS.named.dense3 then compare($ARGS.named.dense3; $ARGS.named.loose3; "balls") else empty end' \
     -n "${tables[@]}" | results

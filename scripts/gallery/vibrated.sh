@@ -30,8 +30,8 @@ curve
 picture -c force --boundaries lines "$out/bed-${gammas[-1]}.h5"
 mass=$(nsd-info -p --last "$out/bed-${gammas[-1]}.h5" | jq -s 'map(.mass) | add')
 with '[inputs | split("\t") | map(tonumber)] |
-    row("part of the time off the floor, largest below 1 g"; (map(select(.[0] < 1) | .[1]) | max); 0; 0; "0"; "a ball on a plate"),
-    row("part of a period in flight up to 2 g, largest difference from the ball\u0027s"; (map(select(.[0] > 1 and .[0] <= 2) | .[1] - .[2] | fabs) | max); 0; 0.05; "0"; "closed solution: Mehta and Luck 1990"),
-    (map(select(.[0] > 2)) | if length > 0 then row("the same above 2 g"; (map(.[1] - .[2] | fabs) | max); 0; 0.05; "0"; "the same") else empty end),
-    row("mean force on the floor over the weight, all"; (map(.[3]) | mean) / ($mass * 9.81); 0.97; 1.03; "1"; "momentum")' \
+    row("rest"; (map(select(.[0] < 1) | .[1]) | max)),
+    row("low flight"; (map(select(.[0] > 1 and .[0] <= 2) | .[1] - .[2] | fabs) | max)),
+    (map(select(.[0] > 2)) | if length > 0 then row("high flight"; (map(.[1] - .[2] | fabs) | max)) else empty end),
+    row("force"; (map(.[3]) | mean) / ($mass * 9.81))' \
     -nR --argjson mass "$mass" <(tail -n +2 "$out/flight.tsv") | results

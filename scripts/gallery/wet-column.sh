@@ -25,8 +25,8 @@ done
 curve
 picture "$out/run-${bonds[$((${#bonds[@]} / 2))]}.h5"
 with '($runs | numbers) as $r |
-    row("run-out of the dry column in widths"; $r[0][1]; 1.5; 4.5; "3.75 (discs), 1.8 (beads), of this height"; "Staron and Hinch 2005; Lajeunesse et al. 2005"),
-    row("run-out of the most cohesive over that"; $r[-1][1] / $r[0][1]; -0.05; 0.35; "it falls with cohesion"; "Gans et al. 2023; Sharma et al. 2024"),
-    row("steps of cohesion that run out farther by a tenth of that"; ([range(1; $r | length) | select($r[.][1] > $r[. - 1][1] + 0.1 * $r[0][1])] | length); 0; 0; "none"; "the same"),
-    row("height left of the most cohesive"; $r[-1][2]; 0.9; 1.02; "1: columns of less than a critical height stand"; "Gans et al. 2023"),
-    row("height left of the dry column"; $r[0][2]; 0.2; 0.8; "it falls"; "the same")' -n --rawfile runs "$out/runout.tsv" | results
+    row("dry"; $r[0][1]),
+    row("run-out"; $r[-1][1] / $r[0][1]),
+    row("steps that rise"; ([range(1; $r | length) | select($r[.][1] > $r[. - 1][1] + 0.1 * $r[0][1])] | length)),
+    row("height"; $r[-1][2]),
+    row("dry height"; $r[0][2])' -n --rawfile runs "$out/runout.tsv" | results

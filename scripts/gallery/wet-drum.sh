@@ -27,8 +27,8 @@ done
 curve
 picture -c speed --boundaries lines "$out/drum-${bonds[-1]}.h5"
 with '($angles | numbers) as $a |
-    row("angle of dry discs, degrees"; $a[0][1]; 17; 32; "20 to 26"; "Renouf et al. 2005; GDR MiDi 2004"),
-    row("largest angle less that of dry discs"; ($a[1:] | map(.[1]) | max) - $a[0][1]; 2.5; 45; "it rises with cohesion"; "Nowak et al. 2005; Pol et al. 2025"),
-    row("angle at the largest Bond number less that of dry discs"; $a[-1][1] - $a[0][1]; 2.5; 45; "the same"; "the same"),
-    row("roughness of the surface, the least of cohesive discs over that of dry ones"; ($a[1:] | map(.[2]) | min) / $a[0][2]; 1.15; 30; "it rises: clusters"; "Pol et al. 2025; Abramian et al. 2021 (deposits)")' \
+    row("dry"; $a[0][1]),
+    row("angle"; ($a[1:] | map(.[1]) | max) - $a[0][1]),
+    row("last angle"; $a[-1][1] - $a[0][1]),
+    row("roughness"; ($a[1:] | map(.[2]) | min) / $a[0][2])' \
     -n --rawfile angles "$out/angle.tsv" | results
