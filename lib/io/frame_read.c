@@ -145,8 +145,8 @@ static int read_overlap(struct source *doc, struct packing *p, struct why *why)
 
 static int read_parameters(struct source *doc, struct packing *p, struct why *why)
 {
-    double g[3];
-    int64_t seed;
+    double g[3] = { 0 };
+    int64_t seed = 0;
     if (source_attribute(doc, "/nsd", "dt", (struct numbers){ COLUMN_F64, -1, &p->dt }, why) ||
         source_attribute(doc, "/nsd", "theta", (struct numbers){ COLUMN_F64, -1, &p->theta },
                          why) ||
