@@ -1,5 +1,6 @@
 /* nsd-export: frames as files of other programs: ParaView, OVITO, ASE, tables, triangles. */
 #include "base/output.h"
+#include "bodies/chosen.h"
 #include "cli/cli.h"
 #include "cli/tool_filter.h"
 #include "export/format.h"
@@ -214,10 +215,21 @@ enum target { TARGET_FILE, TARGET_SERIES, TARGET_DIRECTORY };
 static struct sheaf single;
 static bool shown; /* whether any frame had the part that was asked for */
 
+/* Also where there is no boundary, and so nothing to export */
+static void check_names(const struct packing *p)
+{
+    struct chosen chosen;
+    struct why why = { 0 };
+    if (chosen_init(&chosen, p, "--only", only, &why))
+        die(why.status, "step %lld: %s", (long long)p->step, why.text);
+    chosen_free(&chosen);
+}
+
 static void export(const struct format *format, enum target target, const struct frame *f,
                    const char *where, int64_t k)
 {
     tool_wants_packing(f, where);
+    check_names(&f->packing);
     if (target == TARGET_DIRECTORY) {
         for (int what = 0; what < PART_COUNT; what++) {
             bool wanted = cli_given(&part) ? what == part : format->parts || what == PART_GRAINS;

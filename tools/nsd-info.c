@@ -396,7 +396,8 @@ static void show_sweeps(const struct frame *f)
 static void show(const struct frame *f)
 {
     struct why why = { 0 };
-    if (only && f->packed && chosen_init(&chosen, &f->packing, "--only", only, &why)) die_why(&why);
+    if (only && !f->packed) die(EX_DATAERR, "--only: a contact problem has no names");
+    if (only && chosen_init(&chosen, &f->packing, "--only", only, &why)) die_why(&why);
     if (particles && f->packed) show_particles(&f->packing);
     if (events && f->packed) show_events(&f->packing);
     if (walls && f->packed) show_walls(&f->packing);
@@ -480,7 +481,7 @@ int tool_main(int argc, char **argv)
     int64_t frames = 0;
     if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
     if (last && steps) die_usage("--last and --steps exclude each other");
-    if (only && !particles && !walls && !contacts)
+    if (only && (scene || (!particles && !walls && !contacts)))
         die_usage("--only: of bodies, walls or contacts: with -p, -w or -c");
     if (scene && (argc != 1 || !strcmp(argv[0], "-")))
         die_usage("--scene: one FILE, which the scene names");

@@ -329,6 +329,8 @@ int nsd_measure(struct nsd_run *r, const char *names, const char **json)
         bool bad = !out || ferror(out);
         if ((out && fclose(out)) || bad) no_memory(why);
     }
+    if (why->status && !strncmp(why->text, "--", 2))
+        memmove(why->text, why->text + 2, strlen(why->text + 2) + 1);
     measured_free(t);
     // what measures of ways look back to: the first moment that was measured, and the last
     if (!why->status && measured_remember(chosen) &&

@@ -1,5 +1,6 @@
 #include "measure/measured.h"
 
+#include "bodies/chosen.h"
 #include "measure/follow.h"
 
 #include <inttypes.h>
@@ -52,10 +53,31 @@ int measured_keep(const struct measure *const *chosen, const struct snapshot *s,
     return 0;
 }
 
+/* Are --only and --tracer names of this document, whatever else it lacks? Returns 0, EX_DATAERR or EX_SOFTWARE. */
+static int names_known(const struct snapshot *s, struct why *why)
+{
+    const struct packing *p = s->p;
+    const char *only = *s->asked->only ? s->asked->only : NULL, *tracer = s->asked->tracer;
+    struct chosen chosen;
+    char kinds[200];
+    size_t at = 0;
+    if (chosen_init(&chosen, p, "--only", only, why)) return why->status;
+    chosen_free(&chosen);
+    if (!*tracer || !strcmp(tracer, "large")) return 0;
+    for (int32_t k = 0; k < p->kinds; k++) {
+        if (!strcmp(tracer, p->kind_name[k])) return 0;
+        if (at < sizeof kinds)
+            at += (size_t)snprintf(kinds + at, sizeof kinds - at, ", %s", p->kind_name[k]);
+    }
+    return why_set(why, EX_DATAERR, "--tracer: no kind '%s' here, but large%s%s", tracer, kinds,
+                   at < sizeof kinds ? "" : "...");
+}
+
 int measured_run(struct table *t, const struct measure *const *chosen, const struct snapshot *s,
                  struct why *why)
 {
     for (int k = 0; k < MOST_MEASURES; k++) t[k] = (struct table){ 0 };
+    if (names_known(s, why)) return why->status;
     for (int k = 0; chosen[k]; k++)
         if (measure_run(&t[k], chosen[k], s, why)) return why->status;
     return 0;
