@@ -1,6 +1,5 @@
 #include "measure/measured.h"
 
-#include "bodies/chosen.h"
 #include "measure/follow.h"
 
 #include <inttypes.h>
@@ -53,31 +52,31 @@ int measured_keep(const struct measure *const *chosen, const struct snapshot *s,
     return 0;
 }
 
-/* Are --only and --tracer names of this document, whatever else it lacks? Returns 0, EX_DATAERR or EX_SOFTWARE. */
-static int names_known(const struct snapshot *s, struct why *why)
+/* Can each measure keep to what --only names? Returns 0 or EX_DATAERR. */
+static int check_only(const struct measure *const *chosen, const struct snapshot *s,
+                      struct why *why)
 {
-    const struct packing *p = s->p;
-    const char *only = *s->asked->only ? s->asked->only : NULL, *tracer = s->asked->tracer;
-    struct chosen chosen;
-    char kinds[200];
-    size_t at = 0;
-    if (chosen_init(&chosen, p, "--only", only, why)) return why->status;
-    chosen_free(&chosen);
-    if (!*tracer || !strcmp(tracer, "large")) return 0;
-    for (int32_t k = 0; k < p->kinds; k++) {
-        if (!strcmp(tracer, p->kind_name[k])) return 0;
-        if (at < sizeof kinds)
-            at += (size_t)snprintf(kinds + at, sizeof kinds - at, ", %s", p->kind_name[k]);
+    bool used = !s->only.any;
+    for (int k = 0; chosen[k]; k++) {
+        const enum keeps_to to = chosen[k]->keeps_to;
+        if (to == KEEPS_TO_NOTHING && s->only.bodies)
+            return why_set(why, EX_DATAERR,
+                           "--only: %s is measured of all bodies, not of a group or kind",
+                           chosen[k]->name);
+        used = used || (to == KEEPS_TO_WALLS && s->only.walls) ||
+               (to == KEEPS_TO_BODIES && s->only.bodies);
     }
-    return why_set(why, EX_DATAERR, "--tracer: no kind '%s' here, but large%s%s", tracer, kinds,
-                   at < sizeof kinds ? "" : "...");
+    const char *of = s->only.walls ? "walls" : "bodies";
+    if (used) return 0;
+    return why_set(why, EX_DATAERR, "--only: '%s' names %s, and no measure of %s is chosen",
+                   s->asked->only, of, of);
 }
 
 int measured_run(struct table *t, const struct measure *const *chosen, const struct snapshot *s,
                  struct why *why)
 {
     for (int k = 0; k < MOST_MEASURES; k++) t[k] = (struct table){ 0 };
-    if (names_known(s, why)) return why->status;
+    if (why->status || check_only(chosen, s, why)) return why->status;
     for (int k = 0; chosen[k]; k++)
         if (measure_run(&t[k], chosen[k], s, why)) return why->status;
     return 0;
