@@ -1,9 +1,11 @@
 /* nsd-export: frames as files of other programs: ParaView, OVITO, ASE, tables, triangles. */
 #include "base/output.h"
+#include "bodies/chosen.h"
 #include "cli/cli.h"
 #include "cli/tool_filter.h"
 #include "export/format.h"
 #include "export/pvd.h"
+#include "export/some_bodies.h"
 #include "io/reader.h"
 
 #include <ctype.h>
@@ -15,6 +17,7 @@
 
 static int to, part = PART_GRAINS;
 static const char *output, *steps, *only;
+static struct chosen chosen; /* of the frame at hand, by --only */
 static bool last;
 static int64_t detail = 2;
 
@@ -37,7 +40,7 @@ static const struct cli_option own[] = {
     { CLI_TEXT, 'o', "output", &output, "FILE",
       .help = "write a FILE, a series 'f%05d.vtp' or a directory 'DIR/' [stdout]" },
     { CLI_TEXT, 0, "only", &only, "NAME,...",
-      .help = "export only these walls and parts, by name or number [all]" },
+      .help = "export only these walls, parts, groups, kinds [all]" },
     { CLI_FLAG, 'l', "last", &last, .help = "process only the last frame" },
     { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "process steps A to B, every K-th [all]" },
     { CLI_INT, 0, "detail", &detail, "N",
@@ -100,7 +103,7 @@ static void sheaf_add(struct sheaf *s, const struct format *format, enum part wh
     struct why why = { 0 };
     struct export_frame m = { &f->packing, f->detected ? &f->contacts : NULL,
                               (int)detail, &s->kept,
-                              only,        show_rows };
+                              &chosen,     show_rows };
     bool solved = m.contacts && m.contacts->found;
     if (s->moments && !format->joins)
         die_usage("a %s file holds one frame: --last, --steps, or a series -o 'f%%05d.%s'",
@@ -117,8 +120,14 @@ static void sheaf_add(struct sheaf *s, const struct format *format, enum part wh
         die(EX_DATAERR, "step %lld: contacts solved and unsolved in one table",
             (long long)f->packing.step);
     if (!s->moments) s->solved = solved, s->sums = f->packing.sums.n > 0, s->format = format;
+    struct some_bodies some = { 0 };
+    if (chosen.bodies && !format->parts) {
+        if (some_bodies_init(&some, m.packing, &chosen, &why)) die_why(&why);
+        m.packing = &some.packing, m.contacts = NULL; // those have numbers of all bodies
+    }
     if (format->write(s->out, &m, what, !s->moments, &why))
         die(why.status, "step %lld: %s", (long long)f->packing.step, why.text);
+    some_bodies_free(&some);
     s->moments++;
 }
 
@@ -214,10 +223,21 @@ enum target { TARGET_FILE, TARGET_SERIES, TARGET_DIRECTORY };
 static struct sheaf single;
 static bool shown; /* whether any frame had the part that was asked for */
 
-static void export(const struct format *format, enum target target, const struct frame *f,
-                   const char *where, int64_t k)
+/* What --only names, which the part has: grains are of bodies, boundaries of walls, contacts of either. */
+static void choose(const struct packing *p, enum target target)
 {
-    tool_wants_packing(f, where);
+    struct why why = { 0 };
+    if (chosen_init(&chosen, p, "--only", only, &why))
+        die(why.status, "step %lld: %s", (long long)p->step, why.text);
+    if (!only || (target == TARGET_DIRECTORY && !cli_given(&part))) return;
+    if (part == PART_BOUNDARY ? chosen.walls : part == PART_CONTACTS || chosen.bodies) return;
+    die(EX_DATAERR, "--only: '%s' names %s; --part %s has no such names", only,
+        chosen.walls ? "walls" : "bodies", part_name[part]);
+}
+
+static void export(const struct format *format, enum target target, const struct frame *f,
+                   int64_t k)
+{
     if (target == TARGET_DIRECTORY) {
         for (int what = 0; what < PART_COUNT; what++) {
             bool wanted = cli_given(&part) ? what == part : format->parts || what == PART_GRAINS;
@@ -240,6 +260,15 @@ static void export(const struct format *format, enum target target, const struct
     free(name);
 }
 
+static void add_frame(const struct format *format, enum target target, const struct frame *f,
+                      const char *where, int64_t k)
+{
+    tool_wants_packing(f, where);
+    choose(&f->packing, target);
+    export(format, target, f, k);
+    chosen_free(&chosen);
+}
+
 static enum target target_of(const struct format **format)
 {
     bool in_directory = output && is_directory(output);
@@ -249,7 +278,7 @@ static enum target target_of(const struct format **format)
     if (!*format) die_usage("no format: give --to FORMAT, or an --output with its suffix");
     if (!(*format)->parts && part != PART_GRAINS)
         die_usage("--part: %s has grains only", (*format)->name);
-    if (only && part != PART_BOUNDARY) die_usage("--only: of the boundary: with --part boundary");
+    if (only && part == PART_CELL) die_usage("--only: the cell has no names");
     if (in_directory) return TARGET_DIRECTORY;
     if (output && number_in(output)) return TARGET_SERIES;
     if (!output && (*format)->binary && isatty(STDOUT_FILENO))
@@ -268,9 +297,9 @@ static void run(struct reader *in, const struct format *format, enum target targ
     if (target == TARGET_FILE) sheaf_open(&single, output);
     int64_t k = 0;
     if (last && !reader_last(in, &f, &more, &why) && more)
-        export(format, target, &f, reader_where(in), k++);
+        add_frame(format, target, &f, reader_where(in), k++);
     while (!last && !reader_next(in, steps ? &range : NULL, &f, &more, &why) && more) {
-        export(format, target, &f, reader_where(in), k++);
+        add_frame(format, target, &f, reader_where(in), k++);
         exported = k;
         progress("%lld frames", (long long)k);
     }

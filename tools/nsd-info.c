@@ -144,8 +144,9 @@ static json_t *stress(const struct frame *f)
 {
     static const struct asked all = { .axis = -1 };
     struct snapshot s;
+    struct why why = { 0 };
     vec3 row[3];
-    snapshot_init(&s, &f->packing, &f->contacts, f->moved, &all);
+    snapshot_init(&s, &f->packing, &f->contacts, f->moved, &all, &why);
     struct tensor T = stress_contacts(&s, &s.whole);
     tensor_scale(&T, 1 / s.whole.volume);
     for (int k = 0; k < 3; k++) row[k] = v3(T.x[k][0], T.x[k][1], T.x[k][2]);
@@ -312,15 +313,6 @@ static void add_tie(json_t *j, const struct contact_law *t)
     }
 }
 
-/* Is a contact of a body or of a face that is chosen? */
-static bool is_chosen(const struct packing *p, const struct wall_faces *faces,
-                      const struct contact *c)
-{
-    if (chosen_body(&chosen, p, c->b)) return true;
-    if (c->a >= 0) return chosen_body(&chosen, p, c->a);
-    return chosen_face(&chosen, p, -1 - c->a, face_of_contact(faces, p, c, 0));
-}
-
 static void show_contacts(const struct frame *f)
 {
     static const char *const status[] = { "free", "stick", "slide", "jammed" };
@@ -333,7 +325,7 @@ static void show_contacts(const struct frame *f)
         const struct contact *c = &f->contacts.c[i];
         const char *name =
             c->a < 0 ? names_of_face(&p->names, -1 - c->a, face_of_contact(&faces, p, c, 0)) : NULL;
-        if (only && !is_chosen(p, &faces, c)) continue;
+        if (only && !chosen_contact(&chosen, p, &faces, c)) continue;
         json_t *j = json_object();
         json_object_set_new(j, "step", json_integer(f->packing.step));
         json_object_set_new(j, "body", json_pack("[i,i]", c->a, c->b));
@@ -396,7 +388,8 @@ static void show_sweeps(const struct frame *f)
 static void show(const struct frame *f)
 {
     struct why why = { 0 };
-    if (only && f->packed && chosen_init(&chosen, &f->packing, "--only", only, &why)) die_why(&why);
+    if (only && !f->packed) die(EX_DATAERR, "--only: a contact problem has no names");
+    if (only && chosen_init(&chosen, &f->packing, "--only", only, &why)) die_why(&why);
     if (particles && f->packed) show_particles(&f->packing);
     if (events && f->packed) show_events(&f->packing);
     if (walls && f->packed) show_walls(&f->packing);
@@ -480,7 +473,7 @@ int tool_main(int argc, char **argv)
     int64_t frames = 0;
     if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
     if (last && steps) die_usage("--last and --steps exclude each other");
-    if (only && !particles && !walls && !contacts)
+    if (only && (scene || (!particles && !walls && !contacts)))
         die_usage("--only: of bodies, walls or contacts: with -p, -w or -c");
     if (scene && (argc != 1 || !strcmp(argv[0], "-")))
         die_usage("--scene: one FILE, which the scene names");

@@ -47,7 +47,7 @@ static const struct cli_option own[] = {
     { CLI_ABOVE, 0, "distance", &asked.distance, "M",
       .help = "set the largest distance of pairs, m [3 mean diameters]", .max = 1e300 },
     { CLI_TEXT, 0, "only", &only, "NAME,...",
-      .help = "measure only these walls and their parts, by name or number [all]" },
+      .help = "measure only these walls, parts, groups, kinds [all]" },
     { CLI_ABOVE, 0, "wear", &asked.wear, "K",
       .help = "set Archard's coefficient of all walls, 1/Pa [that of the scene]", .max = 1e300 },
     { CLI_TEXT, 0, "tracer", &tracer, "KIND",
@@ -232,10 +232,12 @@ static void show(const struct frame *f, const char *where, int64_t k, struct why
     tool_wants_packing(f, where);
     if (asked.boxed && f->packing.dim == 3 && !isfinite(asked.lo[2]))
         die_usage("--box: '%s' has four numbers, and the bodies are balls", box);
-    snapshot_init(&s, &f->packing, f->detected ? &f->contacts : NULL, f->moved, &asked);
+    snapshot_init(&s, &f->packing, f->detected ? &f->contacts : NULL, f->moved, &asked, why);
     if (k) s.first = &first, s.before = &before;
+    if (fields_to && s.only.bodies)
+        die(EX_DATAERR, "--only: fields are of all bodies, not of a group or kind");
     if (measured_run(t, chosen, &s, why)) {
-        measured_free(t);
+        measured_free(t), snapshot_free(&s);
         return;
     }
     if (tsv) {
@@ -248,6 +250,7 @@ static void show(const struct frame *f, const char *where, int64_t k, struct why
     if (fflush(stdout)) finish_stdout(); // a line is seen when its frame is there
     if (fields_to) add_fields(&s, why);
     if (measured_remember(chosen) && !why->status) measured_keep(chosen, &s, &first, &before, why);
+    snapshot_free(&s);
 }
 
 static void run(struct reader *in)

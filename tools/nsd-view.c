@@ -1,5 +1,6 @@
 /* nsd-view: draws the bodies, one picture, a series or a film. */
 #include "base/team.h"
+#include "bodies/chosen.h"
 #include "cli/cli.h"
 #include "cli/tool_filter.h"
 #include "draw/film.h"
@@ -21,7 +22,7 @@ static bool plain, bare, svg, strays;
 static double perspective, pale;
 static struct overlay over;
 static const char *output, *range, *size, *camera = "30,15", *box, *background = "ffffff", *cut,
-                                          *table, *wanted, *solid_names, *surface_range;
+                                          *only, *table, *wanted, *solid_names, *surface_range;
 static int surface = SURFACE_NAME;
 static struct solid solid;
 
@@ -92,6 +93,8 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 0, "strays", &strays, .help = "include outliers in the picture" },
     { CLI_TEXT, 0, "box", &box, "X0,X1,Y0,Y1[,Z0,Z1]",
       .help = "draw only bodies with their centre in this box, m [all]" },
+    { CLI_TEXT, 0, "only", &only, "NAME,...",
+      .help = "draw only bodies of these groups and kinds [all]" },
     { CLI_CHOICE, 0, "boundaries", &boundaries, .choice = boundaries_choice,
       .help = "draw boundaries in this way [glass]" },
     { CLI_TEXT, 0, "solid", &solid_names, "NAME,...",
@@ -272,9 +275,25 @@ static void set_solid(struct view *v, const struct frame *f, const char *where)
 }
 
 /* Before a frame is seen or drawn */
+/* The bodies of the frame that --only names */
+static void set_only(struct view *v, const struct frame *f, const char *where)
+{
+    static struct chosen chosen;
+    struct why why = { 0 };
+    chosen_free(&chosen);
+    if (!only) return;
+    if (chosen_init(&chosen, &f->packing, "--only", only, &why))
+        die(why.status, "%s: %s", where, why.text);
+    if (!chosen.bodies)
+        die(EX_DATAERR, "%s: --only: '%s' names walls, not bodies; --solid draws walls", where,
+            only);
+    v->only = &chosen;
+}
+
 static void set_values(struct view *v, struct frame *f, const char *where)
 {
     tool_wants_packing(f, where);
+    set_only(v, f, where);
     set_solid(v, f, where);
     set_numbers(v, f, where);
     add_images(v, f);
@@ -342,9 +361,9 @@ static void find(struct reader *in, struct frame *found)
     struct frame f = { 0 };
     struct why why = { 0 };
     bool more = false, any = false;
-    const struct range only = { step, step, 1 };
+    const struct range one = { step, step, 1 };
     if (step < 0 && reader_last(in, found, &any, &why)) die_why(&why);
-    while (step >= 0 && !reader_next(in, &only, &f, &more, &why) && more)
+    while (step >= 0 && !reader_next(in, &one, &f, &more, &why) && more)
         if (f.packed) {
             frame_free(found);
             *found = f, f = (struct frame){ 0 }, any = true;

@@ -321,7 +321,7 @@ int nsd_measure(struct nsd_run *r, const char *names, const char **json)
     }
     if (r->asked.boxed && f->packing.dim == 3 && !isfinite(r->asked.lo[2]))
         return why_set(why, NSD_USAGE, "box: it has four numbers, and the bodies are balls");
-    snapshot_init(&s, &f->packing, f->detected ? &f->contacts : NULL, f->moved, &r->asked);
+    snapshot_init(&s, &f->packing, f->detected ? &f->contacts : NULL, f->moved, &r->asked, why);
     if (r->remembers) s.first = &r->first, s.before = &r->before;
     if (!measured_run(t, chosen, &s, why)) {
         FILE *out = open_memstream(&text, &size);
@@ -329,11 +329,14 @@ int nsd_measure(struct nsd_run *r, const char *names, const char **json)
         bool bad = !out || ferror(out);
         if ((out && fclose(out)) || bad) no_memory(why);
     }
+    if (why->status && !strncmp(why->text, "--", 2))
+        memmove(why->text, why->text + 2, strlen(why->text + 2) + 1);
     measured_free(t);
     // what measures of ways look back to: the first moment that was measured, and the last
     if (!why->status && measured_remember(chosen) &&
         !measured_keep(chosen, &s, &r->first, &r->before, why))
         r->remembers = true;
+    snapshot_free(&s);
     if (why->status) return free(text), why->status;
     free(r->text);
     *json = r->text = text;

@@ -1,5 +1,7 @@
 #include "bodies/chosen.h"
 
+#include "bodies/face_of.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -56,6 +58,14 @@ static bool choose(struct chosen *c, const struct packing *p, const char *word, 
     return false;
 }
 
+/* A name without rows is that of a group. */
+static bool is_of_walls(const struct packing *p, int32_t name)
+{
+    for (int32_t k = 0; k < p->names.rows; k++)
+        if (p->names.row[k].name == name) return true;
+    return false;
+}
+
 int chosen_init(struct chosen *c, const struct packing *p, const char *option, const char *list,
                 struct why *why)
 {
@@ -76,8 +86,12 @@ int chosen_init(struct chosen *c, const struct packing *p, const char *option, c
         s += n;
         if (!*s) break;
     }
-    if (why->status) chosen_free(c);
-    return why->status;
+    if (why->status) return chosen_free(c), why->status;
+    for (int32_t w = 0; w < p->walls; w++) c->walls = c->walls || chosen_wall(c, p, w);
+    for (int32_t k = 0; k < p->kinds; k++) c->bodies = c->bodies || c->kind[k];
+    for (int32_t k = 0; k < p->names.n; k++)
+        c->bodies = c->bodies || (c->name[k] && !is_of_walls(p, k));
+    return 0;
 }
 
 bool chosen_face(const struct chosen *c, const struct packing *p, int32_t wall, int32_t face)
@@ -104,4 +118,12 @@ bool chosen_body(const struct chosen *c, const struct packing *p, int64_t i)
 {
     if (!c->any || c->kind[p->kind[i]]) return true;
     return p->group && p->group[i] > 0 && c->name[p->group[i] - 1];
+}
+
+bool chosen_contact(const struct chosen *c, const struct packing *p, const struct wall_faces *faces,
+                    const struct contact *contact)
+{
+    if (chosen_body(c, p, contact->b)) return true;
+    if (contact->a >= 0) return chosen_body(c, p, contact->a);
+    return chosen_face(c, p, -1 - contact->a, face_of_contact(faces, p, contact, 0));
 }

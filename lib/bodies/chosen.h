@@ -6,12 +6,15 @@
 #define NSD_CHOSEN_H
 
 #include "bodies/packing.h"
+#include "bodies/wall_faces.h"
 
 struct chosen {
-    bool any;   /* a list is given; else all are chosen */
-    bool *wall; /* [walls] as a whole */
-    bool *name; /* [names.n] */
-    bool *kind; /* [kinds] */
+    bool any;    /* a list is given; else all are chosen */
+    bool walls;  /* it names a wall, or a part of one */
+    bool bodies; /* it names a group of bodies or a kind */
+    bool *wall;  /* [walls] as a whole */
+    bool *name;  /* [names.n] */
+    bool *kind;  /* [kinds] */
 };
 
 /* list NULL: all. option: "--only", for the message, which lists what there is. Returns 0, EX_DATAERR or EX_SOFTWARE
@@ -24,5 +27,8 @@ void chosen_free(struct chosen *c);
 bool chosen_wall(const struct chosen *c, const struct packing *p, int32_t wall);
 bool chosen_face(const struct chosen *c, const struct packing *p, int32_t wall, int32_t face);
 bool chosen_body(const struct chosen *c, const struct packing *p, int64_t i);
+/* The contact of such a body, or with such a face; faces: of face_of_init() */
+bool chosen_contact(const struct chosen *c, const struct packing *p, const struct wall_faces *faces,
+                    const struct contact *contact);
 
 #endif

@@ -208,16 +208,19 @@ static int put_measures(FILE *out, const struct frame *f, const struct contacts 
     struct snapshot look;
     struct table t[MOST_MEASURES];
     const struct packing *p = &f->packing;
-    snapshot_init(&look, p, s, f->moved, &loop.asked);
+    snapshot_init(&look, p, s, f->moved, &loop.asked, why);
     if (loop.remembers) look.first = &loop.first, look.before = &loop.before;
     if (!measured_run(t, loop.chosen, &look, why)) {
         fputs(",\"measures\":", out);
         measured_json(out, &look, loop.chosen, t);
     }
     measured_free(t);
-    if (why->status || !measured_remember(loop.chosen)) return why->status;
-    loop.remembers = true;
-    return measured_keep(loop.chosen, &look, &loop.first, &loop.before, why);
+    if (!why->status && measured_remember(loop.chosen)) {
+        loop.remembers = true;
+        measured_keep(loop.chosen, &look, &loop.first, &loop.before, why);
+    }
+    snapshot_free(&look);
+    return why->status;
 }
 
 /* The line, and the document behind it; to be freed */

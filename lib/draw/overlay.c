@@ -66,7 +66,7 @@ static void draw_network(cairo_t *cr, const struct overlay *o, const struct view
     double most = o->force > 0 ? o->force : largest_force(p, s);
     cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
     for (int64_t i = 0; most > 0 && i < s->n; i++)
-        if (s->found[i].r[0] > 0)
+        if (s->found[i].r[0] > 0 && view_joins(v, p, s->c[i].a, s->c[i].b))
             draw_push(cr, v, p, &s->c[i], &s->found[i], fmin(s->found[i].r[0] / p->dt / most, 1));
 }
 
@@ -86,7 +86,7 @@ static void draw_bonds(cairo_t *cr, const struct view *v, const struct packing *
     cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
     for (int64_t i = 0; i < p->bonds.n; i++) {
         const struct bond *k = &p->bonds.bond[i];
-        if (!(k->beta > 0) && !k->wet) continue;
+        if ((!(k->beta > 0) && !k->wet) || !view_joins(v, p, k->a, k->b)) continue;
         double size, small = p->radius[k->b], length = p->radius[k->b] + k->gap;
         if (k->a >= 0) small = fmin(small, p->radius[k->a]), length += p->radius[k->a];
         vec3 b = p->x[k->b], a = v3_axpy(b, -length, k->n);
@@ -108,7 +108,7 @@ static void draw_contacts(cairo_t *cr, const struct view *v, const struct packin
         const struct contact *c = &s->c[i];
         double size, r = fmax(0.12 * p->radius[c->b] * v->camera.scale, 1.2);
         vec3 at = view_sees(v, c->x, &size);
-        if (is_cut(v, c->x) || !(size > 0)) continue;
+        if (is_cut(v, c->x) || !(size > 0) || !view_joins(v, p, c->a, c->b)) continue;
         set_status(cr, s->found ? s->found[i].status : 0);
         cairo_arc(cr, at.x, at.y, r, 0, 2 * M_PI);
         cairo_fill(cr);
@@ -232,14 +232,14 @@ static bool draw_key(cairo_t *cr, double *x, double y, double end, struct rgb c,
 }
 
 /* The kinds, or the names of the groups, that bodies are of, with their colours */
-static void draw_classes(cairo_t *cr, const struct packing *p, bool groups, double x, double y,
-                         double end)
+static void draw_classes(cairo_t *cr, const struct view *v, const struct packing *p, bool groups,
+                         double x, double y, double end)
 {
     const int32_t n = groups ? p->names.n : p->kinds;
     bool *any = calloc((size_t)n + 1, sizeof *any);
     for (int64_t i = 0; any && i < p->n; i++) {
         int32_t k = !groups ? p->kind[i] : p->group ? p->group[i] - 1 : -1;
-        if (k >= 0) any[k] = true;
+        if (k >= 0 && view_joins(v, p, -1, (int32_t)i)) any[k] = true;
     }
     for (int32_t k = 0; any && k < n; k++)
         if (any[k] &&
@@ -318,14 +318,16 @@ void overlay_legend(cairo_t *cr, const struct overlay *o, const struct view *v,
     if (o->solid)
         draw_solid(cr, o->solid, &v->paint, 0.03 * w, top + strip + 0.3 * strip, 0.97 * w);
     if (v->paint.by == COLOUR_KIND || v->paint.by == COLOUR_GROUP)
-        draw_classes(cr, p, v->paint.by == COLOUR_GROUP, 0.03 * w, top + 0.58 * strip, 0.43 * w);
+        draw_classes(cr, v, p, v->paint.by == COLOUR_GROUP, 0.03 * w, top + 0.58 * strip, 0.43 * w);
     else
         draw_palette(cr, &v->paint, 0.03 * w, top + 0.36 * strip, 0.34 * w, 0.22 * strip);
-    if (isinf(v->camera.eye)) draw_scale(cr, v, 0.54 * w, top + 0.42 * strip, 0.2 * w);
-    bool keys = o->network || o->contacts;
+    const bool keys = o->network || o->contacts;
+    const double status = 0.97 * w - 8.6 * size; // pixels: where its words begin
+    const double scale = keys ? fmin(0.54 * w, status - size - 0.1 * w) : 0.54 * w;
+    if (isinf(v->camera.eye)) draw_scale(cr, v, scale, top + 0.42 * strip, 0.2 * w);
     snprintf(text, sizeof text, "t = %.4g s", p->t);
     write_words(cr, 0.97 * w, top + 0.36 * strip + (keys ? 0 : 0.6 * size), RIGHT, text);
-    if (keys) draw_status(cr, 0.97 * w - 8.6 * size, top + 0.58 * strip + size, size);
+    if (keys) draw_status(cr, status, top + 0.58 * strip + size, size);
 }
 
 /* ---- over pixels ---- */

@@ -89,10 +89,10 @@ int solid_init(struct solid *s, const struct packing *p, const struct solid_opt 
     const enum solid_by by = o->by;
     struct chosen c;
     *s = (struct solid){ .by = by, .lo = o->lo, .hi = o->hi };
-    if (by != SURFACE_NAME && !p->sums.n)
-        return why_set(why, EX_DATAERR, "no sums of walls (nsd-step --sums keeps them)");
     if (chosen_init(&c, p, "--solid", o->list, why)) return why->status;
-    if (!face_of_init(&s->faces, p, false, why) &&
+    if (by != SURFACE_NAME && !p->sums.n)
+        why_set(why, EX_DATAERR, "no sums of walls (nsd-step --sums keeps them)");
+    if (!why->status && !face_of_init(&s->faces, p, false, why) &&
         !(s->colour = calloc((size_t)s->faces.n + 1, sizeof *s->colour)))
         why_set(why, EX_SOFTWARE, "no memory for the colours of boundaries");
     if (!why->status && by != SURFACE_NAME) set_range(s, p, &c);

@@ -1,19 +1,35 @@
 /* draw/view.c: the window of a series, and its bodies and walls placed among the samples. */
 #include "draw/view.h"
 
+#include "bodies/chosen.h"
 #include "draw/glass.h"
 #include "draw/images.h"
 #include "draw/raster.h"
 
 #include <stdlib.h>
 
-bool view_shows(const struct view *v, const struct packing *p, int64_t i)
+static bool is_wanted(const struct view *v, const struct packing *p, int64_t i)
+{
+    return !v->only || chosen_body(v->only, p, i);
+}
+
+bool view_joins(const struct view *v, const struct packing *p, int32_t a, int32_t b)
+{
+    return is_wanted(v, p, b) || (a >= 0 && is_wanted(v, p, a));
+}
+
+static bool is_in_region(const struct view *v, const struct packing *p, int64_t i)
 {
     vec3 x = v3_sub(p->x[i], v->moved);
     if (!(v3_dot(x, x) < WALLS_FAR * WALLS_FAR) || !(p->radius[i] < WALLS_FAR)) return false;
     const struct extent *r = &v->region;
     return !v->boxed || (x.x >= r->lo.x && x.x <= r->hi.x && x.y >= r->lo.y && x.y <= r->hi.y &&
                          (p->dim == 2 || (x.z >= r->lo.z && x.z <= r->hi.z)));
+}
+
+bool view_shows(const struct view *v, const struct packing *p, int64_t i)
+{
+    return is_wanted(v, p, i) && is_in_region(v, p, i);
 }
 
 /* ---- stray bodies ---- */
@@ -58,10 +74,11 @@ static bool within(const struct extent *r, vec3 x)
            x.z <= r->hi.z;
 }
 
-/* The bodies that count, as a packing that borrows the walls and parameters of p. */
-static int gather_crowd(struct packing *crowd, const struct packing *p, struct why *why)
+/* The bodies that count, as a packing that borrows the walls and parameters of p, and has no other arrays of bodies. */
+static int gather_crowd(struct packing *crowd, const struct view *v, const struct packing *p,
+                        struct why *why)
 {
-    struct extent r;
+    struct extent r = { 0 };
     *crowd = *p;
     crowd->x = malloc((size_t)(p->n + 1) * sizeof *crowd->x);
     crowd->radius = malloc((size_t)(p->n + 1) * sizeof *crowd->radius);
@@ -70,10 +87,10 @@ static int gather_crowd(struct packing *crowd, const struct packing *p, struct w
         why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)p->n);
         return EX_SOFTWARE;
     }
-    bool some = find_crowd(&r, p);
+    bool some = !v->strays && find_crowd(&r, p);
     crowd->n = 0;
     for (int64_t i = 0; i < p->n; i++)
-        if (!some || within(&r, p->x[i]))
+        if (is_wanted(v, p, i) && (!some || within(&r, p->x[i])))
             crowd->x[crowd->n] = p->x[i], crowd->radius[crowd->n++] = p->radius[i];
     return 0;
 }
@@ -103,7 +120,7 @@ static int extend_window(struct view *v, const struct packing *p, struct why *wh
         return why_set(why, EX_DATAERR, "neither bodies nor walls: nothing to see");
     v->region = v->started ? region_join(v->region, r) : r;
     for (int64_t i = 0; i < p->n; i++)
-        if (view_shows(v, p, i)) window_add(&v->window, &v->camera, p->x[i], p->radius[i]);
+        if (is_in_region(v, p, i)) window_add(&v->window, &v->camera, p->x[i], p->radius[i]);
     return 0;
 }
 
@@ -111,8 +128,7 @@ static int extend_window(struct view *v, const struct packing *p, struct why *wh
 static int extend_crowd(struct view *v, const struct packing *p, struct why *why)
 {
     struct packing crowd;
-    if (v->strays) return extend_window(v, p, why);
-    if (gather_crowd(&crowd, p, why)) return why->status;
+    if (gather_crowd(&crowd, v, p, why)) return why->status;
     extend_window(v, &crowd, why);
     free(crowd.x), free(crowd.radius);
     return why->status;

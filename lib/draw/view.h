@@ -26,6 +26,7 @@ struct view {
     bool follows;              /* a body stays where it is in the picture: */
     int32_t follow;            /* its id */
     bool glass;                /* boundaries are half-transparent, not lines alone [draw/glass.h] */
+    const struct chosen *only; /* bodies that are drawn, and what joins them; NULL: all */
     const struct solid *solid; /* boundaries that are solid instead; NULL: none */
     float pale;                /* 0 to 1: how much bodies are mixed with the background */
     int width, height;         /* pixels; 0: chosen */
@@ -45,8 +46,10 @@ struct view {
     vec3 moved;    /* m: how far it has come since, set by view_follow() */
 };
 
-/* Whether body i has a place in the picture's region */
+/* Whether body i is drawn: wanted, and in the picture's region */
 bool view_shows(const struct view *v, const struct packing *p, int64_t i);
+/* Whether what joins a and b, bodies or a boundary (a < 0), is drawn: of a body that is wanted */
+bool view_joins(const struct view *v, const struct packing *p, int32_t a, int32_t b);
 /* Moves what is shown along with the body that is followed. */
 void view_follow(struct view *v, const struct packing *p);
 /* Pixels: where a point (m) of the packing is seen; x to the right, y down, z the height. `size` is

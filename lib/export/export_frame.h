@@ -5,6 +5,7 @@
 #ifndef NSD_EXPORT_FRAME_H
 #define NSD_EXPORT_FRAME_H
 
+#include "bodies/chosen.h"
 #include "bodies/contact.h"
 #include "bodies/packing.h"
 
@@ -16,7 +17,8 @@ struct export_frame {
     const struct contacts *contacts; /* NULL: there are none in the document */
     int detail;                      /* of balls made of triangles: 20 * 4^detail of them */
     void **kept;                     /* what a format keeps from moment to moment of its file */
-    const char *only; /* names of boundaries, bodies and contacts that are wanted; NULL: all */
+    const struct chosen
+        *only; /* boundaries, bodies and their contacts that are wanted; NULL: all */
     void (*tell)(int64_t done, int64_t of); /* how far it is, for who looks on; NULL: nobody does */
 };
 
@@ -24,6 +26,12 @@ struct export_frame {
 static inline void moment_tell(const struct export_frame *m, int64_t done, int64_t of)
 {
     if (m->tell && done % 4096 == 0) m->tell(done, of);
+}
+
+/* Is body i wanted? */
+static inline bool export_frame_has(const struct export_frame *m, int64_t i)
+{
+    return !m->only || !m->only->bodies || chosen_body(m->only, m->packing, i);
 }
 
 /*

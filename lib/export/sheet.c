@@ -1,5 +1,7 @@
 #include "export/sheet.h"
 
+#include "bodies/face_of.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,13 +12,55 @@ void sheet_free(struct sheet *s)
     *s = (struct sheet){ 0 };
 }
 
+/* Keeps the cells that `keep` says [cells], and their rows; cells share no points. */
+static void keep_cells(struct sheet *s, const bool *keep)
+{
+    int64_t cells = 0, points = 0, begin = 0;
+    for (int64_t k = 0; k < s->cells; k++) {
+        const int64_t end = s->end[k];
+        for (int64_t i = begin; keep[k] && i < end; i++)
+            s->x[points] = s->x[s->corner[i]], s->corner[points] = points, points++;
+        begin = end;
+        if (!keep[k]) continue;
+        for (int j = 0; j < s->columns; j++) {
+            const struct sheet_column *c = &s->column[j];
+            const size_t width = (size_t)c->width, to = (size_t)cells * width,
+                         from = (size_t)k * width;
+            if (c->real) memmove(c->real + to, c->real + from, width * sizeof *c->real);
+            if (c->whole) memmove(c->whole + to, c->whole + from, width * sizeof *c->whole);
+        }
+        s->end[cells++] = points;
+    }
+    s->cells = cells, s->points = s->corners = points;
+}
+
+/* Of grains and contacts, those that are wanted: others count in what is said of these. */
+static int keep_wanted(struct sheet *s, enum part part, const struct export_frame *m,
+                       struct why *why)
+{
+    const struct packing *p = m->packing;
+    struct wall_faces faces = { 0 };
+    if (!m->only || (part != PART_GRAINS && part != PART_CONTACTS)) return 0;
+    if (part == PART_GRAINS && !m->only->bodies) return 0;
+    bool *keep = calloc((size_t)s->cells + 1, sizeof *keep);
+    if (!keep) return why_set(why, EX_SOFTWARE, "no memory for an export");
+    if (part == PART_CONTACTS && face_of_init(&faces, p, p->names.rows > 0, why))
+        return free(keep), why->status;
+    for (int64_t k = 0; k < s->cells; k++)
+        keep[k] = part == PART_GRAINS ? export_frame_has(m, k)
+                                      : chosen_contact(m->only, p, &faces, &m->contacts->c[k]);
+    keep_cells(s, keep);
+    wall_faces_free(&faces), free(keep);
+    return 0;
+}
+
 int sheet_of(struct sheet *s, enum part part, const struct export_frame *m, struct why *why)
 {
     static int (*const fill[PART_COUNT])(
         struct sheet *, const struct export_frame *,
         struct why *) = { sheet_grains, sheet_contacts, sheet_boundary, sheet_box, sheet_surfaces };
     *s = (struct sheet){ .shape = SHEET_POINT };
-    if (fill[part](s, m, why)) sheet_free(s);
+    if (fill[part](s, m, why) || keep_wanted(s, part, m, why)) sheet_free(s);
     return why->status;
 }
 

@@ -32,7 +32,7 @@ struct sheet {
     struct sheet_column column[SHEET_COLUMNS];
 };
 
-/* s = a part of a moment, of as many cells as there are such things. Returns 0 or EX_SOFTWARE. */
+/* s = a part of a moment, of as many cells as there are such things that are wanted. Returns 0 or EX_SOFTWARE. */
 int sheet_of(struct sheet *s, enum part part, const struct export_frame *m, struct why *why);
 void sheet_free(struct sheet *s);
 

@@ -155,10 +155,10 @@ int sheet_boundary(struct sheet *s, const struct export_frame *m, struct why *wh
     struct extent region = { 0 };
     struct owners o = { 0 };
     s->shape = p->dim == 2 ? SHEET_LINE : SHEET_POLYGON;
-    if (chosen_init(&o.chosen, p, "--only", m->only, why)) return why->status;
+    if (m->only && m->only->walls) o.chosen = *m->only;
     if (region_of(&region, p) && !add_planes(s, &o, p, &region, why))
         add_outlines(s, &o, p, &region, why);
     if (!why->status && !add_columns(s, &o, p, why)) add_forces(s, &o, m, why);
-    free(o.of), chosen_free(&o.chosen);
+    free(o.of);
     return why->status;
 }

@@ -81,7 +81,8 @@ int sheet_surfaces(struct sheet *s, const struct export_frame *m, struct why *wh
     s->shape = SHEET_POLYGON;
     if (facets_init(&f, m->detail, why)) return why->status;
     for (c.grain = 0; c.grain < p->n && !why->status; c.grain++)
-        if (packing_shape(p, c.grain)) facets_of(&f, p, c.grain, add_cell, &c);
+        if (packing_shape(p, c.grain) && export_frame_has(m, c.grain))
+            facets_of(&f, p, c.grain, add_cell, &c);
     if (!why->status) add_columns(s, c.of, p, why);
     if (!why->status && m->contacts && m->contacts->found) add_contacts(s, c.of, m, why);
     facets_free(&f);

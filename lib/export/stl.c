@@ -64,15 +64,16 @@ static int stl(FILE *out, const struct export_frame *m, enum part part, bool fir
         return why_set(why, EX_USAGE, "%s cannot be made of triangles", part_name[part]);
     if (facets_init(&b, m->detail, why)) return why->status;
     if (sheet_of(&walls, PART_BOUNDARY, m, why)) return facets_free(&b), why->status;
-    int64_t grains = part == PART_GRAINS ? p->n : 0;
+    const int64_t grains = part == PART_GRAINS ? p->n : 0;
     int64_t n = polygon_triangles(&walls);
-    for (int64_t i = 0; i < grains; i++) n += facets_triangles(&b, p, i);
+    for (int64_t i = 0; i < grains; i++)
+        if (export_frame_has(m, i)) n += facets_triangles(&b, p, i);
     if (n > UINT32_MAX) why_set(why, EX_DATAERR, "more triangles than STL can count");
     fprintf(out, "%-80s", "nsd: balls and walls in m");
     for (int k = 0; k < 4; k++) putc((int)(n >> 8 * k & 255), out);
     for (int64_t i = 0; i < grains && !why->status; i++) {
         moment_tell(m, i, grains);
-        facets_of(&b, p, i, put_fan, out);
+        if (export_frame_has(m, i)) facets_of(&b, p, i, put_fan, out);
     }
     put_polygons(out, &walls);
     sheet_free(&walls);

@@ -1,5 +1,4 @@
 /* measure/boundaries.c: what pushes boundaries. */
-#include "bodies/chosen.h"
 #include "bodies/face_of.h"
 #include "measure/branch.h"
 #include "measure/measures.h"
@@ -49,16 +48,10 @@ static int boundaries_rows(struct table *t, const struct snapshot *s, struct why
 {
     const struct packing *p = s->p;
     bool fixed = false;
-    struct chosen chosen;
-    if (chosen_init(&chosen, p, "--only", *s->asked->only ? s->asked->only : NULL, why))
-        return why->status;
     for (int64_t i = 0; i < p->n; i++) fixed = fixed || p->mass[i] == 0;
     // boundary w at [w], fixed bodies behind them
     struct push *push = calloc((size_t)p->walls + 1, sizeof *push);
-    if (!push) {
-        chosen_free(&chosen);
-        return why_set(why, EX_SOFTWARE, "no memory for the forces on boundaries");
-    }
+    if (!push) return why_set(why, EX_SOFTWARE, "no memory for the forces on boundaries");
     for (int64_t i = 0; i < s->s->n; i++) {
         const struct contact *c = &s->s->c[i];
         if (c->a < 0)
@@ -68,7 +61,7 @@ static int boundaries_rows(struct table *t, const struct snapshot *s, struct why
         if (p->mass[c->b] == 0) add(&push[p->walls], s, i, 1);
     }
     for (int32_t w = 0; w < p->walls + fixed; w++) {
-        if (w < p->walls ? !chosen_wall(&chosen, p, w) : chosen.any) continue;
+        if (w < p->walls ? !snapshot_wall(s, w) : s->only.walls) continue;
         double *at = table_row(t, why);
         if (!at) break;
         put(&at, w < p->walls ? w : -1), put(&at, (double)push[w].contacts);
@@ -76,7 +69,7 @@ static int boundaries_rows(struct table *t, const struct snapshot *s, struct why
         put(&at, push[w].normal), put(&at, push[w].tangential);
         put(&at, w < p->walls ? name_row(p, w) : NAN);
     }
-    free(push), chosen_free(&chosen);
+    free(push);
     return why->status;
 }
 
@@ -84,6 +77,7 @@ const struct measure measure_boundaries = {
     .name = "boundaries",
     .help = "forces on boundaries, and their torques",
     .quantity = quantities,
+    .keeps_to = KEEPS_TO_WALLS,
     .list = true,
     .needs = NEEDS_FORCES,
     .rows = boundaries_rows,
@@ -114,14 +108,11 @@ static bool is_named(const struct names *n, int32_t name, int32_t wall, int32_t 
 static int names_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     const struct packing *p = s->p;
-    struct chosen chosen = { 0 };
     struct wall_faces faces = { 0 };
     struct push *push = calloc((size_t)p->names.n + 1, sizeof *push);
     bool *any = calloc((size_t)p->names.n + 1, sizeof *any);
     if (!push || !any) why_set(why, EX_SOFTWARE, "no memory for the forces on boundaries");
-    if (why->status || face_of_init(&faces, p, true, why) ||
-        chosen_init(&chosen, p, "--only", *s->asked->only ? s->asked->only : NULL, why))
-        goto end;
+    if (why->status || face_of_init(&faces, p, true, why)) goto end;
     if (!p->names.rows) table_null(t, "no wall and no part of one has a name");
     for (int32_t k = 0; k < p->names.rows; k++) any[p->names.row[k].name] = true;
     for (int64_t i = 0; i < s->s->n && s->s->c[i].a < 0; i++) {
@@ -131,7 +122,7 @@ static int names_rows(struct table *t, const struct snapshot *s, struct why *why
             if (any[k] && is_named(&p->names, k, -1 - c->a, face)) add(&push[k], s, i, -1);
     }
     for (int32_t k = 0; k < p->names.n; k++) {
-        if (!any[k] || (chosen.any && !chosen.name[k])) continue;
+        if (!any[k] || (s->only.walls && !s->only.name[k])) continue;
         double *at = table_row(t, why);
         if (!at) break;
         put(&at, k), put(&at, (double)push[k].contacts);
@@ -140,7 +131,7 @@ static int names_rows(struct table *t, const struct snapshot *s, struct why *why
     }
 end:
     free(push), free(any);
-    wall_faces_free(&faces), chosen_free(&chosen);
+    wall_faces_free(&faces);
     return why->status;
 }
 
@@ -148,6 +139,7 @@ const struct measure measure_names = {
     .name = "names",
     .help = "forces on walls and parts of them by their names, and their torques",
     .quantity = of_names,
+    .keeps_to = KEEPS_TO_WALLS,
     .list = true,
     .needs = NEEDS_FORCES,
     .rows = names_rows,

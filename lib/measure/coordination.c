@@ -24,6 +24,12 @@ static int least_contacts(const struct snapshot *s)
     return s->p->dim + 1;
 }
 
+/* Of one of the bodies to which the measure keeps? */
+static bool of_chosen(const struct snapshot *s, const struct contact *c)
+{
+    return snapshot_body(s, c->b) || (c->a >= 0 && snapshot_body(s, c->a));
+}
+
 /* Mean over bodies with at least `least` contacts; *n of them */
 static double mean(const struct snapshot *s, const int32_t *count, int least, int64_t *n)
 {
@@ -43,7 +49,8 @@ static int coordination_rows(struct table *t, const struct snapshot *s, struct w
         free(count);
         return why_set(why, EX_SOFTWARE, "no memory to count contacts");
     }
-    for (int64_t i = 0; i < s->s->n; i++) contacts += branch_counts(s->s, i);
+    for (int64_t i = 0; i < s->s->n; i++)
+        contacts += branch_counts(s->s, i) && of_chosen(s, &s->s->c[i]);
     double z = mean(s, count, 0, &bodies), mechanical = mean(s, count, 2, &more);
     if (counts_without_rattlers(count, s, least_contacts(s)))
         why_set(why, EX_SOFTWARE, "no memory to count contacts");
@@ -61,6 +68,7 @@ const struct measure measure_coordination = {
     .name = "coordination",
     .help = "contacts of a body; rattlers",
     .quantity = quantities,
+    .keeps_to = KEEPS_TO_BODIES,
     .usual = true,
     .needs = NEEDS_CONTACTS,
     .rows = coordination_rows,
@@ -103,6 +111,7 @@ const struct measure measure_contact_numbers = {
     .name = "contact_numbers",
     .help = "how many bodies have how many contacts",
     .quantity = numbers,
+    .keeps_to = KEEPS_TO_BODIES,
     .list = true,
     .needs = NEEDS_CONTACTS,
     .rows = coordination_number_rows,

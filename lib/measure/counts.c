@@ -48,5 +48,5 @@ int counts_without_rattlers(int32_t *count, const struct snapshot *s, int least)
 
 bool counts_body(const struct snapshot *s, int64_t i)
 {
-    return s->p->mass[i] > 0 && region_holds(&s->region, s->p->x[i]);
+    return s->p->mass[i] > 0 && snapshot_body(s, i) && region_holds(&s->region, s->p->x[i]);
 }

@@ -13,7 +13,7 @@ int32_t *counts_of(const struct snapshot *s);
  * bears. Returns 0, or -1 when memory is short.
  */
 int counts_without_rattlers(int32_t *count, const struct snapshot *s, int least);
-/* A body that moves, and whose centre is in the region? */
+/* A body that moves, to which measures keep, and whose centre is in the region? */
 bool counts_body(const struct snapshot *s, int64_t i);
 
 #endif

@@ -17,7 +17,8 @@ static const struct quantity quantities[] = {
 /* m: of body i since the first frame; false: it was not there */
 static bool displacement(const struct snapshot *s, int64_t i, vec3 *d)
 {
-    const struct kept_body *then = s->p->mass[i] > 0 ? kept_find(s->first, s->p->id[i]) : NULL;
+    const struct kept_body *then =
+        s->p->mass[i] > 0 && snapshot_body(s, i) ? kept_find(s->first, s->p->id[i]) : NULL;
     if (then) *d = v3_sub(kept_place(s->p, i), then->x);
     return then;
 }
@@ -63,6 +64,7 @@ const struct measure measure_displacement = {
     .name = "displacement",
     .help = "mean square displacement since the first frame",
     .quantity = quantities,
+    .keeps_to = KEEPS_TO_BODIES,
     .needs = NEEDS_BEFORE,
     .rows = displacement_rows,
 };

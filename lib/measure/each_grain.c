@@ -59,7 +59,7 @@ static int each_grain_rows(struct table *t, const struct snapshot *s, struct why
     if (!memory) why_set(why, EX_SOFTWARE, "no memory for numbers of bodies");
     if (!solved) table_null(t, "no stress: the document has no solved contacts");
     for (int64_t i = 0; memory && i < s->p->n; i++) {
-        if (!region_holds(&s->region, s->p->x[i])) continue;
+        if (!snapshot_body(s, i) || !region_holds(&s->region, s->p->x[i])) continue;
         double *at = table_row(t, why);
         if (!at) break;
         fill(at, s->p, i, count, T);
@@ -72,6 +72,7 @@ const struct measure measure_grains = {
     .name = "grains",
     .help = "each body: stress, contacts, speed",
     .quantity = quantities,
+    .keeps_to = KEEPS_TO_BODIES,
     .list = true,
     .rows = each_grain_rows,
 };

@@ -58,16 +58,17 @@ static int energies_rows(struct table *t, const struct snapshot *s, struct why *
     double kinetic = 0, rotation = 0, potential = 0, *at = table_row(t, why);
     if (!at) return why->status;
     for (int64_t i = 0; i < p->n; i++) {
-        int times = region_holds(&s->region, p->x[i]);
+        int times = snapshot_body(s, i) ? region_holds(&s->region, p->x[i]) : 0;
         kinetic += times * 0.5 * p->mass[i] * v3_dot(p->v[i], p->v[i]);
         rotation += times * 0.5 * top_energy2(p, i, p->q[i], p->w[i]);
         potential -= times * p->mass[i] * v3_dot(p->g, p->x[i]);
     }
     double *step = at + 5, stored = 0;
     bool solved = s->s && (s->s->found || !s->s->n);
-    if (solved && add_step(&step, s, &stored, why)) return why->status;
-    if (!solved) {
-        table_null(t, "no dissipation: the document has no solved contacts");
+    if (solved && !s->only.bodies && add_step(&step, s, &stored, why)) return why->status;
+    if (!solved || s->only.bodies) {
+        table_null(t, solved ? "no dissipation: contacts are not divided among groups of bodies"
+                             : "no dissipation: the document has no solved contacts");
         if (p->law) stored = NAN;
     }
     put(&at, kinetic), put(&at, rotation), put(&at, potential), put(&at, stored);
@@ -79,6 +80,7 @@ const struct measure measure_energy = {
     .name = "energy",
     .help = "energies; what a step dissipates",
     .quantity = quantities,
+    .keeps_to = KEEPS_TO_BODIES,
     .usual = true,
     .rows = energies_rows,
 };

@@ -1,4 +1,5 @@
 /* measure/flux.c: bodies that cross a plane, or a disc in it, between frames. */
+#include "measure/follow.h"
 #include "measure/measures.h"
 
 #include <math.h>
@@ -38,10 +39,11 @@ static int add_events(struct crossed *n, const struct snapshot *s, struct why *w
     struct kept now = { 0 };
     if (!p->events.n) return 0;
     if (kept_set(&now, p, why)) return why->status;
+    follow_chosen(&now, s);
     for (int64_t k = 0; k < p->events.n; k++) {
         const struct event *e = &p->events.e[k];
         const struct kept_body *b = kept_find(e->came ? &now : s->before, e->id);
-        if (!b) continue;
+        if (!b || !b->chosen) continue;
         vec3 way = kept_way(p, e->came ? e->x : b->x, e->came ? b->x : e->x);
         cross(n, s, e->came ? e->x : b->x, way, e->mass);
     }
@@ -61,7 +63,7 @@ static int flux_rows(struct table *t, const struct snapshot *s, struct why *why)
     }
     for (int64_t i = 0; i < p->n; i++) {
         const struct kept_body *then = kept_find(s->before, p->id[i]);
-        if (!then) continue;
+        if (!then || !snapshot_body(s, i)) continue;
         // from where it would be now, had it come straight and never been replaced by an image
         vec3 way = v3_sub(kept_place(p, i), then->x);
         cross(&n, s, v3_sub(p->x[i], way), way, p->mass[i]);
@@ -80,6 +82,7 @@ const struct measure measure_flux = {
     .name = "flux",
     .help = "bodies that cross a plane or an orifice",
     .quantity = quantities,
+    .keeps_to = KEEPS_TO_BODIES,
     .needs = NEEDS_BEFORE,
     .rows = flux_rows,
 };

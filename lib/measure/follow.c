@@ -6,12 +6,22 @@
 #include <math.h>
 #include <stdlib.h>
 
+static struct kept_body *kept_of(struct kept *now, int32_t id)
+{
+    return now->body + (kept_find(now, id) - now->body);
+}
+
+void follow_chosen(struct kept *now, const struct snapshot *s)
+{
+    for (int64_t i = 0; i < s->p->n; i++) kept_of(now, s->p->id[i])->chosen = snapshot_body(s, i);
+}
+
 /* Since when each body is in the region: as before, or now. Of those in the first frame nobody knows. */
 static void follow_bodies(struct kept *now, const struct snapshot *s)
 {
     const struct packing *p = s->p;
     for (int64_t i = 0; i < p->n; i++) {
-        struct kept_body *b = now->body + (kept_find(now, p->id[i]) - now->body);
+        struct kept_body *b = kept_of(now, p->id[i]);
         const struct kept_body *then = s->before ? kept_find(s->before, p->id[i]) : NULL;
         if (!counts_body(s, i)) continue;
         b->entered = p->t, b->whole = s->before;
@@ -64,7 +74,7 @@ int follow(struct kept *now, const struct snapshot *s, bool pairs, struct why *w
     *now = (struct kept){ 0 };
     if (s->before) now->form = s->before->form;
     if (kept_set(now, s->p, why)) return why->status;
-    follow_bodies(now, s);
+    follow_chosen(now, s), follow_bodies(now, s);
     if (pairs && s->s && follow_pairs(now, s, why)) kept_free(now);
     return why->status;
 }

@@ -7,6 +7,8 @@
 
 #include "measure/snapshot.h"
 
+/* Marks the bodies to which measures keep. */
+void follow_chosen(struct kept *now, const struct snapshot *s);
 /* now = what is remembered of this frame, with times out of s->before; to be freed by kept_free. pairs: those that
    touch as well, where the frame has contacts. Returns 0 or EX_SOFTWARE. */
 int follow(struct kept *now, const struct snapshot *s, bool pairs, struct why *why);

@@ -19,7 +19,7 @@ static int fraction_rows(struct table *t, const struct snapshot *s, struct why *
     double solid = 0, *at = table_row(t, why);
     if (!at) return why->status;
     for (int64_t i = 0; i < p->n; i++)
-        solid += grain_fill(p, i) * region_ball(r, p->x[i], p->radius[i]);
+        if (snapshot_body(s, i)) solid += grain_fill(p, i) * region_ball(r, p->x[i], p->radius[i]);
     if (!(r->volume > 0)) table_null(t, "the region has no volume");
     if (!(solid > 0)) table_null(t, "the box is empty: no void ratio");
     put(&at, r->volume > 0 ? solid / r->volume : NAN);
@@ -35,6 +35,7 @@ const struct measure measure_fraction = {
     .name = "fraction",
     .help = "volume fraction, void ratio, volumes",
     .quantity = quantities,
+    .keeps_to = KEEPS_TO_BODIES,
     .usual = true,
     .rows = fraction_rows,
 };

@@ -16,6 +16,7 @@ struct kept {
         double
             entered; /* s: when it came into the region [measure/follow.h]; NaN: it is not there */
         bool whole;  /* it was seen to come, else it was there in the first frame */
+        bool chosen; /* measures keep to it [measure/follow.h] */
     } * body;        /* [n] sorted by id */
     int64_t pairs;
     struct kept_pair {

@@ -52,10 +52,31 @@ int measured_keep(const struct measure *const *chosen, const struct snapshot *s,
     return 0;
 }
 
+/* Can each measure keep to what --only names? Returns 0 or EX_DATAERR. */
+static int check_only(const struct measure *const *chosen, const struct snapshot *s,
+                      struct why *why)
+{
+    bool used = !s->only.any;
+    for (int k = 0; chosen[k]; k++) {
+        const enum keeps_to to = chosen[k]->keeps_to;
+        if (to == KEEPS_TO_NOTHING && s->only.bodies)
+            return why_set(why, EX_DATAERR,
+                           "--only: %s is measured of all bodies, not of a group or kind",
+                           chosen[k]->name);
+        used = used || (to == KEEPS_TO_WALLS && s->only.walls) ||
+               (to == KEEPS_TO_BODIES && s->only.bodies);
+    }
+    const char *of = s->only.walls ? "walls" : "bodies";
+    if (used) return 0;
+    return why_set(why, EX_DATAERR, "--only: '%s' names %s, and no measure of %s is chosen",
+                   s->asked->only, of, of);
+}
+
 int measured_run(struct table *t, const struct measure *const *chosen, const struct snapshot *s,
                  struct why *why)
 {
     for (int k = 0; k < MOST_MEASURES; k++) t[k] = (struct table){ 0 };
+    if (why->status || check_only(chosen, s, why)) return why->status;
     for (int k = 0; chosen[k]; k++)
         if (measure_run(&t[k], chosen[k], s, why)) return why->status;
     return 0;

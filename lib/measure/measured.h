@@ -15,7 +15,8 @@ bool measured_remember(const struct measure *const *chosen);
    EX_SOFTWARE. */
 int measured_keep(const struct measure *const *chosen, const struct snapshot *s, struct kept *first,
                   struct kept *before, struct why *why);
-/* t[MOST_MEASURES] = the chosen ones; to be freed by measured_free in any case. Returns 0 or EX_SOFTWARE. */
+/* t[MOST_MEASURES] = the chosen ones, none where snapshot_init() has failed with this `why`; to be freed by measured_free in any case. Returns 0, EX_SOFTWARE, or EX_DATAERR where
+   one of them cannot keep to what --only names. */
 int measured_run(struct table *t, const struct measure *const *chosen, const struct snapshot *s,
                  struct why *why);
 void measured_free(struct table *t);

@@ -20,12 +20,20 @@ enum needs {
     NEEDS_SUMS, /* sums over steps [bodies/sums.h], and the frame before if there is one */
 };
 
+/* What names of --only mean to a measure. Names of walls mean nothing to one of bodies, which is then of all. */
+enum keeps_to {
+    KEEPS_TO_NOTHING, /* it is of all bodies, or of none: names of bodies are refused */
+    KEEPS_TO_WALLS,   /* walls and parts of them with the names */
+    KEEPS_TO_BODIES,  /* bodies of groups and kinds with the names */
+};
+
 struct measure {
     const char *name, *help;
     const struct quantity *quantity;
     bool list;  /* a row for each layer, bin ...; else one */
     bool usual; /* among those of a command that names none */
     enum needs needs;
+    enum keeps_to keeps_to;
     bool remembers; /* it looks at frames before this one, where there are any */
     /* Fills the table. A number that there is not is left NaN, with the reason by table_null().
        Returns 0 or EX_SOFTWARE. */

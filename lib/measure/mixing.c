@@ -66,15 +66,14 @@ static int32_t kind_named(const struct packing *p, const char *name)
 }
 
 /* Tracers are of a kind, or larger than the mean. Where nobody has said which, the kind of the first body, unless all
-   are of one kind. False: no such kind. */
-static bool mixture_divide(struct mixture *m, const struct snapshot *s)
+   are of one kind. */
+static void mixture_divide(struct mixture *m, const struct snapshot *s)
 {
     const struct packing *p = s->p;
     const char *name = s->asked->tracer;
     int32_t kind = *name && strcmp(name, "large") ? kind_named(p, name) : -1;
     double mean = 0;
     bool alike = true;
-    if (*name && strcmp(name, "large") && kind < 0) return false;
     for (int64_t k = 0; k < m->n; k++) {
         mean += p->radius[m->body[k]] / (double)m->n;
         alike = alike && p->kind[m->body[k]] == p->kind[m->body[0]];
@@ -85,7 +84,6 @@ static bool mixture_divide(struct mixture *m, const struct snapshot *s)
         m->tracer[k] = kind >= 0 ? p->kind[i] == kind : p->radius[i] > mean * (1 + 1e-12);
         m->tracers += m->tracer[k];
     }
-    return true;
 }
 
 /* ---- samples ---- */
@@ -292,8 +290,8 @@ static int mixing_rows(struct table *t, const struct snapshot *s, struct why *wh
     if (!at) return why->status;
     bool room = mixture_gather(&m, s);
     if (room && !m.n) reason = "no body that moves is in the region";
-    if (room && !reason && !mixture_divide(&m, s)) reason = "--tracer is no kind of this document";
     if (room && !reason) {
+        mixture_divide(&m, s);
         put(&at, (double)m.n), put(&at, (double)m.tracers);
         if (!m.tracers || m.tracers == m.n)
             reason = "all bodies are of one sort: --tracer KIND, or large";

@@ -98,7 +98,8 @@ static int pairs_rows(struct table *t, const struct snapshot *s, struct why *why
     bool room = counts;
     for (int64_t i = 0; i < p->n; i++) {
         if (!(s->asked->distance > 0)) reach += 6 * p->radius[i] / (double)p->n;
-        if (region_holds(&s->region, p->x[i])) room = room && scatter_add(&a, p->x[i], i);
+        if (snapshot_body(s, i) && region_holds(&s->region, p->x[i]))
+            room = room && scatter_add(&a, p->x[i], i);
     }
     a.seekers = a.n;
     window(&a, s);
@@ -119,6 +120,7 @@ const struct measure measure_pairs = {
     .name = "pairs",
     .help = "pair correlation g(r)",
     .quantity = quantities,
+    .keeps_to = KEEPS_TO_BODIES,
     .list = true,
     .rows = pairs_rows,
 };

@@ -17,20 +17,23 @@ static const struct quantity quantities[] = {
     { 0 },
 };
 
-static double solid(const struct packing *p, const struct region *r)
+static double solid(const struct snapshot *s, const struct region *r)
 {
+    const struct packing *p = s->p;
     double sum = 0;
     for (int64_t i = 0; i < p->n; i++)
-        sum += grain_fill(p, i) * region_ball(r, p->x[i], p->radius[i]);
+        if (snapshot_body(s, i)) sum += grain_fill(p, i) * region_ball(r, p->x[i], p->radius[i]);
     return sum;
 }
 
 /* The whole velocity: the flow that moving_of leaves out comes back, by the images in the layer. */
-static vec3 velocity(const struct packing *p, const struct region *r, double mass)
+static vec3 velocity(const struct snapshot *s, const struct region *r, double mass)
 {
+    const struct packing *p = s->p;
     vec3 sum = v3(0, 0, 0);
     for (int64_t i = 0; i < p->n; i++)
-        if (p->mass[i] > 0) sum = v3_axpy(sum, p->mass[i], region_velocities(r, p->x[i], p->v[i]));
+        if (p->mass[i] > 0 && snapshot_body(s, i))
+            sum = v3_axpy(sum, p->mass[i], region_velocities(r, p->x[i], p->v[i]));
     return v3_scale(1 / mass, sum);
 }
 
@@ -41,15 +44,19 @@ static void add_layer(struct table *t, const struct snapshot *s, const struct re
     (void)none;
     moving_of(&m, s, r);
     put(&at, 0.5 * (at[-2] + at[-1])), put(&at, (double)m.bodies);
-    put(&at, solid(s->p, r) / r->volume);
+    put(&at, solid(s, r) / r->volume);
     if (m.bodies) {
         double *next = at;
-        put_vec(&next, r->period.any ? velocity(s->p, r, m.mass) : m.velocity);
+        put_vec(&next, r->period.any ? velocity(s, r, m.mass) : m.velocity);
         put_vec(&next, m.spin), put(&next, tensor_trace(&m.kinetic) / s->p->dim / m.mass);
     } else {
         table_null(t, "layers without bodies have no velocity");
     }
     at += 7;
+    if (s->only.bodies) {
+        table_null(t, "no stress: contacts are not divided among groups of bodies");
+        return;
+    }
     if (!s->s || (!s->s->found && s->s->n)) {
         table_null(t, "no stress: the document has no solved contacts");
         return;
@@ -69,6 +76,7 @@ const struct measure measure_profile = {
     .name = "profile",
     .help = "layers: fraction, velocity, temperature, stress",
     .quantity = quantities,
+    .keeps_to = KEEPS_TO_BODIES,
     .list = true,
     .rows = profile_rows,
 };

@@ -56,6 +56,7 @@ const struct measure measure_residence = {
     .name = "residence",
     .help = "how long bodies are in the region",
     .quantity = quantities,
+    .keeps_to = KEEPS_TO_BODIES,
     .needs = NEEDS_BEFORE,
     .rows = residence_rows,
 };
@@ -94,6 +95,7 @@ const struct measure measure_departures = {
     .name = "departures",
     .help = "each body that has left the region since the frame before",
     .quantity = each,
+    .keeps_to = KEEPS_TO_BODIES,
     .list = true,
     .needs = NEEDS_BEFORE,
     .rows = departures_rows,

@@ -32,7 +32,8 @@ static void add_layer(struct table *t, const struct snapshot *s, const struct re
            mean = *(const double *)with;
     for (int64_t i = 0; i < s->p->n; i++) {
         double r = s->p->radius[i], v = grain_volume(s->p, i);
-        if (!(s->p->mass[i] > 0) || !region_holds(layer, s->p->x[i])) continue;
+        if (!(s->p->mass[i] > 0) || !snapshot_body(s, i) || !region_holds(layer, s->p->x[i]))
+            continue;
         n++, sum += r, least = fmin(least, r), most = fmax(most, r);
         volume += v, large += r > mean ? v : 0;
     }
@@ -53,6 +54,7 @@ const struct measure measure_sizes = {
     .name = "sizes",
     .help = "layers: how large their bodies are",
     .quantity = quantities,
+    .keeps_to = KEEPS_TO_BODIES,
     .list = true,
     .rows = sizes_rows,
 };
@@ -125,5 +127,6 @@ const struct measure measure_segregation = {
     .name = "segregation",
     .help = "whether large bodies are above small ones",
     .quantity = one,
+    .keeps_to = KEEPS_TO_BODIES,
     .rows = segregation_rows,
 };

@@ -1,15 +1,54 @@
 #include "measure/snapshot.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-void snapshot_init(struct snapshot *s, const struct packing *p, const struct contacts *contacts,
-                   bool moved, const struct asked *asked)
+/* Is --tracer a kind of this document? Returns 0 or EX_DATAERR. */
+static int check_tracer(const struct packing *p, const char *tracer, struct why *why)
+{
+    char kinds[200];
+    size_t at = 0;
+    if (!*tracer || !strcmp(tracer, "large")) return 0;
+    for (int32_t k = 0; k < p->kinds; k++) {
+        if (!strcmp(tracer, p->kind_name[k])) return 0;
+        if (at < sizeof kinds)
+            at += (size_t)snprintf(kinds + at, sizeof kinds - at, ", %s", p->kind_name[k]);
+    }
+    return why_set(why, EX_DATAERR, "--tracer: no kind '%s' here, but large%s%s", tracer, kinds,
+                   at < sizeof kinds ? "" : "...");
+}
+
+int snapshot_init(struct snapshot *s, const struct packing *p, const struct contacts *contacts,
+                  bool moved, const struct asked *asked, struct why *why)
 {
     *s = (struct snapshot){ .p = p, .s = contacts, .moved = moved, .asked = asked };
     region_whole(&s->whole, p);
     s->region = s->whole;
     if (asked->boxed) region_box(&s->region, p, asked->lo, asked->hi);
+    if (check_tracer(p, asked->tracer, why)) return why->status;
+    return chosen_init(&s->only, p, "--only", *asked->only ? asked->only : NULL, why);
+}
+
+void snapshot_free(struct snapshot *s)
+{
+    chosen_free(&s->only);
+}
+
+bool snapshot_body(const struct snapshot *s, int64_t i)
+{
+    return !s->only.bodies || chosen_body(&s->only, s->p, i);
+}
+
+bool snapshot_wall(const struct snapshot *s, int32_t wall)
+{
+    return !s->only.walls || chosen_wall(&s->only, s->p, wall);
+}
+
+bool snapshot_face(const struct snapshot *s, int32_t wall, int32_t face)
+{
+    return !s->only.walls || chosen_face(&s->only, s->p, wall, face);
 }
 
 int snapshot_axis(const struct snapshot *s)

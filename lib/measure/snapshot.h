@@ -5,6 +5,7 @@
 #ifndef NSD_SNAPSHOT_H
 #define NSD_SNAPSHOT_H
 
+#include "bodies/chosen.h"
 #include "bodies/contact.h"
 #include "bodies/packing.h"
 #include "measure/kept.h"
@@ -17,11 +18,12 @@ struct asked {
     double lo[3], hi[3]; /* m: the box that measures keep to */
     int axis;            /* of layers: 0 x, 1 y, 2 z, 3 shells around the line along z; -1: up */
     int64_t layers;
-    vec3 point;      /* m: of torques, of shells, of the plane */
-    vec3 normal;     /* of the plane that is crossed; 0: none is asked for */
-    double radius;   /* m: of the disc in it that is crossed; INFINITY: the plane */
-    int64_t bins;    /* of histograms */
-    char only[256];  /* names and numbers of walls that measures of them keep to; "": all */
+    vec3 point;    /* m: of torques, of shells, of the plane */
+    vec3 normal;   /* of the plane that is crossed; 0: none is asked for */
+    double radius; /* m: of the disc in it that is crossed; INFINITY: the plane */
+    int64_t bins;  /* of histograms */
+    char only
+        [256]; /* names of walls, groups and kinds, numbers of walls, to which measures keep; "": all */
     double wear;     /* 1/Pa: coefficient of wear; 0: that of each wall */
     double distance; /* m: up to which pairs are counted; 0: three mean diameters */
     char tracer
@@ -37,11 +39,18 @@ struct snapshot {
     const struct kept *first, *before; /* frames before this one; NULL: it is the first */
     struct region whole;               /* all there is, and its volume */
     struct region region;              /* the box, or else the whole */
+    struct chosen only;                /* of this frame, what asked->only names */
 };
 
-/* s = a frame. Regions are found; the rest is borrowed. */
-void snapshot_init(struct snapshot *s, const struct packing *p, const struct contacts *contacts,
-                   bool moved, const struct asked *asked);
+/* s = a frame. Regions and names are found; the rest is borrowed. Returns 0, EX_DATAERR where a name of `asked` is not
+   in the document, or EX_SOFTWARE; to be freed in any case. */
+int snapshot_init(struct snapshot *s, const struct packing *p, const struct contacts *contacts,
+                  bool moved, const struct asked *asked, struct why *why);
+void snapshot_free(struct snapshot *s);
+/* Do measures keep to the body; to the wall, or any of its faces; to this face? All, where none is named. */
+bool snapshot_body(const struct snapshot *s, int64_t i);
+bool snapshot_wall(const struct snapshot *s, int32_t wall);
+bool snapshot_face(const struct snapshot *s, int32_t wall, int32_t face);
 
 /* A row of t for each layer asked for: its beginning and end (m), and what add() puts behind them, at `at`; a reason
    in t where there are no such layers. Returns 0 or EX_SOFTWARE. */

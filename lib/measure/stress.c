@@ -18,7 +18,7 @@ void moving_of(struct moving *m, const struct snapshot *s, const struct region *
     double inertia = 0;
     *m = (struct moving){ 0 };
     for (int64_t i = 0; i < p->n; i++) {
-        int times = p->mass[i] > 0 ? region_holds(r, p->x[i]) : 0;
+        int times = p->mass[i] > 0 && snapshot_body(s, i) ? region_holds(r, p->x[i]) : 0;
         if (!times) continue;
         m->bodies += times, m->mass += times * p->mass[i], inertia += times * p->inertia[i];
         m->velocity = v3_axpy(m->velocity, times * p->mass[i], beside(p, &r->period, i));
@@ -27,7 +27,7 @@ void moving_of(struct moving *m, const struct snapshot *s, const struct region *
     if (m->mass > 0) m->velocity = v3_scale(1 / m->mass, m->velocity);
     if (inertia > 0) m->spin = v3_scale(1 / inertia, m->spin);
     for (int64_t i = 0; i < p->n; i++) {
-        int times = p->mass[i] > 0 ? region_holds(r, p->x[i]) : 0;
+        int times = p->mass[i] > 0 && snapshot_body(s, i) ? region_holds(r, p->x[i]) : 0;
         if (!times) continue;
         vec3 v = v3_sub(beside(p, &r->period, i), m->velocity), w = v3_sub(p->w[i], m->spin);
         tensor_add(&m->kinetic, times * p->mass[i], v, v);

@@ -1,5 +1,5 @@
 /* measure/sums.c: what bodies have done to boundaries since the frame before, over all steps [bodies/sums.h]. */
-#include "bodies/chosen.h"
+
 #include "bodies/face_of.h"
 #include "measure/measures.h"
 
@@ -46,14 +46,13 @@ struct look {
     const struct snapshot *s;
     const struct packing *p;
     struct wall_faces faces;
-    struct chosen chosen;
     const struct wall_sums *from; /* NULL: from 0 */
     double span;                  /* s */
 };
 
 static void look_free(struct look *l)
 {
-    wall_faces_free(&l->faces), chosen_free(&l->chosen);
+    wall_faces_free(&l->faces);
 }
 
 static int look_init(struct look *l, const struct snapshot *s, struct why *why)
@@ -63,11 +62,7 @@ static int look_init(struct look *l, const struct snapshot *s, struct why *why)
     bool same = before && before->n == p->sums.n && before->since == p->sums.since;
     *l = (struct look){ .s = s, .p = p, .from = same ? before : NULL };
     l->span = p->t - (same ? s->before->t : p->sums.since);
-    if (face_of_init(&l->faces, p, false, why)) return why->status;
-    if (!chosen_init(&l->chosen, p, "--only", *s->asked->only ? s->asked->only : NULL, why))
-        return 0;
-    look_free(l);
-    return why->status;
+    return face_of_init(&l->faces, p, false, why);
 }
 
 /* Adds a face, from which that of the frame before is taken. */
@@ -134,7 +129,7 @@ static int walls_rows(struct table *t, const struct snapshot *s, struct why *why
     if (look_init(&l, s, why)) return why->status;
     for (int32_t w = 0; w < s->p->walls; w++) {
         struct sum sum = { 0 };
-        if (!chosen_wall(&l.chosen, s->p, w)) continue;
+        if (!snapshot_wall(s, w)) continue;
         double *at = table_row(t, why);
         if (!at) break;
         add_faces(&sum, &l, w, 0, count_of(&l, w));
@@ -159,7 +154,7 @@ static int names_rows(struct table *t, const struct snapshot *s, struct why *why
             add_faces(&sum, &l, r->boundary, r->first,
                       r->count ? r->count : count_of(&l, r->boundary));
         }
-        if (l.chosen.any && !l.chosen.name[names->row[k].name]) continue;
+        if (s->only.walls && !s->only.name[names->row[k].name]) continue;
         double *at = table_row(t, why);
         if (!at) break;
         put(&at, names->row[k].name), put_sum(&at, &l, &sum);
@@ -176,7 +171,7 @@ static int faces_rows(struct table *t, const struct snapshot *s, struct why *why
     for (int32_t w = 0; w < s->p->walls && !why->status; w++)
         for (int32_t k = 0; k < count_of(&l, w); k++) {
             struct sum sum = { 0 };
-            if (!chosen_face(&l.chosen, s->p, w, k)) continue;
+            if (!snapshot_face(s, w, k)) continue;
             double *at = table_row(t, why);
             if (!at) break;
             add(&sum, &l, w, k);
@@ -192,6 +187,7 @@ const struct measure measure_sums = {
     .name = "sums",
     .help = "what bodies have done to each wall, over all steps: force, pressure, work, wear",
     .quantity = of_walls,
+    .keeps_to = KEEPS_TO_WALLS,
     .list = true,
     .needs = NEEDS_SUMS,
     .rows = walls_rows,
@@ -200,6 +196,7 @@ const struct measure measure_sums_by_name = {
     .name = "sums_by_name",
     .help = "the same for all that has a name: walls, and parts of them",
     .quantity = of_names,
+    .keeps_to = KEEPS_TO_WALLS,
     .list = true,
     .needs = NEEDS_SUMS,
     .rows = names_rows,
@@ -208,6 +205,7 @@ const struct measure measure_sums_by_face = {
     .name = "sums_by_face",
     .help = "the same for each triangle of meshes, and other walls",
     .quantity = of_faces,
+    .keeps_to = KEEPS_TO_WALLS,
     .list = true,
     .needs = NEEDS_SUMS,
     .rows = faces_rows,

@@ -35,6 +35,7 @@ const struct measure measure_temperature = {
     .name = "temperature",
     .help = "mean velocity, granular temperature",
     .quantity = quantities,
+    .keeps_to = KEEPS_TO_BODIES,
     .usual = true,
     .rows = temperature_rows,
 };

@@ -181,6 +181,8 @@ class Frame:
     def walls(self, name):
         """The numbers of the walls that have this name, or a part of it, in order; a number is that wall."""
         if isinstance(name, (int, np.integer)):
+            if not 0 <= name < len(self.wall_names):
+                raise KeyError(f"no wall {name}, but {len(self.wall_names)} walls, from 0")
             return [int(name)]
         found = sorted({wall for own, wall, _ in self._named if own == name})
         if not found:

@@ -209,14 +209,14 @@ static int measure(uint32_t *crc, struct why *why)
     FILE *out = fopen(path, "w");
     if (!out) return why_set(why, EX_SOFTWARE, "no file of the test's");
     with.normal = v3(1, 0, 0);
-    snapshot_init(&s, &frame[now].packing, &frame[now].contacts, true, &with);
-    if (!kept_set(&first, &frame[now].packing, why)) s.first = s.before = &first;
+    snapshot_init(&s, &frame[now].packing, &frame[now].contacts, true, &with, why);
+    if (!why->status && !kept_set(&first, &frame[now].packing, why)) s.first = s.before = &first;
     for (int k = 0; !why->status && measure_at(k); k++) {
         struct table t = { 0 };
         if (!measure_run(&t, measure_at(k), &s, why)) table_json(out, &t, measure_at(k)->list);
         table_free(&t);
     }
-    kept_free(&first);
+    kept_free(&first), snapshot_free(&s);
     fclose(out);
     *crc = crc_of(path);
     return why->status;
@@ -229,8 +229,8 @@ static int coarse(uint32_t *crc, struct why *why)
     struct fields f = { 0 };
     struct fields_file *file = NULL;
     const char *path = fresh(".h5"), *image = fresh(".vti");
-    snapshot_init(&s, &frame[now].packing, &frame[now].contacts, true, &with);
-    if (!fields_init(&f, &s, 0, 0, why)) {
+    snapshot_init(&s, &frame[now].packing, &frame[now].contacts, true, &with, why);
+    if (!why->status && !fields_init(&f, &s, 0, 0, why)) {
         fields_set(&f, &s);
         if (!fields_file_open(&file, path, &f, "", why))
             for (int k = 0; k < 2 && !fields_file_add(file, &f, k, k, why); k++) continue;

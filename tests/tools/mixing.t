@@ -48,7 +48,8 @@ jq -n '{ dt: 1e-4, density: 1000, seed: 2, kinds: { a: { density: 1000 }, b: { d
     nsd-gen - | step -n 1000 --every 1000 >"$tmp/box.h5"
 ok "balls in a box" truth same_as_numpy "$tmp/box.h5" 0.03 b
 mixing() { nsd-stat -m mixing "$@" 2>/dev/null | jq -c "${what:-.why.mixing}"; }
-is "a tracer that is no kind" "$(mixing --tracer gravel "$tmp/checker.h5")" '"--tracer is no kind of this document"'
+refuses 65 "a tracer that is no kind" nsd-stat -m mixing --tracer gravel "$tmp/checker.h5"
+like "names the kinds" "$(cat "$tmp/err")" "no kind 'gravel' here, but large, ball, wall"
 is "bodies of one size" "$(mixing --tracer large "$tmp/checker.h5")" '"all bodies are of one sort: --tracer KIND, or large"'
 is "samples of one body" "$(mixing --sample 2 "$tmp/checker.h5")" '"no sample holds two bodies: --sample is too small"'
 is "too many samples" "$(mixing --sample 1e-9 "$tmp/checker.h5")" '"--sample makes more than 1e8 samples"'

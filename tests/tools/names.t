@@ -87,6 +87,30 @@ jq 'del(.walls[].name, .walls[].mesh.parts, .bodies[].name)' "$tmp/scene.json" |
 ok "a document without names has no dataset of them" eval '! h5ls -r "$tmp/bare.h5" | grep -E "names|group"'
 jq '.walls[1].name = .walls[2].name' "$tmp/scene.json" | nsd-gen - | cmp -s - "$tmp/start.h5" && same=0 || same=$?
 is "the same scene gives the same bytes" "$same" 0
+
+# ---- unknown names are refused, whatever else the document lacks ----
+
+step -n 4 -o "$tmp/without.h5" "$tmp/start.h5"
+jq -n '{ dt: 1e-3, bodies: [{ x: [0, 0, 1], radius: 0.1 }] }' | nsd-gen - >"$tmp/unwalled.h5"
+jq 'del(.bodies)' "$tmp/scene.json" | nsd-gen - >"$tmp/empty.h5"
+for doc in without unwalled empty bare; do
+    for m in $(nsd-stat --list | sed -n 's/^\([a-z_]*\): .*/\1/p'); do
+        nsd-stat -m "$m" --only NOSUCH "$tmp/$doc.h5" >"$tmp/out" 2>"$tmp/err" && s=0 || s=$?
+        [ "$s" = 65 ] && [ ! -s "$tmp/out" ] && grep -q "no 'NOSUCH' here, but" "$tmp/err" || echo "$m $s"
+    done >"$tmp/taken"
+    is "nsd-stat --only, $doc: every measure" "$(cat "$tmp/taken")" ""
+    refuses 65 "--tracer, $doc" nsd-stat -m fraction --tracer gravel "$tmp/$doc.h5"
+    like "and the kinds are named" "$(cat "$tmp/err")" "no kind 'gravel' here, but large, ball, wall"
+    for part in -p -w -c; do refuses 65 "nsd-info $part --only, $doc" nsd-info "$part" --only NOSUCH "$tmp/$doc.h5"; done
+    refuses 65 "nsd-export --only, $doc" nsd-export --to csv --part boundary --only NOSUCH "$tmp/$doc.h5"
+    like "and names are named" "$(cat "$tmp/err")" "no 'NOSUCH' here, but"
+    refuses 65 "nsd-view --solid, $doc" nsd-view --solid NOSUCH --surface pressure "$tmp/$doc.h5"
+    like "and names are named" "$(cat "$tmp/err")" "no 'NOSUCH' here, but"
+done
+nsd-detect --fclib=local "$tmp/start.h5" 2>/dev/null >"$tmp/both.h5"
+refuses 65 "a document with an FCLIB problem too" nsd-info -c --only NOSUCH "$tmp/both.h5"
+refuses 64 "--only with --scene" nsd-info --scene -p --only side "$tmp/run.h5"
+
 if have_ranks; then
     ranks 2 nsd-step -n 4 --contacts -o "$tmp/ranks.h5" "$tmp/start.h5" 2>/dev/null
     ok "two processes write the bytes of one" cmp "$tmp/ranks.h5" "$tmp/run.h5"

@@ -29,6 +29,11 @@ try:
     assert False
 except KeyError as e:
     assert "floor, side" in str(e)
+try:
+    f.walls(4)
+    assert False
+except KeyError as e:
+    assert "no wall 4, but 4 walls" in str(e)
 # a cube turned by 45 degrees about z: corners at 0.1 sqrt(2) along the axes, 0.1 up and down
 c = f.corners(0)
 r = 0.1 * 2 ** 0.5
@@ -51,6 +56,14 @@ with nsd.Run.from_scene(sys.argv[1]) as run:
     run.set(only="side", contacts=True)
     run.step(2)
     assert run.measure("boundaries")["boundaries"]["boundary"] == [1, 2]
+    for key, name, heard in ("only", "lid", "only: no 'lid' here, but floor, side"), ("tracer", "gravel", "tracer: no kind 'gravel'"):
+        run.set(**{key: name, "contacts": False})
+        try:
+            run.measure("fraction")
+            assert False
+        except nsd.Error as e:
+            assert str(e).startswith(heard), e
+        run.set(**{key: "side" if key == "only" else "steel"})
     try:
         run.move_boundary("lid", [0, 0, 1])
         assert False

@@ -96,7 +96,7 @@ is "mean forces of the run, from the sums" "$(export_ --only floor | column mean
 is "and pressures, on 2 m2 each" "$(export_ --only floor | column mean_pressure | awk '{ printf "%.4f ", $1 }')" "$(awk '{ printf "%.4f %.4f ", $1 / 2, $2 / 2 }' <<<"$g")"
 is "--only a part: its faces" "$(export_ --only right | column face)" 1
 is "the columns of wear" "$(export_ --only lid | column wear | sort -u)" 0
-refuses 64 "--only is of the boundary" nsd-export --to csv --only floor "$tmp/run.h5"
+refuses 65 "grains have no names of walls" nsd-export --to csv --only floor "$tmp/run.h5"
 refuses 65 "a name that is not there" nsd-export --to csv --part boundary --only lids --last "$tmp/run.h5"
 jq -n '{ dt: 1e-3, shapes: { box: { box: [0.2, 0.2, 0.2] } }, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }], bodies: [{ x: [0, 0, 0.1], shape: "box", size: 1 }] }' |
     nsd-gen - | nsd-step -n 5 --contacts --eps 1e-12 -o "$tmp/box.h5" 2>/dev/null
