@@ -19,7 +19,7 @@ int kept_set(struct kept *k, const struct packing *p, struct why *why)
     k->body = body, k->n = p->n, k->step = p->step, k->t = p->t;
     bool sorted = true;
     for (int64_t i = 0; i < p->n; i++) {
-        body[i] = (struct kept_body){ p->id[i], p->mass[i], kept_place(p, i), NAN, false };
+        body[i] = (struct kept_body){ p->id[i], p->mass[i], kept_place(p, i), NAN, false, false };
         sorted = sorted && (!i || body[i - 1].id < body[i].id);
     }
     sums_free(&k->sums);
