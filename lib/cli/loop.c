@@ -2,6 +2,7 @@
 
 #include "api/answer.h"
 #include "api/document.h"
+#include "bodies/chosen.h"
 #include "cli/partner.h"
 #include "hdf5/stream.h"
 #include "io/reader.h"
@@ -33,8 +34,8 @@ const struct cli_option options_loop[] = {
       .help = "ask CMD, by JSON or documents, for forces and changes [none]" },
     { CLI_INT, 0, "with-every", &every, "K", .min = 1, .max = 1e15, .silent = true,
       .help = "ask before the first and then every K-th step [1]" },
-    { CLI_TEXT, 0, "with-boundaries", &boundaries, "all|N,...", .silent = true,
-      .help = "send these boundaries [none]" },
+    { CLI_TEXT, 0, "with-boundaries", &boundaries, "all|NAME,...", .silent = true,
+      .help = "send these walls, by name or number [none]" },
     { CLI_TEXT, 0, "with-measures", &measures, "A,B,...", .silent = true,
       .help = "send these measures of nsd-stat [none]" },
     { CLI_FLAG, 0, "with-document", &document, .silent = true,
@@ -56,6 +57,7 @@ static struct {
     struct partner *partner;
     const struct measure *chosen[MOST_MEASURES + 1];
     struct asked asked;
+    struct chosen told; /* boundaries; none: all */
     struct kept first, before;
     bool remembers;
     struct said *said;
@@ -69,35 +71,12 @@ bool loop_asks(void)
     return command || replay;
 }
 
-/* Is the boundary among those of --with-boundaries? */
-static bool is_told(int32_t wall)
-{
-    const char *s = boundaries;
-    if (!s || !strcmp(s, "all")) return s;
-    for (char *end;; s = end + 1)
-        if (strtoll(s, &end, 10) == wall || *end != ',') return strtoll(s, NULL, 10) == wall;
-}
-
-static void check_boundaries(void)
-{
-    const char *s = boundaries;
-    if (!s || !strcmp(s, "all")) return;
-    for (char *end;; s = end + 1) {
-        long long n = strtoll(s, &end, 10);
-        if (end == s || n < 0 || n > INT32_MAX || (*end && *end != ','))
-            die_usage("--with-boundaries: '%s' is neither all nor numbers with commas between",
-                      boundaries);
-        if (!*end) return;
-    }
-}
-
 void loop_check(void)
 {
     struct why why = { 0 };
     if (command && replay) die_usage("--with and --replay exclude each other");
     for (const struct cli_option *o = options_loop + 1; o->kind && o->to != &replay; o++)
         if (cli_given(o->to) && !command) die_usage("--%s: wants --with", o->name);
-    check_boundaries();
     if (measures && measured_choose(loop.chosen, measures, &why))
         die_usage("--with-measures: %s", strchr(why.text, ' ') + 1);
 }
@@ -147,6 +126,14 @@ static void read_answers(void)
     free(path);
 }
 
+void loop_choose_boundaries(const struct packing *p)
+{
+    struct why why = { 0 };
+    if (!boundaries || !strcmp(boundaries, "all")) return;
+    if (chosen_init(&loop.told, p, "--with-boundaries", boundaries, &why)) die_why(&why);
+    if (!loop.told.walls) die(EX_DATAERR, "--with-boundaries: '%s' names no wall", boundaries);
+}
+
 void loop_open(void)
 {
     struct why why = { 0 };
@@ -161,7 +148,7 @@ void loop_close(void)
     loop.partner = NULL;
     for (int64_t k = 0; k < loop.n; k++) json_decref(loop.said[k].answer);
     free(loop.said);
-    kept_free(&loop.first), kept_free(&loop.before);
+    kept_free(&loop.first), kept_free(&loop.before), chosen_free(&loop.told);
 }
 
 /* ---- what is told ---- */
@@ -189,9 +176,11 @@ static void put_boundaries(FILE *out, const struct packing *p, const struct cont
     const char *mark = "";
     fputs(",\"boundaries\":[", out);
     for (int32_t w = 0; w < p->walls; w++) {
-        if (!is_told(w)) continue;
+        if (!chosen_wall(&loop.told, p, w)) continue;
         vec3 x = wall_at(p, &p->wall[w], p->t);
         fprintf(out, "%s{\"boundary\":%d", mark, w);
+        if (names_of_wall(&p->names, w))
+            fprintf(out, ",\"name\":\"%s\"", names_of_wall(&p->names, w));
         put_vector(out, "position", x);
         put_vector(out, "velocity", wall_velocity(p, &p->wall[w], x));
         if (s && s->found)

@@ -15,6 +15,8 @@ extern const struct cli_option options_loop[]; /* --with ..., --replay */
 void loop_check(void);
 /* Is there a program, or are there answers to replay? */
 bool loop_asks(void);
+/* Ends the tool with EX_DATAERR where --with-boundaries names what is no wall of this packing, that of the run. */
+void loop_choose_boundaries(const struct packing *p);
 /* Starts the program, or reads the answers. */
 void loop_open(void);
 /*

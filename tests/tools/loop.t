@@ -54,6 +54,9 @@ is "one that changes nothing changes no bit" "$(number -p "$tmp/plain.h5")" "$(n
 rm "$tmp/told"
 tell -n 1 --with-boundaries 1
 is "some boundaries alone" "$(jq -c '.boundaries | map(.boundary)' "$tmp/told")" "[1]"
+nsd-info --scene "$tmp/ball.h5" | jq '.walls = [{ point: [0, 0, 0], normal: [0, 0, 1] }, { point: [0, 0, 9], normal: [0, 0, -1], name: "lid" }]' |
+    nsd-gen - | quiet -n 1 --with "tee $tmp/told | jq -c --unbuffered '{}'" --with-boundaries lid >/dev/null
+is "by name" "$(jq -c '.boundaries | map([.boundary, .name])' "$tmp/told")" '[[1,"lid"]]'
 cat >"$tmp/reads" <<'EOT'
 while IFS= read -r line; do
     head -c "$(printf '%s' "$line" | jq .document)" >>"$1"
@@ -186,7 +189,7 @@ stops "a document with a damaged header" "read -r l; tr 'a-z' 'b-za' <$tmp/ball.
 stops "a damaged one" "read -r l; head -c 3000 $tmp/ball.h5; tail -c +3001 $tmp/ball.h5 | tr 'a-z' 'b-za'; cat >/dev/null" "[0]" 69 'step 1: --with: the document'
 refuses 64 "--with-every alone" nsd-step --with-every 2 "$tmp/ball.h5"
 refuses 64 "--with and --replay" nsd-step --with cat --replay "$tmp/ball.h5" "$tmp/ball.h5"
-refuses 64 "boundaries that are no numbers" nsd-step --with cat --with-boundaries 1,x "$tmp/ball.h5"
+for b in 1,x 2 ball; do refuses 65 "boundaries $b, which are none" nsd-step -n 1 --with cat --with-boundaries "$b" "$tmp/ball.h5"; done
 refuses 64 "a measure that there is not" nsd-step --with cat --with-measures beauty "$tmp/ball.h5"
 refuses 65 "a document without answers" nsd-step --replay "$tmp/ball.h5" "$tmp/ball.h5"
 
