@@ -249,7 +249,7 @@ static enum target target_of(const struct format **format)
     if (!*format) die_usage("no format: give --to FORMAT, or an --output with its suffix");
     if (!(*format)->parts && part != PART_GRAINS)
         die_usage("--part: %s has grains only", (*format)->name);
-    if (only && part != PART_BOUNDARY) die_usage("--only: of the boundary: with --part boundary");
+    if (only && part != PART_BOUNDARY) die_usage("--only: needs --part boundary");
     if (in_directory) return TARGET_DIRECTORY;
     if (output && number_in(output)) return TARGET_SERIES;
     if (!output && (*format)->binary && isatty(STDOUT_FILENO))

@@ -265,7 +265,7 @@ int acts_push(struct acts *a, const struct packing *p, int64_t wall, double forc
     if (!w) return why->status;
     if (w->load.way == LOAD_NONE)
         return why_set(why, EX_DATAERR,
-                       "boundary %lld does not yield to a force: give it a load in the scene",
+                       "boundary %lld is not load-controlled: give it a load in the scene",
                        (long long)wall);
     if (!isfinite(force))
         return why_set(why, EX_DATAERR, "the force of boundary %lld is not finite",

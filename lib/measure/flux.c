@@ -56,7 +56,7 @@ static int flux_rows(struct table *t, const struct snapshot *s, struct why *why)
     double since = p->t - s->before->t, *at = table_row(t, why);
     if (!at) return why->status;
     if (!(v3_norm(s->asked->normal) > 0)) {
-        table_null(t, "--plane says which plane");
+        table_null(t, "the plane is given by --plane");
         return 0;
     }
     for (int64_t i = 0; i < p->n; i++) {

@@ -219,7 +219,7 @@ static const struct solver *global(const struct options *o)
 /* The option where it is given, else what stands for it */
 #define OPTION(name, otherwise) (options_has(o, &options.name) ? o->name : (otherwise))
 
-/* A device wants many contacts at once. */
+/* A device needs many contacts at once. */
 static int order_usual(const struct options *o, enum order otherwise)
 {
     return (int)(o->device ? ORDER_COLOUR : otherwise);
@@ -302,5 +302,5 @@ int options_names(const struct options *o, struct why *why)
     if (!o->paper || o->method) return 0;
     for (int k = 0; methods[k] && n < sizeof names; k++)
         n += (size_t)snprintf(names + n, sizeof names - n, "%s%s", k ? "|" : "", methods[k]->name);
-    return why_set(why, EX_USAGE, "--paper: wants a local method, -m %s", names);
+    return why_set(why, EX_USAGE, "--paper: needs a local method, -m %s", names);
 }

@@ -29,7 +29,7 @@ structure() # FILE: what is wrong with it
             if (macro == "It" && stack[depth] != "Bl") complain(".It outside a list")
             if (macro == "Sh" || macro == "Ss") { if (depth) complain($0 " within a list or a display"); depth = 0 }
             if (macro == "Sh") { sub(/^\.Sh /, ""); heads = heads $0 ";" }
-            if ((macro == "Xr" && (NF < 3 || $3 !~ /^[0-9]$/)) || (macro == "Fl" && NF < 2)) complain($1 " wants a name")
+            if ((macro == "Xr" && (NF < 3 || $3 !~ /^[0-9]$/)) || (macro == "Fl" && NF < 2)) complain($1 " needs a name")
             next
         }
         /^\.?[ \t]*$/ && stack[depth] != "Bd" && !table { complain("an empty line") }
