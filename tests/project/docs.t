@@ -77,6 +77,14 @@ is "every manual that is referred to exists" "$(strangers)" ""
 # ---- nsd(7) and nsd-scene(5) are complete ----
 
 is "nsd(7) lists every tool" "$(sed -n '/^\.Ss The tools/,/^\.Ss Conv/s/^\.It Xr \(nsd-[a-z]*\) 1$/\1/p' man/nsd.7 | sort)" "$(tools | sort)"
+letters() # of --help: letter, option, tools
+{
+    local tool
+    for tool in $(tools); do short_of_help "$tool" | sed "s/$/ ${tool#nsd-}/"; done |
+        awk '{ k = $1 " " $2; at[k] = at[k] (at[k] ? ", " : "") $3 } END { for (k in at) print k, at[k] }' | LC_ALL=C sort
+}
+is "nsd(7) has a table of all letters, by option and tool" \
+    "$(sed -n '/^\.Ss Letters/,/^\.Sh/s/^\.It Fl \(.\) Ta Fl \(-[a-z0-9-]*\) Ta /-\1 -\2 /p' man/nsd.7)" "$(letters)"
 for page in "${pages[@]}"; do
     page=${page##*/}
     [ "$page" = nsd.7 ] || like "nsd(7) refers to $page" "$(grep -E '^\.(Xr|It Xr)' man/nsd.7 | tr '\n' ' ')" "Xr ${page%.*} ${page##*.} "
