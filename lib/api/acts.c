@@ -290,8 +290,7 @@ int acts_velocity(struct packing *p, int64_t wall, vec3 v, struct why *why)
         return why_set(why, EX_DATAERR, "the velocity of boundary %lld is not finite%s",
                        (long long)wall, p->dim == 2 ? ", or leaves the plane" : "");
     if (turns(p, w))
-        return why_set(why, EX_DATAERR,
-                       "boundary %lld turns, and what turns has the velocity of its drives",
+        return why_set(why, EX_DATAERR, "boundary %lld rotates, so no velocity can be prescribed",
                        (long long)wall);
     struct wall was = *w;
     w->x = v3_axpy(w->x, p->t, v3_sub(w->v, v)); // x + v t is where it was
