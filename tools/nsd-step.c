@@ -60,7 +60,7 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 'w', "warm", &options.warm,
       .help = "start each solve from the reactions of the last step" },
     { CLI_UNFLAG, 0, "cold", &options.warm,
-      .help = "start each solve from reactions 0, as the paper", .usual = options_usual },
+      .help = "start each solve from reactions 0, as in the paper", .usual = options_usual },
     { CLI_CHOICE, 0, "cut", &options.cut, .choice = cut_choice,
       .help = "divide space among MPI processes in this way [bisection]" },
     { CLI_FLAG, 'i', "in-place", &in_place, .silent = true,

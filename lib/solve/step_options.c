@@ -159,7 +159,7 @@ const struct cli_option options_solve[] = {
     { CLI_ABOVE, 0, "newton-eps", &options.newton_eps, "EPS", .max = 1,
       .help = "stop Newton when |Z| <= EPS |(r, rho b)|", .usual = options_usual },
     { CLI_ABOVE, 0, "newton-abs", &options.newton_abs, "EPS", .max = MOST,
-      .help = "stop Newton when |Z| <= EPS with r in N, as the paper" },
+      .help = "stop Newton when |Z| <= EPS with r in N, as in the paper" },
     { CLI_INT, 0, "newton-max", &options.newton_max, "N", .min = 1, .max = 1e6,
       .help = "make at most N Newton steps per contact and sweep", .usual = options_usual },
     { CLI_BETWEEN, 0, "relax", &options.relax, "OMEGA", .max = 2,
