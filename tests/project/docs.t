@@ -92,6 +92,17 @@ done
 is "every page has one EXIT STATUS of one form" "$(for page in man/*.1; do
     sed -n '/^\.Sh EXIT STATUS/,/^\.Sh EXAMPLES/p' "$page" | sed -n '2p;3p;4p' | tr '\n' '|'; echo; done | sort -u)" \
     "$(printf '%s' '.Bl -tag -width Ds|.It 0|Success.|')"
+quantities_of_list() # measure, quantity, unit, text
+{
+    nsd-stat --list | awk '/^[a-z]/ { sub(/:.*/, ""); measure = $0; next } /^  / { unit = substr($0, 23, 6); gsub(/ /, "", unit); sub(/^name$/, "", unit); print measure, $1, unit ":", substr($0, 30) }'
+}
+quantities_of_manual()
+{
+    sed -n '/^\.Sh MEASURES/,/^\.Sh FIELDS/{s/\\(aq/'"'"'/g; s/\\(ha/^/g; p}' man/nsd-stat.1 |
+        awk '/^\.Ss/ { measure = $2 } /^\.It Va/ { unit = $5 $6; name = $3; getline; sub(/;$/, ""); print measure, name, unit ":", $0 }'
+}
+is "nsd-stat(1) has every quantity of --list, with unit and text" \
+    "$(quantities_of_manual | LC_ALL=C sort)" "$(quantities_of_list | grep -vE '^sums_by_name |^sums_by_face ' | LC_ALL=C sort)"
 keys() # that the code knows: what it asks of an object of a scene
 {
     perl -0777 -ne '
