@@ -1,6 +1,6 @@
 #!/bin/bash
 # whole.sh [RUNS]: what is around the sweep: the start of tools, pipes, threads on whole steps, also beside a
-# program that wants a core, the step outside the sweep, and what a contact costs where the bus brings it. The
+# program that needs a core, the step outside the sweep, and what a contact costs where the bus brings it. The
 # least of RUNS [5], beside that of another build (OTHER=DIR, the last that landed) in turn with it. Leaves bench/results/MACHINE/whole.{tsv,md}.
 # Steps are those of the results kept: to 1e-4 of the natural map, cold but where a row says warm.
 # shellcheck disable=SC2016 # commands that another shell expands
@@ -68,7 +68,7 @@ rows()
         n=${steps//STEPS/${file#*:}} n=${n//FILE/${file%:*}}
         row "${file#*:} steps, ${file%:*}, -j 1" s "" "${n//THREADS/1}"
         row "${file#*:} steps, ${file%:*}, -j 2" s "" "${n//THREADS/2}"
-        row "${file#*:} steps, ${file%:*}, -j 2, and a neighbour that wants a core" s "" \
+        row "${file#*:} steps, ${file%:*}, -j 2, and a neighbour that needs a core" s "" \
             "while :; do :; done & trap 'kill \$!' EXIT; ${n//THREADS/2}"
     done
     row "2000 steps, 500 warm balls at rest" s "" \

@@ -235,7 +235,7 @@ static void tell(const struct scene *s, const struct packing *p)
     json_object_set_new(j, "heights", heights_json(s));
     if (s->fits) json_object_set_new(j, "clumps", fits_json(s));
     if (t.by < 0)
-        warn("dt: nothing moves by which a time step could be suggested");
+        warn("dt: nothing moves, so no time step can be suggested");
     else
         warn("dt = %.2g s is suggested, by %s", t.best, time_step_limit[t.by].name);
     if (s->dt > FAR * t.best)

@@ -474,7 +474,7 @@ int tool_main(int argc, char **argv)
     if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
     if (last && steps) die_usage("--last and --steps exclude each other");
     if (only && (scene || (!particles && !walls && !contacts)))
-        die_usage("--only: of bodies, walls or contacts: with -p, -w or -c");
+        die_usage("--only: needs -p, -w or -c");
     if (scene && (argc != 1 || !strcmp(argv[0], "-")))
         die_usage("--scene: one FILE, which the scene names");
     if (reader_open(&in, argc, argv, &why)) die_why(&why);

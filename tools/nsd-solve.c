@@ -14,7 +14,7 @@ static const struct cli_option own[] = {
     { CLI_CHOICE, 0, "overlap", &options.overlap, .choice = options_overlap_choice,
       .help = "change how nsd-move treats overlaps [document]" },
     { CLI_FLAG, 'w', "warm", &options.warm, .help = "start from the reactions in the document" },
-    { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start from reactions 0, as the paper",
+    { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start from reactions 0, as in the paper",
       .usual = options_usual },
     { CLI_FLAG, 0, "history", &options.history,
       .help = "store the error terms of every sweep in the document" },

@@ -130,7 +130,8 @@ static void show_list(void)
                : m->list ? " (many rows)"
                          : "");
         for (const struct quantity *q = m->quantity; q->name; q++) {
-            const char *kind = q->width == 3 ? " x, y, z" : q->width == 9 ? " 3 x 3" : "";
+            bool axes = q->width == 3 && strcmp(q->name, "principal");
+            const char *kind = axes ? " x, y, z" : q->width == 9 ? " 3 x 3" : "";
             printf("  %-19s %-6s %s%s%s\n", q->name, strcmp(q->unit, "1") ? q->unit : "", q->help,
                    *q->help && *kind ? "," : "", kind);
         }

@@ -60,7 +60,7 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 'w', "warm", &options.warm,
       .help = "start each solve from the reactions of the last step" },
     { CLI_UNFLAG, 0, "cold", &options.warm,
-      .help = "start each solve from reactions 0, as the paper", .usual = options_usual },
+      .help = "start each solve from reactions 0, as in the paper", .usual = options_usual },
     { CLI_CHOICE, 0, "cut", &options.cut, .choice = cut_choice,
       .help = "divide space among MPI processes in this way [bisection]" },
     { CLI_FLAG, 'i', "in-place", &in_place, .silent = true,
@@ -512,7 +512,7 @@ static int64_t run(struct run *r)
     return made;
 }
 
-/* How many steps --until wants, of a packing at this time: up to the first whose time reaches it, which
+/* How many steps --until needs, of a packing at this time: up to the first whose time reaches it, which
    depends on where the time is counted from and not on where this run began */
 static void count_steps(const struct packing *p)
 {
@@ -545,8 +545,7 @@ static double read_dt(void)
             "radius above 0 and at most 1",
             dt);
     if (adapts && processes_size() > 1)
-        die_usage("--dt auto: one process alone adapts its time step, and here are %d: nsd-step -j "
-                  "has threads",
+        die_usage("--dt auto: needs a single process, and %d run: use threads, nsd-step -j",
                   processes_size());
     if (adapts) tol = x;
     return adapts ? 0 : x;
@@ -642,7 +641,7 @@ int tool_main(int argc, char **argv)
     if (!processes_join()) return processes_follow();
     double asked = read_dt();
     if (options.device && processes_started())
-        die_usage("--device: one process alone, without mpirun");
+        die_usage("--device: needs a single process, without mpirun");
     if (cli_given(&until) && cli_given(&steps)) die_usage("-n and --until exclude each other");
     if (save) parse_save();
     if (in_place && output) die_usage("-i and -o exclude each other");
@@ -653,7 +652,7 @@ int tool_main(int argc, char **argv)
     progress_lines(lines);
     if (reader_open(&in, argc, argv, &why)) die_why(&why);
     reader_copies(in);
-    // a program in the loop wants all bodies, and their contacts, in one place
+    // a program in the loop needs all bodies, and their contacts, in one place
     struct distributed *others = processes_take_bodies(contacts || forces || sums || loop_asks());
     reader_hands_over(in, loop_asks() ? NULL : others);
     if (output && reader_reads(argc, argv, output))

@@ -187,7 +187,7 @@ static struct view view_of_options(void)
     if (table && !cli_given(&colour)) colour = COLOUR_VALUE;
     if ((colour == COLOUR_VALUE) != (table != NULL)) die_usage("-c value and --values go together");
     if (wanted && !table) die_usage("--column is of --values");
-    if (svg && perspective > 0) die_usage("--svg is of discs, and these have no perspective");
+    if (svg && perspective > 0) die_usage("--svg: discs have no perspective");
     if (cut) set_cut(&v);
     paint_init(&v.paint, (enum colour)colour, plain);
     if (!numbers(camera, 2, x) || fabs(x[0]) > 360 || fabs(x[1]) > 90)
@@ -338,7 +338,7 @@ static void extend(struct view *v, struct frame *f, const char *where)
     struct why why = { 0 };
     set_values(v, f, where);
     if (v->boxed && f->packing.dim == 3 && v->region.lo.z == v->region.hi.z)
-        die_usage("--box: wants Z0,Z1 too, for balls");
+        die_usage("--box: needs Z0,Z1 too, for balls");
     if (view_extend(v, &f->packing, &why)) die(why.status, "%s: %s", where, why.text);
 }
 
@@ -482,9 +482,9 @@ int tool_main(int argc, char **argv)
     struct why why = { 0 };
     struct view v = view_of_options();
     if (every && step >= 0) die_usage("--step and --every exclude each other");
-    if (every && !output) die_usage("--every wants --output 'name%%05d.png'");
+    if (every && !output) die_usage("--every needs --output 'name%%05d.png'");
     if (svg && every && film_name(output)) die_usage("--svg: a film is of PNGs");
-    if (!every && output && film_name(output)) die_usage("%s: a film wants --every", output);
+    if (!every && output && film_name(output)) die_usage("%s: a film needs --every", output);
     if (!output && isatty(STDOUT_FILENO))
         die(EX_USAGE, "standard output is a terminal: a picture is binary, use > FILE or a pipe");
     read_values(&v);

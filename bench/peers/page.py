@@ -65,7 +65,7 @@ def at(curve, t):
 
 def job_section(name, job, quick):
     variants = job["variants"]
-    out = [f"## {job['title']}", ""]
+    out = [f"## {job['title'].replace(', a start by others', ', start published by others')}", ""]
     if job["balls"] != job["published"]:
         out += [f"Run here with {job['balls']} balls.", ""]
     common = min([v["series"]["t"][-1] for k, v in variants.items() if v.get("series") and k in ("nsd", "liggghts-soft")], default=0)
@@ -89,20 +89,20 @@ def job_section(name, job, quick):
     own = variants["nsd"]["runs"][-1]
     out.append("")
     if r:
-        out.append(f"nsd needs {text(r, 2)} of the CPU of LIGGGHTS, soft{'' if r <= GOAL else f', more than {GOAL}'}.")
+        out.append(f"nsd needs {text(r, 2)} times the CPU of LIGGGHTS, soft{'' if r <= GOAL else f', more than {GOAL}'}.")
     out.append(f"Its steps take {text(own['sweeps'])} sweeps; the largest overlap is {text(own['overlap']) or 'unknown'} of a radius"
                + (f"; {own['unconverged']} steps have not converged." if own.get("unconverged") else "."))
     if job.get("profile"):
-        out += ["", "Of nsd's CPU: " + ", ".join(f"{f} {share:.0f} %" for f, share in job["profile"]) + "."]
+        out += ["", "Functions of nsd by CPU: " + ", ".join(f"{f} {share:.0f} %" for f, share in job["profile"]) + "."]
     return out + ["", f"![{job['label']} over time]({name}.svg)", ""]
 
 
 def check_section(check):
     out = ["## nsd against itself: defaults, and a quarter of dt with a small eps", "",
-           "The same start with `--dt` a quarter and the options that are named; the mean of the observable over the second half of "
-           "the run, relative to that of the finer run, and the scatter between seeds (the standard deviation of one run's). "
-           "A difference below the scatter is none.", "",
-           row("job", "balls", "finer", "observable", "seeds", "with defaults", "finer", "difference", "its error by the seeds", "scatter of a run", "CPU, finer / defaults"),
+           "The finer run has the same start, a quarter of `--dt`, and the option of the column. The observable is the mean over the second half of "
+           "the run; the difference is relative to the finer run; the scatter is the standard deviation of single runs with different seeds. "
+           "A difference below the scatter is not significant.", "",
+           row("job", "balls", "option of the finer run", "observable", "seeds", "defaults", "finer run", "difference", "its standard error", "scatter of a run", "CPU, finer / defaults"),
            row(*["---"] * 11)]
     for c in check:
         out.append(row(c["job"], text(c["balls"]), f"`{c['options']}`", c["observable"], text(c["seeds"]), text(c["default"], 4), text(c["fine"], 4),
@@ -111,11 +111,11 @@ def check_section(check):
 
 
 def effort_section(efforts):
-    out = ["## What dt and eps cost, and what they change", "",
-           "The jobs of the table above, means over the seeds with the error of the mean.", ""]
+    out = ["## Cost and effect of dt and eps", "",
+           "Means over the seeds, with the standard error of the mean.", ""]
     for e in efforts:
         out += [f"{e['job']}, {e['balls']} balls, {e['seeds']} seeds:", "",
-                row("option", e["observable"], "CPU s/s", "sweeps a step", "largest overlap, r"), row(*["---"] * 5)]
+                row("option", e["observable"], "CPU s/s", "sweeps per step", "largest overlap, r"), row(*["---"] * 5)]
         for r in e["rows"]:
             out.append(row((f"`--{r['what']} {text(r['value'])}`") + (", default" if r["default"] else ""), f"{text(r['found'], 4)} +- {text(r['error'], 2)}",
                            text(r["cpu"]), text(r["sweeps"]), text(r["overlap"])))
@@ -126,9 +126,9 @@ def effort_section(efforts):
 def rest_section(rest):
     out = ["## A pile at rest", "",
            f"{rest['balls']} balls of the settling job, {rest['settle']} s to settle, then {rest['steps']} steps of {rest['dt']} s. "
-           f"{rest['loose']} balls touch fewer than three others or walls: such a ball may roll on the floor for ever, for nothing brakes rolling. "
-           "Displacements are from the beginning of these steps, held: of the other balls.", "",
-           row("steps", "kinetic energy, m g d a ball", "displacement, held: median, d", "held: largest, d", "any ball: largest, d", "largest overlap, r"),
+           f"{rest['loose']} balls touch fewer than three others or walls; without rolling friction such a ball may roll on the floor without end. "
+           "Displacements are measured from the beginning of these steps. The columns held exclude these balls.", "",
+           row("steps", "kinetic energy, m g d per ball", "displacement, held: median, d", "held: largest, d", "any ball: largest, d", "largest overlap, r"),
            row(*["---"] * 6)]
     for r in rest["rows"]:
         out.append(row(text(r["step"], 7), text(r["kinetic"]), text(r["median"]), text(r["held"]), text(r["largest"]), text(r["overlap"])))
@@ -137,9 +137,9 @@ def rest_section(rest):
 
 def growth_section(growth):
     out = ["## CPU against the number of balls", "",
-           "The settling job with defaults, until three times the time in which the highest balls fall, and then some steps of the bed. CPU of a step "
-           f"grows as N^{text(growth['falling'])} while the bed forms, and as N^{text(growth['exponent'])} then (least squares of the logarithms).", "",
-           row("balls", "forming: CPU, us a ball and step", "bed: CPU, us a ball and step", "bed: sweeps a step", "bed: steps"), row(*["---"] * 5)]
+           "The settling job with defaults, until three times the time of fall of the highest balls, and then some steps of the bed at rest. CPU per step "
+           f"grows as N^{text(growth['falling'])} while the bed forms and as N^{text(growth['exponent'])} afterwards (least squares of the logarithms).", "",
+           row("balls", "forming: CPU, us per ball and step", "bed: CPU, us per ball and step", "bed: sweeps per step", "bed: steps"), row(*["---"] * 5)]
     for r in growth["rows"]:
         out.append(row(text(r["balls"], 7), text(1e6 * r["falling"] / r["balls"]), text(1e6 * r["cpu"] / r["steps"] / r["balls"]),
                        text(r["sweeps"]), text(r["steps"])))
@@ -147,12 +147,13 @@ def growth_section(growth):
 
 
 def page(results):
-    out = ["# nsd beside LIGGGHTS and Yade", "",
+    out = ["# nsd compared with LIGGGHTS and Yade", "",
            "`make peers` runs seven jobs with each code from the same start, with the same geometry, friction and restitution, and writes this page "
-           "(`QUICK=1`: small ones, in minutes). LIGGGHTS and Yade are optional Debian packages. CPU is user and system time of a physical second, "
-           "wall its real time, which counts only where the machine has nothing else to do. nsd has no option but `-j`; \"dt auto\" is the time step that nsd-gen(1) `--check` suggests. "
-           "LIGGGHTS and Yade have Hertz's contacts with tangential history, nu 0.3, and 0.2 of Rayleigh's time for dt. \"cut\": "
-           "stopped at a bound of CPU seconds; the cost is that of the time that it simulated.", ""]
+           "(`QUICK=1`: small jobs, in minutes). LIGGGHTS and Yade are optional Debian packages. CPU is user and system time per simulated second. "
+           "Wall is real time per simulated second, which is meaningful only if the machine has no other load. nsd runs with its defaults except `-j`; "
+           "\"dt auto\" is the time step that nsd-gen(1) `--check` suggests. LIGGGHTS and Yade use Hertzian contacts with tangential history, "
+           "Poisson's ratio 0.3, and 0.2 of the Rayleigh time as time step. \"cut\": the run was stopped at a limit of CPU seconds, and its cost is "
+           "that of the time it simulated.", ""]
     for r in results:
         jobs = r["jobs"]
         out += [f"## {r['machine']}", "", "; ".join(r["versions"]) + "." + (" Small jobs (QUICK=1)." if r["quick"] else ""), "",

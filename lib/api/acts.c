@@ -265,7 +265,7 @@ int acts_push(struct acts *a, const struct packing *p, int64_t wall, double forc
     if (!w) return why->status;
     if (w->load.way == LOAD_NONE)
         return why_set(why, EX_DATAERR,
-                       "boundary %lld does not yield to a force: give it a load in the scene",
+                       "boundary %lld is not load-controlled: give it a load in the scene",
                        (long long)wall);
     if (!isfinite(force))
         return why_set(why, EX_DATAERR, "the force of boundary %lld is not finite",
@@ -290,8 +290,7 @@ int acts_velocity(struct packing *p, int64_t wall, vec3 v, struct why *why)
         return why_set(why, EX_DATAERR, "the velocity of boundary %lld is not finite%s",
                        (long long)wall, p->dim == 2 ? ", or leaves the plane" : "");
     if (turns(p, w))
-        return why_set(why, EX_DATAERR,
-                       "boundary %lld turns, and what turns has the velocity of its drives",
+        return why_set(why, EX_DATAERR, "boundary %lld rotates, so no velocity can be prescribed",
                        (long long)wall);
     struct wall was = *w;
     w->x = v3_axpy(w->x, p->t, v3_sub(w->v, v)); // x + v t is where it was

@@ -12,7 +12,7 @@ json_t *answer_parse(const char *line, size_t length, struct why *why)
                     ? json_pack("{s:b}", "stop", 1)
                     : json_loadb(line, length, JSON_REJECT_DUPLICATES, &e);
     if (!j)
-        why_set(why, EX_DATAERR, "the answer is no JSON: %.100s (column %d)",
+        why_set(why, EX_DATAERR, "the answer is not JSON: %.100s (column %d)",
                 length == 4 ? "no memory" : e.text, length == 4 ? 0 : e.column);
     else if (!json_is_object(j))
         why_set(why, EX_DATAERR, "the answer is neither a JSON object nor the word stop");

@@ -83,7 +83,7 @@ static struct nsd_run *new_run(struct why *why)
     return r;
 }
 
-/* The run with its packing: what it wants before the first step */
+/* The run with its packing: what it needs before the first step */
 static int begin(struct nsd_run *r, struct why *why)
 {
     struct packing *p = &r->f.packing;

@@ -128,7 +128,7 @@ static int check_first(const struct packing *first, const struct packing *p, con
 {
     bool same = !first->scene == !p->scene && (!p->scene || !strcmp(first->scene, p->scene));
     if (!same || first->seed != p->seed || first->walls != p->walls || first->kinds != p->kinds)
-        return why_set(why, NSD_DATA, "%.200s: belongs to another scene: remove it to begin anew",
+        return why_set(why, NSD_DATA, "%.200s: belongs to another scene: remove it to begin again",
                        path);
     return 0;
 }

@@ -14,7 +14,7 @@ enum { SANITIZED = 1 };
 enum { SANITIZED = 0 };
 #endif
 
-/* From now on this process may take so many bytes more than it has. Without effect under a sanitizer, which wants
+/* From now on this process may take so many bytes more than it has. Without effect under a sanitizer, which needs
    terabytes of addresses. */
 void limits_memory(uint64_t bytes);
 /* And so many seconds more of the processor; ten times as many under a sanitizer. */

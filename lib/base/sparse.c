@@ -53,7 +53,7 @@ void stored_free(struct stored *S)
 static int check_pointers(const struct stored *S, const char *name, int32_t lines, struct why *why)
 {
     if (S->np != (uint64_t)lines + 1)
-        return why_set(why, EX_DATAERR, "%s/p: %llu pointers, %lld are wanted", name,
+        return why_set(why, EX_DATAERR, "%s/p: %llu pointers, %lld are needed", name,
                        (unsigned long long)S->np, lines + 1LL);
     if (S->p[0] != 0) return why_set(why, EX_DATAERR, "%s/p: begins with %d, not 0", name, S->p[0]);
     for (int32_t k = 0; k < lines; k++)

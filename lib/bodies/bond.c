@@ -88,7 +88,7 @@ int bonds_check(const struct bonds *s, int dim, int64_t bodies, int32_t walls, s
         const char *trouble = bond_trouble(x, dim, bodies, walls);
         if (trouble) return why_set(why, EX_DATAERR, "bond %lld: %s", (long long)i, trouble);
         if (i && compare_bonds(x - 1, x) >= 0)
-            return why_set(why, EX_DATAERR, "bond %lld: not sorted by its bodies, or there twice",
+            return why_set(why, EX_DATAERR, "bond %lld: not sorted by its bodies, or twice",
                            (long long)i);
     }
     return 0;

@@ -132,7 +132,7 @@ int memory_check(const struct memory *m, int64_t bodies, int32_t walls, struct w
         else if (!v3_finite(x->r) || !v3_finite(x->m))
             trouble = "is not finite";
         else if (i && compare(x - 1, x) >= 0)
-            trouble = "not sorted by its bodies, or there twice";
+            trouble = "not sorted by its bodies, or twice";
         if (trouble)
             return why_set(why, EX_DATAERR, "remembered reaction %lld: %s", (long long)i, trouble);
     }

@@ -140,7 +140,7 @@ int names_check(const struct names *s, int32_t walls, const struct wall *wall, s
         const char *trouble = name_trouble(s->text[k], strlen(s->text[k]));
         if (trouble) return why_set(why, EX_DATAERR, "name %d %s", k, trouble);
         if (names_find(s, s->text[k], strlen(s->text[k])) != k)
-            return why_set(why, EX_DATAERR, "name \"%s\" is there twice", s->text[k]);
+            return why_set(why, EX_DATAERR, "name \"%s\" occurs twice", s->text[k]);
     }
     for (int32_t k = 0; k < s->rows; k++) {
         const struct named *r = &s->row[k], *last = k ? r - 1 : NULL;

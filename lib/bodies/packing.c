@@ -372,7 +372,7 @@ static const char *load_trouble(const struct packing *p, const struct wall *w)
     if (l->spread && p->walls > SPREAD_MOST)
         return "its pressure is on one of more than 1000 boundaries: give a force";
     if (l->spread && !(wall_face(p, w, p->t) > 0))
-        return "its pressure wants planes on all sides of its face, or a cell that repeats there: "
+        return "its pressure needs planes on all sides of its face, or a cell that repeats there: "
                "give a force";
     if (turns && w->shape == BOUNDARY_PLANE && !(v3_norm(v3_cross(l->axis, w->n)) < 1e-6))
         return "it turns about another axis than its normal";
@@ -500,7 +500,7 @@ int packing_check(const struct packing *p, struct why *why)
         return why->status;
     for (int32_t i = 0; i < p->pushes.n; i++)
         if (!p->wall[p->pushes.drive[i].boundary].load.way)
-            return why_set(why, EX_DATAERR, "push %d: its boundary yields to no load", i);
+            return why_set(why, EX_DATAERR, "push %d: its boundary is not load-controlled", i);
     if (pulls_check(&p->pulls, p->pulls_most, p->dim, why)) return why->status;
     if (mesh_check(&p->mesh, p->dim, why)) return why->status;
     if (bonds_check(&p->bonds, p->dim, p->n, p->walls, why)) return why->status;

@@ -122,7 +122,7 @@ static inline bool packing_varies(const struct packing *p)
 bool packing_sticks(const struct packing *p);
 /* Has any pair of kinds rolling or pivoting friction? */
 bool packing_rolls(const struct packing *p);
-/* May an impact gain energy [motion/balance.h]? It wants restitution and friction. */
+/* May an impact gain energy [motion/balance.h]? It needs restitution and friction. */
 bool packing_may_gain(const struct packing *p);
 /* Is Newton's law to be bounded for the contact [solve/rebound.h]? */
 bool packing_bounds(const struct packing *p, const struct contact *c);

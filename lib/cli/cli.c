@@ -245,7 +245,7 @@ int cli_parse(int argc, char **argv)
             finish_stdout();
             exit(0);
         }
-        if (c == ':') die_usage("%s: an argument is wanted", argv[optind - 1]);
+        if (c == ':') die_usage("%s: an argument is needed", argv[optind - 1]);
         if (c == '?' && optopt && optopt < 256) die_usage("-%c: no such option", optopt);
         if (c == '?') die_usage("%s: no such option", argv[optind - 1]);
         int k = c - FIRST_LONG;

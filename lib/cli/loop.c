@@ -76,7 +76,7 @@ void loop_check(void)
     struct why why = { 0 };
     if (command && replay) die_usage("--with and --replay exclude each other");
     for (const struct cli_option *o = options_loop + 1; o->kind && o->to != &replay; o++)
-        if (cli_given(o->to) && !command) die_usage("--%s: wants --with", o->name);
+        if (cli_given(o->to) && !command) die_usage("--%s: needs --with", o->name);
     if (measures && measured_choose(loop.chosen, measures, &why))
         die_usage("--with-measures: %s", strchr(why.text, ' ') + 1);
 }
@@ -286,9 +286,10 @@ static json_t *take_bare_document(const struct packing *p, struct why *why)
     if (partner_peek(loop.partner, &header, DOCUMENT_USERBLOCK, why)) return NULL;
     int64_t n = document_length((unsigned char *)header);
     if (n > 0) return take_document(p, (double)n, why);
-    why_set(why, EX_DATAERR,
-            "the document answered %s: a line {\"document\": BYTES} in front of it says its length",
-            n ? "has no header of nsd's" : "is unfinished");
+    why_set(
+        why, EX_DATAERR,
+        "the document answered %s: a line {\"document\": BYTES} in front of it gives its length",
+        n ? "has no header of nsd's" : "is unfinished");
     return NULL;
 }
 

@@ -8,11 +8,12 @@
 #include <string.h>
 
 const struct surface_meaning surface_meaning[SURFACE_COUNT] = {
-    [SURFACE_NAME] = { "name", "", "one colour a name" },
-    [SURFACE_PRESSURE] = { "pressure", "Pa", "the mean of the run, from sums" },
-    [SURFACE_FRICTION] = { "friction", "J/m2", "what friction took of each m2, from sums" },
+    [SURFACE_NAME] = { "name", "", "one colour per name" },
+    [SURFACE_PRESSURE] = { "pressure", "Pa", "mean pressure of the run, from sums" },
+    [SURFACE_FRICTION] = { "friction", "J/m2", "work of friction per m2, from sums" },
     [SURFACE_RUB] = { "rub", "J/m2",
-                      "normal force by way of each m2, from sums: wear is this by a coefficient" },
+                      "normal force times sliding distance per m2, from sums: wear over a "
+                      "coefficient" },
 };
 
 /* Colours of names, which differ from those of kinds: brass, steel blue, copper, moss, slate, plum */

@@ -140,7 +140,7 @@ int svg_draw(const struct overlay *o, const struct view *v, const struct packing
 {
     const struct camera *c = &v->camera;
     struct bytes_out b = { 0 };
-    if (p->dim != 2) return why_set(why, EX_DATAERR, "an SVG is of discs, and dim is %d", p->dim);
+    if (p->dim != 2) return why_set(why, EX_DATAERR, "an SVG shows discs, and dim is %d", p->dim);
     cairo_surface_t *surface = cairo_svg_surface_create_for_stream(
         keep, &b, c->width, c->height + overlay_strip(o, c->width));
     cairo_t *cr = cairo_create(surface);

@@ -280,7 +280,7 @@ static int box_of(float of[6], struct box *b, const struct packing *p, struct wh
     if (!(e[0].x > 0 && e[0].y == 0 && e[0].z == 0 && e[1].y > 0 && e[1].z == 0 && e[2].z > 0))
         return why_set(why, EX_DATAERR,
                        "the cell's first edge is not along x, or the second not in the plane of x "
-                       "and y: GSD has no such box; --to lammps has");
+                       "and y: GSD has no such box; --to lammps does");
     const double box[6] = { e[0].x,          e[1].y,          e[2].z,
                             e[1].x / e[1].y, e[2].x / e[2].z, e[2].y / e[2].z };
     for (int k = 0; k < 6; k++) of[k] = (float)box[k];

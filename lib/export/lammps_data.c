@@ -10,16 +10,17 @@
 /* A data file has nothing but balls that move. */
 static int check(const struct packing *p, struct why *why)
 {
-    if (p->dim == 2) return why_set(why, EX_DATAERR, "discs: a LAMMPS data file has balls");
+    if (p->dim == 2) return why_set(why, EX_DATAERR, "discs: a LAMMPS data file holds only balls");
     for (int64_t i = 0; i < p->n; i++) {
         if (packing_shape(p, i))
-            return why_set(why, EX_DATAERR,
-                           "grain %" PRId32
-                           " is no ball: a LAMMPS data file has balls; --to gsd has shapes",
-                           p->id[i]);
+            return why_set(
+                why, EX_DATAERR,
+                "grain %" PRId32
+                " is not a ball: a LAMMPS data file holds only balls; --to gsd writes shapes",
+                p->id[i]);
         if (!(p->mass[i] > 0))
             return why_set(why, EX_DATAERR,
-                           "grain %" PRId32 " is fixed: a LAMMPS data file has a density of each",
+                           "grain %" PRId32 " is fixed: a LAMMPS data file needs a density of each",
                            p->id[i]);
     }
     return 0;
@@ -33,7 +34,7 @@ static int put_box(FILE *out, const struct packing *p, struct why *why)
     if (!(e[0].x > 0 && e[0].y == 0 && e[0].z == 0 && e[1].y > 0 && e[1].z == 0 && e[2].z > 0))
         return why_set(why, EX_DATAERR,
                        "the cell's first edge is not along x, or the second not in the plane of x "
-                       "and y: a LAMMPS data file has no such box; --to lammps has");
+                       "and y: a LAMMPS data file has no such box; --to lammps does");
     fprintf(out, "%.17g %.17g xlo xhi\n%.17g %.17g ylo yhi\n%.17g %.17g zlo zhi\n", o.x,
             o.x + e[0].x, o.y, o.y + e[1].y, o.z, o.z + e[2].z);
     if (e[1].x != 0 || e[2].x != 0 || e[2].y != 0)

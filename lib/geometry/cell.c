@@ -127,7 +127,7 @@ int cell_check(const struct cell *c, int dim, double least, struct why *why)
     for (int k = 0; k < 3; k++)
         if (c->repeats[k] && !(height[k] >= least))
             return why_set(why, EX_DATAERR,
-                           "the cell repeats after %.9g m across edge %d: less than the largest "
+                           "the periodic cell is %.9g m wide across edge %d: less than the largest "
                            "body with its gap, %.9g m, which would touch itself",
                            height[k], k, least);
     return 0;

@@ -68,7 +68,7 @@ int sink_bytes(struct sink *sink, struct reply *reply, const void *bytes, size_t
 struct taker {
     struct sink sink;
     int (*pour)(void *to, const void *bytes, size_t size, struct why *why);
-    void *out; /* or what pour() wants to know */
+    void *out; /* or what pour() needs to know */
     uint64_t size, done;
     struct budget *budget; /* which the answer draws on; NULL: none */
     struct reply reply;

@@ -50,7 +50,7 @@ static const struct served_entry *find_numbers(const struct served *s, const str
 {
     const struct served_entry *e = served_find(s, q->path, why);
     if (!e || element_suits(&e->object, q->type)) return e;
-    why_set(why, EX_DATAERR, "%s: %s are wanted, and it holds something else", q->path,
+    why_set(why, EX_DATAERR, "%s: %s are needed, and it holds something else", q->path,
             element_wanted(q->type));
     return NULL;
 }
@@ -154,7 +154,7 @@ static int answer_text(struct served *s, const struct request *q, struct sink *s
     if (why->status) return free(text), why->status;
     if (!text)
         return why_set(why, EX_DATAERR, "%s%s%s: %s", path, q->name[0] ? "@" : "", q->name,
-                       is_text ? "cannot be read as a text (damaged?)" : "a text is wanted");
+                       is_text ? "cannot be read as a text (damaged?)" : "a text is needed");
     if (sink_bytes(sink, &reply, text, length)) why_set(why, EX_SOFTWARE, "%s: not sent", path);
     free(text);
     return why->status;
@@ -174,9 +174,9 @@ static int answer_attribute(struct served *s, const struct request *q, struct si
     struct reply reply = { 0 };
     if (disk >= 0) element_describe(disk, &o);
     if (!element_suits(&o, q->type))
-        why_set(why, EX_DATAERR, "%s@%s: %s are wanted", path, q->name, element_wanted(q->type));
+        why_set(why, EX_DATAERR, "%s@%s: %s are needed", path, q->name, element_wanted(q->type));
     else if (points != want || want > 16)
-        why_set(why, EX_DATAERR, "%s@%s: %lld values, %lld are wanted", path, q->name,
+        why_set(why, EX_DATAERR, "%s@%s: %lld values, %lld are needed", path, q->name,
                 (long long)points, (long long)want);
     else if (want && H5Aread(attr, column_native(q->type), numbers) < 0)
         why_set(why, EX_DATAERR, "%s@%s: cannot be read", path, q->name);

@@ -75,8 +75,8 @@ static int count_bytes(struct served *s, const struct served_entry *e, struct wh
     if (__builtin_add_overflow(s->unpacked, e->bytes, &s->unpacked)) s->unpacked = UINT64_MAX;
     if (s->unpacked <= s->limit) return 0;
     return why_set(why, EX_DATAERR,
-                   "%s: with it %llu MB are said to be in %llu kB (--unpack allows more)", e->path,
-                   (unsigned long long)(s->unpacked / 1000000),
+                   "%s: with it the file declares %llu MB in %llu kB (--unpack allows more)",
+                   e->path, (unsigned long long)(s->unpacked / 1000000),
                    (unsigned long long)(s->size / 1000 + 1));
 }
 
@@ -266,6 +266,6 @@ int served_stored(const struct served_entry *e, uint64_t bytes, struct why *why)
 {
     if (bytes <= FREE_FILL || bytes - FREE_FILL <= e->stored) return 0;
     if (e->packed && e->stored && bytes / 1100 <= e->stored) return 0; // gzip packs 1032 to 1
-    return why_set(why, EX_DATAERR, "%s: %llu bytes are said to be there, and %llu are stored",
-                   e->path, (unsigned long long)bytes, (unsigned long long)e->stored);
+    return why_set(why, EX_DATAERR, "%s: %llu bytes are declared, and %llu are stored", e->path,
+                   (unsigned long long)bytes, (unsigned long long)e->stored);
 }

@@ -231,7 +231,7 @@ int source_read(struct source *s, const char *path, enum column_type type, uint6
     if (found == count)
         memcpy(out, data, (size_t)count * column_size(type));
     else
-        why_set(why, EX_DATAERR, "%s: %llu values, %llu are wanted", path,
+        why_set(why, EX_DATAERR, "%s: %llu values, %llu are needed", path,
                 (unsigned long long)found, (unsigned long long)count);
     free(data);
     return why->status;

@@ -139,7 +139,7 @@ static int read_atoms(struct data *d)
         if (n != 7 && n != 10)
             return soup_fault(
                 d->w->soup,
-                "%d words, and 7 or 10 are wanted: id type diameter density x y z, of "
+                "%d words, and 7 or 10 are needed: id type diameter density x y z, of "
                 "atom_style sphere",
                 n);
         if (c.n != n) c = (struct import_columns){ 0 };
@@ -180,7 +180,7 @@ static int read_velocities(struct data *d)
         unread(d->w, word);
         int n = count_words(*d->w);
         if (n != 4 && n != 7)
-            return soup_fault(d->w->soup, "%d words, and 4 or 7 are wanted: id vx vy vz wx wy wz",
+            return soup_fault(d->w->soup, "%d words, and 4 or 7 are needed: id vx vy vz wx wy wz",
                               n);
         for (int k = 0; k < n; k++)
             if (words_number(d->w, &x[k])) return d->w->soup->why->status;

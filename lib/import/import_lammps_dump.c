@@ -41,7 +41,7 @@ static int read_ends(struct imported_head *h, struct words *w, bool *tilted, boo
         else if (word.n == 2 && word_has_only(word, "pfsm") && k < 3)
             h->repeats[k++] = word_is(word, "pp"), h->says = true;
     }
-    return h->says && k != 3 ? soup_fault(w->soup, "wants three of pp, ff, ss, mm, sm ...") : 0;
+    return h->says && k != 3 ? soup_fault(w->soup, "needs three of pp, ff, ss, mm, sm ...") : 0;
 }
 
 static int read_box(struct imported_head *h, struct words *w)
@@ -78,7 +78,7 @@ static int read_box(struct imported_head *h, struct words *w)
 static int read_whole(struct words *w, int64_t least, const char *what, int64_t *x)
 {
     struct word word;
-    if (!words_line(w)) return soup_fault(w->soup, "no %s behind it (truncated?)", what);
+    if (!words_line(w)) return soup_fault(w->soup, "no %s after it (truncated?)", what);
     if (words_whole(w, x)) return w->soup->why->status;
     if (*x < least) return soup_fault(w->soup, "no %s", what);
     return words_next(w, &word) ? word_fault(w, word, "is too much") : 0;

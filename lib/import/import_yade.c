@@ -23,8 +23,8 @@ static int read_format(struct import_columns *c, struct words *w, bool *attribut
         while (from + name.n < format.n && name.s[name.n] != '_') name.n++;
         from += name.n + 1;
         if (word_is(name, "clumpid"))
-            return soup_fault(w->soup,
-                              "members of clumps, which are no balls: export.textExt has balls");
+            return soup_fault(
+                w->soup, "members of clumps, which are not balls: export.textExt writes balls");
         if (word_is(name, "attrs"))
             *attributes = true;
         else if (import_name_column(c, w, name))

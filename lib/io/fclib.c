@@ -31,7 +31,7 @@ static double *read_vector(struct source *source, const char *group, const char 
     double *x = source_read_all(source, join(path, group, name), COLUMN_F64, &length, why);
     if (!x) return NULL;
     if (count >= 0 && length != (uint64_t)count)
-        why_set(why, EX_DATAERR, "%s: %llu values, %lld are wanted", path,
+        why_set(why, EX_DATAERR, "%s: %llu values, %lld are needed", path,
                 (unsigned long long)length, (long long)count);
     for (uint64_t k = 0; k < length && !why->status; k++)
         if (!isfinite(x[k]))

@@ -140,7 +140,7 @@ static int read_overlap(struct source *doc, struct packing *p, struct why *why)
     for (int k = OVERLAP_KEEP; k < OVERLAP_COUNT; k++)
         if (!strcmp(name, overlap_name[k])) p->overlap = (enum overlap)k;
     free(name);
-    return p->overlap ? 0 : why_set(why, EX_DATAERR, "/nsd@overlap: no such way against overlap");
+    return p->overlap ? 0 : why_set(why, EX_DATAERR, "/nsd@overlap: no such treatment of overlap");
 }
 
 static int read_parameters(struct source *doc, struct packing *p, struct why *why)

@@ -59,7 +59,7 @@ int name_tables_read(struct source *r, struct packing *p, struct why *why)
         if (names_add(&p->names, at, &which, why))
             why_set(why, EX_DATAERR, "%s: a name that is no name", text_path);
         else if (p->names.n == had)
-            why_set(why, EX_DATAERR, "%s: \"%s\" is there twice", text_path, at);
+            why_set(why, EX_DATAERR, "%s: \"%s\" occurs twice", text_path, at);
     }
     free(text);
     return why->status ? why->status : read_rows(r, p, why);

@@ -112,11 +112,11 @@ int roster_enter(struct roster *r, struct table_write *s, const struct packing *
         at = (*row)[i] + 1;
     }
     if (r->rows > (int64_t)s->most_bodies)
-        return why_set(
-            why, EX_DATAERR,
-            "the trajectory has rows for %lld bodies, and more have come: a count for the "
-            "pour tells how many it takes, and a new trajectory has room for more",
-            (long long)s->most_bodies);
+        return why_set(why, EX_DATAERR,
+                       "the trajectory has rows for %lld bodies, and more were poured: give the "
+                       "pour a count, or "
+                       "begin a new trajectory",
+                       (long long)s->most_bodies);
     int64_t chunk = (int64_t)s->chunk_bodies;
     while (r->width < r->rows || !r->width) r->width += chunk;
     if (first < p->n || !had) return write_new(s, p, first, why);

@@ -103,7 +103,7 @@ static int set_only(struct asked *a, const char *name, const char *text, struct 
 {
     size_t n = strlen(text);
     if (!n || n >= sizeof a->only)
-        return why_set(why, EX_USAGE, "--%s: wants names, at most %zu bytes", name,
+        return why_set(why, EX_USAGE, "--%s: needs names, at most %zu bytes", name,
                        sizeof a->only - 1);
     memcpy(a->only, text, n + 1);
     return 0;

@@ -15,13 +15,13 @@ struct push {
 };
 
 static const struct quantity quantities[] = {
-    { "boundary", "1", 1, "its number; -1: all bodies that are fixed" },
-    { "contacts", "1", 1, "that push or pull" },
-    { "force", "N", 3, "of the bodies on it" },
-    { "torque", "N m", 3, "of that about --point" },
+    { "boundary", "1", 1, "number of the boundary; -1: all fixed bodies" },
+    { "contacts", "1", 1, "number of contacts with non-zero normal force" },
+    { "force", "N", 3, "force of the bodies on the boundary" },
+    { "torque", "N m", 3, "torque of the same about --point" },
     { "normal", "N", 1, "sum of normal forces" },
-    { "tangential", "N", 1, "sum of tangential forces, each its size" },
-    { "name", "name", 1, "its name" },
+    { "tangential", "N", 1, "sum of the magnitudes of tangential forces" },
+    { "name", "name", 1, "name of the boundary" },
     { 0 },
 };
 
@@ -75,7 +75,7 @@ static int boundaries_rows(struct table *t, const struct snapshot *s, struct why
 
 const struct measure measure_boundaries = {
     .name = "boundaries",
-    .help = "forces on boundaries, and their torques",
+    .help = "forces and torques on boundaries",
     .quantity = quantities,
     .keeps_to = KEEPS_TO_WALLS,
     .list = true,
@@ -86,12 +86,12 @@ const struct measure measure_boundaries = {
 /* ---- by name ---- */
 
 static const struct quantity of_names[] = {
-    { "name", "name", 1, "of walls, or parts of them" },
-    { "contacts", "1", 1, "that push or pull" },
-    { "force", "N", 3, "of the bodies on all that has the name" },
-    { "torque", "N m", 3, "of that about --point" },
+    { "name", "name", 1, "name of walls or of parts of walls" },
+    { "contacts", "1", 1, "number of contacts with non-zero normal force" },
+    { "force", "N", 3, "force of the bodies on everything with this name" },
+    { "torque", "N m", 3, "torque of the same about --point" },
     { "normal", "N", 1, "sum of normal forces" },
-    { "tangential", "N", 1, "sum of tangential forces, each its size" },
+    { "tangential", "N", 1, "sum of the magnitudes of tangential forces" },
     { 0 },
 };
 
@@ -137,7 +137,7 @@ end:
 
 const struct measure measure_names = {
     .name = "names",
-    .help = "forces on walls and parts of them by their names, and their torques",
+    .help = "forces and torques on walls and parts of walls, by name",
     .quantity = of_names,
     .keeps_to = KEEPS_TO_WALLS,
     .list = true,

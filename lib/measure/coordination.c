@@ -7,12 +7,13 @@
 #include <stdlib.h>
 
 static const struct quantity quantities[] = {
-    { "bodies", "1", 1, "that move, their centres in the region" },
-    { "contacts", "1", 1, "of the frame: that push or pull; not solved: that touch" },
-    { "z", "1", 1, "contacts of a body, mean of all" },
-    { "z_mechanical", "1", 1, "mean of those with more than one (Thornton 2000)" },
-    { "z_without_rattlers", "1", 1, "mean of those that bear, among themselves" },
-    { "rattlers", "1", 1, "bodies that bear nothing" },
+    { "bodies", "1", 1, "number of movable bodies with their centre in the region" },
+    { "contacts", "1", 1, "number of contacts: of non-zero normal force; if unsolved, touching" },
+    { "z", "1", 1, "mean number of contacts per body" },
+    { "z_mechanical", "1", 1, "the same of bodies with more than one contact (Thornton 2000)" },
+    { "z_without_rattlers", "1", 1,
+      "the same of bodies that are not rattlers, without contacts of rattlers" },
+    { "rattlers", "1", 1, "number of bodies with too few contacts to carry load" },
     { 0 },
 };
 
@@ -66,7 +67,7 @@ static int coordination_rows(struct table *t, const struct snapshot *s, struct w
 
 const struct measure measure_coordination = {
     .name = "coordination",
-    .help = "contacts of a body; rattlers",
+    .help = "coordination numbers, rattlers",
     .quantity = quantities,
     .keeps_to = KEEPS_TO_BODIES,
     .usual = true,
@@ -77,9 +78,9 @@ const struct measure measure_coordination = {
 /* ---- how many bodies have how many ---- */
 
 static const struct quantity numbers[] = {
-    { "contacts", "1", 1, "of a body" },
-    { "bodies", "1", 1, "that have so many" },
-    { "share", "1", 1, "of all bodies" },
+    { "contacts", "1", 1, "number of contacts of a body" },
+    { "bodies", "1", 1, "number of bodies with this number of contacts" },
+    { "share", "1", 1, "fraction of all bodies" },
     { 0 },
 };
 
@@ -109,7 +110,7 @@ static int coordination_number_rows(struct table *t, const struct snapshot *s, s
 
 const struct measure measure_contact_numbers = {
     .name = "contact_numbers",
-    .help = "how many bodies have how many contacts",
+    .help = "distribution of the number of contacts per body",
     .quantity = numbers,
     .keeps_to = KEEPS_TO_BODIES,
     .list = true,

@@ -3,14 +3,14 @@
 
 static const struct quantity quantities[] = {
     { "since", "s", 1, "time since the first frame" },
-    { "bodies", "1", 1, "that were there, too, and move" },
+    { "bodies", "1", 1, "number of movable bodies that existed in the first frame" },
     { "msd", "m2", 1, "mean square displacement" },
-    { "components", "m2", 3, "the same of x, y, z" },
+    { "components", "m2", 3, "mean square displacement along each axis" },
     { "drift", "m", 3, "mean displacement" },
     { "about_drift", "m2", 1, "mean square displacement about the drift" },
     { "diffusion", "m2/s", 1,
       "diffusion coefficient: about_drift over twice the dimension and the time" },
-    { "along", "m2/s", 3, "the same of x, y, z" },
+    { "along", "m2/s", 3, "diffusion coefficient along each axis" },
     { 0 },
 };
 

@@ -8,15 +8,15 @@
 #include <stdlib.h>
 
 static const struct quantity quantities[] = {
-    { "id", "1", 1, "" },
-    { "radius", "m", 1, "" },
-    { "x", "m", 3, "" },
-    { "speed", "m/s", 1, "" },
-    { "spin", "rad/s", 1, "size of the angular velocity" },
-    { "z", "1", 1, "contacts that count" },
-    { "p", "Pa", 1, "mean pressure in it (2D: N/m)" },
+    { "id", "1", 1, "id of the body" },
+    { "radius", "m", 1, "radius of the circumscribed ball" },
+    { "x", "m", 3, "position" },
+    { "speed", "m/s", 1, "magnitude of the velocity" },
+    { "spin", "rad/s", 1, "magnitude of the angular velocity" },
+    { "z", "1", 1, "number of contacts" },
+    { "p", "Pa", 1, "mean pressure (2D: N/m)" },
     { "q", "Pa", 1, "deviator (2D: N/m)" },
-    { "stress", "Pa", 9, "forces times the way from centre to contact, by its volume" },
+    { "stress", "Pa", 9, "sum of force times vector from centre to contact, over the volume" },
     { 0 },
 };
 
@@ -70,7 +70,7 @@ static int each_grain_rows(struct table *t, const struct snapshot *s, struct why
 
 const struct measure measure_grains = {
     .name = "grains",
-    .help = "each body: stress, contacts, speed",
+    .help = "stress, contacts and speed of each body",
     .quantity = quantities,
     .keeps_to = KEEPS_TO_BODIES,
     .list = true,

@@ -8,15 +8,14 @@
 #include <math.h>
 
 static const struct quantity quantities[] = {
-    { "kinetic", "J", 1, "of translation" },
-    { "rotation", "J", 1, "of rotation" },
-    { "potential", "J", 1, "- m g.x, zero at the origin" },
-    { "stored", "J", 1, "in cohesion, liquid and bonds; rigid bodies store none" },
-    { "total", "J", 1, "of these four" },
-    { "dissipated", "J", 1,
-      "by contacts in the step that they belong to, without what ties store" },
-    { "impact", "J", 1, "of that, by normal velocities" },
-    { "friction", "J", 1, "of that, by tangential ones" },
+    { "kinetic", "J", 1, "kinetic energy of translation" },
+    { "rotation", "J", 1, "kinetic energy of rotation" },
+    { "potential", "J", 1, "potential energy, - sum m g . x, zero at the origin" },
+    { "stored", "J", 1, "energy stored in cohesion, liquid and bonds" },
+    { "total", "J", 1, "sum of these four" },
+    { "dissipated", "J", 1, "energy dissipated by contacts in their step, without stored energy" },
+    { "impact", "J", 1, "part of dissipated by normal velocities" },
+    { "friction", "J", 1, "part of dissipated by tangential velocities" },
     { "boundaries", "J", 1, "work of boundaries on bodies in that step" },
     { 0 },
 };
@@ -78,7 +77,7 @@ static int energies_rows(struct table *t, const struct snapshot *s, struct why *
 
 const struct measure measure_energy = {
     .name = "energy",
-    .help = "energies; what a step dissipates",
+    .help = "energies, and the energy that a step dissipates",
     .quantity = quantities,
     .keeps_to = KEEPS_TO_BODIES,
     .usual = true,

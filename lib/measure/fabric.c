@@ -5,10 +5,10 @@
 #include <math.h>
 
 static const struct quantity quantities[] = {
-    { "contacts", "1", 1, "that count, their points in the region" },
+    { "contacts", "1", 1, "number of contacts with their point in the region" },
     { "tensor", "1", 9, "mean of n n^T" },
-    { "principal", "1", 3, "its principal values, the largest first" },
-    { "anisotropy", "1", 1, "5/2 of the largest less the smallest (2D: 2)" },
+    { "principal", "1", 3, "principal values, the largest first" },
+    { "anisotropy", "1", 1, "5/2 (2D: 2) times the largest minus the smallest principal value" },
     { 0 },
 };
 
@@ -38,7 +38,7 @@ static int fabric_rows(struct table *t, const struct snapshot *s, struct why *wh
 
 const struct measure measure_fabric = {
     .name = "fabric",
-    .help = "fabric tensor: which way contacts point",
+    .help = "fabric tensor of the contact directions",
     .quantity = quantities,
     .needs = NEEDS_CONTACTS,
     .rows = fabric_rows,

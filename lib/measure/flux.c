@@ -5,13 +5,13 @@
 #include <math.h>
 
 static const struct quantity quantities[] = {
-    { "since", "s", 1, "time since the frame before" },
-    { "forth", "1", 1, "bodies that crossed along the normal" },
-    { "back", "1", 1, "against it" },
-    { "mass_forth", "kg", 1, "their mass" },
-    { "mass_back", "kg", 1, "" },
-    { "rate", "1/s", 1, "bodies forth less back, by time" },
-    { "mass_rate", "kg/s", 1, "the same of mass" },
+    { "since", "s", 1, "time since the previous frame" },
+    { "forth", "1", 1, "number of bodies that crossed along the normal" },
+    { "back", "1", 1, "number of bodies that crossed against the normal" },
+    { "mass_forth", "kg", 1, "mass of the bodies that crossed along the normal" },
+    { "mass_back", "kg", 1, "mass of the bodies that crossed against the normal" },
+    { "rate", "1/s", 1, "forth minus back, per time" },
+    { "mass_rate", "kg/s", 1, "mass_forth minus mass_back, per time" },
     { 0 },
 };
 
@@ -58,7 +58,7 @@ static int flux_rows(struct table *t, const struct snapshot *s, struct why *why)
     double since = p->t - s->before->t, *at = table_row(t, why);
     if (!at) return why->status;
     if (!(v3_norm(s->asked->normal) > 0)) {
-        table_null(t, "--plane says which plane");
+        table_null(t, "the plane is given by --plane");
         return 0;
     }
     for (int64_t i = 0; i < p->n; i++) {
@@ -72,7 +72,7 @@ static int flux_rows(struct table *t, const struct snapshot *s, struct why *why)
     put(&at, since);
     for (int k = 0; k < 2; k++) put(&at, n.bodies[k]);
     for (int k = 0; k < 2; k++) put(&at, n.mass[k]);
-    if (!(since > 0)) table_null(t, "no time has passed since the frame before");
+    if (!(since > 0)) table_null(t, "no time has passed since the previous frame");
     put(&at, since > 0 ? (n.bodies[0] - n.bodies[1]) / since : NAN);
     put(&at, since > 0 ? (n.mass[0] - n.mass[1]) / since : NAN);
     return 0;

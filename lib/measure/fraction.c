@@ -3,12 +3,12 @@
 #include "measure/measures.h"
 
 static const struct quantity quantities[] = {
-    { "fraction", "1", 1, "solid volume over volume" },
-    { "void_ratio", "1", 1, "void over solid volume" },
-    { "solid", "m3", 1, "volume of the bodies, of what is in the region (2D: m2)" },
-    { "volume", "m3", 1, "of the region (2D: m2)" },
-    { "from", "m", 3, "corner of the region, or of what it reaches" },
-    { "to", "m", 3, "the opposite one" },
+    { "fraction", "1", 1, "solid volume over volume of the region" },
+    { "void_ratio", "1", 1, "void volume over solid volume" },
+    { "solid", "m3", 1, "volume of the bodies inside the region (2D: m2)" },
+    { "volume", "m3", 1, "volume of the region (2D: m2)" },
+    { "from", "m", 3, "lowest corner of the region or of its bounding box" },
+    { "to", "m", 3, "opposite corner" },
     { 0 },
 };
 

@@ -54,16 +54,15 @@ static double mobilised(const struct snapshot *s, int64_t i)
 }
 
 static const struct quantity quantities[] = {
-    { "contacts", "1", 1, "that push or pull, their points in the region" },
-    { "sliding", "1", 1, "of them, that slide" },
-    { "mobilised", "1", 1,
-      "mean of |f_t| / (mu f_n), of those with friction, the pull of ties left out" },
+    { "contacts", "1", 1, "number of contacts with their point in the region" },
+    { "sliding", "1", 1, "number of those that slide" },
+    { "mobilised", "1", 1, "mean of |f_t| / (mu f_n) of those with friction, attraction excluded" },
     { "ratio", "1", 1, "sum of |f_t| over sum of mu f_n" },
-    { "normal_mean", "N", 1, "normal force, mean" },
-    { "normal_most", "N", 1, "the largest" },
-    { "normal_spread", "1", 1, "standard deviation over mean" },
-    { "tangential_mean", "N", 1, "tangential force, mean" },
-    { "tangential_most", "N", 1, "the largest" },
+    { "normal_mean", "N", 1, "mean normal force" },
+    { "normal_most", "N", 1, "largest normal force" },
+    { "normal_spread", "1", 1, "standard deviation of the normal force over its mean" },
+    { "tangential_mean", "N", 1, "mean tangential force" },
+    { "tangential_most", "N", 1, "largest tangential force" },
     { 0 },
 };
 
@@ -107,7 +106,7 @@ static int friction_rows(struct table *t, const struct snapshot *s, struct why *
 
 const struct measure measure_friction = {
     .name = "friction",
-    .help = "forces, and how much of friction is used",
+    .help = "contact forces, and mobilised friction",
     .quantity = quantities,
     .usual = true,
     .needs = NEEDS_FORCES,
@@ -144,7 +143,8 @@ static int distribution(struct table *t, const struct snapshot *s,
     return why->status;
 }
 
-static const struct quantity of_force[] = { HISTOGRAM_QUANTITIES("1", "in mean forces"), { 0 } };
+static const struct quantity of_force[] = { HISTOGRAM_QUANTITIES("1", "in units of the mean force"),
+                                            { 0 } };
 static const struct quantity of_part[] = { HISTOGRAM_QUANTITIES("1", "|f_t| / (mu f_n)"), { 0 } };
 
 static int normal_rows(struct table *t, const struct snapshot *s, struct why *why)
@@ -180,7 +180,7 @@ const struct measure measure_tangential_forces = {
 
 const struct measure measure_mobilised = {
     .name = "mobilised",
-    .help = "distribution of the part of friction that is used",
+    .help = "distribution of mobilised friction",
     .quantity = of_part,
     .list = true,
     .needs = NEEDS_FORCES,

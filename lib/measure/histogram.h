@@ -6,10 +6,10 @@
 
 /* The quantities of a distribution of numbers called "from" and "to" with this unit */
 #define HISTOGRAM_QUANTITIES(unit, what)                                                           \
-    { "from", unit, 1, "where the bin begins, " what }, { "to", unit, 1, "where it ends" },        \
-        { "contacts", "1", 1, "in the bin" },                                                      \
+    { "from", unit, 1, "lower end of the bin, " what }, { "to", unit, 1, "upper end of the bin" }, \
+        { "contacts", "1", 1, "number of contacts in the bin" },                                   \
     {                                                                                              \
-        "density", "1", 1, "of probability: it integrates to 1"                                    \
+        "density", "1", 1, "probability density: its integral is 1"                                \
     }
 
 /* A row for each of `bins` bins of the same width from 0 to `most`, which is in the last.

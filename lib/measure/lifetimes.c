@@ -5,12 +5,13 @@
 #include <math.h>
 
 static const struct quantity quantities[] = {
-    { "since", "s", 1, "time since the frame before" },
-    { "pairs", "1", 1, "of bodies, or of a boundary and a body, that touch: push, pull" },
-    { "made", "1", 1, "of them, since the frame before" },
-    { "ended", "1", 1, "pairs that touched then and do not" },
-    { "age", "s", 1, "mean time that the pairs have touched; since the first frame at most" },
-    { "life", "s", 1, "mean time of those that ended and were seen to begin" },
+    { "since", "s", 1, "time since the previous frame" },
+    { "pairs", "1", 1, "number of pairs of bodies, or of a boundary and a body, in contact" },
+    { "made", "1", 1, "number of those that formed since the previous frame" },
+    { "ended", "1", 1, "number of pairs in contact then and not now" },
+    { "age", "s", 1, "mean time in contact of these pairs, at most since the first frame" },
+    { "life", "s", 1,
+      "mean time in contact of the pairs that ended and whose beginning was observed" },
     { 0 },
 };
 
@@ -31,7 +32,7 @@ static int lifetimes_rows(struct table *t, const struct snapshot *s, struct why 
     put(&at, s->p->t - s->before->t), put(&at, n), put(&at, made), put(&at, ended);
     if (!(n > 0)) table_null(t, "nothing touches");
     if (!(whole > 0))
-        table_null(t, "no contact that was seen to begin has ended since the frame before");
+        table_null(t, "no contact whose beginning was observed has ended since the previous frame");
     put(&at, n > 0 ? age / n : NAN), put(&at, whole > 0 ? life / whole : NAN);
     kept_free(&now);
     return 0;
@@ -39,7 +40,7 @@ static int lifetimes_rows(struct table *t, const struct snapshot *s, struct why 
 
 const struct measure measure_lifetimes = {
     .name = "lifetimes",
-    .help = "how long contacts last",
+    .help = "durations of contacts",
     .quantity = quantities,
     .needs = NEEDS_CONTACTS_BEFORE,
     .rows = lifetimes_rows,
@@ -48,13 +49,13 @@ const struct measure measure_lifetimes = {
 /* ---- each of those that ended ---- */
 
 static const struct quantity each[] = {
-    { "a", "1", 1, "id of a body, or -1-w: boundary w" },
-    { "b", "1", 1, "id of the other" },
-    { "began", "s", 1, "time of the first frame in which they touched" },
-    { "ended", "s", 1, "time of the first frame in which they do not" },
-    { "life", "s", 1, "between the two" },
+    { "a", "1", 1, "id of a body, or -1-w for boundary w" },
+    { "b", "1", 1, "id of the other body" },
+    { "began", "s", 1, "time of the first frame in contact" },
+    { "ended", "s", 1, "time of the first frame not in contact" },
+    { "life", "s", 1, "ended minus began" },
     { "whole", "1", 1,
-      "1: it was seen to begin; 0: they touched in the first frame, and its life is longer" },
+      "1: its beginning was observed; 0: in contact in the first frame, its life is longer" },
     { 0 },
 };
 
@@ -76,7 +77,7 @@ static int separations_rows(struct table *t, const struct snapshot *s, struct wh
 
 const struct measure measure_separations = {
     .name = "separations",
-    .help = "each contact that has ended since the frame before",
+    .help = "each contact that has ended since the previous frame",
     .quantity = each,
     .list = true,
     .needs = NEEDS_CONTACTS_BEFORE,

@@ -52,18 +52,18 @@ const struct measure *measure_named(const char *name, size_t n)
 /* Why this cannot be measured here, or NULL */
 static const char *lacks(const struct snapshot *s, enum needs needs)
 {
-    if (!s->p->n) return "there are no bodies";
+    if (!s->p->n) return "the frame has no bodies";
     if (needs == NEEDS_SUMS && !s->p->sums.n)
         return "the document has no sums over steps: nsd-step --sums keeps them";
     if ((needs == NEEDS_CONTACTS || needs == NEEDS_FORCES || needs == NEEDS_CONTACTS_BEFORE) &&
         !s->s)
         return "the document has no contacts: nsd-step --contacts keeps them";
     if ((needs == NEEDS_BEFORE || needs == NEEDS_CONTACTS_BEFORE) && !s->before)
-        return "there is no frame before";
+        return "no previous frame";
     if (needs == NEEDS_CONTACTS_BEFORE && !s->before->pair)
-        return "the contacts of the frame before were not looked at";
+        return "the contacts of the previous frame were not read";
     if (needs == NEEDS_FORCES && !s->s->found && s->s->n)
-        return "the contacts are not solved: nsd-solve comes before";
+        return "the contacts are not solved: use nsd-solve first";
     return NULL;
 }
 
@@ -81,7 +81,8 @@ int measure_run(struct table *t, const struct measure *m, const struct snapshot 
     for (int k = 0, in = 0; k < t->width; k++, in++) {
         if (in == q->width) q++, in = 0;
         for (int64_t i = 0; i < t->rows && !quantity_is_name(q); i++)
-            if (!isfinite(t->x[i * t->width + k])) table_null(t, "beyond the range of numbers");
+            if (!isfinite(t->x[i * t->width + k]))
+                table_null(t, "the value is out of the range of numbers");
     }
     return 0;
 }

@@ -21,16 +21,17 @@ static const double SAMPLE_DIAMETERS =
 static const double SAMPLES_MOST = 1e8;
 
 static const struct quantity quantities[] = {
-    { "bodies", "1", 1, "that move, their centres in the region" },
-    { "tracers", "1", 1, "of them, that --tracer names" },
-    { "samples", "1", 1, "with a body in them" },
+    { "bodies", "1", 1, "number of movable bodies with their centre in the region" },
+    { "tracers", "1", 1, "number of those that are tracers, see --tracer" },
+    { "samples", "1", 1, "number of samples that contain a body" },
     { "sample_bodies", "1", 1, "mean number of bodies in a sample" },
-    { "variance", "1", 1, "of the samples' shares of tracers" },
-    { "lacey", "1", 1, "0 fully apart, 1 at random, above 1 ordered" },
-    { "intensity", "1", 1,
-      "of segregation (Danckwerts): 1 fully apart, 0 the same share in all samples" },
-    { "neighbours", "1", 1, "pairs of unlike nearest neighbours over those expected at random" },
-    { "segregation", "1", 1, "tracers' mean height above the others', 1 if fully apart, -1 to 1" },
+    { "variance", "1", 1, "variance of the fraction of tracers in the samples" },
+    { "lacey", "1", 1, "Lacey's index: 0 segregated, 1 random, above 1 ordered" },
+    { "intensity", "1", 1, "Danckwerts' intensity of segregation: 1 segregated, 0 equal samples" },
+    { "neighbours", "1", 1,
+      "unlike pairs of nearest neighbours over their expected number at random" },
+    { "segregation", "1", 1,
+      "mean height of tracers above that of the others, -1 to 1, 1 if segregated" },
     { 0 },
 };
 
@@ -310,7 +311,7 @@ static int mixing_rows(struct table *t, const struct snapshot *s, struct why *wh
 
 const struct measure measure_mixing = {
     .name = "mixing",
-    .help = "how well bodies of one kind, or large ones, are mixed with the others",
+    .help = "mixing of the bodies of one kind, or of large ones, with the others",
     .quantity = quantities,
     .rows = mixing_rows,
 };

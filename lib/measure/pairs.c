@@ -11,10 +11,10 @@
 #include <stdlib.h>
 
 static const struct quantity quantities[] = {
-    { "from", "m", 1, "distance of centres: where the bin begins" },
-    { "to", "m", 1, "where it ends" },
-    { "pairs", "1", 1, "of bodies, each once" },
-    { "g", "1", 1, "over those of bodies scattered evenly" },
+    { "from", "m", 1, "lower end of the bin of distances of centres" },
+    { "to", "m", 1, "upper end of the bin" },
+    { "pairs", "1", 1, "number of pairs of bodies, each counted once" },
+    { "g", "1", 1, "pairs over their expected number for a uniform distribution" },
     { 0 },
 };
 

@@ -4,16 +4,17 @@
 #include "measure/stress.h"
 
 static const struct quantity quantities[] = {
-    { "from", "m", 1, "where the layer begins, or the shell's inner radius" },
-    { "to", "m", 1, "where it ends" },
-    { "at", "m", 1, "its middle" },
-    { "bodies", "1", 1, "that move, their centres in it" },
+    { "from", "m", 1, "lower end of the layer, or inner radius of the shell" },
+    { "to", "m", 1, "upper end, or outer radius" },
+    { "at", "m", 1, "middle of the layer" },
+    { "bodies", "1", 1, "number of movable bodies with their centre in the layer" },
     { "fraction", "1", 1, "solid volume over volume" },
-    { "velocity", "m/s", 3, "mean, by mass" },
-    { "spin", "rad/s", 3, "mean, by moment of inertia" },
-    { "temperature", "m2/s2", 1, "mean square of a velocity's component about the mean" },
+    { "velocity", "m/s", 3, "mean velocity, weighted by mass" },
+    { "spin", "rad/s", 3, "mean angular velocity, weighted by moment of inertia" },
+    { "temperature", "m2/s2", 1,
+      "granular temperature: mean square of a velocity component about the mean" },
     { "p", "Pa", 1, "mean pressure (2D: N/m)" },
-    { "stress", "Pa", 9, "by contacts and motion, compression positive (2D: N/m)" },
+    { "stress", "Pa", 9, "stress by contacts and motion, compression positive (2D: N/m)" },
     { 0 },
 };
 
@@ -74,7 +75,7 @@ static int profile_rows(struct table *t, const struct snapshot *s, struct why *w
 
 const struct measure measure_profile = {
     .name = "profile",
-    .help = "layers: fraction, velocity, temperature, stress",
+    .help = "profiles by layer of fraction, velocity, temperature and stress",
     .quantity = quantities,
     .keeps_to = KEEPS_TO_BODIES,
     .list = true,

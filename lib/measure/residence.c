@@ -5,12 +5,13 @@
 #include <math.h>
 
 static const struct quantity quantities[] = {
-    { "since", "s", 1, "time since the frame before" },
-    { "bodies", "1", 1, "that move, their centres in the region" },
-    { "entered", "1", 1, "of them, since the frame before" },
-    { "left", "1", 1, "bodies that were there and are not, or are removed" },
-    { "age", "s", 1, "mean time that those there have been there; since the first frame at most" },
-    { "stay", "s", 1, "mean time of those that left and were seen to come" },
+    { "since", "s", 1, "time since the previous frame" },
+    { "bodies", "1", 1, "number of movable bodies with their centre in the region" },
+    { "entered", "1", 1, "number of those that entered since the previous frame" },
+    { "left", "1", 1, "number of bodies that left the region or were removed" },
+    { "age", "s", 1, "mean time in the region of the bodies in it, at most since the first frame" },
+    { "stay", "s", 1,
+      "mean time in the region of the bodies that left and whose entry was observed" },
     { 0 },
 };
 
@@ -46,7 +47,7 @@ static int residence_rows(struct table *t, const struct snapshot *s, struct why 
     put(&at, s->p->t - s->before->t), put(&at, bodies), put(&at, entered), put(&at, left);
     if (!(bodies > 0)) table_null(t, "no body that moves is in the region");
     if (!(whole > 0))
-        table_null(t, "no body that was seen to come has left since the frame before");
+        table_null(t, "no body whose entry was observed has left since the previous frame");
     put(&at, bodies > 0 ? age / bodies : NAN), put(&at, whole > 0 ? stay / whole : NAN);
     kept_free(&now);
     return 0;
@@ -54,7 +55,7 @@ static int residence_rows(struct table *t, const struct snapshot *s, struct why 
 
 const struct measure measure_residence = {
     .name = "residence",
-    .help = "how long bodies are in the region",
+    .help = "residence times of bodies in the region",
     .quantity = quantities,
     .keeps_to = KEEPS_TO_BODIES,
     .needs = NEEDS_BEFORE,
@@ -64,13 +65,13 @@ const struct measure measure_residence = {
 /* ---- each of those that left ---- */
 
 static const struct quantity each[] = {
-    { "id", "1", 1, "" },
-    { "entered", "s", 1, "time at which it came, or of the first frame" },
-    { "left", "s", 1, "time at which it left" },
-    { "stay", "s", 1, "between the two" },
+    { "id", "1", 1, "id of the body" },
+    { "entered", "s", 1, "time of entry, or of the first frame" },
+    { "left", "s", 1, "time of departure" },
+    { "stay", "s", 1, "left minus entered" },
     { "whole", "1", 1,
-      "1: it was seen to come; 0: it was there in the first frame, and its stay is longer" },
-    { "removed", "1", 1, "1: it is in the document no more" },
+      "1: its entry was observed; 0: it was inside in the first frame, its stay is longer" },
+    { "removed", "1", 1, "1: it was removed from the document" },
     { 0 },
 };
 
@@ -93,7 +94,7 @@ static int departures_rows(struct table *t, const struct snapshot *s, struct why
 
 const struct measure measure_departures = {
     .name = "departures",
-    .help = "each body that has left the region since the frame before",
+    .help = "each body that has left the region since the previous frame",
     .quantity = each,
     .keeps_to = KEEPS_TO_BODIES,
     .list = true,

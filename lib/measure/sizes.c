@@ -6,13 +6,13 @@
 #include <math.h>
 
 static const struct quantity quantities[] = {
-    { "from", "m", 1, "where the layer begins, or the shell's inner radius" },
-    { "to", "m", 1, "where it ends" },
-    { "bodies", "1", 1, "that move, their centres in it" },
-    { "radius", "m", 1, "their mean" },
-    { "least", "m", 1, "the smallest" },
-    { "most", "m", 1, "the largest" },
-    { "large", "1", 1, "part of their volume in bodies larger than the mean of all" },
+    { "from", "m", 1, "lower end of the layer, or inner radius of the shell" },
+    { "to", "m", 1, "upper end, or outer radius" },
+    { "bodies", "1", 1, "number of movable bodies with their centre in the layer" },
+    { "radius", "m", 1, "mean radius" },
+    { "least", "m", 1, "smallest radius" },
+    { "most", "m", 1, "largest radius" },
+    { "large", "1", 1, "fraction of their volume in bodies larger than the mean of all" },
     { 0 },
 };
 
@@ -52,7 +52,7 @@ static int sizes_rows(struct table *t, const struct snapshot *s, struct why *why
 
 const struct measure measure_sizes = {
     .name = "sizes",
-    .help = "layers: how large their bodies are",
+    .help = "sizes of bodies by layer",
     .quantity = quantities,
     .keeps_to = KEEPS_TO_BODIES,
     .list = true,
@@ -62,10 +62,10 @@ const struct measure measure_sizes = {
 /* ---- one number for it ---- */
 
 static const struct quantity one[] = {
-    { "correlation", "1", 1, "of radius and height, -1 to 1" },
+    { "correlation", "1", 1, "correlation of radius and height, -1 to 1" },
     { "large", "m", 1, "mean height of bodies larger than the mean" },
-    { "small", "m", 1, "of the others" },
-    { "index", "1", 1, "(large - small) over the spread of heights if fully apart, -1 to 1" },
+    { "small", "m", 1, "mean height of the others" },
+    { "index", "1", 1, "(large - small) over its value for complete segregation, -1 to 1" },
     { 0 },
 };
 
@@ -125,7 +125,7 @@ static int segregation_rows(struct table *t, const struct snapshot *s, struct wh
 
 const struct measure measure_segregation = {
     .name = "segregation",
-    .help = "whether large bodies are above small ones",
+    .help = "vertical segregation by size",
     .quantity = one,
     .keeps_to = KEEPS_TO_BODIES,
     .rows = segregation_rows,

@@ -6,11 +6,11 @@
 
 static const struct quantity quantities[] = {
     { "since", "s", 1, "time since the first frame" },
-    { "volumetric", "1", 1, "-ln(V/V0), compression positive" },
+    { "volumetric", "1", 1, "- ln(V/V0), compression positive" },
     { "shear", "1", 1, "sqrt(2/3 e:e) of the deviator e (2D: difference of the principal values)" },
-    { "tensor", "1", 9, "-ln V of F = V R, compression positive" },
+    { "tensor", "1", 9, "- ln V of F = V R, compression positive" },
     { "principal", "1", 3, "principal values, the largest first" },
-    { "gradient", "1", 9, "the deformation gradient F itself" },
+    { "gradient", "1", 9, "deformation gradient F" },
     { 0 },
 };
 
@@ -55,7 +55,7 @@ static int strain_rows(struct table *t, const struct snapshot *s, struct why *wh
 
 const struct measure measure_strain = {
     .name = "strain",
-    .help = "logarithmic strain of the cell, or of the room between walls, since the first frame",
+    .help = "logarithmic strain of the cell, or of the space between walls, since the first frame",
     .quantity = quantities,
     .needs = NEEDS_BODIES,
     .remembers = true,

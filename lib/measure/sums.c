@@ -7,31 +7,31 @@
 #include <string.h>
 
 #define NUMBERS                                                                                    \
-    { "span", "s", 1, "from the frame before, or from where the sums began" },                     \
-        { "force", "N", 3, "of the bodies on it, the mean over the span" },                        \
-        { "torque", "N m", 3, "of that about --point" },                                           \
-        { "normal", "N", 1, "sum of normal forces, its mean" },                                    \
-        { "tangential", "N", 1, "sum of tangential forces, each its size, its mean" },             \
-        { "area", "m2", 1, "null where it has no end" },                                           \
-        { "pressure", "Pa", 1, "normal by area" },                                                 \
-        { "power", "W", 1, "of the bodies on it by its motion, the mean" },                        \
-        { "friction", "J", 1, "that friction on it has taken in the span" },                       \
-        { "rub", "J", 1, "normal forces by the ways that they have slid" },                        \
-        { "wear", "m3", 1, "volume worn away by Archard's law, coefficient by rub" },
+    { "span", "s", 1, "time since the previous frame, or since the sums began" },                  \
+        { "force", "N", 3, "mean force of the bodies over the span" },                             \
+        { "torque", "N m", 3, "mean torque about --point over the span" },                         \
+        { "normal", "N", 1, "mean of the sum of normal forces" },                                  \
+        { "tangential", "N", 1, "mean of the sum of magnitudes of tangential forces" },            \
+        { "area", "m2", 1, "area; null if it is infinite" },                                       \
+        { "pressure", "Pa", 1, "normal over area" },                                               \
+        { "power", "W", 1, "mean power of the bodies on the moving wall" },                        \
+        { "friction", "J", 1, "energy dissipated by friction in the span" },                       \
+        { "rub", "J", 1, "sum of normal force times sliding distance in the span" },               \
+        { "wear", "m3", 1, "volume worn in the span by Archard's law, coefficient times rub" },
 
 static const struct quantity of_walls[] = {
-    { "boundary", "1", 1, "its number" },
-    { "name", "name", 1, "its name" },
+    { "boundary", "1", 1, "number of the wall" },
+    { "name", "name", 1, "name of the wall" },
     NUMBERS{ 0 },
 };
 static const struct quantity of_names[] = {
-    { "name", "name", 1, "of walls, or parts of them" },
+    { "name", "name", 1, "name of walls or of parts of walls" },
     NUMBERS{ 0 },
 };
 static const struct quantity of_faces[] = {
-    { "boundary", "1", 1, "the wall's number" },
-    { "name", "name", 1, "of the part, else of the wall" },
-    { "face", "1", 1, "a triangle, from 0; other walls are one face" },
+    { "boundary", "1", 1, "number of the wall" },
+    { "name", "name", 1, "name of the part, else of the wall" },
+    { "face", "1", 1, "number of the triangle, from 0; other walls have one face" },
     NUMBERS{ 0 },
 };
 
@@ -114,7 +114,7 @@ static void explain(struct table *t, const struct look *l)
             any = any || !isfinite(t->x[i * t->width + k]);
     if (!(l->span > 0)) table_null(t, "no time has passed since the sums began");
     if (any)
-        table_null(t, "walls without an end have no area, and wear wants a coefficient: --wear, or "
+        table_null(t, "walls without an end have no area, and wear needs a coefficient: --wear, or "
                       "the key wear of the wall");
 }
 
@@ -185,7 +185,7 @@ static int faces_rows(struct table *t, const struct snapshot *s, struct why *why
 
 const struct measure measure_sums = {
     .name = "sums",
-    .help = "what bodies have done to each wall, over all steps: force, pressure, work, wear",
+    .help = "force, pressure, work and wear of each wall over all steps",
     .quantity = of_walls,
     .keeps_to = KEEPS_TO_WALLS,
     .list = true,
@@ -194,7 +194,7 @@ const struct measure measure_sums = {
 };
 const struct measure measure_sums_by_name = {
     .name = "sums_by_name",
-    .help = "the same for all that has a name: walls, and parts of them",
+    .help = "the same by name, for walls and parts of walls",
     .quantity = of_names,
     .keeps_to = KEEPS_TO_WALLS,
     .list = true,
@@ -203,7 +203,7 @@ const struct measure measure_sums_by_name = {
 };
 const struct measure measure_sums_by_face = {
     .name = "sums_by_face",
-    .help = "the same for each triangle of meshes, and other walls",
+    .help = "the same by face: triangles of meshes, and other walls",
     .quantity = of_faces,
     .keeps_to = KEEPS_TO_WALLS,
     .list = true,

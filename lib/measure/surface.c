@@ -12,12 +12,12 @@
 #include <string.h>
 
 static const struct quantity quantities[] = {
-    { "columns", "1", 1, "squares with a body in them" },
-    { "angle", "deg", 1, "of the plane through the highest bodies, to the horizontal" },
-    { "downhill", "1", 3, "the horizontal direction in which that plane falls" },
-    { "spread", "m", 1, "standard deviation from the plane" },
-    { "cone", "deg", 1, "of a cone through those at 20 to 80 % of the height" },
-    { "apex", "m", 3, "the highest of them" },
+    { "columns", "1", 1, "number of squares that contain a body" },
+    { "angle", "deg", 1, "angle of the plane through the highest bodies to the horizontal" },
+    { "downhill", "1", 3, "horizontal direction in which the plane descends" },
+    { "spread", "m", 1, "standard deviation of the highest bodies from the plane" },
+    { "cone", "deg", 1, "angle of a cone through the highest bodies at 20 to 80 % of the height" },
+    { "apex", "m", 3, "position of the highest body" },
     { 0 },
 };
 

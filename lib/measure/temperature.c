@@ -3,12 +3,12 @@
 #include "measure/stress.h"
 
 static const struct quantity quantities[] = {
-    { "bodies", "1", 1, "that move, their centres in the region" },
-    { "velocity", "m/s", 3, "their mean, by mass" },
-    { "spin", "rad/s", 3, "their mean, by moment of inertia" },
-    { "temperature", "m2/s2", 1, "mean square of a velocity's component about the mean" },
-    { "tensor", "m2/s2", 9, "mean of v' v'^T, by mass" },
-    { "rotational", "m2/s2", 1, "the same of spins: I w'^2 over mass and axes" },
+    { "bodies", "1", 1, "number of movable bodies with their centre in the region" },
+    { "velocity", "m/s", 3, "mean velocity, weighted by mass" },
+    { "spin", "rad/s", 3, "mean angular velocity, weighted by moment of inertia" },
+    { "temperature", "m2/s2", 1, "mean square of a velocity component about the mean" },
+    { "tensor", "m2/s2", 9, "mean of v' v'^T, weighted by mass" },
+    { "rotational", "m2/s2", 1, "rotational temperature: sum I w'^2 over mass and number of axes" },
     { 0 },
 };
 

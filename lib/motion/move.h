@@ -13,7 +13,7 @@
 #include "motion/impulse.h"
 
 /* The bodies and the freedoms move, by the contacts' reactions, and bodies apart where the packing
-   wants it [motion/project.h]; step and t advance. Returns 0 or EX_SOFTWARE. */
+   needs it [motion/project.h]; step and t advance. Returns 0 or EX_SOFTWARE. */
 int move_step(struct packing *p, const struct contacts *s, struct why *why);
 
 /* The same where the sums of the reactions are there already; bodies are not moved apart. */

@@ -1,5 +1,5 @@
 /*
- * problem/assembly.h: the matrices of a packing's contact problem, as FCLIB wants them.
+ * problem/assembly.h: the matrices of a packing's contact problem, as FCLIB needs them.
  *
  * Contact by contact in the packing's order. Coulomb's and Signorini's laws do not change when u_n
  * and u_t are scaled, so what is assembled is

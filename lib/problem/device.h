@@ -2,7 +2,7 @@
  * problem/device.h: a device that makes the sweeps of a solve in its own memory: a GPU, or a CPU by the same driver.
  *
  * A solve gives it the problem, and the iterate lies there until the solve ends. Sweeps, judgements, renewed velocities
- * and Anderson's mixing are made there with the bits of the CPU; numbers come back, not vectors. Code that wants the
+ * and Anderson's mixing are made there with the bits of the CPU; numbers come back, not vectors. Code that needs the
  * iterate in the problem's slots asks for it by device_home().
  *
  * A failure of the device stays: later calls do nothing, errors are NaN, so that solvers end, and device_failed() has

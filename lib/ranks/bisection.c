@@ -93,7 +93,7 @@ static int owner(const void *made, vec3 x)
     double at[3] = { x.x, x.y, x.z };
     int rank, part;
     if (Zoltan_LB_Point_PP_Assign(y->zz, at, &rank, &part) != ZOLTAN_OK)
-        comm_fail(y->comm, EX_SOFTWARE, "Zoltan knows no owner of a point");
+        comm_fail(y->comm, EX_SOFTWARE, "Zoltan gives no owner of a point");
     return rank;
 }
 
@@ -102,7 +102,7 @@ static int meets(const void *made, vec3 lo, vec3 hi, int *rank)
     const struct bisection *y = made;
     int n = 0;
     if (Zoltan_LB_Box_Assign(y->zz, lo.x, lo.y, lo.z, hi.x, hi.y, hi.z, rank, &n) != ZOLTAN_OK)
-        comm_fail(y->comm, EX_SOFTWARE, "Zoltan knows no ranks of a box");
+        comm_fail(y->comm, EX_SOFTWARE, "Zoltan gives no ranks of a box");
     return n;
 }
 

@@ -40,7 +40,7 @@ void blocks_add_impulses(struct blocks *b, struct impulses *sum);
 void blocks_balance(struct blocks *b, const struct contacts *s, const struct impulses *sum,
                     struct balance *told);
 /* After the motion: copies become what the bodies are, and bodies that overlap are moved apart, where the packing
-   wants it. */
+   needs it. */
 void blocks_move_apart(struct blocks *b, const struct contacts *s);
 void blocks_free(struct blocks *b);
 

@@ -32,7 +32,7 @@ void parcel_put(struct comm *t, struct parcel *p, const void *from, size_t size)
     if (p->size + size > p->room) {
         p->room = p->size + size + p->room / 2 + 64;
         char *more = realloc(p->bytes, p->room);
-        if (!more) comm_fail(t, EX_SOFTWARE, "no memory for what ranks tell each other");
+        if (!more) comm_fail(t, EX_SOFTWARE, "no memory for the messages of the ranks");
         p->bytes = more;
     }
     if (size) memcpy(p->bytes + p->size, from, size);

@@ -27,7 +27,7 @@ static void stopped(int signal)
 {
     static const char text[] =
         "nsd-step: another process of the run has ended, or the run was stopped: "
-        "its frames so far are whole, and nsd-step -i goes on from the last\n";
+        "its frames so far are whole, and nsd-step -i resumes from the last\n";
     ssize_t written = write(STDERR_FILENO, text, sizeof text - 1);
     (void)written;
     _exit(128 + signal);

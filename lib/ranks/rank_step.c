@@ -501,7 +501,7 @@ struct by_all {
     struct step_makers makers; /* first: it is what the functions below are given */
     struct rank_step *y;
     struct packing *whole;
-    struct contacts *all; /* NULL: nobody wants those of all */
+    struct contacts *all; /* NULL: nobody needs those of all */
     struct blocks blocks;
 };
 

@@ -10,7 +10,7 @@
  *   - Newton's method, where auto continues with it.
  *
  * With the order `block`, no rank has the whole packing, and each moves its own bodies and sums its own balances. That
- * wants a packing without inlets, outlets and laws of pairs beyond friction and restitution.
+ * needs a packing without inlets, outlets and laws of pairs beyond friction and restitution.
  */
 #ifndef NSD_RANK_STEP_H
 #define NSD_RANK_STEP_H

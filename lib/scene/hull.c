@@ -178,7 +178,7 @@ static int take_points(struct hull *h, int64_t n, const vec3 *x, struct why *why
 {
     double size = thin_extent(x, n);
     if (!(size > 0)) return is_flat(why);
-    if (!isfinite(size)) return why_set(why, EX_DATAERR, "its points are beyond all numbers");
+    if (!isfinite(size)) return why_set(why, EX_DATAERR, "the extent of its points is not finite");
     h->kept = malloc(((size_t)n + 1) * sizeof *h->kept);
     h->x = calloc((size_t)n + 1, sizeof *h->x);
     if (!h->kept || !h->x) return no_memory(why);

@@ -190,7 +190,7 @@ int json_node_only(jnode o, const char *names)
 {
     const char *key;
     json_t *value;
-    if (!json_is_object(o.json)) return json_node_fault(o, "wants an object {...}");
+    if (!json_is_object(o.json)) return json_node_fault(o, "needs an object {...}");
     json_object_foreach(
         o.json, key,
         value) if (strcmp(key, "comment") &&
@@ -223,8 +223,8 @@ int json_node_choice(jnode o, const char *names)
     }
     if (found == 1) return which;
     json_node_fault(o,
-                    json_is_object(o.json) ? "wants one of the keys %s"
-                                           : "wants an object with one of the keys %s",
+                    json_is_object(o.json) ? "needs one of the keys %s"
+                                           : "needs an object with one of the keys %s",
                     names);
     return -1;
 }
@@ -234,7 +234,7 @@ int json_node_choice(jnode o, const char *names)
 int json_node_number(jnode n, enum json_range range, double *out)
 {
     if (!n.json) return 0;
-    if (!json_is_number(n.json)) return json_node_fault(n, "wants a number");
+    if (!json_is_number(n.json)) return json_node_fault(n, "needs a number");
     double x = json_number_value(n.json);
     if (range == J_POSITIVE && !(x > 0)) return json_node_fault(n, "must be positive");
     if (range == J_NOT_NEGATIVE && !(x >= 0)) return json_node_fault(n, "must not be negative");
@@ -247,7 +247,7 @@ int json_node_integer(jnode n, int64_t least, int64_t most, int64_t *out)
 {
     if (!n.json) return 0;
     double x = json_number_value(n.json); // exact: the ranges asked for end far below 2^53
-    if (!json_is_number(n.json) || x != floor(x)) return json_node_fault(n, "wants an integer");
+    if (!json_is_number(n.json) || x != floor(x)) return json_node_fault(n, "needs an integer");
     if (!(x >= (double)least && x <= (double)most))
         return json_node_fault(n, "must lie in [%lld, %lld]", (long long)least, (long long)most);
     *out = (int64_t)x;
@@ -257,7 +257,7 @@ int json_node_integer(jnode n, int64_t least, int64_t most, int64_t *out)
 int json_node_bool(jnode n, bool *out)
 {
     if (!n.json) return 0;
-    if (!json_is_boolean(n.json)) return json_node_fault(n, "wants true or false");
+    if (!json_is_boolean(n.json)) return json_node_fault(n, "needs true or false");
     *out = json_is_true(n.json);
     return 0;
 }
@@ -265,7 +265,7 @@ int json_node_bool(jnode n, bool *out)
 int json_node_text(jnode n, const char **out)
 {
     if (!n.json) return 0;
-    if (!json_is_string(n.json)) return json_node_fault(n, "wants a string");
+    if (!json_is_string(n.json)) return json_node_fault(n, "needs a string");
     *out = json_string_value(n.json);
     return 0;
 }
@@ -286,7 +286,7 @@ int json_node_word(jnode n, const char *const *words, int *out)
 int json_node_array(jnode n, size_t *length)
 {
     *length = json_array_size(n.json);
-    return !n.json || json_is_array(n.json) ? 0 : json_node_fault(n, "wants an array [...]");
+    return !n.json || json_is_array(n.json) ? 0 : json_node_fault(n, "needs an array [...]");
 }
 
 int json_node_vector(jnode n, int dim, vec3 *out)
@@ -294,7 +294,7 @@ int json_node_vector(jnode n, int dim, vec3 *out)
     double x[3] = { 0 };
     if (!n.json) return 0;
     if (!json_is_array(n.json) || json_array_size(n.json) != (size_t)dim)
-        return json_node_fault(n, "wants %s", dim == 2 ? "[x, y], for dim is 2" : "[x, y, z]");
+        return json_node_fault(n, "needs %s", dim == 2 ? "[x, y], for dim is 2" : "[x, y, z]");
     for (int i = 0; i < dim; i++)
         if (json_node_number(json_node_item(&n, (size_t)i), J_ANY, &x[i])) return n.in->why->status;
     *out = v3(x[0], x[1], x[2]);

@@ -36,7 +36,7 @@ static int check_lattice(const jnode *o, int dim, const struct scene_bodies *b)
 static int fill_cell(jnode o, const struct scene_cell *of, struct scene_bodies *b)
 {
     if (of->goes_on)
-        return json_node_fault(o, "wants a box: the cell's edges come with a document");
+        return json_node_fault(o, "needs a box: the cell's edges come with a document");
     b->in_cell = true;
     cell_heights(&of->cell, b->box.hi);
     for (int k = 0; k < 3; k++) b->box.lo[k] = 0;
@@ -64,7 +64,7 @@ static int read_lattice(jnode o, const struct scene *s, bool boxed, struct scene
     if (box.json && scene_read_box(box, s->dim, &b->box)) return 1;
     if (own) b->from = SCENE_SHELVES;
     if (!box.json && s->cell.given && own && !s->cell.goes_on)
-        return json_node_fault(o, "cells of their own want a box");
+        return json_node_fault(o, "cells of their own need a box");
     if (!box.json && (s->cell.given || s->cell.goes_on) && fill_cell(o, &s->cell, b)) return 1;
     return check_lattice(&o, s->dim, b);
 }
@@ -88,7 +88,7 @@ static int read_random(jnode o, const struct scene *s, bool boxed, struct scene_
     for (int i = 0; i < s->dim; i++) {
         double width = b->box.hi[i] - b->box.lo[i];
         if (!isfinite(width))
-            return json_node_fault(box, "a random start wants a closed box, %s is open",
+            return json_node_fault(box, "a random start needs a closed box, %s is open",
                                    axis_name[i]);
         if (!(width >= 2 * b->size.max))
             return json_node_fault(box, "%s is narrower than the largest grain, %g m", axis_name[i],
@@ -115,7 +115,7 @@ static int read_types(jnode o, const struct scene *s, struct scene_bodies *b)
     const char *name;
     json_t *value;
     if (!o.json) return 0;
-    if (!json_is_object(o.json)) return json_node_fault(o, "wants an object {\"1\": NAME, ...}");
+    if (!json_is_object(o.json)) return json_node_fault(o, "needs an object {\"1\": NAME, ...}");
     if (!(b->type = scene_alloc(o, json_object_size(o.json), sizeof *b->type))) return 1;
     json_object_foreach(o.json, name, value)
     {
@@ -135,7 +135,7 @@ static int read_repeats(jnode o, int dim, struct scene_bodies *b)
     size_t n;
     if (!o.json) return 0;
     if (json_node_array(o, &n)) return 1;
-    if (n != (size_t)dim) return json_node_fault(o, "wants %d of true and false", dim);
+    if (n != (size_t)dim) return json_node_fault(o, "needs %d of true and false", dim);
     b->has_repeats = true;
     for (size_t k = 0; k < n; k++)
         if (json_node_bool(json_node_item(&o, k), &b->repeats[k])) return 1;

@@ -424,8 +424,8 @@ static int set_dt(struct packing *p, const struct scene *s, struct why *why)
     return isfinite(p->dt) && p->dt > 0
                ? 0
                : why_set(why, EX_DATAERR,
-                         "dt: auto: nothing in the scene moves, by which a time "
-                         "step could be chosen: give a number of seconds");
+                         "dt: auto: nothing in the scene moves, so no time step can be "
+                         "chosen: give a number of seconds");
 }
 
 static int by_number(const void *a, const void *b)
@@ -523,8 +523,8 @@ static int set_masses(struct packing *p, const struct scene *s, struct why *why)
     for (int k = 0; k < p->dim; k++) squares += v3_dot(c->edge[k], c->edge[k]);
     if (s->cell.given && by_rule && !(mass > 0))
         return why_set(why, EX_DATAERR,
-                       "cell.stress: no bodies move, whose mass would give the edges theirs: give "
-                       "a \"mass\", kg");
+                       "cell.stress: no body moves, so the mass of the edges cannot be chosen: "
+                       "give a \"mass\", kg");
     for (int k = 0; k < 9 && by_rule; k++)
         if (c->mass[k / 3][k % 3] > 0) c->mass[k / 3][k % 3] = mass;
     if (s->cell.given && c->size_mass > 0) c->size_mass = (by_rule ? mass : c->size_mass) * squares;
@@ -535,7 +535,7 @@ static int set_masses(struct packing *p, const struct scene *s, struct why *why)
         if (!(l->mass > 0))
             return why_set(
                 why, EX_DATAERR,
-                "walls[%d].load: no bodies move, whose mass would give the wall its own: "
+                "walls[%d].load: no body moves, so the mass of the wall cannot be chosen: "
                 "give a \"mass\", kg",
                 s->wall_item[w]);
     }

@@ -6,11 +6,11 @@ static int read_matrix(jnode n, int dim, double M[3][3], bool given[3][3])
 {
     size_t rows = 0, columns = 0;
     if (json_node_array(n, &rows)) return 1;
-    if (rows != (size_t)dim) return json_node_fault(n, "wants %d rows", dim);
+    if (rows != (size_t)dim) return json_node_fault(n, "needs %d rows", dim);
     for (size_t i = 0; i < rows; i++) {
         jnode row = json_node_item(&n, i);
         if (json_node_array(row, &columns)) return 1;
-        if (columns != (size_t)dim) return json_node_fault(row, "wants %d numbers", dim);
+        if (columns != (size_t)dim) return json_node_fault(row, "needs %d numbers", dim);
         for (size_t j = 0; j < columns; j++) {
             jnode x = json_node_item(&row, j);
             if (given && json_is_null(x.json)) continue;
@@ -38,7 +38,7 @@ static int read_edges(jnode o, int dim, struct cell *c)
         return 0;
     }
     if (json_node_array(edges, &n)) return 1;
-    if (n != (size_t)dim) return json_node_fault(edges, "wants %d vectors", dim);
+    if (n != (size_t)dim) return json_node_fault(edges, "needs %d vectors", dim);
     for (size_t k = 0; k < n; k++)
         if (json_node_vector(json_node_item(&edges, k), dim, &c->edge[k])) return 1;
     return 0;
@@ -50,7 +50,7 @@ static int read_repeats(jnode a, int dim, struct cell *c)
     for (int k = 0; k < dim; k++) c->repeats[k] = true;
     if (!a.json) return 0;
     if (json_node_array(a, &n)) return 1;
-    if (n != (size_t)dim) return json_node_fault(a, "wants true or false for %d edges", dim);
+    if (n != (size_t)dim) return json_node_fault(a, "needs true or false for %d edges", dim);
     for (size_t k = 0; k < n; k++)
         if (json_node_bool(json_node_item(&a, k), &c->repeats[k])) return 1;
     return cell_repeats(c) ? 0 : json_node_fault(a, "no edge is periodic");
@@ -113,8 +113,9 @@ static int read_mass(jnode n, int dim, bool yields[3][3], struct scene_cell *out
             if (!yields[i][j]) continue;
             c->mass[j][i] = matrix ? mass[i][j] : one;
             if (!(c->mass[j][i] > 0))
-                return json_node_fault(n, "component %s of edge %d yields and needs a mass",
-                                       axis_name[i], j);
+                return json_node_fault(
+                    n, "component %s of edge %d is stress-controlled and needs a mass",
+                    axis_name[i], j);
         }
     return 0;
 }
@@ -125,14 +126,14 @@ static int read_factor(jnode a, struct cell *c)
     size_t n = 0, two = 0;
     if (!a.json) return 0;
     if (json_node_array(a, &n)) return 1;
-    if (!n || n >= 1 << 24) return json_node_fault(a, "wants [[time, factor], ...]");
+    if (!n || n >= 1 << 24) return json_node_fault(a, "needs [[time, factor], ...]");
     if (!(c->factor = scene_alloc(a, n, sizeof *c->factor))) return 1;
     c->factors = (int32_t)n;
     for (size_t k = 0; k < n; k++) {
         struct cell_factor *f = &c->factor[k];
         jnode pair = json_node_item(&a, k), t = json_node_item(&pair, 0);
         if (json_node_array(pair, &two)) return 1;
-        if (two != 2) return json_node_fault(pair, "wants [time, factor]");
+        if (two != 2) return json_node_fault(pair, "needs [time, factor]");
         if (json_node_number(t, J_ANY, &f->t) ||
             json_node_number(json_node_item(&pair, 1), J_ANY, &f->x))
             return 1;
@@ -152,15 +153,16 @@ static int read_mean(jnode o, int dim, struct scene_cell *out)
         return 1;
     for (int k = 0; k < dim; k++)
         if (!c->repeats[k])
-            return json_node_fault(mean, "edge %d does not repeat, so the size cannot yield", k);
+            return json_node_fault(
+                mean, "edge %d is not periodic, so the size cannot follow a mean stress", k);
     for (int32_t m = 0; m < c->gradients; m++) {
         double(*L)[3] = c->gradient[m].L, trace = 0, most = 0;
         for (int k = 0; k < dim; k++) trace += L[k][k], most += fabs(L[k][k]);
         if (fabs(trace) > 1e-9 * most)
             return json_node_fault(mean,
-                                   "the gradient changes the volume at %g per s, and the mean "
-                                   "stress does: take a third of it off each of its diagonal "
-                                   "(in the plane a half)",
+                                   "the gradient changes the volume at %g per s, which the mean "
+                                   "stress controls: subtract a third of it from each diagonal "
+                                   "component (in 2D a half)",
                                    trace);
     }
     out->by_rule = !mass.json;

@@ -16,7 +16,7 @@ static int read_table(jnode a, struct drives *list, struct drive *d)
 {
     size_t rows = 0;
     if (json_node_array(a, &rows)) return 1;
-    if (!rows || rows > 1 << 24) return json_node_fault(a, "wants [[time, value], ...]");
+    if (!rows || rows > 1 << 24) return json_node_fault(a, "needs [[time, value], ...]");
     struct drive_row *row = grown(a, list->row, list->rows, rows, sizeof *row);
     if (!row) return 1;
     list->row = row, row += list->rows;
@@ -25,7 +25,7 @@ static int read_table(jnode a, struct drives *list, struct drive *d)
         jnode pair = json_node_item(&a, i), t, way;
         size_t two = 0;
         if (json_node_array(pair, &two)) return 1;
-        if (two != 2) return json_node_fault(pair, "wants [time, value]");
+        if (two != 2) return json_node_fault(pair, "needs [time, value]");
         t = json_node_item(&pair, 0), way = json_node_item(&pair, 1);
         if (json_node_number(t, J_ANY, &row[i].t) || json_node_number(way, J_ANY, &row[i].s))
             return 1;

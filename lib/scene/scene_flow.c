@@ -23,7 +23,7 @@ static int read_opening(jnode o, int dim, struct scene_pour *p)
     if (scene_read_box(box, dim, &p->box)) return 1;
     for (int i = 0; i < dim; i++)
         if (!isfinite(p->box.hi[i] - p->box.lo[i]))
-            return json_node_fault(box, "an opening wants a closed box, %s is open", axis_name[i]);
+            return json_node_fault(box, "an opening needs a closed box, %s is open", axis_name[i]);
     return 0;
 }
 
@@ -80,7 +80,7 @@ static int read_ids(jnode a, struct scene_removal *r)
     int64_t id = 0;
     if (!a.json) return 0;
     if (many && json_node_array(a, &n)) return 1;
-    if (!n || n > INT32_MAX) return json_node_fault(a, "wants the numbers of bodies");
+    if (!n || n > INT32_MAX) return json_node_fault(a, "needs the numbers of bodies");
     if (!(r->id = scene_alloc(a, n, sizeof *r->id))) return 1;
     for (size_t k = 0; k < n; k++) {
         if (json_node_integer(many ? json_node_item(&a, k) : a, 0, INT32_MAX, &id)) return 1;
@@ -107,7 +107,7 @@ static int read_removal(jnode o, struct scene *s, struct scene_removal *r)
     for (int k = 0; k < 3; k++) anywhere = anywhere && !json_node_key(&o, key[k]).json;
     if (json_node_only(o, "outside inside below kind id name from until")) return 1;
     if (anywhere && any)
-        return json_node_fault(o, "wants one of outside, inside, below, kind, id or name: which "
+        return json_node_fault(o, "needs one of outside, inside, below, kind, id or name: which "
                                   "bodies go");
     int which = anywhere ? REGION_ALL : json_node_choice(o, "outside inside below");
     if (which < 0 || read_which(o, s, r) ||

@@ -68,7 +68,7 @@ static int read_impact(jnode o, struct pair_law *l)
     if (json_node_text(o, &name)) return 1;
     l->impact = !strcmp(name, "newton") ? IMPACT_NEWTON : IMPACT_BOUNDED;
     if (l->impact == IMPACT_NEWTON || !strcmp(name, "bounded")) return 0;
-    return json_node_fault(o, "wants \"newton\" or \"bounded\"");
+    return json_node_fault(o, "needs \"newton\" or \"bounded\"");
 }
 
 int scene_read_laws(const jnode *o, double t, struct pair_law *l)

@@ -41,7 +41,7 @@ static int add_kind(jnode n, struct scene *s, const char *name, double density)
 {
     bool printable = *name; // documents keep names line by line
     for (const char *c = name; *c; c++) printable &= (unsigned char)*c >= ' ';
-    if (!printable) return json_node_fault(n, "a kind wants a name without control characters");
+    if (!printable) return json_node_fault(n, "a kind needs a name without control characters");
     s->kind[s->kinds] = (struct scene_kind){ strdup(name), density };
     if (!s->kind[s->kinds].name) return why_set(n.in->why, EX_SOFTWARE, "no memory for a kind");
     s->kinds++;
@@ -53,7 +53,7 @@ int scene_read_kinds(jnode o, struct scene *s, double density)
     const char *name;
     json_t *value;
     size_t most = 1000, count = json_object_size(o.json);
-    if (o.json && !json_is_object(o.json)) return json_node_fault(o, "wants an object {...}");
+    if (o.json && !json_is_object(o.json)) return json_node_fault(o, "needs an object {...}");
     if (count > most) return json_node_fault(o, "more than %zu kinds", most);
     if (!(s->kind = scene_alloc(o, count + 2, sizeof *s->kind))) return 1;
     if (add_kind(o, s, "ball", density) || add_kind(o, s, "wall", density)) return 1;
@@ -79,7 +79,7 @@ static int read_pair(jnode o, struct scene *s, bool *given)
         return 1;
     jnode pair = json_node_key(&o, "pair");
     if (json_node_array(pair, &n)) return 1;
-    if (n != 2) return json_node_fault(pair, "wants two kinds");
+    if (n != 2) return json_node_fault(pair, "needs two kinds");
     for (size_t i = 0; i < 2; i++) {
         jnode name = json_node_item(&pair, i);
         if (scene_read_kind(name, s, &k[i])) return 1;

@@ -35,7 +35,7 @@ static int read_part(jnode o, struct scene *s)
     if (json_node_only(o, "name faces") || json_node_need(&o, "name faces") ||
         scene_read_name(text, s, &name) || json_node_array(faces, &n))
         return 1;
-    if (n != 2) return json_node_fault(faces, "wants [first, last]");
+    if (n != 2) return json_node_fault(faces, "needs [first, last]");
     if (json_node_integer(json_node_item(&faces, 0), 0, INT32_MAX - 1, &first) ||
         json_node_integer(json_node_item(&faces, 1), 0, INT32_MAX - 1, &last))
         return 1;
@@ -52,7 +52,7 @@ int scene_read_parts(jnode a, struct scene *s, bool *groups)
         return 0;
     }
     if (groups && a.json && !json_is_array(a.json))
-        return json_node_fault(a, "wants \"groups\" or a list [{name, faces}, ...]");
+        return json_node_fault(a, "needs \"groups\" or a list [{name, faces}, ...]");
     if (json_node_array(a, &n)) return 1;
     for (size_t i = 0; i < n; i++)
         if (read_part(json_node_item(&a, i), s)) return 1;

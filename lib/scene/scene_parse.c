@@ -43,7 +43,7 @@ static int read_dt(jnode n, double *dt)
     if (!json_is_string(n.json)) return json_node_number(n, J_POSITIVE, dt);
     *dt = 0;
     return strcmp(json_string_value(n.json), "auto")
-               ? json_node_fault(n, "wants a number of seconds, or \"auto\"")
+               ? json_node_fault(n, "needs a number of seconds, or \"auto\"")
                : 0;
 }
 

@@ -10,7 +10,7 @@ static int read_uniform(jnode a, struct scene_size *z)
 {
     size_t n;
     if (json_node_array(a, &n)) return 1;
-    if (n != 2) return json_node_fault(a, "wants [min, max]");
+    if (n != 2) return json_node_fault(a, "needs [min, max]");
     if (json_node_number(json_node_item(&a, 0), J_POSITIVE, &z->min) ||
         json_node_number(json_node_item(&a, 1), J_POSITIVE, &z->max))
         return 1;
@@ -66,7 +66,7 @@ static int read_point(jnode point, double *size, double *passing)
 {
     size_t n;
     if (json_node_array(point, &n)) return 1;
-    if (n != 2) return json_node_fault(point, "wants [size, passing]");
+    if (n != 2) return json_node_fault(point, "needs [size, passing]");
     return json_node_number(json_node_item(&point, 0), J_POSITIVE, size) ||
            json_node_number(json_node_item(&point, 1), J_UNIT, passing);
 }
@@ -84,7 +84,7 @@ static int read_sieve(jnode a, int dim, struct scene_size *z)
     size_t n;
     double size[2] = { 0 }, passing[2] = { 0 };
     if (json_node_array(a, &n)) return 1;
-    if (n < 2) return json_node_fault(a, "wants two points [size, passing] or more");
+    if (n < 2) return json_node_fault(a, "needs two points [size, passing] or more");
     if (!(z->sieve = scene_alloc(a, n - 1, sizeof *z->sieve))) return 1;
     z->dim = dim, z->segments = (int64_t)n - 1;
     double sum = 0;

@@ -25,7 +25,7 @@ static int read_two(jnode a, enum json_range range, double out[2])
 {
     size_t n = 0;
     if (json_node_array(a, &n)) return 1;
-    if (n != 2) return json_node_fault(a, "wants two numbers");
+    if (n != 2) return json_node_fault(a, "needs two numbers");
     return json_node_number(json_node_item(&a, 0), range, &out[0]) ||
            json_node_number(json_node_item(&a, 1), range, &out[1]);
 }
@@ -170,7 +170,7 @@ static int read_segment(jnode a, struct scene *s, struct wall *w)
     vec3 end[2] = { 0 };
     (void)s;
     if (json_node_array(a, &n)) return 1;
-    if (n != 2) return json_node_fault(a, "wants two points");
+    if (n != 2) return json_node_fault(a, "needs two points");
     for (size_t i = 0; i < 2; i++)
         if (json_node_vector(json_node_item(&a, i), 2, &end[i])) return 1;
     vec3 d = v3_sub(end[1], end[0]);
@@ -210,7 +210,7 @@ static int read_polygon(jnode o, struct scene *s, struct wall *w)
         scene_read_parts(json_node_key(&o, "parts"), s, NULL) ||
         json_node_bool(json_node_key(&o, "closed"), &closed) || json_node_array(a, &n))
         return 1;
-    if (n < 2 || n > 1 << 24) return json_node_fault(a, "wants two points or more");
+    if (n < 2 || n > 1 << 24) return json_node_fault(a, "needs two points or more");
     int32_t segments = (int32_t)n - !(closed && n > 2);
     vec3 *vertex;
     int32_t(*element)[3];

@@ -62,7 +62,7 @@ static int read_ball(jnode n, int dim, vec3 *x, double *r)
     double of[4] = { 0 };
     if (json_node_array(n, &length)) return 1;
     if (length != (size_t)dim + 1)
-        return json_node_fault(n, "wants %d numbers, its centre and its radius", dim + 1);
+        return json_node_fault(n, "needs %d numbers, its centre and its radius", dim + 1);
     for (size_t k = 0; k < length; k++) {
         jnode number = json_node_item(&n, k);
         if (json_node_number(number, k + 1 < length ? J_ANY : J_POSITIVE, &of[k])) return 1;
@@ -77,7 +77,7 @@ static int read_balls(jnode o, struct shape *s, int dim)
     jnode balls = json_node_key(&o, "balls");
     if (json_node_array(balls, &n)) return 1;
     if (n < 1 || n > SHAPE_VERTICES_MOST)
-        return json_node_fault(balls, "wants 1 to %d balls", SHAPE_VERTICES_MOST);
+        return json_node_fault(balls, "needs 1 to %d balls", SHAPE_VERTICES_MOST);
     if (shape_alloc(s, (int32_t)n, 0, 0, o.in->why)) return 1;
     s->form = SHAPE_CLUMP;
     for (size_t i = 0; i < n; i++)
@@ -90,7 +90,7 @@ static vec3 *read_points(jnode list, int dim, size_t least, size_t most, size_t 
 {
     if (json_node_array(list, n)) return NULL;
     if (*n < least || *n > most) {
-        json_node_fault(list, "wants %zu to %zu points", least, most);
+        json_node_fault(list, "needs %zu to %zu points", least, most);
         return NULL;
     }
     vec3 *x = scene_alloc(list, *n, sizeof *x);
@@ -234,7 +234,7 @@ static int read_solid(jnode o, struct solid *as)
         json_node_vector(json_node_key(&n, "centre"), 3, &as->centre) ||
         json_node_array(rows, &length))
         return 1;
-    if (length != 3) return json_node_fault(rows, "wants three rows of three numbers");
+    if (length != 3) return json_node_fault(rows, "needs three rows of three numbers");
     for (size_t i = 0; i < 3; i++) {
         vec3 row = v3(0, 0, 0);
         if (json_node_vector(json_node_item(&rows, i), 3, &row)) return 1;
@@ -384,7 +384,7 @@ static int read_superquadric(jnode o, struct shape *s, int dim)
     size_t exponents;
     if (json_node_array(e, &exponents)) return 1;
     if (exponents != (size_t)dim - 1)
-        return json_node_fault(e, dim == 2 ? "wants one number" : "wants two numbers");
+        return json_node_fault(e, dim == 2 ? "needs one number" : "needs two numbers");
     if (json_node_number(json_node_item(&e, 0), J_POSITIVE, &n) ||
         (dim == 3 && json_node_number(json_node_item(&e, 1), J_POSITIVE, &m)))
         return 1;
@@ -484,7 +484,7 @@ int scene_read_shapes(jnode o, struct scene *s)
     json_t *value;
     size_t count = json_object_size(o.json);
     if (!o.json) return 0;
-    if (!json_is_object(o.json)) return json_node_fault(o, "wants an object {...}");
+    if (!json_is_object(o.json)) return json_node_fault(o, "needs an object {...}");
     if (count >= SHAPES_MOST) return json_node_fault(o, "more than %d shapes", SHAPES_MOST - 1);
     if (!(s->solid = scene_alloc(o, count + 1, sizeof *s->solid))) return 1;
     s->solid[0] = (struct solid_frame){ 1, { 0, 0, 0 }, { 1, 0, 0, 0 } };
@@ -495,7 +495,7 @@ int scene_read_shapes(jnode o, struct scene *s)
         bool printable = *name; // documents keep names line by line
         for (const char *c = name; *c; c++) printable &= (unsigned char)*c >= ' ';
         if (!printable)
-            return json_node_fault(n, "a shape wants a name without control characters");
+            return json_node_fault(n, "a shape needs a name without control characters");
         if (!strcmp(name, "ball")) return json_node_fault(n, "a ball is a ball");
         if (read_shape(n, s, name)) return 1;
     }

@@ -131,7 +131,7 @@ static void usual_columns(struct table *t)
 
 static int fault_usual(const struct table *t, struct why *why)
 {
-    return fault(t, why, t->scene->dim == 2 ? "wants x y r" : "wants x y z r", NULL);
+    return fault(t, why, t->scene->dim == 2 ? "needs x y r" : "needs x y z r", NULL);
 }
 
 static int read_number(const struct table *t, enum heading c, const char *word, double *x,

@@ -8,7 +8,7 @@ static int read_side(jnode n, double lo_hi[2])
     size_t count;
     if (!n.json) return 0;
     if (json_node_array(n, &count)) return 1;
-    if (count != 2) return json_node_fault(n, "wants [from, to]");
+    if (count != 2) return json_node_fault(n, "needs [from, to]");
     for (size_t i = 0; i < 2; i++) {
         jnode end = json_node_item(&n, i);
         if (!json_is_null(end.json) && json_node_number(end, J_ANY, &lo_hi[i])) return 1;
@@ -149,7 +149,7 @@ static int read_part(jnode o, struct scene *s, const struct wall *w)
         json_node_vector(json_node_key(&o, "belt"), s->dim, &part.belt) ||
         json_node_array(faces, &n))
         return 1;
-    if (n != 2) return json_node_fault(faces, "wants [first, last], from 0");
+    if (n != 2) return json_node_fault(faces, "needs [first, last], from 0");
     if (json_node_integer(json_node_item(&faces, 0), 0, INT32_MAX, &part.first) ||
         json_node_integer(json_node_item(&faces, 1), part.first, INT32_MAX, &part.last))
         return 1;

@@ -125,7 +125,7 @@ int soup_polygon(struct soup *s, const int64_t *corner, int64_t n)
         return soup_fault(s, "a polygon of more than %d corners", POLYGON_CORNERS_MOST);
     for (int64_t k = 0; k < n; k++) {
         if (corner[k] < 0 || corner[k] >= s->corners)
-            return soup_fault(s, "a polygon of a corner that is not there (%lld of %d)",
+            return soup_fault(s, "a polygon has a corner that does not exist (%lld of %d)",
                               (long long)corner[k] + 1, s->corners);
         vec3 at = s->corner[corner[k]];
         if (kept && same_place(at, x[kept - 1])) continue;
@@ -271,8 +271,7 @@ static int judge_numbers(struct soup *s, double scale)
     double most = fmax(far.x, fmax(far.y, far.z)), extent = fmax(sides.x, fmax(sides.y, sides.z));
     double coarse = most * (s->single ? FLT_EPSILON : DBL_EPSILON) / extent;
     s->unit = NULL;
-    if (!isfinite(scale * most))
-        return soup_fault(s, "corners beyond all numbers, with this scale");
+    if (!isfinite(scale * most)) return soup_fault(s, "corners are not finite with this scale");
     if (!(coarse <= COARSE))
         return soup_fault(
             s,

@@ -70,7 +70,7 @@ struct step_makers {
     /* The balances of the step */
     int (*balance)(struct step_makers *m, const struct packing *p, const struct contacts *s,
                    const struct impulses *sum, struct balance *b, struct why *why);
-    /* Bodies that overlap are moved apart, where the packing wants it. */
+    /* Bodies that overlap are moved apart, where the packing needs it. */
     int (*move_apart)(struct step_makers *m, struct packing *p, const struct contacts *s,
                       struct why *why);
     /* Which bodies go through something, in a window: once the step is made, and before the first one */

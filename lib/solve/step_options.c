@@ -159,7 +159,7 @@ const struct cli_option options_solve[] = {
     { CLI_ABOVE, 0, "newton-eps", &options.newton_eps, "EPS", .max = 1,
       .help = "stop Newton when |Z| <= EPS |(r, rho b)|", .usual = options_usual },
     { CLI_ABOVE, 0, "newton-abs", &options.newton_abs, "EPS", .max = MOST,
-      .help = "stop Newton when |Z| <= EPS with r in N, as the paper" },
+      .help = "stop Newton when |Z| <= EPS with r in N, as in the paper" },
     { CLI_INT, 0, "newton-max", &options.newton_max, "N", .min = 1, .max = 1e6,
       .help = "make at most N Newton steps per contact and sweep", .usual = options_usual },
     { CLI_BETWEEN, 0, "relax", &options.relax, "OMEGA", .max = 2,
@@ -219,7 +219,7 @@ static const struct solver *global(const struct options *o)
 /* The option where it is given, else what stands for it */
 #define OPTION(name, otherwise) (options_has(o, &options.name) ? o->name : (otherwise))
 
-/* A device wants many contacts at once. */
+/* A device needs many contacts at once. */
 static int order_usual(const struct options *o, enum order otherwise)
 {
     return (int)(o->device ? ORDER_COLOUR : otherwise);
@@ -302,5 +302,5 @@ int options_names(const struct options *o, struct why *why)
     if (!o->paper || o->method) return 0;
     for (int k = 0; methods[k] && n < sizeof names; k++)
         n += (size_t)snprintf(names + n, sizeof names - n, "%s%s", k ? "|" : "", methods[k]->name);
-    return why_set(why, EX_USAGE, "--paper: wants a local method, -m %s", names);
+    return why_set(why, EX_USAGE, "--paper: needs a local method, -m %s", names);
 }

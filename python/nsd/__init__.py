@@ -7,7 +7,7 @@
     for frame in nsd.frames("out.h5"):          # h5py: frames of documents [nsd-format(5)]
         print(frame.step, frame.time, frame.x[:, 2].max())
 
-Runs want libnsd.so.1 and numpy, documents h5py and numpy; each is loaded when it is asked for.
+Runs need libnsd.so.1 and numpy, documents h5py and numpy; each is imported when it is first used.
 """
 from __future__ import annotations
 

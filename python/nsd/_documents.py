@@ -24,7 +24,7 @@ UNFINISHED = 1  # flag: still being written, and as long as its file
 
 
 class Contacts:
-    """A frame's contacts, a row each; a is -1-w where it is boundary w."""
+    """The contacts of a frame, one row each; a is -1-w for boundary w."""
 
     def __init__(self, group, rows, dt):
         self._group, self._rows, self._dt = group, rows, dt
@@ -58,7 +58,7 @@ class Contacts:
 
     @cached_property
     def force(self):
-        """N: [n][3] the force on b, in space; None where the contacts are not solved."""
+        """N: [n][3] the force on b, in the axes of space; None if the contacts are not solved."""
         if self.reaction is None:
             return None
         return np.einsum("ni,nij->nj", self.reaction, self.basis) / self._dt
@@ -70,12 +70,12 @@ class Contacts:
 
     @cached_property
     def tangential_force(self):
-        """N: how large the part across the normal is."""
+        """N: the magnitude of the tangential part."""
         return None if self.reaction is None else np.hypot(*self.reaction[:, 1:].T) / self._dt
 
 
 class Frame:
-    """What a document says of one moment."""
+    """One frame of a document."""
 
     def __init__(self, file, row):
         self.file, self.row = file, row
@@ -91,7 +91,7 @@ class Frame:
 
     @cached_property
     def _rows(self):
-        """Where bodies come and go: the rows that are there in this frame; else all."""
+        """With inlets or outlets the rows of the bodies in this frame; else all."""
         if isinstance(self._all["id"], h5py.Group):
             return np.flatnonzero(self._all["id/value"][self.row] >= 0)
         return slice(None)
@@ -124,7 +124,7 @@ class Frame:
 
     @cached_property
     def shape(self):
-        """Of each grain the row of its shape in shape_names; all 0, balls, where the document has no shapes."""
+        """The number of each grain's shape in shape_names; all 0, balls, if the document has no shapes."""
         return self._fixed("shape") if "shape" in self._all else np.zeros(len(self.id), np.int32)
 
     @cached_property
@@ -134,7 +134,7 @@ class Frame:
 
     @cached_property
     def _vertices(self):
-        """Of each shape its vertices: corners, ends of a capsule, centres of a clump's balls, in units of its radius."""
+        """The vertices of each shape: corners, ends of a capsule, centres of the balls of a clump, in units of its radius."""
         if "nsd/shape" not in self.file:
             return [np.zeros((0, 3))]
         group = self.file["nsd/shape"]
@@ -142,8 +142,8 @@ class Frame:
         return [np.zeros((0, 3)), *np.split(group["vertex"][()], ends[:-1])]
 
     def corners(self, i):
-        """m: [corners, 3] where the corners of grain i (its row) are; of a capsule its ends, of a clump the centres of its
-        balls, of a ball none."""
+        """m: [corners, 3] the positions of the corners of grain i (its row); for a capsule of its ends, for a clump of the centres
+        of its balls, for a ball none."""
         w, u = self.q[i, 0], self.q[i, 1:]
         v = self._vertices[self.shape[i]]
         t = 2 * np.cross(u, v)
@@ -156,13 +156,13 @@ class Frame:
 
     @cached_property
     def group(self):
-        """The name of each grain's group; None: it has none."""
+        """The name of each grain's group; None: no group."""
         rows = self._fixed("group") if "group" in self._all else np.zeros(len(self.id), np.int32)
         return np.array([self.names[k - 1] if k else None for k in rows], object)
 
     @cached_property
     def wall_names(self):
-        """The name of each wall; None: it has none."""
+        """The name of each wall; None: no name."""
         body = self.file["particles/boundary/body/point"] if "particles/boundary/body/point" in self.file else []
         found = [None] * len(body)
         for name, wall, (_, count) in self._named:
@@ -179,7 +179,7 @@ class Frame:
                 zip(group["name"][()], group["boundary"][()], group["faces"][()])]
 
     def walls(self, name):
-        """The numbers of the walls that have this name, or a part of it, in order; a number is that wall."""
+        """The numbers of the walls that have this name, or of which a part has it, in order; a number stands for that wall."""
         if isinstance(name, (int, np.integer)):
             if not 0 <= name < len(self.wall_names):
                 raise KeyError(f"no wall {name}, but {len(self.wall_names)} walls, from 0")
@@ -191,7 +191,7 @@ class Frame:
 
     @cached_property
     def contacts(self):
-        """The frame's contacts; None where the document does not keep them."""
+        """The frame's contacts; None if the document does not contain them."""
         if "contacts" not in self.file:
             return None
         group = self.file["contacts"]
@@ -203,7 +203,7 @@ class Frame:
 
     @cached_property
     def report(self):
-        """What the solver said: {"sweeps": ..., "natural": ...}; None: nothing."""
+        """The report of the solve: {"sweeps": ..., "natural": ...}; None: no report."""
         for place in "nsd/solver", "observables/solver":  # the second until nsd 0.1
             if place in self.file:
                 break
@@ -258,7 +258,7 @@ def documents(source="-"):
 
 
 def _count(file):
-    """Frames that are whole: a trajectory may be growing."""
+    """The number of complete frames: a trajectory may be growing."""
     group = file["particles/all"]
     names = "position", "velocity", "angular_velocity", "orientation"
     count = min(group[name]["value"].shape[0] for name in names)
@@ -275,7 +275,7 @@ def frames(source="-"):
 
 
 def last(source="-"):
-    """The very last frame; None: there is none."""
+    """The last frame; None: no frame."""
     frame = None
     for file in documents(source):
         count = _count(file)
@@ -301,7 +301,7 @@ class Problem:
 
 
 def _matrix(group):
-    """A sparse matrix of FCLIB: scipy's where it is there, else a dense array. Entries add up."""
+    """A sparse matrix of FCLIB: scipy's if scipy is installed, else a dense array. Repeated entries are added."""
     m, n, kind = (int(group[name][0]) for name in ("m", "n", "nz"))
     p, i, x = (group[name][()] for name in ("p", "i", "x"))
     if kind >= 0:

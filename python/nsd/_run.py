@@ -22,7 +22,7 @@ _DTYPES = {b"d": np.float64, b"i": np.int32, b"b": np.int8}
 
 
 class Error(RuntimeError):
-    """What libnsd refuses or cannot do; `status` is that of nsd(3). The run is what it was before the call."""
+    """An error of libnsd; `status` is that of nsd(3). The run is as it was before the call."""
 
     def __init__(self, status: int, text: str):
         super().__init__(text)
@@ -115,9 +115,9 @@ class Run:
                 run.force[:, 2] = -6e-3 * run.velocity[:, 2]    # N, until it is changed
             run.save("out.h5")
 
-    Arrays of bodies (`position`, `force` ...) are views of the run's own memory: they show what there is after each step,
+    Arrays of bodies (`position`, `force` ...) are views of the run's own memory: they show the state after each step,
     and keep that memory alive, also after close(). While any of them is in use bodies cannot be added or removed
-    (BufferError); `.copy()` makes one of your own. Those of contacts and boundaries are copies of the last step's.
+    (BufferError); `.copy()` makes an independent array. Arrays of contacts and boundaries are copies, of the last step.
     """
 
     # Properties, which are made from tables below
@@ -170,7 +170,7 @@ class Run:
 
     @classmethod
     def from_scene(cls, scene: Path | Mapping[str, Any], folder: Path | None = None) -> "Run":
-        """A scene [nsd-gen(1)]: a dict, its JSON, or the path of a file. Names in it are relative to folder, or to the file."""
+        """A run from a scene [nsd-scene(5)]: a dict, its JSON, or the path of a file. File names in it are relative to folder, or to the file."""
         if isinstance(scene, Mapping):
             scene = json.dumps(scene)
         if isinstance(scene, str) and scene.lstrip().startswith("{"):
@@ -179,7 +179,7 @@ class Run:
 
     @classmethod
     def from_document(cls, document: Path | bytes) -> "Run":
-        """The last frame of a document [nsd-format(5)]: the path of a file, or its bytes."""
+        """A run from the last frame of a document [nsd-format(5)]: the path of a file, or its bytes."""
         if isinstance(document, bytes):
             return cls._make("nsd_from_memory", document, len(document))
         return cls._make("nsd_from_document", _bytes(document))
@@ -190,7 +190,7 @@ class Run:
                     angular_velocity: ArrayLike | None = None, mass: ArrayLike | None = None,
                     inertia: ArrayLike | None = None, kind: ArrayLike | None = None,
                     density: float | None = None, folder: Path | None = None) -> "Run":
-        """A scene without bodies, and these: see add()."""
+        """A run from a scene without bodies, to which these are added: see add()."""
         run = cls.from_scene(scene, folder)
         if len(run.id):
             raise ValueError("the scene has bodies of its own: arrays are for one without")
@@ -199,7 +199,7 @@ class Run:
         return run
 
     def close(self) -> None:
-        """Ends a trajectory that append() has begun, and the run. Arrays that are in use stay."""
+        """Ends a trajectory begun by append(), and the run. Arrays that are in use stay valid."""
         if self._handle is None:
             return
         try:
@@ -224,14 +224,14 @@ class Run:
         self._handle.call(name, *arguments)
 
     def _unused(self) -> None:
-        """Bodies come or go: no array may be in use."""
+        """Before bodies are added or removed: no array may be in use."""
         if len(self._views):
-            raise BufferError("arrays of this run are in use, and bodies come or go: keep copies instead (x.copy(), del x)")
+            raise BufferError("arrays of this run are in use while bodies are added or removed: keep copies instead (x.copy(), del x)")
 
     # ---- options and steps ----
 
     def set(self, **options: Any) -> "Run":
-        """Options of nsd-step(1) and nsd-stat(1) by their names, _ for -: eps=1e-6, method="exact", dt=1e-4, threads=2,
+        """Sets options of nsd-step(1) and nsd-stat(1) by their names, with _ instead of -: eps=1e-6, method="exact", dt=1e-4, threads=2,
         contacts=True ...; returns the run."""
         for name, value in options.items():
             text = str(value).lower() if isinstance(value, bool) else str(value)
@@ -245,13 +245,13 @@ class Run:
         self._call("nsd_step", int(n))
 
     def until(self, time: float) -> None:
-        """Makes steps until the time (s)."""
+        """Makes steps until this time (s)."""
         if self._resizes():
             self._unused()
         self._call("nsd_until", float(time))
 
     def steps(self, n: int | None = None, until: float | None = None) -> Iterator[int]:
-        """One step after another, n of them or until a time (s) or, with neither, for ever; yields the number of each."""
+        """Makes n steps, or steps until a time (s), or without either without end; yields the number of each after it was made."""
         made = 0
         while (n is None or made < n) and (until is None or self.time < until - 1e-6 * self.dt):
             self.step()
@@ -283,7 +283,7 @@ class Run:
         return view
 
     def number(self, name: str) -> float:
-        """A number by its name in nsd(3): "time", "contacts", "natural" ...; nan: there is none yet."""
+        """A number by its name in nsd(3): "time", "contacts", "natural" ...; nan: not defined yet."""
         x = ctypes.c_double()
         self._call("nsd_number", name.encode(), ctypes.byref(x))
         return x.value
@@ -295,16 +295,16 @@ class Run:
 
     @property
     def report(self) -> dict[str, Any]:
-        """What the solver reports of the last step, with the keys of nsd-info(1)."""
+        """The report of the last solve, with the keys of nsd-info(1)."""
         return self._text("nsd_report")
 
     @property
     def names(self) -> dict[str, Any]:
-        """{"kinds": [...], "shapes": [...], "walls": [name or None, ...], "groups": [...]}: those of walls in their order."""
+        """{"kinds": [...], "shapes": [...], "walls": [name or None, ...], "groups": [...]}: walls are in their order."""
         return self._text("nsd_names")
 
     def walls(self, name: int | str) -> list[int]:
-        """The numbers of the walls that have this name; a number is that wall."""
+        """The numbers of the walls that have this name; a number stands for that wall."""
         if not isinstance(name, str):
             return [int(name)]
         known = self.names["walls"]
@@ -322,12 +322,13 @@ class Run:
 
     def push(self, id: int, force: ArrayLike | None = None, torque: ArrayLike | None = None, *,
              once: bool = False) -> None:
-        """Force (N) and torque (N m) on the body with this id, in the next step alone or until they are changed."""
+        """Applies a force (N) and a torque (N m) to the body with this id, in the next step only or until they are changed."""
         self._call("nsd_force", int(id), _vector(force, "force"), _vector(torque, "torque"),
                    _ONCE if once else _LASTING)
 
     def push_boundary(self, boundary: int | str, force: float, *, once: bool = False) -> None:
-        """N along the axis of the boundary's load, N m about it: added to the load. A name stands for each wall that has it."""
+        """Adds a force (N) along the axis of the boundary's load, or a torque (N m) about it, to the load. A name stands for each
+        wall that has it."""
         for wall in self.walls(boundary):
             self._call("nsd_boundary_force", wall, float(force), _ONCE if once else _LASTING)
 
@@ -337,7 +338,7 @@ class Run:
             self._call("nsd_boundary_velocity", wall, _vector(velocity, "velocity"))
 
     def throw(self, id: int, velocity: ArrayLike | None = None, angular_velocity: ArrayLike | None = None) -> None:
-        """Gives the body with this id a velocity (3 numbers, m/s) and an angular velocity (rad/s); None: as it is."""
+        """Gives the body with this id a velocity (3 numbers, m/s) and an angular velocity (rad/s); None: unchanged."""
         self._call("nsd_velocity", int(id), _vector(velocity, "velocity"), _vector(angular_velocity, "angular_velocity"))
 
     def gravity(self, g: ArrayLike) -> None:
@@ -345,18 +346,18 @@ class Run:
         self._call("nsd_gravity", _vector(g, "gravity"))
 
     def friction(self, kind: str, other: str, mu: float) -> None:
-        """Sets the friction between two kinds of material."""
+        """Sets the coefficient of friction between two kinds of material."""
         self._call("nsd_friction", kind.encode(), other.encode(), float(mu))
 
     def add(self, *, position: ArrayLike, radius: ArrayLike, orientation: ArrayLike | None = None,
             velocity: ArrayLike | None = None, angular_velocity: ArrayLike | None = None,
             mass: ArrayLike | None = None, inertia: ArrayLike | None = None,
             kind: ArrayLike | None = None, density: float | None = None) -> NDArray[np.int32]:
-        """Adds n balls, in the plane discs; returns their ids [n].
+        """Adds n balls, in 2D discs; returns their ids [n].
 
         position [n, 3] m, radius [n] m, orientation [n, 4] unit quaternions (w, x, y, z), velocity [n, 3] m/s,
-        angular_velocity [n, 3] rad/s, mass [n] kg (0: fixed) or one density (kg/m^3, in the plane kg/m^2), inertia [n]
-        kg m^2 [that of solid balls], kind [n] of material, by its place in the scene [0].
+        angular_velocity [n, 3] rad/s, mass [n] kg (0: fixed) or one density (kg/m^3, in 2D kg/m^2), inertia [n]
+        kg m^2 [that of solid balls], kind [n] number of the kind of material [0].
         """
         columns = {"position": position, "radius": radius, "orientation": orientation, "velocity": velocity,
                    "angular_velocity": angular_velocity, "mass": mass, "inertia": inertia, "kind": kind}
@@ -378,18 +379,18 @@ class Run:
     # ---- saving ----
 
     def note(self, line: Mapping[str, Any] | str) -> None:
-        """The run's line in the history of its documents, a JSON object; before the first is written."""
+        """Sets the run's line in the history of its documents, a JSON object; call it before the first is written."""
         self._call("nsd_note", (line if isinstance(line, str) else json.dumps(line, separators=(",", ":"))).encode())
 
     def save(self, path: Path) -> None:
-        """Writes a document of this moment, in place of what there is."""
+        """Writes a document of the current state; replaces an existing file when it is complete."""
         self._call("nsd_save", _bytes(path))
 
     def append(self, path: Path) -> None:
-        """Writes one more frame of the trajectory, which the first call begins.
+        """Appends a frame to the trajectory, which the first call begins.
 
-        Where there is a file already the run goes on with it; Error, and the file stays as it is, where it is of another scene,
-        has this step or a later one, is damaged, or is being written. Remove it to begin anew.
+        An existing file is resumed. Raises Error, and leaves the file unchanged, if the file belongs to another scene, has this
+        step or a later one, is damaged, or is being written. Remove the file to begin again.
         """
         self._call("nsd_append", _bytes(path))
 
@@ -410,15 +411,15 @@ def _view(name: str, text: str, writable: bool = False) -> property:
 
 for _name, _text in {
     "position": "[n, 3] m: of the bodies' centres", "orientation": "[n, 4] unit quaternions (w, x, y, z)",
-    "velocity": "[n, 3] m/s", "angular_velocity": "[n, 3] rad/s", "radius": "[n] m: of the ball around each body",
-    "mass": "[n] kg; 0: fixed", "inertia": "[n] kg m^2", "id": "[n] numbers that stay with bodies", "kind": "[n] of material",
+    "velocity": "[n, 3] m/s", "angular_velocity": "[n, 3] rad/s", "radius": "[n] m: of the circumscribed ball",
+    "mass": "[n] kg; 0: fixed", "inertia": "[n] kg m^2", "id": "[n] numbers that stay with bodies", "kind": "[n] number of the kind of material",
     "contact_body": "[c, 2] ids of bodies a and b; -1-w: boundary w", "contact_point": "[c, 3] m",
     "contact_normal": "[c, 3] unit vectors from a to b", "contact_gap": "[c] m; negative: overlap",
     "contact_friction": "[c] coefficients", "contact_force": "[c, 3] N: on b",
-    "contact_velocity": "[c, 3] m/s: of b relative to a, as the law sees it", "contact_status": "[c] 0 free, 1 stick, 2 slide",
+    "contact_velocity": "[c, 3] m/s: of b relative to a, as it enters the contact law", "contact_status": "[c] 0 free, 1 stick, 2 slide",
     "boundary_position": "[b, 3] m", "boundary_normal": "[b, 3] unit normals or axes", "boundary_velocity": "[b, 3] m/s",
-    "boundary_angular_velocity": "[b, 3] rad/s", "boundary_force": "[b, 3] N: of the bodies on them",
-    "boundary_torque": "[b, 3] N m: of that about boundary_position",
+    "boundary_angular_velocity": "[b, 3] rad/s", "boundary_force": "[b, 3] N: force of the bodies on the boundary",
+    "boundary_torque": "[b, 3] N m: torque of the same about boundary_position",
 }.items():
     setattr(Run, _name, _view(_name, _text))
 for _name, _text in {

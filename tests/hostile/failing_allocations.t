@@ -41,7 +41,7 @@ commands=("nsd-gen 20" "nsd-gen $tmp/scene.json" "nsd-gen $tmp/stone.json" "nsd-
     "nsd-step -m sbp -n 2 --order colour --contacts $tmp/solved.h5")
 runs=14 # a command, spread over its allocations
 [ -z "$thin" ] || runs=4
-runs=${NSD_RUNS-$runs} # make coverage wants them all
+runs=${NSD_RUNS-$runs} # make coverage needs them all
 
 # In the tool ("tool") or its libraries one allocation fails; of theirs, libhdf5 may die.
 failing() # index of the run

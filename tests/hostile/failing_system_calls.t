@@ -43,7 +43,7 @@ calls=("read EIO" "read EINTR" "read short" "write EIO" "write ENOSPC" "write EI
     "reserve ENOSPC" "reserve EINTR" "message EINTR" "process EIO" "socket EIO")
 runs=12 # of a command and a way to fail, spread over its calls
 [ -z "$thin" ] || runs=4
-runs=${NSD_RUNS-$runs} # make coverage wants more
+runs=${NSD_RUNS-$runs} # make coverage needs more
 
 # The output of a failed run: no file, an empty one that the shell made, or what reads as what it is.
 output_holds()

@@ -287,20 +287,20 @@ else
     skip "documents with wrong numbers and shapes" "no h5py"
 fi
 
-# ---- documents that are not what the tool wants ----
+# ---- documents that are not what the tool needs ----
 
 nsd-gen 4 >"$tmp/packing.h5"
 nsd-detect "$tmp/good.h5" >"$tmp/contacts.h5"
 nsd-move "$tmp/good.h5" >"$tmp/moved.h5"
-refuses 65 "nsd-solve wants contacts" nsd-solve "$tmp/packing.h5"
-refuses 65 "nsd-move wants contacts" nsd-move "$tmp/packing.h5"
-refuses 65 "nsd-move wants solved contacts" nsd-move "$tmp/contacts.h5"
-refuses 65 "nsd-err wants contacts" nsd-err "$tmp/packing.h5"
-refuses 65 "nsd-err wants solved contacts" nsd-err "$tmp/contacts.h5"
-refuses 65 "nsd-err wants a solution" nsd-err "$tmp/local.hdf5"
+refuses 65 "nsd-solve needs contacts" nsd-solve "$tmp/packing.h5"
+refuses 65 "nsd-move needs contacts" nsd-move "$tmp/packing.h5"
+refuses 65 "nsd-move needs solved contacts" nsd-move "$tmp/contacts.h5"
+refuses 65 "nsd-err needs contacts" nsd-err "$tmp/packing.h5"
+refuses 65 "nsd-err needs solved contacts" nsd-err "$tmp/contacts.h5"
+refuses 65 "nsd-err needs a solution" nsd-err "$tmp/local.hdf5"
 refuses 65 "nsd-move moves once" nsd-move "$tmp/moved.h5"
 for tool in nsd-detect nsd-move nsd-step; do
-    refuses 65 "$tool wants bodies" "$tool" "$tmp/local.hdf5"
+    refuses 65 "$tool needs bodies" "$tool" "$tmp/local.hdf5"
 done
 
 # ---- frames that do not belong into one trajectory ----
@@ -359,7 +359,7 @@ bad_scene "no dt" '{"mu": 1}' '1:1: dt: is missing'
 bad_scene "a negative dt" '{"dt": -1}' '1:2: dt: must be positive'
 bad_scene "dim = 4" '{"dt": 1, "dim": 4}' '1:11: dim: '
 bad_scene "dim = 2.5" '{"dt": 1, "dim": 2.5}' '1:11: dim: '
-bad_scene "a text for a number" '{"dt": 1, "mu": "0.3"}' '1:11: mu: wants a number'
+bad_scene "a text for a number" '{"dt": 1, "mu": "0.3"}' '1:11: mu: needs a number'
 bad_scene "a negative mu" '{"dt": 1, "mu": -0.1}' '1:11: mu: '
 bad_scene "e_n = 1.1" '{"dt": 1, "e_n": 1.1}' '1:11: e_n: '
 bad_scene "a negative radius" '{"dt": 1, "bodies": [{"x": [0, 0, 0], "radius": -1}]}' '1:39: bodies\[0\].radius: must be positive'
@@ -368,7 +368,7 @@ bad_scene "a radius so small that it has no mass" '{"dt": 1, "bodies": [{"x": [0
 bad_scene "a radius so large that its mass is infinite" '{"dt": 1, "bodies": [{"x": [0, 0, 0], "radius": 1e200}]}' '.*mass'
 bad_scene "a negative mass" "{\"dt\": 1, \"bodies\": [{$ball, \"mass\": -1}]}" '1:54: bodies\[0\].mass: '
 bad_scene "a negative density" '{"dt": 1, "density": -1}' '1:11: density: '
-bad_scene "a place in the plane, and dim is 3" '{"dt": 1, "bodies": [{"x": [0, 0], "radius": 1}]}' '1:23: bodies\[0\].x: wants \[x, y, z\]'
+bad_scene "a place in the plane, and dim is 3" '{"dt": 1, "bodies": [{"x": [0, 0], "radius": 1}]}' '1:23: bodies\[0\].x: needs \[x, y, z\]'
 bad_scene "an unknown kind" "{\"dt\": 1, \"bodies\": [{$ball, \"kind\": \"jelly\"}]}" '1:54: bodies\[0\].kind: no kind'
 bad_scene "a normal of zero" '{"dt": 1, "walls": [{"point": [0, 0, 0], "normal": [0, 0, 0]}]}' '1:42: walls\[0\].normal: must not be zero'
 bad_scene "radii the wrong way round" '{"dt": 1, "bodies": [{"count": 1, "radius": {"uniform": [2, 1]}, "box": {"x": [0, 9], "y": [0, 9], "z": [0, 9]}}]}' \
@@ -431,7 +431,7 @@ refuses 64 "nsd-gen: two numbers" nsd-gen 4 4
 refuses 64 "nsd-gen: no operand" nsd-gen
 refuses 64 "nsd-gen: an empty operand" nsd-gen ''
 refuses 64 "nsd-gen -d 4" nsd-gen -d 4 10
-if ! grep -q __asan_init "$(command -v nsd-gen)"; then # the sanitizer wants terabytes of addresses
+if ! grep -q __asan_init "$(command -v nsd-gen)"; then # the sanitizer needs terabytes of addresses
     many() { (ulimit -v 2000000 && nsd-gen 2000000000); }
     refuses 70 "nsd-gen: more balls than memory" many
 fi
@@ -466,7 +466,7 @@ for tool in nsd-cat nsd-info; do
     done
     refuses 64 "$tool --last --steps 1" "$tool" --last --steps 1 "$tmp/packing.h5"
 done
-refuses 64 "nsd-solve --overlap that wants other contacts" nsd-solve --overlap gap "$tmp/contacts.h5"
+refuses 64 "nsd-solve --overlap that needs other contacts" nsd-solve --overlap gap "$tmp/contacts.h5"
 refuses 64 "nsd-solve --theta other than the contacts'" nsd-solve --theta 0.9 "$tmp/contacts.h5"
 
 # ---- found by newcomers ----

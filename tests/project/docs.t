@@ -29,7 +29,7 @@ structure() # FILE: what is wrong with it
             if (macro == "It" && stack[depth] != "Bl") complain(".It outside a list")
             if (macro == "Sh" || macro == "Ss") { if (depth) complain($0 " within a list or a display"); depth = 0 }
             if (macro == "Sh") { sub(/^\.Sh /, ""); heads = heads $0 ";" }
-            if ((macro == "Xr" && (NF < 3 || $3 !~ /^[0-9]$/)) || (macro == "Fl" && NF < 2)) complain($1 " wants a name")
+            if ((macro == "Xr" && (NF < 3 || $3 !~ /^[0-9]$/)) || (macro == "Fl" && NF < 2)) complain($1 " needs a name")
             next
         }
         /^\.?[ \t]*$/ && stack[depth] != "Bd" && !table { complain("an empty line") }
@@ -77,6 +77,14 @@ is "every manual that is referred to exists" "$(strangers)" ""
 # ---- nsd(7) and nsd-scene(5) are complete ----
 
 is "nsd(7) lists every tool" "$(sed -n '/^\.Ss The tools/,/^\.Ss Conv/s/^\.It Xr \(nsd-[a-z]*\) 1$/\1/p' man/nsd.7 | sort)" "$(tools | sort)"
+letters() # of --help: letter, option, tools
+{
+    local tool
+    for tool in $(tools); do short_of_help "$tool" | sed "s/$/ ${tool#nsd-}/"; done |
+        awk '{ k = $1 " " $2; at[k] = at[k] (at[k] ? ", " : "") $3 } END { for (k in at) print k, at[k] }' | LC_ALL=C sort
+}
+is "nsd(7) has a table of all letters, by option and tool" \
+    "$(sed -n '/^\.Ss Letters/,/^\.Sh/s/^\.It Fl \(.\) Ta Fl \(-[a-z0-9-]*\) Ta /-\1 -\2 /p' man/nsd.7)" "$(letters)"
 for page in "${pages[@]}"; do
     page=${page##*/}
     [ "$page" = nsd.7 ] || like "nsd(7) refers to $page" "$(grep -E '^\.(Xr|It Xr)' man/nsd.7 | tr '\n' ' ')" "Xr ${page%.*} ${page##*.} "
@@ -84,6 +92,17 @@ done
 is "every page has one EXIT STATUS of one form" "$(for page in man/*.1; do
     sed -n '/^\.Sh EXIT STATUS/,/^\.Sh EXAMPLES/p' "$page" | sed -n '2p;3p;4p' | tr '\n' '|'; echo; done | sort -u)" \
     "$(printf '%s' '.Bl -tag -width Ds|.It 0|Success.|')"
+quantities_of_list() # measure, quantity, unit, text
+{
+    nsd-stat --list | awk '/^[a-z]/ { sub(/:.*/, ""); measure = $0; next } /^  / { unit = substr($0, 23, 6); gsub(/ /, "", unit); sub(/^name$/, "", unit); print measure, $1, unit ":", substr($0, 30) }'
+}
+quantities_of_manual()
+{
+    sed -n '/^\.Sh MEASURES/,/^\.Sh FIELDS/{s/\\(aq/'"'"'/g; s/\\(ha/^/g; p}' man/nsd-stat.1 |
+        awk '/^\.Ss/ { measure = $2 } /^\.It Va/ { unit = $5 $6; name = $3; getline; sub(/;$/, ""); print measure, name, unit ":", $0 }'
+}
+is "nsd-stat(1) has every quantity of --list, with unit and text" \
+    "$(quantities_of_manual | LC_ALL=C sort)" "$(quantities_of_list | grep -vE '^sums_by_name |^sums_by_face ' | LC_ALL=C sort)"
 keys() # that the code knows: what it asks of an object of a scene
 {
     perl -0777 -ne '

@@ -240,7 +240,7 @@ static bool run_failing(int (*run)(uint32_t *crc, struct why *why), long at, uin
 
 static long most_failures = LONG_MAX; /* of a run that takes long */
 
-/* Calls that a run makes fail, one at a time: so many, spread over all of them; make coverage wants all. */
+/* Calls that a run makes fail, one at a time: so many, spread over all of them; make coverage needs all. */
 __attribute__((unused)) static void each_fails(const char *name,
                                                int (*run)(uint32_t *crc, struct why *why))
 {

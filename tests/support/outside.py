@@ -160,7 +160,7 @@ for kind, words, call in (
         (nsd.Error, "no number", lambda: run.number("speed")),
         (nsd.Error, "measures", lambda: run.measure("beauty")),
         (nsd.Error, "no such option", lambda: run.set(epsilon=1)),
-        (nsd.Error, "does not yield", lambda: run.push_boundary(0, 1)),
+        (nsd.Error, "not load-controlled", lambda: run.push_boundary(0, 1)),
         (nsd.Error, "no boundary", lambda: run.move_boundary(17, [0, 0, 1])),
         (nsd.Error, "no kind", lambda: run.friction("ball", "cheese", 1)),
         (nsd.Error, "steps cannot", lambda: run.step(-1)),

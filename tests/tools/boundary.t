@@ -186,7 +186,7 @@ bad "a drive of two signals" '{"sphere": {"center": [0, 0, 0], "radius": 1}, "dr
 bad "times that fall" '{"point": [0, 0, 0], "normal": [0, 0, 1], "drives": [{"along": [1, 0, 0], "table": [[0, 1], [0, 2]]}]}' 'table\[1\]\[0\]: times must rise'
 bad "a disc in the plane" '{"disc": {"center": [0, 0], "normal": [0, 1], "radius": 1}}' 'walls\[0\]' 2
 bad "a segment without a length" '{"segment": [[1, 1], [1, 1]]}' 'segment: is without a length' 2
-bad "a polygon of one point" '{"polygon": {"points": [[1, 1]]}}' 'points: wants two points' 2
+bad "a polygon of one point" '{"polygon": {"points": [[1, 1]]}}' 'points: needs two points' 2
 bad "a polygon that stands still" '{"polygon": {"points": [[1, 1], [2, 1], [2, 1]]}}' 'points\[2\]: lies where' 2
 printf 'solid x\nendsolid x\n' >"$tmp/empty.stl"
 bad "a mesh without triangles" '{"mesh": {"file": "empty.stl"}}' 'empty.stl: '

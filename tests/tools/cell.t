@@ -84,7 +84,7 @@ jq '.cell = {gradient: [[0, 2], [0, 0]]}' "$tmp/again.json" | nsd-gen - >"$tmp/s
 like "or another motion of the same edges" \
     "$(nsd-info --last "$tmp/sheared.h5" | jq '.rates[1][0] / .edges[1][1]')" '^(2|1\.99999999+\d*|2\.0000000+\d*)$'
 jq '.bodies = [] ' "$tmp/again.json" >"$tmp/none.json"
-refuses 65 "edges are wanted where no document is" nsd-gen "$tmp/none.json"
+refuses 65 "edges are needed where no document is" nsd-gen "$tmp/none.json"
 jq '.bodies[0].document = "'"$tmp/free.h5"'"' "$tmp/again.json" >"$tmp/none.json"
 nsd-gen 3 | nsd-cat -o "$tmp/free.h5"
 jq '.dim = 3 | .gravity = [0, 0, 0] | .cell = {}' "$tmp/none.json" >"$tmp/free.json"
@@ -101,21 +101,21 @@ fault()
     like "  $2" "$(cat "$tmp/err")" ":1:[0-9]+: $2"
 }
 
-fault '.cell.edges = [[1, 0], [0, 1]]' 'cell: wants one of the keys edges lengths'
-fault 'del(.cell.lengths)' 'cell: wants one of'
+fault '.cell.edges = [[1, 0], [0, 1]]' 'cell: needs one of the keys edges lengths'
+fault 'del(.cell.lengths)' 'cell: needs one of'
 fault '.cell.lengths = [1, 0]' 'cell.lengths: must be positive'
 fault '.cell = { edges: [[1, 2], [2, 4]] }' 'cell: the cell: its edges have no volume'
-fault '.cell = { edges: [[1, 2]] }' 'cell.edges: wants 2 vectors'
-fault '.cell.repeats = [true]' 'cell.repeats: wants true or false for 2 edges'
+fault '.cell = { edges: [[1, 2]] }' 'cell.edges: needs 2 vectors'
+fault '.cell.repeats = [true]' 'cell.repeats: needs true or false for 2 edges'
 fault '.cell.repeats = [false, false]' 'cell.repeats: no edge is periodic'
-fault '.cell.gradient = [[0, 1]]' 'cell.gradient: wants 2 rows'
+fault '.cell.gradient = [[0, 1]]' 'cell.gradient: needs 2 rows'
 fault '.cell.gradient = [[0, 1], [0, "x"]]' 'cell.gradient\[1\]\[1\]: '
 fault '.cell.gradient[2].t = 0.5' 'cell.gradient\[2\].t: must be later than the one before'
 fault '.cell.stress = { mean: 1, mass: 0 }' 'cell.stress.mass: must be positive'
 fault '.cell.stress = { pressure: 1, mass: 0 }' 'cell.stress.mass: must be positive'
 fault '.cell.stress = { target: [[1, 2], [3, 4]], mass: 1 }' 'cell.stress.target: a stress is symmetric'
 fault '.cell.stress = { target: [[1, null], [null, 1]], mass: [[1, 0], [0, 0]] }' \
-    'cell.stress.mass: component y of edge 1 yields and needs a mass'
+    'cell.stress.mass: component y of edge 1 is stress-controlled and needs a mass'
 fault '.cell.repeats = [true, false] | .cell.stress = { target: [[null, null], [null, 1]], mass: 1 }' \
     'cell.stress.target: edge 1 is not periodic'
 fault '.cell.affine = 1' 'cell.affine: '

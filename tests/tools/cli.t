@@ -149,7 +149,7 @@ END
 for line in "" "-m auto" "--global nlgs"; do
     # shellcheck disable=SC2086 # words
     refuses 64 "nsd-solve --paper $line" nsd-solve --paper $line --log "$tmp/solve.log" "$tmp/keep.h5"
-    like "wants a method" "$(cat "$tmp/err")" '^nsd-solve: --paper: wants a local method, -m sbp\|sal\|ebp\|eal\|exact'
+    like "needs a method" "$(cat "$tmp/err")" '^nsd-solve: --paper: needs a local method, -m sbp\|sal\|ebp\|eal\|exact'
     ok "and leaves the log alone" [ ! -e "$tmp/solve.log" ]
 done
 refuses 64 "nsd-step --paper" nsd-step --paper "$tmp/heap.h5"

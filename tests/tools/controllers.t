@@ -133,13 +133,13 @@ bad() # "what is true" FILE FILTER REGEX
     like "and where, and the cure" "$(cat "$tmp/err")" "$4"
 }
 jq -n '{ dim: 2, dt: 1, gravity: [0, 0], cell: { lengths: [4, 4], stress: { mean: 1 } }, bodies: [{ x: [1, 1], radius: 0.5 }] }' >"$tmp/m.json"
-bad "a mean stress with a gradient that changes the volume is refused" m '.cell.gradient = [[1, 0], [0, 0]]' 'cell.stress.mean: the gradient changes the volume.*take'
-bad "a mean stress where an edge does not repeat is refused" m '.cell.repeats = [true, false]' 'edge 1 does not repeat'
+bad "a mean stress with a gradient that changes the volume is refused" m '.cell.gradient = [[1, 0], [0, 0]]' 'cell.stress.mean: the gradient changes the volume.*subtract'
+bad "a mean stress where an edge does not repeat is refused" m '.cell.repeats = [true, false]' 'edge 1 is not periodic'
 bad "a mean stress and a pressure are refused" m '.cell.stress.pressure = 1' 'cell.stress'
-bad "edges without grains need their mass" m '.bodies = []' 'cell.stress: no bodies move.*give a "mass"'
+bad "edges without grains need their mass" m '.bodies = []' 'cell.stress: no body moves.*give a "mass"'
 bad "factors rise in time" m '.cell.stress.factor = [[1, 0], [0, 1]]' 'cell.stress.factor\[1\].*times must rise'
 bad "factors are pairs" m '.cell.stress.factor = [1]' 'cell.stress.factor\[0\]'
-bad "a pressure without walls beside is refused" box 'del(.walls[0].box.y)' 'pressure wants planes on all sides.*give a force'
+bad "a pressure without walls beside is refused" box 'del(.walls[0].box.y)' 'pressure needs planes on all sides.*give a force'
 bad "a pressure on a disc is refused" box '.walls[2] = { disc: { center: [0.02, 0.02, 0.06], normal: [0, 0, -1], radius: 0.02 }, load: { pressure: 1 } }' 'walls\[2\].load.pressure: only a plane'
 bad "a pressure and a force are refused" box '.walls[2].load.force = 1' 'walls\[2\].load.force'
 

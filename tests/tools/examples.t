@@ -222,6 +222,7 @@ claim()
     # nsd-tutorial(7)
     'nsd-gen drum.json > start.h5') bodies start.h5 500 ;;
     'nsd-step --until 1.2 '*'-o drum.h5 start.h5') frames drum.h5 'length == 60 and .[-1] == 2400' ;;
+    'nsd-info drum.h5 | jq -s '*) [ -s stdout ] ;;
     'nsd-view '*' -o drum.mp4 drum.h5') [ -s drum.mp4 ] || [ -s drum-00000.png ] ;;
     'nsd-stat -m surface drum.h5'*'> angle.tsv') table 2 60 angle.tsv ;;
     'tail -n 1 angle.tsv' | 'awk '*' angle.tsv') [ -s stdout ] ;;

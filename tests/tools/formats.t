@@ -197,7 +197,7 @@ echo '{"dim": 2, "dt": 1e-4, "bodies": [{"x": [0, 0], "radius": 1}]}' | nsd-gen 
 for to in data ondem; do
     refuses 65 "discs are no balls: --to $to" nsd-export --to "$to" -o "$tmp/disc.$to" "$tmp/disc.h5"
 done
-like "with the cure" "$(cat "$tmp/err")" '--to gsd has discs'
+like "with the cure" "$(cat "$tmp/err")" '--to gsd writes discs'
 
 # ---- many balls: a fifth of a million in a fifth of 2 GB ----
 

@@ -182,10 +182,10 @@ is "and in a scene that takes the document" "$(nsd-info --last -w "$tmp/on.h5" |
 if have_h5py; then
     foreign "$tmp/push.h5" "$tmp/loose.h5"
     /usr/bin/python3 -c 'import h5py, sys; h5py.File(sys.argv[1], "r+")["/particles/boundary/load/way"][:] = 0' "$tmp/loose.h5"
-    refuses 65 "a push of a boundary that yields to none is refused" nsd-cat "$tmp/loose.h5"
-    like "and named" "$(cat "$tmp/err")" 'push 0: its boundary yields to no load'
+    refuses 65 "a push of a boundary that is not load-controlled is refused" nsd-cat "$tmp/loose.h5"
+    like "and named" "$(cat "$tmp/err")" 'push 0: its boundary is not load-controlled'
 else
-    skip "a push of a boundary that yields to none" "no h5py"
+    skip "a push of a boundary that is not load-controlled" "no h5py"
 fi
 
 # ---- too large, and bad scenes ----
@@ -202,7 +202,7 @@ bad() # "what is true" FILTER REGEX
     refuses 65 "$1" nsd-gen "$tmp/bad.json"
     like "and where, is said" "$(cat "$tmp/err")" "$3"
 }
-bad "no mass is refused where no grain gives one" 'del(.walls[1].load.mass) | .bodies = []' 'walls\[1\].load: no bodies move.*give a "mass"'
+bad "no mass is refused where no grain gives one" 'del(.walls[1].load.mass) | .bodies = []' 'walls\[1\].load: no body moves.*give a "mass"'
 bad "a rotor needs its mass" '.walls[1].load = {about: [0, 0, 0], torque: 1}' 'walls\[1\].load.mass: is missing'
 bad "a mass of 0 is refused" '.walls[1].load.mass = 0' 'walls\[1\].load.mass: must be positive'
 bad "no direction is refused" '.walls[1].load.along = [0, 0, 0]' 'walls\[1\].load.along: must not be zero'

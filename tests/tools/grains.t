@@ -102,7 +102,7 @@ jq -c '.pour[0].radius = 5 | .pour[0].count = 3' <<<"$count" | nsd-gen - | nsd-s
 ok "where there is room for one, the others wait" every_frame wait.h5 '.[-1].bodies == 1'
 
 refuses 65 "an opening has to be closed" nsd-gen - <<<'{"dt": 1, "pour": [{"rate": 1, "radius": 1, "opening": {"box": {"x": [0, 1]}}}]}'
-like "with line and column" "$(cat err)" '1:57: pour\[0\].opening.box: an opening wants a closed box, y is open'
+like "with line and column" "$(cat err)" '1:57: pour\[0\].opening.box: an opening needs a closed box, y is open'
 refuses 65 "a removal is of one kind" nsd-gen - <<<'{"dt": 1, "remove": [{"below": {"point": [0, 0, 0], "normal": [0, 0, 0]}}]}'
 like "and its plane has a normal" "$(cat err)" 'remove\[0\].below.normal: must not be zero'
 
@@ -230,7 +230,7 @@ ok "--every by seconds keeps the frame at each of them, and the last" \
 nsd-step -n 33 --every 0.001s small.h5 2>/dev/null >part.h5
 nsd-step -n 47 --every 0.001s part.h5 2>/dev/null >rest.h5
 ok "wherever the run began" every_frame rest.h5 'map(.step) == [40, 60, 80]'
-refuses 64 "--every wants steps or seconds" nsd-step --every 3m small.h5
+refuses 64 "--every needs steps or seconds" nsd-step --every 3m small.h5
 refuses 64 "and more than none" nsd-step --every 0s small.h5
 refuses 64 "-n and --until exclude each other" nsd-step -n 3 --until 1 small.h5
 nsd-step -n 3000 --progress 0.02 --every 1000 small.h5 2>said >/dev/null

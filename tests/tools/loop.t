@@ -84,14 +84,14 @@ stops "a program that there is not" "$tmp/nothing" "[0]" 69 'step 1: --with: the
 stops "a program that hangs" 'read -r l; echo "{}"; sleep 60' "[1]" 69 'step 2: --with: the program has not answered for 0.3 s' --with-timeout 0.3
 stops "a program that speaks without end" 'read -r l; echo "{}"; yes x | tr -d "\n"' "[1]" 69 'step 2: --with: the program.s answer has more than'
 stops "a program that dribbles" 'while :; do printf " "; sleep 0.05; done' "[0]" 69 'step 1: --with: the program has not answered for 0.3 s' --with-timeout 0.3
-stops "nonsense" 'echo hello; cat >/dev/null' "[0]" 69 'step 1: --with: the answer is no JSON'
+stops "nonsense" 'echo hello; cat >/dev/null' "[0]" 69 'step 1: --with: the answer is not JSON'
 for answer in '[1]:neither a JSON object' '{"force":{}}:no .force.' '{"forces":{"7":[0,0,1]}}:body .7., which does not exist' \
     '{"forces":{"-1":[0,0,1]}}:body .-1.' '{"forces":{"0":[1]}}:vectors' '{"forces":[[0,0,1]]}:1 forces, and there are 2' \
-    '{"forces":{"0":[1e999,0,0]}}:no JSON' '{"forces":{"0":["1",0,0]}}:vectors' '{"boundaries":{"9":{"force":1}}}:no boundary 9' \
-    '{"boundaries":{"1":{"force":1}}}:does not yield' '{"boundaries":{"0":{"speed":1}}}:no .speed.' '{"velocities":{"0":[1]}}:velocities are vectors' '{"angular_velocities":[[0,0,1]]}:1 angular_velocities, and there are 2' \
+    '{"forces":{"0":[1e999,0,0]}}:not JSON' '{"forces":{"0":["1",0,0]}}:vectors' '{"boundaries":{"9":{"force":1}}}:no boundary 9' \
+    '{"boundaries":{"1":{"force":1}}}:not load-controlled' '{"boundaries":{"0":{"speed":1}}}:no .speed.' '{"velocities":{"0":[1]}}:velocities are vectors' '{"angular_velocities":[[0,0,1]]}:1 angular_velocities, and there are 2' \
     '{"gravity":9.81}:gravity is a vector' \
     '{"friction":[["ball","cheese",1]]}:no kind .cheese' '{"friction":[["ball","wall",-1]]}:friction of -1' '{"stop":1}:stop is true or false' \
-    '{"gravity":[0,0,1],"gravity":[0,0,2]}:no JSON'; do
+    '{"gravity":[0,0,1],"gravity":[0,0,2]}:not JSON'; do
     stops "the answer ${answer%:*}" "$(answering "${answer%:*}")" "[0]" 69 "step 1: --with: .*${answer##*:}"
 done
 

@@ -53,7 +53,7 @@ is "a group: its bodies" "$(nsd-info --last -p --only first "$tmp/run.h5" | jq -
 is "contacts of a part" "$(nsd-info -s 1 -c --only right "$tmp/run.h5" | jq -c .body[1])" 1
 refuses 65 "an unknown name" nsd-info -w --only lid "$tmp/run.h5"
 like "names what there is" "$(cat "$tmp/err")" "no 'lid' here, but .*tray.*steel, or a wall's number, 0 to 3"
-refuses 64 "--only wants -p, -w or -c" nsd-info --only side "$tmp/run.h5"
+refuses 64 "--only needs -p, -w or -c" nsd-info --only side "$tmp/run.h5"
 
 is "sums by name: several walls sum up, and parts are apart" \
     "$(nsd-stat -s 1 -m boundaries,names "$tmp/run.h5" | jq -c '

@@ -83,7 +83,7 @@ drive '{table: [[0, 0], [0.1, 0.2]], since_from: true}' | step -n 50 >table.h5
 ok "a table, too" eval "jq -n -e '($(height table.h5) + 0.9) | fabs < 1e-12'"
 drive '{amplitude: 0.1, frequency: 0.9, since_from: true, until: 0.4}' | step -n 200 --every 200 >until.h5
 ok "until is of the scene's time" eval "jq -n -e '($(height until.h5) + 1 - 0.1 * (2 * 3.14159265358979 * 0.09 | sin)) | fabs < 1e-12'"
-refuses 65 "since_from wants a from" eval \
+refuses 65 "since_from needs a from" eval \
     'echo "{\"dt\": 1, \"walls\": [{\"point\": [0, 0, 0], \"normal\": [0, 0, 1], \"drives\": [{\"along\": [0, 0, 1], \"amplitude\": 1, \"frequency\": 1, \"since_from\": true}]}]}" | nsd-gen -'
 
 done_testing

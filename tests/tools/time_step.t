@@ -132,7 +132,7 @@ else
 fi
 if have_ranks; then
     like "several processes refuse it" "$(ranks 2 nsd-step --dt auto:0.01 -o mpi.h5 start.h5 2>&1 || true)" \
-        'one process alone adapts'
+        '--dt auto: needs a single process'
     ranks 2 nsd-step --until 0.4 --dt 1e-3 -o mpi.h5 start.h5 2>/dev/null
     step --until 0.4 --dt 1e-3 -o one.h5 start.h5
     ok "and make the same steps of another dt" cmp one.h5 mpi.h5

@@ -71,11 +71,11 @@ for size in small large; do
     ok "$size: packed, in chunks" same $size \
         "[retype(A + n, 'f8', chunks=(7,), compression='gzip', shuffle=True) for n in ('radius', 'mass', 'inertia')]"
     ok "$size: compact" same small "retype(A + 'species', 'i1')"
-    refused $size "retype(A + 'id', 'f8')" 'id: .*integers are wanted'
+    refused $size "retype(A + 'id', 'f8')" 'id: .*integers are needed'
     refused $size "d = f[A + 'id'][()].astype('i8'); d[-1] = 2**31; del f[A + 'id']; f[A + 'id'] = d" 'id: '
     refused $size "d = f[A + 'id'][()].astype('u8'); d[0] = 2**63; del f[A + 'id']; f[A + 'id'] = d" 'id: '
     refused $size "d = f[A + 'id'][()].astype('i8'); d[0] = -2**31 - 1; del f[A + 'id']; f[A + 'id'] = d" 'id: '
-    refused $size "retype(A + 'radius', 'S8')" 'radius: .*numbers are wanted'
+    refused $size "retype(A + 'radius', 'S8')" 'radius: .*numbers are needed'
     refused $size "d = f[A + 'radius'][:-1]; del f[A + 'radius']; f[A + 'radius'] = d" 'position/value: not of shape'
     refused $size "d = f[A + 'radius'][()]; del f[A + 'radius']; f[A + 'radius'] = d.reshape(-1, 2)" 'radius: '
     refused $size "del f[A + 'mass']; f.create_group(A + 'mass')" 'mass: '
@@ -86,12 +86,12 @@ for type in u1 i2 i8 '>u4'; do ok "dim as $type" same small "attr('/nsd', 'dim',
 for type in f4 '>f4' '>f8'; do ok "dt as $type" same small "attr('/nsd', 'dt', '$type')"; done
 for type in i1 f2 i8; do ok "gravity as $type" same small "attr('/nsd', 'gravity', '$type')"; done
 for type in u1 u8 '>i4'; do ok "seed as $type" same small "attr('/nsd', 'seed', '$type')"; done
-refused small "attr('/nsd', 'dim', 'f8')" 'dim: integers are wanted'
+refused small "attr('/nsd', 'dim', 'f8')" 'dim: integers are needed'
 refused small "f['/nsd'].attrs['dim'] = 4" 'dim'
 refused small "f['/nsd'].attrs['dim'] = np.uint64(2**63 + 3)" 'dim'
-refused small "f['/nsd'].attrs['dim'] = [3, 3]" 'dim: 2 values, 1 are wanted'
-refused small "f['/nsd'].attrs['gravity'] = [0.0, 1.0]" 'gravity: 2 values, 3 are wanted'
-refused small "f['/nsd'].attrs['dt'] = 'soon'" 'dt: numbers are wanted'
+refused small "f['/nsd'].attrs['dim'] = [3, 3]" 'dim: 2 values, 1 are needed'
+refused small "f['/nsd'].attrs['gravity'] = [0.0, 1.0]" 'gravity: 2 values, 3 are needed'
+refused small "f['/nsd'].attrs['dt'] = 'soon'" 'dt: numbers are needed'
 refused small "del f['/nsd'].attrs['dt']" 'dt: no such attribute'
 refused small "f['/nsd/material'].attrs['kinds'] = 3" 'kinds: cannot be read as a text'
 
@@ -104,7 +104,7 @@ nsd-info --help | grep -q -- --scene || text() { same small "$1"; }
 ok "the scene as a string of any length" text "t = f['/nsd/scene'][()]; del f['/nsd/scene']; f['/nsd/scene'] = t.decode()"
 ok "padded by zeros" text "t = f['/nsd/scene'][()]; del f['/nsd/scene']; f['/nsd/scene'] = np.bytes_(t)"
 ok "kinds as a string of any length" text "k = f['/nsd/material'].attrs['kinds']; f['/nsd/material'].attrs['kinds'] = k if isinstance(k, str) else k.decode()"
-refused small "del f['/nsd/scene']; f['/nsd/scene'] = 3" 'scene: a text is wanted'
+refused small "del f['/nsd/scene']; f['/nsd/scene'] = 3" 'scene: a text is needed'
 
 # documents of more than 64 MiB are given back to the system part by part, and read all the same
 nsd-gen 600000 >"$tmp/huge.h5"

@@ -174,7 +174,7 @@ alone() { (cd "$tmp" && PATH=$(dirname "$(command -v nsd-view)") nsd-view --ever
 status 0 "without ffmpeg" alone
 is "there are pictures" "$(cd "$tmp" && echo alone*)" "alone-00000.png alone-00001.png alone-00002.png"
 like "and how to join them" "$(tail -n 1 "$tmp/err")" "ffmpeg -framerate 25 -i 'alone-%05d.png' .* 'alone.mp4'"
-refuses 64 "a film wants --every" nsd-view -o "$tmp/b.mp4" "$tmp/roll2.h5"
+refuses 64 "a film needs --every" nsd-view -o "$tmp/b.mp4" "$tmp/roll2.h5"
 
 # ---- series ----
 
@@ -233,7 +233,7 @@ status 0 "walls without bodies" nothing ', "walls": [{"box": {"x": [0, 1], "y": 
 is "are a picture" "$(head -c 4 "$tmp/out" | tail -c 3)" PNG
 refuses 65 "no input" nsd-view </dev/null
 refuses 66 "a missing file" nsd-view "$tmp/missing.h5"
-if ! grep -q __asan_init "$(command -v nsd-view)"; then # the sanitizer wants terabytes of addresses
+if ! grep -q __asan_init "$(command -v nsd-view)"; then # the sanitizer needs terabytes of addresses
     large() { (ulimit -v 600000 && nsd-view --size 16384x16384 "$tmp/ball.h5"); }
     refuses 70 "more pixels than memory" large
 fi

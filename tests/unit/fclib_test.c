@@ -550,7 +550,7 @@ static void test_made(int d, int64_t n, bool global, const char *scratch)
     double *back = noises(n * d);
     stored = stored && !read_solution(&F, file, back, &why);
     H5Fclose(file);
-    struct fclib_solution *S = n ? fclib_read_solution(scratch) : NULL; // it wants a contact
+    struct fclib_solution *S = n ? fclib_read_solution(scratch) : NULL; // it needs a contact
     ok(stored && (S || !n) && apart(n * d, back, r) == 0 &&
            (!n || (apart(n * d, S->r, r) == 0 && apart(n * d, S->u, u) == 0)),
        "its solution is stored, and libfclib reads that too");

@@ -310,7 +310,7 @@ static void test_sieves(void)
     check_sieve("a power law", "{\"power\": {\"exponent\": 3, \"min\": 1e-4, \"max\": 1e-3}}", 3,
                 uniform, 401);
     static const char *const bad[][2] = {
-        { "{\"sieve\": [[1, 0]]}", "wants two points [size, passing] or more" },
+        { "{\"sieve\": [[1, 0]]}", "needs two points [size, passing] or more" },
         { "{\"sieve\": [[1, 0.1], [2, 1]]}", "nothing passes the first sieve: 0" },
         { "{\"sieve\": [[1, 0], [2, 0.9]]}", "all passes the last sieve: 1" },
         { "{\"sieve\": [[2, 0], [1, 1]]}", "sizes and shares must not fall" },
@@ -428,9 +428,9 @@ static void test_bad_tables(void)
     static const struct {
         const char *text, *trouble;
         int status;
-    } row[] = { { "0 0 0 1\n0 0 1\n", ":2: wants x y z r", EX_DATAERR },
-                { "0 0 0 1 2\n", ":1: wants x y z r", EX_DATAERR },
-                { "# one\n0 0 0 1x\n", ":2: wants x y z r", EX_DATAERR },
+    } row[] = { { "0 0 0 1\n0 0 1\n", ":2: needs x y z r", EX_DATAERR },
+                { "0 0 0 1 2\n", ":1: needs x y z r", EX_DATAERR },
+                { "# one\n0 0 0 1x\n", ":2: needs x y z r", EX_DATAERR },
                 { "0 nan 0 1\n", ":1: not finite", EX_DATAERR },
                 { "0 0 0 -1\n", ":1: the radius must be positive", EX_DATAERR },
                 { "0 0 0 1e-200\n", "body 0: a radius of 1e-200 m gives no mass", EX_DATAERR },
@@ -475,27 +475,27 @@ static void test_bad_scenes(void)
         { "", "1:0: '[' or '{' expected near end of file" },
         { "{\"dt\": 1,\n \"dt\": 2}", "2:5: duplicate object key near '\"dt\"'" },
         { "{\"dt\": 1,\n  oops}", "2:6: string or '}' expected near 'oops'" },
-        { "[1]", "1:1: wants an object {...}" },
+        { "[1]", "1:1: needs an object {...}" },
         { "{}", "1:1: dt: is missing" },
         { "{\"dt\": 0}", "1:2: dt: must be positive" },
-        { "{\n \"dt\": \"1\"}", "2:2: dt: wants a number of seconds, or \"auto\"" },
+        { "{\n \"dt\": \"1\"}", "2:2: dt: needs a number of seconds, or \"auto\"" },
         { "{\"dt\": 1, \"mu\": -0.1}", "1:11: mu: must not be negative" },
         { "{\"dt\": 1, \"e_n\": 1.5}", "1:11: e_n: must lie in [0, 1]" },
         { "{\"dt\": 1, \"dim\": 4}", "1:11: dim: must lie in [2, 3]" },
-        { "{\"dt\": 1, \"seed\": 0.5}", "1:11: seed: wants an integer" },
-        { "{\"dt\": 1, \"title\": 5}", "1:11: title: wants a string" },
-        { "{\"dt\": 1, \"overlap\": 1}", "1:11: overlap: wants true or false" },
-        { "{\"dt\": 1, \"gravity\": [0, 1]}", "1:11: gravity: wants [x, y, z]" },
-        { "{\"dt\": 1, \"gravity\": [0, 1, null]}", "1:29: gravity[2]: wants a number" },
+        { "{\"dt\": 1, \"seed\": 0.5}", "1:11: seed: needs an integer" },
+        { "{\"dt\": 1, \"title\": 5}", "1:11: title: needs a string" },
+        { "{\"dt\": 1, \"overlap\": 1}", "1:11: overlap: needs true or false" },
+        { "{\"dt\": 1, \"gravity\": [0, 1]}", "1:11: gravity: needs [x, y, z]" },
+        { "{\"dt\": 1, \"gravity\": [0, 1, null]}", "1:29: gravity[2]: needs a number" },
         { "{\"dt\": 1, \"dim\": 2, \"gravity\": [0, 1, 2]}",
-          "1:21: gravity: wants [x, y], for dim is 2" },
+          "1:21: gravity: needs [x, y], for dim is 2" },
         { "{\"comment\": \"\\\"\xc3\xa9{[\", \"dt\": -1}", "1:22: dt: must be positive" },
         { BODY("{\"x\": [0, 0, 0], \"radius\": 1},\n  {\"x\": [3, 0, 0],\n   \"radius\": -1}"),
           "4:4: bodies[1].radius: must be positive" },
         { BODY("{\"x\": [0, 0, 0]}"), "2:13: bodies[0].radius: is missing" },
         { BODY("{\"x\": [0, 0, 0], \"count\": 3}"),
-          "2:13: bodies[0]: wants one of the keys x count file document random import" },
-        { BODY("7"), "2:13: bodies[0]: wants an object with one of the keys x count file document "
+          "2:13: bodies[0]: needs one of the keys x count file document random import" },
+        { BODY("7"), "2:13: bodies[0]: needs an object with one of the keys x count file document "
                      "random import" },
         { BODY("{\"x\": [0, 0, 0], \"raduis\": 1}"),
           "2:30: bodies[0].raduis: unknown key; known here: x radius size shape orientation v w "
@@ -524,7 +524,7 @@ static void test_bad_scenes(void)
         { COUNT("{\"lognormal\": {\"median\": 1, \"sigma\": 0, \"min\": 2, \"max\": 3}}"),
           "2:88: bodies[0].radius.lognormal: [min, max] keeps less than a thousandth of it" },
         { COUNT("{\"poisson\": 3}"),
-          "2:77: bodies[0].radius: wants one of the keys uniform gaussian lognormal "
+          "2:77: bodies[0].radius: needs one of the keys uniform gaussian lognormal "
           "uniform_by_mass power sieve" },
         { "{\"dt\": 1, \"walls\": [{\"point\": [0, 0, 0], \"normal\": [0, 0, 0]}]}",
           "1:42: walls[0].normal: must not be zero" },

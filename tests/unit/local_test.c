@@ -343,7 +343,7 @@ static void test_law(const struct method *m, enum kind kind, int d)
 
 /*
  * One projected step again and again, the sweep of a single contact. With W_nt and a large mu, SAL
- * wants a smaller rho than 2/lambda_max.
+ * needs a smaller rho than 2/lambda_max.
  */
 static void test_iterated(const struct method *m, enum kind kind, int d)
 {

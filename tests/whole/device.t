@@ -33,7 +33,7 @@ same_problems()
 
 # ---- the same bytes ----
 
-# shellcheck disable=SC2034 # heap() wants it
+# shellcheck disable=SC2034 # heap() needs it
 work=$tmp
 . bench/heap.sh
 for tiles in 1 16 64; do
