@@ -232,9 +232,10 @@ static bool draw_key(cairo_t *cr, double *x, double y, double end, struct rgb c,
 }
 
 /* The kinds, or the names of the groups, that bodies are of, with their colours */
-static void draw_classes(cairo_t *cr, const struct view *v, const struct packing *p, bool groups,
-                         double x, double y, double end)
+static void draw_classes(cairo_t *cr, const struct view *v, const struct packing *p, double x,
+                         double y, double end)
 {
+    const bool groups = v->paint.by == COLOUR_GROUP;
     const int32_t n = groups ? p->names.n : p->kinds;
     bool *any = calloc((size_t)n + 1, sizeof *any);
     for (int64_t i = 0; any && i < p->n; i++) {
@@ -318,7 +319,7 @@ void overlay_legend(cairo_t *cr, const struct overlay *o, const struct view *v,
     if (o->solid)
         draw_solid(cr, o->solid, &v->paint, 0.03 * w, top + strip + 0.3 * strip, 0.97 * w);
     if (v->paint.by == COLOUR_KIND || v->paint.by == COLOUR_GROUP)
-        draw_classes(cr, v, p, v->paint.by == COLOUR_GROUP, 0.03 * w, top + 0.58 * strip, 0.43 * w);
+        draw_classes(cr, v, p, 0.03 * w, top + 0.58 * strip, 0.43 * w);
     else
         draw_palette(cr, &v->paint, 0.03 * w, top + 0.36 * strip, 0.34 * w, 0.22 * strip);
     const bool keys = o->network || o->contacts;
