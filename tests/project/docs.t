@@ -119,6 +119,16 @@ undescribed() # keys that the page does not have
 }
 ok "keys are found in the code" eval '[ "$(keys | wc -l)" -gt 100 ]'
 is "nsd-scene(5) has every key that the code knows" "$(undescribed)" ""
+# groff puts what does not fit at the right edge, a word a line: five columns with three blanks between, indented by five
+unfit()
+{
+    sed 's/\\(dq/"/g; s/\\(ha/^/g; s/\\(ti/~/g; s/\<\(Em\|Va\|Ql\|Cm\) //g' man/nsd-scene.5 | awk '
+        /^\.Bl -column/ { n = split($0, width, "\""); sum = 0; for (k = 2; k < n; k += 2) sum += length(width[k]); rows = 1
+            if (sum > 61) print NR ": " sum " characters in a row" }
+        /^\.El/ { rows = 0 }
+        rows && /^\.It/ { m = split(substr($0, 5), cell, " Ta "); for (k = 1; k <= m; k++) if (length(cell[k]) > length(width[2 * k])) print cell[k] }'
+}
+is "and tables that fit 78 characters" "$(unfit)" ""
 tabled() # top-level keys without a row of a table: key, type, unit, default, example
 {
     local key
