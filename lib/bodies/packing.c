@@ -1,6 +1,8 @@
 /* bodies/packing.c: memory for a packing, and the check of its numbers. */
 #include "bodies/packing.h"
 
+#include "bodies/room.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -359,7 +361,13 @@ static const char *load_trouble(const struct packing *p, const struct wall *w)
     const struct load *l = &w->load;
     if (l->way == LOAD_NONE) return NULL;
     if (l->way < 0 || l->way >= LOAD_WAYS) return "its load neither glides nor turns";
-    if (!(l->mass > 0 && isfinite(l->mass))) return "the mass of its load must be positive";
+    bool room = l->way == LOAD_ROOM; // [bodies/room.h]
+    if (!((l->mass > 0 || (room && l->mass == 0)) && isfinite(l->mass)))
+        return "the mass of its load must be positive";
+    if (!isfinite(l->rate) || (!room && l->rate != 0))
+        return "it has a strain rate that is not finite, or no room";
+    if (room && l->mass > 0 && !l->spread) return "the load of its room is no pressure";
+    if (room && w->shape != BOUNDARY_PLANE) return "it belongs to a room, and is no plane";
     if (!isfinite(l->force) || !isfinite(l->speed) || !isfinite(l->travel) || !v3_finite(l->point))
         return "its load is not finite";
     if (!(fabs(v3_dot(l->axis, l->axis) - 1) < 1e-6)) return "its load's axis is not a unit vector";
@@ -371,6 +379,8 @@ static const char *load_trouble(const struct packing *p, const struct wall *w)
         return "its pressure is not on a plane that glides";
     if (l->spread && p->walls > SPREAD_MOST)
         return "its pressure is on one of more than 1000 boundaries: give a force";
+    if (l->spread && room && !(wall_face(p, w, p->t) > 0))
+        return "its room wants planes on all sides of its face, or a cell that repeats there";
     if (l->spread && !(wall_face(p, w, p->t) > 0))
         return "its pressure wants planes on all sides of its face, or a cell that repeats there: "
                "give a force";
@@ -488,15 +498,16 @@ int packing_check(const struct packing *p, struct why *why)
             why, EX_DATAERR,
             "%lld bodies and %d boundaries: more than %d for each body: make a mesh of them",
             (long long)p->n, p->walls, BOUNDARIES_BODY);
+    if (drives_check(&p->drives, p->walls, p->dim, "drive", why) ||
+        drives_check(&p->pushes, p->walls, p->dim, "push", why))
+        return why->status; // before any wall is asked where it is
     for (int32_t i = 0; i < p->walls; i++) {
         const char *trouble = wall_trouble(p, &p->wall[i]);
         if (trouble) return why_set(why, EX_DATAERR, "wall %d: %s", i, trouble);
     }
+    if (room_check(p, why)) return why->status;
     if (names_check(&p->names, p->walls, p->wall, why) ||
         sums_check(&p->sums, p->walls, p->wall, why))
-        return why->status;
-    if (drives_check(&p->drives, p->walls, p->dim, "drive", why) ||
-        drives_check(&p->pushes, p->walls, p->dim, "push", why))
         return why->status;
     for (int32_t i = 0; i < p->pushes.n; i++)
         if (!p->wall[p->pushes.drive[i].boundary].load.way)

@@ -60,6 +60,7 @@ static void move_freedoms(struct packing *p, const struct impulses *sum, bool ba
 {
     for (int32_t k = 0; k < sum->freedoms.n; k++)
         freedom_move(&sum->freedoms.f[k], p, impulses_change(sum, p, k), back);
+    freedoms_move_rates(&sum->freedoms, p, back);
 }
 
 /* Bodies that move */
