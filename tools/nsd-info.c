@@ -242,7 +242,7 @@ static json_t *load(const struct packing *p, const struct wall *w)
     json_object_set_new(j, "mass", json_number(l->mass));
     json_object_set_new(j, turns ? "torque" : "force",
                         json_number(wall_force(p, w, p->t + p->dt / 2)));
-    if (l->spread) json_object_set_new(j, "face", json_number(wall_face(p, w, p->t)));
+    if (l->spread || room) json_object_set_new(j, "face", json_number(wall_face(p, w, p->t)));
     if (room) json_object_set_new(j, "strain_rate", json_number(l->rate));
     json_object_set_new(j, room ? "growth" : "speed", json_number(l->speed));
     json_object_set_new(j, "travel", json_number(l->travel));

@@ -1,8 +1,6 @@
 /* bodies/packing.c: memory for a packing, and the check of its numbers. */
 #include "bodies/packing.h"
 
-#include "bodies/room.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -389,6 +387,42 @@ static const char *load_trouble(const struct packing *p, const struct wall *w)
     return NULL;
 }
 
+/* Of a wall of the room [bodies/room.h], beside the load of its first wall */
+static const char *room_trouble(const struct packing *p, const struct wall *w,
+                                const struct load *first)
+{
+    const struct load *l = &w->load;
+    if (l->speed != first->speed || l->point.x != first->point.x || l->point.y != first->point.y ||
+        l->point.z != first->point.z)
+        return "its room has another centre or growth than that of the walls before";
+    if (v3_dot(l->axis, w->n) < 1 - 1e-9) return "its room is not on the side of its normal";
+    if (w->until < INFINITY) return "it belongs to a room, and vanishes";
+    for (int32_t k = w->first_drive; k < w->first_drive + w->drives; k++)
+        if (p->drives.drive[k].turns) return "it belongs to a room, and turns";
+    if (load_grows_too_fast(l, p->dt))
+        return "its room changes by more than a tenth in a step: take a smaller dt, a larger mass "
+               "or slower rates";
+    return NULL;
+}
+
+/* Do the loads of its walls make one room? */
+static int check_room(const struct packing *p, struct why *why)
+{
+    const struct load *first = NULL;
+    double mass = 0;
+    for (int32_t i = 0; i < p->walls; i++) {
+        const struct wall *w = &p->wall[i];
+        if (w->load.way != LOAD_ROOM) continue;
+        if (!first) first = &w->load;
+        mass += w->load.mass;
+        const char *trouble = room_trouble(p, w, first);
+        if (trouble) return why_set(why, EX_DATAERR, "wall %d: %s", i, trouble);
+    }
+    if (first && first->speed != 0 && !(mass > 0))
+        return why_set(why, EX_DATAERR, "the room of the walls grows, and has no mass");
+    return 0;
+}
+
 static const char *wall_trouble(const struct packing *p, const struct wall *w)
 {
     const char *trouble = boundary_trouble(w, p->dim);
@@ -505,7 +539,7 @@ int packing_check(const struct packing *p, struct why *why)
         const char *trouble = wall_trouble(p, &p->wall[i]);
         if (trouble) return why_set(why, EX_DATAERR, "wall %d: %s", i, trouble);
     }
-    if (room_check(p, why)) return why->status;
+    if (check_room(p, why)) return why->status;
     if (names_check(&p->names, p->walls, p->wall, why) ||
         sums_check(&p->sums, p->walls, p->wall, why))
         return why->status;

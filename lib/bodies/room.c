@@ -1,10 +1,5 @@
 #include "bodies/room.h"
 
-#include <math.h>
-
-static const double GROWTH_MOST =
-    0.1; /* of the size in a step: grains would be crushed long before */
-
 double room_mass(const struct packing *p)
 {
     double mass = 0;
@@ -53,35 +48,14 @@ void room_displace(struct packing *p, const double *lever, double part)
         if (room_has(&p->wall[w])) p->wall[w].load.travel += part * lever[w];
 }
 
-/* Of one wall, beside the first of the room */
-static const char *wall_trouble(const struct packing *p, const struct wall *w,
-                                const struct load *first)
+int room_check_growth(const struct packing *p, struct why *why)
 {
-    const struct load *l = &w->load;
-    if (l->speed != first->speed || l->point.x != first->point.x || l->point.y != first->point.y ||
-        l->point.z != first->point.z)
-        return "its room has another centre or growth than that of the walls before";
-    if (v3_dot(l->axis, w->n) < 1 - 1e-9) return "its room is not on the side of its normal";
-    if (w->until < INFINITY) return "it belongs to a room, and vanishes";
-    for (int32_t k = w->first_drive; k < w->first_drive + w->drives; k++)
-        if (p->drives.drive[k].turns) return "it belongs to a room, and turns";
-    if (!(fabs(l->speed + l->rate) * p->dt < GROWTH_MOST))
-        return "its room changes by more than a tenth in a step: take a smaller dt, a larger mass "
-               "or slower rates";
-    return NULL;
-}
-
-int room_check(const struct packing *p, struct why *why)
-{
-    const struct load *first = NULL;
-    for (int32_t i = 0; i < p->walls; i++) {
-        const struct wall *w = &p->wall[i];
-        if (!room_has(w)) continue;
-        if (!first) first = &w->load;
-        const char *trouble = wall_trouble(p, w, first);
-        if (trouble) return why_set(why, EX_DATAERR, "wall %d: %s", i, trouble);
-    }
-    if (first && first->speed != 0 && !(room_mass(p) > 0))
-        return why_set(why, EX_DATAERR, "the room of the walls grows, and has no mass");
+    for (int32_t w = 0; w < p->walls; w++)
+        if (room_has(&p->wall[w]) && load_grows_too_fast(&p->wall[w].load, p->dt))
+            return why_set(why, EX_DATAERR,
+                           "the room of the walls changes by %.2g of its size in step %lld, and a "
+                           "tenth is the most: take a smaller dt, a larger mass or slower rates",
+                           (p->wall[w].load.speed + p->wall[w].load.rate) * p->dt,
+                           (long long)p->step);
     return 0;
 }

@@ -49,7 +49,8 @@ void room_move(struct packing *p, const double *lever, double change, bool back)
 /* They are displaced in proportion, by `part` of their levers. */
 void room_displace(struct packing *p, const double *lever, double part);
 
-/* Do the loads of the walls make one room, which does not change by much in a step? Returns 0 or EX_DATAERR. */
-int room_check(const struct packing *p, struct why *why);
+/* After a step: does the size change by so little in a step that the next one can be made? Returns 0 or
+   EX_DATAERR. */
+int room_check_growth(const struct packing *p, struct why *why);
 
 #endif

@@ -11,6 +11,7 @@
 
 #include "base/vec.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* A plane turns about its normal, in which it stays the plane that it is. */
@@ -31,5 +32,12 @@ struct load {
     double rate;  /* 1/s: strain rate that is prescribed along the axis, of a room's wall; else 0 */
     double travel; /* m, rad: how far it has come */
 };
+
+/* Does a room change by a tenth of its size in a step of dt (s)? Its walls would go through grains. */
+static inline bool load_grows_too_fast(const struct load *l, double dt)
+{
+    double part = (l->speed + l->rate) * dt;
+    return !(part < 0.1 && part > -0.1);
+}
 
 #endif

@@ -3,6 +3,7 @@
 
 #include "base/team.h"
 #include "bodies/contact_law.h"
+#include "bodies/room.h"
 #include "bodies/top.h"
 #include "motion/project.h"
 
@@ -94,7 +95,7 @@ int move_by(struct packing *p, const struct contacts *s, const struct impulses *
     move_freedoms(p, sum, false);
     p->step++;
     p->t = packing_time(p, p->step);
-    return 0;
+    return room_check_growth(p, why);
 }
 
 int move_step(struct packing *p, const struct contacts *s, struct why *why)

@@ -169,6 +169,9 @@ static int set_loads(jnode o, struct scene *s, const bool *in)
              ? json_node_vector(json_node_key(&o, "center"), s->dim, &l.point)
              : find_center(o, s, in, &l.point)))
         return 1;
+    if (l.speed != 0 && !pressure.json)
+        return json_node_fault(json_node_key(&o, "growth"),
+                               "only a room with a \"pressure\" grows: make it 0");
     for (int32_t w = 0; w < s->walls; w++) {
         const vec3 n = s->wall[w].n;
         if (!in[w]) continue;
