@@ -1,5 +1,6 @@
 /* nsd-gen: builds a packing, the paper's N balls or what a scene says. */
 #include "base/json.h"
+#include "bodies/room.h"
 #include "cli/cli.h"
 #include "import/import_file.h"
 #include "import/scene_file.h"
@@ -177,9 +178,10 @@ static json_t *masses_json(const struct packing *p)
     json_t *list = json_array();
     for (int32_t k = 0; k < p->walls; k++) {
         const struct wall *w = &p->wall[k];
-        double mass = w->load.way == LOAD_GLIDES ? time_step_wall_mass(p, w) : 0;
-        if (mass > 0)
-            add_mass(list, "wall", k, w->load.mass, mass, "one layer of the grains on it");
+        double lever = room_has(w) && w->load.mass > 0 ? wall_lever(p, w, p->t) : 0;
+        double has = lever != 0 ? w->load.mass / (lever * lever) : w->load.mass;
+        double mass = w->load.way == LOAD_GLIDES || lever != 0 ? time_step_wall_mass(p, w) : 0;
+        if (mass > 0) add_mass(list, "wall", k, has, mass, "one layer of the grains on it");
     }
     for (int k = 0; k < 3; k++) {
         double has = 0;

@@ -3,6 +3,7 @@
 #include "bodies/energy.h"
 #include "bodies/face_of.h"
 #include "bodies/kinematics.h"
+#include "bodies/room.h"
 #include "cli/cli.h"
 #include "io/reader.h"
 #include "io/report_json.h"
@@ -234,14 +235,17 @@ static json_t *load(const struct packing *p, const struct wall *w)
 {
     const struct load *l = &w->load;
     json_t *j = json_object();
-    bool turns = l->way == LOAD_TURNS;
+    bool turns = l->way == LOAD_TURNS, room = room_has(w);
+    if (room) json_object_set_new(j, "center", json_vec(l->point));
+    if (room) json_object_set_new(j, "lever", json_number(wall_lever(p, w, p->t)));
     json_object_set_new(j, turns ? "about" : "along", json_vec(l->axis));
     if (turns) json_object_set_new(j, "point", json_vec(l->point));
     json_object_set_new(j, "mass", json_number(l->mass));
     json_object_set_new(j, turns ? "torque" : "force",
                         json_number(wall_force(p, w, p->t + p->dt / 2)));
-    if (l->spread) json_object_set_new(j, "face", json_number(wall_face(p, w, p->t)));
-    json_object_set_new(j, "speed", json_number(l->speed));
+    if (l->spread || room) json_object_set_new(j, "face", json_number(wall_face(p, w, p->t)));
+    if (room) json_object_set_new(j, "strain_rate", json_number(l->rate));
+    json_object_set_new(j, room ? "growth" : "speed", json_number(l->speed));
     json_object_set_new(j, "travel", json_number(l->travel));
     return j;
 }
@@ -443,6 +447,16 @@ static void set_loads(json_t *list, const struct packing *p)
     }
 }
 
+static void set_room(json_t *room, const struct packing *p)
+{
+    json_t *travel = json_array();
+    for (int32_t w = 0; w < p->walls; w++)
+        if (room_has(&p->wall[w])) json_array_append_new(travel, json_real(p->wall[w].load.travel));
+    if (room) json_object_set_new(room, "growth", json_real(room_growth(p)));
+    if (room) json_object_set(room, "travel", travel);
+    json_decref(travel);
+}
+
 /* And so does a cell: its edges are taken from the document. */
 static void set_cell(json_t *cell)
 {
@@ -458,6 +472,7 @@ static void show_scene(const struct packing *p, const char *path)
     json_object_set_new(j, "theta", json_real(p->theta));
     json_object_set_new(j, "time", json_real(p->t));
     set_loads(json_object_get(j, "walls"), p);
+    set_room(json_object_get(j, "room"), p);
     if (cell_repeats(&p->cell)) set_cell(json_object_get(j, "cell"));
     json_object_set_new(j, "bodies", json_pack("[{s:s}]", "document", path));
     json_line(j);

@@ -1,5 +1,7 @@
 #include "api/acts.h"
 
+#include "bodies/room.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -263,7 +265,7 @@ int acts_push(struct acts *a, const struct packing *p, int64_t wall, double forc
 {
     const struct wall *w = wall_of(p, wall, why);
     if (!w) return why->status;
-    if (w->load.way == LOAD_NONE)
+    if (w->load.way == LOAD_NONE || (w->load.way == LOAD_ROOM && !(room_mass(p) > 0)))
         return why_set(why, EX_DATAERR,
                        "boundary %lld is not load-controlled: give it a load in the scene",
                        (long long)wall);

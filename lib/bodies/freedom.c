@@ -2,10 +2,11 @@
 #include "bodies/freedom.h"
 
 #include "bodies/kinematics.h"
+#include "bodies/room.h"
 
 #include <stdlib.h>
 
-enum { EDGE = -1, SIZE = -2 }; /* in place of a boundary */
+enum { EDGE = -1, SIZE = -2, ROOM = -3 }; /* in place of a boundary */
 
 bool freedoms_in(const struct packing *p)
 {
@@ -52,6 +53,35 @@ static struct freedom edge_freedom(const struct packing *p, int k, int i, const 
     return f;
 }
 
+/* Loads of boundaries that each move by themselves */
+static bool moves_alone(const struct wall *w)
+{
+    return w->load.way && !room_has(w);
+}
+
+/* The size of the room with these levers */
+static struct freedom room_freedom(const struct packing *p, const double *lever, double t)
+{
+    return (struct freedom){ .boundary = ROOM,
+                             .mass = room_mass(p),
+                             .force = room_force(p, lever, t),
+                             .speed = room_growth(p),
+                             .lever = lever };
+}
+
+/* Of the room where the contacts act; NULL: there is none, or *good is false */
+static double *levers_of(const struct packing *p, bool ended, bool *good)
+{
+    bool any = false;
+    *good = true;
+    for (int32_t w = 0; w < p->walls; w++) any = any || room_has(&p->wall[w]);
+    if (!any) return NULL;
+    double *lever = malloc((size_t)p->walls * sizeof *lever);
+    if (!(*good = lever)) return NULL;
+    room_levers(p, p->t + (ended ? -step_after(p) : step_ahead(p)), lever);
+    return lever;
+}
+
 /* m^3, of discs m^2 */
 static double volume_of(const struct packing *p, const vec3 edge[3])
 {
@@ -85,10 +115,16 @@ int freedoms_init(struct freedoms *list, const struct packing *p, const vec3 hal
     const double t = middle(p, ended);
     *list = (struct freedoms){ 0 };
     if (!freedoms_in(p)) return 0;
-    list->f = calloc((size_t)p->walls + 10, sizeof *list->f);
-    if (!list->f) return why_set(why, EX_SOFTWARE, "no memory for the loads");
+    bool good;
+    list->f = calloc((size_t)p->walls + 11, sizeof *list->f);
+    list->lever = levers_of(p, ended, &good);
+    if (!list->f || !good) {
+        freedoms_free(list);
+        return why_set(why, EX_SOFTWARE, "no memory for the loads");
+    }
     for (int32_t w = 0; w < p->walls; w++)
-        if (p->wall[w].load.way) list->f[list->n++] = wall_freedom(p, w, t);
+        if (moves_alone(&p->wall[w])) list->f[list->n++] = wall_freedom(p, w, t);
+    if (list->lever && room_mass(p) > 0) list->f[list->n++] = room_freedom(p, list->lever, t);
     vec3 inverse[3], area[3];
     cell_inverse(half, inverse);
     face_areas(p, half, inverse, area);
@@ -97,6 +133,21 @@ int freedoms_init(struct freedoms *list, const struct packing *p, const vec3 hal
             list->f[list->n++] = edge_freedom(p, k / 3, k % 3, inverse, area, t);
     if (p->cell.size_mass > 0) list->f[list->n++] = size_freedom(p, half, t);
     return 0;
+}
+
+/* m/s: the same of the wall of the room that is farthest from its centre */
+static double fastest_of_room(const struct packing *p, bool had, double t)
+{
+    const double mass = room_mass(p);
+    double force = 0, farthest = 0;
+    if (!(mass > 0)) return 0;
+    for (int32_t w = 0; w < p->walls; w++) {
+        if (!room_has(&p->wall[w])) continue;
+        double lever = wall_lever(p, &p->wall[w], p->t);
+        force += lever * wall_force(p, &p->wall[w], t);
+        farthest = dmax(farthest, fabs(lever));
+    }
+    return farthest * (had * fabs(room_growth(p)) + p->dt * fabs(force) / mass);
 }
 
 /* m/s: |had speed| + dt |force|/mass, the most of all that glide */
@@ -110,6 +161,7 @@ static double fastest(const struct packing *p, bool had)
         struct freedom f = wall_freedom(p, w, t);
         most = dmax(most, had * fabs(f.speed) + p->dt * fabs(f.force) / f.mass);
     }
+    most = dmax(most, fastest_of_room(p, had, t));
     if (!cell_yields(&p->cell)) return most;
     cell_inverse(p->cell.edge, inverse);
     face_areas(p, p->cell.edge, inverse, area);
@@ -138,7 +190,7 @@ double freedoms_calm(const struct packing *p)
 
 void freedoms_free(struct freedoms *list)
 {
-    free(list->f);
+    free(list->f), free(list->lever);
     *list = (struct freedoms){ 0 };
 }
 
@@ -182,6 +234,9 @@ vec3 freedom_direction(const struct freedom *f, const struct packing *p, const s
                        double ahead, const vec3 edge[3])
 {
     if (f->boundary == SIZE) return branch_of(p, c, ahead, edge);
+    if (f->boundary == ROOM && c->a < 0)
+        return v3_scale(-f->lever[-1 - c->a], p->wall[-1 - c->a].load.axis);
+    if (f->boundary == ROOM) return v3(0, 0, 0);
     if (freedom_common(f)) return v3_scale(edges_between(f, p, c, ahead, edge), f->axis);
     if (c->a != -1 - f->boundary) return v3(0, 0, 0);
     return v3_scale(-1, f->turns ? v3_cross(f->axis, v3_sub(c->x, f->point)) : f->axis);
@@ -209,10 +264,17 @@ static void edge_move(struct packing *p, const struct freedom *f, double change,
 
 void freedom_move(const struct freedom *f, struct packing *p, double change, bool back)
 {
-    if (freedom_common(f))
+    if (freedom_of_cell(f))
         edge_move(p, f, change, back);
+    else if (f->boundary == ROOM)
+        room_move(p, f->lever, change, back);
     else
         wall_move(p, &p->wall[f->boundary].load, change, back);
+}
+
+void freedoms_move_rates(const struct freedoms *list, struct packing *p, bool back)
+{
+    if (list->lever && !(room_mass(p) > 0)) room_move(p, list->lever, 0, back);
 }
 
 void freedoms_displace(const struct freedoms *list, struct packing *p, const double *way)
@@ -221,8 +283,10 @@ void freedoms_displace(const struct freedoms *list, struct packing *p, const dou
     struct cell_flow flow;
     for (int32_t k = 0; k < list->n; k++) {
         const struct freedom *f = &list->f[k];
-        if (freedom_common(f))
+        if (freedom_of_cell(f))
             freedom_gain(f, way[k], gain);
+        else if (f->boundary == ROOM)
+            room_displace(p, f->lever, way[k]);
         else
             p->wall[f->boundary].load.travel += way[k];
     }

@@ -359,7 +359,13 @@ static const char *load_trouble(const struct packing *p, const struct wall *w)
     const struct load *l = &w->load;
     if (l->way == LOAD_NONE) return NULL;
     if (l->way < 0 || l->way >= LOAD_WAYS) return "its load neither glides nor turns";
-    if (!(l->mass > 0 && isfinite(l->mass))) return "the mass of its load must be positive";
+    bool room = l->way == LOAD_ROOM; // [bodies/room.h]
+    if (!((l->mass > 0 || (room && l->mass == 0)) && isfinite(l->mass)))
+        return "the mass of its load must be positive";
+    if (!isfinite(l->rate) || (!room && l->rate != 0))
+        return "it has a strain rate that is not finite, or no room";
+    if (room && l->mass > 0 && !l->spread) return "the load of its room is no pressure";
+    if (room && w->shape != BOUNDARY_PLANE) return "it belongs to a room, and is no plane";
     if (!isfinite(l->force) || !isfinite(l->speed) || !isfinite(l->travel) || !v3_finite(l->point))
         return "its load is not finite";
     if (!(fabs(v3_dot(l->axis, l->axis) - 1) < 1e-6)) return "its load's axis is not a unit vector";
@@ -371,12 +377,50 @@ static const char *load_trouble(const struct packing *p, const struct wall *w)
         return "its pressure is not on a plane that glides";
     if (l->spread && p->walls > SPREAD_MOST)
         return "its pressure is on one of more than 1000 boundaries: give a force";
+    if (l->spread && room && !(wall_face(p, w, p->t) > 0))
+        return "its room wants planes on all sides of its face, or a cell that repeats there";
     if (l->spread && !(wall_face(p, w, p->t) > 0))
         return "its pressure needs planes on all sides of its face, or a cell that repeats there: "
                "give a force";
     if (turns && w->shape == BOUNDARY_PLANE && !(v3_norm(v3_cross(l->axis, w->n)) < 1e-6))
         return "it turns about another axis than its normal";
     return NULL;
+}
+
+/* Of a wall of the room [bodies/room.h], beside the load of its first wall */
+static const char *room_trouble(const struct packing *p, const struct wall *w,
+                                const struct load *first)
+{
+    const struct load *l = &w->load;
+    if (l->speed != first->speed || l->point.x != first->point.x || l->point.y != first->point.y ||
+        l->point.z != first->point.z)
+        return "its room has another centre or growth than that of the walls before";
+    if (v3_dot(l->axis, w->n) < 1 - 1e-9) return "its room is not on the side of its normal";
+    if (w->until < INFINITY) return "it belongs to a room, and vanishes";
+    for (int32_t k = w->first_drive; k < w->first_drive + w->drives; k++)
+        if (p->drives.drive[k].turns) return "it belongs to a room, and turns";
+    if (load_grows_too_fast(l, p->dt))
+        return "its room changes by more than a tenth in a step: take a smaller dt, a larger mass "
+               "or slower rates";
+    return NULL;
+}
+
+/* Do the loads of its walls make one room? */
+static int check_room(const struct packing *p, struct why *why)
+{
+    const struct load *first = NULL;
+    double mass = 0;
+    for (int32_t i = 0; i < p->walls; i++) {
+        const struct wall *w = &p->wall[i];
+        if (w->load.way != LOAD_ROOM) continue;
+        if (!first) first = &w->load;
+        mass += w->load.mass;
+        const char *trouble = room_trouble(p, w, first);
+        if (trouble) return why_set(why, EX_DATAERR, "wall %d: %s", i, trouble);
+    }
+    if (first && first->speed != 0 && !(mass > 0))
+        return why_set(why, EX_DATAERR, "the room of the walls grows, and has no mass");
+    return 0;
 }
 
 static const char *wall_trouble(const struct packing *p, const struct wall *w)
@@ -488,15 +532,16 @@ int packing_check(const struct packing *p, struct why *why)
             why, EX_DATAERR,
             "%lld bodies and %d boundaries: more than %d for each body: make a mesh of them",
             (long long)p->n, p->walls, BOUNDARIES_BODY);
+    if (drives_check(&p->drives, p->walls, p->dim, "drive", why) ||
+        drives_check(&p->pushes, p->walls, p->dim, "push", why))
+        return why->status; // before any wall is asked where it is
     for (int32_t i = 0; i < p->walls; i++) {
         const char *trouble = wall_trouble(p, &p->wall[i]);
         if (trouble) return why_set(why, EX_DATAERR, "wall %d: %s", i, trouble);
     }
+    if (check_room(p, why)) return why->status;
     if (names_check(&p->names, p->walls, p->wall, why) ||
         sums_check(&p->sums, p->walls, p->wall, why))
-        return why->status;
-    if (drives_check(&p->drives, p->walls, p->dim, "drive", why) ||
-        drives_check(&p->pushes, p->walls, p->dim, "push", why))
         return why->status;
     for (int32_t i = 0; i < p->pushes.n; i++)
         if (!p->wall[p->pushes.drive[i].boundary].load.way)

@@ -217,6 +217,8 @@ vec3 wall_spin(const struct packing *p, const struct wall *w);
 /* m^2, in the plane m: the face of a plane across its normal, between planes upright to it and to each other, or
    across the cell, where it repeats, at time t (s); 0: it is not bounded so. */
 double wall_face(const struct packing *p, const struct wall *w, double t);
+/* m: of a room's wall, how far it is along its normal from the room's centre at time t (s) [bodies/room.h] */
+double wall_lever(const struct packing *p, const struct wall *w, double t);
 /* N, N m: what its load is at time t (s), the middle of a step */
 double wall_force(const struct packing *p, const struct wall *w, double t);
 /* m/s: no point of the wall within its reach is faster, nor, of a mesh or a shape without an end,

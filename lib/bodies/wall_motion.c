@@ -1,13 +1,37 @@
 /* bodies/wall_motion.c: where boundaries are, and how they move [bodies/packing.h]. */
 #include "bodies/packing.h"
 
+double wall_lever(const struct packing *p, const struct wall *w, double t)
+{
+    const struct load *l = &w->load;
+    vec3 x = v3_axpy(w->x, t, w->v); // a room's wall does not turn
+    if (w->drives) x = v3_add(x, drives_pose(&p->drives, w->first_drive, w->drives, t).shift);
+    double lever = v3_dot(v3_sub(x, l->point), l->axis) + l->travel;
+    return lever / (1 - (t - p->t) * (l->speed + l->rate));
+}
+
+/* Does the load move it along the axis? */
+static bool glides(const struct load *l)
+{
+    return l->way == LOAD_GLIDES || l->way == LOAD_ROOM;
+}
+
+/* m, rad: how far the load has brought it along or about the axis by time t (s) */
+static double load_travel(const struct packing *p, const struct wall *w, double t)
+{
+    const struct load *l = &w->load;
+    double way = (t - p->t) * l->speed;
+    if (l->way == LOAD_ROOM) way = (t - p->t) * (l->speed + l->rate) * wall_lever(p, w, t);
+    return l->travel + way;
+}
+
 struct pose wall_pose(const struct packing *p, const struct wall *w, double t)
 {
     const struct load *l = &w->load;
     struct pose all = drives_pose(&p->drives, w->first_drive, w->drives, t);
     all.shift = v3_axpy(all.shift, t, w->v);
-    double travel = l->travel + (t - p->t) * l->speed;
-    if (l->way == LOAD_GLIDES) all.shift = v3_axpy(all.shift, travel, l->axis);
+    double travel = load_travel(p, w, t);
+    if (glides(l)) all.shift = v3_axpy(all.shift, travel, l->axis);
     if (l->way != LOAD_TURNS) return all;
     quat q = quat_rotation(v3_scale(travel, l->axis));
     all.shift = v3_add(l->point, quat_turn(q, v3_sub(all.shift, l->point)));
@@ -28,8 +52,8 @@ vec3 wall_at(const struct packing *p, const struct wall *w, double t)
         return pose_of(&pose, w->x);
     }
     vec3 x = v3_axpy(w->x, t, w->v);
-    if (w->load.way != LOAD_GLIDES) return x;
-    return v3_axpy(x, w->load.travel + (t - p->t) * w->load.speed, w->load.axis);
+    if (!glides(&w->load)) return x;
+    return v3_axpy(x, load_travel(p, w, t), w->load.axis);
 }
 
 vec3 wall_normal(const struct packing *p, const struct wall *w, double t)
@@ -42,10 +66,23 @@ static struct drive_step step_of(const struct packing *p)
     return (struct drive_step){ p->t, packing_next_time(p), p->dt };
 }
 
+/* m/s: the velocity along the axis of a room's wall at this rate (1/s), of its growth or its strain, where the
+   contacts act */
+static vec3 room_velocity(const struct packing *p, const struct wall *w, double rate)
+{
+    return v3_scale(rate * wall_lever(p, w, p->t + step_ahead(p)), w->load.axis);
+}
+
 vec3 wall_held(const struct packing *p, const struct wall *w, vec3 x)
 {
-    if (!w->drives) return w->v;
     const struct load *l = &w->load;
+    if (l->way == LOAD_ROOM && l->rate != 0) {
+        vec3 v = w->v;
+        if (w->drives)
+            v = v3_add(v, drives_velocity(&p->drives, w->first_drive, w->drives, step_of(p), x));
+        return v3_add(v, room_velocity(p, w, l->rate));
+    }
+    if (!w->drives) return w->v;
     vec3 y = v3_axpy(x, -(p->t + p->dt / 2), w->v);
     // drives move the boundary first, and what they made the load moves
     double travel = l->travel + p->dt / 2 * l->speed;
@@ -64,6 +101,7 @@ vec3 wall_velocity(const struct packing *p, const struct wall *w, vec3 x)
     const struct load *l = &w->load;
     vec3 v = wall_held(p, w, x);
     if (l->way == LOAD_GLIDES) return v3_axpy(v, l->speed, l->axis);
+    if (l->way == LOAD_ROOM) return v3_add(v, room_velocity(p, w, l->speed));
     if (l->way != LOAD_TURNS) return v;
     return v3_axpy(v, l->speed, v3_cross(l->axis, v3_sub(x, l->point)));
 }
@@ -148,7 +186,11 @@ static double farthest(const struct packing *p, const struct wall *w, vec3 from)
 
 double wall_top_speed(const struct packing *p, const struct wall *w)
 {
-    double most = v3_norm(w->v) + fabs(w->load.speed);
+    double most = v3_norm(w->v);
+    if (w->load.way == LOAD_ROOM)
+        most += fabs((w->load.speed + w->load.rate) * wall_lever(p, w, p->t));
+    else
+        most += fabs(w->load.speed);
     for (int32_t i = w->first_drive; i < w->first_drive + w->drives; i++) {
         const struct drive *k = &p->drives.drive[i];
         most += drive_top_speed(&p->drives, k) * (k->turns ? farthest(p, w, k->point) : 1);

@@ -15,11 +15,14 @@ static int read_loads(struct source *r, const char *group, int64_t k, struct pac
                       struct why *why)
 {
     if (!source_has(r, group)) return 0;
-    char spread[60];
+    char spread[60], rate[60];
     snprintf(spread, sizeof spread, "%s/spread", group);
+    snprintf(rate, sizeof rate, "%s/rate", group);
     if (table_read_columns(r, group, "", 0, RECORDS(layout_loads, p->walls, p->wall), why) ||
         (source_has(r, spread) &&
-         table_read_columns(r, group, "", 0, RECORDS(layout_spread, p->walls, p->wall), why)))
+         table_read_columns(r, group, "", 0, RECORDS(layout_spread, p->walls, p->wall), why)) ||
+        (source_has(r, rate) &&
+         table_read_columns(r, group, "", 0, RECORDS(layout_rate, p->walls, p->wall), why)))
         return why->status;
     double *row = calloc((size_t)p->walls + 1, sizeof *row);
     if (!row) return why_set(why, EX_SOFTWARE, "no memory for the loads");
@@ -179,6 +182,13 @@ static bool any_spread(const struct packing *p)
     return false;
 }
 
+static bool any_rates(const struct packing *p)
+{
+    for (int32_t w = 0; w < p->walls; w++)
+        if (p->wall[w].load.rate != 0) return true;
+    return false;
+}
+
 bool boundary_tables_move(const struct packing *p)
 {
     for (int32_t w = 0; w < p->walls; w++)
@@ -254,8 +264,11 @@ int boundary_tables_write_static(struct table_write *s, const struct packing *p,
         !write_drives(s, p, why) && !write_mesh(s, p, why) && any_loads(p) &&
         !table_write_columns(s, BOUNDARY "/load", "", RECORDS(layout_loads, p->walls, p->wall), 0,
                              why) &&
-        any_spread(p))
-        table_write_columns(s, BOUNDARY "/load", "", RECORDS(layout_spread, p->walls, p->wall), 0,
+        !(any_spread(p) &&
+          table_write_columns(s, BOUNDARY "/load", "", RECORDS(layout_spread, p->walls, p->wall), 0,
+                              why)) &&
+        any_rates(p))
+        table_write_columns(s, BOUNDARY "/load", "", RECORDS(layout_rate, p->walls, p->wall), 0,
                             why);
     s->at_rest = !any_may_move(p);
     if (!why->status && s->at_rest && (m = motions(p, why)))

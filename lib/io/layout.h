@@ -85,6 +85,12 @@ static const struct column layout_spread[] = {
     { 0 },
 };
 
+/* The same, where a strain rate moves any wall of a room */
+static const struct column layout_rate[] = {
+    { "rate", "s-1", COLUMN_F64, 1, offsetof(struct wall, load.rate) },
+    { 0 },
+};
+
 /* /particles/boundary/load/NAME/value [F][B], the same */
 static const struct column layout_yield[] = {
     { "speed", "m s-1, rad s-1", COLUMN_F64, 1, offsetof(struct wall, load.speed) },

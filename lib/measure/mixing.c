@@ -133,7 +133,7 @@ static int64_t sample_of(const struct samples *y, const struct snapshot *s, vec3
     const struct region *r = &s->region;
     const double at[3] = { x.x, x.y, x.z };
     int64_t place[3] = { 0, 0, 0 };
-    for (int k = 0; k < s->p->dim; k++) {
+    for (int k = 0; k < 3 && k < s->p->dim; k++) {
         double part = (at[k] - r->lo[k]) / (r->hi[k] - r->lo[k]);
         if (along_edge(s, k)) {
             part = v3_dot(r->period.inverse[k], v3_sub(x, s->p->cell.origin));

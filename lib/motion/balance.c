@@ -93,7 +93,7 @@ static void add_beyond(struct work *w, const struct packing *p, const struct imp
         double got = v3_dot(f, freedom_direction(freedom, p, c, sum->ahead, sum->edge)) *
                      (freedom->speed + half);
         w->free += got;
-        if (!freedom_common(freedom)) continue;
+        if (!freedom_of_cell(freedom)) continue;
         w->held += v3_dot(f, cell_shift(freedom->gain, c->shift)) * half - got;
     }
 }

@@ -68,7 +68,7 @@ static void find_flow(struct impulses *sum, const struct packing *p)
     for (int k = 0; k < 3; k++) gain[k] = v3_sub(sum->next[k], p->cell.rate[k]);
     for (int32_t k = 0; k < sum->freedoms.n; k++) {
         const struct freedom *f = &sum->freedoms.f[k];
-        if (!freedom_common(f)) continue;
+        if (!freedom_of_cell(f)) continue;
         freedom_gain(f, impulses_change(sum, p, k), gain);
     }
     cell_flow_init(&sum->flow, &p->cell, sum->edge, gain);

@@ -3,6 +3,7 @@
 
 #include "base/team.h"
 #include "bodies/contact_law.h"
+#include "bodies/room.h"
 #include "bodies/top.h"
 #include "motion/project.h"
 
@@ -60,6 +61,7 @@ static void move_freedoms(struct packing *p, const struct impulses *sum, bool ba
 {
     for (int32_t k = 0; k < sum->freedoms.n; k++)
         freedom_move(&sum->freedoms.f[k], p, impulses_change(sum, p, k), back);
+    freedoms_move_rates(&sum->freedoms, p, back);
 }
 
 /* Bodies that move */
@@ -93,7 +95,7 @@ int move_by(struct packing *p, const struct contacts *s, const struct impulses *
     move_freedoms(p, sum, false);
     p->step++;
     p->t = packing_time(p, p->step);
-    return 0;
+    return room_check_growth(p, why);
 }
 
 int move_step(struct packing *p, const struct contacts *s, struct why *why)

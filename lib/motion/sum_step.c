@@ -24,7 +24,7 @@ static vec3 wall_mean(const struct packing *p, const struct impulses *sum, const
     vec3 v = wall_held(p, &p->wall[-1 - c->a], c->x);
     for (int32_t k = 0; k < sum->freedoms.n; k++) {
         const struct freedom *f = &sum->freedoms.f[k];
-        if (f->boundary != -1 - c->a) continue;
+        if (f->boundary != -1 - c->a && !f->lever) continue;
         double speed = f->speed + 0.5 * impulses_change(sum, p, k);
         v = v3_axpy(v, -speed, freedom_direction(f, p, c, sum->ahead, sum->edge));
     }

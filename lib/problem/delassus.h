@@ -26,7 +26,7 @@
 #include <stdint.h>
 
 enum {
-    COMMON_MAX = 9 /* columns of J: the components of a cell's edges */
+    COMMON_MAX = 10 /* columns of J: the components of a cell's edges, and the size of a room */
 };
 
 struct delassus {

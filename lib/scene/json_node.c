@@ -155,7 +155,7 @@ static size_t write_path(const jnode *n, char *out, size_t room)
 
 int json_node_fault(jnode n, const char *format, ...)
 {
-    char way[200] = "", trouble[200];
+    char way[200] = "", trouble[260]; // all keys of a scene have room
     int line, column;
     va_list ap;
     va_start(ap, format);

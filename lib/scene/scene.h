@@ -21,6 +21,7 @@
  *   bodies    [ GROUP ]                [none]
  *   shapes    { NAME: SHAPE }          [none] shapes of grains; "ball" is always there
  *   walls     [ WALL ]                 [those of the first document among the bodies, else none]
+ *   room      ROOM                     [none] walls whose size yields to a mean pressure, or changes by rates
  *   pour      [ POUR ]                 [none] grains that come, while the scene runs
  *   remove    [ REMOVAL ]              [none] grains that go
  *   cell      CELL or null             [that of the first document, else none] the box that repeats
@@ -105,6 +106,14 @@
  *
  * DRIVE { along: vector } or { about: point, axis: vector }, with speed, or amplitude, frequency and
  *   phase, or table [[t, way], ...]; from, until s [geometry/drive.h]
+ *
+ * ROOM { walls: NAME or [NAME, ...], pressure: Pa, strain_rate: vector, center: vector, mass: kg, growth: 1/s, travel:
+ *   [m, ...] }   planes that move in proportion to their distances from the center [bodies/room.h]
+ *   pressure    a number or a signal as of a load [none: the size does not yield]
+ *   strain_rate 1/s, along the axes, extension is positive [0]; with a pressure its sum is 0
+ *   center      [midway between opposite walls; where the room has only one of two, on the other]
+ *   mass        of each wall, as of a load [scene/time_step.h]
+ *   growth      1/s, of the size at the start [0];   travel, of each wall at the start [0]
  *
  * CELL { edges: [vector, ...] or lengths: vector [the first document's], repeats, origin, gradient, affine, stress }
  *   edges    dim of them, the cell's from its origin; lengths: along x, y, z
@@ -296,6 +305,7 @@ struct scene {
     struct scene_mesh *mesh_file; /* [meshes] those that are files */
     int32_t parts;
     struct scene_part *part; /* [parts] */
+    bool room_yields;        /* a room of walls has a pressure, and so a mass */
     bool has_walls;          /* else those of the first document are taken */
     double t;                /* s: the packing's time */
 

@@ -1,7 +1,9 @@
 /* scene/scene_build.c: groups of bodies, the check for overlaps: a packing from a scene. */
 #include "scene/scene_build.h"
+
 #include "base/random.h"
 
+#include "bodies/room.h"
 #include "bodies/wrap.h"
 #include "detect/detect.h"
 #include "scene/counter.h"
@@ -513,6 +515,29 @@ static int inherit_walls(struct packing *p, const struct scene *s, struct why *w
     return 0;
 }
 
+/* kg m^2: what a room's wall adds to its inertia: its mass by the square of its lever [bodies/room.h] */
+static int set_room_mass(struct packing *p, const struct scene *s, int32_t w, struct why *why)
+{
+    struct load *l = &p->wall[w].load;
+    double lever = wall_lever(p, &p->wall[w], p->t), farthest = 0;
+    for (int32_t k = 0; k < s->walls; k++)
+        if (room_has(&p->wall[k]))
+            farthest = fmax(farthest, fabs(wall_lever(p, &p->wall[k], p->t)));
+    if (lever > 1e-9 * farthest || farthest == 0)
+        return why_set(why, EX_DATAERR,
+                       "room.center: lies behind walls[%d], by %g m: give a \"center\" between "
+                       "the walls",
+                       s->wall_item[w], lever);
+    if (!s->room_yields) return 0;
+    if (!(l->mass > 0)) l->mass = time_step_wall_mass(p, &p->wall[w]);
+    if (!(l->mass > 0))
+        return why_set(why, EX_DATAERR,
+                       "room: no bodies move, whose mass would give the walls theirs: give a "
+                       "\"mass\", kg");
+    l->mass *= lever * lever;
+    return 0;
+}
+
 /* Masses of what yields, by the rule where they are not given; that of a size is a multiple of the square of the
    edges. */
 static int set_masses(struct packing *p, const struct scene *s, struct why *why)
@@ -530,7 +555,8 @@ static int set_masses(struct packing *p, const struct scene *s, struct why *why)
     if (s->cell.given && c->size_mass > 0) c->size_mass = (by_rule ? mass : c->size_mass) * squares;
     for (int32_t w = 0; w < s->walls; w++) {
         struct load *l = &p->wall[w].load;
-        if (!l->way || l->mass > 0) continue;
+        if (room_has(&p->wall[w]) && set_room_mass(p, s, w, why)) return why->status;
+        if (!l->way || room_has(&p->wall[w]) || l->mass > 0) continue;
         l->mass = time_step_wall_mass(p, &p->wall[w]);
         if (!(l->mass > 0))
             return why_set(

@@ -57,7 +57,7 @@ static int read_scene(jnode o, struct scene *s)
     struct scene_box box = { 0 };
     if (json_node_only(o, "title dim dt theta gravity seed density" EVERY_PAIR_COLUMN(
                               PAIR_KEY) " kinds pairs time "
-                                        "overlap bodies walls forces pour remove cell shapes "
+                                        "overlap bodies walls room forces pour remove cell shapes "
                                         "cohesion capillary rolling "
                                         "adhesion impact") ||
         json_node_need(&o, "dt") || json_node_text(json_node_key(&o, "title"), &title) ||
@@ -80,6 +80,7 @@ static int read_scene(jnode o, struct scene *s)
         scene_read_cell(json_node_key(&o, "cell"), s->dim, s->t,
                         takes_documents(json_node_key(&o, "bodies")), &s->cell) ||
         scene_read_walls(json_node_key(&o, "walls"), s, &box, &boxed) ||
+        scene_read_room(json_node_key(&o, "room"), s) ||
         scene_read_bodies(json_node_key(&o, "bodies"), s, boxed ? &box : NULL) ||
         scene_read_pours(json_node_key(&o, "pour"), s) ||
         scene_read_removals(json_node_key(&o, "remove"), s) ||

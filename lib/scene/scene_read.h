@@ -45,6 +45,8 @@ int scene_read_forces(jnode a, struct scene *s);
    there. Of l, way and axis are known. */
 int scene_read_push(jnode force, struct scene *s, int32_t wall, struct load *l);
 int scene_read_box(jnode object, int dim, struct scene_box *box);
+/* scene/scene_room.c: "room", the load of walls that have been read */
+int scene_read_room(jnode room, struct scene *s);
 
 /* scene/scene_solids.c: "shapes"; the shape of a group of bodies and their orientation; how large they
    are, by their radius or their size */

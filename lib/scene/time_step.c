@@ -1,6 +1,7 @@
 /* scene/time_step.c: limits of the time step [scene/time_step.h]. */
 #include "scene/time_step.h"
 
+#include "bodies/room.h"
 #include "detect/detect.h"
 
 #include <stdio.h>
@@ -393,20 +394,41 @@ static double pressure_of(const struct packing *p)
     if (p->cell.factors) most *= cell_factor_most(&p->cell);
     for (int32_t k = 0; k < p->walls && p->n; k++) {
         const struct wall *w = &p->wall[k];
-        if (w->load.way == LOAD_GLIDES)
+        if (w->load.way == LOAD_GLIDES || (room_has(w) && w->load.spread))
             most = dmax(most, load_most(p, w) / pressed_area(p, w->load.axis));
     }
     return most;
+}
+
+/* The same of the walls of a room, the farthest from its centre of which is fastest */
+static void of_room(struct time_step *t, const struct packing *p)
+{
+    double torque = 0, farthest = 0, mass = room_mass(p);
+    if (!(mass > 0) || !p->n) return;
+    for (int32_t k = 0; k < p->walls; k++) {
+        const struct wall *w = &p->wall[k];
+        if (!room_has(w)) continue;
+        double lever = fabs(wall_lever(p, w, p->t));
+        torque += lever * load_most(p, w), farthest = dmax(farthest, lever);
+    }
+    for (int32_t k = 0; k < p->walls; k++) {
+        const struct wall *w = &p->wall[k];
+        if (!room_has(w)) continue;
+        double h = fall_of_bodies(p, v3_scale(w->load.force > 0 ? -1 : 1, w->load.axis));
+        t->x[LIMIT_STROKE] = dmax(t->x[LIMIT_STROKE], sqrt(2 * h * farthest * torque / mass));
+    }
+    t->x[LIMIT_LOAD] = dmax(t->x[LIMIT_LOAD], farthest * torque / mass);
 }
 
 /* What loads do: m/s^2, of a wall or an edge; of one that turns, of the body that is farthest from the
    axis. And the m/s that a wall then has which glides. */
 static void of_loads(struct time_step *t, const struct packing *p)
 {
+    of_room(t, p);
     for (int32_t k = 0; k < p->walls && p->n; k++) {
         const struct wall *w = &p->wall[k];
         double force = load_most(p, w), arm = 1, h;
-        if (!w->load.way) continue;
+        if (!w->load.way || room_has(w)) continue;
         for (int64_t i = 0; i < p->n && w->load.way == LOAD_TURNS; i++)
             arm =
                 dmax(i ? arm : 0, v3_norm(v3_cross(w->load.axis, v3_sub(p->x[i], w->load.point))));
