@@ -46,7 +46,7 @@ found() # LABEL FILE: FILE:LINE: WORDING: what to write
     done <"$tmp/rejected"
 }
 pages=(man/* README.md INSTALL.md LIMITATIONS.md CONTRIBUTING.md SECURITY.md CHANGELOG.md paper.md cookbook/README.md
-    docs/notes/README.md docs/peers/README.md docs/scale/README.md)
+    docs/notes/README.md docs/peers/README.md docs/scale/README.md docs/wall/README.md)
 for page in "${pages[@]}"; do is "$page" "$(found "$page" "$page")" ""; done
 for tool in tools/*.c; do
     tool=$(basename "$tool" .c)
