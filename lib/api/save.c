@@ -150,7 +150,7 @@ static int copy_frames(struct nsd_run *r, struct reader *in, struct why *why)
             why_set(
                 why, NSD_DATA,
                 "%.200s: has step %lld already, and the run is at step %lld: remove it to begin "
-                "anew",
+                "again",
                 r->path, (long long)q->step, (long long)p->step);
         if (why->status || (first && (check_first(q, p, r->path, why) || note_again(r, &f, why))))
             break;

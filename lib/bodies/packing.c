@@ -344,7 +344,7 @@ static const char *body_trouble(const struct packing *p, int64_t i)
         return "leaves the plane z = 0, and dim is 2";
     if (p->shape && (p->shape[i] < 0 || p->shape[i] >= p->shapes.n)) return "has no such shape";
     if (p->dim == 2 && packing_shape(p, i) && (q.x != 0 || q.y != 0))
-        return "turns out of the plane, and dim is 2";
+        return "rotates out of the plane, and dim is 2";
     if (p->kind[i] < 0 || p->kind[i] >= p->kinds) return "kind has no material";
     if (p->group && (p->group[i] < 0 || p->group[i] > p->names.n)) return "group has no name";
     return NULL;
@@ -358,7 +358,7 @@ static const char *load_trouble(const struct packing *p, const struct wall *w)
 {
     const struct load *l = &w->load;
     if (l->way == LOAD_NONE) return NULL;
-    if (l->way < 0 || l->way >= LOAD_WAYS) return "its load neither glides nor turns";
+    if (l->way < 0 || l->way >= LOAD_WAYS) return "its load neither translates nor rotates it";
     bool room = l->way == LOAD_ROOM; // [bodies/room.h]
     if (!((l->mass > 0 || (room && l->mass == 0)) && isfinite(l->mass)))
         return "the mass of its load must be positive";
@@ -374,16 +374,16 @@ static const char *load_trouble(const struct packing *p, const struct wall *w)
     if (p->dim == 2 && (leaves || l->point.z != 0))
         return "its load leaves the plane, and dim is 2";
     if (l->spread < 0 || l->spread > 1 || (l->spread && (turns || w->shape != BOUNDARY_PLANE)))
-        return "its pressure is not on a plane that glides";
+        return "its pressure is not on a plane that translates";
     if (l->spread && p->walls > SPREAD_MOST)
         return "its pressure is on one of more than 1000 boundaries: give a force";
     if (l->spread && room && !(wall_face(p, w, p->t) > 0))
-        return "its room wants planes on all sides of its face, or a cell that repeats there";
+        return "its room needs planes on all sides of its face, or a periodic cell";
     if (l->spread && !(wall_face(p, w, p->t) > 0))
-        return "its pressure needs planes on all sides of its face, or a cell that repeats there: "
+        return "its pressure needs planes on all sides of its face, or a periodic cell: "
                "give a force";
     if (turns && w->shape == BOUNDARY_PLANE && !(v3_norm(v3_cross(l->axis, w->n)) < 1e-6))
-        return "it turns about another axis than its normal";
+        return "it rotates about another axis than its normal";
     return NULL;
 }
 
@@ -430,7 +430,7 @@ static const char *wall_trouble(const struct packing *p, const struct wall *w)
     bool mesh = w->shape == BOUNDARY_MESH;
     if (mesh && (w->first_element < 0 || w->first_element > p->mesh.elements ||
                  w->elements > p->mesh.elements - w->first_element))
-        return "its mesh is not there";
+        return "its mesh is missing";
     if (w->kind < 0 || w->kind >= p->kinds) return "kind has no material";
     if (!(w->wear >= 0 && isfinite(w->wear))) return "wear must be finite and not negative";
     if (!v3_finite(w->belt)) return "belt is not finite";

@@ -44,7 +44,7 @@ const char *boundary_trouble(const struct wall *w, int dim)
     if (w->side < 0 || w->side >= BOUNDARY_SIDES) return "no such side";
     if (!v3_finite(w->x) || !v3_finite(w->v)) return "point or velocity is not finite";
     if (!(fabs(v3_dot(w->n, w->n) - 1) < 1e-6)) return "normal is not a unit vector";
-    if (!(w->until > -INFINITY)) return "the time at which it vanishes is none";
+    if (!(w->until > -INFINITY)) return "the time of its removal is not a number";
     bool flat = w->shape == BOUNDARY_PLANE || w->shape == BOUNDARY_RECTANGLE;
     if (dim == 2) {
         if (w->v.z != 0 || w->x.z != 0 || (flat && w->n.z != 0))

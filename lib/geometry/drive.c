@@ -48,9 +48,9 @@ static const char *table_trouble(const struct drives *d, const struct drive *k)
 static const char *drive_trouble(const struct drives *d, int32_t k, int32_t boundaries, int dim)
 {
     const struct drive *s = &d->drive[k];
-    if (s->boundary < 0 || s->boundary >= boundaries) return "it moves no boundary";
+    if (s->boundary < 0 || s->boundary >= boundaries) return "its boundary does not exist";
     if (k && s->boundary < s[-1].boundary) return "drives are not in the order of the boundaries";
-    if (s->turns != 0 && s->turns != 1) return "it neither turns nor glides";
+    if (s->turns != 0 && s->turns != 1) return "it neither rotates nor translates";
     if (s->signal < 0 || s->signal >= DRIVE_SIGNALS) return "no such signal";
     if (!(fabs(v3_dot(s->axis, s->axis) - 1) < 1e-6)) return "its axis is not a unit vector";
     if (!v3_finite(s->point) || !isfinite(s->value) || !isfinite(s->frequency) ||
@@ -73,7 +73,7 @@ int drives_check(const struct drives *d, int32_t boundaries, int dim, const char
         of_one = k && s->boundary == s[-1].boundary ? of_one + 1 : 1;
         rows += s->signal == DRIVE_TABLE && s->rows > 0 ? s->rows : 0;
         const char *trouble = of_one > DRIVES_MOST ? "more than a boundary may have"
-                              : rows > d->rows     ? "its table is not there, or another's"
+                              : rows > d->rows     ? "its table is missing or another drive's"
                                                    : drive_trouble(d, k, boundaries, dim);
         if (trouble) return why_set(why, EX_DATAERR, "%s %d: %s", what, k, trouble);
     }

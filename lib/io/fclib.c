@@ -65,7 +65,7 @@ static int read_matrix(struct sparse *A, struct source *source, const char *grou
     struct stored S = { 0 };
     int e = stored_read(&S, source, group, why);
     if (!e && (S.m != m || S.n != n))
-        e = why_set(why, EX_DATAERR, "%s: is %d x %d, the vectors want %lld x %lld", group, S.m,
+        e = why_set(why, EX_DATAERR, "%s: is %d x %d, the vectors need %lld x %lld", group, S.m,
                     S.n, (long long)m, (long long)n);
     if (!e) e = sparse_unpack(A, &S, group, why);
     stored_free(&S);

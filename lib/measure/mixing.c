@@ -245,7 +245,7 @@ static bool put_neighbours(double **at, struct table *t, const struct snapshot *
     int64_t looked = 0;
     if (!unlike(&sum, s, m, &looked)) return false;
     const bool crowd = looked > ((int64_t)1 << 26) + 20000 * m->n;
-    if (crowd) table_null(t, "bodies crowd: neighbours are not counted");
+    if (crowd) table_null(t, "too many bodies close together: neighbours are not counted");
     put(at, crowd ? NAN : sum / n / (2 * p * (1 - p)));
     return true;
 }

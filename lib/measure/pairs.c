@@ -79,12 +79,12 @@ static void fill(struct table *t, const struct snapshot *s, const struct scatter
 static const char *impossible(const struct snapshot *s, const struct scatter *a, double reach)
 {
     const struct period *m = &s->region.period;
-    if (a->seekers < 2) return "there are less than two bodies";
+    if (a->seekers < 2) return "fewer than two bodies";
     if (!(a->volume > 0)) return "the bodies have no extent along an axis";
     for (int k = 0; m->any && k < 3; k++)
         if (m->cell->repeats[k] && reach * v3_norm(m->inverse[k]) > 2)
             return "distances beyond two of the cell's edges";
-    if (m->any && !s->region.all) return "a box in a cell that repeats";
+    if (m->any && !s->region.all) return "a box in a periodic cell";
     return NULL;
 }
 
@@ -107,7 +107,8 @@ static int pairs_rows(struct table *t, const struct snapshot *s, struct why *why
     if (!reason && room && s->region.period.any)
         room = scatter_images(&a, &s->region.period, reach);
     if (!reason && room) room = near_init(&g, a.x, a.n, reach);
-    if (!reason && room && !count(&a, &g, counts, s->asked->bins)) reason = "bodies crowd";
+    if (!reason && room && !count(&a, &g, counts, s->asked->bins))
+        reason = "too many bodies close together";
     if (reason)
         table_null(t, "%s", reason);
     else if (room)

@@ -159,7 +159,7 @@ bool region_shells(struct region *shell, int64_t n, const struct region *in,
     double dy = fmax(fabs(in->lo[1] - centre.y), fabs(in->hi[1] - centre.y));
     double R = fmin(dx, dy);
     if (cell_repeats(&p->cell)) {
-        *reason = "shells do not fit a cell that repeats";
+        *reason = "shells do not fit a periodic cell";
         return false;
     }
     if (!(R > 0)) {

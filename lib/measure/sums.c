@@ -114,7 +114,7 @@ static void explain(struct table *t, const struct look *l)
             any = any || !isfinite(t->x[i * t->width + k]);
     if (!(l->span > 0)) table_null(t, "no time has passed since the sums began");
     if (any)
-        table_null(t, "walls without an end have no area, and wear needs a coefficient: --wear, or "
+        table_null(t, "infinite walls have no area, and wear needs a coefficient: --wear, or "
                       "the key wear of the wall");
 }
 

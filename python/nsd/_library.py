@@ -51,7 +51,7 @@ _functions = {  # name: what it takes; each returns a status but for those below
 
 
 def _load() -> ctypes.CDLL:
-    """NSD_LIBRARY; else that beside which the module is installed or built; else the system's."""
+    """NSD_LIBRARY; else the library next to the installed or built module; else that of the system."""
     here = Path(__file__).resolve()
     near = [here.parents[3] / "libnsd.so.1", here.parents[2] / "build" / "libnsd.so.1"]
     named = os.environ.get("NSD_LIBRARY")

@@ -150,7 +150,7 @@ refused "a million drives of a million rows"
 make bad.h5 base.h5 "$many
 drives(900, 300000)"
 refused "900 drives that share 300 000 rows"
-like "says so" "$(cat err)" "its table is not there, or another's"
+like "says so" "$(cat err)" "its table is missing or another drive's"
 make bad.h5 base.h5 "$many
 drives(1001, 1)
 rows = np.zeros((1001, 2), 'i4'); rows[:, 0] = np.arange(1001); rows[:, 1] = 1; put('$drive' + 'rows', rows)

@@ -23,7 +23,10 @@ cat >"$tmp/rejected" <<'EOT'
 \b(is|are|was|were) there\b	exists, is available
 \banew\b	again
 \bsome [0-9]	about
-\b(believes?|patience|riddle)\b	programs do not believe
+\b(believes?|believed|patience|riddle|knows?|wants?)\b	needs, expects; programs do not believe, know or want
+\bfor ever\b|\bgo(es)? round\b	without end, cycle
+(^|[^o]) that there (is|are)\b	that exists
+\bis no (ball|plane|disc|mesh|array|JSON)\b|\bare no (balls|planes|discs)\b	is not a ball
 \bas (a|the) paper (says|has it)\b	as in the paper
 EOT
 text() # FILE: without what is typed, examples and requests
@@ -42,7 +45,8 @@ found() # LABEL FILE: FILE:LINE: WORDING: what to write
         text "$2" | grep -niE "$wrong" | sed "s|^|$1:|; s|\$|   -> $right|"
     done <"$tmp/rejected"
 }
-pages=(man/* README.md INSTALL.md LIMITATIONS.md CONTRIBUTING.md SECURITY.md CHANGELOG.md cookbook/README.md)
+pages=(man/* README.md INSTALL.md LIMITATIONS.md CONTRIBUTING.md SECURITY.md CHANGELOG.md paper.md cookbook/README.md
+    docs/notes/README.md docs/peers/README.md docs/scale/README.md docs/wall/README.md)
 for page in "${pages[@]}"; do is "$page" "$(found "$page" "$page")" ""; done
 for tool in tools/*.c; do
     tool=$(basename "$tool" .c)
@@ -56,6 +60,14 @@ items() # of OPTIONS, that begin with no verb
     sed -n '/^\.Sh OPTIONS/,/^\.Sh /p' "$1" | awk '/^\.It Fl/ { item = $0; getline; if (/^(of|what|how|a|an|the|only|instead|its|their|these|without) /) print item ": " $0 }'
 }
 for page in man/*.1; do is "$page: an option begins with a verb" "$(items "$page")" ""; done
+
+# ---- messages: literals of the library, the tools and the Python module ----
+messages() # with a wording that programs do not have
+{
+    git ls-files 'lib/*.c' 'tools/*.c' |
+        xargs perl -ne 'while (/"((?:\\.|[^"\\])*)"/g) { print "$ARGV: $1\n" if $1 =~ /\b(wants?|knows?|believes?|yields|anew|beside)\b/ }'
+}
+is "no message wants, knows or yields" "$(messages)" ""
 
 printf 'A boundary that turns goes on, beside a cell that repeats.\n' >"$tmp/bad"
 is "the wordings are found" "$(found bad "$tmp/bad" | wc -l)" 4

@@ -19,7 +19,7 @@ refuses 65 "a wall that the cell repeats across" gen '{"dt": 1, "cell": {"length
     "walls": [{"point": [0, 0, 0], "normal": [0, 0, 1]}]}'
 says "is named by its place" 'walls\[0\]: wall 0: crosses a periodic edge of the cell'
 refuses 65 "a cell of one diameter" gen '{"dt": 1, "cell": {"lengths": [1, 1, 1]}, "bodies": [{"x": [0, 0, 0], "radius": 0.5000001}]}'
-says "shows by how much" 'after 1 m .* 1.0000002 m'
+says "shows by how much" 'is 1 m wide .* 1.0000002 m'
 
 # ---- random groups ----
 

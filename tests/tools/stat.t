@@ -161,7 +161,7 @@ is "and one around its image" "$(nsd-stat -m fraction -b 4,6,3,5 "$tmp/corner.h5
 is "the whole cell has both" "$(nsd-stat -m fraction "$tmp/corner.h5" 2>/dev/null | jq '.fraction.fraction * 16 / 3.141592653589793 / 1.25 - 1 | fabs < 1e-9')" true
 why() { nsd-stat -m "$1" "${@:3}" "$2" 2>/dev/null | tail -n 1 | jq -r ".why.$1"; }
 like "layers along an axis that two edges lean along" "$(why profile "$tmp/corner.h5" --layers x:3)" 'several edges of the cell lean'
-like "pairs in a box of a cell that repeats" "$(why pairs "$tmp/corner.h5" -b -1,1,-1,1)" 'less than two bodies|a box in a cell that repeats'
+like "pairs in a box of a periodic cell" "$(why pairs "$tmp/corner.h5" -b -1,1,-1,1)" 'fewer than two bodies|a box in a periodic cell'
 like "pairs beyond two edges" "$(why pairs "$tmp/corner.h5" --distance 99)" "distances beyond two of the cell's edges"
 like "pairs beyond the bodies" "$(why pairs "$tmp/points.h5" --distance 0.9)" 'null|distances beyond the smallest side'
 like "pairs on a line" "$(why pairs "$tmp/row.h5" --distance 0.1)" 'no extent along an axis'
