@@ -319,7 +319,7 @@ static void add_tie(json_t *j, const struct contact_law *t)
 
 static void show_contacts(const struct frame *f)
 {
-    static const char *const status[] = { "free", "stick", "slide", "jammed" };
+    static const char *const status[] = { "free", "stick", "slide", "jammed", "summed" };
     const struct packing *p = &f->packing;
     struct wall_faces faces;
     struct why why = { 0 };
@@ -353,7 +353,7 @@ static void show_contacts(const struct frame *f)
             json_object_set_new(j, "u", json_numbers(found->u, 3));
             if (f->contacts.moment)
                 json_object_set_new(j, "moment", json_numbers(f->contacts.moment[i], 3));
-            json_object_set_new(j, "status", json_string(status[found->status % 4]));
+            json_object_set_new(j, "status", json_string(status[found->status % 5]));
         }
         json_line(j);
     }

@@ -50,6 +50,8 @@ static const struct cli_option own[] = {
       .max = 1e300 },
     { CLI_TEXT, 0, "dt", &dt, "DT|auto:TOL",
       .help = "set the time step, s; auto: overlaps of TOL radii [document]" },
+    { CLI_INT, 0, "substeps", &options.substeps, "N", .min = 1, .max = 1e6,
+      .help = "divide steps in which fast bodies meet into at most N [1000]" },
     { CLI_EVERY, 0, "every", &every, "K|Ts",
       "keep every K-th step, or one per T s of time, and the last [1]", .max = 1e15 },
     { CLI_FLAG, 0, "contacts", &contacts, .help = "also keep the contacts of each frame" },
@@ -99,6 +101,7 @@ static struct {
     int64_t fell_back;            /* steps that were solved otherwise than asked */
     int64_t shortest;             /* times that dt has become the least that it may be */
     int64_t abandoned;            /* steps whose solver knew no further way */
+    int64_t divided, substeps;    /* steps that were divided, and into how many in all */
     double seconds;
     struct account account; /* of this run */
 } total;
@@ -147,6 +150,7 @@ static void count(const struct report *r)
     total.sweeps += r->sweeps;
     total.safeguarded += r->safeguarded, total.gave_up += r->gave_up;
     total.seconds += r->seconds;
+    if (r->substeps > 1) total.divided++, total.substeps += r->substeps;
     if (r->converged) return;
     if (!total.missed++) total.first_missed = r->step;
     double error = err_of(&r->err, r->criterion);
@@ -167,6 +171,9 @@ static void summary(int64_t made)
     if (total.safeguarded || total.gave_up)
         warn("%lld local solves safeguarded, %lld given up", (long long)total.safeguarded,
              (long long)total.gave_up);
+    if (total.divided)
+        warn("%lld steps were divided into %lld substeps, because fast bodies met in them",
+             (long long)total.divided, (long long)total.substeps);
     if (total.fell_back)
         warn("%lld steps were solved by sweeps alone, not as asked", (long long)total.fell_back);
     if (total.abandoned)

@@ -78,7 +78,7 @@ static struct nsd_run *new_run(struct why *why)
     guest_set();
     if (!r) return why_set(why, NSD_SOFTWARE, "no memory for a run"), NULL;
     r->f.packed = true;
-    r->options.threads = 1;
+    r->options.threads = 1, r->options.substeps = SUBSTEPS_MOST;
     r->asked = (struct asked)ASKED_DEFAULT;
     return r;
 }
@@ -215,8 +215,12 @@ static const struct cli_option threads = { CLI_INT, .name = "threads", .to = &op
                                            .min = 1, .max = 1024 };
 static const struct cli_option warm = { CLI_FLAG, .name = "warm", .to = &options.warm };
 
+static const struct cli_option substeps = { CLI_INT, .name = "substeps", .to = &options.substeps,
+                                            .min = 1, .max = 1e6 };
+
 static const struct cli_option *option_named(const char *name)
 {
+    if (!strcmp(name, substeps.name)) return &substeps;
     if (!strcmp(name, threads.name)) return &threads;
     if (!strcmp(name, warm.name)) return &warm;
     for (int t = 0; t < 2; t++)

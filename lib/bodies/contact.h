@@ -27,8 +27,9 @@ struct found {
     int8_t status; /* enum local_status */
 };
 
-/* A status beyond the law's: the contact has no solution, its reaction has grown without end [problem/judge.h]. */
-enum { STATUS_JAMMED = 3 };
+/* States beyond the law's: the contact has no solution, its reaction has grown without end [problem/judge.h]; or its
+   reaction is the sum of those of substeps [solve/substeps.h], each of which had a state of its own. */
+enum { STATUS_JAMMED = 3, STATUS_SUMMED = 4 };
 
 /* Of a contact's tie: what is kept of it, and what is new in this step */
 enum { CONTACT_LAW_WET = 1, CONTACT_LAW_BONDED = 2, TIE_NEW_BRIDGE = 4, CONTACT_LAW_STATES = 8 };

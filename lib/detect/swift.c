@@ -373,7 +373,7 @@ bool swift_watches(const struct packing *p)
     return first_fixed_hull(p, &most) < p->n;
 }
 
-void swift_passed(struct passed *s, const struct packing *p, int64_t n,
+void swift_passed(struct passed *s, const struct packing *p, const bool *of,
                   const struct surface *surface, struct window window)
 {
     double most, speed = 0;
@@ -382,8 +382,8 @@ void swift_passed(struct passed *s, const struct packing *p, int64_t n,
     for (int32_t w = 0; w < p->walls; w++)
         if (p->wall[w].shape != BOUNDARY_PLANE) speed = dmax(speed, swift_beside(p, w));
     if (!swift_watches(p)) return;
-    for (int64_t i = 0; i < n; i++) {
-        if (!swift_is(p, i, dmax(speed, most))) continue;
+    for (int64_t i = 0; i < p->n; i++) {
+        if ((of && !of[i]) || !swift_is(p, i, dmax(speed, most))) continue;
         for (int32_t w = 0; w < p->walls; w++) {
             const struct wall *wall = &p->wall[w];
             if (wall->shape == BOUNDARY_PLANE || !wall_there(wall, p->t)) continue;

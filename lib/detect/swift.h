@@ -70,8 +70,8 @@ static inline struct window window_after(const struct packing *p)
 
 /* Is there anything of that kind, a boundary that is no plane or a fixed hull? */
 bool swift_watches(const struct packing *p);
-/* Of the packing's first n bodies, in the window */
-void swift_passed(struct passed *s, const struct packing *p, int64_t n,
+/* In the window, of bodies for which of[p->n] is true; NULL: all */
+void swift_passed(struct passed *s, const struct packing *p, const bool *of,
                   const struct surface *surface, struct window window);
 
 #endif

@@ -44,7 +44,7 @@ static int check_order(const struct contacts *s, struct why *why)
                        same_pair ? "feature and shift" : "bodies");
     }
     for (int64_t i = 0; s->found && i < s->n; i++)
-        if (s->found[i].status < LOCAL_FREE || s->found[i].status > STATUS_JAMMED)
+        if (s->found[i].status < LOCAL_FREE || s->found[i].status > STATUS_SUMMED)
             return why_set(why, EX_DATAERR, "contact %lld: status is %d", (long long)i,
                            s->found[i].status);
     return 0;

@@ -75,6 +75,7 @@ json_t *json_report(const struct report *r)
     json_object_set_new(j, "safeguarded", json_integer(r->safeguarded));
     json_object_set_new(j, "gave_up", json_integer(r->gave_up));
     if (r->watched) json_object_set_new(j, "passed", json_integer(r->passed));
+    if (r->substeps > 1) json_object_set_new(j, "substeps", json_integer(r->substeps));
     if (r->balanced) json_object_set_new(j, "balance", balance(&r->balance, r->tied, r->may_gain));
     return j;
 }

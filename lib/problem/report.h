@@ -66,6 +66,7 @@ struct report {
     bool watched;        /* passed is known: there is what bodies may go through [detect/swift.h] */
     int64_t passed;      /* bodies that went through a boundary or another body in this step */
     int32_t passed_id, passed_through; /* the last; and a wall -1-w, or the number of a body */
+    int64_t substeps;                  /* that the step was made in */
     double work;          /* ns, counted and not timed, of the whole solve [solve/prices.h] */
     const char *fallback; /* why the solver asked for could not go on, and swept instead; or NULL */
     const char *given_up; /* why it ended before its limits, a literal; or NULL */

@@ -5,6 +5,7 @@
 #include "bodies/wrap.h"
 #include "detect/crossing.h"
 #include "detect/detect.h"
+#include "detect/meeting.h"
 #include "detect/swift.h"
 #include "problem/prepare.h"
 #include "ranks/blocks.h"
@@ -395,14 +396,21 @@ static int solve_by_first(struct step_makers *m, const struct packing *whole, st
                   : step_solve_contacts(whole, all, NULL, o, rep, why);
 }
 
-static int watch_by_first(struct step_makers *m, const struct packing *whole, struct window window,
+static int watch_by_first(struct step_makers *m, const struct packing *whole, struct windows watch,
                           struct report *rep, struct why *why)
 {
-    return step_watch_whole(whole, ((struct by_first *)m)->y->near.surface, window, rep, why);
+    return step_watch_whole(whole, ((struct by_first *)m)->y->near.surface, watch, rep, why);
 }
 
+/* Of a substep: how far the step is, and whether it ends where bodies meet */
+struct turn {
+    const struct substeps *steps;
+    bool meets;
+};
+
 static int step_by_first(struct rank_step *y, struct packing *whole, struct contacts *all,
-                         const struct step_opt *o, struct report *rep, struct why *why)
+                         const struct step_opt *o, const struct turn *turn, struct report *rep,
+                         struct why *why)
 {
     struct comm *t = y->part.comm;
     struct by_first f = { .makers = { .helps = t->me,
@@ -411,7 +419,9 @@ static int step_by_first(struct rank_step *y, struct packing *whole, struct cont
                                       .solve = solve_by_first,
                                       .balance = step_balance_whole,
                                       .move_apart = step_move_apart_whole,
-                                      .watch = watch_by_first },
+                                      .watch = watch_by_first,
+                                      .substeps = turn->steps,
+                                      .meets = turn->meets },
                           .y = y };
     if (step_make(&f.makers, whole, all, o, rep, why)) return why->status;
     if (!t->me) settings_copy_motion(&y->part.p, whole);
@@ -433,14 +443,22 @@ static void tell_contacts(struct rank_step *y, struct contacts *all, const struc
     contact_list_free(&list);
 }
 
+/* own[p.n]: which bodies are this rank's own; to be freed */
+static bool *own_bodies(const struct rank_step *y)
+{
+    const struct subdomain *part = &y->part;
+    bool *own = comm_new(part->comm, part->p.n, sizeof *own);
+    for (int64_t i = 0; i < part->p.n; i++) own[i] = part->owner[i] == part->comm->me;
+    return own;
+}
+
 /* How deep they are, to all: a body counts where it is this rank's own, with all its contacts. Of ranks with
    the same depth the pair of the largest ids stands. */
 static void measure_depth(struct rank_step *y, const struct contacts *s, struct depth *d)
 {
     struct comm *t = y->part.comm;
     struct why why = { 0 };
-    bool *own = comm_new(t, y->part.p.n, sizeof *own);
-    for (int64_t i = 0; i < y->part.p.n; i++) own[i] = y->part.owner[i] == t->me;
+    bool *own = own_bodies(y);
     if (depth_of(d, &y->part.p, s, own, &why)) fail(y, &why);
     free(own);
     const double most = comm_most(t, d->deepest), none = -1e300;
@@ -456,13 +474,13 @@ static void measure_depth(struct rank_step *y, const struct contacts *s, struct 
 }
 
 /* Collective. The fast bodies of all ranks */
-static struct fast_list fast_of_all(struct rank_step *y)
+static struct fast_list fast_of_all(struct rank_step *y, const bool *own)
 {
     struct comm *t = y->part.comm;
     struct parcel mine = { 0 }, whole = { 0 }, *in = parcels_new(t);
     struct why why = { 0 };
     struct fast_list here, all = { 0 };
-    if (crossing_list(&here, &y->part.p, y->part.own, &why)) fail(y, &why);
+    if (fast_find(&here, &y->part.p, own, &why)) fail(y, &why);
     if (comm_sum(t, here.n) > 0) {
         parcel_put(t, &mine, here.of, (size_t)here.n * sizeof *here.of);
         comm_gather(t, &mine, in);
@@ -479,16 +497,17 @@ static struct fast_list fast_of_all(struct rank_step *y)
 }
 
 /* Which bodies of all ranks have gone through something */
-static void watch_here(struct rank_step *y, struct window window, struct report *rep)
+static void watch_here(struct rank_step *y, struct windows watch, struct report *rep)
 {
     struct comm *t = y->part.comm;
     struct why why = { 0 };
-    struct passed here, all;
+    struct passed here = { 0 }, all = { 0 };
     const struct packing *p = &y->part.p;
-    struct fast_list fast = fast_of_all(y);
-    swift_passed(&here, p, y->part.own, y->near.surface, window);
-    if (crossing_count(&here, p, y->part.own, &fast, window, &why)) fail(y, &why);
-    free(fast.of);
+    bool *own = own_bodies(y);
+    struct fast_list fast = fast_of_all(y, own);
+    if (watch.fixed.length > 0) swift_passed(&here, p, own, y->near.surface, watch.fixed);
+    if (crossing_count(&here, p, own, &fast, watch.bodies, watch.beyond, &why)) fail(y, &why);
+    free(fast.of), free(own);
     all.n = comm_sum(t, here.n);
     double first = -comm_most(t, here.n ? -(double)here.id : -INFINITY);
     double through = comm_most(t, here.n && here.id == first ? here.through : -INFINITY);
@@ -561,19 +580,20 @@ static int move_apart_by_all(struct step_makers *m, struct packing *p, const str
     return 0;
 }
 
-static int watch_by_all(struct step_makers *m, const struct packing *p, struct window window,
+static int watch_by_all(struct step_makers *m, const struct packing *p, struct windows watch,
                         struct report *rep, struct why *why)
 {
     (void)p, (void)why;
     if (diverged(rep))
         rep->balanced = false;
     else
-        watch_here(((struct by_all *)m)->y, window, rep);
+        watch_here(((struct by_all *)m)->y, watch, rep);
     return 0;
 }
 
 static int step_by_all(struct rank_step *y, struct packing *whole, struct contacts *all,
-                       const struct step_opt *o, struct report *rep, struct why *why)
+                       const struct step_opt *o, const struct turn *turn, struct report *rep,
+                       struct why *why)
 {
     struct comm *t = y->part.comm;
     struct contacts s = { 0 };
@@ -587,7 +607,9 @@ static int step_by_all(struct rank_step *y, struct packing *whole, struct contac
                                     .add_impulses = add_impulses_by_all,
                                     .balance = balance_by_all,
                                     .move_apart = move_apart_by_all,
-                                    .watch = watch_by_all },
+                                    .watch = watch_by_all,
+                                    .substeps = turn->steps,
+                                    .meets = turn->meets },
                         .y = y,
                         .whole = whole,
                         .all = told[1] ? all : NULL };
@@ -601,12 +623,83 @@ static int step_by_all(struct rank_step *y, struct packing *whole, struct contac
     return 0;
 }
 
+/* ---- a step, in substeps where fast bodies meet ---- */
+
+/* Collective. The next substep, as step_substep_whole() chooses it, of bodies that nobody has all of */
+static void choose_here(struct rank_step *y, struct substep_choice *c, const struct substeps *s)
+{
+    struct comm *t = y->part.comm;
+    struct packing *p = &y->part.p;
+    struct why why = { 0 };
+    struct passed passed = { 0 };
+    substeps_whole(s, p);
+    packing_wrap(p, NULL);
+    bool *own = own_bodies(y);
+    struct fast_list fast = fast_of_all(y, own);
+    if (fast.n && meeting_part(&c->length, p, own, &fast, substeps_rest(s), c->left, &why))
+        fail(y, &why);
+    if (fast.n) c->length = -comm_most(t, -c->length);
+    for (bool passes = fast.n > 0; passes && c->length > substeps_least(s);) {
+        p->dt = c->length;
+        swift_passed(&passed, p, own, y->near.surface, window_before(p));
+        passes = comm_sum(t, passed.n) > 0;
+        if (passes) c->length = dmax(0.5 * c->length, substeps_least(s));
+    }
+    free(fast.of), free(own);
+}
+
+/* Collective */
+static int choose(struct rank_step *y, struct substeps *s, struct turn *turn, struct packing *whole,
+                  bool by_all, const struct step_opt *o, struct why *why)
+{
+    struct comm *t = y->part.comm;
+    struct substep_choice c = step_substep(s, o);
+    turn->steps = s, turn->meets = c.meets;
+    if (c.meets && neighbours_surfaces(&y->near, &y->part.p, why)) fail(y, why);
+    if (c.meets && by_all) choose_here(y, &c, s);
+    if (c.meets && !by_all && !t->me && step_substep_whole(&c, s, whole, y->near.surface, why))
+        return why->status;
+    if (c.meets && !by_all) MPI_Bcast(&c.length, 1, MPI_DOUBLE, 0, t->mpi);
+    substeps_choose(s, c.length);
+    return 0;
+}
+
+/* Collective: the substep, of all packings that know the time */
+static int make_substep(struct rank_step *y, struct substeps *s, const struct turn *turn,
+                        struct packing *whole, struct contacts *all, bool by_all,
+                        const struct step_opt *o, struct report *rep, struct why *why)
+{
+    const bool first = !y->part.comm->me;
+    const struct step_opt part = step_opt_part(o, s);
+    if (first && substeps_remember(s, whole, why)) return why->status;
+    substeps_enter(s, &y->part.p);
+    if (first) substeps_enter(s, whole);
+    if ((by_all ? step_by_all : step_by_first)(y, whole, all, &part, turn, rep, why))
+        return why->status;
+    substeps_leave(s, &y->part.p);
+    if (first) substeps_leave(s, whole), substeps_recall(s, whole);
+    if (first) return substeps_add(s, whole, all, rep, why);
+    substeps_count(s);
+    return 0;
+}
+
 int rank_step_make(struct rank_step *y, struct packing *whole, struct contacts *all,
                    const struct step_opt *o, struct report *rep, struct why *why)
 {
     bool by_all = rank_step_scatters(&y->part.p, o) && !y->varies;
     double since = comm_busy() - y->part.comm->waited;
-    int e = (by_all ? step_by_all : step_by_first)(y, whole, all, o, rep, why);
+    struct substeps steps;
+    struct turn turn = { &steps, false };
+    int e = 0;
+    substeps_begin(&steps, &y->part.p);
+    for (int ends = 0; !ends && !e;) {
+        e = choose(y, &steps, &turn, whole, by_all, o, why);
+        if (!e) e = make_substep(y, &steps, &turn, whole, all, by_all, o, rep, why);
+        ends = steps.ends;
+        // one whose solve diverges ends the step, which the first knows
+        if (!e && !substeps_alone(&steps)) MPI_Bcast(&ends, 1, MPI_INT, 0, y->part.comm->mpi);
+    }
+    substeps_free(&steps);
     y->busy[1] += comm_busy() - y->part.comm->waited - since;
     return e;
 }

@@ -4,6 +4,7 @@
 #include "bodies/wrap.h"
 #include "detect/crossing.h"
 #include "detect/detect.h"
+#include "detect/meeting.h"
 #include "detect/swift.h"
 #include "motion/move.h"
 #include "motion/project.h"
@@ -151,15 +152,41 @@ void step_report_passed(struct report *rep, const struct packing *p, const struc
     rep->watched = swift_watches(p) || rep->passed;
 }
 
-int step_watch_whole(const struct packing *p, const struct surface *surface, struct window window,
+int step_watch_whole(const struct packing *p, const struct surface *surface, struct windows watch,
                      struct report *rep, struct why *why)
 {
-    struct passed passed;
-    struct fast_list fast;
-    swift_passed(&passed, p, p->n, surface, window);
-    if (!crossing_list(&fast, p, p->n, why) &&
-        !crossing_count(&passed, p, p->n, &fast, window, why))
+    struct passed passed = { 0 };
+    struct fast_list fast = { 0 };
+    if (watch.fixed.length > 0) swift_passed(&passed, p, NULL, surface, watch.fixed);
+    if (!fast_find(&fast, p, NULL, why) &&
+        !crossing_count(&passed, p, NULL, &fast, watch.bodies, watch.beyond, why))
         step_report_passed(rep, p, &passed);
+    free(fast.of);
+    return why->status;
+}
+
+struct substep_choice step_substep(const struct substeps *s, const struct step_opt *o)
+{
+    return (struct substep_choice){ s->made + 1 < o->substeps, o->substeps - s->made,
+                                    substeps_rest(s) };
+}
+
+int step_substep_whole(struct substep_choice *c, const struct substeps *s, struct packing *p,
+                       const struct surface *surface, struct why *why)
+{
+    struct fast_list fast;
+    struct passed passed = { 0 };
+    substeps_whole(s, p);
+    packing_wrap(p, NULL);
+    if (fast_find(&fast, p, NULL, why)) return why->status;
+    meeting_part(&c->length, p, NULL, &fast, substeps_rest(s), c->left, why);
+    // a boundary that lies before the place where contacts are sought
+    for (bool passes = fast.n > 0 && !why->status; passes && c->length > substeps_least(s);) {
+        p->dt = c->length;
+        swift_passed(&passed, p, NULL, surface, window_before(p));
+        passes = passed.n > 0;
+        if (passes) c->length = dmax(0.5 * c->length, substeps_least(s));
+    }
     free(fast.of);
     return why->status;
 }
@@ -202,6 +229,32 @@ end:
     return why->status;
 }
 
+static const struct window none = { 0, 0 };
+
+/* What is looked at before contacts act, and after the motion: of the path from where they were sought to where they
+   will be. Bodies that are made to meet pass only what they meet after they have met something else, in what is left
+   of the substep. */
+static struct windows watch_before(const struct step_makers *m, const struct packing *p)
+{
+    const bool inner = m->substeps->made > 0, first = !p->step;
+    struct windows w = { none, none, false };
+    if (inner || first) w.fixed = window_before(p);
+    if (!m->meets && (inner || first)) w.bodies = window_before(p);
+    return w;
+}
+
+static struct windows watch_after(const struct step_makers *m, const struct packing *p)
+{
+    const struct window rest = { step_after(p), step_after(p) };
+    struct windows w = { rest, rest, m->meets };
+    if (substeps_alone(m->substeps))
+        w.fixed = window_after(p);
+    else if (substeps_last(m->substeps))
+        w.fixed.length += (1 - p->theta) * m->substeps->dt;
+    if (!m->meets) w.bodies = w.fixed;
+    return w;
+}
+
 int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
               const struct step_opt *o, struct report *rep, struct why *why)
 {
@@ -210,10 +263,12 @@ int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
     if (!m->helps && begin(m, m->measure, p, s, rep, why)) return why->status;
     rep->passed = 0;
-    if (!m->helps && !p->step && m->watch(m, p, window_before(p), rep, why)) return why->status;
+    if (!m->helps && (!p->step || m->substeps->made) &&
+        m->watch(m, p, watch_before(m, p), rep, why))
+        return why->status;
     if (m->solve(m, p, s, o, rep, why) || m->helps || move(m, p, s, o, rep, why))
         return why->status;
-    return m->watch(m, p, window_after(p), rep, why);
+    return m->watch(m, p, watch_after(m, p), rep, why);
 }
 
 /* ---- a process alone ---- */
@@ -240,25 +295,58 @@ static int solve_alone(struct step_makers *m, const struct packing *p, struct co
     return step_solve_contacts(p, s, kept ? &kept->plan : NULL, o, rep, why);
 }
 
-static int watch_alone(struct step_makers *m, const struct packing *p, struct window window,
+static int watch_alone(struct step_makers *m, const struct packing *p, struct windows watch,
                        struct report *rep, struct why *why)
 {
     struct step_memory *kept = ((struct alone *)m)->memory;
     struct neighbours once = { 0 }, *near = kept ? &kept->near : &once;
-    if (!neighbours_surfaces(near, p, why)) step_watch_whole(p, near->surface, window, rep, why);
+    if (!neighbours_surfaces(near, p, why)) step_watch_whole(p, near->surface, watch, rep, why);
     neighbours_free(&once);
     return why->status;
+}
+
+static int choose_alone(struct alone *a, struct substeps *steps, struct packing *p,
+                        const struct step_opt *o, struct why *why)
+{
+    struct neighbours once = { 0 }, *near = a->memory ? &a->memory->near : &once;
+    struct substep_choice c = step_substep(steps, o);
+    if (c.meets && !neighbours_surfaces(near, p, why))
+        step_substep_whole(&c, steps, p, near->surface, why);
+    neighbours_free(&once);
+    a->makers.meets = c.meets;
+    substeps_choose(steps, c.length);
+    return why->status;
+}
+
+struct step_opt step_opt_part(const struct step_opt *o, const struct substeps *s)
+{
+    struct step_opt part = *o;
+    if (!substeps_alone(s)) part.solve.local.newton_abs *= s->length / s->dt;
+    return part;
 }
 
 int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept,
                  const struct step_opt *o, struct report *rep, struct why *why)
 {
+    struct substeps steps;
     struct alone a = { { .detect = detect_alone,
                          .measure = step_measure_whole,
                          .solve = solve_alone,
                          .balance = step_balance_whole,
                          .move_apart = step_move_apart_whole,
-                         .watch = watch_alone },
+                         .watch = watch_alone,
+                         .substeps = &steps },
                        kept };
-    return step_make(&a.makers, p, s, o, rep, why);
+    substeps_begin(&steps, p);
+    while (!steps.ends && !choose_alone(&a, &steps, p, o, why)) {
+        const struct step_opt part = step_opt_part(o, &steps);
+        if (substeps_remember(&steps, p, why)) break;
+        substeps_enter(&steps, p);
+        step_make(&a.makers, p, s, &part, rep, why);
+        substeps_leave(&steps, p);
+        substeps_recall(&steps, p);
+        if (why->status || substeps_add(&steps, p, s, rep, why)) break;
+    }
+    substeps_free(&steps);
+    return why->status;
 }

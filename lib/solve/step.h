@@ -5,12 +5,13 @@
 #ifndef NSD_STEP_H
 #define NSD_STEP_H
 
-#include "detect/crossing.h"
 #include "detect/neighbours.h"
+#include "detect/swift.h"
 #include "motion/balance.h"
 #include "motion/impulse.h"
 #include "problem/plan.h"
 #include "solve/solver.h"
+#include "solve/substeps.h"
 
 struct step_opt {
     double gap;   /* m: a contact is a pair with at most this gap */
@@ -18,7 +19,8 @@ struct step_opt {
     enum order order;
     bool
         warm; /* start from the reactions of the contacts given, those of the packing's memory; else from 0 */
-    bool bare; /* nobody reads the report's balance of this step: it is left out */
+    int64_t substeps; /* of a step, at most: 1: it is never divided */
+    bool bare;        /* nobody reads the report's balance of this step: it is left out */
     struct solve_opt solve;
 };
 
@@ -48,6 +50,13 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
 int step_advance(struct packing *p, struct contacts *s, struct step_memory *m,
                  const struct step_opt *o, struct report *rep, struct why *why);
 
+/* What to look for that bodies go through in a step, or in a substep */
+struct windows {
+    struct window fixed,
+        bodies;  /* boundaries and fixed hulls; bodies that move; of length 0: nothing */
+    bool beyond; /* as of crossing_count() */
+};
+
 /*
  * What a step asks of those who make it: one process, or the ranks of a run (ranks/rank_step.h). Each returns 0
  * or a status, with the reason in why.
@@ -73,11 +82,14 @@ struct step_makers {
     /* Bodies that overlap are moved apart, where the packing needs it. */
     int (*move_apart)(struct step_makers *m, struct packing *p, const struct contacts *s,
                       struct why *why);
-    /* Which bodies go through something, in a window: once the step is made, and before the first one */
-    int (*watch)(struct step_makers *m, const struct packing *p, struct window window,
+    /* Which bodies go through something: once the step is made, and before the first one and before substeps */
+    int (*watch)(struct step_makers *m, const struct packing *p, struct windows watch,
                  struct report *rep, struct why *why);
+    const struct substeps *substeps; /* of which this is one */
+    bool
+        meets; /* it ends where bodies meet [detect/meeting.h]; else what they go through is counted */
 };
-/* The step by these makers */
+/* The step, or the substep, by these makers */
 int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
               const struct step_opt *o, struct report *rep, struct why *why);
 /* What one process does: a process that has a whole packing */
@@ -98,7 +110,22 @@ int step_bound_impacts(const struct packing *pack, struct contacts *s, struct pl
 /* Adds bodies that have gone through something to the report, whose number of them is 0 before the step. */
 void step_report_passed(struct report *rep, const struct packing *p, const struct passed *passed);
 /* The same of a whole packing, which is looked through. surface: [walls] of those that are meshes */
-int step_watch_whole(const struct packing *p, const struct surface *surface, struct window window,
+int step_watch_whole(const struct packing *p, const struct surface *surface, struct windows watch,
                      struct report *rep, struct why *why);
+
+/* The options of a substep */
+struct step_opt step_opt_part(const struct step_opt *o, const struct substeps *s);
+/* The choice of a substep, in a packing that has the step's dt: */
+struct substep_choice {
+    bool meets;    /* below the limit of substeps */
+    int64_t left;  /* substeps, with this one */
+    double length; /* s */
+};
+/* without fast bodies: all that is left; */
+struct substep_choice step_substep(const struct substeps *s, const struct step_opt *o);
+/* with them: at most so long that a whole packing's bodies meet, and, halved where that helps, that they do not go
+   through boundaries before contacts are sought. p is in between given other dt. */
+int step_substep_whole(struct substep_choice *c, const struct substeps *s, struct packing *p,
+                       const struct surface *surface, struct why *why);
 
 #endif

@@ -71,7 +71,7 @@ static const struct usual paper = {
     .overlap = OVERLAP_KEEP,
 };
 
-struct options options = { .threads = 1 };
+struct options options = { .threads = 1, .substeps = SUBSTEPS_MOST };
 
 const char *options_usual(const void *to)
 {
@@ -237,6 +237,7 @@ struct step_opt options_step_of(const struct options *o, double dt, bool foreign
     int32_t sweeps = nlgs ? u->nlgs_sweeps : eps < u->tight ? u->tight_sweeps : u->sweeps;
     return (struct step_opt){
         .gap = o->gap,
+        .substeps = o->substeps,
         .alpha = o->alpha,
         .order = order,
         .warm = OPTION(warm, u->warm && criterion == CRITERION_VELOCITY && order != ORDER_BLOCK),
@@ -281,6 +282,7 @@ char *options_json_of(const struct options *asked, const struct step_opt *o)
     if (n->relax > 0) json_object_set_new(j, "relax", json_real(n->relax));
     json_object_set_new(j, "order", json_string(order_name[o->order]));
     json_object_set_new(j, "warm", json_boolean(o->warm));
+    if (o->substeps != SUBSTEPS_MOST) json_object_set_new(j, "substeps", json_integer(o->substeps));
     char *text = json_dumps(j, JSON_COMPACT);
     json_decref(j);
     return text;

@@ -17,6 +17,7 @@ struct options {
     double gap; /* m */
     double theta;
     int64_t max_sweeps, newton_max, threads;
+    int64_t substeps; /* of a step in which fast bodies meet, at most */
     bool warm, every_sweep, history, strict;
     int cut;            /* of several processes, the way that space is cut [ranks/territory.h] */
     const char *log;    /* or NULL */

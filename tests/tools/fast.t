@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # A ball that goes 1000 of its diameters in a step does not cross what lies on its way: a sheet, a disc, a mesh, a thin
-# fixed body; also where a place that is looked at has its centre on the sheet. What passes another body that may move
-# is counted.
+# fixed body; also where a place that is looked at has its centre on the sheet. What passes another body where steps
+# are not divided is counted. Bodies that meet within a step: tests/whole/fast_bodies.t.
 # shellcheck source=tests/support/tap.sh disable=SC2154,SC2317 # tap.sh sets tmp; functions called by name
 . tests/support/tap.sh
 
@@ -20,7 +20,7 @@ for x in 15 15.003 17.2501; do
     ok "a thin fixed body" stops '[]' "[{ x: [$x, 0, 0], shape: \"thin\", size: 1, fixed: true }]" $x
 done
 
-# ---- bodies that both move: what passes is counted, not silent ----
+# ---- bodies that both move, in steps that are not divided: what passes is counted, not silent ----
 
 scene() # BODIES [MORE]: the start of them, with steps of 1 ms
 {
@@ -29,7 +29,7 @@ scene() # BODIES [MORE]: the start of them, with steps of 1 ms
 passed() # BODIES [MORE]: how many passed in three steps, and who of them through what
 {
     scene "$@"
-    nsd-step -n 3 --contacts -o "$tmp/passed.h5" "$tmp/pass.h5" 2>"$tmp/err" || true
+    nsd-step --substeps 1 -n 3 --contacts -o "$tmp/passed.h5" "$tmp/pass.h5" 2>"$tmp/err" || true
     nsd-info --last "$tmp/passed.h5" | jq -r 'select(.account).account.passed.value'
     sed -n 's/.*worst: .* \([0-9]*\) went through a wall or another body \((step [^)]*)\).*/\2/p' "$tmp/err"
 }
@@ -46,9 +46,9 @@ is "one that goes past is none" "$(passed "[$ball, { x: [15, 0.1, 0.32], radius:
 is "one that ends where it meets, and is a contact there, is none" "$(passed "[$ball, { x: [30, 0.1, 0.2], radius: 0.1 }]")" 0
 is "two that go side by side are none" "$(passed "[$ball, { x: [0, 0.1, 0.25], radius: 0.01, v: [20000, 0, 0] }]")" 0
 is "nor is a ball that is slower than it is thick" "$(passed '[{ x: [0, 0, 0], radius: 0.01, v: [9, 0, 0] }, { x: [0.021, 0, 0], radius: 0.01 }]')" 0
-ok "which the log names" eval "scene '[$ball, { x: [15, 0.1, 0.2], radius: 0.1 }]' && nsd-step -n 1 --log '$tmp/log' '$tmp/pass.h5' >/dev/null 2>&1; jq -e '.passed == 1' '$tmp/log' >/dev/null"
+ok "which the log names" eval "scene '[$ball, { x: [15, 0.1, 0.2], radius: 0.1 }]' && nsd-step --substeps 1 -n 1 --log '$tmp/log' '$tmp/pass.h5' >/dev/null 2>&1; jq -e '.passed == 1' '$tmp/log' >/dev/null"
 
-is "and -e fails" "$(nsd-step -e -n 1 "$tmp/pass.h5" >/dev/null 2>&1 && echo 0 || echo $?)" 1
+is "and -e fails" "$(nsd-step --substeps 1 -e -n 1 "$tmp/pass.h5" >/dev/null 2>&1 && echo 0 || echo $?)" 1
 
 # What lies before the place where contacts are sought first, 10 m ahead
 sheet='{ walls: [{ rectangle: { center: [5, 0, 0], normal: [1, 0, 0], sides: [2, 2] } }] }'
@@ -57,14 +57,14 @@ is "a thin fixed body there" "$(passed "[$ball, { x: [5, 0, 0], shape: \"thin\",
 is "a ball there" "$(passed "[$ball, { x: [5, 0.1, 0.2], radius: 0.1 }]")" $'1\n(step 1, bodies 0 and 1)'
 is "a sheet there that the ball goes past" "$(passed "[{ x: [0, 1.5, 0.2], radius: 0.01, v: [20000, 0, 0] }]" "$sheet")" 0
 scene "[$ball]" "$sheet"
-nsd-step -n 1 -o "$tmp/one.h5" "$tmp/pass.h5" 2>/dev/null || true
-is "a run that resumes does not count it again" "$(nsd-step -n 2 "$tmp/one.h5" 2>&1 >/dev/null | grep -o '[0-9]* went through a wall or another body' | sort -u)" '0 went through a wall or another body'
+nsd-step --substeps 1 -n 1 -o "$tmp/one.h5" "$tmp/pass.h5" 2>/dev/null || true
+is "a run that resumes does not count it again" "$(nsd-step --substeps 1 -n 2 "$tmp/one.h5" 2>&1 >/dev/null | grep -o '[0-9]* went through a wall or another body' | sort -u)" '0 went through a wall or another body'
 
 # Many, in a cell that is sheared: the count by all pairs and images is the one that is found
 awk 'BEGIN { srand(7); for (i = 0; i < 300; i++) print rand(), rand(), rand(), 0.008 + 0.008 * rand(), i % 3 ? 0 : 800 * (rand() - 0.5), 800 * (rand() - 0.5), 800 * (rand() - 0.5) }' |
     jq -s -R '{ dt: 1e-3, gravity: [0, 0, 0], overlap: true, cell: { lengths: [1, 1, 1], gradient: [[0, 20, 0], [0, 0, 0], [0, 0, 0]], affine: false },
         bodies: [split("\n")[] | select(length > 0) | split(" ") | map(tonumber) | { x: .[0:3], radius: .[3], v: .[4:7] }] }' | nsd-gen - >"$tmp/many.h5"
-nsd-step -n 1 --contacts -o "$tmp/many_run.h5" "$tmp/many.h5" 2>/dev/null || true
+nsd-step --substeps 1 -n 1 --contacts -o "$tmp/many_run.h5" "$tmp/many.h5" 2>/dev/null || true
 nsd-info -p --last "$tmp/many_run.h5" | jq -r 'select(.id != null) | [.id, .radius, .x[], .v[]] | @tsv' >"$tmp/many.tsv"
 found=$(nsd-info --last "$tmp/many_run.h5" | jq 'select(.account).account.passed.value')
 pairs() # FILE BACK LENGTH TILT: of id, radius, x, v; from x - v BACK by v LENGTH, with the second edge tilted by TILT
@@ -80,12 +80,14 @@ pairs() # FILE BACK LENGTH TILT: of id, radius, x, v; from x - v BACK by v LENGT
 nsd-info -p "$tmp/many.h5" | jq -r 'select(.id != null) | [.id, .radius, .x[], .v[]] | @tsv' >"$tmp/many0.tsv"
 expected=$(($(pairs "$tmp/many0.tsv" 0 5e-4 0) + $(pairs "$tmp/many.tsv" 5e-4 1e-3 0.02)))
 ok "of 300 bodies in a sheared cell $found pass, by all pairs and images $expected" test "$found" -gt 10 -a "$found" = "$expected"
-nsd-step -n 3 --contacts -o "$tmp/many_three.h5" "$tmp/many.h5" 2>/dev/null || true
-nsd-step -j 4 -n 3 --contacts -o "$tmp/many_j4.h5" "$tmp/many.h5" 2>/dev/null || true
+nsd-step --substeps 1 -n 3 --contacts -o "$tmp/many_three.h5" "$tmp/many.h5" 2>/dev/null || true
+nsd-step --substeps 1 -j 4 -n 3 --contacts -o "$tmp/many_j4.h5" "$tmp/many.h5" 2>/dev/null || true
 ok "4 threads write the bytes of one" cmp "$tmp/many_j4.h5" "$tmp/many_three.h5"
 if have_ranks; then
-    ranks 3 nsd-step -n 3 --contacts -o "$tmp/many_ranks.h5" "$tmp/many.h5" 2>/dev/null || true
+    ranks 3 nsd-step --substeps 1 -n 3 --contacts -o "$tmp/many_ranks.h5" "$tmp/many.h5" 2>/dev/null || true
     ok "3 processes write the bytes of one" cmp "$tmp/many_ranks.h5" "$tmp/many_three.h5"
+    ranks 3 nsd-step --substeps 1 --order block -n 1 -o "$tmp/many_blocks.h5" "$tmp/many.h5" 2>/dev/null || true
+    is "and in blocks count as many" "$(nsd-info --last "$tmp/many_blocks.h5" | jq 'select(.account).account.passed.value')" "$found"
 else
     skip "3 processes write the bytes of one" "no MPI"
 fi
