@@ -10,9 +10,9 @@ count=$(pick 100 400)
 for seed in "${seeds[@]}"; do
     before=
     for rate in "${rates[@]}"; do
-        # a strain of 0.3 to settle (3 at first), one of 1.2 (3) is measured
+        # a strain of 0.3 to settle (3 at first), one of 1 (3) is measured
         read -r begin end < <(jq -nr --argjson I "$rate" --argjson first "$([ -z "$before" ] && echo true || echo false)" \
-            '(if $first then [3, 6] else [0.3, 1.5] end) | map(. / $I) | @tsv')
+            '(if $first then [3, 6] else [0.3, 1.3] end) | map(. / $I) | @tsv')
         if [ -z "$before" ]; then
             scene frictionless --argjson I "$rate" --argjson n "$count" --argjson seed "$seed" '.seed = $seed | .cell.gradient[0][1] = $I |
                 (.cell.lengths[0] * pow($n / .bodies[0].random.count; 1 / 3)) as $L | .cell.lengths = [$L, $L, $L] | .bodies[0].random.count = $n'
