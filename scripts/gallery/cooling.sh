@@ -4,7 +4,7 @@
 . "$(dirname "$0")/common.sh"
 
 read -ra restitutions <<<"$(pick '0.8 0.95' '0.7 0.8 0.9 0.95 0.98')"
-count=$(pick 500 4000) dt=$(pick 0.005 0.0025)
+count=$(pick 500 2000) dt=$(pick 0.005 0.0025)
 
 # The rate of kinetic theory, for balls of diameter 1 and phi = 0.05: n balls a volume, g0 by Carnahan and Starling.
 # A collision takes (1 - e^2) m g_n^2/4 with <g_n^2> = 4 T, and a ball has 4 sqrt(pi T) n g0 of them in a second:
@@ -14,7 +14,7 @@ theory() { jq -n "0.05 as \$phi | (1 - \$phi / 2) / pow(1 - \$phi; 3) * \$phi * 
 for e in "${restitutions[@]}"; do
     rate=$(theory "$e")
     # until the temperature is 1/9 of the first one
-    end=$(jq -n "2 / $rate | [., $(pick 60 100)] | min")
+    end=$(jq -n "2 / $rate | [., 60] | min")
     for seed in "${seeds[@]}"; do
         scene cooling --argjson e "$e" --argjson seed "$seed" --argjson n "$count" --argjson dt "$dt" '.e_n = $e | .seed = $seed | .dt = $dt |
             (.cell.lengths[0] * pow($n / .bodies[0].random.count; 1 / 3)) as $L | .cell.lengths = [$L, $L, $L] | .bodies[0].random.count = $n' |

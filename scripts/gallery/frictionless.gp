@@ -4,7 +4,7 @@ set xlabel "inertial number I"
 set ylabel "shear stress / pressure"
 set logscale x
 set xrange [0.0015:0.2]; set yrange [0:0.35]
-set xtics ("0.003" 0.003, "0.01" 0.01, "0.03" 0.03, "0.1" 0.1)
+set xtics ("0.01" 0.01, "0.03" 0.03, "0.1" 0.1)
 plot dir . "/shear.tsv" using 1:2:3 with yerrorbars ls 1 title "nsd", fit_mu(x) with lines ls 1 title "a + b I^{0.38}", \
      0.101 with lines ls 9 title "Peyneau and Roux, I = 0"
 set key left bottom

@@ -4,8 +4,8 @@
 . "$(dirname "$0")/common.sh"
 
 # from fast to slow: every run goes on from the end of the one before
-read -ra rates <<<"$(pick '0.1 0.03' '0.1 0.03 0.01 0.005 0.003')"
-count=$(pick 100 400)
+read -ra rates <<<"$(pick '0.1 0.03' '0.1 0.05 0.02 0.01 0.005')"
+count=$(pick 100 300)
 
 for seed in "${seeds[@]}"; do
     before=
