@@ -55,7 +55,6 @@ with '($discs | numbers) as $discs | ($balls | numbers) as $balls | def at($mu; 
     row("balls phi"; $balls | at(0; 2)),
     row("phi 0.3"; $balls | at(0.3; 2)),
     row("Z 0.3"; $balls | at(0.3; 1)),
-    row("phi 1"; $balls | at(1; 2)),
-    row("Z 1"; $balls | at(1; 1)),
+    if any($balls[]; .[0] == 1) then row("phi 1"; $balls | at(1; 2)), row("Z 1"; $balls | at(1; 1)) else empty end,
     row("pressure"; ($discs + $balls) | map(.[3]) | mean)' \
     -n --rawfile discs "$out/discs.tsv" --rawfile balls "$out/balls.tsv" | results
