@@ -3,8 +3,8 @@ set multiplot layout 1,2
 set xlabel "inertial number I"
 set ylabel "shear stress / pressure"
 set logscale x
-set xrange [0.0015:0.2]; set yrange [0:0.35]
-set xtics ("0.01" 0.01, "0.03" 0.03, "0.1" 0.1)
+set xrange [0.003:0.15]; set yrange [0:0.4]
+set xtics ("0.005" 0.005, "0.02" 0.02, "0.1" 0.1)
 plot dir . "/shear.tsv" using 1:2:3 with yerrorbars ls 1 title "nsd", fit_mu(x) with lines ls 1 title "a + b I^{0.38}", \
      0.101 with lines ls 9 title "Peyneau and Roux, I = 0"
 set key left bottom

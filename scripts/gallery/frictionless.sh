@@ -37,5 +37,5 @@ with 'numbers | group_by(.[4]) | map({mu: (map([pow(.[0]; 0.38), .[1]]) | line),
 jq -r 'def mean: add / length; [(map(.mu.a) | mean), (map(.mu.b) | mean), (map(.phi.a) | mean), (map(.phi.b) | mean)] | "fit_mu(x) = \(.[0]) + \(.[1]) * x**0.38; fit_phi(x) = \(.[2]) + \(.[3]) * x**0.38"' \
     "$out/limits.json" >"$out/fit.gp"
 curve
-picture --network "$out/shear-${rates[1]}-${seeds[0]}.h5"
+picture --network -c speed "$out/shear-${rates[1]}-${seeds[0]}.h5"
 jq '.' "$out/limits.json" | with 'row("mu"; map(.mu.a)), row("phi"; map(.phi.a)), row("pressure"; map(.p))' | results

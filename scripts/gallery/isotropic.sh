@@ -17,9 +17,9 @@ compress() # NAME DIM MU SEED: NAME.h5
 }
 # Without friction: the last oscillations of the edges, solved to 1e-6 from the last reactions; overlaps are projected
 # out, because a contact with an overlap may push where an exact packing has a gap.
-settle() # NAME
+settle() # NAME SECONDS
 {
-    step "$1-settled.h5" --warm --eps 1e-6 --overlap project --dt 0.05 --until $((end + 25)) --every 25s --contacts "$out/$1.h5"
+    step "$1-settled.h5" --warm --eps 1e-6 --overlap project --dt 0.05 --until $((end + $2)) --every "$2s" --contacts "$out/$1.h5"
 }
 measure() # NAME DIM MU: mu, Z, phi, the pressure, contacts - d N over N. N: grains that bear
 {
@@ -31,12 +31,12 @@ measure() # NAME DIM MU: mu, Z, phi, the pressure, contacts - d N over N. N: gra
 
 for seed in "${seeds[@]}"; do
     compress "discs-$seed" 2 0 "$seed"
-    settle "discs-$seed"
+    settle "discs-$seed" 25
     measure "discs-$seed-settled" 2 0 >>"$out/discs.tsv"
     for mu in "${mus[@]}"; do
         compress "balls-$mu-$seed" 3 "$mu" "$seed"
         if [ "$mu" = 0 ]; then
-            settle "balls-0-$seed"
+            settle "balls-0-$seed" 12
             measure "balls-0-$seed-settled" 3 0
         else
             measure "balls-$mu-$seed" 3 "$mu"
