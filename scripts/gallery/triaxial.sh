@@ -48,10 +48,10 @@ findings()
         row($name + " Z, dense less loose"; map((.dense | late(3)) - (.loose | late(3))))' --arg name "$1"
 }
 
-compress discs 2 "$(pick 80 300)" 0.5 "$(pick 0.006 0.002)" 0.3
+compress discs 2 "$(pick 80 200)" 0.5 "$(pick 0.006 0.002)" 0.3
 shapes=(discs)
 if [ -z "${QUICK:-}" ]; then
-    compress balls 3 300 0.3 0.004 0.4
+    compress balls 3 200 0.3 0.004 0.4
     shapes+=(balls)
 fi
 curve
