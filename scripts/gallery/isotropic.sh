@@ -1,44 +1,68 @@
 #!/usr/bin/env bash
-# Isotropic compression: how many contacts a packing stands on, with and without friction.
+# Isotropic compression: the number of contacts that a packing stands on, with and without friction.
 # shellcheck source=scripts/gallery/common.sh
 . "$(dirname "$0")/common.sh"
 
-read -ra mus <<<"$(pick '0 0.5' '0 0.01 0.1 0.3 1')"
-count=$(pick 80 400) end=$(pick 30 80)
+read -ra mus <<<"$(pick '0 0.3' '0 0.01 0.1 0.3 1')"
+count=$(pick 80 400) end=$(pick 30 40)
 
-compress() # FILE DIM MU
+compress() # NAME DIM MU SEED: NAME.h5
 {
-    scene isotropic --argjson mu "$3" --argjson n "$count" --argjson dim "$2" '.dim = $dim | .mu = $mu |
-        (if $dim == 2 then .density = 1.257 | .gravity = [0, 0] else . end) |
+    scene isotropic --argjson mu "$3" --argjson n "$count" --argjson dim "$2" --argjson seed "$4" '.dim = $dim | .mu = $mu | .seed = $seed |
+        (if $dim == 2 then .density = 1.257 | .gravity = [0, 0] else .bodies[0].radius = 0.5 end) |
         (if $dim == 2 then $n * 1.45 | sqrt else $n * 1.46 | log / 3 | exp end) as $L |
         .cell.lengths = ([range($dim)] | map($L)) |
-        .bodies[0] |= (.random.count = $n | .box = ({x: [0, $L], y: [0, $L]} + if $dim == 3 then {z: [0, $L]} else {} end))' |
-        nsd-gen - | step "$1" --overlap gap --until "$end" --every 10s --contacts
+        .bodies[0].random.count = $n | del(.bodies[0].box)' |
+        nsd-gen - | step "$1.h5" --overlap gap --until "$end" --every "${end}s" --contacts
 }
-measure() # FILE MU: mu, Z, phi, the pressure, the part of rattlers
+# Without friction: slow rearrangements go on for a while. Then the last oscillations are solved to 1e-6 from the last reactions,
+# until the pressure has been that of the load within 1e-6 for 5 s; overlaps are projected out, because a contact with an overlap
+# may push where an exact packing has a gap.
+settle() # NAME: NAME-settled.h5
 {
-    nsd-stat -l -m fraction,coordination,stress "$out/$1" |
-        jq -r --argjson mu "$2" '[$mu, .coordination.z_without_rattlers, .fraction.fraction, .stress.p,
-            .coordination.rattlers / .coordination.bodies] | @tsv'
+    local k rest=$((end + 120)) from=$1-rest
+    step "$from.h5" --overlap gap --dt 0.05 --until "$rest" --every "${rest}s" --contacts "$out/$1.h5"
+    for k in {1..8}; do
+        step "$1-rest-$k.h5" --warm --eps 1e-6 --overlap project --dt 0.05 --until $((rest + 10 * k)) --every 1s --contacts "$out/$from.h5"
+        from=$1-rest-$k
+        nsd-stat -m stress "$out/$from.h5" | jq -es '.[-5:] | all(.[]; (.stress.p - 1 | fabs) < 1e-6)' >/dev/null && break
+    done
+    mv "$out/$from.h5" "$out/$1-settled.h5"
+}
+measure() # NAME DIM MU: mu, Z, phi, the pressure, contacts - d N over N. N: grains that bear
+{
+    nsd-stat -l -m fraction,coordination,stress "$out/$1.h5" |
+        jq -r --argjson mu "$3" --argjson dim "$2" '(.coordination.bodies - .coordination.rattlers) as $n |
+            [$mu, .coordination.z_without_rattlers, .fraction.fraction, .stress.p,
+            (.coordination.z_without_rattlers * $n / 2 | round) / $n - $dim] | @tsv'
 }
 
-compress discs.h5 2 0
-echo "mu z phi pressure rattlers" >"$out/discs.tsv"
-measure discs.h5 0 >>"$out/discs.tsv"
-echo "mu z phi pressure rattlers" >"$out/balls.tsv"
-for mu in "${mus[@]}"; do
-    compress "balls-$mu.h5" 3 "$mu"
-    measure "balls-$mu.h5" "$mu" >>"$out/balls.tsv"
+for seed in "${seeds[@]}"; do
+    compress "discs-$seed" 2 0 "$seed"
+    settle "discs-$seed"
+    measure "discs-$seed-settled" 2 0 >>"$out/discs.tsv"
+    for mu in "${mus[@]}"; do
+        compress "balls-$mu-$seed" 3 "$mu" "$seed"
+        if [ "$mu" = 0 ]; then
+            settle "balls-0-$seed"
+            measure "balls-0-$seed-settled" 3 0
+        else
+            measure "balls-$mu-$seed" 3 "$mu"
+        fi >>"$out/balls.tsv"
+    done
 done
+# mu, Z, its error, phi, its error
+with 'numbers | (map([.[0], .[1]]) | spread) as $z | (map([.[0], .[2]]) | spread) as $phi |
+    range($z | length) as $i | [$z[$i][0], $z[$i][1], $z[$i][2] // 0, $phi[$i][1], $phi[$i][2] // 0] | @tsv' -rRs "$out/balls.tsv" >"$out/means.tsv"
 curve
-picture --network "$out/discs.h5"
-with 'def rows_of: split("\n")[1:] | map(select(. != "") | split("\t") | map(tonumber));
-    ($discs | rows_of)[0] as $discs | ($balls | rows_of) as $balls |
-    row("discs Z"; $discs[1]),
-    row("discs phi"; $discs[2]),
-    row("balls Z"; $balls[0][1]),
-    row("balls phi"; $balls[0][2]),
-    row("rough Z"; $balls[-1][1]),
-    row("rough phi"; $balls[-1][2]),
-    row("steps that rise"; ([range(1; $balls | length) | select($balls[.][1] > $balls[. - 1][1] + 0.05)] | length))' \
+picture --network "$out/discs-${seeds[0]}-settled.h5"
+with '($discs | numbers) as $discs | ($balls | numbers) as $balls | def at($mu; $k): map(select(.[0] == $mu)[$k]);
+    row("discs surplus"; $discs | map(.[4])),
+    row("balls surplus"; $balls | at(0; 4)),
+    row("discs phi"; $discs | map(.[2])),
+    row("balls phi"; $balls | at(0; 2)),
+    row("phi 0.3"; $balls | at(0.3; 2)),
+    row("Z 0.3"; $balls | at(0.3; 1)),
+    if any($balls[]; .[0] == 1) then row("phi 1"; $balls | at(1; 2)), row("Z 1"; $balls | at(1; 1)) else empty end,
+    row("pressure"; ($discs + $balls) | map(.[3]) | mean)' \
     -n --rawfile discs "$out/discs.tsv" --rawfile balls "$out/balls.tsv" | results

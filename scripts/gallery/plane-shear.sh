@@ -3,30 +3,37 @@
 # shellcheck source=scripts/gallery/common.sh
 . "$(dirname "$0")/common.sh"
 
-width=$(pick 12 20)
-read -ra rates <<<"$(pick '0.03 0.3' '0.01 0.03 0.06 0.1 0.2 0.3')"
+width=$(pick 10 16)
+# from fast to slow: every run goes on from the end of the one before
+read -ra rates <<<"$(pick '0.2 0.05' '0.2 0.15 0.1 0.05 0.02')"
 
-# I, mu, phi, and the pressure across the shear
-echo "rate mu phi pressure" >"$out/shear.tsv"
-for rate in "${rates[@]}"; do
-    # it comes together within a strain of 2 or 40 s, and is then measured over 2.5 or 40 s
-    read -r begin end every < <(jq -nr --argjson I "$rate" '[([40, 2 / $I] | max), ([40, 2 / $I] | max) + ([40, 2.5 / $I] | max), 0.03 / $I] | @tsv')
-    scene plane-shear --argjson I "$rate" --argjson L "$width" \
-        '.cell.gradient[0][1] = $I | .cell.lengths = [$L, 1.8 * $L] | .bodies[0].count = ($L * $L | round) |
-        .cell.stress.mass = $L * $L / 10' |
-        nsd-gen - | step "shear-$rate.h5" --until "$end" --every "${every}s" --contacts
-    nsd-stat -m stress,fraction "$out/shear-$rate.h5" |
-        with 'map(select(.time > $begin)) | [$I, (map(.stress.tensor[0][1]) | mean | fabs) / (map(.stress.tensor[1][1]) | mean),
-            (map(.fraction.fraction) | mean), (map(.stress.tensor[1][1]) | mean)] | @tsv' \
-            -rs --argjson begin "$begin" --argjson I "$rate" >>"$out/shear.tsv"
+for seed in "${seeds[@]}"; do
+    before=
+    for rate in "${rates[@]}"; do
+        # a strain of 0.5 to settle (3 at first), one of 2 (3) is measured
+        read -r begin end < <(jq -nr --argjson I "$rate" --arg before "$before" '(if $before == "" then [3, 6] else [0.5, 2.5] end) | map(. / $I) | @tsv')
+        if [ -z "$before" ]; then
+            scene plane-shear --argjson I "$rate" --argjson L "$width" --argjson seed "$seed" '.seed = $seed |
+                .cell.gradient[0][1] = $I | .cell.lengths = [$L, 1.8 * $L] | .bodies[0].count = ($L * $L | round) | .cell.stress.mass = $L * $L / 10'
+        else
+            nsd-info --scene "$out/$before" | jq --argjson I "$rate" '.time = 0 | .cell.gradient[0][1] = $I'
+        fi >"$out/scene.json"
+        before=shear-$rate-$seed.h5
+        nsd-gen "$out/scene.json" | step "$before" --until "$end" --every "$(jq -n "$end / 250")s" --contacts
+        # I, mu, phi, the pressure across the shear, seed
+        nsd-stat -m stress,fraction "$out/$before" |
+            with 'map(select(.time > $begin)) | (map(.stress.tensor[1][1]) | mean) as $p | [$I, (map(.stress.tensor[0][1]) | mean | fabs) / $p,
+                (map(.fraction.fraction) | mean), $p, $seed] | @tsv' -rs --argjson begin "$begin" --argjson I "$rate" --argjson seed "$seed" >>"$out/runs.tsv"
+    done
 done
+with 'numbers | (map([.[0], .[1]]) | spread) as $mu | (map([.[0], .[2]]) | spread) as $phi |
+    range($mu | length) as $i | [$mu[$i][0], $mu[$i][1], $mu[$i][2] // 0, $phi[$i][1], $phi[$i][2] // 0] | @tsv' -rRs "$out/runs.tsv" >"$out/shear.tsv"
 curve
-picture --network "$out/shear-${rates[-1]}.h5"
-with '[inputs | split("\t") | map(tonumber)] |
-    (map([.[0], .[1]]) | line) as $mu | (map([.[0], .[2]]) | line) as $phi |
-    row("mu"; $mu.a),
-    row("mu slope"; $mu.b),
-    row("phi"; $phi.a),
-    row("phi slope"; -$phi.b),
-    row("pressure"; (map(.[3]) | mean))' \
-    -nR <(tail -n +2 "$out/shear.tsv") | results
+picture --network "$out/shear-${rates[1]}-${seeds[0]}.h5"
+# the lines of each seed
+with 'numbers | group_by(.[4]) | map({mu: (map([.[0], .[1]]) | line), phi: (map([.[0], .[2]]) | line), p: (map(.[3]) | mean)}) |
+    row("mu"; map(.mu.a)),
+    row("mu slope"; map(.mu.b)),
+    row("phi"; map(.phi.a)),
+    row("phi slope"; map(-.phi.b)),
+    row("pressure"; map(.p))' -Rs "$out/runs.tsv" | results

@@ -1,18 +1,20 @@
 set multiplot layout 1,2
 set xlabel "strain"
-set key bottom right noreverse Right
 set ylabel "sin of the mobilised friction angle"
-set yrange [0:0.7]
+set yrange [0:0.8]
 set xtics 0.1
-set key top right
-plot dir . "/discs-dense.tsv" using 1:2 skip 1 with lines ls 1 title "discs, dense", \
-     dir . "/discs-loose.tsv" using 1:2 skip 1 with lines ls 2 title "discs, loose", \
-     for [k = 0 : (quick ? -1 : 0)] dir . "/balls-dense.tsv" using 1:2 skip 1 with lines ls 3 title "balls, dense", \
-     for [k = 0 : (quick ? -1 : 0)] dir . "/balls-loose.tsv" using 1:2 skip 1 with lines ls 4 title "balls, loose"
+set key top right noreverse Right
+shapes = quick ? "discs" : "discs balls"
+starts = "dense loose"
+set style fill transparent solid 0.25 noborder
+colour(s, t) = word("#1f4e79 #c05a1a #4a7d3a #7a4a8a", 2 * s + t - 2)
+file(s, t) = dir . "/" . word(shapes, s) . "-" . word(starts, t) . ".tsv"
+plot for [s = 1 : words(shapes)] for [t = 1 : 2] file(s, t) using 1:($2-$3):($2+$3) with filledcurves lc rgb colour(s, t) notitle, \
+     for [s = 1 : words(shapes)] for [t = 1 : 2] file(s, t) using 1:2 with lines lc rgb colour(s, t) title word(shapes, s) . ", " . word(starts, t), \
+     0.29 with lines ls 9 title "discs: 0.28 to 0.3", \
+     for [k = 2 : words(shapes)] 0.36 with lines lc rgb "#888888" dt 4 title "balls: 0.34 to 0.38"
 set ylabel "solid fraction"
 set yrange [*:*]
-plot dir . "/discs-dense.tsv" using 1:3 skip 1 with lines ls 1 notitle, \
-     dir . "/discs-loose.tsv" using 1:3 skip 1 with lines ls 2 notitle, \
-     for [k = 0 : (quick ? -1 : 0)] dir . "/balls-dense.tsv" using 1:3 skip 1 with lines ls 3 notitle, \
-     for [k = 0 : (quick ? -1 : 0)] dir . "/balls-loose.tsv" using 1:3 skip 1 with lines ls 4 notitle
+plot for [s = 1 : words(shapes)] for [t = 1 : 2] file(s, t) using 1:($4-$5):($4+$5) with filledcurves lc rgb colour(s, t) notitle, \
+     for [s = 1 : words(shapes)] for [t = 1 : 2] file(s, t) using 1:4 with lines lc rgb colour(s, t) notitle
 unset multiplot
