@@ -1,7 +1,7 @@
-set multiplot layout 1,2
+set multiplot layout 1,2 margins 0.09,0.98,0.12,0.97 spacing 0.11
 frictions = system(sprintf("grep '^#' '%s/load.tsv' | cut -c3-", dir))
 set xlabel "depth over the width of the tube"
-set ylabel "load, over the weight of a layer one width deep"
+set ylabel "load, in weights of a layer as deep as wide"
 set key top left
 set yrange [0:*]
 plot x with lines ls 9 dt 3 title "weight", \
@@ -10,9 +10,9 @@ plot x with lines ls 9 dt 3 title "weight", \
 set xlabel "friction of the wall"
 set ylabel "K"
 set xrange [0:0.55]
-set yrange [0:1]
+set yrange [0:1.2]
 s = sin(21*pi/180)
 walker(m) = m < tan(21*pi/180) ? (1 - s*cos(asin(sin(atan(m))/s) - atan(m)))/(1 + s*cos(asin(sin(atan(m))/s) - atan(m))) : (1 - s*s)/(1 + s*s)
-plot walker(x) with lines ls 9 title "active state, 21 degrees (Walker)", \
+plot walker(x) with lines ls 9 title "active state (Walker)", \
      dir . "/k.tsv" using 1:2:3 with yerrorbars ls 1 title "nsd"
 unset multiplot
