@@ -1,7 +1,7 @@
-set multiplot layout 1,2 margins 0.09,0.98,0.12,0.97 spacing 0.11
+set multiplot layout 1,2 margins 0.1,0.98,0.12,0.97 spacing 0.13
 frictions = system(sprintf("grep '^#' '%s/load.tsv' | cut -c3-", dir))
 set xlabel "depth over the width of the tube"
-set ylabel "load, in weights of a layer as deep as wide"
+set ylabel "load, in weights of a layer as deep as wide" offset 1,0
 set key top left
 set yrange [0:*]
 plot x with lines ls 9 dt 3 title "weight", \

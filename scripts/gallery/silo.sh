@@ -3,11 +3,11 @@
 # shellcheck source=scripts/gallery/common.sh
 . "$(dirname "$0")/common.sh"
 
-radius=$(pick 0.016 0.03) fill=$(pick 0.05 0.078) # m; the loose fill is 1.5 times as high as at rest
+radius=$(pick 0.014 0.03) fill=$(pick 0.05 0.078) # m; the loose fill is 1.5 times as high as at rest
 read -ra widths <<<"$(pick '0.010 0.012 0.014' '0.012 0.015 0.018 0.021 0.024')"
 still=0.3               # s: the fill has come to rest, and the orifice opens
-begin=$(pick 0.08 0.1)  # s after that: the flow is steady
-until=$(pick 0.22 0.26) # s after that: the end of the window
+begin=0.08              # s after that: the flow is steady
+until=$(pick 0.2 0.22)  # s after that: the end of the window
 
 # density FILE.h5: kg/m^3, by the centres of balls more than 3 diameters from floor, wall and surface
 density()
@@ -28,8 +28,8 @@ flow()
 for seed in "${seeds[@]}"; do
     scene silo-flat --argjson seed "$seed" --argjson r "$radius" --argjson h "$fill" '.seed = $seed | del(.remove, .walls) |
         .bodies[0] |= (.count = (4 * $r * $r * $h / 1.33e-8 | round) | .spacing = 1 | .box.x = [-$r, $r] | .box.y = .box.x)' | nsd-gen - | inside "$radius" >"$out/balls.txt"
-    scene silo-flat --argjson seed "$seed" --argjson r "$radius" --arg balls "$out/balls.txt" '.seed = $seed | .remove[0].below.point[2] = -0.003 |
-        .walls[0].cylinder.radius = $r | .walls[1].disc |= (.radius = $r | .hole = 0.001) | .walls[2] |= (.disc.radius = 0.001 | .until = 10) |
+    scene silo-flat --argjson seed "$seed" --argjson r "$radius" --arg balls "$out/balls.txt" '.seed = $seed | .dt = 3e-4 | .remove[0].below.point[2] = -0.003 |
+        .walls[0].cylinder |= (.radius = $r | .length = 0.065) | .walls[1].disc |= (.radius = $r | .hole = 0.001) | .walls[2] |= (.disc.radius = 0.001 | .until = 10) |
         .bodies = [{file: $balls}]' | nsd-gen - | step "fill-$seed.h5" --until "$still" --every 1s
     for width in "${widths[@]}"; do
         on "fill-$seed.h5" --argjson w "$width" '.dt = 4e-4 | .walls[1].disc.hole = $w / 2 | .walls = .walls[:2]' |
