@@ -3,8 +3,8 @@
 # shellcheck source=scripts/gallery/common.sh
 . "$(dirname "$0")/common.sh"
 
-half=$(pick 0.15 0.34) # m, of the slab
-read -ra seeds <<<"${SEEDS:-$(pick '1 2' '1 2 3 4 5 6')}"
+half=$(pick 0.12 0.22) # m, of the slab
+read -ra seeds <<<"${SEEDS:-$(pick '1 2 3' '1 2 3 4 5 6 7 8 9 10 11 12')}"
 
 # pile NAME SEED FILTER GRAINS: is poured, as many grains as GRAINS times the half width squared, and comes to rest
 pile()
@@ -41,9 +41,12 @@ with 'group_by(.kind)[] | "# \(.[0].kind)", (map(. as $p | range(10) as $k |
     spread[] | map(. // 0) | @tsv), "", ""' -rs --argjson half "$half" "$out/piles.json" >"$out/pressure.tsv"
 curve
 picture -c force "$out/point-${seeds[0]}.h5"
-with 'def near($a; $b): .floor | map(select((.[0] | fabs) >= $a and (.[0] | fabs) < $b) | .[1]) | add / ($b - $a);
+with 'def near($a; $b): .floor | map(select((.[0] | fabs) >= $a and (.[0] | fabs) < $b) | .[1]) | add // 0 | . / ($b - $a);
     def of($kind): map(select(.kind == $kind));
-    row("point"; of("point") | map(near(0; 0.1) / near(0.2; 0.4))),
-    row("rain"; of("rain") | map(near(0; 0.1) / near(0.2; 0.4))),
-    row("fabric"; [of("point"), of("rain")] | transpose | map(.[0].fabric / .[1].fabric)),
+    # a ratio of means over the piles, for its error as values without one pile each (jackknife)
+    def ratio(top; below): . as $all | length as $n | (map(top) | add) as $t | (map(below) | add) as $b |
+        if $n < 2 then [$t / $b] else map($n * $t / $b - ($n - 1) * ($t - top) / ($b - below)) end;
+    row("point"; of("point") | ratio(near(0; 0.1); near(0.2; 0.4))),
+    row("rain"; of("rain") | ratio(near(0; 0.1); near(0.2; 0.4))),
+    row("fabric"; [of("point"), of("rain")] | transpose | ratio(.[0].fabric; .[1].fabric)),
     row("balance"; map((.floor | map(.[1]) | add) / .weight))' -s "$out/piles.json" | results
