@@ -6,8 +6,7 @@
 width=$(pick 0.12 0.4)
 # aspect ratios: of every seed; of the first seed only, because their cost grows as a^1.5
 read -ra ratios <<<"$(pick '0.8 1.4 2.6 4' '0.7 1.2 1.8 2.5 3.6')"
-read -ra slender <<<"$(pick '' '6')"
-read -ra seeds <<<"${SEEDS:-$(pick 1 '1 2 3 4 5')}"
+read -ra slender <<<"$(pick '' '5')"
 
 # collapse A SEED: a row of seed, a of the column at rest, run-out over the width
 collapse()

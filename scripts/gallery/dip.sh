@@ -4,7 +4,7 @@
 . "$(dirname "$0")/common.sh"
 
 half=$(pick 0.12 0.22) # m, of the slab
-read -ra seeds <<<"${SEEDS:-$(pick '1 2 3' '1 2 3 4 5 6 7 8 9 10 11 12')}"
+read -ra seeds <<<"${SEEDS:-$(pick '1 2 3' '1 2 3 4 5 6 7 8')}"
 
 # pile NAME SEED FILTER GRAINS: is poured, as many grains as GRAINS times the half width squared, and comes to rest
 pile()

@@ -4,7 +4,7 @@
 . "$(dirname "$0")/common.sh"
 
 width=$(pick 0.08 0.2) ratio=1.5 gate=0.3
-read -ra bonds <<<"$(pick '0 10 200' '0 3 10 30 100 300')"
+read -ra bonds <<<"$(pick '0 10 200' '0 3 10 30 100')"
 weight=$(jq -n '2500 * 3.141592653589793 * 25e-6 * 9.81')
 
 # a row for each run: the Bond number, run-out and height left, over the width and the height of the column at rest
