@@ -13,7 +13,7 @@ tube()
     scene silo-flat --argjson seed "$1" --argjson r "$radius" --argjson h "$fill" '.seed = $seed | del(.remove, .walls) |
         .bodies[0] |= (.count = (4 * $r * $r * $h / 1.33e-8 | round) | .spacing = 1 | .box.x = [-$r, $r] | .box.y = .box.x)' | nsd-gen - | inside "$radius" >"$out/balls.txt"
     scene silo-flat --argjson seed "$1" --argjson r "$radius" --arg balls "$out/balls.txt" '.seed = $seed | del(.remove) |
-        .walls = [{cylinder: {point: [0, 0, -0.01], axis: [0, 0, 1], radius: $r, length: 0.3}}, {disc: {center: [0, 0, 0], normal: [0, 0, 1], radius: $r}}] |
+        .walls = [{cylinder: {point: [0, 0, -0.01], axis: [0, 0, 1], radius: $r, length: 0.25}}, {disc: {center: [0, 0, 0], normal: [0, 0, 1], radius: $r}}] |
         .bodies = [{file: $balls}]' | nsd-gen - | step "fill-$1.h5" --until "$still" --every "${still}s"
 }
 
@@ -47,7 +47,7 @@ layers()
 for seed in "${seeds[@]}"; do
     tube "$seed"
     for mu in "${frictions[@]}"; do
-        on "fill-$seed.h5" --argjson mu "$mu" --argjson t "$still" --argjson d "$sink" '.dt = 4e-4 | .pairs = [{pair: ["ball", "wall"], mu: $mu}] |
+        on "fill-$seed.h5" --argjson mu "$mu" --argjson t "$still" --argjson d "$sink" '.dt = 4e-4 | .walls[0].cylinder.length = 0.125 | .pairs = [{pair: ["ball", "wall"], mu: $mu}] |
             .walls[1].drives = [{along: [0, 0, -1], speed: 0.01, from: $t, until: ($t + $d + 1)}]' |
             step "sunk.h5" --until "$(jq -n "$still + $sink - 0.05")" --every 1s
         nsd-step -n 120 --every 12 --forces -o "$out/sunk-$mu-$seed.h5" "$out/sunk.h5" 2>"$out/sunk-$mu-$seed.log"
@@ -55,16 +55,16 @@ for seed in "${seeds[@]}"; do
     done
 done >"$out/runs.json"
 
-with 'group_by(.friction)[] | "# \(.[0].friction)", (map(.layers[range(3; 40; 3)]) | group_by(.[0] * 5 | round)[] | (map([0, .[1]]) | spread[0]) as $f | [(map(.[0]) | mean), $f[1], $f[2] // 0, (map(.[2]) | mean)] | @tsv), "", ""' \
+with 'group_by(.friction)[] | "# \(.[0].friction)", (map([.layers[range(3; 40; 3)]]) | transpose[] | [(map(.[0]) | mean), (map(.[1]) | mean, error // 0), (map(.[2]) | mean)] | @tsv), "", ""' \
     -rs "$out/runs.json" >"$out/load.tsv"
 with 'map([.friction, .K]) | spread[] | map(. // 0) | @tsv' -rs "$out/runs.json" >"$out/k.tsv"
 curve
 picture --cut 0,1,0,0 -c force --step "$(nsd-info "$out/sunk-0.4-${seeds[0]}.h5" | jq -s 'map(.step // empty) | max')" "$out/sunk-0.4-${seeds[0]}.h5"
-with '. as $runs | def of($low; $high): map(select(.friction >= $low and .friction <= $high));
+with 'def of($low; $high): map(select(.friction >= $low and .friction <= $high));
     # one value for each seed: the mean of its runs
-    def each($x): [range($seeds) as $k | [range($k * $count; ($k + 1) * $count) as $i | $runs[$i]] | $x | mean];
+    def each(values): [range(0; length; $count) as $k | .[$k : $k + $count] | values | mean];
     row("K"; each(of(0.1; 0.3) | map(.K))),
     row("mu K"; each(of(0.4; 0.4) | map(.K * .friction))),
     row("predicted"; each(of(0.3; 0.3) | map(.predicted))),
     row("mobilised"; each(of(0.1; 0.3) | map(.mobilised))),
-    row("balance"; each(map(.balance)))' -s --argjson seeds "${#seeds[@]}" --argjson count "${#frictions[@]}" "$out/runs.json" | results
+    row("balance"; each(map(.balance)))' -s --argjson count "${#frictions[@]}" "$out/runs.json" | results
