@@ -34,6 +34,24 @@ step()
 # on FILE.json FILE.h5 [jq's arguments]: a scene that goes on from the trajectory, as a filter changes it
 on() { nsd-info --scene "$out/$1" | jq "${@:2}" >"$out/on.json"; nsd-gen "$out/on.json"; }
 
+# inside RADIUS: a table of the balls of what comes in that lie inside a cylinder about the z axis
+inside()
+{
+    nsd-info -p | jq -r --argjson r "$1" 'select((.x[0] * .x[0] + .x[1] * .x[1] | sqrt) + .radius < $r) | [.x[], .radius] | map(tostring) | join(" ")'
+}
+
+# front FILE.h5: of the discs that are connected by contacts to the most others, the right-most point
+front()
+{
+    { nsd-info --last -p "$out/$1" | jq -r '"b \(.id) \(.x[0] + .radius)"'; nsd-info --last -c "$out/$1" | jq -r 'select(.body[0] >= 0) | "c \(.body[0]) \(.body[1])"'; } | awk '
+        function root(i) { while (up[i] != i) i = up[i] = up[up[i]]; return i }
+        $1 == "b" { x[$2] = $3; up[$2] = $2 }
+        $1 == "c" { a = root($2); b = root($3); if (a != b) up[a] = b }
+        END { for (i in x) if (++n[root(i)] > n[most]) most = root(i)
+            for (i in x) if (root(i) == most && x[i] > front) front = x[i]
+            print front }'
+}
+
 # with FILTER [jq's arguments]: jq with the functions of rows.jq
 with() { jq -L "$P" "include \"rows\"; $1" "${@:2}"; }
 
