@@ -1,4 +1,5 @@
 load dir . "/fit.gp"
+profiles = system("ls -v profile-*.tsv")
 set multiplot layout 1,2
 set xlabel "angle, degrees"
 set ylabel "height, diameters"
@@ -20,5 +21,5 @@ set xrange [0:*]
 set yrange [0:h * 1.25]
 set trange [0:h]
 plot us * (1 - (1 - t / h) ** 1.5), t with lines ls 9 title "Bagnold", \
-     for [f in system("ls -v profile-*.tsv")] dir . "/" . f using 2:1 with points ls 2 ps 0.8 title (f[9:strlen(f)-4] + 0 == 1 || f[9:strlen(f)-4] + 0 == 4 ? "nsd, 25 degrees" : "")
+     for [i=1:words(profiles)] dir . "/" . word(profiles, i) using 2:1 with points ls 2 ps 0.8 title (i == 1 ? "nsd, 25 degrees" : "")
 unset multiplot

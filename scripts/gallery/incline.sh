@@ -18,8 +18,8 @@ flows() { nsd-info -p "$out/$1" | jq -s 'map(select(.mass > 0)) | (map(.step) | 
 moves() { nsd-info --last -p "$out/$1" | jq -s 'map(select(.mass > 0) | .v[0] | fabs) | add / length > 2e-3'; }
 
 # A layer that flows is lowered by half a degree at a time until nothing moves: height, degrees to start from, width
-stops=$(pick '3:26:24 7:22:15' '4:27:39 6:25:30 9:23:24 13:21:21 18:20:18')
-hold=$(pick 40 80) less=$(pick 1 0.5)
+stops=$(pick '3:26:24 7:22:15' '4:27:30 6:25:24 9:23:18 13:21:18 18:20:18')
+hold=$(pick 40 60) less=$(pick 1 0.5)
 echo "height angle seed" >"$out/stop.tsv"
 for s in "${seeds[@]}"; do
     for h in $stops; do
@@ -36,7 +36,7 @@ for s in "${seeds[@]}"; do
 done
 
 # Layers that flow at 25 degrees until they are steady: height and time
-runs=$(pick '8:100 14:150' '16:250 20:250 26:300 32:350 40:450')
+runs=$(pick '8:100 14:150' '16:250 20:250 25:300 32:350 40:450')
 width=$(pick 12 20)
 echo "height speed seed" >"$out/flow.tsv"
 for s in "${seeds[@]}"; do
