@@ -3,9 +3,9 @@
 # shellcheck source=scripts/gallery/common.sh
 . "$(dirname "$0")/common.sh"
 
-scale=$(pick 0.45 1) end=$(pick 1.5 2.4)
+scale=$(pick 0.45 1) end=$(pick 1.5 2)
 read -ra speeds <<<"$(pick '1.5 4' '0.7 1.5 2.5 3.5 5')"
-read -ra slow <<<"$(pick '' '1 3')"
+read -ra slow <<<"$(pick '' '1')"
 radius=$(jq -n "0.105 * $scale")
 
 # layer FILE ANGLE: in the middle of the drum, depth below the surface in diameters and velocity down it in sqrt(g d), a mean

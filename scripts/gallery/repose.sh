@@ -4,8 +4,8 @@
 . "$(dirname "$0")/common.sh"
 
 [ -n "${SEEDS:-}${QUICK:-}" ] || seeds=(1 2 3 4)
-half=$(pick 0.05 0.09) until=$(pick 0.8 1.4)
-read -ra rolls <<<"$(pick '0 0.1' '0 0.02 0.05 0.1 0.2 0.3')"
+half=$(pick 0.05 0.07) until=$(pick 0.8 1.2)
+read -ra rolls <<<"$(pick '0 0.1' '0 0.02 0.05 0.1 0.3')"
 read -ra bonds <<<"$(pick '0 30' '0 1 2 4 8 16 30')"
 weight=$(jq -n '2500 * 3.141592653589793 * 4e-6 * 9.81')
 

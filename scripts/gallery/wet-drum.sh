@@ -4,8 +4,8 @@
 . "$(dirname "$0")/common.sh"
 
 [ -n "${SEEDS:-}${QUICK:-}" ] || seeds=(1 2 3 4)
-scale=$(pick 0.5 1) end=$(pick 0.9 2)
-read -ra bonds <<<"$(pick '0 3' '0 1 2 3 5 8 12')"
+scale=$(pick 0.5 1) end=$(pick 0.9 1.6)
+read -ra bonds <<<"$(pick '0 3' '0 1 2 3 5 8')"
 weight=$(jq -n '2500 * 3.141592653589793 * 1.5e-3 * 1.5e-3 * 9.81')
 radius=$(jq -n "0.07 * $scale")
 
