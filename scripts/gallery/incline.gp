@@ -9,7 +9,7 @@ set yrange [0:25]
 set parametric
 set trange [1.5:24]
 set arrow 1 from 15, 0 to 15, 25 nohead ls 9
-set label 1 "15: discs, 35 d\n(Deboeuf 2005)" at 15.3, 23.4
+set label 1 "15: Deboeuf 2005" at 15.3, 0.9
 plot atan(a + b * exp(-t / L)) * 180 / pi, t with lines ls 3 title "Pouliquen 1999, fitted", \
      dir . "/rest.tsv" using 2:1:3 with xerrorbars ls 1 title "stops, nsd"
 unset arrow 1
