@@ -1,5 +1,5 @@
-layers = system("ls -v layer-*-*.tsv")
-speed(f) = f[7:strstrt(f[7:*], "-") + 5]
+speeds = system("ls layer-*-*.tsv | sed 's/^layer-//; s/-.*//' | sort -gu")
+colours = "#1f4e79 #2a9d8f #8ab17d #e09f3e #c0392b"
 set multiplot layout 1,2
 set xlabel "Froude number w^2 R/g"
 set ylabel "angle of the surface, degrees"
@@ -22,8 +22,8 @@ set xrange [-2:*]
 set xtics autofreq
 set yrange [18:0]
 set key bottom right noreverse Right
-plot for [i=1:words(layers)] dir . "/" . word(layers, i) using 2:1 with points ls (int(10 * speed(word(layers, i))) % 4 + 1) ps 0.6 \
-         title (i == 1 || speed(word(layers, i)) ne speed(word(layers, i - 1)) ? speed(word(layers, i)) . " rad/s" : ""), \
+plot for [i=1:words(speeds)] "<cat layer-" . word(speeds, i) . "-*.tsv" using 2:1 with points pt 2 * i + 3 ps 0.7 lc rgb word(colours, i) \
+         title word(speeds, i) . " rad/s", \
      [t=0:4] "+" using (0.5 * (8 - 2 * $1)):(2 * $1) with lines ls 9 title "0.5 sqrt(g/d)", \
      [t=0:4] "+" using (0.3 * (8 - 2 * $1)):(2 * $1) with lines ls 9 dt 3 title "0.3 sqrt(g/d)"
 unset multiplot

@@ -1,7 +1,7 @@
 set multiplot layout 1,2
 set xlabel "Bond number"
 set ylabel "angle of the surface, degrees"
-set xrange [-0.5:9]
+set xrange [-0.5:13]
 set yrange [15:50]
 set arrow 1 from graph 0, first 20 to graph 1, first 20 nohead ls 9
 set arrow 2 from graph 0, first 26 to graph 1, first 26 nohead ls 9
