@@ -17,17 +17,18 @@ heap()
         nsd-gen - | step "$1" --until "$until" --every "${until}s" --overlap project
 }
 # degrees: of lines through the tops of strips a disc wide on both flanks, from a fifth of the heap's height up to where,
-# coming from outside, four fifths are first reached; the mean of both sides. A lump has none: where a flank is five
-# strips or less it is a wall, and where its tops are more than 1.5 discs from the line (root mean square) it is none
+# coming from outside, four fifths are first reached; the mean of both sides. slope FILE COHESIVE: where discs hold together
+# (true) a lump has none: where a flank is five strips or less it is a wall, and where its tops are more than 1.5 discs from
+# the line (root mean square) it is none
 slope()
 {
     nsd-info --last -p "$out/$1" | with 'map([.x[0], .x[1] + .radius]) | (map(.[1]) | max) as $top |
         group_by(.[0] / 0.004 | floor) | map([(map(.[0]) | add / length), (map(.[1]) | max)]) | . as $strips |
         [1, -1] | map(. as $side | $strips | map([.[0] * $side, .[1]]) | sort_by(-.[0]) | map(.[1]) as $h |
             ([range(0; $h | length) | select($h[.] >= 0.8 * $top)][0]) as $up | .[:$up + 1] | map(select(.[1] > 0.2 * $top)) |
-            if length <= 5 then null
-            else line as $l | if map(.[1] - $l.a - $l.b * .[0] | . * .) | mean | sqrt > 0.006 then null else -$l.b | atan * 180 / 3.141592653589793 end end) |
-        if any(. == null) then "none" else mean end' -rs
+            if $cohesive and length <= 5 then null
+            else line as $l | if $cohesive and (map(.[1] - $l.a - $l.b * .[0] | . * .) | mean | sqrt) > 0.006 then null else -$l.b | atan * 180 / 3.141592653589793 end end) |
+        if any(. == null) then "none" else mean end' -rs --argjson cohesive "$2"
 }
 
 echo "mu_r slope seed" >"$out/rolling.tsv"
@@ -35,12 +36,12 @@ echo "bond slope seed" >"$out/cohesion.tsv"
 for s in "${seeds[@]}"; do
     for r in "${rolls[@]}"; do
         heap "roll-$r.h5" "$s" "if $r > 0 then .rolling = { mu_r: ($r * 0.002) } else . end"
-        echo "$r $(slope "roll-$r.h5") $s" >>"$out/rolling.tsv"
+        echo "$r $(slope "roll-$r.h5" false) $s" >>"$out/rolling.tsv"
     done
     cp "$out/roll-0.h5" "$out/bond-0.h5"
     for b in "${bonds[@]}"; do
         [ "$b" = 0 ] || heap "bond-$b.h5" "$s" "if $b > 0 then .cohesion = { force: ($b * $weight), range: 2e-5 } else . end"
-        echo "$b $(slope "bond-$b.h5") $s" >>"$out/cohesion.tsv"
+        echo "$b $(slope "bond-$b.h5" "$([ "$b" = 0 ] && echo false || echo true)") $s" >>"$out/cohesion.tsv"
     done
 done
 
