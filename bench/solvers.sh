@@ -5,6 +5,7 @@
 #
 #   PROBLEMS=DIR            another folder of problems; leaves solvers-DIR.{tsv,md,svg}
 #   ONLY=nsd|siconos        that half; the other as the results have it
+#   ONLY=draw               no run: the .svg alone, from the .tsv in the folder RESULTS
 #   SOLVERS="auto nlgs"     nsd's: of --global, or sbp, sal, ebp, eal for Gauss-Seidel with that local method
 #   LIMIT=10                seconds of a solve
 #   FLOOR=1e-4              seconds: what is faster counts as this
@@ -17,7 +18,7 @@ problems=${problems%/}
 name=solvers${PROBLEMS:+-$(basename "$problems")}
 solvers=${SOLVERS:-auto nlgs anderson cg prox ipm sbp}
 limit=${LIMIT:-10}
-if [ ! -d "$problems" ]; then
+if [ ! -d "$problems" ] && [ "${ONLY:-}" != draw ]; then
     echo "solvers.sh: no $problems, skipped"
     exit 0
 fi
@@ -26,7 +27,7 @@ tools=${NSD_BUILD:-build}
 tolerances=(1e-4 1e-8 1e-12)
 floor=${FLOOR:-1e-4}
 store=build/solvers/$name.$limit
-mkdir -p "$store/nsd" "$store/siconos" "$results"
+if [ "${ONLY:-}" = draw ]; then results=${RESULTS:-$results}; else mkdir -p "$store/nsd" "$store/siconos" "$results"; fi
 
 # A problem's file: its name; global/X and X may differ
 title() { basename "$1" .hdf5; }
@@ -126,7 +127,7 @@ else
 fi
 touch "$work/nsd" "$work/siconos"
 
-{
+[ "${ONLY:-}" = draw ] || {
     echo "# $(machine); limit $limit s"
     printf 'solver\tproblem\tcontacts\ttolerance\tseconds\terror\tsolved\tsteps\tnewton\thow\n'
     cat "$work/nsd" "$work/siconos"
@@ -205,6 +206,7 @@ awk -F'\t' -v OFS='\t' -v floor="$floor" '
 drawn=$(awk -F'\t' '/^siconos-/ && !/^siconos-2d/ { print $8 + 0 "\t" $5 + 0 "\t" $1 }' "$work/table" |
     sort -k1,1nr -k2,2nr | head -n 7 | cut -f 3 | paste -sd' ')
 gnuplot -e "data='${work//\'/\'\'}/profile'; out='$results/$name.svg'; ours='$solvers'; theirs='$drawn'" bench/solvers.gp
+if [ "${ONLY:-}" = draw ]; then exit 0; fi
 
 {
     echo "# Solvers over ${#files[@]} FCLIB problems"

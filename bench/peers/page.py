@@ -94,7 +94,20 @@ def job_section(name, job, quick):
                + (f"; {own['unconverged']} steps have not converged." if own.get("unconverged") else "."))
     if job.get("profile"):
         out += ["", "Functions of nsd by CPU: " + ", ".join(f"{f} {share:.0f} %" for f, share in job["profile"]) + "."]
+    values = seen(job)
+    if len(values) == 1:  # a job that was cut before anything happened
+        return out + ["", f"No picture: {job['label']} stays {text(values.pop())} over the time simulated.", ""]
     return out + ["", f"![{job['label']} over time]({name}.svg)", ""]
+
+
+def seen(job):
+    """all values of the first observable, of the variants that are drawn"""
+    out = set()
+    for key, (_, style) in ROWS.items():
+        series = job["variants"].get(key, {}).get("series")
+        if style and series:
+            out.update(series[next(k for k in series if k != "t")])
+    return out
 
 
 def check_section(check):
@@ -178,6 +191,11 @@ def page(results):
 
 
 def plot(name, job, folder):
+    path = os.path.join(folder, name)
+    if len(seen(job)) == 1:
+        if os.path.exists(path + ".svg"):
+            os.remove(path + ".svg")
+        return
     drawn, data = [], ""
     for key, (title, style) in ROWS.items():
         curve = job["variants"].get(key, {}).get("series")
@@ -186,16 +204,15 @@ def plot(name, job, folder):
         names = [k for k in curve if k != "t"]
         data += "".join(" ".join(map(str, values)) + "\n" for values in zip(curve["t"], *(curve[k] for k in names))) + "\n\n"
         drawn.append((title, style, len(names)))
-    path = os.path.join(folder, name)
     with open(path + ".dat", "w") as f:
         f.write(data)
     two = name == "settling"  # the second observable below the first
-    script = f"set terminal svg size 640,{720 if two else 400} background 'white' font 'sans,13'; set output '{path}.svg'; "
-    script += "set grid lc rgb '#dddddd'; set key outside top center horizontal; set xlabel 'time, s'; "
+    script = f"set terminal svg size 720,{860 if two else 460} background 'white' font 'sans,17'; set output '{path}.svg'; "
+    script += "set grid lc rgb '#dddddd'; set key outside top center horizontal maxcols 2 width 2; set xlabel 'time, s'; "
     colour = {1: "#1b6ca8", 2: "#7fb2d8", 3: "#c8402c", 4: "#e8a090", 5: "#4a7d3a"}
 
     def curves(column, low=""):
-        return "plot " + ", ".join(f"'{path}.dat' index {k} using 1:{column} with lines lw {2 if style in (1, 3) else 1.3} lc rgb '{colour[style]}' title '{title}'"
+        return "plot " + ", ".join(f"'{path}.dat' index {k} using 1:{column} with lines lw {2.5 if style in (1, 3) else 1.5} dt {2 if style in (3, 4) else 1} lc rgb '{colour[style]}' title '{title}'"
                                    for k, (title, style, _) in enumerate(drawn)) + "; "
 
     if two:

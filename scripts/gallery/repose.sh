@@ -3,52 +3,68 @@
 # shellcheck source=scripts/gallery/common.sh
 . "$(dirname "$0")/common.sh"
 
-half=$(pick 0.05 0.06) until=$(pick 0.8 1.2)
+[ -n "${SEEDS:-}${QUICK:-}" ] || seeds=(1 2 3 4)
+half=$(pick 0.05 0.07) until=$(pick 0.8 1.2)
 read -ra rolls <<<"$(pick '0 0.1' '0 0.02 0.05 0.1 0.3')"
-read -ra bonds <<<"$(pick '0 30' '0 1 4 16 30')"
+read -ra bonds <<<"$(pick '0 30' '0 1 2 4 8 16 30')"
 weight=$(jq -n '2500 * 3.141592653589793 * 4e-6 * 9.81')
 
-# heap FILE FILTER: discs of 4 mm, a block as wide as the slab, which the filter changes; it comes to rest
+# heap FILE SEED FILTER: discs of 4 mm, a block as wide as the slab, which the filter changes; it comes to rest
 heap()
 {
-    scene heap --argjson h "$half" '.remove[0].outside.x = [-$h, $h] | .bodies[0] |= (.box = { x: [-$h, $h], y: [0, 1.1 * $h] } |
-        .random.count = ($h * $h * 1.4 * 0.8 / 1.257e-5 | round)) | '"$2" | nsd-gen - |
-        step "$1" --until "$until" --every "${until}s" --overlap project
+    scene heap --argjson h "$half" --argjson seed "$2" '.seed = $seed | .remove[0].outside.x = [-$h, $h] |
+        .bodies[0] |= (.box = { x: [-$h, $h], y: [0, 1.1 * $h] } | .random.count = ($h * $h * 1.4 * 0.8 / 1.257e-5 | round)) | '"$3" |
+        nsd-gen - | step "$1" --until "$until" --every "${until}s" --overlap project
 }
 # degrees: of lines through the tops of strips a disc wide on both flanks, from a fifth of the heap's height up to where,
-# coming from outside, four fifths are first reached; the mean of both sides
+# coming from outside, four fifths are first reached; the mean of both sides. slope FILE COHESIVE: where discs hold together
+# (true) a lump has none: where a flank is five strips or less it is a wall, and where its tops are more than 1.5 discs from
+# the line (root mean square) it is none
 slope()
 {
     nsd-info --last -p "$out/$1" | with 'map([.x[0], .x[1] + .radius]) | (map(.[1]) | max) as $top |
         group_by(.[0] / 0.004 | floor) | map([(map(.[0]) | add / length), (map(.[1]) | max)]) | . as $strips |
         [1, -1] | map(. as $side | $strips | map([.[0] * $side, .[1]]) | sort_by(-.[0]) | map(.[1]) as $h |
             ([range(0; $h | length) | select($h[.] >= 0.8 * $top)][0]) as $up | .[:$up + 1] | map(select(.[1] > 0.2 * $top)) |
-            if (map(.[0]) | unique | length > 1) then -line.b | atan else 1.5707963267948966 end) |
-        add / 2 * 180 / 3.141592653589793' -s
+            if $cohesive and length <= 5 then null
+            else line as $l | if $cohesive and (map(.[1] - $l.a - $l.b * .[0] | . * .) | mean | sqrt) > 0.006 then null else -$l.b | atan * 180 / 3.141592653589793 end end) |
+        if any(. == null) then "none" else mean end' -rs --argjson cohesive "$2"
 }
 
-# of the heap's top over that of the block, which was as high as the random start's box
-top() { nsd-info --last -p "$out/$1" | jq -s --argjson h "$half" 'map(.x[1] + .radius) | max / (1.1 * $h)'; }
+echo "mu_r slope seed" >"$out/rolling.tsv"
+echo "bond slope seed" >"$out/cohesion.tsv"
+for s in "${seeds[@]}"; do
+    for r in "${rolls[@]}"; do
+        heap "roll-$r.h5" "$s" "if $r > 0 then .rolling = { mu_r: ($r * 0.002) } else . end"
+        echo "$r $(slope "roll-$r.h5" false) $s" >>"$out/rolling.tsv"
+    done
+    cp "$out/roll-0.h5" "$out/bond-0.h5"
+    for b in "${bonds[@]}"; do
+        [ "$b" = 0 ] || heap "bond-$b.h5" "$s" "if $b > 0 then .cohesion = { force: ($b * $weight), range: 2e-5 } else . end"
+        echo "$b $(slope "bond-$b.h5" "$([ "$b" = 0 ] && echo false || echo true)") $s" >>"$out/cohesion.tsv"
+    done
+done
 
-echo "mu_r slope" >"$out/rolling.tsv"
-for r in "${rolls[@]}"; do
-    heap "roll-$r.h5" "if $r > 0 then .rolling = { mu_r: ($r * 0.002) } else . end"
-    echo "$r $(slope "roll-$r.h5")" >>"$out/rolling.tsv"
+# The curves: of values at which no heap is a lump. x, mean, error; and how many of the heaps are lumps
+slopes='def slopes: split("\n")[1:] | map(select(. != "") | split(" ") | map(tonumber? // null) | .[:2]);'
+for t in rolling cohesion; do
+    with "$slopes"' slopes | group_by(.[0])[] | (map(select(.[1] == null)) | length) as $lumps |
+        if $lumps == 0 then spread[] | "\(.[0]) \(.[1]) \(.[2] // 0)" else "# \(.[0][0]) \($lumps / length)" end' -Rsr "$out/$t.tsv" >"$out/$t-mean.tsv"
 done
-echo "bond slope top" >"$out/cohesion.tsv"
-for b in "${bonds[@]}"; do
-    heap "bond-$b.h5" "if $b > 0 then .cohesion = { force: ($b * $weight), range: 2e-5 } else . end"
-    echo "$b $(slope "bond-$b.h5") $(top "bond-$b.h5")" >>"$out/cohesion.tsv"
-done
+sed -n 's/^# //p' "$out/cohesion-mean.tsv" >"$out/lumps.tsv"
 curve
 picture -c speed "$out/roll-${rolls[-1]}.h5"
-with 'def falls: [range(1; length) as $i | select(.[$i][1] < .[$i - 1][1] - 3)] | length;
-    ($rolling | numbers) as $r | ($cohesion | numbers) as $c |
-    row("dry"; $r[0][1]),
-    row("rolling"; $r[-1][1] - $r[0][1]),
-    row("steps that fall"; ($r | falls)),
-    (if ($r | length) > 4 then row("regimes"; ($r[-1][1] - $r[-3][1]) / ($r[-3][1] - $r[0][1])) else empty end),
-    row("cohesive"; ($c[1:] | map(.[1]) | max) - $c[0][1]),
-    (if ($c | length) > 3 then row("bond 1"; $c[1][1] - $c[0][1]) else empty end),
-    row("block"; $c[-1][2])' \
+with "$slopes"'
+    def curve: map(select(.[1] != null)) | spread;
+    def falls: [range(1; length) as $i | select(.[$i][1] < .[$i - 1][1])] | length;
+    def at($x): map(select(.[0] == $x) | .[1]);
+    ($rolling | slopes) as $r | ($cohesion | slopes) as $c | ($r | curve) as $rc |
+    # a Bond number counts where no heap is a lump
+    ($c | group_by(.[0]) | map(select(all(.[1] != null))) | add // []) as $heaps | ($heaps | curve) as $cc |
+    row("dry"; $r | at(0)),
+    row("steps that fall"; $rc | falls),
+    (if ($rc | length) > 4 then row("regimes"; ($rc[-1][1] - $rc[-3][1]) / ($rc[-3][1] - $rc[0][1])) else empty end),
+    row("bond steps that fall"; $cc | falls),
+    (if ($c | at(1)) != [] then row("bond 1"; [$c | at(1), at(0)] | transpose | map(if all(. != null) then .[0] - .[1] else null end)) else empty end),
+    row("lump"; ($c | map(.[0]) | max) as $most | $c | map(select(.[0] == $most) | if .[1] == null then 1 else 0 end) | mean)' \
     -n --rawfile rolling "$out/rolling.tsv" --rawfile cohesion "$out/cohesion.tsv" | results
