@@ -53,7 +53,7 @@ static int read_names(jnode n, struct scene *s, bool *in)
     size_t count = 0;
     if (json_is_string(n.json)) return add_named(n, s, in);
     if (json_node_array(n, &count)) return 1;
-    if (!count) return json_node_fault(n, "wants the name of walls, or several");
+    if (!count) return json_node_fault(n, "needs the name of walls, or several");
     for (size_t k = 0; k < count; k++)
         if (add_named(json_node_item(&n, k), s, in)) return 1;
     return 0;
@@ -131,7 +131,7 @@ static int read_travel(jnode n, struct scene *s, const bool *in)
     if (!n.json) return 0;
     for (int32_t w = 0; w < s->walls; w++) walls += in[w];
     if (json_node_array(n, &count)) return 1;
-    if (count != walls) return json_node_fault(n, "wants %zu numbers, one for each wall", walls);
+    if (count != walls) return json_node_fault(n, "needs %zu numbers, one for each wall", walls);
     for (int32_t w = 0; w < s->walls; w++)
         if (in[w] && json_node_number(json_node_item(&n, k++), J_ANY, &s->wall[w].load.travel))
             return 1;

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Bodies that meet within a step, however far they go in it: impacts in closed form, a row, a gas against its motion from
 # impact to impact, a shot into a bed; no shape goes through another; the same bytes for threads, ranks and resumed runs.
-# shellcheck source=tests/support/tap.sh disable=SC2154 # tap.sh sets tmp
+# shellcheck source=tests/support/tap.sh disable=SC2154,SC2016 # jq, tap.sh sets tmp
 . tests/support/tap.sh
 
 scene() # BODIES [MORE]: into $tmp/in.h5
