@@ -330,7 +330,7 @@ lint-manuals: $(COOKBOOK)
 
 lint-scripts:
 	shellcheck $(SCRIPTS)
-	shellcheck -s bash -S warning $(wildcard cookbook/*/*.sh)
+	shellcheck -s bash -S warning -x $(wildcard cookbook/*/*.sh scripts/gallery/*.sh)
 
 # With the names by which compilers for this machine choose between texts; of all combinations, which nobody
 # compiles, cppcheck would look at twelve. Then what is compiled for wider vectors.

@@ -12,6 +12,7 @@ out=$(cd "$1" && pwd)
 pick() { if [ -n "${QUICK:-}" ]; then echo "$1"; else echo "$2"; fi; }
 
 # seeds of the random numbers, one run for each; SEEDS in the environment has others
+# shellcheck disable=SC2034 # of the experiments
 read -ra seeds <<<"${SEEDS:-$(pick 1 '1 2 3')}"
 
 # scene NAME [jq's arguments]: scenes/NAME.json as a filter changes it. Relative names start at the folder.

@@ -18,9 +18,6 @@ def power: map(map(log)) | line | .a |= exp;
 # the rows of numbers of a table, separated by blanks or tabs
 def numbers: split("\n") | map(select(test("^[-0-9]")) | split("[ \t]"; null) | map(tonumber));
 
-# of places where discs of 1 cm end, the last before a gap of more than a disc: what touches on is part of the heap
-def front: sort | first(range(1; length) as $i | select(.[$i] - .[$i - 1] > 0.013) | .[$i - 1]) // .[-1];
-
 # a table with a line of names, separated by tabs, as nsd-stat --tsv writes it
 def table: split("\n") | map(select(. != "") | split("\t")) | .[0] as $names | .[1:] |
   map([., $names] | transpose | map({(.[1]): (.[0] | tonumber? // null)}) | add);
