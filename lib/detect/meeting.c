@@ -213,10 +213,12 @@ int meeting_part(double *part, const struct packing *p, const bool *of,
     s.sought = (1 - p->theta) * rest;
     *part = rest;
     if (!list->n) return 0;
-    const double most = dmin(rest, cell_limit(p, list));
+    const double most = dmin(rest, cell_limit(p, list)), horizon = horizon_of(list);
+    if (!(most > 0 && horizon > 0))
+        return 0; // squares of velocities overflow: the whole step diverges
     bool good = !room_for(&s.room, p, why), ends = false;
     // paths are looked at as far as it takes: a meeting after the time t leaves a substep of more than t/2
-    for (double time = horizon_of(list); good && !ends; time *= 4) {
+    for (double time = horizon; good && !ends; time *= 4) {
         s.rest = s.part = dmin(time, most);
         good = !fast_pairs(p, of, list, (struct window){ 0, s.rest }, look, &s, why);
         ends = s.part <= 0.5 * s.rest || s.rest >= most;
