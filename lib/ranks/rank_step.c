@@ -654,12 +654,14 @@ static int choose(struct rank_step *y, struct substeps *s, struct turn *turn, st
 {
     struct comm *t = y->part.comm;
     struct substep_choice c = step_substep(s, o);
-    turn->steps = s, turn->meets = c.meets;
+    turn->steps = s;
     if (c.meets && neighbours_surfaces(&y->near, &y->part.p, why)) fail(y, why);
     if (c.meets && by_all) choose_here(y, &c, s);
     if (c.meets && !by_all && !t->me && step_substep_whole(&c, s, whole, y->near.surface, why))
         return why->status;
     if (c.meets && !by_all) MPI_Bcast(&c.length, 1, MPI_DOUBLE, 0, t->mpi);
+    step_substep_fit(&c, s);
+    turn->meets = c.meets;
     substeps_choose(s, c.length);
     return 0;
 }

@@ -171,6 +171,16 @@ struct substep_choice step_substep(const struct substeps *s, const struct step_o
                                     substeps_rest(s) };
 }
 
+void step_substep_fit(struct substep_choice *c, const struct substeps *s)
+{
+    const double end = dmax(fabs(s->t), fabs(s->t + s->dt)), rest = substeps_rest(s),
+                 shortest = 2 * (nextafter(end, INFINITY) - end);
+    if (c->length >= rest) return;
+    c->meets = c->meets && c->length >= shortest;
+    c->length = dmax(c->length, shortest);
+    if (rest - c->length < shortest) c->length = rest;
+}
+
 int step_substep_whole(struct substep_choice *c, const struct substeps *s, struct packing *p,
                        const struct surface *surface, struct why *why)
 {
@@ -313,6 +323,7 @@ static int choose_alone(struct alone *a, struct substeps *steps, struct packing 
     if (c.meets && !neighbours_surfaces(near, p, why))
         step_substep_whole(&c, steps, p, near->surface, why);
     neighbours_free(&once);
+    step_substep_fit(&c, steps);
     a->makers.meets = c.meets;
     substeps_choose(steps, c.length);
     return why->status;

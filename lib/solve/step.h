@@ -127,5 +127,7 @@ struct substep_choice step_substep(const struct substeps *s, const struct step_o
    through boundaries before contacts are sought. p is in between given other dt. */
 int step_substep_whole(struct substep_choice *c, const struct substeps *s, struct packing *p,
                        const struct surface *surface, struct why *why);
+/* No shorter than twice the spacing of numbers at the time of the step; what bodies pass for that is counted. */
+void step_substep_fit(struct substep_choice *c, const struct substeps *s);
 
 #endif

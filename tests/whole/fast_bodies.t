@@ -99,6 +99,14 @@ theory=$(jq -n --argjson e "$energy" '216 as $n | (0.24 * 0.24 * 0.24) as $V | (
     ((1 - $phi / 2) / pow(1 - $phi; 3)) as $g | $n / 2 * 4 * ($n / $V) * 4e-4 * $g * (3.141592653589793 * $e / (3 * $n) | sqrt) * 0.01')
 ok "$rate pairs meet in a step, by kinetic theory $theory impacts" jq -n -e "($rate / $theory - 1 | fabs) < 0.08"
 
+# ---- times whose numbers are too far apart for the substep: the run goes on, and says what passed ----
+
+scene "[{ x: [0, 0, 0], radius: 0.01, v: [1e14, 0, 0] }, { x: [0.1, 0, 0], radius: 0.01 }]" "{ time: 1e6, e_n: 1 }"
+ok "a meeting that the time cannot resolve does not end the run" nsd-step -n 2 -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
+like "and is counted" "$(cat "$tmp/err")" ' 1 went through a wall or another body'
+scene "[{ x: [0, 0, 0], radius: 0.01, v: [1e6, 0, 0] }, { x: [0.1, 0, 0], radius: 0.01 }]" "{ time: 1e6, e_n: 1 }"
+ok "one that it can resolve is met" jq -n -e --argjson b "$(went 1)" '$b | (.[0].v[0] | fabs) < 1e-3 and (.[1].v[0] / 1e6 - 1 | fabs) < 1e-9'
+
 # ---- shots ----
 
 # a ball of 0.05 of the others' diameter into a fixed lattice, and into one that rests: it stays between the first layers
