@@ -44,15 +44,9 @@ static int prepare_foreign(struct problem *p, struct frame *f, struct why *why)
     return 0;
 }
 
-/* Is it of a step in substeps, whose reactions are no solution of one problem? */
-static bool is_summed(const struct frame *f)
-{
-    return f->packed && f->moved && f->contacts.n && f->contacts.found[0].status == STATUS_SUMMED;
-}
-
 static void print(struct frame *f, struct why *why)
 {
-    if (is_summed(f)) {
+    if (f->packed && f->moved && contacts_summed(&f->contacts)) {
         json_line(json_pack("{s:I, s:b}", "step", (json_int_t)f->packing.step, "substeps", 1));
         return;
     }

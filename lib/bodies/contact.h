@@ -119,6 +119,12 @@ static inline vec3 contact_t2(const struct contact *c)
     return v3_cross(c->n, c->t1);
 }
 
+/* Are they of a step in substeps, whose reactions are sums and no solution of one problem? */
+static inline bool contacts_summed(const struct contacts *s)
+{
+    return s->found && s->n && s->found[0].status == STATUS_SUMMED;
+}
+
 /* A vector (n, t1, t2) of the contact's basis, in space */
 static inline vec3 contact_in_space(const struct contact *c, const double r[3])
 {

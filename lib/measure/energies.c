@@ -63,13 +63,17 @@ static int energies_rows(struct table *t, const struct snapshot *s, struct why *
         potential -= times * p->mass[i] * v3_dot(p->g, p->x[i]);
     }
     double *step = at + 5, stored = 0;
-    bool solved = s->s && (s->s->found || !s->s->n);
-    if (solved && !s->only.bodies && add_step(&step, s, &stored, why)) return why->status;
-    if (!solved || s->only.bodies) {
-        table_null(t, solved ? "no dissipation: contacts are not divided among groups of bodies"
-                             : "no dissipation: the document has no solved contacts");
-        if (p->law) stored = NAN;
-    }
+    const char *lacks = NULL;
+    if (!s->s || (!s->s->found && s->s->n))
+        lacks = "the document has no solved contacts";
+    else if (s->only.bodies)
+        lacks = "contacts are not divided among groups of bodies";
+    else if (contacts_summed(s->s))
+        lacks = "the step was made in substeps, nsd-step --log has their dissipation";
+    else if (add_step(&step, s, &stored, why))
+        return why->status;
+    if (lacks) table_null(t, "no dissipation: %s", lacks);
+    if (lacks && p->law) stored = NAN;
     put(&at, kinetic), put(&at, rotation), put(&at, potential), put(&at, stored);
     put(&at, kinetic + rotation + potential + stored);
     return 0;

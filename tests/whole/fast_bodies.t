@@ -99,6 +99,15 @@ theory=$(jq -n --argjson e "$energy" '216 as $n | (0.24 * 0.24 * 0.24) as $V | (
     ((1 - $phi / 2) / pow(1 - $phi; 3)) as $g | $n / 2 * 4 * ($n / $V) * 4e-4 * $g * (3.141592653589793 * $e / (3 * $n) | sqrt) * 0.01')
 ok "$rate pairs meet in a step, by kinetic theory $theory impacts" jq -n -e "($rate / $theory - 1 | fabs) < 0.08"
 
+# ---- what cannot be said of the sums of substeps ----
+
+scene "[{ x: [0, 0, 0], radius: 0.01, v: [400, 0, 0] }, { x: [0.1, 0, 0], radius: 0.01 }]" "{ e_n: 0.5 }"
+nsd-step -n 1 --contacts --log "$tmp/log" -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
+is "nsd-stat has no dissipation of a divided step, and says why" \
+    "$(nsd-stat -m energy "$tmp/out.h5" | jq -c '[.energy.dissipated, (.why.energy | test("substeps"))]')" '[null,true]'
+ok "--log has it: (1 - e^2)/4 m v^2 of two equal balls" jq -e --argjson m "$(nsd-info -p "$tmp/out.h5" | jq -s '.[1].mass')" \
+    '(.balance.dissipation | fabs) / ((1 - 0.25) / 4 * $m * 160000) - 1 | fabs < 1e-9' "$tmp/log"
+
 # ---- times whose numbers are too far apart for the substep: the run goes on, and says what passed ----
 
 scene "[{ x: [0, 0, 0], radius: 0.01, v: [1e14, 0, 0] }, { x: [0.1, 0, 0], radius: 0.01 }]" "{ time: 1e6, e_n: 1 }"
