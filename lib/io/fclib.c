@@ -133,14 +133,26 @@ bool fclib_in(const struct source *source)
     return source_has(source, "/fclib_global") || source_has(source, "/fclib_local");
 }
 
+int fclib_none(const struct source *source, struct why *why)
+{
+    static const char read[] =
+        "only /fclib_local and /fclib_global are read, without rolling friction";
+    const char *path;
+    const uint64_t *shape;
+    for (int64_t k = 0; source_object(source, k, &path, &shape); k++)
+        if (!strncmp(path, "/fclib", 6))
+            return why_set(why, EX_DATAERR, "%.*s: a kind of FCLIB problem that is not solved: %s",
+                           (int)(1 + strcspn(path + 1, "/")), path, read);
+    return why_set(why, EX_DATAERR, "holds neither particles nor an FCLIB problem");
+}
+
 int fclib_read(struct fclib *F, struct source *source, struct why *why)
 {
     struct raw R = { 0 };
     *F = (struct fclib){
         .global = source_has(source, "/fclib_global")
     }; // libfclib, too, looks for the global one first
-    if (!fclib_in(source))
-        return why_set(why, EX_DATAERR, "/fclib_local: there is none, and no /fclib_global");
+    if (!fclib_in(source)) return fclib_none(source, why);
     int e = F->global ? read_global(&R, source, why) : read_local(&R, source, why);
     if (!e && F->global) e = condense(&R.global, &F->motion, &R.W, R.q, why);
     if (!e) e = delassus_init(&F->W, R.d, R.n, &R.W, why);

@@ -26,6 +26,8 @@ struct source;
 
 /* Does the document hold a problem, /fclib_local or /fclib_global? */
 bool fclib_in(const struct source *source);
+/* There is none: which other FCLIB group there is. Returns EX_DATAERR. */
+int fclib_none(const struct source *source, struct why *why);
 int fclib_read(struct fclib *problem, struct source *source, struct why *why);
 /* r[n d] of the stored /solution; zeros where there is none. */
 int fclib_load_solution(const struct fclib *problem, struct source *source, double *r,

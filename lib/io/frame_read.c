@@ -68,7 +68,7 @@ int frame_read_open(struct frame_read *r, struct source *source, struct why *why
         if (source_has(source, "/contacts") && contact_rows_open(&r->contacts, source, why))
             return why->status;
     } else if (!fclib_in(source)) {
-        return why_set(why, EX_DATAERR, "holds neither particles nor an FCLIB problem");
+        return fclib_none(source, why);
     }
     if (report_rows_open(&r->reports, source, why)) return why->status;
     r->reports.one_frame = r->frames == 1;

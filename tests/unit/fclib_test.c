@@ -645,7 +645,7 @@ static const struct wrong wrongs[] = {
     { "q says that it is huge", "/fclib_local/vectors/q", 'h', 0, { 0 }, "--unpack allows more" },
     { "W/i says that it is huge", "/fclib_local/W/i", 'h', 0, { 0 }, "--unpack allows more" },
     { "a mixed problem", "/fclib_local/V", 'g', 0, { 0 }, "mixed" },
-    { "neither local nor global", "/fclib_local", '-', 0, { 0 }, "none" },
+    { "neither local nor global", "/fclib_local", '-', 0, { 0 }, "neither particles nor" },
     { "no M", "/fclib_global/M", '-', 0, { 0 }, "M/m" },
     { "no f", "/fclib_global/vectors/f", '-', 0, { 0 }, "vectors/f" },
     { "no b beside G", "/fclib_global/vectors/b", '-', 0, { 0 }, "vectors/b" },
