@@ -245,8 +245,11 @@ static int read_own(struct stream *s, struct image *im, size_t have, struct why 
     im->size = im->room = have;
     if (im->unfinished) return let_grow(s, im), 0;
     if (have < want)
-        return why_set(why, EX_DATAERR, "%s: document %lld: truncated, %zu of %zu bytes", s->name,
-                       (long long)s->in_file + 1, have, want);
+        return why_set(why, EX_DATAERR,
+                       "%s: document %lld: %zu bytes, where its header says %zu: truncated, or "
+                       "rewritten (h5repack?): then tail -c +513 makes it readable, see "
+                       "nsd-format(5)",
+                       s->name, (long long)s->in_file + 1, have, want);
     if (is != crc)
         return refuse(s, why,
                       "damaged: its checksum is wrong (changed on purpose? see nsd-format(5))");
