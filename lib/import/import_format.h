@@ -45,6 +45,12 @@ enum import_column {
     IMPORT_DENSITY,
     IMPORT_TYPE,
     IMPORT_ID,
+    IMPORT_SHAPEX, /* of a superquadric or an ellipsoid: */
+    IMPORT_SHAPEY, /* half axes, or axes */
+    IMPORT_SHAPEZ,
+    IMPORT_BLOCKINESS1, /* and exponents, of an ellipsoid 2 */
+    IMPORT_BLOCKINESS2,
+    IMPORT_MULTISPHERE, /* the clump that it is a part of; < 0: of none */
     IMPORT_COLUMNS,
     IMPORT_OTHER = IMPORT_COLUMNS
 };
@@ -57,13 +63,23 @@ struct import_columns {
     bool has[IMPORT_COLUMNS + 1];
 };
 
-/* By the names that LAMMPS, LIGGGHTS and Yade's users give them. A fault: twice, or too many. */
+/* By the names that LAMMPS, LIGGGHTS and Yade's users give them; a column may come twice, if each line has the same number
+   in both. A fault: too many. */
 int import_name_column(struct import_columns *c, struct words *w, struct word name);
 int import_add_column(struct import_columns *c, struct words *w, enum import_column column);
 /* Are there a place and a size? cure: what the other program has to write */
 int import_check_columns(const struct import_columns *c, struct words *w, const char *cure);
-/* A line of these columns as a ball; places in edges need the head's box. */
+/* A line of these columns as a ball; places in edges need the head's box. A fault, too: the grain is no ball. */
 int import_line(const struct import_columns *c, struct words *w, const struct imported_head *head,
                 struct imported_ball *ball);
+
+/* ---- units: import_units.c ---- */
+
+struct import_units;
+/* The unit system of this name (LAMMPS, command units). A fault: it is none, or one of atoms. */
+int import_find_units(const struct import_units **units, struct words *w, struct word name);
+bool import_are_units(struct word name);
+/* What was read, from the units that the file names to SI */
+void import_to_si(struct imported *to);
 
 #endif

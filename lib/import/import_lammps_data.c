@@ -45,6 +45,7 @@ struct data {
     double lo[3], hi[3], tilt[3];
     bool has[3];
     bool read;          /* the section Atoms */
+    bool masses;        /* there is a section Masses, which spheres have not */
     struct ref *sorted; /* [atoms] by id, for Velocities */
 };
 
@@ -52,6 +53,37 @@ static bool is_section(struct word word)
 {
     for (const char *const *s = sections; *s; s++)
         if (word_is(word, *s)) return word.s[0] >= 'A' && word.s[0] <= 'Z';
+    return false;
+}
+
+/* "units = cgs", which write_data has in the title, "# units cgs" */
+static int read_units(struct data *d)
+{
+    struct words w = *d->w;
+    struct word word;
+    w.comments = false;
+    while (words_next(&w, &word)) {
+        bool said = false, equals = word.n > 0 && strchr("=:", word.s[word.n - 1]);
+        if (equals) word.n--;
+        if (!word_is(word, "units")) continue;
+        if (!equals && words_next(&w, &word))
+            equals = said = word_is(word, "=") || word_is(word, ":");
+        else
+            said = equals;
+        if (said && !words_next(&w, &word)) return soup_fault(w.soup, "units without a name");
+        if (said || import_are_units(word)) return import_find_units(&d->to->units, &w, word);
+    }
+    return 0;
+}
+
+/* What other atom styles have, and spheres have not */
+static const char *const foreign[] = { "ellipsoids", "lines",     "triangles", "bodies", "bonds",
+                                       "angles",     "dihedrals", "impropers", NULL };
+
+static bool is_foreign(struct word word)
+{
+    for (const char *const *s = foreign; *s; s++)
+        if (word_is(word, *s)) return true;
     return false;
 }
 
@@ -74,6 +106,8 @@ static int read_head_line(struct data *d, struct word first)
             return word_fault(w, first, "is no number of atoms");
         d->atoms = (int64_t)x[0];
     }
+    if (n == 1 && x[0] > 0 && is_foreign(word))
+        return word_fault(w, word, "are not of atom_style sphere, of which balls are read");
     for (int k = 0; n == 2 && k < 3; k++) {
         const char lo[] = { "xyz"[k], 'l', 'o', 0 };
         if (!word_is(word, lo)) continue;
@@ -208,13 +242,22 @@ static int read_sections(struct data *d, struct word word)
         struct word style;
         bool atoms = word_is(word, "atoms"), velocities = word_is(word, "velocities");
         d->w->comments = false; // the style behind # belongs to the section
+        bool sphere = false;
         while (words_next(d->w, &style)) {
-            if (!atoms || word_is(style, "#") || word_is(style, "sphere") ||
-                word_is(style, "granular") || word_is(style, "granular/sphere"))
-                continue;
-            return word_fault(d->w, style, "is no atom_style that is read: write spheres");
+            if (style.n && *style.s == '#') style.s++, style.n--;
+            if (!atoms || !style.n) continue;
+            sphere = word_is(style, "sphere") || word_is(style, "granular") ||
+                     word_is(style, "granular/sphere");
+            if (!sphere)
+                return word_fault(d->w, style, "is no atom_style that is read: write spheres");
         }
         d->w->comments = true;
+        d->masses = d->masses || word_is(word, "masses");
+        if (atoms && d->masses && !sphere)
+            return soup_fault(d->w->soup, "Atoms after Masses of types, which atom_style sphere "
+                                          "does not have: write spheres");
+        if (is_foreign(word))
+            return word_fault(d->w, word, "are not of atom_style sphere, of which balls are read");
         if (atoms ? read_atoms(d) : velocities ? read_velocities(d) : 0)
             return d->w->soup->why->status;
         more = skip_section(d->w, &word);
@@ -226,7 +269,9 @@ static int read_data(struct data *d)
 {
     struct word word = { 0 };
     d->w->comments = true;
+    if (read_units(d)) return d->w->soup->why->status;
     while (words_line(d->w)) { // behind the first line, a title
+        if (read_units(d)) return d->w->soup->why->status;
         if (!words_next(d->w, &word)) continue;
         if (is_section(word)) {
             set_box(d);
@@ -244,6 +289,7 @@ static int read(struct imported *to, struct words *w, int64_t k)
     int bad = read_data(&d);
     free(d.sorted);
     if (!bad && !d.read) return soup_fault(w->soup, "no section Atoms (truncated?)");
+    if (!bad) import_to_si(to);
     return bad;
 }
 

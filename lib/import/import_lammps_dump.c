@@ -1,7 +1,8 @@
 /*
  * import/import_lammps_dump.c: the text of the dumps of LAMMPS and LIGGGHTS [docs.lammps.org, dump]: frames one after
  * another, each of items: TIMESTEP, NUMBER OF ATOMS, BOX BOUNDS (straight, tilted, or by its edges), ATOMS with the
- * names of its columns; others are read over.
+ * names of its columns; others are read over. UNITS, which a file may have once, before its first frame, names the unit
+ * system of all.
  */
 #include "import/import_format.h"
 
@@ -16,11 +17,12 @@ static bool looks(const char *bytes, int64_t n)
 }
 
 /* A frame's item, by the first word behind ITEM: */
-enum item { STEP, NUMBER, BOX, ATOMS, OTHER };
+enum item { UNITS, STEP, NUMBER, BOX, ATOMS, OTHER };
 
 static enum item item_of(struct word name)
 {
     return word_is(name, "timestep") ? STEP
+           : word_is(name, "units")  ? UNITS
            : word_is(name, "number") ? NUMBER
            : word_is(name, "box")    ? BOX
            : word_is(name, "atoms")  ? ATOMS
@@ -105,6 +107,15 @@ static int read_atoms(struct imported *to, struct words *w, int64_t n, bool kept
     return 0;
 }
 
+/* The line behind UNITS */
+static int read_units(struct imported *to, struct words *w)
+{
+    struct word name;
+    if (!words_line(w) || !words_next(w, &name))
+        return soup_fault(w->soup, "no units after it (truncated?)");
+    return import_find_units(&to->units, w, name);
+}
+
 /* The next frame. *more: false where there is none. kept: false: it is only gone through. */
 static int read_frame(struct imported *to, struct words *w, bool kept, bool *more)
 {
@@ -128,7 +139,8 @@ static int read_frame(struct imported *to, struct words *w, bool kept, bool *mor
             return w->soup->why->status;
         if (item == NUMBER && read_whole(w, 0, "number of atoms", &n)) return w->soup->why->status;
         if (item == BOX && read_box(&to->head, w)) return w->soup->why->status;
-        if (item == OTHER && !words_line(w)) break; // UNITS, TIME: a line each
+        if (item == UNITS && read_units(to, w)) return w->soup->why->status;
+        if (item == OTHER && !words_line(w)) break; // TIME: a line
     } while (words_line(w));
     return *more ? soup_fault(w->soup, "the frame ends before its atoms (truncated?)") : 0;
 }
@@ -155,6 +167,7 @@ static int read(struct imported *to, struct words *w, int64_t k)
     }
     for (int64_t f = 0; f <= wanted; f++)
         if (read_frame(to, w, f == wanted, &more)) return w->soup->why->status;
+    import_to_si(to);
     return 0;
 }
 

@@ -36,6 +36,7 @@ struct import_said {
 /* While it is read */
 struct imported {
     struct imported_head head;
+    const struct import_units *units; /* that the file names; NULL: SI [import/import_format.h] */
     int64_t room;
     struct imported_ball *ball; /* [head.n] */
 };

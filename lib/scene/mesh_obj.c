@@ -1,7 +1,7 @@
 /*
  * scene/mesh_obj.c: Wavefront's OBJ. [Wavefront, Advanced Visualizer 3.0, appendix B1]
  *
- *     v X Y Z          a corner; behind it a weight or a colour may stand
+ *     v X Y Z          a corner; what is behind it, a weight or a colour, is passed over
  *     f A B C ...      a polygon of corners: A is A/texture/normal, from 1; -1 is the last one so far
  *
  *     o NAME           polygons that follow are of this object
@@ -28,12 +28,9 @@ static bool is_among(struct word word, const char *const *list)
 
 static int read_corner(struct words *w)
 {
-    double x[3], more;
-    struct word word;
+    double x[3];
     for (int k = 0; k < 3; k++)
         if (words_number(w, &x[k])) return 1;
-    while (words_next(w, &word))
-        if (word_number(w, word, &more)) return 1;
     return soup_corner(w->soup, v3(x[0], x[1], x[2]));
 }
 

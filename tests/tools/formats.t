@@ -248,7 +248,7 @@ absurd "no number where one should be" 's/^1 0 0/1 zero 0/' good.dump
 absurd "a place that is not finite" 's/^1 0 0/1 nan 0/' good.dump
 absurd "a box without a volume" 's/^0 1$/1 0/' good.dump
 absurd "a dump without a radius" 's/ radius/ other/' good.dump
-absurd "a column twice" 's/ id x/ x x/' good.dump
+absurd "a column twice, with two numbers" 's/ id x/ x x/' good.dump
 absurd "more words than columns" 's/^1 0 0 0 0.1/& 7/' good.dump
 absurd "a radius of nothing" 's/^1 0 0 0 0.1/1 0 0 0 0/' good.dump
 absurd "two balls of one id" 's/^2 1 0 0/1 1 0 0/' good.dump "id, 1"
@@ -258,6 +258,71 @@ absurd "another style of atoms" 's/sphere/ellipsoid/' good.data
 absurd "a diameter below zero" 's/^1 1 0.2/1 1 -0.2/' good.data
 absurd "a Yade table without a radius" 's/^#format.*/#format x_y_z/' y1.txt
 refuses 65 "a file of nothing that is known" nsd-gen --from README.md
+
+# ---- units, and grains that are no balls ----
+
+sed 's/pp/ff/' "$tmp/good.dump" >"$tmp/apart.dump"
+facts_of() { nsd-gen --from "$1" | nsd-info -p | jq -c "$2"; }
+sed 's/ id x/ id type type x/; s/^[12] [01] 0 0 0.1/1 7 7 &/; s/^1 7 7 1/1 7 7/; s/^1 7 7 2/2 7 7/' "$tmp/apart.dump" >"$tmp/again.dump"
+is "a column twice, with the same numbers, is read" "$(facts_of "$tmp/again.dump" '[.id, .x[0]]' | xargs)" "[1,0] [2,1]"
+units() { { printf 'ITEM: UNITS\n%s\n' "$1"; sed 's/ radius/& vx omegaz density/; s/ 0\.1$/& 3 5 2.5/' "$tmp/apart.dump"; } >"$tmp/units.dump"; }
+# r, v, w, mass: what a length, a mass and a time are in SI, by hand
+for system in si:1:1:1 lj:1:1:1 cgs:1e-2:1e-3:1 micro:1e-6:1e-15:1e-6 nano:1e-9:1e-21:1e-9; do
+    IFS=: read -r name L M T <<<"$system"
+    units "$name"
+    is "$name: radius, place, speed, spin and mass in SI" "$(nsd-gen --from "$tmp/units.dump" | nsd-info -p | jq -s --argjson L "$L" --argjson M "$M" --argjson T "$T" '.[1] |
+        [.radius / (0.1 * $L), .x[0] / $L, .v[0] / (3 * $L / $T), .w[2] / (5 / $T), .mass / (2.5 * $M * 4 / 3 * 3.141592653589793e-3)] | map((. - 1 | fabs) < 1e-12) | all')" true
+done
+for name in real metal electron; do
+    units "$name"
+    refuses 65 "$name: units of atoms" nsd-gen --from "$tmp/units.dump"
+    like "by name, with the cure" "$(cat "$tmp/err")" "line 2: \"$name\" are units of atoms; units si, cgs, micro, nano and lj are read"
+done
+units feet
+refuses 65 "units that are none" nsd-gen --from "$tmp/units.dump"
+{ units cgs; cat "$tmp/units.dump"; sed 's/ radius/& vx omegaz density/; s/ 0\.1$/& 3 5 2.5/' "$tmp/apart.dump"; } >"$tmp/two.dump"
+is "units before the first frame are those of the second, too" "$(facts_of "$tmp/two.dump" '.radius' | xargs)" "0.001 0.001"
+for title in 'LAMMPS data file via write_data, version 29 Aug 2024, timestep = 100, units = cgs' 'a file # units: cgs' 'in cgs # units cgs'; do
+    sed "1s/.*/$title/; s/^1 1 0.2 2500/1 1 0.2 2.5/" "$tmp/good.data" >"$tmp/cgs.data"
+    is "$title: radius and density" "$(facts_of "$tmp/cgs.data" 'select(.id == 1) | [.radius, (.mass / (4 / 3 * 3.141592653589793e-9) | round), .v[2]]')" '[0.001,2500,0.01]'
+done
+sed '2s/.*/# units = real/' "$tmp/good.data" >"$tmp/real.data"
+refuses 65 "units of atoms in a data file" nsd-gen --from "$tmp/real.data"
+is "units of a title that names none" "$(sed '1s/.*/units of the box/' "$tmp/good.data" >"$tmp/box.data"; facts_of "$tmp/box.data" .radius | xargs)" "0.1 0.1"
+grain() { sed "s/ radius/& $1/; s/ 0\.1\$/& $2/" "$tmp/apart.dump" >"$tmp/grain.dump"; }
+while IFS='|' read -r columns numbers said; do
+    grain "$columns" "$numbers"
+    refuses 65 "no ball: $columns $numbers" nsd-gen --from "$tmp/grain.dump"
+    like "by name" "$(cat "$tmp/err")" "$said"
+done <<'END'
+shapex shapey shapez blockiness1 blockiness2|0.1 0.1 0.2 2 2|superquadric .shapex 0.1, shapey 0.1, shapez 0.2.: only balls
+shapex shapey shapez blockiness1 blockiness2|0.1 0.1 0.1 8 8|superquadric .blockiness1 8.: only balls
+shape[0] shape[1] shape[2] quatw|1 2 1 1|ellipsoid or superquadric
+shapex|0.1|shapex, shapey and shapez are needed together
+id_multisphere|3|part of a clump .id_multisphere 3.
+diameter|0.3|a radius 0.1, and a diameter 0.3
+END
+grain 'shapex shapey shapez blockiness1 blockiness2 id_multisphere diameter' '0.1 0.1 0.1 2 2 -1 0.2'
+is "equal axes and exponents of 2 are a ball" "$(facts_of "$tmp/grain.dump" .radius | xargs)" "0.1 0.1"
+sed -i 's/ radius/ other/; s/ diameter/ none/' "$tmp/grain.dump"
+is "whose half axis is the radius" "$(facts_of "$tmp/grain.dump" .radius | xargs)" "0.1 0.1"
+absurd "a hybrid style" 's/# sphere/# hybrid sphere bond/' good.data
+absurd "a style behind # without a blank" 's/# sphere/#full/' good.data
+absurd "bonds" 's/^2 atoms/&\n1 bonds/' good.data
+absurd "ellipsoids in a section" 's/^Velocities/Ellipsoids/' good.data
+absurd "masses of types before Atoms without a style" 's/^Atoms.*/Masses\n\n1 3.5\n\nAtoms/' good.data
+sed 's/^Atoms.*/Atoms #granular/' "$tmp/good.data" >"$tmp/style.data"
+is "a style behind # without a blank" "$(facts_of "$tmp/style.data" .radius | xargs)" "0.1 0.1"
+
+# ---- FCLIB problems of other kinds ----
+
+if has h5py; then
+    for group in fclib_global_rolling fclib_local_rolling; do
+        /usr/bin/python3 -c "import h5py; f = h5py.File('$tmp/rolling.h5', 'w'); f['$group/spacedim'] = [5]; f['info/title'] = 'x'"
+        refuses 65 "$group" nsd-solve "$tmp/rolling.h5"
+        like "is named, with what is read" "$(cat "$tmp/err")" "/$group: a kind of FCLIB problem that is not solved: only /fclib_local and /fclib_global are read"
+    done
+fi
 refuses 66 "a file that is not there" nsd-gen --from "$tmp/nowhere"
 refuses 66 "a directory" nsd-gen --from "$tmp"
 mkfifo "$tmp/fifo"
