@@ -63,19 +63,23 @@ static size_t character(const unsigned char *s, size_t n)
     return length;
 }
 
-const char *name_trouble(const char *text, size_t n)
+const char *name_trouble_of_kind(const char *text, size_t n)
 {
-    bool number = true;
     if (!n) return "is empty";
     if (n > NAME_BYTES) return "is longer than 60 bytes";
     for (size_t i = 0, length; i < n; i += length) {
         if (!(length = character((const unsigned char *)text + i, n - i)))
             return "has a control character, or is not UTF-8";
         if (strchr(",\"\\", text[i])) return "has a comma, a quote or a backslash";
-        number = number && text[i] >= '0' && text[i] <= '9';
     }
-    if (text[0] == ' ' || text[n - 1] == ' ') return "begins or ends with a blank";
-    return number ? "is a number, as walls have without a name" : NULL;
+    return text[0] == ' ' || text[n - 1] == ' ' ? "begins or ends with a blank" : NULL;
+}
+
+const char *name_trouble(const char *text, size_t n)
+{
+    const char *trouble = name_trouble_of_kind(text, n);
+    if (trouble) return trouble;
+    return strspn(text, "0123456789") >= n ? "is a number, as walls have without a name" : NULL;
 }
 
 int32_t names_find(const struct names *s, const char *text, size_t n)

@@ -40,6 +40,8 @@ int names_copy(struct names *to, const struct names *from, struct why *why);
 /* NULL, or what is wrong with a name: it must not be empty, too long, no UTF-8, or a number; commas separate names in
    options, and quotes and backslashes would have to be escaped where names are printed. */
 const char *name_trouble(const char *text, size_t n);
+/* The same of kinds and shapes, which may be numbers */
+const char *name_trouble_of_kind(const char *text, size_t n);
 
 /* The row of a name of n bytes; -1: none */
 int32_t names_find(const struct names *names, const char *text, size_t n);

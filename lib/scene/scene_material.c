@@ -39,9 +39,8 @@ int scene_read_kind(jnode n, const struct scene *s, int32_t *kind)
 
 static int add_kind(jnode n, struct scene *s, const char *name, double density)
 {
-    bool printable = *name; // documents keep names line by line
-    for (const char *c = name; *c; c++) printable &= (unsigned char)*c >= ' ';
-    if (!printable) return json_node_fault(n, "a kind needs a name without control characters");
+    const char *trouble = name_trouble_of_kind(name, strlen(name));
+    if (trouble) return json_node_fault(n, "the name of a kind %s", trouble);
     s->kind[s->kinds] = (struct scene_kind){ strdup(name), density };
     if (!s->kind[s->kinds].name) return why_set(n.in->why, EX_SOFTWARE, "no memory for a kind");
     s->kinds++;

@@ -492,10 +492,8 @@ int scene_read_shapes(jnode o, struct scene *s)
     {
         jnode n = json_node_key(&o, name);
         if (!strcmp(name, "comment")) continue;
-        bool printable = *name; // documents keep names line by line
-        for (const char *c = name; *c; c++) printable &= (unsigned char)*c >= ' ';
-        if (!printable)
-            return json_node_fault(n, "a shape needs a name without control characters");
+        const char *trouble = name_trouble_of_kind(name, strlen(name));
+        if (trouble) return json_node_fault(n, "the name of a shape %s", trouble);
         if (!strcmp(name, "ball")) return json_node_fault(n, "a ball is a ball");
         if (read_shape(n, s, name)) return 1;
     }
