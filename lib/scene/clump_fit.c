@@ -1,6 +1,7 @@
 #include "scene/clump_fit.h"
 
 #include "scene/clump_grid.h"
+#include "scene/line_crossings.h"
 #include "scene/mesh_shape.h"
 
 #include <stdlib.h>
@@ -10,8 +11,13 @@ enum {
     SAMPLES_MOST = 100000, /* places of the surface by which the distance is judged */
     DIRECTIONS = 200,      /* places of each ball */
     CLIMBS = 20,           /* steps by which a ball moves from its point of the grid, at most */
-    ROUNDS = 3             /* of Newton for the volume: 1e-5 is left */
+    ROUNDS = 3,            /* of Newton for the volume: 1e-5 is left, */
+    ROUNDS_MORE = 40       /* or, where the balls grow much, of a search between bounds */
 };
+
+/* A clump that is farther from the surface stands for another body: of its volume, and as in struct clump_errors. One ball
+   for a cube has moments 0.04 and a distance of 0.28; balls that leave out a part have 0.5 and more. */
+static const double VOLUME_MOST = 1e-3, MOMENTS_MOST = 0.15, DISTANCE_MOST = 0.4;
 
 struct fit {
     struct clump_grid grid;
@@ -43,7 +49,8 @@ static int moments_of(struct solid *out, const struct mesh *m, struct why *why)
     if (why->status) return why->status;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < i; j++) out->second[i][j] = out->second[j][i]; // to the last bit
-    if (out->volume < 0) return why_set(why, EX_DATAERR, "is turned inside out");
+    if (out->volume < 0)
+        return why_set(why, EX_DATAERR, "is turned inside out: turn its faces outward");
     return out->volume > 0 && v3_finite(out->centre) ? 0
                                                      : why_set(why, EX_DATAERR, "has no volume");
 }
@@ -143,7 +150,8 @@ static vec3 climb(const struct fit *f, vec3 c, double *r)
             const double s = way & 1 ? step : -step;
             const vec3 to =
                 v3_add(c, v3(way / 2 == 0 ? s : 0, way / 2 == 1 ? s : 0, way / 2 == 2 ? s : 0));
-            if (v3_norm(v3_sub(to, from)) > f->grid.h) continue;
+            // within the ball: not through the surface
+            if (v3_norm(v3_sub(to, from)) > f->grid.h || step >= *r) continue;
             const double d = clump_grid_distance(&f->grid, to, *r + 2 * step);
             if (d > *r * (1 + 1e-9)) c = to, *r = d, better = true;
         }
@@ -152,14 +160,16 @@ static vec3 climb(const struct fit *f, vec3 c, double *r)
     return c;
 }
 
-static void take(struct fit *f, vec3 c, double r)
+/* One more ball, unless it fills nothing */
+static bool take(struct fit *f, vec3 c, double r)
 {
+    if (!count(f, c, r, true)) return false;
     f->centre[f->balls] = c, f->radius[f->balls++] = r;
-    count(f, c, r, true);
     for (int64_t k = 0; k < f->samples; k++)
         f->gap[k] = fmin(f->gap[k], v3_norm(v3_sub(f->sample[k], c)) - r);
     for (int64_t k = 0; k < f->grid.points; k++)
         f->field[k] = fmin(f->field[k], v3_norm(v3_sub(clump_grid_at(&f->grid, k), c)) - r);
+    return true;
 }
 
 static int by_value(const void *one, const void *other)
@@ -207,7 +217,11 @@ static int choose(struct fit *f, const struct clump_limits *limits, struct why *
         }
         if (!(top->gain > 0)) break;
         c = climb(f, c, &r);
-        take(f, c, r);
+        if (!take(f, c, r)) {
+            top->gain = 0;
+            sift(heap, n, 0);
+            continue;
+        }
         if (limits->error > 0 && farthest(f, growth_of(f)) <= limits->error * f->reach) break;
     }
     free(heap);
@@ -225,6 +239,30 @@ static int make_shape(struct shape *s, const struct fit *f, double growth, struc
     return 0;
 }
 
+static int set_growth(struct shape *s, struct solid *balls, const struct fit *f, double growth,
+                      struct why *why)
+{
+    for (int32_t i = 0; i < f->balls; i++) s->ball[i] = f->radius[i] + growth;
+    return solid_of(balls, s, 3, why);
+}
+
+/* Where Newton has not found the volume: between no growth and balls that are larger than the surface */
+static int search_growth(struct shape *s, struct solid *balls, const struct fit *f, double volume,
+                         struct why *why)
+{
+    double lo = 0, hi = 2 * f->reach, below = 0, above = 0;
+    if (set_growth(s, balls, f, hi, why)) return why->status;
+    above = balls->volume;
+    for (int k = 0; k < ROUNDS_MORE && fabs(balls->volume / volume - 1) > 0.1 * VOLUME_MOST; k++) {
+        const double share = fmin(0.9, fmax(0.1, (volume - below) / (above - below)));
+        const double growth = lo + share * (hi - lo);
+        if (set_growth(s, balls, f, growth, why)) return why->status;
+        *(balls->volume < volume ? &lo : &hi) = growth;
+        *(balls->volume < volume ? &below : &above) = balls->volume;
+    }
+    return 0;
+}
+
 /* The radii grow until the balls have the volume; d volume / d growth is about the surface's area. */
 static int grow(struct shape *s, struct solid *balls, struct fit *f, const struct solid *of,
                 struct why *why)
@@ -237,6 +275,8 @@ static int grow(struct shape *s, struct solid *balls, struct fit *f, const struc
         growth = fmax(-0.5 * least, growth + (of->volume - balls->volume) / area);
         for (int32_t i = 0; i < f->balls; i++) s->ball[i] = f->radius[i] + growth;
     }
+    if (!why->status && fabs(balls->volume / of->volume - 1) > VOLUME_MOST)
+        search_growth(s, balls, f, of->volume, why);
     return why->status;
 }
 
@@ -300,18 +340,35 @@ static int prepare(struct fit *f, const struct solid *of, int32_t balls, struct 
     return sample_surface(f, why);
 }
 
+static int judge(const struct clump_errors *e, struct why *why)
+{
+    if (fabs(e->volume) <= VOLUME_MOST && e->moments <= MOMENTS_MOST &&
+        e->distance <= DISTANCE_MOST)
+        return 0;
+    return why_set(
+        why, EX_DATAERR,
+        "is not what %d balls fill: volume %+.2g, distance %.2g of the radius around it, "
+        "moments %.2g of their sum, and %g, %g, %g are allowed: more balls, or thicker "
+        "walls",
+        e->balls, e->volume, e->distance, e->moments, VOLUME_MOST, DISTANCE_MOST, MOMENTS_MOST);
+}
+
 int clump_fit(struct shape *s, struct solid *of, const struct mesh *m,
               const struct clump_limits *limits, struct clump_errors *errors, struct why *why)
 {
     struct fit f = { .mesh = m };
     struct solid got = { 0 };
-    if (mesh_check(m, 3, why) || mesh_closed(m, why) || moments_of(of, m, why)) return why->status;
+    if (mesh_check(m, 3, why) || mesh_closed(m, why) || moments_of(of, m, why) ||
+        crossings_judge(m, why))
+        return why->status;
     if (!prepare(&f, of, limits->balls, why) && !choose(&f, limits, why) &&
-        !grow(s, &got, &f, of, why))
+        !grow(s, &got, &f, of, why)) {
         *errors = (struct clump_errors){ .balls = f.balls,
                                          .volume = got.volume / of->volume - 1,
                                          .distance = distance_of(&f, s) / f.reach,
                                          .moments = moments_error(&got, of) };
+        judge(errors, why);
+    }
     if (why->status) shape_free(s);
     clump_grid_free(&f.grid);
     free(f.sample), free(f.gap), free(f.field), free(f.sorted), free(f.covered);

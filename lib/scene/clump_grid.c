@@ -1,39 +1,15 @@
 #include "scene/clump_grid.h"
 
 #include "geometry/surface_tree.h"
+#include "scene/line_crossings.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { INSIDE_LEAST = 200, CROSSINGS_MOST = 1 << 25 };
+enum { INSIDE_LEAST = 200 };
 
 /* Shares of h by which lines pass beside what surfaces have at round numbers */
 static const double ASIDE[3] = { 0.4142135623730951, 0.7320508075688772, 0.2360679774997898 };
-
-/* Where a line along x goes through a triangle; way: +1 out of the body, -1 into it */
-struct crossing {
-    int32_t line, way;
-    double x;
-};
-
-struct crossings {
-    int64_t n, room;
-    struct crossing *c;
-};
-
-static int add(struct crossings *t, struct crossing c, struct why *why)
-{
-    if (t->n == CROSSINGS_MOST)
-        return why_set(why, EX_DATAERR, "has too many triangles above one another");
-    if (t->n == t->room) {
-        int64_t room = t->room ? 2 * t->room : 4096;
-        struct crossing *more = realloc(t->c, (size_t)room * sizeof *more);
-        if (!more) return why_set(why, EX_SOFTWARE, "no memory for a clump");
-        t->c = more, t->room = room;
-    }
-    t->c[t->n++] = c;
-    return 0;
-}
 
 /* Of the points along an axis (0, 1, 2) those, lo .. hi, that may be in [a, b] (m) */
 static void span(const struct clump_grid *g, int axis, double a, double b, int *lo, int *hi)
@@ -42,38 +18,6 @@ static void span(const struct clump_grid *g, int axis, double a, double b, int *
     const int n = g->n[axis];
     *lo = (int)fmax(0, fmin(n, ceil((a - from[axis]) / g->h)));
     *hi = (int)fmax(-1, fmin(n - 1, floor((b - from[axis]) / g->h)));
-}
-
-static int cross(struct crossings *t, const struct clump_grid *g, const vec3 v[3], struct why *why)
-{
-    int j0, j1, k0, k1;
-    const vec3 lo = v3_min(v[0], v3_min(v[1], v[2])), hi = v3_max(v[0], v3_max(v[1], v[2]));
-    span(g, 1, lo.y, hi.y, &j0, &j1);
-    span(g, 2, lo.z, hi.z, &k0, &k1);
-    const vec3 n = v3_cross(v3_sub(v[1], v[0]), v3_sub(v[2], v[0]));
-    for (int k = k0; k <= k1 && n.x != 0; k++)
-        for (int j = j0; j <= j1; j++) {
-            const double y = g->origin.y + j * g->h, z = g->origin.z + k * g->h;
-            bool in = true;
-            for (int e = 0; e < 3; e++) {
-                const vec3 a = v[e], b = v[(e + 1) % 3];
-                const double side = (b.y - a.y) * (z - a.z) - (b.z - a.z) * (y - a.y);
-                in = in && (n.x > 0 ? side > 0 : side < 0);
-            }
-            if (!in) continue;
-            const double x = v[0].x - (n.y * (y - v[0].y) + n.z * (z - v[0].z)) / n.x;
-            if (add(t, (struct crossing){ k * g->n[1] + j, n.x > 0 ? 1 : -1, x }, why))
-                return why->status;
-        }
-    return 0;
-}
-
-static int by_place(const void *one, const void *other)
-{
-    const struct crossing *a = one, *b = other;
-    if (a->line != b->line) return a->line < b->line ? -1 : 1;
-    if (a->x != b->x) return a->x < b->x ? -1 : 1;
-    return a->way - b->way;
 }
 
 /* A line's points between where it goes in and where it comes out, all at depth -1 */
@@ -98,17 +42,13 @@ static void fill_line(struct clump_grid *g, const struct crossing *c, int64_t n)
 static int find_inside(struct clump_grid *g, struct why *why)
 {
     struct crossings t = { 0 };
-    for (int32_t e = 0; e < g->mesh->elements && !why->status; e++) {
-        const int32_t *c = g->mesh->element[e];
-        const vec3 v[3] = { g->mesh->vertex[c[0]], g->mesh->vertex[c[1]], g->mesh->vertex[c[2]] };
-        cross(&t, g, v, why);
-    }
-    if (!why->status && t.n) qsort(t.c, (size_t)t.n, sizeof *t.c, by_place);
+    const struct lines along_x = { .n = { g->n[1], g->n[2] }, .h = g->h, .origin = g->origin };
+    crossings_find(&t, g->mesh, &along_x, why);
     for (int64_t i = 0, end; i < t.n && !why->status; i = end) {
         for (end = i; end < t.n && t.c[end].line == t.c[i].line;) end++;
         fill_line(g, t.c + i, end - i);
     }
-    free(t.c);
+    crossings_free(&t);
     if (!why->status && g->inside < INSIDE_LEAST)
         why_set(why, EX_DATAERR, "is too thin for balls: %lld points of a grid of %d are within it",
                 (long long)g->inside, CLUMP_GRID);

@@ -161,7 +161,11 @@ static int make_shape(struct shape *s, const struct hull *h, const struct loops 
     int32_t n = number ? count_corners(l, h->n, number) : 0;
     if (!number) no_memory(why);
     if (n > SHAPE_VERTICES_MOST)
-        why_set(why, EX_DATAERR, "its hull has more than %d corners", SHAPE_VERTICES_MOST);
+        why_set(why, EX_DATAERR,
+                "its hull has %d corners, and a shape has %d at most: give it fewer triangles "
+                "(decimate "
+                "it), or make a \"clump\" of balls of it",
+                n, SHAPE_VERTICES_MOST);
     if (!why->status && !shape_alloc(s, n, l->faces, corners, why)) {
         for (int64_t i = 0; i < h->n; i++)
             if (number[i] >= 0) s->vertex[number[i]] = x[h->kept[i]];

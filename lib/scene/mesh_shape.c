@@ -2,6 +2,7 @@
 
 #include "geometry/solid.h"
 #include "scene/hull.h"
+#include "scene/line_crossings.h"
 #include "scene/thin.h"
 
 #include <stdlib.h>
@@ -91,7 +92,8 @@ static int judge_convex(const struct mesh *m, const struct shape *s, struct why 
     struct solid hull;
     double volume = volume_of(m);
     if (solid_of(&hull, s, 3, why)) return why->status;
-    if (volume < 0) return why_set(why, EX_DATAERR, "is turned inside out");
+    if (volume < 0) return why_set(why, EX_DATAERR, "is turned inside out: turn its faces outward");
+    if (crossings_judge(m, why)) return why->status;
     if (fabs(volume - hull.volume) > CONVEX * hull.volume)
         return why_set(why, EX_DATAERR,
                        "is not convex: its volume is %.6g m^3, that of its hull %.6g m^3", volume,
@@ -99,12 +101,17 @@ static int judge_convex(const struct mesh *m, const struct shape *s, struct why 
     return 0;
 }
 
-int mesh_shape(struct shape *s, const struct mesh *m, bool hull, struct why *why)
+int mesh_shape(struct shape *s, const struct mesh *m, bool hull, bool *by_hull, struct why *why)
 {
+    *by_hull = false;
     if (m->vertices > CORNERS_MOST)
-        return why_set(why, EX_DATAERR, "has more than %d corners", CORNERS_MOST);
-    if (mesh_check(m, 3, why) || (!hull && mesh_closed(m, why)) ||
-        hull_of_points(s, 3, m->vertices, m->vertex, why))
-        return why->status;
-    return hull ? 0 : judge_convex(m, s, why);
+        return why_set(
+            why, EX_DATAERR,
+            "has %d corners, and a grain has %d at most: give it fewer triangles (decimate it)",
+            m->vertices, CORNERS_MOST);
+    if (mesh_check(m, 3, why)) return why->status;
+    if (!hull && mesh_closed(m, why)) return *by_hull = true, why->status;
+    if (hull_of_points(s, 3, m->vertices, m->vertex, why)) return why->status;
+    *by_hull = !hull && judge_convex(m, s, why);
+    return why->status;
 }

@@ -328,7 +328,7 @@ static int read_mesh(jnode o, struct shape *s, struct solid *as, struct scene *s
 {
     const char *name = NULL;
     double scale = 1;
-    bool hull = false;
+    bool hull = false, by_hull = false;
     int32_t left_out = 0;
     struct mesh mesh = { 0 };
     struct why why = { 0 };
@@ -347,10 +347,10 @@ static int read_mesh(jnode o, struct shape *s, struct solid *as, struct scene *s
         return bad;
     }
     if (!clump && !scene->files->read_mesh(&mesh, scene->files, name, scale, &left_out, &why) &&
-        mesh_shape(s, &mesh, hull, &why) && why.status == EX_DATAERR)
+        mesh_shape(s, &mesh, hull, &by_hull, &why) && why.status == EX_DATAERR)
         json_node_fault(m, "%s: %s%s%s", name, why.text,
                         left_out ? ", without the triangles of no area or repeated" : "",
-                        hull ? "" : " (\"hull\": true asks for less)");
+                        by_hull ? " (\"hull\": true asks for less)" : "");
     else if (why.status)
         json_node_fault(m, "%s", why.text);
     if (why.status) o.in->why->status = why.status;

@@ -1,4 +1,5 @@
-"""clump.py write DIR: closed surfaces as OBJ files: a sphere, a torus, an L of three unit cubes, and wrong ones.
+"""clump.py write DIR: closed surfaces as OBJ files: a sphere, a torus, an L of three unit cubes, cubes in and beside one another,
+and wrong ones.
 clump.py judge DOCUMENT OBJ SCALE BALLS VOLUME DISTANCE: is the clump in the document as nsd-gen said? Volume, centre and
 moments against sums over the surface's tetrahedra, the distance against all pairs of places and balls."""
 import json
@@ -44,6 +45,23 @@ def write(directory):
         obj(name, v, sides + lids)
     prism("ell", [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)], 1)
     prism("plate", [(0, 0), (1, 0), (1, 1), (0, 1)], 1e-3)
+
+    def cubes(name, *all):  # each (x, y, z of its lower corner, edge, outward)
+        v, f = [], []
+        for x, y, z, a, outward in all:
+            quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+            f += [tuple(len(v) + i for i in (q if outward else q[::-1])) for q in quads]
+            v += [(x + a * (i & 1), y + a * (i >> 1 & 1), z + a * (i >> 2)) for i in range(8)]
+        obj(name, v, f)
+    cubes("apart", (0, 0, 0, 1, True), (1.5, 0, 0, 1, True))
+    cubes("touching", (0, 0, 0, 1, True), (1, 0.25, 0.25, 1, True))
+    cubes("hollow", (0, 0, 0, 2, True), (0.5, 0.5, 0.5, 1, False))
+    cubes("overlapping", (0, 0, 0, 1, True), (0.5, 0.25, 0.25, 1, True))
+    cubes("outward", (0, 0, 0, 2, True), (0.5, 0.5, 0.5, 1, True))
+    cubes("island", (0, 0, 0, 3, True), (0.5, 0.5, 0.5, 2, False), (1, 1, 1, 1, True))
+    cubes("one_inside_out", (0, 0, 0, 2, True), (3, 0, 0, 1, False))
+    cubes("hidden", (0, 0, 0, 3, True), (0.5, 0.5, 0.5, 1, True), (1.75, 1.75, 1.75, 1, False))
+    cubes("shell", (0, 0, 0, 2, True), (0.05, 0.05, 0.05, 1.9, False))
 
 
 def read(path, scale):

@@ -42,6 +42,32 @@ for wrong in open inside plate; do
     scene "$wrong" 10
     refuses 65 "$wrong: no closed surface with something within" nsd-gen "$tmp/scene.json"
 done
+# the volume inside: nowhere twice, nowhere inside out; edges of cubes: 1 + 1, 8 - 1, 27 - 8 + 1
+volume() { nsd-info -p "$1" | jq '.mass / 2500 * 1e9 | round / 1e9'; }
+for case in apart:2 touching:2 hollow:7 island:20; do
+    scene "${case%:*}" 100
+    ok "${case%:*}: it is made" sh -c "nsd-gen '$tmp/scene.json' >'$tmp/one.h5' 2>'$tmp/none'"
+    is "and has the volume of what is within" "$(volume "$tmp/one.h5")" "${case#*:}"
+done
+for case in overlapping outward; do
+    scene "$case" 60
+    refuses 65 "$case: a place that two solids share" nsd-gen "$tmp/scene.json"
+    like "with the place and the cure" "$(cat "$tmp/err")" 'overlaps or encloses itself, as around \(.*unite its solids, and turn the faces of cavities inward$'
+done
+scene one_inside_out 60
+refuses 65 "one of two cubes is turned inside out" nsd-gen "$tmp/scene.json"
+like "with the place" "$(cat "$tmp/err")" 'inside out in parts, as around \(3\.5, '
+for case in overlapping outward hidden; do
+    scene "$case" 60 'del(.shapes.g.clump)'
+    refuses 65 "$case: nor is it a polyhedron" nsd-gen "$tmp/scene.json"
+    like "with the cause" "$(cat "$tmp/err")" 'encloses itself|inside out'
+done
+# walls of 1.6 points of the grid, for too few balls: the volume is the surface's, and nothing else
+scene shell 40
+refuses 65 "balls that leave out a part of the surface" nsd-gen "$tmp/scene.json"
+like "with what they miss, what is allowed, and the cure" "$(cat "$tmp/err")" 'not what 40 balls fill: volume .*distance .*moments .* allowed: more balls, or thicker walls$'
+scene torus 5
+refuses 65 "five balls for a ring" nsd-gen "$tmp/scene.json"
 for change in '.shapes.g.clump.balls = 0' '.shapes.g.clump.balls = 5000' '.shapes.g.clump.error = 2' '.shapes.g.mesh.hull = true' \
     'del(.shapes.g.clump.balls)' '.shapes.g.round = 0.1' '.shapes.g.clump.holes = 1' '.shapes.g = {box: [1, 1, 1], clump: {balls: 3}}' \
     '.shapes.g = {points: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], solid: {}}' \
