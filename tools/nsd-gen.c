@@ -7,6 +7,7 @@
 #include "io/writer.h"
 #include "scene/scene_build.h"
 #include "scene/scene_height.h"
+#include "scene/size_table.h"
 #include "scene/time_step.h"
 
 #include <errno.h>
@@ -28,7 +29,7 @@ static const struct cli_option own[] = {
     { CLI_TEXT, 0, "from", &from, "FILE",
       .help = "read a LAMMPS, LIGGGHTS, Yade or ON-DEM file instead of a scene" },
     { CLI_FLAG, 0, "check", &check,
-      .help = "print a suitable time step and masses as JSON, no document" },
+      .help = "print a suitable time step, masses and sizes as JSON, no document" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
@@ -206,7 +207,11 @@ static json_t *heights_json(const struct scene *s)
         if (isnan(height)) continue;
         json_array_append_new(list, json_pack("{s:i, s:o, s:o}", "group", (int)g, "height",
                                               json_number(height), "box", json_number(has)));
-        warn("bodies[%lld]: a height of %.4g m, in a box of %.4g m", (long long)g, height, has);
+        if (isfinite(has))
+            warn("bodies[%lld]: a height of %.4g m, in a box of %.4g m", (long long)g, height, has);
+        else
+            warn("bodies[%lld]: a height of %.4g m, in a box that is open above", (long long)g,
+                 height);
     }
     return list;
 }
@@ -224,6 +229,93 @@ static json_t *fits_json(const struct scene *s)
     return list;
 }
 
+/* ---- sizes of grains: those that were asked for beside those that were drawn ---- */
+
+static json_t *quantiles_json(const struct size_table *t, enum size_share of)
+{
+    return json_pack("{s:o, s:o, s:o}", "d10", json_number(size_table_quantile(t, of, 0.1)), "d50",
+                     json_number(size_table_quantile(t, of, 0.5)), "d90",
+                     json_number(size_table_quantile(t, of, 0.9)));
+}
+
+static json_t *distribution_json(const struct size_table *t)
+{
+    return json_pack("{s:o, s:o, s:o}", "mean", json_number(t->mean), "mass",
+                     quantiles_json(t, SIZE_BY_MASS), "number", quantiles_json(t, SIZE_BY_NUMBER));
+}
+
+/* Shares that pass sieves: those of the scene, else ten from the smallest size to the largest */
+static json_t *passing_json(const struct scene_size *z, const struct size_table *asked,
+                            const struct size_table *drawn, long long group)
+{
+    json_t *list = json_array();
+    const int64_t sieves = z->law == SIZE_SIEVE ? z->segments : z->min < z->max ? 10 : 0;
+    for (int64_t k = 0; k < sieves; k++) {
+        const double d = 2 * (z->law == SIZE_SIEVE
+                                  ? z->sieve[k].to
+                                  : z->min + (double)(k + 1) / (double)sieves * (z->max - z->min));
+        double share[2][SIZE_SHARES];
+        for (int of = 0; of < SIZE_SHARES; of++)
+            share[0][of] = size_table_below(asked, of, d),
+            share[1][of] = size_table_below(drawn, of, d);
+        json_array_append_new(list, json_pack("{s:o, s:[o, o], s:[o, o]}", "d", json_number(d),
+                                              "mass", json_number(share[0][SIZE_BY_MASS]),
+                                              json_number(share[1][SIZE_BY_MASS]), "number",
+                                              json_number(share[0][SIZE_BY_NUMBER]),
+                                              json_number(share[1][SIZE_BY_NUMBER])));
+        warn("bodies[%lld]: below %.4g m: of the mass %.4f, drawn %.4f; of the number %.4f, drawn "
+             "%.4f",
+             group, d, share[0][SIZE_BY_MASS], share[1][SIZE_BY_MASS], share[0][SIZE_BY_NUMBER],
+             share[1][SIZE_BY_NUMBER]);
+    }
+    return list;
+}
+
+static void add_sizes(json_t *list, const struct scene *s, int64_t g, const double *radius,
+                      int64_t n)
+{
+    const struct scene_bodies *b = &s->bodies[g];
+    struct size_table asked, drawn = { 0 };
+    struct why why = { 0 };
+    if (size_table_asked(&asked, &b->size, s->dim, &why) ||
+        size_table_drawn(&drawn, radius, n, s->dim, &why))
+        die_why(&why);
+    static const char *const of[SIZE_SHARES] = { "number", "mass" };
+    warn("bodies[%lld]: %lld %s, mean diameter%s %.4g m, drawn %.4g", (long long)g, (long long)n,
+         b->form.shape ? "shapes" : "grains", b->form.shape ? " of the balls around them" : "",
+         asked.mean, drawn.mean);
+    if (b->size.unit > 0 && b->size.law == SIZE_SIEVE)
+        warn("bodies[%lld]: \"size\" scales the shape, whose ball has a diameter of %.4g m at size "
+             "1; "
+             "an aperture of its sieve is twice the size",
+             (long long)g, 2 * b->size.unit);
+    for (int k = b->size.min < b->size.max ? SIZE_SHARES - 1 : -1; k >= 0; k--)
+        warn("bodies[%lld]: d10, d50, d90 by %s %.4g, %.4g, %.4g m, drawn %.4g, %.4g, %.4g",
+             (long long)g, of[k], size_table_quantile(&asked, k, 0.1),
+             size_table_quantile(&asked, k, 0.5), size_table_quantile(&asked, k, 0.9),
+             size_table_quantile(&drawn, k, 0.1), size_table_quantile(&drawn, k, 0.5),
+             size_table_quantile(&drawn, k, 0.9));
+    json_t *j = json_pack("{s:i, s:I, s:o, s:o}", "group", (int)g, "count", (json_int_t)n, "asked",
+                          distribution_json(&asked), "drawn", distribution_json(&drawn));
+    json_object_set_new(j, "passing", passing_json(&b->size, &asked, &drawn, (long long)g));
+    json_array_append_new(list, j);
+    size_table_free(&asked), size_table_free(&drawn);
+}
+
+/* Of groups whose sizes are drawn */
+static json_t *sizes_json(const struct scene *s, const struct packing *p)
+{
+    json_t *list = json_array();
+    int64_t first = 0;
+    for (int64_t g = 0; g < s->groups; first += s->built[g++]) {
+        const enum scene_source source = s->bodies[g].from;
+        if (s->built[g] > 0 &&
+            (source == SCENE_LATTICE || source == SCENE_SHELVES || source == SCENE_RANDOM))
+            add_sizes(list, s, g, p->radius + first, s->built[g]);
+    }
+    return list;
+}
+
 /* On standard output as a line of JSON; for people on standard error */
 static void tell(const struct scene *s, const struct packing *p)
 {
@@ -235,6 +327,7 @@ static void tell(const struct scene *s, const struct packing *p)
                           s->dt > 0 ? json_real(s->dt) : json_string("auto"), "radius",
                           json_number(t.radius), "limits", limits, "masses", masses);
     json_object_set_new(j, "heights", heights_json(s));
+    json_object_set_new(j, "sizes", sizes_json(s, p));
     if (s->fits) json_object_set_new(j, "clumps", fits_json(s));
     if (t.by < 0)
         warn("dt: nothing moves, so no time step can be suggested");
@@ -273,13 +366,15 @@ int tool_main(int argc, char **argv)
     }
     for (int32_t k = 0; k < scene.meshes; k++) say_left_out(&scene.mesh_file[k]);
     for (int32_t k = 0; k < scene.fits; k++) say_fit(&scene.fit[k]);
+    if (check && !(scene.built = calloc((size_t)scene.groups + 1, sizeof *scene.built)))
+        die(EX_SOFTWARE, "no memory for the sizes of grains");
     if (scene_build(&frame.packing, &scene, dir, &why)) die_why(&why);
     if (check)
         tell(&scene, &frame.packing);
     else if (frame_note(&frame, cli_history(), &why) || writer_frame(out, &frame, &why) ||
              writer_close(out, &why))
         die_why(&why);
-    free(dir);
+    free(dir), free(scene.built);
     scene_free(&scene);
     frame_free(&frame);
     return 0;

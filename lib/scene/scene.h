@@ -292,6 +292,8 @@ struct scene {
 
     int64_t groups;
     struct scene_bodies *bodies; /* [groups] */
+    int64_t *
+        built; /* [groups] borrowed, or NULL: where scene_build puts how many bodies each has become */
 
     int32_t walls;
     struct wall *wall;    /* [walls] */

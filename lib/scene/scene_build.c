@@ -642,6 +642,8 @@ static int in_group(int64_t g, int failed, struct why *why)
 {
     char text[sizeof why->text];
     if (!failed) return 0;
+    for (int64_t g = 0; s->built && g < s->groups; g++)
+        s->built[g] = is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count;
     memcpy(text, why->text, sizeof text);
     snprintf(why->text, sizeof why->text, "bodies[%lld]: %.370s", (long long)g, text);
     return why->status;

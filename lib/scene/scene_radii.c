@@ -93,7 +93,9 @@ static int read_sieve(jnode a, int dim, struct scene_size *z)
         size[0] = size[1], passing[0] = passing[1];
         if (read_point(point, &size[1], &passing[1])) return 1;
         if (!i && passing[1] > 0)
-            return json_node_fault(point, "nothing passes the first sieve: 0");
+            return json_node_fault(point,
+                                   "the first sieve, of the smallest grains, must let nothing "
+                                   "pass: put [SIZE, 0] in front of it");
         if (!i) z->min = 0.5 * size[1];
         if (!i) continue;
         if (size[1] < size[0] || passing[1] < passing[0])
@@ -105,7 +107,10 @@ static int read_sieve(jnode a, int dim, struct scene_size *z)
         z->sieve[i - 1] = (struct scene_sieve){ 0.5 * size[0], 0.5 * size[1], sum };
     }
     z->max = 0.5 * size[1];
-    if (passing[1] != 1) return json_node_fault(a, "all passes the last sieve: 1");
+    if (passing[1] != 1)
+        return json_node_fault(a,
+                               "the last sieve, of the largest grains, must let everything pass: "
+                               "put [SIZE, 1] behind it");
     for (int64_t k = 0; k < z->segments; k++) z->sieve[k].below /= sum;
     return 0;
 }

@@ -57,7 +57,7 @@ static double draw_sieve(const struct scene_size *z, gsl_rng *rng)
 
 void scene_size_scale(struct scene_size *z, double factor)
 {
-    z->min *= factor, z->max *= factor, z->mid *= factor;
+    z->min *= factor, z->max *= factor, z->mid *= factor, z->unit = factor;
     if (z->law == SIZE_GAUSSIAN) z->spread *= factor; // lognormal: that of the logarithm
     for (int64_t k = 0; k < z->segments; k++) z->sieve[k].from *= factor, z->sieve[k].to *= factor;
 }

@@ -29,6 +29,7 @@ struct scene_size {
     } law;
     double mid, spread; /* gaussian: mean and sd, m; lognormal: median, m, and sigma */
     double min, max;    /* m; a single radius is min = max */
+    double unit; /* m: the radius at size 1, where sizes were scale factors; 0: they were not */
     double exponent;
     int dim;          /* of a sieve: 3, or 2 where grains are discs */
     int64_t segments; /* of a sieve */

@@ -311,8 +311,8 @@ static void test_sieves(void)
                 uniform, 401);
     static const char *const bad[][2] = {
         { "{\"sieve\": [[1, 0]]}", "needs two points [size, passing] or more" },
-        { "{\"sieve\": [[1, 0.1], [2, 1]]}", "nothing passes the first sieve: 0" },
-        { "{\"sieve\": [[1, 0], [2, 0.9]]}", "all passes the last sieve: 1" },
+        { "{\"sieve\": [[1, 0.1], [2, 1]]}", "must let nothing pass: put [SIZE, 0]" },
+        { "{\"sieve\": [[1, 0], [2, 0.9]]}", "must let everything pass: put [SIZE, 1]" },
         { "{\"sieve\": [[2, 0], [1, 1]]}", "sizes and shares must not fall" },
         { "{\"sieve\": [[1, 0], [2, 0.5], [3, 0.4], [4, 1]]}", "sizes and shares must not fall" },
         { "{\"power\": {\"exponent\": 99, \"min\": 1, \"max\": 2}}", "must lie in [-20, 20]" },
