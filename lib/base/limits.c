@@ -39,6 +39,16 @@ void limits_processor(uint64_t seconds)
     set_limit(RLIMIT_CPU, now + SLOWER * (rlim_t)seconds);
 }
 
+double limits_room(void)
+{
+    struct rlimit r;
+    double room = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+    if (!SANITIZED && !getrlimit(RLIMIT_AS, &r) && r.rlim_cur != RLIM_INFINITY &&
+        (double)r.rlim_cur < room)
+        room = (double)r.rlim_cur;
+    return room;
+}
+
 void limits_lift(void)
 {
     set_limit(RLIMIT_AS, RLIM_INFINITY), set_limit(RLIMIT_CPU, RLIM_INFINITY);

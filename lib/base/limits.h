@@ -19,6 +19,8 @@ enum { SANITIZED = 0 };
 void limits_memory(uint64_t bytes);
 /* And so many seconds more of the processor; ten times as many under a sanitizer. */
 void limits_processor(uint64_t seconds);
+/* Bytes that this process can have: of its limit, or of the machine */
+double limits_room(void);
 /* Neither is bounded any more. */
 void limits_lift(void);
 /* The process leaves no core where it breaks down. */

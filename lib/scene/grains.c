@@ -44,7 +44,8 @@ int32_t grains_kind(const struct scene *s, const struct scene_bodies *b, int32_t
     return kind < 0 && p->kinds == 1 && !b->types ? 0 : kind;
 }
 
-static int add_body(struct grains *out, const struct scene *s, const struct scene_bodies *b,
+/* kind[k]: the scene's kind for kind k of the document */
+static int add_body(struct grains *out, const struct scene_bodies *b, const int32_t *kind,
                     int64_t i, struct why *why)
 {
     const struct packing *p = b->document;
@@ -56,7 +57,7 @@ static int add_body(struct grains *out, const struct scene *s, const struct scen
     if (!b->at_rest) g.v = p->v[i], g.w = p->w[i];
     g.weighs = true, g.mass = p->mass[i], g.inertia = p->inertia[i], g.fixed = p->mass[i] == 0;
     if (b->unsaid && g.mass == 0) g.weighs = g.fixed = false;
-    g.kind = b->has_kind ? b->kind : grains_kind(s, b, p->kind[i]);
+    g.kind = b->has_kind ? b->kind : kind[p->kind[i]];
     if (g.kind < 0 && b->foreign)
         return why_set(why, EX_DATAERR,
                        "%s: ball %lld is of type %s: which kind is that? \"types\": {\"%s\": NAME}",
@@ -75,7 +76,10 @@ int grains_of_document(struct grains *out, const struct scene *s, const struct s
     if (b->document->dim != s->dim)
         return why_set(why, EX_DATAERR, "%s: its dim is %d, and the scene's is %d", b->file,
                        b->document->dim, s->dim);
-    for (int64_t i = 0; i < b->document->n; i++)
-        if (add_body(out, s, b, i, why)) return why->status;
-    return 0;
+    int32_t *kind = calloc((size_t)b->document->kinds + 1, sizeof *kind);
+    if (!kind) return why_set(why, EX_SOFTWARE, "no memory for the bodies");
+    for (int32_t k = 0; k < b->document->kinds; k++) kind[k] = grains_kind(s, b, k);
+    for (int64_t i = 0; i < b->document->n && !why->status; i++) add_body(out, b, kind, i, why);
+    free(kind);
+    return why->status;
 }

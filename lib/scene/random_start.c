@@ -1,20 +1,24 @@
 #include "scene/random_start.h"
 
 #include "detect/neighbours.h"
+#include "scene/obstacles.h"
 #include "scene/scene_height.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum {
-    LEVELS = 24,   /* grids of cells, for radii down to 2^-24 of the largest */
-    TRIES = 20000, /* places tried for a grain: at these densities it takes a dozen */
-    SWEEPS = 100,  /* over the pairs at most, after a growth */
-    LAST = 20000,  /* and in the end */
-    STEPS = 24,    /* growths from loose to dense */
+    LEVELS = 24,      /* grids of cells, for radii down to 2^-24 of the largest */
+    TRIES = 20000,    /* places tried for a grain: at these densities it takes a dozen */
+    TRIES_MEAN = 200, /* and in the mean of all, after TRIES_FREE */
+    TRIES_FREE = 1 << 21,
+    SWEEPS = 100, /* over the pairs at most, after a growth */
+    LAST = 20000, /* and in the end */
+    STEPS = 24,   /* growths from loose to dense */
     FILL_MOST =
         1 << 21 /* grains that a share of the box may come to: 1 GB. More have to be counted. */
 };
+static const double FULL = 0.95; /* of the room: no more balls go in, wherever they are */
 static const double LOOSE[4] = { 0, 0, 0.4, 0.28 }; /* [dim] share of the box */
 static const double FURTHER = 1e-4; /* radii: what pairs are pushed beyond touching */
 static const double BETWEEN = 0.02; /* smaller radii: overlap that may remain between growths */
@@ -28,9 +32,10 @@ struct start {
     vec3 inverse[3];         /* 1/m: of its edges */
     double height[3];        /* m: of its faces */
     struct packing p; /* radius: as they are asked for; mass: r^dim, in units of the largest */
-    double volume;    /* m^3, m^2: of the balls around them */
-    double scale;     /* of the radii */
-    int64_t *from;    /* [p.n] the place in the order drawn */
+    struct obstacles walls;
+    double volume; /* m^3, m^2: of the balls around them */
+    double scale;  /* of the radii */
+    int64_t *from; /* [p.n] the place in the order drawn */
 };
 
 /* ---- random sequential addition ---- */
@@ -144,10 +149,11 @@ static bool is_free_at(const struct placed *t, const struct start *s, int64_t i,
     return true;
 }
 
-/* The same with all images of the grain that may meet one in the cell */
+/* The same with all images of the grain that may meet one in the cell; not in a wall, as large as it will be */
 static bool is_free(const struct placed *t, const struct start *s, int64_t i, vec3 x)
 {
     int from[3] = { 0, 0, 0 }, to[3] = { 0, 0, 0 };
+    if (obstacles_meet(&s->walls, x, s->p.radius[i] * (1 + FURTHER))) return false;
     if (!s->cell) return is_free_at(t, s, i, x);
     double reach = 2 * radius(s, 0) * (1 + FURTHER);
     for (int k = 0; k < s->dim; k++) {
@@ -181,21 +187,24 @@ static vec3 draw_place(const struct start *s, int64_t i, gsl_rng *rng)
 static int add_one_by_one(struct start *s, double phi, gsl_rng *rng, struct why *why)
 {
     struct placed t;
+    int64_t all = TRIES_FREE + TRIES_MEAN * s->p.n;
     if (!placed_alloc(&t, s)) {
         placed_free(&t);
         return why_set(why, EX_SOFTWARE, "no memory for a random start");
     }
     for (int64_t i = 0; i < s->p.n && !why->status; i++) {
         int tries = 0;
+        bool found;
         do {
             s->p.x[i] = draw_place(s, i, rng);
-        } while (!is_free(&t, s, i, s->p.x[i]) && ++tries < TRIES);
-        if (tries == TRIES)
-            why_set(
-                why, EX_DATAERR,
-                "no room for body %lld of %lld in %d tries, which are to fill %.3g of the box: a "
-                "smaller phi or count, or a wider box",
-                (long long)i, (long long)s->p.n, TRIES, phi);
+            found = is_free(&t, s, i, s->p.x[i]);
+        } while (!found && ++tries < TRIES && --all > 0);
+        if (!found)
+            why_set(why, EX_DATAERR,
+                    "%lld of %lld bodies found a place at random between the walls; they are to "
+                    "fill %.3g of the box, of which %.3g is free: a smaller phi or count, or a "
+                    "wider box",
+                    (long long)i, (long long)s->p.n, phi * s->walls.free, s->walls.free);
         struct level *l = &t.level[level_of(s, i)];
         int64_t c[3];
         cell_of(l, s, s->p.x[i], c);
@@ -255,6 +264,13 @@ static void wrap(struct start *s)
     }
 }
 
+/* Out of the walls that it has come into; how deep it was in them, in radii */
+static double push_off_walls(struct start *s, int64_t i)
+{
+    const double r = radius(s, i), deep = obstacles_push(&s->walls, &s->p.x[i], r * (1 + FURTHER));
+    return fmax(0, deep - r * FURTHER) / r;
+}
+
 /* Back into the box, where it has left it */
 static void push_in(struct start *s, int64_t i)
 {
@@ -296,6 +312,7 @@ static int push_apart(struct start *s, struct neighbours *near, double most, int
         *left = 0;
         for (int64_t i = 0; i < near->list.n; i++)
             *left = fmax(*left, push_pair(s, &near->list.pair[i]));
+        for (int64_t i = 0; i < s->p.n; i++) *left = fmax(*left, push_off_walls(s, i));
         for (int64_t i = 0; i < s->p.n; i++) push_in(s, i);
         if (*left <= most) break;
     }
@@ -316,6 +333,8 @@ static int worst(struct start *s, struct neighbours *near, double *left, struct 
         double gap = v3_norm(way_of(s, &near->list.pair[i])) - r;
         *left = fmax(*left, -gap / fmin(s->p.radius[a], s->p.radius[b]));
     }
+    for (int64_t i = 0; i < s->p.n; i++)
+        if (obstacles_meet(&s->walls, s->p.x[i], s->p.radius[i])) *left = fmax(*left, FURTHER);
     return 0;
 }
 
@@ -366,13 +385,14 @@ static double box_volume(const struct scene_box *b, int dim)
     return v;
 }
 
-/* The radii: `count` of them, or as many as fill phi of the box best. Returns what the balls around
-   them fill, which are what is placed. */
+/* The radii: `count` of them, or as many as fill phi of the room (m^3, m^2) best. Returns what the balls around
+   them fill, which are what is placed; of a count that is too large, what those fill that were drawn. */
 static double draw_radii(struct grains *out, const struct scene_bodies *b, int dim, double room,
                          gsl_rng *rng, struct why *why)
 {
-    double filled = 0;
+    double filled = 0, least = (double)b->count * volume(dim, b->size.min) / room;
     int64_t most = b->phi > 0 ? FILL_MOST : b->count;
+    if (b->count > FILL_MOST && least > FULL) return least; // none needs to be drawn
     for (int64_t i = 0; i < most; i++) {
         struct grain g = grain_at(v3(0, 0, 0), scene_size_draw(&b->size, rng));
         double v = b->form.fill * volume(dim, g.r);
@@ -382,6 +402,7 @@ static double draw_radii(struct grains *out, const struct scene_bodies *b, int d
         if (grains_add(out, &g, why)) break;
         filled += v;
         if (b->phi > 0 && filled >= b->phi * room) break;
+        if (i >= FILL_MOST && filled > FULL * b->form.fill * room) break;
     }
     if (b->phi > 0 && out->n == FILL_MOST && filled < b->phi * room)
         why_set(
@@ -443,24 +464,32 @@ static int set_cell(struct start *s, struct why *why)
 }
 
 int random_start(struct grains *out, const struct scene_bodies *b, int dim, const struct cell *cell,
-                 gsl_rng *rng, struct why *why)
+                 const struct packing *walls, gsl_rng *rng, struct why *why)
 {
     /* cells of the grid count from the corner of b->box, wherever the cell is */
     struct start s = { .dim = dim, .box = &b->box, .cell = cell, .scale = 1 };
     if (cell) cell_inverse(cell->edge, s.inverse), cell_heights(cell, s.height);
-    double room = cell ? cell_volume(cell, dim) : box_volume(&b->box, dim);
+    if (walls && obstacles_init(&s.walls, walls, &b->box, cell, why)) {
+        obstacles_free(&s.walls);
+        return why->status;
+    }
+    if (!walls) s.walls.free = 1;
+    double room = s.walls.free * (cell ? cell_volume(cell, dim) : box_volume(&b->box, dim));
     double phi = draw_radii(out, b, dim, room, rng, why);
     s.volume = phi * room;
-    if (!why->status && phi > 0.95)
-        why_set(why, EX_DATAERR,
-                "a random start cannot fill %g of its box: at %g it is %.4g m high", phi,
-                dim == 2 ? 0.82 : 0.6, height_of(&s, s.volume));
+    if (!why->status && !(phi <= FULL))
+        why_set(
+            why, EX_DATAERR,
+            "a random start cannot fill %.3g of its box, of which %.3g is free of walls: at %g it "
+            "is %.4g m high",
+            phi * s.walls.free, s.walls.free, dim == 2 ? 0.82 : 0.6, height_of(&s, s.volume));
     if (!why->status && !sort_radii(&s, out, why) && !set_cell(&s, why)) {
         if (phi > LOOSE[dim]) s.scale = pow(LOOSE[dim] / phi, 1.0 / dim);
         if (!add_one_by_one(&s, phi, rng, why) && s.scale < 1) grow(&s, phi, why);
         for (int64_t i = 0; i < out->n && !why->status; i++) out->g[s.from[i]].x = s.p.x[i];
     }
     packing_free(&s.p);
+    obstacles_free(&s.walls);
     free(s.from);
     return why->status;
 }

@@ -7,7 +7,7 @@
  * first, each where it meets none that is there. Denser: that, with radii scaled down; then all
  * radii grow together towards what was asked, as in Lubachevsky & Stillinger (1990), and after every
  * growth the overlaps are pushed out pair by pair, as in Jodrey & Tory (1985), a pair's lighter grain
- * by more. Equal balls reach 0.6 of a large box, discs 0.8; then none overlaps at all, for pairs are
+ * by more, and out of the walls. Equal balls reach 0.6 of a large box, discs 0.8; then none overlaps at all, for pairs are
  * pushed a little further than needed.
  */
 #ifndef NSD_RANDOM_START_H
@@ -17,9 +17,10 @@
 
 #include <gsl/gsl_rng.h>
 
-/* The group's grains, in the order drawn; in its box, or, not NULL, in this cell. Returns 0, EX_DATAERR where they do not go in, or
-   EX_SOFTWARE. */
+/* The group's grains, in the order drawn; in its box, or, not NULL, in this cell; not in the walls of a packing, or NULL
+   [scene/obstacles.h]. Returns 0, EX_DATAERR where they do not go in, or EX_SOFTWARE. */
 int random_start(struct grains *out, const struct scene_bodies *group, int dim,
-                 const struct cell *cell, gsl_rng *rng, struct why *why);
+                 const struct cell *cell, const struct packing *walls, gsl_rng *rng,
+                 struct why *why);
 
 #endif

@@ -1,6 +1,7 @@
 /* scene/scene_build.c: groups of bodies, the check for overlaps: a packing from a scene. */
 #include "scene/scene_build.h"
 
+#include "base/limits.h"
 #include "base/random.h"
 
 #include "bodies/room.h"
@@ -83,9 +84,31 @@ static int fill_lattice(struct packing *p, int64_t first, const struct scene_bod
     return 0;
 }
 
+/* Where the shapes and groups of a document are in the packing */
+struct rows {
+    int32_t *shape, *group; /* [shapes.n], [1 + names.n] */
+};
+
+static int find_rows(struct rows *to, const struct packing *p, const struct packing *from,
+                     struct why *why)
+{
+    *to = (struct rows){ 0 };
+    if (!from) return 0;
+    to->shape = calloc((size_t)from->shapes.n + 1, sizeof *to->shape);
+    to->group = calloc((size_t)from->names.n + 1, sizeof *to->group);
+    if (!to->shape || !to->group) return why_set(why, EX_SOFTWARE, "no memory for the bodies");
+    for (int32_t k = 1; k < from->shapes.n; k++)
+        to->shape[k] = shapes_find(&p->shapes, from->shapes.s[k].name);
+    for (int32_t k = 0; k < from->names.n; k++)
+        to->group[1 + k] =
+            1 + names_find(&p->names, from->names.text[k], strlen(from->names.text[k]));
+    return 0;
+}
+
 /* What is said of a grain comes before what its kind is; what its group says, before both. */
 static int set_grain(struct packing *p, int64_t i, const struct scene *s,
-                     const struct scene_bodies *b, const struct grain *g, struct why *why)
+                     const struct scene_bodies *b, const struct grain *g, const struct rows *to,
+                     struct why *why)
 {
     struct scene_bodies one = *b;
     if (!b->has_kind && g->kind >= 0) one.kind = g->kind;
@@ -94,11 +117,8 @@ static int set_grain(struct packing *p, int64_t i, const struct scene *s,
     if (!b->has_fixed) one.fixed = g->fixed;
     if (!b->has_density) one.density = g->density > 0 ? g->density : s->kind[one.kind].density;
     if (!b->has_density && !(b->mass > 0)) one.mass = g->mass;
-    if (g->shape) one.form.shape = shapes_find(&p->shapes, b->document->shapes.s[g->shape].name);
-    if (g->group && !b->group) {
-        const char *name = b->document->names.text[g->group - 1];
-        one.group = 1 + names_find(&p->names, name, strlen(name));
-    }
+    if (g->shape) one.form.shape = to->shape[g->shape];
+    if (g->group && !b->group) one.group = to->group[g->group];
     if (set_body(p, i, &one, g->x, g->r, why)) return why->status;
     p->q[i] = g->q, p->id[i] = g->id;
     if (g->weighs && !one.fixed && g->mass > 0 && one.mass == g->mass) p->inertia[i] = g->inertia;
@@ -108,9 +128,12 @@ static int set_grain(struct packing *p, int64_t i, const struct scene *s,
 static int fill_grains(struct packing *p, int64_t first, const struct scene *s,
                        const struct scene_bodies *b, const struct grains *list, struct why *why)
 {
-    for (int64_t k = 0; k < list->n; k++)
-        if (set_grain(p, first + k, s, b, &list->g[k], why)) return why->status;
-    return 0;
+    struct rows to;
+    find_rows(&to, p, b->document, why);
+    for (int64_t k = 0; k < list->n && !why->status; k++)
+        set_grain(p, first + k, s, b, &list->g[k], &to, why);
+    free(to.shape), free(to.group);
+    return why->status;
 }
 
 /* Random velocities of n bodies of a group, besides that which all have */
@@ -221,7 +244,7 @@ static int set_shapes(struct packing *p, const struct scene *s, struct why *why)
 /* The scene's names, and those of bodies of documents; bodies have a group where any has, or will. */
 static int set_names(struct packing *p, const struct scene *s, struct why *why)
 {
-    bool any = false;
+    bool any = false, had[NAMES_MOST + 1];
     if (names_copy(&p->names, &s->names, why)) return why->status;
     for (int32_t k = 0; k < s->pours; k++) any = any || s->pour[k].group;
     for (int64_t g = 0; g < s->groups; g++) {
@@ -229,9 +252,10 @@ static int set_names(struct packing *p, const struct scene *s, struct why *why)
         int32_t which;
         any = any || s->bodies[g].group;
         if (!from || !from->group || s->bodies[g].group) continue;
+        memset(had, 0, sizeof had);
         for (int64_t i = 0; i < from->n; i++) {
-            if (!from->group[i]) continue;
-            any = true;
+            if (!from->group[i] || had[from->group[i]]) continue;
+            any = had[from->group[i]] = true;
             if (names_add(&p->names, from->names.text[from->group[i] - 1], &which, why))
                 return why->status;
         }
@@ -618,6 +642,8 @@ static int build_packing(struct packing *p, const struct scene *s, const struct 
     int64_t n = 0;
     for (int64_t g = 0; g < s->groups; g++)
         n += is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count;
+    for (int64_t g = 0; s->built && g < s->groups; g++)
+        s->built[g] = is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count;
     if (n > INT32_MAX) return why_set(why, EX_DATAERR, "more than %d bodies", INT32_MAX);
     if (packing_init(p, s->dim, n, why)) return why->status;
     gsl_rng *rng = random_alloc(gsl_rng_mt19937);
@@ -642,16 +668,14 @@ static int in_group(int64_t g, int failed, struct why *why)
 {
     char text[sizeof why->text];
     if (!failed) return 0;
-    for (int64_t g = 0; s->built && g < s->groups; g++)
-        s->built[g] = is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count;
     memcpy(text, why->text, sizeof text);
     snprintf(why->text, sizeof why->text, "bodies[%lld]: %.370s", (long long)g, text);
     return why->status;
 }
 
-/* The bodies of group g where only building tells how many they are */
+/* The bodies of group g where only building tells how many they are; walls: that they avoid, or NULL */
 static int list_group(struct grains *out, const struct scene *s, int64_t g, const char *dir,
-                      gsl_rng *rng, struct why *why)
+                      const struct packing *walls, gsl_rng *rng, struct why *why)
 {
     const struct scene_bodies *b = &s->bodies[g];
     counter_start(rng, s->seed, COUNTER_GROUP, (uint64_t)g, 0, 0);
@@ -664,22 +688,54 @@ static int list_group(struct grains *out, const struct scene *s, int64_t g, cons
         return in_group(g, shelves_fill(out, b, s->dim, rng, why), why);
     case SCENE_RANDOM:
         return in_group(
-            g, random_start(out, b, s->dim, b->in_cell ? &s->cell.cell : NULL, rng, why), why);
+            g, random_start(out, b, s->dim, b->in_cell ? &s->cell.cell : NULL, walls, rng, why),
+            why);
     default:
         return 0;
     }
 }
 
+/* A packing of the walls alone, where bodies at random have to avoid them. Its shapes and names are the scene's. */
+static int make_walls(struct packing *walls, bool *any, const struct scene *s, struct why *why)
+{
+    *any = false;
+    for (int64_t g = 0; g < s->groups && !s->overlap; g++)
+        *any = *any || s->bodies[g].from == SCENE_RANDOM;
+    if (!*any || packing_init(walls, s->dim, 0, why)) return why->status;
+    if (set_parameters(walls, s, why) || inherit_walls(walls, s, why)) return why->status;
+    *any = walls->walls > 0;
+    return 0;
+}
+
+enum { BODY_BYTES = 256 }; /* that a body takes at least, of memory */
+
+/* Is there memory for the bodies that the scene counts? It is asked before any of them is made. */
+static int check_count(const struct scene *s, struct why *why)
+{
+    double n = 0, most = limits_room();
+    for (int64_t g = 0; g < s->groups; g++) n += (double)s->bodies[g].count;
+    if (n * BODY_BYTES <= most) return 0;
+    return why_set(why, EX_DATAERR,
+                   "%.0f bodies take %.3g GB of memory and more, and this process has %.3g GB: a "
+                   "smaller count",
+                   n, n * BODY_BYTES / 1e9, most / 1e9);
+}
+
 int scene_build(struct packing *p, const struct scene *s, const char *dir, struct why *why)
 {
+    if (check_count(s, why)) return why->status;
+    struct packing walls = { 0 };
+    bool avoid = false;
+    make_walls(&walls, &avoid, s, why);
     struct grains *list = calloc(s->groups > 0 ? (size_t)s->groups : 1, sizeof *list);
     gsl_rng *rng = counter_alloc();
     if (!list || !rng) why_set(why, EX_SOFTWARE, "no memory for the bodies");
     for (int64_t g = 0; g < s->groups && !why->status; g++)
-        list_group(&list[g], s, g, dir, rng, why);
+        list_group(&list[g], s, g, dir, avoid ? &walls : NULL, rng, why);
     if (!why->status) build_packing(p, s, list, why);
     for (int64_t g = 0; list && g < s->groups; g++) grains_free(&list[g]);
     free(list);
+    packing_free(&walls);
     gsl_rng_free(rng);
     return why->status;
 }

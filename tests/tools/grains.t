@@ -302,4 +302,87 @@ killed() # I: after I/1000 s
 }
 ok_each "killed after 0 to 80 ms, the old frames are there" killed 40
 
+# ---- where grains at random start ----
+
+# a cube as an OBJ file, by its lower and upper corners
+cube() { awk -v a="$2" -v b="$3" 'BEGIN { split("0 2 3 1 4 5 7 6 0 1 5 4 2 6 7 3 0 4 6 2 1 3 7 5", q)
+    for (i = 0; i < 8; i++) print "v", (i % 2 ? b : a), (int(i / 2) % 2 ? b : a), (i > 3 ? b : a)
+    for (k = 1; k < 24; k += 4) print "f", q[k] + 1, q[k + 1] + 1, q[k + 2] + 1, q[k + 3] + 1 }' >"$1"; }
+cube inner.obj 0.3 0.7
+cube outer.obj 0 1
+start() # DIM WALLS BODIES: a scene, and its grains as [x, y, z, r]
+{
+    jq -n --argjson d "$1" --argjson w "$2" --argjson b "$3" '{dim: $d, dt: 1e-4, walls: $w, bodies: [$b]}' >start.json
+    nsd-gen start.json >start.h5 2>start.err && nsd-info -p start.h5 | jq -cs 'map(.x + [.radius])' >start.x
+}
+near() { ok "$1" jq -e "$2" start.x; } # WHAT JQ-FILTER OF THE GRAINS
+box3='"box": {"x": [0, 1], "y": [0, 1], "z": [0, 1]}'
+for phi in 0.2 0.5; do # one after another; grown
+    body="{\"random\": {\"phi\": $phi}, \"radius\": 0.04, $box3}"
+    start 3 '[{"mesh": {"file": "inner.obj"}}]' "$body"
+    near "phi $phi: grains keep out of a cube in their box" 'all(.[3] as $r | .[:3] | map([. - 0.7, 0.3 - ., 0] | max) | map(. * .) | add >= $r * $r)'
+    near "and fill that share of the rest of the box" "(length * 4 / 3 * 3.14159265 * 0.000064 / (1 - 0.064)) / $phi - 1 | fabs < 0.02"
+    start 3 '[{"mesh": {"file": "outer.obj"}}]' "$body"
+    near "phi $phi: a cube around the box is a vessel" 'length > 100 and all(.[3] as $r | .[:3] | all(. >= $r and . <= 1 - $r))'
+    start 3 '[{"cylinder": {"point": [0.5, 0.5, 0], "axis": [0, 0, 1], "radius": 0.5, "length": 1.2}}]' "$body"
+    near "phi $phi: a box around a cylinder fills the cylinder" 'all([.[0] - 0.5, .[1] - 0.5] | map(. * .) | add | sqrt <= 0.46)'
+    near "by that share of it" "(length * 4 / 3 * 3.14159265 * 0.000064 / 0.78539816) / $phi - 1 | fabs < 0.02"
+    start 3 '[{"sphere": {"center": [0.5, 0.5, 0.5], "radius": 0.3, "side": "outside"}}]' "$body"
+    near "phi $phi: grains keep out of a ball" 'all(.[:3] | map((. - 0.5) * (. - 0.5)) | add | sqrt >= 0.34)'
+done
+start 3 '[{"cone": {"point": [0.5, 0.5, 0], "axis": [0, 0, 1], "radii": [0.1, 0.5], "length": 1}}]' "{\"random\": {\"count\": 100}, \"radius\": {\"uniform\": [0.02, 0.04]}, $box3}"
+near "a funnel is filled" 'length == 100 and all((0.1 + 0.4 * .[2] - ([.[0] - 0.5, .[1] - 0.5] | map(. * .) | add | sqrt)) / 1.0770329614 >= .[3] * (1 - 1e-9))'
+start 3 '[{"cylinder": {"point": [0, 0, 0], "axis": [0, 0, 1], "radius": 0.4, "length": 1}}, {"cylinder": {"point": [2, 0, 0], "axis": [0, 0, 1], "radius": 0.4, "length": 1}}]' \
+    '{"random": {"count": 50}, "radius": 0.05, "box": {"x": [1.6, 2.4], "y": [-0.4, 0.4], "z": [0, 1]}}'
+near "a vessel beside is not in the way" 'length == 50 and all([.[0] - 2, .[1]] | map(. * .) | add | sqrt <= 0.35)'
+body='{"random": {"phi": 0.6}, "radius": 0.02, "box": {"x": [0, 1], "y": [0, 1]}}'
+start 2 '[{"polygon": {"points": [[0.3, 0.3], [0.7, 0.3], [0.7, 0.7], [0.3, 0.7]]}}]' "$body"
+near "in the plane grains keep out of a polygon" 'length > 300 and all(.[2] as $r | .[:2] | map([. - 0.7, 0.3 - ., 0] | max) | map(. * .) | add >= 0.0004)'
+start 2 '[{"circle": {"center": [0.5, 0.5], "radius": 0.5}}]' "$body"
+near "and fill a circle" 'length > 300 and all([.[0] - 0.5, .[1] - 0.5] | map(. * .) | add | sqrt <= 0.48)'
+start 3 '[{"cylinder": {"point": [0.5, 0.5, 0], "axis": [0, 0, 1], "radius": 0.05, "length": 1}}]' "{\"random\": {\"count\": 500}, \"radius\": 0.045, $box3}" || :
+like "grains that do not go in: the search ends, with what is free" "$(cat start.err)" 'free of walls|[0-9]+ of 500 bodies found a place at random between the walls'
+
+# ---- as many as there can be, and how large they are ----
+
+for body in '{"random": {"count": 2147483647}, "radius": 0.1, '"$box3"'}' '{"count": 2147483647, "radius": 0.1, "box": {"x": [0, 1], "y": [0, 1], "z": [0, null]}}' \
+    '{"count": 2000000000, "cells": "own", "radius": 1e-6, "box": {"x": [0, 1], "y": [0, 1], "z": [0, 1]}}'; do
+    jq -n --argjson b "$body" '{dt: 1e-4, bodies: [$b]}' >many.json
+    few() { (ulimit -v 3000000 && timeout 20 nsd-gen many.json); }
+    refuses 65 "two thousand million bodies, before one is made" few
+    like "with what they take" "$(cat "$tmp/err")" 'bodies take .* GB of memory and more, and this process has 3.07 GB: a smaller count'
+done
+check() { jq -n --argjson r "$1" --argjson k "${2-{\}}" '{dt: 1e-4, bodies: [{count: 20000, radius: $r, box: {x: [0, 0.2], y: [0, 0.2], z: [0, null]}} + $k]}' | nsd-gen --check - 2>check.err | jq -c '.sizes[0]' >check.json; }
+check '{"sieve": [[1e-3, 0], [2e-3, 0.4], [4e-3, 1]]}'
+# F linear in log d: the median of the mass is 2e-3 * 2^(1/6); numbers by the integral of dF / d^3, mean likewise
+ok "what a sieve curve asks for: quantiles by mass, numbers below a sieve, mean" jq -e '(.asked.mass.d50 / (2e-3 * pow(2; 1/6)) - 1 | fabs < 1e-3) and .asked.mass.d10 / (1e-3 * pow(2; 0.25)) - 1 < 1e-3 and
+    ((0.4 * (1 - 1/8)) as $a | (0.6 * (1/8 - 1/64)) as $b | (.passing[0].number[0] - $a / ($a + $b) | fabs) < 1e-4 and
+    (.asked.mean - 1.5e-3 * (0.4 * (1 - 1/4) + 0.6 * (1/4 - 1/16)) / ($a + $b) | fabs) < 1e-6)' check.json
+ok "and what was drawn, near it" jq -e '.count == 20000 and (.passing | map(.d)) == [0.002, 0.004] and (.passing[0] | (.mass[0] - 0.4 | fabs) < 1e-9 and (.mass[1] - 0.4 | fabs) < 0.02) and
+    (.drawn.mass.d90 / .asked.mass.d90 - 1 | fabs) < 0.02 and (.drawn.mean / .asked.mean - 1 | fabs) < 0.02' check.json
+like "as text, too" "$(cat check.err)" 'below 0\.002 m: of the mass 0\.4000, drawn 0\.[34][0-9]*; of the number'
+check '{"gaussian": {"mean": 1e-3, "sd": 1e-4, "min": 5e-4, "max": 1.5e-3}}'
+ok "a normal distribution" jq -e '(.asked.mean / 2e-3 - 1 | fabs) < 1e-4 and (.asked.number.d90 / (2e-3 + 2e-4 * 1.2815515655) - 1 | fabs) < 1e-4 and (.drawn.number.d50 / .asked.number.d50 - 1 | fabs) < 0.01' check.json
+check 1e-3
+ok "one size" jq -e '.asked == .drawn or (.asked.mass == .drawn.mass and .passing == [] and (.drawn.mean / 2e-3 - 1 | fabs) < 1e-9)' check.json
+like "an open box is not infinite" "$(cat check.err)" 'a height of 0\.[0-9]* m, in a box that is open above'
+jq -n '{dt: 1e-4, shapes: {c: {box: [1, 1, 1]}}, bodies: [{count: 200, shape: "c", size: {sieve: [[1e-3, 0], [2e-3, 1]]}, box: {x: [0, 0.2], y: [0, 0.2], z: [0, null]}}]}' >shape.json
+nsd-gen --check shape.json >shape.out 2>shape.err
+is "of shapes the balls around them: of a cube by its diagonal, an aperture twice the scale factor" "$(jq '.sizes[0].passing[0].d * 1e9 | round' shape.out)" 1732051
+like "which is explained" "$(cat shape.err)" '"size" scales the shape, whose ball has a diameter of 1.732 m at size 1; an aperture of its sieve is twice the size'
+
+# ---- a document of many groups, shapes and kinds ----
+
+jq -n '{dt: 1e-3, bodies: [range(3000) | {x: [3 * ., 0, 0], radius: 1, name: "group \(.)"}]}' | nsd-gen - >groups.h5
+jq -n '{dt: 1e-3, bodies: [{x: [-9, 0, 0], radius: 1, name: "group 7"}, {document: "groups.h5"}]}' >groups.json
+is "each body keeps its group's name" "$(nsd-gen groups.json | nsd-info -p | jq -c 'select(.group == "group 7").x' | xargs)" "[-9,0,0] [21,0,0]"
+for names in kinds shapes; do
+    for name in '' ' a' 'a,b' 'a\"b' 'a\u001bb' 'a\u007fb' 'a\u0085b' "$(printf '%061d' 0)x"; do
+        printf '{"dt": 1e-3, "%s": {"%s": %s}}' $names "$name" "$([ $names = kinds ] && echo '{}' || echo '{"box": [1, 1, 1]}')" >name.json
+        refuses 65 "$names: the name \"$name\"" nsd-gen name.json
+    done
+    printf '{"dt": 1e-3, "%s": {"7": {"density": 1}, "7": {"density": 2}}}' $names >name.json
+    refuses 65 "$names: a name twice" nsd-gen name.json
+done
+
 done_testing
