@@ -162,9 +162,8 @@ static int make_shape(struct shape *s, const struct hull *h, const struct loops 
     if (!number) no_memory(why);
     if (n > SHAPE_VERTICES_MOST)
         why_set(why, EX_DATAERR,
-                "its hull has %d corners, and a shape has %d at most: give it fewer triangles "
-                "(decimate "
-                "it), or make a \"clump\" of balls of it",
+                "its hull has %d corners, and a shape has %d at most: leave out points "
+                "(decimate the mesh), or make a \"clump\" of it",
                 n, SHAPE_VERTICES_MOST);
     if (!why->status && !shape_alloc(s, n, l->faces, corners, why)) {
         for (int64_t i = 0; i < h->n; i++)

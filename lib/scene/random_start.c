@@ -264,11 +264,12 @@ static void wrap(struct start *s)
     }
 }
 
-/* Out of the walls that it has come into; how deep it was in them, in radii */
+/* Out of the walls that it has come into, by less than off the faces of the box, so that a wall there never counts; how deep
+   it was in them, in radii */
 static double push_off_walls(struct start *s, int64_t i)
 {
-    const double r = radius(s, i), deep = obstacles_push(&s->walls, &s->p.x[i], r * (1 + FURTHER));
-    return fmax(0, deep - r * FURTHER) / r;
+    const double r = radius(s, i), further = 0.5 * FURTHER;
+    return fmax(0, obstacles_push(&s->walls, &s->p.x[i], r * (1 + further)) / r - further);
 }
 
 /* Back into the box, where it has left it */
@@ -312,8 +313,8 @@ static int push_apart(struct start *s, struct neighbours *near, double most, int
         *left = 0;
         for (int64_t i = 0; i < near->list.n; i++)
             *left = fmax(*left, push_pair(s, &near->list.pair[i]));
-        for (int64_t i = 0; i < s->p.n; i++) *left = fmax(*left, push_off_walls(s, i));
         for (int64_t i = 0; i < s->p.n; i++) push_in(s, i);
+        for (int64_t i = 0; i < s->p.n; i++) *left = fmax(*left, push_off_walls(s, i));
         if (*left <= most) break;
     }
     free(listed);
