@@ -84,6 +84,7 @@ def files():
     yield "back.obj", near, obj(near, "{1}", more="g side\no cube\ng\nunknown 1 2 3 f\n")
     yield "weight.obj", near, obj(near, tail=" 1.0")
     yield "colour.obj", near, obj(near, tail=" 0.5 0.5 1e0")
+    yield "colour_nan.obj", near, obj(near, tail=" 0.5 nan word")
     yield "joined.obj", near, obj(near).replace(" 4 2\n", " \\\n 4 \\\n2\n").replace("\n", "\r\n")
     yield "comment.obj", near, "\ufeff" + obj(near).replace("\nf", " # f 1 2\n  f")
     yield "triangles.obj", near, obj(near, faces=TRIANGLES)

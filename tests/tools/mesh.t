@@ -49,6 +49,12 @@ is "corners that differ by some 1e-8 close a grain" "$(grain noisy.stl | jq '(. 
 
 # ---- what is refused ----
 
+awk 'BEGIN { for (i = 0; i < 5000; i++) { z = 1 - (2 * i + 1) / 5000; r = sqrt(1 - z * z); printf "v %.17g %.17g %.17g\n", r * cos(2.4 * i), r * sin(2.4 * i), z }
+    for (i = 1; i < 4999; i++) print "f", i, i + 1, i + 2 }' >round.obj
+echo '{"dt": 1e-3, "shapes": {"it": {"mesh": {"file": "round.obj", "hull": true}}}, "bodies": []}' >bad.json
+refuses 65 "a hull of 5000 corners" nsd-gen bad.json
+like "  with a cure that helps" "$(cat "$tmp/err")" 'its hull has 5000 corners, and a shape has 4096 at most: leave out points \(decimate the mesh\), or make a "clump" of it$'
+
 bad() # NAME FILE PATTERN < CONTENT
 {
     cat >"$2"
