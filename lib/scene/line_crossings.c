@@ -53,18 +53,35 @@ static void span(double from, double h, int n, double a, double b, int *lo, int 
     *hi = (int)fmax(-1, fmin(n - 1, floor((b - from) / h)));
 }
 
+/* Where the triangle is along y at this z; a hair more */
+static void cut(const vec3 v[3], double z, double hair, double *from, double *to)
+{
+    *from = INFINITY, *to = -INFINITY;
+    for (int e = 0; e < 3; e++) {
+        const vec3 a = v[e], b = v[(e + 1) % 3];
+        if ((a.z < z && b.z < z) || (a.z > z && b.z > z)) continue;
+        const double share = a.z == b.z ? 0 : (z - a.z) / (b.z - a.z);
+        const double y = a.y + share * (b.y - a.y);
+        *from = fmin(*from, y - hair),
+        *to = fmax(*to, y + hair); // of a level side the others have the end
+    }
+}
+
 static int cross(struct crossings *t, const struct lines *l, const vec3 v[3], struct why *why)
 {
     int j0, j1, k0, k1;
     const vec3 lo = v3_min(v[0], v3_min(v[1], v[2])), hi = v3_max(v[0], v3_max(v[1], v[2]));
-    span(l->origin.y, l->h, l->n[0], lo.y, hi.y, &j0, &j1);
     span(l->origin.z, l->h, l->n[1], lo.z, hi.z, &k0, &k1);
-    for (int k = k0; k <= k1; k++)
+    for (int k = k0; k <= k1; k++) {
+        double from, to; // row by row: the box around a thin triangle has many lines that miss it
+        cut(v, l->origin.z + k * l->h, 1e-6 * l->h, &from, &to);
+        span(l->origin.y, l->h, l->n[0], fmax(from, lo.y), fmin(to, hi.y), &j0, &j1);
         for (int j = j0; j <= j1; j++) {
             struct crossing c = { k * l->n[0] + j, 0, 0 };
             c.way = crossing_of(v, l->origin.y + j * l->h, l->origin.z + k * l->h, &c.x);
             if (c.way && add(t, c, why)) return why->status;
         }
+    }
     return 0;
 }
 

@@ -96,7 +96,15 @@ static bool has_sides(const struct packing *p, const struct obstacle *o)
                                      : round && w->side != BOUNDARY_BOTH;
 }
 
-/* The touches of a ball; those of a side that the box does not reach only where its surface is */
+/* Does a ball touch it, and where? One of a side that the box does not reach only where its surface is */
+static bool touches(const struct obstacles *all, const struct obstacle *o, vec3 c, double r)
+{
+    const struct wall *w = &all->p->wall[o->wall];
+    struct touch t;
+    if (w->shape == BOUNDARY_MESH) return surface_is_at(&o->surface, c, NULL, r);
+    return boundary_nearest(w, all->p->dim, c, r, &t) && t.distance < r;
+}
+
 static int find_touches(const struct obstacles *all, const struct obstacle *o, vec3 c, double r,
                         struct touch touch[TOUCHES_MOST])
 {
@@ -107,11 +115,10 @@ static int find_touches(const struct obstacles *all, const struct obstacle *o, v
 
 bool obstacles_meet(const struct obstacles *all, vec3 x, double r)
 {
-    struct touch touch[TOUCHES_MOST];
     for (int32_t k = 0; k < all->n; k++) {
         const struct obstacle *o = &all->o[k];
         const vec3 c = place_of(all, o, x);
-        if (find_touches(all, o, c, r, touch)) return true;
+        if (touches(all, o, c, r)) return true;
         if (o->sided && is_free_side(all, o, c) != o->hollow) return true;
     }
     return false;
@@ -208,6 +215,7 @@ int obstacles_init(struct obstacles *all, const struct packing *p, const struct 
         if (wall->shape == BOUNDARY_MESH && surface_init(&o->surface, &p->mesh, wall->first_element,
                                                          wall->elements, wall->weld, why))
             return why->status;
+        o->surface.seen = &all->seen, o->surface.seen_most = OBSTACLES_SEEN;
         o->sided = has_sides(p, o);
     }
     judge_sides(all, box, cell);

@@ -13,6 +13,8 @@
 #include "geometry/mesh.h"
 #include "scene/scene.h"
 
+#define OBSTACLES_SEEN ((int64_t)1 << 33) /* some minutes */
+
 struct obstacle {
     int32_t wall;
     struct pose pose;
@@ -27,6 +29,8 @@ struct obstacles {
     int32_t n;
     struct obstacle *o; /* [n] */
     double free;        /* share of the box on the free sides of all */
+    _Atomic int64_t
+        seen; /* elements of meshes that obstacles_push has looked at; beyond OBSTACLES_SEEN it sees none */
 };
 
 /* The walls of p at its time, for a group in the box, or in its cell where `cell`. Returns 0, EX_DATAERR or EX_SOFTWARE;

@@ -315,7 +315,10 @@ static int push_apart(struct start *s, struct neighbours *near, double most, int
             *left = fmax(*left, push_pair(s, &near->list.pair[i]));
         for (int64_t i = 0; i < s->p.n; i++) push_in(s, i);
         for (int64_t i = 0; i < s->p.n; i++) *left = fmax(*left, push_off_walls(s, i));
-        if (*left <= most) break;
+        if (s->walls.seen > OBSTACLES_SEEN)
+            why_set(why, EX_DATAERR,
+                    "a mesh is much finer than the grains, or crowded: a coarser one");
+        if (*left <= most || why->status) break;
     }
     free(listed);
     return why->status;
