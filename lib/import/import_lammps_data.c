@@ -56,22 +56,26 @@ static bool is_section(struct word word)
     return false;
 }
 
-/* "units = cgs", which write_data has in the title, "# units cgs" */
+static bool is_equals(struct word word)
+{
+    return word_is(word, "=") || word_is(word, ":");
+}
+
+/* "units = cgs", which write_data has in the title, "# units: cgs", "units cgs" */
 static int read_units(struct data *d)
 {
     struct words w = *d->w;
     struct word word;
     w.comments = false;
     while (words_next(&w, &word)) {
-        bool said = false, equals = word.n > 0 && strchr("=:", word.s[word.n - 1]);
-        if (equals) word.n--;
-        if (!word_is(word, "units")) continue;
-        if (!equals && words_next(&w, &word))
-            equals = said = word_is(word, "=") || word_is(word, ":");
-        else
-            said = equals;
-        if (said && !words_next(&w, &word)) return soup_fault(w.soup, "units without a name");
-        if (said || import_are_units(word)) return import_find_units(&d->to->units, &w, word);
+        struct word rest = { word.s + 5, word.n - 5 }, first = { word.s, 5 };
+        if (rest.n < 0 || !word_is(first, "units")) continue;
+        const struct word sign = { rest.s, rest.n ? 1 : 0 };
+        bool said = is_equals(sign);
+        if (rest.n && !said) continue; // unitsystem
+        if (said) rest.s++, rest.n--;
+        if (!rest.n && words_next(&w, &rest) && is_equals(rest)) said = words_next(&w, &rest);
+        if (said || import_are_units(rest)) return import_find_units(&d->to->units, &w, rest);
     }
     return 0;
 }

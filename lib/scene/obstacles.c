@@ -146,13 +146,14 @@ double obstacles_push(const struct obstacles *all, vec3 *x, double r)
 static vec3 sample(const struct scene_box *box, const struct cell *cell, int dim, int k)
 {
     static const double step[3] = { 0.8191725133961645, 0.6710436067037893, 0.5497004779019703 };
-    double u[3];
+    double u[3] = { 0 };
     for (int i = 0; i < 3; i++) u[i] = fmod(0.5 + k * step[i], 1);
-    vec3 x = cell ? cell->origin : v3(0, 0, 0);
-    for (int i = 0; i < dim && cell; i++) x = v3_axpy(x, u[i], cell->edge[i]);
-    if (cell) return x;
+    if (dim == 2) u[2] = 0;
+    if (cell)
+        return v3_axpy(v3_axpy(v3_axpy(cell->origin, u[0], cell->edge[0]), u[1], cell->edge[1]),
+                       u[2], cell->edge[2]);
     for (int i = 0; i < dim; i++) u[i] = box->lo[i] + u[i] * (box->hi[i] - box->lo[i]);
-    return v3(u[0], u[1], dim == 2 ? 0 : u[2]);
+    return v3(u[0], u[1], u[2]);
 }
 
 /* Does the box of the mesh contain that of the group? A hair of it is rounding. */

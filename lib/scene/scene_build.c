@@ -117,8 +117,8 @@ static int set_grain(struct packing *p, int64_t i, const struct scene *s,
     if (!b->has_fixed) one.fixed = g->fixed;
     if (!b->has_density) one.density = g->density > 0 ? g->density : s->kind[one.kind].density;
     if (!b->has_density && !(b->mass > 0)) one.mass = g->mass;
-    if (g->shape) one.form.shape = to->shape[g->shape];
-    if (g->group && !b->group) one.group = to->group[g->group];
+    if (g->shape && to->shape) one.form.shape = to->shape[g->shape];
+    if (g->group && to->group && !b->group) one.group = to->group[g->group];
     if (set_body(p, i, &one, g->x, g->r, why)) return why->status;
     p->q[i] = g->q, p->id[i] = g->id;
     if (g->weighs && !one.fixed && g->mass > 0 && one.mass == g->mass) p->inertia[i] = g->inertia;

@@ -282,7 +282,7 @@ units feet
 refuses 65 "units that are none" nsd-gen --from "$tmp/units.dump"
 { units cgs; cat "$tmp/units.dump"; sed 's/ radius/& vx omegaz density/; s/ 0\.1$/& 3 5 2.5/' "$tmp/apart.dump"; } >"$tmp/two.dump"
 is "units before the first frame are those of the second, too" "$(facts_of "$tmp/two.dump" '.radius' | xargs)" "0.001 0.001"
-for title in 'LAMMPS data file via write_data, version 29 Aug 2024, timestep = 100, units = cgs' 'a file # units: cgs' 'in cgs # units cgs'; do
+for title in 'LAMMPS data file via write_data, version 29 Aug 2024, timestep = 100, units = cgs' 'a file # units: cgs' 'in cgs # units cgs' 'units=cgs' '# Units : cgs'; do
     sed "1s/.*/$title/; s/^1 1 0.2 2500/1 1 0.2 2.5/" "$tmp/good.data" >"$tmp/cgs.data"
     is "$title: radius and density" "$(facts_of "$tmp/cgs.data" 'select(.id == 1) | [.radius, (.mass / (4 / 3 * 3.141592653589793e-9) | round), .v[2]]')" '[0.001,2500,0.01]'
 done
