@@ -90,10 +90,10 @@ static bool is_free_side(const struct obstacles *all, const struct obstacle *o, 
 static bool has_sides(const struct packing *p, const struct obstacle *o)
 {
     const struct wall *w = &p->wall[o->wall];
+    if (w->shape == BOUNDARY_MESH) return is_closed(p, w, &o->surface);
     const bool round =
         w->shape == BOUNDARY_CYLINDER || w->shape == BOUNDARY_CONE || w->shape == BOUNDARY_SPHERE;
-    return w->shape == BOUNDARY_MESH ? is_closed(p, w, &o->surface)
-                                     : round && w->side != BOUNDARY_BOTH;
+    return w->shape == BOUNDARY_PLANE || (round && w->side != BOUNDARY_BOTH);
 }
 
 /* Does a ball touch it, and where? One of a side that the box does not reach only where its surface is */

@@ -340,6 +340,9 @@ start 2 '[{"polygon": {"points": [[0.3, 0.3], [0.7, 0.3], [0.7, 0.7], [0.3, 0.7]
 near "in the plane grains keep out of a polygon" 'length > 300 and all(.[2] as $r | .[:2] | map([. - 0.7, 0.3 - ., 0] | max) | map(. * .) | add >= 0.0004)'
 start 2 '[{"circle": {"center": [0.5, 0.5], "radius": 0.5}}]' "$body"
 near "and fill a circle" 'length > 300 and all([.[0] - 0.5, .[1] - 0.5] | map(. * .) | add | sqrt <= 0.48)'
+jq -n '{dt: 1e-4, cell: {lengths: [1, 1, 1], repeats: [true, true, false]}, walls: [{point: [0, 0, 0.3], normal: [0, 0, 1]}],
+    bodies: [{random: {phi: 0.4}, radius: 0.05}]}' | nsd-gen - | nsd-info -p | jq -cs 'map(.x + [.radius])' >start.x
+near "a plane cuts a periodic cell: the part above it is filled" 'all(.[2] >= 0.35) and (length * 4 / 3 * 3.14159265 * 0.000125 / 0.7 / 0.4 - 1 | fabs < 0.02)'
 start 3 '[{"cylinder": {"point": [0.5, 0.5, 0], "axis": [0, 0, 1], "radius": 0.05, "length": 1}}]' "{\"random\": {\"count\": 500}, \"radius\": 0.045, $box3}" || :
 like "grains that do not go in: the search ends, with what is free" "$(cat start.err)" 'free of walls|[0-9]+ of 500 bodies found a place at random between the walls'
 
