@@ -479,6 +479,10 @@ int random_start(struct grains *out, const struct scene_bodies *b, int dim, cons
     }
     if (!walls) s.walls.free = 1;
     double room = s.walls.free * (cell ? cell_volume(cell, dim) : box_volume(&b->box, dim));
+    if (!isfinite(room)) {
+        obstacles_free(&s.walls);
+        return why_set(why, EX_DATAERR, "the box is too large: its volume is not a finite number");
+    }
     double phi = draw_radii(out, b, dim, room, rng, why);
     s.volume = phi * room;
     if (!why->status && !(phi <= FULL))

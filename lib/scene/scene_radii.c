@@ -3,8 +3,9 @@
 
 #include <math.h>
 
-enum { MOST_EXPONENT = 20 };          /* of a power law */
-static const double MOST_RATIO = 1e6; /* of radii of one law: no more is meant */
+enum { MOST_EXPONENT = 20 };           /* of a power law */
+static const double MOST_RATIO = 1e6;  /* of radii of one law: no more is meant */
+static const double MOST_SIZE = 1e100; /* m: its volume is a number */
 
 static int read_uniform(jnode a, struct scene_size *z)
 {
@@ -115,10 +116,9 @@ static int read_sieve(jnode a, int dim, struct scene_size *z)
     return 0;
 }
 
-int scene_read_size(jnode n, int dim, struct scene_size *z)
+static int read_law(jnode n, int dim, struct scene_size *z)
 {
     static const char laws[] = "uniform gaussian lognormal uniform_by_mass power sieve";
-    if (!n.json) return 0;
     if (!json_is_object(n.json)) {
         int bad = json_node_number(n, J_POSITIVE, &z->min);
         z->max = z->min;
@@ -145,4 +145,11 @@ int scene_read_size(jnode n, int dim, struct scene_size *z)
         z->law = SIZE_SIEVE;
         return read_sieve(json_node_key(&n, "sieve"), dim, z);
     }
+}
+
+int scene_read_size(jnode n, int dim, struct scene_size *z)
+{
+    if (!n.json) return 0;
+    if (read_law(n, dim, z)) return 1;
+    return z->max <= MOST_SIZE ? 0 : json_node_fault(n, "above %g: too large", MOST_SIZE);
 }

@@ -355,6 +355,12 @@ for body in '{"random": {"count": 2147483647}, "radius": 0.1, '"$box3"'}' '{"cou
     refuses 65 "two thousand million bodies, before one is made" few
     like "with what they take" "$(cat "$tmp/err")" 'bodies take .* GB of memory and more, and this process has 3.07 GB: a smaller count'
 done
+for body in '{"count": 1, "radius": 1e308, "box": {"x": [-1e308, 1e308], "y": [0, 1], "z": [0, null]}}' \
+    '{"random": {"phi": 0.5}, "radius": 1e90, "box": {"x": [0, 1e307], "y": [0, 1e307], "z": [0, 1e307]}}'; do
+    jq -n --argjson b "$body" '{dt: 1e-4, bodies: [$b]}' >huge.json
+    refuses 65 "sizes beyond numbers" nsd-gen huge.json
+    like "without an infinite number in the message" "$(cat "$tmp/err")" 'too large(: its volume is not a finite number)?$'
+done
 check() { jq -n --argjson r "$1" --argjson k "${2-{\}}" '{dt: 1e-4, bodies: [{count: 20000, radius: $r, box: {x: [0, 0.2], y: [0, 0.2], z: [0, null]}} + $k]}' | nsd-gen --check - 2>check.err | jq -c '.sizes[0]' >check.json; }
 check '{"sieve": [[1e-3, 0], [2e-3, 0.4], [4e-3, 1]]}'
 # F linear in log d: the median of the mass is 2e-3 * 2^(1/6); numbers by the integral of dF / d^3, mean likewise
