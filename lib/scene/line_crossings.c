@@ -32,10 +32,10 @@ int crossing_of(const vec3 v[3], double y, double z, double *x)
     for (int e = 0; e < 3; e++) {
         // each side from its lower end, so that both of its triangles find the same
         vec3 a = v[e], b = v[(e + 1) % 3];
-        const bool turned = a.y > b.y || (a.y == b.y && a.z > b.z);
-        if (turned) a = v[(e + 1) % 3], b = v[e];
+        const bool back = a.y > b.y || (a.y == b.y && a.z > b.z);
+        if (back) a = v[(e + 1) % 3], b = v[e];
         const bool left = (b.y - a.y) * (z - a.z) - (b.z - a.z) * (y - a.y) > 0;
-        if ((left != turned) != (n.x > 0)) return 0;
+        if ((left != back) != (n.x > 0)) return 0;
     }
     *x = v[0].x - (n.y * (y - v[0].y) + n.z * (z - v[0].z)) / n.x;
     return n.x > 0 ? 1 : -1;
