@@ -497,11 +497,32 @@ static void keep_stopped(struct run *r, int64_t k)
     steps = k ? k : 1; // and not written again
 }
 
+/* Processes that exchange velocities more than they sweep: fewer are faster. */
+static void warn_small(const struct frame *f, enum order order)
+{
+    // bodies that a process needs to gain by others, as measured [docs/scale]; colour exchanges with every colour
+    const double least = order == ORDER_BLOCK ? 2000 : 20000;
+    const double n = f->distributed ? (double)f->distributed->n : (double)f->packing.n;
+    const int size = processes_size(), most = (int)fmax(1, fmin(n / least, size));
+    if (size <= most || !steps) return;
+    if (most == 1)
+        warn("%d processes for %.0f bodies take longer than one, and more of the processors: below "
+             "%.0f "
+             "bodies a process use one, with threads: nsd-step -j %d",
+             size, n, least, size);
+    else
+        warn("%d processes for %.0f bodies: fewer are faster, with %.0f bodies each and more: "
+             "mpirun "
+             "-n %d",
+             size, n, least, most);
+}
+
 static void begin(struct run *r)
 {
     struct why why = { 0 };
     struct frame *f = &r->f;
     r->o = options_step(f->packing.dt, false);
+    warn_small(f, r->o.order);
     if (flow_read(&r->flow, &f->packing, &why)) die_why(&why);
     if (!steps) return;
     f->packing.events.n = 0; // they belong to the frame that was read

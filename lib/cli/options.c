@@ -21,7 +21,7 @@ const struct cli_option options_run[] = {
     { CLI_TEXT, 0, "log", &options.log, "FILE", .silent = true,
       .help = "write one JSON line per solve, with its seconds" },
     { CLI_FLAG, 'e', "strict", &options.strict, .silent = true,
-      .help = "exit with 1 if a solve has not converged or the account fails" },
+      .help = "exit with 1 if a solve or a step fails; nsd-step ends with it" },
     { 0 },
 };
 
