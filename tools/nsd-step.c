@@ -146,7 +146,7 @@ static bool account(struct frame *f, bool made)
         warn("%s: %s%s", text, cure(row, &f->report),
              !fails ? ""
              : ends ? ": the step fails, and the run ends with it"
-                    : ": the step fails, and the run goes on");
+                    : ": the step fails, and the run continues");
     }
     if (ends) total.ended = f->report.step;
     return ends;

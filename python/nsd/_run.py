@@ -274,11 +274,11 @@ class Run:
         return self.steps()
 
     def _warn(self) -> None:
-        """Warns once in a run, when a step has failed; the run goes on."""
+        """Warns once in a run, when a step has failed; the run continues."""
         if self._warned or not (failure := self.failure):
             return
         self._warned = True
-        warnings.warn(f"a step of the run failed, and the run goes on: {failure}", FailedStep, stacklevel=3)
+        warnings.warn(f"a step of the run failed, and the run continues: {failure}", FailedStep, stacklevel=3)
 
     @property
     def failure(self) -> str:

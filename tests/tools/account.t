@@ -23,7 +23,7 @@ is "the document has them, in the smaller radius" "$(account "$tmp/out" "$row" |
 pair 0.12
 status 0 "12 % are one, but not without -e" nsd-step --overlap keep "$tmp/pair.h5"
 is "which is said at once" "$(head -n 1 "$tmp/err")" \
-    "nsd-step: overlap 0.12 of a radius (step 1, bodies 1 and 2): a smaller dt leaves less: --dt, or --dt auto:0.01: the step fails, and the run goes on"
+    "nsd-step: overlap 0.12 of a radius (step 1, bodies 1 and 2): a smaller dt leaves less: --dt, or --dt auto:0.01: the step fails, and the run continues"
 status 1 "with -e they are" nsd-step -e --keep-going --overlap keep --log "$tmp/log" -n 3 "$tmp/pair.h5"
 is "which the document says" "$(account "$tmp/out" "$row" | paste -sd ' ')" '[0.12,1,[1,2],true] 0 0'
 is "and the last line of the log, and no other" "$(jq -s -c 'map(.account.overlap.bodies)' "$tmp/log")" '[null,null,[1,2]]'
@@ -57,7 +57,7 @@ jq -n '{ dt: 1e-3, mu: 1, bodies: [{ x: [0, 0, 0], radius: 0.1, mass: 1 }], wall
 status 1 "a run without a solution ends with 1 without -e" nsd-step --contacts -n 5 "$tmp/press.h5"
 cp "$tmp/out" "$tmp/pressed.h5"
 like "says at once which step, and who" "$(head -n 2 "$tmp/err")" \
-    '1 step not converged \(step 1, wall (0 \(floor\)|1) and body 0\): no solution, .*: the step fails, and the run goes on'
+    '1 step not converged \(step 1, wall (0 \(floor\)|1) and body 0\): no solution, .*: the step fails, and the run continues'
 like "and in the last line" "$(tail -n 1 "$tmp/err")" '5 steps not converged \(first step 1, wall .* and body 0\), 5 without a solution$'
 most=$(nsd-info -c "$tmp/pressed.h5" | jq -s -r 'map(select(.step == 1 and .status == "jammed")) | max_by(.r[0]) | .name // "wall \(.wall)"')
 is "whose contact has the largest reaction" "$(account "$tmp/pressed.h5" '.unconverged.bodies')" "[\"$most\",0]"
