@@ -497,23 +497,23 @@ static void keep_stopped(struct run *r, int64_t k)
     steps = k ? k : 1; // and not written again
 }
 
-/* Processes that exchange velocities more than they sweep: fewer are faster. */
+/* Where processes exchange velocities for longer than they sweep, fewer are faster. */
 static void warn_small(const struct frame *f, enum order order)
 {
-    // bodies that a process needs to gain by others, as measured [docs/scale]; colour exchanges with every colour
+    // bodies of a process that pay for its exchanges, measured with 2 and 4 [docs/scale]: colour has one for each colour
     const double least = order == ORDER_BLOCK ? 2000 : 20000;
     const double n = f->distributed ? (double)f->distributed->n : (double)f->packing.n;
     const int size = processes_size(), most = (int)fmax(1, fmin(n / least, size));
     if (size <= most || !steps) return;
     if (most == 1)
-        warn("%d processes for %.0f bodies take longer than one, and more of the processors: below "
-             "%.0f "
-             "bodies a process use one, with threads: nsd-step -j %d",
-             size, n, least, size);
+        warn(
+            "%d processes for %.0f bodies are slower than one, and use more CPU: below %.0f bodies "
+            "per process use threads, nsd-step -j %d",
+            size, n, least, size);
     else
-        warn("%d processes for %.0f bodies: fewer are faster, with %.0f bodies each and more: "
-             "mpirun "
-             "-n %d",
+        warn("%d processes for %.0f bodies are slower than fewer: use %.0f bodies per process or "
+             "more, "
+             "mpirun -n %d",
              size, n, least, most);
 }
 
