@@ -4,6 +4,7 @@ from __future__ import annotations
 import ctypes
 import json
 import os
+import sys
 import threading
 import warnings
 import weakref
@@ -278,7 +279,10 @@ class Run:
         if self._warned or not (failure := self.failure):
             return
         self._warned = True
-        warnings.warn(f"a step of the run failed, and the run continues: {failure}", FailedStep, stacklevel=3)
+        level, frame = 2, sys._getframe(1)
+        while frame.f_back and frame.f_code.co_filename == __file__:  # to the line of the program
+            level, frame = level + 1, frame.f_back
+        warnings.warn(f"a step of the run failed, and the run continues: {failure}", FailedStep, stacklevel=level)
 
     @property
     def failure(self) -> str:
