@@ -183,7 +183,8 @@ static void show_moment(const struct frame *f)
         json_object_update(j, r);
         json_decref(r);
     }
-    if (f->account.steps) json_object_set_new(j, "account", json_account(&f->account));
+    if (f->account.steps)
+        json_object_set_new(j, "account", json_account(&f->account, &f->packing.names));
     json_line(j);
 }
 

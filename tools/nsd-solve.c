@@ -110,7 +110,7 @@ static void solve(struct frame *f, const char *where)
     }
     f->reported = true;
     f->forces |= forces;
-    options_log(&f->report, NULL);
+    options_log(&f->report, NULL, NULL);
     options_warn_cpu(where, &f->report);
     count(where, &f->report);
 }

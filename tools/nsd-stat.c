@@ -226,6 +226,34 @@ static void add_fields(const struct snapshot *s, struct why *why)
 
 static struct kept first, before;
 
+/* Steps that have not converged: their reactions are no solution, nor is the motion that these make. */
+static struct {
+    double before;       /* of all that led to the frame before */
+    double steps, first; /* that led to the frames; the first of them */
+    int64_t frames;      /* whose own step is one */
+} missed;
+
+/* How many since the frame before; of another run all; NaN: not known */
+static double count_missed(const struct frame *f)
+{
+    const struct account_entry *e = &f->account.worst[ACCOUNT_UNCONVERGED];
+    if (!f->account.steps) return NAN;
+    const double n = e->value - (e->value >= missed.before ? missed.before : 0);
+    if (n > 0 && missed.steps == 0) missed.first = e->step;
+    missed.before = e->value, missed.steps += n;
+    missed.frames += f->reported && !f->report.converged;
+    return n;
+}
+
+static void say_missed(int64_t frames)
+{
+    if (missed.steps > 0)
+        warn("%.0f steps NOT CONVERGED, the first is step %.0f: their forces, and the motion by "
+             "them, "
+             "are no solution; of %lld frames %lld have such forces (key unconverged)",
+             missed.steps, missed.first, (long long)frames, (long long)missed.frames);
+}
+
 static void show(const struct frame *f, const char *where, int64_t k, struct why *why)
 {
     struct snapshot s;
@@ -235,6 +263,7 @@ static void show(const struct frame *f, const char *where, int64_t k, struct why
         die_usage("--box: '%s' has four numbers, and the bodies are balls", box);
     snapshot_init(&s, &f->packing, f->detected ? &f->contacts : NULL, f->moved, &asked, why);
     if (k) s.first = &first, s.before = &before;
+    s.unconverged = count_missed(f);
     if (fields_to && s.only.bodies)
         die(EX_DATAERR, "--only: fields are of all bodies, not of a group or kind");
     if (measured_run(t, chosen, &s, why)) {
@@ -274,6 +303,7 @@ static void run(struct reader *in)
     if (coarse.file && !why.status) fields_file_close(coarse.file, &why);
     if (why.status) die_why(&why);
     if (!k) die(EX_DATAERR, "%s: no such frame", reader_where(in));
+    say_missed(k);
     frame_free(&f);
     kept_free(&first), kept_free(&before), fields_free(&coarse.fields);
 }

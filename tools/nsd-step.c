@@ -69,6 +69,8 @@ static const struct cli_option own[] = {
       .help = "append to FILE; default if standard output is a terminal" },
     { CLI_ABOVE, 0, "progress", &lines, "S", .max = 1e9, .silent = true,
       .help = "report progress every S seconds [only on a terminal]" },
+    { CLI_FLAG, 'k', "keep-going", &options.keep_going, .silent = true,
+      .help = "under -e, make all steps, also after one that fails" },
     { CLI_TEXT, 0, "save", &save, "TIME", .silent = true,
       .help = "write a checkpoint OUTPUT.save every TIME, e.g. 10min [never]" },
     { CLI_TEXT, 'o', "output", &output, "FILE", "write to FILE [standard output]", .silent = true },
@@ -104,6 +106,7 @@ static struct {
     int64_t divided, substeps;    /* steps that were divided, and into how many in all */
     double seconds;
     struct account account; /* of this run */
+    int64_t ended;          /* the step that failed, with which the run has ended; 0: none */
 } total;
 
 /* Would words get between the frames? */
@@ -114,17 +117,39 @@ static bool words_are_output(void)
            S_ISREG(out.st_mode) && out.st_dev == err.st_dev && out.st_ino == err.st_ino;
 }
 
-/* What has gone worse than it may, when it first does */
-static void account(struct frame *f)
+/* What to do about it, but for what is done already */
+static const char *cure(enum account_row row, const struct report *r)
 {
-    char text[160];
+    if (row == ACCOUNT_OVERLAP && tol > 0)
+        return "a smaller TOL of --dt auto leaves less, unless walls press bodies together";
+    if (row == ACCOUNT_UNCONVERGED && err_no_solution(r))
+        return "no solution, reactions grow without end: walls leave bodies no way out";
+    if (row == ACCOUNT_UNCONVERGED && r->given_up) return r->given_up;
+    if (row == ACCOUNT_PASSED && options.substeps == 1)
+        return "--substeps finds such contacts, and so does a smaller dt";
+    return account_watched[row].cure;
+}
+
+/* What has gone worse than it may, when it first does. Returns whether the run ends with this step. */
+static bool account(struct frame *f, bool made)
+{
+    char text[200];
+    const struct account before = total.account;
     account_add(&f->account, &f->report);
     unsigned news = account_add(&total.account, &f->report);
+    bool ends = made && options_end_on_failure() && account_fails(&total.account);
     for (int k = 0; k < ACCOUNT_ROWS; k++) {
-        if (!(news & 1U << k) || words_are_output()) continue;
-        account_says(&total.account, (enum account_row)k, &f->packing.names, text, sizeof text);
-        warn("%s: %s", text, account_watched[k].cure);
+        const enum account_row row = (enum account_row)k;
+        bool fails = account_row_fails(&total.account, row) && !account_row_fails(&before, row);
+        if (!made || words_are_output() || (!fails && !(news & 1U << k))) continue;
+        account_says(&total.account, row, &f->packing.names, text, sizeof text);
+        warn("%s: %s%s", text, cure(row, &f->report),
+             !fails ? ""
+             : ends ? ": the step fails, and the run ends with it"
+                    : ": the step fails, and the run continues");
     }
+    if (ends) total.ended = f->report.step;
+    return ends;
 }
 
 /* The last line of a run: "worst: overlap 1.3e-05 of a radius (step 70, bodies 3 and 8), ..." */
@@ -137,6 +162,8 @@ static void say_worst(const struct names *names)
         account_says(&total.account, (enum account_row)k, names, text + n, sizeof text - n);
         n = strlen(text);
     }
+    if (total.growing && n < sizeof text)
+        snprintf(text + n, sizeof text - n, ", %lld without a solution", (long long)total.growing);
     if (n) warn("%s", text);
 }
 
@@ -156,7 +183,7 @@ static void count(const struct report *r)
     double error = err_of(&r->err, r->criterion);
     if (!(error <= total.worst)) total.worst = error; // also where it is not a number
     total.criterion = r->criterion, total.eps = r->eps;
-    if (!(error <= r->eps) && !r->err.jammed) return;
+    if (!err_no_solution(r)) return;
     total.growing++, total.approach = fmax(total.approach, r->err.max_penetration_true);
 }
 
@@ -277,6 +304,8 @@ struct run {
     struct step_memory memory;
     struct neighbours ahead; /* of where bodies would be at the end of a step */
     bool other_bodies;       /* than in the step before */
+    bool fails;              /* the run ends with the step that was made */
+    char end[200];           /* why the next step was not made, or "" */
     struct acts acts;        /* what a program in the loop has answered */
     struct why ended; /* why that program has ended the run; status 0: it said so, or has not */
     bool told_to_stop;
@@ -408,7 +437,16 @@ static bool is_last(const struct packing *p, int64_t step, int64_t k)
     return k == steps || is_then(p, step);
 }
 
-/* Makes one step, the k-th; false where its solve has diverged, and the bodies have not moved. */
+/* Is the balance of the step read? Where each process has its own bodies it takes an exchange, and only kept frames have it. */
+static bool is_bare(const struct run *r, int64_t k, bool last)
+{
+    const struct packing *p = &r->f.packing;
+    const bool gathers = processes_size() > 1 && r->o.order == ORDER_BLOCK;
+    if (loop_asks() || options.log || last || (options_end_on_failure() && !gathers)) return false;
+    return !is_kept(p, p->step + 1, k);
+}
+
+/* Makes one step, the k-th; false where it cannot be made, and the bodies have not moved. */
 static bool advance(struct run *r, int64_t k, bool saves)
 {
     struct why why = { 0 };
@@ -419,14 +457,15 @@ static bool advance(struct run *r, int64_t k, bool saves)
     const struct packing *p = &f->packing;
     bool last = is_last(p, p->step + 1, k);
     if (acts_begin(&r->acts, &f->packing, &why)) die_why(&why);
-    r->o.bare = !loop_asks() && !options.log && !saves && !last && !is_kept(p, p->step + 1, k);
+    r->o.bare = !saves && is_bare(r, k, last);
     const struct changes changes = { r->other_bodies, loop_asks() || acts_any(&r->acts) };
     if (processes_step(f, &r->memory, changes, &r->o, &why)) die_why(&why);
     f->reported = f->moved = true;
     count(rep);
-    account(f);
-    bool good = isfinite(rep->err.paper.eps_glob);
-    options_log(rep, last || !good ? &total.account : NULL);
+    const bool good = report_made(rep);
+    r->fails = account(f, good);
+    if (!good) report_says_end(rep, r->end, sizeof r->end);
+    options_log(rep, last || !good || r->fails ? &total.account : NULL, &p->names);
     char where[40];
     snprintf(where, sizeof where, "step %lld", (long long)rep->step);
     options_warn_cpu(where, rep);
@@ -458,11 +497,32 @@ static void keep_stopped(struct run *r, int64_t k)
     steps = k ? k : 1; // and not written again
 }
 
+/* Where processes exchange velocities for longer than they sweep, fewer are faster. */
+static void warn_small(const struct frame *f, enum order order)
+{
+    // bodies of a process that pay for its exchanges, measured with 2 and 4 [docs/scale]: colour has one for each colour
+    const double least = order == ORDER_BLOCK ? 2000 : 20000;
+    const double n = f->distributed ? (double)f->distributed->n : (double)f->packing.n;
+    const int size = processes_size(), most = (int)fmax(1, fmin(n / least, size));
+    if (size <= most || !steps) return;
+    if (most == 1)
+        warn(
+            "%d processes for %.0f bodies are slower than one, and use more CPU: below %.0f bodies "
+            "per process use threads, nsd-step -j %d",
+            size, n, least, size);
+    else
+        warn("%d processes for %.0f bodies are slower than fewer: use %.0f bodies per process or "
+             "more, "
+             "mpirun -n %d",
+             size, n, least, most);
+}
+
 static void begin(struct run *r)
 {
     struct why why = { 0 };
     struct frame *f = &r->f;
     r->o = options_step(f->packing.dt, false);
+    warn_small(f, r->o.order);
     if (flow_read(&r->flow, &f->packing, &why)) die_why(&why);
     if (!steps) return;
     f->packing.events.n = 0; // they belong to the frame that was read
@@ -499,17 +559,17 @@ static int64_t run(struct run *r)
         bool saves = save_due(r);
         if (!(good = advance(r, made + 1, saves))) break;
         const struct packing *p = &r->f.packing;
-        ends = is_last(p, p->step, ++made);
+        ends = is_last(p, p->step, ++made) || r->fails;
         tell(&r->f.report, made, r->out);
-        if (is_kept(p, p->step, made) || ends) write_frame(r);
+        if (ends && r->o.bare)
+            keep_last(r, made);
+        else if (is_kept(p, p->step, made) || ends)
+            write_frame(r);
         if (saves) save_state(r);
     }
     if (ends) steps = made;
     if (r->told_to_stop) keep_stopped(r, made);
-    if (!good) {
-        warn("step %lld: the solve diverged, the run ends before it", (long long)r->f.report.step);
-        keep_last(r, made);
-    }
+    if (!good) keep_last(r, made);
     if (!steps && !in_place) write_frame(r);
     step_forget(&r->memory);
     neighbours_free(&r->ahead);
@@ -649,6 +709,7 @@ int tool_main(int argc, char **argv)
     double asked = read_dt();
     if (options.device && processes_started())
         die_usage("--device: needs a single process, without mpirun");
+    if (options.keep_going && !options.strict) die_usage("--keep-going: needs -e");
     if (cli_given(&until) && cli_given(&steps)) die_usage("-n and --until exclude each other");
     if (save) parse_save();
     if (in_place && output) die_usage("-i and -o exclude each other");
@@ -686,7 +747,7 @@ int tool_main(int argc, char **argv)
     if (loop_asks()) loop_open();
     take_signals();
     const int64_t wanted = steps;
-    int64_t made = run(&r);
+    const int64_t made = run(&r);
     if (writer_close(r.out, &why)) die_why(&why);
     save_end(&r);
     options_log_close();
@@ -703,7 +764,11 @@ int tool_main(int argc, char **argv)
     if (stopped)
         warn("stopped by signal %d after step %lld, which is kept", (int)stopped_by,
              (long long)r.f.packing.step);
+    if (total.ended && made < wanted && !is_then(&r.f.packing, r.f.packing.step))
+        warn("step %lld, which is kept, fails and ends the run: --keep-going makes all steps",
+             (long long)total.ended);
+    if (*r.end) warn("%s: the run ends before it", r.end);
     frame_free(&r.f);
     if (stopped) return 128 + stopped_by;
-    return (made < steps && !r.told_to_stop) || (options.strict && account_fails(&total.account));
+    return *r.end || total.growing || (options.strict && account_fails(&total.account));
 }

@@ -128,8 +128,21 @@ static int set_boundaries(const json_t *j, struct acts *acts, struct packing *p,
 {
     const char *key;
     json_t *x;
-    if (!json_is_object(j)) return wrong(why, "boundaries are an object by their numbers");
-    json_object_foreach((json_t *)j, key, x) if (set_boundary(x, acts, p, whole(key), why)) break;
+    if (!json_is_object(j)) return wrong(why, "boundaries are an object by their numbers or names");
+    json_object_foreach((json_t *)j, key, x)
+    {
+        const int32_t name = names_find(&p->names, key, strlen(key));
+        int64_t wall = whole(key); // a name is no number
+        for (int32_t k = 0; name >= 0 && k < p->names.rows && !why->status; k++) {
+            const struct named *r = &p->names.row[k];
+            if (r->name == name && !r->count) set_boundary(x, acts, p, wall = r->boundary, why);
+        }
+        if (why->status || (name >= 0 && wall >= 0)) continue;
+        if (wall < 0)
+            why_set(why, EX_DATAERR, "the answer's boundaries: no wall is named '%.60s'", key);
+        else
+            set_boundary(x, acts, p, wall, why);
+    }
     return why->status;
 }
 

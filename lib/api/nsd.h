@@ -34,8 +34,9 @@ struct nsd_run;
 /* What functions return. All but 1 are as in sysexits.h. */
 enum nsd_status {
     NSD_DONE = 0,
-    NSD_DIVERGED = 1, /* the solve of a step diverged: the bodies have not moved */
-    NSD_USAGE = 64,   /* an option, name or run does not exist */
+    NSD_DIVERGED =
+        1, /* the solve of a step diverged, or its result is infinite: the bodies have not moved */
+    NSD_USAGE = 64, /* an option, name or run does not exist */
     NSD_DATA =
         65, /* a number is out of range, a body does not exist, a document or scene is invalid */
     NSD_NO_INPUT = 66, /* a file cannot be opened */
@@ -120,9 +121,13 @@ int nsd_resizes(const struct nsd_run *run);
    "sweeps", "converged", "error" (of its criterion), "natural", "max_overlap" (m), "max_penetration" (m/s),
    "kinetic_energy" (J) and "seconds" of its solve, which are nan before the first step. */
 int nsd_number(struct nsd_run *run, const char *name, double *x);
-/* The report of the last solve as JSON, with the keys of nsd-info(1). NSD_USAGE: no step was made. The text is valid until
-   the next call of nsd_report(), nsd_names() or nsd_measure(). */
+/* The report of the last solve as JSON, with the keys of nsd-info(1), and of them "account", the account of all steps.
+   NSD_USAGE: no step was made. The text is valid until
+   the next call of nsd_report(), nsd_failure(), nsd_names() or nsd_measure(). */
 int nsd_report(struct nsd_run *run, const char **json);
+/* Which of this run's steps failed their account [nsd-step(1)], in words: "2 steps not converged (first step 7, wall 1 and
+   body 0)"; "": none. Valid as the text of nsd_report() */
+int nsd_failure(struct nsd_run *run, const char **text);
 /* {"kinds": [NAME, ...], "shapes": [...], "walls": [NAME or null, ...], "groups": [...]}, in their order; valid as the text
    of nsd_report() */
 int nsd_names(struct nsd_run *run, const char **json);

@@ -261,11 +261,32 @@ int nsd_report(struct nsd_run *r, const char **json)
     if (!json) return why_set(why, NSD_USAGE, "there is no place for JSON");
     if (!r->f.reported) return why_set(why, NSD_USAGE, "no step was made, and nothing was solved");
     json_t *j = json_report(&r->f.report);
+    json_object_set_new(j, "account", json_account(&r->f.account, &r->f.packing.names));
     char *text = j ? json_dumps(j, JSON_COMPACT) : NULL;
     json_decref(j);
     if (!text) return no_memory(why);
     free(r->text);
     *json = r->text = text;
+    return 0;
+}
+
+int nsd_failure(struct nsd_run *r, const char **text)
+{
+    struct why *why = run_why(r);
+    if (!why) return NSD_USAGE;
+    if (!text) return why_set(why, NSD_USAGE, "there is no place for the text");
+    const size_t room = 200 * ACCOUNT_ROWS;
+    char *all = calloc(room, 1);
+    if (!all) return why_set(why, NSD_SOFTWARE, "no memory for a text");
+    for (int k = 0; k < ACCOUNT_ROWS; k++) {
+        const enum account_row row = (enum account_row)k;
+        if (!account_row_fails(&r->account, row)) continue;
+        const size_t n = strlen(all), mark = n ? 2 : 0;
+        memcpy(all + n, ", ", mark);
+        account_says(&r->account, row, &r->f.packing.names, all + n + mark, room - n - mark);
+    }
+    free(r->text);
+    *text = r->text = all;
     return 0;
 }
 
@@ -323,6 +344,8 @@ int nsd_measure(struct nsd_run *r, const char *names, const char **json)
         return why_set(why, NSD_USAGE, "box: it has four numbers, and the bodies are balls");
     snapshot_init(&s, &f->packing, f->detected ? &f->contacts : NULL, f->moved, &r->asked, why);
     if (r->remembers) s.first = &r->first, s.before = &r->before;
+    const double missed = r->account.worst[ACCOUNT_UNCONVERGED].value;
+    s.unconverged = missed - r->measured;
     if (!measured_run(t, chosen, &s, why)) {
         FILE *out = open_memstream(&text, &size);
         if (out) measured_json(out, &s, chosen, t);
@@ -338,6 +361,7 @@ int nsd_measure(struct nsd_run *r, const char *names, const char **json)
         r->remembers = true;
     snapshot_free(&s);
     if (why->status) return free(text), why->status;
+    r->measured = missed;
     free(r->text);
     *json = r->text = text;
     return 0;

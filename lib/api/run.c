@@ -338,10 +338,10 @@ static int advance(struct nsd_run *r, struct report *rep, struct why *why)
     if (changed) step_forget(&r->memory), neighbours_free(&r->ahead);
     if (acts_begin(&r->acts, p, why)) return why->status;
     if (step_advance(p, &r->spare, &r->memory, &r->o, rep, why)) return why->status;
-    if (isfinite(rep->err.paper.eps_glob)) return 0;
-    return why_set(why, NSD_DIVERGED,
-                   "step %lld: the solve diverged, and the bodies have not moved",
-                   (long long)rep->step);
+    if (report_made(rep)) return 0;
+    char text[160];
+    report_says_end(rep, text, sizeof text);
+    return why_set(why, NSD_DIVERGED, "%s: the bodies have not moved", text);
 }
 
 static int step_once(struct nsd_run *r, struct why *why)
@@ -366,7 +366,7 @@ static int step_once(struct nsd_run *r, struct why *why)
     if (!r->solved) report_free(&r->f.report);
     r->f.report = rep, r->solved = true;
     r->f.detected = r->f.reported = r->f.moved = true;
-    account_add(&r->f.account, &rep);
+    account_add(&r->f.account, &rep), account_add(&r->account, &rep);
     acts_end(&r->acts, p->walls);
     return 0;
 }

@@ -23,8 +23,10 @@ struct nsd_run {
     struct flow flow;
     struct undo undo;
     struct acts acts;
-    bool solved;       /* the report is of a step of this run, and its options are these: */
-    char *option_json; /* or NULL */
+    struct account account; /* of the steps of this run */
+    double measured;        /* of them that have not converged, when it was measured last */
+    bool solved;            /* the report is of a step of this run, and its options are these: */
+    char *option_json;      /* or NULL */
 
     struct options options;
     struct step_opt o;     /* what they come to; of the dt that the step begins with */

@@ -3,6 +3,7 @@
 
 #include "base/team.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -123,6 +124,20 @@ static double deepest(void *arg, int64_t first, int64_t end)
     double depth = 0;
     for (int64_t i = first; i < end; i++) depth = dmax(depth, -s->c[i].gap);
     return depth;
+}
+
+int64_t contacts_unsolved(const struct contacts *s, double *off)
+{
+    int64_t found = -1;
+    *off = -2;
+    for (int64_t i = 0; s->found && i < s->n; i++) {
+        const struct found *f = &s->found[i];
+        const bool jammed = f->status == STATUS_JAMMED;
+        const double x = jammed ? f->r[0] : -f->u[0];
+        const double ranks = (jammed ? 2 : 0) + x / (1 + fabs(x)); // rises with x, within (-1, 1)
+        if (!(ranks <= *off)) found = i, *off = ranks;
+    }
+    return found;
 }
 
 double contacts_max_overlap(const struct contacts *s)

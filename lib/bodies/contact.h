@@ -132,6 +132,10 @@ static inline vec3 contact_in_space(const struct contact *c, const double r[3])
     return v3_axpy(v3_axpy(normal, r[1], c->t1), r[2], contact_t2(c));
 }
 
+/* The solved contact that is farthest from its law: the jammed one of the largest reaction, else the one whose bodies
+   approach fastest; -1: there is none. *off: by how much, to compare contacts of several lists. */
+int64_t contacts_unsolved(const struct contacts *contacts, double *off);
+
 /* m: the deepest overlap, 0 where there is none */
 double contacts_max_overlap(const struct contacts *contacts);
 

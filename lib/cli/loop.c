@@ -6,6 +6,7 @@
 #include "cli/partner.h"
 #include "hdf5/stream.h"
 #include "io/reader.h"
+#include "io/report_json.h"
 #include "measure/asked.h"
 #include "measure/measured.h"
 
@@ -192,6 +193,16 @@ static void put_boundaries(FILE *out, const struct packing *p, const struct cont
     fputc(']', out);
 }
 
+/* Of the step before; f NULL: there is none. "account" is that of all steps. */
+static void put_report(FILE *out, const struct frame *f)
+{
+    fprintf(out, ",\"converged\":%s", !f ? "null" : f->report.converged ? "true" : "false");
+    fputs(",\"account\":", out);
+    json_t *j = f ? json_account(&f->account, &f->packing.names) : json_null();
+    json_dumpf(j, out, JSON_COMPACT | JSON_ENCODE_ANY);
+    json_decref(j);
+}
+
 static int put_measures(FILE *out, const struct frame *f, const struct contacts *s, struct why *why)
 {
     struct snapshot look;
@@ -230,6 +241,7 @@ static char *message(const struct frame *f, const struct contacts *s, struct act
         print_number(out, p->t, "null");
         fputs(",\"dt\":", out), print_number(out, p->dt, "null");
         fprintf(out, ",\"bodies\":%" PRId64, p->n);
+        put_report(out, s ? f : NULL);
         if (boundaries) put_boundaries(out, p, s);
         if (measures) put_measures(out, f, s, why);
         if (document) fprintf(out, ",\"document\":%zu", size);

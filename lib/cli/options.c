@@ -21,9 +21,14 @@ const struct cli_option options_run[] = {
     { CLI_TEXT, 0, "log", &options.log, "FILE", .silent = true,
       .help = "write one JSON line per solve, with its seconds" },
     { CLI_FLAG, 'e', "strict", &options.strict, .silent = true,
-      .help = "exit with 1 if a solve has not converged or the account fails" },
+      .help = "exit with 1 if a solve or a step fails; nsd-step ends with it" },
     { 0 },
 };
+
+bool options_end_on_failure(void)
+{
+    return options.strict && !options.keep_going;
+}
 
 static struct device *device; /* --device; NULL: none */
 
@@ -142,7 +147,7 @@ static void log_begin(void)
         die(EX_IOERR, "%s: %s", options.log, strerror(errno));
 }
 
-void options_log(const struct report *rep, const struct account *account)
+void options_log(const struct report *rep, const struct account *account, const struct names *names)
 {
     log_begin();
     if (!log_file) return;
@@ -160,7 +165,7 @@ void options_log(const struct report *rep, const struct account *account)
         if (rep->on_cpu) json_object_set_new(there_too, "on_cpu", json_string(rep->on_cpu));
         json_object_set_new(j, "device", there_too);
     }
-    if (account) json_object_set_new(j, "account", json_account(account));
+    if (account) json_object_set_new(j, "account", json_account(account, names));
     int failed =
         json_dumpf(j, log_file, JSON_COMPACT) || fputc('\n', log_file) == EOF || fflush(log_file);
     json_decref(j);
@@ -195,8 +200,7 @@ void options_summary(const char *where, const struct report *r)
         snprintf(trouble, sizeof trouble, ", %lld local solves safeguarded, %lld given up",
                  (long long)r->safeguarded, (long long)r->gave_up);
     if (!r->converged) snprintf(missed, sizeof missed, ": NOT CONVERGED to %g", r->eps);
-    if (!r->converged && (error <= r->eps ||
-                          r->err.jammed)) // the map is relative to reactions that grow without end
+    if (err_no_solution(r))
         snprintf(growing, sizeof growing, ", bodies still approach at %.3g m/s",
                  r->err.max_penetration_true);
     warn("%s: %lld contacts, %s: %d sweeps%s, %s %.3g%s%s, %.3g s%s", where,

@@ -11,6 +11,9 @@
 
 extern const struct cli_option options_run[]; /* -j, --device, --log, -e */
 
+/* Does a run end with the first step that fails its account? */
+bool options_end_on_failure(void);
+
 /* Ends the tool with EX_USAGE where options contradict each other; to be called first. */
 void options_check(void);
 
@@ -35,7 +38,9 @@ void options_overlap(struct packing *packing, bool detected);
  * that the tool reads or its output (NULL: standard output).
  */
 void options_log_open(int files, char *const *file, const char *output);
-void options_log(const struct report *report, const struct account *account); /* or NULL */
+/* account: or NULL; names: those of its walls */
+void options_log(const struct report *report, const struct account *account,
+                 const struct names *names);
 void options_log_close(void);
 
 /* What a report's criterion is called: eps_glob, scaled or natural. */

@@ -35,12 +35,16 @@ static bool beside(char path[PATH_MAX])
 
 bool processes_join(void)
 {
-    char path[PATH_MAX];
+    char path[PATH_MAX] = "nsd-step-mpi";
     int ranks = ranks_started();
     if (ranks < 2) return true;
     if (beside(path)) execv(path, cli_arguments());
-    die(EX_UNAVAILABLE, "%d processes were started together, and this nsd-step has no MPI: %s",
-        ranks, strerror(errno));
+    const char *reason = errno == ENOENT ? "is missing" : strerror(errno);
+    die(EX_UNAVAILABLE,
+        "%d processes were started together, and this nsd-step has no MPI: %.300s %s; install it, "
+        "or build "
+        "nsd where MPI is installed, or use threads of one process: nsd-step -j %d",
+        ranks, path, reason, ranks);
 }
 
 int processes_size(void)

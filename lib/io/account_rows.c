@@ -56,7 +56,7 @@ int account_rows_read(struct source *source, int64_t start, int64_t n, struct ac
         const struct column one[] = { *c, { 0 } };
         snprintf(path, sizeof path, "%s/%s/value", home, c->name);
         if (!source_has(source, path)) continue; // of a version that does not watch it
-        if (table_read_columns(source, home, "/value", start, RECORDS(one, n, account), why))
+        if (table_read_finite(source, home, "/value", start, RECORDS(one, n, account), why))
             return why->status;
     }
     for (int64_t i = 0; i < n; i++)

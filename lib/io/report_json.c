@@ -80,7 +80,15 @@ json_t *json_report(const struct report *r)
     return j;
 }
 
-json_t *json_account(const struct account *a)
+/* 3, "lid", "wall 4" */
+static json_t *body(double id, const struct names *names)
+{
+    const char *name = id < 0 ? names_of_wall(names, (int32_t)(-1 - id)) : NULL;
+    if (id >= 0) return json_integer((json_int_t)id);
+    return name ? json_string(name) : json_sprintf("wall %.0f", -1 - id);
+}
+
+json_t *json_account(const struct account *a, const struct names *names)
 {
     json_t *j = json_pack("{s:I}", "steps", (json_int_t)a->steps);
     for (int k = 0; k < ACCOUNT_ROWS; k++) {
@@ -91,8 +99,7 @@ json_t *json_account(const struct account *a)
         json_object_set_new(row, "step", json_integer((json_int_t)e->step));
         if (w->bodies) json_object_set_new(row, "bodies", json_array());
         for (int i = 0; i < w->bodies && e->value != 0; i++)
-            json_array_append_new(json_object_get(row, "bodies"),
-                                  json_integer((json_int_t)e->bodies[i]));
+            json_array_append_new(json_object_get(row, "bodies"), body(e->bodies[i], names));
         json_object_set_new(row, "fails", json_boolean(account_row_fails(a, (enum account_row)k)));
         json_object_set_new(j, w->name, row);
     }

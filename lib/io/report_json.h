@@ -18,8 +18,8 @@ json_t *json_err(const struct err *err);
  * momentum, impulse } [motion/balance.h]
  */
 json_t *json_report(const struct report *report);
-/* steps, and for each row { value, step, bodies: [...], fails } */
-json_t *json_account(const struct account *account);
+/* steps, and for each row { value, step, bodies: [...], fails }: bodies by their ids, walls by their names, or as "wall 3" */
+json_t *json_account(const struct account *account, const struct names *names);
 
 /* Prints one compact line on stdout and frees the value. */
 void json_line(json_t *value);

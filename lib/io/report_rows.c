@@ -52,6 +52,8 @@ static int check_report(const struct report *rep, const char *group, struct why 
         rep->safeguarded < 0 || rep->gave_up < 0)
         return why_set(why, EX_DATAERR, "%s: a number of things is negative", group);
     if (converged > 1) return why_set(why, EX_DATAERR, "%s/converged: is %d", group, converged);
+    if (converged && !isfinite(rep->err.paper.eps_glob))
+        return why_set(why, EX_DATAERR, "%s: has converged with errors that are not finite", group);
     return 0;
 }
 
@@ -69,6 +71,14 @@ static int read_history(struct source *doc, const char *group, struct report *re
                : why_set(why, EX_DATAERR, "%s: not of shape %d x 5", path, rep->sweeps);
 }
 
+/* Numbers of a step are finite, else it is not made; a solve of a problem without bodies may end with any errors. */
+static int read_table(const struct report_rows *r, int64_t at, struct records records,
+                      struct why *why)
+{
+    return (source_has(r->source, "/particles/all") ? table_read_finite : table_read_columns)(
+        r->source, r->group, "/value", at, records, why);
+}
+
 /* Reports from `at` on, as many as there are up to AHEAD, but for their texts. */
 static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
 {
@@ -82,32 +92,30 @@ static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
     if (!r->ahead.row || !r->ahead.account || !r->ahead.time)
         return why_set(why, EX_SOFTWARE, "no memory for %s", r->group);
     snprintf(time, sizeof time, "%s/time", r->group);
-    if (table_read_columns(r->source, r->group, "/value", at,
-                           RECORDS(layout_report, n, r->ahead.row), why) ||
+    if (read_table(r, at, RECORDS(layout_report, n, r->ahead.row), why) ||
         source_rows(r->source, time, (struct slab){ COLUMN_F64, at, n, 1 }, r->ahead.time, why) ||
         account_rows_read(r->source, at, n, r->ahead.account, why))
         return why->status;
+    for (int64_t i = 0; i < n; i++)
+        if (!isfinite(r->ahead.time[i]))
+            return why_set(why, EX_DATAERR, "%s: a time is not finite", time);
     snprintf(time, sizeof time, "%s/velocity/value", r->group);
     bool velocity = source_has(r->source, time);
-    if (velocity && table_read_columns(r->source, r->group, "/value", at,
-                                       RECORDS(layout_velocity, n, r->ahead.row), why))
+    if (velocity && read_table(r, at, RECORDS(layout_velocity, n, r->ahead.row), why))
         return why->status;
     for (int64_t i = 0; i < n && !velocity; i++)
         r->ahead.row[i].err.velocity = r->ahead.row[i].err.velocity_error = NAN; // not known
     snprintf(time, sizeof time, "%s/dissipation/value", r->group);
     bool balanced = source_has(r->source, "/particles/all") && source_has(r->source, time);
-    if (balanced && table_read_columns(r->source, r->group, "/value", at,
-                                       RECORDS(layout_balance, n, r->ahead.row), why))
+    if (balanced && read_table(r, at, RECORDS(layout_balance, n, r->ahead.row), why))
         return why->status;
     snprintf(time, sizeof time, "%s/broken/value", r->group);
     bool tied = balanced && source_has(r->source, time);
-    if (tied && table_read_columns(r->source, r->group, "/value", at,
-                                   RECORDS(layout_bond_balance, n, r->ahead.row), why))
+    if (tied && read_table(r, at, RECORDS(layout_bond_balance, n, r->ahead.row), why))
         return why->status;
     snprintf(time, sizeof time, "%s/impact_gain/value", r->group);
     bool may_gain = balanced && source_has(r->source, time);
-    if (may_gain && table_read_columns(r->source, r->group, "/value", at,
-                                       RECORDS(layout_gain_balance, n, r->ahead.row), why))
+    if (may_gain && read_table(r, at, RECORDS(layout_gain_balance, n, r->ahead.row), why))
         return why->status;
     for (int64_t i = 0; i < n; i++)
         r->ahead.row[i].balanced = balanced, r->ahead.row[i].tied = tied,

@@ -1,10 +1,21 @@
 #include "io/table_read.h"
 
+#include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-int table_read_columns(struct source *s, const char *group, const char *tail, int64_t start,
-                       struct records o, struct why *why)
+static int check_finite(const char *path, const struct column *c, int64_t n, const void *data,
+                        struct why *why)
+{
+    const double *x = data;
+    for (int64_t k = 0; c->type == COLUMN_F64 && k < n * c->width; k++)
+        if (!isfinite(x[k])) return why_set(why, EX_DATAERR, "%s: a number is not finite", path);
+    return 0;
+}
+
+static int read_columns(struct source *s, const char *group, const char *tail, int64_t start,
+                        struct records o, bool finite, struct why *why)
 {
     for (const struct column *c = o.columns; c->name; c++) {
         char path[80];
@@ -12,11 +23,24 @@ int table_read_columns(struct source *s, const char *group, const char *tail, in
         char *data = calloc((size_t)o.n + 1, column_bytes(c));
         if (!data) return why_set(why, EX_SOFTWARE, "%s: no memory", path);
         int e = source_rows(s, path, (struct slab){ c->type, start, o.n, c->width }, data, why);
+        if (!e && finite) e = check_finite(path, c, o.n, data, why);
         if (!e) column_scatter(c, o.n, data, o.structs, o.stride);
         free(data);
         if (e) return e;
     }
     return 0;
+}
+
+int table_read_columns(struct source *s, const char *group, const char *tail, int64_t start,
+                       struct records o, struct why *why)
+{
+    return read_columns(s, group, tail, start, o, false, why);
+}
+
+int table_read_finite(struct source *s, const char *group, const char *tail, int64_t start,
+                      struct records o, struct why *why)
+{
+    return read_columns(s, group, tail, start, o, true, why);
 }
 
 int table_read_span(struct source *r, struct table_spans table, int64_t k, struct span *span,

@@ -12,6 +12,10 @@
 int table_read_columns(struct source *source, const char *group, const char *tail, int64_t start,
                        struct records records, struct why *why);
 
+/* The same of numbers all of which are finite */
+int table_read_finite(struct source *source, const char *group, const char *tail, int64_t start,
+                      struct records records, struct why *why);
+
 /* Rows of a table: `count` from `start` on */
 struct span {
     int64_t start, count;

@@ -3,6 +3,7 @@
 #include "measure/follow.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 static void choose(const struct measure **chosen, const struct measure *m)
@@ -95,6 +96,7 @@ void measured_json(FILE *out, const struct snapshot *s, const struct measure *co
     print_number(out, s->p->t, "null");
     fprintf(out, ",\"bodies\":%" PRId64 ",\"contacts\":", s->p->n);
     s->s ? fprintf(out, "%" PRId64, s->s->n) : fprintf(out, "null");
+    if (!isnan(s->unconverged)) fprintf(out, ",\"unconverged\":%.0f", s->unconverged);
     for (int k = 0; chosen[k]; k++) {
         fprintf(out, ",\"%s\":", chosen[k]->name);
         table_json(out, &t[k], chosen[k]->list);

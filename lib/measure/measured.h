@@ -20,7 +20,7 @@ int measured_keep(const struct measure *const *chosen, const struct snapshot *s,
 int measured_run(struct table *t, const struct measure *const *chosen, const struct snapshot *s,
                  struct why *why);
 void measured_free(struct table *t);
-/* {"step":...,"time":...,"bodies":...,"contacts":...,"NAME":{...},...,"why":{...}}, without an end of line */
+/* {"step":...,"time":...,"bodies":...,"contacts":...,"unconverged":...,"NAME":{...},...,"why":{...}}, without an end of line */
 void measured_json(FILE *out, const struct snapshot *s, const struct measure *const *chosen,
                    const struct table *t);
 

@@ -57,7 +57,7 @@ static const char *lacks(const struct snapshot *s, enum needs needs)
         return "the document has no sums over steps: nsd-step --sums keeps them";
     if ((needs == NEEDS_CONTACTS || needs == NEEDS_FORCES || needs == NEEDS_CONTACTS_BEFORE) &&
         !s->s)
-        return "the document has no contacts: nsd-step --contacts keeps them";
+        return "the frame has no contacts: steps find them, and nsd-step --contacts keeps them";
     if ((needs == NEEDS_BEFORE || needs == NEEDS_CONTACTS_BEFORE) && !s->before)
         return "no previous frame";
     if (needs == NEEDS_CONTACTS_BEFORE && !s->before->pair)

@@ -23,7 +23,9 @@ static int check_tracer(const struct packing *p, const char *tracer, struct why 
 int snapshot_init(struct snapshot *s, const struct packing *p, const struct contacts *contacts,
                   bool moved, const struct asked *asked, struct why *why)
 {
-    *s = (struct snapshot){ .p = p, .s = contacts, .moved = moved, .asked = asked };
+    *s = (struct snapshot){
+        .p = p, .s = contacts, .moved = moved, .asked = asked, .unconverged = NAN
+    };
     region_whole(&s->whole, p);
     s->region = s->whole;
     if (asked->boxed) region_box(&s->region, p, asked->lo, asked->hi);

@@ -36,6 +36,8 @@ struct snapshot {
     const struct contacts *s; /* NULL: the document has none; s->found NULL: not solved */
     bool moved;               /* the contacts have led to these positions, not from them */
     const struct asked *asked;
+    double
+        unconverged; /* steps since the frame before, or of the first all, that have not converged; NaN: not known */
     const struct kept *first, *before; /* frames before this one; NULL: it is the first */
     struct region whole;               /* all there is, and its volume */
     struct region region;              /* the box, or else the whole */

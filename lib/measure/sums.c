@@ -108,14 +108,16 @@ static void put_sum(double **at, const struct look *l, const struct sum *sum)
 /* Why numbers are missing */
 static void explain(struct table *t, const struct look *l)
 {
-    bool any = false;
-    for (int64_t i = 0; i < t->rows; i++)
-        for (int k = t->width - 11 - 4; k < t->width; k++)
-            any = any || !isfinite(t->x[i * t->width + k]);
+    bool area = false, wear = false;
+    for (int64_t i = 0; i < t->rows; i++) {
+        const double *end = t->x + (i + 1) * t->width;
+        area = area || !isfinite(end[-6]), wear = wear || !isfinite(end[-1]);
+    }
     if (!(l->span > 0)) table_null(t, "no time has passed since the sums began");
-    if (any)
-        table_null(t, "infinite walls have no area, and wear needs a coefficient: --wear, or "
-                      "the key wear of the wall");
+    if (area || wear)
+        table_null(t, "%s%s%s", area ? "infinite walls have no area" : "",
+                   area && wear ? ", and " : "",
+                   wear ? "wear needs a coefficient: --wear, or the key wear of the wall" : "");
 }
 
 static double row_of(const struct packing *p, const char *name)

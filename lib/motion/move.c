@@ -7,6 +7,7 @@
 #include "bodies/top.h"
 #include "motion/project.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 enum {
@@ -40,6 +41,14 @@ static void top_move(struct packing *p, const struct way *y, int64_t i, vec3 mom
     p->w[i] = top_spin(p, i, p->q[i], L);
 }
 
+/* m/s: of body i after the step */
+static vec3 velocity_after(const struct packing *p, const struct cell_flow *flow, double sign,
+                           int64_t i, vec3 x, vec3 force)
+{
+    vec3 v = v3_axpy(v3_axpy(p->v[i], sign * p->dt, p->g), sign / p->mass[i], force);
+    return flow->changes ? v3_axpy(v, sign, cell_flow_gain(flow, x)) : v;
+}
+
 /* Body i through the step, with its impulse and moment, which act between its parts. */
 static void body_move(struct packing *p, const struct cell_flow *flow, const struct way *y,
                       int64_t i, vec3 force, vec3 moment)
@@ -49,8 +58,7 @@ static void body_move(struct packing *p, const struct cell_flow *flow, const str
     p->x[i] = v3_axpy(p->x[i], y->first, p->v[i]);
     if (!top) p->q[i] = turn(p->q[i], y->first, p->w[i]);
     if (p->mass[i] > 0) {
-        p->v[i] = v3_axpy(v3_axpy(p->v[i], y->sign * p->dt, p->g), y->sign / p->mass[i], force);
-        if (flow->changes) p->v[i] = v3_axpy(p->v[i], y->sign, cell_flow_gain(flow, p->x[i]));
+        p->v[i] = velocity_after(p, flow, y->sign, i, p->x[i], force);
         if (!top) p->w[i] = v3_axpy(p->w[i], y->sign / p->inertia[i], moment);
     }
     p->x[i] = v3_axpy(p->x[i], y->then, p->v[i]);
@@ -82,6 +90,60 @@ static void move_bodies(struct packing *p, const struct impulses *sum, bool back
 {
     struct moving m = { p, sum, way_of(p, back) };
     team_share(team_size(), p->n, BODIES_PER_THREAD, move_some, &m);
+}
+
+/* ---- what would not be finite ---- */
+
+const char *const endless_name[] = {
+    [ENDLESS_POSITION] = "the position of body",
+    [ENDLESS_VELOCITY] = "the velocity of body",
+    [ENDLESS_SPIN] = "the angular velocity of body",
+    [ENDLESS_ENERGY] = "the energy of body",
+    [ENDLESS_WALL] = "the position or velocity of wall",
+    [ENDLESS_CELL] = "the size or rate of the periodic cell",
+    [ENDLESS_REPORT] = "an error or a balance of the step",
+};
+
+static enum endless_what body_after(const struct packing *p, const struct impulses *sum, int64_t i)
+{
+    vec3 x = v3_axpy(p->x[i], step_ahead(p), p->v[i]), v = p->v[i], w = p->w[i];
+    const bool moves = p->mass[i] > 0;
+    if (moves) v = velocity_after(p, &sum->flow, 1, i, x, sum->force[i]);
+    if (moves) w = v3_axpy(w, 1 / p->inertia[i], sum->moment[i]);
+    x = v3_axpy(x, step_after(p), v);
+    if (!v3_finite(v)) return ENDLESS_VELOCITY;
+    if (!v3_finite(w) || !isfinite(v3_dot(w, w))) return ENDLESS_SPIN;
+    if (!v3_finite(x)) return ENDLESS_POSITION;
+    double energy = p->mass[i] * (v3_dot(v, v) - v3_dot(p->g, x)) + p->inertia[i] * v3_dot(w, w);
+    return moves && !isfinite(energy) ? ENDLESS_ENERGY : ENDLESS_NOTHING;
+}
+
+static bool walls_last(const struct packing *p, int32_t w)
+{
+    const double t = packing_next_time(p);
+    const vec3 x = wall_at(p, &p->wall[w], t);
+    return v3_finite(x) && v3_finite(wall_velocity(p, &p->wall[w], x));
+}
+
+struct endless endless_after(const struct packing *p, const struct impulses *sum)
+{
+    for (int64_t i = 0; i < p->n; i++) {
+        enum endless_what what = body_after(p, sum, i);
+        if (what) return (struct endless){ what, p->id[i] };
+    }
+    for (int32_t w = 0; w < p->walls; w++)
+        if (!walls_last(p, w)) return (struct endless){ ENDLESS_WALL, -1 - w };
+    for (int32_t k = 0; k < sum->freedoms.n; k++) {
+        const struct freedom *f = &sum->freedoms.f[k];
+        const double speed = f->speed + impulses_change(sum, p, k);
+        if (!isfinite(speed) || !isfinite(speed * p->dt))
+            return f->boundary >= 0 ? (struct endless){ ENDLESS_WALL, -1 - f->boundary }
+                                    : (struct endless){ ENDLESS_CELL, 0 };
+    }
+    for (int k = 0; k < 3 && cell_repeats(&p->cell); k++)
+        if (!v3_finite(v3_axpy(p->cell.edge[k], p->dt, sum->next[k])))
+            return (struct endless){ ENDLESS_CELL, 0 };
+    return (struct endless){ 0 };
 }
 
 int move_by(struct packing *p, const struct contacts *s, const struct impulses *sum,

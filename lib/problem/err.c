@@ -243,3 +243,8 @@ enum err_terms err_terms_of(enum criterion c)
 {
     return c == CRITERION_NATURAL || c == CRITERION_VELOCITY ? ERR_NATURAL : ERR_TERMS;
 }
+
+bool err_no_solution(const struct report *r)
+{
+    return !r->converged && (r->err.jammed || err_of(&r->err, r->criterion) <= r->eps);
+}

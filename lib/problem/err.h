@@ -32,5 +32,8 @@ double err_of(const struct err *e, enum criterion c);
  */
 double err_value(const struct err *e, enum criterion c, double eps);
 enum err_terms err_terms_of(enum criterion c);
+/* Has the problem no solution? Reactions grow without end, and bodies approach all the same; by the natural map, which is
+   relative to the reactions, it only seems good. */
+bool err_no_solution(const struct report *r);
 
 #endif

@@ -7,6 +7,7 @@
 
 #include "detect/depth.h"
 #include "motion/balance.h"
+#include "motion/move.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -60,6 +61,9 @@ struct report {
     double eps;     /* what was asked */
     int32_t sweeps; /* or steps of cg */
     bool converged;
+    int32_t unsolved
+        [2]; /* where it has not converged: the ids of the bodies of the contact that is farthest
+                            from its law; a wall w is -1-w */
     int64_t newton;      /* Newton steps in all */
     int64_t safeguarded; /* local solves that ended with the exact solution instead */
     int64_t gave_up;     /* local solves that did not satisfy the law */
@@ -67,6 +71,7 @@ struct report {
     int64_t passed;      /* bodies that went through a boundary or another body in this step */
     int32_t passed_id, passed_through; /* the last; and a wall -1-w, or the number of a body */
     int64_t substeps;                  /* that the step was made in */
+    struct endless endless;            /* for which the step was not made */
     double work;          /* ns, counted and not timed, of the whole solve [solve/prices.h] */
     const char *fallback; /* why the solver asked for could not go on, and swept instead; or NULL */
     const char *given_up; /* why it ended before its limits, a literal; or NULL */
@@ -84,5 +89,10 @@ enum report_clock { CLOCK_CPU, CLOCK_WALL };
 double report_seconds(enum report_clock clock);
 
 void report_free(struct report *r);
+
+/* Was the step made? Else its solve diverged, or something would not be finite, and nothing has moved. */
+bool report_made(const struct report *r);
+/* Writes "step 12: the velocity of body 3 would not be finite" into text of that room, where it was not made. */
+void report_says_end(const struct report *r, char *text, size_t room);
 
 #endif

@@ -140,7 +140,7 @@ int processes_step(struct frame *f, struct step_memory *m, struct changes change
     else if (changes.bodies)
         next(OTHER_BODIES), rank_step_begin_again(&self.step, &f->packing);
     if (changes.acts) next(ACT), rank_step_act(&self.step, &f->packing);
-    self.step.contacts = self.contacts;
+    self.step.contacts = self.contacts, self.step.may_end = options_end_on_failure();
     next(STEP);
     return rank_step_make(&self.step, &f->packing, &f->contacts, o, &f->report, why);
 }

@@ -12,6 +12,7 @@
 #include "ranks/colours.h"
 #include "ranks/contact_list.h"
 #include "ranks/settings.h"
+#include "solve/account.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -418,6 +419,7 @@ static int step_by_first(struct rank_step *y, struct packing *whole, struct cont
                                       .measure = step_measure_whole,
                                       .solve = solve_by_first,
                                       .balance = step_balance_whole,
+                                      .find_unsolved = step_unsolved_whole,
                                       .move_apart = step_move_apart_whole,
                                       .watch = watch_by_first,
                                       .substeps = turn->steps,
@@ -544,18 +546,13 @@ static int measure_by_all(struct step_makers *m, const struct packing *p, const 
     return 0;
 }
 
-static bool diverged(const struct report *rep)
-{
-    return !isfinite(rep->err.paper.eps_glob);
-}
-
 static int solve_by_all(struct step_makers *m, const struct packing *p, struct contacts *s,
                         const struct step_opt *o, struct report *rep, struct why *why)
 {
     struct by_all *a = (struct by_all *)m;
     (void)p;
     solve_in_blocks(a->y, &a->blocks, a->whole, s, o, rep);
-    if (a->all && !o->bare && !diverged(rep)) tell_contacts(a->y, a->all, s);
+    if (a->all && !o->bare && isfinite(rep->err.paper.eps_glob)) tell_contacts(a->y, a->all, s);
     return why->status;
 }
 
@@ -572,6 +569,33 @@ static int balance_by_all(struct step_makers *m, const struct packing *p, const 
     return 0;
 }
 
+/* Of ranks whose contacts are as far off the pair of the largest ids stands. */
+static void find_unsolved_by_all(struct step_makers *m, const struct packing *p,
+                                 const struct contacts *s, struct report *rep)
+{
+    struct comm *t = ((struct by_all *)m)->y->part.comm;
+    double off;
+    const bool any = contacts_unsolved(s, &off) >= 0;
+    if (any) step_unsolved_whole(m, p, s, rep);
+    bool here = comm_most(t, off) == off && any;
+    for (int k = 0; k < 2; k++) {
+        double id = comm_most(t, here ? rep->unsolved[k] : -INFINITY);
+        here = here && rep->unsolved[k] == id;
+        rep->unsolved[k] = isfinite(id) ? (int32_t)id : 0;
+    }
+}
+
+/* The body of the least id, and what of it */
+static void agree_by_all(struct step_makers *m, struct report *rep)
+{
+    struct comm *t = ((struct by_all *)m)->y->part.comm;
+    struct endless *e = &rep->endless;
+    if (comm_most(t, e->what) == 0) return;
+    const double id = -comm_most(t, e->what ? -(double)e->id : -INFINITY);
+    const double what = comm_most(t, e->what && e->id == id ? e->what : 0);
+    *e = (struct endless){ (enum endless_what)what, (int32_t)id };
+}
+
 static int move_apart_by_all(struct step_makers *m, struct packing *p, const struct contacts *s,
                              struct why *why)
 {
@@ -584,7 +608,7 @@ static int watch_by_all(struct step_makers *m, const struct packing *p, struct w
                         struct report *rep, struct why *why)
 {
     (void)p, (void)why;
-    if (diverged(rep))
+    if (!report_made(rep))
         rep->balanced = false;
     else
         watch_here(((struct by_all *)m)->y, watch, rep);
@@ -597,8 +621,8 @@ static int step_by_all(struct rank_step *y, struct packing *whole, struct contac
 {
     struct comm *t = y->part.comm;
     struct contacts s = { 0 };
-    int told[2] = { o->bare, y->contacts };
-    MPI_Bcast(told, 2, MPI_INT, 0, t->mpi);
+    int told[3] = { o->bare, y->contacts, y->may_end };
+    MPI_Bcast(told, 3, MPI_INT, 0, t->mpi);
     struct step_opt of_first = *o;
     of_first.bare = told[0];
     struct by_all a = { .makers = { .detect = detect_by_all,
@@ -606,6 +630,8 @@ static int step_by_all(struct rank_step *y, struct packing *whole, struct contac
                                     .solve = solve_by_all,
                                     .add_impulses = add_impulses_by_all,
                                     .balance = balance_by_all,
+                                    .agree = agree_by_all,
+                                    .find_unsolved = find_unsolved_by_all,
                                     .move_apart = move_apart_by_all,
                                     .watch = watch_by_all,
                                     .substeps = turn->steps,
@@ -614,9 +640,10 @@ static int step_by_all(struct rank_step *y, struct packing *whole, struct contac
                         .whole = whole,
                         .all = told[1] ? all : NULL };
     if (step_make(&a.makers, &y->part.p, &s, &of_first, rep, why)) fail(y, why);
-    if (!t->me && !diverged(rep)) settings_copy_motion(whole, &y->part.p);
-    // a run that diverges ends, and keeps this
-    if (!y->scattered && (!of_first.bare || diverged(rep))) subdomain_collect(&y->part, whole);
+    if (!t->me && report_made(rep)) settings_copy_motion(whole, &y->part.p);
+    // with such a step the run ends, and keeps this
+    const bool ends = !report_made(rep) || (told[2] && account_step_fails(rep));
+    if (!y->scattered && (!of_first.bare || ends)) subdomain_collect(&y->part, whole);
     balance_load(y, &s);
     blocks_free(&a.blocks);
     contacts_free(&s);

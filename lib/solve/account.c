@@ -30,21 +30,22 @@ static double passed(const struct report *r, double bodies[2])
 
 static double unconverged(const struct report *r, double bodies[2])
 {
-    (void)bodies;
+    for (int k = 0; k < 2; k++) bodies[k] = r->unsolved[k];
     return !r->converged;
 }
 
 const struct watched account_watched[ACCOUNT_ROWS] = {
-    [ACCOUNT_OVERLAP] = { "overlap", "1", "overlap %.3g of a radius", false, 2, 0.01, 0.1, overlap,
-                          "a smaller dt leaves less: --dt, or --dt auto:0.01" },
-    [ACCOUNT_APPROACH] = { "approach", "m s-1", "approach %.3g m/s", false, 0, INFINITY, INFINITY,
-                           approach, "" },
-    [ACCOUNT_WEDGED] = { "wedged", "1", "%.0f wedged", false, 1, 0, 0, wedged,
+    [ACCOUNT_OVERLAP] = { "overlap", "1", "overlap %.3g of a radius", NULL, false, 2, 0.01, 0.1,
+                          overlap, "a smaller dt leaves less: --dt, or --dt auto:0.01" },
+    [ACCOUNT_APPROACH] = { "approach", "m s-1", "approach %.3g m/s", NULL, false, 0, INFINITY,
+                           INFINITY, approach, "" },
+    [ACCOUNT_WEDGED] = { "wedged", "1", "%.0f wedged", NULL, false, 1, 0, 0, wedged,
                          "held from two sides, deeper than 0.1 of its radius" },
-    [ACCOUNT_PASSED] = { "passed", "1", "%.0f went through a wall or another body", true, 2, 0, 0,
-                         passed, "a smaller dt finds such contacts" },
-    [ACCOUNT_UNCONVERGED] = { "unconverged", "1", "%.0f steps not converged", true, 0, INFINITY, 0,
-                              unconverged, "" },
+    [ACCOUNT_PASSED] = { "passed", "1", "%.0f went through a wall or another body", NULL, true, 2,
+                         0, 0, passed, "a smaller dt finds such contacts" },
+    [ACCOUNT_UNCONVERGED] = { "unconverged", "1", "%.0f steps not converged",
+                              "1 step not converged", true, 2, 0, 0, unconverged,
+                              "forces and motion are not those of the laws" },
 };
 
 unsigned account_add(struct account *a, const struct report *report)
@@ -77,13 +78,27 @@ bool account_fails(const struct account *a)
     return false;
 }
 
-static void say_body(double id, const struct names *names, char *text, size_t room)
+bool account_step_fails(const struct report *report)
 {
-    const char *name = id < 0 ? names_of_wall(names, (int32_t)(-1 - id)) : NULL;
-    if (name)
-        snprintf(text, room, "wall %.0f (%s)", -1 - id, name);
-    else
-        snprintf(text, room, id < 0 ? "wall %.0f" : "%.0f", id < 0 ? -1 - id : id);
+    struct account one = { 0 };
+    account_add(&one, report);
+    return account_fails(&one);
+}
+
+/* "bodies 3 and 8", "wall 1 (lid) and body 3" */
+static void say_bodies(const double *id, int n, const struct names *names, char *text, size_t room)
+{
+    bool plain = n == 2 && id[0] >= 0 && id[1] >= 0;
+    size_t at = (size_t)snprintf(text, room, plain ? "bodies " : "");
+    for (int k = 0; k < n && at < room; k++) {
+        const char *name = id[k] < 0 ? names_of_wall(names, (int32_t)(-1 - id[k])) : NULL;
+        at += (size_t)snprintf(text + at, room - at, "%s%s%.0f%s%s%s", k ? " and " : "",
+                               id[k] < 0 ? "wall "
+                               : plain   ? ""
+                                         : "body ",
+                               id[k] < 0 ? -1 - id[k] : id[k], name ? " (" : "", name ? name : "",
+                               name ? ")" : "");
+    }
 }
 
 void account_says(const struct account *a, enum account_row row, const struct names *names,
@@ -91,16 +106,12 @@ void account_says(const struct account *a, enum account_row row, const struct na
 {
     const struct watched *w = &account_watched[row];
     const struct account_entry *e = &a->worst[row];
-    char one[40 + NAME_BYTES], other[40 + NAME_BYTES] = "";
-    int n = snprintf(text, room, w->says, e->value);
+    char bodies[2 * (40 + NAME_BYTES)];
+    bool one = w->one && e->value == 1;
+    int n = one ? snprintf(text, room, "%s", w->one) : snprintf(text, room, w->says, e->value);
     if (e->value == 0 || n < 0 || (size_t)n >= room) return;
     text += n, room -= (size_t)n;
-    say_body(e->bodies[0], names, one, sizeof one);
-    say_body(e->bodies[1], names, other, sizeof other);
-    if (w->bodies == 2)
-        snprintf(text, room, " (step %.0f, bodies %s and %s)", e->step, one, other);
-    else if (w->bodies == 1)
-        snprintf(text, room, " (step %.0f, body %s)", e->step, one);
-    else
-        snprintf(text, room, " (%sstep %.0f)", w->adds ? "first " : "", e->step);
+    say_bodies(e->bodies, w->bodies, names, bodies, sizeof bodies);
+    snprintf(text, room, " (%sstep %.0f%s%s)", w->adds && e->value > 1 ? "first " : "", e->step,
+             w->bodies ? ", " : "", bodies);
 }

@@ -22,7 +22,7 @@ enum account_row {
 struct account_entry {
     double value;
     double step; /* whose value it is, the first of several; of a sum: the first that added to it */
-    double bodies[2]; /* ids there, as many as the row has; a boundary w is -1-w */
+    double bodies[2]; /* ids there, as many as the row has; a wall w is -1-w */
 };
 
 struct account {
@@ -32,7 +32,8 @@ struct account {
 
 struct watched {
     const char *name, *units;
-    const char *says;    /* a format for the value, %.3g */
+    const char *says;    /* a format for the value, %.3g; */
+    const char *one;     /* what a value of 1 is instead; or NULL */
     bool adds;           /* the values of steps are added up; else the largest stands */
     int bodies;          /* that are known there */
     double warns, fails; /* above that it is said at once; above that the run fails under -e */
@@ -44,10 +45,12 @@ extern const struct watched account_watched[ACCOUNT_ROWS];
 
 /* Adds a step. Returns the rows, as bits 1 << row, that are above what they warn at for the first time. */
 unsigned account_add(struct account *account, const struct report *report);
-/* Whether the row is above what fails, and whether any is */
+/* Is the row above what fails, and is any? */
 bool account_row_fails(const struct account *account, enum account_row row);
 bool account_fails(const struct account *account);
-/* Writes "overlap 0.012 of a radius (step 217, bodies 3 and wall 0)" into text of that room. */
+/* Does a step by itself? */
+bool account_step_fails(const struct report *report);
+/* Writes "overlap 0.012 of a radius (step 217, wall 0 and body 3)" into text of that room. */
 void account_says(const struct account *account, enum account_row row, const struct names *names,
                   char *text, size_t room);
 

@@ -209,6 +209,17 @@ int step_measure_whole(struct step_makers *m, const struct packing *p, const str
     return depth_of(&rep->depth, p, s, NULL, why);
 }
 
+void step_unsolved_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                         struct report *rep)
+{
+    double off;
+    (void)m;
+    const int64_t i = contacts_unsolved(s, &off);
+    if (i < 0) return;
+    const struct contact *c = &s->c[i];
+    rep->unsolved[0] = c->a < 0 ? c->a : p->id[c->a], rep->unsolved[1] = p->id[c->b];
+}
+
 int step_balance_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
                        const struct impulses *sum, struct balance *b, struct why *why)
 {
@@ -223,6 +234,28 @@ int step_move_apart_whole(struct step_makers *m, struct packing *p, const struct
     return overlap_projects(p->overlap) ? project_apart(p, s, why) : 0;
 }
 
+static bool report_is_finite(const struct report *rep)
+{
+    const struct err *e = &rep->err;
+    const struct balance *b = &rep->balance;
+    double sum = e->paper.eps_glob + e->scaled.eps_glob + e->max_penetration +
+                 e->max_penetration_true + e->max_overlap + e->natural + e->natural_siconos +
+                 e->natural_q + e->velocity + e->velocity_error;
+    double balance =
+        b->kinetic + b->change + b->potential + b->gravity + b->drives + b->loads + b->dissipation;
+    for (int k = 0; k < 3; k++) balance += b->momentum[k] + b->impulse[k];
+    return isfinite(sum) && (!rep->balanced || isfinite(balance));
+}
+
+static void foresee(struct step_makers *m, const struct packing *p, const struct impulses *sum,
+                    struct report *rep)
+{
+    if (!isfinite(rep->err.paper.eps_glob)) return;
+    rep->endless = endless_after(p, sum);
+    if (!rep->endless.what && !report_is_finite(rep)) rep->endless.what = ENDLESS_REPORT;
+    if (m->agree) m->agree(m, rep);
+}
+
 /* The balances and the motion */
 static int move(struct step_makers *m, struct packing *p, const struct contacts *s,
                 const struct step_opt *o, struct report *rep, struct why *why)
@@ -231,8 +264,8 @@ static int move(struct step_makers *m, struct packing *p, const struct contacts 
     if (impulses_init(&sum, p, s, false, why)) goto end;
     if (m->add_impulses) m->add_impulses(m, &sum);
     if (account_for(rep, p, o) && m->balance(m, p, s, &sum, &rep->balance, why)) goto end;
-    if (isfinite(rep->err.paper.eps_glob) && !sum_step(p, s, &sum, why) &&
-        !move_by(p, s, &sum, why))
+    foresee(m, p, &sum, rep);
+    if (report_made(rep) && !sum_step(p, s, &sum, why) && !move_by(p, s, &sum, why))
         m->move_apart(m, p, s, why);
 end:
     impulses_free(&sum);
@@ -272,12 +305,13 @@ int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
     if (m->detect(m, p, s, o, why)) return why->status;
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
     if (!m->helps && begin(m, m->measure, p, s, rep, why)) return why->status;
-    rep->passed = 0;
+    rep->passed = 0, rep->endless = (struct endless){ 0 };
     if (!m->helps && (!p->step || m->substeps->made) &&
         m->watch(m, p, watch_before(m, p), rep, why))
         return why->status;
-    if (m->solve(m, p, s, o, rep, why) || m->helps || move(m, p, s, o, rep, why))
-        return why->status;
+    if (m->solve(m, p, s, o, rep, why) || m->helps) return why->status;
+    if (!rep->converged) m->find_unsolved(m, p, s, rep);
+    if (move(m, p, s, o, rep, why)) return why->status;
     return m->watch(m, p, watch_after(m, p), rep, why);
 }
 
@@ -342,6 +376,7 @@ int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept
     struct substeps steps;
     struct alone a = { { .detect = detect_alone,
                          .measure = step_measure_whole,
+                         .find_unsolved = step_unsolved_whole,
                          .solve = solve_alone,
                          .balance = step_balance_whole,
                          .move_apart = step_move_apart_whole,

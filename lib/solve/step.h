@@ -45,7 +45,8 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
                         struct why *why);
 
 /*
- * One whole step; if warm, from the packing's memory. s: the contacts of this step, in place of others. m may be NULL. Where the solve diverged (its error is not finite) nothing moves.
+ * One whole step; if warm, from the packing's memory. s: the contacts of this step, in place of others. m may be NULL. Where the
+ * solve diverged, or something would not be finite after the step, nothing moves: report_made()
  */
 int step_advance(struct packing *p, struct contacts *s, struct step_memory *m,
                  const struct step_opt *o, struct report *rep, struct why *why);
@@ -79,6 +80,11 @@ struct step_makers {
     /* The balances of the step */
     int (*balance)(struct step_makers *m, const struct packing *p, const struct contacts *s,
                    const struct impulses *sum, struct balance *b, struct why *why);
+    /* rep->endless becomes that of all who make the step; NULL: it is. */
+    void (*agree)(struct step_makers *m, struct report *rep);
+    /* rep->unsolved */
+    void (*find_unsolved)(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                          struct report *rep);
     /* Bodies that overlap are moved apart, where the packing needs it. */
     int (*move_apart)(struct step_makers *m, struct packing *p, const struct contacts *s,
                       struct why *why);
@@ -95,6 +101,8 @@ int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
 /* What one process does: a process that has a whole packing */
 int step_measure_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
                        struct report *rep, struct why *why);
+void step_unsolved_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                         struct report *rep);
 int step_balance_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
                        const struct impulses *sum, struct balance *b, struct why *why);
 int step_move_apart_whole(struct step_makers *m, struct packing *p, const struct contacts *s,

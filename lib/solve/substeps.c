@@ -166,6 +166,8 @@ static void add_report(struct report *to, const struct report *r)
     if (r->passed && (!to->passed || r->passed_id < to->passed_id))
         to->passed_id = r->passed_id, to->passed_through = r->passed_through;
     to->passed += r->passed, to->watched = to->watched || r->watched;
+    if (to->converged && !r->converged) memcpy(to->unsolved, r->unsolved, sizeof to->unsolved);
+    to->endless = r->endless;
     to->balanced = to->balanced && r->balanced, to->converged = to->converged && r->converged;
     to->sweeps += r->sweeps, to->newton += r->newton;
     to->safeguarded += r->safeguarded, to->gave_up += r->gave_up;
@@ -190,7 +192,7 @@ int substeps_add(struct substeps *s, const struct packing *p, struct contacts *c
     substeps_count(s);
     r->substeps = s->made;
     if (substeps_alone(s)) return 0;
-    s->ends = s->ends || !isfinite(r->err.paper.eps_glob);
+    s->ends = s->ends || !report_made(r);
     if (!first && join(&s->sum, contacts, why)) return why->status;
     if (first)
         s->report = *r;

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ._documents import Contacts, Frame, Problem, documents, fclib, frames, last
-    from ._run import Diverged, Error, Run
+    from ._run import Diverged, Error, FailedStep, Run
 
-_RUNS = ("Run", "Error", "Diverged")
+_RUNS = ("Run", "Error", "Diverged", "FailedStep")
 _DOCUMENTS = ("Contacts", "Frame", "Problem", "documents", "frames", "last", "fclib")
 __all__ = [*_RUNS, *_DOCUMENTS]
 

@@ -33,6 +33,7 @@ _functions = {  # name: what it takes; each returns a status but for those below
     "nsd_resizes": (RUN,),
     "nsd_number": (RUN, c_char_p, POINTER(c_double)),
     "nsd_report": (RUN, POINTER(c_char_p)),
+    "nsd_failure": (RUN, POINTER(c_char_p)),
     "nsd_names": (RUN, POINTER(c_char_p)),
     "nsd_measure": (RUN, c_char_p, POINTER(c_char_p)),
     "nsd_force": (RUN, c_int32, VECTOR, VECTOR, c_int),

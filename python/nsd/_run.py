@@ -4,7 +4,9 @@ from __future__ import annotations
 import ctypes
 import json
 import os
+import sys
 import threading
+import warnings
 import weakref
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Union
@@ -30,7 +32,11 @@ class Error(RuntimeError):
 
 
 class Diverged(Error):
-    """The solve of a step diverged: the bodies have not moved."""
+    """The solve of a step diverged, or its result is infinite: the bodies have not moved."""
+
+
+class FailedStep(UserWarning):
+    """A step of a run failed its account [nsd-step(1)]: it has not converged, bodies overlap, or one went through another."""
 
 
 def _fail(status: int, text: str) -> None:
@@ -157,6 +163,7 @@ class Run:
     def __init__(self, handle: _Handle):
         self._handle: _Handle | None = handle
         self._views: weakref.WeakSet[_Owner] = weakref.WeakSet()
+        self._warned = False
 
     # ---- made, and closed ----
 
@@ -242,13 +249,19 @@ class Run:
         """Makes n steps."""
         if self._resizes():
             self._unused()
-        self._call("nsd_step", int(n))
+        try:
+            self._call("nsd_step", int(n))
+        finally:
+            self._warn()
 
     def until(self, time: float) -> None:
         """Makes steps until this time (s)."""
         if self._resizes():
             self._unused()
-        self._call("nsd_until", float(time))
+        try:
+            self._call("nsd_until", float(time))
+        finally:
+            self._warn()
 
     def steps(self, n: int | None = None, until: float | None = None) -> Iterator[int]:
         """Makes n steps, or steps until a time (s), or without either without end; yields the number of each after it was made."""
@@ -260,6 +273,34 @@ class Run:
 
     def __iter__(self) -> Iterator[int]:
         return self.steps()
+
+    def _warn(self) -> None:
+        """Warns once in a run, when a step has failed; the run continues."""
+        if self._warned or not (failure := self.failure):
+            return
+        self._warned = True
+        level, frame = 2, sys._getframe(1)
+        while frame.f_back and frame.f_code.co_filename == __file__:  # to the line of the program
+            level, frame = level + 1, frame.f_back
+        warnings.warn(f"a step of the run failed, and the run continues: {failure}", FailedStep, stacklevel=level)
+
+    @property
+    def failure(self) -> str:
+        """Which steps of this run failed their account, in words: "2 steps not converged (first step 7, ...)"; "": none."""
+        text = ctypes.c_char_p()
+        self._call("nsd_failure", ctypes.byref(text))
+        return (text.value or b"").decode(errors="replace")
+
+    @property
+    def converged(self) -> bool | None:
+        """Has the last step converged? None: no step was made."""
+        known = self.number("converged")
+        return None if known != known else bool(known)
+
+    @property
+    def account(self) -> dict[str, Any]:
+        """The account of all steps, as that of nsd-info(1); {}: no step was made."""
+        return {} if self.converged is None else self.report["account"]
 
     def _resizes(self) -> bool:
         if self._handle is None:

@@ -113,8 +113,9 @@ out=start2.h5
 ok "and by >" begun start2.h5
 ok "which is not in a run that has frames" eval 'nsd-step -n 2 -o start.h5 good.h5 2>/dev/null && nsd-info start.h5 | jq -s -e "map(.step)[1:] == [1, 2]"'
 nan() { echo '{"dt": 1, "bodies": [{"x": [1e308, 0, 0], "radius": 1, "v": [1e308, 0, 0]}]}' | nsd-gen - | nsd-step "$@"; }
-refuses 65 "a run that fails before its first frame" nan -o start3.h5
-ok "leaves nothing" test ! -e start3.h5
+status 1 "a run whose first step would not be finite" nan -o start3.h5
+is "leaves its start" "$(nsd-info -p start3.h5 | jq -c '[.step, .x[0]]')" '[0,1e+308]'
+like "and says which, and whose" "$(tail -n 1 "$tmp/err")" 'step 1: the (position|energy) of body 0 would not be finite: the run ends before it'
 
 # ---- tables ----
 

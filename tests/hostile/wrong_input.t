@@ -276,6 +276,24 @@ wrong_global=(
 )
 if have_h5py; then
     refuses_edits "a packing" nsd-step "$tmp/base.h5" "${wrong_packings[@]}"
+    # every number of a report and of the account, in a document of which frames have gone before
+    nsd-step -n 2 --contacts "$tmp/good.h5" 2>/dev/null >"$tmp/stepped.h5"
+    foreign "$tmp/stepped.h5" "$tmp/reported.h5"
+    mapfile -t wrong_reports < <(/usr/bin/python3 -c '
+import sys, h5py
+def see(name, o):
+    if isinstance(o, h5py.Dataset) and o.dtype.kind == "f" and not name.endswith("/time"):
+        for x in "nan", "inf": print(f"f[{name!r}][1] = {x}")
+with h5py.File(sys.argv[1]) as f:
+    for group in "nsd/solver", "nsd/account": f[group].visititems(lambda name, o, group=group: see(group + "/" + name, o))
+' "$tmp/reported.h5")
+    ok "reports and accounts have ${#wrong_reports[@]} such changes" test "${#wrong_reports[@]}" -gt 40
+    refuses_edits "a report" nsd-step "$tmp/reported.h5" "${wrong_reports[@]}" "f['nsd/solver/time'][1] = nan"
+    for tool in nsd-info nsd-stat "nsd-view -o $tmp/v.png" "nsd-export -t csv" nsd-cat; do
+        edits "$tmp/reported.h5" "f['nsd/solver/eps/value'][:, 0] = nan"
+        # shellcheck disable=SC2086 # a tool and its options
+        refuses 65 "$tool: errors that are no numbers" timeout 20 $tool "$tmp/wrong.0"
+    done
     refuses_edits "contacts" nsd-move "$tmp/base.h5" "${wrong_contacts[@]}"
     refuses_edits "a local problem" nsd-solve "$tmp/local.hdf5" "${wrong_local[@]}"
     refuses_edits "a global problem" nsd-solve "$tmp/global.hdf5" "${wrong_global[@]}"

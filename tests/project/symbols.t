@@ -13,6 +13,7 @@ nsd_boundary_force
 nsd_boundary_velocity
 nsd_close
 nsd_error
+nsd_failure
 nsd_finish
 nsd_force
 nsd_friction

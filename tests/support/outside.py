@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import threading
+import warnings
 
 import numpy as np
 
@@ -173,6 +174,49 @@ ok(raises(nsd.Error, "body 3 is not finite", run.step), "a force that is not fin
 run.force = 0
 run.step(20), twin.step(20)
 ok((run.position == twin.position).all() and (run.velocity == twin.velocity).all(), "and the run goes on as its twin does")
+
+# ---- steps that fail ----
+
+def warned(n, scene):
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        run = nsd.Run.from_scene(scene)
+        before = (run.converged, run.account, run.failure)
+        for _ in range(n):
+            run.step()
+    return run, before, said
+
+
+press = {"dt": 1e-3, "mu": 1, "bodies": [{"x": [0, 0, 0], "radius": 0.1, "mass": 1}],
+         "walls": [{"point": [0, 0, -0.1], "normal": [0, 0, 1], "name": "floor"},
+                   {"point": [0, 0, 0.1], "normal": [0, 0, -1], "velocity": [0, 0, -0.1]}]}
+pressed, before, said = warned(3, press)
+ok(before == (None, {}, "") and pressed.converged is False, "a run knows whether its last step has converged")
+ok(pressed.account["unconverged"]["value"] == 3 and pressed.account["unconverged"]["bodies"][0] in ("floor", "wall 1"),
+   "and its account, with the names of walls")
+ok([(w.category, os.path.basename(w.filename)) for w in said] == [(nsd.FailedStep, "outside.py")]
+   and "1 step not converged (step 1, wall" in str(said[0].message) and issubclass(nsd.FailedStep, UserWarning),
+   "a step that fails warns once in a run, where the program steps")
+ok("3 steps not converged (first step 1" in pressed.failure, "which the run can say at any time")
+good, _, said = warned(3, {**press, "walls": press["walls"][:1]})
+ok(not said and good.converged is True and good.failure == "", "steps that converge do not warn")
+with warnings.catch_warnings():
+    warnings.simplefilter("ignore")
+    ok(nsd.Run.from_scene(press).measure("boundaries")["unconverged"] == 0
+       and pressed.measure("boundaries")["unconverged"] == 3 and pressed.measure("boundaries")["unconverged"] == 0,
+       "measures have the number of such steps since the last")
+
+space = {"dt": 1e-3, "gravity": [0, 0, 0], "bodies": [{"x": [0, 0, 1], "radius": 1e-3}]}
+for what, act in (("velocity", lambda r: r.push(0, [1e308, 0, 0])), ("angular velocity", lambda r: r.push(0, torque=[1e308, 0, 0])),
+                  ("position", lambda r: (r.throw(0, [1e20, 0, 0]), r.set(dt=1e300))), ("energy", lambda r: r.throw(0, [1e160, 0, 0]))):
+    fast = nsd.Run.from_scene(space)
+    fast.step(2)
+    act(fast)
+    was = fast.position.copy(), fast.velocity.copy(), fast.angular_velocity.copy()
+    ok(raises(nsd.Diverged, f"step 3: the {what} of body 0 would not be finite", fast.step)
+       and all((x == y).all() for x, y in zip(was, (fast.position, fast.velocity, fast.angular_velocity))) and fast.step_number == 2,
+       f"a step whose {what} is infinite fails and is undone")
+    fast.save(path("undone.h5"))
 
 # ---- bodies that come and go ----
 

@@ -120,6 +120,8 @@ ok "the report has it" jq -e -s '.[-1].converged == false' <(nsd-info "$tmp/leni
 status 0 "nsd-step that does not converge: 0" nsd-step -n 3 --eps 1e-3 --max-sweeps 1 "$tmp/heap.h5"
 like "with a warning" "$(cat "$tmp/err")" '3 steps NOT CONVERGED, the first is step 601; the largest velocity is [0-9.e-]+, not 0.001'
 status 1 "and 1 under -e" nsd-step -e -n 3 --eps 1e-3 --max-sweeps 1 "$tmp/heap.h5"
+is "which ends with the first such step" "$(nsd-info "$tmp/out" | jq -c -n '[inputs | select(.step != null).step]')" "[601]"
+status 1 "and 1 under -e --keep-going" nsd-step -e --keep-going -n 3 --eps 1e-3 --max-sweeps 1 "$tmp/heap.h5"
 is "and all frames are written" "$(nsd-info "$tmp/out" | jq -c -n '[inputs | select(.step != null).step]')" "[601,602,603]"
 cat "$tmp/contacts.h5" "$tmp/contacts.h5" >"$tmp/two.h5"
 status 0 "nsd-solve -e of two problems" nsd-solve -e "$tmp/two.h5"

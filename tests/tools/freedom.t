@@ -141,8 +141,8 @@ like "and only what rubs or hits dissipates" "$(jq -s 'map(.balance.dissipation)
 # ---- a wall driven into a jammed packing ----
 
 jq '.walls[1] |= (del(.load) | .velocity = [0, 0, -0.2])' scenes/press.json | nsd-gen - |
-    step --overlap keep --substeps 1 -n 165 --every 165 -o "$tmp/jam.h5"
-status 0 "a wall driven into a jammed packing goes on" \
+    step --overlap keep --substeps 1 -n 165 --every 165 -o "$tmp/jam.h5" || true
+status 1 "a wall driven into a jammed packing makes all steps, and ends with 1" \
     timeout 120 nsd-step --overlap keep --substeps 1 -n 3 --log "$tmp/jam.log" -o "$tmp/jam2.h5" "$tmp/jam.h5"
 like "each step ends by the limit of the sweeps" "$(jq -s 'map(.sweeps) | max <= 20000' "$tmp/jam.log")" true
 like "is not converged" "$(jq -s 'map(.converged) | any | not' "$tmp/jam.log")" true

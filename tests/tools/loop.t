@@ -66,6 +66,19 @@ EOT
 quiet -n 3 --with-document --with "bash $tmp/reads $tmp/documents" "$tmp/ball.h5" >"$tmp/plain.h5"
 is "whole documents" "$(nsd-info "$tmp/documents" | jq -sc 'map(select(.step != null).step)')" "[0,1,2]"
 
+# ---- whether the step has converged, and walls by their names ----
+
+jq -n '{ dt: 1e-3, mu: 1, bodies: [{ x: [0, 0, 0], radius: 0.1, mass: 1 }], walls: [{ point: [0, 0, -0.1], normal: [0, 0, 1], name: "floor" },
+    { point: [0, 0, 0.1], normal: [0, 0, -1], name: "lid" }, { point: [9, 0, 0], normal: [-1, 0, 0], name: "lid" }] }' | nsd-gen - >"$tmp/press.h5"
+status 1 "a lid that a program drives down" nsd-step -n 4 --with "tee $tmp/told | jq -c --unbuffered 'if .step == 2 then {boundaries: {lid: {velocity: [0, 0, -0.1]}}} else {} end'" \
+    --with-boundaries lid -o "$tmp/pressed.h5" "$tmp/press.h5"
+is "it is told whether the step before has converged" "$(jq -c .converged "$tmp/told" | paste -sd ' ')" "null true true false"
+is "and the account, with names" "$(jq -c '.account.unconverged | [.value, .step, .bodies[1], .fails]' "$tmp/told" | paste -sd ' ')" \
+    "[null,null,null,null] [0,0,null,false] [0,0,null,false] [1,3,0,true]"
+is "a name is each wall that has it" "$(nsd-info -w --last "$tmp/pressed.h5" | jq -c .velocity | paste -sd ' ')" "[0,0,0] [0,0,-0.1] [0,0,-0.1]"
+status 1 "--replay knows the name, too" nsd-step -n 4 --replay "$tmp/pressed.h5" -o "$tmp/again.h5" "$tmp/press.h5"
+ok "and gives the same bodies and walls" cmp <(nsd-info -p -w "$tmp/pressed.h5") <(nsd-info -p -w "$tmp/again.h5")
+
 # ---- stop, and failures: whole frames, and the step by its name ----
 
 stops() # NAME PROGRAM FRAMES STATUS MESSAGE [OPTION ...]
@@ -88,7 +101,7 @@ stops "nonsense" 'echo hello; cat >/dev/null' "[0]" 69 'step 1: --with: the answ
 for answer in '[1]:neither a JSON object' '{"force":{}}:no .force.' '{"forces":{"7":[0,0,1]}}:body .7., which does not exist' \
     '{"forces":{"-1":[0,0,1]}}:body .-1.' '{"forces":{"0":[1]}}:vectors' '{"forces":[[0,0,1]]}:1 forces, and there are 2' \
     '{"forces":{"0":[1e999,0,0]}}:not JSON' '{"forces":{"0":["1",0,0]}}:vectors' '{"boundaries":{"9":{"force":1}}}:no boundary 9' \
-    '{"boundaries":{"1":{"force":1}}}:not load-controlled' '{"boundaries":{"0":{"speed":1}}}:no .speed.' '{"velocities":{"0":[1]}}:velocities are vectors' '{"angular_velocities":[[0,0,1]]}:1 angular_velocities, and there are 2' \
+    '{"boundaries":{"1":{"force":1}}}:not load-controlled' '{"boundaries":{"0":{"speed":1}}}:no .speed.' '{"boundaries":{"roof":{"force":1}}}:no wall is named .roof.' '{"boundaries":{"-1":{"force":1}}}:no wall is named .-1.' '{"velocities":{"0":[1]}}:velocities are vectors' '{"angular_velocities":[[0,0,1]]}:1 angular_velocities, and there are 2' \
     '{"gravity":9.81}:gravity is a vector' \
     '{"friction":[["ball","cheese",1]]}:no kind .cheese' '{"friction":[["ball","wall",-1]]}:friction of -1' '{"stop":1}:stop is true or false' \
     '{"gravity":[0,0,1],"gravity":[0,0,2]}:not JSON'; do

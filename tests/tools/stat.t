@@ -151,7 +151,7 @@ none "one ball without contacts" '{"dt": 1, "bodies": [{"x": [0, 0, 0], "radius"
 none "no gravity" '{"dt": 1, "gravity": [0, 0, 0], "bodies": [{"x": [0, 0, 0], "radius": 1}, {"x": [3, 0, 0], "radius": 1}]}'
 none "a cell that repeats" '{"dt": 1, "dim": 2, "gravity": [0, 0], "cell": {"lengths": [4, 4]}, "bodies": [{"x": [0, 0], "radius": 1}]}'
 none "a body in a wall of no volume" '{"dt": 1, "walls": [{"box": {"x": [-1, 1], "y": [-1, 1], "z": [-1, 1]}}], "bodies": [{"x": [0, 0, 0], "radius": 1, "fixed": true}]}'
-like "a reason in words" "$(nsd-stat -m stress "$tmp/gas.h5" 2>/dev/null | jq -r .why.stress)" 'no contacts: nsd-step --contacts'
+like "a reason in words" "$(nsd-stat -m stress "$tmp/gas.h5" 2>/dev/null | jq -r .why.stress)" 'no contacts: .*nsd-step --contacts'
 nsd-stat -m all -b 5,6,5,6,5,6 "$tmp/heap.h5" >"$tmp/empty.json" 2>/dev/null
 is "a box with nothing in it: no NaN" "$(grep -ci nan "$tmp/empty.json" || true)" 0
 # a box of a cell that repeats has the images that lie in it: four quarters of a disc at a corner

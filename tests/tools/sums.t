@@ -27,6 +27,7 @@ ok "by a torque about the origin: the weight where the block is, before its midd
 is "a floor that rests has no power" "$(of power)" 0
 is "a plane has no area, and why says so" "$(jq -c '[.area[0], .pressure[0]]' "$tmp/slid")" '[null,null]'
 ok "--wear in place of the scene's coefficient" near "$(stat --last -m sums --wear 5e-12 "$tmp/slid.h5" | jq '.sums.wear[0]')" 160e-12 1e-6
+is "and where it is given it is not advised" "$(stat --last -m sums --wear 5e-12 "$tmp/slid.h5" | jq -r .why.sums)" "infinite walls have no area"
 jq -n "$block | del(.walls[0].wear)" | nsd-gen - | step -n 1 | stat -m sums | jq -c '[.sums.wear[0], .why.sums != null]' >"$tmp/none"
 is "and without either null" "$(cat "$tmp/none")" '[null,true]'
 

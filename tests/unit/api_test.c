@@ -517,6 +517,53 @@ static void test_threads(void)
 
 /* ---- bad input ---- */
 
+/* A ball between the floor and a plate that comes down: no step has a solution. */
+static void test_failure(void)
+{
+    static const char scene[] =
+        "{\"dt\": 1e-3, \"mu\": 1, \"bodies\": [{\"x\": [0, 0, 0], \"radius\": 0.1, \"mass\": 1}], "
+        "\"walls\": ["
+        "{\"point\": [0, 0, -0.1], \"normal\": [0, 0, 1], \"name\": \"floor\"},"
+        "{\"point\": [0, 0, 0.1], \"normal\": [0, 0, -1], \"velocity\": [0, 0, -0.1]}]}";
+    struct nsd_run *r;
+    const char *text;
+    double converged;
+    must(nsd_from_scene(&r, scene, NULL), NULL);
+    must(nsd_failure(r, &text), r);
+    ok(!*text, "before the first step none has failed");
+    must(nsd_step(r, 2) || nsd_failure(r, &text), r);
+    ok(strstr(text, "2 steps not converged (first step 1, wall ") && strstr(text, " and body 0)"),
+       "steps that fail are known, with who is concerned: %s", text);
+    must(nsd_number(r, "converged", &converged) || nsd_report(r, &text), r);
+    ok(converged == 0 && strstr(text, "\"account\":{\"steps\":2,"), "the report has the account");
+    nsd_close(&r);
+}
+
+/* What would be infinite after a step, which is then not made */
+static void test_endless(void)
+{
+    static const char scene[] =
+        "{\"dt\": 1e-3, \"bodies\": [{\"x\": [0, 0, 1], \"radius\": 1e-3}]}";
+    const double push[3] = { 1e308, 0, 0 }, fast[3] = { 1e160, 0, 0 };
+    struct nsd_run *r;
+    struct nsd_array x = { .size = sizeof x };
+    double step;
+    must(nsd_from_scene(&r, scene, NULL), NULL);
+    must(nsd_step(r, 3) || nsd_read(r, "position", &x), r);
+    const double z = ((double *)x.data)[2];
+    nsd_force(r, 0, push, NULL, NSD_LASTING);
+    ok(nsd_step(r, 1) == NSD_DIVERGED && strstr(nsd_error(r), "step 4: the velocity of body 0"),
+       "a step whose velocity is infinite is not made: %s", nsd_error(r));
+    must(nsd_number(r, "step", &step), r);
+    ok(step == 3 && ((double *)x.data)[2] == z, "and the run is as it was");
+    nsd_force(r, 0, NULL, NULL, NSD_LASTING);
+    must(nsd_step(r, 1), r);
+    must(nsd_velocity(r, 0, fast, NULL), r);
+    ok(nsd_step(r, 1) == NSD_DIVERGED && strstr(nsd_error(r), "step 5: the energy of body 0"),
+       "nor one whose energy is: %s", nsd_error(r));
+    nsd_close(&r);
+}
+
 static void test_errors(void)
 {
     struct nsd_run *r = scene(heap), *none = NULL, *twin = scene(heap);
@@ -761,7 +808,7 @@ int main(void)
     if (!mkdtemp(folder)) return 1;
     test_forces(), test_velocities(), test_top(), test_boundaries(), test_places();
     test_resume(), test_lasting(), test_appends(), test_flow(), test_arrays(), test_threads(),
-        test_errors(), test_random();
+        test_failure(), test_endless(), test_errors(), test_random();
     char command[100];
     snprintf(command, sizeof command, "rm -r %s", folder);
     if (system(command)) return 1;

@@ -362,11 +362,16 @@ not_to_stdout() { ranks 2 -n 1 "$tmp/heap.h5"; }
 status 64 "no document to what mpirun calls standard output" not_to_stdout
 like "and it says what to do" "$(cat "$tmp/err" "$tmp/out")" "nsd-step: under mpirun the output goes to a file"
 
+ranks 2 -n 1 -o "$tmp/few.h5" "$tmp/heap.h5" 2>"$tmp/err"
+like "few bodies: one process is advised" "$(cat "$tmp/err")" '2 processes for [0-9]+ bodies are slower than one, .*: below 20000 bodies per process use threads, nsd-step -j 2'
+ranks 2 --order block -n 1 -o "$tmp/few.h5" "$tmp/heap.h5" 2>"$tmp/err"
+like "in blocks, too" "$(cat "$tmp/err")" 'below 2000 bodies per process'
+
 mkdir "$tmp/alone"
 cp "$(command -v nsd-step)" "$tmp/alone"
 without_mpi() { OMPI_COMM_WORLD_SIZE=2 "$tmp/alone/nsd-step" -n 1 -o "$tmp/c.h5" "$tmp/heap.h5"; }
 status 69 "a build without MPI does not step twice" without_mpi
-like "and says so" "$(cat "$tmp/err")" "^nsd-step: 2 processes were started together, and this nsd-step has no MPI"
+like "and says so" "$(cat "$tmp/err")" "^nsd-step: 2 processes were started together, and this nsd-step has no MPI: .*/alone/nsd-step-mpi is missing.*: nsd-step -j 2"
 
 dies() # one of three is killed after some frames; whole frames are left, and the run goes on
 {
