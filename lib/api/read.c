@@ -1,5 +1,6 @@
 /* api/read.c: what there is of a run, as arrays, numbers and JSON. */
 #include "api/run.h"
+#include "base/text.h"
 #include "io/report_json.h"
 #include "measure/branch.h"
 #include "measure/measured.h"
@@ -269,25 +270,56 @@ int nsd_report(struct nsd_run *r, const char **json)
     return 0;
 }
 
+/* Adds the name, or null */
+static bool put_name(json_t *list, const char *name)
+{
+    return !json_array_append_new(list, name ? json_string(name) : json_null());
+}
+
+/* The walls that have each name, or a part that has it, in order; rows are sorted by name and wall. */
+static bool put_named(json_t *to, const struct names *names)
+{
+    bool good = true;
+    for (int32_t k = 0; good && k < names->rows; k++) {
+        const struct named *row = &names->row[k], *before = k ? row - 1 : NULL;
+        const char *name = names->text[row->name];
+        if (before && before->name == row->name && before->boundary == row->boundary) continue;
+        json_t *walls = json_object_get(to, name);
+        if (!walls) {
+            good = !json_object_set_new(to, name, json_array());
+            walls = json_object_get(to, name);
+        }
+        good = good && !json_array_append_new(walls, json_integer(row->boundary));
+    }
+    return good;
+}
+
+static bool put_groups(json_t *to, const struct packing *p)
+{
+    bool used[NAMES_MOST] = { false }, good = true;
+    for (int64_t i = 0; p->group && i < p->n; i++)
+        if (p->group[i]) used[p->group[i] - 1] = true;
+    for (int32_t k = 0; good && k < p->names.n; k++)
+        if (used[k]) good = put_name(to, p->names.text[k]);
+    return good;
+}
+
+/* NULL: no memory */
 static json_t *names_of(const struct packing *p)
 {
     json_t *kinds = json_array(), *shapes = json_array(), *walls = json_array(),
-           *groups = json_array();
-    bool used[NAMES_MOST] = { false };
-    for (int32_t k = 0; k < p->kinds; k++)
-        json_array_append_new(kinds, json_string(p->kind_name[k]));
-    for (int32_t k = 0; k < p->shapes.n; k++)
-        json_array_append_new(shapes, json_string(p->shapes.s[k].name));
-    for (int32_t w = 0; w < p->walls; w++) {
-        const char *name = names_of_wall(&p->names, w);
-        json_array_append_new(walls, name ? json_string(name) : json_null());
-    }
-    for (int64_t i = 0; p->group && i < p->n; i++)
-        if (p->group[i]) used[p->group[i] - 1] = true;
-    for (int32_t k = 0; k < p->names.n; k++)
-        if (used[k]) json_array_append_new(groups, json_string(p->names.text[k]));
-    return json_pack("{s:o, s:o, s:o, s:o}", "kinds", kinds, "shapes", shapes, "walls", walls,
-                     "groups", groups);
+           *groups = json_array(), *named = json_object();
+    bool good = kinds && shapes && walls && groups && named;
+    for (int32_t k = 0; good && k < p->kinds; k++) good = put_name(kinds, p->kind_name[k]);
+    for (int32_t k = 0; good && k < p->shapes.n; k++) good = put_name(shapes, p->shapes.s[k].name);
+    for (int32_t w = 0; good && w < p->walls; w++)
+        good = put_name(walls, names_of_wall(&p->names, w));
+    good = good && put_groups(groups, p) && put_named(named, &p->names);
+    json_t *all = json_pack("{s:o*, s:o*, s:o*, s:o*, s:o*}", "kinds", kinds, "shapes", shapes,
+                            "walls", walls, "groups", groups, "named", named);
+    if (good) return all;
+    json_decref(all);
+    return NULL;
 }
 
 int nsd_names(struct nsd_run *r, const char **json)
@@ -310,6 +342,7 @@ int nsd_measure(struct nsd_run *r, const char *names, const char **json)
     const struct measure *chosen[MOST_MEASURES + 1];
     struct table t[MOST_MEASURES];
     struct snapshot s;
+    struct text written;
     char *text = NULL;
     size_t size = 0;
     if (!why) return NSD_USAGE;
@@ -324,10 +357,9 @@ int nsd_measure(struct nsd_run *r, const char *names, const char **json)
     snapshot_init(&s, &f->packing, f->detected ? &f->contacts : NULL, f->moved, &r->asked, why);
     if (r->remembers) s.first = &r->first, s.before = &r->before;
     if (!measured_run(t, chosen, &s, why)) {
-        FILE *out = open_memstream(&text, &size);
+        FILE *out = text_open(&written);
         if (out) measured_json(out, &s, chosen, t);
-        bool bad = !out || ferror(out);
-        if ((out && fclose(out)) || bad) no_memory(why);
+        if (!(text = text_close(&written, out, &size))) no_memory(why);
     }
     if (why->status && !strncmp(why->text, "--", 2))
         memmove(why->text, why->text + 2, strlen(why->text + 2) + 1);
