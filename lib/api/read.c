@@ -14,7 +14,7 @@
 /* ---- arrays ---- */
 
 /* What an array is of; those of bodies are the packing's own, those of acts the run's, others are made */
-enum rows { OF_BODIES, OF_ACTS, OF_CONTACTS, OF_BOUNDARIES };
+enum rows { OF_BODIES, OF_ACTS, OF_CONTACTS, OF_BOUNDARIES, OF_CELL };
 
 struct row {
     const char *name, *unit;
@@ -104,6 +104,26 @@ static void boundary_torques(const struct nsd_run *r, void *out)
     sum_boundaries(r, out, true);
 }
 
+static void cell_origin(const struct nsd_run *r, void *out)
+{
+    put3(out, 0, r->f.packing.cell.origin);
+}
+
+static void cell_edges(const struct nsd_run *r, void *out)
+{
+    for (int k = 0; k < 3; k++) put3(out, k, r->f.packing.cell.edge[k]);
+}
+
+static void cell_rates(const struct nsd_run *r, void *out)
+{
+    for (int k = 0; k < 3; k++) put3(out, k, r->f.packing.cell.rate[k]);
+}
+
+static void cell_repeated(const struct nsd_run *r, void *out)
+{
+    for (int k = 0; k < 3; k++) ((int8_t *)out)[k] = r->f.packing.cell.repeats[k];
+}
+
 #define BODY(member)    OF_BODIES, 'd', 1, offsetof(struct packing, member), NULL
 #define BODY3(member)   OF_BODIES, 'd', 3, offsetof(struct packing, member), NULL
 #define ACT(designator) OF_ACTS, 'd', 3, offsetof(struct acts, designator), NULL
@@ -136,6 +156,10 @@ static const struct row table[] = {
     { "boundary_angular_velocity", "rad s-1", OF_BOUNDARIES, 'd', 3, 0, boundary_spins },
     { "boundary_force", "N", OF_BOUNDARIES, 'd', 3, 0, boundary_forces },
     { "boundary_torque", "N m", OF_BOUNDARIES, 'd', 3, 0, boundary_torques },
+    { "cell_origin", "m", OF_CELL, 'd', 1, 0, cell_origin },
+    { "cell_edges", "m", OF_CELL, 'd', 3, 0, cell_edges },
+    { "cell_rates", "m s-1", OF_CELL, 'd', 3, 0, cell_rates },
+    { "cell_periodic", "1", OF_CELL, 'b', 1, 0, cell_repeated },
 };
 enum { ROWS = sizeof table / sizeof table[0], FIRST_MADE = 13 };
 _Static_assert(ROWS - FIRST_MADE <= MADE_MOST, "there is a place for each array that is made");
@@ -151,7 +175,7 @@ static void *make(struct nsd_run *r, int k, int64_t n, struct why *why)
     const struct row *t = &table[k];
     void *data = calloc((size_t)n * (size_t)t->width + 1, size_of(t->type));
     if (!data) return why_set(why, NSD_SOFTWARE, "%s: no memory", t->name), NULL;
-    t->make(r, data);
+    if (n) t->make(r, data);
     free(r->made[k - FIRST_MADE]);
     return r->made[k - FIRST_MADE] = data;
 }
@@ -186,6 +210,7 @@ int nsd_read(struct nsd_run *r, const char *name, struct nsd_array *out)
     const struct row *t = &table[k];
     int64_t n = t->rows == OF_CONTACTS     ? r->f.contacts.n
                 : t->rows == OF_BOUNDARIES ? r->f.packing.walls
+                : t->rows == OF_CELL       ? (cell_repeats(&r->f.packing.cell) ? 3 : 0)
                                            : r->f.packing.n;
     void *data = data_of(r, k, n, why);
     if (!data) return why->status;
@@ -252,7 +277,7 @@ int nsd_number(struct nsd_run *r, const char *name, double *x)
 
 static int no_memory(struct why *why)
 {
-    return why_set(why, NSD_SOFTWARE, "no memory for JSON");
+    return why_set(why, NSD_SOFTWARE, "no memory for JSON, or a name in it is not UTF-8");
 }
 
 int nsd_report(struct nsd_run *r, const char **json)

@@ -13,7 +13,7 @@
 #include "solve/step_options.h"
 
 /* Arrays that are made when they are read */
-enum { MADE_MOST = 16 };
+enum { MADE_MOST = 20 };
 
 struct nsd_run {
     pid_t maker; /* the process that may use it */

@@ -50,7 +50,7 @@ import sys
 import nsd
 with nsd.Run.from_scene(sys.argv[1]) as run:
     assert run.names == {"kinds": ["ball", "wall", "steel"], "shapes": ["ball", "cube"],
-                         "walls": ["floor", "side", "side", None], "groups": ["first"]}, run.names
+                         "walls": ["floor", "side", "side", None], "groups": ["first"], "named": {"floor": [0], "side": [1, 2]}}, run.names
     run.move_boundary("side", [0, 0, 0.25])
     assert [list(v) for v in run.boundary_velocity] == [[0, 0, 0], [0, 0, 0.25], [0, 0, 0.25], [0, 0, 0]]
     run.set(only="side", contacts=True)
