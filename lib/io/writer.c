@@ -489,6 +489,7 @@ static int trajectory_begin(struct writer *s, const struct frame *f, struct why 
     H5Pclose(access);
     if (s->doc.file < 0) return output_failed(s, why, "cannot be written");
     s->library = descriptor_of(s->doc.file);
+    if (guest_is() && s->library < 0) return output_failed(s, why, "cannot be kept from children");
     if (H5Fset_libver_bounds(s->doc.file, H5F_LIBVER_V110, H5F_LIBVER_V110) < 0)
         return output_failed(s, why, "cannot be written (full?)");
     if (packing_varies(&f->packing)) {

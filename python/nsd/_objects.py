@@ -6,6 +6,7 @@ import collections
 import ctypes
 import json
 import os
+import stat
 import struct
 import sys
 import threading
@@ -32,15 +33,19 @@ _DTYPES = {b"d": np.float64, b"i": np.int32, b"b": np.int8, b"l": np.int64}
 
 
 class _Reader:
-    """The only document of a file, opened by the library."""
+    """The documents of a file, one after another, by the library."""
 
     def __init__(self, path: bytes):
         self.maker, self.lock = os.getpid(), threading.RLock()
         self._pointer = DOCUMENT()
-        more = ctypes.c_int()
         self.call("nsd_open", ctypes.byref(self._pointer), path, opened=False)
-        self.call("nsd_next", ctypes.byref(more))
-        self.objects: dict[str, dict[str, Any]] = self.json("nsd_objects")
+
+    def next(self) -> dict[str, dict[str, Any]] | None:
+        """The objects of the next document; None: there is none."""
+        more = ctypes.c_int()
+        with self.lock:
+            self.call("nsd_next", ctypes.byref(more))
+            return self.json("nsd_objects") if more.value else None
 
     def call(self, name: str, *arguments: Any, opened: bool = True) -> None:
         """The reason of a failure is that of the thread."""
@@ -74,7 +79,7 @@ class _Reader:
 
 
 # those that are being read, the last one used last
-_open: collections.OrderedDict[int, "weakref.ref[Document]"] = collections.OrderedDict()
+_open: collections.OrderedDict[int, "weakref.ref[_Filed]"] = collections.OrderedDict()
 _lock = threading.RLock()
 
 
@@ -192,30 +197,76 @@ class Document(Group):
     """A document [nsd-format(5)]: its groups and datasets by their paths, as in document["nsd"].attrs["dt"] and
     document["particles/all/position/value"][-1]. Values are read when they are asked for."""
 
-    def __init__(self, path: bytes, name: str, keeps: Any = None):
-        self._path = ""
-        self._file, self.name, self._keeps = path, name, keeps
-        self._reader: _Reader | None = None
+    name: str  # of its source, for messages
+    objects: dict[str, dict[str, Any]]
+
+    def __init__(self, name: str, reader: _Reader | None, objects: dict[str, dict[str, Any]]):
+        self._path, self.name, self._reader, self.objects = "", name, reader, objects
         self._pace = Pace()
-        self._is = self._stat()
-        self.objects: dict[str, dict[str, Any]] = self._now().objects
+        self._kept: dict[tuple[str, str], Any] = {}  # what has been read, once the reader has gone on
 
     @property
     def _document(self) -> "Document":
         return self
 
-    def _stat(self) -> tuple[int, int]:
-        st = os.stat(self._file)
-        return st.st_dev, st.st_ino
+    def _now(self) -> _Reader:
+        assert self._reader is not None
+        return self._reader
+
+    def _value(self, kind: str, path: str) -> Any:
+        """Its attributes ("nsd_attributes") or its text ("nsd_text")"""
+        if self._reader is None and (kind, path) in self._kept:
+            return self._kept[kind, path]
+        reader = self._now()
+        return (reader.json if kind == "nsd_attributes" else reader.text)(kind, path.encode())
+
+    def attributes(self, path: str) -> dict[str, Any]:
+        return self._value("nsd_attributes", path)
+
+    def text(self, path: str) -> str:
+        return self._value("nsd_text", path)
+
+    def rows(self, path: str, first: int, n: int) -> NDArray[Any]:
+        """[n, width] of a dataset"""
+        known = self.objects[path]
+        if self._reader is None and ("rows", path) in self._kept:
+            return self._kept["rows", path][first:first + n].copy()
+        reader = self._now()
+        if n * int(np.prod(known["shape"][1:], dtype=object)) * 8 < LARGE:
+            return reader.rows(path.encode(), first, n)
+        return self._pace.make(lambda _: reader.rows(path.encode(), first, n))
+
+    def _keep(self) -> None:
+        """All of it, before the reader goes on to the next document of the stream"""
+        for path, known in {"": {"type": "group", "shape": []}, **self.objects}.items():
+            self._kept["nsd_attributes", path] = self.attributes(path)
+            if known["type"] == "s":
+                self._kept["nsd_text", path] = self.text(path)
+            elif known["type"][0] in "fiu":
+                self._kept["rows", path] = self.rows(path, 0, known["shape"][0] if known["shape"] else 1)
+        self._reader = None
+
+    def __repr__(self) -> str:
+        return f"<nsd document {self.name}>"
+
+
+class _Filed(Document):
+    """The only document of a file, which may be opened again"""
+
+    def __init__(self, path: bytes, name: str, keeps: Any = None):
+        super().__init__(name, None, {})
+        self._file, self._keeps, self._is = path, keeps, _identity(path)
+        self._now()
 
     def _now(self) -> _Reader:
         """The reader, opened again where it has been closed for others, or is the parent's"""
         with _lock:
             reader = self._reader
             if reader is None or reader.maker != os.getpid():
-                if self._stat() != self._is:
+                if _identity(self._file) != self._is:
                     raise Error(65, f"{self.name}: another file has taken its place")
-                reader = self._reader = Pace().make(lambda _: _Reader(self._file))
+                reader, objects = Pace().make(lambda _: _opened(self._file))
+                self._reader, self.objects = reader, self.objects or objects
             _open[id(self)] = weakref.ref(self)
             _open.move_to_end(id(self))
             while len(_open) > OPEN_MOST:
@@ -227,20 +278,15 @@ class Document(Group):
     def __del__(self, forget: Any = _open.pop) -> None:
         forget(id(self), None)
 
-    def attributes(self, path: str) -> dict[str, Any]:
-        return self._now().json("nsd_attributes", path.encode())
 
-    def text(self, path: str) -> str:
-        return self._now().text("nsd_text", path.encode())
+def _identity(path: bytes) -> tuple[int, int]:
+    st = os.stat(path)
+    return st.st_dev, st.st_ino
 
-    def rows(self, path: str, first: int, n: int) -> NDArray[Any]:
-        known, reader = self.objects[path], self._now()
-        if n * int(np.prod(known["shape"][1:], dtype=object)) * 8 < LARGE:
-            return reader.rows(path.encode(), first, n)
-        return self._pace.make(lambda _: reader.rows(path.encode(), first, n))
 
-    def __repr__(self) -> str:
-        return f"<nsd document {self.name}>"
+def _opened(path: bytes) -> tuple[_Reader, dict[str, dict[str, Any]]]:
+    reader = _Reader(path)
+    return reader, reader.next() or {}
 
 
 # ---- the documents of a source ----
@@ -255,26 +301,56 @@ def _alone(path: bytes) -> bool:
         return bool(flags & UNFINISHED) or length >= os.fstat(f.fileno()).st_size
 
 
-def _copy(stream: BinaryIO, head: bytes, length: int | None, name: str) -> Document:
-    """A document of a stream, or all that follows, in memory"""
-    memory = open(os.memfd_create("document", os.MFD_CLOEXEC), "w+b", buffering=0)
+def _readable(stream: BinaryIO) -> bytes | None:
+    """The path by which the process that reads opens it, if nothing of it has been read; None: it has none"""
+    try:
+        fd = stream.fileno()
+        mode = os.fstat(fd).st_mode
+        if stat.S_ISFIFO(mode) or (stat.S_ISREG(mode) and os.lseek(fd, 0, os.SEEK_CUR) == 0):
+            return b"/proc/self/fd/%d" % fd
+    except (OSError, ValueError, AttributeError):
+        pass
+    return None
+
+
+def _passing(path: bytes, name: str) -> Iterator[Document]:
+    """Documents back to back: one reader for all of them"""
+    pace = Pace()
+    reader = pace.make(lambda _: _Reader(path))
+    pace = Pace()
+    number = 0
+    while (objects := pace.make(lambda _: reader.next())) is not None:
+        number += 1
+        document = Document(name if number == 1 else f"{name}: document {number}", reader, objects)
+        yield document
+        left = weakref.ref(document)
+        del document
+        kept = left()
+        if kept is not None:  # somebody has it still
+            kept._keep()
+        del kept
+
+
+def _copied(stream: BinaryIO, name: str) -> Document | None:
+    """The next document of a stream, in memory; None: there is none"""
+    head = b""
+    while len(head) < HEADER and (more := stream.read(HEADER - len(head))):
+        head += more
+    if not head:
+        return None
+    left = None  # no header of nsd's: an HDF5 file by itself, or nothing of ours
+    if len(head) == HEADER and head[:8] == MAGIC:
+        flags, length = struct.unpack("<IQ", head[12:24])
+        left = None if flags & UNFINISHED else max(length - HEADER, 0)
+    memory = open(os.memfd_create("document", os.MFD_CLOEXEC), "w+b")
     memory.write(head)
-    left = None if length is None else length - len(head)
-    while left is None or left > 0:
-        piece = stream.read(PIECE if left is None else min(PIECE, left))
-        if not piece:
-            break
-        _write(memory, piece)
+    while (left is None or left > 0) and (piece := stream.read(PIECE if left is None else min(PIECE, left))):
+        memory.write(piece)
         left = None if left is None else left - len(piece)
+    memory.flush()
     if left:
         raise EOFError(f"{name}: a document is cut off")
-    return Document(b"/proc/self/fd/%d" % memory.fileno(), name, memory)
-
-
-def _write(to: Any, piece: bytes) -> None:
-    view = memoryview(piece)
-    while view:
-        view = view[to.write(view):]
+    return _Filed(b"/proc/self/fd/%d" % memory.fileno(), name, memory)
 
 
 def documents(source: Source = "-") -> Iterator[Document]:
@@ -284,35 +360,20 @@ def documents(source: Source = "-") -> Iterator[Document]:
     document."""
     if isinstance(source, (str, bytes, os.PathLike)) and source != "-":
         path = check.path(source, "source")
-        name = os.fsdecode(path)
         if os.path.isfile(path) and _alone(path):
-            yield Document(os.path.abspath(path), name)
+            yield _Filed(os.path.abspath(path), os.fsdecode(path))
             return
-        with open(path, "rb") as stream:
-            yield from _apart(stream, name)
+        os.stat(path)  # its OSError
+        yield from _passing(os.path.abspath(path), os.fsdecode(path))
         return
-    if isinstance(source, str):
-        yield from _apart(sys.stdin.buffer, "standard input")
-    elif callable(getattr(source, "read", None)):
-        yield from _apart(source, str(getattr(source, "name", "a stream")))
-    else:
+    stream: Any = sys.stdin.buffer if isinstance(source, str) else source
+    if not callable(getattr(stream, "read", None)):
         raise TypeError(f"source: a path or a stream is needed, not {type(source).__name__}")
-
-
-def _apart(stream: BinaryIO, name: str) -> Iterator[Document]:
-    number = 0
-    while head := _head(stream):
-        number += 1
-        where = name if number == 1 else f"{name}: document {number}"
-        if len(head) < HEADER or head[:8] != MAGIC:  # no header of nsd's: an HDF5 file by itself, or nothing of ours
-            yield _copy(stream, head, None, where)
-            return
-        flags, length = struct.unpack("<IQ", head[12:24])
-        yield _copy(stream, head, None if flags & UNFINISHED else max(length, HEADER), where)
-
-
-def _head(stream: BinaryIO) -> bytes:
-    head = b""
-    while len(head) < HEADER and (more := stream.read(HEADER - len(head))):
-        head += more
-    return head
+    name = "standard input" if isinstance(source, str) else str(getattr(source, "name", "a stream"))
+    start = _readable(stream) if isinstance(source, str) else None
+    if start is not None:
+        yield from _passing(start, name)
+        return
+    while (document := _copied(stream, name)) is not None:
+        yield document
+        del document
