@@ -1,8 +1,10 @@
 """libnsd.so.1 by ctypes: what nsd.h declares."""
 from __future__ import annotations
 
+import _thread
 import ctypes
 import os
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -128,7 +130,7 @@ class Pace:
         result is dropped.
         """
         begun = time.perf_counter()
-        if self.seconds < QUICK or threading.current_thread() is not threading.main_thread():
+        if self.seconds < QUICK or threading.get_ident() != threading.main_thread().ident:
             result = call(lambda: False)
         else:
             result = _beside(call)
@@ -136,32 +138,44 @@ class Pace:
         return result
 
 
-def _beside(call: Callable[[Callable[[], bool]], Any]) -> Any:
-    done, stop = threading.Lock(), threading.Event()
-    result: list[Any] = []
-    trouble: list[BaseException] = []
+class _Work:
+    """What a thread does beside the one that waits for it"""
 
-    def work() -> None:
+    def __init__(self, call: Callable[[Callable[[], bool]], Any]):
+        self._call = call
+        self.stopped = False
+        self.result: list[Any] = []
+        self.trouble: list[BaseException] = []
+
+    def __call__(self, done: Any, token: object) -> None:
         try:
-            result.append(call(stop.is_set))
+            self.result.append(self._call(lambda: self.stopped))
         except BaseException as e:  # for the thread that waits
-            trouble.append(e)
+            self.trouble.append(e)
         finally:
             done.release()
 
+
+def _beside(call: Callable[[Callable[[], bool]], Any]) -> Any:
+    done, token = threading.Lock(), object()
+    work = _Work(call)
     done.acquire()
     try:
-        threading.Thread(target=work, name="nsd", daemon=True).start()
+        _thread.start_new_thread(work, (done, token))
     except (RuntimeError, MemoryError):  # no thread can be had: then a signal waits
         return call(lambda: False)
-    except BaseException:  # KeyboardInterrupt, after the thread has begun
-        stop.set()
+    except BaseException:
+        work.stopped = True
         raise
     try:
-        done.acquire()
-    except BaseException:
-        stop.set()
+        while not done.acquire(timeout=1):
+            if sys.getrefcount(token) < 3:  # the thread has ended without memory to say so
+                break
+    except BaseException:  # KeyboardInterrupt
+        work.stopped = True
         raise
-    if trouble:
-        raise trouble.pop()
-    return result.pop()
+    if work.trouble:
+        raise work.trouble.pop()
+    if not work.result:
+        raise MemoryError("no memory for a thread")
+    return work.result.pop()
