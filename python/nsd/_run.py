@@ -488,7 +488,7 @@ class Run:
 
     def note(self, line: Mapping[str, Any] | str) -> None:
         """Sets the run's line in the history of its documents, a JSON object; call it before the first is written."""
-        self._call("nsd_note", check.text(line if isinstance(line, str) else json.dumps(line, separators=(",", ":")), "line"))
+        self._call("nsd_note", check.text(json.dumps(line, separators=(",", ":")) if isinstance(line, Mapping) else line, "line"))
 
     def save(self, path: Path) -> None:
         """Writes a document of the current state; replaces an existing file when it is complete. Raises Error (status 74) if it
