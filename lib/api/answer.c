@@ -1,6 +1,5 @@
 #include "api/answer.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -40,13 +39,17 @@ static bool vector(const json_t *j, int dim, vec3 *x)
     return true;
 }
 
-/* A number that is a key: at least 0; -1: it is none */
+/* A number that is a key, written in one way only, so that no two keys are the same number: at least 0; -1: it is none */
 static int64_t whole(const char *text)
 {
-    char *end;
-    errno = 0;
-    long long n = strtoll(text, &end, 10);
-    return end == text || *end || errno || n < 0 || n > INT32_MAX ? -1 : n;
+    int64_t n = 0;
+    if (text[0] == '0' && text[1]) return -1;
+    for (const char *c = text; *c; c++) {
+        if (*c < '0' || *c > '9') return -1;
+        n = 10 * n + (*c - '0');
+        if (n > INT32_MAX) return -1;
+    }
+    return *text ? n : -1;
 }
 
 /* What an answer has of each body */

@@ -125,6 +125,9 @@ int nsd_remove(struct nsd_run *r, int64_t n, const int32_t *id)
     if (!why) return NSD_USAGE;
     if (n < 0 || (n && !id)) return why_set(why, NSD_USAGE, "there are no numbers of bodies");
     if (!n) return 0;
+    if (n > r->f.packing.n)
+        return why_set(why, NSD_DATA, "%lld bodies cannot be removed: there are %lld", (long long)n,
+                       (long long)r->f.packing.n);
     int32_t *row = malloc(((size_t)r->f.packing.n + 1) * sizeof *row);
     if (!row) return why_set(why, NSD_SOFTWARE, "no memory to remove bodies");
     if (!find_rows(&r->f.packing, n, id, row, why) && !packing_copy(&p, &r->f.packing, why)) {

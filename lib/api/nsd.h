@@ -10,8 +10,14 @@
  *     nsd_close(&run);
  *
  * Units are SI. Functions return 0 or a status below, and nsd_error() returns the reason. A call that fails leaves the run
- * as it was. The library prints nothing and does not end the program. A run belongs to one thread at a time; different
- * threads may use different runs at once.
+ * as it was. The library prints nothing and does not end the program.
+ *
+ * Threads: a run, or a document, is used by one thread at a time; different threads may use different ones at once, and make them.
+ * What a call returns about a run (a text, an array, a reason) belongs to the run: who shares a run between threads copies it
+ * under the lock that keeps the other threads out. nsd_version() and nsd_array_name() may be called at any time.
+ *
+ * fork(): runs and documents belong to the process that made them. In a child their calls are refused (NSD_USAGE), the child does not
+ * touch their files, and it may make its own.
  *
  * The interface is stable: later versions add functions, names and members at the end of structs. The program sets
  * `size` to the size of a struct, by which the library determines which members exist.
@@ -35,8 +41,9 @@ struct nsd_run;
 enum nsd_status {
     NSD_DONE = 0,
     NSD_DIVERGED =
-        1, /* the solve of a step diverged, or its result is infinite: the bodies have not moved */
-    NSD_USAGE = 64, /* an option, name or run does not exist */
+        1, /* the solve of a step diverged, or its result is not finite: the bodies have not moved */
+    NSD_USAGE =
+        64, /* an option, name or run does not exist, or is another process's; a pointer is missing */
     NSD_DATA =
         65, /* a number is out of range, a body does not exist, a document or scene is invalid */
     NSD_NO_INPUT = 66, /* a file cannot be opened */
@@ -102,15 +109,15 @@ struct nsd_array {
     int64_t shape[2];  /* number of rows; numbers per row */
     int64_t stride[2]; /* bytes from row to row, from number to number */
     int32_t rank;      /* 1 or 2 dimensions */
-    char type;         /* 'd' double, 'i' int32_t, 'b' int8_t */
+    char type;         /* 'd' double, 'i' int32_t, 'b' int8_t; of documents also 'l' int64_t */
     char writable;     /* 1: numbers written there take effect */
 };
 
 /*
  * nsd_read() describes an array by its name. The names are nsd_array_name(0), (1) ... up to NULL. Arrays of bodies are the
  * run's own, without a copy: they stay at their addresses, and show the current state, until bodies are added or
- * removed, by nsd_add(), nsd_remove() or, if nsd_resizes() returns 1, by steps. Arrays of contacts and boundaries are of
- * the last step, and valid until the next step or until they are read again.
+ * removed, by nsd_add(), nsd_remove() or, if nsd_resizes() returns 1, by steps. Arrays of contacts, boundaries and
+ * the periodic cell are of the last step, and valid until the next step or until they are read again.
  */
 int nsd_read(struct nsd_run *run, const char *name, struct nsd_array *array);
 const char *nsd_array_name(int k);
@@ -128,8 +135,8 @@ int nsd_report(struct nsd_run *run, const char **json);
 /* Which of this run's steps failed their account [nsd-step(1)], in words: "2 steps not converged (first step 7, wall 1 and
    body 0)"; "": none. Valid as the text of nsd_report() */
 int nsd_failure(struct nsd_run *run, const char **text);
-/* {"kinds": [NAME, ...], "shapes": [...], "walls": [NAME or null, ...], "groups": [...]}, in their order; valid as the text
-   of nsd_report() */
+/* {"kinds": [NAME, ...], "shapes": [...], "walls": [NAME or null, ...], "groups": [...], "named": {NAME: [WALL, ...], ...}}, in
+   their order; named: the numbers of the walls that have the name, or a part that has it. Valid as the text of nsd_report() */
 int nsd_names(struct nsd_run *run, const char **json);
 /* The measures "A,B,..." or "all" as a line of nsd-stat(1); valid as the text of nsd_report() */
 int nsd_measure(struct nsd_run *run, const char *names, const char **json);
@@ -161,7 +168,7 @@ int nsd_remove(struct nsd_run *run, int64_t n, const int32_t *id);
 
 /* ---- saving ---- */
 
-/* Sets the run's line in the history of its documents, JSON in one line, instead of the library's own; call it before the
+/* Sets the run's line in the history of its documents, a JSON object in one line, instead of the library's own; call it before the
    first document is written */
 int nsd_note(struct nsd_run *run, const char *line);
 /* Writes a document of the current state; replaces a file at `path` when the document is complete */
@@ -171,6 +178,33 @@ int nsd_save(struct nsd_run *run, const char *path);
    one already, or is damaged; NSD_OUTPUT: another program or run is writing it */
 int nsd_append(struct nsd_run *run, const char *path);
 int nsd_finish(struct nsd_run *run);
+
+/* ---- documents ---- */
+
+/*
+ * The documents of a file [nsd-format(5)], one after another, as groups, datasets and attributes under their paths
+ * ("/particles/all/mass"; "" is the root). A process of its own reads them, with bounds on its memory and time, and checks them
+ * first as the tools do: checksums, sizes, no links and no data outside the file (NSD_DATA). Reasons are those of
+ * nsd_error(NULL).
+ */
+struct nsd_document;
+
+/* Opens the file, in which nsd_next() finds the first document; nsd_shut() closes it. */
+int nsd_open(struct nsd_document **document, const char *path);
+void nsd_shut(struct nsd_document **document);
+/* Goes to the next document; *more = 0: there is none. */
+int nsd_next(struct nsd_document *document, int *more);
+/* {PATH: {"type": TYPE, "shape": [ROWS, ...]}, ...} of all objects. TYPE: "group"; numbers "f8", "i4", "u1" ...; "s" text;
+   "other". Texts are valid until the next call of one of these three functions. */
+int nsd_objects(struct nsd_document *document, const char **json);
+/* {NAME: VALUE or [VALUE, ...], ...} of an object; null: a number that is not finite, or what is neither number nor text */
+int nsd_attributes(struct nsd_document *document, const char *path, const char **json);
+/* A text; of a list of texts each with a newline behind it */
+int nsd_text(struct nsd_document *document, const char *path, const char **text);
+/* Rows first .. first+n-1 of a dataset of numbers, of a single number row 0. A row holds all its numbers, of however many
+   dimensions. The array is valid until the next call of this function. */
+int nsd_rows(struct nsd_document *document, const char *path, int64_t first, int64_t n,
+             struct nsd_array *array);
 
 #ifdef __GNUC__
 #pragma GCC visibility pop

@@ -1,5 +1,6 @@
 /* api/read.c: what there is of a run, as arrays, numbers and JSON. */
 #include "api/run.h"
+#include "base/text.h"
 #include "io/report_json.h"
 #include "measure/branch.h"
 #include "measure/measured.h"
@@ -13,7 +14,7 @@
 /* ---- arrays ---- */
 
 /* What an array is of; those of bodies are the packing's own, those of acts the run's, others are made */
-enum rows { OF_BODIES, OF_ACTS, OF_CONTACTS, OF_BOUNDARIES };
+enum rows { OF_BODIES, OF_ACTS, OF_CONTACTS, OF_BOUNDARIES, OF_CELL };
 
 struct row {
     const char *name, *unit;
@@ -103,6 +104,26 @@ static void boundary_torques(const struct nsd_run *r, void *out)
     sum_boundaries(r, out, true);
 }
 
+static void cell_origin(const struct nsd_run *r, void *out)
+{
+    put3(out, 0, r->f.packing.cell.origin);
+}
+
+static void cell_edges(const struct nsd_run *r, void *out)
+{
+    for (int k = 0; k < 3; k++) put3(out, k, r->f.packing.cell.edge[k]);
+}
+
+static void cell_rates(const struct nsd_run *r, void *out)
+{
+    for (int k = 0; k < 3; k++) put3(out, k, r->f.packing.cell.rate[k]);
+}
+
+static void cell_repeated(const struct nsd_run *r, void *out)
+{
+    for (int k = 0; k < 3; k++) ((int8_t *)out)[k] = r->f.packing.cell.repeats[k];
+}
+
 #define BODY(member)    OF_BODIES, 'd', 1, offsetof(struct packing, member), NULL
 #define BODY3(member)   OF_BODIES, 'd', 3, offsetof(struct packing, member), NULL
 #define ACT(designator) OF_ACTS, 'd', 3, offsetof(struct acts, designator), NULL
@@ -135,6 +156,10 @@ static const struct row table[] = {
     { "boundary_angular_velocity", "rad s-1", OF_BOUNDARIES, 'd', 3, 0, boundary_spins },
     { "boundary_force", "N", OF_BOUNDARIES, 'd', 3, 0, boundary_forces },
     { "boundary_torque", "N m", OF_BOUNDARIES, 'd', 3, 0, boundary_torques },
+    { "cell_origin", "m", OF_CELL, 'd', 1, 0, cell_origin },
+    { "cell_edges", "m", OF_CELL, 'd', 3, 0, cell_edges },
+    { "cell_rates", "m s-1", OF_CELL, 'd', 3, 0, cell_rates },
+    { "cell_periodic", "1", OF_CELL, 'b', 1, 0, cell_repeated },
 };
 enum { ROWS = sizeof table / sizeof table[0], FIRST_MADE = 13 };
 _Static_assert(ROWS - FIRST_MADE <= MADE_MOST, "there is a place for each array that is made");
@@ -150,7 +175,7 @@ static void *make(struct nsd_run *r, int k, int64_t n, struct why *why)
     const struct row *t = &table[k];
     void *data = calloc((size_t)n * (size_t)t->width + 1, size_of(t->type));
     if (!data) return why_set(why, NSD_SOFTWARE, "%s: no memory", t->name), NULL;
-    t->make(r, data);
+    if (n) t->make(r, data);
     free(r->made[k - FIRST_MADE]);
     return r->made[k - FIRST_MADE] = data;
 }
@@ -185,6 +210,7 @@ int nsd_read(struct nsd_run *r, const char *name, struct nsd_array *out)
     const struct row *t = &table[k];
     int64_t n = t->rows == OF_CONTACTS     ? r->f.contacts.n
                 : t->rows == OF_BOUNDARIES ? r->f.packing.walls
+                : t->rows == OF_CELL       ? (cell_repeats(&r->f.packing.cell) ? 3 : 0)
                                            : r->f.packing.n;
     void *data = data_of(r, k, n, why);
     if (!data) return why->status;
@@ -251,7 +277,7 @@ int nsd_number(struct nsd_run *r, const char *name, double *x)
 
 static int no_memory(struct why *why)
 {
-    return why_set(why, NSD_SOFTWARE, "no memory for JSON");
+    return why_set(why, NSD_SOFTWARE, "no memory for JSON, or a name in it is not UTF-8");
 }
 
 int nsd_report(struct nsd_run *r, const char **json)
@@ -290,25 +316,56 @@ int nsd_failure(struct nsd_run *r, const char **text)
     return 0;
 }
 
+/* Adds the name, or null */
+static bool put_name(json_t *list, const char *name)
+{
+    return !json_array_append_new(list, name ? json_string(name) : json_null());
+}
+
+/* The walls that have each name, or a part that has it, in order; rows are sorted by name and wall. */
+static bool put_named(json_t *to, const struct names *names)
+{
+    bool good = true;
+    for (int32_t k = 0; good && k < names->rows; k++) {
+        const struct named *row = &names->row[k], *before = k ? row - 1 : NULL;
+        const char *name = names->text[row->name];
+        if (before && before->name == row->name && before->boundary == row->boundary) continue;
+        json_t *walls = json_object_get(to, name);
+        if (!walls) {
+            good = !json_object_set_new(to, name, json_array());
+            walls = json_object_get(to, name);
+        }
+        good = good && !json_array_append_new(walls, json_integer(row->boundary));
+    }
+    return good;
+}
+
+static bool put_groups(json_t *to, const struct packing *p)
+{
+    bool used[NAMES_MOST] = { false }, good = true;
+    for (int64_t i = 0; p->group && i < p->n; i++)
+        if (p->group[i]) used[p->group[i] - 1] = true;
+    for (int32_t k = 0; good && k < p->names.n; k++)
+        if (used[k]) good = put_name(to, p->names.text[k]);
+    return good;
+}
+
+/* NULL: no memory */
 static json_t *names_of(const struct packing *p)
 {
     json_t *kinds = json_array(), *shapes = json_array(), *walls = json_array(),
-           *groups = json_array();
-    bool used[NAMES_MOST] = { false };
-    for (int32_t k = 0; k < p->kinds; k++)
-        json_array_append_new(kinds, json_string(p->kind_name[k]));
-    for (int32_t k = 0; k < p->shapes.n; k++)
-        json_array_append_new(shapes, json_string(p->shapes.s[k].name));
-    for (int32_t w = 0; w < p->walls; w++) {
-        const char *name = names_of_wall(&p->names, w);
-        json_array_append_new(walls, name ? json_string(name) : json_null());
-    }
-    for (int64_t i = 0; p->group && i < p->n; i++)
-        if (p->group[i]) used[p->group[i] - 1] = true;
-    for (int32_t k = 0; k < p->names.n; k++)
-        if (used[k]) json_array_append_new(groups, json_string(p->names.text[k]));
-    return json_pack("{s:o, s:o, s:o, s:o}", "kinds", kinds, "shapes", shapes, "walls", walls,
-                     "groups", groups);
+           *groups = json_array(), *named = json_object();
+    bool good = kinds && shapes && walls && groups && named;
+    for (int32_t k = 0; good && k < p->kinds; k++) good = put_name(kinds, p->kind_name[k]);
+    for (int32_t k = 0; good && k < p->shapes.n; k++) good = put_name(shapes, p->shapes.s[k].name);
+    for (int32_t w = 0; good && w < p->walls; w++)
+        good = put_name(walls, names_of_wall(&p->names, w));
+    good = good && put_groups(groups, p) && put_named(named, &p->names);
+    json_t *all = json_pack("{s:o*, s:o*, s:o*, s:o*, s:o*}", "kinds", kinds, "shapes", shapes,
+                            "walls", walls, "groups", groups, "named", named);
+    if (good) return all;
+    json_decref(all);
+    return NULL;
 }
 
 int nsd_names(struct nsd_run *r, const char **json)
@@ -331,6 +388,7 @@ int nsd_measure(struct nsd_run *r, const char *names, const char **json)
     const struct measure *chosen[MOST_MEASURES + 1];
     struct table t[MOST_MEASURES];
     struct snapshot s;
+    struct text written;
     char *text = NULL;
     size_t size = 0;
     if (!why) return NSD_USAGE;
@@ -347,10 +405,9 @@ int nsd_measure(struct nsd_run *r, const char *names, const char **json)
     const double missed = r->account.worst[ACCOUNT_UNCONVERGED].value;
     s.unconverged = missed - r->measured;
     if (!measured_run(t, chosen, &s, why)) {
-        FILE *out = open_memstream(&text, &size);
+        FILE *out = text_open(&written);
         if (out) measured_json(out, &s, chosen, t);
-        bool bad = !out || ferror(out);
-        if ((out && fclose(out)) || bad) no_memory(why);
+        if (!(text = text_close(&written, out, &size))) no_memory(why);
     }
     if (why->status && !strncmp(why->text, "--", 2))
         memmove(why->text, why->text + 2, strlen(why->text + 2) + 1);

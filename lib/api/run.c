@@ -2,7 +2,6 @@
 #include "api/run.h"
 
 #include "api/document.h"
-#include "base/guest.h"
 #include "base/team.h"
 #include "import/scene_file.h"
 #include "motion/adapt.h"
@@ -15,7 +14,6 @@
 #include <jansson.h>
 #include <libgen.h>
 #include <math.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -37,6 +35,13 @@ struct why *run_why(struct nsd_run *r)
         return NULL;
     }
     r->why = (struct why){ 0 };
+    if (!process_owns(r->maker)) {
+        why_set(&r->why, NSD_USAGE,
+                "the run belongs to process %lld, of which this one is a copy by fork(): make "
+                "another run here",
+                (long long)r->maker);
+        return NULL;
+    }
     team_set_size((int)r->options.threads);
     return &r->why;
 }
@@ -51,32 +56,14 @@ const char *nsd_version(void)
     return NSD_VERSION;
 }
 
-/* ---- libhdf5 ---- */
-
-static pthread_mutex_t hdf5 = PTHREAD_MUTEX_INITIALIZER;
-static H5E_auto2_t printer; /* the program's own way to print errors of libhdf5, in this thread */
-static void *printer_data;
-
-void run_lock(void)
-{
-    pthread_mutex_lock(&hdf5);
-    H5Eget_auto2(H5E_DEFAULT, &printer, &printer_data);
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-}
-
-void run_unlock(void)
-{
-    H5Eset_auto2(H5E_DEFAULT, printer, printer_data);
-    pthread_mutex_unlock(&hdf5);
-}
-
 /* ---- made ---- */
 
 static struct nsd_run *new_run(struct why *why)
 {
     struct nsd_run *r = calloc(1, sizeof *r);
-    guest_set();
+    const pid_t maker = process_begin();
     if (!r) return why_set(why, NSD_SOFTWARE, "no memory for a run"), NULL;
+    r->maker = maker;
     r->f.packed = true;
     r->options.threads = 1, r->options.substeps = SUBSTEPS_MOST;
     r->asked = (struct asked)ASKED_DEFAULT;
@@ -97,6 +84,15 @@ static int begin(struct nsd_run *r, struct why *why)
     return packing_check(p, why);
 }
 
+/* What all constructors begin with: what it is to put its reason into; NULL: there is no place for the run, which is said. */
+static struct why *place_for(struct nsd_run **run)
+{
+    struct why *why = run_why_of_thread();
+    if (run) return *run = NULL, why;
+    why_set(why, NSD_USAGE, "there is no place for the run");
+    return NULL;
+}
+
 /* What all constructors end with */
 static int done(struct nsd_run **out, struct nsd_run *r, struct why *why)
 {
@@ -110,19 +106,19 @@ static int build(struct nsd_run *r, const char *text, size_t n, const char *name
                  const char *folder, struct why *why)
 {
     struct scene scene;
-    run_lock(); // a scene may take bodies from documents
+    process_lock(); // a scene may take bodies from documents
     if (!scene_file_parse(&scene, text, n, name, folder, why)) {
         if (scene_build(&r->f.packing, &scene, folder, why)) r->f.packing = (struct packing){ 0 };
         scene_free(&scene);
     }
-    run_unlock();
+    process_unlock();
     return why->status;
 }
 
 int nsd_from_scene(struct nsd_run **run, const char *text, const char *folder)
 {
-    struct why *why = run_why_of_thread();
-    *run = NULL;
+    struct why *why = place_for(run);
+    if (!why) return NSD_USAGE;
     if (!text) return why_set(why, NSD_USAGE, "there is no text of a scene");
     struct nsd_run *r = new_run(why);
     if (r) build(r, text, strlen(text), NULL, folder, why);
@@ -131,9 +127,9 @@ int nsd_from_scene(struct nsd_run **run, const char *text, const char *folder)
 
 int nsd_from_scene_file(struct nsd_run **run, const char *path)
 {
-    struct why *why = run_why_of_thread();
+    struct why *why = place_for(run);
     size_t n = 0;
-    *run = NULL;
+    if (!why) return NSD_USAGE;
     if (!path) return why_set(why, NSD_USAGE, "there is no path of a scene");
     FILE *f = fopen(path, "re");
     if (!f) return why_set(why, NSD_NO_INPUT, "%.200s: %s", path, strerror(errno));
@@ -148,35 +144,36 @@ int nsd_from_scene_file(struct nsd_run **run, const char *path)
 
 int nsd_from_document(struct nsd_run **run, const char *path)
 {
-    struct why *why = run_why_of_thread();
-    *run = NULL;
+    struct why *why = place_for(run);
+    if (!why) return NSD_USAGE;
     if (!path || !strcmp(path, "-"))
         return why_set(why, NSD_USAGE, "a document has a path; standard input is the program's");
     struct nsd_run *r = new_run(why);
-    run_lock();
+    process_lock();
     if (r) document_read_file(&r->f, path, why);
-    run_unlock();
+    process_unlock();
     return done(run, r, why);
 }
 
 int nsd_from_memory(struct nsd_run **run, const void *document, size_t size)
 {
-    struct why *why = run_why_of_thread();
-    *run = NULL;
+    struct why *why = place_for(run);
+    if (!why) return NSD_USAGE;
     if (!document) return why_set(why, NSD_USAGE, "there is no document");
     struct nsd_run *r = new_run(why);
-    run_lock();
+    process_lock();
     if (r) document_read(&r->f, document, size, why);
-    run_unlock();
+    process_unlock();
     return done(run, r, why);
 }
 
 int nsd_from_arrays(struct nsd_run **run, const char *scene, const char *folder,
                     const struct nsd_bodies *bodies)
 {
+    struct why *why = place_for(run);
     struct nsd_run *r;
-    if (nsd_from_scene(&r, scene, folder)) return *run = NULL, of_thread.status;
-    struct why *why = run_why_of_thread();
+    if (!why) return NSD_USAGE;
+    if (nsd_from_scene(&r, scene, folder)) return why->status;
     if (r->f.packing.n)
         why_set(why, NSD_DATA, "the scene has bodies of its own: arrays are for one without");
     else
@@ -191,13 +188,15 @@ void nsd_close(struct nsd_run **run)
 {
     struct nsd_run *r = run ? *run : NULL;
     if (!r) return;
-    nsd_finish(r);
     *run = NULL;
+    if (!process_owns(r->maker))
+        return; // another thread may have been changing it as this process began
+    nsd_finish(r);
     if (r->solved) r->f.report.options = NULL;
     free(r->option_json);
-    run_lock();
+    process_lock();
     frame_free(&r->f);
-    run_unlock();
+    process_unlock();
     contacts_free(&r->spare);
     step_forget(&r->memory);
     neighbours_free(&r->ahead);
@@ -344,6 +343,15 @@ static int advance(struct nsd_run *r, struct report *rep, struct why *why)
     return why_set(why, NSD_DIVERGED, "%s: the bodies have not moved", text);
 }
 
+/* Puts the step in front of the reason, unless it is there. */
+static void name_step(int64_t step, struct why *why)
+{
+    char text[sizeof why->text];
+    if (!strncmp(why->text, "step ", 5)) return;
+    memcpy(text, why->text, sizeof text);
+    snprintf(why->text, sizeof why->text, "step %lld: %.360s", (long long)step, text);
+}
+
 static int step_once(struct nsd_run *r, struct why *why)
 {
     struct packing *p = &r->f.packing;
@@ -355,6 +363,7 @@ static int step_once(struct nsd_run *r, struct why *why)
     bool whole = r->undo.whole;
     if (!whole) swap_forces(&p->outside, &r->last);
     if (advance(r, &rep, why)) {
+        name_step(r->undo.was.step + 1, why);
         if (!whole) swap_forces(&p->outside, &r->last);
         undo_back(&r->undo, p, &r->acts);
         step_forget(&r->memory), neighbours_free(&r->ahead);

@@ -5,6 +5,7 @@
 #define NSD_RUN_H
 
 #include "api/nsd.h"
+#include "api/process.h"
 #include "api/undo.h"
 #include "io/writer.h"
 #include "measure/asked.h"
@@ -12,9 +13,10 @@
 #include "solve/step_options.h"
 
 /* Arrays that are made when they are read */
-enum { MADE_MOST = 16 };
+enum { MADE_MOST = 20 };
 
 struct nsd_run {
+    pid_t maker; /* the process that may use it */
     struct frame f;
     struct contacts spare; /* where the contacts of the next step go */
     struct outside last;   /* the forces of the last step, while the next is made */
@@ -49,8 +51,8 @@ struct nsd_run {
     struct why why;
 };
 
-/* Each function of nsd.h that has a run begins with this: what it is to put its reason into; NULL: there is no run, which is
-   said (NSD_USAGE). */
+/* Each function of nsd.h that has a run begins with this: what it is to put its reason into; NULL: there is no run, or it
+   is another process's, which is said (NSD_USAGE). */
 struct why *run_why(struct nsd_run *run);
 /* The reason of this thread where there is no run */
 struct why *run_why_of_thread(void);
@@ -61,9 +63,5 @@ int run_choose(struct nsd_run *r, struct why *why);
 int run_add(struct nsd_run *r, const struct nsd_bodies *b, int32_t *id, struct why *why);
 /* Where the packing gets other bodies: a new one in place of it */
 void run_replace(struct nsd_run *r, struct packing *p, struct contacts *s);
-
-/* libhdf5 is used by one thread at a time, and prints nothing meanwhile. */
-void run_lock(void);
-void run_unlock(void);
 
 #endif

@@ -14,11 +14,22 @@ int nsd_note(struct nsd_run *r, const char *line)
     if (!why) return NSD_USAGE;
     if (!line || strchr(line, '\n')) return why_set(why, NSD_USAGE, "the history has lines");
     if (r->noted) return why_set(why, NSD_USAGE, "the run has its line in the history already");
-    json_t *j = json_loads(line, 0, NULL);
-    if (!j) return why_set(why, NSD_DATA, "a line of the history is a JSON object");
+    json_t *j = json_loads(line, JSON_REJECT_DUPLICATES, NULL);
+    const bool object = json_is_object(j);
     json_decref(j);
+    if (!object) return why_set(why, NSD_DATA, "a line of the history is a JSON object");
     if (!frame_note(&r->f, line, why)) r->noted = true;
     return why->status;
+}
+
+/* Is it the path of a file? The word that stands for standard output in the tools is none: that is the program's. */
+static bool is_path(const char *path, struct why *why)
+{
+    if (!path || !*path)
+        why_set(why, NSD_USAGE, "a document has a path");
+    else if (!strcmp(path, "-"))
+        why_set(why, NSD_USAGE, "-: standard output is the program's; a file of this name is ./-");
+    return !why->status;
 }
 
 /* What is wanted before it: the options, forces of the bodies that there are, and the library's line of history
@@ -67,16 +78,16 @@ int nsd_save(struct nsd_run *r, const char *path)
     struct why *why = run_why(r);
     struct writer *out = NULL;
     if (!why) return NSD_USAGE;
-    if (!path) return why_set(why, NSD_USAGE, "a document has a path");
+    if (!is_path(path, why)) return why->status;
     const struct before was = before(r);
     if (prepare(r, why)) return back(r, was);
     const struct frame f = frame_of(r);
-    run_lock();
+    process_lock();
     if (writer_open(&out, path, WRITER_COPY, why) || writer_frame(out, &f, why))
         writer_drop(out);
     else
         writer_close(out, why);
-    run_unlock();
+    process_unlock();
     return why->status ? back(r, was) : 0;
 }
 
@@ -93,9 +104,9 @@ static int check_motion(const struct nsd_run *r, struct why *why)
 /* The trajectory ends as it is. */
 static void drop(struct nsd_run *r)
 {
-    run_lock();
+    process_lock();
     writer_drop(r->out);
-    run_unlock();
+    process_unlock();
     free(r->path);
     r->out = NULL, r->path = NULL;
 }
@@ -194,11 +205,11 @@ static int first_frame(struct nsd_run *r, const char *path, struct why *why)
     r->rests = !boundary_tables_move(p) && !p->outside.steered;
     r->other_bodies = false;
     const struct frame f = frame_of(r);
-    run_lock();
+    process_lock();
     if (open_trajectory(r, goes_on, why) || check_motion(r, why) || writer_frame(r->out, &f, why) ||
         (goes_on && writer_take_place(r->out, why)))
         writer_drop(r->out), r->out = NULL;
-    run_unlock();
+    process_unlock();
     if (!r->out) free(r->path), r->path = NULL;
     return why->status;
 }
@@ -206,9 +217,9 @@ static int first_frame(struct nsd_run *r, const char *path, struct why *why)
 static int next_frame(struct nsd_run *r, struct why *why)
 {
     const struct frame f = frame_of(r);
-    run_lock();
+    process_lock();
     writer_frame(r->out, &f, why);
-    run_unlock();
+    process_unlock();
     if (why->status) drop(r);
     return why->status;
 }
@@ -217,7 +228,7 @@ int nsd_append(struct nsd_run *r, const char *path)
 {
     struct why *why = run_why(r);
     if (!why) return NSD_USAGE;
-    if (!path) return why_set(why, NSD_USAGE, "a trajectory has a path");
+    if (!is_path(path, why)) return why->status;
     if (r->out && strcmp(r->path, path) != 0)
         return why_set(why, NSD_USAGE, "%.100s is not finished: nsd_finish() comes before another",
                        r->path);
@@ -239,9 +250,9 @@ int nsd_finish(struct nsd_run *r)
     struct why *why = run_why(r);
     if (!why) return NSD_USAGE;
     if (!r->out) return 0;
-    run_lock();
+    process_lock();
     writer_close(r->out, why);
-    run_unlock();
+    process_unlock();
     free(r->path);
     r->out = NULL, r->path = NULL;
     return why->status;

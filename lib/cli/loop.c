@@ -2,6 +2,7 @@
 
 #include "api/answer.h"
 #include "api/document.h"
+#include "base/text.h"
 #include "bodies/chosen.h"
 #include "cli/partner.h"
 #include "hdf5/stream.h"
@@ -228,14 +229,15 @@ static char *message(const struct frame *f, const struct contacts *s, struct act
                      size_t *length, struct why *why)
 {
     const struct packing *p = &f->packing;
-    char *text = NULL, *bytes = NULL;
+    struct text written;
+    char *text, *bytes = NULL;
     size_t size = 0;
     struct frame all = *f;
     all.detected = s != NULL;
     if (document && acts->id && acts_arrays(acts, p, why)) return NULL;
     if (document) all.packing.outside.lasts = acts_lend(acts, p->walls);
     if (document && !(bytes = document_write(&all, &size, why))) return NULL;
-    FILE *out = open_memstream(&text, length);
+    FILE *out = text_open(&written);
     if (out) {
         fprintf(out, "{\"step\":%" PRId64 ",\"time\":", p->step);
         print_number(out, p->t, "null");
@@ -248,8 +250,8 @@ static char *message(const struct frame *f, const struct contacts *s, struct act
         fputs("}\n", out);
         if (size) fwrite(bytes, 1, size, out);
     }
-    bool bad = !out || ferror(out);
-    if ((out && fclose(out)) || bad) why_set(why, EX_SOFTWARE, "no memory for a line");
+    if (!(text = text_close(&written, out, length)))
+        why_set(why, EX_SOFTWARE, "no memory for a line");
     free(bytes);
     return text;
 }

@@ -9,6 +9,8 @@
  */
 #include "export/format.h"
 
+#include "base/text.h"
+
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -239,13 +241,15 @@ static int put_types(struct gsd *g, const struct packing *p, const struct kind *
                      enum chunk c, struct why *why)
 {
     char **text = calloc((size_t)types + 1, sizeof *text);
+    struct text written;
     size_t size;
     if (!text) why_set(why, EX_SOFTWARE, "no memory for the types of an export");
     for (int64_t k = 0; !why->status && k < types; k++) {
-        FILE *to = open_memstream(&text[k], &size);
+        FILE *to = text_open(&written);
         if (to && c == TYPES) put_name(to, p, t, types, k);
         if (to && c == TYPE_SHAPES) put_shape(to, p, &t[k]);
-        if (!to || fclose(to)) why_set(why, EX_SOFTWARE, "no memory for the types of an export");
+        if (!(text[k] = text_close(&written, to, &size)))
+            why_set(why, EX_SOFTWARE, "no memory for the types of an export");
     }
     if (!why->status) put_texts(g, c, text, types, why);
     for (int64_t k = 0; text && k < types; k++) free(text[k]);

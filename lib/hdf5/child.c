@@ -26,6 +26,7 @@ struct child {
 };
 
 static struct child *running;
+static pid_t owner;                                      /* the process whose they are */
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; /* of that list */
 
 /* Waits for its end; false where that has been seen before. */
@@ -50,14 +51,24 @@ static void bury(struct child *c)
 /* A tool that dies by exit() closes nothing. */
 static void bury_all(void)
 {
-    for (struct child *c = running; c; c = c->next) bury(c);
+    for (struct child *c = running; c && owner == getpid(); c = c->next) bury(c);
 }
 
 static void enlist(struct child *c)
 {
     static bool registered;
-    c->next = running, running = c;
+    c->next = running, running = c, owner = getpid();
     if (!registered) registered = !atexit(bury_all);
+}
+
+void child_forget_all(void)
+{
+    for (struct child *c = running, *next; c; c = next) {
+        next = c->next;
+        if (c->line >= 0) close(c->line);
+        c->line = c->pid = -1, c->next = NULL;
+    }
+    running = NULL;
 }
 
 static int no_child(struct why *why, const char *trouble)
@@ -101,10 +112,9 @@ static herr_t start(hid_t plist, const char *name, void *data)
     c->pid = fork();
     s->trouble = errno;
     if (c->pid) return 1; // enough
+    child_forget_all();   // they hang up when the tool does
     if (guest_is()) leave_files(s);
     close(s->line[0]);
-    for (struct child *k = running; k; k = k->next)
-        if (k->line >= 0) close(k->line); // they hang up when the tool does
     server_run(s->line[1], c->shared, s->files, s->file, s->limit, s->parent);
 }
 

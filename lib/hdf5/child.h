@@ -14,6 +14,8 @@ struct child;
 int child_start(struct child **child, int files, char *const *file, uint64_t limit,
                 struct why *why);
 void child_close(struct child *child);
+/* In a new process by fork(): those that read for the old one are none of this one's, which neither asks nor ends them. */
+void child_forget_all(void);
 /* Has it ended? */
 bool child_lost(const struct child *child);
 /* Asks, and takes all pieces of the answer. EX_DATAERR also where the child broke down over it. */

@@ -57,7 +57,8 @@ static int gather(struct gathered *g, const char *name, hid_t attr)
     if (space >= 0) H5Sclose(space);
     if (disk >= 0) H5Tclose(disk);
     const void *from = text ? text : data;
-    if (!from && o.kind != OBJECT_OTHER) {
+    if (disk < 0 || space < 0 || (!from && o.kind != OBJECT_OTHER)) {
+        free(text), free(data);
         return no_memory
                    ? why_set(g->why, EX_SOFTWARE, "no memory for attributes")
                    : why_set(g->why, EX_DATAERR, "%s@%s: cannot be read (damaged?)", g->path, name);

@@ -1,5 +1,6 @@
 #include "hdf5/server.h"
 
+#include "base/guest.h"
 #include "base/limits.h"
 #include "hdf5/serve.h"
 #include "hdf5/stream.h"
@@ -230,7 +231,8 @@ void server_run(int line, struct server_memory *shared, int files, char *const *
                         .served.file = -1 };
     struct why why = { 0 };
 #ifndef NSD_COVERAGE
-    prctl(PR_SET_PDEATHSIG, SIGKILL); // standard input is not kept open when the parent is gone
+    // standard input is not kept open when the tool is gone; a program's threads may end before it does
+    if (!guest_is()) prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(0);
 #else
     (void)parent;

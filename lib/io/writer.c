@@ -1,6 +1,7 @@
-#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): F_OFD_SETLK
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): F_OFD_SETLK, memfd_create
 #include "io/writer.h"
 
+#include "base/guest.h"
 #include "base/output.h"
 #include "hdf5/h5.h"
 #include "hdf5/stream.h"
@@ -14,6 +15,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -44,6 +46,7 @@ struct writer {
     bool trajectory;          /* else a stream */
     bool append;              /* opened by >>: others may append as well */
     int disk;                 /* a trajectory's file, opened again: > opens it for writing only */
+    int library;              /* the same, opened by libhdf5; -1: not yet, or it is closed */
     struct table_write doc;   /* a trajectory's datasets; file -1 before the first frame */
     struct common_part first; /* what its first frame has set */
     struct roster roster;     /* its bodies, where they come and go */
@@ -58,7 +61,53 @@ struct writer {
     bool waits;                   /* it takes its place when it is told to, or closed */
     bool linked;                  /* the file had a name when it was opened */
     struct vtkhdf *vtk;           /* what VTK shall find in its documents; NULL: nothing */
+    struct writer *next;          /* of those that are open in the program of somebody else */
 };
+
+static struct writer *writers; /* in such a program; used with the lock of libhdf5's user */
+
+static void enlist(struct writer *s)
+{
+    if (guest_is()) s->next = writers, writers = s;
+}
+
+static void unlist(const struct writer *s)
+{
+    for (struct writer **k = &writers; *k; k = &(*k)->next)
+        if (*k == s) {
+            *k = s->next;
+            return;
+        }
+}
+
+/* What is written there from now on goes into memory: nowhere. */
+static void lead_away(int fd)
+{
+    if (fd < 0) return;
+    close(fd); // then there is room for another one
+    int to = memfd_create("forgotten", MFD_CLOEXEC);
+    if (to < 0 || to == fd) return;
+    dup3(to, fd, O_CLOEXEC);
+    close(to);
+}
+
+/* The descriptor by which libhdf5 writes; -1: there is none */
+static int descriptor_of(hid_t file)
+{
+    int *fd = NULL;
+    return file >= 0 && H5Fget_vfd_handle(file, H5P_DEFAULT, (void **)&fd) >= 0 && fd ? *fd : -1;
+}
+
+void writer_forget_all(void)
+{
+    for (struct writer *s = writers; s; s = s->next) {
+        lead_away(s->library), lead_away(s->disk);
+        for (int k = 0; k < 2; k++) {
+            lead_away(s->file[k].fd), lead_away(s->file[k].old);
+        }
+    }
+    writers = NULL;
+}
 
 static int output_failed(const struct writer *s, struct why *why, const char *trouble)
 {
@@ -89,7 +138,9 @@ int writer_open(struct writer **out, const char *path, enum writer_kind kind, st
     struct writer *s = *out = calloc(1, sizeof *s);
     if (!s) return why_set(why, EX_SOFTWARE, "no memory");
     h5_start();
-    s->doc.file = s->disk = -1;
+    s->doc.file = s->disk = s->library = -1;
+    for (int k = 0; k < 2; k++) s->file[k].fd = s->file[k].old = -1;
+    enlist(s);
     s->name = path ? path : "standard output";
     s->fd = STDOUT_FILENO;
     if (!path) return look_at(s, kind, why);
@@ -437,6 +488,8 @@ static int trajectory_begin(struct writer *s, const struct frame *f, struct why 
     s->doc = (struct table_write){ .file = create(path, access), .growing = true };
     H5Pclose(access);
     if (s->doc.file < 0) return output_failed(s, why, "cannot be written");
+    s->library = descriptor_of(s->doc.file);
+    if (guest_is() && s->library < 0) return output_failed(s, why, "cannot be kept from children");
     if (H5Fset_libver_bounds(s->doc.file, H5F_LIBVER_V110, H5F_LIBVER_V110) < 0)
         return output_failed(s, why, "cannot be written (full?)");
     if (packing_varies(&f->packing)) {
@@ -483,6 +536,7 @@ static int trajectory_close(struct writer *s, struct why *why)
     hsize_t size;
     if (s->vtk && vtkhdf_end(s->vtk, s->doc.file, why)) return why->status;
     int failed = table_write_close(&s->doc) || H5Fget_filesize(s->doc.file, &size) < 0;
+    s->library = -1;
     if (H5Fclose(s->doc.file) < 0 || failed)
         return output_failed(s, why, "cannot be written (full?)");
     if (!still_there(s)) return output_failed(s, why, CUT_OFF);
@@ -559,6 +613,7 @@ int writer_close(struct writer *s, struct why *why)
     if (s->disk >= 0) close(s->disk);
     roster_free(&s->roster), vtkhdf_free(s->vtk);
     if (s->begun) output_drop(s->begun);
+    unlist(s);
     if (!s->output && close(s->fd) && !e) e = output_failed(s, why, strerror(errno));
     if (s->output && e) output_drop(s->output);
     if (s->output && !e) e = output_close(s->output, why);
@@ -569,6 +624,7 @@ int writer_close(struct writer *s, struct why *why)
 void writer_drop(struct writer *s)
 {
     if (!s) return;
+    unlist(s);
     if (s->doc.file >= 0) table_write_close(&s->doc), H5Fclose(s->doc.file);
     if (s->disk >= 0) close(s->disk);
     roster_free(&s->roster);

@@ -60,6 +60,10 @@ int writer_pass(struct writer *writer, struct reader *from, struct why *why);
 /* Completes the document (lengths, checksum) and reports what the file system had held back. */
 int writer_close(struct writer *writer, struct why *why);
 
+/* In a new process by fork(), of the program of somebody else [base/guest.h]: the descriptors of the open writers' files
+   lead elsewhere, so that nothing that this process does, or libhdf5 as it ends, reaches the files. */
+void writer_forget_all(void);
+
 /* Frees a writer that has failed, or NULL: whole frames that have their place stay, as those of a killed writer do. */
 void writer_drop(struct writer *writer);
 

@@ -4,21 +4,21 @@
     run = nsd.Run.from_scene("scene.json")      # libnsd: stepped, read, acted on [nsd-python(7)]
     run.step(100)
     print(run.position[:, 2].max())
-    for frame in nsd.frames("out.h5"):          # h5py: frames of documents [nsd-format(5)]
+    for frame in nsd.frames("out.h5"):          # frames of documents [nsd-format(5)]
         print(frame.step, frame.time, frame.x[:, 2].max())
 
-Runs need libnsd.so.1 and numpy, documents h5py and numpy; each is imported when it is first used.
+It needs libnsd.so.1 and numpy, which are loaded when they are first used.
 """
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ._documents import Contacts, Frame, Problem, documents, fclib, frames, last
-    from ._run import Diverged, Error, FailedStep, Run
+    from ._documents import Contacts, Document, Frame, Problem, documents, fclib, frames, last
+    from ._run import Cell, Diverged, Error, FailedStep, Run
 
-_RUNS = ("Run", "Error", "Diverged", "FailedStep")
-_DOCUMENTS = ("Contacts", "Frame", "Problem", "documents", "frames", "last", "fclib")
+_RUNS = ("Run", "Cell", "Error", "Diverged", "FailedStep")
+_DOCUMENTS = ("Contacts", "Document", "Frame", "Problem", "documents", "frames", "last", "fclib")
 __all__ = [*_RUNS, *_DOCUMENTS]
 
 

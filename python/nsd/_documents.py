@@ -1,4 +1,4 @@
-"""Documents of nsd [nsd-format(5)] in Python, by h5py and numpy; SI units throughout.
+"""Frames and contact problems of documents of nsd [nsd-format(5)] in Python, by libnsd and numpy; SI units throughout.
 
     import nsd
     for frame in nsd.frames("out.h5"):          # a trajectory, documents back to back, or "-"
@@ -9,18 +9,18 @@
 
 Arrays are read when they are asked for. What a frame's document does not have is None.
 """
-import io
-import os
-import struct
-import sys
-from functools import cached_property
+from __future__ import annotations
 
-import h5py
+from collections.abc import Iterator
+from functools import cached_property
+from typing import Any
+
 import numpy as np
 
-MAGIC = b"\x89NSD\r\n\x1a\n"
-HEADER = 512  # bytes in front of a document
-UNFINISHED = 1  # flag: still being written, and as long as its file
+from ._objects import Document, Group, Source, documents
+from ._run import Cell, _walls
+
+__all__ = ["Contacts", "Document", "Frame", "Problem", "documents", "fclib", "frames", "last"]
 
 
 class Contacts:
@@ -77,7 +77,7 @@ class Contacts:
 class Frame:
     """One frame of a document."""
 
-    def __init__(self, file, row):
+    def __init__(self, file: Document, row: int):
         self.file, self.row = file, row
         self._all = file["particles/all"]
         self.step = int(self._all["position/step"][row])
@@ -92,7 +92,7 @@ class Frame:
     @cached_property
     def _rows(self):
         """With inlets or outlets the rows of the bodies in this frame; else all."""
-        if isinstance(self._all["id"], h5py.Group):
+        if isinstance(self._all["id"], Group):
             return np.flatnonzero(self._all["id/value"][self.row] >= 0)
         return slice(None)
 
@@ -112,7 +112,7 @@ class Frame:
 
     @cached_property
     def id(self):
-        moves = isinstance(self._all["id"], h5py.Group)
+        moves = isinstance(self._all["id"], Group)
         return self._moving("id") if moves else self._fixed("id")
 
     kind = cached_property(lambda self: self._fixed("species"))
@@ -179,15 +179,25 @@ class Frame:
                 zip(group["name"][()], group["boundary"][()], group["faces"][()])]
 
     def walls(self, name):
-        """The numbers of the walls that have this name, or of which a part has it, in order; a number stands for that wall."""
-        if isinstance(name, (int, np.integer)):
-            if not 0 <= name < len(self.wall_names):
-                raise KeyError(f"no wall {name}, but {len(self.wall_names)} walls, from 0")
-            return [int(name)]
-        found = sorted({wall for own, wall, _ in self._named if own == name})
-        if not found:
-            raise KeyError(f"no wall '{name}', but {', '.join(dict.fromkeys(n for n, _, _ in self._named)) or 'none has a name'}")
-        return found
+        """The numbers of the walls that have this name, or of which a part has it, in order; a number stands for that wall.
+        Raises KeyError, which is a ValueError too."""
+        named = {}
+        for own, wall, _ in self._named:
+            named.setdefault(own, set()).add(wall)
+        return _walls(name, len(self.wall_names), {own: sorted(found) for own, found in named.items()})
+
+    @cached_property
+    def cell(self):
+        """The periodic cell, as that of a Run; None: no direction is periodic."""
+        box = self._all["box"] if "box" in self._all else None
+        periodic = np.array([b == "periodic" for b in box.attrs.get("boundary") or ()] if box else [], bool)
+        if not periodic.any():
+            return None
+        moves = isinstance(box["edges"], Group)
+        edges = np.asarray(box["edges/value"][self.row] if moves else box["edges"][()], float)
+        rates = box["rate/value"][self.row] if "rate" in box else np.zeros((3, 3))
+        origin = box["origin"][()] if "origin" in box else np.zeros(3)
+        return Cell(origin, np.diag(edges) if edges.ndim == 1 else edges, rates, periodic)
 
     @cached_property
     def contacts(self):
@@ -217,44 +227,11 @@ class Frame:
         if not len(at):
             return None
         return {name: group[name]["value"][at[-1]] for name in group
-                if isinstance(group[name], h5py.Group)}
+                if isinstance(group[name], Group)}
 
 
 def _lines(text):
-    return (text.decode() if isinstance(text, bytes) else str(text)).splitlines()
-
-
-def _whole(stream, size):
-    data = stream.read(size)
-    if len(data) != size:
-        raise EOFError("a document is cut off")
-    return data
-
-
-def documents(source="-"):
-    """The documents of a file, an open binary stream, or standard input ("-"), as h5py.File."""
-    path = source if isinstance(source, (str, os.PathLike)) and source != "-" else None
-    if path is None:
-        stream = sys.stdin.buffer if source == "-" else source
-    else:
-        stream = open(path, "rb")
-    try:
-        while head := stream.read(HEADER):
-            if head[:8] != MAGIC:  # no header of ours: an HDF5 file by itself
-                yield h5py.File(path or io.BytesIO(head + stream.read()), "r")
-                return
-            flags, length = struct.unpack("<IQ", head[12:24])
-            if path and flags & UNFINISHED:  # anew each time: by its name HDF5 would give what it knew
-                yield h5py.File(open(path, "rb"), "r")
-                return
-            if path and length == os.path.getsize(path):
-                yield h5py.File(path, "r")
-                return
-            rest = stream.read() if flags & UNFINISHED else _whole(stream, length - HEADER)
-            yield h5py.File(io.BytesIO(head + rest), "r")
-    finally:
-        if path is not None:
-            stream.close()
+    return list(text) if isinstance(text, np.ndarray) else str(text).splitlines()
 
 
 def _count(file):
@@ -267,15 +244,16 @@ def _count(file):
     return int(back[0]) + 1 if len(back) else len(steps)
 
 
-def frames(source="-"):
-    """The frames of all documents of the source, one after another."""
+def frames(source: Source = "-") -> Iterator[Frame]:
+    """The frames of all documents of the source, one after another: of a file, an open binary stream, or standard input ("-").
+    Raises what documents() does."""
     for file in documents(source):
         for row in range(_count(file)):
             yield Frame(file, row)
 
 
-def last(source="-"):
-    """The last frame; None: no frame."""
+def last(source: Source = "-") -> Frame | None:
+    """The last frame of all documents of the source; None: no frame. Raises what documents() does."""
     frame = None
     for file in documents(source):
         count = _count(file)
@@ -320,8 +298,9 @@ def _matrix(group):
         return dense
 
 
-def fclib(source="-"):
-    """The first contact problem in the FCLIB format among the documents of the source."""
+def fclib(source: Source = "-") -> Problem:
+    """The first contact problem in the FCLIB format among the documents of the source. Raises what documents() does, and ValueError if
+    there is none."""
     for file in documents(source):
         if "fclib_local" in file or "fclib_global" in file:
             return Problem(file)

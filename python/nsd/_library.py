@@ -1,8 +1,14 @@
 """libnsd.so.1 by ctypes: what nsd.h declares."""
 from __future__ import annotations
 
+import _thread
 import ctypes
 import os
+import sys
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
 from ctypes import POINTER, c_char, c_char_p, c_double, c_int, c_int32, c_int64, c_size_t, c_void_p
 from pathlib import Path
 
@@ -18,7 +24,7 @@ class Array(ctypes.Structure):
                 ("stride", c_int64 * 2), ("rank", c_int32), ("type", c_char), ("writable", c_char)]
 
 
-RUN = c_void_p
+RUN = DOCUMENT = c_void_p
 VECTOR = POINTER(c_double)
 _functions = {  # name: what it takes; each returns a status but for those below
     "nsd_from_scene": (POINTER(RUN), c_char_p, c_char_p),
@@ -48,6 +54,12 @@ _functions = {  # name: what it takes; each returns a status but for those below
     "nsd_save": (RUN, c_char_p),
     "nsd_append": (RUN, c_char_p),
     "nsd_finish": (RUN,),
+    "nsd_open": (POINTER(DOCUMENT), c_char_p),
+    "nsd_next": (DOCUMENT, POINTER(c_int)),
+    "nsd_objects": (DOCUMENT, POINTER(c_char_p)),
+    "nsd_attributes": (DOCUMENT, c_char_p, POINTER(c_char_p)),
+    "nsd_text": (DOCUMENT, c_char_p, POINTER(c_char_p)),
+    "nsd_rows": (DOCUMENT, c_char_p, c_int64, c_int64, POINTER(Array)),
 }
 
 
@@ -62,6 +74,7 @@ def _load() -> ctypes.CDLL:
         function = getattr(library, name)
         function.argtypes, function.restype = takes, c_int
     library.nsd_close.argtypes, library.nsd_close.restype = (POINTER(RUN),), None
+    library.nsd_shut.argtypes, library.nsd_shut.restype = (POINTER(DOCUMENT),), None
     library.nsd_error.argtypes, library.nsd_error.restype = (RUN,), c_char_p
     library.nsd_version.argtypes, library.nsd_version.restype = (), c_char_p
     library.nsd_array_name.argtypes, library.nsd_array_name.restype = (c_int,), c_char_p
@@ -69,3 +82,101 @@ def _load() -> ctypes.CDLL:
 
 
 library = _load()
+
+
+class Error(RuntimeError):
+    """An error of libnsd; `status` is that of nsd(3). The run is as it was before the call; of several steps those before the
+    failed one remain made."""
+
+    def __init__(self, status: int, text: str):
+        super().__init__(text)
+        self.status = status
+
+    def __reduce__(self) -> Any:
+        return type(self), (self.status, str(self))
+
+
+class Diverged(Error):
+    """The solve of a step diverged, or its result is not finite: the bodies have not moved."""
+
+
+_DIVERGED, _SOFTWARE = 1, 70
+
+
+def fail(status: int, text: bytes) -> None:
+    """The exception of a status that is not 0"""
+    words = text.decode(errors="replace")
+    if status == _SOFTWARE:
+        raise MemoryError(words)
+    raise (Diverged if status == _DIVERGED else Error)(status, words)
+
+
+# ---- calls that take long, and Ctrl-C ----
+
+QUICK = 0.005  # s: a call that took less the last time is made by the calling thread itself
+
+
+class Pace:
+    """How long a kind of call takes, by the last one"""
+
+    def __init__(self) -> None:
+        self.seconds = float("inf")
+
+    def make(self, call: Callable[[Callable[[], bool]], Any]) -> Any:
+        """The result of call(stopped).
+
+        Python handles a signal only in its main thread and not before a call of the library returns. A call that may take long
+        is therefore made by a thread of its own, for which the main thread waits: an exception of a signal handler
+        (KeyboardInterrupt) arrives at once. What the call does after that ends as soon as stopped() is looked at, and its
+        result is dropped.
+        """
+        begun = time.perf_counter()
+        if self.seconds < QUICK or threading.get_ident() != threading.main_thread().ident:
+            result = call(lambda: False)
+        else:
+            result = _beside(call)
+        self.seconds = time.perf_counter() - begun
+        return result
+
+
+class _Work:
+    """What a thread does beside the one that waits for it"""
+
+    def __init__(self, call: Callable[[Callable[[], bool]], Any]):
+        self._call = call
+        self.stopped = False
+        self.result: list[Any] = []
+        self.trouble: list[BaseException] = []
+
+    def __call__(self, done: Any, token: object) -> None:
+        try:
+            self.result.append(self._call(lambda: self.stopped))
+        except BaseException as e:  # for the thread that waits
+            self.trouble.append(e)
+        finally:
+            done.release()
+
+
+def _beside(call: Callable[[Callable[[], bool]], Any]) -> Any:
+    done, token = threading.Lock(), object()
+    work = _Work(call)
+    done.acquire()
+    try:
+        _thread.start_new_thread(work, (done, token))
+    except (RuntimeError, MemoryError):  # no thread can be had: then a signal waits
+        return call(lambda: False)
+    except BaseException:
+        work.stopped = True
+        raise
+    try:
+        while not done.acquire(timeout=1):
+            if sys.getrefcount(token) < 3:  # the thread has ended without memory to say so
+                break
+    except BaseException:  # KeyboardInterrupt
+        work.stopped = True
+        raise
+    if work.trouble:
+        raise work.trouble.pop()
+    if not work.result:
+        raise MemoryError("no memory for a thread")
+    return work.result.pop()

@@ -1,48 +1,45 @@
 """Runs of nsd, stepped by a program."""
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import json
+import math
 import os
 import sys
 import threading
+import time
 import warnings
 import weakref
-from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, Union
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Any, NamedTuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._library import Array, Bodies, RUN, library
+from . import _arguments as check
+from ._library import Array, Bodies, Diverged, Error, Pace, RUN, VECTOR, fail, library
+
+__all__ = ["Cell", "Diverged", "Error", "FailedStep", "Run"]
 
 Path = Union[str, "os.PathLike[str]"]
 
 _ONCE, _LASTING = 0, 1
-_DIVERGED, _SOFTWARE = 1, 70
 _DTYPES = {b"d": np.float64, b"i": np.int32, b"b": np.int8}
-
-
-class Error(RuntimeError):
-    """An error of libnsd; `status` is that of nsd(3). The run is as it was before the call."""
-
-    def __init__(self, status: int, text: str):
-        super().__init__(text)
-        self.status = status
-
-
-class Diverged(Error):
-    """The solve of a step diverged, or its result is infinite: the bodies have not moved."""
+_CHUNK = 0.03  # s: steps that are made in one call of the library, before signals are looked at
 
 
 class FailedStep(UserWarning):
     """A step of a run failed its account [nsd-step(1)]: it has not converged, bodies overlap, or one went through another."""
 
 
-def _fail(status: int, text: str) -> None:
-    if status == _SOFTWARE:
-        raise MemoryError(text)
-    raise (Diverged if status == _DIVERGED else Error)(status, text)
+class Cell(NamedTuple):
+    """The periodic cell: a body at x exists at x + edges[k] as well, with its velocity plus rates[k], for each k with periodic[k]."""
+
+    origin: NDArray[np.float64]  # [3] m: the corner from which the edges start
+    edges: NDArray[np.float64]  # [3, 3] m: one edge per row
+    rates: NDArray[np.float64]  # [3, 3] m/s: their velocities
+    periodic: NDArray[np.bool_]  # [3]
 
 
 class _Handle:
@@ -50,14 +47,67 @@ class _Handle:
 
     def __init__(self, pointer: int | None):
         self.pointer = RUN(pointer)
-        self.lock = threading.Lock()
+        self.maker = os.getpid()
+        self._lock = threading.RLock()
+        self.views: weakref.WeakSet[_Owner] = weakref.WeakSet()
+
+    @property
+    def lock(self) -> Any:
+        """Keeps other threads out. In a child of fork() one of the parent's threads may hold it for ever; there the library refuses
+        each call."""
+        return self._lock if self.maker == os.getpid() else contextlib.nullcontext()
 
     def call(self, name: str, *arguments: Any) -> None:
+        """A function of the library with the run; the arguments stay referenced until it returns."""
         with self.lock:
             status = getattr(library, name)(self.pointer, *arguments)
-            text = library.nsd_error(self.pointer).decode(errors="replace") if status else ""
+            text = library.nsd_error(self.pointer) if status else b""
         if status:
-            _fail(status, text)
+            fail(status, text)
+
+    def unused(self) -> None:
+        """Before bodies are added or removed, under the lock: no array may be in use."""
+        if len(self.views):
+            raise BufferError("arrays of this run are in use while bodies are added or removed: keep copies instead (x.copy(), del x)")
+
+    def array(self, name: bytes) -> NDArray[Any]:
+        """A view of an array of bodies, a copy of any other, made while the lock is held"""
+        described = Array(ctypes.sizeof(Array))
+        with self.lock:
+            self.call("nsd_read", name, ctypes.byref(described))
+            owner = _Owner(self, described)
+            if 0 in described.shape[:described.rank]:
+                return np.zeros(tuple(described.shape[:described.rank]), _DTYPES[described.type])
+            view = np.asarray(owner)
+            if name.startswith((b"contact_", b"boundary_", b"cell_")):
+                return view.copy()
+            self.views.add(owner)
+        return view
+
+    def text(self, name: str, *arguments: Any) -> Any:
+        """JSON that a function returns, taken over while the lock is held"""
+        text = ctypes.c_char_p()
+        with self.lock:
+            self.call(name, *arguments, ctypes.byref(text))
+            words = text.value or b"null"
+        return json.loads(words)
+
+    def number(self, name: bytes) -> float:
+        x = ctypes.c_double()
+        self.call("nsd_number", name, ctypes.byref(x))
+        return x.value
+
+    def advance(self, some: Callable[[int], bool], stopped: Callable[[], bool]) -> None:
+        """Calls some(k), which makes up to k steps and returns whether more are to be made, with k so that a call takes some 30 ms."""
+        k, more = 1, True
+        with self.lock:
+            if library.nsd_resizes(self.pointer):
+                self.unused()
+            while more and not stopped():
+                begun = time.perf_counter()
+                more = some(k)
+                took = time.perf_counter() - begun
+                k = min(2 * k, 1 << 20) if took < _CHUNK / 2 else max(k // 2, 1) if took > _CHUNK else k
 
     def __del__(self, close: Any = library.nsd_close, byref: Any = ctypes.byref) -> None:
         close(byref(self.pointer))  # names of the module may be gone by now
@@ -76,17 +126,8 @@ class _Owner:
         }
 
 
-def _vector(x: ArrayLike | None, what: str) -> Any:
-    if x is None:
-        return None
-    a = np.ascontiguousarray(x, dtype=np.float64)
-    if a.shape != (3,):
-        raise ValueError(f"{what} is a vector of 3 numbers, not of shape {a.shape}")
-    return a.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
-
-
-def _bytes(path: Path) -> bytes:
-    return os.fsencode(path)
+def _vector(x: ArrayLike | None, name: str) -> Any:
+    return None if x is None else check.vector(x, name).ctypes.data_as(VECTOR)  # which keeps the array
 
 
 _WIDTHS = {"position": 3, "orientation": 4, "velocity": 3, "angular_velocity": 3,
@@ -101,14 +142,14 @@ def _bodies(columns: Mapping[str, ArrayLike | None], density: float | None) -> t
         if x is None:
             continue
         width = _WIDTHS[name]
-        a = np.ascontiguousarray(x, dtype=np.int32 if name == "kind" else np.float64)
+        a = (check.integers if name == "kind" else check.numbers)(x, name)
         n = len(a) if n is None and a.ndim else n
         shape = (n,) if width == 1 else (n, width)
         if a.shape != shape:
             raise ValueError(f"{name} is of shape {a.shape}, not {shape}")
         kept.append(a)
         setattr(bodies, name, a.ctypes.data)
-    bodies.n, bodies.density = n or 0, density or 0.0
+    bodies.n, bodies.density = n or 0, 0.0 if density is None else check.real(density, "density")
     return bodies, kept
 
 
@@ -123,7 +164,14 @@ class Run:
 
     Arrays of bodies (`position`, `force` ...) are views of the run's own memory: they show the state after each step,
     and keep that memory alive, also after close(). While any of them is in use bodies cannot be added or removed
-    (BufferError); `.copy()` makes an independent array. Arrays of contacts and boundaries are copies, of the last step.
+    (BufferError); `.copy()` makes an independent array. Arrays of contacts, boundaries and the cell are copies, of the last step.
+
+    Threads may share a run: a call waits until that of another thread has ended, and what it returns is a copy, except the arrays of
+    bodies, which change while another thread makes steps. After fork() a run belongs to the parent: in the child its calls
+    raise Error.
+
+    Arguments that are no numbers of their kind (True, "1", 1.5 for an id) raise TypeError or ValueError, with the name of the
+    argument.
     """
 
     # Properties, which are made from tables below
@@ -154,6 +202,10 @@ class Run:
     boundary_angular_velocity: NDArray[np.float64]
     boundary_force: NDArray[np.float64]
     boundary_torque: NDArray[np.float64]
+    cell_origin: NDArray[np.float64]
+    cell_edges: NDArray[np.float64]
+    cell_rates: NDArray[np.float64]
+    cell_periodic: NDArray[np.int8]
     time: float
     dt: float
     step_number: int
@@ -161,35 +213,42 @@ class Run:
     contacts: int
 
     def __init__(self, handle: _Handle):
-        self._handle: _Handle | None = handle
-        self._views: weakref.WeakSet[_Owner] = weakref.WeakSet()
+        self._closed: _Handle | None = handle
+        self._paces: dict[str, Pace] = {}
         self._warned = False
 
     # ---- made, and closed ----
 
     @staticmethod
     def _make(name: str, *arguments: Any) -> "Run":
-        pointer = RUN()
-        status = getattr(library, name)(ctypes.byref(pointer), *arguments)
-        if status:
-            _fail(status, library.nsd_error(None).decode(errors="replace"))
-        return Run(_Handle(pointer.value))
+        def make(_: Any) -> "Run":  # the reason is that of the thread
+            pointer = RUN()
+            status = getattr(library, name)(ctypes.byref(pointer), *arguments)
+            if status:
+                fail(status, library.nsd_error(None))
+            return Run(_Handle(pointer.value))
+        return Pace().make(make)
 
     @classmethod
     def from_scene(cls, scene: Path | Mapping[str, Any], folder: Path | None = None) -> "Run":
-        """A run from a scene [nsd-scene(5)]: a dict, its JSON, or the path of a file. File names in it are relative to folder, or to the file."""
+        """A run from a scene [nsd-scene(5)]: a dict, its JSON, or the path of a file. File names in it are relative to folder, or to the file.
+
+        Raises Error: the scene is invalid (status 65), or there is no such file (66)."""
         if isinstance(scene, Mapping):
             scene = json.dumps(scene)
         if isinstance(scene, str) and scene.lstrip().startswith("{"):
-            return cls._make("nsd_from_scene", scene.encode(), None if folder is None else _bytes(folder))
-        return cls._make("nsd_from_scene_file", _bytes(scene))
+            return cls._make("nsd_from_scene", check.text(scene, "scene"), None if folder is None else check.path(folder, "folder"))
+        return cls._make("nsd_from_scene_file", check.path(scene, "scene"))
 
     @classmethod
     def from_document(cls, document: Path | bytes) -> "Run":
-        """A run from the last frame of a document [nsd-format(5)]: the path of a file, or its bytes."""
-        if isinstance(document, bytes):
+        """A run from the last frame of a document [nsd-format(5)]: the path of a file, or its bytes.
+
+        Raises Error: the document is damaged or of no packing (status 65), or there is no such file (66)."""
+        if isinstance(document, (bytes, bytearray, memoryview)):
+            document = bytes(document)
             return cls._make("nsd_from_memory", document, len(document))
-        return cls._make("nsd_from_document", _bytes(document))
+        return cls._make("nsd_from_document", check.path(document, "document"))
 
     @classmethod
     def from_arrays(cls, scene: Path | Mapping[str, Any], *, position: ArrayLike, radius: ArrayLike,
@@ -199,20 +258,33 @@ class Run:
                     density: float | None = None, folder: Path | None = None) -> "Run":
         """A run from a scene without bodies, to which these are added: see add()."""
         run = cls.from_scene(scene, folder)
-        if len(run.id):
+        if run.number("bodies"):
             raise ValueError("the scene has bodies of its own: arrays are for one without")
         run.add(position=position, radius=radius, orientation=orientation, velocity=velocity,
                 angular_velocity=angular_velocity, mass=mass, inertia=inertia, kind=kind, density=density)
         return run
 
+    @property
+    def _handle(self) -> _Handle:
+        if self._closed is None:
+            raise ValueError("the run is closed")
+        return self._closed
+
     def close(self) -> None:
-        """Ends a trajectory begun by append(), and the run. Arrays that are in use stay valid."""
-        if self._handle is None:
+        """Ends a trajectory begun by append(), and the run. Arrays that are in use stay valid. In a child of fork() it leaves the
+        parent's trajectory as it is."""
+        handle = self._closed
+        if handle is None:
             return
-        try:
-            self.finish()
-        finally:
-            self._handle = None
+        if handle.maker == os.getpid():
+            try:
+                self.finish()
+            except KeyboardInterrupt:
+                raise  # it may be closed again
+            except BaseException:
+                self._closed = None
+                raise
+        self._closed = None
 
     def __enter__(self) -> "Run":
         return self
@@ -221,50 +293,82 @@ class Run:
         self.close()
 
     def __repr__(self) -> str:
-        if self._handle is None:
+        handle = self._closed
+        if handle is None:
             return "<nsd run, closed>"
-        return f"<nsd run at step {self.step_number}, {self.time:g} s: {len(self.id)} bodies>"
+        if handle.maker != os.getpid():
+            return f"<nsd run of process {handle.maker}>"
+        return f"<nsd run at step {self.step_number}, {self.time:g} s: {self.number('bodies'):.0f} bodies>"
 
     def _call(self, name: str, *arguments: Any) -> None:
-        if self._handle is None:
-            raise ValueError("the run is closed")
         self._handle.call(name, *arguments)
 
-    def _unused(self) -> None:
-        """Before bodies are added or removed: no array may be in use."""
-        if len(self._views):
-            raise BufferError("arrays of this run are in use while bodies are added or removed: keep copies instead (x.copy(), del x)")
+    def _long(self, kind: str, call: Callable[[_Handle, Callable[[], bool]], Any]) -> Any:
+        """call(handle, stopped), which may take long; kind: of which the last one took about as long"""
+        handle = self._handle
+        return self._paces.setdefault(kind, Pace()).make(lambda stopped: call(handle, stopped))
+
+    def _writes(self, name: str, *arguments: Any) -> None:
+        """The same with a function that writes, which the disk may hold up at any time"""
+        handle = self._handle
+        Pace().make(lambda stopped: None if stopped() else handle.call(name, *arguments))
 
     # ---- options and steps ----
 
     def set(self, **options: Any) -> "Run":
-        """Sets options of nsd-step(1) and nsd-stat(1) by their names, with _ instead of -: eps=1e-6, method="exact", dt=1e-4, threads=2,
-        contacts=True ...; returns the run."""
+        """Sets options of nsd-step(1) and nsd-stat(1) by their names, with _ instead of -: eps=1e-6, method="exact", dt=1e-4 (s), threads=2,
+        contacts=True ...; returns the run. Raises Error (status 64) if there is no such option or value; those before it are set."""
         for name, value in options.items():
-            text = str(value).lower() if isinstance(value, bool) else str(value)
-            self._call("nsd_set", name.replace("_", "-").encode(), text.encode())
+            if not isinstance(value, (bool, np.bool_, int, float, np.number, str)):
+                raise TypeError(f"{name}: an option is a number, a text, True or False, not {type(value).__name__}")
+            text = str(value).lower() if isinstance(value, (bool, np.bool_)) else str(value)
+            self._call("nsd_set", check.text(name.replace("_", "-"), "option"), check.text(text, name))
+        self._paces.clear()
         return self
 
     def step(self, n: int = 1) -> None:
-        """Makes n steps."""
-        if self._resizes():
-            self._unused()
+        """Makes n steps. Raises Error, or Diverged, if a step fails, which the message names: that step is not made, the steps before
+        it are. Ctrl-C raises KeyboardInterrupt at once; the run ends the step in hand, and can be used after it."""
+        left = check.whole(n, "n", check.INT64)
+
+        def make(handle: _Handle, stopped: Callable[[], bool]) -> None:
+            def some(k: int) -> bool:
+                nonlocal left
+                k = min(k, left)
+                handle.call("nsd_step", k)
+                left -= k
+                return left > 0
+            handle.advance(some, stopped)
         try:
-            self._call("nsd_step", int(n))
+            self._long("step", make)
         finally:
             self._warn()
 
     def until(self, time: float) -> None:
-        """Makes steps until this time (s)."""
-        if self._resizes():
-            self._unused()
+        """Makes steps until this time (s); otherwise as step()."""
+        t = check.real(time, "time")
+
+        def make(handle: _Handle, stopped: Callable[[], bool]) -> None:
+            def some(k: int) -> bool:
+                now, dt = handle.number(b"time"), handle.number(b"dt")
+                far = now + k * dt < t and (t - now) / dt < 1e15  # beyond, and for what is no number, the library has the words
+                handle.call("nsd_until", now + k * dt if far and math.isfinite(t) else t)
+                return far and math.isfinite(t)
+            handle.advance(some, stopped)
         try:
-            self._call("nsd_until", float(time))
+            self._long("step", make)
         finally:
             self._warn()
 
     def steps(self, n: int | None = None, until: float | None = None) -> Iterator[int]:
         """Makes n steps, or steps until a time (s), or without either without end; yields the number of each after it was made."""
+        most = None if n is None else check.whole(n, "n", check.INT64)
+        end = None if until is None else check.real(until, "until")
+        if end is not None and math.isnan(end):
+            raise ValueError("until: nan is no time")
+        return self._steps(most, end)
+
+    def _steps(self, n: int | None, until: float | None) -> Iterator[int]:
         made = 0
         while (n is None or made < n) and (until is None or self.time < until - 1e-6 * self.dt):
             self.step()
@@ -276,7 +380,7 @@ class Run:
 
     def _warn(self) -> None:
         """Warns once in a run, when a step has failed; the run continues."""
-        if self._warned or not (failure := self.failure):
+        if self._warned or self._closed is None or self._closed.maker != os.getpid() or not (failure := self.failure):
             return
         self._warned = True
         level, frame = 2, sys._getframe(1)
@@ -288,8 +392,9 @@ class Run:
     def failure(self) -> str:
         """Which steps of this run failed their account, in words: "2 steps not converged (first step 7, ...)"; "": none."""
         text = ctypes.c_char_p()
-        self._call("nsd_failure", ctypes.byref(text))
-        return (text.value or b"").decode(errors="replace")
+        with self._handle.lock:
+            self._call("nsd_failure", ctypes.byref(text))
+            return (text.value or b"").decode(errors="replace")
 
     @property
     def converged(self) -> bool | None:
@@ -302,93 +407,93 @@ class Run:
         """The account of all steps, as that of nsd-info(1); {}: no step was made."""
         return {} if self.converged is None else self.report["account"]
 
-    def _resizes(self) -> bool:
-        if self._handle is None:
-            raise ValueError("the run is closed")
-        return bool(library.nsd_resizes(self._handle.pointer))
-
     # ---- reading ----
 
     def array(self, name: str) -> NDArray[Any]:
-        """An array by its name in nsd(3): "position", "contact_force" ..."""
-        described = Array(ctypes.sizeof(Array))
-        self._call("nsd_read", name.encode(), ctypes.byref(described))
-        assert self._handle is not None
-        owner = _Owner(self._handle, described)
-        if 0 in described.shape[:described.rank]:
-            return np.zeros(tuple(described.shape[:described.rank]), _DTYPES[described.type])
-        view = np.asarray(owner)
-        if name.startswith(("contact_", "boundary_")):
-            return view.copy()
-        self._views.add(owner)
-        return view
+        """An array by its name in nsd(3): "position", "contact_force" ... Those of bodies are views, all others copies."""
+        return self._handle.array(check.text(name, "name"))
 
     def number(self, name: str) -> float:
-        """A number by its name in nsd(3): "time", "contacts", "natural" ...; nan: not defined yet."""
-        x = ctypes.c_double()
-        self._call("nsd_number", name.encode(), ctypes.byref(x))
-        return x.value
+        """A number by its name in nsd(3), in SI units: "time", "contacts", "natural" ...; nan: not defined yet."""
+        return self._handle.number(check.text(name, "name"))
 
-    def _text(self, name: str, *arguments: Any) -> Any:
-        text = ctypes.c_char_p()
-        self._call(name, *arguments, ctypes.byref(text))
-        return json.loads(text.value or b"null")
+    @property
+    def cell(self) -> Cell | None:
+        """The periodic cell: origin [3] m, edges [3, 3] m, rates [3, 3] m/s, periodic [3]; None: no direction is periodic."""
+        with self._handle.lock:
+            origin, edges, rates, periodic = (self.array("cell_" + name) for name in Cell._fields)
+        return Cell(origin, edges, rates, periodic.astype(bool)) if len(edges) else None
 
     @property
     def report(self) -> dict[str, Any]:
-        """The report of the last solve, with the keys of nsd-info(1)."""
-        return self._text("nsd_report")
+        """The report of the last solve, with the keys of nsd-info(1). Raises Error (status 64) before the first step."""
+        return self._handle.text("nsd_report")
 
     @property
     def names(self) -> dict[str, Any]:
-        """{"kinds": [...], "shapes": [...], "walls": [name or None, ...], "groups": [...]}: walls are in their order."""
-        return self._text("nsd_names")
+        """{"kinds": [...], "shapes": [...], "walls": [name or None, ...], "groups": [...], "named": {name: [wall, ...]}}: walls are in their
+        order; named: the walls that have a name, or a part that has it."""
+        return self._handle.text("nsd_names")
 
     def walls(self, name: int | str) -> list[int]:
-        """The numbers of the walls that have this name; a number stands for that wall."""
-        if not isinstance(name, str):
-            return [int(name)]
-        known = self.names["walls"]
-        found = [k for k, own in enumerate(known) if own == name]
-        if not found:
-            names = ", ".join(dict.fromkeys(own for own in known if own))
-            raise ValueError(f"no wall '{name}', but {names or 'none has a name'}")
-        return found
+        """The numbers of the walls that have this name, or of which a part has it, in order; a number stands for that wall.
+        Raises KeyError, which is a ValueError too."""
+        return _walls(name, int(self.number("boundaries")), self.names["named"])
+
+    def _whole_walls(self, boundary: int | str) -> list[int]:
+        """Those that something is done to: a part cannot move without its wall"""
+        if not isinstance(boundary, str):
+            return [check.whole(boundary, "boundary")]
+        names = self.names
+        found = [k for k, own in enumerate(names["walls"]) if own == boundary]
+        if not found and boundary in names["named"]:
+            raise ValueError(f"'{boundary}' is a part of wall {names['named'][boundary][0]}, which moves as a whole: use its number")
+        return found or self.walls(boundary)
 
     def measure(self, *names: str) -> dict[str, Any]:
-        """Measures of nsd-stat(1) by their names, with its keys: run.measure("stress")["stress"]["pressure"]."""
-        return self._text("nsd_measure", ",".join(names).encode())
+        """Measures of nsd-stat(1), in SI units: one line of that program as a dict, with the keys "step", "time" (s), "bodies",
+        "contacts" and the name of each measure.
+
+        run.measure("stress")["stress"]["pressure"] is in Pa; nsd-stat(1) has the names, their numbers and units, and set() takes
+        its options. "all" stands for all of them. Raises Error (status 64) if there is no measure of a name."""
+        wanted = check.text(",".join(_texts(names, "names")), "names")
+        return self._long("measure " + wanted.decode(), lambda handle, stopped: None if stopped() else handle.text("nsd_measure", wanted))
 
     # ---- acting ----
 
     def push(self, id: int, force: ArrayLike | None = None, torque: ArrayLike | None = None, *,
              once: bool = False) -> None:
-        """Applies a force (N) and a torque (N m) to the body with this id, in the next step only or until they are changed."""
-        self._call("nsd_force", int(id), _vector(force, "force"), _vector(torque, "torque"),
+        """Applies a force [3] (N) and a torque [3] (N m), in the axes of space, to the body with this id, in the next step only or
+        until they are changed; None: zero. Raises Error (status 65) if there is no such body."""
+        self._call("nsd_force", check.whole(id, "id"), _vector(force, "force"), _vector(torque, "torque"),
                    _ONCE if once else _LASTING)
 
     def push_boundary(self, boundary: int | str, force: float, *, once: bool = False) -> None:
         """Adds a force (N) along the axis of the boundary's load, or a torque (N m) about it, to the load. A name stands for each
-        wall that has it."""
-        for wall in self.walls(boundary):
-            self._call("nsd_boundary_force", wall, float(force), _ONCE if once else _LASTING)
+        wall that has it. Raises Error (status 65) if the boundary has no load."""
+        force = check.real(force, "force")
+        for wall in self._whole_walls(boundary):
+            self._call("nsd_boundary_force", wall, force, _ONCE if once else _LASTING)
 
     def move_boundary(self, boundary: int | str, velocity: ArrayLike) -> None:
-        """Prescribes the boundary's velocity (3 numbers, m/s) from now on; a name stands for each wall that has it."""
-        for wall in self.walls(boundary):
-            self._call("nsd_boundary_velocity", wall, _vector(velocity, "velocity"))
+        """Prescribes the boundary's velocity [3] (m/s) from now on; a name stands for each wall that has it. Raises Error
+        (status 65) if there is no such boundary, or if it rotates."""
+        vector = _vector(velocity, "velocity")
+        for wall in self._whole_walls(boundary):
+            self._call("nsd_boundary_velocity", wall, vector)
 
     def throw(self, id: int, velocity: ArrayLike | None = None, angular_velocity: ArrayLike | None = None) -> None:
-        """Gives the body with this id a velocity (3 numbers, m/s) and an angular velocity (rad/s); None: unchanged."""
-        self._call("nsd_velocity", int(id), _vector(velocity, "velocity"), _vector(angular_velocity, "angular_velocity"))
+        """Gives the body with this id a velocity [3] (m/s) and an angular velocity [3] (rad/s), in the axes of space; None: unchanged."""
+        self._call("nsd_velocity", check.whole(id, "id"), _vector(velocity, "velocity"),
+                   _vector(angular_velocity, "angular_velocity"))
 
     def gravity(self, g: ArrayLike) -> None:
-        """Sets gravity, 3 numbers, m/s^2."""
-        self._call("nsd_gravity", _vector(g, "gravity"))
+        """Sets gravity, [3] m/s^2."""
+        self._call("nsd_gravity", _vector(g, "g"))
 
     def friction(self, kind: str, other: str, mu: float) -> None:
-        """Sets the coefficient of friction between two kinds of material."""
-        self._call("nsd_friction", kind.encode(), other.encode(), float(mu))
+        """Sets the coefficient of friction, at least 0, between two kinds of material, by their names."""
+        self._call("nsd_friction", check.text(kind, "kind"), check.text(other, "other"), check.real(mu, "mu"))
 
     def add(self, *, position: ArrayLike, radius: ArrayLike, orientation: ArrayLike | None = None,
             velocity: ArrayLike | None = None, angular_velocity: ArrayLike | None = None,
@@ -399,33 +504,38 @@ class Run:
         position [n, 3] m, radius [n] m, orientation [n, 4] unit quaternions (w, x, y, z), velocity [n, 3] m/s,
         angular_velocity [n, 3] rad/s, mass [n] kg (0: fixed) or one density (kg/m^3, in 2D kg/m^2), inertia [n]
         kg m^2 [that of solid balls], kind [n] number of the kind of material [0].
+
+        Raises BufferError while an array of bodies is in use, Error (status 65) if a number is out of range.
         """
         columns = {"position": position, "radius": radius, "orientation": orientation, "velocity": velocity,
                    "angular_velocity": angular_velocity, "mass": mass, "inertia": inertia, "kind": kind}
         bodies, _kept = _bodies(columns, density)
         ids = np.empty(bodies.n, np.int32)
-        self._unused()
-        self._call("nsd_add", ctypes.byref(bodies), ids.ctypes.data)
+        handle = self._handle
+        with handle.lock:
+            handle.unused()
+            handle.call("nsd_add", ctypes.byref(bodies), ids.ctypes.data)
         return ids
 
     def remove(self, ids: Iterable[int] | int) -> None:
-        """Removes the bodies with these ids."""
-        a = np.ascontiguousarray(np.atleast_1d(np.asarray(ids if isinstance(ids, (int, np.ndarray)) else list(ids))),
-                                 dtype=np.int32)
-        if a.ndim != 1:
-            raise ValueError(f"ids are of shape {a.shape}, not (n,)")
-        self._unused()
-        self._call("nsd_remove", len(a), a.ctypes.data)
+        """Removes the bodies with these ids, one or [n]. Raises BufferError while an array of bodies is in use, Error (status 65)
+        if there is no such body, or one occurs twice."""
+        a = check.ids(ids, "ids")
+        handle = self._handle
+        with handle.lock:
+            handle.unused()
+            handle.call("nsd_remove", len(a), a.ctypes.data)
 
     # ---- saving ----
 
     def note(self, line: Mapping[str, Any] | str) -> None:
         """Sets the run's line in the history of its documents, a JSON object; call it before the first is written."""
-        self._call("nsd_note", (line if isinstance(line, str) else json.dumps(line, separators=(",", ":"))).encode())
+        self._call("nsd_note", check.text(json.dumps(line, separators=(",", ":")) if isinstance(line, Mapping) else line, "line"))
 
     def save(self, path: Path) -> None:
-        """Writes a document of the current state; replaces an existing file when it is complete."""
-        self._call("nsd_save", _bytes(path))
+        """Writes a document of the current state; replaces an existing file when it is complete. Raises Error (status 74) if it
+        cannot be written."""
+        self._writes("nsd_save", check.path(path))
 
     def append(self, path: Path) -> None:
         """Appends a frame to the trajectory, which the first call begins.
@@ -433,11 +543,29 @@ class Run:
         An existing file is resumed. Raises Error, and leaves the file unchanged, if the file belongs to another scene, has this
         step or a later one, is damaged, or is being written. Remove the file to begin again.
         """
-        self._call("nsd_append", _bytes(path))
+        self._writes("nsd_append", check.path(path))
 
     def finish(self) -> None:
         """Ends the trajectory."""
-        self._call("nsd_finish")
+        self._writes("nsd_finish")
+
+
+def _texts(names: Iterable[Any], what: str) -> Iterator[str]:
+    for name in names:
+        check.text(name, what)
+        yield name
+
+
+def _walls(name: Any, count: int, named: Mapping[str, list[int]]) -> list[int]:
+    """The numbers of walls by a name or a number: of runs and of documents"""
+    if not isinstance(name, str):
+        k = check.whole(name, "name")
+        if 0 <= k < count:
+            return [k]
+        raise check.NoWall(f"no wall {k}, but {count} walls, from 0")
+    if name in named:
+        return list(named[name])
+    raise check.NoWall(f"no wall '{name}', but {', '.join(named) or 'none has a name'}")
 
 
 def _number(name: str, text: str, kind: type) -> property:
@@ -446,7 +574,9 @@ def _number(name: str, text: str, kind: type) -> property:
 
 def _view(name: str, text: str, writable: bool = False) -> property:
     def put(run: Run, x: ArrayLike) -> None:
-        run.array(name)[...] = x
+        new = check.numbers(x, name)
+        with run._handle.lock:
+            run.array(name)[...] = new
     return property(lambda run: run.array(name), put if writable else None, doc=text)
 
 
@@ -461,6 +591,8 @@ for _name, _text in {
     "boundary_position": "[b, 3] m", "boundary_normal": "[b, 3] unit normals or axes", "boundary_velocity": "[b, 3] m/s",
     "boundary_angular_velocity": "[b, 3] rad/s", "boundary_force": "[b, 3] N: force of the bodies on the boundary",
     "boundary_torque": "[b, 3] N m: torque of the same about boundary_position",
+    "cell_origin": "[3] m: of the periodic cell, see cell; [0]: none", "cell_edges": "[3, 3] m: one per row; [0, 3]: none",
+    "cell_rates": "[3, 3] m/s: velocities of the edges; [0, 3]: none", "cell_periodic": "[3] 1: periodic along this edge; [0]: none",
 }.items():
     setattr(Run, _name, _view(_name, _text))
 for _name, _text in {

@@ -64,8 +64,11 @@ all_refuse()
 hostile() # what regex source code
 {
     make bad.h5 "$3" "$4"
+    cp "$tmp/bad.h5" "$tmp/hostile.$((++copies)).h5" # for Python, below
     all_refuse "$1" "$2"
 }
+
+copies=0
 
 # ---- other files ----
 
@@ -308,5 +311,37 @@ make compound.h5 four.h5 "f['/mine'] = np.zeros(3, [('a', 'i4'), ('b', 'f8')])"
 refuses 65 "a compound would be lost: refused" nsd-cat "$tmp/compound.h5"
 like "says which" "$(cat "$tmp/err")" '/mine: neither numbers nor texts'
 status 0 "who copies nothing reads it" nsd-info "$tmp/compound.h5"
+
+# ---- Python ----
+
+module() # whatever it makes of these documents: nothing of the file "secret", and the status is that of the tools
+{
+    PYTHONPATH=$PWD/python NSD_LIBRARY=${NSD_LIBRARY-$(dirname "$(command -v nsd-gen)")/libnsd.so.1} timeout 120 /usr/bin/python3 - "$tmp" <<'PYTHON'
+import glob, os, sys, nsd
+refused = other = 0
+for path in sorted(glob.glob(sys.argv[1] + "/hostile.*.h5")):
+    try:
+        for document in nsd.documents(path):
+            for name in list(document.objects)[:100]:
+                o = document[name]
+                assert not hasattr(o, "shape") or "secret" not in str(o[()]), (path, name)
+                o.attrs
+        for frame in nsd.frames(path):
+            frame.x, frame.report, frame.contacts
+        other += 1
+    except nsd.Error as e:
+        assert e.status in (64, 65), (path, e.status, e)
+        refused += 1
+    except (KeyError, ValueError, IndexError, TypeError, MemoryError, EOFError):
+        other += 1
+assert refused > 2, (refused, other)
+assert nsd.last(sys.argv[1] + "/four.h5").x.shape == (4, 3)
+PYTHON
+}
+if grep -q __asan_init "$(command -v nsd-gen)"; then
+    skip "the Python module" "its interpreter has no sanitizer"
+else
+    ok "the Python module reads nothing out of other files, and refuses with 65" module
+fi
 
 done_testing

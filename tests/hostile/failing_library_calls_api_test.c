@@ -60,6 +60,35 @@ static int after(const struct nsd_run *r, int failed, uint32_t was, const char *
         if (after(r, failed, was, what, why)) goto end;                                            \
     } while (0)
 
+/* Is it cut off, or without a key? */
+static bool json_lacks(const char *json, const char *key)
+{
+    return !strstr(json, key) || json[strlen(json) - 1] != '}';
+}
+
+static const char *document; /* of a run, for: */
+
+/* A document that is read as objects */
+static int looked_at(uint32_t *crc, struct why *why)
+{
+    struct nsd_document *d = NULL;
+    struct nsd_array a = { .size = sizeof a };
+    const char *json = "";
+    int more = 0, failed = nsd_open(&d, document);
+    if (!failed) failed = nsd_next(d, &more);
+    if (!failed) failed = nsd_objects(d, &json);
+    if (!failed) *crc = add(0, json, strlen(json));
+    if (!failed) failed = nsd_attributes(d, "/nsd", &json);
+    if (!failed) *crc = add(*crc, json, strlen(json));
+    if (!failed) failed = nsd_text(d, "/nsd/history", &json);
+    if (!failed) *crc = add(*crc, json, strlen(json));
+    if (!failed) failed = nsd_rows(d, "/particles/all/position/value", 0, 1, &a);
+    if (!failed) *crc = add(*crc, a.data, (size_t)a.shape[1] * sizeof(double));
+    if (failed) why_set(why, failed, "looked at: %s", nsd_error(NULL));
+    nsd_shut(&d);
+    return why->status;
+}
+
 /* A run that makes steps is acted on, and gets and loses bodies where the scene does not pour */
 static int acted(uint32_t *crc, struct why *why)
 {
@@ -88,6 +117,9 @@ static int acted(uint32_t *crc, struct why *why)
     if (now == 2) CALL("remove", nsd_remove(r, 1, &id));
     CALL("step", nsd_step(r, 1));
     CALL("measure", nsd_measure(r, "energy,displacement", &json));
+    if (json_lacks(json, "\"displacement\":")) return why_set(why, 1, "measure: half a line");
+    CALL("names", nsd_names(r, &json));
+    if (json_lacks(json, "\"named\":{")) return why_set(why, 1, "names: half of them");
     *crc = state(r);
 end:
     armed = false;
@@ -141,5 +173,12 @@ int main(void)
     }
     now = 0;
     each_fails("a trajectory", saved);
+    struct nsd_run *r = NULL;
+    document = fresh(".h5");
+    must(nsd_from_scene(&r, scene_text[0], folder), run_why_of_thread());
+    must(nsd_save(r, document), &r->why);
+    nsd_close(&r);
+    each_fails("a document as objects", looked_at);
+    unlink(document);
     return failing_done();
 }

@@ -9,6 +9,7 @@ cat >"$tmp/list" <<'EOT'
 nsd_add
 nsd_append
 nsd_array_name
+nsd_attributes
 nsd_boundary_force
 nsd_boundary_velocity
 nsd_close
@@ -25,15 +26,21 @@ nsd_from_scene_file
 nsd_gravity
 nsd_measure
 nsd_names
+nsd_next
 nsd_note
 nsd_number
+nsd_objects
+nsd_open
 nsd_read
 nsd_remove
 nsd_report
 nsd_resizes
+nsd_rows
 nsd_save
 nsd_set
+nsd_shut
 nsd_step
+nsd_text
 nsd_until
 nsd_velocity
 nsd_version
@@ -54,11 +61,13 @@ is "and the Python module knows them" "$(in_python)" ""
 
 # team, busy, judgement: the team of the process, which one thread has at a time. list, owner, running and their locks: files and
 # readers, locked. hdf5, printer, printer_data: libhdf5, locked. guest, chosen, once: set once. limit, options: the tools' own, which
-# the library only reads. opencl_calls, opencl_open: the loader of OpenCL, locked. plist, registered: of the process that reads. of_thread, size, together: a thread's own.
+# the library only reads. opencl_calls, opencl_open: the loader of OpenCL, locked. plist, registered: of the process that reads. of_thread, size, together, held: a thread's own. watched: set once.
+# writers: those that write, with the lock of libhdf5.
 cat >"$tmp/known" <<'EOT'
 busy
 guest
 hdf5
+held
 judgement
 limit
 list
@@ -80,6 +89,8 @@ team
 text
 together
 chosen
+watched
+writers
 EOT
 shared() { nm "$build/nsd.o" | awk '$2 ~ /^[bBdDC]$/ && $3 !~ /[.]local|^[.]/ { sub(/[.][0-9]+$/, "", $3); print $3 }' | sort -u; }
 constant() # of them what is in .data.rel.ro or is never written: tables

@@ -8,8 +8,8 @@ if ! command -v clang >/dev/null; then
     exit 0
 fi
 
-built=build/tsan flags=(-O1 -g1 -fsanitize=thread -DNSD_STEADY) tools=(nsd-solve nsd-step nsd-view)
-ok "the tools build" make -j2 SAN= B=$built CC=clang CFLAGS="${flags[*]}" LDFLAGS=-fsanitize=thread \
+built=build/tsan flags=(-O1 -g1 -fsanitize=thread -DNSD_STEADY) tools=(nsd-solve nsd-step nsd-view libnsd.so.1)
+ok "the tools build" make -j2 SAN= B=$built CC=clang CFLAGS="${flags[*]}" LDFLAGS="-fsanitize=thread -Wl,-z,undefs" \
     "WITHOUT=export" "IDLE=4 8" "${tools[@]/#/$built/}"
 
 export NSD_LANES=2 # the sanitizer sees no access of more than 16 bytes
@@ -76,5 +76,53 @@ for document in lattice contacts given; do
 done
 status 0 "whole steps in halves" $built/nsd-step -m exact --order halves --relax 1.5 --warm -j 2 -n 50 "$tmp/heap.h5"
 status 0 "whole steps by auto" $built/nsd-step -j 4 -n 20 "$tmp/heap.h5"
+# ---- a program with runs in several threads, which forks ----
+
+cat >"$tmp/runs.c" <<'EOF'
+#include <nsd.h>
+#include <pthread.h>
+#include <stdint.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static const char scene[] =
+    "{\"dt\":1e-3,\"mu\":0.3,\"walls\":[{\"point\":[0,0,0],\"normal\":[0,0,1],\"name\":\"floor\"}],\"bodies\":"
+    "[{\"random\":{\"count\":200},\"radius\":0.1,\"box\":{\"x\":[-1,1],\"y\":[-1,1],\"z\":[0.1,6]}}]}";
+
+static void *work(void *path)
+{
+    struct nsd_run *r;
+    struct nsd_document *d = NULL;
+    struct nsd_array a = { .size = sizeof a };
+    const char *json;
+    int more = 0;
+    intptr_t bad = nsd_from_scene(&r, scene, NULL) || nsd_set(r, "threads", "2") || nsd_set(r, "contacts", "true");
+    for (int k = 0; !bad && k < 5; k++)
+        bad = nsd_step(r, 4) || nsd_read(r, "contact_force", &a) || nsd_measure(r, "energy", &json) || nsd_names(r, &json) ||
+              nsd_append(r, path);
+    if (!bad) bad = nsd_finish(r) || nsd_open(&d, path) || nsd_next(d, &more) || nsd_objects(d, &json) ||
+                    nsd_rows(d, "/particles/all/position/value", 4, 1, &a);
+    nsd_close(&r), nsd_shut(&d);
+    return (void *)bad;
+}
+
+int main(int n, char **path)
+{
+    pthread_t thread[9];
+    void *bad;
+    int sum = 0, status;
+    for (int k = 1; k < n; k++) pthread_create(&thread[k], NULL, work, path[k]);
+    for (int k = 0; k < 3; k++) { // children that end at once, while all of that goes on
+        pid_t child = fork();
+        if (!child) _exit(0);
+        waitpid(child, &status, 0), sum += status;
+    }
+    for (int k = 1; k < n; k++) pthread_join(thread[k], &bad), sum += bad != NULL;
+    return sum;
+}
+EOF
+clang -Ilib/api "${flags[@]}" -o "$tmp/runs" "$tmp/runs.c" $built/libnsd.so.1 -Wl,-rpath,"$PWD/$built"
+status 0 "runs and documents in three threads, and children of fork()" "$tmp/runs" "$tmp/1.h5" "$tmp/2.h5" "$tmp/3.h5"
+ok "with the same result" cmp "$tmp/1.h5" "$tmp/2.h5"
 status 0 "a picture" $built/nsd-view -j 4 "$tmp/heap.h5"
 done_testing

@@ -180,8 +180,9 @@ def check_grains(block, frames):
 
 def vtkhdf(document):
     """/VTKHDF of grains alone."""
+    import h5py
     frames = list(nsd.frames(document))
-    block = frames[0].file["VTKHDF"]
+    block = h5py.File(document)["VTKHDF"]
     assert check_structure(block) == len(frames)
     check_grains(block, frames)
 
@@ -210,7 +211,7 @@ def blocks(document, density):
     """The collection: grains, surfaces that hold the grains' mass, and walls; VTK's order of the blocks."""
     import h5py
     frames = list(nsd.frames(document))
-    top = frames[0].file["VTKHDF"]
+    top = h5py.File(document)["VTKHDF"]
     assert text_of(top, "Type") == "PartitionedDataSetCollection" and list(top.attrs["Version"]) == [2, 1]
     flags = h5py.h5p.CRT_ORDER_TRACKED | h5py.h5p.CRT_ORDER_INDEXED
     for group in top, top["Assembly"]:
@@ -232,8 +233,9 @@ def blocks(document, density):
 
 def collection(document):
     """The blocks of any scene can be read, step by step."""
+    import h5py
     frames = list(nsd.frames(document))
-    top = frames[0].file["VTKHDF"]
+    top = h5py.File(document)["VTKHDF"]
     for name in "grains", "surfaces", "boundary":
         assert check_structure(top[name]) == len(frames)
         for f in range(len(frames)):

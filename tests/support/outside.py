@@ -2,9 +2,11 @@
 import gc
 import json
 import os
+import signal
 import subprocess
 import sys
 import threading
+import time
 import warnings
 
 import numpy as np
@@ -273,7 +275,7 @@ if h5py:
     ok(True, "documents are read while another thread uses libhdf5")
     frame = nsd.last(path("last.h5"))
     again = nsd.Run.from_document(path("last.h5"))
-    ok((frame.x == again.position).all(), "frames by h5py have the same places")
+    ok((frame.x == again.position).all(), "frames have the same places")
 names = []
 while (name := nsd._library.library.nsd_array_name(len(names))) is not None:
     names.append(name.decode())
@@ -281,3 +283,159 @@ ok(len(names) > 20 and all(isinstance(vars(nsd.Run).get(name), property) and var
    "every array of the library is a property with a docstring")
 ok(all(x.__doc__ for name, x in vars(nsd.Run).items() if not name.startswith("_")), "every member has a docstring")
 ok(nsd.Run.from_scene(heap).set(contacts=True).measure("energy")["bodies"] == 40, "measures by their names")
+
+# ---- arguments that are no numbers, texts or paths ----
+
+run = nsd.Run.from_scene(heap)
+before = run.position.copy(), run.force.copy()
+a_ball = dict(position=[[2.5e-3, 2.5e-3, 7e-3]], radius=[2e-4], density=2500)
+for name, call in {
+        "n": lambda x: run.step(x), "ids": lambda x: run.remove(x), "id": lambda x: run.push(x, [0, 0, 1]),
+        "boundary": lambda x: run.move_boundary(x, [0, 0, 1]), "kind": lambda x: run.add(**a_ball, kind=[x])}.items():
+    for x in 1.5, float("nan"), float("inf"), True, None, "1", 1 << 70, -1 << 70, 1 + 2j, b"1":
+        if name == "boundary" and x == "1":
+            continue  # a name
+        ok(raises((TypeError, ValueError), name, lambda: call(x)), f"{name}: {x!r} is refused by name")
+for name, call in {"time": run.until, "force": lambda x: run.push_boundary(5, x), "mu": lambda x: run.friction("ball", "wall", x),
+                   "density": lambda x: run.add(position=[[0, 0, 1]], radius=[1e-4], density=x)}.items():
+    for x in True, "1", b"1", [1], 1j:
+        ok(raises((TypeError, ValueError), name, lambda: call(x)), f"{name}: {x!r} is refused by name")
+for name, call in {"force": lambda x: run.push(0, x), "velocity": lambda x: run.throw(0, x), "torque": lambda x: setattr(run, "torque", x),
+                   "g": run.gravity, "radius": lambda x: run.add(position=[[0, 0, 1]] * 3, radius=x, density=1)}.items():
+    for x in ["1", "2", "3"], [True, False, True], [1j, 0, 0], [None, 0, 0], [10 ** 400, 0, 0]:
+        ok(raises((TypeError, ValueError), name, lambda: call(x)), f"{name}: {x!r:.40} is refused by name")
+for name, call in {"path": run.save, "document": nsd.Run.from_document, "scene": nsd.Run.from_scene, "name": run.array,
+                   "names": run.measure, "kind": lambda x: run.friction(x, "wall", 1), "line": run.note, "source": nsd.last,
+                   "eps": lambda x: run.set(eps=x)}.items():
+    ok(raises(ValueError, f"{name}: ", lambda: call("a\0b")), f"{name}: a zero byte is refused by name")
+    ok(raises(TypeError, f"{name}: ", lambda: call(3j)), f"{name}: so is what is no text")
+ok((run.position == before[0]).all() and (run.force == before[1]).all() and run.step_number == 0 and len(run.id) == 40,
+   "and the run is what it was")
+run.step(np.int64(2)), run.step(1.0), run.push(np.int32(3), [0, 0, 1]), run.remove(np.array([3, 4])), run.remove(5)
+ok(run.step_number == 3 and len(run.id) == 37, "whole numbers of any type are taken")
+run.close()
+
+# ---- the periodic cell ----
+
+sheared = {"dt": 1e-3, "gravity": [0, 0, 0], "cell": {"lengths": [2, 3, 4], "gradient": [[0, 0.5, 0], [0, 0, 0], [0, 0, 0]]},
+           "bodies": [{"x": [0.5, 0.5, 0.5], "radius": 0.1}]}
+run = nsd.Run.from_scene(sheared)
+run.step(100)
+run.save(path("cell.h5"))
+want = np.array([[2, 0, 0], [0.5 * 3 * 0.1, 3, 0], [0, 0, 4]])
+for name, cell in {"run": run.cell, "frame": nsd.last(path("cell.h5")).cell}.items():
+    ok(np.allclose(cell.edges, want, rtol=1e-12) and np.allclose(cell.rates, [[0] * 3, [1.5, 0, 0], [0] * 3], rtol=1e-12) and
+       list(cell.periodic) == [True] * 3 and cell.origin.shape == (3,), f"the cell of a {name}: edges of simple shear, L t")
+ok(nsd.Run.from_scene(heap).cell is None and nsd.last(path("last.h5")).cell is None, "None where nothing is periodic")
+
+# ---- a step that fails ----
+
+run, twin = nsd.Run.from_scene(heap), nsd.Run.from_scene(heap)
+run.step(20), twin.step(20)
+run.push(3, [1e308, 0, 0], once=True)
+ok(raises(nsd.Diverged, "step 21: ", lambda: run.step(5)), "a step whose result is not finite fails, by its number")
+run.push(3, once=True)
+run.save(path("a.h5")), twin.save(path("b.h5"))
+ok(read("a.h5") == read("b.h5"), "and the run, and its document, is what it was")
+
+# ---- threads with one run ----
+
+run = nsd.Run.from_scene(heap)
+run.step()
+sys.setswitchinterval(1e-6)
+stop, wrong = time.time() + 2, []
+
+
+def again(look):
+    while time.time() < stop:
+        try:
+            assert look()
+        except Exception as e:
+            wrong.append(repr(e))
+
+
+def sees_contacts():
+    body = run.contact_body
+    return not len(body) or (body.max() < 40 and body.min() >= -6)
+
+
+looks = [lambda: "kinds" in run.names, lambda: "bodies" in run.measure("sizes"), sees_contacts, sees_contacts,
+         lambda: run.step() is None, lambda: run.cell is None]
+threads = [threading.Thread(target=again, args=(look,)) for look in looks]
+[t.start() for t in threads], [t.join() for t in threads]
+sys.setswitchinterval(0.005)
+ok(not wrong, f"threads that share a run get whole answers {wrong[:1]}")
+
+# ---- Ctrl-C ----
+
+
+def interrupted(call, after=0.3):
+    """s: how long it takes from Ctrl-C to KeyboardInterrupt; None: there was none"""
+    sent = []
+
+    def send():
+        time.sleep(after)
+        sent.append(time.time())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    threading.Thread(target=send).start()
+    try:
+        call()
+    except KeyboardInterrupt:
+        return time.time() - sent[0]
+    return None
+
+
+signal.signal(signal.SIGINT, signal.default_int_handler)
+run = nsd.Run.from_scene({"dt": 1e-3, "bodies": [{"x": [0, 0, 1], "radius": 0.1}]})
+for name, call in {"step": lambda: run.step(10 ** 9), "until": lambda: run.until(1e9),
+                   "a step after a quick one": lambda: (run.step(), run.step(10 ** 9))}.items():
+    late = interrupted(call)
+    ok(late is not None and late < 1, f"{name}: KeyboardInterrupt at once")
+    made = run.step_number
+    time.sleep(0.1)
+    ok(made and run.step_number == made, f"{name}: and the run is at rest")
+    run.step()
+    ok(run.step_number == made + 1, f"{name}: and can be used")
+late = interrupted(lambda: [f for _ in iter(int, 1) for f in nsd.frames(path("mine.h5"))])
+ok(late is not None and late < 1, "frames, too")
+read_end, write_end = os.pipe()
+late = interrupted(lambda: nsd.Run.from_document(f"/proc/self/fd/{read_end}"))
+ok(late is not None and late < 1, "and a document that does not come")
+os.close(write_end), os.close(read_end)
+run.close()
+
+# ---- fork() ----
+
+import multiprocessing
+run = nsd.Run.from_scene(heap)
+run.step(5)
+run.append(path("forked.h5"))
+frame = nsd.last(path("last.h5"))
+
+
+def child(k):
+    try:
+        run.append(path("forked.h5"))
+        return "it appends"
+    except nsd.Error as e:
+        if "copy by fork()" not in str(e):
+            return str(e)
+    with nsd.Run.from_scene(heap) as own:
+        own.step(5 + k)
+        own.save(path(f"own{k}.h5"))
+        same = (own.position == nsd.last(path(f"own{k}.h5")).x).all()
+        return float(frame.x.sum()) if same else "other places"
+
+
+with multiprocessing.get_context("fork").Pool(3) as pool:
+    got = pool.map(child, range(6))
+    run.step(5)
+    run.append(path("forked.h5"))
+    run.finish()
+    ok(got == [float(frame.x.sum())] * 6, f"multiprocessing: children are refused the run, read documents and make their own {got[:1]}")
+    ok([f.step for f in nsd.frames(path("forked.h5"))] == [5, 10], "and the trajectory is the parent's")
+    run.step(5)
+    run.append(path("forked.h5"))
+    run.close()
+    ok([f.step for f in nsd.frames(path("forked.h5"))] == [5, 10, 15], "which goes on while the children live")

@@ -2,7 +2,7 @@
 # import nsd: names of kinds, shapes, walls and groups, and corners, of documents and of runs.
 . tests/support/tap.sh
 
-if ! /usr/bin/python3 -c 'import h5py, numpy' 2>/dev/null; then echo "1..0 # SKIP no h5py"; exit; fi
+if ! /usr/bin/python3 -c 'import numpy' 2>/dev/null; then echo "1..0 # SKIP no numpy"; exit; fi
 export PYTHONPATH=$PWD/python NSD_LIBRARY=${NSD_LIBRARY-$PWD/build/libnsd.so.1}
 
 jq -n '{ dt: 1e-3, gravity: [0, 0, 0], kinds: { steel: {} }, shapes: { cube: { box: [0.2, 0.2, 0.2] } },
@@ -50,7 +50,7 @@ import sys
 import nsd
 with nsd.Run.from_scene(sys.argv[1]) as run:
     assert run.names == {"kinds": ["ball", "wall", "steel"], "shapes": ["ball", "cube"],
-                         "walls": ["floor", "side", "side", None], "groups": ["first"]}, run.names
+                         "walls": ["floor", "side", "side", None], "groups": ["first"], "named": {"floor": [0], "side": [1, 2]}}, run.names
     run.move_boundary("side", [0, 0, 0.25])
     assert [list(v) for v in run.boundary_velocity] == [[0, 0, 0], [0, 0, 0.25], [0, 0, 0.25], [0, 0, 0]]
     run.set(only="side", contacts=True)
@@ -72,4 +72,36 @@ with nsd.Run.from_scene(sys.argv[1]) as run:
 END
 }
 if [ -e "$NSD_LIBRARY" ]; then ok "a run's names, and walls by name" run; else skip "a run's names, and walls by name" "no library"; fi
+
+# ---- parts of walls ----
+
+printf 'solid a\nfacet normal 0 0 1\nouter loop\nvertex -1 -1 0\nvertex 1 -1 0\nvertex 1 1 0\nendloop\nendfacet\nfacet normal 0 0 1\nouter loop\nvertex -1 -1 0\nvertex 1 1 0\nvertex -1 1 0\nendloop\nendfacet\nendsolid a\n' >"$tmp/sheet.stl"
+jq -n '{ dt: 1e-3, walls: [{ point: [0, 0, -9], normal: [0, 0, 1], name: "floor" },
+    { mesh: { file: "sheet.stl", parts: [{ name: "half", faces: [0, 0] }, { name: "floor", faces: [1, 1] }] }, name: "sheet" }],
+    bodies: [{ x: [0, 0, 2], radius: 0.1 }] }' >"$tmp/parts.json"
+parts()
+{
+    nsd-gen "$tmp/parts.json" >"$tmp/parts.h5" && /usr/bin/python3 - "$tmp/parts.json" "$tmp/parts.h5" <<'END'
+import sys
+import nsd
+run, frame = nsd.Run.from_scene(sys.argv[1]), nsd.last(sys.argv[2])
+for name, want in {"floor": [0, 1], "sheet": [1], "half": [1], 0: [0], 1: [1]}.items():
+    assert run.walls(name) == frame.walls(name) == want, (name, run.walls(name), frame.walls(name))
+for name in "lid", 2, -1:
+    for it in run, frame:
+        try:
+            it.walls(name)
+            assert False, name
+        except KeyError as e:
+            assert isinstance(e, ValueError) and "no wall" in str(e), e
+run.move_boundary("floor", [0, 0, 1])
+assert [v[2] for v in run.boundary_velocity] == [1, 0]
+try:
+    run.move_boundary("half", [0, 0, 1])
+    assert False
+except ValueError as e:
+    assert "part of wall 1" in str(e), e
+END
+}
+if [ -e "$NSD_LIBRARY" ]; then ok "walls by the names of their parts, in runs as in frames" parts; else skip "walls by the names of their parts" "no library"; fi
 done_testing

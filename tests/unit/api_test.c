@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <pthread.h>
+#include <signal.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -803,12 +804,254 @@ static void test_random(void)
        "%d sequences of calls at random end in statuses", sequences);
 }
 
+/* ---- what is missing, or no number ---- */
+
+static void test_missing(void)
+{
+    struct nsd_run *none = NULL, *r = scene(scenes[0]), *fresh = scene(scenes[0]);
+    struct nsd_document *d = NULL, *shut = NULL;
+    struct nsd_array a = { .size = sizeof a };
+    const char *json;
+    const double x[3] = { 0 };
+    int32_t id[9] = { 0, 1, 2, 3, 0, 1, 2, 3, 0 };
+    double number;
+    int more;
+    must(nsd_save(r, path_of("missing.h5")), r);
+    must(nsd_open(&d, path_of("missing.h5")) || nsd_next(d, &more), NULL);
+    const struct {
+        int got, want;
+        const char *what;
+    } calls[] = {
+        { nsd_from_scene(NULL, scenes[0], NULL), NSD_USAGE, "no place: nsd_from_scene" },
+        { nsd_from_scene_file(NULL, "a"), NSD_USAGE, "no place: nsd_from_scene_file" },
+        { nsd_from_document(NULL, "a"), NSD_USAGE, "no place: nsd_from_document" },
+        { nsd_from_memory(NULL, "a", 1), NSD_USAGE, "no place: nsd_from_memory" },
+        { nsd_from_arrays(NULL, scenes[3], NULL, NULL), NSD_USAGE, "no place: nsd_from_arrays" },
+        { nsd_from_arrays(&none, NULL, NULL, NULL), NSD_USAGE, "no scene: nsd_from_arrays" },
+        { nsd_from_arrays(&none, scenes[3], NULL, NULL), NSD_USAGE, "no bodies: nsd_from_arrays" },
+        { nsd_set(NULL, "eps", "1"), NSD_USAGE, "no run: nsd_set" },
+        { nsd_step(NULL, 1), NSD_USAGE, "no run: nsd_step" },
+        { nsd_until(NULL, 1), NSD_USAGE, "no run: nsd_until" },
+        { nsd_read(NULL, "force", &a), NSD_USAGE, "no run: nsd_read" },
+        { nsd_number(NULL, "time", &number), NSD_USAGE, "no run: nsd_number" },
+        { nsd_report(NULL, &json), NSD_USAGE, "no run: nsd_report" },
+        { nsd_names(NULL, &json), NSD_USAGE, "no run: nsd_names" },
+        { nsd_measure(NULL, "all", &json), NSD_USAGE, "no run: nsd_measure" },
+        { nsd_force(NULL, 0, x, x, NSD_ONCE), NSD_USAGE, "no run: nsd_force" },
+        { nsd_boundary_force(NULL, 0, 1, NSD_ONCE), NSD_USAGE, "no run: nsd_boundary_force" },
+        { nsd_boundary_velocity(NULL, 0, x), NSD_USAGE, "no run: nsd_boundary_velocity" },
+        { nsd_velocity(NULL, 0, x, x), NSD_USAGE, "no run: nsd_velocity" },
+        { nsd_gravity(NULL, x), NSD_USAGE, "no run: nsd_gravity" },
+        { nsd_friction(NULL, "ball", "ball", 0), NSD_USAGE, "no run: nsd_friction" },
+        { nsd_add(NULL, NULL, NULL), NSD_USAGE, "no run: nsd_add" },
+        { nsd_remove(NULL, 1, id), NSD_USAGE, "no run: nsd_remove" },
+        { nsd_note(NULL, "{}"), NSD_USAGE, "no run: nsd_note" },
+        { nsd_save(NULL, "a"), NSD_USAGE, "no run: nsd_save" },
+        { nsd_append(NULL, "a"), NSD_USAGE, "no run: nsd_append" },
+        { nsd_finish(NULL), NSD_USAGE, "no run: nsd_finish" },
+        { nsd_report(r, NULL), NSD_USAGE, "no place for JSON: nsd_report" },
+        { nsd_names(r, NULL), NSD_USAGE, "no place for JSON: nsd_names" },
+        { nsd_measure(r, "all", NULL), NSD_USAGE, "no place for JSON: nsd_measure" },
+        { nsd_note(r, NULL), NSD_USAGE, "no line" },
+        { nsd_note(fresh, "[1]"), NSD_DATA, "a line of the history that is an array" },
+        { nsd_note(fresh, "1"), NSD_DATA, "a line that is a number" },
+        { nsd_note(fresh, "{\"a\":1,\"a\":2}"), NSD_DATA, "a line with a key twice" },
+        { nsd_note(fresh, "{} {}"), NSD_DATA, "two objects in a line" },
+        { nsd_append(r, "-"), NSD_USAGE, "a trajectory on standard output" },
+        { nsd_save(r, "-"), NSD_USAGE, "a document on standard output" },
+        { nsd_save(r, ""), NSD_USAGE, "a document without a path" },
+        { nsd_remove(r, 9, id), NSD_DATA, "more bodies removed than there are" },
+        { nsd_remove(r, INT64_MAX, id), NSD_DATA, "all numbers of bodies removed" },
+        { nsd_remove(r, -1, id), NSD_USAGE, "fewer than none" },
+        { nsd_open(NULL, "a"), NSD_USAGE, "no place: nsd_open" },
+        { nsd_open(&shut, NULL), NSD_USAGE, "no path: nsd_open" },
+        { nsd_open(&shut, "-"), NSD_USAGE, "standard input: nsd_open" },
+        { nsd_next(NULL, &more), NSD_USAGE, "no document: nsd_next" },
+        { nsd_next(d, NULL), NSD_USAGE, "no place: nsd_next" },
+        { nsd_objects(NULL, &json), NSD_USAGE, "no document: nsd_objects" },
+        { nsd_objects(d, NULL), NSD_USAGE, "no place: nsd_objects" },
+        { nsd_attributes(d, NULL, &json), NSD_USAGE, "no path: nsd_attributes" },
+        { nsd_attributes(d, "/none", &json), NSD_USAGE, "no such object: nsd_attributes" },
+        { nsd_text(d, "/none", &json), NSD_USAGE, "no such text" },
+        { nsd_text(d, "/particles/all/mass", &json), NSD_DATA, "numbers as a text" },
+        { nsd_rows(d, "/particles/all/mass", 0, 5, &a), NSD_DATA, "rows beyond the last" },
+        { nsd_rows(d, "/particles/all/mass", -1, 1, &a), NSD_DATA, "rows before the first" },
+        { nsd_rows(d, "/particles/all/mass", INT64_MAX, 2, &a), NSD_DATA, "rows of any number" },
+        { nsd_rows(d, "/particles", 0, 1, &a), NSD_USAGE, "rows of a group" },
+        { nsd_rows(d, "/particles/all/mass", 0, 1, NULL), NSD_USAGE, "no array: nsd_rows" },
+    };
+    for (size_t k = 0; k < sizeof calls / sizeof calls[0]; k++)
+        ok(calls[k].got == calls[k].want, "%s: status %d", calls[k].what, calls[k].want);
+    ok(!nsd_resizes(NULL) && !none && !shut, "and there is no run, and no document");
+    nsd_shut(&d), nsd_shut(&d), nsd_shut(NULL), nsd_close(&r), nsd_close(&fresh);
+}
+
+/* ---- documents as objects ---- */
+
+static void test_documents(void)
+{
+    struct nsd_run *r = scene(scenes[0]);
+    struct nsd_document *d;
+    struct nsd_array a = { .size = sizeof a }, x = { .size = sizeof x };
+    const char *path = path_of("objects.h5"), *json;
+    int more = 0;
+    remove(path);
+    for (int k = 0; k < 3; k++) must(nsd_step(r, 5) || nsd_append(r, path), r);
+    must(nsd_finish(r) || nsd_read(r, "position", &x), r);
+    must(nsd_open(&d, path), NULL);
+    ok(nsd_objects(d, &json) == NSD_USAGE && strstr(nsd_error(NULL), "nsd_next() comes first"),
+       "nsd_open() finds no document by itself");
+    must(nsd_next(d, &more) || nsd_objects(d, &json), NULL);
+    ok(more &&
+           strstr(json, "\"/particles/all/position/value\":{\"type\":\"f8\",\"shape\":[3,4,3]}"),
+       "nsd_objects(): types and shapes");
+    must(nsd_rows(d, "/particles/all/position/value", 2, 1, &a), NULL);
+    ok(a.type == 'd' && a.shape[0] == 1 && a.shape[1] == 12 &&
+           !memcmp(a.data, x.data, 12 * sizeof(double)),
+       "nsd_rows(): a row is a frame's, and the run's own numbers");
+    must(nsd_rows(d, "/particles/all/id", 1, 3, &a), NULL);
+    ok(a.type == 'i' && a.rank == 1 && ((int32_t *)a.data)[2] == 3, "and numbers of 32 bits");
+    must(nsd_rows(d, "/particles/all/position/step", 0, 3, &a), NULL);
+    const bool wide = a.type == 'l';
+    ok((wide ? ((int64_t *)a.data)[1] : ((int32_t *)a.data)[1]) == 10, "and steps");
+    must(nsd_attributes(d, "/nsd", &json), NULL);
+    ok(strstr(json, "\"dt\":0.001") && strstr(json, "\"gravity\":[0.0,0.0,-9.81"),
+       "nsd_attributes(): numbers and lists of them");
+    must(nsd_text(d, "/nsd/history", &json), NULL);
+    ok(strstr(json, "\"command\":\"libnsd\"") && strchr(json, '\n'), "nsd_text(): a list of texts");
+    must(nsd_next(d, &more), NULL);
+    ok(!more && nsd_rows(d, "/particles/all/id", 1, 3, &a) == NSD_USAGE,
+       "and there is one document");
+    nsd_shut(&d);
+    ok(!d && nsd_open(&d, path_of("nothing")) == 0 && nsd_next(d, &more) == NSD_NO_INPUT,
+       "a file that is missing");
+    nsd_shut(&d), nsd_close(&r);
+}
+
+/* ---- a step that fails ---- */
+
+static void test_undone(void)
+{
+    static const char text[] =
+        "{\"dt\":1e-3,\"mu\":0.3,\"bodies\":[{\"count\":4,\"radius\":0.1,\"box\":{\"x\":[-1,1],"
+        "\"y\":[-1,1],\"z\":[0,null]}}],\"walls\":[{\"point\":[0,0,0],\"normal\":[0,0,1]}]}";
+    struct nsd_run *r = scene(text), *twin = scene(text);
+    const double huge[3] = { 1e308, 0, 0 };
+    must(nsd_step(r, 50), r), must(nsd_step(twin, 50), twin);
+    must(nsd_force(r, 1, huge, NULL, NSD_ONCE), r);
+    const int got = nsd_step(r, 3);
+    ok(got == NSD_DIVERGED && strstr(nsd_error(r), "step 51: "), "a step to infinity fails: %d, %s",
+       got, nsd_error(r));
+    must(nsd_force(r, 1, NULL, NULL, NSD_ONCE), r);
+    const char *one = path_of("undone.h5"), *other = path_of("twin.h5");
+    must(nsd_save(r, one), r), must(nsd_save(twin, other), twin);
+    ok(same_files(one, other), "the run is what it was, and its document too");
+    must(nsd_step(r, 50), r), must(nsd_step(twin, 50), twin);
+    ok(same(r, twin), "and it goes on as its twin does");
+    nsd_close(&r), nsd_close(&twin);
+}
+
+/* ---- fork() ---- */
+
+static int status_of(pid_t child)
+{
+    int status = -1;
+    waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 100;
+}
+
+/* What a child does to runs and documents of its parent: 0, all is refused; and it makes its own */
+static int in_child(struct nsd_run *r, struct nsd_document *d, const char *path)
+{
+    struct nsd_run *own;
+    struct nsd_array a = { .size = sizeof a };
+    alarm(60);
+    if (nsd_append(r, path) != NSD_USAGE || !strstr(nsd_error(r), "copy by fork()")) return 1;
+    if (nsd_step(r, 1) != NSD_USAGE || nsd_save(r, path) != NSD_USAGE) return 2;
+    if (nsd_finish(r) != NSD_USAGE) return 3;
+    if (d && nsd_rows(d, "/particles/all/id", 0, 1, &a) != NSD_USAGE) return 4;
+    nsd_close(&r), nsd_shut(&d);
+    if (nsd_from_document(&own, path_of("forked.start.h5"))) return 5;
+    for (int k = 0; k < 3; k++)
+        if (nsd_step(own, 1) || nsd_append(own, path_of("forked.own.h5"))) return 6;
+    nsd_close(&own);
+    return 0;
+}
+
+/* A trajectory that is forked between its frames; the children end as programs do, and as multiprocessing does. */
+static void trajectory(const char *path, bool forks)
+{
+    struct nsd_run *r = scene(scenes[0]);
+    struct nsd_document *d;
+    struct nsd_array a = { .size = sizeof a };
+    int more;
+    remove(path);
+    must(nsd_save(r, path_of("forked.start.h5")) || nsd_step(r, 1) || nsd_append(r, path), r);
+    must(nsd_open(&d, path_of("forked.start.h5")) || nsd_next(d, &more), NULL);
+    for (int k = 0; forks && k < 2; k++) {
+        remove(path_of("forked.own.h5"));
+        fflush(stdout);
+        const pid_t child = fork();
+        if (!child) {
+            const int got = in_child(r, d, path);
+            if (k) _exit(got);
+            exit(got);
+        }
+        must(nsd_step(r, 1) || nsd_append(r, path), r);
+        const int got = status_of(child);
+        ok(!got, "a child of fork() is refused all of its parent's, and makes runs of its own: %d",
+           got);
+        ok(!nsd_rows(d, "/particles/all/id", 0, 1, &a), "the parent reads on");
+    }
+    for (int k = 0; !forks && k < 2; k++) must(nsd_step(r, 1) || nsd_append(r, path), r);
+    const pid_t lives = forks ? fork() : 0;
+    if (forks && !lives) pause(), _exit(0);
+    must(nsd_step(r, 1) || nsd_append(r, path) || nsd_finish(r) || nsd_step(r, 1), r);
+    ok(!nsd_append(r, path), "a trajectory is resumed%s: %s",
+       forks ? " while a child lives that was made before its end" : "", nsd_error(r));
+    if (forks) kill(lives, SIGKILL), status_of(lives);
+    nsd_close(&r), nsd_shut(&d);
+}
+
+static void *saves(void *stop)
+{
+    struct nsd_run *r = scene(scenes[0]);
+    while (!*(_Atomic int *)stop) must(nsd_save(r, path_of("busy.h5")), r);
+    nsd_close(&r);
+    return NULL;
+}
+
+static void test_fork(void)
+{
+    char one[100], other[100];
+    snprintf(one, sizeof one, "%s", path_of("forked.h5"));
+    snprintf(other, sizeof other, "%s", path_of("alone.h5"));
+    trajectory(one, true), trajectory(other, false);
+    ok(same_files(one, other), "the file has the bytes of a run that nobody forks");
+    _Atomic int stop = 0;
+    pthread_t thread;
+    struct nsd_run *r = scene(scenes[0]);
+    int bad = 0;
+    pthread_create(&thread, NULL, saves, (void *)&stop);
+    for (int k = 0; k < 10; k++) {
+        remove(path_of("forked.own.h5"));
+        fflush(stdout);
+        const pid_t child = fork();
+        if (!child) _exit(in_child(r, NULL, other));
+        bad += status_of(child) != 0;
+    }
+    stop = 1;
+    pthread_join(thread, NULL);
+    ok(!bad, "children of a program one of whose threads is in libhdf5 make runs of their own");
+    nsd_close(&r);
+}
+
 int main(void)
 {
     if (!mkdtemp(folder)) return 1;
     test_forces(), test_velocities(), test_top(), test_boundaries(), test_places();
     test_resume(), test_lasting(), test_appends(), test_flow(), test_arrays(), test_threads(),
-        test_failure(), test_endless(), test_errors(), test_random();
+        test_failure(), test_endless(), test_errors(), test_random(), test_missing(), test_documents(), test_undone(), test_fork();
     char command[100];
     snprintf(command, sizeof command, "rm -r %s", folder);
     if (system(command)) return 1;

@@ -1,0 +1,37 @@
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): fopencookie
+#include "base/text.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static ssize_t put(void *to, const char *bytes, size_t n)
+{
+    struct text *t = to;
+    if (t->size + n + 1 > t->room && !t->lost) {
+        size_t room = 2 * t->room + n + 1;
+        char *more = realloc(t->bytes, room);
+        t->lost = !more;
+        if (more) t->bytes = more, t->room = room;
+    }
+    if (t->lost) return 0;
+    memcpy(t->bytes + t->size, bytes, n);
+    t->size += n;
+    return (ssize_t)n;
+}
+
+FILE *text_open(struct text *t)
+{
+    *t = (struct text){ 0 };
+    return fopencookie(t, "w", (cookie_io_functions_t){ .write = put });
+}
+
+char *text_close(struct text *t, FILE *stream, size_t *size)
+{
+    bool bad = !stream || ferror(stream);
+    if (stream && fclose(stream)) bad = true;
+    if (!bad && !t->bytes) put(t, "", 0);
+    if (bad || t->lost) return free(t->bytes), NULL;
+    t->bytes[t->size] = 0;
+    *size = t->size;
+    return t->bytes;
+}
