@@ -119,10 +119,21 @@ static int build(struct nsd_run *r, const char *text, size_t n, const char *name
     return why->status;
 }
 
-int nsd_from_scene(struct nsd_run **run, const char *text, const char *folder)
+/* Is there a place for the run that is to be made? */
+static struct why *has_place(struct nsd_run **run)
 {
     struct why *why = run_why_of_thread();
-    *run = NULL;
+    if (run)
+        *run = NULL;
+    else
+        why_set(why, NSD_USAGE, "there is no place for the run");
+    return why;
+}
+
+int nsd_from_scene(struct nsd_run **run, const char *text, const char *folder)
+{
+    struct why *why = has_place(run);
+    if (why->status) return why->status;
     if (!text) return why_set(why, NSD_USAGE, "there is no text of a scene");
     struct nsd_run *r = new_run(why);
     if (r) build(r, text, strlen(text), NULL, folder, why);
@@ -131,9 +142,9 @@ int nsd_from_scene(struct nsd_run **run, const char *text, const char *folder)
 
 int nsd_from_scene_file(struct nsd_run **run, const char *path)
 {
-    struct why *why = run_why_of_thread();
+    struct why *why = has_place(run);
     size_t n = 0;
-    *run = NULL;
+    if (why->status) return why->status;
     if (!path) return why_set(why, NSD_USAGE, "there is no path of a scene");
     FILE *f = fopen(path, "re");
     if (!f) return why_set(why, NSD_NO_INPUT, "%.200s: %s", path, strerror(errno));
@@ -148,8 +159,8 @@ int nsd_from_scene_file(struct nsd_run **run, const char *path)
 
 int nsd_from_document(struct nsd_run **run, const char *path)
 {
-    struct why *why = run_why_of_thread();
-    *run = NULL;
+    struct why *why = has_place(run);
+    if (why->status) return why->status;
     if (!path || !strcmp(path, "-"))
         return why_set(why, NSD_USAGE, "a document has a path; standard input is the program's");
     struct nsd_run *r = new_run(why);
@@ -161,8 +172,8 @@ int nsd_from_document(struct nsd_run **run, const char *path)
 
 int nsd_from_memory(struct nsd_run **run, const void *document, size_t size)
 {
-    struct why *why = run_why_of_thread();
-    *run = NULL;
+    struct why *why = has_place(run);
+    if (why->status) return why->status;
     if (!document) return why_set(why, NSD_USAGE, "there is no document");
     struct nsd_run *r = new_run(why);
     run_lock();
@@ -175,8 +186,8 @@ int nsd_from_arrays(struct nsd_run **run, const char *scene, const char *folder,
                     const struct nsd_bodies *bodies)
 {
     struct nsd_run *r;
-    if (nsd_from_scene(&r, scene, folder)) return *run = NULL, of_thread.status;
-    struct why *why = run_why_of_thread();
+    struct why *why = has_place(run);
+    if (why->status || nsd_from_scene(&r, scene, folder)) return why->status;
     if (r->f.packing.n)
         why_set(why, NSD_DATA, "the scene has bodies of its own: arrays are for one without");
     else
