@@ -59,6 +59,11 @@ ok "is where the link points, with the rights that were there" test -L link.csv 
 mkdir there && ln -s there/new.csv nowhere.csv && ln -s nowhere.csv again.csv
 ok "a link that leads nowhere is followed" nsd-export -o again.csv t.h5
 ok "to where it would" test -L again.csv -a -L nowhere.csv -a -s there/new.csv
+for tool in 'nsd-view --size 32x32' nsd-web 'nsd-export -t csv' nsd-cat 'nsd-step -n 1'; do
+    ok "$tool -o -: standard output" eval "$tool -o x -o - t.h5 2>/dev/null | cmp - <($tool t.h5 2>/dev/null | cat) && test ! -e ./- && test ! -e x"
+done
+for tool in 'nsd-step -n 1' nsd-solve; do refuses 64 "$tool --log -" eval "$tool --log - good.h5"; done
+refuses 64 "a log between the documents" eval 'nsd-step -n 1 --log /dev/stdout good.h5 | cat'
 ok "/dev/stdout is no file" eval 'nsd-export -o /dev/stdout -t csv t.h5 | cmp - old.csv'
 mkfifo pipe
 ok "nor is a pipe" eval 'nsd-export -o pipe -t csv t.h5 & cmp pipe old.csv && wait'
