@@ -80,6 +80,7 @@ static int start(struct film *f, struct why *why)
     const char *const argument[] = { "ffmpeg",
                                      "-loglevel",
                                      "error",
+                                     "-xerror", // a full disk would end it with 0
                                      "-y",
                                      "-f",
                                      "rawvideo",

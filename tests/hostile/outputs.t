@@ -45,6 +45,9 @@ if command -v ffmpeg >/dev/null; then
     echo PRECIOUS >film.part.mp4
     ok "a film" nsd-view --every 1 --size 64x64 -o film.mp4 t.h5
     is "leaves film.part.mp4, which is the user's" "$(cat film.part.mp4)" PRECIOUS
+    small() { (ulimit -f 1 && nsd-view --every 1 --size 200x200 -o full.mp4 t.h5); }
+    status 74 "a film that the disk has no room for" small
+    ok "is not there" eval 'test ! -e full.mp4 && [ "$(left)" = 0 ]'
     # ffmpeg: one that does nothing, and one that does not see the end of its input
     mkdir -p bin
     empty() { printf '#!/bin/sh\ncat >/dev/null\n' >bin/ffmpeg && chmod +x bin/ffmpeg && PATH=$PWD/bin:$PATH nsd-view --every 1 --size 64x64 -o none.mp4 t.h5; }
