@@ -33,7 +33,7 @@ struct partner {
     size_t n, room;                    /* bytes of it */
     size_t taken;                      /* of them those that were given */
     double seconds;                    /* that an answer may take, */
-    double end;                        /* and until when */
+    double left;                       /* and of them those that are left */
 };
 
 static double now(void)
@@ -102,12 +102,20 @@ int partner_start(struct partner **out, const char *command, const volatile sig_
     return start_guard(p, why);
 }
 
+/* Takes the time since *then off *left, but for a time in which this process was stopped: then the program may have been, too. */
+static void spend(double *left, double *then)
+{
+    const double before = *then;
+    *then = now();
+    *left -= fmin(*then - before, 2e-3 * LOOK);
+}
+
 /* Waits until something can be read or written; false: too long, or a signal has come. */
-static bool ready(const struct partner *p, int fd, short what, double end)
+static bool ready(const struct partner *p, int fd, short what, double *left)
 {
     struct pollfd f = { .fd = fd, .events = what };
-    for (double left; !*p->stop && (left = end - now()) > 0;)
-        if (poll(&f, 1, (int)fmin(1e3 * left + 1, LOOK)) > 0) return true;
+    for (double then = now(); !*p->stop && *left > 0; spend(left, &then))
+        if (poll(&f, 1, (int)fmin(1e3 * *left + 1, LOOK)) > 0) return spend(left, &then), true;
     return false;
 }
 
@@ -162,7 +170,7 @@ static int waited(const struct partner *p, const char *what, double seconds, str
 
 int partner_write(struct partner *p, const void *bytes, size_t n, double seconds, struct why *why)
 {
-    const double end = now() + seconds;
+    double left = seconds;
     const char *at = bytes;
     while (n > 0) {
         ssize_t done = write_quietly(p->to, at, n);
@@ -170,7 +178,7 @@ int partner_write(struct partner *p, const void *bytes, size_t n, double seconds
         if (done >= 0 || errno == EINTR) continue;
         if (errno == EPIPE) return ended(p, "input", why);
         if (errno != EAGAIN) return failed(why, "the program");
-        if (!ready(p, p->to, POLLOUT, end)) return waited(p, "read nothing", seconds, why);
+        if (!ready(p, p->to, POLLOUT, &left)) return waited(p, "read nothing", seconds, why);
     }
     return 0;
 }
@@ -188,7 +196,7 @@ static bool grow(struct partner *p)
 
 void partner_expect(struct partner *p, double seconds)
 {
-    p->seconds = seconds, p->end = now() + seconds;
+    p->seconds = p->left = seconds;
 }
 
 /* What was given leaves the memory. */
@@ -213,10 +221,11 @@ static int read_piece(struct partner *p, ssize_t *got, struct why *why)
 static int read_more(struct partner *p, struct why *why)
 {
     ssize_t got;
-    if (*p->stop || now() > p->end) return waited(p, "not answered", p->seconds, why);
+    if (*p->stop) return waited(p, "not answered", p->seconds, why);
     if (read_piece(p, &got, why)) return why->status;
     if (got == 0) return ended(p, "output", why);
-    if (got < 0) ready(p, p->from, POLLIN, p->end);
+    if (got < 0 && !ready(p, p->from, POLLIN, &p->left))
+        return waited(p, "not answered", p->seconds, why);
     return 0;
 }
 
@@ -283,8 +292,10 @@ static void wait_for_end(struct partner *p, double seconds)
     int status = 0;
     bool killed = false;
     if (p->pid <= 0) return;
-    for (const double begin = now(); !has_ended(p, &status, 0);) {
-        if (now() > begin + (*p->stop ? fmin(LAST_WORK, seconds) : seconds)) {
+    double left = seconds, then = now();
+    for (; !has_ended(p, &status, 0); spend(&left, &then)) {
+        if (*p->stop) left = fmin(left, LAST_WORK);
+        if (left < 0) {
             killed = !kill(-p->pid, SIGKILL);
             has_ended(p, &status, INFINITY);
             break;

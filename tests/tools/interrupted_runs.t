@@ -87,6 +87,14 @@ kill -INT -- "-$(ps -o pgid= -p $pid | tr -d ' ')"
 wait $pid || s=$?
 is "a signal for the group, as from a terminal" "$s $(steps_of asked.h5) $(orphans)" "130 [1,2] 0"
 
+s=0
+nsd-step -n 2 --with-timeout 0.5 --with 'read -r l; echo >begun; sleep 0.2; echo "{}"; read -r l; echo "{}"' -o asked.h5 start.h5 2>said &
+pid=$!
+until_there begun
+kill -STOP $pid && sleep 1 && kill -CONT $pid
+wait $pid || s=$?
+is "a run that was suspended has its answer, and the time for the next" "$s $(steps_of asked.h5)" "0 [1,2]"
+
 # ---- checkpoints ----
 
 "${long[@]}" --save 0.05s -o killed.h5 start.h5 2>/dev/null &
