@@ -70,43 +70,29 @@ int film_open(struct film **film, const char *path, int rate, struct why *why)
     return 0;
 }
 
-/* Starts ffmpeg, which reads pixels from a pipe. Its own words go to stderr, errors only. */
+/* Starts ffmpeg, which reads pixels from a pipe. Its own words go to stderr, errors only; without -xerror it ends with 0 where
+   the disk is full. */
 static int start(struct film *f, struct why *why)
 {
     char size[40], rate[16];
     bool webm = !strcmp(ending(f->path), ".webm");
     snprintf(size, sizeof size, "%dx%d", f->width, f->height);
     snprintf(rate, sizeof rate, "%d", f->rate);
-    const char *const argument[] = { "ffmpeg",
-                                     "-loglevel",
-                                     "error",
-                                     "-xerror", // a full disk would end it with 0
-                                     "-y",
-                                     "-f",
-                                     "rawvideo",
-                                     "-pix_fmt",
-                                     "rgb24",
-                                     "-s",
-                                     size,
-                                     "-r",
-                                     rate,
-                                     "-i",
-                                     "-",
-                                     "-an",
-                                     "-c:v",
-                                     webm ? "libvpx-vp9" : "libx264",
-                                     "-pix_fmt",
-                                     "yuv420p",
-                                     "-crf",
-                                     webm ? "30" : "18",
-                                     "-b:v",
-                                     "0",
-                                     "-vf",
-                                     "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-                                     "-f",
-                                     webm ? "webm" : "mp4",
-                                     f->url,
-                                     NULL };
+    const char *const argument[] = { "ffmpeg",   "-loglevel",
+                                     "error",    "-xerror",
+                                     "-y",       "-f",
+                                     "rawvideo", "-pix_fmt",
+                                     "rgb24",    "-s",
+                                     size,       "-r",
+                                     rate,       "-i",
+                                     "-",        "-an",
+                                     "-c:v",     webm ? "libvpx-vp9" : "libx264",
+                                     "-pix_fmt", "yuv420p",
+                                     "-crf",     webm ? "30" : "18",
+                                     "-b:v",     "0",
+                                     "-vf",      "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+                                     "-f",       webm ? "webm" : "mp4",
+                                     f->url,     NULL };
     int end[2];
     posix_spawn_file_actions_t actions;
     if (pipe2(end, O_CLOEXEC)) return why_set(why, EX_IOERR, "%s: %s", f->path, strerror(errno));
