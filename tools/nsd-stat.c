@@ -210,7 +210,7 @@ static void add_fields(const struct snapshot *s, struct why *why)
     bool document = ends(fields_to, ".h5");
     // the grid of the first frame is that of all
     if (!coarse.frames && fields_init(&coarse.fields, s, width, spacing, why)) return;
-    fields_set(&coarse.fields, s);
+    if (fields_set(&coarse.fields, s, why)) return;
     if (!document) {
         write_vti(s->p);
     } else {

@@ -744,14 +744,14 @@ int tool_main(int argc, char **argv)
     save_begin(&r, in_place ? argv[0] : output);
     if (r.save_path && reader_reads(argc, argv, r.save_path))
         die_usage("--save: %s is also the input", r.save_path);
-    if (loop_asks()) loop_open();
+    if (loop_asks()) loop_open(&r.f.packing, &stopped_by);
     take_signals();
     const int64_t wanted = steps;
     const int64_t made = run(&r);
     if (writer_close(r.out, &why)) die_why(&why);
     save_end(&r);
     options_log_close();
-    loop_close();
+    if (loop_asks()) loop_close(&r.ended);
     const char *told = processes_leave();
     summary(made);
     options_leave_device();
@@ -759,8 +759,9 @@ int tool_main(int argc, char **argv)
     say_worst(&r.f.packing.names);
     reader_close(in);
     if (r.ended.status) die_why(&r.ended);
-    if (r.told_to_stop) warn("stopped by the program after step %lld", (long long)r.f.packing.step);
     bool stopped = stopped_by && made < wanted && !is_then(&r.f.packing, r.f.packing.step);
+    if (r.told_to_stop && !stopped)
+        warn("stopped by the program after step %lld", (long long)r.f.packing.step);
     if (stopped)
         warn("stopped by signal %d after step %lld, which is kept", (int)stopped_by,
              (long long)r.f.packing.step);

@@ -7,6 +7,10 @@ json_t *answer_parse(const char *line, size_t length, struct why *why)
 {
     json_error_t e;
     while (length && strchr(" \t\r\n", line[length - 1])) length--;
+    if (!length) {
+        why_set(why, EX_DATAERR, "the answer is an empty line: {} changes nothing");
+        return NULL;
+    }
     json_t *j = length == 4 && !memcmp(line, "stop", 4)
                     ? json_pack("{s:b}", "stop", 1)
                     : json_loadb(line, length, JSON_REJECT_DUPLICATES, &e);
@@ -52,17 +56,31 @@ static int64_t whole(const char *text)
     return *text ? n : -1;
 }
 
-/* What an answer has of each body */
+/* The keys of an answer, and what they have for values */
+static const struct {
+    const char *key;
+    bool array, object, boolean;
+} known[] = {
+    { "forces", .array = true, .object = true },
+    { "torques", .array = true, .object = true },
+    { "velocities", .array = true, .object = true },
+    { "angular_velocities", .array = true, .object = true },
+    { "boundaries", .object = true },
+    { "gravity", .array = true },
+    { "friction", .array = true },
+    { "stop", .boolean = true },
+};
+enum { KEYS = sizeof known / sizeof *known };
+
+/* What an answer has of each body: the first of them */
 enum part { FORCES, TORQUES, VELOCITIES, SPINS, PARTS };
-static const char *const part_name[PARTS] = { "forces", "torques", "velocities",
-                                              "angular_velocities" };
 
 static int set(struct acts *acts, enum part part, struct packing *p, int64_t i, const json_t *j,
                struct why *why)
 {
     vec3 x;
     if (!vector(j, p->dim, &x))
-        return why_set(why, EX_DATAERR, "the answer's %s are vectors [x, y, z]", part_name[part]);
+        return why_set(why, EX_DATAERR, "the answer's %s are vectors [x, y, z]", known[part].key);
     if (part == VELOCITIES || part == SPINS) return acts_motion(p, i, part == SPINS, x, why);
     bool torque = part == TORQUES;
     (torque ? acts->twists : acts->pushes)[ACTS_LASTING] = true;
@@ -79,10 +97,7 @@ static int set_all(const json_t *j, struct acts *acts, enum part part, struct pa
     if (!j) return 0;
     if (json_is_array(j) && json_array_size(j) != (size_t)p->n)
         return why_set(why, EX_DATAERR, "the answer has %zu %s, and there are %lld bodies",
-                       json_array_size(j), part_name[part], (long long)p->n);
-    if (!json_is_array(j) && !json_is_object(j))
-        return why_set(why, EX_DATAERR, "the answer's %s are an array, or an object by ids",
-                       part_name[part]);
+                       json_array_size(j), known[part].key, (long long)p->n);
     for (size_t i = 0; json_is_array(j) && i < json_array_size(j); i++)
         if (set(acts, part, p, (int64_t)i, json_array_get(j, i), why)) return why->status;
     json_object_foreach((json_t *)j, id, x)
@@ -91,17 +106,10 @@ static int set_all(const json_t *j, struct acts *acts, enum part part, struct pa
         if (i < 0)
             return why_set(why, EX_DATAERR,
                            "the answer has %s of body '%.40s', which does not exist",
-                           part_name[part], id);
+                           known[part].key, id);
         if (set(acts, part, p, i, x, why)) return why->status;
     }
     return 0;
-}
-
-static bool is_part(const char *key)
-{
-    for (int k = 0; k < PARTS; k++)
-        if (!strcmp(key, part_name[k])) return true;
-    return false;
 }
 
 static int set_boundary(const json_t *j, struct acts *acts, struct packing *p, int64_t wall,
@@ -131,7 +139,6 @@ static int set_boundaries(const json_t *j, struct acts *acts, struct packing *p,
 {
     const char *key;
     json_t *x;
-    if (!json_is_object(j)) return wrong(why, "boundaries are an object by their numbers or names");
     json_object_foreach((json_t *)j, key, x)
     {
         const int32_t name = names_find(&p->names, key, strlen(key));
@@ -162,41 +169,110 @@ static int set_frictions(const json_t *j, struct packing *p, struct why *why)
                           why))
             return why->status;
     }
-    return json_is_array(j) ? 0 : wrong(why, "friction is [[KIND, KIND, mu], ...]");
+    return 0;
+}
+
+int answer_check(const json_t *answer, struct why *why)
+{
+    const char *key;
+    json_t *x;
+    json_object_foreach((json_t *)answer, key, x)
+    {
+        int k = 0;
+        while (k < KEYS && strcmp(key, known[k].key) != 0) k++;
+        if (k == KEYS)
+            return why_set(why, EX_DATAERR,
+                           "the answer has no '%.40s': it has forces, torques, velocities, "
+                           "angular_velocities, boundaries, gravity, friction, stop",
+                           key);
+        if ((known[k].array && json_is_array(x)) || (known[k].object && json_is_object(x)) ||
+            (known[k].boolean && json_is_boolean(x)))
+            continue;
+        if (known[k].boolean) return wrong(why, "stop is true or false");
+        return why_set(why, EX_DATAERR, "the answer's %s is %s", key,
+                       k < PARTS         ? "an array, or an object by ids"
+                       : known[k].object ? "an object by their numbers"
+                       : k == KEYS - 2   ? "[[KIND, KIND, mu], ...]"
+                                         : "a vector [x, y, z]");
+    }
+    return 0;
+}
+
+/* What an answer may change, as it was: an answer that is refused has changed nothing. */
+struct before {
+    vec3 *v, *w, g;
+    struct wall *wall;
+    double *mu;
+    bool steered;
+    struct acts acts;
+};
+
+static void forget(struct before *b)
+{
+    free(b->v), free(b->w), free(b->wall), free(b->mu);
+    acts_free(&b->acts);
+}
+
+/* *to = a copy, where the answer has this key; false: no memory */
+static bool copy(void *to, const json_t *answer, const char *key, const void *from, size_t bytes)
+{
+    void **copy = to;
+    if (!json_object_get(answer, key) || !bytes) return true;
+    if ((*copy = malloc(bytes))) memcpy(*copy, from, bytes);
+    return *copy;
+}
+
+static int remember(struct before *b, const json_t *answer, const struct acts *acts,
+                    const struct packing *p, struct why *why)
+{
+    const size_t n = (size_t)p->n, walls = (size_t)p->walls, kinds = (size_t)p->kinds;
+    *b = (struct before){ .g = p->g, .steered = p->outside.steered };
+    if (copy(&b->v, answer, "velocities", p->v, n * sizeof *b->v) &&
+        copy(&b->w, answer, "angular_velocities", p->w, n * sizeof *b->w) &&
+        copy(&b->wall, answer, "boundaries", p->wall, walls * sizeof *b->wall) &&
+        copy(&b->mu, answer, "friction", p->mu, kinds * kinds * sizeof *b->mu))
+        return acts_copy(&b->acts, acts, p->walls, why);
+    return why_set(why, EX_SOFTWARE, "no memory for an answer");
+}
+
+static void restore(struct before *b, struct acts *acts, struct packing *p)
+{
+    struct acts none = { 0 };
+    if (b->v) memcpy(p->v, b->v, (size_t)p->n * sizeof *b->v);
+    if (b->w) memcpy(p->w, b->w, (size_t)p->n * sizeof *b->w);
+    if (b->wall) memcpy(p->wall, b->wall, (size_t)p->walls * sizeof *b->wall);
+    if (b->mu) memcpy(p->mu, b->mu, (size_t)(p->kinds * p->kinds) * sizeof *b->mu);
+    p->g = b->g, p->outside.steered = b->steered;
+    acts_free(acts);
+    *acts = b->acts, b->acts = none;
+}
+
+/* All that the answer has but stop */
+static int apply(const json_t *answer, struct acts *acts, struct packing *p, struct why *why)
+{
+    vec3 g;
+    const json_t *boundaries = json_object_get(answer, "boundaries");
+    const json_t *gravity = json_object_get(answer, "gravity");
+    const json_t *friction = json_object_get(answer, "friction");
+    bool forces = json_object_get(answer, "forces") || json_object_get(answer, "torques");
+    if (forces && acts_arrays(acts, p, why)) return why->status;
+    acts_clear(acts, p->walls);
+    for (int k = 0; k < PARTS; k++)
+        if (set_all(json_object_get(answer, known[k].key), acts, (enum part)k, p, why))
+            return why->status;
+    if (boundaries && set_boundaries(boundaries, acts, p, why)) return why->status;
+    if (gravity && !vector(gravity, p->dim, &g)) return wrong(why, "gravity is a vector [x, y, z]");
+    if (gravity && acts_gravity(p, g, why)) return why->status;
+    return friction ? set_frictions(friction, p, why) : 0;
 }
 
 int answer_apply(const json_t *answer, struct acts *acts, struct packing *p, bool *stop,
                  struct why *why)
 {
-    const char *key;
-    json_t *x;
-    vec3 g;
-    *stop = false;
-    bool forces = json_object_get(answer, "forces") || json_object_get(answer, "torques");
-    if (forces && acts_arrays(acts, p, why)) return why->status;
-    acts_clear(acts, p->walls);
-    for (int k = 0; k < PARTS; k++)
-        if (set_all(json_object_get(answer, part_name[k]), acts, (enum part)k, p, why))
-            return why->status;
-    json_object_foreach((json_t *)answer, key, x)
-    {
-        if (!strcmp(key, "boundaries")) {
-            set_boundaries(x, acts, p, why);
-        } else if (!strcmp(key, "gravity")) {
-            if (!vector(x, p->dim, &g)) return wrong(why, "gravity is a vector [x, y, z]");
-            acts_gravity(p, g, why);
-        } else if (!strcmp(key, "friction")) {
-            set_frictions(x, p, why);
-        } else if (!strcmp(key, "stop")) {
-            if (!json_is_boolean(x)) return wrong(why, "stop is true or false");
-            *stop = json_is_true(x);
-        } else if (!is_part(key)) {
-            why_set(why, EX_DATAERR,
-                    "the answer has no '%.40s': it has forces, torques, velocities, "
-                    "angular_velocities, boundaries, gravity, friction, stop",
-                    key);
-        }
-        if (why->status) return why->status;
-    }
-    return 0;
+    struct before b = { 0 };
+    *stop = json_is_true(json_object_get(answer, "stop"));
+    if (answer_check(answer, why) || *stop) return why->status;
+    if (!remember(&b, answer, acts, p, why) && apply(answer, acts, p, why)) restore(&b, acts, p);
+    forget(&b);
+    return why->status;
 }

@@ -21,8 +21,11 @@ struct frame;
 
 /* The JSON of a line, to be freed; NULL: it is none of these (EX_DATAERR), or no memory */
 json_t *answer_parse(const char *line, size_t length, struct why *why);
-/* Does it as the packing's next step is to begin. *stop: the run is to end before it. Returns 0, EX_DATAERR or EX_SOFTWARE,
-   where some of it may be done. */
+/* Has it the keys of an answer, with values of their types? Whether the bodies, boundaries and kinds exist that it names is
+   seen when it is applied. Returns 0 or EX_DATAERR. */
+int answer_check(const json_t *answer, struct why *why);
+/* Applies it as the packing's next step is to begin. *stop: the run is to end before the step, and nothing else is applied.
+   Returns 0, EX_DATAERR or EX_SOFTWARE, where nothing has changed. */
 int answer_apply(const json_t *answer, struct acts *acts, struct packing *p, bool *stop,
                  struct why *why);
 

@@ -2,6 +2,7 @@
 #include "api/run.h"
 
 #include "api/document.h"
+#include "base/number.h"
 #include "base/team.h"
 #include "import/scene_file.h"
 #include "motion/adapt.h"
@@ -236,7 +237,7 @@ static int set_dt(struct nsd_run *r, const char *text, struct why *why)
     bool adapts = !strncmp(text, word, sizeof word - 1);
     const char *number = adapts ? text + sizeof word - 1 : text;
     char *end;
-    double x = strtod(number, &end);
+    double x = number_read(number, &end);
     if (end == number || *end || !(x > 0 && x <= (adapts ? 1 : DBL_MAX)))
         return why_set(
             why, NSD_USAGE,

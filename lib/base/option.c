@@ -1,5 +1,7 @@
 #include "base/option.h"
 
+#include "base/number.h"
+
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
@@ -33,7 +35,7 @@ static int set_number(const struct cli_option *o, void *to, const char *text, st
 {
     char *end;
     errno = 0;
-    double x = strtod(text, &end);
+    double x = number_read(text, &end);
     if (end == text || *end || !isfinite(x) || isspace((unsigned char)*text))
         return wrong(o, why, text, "is not a number");
     bool open = o->kind == CLI_ABOVE || o->kind == CLI_BETWEEN;
@@ -55,7 +57,7 @@ static int set_every(const struct cli_option *o, struct cli_every *e, const char
                      struct why *why)
 {
     char *end;
-    double x = strtod(text, &end);
+    double x = number_read(text, &end);
     bool seconds = !strcmp(end, "s");
     if (end == text || (*end && !seconds) || !isfinite(x) || isspace((unsigned char)*text))
         return wrong(o, why, text, "is neither a number of steps nor, as 0.01s, of seconds");

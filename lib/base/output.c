@@ -37,6 +37,7 @@ static bool is_at(const struct output *o)
 
 static void remove_one(const struct output *o)
 {
+    if (o->child > 0) kill(o->child, SIGKILL);
     if (o->borrowed && ftruncate(o->fd, 0)) return; // nothing more can be done
     if (o->at && is_at(o)) unlink(o->at);
 }

@@ -23,7 +23,8 @@ struct output {
     char *at;     /* where it is: next to the target, then there */
     int old;      /* the file whose place it takes, open and locked; -1: there is none */
     bool placed, listed, borrowed;
-    bool nameless;       /* it had no name when it was opened: a file in memory */
+    bool nameless; /* it had no name when it was opened: a file in memory */
+    pid_t child;   /* another program that writes it, and is killed should the tool end now; or 0 */
     struct output *next; /* of those that are to be removed should the tool end now */
 };
 

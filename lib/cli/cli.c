@@ -183,6 +183,12 @@ static void help(void)
     exit(0);
 }
 
+/* -o -: standard output, as without the option; a file of this name is ./- */
+static bool is_standard_output(const struct cli_option *o, const char *text)
+{
+    return o->letter == 'o' && o->kind == CLI_TEXT && !strcmp(text, "-");
+}
+
 /* Sets the option and returns its value for the history. */
 static json_t *set(const struct cli_option *o, const char *text)
 {
@@ -254,6 +260,9 @@ int cli_parse(int argc, char **argv)
         json_decref(value[k]);
         value[k] = set(at[k], optarg);
         given[k] = at[k]->to;
+        if (!is_standard_output(at[k], optarg)) continue;
+        json_decref(value[k]);
+        value[k] = NULL, given[k] = NULL, *(const char **)at[k]->to = NULL;
     }
     json_t *options = json_object();
     for (int i = 0; i < n; i++) {

@@ -24,8 +24,6 @@ enum {
     KEPT_MOST = 1 << 30       /* bytes of answers between two frames, which are kept in memory */
 };
 
-static const double GRACE = 0.2; /* s: for a program that has failed to end by itself */
-
 static const char *command, *replay, *boundaries, *measures;
 static int64_t every = 1;
 static double timeout = 60; /* s: a program that computes for a minute before a step is not meant */
@@ -52,7 +50,8 @@ const struct cli_option options_loop[] = {
 /* An answer of a run before */
 struct said {
     int64_t step; /* before which */
-    json_t *answer;
+    char *
+        line; /* as JSON: it is read again when its step comes, for in memory JSON takes many times the room */
 };
 
 static struct {
@@ -63,8 +62,10 @@ static struct {
     struct kept first, before;
     bool remembers;
     struct said *said;
-    int64_t n, room; /* of them */
-    int64_t last;    /* step of the run before */
+    int64_t n, room;                   /* of them */
+    int64_t begin, last;               /* steps of the first and the last frame of the run before */
+    int64_t most;                      /* bodies in one of its frames */
+    const volatile sig_atomic_t *stop; /* other than 0: the run is to end */
     bool failed;
 } loop = { .asked = ASKED_DEFAULT };
 
@@ -85,19 +86,50 @@ void loop_check(void)
 
 /* ---- answers of a run before ---- */
 
+/* Bytes that the answer of a program may have that acts on n bodies */
+static size_t answer_most(int64_t n)
+{
+    return ANSWER_LEAST + (size_t)n * ANSWER_BODY;
+}
+
+/* {"step": N, "answer": {...}} of a trajectory: the answer, and before which step; NULL: it is none. */
+static json_t *stored_answer(const char *line, size_t length, int64_t *step)
+{
+    json_t *j = json_loadb(line, length, JSON_REJECT_DUPLICATES, NULL);
+    json_t *answer = json_object_get(j, "answer"), *before = json_object_get(j, "step");
+    bool good = json_is_integer(before) && json_integer_value(before) > 0 && json_is_object(answer);
+    *step = good ? json_integer_value(before) : 0;
+    answer = good ? json_incref(answer) : NULL;
+    json_decref(j);
+    return answer;
+}
+
 static void keep_line(const char *line, size_t length)
 {
-    json_t *j = json_loadb(line, length, 0, NULL), *answer = json_object_get(j, "answer");
-    json_t *step = json_object_get(j, "step");
-    if (!json_is_integer(step) || !json_is_object(answer))
-        die(EX_DATAERR, "%s: /nsd/outside/answer: not a step and an answer", replay);
+    static const char where[] = "/nsd/outside/answer";
+    struct why why = { 0 };
+    int64_t step, before = loop.n ? loop.said[loop.n - 1].step : 0;
+    if (length > answer_most(loop.most))
+        die(EX_DATAERR, "--replay: %s: %s: an answer of %zu bytes: %zu are allowed", replay, where,
+            length, answer_most(loop.most));
+    json_t *answer = stored_answer(line, length, &step);
+    if (!answer)
+        die(EX_DATAERR, "--replay: %s: %s: line %lld is not a step above 0 and an answer", replay,
+            where, (long long)loop.n + 1);
+    if (answer_check(answer, &why))
+        die(EX_DATAERR, "--replay: %s: %s: line %lld: %s", replay, where, (long long)loop.n + 1,
+            why.text);
+    json_decref(answer);
+    if (step <= before)
+        die(EX_DATAERR, "--replay: %s: %s: line %lld is of step %lld, and the one before of %lld",
+            replay, where, (long long)loop.n + 1, (long long)step, (long long)before);
     if (loop.n == loop.room) {
         loop.room = loop.room ? 2 * loop.room : 64;
         loop.said = realloc(loop.said, (size_t)loop.room * sizeof *loop.said);
         if (!loop.said) die(EX_SOFTWARE, "no memory for answers");
     }
-    loop.said[loop.n++] = (struct said){ json_integer_value(step), json_incref(answer) };
-    json_decref(j);
+    loop.said[loop.n] = (struct said){ step, strndup(line, length) };
+    if (!loop.said[loop.n++].line) die(EX_SOFTWARE, "no memory for answers");
 }
 
 static void keep_lines(const struct outside *o)
@@ -119,13 +151,34 @@ static void read_answers(void)
     char *path = strdup(replay);
     if (!path) die(EX_SOFTWARE, "no memory for a path");
     if (reader_open(&in, 1, &path, &why)) die_why(&why);
-    while (!reader_next(in, NULL, &f, &more, &why) && more)
-        if (f.packed) keep_lines(&f.packing.outside), loop.last = f.packing.step;
+    for (loop.begin = INT64_MAX; !reader_next(in, NULL, &f, &more, &why) && more;) {
+        const struct packing *p = &f.packing;
+        if (!f.packed) continue;
+        if (loop.begin == INT64_MAX) loop.begin = p->step;
+        if (p->n > loop.most) loop.most = p->n;
+        keep_lines(&p->outside), loop.last = p->step;
+    }
     if (why.status) die_why(&why);
-    if (!loop.n) die(EX_DATAERR, "--replay: %s has no answers", replay);
     frame_free(&f);
     reader_close(in);
     free(path);
+}
+
+/* Are the answers those of a run that went on from this packing? */
+static void check_answers(const struct packing *p)
+{
+    if (!loop.n) die(EX_DATAERR, "--replay: %s has no answers", replay);
+    const int64_t first = loop.said[0].step, last = loop.said[loop.n - 1].step;
+    if (last > loop.last + 1)
+        die(EX_DATAERR, "--replay: %s: an answer is of step %lld, and the last frame of step %lld",
+            replay, (long long)last, (long long)loop.last);
+    if (p->step >= loop.last)
+        die(EX_DATAERR, "--replay: %s ends with step %lld, and the run begins after step %lld",
+            replay, (long long)loop.last, (long long)p->step);
+    if (p->step < loop.begin && p->step + 1 < first)
+        die(EX_DATAERR,
+            "--replay: %s: the first answer is of step %lld, and the run begins after step %lld",
+            replay, (long long)first, (long long)p->step);
 }
 
 void loop_choose_boundaries(const struct packing *p)
@@ -136,19 +189,23 @@ void loop_choose_boundaries(const struct packing *p)
     if (!loop.told.walls) die(EX_DATAERR, "--with-boundaries: '%s' names no wall", boundaries);
 }
 
-void loop_open(void)
+void loop_open(const struct packing *p, const volatile sig_atomic_t *stop)
 {
     struct why why = { 0 };
-    if (replay) read_answers();
-    if (command && partner_start(&loop.partner, command, &why))
+    loop.stop = stop;
+    if (replay) read_answers(), check_answers(p);
+    if (command && partner_start(&loop.partner, command, stop, &why))
         die(why.status, "--with: %s", why.text);
 }
 
-void loop_close(void)
+void loop_close(struct why *why)
 {
-    partner_end(loop.partner, loop.failed ? GRACE : timeout);
+    struct why trouble = { 0 };
+    partner_end(loop.partner, loop.failed ? 0 : timeout, &trouble);
+    if (trouble.status && !loop.failed && !*loop.stop)
+        why_set(why, trouble.status, "--with: %s", trouble.text);
     loop.partner = NULL;
-    for (int64_t k = 0; k < loop.n; k++) json_decref(loop.said[k].answer);
+    for (int64_t k = 0; k < loop.n; k++) free(loop.said[k].line);
     free(loop.said);
     kept_free(&loop.first), kept_free(&loop.before), chosen_free(&loop.told);
 }
@@ -312,8 +369,7 @@ static json_t *take_line(const struct packing *p, struct why *why)
 {
     size_t n;
     char *line;
-    if (partner_line(loop.partner, &line, &n, ANSWER_LEAST + (size_t)p->n * ANSWER_BODY, why))
-        return NULL;
+    if (partner_line(loop.partner, &line, &n, answer_most(p->n), why)) return NULL;
     json_t *answer = answer_parse(line, n, why), *size = json_object_get(answer, "document");
     if (!size) return answer;
     json_t *whole = NULL;
@@ -333,7 +389,8 @@ static json_t *ask(const struct frame *f, struct acts *acts, bool first, struct 
     size_t length = 0;
     char *begin, *text = message(f, first ? NULL : &f->contacts, acts, &length, why);
     json_t *answer = NULL;
-    if (!why->status && !partner_write(loop.partner, text, length, timeout, why)) {
+    if (!why->status && (first || !partner_check_silent(loop.partner, why)) &&
+        !partner_write(loop.partner, text, length, timeout, why)) {
         partner_expect(loop.partner, timeout);
         if (!partner_peek(loop.partner, &begin, 1, why))
             answer = ((unsigned char)*begin == document_begins ? take_bare_document
@@ -344,7 +401,7 @@ static json_t *ask(const struct frame *f, struct acts *acts, bool first, struct 
 }
 
 /* The last answer until the step: before the first one of a run what acts since then, later its own */
-static json_t *replayed(int64_t step, bool first)
+static json_t *replayed(int64_t step, bool first, struct why *why)
 {
     int64_t lo = 0, hi = loop.n; // in the order of their steps
     while (lo < hi) {
@@ -353,7 +410,10 @@ static json_t *replayed(int64_t step, bool first)
             loop.said[middle].step <= step ? middle + 1 : middle;
     }
     if (!lo || (!first && loop.said[lo - 1].step != step)) return NULL;
-    return json_incref(loop.said[lo - 1].answer);
+    const char *line = loop.said[lo - 1].line;
+    json_t *answer = stored_answer(line, strlen(line), &step);
+    if (!answer) why_set(why, EX_SOFTWARE, "no memory for an answer");
+    return answer;
 }
 
 bool loop_before_step(struct frame *f, struct acts *acts, bool first, struct why *why)
@@ -361,16 +421,18 @@ bool loop_before_step(struct frame *f, struct acts *acts, bool first, struct why
     struct packing *p = &f->packing;
     struct why trouble = { 0 };
     p->outside.steered = true; // from the first frame on: later answers may move what rests
-    bool stop = false, due = first || p->step % every == 0;
+    bool stop = *loop.stop, due = first || p->step % every == 0;
+    if (stop) return false;
     json_t *answer = NULL;
-    if (replay) answer = replayed(p->step + 1, first);
+    if (replay) answer = replayed(p->step + 1, first, &trouble);
     if (command && due) answer = ask(f, acts, first, &trouble);
-    if (answer && !trouble.status && !keep(p, answer, &trouble))
-        answer_apply(answer, acts, p, &stop, &trouble);
+    if (answer && !trouble.status && !answer_apply(answer, acts, p, &stop, &trouble))
+        keep(p, answer, &trouble);
     if (replay && !answer) stop = p->step >= loop.last;
     json_decref(answer);
     if (!trouble.status) return !stop;
-    loop.failed = true;
+    loop.failed = !*loop.stop;
+    if (*loop.stop) return false;
     why_set(why, trouble.status == EX_SOFTWARE ? EX_SOFTWARE : EX_UNAVAILABLE,
             "step %lld: --%s: %s", (long long)p->step + 1, command ? "with" : "replay",
             trouble.text);

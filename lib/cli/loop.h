@@ -9,6 +9,8 @@
 #include "cli/cli.h"
 #include "io/frame.h"
 
+#include <signal.h>
+
 extern const struct cli_option options_loop[]; /* --with ..., --replay */
 
 /* Ends the tool with EX_USAGE where options contradict each other. */
@@ -17,14 +19,17 @@ void loop_check(void);
 bool loop_asks(void);
 /* Ends the tool with EX_DATAERR where --with-boundaries names what is no wall of this packing, that of the run. */
 void loop_choose_boundaries(const struct packing *p);
-/* Starts the program, or reads the answers. */
-void loop_open(void);
+/* Starts the program, or reads the answers for a run from this packing on; *stop: other than 0 when the run is to end, as by
+   a signal. */
+void loop_open(const struct packing *p, const volatile sig_atomic_t *stop);
 /*
  * Before the frame's next step, the first or a later one of this run: asks, where it is time to, and does what is answered.
- * False: the run ends before the step, because the program says so or, with a status in why, because it failed.
+ * False: the run ends before the step, because the program says so, because *stop does or, with a status in why, because it
+ * failed.
  */
 bool loop_before_step(struct frame *f, struct acts *acts, bool first, struct why *why);
-/* The run has ended. */
-void loop_close(void);
+/* The run has ended. A program that has written more than was read has a status in why: its answers may have acted in other
+   steps. */
+void loop_close(struct why *why);
 
 #endif

@@ -131,7 +131,10 @@ void options_log_open(int files, char *const *file, const char *output)
 {
     struct stat log, out;
     if (!options.log) return;
-    if (!stat(options.log, &log) && S_ISREG(log.st_mode)) {
+    if (!strcmp(options.log, "-"))
+        die_usage("--log: '-' is no file: standard output has the documents, and a file of this "
+                  "name is ./-");
+    if (!stat(options.log, &log) && !S_ISCHR(log.st_mode)) {
         int failed = output ? stat(output, &out) : fstat(STDOUT_FILENO, &out);
         if (!failed && out.st_dev == log.st_dev && out.st_ino == log.st_ino)
             die_usage("--log: %s is also the output", options.log);

@@ -1,10 +1,13 @@
-#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): pipe2
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): pipe2, close_range
 #include "cli/partner.h"
+
+#include "cli/cli.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
+#include <math.h>
 #include <poll.h>
-#include <signal.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,17 +17,23 @@
 
 enum {
     PIECE = 1 << 16, /* bytes read at a time: what a pipe holds */
-    NAP = 10         /* ms between looks whether it has ended */
+    NAP = 10,        /* ms between looks whether it has ended */
+    LOOK = 100       /* ms between looks whether a signal has come, which poll() may miss */
 };
 
+/* s: in which a program may end by itself at the end of its input: when its run has failed, and when it was stopped */
+static const double GRACE = 0.2, LAST_WORK = 1;
+
 struct partner {
-    pid_t pid;
-    int to, from;   /* pipes */
-    char *text;     /* what it has said */
-    size_t n, room; /* bytes of it */
-    size_t taken;   /* of them those that were given */
-    double seconds; /* that an answer may take, */
-    double end;     /* and until when */
+    pid_t pid, guard;
+    int life;                          /* the guard's end of it hangs up when this process ends */
+    int to, from;                      /* pipes */
+    const volatile sig_atomic_t *stop; /* other than 0: nothing is waited for */
+    char *text;                        /* what it has said */
+    size_t n, room;                    /* bytes of it */
+    size_t taken;                      /* of them those that were given */
+    double seconds;                    /* that an answer may take, */
+    double left;                       /* and of them those that are left */
 };
 
 static double now(void)
@@ -39,41 +48,75 @@ static int failed(struct why *why, const char *what)
     return why_set(why, EX_UNAVAILABLE, "%s: %s", what, strerror(errno));
 }
 
-int partner_start(struct partner **out, const char *command, struct why *why)
+/* The program: a group of processes of its own, so that a signal from the terminal is for us, who end it */
+static void be_program(int in, int out, const char *command)
+{
+    setpgid(0, 0);
+    signal(SIGPIPE, SIG_DFL);
+    if (dup2(in, STDIN_FILENO) < 0 || dup2(out, STDOUT_FILENO) < 0) _exit(126);
+    execl("/bin/sh", "sh", "-c", command, (char *)NULL);
+    _exit(127);
+}
+
+/* A process that waits for the end of this one, however it ends, and then kills the program's group. It has no other
+   file open: nobody waits for it. */
+static void be_guard(int life, pid_t group)
+{
+    char none;
+    setpgid(0, 0);
+    if (dup2(life, STDIN_FILENO) < 0) _exit(126);
+    close_range(STDIN_FILENO + 1, UINT_MAX, 0);
+    while (read(STDIN_FILENO, &none, 1) < 0 && errno == EINTR) continue;
+    usleep((useconds_t)(1e6 * GRACE));
+    kill(-group, SIGKILL);
+    _exit(0);
+}
+
+static int start_guard(struct partner *p, struct why *why)
+{
+    int life[2];
+    if (pipe2(life, O_CLOEXEC)) return failed(why, "no pipe to the program's guard");
+    p->guard = fork();
+    if (p->guard == 0) close(life[1]), be_guard(life[0], p->pid);
+    close(life[0]), p->life = life[1];
+    return p->guard < 0 ? failed(why, "the program's guard cannot be started") : 0;
+}
+
+int partner_start(struct partner **out, const char *command, const volatile sig_atomic_t *stop,
+                  struct why *why)
 {
     int to[2], from[2];
     struct partner *p = *out = calloc(1, sizeof *p);
     if (!p) return why_set(why, EX_SOFTWARE, "no memory for a program");
-    p->to = p->from = -1;
+    p->to = p->from = p->life = -1, p->stop = stop;
     if (pipe2(to, O_CLOEXEC)) return failed(why, "no pipe to the program");
     p->to = to[1];
     if (pipe2(from, O_CLOEXEC)) return close(to[0]), failed(why, "no pipe from the program");
     p->from = from[0];
     p->pid = fork();
-    if (p->pid == 0) {
-        setpgid(0, 0); // a signal from the terminal is for us, who end it
-        signal(SIGPIPE, SIG_DFL), signal(SIGINT, SIG_DFL), signal(SIGTERM, SIG_DFL);
-        signal(SIGHUP, SIG_DFL);
-        if (dup2(to[0], STDIN_FILENO) < 0 || dup2(from[1], STDOUT_FILENO) < 0) _exit(126);
-        execl("/bin/sh", "sh", "-c", command, (char *)NULL);
-        _exit(127);
-    }
+    if (p->pid == 0) be_program(to[0], from[1], command);
     close(to[0]), close(from[1]);
     if (p->pid < 0) return failed(why, "the program cannot be started");
     setpgid(p->pid, p->pid); // whoever of both comes first
     fcntl(p->to, F_SETFL, O_NONBLOCK), fcntl(p->from, F_SETFL, O_NONBLOCK);
-    return 0;
+    return start_guard(p, why);
 }
 
-/* Waits until something can be read or written; 0: too long */
-static int ready(int fd, short what, double end)
+/* Takes the time since *then off *left, but for a time in which this process was stopped: then the program may have been, too. */
+static void spend(double *left, double *then)
 {
-    struct pollfd p = { .fd = fd, .events = what };
-    for (;;) {
-        double left = end - now();
-        int n = poll(&p, 1, left > 0 ? (int)(left < 1e6 ? 1e3 * left + 1 : 1e9) : 0);
-        if (n >= 0 || errno != EINTR) return n;
-    }
+    const double before = *then;
+    *then = now();
+    *left -= fmin(*then - before, 2e-3 * LOOK);
+}
+
+/* Waits until something can be read or written; false: too long, or a signal has come. */
+static bool ready(const struct partner *p, int fd, short what, double *left)
+{
+    struct pollfd f = { .fd = fd, .events = what };
+    for (double then = now(); !*p->stop && *left > 0; spend(left, &then))
+        if (poll(&f, 1, (int)fmin(1e3 * *left + 1, LOOK)) > 0) return spend(left, &then), true;
+    return false;
 }
 
 /* write(), but for SIGPIPE where nobody reads */
@@ -92,36 +135,50 @@ static ssize_t write_quietly(int fd, const char *bytes, size_t n)
     return done;
 }
 
-/* How it has ended */
-static int ended(struct partner *p, struct why *why)
+/* Waits up to so many seconds for its end; false: it lives on. */
+static bool has_ended(struct partner *p, int *status, double seconds)
+{
+    for (const double end = now() + seconds; !waitpid(p->pid, status, WNOHANG);
+         usleep(1000 * NAP)) {
+        if (now() > end) return false;
+    }
+    p->pid = 0;
+    return true;
+}
+
+/* A pipe is closed, so that it ends now, or lives on without: how it has ended */
+static int ended(struct partner *p, const char *pipe, struct why *why)
 {
     int status = 0;
-    pid_t got = 0;
-    for (int k = 0; k < 100 && !got;
-         k++) // its pipe is closed, so that it ends now, or lives on without
-        if (!(got = waitpid(p->pid, &status, WNOHANG))) usleep(1000 * NAP);
-    if (got <= 0) return why_set(why, EX_UNAVAILABLE, "the program has closed its output");
-    p->pid = 0;
+    const char *where = p->n > p->taken ? ", within an answer" : "";
+    if (!has_ended(p, &status, 1))
+        return why_set(why, EX_UNAVAILABLE, "the program has closed its %s%s", pipe, where);
     if (WIFSIGNALED(status))
-        return why_set(why, EX_UNAVAILABLE, "the program was killed: %s",
-                       strsignal(WTERMSIG(status)));
-    return why_set(why, EX_UNAVAILABLE, "the program has ended, with status %d",
-                   WEXITSTATUS(status));
+        return why_set(why, EX_UNAVAILABLE, "the program was killed: %s%s",
+                       strsignal(WTERMSIG(status)), where);
+    return why_set(why, EX_UNAVAILABLE, "the program has ended, with status %d%s",
+                   WEXITSTATUS(status), where);
+}
+
+/* Nothing could be written or read: why */
+static int waited(const struct partner *p, const char *what, double seconds, struct why *why)
+{
+    if (*p->stop) return why_set(why, EX_UNAVAILABLE, "a signal has come");
+    return why_set(why, EX_UNAVAILABLE, "the program has %s for %g s (--with-timeout)", what,
+                   seconds);
 }
 
 int partner_write(struct partner *p, const void *bytes, size_t n, double seconds, struct why *why)
 {
-    const double end = now() + seconds;
+    double left = seconds;
     const char *at = bytes;
     while (n > 0) {
         ssize_t done = write_quietly(p->to, at, n);
         if (done > 0) at += done, n -= (size_t)done;
         if (done >= 0 || errno == EINTR) continue;
-        if (errno == EPIPE) return ended(p, why);
+        if (errno == EPIPE) return ended(p, "input", why);
         if (errno != EAGAIN) return failed(why, "the program");
-        if (!ready(p->to, POLLOUT, end))
-            return why_set(why, EX_UNAVAILABLE,
-                           "the program has read nothing for %g s (--with-timeout)", seconds);
+        if (!ready(p, p->to, POLLOUT, &left)) return waited(p, "read nothing", seconds, why);
     }
     return 0;
 }
@@ -139,7 +196,7 @@ static bool grow(struct partner *p)
 
 void partner_expect(struct partner *p, double seconds)
 {
-    p->seconds = seconds, p->end = now() + seconds;
+    p->seconds = p->left = seconds;
 }
 
 /* What was given leaves the memory. */
@@ -149,20 +206,38 @@ static void forget(struct partner *p)
     p->n -= p->taken, p->taken = 0;
 }
 
-/* Reads what there is, or waits for it. */
+/* Reads what there is; got: bytes, 0 at the end, -1 where there is nothing yet */
+static int read_piece(struct partner *p, ssize_t *got, struct why *why)
+{
+    if (!grow(p)) return why_set(why, EX_SOFTWARE, "no memory for an answer");
+    do *got = read(p->from, p->text + p->n, PIECE);
+    while (*got < 0 && errno == EINTR);
+    if (*got < 0 && errno != EAGAIN) return failed(why, "the program");
+    if (*got > 0) p->n += (size_t)*got;
+    return 0;
+}
+
+/* The same, or waits for it. */
 static int read_more(struct partner *p, struct why *why)
 {
-    if (now() > p->end)
-        return why_set(why, EX_UNAVAILABLE,
-                       "the program has not answered for %g s (--with-timeout)", p->seconds);
-    if (!grow(p)) return why_set(why, EX_SOFTWARE, "no memory for an answer");
-    ssize_t got = read(p->from, p->text + p->n, PIECE);
-    if (got > 0) p->n += (size_t)got;
-    if (got == 0) return ended(p, why);
-    if (got > 0 || errno == EINTR) return 0;
-    if (errno != EAGAIN) return failed(why, "the program");
-    ready(p->from, POLLIN, p->end);
+    ssize_t got;
+    if (*p->stop) return waited(p, "not answered", p->seconds, why);
+    if (read_piece(p, &got, why)) return why->status;
+    if (got == 0) return ended(p, "output", why);
+    if (got < 0 && !ready(p, p->from, POLLIN, &p->left))
+        return waited(p, "not answered", p->seconds, why);
     return 0;
+}
+
+int partner_check_silent(struct partner *p, struct why *why)
+{
+    ssize_t got = 0;
+    forget(p);
+    if (!p->n && read_piece(p, &got, why)) return why->status;
+    if (!p->n) return 0;
+    return why_set(why, EX_UNAVAILABLE,
+                   "the program has written more than its answer: one line, or one document, for "
+                   "each line that it reads");
 }
 
 int partner_peek(struct partner *p, char **bytes, size_t n, struct why *why)
@@ -198,22 +273,52 @@ int partner_line(struct partner *p, char **line, size_t *n, size_t most, struct 
     }
 }
 
-void partner_end(struct partner *p, double seconds)
+/* Says how it has ended after the run, where that is no good end; killed: by us, after so many seconds */
+static void say_end(const struct partner *p, int status, bool killed, double seconds)
 {
-    if (!p) return;
-    if (p->to >= 0) close(p->to);
-    const double end = now() + seconds;
-    while (p->pid > 0 && !waitpid(p->pid, NULL, WNOHANG)) {
-        if (now() > end) {
-            kill(-p->pid, SIGKILL);
-            waitpid(p->pid, NULL, 0);
+    if (*p->stop) return;
+    if (killed)
+        warn("--with: the program had not ended %g s after the end of its input, and was killed",
+             seconds);
+    else if (WIFSIGNALED(status))
+        warn("--with: the program was killed after the run: %s", strsignal(WTERMSIG(status)));
+    else if (WEXITSTATUS(status))
+        warn("--with: the program has ended after the run, with status %d", WEXITSTATUS(status));
+}
+
+/* It ends, or is killed after so many seconds; what it writes until then counts as unread. */
+static void wait_for_end(struct partner *p, double seconds)
+{
+    int status = 0;
+    bool killed = false;
+    if (p->pid <= 0) return;
+    double left = seconds, then = now();
+    for (; !has_ended(p, &status, 0); spend(&left, &then)) {
+        if (*p->stop) left = fmin(left, LAST_WORK);
+        if (left < 0) {
+            killed = !kill(-p->pid, SIGKILL);
+            has_ended(p, &status, INFINITY);
             break;
         }
-        char rest[256];
-        ssize_t unread = read(p->from, rest, sizeof rest); // lest it waits to be read
-        if (unread <= 0) usleep(1000 * NAP);
+        ssize_t got = 0;
+        p->n = p->n > 0, p->taken = 0; // lest it waits to be read
+        if (read_piece(p, &got, &(struct why){ 0 }) || got <= 0) usleep(1000 * NAP);
     }
+    if (seconds > GRACE) say_end(p, status, killed, seconds);
+}
+
+int partner_end(struct partner *p, double seconds, struct why *why)
+{
+    if (!p) return 0;
+    bool silent = p->from < 0 || !partner_check_silent(p, why);
+    if (p->to >= 0) close(p->to);
+    p->to = -1;
+    wait_for_end(p, fmax(seconds, GRACE));
+    if (silent && p->from >= 0) partner_check_silent(p, why);
+    if (p->guard > 0) kill(p->guard, SIGKILL), waitpid(p->guard, NULL, 0);
+    if (p->life >= 0) close(p->life);
     if (p->from >= 0) close(p->from);
     free(p->text);
     free(p);
+    return why->status;
 }

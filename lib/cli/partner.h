@@ -1,18 +1,21 @@
 /*
  * cli/partner.h: a program that is started once, and is written to and read from, by lines and by numbers of bytes, with a
- * bound on the time that it takes and on the size of its answers.
+ * bound on the time that it takes and on the size of its answers. It does not outlive this process, however that ends.
  */
 #ifndef NSD_PARTNER_H
 #define NSD_PARTNER_H
 
 #include "base/why.h"
 
+#include <signal.h>
 #include <stddef.h>
 
 struct partner;
 
-/* Starts /bin/sh -c command. Returns 0, or EX_UNAVAILABLE with the reason, as all do. */
-int partner_start(struct partner **partner, const char *command, struct why *why);
+/* Starts /bin/sh -c command; *stop: other than 0 when nothing is to be waited for any more, as by a signal. Returns 0, or
+   EX_UNAVAILABLE with the reason, as all do. */
+int partner_start(struct partner **partner, const char *command, const volatile sig_atomic_t *stop,
+                  struct why *why);
 /* Writes it all within so many seconds. */
 int partner_write(struct partner *partner, const void *bytes, size_t n, double seconds,
                   struct why *why);
@@ -24,7 +27,10 @@ int partner_peek(struct partner *partner, char **bytes, size_t n, struct why *wh
 int partner_line(struct partner *partner, char **line, size_t *n, size_t most, struct why *why);
 /* The next n bytes */
 int partner_bytes(struct partner *partner, char **bytes, size_t n, struct why *why);
-/* It reads an end of file, and is waited for so long, then killed; NULL: nothing. */
-void partner_end(struct partner *partner, double seconds);
+/* Has it written nothing that was not read? */
+int partner_check_silent(struct partner *partner, struct why *why);
+/* It reads an end of file, and is waited for so long, then killed; NULL: nothing. Fails if it has written what was not
+   read. */
+int partner_end(struct partner *partner, double seconds, struct why *why);
 
 #endif

@@ -1,14 +1,17 @@
 /* draw/film.c: a pipe into ffmpeg [draw/film.h]. */
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): pipe2
 #include "draw/film.h"
 
 #include "base/output.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,9 +21,8 @@ struct film {
     char *path,
         *url; /* its name; and what ffmpeg calls the new file: with a colon a name is a protocol */
     int rate, width, height;
-    FILE *pipe; /* NULL until the first picture, whose size ffmpeg must know */
-    pid_t child;
-    struct output output;
+    FILE *pipe;           /* NULL until the first picture, whose size ffmpeg must know */
+    struct output output; /* its child is ffmpeg */
 };
 
 static const char *ending(const char *path)
@@ -68,55 +70,43 @@ int film_open(struct film **film, const char *path, int rate, struct why *why)
     return 0;
 }
 
-/* Starts ffmpeg, which reads pixels from a pipe. Its own words go to stderr, errors only. */
+/* Starts ffmpeg, which reads pixels from a pipe. Its own words go to stderr, errors only; without -xerror it ends with 0 where
+   the disk is full. */
 static int start(struct film *f, struct why *why)
 {
     char size[40], rate[16];
     bool webm = !strcmp(ending(f->path), ".webm");
     snprintf(size, sizeof size, "%dx%d", f->width, f->height);
     snprintf(rate, sizeof rate, "%d", f->rate);
-    const char *const argument[] = { "ffmpeg",
-                                     "-loglevel",
-                                     "error",
-                                     "-y",
-                                     "-f",
-                                     "rawvideo",
-                                     "-pix_fmt",
-                                     "rgb24",
-                                     "-s",
-                                     size,
-                                     "-r",
-                                     rate,
-                                     "-i",
-                                     "-",
-                                     "-an",
-                                     "-c:v",
-                                     webm ? "libvpx-vp9" : "libx264",
-                                     "-pix_fmt",
-                                     "yuv420p",
-                                     "-crf",
-                                     webm ? "30" : "18",
-                                     "-b:v",
-                                     "0",
-                                     "-vf",
-                                     "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-                                     "-f",
-                                     webm ? "webm" : "mp4",
-                                     f->url,
-                                     NULL };
+    const char *const argument[] = { "ffmpeg",   "-loglevel",
+                                     "error",    "-xerror",
+                                     "-y",       "-f",
+                                     "rawvideo", "-pix_fmt",
+                                     "rgb24",    "-s",
+                                     size,       "-r",
+                                     rate,       "-i",
+                                     "-",        "-an",
+                                     "-c:v",     webm ? "libvpx-vp9" : "libx264",
+                                     "-pix_fmt", "yuv420p",
+                                     "-crf",     webm ? "30" : "18",
+                                     "-b:v",     "0",
+                                     "-vf",      "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+                                     "-f",       webm ? "webm" : "mp4",
+                                     f->url,     NULL };
     int end[2];
     posix_spawn_file_actions_t actions;
-    if (pipe(end)) return why_set(why, EX_IOERR, "%s: %s", f->path, strerror(errno));
+    if (pipe2(end, O_CLOEXEC)) return why_set(why, EX_IOERR, "%s: %s", f->path, strerror(errno));
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, end[0], STDIN_FILENO);
-    posix_spawn_file_actions_addclose(&actions, end[1]);
-    int e = posix_spawnp(&f->child, "ffmpeg", &actions, NULL, (char *const *)argument, environ);
+    pid_t child;
+    int e = posix_spawnp(&child, "ffmpeg", &actions, NULL, (char *const *)argument, environ);
     posix_spawn_file_actions_destroy(&actions);
     close(end[0]);
     if (e) {
         close(end[1]);
         return why_set(why, EX_IOERR, "%s: ffmpeg: %s", f->path, strerror(e));
     }
+    f->output.child = child;
     f->pipe = fdopen(end[1], "w");
     return f->pipe ? 0 : why_set(why, EX_SOFTWARE, "no memory");
 }
@@ -136,14 +126,22 @@ int film_add(struct film *f, const struct picture *p, struct why *why)
     return 0;
 }
 
-int film_close(struct film *f, struct why *why)
+/* Waits for ffmpeg; has it written something, and well? */
+static bool has_ended_well(struct film *f)
 {
     int status = 0;
+    struct stat st;
+    while (waitpid(f->output.child, &status, 0) < 0 && errno == EINTR) continue;
+    f->output.child = 0;
+    return !status && !fstat(f->output.fd, &st) && st.st_size > 0;
+}
+
+int film_close(struct film *f, struct why *why)
+{
     bool written = f->pipe != NULL;
-    if (f->pipe && fclose(f->pipe)) why_set(why, EX_IOERR, "%s: ffmpeg failed", f->path);
-    while (written && waitpid(f->child, &status, 0) < 0 && errno == EINTR) {
-    }
-    if (written && status) why_set(why, EX_IOERR, "%s: ffmpeg failed", f->path);
+    bool good = !written || !fclose(f->pipe);
+    if (f->output.child > 0 && !has_ended_well(f)) good = false;
+    if (!good) why_set(why, EX_IOERR, "%s: ffmpeg failed", f->path);
     if (written)
         output_close(&f->output, why);
     else

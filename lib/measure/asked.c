@@ -1,5 +1,7 @@
 #include "measure/asked.h"
 
+#include "base/number.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +13,7 @@ static int numbers(const char *name, const char *text, double *x, int least, int
     const char *s = text;
     char *end;
     for (int k = 0; k < most; k++, s = end + 1) {
-        x[k] = strtod(s, &end);
+        x[k] = number_read(s, &end);
         if (end == s || !isfinite(x[k])) break;
         if (!*end && k + 1 >= least) return k + 1;
         if (*end != ',') break;
@@ -37,7 +39,7 @@ static int set_layers(struct asked *a, const char *name, const char *text, struc
 {
     const char axes[] = "xyzr", *axis = *text ? strchr(axes, *text) : NULL;
     char *end = NULL;
-    double n = axis && text[1] == ':' ? strtod(text + 2, &end) : 0;
+    double n = axis && text[1] == ':' ? number_read(text + 2, &end) : 0;
     if (!end || *end || !(n >= 1 && n <= 1e6) || n != floor(n))
         return why_set(why, EX_USAGE, "--%s: '%s' is not x:N, y:N, z:N or r:N", name, text);
     a->axis = (int)(axis - axes), a->layers = (int64_t)n;
@@ -68,7 +70,7 @@ static int set_plane(struct asked *a, const char *name, const char *text, struct
 static int set_number(double *to, const char *name, const char *text, struct why *why)
 {
     char *end;
-    double x = strtod(text, &end);
+    double x = number_read(text, &end);
     if (end == text || *end || !(x > 0))
         return why_set(why, EX_USAGE, "--%s: '%s' is not a number above 0", name, text);
     *to = x;

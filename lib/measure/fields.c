@@ -13,8 +13,8 @@ static const double CUT = 4; /* widths */
 enum { MOMENT_VD = 0, MOMENT_DD = 9, MOMENT_D = 18, MOMENT_DIAMETER = 21, MOMENTS = 22 };
 static const double FLAT =
     1e-6; /* of w^2 rho/2: bodies that lie this much in a plane have no gradient across it */
-static const int64_t MOST_POINTS = 100000000;
-static const double USUAL_CELLS = 32; /* along an axis: what a picture shows, in a moment */
+static const int64_t MOST_POINTS = 1500000; /* 1 GB: a point has 632 bytes */
+static const double USUAL_CELLS = 32;       /* along an axis: what a picture shows, in a moment */
 
 const struct quantity field_quantity[FIELD_COUNT + 1] = {
     [FIELD_DENSITY] = { "density", "kg m-3", 1, "mass" },
@@ -54,7 +54,9 @@ static int grid_init(struct fields *f, const struct snapshot *s, double spacing,
         if (!(size > 0)) return why_set(why, EX_DATAERR, "no volume to lay a grid over");
         points *= cells;
         if (!(points <= (double)MOST_POINTS))
-            return why_set(why, EX_DATAERR, "a grid of more than %lld points",
+            return why_set(why, EX_DATAERR,
+                           "a grid of more than %lld points: a larger --spacing or a smaller --box "
+                           "has fewer",
                            (long long)MOST_POINTS);
         f->n[k] = (int64_t)cells, step[k] = size / cells, origin[k] = r->lo[k] + 0.5 * step[k];
     }
@@ -283,12 +285,23 @@ static struct region grid_region(const struct fields *f, const struct packing *p
     return r;
 }
 
-void fields_set(struct fields *f, const struct snapshot *s)
+/* Do widths, and the ways of bodies to where contacts are, reach few images of the cell? */
+static int check_reach(const struct fields *f, const struct packing *p, const struct region *r,
+                       double ahead, struct why *why)
+{
+    double fastest = 0;
+    for (int64_t i = 0; ahead != 0 && i < p->n; i++) fastest = fmax(fastest, v3_norm(p->v[i]));
+    return region_check_images(r, p->n, CUT * f->width + fabs(ahead) * fastest,
+                               "--fields: 4 widths and the way of the fastest body reach", why);
+}
+
+int fields_set(struct fields *f, const struct snapshot *s, struct why *why)
 {
     const struct packing *p = s->p;
     const struct region r = grid_region(f, p);
     const bool solved = s->s && (s->s->found || !s->s->n);
     const double ahead = !s->s ? 0 : s->moved ? -step_after(p) : step_ahead(p);
+    if (check_reach(f, p, &r, ahead, why)) return why->status;
     for (int k = 0; k < FIELD_COUNT; k++)
         memset(f->x[k], 0,
                (size_t)fields_points(f) * (size_t)field_quantity[k].width * sizeof(double));
@@ -313,4 +326,5 @@ void fields_set(struct fields *f, const struct snapshot *s)
     finish(f);
     for (int64_t i = 0; i < fields_points(f); i++)
         finish_gradient(f, p->dim, i), finish_inertial(f, p->dim, i);
+    return 0;
 }

@@ -12,7 +12,7 @@
 struct region_walk region_walk(const struct region *r, vec3 x, double margin)
 {
     struct region_walk s = { { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 } };
-    const double far = 1e6;
+    const double far = 1e15; // beyond it the position of an image is lost to rounding
     for (int k = 0; r->period.any && !r->all && k < 3; k++) {
         if (!r->period.cell->repeats[k]) continue;
         vec3 row = r->period.inverse[k];
@@ -24,17 +24,32 @@ struct region_walk region_walk(const struct region *r, vec3 x, double margin)
             most += fmax(w[j] * r->lo[j], w[j] * r->hi[j]);
         }
         least = ceil(least - more - at), most = floor(most + more - at);
-        if (fabs(least) < far && fabs(most) < far) s.from[k] = (int)least, s.to[k] = (int)most;
+        if (most - least >= far) least = 0, most = far; // region_check_images() refuses it
+        if (fabs(least) <= far && fabs(most) <= far)
+            s.from[k] = (int64_t)least, s.to[k] = (int64_t)most;
         s.at[k] = s.from[k];
     }
     return s;
 }
 
-static vec3 shifted(const struct region *r, vec3 x, int i, int j, int k)
+static vec3 shifted(const struct region *r, vec3 x, int64_t i, int64_t j, int64_t k)
 {
     if (!i && !j && !k) return x;
     const vec3 *e = r->period.edge;
-    return v3_axpy(v3_axpy(v3_axpy(x, i, e[0]), j, e[1]), k, e[2]);
+    return v3_axpy(v3_axpy(v3_axpy(x, (double)i, e[0]), (double)j, e[1]), (double)k, e[2]);
+}
+
+int region_check_images(const struct region *r, int64_t n, double margin, const char *what,
+                        struct why *why)
+{
+    const double few = 1000, most = 1e7; // of one body, where there may be millions of them; of all
+    double images = 1;
+    struct region_walk w =
+        region_walk(r, v3(r->lo[0], r->lo[1], r->dim == 3 ? r->lo[2] : 0), margin);
+    for (int k = 0; k < 3; k++) images *= (double)(w.to[k] - w.from[k] + 1);
+    if (images <= few || images * (double)n <= most) return 0;
+    return why_set(why, EX_DATAERR, "%s %.3g images of each body in the periodic cell", what,
+                   images);
 }
 
 bool region_next(struct region_walk *w, const struct region *r, vec3 x, vec3 *image)
@@ -49,10 +64,10 @@ bool region_next(struct region_walk *w, const struct region *r, vec3 x, vec3 *im
 
 vec3 region_rate(const struct region_walk *w, const struct region *r)
 {
-    const int edges[3] = { w->at[0], w->at[1], w->at[2] - 1 };
+    const int64_t edges[3] = { w->at[0], w->at[1], w->at[2] - 1 };
     vec3 rate = v3(0, 0, 0);
     for (int k = 0; k < 3; k++)
-        if (edges[k]) rate = v3_axpy(rate, edges[k], r->period.cell->rate[k]);
+        if (edges[k]) rate = v3_axpy(rate, (double)edges[k], r->period.cell->rate[k]);
     return rate;
 }
 

@@ -9,6 +9,7 @@
 #ifndef NSD_REGION_H
 #define NSD_REGION_H
 
+#include "base/why.h"
 #include "bodies/packing.h"
 #include "measure/period.h"
 
@@ -41,9 +42,13 @@ bool region_shells(struct region *shell, int64_t n, const struct region *in,
 /* The images of a point that are within a margin (m) of the region, one after another; where nothing
    repeats, or the region holds all, the point itself. region_next() is false after the last. */
 struct region_walk {
-    int from[3], to[3], at[3]; /* edges */
+    int64_t from[3], to[3], at[3]; /* edges */
 };
 struct region_walk region_walk(const struct region *r, vec3 x, double margin);
+/* Are there so many of each of n bodies that a walk for each would take minutes? Returns 0, or EX_DATAERR with `what` in the
+   reason. */
+int region_check_images(const struct region *r, int64_t n, double margin, const char *what,
+                        struct why *why);
 bool region_next(struct region_walk *w, const struct region *r, vec3 x, vec3 *image);
 /* m/s: how much faster than the body the image is that region_next() has found last */
 vec3 region_rate(const struct region_walk *w, const struct region *r);

@@ -29,7 +29,9 @@ int snapshot_init(struct snapshot *s, const struct packing *p, const struct cont
     region_whole(&s->whole, p);
     s->region = s->whole;
     if (asked->boxed) region_box(&s->region, p, asked->lo, asked->hi);
-    if (check_tracer(p, asked->tracer, why)) return why->status;
+    if (region_check_images(&s->region, p->n, 0, "--box: it holds", why) ||
+        check_tracer(p, asked->tracer, why))
+        return why->status;
     return chosen_init(&s->only, p, "--only", *asked->only ? asked->only : NULL, why);
 }
 

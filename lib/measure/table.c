@@ -1,5 +1,7 @@
 #include "measure/table.h"
 
+#include "base/number.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -66,8 +68,8 @@ void print_number(FILE *out, double x, const char *none)
     }
     if (x == 0) x = 0; // no minus zero
     for (int digits = 15; digits <= 17; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, x);
-        if (strtod(text, NULL) == x) break;
+        number_write(text, sizeof text, digits, 'g', x);
+        if (number_read(text, NULL) == x) break;
     }
     fputs(text, out);
 }

@@ -2,6 +2,7 @@
 #include "scene/mesh_words.h"
 
 #include "base/mark.h"
+#include "base/number.h"
 
 #include <ctype.h>
 #include <stdlib.h>
@@ -85,7 +86,7 @@ int word_number(struct words *w, struct word word, double *x)
 {
     char *end = NULL;
     bool decimal = word.n < NUMBER_MOST && word_has_only(word, "+-.0123456789eE"); // no nan, 0x1
-    if (decimal) *x = strtod(word.s, &end);
+    if (decimal) *x = number_read(word.s, &end);
     if (!decimal || end != word.s + word.n)
         return word_fault(w, word, "is no finite decimal number");
     return isfinite(*x) ? 0 : word_fault(w, word, "is too large");

@@ -1,5 +1,6 @@
 /* scene/scene_table.c: tables of bodies: text, a line a body, columns that the first line names. */
 #include "base/mark.h"
+#include "base/number.h"
 #include "scene/grains.h"
 
 #include <ctype.h>
@@ -138,7 +139,7 @@ static int read_number(const struct table *t, enum heading c, const char *word, 
                        struct why *why)
 {
     char *end, text[80];
-    *x = strtod(word, &end);
+    *x = number_read(word, &end);
     if (*end && !t->named) return fault_usual(t, why);
     snprintf(text, sizeof text, "%s: not a number:", column_name[c]);
     if (*end) return fault(t, why, text, word);

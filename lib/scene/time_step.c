@@ -1,6 +1,7 @@
 /* scene/time_step.c: limits of the time step [scene/time_step.h]. */
 #include "scene/time_step.h"
 
+#include "base/number.h"
 #include "bodies/room.h"
 #include "detect/detect.h"
 
@@ -502,10 +503,10 @@ static double rounded(double dt)
 {
     char text[40];
     if (!isfinite(dt)) return dt;
-    snprintf(text, sizeof text, "%.15e", dt); // d.ddddddddddddddde-NN
+    number_write(text, sizeof text, 15, 'e', dt); // d.ddddddddddddddde-NN
     char *rest = strchr(text, 'e');
     memmove(text + 3, rest, strlen(rest) + 1);
-    return strtod(text, NULL);
+    return number_read(text, NULL);
 }
 
 void time_step_of(struct time_step *t, const struct scene *s, const struct packing *p)

@@ -16,6 +16,23 @@ bounded()
 }
 ends() { (bounded "$@"); }
 
+# ---- images of a periodic cell, and points of a grid ----
+
+echo '{ "dt": 1e-3, "gravity": [0, 0, 0], "cell": { "lengths": [1, 1, 1] }, "bodies": [{ "x": [0.2, 0.2, 0.5], "radius": 0.1 }, { "x": [0.6, 0.6, 0.5], "radius": 0.1 }] }' >cell.json
+nsd-gen cell.json >cell.h5
+nsd-step -n 1 --contacts cell.h5 2>/dev/null | cat >step.h5
+for size in 1e4 1e6 1e9 1e300; do refuses 65 "a box of $size cells along each axis" ends nsd-stat -m fraction --box 0,$size,0,$size,0,$size cell.h5; done
+solid() { ends nsd-stat -m fraction --box "0,$1,0,1,0,1" cell.h5 | jq -e --argjson size "$1" '.fraction.solid / $size / (8e-3 * 3.141592653589793 / 3) - 1 | fabs < 1e-6'; }
+for size in 7 300 1.2e6; do ok "a row of $size cells has all its images: 2 balls each" solid $size; done
+status 65 "fields of a width of 1000 cells" ends nsd-stat -m fraction -f f.h5 --width 1000 cell.h5
+is "leave nothing" "$(ls f.h5 .f.h5* 2>/dev/null)" ""
+if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
+    tail -c +513 step.h5 >fast.h5
+    /usr/bin/python3 -c 'import h5py; f = h5py.File("fast.h5", "r+"); f["particles/all/velocity/value"][-1, 0, 0] = 1e9'
+    status 65 "fields of a body that moves 1e6 cells in a step" ends nsd-stat -m fraction -f f.h5 fast.h5
+fi
+status 65 "fields on a grid of 8e6 points" ends nsd-stat -m fraction -f f.h5 --spacing 0.005 cell.h5
+
 # ---- what is no file has no size ----
 
 mkfifo pipe

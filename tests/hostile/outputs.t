@@ -45,6 +45,25 @@ if command -v ffmpeg >/dev/null; then
     echo PRECIOUS >film.part.mp4
     ok "a film" nsd-view --every 1 --size 64x64 -o film.mp4 t.h5
     is "leaves film.part.mp4, which is the user's" "$(cat film.part.mp4)" PRECIOUS
+    small() { (ulimit -f 1 && nsd-view --every 1 --size 200x200 -o full.mp4 t.h5); }
+    status 74 "a film that the disk has no room for" small
+    ok "is not there" eval 'test ! -e full.mp4 && [ "$(left)" = 0 ]'
+    # ffmpeg: one that does nothing, and one that does not see the end of its input
+    mkdir -p bin
+    empty() { printf '#!/bin/sh\ncat >/dev/null\n' >bin/ffmpeg && chmod +x bin/ffmpeg && PATH=$PWD/bin:$PATH nsd-view --every 1 --size 64x64 -o none.mp4 t.h5; }
+    refuses 74 "a film that ffmpeg has not written" empty
+    ok "is not there" eval 'test ! -e none.mp4 && [ "$(left)" = 0 ]'
+    printf '#!/bin/sh\necho $$ >encoder\nexec sleep 60\n' >bin/ffmpeg
+    ended() { local s; for ((w = 0; w < 100; w++)); do s=$(ps -o stat= -p "$(<encoder)") || return 0; [ "${s#Z}" = "$s" ] || return 0; sleep 0.02; done; return 1; }
+    refuses 65 "a film whose input ends badly" eval 'PATH=$PWD/bin:$PATH nsd-view --every 1 --size 64x64 -o none.mp4 t.h5 cut.h5'
+    ok "leaves no ffmpeg" ended
+    rm encoder
+    PATH=$PWD/bin:$PATH nsd-view --every 1 --size 64x64 -o none.mp4 t.h5 2>/dev/null &
+    pid=$!
+    for ((w = 0; w < 500; w++)); do [ ! -s encoder ] || break; sleep 0.01; done
+    s=0
+    kill $pid && wait $pid || s=$?
+    is "nor does one that is stopped" "$s $(ended && left)" '143 0'
     ok "a name with a colon is no protocol" nsd-view --every 1 --size 64x64 -o a:b.webm t.h5
     ok "but a film" test -s a:b.webm
 else
@@ -59,6 +78,11 @@ ok "is where the link points, with the rights that were there" test -L link.csv 
 mkdir there && ln -s there/new.csv nowhere.csv && ln -s nowhere.csv again.csv
 ok "a link that leads nowhere is followed" nsd-export -o again.csv t.h5
 ok "to where it would" test -L again.csv -a -L nowhere.csv -a -s there/new.csv
+for tool in 'nsd-view --size 32x32' nsd-web 'nsd-export -t csv' nsd-cat 'nsd-step -n 1'; do
+    ok "$tool -o -: standard output" eval "$tool -o x -o - t.h5 2>/dev/null | cmp - <($tool t.h5 2>/dev/null | cat) && test ! -e ./- && test ! -e x"
+done
+for tool in 'nsd-step -n 1' nsd-solve; do refuses 64 "$tool --log -" eval "$tool --log - good.h5"; done
+refuses 64 "a log between the documents" eval 'nsd-step -n 1 --log /dev/stdout good.h5 | cat'
 ok "/dev/stdout is no file" eval 'nsd-export -o /dev/stdout -t csv t.h5 | cmp - old.csv'
 mkfifo pipe
 ok "nor is a pipe" eval 'nsd-export -o pipe -t csv t.h5 & cmp pipe old.csv && wait'

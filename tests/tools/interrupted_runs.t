@@ -37,6 +37,64 @@ status 143 "into standard output, too" piped
 is "one frame" "$(steps_of piped.h5 | jq length)" 1
 status 0 "a run that is done is not stopped" nsd-step -n 3 -o done.h5 start.h5
 
+# ---- beside a program in the loop, which ignores signals and the end of its input ----
+
+# shellcheck disable=SC2016 # text for another shell
+deaf='trap "" TERM INT HUP PIPE; n=0; while [ $n -lt 2 ] && read -r l; do echo "{}"; n=$((n + 1)); done; (echo $BASHPID >>pids; sleep 60) | (echo $BASHPID >>pids; sleep 60)'
+waits=(env '--default-signal=INT,HUP' nsd-step -n 9 --with "bash -c '$deaf'")
+until_two() { for ((w = 0; w < 500; w++)); do [ "$(wc -l <pids)" -lt 2 ] || return 0; sleep 0.01; done; }
+orphans() # how many of the program's processes live on, after a while
+{
+    local pid alive
+    for ((w = 0; w < 100; w++)); do
+        alive=0
+        while read -r pid; do
+            if [ "$(ps -o stat= -p "$pid" | tr -d ' ' | cut -c1)" != "" ]; then alive=$((alive + 1)); fi
+        done <pids
+        [ $alive -gt 0 ] || break
+        sleep 0.02
+    done
+    echo $alive
+}
+asked() # SIGNAL ...: while it waits for an answer; the run's status, its time in seconds, its frames, and who lives on
+{
+    : >pids
+    "${waits[@]}" -o asked.h5 start.h5 2>said &
+    local pid=$! s=0 begun
+    until_two
+    begun=${EPOCHREALTIME/./}
+    for signal; do kill "-$signal" $pid && sleep 0.1; done
+    wait $pid || s=$?
+    echo "$s $(((${EPOCHREALTIME/./} - begun) / 2000000)) $(steps_of asked.h5) $(orphans)"
+}
+for signal in TERM HUP INT; do
+    is "SIG$signal ends the wait for an answer at once, after the last step" "$(asked $signal)" "$((128 + $(kill -l $signal))) 0 [1,2] 0"
+    like "and says so" "$(tail -n 1 said)" "stopped by signal [0-9]+ after step 2, which is kept"
+done
+is "a second signal ends the run, and the program" "$(asked TERM TERM)" "143 0 [1,2] 0"
+is "so does SIGKILL" "$(asked KILL 2>/dev/null)" "137 0 [1,2] 0"
+: >pids
+s=0
+# shellcheck disable=SC2016 # text for another shell
+nsd-step -n 100000 --with 'trap "" PIPE; echo $$ >>pids; while read -r l; do echo "{}"; done; sleep 60' start.h5 2>/dev/null | head -c 1 >/dev/null || s=${PIPESTATUS[0]}
+is "and a reader that has gone: SIGPIPE" "$s $(orphans)" "141 0"
+: >pids
+setsid "${waits[@]}" -o asked.h5 start.h5 2>said &
+pid=$!
+until_two
+s=0
+kill -INT -- "-$(ps -o pgid= -p $pid | tr -d ' ')"
+wait $pid || s=$?
+is "a signal for the group, as from a terminal" "$s $(steps_of asked.h5) $(orphans)" "130 [1,2] 0"
+
+s=0
+nsd-step -n 2 --with-timeout 0.5 --with 'read -r l; echo >begun; sleep 0.2; echo "{}"; read -r l; echo "{}"' -o asked.h5 start.h5 2>said &
+pid=$!
+until_there begun
+kill -STOP $pid && sleep 1 && kill -CONT $pid
+wait $pid || s=$?
+is "a run that was suspended has its answer, and the time for the next" "$s $(steps_of asked.h5)" "0 [1,2]"
+
 # ---- checkpoints ----
 
 "${long[@]}" --save 0.05s -o killed.h5 start.h5 2>/dev/null &

@@ -95,8 +95,19 @@ stops "a program that ends" 'read -r l; echo "{}"; read -r l; echo "{}"; exit 7'
 stops "a program that is killed" 'read -r l; echo "{}"; kill -9 $$' "[1]" 69 'step 2: --with: the program was killed'
 stops "a program that there is not" "$tmp/nothing" "[0]" 69 'step 1: --with: the program has ended, with status 127'
 stops "a program that hangs" 'read -r l; echo "{}"; sleep 60' "[1]" 69 'step 2: --with: the program has not answered for 0.3 s' --with-timeout 0.3
-stops "a program that speaks without end" 'read -r l; echo "{}"; yes x | tr -d "\n"' "[1]" 69 'step 2: --with: the program.s answer has more than'
+stops "a program that speaks without end" 'read -r l; echo "{}"; yes x | tr -d "\n"' "[1]" 69 'step 2: --with: the program(.s answer has more| has written more) than'
 stops "a program that dribbles" 'while :; do printf " "; sleep 0.05; done' "[0]" 69 'step 1: --with: the program has not answered for 0.3 s' --with-timeout 0.3
+stops "an empty line" 'read -r l; echo' "[0]" 69 'step 1: --with: the answer is an empty line'
+stops "two lines at a time" 'while read -r l; do printf "{}\n{}\n"; done' "[1]" 69 'step 2: --with: the program has written more than its answer'
+stops "blank lines between" 'while read -r l; do printf "{}\n\n"; done' "[1]" 69 'step 2: --with: the program has written more than its answer'
+stops "answers in advance" 'yes {}' "[1]" 69 'step 2: --with: the program has written more than its answer'
+stops "a line more after the last step" 'while read -r l; do echo "{}"; done; echo bye' "[1,2,3,4,5]" 69 '--with: the program has written more than its answer'
+stops "half a line at its end" 'read -r l; printf "{"; sleep 0.1' "[0]" 69 'step 1: --with: the program has ended, with status 0, within an answer'
+stops "a closed input" 'read -r l; exec <&-; echo "{}"; sleep 9' "[1]" 69 'step 2: --with: the program has closed its input'
+stops "a closed output" 'read -r l; exec >&-; sleep 9' "[0]" 69 'step 1: --with: the program has closed its output'
+stops "a program that is stopped" 'read -r l; kill -STOP $$' "[0]" 69 'step 1: --with: the program has not answered for 0.3 s' --with-timeout 0.3
+stops "a program that fails after the run" 'while read -r l; do echo "{}"; done; exit 7' "[1,2,3,4,5]" 0 '--with: the program has ended after the run, with status 7'
+stops "one that does not end after the run" 'while read -r l; do echo "{}"; done; sleep 9' "[1,2,3,4,5]" 0 'had not ended 0.3 s after the end of its input, and was killed' --with-timeout 0.3
 stops "nonsense" 'echo hello; cat >/dev/null' "[0]" 69 'step 1: --with: the answer is not JSON'
 for answer in '[1]:neither a JSON object' '{"force":{}}:no .force.' '{"forces":{"7":[0,0,1]}}:body .7., which does not exist' \
     '{"forces":{"0":[0,0,1],"00":[0,0,2]}}:body .00.' '{"forces":{"+1":[0,0,1]}}:body .+1.' '{"forces":{" 1":[0,0,1]}}:body . 1.' \
@@ -110,6 +121,22 @@ for answer in '[1]:neither a JSON object' '{"force":{}}:no .force.' '{"forces":{
     stops "the answer ${answer%:*}" "$(answering "${answer%:*}")" "[0]" 69 "step 1: --with: .*${answer##*:}"
 done
 
+
+# ---- an answer that is refused has changed nothing, as one that stops the run; neither has the frame that is kept ----
+
+nsd-gen 40 >"$tmp/heap.h5"
+quiet -n 20 --with "$(answering '{"forces":{"3":[0,0,2e-5]}}')" -o "$tmp/alone.h5" "$tmp/heap.h5"
+change='"velocities":{"1":[0,0,9]},"angular_velocities":{"1":[0,0,9]},"boundaries":{"0":{"velocity":[0,0,9]}},"forces":{"2":[0,0,9]},"gravity":[0,0,9],"friction":[["ball","wall",9]]'
+for bad in '"torques":{"999":[0,0,1]}' '"boundaries":{"0":{"velocity":[0,0,9]},"1":{"speed":1}}' '"friction":[["ball","wall",9],["ball","cheese",1]]' '"stop":true'; do
+    bad=$(jq -nc "{$change} + {$bad}")
+    nsd-step -n 99 --every 100 --with "n=0; while read -r l; do n=\$((n + 1)); if [ \$n -le 20 ]; then echo '{\"forces\":{\"3\":[0,0,2e-5]}}'; else echo '$bad'; fi; done" -o "$tmp/end.h5" "$tmp/heap.h5" 2>/dev/null || true
+    for file in alone end; do # its last frame as a run from there goes on
+        quiet -n 20 "$tmp/$file.h5" >"$tmp/$file-on.h5"
+    done
+    is "the run as it was before $bad" "$(number -p "$tmp/end-on.h5")" "$(number -p "$tmp/alone-on.h5")"
+done
+status 0 "nor is it stored, and a replay ends before it" nsd-step -n 99 --replay "$tmp/end.h5" -o "$tmp/again.h5" "$tmp/heap.h5"
+
 # ---- whole documents back ----
 
 cat >"$tmp/echo" <<'EOT'
@@ -119,7 +146,6 @@ while IFS= read -r line; do
     head -c "$n"
 done
 EOT
-nsd-gen 40 >"$tmp/heap.h5"
 quiet -n 20 "$tmp/heap.h5" >"$tmp/alone.h5"
 for how in line bare; do
     quiet -n 20 --with-document --with "bash $tmp/echo $how" "$tmp/heap.h5" >"$tmp/plain.h5"
@@ -226,6 +252,52 @@ quiet -n 27 --with "$program" --in-place "$tmp/part.h5"
 is "a run that was acted on resumes with the same bits" "$(number -p "$tmp/part.h5")" "$(number -p "$tmp/acted.h5")"
 quiet -n 50 --replay "$tmp/part.h5" "$tmp/heap.h5" >"$tmp/again.h5"
 is "and is replayed as a whole" "$(number -p "$tmp/again.h5")" "$(number -p "$tmp/acted.h5")"
+refuses 65 "answers of steps that are made already" nsd-step -n 1 --replay "$tmp/acted.h5" -o "$tmp/again.h5" "$tmp/acted.h5"
+like "names both steps" "$(<"$tmp/err")" 'ends with step 50, and the run begins after step 50'
+quiet -n 20 --with "$program" "$tmp/acted.h5" >"$tmp/later.h5"
+quiet -n 25 "$tmp/heap.h5" >"$tmp/early.h5"
+refuses 65 "answers of later steps alone" nsd-step -n 1 --replay "$tmp/later.h5" -o "$tmp/again.h5" "$tmp/early.h5"
+like "names both steps, too" "$(<"$tmp/err")" 'the first answer is of step 51, and the run begins after step 25'
+if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
+    cat >"$tmp/forge.py" <<'EOT'
+import json, sys
+import h5py, numpy as np
+source, to, how = sys.argv[1:]
+open(to, "wb").write(open(source, "rb").read()[512:]) # without nsd's header: h5py makes no checksum
+with h5py.File(to, "r+") as f:
+    text = f["nsd/outside/answer/text"]
+    lines = bytes(text[()]).decode().splitlines()
+    lines = eval(how)
+    new = np.frombuffer("".join(x + "\n" for x in lines).encode(), text.dtype)
+    attributes = dict(text.attrs)
+    del f["nsd/outside/answer/text"]
+    f["nsd/outside/answer/text"] = new
+    f["nsd/outside/answer/text"].attrs.update(attributes)
+    count = f["nsd/outside/answer/count"] # all with the last frame
+    starts = f["nsd/outside/answer/start"]
+    count[...], starts[...] = 0, 0
+    count[-1] = len(new)
+EOT
+    forged() # HOW PATTERN
+    {
+        /usr/bin/python3 "$tmp/forge.py" "$tmp/acted.h5" "$tmp/forged.h5" "$1"
+        rm -f "$tmp/again.h5"
+        refuses 65 "--replay of $1" nsd-step -n 50 --replay "$tmp/forged.h5" -o "$tmp/again.h5" "$tmp/heap.h5"
+        like "says why" "$(<"$tmp/err")" "$2"
+        ok "before the run begins" eval "! grep -q ' steps, ' $tmp/err && test ! -e $tmp/again.h5"
+    }
+    forged 'lines[:9] + [lines[9]] + lines[9:]' 'line 11 is of step 10, and the one before of 10'
+    forged 'lines[::-1]' 'line 2 is of step 49, and the one before of 50'
+    forged 'lines + ["{\"step\":52,\"answer\":{}}"]' 'an answer is of step 52, and the last frame of step 50'
+    for k in 0 -1 2.5 '\"3\"' 1e300; do forged '["{\"step\":'"$k"',\"answer\":{}}"]' 'line 1 is not a step above 0 and an answer'; done
+    forged '["{\"step\":1,\"answer\":[]}"]' 'line 1 is not a step above 0 and an answer'
+    forged '["{\"step\":1,\"answer\":{}"]' 'line 1 is not a step above 0 and an answer'
+    forged '["{\"step\":1,\"answer\":{}}", "{\"step\":30,\"answer\":{\"gravity\":3}}"]' "line 2: the answer.s gravity is a vector"
+    forged '["{\"step\":1,\"answer\":{}}", "{\"step\":30,\"answer\":{\"force\":{}}}"]' "line 2: the answer has no .force."
+    forged '["{\"step\":1,\"answer\":{\"gravity\":[" + "[]," * 500000 + "0]}}"]' 'an answer of [0-9]+ bytes: [0-9]+ are allowed'
+else
+    skip "answers that are forged" "no h5py"
+fi
 nsd-step -n 1 -o "$tmp/more.h5" "$tmp/acted.h5" 2>"$tmp/err"
 like "a run that goes on without its program says so" "$(<"$tmp/err")" "nothing acts on it now: --with or --replay"
 quiet -n 5 --contacts --with "$program" "$tmp/acted.h5" >"$tmp/judged.h5"

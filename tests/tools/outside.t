@@ -47,6 +47,28 @@ else
     else
         skip "repose.py" "no scipy"
     fi
+    if localedef -i de_DE -f UTF-8 "$tmp/de_DE.UTF-8" 2>/dev/null; then
+        cat >"$tmp/comma.py" <<'EOT'
+import locale, sys
+import nsd
+locale.setlocale(locale.LC_ALL, sys.argv[1])
+scene = {"dim": 3, "dt": 1.5e-3, "gravity": [0, 0, -9.81], "bodies": [{"file": "table"}, {"x": [0, 0, 0.75], "radius": 0.125}],
+         "walls": [{"point": [0, 0, 0], "normal": [0, 0, 1]}, {"mesh": {"file": "slope.obj"}}]}
+run = nsd.Run.from_scene(scene, folder=sys.argv[2])
+run.set(dt=1.25e-3, eps=1.5e-3)
+run.step(3)
+print(run.position.tolist(), run.time, run.measure("energy")["energy"]["kinetic"])
+run.set(box="-0.5,0.5,-0.5,0.5,0.25,1.25")
+print(run.measure("fraction")["fraction"])
+EOT
+        echo '0.5 0.5 0.75 0.0625' >"$tmp/table"
+        printf '%s\n' 'v -5.5 -5.5 -1.5' 'v 5.5 -5.5 -1.25' 'v 5.5 5.5 -1.25' 'f 1 2 3' >"$tmp/slope.obj"
+        like "numbers with fractions are read" "$(/usr/bin/python3 "$tmp/comma.py" C "$tmp" 2>&1)" '0.7499.* 0.00375 .*solid'
+        is "a decimal comma in the program's locale changes nothing" "$(LOCPATH=$tmp /usr/bin/python3 "$tmp/comma.py" de_DE.UTF-8 "$tmp" 2>&1)" \
+            "$(/usr/bin/python3 "$tmp/comma.py" C "$tmp" 2>&1)"
+    else
+        skip "a decimal comma" "localedef makes no locale"
+    fi
     /usr/bin/python3 tests/support/outside.py "$tmp" >"$tmp/python" 2>"$tmp/err" || true
     while read -r line; do
         case $line in

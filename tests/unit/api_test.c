@@ -604,6 +604,11 @@ static void test_errors(void)
         { nsd_save(r, "/nowhere/a.h5"), NSD_OUTPUT, "no folder" },
         { nsd_note(r, "no JSON"), NSD_DATA, "history that is no JSON" },
         { nsd_from_scene(&none, "{", NULL), NSD_DATA, "half a scene" },
+        { nsd_from_scene(NULL, "{}", NULL), NSD_USAGE, "no place for the run of a scene" },
+        { nsd_from_scene_file(NULL, "/nowhere"), NSD_USAGE, "of a file" },
+        { nsd_from_document(NULL, "/nowhere.h5"), NSD_USAGE, "of a document" },
+        { nsd_from_memory(NULL, "hello", 5), NSD_USAGE, "of memory" },
+        { nsd_from_arrays(NULL, "{}", NULL, &b), NSD_USAGE, "of arrays" },
         { nsd_from_document(&none, "/nowhere.h5"), NSD_NO_INPUT, "no document" },
         { nsd_from_memory(&none, "hello", 5), NSD_DATA, "another document" },
     };
