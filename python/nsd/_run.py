@@ -419,7 +419,7 @@ for _name, _text in {
     "contact_velocity": "[c, 3] m/s: of b relative to a, as it enters the contact law", "contact_status": "[c] 0 free, 1 stick, 2 slide",
     "boundary_position": "[b, 3] m", "boundary_normal": "[b, 3] unit normals or axes", "boundary_velocity": "[b, 3] m/s",
     "boundary_angular_velocity": "[b, 3] rad/s", "boundary_force": "[b, 3] N: force of the bodies on the boundary",
-    "boundary_torque": "[b, 3] N m: torque of the same about boundary_position",
+    "boundary_torque": "[b, 3] N m: torque of the same about boundary_position, rolling and pivoting included",
 }.items():
     setattr(Run, _name, _view(_name, _text))
 for _name, _text in {

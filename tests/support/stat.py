@@ -97,12 +97,15 @@ def same_as_numpy(document):
     close(s["coordination"]["z"], count.mean(), 1e-9)
 
 
-def balances(document):
-    """What a step dissipates is what its report says, in every frame."""
+def balances(document, of=""):
+    """What a step dissipates is what its report says, in every frame; of walls: so is what they give."""
     q = h5py.File(document)["nsd/solver"]
     for k, s in enumerate(stat("-m", "energy", document)):
+        if of == "walls":
+            close(s["energy"]["boundaries"], q["work_drives/value"][k], 1e-6, abs(q["kinetic_energy/value"][k]))
         close(s["energy"]["dissipated"], q["dissipation/value"][k], 1e-6, abs(q["kinetic_energy/value"][k]))
-        close(s["energy"]["kinetic"] + s["energy"]["rotation"], q["kinetic_energy/value"][k], 1e-9)
+        if of != "edges":  # these have an energy of their own
+            close(s["energy"]["kinetic"] + s["energy"]["rotation"], q["kinetic_energy/value"][k], 1e-9)
         close(s["energy"]["impact"] + s["energy"]["friction"], s["energy"]["dissipated"], 1e-9)
 
 
@@ -175,7 +178,8 @@ def tied(document):
     pulls, used = 0, 0
     for k, s in enumerate(stat("-m", "energy,coordination,friction,normal_forces", document)):
         close(s["energy"]["stored"], q["bond_energy/value"][k], 1e-9)
-        close(s["energy"]["dissipated"], q["dissipation/value"][k], 1e-6, abs(q["bond_change/value"][k]))
+        close(s["energy"]["dissipated"], q["dissipation/value"][k], 1e-6,
+              abs(q["bond_change/value"][k]) + abs(q["dissipation/value"][k]))
         assert s["friction"]["contacts"] == s["coordination"]["contacts"]
         used = max(used, s["friction"]["mobilised"] or 0)
     d = last(document)

@@ -47,6 +47,25 @@ jq '.walls[0].drives = [{ along: [0, 0, 1], amplitude: 5e-4, frequency: 20 }] | 
 ok "also where boundaries move" truth balances "$tmp/shaken.h5"
 step -n 60 --every 30 --contacts -o "$tmp/shear.h5" <(jq '.bodies[0].count = 144 | .bodies[0].radius.uniform = [0.02, 0.04] | .dt = 2e-3' scenes/shear.json | nsd-gen -)
 ok "and where a cell's edges do" truth balances "$tmp/shear.h5"
+# belts, drives, rolling and pivoting friction, grains of all shapes, walls that a load moves or a room; a cell whose rates change
+jq -n '{ dt: 1e-3, mu: 0.3, rolling: { mu_r: 2e-4, mu_p: 3e-4 }, seed: 3, shapes: { block: { box: [2, 1, 1] } },
+    walls: [{ point: [0, 0, 0], normal: [0, 0, 1], belt: [0.4, 0, 0], drives: [{ about: [0, 0, 0], axis: [0, 0, 1], speed: 3 }] },
+        { cylinder: { point: [0, 0, 0], axis: [0, 0, 1], radius: 0.05, length: 0.3 }, drives: [{ about: [0, 0, 0], axis: [0, 0, 1], speed: -2 }] }],
+    bodies: [{ count: 20, radius: 0.005, box: { x: [-0.03, 0.03], y: [-0.03, 0.03], z: [0.001, 0.02] } },
+        { count: 10, radius: 0.006, shape: "block", orientation: "random", box: { x: [-0.03, 0.03], y: [-0.03, 0.03], z: [0.02, 0.05] } }] }' >"$tmp/works.json"
+nsd-gen "$tmp/works.json" | step -n 120 --every 20 --contacts --overlap keep --eps 1e-8 -o "$tmp/works.h5"
+ok "belts, drives, moments of rolling and pivoting, balls and blocks: the energies of the report" truth balances "$tmp/works.h5" walls
+nsd-gen <(jq 'del(.bodies[1])' "$tmp/works.json") | step -n 120 --every 20 --contacts --eps 1e-8 -o "$tmp/works.h5"
+ok "and of balls that are moved apart" truth balances "$tmp/works.h5" walls
+step -n 120 --sums --eps 1e-8 -o "$tmp/works.h5" <(nsd-gen "$tmp/works.json")
+opposite() { jq -ne --argjson a "$1" --argjson b "$2" '(($a + $b) | fabs) < 1e-9 * ($b | fabs) and $b != 0'; }
+ok "the sums of the walls have the work of all steps" opposite \
+    "$(nsd-stat --last -m sums "$tmp/works.h5" 2>/dev/null | jq '.sums | (.power | add) * .span[0]')" \
+    "$(nsd-info "$tmp/works.h5" 2>/dev/null | jq -s 'map(.balance.drives // 0) | add')"
+jq -n '{ dim: 2, dt: 1e-3, gravity: [0, 0], mu: 0.3, cell: { lengths: [1, 1], stress: { pressure: 1000, mass: 20 } },
+    bodies: [{ count: 60, radius: { uniform: [0.03, 0.05] }, box: { x: [0, 1], y: [0, 1] } }] }' | nsd-gen - |
+    step -n 150 --every 30 --contacts --overlap keep --eps 1e-10 --max-sweeps 100000 -o "$tmp/servo.h5"
+ok "and a cell that yields to a stress" truth balances "$tmp/servo.h5" edges
 if [ -z "${NSD_THIN-}" ]; then
     nsd-gen 500 | step -n 3000 --every 3000 | nsd-cat --last | step -n 2 --contacts --eps 1e-7 --max-sweeps 20000 -o "$tmp/pile.h5"
     ok "fields: div stress = rho (g - a) in a settled pile" truth fields "$tmp/pile.h5" "$tmp/fields.h5"

@@ -44,6 +44,37 @@ jq -n "$block | .bodies[0].v = [0, 0, 0] | .walls[0].velocity = [1, 0, 0]" | nsd
 ok "a belt: what friction takes" near "$(jq '.friction[0]' "$tmp/belt")" 8 1e-6
 ok "and its work, by which it is braked" near "$(jq '.power[0] * .span[0]' "$tmp/belt")" -16 1e-6
 
+jq -n "$block | .bodies[0].v = [0, 0, 0] | .walls[0].belt = [1, 0, 0]" | nsd-gen - | step -n 2500 --every 2500 --eps 1e-10 |
+    stat -m sums | jq -c .sums >"$tmp/running"
+is "the key belt in place of the wall's velocity: all numbers are the same" \
+    "$(jq -sc 'map([.friction, .rub, .wear, .power, .normal, .tangential] | map(.[0])) | transpose | all(.[]; ((.[0] - .[1]) | fabs) < 1e-9 * (.[0] | fabs))' "$tmp/belt" "$tmp/running")" true
+# a roller of belts: the belt along x turns with its wall; a block at rest on the axis feels both
+jq -n "$block | .bodies[0].v = [1, 0, 0] | .walls[0].belt = [1, 0, 0] | .walls[0].velocity = [0.5, 0, 0]" | nsd-gen - |
+    step -n 2500 --every 2500 --eps 1e-10 | stat -m sums | jq -c .sums >"$tmp/both"
+ok "a belt on a moving wall: their velocities add up, friction takes m (1.5 - 1)^2/2" near "$(jq '.friction[0]' "$tmp/both")" 2 1e-6
+
+# ---- moments: a ball on the axis of a turntable of 5 rad/s, spun up by pivoting friction, N mu_p = 4 pi/3 1e-9 N m ----
+
+jq -n '{ dt: 1e-3, gravity: [0, 0, -10], density: 1000, mu: 0.5, e_n: 0, rolling: { mu_p: 1e-4 }, bodies: [{ x: [0, 0, 0.01], radius: 0.01 }],
+    walls: [{ name: "table", point: [0, 0, 0], normal: [0, 0, 1], drives: [{ about: [0, 0, 0], axis: [0, 0, 1], speed: 5 }] }] }' >"$tmp/table.json"
+nsd-gen "$tmp/table.json" | step -n 100 --every 50 --contacts --eps 1e-12 -o "$tmp/table.h5"
+nsd-stat --last -m sums,boundaries,names,energy "$tmp/table.h5" 2>/dev/null >"$tmp/table"
+moment=$(jq -n '1e-4 * 10 * 1000 * 4 / 3 * 3.141592653589793 * 1e-6')
+for m in sums boundaries names; do
+    ok "pivoting friction: torque by $m" near "$(jq ".$m.torque[0][2]" "$tmp/table")" "-$moment" 1e-9
+done
+ok "power is torque times angular velocity" near "$(jq '.sums.power[0]' "$tmp/table")" "$(jq -n "-5 * $moment")" 1e-9
+# the spin of the ball is w = M t/I, so that friction takes M (5 t - w t/2) in the time t
+ok "friction takes the moment times the difference of the spins" near "$(jq '.sums.friction[0]' "$tmp/table")" \
+    "$(jq -n "$moment as \$M | (4e-6 / 3 * 3.141592653589793 * 1000 * 0.4 * 1e-4) as \$I | \$M * 0.1 * (5 - \$M * 0.05 / \$I)")" 1e-9
+ok "energy: boundaries give moment times spin times dt" near "$(jq '.energy.boundaries' "$tmp/table")" "$(jq -n "5e-3 * $moment")" 1e-9
+if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
+    ok "and the same torque in a program" env PYTHONPATH=python NSD_LIBRARY="$PWD/build/libnsd.so" /usr/bin/python3 -c 'import nsd, sys
+r = nsd.Run.from_scene(open(sys.argv[1]).read())
+r.step(20)
+assert abs(r.boundary_torque[0][2] / -float(sys.argv[2]) - 1) < 1e-6, r.boundary_torque' "$tmp/table.json" "$moment"
+fi
+
 # ---- a heap: the walls carry its weight; spans of one step are the forces of its contacts ----
 
 nsd-gen 50 | step -n 1500 --every 100 --contacts --eps 1e-8 -o "$tmp/heap.h5"
