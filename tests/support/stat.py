@@ -172,6 +172,25 @@ def fields(document, made):
     assert left < 0.01, left
 
 
+def inside(document, floor, least, most):
+    """The fraction inside a bed by points at random: in the region that is reported, and in the lower half of the bed."""
+    s, d = stat("-l", "-m", "fraction", document)[-1]["fraction"], h5py.File(document)["particles/all"]
+    x, r = d["position/value"][-1], d["radius"][:]
+    rng = np.random.default_rng(1)
+
+    def solid(lo, hi, n=20000):
+        at = lo + (hi - lo) * rng.random((n, 3))
+        return np.mean([(((x - y) ** 2).sum(1) < r ** 2).any() for y in at])
+    lo, hi, mean = np.array(s["from"]), np.array(s["to"]), 2 * r.mean()
+    assert abs(solid(lo, hi) - s["fraction"]) < 0.012, (solid(lo, hi), s)
+    assert float(least) < s["fraction"] < float(most), s
+    middle = np.median(x, 0)
+    own = [middle - 3 * mean, middle + 3 * mean]
+    own[0][2], own[1][2] = float(floor) + 2 * mean, middle[2] + mean
+    assert abs(solid(*own) - s["fraction"]) < 0.05, (solid(*own), s)
+    assert lo[2] > float(floor) + 1.9 * mean and hi[2] < (x[:, 2] + r).max() - mean, s
+
+
 def tied(document):
     """Pairs in tension count, what ties store is stored and not dissipated, friction has its limit in the push."""
     q = h5py.File(document)["nsd/solver"]

@@ -134,6 +134,19 @@ jq -n '{ dt: 1, bodies: [range(20) | { x: [3 * ., 0, (if . < 10 then 1 else 5 en
     nsd-gen - >"$tmp/sorted.h5"
 ok "large ones above small ones" truth sorted_by_size "$tmp/sorted.h5"
 
+# ---- the solid fraction inside a bed: no more than that of a block when the box around is empty above ----
+
+jq -n '{ dt: 1e-3, walls: [{ box: { x: [0, 20], y: [0, 20], z: [0, null] } }], overlap: true,
+    bodies: [(range(10) as $i | range(10) as $j | range(8) as $k | { x: ([$i, $j, $k] | map(2 * . + 1)), radius: 1 }), { x: [10, 10, 60], radius: 1 }] }' |
+    nsd-gen - | nsd-detect >"$tmp/block.h5"
+ok "the fraction inside a block of 800 balls with one far above is pi/6" truth inside "$tmp/block.h5" 0 0.50 0.55
+if [ -z "${NSD_THIN-}" ]; then
+    ok "and inside a bed at rest that of random points" truth inside "$tmp/pile.h5" 0 0.55 0.66
+fi
+status 65 "a name that is not in a document is refused before contacts are missed" nsd-stat -m names --only NOSUCH <(nsd-gen 5)
+like "with the names that are" "$(cat "$tmp/err")" "no 'NOSUCH' here, but"
+is "--box is taken as it is" "$(nsd-stat -l -m fraction -b 0,20,0,20,0,16 "$tmp/block.h5" 2>/dev/null | jq '.fraction.fraction * 6 / 3.141592653589793 - 1 | fabs < 1e-9')" true
+
 # ---- pipes and tables ----
 
 ok "--tsv says what JSON says" truth table "$tmp/heap.h5"
