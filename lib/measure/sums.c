@@ -13,7 +13,8 @@
           "mean torque about --point over the span, rolling and pivoting friction included" },     \
         { "normal", "N", 1, "mean of the sum of normal forces" },                                  \
         { "tangential", "N", 1, "mean of the sum of magnitudes of tangential forces" },            \
-        { "area", "m2", 1, "area; null if it is infinite" },                                       \
+        { "area", "m2", 1,                                                                         \
+          "area, of a plane between planes upright to it or across the cell; null if infinite" },  \
         { "pressure", "Pa", 1, "normal over area" },                                               \
         { "power", "W", 1, "mean power of the bodies on the moving wall" },                        \
         { "friction", "J", 1,                                                                      \
@@ -116,7 +117,9 @@ static void explain(struct table *t, const struct look *l)
             any = any || !isfinite(t->x[i * t->width + k]);
     if (!(l->span > 0)) table_null(t, "no time has passed since the sums began");
     if (any)
-        table_null(t, "infinite walls have no area, and wear needs a coefficient: --wear, or "
+        table_null(t, "a wall without ends has no area, unless it is a plane between others "
+                      "upright to it or across a "
+                      "periodic cell; wear needs a coefficient: --wear, or "
                       "the key wear of the wall");
 }
 

@@ -88,6 +88,17 @@ is "the sums of one step are the forces of its contacts" \
 is "and their normal forces" \
     "$(stat -m boundaries,sums "$tmp/each.h5" | jq -s 'all(.[1:][]; [.boundaries.normal, .sums.normal] | transpose | all(.[]; (.[0] - .[1]) | fabs < 1e-9))')" true
 
+# a plane between planes upright to it, or across a periodic cell, has a face; the sides of an open box have none
+jq -n '{ dt: 1e-3, walls: [{ box: { x: [0, 0.3], y: [0, 0.2], z: [0, null] } }], bodies: [{ x: [0.1, 0.1, 0.05], radius: 0.05 }] }' >"$tmp/box.json"
+nsd-gen "$tmp/box.json" | step -n 20 --every 20 --eps 1e-12 -o "$tmp/box.h5"
+stat --last -m sums "$tmp/box.h5" | jq -c '.sums + { why: (.why.sums // "") }' >"$tmp/box"
+is "the area of a floor is that between the sides, which end nowhere above" \
+    "$(jq -c '[.area | map(. != null)] | .[0] | sort' "$tmp/box") $(jq '.area | add * 1e9 | round' "$tmp/box")" "[false,false,false,false,true] 60000000"
+ok "its pressure the weight over it" near "$(jq '.pressure | add' "$tmp/box")" "$(nsd-info -p "$tmp/box.h5" | jq -s '.[0].mass * 9.81 / 0.06')" 1e-9
+like "and why the others have none" "$(jq -r .why "$tmp/box")" 'without ends has no area'
+nsd-gen <(jq '.walls = [{ point: [0, 0, 0], normal: [0, 0, 1] }] | .cell = { lengths: [0.3, 0.2, 1], repeats: [true, true, false] }' "$tmp/box.json") | step -n 20 --every 20 --eps 1e-12 -o "$tmp/box.h5"
+ok "across a periodic cell" near "$(stat --last -m sums "$tmp/box.h5" | jq '.sums.area[0]')" 0.06 1e-12
+
 # ---- a drum: its power is torque by angular velocity; the balances have the same work ----
 
 jq ".bodies[0].count = 100" scenes/drum.json | nsd-gen - | step -n 500 --warm -o "$tmp/drum.h5"
