@@ -33,6 +33,19 @@ is "pairs of a square lattice, two to a body in each shell, whatever is across t
 is "of a hexagonal one, three" "$(pairs hexagonal 1 3)" '[300]'
 is "of a cubic one, three to a body, then six" "$(pairs cubic 3 3.3)" '[0,375,750]'
 
+# bricks in a row that closes through the border of a cell: each touches two others by faces, at two places each; a ball in the
+# plane touches at one; two bodies that are each other's neighbours on both sides of a small cell are two neighbours
+row() # BODIES
+{
+    jq -n --argjson n "$1" '{ dim: 2, dt: 1, overlap: true, gravity: [0, 0], shapes: { brick: { polygon: [[-1, -1], [1, -1], [1, 1], [-1, 1]] } },
+        cell: { lengths: [2 * $n * (1 - 1e-9), 9] }, bodies: [range($n) | { x: [2 * . * (1 - 1e-9) + 1, 4.5], shape: "brick", radius: (2 | sqrt) }] }' |
+        nsd-gen - | nsd-detect | nsd-stat -m coordination,fabric,contact_numbers 2>/dev/null
+}
+for n in 2 3 7; do
+    is "$n bricks in a ring: places, and neighbours once" "$(row $n | jq -c '[.contacts, .coordination.z, .coordination.neighbours, .fabric.tensor[0][0]]')" "[$((2 * n)),4,2,1]"
+done
+is "of balls both are one" "$(nsd-stat -m coordination "$tmp/fcc.h5" 2>/dev/null | jq -c '.coordination | [.z, .neighbours]')" '[12,12]'
+
 # ---- forces ----
 
 jq -n '{ dt: 1e-5, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
