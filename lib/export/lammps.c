@@ -62,8 +62,9 @@ static int dump(FILE *out, const struct export_frame *m, enum part part, bool fi
     fprintf(out, "ITEM: TIMESTEP\n%" PRId64 "\nITEM: NUMBER OF ATOMS\n%" PRId64 "\n", p->step,
             p->n);
     put_box(out, p);
-    fprintf(out, "ITEM: ATOMS id type x y z vx vy vz omegax omegay omegaz radius mass "
-                 "quati quatj quatk quatw%s\n",
+    fprintf(out,
+            "ITEM: ATOMS id type x y z vx vy vz omegax omegay omegaz radius mass "
+            "quati quatj quatk quatw%s\n",
             p->image ? " ix iy iz" : "");
     for (int64_t i = 0; i < p->n; i++) {
         moment_tell(m, i, p->n);
